@@ -1,0 +1,107 @@
+//! The coadjoint action on 𝔤*; M is a coadjoint orbit.
+//!
+//! The paper's Ad*_g (3) is an anti-representation (Ad*_a Ad*_b = Ad*_{ba}); the left action is
+//! Λ(g, m) = Ad*_{g⁻¹} m. Its infinitesimal generator at ξ is −ad*_ξ m, so that Euler's equations
+//! ṁ = ad*_ω m are f(m) = −ω.
+//!
+//! | | 𝔤* | Λ(g, m) |
+//! |---|---|---|
+//! | so(3) | ℝ³, ⟨m, v⟩ = m·v | g m |
+//! | any n | n×n matrices, ⟨m, v⟩ = tr(mᵀv) | g⁻ᵀ m gᵀ: g m gᵀ on SO(n), MgM⁻¹ m gᵀ on G_M |
+
+use faer::Mat;
+use nalgebra::{Matrix3, Vector3};
+
+use super::Action;
+use crate::chart::PsiOf;
+use crate::dense::{Lu, mul};
+use crate::error::StepError;
+use crate::groups::{Form, GroupMatrix, LieGroup, MatrixGroup, So3};
+use crate::maps::CoordinateMap;
+use crate::scalar::Real;
+
+/// The coadjoint action Λ(g, m) = Ad*_{g⁻¹} m.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Coadjoint;
+
+impl<S: Real> Action<So3<S>> for Coadjoint {
+    type Point = Vector3<S>;
+    type Work = ();
+
+    fn work(&self, _: &So3<S>) {}
+    #[inline]
+    fn act(&self, group: &So3<S>, g: &Matrix3<S>, p: &Vector3<S>, q: &mut Vector3<S>, _: &mut ()) {
+        group.apply(g, p, q);
+    }
+    #[inline]
+    fn lambda<Psi: CoordinateMap<So3<S>>>(
+        &self,
+        psi_u: PsiOf<'_, So3<S>, Psi>,
+        p: &Vector3<S>,
+        q: &mut Vector3<S>,
+        _: &mut (),
+    ) -> Result<(), StepError> {
+        psi_u.on(p, q)
+    }
+}
+
+/// Scratch of the coadjoint action on n×n matrices.
+#[derive(Debug)]
+pub struct CoadjointWork {
+    left: Mat<f64>,
+    product: Mat<f64>,
+    lu: Option<Lu>,
+}
+
+impl Action<MatrixGroup> for Coadjoint {
+    type Point = Mat<f64>;
+    type Work = CoadjointWork;
+
+    fn work(&self, group: &MatrixGroup) -> CoadjointWork {
+        let n = group.n();
+        let lu = matches!(group.form(), Form::Free).then(|| Lu::new(n));
+        CoadjointWork { left: Mat::zeros(n, n), product: Mat::zeros(n, n), lu }
+    }
+    fn act(
+        &self,
+        group: &MatrixGroup,
+        g: &GroupMatrix,
+        p: &Mat<f64>,
+        q: &mut Mat<f64>,
+        work: &mut CoadjointWork,
+    ) {
+        let CoadjointWork { left, product, lu } = work;
+        match (group.form(), lu) {
+            (Form::Free, Some(lu)) => {
+                lu.a.copy_from(g.transpose());
+                lu.factor();
+                product.copy_from(p);
+                lu.solve(product.as_mut());
+            }
+            (Form::Bilinear { m, inverse }, _) => {
+                mul(product, m.as_ref(), g.as_ref());
+                mul(left, product.as_ref(), inverse.as_ref());
+                mul(product, left.as_ref(), p.as_ref());
+            }
+            (Form::Symplectic, _) => {
+                conjugate_by_j(g, left);
+                mul(product, left.as_ref(), p.as_ref());
+            }
+            _ => mul(product, g.as_ref(), p.as_ref()),
+        }
+        mul(q, product.as_ref(), g.transpose());
+    }
+}
+
+/// out ← J g J⁻¹: blocks \[a b; c d\] become \[d −c; −b a\].
+fn conjugate_by_j(g: &Mat<f64>, out: &mut Mat<f64>) {
+    let m = g.nrows() / 2;
+    for j in 0..m {
+        for i in 0..m {
+            out[(i, j)] = g[(i + m, j + m)];
+            out[(i, j + m)] = -g[(i + m, j)];
+            out[(i + m, j)] = -g[(i, j + m)];
+            out[(i + m, j + m)] = g[(i, j)];
+        }
+    }
+}

@@ -1,0 +1,33 @@
+//! The linear action on vectors: M = ℝⁿ (or k vectors as columns), Λ(g, x) = g·x.
+//! One `impl` for every group; Ψ(u) is applied, never formed, where the map knows how.
+
+use super::Action;
+use crate::chart::PsiOf;
+use crate::error::StepError;
+use crate::groups::LieGroup;
+use crate::maps::CoordinateMap;
+
+/// The standard representation: ẋ = f(x)·x.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Linear;
+
+impl<G: LieGroup> Action<G> for Linear {
+    type Point = G::Vector;
+    type Work = ();
+
+    fn work(&self, _: &G) {}
+    #[inline]
+    fn act(&self, group: &G, g: &G::Elem, p: &G::Vector, q: &mut G::Vector, _: &mut ()) {
+        group.apply(g, p, q);
+    }
+    #[inline]
+    fn lambda<Psi: CoordinateMap<G>>(
+        &self,
+        psi_u: PsiOf<'_, G, Psi>,
+        p: &G::Vector,
+        q: &mut G::Vector,
+        _: &mut (),
+    ) -> Result<(), StepError> {
+        psi_u.on(p, q)
+    }
+}

@@ -1,0 +1,55 @@
+//! Λ : G × M → M, the group actions.
+//!
+//! To add an action: one file with an `impl` of [`Action`], one line here, one in the law tests.
+
+mod coadjoint;
+mod linear;
+mod translation;
+
+pub use coadjoint::Coadjoint;
+pub use linear::Linear;
+pub use translation::LeftTranslation;
+
+use crate::chart::PsiOf;
+use crate::error::StepError;
+use crate::groups::LieGroup;
+use crate::maps::CoordinateMap;
+
+/// A left action Λ of G on M: Λ(𝟙, p) = p and Λ(ab, p) = Λ(a, Λ(b, p)).
+pub trait Action<G: LieGroup> {
+    /// A point y ∈ M.
+    type Point: Clone;
+    /// Scratch.
+    type Work;
+
+    /// Scratch for [`act`](Self::act); the only call that allocates.
+    fn work(&self, group: &G) -> Self::Work;
+
+    /// q ← Λ(g, p).
+    fn act(
+        &self,
+        group: &G,
+        g: &G::Elem,
+        p: &Self::Point,
+        q: &mut Self::Point,
+        work: &mut Self::Work,
+    );
+
+    /// q ← λ_p(u) = Λ(Ψ(u), p), equation (6). Ψ(u) arrives not yet formed: an action on vectors
+    /// answers with [`PsiOf::on`], and then no group element is formed.
+    ///
+    /// # Errors
+    /// As [`CoordinateMap::psi`].
+    #[inline]
+    fn lambda<Psi: CoordinateMap<G>>(
+        &self,
+        psi_u: PsiOf<'_, G, Psi>,
+        p: &Self::Point,
+        q: &mut Self::Point,
+        work: &mut Self::Work,
+    ) -> Result<(), StepError> {
+        let (group, g) = psi_u.form()?;
+        self.act(group, g, p, q, work);
+        Ok(())
+    }
+}

@@ -1,0 +1,125 @@
+//! λ_p = Λ_p ∘ Ψ and the pulled-back field f̃: the one place where the three maps of Figure 2 meet.
+
+use crate::actions::Action;
+use crate::error::{Error, StepError};
+use crate::groups::LieGroup;
+use crate::maps::CoordinateMap;
+use crate::problems::{AlgOf, ElemOf, PointOf, Problem, ScalarOf};
+
+/// Ψ(u), not yet formed: an action on vectors never forms it.
+#[derive(Debug)]
+pub struct PsiOf<'a, G: LieGroup, Psi: CoordinateMap<G>> {
+    group: &'a G,
+    psi: &'a Psi,
+    u: &'a G::Alg,
+    at: &'a mut Psi::At,
+    g: &'a mut G::Elem,
+}
+
+impl<'a, G: LieGroup, Psi: CoordinateMap<G>> PsiOf<'a, G, Psi> {
+    /// The group, and Ψ(u) as an element of it.
+    ///
+    /// # Errors
+    /// As [`CoordinateMap::psi`].
+    #[inline]
+    pub fn form(self) -> Result<(&'a G, &'a G::Elem), StepError> {
+        self.psi.psi(self.group, self.u, self.at, self.g)?;
+        Ok((self.group, self.g))
+    }
+
+    /// y ← Ψ(u)·x.
+    ///
+    /// # Errors
+    /// As [`CoordinateMap::psi_on`].
+    #[inline]
+    pub fn on(self, x: &G::Vector, y: &mut G::Vector) -> Result<(), StepError> {
+        self.psi.psi_on(self.group, self.u, self.at, self.g, x, y)
+    }
+}
+
+/// Storage of a chart; made once.
+#[allow(missing_debug_implementations)] // the parts belong to the problem's types
+pub struct ChartStore<P: Problem, Psi: CoordinateMap<P::Group>> {
+    at: Psi::At,
+    g: ElemOf<P>,
+    y: PointOf<P>,
+    act: <P::Action as Action<P::Group>>::Work,
+    field: P::Work,
+}
+
+impl<P: Problem, Psi: CoordinateMap<P::Group>> ChartStore<P, Psi> {
+    /// Storage sized for `problem`; `like` is any point of M.
+    ///
+    /// # Errors
+    /// [`Error::Unsupported`] when Ψ has no formula on the problem's group.
+    pub fn new(problem: &P, psi: &Psi, like: &PointOf<P>) -> Result<Self, Error> {
+        let group = problem.group();
+        Ok(ChartStore {
+            at: psi.at(group)?,
+            g: group.identity(),
+            y: like.clone(),
+            act: problem.action().work(group),
+            field: problem.work(),
+        })
+    }
+
+    /// The chart around `p`, for step number `n` of the run.
+    #[inline]
+    pub fn around<'a>(
+        &'a mut self,
+        problem: &'a P,
+        psi: &'a Psi,
+        n: u64,
+        p: &'a PointOf<P>,
+    ) -> Chart<'a, P, Psi> {
+        psi.begin_step(&mut self.at, n);
+        Chart { problem, psi, p, store: self }
+    }
+}
+
+/// The chart λ_p : 𝔤 → M around a point p.
+#[allow(missing_debug_implementations)] // the parts belong to the problem's types
+pub struct Chart<'a, P: Problem, Psi: CoordinateMap<P::Group>> {
+    problem: &'a P,
+    psi: &'a Psi,
+    p: &'a PointOf<P>,
+    store: &'a mut ChartStore<P, Psi>,
+}
+
+impl<P: Problem, Psi: CoordinateMap<P::Group>> Chart<'_, P, Psi> {
+    /// q ← λ_p(u) = Λ(Ψ(u), p), equation (6).
+    ///
+    /// # Errors
+    /// As [`CoordinateMap::psi`].
+    #[inline]
+    pub fn lambda(&mut self, u: &AlgOf<P>, q: &mut PointOf<P>) -> Result<(), StepError> {
+        let ChartStore { at, g, act, .. } = &mut *self.store;
+        let psi_u = PsiOf { group: self.problem.group(), psi: self.psi, u, at, g };
+        self.problem.action().lambda(psi_u, self.p, q, act)
+    }
+
+    /// k ← f(t, p): the pulled-back field at u = 0, where Ψ and dΨ⁻¹ are the identity.
+    #[inline]
+    pub fn field(&mut self, t: ScalarOf<P>, k: &mut AlgOf<P>) {
+        self.problem.f(t, self.p, k, &mut self.store.field);
+    }
+
+    /// k ← f̃(u) = dΨ_u⁻¹ (f ∘ λ_p)(u).
+    ///
+    /// # Errors
+    /// As [`CoordinateMap::psi`] and [`CoordinateMap::dpsi_inv`].
+    #[inline]
+    pub fn pullback(
+        &mut self,
+        t: ScalarOf<P>,
+        u: &AlgOf<P>,
+        k: &mut AlgOf<P>,
+    ) -> Result<(), StepError> {
+        let group = self.problem.group();
+        let ChartStore { at, g, y, act, field } = &mut *self.store;
+        let psi_u = PsiOf { group, psi: self.psi, u, at: &mut *at, g };
+        self.problem.action().lambda(psi_u, self.p, y, act)?;
+        self.problem.f(t, y, k, field);
+        self.psi.dpsi_inv(group, u, at, k)
+    }
+}

@@ -1,0 +1,19 @@
+//! Dense kernels over faer: everything that knows faer's low-level interface is here.
+//!
+//! Workspaces are made once; after that nothing allocates. Every product runs on one core
+//! (`Par::Seq`): below n = 128 faer's parallel mode is slower, and ensembles parallelise outside.
+//! Products and solves of 8×8 and smaller run in const-size kernels, chosen once per call, because
+//! a library call costs more there than the arithmetic.
+
+mod eigen;
+mod expm;
+mod lu;
+mod ops;
+
+pub(crate) use eigen::SkewEigen;
+pub use expm::ExpmChoice;
+pub(crate) use expm::{Expm, Structure};
+pub(crate) use lu::Lu;
+pub(crate) use ops::{
+    antisymmetrise, axpy, is_finite, mul, mul_add, norm_frobenius, norm1, scaled_sum,
+};

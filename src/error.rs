@@ -1,0 +1,191 @@
+//! What can go wrong: [`Error`] while a run is set up, [`StepError`] within a step, [`Failure`] of a run.
+
+use thiserror::Error as ThisError;
+
+/// An argument that cannot be used. Each message names the argument, its value and what was expected.
+#[derive(Clone, Debug, PartialEq, ThisError)]
+#[non_exhaustive]
+pub enum Error {
+    /// A matrix is not square.
+    #[error("{arg}: {rows}×{cols}, expected a square matrix")]
+    NotSquare {
+        /// The argument.
+        arg: &'static str,
+        /// Its rows.
+        rows: usize,
+        /// Its columns.
+        cols: usize,
+    },
+    /// A matrix, vector or list has the wrong size.
+    #[error("{arg}: {rows}×{cols}, expected {expected_rows}×{expected_cols}")]
+    Shape {
+        /// The argument.
+        arg: &'static str,
+        /// Its rows.
+        rows: usize,
+        /// Its columns.
+        cols: usize,
+        /// The rows it should have.
+        expected_rows: usize,
+        /// The columns it should have.
+        expected_cols: usize,
+    },
+    /// An entry of a matrix is NaN or infinite.
+    #[error("{arg}[{row},{col}] = {value}, expected a finite number")]
+    NotFiniteEntry {
+        /// The argument.
+        arg: &'static str,
+        /// Row of the entry, from 0.
+        row: usize,
+        /// Column of the entry, from 0.
+        col: usize,
+        /// The entry.
+        value: f64,
+    },
+    /// A matrix is not an element of the Lie algebra.
+    #[error(
+        "{arg}: not in the Lie algebra of {group}: relative residual {residual:.3e}, expected at most {tolerance:.1e}"
+    )]
+    NotInAlgebra {
+        /// The argument.
+        arg: &'static str,
+        /// The group.
+        group: String,
+        /// ‖uᵀM + Mu‖/(‖M‖‖u‖).
+        residual: f64,
+        /// What was allowed.
+        tolerance: f64,
+    },
+    /// A matrix is not an element of the group.
+    #[error(
+        "{arg}: not in {group}: relative residual {residual:.3e}, expected at most {tolerance:.1e}"
+    )]
+    NotOnGroup {
+        /// The argument.
+        arg: &'static str,
+        /// The group.
+        group: String,
+        /// ‖gᵀMg − M‖/(‖M‖ max(1, ‖g‖²)).
+        residual: f64,
+        /// What was allowed.
+        tolerance: f64,
+    },
+    /// An orthogonal matrix reflects.
+    #[error("{arg}: its determinant is −1, expected a rotation (determinant +1)")]
+    Reflection {
+        /// The argument.
+        arg: &'static str,
+    },
+    /// A matrix is singular to working accuracy.
+    #[error(
+        "{arg}: singular to working accuracy: rcond = {rcond:.3e}, expected at least {minimum:.1e}"
+    )]
+    Singular {
+        /// The argument.
+        arg: &'static str,
+        /// Its reciprocal condition number in the 1-norm.
+        rcond: f64,
+        /// What was required.
+        minimum: f64,
+    },
+    /// A number lies outside its range.
+    #[error("{arg} = {value}, expected {expected}")]
+    OutOfRange {
+        /// The argument, with its index where it has one.
+        arg: String,
+        /// Its value.
+        value: f64,
+        /// What was expected, in words.
+        expected: String,
+    },
+    /// Two parts do not go together, such as a map that a group has no formula for.
+    #[error("{what} cannot be used with {with}: {why}")]
+    Unsupported {
+        /// The part.
+        what: &'static str,
+        /// The other part.
+        with: String,
+        /// The reason, and what to use.
+        why: &'static str,
+    },
+    /// A map could not be evaluated.
+    #[error(transparent)]
+    Map(#[from] StepError),
+    /// A name that is not registered.
+    #[error("unknown {kind} `{name}`, expected one of {}", expected.join(", "))]
+    UnknownName {
+        /// What was looked up.
+        kind: &'static str,
+        /// The name that was given.
+        name: String,
+        /// The names that are registered.
+        expected: Vec<&'static str>,
+    },
+}
+
+impl Error {
+    /// An [`OutOfRange`](Error::OutOfRange).
+    pub(crate) fn out_of_range(
+        arg: impl Into<String>,
+        value: f64,
+        expected: impl Into<String>,
+    ) -> Self {
+        Error::OutOfRange { arg: arg.into(), value, expected: expected.into() }
+    }
+}
+
+/// Why a step could not be taken. Small and `Copy`: it travels out of the hot loop.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ThisError)]
+#[non_exhaustive]
+pub enum StepError {
+    /// u left the domain on which Ψ or dΨ⁻¹ is defined or well conditioned.
+    #[error(
+        "{map}: the increment left the domain of the coordinate map ({what}); take a smaller step"
+    )]
+    OutsideChart {
+        /// The map.
+        map: &'static str,
+        /// What was found there.
+        what: &'static str,
+    },
+    /// The right-hand side returned a number that is not finite.
+    #[error("the right-hand side f is not finite at stage {stage}")]
+    NonFiniteRhs {
+        /// The stage, from 1.
+        stage: usize,
+    },
+    /// Numbers grew beyond the range of the arithmetic.
+    #[error("{what} is not finite: the numbers left the range of the arithmetic")]
+    NotFinite {
+        /// What overflowed.
+        what: &'static str,
+    },
+    /// An argument of a map is so large that no digit of the result has a meaning.
+    #[error(
+        "{map}: the norm of the argument is too large for any digit of the result to have a meaning"
+    )]
+    NormTooLarge {
+        /// The map.
+        map: &'static str,
+    },
+    /// An inner iteration of a numerical library did not converge.
+    #[error("{what} did not converge")]
+    NotConverged {
+        /// The iteration.
+        what: &'static str,
+    },
+}
+
+/// A run that stopped early. The state handed to the driver holds the last accepted point.
+#[derive(Clone, Copy, Debug, PartialEq, ThisError)]
+#[error("step {step} from t = {t} with h = {h} failed: {source}")]
+pub struct Failure {
+    /// The number of steps that had been accepted.
+    pub step: u64,
+    /// The time of the last accepted point.
+    pub t: f64,
+    /// The step that failed.
+    pub h: f64,
+    /// Why.
+    pub source: StepError,
+}

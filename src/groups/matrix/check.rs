@@ -1,0 +1,123 @@
+//! Checked constructors: what comes from users is in the algebra, or on the group, or refused.
+
+use faer::{Mat, MatRef};
+
+use super::{AlgebraMatrix, Form, GroupMatrix, MatrixGroup};
+use crate::dense::{Lu, norm_frobenius};
+use crate::error::Error;
+use crate::groups::LieAlgebra;
+
+/// The smallest reciprocal condition number (1-norm) that counts as invertible.
+pub const RCOND_MIN: f64 = 1e-14;
+
+/// The default tolerance of membership: the relative residual that checked constructors allow.
+pub const MEMBERSHIP: f64 = 1e-12;
+
+pub(super) fn square(arg: &'static str, x: MatRef<'_, f64>) -> Result<(), Error> {
+    match x.nrows() == x.ncols() {
+        true => Ok(()),
+        false => Err(Error::NotSquare { arg, rows: x.nrows(), cols: x.ncols() }),
+    }
+}
+
+pub(super) fn finite(arg: &'static str, x: MatRef<'_, f64>) -> Result<(), Error> {
+    for col in 0..x.ncols() {
+        for row in 0..x.nrows() {
+            let value = x[(row, col)];
+            if !value.is_finite() {
+                return Err(Error::NotFiniteEntry { arg, row, col, value });
+            }
+        }
+    }
+    Ok(())
+}
+
+impl MatrixGroup {
+    fn shape(&self, arg: &'static str, x: MatRef<'_, f64>) -> Result<(), Error> {
+        square(arg, x)?;
+        let n = self.n();
+        if x.nrows() != n {
+            let (rows, cols) = (x.nrows(), x.ncols());
+            return Err(Error::Shape { arg, rows, cols, expected_rows: n, expected_cols: n });
+        }
+        finite(arg, x)
+    }
+
+    /// u as an element of the algebra, when it is one to [`MEMBERSHIP`].
+    ///
+    /// ```
+    /// use faer::mat;
+    /// use lieflow::groups::MatrixGroup;
+    /// let so2 = MatrixGroup::so(2)?;
+    /// assert!(so2.algebra(mat![[0.0, -1.0], [1.0, 0.0]]).is_ok());
+    /// let refused = so2.algebra(mat![[0.0, 1.0], [1.0, 0.0]]).unwrap_err();
+    /// assert!(refused.to_string().starts_with("u: not in the Lie algebra of SO(2)"));
+    /// # Ok::<(), lieflow::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::NotSquare`], [`Error::Shape`], [`Error::NotFiniteEntry`], and
+    /// [`Error::NotInAlgebra`] with the residual ‖uᵀM + Mu‖/(‖M‖‖u‖).
+    pub fn algebra(&self, u: Mat<f64>) -> Result<AlgebraMatrix, Error> {
+        self.algebra_within(u, MEMBERSHIP)
+    }
+
+    /// [`algebra`](Self::algebra) with a tolerance of one's own.
+    ///
+    /// # Errors
+    /// As [`algebra`](Self::algebra).
+    pub fn algebra_within(&self, u: Mat<f64>, tolerance: f64) -> Result<AlgebraMatrix, Error> {
+        self.shape("u", u.as_ref())?;
+        if let Some(m) = self.m() {
+            let scale = u.norm_max();
+            if scale > 0.0 {
+                let v = &u * faer::Scale(1.0 / scale); // the residual is relative: no overflow
+                let gap = v.transpose() * &m + &m * &v;
+                let residual = norm_frobenius(&gap) / (norm_frobenius(&m) * norm_frobenius(&v));
+                if residual.is_nan() || residual > tolerance {
+                    let group = self.name();
+                    return Err(Error::NotInAlgebra { arg: "u", group, residual, tolerance });
+                }
+            }
+        }
+        Ok(AlgebraMatrix::new_unchecked(u))
+    }
+
+    /// g as an element of the group, when it is one to [`MEMBERSHIP`].
+    ///
+    /// # Errors
+    /// [`Error::NotSquare`], [`Error::Shape`], [`Error::NotFiniteEntry`], [`Error::Singular`] on
+    /// GL(n), [`Error::Reflection`] on SO(n), and [`Error::NotOnGroup`] with the residual
+    /// ‖gᵀMg − M‖/(‖M‖ max(1, ‖g‖²)).
+    pub fn element(&self, g: Mat<f64>) -> Result<GroupMatrix, Error> {
+        self.element_within(g, MEMBERSHIP)
+    }
+
+    /// [`element`](Self::element) with a tolerance of one's own.
+    ///
+    /// # Errors
+    /// As [`element`](Self::element).
+    pub fn element_within(&self, g: Mat<f64>, tolerance: f64) -> Result<GroupMatrix, Error> {
+        self.shape("g", g.as_ref())?;
+        match (self.m(), self.defect_of(g.as_ref())) {
+            (Some(m), Some(defect)) => {
+                let size = norm_frobenius(&g).powi(2).max(1.0);
+                let residual = norm_frobenius(&defect) / (norm_frobenius(&m) * size);
+                if residual.is_nan() || residual > tolerance {
+                    let group = self.name();
+                    return Err(Error::NotOnGroup { arg: "g", group, residual, tolerance });
+                }
+                if matches!(self.form(), Form::Identity) && g.determinant() < 0.0 {
+                    return Err(Error::Reflection { arg: "g" });
+                }
+            }
+            _ => {
+                let rcond = Lu::rcond(g.as_ref());
+                if rcond < RCOND_MIN {
+                    return Err(Error::Singular { arg: "g", rcond, minimum: RCOND_MIN });
+                }
+            }
+        }
+        Ok(GroupMatrix::new_unchecked(g))
+    }
+}

@@ -1,0 +1,74 @@
+//! Elements of matrix groups and their algebras: faer matrices that know which of the two they are.
+
+use core::ops::{Deref, DerefMut};
+
+use approx::{AbsDiffEq, RelativeEq};
+use faer::Mat;
+
+macro_rules! matrix_element {
+    ($(#[$doc:meta])* $name:ident) => {
+        $(#[$doc])*
+        #[derive(Clone, Debug, PartialEq)]
+        pub struct $name(Mat<f64>);
+
+        impl $name {
+            /// Take the matrix as it is. The caller vouches for it: what a matrix outside leads to
+            /// is a wrong number, never undefined behaviour.
+            pub fn new_unchecked(matrix: Mat<f64>) -> Self {
+                Self(matrix)
+            }
+            /// The matrix itself.
+            pub fn into_mat(self) -> Mat<f64> {
+                self.0
+            }
+        }
+
+        /// Read it as the faer matrix that it is.
+        impl Deref for $name {
+            type Target = Mat<f64>;
+            fn deref(&self) -> &Mat<f64> {
+                &self.0
+            }
+        }
+        /// Write it in place; to stay in the set is the writer's duty.
+        impl DerefMut for $name {
+            fn deref_mut(&mut self) -> &mut Mat<f64> {
+                &mut self.0
+            }
+        }
+
+        /// Entry by entry. Matrices of different sizes differ.
+        impl AbsDiffEq for $name {
+            type Epsilon = f64;
+            fn default_epsilon() -> f64 {
+                f64::EPSILON
+            }
+            fn abs_diff_eq(&self, other: &Self, epsilon: f64) -> bool {
+                entries_agree(&self.0, &other.0, |a, b| a.abs_diff_eq(&b, epsilon))
+            }
+        }
+        /// Entry by entry. Matrices of different sizes differ.
+        impl RelativeEq for $name {
+            fn default_max_relative() -> f64 {
+                f64::EPSILON
+            }
+            fn relative_eq(&self, other: &Self, epsilon: f64, max_relative: f64) -> bool {
+                entries_agree(&self.0, &other.0, |a, b| a.relative_eq(&b, epsilon, max_relative))
+            }
+        }
+    };
+}
+
+matrix_element! {
+    /// u ∈ 𝔤 ⊂ gl(n). Made by [`MatrixGroup::algebra`](super::MatrixGroup::algebra), which checks.
+    AlgebraMatrix
+}
+matrix_element! {
+    /// g ∈ G ⊂ GL(n). Made by [`MatrixGroup::element`](super::MatrixGroup::element), which checks.
+    GroupMatrix
+}
+
+fn entries_agree(a: &Mat<f64>, b: &Mat<f64>, agree: impl Fn(f64, f64) -> bool) -> bool {
+    (a.nrows(), a.ncols()) == (b.nrows(), b.ncols())
+        && (0..a.ncols()).all(|j| (0..a.nrows()).all(|i| agree(a[(i, j)], b[(i, j)])))
+}

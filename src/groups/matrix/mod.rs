@@ -1,0 +1,256 @@
+//! GL(n), SO(n), Sp(2m) and G_M for any n and any invertible real M, over faer.
+
+mod check;
+mod element;
+mod sample;
+
+use std::sync::OnceLock;
+
+use faer::{Mat, MatRef};
+
+pub use check::{MEMBERSHIP, RCOND_MIN};
+pub use element::{AlgebraMatrix, GroupMatrix};
+
+use super::{LieAlgebra, LieGroup};
+use crate::dense::{self, Lu, antisymmetrise, mul, mul_add};
+use crate::error::Error;
+
+/// Which bilinear form the group keeps: gᵀMg = M (paper 4.3).
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub enum Form {
+    /// GL(n): none.
+    Free,
+    /// SO(n): M = 𝟙.
+    Identity,
+    /// Sp(2m): M = J = \[0 𝟙; −𝟙 0\].
+    Symplectic,
+    /// Any invertible M.
+    Bilinear {
+        /// M.
+        m: Mat<f64>,
+        /// M⁻¹.
+        inverse: Mat<f64>,
+    },
+}
+
+/// A matricial Lie group as a value: it knows n and M.
+///
+/// | constructor | group | algebra |
+/// |---|---|---|
+/// | [`gl(n)`](Self::gl) | invertible g | every u |
+/// | [`so(n)`](Self::so) | gᵀg = 𝟙, det g = 1 | uᵀ = −u |
+/// | [`sp(2m)`](Self::sp) | gᵀJg = J | uᵀJ + Ju = 0 |
+/// | [`indefinite(p, q)`](Self::indefinite) | SO(p,q): M = diag(1,…,1,−1,…,−1) | uᵀM + Mu = 0 |
+/// | [`gm(M)`](Self::gm) | gᵀMg = M | uᵀM + Mu = 0 |
+#[derive(Clone, Debug)]
+pub struct MatrixGroup {
+    n: usize,
+    form: Form,
+    name: String,
+    /// An orthonormal basis of 𝔤_M, one vectorised element a column; only where M needs one.
+    basis: OnceLock<Mat<f64>>,
+}
+
+/// The largest n that constructors take; a matrix of this size has 8 GiB.
+const N_MAX: usize = 1 << 15;
+
+impl MatrixGroup {
+    fn new(n: usize, form: Form, name: String) -> Result<Self, Error> {
+        if n == 0 || n > N_MAX {
+            return Err(Error::out_of_range("n", n as f64, format!("1 ≤ n ≤ {N_MAX}")));
+        }
+        Ok(MatrixGroup { n, form, name, basis: OnceLock::new() })
+    }
+
+    /// GL(n).
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for n = 0 or n > 32768.
+    pub fn gl(n: usize) -> Result<Self, Error> {
+        Self::new(n, Form::Free, format!("GL({n})"))
+    }
+
+    /// SO(n).
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for n = 0 or n > 32768.
+    pub fn so(n: usize) -> Result<Self, Error> {
+        Self::new(n, Form::Identity, format!("SO({n})"))
+    }
+
+    /// Sp(n) for even n = 2m, with M = J = \[0 𝟙; −𝟙 0\].
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for n = 0, odd n or n > 32768.
+    pub fn sp(n: usize) -> Result<Self, Error> {
+        if !n.is_multiple_of(2) {
+            return Err(Error::out_of_range("n", n as f64, "an even number (n = 2m)"));
+        }
+        Self::new(n, Form::Symplectic, format!("Sp({n})"))
+    }
+
+    /// SO(p,q): M = diag(1, …, 1, −1, …, −1) with p ones. SO(3,1) is the Lorentz group.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for p + q = 0 or p + q > 32768.
+    pub fn indefinite(p: usize, q: usize) -> Result<Self, Error> {
+        let n = p.saturating_add(q);
+        Self::new(n, Form::Free, String::new())?; // checks n before anything of that size is made
+        let m = Mat::from_fn(n, n, |i, j| match i == j {
+            true if i < p => 1.0,
+            true => -1.0,
+            false => 0.0,
+        });
+        let form = Form::Bilinear { inverse: m.clone(), m };
+        Self::new(n, form, format!("SO({p},{q})"))
+    }
+
+    /// G_M for an invertible real M.
+    ///
+    /// # Errors
+    /// [`Error::NotSquare`], [`Error::NotFiniteEntry`], [`Error::Singular`] when the reciprocal
+    /// condition number of M in the 1-norm is below [`RCOND_MIN`].
+    pub fn gm(m: Mat<f64>) -> Result<Self, Error> {
+        check::square("M", m.as_ref())?;
+        check::finite("M", m.as_ref())?;
+        let n = m.nrows();
+        Self::new(n, Form::Free, String::new())?;
+        let rcond = Lu::rcond(m.as_ref());
+        if rcond < RCOND_MIN {
+            return Err(Error::Singular { arg: "M", rcond, minimum: RCOND_MIN });
+        }
+        let mut lu = Lu::new(n);
+        lu.a.copy_from(&m);
+        lu.factor();
+        let mut inverse = Mat::identity(n, n);
+        lu.solve(inverse.as_mut());
+        Self::new(n, Form::Bilinear { m, inverse }, format!("G_M({n})"))
+    }
+
+    /// The n of n×n.
+    pub fn n(&self) -> usize {
+        self.n
+    }
+
+    /// The form that the group keeps.
+    pub fn form(&self) -> &Form {
+        &self.form
+    }
+
+    /// M as a matrix; `None` for GL(n).
+    pub fn m(&self) -> Option<Mat<f64>> {
+        let n = self.n;
+        match &self.form {
+            Form::Free => None,
+            Form::Identity => Some(Mat::identity(n, n)),
+            Form::Symplectic => Some(Mat::from_fn(n, n, |i, j| {
+                if j == i + n / 2 {
+                    1.0
+                } else if i == j + n / 2 {
+                    -1.0
+                } else {
+                    0.0
+                }
+            })),
+            Form::Bilinear { m, .. } => Some(m.clone()),
+        }
+    }
+
+    /// gᵀMg − M, or nothing for GL(n). Allocates.
+    fn defect_of(&self, g: MatRef<'_, f64>) -> Option<Mat<f64>> {
+        let m = self.m()?;
+        Some(g.transpose() * &m * g - m)
+    }
+}
+
+/// p ← p − J⁻¹pᵀJ. With p = u·v and u, v ∈ sp(2m) this is \[u, v\] for one product.
+fn symplectic_antisymmetrise(p: &mut Mat<f64>) {
+    let m = p.nrows() / 2;
+    for j in 0..m {
+        for i in 0..m {
+            let d = p[(i, j)] - p[(j + m, i + m)];
+            p[(i, j)] = d;
+            p[(j + m, i + m)] = -d;
+        }
+        for i in 0..=j {
+            for (r, c) in [(i, j + m), (i + m, j)] {
+                let mirror = if r < m { (j, i + m) } else { (j + m, i) };
+                let s = p[(r, c)] + p[mirror];
+                p[(r, c)] = s;
+                p[mirror] = s;
+            }
+        }
+    }
+}
+
+impl LieAlgebra for MatrixGroup {
+    type Scalar = f64;
+    type Alg = AlgebraMatrix;
+
+    fn name(&self) -> String {
+        self.name.clone()
+    }
+    fn dim(&self) -> usize {
+        let n = self.n;
+        match &self.form {
+            Form::Free => n * n,
+            Form::Identity => n * (n - 1) / 2,
+            Form::Symplectic => n * (n + 1) / 2,
+            Form::Bilinear { m, .. } => match sample::symmetry(m) {
+                Some(sample::Symmetry::Symmetric) => n * (n - 1) / 2,
+                Some(sample::Symmetry::Skew) => n * (n + 1) / 2,
+                None => self.basis().ncols(),
+            },
+        }
+    }
+    fn zero(&self) -> AlgebraMatrix {
+        AlgebraMatrix::new_unchecked(Mat::zeros(self.n, self.n))
+    }
+    fn set_zero(&self, u: &mut AlgebraMatrix) {
+        u.fill(0.0);
+    }
+    fn axpy(&self, a: f64, x: &AlgebraMatrix, y: &mut AlgebraMatrix) {
+        dense::axpy(a, x, y);
+    }
+    /// One product on so(n) and sp(2m), where (uv)♯ = vu for the adjoint ♯ of the form; else two.
+    fn bracket(&self, u: &AlgebraMatrix, v: &AlgebraMatrix, out: &mut AlgebraMatrix) {
+        mul(out, u.as_ref(), v.as_ref());
+        match self.form {
+            Form::Identity => antisymmetrise(out),
+            Form::Symplectic => symplectic_antisymmetrise(out),
+            _ => mul_add(out, -1.0, v.as_ref(), u.as_ref()),
+        }
+    }
+    /// The Frobenius norm.
+    fn norm(&self, u: &AlgebraMatrix) -> f64 {
+        dense::norm_frobenius(u)
+    }
+    fn is_finite(&self, u: &AlgebraMatrix) -> bool {
+        dense::is_finite(u)
+    }
+}
+
+impl LieGroup for MatrixGroup {
+    type Elem = GroupMatrix;
+    /// n×k: k vectors as columns.
+    type Vector = Mat<f64>;
+
+    fn identity(&self) -> GroupMatrix {
+        GroupMatrix::new_unchecked(Mat::identity(self.n, self.n))
+    }
+    fn compose(&self, a: &GroupMatrix, b: &GroupMatrix, out: &mut GroupMatrix) {
+        mul(out, a.as_ref(), b.as_ref());
+    }
+    fn apply(&self, g: &GroupMatrix, x: &Mat<f64>, y: &mut Mat<f64>) {
+        mul(y, g.as_ref(), x.as_ref());
+    }
+    /// Allocates.
+    fn distance(&self, a: &GroupMatrix, b: &GroupMatrix) -> f64 {
+        dense::norm_frobenius(&(a.as_ref() - b.as_ref()))
+    }
+    /// Allocates.
+    fn defect(&self, g: &GroupMatrix) -> f64 {
+        self.defect_of(g.as_ref()).map_or(0.0, |d| dense::norm_frobenius(&d))
+    }
+}

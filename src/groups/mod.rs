@@ -1,0 +1,87 @@
+//! 𝔤 and G: Lie algebras and Lie groups as values.
+//!
+//! The implementor of [`LieAlgebra`] and [`LieGroup`] is a *value* (it knows n and the matrix M of
+//! G_M); elements are plain data. Every operation takes the group first, then inputs, then the
+//! output, and allocates nothing except where it returns fresh storage.
+//!
+//! To add a group: one file with these traits (and with the maps that have a closed form on it),
+//! one line here, one line in the law tests. A matrix group needs no file: it is a constructor of
+//! [`MatrixGroup`].
+
+mod matrix;
+mod so3;
+
+pub use matrix::{AlgebraMatrix, Form, GroupMatrix, MEMBERSHIP, MatrixGroup, RCOND_MIN};
+pub use so3::{So3, hat, vee};
+pub(crate) use so3::{apply3, cross};
+
+use rand::Rng;
+
+use crate::scalar::Real;
+
+/// A Lie algebra 𝔤: a linear space with a bracket.
+pub trait LieAlgebra {
+    /// The reals that coefficients are in.
+    type Scalar: Real;
+    /// An element u ∈ 𝔤.
+    type Alg: Clone;
+
+    /// The name of the group, as `SO(3)`.
+    fn name(&self) -> String;
+    /// dim 𝔤.
+    fn dim(&self) -> usize;
+    /// Fresh storage holding 0 ∈ 𝔤.
+    fn zero(&self) -> Self::Alg;
+    /// u ← 0.
+    fn set_zero(&self, u: &mut Self::Alg);
+    /// y ← y + a·x.
+    fn axpy(&self, a: Self::Scalar, x: &Self::Alg, y: &mut Self::Alg);
+    /// out ← \[u, v\].
+    fn bracket(&self, u: &Self::Alg, v: &Self::Alg, out: &mut Self::Alg);
+    /// ‖u‖, the norm that error control and tests use.
+    fn norm(&self, u: &Self::Alg) -> Self::Scalar;
+    /// Is every number in u finite?
+    fn is_finite(&self, u: &Self::Alg) -> bool;
+
+    /// u ← Σ_j h·w_j·k_j, over the nonzero weights only.
+    #[inline]
+    fn combine(&self, h: Self::Scalar, weights: &[f64], terms: &[Self::Alg], u: &mut Self::Alg) {
+        self.set_zero(u);
+        for (&w, k) in weights.iter().zip(terms) {
+            if w != 0.0 {
+                self.axpy(h * Self::Scalar::lit(w), k, u);
+            }
+        }
+    }
+}
+
+/// A Lie group G over its algebra.
+pub trait LieGroup: LieAlgebra {
+    /// An element g ∈ G.
+    type Elem: Clone;
+    /// A vector of the standard representation (or several, as columns).
+    type Vector: Clone;
+
+    /// Fresh storage holding 𝟙 ∈ G.
+    fn identity(&self) -> Self::Elem;
+    /// out ← a·b.
+    fn compose(&self, a: &Self::Elem, b: &Self::Elem, out: &mut Self::Elem);
+    /// y ← g·x.
+    fn apply(&self, g: &Self::Elem, x: &Self::Vector, y: &mut Self::Vector);
+    /// ‖a − b‖ (Frobenius).
+    fn distance(&self, a: &Self::Elem, b: &Self::Elem) -> Self::Scalar;
+    /// How far g is from G: ‖gᵀMg − M‖ (Frobenius), zero for GL(n).
+    fn defect(&self, g: &Self::Elem) -> Self::Scalar;
+}
+
+/// A group that random elements can be drawn from.
+pub trait Sample: LieGroup {
+    /// u ∈ 𝔤 whose coordinates in an orthonormal basis of 𝔤 are independent Gaussians of
+    /// standard deviation `sigma`.
+    fn sample_algebra<R: Rng + ?Sized>(&self, rng: &mut R, sigma: f64) -> Self::Alg;
+    /// g ∈ G: by Haar's measure on a compact group; elsewhere the exponential of a Gaussian element
+    /// of the algebra of standard deviation 1/2, since there is no invariant probability measure.
+    fn sample_element<R: Rng + ?Sized>(&self, rng: &mut R) -> Self::Elem;
+    /// A Gaussian vector of the standard representation.
+    fn sample_vector<R: Rng + ?Sized>(&self, rng: &mut R) -> Self::Vector;
+}

@@ -1,0 +1,206 @@
+//! SO(3) with so(3) ≅ ℝ³ by the hat map (2): fixed size, generic in the number.
+
+use core::marker::PhantomData;
+
+use nalgebra::{Matrix3, Vector3};
+use rand::{Rng, RngExt};
+use rand_distr::StandardNormal;
+
+use super::{LieAlgebra, LieGroup, Sample};
+use crate::error::Error;
+use crate::scalar::Real;
+
+/// SO(3): algebra elements are 3-vectors (û of the paper), group elements are 3×3 rotations.
+///
+/// nalgebra is the container; the formulas are written out, so that an op-counting number sees
+/// them and nothing else.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct So3<S = f64>(PhantomData<S>);
+
+impl<S> So3<S> {
+    /// The group.
+    pub const fn new() -> Self {
+        So3(PhantomData)
+    }
+}
+
+/// hat(u): the skew-symmetric matrix with hat(u)·x = u × x, equation (2).
+pub fn hat<S: Real>(u: &Vector3<S>) -> Matrix3<S> {
+    let o = S::lit(0.0);
+    Matrix3::new(o, -u[2], u[1], u[2], o, -u[0], -u[1], u[0], o)
+}
+
+/// vee(m): the vector u with hat(u) = m, the inverse of [`hat`]. It reads the lower triangle's
+/// (3,2), (2,1) and the upper's (1,3) and does not check that m is skew.
+pub fn vee<S: Real>(m: &Matrix3<S>) -> Vector3<S> {
+    Vector3::new(m[(2, 1)], m[(0, 2)], m[(1, 0)])
+}
+
+/// u × v.
+#[inline(always)]
+pub(crate) fn cross<S: Real>(u: &Vector3<S>, v: &Vector3<S>) -> Vector3<S> {
+    Vector3::new(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0])
+}
+
+/// g·x.
+#[inline(always)]
+pub(crate) fn apply3<S: Real>(g: &Matrix3<S>, x: &Vector3<S>) -> Vector3<S> {
+    Vector3::new(
+        g[(0, 0)] * x[0] + g[(0, 1)] * x[1] + g[(0, 2)] * x[2],
+        g[(1, 0)] * x[0] + g[(1, 1)] * x[1] + g[(1, 2)] * x[2],
+        g[(2, 0)] * x[0] + g[(2, 1)] * x[1] + g[(2, 2)] * x[2],
+    )
+}
+
+/// a·b.
+#[inline(always)]
+fn compose3<S: Real>(a: &Matrix3<S>, b: &Matrix3<S>, out: &mut Matrix3<S>) {
+    for j in 0..3 {
+        for i in 0..3 {
+            out[(i, j)] = a[(i, 0)] * b[(0, j)] + a[(i, 1)] * b[(1, j)] + a[(i, 2)] * b[(2, j)];
+        }
+    }
+}
+
+/// √Σx².
+fn norm_of<S: Real>(x: &[S]) -> S {
+    let squares = x.iter().fold(S::lit(0.0), |s, &x| s + x * x);
+    squares.sqrt()
+}
+
+impl<S: Real> LieAlgebra for So3<S> {
+    type Scalar = S;
+    type Alg = Vector3<S>;
+
+    fn name(&self) -> String {
+        "SO(3)".into()
+    }
+    fn dim(&self) -> usize {
+        3
+    }
+    #[inline]
+    fn zero(&self) -> Vector3<S> {
+        let o = S::lit(0.0);
+        Vector3::new(o, o, o)
+    }
+    #[inline]
+    fn set_zero(&self, u: &mut Vector3<S>) {
+        *u = self.zero();
+    }
+    #[inline]
+    fn axpy(&self, a: S, x: &Vector3<S>, y: &mut Vector3<S>) {
+        for i in 0..3 {
+            y[i] += a * x[i];
+        }
+    }
+    #[inline]
+    fn bracket(&self, u: &Vector3<S>, v: &Vector3<S>, out: &mut Vector3<S>) {
+        *out = cross(u, v);
+    }
+    #[inline]
+    fn norm(&self, u: &Vector3<S>) -> S {
+        norm_of(u.as_slice())
+    }
+    #[inline]
+    fn is_finite(&self, u: &Vector3<S>) -> bool {
+        (u[0].abs() + u[1].abs() + u[2].abs()).is_finite()
+    }
+    /// Starts from the first term instead of from zero: three additions fewer.
+    #[inline]
+    fn combine(&self, h: S, weights: &[f64], terms: &[Vector3<S>], u: &mut Vector3<S>) {
+        let mut first = true;
+        for (&w, k) in weights.iter().zip(terms) {
+            if w != 0.0 {
+                let a = h * S::lit(w);
+                if first {
+                    *u = Vector3::new(a * k[0], a * k[1], a * k[2]);
+                    first = false;
+                } else {
+                    self.axpy(a, k, u);
+                }
+            }
+        }
+        if first {
+            self.set_zero(u);
+        }
+    }
+}
+
+impl<S: Real> LieGroup for So3<S> {
+    type Elem = Matrix3<S>;
+    type Vector = Vector3<S>;
+
+    fn identity(&self) -> Matrix3<S> {
+        let (o, i) = (S::lit(0.0), S::lit(1.0));
+        Matrix3::new(i, o, o, o, i, o, o, o, i)
+    }
+    #[inline]
+    fn compose(&self, a: &Matrix3<S>, b: &Matrix3<S>, out: &mut Matrix3<S>) {
+        compose3(a, b, out);
+    }
+    #[inline]
+    fn apply(&self, g: &Matrix3<S>, x: &Vector3<S>, y: &mut Vector3<S>) {
+        *y = apply3(g, x);
+    }
+    fn distance(&self, a: &Matrix3<S>, b: &Matrix3<S>) -> S {
+        let mut d = *a;
+        for (d, b) in d.iter_mut().zip(b) {
+            *d -= *b;
+        }
+        norm_of(d.as_slice())
+    }
+    fn defect(&self, g: &Matrix3<S>) -> S {
+        let mut gram = self.identity();
+        compose3(&g.transpose(), g, &mut gram);
+        self.distance(&gram, &self.identity())
+    }
+}
+
+impl So3<f64> {
+    /// Check that `g` is a rotation: finite, ‖gᵀg − 𝟙‖ ≤ `tolerance`·max(1, ‖g‖²), determinant +1.
+    ///
+    /// # Errors
+    /// [`Error::NotFiniteEntry`], [`Error::NotOnGroup`] with the residual, [`Error::Reflection`].
+    pub fn check_element(
+        &self,
+        arg: &'static str,
+        g: &Matrix3<f64>,
+        tolerance: f64,
+    ) -> Result<(), Error> {
+        for i in 0..3 {
+            for j in 0..3 {
+                if !g[(i, j)].is_finite() {
+                    return Err(Error::NotFiniteEntry { arg, row: i, col: j, value: g[(i, j)] });
+                }
+            }
+        }
+        let residual = self.defect(g) / norm_of(g.as_slice()).powi(2).max(1.0);
+        if residual.is_nan() || residual > tolerance {
+            return Err(Error::NotOnGroup { arg, group: self.name(), residual, tolerance });
+        }
+        if g.determinant() < 0.0 {
+            return Err(Error::Reflection { arg });
+        }
+        Ok(())
+    }
+}
+
+impl Sample for So3<f64> {
+    /// Independent Gaussian components of û.
+    fn sample_algebra<R: Rng + ?Sized>(&self, rng: &mut R, sigma: f64) -> Vector3<f64> {
+        Vector3::from_fn(|_, _| sigma * rng.sample::<f64, _>(StandardNormal))
+    }
+    /// Haar's measure, by a unit quaternion uniform on the 3-sphere.
+    fn sample_element<R: Rng + ?Sized>(&self, rng: &mut R) -> Matrix3<f64> {
+        let q = nalgebra::Quaternion::new(
+            rng.sample(StandardNormal),
+            rng.sample(StandardNormal),
+            rng.sample(StandardNormal),
+            rng.sample(StandardNormal),
+        );
+        nalgebra::UnitQuaternion::from_quaternion(q).to_rotation_matrix().into_inner()
+    }
+    fn sample_vector<R: Rng + ?Sized>(&self, rng: &mut R) -> Vector3<f64> {
+        self.sample_algebra(rng, 1.0)
+    }
+}

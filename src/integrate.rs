@@ -1,0 +1,249 @@
+//! The driver: fixed steps over a time span, with output where it is asked for.
+
+use crate::error::{Error, Failure};
+use crate::methods::{Method, Step};
+use crate::problems::{PointOf, Problem, ScalarOf};
+use crate::scalar::Real;
+
+/// Equal steps from t₀ to t₁, forward or backward.
+///
+/// Times are computed from the number of the step, so that no error accumulates in t, and the last
+/// step ends at t₁ exactly.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TimeGrid {
+    t0: f64,
+    t1: f64,
+    steps: u64,
+}
+
+/// More steps than this count as a mistake in the input.
+const STEPS_MAX: f64 = 1e15;
+
+impl TimeGrid {
+    /// Steps of size `dt` > 0 over the span; backward when t₁ < t₀. An empty span has no steps.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for a time that is not finite, a `dt` that is not finite and positive,
+    /// is lost in rounding next to t, or does not divide the span (to a relative 1e-9): the message
+    /// names the nearest `dt` that does.
+    pub fn new(t_span: [f64; 2], dt: f64) -> Result<Self, Error> {
+        let [t0, t1] = t_span;
+        let length = Self::check_span(t_span)?;
+        if !(dt.is_finite() && dt > 0.0) {
+            return Err(Error::out_of_range("dt", dt, "a finite number > 0"));
+        }
+        let steps = (length / dt).round();
+        if steps > STEPS_MAX {
+            return Err(Error::out_of_range("dt", dt, "at most 1e15 steps over t_span"));
+        }
+        if length > 0.0 && (length / dt - steps).abs() > 1e-9 * steps.max(1.0) {
+            let count = steps.max(1.0);
+            let advice = format!(
+                "a step that divides the span of length {length}, such as {} ({count} steps)",
+                length / count
+            );
+            return Err(Error::out_of_range("dt", dt, advice));
+        }
+        Self::with_steps([t0, t1], steps as u64)
+    }
+
+    /// The span in this number of steps.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for a time that is not finite, no steps over a span that is not empty,
+    /// or so many that t + h = t.
+    pub fn with_steps(t_span: [f64; 2], steps: u64) -> Result<Self, Error> {
+        let [t0, t1] = t_span;
+        let length = Self::check_span(t_span)?;
+        if length == 0.0 {
+            return Ok(TimeGrid { t0, t1, steps: 0 });
+        }
+        if steps == 0 {
+            return Err(Error::out_of_range("steps", 0.0, "at least 1"));
+        }
+        let grid = TimeGrid { t0, t1, steps };
+        let largest = t0.abs().max(t1.abs());
+        if largest + grid.h().abs() * 0.5 == largest {
+            return Err(Error::out_of_range(
+                "dt",
+                grid.h().abs(),
+                format!("a step that changes t = {largest}"),
+            ));
+        }
+        Ok(grid)
+    }
+
+    fn check_span([t0, t1]: [f64; 2]) -> Result<f64, Error> {
+        for (i, t) in [t0, t1].into_iter().enumerate() {
+            if !t.is_finite() {
+                return Err(Error::out_of_range(format!("t_span[{i}]"), t, "a finite number"));
+            }
+        }
+        let length = (t1 - t0).abs();
+        match length.is_finite() {
+            true => Ok(length),
+            false => Err(Error::out_of_range("t_span", length, "a finite length")),
+        }
+    }
+
+    /// t₀ and t₁.
+    pub fn t_span(&self) -> [f64; 2] {
+        [self.t0, self.t1]
+    }
+    /// The number of steps.
+    pub fn steps(&self) -> u64 {
+        self.steps
+    }
+    /// The step, with its sign; 0 when there are no steps.
+    pub fn h(&self) -> f64 {
+        if self.steps == 0 { 0.0 } else { (self.t1 - self.t0) / self.steps as f64 }
+    }
+    /// The time after n steps.
+    pub fn time(&self, n: u64) -> f64 {
+        if n >= self.steps { self.t1 } else { self.t0 + n as f64 * self.h() }
+    }
+}
+
+/// Where the observer is called. The start and the end are always among them, once each.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SaveAt {
+    /// At the start and at the end only.
+    Ends,
+    /// After every so many steps.
+    Every(u64),
+    /// At these times, in the order of the run. They need not lie on the grid: a time between two
+    /// steps is reached by a shorter step of the same method from the one before, which leaves the
+    /// run itself as it is.
+    Times(Vec<f64>),
+}
+
+impl SaveAt {
+    /// Check against the grid.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for `every = 0`, and for times that are not finite, outside the span,
+    /// or not in strict order.
+    pub fn check(&self, grid: &TimeGrid) -> Result<(), Error> {
+        match self {
+            SaveAt::Ends => Ok(()),
+            SaveAt::Every(0) => Err(Error::out_of_range("every", 0.0, "at least 1")),
+            SaveAt::Every(_) => Ok(()),
+            SaveAt::Times(times) => {
+                let [t0, t1] = grid.t_span();
+                let forward = if t1 >= t0 { 1.0 } else { -1.0 };
+                let mut last = f64::NEG_INFINITY;
+                for (i, &t) in times.iter().enumerate() {
+                    let arg = format!("times[{i}]");
+                    if !(t0.min(t1) <= t && t <= t0.max(t1)) {
+                        return Err(Error::out_of_range(arg, t, format!("within [{t0}, {t1}]")));
+                    }
+                    if forward * t <= last {
+                        return Err(Error::out_of_range(arg, t, "times in order, each once"));
+                    }
+                    last = forward * t;
+                }
+                Ok(())
+            }
+        }
+    }
+}
+
+/// What a run did.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Stats {
+    /// Steps of the run.
+    pub steps: u64,
+    /// Shorter steps taken to output times between grid points.
+    pub side_steps: u64,
+}
+
+/// Why a run ended before its time.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RunError {
+    /// The method does not fit the problem, or the output times do not fit the grid.
+    #[error(transparent)]
+    Setup(#[from] Error),
+    /// A step failed. The state is the last accepted one; what was observed stands.
+    #[error(transparent)]
+    Step(#[from] Failure),
+}
+
+/// Integrate `problem` from y at the start of `grid` to its end, showing (t, y) to `observe` where
+/// `save` says. On return y is the state at the end, or the last accepted one.
+///
+/// Memory is allocated before the first step only.
+///
+/// ```
+/// use lieflow::maps::Exp;
+/// use lieflow::methods::{Rkmk, tableau::RK4};
+/// use lieflow::problems::RigidBody;
+/// use lieflow::{SaveAt, TimeGrid, integrate};
+/// use nalgebra::Vector3;
+///
+/// let body = RigidBody::new([1.0, 2.0, 3.0])?;
+/// let mut m = Vector3::new(0.2, 0.0, 3.0);
+/// let start = body.energy(&m);
+/// let grid = TimeGrid::new([0.0, 10.0], 0.05)?;
+/// integrate(&body, &Rkmk::new(RK4, Exp), &grid, &SaveAt::Ends, &mut m, |_, _| {})?;
+/// assert!((body.energy(&m) - start).abs() < 1e-7);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// [`RunError::Setup`] before anything is observed, [`RunError::Step`] for a step that failed.
+pub fn integrate<P: Problem, Me: Method<P>>(
+    problem: &P,
+    method: &Me,
+    grid: &TimeGrid,
+    save: &SaveAt,
+    y: &mut PointOf<P>,
+    mut observe: impl FnMut(f64, &PointOf<P>),
+) -> Result<Stats, RunError> {
+    save.check(grid)?;
+    let mut work = method.work(problem, y)?;
+    let mut aside = y.clone();
+    let mut stats = Stats::default();
+    let [t0, t1] = grid.t_span();
+    let forward = t1 >= t0;
+    let mut times = match save {
+        SaveAt::Times(times) => times.as_slice(),
+        _ => &[],
+    };
+    times = times.strip_prefix(&[t0]).unwrap_or(times);
+    observe(t0, y);
+    for n in 0..grid.steps() {
+        let (t, end) = (grid.time(n), grid.time(n + 1));
+        let fail = |h, source| Failure { step: n, t, h, source };
+        let mut take = |t_end: f64, y: &mut PointOf<P>| {
+            let h = t_end - t;
+            let step = Step { n, t: ScalarOf::<P>::lit(t), h: ScalarOf::<P>::lit(h) };
+            method.step(problem, step, y, &mut work).map_err(|source| fail(h, source))
+        };
+        while let [time, rest @ ..] = times
+            && (if forward { *time < end } else { *time > end })
+        {
+            aside.clone_from(y);
+            if *time != t {
+                take(*time, &mut aside)?;
+                stats.side_steps += 1;
+            }
+            observe(*time, &aside);
+            times = rest;
+        }
+        take(end, y)?;
+        stats.steps += 1;
+        let on_grid = match save {
+            SaveAt::Every(every) => (n + 1) % every == 0,
+            SaveAt::Times(_) => times.first() == Some(&end),
+            SaveAt::Ends => false,
+        };
+        if on_grid {
+            times = times.get(1..).unwrap_or_default();
+        }
+        if on_grid || n + 1 == grid.steps() {
+            observe(end, y);
+        }
+    }
+    Ok(stats)
+}

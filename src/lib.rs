@@ -1,0 +1,71 @@
+//! Lie group integrators: ordinary differential equations on matrix Lie groups and on the
+//! manifolds they act on.
+//!
+//! ```text
+//!            Ψ                 Λ_p
+//!     𝔤  ─────────▶   G   ─────────────▶  M          (Figure 2 of Celledoni & Owren)
+//!     │                                   ▲
+//!     └───────────────────────────────────┘
+//!                  λ_p = Λ_p ∘ Ψ
+//! ```
+//!
+//! An equation is given as f : M → 𝔤, ẏ = λ_*(f(t, y))(y); a step is taken in 𝔤 and carried to M,
+//! so that the result never leaves M.
+//!
+//! | symbol | here |
+//! |---|---|
+//! | 𝔤, G | [`groups`]: [`LieAlgebra`], [`LieGroup`]; [`So3`](groups::So3), [`MatrixGroup`](groups::MatrixGroup) |
+//! | Ψ, dΨ⁻¹ | [`maps`]: [`CoordinateMap`]; [`Exp`](maps::Exp), [`Cay`](maps::Cay), [`CCSK123`](maps::CCSK123), [`CCSK321`](maps::CCSK321) |
+//! | Λ, M | [`actions`]: [`Action`]; left translation, coadjoint, linear |
+//! | λ_p, f̃ | [`chart`] |
+//! | f : M → 𝔤 | [`problems`]: [`Problem`]; the rigid body |
+//! | one step | [`methods`]: [`Method`]; [`Rkmk`](methods::Rkmk), [`Rk`](methods::Rk) |
+//! | many steps | [`integrate()`], [`TimeGrid`], [`SaveAt`] |
+//!
+//! Two layers share every trait: closed forms on so(3) ≅ ℝ³ over nalgebra, and any n over faer. The
+//! same [`Rkmk`](methods::Rkmk) runs on both, and they agree to rounding.
+//!
+//! # Conventions
+//! Left actions, right-trivialised differentials (d/dε Ψ(u + εv) = dΨ_u(v)·Ψ(u)), hat and vee as in
+//! equation (2), g maps body to space. They are stated once, in `docs/maths.md`; there is no switch.
+//!
+//! # A first run
+//! ```
+//! use lieflow::maps::{Cay, Exp};
+//! use lieflow::methods::{Rkmk, tableau::RK4};
+//! use lieflow::problems::{Exact, RigidBodyAttitude};
+//! use lieflow::{SaveAt, TimeGrid, integrate};
+//! use nalgebra::Matrix3;
+//!
+//! let (inertia, momentum) = ([1.0, 2.0, 3.0], [0.2, 0.0, 3.0]);
+//! let body = RigidBodyAttitude::new(inertia, momentum)?;
+//! let mut g = Matrix3::identity();
+//! let grid = TimeGrid::new([0.0, 1.0], 0.01)?;
+//! integrate(&body, &Rkmk::new(RK4, Cay), &grid, &SaveAt::Ends, &mut g, |_, _| {})?;
+//!
+//! let (_, exact) = Exact::new(inertia, momentum, Matrix3::identity())?.state(1.0)?;
+//! assert!((g - exact).norm() < 1e-8);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+#![forbid(unsafe_code)]
+#![deny(missing_docs, rustdoc::broken_intra_doc_links)]
+
+pub mod actions;
+pub mod catalog;
+pub mod chart;
+pub mod dense;
+pub mod error;
+pub mod groups;
+mod integrate;
+pub mod maps;
+pub mod methods;
+pub mod problems;
+pub mod scalar;
+
+pub use actions::Action;
+pub use error::{Error, Failure, StepError};
+pub use groups::{LieAlgebra, LieGroup};
+pub use integrate::{RunError, SaveAt, Stats, TimeGrid, integrate};
+pub use maps::CoordinateMap;
+pub use methods::{Method, Step};
+pub use problems::Problem;

@@ -1,0 +1,108 @@
+//! Ψ : 𝔤 → G, the coordinate maps, each with its inverse differential dΨ⁻¹.
+//!
+//! The differential is right trivialised, as in the paper (8):
+//! d/dε Ψ(u + εv)|₀ = dΨ_u(v)·Ψ(u). In robotics' words dexp is the *left* Jacobian.
+//!
+//! To add a map: one file with an `impl` of [`CoordinateMap`] per layer (the general one over any
+//! n, and the closed form), one line here, one in the catalog, one in the law tests.
+
+mod alternating;
+mod cay;
+mod ccsk;
+mod exp;
+
+pub use alternating::{Alternating, AlternatingAt, CCSK};
+pub use cay::Cay;
+pub use ccsk::{CCSK123, CCSK321, Ccsk};
+pub use exp::{Dexpinv, Exp, TruncatedExp, dexpinv};
+
+use crate::error::{Error, StepError};
+use crate::groups::LieGroup;
+
+/// A coordinate map Ψ with Ψ(0) = 𝟙 and Ψ'(0) = id, together with dΨ⁻¹ (right trivialised).
+pub trait CoordinateMap<G: LieGroup> {
+    /// What Ψ keeps at u so that dΨ_u⁻¹ costs little more ("Both" in Table 2), and the workspace.
+    type At;
+
+    /// The name of the map, as in scene files.
+    fn name(&self) -> &'static str;
+
+    /// Storage for [`At`](Self::At); the only call that allocates.
+    ///
+    /// # Errors
+    /// [`Error::Unsupported`] when the map has no formula on this group.
+    fn at(&self, group: &G) -> Result<Self::At, Error>;
+
+    /// Step number `n` of a run begins: a map that differs from step to step chooses here.
+    #[inline]
+    fn begin_step(&self, _at: &mut Self::At, _n: u64) {}
+
+    /// g ← Ψ(u), remembering in `at` what dΨ_u⁻¹ shares with it.
+    ///
+    /// # Errors
+    /// A [`StepError`] when u lies outside the map's domain or the range of the arithmetic.
+    fn psi(
+        &self,
+        group: &G,
+        u: &G::Alg,
+        at: &mut Self::At,
+        g: &mut G::Elem,
+    ) -> Result<(), StepError>;
+
+    /// y ← Ψ(u)·x, by a shorter way than forming Ψ(u) where the map has one. `g` is scratch.
+    ///
+    /// # Errors
+    /// As [`psi`](Self::psi).
+    #[inline]
+    fn psi_on(
+        &self,
+        group: &G,
+        u: &G::Alg,
+        at: &mut Self::At,
+        g: &mut G::Elem,
+        x: &G::Vector,
+        y: &mut G::Vector,
+    ) -> Result<(), StepError> {
+        self.psi(group, u, at, g)?;
+        group.apply(g, x, y);
+        Ok(())
+    }
+
+    /// v ← dΨ_u⁻¹ v, at the u of the last [`psi`](Self::psi) or [`psi_on`](Self::psi_on) on `at`.
+    ///
+    /// # Errors
+    /// [`StepError::OutsideChart`] near a singularity of dΨ.
+    fn dpsi_inv(
+        &self,
+        group: &G,
+        u: &G::Alg,
+        at: &mut Self::At,
+        v: &mut G::Alg,
+    ) -> Result<(), StepError>;
+
+    /// The highest order of a method that this map's dΨ⁻¹ keeps; `usize::MAX` when it is exact.
+    fn order(&self, _group: &G) -> usize {
+        usize::MAX
+    }
+
+    /// Ψ(u) on its own, with fresh storage.
+    ///
+    /// # Errors
+    /// As [`at`](Self::at) and [`psi`](Self::psi).
+    fn eval(&self, group: &G, u: &G::Alg) -> Result<G::Elem, Error> {
+        let (mut at, mut g) = (self.at(group)?, group.identity());
+        self.psi(group, u, &mut at, &mut g)?;
+        Ok(g)
+    }
+
+    /// dΨ_u⁻¹ v on its own, with fresh storage.
+    ///
+    /// # Errors
+    /// As [`eval`](Self::eval) and [`dpsi_inv`](Self::dpsi_inv).
+    fn eval_dpsi_inv(&self, group: &G, u: &G::Alg, v: &G::Alg) -> Result<G::Alg, Error> {
+        let (mut at, mut g, mut v) = (self.at(group)?, group.identity(), v.clone());
+        self.psi(group, u, &mut at, &mut g)?;
+        self.dpsi_inv(group, u, &mut at, &mut v)?;
+        Ok(v)
+    }
+}

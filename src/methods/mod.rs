@@ -1,0 +1,54 @@
+//! One step of a method, and the methods: one file each.
+//!
+//! To add a method: one file with an `impl` of [`Method`], one line here, one in the catalog, which
+//! puts it into the order tests and the command line at once.
+
+mod rk;
+mod rkmk;
+pub mod tableau;
+
+pub use rk::Rk;
+pub use rkmk::Rkmk;
+pub use tableau::Tableau;
+
+use crate::error::{Error, StepError};
+use crate::problems::{PointOf, Problem, ScalarOf};
+
+/// Which step is taken: number n of the run, from t to t + h.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Step<S> {
+    /// The number of the step in its run, from 0. Maps that alternate look at its parity.
+    pub n: u64,
+    /// The time at the start.
+    pub t: S,
+    /// The size; negative when time runs backward.
+    pub h: S,
+}
+
+/// A one-step method for problems of type `P`.
+pub trait Method<P: Problem> {
+    /// Everything a step needs besides y; made once, reused for every step. It carries nothing from
+    /// one step to the next: a step depends on its arguments alone.
+    type Work;
+
+    /// The order that tests hold the method to.
+    fn order(&self, problem: &P) -> usize;
+
+    /// Make the workspace; `like` is any point of M.
+    ///
+    /// # Errors
+    /// [`Error::Unsupported`] when the parts of the method do not go together with the problem.
+    fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error>;
+
+    /// y ← the approximation at t + h. On an error y is as it was.
+    ///
+    /// # Errors
+    /// Why the step could not be taken.
+    fn step(
+        &self,
+        problem: &P,
+        step: Step<ScalarOf<P>>,
+        y: &mut PointOf<P>,
+        work: &mut Self::Work,
+    ) -> Result<(), StepError>;
+}

@@ -1,0 +1,76 @@
+//! f : M → 𝔤, the differential equations, and what else is known of each.
+//!
+//! To add a problem: one file with an `impl` of [`Problem`], one line here.
+
+mod rigid_body;
+
+pub use rigid_body::{Exact, RigidBody, RigidBodyAttitude, RigidBodyN, RigidBodyNAttitude};
+
+use crate::actions::Action;
+use crate::groups::{LieAlgebra, LieGroup};
+
+/// 𝔤-element of a problem.
+pub type AlgOf<P> = <<P as Problem>::Group as LieAlgebra>::Alg;
+/// G-element of a problem.
+pub type ElemOf<P> = <<P as Problem>::Group as LieGroup>::Elem;
+/// Scalar of a problem.
+pub type ScalarOf<P> = <<P as Problem>::Group as LieAlgebra>::Scalar;
+/// Point of M of a problem.
+pub type PointOf<P> = <<P as Problem>::Action as Action<<P as Problem>::Group>>::Point;
+
+/// An ODE on M presented through a group action: ẏ = F(t, y) = λ_*(f(t, y))(y), equation (13).
+///
+/// ```
+/// use lieflow::actions::Linear;
+/// use lieflow::groups::So3;
+/// use lieflow::problems::Problem;
+/// use nalgebra::Vector3;
+///
+/// /// A vector that turns about e₃ at the rate t.
+/// struct Spin(So3, Linear);
+/// impl Problem for Spin {
+///     type Group = So3;
+///     type Action = Linear;
+///     type Work = ();
+///     fn group(&self) -> &So3 { &self.0 }
+///     fn action(&self) -> &Linear { &self.1 }
+///     fn work(&self) {}
+///     fn f(&self, t: f64, _x: &Vector3<f64>, v: &mut Vector3<f64>, _: &mut ()) {
+///         *v = Vector3::new(0.0, 0.0, t);
+///     }
+/// }
+/// ```
+pub trait Problem {
+    /// G.
+    type Group: LieGroup;
+    /// Λ.
+    type Action: Action<Self::Group>;
+    /// Scratch of f; `()` when it needs none.
+    type Work;
+
+    /// G as a value.
+    fn group(&self) -> &Self::Group;
+    /// Λ as a value.
+    fn action(&self) -> &Self::Action;
+    /// Scratch for [`f`](Self::f); the only call that allocates.
+    fn work(&self) -> Self::Work;
+    /// v ← f(t, y) ∈ 𝔤. A field that has no value at (t, y) returns a number that is not finite;
+    /// the step then fails with [`StepError::NonFiniteRhs`](crate::StepError::NonFiniteRhs).
+    fn f(&self, t: ScalarOf<Self>, y: &PointOf<Self>, v: &mut AlgOf<Self>, work: &mut Self::Work);
+}
+
+/// A capability: M lies in a linear space and F is known there, so that classical methods apply.
+pub trait Ambient: Problem {
+    /// dy ← F(t, y).
+    fn field(
+        &self,
+        t: ScalarOf<Self>,
+        y: &PointOf<Self>,
+        dy: &mut PointOf<Self>,
+        work: &mut Self::Work,
+    );
+    /// y ← y + a·x.
+    fn add(&self, a: ScalarOf<Self>, x: &PointOf<Self>, y: &mut PointOf<Self>);
+    /// Is every number in y finite?
+    fn is_finite(&self, y: &PointOf<Self>) -> bool;
+}

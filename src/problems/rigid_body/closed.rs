@@ -1,0 +1,176 @@
+//! The free rigid body in ℝ³.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::{check_finite, check_inertia};
+use crate::actions::{Coadjoint, LeftTranslation};
+use crate::error::Error;
+use crate::groups::{LieAlgebra, So3, apply3, cross, hat};
+use crate::problems::{Ambient, Problem};
+use crate::scalar::Real;
+
+/// J⁻¹·m for diagonal J.
+#[inline(always)]
+fn scale<S: Real>(inverse_inertia: &Vector3<S>, m: &Vector3<S>) -> Vector3<S> {
+    Vector3::new(inverse_inertia[0] * m[0], inverse_inertia[1] * m[1], inverse_inertia[2] * m[2])
+}
+
+/// gᵀ·m.
+#[inline(always)]
+fn apply_transpose<S: Real>(g: &Matrix3<S>, m: &Vector3<S>) -> Vector3<S> {
+    let row = |j| g[(0, j)] * m[0] + g[(1, j)] * m[1] + g[(2, j)] * m[2];
+    Vector3::new(row(0), row(1), row(2))
+}
+
+/// ½ m·J⁻¹m.
+#[inline]
+fn kinetic_energy<S: Real>(inverse_inertia: &Vector3<S>, m: &Vector3<S>) -> S {
+    let w = scale(inverse_inertia, m);
+    S::lit(0.5) * (m[0] * w[0] + m[1] * w[1] + m[2] * w[2])
+}
+
+/// The free rigid body by its body momentum alone: ṁ = m × J⁻¹m, equation (5), a flow on the
+/// coadjoint orbit |m| = const. f(m) = −J⁻¹m; Λ(g, m) = g m.
+///
+/// Invariants: |m|² (the Casimir, kept by every method that acts by the group) and the energy.
+#[derive(Clone, Copy, Debug)]
+pub struct RigidBody<S = f64> {
+    group: So3<S>,
+    inverse_inertia: Vector3<S>,
+}
+
+impl<S: Real> RigidBody<S> {
+    /// From the principal moments of inertia J₁, J₂, J₃.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for a moment that is not finite and positive.
+    pub fn new(inertia: [f64; 3]) -> Result<Self, Error> {
+        check_inertia(&inertia)?;
+        let [a, b, c] = inertia.map(|j| S::lit(1.0 / j));
+        Ok(RigidBody { group: So3::new(), inverse_inertia: Vector3::new(a, b, c) })
+    }
+
+    /// ω = J⁻¹m, the angular velocity in the body.
+    #[inline]
+    pub fn omega(&self, m: &Vector3<S>) -> Vector3<S> {
+        scale(&self.inverse_inertia, m)
+    }
+
+    /// E = ½ m·J⁻¹m.
+    pub fn energy(&self, m: &Vector3<S>) -> S {
+        kinetic_energy(&self.inverse_inertia, m)
+    }
+}
+
+impl<S: Real> Problem for RigidBody<S> {
+    type Group = So3<S>;
+    type Action = Coadjoint;
+    type Work = ();
+
+    fn group(&self) -> &So3<S> {
+        &self.group
+    }
+    fn action(&self) -> &Coadjoint {
+        &Coadjoint
+    }
+    fn work(&self) {}
+    #[inline]
+    fn f(&self, _: S, m: &Vector3<S>, v: &mut Vector3<S>, _: &mut ()) {
+        *v = -self.omega(m);
+    }
+}
+
+impl<S: Real> Ambient for RigidBody<S> {
+    #[inline]
+    fn field(&self, _: S, m: &Vector3<S>, dm: &mut Vector3<S>, _: &mut ()) {
+        *dm = cross(m, &self.omega(m));
+    }
+    #[inline]
+    fn add(&self, a: S, x: &Vector3<S>, y: &mut Vector3<S>) {
+        self.group.axpy(a, x, y);
+    }
+    #[inline]
+    fn is_finite(&self, m: &Vector3<S>) -> bool {
+        self.group.is_finite(m)
+    }
+}
+
+/// The free rigid body with its attitude, as the paper integrates it: ġ = f(g)·g on SO(3),
+/// f(g) = ω_s = g J⁻¹ gᵀ m_s, equation (11); m_s is constant, the body momentum is gᵀm_s.
+#[derive(Clone, Copy, Debug)]
+pub struct RigidBodyAttitude<S = f64> {
+    body: RigidBody<S>,
+    momentum_space: Vector3<S>,
+}
+
+impl<S: Real> RigidBodyAttitude<S> {
+    /// From the principal moments of inertia, and the angular momentum in space.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for a moment that is not finite and positive, or a momentum that is
+    /// not finite.
+    pub fn new(inertia: [f64; 3], momentum_space: [f64; 3]) -> Result<Self, Error> {
+        check_finite("momentum_space", &momentum_space)?;
+        let [a, b, c] = momentum_space.map(S::lit);
+        Ok(RigidBodyAttitude {
+            body: RigidBody::new(inertia)?,
+            momentum_space: Vector3::new(a, b, c),
+        })
+    }
+
+    /// The body alone.
+    pub fn body(&self) -> &RigidBody<S> {
+        &self.body
+    }
+
+    /// m = gᵀm_s, the angular momentum in the body.
+    #[inline]
+    pub fn momentum_body(&self, g: &Matrix3<S>) -> Vector3<S> {
+        apply_transpose(g, &self.momentum_space)
+    }
+
+    /// ω_s = g J⁻¹ gᵀ m_s.
+    #[inline(always)]
+    fn omega_space(&self, g: &Matrix3<S>) -> Vector3<S> {
+        apply3(g, &self.body.omega(&self.momentum_body(g)))
+    }
+}
+
+impl<S: Real> Problem for RigidBodyAttitude<S> {
+    type Group = So3<S>;
+    type Action = LeftTranslation;
+    type Work = ();
+
+    fn group(&self) -> &So3<S> {
+        self.body.group()
+    }
+    fn action(&self) -> &LeftTranslation {
+        &LeftTranslation
+    }
+    fn work(&self) {}
+    #[inline]
+    fn f(&self, _: S, g: &Matrix3<S>, v: &mut Vector3<S>, _: &mut ()) {
+        *v = self.omega_space(g);
+    }
+}
+
+impl<S: Real> Ambient for RigidBodyAttitude<S> {
+    #[inline]
+    fn field(&self, _: S, g: &Matrix3<S>, dg: &mut Matrix3<S>, _: &mut ()) {
+        let w = hat(&self.omega_space(g));
+        for j in 0..3 {
+            let col = Vector3::new(g[(0, j)], g[(1, j)], g[(2, j)]);
+            dg.set_column(j, &apply3(&w, &col));
+        }
+    }
+    #[inline]
+    fn add(&self, a: S, x: &Matrix3<S>, y: &mut Matrix3<S>) {
+        for (y, x) in y.iter_mut().zip(x) {
+            *y += a * *x;
+        }
+    }
+    #[inline]
+    fn is_finite(&self, g: &Matrix3<S>) -> bool {
+        g.iter().fold(S::lit(0.0), |s, x| s + x.abs()).is_finite()
+    }
+}

@@ -1,0 +1,367 @@
+//! The exact motion of the free rigid body, by Jacobi's elliptic functions.
+//!
+//! Name the principal axes x, y, z so that y is the middle one and the momentum circles z. With
+//! d_i = Σ_j m_j²(J_j − J_i)/J_j (no cancellation for the axes that matter) and τ = λt + τ₀
+//!
+//! m_x = A cn τ, m_y = ±B sn τ, m_z = ±C dn τ,
+//! A² = J_x d_z/(J_x − J_z), B² = J_y d_z/(J_y − J_z), C² = J_z d_x/(J_z − J_x),
+//! λ² = (J_z − J_y) d_x/(J_x J_y J_z), 1 − k² = (J_z − J_x) d_y/((J_z − J_y) d_x).
+//!
+//! The attitude is g = S₀ R_z(φ) T(m)ᵀ with the triad T(m) of m and the axis z, and
+//! φ̇ = L(m_x²/J_x + m_y²/J_y)/(m_x² + m_y²): a positive combination of L/J_x and L/J_y. It is
+//! integrated as L·min(1/J_x, 1/J_y)·t plus a positive elliptic integral of the third kind, so that
+//! nothing cancels at any ratio of the inertias (the textbook forms start from L/J_z or 2E/L and
+//! lose as many digits as that ratio has). The modulus enters by 1 − k² alone: near the separatrix
+//! k itself has no digits left.
+//!
+//! Source: notes on E. T. Whittaker, Analytical Dynamics, § 69; B. C. Carlson's integrals.
+
+use ellip::{elliprc, elliprf, elliprj};
+use nalgebra::{Matrix3, Vector3};
+
+use super::{check_finite, check_inertia};
+use crate::error::{Error, StepError};
+use crate::groups::{So3, cross};
+use crate::maps::{CoordinateMap, Exp};
+
+/// The exact motion of a free rigid body, at any time at once: m(t) and g(t).
+///
+/// Errors in f64: within a few units of what one ulp of the input changes, plus 3e-14 in g
+/// (references of 36 digits in `tests/references`).
+///
+/// ```
+/// use lieflow::problems::Exact;
+/// use nalgebra::Matrix3;
+/// let body = Exact::new([1.0, 2.0, 3.0], [0.2, 0.0, 3.0], Matrix3::identity())?;
+/// let (m, g) = body.state(400.0)?;
+/// assert!((m.norm() - 9.04f64.sqrt()).abs() < 1e-14);
+/// assert!((g * m - body.momentum_space()).norm() < 1e-13);
+/// # Ok::<(), lieflow::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Exact {
+    inertia: [f64; 3],
+    m0: Vector3<f64>,
+    g0: Matrix3<f64>,
+    motion: Motion,
+}
+
+#[derive(Clone, Debug)]
+enum Motion {
+    /// Rotation about a fixed axis: m does not change.
+    Steady,
+    /// The general case.
+    Elliptic(Box<Elliptic>),
+}
+
+#[derive(Clone, Debug)]
+struct Elliptic {
+    /// The axes x, y, z.
+    axes: [usize; 3],
+    /// Amplitudes with signs, in units of `scale`.
+    amplitude: [f64; 3],
+    /// Powers of two that m and J were divided by; time is in units of `j_scale/m_scale`.
+    m_scale: f64,
+    j_scale: f64,
+    lambda: f64,
+    tau0: f64,
+    /// 1 − k².
+    kc2: f64,
+    /// K, infinite on the separatrix.
+    quarter: f64,
+    /// B²/A².
+    ratio: f64,
+    /// φ = base·t + swing·(D(τ) − D(τ₀)).
+    base: f64,
+    swing: f64,
+    /// D is ∫ m_x²/(m_x² + m_y²) dτ if true, else ∫ m_y²/(m_x² + m_y²) dτ.
+    weigh_x: bool,
+    d_quarter: f64,
+    d0: f64,
+    /// S₀ = g₀ T(m₀).
+    s0: Matrix3<f64>,
+}
+
+/// The power of two at or below x.
+fn power_of_two(x: f64) -> f64 {
+    let e = x.log2().floor().clamp(-1000.0, 1000.0) as i32;
+    2.0f64.powi(e)
+}
+
+fn carlson(x: Result<f64, &'static str>) -> Result<f64, Error> {
+    x.map_err(|_| StepError::NotConverged { what: "Carlson's elliptic integral" }.into())
+}
+
+impl Exact {
+    /// From the principal moments of inertia, the body momentum and the attitude at t = 0.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for a moment that is not finite and positive or a momentum that is not
+    /// finite; [`So3::check_element`]'s errors for an attitude that is no rotation to 1e-6.
+    pub fn new(
+        inertia: [f64; 3],
+        momentum_body: [f64; 3],
+        attitude: Matrix3<f64>,
+    ) -> Result<Self, Error> {
+        check_inertia(&inertia)?;
+        check_finite("momentum_body", &momentum_body)?;
+        So3::new().check_element("attitude", &attitude, 1e-6)?;
+        let m0 = Vector3::from(momentum_body);
+        let motion = match Elliptic::new(inertia, m0, &attitude)? {
+            Some(elliptic) => Motion::Elliptic(Box::new(elliptic)),
+            None => Motion::Steady,
+        };
+        Ok(Exact { inertia, m0, g0: attitude, motion })
+    }
+
+    /// m_s = g₀m₀, constant.
+    pub fn momentum_space(&self) -> Vector3<f64> {
+        self.g0 * self.m0
+    }
+
+    /// The body momentum m(t).
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for a time that is not finite.
+    pub fn momentum_body(&self, t: f64) -> Result<Vector3<f64>, Error> {
+        check_finite("t", &[t])?;
+        Ok(match &self.motion {
+            Motion::Elliptic(motion) if t != 0.0 => motion.momentum(&motion.phase(t)),
+            _ => self.m0,
+        })
+    }
+
+    /// The body momentum m(t), and the attitude g(t) from body to space.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for a time that is not finite.
+    pub fn state(&self, t: f64) -> Result<(Vector3<f64>, Matrix3<f64>), Error> {
+        check_finite("t", &[t])?;
+        if t == 0.0 {
+            return Ok((self.m0, self.g0));
+        }
+        match &self.motion {
+            Motion::Elliptic(motion) => {
+                let phase = motion.phase(t);
+                let m = motion.momentum(&phase);
+                let phi = motion.precession(t, &phase)?;
+                let (s, c) = phi.sin_cos();
+                let turn = Matrix3::new(c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0);
+                let triad = triad(&m, motion.axes[2]);
+                Ok((m, motion.s0 * turn * triad.transpose()))
+            }
+            Motion::Steady => {
+                let angle = Vector3::from_fn(|i, _| self.m0[i] / self.inertia[i] * t);
+                Ok((self.m0, self.g0 * Exp.eval(&So3::new(), &angle)?))
+            }
+        }
+    }
+}
+
+/// Where on the elliptic orbit a time is: τ = 2Kj + r with |r| ≤ K, and sn, cn, dn at r.
+struct Phase {
+    tau: f64,
+    half_turns: f64,
+    sn: f64,
+    cn: f64,
+    dn: f64,
+}
+
+/// \[x̂, ŷ, ẑ\] as columns: ẑ = m/|m|, x̂ the direction of e_axis orthogonal to it.
+fn triad(m: &Vector3<f64>, axis: usize) -> Matrix3<f64> {
+    let scale = 1.0 / power_of_two(m.amax());
+    let m = m * scale;
+    let z = m / m.norm();
+    let (p, q) = ((axis + 1) % 3, (axis + 2) % 3);
+    let rho = m[p].hypot(m[q]);
+    // ŷ = ẑ × x̂ lies in the plane orthogonal to the axis; relative accuracy even for tiny rho.
+    let mut y = Vector3::zeros();
+    (y[p], y[q]) = (m[q] / rho, -m[p] / rho);
+    let x = cross(&y, &z);
+    Matrix3::from_columns(&[x, y, z])
+}
+
+impl Elliptic {
+    /// `None` when m does not change.
+    fn new(inertia: [f64; 3], m0: Vector3<f64>, g0: &Matrix3<f64>) -> Result<Option<Self>, Error> {
+        if m0.amax() == 0.0 {
+            return Ok(None);
+        }
+        let m_scale = power_of_two(m0.amax());
+        let j_scale = power_of_two(inertia.into_iter().fold(0.0, f64::max));
+        let m = m0 / m_scale;
+        let j = inertia.map(|x| x / j_scale);
+        let d = |i: usize| -> f64 { (0..3).map(|k| m[k] * m[k] * ((j[k] - j[i]) / j[k])).sum() };
+
+        let mut sorted = [0, 1, 2];
+        sorted.sort_by(|&a, &b| j[a].total_cmp(&j[b]));
+        let [a, b, c] = sorted;
+        let about_c = j[a] == j[b] || (d(b) > 0.0 && j[b] != j[c]);
+        let axes @ [x, y, z] = if about_c { [a, b, c] } else { [c, b, a] };
+        let (dx, dy, dz) = (d(x), d(y), d(z));
+        let lambda = ((j[z] - j[y]) * dx / (j[x] * j[y] * j[z])).sqrt();
+        let a2 = j[x] * dz / (j[x] - j[z]);
+        let b2 = j[y] * dz / (j[y] - j[z]);
+        let c2 = j[z] * dx / (j[z] - j[x]);
+        let moving = lambda > 0.0 && a2 > 0.0 && b2 > 0.0 && c2 > 0.0;
+        if !moving {
+            return Ok(None);
+        }
+        let kc2 = ((j[z] - j[x]) * dy / ((j[z] - j[y]) * dx)).clamp(0.0, 1.0);
+        let sign_z = 1.0f64.copysign(m[z]);
+        // ṁ_y = m_p m_q (1/J_q − 1/J_p) for y, p, q cyclic.
+        let (p, q) = ((y + 1) % 3, (y + 2) % 3);
+        let sign_y = sign_z * (j[p] - j[q]).signum();
+        let amplitude = [a2.sqrt(), sign_y * b2.sqrt(), sign_z * c2.sqrt()];
+
+        let (cn, sn) = (m[x] / amplitude[0], m[y] / amplitude[1]);
+        let r = cn.hypot(sn);
+        let (cn, sn) = (cn / r, sn / r);
+        if kc2 == 0.0 && cn == 0.0 {
+            return Ok(None); // on the middle axis exactly
+        }
+        let quarter = if kc2 > 0.0 { carlson(elliprf(0.0, kc2, 1.0))? } else { f64::INFINITY };
+        let f = if cn == 0.0 {
+            quarter.copysign(sn)
+        } else {
+            sn * carlson(elliprf(cn * cn, cn * cn + kc2 * sn * sn, 1.0))?
+        };
+        let tau0 = if cn >= 0.0 { f } else { 2.0 * quarter.copysign(sn) - f };
+
+        let length = m.norm();
+        let weigh_x = j[x] <= j[y];
+        let (low, high) = if weigh_x { (j[x], j[y]) } else { (j[y], j[x]) };
+        let mut motion = Elliptic {
+            axes,
+            amplitude,
+            m_scale,
+            j_scale,
+            lambda,
+            tau0,
+            kc2,
+            quarter,
+            ratio: j[y] * (j[x] - j[z]) / (j[x] * (j[y] - j[z])),
+            base: length / high,
+            swing: length * ((high - low) / (high * low)) / lambda,
+            weigh_x,
+            d_quarter: 0.0,
+            d0: 0.0,
+            s0: g0 * triad(&m0, z),
+        };
+        if quarter.is_finite() {
+            motion.d_quarter = motion.third_kind(quarter, 1.0, 0.0, kc2.sqrt())?;
+        }
+        if kc2 == 0.0 {
+            // On the separatrix cn = sech τ > 0; cn < 0 is the orbit turned by π about z.
+            motion.tau0 = (sn / cn).asinh();
+            motion.amplitude[0] *= cn.signum();
+            motion.amplitude[1] *= cn.signum();
+        }
+        motion.d0 = motion.swept(&motion.phase(0.0))?;
+        Ok(Some(motion))
+    }
+
+    fn phase(&self, t: f64) -> Phase {
+        let tau = self.lambda * (t * (self.m_scale / self.j_scale)) + self.tau0;
+        let half_turns =
+            if self.quarter.is_finite() { (tau / (2.0 * self.quarter)).round() } else { 0.0 };
+        let r = match half_turns == 0.0 {
+            true => tau,
+            false => (-2.0 * self.quarter).mul_add(half_turns, tau),
+        };
+        let (sn, cn, dn) = jacobi(r, self.kc2);
+        Phase { tau, half_turns, sn, cn, dn }
+    }
+
+    fn momentum(&self, phase: &Phase) -> Vector3<f64> {
+        let sign = if phase.half_turns % 2.0 == 0.0 { 1.0 } else { -1.0 };
+        let mut m = Vector3::zeros();
+        m[self.axes[0]] = self.m_scale * self.amplitude[0] * sign * phase.cn;
+        m[self.axes[1]] = self.m_scale * self.amplitude[1] * sign * phase.sn;
+        m[self.axes[2]] = self.m_scale * self.amplitude[2] * phase.dn;
+        m
+    }
+
+    /// φ(t).
+    fn precession(&self, t: f64, phase: &Phase) -> Result<f64, Error> {
+        let t = t * (self.m_scale / self.j_scale);
+        Ok(self.base * t + self.swing * (self.swept(phase)? - self.d0))
+    }
+
+    /// D(τ), with D(0) = 0.
+    fn swept(&self, phase: &Phase) -> Result<f64, Error> {
+        let whole =
+            if phase.half_turns == 0.0 { 0.0 } else { 2.0 * phase.half_turns * self.d_quarter };
+        Ok(whole + self.third_kind(phase.tau, phase.sn, phase.cn, phase.dn)?)
+    }
+
+    /// D for |τ| ≤ K. With s, c, d = sn, cn, dn, n = B²/A² and p = c² + n s²:
+    /// ∫ n s²/p = n s³/3 R_J(c², d², 1, p), and
+    /// ∫ c²/p = s·(c·R_C(d², pq) + (1−k²)s²/(3n)·R_J(c², d², 1, q)), q = c² + (1−k²)s²/n,
+    /// which is the difference from ∫ 1 freed of its cancellation (DLMF 19.21.12).
+    fn third_kind(&self, tau: f64, s: f64, c: f64, d: f64) -> Result<f64, Error> {
+        let (n, kc2) = (self.ratio, self.kc2);
+        let (c2, d2, s2) = (c * c, d * d, s * s);
+        if s == 0.0 {
+            return Ok(0.0);
+        }
+        let p = c2 + n * s2;
+        let far_on_separatrix = kc2 == 0.0 && c2 < 1e-30;
+        let x_part = || -> Result<f64, Error> {
+            let q = c2 + kc2 * s2 / n;
+            let elementary = match (c > 0.0, far_on_separatrix) {
+                (true, false) => c * carlson(elliprc(d2, p * q))?,
+                (_, true) => carlson(elliprc(1.0, n))?,
+                _ => 0.0,
+            };
+            let rest = match kc2 > 0.0 {
+                true => kc2 * s2 / (3.0 * n) * carlson(elliprj(c2, d2, 1.0, q))?,
+                false => 0.0,
+            };
+            Ok(s * (elementary + rest))
+        };
+        match (self.weigh_x, far_on_separatrix) {
+            (true, _) => x_part(),
+            (false, true) => Ok(tau - x_part()?),
+            (false, false) => Ok(n * s * s2 / 3.0 * carlson(elliprj(c2, d2, 1.0, p))?),
+        }
+    }
+}
+
+/// sn, cn, dn of u with 1 − k² = `kc2`, by R. Bulirsch's descending Gauss transformation
+/// (Numer. Math. 7, 1965). 1 − k² is the argument so that k → 1 keeps its digits.
+pub(crate) fn jacobi(u: f64, kc2: f64) -> (f64, f64, f64) {
+    if kc2 == 0.0 {
+        let cn = 1.0 / u.cosh();
+        return (u.tanh(), cn, cn);
+    }
+    let (mut a, mut b) = (1.0, kc2.sqrt());
+    let mut means = [(0.0, 0.0); 16];
+    let mut levels = 0;
+    let mut c = 0.5 * (a + b);
+    for level in &mut means {
+        *level = (a, b);
+        levels += 1;
+        c = 0.5 * (a + b);
+        if (a - b).abs() <= 1e-9 * a {
+            break;
+        }
+        b = (a * b).sqrt();
+        a = c;
+    }
+    let (s, k) = (c * u).sin_cos();
+    if s == 0.0 {
+        return (s, k, 1.0);
+    }
+    let mut dn = 1.0;
+    let mut ratio = k / s;
+    let mut cot = c * ratio;
+    for &(mean, root) in means[..levels].iter().rev() {
+        ratio *= cot;
+        cot *= dn;
+        dn = (root + ratio) / (mean + ratio);
+        ratio = cot / mean;
+    }
+    let sn = (1.0 / (cot * cot + 1.0).sqrt()).copysign(s);
+    (sn, cot * sn, dn)
+}

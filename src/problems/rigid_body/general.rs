@@ -1,0 +1,208 @@
+//! The free rigid body in ℝⁿ, over dense matrices: m ∈ so(n)*, Ω = J⁻¹(m) pair by pair.
+
+use faer::Mat;
+
+use super::{check_finite, check_inertia};
+use crate::actions::{Coadjoint, LeftTranslation};
+use crate::dense::{self, antisymmetrise, mul};
+use crate::error::Error;
+use crate::groups::{AlgebraMatrix, GroupMatrix, MatrixGroup};
+use crate::problems::{Ambient, Problem};
+
+/// The free n-dimensional rigid body by its body momentum: ṁ = \[m, Ω\], Ω_ij = m_ij/J_ij, on a
+/// coadjoint orbit of SO(n). f(m) = −Ω; Λ(g, m) = g m gᵀ.
+///
+/// At n = 3, with m the hat of the momentum vector, it is Euler's equation (5). Invariants: the
+/// eigenvalues of m (the Casimirs, kept by every method that acts by the group) and the energy.
+#[derive(Clone, Debug)]
+pub struct RigidBodyN {
+    group: MatrixGroup,
+    /// 1/J_ij, and 0 on the diagonal.
+    inverse_inertia: Mat<f64>,
+}
+
+impl RigidBodyN {
+    /// From the inertia J_ij of each plane i < j, in the order 12, 13, …, 1n, 23, …
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for n = 0 or an inertia that is not finite and positive,
+    /// [`Error::Shape`] unless there are n(n−1)/2 of them.
+    pub fn from_pairs(n: usize, inertia: &[f64]) -> Result<Self, Error> {
+        let group = MatrixGroup::so(n)?;
+        let pairs = n * (n - 1) / 2;
+        if inertia.len() != pairs {
+            return Err(Error::Shape {
+                arg: "inertia",
+                rows: inertia.len(),
+                cols: 1,
+                expected_rows: pairs,
+                expected_cols: 1,
+            });
+        }
+        check_inertia(inertia)?;
+        let mut inverse_inertia = Mat::zeros(n, n);
+        let planes = (0..n).flat_map(|i| (i + 1..n).map(move |j| (i, j)));
+        for ((i, j), inertia) in planes.zip(inertia) {
+            inverse_inertia[(i, j)] = 1.0 / inertia;
+            inverse_inertia[(j, i)] = 1.0 / inertia;
+        }
+        Ok(RigidBodyN { group, inverse_inertia })
+    }
+
+    /// The body in ℝ³ with principal moments of inertia J₁, J₂, J₃: J₁ belongs to the plane 23.
+    ///
+    /// # Errors
+    /// As [`from_pairs`](Self::from_pairs).
+    pub fn from_principal(inertia: [f64; 3]) -> Result<Self, Error> {
+        check_inertia(&inertia)?;
+        Self::from_pairs(3, &[inertia[2], inertia[1], inertia[0]])
+    }
+
+    /// Manakov's body: J_ij = λ_i + λ_j from the mass moments λ_1, …, λ_n.
+    ///
+    /// # Errors
+    /// As [`from_pairs`](Self::from_pairs): the sums must be positive, the λ_i need not.
+    pub fn manakov(lambda: &[f64]) -> Result<Self, Error> {
+        check_finite("lambda", lambda)?;
+        let n = lambda.len();
+        let sums: Vec<f64> =
+            (0..n).flat_map(|i| (i + 1..n).map(move |j| lambda[i] + lambda[j])).collect();
+        Self::from_pairs(n, &sums)
+    }
+
+    /// E = ½ Σ_{i<j} m_ij²/J_ij.
+    pub fn energy(&self, m: &Mat<f64>) -> f64 {
+        let mut twice = 0.0;
+        for j in 0..m.ncols() {
+            for i in 0..j {
+                twice += m[(i, j)] * m[(i, j)] * self.inverse_inertia[(i, j)];
+            }
+        }
+        0.5 * twice
+    }
+
+    /// out ← sign·Ω(m).
+    fn omega(&self, sign: f64, m: &Mat<f64>, out: &mut Mat<f64>) {
+        for j in 0..m.ncols() {
+            let (m, w) = (m.col_as_slice(j), self.inverse_inertia.col_as_slice(j));
+            for ((o, m), w) in out.col_as_slice_mut(j).iter_mut().zip(m).zip(w) {
+                *o = sign * m * w;
+            }
+        }
+    }
+}
+
+impl Problem for RigidBodyN {
+    type Group = MatrixGroup;
+    type Action = Coadjoint;
+    type Work = Mat<f64>;
+
+    fn group(&self) -> &MatrixGroup {
+        &self.group
+    }
+    fn action(&self) -> &Coadjoint {
+        &Coadjoint
+    }
+    fn work(&self) -> Mat<f64> {
+        Mat::zeros(self.group.n(), self.group.n())
+    }
+    fn f(&self, _: f64, m: &Mat<f64>, v: &mut AlgebraMatrix, _: &mut Mat<f64>) {
+        self.omega(-1.0, m, v);
+    }
+}
+
+impl Ambient for RigidBodyN {
+    /// One product: \[m, Ω\] = P − Pᵀ with P = mΩ.
+    fn field(&self, _: f64, m: &Mat<f64>, dm: &mut Mat<f64>, omega: &mut Mat<f64>) {
+        self.omega(1.0, m, omega);
+        mul(dm, m.as_ref(), omega.as_ref());
+        antisymmetrise(dm);
+    }
+    fn add(&self, a: f64, x: &Mat<f64>, y: &mut Mat<f64>) {
+        dense::axpy(a, x, y);
+    }
+    fn is_finite(&self, m: &Mat<f64>) -> bool {
+        dense::is_finite(m)
+    }
+}
+
+/// The free n-dimensional rigid body with its attitude: ġ = f(g)·g on SO(n),
+/// f(g) = g Ω(gᵀ m_s g) gᵀ with constant m_s; the body momentum is gᵀ m_s g.
+#[derive(Clone, Debug)]
+pub struct RigidBodyNAttitude {
+    body: RigidBodyN,
+    momentum_space: Mat<f64>,
+}
+
+impl RigidBodyNAttitude {
+    /// From the body, and the angular momentum in space as a skew-symmetric matrix.
+    ///
+    /// # Errors
+    /// As [`MatrixGroup::algebra`] for a momentum that is not skew-symmetric and finite.
+    pub fn new(body: RigidBodyN, momentum_space: Mat<f64>) -> Result<Self, Error> {
+        let momentum_space = body.group.algebra(momentum_space)?.into_mat();
+        Ok(RigidBodyNAttitude { body, momentum_space })
+    }
+
+    /// The body alone.
+    pub fn body(&self) -> &RigidBodyN {
+        &self.body
+    }
+
+    /// gᵀ m_s g, the angular momentum in the body. Allocates.
+    pub fn momentum_body(&self, g: &GroupMatrix) -> Mat<f64> {
+        g.transpose() * &self.momentum_space * g.as_ref()
+    }
+
+    /// w.2 ← ω_s = g Ω(gᵀ m_s g) gᵀ.
+    fn omega_space(&self, g: &GroupMatrix, w: &mut [Mat<f64>; 3]) {
+        let [a, b, out] = w;
+        mul(a, g.transpose(), self.momentum_space.as_ref());
+        mul(b, a.as_ref(), g.as_ref());
+        self.body.omega(1.0, b, a);
+        mul(b, g.as_ref(), a.as_ref());
+        mul(out, b.as_ref(), g.transpose());
+    }
+}
+
+impl Problem for RigidBodyNAttitude {
+    type Group = MatrixGroup;
+    type Action = LeftTranslation;
+    type Work = [Mat<f64>; 3];
+
+    fn group(&self) -> &MatrixGroup {
+        &self.body.group
+    }
+    fn action(&self) -> &LeftTranslation {
+        &LeftTranslation
+    }
+    fn work(&self) -> [Mat<f64>; 3] {
+        let n = self.body.group.n();
+        core::array::from_fn(|_| Mat::zeros(n, n))
+    }
+    fn f(&self, _: f64, g: &GroupMatrix, v: &mut AlgebraMatrix, work: &mut [Mat<f64>; 3]) {
+        self.omega_space(g, work);
+        v.copy_from(&work[2]);
+        // Two congruences leave rounding in the symmetric part; so(n) has none.
+        for j in 0..v.ncols() {
+            v[(j, j)] = 0.0;
+            for i in j + 1..v.nrows() {
+                let w = 0.5 * (v[(i, j)] - v[(j, i)]);
+                (v[(i, j)], v[(j, i)]) = (w, -w);
+            }
+        }
+    }
+}
+
+impl Ambient for RigidBodyNAttitude {
+    fn field(&self, _: f64, g: &GroupMatrix, dg: &mut GroupMatrix, work: &mut [Mat<f64>; 3]) {
+        self.omega_space(g, work);
+        mul(dg, work[2].as_ref(), g.as_ref());
+    }
+    fn add(&self, a: f64, x: &GroupMatrix, y: &mut GroupMatrix) {
+        dense::axpy(a, x, y);
+    }
+    fn is_finite(&self, g: &GroupMatrix) -> bool {
+        dense::is_finite(g)
+    }
+}

@@ -1,0 +1,30 @@
+//! The free rigid body (paper 2): Euler's equations on so(3)*, with attitude on SO(3), the same
+//! body as an n-dimensional one on so(n), and its exact solution.
+
+mod closed;
+mod exact;
+mod general;
+
+pub use closed::{RigidBody, RigidBodyAttitude};
+pub use exact::Exact;
+pub use general::{RigidBodyN, RigidBodyNAttitude};
+
+use crate::error::Error;
+
+/// Check principal moments of inertia: each finite and positive, with a finite reciprocal.
+pub(crate) fn check_inertia(inertia: &[f64]) -> Result<(), Error> {
+    for (i, &j) in inertia.iter().enumerate() {
+        if !(j.is_finite() && j > 0.0 && (1.0 / j).is_finite()) {
+            return Err(Error::out_of_range(format!("inertia[{i}]"), j, "a finite number > 0"));
+        }
+    }
+    Ok(())
+}
+
+/// Check that every component is finite.
+pub(crate) fn check_finite(arg: &str, x: &[f64]) -> Result<(), Error> {
+    match x.iter().position(|x| !x.is_finite()) {
+        Some(i) => Err(Error::out_of_range(format!("{arg}[{i}]"), x[i], "a finite number")),
+        None => Ok(()),
+    }
+}

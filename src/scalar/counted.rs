@@ -1,0 +1,128 @@
+//! A number that counts the operations done on it: Table 2 of the paper by running the formulas.
+
+use core::cell::Cell;
+use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
+
+use super::{Real, Select, Trig};
+
+/// How many operations were done. A change of sign, |x| and a comparison are free, as in the paper.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Ops {
+    /// Additions and subtractions.
+    pub add: u64,
+    /// Multiplications.
+    pub mul: u64,
+    /// Divisions.
+    pub div: u64,
+    /// Square roots.
+    pub sqrt: u64,
+    /// Sines and cosines, each counted.
+    pub trig: u64,
+}
+
+impl Ops {
+    /// All of them, each counted as one.
+    pub fn total(&self) -> u64 {
+        self.add + self.mul + self.div + self.sqrt + self.trig
+    }
+}
+
+thread_local! {
+    static OPS: Cell<Ops> =
+        const { Cell::new(Ops { add: 0, mul: 0, div: 0, sqrt: 0, trig: 0 }) };
+}
+
+/// An `f64` that counts, per thread.
+///
+/// ```
+/// use lieflow::scalar::{Counted, Real};
+/// let (x, ops) = Counted::count(|| Counted::lit(3.0) * Counted::lit(4.0) + Counted::lit(1.0));
+/// assert_eq!((x.0, ops.mul, ops.add), (13.0, 1, 1));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Counted(pub f64);
+
+impl Counted {
+    /// Run `f`, and say which operations it did.
+    pub fn count<R>(f: impl FnOnce() -> R) -> (R, Ops) {
+        let before = OPS.replace(Ops::default());
+        let out = f();
+        (out, OPS.replace(before))
+    }
+
+    fn bump(f: impl FnOnce(&mut Ops)) {
+        let mut ops = OPS.get();
+        f(&mut ops);
+        OPS.set(ops);
+    }
+}
+
+macro_rules! counted_operator {
+    ($($trait:ident $method:ident $op:tt $field:ident;)*) => {$(
+        impl $trait for Counted {
+            type Output = Self;
+            fn $method(self, other: Self) -> Self {
+                Self::bump(|ops| ops.$field += 1);
+                Counted(self.0 $op other.0)
+            }
+        }
+    )*};
+}
+counted_operator! {
+    Add add + add;
+    Sub sub - add;
+    Mul mul * mul;
+    Div div / div;
+}
+
+impl Neg for Counted {
+    type Output = Self;
+    fn neg(self) -> Self {
+        Counted(-self.0)
+    }
+}
+impl AddAssign for Counted {
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+impl SubAssign for Counted {
+    fn sub_assign(&mut self, other: Self) {
+        *self = *self - other;
+    }
+}
+
+impl Real for Counted {
+    fn lit(x: f64) -> Self {
+        Counted(x)
+    }
+    fn sqrt(self) -> Self {
+        Self::bump(|ops| ops.sqrt += 1);
+        Counted(self.0.sqrt())
+    }
+    fn abs(self) -> Self {
+        Counted(self.0.abs())
+    }
+    fn all_below(self, bound: f64) -> bool {
+        self.0 < bound
+    }
+    fn any_below(self, bound: f64) -> bool {
+        self.0 < bound
+    }
+    fn branch<R: Select<Self>>(
+        self,
+        bound: f64,
+        small: impl FnOnce() -> R,
+        large: impl FnOnce() -> R,
+    ) -> R {
+        if self.all_below(bound) { small() } else { large() }
+    }
+}
+
+impl Trig for Counted {
+    fn sin_cos(self) -> (Self, Self) {
+        Self::bump(|ops| ops.trig += 2);
+        let (s, c) = self.0.sin_cos();
+        (Counted(s), Counted(c))
+    }
+}

@@ -1,0 +1,121 @@
+//! The numbers that the closed forms run on.
+//!
+//! A formula is written once, generic in [`Real`], and runs in `f64`, in `f32` and on
+//! [`Counted`], which counts the operations it is put through.
+
+mod counted;
+
+use core::fmt::Debug;
+use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
+
+pub use counted::{Counted, Ops};
+
+/// A real number, or several side by side (SIMD lanes), or one that counts its own operations.
+///
+/// Small on purpose: an op-counting scalar implements it in one screen.
+pub trait Real:
+    Copy
+    + Debug
+    + PartialEq
+    + 'static
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + AddAssign
+    + SubAssign
+{
+    /// A constant of the formula (Butcher coefficients, Bernoulli numbers, ½).
+    fn lit(x: f64) -> Self;
+    /// √x.
+    fn sqrt(self) -> Self;
+    /// |x|.
+    fn abs(self) -> Self;
+    /// Is x < `bound` in every lane? False where x is not a number.
+    fn all_below(self, bound: f64) -> bool;
+    /// Is x < `bound` in some lane?
+    fn any_below(self, bound: f64) -> bool;
+    /// `if self < bound { small() } else { large() }`, lane by lane.
+    ///
+    /// A scalar runs one branch; lanes run both and blend. The branch belongs to the number,
+    /// so that one formula serves both.
+    fn branch<R: Select<Self>>(
+        self,
+        bound: f64,
+        small: impl FnOnce() -> R,
+        large: impl FnOnce() -> R,
+    ) -> R;
+
+    /// Is x finite (in every lane)?
+    #[inline]
+    fn is_finite(self) -> bool {
+        self.abs().all_below(f64::INFINITY)
+    }
+}
+
+/// A real that knows sine and cosine. exp and ccsk ask for it; cay does not.
+pub trait Trig: Real {
+    /// (sin x, cos x).
+    fn sin_cos(self) -> (Self, Self);
+}
+
+/// What [`Real::branch`] can blend: numbers and tuples of numbers.
+pub trait Select<S>: Sized {
+    /// Blend lane by lane with `pick`.
+    fn select(pick: &mut impl FnMut(S, S) -> S, a: Self, b: Self) -> Self;
+}
+
+impl<S: Real> Select<S> for S {
+    fn select(pick: &mut impl FnMut(S, S) -> S, a: Self, b: Self) -> Self {
+        pick(a, b)
+    }
+}
+impl<S: Real> Select<S> for (S, S) {
+    fn select(pick: &mut impl FnMut(S, S) -> S, a: Self, b: Self) -> Self {
+        (pick(a.0, b.0), pick(a.1, b.1))
+    }
+}
+
+macro_rules! real_for_float {
+    ($($t:ty),*) => {$(
+        impl Real for $t {
+            #[inline]
+            fn lit(x: f64) -> Self {
+                x as $t
+            }
+            #[inline]
+            fn sqrt(self) -> Self {
+                <$t>::sqrt(self)
+            }
+            #[inline]
+            fn abs(self) -> Self {
+                <$t>::abs(self)
+            }
+            #[inline]
+            fn all_below(self, bound: f64) -> bool {
+                f64::from(self) < bound
+            }
+            #[inline]
+            fn any_below(self, bound: f64) -> bool {
+                f64::from(self) < bound
+            }
+            #[inline]
+            fn branch<R: Select<Self>>(
+                self,
+                bound: f64,
+                small: impl FnOnce() -> R,
+                large: impl FnOnce() -> R,
+            ) -> R {
+                if self.all_below(bound) { small() } else { large() }
+            }
+        }
+        impl Trig for $t {
+            #[inline]
+            fn sin_cos(self) -> (Self, Self) {
+                <$t>::sin_cos(self)
+            }
+        }
+    )*};
+}
+real_for_float!(f32, f64);
