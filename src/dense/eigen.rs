@@ -61,7 +61,18 @@ impl SkewEigen {
             Default::default(),
         )
         .map_err(|_| StepError::NotConverged { what: "the eigendecomposition of u" })?;
+        // The columns arrive orthogonal to ε but normalised to some 10ε only, and the eigenvalues
+        // no better: normalise, and take Rayleigh quotients.
+        for j in 0..n {
+            let inverse = 1.0 / q.col(j).norm_l2();
+            q.col_mut(j).iter_mut().for_each(|x| *x *= inverse);
+        }
         let one = c64::new(1.0, 0.0);
+        matmul(x.as_mut(), Accum::Replace, h.as_ref(), q.as_ref(), one, Par::Seq);
+        for j in 0..n {
+            let terms = q.col(j).iter().zip(x.col(j).iter());
+            lambda[j].re = terms.map(|(q, x)| q.re * x.re + q.im * x.im).sum();
+        }
         for j in 0..n {
             for i in 0..n {
                 h[(i, j)] = c64::new(v[(i, j)], 0.0);

@@ -44,7 +44,7 @@ impl<P: Ambient, const S: usize> Method<P> for Rk<S> {
     ) -> Result<(), StepError> {
         let (tab, lit) = (&self.0, ScalarOf::<P>::lit);
         let sum = |z: &mut PointOf<P>, weights: &[f64], k: &[PointOf<P>]| {
-            z.clone_from(y);
+            problem.copy(y, z);
             for (&w, k) in weights.iter().zip(k) {
                 if w != 0.0 {
                     problem.add(h * lit(w), k, z);

@@ -69,6 +69,8 @@ pub trait Ambient: Problem {
         dy: &mut PointOf<Self>,
         work: &mut Self::Work,
     );
+    /// y ← x, into the storage that y has.
+    fn copy(&self, x: &PointOf<Self>, y: &mut PointOf<Self>);
     /// y ← y + a·x.
     fn add(&self, a: ScalarOf<Self>, x: &PointOf<Self>, y: &mut PointOf<Self>);
     /// Is every number in y finite?

@@ -86,6 +86,10 @@ impl<S: Real> Ambient for RigidBody<S> {
         *dm = cross(m, &self.omega(m));
     }
     #[inline]
+    fn copy(&self, x: &Vector3<S>, y: &mut Vector3<S>) {
+        *y = *x;
+    }
+    #[inline]
     fn add(&self, a: S, x: &Vector3<S>, y: &mut Vector3<S>) {
         self.group.axpy(a, x, y);
     }
@@ -162,6 +166,10 @@ impl<S: Real> Ambient for RigidBodyAttitude<S> {
             let col = Vector3::new(g[(0, j)], g[(1, j)], g[(2, j)]);
             dg.set_column(j, &apply3(&w, &col));
         }
+    }
+    #[inline]
+    fn copy(&self, x: &Matrix3<S>, y: &mut Matrix3<S>) {
+        *y = *x;
     }
     #[inline]
     fn add(&self, a: S, x: &Matrix3<S>, y: &mut Matrix3<S>) {

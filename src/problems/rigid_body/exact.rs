@@ -82,6 +82,10 @@ struct Elliptic {
     s0: Matrix3<f64>,
 }
 
+/// Below this 1 − k² the orbit is taken as the separatrix: it would come back to the middle axis
+/// after more than 300 of its time constants 1/λ only.
+const SEPARATRIX: f64 = 1e-280;
+
 /// The power of two at or below x.
 fn power_of_two(x: f64) -> f64 {
     let e = x.log2().floor().clamp(-1000.0, 1000.0) as i32;
@@ -191,28 +195,37 @@ impl Elliptic {
         let j_scale = power_of_two(inertia.into_iter().fold(0.0, f64::max));
         let m = m0 / m_scale;
         let j = inertia.map(|x| x / j_scale);
-        let d = |i: usize| -> f64 { (0..3).map(|k| m[k] * m[k] * ((j[k] - j[i]) / j[k])).sum() };
 
         let mut sorted = [0, 1, 2];
         sorted.sort_by(|&a, &b| j[a].total_cmp(&j[b]));
         let [a, b, c] = sorted;
-        let about_c = j[a] == j[b] || (d(b) > 0.0 && j[b] != j[c]);
+        // d_b = s²·(…)/s² with s the size of the two components, whose squares may underflow.
+        let size = m[a].abs().max(m[c].abs());
+        let s = if size > 0.0 { 1.0 / power_of_two(size) } else { 1.0 };
+        let part = |k: usize| (m[k] * s) * (m[k] * s) * ((j[k] - j[b]) / j[k]);
+        let d = part(a) + part(c);
+        let about_c = j[a] == j[b] || (d > 0.0 && j[b] != j[c]);
         let axes @ [x, y, z] = if about_c { [a, b, c] } else { [c, b, a] };
-        let (dx, dy, dz) = (d(x), d(y), d(z));
-        let lambda = ((j[z] - j[y]) * dx / (j[x] * j[y] * j[z])).sqrt();
-        let a2 = j[x] * dz / (j[x] - j[z]);
-        let b2 = j[y] * dz / (j[y] - j[z]);
-        let c2 = j[z] * dx / (j[z] - j[x]);
-        let moving = lambda > 0.0 && a2 > 0.0 && b2 > 0.0 && c2 > 0.0;
-        if !moving {
+
+        // Sums of squares of one sign each: nothing cancels, nothing underflows.
+        let ratio = j[y] * (j[x] - j[z]) / (j[x] * (j[y] - j[z]));
+        let amplitude_x = m[x].hypot(m[y] / ratio.sqrt());
+        let amplitude_y = (m[x] * ratio.sqrt()).hypot(m[y]);
+        let tilt = j[z] * (j[y] - j[x]) / (j[y] * (j[z] - j[x]));
+        let amplitude_z = m[z].hypot(m[y] * tilt.sqrt());
+        let lambda = amplitude_z / j[z] * (((j[z] - j[y]) / j[x]) * ((j[z] - j[x]) / j[y])).sqrt();
+        if !(lambda > 0.0 && amplitude_x > 0.0) {
             return Ok(None);
         }
-        let kc2 = ((j[z] - j[x]) * dy / ((j[z] - j[y]) * dx)).clamp(0.0, 1.0);
+        // 1 − k² = d_y J_z/(C²(J_z − J_y)).
+        let kc = (d.abs() * (j[z] / (j[z] - j[y]).abs())).sqrt() / s / amplitude_z;
+        let kc2 = (kc * kc).min(1.0);
+        let kc2 = if kc2 < SEPARATRIX { 0.0 } else { kc2 };
         let sign_z = 1.0f64.copysign(m[z]);
         // ṁ_y = m_p m_q (1/J_q − 1/J_p) for y, p, q cyclic.
         let (p, q) = ((y + 1) % 3, (y + 2) % 3);
         let sign_y = sign_z * (j[p] - j[q]).signum();
-        let amplitude = [a2.sqrt(), sign_y * b2.sqrt(), sign_z * c2.sqrt()];
+        let mut amplitude = [amplitude_x, sign_y * amplitude_y, sign_z * amplitude_z];
 
         let (cn, sn) = (m[x] / amplitude[0], m[y] / amplitude[1]);
         let r = cn.hypot(sn);
@@ -221,12 +234,15 @@ impl Elliptic {
             return Ok(None); // on the middle axis exactly
         }
         let quarter = if kc2 > 0.0 { carlson(elliprf(0.0, kc2, 1.0))? } else { f64::INFINITY };
-        let f = if cn == 0.0 {
-            quarter.copysign(sn)
+        let tau0 = if kc2 == 0.0 {
+            // cn = sech τ > 0 on the separatrix; cn < 0 is the orbit turned by π about z.
+            amplitude[0] *= cn.signum();
+            amplitude[1] *= cn.signum();
+            (sn / cn).asinh()
         } else {
-            sn * carlson(elliprf(cn * cn, cn * cn + kc2 * sn * sn, 1.0))?
+            let f = sn * carlson(elliprf(cn * cn, cn * cn + kc2 * sn * sn, 1.0))?;
+            if cn >= 0.0 { f } else { 2.0 * quarter.copysign(sn) - f }
         };
-        let tau0 = if cn >= 0.0 { f } else { 2.0 * quarter.copysign(sn) - f };
 
         let length = m.norm();
         let weigh_x = j[x] <= j[y];
@@ -240,7 +256,7 @@ impl Elliptic {
             tau0,
             kc2,
             quarter,
-            ratio: j[y] * (j[x] - j[z]) / (j[x] * (j[y] - j[z])),
+            ratio,
             base: length / high,
             swing: length * ((high - low) / (high * low)) / lambda,
             weigh_x,
@@ -250,12 +266,6 @@ impl Elliptic {
         };
         if quarter.is_finite() {
             motion.d_quarter = motion.third_kind(quarter, 1.0, 0.0, kc2.sqrt())?;
-        }
-        if kc2 == 0.0 {
-            // On the separatrix cn = sech τ > 0; cn < 0 is the orbit turned by π about z.
-            motion.tau0 = (sn / cn).asinh();
-            motion.amplitude[0] *= cn.signum();
-            motion.amplitude[1] *= cn.signum();
         }
         motion.d0 = motion.swept(&motion.phase(0.0))?;
         Ok(Some(motion))

@@ -118,6 +118,9 @@ impl Ambient for RigidBodyN {
         mul(dm, m.as_ref(), omega.as_ref());
         antisymmetrise(dm);
     }
+    fn copy(&self, x: &Mat<f64>, y: &mut Mat<f64>) {
+        y.copy_from(x);
+    }
     fn add(&self, a: f64, x: &Mat<f64>, y: &mut Mat<f64>) {
         dense::axpy(a, x, y);
     }
@@ -198,6 +201,9 @@ impl Ambient for RigidBodyNAttitude {
     fn field(&self, _: f64, g: &GroupMatrix, dg: &mut GroupMatrix, work: &mut [Mat<f64>; 3]) {
         self.omega_space(g, work);
         mul(dg, work[2].as_ref(), g.as_ref());
+    }
+    fn copy(&self, x: &GroupMatrix, y: &mut GroupMatrix) {
+        y.copy_from(&**x);
     }
     fn add(&self, a: f64, x: &GroupMatrix, y: &mut GroupMatrix) {
         dense::axpy(a, x, y);

@@ -1,0 +1,67 @@
+//! The exact solution of the rigid body against references of 36 digits.
+
+use lieflow::problems::Exact;
+use nalgebra::{Matrix3, Vector3};
+use serde::Deserialize;
+
+#[derive(Deserialize)]
+struct Cases {
+    cases: Vec<Case>,
+}
+
+/// Decimal strings: inputs are doubles exactly, results have 36 digits.
+#[derive(Deserialize)]
+struct Case {
+    id: String,
+    inertia: [String; 3],
+    momentum: [String; 3],
+    attitude0: Option<[String; 9]>,
+    t: String,
+    m: [String; 3],
+    g: [String; 9],
+    sens_m: String,
+    sens_g: String,
+}
+
+fn number(text: &String) -> f64 {
+    text.parse().expect("a decimal number")
+}
+
+/// Within 3 times what one ulp of the input changes, plus 3e-14 (of |m|, and of g).
+#[test]
+fn momentum_and_attitude_at_every_reference() {
+    let text = include_str!("references/rigid_body.json");
+    let cases = serde_json::from_str::<Cases>(text).expect("references").cases;
+    assert!(cases.len() >= 100);
+    let mut failures = Vec::new();
+    for case in &cases {
+        let g0 = match &case.attitude0 {
+            Some(g) => Matrix3::from_row_iterator(g.iter().map(number)),
+            None => Matrix3::identity(),
+        };
+        let body = Exact::new(
+            case.inertia.each_ref().map(number),
+            case.momentum.each_ref().map(number),
+            g0,
+        )
+        .expect("a valid body");
+        let (m, g) = body.state(number(&case.t)).expect("a state");
+        let m_ref = Vector3::from_iterator(case.m.iter().map(number));
+        let g_ref = Matrix3::from_row_iterator(case.g.iter().map(number));
+        let scale = m_ref.amax().max(f64::MIN_POSITIVE);
+        let error_m = ((m - m_ref) / scale).norm();
+        let error_g = (g - g_ref).norm();
+        let bound_m = 3.0 * number(&case.sens_m) / scale + 3e-14;
+        let bound_g = 3.0 * number(&case.sens_g) + 3e-14;
+        eprintln!(
+            "{:40} m {error_m:.1e} ({:.2})  g {error_g:.1e} ({:.2})",
+            case.id,
+            error_m / bound_m,
+            error_g / bound_g
+        );
+        if !(error_m <= bound_m && error_g <= bound_g) {
+            failures.push(&case.id);
+        }
+    }
+    assert!(failures.is_empty(), "{failures:?}");
+}

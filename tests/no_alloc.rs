@@ -1,0 +1,199 @@
+//! A step allocates nothing, on either layer, with any map and action, at any n.
+#![allow(unsafe_code)] // the counting allocator
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+
+use lieflow::actions::{Coadjoint, LeftTranslation, Linear};
+use lieflow::catalog::{METHODS, MethodSpec, OnMethod, TABLEAUS, with_method};
+use lieflow::groups::{AlgebraMatrix, LieGroup, MatrixGroup, Sample};
+use lieflow::maps::{Cay, Exp};
+use lieflow::methods::{Rkmk, tableau::RK4};
+use lieflow::problems::{PointOf, RigidBody, RigidBodyAttitude, RigidBodyN, RigidBodyNAttitude};
+use lieflow::{Action, LieAlgebra, Method, Problem, Step};
+use nalgebra::{Matrix3, Vector3};
+use rand::SeedableRng;
+use rand_pcg::Pcg64;
+
+struct Counting;
+
+thread_local!(static ALLOCATIONS: Cell<usize> = const { Cell::new(0) });
+
+fn count() {
+    ALLOCATIONS.with(|n| n.set(n.get() + 1));
+}
+
+// SAFETY: every call is handed to the system allocator unchanged.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        count();
+        unsafe { System.alloc(layout) }
+    }
+    unsafe fn dealloc(&self, p: *mut u8, layout: Layout) {
+        unsafe { System.dealloc(p, layout) }
+    }
+    unsafe fn realloc(&self, p: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        count();
+        unsafe { System.realloc(p, layout, size) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// The allocations of ten steps after the workspace is made, and of making it. One step goes before:
+/// the product library makes its packing buffer once a thread, at the first large product.
+fn allocations<P: Problem, M: Method<P>>(problem: &P, method: &M, y: &PointOf<P>) -> (usize, usize)
+where
+    P::Group: LieAlgebra<Scalar = f64>,
+{
+    let mut y = y.clone();
+    let before = ALLOCATIONS.get();
+    let mut work = method.work(problem, &y).expect("the method fits");
+    let setup = ALLOCATIONS.get() - before;
+    let step = Step { n: 0, t: 0.0, h: 0.05 };
+    method.step(problem, step, &mut y, &mut work).expect("a step");
+    let before = ALLOCATIONS.get();
+    for n in 0..10 {
+        let step = Step { n, t: 0.0, h: 0.05 };
+        method.step(problem, step, &mut y, &mut work).expect("a step");
+    }
+    (setup, ALLOCATIONS.get() - before)
+}
+
+struct Count<'a, P: Problem>(&'a P, &'a PointOf<P>);
+
+impl<P: Problem> OnMethod<P> for Count<'_, P>
+where
+    P::Group: LieAlgebra<Scalar = f64>,
+{
+    type Out = usize;
+    fn call<M: Method<P>>(self, method: M) -> usize {
+        allocations(self.0, &method, self.1).1
+    }
+}
+
+/// Every method of the catalog, with every map and tableau it takes.
+fn specs() -> Vec<MethodSpec> {
+    let mut specs = Vec::new();
+    for info in METHODS {
+        let maps = ["exp", "cay", "ccsk123", "ccsk321", "ccsk"];
+        let maps = if info.takes_map { &maps[..] } else { &[""] };
+        let tableaus = if info.takes_tableau { TABLEAUS } else { &[""] };
+        let some = |x: &str| (!x.is_empty()).then(|| x.to_string());
+        for map in maps {
+            for tableau in tableaus {
+                let name = info.name.into();
+                specs.push(MethodSpec { name, map: some(map), tableau: some(tableau), q: None });
+            }
+        }
+    }
+    specs
+}
+
+macro_rules! assert_none_allocate {
+    ($problem:expr, $y:expr) => {
+        for spec in specs() {
+            let count = with_method(&spec, Count(&$problem, &$y)).expect("a method");
+            assert_eq!(count, 0, "{} on {}", spec.label(), $problem.group().name());
+        }
+    };
+}
+
+#[test]
+fn the_rigid_body_on_both_layers() {
+    let inertia = [1.0, 2.0, 3.0];
+    let m = Vector3::new(0.2, 0.5, 3.0);
+    assert_none_allocate!(RigidBody::<f64>::new(inertia).expect("a body"), m);
+    let attitude = RigidBodyAttitude::<f64>::new(inertia, m.into()).expect("a body");
+    assert_none_allocate!(attitude, Matrix3::identity());
+    for n in [2usize, 3, 4, 5, 8, 9, 16, 17, 33] {
+        let mut rng = Pcg64::seed_from_u64(n as u64);
+        let lambda: Vec<f64> = (0..n).map(|i| 1.0 + i as f64).collect();
+        let body = RigidBodyN::manakov(&lambda).expect("a body");
+        let m = body.group().sample_algebra(&mut rng, 1.0).into_mat();
+        let attitude = RigidBodyNAttitude::new(body.clone(), m.clone()).expect("a body");
+        let g = attitude.group().identity();
+        assert_none_allocate!(body, m);
+        assert_none_allocate!(attitude, g);
+    }
+}
+
+/// ẏ = u·y with a constant u that is large enough for every branch of exp and dexp⁻¹.
+struct Constant<A> {
+    group: MatrixGroup,
+    action: A,
+    u: AlgebraMatrix,
+}
+
+impl<A: Action<MatrixGroup>> Problem for Constant<A> {
+    type Group = MatrixGroup;
+    type Action = A;
+    type Work = ();
+    fn group(&self) -> &MatrixGroup {
+        &self.group
+    }
+    fn action(&self) -> &A {
+        &self.action
+    }
+    fn work(&self) {}
+    fn f(&self, _: f64, _: &A::Point, v: &mut AlgebraMatrix, _: &mut ()) {
+        v.copy_from(&*self.u);
+    }
+}
+
+#[test]
+fn every_group_and_action() {
+    for n in [2usize, 3, 4, 6, 8, 10, 20, 50, 100, 150] {
+        for group in [MatrixGroup::so(n), MatrixGroup::gl(n), MatrixGroup::indefinite(n - 1, 1)]
+            .into_iter()
+            .chain((n % 2 == 0).then(|| MatrixGroup::sp(n)))
+        {
+            let group = group.expect("a group");
+            let mut rng = Pcg64::seed_from_u64(n as u64);
+            for size in [0.1, 30.0] {
+                let compact = group.name().starts_with("SO(") && !group.name().contains(',');
+                let size = if compact { size } else { 0.1 };
+                let direction = group.sample_algebra(&mut rng, 1.0);
+                let mut u = group.zero();
+                group.axpy(size / group.norm(&direction), &direction, &mut u);
+                let x = group.sample_vector(&mut rng);
+                let g = group.identity();
+                let m = group.sample_algebra(&mut rng, 1.0).into_mat();
+                macro_rules! check {
+                    ($action:expr, $y:expr) => {{
+                        let problem =
+                            Constant { group: group.clone(), action: $action, u: u.clone() };
+                        for (name, count) in [
+                            ("exp", allocations(&problem, &Rkmk::new(RK4, Exp), &$y)),
+                            ("cay", allocations(&problem, &Rkmk::new(RK4, Cay), &$y)),
+                        ] {
+                            let case = format!("{name} on {} at {size}", group.name());
+                            assert_eq!(count.1, 0, "{case}");
+                            assert!(count.0 > 0, "{case}: the counter does not count");
+                        }
+                    }};
+                }
+                check!(LeftTranslation, g);
+                check!(Linear, x);
+                check!(Coadjoint, m);
+            }
+        }
+    }
+}
+
+/// The driver allocates before the first step only.
+#[test]
+fn a_long_run_allocates_as_often_as_a_short_one() {
+    use lieflow::{SaveAt, TimeGrid, integrate};
+    let body = RigidBody::<f64>::new([1.0, 2.0, 3.0]).expect("a body");
+    let run = |steps| {
+        let grid = TimeGrid::with_steps([0.0, 1.0], steps).expect("a grid");
+        let mut m = Vector3::new(0.2, 0.5, 3.0);
+        let before = ALLOCATIONS.get();
+        let method = Rkmk::new(RK4, Exp);
+        integrate(&body, &method, &grid, &SaveAt::Every(7), &mut m, |_, _| {}).expect("a run");
+        ALLOCATIONS.get() - before
+    };
+    assert_eq!(run(10), run(10_000));
+}
