@@ -50,32 +50,48 @@ pub enum Dexpinv {
 
 // ---- so(3), closed form ---------------------------------------------------------------------
 
-/// What exp keeps at u ∈ so(3).
+/// What exp keeps at u ∈ so(3): α² = ‖û‖² and, from [`SERIES`] on, α, sin(α/2), cos(α/2).
 #[derive(Clone, Copy, Debug)]
 pub struct At3<S> {
-    /// α² = ‖û‖².
     alpha2: S,
-    /// α.
     alpha: S,
-    /// sin(α/2), cos(α/2).
-    half: (S, S),
+    sin_half: S,
+    cos_half: S,
 }
 
-/// Below this α² the coefficients of exp are series.
-const EXP_SERIES: f64 = 1e-2;
-/// Below this α² the coefficient of dexp⁻¹ is a series.
-const DEXPINV_SERIES: f64 = 0.25;
+/// Below this α² all coefficients are series: no root, no division, no trigonometric function.
+const SERIES: f64 = 0.25;
 /// Above this coefficient dexp⁻¹ is singular: the condition number there exceeds 1e12.
 const COEFFICIENT_MAX: f64 = 1e12;
 /// Above this α² the squares of the closed forms overflow.
 pub(super) const SQUARE_MAX: f64 = 1e300;
 
+/// sin α/α by α².
+#[rustfmt::skip]
+const SINC: [f64; 8] = [
+    1.0, -1.0 / 6.0, 1.0 / 120.0, -1.0 / 5040.0, 1.0 / 362880.0, -1.0 / 39916800.0,
+    1.0 / 6227020800.0, -1.0 / 1307674368000.0,
+];
+/// (1 − cos α)/α² by α².
+#[rustfmt::skip]
+const COSC: [f64; 8] = [
+    0.5, -1.0 / 24.0, 1.0 / 720.0, -1.0 / 40320.0, 1.0 / 3628800.0, -1.0 / 479001600.0,
+    1.0 / 87178291200.0, -1.0 / 20922789888000.0,
+];
+/// (1 − (α/2)cot(α/2))/α² by α²: |B_2k|/(2k)!.
+#[rustfmt::skip]
+const COTC: [f64; 8] = [
+    1.0 / 12.0, 1.0 / 720.0, 1.0 / 30240.0, 1.0 / 1209600.0, 1.0 / 47900160.0,
+    691.0 / 1307674368000.0, 1.0 / 74724249600.0, 3617.0 / 10670622842880000.0,
+];
+
 impl<S: Trig> At3<S> {
     fn new() -> Self {
-        At3 { alpha2: S::lit(0.0), alpha: S::lit(0.0), half: (S::lit(0.0), S::lit(1.0)) }
+        let (o, i) = (S::lit(0.0), S::lit(1.0));
+        At3 { alpha2: o, alpha: o, sin_half: o, cos_half: i }
     }
 
-    /// Remember α and its half-angle functions; return a = sin α/α and b = (1 − cos α)/α².
+    /// Remember α; return a = sin α/α and b = (1 − cos α)/α².
     #[inline(always)]
     fn fill(&mut self, u: &Vector3<S>) -> Result<(S, S), StepError> {
         let l = S::lit;
@@ -83,59 +99,40 @@ impl<S: Trig> At3<S> {
         if !alpha2.all_below(SQUARE_MAX) {
             return Err(StepError::NormTooLarge { map: "exp" });
         }
-        let alpha = alpha2.sqrt();
-        let half = (l(0.5) * alpha).sin_cos();
-        *self = At3 { alpha2, alpha, half };
-        Ok(alpha2.branch(
-            EXP_SERIES,
+        let [a, b, alpha, sin_half, cos_half] = alpha2.branch(
+            SERIES,
+            || [estrin(alpha2, &SINC), estrin(alpha2, &COSC), l(0.0), l(0.0), l(1.0)],
             || {
-                let x = alpha2;
-                let a = horner(x, &[1.0, -1.0 / 6.0, 1.0 / 120.0, -1.0 / 5040.0, 1.0 / 362880.0]);
-                let b =
-                    horner(x, &[0.5, -1.0 / 24.0, 1.0 / 720.0, -1.0 / 40320.0, 1.0 / 3628800.0]);
-                (a, b)
+                let alpha = alpha2.sqrt();
+                let (s, c) = (l(0.5) * alpha).sin_cos();
+                let k = l(2.0) * s / alpha; // sin(α/2)/(α/2)
+                [k * c, l(0.5) * k * k, alpha, s, c]
             },
-            || {
-                let k = l(2.0) * half.0 / alpha; // sin(α/2)/(α/2)
-                (k * half.1, l(0.5) * k * k)
-            },
-        ))
+        );
+        *self = At3 { alpha2, alpha, sin_half, cos_half };
+        Ok((a, b))
     }
 
-    /// (1 − (α/2)cot(α/2))/α²; the series' coefficients are |B_2k|/(2k)!.
+    /// (1 − (α/2)cot(α/2))/α².
     #[inline(always)]
     fn dexpinv_coefficient(&self) -> S {
         let l = S::lit;
-        self.alpha2.branch(
-            DEXPINV_SERIES,
-            || {
-                horner(
-                    self.alpha2,
-                    &[
-                        1.0 / 12.0,
-                        1.0 / 720.0,
-                        1.0 / 30240.0,
-                        1.0 / 1209600.0,
-                        1.0 / 47900160.0,
-                        691.0 / 1307674368000.0,
-                        1.0 / 74724249600.0,
-                        3617.0 / 10670622842880000.0,
-                    ],
-                )
-            },
-            || (l(1.0) - l(0.5) * self.alpha * self.half.1 / self.half.0) / self.alpha2,
-        )
+        let [c] = self.alpha2.branch(
+            SERIES,
+            || [estrin(self.alpha2, &COTC)],
+            || [(l(1.0) - l(0.5) * self.alpha * self.cos_half / self.sin_half) / self.alpha2],
+        );
+        c
     }
 }
 
-/// Σ c_k x^k.
+/// Σ c_k x^k in Estrin's order: a step waits for the longest chain of operations, and Horner's is
+/// three times as long.
 #[inline(always)]
-fn horner<S: Real, const N: usize>(x: S, c: &[f64; N]) -> S {
-    let mut p = S::lit(c[N - 1]);
-    for k in (0..N - 1).rev() {
-        p = p * x + S::lit(c[k]);
-    }
-    p
+fn estrin<S: Real>(x: S, c: &[f64; 8]) -> S {
+    let pair = |k: usize| S::lit(c[k]) + S::lit(c[k + 1]) * x;
+    let x2 = x * x;
+    (pair(0) + pair(2) * x2) + (pair(4) + pair(6) * x2) * (x2 * x2)
 }
 
 impl<S: Trig> CoordinateMap<So3<S>> for Exp {

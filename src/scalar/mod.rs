@@ -60,20 +60,15 @@ pub trait Trig: Real {
     fn sin_cos(self) -> (Self, Self);
 }
 
-/// What [`Real::branch`] can blend: numbers and tuples of numbers.
+/// What [`Real::branch`] can blend: several numbers.
 pub trait Select<S>: Sized {
     /// Blend lane by lane with `pick`.
     fn select(pick: &mut impl FnMut(S, S) -> S, a: Self, b: Self) -> Self;
 }
 
-impl<S: Real> Select<S> for S {
+impl<S: Real, const N: usize> Select<S> for [S; N] {
     fn select(pick: &mut impl FnMut(S, S) -> S, a: Self, b: Self) -> Self {
-        pick(a, b)
-    }
-}
-impl<S: Real> Select<S> for (S, S) {
-    fn select(pick: &mut impl FnMut(S, S) -> S, a: Self, b: Self) -> Self {
-        (pick(a.0, b.0), pick(a.1, b.1))
+        core::array::from_fn(|i| pick(a[i], b[i]))
     }
 }
 
