@@ -53,6 +53,7 @@
 pub mod actions;
 pub mod catalog;
 pub mod chart;
+pub mod check;
 pub mod dense;
 pub mod error;
 pub mod groups;

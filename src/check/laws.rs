@@ -1,0 +1,83 @@
+//! The laws of a group with a coordinate map, at random elements.
+
+use rand::Rng;
+
+use super::Finding;
+use crate::error::Error;
+use crate::groups::Sample;
+use crate::maps::CoordinateMap;
+
+/// What the laws allow, in units of ε·size. The size of each is stated where it is measured.
+pub const LAW_BOUND: f64 = 4.0;
+
+/// δ of the law of dΨ⁻¹: δ² stands well above rounding, and δ well above δ².
+const DELTA: f64 = 1e-5;
+
+/// The laws of `group` with `psi`, at `cases` random elements of the algebra of standard deviation
+/// `sigma`:
+///
+/// - bracket: \[u, v\] = −\[v, u\] and Jacobi's identity;
+/// - Ψ(0) = 𝟙, Ψ(u) ∈ G;
+/// - dΨ⁻¹: Ψ(u + δ dΨ_u⁻¹v) = Ψ(δv)Ψ(u) to first order in δ, the definition of dΨ (8).
+///
+/// # Errors
+/// [`Error::Unsupported`] when the map has no formula on the group; a map's refusal of a random u.
+pub fn laws<G, Psi, R>(
+    group: &G,
+    psi: &Psi,
+    rng: &mut R,
+    cases: usize,
+    sigma: f64,
+) -> Result<Vec<Finding>, Error>
+where
+    G: Sample<Scalar = f64>,
+    Psi: CoordinateMap<G>,
+    R: Rng + ?Sized,
+{
+    let named = |law: &str| format!("{law} on {} by {}", group.name(), psi.name());
+    let mut bracket = Finding::new(format!("bracket on {}", group.name()), LAW_BOUND);
+    let mut identity = Finding::new(named("Ψ(0) = 𝟙"), LAW_BOUND);
+    let mut closure = Finding::new(named("Ψ(u) ∈ G"), LAW_BOUND);
+    let mut inverse = Finding::new(named("dΨ⁻¹"), LAW_BOUND);
+
+    let n = (group.dim() as f64).sqrt().max(1.0);
+    let sum = |a: f64, x: &G::Alg, b: f64, y: &G::Alg| {
+        let mut s = group.zero();
+        group.axpy(a, x, &mut s);
+        group.axpy(b, y, &mut s);
+        s
+    };
+    let commutator = |x: &G::Alg, y: &G::Alg| {
+        let mut out = group.zero();
+        group.bracket(x, y, &mut out);
+        out
+    };
+    let size_of = |g: &G::Elem| 1.0 + group.distance(g, &group.identity());
+
+    let at_zero = psi.eval(group, &group.zero())?;
+    identity.see(group.distance(&at_zero, &group.identity()), n, 1.0, String::new);
+    for case in 0..cases {
+        let place = || format!("case {case}");
+        let [u, v, w] = [(); 3].map(|()| group.sample_algebra(rng, sigma));
+        let norms = group.norm(&u) * group.norm(&v);
+        let (uv, vu) = (commutator(&u, &v), commutator(&v, &u));
+        bracket.see(group.norm(&sum(1.0, &uv, 1.0, &vu)), n * norms, 1.0, place);
+        let cyclic = sum(1.0, &commutator(&uv, &w), 1.0, &commutator(&commutator(&v, &w), &u));
+        let jacobi = sum(1.0, &cyclic, 1.0, &commutator(&commutator(&w, &u), &v));
+        bracket.see(group.norm(&jacobi), n * norms * group.norm(&w), 1.0, place);
+
+        let g = psi.eval(group, &u)?;
+        closure.see(group.defect(&g), n * size_of(&g).powi(2), 1.0, place);
+
+        // A wrong dΨ⁻¹ differs by O(δ), a right one by O(δ²): the unit is δ²·size.
+        let k = psi.eval_dpsi_inv(group, &u, &v)?;
+        let right = psi.eval(group, &sum(DELTA, &v, 0.0, &v))?;
+        let mut moved = group.identity();
+        group.compose(&right, &g, &mut moved);
+        let gap = group.distance(&psi.eval(group, &sum(1.0, &u, DELTA, &k))?, &moved);
+        let speed = (group.norm(&k) + group.norm(&v)).powi(2);
+        let second_order = size_of(&g) * speed * (1.0 + group.norm(&u)).powi(2);
+        inverse.see(gap, second_order * DELTA * DELTA / f64::EPSILON, 1.0, place);
+    }
+    Ok(vec![bracket, identity, closure, inverse])
+}

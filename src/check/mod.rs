@@ -1,0 +1,53 @@
+//! Checks that users can run: the general layer against the closed forms, and the laws of a group
+//! with its coordinate maps.
+//!
+//! Differences are in units of ε·cond·size: 1 is what one rounding of the input already changes.
+//! A group or a map from outside the crate is checked by the same [`laws`].
+
+mod agreement;
+mod laws;
+
+pub use agreement::{AGREEMENT_BOUND, maps_agree, steps_agree};
+pub use laws::{LAW_BOUND, laws};
+
+/// What a check found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Finding {
+    /// What was checked.
+    pub name: String,
+    /// On how many random inputs.
+    pub cases: usize,
+    /// The largest difference, in units of ε·cond·size.
+    pub worst: f64,
+    /// Where it was found.
+    pub at: String,
+    /// The largest that is allowed.
+    pub bound: f64,
+}
+
+impl Finding {
+    fn new(name: impl Into<String>, bound: f64) -> Self {
+        Finding { name: name.into(), cases: 0, worst: 0.0, at: String::new(), bound }
+    }
+
+    /// A case with the difference `gap`, of a quantity of this `size` and condition number.
+    fn see(&mut self, gap: f64, size: f64, cond: f64, at: impl FnOnce() -> String) {
+        let units = if gap == 0.0 { 0.0 } else { gap / (f64::EPSILON * size * cond) };
+        self.cases += 1;
+        // `>` alone would pass over a NaN.
+        if units > self.worst || units.is_nan() {
+            (self.worst, self.at) = (units, at());
+        }
+    }
+
+    /// A case that could not be evaluated.
+    fn refuse(&mut self, at: impl FnOnce() -> String) {
+        self.cases += 1;
+        (self.worst, self.at) = (f64::INFINITY, at());
+    }
+
+    /// Was something checked, and nothing out of bounds?
+    pub fn holds(&self) -> bool {
+        self.cases > 0 && self.worst <= self.bound
+    }
+}
