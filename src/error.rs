@@ -31,7 +31,7 @@ pub enum Error {
         expected_cols: usize,
     },
     /// An entry of a matrix is NaN or infinite.
-    #[error("{arg}[{row},{col}] = {value}, expected a finite number")]
+    #[error("{arg}[{row},{col}] = {value:?}, expected a finite number")]
     NotFiniteEntry {
         /// The argument.
         arg: &'static str,
@@ -89,7 +89,7 @@ pub enum Error {
         minimum: f64,
     },
     /// A number lies outside its range.
-    #[error("{arg} = {value}, expected {expected}")]
+    #[error("{arg} = {value:?}, expected {expected}")]
     OutOfRange {
         /// The argument, with its index where it has one.
         arg: String,

@@ -23,7 +23,7 @@ struct Case {
     sens_g: String,
 }
 
-fn number(text: &String) -> f64 {
+fn number(text: &str) -> f64 {
     text.parse().expect("a decimal number")
 }
 
@@ -36,18 +36,18 @@ fn momentum_and_attitude_at_every_reference() {
     let mut failures = Vec::new();
     for case in &cases {
         let g0 = match &case.attitude0 {
-            Some(g) => Matrix3::from_row_iterator(g.iter().map(number)),
+            Some(g) => Matrix3::from_row_iterator(g.iter().map(|x| number(x))),
             None => Matrix3::identity(),
         };
         let body = Exact::new(
-            case.inertia.each_ref().map(number),
-            case.momentum.each_ref().map(number),
+            case.inertia.each_ref().map(|x| number(x)),
+            case.momentum.each_ref().map(|x| number(x)),
             g0,
         )
         .expect("a valid body");
         let (m, g) = body.state(number(&case.t)).expect("a state");
-        let m_ref = Vector3::from_iterator(case.m.iter().map(number));
-        let g_ref = Matrix3::from_row_iterator(case.g.iter().map(number));
+        let m_ref = Vector3::from_iterator(case.m.iter().map(|x| number(x)));
+        let g_ref = Matrix3::from_row_iterator(case.g.iter().map(|x| number(x)));
         let scale = m_ref.amax().max(f64::MIN_POSITIVE);
         let error_m = ((m - m_ref) / scale).norm();
         let error_g = (g - g_ref).norm();

@@ -50,9 +50,10 @@ impl Counted {
         (out, OPS.replace(before))
     }
 
-    fn bump(f: impl FnOnce(&mut Ops)) {
+    /// Count `n` more operations of a kind.
+    fn bump(n: u64, kind: impl FnOnce(&mut Ops) -> &mut u64) {
         let mut ops = OPS.get();
-        f(&mut ops);
+        *kind(&mut ops) += n;
         OPS.set(ops);
     }
 }
@@ -62,7 +63,7 @@ macro_rules! counted_operator {
         impl $trait for Counted {
             type Output = Self;
             fn $method(self, other: Self) -> Self {
-                Self::bump(|ops| ops.$field += 1);
+                Self::bump(1, |ops| &mut ops.$field);
                 Counted(self.0 $op other.0)
             }
         }
@@ -97,7 +98,7 @@ impl Real for Counted {
         Counted(x)
     }
     fn sqrt(self) -> Self {
-        Self::bump(|ops| ops.sqrt += 1);
+        Self::bump(1, |ops| &mut ops.sqrt);
         Counted(self.0.sqrt())
     }
     fn abs(self) -> Self {
@@ -121,7 +122,7 @@ impl Real for Counted {
 
 impl Trig for Counted {
     fn sin_cos(self) -> (Self, Self) {
-        Self::bump(|ops| ops.trig += 2);
+        Self::bump(2, |ops| &mut ops.trig);
         let (s, c) = self.0.sin_cos();
         (Counted(s), Counted(c))
     }

@@ -1,0 +1,175 @@
+//! The options of the command line.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand};
+use clap_complete::Shell;
+
+/// Integrate ordinary differential equations on Lie groups.
+///
+/// Without a command: run the demonstration and write its report.
+#[derive(Clone, Debug, Parser)]
+#[command(
+    name = "lieflow",
+    version,
+    args_conflicts_with_subcommands = true,
+    after_help = "Examples:
+  lieflow                               the demonstration: lieflow-report/index.html
+  lieflow --quick                       the same in a few seconds
+  lieflow scenes                        the scenes that come with the program
+  lieflow run asymmetric-top            run one of them
+  lieflow scenes asymmetric-top > my.toml
+                                        a scene of one's own to start from
+  lieflow run my.toml --out results     run it"
+)]
+pub struct Cli {
+    /// The command; the demonstration when there is none.
+    #[command(subcommand)]
+    pub command: Option<Command>,
+    /// Options of the demonstration.
+    #[command(flatten)]
+    pub demo: DemoArgs,
+}
+
+/// A command.
+#[derive(Clone, Debug, Subcommand)]
+pub enum Command {
+    /// Run a scene: trajectory.csv and summary.json.
+    Run(RunArgs),
+    /// Run a scene with every method, map and layer that fits, and write a report.
+    Compare(CompareArgs),
+    /// Check the installation against exact solutions and known orders.
+    Check(CheckArgs),
+    /// List the scenes that come with the program, or print one to start from.
+    Scenes(ScenesArgs),
+    /// List the methods, coordinate maps and tableaus.
+    Methods(MethodsArgs),
+    /// Print completions for a shell.
+    Completions(CompletionsArgs),
+}
+
+/// Options of the demonstration.
+#[derive(Args, Clone, Debug)]
+pub struct DemoArgs {
+    /// Shorter runs: a few seconds, the same figures with less in them.
+    #[arg(long)]
+    pub quick: bool,
+    /// Folder for the report.
+    #[arg(long, value_name = "DIR", default_value = "lieflow-report")]
+    pub out: PathBuf,
+}
+
+/// Options of `run`.
+#[derive(Args, Clone, Debug)]
+#[command(after_help = SCENE_HELP)]
+pub struct RunArgs {
+    /// A scene file, or the name of a bundled scene.
+    pub scene: PathBuf,
+    /// Folder for trajectory.csv and summary.json [default: lieflow-out/SCENE].
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+}
+
+/// Options of `compare`.
+#[derive(Args, Clone, Debug)]
+#[command(after_help = "Examples:
+  lieflow compare asymmetric-top
+  lieflow compare my.toml --out results --repeat 5")]
+pub struct CompareArgs {
+    /// A scene file, or the name of a bundled scene.
+    pub scene: PathBuf,
+    /// Folder for the report [default: lieflow-compare/SCENE].
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Shorter runs.
+    #[arg(long)]
+    pub quick: bool,
+    /// Time each run so many times and keep the fastest.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub repeat: Option<u32>,
+}
+
+/// Options of `check`.
+#[derive(Args, Clone, Debug)]
+#[command(after_help = "Examples:
+  lieflow check
+  lieflow check --quick --json
+
+The exit code is 0 when every check holds, and 1 when one does not.")]
+pub struct CheckArgs {
+    /// Fewer and shorter runs.
+    #[arg(long)]
+    pub quick: bool,
+    /// Print JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Options of `scenes`.
+#[derive(Args, Clone, Debug)]
+#[command(after_help = "Examples:
+  lieflow scenes
+  lieflow scenes --json
+  lieflow scenes tumbling-attitude > my.toml")]
+pub struct ScenesArgs {
+    /// Print this scene.
+    pub name: Option<String>,
+    /// Print JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Options of `methods`.
+#[derive(Args, Clone, Debug)]
+#[command(after_help = "Examples:
+  lieflow methods
+  lieflow methods --json
+  lieflow methods --for my.toml")]
+pub struct MethodsArgs {
+    /// Only what fits this scene: a scene file, or the name of a bundled scene.
+    #[arg(long = "for", value_name = "SCENE")]
+    pub scene: Option<PathBuf>,
+    /// Print JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Options of `completions`.
+#[derive(Args, Clone, Debug)]
+#[command(after_help = "Examples:
+  lieflow completions bash > ~/.local/share/bash-completion/completions/lieflow
+  lieflow completions zsh > ~/.zfunc/_lieflow
+  lieflow completions fish > ~/.config/fish/completions/lieflow.fish")]
+pub struct CompletionsArgs {
+    /// The shell.
+    pub shell: Shell,
+}
+
+const SCENE_HELP: &str = "Examples:
+  lieflow run asymmetric-top
+  lieflow run my.toml --out results
+
+A scene file, with everything that it can say about a rigid body:
+  title = \"Asymmetric top\"
+  [problem]
+  kind = \"rigid-body\"
+  inertia = [1.0, 2.0, 3.0]         # or inverse_inertia
+  omega_body = [0.2, 0.0, 1.0]      # or momentum_body
+  attitude = [[1,0,0],[0,1,0],[0,0,1]]
+                                    # body to space; optional
+  [method]
+  name = \"rkmk4\"                    # lieflow methods lists the names
+  map = \"exp\"                       # optional: exp
+  tableau = \"heun\"                  # optional: rk4; for rkmk and rk only
+  q = 2                             # optional: cut of the Baker series; for exp only
+  layer = \"closed\"                  # optional: closed, or general
+  [time]
+  t_span = [0.0, 400.0]             # may run backward
+  dt = 0.05                         # or steps = 8000
+  [output]
+  quantities = [\"momentum_body\"]    # lieflow scenes lists what there is
+  every = 10                        # or times = [1.5, 20]; optional: 1
+
+Written: trajectory.csv, a column t and the columns of each quantity, 17 significant digits, the
+start first and the end last; summary.json, what was run and how well it went. When a step fails,
+the rows up to it are in trajectory.partial.csv and the exit code is 2.";

@@ -1,0 +1,171 @@
+//! The rigid body on either layer, with or without its attitude.
+
+use faer::Mat;
+use lieflow::catalog::MethodSpec;
+use lieflow::groups::{GroupMatrix, LieGroup, MatrixGroup, So3, hat, vee};
+use lieflow::problems::{Exact, RigidBody, RigidBodyAttitude, RigidBodyN, RigidBodyNAttitude};
+use lieflow::{Error, RunError, SaveAt, Stats, TimeGrid};
+use nalgebra::{Matrix3, Vector3};
+
+use super::{KIND, RigidBodySpec, needs_attitude};
+use crate::model::{Layer, Model, Sink, integrate_by, order_by};
+
+#[derive(Debug)]
+enum System {
+    Momentum(RigidBody),
+    Attitude(RigidBodyAttitude),
+    MomentumN(RigidBodyN),
+    AttitudeN(RigidBodyNAttitude),
+}
+
+#[derive(Debug)]
+pub(super) struct RigidBodyModel {
+    system: System,
+    /// For ω and the energy of a row, on either layer.
+    body: RigidBody,
+    momentum: Vector3<f64>,
+    attitude: Matrix3<f64>,
+    quantities: Vec<&'static str>,
+    exact: Result<Exact, Error>,
+}
+
+fn to_faer(m: &Matrix3<f64>) -> Mat<f64> {
+    Mat::from_fn(3, 3, |i, j| m[(i, j)])
+}
+
+fn to_nalgebra(m: &Mat<f64>) -> Matrix3<f64> {
+    Matrix3::from_fn(|i, j| m[(i, j)])
+}
+
+impl RigidBodyModel {
+    pub(super) fn new(
+        spec: &RigidBodySpec,
+        layer: Layer,
+        quantities: &[&str],
+    ) -> Result<Self, Error> {
+        let names = quantities.iter().map(|name| KIND.quantity(name).map(|info| info.name));
+        let momentum = Vector3::from(spec.momentum_body);
+        let in_space = spec.attitude * momentum;
+        let system = match (layer, needs_attitude(quantities)) {
+            (Layer::Closed, false) => System::Momentum(RigidBody::new(spec.inertia)?),
+            (Layer::Closed, true) => {
+                System::Attitude(RigidBodyAttitude::new(spec.inertia, in_space.into())?)
+            }
+            (Layer::General, with_attitude) => {
+                let body = RigidBodyN::from_principal(spec.inertia)?;
+                match with_attitude {
+                    false => System::MomentumN(body),
+                    true => {
+                        System::AttitudeN(RigidBodyNAttitude::new(body, to_faer(&hat(&in_space)))?)
+                    }
+                }
+            }
+        };
+        Ok(RigidBodyModel {
+            system,
+            body: RigidBody::new(spec.inertia)?,
+            momentum,
+            attitude: spec.attitude,
+            quantities: names.collect::<Result<_, _>>()?,
+            exact: Exact::new(spec.inertia, spec.momentum_body, spec.attitude),
+        })
+    }
+
+    /// row ← the quantities at body momentum m and attitude g.
+    fn fill(&self, m: &Vector3<f64>, g: Option<&Matrix3<f64>>, row: &mut Vec<f64>) {
+        row.clear();
+        for quantity in &self.quantities {
+            match (*quantity, g) {
+                ("momentum_body", _) => row.extend(m.iter()),
+                ("omega_body", _) => row.extend(self.body.omega(m).iter()),
+                ("energy", _) => row.push(self.body.energy(m)),
+                ("momentum_norm", _) => row.push(m.norm()),
+                ("attitude", Some(g)) => row.extend(g.transpose().iter()),
+                ("attitude_defect", Some(g)) => row.push(So3::new().defect(g)),
+                // The constructor takes registered names, and models the attitude where one needs it.
+                (name, _) => row.resize(row.len() + width(name), f64::NAN),
+            }
+        }
+    }
+}
+
+fn width(quantity: &str) -> usize {
+    KIND.quantity(quantity).map_or(0, |info| info.columns.len())
+}
+
+impl Model for RigidBodyModel {
+    fn columns(&self) -> Vec<String> {
+        let infos = self.quantities.iter().flat_map(|name| KIND.quantity(name));
+        infos.flat_map(|info| info.columns).map(|&column| column.into()).collect()
+    }
+
+    fn modelled(&self) -> Vec<String> {
+        let what = match self.system {
+            System::Momentum(_) => "momentum on so(3)*",
+            System::Attitude(_) => "attitude on SO(3)",
+            System::MomentumN(_) => "momentum on so(n)*, n = 3",
+            System::AttitudeN(_) => "attitude on SO(n), n = 3",
+        };
+        vec![what.into()]
+    }
+
+    fn run(
+        &self,
+        method: &MethodSpec,
+        grid: &TimeGrid,
+        save: &SaveAt,
+        sink: &mut Sink<'_>,
+    ) -> Result<Stats, RunError> {
+        let mut row = Vec::new();
+        let mut show = |t: f64, m: &Vector3<f64>, g: Option<&Matrix3<f64>>| {
+            self.fill(m, g, &mut row);
+            sink(t, &row);
+        };
+        match &self.system {
+            System::Momentum(body) => {
+                integrate_by(method, body, self.momentum, grid, save, |t, m| show(t, m, None))
+            }
+            System::Attitude(body) => {
+                integrate_by(method, body, self.attitude, grid, save, |t, g| {
+                    show(t, &body.momentum_body(g), Some(g));
+                })
+            }
+            System::MomentumN(body) => {
+                let m = to_faer(&hat(&self.momentum));
+                integrate_by(method, body, m, grid, save, |t, m| {
+                    show(t, &vee(&to_nalgebra(m)), None);
+                })
+            }
+            System::AttitudeN(body) => {
+                let g: GroupMatrix = MatrixGroup::so(3)?.element(to_faer(&self.attitude))?;
+                integrate_by(method, body, g, grid, save, |t, g| {
+                    let m = vee(&to_nalgebra(&body.momentum_body(g)));
+                    show(t, &m, Some(&to_nalgebra(g)));
+                })
+            }
+        }
+    }
+
+    fn order(&self, method: &MethodSpec) -> Result<usize, Error> {
+        match &self.system {
+            System::Momentum(body) => order_by(method, body),
+            System::Attitude(body) => order_by(method, body),
+            System::MomentumN(body) => order_by(method, body),
+            System::AttitudeN(body) => order_by(method, body),
+        }
+    }
+
+    fn exact(&self, t: f64) -> Option<Result<Vec<f64>, Error>> {
+        let mut row = Vec::new();
+        let filled = self.exact.as_ref().map_err(Clone::clone).and_then(|exact| {
+            if needs_attitude(&self.quantities) {
+                let (m, g) = exact.state(t)?;
+                self.fill(&m, Some(&g), &mut row);
+            } else {
+                self.fill(&exact.momentum_body(t)?, None, &mut row);
+            }
+            Ok(())
+        });
+        Some(filled.map(|()| row))
+    }
+}

@@ -1,0 +1,109 @@
+//! What goes to standard output and into files.
+
+mod csv;
+mod summary;
+
+pub use csv::{COMPLETE, PARTIAL, Trajectory};
+pub use summary::{Drift, MethodSummary, SUMMARY, Summary};
+
+use std::fs;
+use std::io::{self, Write};
+use std::path::Path;
+
+use comfy_table::{Table, presets};
+use serde::Serialize;
+
+use crate::cmd::CliError;
+
+/// Print to standard output. A reader that went away, as in `| head -1`, is no error.
+///
+/// # Errors
+/// Anything else that goes wrong there.
+pub fn print(text: &str) -> Result<(), CliError> {
+    let mut out = io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(CliError::Stdout(error)),
+        _ => Ok(()),
+    }
+}
+
+/// Print as JSON.
+///
+/// # Errors
+/// As [`print()`].
+pub fn print_json<T: Serialize>(value: &T) -> Result<(), CliError> {
+    print(&to_json(value)?)
+}
+
+/// JSON to read, with a line break at the end.
+///
+/// # Errors
+/// A map with keys that are no strings.
+pub fn to_json<T: Serialize>(value: &T) -> Result<String, CliError> {
+    let json = serde_json::to_string_pretty(value);
+    json.map(|json| json + "\n").map_err(|error| CliError::Message(format!("JSON: {error}")))
+}
+
+/// A table without lines.
+pub fn table<const N: usize>(
+    header: [&str; N],
+    rows: impl IntoIterator<Item = [String; N]>,
+) -> String {
+    let mut table = Table::new();
+    table.load_style(presets::NOTHING).set_header(header).add_rows(rows);
+    let lines = table.to_string();
+    lines.lines().map(|line| format!(" {}\n", line.trim_end())).collect()
+}
+
+/// Text in lines of at most 88 characters, each after `indent`.
+pub fn wrap(text: &str, indent: &str) -> String {
+    let mut lines = String::new();
+    let mut line = String::new();
+    for word in text.split_whitespace() {
+        if !line.is_empty()
+            && line.chars().count() + 1 + word.chars().count()
+                > 88usize.saturating_sub(indent.len())
+        {
+            lines += &format!("{indent}{line}\n");
+            line.clear();
+        }
+        if !line.is_empty() {
+            line.push(' ');
+        }
+        line += word;
+    }
+    if line.is_empty() { lines } else { lines + indent + &line + "\n" }
+}
+
+/// Write a file at once: under another name first, so that no half of it ever has this name.
+///
+/// # Errors
+/// The file cannot be written.
+pub fn write_file(path: &Path, content: &str) -> Result<(), CliError> {
+    let mut partial = path.as_os_str().to_owned();
+    partial.push(".partial");
+    let partial = Path::new(&partial);
+    fs::write(partial, content).map_err(CliError::io("write", partial))?;
+    fs::rename(partial, path).map_err(CliError::io("write", path))
+}
+
+/// Make a folder for results, with those above it.
+///
+/// # Errors
+/// It cannot be made.
+pub fn make_folder(path: &Path) -> Result<(), CliError> {
+    fs::create_dir_all(path).map_err(CliError::io("make the folder", path))
+}
+
+/// Remove a file of an earlier run, if there is one.
+///
+/// # Errors
+/// It is there and stays.
+pub fn remove_old(path: &Path) -> Result<(), CliError> {
+    match fs::remove_file(path) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => {
+            Err(CliError::Io { doing: "replace", path: path.into(), source: error })
+        }
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,100 @@
+//! summary.json: what was run, and how well it went.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+/// The name of the file.
+pub const SUMMARY: &str = "summary.json";
+
+/// What was run, and how well it went.
+#[derive(Clone, Debug, Serialize)]
+pub struct Summary {
+    /// The version of the program.
+    pub lieflow: &'static str,
+    /// The title of the scene.
+    pub title: String,
+    /// The name of the scene.
+    pub scene: String,
+    /// The kind of problem.
+    pub problem: &'static str,
+    /// Did the run reach its end?
+    pub completed: bool,
+    /// Why not.
+    pub failure: Option<String>,
+    /// The method.
+    pub method: MethodSummary,
+    /// The layer.
+    pub layer: &'static str,
+    /// What was integrated.
+    pub modelled: Vec<String>,
+    /// What was written.
+    pub quantities: Vec<String>,
+    /// The columns of the trajectory.
+    pub columns: Vec<String>,
+    /// The file of the trajectory, next to this one.
+    pub trajectory: &'static str,
+    /// From when to when.
+    pub t_span: [f64; 2],
+    /// The size of a step.
+    pub dt: f64,
+    /// The steps that were taken.
+    pub steps: u64,
+    /// Shorter steps to output times between them; not known when a step failed.
+    pub side_steps: Option<u64>,
+    /// The rows that were written.
+    pub rows: u64,
+    /// Seconds, with writing.
+    pub wall_time_s: f64,
+    /// The first row, by column.
+    pub initial: Vec<f64>,
+    /// The last row, by column.
+    #[serde(rename = "final")]
+    pub last: Vec<f64>,
+    /// Where the drifts were looked at.
+    pub drift_computed_at: &'static str,
+    /// The drift of each invariant that follows from what was modelled.
+    pub drift: BTreeMap<&'static str, Drift>,
+    /// The distance from the exact solution at the end, by quantity; none where none is known.
+    pub error_at_end: Option<BTreeMap<&'static str, f64>>,
+}
+
+/// A method with its parts.
+#[derive(Clone, Debug, Serialize)]
+pub struct MethodSummary {
+    /// Its name.
+    pub name: String,
+    /// Its name with its parts.
+    pub label: String,
+    /// Its map.
+    pub map: Option<String>,
+    /// Its tableau.
+    pub tableau: Option<String>,
+    /// The cut of the Baker series.
+    pub q: Option<usize>,
+    /// Its order.
+    pub order: usize,
+}
+
+/// How far an invariant moved from its value at the start.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Drift {
+    /// Its value at the start.
+    pub initial: f64,
+    /// |value − initial| at the end.
+    pub at_end: f64,
+    /// The largest |value − initial|.
+    pub max: f64,
+}
+
+impl Drift {
+    /// A value at the start.
+    pub fn from(initial: f64) -> Self {
+        Drift { initial, at_end: 0.0, max: 0.0 }
+    }
+    /// A later value.
+    pub fn see(&mut self, value: f64) {
+        self.at_end = (value - self.initial).abs();
+        self.max = self.max.max(self.at_end);
+    }
+}

@@ -1,0 +1,219 @@
+"use strict";
+(() => {
+  const root = document.documentElement;
+  root.classList.add("js");
+  const all = (selector, from = document) => [...from.querySelectorAll(selector)];
+  const create = (name, parent) => parent.appendChild(document.createElement(name));
+
+  // The theme: that of the system until the reader chooses, and remembered where that is allowed.
+  const button = document.getElementById("theme");
+  const system = matchMedia("(prefers-color-scheme: dark)");
+  const isDark = () => (root.dataset.theme ? root.dataset.theme === "dark" : system.matches);
+  const nameTheme = () => {
+    button.textContent = isDark() ? "Light theme" : "Dark theme";
+  };
+  try {
+    const chosen = localStorage.getItem("lieflow-theme");
+    if (chosen) root.dataset.theme = chosen;
+  } catch { /* no storage for files in some browsers */ }
+  button.hidden = false;
+  button.addEventListener("click", () => {
+    root.dataset.theme = isDark() ? "light" : "dark";
+    try {
+      localStorage.setItem("lieflow-theme", root.dataset.theme);
+    } catch { /* the choice lasts as long as the page */ }
+    nameTheme();
+  });
+  system.addEventListener("change", nameTheme);
+  nameTheme();
+
+  // One tooltip for all charts. Its first line is the name of the line.
+  const tip = create("div", document.body);
+  tip.id = "tip";
+  tip.hidden = true;
+  tip.setAttribute("aria-hidden", "true");
+  const showTip = (lines, x, y) => {
+    tip.replaceChildren();
+    lines.forEach((line, i) => { create(i ? "span" : "b", tip).textContent = line; });
+    tip.hidden = false;
+    const left = x + 16 + tip.offsetWidth > innerWidth ? x - 16 - tip.offsetWidth : x + 16;
+    const top = Math.min(y + 14, innerHeight - tip.offsetHeight - 8);
+    tip.style.transform = `translate(${Math.max(8, left)}px,${Math.max(8, top)}px)`;
+  };
+
+  // The browser's own tooltips would cover ours: the titles become labels.
+  const titleToLabel = (element) => {
+    const title = element.querySelector(":scope > title");
+    if (!title) return [];
+    const lines = title.textContent.split("\n");
+    element.setAttribute("aria-label", lines.join(", "));
+    element.removeAttribute("aria-labelledby");
+    title.remove();
+    return lines;
+  };
+
+  const superscript = (n) => String(n).replace(/./g, (c) => "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"["-0123456789".indexOf(c)]);
+  const number = (x) => {
+    const [mantissa, exponent] = x.toExponential(2).replace("-", x < 0 ? "−" : "-").split("e");
+    const plain = Math.abs(x) >= 1e-3 && Math.abs(x) < 1e6;
+    if (x === 0 || plain) return String(Number(x.toPrecision(3))).replace("-", "−");
+    return `${mantissa}×10${superscript(Number(exponent))}`;
+  };
+
+  // The value at a pixel of an axis.
+  const axisOf = (svg, name) => {
+    const [kind, ...numbers] = svg.dataset[name].split(" ");
+    const [lo, hi, from, to, linear] = numbers.map(Number);
+    const unwarp = {
+      linear: (t) => t,
+      log10: (t) => 10 ** t,
+      symlog: (t) => Math.sign(t) * linear * (10 ** Math.abs(t) - 1),
+    }[kind];
+    const { [`${name}Title`]: title, [`${name}Unit`]: unit } = svg.dataset;
+    return (pixel) => {
+      const value = unwarp(lo + ((pixel - from) / (to - from)) * (hi - lo));
+      return `${title}: ${number(value)} ${unit}`.trim();
+    };
+  };
+
+  const legend = (svg) => {
+    for (const key of all(".lf-key", svg)) {
+      const lines = all(`.lf-s[data-line="${key.dataset.line}"]`, svg);
+      const hot = (on) => {
+        svg.classList.toggle("lf-dim", on && key.getAttribute("aria-pressed") === "true");
+        lines.forEach((line) => line.classList.toggle("lf-hot", on));
+      };
+      const toggle = () => {
+        const shown = key.getAttribute("aria-pressed") === "true";
+        key.setAttribute("aria-pressed", String(!shown));
+        lines.forEach((line) => line.classList.toggle("lf-off", shown));
+        hot(!shown);
+      };
+      key.setAttribute("role", "button");
+      key.setAttribute("tabindex", "0");
+      key.setAttribute("aria-pressed", "true");
+      key.setAttribute("aria-label", `Show ${key.dataset.series}`);
+      key.addEventListener("click", toggle);
+      key.addEventListener("keydown", (event) => {
+        if (event.key !== "Enter" && event.key !== " ") return;
+        event.preventDefault();
+        toggle();
+      });
+      key.addEventListener("pointerenter", () => hot(true));
+      key.addEventListener("pointerleave", () => hot(false));
+    }
+  };
+
+  // On a narrow screen the names of the lines move below the data.
+  const reflow = (svg) => {
+    const [, , wide, high] = svg.getAttribute("viewBox").split(" ");
+    const query = matchMedia("(max-width: 40rem)");
+    const keys = all(".lf-key", svg);
+    const apply = (narrow) => {
+      svg.classList.toggle("lf-narrow", narrow);
+      keys.forEach((key, i) => {
+        const box = key.querySelector("rect");
+        const dx = 71 - box.getAttribute("x"), dy = 470 + 24 * i - box.getAttribute("y");
+        key.setAttribute("transform", narrow ? `translate(${dx} ${dy})` : "");
+      });
+      const [width, height] = narrow ? [588, 478 + 24 * keys.length] : [wide, high];
+      Object.entries({ viewBox: `0 0 ${width} ${height}`, width, height })
+        .forEach(([name, value]) => svg.setAttribute(name, value));
+    };
+    query.addEventListener("change", () => apply(query.matches));
+    addEventListener("beforeprint", () => apply(false));
+    addEventListener("afterprint", () => apply(query.matches));
+    apply(query.matches);
+  };
+
+  const chart = (svg) => {
+    titleToLabel(svg);
+    svg.setAttribute("role", "group");
+    const valueX = axisOf(svg, "x"), valueY = axisOf(svg, "y");
+    const cursor = svg.appendChild(document.createElementNS(svg.namespaceURI, "circle"));
+    cursor.setAttribute("class", "lf-cursor");
+    cursor.setAttribute("r", "0");
+    // Every place a reader can point at: markers, and the corners of dense lines.
+    const places = [];
+    const stops = [];
+    for (const element of all(".lf-p,.lf-dense", svg)) {
+      const lines = titleToLabel(element), group = element.closest(".lf-s");
+      const dense = element.classList.contains("lf-dense");
+      const source = element.getAttribute(dense ? "d" : "transform").match(/-?[\d.]+/g) || [];
+      element.setAttribute("role", "img");
+      for (let i = 0; i + 1 < source.length; i += 2) {
+        places.push({ element, group, dense, lines, x: Number(source[i]), y: Number(source[i + 1]) });
+      }
+      if (source.length > 1) stops.push({ element, group, lines });
+    }
+    const clear = () => {
+      tip.hidden = true;
+      cursor.setAttribute("r", "0");
+      all(".lf-on", svg).forEach((element) => element.classList.remove("lf-on"));
+    };
+    svg.addEventListener("pointermove", (event) => {
+      const matrix = svg.getScreenCTM();
+      const at = new DOMPoint(event.clientX, event.clientY).matrixTransform(matrix.inverse());
+      let best = null, least = 16;
+      for (const place of places) {
+        const distance = Math.hypot(place.x - at.x, place.y - at.y);
+        if (distance < least && !place.group.classList.contains("lf-off")) {
+          [best, least] = [place, distance];
+        }
+      }
+      clear();
+      if (!best) return;
+      let lines = best.lines;
+      if (best.dense) {
+        lines = [best.lines[0], valueX(best.x), valueY(best.y)];
+        Object.entries({ cx: best.x, cy: best.y, r: 4 }).forEach(([k, v]) => cursor.setAttribute(k, v));
+      } else {
+        best.element.classList.add("lf-on");
+      }
+      showTip(lines, event.clientX, event.clientY);
+    });
+    svg.addEventListener("pointerleave", clear);
+
+    // One stop of the tab key; the arrow keys go along a line and from line to line.
+    if (stops.length) stops[0].element.setAttribute("tabindex", "0");
+    const go = (stop) => {
+      stops.forEach((s) => s.element.setAttribute("tabindex", s === stop ? "0" : "-1"));
+      stop.element.focus();
+    };
+    stops.forEach((stop, i) => {
+      stop.element.addEventListener("focus", () => {
+        const box = stop.element.getBoundingClientRect();
+        showTip(stop.lines, box.left + box.width / 2, box.top + box.height / 2);
+      });
+      stop.element.addEventListener("blur", clear);
+      stop.element.addEventListener("keydown", (event) => {
+        const visible = stops.filter((s) => !s.group.classList.contains("lf-off"));
+        const line = visible.filter((s) => s.group === stop.group);
+        const groups = [...new Set(visible.map((s) => s.group))];
+        const step = { ArrowRight: 1, ArrowLeft: -1, ArrowDown: 1, ArrowUp: -1 }[event.key];
+        if (event.key === "Escape") clear();
+        if (!step) return;
+        event.preventDefault();
+        const here = line.indexOf(stop);
+        if (event.key === "ArrowRight" || event.key === "ArrowLeft") {
+          if (line[here + step]) go(line[here + step]);
+          return;
+        }
+        const group = groups[(groups.indexOf(stop.group) + step + groups.length) % groups.length];
+        const other = visible.filter((s) => s.group === group);
+        if (other.length) go(other[Math.min(here, other.length - 1)]);
+      });
+    });
+    legend(svg);
+    reflow(svg);
+  };
+
+  // Paper cannot be unfolded.
+  addEventListener("beforeprint", () => all("details").forEach((fold) => { fold.open = true; }));
+
+  all("svg.lf-chart").forEach(chart);
+  all("svg.lf-sphere").forEach((svg) => {
+    titleToLabel(svg);
+    legend(svg);
+  });
+})();

@@ -1,0 +1,213 @@
+//! From a page to HTML text.
+
+use super::{Block, Page, Table};
+use crate::plot::{Chart, Sphere, escape, svg::slug, theme};
+
+const STYLE: &str = include_str!("page.css");
+const SCRIPT: &str = concat!(include_str!("page.js"), include_str!("sphere.js"));
+
+impl Page {
+    /// The page as one HTML file that needs nothing else.
+    pub fn html(&self) -> String {
+        let title = escape(&self.title);
+        let mut out = format!(
+            "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+             <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+             <meta name=\"color-scheme\" content=\"light dark\">\n<title>{title}</title>\n\
+             <style>\n{}{STYLE}</style>\n</head>\n<body>\n\
+             <a class=\"skip\" href=\"#content\">Skip to content</a>\n\
+             <header class=\"top\">\n<div>\n<h1>{title}</h1>\n{}</div>\n\
+             <button type=\"button\" id=\"theme\" hidden>Dark</button>\n</header>\n",
+            theme_css(),
+            optional("p", "subtitle", &self.subtitle)
+        );
+        let anchors = self.anchors();
+        if anchors.len() > 1 {
+            out.push_str(&self.contents(&anchors));
+        }
+        out.push_str("<main id=\"content\">\n");
+        for (section, anchor) in self.sections.iter().zip(&anchors) {
+            out.push_str(&format!(
+                "<section aria-labelledby=\"{anchor}\">\n<h2 id=\"{anchor}\">{}</h2>\n",
+                escape(&section.title)
+            ));
+            out.push_str(&blocks(&section.blocks));
+            out.push_str("</section>\n");
+        }
+        out.push_str("</main>\n");
+        out.push_str(&optional("footer", "foot", &self.footer));
+        out.push_str(&format!("<script>\n{SCRIPT}</script>\n</body>\n</html>\n"));
+        out
+    }
+
+    /// A unique identifier for each section.
+    fn anchors(&self) -> Vec<String> {
+        let numbered = self.sections.iter().enumerate();
+        numbered.map(|(i, s)| format!("s{}-{}", i + 1, slug(&s.title))).collect()
+    }
+
+    fn contents(&self, anchors: &[String]) -> String {
+        let links = self.sections.iter().zip(anchors).map(|(section, anchor)| {
+            format!("<li><a href=\"#{anchor}\">{}</a></li>", escape(&section.title))
+        });
+        let links: String = links.collect();
+        format!("<nav class=\"toc\" aria-label=\"Contents\"><ol>{links}</ol></nav>\n")
+    }
+}
+
+/// The colour variables: light, dark where the reader or the system asks for it, light on paper.
+fn theme_css() -> String {
+    let (light, dark) = (theme::variables(false), theme::variables(true));
+    format!(
+        ":root{{color-scheme:light;{light}}}\n\
+         @media screen and (prefers-color-scheme:dark){{\
+         :root:not([data-theme=light]){{color-scheme:dark;{dark}}}}}\n\
+         @media screen{{:root[data-theme=dark]{{color-scheme:dark;{dark}}}}}\n"
+    )
+}
+
+/// An element, or nothing if `text` is empty.
+fn optional(element: &str, class: &str, text: &str) -> String {
+    if text.is_empty() {
+        return String::new();
+    }
+    format!("<{element} class=\"{class}\">{}</{element}>\n", escape(text))
+}
+
+fn blocks(blocks: &[Block]) -> String {
+    blocks.iter().map(block).collect()
+}
+
+fn block(block: &Block) -> String {
+    match block {
+        Block::Paragraph(text) => format!("<p>{}</p>\n", escape(text)),
+        Block::Code(text) => {
+            format!("<pre tabindex=\"0\"><code>{}</code></pre>\n", escape(text))
+        }
+        Block::Facts(facts) => {
+            let facts = facts.iter().map(|(name, value)| {
+                format!("<div><dt>{}</dt><dd>{}</dd></div>\n", escape(name), escape(value))
+            });
+            format!("<dl class=\"facts\">\n{}</dl>\n", facts.collect::<String>())
+        }
+        Block::Table(table) => html_table(table),
+        Block::Chart(chart) => html_chart(chart),
+        Block::Sphere(sphere) => html_sphere(sphere),
+        Block::Row(row) => format!("<div class=\"row\">\n{}</div>\n", blocks(row)),
+        Block::Details { summary, blocks: folded } => format!(
+            "<details>\n<summary>{}</summary>\n{}</details>\n",
+            escape(summary),
+            blocks(folded)
+        ),
+    }
+}
+
+fn html_chart(chart: &Chart) -> String {
+    let caption = optional("figcaption", "caption", &chart.full_caption());
+    format!("<figure>\n{}\n{caption}</figure>\n", chart.svg())
+}
+
+fn html_sphere(sphere: &Sphere) -> String {
+    format!(
+        "<figure>\n{}\n<script type=\"application/json\" class=\"scene\">{}</script>\n{}\
+         </figure>\n",
+        sphere.svg(),
+        sphere.json(),
+        optional("figcaption", "caption", &sphere.caption)
+    )
+}
+
+fn html_table(table: &Table) -> String {
+    // A region that scrolls has to be reachable by the keyboard, and so needs a name.
+    let mut out = format!(
+        "<div class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\"{}\">\n<table>\n",
+        escape(if table.caption.is_empty() { "Table" } else { &table.caption })
+    );
+    out.push_str(&optional("caption", "caption", &table.caption));
+    let class = |column: usize| {
+        let numeric = table.columns.get(column).is_some_and(|c| c.numeric);
+        if numeric { " class=\"number\"" } else { "" }
+    };
+    out.push_str("<thead><tr>");
+    for (i, column) in table.columns.iter().enumerate() {
+        out.push_str(&format!("<th scope=\"col\"{}>{}</th>", class(i), escape(&column.title)));
+    }
+    out.push_str("</tr></thead>\n<tbody>\n");
+    for row in &table.rows {
+        out.push_str(if row.emphasised { "<tr class=\"strong\">" } else { "<tr>" });
+        for (i, cell) in row.cells.iter().enumerate() {
+            let (open, close) = if i == 0 { ("th scope=\"row\"", "th") } else { ("td", "td") };
+            out.push_str(&format!("<{open}{}>{}</{close}>", class(i), escape(cell)));
+        }
+        out.push_str("</tr>\n");
+    }
+    out.push_str("</tbody>\n</table>\n</div>\n");
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Column, Row, Section};
+    use super::*;
+
+    fn page(content: Vec<Block>) -> Page {
+        let section = Section::new("Results & <more>", content);
+        Page {
+            title: "A <page>".into(),
+            subtitle: "\"quoted\"".into(),
+            sections: vec![section.clone(), section],
+            footer: "lieflow".into(),
+        }
+    }
+
+    #[test]
+    fn all_text_is_escaped() {
+        let evil = "<script>alert(1)</script>";
+        let table = Table {
+            caption: evil.into(),
+            columns: vec![Column::text(evil)],
+            rows: vec![Row::new(vec![evil.into()])],
+        };
+        let html = page(vec![
+            Block::text(evil),
+            Block::Code(evil.into()),
+            Block::Facts(vec![(evil.into(), evil.into())]),
+            Block::Table(table),
+            Block::Details { summary: evil.into(), blocks: vec![Block::text(evil)] },
+        ])
+        .html();
+        assert!(!html.contains(evil));
+        assert!(html.contains("A &lt;page&gt;") && html.contains("&quot;quoted&quot;"));
+    }
+
+    #[test]
+    fn the_page_is_self_contained() {
+        let html = page(vec![Block::text("x")]).html();
+        assert!(html.starts_with("<!DOCTYPE html>\n<html lang=\"en\">"));
+        for outside in ["http://", "https://", " src=", "@import", "url("] {
+            let allowed = html.matches("http://www.w3.org/2000/svg").count();
+            let found = html.matches(outside).count();
+            assert!(found == 0 || (outside == "http://" && found == allowed), "{outside}");
+        }
+    }
+
+    #[test]
+    fn sections_have_unique_anchors() {
+        let html = page(vec![]).html();
+        assert_eq!(html.matches("id=\"s1-results-more\"").count(), 1);
+        assert_eq!(html.matches("id=\"s2-results-more\"").count(), 1);
+        assert!(html.contains("href=\"#s2-results-more\""));
+    }
+
+    #[test]
+    fn tables_have_headings_and_alignment() {
+        let mut row = Row::new(vec!["RKMK4".into(), "1.0".into()]);
+        row.emphasised = true;
+        let columns = vec![Column::text("method"), Column::number("error")];
+        let html = html_table(&Table { caption: String::new(), columns, rows: vec![row] });
+        assert!(html.contains("<th scope=\"col\" class=\"number\">error</th>"));
+        assert!(html.contains("<tr class=\"strong\"><th scope=\"row\">RKMK4</th>"));
+        assert!(html.contains("<td class=\"number\">1.0</td>"));
+        assert!(!html.contains("<caption"));
+    }
+}

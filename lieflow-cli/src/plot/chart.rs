@@ -1,0 +1,351 @@
+//! Line charts.
+
+use super::labels::{self, ROW};
+use super::scale::{Axis, Map, Scale};
+use super::series::{Marker, Point, Series};
+use super::svg::{escape, polyline, px, slug, text};
+use super::theme;
+use super::trace::{Trace, omission};
+
+/// The area of the data within the picture.
+const LEFT: f64 = 76.0;
+const RIGHT: f64 = 576.0;
+const TOP: f64 = 42.0;
+const BOTTOM: f64 = 412.0;
+
+/// The room below the data, and between the data and the names of the lines.
+const FOOT: f64 = 52.0;
+const GAP: f64 = 24.0;
+
+/// A chart of lines over two axes.
+#[derive(Clone, Debug)]
+pub struct Chart {
+    /// An identifier that is unique within the page.
+    pub id: String,
+    /// The title above the chart.
+    pub title: String,
+    /// The horizontal axis.
+    pub x: Axis,
+    /// The vertical axis.
+    pub y: Axis,
+    /// The lines.
+    pub series: Vec<Series>,
+    /// The text below the chart.
+    pub caption: String,
+}
+
+impl Chart {
+    /// The chart as a complete `<svg>` element.
+    ///
+    /// A line goes through those of its points that have a place within the axes and has a gap at
+    /// the others; [`Chart::notes`] counts the others. Each point of a line with markers is an
+    /// element of its own. A line without markers is thinned to the resolution of the picture.
+    pub fn svg(&self) -> String {
+        let (x, y) = self.maps();
+        let traces: Vec<Trace> = self.series.iter().map(|s| Trace::new(s, &x, &y)).collect();
+        let column = labels::column_width(&self.series);
+        let rows = self.series.len() as f64 * ROW;
+        let width = (RIGHT + GAP + column + 12.0).ceil();
+        let note = if self.notes().is_empty() { 0.0 } else { 16.0 };
+        let height = (BOTTOM + FOOT + note).max(TOP + rows + 10.0).ceil();
+        let id = slug(&self.id);
+        let mut out = format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"lf lf-chart\" id=\"{id}\" \
+             viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" role=\"img\" \
+             aria-labelledby=\"{id}-t {id}-d\" {} {}>",
+            map_attribute("x", &x, &self.x),
+            map_attribute("y", &y, &self.y),
+        );
+        out.push_str(&format!(
+            "<title id=\"{id}-t\">{}</title><desc id=\"{id}-d\">{}</desc><style>{}</style>\
+             <rect class=\"lf-paper\" width=\"{width}\" height=\"{height}\"/>",
+            escape(&self.title),
+            escape(&self.description()),
+            theme::chart_css()
+        ));
+        self.draw_axes(&mut out, &x, &y, height);
+        for index in self.drawing_order() {
+            self.draw_line(&mut out, index, &traces[index], &x, &y);
+        }
+        if traces.iter().all(|t| t.points.is_empty()) {
+            let middle = ((LEFT + RIGHT) / 2.0, (TOP + BOTTOM) / 2.0);
+            out.push_str(&text("lf-note", middle, "middle", "There is no data to draw."));
+        }
+        self.draw_names(&mut out, &traces, column);
+        out.push_str("</svg>");
+        out
+    }
+
+    /// Sentences that count the points which are not drawn, for each cause; empty if all are.
+    pub fn notes(&self) -> String {
+        let (x, y) = self.maps();
+        let mut counts: Vec<(String, usize)> = Vec::new();
+        for point in self.series.iter().flat_map(|s| &s.points) {
+            let horizontal = omission(&self.x, &x, point.x);
+            let Some(cause) = horizontal.or_else(|| omission(&self.y, &y, point.y)) else {
+                continue;
+            };
+            match counts.iter_mut().find(|c| c.0 == cause) {
+                Some(count) => count.1 += 1,
+                None => counts.push((cause, 1)),
+            }
+        }
+        let sentences = counts.iter().map(|(cause, count)| match count {
+            1 => format!("1 point {cause} is not drawn."),
+            _ => format!("{count} points {cause} are not drawn."),
+        });
+        sentences.collect::<Vec<_>>().join(" ")
+    }
+
+    /// The caption followed by the [`notes`](Chart::notes).
+    pub fn full_caption(&self) -> String {
+        [self.caption.trim(), &self.notes()].join(" ").trim().to_string()
+    }
+
+    fn description(&self) -> String {
+        let names: Vec<&str> = self.series.iter().map(|s| s.name.as_str()).collect();
+        format!(
+            "{} against {}; {} lines: {}. {}",
+            self.y.title,
+            self.x.title,
+            names.len(),
+            names.join(", "),
+            self.full_caption()
+        )
+    }
+
+    fn maps(&self) -> (Map, Map) {
+        let points = || self.series.iter().flat_map(|s| &s.points);
+        // Dense lines begin and end at the frame, markers stay clear of it.
+        let marked = self.series.iter().any(|s| s.marker != Marker::None);
+        let padding = if marked { 0.04 } else { 0.0 };
+        (
+            self.x.map(points().map(|p| p.x), (LEFT, RIGHT), padding),
+            self.y.map(points().map(|p| p.y), (BOTTOM, TOP), 0.04),
+        )
+    }
+
+    fn drawing_order(&self) -> Vec<usize> {
+        let mut order: Vec<usize> = (0..self.series.len()).collect();
+        order.sort_by_key(|i| self.series[*i].emphasised);
+        order
+    }
+
+    fn draw_axes(&self, out: &mut String, x: &Map, y: &Map, height: f64) {
+        let (columns, rows) = (x.ticks(46.0), y.ticks(34.0));
+        for major in [false, true] {
+            let vertical = columns.iter().filter(|t| t.major == major);
+            let horizontal = rows.iter().filter(|t| t.major == major);
+            let vertical = vertical.map(|t| format!("M{} {TOP}V{BOTTOM}", px(t.at)));
+            let horizontal = horizontal.map(|t| format!("M{LEFT} {}H{RIGHT}", px(t.at)));
+            let class = if major { "lf-grid" } else { "lf-minor" };
+            let d: String = vertical.chain(horizontal).collect();
+            out.push_str(&format!("<path class=\"{class}\" d=\"{d}\"/>"));
+        }
+        out.push_str(&format!("<path class=\"lf-frame\" d=\"M{LEFT} {TOP}V{BOTTOM}H{RIGHT}\"/>"));
+        for (at, label) in columns.iter().filter_map(|t| Some((t.at, t.label.as_ref()?))) {
+            out.push_str(&text("lf-tick", (at, BOTTOM + 18.0), "middle", label));
+        }
+        for (at, label) in rows.iter().filter_map(|t| Some((t.at, t.label.as_ref()?))) {
+            out.push_str(&text("lf-tick", (LEFT - 8.0, at + 4.2), "end", label));
+        }
+        let middle = (LEFT + RIGHT) / 2.0;
+        out.push_str(&text("lf-title", (LEFT, 24.0), "start", &self.title));
+        out.push_str(&text("lf-label", (middle, BOTTOM + 41.0), "middle", &self.x.title));
+        out.push_str(&format!(
+            "<text class=\"lf-label\" transform=\"translate(18 {}) rotate(-90)\" \
+             text-anchor=\"middle\">{}</text>",
+            (TOP + BOTTOM) / 2.0,
+            escape(&self.y.title)
+        ));
+        let notes = self.notes();
+        if !notes.is_empty() {
+            out.push_str(&text("lf-note", (LEFT, height - 5.0), "start", &notes));
+        }
+    }
+
+    fn draw_line(&self, out: &mut String, index: usize, trace: &Trace, x: &Map, y: &Map) {
+        let series = &self.series[index];
+        out.push_str(&format!("<g class=\"lf-s {}\" data-line=\"{index}\">", series.classes()));
+        let d: String = trace.runs.iter().map(|run| polyline(run)).collect();
+        if series.marker == Marker::None {
+            out.push_str(&format!(
+                "<path class=\"lf-line lf-dense\" tabindex=\"-1\" data-series=\"{}\" \
+                 d=\"{d}\"><title>{}</title></path>",
+                escape(&series.name),
+                escape(&self.line_text(series, trace))
+            ));
+        } else {
+            out.push_str(&format!("<path class=\"lf-line\" d=\"{d}\"/>"));
+            let (class, outline) = (series.marker_classes(), series.outline());
+            for point in trace.points.iter().map(|i| &series.points[*i]) {
+                let (Some(px_x), Some(px_y)) = (x.pixel(point.x), y.pixel(point.y)) else {
+                    continue;
+                };
+                out.push_str(&format!(
+                    "<path class=\"{class}\" d=\"{outline}\" transform=\"translate({} {})\" \
+                     tabindex=\"-1\" data-series=\"{}\" data-x=\"{:e}\" data-y=\"{:e}\" \
+                     data-note=\"{}\"><title>{}</title></path>",
+                    px(px_x),
+                    px(px_y),
+                    escape(&series.name),
+                    point.x,
+                    point.y,
+                    escape(&point.note),
+                    escape(&self.point_text(series, point))
+                ));
+            }
+        }
+        out.push_str("</g>");
+    }
+
+    /// What a reader sees who points at `point`, line by line.
+    fn point_text(&self, series: &Series, point: &Point) -> String {
+        let mut lines = vec![
+            series.name.clone(),
+            format!("{}: {}", self.x.quantity(), self.x.value_text(point.x)),
+            format!("{}: {}", self.y.quantity(), self.y.value_text(point.y)),
+        ];
+        if !point.note.is_empty() {
+            lines.push(point.note.clone());
+        }
+        lines.join("\n")
+    }
+
+    /// The summary of a line without markers.
+    fn line_text(&self, series: &Series, trace: &Trace) -> String {
+        let values = || trace.points.iter().map(|i| series.points[*i].y);
+        let lowest = values().fold(f64::INFINITY, f64::min);
+        let highest = values().fold(f64::NEG_INFINITY, f64::max);
+        let Some(last) = values().next_back() else {
+            return format!("{}\nno points", series.name);
+        };
+        format!(
+            "{}\n{} points\n{}: {} to {}, at the end {}",
+            series.name,
+            trace.points.len(),
+            self.y.quantity(),
+            self.y.value_text(lowest),
+            self.y.value_text(highest),
+            self.y.value_text(last)
+        )
+    }
+
+    /// The names of the lines: next to their ends if all lines end at the right edge, in their
+    /// given order from the top otherwise.
+    fn draw_names(&self, out: &mut String, traces: &[Trace], column: f64) {
+        let at_edge = |end: &(f64, f64)| end.0 > RIGHT - 4.0;
+        let end = |t: &Trace| t.runs.last().and_then(|run| run.last()).copied().filter(at_edge);
+        let ends: Option<Vec<(f64, f64)>> = traces.iter().map(end).collect();
+        let heights = match &ends {
+            Some(ends) => {
+                let wanted: Vec<f64> = ends.iter().map(|e| e.1).collect();
+                labels::spread(&wanted, ROW, (TOP + ROW / 2.0, BOTTOM - ROW / 2.0))
+            }
+            None => (0..traces.len()).map(|i| TOP + ROW * (i as f64 + 0.5)).collect(),
+        };
+        let mut order: Vec<usize> = (0..traces.len()).collect();
+        order.sort_by(|a, b| heights[*a].total_cmp(&heights[*b]));
+        out.push_str("<g class=\"lf-legend\">");
+        for i in order {
+            let from = ends.as_ref().map(|ends| ends[i]);
+            let at = (RIGHT + GAP, heights[i]);
+            out.push_str(&labels::entry(&self.series[i], i, at, from, column));
+        }
+        out.push_str("</g>");
+    }
+}
+
+/// The attribute from which the page script finds the value of a pixel.
+fn map_attribute(name: &str, map: &Map, axis: &Axis) -> String {
+    let (kind, linear) = match map.scale {
+        Scale::Linear => ("linear", 0.0),
+        Scale::Log10 => ("log10", 0.0),
+        Scale::SymLog { linear } => ("symlog", linear),
+    };
+    let title = escape(axis.quantity());
+    let unit = escape(axis.unit());
+    format!(
+        "data-{name}=\"{kind} {:e} {:e} {} {} {linear:e}\" data-{name}-title=\"{title}\" \
+         data-{name}-unit=\"{unit}\"",
+        map.lo, map.hi, map.from, map.to
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn chart(points: Vec<Point>, marker: Marker) -> Chart {
+        let series = Series { name: "a <b>".into(), marker, points, ..Series::default() };
+        Chart {
+            id: "demo".into(),
+            title: "Speed & error".into(),
+            x: Axis::new("CPU time [s]", Scale::Log10),
+            y: Axis::new("global error", Scale::Log10),
+            series: vec![series],
+            caption: "A chart.".into(),
+        }
+    }
+
+    #[test]
+    fn every_point_is_drawn_once() {
+        let points: Vec<Point> =
+            (1..20).map(|i| Point::new(f64::from(i), f64::from(i).powi(-4))).collect();
+        let svg = chart(points.clone(), Marker::Circle).svg();
+        assert_eq!(svg.matches("class=\"lf-p\"").count(), points.len());
+        for p in &points {
+            let data = format!("data-x=\"{:e}\" data-y=\"{:e}\"", p.x, p.y);
+            assert_eq!(svg.matches(&data).count(), 1);
+        }
+    }
+
+    #[test]
+    fn points_without_a_place_are_counted() {
+        let mut points = vec![Point::new(1.0, 1.0), Point::new(2.0, 0.0), Point::new(3.0, 0.0)];
+        points.extend([Point::new(4.0, f64::NAN), Point::new(-1.0, 1.0), Point::new(5.0, 0.5)]);
+        let mut chart = chart(points, Marker::Square);
+        assert_eq!(
+            chart.full_caption(),
+            "A chart. 2 points with global error 0 are not drawn. \
+             1 point with global error not finite is not drawn. \
+             1 point with negative CPU time is not drawn."
+        );
+        let svg = chart.svg();
+        assert_eq!(svg.matches("class=\"lf-p\"").count(), 2);
+        assert!(!svg.contains("NaN") && !svg.contains("inf"));
+        chart.y.range = Some((0.6, 2.0));
+        assert!(chart.notes().contains("1 point with global error outside of the drawn range"));
+    }
+
+    #[test]
+    fn text_is_escaped() {
+        let svg = chart(vec![Point::new(1.0, 1.0).with_note("\"<i>")], Marker::Plus).svg();
+        assert!(svg.contains("Speed &amp; error") && svg.contains("a &lt;b&gt;"));
+        assert!(svg.contains("data-note=\"&quot;&lt;i&gt;\""));
+        assert!(!svg.contains("<i>") && !svg.contains("<b>"));
+    }
+
+    #[test]
+    fn charts_without_data_are_valid() {
+        for points in [vec![], vec![Point::new(f64::NAN, f64::INFINITY)]] {
+            let svg = chart(points, Marker::None).svg();
+            assert!(svg.contains("no data") && svg.ends_with("</svg>"));
+            assert!(!svg.contains("NaN") && !svg.contains("=\"inf"));
+        }
+        let empty = Chart { series: vec![], ..chart(vec![], Marker::None) };
+        assert!(empty.svg().ends_with("</svg>"));
+    }
+
+    #[test]
+    fn dense_lines_are_thinned_and_have_gaps() {
+        let wave = |i: i32| if i == 40_000 { 0.0 } else { 2.0 + (f64::from(i) * 0.1).sin() };
+        let points = (1..80_000).map(|i| Point::new(f64::from(i), wave(i))).collect();
+        let chart = chart(points, Marker::None);
+        let svg = chart.svg();
+        assert!(svg.len() < 60_000, "{}", svg.len());
+        let line = svg.split("lf-dense").nth(1).and_then(|s| s.split("</g>").next());
+        assert_eq!(line.map(|s| s.matches('M').count()), Some(2));
+        assert!(chart.notes().starts_with("1 point with global error 0"));
+    }
+}

@@ -1,0 +1,27 @@
+//! Figures as standalone SVG text: line charts ([`Chart`]) and the momentum sphere of a rigid
+//! body ([`Sphere`]).
+//!
+//! A figure is a plain value; `svg()` turns it into one complete `<svg>` element that serves both
+//! as a file of its own and inline in a page. Colours are CSS variables with light fallbacks (see
+//! [`theme`]), so an inline figure follows the theme of its page and a file is light.
+
+mod camera;
+mod chart;
+mod ellipsoid;
+pub mod format;
+mod labels;
+mod scale;
+mod scene;
+mod series;
+mod sphere;
+pub(crate) mod svg;
+pub mod theme;
+mod thin;
+mod trace;
+
+pub use chart::Chart;
+pub use scale::{Axis, Scale};
+pub use series::{Marker, Point, Series};
+pub use sphere::{Path, Sphere};
+pub use svg::escape;
+pub use thin::{thin_path, thin_time_series};

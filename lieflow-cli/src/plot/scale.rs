@@ -1,0 +1,323 @@
+//! Axes: from data to pixels, and where the ticks are.
+
+use super::format::{fixed, power_of_ten, seconds, sig};
+
+/// How the values of an axis are spread over its length.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Scale {
+    /// Equal steps for equal differences.
+    Linear,
+    /// Equal steps for equal ratios; only values above zero can be drawn.
+    Log10,
+    /// Logarithmic in both directions from zero, and about linear for values below `linear`.
+    SymLog {
+        /// The magnitude at which the scale changes from linear to logarithmic.
+        linear: f64,
+    },
+}
+
+impl Scale {
+    /// Whether `value` has a place on this scale.
+    pub(crate) fn accepts(self, value: f64) -> bool {
+        // The bound keeps differences of two values finite.
+        value.abs() < 1e300 && (self != Scale::Log10 || value > 0.0)
+    }
+
+    /// The coordinate in which this scale is linear.
+    pub(crate) fn warp(self, value: f64) -> f64 {
+        match self {
+            Scale::Linear => value,
+            Scale::Log10 => value.log10(),
+            Scale::SymLog { linear } => {
+                value.signum() * (value.abs() / linear.max(f64::MIN_POSITIVE)).ln_1p()
+                    / std::f64::consts::LN_10
+            }
+        }
+    }
+}
+
+/// An axis: its title, scale and, if it is not to follow the data, its range.
+#[derive(Clone, Debug)]
+pub struct Axis {
+    /// The quantity with its unit in brackets: `"CPU time [s]"`.
+    pub title: String,
+    /// The scale.
+    pub scale: Scale,
+    /// The drawn range; `None` takes the range of the data.
+    pub range: Option<(f64, f64)>,
+}
+
+impl Axis {
+    /// An axis that follows the range of the data.
+    pub fn new(title: impl Into<String>, scale: Scale) -> Self {
+        Axis { title: title.into(), scale, range: None }
+    }
+
+    /// The title without its unit.
+    pub(crate) fn quantity(&self) -> &str {
+        self.split_title().0
+    }
+
+    /// The unit in brackets at the end of the title, or an empty text.
+    pub(crate) fn unit(&self) -> &str {
+        self.split_title().1
+    }
+
+    fn split_title(&self) -> (&str, &str) {
+        match self.title.trim_end().strip_suffix(']').and_then(|t| t.rsplit_once('[')) {
+            Some((quantity, unit)) => (quantity.trim_end(), unit),
+            None => (&self.title, ""),
+        }
+    }
+
+    /// `value` of this axis for people, with its unit.
+    pub(crate) fn value_text(&self, value: f64) -> String {
+        match self.unit() {
+            "s" => seconds(value),
+            "" => sig(value, 3),
+            unit => format!("{}\u{a0}{unit}", sig(value, 3)),
+        }
+    }
+
+    /// The map of this axis to the pixels `from..to`, with `padding` (a fraction of the length)
+    /// at both ends of the data.
+    pub(crate) fn map(
+        &self,
+        data: impl Iterator<Item = f64>,
+        pixels: (f64, f64),
+        padding: f64,
+    ) -> Map {
+        let scale = self.scale;
+        let (lo, hi) = match self.range {
+            Some((a, b)) if a < b && scale.accepts(a) && scale.accepts(b) => {
+                (scale.warp(a), scale.warp(b))
+            }
+            _ => padded(data.filter(|v| scale.accepts(*v)).map(|v| scale.warp(v)), padding),
+        };
+        Map { scale, lo, hi, from: pixels.0, to: pixels.1 }
+    }
+}
+
+/// The range of `values` with padding; a range of length one if there is but one value.
+fn padded(values: impl Iterator<Item = f64>, padding: f64) -> (f64, f64) {
+    let (lo, hi) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |r, v| (r.0.min(v), r.1.max(v)));
+    if lo > hi {
+        return (0.0, 1.0);
+    }
+    let extent = hi - lo;
+    if extent <= 1e-12 * lo.abs().max(hi.abs()) || extent == 0.0 {
+        let half = 0.5 * lo.abs().max(1.0);
+        return (lo - half, hi + half);
+    }
+    (lo - padding * extent, hi + padding * extent)
+}
+
+/// An axis with its range, laid out over pixels.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Map {
+    pub(crate) scale: Scale,
+    /// The ends of the range in the warped coordinate.
+    pub(crate) lo: f64,
+    pub(crate) hi: f64,
+    /// The pixels of these ends.
+    pub(crate) from: f64,
+    pub(crate) to: f64,
+}
+
+/// A grid line, with a label if there is room for it.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Tick {
+    pub(crate) at: f64,
+    pub(crate) label: Option<String>,
+    pub(crate) major: bool,
+}
+
+impl Map {
+    /// The pixel of `value`, if it has one (also outside of the range).
+    pub(crate) fn pixel(&self, value: f64) -> Option<f64> {
+        self.scale.accepts(value).then(|| self.place(self.scale.warp(value)))
+    }
+
+    /// Whether a pixel is within the range.
+    pub(crate) fn contains(&self, pixel: f64) -> bool {
+        let (a, b) = (self.from.min(self.to), self.from.max(self.to));
+        (a - 1e-6..=b + 1e-6).contains(&pixel)
+    }
+
+    fn place(&self, warped: f64) -> f64 {
+        self.from + (warped - self.lo) / (self.hi - self.lo) * (self.to - self.from)
+    }
+
+    /// The grid lines within the range, with labels about `spacing` pixels or more apart.
+    pub(crate) fn ticks(&self, spacing: f64) -> Vec<Tick> {
+        let labels = ((self.to - self.from).abs() / spacing).max(1.0);
+        let found = match self.scale {
+            Scale::Linear => linear_ticks(self.lo, self.hi, labels),
+            Scale::Log10 => log_ticks(self.lo, self.hi, labels),
+            Scale::SymLog { linear } => self.symlog_ticks(linear.max(f64::MIN_POSITIVE), labels),
+        };
+        let placed = found.into_iter().filter_map(|(value, label, major)| {
+            let at = self.pixel(value).filter(|at| self.contains(*at))?;
+            Some(Tick { at, label, major })
+        });
+        placed.collect()
+    }
+
+    fn symlog_ticks(&self, linear: f64, labels: f64) -> Vec<Found> {
+        let first = linear.log10().ceil() as i32;
+        let decades = (self.lo.abs().max(self.hi.abs()).ceil() as i32).max(1);
+        let step = stride((self.hi - self.lo).ceil(), labels);
+        let mut ticks = vec![(0.0, Some("0".to_string()), true)];
+        for i in 0..=decades {
+            // The labels count from the largest decade in steps, and leave zero its room.
+            let label = (i % step == 0 && i > 0).then(|| power_of_ten(first + i));
+            let value = 10f64.powi(first + i);
+            ticks.push((value, label.clone(), label.is_some()));
+            ticks.push((-value, label.as_ref().map(|l| format!("−{l}")), label.is_some()));
+        }
+        ticks
+    }
+}
+
+/// The value, label and rank of a grid line.
+type Found = (f64, Option<String>, bool);
+
+/// Ticks at multiples of 1, 2 or 5 times a power of ten.
+fn linear_ticks(lo: f64, hi: f64, labels: f64) -> Vec<Found> {
+    let step = nice_step((hi - lo) / labels);
+    let decimals = (-step.log10().floor()).max(0.0) as usize;
+    let text = |value: f64| match decimals {
+        0..=5 if value.abs() < 1e6 => fixed(value, decimals),
+        _ => sig(value, 3),
+    };
+    let first = (lo / step - 1e-9).ceil();
+    let count = (hi / step + 1e-9).floor() - first;
+    (0..=count.clamp(-1.0, 100.0) as i64)
+        .map(|i| (first + i as f64) * step)
+        .map(|value| (value, Some(text(value)), true))
+        .collect()
+}
+
+/// The smallest of 1, 2, 5 times a power of ten that is at least `step`.
+pub(crate) fn nice_step(step: f64) -> f64 {
+    let power = 10f64.powf(step.log10().floor());
+    let factor = [1.0, 2.0, 5.0].into_iter().find(|f| f * power >= step * (1.0 - 1e-9));
+    factor.unwrap_or(10.0) * power
+}
+
+/// Ticks at the decades and, if there is room, at their multiples. `lo` and `hi` are logarithms.
+fn log_ticks(lo: f64, hi: f64, labels: f64) -> Vec<Found> {
+    let decades = hi - lo;
+    if decades < 0.7 {
+        return linear_ticks(10f64.powf(lo), 10f64.powf(hi), labels);
+    }
+    let step = stride(decades, labels);
+    let fine = 3.0 * decades <= labels;
+    let (first, last) = (lo.floor() as i32, hi.ceil() as i32);
+    let plain = first >= -3 && last <= 4;
+    let mut ticks = Vec::new();
+    for exponent in first..=last {
+        let decade = 10f64.powi(exponent);
+        let label = |multiple: i32| match (plain, multiple) {
+            (true, m) => sig(f64::from(m) * decade, 1),
+            (false, 1) => power_of_ten(exponent),
+            (false, m) => format!("{m}×{}", power_of_ten(exponent)),
+        };
+        let labelled = exponent.rem_euclid(step) == 0;
+        ticks.push((decade, labelled.then(|| label(1)), labelled));
+        if step == 1 && decades <= labels {
+            ticks.extend((2..10).map(|m| {
+                let text = (fine && (m == 2 || m == 5)).then(|| label(m));
+                (f64::from(m) * decade, text, false)
+            }));
+        }
+    }
+    ticks
+}
+
+/// Every how many decades a label has room.
+fn stride(decades: f64, labels: f64) -> i32 {
+    let most = decades / labels;
+    [1, 2, 3, 5, 10, 20, 50, 100].into_iter().find(|s| f64::from(*s) >= most).unwrap_or(200)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn map(scale: Scale, range: (f64, f64), pixels: (f64, f64)) -> Map {
+        let axis = Axis { title: String::new(), scale, range: Some(range) };
+        axis.map(std::iter::empty(), pixels, 0.0)
+    }
+
+    fn labels(map: &Map, spacing: f64) -> Vec<String> {
+        map.ticks(spacing).into_iter().filter_map(|t| t.label).collect()
+    }
+
+    #[test]
+    fn log_scale_is_logarithmic() {
+        let m = map(Scale::Log10, (1e-4, 1e4), (0.0, 800.0));
+        assert!((m.pixel(1.0).unwrap() - 400.0).abs() < 1e-9);
+        assert!((m.pixel(1e-3).unwrap() - 100.0).abs() < 1e-9);
+        assert!((m.pixel(2e3).unwrap() - (700.0 + 100.0 * 2f64.log10())).abs() < 1e-9);
+        assert_eq!(m.pixel(0.0), None);
+        assert_eq!(m.pixel(-1.0), None);
+        assert_eq!(m.pixel(f64::NAN), None);
+        assert_eq!(m.pixel(f64::INFINITY), None);
+    }
+
+    #[test]
+    fn symlog_is_odd_and_monotone() {
+        let m = map(Scale::SymLog { linear: 1e-3 }, (-10.0, 10.0), (0.0, 100.0));
+        assert!((m.pixel(0.0).unwrap() - 50.0).abs() < 1e-9);
+        assert!((m.pixel(1.0).unwrap() + m.pixel(-1.0).unwrap() - 100.0).abs() < 1e-9);
+        assert!(m.pixel(1e-3).unwrap() < m.pixel(1e-2).unwrap());
+        assert!(labels(&m, 10.0).contains(&"0".to_string()));
+    }
+
+    #[test]
+    fn nice_steps() {
+        for (step, nice) in [(0.11, 0.2), (0.2, 0.2), (3.0, 5.0), (7.0, 10.0), (1e-7, 1e-7)] {
+            assert!((nice_step(step) / nice - 1.0).abs() < 1e-9, "{step}");
+        }
+    }
+
+    #[test]
+    fn linear_labels() {
+        assert_eq!(
+            labels(&map(Scale::Linear, (0.0, 1.0), (0.0, 500.0)), 100.0),
+            ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]
+        );
+        assert_eq!(
+            labels(&map(Scale::Linear, (-10.0, 10.0), (0.0, 300.0)), 60.0),
+            ["−10", "−5", "0", "5", "10"]
+        );
+    }
+
+    #[test]
+    fn decade_labels() {
+        let m = map(Scale::Log10, (1e-3, 1e2), (0.0, 500.0));
+        assert_eq!(labels(&m, 60.0), ["0.001", "0.01", "0.1", "1", "10", "100"]);
+        let m = map(Scale::Log10, (1e-14, 1e-1), (400.0, 0.0));
+        let every_second = labels(&m, 50.0);
+        assert_eq!(every_second, ["10⁻¹⁴", "10⁻¹²", "10⁻¹⁰", "10⁻⁸", "10⁻⁶", "10⁻⁴", "10⁻²"]);
+        assert_eq!(m.ticks(50.0).len(), 14);
+    }
+
+    #[test]
+    fn degenerate_ranges() {
+        let axis = Axis::new("x", Scale::Linear);
+        for data in [vec![], vec![3.0], vec![0.0, 0.0], vec![-1e300, f64::NAN]] {
+            let m = axis.map(data.into_iter(), (0.0, 100.0), 0.05);
+            assert!(m.lo < m.hi && m.pixel(3.0).unwrap().is_finite());
+        }
+    }
+
+    #[test]
+    fn titles_and_units() {
+        let axis = Axis::new("CPU time [s]", Scale::Log10);
+        assert_eq!((axis.quantity(), axis.unit()), ("CPU time", "s"));
+        assert_eq!(axis.value_text(0.0125), "12.5\u{a0}ms");
+        assert_eq!(Axis::new("error", Scale::Log10).unit(), "");
+    }
+}

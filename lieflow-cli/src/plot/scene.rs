@@ -1,0 +1,120 @@
+//! The objects around a momentum sphere, before they are projected. Lengths are in radii of the
+//! sphere.
+
+use super::camera::{Vec3, dot, norm, split};
+use super::ellipsoid::{Ellipsoid, SPHERE};
+use super::sphere::Sphere;
+use super::thin::thin_path;
+
+/// What a line shows, which decides about its style and its hidden parts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    /// Meridians and parallels of the sphere.
+    Graticule,
+    /// Meridians and parallels of the ellipsoid.
+    Wire,
+    /// The curves of intersection of both.
+    Polhode,
+    /// A path of the momentum.
+    Path,
+    /// A coordinate axis.
+    Axis,
+}
+
+impl Kind {
+    /// The class of the style sheet.
+    pub(crate) fn class(self) -> &'static str {
+        match self {
+            Kind::Graticule => "lf-graticule",
+            Kind::Wire => "lf-wire",
+            Kind::Polhode => "lf-polhode",
+            Kind::Path => "lf-path",
+            Kind::Axis => "lf-axis",
+        }
+    }
+
+    /// Whether hidden parts are drawn faintly instead of not at all.
+    pub(crate) fn shows_hidden_parts(self) -> bool {
+        !matches!(self, Kind::Graticule | Kind::Wire)
+    }
+}
+
+/// A set of polylines of one kind.
+#[derive(Clone, Debug)]
+pub(crate) struct Line {
+    pub(crate) kind: Kind,
+    pub(crate) pieces: Vec<Vec<Vec3>>,
+}
+
+/// Everything that is drawn.
+pub(crate) struct Scene {
+    pub(crate) ellipsoid: Option<Ellipsoid>,
+    /// The lines; the paths are in the order of [`Sphere::paths`].
+    pub(crate) lines: Vec<Line>,
+    /// Where the arrows of the axes end.
+    pub(crate) tips: [f64; 3],
+    /// The half width of the part of space that is in view.
+    pub(crate) extent: f64,
+    /// Whether the ellipsoid continues outside of the view.
+    pub(crate) cut: bool,
+}
+
+/// The largest part of the ellipsoid that is shown, so that the sphere does not become small.
+const LARGEST: f64 = 1.75;
+
+/// The length of the arrows outside of the surfaces.
+const ARROW: f64 = 0.26;
+
+impl Scene {
+    pub(crate) fn new(sphere: &Sphere) -> Self {
+        let ellipsoid = energy_ellipsoid(sphere);
+        let semi = ellipsoid.map_or([1.0; 3], |e| e.semi);
+        let longest = semi.iter().copied().fold(1.0, f64::max);
+        let reach = longest.min(LARGEST);
+        let tips = semi.map(|a| a.max(1.0).min(reach) + ARROW);
+        let mut lines = vec![];
+        let outside = |pieces: Vec<Vec<Vec3>>, surface: &Ellipsoid| -> Vec<Vec<Vec3>> {
+            pieces.iter().flat_map(|line| split(line, |p| surface.excludes(p)).0).collect()
+        };
+        let graticule = SPHERE.graticule(30);
+        let graticule = ellipsoid.map_or(graticule.clone(), |e| outside(graticule, &e));
+        lines.push(Line { kind: Kind::Graticule, pieces: graticule });
+        if let Some(e) = ellipsoid {
+            lines.push(Line { kind: Kind::Wire, pieces: outside(e.graticule(15), &SPHERE) });
+            lines.push(Line { kind: Kind::Polhode, pieces: e.polhodes() });
+        }
+        for path in &sphere.paths {
+            lines.push(Line { kind: Kind::Path, pieces: vec![unit_path(sphere, &path.points)] });
+        }
+        for (i, tip) in tips.iter().enumerate() {
+            let at = |length: f64| std::array::from_fn(|j| if i == j { length } else { 0.0 });
+            let shaft = vec![at(semi[i].max(1.0).min(reach)), at(*tip)];
+            lines.push(Line { kind: Kind::Axis, pieces: vec![shaft] });
+        }
+        Scene { ellipsoid, lines, tips, extent: reach + ARROW, cut: longest > LARGEST }
+    }
+
+    /// Whether a surface is between `p` and the viewer.
+    pub(crate) fn hides(&self, p: &Vec3, toward: &Vec3) -> bool {
+        SPHERE.hides(p, toward) || self.ellipsoid.is_some_and(|e| e.hides(p, toward))
+    }
+
+    /// The brightness, 0 to 1, of the ellipsoid at `p` in light from `lamp`.
+    pub(crate) fn brightness(&self, p: &Vec3, lamp: &Vec3) -> f64 {
+        let normal = self.ellipsoid.unwrap_or(SPHERE).normal(p);
+        (0.5 + 0.5 * dot(&normal, lamp) / norm(&normal)).clamp(0.0, 1.0)
+    }
+}
+
+/// The energy ellipsoid, unless the numbers do not describe one.
+fn energy_ellipsoid(sphere: &Sphere) -> Option<Ellipsoid> {
+    let semi = sphere.inertia.map(|j| (2.0 * j * sphere.energy).sqrt() / sphere.radius);
+    semi.iter().all(|a| a.is_finite() && *a > 1e-6).then_some(Ellipsoid { semi })
+}
+
+/// A path in radii of the sphere, thinned to less than a pixel.
+fn unit_path(sphere: &Sphere, points: &[Vec3]) -> Vec<Vec3> {
+    let scaled = points.iter().map(|p| p.map(|x| x / sphere.radius));
+    let finite: Vec<Vec3> = scaled.filter(|p| norm(p).is_finite()).collect();
+    thin_path(&finite, 2e-3)
+}

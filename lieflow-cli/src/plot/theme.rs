@@ -1,0 +1,181 @@
+//! Colours and the style sheet of the figures. All colours of figures and pages are named here.
+//!
+//! Each colour is a CSS variable `--lf-…`. The style sheet of a figure uses it with the light
+//! colour as the fallback; a page sets the variables for both themes with [`variables`].
+
+/// A colour by name, in the light and in the dark theme.
+pub(crate) struct Colour {
+    name: &'static str,
+    light: &'static str,
+    dark: &'static str,
+}
+
+const fn colour(name: &'static str, light: &'static str, dark: &'static str) -> Colour {
+    Colour { name, light, dark }
+}
+
+/// The number of different line colours.
+pub const LINE_COLOURS: usize = 8;
+
+/// The number of brightness levels of the ellipsoid.
+pub(crate) const SHADES: usize = 16;
+
+/// The line colours follow Okabe and Ito (2008), made darker or lighter to stand out from the
+/// background of each theme.
+const COLOURS: [Colour; 16 + LINE_COLOURS] = [
+    colour("paper", "#ffffff", "#14171c"),
+    colour("ink", "#1c2128", "#e6e9ee"),
+    colour("muted", "#5b6470", "#9ba5b2"),
+    colour("rule", "#d5dae1", "#39414d"),
+    colour("faint", "#edf0f3", "#232931"),
+    colour("frame", "#9aa3ae", "#5a6472"),
+    colour("accent", "#0067a6", "#6db6f2"),
+    colour("mark", "#fdf6e3", "#2b2a20"),
+    colour("ball-light", "#ffffff", "#46515f"),
+    colour("ball", "#e3e9f0", "#2f3843"),
+    colour("ball-edge", "#b3bfcc", "#1f262e"),
+    colour("grid", "#a9b5c2", "#566374"),
+    colour("wire", "#b98a35", "#c9a259"),
+    colour("ellipsoid-dark", "#d9b56a", "#4b3d22"),
+    colour("ellipsoid-light", "#fbeecb", "#8a7140"),
+    colour("polhode", "#8a6a28", "#e2c078"),
+    colour("c0", "#0072b2", "#5aa9f0"),
+    colour("c1", "#cf5200", "#ff8f57"),
+    colour("c2", "#008a64", "#2fcf9f"),
+    colour("c3", "#b4578f", "#ec9ccb"),
+    colour("c4", "#b07700", "#f0b440"),
+    colour("c5", "#2f93cc", "#9bdcff"),
+    colour("c6", "#3b424c", "#d3d9e0"),
+    colour("c7", "#857a00", "#efe45a"),
+];
+
+/// The CSS declarations that set all colour variables for the light or the dark theme.
+pub fn variables(dark: bool) -> String {
+    let value = |c: &Colour| if dark { c.dark } else { c.light };
+    let named = COLOURS.iter().map(|c| format!("--lf-{}:{};", c.name, value(c)));
+    let shades = (0..SHADES).map(|k| format!("--lf-e{k}:{};", shade(k, dark)));
+    named.chain(shades).collect()
+}
+
+/// The colour of the ellipsoid at brightness level `k`.
+fn shade(k: usize, dark: bool) -> String {
+    let hex = |name: &str| {
+        let found = COLOURS.iter().find(|c| c.name == name);
+        let text = found.map_or("#000000", |c| if dark { c.dark } else { c.light });
+        u32::from_str_radix(&text[1..], 16).unwrap_or(0)
+    };
+    let (low, high) = (hex("ellipsoid-dark"), hex("ellipsoid-light"));
+    let t = k as f64 / (SHADES - 1) as f64;
+    let mix = |shift: u32| {
+        let channel = |c: u32| f64::from((c >> shift) & 255);
+        (channel(low) + t * (channel(high) - channel(low))).round() as u8
+    };
+    format!("#{:02x}{:02x}{:02x}", mix(16), mix(8), mix(0))
+}
+
+/// `property` set to a named colour. It is declared twice because some SVG converters do not know
+/// variables: they keep the first declaration.
+fn declare(property: &str, name: &str) -> String {
+    let light = match name.strip_prefix('e').and_then(|k| k.parse().ok()) {
+        Some(k) => shade(k, false),
+        None => COLOURS.iter().find(|c| c.name == name).map_or("", |c| c.light).to_string(),
+    };
+    format!("{property}:{light};{property}:var(--lf-{name},{light})")
+}
+
+/// The style sheet of a line chart.
+pub(crate) fn chart_css() -> String {
+    let mut css = common_css();
+    let mut rule =
+        |selector: &str, body: String| css.push_str(&format!(".lf {selector}{{{body}}}"));
+    rule(".lf-grid", format!("{};stroke-width:1", declare("stroke", "rule")));
+    rule(".lf-minor", format!("{};stroke-width:.75", declare("stroke", "faint")));
+    rule(".lf-frame", format!("fill:none;{};stroke-width:1", declare("stroke", "frame")));
+    rule(".lf-leader", "stroke:currentColor;fill:none;stroke-width:.8;opacity:.6".into());
+    rule(
+        ".lf-line",
+        "fill:none;stroke:currentColor;stroke-width:1.4;stroke-linejoin:round;stroke-linecap:round"
+            .into(),
+    );
+    rule(".lf-strong .lf-line", "stroke-width:2.6".into());
+    rule(".lf-dash .lf-line", "stroke-dasharray:5 4".into());
+    rule(
+        ".lf-p,.lf .lf-m",
+        format!("fill:currentColor;stroke-width:.9;{};outline:none", declare("stroke", "paper")),
+    );
+    rule(
+        ".lf-dash .lf-p,.lf .lf-dash .lf-m,.lf .lf-open",
+        format!("stroke:currentColor;stroke-width:1.4;{}", declare("fill", "paper")),
+    );
+    css
+}
+
+/// The style sheet of a momentum sphere.
+pub(crate) fn sphere_css() -> String {
+    let mut css = common_css();
+    let mut rule =
+        |selector: &str, body: String| css.push_str(&format!(".lf {selector}{{{body}}}"));
+    rule(".lf-b0", declare("stop-color", "ball-light"));
+    rule(".lf-b1", declare("stop-color", "ball"));
+    rule(".lf-b2", declare("stop-color", "ball-edge"));
+    for k in 0..SHADES {
+        let name = format!("e{k}");
+        let body =
+            format!("{};{};stroke-width:.6", declare("fill", &name), declare("stroke", &name));
+        rule(&format!(".lf-{name}"), format!("{body};stroke-linejoin:round"));
+    }
+    rule(".lf-ball", format!("{};stroke-width:.8", declare("stroke", "grid")));
+    rule(".lf-far", "opacity:.45".into());
+    let line = "fill:none;stroke-linejoin:round;stroke-linecap:round";
+    rule(".lf-graticule", format!("{line};{};stroke-width:.6", declare("stroke", "grid")));
+    rule(".lf-wire", format!("{line};{};stroke-width:.6", declare("stroke", "wire")));
+    rule(".lf-polhode", format!("{line};{};stroke-width:1", declare("stroke", "polhode")));
+    rule(".lf-path", format!("{line};stroke:currentColor;stroke-width:2.2"));
+    rule(".lf-axis", format!("{line};{};stroke-width:1.3", declare("stroke", "ink")));
+    rule(".lf-back", "stroke-dasharray:2.5 3.5;stroke-width:1;opacity:.5".into());
+    rule(".lf-path.lf-back", "stroke-width:1.4;opacity:.65".into());
+    rule(".lf-head", declare("fill", "ink"));
+    rule(".lf-name", "font-size:15px;font-style:italic;font-weight:600;text-anchor:middle".into());
+    css
+}
+
+fn common_css() -> String {
+    let font = "font:12.5px system-ui,-apple-system,'Segoe UI',Roboto,'Helvetica Neue',Arial,\
+                'Liberation Sans',sans-serif";
+    let mut css = format!(".lf text{{{font};{}}}", declare("fill", "ink"));
+    css.push_str(".lf .lf-title{font-size:15px;font-weight:600}");
+    css.push_str(".lf .lf-tick{font-size:12px;font-variant-numeric:tabular-nums}");
+    css.push_str(".lf .lf-strong text{font-weight:600}");
+    css.push_str(&format!(".lf .lf-note{{font-size:11.5px;{}}}", declare("fill", "muted")));
+    css.push_str(&format!(".lf .lf-paper{{{}}}", declare("fill", "paper")));
+    css.push_str(".lf .lf-key-line{fill:none;stroke:currentColor;stroke-width:2}");
+    css.push_str(".lf .lf-dash .lf-key-line{stroke-dasharray:5 4}");
+    for k in 0..LINE_COLOURS {
+        css.push_str(&format!(".lf .lf-c{k}{{{}}}", declare("color", &format!("c{k}"))));
+    }
+    css
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_colour_has_a_light_fallback() {
+        for css in [chart_css(), sphere_css()] {
+            assert!(css.contains("var(--lf-"));
+            assert!(!css.contains(":;") && !css.contains(",)"));
+        }
+        for c in &COLOURS {
+            assert!(c.light.len() == 7 && c.dark.len() == 7, "{}", c.name);
+        }
+    }
+
+    #[test]
+    fn themes_differ() {
+        assert!(variables(false).contains("--lf-paper:#ffffff;"));
+        assert!(variables(true).contains("--lf-paper:#14171c;"));
+        assert_eq!(shade(0, false), "#d9b56a");
+        assert_eq!(shade(SHADES - 1, true), "#8a7140");
+    }
+}

@@ -1,0 +1,52 @@
+//! From the points of a line to the pixels of a drawing.
+
+use super::scale::{Axis, Map, Scale};
+use super::series::{Marker, Series};
+use super::thin::thin_time_series;
+
+/// A line as it is drawn: runs of pixels without gaps, and the indices of the drawn points.
+pub(crate) struct Trace {
+    pub(crate) runs: Vec<Vec<(f64, f64)>>,
+    pub(crate) points: Vec<usize>,
+}
+
+impl Trace {
+    /// Places the points of `series`, and thins the line if it has no markers.
+    pub(crate) fn new(series: &Series, x: &Map, y: &Map) -> Self {
+        let mut result = Trace { runs: vec![Vec::new()], points: Vec::new() };
+        for (i, point) in series.points.iter().enumerate() {
+            let place = x.pixel(point.x).zip(y.pixel(point.y));
+            match place.filter(|p| x.contains(p.0) && y.contains(p.1)) {
+                Some(place) => {
+                    result.points.push(i);
+                    if let Some(run) = result.runs.last_mut() {
+                        run.push(place);
+                    }
+                }
+                None => result.runs.push(Vec::new()),
+            }
+        }
+        result.runs.retain(|run| !run.is_empty());
+        if series.marker == Marker::None {
+            for run in &mut result.runs {
+                let extent = run.iter().map(|p| p.0).fold(0.0, f64::max) - run[0].0;
+                *run = thin_time_series(run, extent.abs().ceil() as usize);
+            }
+        }
+        result
+    }
+}
+
+/// Why `value` is not drawn, if it is not.
+pub(crate) fn omission(axis: &Axis, map: &Map, value: f64) -> Option<String> {
+    let quantity = axis.quantity();
+    match map.pixel(value) {
+        Some(pixel) if map.contains(pixel) => None,
+        Some(_) => Some(format!("with {quantity} outside of the drawn range")),
+        None if value == 0.0 => Some(format!("with {quantity} 0")),
+        None if value.is_finite() && value < 0.0 && axis.scale == Scale::Log10 => {
+            Some(format!("with negative {quantity}"))
+        }
+        None => Some(format!("with {quantity} not finite")),
+    }
+}

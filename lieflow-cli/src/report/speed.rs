@@ -1,0 +1,146 @@
+//! Time against error.
+
+use super::{duration, order, scientific};
+use crate::measure::{Candidate, Curve};
+use crate::model::Layer;
+use crate::page::{Column, Row, Table};
+use crate::plot::format::seconds;
+use crate::plot::{Axis, Chart, Marker, Point, Scale, Series};
+
+/// The errors for which tables give the time.
+const ERRORS: [f64; 3] = [1e-3, 1e-6, 1e-9];
+
+/// The colour and marker of a method: by its map, the same in every figure.
+pub(super) fn look(candidate: &Candidate) -> usize {
+    match candidate.method.map.as_deref() {
+        Some("exp") => 0,
+        Some("cay") => 1,
+        Some("ccsk123") => 2,
+        Some("ccsk321") => 3,
+        Some("ccsk") => 4,
+        _ => 5,
+    }
+}
+
+/// The plot of time against error: one line a method, dashed on the general layer.
+pub fn speed_chart<'a>(
+    id: &str,
+    title: &str,
+    caption: &str,
+    curves: impl IntoIterator<Item = &'a Curve>,
+) -> Chart {
+    let series = curves.into_iter().map(|curve| {
+        let candidate = &curve.candidate;
+        let points = curve.points.iter().filter(|point| point.failure.is_none()).map(|point| {
+            Point::new(point.error, point.seconds_per_unit).with_note(format!(
+                "h = {}, {} steps",
+                scientific(point.h),
+                point.steps
+            ))
+        });
+        Series {
+            name: candidate.label(),
+            colour: look(candidate),
+            marker: Marker::cycle(look(candidate)),
+            dash: candidate.layer == Layer::General,
+            points: points.collect(),
+            emphasised: false,
+        }
+    });
+    Chart {
+        id: id.into(),
+        title: title.into(),
+        x: Axis::new("global error at the end", Scale::Log10),
+        y: Axis::new("CPU time per unit of simulated time [s]", Scale::Log10),
+        series: series.collect(),
+        caption: caption.into(),
+    }
+}
+
+/// The columns that [`SpeedRow`] fills.
+pub fn tolerance_header() -> Vec<Column> {
+    let mut columns = vec![
+        Column::text("Method"),
+        Column::number("Order"),
+        Column::number("Measured"),
+        Column::number("Time a step"),
+    ];
+    columns.extend(ERRORS.map(|error| Column::number(format!("Time to {error:.0e}"))));
+    columns
+}
+
+/// A line of the table of times.
+#[derive(Clone, Copy, Debug)]
+pub struct SpeedRow<'a>(pub &'a Curve);
+
+impl SpeedRow<'_> {
+    /// Its cells.
+    pub fn cells(&self) -> Vec<String> {
+        let curve = self.0;
+        let mut cells = vec![
+            curve.candidate.label(),
+            curve.order.to_string(),
+            order(curve.measured_order()),
+            duration(curve.seconds_per_step()),
+        ];
+        cells.extend(ERRORS.map(|error| duration(curve.seconds_to(error))));
+        cells
+    }
+}
+
+/// The table of times to given errors, with the fastest method for each error said in its caption.
+pub fn speed_table(curves: &[Curve]) -> Table {
+    let fastest = ERRORS.map(|error| {
+        let timed = curves.iter().filter_map(|c| Some((c.seconds_to(error)?, c)));
+        match timed.min_by(|a, b| a.0.total_cmp(&b.0)) {
+            Some((time, curve)) => {
+                format!("to {error:.0e} {} ({})", curve.candidate.label(), seconds(time))
+            }
+            None => format!("to {error:.0e} none"),
+        }
+    });
+    Table {
+        caption: format!(
+            "CPU time per unit of simulated time. Fastest: {}. A dash: not reached.",
+            fastest.join(", ")
+        ),
+        columns: tolerance_header(),
+        rows: curves.iter().map(|curve| Row::new(SpeedRow(curve).cells())).collect(),
+    }
+}
+
+/// Every run as CSV.
+pub fn speed_csv<'a>(curves: impl IntoIterator<Item = (&'a str, &'a Curve)>) -> String {
+    let mut text = String::from(
+        "scene,method,map,tableau,layer,order,steps,h,error,energy_error,seconds_per_unit,failure\n",
+    );
+    for (scene, curve) in curves {
+        let Candidate { method, layer } = &curve.candidate;
+        let (map, tableau) = (method.map.as_deref(), method.tableau.as_deref());
+        for p in &curve.points {
+            text += &format!(
+                "{scene},{},{},{},{},{},{},{:e},{:e},{:e},{:e},{}\n",
+                method.name,
+                map.unwrap_or_default(),
+                tableau.unwrap_or_default(),
+                layer.name(),
+                curve.order,
+                p.steps,
+                p.h,
+                p.error,
+                p.energy_error,
+                p.seconds_per_unit,
+                quoted(p.failure.as_deref().unwrap_or_default()),
+            );
+        }
+    }
+    text
+}
+
+/// A CSV field in quotes, where it needs them.
+fn quoted(field: &str) -> String {
+    match field.contains([',', '"', '\n']) {
+        true => format!("\"{}\"", field.replace('"', "\"\"")),
+        false => field.into(),
+    }
+}

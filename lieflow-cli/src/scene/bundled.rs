@@ -1,0 +1,41 @@
+//! The scenes that come with the program.
+
+/// A scene that comes with the program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Bundled {
+    /// Its name.
+    pub name: &'static str,
+    /// Its text.
+    pub text: &'static str,
+}
+
+macro_rules! bundled {
+    ($($name:literal),* $(,)?) => {
+        &[$(Bundled {
+            name: $name,
+            text: include_str!(concat!("../../../scenes/", $name, ".toml")),
+        }),*]
+    };
+}
+
+/// The scenes, in the order of the list that `lieflow scenes` prints.
+pub const BUNDLED: &[Bundled] = bundled![
+    "asymmetric-top",
+    "symmetric-top",
+    "high-energy",
+    "tumbling-attitude",
+    "general-layer",
+];
+
+impl Bundled {
+    /// The scene of that name.
+    pub fn named(name: &str) -> Option<&'static Bundled> {
+        BUNDLED.iter().find(|scene| scene.name == name)
+    }
+
+    /// The first paragraph of the comment that the scene starts with.
+    pub fn description(&self) -> String {
+        let comment = self.text.lines().map_while(|line| line.strip_prefix('#')).map(str::trim);
+        comment.take_while(|line| !line.is_empty()).collect::<Vec<_>>().join(" ")
+    }
+}

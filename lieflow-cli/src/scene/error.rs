@@ -1,0 +1,217 @@
+//! What is wrong with a scene, and where: one message with the line that it is about.
+
+use core::fmt;
+use core::ops::Range;
+
+use lieflow::Error;
+
+use super::suggest::help_for;
+
+/// Why a scene cannot be used: the file, the line with a caret, and what was expected.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SceneError(Box<Report>);
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Report {
+    source: String,
+    place: Option<Place>,
+    message: String,
+    help: Option<String>,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Place {
+    line: usize,
+    column: usize,
+    /// The line, or the part of it around the caret, without control characters.
+    shown: String,
+    /// Characters of `shown` before the caret, and below it.
+    caret: Range<usize>,
+}
+
+/// The most characters of a line that are shown.
+const SHOWN: usize = 100;
+
+/// The last boundary of characters up to `i`.
+fn char_boundary(text: &str, i: usize) -> usize {
+    let mut i = i.min(text.len());
+    while !text.is_char_boundary(i) {
+        i -= 1;
+    }
+    i
+}
+
+impl Place {
+    fn of(text: &str, span: &Range<usize>) -> Place {
+        let start = char_boundary(text, span.start);
+        let end = char_boundary(text, span.end).max(start);
+        // What lies after the last line break is no line of its own.
+        let anchor = match text[..start].strip_suffix('\n') {
+            Some(before) if start == text.len() => before.len(),
+            _ => start,
+        };
+        let from = text[..anchor].rfind('\n').map_or(0, |i| i + 1);
+        let line: Vec<char> = text[from..].lines().next().unwrap_or_default().chars().collect();
+        let before = text[from..anchor].chars().count().min(line.len());
+        let marked = text[anchor..end.max(anchor)].lines().next().unwrap_or_default();
+        let marked = marked.chars().count().clamp(1, (line.len() - before).max(1));
+        let skipped = if before + marked > SHOWN { before.saturating_sub(SHOWN / 4) } else { 0 };
+        let visible = |c: &char| if c.is_control() && *c != '\t' { '\u{fffd}' } else { *c };
+        let shown: String = line.iter().skip(skipped).take(SHOWN).map(visible).collect();
+        let caret_end = (before + marked - skipped).min(SHOWN);
+        Place {
+            line: text[..from].matches('\n').count() + 1,
+            column: before + 1,
+            shown,
+            caret: before - skipped..caret_end,
+        }
+    }
+}
+
+impl SceneError {
+    pub(super) fn new(source: &str, message: String) -> Self {
+        SceneError(Box::new(Report { source: source.into(), place: None, message, help: None }))
+    }
+
+    pub(super) fn at(mut self, text: &str, span: Option<Range<usize>>) -> Self {
+        self.0.place = span.map(|span| Place::of(text, &span));
+        self
+    }
+
+    pub(super) fn with_help(mut self, help: Option<String>) -> Self {
+        self.0.help = help;
+        self
+    }
+
+    /// The line, from 1, where it is about one.
+    pub fn line(&self) -> Option<usize> {
+        self.0.place.as_ref().map(|place| place.line)
+    }
+
+    /// What is wrong, without the place.
+    pub fn message(&self) -> &str {
+        &self.0.message
+    }
+}
+
+impl fmt::Display for SceneError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Report { source, place, message, help } = &*self.0;
+        let Some(Place { line, column, shown, caret }) = place else {
+            write!(f, "{source}: {message}")?;
+            return help.iter().try_for_each(|help| write!(f, "\n  = {help}"));
+        };
+        let number = line.to_string();
+        let margin = " ".repeat(number.len());
+        let indent: String =
+            shown.chars().take(caret.start).map(|c| if c == '\t' { '\t' } else { ' ' }).collect();
+        let marks = "^".repeat(caret.len().max(1));
+        write!(f, "{source}:{line}:{column}: {message}\n{margin} |\n{number} | {shown}")?;
+        write!(f, "\n{margin} | {indent}{marks}")?;
+        help.iter().try_for_each(|help| write!(f, "\n{margin} = {help}"))
+    }
+}
+
+impl core::error::Error for SceneError {}
+
+/// A value that a scene cannot have; the place is found by its key.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Refusal {
+    /// The key, with the index of the entry where it has one: `inertia[1]`, `attitude[0,2]`.
+    pub key: Option<String>,
+    /// What is wrong.
+    pub message: String,
+    /// What to do.
+    pub help: Option<String>,
+}
+
+impl Refusal {
+    /// A value that cannot be used.
+    pub fn at(key: impl Into<String>, message: impl Into<String>) -> Self {
+        Refusal { key: Some(key.into()), message: message.into(), help: None }
+    }
+
+    /// Something about a section as a whole.
+    pub fn section(message: impl Into<String>) -> Self {
+        Refusal { key: None, message: message.into(), help: None }
+    }
+}
+
+impl From<Error> for Refusal {
+    fn from(error: Error) -> Self {
+        let message = error.to_string();
+        let key = match error {
+            Error::UnknownName { kind, name, expected } => {
+                let key = if kind == "method" { "name" } else { kind };
+                return Refusal {
+                    key: Some(key.into()),
+                    message: format!("unknown {kind} `{name}`"),
+                    help: Some(help_for(&name, &expected)),
+                };
+            }
+            Error::OutOfRange { arg, .. } => Some(arg),
+            Error::NotFiniteEntry { arg, row, col, .. } => Some(format!("{arg}[{row},{col}]")),
+            Error::NotSquare { arg, .. }
+            | Error::Shape { arg, .. }
+            | Error::NotInAlgebra { arg, .. }
+            | Error::NotOnGroup { arg, .. }
+            | Error::Reflection { arg }
+            | Error::Singular { arg, .. } => Some(arg.into()),
+            Error::Unsupported { what, .. } => Some(what.into()),
+            _ => None,
+        };
+        Refusal { key, message, help: None }
+    }
+}
+
+/// Why the keys of a section cannot be used.
+#[derive(Clone, Debug)]
+pub enum ReadError {
+    /// Unknown and missing keys, wrong types.
+    Toml(toml::de::Error),
+    /// Values that cannot be used.
+    Refused(Refusal),
+}
+
+impl From<toml::de::Error> for ReadError {
+    fn from(error: toml::de::Error) -> Self {
+        ReadError::Toml(error)
+    }
+}
+impl From<Refusal> for ReadError {
+    fn from(refusal: Refusal) -> Self {
+        ReadError::Refused(refusal)
+    }
+}
+impl From<Error> for ReadError {
+    fn from(error: Error) -> Self {
+        ReadError::Refused(error.into())
+    }
+}
+
+/// One of two keys.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Either<A, B> {
+    /// The first.
+    First(A),
+    /// The second.
+    Second(B),
+}
+
+/// The one of two keys that is there.
+///
+/// # Errors
+/// Both are there, or none.
+pub fn exactly_one<A, B>(
+    (a, first): (&str, Option<A>),
+    (b, second): (&str, Option<B>),
+) -> Result<Either<A, B>, Refusal> {
+    match (first, second) {
+        (Some(value), None) => Ok(Either::First(value)),
+        (None, Some(value)) => Ok(Either::Second(value)),
+        (Some(_), Some(_)) => {
+            Err(Refusal::at(b, format!("both `{a}` and `{b}`, expected exactly one of them")))
+        }
+        (None, None) => Err(Refusal::section(format!("expected `{a}` or `{b}`, found neither"))),
+    }
+}

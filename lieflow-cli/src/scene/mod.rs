@@ -1,0 +1,173 @@
+//! Scenes: a problem, a method, a time span and what to write, as a TOML file.
+
+mod bundled;
+mod document;
+mod error;
+mod keys;
+mod suggest;
+pub mod values;
+
+pub use bundled::{BUNDLED, Bundled};
+pub use error::{Either, ReadError, Refusal, SceneError, exactly_one};
+pub use suggest::{help_for, suggest};
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use lieflow::catalog::MethodSpec;
+use lieflow::{Error, SaveAt, TimeGrid};
+
+use self::document::{Document, deserializer};
+use self::keys::{MethodKeys, OutputKeys, TimeKeys};
+use crate::kinds::{Kind, ProblemSpec};
+use crate::model::{Layer, Model};
+
+/// A run, stated in full and checked.
+#[derive(Debug)]
+pub struct Scene {
+    /// Its title.
+    pub title: String,
+    /// Its name: that of the file, without `.toml`.
+    pub name: String,
+    /// The problem.
+    pub problem: Box<dyn ProblemSpec>,
+    /// The method, with the parts that it takes by default spelt out.
+    pub method: MethodSpec,
+    /// The layer.
+    pub layer: Layer,
+    /// The steps.
+    pub grid: TimeGrid,
+    /// Where rows are written.
+    pub save: SaveAt,
+    /// What is written, in this order.
+    pub quantities: Vec<String>,
+}
+
+/// Larger files are not scenes.
+const SIZE_MAX: u64 = 64 << 20;
+
+impl Scene {
+    /// Read a scene. `source` is what messages call it, and its file stem is the scene's name.
+    ///
+    /// # Errors
+    /// [`SceneError`] at the first thing that is wrong. A scene that is returned can be run.
+    pub fn parse(source: &str, text: &str) -> Result<Scene, SceneError> {
+        let document = Document::parse(source, text)?;
+        document.check_top()?;
+        let title: String = document.top("title")?;
+        let problem = read_problem(&document)?;
+        let (method, layer) = document
+            .keys::<MethodKeys>("method")?
+            .resolve()
+            .map_err(|refusal| document.refusal("method", refusal))?;
+        let grid = document
+            .keys::<TimeKeys>("time")?
+            .resolve()
+            .map_err(|refusal| document.refusal("time", refusal))?;
+        let (quantities, save) = document
+            .keys::<OutputKeys>("output")?
+            .resolve(problem.kind(), &grid)
+            .map_err(|refusal| document.refusal("output", refusal))?;
+        let stem = Path::new(source).file_stem().unwrap_or_default().to_string_lossy();
+        let name = if stem.is_empty() { "scene".into() } else { stem.into_owned() };
+        let scene = Scene { title, name, problem, method, layer, grid, save, quantities };
+        let model = scene.model().map_err(|error| document.refusal("problem", error.into()))?;
+        model.fits(&scene.method).map_err(|error| document.refusal("method", error.into()))?;
+        Ok(scene)
+    }
+
+    /// Read a scene file.
+    ///
+    /// # Errors
+    /// [`SceneError`], also for a file that cannot be read.
+    pub fn load(path: &Path) -> Result<Scene, SceneError> {
+        let source = path.display().to_string();
+        let unreadable = |why: String| SceneError::new(&source, why);
+        if path.is_dir() {
+            return Err(unreadable("this is a folder, expected a scene file".into()));
+        }
+        let mut bytes = Vec::new();
+        File::open(path)
+            .and_then(|file| file.take(SIZE_MAX + 1).read_to_end(&mut bytes))
+            .map_err(|error| unreadable(format!("cannot read the scene: {error}")))?;
+        if bytes.len() as u64 > SIZE_MAX {
+            let limit = SIZE_MAX >> 20;
+            return Err(unreadable(format!("larger than {limit} MiB, expected a scene file")));
+        }
+        let text = String::from_utf8(bytes).map_err(|error| {
+            let valid = error.utf8_error().valid_up_to();
+            let line = error.as_bytes()[..valid].iter().filter(|byte| **byte == b'\n').count() + 1;
+            unreadable(format!("line {line} is not UTF-8 text"))
+        })?;
+        Self::parse(&source, &text)
+    }
+
+    /// The bundled scene of that name.
+    ///
+    /// # Errors
+    /// [`SceneError`] for an unknown name.
+    pub fn bundled(name: &str) -> Result<Scene, SceneError> {
+        match Bundled::named(name) {
+            Some(scene) => Self::parse(&format!("{name}.toml"), scene.text),
+            None => Err(unknown_scene(name)),
+        }
+    }
+
+    /// A scene by the path of its file or, where there is no such file, by its bundled name.
+    ///
+    /// # Errors
+    /// [`SceneError`].
+    pub fn open(scene: &Path) -> Result<Scene, SceneError> {
+        let name = scene.to_string_lossy();
+        let bundled = Bundled::named(&name).is_some();
+        if scene.is_file() || (scene.exists() && !bundled) {
+            return Self::load(scene);
+        }
+        let stem = name.strip_suffix(".toml").unwrap_or(&name);
+        let a_path = name.contains(['/', '\\', '.']) && Bundled::named(stem).is_none();
+        if a_path { Self::load(scene) } else { Self::bundled(&name) }
+    }
+
+    /// The problem on the layer of the scene, with the quantities of the scene.
+    ///
+    /// # Errors
+    /// [`lieflow::Error`] for a problem that cannot be set up; not after [`parse`](Self::parse).
+    pub fn model(&self) -> Result<Box<dyn Model>, Error> {
+        let quantities: Vec<&str> = self.quantities.iter().map(String::as_str).collect();
+        self.model_with(self.layer, &quantities)
+    }
+
+    /// The problem on any layer with any quantities.
+    ///
+    /// # Errors
+    /// [`Error::UnknownName`] for a quantity that the problem does not have.
+    pub fn model_with(&self, layer: Layer, quantities: &[&str]) -> Result<Box<dyn Model>, Error> {
+        self.problem.model(layer, quantities)
+    }
+}
+
+/// No scene has this name.
+pub fn unknown_scene(name: &str) -> SceneError {
+    let names: Vec<&str> = BUNDLED.iter().map(|scene| scene.name).collect();
+    SceneError::new(name, "neither a file nor a bundled scene".into())
+        .with_help(Some(help_for(name, &names)))
+}
+
+fn read_problem(document: &Document<'_>) -> Result<Box<dyn ProblemSpec>, SceneError> {
+    let mut section = document.section("problem")?;
+    let refuse = |error: ReadError| document.read_error("problem", error);
+    let Some((_, kind)) = section.get_mut().remove_entry("kind") else {
+        return Err(refuse(Refusal::section("missing key `kind` in [problem]").into()));
+    };
+    let name = match kind.get_ref() {
+        toml::de::DeValue::String(name) => name,
+        other => {
+            let message = format!("found {}, expected the name of a problem", other.type_str());
+            return Err(refuse(Refusal::at("kind", message).into()));
+        }
+    };
+    let kind = Kind::named(name)
+        .map_err(|error| refuse(Refusal { key: Some("kind".into()), ..error.into() }.into()))?;
+    (kind.read)(deserializer(section)).map_err(refuse)
+}

@@ -1,0 +1,114 @@
+//! What keys of a scene hold: numbers that are finite, lists of known length.
+
+use core::fmt;
+
+use serde::de::{Deserialize, Deserializer, Error, SeqAccess, Visitor};
+
+/// A finite number; an integer is one too.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Real(pub f64);
+
+impl<'de> Deserialize<'de> for Real {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct AsReal;
+        impl Visitor<'_> for AsReal {
+            type Value = Real;
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a number")
+            }
+            fn visit_f64<E: Error>(self, x: f64) -> Result<Real, E> {
+                match x.is_finite() {
+                    true => Ok(Real(x)),
+                    false => Err(E::custom(format!("found {x}, expected a finite number"))),
+                }
+            }
+            fn visit_i64<E: Error>(self, x: i64) -> Result<Real, E> {
+                Ok(Real(x as f64))
+            }
+            fn visit_u64<E: Error>(self, x: u64) -> Result<Real, E> {
+                Ok(Real(x as f64))
+            }
+            fn visit_i128<E: Error>(self, x: i128) -> Result<Real, E> {
+                Ok(Real(x as f64))
+            }
+            fn visit_u128<E: Error>(self, x: u128) -> Result<Real, E> {
+                Ok(Real(x as f64))
+            }
+        }
+        deserializer.deserialize_any(AsReal)
+    }
+}
+
+/// A whole number from `MIN`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Whole<const MIN: u64>(pub u64);
+
+impl<'de, const MIN: u64> Deserialize<'de> for Whole<MIN> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct AsWhole<const MIN: u64>;
+        impl<const MIN: u64> Visitor<'_> for AsWhole<MIN> {
+            type Value = Whole<MIN>;
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                write!(f, "a whole number, at least {MIN}")
+            }
+            fn visit_i64<E: Error>(self, n: i64) -> Result<Whole<MIN>, E> {
+                match u64::try_from(n) {
+                    Ok(n) if n >= MIN => Ok(Whole(n)),
+                    _ => Err(E::custom(format!(
+                        "found {n}, expected a whole number, at least {MIN}"
+                    ))),
+                }
+            }
+        }
+        deserializer.deserialize_any(AsWhole::<MIN>)
+    }
+}
+
+/// N entries.
+struct Entries<T, const N: usize>([T; N]);
+
+impl<'de, T: Deserialize<'de>, const N: usize> Entries<T, N> {
+    fn read<D: Deserializer<'de>>(d: D, what: &'static str) -> Result<Self, D::Error> {
+        struct AsEntries<T, const N: usize>(&'static str, core::marker::PhantomData<T>);
+        impl<'de, T: Deserialize<'de>, const N: usize> Visitor<'de> for AsEntries<T, N> {
+            type Value = Entries<T, N>;
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                write!(f, "a list of {N} {}", self.0)
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Entries<T, N>, A::Error> {
+                let mut entries = Vec::new();
+                while let Some(entry) = list.next_element()? {
+                    entries.push(entry);
+                }
+                let found = entries.len();
+                entries.try_into().map(Entries).map_err(|_| {
+                    let found = if found == 0 { "none".into() } else { found.to_string() };
+                    A::Error::custom(format!("expected {N} {}, found {found}", self.0))
+                })
+            }
+        }
+        d.deserialize_any(AsEntries(what, core::marker::PhantomData))
+    }
+}
+
+/// N numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reals<const N: usize>(pub [f64; N]);
+
+impl<'de, const N: usize> Deserialize<'de> for Reals<N> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let entries: Entries<Real, N> = Entries::read(deserializer, "numbers")?;
+        Ok(Reals(entries.0.map(|x| x.0)))
+    }
+}
+
+/// N rows of N numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rows<const N: usize>(pub [[f64; N]; N]);
+
+impl<'de, const N: usize> Deserialize<'de> for Rows<N> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let entries: Entries<Reals<N>, N> = Entries::read(deserializer, "rows of numbers")?;
+        Ok(Rows(entries.0.map(|row| row.0)))
+    }
+}

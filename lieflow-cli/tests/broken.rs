@@ -1,0 +1,246 @@
+//! Scenes that cannot be used: one clear message with the line, exit code 2, nothing written.
+
+mod support;
+
+use support::{Folder, SCENE};
+
+/// Replace a line of the scene, and expect the message to be about this line and to say this.
+const BROKEN: &[(&str, &str, usize, &[&str])] = &[
+    (
+        "inertia = [1, 2.0, 3.0]",
+        "inertai = [1, 2, 3]",
+        4,
+        &["unknown key `inertai`", "did you mean `inertia`?"],
+    ),
+    ("inertia = [1, 2.0, 3.0]", "inertia = [1, 2]", 4, &["expected 3 numbers, found 2"]),
+    ("inertia = [1, 2.0, 3.0]", "inertia = [1, 2, 3, 4]", 4, &["expected 3 numbers, found 4"]),
+    ("inertia = [1, 2.0, 3.0]", "inertia = []", 4, &["expected 3 numbers, found none"]),
+    ("inertia = [1, 2.0, 3.0]", "inertia = 1.0", 4, &["expected a list of 3 numbers"]),
+    (
+        "inertia = [1, 2.0, 3.0]",
+        "inertia = [1, \"two\", 3]",
+        4,
+        &["string \"two\"", "expected a number"],
+    ),
+    ("inertia = [1, 2.0, 3.0]", "inertia = [1, nan, 3]", 4, &["expected a finite number"]),
+    ("inertia = [1, 2.0, 3.0]", "inertia = [1, 2, -inf]", 4, &["expected a finite number"]),
+    ("inertia = [1, 2.0, 3.0]", "inertia = [1, 2, 1e400]", 4, &["out of range"]),
+    ("inertia = [1, 2.0, 3.0]", "inertia = [1, -2, 3]", 4, &["inertia[1] = -2", "> 0"]),
+    ("inertia = [1, 2.0, 3.0]", "inertia = [\n  1,\n  2,\n  0\n]", 7, &["inertia[2] = 0", "> 0"]),
+    (
+        "inertia = [1, 2.0, 3.0]",
+        "inverse_inertia = [1, 0, 3]",
+        4,
+        &["inverse_inertia[1] = 0", "> 0"],
+    ),
+    ("inertia = [1, 2.0, 3.0]", "", 2, &["`inertia` or `inverse_inertia`", "neither"]),
+    (
+        "inertia = [1, 2.0, 3.0]",
+        "inertia = [1, 1, 1]\ninverse_inertia = [1, 1, 1]",
+        5,
+        &["exactly one"],
+    ),
+    ("inertia = [1, 2.0, 3.0]", "inertia = [1, 2, 3]\ninertia = [1, 2, 3]", 5, &["duplicate key"]),
+    (
+        "omega_body = [0.2, 0.0, 1.0]",
+        "omega_body = [1, 1, 1]\nmomentum_body = [1, 1, 1]",
+        6,
+        &["`omega_body` and `momentum_body`", "exactly one"],
+    ),
+    (
+        "omega_body = [0.2, 0.0, 1.0]",
+        "omega_body = [1, 1, 1e308]",
+        5,
+        &["omega_body[2]", "not finite"],
+    ),
+    (
+        "omega_body = [0.2, 0.0, 1.0]",
+        "momentum_body = [1, 1, 1]\nattitude = [[1, 0, 0], [0, 1, 0], [0, 0, -1]]",
+        6,
+        &["rotation"],
+    ),
+    (
+        "omega_body = [0.2, 0.0, 1.0]",
+        "momentum_body = [1, 1, 1]\nattitude = [[1, 0, 0], [0, 1, 0], [0, 1, 1]]",
+        6,
+        &["SO(3)"],
+    ),
+    (
+        "omega_body = [0.2, 0.0, 1.0]",
+        "momentum_body = [1, 1, 1]\nattitude = [[1, 0, 0], [0, 1], [0, 0, 1]]",
+        6,
+        &["expected 3 numbers, found 2"],
+    ),
+    (
+        "omega_body = [0.2, 0.0, 1.0]",
+        "momentum_body = [1, 1, 1]\nattitude = [[1, 0, 0]]",
+        6,
+        &["expected 3 rows of numbers, found 1"],
+    ),
+    (
+        "kind = \"rigid-body\"",
+        "kind = \"rigid_body\"",
+        3,
+        &["rigid_body", "did you mean `rigid-body`?"],
+    ),
+    ("kind = \"rigid-body\"", "", 2, &["missing key `kind`"]),
+    ("kind = \"rigid-body\"", "kind = 7", 3, &["expected the name of a problem"]),
+    (
+        "name = \"rkmk4\"",
+        "name = \"rkmk5\"",
+        7,
+        &["unknown method `rkmk5`", "rkmk4, rkmk, rk4, rk", "did you mean"],
+    ),
+    ("name = \"rkmk4\"", "", 6, &["missing key `name`"]),
+    ("name = \"rkmk4\"", "name = \"rk4\"", 8, &["map", "leave map out"]),
+    ("name = \"rkmk4\"", "name = \"rkmk4\"\ntableau = \"heun\"", 8, &["tableau", "fixed"]),
+    (
+        "name = \"rkmk4\"",
+        "name = \"rkmk\"\ntableau = \"hune\"",
+        8,
+        &["unknown tableau `hune`", "did you mean `heun`?"],
+    ),
+    ("map = \"exp\"", "map = \"exo\"", 8, &["unknown map `exo`", "ccsk321", "did you mean `exp`?"]),
+    ("map = \"exp\"", "map = \"cay\"\nq = 2", 9, &["leave q out"]),
+    ("map = \"exp\"", "q = -1", 8, &["found -1", "at least 0"]),
+    (
+        "layer = \"closed\"",
+        "layer = \"close\"",
+        9,
+        &["unknown layer `close`", "did you mean `closed`?"],
+    ),
+    (
+        "layer = \"closed\"",
+        "layers = \"closed\"",
+        9,
+        &["unknown key `layers`", "did you mean `layer`?"],
+    ),
+    ("t_span = [0, 2.0]", "t_span = [2, 2.0]", 11, &["empty"]),
+    ("t_span = [0, 2.0]", "t_span = [0, 1e308]\nx = 1", 12, &["unknown key `x`"]),
+    ("t_span = [0, 2.0]", "t_span = [-1e308, 1e308]", 11, &["finite length"]),
+    ("t_span = [0, 2.0]", "", 10, &["missing key `t_span`"]),
+    ("dt = 0.05", "dt = 0.3", 12, &["divides the span", "7 steps"]),
+    ("dt = 0.05", "dt = -0.05", 12, &["> 0"]),
+    ("dt = 0.05", "dt = 1e-300", 12, &["1e15 steps"]),
+    ("dt = 0.05", "", 10, &["`dt` or `steps`", "neither"]),
+    ("dt = 0.05", "steps = 4\ndt = 0.5", 12, &["`dt` and `steps`", "exactly one"]),
+    ("dt = 0.05", "steps = 0", 12, &["found 0", "at least 1"]),
+    ("dt = 0.05", "steps = 2.5", 12, &["expected a whole number"]),
+    ("dt = 0.05", "steps = 9000000000000000000", 12, &["a step that changes t"]),
+    (
+        "quantities = [\"momentum_body\", \"energy\"]",
+        "quantities = [\"momentum\"]",
+        14,
+        &["unknown quantity `momentum`", "attitude", "did you mean `momentum_body`?"],
+    ),
+    (
+        "quantities = [\"momentum_body\", \"energy\"]",
+        "quantities = [\"energy\", \"energy\"]",
+        14,
+        &["`energy`", "twice"],
+    ),
+    (
+        "quantities = [\"momentum_body\", \"energy\"]",
+        "quantities = []",
+        14,
+        &["at least one", "omega_body"],
+    ),
+    ("quantities = [\"momentum_body\", \"energy\"]", "", 13, &["missing key `quantities`"]),
+    ("every = 10", "every = 0", 15, &["found 0", "at least 1"]),
+    ("every = 10", "every = 2\ntimes = [1]", 16, &["`every` and `times`", "exactly one"]),
+    ("every = 10", "times = [0.5, 0.5]", 15, &["times[1] = 0.5", "in order"]),
+    ("every = 10", "times = [0.5, 2.5]", 15, &["times[1] = 2.5", "within [0, 2]"]),
+    ("[output]", "[outptu]", 13, &["unknown key `outptu`", "did you mean `output`?"]),
+    ("[method]", "[method", 6, &["not TOML"]),
+    ("title = \"Test\"", "title = 3", 1, &["expected a string"]),
+    ("title = \"Test\"", "title = \"Test\"\ncolour = \"red\"", 2, &["unknown key `colour`"]),
+];
+
+#[test]
+fn a_broken_scene_gets_one_message_with_its_line_and_leaves_nothing() {
+    let folder = Folder::new();
+    for (good, bad, line, words) in BROKEN {
+        assert_eq!(SCENE.matches(good).count(), 1, "{good}");
+        let text = SCENE.replace(good, bad);
+        folder.write("broken.toml", &text);
+        let message = folder.lieflow(&["run", "broken.toml", "--out", "out"]).refused();
+        let place = format!("error: broken.toml:{line}:");
+        assert!(message.starts_with(&place), "{bad}: expected line {line}\n{message}");
+        for word in *words {
+            assert!(message.contains(word), "{bad}: expected {word}\n{message}");
+        }
+        let shown = text.lines().nth(line - 1).unwrap();
+        assert!(message.contains(&format!("{line} | {shown}\n")), "{bad}\n{message}");
+        assert!(message.contains('^'), "{bad}\n{message}");
+        assert_eq!(folder.names("."), ["broken.toml"], "{bad}");
+    }
+}
+
+#[test]
+fn a_missing_part_is_named() {
+    let folder = Folder::new();
+    let without = |from: &str, to: &str| {
+        let start = SCENE.find(from).unwrap();
+        let end = SCENE.find(to).unwrap_or(SCENE.len());
+        format!("{}{}", &SCENE[..start], &SCENE[end..])
+    };
+    for (text, what) in [
+        (String::new(), "missing key `title`"),
+        (without("title", "[problem]"), "missing key `title`"),
+        (without("[problem]", "[method]"), "missing section [problem]"),
+        (without("[method]", "[time]"), "missing section [method]"),
+        (without("[time]", "[output]"), "missing section [time]"),
+        (without("[output]", "nothing"), "missing section [output]"),
+    ] {
+        folder.write("broken.toml", &text);
+        let message = folder.lieflow(&["run", "broken.toml"]).refused();
+        assert!(message.contains(&format!("broken.toml: {what}")), "{message}");
+        assert_eq!(folder.names("."), ["broken.toml"]);
+    }
+}
+
+#[test]
+fn files_that_are_no_scenes_are_refused() {
+    let folder = Folder::new();
+    std::fs::write(folder.path().join("latin.toml"), b"title = \"x\"\n# caf\xe9\n").unwrap();
+    std::fs::create_dir(folder.path().join("folder")).unwrap();
+    for (scene, words) in [
+        ("latin.toml", "line 2 is not UTF-8"),
+        ("folder", "this is a folder"),
+        ("missing.toml", "cannot read the scene"),
+        ("asymetric-top", "did you mean `asymmetric-top`?"),
+        ("asymmetric-top.toml", "did you mean `asymmetric-top`?"),
+    ] {
+        for command in [&["run", scene][..], &["methods", "--for", scene]] {
+            let message = folder.lieflow(command).refused();
+            assert!(message.contains(words), "{message}");
+        }
+    }
+}
+
+#[test]
+fn an_output_folder_that_cannot_be_made_is_an_error() {
+    let folder = Folder::new();
+    folder.write("scene.toml", SCENE);
+    folder.write("taken", "mine");
+    let message = folder.lieflow(&["run", "scene.toml", "--out", "taken"]).refused();
+    assert!(message.contains("cannot make the folder `taken`"), "{message}");
+    assert_eq!(folder.read("taken"), "mine");
+}
+
+#[test]
+fn odd_bytes_are_shown_with_care() {
+    let folder = Folder::new();
+    for line in
+        ["inertia\t=\t[1,\u{1d7d9}]", "ü = 1 # \u{1b}[31m", "inertia = [1, 2]\r", "x = [ # ∞"]
+    {
+        folder.write("broken.toml", &SCENE.replace("inertia = [1, 2.0, 3.0]", line));
+        let message = folder.lieflow(&["run", "broken.toml"]).refused();
+        assert!(message.starts_with("error: broken.toml:"), "{message}");
+        assert!(!message.contains('\u{1b}'), "{message:?}");
+    }
+    let long = format!("times = [{}9]", "0.5, ".repeat(20_000));
+    folder.write("broken.toml", &SCENE.replace("every = 10", &long));
+    let message = folder.lieflow(&["run", "broken.toml"]).refused();
+    assert!(message.contains("times[1]") && message.len() < 500, "{message}");
+}

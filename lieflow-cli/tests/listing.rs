@@ -1,0 +1,125 @@
+//! `lieflow scenes`, `methods`, `completions` and the help texts.
+
+mod support;
+
+use std::process::{Command, Stdio};
+
+use lieflow::catalog::{MAPS, METHODS, TABLEAUS};
+use lieflow_cli::kinds::KINDS;
+use lieflow_cli::scene::{BUNDLED, Scene};
+use serde_json::Value;
+use support::Folder;
+
+fn names(list: &Value) -> Vec<&str> {
+    list.as_array().unwrap().iter().map(|entry| entry["name"].as_str().unwrap()).collect()
+}
+
+#[test]
+fn scenes_are_listed_and_printed() {
+    let folder = Folder::new();
+    let listed = folder.lieflow(&["scenes"]).ok();
+    let json: Value = serde_json::from_str(&folder.lieflow(&["scenes", "--json"]).ok()).unwrap();
+    assert_eq!(names(&json["scenes"]), BUNDLED.iter().map(|s| s.name).collect::<Vec<_>>());
+    assert_eq!(names(&json["kinds"]), KINDS.iter().map(|k| k.name).collect::<Vec<_>>());
+    for scene in BUNDLED {
+        assert!(listed.contains(scene.name), "{listed}");
+        assert!(!scene.description().is_empty());
+        assert_eq!(folder.lieflow(&["scenes", scene.name]).ok(), scene.text);
+        let one = folder.lieflow(&["scenes", scene.name, "--json"]).ok();
+        assert_eq!(serde_json::from_str::<Value>(&one).unwrap()["text"], scene.text);
+    }
+    let message = folder.lieflow(&["scenes", "symetric-top"]).refused();
+    assert!(message.contains("did you mean `symmetric-top`?"), "{message}");
+}
+
+#[test]
+fn a_printed_scene_runs() {
+    let folder = Folder::new();
+    for scene in BUNDLED {
+        let text = folder.lieflow(&["scenes", scene.name]).ok();
+        folder.write("my.toml", &text);
+        folder.lieflow(&["run", "my.toml"]).ok();
+        assert_eq!(folder.names("lieflow-out/my"), ["summary.json", "trajectory.csv"]);
+    }
+    folder.lieflow(&["run", "symmetric-top"]).ok();
+    assert_eq!(folder.names("lieflow-out"), ["my", "symmetric-top"]);
+}
+
+#[test]
+fn methods_are_listed_from_the_catalog() {
+    let folder = Folder::new();
+    let listed = folder.lieflow(&["methods"]).ok();
+    let json: Value = serde_json::from_str(&folder.lieflow(&["methods", "--json"]).ok()).unwrap();
+    assert_eq!(names(&json["methods"]), METHODS.iter().map(|m| m.name).collect::<Vec<_>>());
+    assert_eq!(names(&json["maps"]), MAPS.iter().map(|m| m.name).collect::<Vec<_>>());
+    assert_eq!(names(&json["tableaus"]), TABLEAUS);
+    assert_eq!(json["tableaus"][0]["order"], 1);
+    for name in names(&json["methods"]).iter().chain(&names(&json["maps"])) {
+        assert!(listed.contains(name), "{listed}");
+    }
+    for scene in ["asymmetric-top", "general-layer", "tumbling-attitude"] {
+        let fitting = folder.lieflow(&["methods", "--for", scene, "--json"]).ok();
+        let fitting: Value = serde_json::from_str(&fitting).unwrap();
+        assert_eq!(fitting["methods"], json["methods"], "{scene}");
+        assert!(folder.lieflow(&["methods", "--for", scene]).ok().contains(scene));
+    }
+}
+
+#[test]
+fn the_keys_and_quantities_that_are_listed_are_those_that_scenes_take() {
+    for kind in KINDS {
+        let quantities: Vec<_> = kind.quantities.iter().map(|quantity| quantity.name).collect();
+        let text = BUNDLED.iter().find(|s| s.text.contains(&format!("{:?}", kind.name))).unwrap();
+        let text = text.text.replace("[problem]", "[problem]\nno_such_key = 1");
+        let message = Scene::parse("scene", &text).unwrap_err().to_string();
+        let keys: Vec<_> = kind.keys.iter().map(|key| key.name).collect();
+        assert!(message.contains(&format!("expected one of {}", keys.join(", "))), "{message}");
+
+        let scene = Scene::bundled("asymmetric-top").unwrap();
+        let columns: Vec<_> = kind.quantities.iter().flat_map(|q| q.columns).collect();
+        let model = scene.problem.model(scene.layer, &quantities).unwrap();
+        assert_eq!(model.columns().iter().collect::<Vec<_>>(), columns);
+    }
+}
+
+#[test]
+fn help_has_examples() {
+    let folder = Folder::new();
+    let commands = ["run", "compare", "check", "scenes", "methods", "completions"];
+    let top = folder.lieflow(&["--help"]).ok();
+    for command in commands {
+        assert!(top.contains(command), "{top}");
+        let help = folder.lieflow(&[command, "--help"]).ok();
+        assert!(help.contains("Examples:") && help.contains("lieflow "), "{help}");
+    }
+    for option in ["--quick", "--out", "Examples:"] {
+        assert!(top.contains(option), "{top}");
+    }
+    assert!(folder.lieflow(&["--version"]).ok().starts_with("lieflow "));
+    assert_eq!(folder.lieflow(&["no-such-command"]).code, Some(2));
+    assert_eq!(folder.lieflow(&["run"]).code, Some(2));
+}
+
+#[test]
+fn completions_are_printed() {
+    let folder = Folder::new();
+    for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
+        assert!(folder.lieflow(&["completions", shell]).ok().contains("lieflow"));
+    }
+}
+
+#[test]
+fn a_reader_that_goes_away_is_no_error() {
+    for args in [&["scenes"][..], &["methods"], &["completions", "zsh"], &["--help"]] {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_lieflow"))
+            .args(args)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        drop(child.stdout.take());
+        let output = child.wait_with_output().unwrap();
+        assert_eq!(String::from_utf8(output.stderr).unwrap(), "", "{args:?}");
+        assert!(output.status.success(), "{args:?}");
+    }
+}
