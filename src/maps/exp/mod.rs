@@ -1,0 +1,41 @@
+//! Ψ = exp, canonical coordinates of the first kind (paper 4.1).
+//!
+//! | | exp(u) | dexp_u⁻¹ |
+//! |---|---|---|
+//! | any n | Padé, scaling and squaring | Σ B_k/k! ad_u^k (15); on so(n) beyond its radius the eigen form |
+//! | so(3) | 𝟙 + (sin α/α) u + ((1−cos α)/α²) u² (14) | 𝟙 − u/2 + ((1−(α/2)cot(α/2))/α²) u² (16) |
+
+mod general;
+mod so3;
+
+pub use general::{Dexpinv, dexpinv};
+pub(super) use so3::{SQUARE_MAX, rodrigues, rodrigues_on};
+
+/// The exponential map with dexp⁻¹ to rounding.
+///
+/// On n×n matrices dexp⁻¹ is the Baker series summed until its terms vanish in rounding; on so(n)
+/// beyond the series' useful radius it is the eigen form, exact at any ‖u‖.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Exp;
+
+impl Exp {
+    /// The same map with the Baker series cut after the power q of ad_u, as in Table 1: a method of
+    /// order p needs q = p − 2. The closed form on so(3) has no series to cut.
+    pub const fn truncated(self, q: usize) -> TruncatedExp {
+        TruncatedExp { q }
+    }
+}
+
+/// The exponential map with dexp⁻¹ cut after the power q of ad_u: `Exp.truncated(q)`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TruncatedExp {
+    q: usize,
+}
+
+impl TruncatedExp {
+    /// The highest order of a method that keeps it with the series cut at q: q + 2, and one more
+    /// for even q ≥ 2, because the next coefficient is zero.
+    fn order_kept(self) -> usize {
+        if self.q >= 2 && self.q.is_multiple_of(2) { self.q + 3 } else { self.q + 2 }
+    }
+}
