@@ -20,7 +20,7 @@ pub struct Exp;
 
 impl Exp {
     /// The same map with the Baker series cut after the power q of ad_u, as in Table 1: a method of
-    /// order p needs q = p − 2. The closed form on so(3) has no series to cut.
+    /// order p needs q = p − 2. On so(3) the brackets are cross products.
     pub const fn truncated(self, q: usize) -> TruncatedExp {
         TruncatedExp { q }
     }
