@@ -5,8 +5,17 @@
 
 use crate::error::Error;
 use crate::maps::{CCSK, CCSK123, CCSK321, Cay, Ccsk, CoordinateMap, Exp, TruncatedExp};
-use crate::methods::{Method, Rk, Rkmk, tableau};
+use crate::methods::{GAUSS4, Method, Rk, Rkmk, RkmkGauss, tableau};
 use crate::problems::{Ambient, Problem};
+
+mod special;
+
+use special::misfit;
+pub use special::{
+    ATTITUDE_METHODS, BODY_METHODS, IMPLICIT_METHODS, ISOSPECTRAL_METHODS, LIE_POISSON_METHODS,
+    all_methods, with_attitude_method, with_body_method, with_implicit_method,
+    with_lie_poisson_method, with_momentum_method,
+};
 
 /// A coordinate map that scene files can name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -143,6 +152,7 @@ pub struct MethodInfo {
 
 const KEEPS_GROUP: &str = "group, Casimirs";
 const MUNTHE_KAAS: &str = "Munthe-Kaas 1999; Celledoni & Owren, Table 1";
+const ZANNA: &str = "Zanna, Engø & Munthe-Kaas 2001";
 const KUTTA: &str = "Hairer, Nørsett, Wanner I, p. 138";
 
 /// The methods.
@@ -187,6 +197,16 @@ pub const METHODS: &[MethodInfo] = &[
         cost: "s F",
         source: KUTTA,
     },
+    MethodInfo {
+        name: "rkmk-gauss4",
+        summary: "implicit Runge–Kutta–Munthe-Kaas on the Gauss tableau of two stages",
+        order: Some(4),
+        takes_map: true,
+        takes_tableau: false,
+        preserves: KEEPS_GROUP,
+        cost: "5–20 × (2 f, 2 Ψ, 2 dΨ⁻¹)",
+        source: ZANNA,
+    },
 ];
 
 /// A method by name, with its parts.
@@ -213,10 +233,9 @@ impl MethodSpec {
     /// # Errors
     /// [`Error::UnknownName`], and [`Error::Unsupported`] for a part that the method does not take.
     pub fn info(&self) -> Result<&'static MethodInfo, Error> {
-        let info = METHODS
-            .iter()
+        let info = all_methods()
             .find(|m| m.name == self.name)
-            .ok_or_else(|| unknown("method", &self.name, METHODS.iter().map(|m| m.name)))?;
+            .ok_or_else(|| unknown("method", &self.name, all_methods().map(|m| m.name)))?;
         let refuse = |what, why| Error::Unsupported { what, with: format!("`{}`", info.name), why };
         if self.map.is_some() && !info.takes_map {
             return Err(refuse("map", "it works without coordinates; leave map out"));
@@ -279,6 +298,7 @@ where
             each_map!(map, spec.q, psi => on.call(Rkmk::new(t, psi)))),
         "rk4" => Ok(on.call(Rk(tableau::RK4))),
         "rk" => each_tableau!(tableau, t => Ok(on.call(Rk(t)))),
-        other => Err(unknown("method", other, METHODS.iter().map(|m| m.name))),
+        "rkmk-gauss4" => each_map!(map, spec.q, psi => on.call(RkmkGauss::new(GAUSS4, psi))),
+        other => Err(misfit(other)),
     }
 }

@@ -3,13 +3,41 @@
 //! To add a method: one file with an `impl` of [`Method`], one line here, one in the catalog, which
 //! puts it into the order tests and the command line at once.
 
+mod buss;
+mod composition;
+mod dmv;
+mod energy_casimir;
+mod exact;
+mod gauss;
+mod implicit_rkmk;
+mod isospectral;
+mod newton;
+mod projection;
 mod rk;
 mod rkmk;
+mod simo_wong;
+mod splitting;
 pub mod tableau;
+mod taylor;
 
+pub use buss::Buss4;
+pub use composition::{
+    Composition, CompositionWork, KAHAN_LI6, KAHAN_LI8, SCHEMES, SOFRONIOU_SPALETTA10, STRANG,
+    SUZUKI4, Scheme, YOSHIDA4,
+};
+pub use dmv::{DMV2, DMV4, DMV6, DMV8, DMV10, Dmv, DmvWork};
+pub use energy_casimir::{EnergyCasimir, EnergyCasimirWork};
+pub use exact::ExactMotion;
+pub use gauss::{GAUSS2, GAUSS4, GAUSS6, Gauss, GaussWork, ImplicitTableau};
+pub use implicit_rkmk::{OddMap, RkmkGauss, RkmkGaussSymmetric, RkmkGaussWork};
+pub use isospectral::{IsospectralGauss, IsospectralWork};
+pub use projection::{Projected, ProjectedWork};
 pub use rk::Rk;
 pub use rkmk::Rkmk;
+pub use simo_wong::SimoWong;
+pub use splitting::{MR2, MR4, Splitting};
 pub use tableau::Tableau;
+pub use taylor::Taylor;
 
 use crate::error::{Error, StepError};
 use crate::problems::{PointOf, Problem, ScalarOf};
@@ -24,6 +52,10 @@ pub struct Step<S> {
     /// The size; negative when time runs backward.
     pub h: S,
 }
+
+/// A method whose step is undone by the step back: Φ_{−h} ∘ Φ_h = id, to rounding. Its order is even,
+/// and a [`Composition`] raises it.
+pub trait Symmetric {}
 
 /// A one-step method for problems of type `P`.
 pub trait Method<P: Problem> {

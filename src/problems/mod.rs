@@ -2,9 +2,14 @@
 //!
 //! To add a problem: one file with an `impl` of [`Problem`], one line here.
 
+mod capability;
 mod rigid_body;
 
-pub use rigid_body::{Exact, RigidBody, RigidBodyAttitude, RigidBodyN, RigidBodyNAttitude};
+pub use capability::{Isospectral, LiePoisson, Metric, Orthogonal, Projection, Split};
+pub use rigid_body::{
+    BodyFrame, BodyState, Exact, Frame, FreeBody, RigidBody, RigidBodyAttitude, RigidBodyN,
+    RigidBodyNAttitude, RigidBodyState,
+};
 
 use crate::actions::Action;
 use crate::groups::{LieAlgebra, LieGroup};

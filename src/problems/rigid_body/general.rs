@@ -7,7 +7,7 @@ use crate::actions::{Coadjoint, LeftTranslation};
 use crate::dense::{self, antisymmetrise, mul};
 use crate::error::Error;
 use crate::groups::{AlgebraMatrix, GroupMatrix, MatrixGroup};
-use crate::problems::{Ambient, Problem};
+use crate::problems::{Ambient, Isospectral, LiePoisson, Metric, Problem};
 
 /// The free n-dimensional rigid body by its body momentum: ṁ = \[m, Ω\], Ω_ij = m_ij/J_ij, on a
 /// coadjoint orbit of SO(n). f(m) = −Ω; Λ(g, m) = g m gᵀ.
@@ -210,5 +210,58 @@ impl Ambient for RigidBodyNAttitude {
     }
     fn is_finite(&self, g: &GroupMatrix) -> bool {
         dense::is_finite(g)
+    }
+}
+
+/// ‖a − b‖ (Frobenius), without storage.
+fn distance(a: &Mat<f64>, b: &Mat<f64>) -> f64 {
+    let mut squares = 0.0;
+    for j in 0..a.ncols() {
+        for (a, b) in a.col_as_slice(j).iter().zip(b.col_as_slice(j)) {
+            squares += (a - b) * (a - b);
+        }
+    }
+    squares.sqrt()
+}
+
+impl Metric for RigidBodyN {
+    fn norm(&self, m: &Mat<f64>) -> f64 {
+        dense::norm_frobenius(m)
+    }
+    fn distance(&self, a: &Mat<f64>, b: &Mat<f64>) -> f64 {
+        distance(a, b)
+    }
+}
+
+impl Metric for RigidBodyNAttitude {
+    fn norm(&self, g: &GroupMatrix) -> f64 {
+        dense::norm_frobenius(g)
+    }
+    fn distance(&self, a: &GroupMatrix, b: &GroupMatrix) -> f64 {
+        distance(a, b)
+    }
+}
+
+/// H = ½ Σ_{i<j} m_ij²/J_ij. Its gradient is Ω in the pairing ½tr(mᵀv), which counts each plane once.
+impl LiePoisson for RigidBodyN {
+    fn hamiltonian(&self, m: &Mat<f64>) -> f64 {
+        self.energy(m)
+    }
+    fn discrete_gradient(
+        &self,
+        a: &Mat<f64>,
+        b: &Mat<f64>,
+        xi: &mut AlgebraMatrix,
+        work: &mut Mat<f64>,
+    ) {
+        dense::scaled_sum(work, [0.5, 0.5], [a, b], 0.0);
+        self.omega(1.0, work, xi);
+    }
+}
+
+/// W = m and B(W) = −Ω.
+impl Isospectral for RigidBodyN {
+    fn generator(&self, m: &Mat<f64>, b: &mut AlgebraMatrix, _: &mut Mat<f64>) {
+        self.omega(-1.0, m, b);
     }
 }
