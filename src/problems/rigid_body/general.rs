@@ -75,18 +75,23 @@ impl RigidBodyN {
         let mut twice = 0.0;
         for j in 0..m.ncols() {
             for i in 0..j {
-                twice += m[(i, j)] * m[(i, j)] * self.inverse_inertia[(i, j)];
+                let x = 0.5 * (m[(i, j)] - m[(j, i)]);
+                twice += x * x * self.inverse_inertia[(i, j)];
             }
         }
         0.5 * twice
     }
 
-    /// out ← sign·Ω(m).
+    /// out ← sign·Ω(m), by the skew part of m: a momentum in so(n)* is nothing else. The coadjoint
+    /// action g m gᵀ leaves rounding in the symmetric part; an Ω with some of it would not be in
+    /// so(n), and |m| would drift quadratically with the number of steps.
     fn omega(&self, sign: f64, m: &Mat<f64>, out: &mut Mat<f64>) {
+        let half = 0.5 * sign;
         for j in 0..m.ncols() {
-            let (m, w) = (m.col_as_slice(j), self.inverse_inertia.col_as_slice(j));
-            for ((o, m), w) in out.col_as_slice_mut(j).iter_mut().zip(m).zip(w) {
-                *o = sign * m * w;
+            out[(j, j)] = 0.0;
+            for i in j + 1..m.nrows() {
+                let w = half * (m[(i, j)] - m[(j, i)]) * self.inverse_inertia[(i, j)];
+                (out[(i, j)], out[(j, i)]) = (w, -w);
             }
         }
     }
