@@ -46,7 +46,9 @@ pub(super) fn newton3<S: Real>(
 ) -> Result<Vector3<S>, StepError> {
     let near = eps::<S>().sqrt() / 64.0;
     let mut size = S::lit(f64::INFINITY);
-    for _ in 0..NEWTON_MAX {
+    let mut iterations = 0;
+    while iterations < NEWTON_MAX {
+        iterations += 1;
         let (residual, jacobian) = f(&x);
         let d = solve3(&jacobian, &residual);
         x = Vector3::new(x[0] - d[0], x[1] - d[1], x[2] - d[2]);
@@ -58,7 +60,6 @@ pub(super) fn newton3<S: Real>(
             break;
         }
     }
-    let iterations = NEWTON_MAX;
     Err(StepError::NewtonDidNotConverge {
         method,
         iterations,

@@ -183,7 +183,7 @@ impl<const N: usize> Taylor<N> {
                 tries += 1;
             }
             let step = guess * theta.min(GROWTH);
-            if !(step.abs() > 0.0) {
+            if step == 0.0 || step.is_nan() {
                 return Err(StepError::NotConverged { what: "the choice of the step" }.into());
             }
             let last = step.abs() >= left.abs();

@@ -235,7 +235,7 @@ fn orthogonalise<S: Real>(how: Projection, g: &mut Matrix3<S>) -> Result<(), Ste
                 let (mut gram, mut change) = (group.identity(), group.identity());
                 group.compose(&g.transpose(), g, &mut gram);
                 for i in 0..3 {
-                    gram[(i, i)] = gram[(i, i)] - S::lit(1.0);
+                    gram[(i, i)] -= S::lit(1.0);
                 }
                 group.compose(g, &gram, &mut change);
                 for (x, d) in g.iter_mut().zip(&change) {
