@@ -181,7 +181,7 @@ pub enum RunError {
 /// use lieflow::{SaveAt, TimeGrid, integrate};
 /// use nalgebra::Vector3;
 ///
-/// let body = RigidBody::new([1.0, 2.0, 3.0])?;
+/// let body = RigidBody::<f64>::new([1.0, 2.0, 3.0])?;
 /// let mut m = Vector3::new(0.2, 0.0, 3.0);
 /// let start = body.energy(&m);
 /// let grid = TimeGrid::new([0.0, 10.0], 0.05)?;
