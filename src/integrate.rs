@@ -36,7 +36,7 @@ impl TimeGrid {
         if steps > STEPS_MAX {
             return Err(Error::out_of_range("dt", dt, "at most 1e15 steps over t_span"));
         }
-        if length > 0.0 && (length / dt - steps).abs() > 1e-9 * steps.max(1.0) {
+        if length > 0.0 && (steps < 1.0 || (length / dt - steps).abs() > 1e-9 * steps) {
             let count = steps.max(1.0);
             let advice = format!(
                 "a step that divides the span of length {length}, such as {} ({count} steps)",

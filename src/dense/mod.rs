@@ -15,5 +15,5 @@ pub use expm::ExpmChoice;
 pub(crate) use expm::{Expm, Structure};
 pub(crate) use lu::Lu;
 pub(crate) use ops::{
-    antisymmetrise, axpy, is_finite, mul, mul_add, norm_frobenius, norm1, scaled_sum,
+    antisymmetrise, axpy, is_finite, mul, mul_add, norm_frobenius, norm1, orthogonalise, scaled_sum,
 };

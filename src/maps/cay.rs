@@ -13,7 +13,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::CoordinateMap;
 use super::exp::{SQUARE_MAX, rodrigues, rodrigues_on};
-use crate::dense::{Lu, mul, scaled_sum};
+use crate::dense::{Lu, is_finite, mul, orthogonalise, scaled_sum};
 use crate::error::{Error, StepError};
 use crate::groups::{
     AlgebraMatrix, Form, GroupMatrix, LieAlgebra, MatrixGroup, RCOND_MIN, So3, cross,
@@ -89,12 +89,20 @@ impl<S: Real> CoordinateMap<So3<S>> for Cay {
     }
 }
 
+/// Above this ‖u‖ nothing of 𝟙 is left in 𝟙 − u/2 on so(n).
+const NORM_MAX: f64 = 1e15;
+/// Up to this ‖u‖ the solve alone keeps cay(u) orthogonal to rounding.
+const ORTHOGONAL_TO: f64 = 4.0;
+
 /// What cay keeps at u ∈ 𝔤 ⊂ gl(n): 𝟙 ± u/2, and the LU of 𝟙 − u/2.
 #[derive(Debug)]
 pub struct CayAt {
+    /// Is the group SO(n)?
+    is_rotation: bool,
     minus: Mat<f64>,
     plus: Mat<f64>,
     product: Mat<f64>,
+    gap: Mat<f64>,
     lu: Lu,
 }
 
@@ -108,11 +116,14 @@ impl CayAt {
         scaled_sum(&mut self.plus, [0.5], [u], 1.0);
         self.lu.a.copy_from(&self.minus);
         let pivots = self.lu.factor();
-        // On so(n) the eigenvalues of 𝟙 − u/2 are 1 − iα/2: never zero, however large u.
-        if pivots < RCOND_MIN && !matches!(group.form(), Form::Identity) {
-            return Err(StepError::OutsideChart { map: "cay", what: "𝟙 − u/2 is singular" });
+        // On so(n) the eigenvalues of 𝟙 − u/2 are 1 − iα/2, never zero, until the 1 is lost beside α.
+        match self.is_rotation {
+            true if group.norm(u) > NORM_MAX => Err(StepError::NormTooLarge { map: "cay" }),
+            false if pivots < RCOND_MIN => {
+                Err(StepError::OutsideChart { map: "cay", what: "𝟙 − u/2 is singular" })
+            }
+            _ => Ok(()),
         }
-        Ok(())
     }
 }
 
@@ -125,7 +136,8 @@ impl CoordinateMap<MatrixGroup> for Cay {
     fn at(&self, group: &MatrixGroup) -> Result<CayAt, Error> {
         let n = group.n();
         let z = || Mat::zeros(n, n);
-        Ok(CayAt { minus: z(), plus: z(), product: z(), lu: Lu::new(n) })
+        let is_rotation = matches!(group.form(), Form::Identity);
+        Ok(CayAt { is_rotation, minus: z(), plus: z(), product: z(), gap: z(), lu: Lu::new(n) })
     }
     fn psi(
         &self,
@@ -137,7 +149,14 @@ impl CoordinateMap<MatrixGroup> for Cay {
         at.prepare(group, u)?;
         g.copy_from(&at.plus);
         at.lu.solve(g.as_mut());
-        Ok(())
+        // The solve loses cond(𝟙 − u/2) ≤ 1 + ‖u‖/2 units of rounding.
+        if at.is_rotation && group.norm(u) > ORTHOGONAL_TO {
+            orthogonalise(g, [&mut at.product, &mut at.gap]);
+        }
+        match is_finite(g) {
+            true => Ok(()),
+            false => Err(StepError::NotFinite { what: "cay(u)" }),
+        }
     }
     /// Solves for as many columns as x has.
     fn psi_on(
@@ -156,13 +175,16 @@ impl CoordinateMap<MatrixGroup> for Cay {
     }
     fn dpsi_inv(
         &self,
-        _: &MatrixGroup,
+        group: &MatrixGroup,
         _: &AlgebraMatrix,
         at: &mut CayAt,
         v: &mut AlgebraMatrix,
     ) -> Result<(), StepError> {
         mul(&mut at.product, at.minus.as_ref(), v.as_ref());
         mul(v, at.product.as_ref(), at.plus.as_ref());
-        Ok(())
+        match group.is_finite(v) {
+            true => Ok(()),
+            false => Err(StepError::NotFinite { what: "dcay⁻¹" }),
+        }
     }
 }

@@ -12,7 +12,7 @@ use faer::Mat;
 use nalgebra::{Matrix3, Vector3};
 
 use super::CoordinateMap;
-use crate::dense::mul;
+use crate::dense::{is_finite, mul};
 use crate::error::{Error, StepError};
 use crate::groups::{AlgebraMatrix, Form, GroupMatrix, LieAlgebra, MatrixGroup, So3};
 use crate::scalar::{Real, Trig};
@@ -172,14 +172,14 @@ impl CcskAt {
     /// g ← ∏_c ∏_{r>c} G_rc(±u_rc).
     fn forward(&mut self, u: &Mat<f64>, sign: f64, g: &mut Mat<f64>) -> Result<(), StepError> {
         let n = u.nrows();
+        if !is_finite(u) {
+            return Err(StepError::NotFinite { what: "the argument of ccsk" });
+        }
         g.fill(0.0);
         g.diagonal_mut().fill(1.0);
         for c in 0..n {
             for r in c + 1..n {
                 let angle = sign * u[(r, c)];
-                if !angle.is_finite() {
-                    return Err(StepError::NotFinite { what: "the argument of ccsk" });
-                }
                 let (s, k) = angle.sin_cos();
                 (self.sin[(r, c)], self.cos[(r, c)]) = (s, k);
                 rotate_columns(g, r, c, s, k);

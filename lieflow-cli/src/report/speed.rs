@@ -99,9 +99,17 @@ pub fn speed_table(curves: &[Curve]) -> Table {
             None => format!("to {error:.0e} none"),
         }
     });
+    let above = |c: &Curve| c.measured_order().is_some_and(|order| order > c.order as f64 + 0.5);
+    let remark = match curves.iter().any(above) {
+        true => {
+            " A measured order one above the stated: over a long time the phase follows the drift of \
+             the energy, which for exp, cay and RK4 has that order."
+        }
+        false => "",
+    };
     Table {
         caption: format!(
-            "CPU time per unit of simulated time. Fastest: {}. A dash: not reached.",
+            "CPU time per unit of simulated time. Fastest: {}. A dash: not reached.{remark}",
             fastest.join(", ")
         ),
         columns: tolerance_header(),

@@ -119,17 +119,24 @@ impl ExpAt {
                 let next = if k == 1 { 2 } else { k + 2 };
                 let growth = radius.powi((next - k) as i32);
                 if baker(next).abs() * growth * group.norm(&self.ad) <= negligible {
-                    return Ok(());
+                    return finite(group, v);
                 }
             }
         }
         match q {
-            Some(_) => Ok(()),
+            Some(_) => finite(group, v),
             None => Err(StepError::OutsideChart {
                 map: "exp",
                 what: "the Baker series of dexp⁻¹ does not converge",
             }),
         }
+    }
+}
+
+fn finite(group: &MatrixGroup, v: &AlgebraMatrix) -> Result<(), StepError> {
+    match group.is_finite(v) {
+        true => Ok(()),
+        false => Err(StepError::NotFinite { what: "dexp⁻¹" }),
     }
 }
 
@@ -242,8 +249,5 @@ pub fn dexpinv(
 ) -> Result<AlgebraMatrix, Error> {
     let (mut at, mut w) = (ExpAt::new(group, false), v.clone());
     at.series(group, u, Some(q), &mut w)?;
-    match group.is_finite(&w) {
-        true => Ok(w),
-        false => Err(StepError::NotFinite { what: "dexpinv(u, v, q)" }.into()),
-    }
+    Ok(w)
 }
