@@ -4,7 +4,8 @@
 //! d/dε Ψ(u + εv)|₀ = dΨ_u(v)·Ψ(u). In robotics' words dexp is the *left* Jacobian.
 //!
 //! To add a map: one file with an `impl` of [`CoordinateMap`] per layer (the general one over any
-//! n, and the closed form), one line here, one in the catalog, one in the law tests.
+//! n, and the closed form), one line here, its registration in the catalog, one line in the law
+//! tests.
 
 mod alternating;
 mod cay;

@@ -71,6 +71,31 @@ fn large_arguments_stay_on_the_group() {
     check(CCSK123, 1e17);
 }
 
+/// And so does the short way: Ψ(u)·x has the length of x, and an Ok is finite.
+#[test]
+fn large_arguments_keep_lengths_of_vectors() {
+    fn check<Psi: CoordinateMap<MatrixGroup>>(psi: Psi) {
+        let mut rng = Pcg64::seed_from_u64(2);
+        for n in [2, 3, 4, 5, 9] {
+            let (group, bound) = (so(n), 8.0 * (n as f64).sqrt() * f64::EPSILON);
+            let (mut at, mut g) = (psi.at(&group).unwrap(), group.identity());
+            for decade in (0..18).chain([50, 150, 300]) {
+                let u = group.sample_algebra(&mut rng, 10f64.powi(decade) / n as f64);
+                let x = group.sample_vector(&mut rng);
+                let mut y = x.clone();
+                if psi.psi_on(&group, &u, &mut at, &mut g, &x, &mut y).is_ok() {
+                    let stretch = (y.norm_l2() / x.norm_l2() - 1.0).abs();
+                    let name = psi.name();
+                    assert!(stretch <= bound, "{name}, n = {n}, ‖u‖ ~ 1e{decade}: {stretch:e}");
+                }
+            }
+        }
+    }
+    check(Exp);
+    check(Cay);
+    check(CCSK321);
+}
+
 #[test]
 fn ccsk_is_refused_at_gimbal_lock() {
     let v = Vector3::new(0.3, -0.2, 0.5);
