@@ -249,6 +249,12 @@ fn every_result_on_matrices_is_finite() {
             total(&group, &Exp, &u, &v, finite, show);
             total(&group, &Exp.truncated(2), &u, &v, finite, show);
             total(&group, &Cay, &u, &v, finite, show);
+            // cay has a short way to Ψ(u)·x of its own.
+            let (mut at, mut g) = (Cay.at(&group).unwrap(), group.identity());
+            let (x, mut y) = (group.sample_vector(&mut rng), Mat::zeros(n, 1));
+            if Cay.psi_on(&group, &u, &mut at, &mut g, &x, &mut y).is_ok() {
+                assert!(y.col(0).iter().all(|y| y.is_finite()), "cay(u)·x: {}", show());
+            }
             if rotations {
                 total(&group, &CCSK123, &u, &v, finite, show);
                 total(&group, &CCSK321, &u, &v, finite, show);
