@@ -63,7 +63,7 @@ impl TimeGrid {
         }
         let grid = TimeGrid { t0, t1, steps };
         let largest = t0.abs().max(t1.abs());
-        if largest + grid.h().abs() * 0.5 == largest {
+        if grid.h().abs() < largest - largest.next_down() {
             return Err(Error::out_of_range(
                 "dt",
                 grid.h().abs(),
@@ -224,10 +224,8 @@ pub fn integrate<P: Problem, Me: Method<P>>(
             && (if forward { *time < end } else { *time > end })
         {
             aside.clone_from(y);
-            if *time != t {
-                take(*time, &mut aside)?;
-                stats.side_steps += 1;
-            }
+            take(*time, &mut aside)?;
+            stats.side_steps += 1;
             observe(*time, &aside);
             times = rest;
         }

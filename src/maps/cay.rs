@@ -164,14 +164,22 @@ impl CoordinateMap<MatrixGroup> for Cay {
         group: &MatrixGroup,
         u: &AlgebraMatrix,
         at: &mut CayAt,
-        _: &mut GroupMatrix,
+        g: &mut GroupMatrix,
         x: &Mat<f64>,
         y: &mut Mat<f64>,
     ) -> Result<(), StepError> {
+        if at.is_rotation && group.norm(u) > ORTHOGONAL_TO {
+            self.psi(group, u, at, g)?;
+            mul(y, g.as_ref(), x.as_ref());
+            return Ok(());
+        }
         at.prepare(group, u)?;
         mul(y, at.plus.as_ref(), x.as_ref());
         at.lu.solve(y.as_mut());
-        Ok(())
+        match is_finite(y) {
+            true => Ok(()),
+            false => Err(StepError::NotFinite { what: "cay(u)·x" }),
+        }
     }
     fn dpsi_inv(
         &self,

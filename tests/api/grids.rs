@@ -91,3 +91,14 @@ fn output_times_are_checked() {
     let grid = TimeGrid::with_steps(forward, 4).unwrap();
     says(SaveAt::Every(0).check(&grid).unwrap_err(), &["every = 0", "at least 1"]);
 }
+
+/// One ulp is a span of one step; anything finer than the numbers around it is refused.
+#[test]
+fn the_finest_steps() {
+    for t in [1.0, 1.0f64.next_down(), 1e9, -3.7, 0.1] {
+        let grid = TimeGrid::with_steps([t, t.next_up()], 1).unwrap();
+        assert_eq!((grid.time(0), grid.time(1)), (t, t.next_up()));
+        assert!(TimeGrid::with_steps([t, t.next_up()], 2).is_err());
+    }
+    assert!(TimeGrid::with_steps([1e9, 1e9 + 1.0], 100_000_000).is_err());
+}
