@@ -14,7 +14,10 @@ mod exp;
 pub use alternating::{Alternating, AlternatingAt, CCSK};
 pub use cay::Cay;
 pub use ccsk::{CCSK123, CCSK321, Ccsk};
-pub use exp::{Dexpinv, Exp, TruncatedExp, dexpinv};
+pub use exp::{
+    Dexpinv, Exp, ExpAt, Truncated, TruncatedExp, dexp, dexpinv, dexpinv_with_remainder,
+    distance_to_singular,
+};
 
 use crate::error::{Error, StepError};
 use crate::groups::LieGroup;

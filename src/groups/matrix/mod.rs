@@ -1,5 +1,6 @@
 //! GL(n), SO(n), Sp(2m) and G_M for any n and any invertible real M, over faer.
 
+mod ad;
 mod check;
 mod element;
 mod sample;
