@@ -4,7 +4,7 @@
 //! method is registered by its line in one of the macros below and its entry in the list beside it.
 
 use crate::error::Error;
-use crate::maps::{CCSK, CCSK123, CCSK321, Cay, Ccsk, CoordinateMap, Exp, TruncatedExp};
+use crate::maps::{CCSK, CCSK123, CCSK321, Cay, Ccsk, CoordinateMap, Exp, Pade22, TruncatedExp};
 use crate::methods::{Method, Rk, Rkmk, tableau};
 use crate::problems::{Ambient, Problem};
 
@@ -30,17 +30,22 @@ pub const MAPS: &[MapInfo] = &[
     MapInfo {
         name: "ccsk123",
         summary: "canonical coordinates of the second kind, ordering 123 (ccskf)",
-        groups: "SO(n)",
+        groups: "SO(n), GL(n), Sp(2m)",
     },
     MapInfo {
         name: "ccsk321",
         summary: "canonical coordinates of the second kind, ordering 321 (ccskb)",
-        groups: "SO(n)",
+        groups: "SO(n), GL(n), Sp(2m)",
+    },
+    MapInfo {
+        name: "pade22",
+        summary: "Padé map (𝟙 − u/2 + u²/12)⁻¹(𝟙 + u/2 + u²/12), order 4 of exp",
+        groups: "all",
     },
     MapInfo {
         name: "ccsk",
         summary: "the orderings 321 and 123 on alternate steps",
-        groups: "SO(n)",
+        groups: "SO(n), GL(n), Sp(2m)",
     },
 ];
 
@@ -71,6 +76,10 @@ macro_rules! each_map {
             }
             ("ccsk321", _) => {
                 let $map = CCSK321;
+                Ok($body)
+            }
+            ("pade22", _) => {
+                let $map = Pade22;
                 Ok($body)
             }
             ("ccsk", _) => {
@@ -267,6 +276,7 @@ where
     Exp: CoordinateMap<P::Group>,
     TruncatedExp: CoordinateMap<P::Group>,
     Cay: CoordinateMap<P::Group>,
+    Pade22: CoordinateMap<P::Group>,
     Ccsk<0, 1, 2>: CoordinateMap<P::Group>,
     Ccsk<2, 1, 0>: CoordinateMap<P::Group>,
 {

@@ -2,6 +2,7 @@
 
 mod ad;
 mod check;
+mod correct;
 mod element;
 mod sample;
 
@@ -253,5 +254,8 @@ impl LieGroup for MatrixGroup {
     /// Allocates.
     fn defect(&self, g: &GroupMatrix) -> f64 {
         self.defect_of(g.as_ref()).map_or(0.0, |d| dense::norm_frobenius(&d))
+    }
+    fn correct(&self, g: &mut GroupMatrix, scratch: &mut [GroupMatrix; 2]) -> f64 {
+        self.newton_schulz(g, scratch)
     }
 }
