@@ -14,12 +14,10 @@ pub enum Dexpinv {
     /// Not yet.
     #[default]
     None,
-    /// The Baker series up to this power of ad_u.
+    /// The Baker series up to this power of ad_u; of ad_{u/2^s} when [`ExpAt::halvings`] is s.
     Series(usize),
     /// The eigen form, where u is skew.
     Eigen,
-    /// The series at u/2^s and s halvings in Schur coordinates.
-    Halvings(u32),
 }
 
 /// B_k/k! for even k, by ζ(k): B_2m/(2m)! = (−1)^(m+1)·2ζ(2m)/(2π)^2m; and −1/2 for k = 1.
@@ -67,6 +65,7 @@ pub struct ExpAt {
     exact: Exact,
     spectrum: Option<Box<AdSchur>>,
     dexpinv: Dexpinv,
+    halvings: u32,
 }
 
 /// Beyond the reach of the series.
@@ -92,6 +91,11 @@ impl ExpAt {
     /// How the last dexp⁻¹ was computed.
     pub fn dexpinv_choice(&self) -> Dexpinv {
         self.dexpinv
+    }
+
+    /// How often the last dexp⁻¹ halved u: 0 where the series or the eigen form served u itself.
+    pub fn halvings(&self) -> u32 {
+        self.halvings
     }
 
     /// The smallest distance of an eigenvalue of ad_u on 𝔤 to the singular set 2πik, k ≠ 0, of
@@ -128,6 +132,7 @@ impl ExpAt {
             },
             spectrum: None,
             dexpinv: Dexpinv::None,
+            halvings: 0,
         }
     }
 
@@ -164,6 +169,7 @@ impl ExpAt {
         v: &mut AlgebraMatrix,
     ) -> Result<(), StepError> {
         let norm = ad_bound(group, u);
+        self.halvings = 0;
         if norm <= EXACT_FROM {
             self.dexpinv = self.powers.baker(group, u, None, v)?;
             return Ok(());
@@ -179,8 +185,8 @@ impl ExpAt {
             }
             Exact::Schur(schur) => {
                 let s = scale_down(u, norm, &mut self.scaled);
-                self.powers.baker(group, &self.scaled, None, v)?;
-                self.dexpinv = Dexpinv::Halvings(s);
+                self.dexpinv = self.powers.baker(group, &self.scaled, None, v)?;
+                self.halvings = s;
                 halve(schur, group, u, s, Direction::Inverse, v)
             }
         }
