@@ -4,7 +4,10 @@
 //! method is registered by its line in one of the macros below and its entry in the list beside it.
 
 use crate::error::Error;
-use crate::maps::{CCSK, CCSK123, CCSK321, Cay, Ccsk, CoordinateMap, Exp, TruncatedExp};
+use crate::groups::LieGroup;
+use crate::maps::{
+    Alternating, CCSK, CCSK123, CCSK321, Cay, Ccsk, CoordinateMap, Exp, Pade22, TruncatedExp,
+};
 use crate::methods::{Method, Rk, Rkmk, tableau};
 use crate::problems::{Ambient, Problem};
 
@@ -30,17 +33,22 @@ pub const MAPS: &[MapInfo] = &[
     MapInfo {
         name: "ccsk123",
         summary: "canonical coordinates of the second kind, ordering 123 (ccskf)",
-        groups: "SO(n)",
+        groups: "SO(n), GL(n), Sp(2m)",
     },
     MapInfo {
         name: "ccsk321",
         summary: "canonical coordinates of the second kind, ordering 321 (ccskb)",
-        groups: "SO(n)",
+        groups: "SO(n), GL(n), Sp(2m)",
+    },
+    MapInfo {
+        name: "pade22",
+        summary: "Padé map (𝟙 − u/2 + u²/12)⁻¹(𝟙 + u/2 + u²/12), order 4 of exp",
+        groups: "all",
     },
     MapInfo {
         name: "ccsk",
         summary: "the orderings 321 and 123 on alternate steps",
-        groups: "SO(n)",
+        groups: "SO(n), GL(n), Sp(2m)",
     },
 ];
 
@@ -49,11 +57,11 @@ macro_rules! each_map {
     ($name:expr, $q:expr, $map:ident => $body:expr) => {
         match ($name, $q) {
             ("exp", Some(q)) => {
-                let $map = Exp.truncated(q);
+                let $map = serve::<P::Group, _>(Exp.truncated(q));
                 Ok($body)
             }
             ("exp", None) => {
-                let $map = Exp;
+                let $map = serve::<P::Group, _>(Exp);
                 Ok($body)
             }
             (_, Some(_)) => Err(Error::Unsupported {
@@ -62,19 +70,23 @@ macro_rules! each_map {
                 why: "only the Baker series of exp can be cut; leave q out",
             }),
             ("cay", _) => {
-                let $map = Cay;
+                let $map = serve::<P::Group, _>(Cay);
                 Ok($body)
             }
             ("ccsk123", _) => {
-                let $map = CCSK123;
+                let $map = serve::<P::Group, _>(CCSK123);
                 Ok($body)
             }
             ("ccsk321", _) => {
-                let $map = CCSK321;
+                let $map = serve::<P::Group, _>(CCSK321);
+                Ok($body)
+            }
+            ("pade22", _) => {
+                let $map = serve::<P::Group, _>(Pade22);
                 Ok($body)
             }
             ("ccsk", _) => {
-                let $map = CCSK;
+                let $map = serve::<P::Group, _>(CCSK);
                 Ok($body)
             }
             (other, _) => Err(unknown("map", other, MAPS.iter().map(|m| m.name))),
@@ -250,6 +262,50 @@ fn unknown(kind: &'static str, name: &str, expected: impl Iterator<Item = &'stat
     Error::UnknownName { kind, name: name.into(), expected: expected.collect() }
 }
 
+/// A group that the map Psi has a formula for: `impl CoordinateMap<G> for Psi`, seen from the group.
+pub trait Serves<Psi>: LieGroup + Sized {
+    /// Psi.
+    type Map: CoordinateMap<Self>;
+    /// Itself.
+    fn map(psi: Psi) -> Self::Map;
+}
+
+impl<G: LieGroup, Psi: CoordinateMap<G>> Serves<Psi> for G {
+    type Map = Psi;
+    #[inline]
+    fn map(psi: Psi) -> Psi {
+        psi
+    }
+}
+
+fn serve<G: Serves<Psi>, Psi>(psi: Psi) -> G::Map {
+    G::map(psi)
+}
+
+/// The groups on which every registered map has a type; as a value a group may still be refused.
+/// One name for the bounds of all maps: a map that is registered joins it here.
+pub trait CatalogGroup:
+    Serves<Exp>
+    + Serves<TruncatedExp>
+    + Serves<Cay>
+    + Serves<Pade22>
+    + Serves<Ccsk<0, 1, 2>>
+    + Serves<Ccsk<2, 1, 0>>
+    + Serves<Alternating<Ccsk<2, 1, 0>, Ccsk<0, 1, 2>>>
+{
+}
+
+impl<G> CatalogGroup for G where
+    G: Serves<Exp>
+        + Serves<TruncatedExp>
+        + Serves<Cay>
+        + Serves<Pade22>
+        + Serves<Ccsk<0, 1, 2>>
+        + Serves<Ccsk<2, 1, 0>>
+        + Serves<Alternating<Ccsk<2, 1, 0>, Ccsk<0, 1, 2>>>
+{
+}
+
 /// What to do with a method, whatever its type.
 pub trait OnMethod<P: Problem> {
     /// The answer.
@@ -264,11 +320,7 @@ pub trait OnMethod<P: Problem> {
 /// As [`MethodSpec::info`], and [`Error::UnknownName`] for its map or tableau.
 pub fn with_method<P: Ambient, V: OnMethod<P>>(spec: &MethodSpec, on: V) -> Result<V::Out, Error>
 where
-    Exp: CoordinateMap<P::Group>,
-    TruncatedExp: CoordinateMap<P::Group>,
-    Cay: CoordinateMap<P::Group>,
-    Ccsk<0, 1, 2>: CoordinateMap<P::Group>,
-    Ccsk<2, 1, 0>: CoordinateMap<P::Group>,
+    P::Group: CatalogGroup,
 {
     let info = spec.info()?;
     let map = spec.map.as_deref().unwrap_or("exp");

@@ -66,7 +66,7 @@ pub mod scalar;
 pub use actions::Action;
 pub use error::{Error, Failure, StepError};
 pub use groups::{LieAlgebra, LieGroup};
-pub use integrate::{RunError, SaveAt, Stats, TimeGrid, integrate};
+pub use integrate::{RESTORE_EVERY, RunError, SaveAt, Stats, TimeGrid, integrate};
 pub use maps::CoordinateMap;
 pub use methods::{Method, Step};
 pub use problems::Problem;

@@ -5,9 +5,8 @@ mod support;
 
 use lieflow::LieAlgebra;
 use lieflow::actions::{Coadjoint, LeftTranslation, Linear};
-use lieflow::catalog::{MAPS, MethodSpec, OnMethod, TABLEAUS, with_method};
+use lieflow::catalog::{CatalogGroup, MAPS, MethodSpec, OnMethod, TABLEAUS, with_method};
 use lieflow::groups::{MatrixGroup, Sample, So3};
-use lieflow::maps::{Cay, Ccsk, CoordinateMap, Exp, TruncatedExp};
 use lieflow::methods::{Method, tableau};
 use lieflow::problems::{
     Ambient, Problem, RigidBody, RigidBodyAttitude, RigidBodyN, RigidBodyNAttitude,
@@ -57,13 +56,8 @@ fn serves(spec: &MethodSpec, group: &str) -> bool {
 /// Measure every method of the catalog, and require the orders that they claim.
 fn every_method_on<P: Ambient>(title: &str, problem: P, start: lieflow::problems::PointOf<P>)
 where
-    P::Group: Represent,
+    P::Group: Represent + CatalogGroup,
     P::Action: Points<P::Group>,
-    Exp: CoordinateMap<P::Group>,
-    TruncatedExp: CoordinateMap<P::Group>,
-    Cay: CoordinateMap<P::Group>,
-    Ccsk<0, 1, 2>: CoordinateMap<P::Group>,
-    Ccsk<2, 1, 0>: CoordinateMap<P::Group>,
 {
     let reference = reference(&problem, start);
     let group = problem.group().name();

@@ -5,11 +5,14 @@
 //! Products and solves of 8×8 and smaller run in const-size kernels, chosen once per call, because
 //! a library call costs more there than the arithmetic.
 
+mod ad;
 mod eigen;
 mod expm;
 mod lu;
 mod ops;
+mod schur;
 
+pub(crate) use ad::{AdForm, AdSchur, Direction, Kind};
 pub(crate) use eigen::SkewEigen;
 pub use expm::ExpmChoice;
 pub(crate) use expm::{Expm, Structure};

@@ -13,10 +13,10 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::CoordinateMap;
 use super::exp::{SQUARE_MAX, rodrigues, rodrigues_on};
-use crate::dense::{Lu, is_finite, mul, orthogonalise, scaled_sum};
+use crate::dense::{Lu, is_finite, mul, norm_frobenius, norm1, orthogonalise, scaled_sum};
 use crate::error::{Error, StepError};
 use crate::groups::{
-    AlgebraMatrix, Form, GroupMatrix, LieAlgebra, MatrixGroup, RCOND_MIN, So3, cross,
+    AlgebraMatrix, Form, GroupMatrix, LieAlgebra, LieGroup, MatrixGroup, RCOND_MIN, So3, cross,
 };
 use crate::scalar::Real;
 
@@ -24,14 +24,22 @@ use crate::scalar::Real;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Cay;
 
-/// 1/(1 + α²/4).
+/// cay(u) = 𝟙 + a·w + b·w² as (w, a, b): w = u, or u/s where |u|² would overflow.
 #[inline(always)]
-fn shrink<S: Real>(u: &Vector3<S>) -> Result<S, StepError> {
+fn coefficients<S: Real>(u: &Vector3<S>) -> Result<(Vector3<S>, S, S), StepError> {
+    let l = S::lit;
     let alpha2 = u[0] * u[0] + u[1] * u[1] + u[2] * u[2];
-    if !alpha2.all_below(SQUARE_MAX) {
-        return Err(StepError::NormTooLarge { map: "cay" });
+    if alpha2.all_below(SQUARE_MAX) {
+        let a = l(1.0) / (l(1.0) + l(0.25) * alpha2);
+        return Ok((*u, a, l(0.5) * a));
     }
-    Ok(S::lit(1.0) / (S::lit(1.0) + S::lit(0.25) * alpha2))
+    let s = l(1.0) + u[0].abs() + u[1].abs() + u[2].abs();
+    if !s.is_finite() {
+        return Err(StepError::NotFinite { what: "the argument of cay" });
+    }
+    let (w, r) = (Vector3::new(u[0] / s, u[1] / s, u[2] / s), l(1.0) / s);
+    let c = l(1.0) / (r * r + l(0.25) * (w[0] * w[0] + w[1] * w[1] + w[2] * w[2]));
+    Ok((w, r * c, l(0.5) * c))
 }
 
 impl<S: Real> CoordinateMap<So3<S>> for Cay {
@@ -51,8 +59,8 @@ impl<S: Real> CoordinateMap<So3<S>> for Cay {
         _: &mut (),
         g: &mut Matrix3<S>,
     ) -> Result<(), StepError> {
-        let a = shrink(u)?;
-        *g = rodrigues(u, a, S::lit(0.5) * a);
+        let (w, a, b) = coefficients(u)?;
+        *g = rodrigues(&w, a, b);
         Ok(())
     }
     #[inline]
@@ -65,8 +73,8 @@ impl<S: Real> CoordinateMap<So3<S>> for Cay {
         x: &Vector3<S>,
         y: &mut Vector3<S>,
     ) -> Result<(), StepError> {
-        let a = shrink(u)?;
-        *y = rodrigues_on(u, a, S::lit(0.5) * a, x);
+        let (w, a, b) = coefficients(u)?;
+        *y = rodrigues_on(&w, a, b, x);
         Ok(())
     }
     #[inline]
@@ -85,24 +93,20 @@ impl<S: Real> CoordinateMap<So3<S>> for Cay {
             v[1] + c * u[1] - half * w[1],
             v[2] + c * u[2] - half * w[2],
         );
-        Ok(())
+        match v[0].is_finite() && v[1].is_finite() && v[2].is_finite() {
+            true => Ok(()),
+            false => Err(StepError::NotFinite { what: "dcay⁻¹" }),
+        }
     }
 }
-
-/// Above this ‖u‖ nothing of 𝟙 is left in 𝟙 − u/2 on so(n).
-const NORM_MAX: f64 = 1e15;
-/// Up to this ‖u‖ the solve alone keeps cay(u) orthogonal to rounding.
-const ORTHOGONAL_TO: f64 = 4.0;
 
 /// What cay keeps at u ∈ 𝔤 ⊂ gl(n): 𝟙 ± u/2, and the LU of 𝟙 − u/2.
 #[derive(Debug)]
 pub struct CayAt {
-    /// Is the group SO(n)?
-    is_rotation: bool,
     minus: Mat<f64>,
     plus: Mat<f64>,
     product: Mat<f64>,
-    gap: Mat<f64>,
+    square: Mat<f64>,
     lu: Lu,
 }
 
@@ -115,14 +119,51 @@ impl CayAt {
         scaled_sum(&mut self.minus, [-0.5], [u], 1.0);
         scaled_sum(&mut self.plus, [0.5], [u], 1.0);
         self.lu.a.copy_from(&self.minus);
-        let pivots = self.lu.factor();
-        // On so(n) the eigenvalues of 𝟙 − u/2 are 1 − iα/2, never zero, until the 1 is lost beside α.
-        match self.is_rotation {
-            true if group.norm(u) > NORM_MAX => Err(StepError::NormTooLarge { map: "cay" }),
-            false if pivots < RCOND_MIN => {
-                Err(StepError::OutsideChart { map: "cay", what: "𝟙 − u/2 is singular" })
+        if matches!(group.form(), Form::Identity) {
+            // The eigenvalues of 𝟙 − u/2 are 1 − iα/2: never zero, however large u. Beyond 1/ε the
+            // 1 is lost next to u, and with it the axis.
+            if norm_frobenius(u) > NORM_MAX_SKEW {
+                return Err(StepError::NormTooLarge { map: "cay" });
             }
-            _ => Ok(()),
+            self.lu.factor();
+            return Ok(());
+        }
+        well_conditioned(&mut self.lu, &self.minus, &mut self.product, "cay", "𝟙 − u/2")
+    }
+}
+
+/// Above this norm of a skew u no digit of cay(u) has a meaning in the dense arithmetic.
+const NORM_MAX_SKEW: f64 = 1e15;
+/// Above this norm of a skew u the result is put back on SO(n).
+const NORM_EXACT_SKEW: f64 = 4.0;
+/// Below this ratio of pivots the condition number is looked at.
+const PIVOTS_SAFE: f64 = 1e-3;
+
+/// Factor `lu.a`, a copy of `a`, and refuse it when its reciprocal condition number is below
+/// [`RCOND_MIN`]. `scratch` is for the inverse, which is formed only where the pivots are suspicious.
+pub(super) fn well_conditioned(
+    lu: &mut Lu,
+    a: &Mat<f64>,
+    scratch: &mut Mat<f64>,
+    map: &'static str,
+    what: &'static str,
+) -> Result<(), StepError> {
+    let pivots = lu.factor();
+    if pivots > PIVOTS_SAFE {
+        return Ok(());
+    }
+    let mut rcond = 0.0;
+    if pivots > 0.0 {
+        scratch.fill(0.0);
+        scratch.diagonal_mut().fill(1.0);
+        lu.solve(scratch.as_mut());
+        rcond = 1.0 / (norm1(a.as_ref()) * norm1(scratch.as_ref()));
+    }
+    match rcond >= RCOND_MIN {
+        true => Ok(()),
+        false => {
+            let rcond = if rcond.is_nan() { 0.0 } else { rcond };
+            Err(StepError::NearlySingular { map, what, rcond })
         }
     }
 }
@@ -136,8 +177,7 @@ impl CoordinateMap<MatrixGroup> for Cay {
     fn at(&self, group: &MatrixGroup) -> Result<CayAt, Error> {
         let n = group.n();
         let z = || Mat::zeros(n, n);
-        let is_rotation = matches!(group.form(), Form::Identity);
-        Ok(CayAt { is_rotation, minus: z(), plus: z(), product: z(), gap: z(), lu: Lu::new(n) })
+        Ok(CayAt { minus: z(), plus: z(), product: z(), square: z(), lu: Lu::new(n) })
     }
     fn psi(
         &self,
@@ -149,9 +189,8 @@ impl CoordinateMap<MatrixGroup> for Cay {
         at.prepare(group, u)?;
         g.copy_from(&at.plus);
         at.lu.solve(g.as_mut());
-        // The solve loses cond(𝟙 − u/2) ≤ 1 + ‖u‖/2 units of rounding.
-        if at.is_rotation && group.norm(u) > ORTHOGONAL_TO {
-            orthogonalise(g, [&mut at.product, &mut at.gap]);
+        if matches!(group.form(), Form::Identity) && norm_frobenius(u) > NORM_EXACT_SKEW {
+            orthogonalise(g, [&mut at.product, &mut at.square]);
         }
         match is_finite(g) {
             true => Ok(()),
@@ -168,7 +207,7 @@ impl CoordinateMap<MatrixGroup> for Cay {
         x: &Mat<f64>,
         y: &mut Mat<f64>,
     ) -> Result<(), StepError> {
-        if at.is_rotation && group.norm(u) > ORTHOGONAL_TO {
+        if matches!(group.form(), Form::Identity) && norm_frobenius(u) > NORM_EXACT_SKEW {
             self.psi(group, u, at, g)?;
             mul(y, g.as_ref(), x.as_ref());
             return Ok(());
@@ -183,16 +222,147 @@ impl CoordinateMap<MatrixGroup> for Cay {
     }
     fn dpsi_inv(
         &self,
-        group: &MatrixGroup,
+        _: &MatrixGroup,
         _: &AlgebraMatrix,
         at: &mut CayAt,
         v: &mut AlgebraMatrix,
     ) -> Result<(), StepError> {
         mul(&mut at.product, at.minus.as_ref(), v.as_ref());
         mul(v, at.product.as_ref(), at.plus.as_ref());
-        match group.is_finite(v) {
+        match is_finite(v) {
             true => Ok(()),
             false => Err(StepError::NotFinite { what: "dcay⁻¹" }),
+        }
+    }
+}
+
+/// A group on which cay has an inverse and a differential in closed form.
+pub trait CayleyGroup: LieGroup {
+    /// [`cay_inv`] on this group.
+    ///
+    /// # Errors
+    /// As [`cay_inv`].
+    fn cay_inv(&self, g: &Self::Elem) -> Result<Self::Alg, Error>;
+    /// [`dcay`] on this group.
+    ///
+    /// # Errors
+    /// As [`dcay`].
+    fn dcay(&self, u: &Self::Alg, v: &Self::Alg) -> Result<Self::Alg, Error>;
+}
+
+/// u with cay(u) = g: u = 2(g − 𝟙)(g + 𝟙)⁻¹. Fresh storage; O(n³).
+///
+/// # Errors
+/// [`Error::Singular`] where −1 is an eigenvalue of g, a rotation by π: it is not in the image.
+///
+/// ```
+/// use lieflow::CoordinateMap;
+/// use lieflow::groups::So3;
+/// use lieflow::maps::{Cay, cay_inv};
+/// use nalgebra::{Matrix3, Vector3};
+/// let so3 = So3::new();
+/// let u = Vector3::new(0.3, -0.4, 1.2);
+/// assert!((cay_inv(&so3, &Cay.eval(&so3, &u)?)? - u).norm() < 1e-15);
+/// assert!(cay_inv(&so3, &Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0))).is_err());
+/// # Ok::<(), lieflow::Error>(())
+/// ```
+pub fn cay_inv<G: CayleyGroup>(group: &G, g: &G::Elem) -> Result<G::Alg, Error> {
+    group.cay_inv(g)
+}
+
+/// dcay_u v = (𝟙 − u/2)⁻¹ v (𝟙 + u/2)⁻¹, right trivialised: d/dε cay(u + εv)|₀ = dcay_u(v)·cay(u).
+/// Fresh storage; O(n³).
+///
+/// # Errors
+/// [`Error::Map`] where 𝟙 − u/2 or 𝟙 + u/2 is singular, and when numbers leave the range.
+pub fn dcay<G: CayleyGroup>(group: &G, u: &G::Alg, v: &G::Alg) -> Result<G::Alg, Error> {
+    group.dcay(u, v)
+}
+
+impl CayleyGroup for MatrixGroup {
+    fn cay_inv(&self, g: &GroupMatrix) -> Result<AlgebraMatrix, Error> {
+        let n = self.n();
+        self.shape("g", g.as_ref())?;
+        let plus = g.as_ref() + Mat::<f64>::identity(n, n);
+        let rcond = Lu::rcond(plus.as_ref());
+        if rcond < RCOND_MIN {
+            return Err(Error::Singular { arg: "g + 𝟙", rcond, minimum: RCOND_MIN });
+        }
+        // (g − 𝟙)(g + 𝟙)⁻¹ = (g + 𝟙)⁻¹(g − 𝟙)
+        let mut u = g.as_ref() - Mat::<f64>::identity(n, n);
+        let mut lu = Lu::new(n);
+        lu.a.copy_from(&plus);
+        lu.factor();
+        lu.solve(u.as_mut());
+        for x in u.col_iter_mut() {
+            x.iter_mut().for_each(|x| *x *= 2.0);
+        }
+        Ok(match self.form() {
+            Form::Free => AlgebraMatrix::new_unchecked(u),
+            _ => self.project_algebra(u.as_ref()),
+        })
+    }
+
+    fn dcay(&self, u: &AlgebraMatrix, v: &AlgebraMatrix) -> Result<AlgebraMatrix, Error> {
+        self.shape("u", u.as_ref())?;
+        self.shape("v", v.as_ref())?;
+        let (mut at, mut w) = (Cay.at(self)?, v.clone());
+        at.prepare(self, u)?;
+        at.lu.solve(w.as_mut());
+        // w ← w (𝟙 + u/2)⁻¹ by the transposed system.
+        let mut transposed = w.transpose().to_owned();
+        at.lu.a.copy_from(at.plus.transpose());
+        well_conditioned(&mut at.lu, &at.plus, &mut at.product, "cay", "𝟙 + u/2")?;
+        at.lu.solve(transposed.as_mut());
+        w.copy_from(transposed.transpose());
+        match self.is_finite(&w) {
+            true => Ok(w),
+            false => Err(StepError::NotFinite { what: "dcay(u, v)" }.into()),
+        }
+    }
+}
+
+impl CayleyGroup for So3<f64> {
+    /// By the quaternion (w, x) of g, whose largest component comes from the trace or from the
+    /// diagonal, without cancellation: u = 2x/w.
+    fn cay_inv(&self, g: &Matrix3<f64>) -> Result<Vector3<f64>, Error> {
+        self.check_element("g", g, 0.1)?;
+        let trace = g[(0, 0)] + g[(1, 1)] + g[(2, 2)];
+        let vector =
+            Vector3::new(g[(2, 1)] - g[(1, 2)], g[(0, 2)] - g[(2, 0)], g[(1, 0)] - g[(0, 1)]);
+        // 4(w, x) times the component of the largest square, which drops out of x/w.
+        let (mut largest, mut at) = (trace, 3);
+        for i in 0..3 {
+            if g[(i, i)] > largest {
+                (largest, at) = (g[(i, i)], i);
+            }
+        }
+        let (w, x) = match at {
+            3 => (1.0 + trace, vector),
+            i => {
+                let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+                let mut x = Vector3::zeros();
+                x[i] = 1.0 + g[(i, i)] - g[(j, j)] - g[(k, k)];
+                x[j] = g[(i, j)] + g[(j, i)];
+                x[k] = g[(i, k)] + g[(k, i)];
+                (vector[i], x)
+            }
+        };
+        let rcond = w.abs() / w.hypot(x.norm());
+        if rcond.is_nan() || rcond < RCOND_MIN {
+            return Err(Error::Singular { arg: "g + 𝟙", rcond, minimum: RCOND_MIN });
+        }
+        Ok(x * (2.0 / w))
+    }
+
+    /// (v + ½ u×v)/(1 + α²/4).
+    fn dcay(&self, u: &Vector3<f64>, v: &Vector3<f64>) -> Result<Vector3<f64>, Error> {
+        let (x, w) = (u / 2.0, v);
+        let size = 1f64.hypot(x.norm());
+        let w = (w / size + (x / size).cross(w)) / size;
+        match self.is_finite(&w) {
+            true => Ok(w),
+            false => Err(StepError::NotFinite { what: "dcay(u, v)" }.into()),
         }
     }
 }

@@ -11,11 +11,16 @@ mod alternating;
 mod cay;
 mod ccsk;
 mod exp;
+mod pade22;
 
 pub use alternating::{Alternating, AlternatingAt, CCSK};
-pub use cay::Cay;
+pub use cay::{Cay, CayleyGroup, cay_inv, dcay};
 pub use ccsk::{CCSK123, CCSK321, Ccsk};
-pub use exp::{Dexpinv, Exp, TruncatedExp, dexpinv};
+pub use exp::{
+    Dexpinv, Exp, ExpAt, Truncated, TruncatedExp, dexp, dexpinv, dexpinv_with_remainder,
+    distance_to_singular,
+};
+pub use pade22::{Pade22, Pade22At};
 
 use crate::error::{Error, StepError};
 use crate::groups::LieGroup;

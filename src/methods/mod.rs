@@ -34,6 +34,12 @@ pub trait Method<P: Problem> {
     /// The order that tests hold the method to.
     fn order(&self, problem: &P) -> usize;
 
+    /// Does a step stay on M up to rounding? Then the driver takes the state back to M from time to
+    /// time ([`Action::restore`](crate::Action::restore)); a method that leaves M is shown as it is.
+    fn stays_on_manifold(&self) -> bool {
+        true
+    }
+
     /// Make the workspace; `like` is any point of M.
     ///
     /// # Errors

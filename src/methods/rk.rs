@@ -24,6 +24,9 @@ pub struct RkWork<P: Ambient, const S: usize> {
 impl<P: Ambient, const S: usize> Method<P> for Rk<S> {
     type Work = RkWork<P, S>;
 
+    fn stays_on_manifold(&self) -> bool {
+        false
+    }
     fn order(&self, _: &P) -> usize {
         self.0.order
     }
