@@ -131,20 +131,22 @@ impl CayAt {
         well_conditioned(&mut self.lu, &self.minus, &mut self.product, "cay", "𝟙 − u/2")
     }
 
-    /// g ← g + g(𝟙 − gᵀg)/2: the LU of a large 𝟙 − u/2 leaves a defect of ε‖u‖.
-    fn orthogonalise(&mut self, u: &Mat<f64>, g: &mut Mat<f64>) {
-        for _ in 0..2 {
+    /// g ← g + g(𝟙 − gᵀg)/2 to rounding: the LU of a large 𝟙 − u/2 leaves a defect of ε‖u‖.
+    fn orthogonalise(&mut self, g: &mut Mat<f64>) {
+        for _ in 0..NEWTON_SCHULZ_MAX {
             mul(&mut self.product, g.transpose(), g.as_ref());
             scaled_sum(&mut self.square, [-0.5], [&self.product], 0.5);
-            mul(&mut self.product, g.as_ref(), self.square.as_ref());
-            axpy(1.0, &self.product, g);
-            if norm_frobenius(u) < 1e6 {
+            if norm_frobenius(&self.square) <= g.nrows() as f64 * f64::EPSILON {
                 return;
             }
+            mul(&mut self.product, g.as_ref(), self.square.as_ref());
+            axpy(1.0, &self.product, g);
         }
     }
 }
 
+/// Passes that take a defect of 0.1 to rounding.
+const NEWTON_SCHULZ_MAX: usize = 6;
 /// Above this norm of a skew u no digit of cay(u) has a meaning in the dense arithmetic.
 const NORM_MAX_SKEW: f64 = 1e15;
 /// Above this norm of a skew u the result is put back on SO(n).
@@ -203,7 +205,7 @@ impl CoordinateMap<MatrixGroup> for Cay {
         g.copy_from(&at.plus);
         at.lu.solve(g.as_mut());
         if matches!(group.form(), Form::Identity) && norm_frobenius(u) > NORM_EXACT_SKEW {
-            at.orthogonalise(u, g);
+            at.orthogonalise(g);
         }
         Ok(())
     }
