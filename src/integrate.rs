@@ -227,8 +227,9 @@ pub enum RunError {
 /// Integrate `problem` from y at the start of `grid` to its end, showing (t, y) to `observe` where
 /// `save` says. On return y is the state at the end, or the last accepted one.
 ///
-/// Every [`RESTORE_EVERY`] steps, or sooner where it drifts faster, a method that stays on M has its state taken back to M
-/// ([`Action::restore`]): without it rounding carries g off its group by some ε a step.
+/// Every [`RESTORE_EVERY`] steps, or sooner where it drifts faster, a method that stays on M has its
+/// state taken back to M ([`Action::restore`]): without it rounding carries g off its group by some
+/// ε a step.
 ///
 /// Memory is allocated before the first step only.
 ///
@@ -239,7 +240,7 @@ pub enum RunError {
 /// use lieflow::{SaveAt, TimeGrid, integrate};
 /// use nalgebra::Vector3;
 ///
-/// let body = RigidBody::new([1.0, 2.0, 3.0])?;
+/// let body = RigidBody::<f64>::new([1.0, 2.0, 3.0])?;
 /// let mut m = Vector3::new(0.2, 0.0, 3.0);
 /// let start = body.energy(&m);
 /// let grid = TimeGrid::new([0.0, 10.0], 0.05)?;
