@@ -3,7 +3,7 @@
 use core::fmt::Debug;
 
 use lieflow::catalog::{MethodSpec, OnMethod, with_method};
-use lieflow::maps::{Cay, Ccsk, CoordinateMap, Exp, TruncatedExp};
+use lieflow::maps::{Cay, Ccsk, CoordinateMap, Exp, Pade22, TruncatedExp};
 use lieflow::methods::Method;
 use lieflow::problems::{Ambient, PointOf, Problem};
 use lieflow::{Error, RunError, SaveAt, Stats, TimeGrid, integrate};
@@ -129,6 +129,7 @@ where
     Exp: CoordinateMap<P::Group>,
     TruncatedExp: CoordinateMap<P::Group>,
     Cay: CoordinateMap<P::Group>,
+    Pade22: CoordinateMap<P::Group>,
     Ccsk<0, 1, 2>: CoordinateMap<P::Group>,
     Ccsk<2, 1, 0>: CoordinateMap<P::Group>,
 {
@@ -144,6 +145,7 @@ where
     Exp: CoordinateMap<P::Group>,
     TruncatedExp: CoordinateMap<P::Group>,
     Cay: CoordinateMap<P::Group>,
+    Pade22: CoordinateMap<P::Group>,
     Ccsk<0, 1, 2>: CoordinateMap<P::Group>,
     Ccsk<2, 1, 0>: CoordinateMap<P::Group>,
 {
