@@ -169,9 +169,33 @@ pub struct Stats {
     pub residual: f64,
 }
 
-/// The driver calls [`Action::restore`] after every so many steps: rounding takes g off its group by
-/// some ε a step, and a hundred steps stay below 2e-14 at a hundredth of the cost of one.
+/// The driver calls [`Action::restore`] after every so many steps at most: rounding takes g off its
+/// group by some ε a step, and a hundred steps stay below 2e-14 at a hundredth of the cost of one.
 pub const RESTORE_EVERY: u64 = 100;
+/// It begins with this many steps in between, and never has fewer.
+const RESTORE_EVERY_MIN: u64 = 8;
+
+/// When to look at the state again: twice as many steps after a residual below 3e-15, half as many
+/// after one above 8e-15.
+#[derive(Clone, Copy, Debug)]
+struct Cadence {
+    every: u64,
+    next: u64,
+}
+
+impl Cadence {
+    fn new() -> Self {
+        Cadence { every: RESTORE_EVERY_MIN, next: RESTORE_EVERY_MIN }
+    }
+    fn saw<S: Real>(&mut self, residual: S) {
+        if residual.all_below(3e-15) {
+            self.every = (2 * self.every).min(RESTORE_EVERY);
+        } else if !residual.all_below(8e-15) {
+            self.every = (self.every / 2).max(RESTORE_EVERY_MIN);
+        }
+        self.next += self.every;
+    }
+}
 
 impl Stats {
     fn saw<S: Real>(&mut self, residual: S) {
@@ -203,8 +227,9 @@ pub enum RunError {
 /// Integrate `problem` from y at the start of `grid` to its end, showing (t, y) to `observe` where
 /// `save` says. On return y is the state at the end, or the last accepted one.
 ///
-/// Every [`RESTORE_EVERY`] steps a method that stays on M has its state taken back to M
-/// ([`Action::restore`]): without it rounding carries g off its group by some ε a step.
+/// Every [`RESTORE_EVERY`] steps, or sooner where it drifts faster, a method that stays on M has its
+/// state taken back to M ([`Action::restore`]): without it rounding carries g off its group by some
+/// ε a step.
 ///
 /// Memory is allocated before the first step only.
 ///
@@ -215,7 +240,7 @@ pub enum RunError {
 /// use lieflow::{SaveAt, TimeGrid, integrate};
 /// use nalgebra::Vector3;
 ///
-/// let body = RigidBody::new([1.0, 2.0, 3.0])?;
+/// let body = RigidBody::<f64>::new([1.0, 2.0, 3.0])?;
 /// let mut m = Vector3::new(0.2, 0.0, 3.0);
 /// let start = body.energy(&m);
 /// let grid = TimeGrid::new([0.0, 10.0], 0.05)?;
@@ -238,7 +263,10 @@ pub fn integrate<P: Problem, Me: Method<P>>(
     let mut work = method.work(problem, y)?;
     let mut aside = y.clone();
     let mut mend = problem.action().work(problem.group());
-    let restores = method.stays_on_manifold();
+    let mut cadence = Cadence::new();
+    if !method.stays_on_manifold() {
+        cadence.next = u64::MAX;
+    }
     let mut stats = Stats::default();
     let [t0, t1] = grid.t_span();
     let forward = t1 >= t0;
@@ -267,9 +295,13 @@ pub fn integrate<P: Problem, Me: Method<P>>(
         }
         take(end, y)?;
         stats.steps += 1;
-        if restores && stats.steps % RESTORE_EVERY == 0 {
-            if let Some(residual) = problem.action().restore(problem.group(), y, &mut mend) {
-                stats.saw(residual);
+        if stats.steps == cadence.next {
+            match problem.action().restore(problem.group(), y, &mut mend) {
+                Some(residual) => {
+                    stats.saw(residual);
+                    cadence.saw(residual);
+                }
+                None => cadence.next = u64::MAX,
             }
         }
         let on_grid = match save {

@@ -7,6 +7,7 @@ use lieflow::LieAlgebra;
 use lieflow::actions::{Coadjoint, LeftTranslation, Linear};
 use lieflow::catalog::{CatalogGroup, MAPS, MethodSpec, OnMethod, TABLEAUS, with_method};
 use lieflow::groups::{MatrixGroup, Sample, So3};
+use lieflow::maps::{Cay, CoordinateMap};
 use lieflow::methods::{Method, tableau};
 use lieflow::problems::{
     Ambient, Problem, RigidBody, RigidBodyAttitude, RigidBodyN, RigidBodyNAttitude,
@@ -50,7 +51,9 @@ where
 fn serves(spec: &MethodSpec, group: &str) -> bool {
     let Some(map) = &spec.map else { return true };
     let groups = MAPS.iter().find(|m| m.name == map).map_or("", |m| m.groups);
-    groups == "all" || (group.starts_with("SO(") && !group.contains(','))
+    let family = group.split('(').next().unwrap_or_default();
+    let plain = !group.contains(','); // SO(p,q) is no SO(n)
+    groups == "all" || (plain && groups.split(", ").any(|g| g.starts_with(&format!("{family}("))))
 }
 
 /// Measure every method of the catalog, and require the orders that they claim.
@@ -58,6 +61,7 @@ fn every_method_on<P: Ambient>(title: &str, problem: P, start: lieflow::problems
 where
     P::Group: Represent + CatalogGroup,
     P::Action: Points<P::Group>,
+    Cay: CoordinateMap<P::Group>,
 {
     let reference = reference(&problem, start);
     let group = problem.group().name();

@@ -54,7 +54,7 @@ pub trait Action<G: LieGroup> {
     }
 
     /// Take p back to M, where rounding carried it off over many steps; the driver calls it every
-    /// [`RESTORE_EVERY`](crate::RESTORE_EVERY) steps. Returns how far p was, `None` where nothing is
+    /// [`RESTORE_EVERY`](crate::RESTORE_EVERY) steps or sooner. Returns how far p was, `None` where nothing is
     /// done, which is the default. Left translation corrects by [`LieGroup::correct`].
     #[inline]
     fn restore(

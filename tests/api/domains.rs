@@ -23,7 +23,10 @@ fn dense(u: &Vector3<f64>) -> AlgebraMatrix {
 
 #[track_caller]
 fn outside<T: std::fmt::Debug>(found: Result<T, Error>, map: &str) {
-    let Err(Error::Map(error @ StepError::OutsideChart { .. })) = found else {
+    let Err(Error::Map(
+        error @ (StepError::OutsideChart { .. } | StepError::NearlySingular { .. }),
+    )) = found
+    else {
         panic!("{found:?}")
     };
     says(error, &[map, "smaller step"]);

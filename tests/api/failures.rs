@@ -234,10 +234,11 @@ fn a_solution_that_blows_up_ends_in_an_error() {
 
 #[test]
 fn parts_that_do_not_fit_are_refused_before_the_run() {
-    let problem = GivesOutN { group: MatrixGroup::gl(3).unwrap(), after: 9.0, value: 0.0 };
+    let problem =
+        GivesOutN { group: MatrixGroup::indefinite(2, 1).unwrap(), after: 9.0, value: 0.0 };
     let mut x = Mat::from_fn(3, 1, |_, _| 1.0);
     let (done, seen) = attempt(&problem, &Rkmk::new(RK4, CCSK), &mut x);
     assert!(matches!(done, Err(RunError::Setup(Error::Unsupported { .. }))), "{done:?}");
-    says(done.unwrap_err(), &["ccsk", "GL(3)", "SO(n)"]);
+    says(done.unwrap_err(), &["ccsk", "SO(2,1)", "SO(n)"]);
     assert!(seen.is_empty());
 }

@@ -10,8 +10,10 @@ use super::{Form, GroupMatrix, MatrixGroup};
 use crate::dense::{axpy, mul, norm_frobenius, scaled_sum};
 use crate::groups::RESIDUAL_MAX;
 
-/// One step is enough where M is symmetric or skew and the residual below 1e-8.
+/// No more steps than these.
 const STEPS_MAX: usize = 6;
+/// One step takes a residual below this to rounding where M is symmetric or skew.
+const ONE_STEP: f64 = 1e-8;
 
 impl MatrixGroup {
     /// [`LieGroup::correct`](crate::LieGroup::correct).
@@ -27,8 +29,19 @@ impl MatrixGroup {
             }
             mul(b, g.as_ref(), a.as_ref());
             axpy(1.0, b, g);
+            if residual < ONE_STEP && self.is_quadratic() {
+                break;
+            }
         }
         first.unwrap_or(0.0)
+    }
+
+    /// Is M symmetric or skew?
+    fn is_quadratic(&self) -> bool {
+        let Form::Bilinear { m, .. } = &self.form else { return true };
+        let n = self.n;
+        let all = |sign: f64| (0..n).all(|j| (0..=j).all(|i| m[(i, j)] == sign * m[(j, i)]));
+        all(1.0) || all(-1.0)
     }
 
     /// a ← (𝟙 − M⁻¹gᵀMg)/2, b scratch.

@@ -97,7 +97,7 @@ pub struct CcskAt {
 enum Product {
     SoN(SoN),
     Gl(Gl),
-    Sp(Sp),
+    Sp(Box<Sp>),
 }
 
 impl CcskAt {
@@ -106,7 +106,7 @@ impl CcskAt {
         let product = match group.form() {
             Form::Identity => Product::SoN(SoN::new(n)),
             Form::Free => Product::Gl(Gl::new(n)),
-            Form::Symplectic => Product::Sp(Sp::new(n)),
+            Form::Symplectic => Product::Sp(Box::new(Sp::new(n))),
             _ => {
                 return Err(Error::Unsupported {
                     what: "ccsk",
