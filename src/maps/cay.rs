@@ -12,27 +12,15 @@ use faer::Mat;
 use nalgebra::{Matrix3, Vector3};
 
 use super::CoordinateMap;
-use super::exp::{SQUARE_MAX, rodrigues, rodrigues_on};
 use crate::dense::{Lu, mul, scaled_sum};
 use crate::error::{Error, StepError};
-use crate::groups::{
-    AlgebraMatrix, Form, GroupMatrix, LieAlgebra, MatrixGroup, RCOND_MIN, So3, cross,
-};
+use crate::groups::{AlgebraMatrix, Form, GroupMatrix, LieAlgebra, MatrixGroup, RCOND_MIN, So3};
 use crate::scalar::Real;
+use crate::so3;
 
 /// The Cayley map.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Cay;
-
-/// 1/(1 + α²/4).
-#[inline(always)]
-fn shrink<S: Real>(u: &Vector3<S>) -> Result<S, StepError> {
-    let alpha2 = u[0] * u[0] + u[1] * u[1] + u[2] * u[2];
-    if !alpha2.all_below(SQUARE_MAX) {
-        return Err(StepError::NormTooLarge { map: "cay" });
-    }
-    Ok(S::lit(1.0) / (S::lit(1.0) + S::lit(0.25) * alpha2))
-}
 
 impl<S: Real> CoordinateMap<So3<S>> for Cay {
     type At = ();
@@ -51,8 +39,7 @@ impl<S: Real> CoordinateMap<So3<S>> for Cay {
         _: &mut (),
         g: &mut Matrix3<S>,
     ) -> Result<(), StepError> {
-        let a = shrink(u)?;
-        *g = rodrigues(u, a, S::lit(0.5) * a);
+        *g = so3::cay(u)?;
         Ok(())
     }
     #[inline]
@@ -65,8 +52,10 @@ impl<S: Real> CoordinateMap<So3<S>> for Cay {
         x: &Vector3<S>,
         y: &mut Vector3<S>,
     ) -> Result<(), StepError> {
-        let a = shrink(u)?;
-        *y = rodrigues_on(u, a, S::lit(0.5) * a, x);
+        *y = match so3::cay_coefficients(u) {
+            Some((a, b)) => so3::rodrigues_on(u, a, b, x),
+            None => so3::cay_huge_on(u, x)?,
+        };
         Ok(())
     }
     #[inline]
@@ -77,14 +66,7 @@ impl<S: Real> CoordinateMap<So3<S>> for Cay {
         _: &mut (),
         v: &mut Vector3<S>,
     ) -> Result<(), StepError> {
-        let (half, quarter) = (S::lit(0.5), S::lit(0.25));
-        let c = quarter * (u[0] * v[0] + u[1] * v[1] + u[2] * v[2]);
-        let w = cross(u, v);
-        *v = Vector3::new(
-            v[0] + c * u[0] - half * w[0],
-            v[1] + c * u[1] - half * w[1],
-            v[2] + c * u[2] - half * w[2],
-        );
+        *v = so3::dcayinv_of(u, v);
         Ok(())
     }
 }

@@ -9,7 +9,6 @@ mod general;
 mod so3;
 
 pub use general::{Dexpinv, dexpinv};
-pub(super) use so3::{SQUARE_MAX, rodrigues, rodrigues_on};
 
 /// The exponential map with dexp⁻¹ to rounding.
 ///
