@@ -10,6 +10,7 @@ mod alternating;
 mod cay;
 mod ccsk;
 mod exp;
+mod log;
 
 pub use alternating::{Alternating, AlternatingAt, CCSK};
 pub use cay::Cay;

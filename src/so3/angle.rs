@@ -155,8 +155,9 @@ fn half_angle<S: Trig>(u: &Vector3<S>, alpha2: S) -> (S, S, S) {
     let (s, c) = (S::lit(0.5) * alpha).sin_cos();
     if s.abs().any_below(REFINE) {
         // u is exact, α = fl|u| is not. Near α = 2πk that rounding would be magnified by
-        // α/|α − 2πk|; to first order in |u| − α, which is ε·α, it is taken back here.
-        return (alpha, s + S::lit(0.5) * c * norm_remainder(u, alpha), c);
+        // α/|α − 2πk|; turning by what is missing takes it back.
+        let (se, ce) = (S::lit(0.5) * norm_remainder(u, alpha)).sin_cos();
+        return (alpha, s * ce + c * se, c * ce - s * se);
     }
     (alpha, s, c)
 }
