@@ -86,8 +86,8 @@ impl<S: Trig> Angle<S> {
             || [estrin(alpha2, &SINC), estrin(alpha2, &COSC), l(0.0), l(0.0), l(1.0)],
             || {
                 let (alpha, s, c) = half_angle(u, alpha2);
-                let k = l(2.0) * s / alpha; // sin(α/2)/(α/2)
-                [k * c, l(0.5) * k * k, alpha, s, c]
+                let k = l(2.0) * s / alpha2; // not by squaring 2s/α: that doubles the rounding of α
+                [k * alpha * c, k * s, alpha, s, c]
             },
         );
         (Angle { alpha2, alpha, sin_half, cos_half }, a, b)
@@ -153,19 +153,24 @@ impl<S: Trig> Angle<S> {
 fn half_angle<S: Trig>(u: &Vector3<S>, alpha2: S) -> (S, S, S) {
     let alpha = alpha2.sqrt();
     let (s, c) = (S::lit(0.5) * alpha).sin_cos();
-    if s.abs().any_below(REFINE) {
-        // u is exact, α = fl|u| is not. Near α = 2πk that rounding would be magnified by
-        // α/|α − 2πk|; turning by what is missing takes it back.
-        let (se, ce) = (S::lit(0.5) * norm_remainder(u, alpha)).sin_cos();
-        return (alpha, s * ce + c * se, c * ce - s * se);
+    // |sin| < 0.1 says |cos| > 0.9; asked together, both are wanted here, and come from one call.
+    if s.abs().any_below(REFINE) & !c.abs().all_below(0.9) {
+        return refined(u, alpha, s, c);
     }
     (alpha, s, c)
 }
 
-/// |u| − alpha for alpha = fl|u|, to working accuracy: (Σu_i² − alpha²)/(2 alpha), the squares and
-/// their sum without error.
+/// u is exact, α = fl|u| is not. Near α = 2πk that rounding would be magnified by α/|α − 2πk|;
+/// turning by what is missing takes it back.
 #[cold]
 #[inline(never)]
+fn refined<S: Trig>(u: &Vector3<S>, alpha: S, s: S, c: S) -> (S, S, S) {
+    let (se, ce) = (S::lit(0.5) * norm_remainder(u, alpha)).sin_cos();
+    (alpha, s * ce + c * se, c * ce - s * se)
+}
+
+/// |u| − alpha for alpha = fl|u|, to working accuracy: (Σu_i² − alpha²)/(2 alpha), the squares and
+/// their sum without error.
 fn norm_remainder<S: Real>(u: &Vector3<S>, alpha: S) -> S {
     let (p, e) = square_exactly(alpha);
     // -alpha² first: every partial sum is then exact up to a rounding of what is left.

@@ -176,7 +176,8 @@ pub fn ccsk_inv<const I: usize, const J: usize, const K: usize>(
     let c3 = c1 * r[(J, J)] + s1 * sign(r[(K, J)]);
     let mut u = Vector3::zeros();
     u[I] = one;
-    u[J] = sign(r[(I, K)]).atan2(r[(I, I)].hypot(r[(I, J)]));
+    let cos = (r[(I, I)] * r[(I, I)] + r[(I, J)] * r[(I, J)]).sqrt();
+    u[J] = sign(r[(I, K)]).atan2(cos);
     u[K] = sign(s3.atan2(c3));
     Ok(u)
 }

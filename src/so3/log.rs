@@ -11,8 +11,9 @@ use crate::error::Error;
 /// what a rotation stored in single precision or printed with six digits has.
 pub const POLAR_MAX: f64 = 1e-5;
 
-/// Below this defect R counts as orthogonal.
-const ORTHOGONAL: f64 = 4.0 * f64::EPSILON;
+/// Up to this defect R counts as orthogonal, what products of rotations have; the logarithm is then
+/// off by no more than the defect.
+const ORTHOGONAL: f64 = 16.0 * f64::EPSILON;
 
 /// log(R): the u with exp(u) = R and |u| ≤ π. A rotation by exactly π has two; then the first
 /// component of u that is not zero is positive.
@@ -53,29 +54,51 @@ fn gram_defect(r: &Matrix3<f64>) -> ([f64; 3], [f64; 3]) {
 }
 
 #[inline(always)]
-fn norm((d, o): &([f64; 3], [f64; 3])) -> f64 {
+fn norm_squared((d, o): &([f64; 3], [f64; 3])) -> f64 {
     let square = |x: &[f64; 3]| x[0] * x[0] + x[1] * x[1] + x[2] * x[2];
-    (square(d) + 2.0 * square(o)).sqrt()
+    square(d) + 2.0 * square(o)
 }
 
 /// (w, x, y, z), a multiple of the unit quaternion of R between 1 and 4 times as long.
 ///
 /// # Errors
 /// As [`log`].
-#[inline]
+#[inline(always)]
 pub(super) fn quaternion_of(arg: &'static str, r: &Matrix3<f64>) -> Result<[f64; 4], Error> {
     let defect = gram_defect(r);
-    let residual = norm(&defect);
-    if residual.is_nan() || residual > POLAR_MAX {
-        return Err(refuse(arg, r, residual));
+    let residual2 = norm_squared(&defect);
+    let det = triple(r);
+    if residual2 <= ORTHOGONAL * ORTHOGONAL && det > 0.0 {
+        return Ok(shepperd(r));
     }
-    if r.column(0).dot(&r.column(1).cross(&r.column(2))) < 0.0 {
-        return Err(Error::Reflection { arg });
-    }
-    Ok(if residual <= ORTHOGONAL { shepperd(r) } else { shepperd(&polar_factor(r, defect)) })
+    off_the_group(arg, r, defect, residual2.sqrt(), det)
+}
+
+/// det R.
+#[inline(always)]
+fn triple(r: &Matrix3<f64>) -> f64 {
+    let minor = |j: usize, k: usize| r[(1, j)] * r[(2, k)] - r[(1, k)] * r[(2, j)];
+    r[(0, 0)] * minor(1, 2) + r[(0, 1)] * minor(2, 0) + r[(0, 2)] * minor(0, 1)
 }
 
 #[cold]
+#[inline(never)]
+fn off_the_group(
+    arg: &'static str,
+    r: &Matrix3<f64>,
+    defect: ([f64; 3], [f64; 3]),
+    residual: f64,
+    det: f64,
+) -> Result<[f64; 4], Error> {
+    if residual.is_nan() || residual > POLAR_MAX {
+        return Err(refuse(arg, r, residual));
+    }
+    if det < 0.0 {
+        return Err(Error::Reflection { arg });
+    }
+    Ok(shepperd(&polar_factor(r, defect)))
+}
+
 fn refuse(arg: &'static str, r: &Matrix3<f64>, residual: f64) -> Error {
     for col in 0..3 {
         for row in 0..3 {
@@ -90,11 +113,10 @@ fn refuse(arg: &'static str, r: &Matrix3<f64>, residual: f64) -> Error {
 
 /// R ← R − R(RᵀR − 𝟙)/2 (Newton–Schulz, in residual form): quadratic, so that two or three steps
 /// take [`POLAR_MAX`] to rounding.
-#[cold]
 fn polar_factor(r: &Matrix3<f64>, mut defect: ([f64; 3], [f64; 3])) -> Matrix3<f64> {
     let mut r = *r;
     for _ in 0..3 {
-        let last = norm(&defect) < 1e-9;
+        let last = norm_squared(&defect) < 1e-18;
         let ([a, b, c], [d, e, f]) = defect;
         r -= r * Matrix3::new(a, d, e, d, b, f, e, f, c) * 0.5;
         if last {
