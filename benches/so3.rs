@@ -65,22 +65,22 @@ fn main() {
         compare(
             &format!("exp, |u| in {range}"),
             vec![
-                ("so3::exp", over(&u, |u| so3::exp(u))),
+                ("so3::exp", over(&u, so3::exp)),
                 ("nalgebra Rotation3", over(&u, |u| Rotation3::from_scaled_axis(*u))),
-                ("so3::exp_quaternion", over(&u, |u| so3::exp_quaternion(u))),
+                ("so3::exp_quaternion", over(&u, so3::exp_quaternion)),
                 ("nalgebra UnitQuaternion", over(&u, |u| UnitQuaternion::from_scaled_axis(*u))),
             ],
         );
         compare(
             &format!("log, |u| in {range}"),
             vec![
-                ("so3::log", over(&r, |r| so3::log(r))),
+                ("so3::log", over(&r, so3::log)),
                 ("nalgebra Rotation3", over(&rotations, |r| r.scaled_axis())),
                 (
                     "nalgebra via UnitQuaternion",
                     over(&rotations, |r| UnitQuaternion::from_rotation_matrix(r).scaled_axis()),
                 ),
-                ("so3::log_quaternion", over(&q, |q| so3::log_quaternion(q))),
+                ("so3::log_quaternion", over(&q, so3::log_quaternion)),
                 ("nalgebra UnitQuaternion", over(&q, |q| q.scaled_axis())),
             ],
         );
@@ -88,22 +88,22 @@ fn main() {
             &format!("differentials, |u| in {range} (no peer in nalgebra)"),
             vec![
                 ("so3::dexpinv", over(&pairs, |(u, v)| so3::dexpinv(u, v))),
-                ("so3::dexpinv_matrix", over(&u, |u| so3::dexpinv_matrix(u))),
+                ("so3::dexpinv_matrix", over(&u, so3::dexpinv_matrix)),
                 ("so3::dexp", over(&pairs, |(u, v)| so3::dexp(u, v))),
-                ("so3::dexp_matrix", over(&u, |u| so3::dexp_matrix(u))),
-                ("so3::cay", over(&u, |u| so3::cay(u))),
+                ("so3::dexp_matrix", over(&u, so3::dexp_matrix)),
+                ("so3::cay", over(&u, so3::cay)),
                 ("so3::dcayinv", over(&pairs, |(u, v)| so3::dcayinv(u, v))),
             ],
         );
         compare(
             &format!("Euler angles, |u| in {range}"),
             vec![
-                ("so3::ccsk 321", over(&u, |u| so3::ccsk::<f64, 2, 1, 0>(u))),
+                ("so3::ccsk 321", over(&u, so3::ccsk::<f64, 2, 1, 0>)),
                 (
                     "nalgebra from_euler_angles",
                     over(&u, |u| Rotation3::from_euler_angles(u[0], u[1], u[2])),
                 ),
-                ("so3::ccsk_inv 321", over(&r, |r| so3::ccsk_inv::<2, 1, 0>(r))),
+                ("so3::ccsk_inv 321", over(&r, so3::ccsk_inv::<2, 1, 0>)),
                 ("nalgebra euler_angles", over(&rotations, |r| r.euler_angles())),
             ],
         );
