@@ -121,6 +121,18 @@ pub enum Error {
         /// The names that are registered.
         expected: Vec<&'static str>,
     },
+    /// A group element has no principal real logarithm.
+    #[error(
+        "g: no principal real logarithm in {group}: the eigenvalue {re:.3e} {im:+.1e}i lies on the negative real axis"
+    )]
+    NoLogarithm {
+        /// The group.
+        group: String,
+        /// The eigenvalue, real part.
+        re: f64,
+        /// Its imaginary part, zero to rounding.
+        im: f64,
+    },
 }
 
 impl Error {

@@ -62,6 +62,7 @@ pub mod maps;
 pub mod methods;
 pub mod problems;
 pub mod scalar;
+pub mod so3;
 
 pub use actions::Action;
 pub use error::{Error, Failure, StepError};

@@ -8,9 +8,11 @@
 //! one line here, one line in the law tests. A matrix group needs no file: it is a constructor of
 //! [`MatrixGroup`].
 
+mod adjoint;
 mod matrix;
 mod so3;
 
+pub use adjoint::Adjoint;
 pub use matrix::{AlgebraMatrix, Form, GroupMatrix, MEMBERSHIP, MatrixGroup, RCOND_MIN};
 pub use so3::{So3, hat, vee};
 pub(crate) use so3::{apply3, cross};

@@ -103,7 +103,7 @@ impl<S: Real> LieAlgebra for So3<S> {
     }
     #[inline]
     fn is_finite(&self, u: &Vector3<S>) -> bool {
-        (u[0].abs() + u[1].abs() + u[2].abs()).is_finite()
+        u[0].is_finite() && u[1].is_finite() && u[2].is_finite()
     }
     /// Starts from the first term instead of from zero: three additions fewer.
     #[inline]

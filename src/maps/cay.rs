@@ -12,35 +12,17 @@ use faer::Mat;
 use nalgebra::{Matrix3, Vector3};
 
 use super::CoordinateMap;
-use super::exp::{SQUARE_MAX, rodrigues, rodrigues_on};
 use crate::dense::{Lu, is_finite, mul, norm_frobenius, norm1, orthogonalise, scaled_sum};
 use crate::error::{Error, StepError};
 use crate::groups::{
-    AlgebraMatrix, Form, GroupMatrix, LieAlgebra, LieGroup, MatrixGroup, RCOND_MIN, So3, cross,
+    AlgebraMatrix, Form, GroupMatrix, LieAlgebra, LieGroup, MatrixGroup, RCOND_MIN, So3,
 };
 use crate::scalar::Real;
+use crate::so3;
 
 /// The Cayley map.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Cay;
-
-/// cay(u) = 𝟙 + a·w + b·w² as (w, a, b): w = u, or u/s where |u|² would overflow.
-#[inline(always)]
-fn coefficients<S: Real>(u: &Vector3<S>) -> Result<(Vector3<S>, S, S), StepError> {
-    let l = S::lit;
-    let alpha2 = u[0] * u[0] + u[1] * u[1] + u[2] * u[2];
-    if alpha2.all_below(SQUARE_MAX) {
-        let a = l(1.0) / (l(1.0) + l(0.25) * alpha2);
-        return Ok((*u, a, l(0.5) * a));
-    }
-    let s = l(1.0) + u[0].abs() + u[1].abs() + u[2].abs();
-    if !s.is_finite() {
-        return Err(StepError::NotFinite { what: "the argument of cay" });
-    }
-    let (w, r) = (Vector3::new(u[0] / s, u[1] / s, u[2] / s), l(1.0) / s);
-    let c = l(1.0) / (r * r + l(0.25) * (w[0] * w[0] + w[1] * w[1] + w[2] * w[2]));
-    Ok((w, r * c, l(0.5) * c))
-}
 
 impl<S: Real> CoordinateMap<So3<S>> for Cay {
     type At = ();
@@ -59,8 +41,7 @@ impl<S: Real> CoordinateMap<So3<S>> for Cay {
         _: &mut (),
         g: &mut Matrix3<S>,
     ) -> Result<(), StepError> {
-        let (w, a, b) = coefficients(u)?;
-        *g = rodrigues(&w, a, b);
+        *g = so3::cay(u)?;
         Ok(())
     }
     #[inline]
@@ -73,8 +54,10 @@ impl<S: Real> CoordinateMap<So3<S>> for Cay {
         x: &Vector3<S>,
         y: &mut Vector3<S>,
     ) -> Result<(), StepError> {
-        let (w, a, b) = coefficients(u)?;
-        *y = rodrigues_on(&w, a, b, x);
+        *y = match so3::cay_coefficients(u) {
+            Some((a, b)) => so3::rodrigues_on(u, a, b, x),
+            None => so3::cay_huge_on(u, x)?,
+        };
         Ok(())
     }
     #[inline]
@@ -85,14 +68,7 @@ impl<S: Real> CoordinateMap<So3<S>> for Cay {
         _: &mut (),
         v: &mut Vector3<S>,
     ) -> Result<(), StepError> {
-        let (half, quarter) = (S::lit(0.5), S::lit(0.25));
-        let c = quarter * (u[0] * v[0] + u[1] * v[1] + u[2] * v[2]);
-        let w = cross(u, v);
-        *v = Vector3::new(
-            v[0] + c * u[0] - half * w[0],
-            v[1] + c * u[1] - half * w[1],
-            v[2] + c * u[2] - half * w[2],
-        );
+        *v = so3::dcayinv_of(u, v);
         match v[0].is_finite() && v[1].is_finite() && v[2].is_finite() {
             true => Ok(()),
             false => Err(StepError::NotFinite { what: "dcay⁻¹" }),
@@ -323,46 +299,10 @@ impl CayleyGroup for MatrixGroup {
 }
 
 impl CayleyGroup for So3<f64> {
-    /// By the quaternion (w, x) of g, whose largest component comes from the trace or from the
-    /// diagonal, without cancellation: u = 2x/w.
     fn cay_inv(&self, g: &Matrix3<f64>) -> Result<Vector3<f64>, Error> {
-        self.check_element("g", g, 0.1)?;
-        let trace = g[(0, 0)] + g[(1, 1)] + g[(2, 2)];
-        let vector =
-            Vector3::new(g[(2, 1)] - g[(1, 2)], g[(0, 2)] - g[(2, 0)], g[(1, 0)] - g[(0, 1)]);
-        // 4(w, x) times the component of the largest square, which drops out of x/w.
-        let (mut largest, mut at) = (trace, 3);
-        for i in 0..3 {
-            if g[(i, i)] > largest {
-                (largest, at) = (g[(i, i)], i);
-            }
-        }
-        let (w, x) = match at {
-            3 => (1.0 + trace, vector),
-            i => {
-                let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-                let mut x = Vector3::zeros();
-                x[i] = 1.0 + g[(i, i)] - g[(j, j)] - g[(k, k)];
-                x[j] = g[(i, j)] + g[(j, i)];
-                x[k] = g[(i, k)] + g[(k, i)];
-                (vector[i], x)
-            }
-        };
-        let rcond = w.abs() / w.hypot(x.norm());
-        if rcond.is_nan() || rcond < RCOND_MIN {
-            return Err(Error::Singular { arg: "g + 𝟙", rcond, minimum: RCOND_MIN });
-        }
-        Ok(x * (2.0 / w))
+        so3::cay_inv(g)
     }
-
-    /// (v + ½ u×v)/(1 + α²/4).
     fn dcay(&self, u: &Vector3<f64>, v: &Vector3<f64>) -> Result<Vector3<f64>, Error> {
-        let (x, w) = (u / 2.0, v);
-        let size = 1f64.hypot(x.norm());
-        let w = (w / size + (x / size).cross(w)) / size;
-        match self.is_finite(&w) {
-            true => Ok(w),
-            false => Err(StepError::NotFinite { what: "dcay(u, v)" }.into()),
-        }
+        Ok(so3::dcay(u, v)?)
     }
 }

@@ -11,6 +11,7 @@ mod alternating;
 mod cay;
 mod ccsk;
 mod exp;
+mod log;
 mod pade22;
 
 pub use alternating::{Alternating, AlternatingAt, CCSK};

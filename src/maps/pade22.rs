@@ -19,11 +19,11 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::CoordinateMap;
 use super::cay::well_conditioned;
-use super::exp::{rodrigues, rodrigues_on};
 use crate::dense::{AdSchur, Lu, mul, norm_frobenius, scaled_sum};
 use crate::error::{Error, StepError};
 use crate::groups::{AlgebraMatrix, GroupMatrix, LieAlgebra, MatrixGroup, So3, cross};
 use crate::scalar::Real;
+use crate::so3::{rodrigues, rodrigues_on};
 
 /// The diagonal Padé map (2,2): Ψ(u) = (𝟙 − u/2 + u²/12)⁻¹(𝟙 + u/2 + u²/12).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

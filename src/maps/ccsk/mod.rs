@@ -26,7 +26,6 @@ use super::CoordinateMap;
 use crate::dense::{is_finite, mul, scaled_sum};
 use crate::error::{Error, StepError};
 use crate::groups::{AlgebraMatrix, Form, GroupMatrix, LieAlgebra, MatrixGroup};
-use crate::scalar::Real;
 
 /// Canonical coordinates of the second kind with the basis ordered e_I, e_J, e_K (from 0).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,9 +50,6 @@ const NAMES: [[[&str; 3]; 3]; 3] = {
 };
 
 impl<const I: usize, const J: usize, const K: usize> Ccsk<I, J, K> {
-    /// Is e_I × e_J = e_K?
-    const EVEN: bool = (I + 1) % 3 == J;
-
     /// The map, with dccsk⁻¹ refused where |cos| of the middle angle is below 1e-4.
     pub const fn new() -> Self {
         const { assert!(I < 3 && J < 3 && K < 3 && I != J && J != K && K != I) };
@@ -63,12 +59,6 @@ impl<const I: usize, const J: usize, const K: usize> Ccsk<I, J, K> {
     /// The map with a bound of one's own on |cos|; 0 gives the raw formula up to its singularity.
     pub const fn with_min_cos(min_cos: f64) -> Self {
         Ccsk { min_cos }
-    }
-
-    /// x, with the sign of the ordering: e_I, e_J, ±e_K is a right-handed frame.
-    #[inline(always)]
-    fn signed<S: Real>(x: S) -> S {
-        if Self::EVEN { x } else { -x }
     }
 }
 

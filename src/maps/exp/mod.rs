@@ -11,7 +11,6 @@ mod so3;
 
 pub use functions::{Truncated, dexp, dexpinv, dexpinv_with_remainder, distance_to_singular};
 pub use general::{Dexpinv, ExpAt};
-pub(super) use so3::{SQUARE_MAX, rodrigues, rodrigues_on};
 
 /// The exponential map with dexp⁻¹ to rounding.
 ///
