@@ -3,10 +3,14 @@
 //! To add a method: one file with an `impl` of [`Method`], one line here, one in the catalog, which
 //! puts it into the order tests and the command line at once.
 
+mod doubling;
+mod embedded;
 mod rk;
 mod rkmk;
 pub mod tableau;
 
+pub use doubling::Doubling;
+pub use embedded::{Embedded, LocalError, Metric};
 pub use rk::Rk;
 pub use rkmk::Rkmk;
 pub use tableau::Tableau;
