@@ -148,6 +148,8 @@ where
     }
     .max(control.min_step);
     let mut in_a_row = 0;
+    // The end of the last step that failed, until it is passed.
+    let mut wall = None;
     while run.t != run.t1 {
         let (end, size) = run.propose(h);
         if run.stats.accepted + run.stats.rejected >= control.max_steps {
@@ -177,6 +179,8 @@ where
             Ok(ratio) if ratio <= 1.0 => {
                 core::mem::swap(y, &mut run.next);
                 run.accepted(end, size);
+                wall = wall.filter(|wall| if forward { end < *wall } else { end > *wall });
+                controller.hold |= wall.is_some();
                 h = (size * controller.accept(ratio)).max(control.min_step);
                 in_a_row = 0;
                 let shown = match save {
@@ -194,8 +198,14 @@ where
             rejected => {
                 run.stats.rejected += 1;
                 in_a_row += 1;
+                if rejected.is_err() {
+                    wall = Some(end);
+                }
                 h = size * controller.reject(rejected.ok());
-                if in_a_row >= REJECTIONS_MAX || h < control.min_step || run.lost(h) {
+                // Next to t two steps of different sizes may be one after rounding.
+                let smaller = run.propose(h).0;
+                let stuck = smaller == run.t || smaller == end;
+                if in_a_row >= REJECTIONS_MAX || h < control.min_step || stuck {
                     return Err(run.underflow(h, rejected.err()));
                 }
             }
@@ -284,9 +294,10 @@ where
         if !d1.is_finite() {
             return 1e-3 * span; // the first attempt will say what is wrong
         }
-        let h0 = if d1 * span > 1e-5 { (0.01 / d1).min(span) } else { 1e-6 * span };
+        let still = d1 * span <= 1e-5;
+        let h0 = if still { 1e-6 * span } else { (0.01 / d1).min(span) };
         if self.lost(h0) {
-            return h0;
+            return if still { span } else { h0 };
         }
         let end = self.t + h0.copysign(self.t1 - self.t);
         if self.attempt(end, y).is_err() {

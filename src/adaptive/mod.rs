@@ -12,7 +12,8 @@
 //! never grows right after a rejection.
 //!
 //! A step that fails (outside a chart, not finite) is rejected like one with too large an error, and
-//! halved: no result of it is used.
+//! halved: no result of it is used. Until time has passed its end no step grows, so that a wall that
+//! cannot be passed is closed in on with one rejection for each halving.
 
 mod driver;
 
@@ -109,8 +110,8 @@ struct Controller {
     k: f64,
     /// r of the last accepted step.
     last: f64,
-    /// Was the last attempt rejected?
-    rejected: bool,
+    /// May the next step not be larger than this one?
+    hold: bool,
 }
 
 /// The most that a step grows, and the inverse of the most that it shrinks.
@@ -119,22 +120,22 @@ const SAFETY: f64 = 0.9;
 
 impl Controller {
     fn new(error_order: usize) -> Self {
-        Controller { k: error_order as f64 + 1.0, last: 1.0, rejected: false }
+        Controller { k: error_order as f64 + 1.0, last: 1.0, hold: false }
     }
 
     /// The factor of the next step after an accepted one.
     fn accept(&mut self, ratio: f64) -> f64 {
         let r = ratio.max(1e-10); // an error of 0 says "grow"
         let factor = SAFETY * r.powf(-0.7 / self.k) * self.last.powf(0.4 / self.k);
-        let cap = if self.rejected { 1.0 } else { GROWTH_MAX };
+        let cap = if self.hold { 1.0 } else { GROWTH_MAX };
         self.last = r.max(1e-4);
-        self.rejected = false;
+        self.hold = false;
         factor.clamp(1.0 / GROWTH_MAX, cap)
     }
 
     /// The factor of the next attempt; `None` is a step that failed.
     fn reject(&mut self, ratio: Option<f64>) -> f64 {
-        self.rejected = true;
+        self.hold = true;
         match ratio {
             Some(r) => (SAFETY * r.powf(-1.0 / self.k)).clamp(1.0 / GROWTH_MAX, SAFETY),
             None => 0.5,
