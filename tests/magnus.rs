@@ -33,3 +33,17 @@ fn magnus_methods_have_their_orders() {
     });
     verdict.assert();
 }
+
+#[test]
+fn wrong_methods_are_seen() {
+    let problem = TimeOnly::new(MatrixGroup::so(5).expect("SO(5)"));
+    let start = problem.group.identity();
+    let exact = reference(&problem, &start);
+    // The factors are listed in the order of application; reversed, order 2 is left.
+    let mut reversed = CFM6_5;
+    reversed.factors.reverse();
+    assert!(!measure(&problem, &CfMagnus(reversed), &start, &exact).is(6));
+    let mut coefficient = CFM8_11;
+    coefficient.factors[2][1] += 1e-6;
+    assert!(!measure(&problem, &CfMagnus(coefficient), &start, &exact).is(8));
+}

@@ -184,7 +184,7 @@ where
                 h = (size * controller.accept(ratio)).max(control.min_step);
                 in_a_row = 0;
                 let shown = match save {
-                    SaveAt::Every(every) => run.stats.accepted % every == 0,
+                    SaveAt::Every(every) => run.stats.accepted.is_multiple_of(*every),
                     SaveAt::Times(_) => times.first() == Some(&end),
                     SaveAt::Ends => false,
                 };

@@ -170,9 +170,8 @@ pub fn reference<P: Ambient>(problem: &P, start: &PointOf<P>) -> PointOf<P> {
 }
 
 /// Numbers of steps, fixed here once for every method, with ratios near 5/4.
-const STEPS: [u64; 24] = [
+const STEPS: [u64; 23] = [
     4, 5, 6, 8, 10, 12, 15, 19, 24, 30, 38, 48, 60, 75, 94, 118, 148, 185, 231, 289, 361, 451, 564,
-    705,
 ];
 
 /// The pairwise slopes of the errors, between neighbours of the grid.

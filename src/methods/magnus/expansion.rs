@@ -58,7 +58,7 @@ const fn moment(k: usize) -> [f64; 4] {
         y *= V[1];
         i += 1;
     }
-    let sign = if k % 2 == 0 { 1.0 } else { -1.0 };
+    let sign = if k.is_multiple_of(2) { 1.0 } else { -1.0 };
     [sign * x, sign * y, y, x]
 }
 const MOMENTS: [[f64; 4]; 4] = [moment(0), moment(1), moment(2), moment(3)];
