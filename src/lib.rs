@@ -51,6 +51,7 @@
 #![deny(missing_docs, rustdoc::broken_intra_doc_links)]
 
 pub mod actions;
+pub mod adaptive;
 pub mod catalog;
 pub mod chart;
 pub mod check;

@@ -3,6 +3,7 @@
 use core::fmt::Debug;
 
 use lieflow::catalog::{CatalogGroup, MethodSpec, OnMethod, with_method};
+use lieflow::maps::{CoordinateMap, Exp};
 use lieflow::methods::Method;
 use lieflow::problems::{Ambient, PointOf, Problem};
 use lieflow::{Error, RunError, SaveAt, Stats, TimeGrid, integrate};
@@ -126,6 +127,7 @@ pub fn integrate_by<P: Ambient>(
 ) -> Result<Stats, RunError>
 where
     P::Group: CatalogGroup,
+    Exp: CoordinateMap<P::Group>,
 {
     with_method(spec, Integrate { problem, y, grid, save, observe })?
 }
@@ -137,6 +139,7 @@ where
 pub fn order_by<P: Ambient>(spec: &MethodSpec, problem: &P) -> Result<usize, Error>
 where
     P::Group: CatalogGroup,
+    Exp: CoordinateMap<P::Group>,
 {
     with_method(spec, Order(problem))
 }
