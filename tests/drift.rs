@@ -159,7 +159,7 @@ fn compact_groups_at_every_step() {
 
 /// Ten million steps, and what the correction costs: minimum of rounds, side by side.
 #[test]
-#[ignore = "a minute; measured by hand"]
+#[ignore = "a timing of a minute: cargo test --release --test drift -- --ignored --nocapture"]
 fn ten_million_steps() {
     fn measure<P: Problem>(name: &str, problem: &P)
     where

@@ -6,6 +6,7 @@ use super::angle::SQUARE_MAX;
 use super::log::quaternion_of;
 use super::{dot, finite, finite_matrix, polar, rodrigues};
 use crate::error::{Error, StepError};
+use crate::groups::RCOND_MIN;
 use crate::groups::cross;
 use crate::scalar::Real;
 
@@ -89,14 +90,14 @@ pub fn dcayinv_matrix<S: Real>(u: &Vector3<S>) -> Result<Matrix3<S>, StepError> 
 /// cay⁻¹(R): the u with cay(u) = R, u = 2q/q_w in the quaternion of R.
 ///
 /// # Errors
-/// As [`log`](super::log()); [`StepError::OutsideChart`] for a rotation by π to rounding, which cay
-/// does not reach.
+/// As [`log`](super::log()); [`Error::Singular`] for a rotation by π to rounding, which cay does not
+/// reach.
 pub fn cay_inv(r: &Matrix3<f64>) -> Result<Vector3<f64>, Error> {
     let [w, x, y, z] = quaternion_of("R", r)?;
     let v = Vector3::new(x, y, z);
-    if w.abs() <= 2.0 * f64::EPSILON * v.amax() {
-        let what = "cay does not reach rotations by π";
-        return Err(StepError::OutsideChart { map: "cay⁻¹", what }.into());
+    let rcond = w.abs() / w.hypot(v.norm());
+    if rcond.is_nan() || rcond < RCOND_MIN {
+        return Err(Error::Singular { arg: "R + 𝟙", rcond, minimum: RCOND_MIN });
     }
     Ok(v.map(|x| 2.0 * x / w))
 }
