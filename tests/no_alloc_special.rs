@@ -79,7 +79,7 @@ fn every_method_on_every_model_of_the_body() {
     let both = RigidBodyState::<f64>::new(inertia).expect("a body");
     let state = both.state(m.into(), Matrix3::identity()).expect("a state");
     let mut served = 0;
-    for info in all_methods() {
+    for (info, _) in all_methods() {
         let (spec, name) = (MethodSpec::new(info.name, None), info.name);
         check(&mut served, name, with_momentum_method(&spec, Count(&momentum, m)));
         let g = Matrix3::identity();

@@ -1,349 +1,127 @@
-//! Methods that ask more of a problem than f: a list and a function for each capability.
+//! What methods ask of a problem, and a function for each kind of problem.
 //!
-//! Each function serves its own list and hands everything else to the function below it:
+//! Two questions are answered here:
 //!
-//! ```text
-//! with_attitude_method   with_momentum_method   with_lie_poisson_method
-//!           └─── with_body_method ───┘                     │
-//!                        └─────── with_implicit_method ────┘
-//!                                          └── with_method
-//! ```
+//! - *Which methods fit my problem?* Know what the problem offers, as [`Needs`]; each of them lists
+//!   its methods by [`Needs::methods`], and [`all_methods`] goes through all.
+//! - *Run this spec on my problem.* Call the function of the problem's kind with the spec and a
+//!   visitor ([`OnMethod`]); a method that is registered but does not fit is refused by
+//!   [`Error::Unsupported`] with what it needs, an unknown one by [`Error::UnknownName`].
+//!
+//! | function | problem | offers |
+//! |---|---|---|
+//! | [`with_method`] | [`Ambient`] | `Field` |
+//! | [`with_implicit_method`] | and points with a norm | `Field`, `Norm` |
+//! | [`with_body_method`] | a free rigid body in ℝ³ | `Field`, `Norm`, `Body` |
+//! | [`with_attitude_method`] | and its attitude in the state | `Field`, `Norm`, `Body`, `Attitude` |
+//! | [`with_momentum_method`] | the body by its momentum | `Field`, `Norm`, `Body`, `LiePoisson` |
+//! | [`with_lie_poisson_method`] | momenta as matrices | `Field`, `Norm`, `LiePoisson`, `Isospectral` |
+//! | [`with_linear_method`](super::with_linear_method) | ẏ = λ_*(A(t))(y) | `LinearType` |
+//!
+//! Each of the first six hands what is not its own to the function that it extends.
 
-use super::{KEEPS_GROUP, METHODS, MethodInfo, MethodSpec, OnMethod, ZANNA, unknown, with_method};
+use super::{
+    ATTITUDE_METHODS, BODY_METHODS, CatalogGroup, IMPLICIT_METHODS, ISOSPECTRAL_METHODS,
+    LIE_POISSON_METHODS, LINEAR_METHODS, METHODS, MethodInfo, MethodSpec, OnMethod, unknown,
+    with_method,
+};
 use crate::error::Error;
 use crate::groups::LieAlgebra;
-use crate::maps::{Cay, Ccsk, CoordinateMap, Exp, TruncatedExp};
+use crate::maps::{Cay, CoordinateMap, Exp};
 use crate::methods::{
     Buss4, DMV2, DMV4, DMV6, DMV8, DMV10, EnergyCasimir, ExactMotion, GAUSS2, GAUSS4, GAUSS6,
-    Gauss, IsospectralGauss, MR2, MR4, Projected, Rk, RkmkGaussSymmetric, SimoWong, Taylor,
+    Gauss, IsospectralGauss, MR2, MR4, Metric, Projected, Rk, RkmkGaussSymmetric, SimoWong, Taylor,
     tableau,
 };
-use crate::problems::{FreeBody, Isospectral, LiePoisson, Metric, Orthogonal, Projection, Split};
+use crate::problems::{
+    Ambient, FreeBody, Isospectral, LiePoisson, Orthogonal, PointOf, Projection, ScalarOf, Split,
+};
 
-/// Methods for problems with a norm: [`with_implicit_method`].
-pub const IMPLICIT_METHODS: &[MethodInfo] = &[
-    MethodInfo {
-        name: "midpoint-implicit",
-        summary: "the implicit midpoint rule on the entries of the state",
-        order: Some(2),
-        takes_map: false,
-        takes_tableau: false,
-        preserves: QUADRATIC,
-        cost: "5–20 F",
-        source: GAUSS,
-    },
-    MethodInfo {
-        name: "gauss4",
-        summary: "Gauss collocation of two stages on the entries of the state",
-        order: Some(4),
-        takes_map: false,
-        takes_tableau: false,
-        preserves: QUADRATIC,
-        cost: "5–20 × 2 F",
-        source: GAUSS,
-    },
-    MethodInfo {
-        name: "gauss6",
-        summary: "Gauss collocation of three stages on the entries of the state",
-        order: Some(6),
-        takes_map: false,
-        takes_tableau: false,
-        preserves: QUADRATIC,
-        cost: "5–20 × 3 F",
-        source: GAUSS,
-    },
-    MethodInfo {
-        name: "rkmk-gauss4-symmetric",
-        summary: "implicit Runge–Kutta–Munthe-Kaas, its chart in the middle: time-symmetric; exp or cay",
-        order: Some(4),
-        takes_map: true,
-        takes_tableau: false,
-        preserves: KEEPS_GROUP,
-        cost: "5–20 × (2 f, 3 Ψ, 2 dΨ⁻¹)",
-        source: ZANNA,
-    },
-];
+/// What a method asks of a problem beyond f, and so what a problem may offer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Needs {
+    /// F on the linear space around M ([`Ambient`]).
+    Field,
+    /// f that depends on time alone ([`LinearField`](crate::problems::LinearField)).
+    LinearType,
+    /// A norm of the points ([`Metric`]).
+    Norm,
+    /// The free rigid body in ℝ³ ([`FreeBody`], [`Split`]).
+    Body,
+    /// An orthogonal matrix in the state ([`Orthogonal`]).
+    Attitude,
+    /// A Hamiltonian on 𝔤* ([`LiePoisson`]).
+    LiePoisson,
+    /// Ẇ = \[B(W), W\] ([`Isospectral`]).
+    Isospectral,
+}
 
-const QUADRATIC: &str = "quadratic invariants, time symmetry";
-const GAUSS: &str = "Hairer, Lubich, Wanner, Geometric Numerical Integration, II.1.3";
+impl Needs {
+    /// Each of them.
+    pub const ALL: [Needs; 7] = [
+        Needs::Field,
+        Needs::LinearType,
+        Needs::Norm,
+        Needs::Body,
+        Needs::Attitude,
+        Needs::LiePoisson,
+        Needs::Isospectral,
+    ];
 
-/// Methods for the free rigid body in ℝ³: [`with_body_method`].
-pub const BODY_METHODS: &[MethodInfo] = &[
-    MethodInfo {
-        name: "mr2",
-        summary: "McLachlan–Reich splitting, ordering 123",
-        order: Some(2),
-        takes_map: false,
-        takes_tableau: false,
-        preserves: SPLIT,
-        cost: "5 axis rotations",
-        source: MCLACHLAN,
-    },
-    MethodInfo {
-        name: "mr4",
-        summary: "McLachlan–Reich splitting, triple jump, ordering 123",
-        order: Some(4),
-        takes_map: false,
-        takes_tableau: false,
-        preserves: SPLIT,
-        cost: "13 axis rotations",
-        source: MCLACHLAN,
-    },
-    MethodInfo {
-        name: "simo-wong",
-        summary: "Simo and Wong's implicit method, increment exp(ζ)",
-        order: Some(2),
-        takes_map: false,
-        takes_tableau: false,
-        preserves: ALL_FIRST,
-        cost: "3–6 Newton iterations",
-        source: "Simo & Wong 1991",
-    },
-    MethodInfo {
-        name: "simo-wong-k1",
-        summary: "Simo and Wong's implicit method with k = 1: the midpoint rule in cay",
-        order: Some(2),
-        takes_map: false,
-        takes_tableau: false,
-        preserves: ALL_FIRST,
-        cost: "3–6 Newton iterations",
-        source: "Austin, Krishnaprasad & Wang 1993",
-    },
-    MethodInfo {
-        name: "buss4",
-        summary: "Buss's augmented Taylor method",
-        order: Some(4),
-        takes_map: false,
-        takes_tableau: false,
-        preserves: KEEPS_GROUP,
-        cost: "9 ×, 4 K, 1 exp",
-        source: "Buss 2000",
-    },
-    MethodInfo {
-        name: "dmv2",
-        summary: "discrete Moser–Veselov",
-        order: Some(2),
-        takes_map: false,
-        takes_tableau: false,
-        preserves: ALL_FIRST,
-        cost: "3–5 Newton iterations",
-        source: DMV,
-    },
-    MethodInfo {
-        name: "dmv4",
-        summary: "discrete Moser–Veselov, preprocessed to order 4",
-        order: Some(4),
-        takes_map: false,
-        takes_tableau: false,
-        preserves: ALL_FIRST,
-        cost: "3–5 Newton iterations",
-        source: DMV,
-    },
-    MethodInfo {
-        name: "dmv6",
-        summary: "discrete Moser–Veselov, preprocessed to order 6",
-        order: Some(6),
-        takes_map: false,
-        takes_tableau: false,
-        preserves: ALL_FIRST,
-        cost: "3–5 Newton iterations",
-        source: DMV,
-    },
-    MethodInfo {
-        name: "dmv8",
-        summary: "discrete Moser–Veselov, preprocessed to order 8",
-        order: Some(8),
-        takes_map: false,
-        takes_tableau: false,
-        preserves: ALL_FIRST,
-        cost: "3–5 Newton iterations",
-        source: DMV,
-    },
-    MethodInfo {
-        name: "dmv10",
-        summary: "discrete Moser–Veselov, preprocessed to order 10",
-        order: Some(10),
-        takes_map: false,
-        takes_tableau: false,
-        preserves: ALL_FIRST,
-        cost: "3–5 Newton iterations",
-        source: DMV,
-    },
-    MethodInfo {
-        name: "exact",
-        summary: "the exact motion by elliptic functions, any step",
-        order: None,
-        takes_map: false,
-        takes_tableau: false,
-        preserves: "everything",
-        cost: "1–2 µs whatever the step",
-        source: "Jacobi 1850",
-    },
-    MethodInfo {
-        name: "taylor4",
-        summary: "Lie series of order 4, quaternion to the unit sphere",
-        order: Some(4),
-        takes_map: false,
-        takes_tableau: false,
-        preserves: KEEPS_GROUP,
-        cost: "150 multiplications",
-        source: "Gröbner 1960",
-    },
-    MethodInfo {
-        name: "taylor6",
-        summary: "Lie series of order 6, quaternion to the unit sphere",
-        order: Some(6),
-        takes_map: false,
-        takes_tableau: false,
-        preserves: KEEPS_GROUP,
-        cost: "315 multiplications",
-        source: "Gröbner 1960",
-    },
-    MethodInfo {
-        name: "taylor8",
-        summary: "Lie series of order 8, quaternion to the unit sphere",
-        order: Some(8),
-        takes_map: false,
-        takes_tableau: false,
-        preserves: KEEPS_GROUP,
-        cost: "540 multiplications",
-        source: "Gröbner 1960",
-    },
-    MethodInfo {
-        name: "taylor10",
-        summary: "Lie series of order 10, quaternion to the unit sphere",
-        order: Some(10),
-        takes_map: false,
-        takes_tableau: false,
-        preserves: KEEPS_GROUP,
-        cost: "825 multiplications",
-        source: "Gröbner 1960",
-    },
-    MethodInfo {
-        name: "taylor12",
-        summary: "Lie series of order 12, quaternion to the unit sphere",
-        order: Some(12),
-        takes_map: false,
-        takes_tableau: false,
-        preserves: KEEPS_GROUP,
-        cost: "1170 multiplications",
-        source: "Gröbner 1960",
-    },
-    MethodInfo {
-        name: "taylor16",
-        summary: "Lie series of order 16, quaternion to the unit sphere",
-        order: Some(16),
-        takes_map: false,
-        takes_tableau: false,
-        preserves: KEEPS_GROUP,
-        cost: "2040 multiplications",
-        source: "Gröbner 1960",
-    },
-];
+    /// The methods that need it.
+    pub const fn methods(self) -> &'static [MethodInfo] {
+        match self {
+            Needs::Field => METHODS,
+            Needs::LinearType => LINEAR_METHODS,
+            Needs::Norm => IMPLICIT_METHODS,
+            Needs::Body => BODY_METHODS,
+            Needs::Attitude => ATTITUDE_METHODS,
+            Needs::LiePoisson => LIE_POISSON_METHODS,
+            Needs::Isospectral => ISOSPECTRAL_METHODS,
+        }
+    }
 
-const SPLIT: &str = "group, Casimirs, symplectic structure, time symmetry";
-const ALL_FIRST: &str = "energy, group, Casimirs, time symmetry";
-const MCLACHLAN: &str = "McLachlan 1993; Reich 1996";
-const DMV: &str = "Moser & Veselov 1991; McLachlan & Zanna 2005; Hairer & Vilmart 2006";
+    /// It in words.
+    pub fn describe(self) -> &'static str {
+        self.why().trim_start_matches("it needs ")
+    }
 
-/// Methods for a state with an orthogonal matrix: [`with_attitude_method`].
-pub const ATTITUDE_METHODS: &[MethodInfo] = &[
-    MethodInfo {
-        name: "rk4-qr",
-        summary: "classical Runge–Kutta on the entries, then the factor Q of g = QR",
-        order: Some(4),
-        takes_map: false,
-        takes_tableau: false,
-        preserves: "group",
-        cost: "4 F, 2 Gram–Schmidt",
-        source: PROJECTION,
-    },
-    MethodInfo {
-        name: "rk4-polar",
-        summary: "classical Runge–Kutta on the entries, then the polar factor of g",
-        order: Some(4),
-        takes_map: false,
-        takes_tableau: false,
-        preserves: "group",
-        cost: "4 F, 2–3 Newton–Schulz",
-        source: PROJECTION,
-    },
-];
+    const fn why(self) -> &'static str {
+        match self {
+            Needs::Field => "it needs a vector field on the linear space around M",
+            Needs::LinearType => "it needs an equation of linear type, f(t, y) = A(t)",
+            Needs::Norm => "it needs a norm of the states",
+            Needs::Body => "it needs a free rigid body in three dimensions",
+            Needs::Attitude => "it needs an attitude in the state",
+            Needs::LiePoisson => "it needs a Lie–Poisson system, given by its momentum",
+            Needs::Isospectral => "it needs momenta as matrices",
+        }
+    }
+}
 
-const PROJECTION: &str = "Hairer, Lubich, Wanner, Geometric Numerical Integration, IV.4";
-
-/// Methods for Lie–Poisson systems: [`with_momentum_method`], [`with_lie_poisson_method`].
-pub const LIE_POISSON_METHODS: &[MethodInfo] = &[MethodInfo {
-    name: "energy-casimir",
-    summary: "discrete gradient in the algebra and coadjoint action; exp or cay",
-    order: Some(2),
-    takes_map: true,
-    takes_tableau: false,
-    preserves: "energy, Casimirs, time symmetry",
-    cost: "5–20 × (∇H, Ψ, Λ)",
-    source: "after Simo & Wong 1991; Lewis & Simo 1994",
-}];
-
-/// Methods for isospectral systems on matrices: [`with_lie_poisson_method`].
-pub const ISOSPECTRAL_METHODS: &[MethodInfo] = &[
-    MethodInfo {
-        name: "isospectral2",
-        summary: "isospectral Gauss of one stage",
-        order: Some(2),
-        takes_map: false,
-        takes_tableau: false,
-        preserves: "Casimirs, symplectic structure, time symmetry",
-        cost: "8–25 × 3 products",
-        source: "Modin & Viviani 2020",
-    },
-    MethodInfo {
-        name: "isospectral4",
-        summary: "isospectral Gauss of two stages",
-        order: Some(4),
-        takes_map: false,
-        takes_tableau: false,
-        preserves: "Casimirs, symplectic structure, time symmetry",
-        cost: "8–25 × 6 products",
-        source: "Modin & Viviani 2020",
-    },
-    MethodInfo {
-        name: "isospectral6",
-        summary: "isospectral Gauss of three stages",
-        order: Some(6),
-        takes_map: false,
-        takes_tableau: false,
-        preserves: "Casimirs, symplectic structure, time symmetry",
-        cost: "8–25 × 9 products",
-        source: "Modin & Viviani 2020",
-    },
-];
-
-/// Each list of methods with what a problem needs for it.
-const LISTS: [(&[MethodInfo], &str); 6] = [
-    (METHODS, "it serves every problem"),
-    (IMPLICIT_METHODS, "it needs a norm on the state; ask with_implicit_method"),
-    (BODY_METHODS, "it needs a free rigid body in ℝ³; ask with_body_method"),
-    (ATTITUDE_METHODS, "it needs a state with an attitude; ask with_attitude_method"),
-    (
-        LIE_POISSON_METHODS,
-        "it needs a Lie–Poisson system by its momentum; ask with_momentum_method or with_lie_poisson_method",
-    ),
-    (ISOSPECTRAL_METHODS, "it needs momenta as matrices; ask with_lie_poisson_method"),
-];
-
-/// Every method that some problem can ask for, list by list.
-pub fn all_methods() -> impl Iterator<Item = &'static MethodInfo> {
-    LISTS.iter().flat_map(|(list, _)| list.iter())
+/// Every method that some problem can ask for, with what it needs.
+///
+/// ```
+/// use lieflow::catalog::{Needs, all_methods};
+/// let body_in_space = [Needs::Field, Needs::Norm, Needs::Body, Needs::Attitude];
+/// let fitting: Vec<_> =
+///     all_methods().filter(|(_, needs)| body_in_space.contains(needs)).map(|(m, _)| m.name).collect();
+/// assert!(fitting.contains(&"rkmk4") && fitting.contains(&"dmv10"));
+/// assert!(!fitting.contains(&"magnus4"));
+/// ```
+pub fn all_methods() -> impl Iterator<Item = (&'static MethodInfo, Needs)> {
+    Needs::ALL.into_iter().flat_map(|needs| needs.methods().iter().map(move |m| (m, needs)))
 }
 
 /// The error of a method that is registered but does not fit the problem, or of an unknown one.
 pub(super) fn misfit(name: &str) -> Error {
-    let found = LISTS
-        .iter()
-        .find_map(|(list, why)| list.iter().find(|m| m.name == name).map(|m| (m.name, *why)));
-    match found {
-        Some((what, why)) => Error::Unsupported { what, with: "this problem".into(), why },
-        None => unknown("method", name, all_methods().map(|m| m.name)),
+    match all_methods().find(|(m, _)| m.name == name) {
+        Some((m, needs)) => {
+            let with = "this problem".into();
+            Error::Unsupported { what: m.name, with, why: needs.why() }
+        }
+        None => unknown("method", name, all_methods().map(|(m, _)| m.name)),
     }
 }
 
@@ -372,16 +150,15 @@ macro_rules! each_odd_map {
 ///
 /// # Errors
 /// As [`with_method`].
-pub fn with_implicit_method<P: Metric, V: OnMethod<P>>(
+pub fn with_implicit_method<P: Ambient, V: OnMethod<P>>(
     spec: &MethodSpec,
     on: V,
 ) -> Result<V::Out, Error>
 where
+    P::Group: CatalogGroup,
+    PointOf<P>: Metric<Scalar = ScalarOf<P>>,
     Exp: CoordinateMap<P::Group>,
-    TruncatedExp: CoordinateMap<P::Group>,
     Cay: CoordinateMap<P::Group>,
-    Ccsk<0, 1, 2>: CoordinateMap<P::Group>,
-    Ccsk<2, 1, 0>: CoordinateMap<P::Group>,
 {
     match spec.info()?.name {
         "midpoint-implicit" => Ok(on.call(Gauss(GAUSS2))),
@@ -394,21 +171,19 @@ where
     }
 }
 
-/// [`with_implicit_method`] and [`BODY_METHODS`].
+/// [`with_implicit_method`] and [`BODY_METHODS`]: the free rigid body in ℝ³.
 ///
 /// # Errors
 /// As [`with_method`].
-pub fn with_body_method<P: FreeBody + Split + Metric, V: OnMethod<P>>(
+pub fn with_body_method<P: FreeBody + Split, V: OnMethod<P>>(
     spec: &MethodSpec,
     on: V,
 ) -> Result<V::Out, Error>
 where
-    P::Group: LieAlgebra<Scalar = f64>,
+    P::Group: CatalogGroup + LieAlgebra<Scalar = f64>,
+    PointOf<P>: Metric<Scalar = f64>,
     Exp: CoordinateMap<P::Group>,
-    TruncatedExp: CoordinateMap<P::Group>,
     Cay: CoordinateMap<P::Group>,
-    Ccsk<0, 1, 2>: CoordinateMap<P::Group>,
-    Ccsk<2, 1, 0>: CoordinateMap<P::Group>,
 {
     match spec.info()?.name {
         "mr2" => Ok(on.call(MR2)),
@@ -436,17 +211,15 @@ where
 ///
 /// # Errors
 /// As [`with_method`].
-pub fn with_attitude_method<P: FreeBody + Split + Metric + Orthogonal, V: OnMethod<P>>(
+pub fn with_attitude_method<P: FreeBody + Split + Orthogonal, V: OnMethod<P>>(
     spec: &MethodSpec,
     on: V,
 ) -> Result<V::Out, Error>
 where
-    P::Group: LieAlgebra<Scalar = f64>,
+    P::Group: CatalogGroup + LieAlgebra<Scalar = f64>,
+    PointOf<P>: Metric<Scalar = f64>,
     Exp: CoordinateMap<P::Group>,
-    TruncatedExp: CoordinateMap<P::Group>,
     Cay: CoordinateMap<P::Group>,
-    Ccsk<0, 1, 2>: CoordinateMap<P::Group>,
-    Ccsk<2, 1, 0>: CoordinateMap<P::Group>,
 {
     match spec.info()?.name {
         "rk4-qr" => Ok(on.call(Projected::new(Rk(tableau::RK4), Projection::Qr))),
@@ -464,12 +237,10 @@ pub fn with_momentum_method<P: FreeBody + Split + LiePoisson, V: OnMethod<P>>(
     on: V,
 ) -> Result<V::Out, Error>
 where
-    P::Group: LieAlgebra<Scalar = f64>,
+    P::Group: CatalogGroup + LieAlgebra<Scalar = f64>,
+    PointOf<P>: Metric<Scalar = f64>,
     Exp: CoordinateMap<P::Group>,
-    TruncatedExp: CoordinateMap<P::Group>,
     Cay: CoordinateMap<P::Group>,
-    Ccsk<0, 1, 2>: CoordinateMap<P::Group>,
-    Ccsk<2, 1, 0>: CoordinateMap<P::Group>,
 {
     match spec.info()?.name {
         "energy-casimir" => each_odd_map!(spec, psi => on.call(EnergyCasimir::new(psi))),

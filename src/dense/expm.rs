@@ -7,7 +7,7 @@
 use faer::Mat;
 
 use super::ops::{mul, mul_add, norm1, scaled_sum};
-use super::{Lu, is_finite};
+use super::{Lu, is_finite, orthogonalise};
 use crate::error::StepError;
 
 /// Which approximant was taken. Tests assert it, not only the result.
@@ -114,7 +114,7 @@ impl Expm {
         }
         let mut corrections = 0;
         if structure == Structure::Skew && squarings > 0 {
-            corrections = self.orthogonalise(out);
+            corrections = orthogonalise(out, [&mut self.t, &mut self.a2]);
         }
         self.choice = ExpmChoice { degree, squarings, corrections };
         if is_finite(out) { Ok(()) } else { Err(StepError::NotFinite { what: "exp(u)" }) }
@@ -161,22 +161,5 @@ impl Expm {
         scaled_sum(out, [1.0, 1.0], [v, t], 0.0);
         lu.factor();
         lu.solve(out.as_mut());
-    }
-
-    /// g ← g + g(𝟙 − gᵀg)/2 until ‖𝟙 − gᵀg‖ is at rounding level: the squarings amplify the
-    /// defect to ‖u‖ε, and Newton–Schulz in residual form takes it back to ε.
-    fn orthogonalise(&mut self, g: &mut Mat<f64>) -> u32 {
-        let n = g.nrows() as f64;
-        for k in 0..5 {
-            mul(&mut self.t, g.transpose(), g.as_ref());
-            scaled_sum(&mut self.a2, [-0.5], [&self.t], 0.5);
-            if k > 0 && norm1(self.a2.as_ref()) <= 2.0 * n * f64::EPSILON {
-                return k;
-            }
-            mul(&mut self.t, g.as_ref(), self.a2.as_ref());
-            scaled_sum(&mut self.a4, [1.0, 1.0], [g, &self.t], 0.0);
-            core::mem::swap(&mut self.a4, g);
-        }
-        5
     }
 }

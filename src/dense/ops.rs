@@ -159,3 +159,21 @@ pub(crate) fn norm_frobenius(x: &Mat<f64>) -> f64 {
 pub(crate) fn is_finite(x: &Mat<f64>) -> bool {
     (0..x.ncols()).all(|j| x.col_as_slice(j).iter().map(|x| x.abs()).sum::<f64>() < f64::INFINITY)
 }
+
+/// g ← g + g(𝟙 − gᵀg)/2 until ‖𝟙 − gᵀg‖ is at rounding level. What a solve or squarings have
+/// amplified to κε, Newton–Schulz in residual form takes back to ε. Returns the number of steps.
+pub(crate) fn orthogonalise(g: &mut Mat<f64>, [gap, product]: [&mut Mat<f64>; 2]) -> u32 {
+    let mut last = f64::INFINITY;
+    for step in 0..6 {
+        mul(product, g.transpose(), g.as_ref());
+        scaled_sum(gap, [-0.5], [product], 0.5);
+        let residual = norm1(gap.as_ref());
+        if residual <= f64::EPSILON || residual.is_nan() || residual >= 0.5 * last {
+            return step; // what is left is the rounding of gᵀg itself
+        }
+        last = residual;
+        mul(product, g.as_ref(), gap.as_ref());
+        axpy(1.0, product, g);
+    }
+    6
+}

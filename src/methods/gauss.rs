@@ -11,9 +11,9 @@
 //! Source: Hairer, Lubich, Wanner, Geometric Numerical Integration, II.1.3, IV.2.
 
 use super::newton::Progress;
-use super::{Method, Step, Symmetric};
+use super::{Method, Metric, Step, Symmetric};
 use crate::error::{Error, StepError};
-use crate::problems::{Metric, PointOf, ScalarOf};
+use crate::problems::{Ambient, PointOf, ScalarOf};
 use crate::scalar::Real;
 
 /// An implicit Runge–Kutta tableau with S stages; every `a[i][j]` is used.
@@ -70,18 +70,25 @@ impl<const S: usize> Symmetric for Gauss<S> {}
 
 /// Stages, a point, and the field's scratch.
 #[allow(missing_debug_implementations)] // the parts belong to the problem's types
-pub struct GaussWork<P: Metric, const S: usize> {
+pub struct GaussWork<P: Ambient, const S: usize> {
     k: [PointOf<P>; S],
     old: PointOf<P>,
     z: PointOf<P>,
     field: P::Work,
 }
 
-impl<P: Metric, const S: usize> Method<P> for Gauss<S> {
+impl<P: Ambient, const S: usize> Method<P> for Gauss<S>
+where
+    PointOf<P>: Metric<Scalar = ScalarOf<P>>,
+{
     type Work = GaussWork<P, S>;
 
     fn order(&self, _: &P) -> usize {
         self.0.order
+    }
+    /// Quadratic groups are kept to the rounding of the iteration, others are left.
+    fn stays_on_manifold(&self) -> bool {
+        false
     }
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
         Ok(GaussWork {
@@ -113,7 +120,7 @@ impl<P: Metric, const S: usize> Method<P> for Gauss<S> {
                 return Err(StepError::NonFiniteRhs { stage: i + 1 });
             }
         }
-        let norm = problem.norm(y);
+        let norm = y.size();
         let scale = if norm == lit(0.0) { lit(1.0) } else { norm };
         let mut progress = Progress::new();
         loop {
@@ -122,7 +129,7 @@ impl<P: Metric, const S: usize> Method<P> for Gauss<S> {
                 sum(z, &tab.a[i], k);
                 problem.copy(&k[i], old);
                 problem.field(time(i), z, &mut k[i], field);
-                change += problem.distance(&k[i], old);
+                change += k[i].distance(old);
             }
             if progress.done(tab.name, h.abs() * change / scale)? {
                 break;

@@ -4,14 +4,21 @@
 //! puts it into the order tests and the command line at once.
 
 mod buss;
+pub mod commutator_free;
 mod composition;
+pub mod crouch_grossman;
 mod dmv;
+mod doubling;
+mod embedded;
 mod energy_casimir;
 mod exact;
 mod gauss;
 mod implicit_rkmk;
 mod isospectral;
+pub mod low_storage;
+pub mod magnus;
 mod newton;
+pub mod one_bracket;
 mod projection;
 mod rk;
 mod rkmk;
@@ -21,16 +28,22 @@ pub mod tableau;
 mod taylor;
 
 pub use buss::Buss4;
+pub use commutator_free::CommutatorFree;
 pub use composition::{
     Composition, CompositionWork, KAHAN_LI6, KAHAN_LI8, SCHEMES, SOFRONIOU_SPALETTA10, STRANG,
     SUZUKI4, Scheme, YOSHIDA4,
 };
 pub use dmv::{DMV2, DMV4, DMV6, DMV8, DMV10, Dmv, DmvWork};
+pub use doubling::Doubling;
+pub use embedded::{Embedded, LocalError, Metric};
 pub use energy_casimir::{EnergyCasimir, EnergyCasimirWork};
 pub use exact::ExactMotion;
 pub use gauss::{GAUSS2, GAUSS4, GAUSS6, Gauss, GaussWork, ImplicitTableau};
 pub use implicit_rkmk::{OddMap, RkmkGauss, RkmkGaussSymmetric, RkmkGaussWork};
 pub use isospectral::{IsospectralGauss, IsospectralWork};
+pub use low_storage::LowStorage;
+pub use magnus::CfMagnus;
+pub use one_bracket::OneBracket;
 pub use projection::{Projected, ProjectedWork};
 pub use rk::Rk;
 pub use rkmk::Rkmk;
@@ -65,6 +78,12 @@ pub trait Method<P: Problem> {
 
     /// The order that tests hold the method to.
     fn order(&self, problem: &P) -> usize;
+
+    /// Does a step stay on M up to rounding? Then the driver takes the state back to M from time to
+    /// time ([`Action::restore`](crate::Action::restore)); a method that leaves M is shown as it is.
+    fn stays_on_manifold(&self) -> bool {
+        true
+    }
 
     /// Make the workspace; `like` is any point of M.
     ///

@@ -4,7 +4,6 @@
 //! | capability | what is known | methods |
 //! |---|---|---|
 //! | [`Split`] | F = Σ F_k with exact flows | [`Splitting`](crate::methods::Splitting) |
-//! | [`Metric`] | a norm on the linear space around M | [`Gauss`](crate::methods::Gauss) |
 //! | [`LiePoisson`] | ṁ = ad*_{∇H(m)} m with a discrete gradient | [`EnergyCasimir`](crate::methods::EnergyCasimir) |
 //! | [`Isospectral`] | Ẇ = \[B(W), W\], W in a matrix algebra | [`IsospectralGauss`](crate::methods::IsospectralGauss) |
 //! | [`Orthogonal`] | where the orthogonal matrix in y is | [`Projected`](crate::methods::Projected) |
@@ -24,17 +23,9 @@ pub trait Split: Ambient {
     fn flow(&self, part: usize, t: ScalarOf<Self>, y: &mut PointOf<Self>);
 }
 
-/// A norm on the linear space around M, by which iterations measure their progress.
-pub trait Metric: Ambient {
-    /// ‖y‖.
-    fn norm(&self, y: &PointOf<Self>) -> ScalarOf<Self>;
-    /// ‖a − b‖.
-    fn distance(&self, a: &PointOf<Self>, b: &PointOf<Self>) -> ScalarOf<Self>;
-}
-
 /// A Lie–Poisson system on 𝔤*: ṁ = ad*_{∇H(m)} m, in the convention of
 /// [`Coadjoint`](crate::actions::Coadjoint), f(m) = −∇H(m).
-pub trait LiePoisson: Metric {
+pub trait LiePoisson: Ambient {
     /// H(m).
     fn hamiltonian(&self, m: &PointOf<Self>) -> ScalarOf<Self>;
     /// ξ ← ∇̄H(a, b) ∈ 𝔤, a symmetric discrete gradient: ⟨b − a, ξ⟩ = H(b) − H(a) and

@@ -3,9 +3,11 @@
 //! To add a problem: one file with an `impl` of [`Problem`], one line here.
 
 mod capability;
+mod linear;
 mod rigid_body;
 
-pub use capability::{Isospectral, LiePoisson, Metric, Orthogonal, Projection, Split};
+pub use capability::{Isospectral, LiePoisson, Orthogonal, Projection, Split};
+pub use linear::{LinearEquation, LinearField};
 pub use rigid_body::{
     BodyFrame, BodyState, Exact, Frame, FreeBody, RigidBody, RigidBodyAttitude, RigidBodyN,
     RigidBodyNAttitude, RigidBodyState,

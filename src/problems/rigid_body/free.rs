@@ -11,10 +11,8 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::{BodyState, RigidBody, RigidBodyAttitude, RigidBodyState};
 use crate::error::StepError;
-use crate::groups::{LieAlgebra, LieGroup, So3};
-use crate::problems::{
-    LiePoisson, Metric, Orthogonal, PointOf, Problem, Projection, ScalarOf, Split,
-};
+use crate::groups::{LieGroup, So3};
+use crate::problems::{LiePoisson, Orthogonal, PointOf, Problem, Projection, ScalarOf, Split};
 use crate::scalar::{Real, Trig};
 
 /// A frame fixed in the body: g, or nothing where only the momentum is wanted.
@@ -159,15 +157,6 @@ impl<S: Trig> Split for RigidBodyState<S> {
     }
 }
 
-impl<S: Real> Metric for RigidBody<S> {
-    fn norm(&self, m: &Vector3<S>) -> S {
-        self.group().norm(m)
-    }
-    fn distance(&self, a: &Vector3<S>, b: &Vector3<S>) -> S {
-        self.group().norm(&Vector3::new(a[0] - b[0], a[1] - b[1], a[2] - b[2]))
-    }
-}
-
 /// H = ½ m·J⁻¹m.
 impl<S: Real> LiePoisson for RigidBody<S> {
     fn hamiltonian(&self, m: &Vector3<S>) -> S {
@@ -183,24 +172,6 @@ impl<S: Real> LiePoisson for RigidBody<S> {
 /// ‖g‖ (Frobenius).
 fn frobenius<S: Real>(g: &Matrix3<S>) -> S {
     g.iter().fold(S::lit(0.0), |s, &x| s + x * x).sqrt()
-}
-
-impl<S: Real> Metric for RigidBodyAttitude<S> {
-    fn norm(&self, g: &Matrix3<S>) -> S {
-        frobenius(g)
-    }
-    fn distance(&self, a: &Matrix3<S>, b: &Matrix3<S>) -> S {
-        self.group().distance(a, b)
-    }
-}
-
-impl<S: Real> Metric for RigidBodyState<S> {
-    fn norm(&self, y: &BodyState<S>) -> S {
-        frobenius(&y.g) + self.body().norm(&y.m)
-    }
-    fn distance(&self, a: &BodyState<S>, b: &BodyState<S>) -> S {
-        self.group().distance(&a.g, &b.g) + self.body().distance(&a.m, &b.m)
-    }
 }
 
 impl<S: Real> Orthogonal for RigidBodyAttitude<S> {

@@ -7,7 +7,7 @@ use crate::actions::{Coadjoint, LeftTranslation};
 use crate::dense::{self, antisymmetrise, mul};
 use crate::error::Error;
 use crate::groups::{AlgebraMatrix, GroupMatrix, MatrixGroup};
-use crate::problems::{Ambient, Isospectral, LiePoisson, Metric, Problem};
+use crate::problems::{Ambient, Isospectral, LiePoisson, Problem};
 
 /// The free n-dimensional rigid body by its body momentum: ṁ = \[m, Ω\], Ω_ij = m_ij/J_ij, on a
 /// coadjoint orbit of SO(n). f(m) = −Ω; Λ(g, m) = g m gᵀ.
@@ -215,35 +215,6 @@ impl Ambient for RigidBodyNAttitude {
     }
     fn is_finite(&self, g: &GroupMatrix) -> bool {
         dense::is_finite(g)
-    }
-}
-
-/// ‖a − b‖ (Frobenius), without storage.
-fn distance(a: &Mat<f64>, b: &Mat<f64>) -> f64 {
-    let mut squares = 0.0;
-    for j in 0..a.ncols() {
-        for (a, b) in a.col_as_slice(j).iter().zip(b.col_as_slice(j)) {
-            squares += (a - b) * (a - b);
-        }
-    }
-    squares.sqrt()
-}
-
-impl Metric for RigidBodyN {
-    fn norm(&self, m: &Mat<f64>) -> f64 {
-        dense::norm_frobenius(m)
-    }
-    fn distance(&self, a: &Mat<f64>, b: &Mat<f64>) -> f64 {
-        distance(a, b)
-    }
-}
-
-impl Metric for RigidBodyNAttitude {
-    fn norm(&self, g: &GroupMatrix) -> f64 {
-        dense::norm_frobenius(g)
-    }
-    fn distance(&self, a: &GroupMatrix, b: &GroupMatrix) -> f64 {
-        distance(a, b)
     }
 }
 

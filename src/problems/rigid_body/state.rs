@@ -12,6 +12,7 @@ use super::RigidBody;
 use crate::actions::Action;
 use crate::error::Error;
 use crate::groups::{LieAlgebra, LieGroup, So3, apply3, cross, hat};
+use crate::methods::Metric;
 use crate::problems::{Ambient, Problem};
 use crate::scalar::Real;
 
@@ -24,15 +25,37 @@ pub struct BodyState<S = f64> {
     pub g: Matrix3<S>,
 }
 
+/// (|m|² + ‖g‖²)^½.
+impl<S: Real> Metric for BodyState<S> {
+    type Scalar = S;
+    #[inline]
+    fn assign(&mut self, x: &Self) {
+        *self = *x;
+    }
+    #[inline]
+    fn size(&self) -> S {
+        let (m, g) = (self.m.size(), self.g.size());
+        (m * m + g * g).sqrt()
+    }
+    #[inline]
+    fn distance(&self, x: &Self) -> S {
+        let (m, g) = (self.m.distance(&x.m), Metric::distance(&self.g, &x.g));
+        (m * m + g * g).sqrt()
+    }
+}
+
 /// Λ(a, (m, g)) = (a m, g aᵀ).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct BodyFrame;
 
 impl<S: Real> Action<So3<S>> for BodyFrame {
     type Point = BodyState<S>;
-    type Work = ();
+    /// For [`restore`](Action::restore).
+    type Work = [Matrix3<S>; 2];
 
-    fn work(&self, _: &So3<S>) {}
+    fn work(&self, group: &So3<S>) -> Self::Work {
+        [group.identity(), group.identity()]
+    }
     #[inline]
     fn act(
         &self,
@@ -40,10 +63,14 @@ impl<S: Real> Action<So3<S>> for BodyFrame {
         a: &Matrix3<S>,
         p: &BodyState<S>,
         q: &mut BodyState<S>,
-        _: &mut (),
+        _: &mut Self::Work,
     ) {
         group.apply(a, &p.m, &mut q.m);
         group.compose(&p.g, &a.transpose(), &mut q.g);
+    }
+    /// g back to SO(3); m has no constraint.
+    fn restore(&self, group: &So3<S>, p: &mut BodyState<S>, work: &mut Self::Work) -> Option<S> {
+        Some(group.correct(&mut p.g, work))
     }
 }
 
