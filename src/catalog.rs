@@ -8,23 +8,9 @@ use crate::groups::LieGroup;
 use crate::maps::{
     Alternating, CCSK, CCSK123, CCSK321, Cay, Ccsk, CoordinateMap, Exp, Pade22, TruncatedExp,
 };
-use crate::methods::{
-    CfMagnus, CommutatorFree, GAUSS4, LowStorage, Method, OneBracket, Rk, Rkmk, RkmkGauss,
-};
+use crate::methods::{CfMagnus, CommutatorFree, LowStorage, Method, OneBracket, Rk, Rkmk};
 use crate::methods::{commutator_free, crouch_grossman, low_storage, magnus, one_bracket, tableau};
 use crate::problems::{Ambient, LinearField, Problem};
-
-mod lists;
-mod special;
-
-pub use lists::{
-    ATTITUDE_METHODS, BODY_METHODS, IMPLICIT_METHODS, ISOSPECTRAL_METHODS, LIE_POISSON_METHODS,
-};
-use special::misfit;
-pub use special::{
-    Needs, all_methods, with_attitude_method, with_body_method, with_implicit_method,
-    with_lie_poisson_method, with_momentum_method,
-};
 
 /// A coordinate map that scene files can name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -203,7 +189,6 @@ const CROUCH_GROSSMAN: &str = "Crouch–Grossman";
 const MAGNUS: &str = "Magnus";
 const KEEPS_GROUP: &str = "group, Casimirs";
 const MUNTHE_KAAS: &str = "Munthe-Kaas 1999; Celledoni & Owren, Table 1";
-const ZANNA: &str = "Zanna, Engø & Munthe-Kaas 2001";
 const KUTTA: &str = "Hairer, Nørsett, Wanner I, p. 138";
 
 /// A method whose map is exp and whose coefficients are fixed.
@@ -278,17 +263,6 @@ pub const METHODS: &[MethodInfo] = &[
         preserves: "linear invariants only",
         cost: "s F",
         source: KUTTA,
-    },
-    MethodInfo {
-        family: RKMK,
-        name: "rkmk-gauss4",
-        summary: "implicit Runge–Kutta–Munthe-Kaas on the Gauss tableau of two stages",
-        order: Some(4),
-        takes_map: true,
-        takes_tableau: false,
-        preserves: KEEPS_GROUP,
-        cost: "5–20 × (2 f, 2 Ψ, 2 dΨ⁻¹)",
-        source: ZANNA,
     },
     with_exp(
         RKMK,
@@ -566,9 +540,6 @@ macro_rules! each_method {
             "rk" => each_tableau!(tableau,
                 t => Ok($single($on, Rk(t))),
                 pair => Ok($pair($on, Rk(t)))),
-            "rkmk-gauss4" => {
-                each_map!(map, spec.q, psi => $single($on, RkmkGauss::new(GAUSS4, psi)))
-            }
             "rkmk4-2c" => Ok($single($on, OneBracket(one_bracket::RKMK4_2C))),
             "magnus43" => Ok($pair($on, OneBracket(one_bracket::MAGNUS43))),
             "cf3" => Ok($single($on, CommutatorFree(commutator_free::CF3))),
@@ -590,7 +561,18 @@ macro_rules! each_method {
 }
 
 mod embedded;
+mod lists;
+mod special;
+
 pub use embedded::{Doubled, OnEmbedded, with_embedded_method};
+pub use lists::{
+    ATTITUDE_METHODS, BODY_METHODS, IMPLICIT_METHODS, ISOSPECTRAL_METHODS, LIE_POISSON_METHODS,
+};
+use special::misfit;
+pub use special::{
+    Needs, all_methods, with_attitude_method, with_body_method, with_implicit_method,
+    with_lie_poisson_method, with_momentum_method,
+};
 
 /// What to do with a method, whatever its type.
 pub trait OnMethod<P: Problem> {

@@ -1,6 +1,6 @@
 //! The methods that ask more of a problem than f, list by list.
 
-use super::{KEEPS_GROUP, MethodInfo, RKMK, RUNGE_KUTTA, ZANNA};
+use super::{KEEPS_GROUP, MethodInfo, RKMK, RUNGE_KUTTA};
 
 const SPLITTING: &str = "splitting";
 const MOMENTUM: &str = "energy and momentum";
@@ -36,6 +36,7 @@ const fn in_coordinates(info: MethodInfo) -> MethodInfo {
 }
 
 const QUADRATIC: &str = "quadratic invariants, time symmetry";
+const ZANNA: &str = "Zanna, Engø & Munthe-Kaas 2001";
 const GAUSS: &str = "Hairer, Lubich, Wanner, Geometric Numerical Integration, II.1.3";
 
 /// Implicit methods for problems whose points have a norm: `with_implicit_method`.
@@ -61,6 +62,13 @@ pub const IMPLICIT_METHODS: &[MethodInfo] = &[
         "Gauss collocation of three stages on the entries of the state",
         [QUADRATIC, "5–20 × 3 F", GAUSS],
     ),
+    in_coordinates(plain(
+        RKMK,
+        "rkmk-gauss4",
+        Some(4),
+        "implicit Runge–Kutta–Munthe-Kaas on the Gauss tableau of two stages",
+        [KEEPS_GROUP, "5–20 × (2 f, 2 Ψ, 2 dΨ⁻¹)", ZANNA],
+    )),
     in_coordinates(plain(
         RKMK,
         "rkmk-gauss4-symmetric",

@@ -20,21 +20,15 @@
 //!
 //! Each of the first six hands what is not its own to the function that it extends.
 
-use super::{
-    ATTITUDE_METHODS, BODY_METHODS, CatalogGroup, IMPLICIT_METHODS, ISOSPECTRAL_METHODS,
-    LIE_POISSON_METHODS, LINEAR_METHODS, METHODS, MethodInfo, MethodSpec, OnMethod, unknown,
-    with_method,
-};
-use crate::error::Error;
+use super::*;
 use crate::groups::LieAlgebra;
-use crate::maps::{Cay, CoordinateMap, Exp};
 use crate::methods::{
     Buss4, DMV2, DMV4, DMV6, DMV8, DMV10, EnergyCasimir, ExactMotion, GAUSS2, GAUSS4, GAUSS6,
-    Gauss, IsospectralGauss, MR2, MR4, Metric, Projected, Rk, RkmkGaussSymmetric, SimoWong, Taylor,
-    tableau,
+    Gauss, IsospectralGauss, MR2, MR4, Metric, Projected, RkmkGauss, RkmkGaussSymmetric, SimoWong,
+    Taylor,
 };
 use crate::problems::{
-    Ambient, FreeBody, Isospectral, LiePoisson, Orthogonal, PointOf, Projection, ScalarOf, Split,
+    FreeBody, Isospectral, LiePoisson, Orthogonal, PointOf, Projection, ScalarOf, Split,
 };
 
 /// What a method asks of a problem beyond f, and so what a problem may offer.
@@ -164,6 +158,10 @@ where
         "midpoint-implicit" => Ok(on.call(Gauss(GAUSS2))),
         "gauss4" => Ok(on.call(Gauss(GAUSS4))),
         "gauss6" => Ok(on.call(Gauss(GAUSS6))),
+        "rkmk-gauss4" => {
+            let map = spec.map.as_deref().unwrap_or("exp");
+            each_map!(map, spec.q, psi => on.call(RkmkGauss::new(GAUSS4, psi)))
+        }
         "rkmk-gauss4-symmetric" => {
             each_odd_map!(spec, psi => on.call(RkmkGaussSymmetric::new(GAUSS4, psi)))
         }
