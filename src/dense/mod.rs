@@ -11,8 +11,8 @@ mod lu;
 mod ops;
 
 pub(crate) use eigen::SkewEigen;
-pub use expm::ExpmChoice;
-pub(crate) use expm::{Expm, Structure};
+pub(crate) use expm::Expm;
+pub use expm::{ExpmChoice, Exponential, Kind, Structure};
 pub(crate) use lu::Lu;
 pub(crate) use ops::{
     antisymmetrise, axpy, is_finite, mul, mul_add, norm_frobenius, norm1, scaled_sum,

@@ -4,16 +4,33 @@
 //! SIAM J. Matrix Anal. Appl. 26 (2005). The degree m ∈ {3, 5, 7, 9, 13} is the first whose bound
 //! θ_m reaches the norm of u; beyond θ_13 u is halved s times and the result squared s times.
 
+mod cols;
+mod small;
+mod taylor;
+
 use faer::Mat;
 
 use super::ops::{mul, mul_add, norm1, scaled_sum};
 use super::{Lu, is_finite};
 use crate::error::StepError;
 
+/// The kind of an approximant.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Kind {
+    /// The \[m/m\] Padé approximant.
+    #[default]
+    Pade,
+    /// The Taylor polynomial of degree m.
+    Taylor,
+}
+
 /// Which approximant was taken. Tests assert it, not only the result.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ExpmChoice {
-    /// Degree m of the \[m/m\] Padé approximant.
+    /// Padé or products only.
+    pub kind: Kind,
+    /// Its degree m.
     pub degree: usize,
     /// Number s of squarings.
     pub squarings: u32,
@@ -23,7 +40,7 @@ pub struct ExpmChoice {
 
 /// What is known of the argument.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Structure {
+pub enum Structure {
     /// Nothing.
     General,
     /// u is skew-symmetric, so that exp(u) is a rotation.
@@ -54,9 +71,38 @@ const PADE: [(usize, f64, &[f64]); 5] = [
 /// Above this norm no digit of a rotation's angle has a meaning.
 const NORM_MAX_SKEW: f64 = 1e15;
 
+/// The exponential of n×n matrices, with its workspace.
+#[derive(Debug)]
+pub struct Exponential(Expm);
+
+impl Exponential {
+    /// Workspace for n×n matrices.
+    pub fn new(n: usize) -> Self {
+        Exponential(Expm::new(n))
+    }
+    /// out ← exp(x).
+    ///
+    /// # Errors
+    /// As above.
+    pub fn exp(
+        &mut self,
+        x: &Mat<f64>,
+        structure: Structure,
+        out: &mut Mat<f64>,
+    ) -> Result<ExpmChoice, StepError> {
+        self.0.exp(x, structure, out)?;
+        Ok(self.0.choice)
+    }
+    /// The last choice.
+    pub fn choice(&self) -> ExpmChoice {
+        self.0.choice
+    }
+}
+
 /// Workspace for exp of n×n matrices.
 #[derive(Debug)]
 pub(crate) struct Expm {
+    arch: pulp::Arch,
     a: Mat<f64>,
     a2: Mat<f64>,
     a4: Mat<f64>,
@@ -73,6 +119,7 @@ impl Expm {
     pub(crate) fn new(n: usize) -> Self {
         let z = || Mat::zeros(n, n);
         Expm {
+            arch: pulp::Arch::new(),
             a: z(),
             a2: z(),
             a4: z(),
@@ -96,6 +143,12 @@ impl Expm {
         structure: Structure,
         out: &mut Mat<f64>,
     ) -> Result<(), StepError> {
+        if x.nrows() <= small::N_MAX
+            && let Some(choice) = small::exp(self.arch, x, structure, out)
+        {
+            self.choice = choice;
+            return Ok(());
+        }
         let norm = norm1(x.as_ref());
         if !norm.is_finite() {
             return Err(StepError::NotFinite { what: "the argument of exp" });
@@ -116,7 +169,7 @@ impl Expm {
         if structure == Structure::Skew && squarings > 0 {
             corrections = self.orthogonalise(out);
         }
-        self.choice = ExpmChoice { degree, squarings, corrections };
+        self.choice = ExpmChoice { kind: Kind::Pade, degree, squarings, corrections };
         if is_finite(out) { Ok(()) } else { Err(StepError::NotFinite { what: "exp(u)" }) }
     }
 
