@@ -12,7 +12,7 @@ mod ops;
 
 pub(crate) use eigen::SkewEigen;
 pub(crate) use expm::Expm;
-pub use expm::{ExpmChoice, Exponential, Kind, Structure};
+pub use expm::{ApplyChoice, ExpmChoice, Exponential, Kind, Structure};
 pub(crate) use lu::Lu;
 pub(crate) use ops::{
     antisymmetrise, axpy, is_finite, mul, mul_add, norm_frobenius, norm1, scaled_sum,

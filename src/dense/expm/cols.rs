@@ -121,13 +121,13 @@ impl<S: Simd, const N: usize, const K: usize> Cols<S, N, K> {
 
     #[inline(always)]
     pub(super) fn is_finite(&self, simd: S) -> bool {
-        let mut sum = simd.splat_f64s(0.0);
+        let (mut sum, zero) = (simd.splat_f64s(0.0), simd.splat_f64s(0.0));
         for j in 0..N {
             for q in 0..K {
-                sum = simd.add_f64s(sum, simd.abs_f64s(self.0[j][q]));
+                sum = simd.mul_add_e_f64s(zero, self.0[j][q], sum);
             }
         }
-        simd.reduce_sum_f64s(sum) < f64::INFINITY
+        simd.reduce_sum_f64s(sum) == 0.0
     }
 
     /// Σ c_i·x_i + d·𝟙.

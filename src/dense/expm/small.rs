@@ -6,7 +6,7 @@ use pulp::{Arch, Simd, WithSimd};
 use super::cols::Cols;
 use super::taylor::{
     B12, B18, T8, THETA_1, THETA_2, THETA_4, THETA_8, THETA_12, THETA_18, THETA_18_6, half_to_the,
-    halvings,
+    halvings, halvings_18,
 };
 use super::{ExpmChoice, Kind, Structure};
 
@@ -96,7 +96,7 @@ fn kernel<S: Simd, const N: usize, const K: usize>(
         return None;
     }
     g.store(out);
-    Some(ExpmChoice { kind: Kind::Taylor, degree, squarings, corrections })
+    Some(ExpmChoice { kind: Kind::Taylor, degree, squarings, corrections, balanced: false })
 }
 
 /// The polynomial at 2⁻ˢa, its degree, and s.
@@ -150,10 +150,15 @@ fn taylor<S: Simd, const N: usize, const K: usize>(
         if skew {
             // a is normal: |a|₂⁶ = |a⁶|₂ ≤ |a⁶|_∞.
             squarings = squarings.min(halvings(a6.norm(simd), THETA_18_6, 6));
-        } else if norm > PLAIN && 4096.0 * a6.norm(simd) < pow6(norm) {
-            return None; // ‖a⁶‖^⅙ < ‖a‖/4: the powers grow slower than the norm says
-        } else if triangular(a) {
-            return None; // squared in a way of their own
+        } else {
+            let n6 = a6.norm(simd);
+            // ‖a⁶‖^⅙ < ‖a‖/4: the powers grow slower than the norm says. Or a trace to take out, or
+            // a triangle, which is squared in a way of its own.
+            let slow = norm > PLAIN && (4096.0 * n6 < pow6(norm) || mean(a).abs() > 0.5 * norm);
+            if slow || triangular(a) {
+                return None;
+            }
+            squarings = halvings_18(norm, a2.norm(simd), a3.norm(simd), n6);
         }
     }
     let f = half_to_the(squarings);
@@ -175,6 +180,16 @@ fn taylor<S: Simd, const N: usize, const K: usize>(
     let mut g = Cols::sum(simd, [c[1][1], c[1][2], c[1][3], c[1][4]], all, 0.0);
     g.mul_add(simd, &left, &s);
     Some((g, 18, squarings))
+}
+
+/// The mean of the diagonal.
+#[inline(always)]
+fn mean<S: Simd, const N: usize, const K: usize>(a: &Cols<S, N, K>) -> f64 {
+    let (flat, mut sum) = (a.flat(), 0.0);
+    for j in 0..N {
+        sum += flat[j * K * S::F64_LANES + j];
+    }
+    sum / N as f64
 }
 
 #[inline(always)]

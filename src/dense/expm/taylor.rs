@@ -54,8 +54,35 @@ pub(super) const B18: [[f64; 5]; 5] = [
     [0.0, 0.0, -9.23364619367118555360e-2, -1.69364939002081722752e-2, -1.40086798182036094347e-5],
 ];
 
+const fn power(x: f64, p: u32) -> f64 {
+    if p == 0 { 1.0 } else { x * power(x, p - 1) }
+}
+
 /// θ₁₈⁶.
-pub(super) const THETA_18_6: f64 = THETA_18 * THETA_18 * THETA_18 * THETA_18 * THETA_18 * THETA_18;
+pub(super) const THETA_18_6: f64 = power(THETA_18, 6);
+/// θ₁₈^(18+r) for r = 1, …, 5.
+const TAIL: [f64; 5] = [
+    power(THETA_18, 19),
+    power(THETA_18, 20),
+    power(THETA_18, 21),
+    power(THETA_18, 22),
+    power(THETA_18, 23),
+];
+
+/// The halvings that degree 18 needs, by ‖a‖, ‖a²‖, ‖a³‖, ‖a⁶‖ ≤ 1e50.
+///
+/// The error is a series of aᵏ, k ≥ 19, and ‖a^(18+r)‖ ≤ ‖a⁶‖³·‖aʳ‖; so the norms of the powers
+/// decide, but for two halvings: the norm itself has to stay small for the sake of rounding.
+#[inline(always)]
+pub(super) fn halvings_18(n1: f64, n2: f64, n3: f64, n6: f64) -> u32 {
+    let by_norm = halvings(n1, THETA_18, 1);
+    let rests = [n1, n2, n3, n3 * n1, n3 * n2];
+    let mut s = by_norm.saturating_sub(2);
+    for r in 0..5 {
+        s = s.max(halvings(n6 * n6 * n6 * rests[r], TAIL[r], 19 + r as i32));
+    }
+    s.min(by_norm)
+}
 
 /// The smallest s with x ≤ limit·2^(p·s), for finite x ≥ 0.
 #[inline(always)]
