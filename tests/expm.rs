@@ -320,7 +320,9 @@ fn condition_estimates_lie_below_and_close() {
         let Some(cond) = &case.cond else { continue };
         let cond: f64 = cond.parse().expect("a number");
         let u = case.matrix(&case.u);
-        if !(1e-3..1e6).contains(&norm(&u)) || cond > 1e6 {
+        // Where exp(u) underflows so does its derivative.
+        let vanishes = norm(&case.matrix(&case.exp)) < 1e-290;
+        if !(1e-3..1e6).contains(&norm(&u)) || cond > 1e6 || vanishes {
             continue;
         }
         let estimate = Exponential::condition(&u).unwrap_or_else(|e| panic!("{}: {e}", case.id));
