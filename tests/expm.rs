@@ -305,13 +305,17 @@ fn careful_branches_are_taken() {
     // The trace is taken out before squaring: as many squarings as the rest needs.
     let shifted = choice(&[&[600.0, 1.0], &[-2.0, 601.0]]);
     assert!(shifted.squarings <= 2, "{shifted:?}");
-    // Large matrices of no structure: products for a small norm, a solve for a large one.
+    // Large matrices of no structure: products up to a norm of 1000, a solve beyond.
     let mut rng = Pcg64::seed_from_u64(3);
     let large = |size: f64, rng: &mut Pcg64| {
         exp(&element(rng, 128, Structure::General, size), Structure::General).expect("exp(u)").1
     };
     assert_eq!(large(1.0, &mut rng).kind, Kind::Taylor);
-    assert_eq!(large(60.0, &mut rng).kind, Kind::Pade);
+    assert_eq!(large(60.0, &mut rng).kind, Kind::Taylor);
+    let mut stiff = element(&mut rng, 128, Structure::General, 1.0);
+    (0..64).for_each(|i| stiff[(i, i)] -= 3e3);
+    let stiff = exp(&stiff, Structure::General).expect("exp(u)").1;
+    assert!(stiff.kind == Kind::Pade && stiff.squarings > 5, "{stiff:?}");
 }
 
 #[test]

@@ -98,8 +98,8 @@ pub(crate) fn scaled_sum<const K: usize>(
     x: [&Mat<f64>; K],
     d: f64,
 ) {
-    let sum = Sum { out, c, x, d };
-    if sum.out.nrows() <= SMALL { sum.call() } else { Arch::new().dispatch(sum) }
+    let op = Sum { out, c, x, d };
+    if op.out.nrows() <= SMALL { op.call() } else { Arch::new().dispatch(op) }
 }
 
 /// A sum of matrices, compiled for every instruction set.
@@ -148,14 +148,29 @@ pub(crate) fn antisymmetrise(p: &mut Mat<f64>) {
     }
 }
 
+/// Σ f(x), in eight sums side by side.
+#[inline(always)]
+fn sum(x: &[f64], f: impl Fn(f64) -> f64) -> f64 {
+    let mut sums = [0.0; 8];
+    let mut chunks = x.chunks_exact(8);
+    for chunk in &mut chunks {
+        for k in 0..8 {
+            sums[k] += f(chunk[k]);
+        }
+    }
+    let rest: f64 = chunks.remainder().iter().map(|x| f(*x)).sum();
+    let [a, b, c, d, e, g, h, i] = sums;
+    ((a + b) + (c + d)) + ((e + g) + (h + i)) + rest
+}
+
 /// The 1-norm: the largest absolute column sum. NaN when an entry is NaN.
 pub(crate) fn norm1(x: MatRef<'_, f64>) -> f64 {
     let mut best = 0.0;
     for j in 0..x.ncols() {
-        let mut s = 0.0;
-        for i in 0..x.nrows() {
-            s += x[(i, j)].abs();
-        }
+        let s = match x.col(j).try_as_col_major() {
+            Some(col) => sum(col.as_slice(), f64::abs),
+            None => x.col(j).iter().map(|x| x.abs()).sum(),
+        };
         if s > best || s.is_nan() {
             best = s;
         }
@@ -165,12 +180,7 @@ pub(crate) fn norm1(x: MatRef<'_, f64>) -> f64 {
 
 /// The Frobenius norm.
 pub(crate) fn norm_frobenius(x: &Mat<f64>) -> f64 {
-    let mut s = 0.0;
-    for j in 0..x.ncols() {
-        for x in x.col_as_slice(j) {
-            s += x * x;
-        }
-    }
+    let s: f64 = (0..x.ncols()).map(|j| sum(x.col_as_slice(j), |x| x * x)).sum();
     if s.is_normal() {
         s.sqrt()
     } else {
@@ -180,5 +190,5 @@ pub(crate) fn norm_frobenius(x: &Mat<f64>) -> f64 {
 
 /// Is every entry finite? Not by sums of moduli: they overflow where no entry does.
 pub(crate) fn is_finite(x: &Mat<f64>) -> bool {
-    (0..x.ncols()).all(|j| x.col_as_slice(j).iter().map(|x| 0.0 * x).sum::<f64>() == 0.0)
+    (0..x.ncols()).all(|j| sum(x.col_as_slice(j), |x| 0.0 * x) == 0.0)
 }

@@ -112,11 +112,13 @@ impl<S: Simd, const N: usize, const K: usize> Cols<S, N, K> {
                 sums[q] = simd.add_f64s(sums[q], simd.abs_f64s(self.0[j][q]));
             }
         }
-        let mut top = sums[0];
-        for q in 1..K {
-            top = simd.max_f64s(top, sums[q]);
+        let mut top = 0.0;
+        for s in bytemuck::cast_slice::<S::f64s, f64>(&sums) {
+            if *s > top {
+                top = *s;
+            }
         }
-        simd.reduce_max_f64s(top)
+        top
     }
 
     #[inline(always)]

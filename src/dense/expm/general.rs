@@ -9,14 +9,10 @@
 use faer::Mat;
 
 use super::pade::THETA;
-use super::taylor::{
-    B12, B18, T8, THETA_1, THETA_8, THETA_12, THETA_18, half_to_the, halvings, halvings_18,
-};
+use super::taylor::{B12, B18, T8, THETA_1, THETA_8, THETA_12, half_to_the, halvings, halvings_18};
 use super::{Expm, ExpmChoice, Kind};
 use crate::dense::ops::{mul, mul_add, norm1, scaled_sum};
 
-/// Up to this n products are so much cheaper than a solve that Taylor wins at every norm.
-const TAYLOR_MAX: usize = 96;
 const THETA_13: f64 = THETA[4].1;
 
 #[derive(Clone, Copy, PartialEq)]
@@ -145,10 +141,10 @@ impl Expm {
         norm1(self.a.as_ref()) <= 0.25 * norm
     }
 
-    /// out ← a Taylor polynomial at 2⁻ˢa, where that is cheaper than Padé and as good: its degree, s.
+    /// out ← a Taylor polynomial at 2⁻ˢa, where that is as good as Padé: its degree, s. A solve
+    /// with n right-hand sides costs more than the two or three squarings that it saves.
     fn taylor(&mut self, norm: f64, out: &mut Mat<f64>) -> Option<(usize, u32)> {
-        let n = self.a.nrows();
-        if norm > 1e3 || (n > TAYLOR_MAX && norm > 8.0) {
+        if norm > 1e3 {
             return None;
         }
         let Expm { a, a2, a4, a6, u, v, t, .. } = self;
@@ -182,9 +178,6 @@ impl Expm {
             b(out, B12[0]);
             mul_add(out, 1.0, t.as_ref(), v.as_ref());
             return Some((12, 0));
-        }
-        if n > TAYLOR_MAX && alpha > 2.0 * THETA_18 {
-            return None;
         }
         mul(a6, a3.as_ref(), a3.as_ref());
         let [n2, n3, n6] = [&*a2, &*a3, &*a6].map(|x| norm1(x.as_ref()));
