@@ -222,9 +222,7 @@ impl<S: Simd, const N: usize, const K: usize> Mul<'_, S, N, K> {
         let Mul { simd, a, b, out, add } = self;
         let mut sums = [[simd.splat_f64s(0.0); K]; W];
         if *add {
-            for j in 0..W {
-                sums[j] = out.0[first + j];
-            }
+            sums.copy_from_slice(&out.0[first..first + W]);
         }
         let b = b.flat();
         for k in 0..N {
@@ -236,8 +234,6 @@ impl<S: Simd, const N: usize, const K: usize> Mul<'_, S, N, K> {
                 }
             }
         }
-        for j in 0..W {
-            out.0[first + j] = sums[j];
-        }
+        out.0[first..first + W].copy_from_slice(&sums);
     }
 }
