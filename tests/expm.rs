@@ -219,12 +219,10 @@ fn any_bit_pattern_comes_back_finite_or_as_an_error() {
                     }
                 });
             }
-            for result in [exp(&u, structure), pade(&u, structure)] {
-                if let Ok((g, choice)) = result {
-                    assert!(norm(&g).is_finite() || g.norm_max().is_finite(), "{u:?} {choice:?}");
-                    if structure == Structure::Skew {
-                        assert!(defect(&g) <= 4.0 * (n as f64).sqrt() * EPS, "{u:?} {choice:?}");
-                    }
+            for (g, choice) in [exp(&u, structure), pade(&u, structure)].into_iter().flatten() {
+                assert!(norm(&g).is_finite() || g.norm_max().is_finite(), "{u:?} {choice:?}");
+                if structure == Structure::Skew {
+                    assert!(defect(&g) <= 4.0 * (n as f64).sqrt() * EPS, "{u:?} {choice:?}");
                 }
             }
         }
