@@ -4,9 +4,13 @@
 //! method is registered by its line in one of the macros below and its entry in the list beside it.
 
 use crate::error::Error;
-use crate::maps::{CCSK, CCSK123, CCSK321, Cay, Ccsk, CoordinateMap, Exp, TruncatedExp};
-use crate::methods::{Method, Rk, Rkmk, tableau};
-use crate::problems::{Ambient, Problem};
+use crate::groups::LieGroup;
+use crate::maps::{
+    Alternating, CCSK, CCSK123, CCSK321, Cay, Ccsk, CoordinateMap, Exp, Pade22, TruncatedExp,
+};
+use crate::methods::{CfMagnus, CommutatorFree, LowStorage, Method, OneBracket, Rk, Rkmk};
+use crate::methods::{commutator_free, crouch_grossman, low_storage, magnus, one_bracket, tableau};
+use crate::problems::{Ambient, LinearField, Problem};
 
 /// A coordinate map that scene files can name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,17 +34,22 @@ pub const MAPS: &[MapInfo] = &[
     MapInfo {
         name: "ccsk123",
         summary: "canonical coordinates of the second kind, ordering 123 (ccskf)",
-        groups: "SO(n)",
+        groups: "SO(n), GL(n), Sp(2m)",
     },
     MapInfo {
         name: "ccsk321",
         summary: "canonical coordinates of the second kind, ordering 321 (ccskb)",
-        groups: "SO(n)",
+        groups: "SO(n), GL(n), Sp(2m)",
+    },
+    MapInfo {
+        name: "pade22",
+        summary: "Padé map (𝟙 − u/2 + u²/12)⁻¹(𝟙 + u/2 + u²/12), order 4 of exp",
+        groups: "all",
     },
     MapInfo {
         name: "ccsk",
         summary: "the orderings 321 and 123 on alternate steps",
-        groups: "SO(n)",
+        groups: "SO(n), GL(n), Sp(2m)",
     },
 ];
 
@@ -49,11 +58,11 @@ macro_rules! each_map {
     ($name:expr, $q:expr, $map:ident => $body:expr) => {
         match ($name, $q) {
             ("exp", Some(q)) => {
-                let $map = Exp.truncated(q);
+                let $map = serve::<P::Group, _>(Exp.truncated(q));
                 Ok($body)
             }
             ("exp", None) => {
-                let $map = Exp;
+                let $map = serve::<P::Group, _>(Exp);
                 Ok($body)
             }
             (_, Some(_)) => Err(Error::Unsupported {
@@ -62,19 +71,23 @@ macro_rules! each_map {
                 why: "only the Baker series of exp can be cut; leave q out",
             }),
             ("cay", _) => {
-                let $map = Cay;
+                let $map = serve::<P::Group, _>(Cay);
                 Ok($body)
             }
             ("ccsk123", _) => {
-                let $map = CCSK123;
+                let $map = serve::<P::Group, _>(CCSK123);
                 Ok($body)
             }
             ("ccsk321", _) => {
-                let $map = CCSK321;
+                let $map = serve::<P::Group, _>(CCSK321);
+                Ok($body)
+            }
+            ("pade22", _) => {
+                let $map = serve::<P::Group, _>(Pade22);
                 Ok($body)
             }
             ("ccsk", _) => {
-                let $map = CCSK;
+                let $map = serve::<P::Group, _>(CCSK);
                 Ok($body)
             }
             (other, _) => Err(unknown("map", other, MAPS.iter().map(|m| m.name))),
@@ -89,6 +102,11 @@ pub const TABLEAUS: &[&str] = &[
     tableau::HEUN.name,
     tableau::RK4.name,
     tableau::THREE_EIGHTHS.name,
+    tableau::BS3.name,
+    tableau::RKF45.name,
+    tableau::DOPRI5.name,
+    tableau::VERNER6.name,
+    tableau::DOP853.name,
 ];
 
 /// Run `$body` with `$tableau` bound to the tableau of that name.
@@ -113,6 +131,26 @@ macro_rules! each_tableau {
             }
             "three-eighths" => {
                 let $tableau = tableau::THREE_EIGHTHS;
+                $body
+            }
+            "bs3" => {
+                let $tableau = tableau::BS3;
+                $body
+            }
+            "rkf45" => {
+                let $tableau = tableau::RKF45;
+                $body
+            }
+            "dopri5" => {
+                let $tableau = tableau::DOPRI5;
+                $body
+            }
+            "verner6" => {
+                let $tableau = tableau::VERNER6;
+                $body
+            }
+            "dop853" => {
+                let $tableau = tableau::DOP853;
                 $body
             }
             other => Err(unknown("tableau", other, TABLEAUS.iter().copied())),
@@ -144,6 +182,31 @@ pub struct MethodInfo {
 const KEEPS_GROUP: &str = "group, Casimirs";
 const MUNTHE_KAAS: &str = "Munthe-Kaas 1999; Celledoni & Owren, Table 1";
 const KUTTA: &str = "Hairer, Nørsett, Wanner I, p. 138";
+
+/// A method whose map is exp and whose coefficients are fixed.
+const fn with_exp(
+    name: &'static str,
+    order: usize,
+    summary: &'static str,
+    cost: &'static str,
+    source: &'static str,
+) -> MethodInfo {
+    MethodInfo {
+        name,
+        summary,
+        order: Some(order),
+        takes_map: false,
+        takes_tableau: false,
+        preserves: KEEPS_GROUP,
+        cost,
+        source,
+    }
+}
+
+const CMO: &str = "Celledoni, Marthinsen, Owren 2003";
+const BAZAVOV: &str = "Bazavov 2022";
+const EES: &str = "Shmelev, Thompson, Salvi 2025";
+const ALVERMANN: &str = "Alvermann, Fehske 2011";
 
 /// The methods.
 pub const METHODS: &[MethodInfo] = &[
@@ -187,6 +250,82 @@ pub const METHODS: &[MethodInfo] = &[
         cost: "s F",
         source: KUTTA,
     },
+    with_exp(
+        "rkmk4-2c",
+        4,
+        "RKMK of order 4 with two commutators",
+        "4 f, 4 exp, 2 brackets",
+        "Munthe-Kaas, Owren 1999",
+    ),
+    with_exp(
+        "magnus43",
+        4,
+        "Magnus method for nonlinear equations, pair 4(3)",
+        "6 f, 6 exp, 3 brackets",
+        "Casas, Iserles 2006",
+    ),
+    with_exp("cf3", 3, "commutator-free, 3 stages", "3 f, 4 exp", CMO),
+    with_exp("cf4", 4, "commutator-free, 4 stages", "4 f, 5 exp", CMO),
+    with_exp(
+        "cf43",
+        4,
+        "commutator-free pair 4(3)",
+        "4 f, 5 exp; 5 f, 8 exp with the error",
+        "Curry, Owren 2019",
+    ),
+    with_exp("cf-ls3", 3, "commutator-free in low storage (Lüscher)", "3 f, 3 exp", BAZAVOV),
+    with_exp(
+        "cf-ls3-bp",
+        3,
+        "commutator-free in low storage (Bernardini, Pirozzoli)",
+        "3 f, 3 exp",
+        BAZAVOV,
+    ),
+    with_exp("cf-ls32", 3, "commutator-free in low storage, pair 3(2)", "5 f, 5 exp", BAZAVOV),
+    with_exp(
+        "cf-ls4",
+        4,
+        "commutator-free in low storage (Carpenter, Kennedy)",
+        "5 f, 5 exp",
+        BAZAVOV,
+    ),
+    with_exp("cf-ls5", 5, "commutator-free in low storage (Yan)", "13 f, 13 exp", BAZAVOV),
+    with_exp("cf-ees25", 2, "order 2, reversible to order 5", "3 f, 3 exp", EES),
+    with_exp("cf-ees27", 2, "order 2, reversible to order 7", "4 f, 4 exp", EES),
+    with_exp("cg2", 2, "Crouch–Grossman, 2 stages", "2 f, 2 exp", "Crouch, Grossman 1993"),
+    with_exp("cg3", 3, "Crouch–Grossman, 3 stages", "3 f, 6 exp", "Owren, Marthinsen 1999"),
+    with_exp(
+        "cg4",
+        4,
+        "Crouch–Grossman, 5 stages (CG4a)",
+        "5 f, 15 exp",
+        "Jackiewicz, Marthinsen, Owren 2000",
+    ),
+];
+
+/// The methods for equations of linear type, ẏ = λ_*(A(t))(y): see [`with_linear_method`].
+pub const LINEAR_METHODS: &[MethodInfo] = &[
+    with_exp("magnus4", 4, "Magnus, order 4", "2 A, 1 exp, 1 bracket", "Iserles, Nørsett 1999"),
+    with_exp("magnus6", 6, "Magnus, order 6", "3 A, 1 exp, 3 brackets", "Blanes, Casas, Ros 2000"),
+    with_exp("magnus8", 8, "Magnus, order 8", "4 A, 1 exp, 10 brackets", "Blanes, Casas, Ros 2000"),
+    with_exp("cfm4-2", 4, "commutator-free Magnus, order 4", "2 A, 2 exp", "Blanes, Moan 2006"),
+    with_exp("cfm4-3", 4, "commutator-free Magnus, order 4, optimised", "3 A, 3 exp", ALVERMANN),
+    with_exp("cfm6-5", 6, "commutator-free Magnus, order 6", "3 A, 5 exp", ALVERMANN),
+    with_exp("cfm8-11", 8, "commutator-free Magnus, order 8", "4 A, 11 exp", ALVERMANN),
+    with_exp(
+        "cayley-magnus4",
+        4,
+        "Magnus in Cayley coordinates, order 4",
+        "2 A, 1 cay, 1 bracket, 1 triple product",
+        "Iserles 2001",
+    ),
+    with_exp(
+        "cayley-magnus6",
+        6,
+        "Magnus in Cayley coordinates, order 6",
+        "3 A, 1 cay, 5 brackets, 5 triple products",
+        "Iserles 2001",
+    ),
 ];
 
 /// A method by name, with its parts.
@@ -250,6 +389,50 @@ fn unknown(kind: &'static str, name: &str, expected: impl Iterator<Item = &'stat
     Error::UnknownName { kind, name: name.into(), expected: expected.collect() }
 }
 
+/// A group that the map Psi has a formula for: `impl CoordinateMap<G> for Psi`, seen from the group.
+pub trait Serves<Psi>: LieGroup + Sized {
+    /// Psi.
+    type Map: CoordinateMap<Self>;
+    /// Itself.
+    fn map(psi: Psi) -> Self::Map;
+}
+
+impl<G: LieGroup, Psi: CoordinateMap<G>> Serves<Psi> for G {
+    type Map = Psi;
+    #[inline]
+    fn map(psi: Psi) -> Psi {
+        psi
+    }
+}
+
+fn serve<G: Serves<Psi>, Psi>(psi: Psi) -> G::Map {
+    G::map(psi)
+}
+
+/// The groups on which every registered map has a type; as a value a group may still be refused.
+/// One name for the bounds of all maps: a map that is registered joins it here.
+pub trait CatalogGroup:
+    Serves<Exp>
+    + Serves<TruncatedExp>
+    + Serves<Cay>
+    + Serves<Pade22>
+    + Serves<Ccsk<0, 1, 2>>
+    + Serves<Ccsk<2, 1, 0>>
+    + Serves<Alternating<Ccsk<2, 1, 0>, Ccsk<0, 1, 2>>>
+{
+}
+
+impl<G> CatalogGroup for G where
+    G: Serves<Exp>
+        + Serves<TruncatedExp>
+        + Serves<Cay>
+        + Serves<Pade22>
+        + Serves<Ccsk<0, 1, 2>>
+        + Serves<Ccsk<2, 1, 0>>
+        + Serves<Alternating<Ccsk<2, 1, 0>, Ccsk<0, 1, 2>>>
+{
+}
+
 /// What to do with a method, whatever its type.
 pub trait OnMethod<P: Problem> {
     /// The answer.
@@ -264,11 +447,8 @@ pub trait OnMethod<P: Problem> {
 /// As [`MethodSpec::info`], and [`Error::UnknownName`] for its map or tableau.
 pub fn with_method<P: Ambient, V: OnMethod<P>>(spec: &MethodSpec, on: V) -> Result<V::Out, Error>
 where
+    P::Group: CatalogGroup,
     Exp: CoordinateMap<P::Group>,
-    TruncatedExp: CoordinateMap<P::Group>,
-    Cay: CoordinateMap<P::Group>,
-    Ccsk<0, 1, 2>: CoordinateMap<P::Group>,
-    Ccsk<2, 1, 0>: CoordinateMap<P::Group>,
 {
     let info = spec.info()?;
     let map = spec.map.as_deref().unwrap_or("exp");
@@ -279,6 +459,48 @@ where
             each_map!(map, spec.q, psi => on.call(Rkmk::new(t, psi)))),
         "rk4" => Ok(on.call(Rk(tableau::RK4))),
         "rk" => each_tableau!(tableau, t => Ok(on.call(Rk(t)))),
+        "rkmk4-2c" => Ok(on.call(OneBracket(one_bracket::RKMK4_2C))),
+        "magnus43" => Ok(on.call(OneBracket(one_bracket::MAGNUS43))),
+        "cf3" => Ok(on.call(CommutatorFree(commutator_free::CF3))),
+        "cf4" => Ok(on.call(CommutatorFree(commutator_free::CF4))),
+        "cf43" => Ok(on.call(CommutatorFree(commutator_free::CF43))),
+        "cf-ls3" => Ok(on.call(LowStorage(low_storage::LS3))),
+        "cf-ls3-bp" => Ok(on.call(LowStorage(low_storage::LS3_BP))),
+        "cf-ls32" => Ok(on.call(LowStorage(low_storage::LS32))),
+        "cf-ls4" => Ok(on.call(LowStorage(low_storage::LS4))),
+        "cf-ls5" => Ok(on.call(LowStorage(low_storage::LS5))),
+        "cf-ees25" => Ok(on.call(LowStorage(low_storage::EES25))),
+        "cf-ees27" => Ok(on.call(LowStorage(low_storage::EES27))),
+        "cg2" => Ok(on.call(CommutatorFree(crouch_grossman::CG2))),
+        "cg3" => Ok(on.call(CommutatorFree(crouch_grossman::CG3))),
+        "cg4" => Ok(on.call(CommutatorFree(crouch_grossman::CG4))),
         other => Err(unknown("method", other, METHODS.iter().map(|m| m.name))),
+    }
+}
+
+/// Find the method for equations of linear type that has this name, and hand it over.
+///
+/// # Errors
+/// [`Error::UnknownName`].
+pub fn with_linear_method<P: LinearField, V: OnMethod<P>>(
+    name: &str,
+    on: V,
+) -> Result<V::Out, Error>
+where
+    P::Group: magnus::TripleProduct,
+    Exp: CoordinateMap<P::Group>,
+    Cay: CoordinateMap<P::Group>,
+{
+    match name {
+        "magnus4" => Ok(on.call(magnus::Magnus4)),
+        "magnus6" => Ok(on.call(magnus::Magnus6)),
+        "magnus8" => Ok(on.call(magnus::Magnus8)),
+        "cfm4-2" => Ok(on.call(CfMagnus(magnus::CFM4_2))),
+        "cfm4-3" => Ok(on.call(CfMagnus(magnus::CFM4_3))),
+        "cfm6-5" => Ok(on.call(CfMagnus(magnus::CFM6_5))),
+        "cfm8-11" => Ok(on.call(CfMagnus(magnus::CFM8_11))),
+        "cayley-magnus4" => Ok(on.call(magnus::CayleyMagnus4)),
+        "cayley-magnus6" => Ok(on.call(magnus::CayleyMagnus6)),
+        other => Err(unknown("linear method", other, LINEAR_METHODS.iter().map(|m| m.name))),
     }
 }

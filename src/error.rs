@@ -121,6 +121,18 @@ pub enum Error {
         /// The names that are registered.
         expected: Vec<&'static str>,
     },
+    /// A group element has no principal real logarithm.
+    #[error(
+        "g: no principal real logarithm in {group}: the eigenvalue {re:.3e} {im:+.1e}i lies on the negative real axis"
+    )]
+    NoLogarithm {
+        /// The group.
+        group: String,
+        /// The eigenvalue, real part.
+        re: f64,
+        /// Its imaginary part, zero to rounding.
+        im: f64,
+    },
 }
 
 impl Error {
@@ -135,7 +147,7 @@ impl Error {
 }
 
 /// Why a step could not be taken. Small and `Copy`: it travels out of the hot loop.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ThisError)]
+#[derive(Clone, Copy, Debug, PartialEq, ThisError)]
 #[non_exhaustive]
 pub enum StepError {
     /// u left the domain on which Ψ or dΨ⁻¹ is defined or well conditioned.
@@ -173,6 +185,18 @@ pub enum StepError {
     NotConverged {
         /// The iteration.
         what: &'static str,
+    },
+    /// A matrix that a map has to invert is singular to working accuracy.
+    #[error(
+        "{map}: {what} is singular to working accuracy: rcond = {rcond:.3e}; take a smaller step"
+    )]
+    NearlySingular {
+        /// The map.
+        map: &'static str,
+        /// The matrix.
+        what: &'static str,
+        /// Its reciprocal condition number in the 1-norm.
+        rcond: f64,
     },
 }
 

@@ -1,6 +1,8 @@
 //! The driver: fixed steps over a time span, with output where it is asked for.
 
+use crate::actions::Action;
 use crate::error::{Error, Failure};
+use crate::groups::RESIDUAL_MAX;
 use crate::methods::{Method, Step};
 use crate::problems::{PointOf, Problem, ScalarOf};
 use crate::scalar::Real;
@@ -36,7 +38,7 @@ impl TimeGrid {
         if steps > STEPS_MAX {
             return Err(Error::out_of_range("dt", dt, "at most 1e15 steps over t_span"));
         }
-        if length > 0.0 && (length / dt - steps).abs() > 1e-9 * steps.max(1.0) {
+        if length > 0.0 && (steps < 1.0 || (length / dt - steps).abs() > 1e-9 * steps) {
             let count = steps.max(1.0);
             let advice = format!(
                 "a step that divides the span of length {length}, such as {} ({count} steps)",
@@ -63,7 +65,7 @@ impl TimeGrid {
         }
         let grid = TimeGrid { t0, t1, steps };
         let largest = t0.abs().max(t1.abs());
-        if largest + grid.h().abs() * 0.5 == largest {
+        if grid.h().abs() < largest - largest.next_down() {
             return Err(Error::out_of_range(
                 "dt",
                 grid.h().abs(),
@@ -149,12 +151,65 @@ impl SaveAt {
 }
 
 /// What a run did.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Stats {
     /// Steps of the run.
     pub steps: u64,
     /// Shorter steps taken to output times between grid points.
     pub side_steps: u64,
+    /// How often the state was looked at, and taken back to M where it had left it
+    /// ([`Action::restore`]).
+    pub restored: u64,
+    /// How often it was left where it was, because it was too far off
+    /// ([`RESIDUAL_MAX`](crate::groups::RESIDUAL_MAX)).
+    pub not_restored: u64,
+    /// A power of two above every residual that was seen there, ‖M⁻¹gᵀMg − 𝟙‖ on a group; 0 when
+    /// none was. On a compact group it stays near 1e-14. On a non-compact one rounding level is
+    /// ε‖g‖²: compare with that.
+    pub residual: f64,
+}
+
+/// The driver calls [`Action::restore`] after every so many steps at most: rounding takes g off its
+/// group by some ε a step, and a hundred steps stay below 2e-14 at a hundredth of the cost of one.
+pub const RESTORE_EVERY: u64 = 100;
+/// It begins with this many steps in between, and never has fewer.
+const RESTORE_EVERY_MIN: u64 = 8;
+
+/// When to look at the state again: twice as many steps after a residual below 3e-15, half as many
+/// after one above 8e-15.
+#[derive(Clone, Copy, Debug)]
+struct Cadence {
+    every: u64,
+    next: u64,
+}
+
+impl Cadence {
+    fn new() -> Self {
+        Cadence { every: RESTORE_EVERY_MIN, next: RESTORE_EVERY_MIN }
+    }
+    fn saw<S: Real>(&mut self, residual: S) {
+        if residual.all_below(3e-15) {
+            self.every = (2 * self.every).min(RESTORE_EVERY);
+        } else if !residual.all_below(8e-15) {
+            self.every = (self.every / 2).max(RESTORE_EVERY_MIN);
+        }
+        self.next += self.every;
+    }
+}
+
+impl Stats {
+    fn saw<S: Real>(&mut self, residual: S) {
+        match residual.all_below(RESIDUAL_MAX) {
+            true => self.restored += 1,
+            false => self.not_restored += 1,
+        }
+        if !residual.all_below(self.residual) && residual.any_below(f64::INFINITY) {
+            self.residual = self.residual.max(f64::EPSILON / 4.0);
+            while !residual.all_below(self.residual) && self.residual < f64::MAX / 2.0 {
+                self.residual *= 2.0;
+            }
+        }
+    }
 }
 
 /// Why a run ended before its time.
@@ -172,6 +227,10 @@ pub enum RunError {
 /// Integrate `problem` from y at the start of `grid` to its end, showing (t, y) to `observe` where
 /// `save` says. On return y is the state at the end, or the last accepted one.
 ///
+/// Every [`RESTORE_EVERY`] steps, or sooner where it drifts faster, a method that stays on M has its
+/// state taken back to M ([`Action::restore`]): without it rounding carries g off its group by some
+/// ε a step.
+///
 /// Memory is allocated before the first step only.
 ///
 /// ```
@@ -181,7 +240,7 @@ pub enum RunError {
 /// use lieflow::{SaveAt, TimeGrid, integrate};
 /// use nalgebra::Vector3;
 ///
-/// let body = RigidBody::new([1.0, 2.0, 3.0])?;
+/// let body = RigidBody::<f64>::new([1.0, 2.0, 3.0])?;
 /// let mut m = Vector3::new(0.2, 0.0, 3.0);
 /// let start = body.energy(&m);
 /// let grid = TimeGrid::new([0.0, 10.0], 0.05)?;
@@ -203,6 +262,11 @@ pub fn integrate<P: Problem, Me: Method<P>>(
     save.check(grid)?;
     let mut work = method.work(problem, y)?;
     let mut aside = y.clone();
+    let mut mend = problem.action().work(problem.group());
+    let mut cadence = Cadence::new();
+    if !method.stays_on_manifold() {
+        cadence.next = u64::MAX;
+    }
     let mut stats = Stats::default();
     let [t0, t1] = grid.t_span();
     let forward = t1 >= t0;
@@ -224,15 +288,22 @@ pub fn integrate<P: Problem, Me: Method<P>>(
             && (if forward { *time < end } else { *time > end })
         {
             aside.clone_from(y);
-            if *time != t {
-                take(*time, &mut aside)?;
-                stats.side_steps += 1;
-            }
+            take(*time, &mut aside)?;
+            stats.side_steps += 1;
             observe(*time, &aside);
             times = rest;
         }
         take(end, y)?;
         stats.steps += 1;
+        if stats.steps == cadence.next {
+            match problem.action().restore(problem.group(), y, &mut mend) {
+                Some(residual) => {
+                    stats.saw(residual);
+                    cadence.saw(residual);
+                }
+                None => cadence.next = u64::MAX,
+            }
+        }
         let on_grid = match save {
             SaveAt::Every(every) => (n + 1) % every == 0,
             SaveAt::Times(_) => times.first() == Some(&end),

@@ -51,6 +51,7 @@
 #![deny(missing_docs, rustdoc::broken_intra_doc_links)]
 
 pub mod actions;
+pub mod adaptive;
 pub mod catalog;
 pub mod chart;
 pub mod check;
@@ -62,11 +63,12 @@ pub mod maps;
 pub mod methods;
 pub mod problems;
 pub mod scalar;
+pub mod so3;
 
 pub use actions::Action;
 pub use error::{Error, Failure, StepError};
 pub use groups::{LieAlgebra, LieGroup};
-pub use integrate::{RunError, SaveAt, Stats, TimeGrid, integrate};
+pub use integrate::{RESTORE_EVERY, RunError, SaveAt, Stats, TimeGrid, integrate};
 pub use maps::CoordinateMap;
 pub use methods::{Method, Step};
 pub use problems::Problem;

@@ -54,7 +54,7 @@ fn laws_that_users_can_run() {
     let broken = laws(&So3::new(), &Exp.truncated(0), &mut rng, 50, 0.3).expect("so(3)");
     assert!(!broken[3].holds(), "{broken:?}");
 }
-/// The choice made is part of the result: every Padé degree, squarings and corrections, the series
+/// The choice made is part of the result: every degree, squarings and corrections, the series
 /// and the eigen form are taken somewhere on a ladder of norms, and each is right there.
 #[test]
 fn every_branch_of_the_dense_exponential() {

@@ -38,7 +38,7 @@ pub enum Command {
     Run(RunArgs),
     /// Run a scene with every method, map and layer that fits, and write a report.
     Compare(CompareArgs),
-    /// Check the installation against exact solutions and known orders.
+    /// Check the layers against each other, the laws of groups and maps, and the exact motion.
     Check(CheckArgs),
     /// List the scenes that come with the program, or print one to start from.
     Scenes(ScenesArgs),

@@ -2,8 +2,8 @@
 
 use core::fmt::Debug;
 
-use lieflow::catalog::{MethodSpec, OnMethod, with_method};
-use lieflow::maps::{Cay, Ccsk, CoordinateMap, Exp, TruncatedExp};
+use lieflow::catalog::{CatalogGroup, MethodSpec, OnMethod, with_method};
+use lieflow::maps::{CoordinateMap, Exp};
 use lieflow::methods::Method;
 use lieflow::problems::{Ambient, PointOf, Problem};
 use lieflow::{Error, RunError, SaveAt, Stats, TimeGrid, integrate};
@@ -126,11 +126,8 @@ pub fn integrate_by<P: Ambient>(
     observe: impl FnMut(f64, &PointOf<P>),
 ) -> Result<Stats, RunError>
 where
+    P::Group: CatalogGroup,
     Exp: CoordinateMap<P::Group>,
-    TruncatedExp: CoordinateMap<P::Group>,
-    Cay: CoordinateMap<P::Group>,
-    Ccsk<0, 1, 2>: CoordinateMap<P::Group>,
-    Ccsk<2, 1, 0>: CoordinateMap<P::Group>,
 {
     with_method(spec, Integrate { problem, y, grid, save, observe })?
 }
@@ -141,11 +138,8 @@ where
 /// As [`with_method`].
 pub fn order_by<P: Ambient>(spec: &MethodSpec, problem: &P) -> Result<usize, Error>
 where
+    P::Group: CatalogGroup,
     Exp: CoordinateMap<P::Group>,
-    TruncatedExp: CoordinateMap<P::Group>,
-    Cay: CoordinateMap<P::Group>,
-    Ccsk<0, 1, 2>: CoordinateMap<P::Group>,
-    Ccsk<2, 1, 0>: CoordinateMap<P::Group>,
 {
     with_method(spec, Order(problem))
 }

@@ -52,4 +52,17 @@ pub trait Action<G: LieGroup> {
         self.act(group, g, p, q, work);
         Ok(())
     }
+
+    /// Take p back to M, where rounding carried it off over many steps; the driver calls it every
+    /// [`RESTORE_EVERY`](crate::RESTORE_EVERY) steps or sooner. Returns how far p was, `None` where nothing is
+    /// done, which is the default. Left translation corrects by [`LieGroup::correct`].
+    #[inline]
+    fn restore(
+        &self,
+        _group: &G,
+        _p: &mut Self::Point,
+        _work: &mut Self::Work,
+    ) -> Option<G::Scalar> {
+        None
+    }
 }

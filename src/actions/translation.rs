@@ -9,11 +9,17 @@ pub struct LeftTranslation;
 
 impl<G: LieGroup> Action<G> for LeftTranslation {
     type Point = G::Elem;
-    type Work = ();
+    /// For [`restore`](Action::restore).
+    type Work = [G::Elem; 2];
 
-    fn work(&self, _: &G) {}
+    fn work(&self, group: &G) -> Self::Work {
+        [group.identity(), group.identity()]
+    }
     #[inline]
-    fn act(&self, group: &G, g: &G::Elem, p: &G::Elem, q: &mut G::Elem, _: &mut ()) {
+    fn act(&self, group: &G, g: &G::Elem, p: &G::Elem, q: &mut G::Elem, _: &mut Self::Work) {
         group.compose(g, p, q);
+    }
+    fn restore(&self, group: &G, p: &mut G::Elem, work: &mut Self::Work) -> Option<G::Scalar> {
+        Some(group.correct(p, work))
     }
 }

@@ -5,15 +5,18 @@
 //! Products and solves of 8×8 and smaller run in const-size kernels, chosen once per call, because
 //! a library call costs more there than the arithmetic.
 
+mod ad;
 mod eigen;
 mod expm;
 mod lu;
 mod ops;
+mod schur;
 
+pub(crate) use ad::{AdForm, AdSchur, Direction, Kind as AdKind};
 pub(crate) use eigen::SkewEigen;
 pub(crate) use expm::Expm;
 pub use expm::{ApplyChoice, ExpmChoice, Exponential, Kind, Structure};
 pub(crate) use lu::Lu;
 pub(crate) use ops::{
-    antisymmetrise, axpy, is_finite, mul, mul_add, norm_frobenius, norm1, scaled_sum,
+    antisymmetrise, axpy, is_finite, mul, mul_add, norm_frobenius, norm1, orthogonalise, scaled_sum,
 };

@@ -1,11 +1,14 @@
 //! Products, sums and norms.
 
 use faer::linalg::matmul::matmul;
+use faer::linalg::matmul::triangular::{BlockStructure, matmul as matmul_triangular};
 use faer::{Accum, Mat, MatRef, Par};
 use pulp::{Arch, NullaryFnOnce};
 
 /// The largest n with a const-size kernel.
 pub(crate) const SMALL: usize = 8;
+/// From this n on one triangle is cheaper than the whole product.
+const HALF_FROM: usize = 48;
 
 /// out ← a·b.
 pub(crate) fn mul(out: &mut Mat<f64>, a: MatRef<'_, f64>, b: MatRef<'_, f64>) {
@@ -30,6 +33,41 @@ fn product(out: &mut Mat<f64>, a: MatRef<'_, f64>, b: MatRef<'_, f64>, alpha: f6
         7 if square => small::<7>(out, a, b, alpha, accum),
         SMALL if square => small::<SMALL>(out, a, b, alpha, accum),
         _ => matmul(out.as_mut(), accum, a, b, alpha, Par::Seq),
+    }
+}
+
+/// out ← a·b, known to be symmetric (`sign` = 1) or skew (`sign` = −1).
+pub(crate) fn half_mul(out: &mut Mat<f64>, a: MatRef<'_, f64>, b: MatRef<'_, f64>, sign: f64) {
+    let n = a.nrows();
+    if n < HALF_FROM {
+        mul(out, a, b);
+        return;
+    }
+    let (lower, full) = (BlockStructure::TriangularLower, BlockStructure::Rectangular);
+    matmul_triangular(out.as_mut(), lower, Accum::Replace, a, full, b, full, 1.0, Par::Seq);
+    mirror(out, sign);
+}
+
+/// The upper triangle ← `sign` times the lower one, in tiles that stay in the cache.
+fn mirror(x: &mut Mat<f64>, sign: f64) {
+    const TILE: usize = 16;
+    let n = x.nrows();
+    let mut tile = [[0.0; TILE]; TILE];
+    for low in (0..n).step_by(TILE) {
+        let high = n.min(low + TILE);
+        for top in (low..n).step_by(TILE) {
+            let bottom = n.min(top + TILE);
+            for j in low..high {
+                let col = &x.col_as_slice(j)[top..bottom];
+                tile[j - low][..col.len()].copy_from_slice(col);
+            }
+            for i in top..bottom {
+                let col = &mut x.col_as_slice_mut(i)[low..high.min(i)];
+                for (j, x) in col.iter_mut().enumerate() {
+                    *x = sign * tile[j][i - top];
+                }
+            }
+        }
     }
 }
 
@@ -191,4 +229,25 @@ pub(crate) fn norm_frobenius(x: &Mat<f64>) -> f64 {
 /// Is every entry finite? Not by sums of moduli: they overflow where no entry does.
 pub(crate) fn is_finite(x: &Mat<f64>) -> bool {
     (0..x.ncols()).all(|j| sum(x.col_as_slice(j), |x| 0.0 * x) == 0.0)
+}
+
+/// g ← g + g(𝟙 − gᵀg)/2 until ‖𝟙 − gᵀg‖ is at rounding level. What a solve or squarings have
+/// amplified to κε, Newton–Schulz in residual form takes back to ε. Returns the number of steps.
+pub(crate) fn orthogonalise(g: &mut Mat<f64>, [gap, product]: [&mut Mat<f64>; 2]) -> u32 {
+    let mut last = f64::INFINITY;
+    for step in 0..6 {
+        half_mul(product, g.transpose(), g.as_ref(), 1.0);
+        scaled_sum(gap, [-0.5], [product], 0.5);
+        let residual = norm1(gap.as_ref());
+        if residual <= f64::EPSILON || residual.is_nan() || residual >= 0.5 * last {
+            return step; // what is left is the rounding of gᵀg itself
+        }
+        last = residual;
+        mul(product, g.as_ref(), gap.as_ref());
+        axpy(1.0, product, g);
+        if residual <= 1e-9 {
+            return step + 1; // the next residual is the square of this one
+        }
+    }
+    6
 }

@@ -8,9 +8,11 @@
 //! one line here, one line in the law tests. A matrix group needs no file: it is a constructor of
 //! [`MatrixGroup`].
 
+mod adjoint;
 mod matrix;
 mod so3;
 
+pub use adjoint::Adjoint;
 pub use matrix::{AlgebraMatrix, Form, GroupMatrix, MEMBERSHIP, MatrixGroup, RCOND_MIN};
 pub use so3::{So3, hat, vee};
 pub(crate) use so3::{apply3, cross};
@@ -72,7 +74,22 @@ pub trait LieGroup: LieAlgebra {
     fn distance(&self, a: &Self::Elem, b: &Self::Elem) -> Self::Scalar;
     /// How far g is from G: ‖gᵀMg − M‖ (Frobenius), zero for GL(n).
     fn defect(&self, g: &Self::Elem) -> Self::Scalar;
+
+    /// Take g back towards G, where rounding carried it off: g ← g + g(𝟙 − M⁻¹gᵀMg)/2, a
+    /// Newton–Schulz step in residual form. Returns the residual ‖M⁻¹gᵀMg − 𝟙‖ found before.
+    ///
+    /// Left alone are a g whose residual is at rounding level, ε‖g‖², and one whose residual is
+    /// [`RESIDUAL_MAX`] or more. On a non-compact group rounding level itself grows with ‖g‖²: what
+    /// this returns is then the measure of membership. Groups without a form return 0.
+    ///
+    /// `scratch` is overwritten; nothing is allocated.
+    fn correct(&self, _g: &mut Self::Elem, _scratch: &mut [Self::Elem; 2]) -> Self::Scalar {
+        Self::Scalar::lit(0.0)
+    }
 }
+
+/// From this residual on Newton–Schulz might not converge: g is left alone.
+pub const RESIDUAL_MAX: f64 = 0.1;
 
 /// A group that random elements can be drawn from.
 pub trait Sample: LieGroup {

@@ -6,7 +6,7 @@ use nalgebra::{Matrix3, Vector3};
 use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
 
-use super::{LieAlgebra, LieGroup, Sample};
+use super::{LieAlgebra, LieGroup, RESIDUAL_MAX, Sample};
 use crate::error::Error;
 use crate::scalar::Real;
 
@@ -103,7 +103,7 @@ impl<S: Real> LieAlgebra for So3<S> {
     }
     #[inline]
     fn is_finite(&self, u: &Vector3<S>) -> bool {
-        (u[0].abs() + u[1].abs() + u[2].abs()).is_finite()
+        u[0].is_finite() && u[1].is_finite() && u[2].is_finite()
     }
     /// Starts from the first term instead of from zero: three additions fewer.
     #[inline]
@@ -153,6 +153,24 @@ impl<S: Real> LieGroup for So3<S> {
         let mut gram = self.identity();
         compose3(&g.transpose(), g, &mut gram);
         self.distance(&gram, &self.identity())
+    }
+    #[inline]
+    fn correct(&self, g: &mut Matrix3<S>, [half, step]: &mut [Matrix3<S>; 2]) -> S {
+        compose3(&g.transpose(), g, step);
+        for i in 0..3 {
+            for j in 0..3 {
+                let one = S::lit(if i == j { 0.5 } else { 0.0 });
+                half[(i, j)] = one - S::lit(0.5) * step[(i, j)];
+            }
+        }
+        let residual = S::lit(2.0) * norm_of(half.as_slice());
+        if residual.all_below(RESIDUAL_MAX) {
+            compose3(g, half, step);
+            for (g, s) in g.iter_mut().zip(step.iter()) {
+                *g += *s;
+            }
+        }
+        residual
     }
 }
 

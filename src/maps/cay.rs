@@ -12,27 +12,17 @@ use faer::Mat;
 use nalgebra::{Matrix3, Vector3};
 
 use super::CoordinateMap;
-use super::exp::{SQUARE_MAX, rodrigues, rodrigues_on};
-use crate::dense::{Lu, mul, scaled_sum};
+use crate::dense::{Lu, is_finite, mul, norm_frobenius, norm1, orthogonalise, scaled_sum};
 use crate::error::{Error, StepError};
 use crate::groups::{
-    AlgebraMatrix, Form, GroupMatrix, LieAlgebra, MatrixGroup, RCOND_MIN, So3, cross,
+    AlgebraMatrix, Form, GroupMatrix, LieAlgebra, LieGroup, MatrixGroup, RCOND_MIN, So3,
 };
 use crate::scalar::Real;
+use crate::so3;
 
 /// The Cayley map.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Cay;
-
-/// 1/(1 + α²/4).
-#[inline(always)]
-fn shrink<S: Real>(u: &Vector3<S>) -> Result<S, StepError> {
-    let alpha2 = u[0] * u[0] + u[1] * u[1] + u[2] * u[2];
-    if !alpha2.all_below(SQUARE_MAX) {
-        return Err(StepError::NormTooLarge { map: "cay" });
-    }
-    Ok(S::lit(1.0) / (S::lit(1.0) + S::lit(0.25) * alpha2))
-}
 
 impl<S: Real> CoordinateMap<So3<S>> for Cay {
     type At = ();
@@ -51,8 +41,7 @@ impl<S: Real> CoordinateMap<So3<S>> for Cay {
         _: &mut (),
         g: &mut Matrix3<S>,
     ) -> Result<(), StepError> {
-        let a = shrink(u)?;
-        *g = rodrigues(u, a, S::lit(0.5) * a);
+        *g = so3::cay(u)?;
         Ok(())
     }
     #[inline]
@@ -65,8 +54,10 @@ impl<S: Real> CoordinateMap<So3<S>> for Cay {
         x: &Vector3<S>,
         y: &mut Vector3<S>,
     ) -> Result<(), StepError> {
-        let a = shrink(u)?;
-        *y = rodrigues_on(u, a, S::lit(0.5) * a, x);
+        *y = match so3::cay_coefficients(u) {
+            Some((a, b)) => so3::rodrigues_on(u, a, b, x),
+            None => so3::cay_huge_on(u, x)?,
+        };
         Ok(())
     }
     #[inline]
@@ -77,15 +68,11 @@ impl<S: Real> CoordinateMap<So3<S>> for Cay {
         _: &mut (),
         v: &mut Vector3<S>,
     ) -> Result<(), StepError> {
-        let (half, quarter) = (S::lit(0.5), S::lit(0.25));
-        let c = quarter * (u[0] * v[0] + u[1] * v[1] + u[2] * v[2]);
-        let w = cross(u, v);
-        *v = Vector3::new(
-            v[0] + c * u[0] - half * w[0],
-            v[1] + c * u[1] - half * w[1],
-            v[2] + c * u[2] - half * w[2],
-        );
-        Ok(())
+        *v = so3::dcayinv_of(u, v);
+        match v[0].is_finite() && v[1].is_finite() && v[2].is_finite() {
+            true => Ok(()),
+            false => Err(StepError::NotFinite { what: "dcay⁻¹" }),
+        }
     }
 }
 
@@ -95,6 +82,7 @@ pub struct CayAt {
     minus: Mat<f64>,
     plus: Mat<f64>,
     product: Mat<f64>,
+    square: Mat<f64>,
     lu: Lu,
 }
 
@@ -107,12 +95,52 @@ impl CayAt {
         scaled_sum(&mut self.minus, [-0.5], [u], 1.0);
         scaled_sum(&mut self.plus, [0.5], [u], 1.0);
         self.lu.a.copy_from(&self.minus);
-        let pivots = self.lu.factor();
-        // On so(n) the eigenvalues of 𝟙 − u/2 are 1 − iα/2: never zero, however large u.
-        if pivots < RCOND_MIN && !matches!(group.form(), Form::Identity) {
-            return Err(StepError::OutsideChart { map: "cay", what: "𝟙 − u/2 is singular" });
+        if matches!(group.form(), Form::Identity) {
+            // The eigenvalues of 𝟙 − u/2 are 1 − iα/2: never zero, however large u. Beyond 1/ε the
+            // 1 is lost next to u, and with it the axis.
+            if norm_frobenius(u) > NORM_MAX_SKEW {
+                return Err(StepError::NormTooLarge { map: "cay" });
+            }
+            self.lu.factor();
+            return Ok(());
         }
-        Ok(())
+        well_conditioned(&mut self.lu, &self.minus, &mut self.product, "cay", "𝟙 − u/2")
+    }
+}
+
+/// Above this norm of a skew u no digit of cay(u) has a meaning in the dense arithmetic.
+const NORM_MAX_SKEW: f64 = 1e15;
+/// Above this norm of a skew u the result is put back on SO(n).
+const NORM_EXACT_SKEW: f64 = 4.0;
+/// Below this ratio of pivots the condition number is looked at.
+const PIVOTS_SAFE: f64 = 1e-3;
+
+/// Factor `lu.a`, a copy of `a`, and refuse it when its reciprocal condition number is below
+/// [`RCOND_MIN`]. `scratch` is for the inverse, which is formed only where the pivots are suspicious.
+pub(super) fn well_conditioned(
+    lu: &mut Lu,
+    a: &Mat<f64>,
+    scratch: &mut Mat<f64>,
+    map: &'static str,
+    what: &'static str,
+) -> Result<(), StepError> {
+    let pivots = lu.factor();
+    if pivots > PIVOTS_SAFE {
+        return Ok(());
+    }
+    let mut rcond = 0.0;
+    if pivots > 0.0 {
+        scratch.fill(0.0);
+        scratch.diagonal_mut().fill(1.0);
+        lu.solve(scratch.as_mut());
+        rcond = 1.0 / (norm1(a.as_ref()) * norm1(scratch.as_ref()));
+    }
+    match rcond >= RCOND_MIN {
+        true => Ok(()),
+        false => {
+            let rcond = if rcond.is_nan() { 0.0 } else { rcond };
+            Err(StepError::NearlySingular { map, what, rcond })
+        }
     }
 }
 
@@ -125,7 +153,7 @@ impl CoordinateMap<MatrixGroup> for Cay {
     fn at(&self, group: &MatrixGroup) -> Result<CayAt, Error> {
         let n = group.n();
         let z = || Mat::zeros(n, n);
-        Ok(CayAt { minus: z(), plus: z(), product: z(), lu: Lu::new(n) })
+        Ok(CayAt { minus: z(), plus: z(), product: z(), square: z(), lu: Lu::new(n) })
     }
     fn psi(
         &self,
@@ -137,7 +165,13 @@ impl CoordinateMap<MatrixGroup> for Cay {
         at.prepare(group, u)?;
         g.copy_from(&at.plus);
         at.lu.solve(g.as_mut());
-        Ok(())
+        if matches!(group.form(), Form::Identity) && norm_frobenius(u) > NORM_EXACT_SKEW {
+            orthogonalise(g, [&mut at.product, &mut at.square]);
+        }
+        match is_finite(g) {
+            true => Ok(()),
+            false => Err(StepError::NotFinite { what: "cay(u)" }),
+        }
     }
     /// Solves for as many columns as x has.
     fn psi_on(
@@ -145,14 +179,22 @@ impl CoordinateMap<MatrixGroup> for Cay {
         group: &MatrixGroup,
         u: &AlgebraMatrix,
         at: &mut CayAt,
-        _: &mut GroupMatrix,
+        g: &mut GroupMatrix,
         x: &Mat<f64>,
         y: &mut Mat<f64>,
     ) -> Result<(), StepError> {
+        if matches!(group.form(), Form::Identity) && norm_frobenius(u) > NORM_EXACT_SKEW {
+            self.psi(group, u, at, g)?;
+            mul(y, g.as_ref(), x.as_ref());
+            return Ok(());
+        }
         at.prepare(group, u)?;
         mul(y, at.plus.as_ref(), x.as_ref());
         at.lu.solve(y.as_mut());
-        Ok(())
+        match is_finite(y) {
+            true => Ok(()),
+            false => Err(StepError::NotFinite { what: "cay(u)·x" }),
+        }
     }
     fn dpsi_inv(
         &self,
@@ -163,6 +205,104 @@ impl CoordinateMap<MatrixGroup> for Cay {
     ) -> Result<(), StepError> {
         mul(&mut at.product, at.minus.as_ref(), v.as_ref());
         mul(v, at.product.as_ref(), at.plus.as_ref());
-        Ok(())
+        match is_finite(v) {
+            true => Ok(()),
+            false => Err(StepError::NotFinite { what: "dcay⁻¹" }),
+        }
+    }
+}
+
+/// A group on which cay has an inverse and a differential in closed form.
+pub trait CayleyGroup: LieGroup {
+    /// [`cay_inv`] on this group.
+    ///
+    /// # Errors
+    /// As [`cay_inv`].
+    fn cay_inv(&self, g: &Self::Elem) -> Result<Self::Alg, Error>;
+    /// [`dcay`] on this group.
+    ///
+    /// # Errors
+    /// As [`dcay`].
+    fn dcay(&self, u: &Self::Alg, v: &Self::Alg) -> Result<Self::Alg, Error>;
+}
+
+/// u with cay(u) = g: u = 2(g − 𝟙)(g + 𝟙)⁻¹. Fresh storage; O(n³).
+///
+/// # Errors
+/// [`Error::Singular`] where −1 is an eigenvalue of g, a rotation by π: it is not in the image.
+///
+/// ```
+/// use lieflow::CoordinateMap;
+/// use lieflow::groups::So3;
+/// use lieflow::maps::{Cay, cay_inv};
+/// use nalgebra::{Matrix3, Vector3};
+/// let so3 = So3::new();
+/// let u = Vector3::new(0.3, -0.4, 1.2);
+/// assert!((cay_inv(&so3, &Cay.eval(&so3, &u)?)? - u).norm() < 1e-15);
+/// assert!(cay_inv(&so3, &Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0))).is_err());
+/// # Ok::<(), lieflow::Error>(())
+/// ```
+pub fn cay_inv<G: CayleyGroup>(group: &G, g: &G::Elem) -> Result<G::Alg, Error> {
+    group.cay_inv(g)
+}
+
+/// dcay_u v = (𝟙 − u/2)⁻¹ v (𝟙 + u/2)⁻¹, right trivialised: d/dε cay(u + εv)|₀ = dcay_u(v)·cay(u).
+/// Fresh storage; O(n³).
+///
+/// # Errors
+/// [`Error::Map`] where 𝟙 − u/2 or 𝟙 + u/2 is singular, and when numbers leave the range.
+pub fn dcay<G: CayleyGroup>(group: &G, u: &G::Alg, v: &G::Alg) -> Result<G::Alg, Error> {
+    group.dcay(u, v)
+}
+
+impl CayleyGroup for MatrixGroup {
+    fn cay_inv(&self, g: &GroupMatrix) -> Result<AlgebraMatrix, Error> {
+        let n = self.n();
+        self.shape("g", g.as_ref())?;
+        let plus = g.as_ref() + Mat::<f64>::identity(n, n);
+        let rcond = Lu::rcond(plus.as_ref());
+        if rcond < RCOND_MIN {
+            return Err(Error::Singular { arg: "g + 𝟙", rcond, minimum: RCOND_MIN });
+        }
+        // (g − 𝟙)(g + 𝟙)⁻¹ = (g + 𝟙)⁻¹(g − 𝟙)
+        let mut u = g.as_ref() - Mat::<f64>::identity(n, n);
+        let mut lu = Lu::new(n);
+        lu.a.copy_from(&plus);
+        lu.factor();
+        lu.solve(u.as_mut());
+        for x in u.col_iter_mut() {
+            x.iter_mut().for_each(|x| *x *= 2.0);
+        }
+        Ok(match self.form() {
+            Form::Free => AlgebraMatrix::new_unchecked(u),
+            _ => self.project_algebra(u.as_ref()),
+        })
+    }
+
+    fn dcay(&self, u: &AlgebraMatrix, v: &AlgebraMatrix) -> Result<AlgebraMatrix, Error> {
+        self.shape("u", u.as_ref())?;
+        self.shape("v", v.as_ref())?;
+        let (mut at, mut w) = (Cay.at(self)?, v.clone());
+        at.prepare(self, u)?;
+        at.lu.solve(w.as_mut());
+        // w ← w (𝟙 + u/2)⁻¹ by the transposed system.
+        let mut transposed = w.transpose().to_owned();
+        at.lu.a.copy_from(at.plus.transpose());
+        well_conditioned(&mut at.lu, &at.plus, &mut at.product, "cay", "𝟙 + u/2")?;
+        at.lu.solve(transposed.as_mut());
+        w.copy_from(transposed.transpose());
+        match self.is_finite(&w) {
+            true => Ok(w),
+            false => Err(StepError::NotFinite { what: "dcay(u, v)" }.into()),
+        }
+    }
+}
+
+impl CayleyGroup for So3<f64> {
+    fn cay_inv(&self, g: &Matrix3<f64>) -> Result<Vector3<f64>, Error> {
+        so3::cay_inv(g)
+    }
+    fn dcay(&self, u: &Vector3<f64>, v: &Vector3<f64>) -> Result<Vector3<f64>, Error> {
+        Ok(so3::dcay(u, v)?)
     }
 }

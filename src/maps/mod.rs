@@ -4,17 +4,24 @@
 //! d/dε Ψ(u + εv)|₀ = dΨ_u(v)·Ψ(u). In robotics' words dexp is the *left* Jacobian.
 //!
 //! To add a map: one file with an `impl` of [`CoordinateMap`] per layer (the general one over any
-//! n, and the closed form), one line here, one in the catalog, one in the law tests.
+//! n, and the closed form), one line here, its registration in the catalog, one line in the law
+//! tests.
 
 mod alternating;
 mod cay;
 mod ccsk;
 mod exp;
+mod log;
+mod pade22;
 
 pub use alternating::{Alternating, AlternatingAt, CCSK};
-pub use cay::Cay;
+pub use cay::{Cay, CayleyGroup, cay_inv, dcay};
 pub use ccsk::{CCSK123, CCSK321, Ccsk};
-pub use exp::{Dexpinv, Exp, TruncatedExp, dexpinv};
+pub use exp::{
+    Dexpinv, Exp, ExpAt, Truncated, TruncatedExp, dexp, dexpinv, dexpinv_with_remainder,
+    distance_to_singular,
+};
+pub use pade22::{Pade22, Pade22At};
 
 use crate::error::{Error, StepError};
 use crate::groups::LieGroup;

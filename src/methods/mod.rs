@@ -3,10 +3,23 @@
 //! To add a method: one file with an `impl` of [`Method`], one line here, one in the catalog, which
 //! puts it into the order tests and the command line at once.
 
+pub mod commutator_free;
+pub mod crouch_grossman;
+mod doubling;
+mod embedded;
+pub mod low_storage;
+pub mod magnus;
+pub mod one_bracket;
 mod rk;
 mod rkmk;
 pub mod tableau;
 
+pub use commutator_free::CommutatorFree;
+pub use doubling::Doubling;
+pub use embedded::{Embedded, LocalError, Metric};
+pub use low_storage::LowStorage;
+pub use magnus::CfMagnus;
+pub use one_bracket::OneBracket;
 pub use rk::Rk;
 pub use rkmk::Rkmk;
 pub use tableau::Tableau;
@@ -33,6 +46,12 @@ pub trait Method<P: Problem> {
 
     /// The order that tests hold the method to.
     fn order(&self, problem: &P) -> usize;
+
+    /// Does a step stay on M up to rounding? Then the driver takes the state back to M from time to
+    /// time ([`Action::restore`](crate::Action::restore)); a method that leaves M is shown as it is.
+    fn stays_on_manifold(&self) -> bool {
+        true
+    }
 
     /// Make the workspace; `like` is any point of M.
     ///

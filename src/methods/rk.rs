@@ -4,7 +4,9 @@
 //! Preserves: linear invariants only. Cost: S evaluations of F.
 //! Source: Hairer, Nørsett, Wanner I, p. 138.
 
-use super::{Method, Step, Tableau};
+use super::embedded::{between, without_pair};
+use super::tableau::{ErrorEstimate, fold_error};
+use super::{Embedded, LocalError, Method, Metric, Step, Tableau};
 use crate::error::{Error, StepError};
 use crate::problems::{Ambient, PointOf, ScalarOf};
 use crate::scalar::Real;
@@ -21,9 +23,60 @@ pub struct RkWork<P: Ambient, const S: usize> {
     field: P::Work,
 }
 
+impl<const S: usize> Rk<S> {
+    /// z ← y + h Σ_j w_j k_j.
+    #[inline(always)]
+    fn sum<P: Ambient>(
+        problem: &P,
+        h: ScalarOf<P>,
+        y: &PointOf<P>,
+        weights: &[f64],
+        k: &[PointOf<P>],
+        z: &mut PointOf<P>,
+    ) {
+        problem.copy(y, z);
+        for (&w, k) in weights.iter().zip(k) {
+            if w != 0.0 {
+                problem.add(h * ScalarOf::<P>::lit(w), k, z);
+            }
+        }
+    }
+
+    /// z ← the step from y, with the first `count` stages.
+    #[inline(always)]
+    fn advance<P: Ambient>(
+        &self,
+        count: usize,
+        problem: &P,
+        Step { t, h, .. }: Step<ScalarOf<P>>,
+        y: &PointOf<P>,
+        RkWork { k, z, field }: &mut RkWork<P, S>,
+    ) -> Result<(), StepError> {
+        let tab = &self.0;
+        for i in 0..S {
+            if i >= count {
+                break;
+            }
+            Self::sum(problem, h, y, &tab.a[i][..i], k, z);
+            problem.field(t + h * ScalarOf::<P>::lit(tab.c[i]), z, &mut k[i], field);
+        }
+        Self::sum(problem, h, y, &tab.b[..count], k, z);
+        if !problem.is_finite(z) {
+            return Err(match k[..count].iter().position(|k| !problem.is_finite(k)) {
+                Some(stage) => StepError::NonFiniteRhs { stage: stage + 1 },
+                None => StepError::NotFinite { what: "the state" },
+            });
+        }
+        Ok(())
+    }
+}
+
 impl<P: Ambient, const S: usize> Method<P> for Rk<S> {
     type Work = RkWork<P, S>;
 
+    fn stays_on_manifold(&self) -> bool {
+        false
+    }
     fn order(&self, _: &P) -> usize {
         self.0.order
     }
@@ -38,31 +91,53 @@ impl<P: Ambient, const S: usize> Method<P> for Rk<S> {
     fn step(
         &self,
         problem: &P,
-        Step { t, h, .. }: Step<ScalarOf<P>>,
+        step: Step<ScalarOf<P>>,
         y: &mut PointOf<P>,
-        RkWork { k, z, field }: &mut Self::Work,
+        work: &mut Self::Work,
     ) -> Result<(), StepError> {
-        let (tab, lit) = (&self.0, ScalarOf::<P>::lit);
-        let sum = |z: &mut PointOf<P>, weights: &[f64], k: &[PointOf<P>]| {
-            problem.copy(y, z);
-            for (&w, k) in weights.iter().zip(k) {
-                if w != 0.0 {
-                    problem.add(h * lit(w), k, z);
-                }
-            }
-        };
-        for i in 0..S {
-            sum(z, &tab.a[i][..i], k);
-            problem.field(t + h * lit(tab.c[i]), z, &mut k[i], field);
-        }
-        sum(z, &tab.b, k);
-        if !problem.is_finite(z) {
-            return Err(match k.iter().position(|k| !problem.is_finite(k)) {
-                Some(stage) => StepError::NonFiniteRhs { stage: stage + 1 },
-                None => StepError::NotFinite { what: "the state" },
-            });
-        }
-        core::mem::swap(y, z);
+        self.advance(self.0.update_stages(), problem, step, y, work)?;
+        core::mem::swap(y, &mut work.z);
         Ok(())
+    }
+}
+
+impl<P: Ambient, const S: usize> Embedded<P> for Rk<S>
+where
+    PointOf<P>: Metric<Scalar = ScalarOf<P>>,
+{
+    fn error_order(&self, _: &P) -> Result<usize, Error> {
+        self.0.error.map(|e| e.order).ok_or_else(|| without_pair(self.0.name))
+    }
+    fn evaluations(&self) -> u64 {
+        S as u64
+    }
+    fn step_with_error(
+        &self,
+        problem: &P,
+        step: Step<ScalarOf<P>>,
+        from: &PointOf<P>,
+        work: &mut Self::Work,
+        to: &mut PointOf<P>,
+    ) -> Result<LocalError<ScalarOf<P>>, StepError> {
+        self.advance(S, problem, step, from, work)?;
+        let RkWork { k, z, .. } = work;
+        to.assign(z);
+        let minus = ScalarOf::<P>::lit(-1.0);
+        let mut size = |weights: &[f64; S]| {
+            z.assign(&k[0]);
+            problem.add(minus, &k[0], z); // 0
+            for (&w, k) in weights.iter().zip(k.iter()) {
+                problem.add(step.h * ScalarOf::<P>::lit(w), k, z);
+            }
+            z.size()
+        };
+        let error = match self.0.error {
+            Some(ErrorEstimate { e, damp, .. }) => fold_error(size(&e), damp.map(|d| size(&d))),
+            None => ScalarOf::<P>::lit(f64::INFINITY),
+        };
+        if !error.is_finite() && self.0.error.is_some() {
+            return Err(StepError::NotFinite { what: "the error estimate" });
+        }
+        Ok(between(error, from, to))
     }
 }

@@ -5,10 +5,13 @@
 //!
 //! Order: the tableau's, as long as the map's dΨ⁻¹ keeps it. Preserves: the group, and what the
 //! action leaves invariant (Casimirs on a coadjoint orbit). Cost of a step with S stages: S times f,
-//! S times Ψ (applied, not formed, where the action allows), S − 1 times dΨ⁻¹.
+//! S times Ψ (applied, not formed, where the action allows), S − 1 times dΨ⁻¹; a stage that only the
+//! error estimate looks at is left out when none is asked for.
 //! Source: H. Munthe-Kaas, High order Runge–Kutta methods on manifolds, Appl. Numer. Math. 29 (1999).
 
-use super::{Method, Step, Tableau};
+use super::embedded::without_pair;
+use super::tableau::{ErrorEstimate, fold_error};
+use super::{Embedded, LocalError, Method, Step, Tableau};
 use crate::chart::ChartStore;
 use crate::error::{Error, StepError};
 use crate::groups::LieAlgebra;
@@ -22,40 +25,51 @@ use crate::scalar::Real;
 #[derive(Clone, Copy, Debug)]
 pub struct Rkmk<Psi, const S: usize> {
     tableau: Tableau<S>,
+    /// The stages that the update needs.
+    stages: usize,
     psi: Psi,
 }
 
 impl<Psi, const S: usize> Rkmk<Psi, S> {
     /// The method.
     pub const fn new(tableau: Tableau<S>, psi: Psi) -> Self {
-        Rkmk { tableau, psi }
+        Rkmk { tableau, stages: tableau.update_stages(), psi }
     }
 }
 
 /// Stages and the chart.
 #[allow(missing_debug_implementations)] // the parts belong to the problem's types
 pub struct RkmkWork<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> {
+    stages: Stages<P, Psi, S>,
+    y: PointOf<P>,
+}
+
+struct Stages<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> {
     k: [AlgOf<P>; S],
     u: AlgOf<P>,
-    y: PointOf<P>,
     chart: ChartStore<P, Psi>,
 }
 
-impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> RkmkWork<P, Psi, S> {
-    /// self.y ← the step from p.
+impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> Stages<P, Psi, S> {
+    /// `to` ← the step from p, with the first `count` stages; then u is v.
     #[inline(always)]
     fn advance(
         &mut self,
         method: &Rkmk<Psi, S>,
+        count: usize,
         problem: &P,
         Step { n, t, h }: Step<ScalarOf<P>>,
         p: &PointOf<P>,
+        to: &mut PointOf<P>,
     ) -> Result<(), StepError> {
         let (tab, alg) = (&method.tableau, problem.group());
-        let RkmkWork { k, u, y, chart } = self;
+        let Stages { k, u, chart } = self;
         let mut chart = chart.around(problem, &method.psi, n, p);
         chart.field(t, &mut k[0]);
         for i in 1..S {
+            if i >= count {
+                break;
+            }
             alg.combine(h, &tab.a[i][..i], &k[..i], u); // u_i = h Σ_j a_ij k_j
             chart.pullback(t + h * ScalarOf::<P>::lit(tab.c[i]), u, &mut k[i])?;
         }
@@ -63,7 +77,7 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> RkmkWork<P, Psi, 
         if !alg.is_finite(u) {
             return Err(StepError::NotFinite { what: "the increment v" });
         }
-        chart.lambda(u, y)
+        chart.lambda(u, to)
     }
 
     /// The same error, or the stage whose f was not finite: that is where it came from.
@@ -84,12 +98,12 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> Method<P> for Rkm
     }
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
         let alg = problem.group();
-        Ok(RkmkWork {
+        let stages = Stages {
             k: core::array::from_fn(|_| alg.zero()),
             u: alg.zero(),
-            y: like.clone(),
             chart: ChartStore::new(problem, &self.psi, like)?,
-        })
+        };
+        Ok(RkmkWork { stages, y: like.clone() })
     }
     #[inline]
     fn step(
@@ -97,14 +111,54 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> Method<P> for Rkm
         problem: &P,
         step: Step<ScalarOf<P>>,
         p: &mut PointOf<P>,
-        w: &mut Self::Work,
+        RkmkWork { stages, y }: &mut Self::Work,
     ) -> Result<(), StepError> {
-        match w.advance(self, problem, step, p) {
+        match stages.advance(self, self.stages, problem, step, p, y) {
             Ok(()) => {
-                core::mem::swap(p, &mut w.y);
+                core::mem::swap(p, y);
                 Ok(())
             }
-            Err(error) => Err(w.explain(problem.group(), error)),
+            Err(error) => Err(stages.explain(problem.group(), error)),
         }
+    }
+}
+
+impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> Embedded<P> for Rkmk<Psi, S> {
+    fn error_order(&self, problem: &P) -> Result<usize, Error> {
+        match self.tableau.error {
+            // A dΨ⁻¹ that is cut early makes an error of its own, which the pair does not see.
+            Some(error) => Ok(error.order.min(self.psi.order(problem.group()))),
+            None => Err(without_pair(self.tableau.name)),
+        }
+    }
+    fn evaluations(&self) -> u64 {
+        S as u64
+    }
+    fn step_with_error(
+        &self,
+        problem: &P,
+        step: Step<ScalarOf<P>>,
+        from: &PointOf<P>,
+        RkmkWork { stages, .. }: &mut Self::Work,
+        to: &mut PointOf<P>,
+    ) -> Result<LocalError<ScalarOf<P>>, StepError> {
+        let alg = problem.group();
+        if let Err(error) = stages.advance(self, S, problem, step, from, to) {
+            return Err(stages.explain(alg, error));
+        }
+        let Stages { k, u, .. } = stages;
+        let length = alg.norm(u);
+        let mut size = |weights: &[f64; S]| {
+            alg.combine(step.h, weights, k, u);
+            alg.norm(u)
+        };
+        let error = match self.tableau.error {
+            Some(ErrorEstimate { e, damp, .. }) => fold_error(size(&e), damp.map(|d| size(&d))),
+            None => ScalarOf::<P>::lit(f64::INFINITY),
+        };
+        if !error.is_finite() && self.tableau.error.is_some() {
+            return Err(stages.explain(alg, StepError::NotFinite { what: "the error estimate" }));
+        }
+        Ok(LocalError { error, length })
     }
 }

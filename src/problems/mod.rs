@@ -2,8 +2,10 @@
 //!
 //! To add a problem: one file with an `impl` of [`Problem`], one line here.
 
+mod linear;
 mod rigid_body;
 
+pub use linear::{LinearEquation, LinearField};
 pub use rigid_body::{Exact, RigidBody, RigidBodyAttitude, RigidBodyN, RigidBodyNAttitude};
 
 use crate::actions::Action;

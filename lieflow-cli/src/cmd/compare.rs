@@ -119,19 +119,19 @@ fn in_words(scene: &Scene, curves: &[Curve]) -> String {
 
 fn page(scene: &Scene, curves: &[Curve], effort: &Effort) -> Page {
     let [t0, t1] = scene.grid.t_span();
-    let mut tableaus: Vec<&str> = Vec::new();
+    let mut families: Vec<&str> = Vec::new();
     for curve in curves {
-        if !tableaus.contains(&curve.candidate.tableau()) {
-            tableaus.push(curve.candidate.tableau());
+        if !families.contains(&curve.candidate.family()) {
+            families.push(curve.candidate.family());
         }
     }
-    let charts = tableaus.iter().map(|tableau| {
+    let charts = families.iter().map(|family| {
         Block::Chart(report::speed_chart(
-            &format!("speed-{tableau}"),
-            &format!("Tableau {tableau}"),
+            &format!("speed-{family}"),
+            &format!("Speed against error: {family}"),
             "The error is the largest relative distance of a part of the state from the exact \
              solution at the end. Solid: closed forms; dashed: general layer.",
-            curves.iter().filter(|curve| curve.candidate.tableau() == *tableau),
+            curves.iter().filter(|curve| curve.candidate.family() == *family),
         ))
     });
     Page {

@@ -46,9 +46,14 @@ impl Candidate {
         }
     }
 
-    /// Its tableau.
-    pub fn tableau(&self) -> &str {
-        self.method.tableau.as_deref().unwrap_or("rk4")
+    /// The figure that it belongs to: its tableau, or the family of a method that has none.
+    pub fn family(&self) -> &str {
+        match self.method.name.as_str() {
+            "rkmk4" | "rk4" => "rk4",
+            name if name.starts_with("cf") => "commutator-free",
+            name if name.starts_with("cg") => "crouch-grossman",
+            _ => self.method.tableau.as_deref().unwrap_or("few-brackets"),
+        }
     }
 
     /// Everything in the catalog that runs on the problem of `scene`, each with the tableaus and

@@ -41,7 +41,7 @@ impl EnergyRun {
 pub fn energy_chart(id: &str, title: &str, caption: &str, runs: &[EnergyRun]) -> Chart {
     let series = runs.iter().map(|run| Series {
         name: run.candidate.label(),
-        colour: look(&run.candidate),
+        colour: look(&run.candidate).unwrap_or_default(),
         marker: Marker::None,
         dash: false,
         // A point where the error is exactly zero, as at the start, has no place on a logarithm.

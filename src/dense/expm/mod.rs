@@ -20,7 +20,7 @@ pub use condition::ApplyChoice;
 use faer::Mat;
 use pulp::Arch;
 
-use super::ops::norm1;
+use super::ops::{norm1, orthogonalise};
 use super::{Lu, is_finite};
 use crate::error::StepError;
 
@@ -196,7 +196,8 @@ impl Expm {
                 super::ops::mul(&mut self.t, out.as_ref(), out.as_ref());
                 core::mem::swap(&mut self.t, out);
             }
-            let corrections = if squarings > 0 { self.orthogonalise(out) } else { 0 };
+            let corrections =
+                if squarings > 0 { orthogonalise(out, [&mut self.t, &mut self.a2]) } else { 0 };
             self.choice = ExpmChoice { degree, squarings, corrections, ..Default::default() };
         } else {
             self.exp_skew(x, norm, out);

@@ -14,15 +14,11 @@
 //! A half product computes one triangle. ‖u‖₂ is bounded by ‖u²ᵏ‖₁^(1/2k) of the powers at hand.
 
 use faer::linalg::matmul::matmul;
-use faer::linalg::matmul::triangular::{BlockStructure, matmul as matmul_triangular};
-use faer::{Accum, Mat, MatRef, Par};
+use faer::{Accum, Mat, Par};
 
 use super::taylor::{half_to_the, halvings};
 use super::{Expm, ExpmChoice, Kind};
-use crate::dense::ops::{norm1, scaled_sum};
-
-/// From this n on one triangle is cheaper than the whole product.
-const HALF_FROM: usize = 48;
+use crate::dense::ops::{half_mul, norm1, orthogonalise, scaled_sum};
 
 const THETA_5: f64 = 0.0092;
 const THETA_9: f64 = 0.186;
@@ -61,41 +57,6 @@ const CS17: Pair<9> = [
         0.0001984126984104760359, 2.7557319186638948305e-6, 2.505210485854383306e-8,
         1.6058848058269667274e-10, 7.640821631276900926e-13, 2.7003089533330603504e-15],
 ];
-
-/// out ← a·b, known to be symmetric (`sign` = 1) or skew (`sign` = −1).
-pub(super) fn half_mul(out: &mut Mat<f64>, a: MatRef<'_, f64>, b: MatRef<'_, f64>, sign: f64) {
-    let n = a.nrows();
-    if n < HALF_FROM {
-        matmul(out.as_mut(), Accum::Replace, a, b, 1.0, Par::Seq);
-        return;
-    }
-    let (lower, full) = (BlockStructure::TriangularLower, BlockStructure::Rectangular);
-    matmul_triangular(out.as_mut(), lower, Accum::Replace, a, full, b, full, 1.0, Par::Seq);
-    mirror(out, sign);
-}
-
-/// The upper triangle ← `sign` times the lower one, in tiles that stay in the cache.
-fn mirror(x: &mut Mat<f64>, sign: f64) {
-    const TILE: usize = 16;
-    let n = x.nrows();
-    let mut tile = [[0.0; TILE]; TILE];
-    for low in (0..n).step_by(TILE) {
-        let high = n.min(low + TILE);
-        for top in (low..n).step_by(TILE) {
-            let bottom = n.min(top + TILE);
-            for j in low..high {
-                let col = &x.col_as_slice(j)[top..bottom];
-                tile[j - low][..col.len()].copy_from_slice(col);
-            }
-            for i in top..bottom {
-                let col = &mut x.col_as_slice_mut(i)[low..high.min(i)];
-                for (j, x) in col.iter_mut().enumerate() {
-                    *x = sign * tile[j][i - top];
-                }
-            }
-        }
-    }
-}
 
 impl Expm {
     /// out ← exp(x) for skew x of 1-norm `norm`.
@@ -151,29 +112,10 @@ impl Expm {
             matmul(t.as_mut(), Accum::Replace, out.as_ref(), out.as_ref(), 1.0, Par::Seq);
             core::mem::swap(t, out);
         }
-        let corrections = if squarings > 0 { self.orthogonalise(out) } else { 0 };
+        let corrections =
+            if squarings > 0 { orthogonalise(out, [&mut self.t, &mut self.a2]) } else { 0 };
         self.choice =
             ExpmChoice { kind: Kind::CosSin, degree, squarings, corrections, balanced: false };
-    }
-
-    /// g ← g + g(𝟙 − gᵀg)/2 until ‖𝟙 − gᵀg‖ is at rounding level: the squarings amplify the
-    /// defect to ‖u‖ε, and Newton–Schulz in residual form takes it back to ε.
-    pub(super) fn orthogonalise(&mut self, g: &mut Mat<f64>) -> u32 {
-        let mut k = 0;
-        while k < 6 {
-            k += 1;
-            half_mul(&mut self.t, g.transpose(), g.as_ref(), 1.0);
-            scaled_sum(&mut self.a2, [-0.5], [&self.t], 0.5);
-            let defect = norm1(self.a2.as_ref());
-            let (t, half) = (self.t.as_mut(), self.a2.as_ref());
-            matmul(t, Accum::Replace, g.as_ref(), half, 1.0, Par::Seq);
-            crate::dense::axpy(1.0, &self.t, g);
-            // The next defect is the square of this one.
-            if defect <= 1e-9 {
-                break;
-            }
-        }
-        k
     }
 }
 

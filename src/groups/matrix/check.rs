@@ -33,7 +33,7 @@ pub(super) fn finite(arg: &'static str, x: MatRef<'_, f64>) -> Result<(), Error>
 }
 
 impl MatrixGroup {
-    fn shape(&self, arg: &'static str, x: MatRef<'_, f64>) -> Result<(), Error> {
+    pub(crate) fn shape(&self, arg: &'static str, x: MatRef<'_, f64>) -> Result<(), Error> {
         square(arg, x)?;
         let n = self.n();
         if x.nrows() != n {

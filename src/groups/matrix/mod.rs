@@ -1,6 +1,8 @@
 //! GL(n), SO(n), Sp(2m) and G_M for any n and any invertible real M, over faer.
 
+mod ad;
 mod check;
+mod correct;
 mod element;
 mod sample;
 
@@ -252,5 +254,8 @@ impl LieGroup for MatrixGroup {
     /// Allocates.
     fn defect(&self, g: &GroupMatrix) -> f64 {
         self.defect_of(g.as_ref()).map_or(0.0, |d| dense::norm_frobenius(&d))
+    }
+    fn correct(&self, g: &mut GroupMatrix, scratch: &mut [GroupMatrix; 2]) -> f64 {
+        self.newton_schulz(g, scratch)
     }
 }

@@ -3,7 +3,7 @@
 use core::f64::consts::PI;
 
 use super::{Exp, TruncatedExp};
-use crate::dense::{Expm, ExpmChoice, SkewEigen, Structure};
+use crate::dense::{AdSchur, Direction, Expm, ExpmChoice, SkewEigen, Structure, scaled_sum};
 use crate::error::{Error, StepError};
 use crate::groups::{AlgebraMatrix, Form, GroupMatrix, LieAlgebra, MatrixGroup};
 use crate::maps::CoordinateMap;
@@ -14,9 +14,9 @@ pub enum Dexpinv {
     /// Not yet.
     #[default]
     None,
-    /// The Baker series up to this power of ad_u.
+    /// The Baker series up to this power of ad_u; of ad_{u/2^s} when [`ExpAt::halvings`] is s.
     Series(usize),
-    /// The eigen form on so(n).
+    /// The eigen form, where u is skew.
     Eigen,
 }
 
@@ -47,21 +47,41 @@ pub(super) fn baker(k: usize) -> f64 {
 /// The longest series that is summed before it counts as divergent: at half the radius of
 /// convergence its remainder is below rounding.
 const SERIES_MAX: usize = 52;
-/// On so(n) the eigen form takes over where the bound of ad_u exceeds this: the series is cheaper
-/// and closer up to there (36 brackets of one product each, against 50 products).
-const EIGEN_FROM: f64 = 3.0;
-/// dexp counts as singular where an eigenvalue of ad_u is closer than this (relatively) to 2πik.
-const SINGULAR: f64 = 1e-12;
+/// The eigen form or the halvings take over where the bound of ad_u exceeds this: the series is
+/// cheaper and closer up to there (36 brackets of one product each, against 50 products).
+const EXACT_FROM: f64 = 3.0;
+/// The bound of ad_{u/2^s} from which the halvings start.
+const HALVED: f64 = 2.0;
+/// dexp counts as singular where an eigenvalue of ad_u is closer to 2πik, k ≠ 0, than about this
+/// times max(1, ‖u‖): the condition number of dexp⁻¹ exceeds 1e12 there.
+pub(super) const SINGULAR: f64 = 1e-12;
 
 /// What exp keeps at u ∈ 𝔤 ⊂ gl(n): workspaces, and the choices made.
 #[derive(Debug)]
 pub struct ExpAt {
     expm: Expm,
-    ad: AlgebraMatrix,
-    ad_next: AlgebraMatrix,
-    eigen: Option<SkewEigen>,
+    powers: Powers,
+    scaled: AlgebraMatrix,
+    exact: Exact,
+    spectrum: Option<Box<AdSchur>>,
     dexpinv: Dexpinv,
+    halvings: u32,
 }
+
+/// Beyond the reach of the series.
+#[derive(Debug)]
+enum Exact {
+    /// Of a truncated series nothing else is asked.
+    None,
+    /// Every u of the algebra is skew.
+    Eigen(Box<SkewEigen>),
+    Schur(Box<AdSchur>),
+}
+
+const SINGULAR_AT: StepError =
+    StepError::OutsideChart { map: "exp", what: "an eigenvalue of ad_u is a multiple of 2πi" };
+const DIVERGES: StepError =
+    StepError::OutsideChart { map: "exp", what: "the Baker series of dexp⁻¹ does not converge" };
 
 impl ExpAt {
     /// Which approximant the last Ψ took.
@@ -73,13 +93,46 @@ impl ExpAt {
         self.dexpinv
     }
 
-    fn new(group: &MatrixGroup, eigen: bool) -> Self {
+    /// How often the last dexp⁻¹ halved u: 0 where the series or the eigen form served u itself.
+    pub fn halvings(&self) -> u32 {
+        self.halvings
+    }
+
+    /// The smallest distance of an eigenvalue of ad_u on 𝔤 to the singular set 2πik, k ≠ 0, of
+    /// dexp_u: what an eigenvalue has to move by. dexp_u⁻¹ is refused below about 1e-12·max(1, ‖u‖).
+    ///
+    /// Cost: one Schur form; storage for it is made at the first call.
+    ///
+    /// # Errors
+    /// [`StepError::NotFinite`], [`StepError::NotConverged`].
+    pub fn distance_to_singular(
+        &mut self,
+        group: &MatrixGroup,
+        u: &AlgebraMatrix,
+    ) -> Result<f64, StepError> {
+        if !group.is_finite(u) {
+            return Err(StepError::NotFinite { what: "the argument of dexp" });
+        }
+        let make = || Box::new(AdSchur::new(group.n(), group.ad_form()));
+        let schur = self.spectrum.get_or_insert_with(make);
+        schur.factor(u)?;
+        Ok(schur.distance_to_singular())
+    }
+
+    pub(super) fn new(group: &MatrixGroup, exact: bool) -> Self {
+        let n = group.n();
         ExpAt {
-            expm: Expm::new(group.n()),
-            ad: group.zero(),
-            ad_next: group.zero(),
-            eigen: eigen.then(|| SkewEigen::new(group.n())),
+            expm: Expm::new(n),
+            powers: Powers { ad: group.zero(), next: group.zero() },
+            scaled: group.zero(),
+            exact: match exact {
+                false => Exact::None,
+                true if group.is_skew() => Exact::Eigen(Box::new(SkewEigen::new(n))),
+                true => Exact::Schur(Box::new(AdSchur::new(n, group.ad_form()))),
+            },
+            spectrum: None,
             dexpinv: Dexpinv::None,
+            halvings: 0,
         }
     }
 
@@ -96,50 +149,198 @@ impl ExpAt {
         self.expm.exp(u, structure, g)
     }
 
+    /// v ← Σ_{k ≤ q} B_k/k! ad_u^k v; returns ‖ad_u^q v‖.
+    pub(super) fn truncated(
+        &mut self,
+        group: &MatrixGroup,
+        u: &AlgebraMatrix,
+        q: usize,
+        v: &mut AlgebraMatrix,
+    ) -> Result<f64, StepError> {
+        self.dexpinv = self.powers.baker(group, u, Some(q), v)?;
+        Ok(group.norm(&self.powers.ad))
+    }
+
+    /// v ← dexp_u⁻¹ v to rounding.
+    fn inverse(
+        &mut self,
+        group: &MatrixGroup,
+        u: &AlgebraMatrix,
+        v: &mut AlgebraMatrix,
+    ) -> Result<(), StepError> {
+        let norm = ad_bound(group, u);
+        self.halvings = 0;
+        if norm <= EXACT_FROM {
+            self.dexpinv = self.powers.baker(group, u, None, v)?;
+            return Ok(());
+        }
+        if !norm.is_finite() {
+            return Err(StepError::NormTooLarge { map: "exp" });
+        }
+        match &mut self.exact {
+            Exact::None => Err(DIVERGES),
+            Exact::Eigen(eigen) => {
+                self.dexpinv = Dexpinv::Eigen;
+                eigen.function_of_ad(u, v, |theta| phi(theta, norm))
+            }
+            Exact::Schur(schur) => {
+                let s = scale_down(u, norm, &mut self.scaled);
+                self.dexpinv = self.powers.baker(group, &self.scaled, None, v)?;
+                self.halvings = s;
+                halve(schur, group, u, s, Direction::Inverse, v)
+            }
+        }
+    }
+
+    /// v ← dexp_u v to rounding.
+    pub(super) fn forward(
+        &mut self,
+        group: &MatrixGroup,
+        u: &AlgebraMatrix,
+        v: &mut AlgebraMatrix,
+    ) -> Result<(), StepError> {
+        let norm = ad_bound(group, u);
+        if norm <= EXACT_FROM {
+            self.powers.phi1(group, u, v);
+            return Ok(());
+        }
+        if !norm.is_finite() {
+            return Err(StepError::NormTooLarge { map: "exp" });
+        }
+        match &mut self.exact {
+            Exact::None => Err(DIVERGES),
+            Exact::Eigen(eigen) => eigen.function_of_ad(u, v, |theta| Ok(phi1(theta))),
+            Exact::Schur(schur) => {
+                let s = scale_down(u, norm, &mut self.scaled);
+                self.powers.phi1(group, &self.scaled, v);
+                halve(schur, group, u, s, Direction::Forward, v)
+            }
+        }
+    }
+}
+
+/// ad_u^k v for one k after the other.
+#[derive(Debug)]
+struct Powers {
+    ad: AlgebraMatrix,
+    next: AlgebraMatrix,
+}
+
+impl Powers {
+    fn advance(&mut self, group: &MatrixGroup, u: &AlgebraMatrix) {
+        group.bracket(u, &self.ad, &mut self.next);
+        core::mem::swap(&mut self.ad, &mut self.next);
+    }
+
     /// v ← Σ_{k ≤ q} B_k/k! ad_u^k v; with `q = None` until the terms vanish in rounding.
-    fn series(
+    fn baker(
         &mut self,
         group: &MatrixGroup,
         u: &AlgebraMatrix,
         q: Option<usize>,
         v: &mut AlgebraMatrix,
-    ) -> Result<(), StepError> {
+    ) -> Result<Dexpinv, StepError> {
         self.ad.copy_from(&**v);
         let negligible = 0.25 * f64::EPSILON * group.norm(v);
         let radius = ad_bound(group, u);
+        let mut choice = Dexpinv::Series(0);
         for k in 1..=q.unwrap_or(SERIES_MAX) {
-            group.bracket(u, &self.ad, &mut self.ad_next);
-            core::mem::swap(&mut self.ad, &mut self.ad_next);
+            self.advance(group, u);
             if k > 1 && k % 2 == 1 {
                 continue; // B_k = 0
             }
             group.axpy(baker(k), &self.ad, v);
-            self.dexpinv = Dexpinv::Series(k);
+            choice = Dexpinv::Series(k);
             if q.is_none() {
                 let next = if k == 1 { 2 } else { k + 2 };
                 let growth = radius.powi((next - k) as i32);
                 if baker(next).abs() * growth * group.norm(&self.ad) <= negligible {
-                    return Ok(());
+                    return finite(group, v).map(|()| choice);
                 }
             }
         }
         match q {
-            Some(_) => Ok(()),
-            None => Err(StepError::OutsideChart {
-                map: "exp",
-                what: "the Baker series of dexp⁻¹ does not converge",
-            }),
+            Some(_) => finite(group, v).map(|()| choice),
+            None => Err(DIVERGES),
         }
+    }
+
+    /// v ← dexp_u v = Σ ad_u^k v/(k+1)!, until the terms vanish in rounding.
+    fn phi1(&mut self, group: &MatrixGroup, u: &AlgebraMatrix, v: &mut AlgebraMatrix) {
+        self.ad.copy_from(&**v);
+        let negligible = 0.125 * f64::EPSILON * group.norm(v);
+        let mut c = 1.0;
+        for k in 1..=SERIES_MAX {
+            self.advance(group, u);
+            c /= (k + 1) as f64;
+            group.axpy(c, &self.ad, v);
+            if c * group.norm(&self.ad) <= negligible {
+                return;
+            }
+        }
+    }
+}
+
+/// scaled ← u/2^s with ‖ad_{u/2^s}‖ ≤ [`HALVED`]; returns s.
+fn scale_down(u: &AlgebraMatrix, norm: f64, scaled: &mut AlgebraMatrix) -> u32 {
+    let s = (norm / HALVED).log2().ceil().max(1.0) as u32;
+    scaled_sum(scaled, [0.5f64.powi(s as i32)], [u], 0.0);
+    s
+}
+
+/// From u/2^s to u, in either direction.
+fn halve(
+    schur: &mut AdSchur,
+    group: &MatrixGroup,
+    u: &AlgebraMatrix,
+    s: u32,
+    direction: Direction,
+    v: &mut AlgebraMatrix,
+) -> Result<(), StepError> {
+    schur.factor(u)?;
+    let singular = SINGULAR * group.norm(u).max(1.0);
+    schur.halvings(s, direction, singular, v).map_err(|_| SINGULAR_AT)?;
+    match group.is_finite(v) {
+        true => Ok(()),
+        false => Err(StepError::NotFinite { what: "dexp_u or its inverse" }),
+    }
+}
+
+fn finite(group: &MatrixGroup, v: &AlgebraMatrix) -> Result<(), StepError> {
+    match group.is_finite(v) {
+        true => Ok(()),
+        false => Err(StepError::NotFinite { what: "dexp⁻¹" }),
     }
 }
 
 /// A bound of ‖ad_u‖ in the Frobenius norm: 2‖u‖₂ ≤ 2‖u‖_F, and ‖u‖_F on so(n), where the
 /// eigenvalues of ad_u are i(±a ± b) with 2(a² + b²) ≤ ‖u‖_F².
-fn ad_bound(group: &MatrixGroup, u: &AlgebraMatrix) -> f64 {
+pub(super) fn ad_bound(group: &MatrixGroup, u: &AlgebraMatrix) -> f64 {
     match group.form() {
         Form::Identity => group.norm(u),
         _ => 2.0 * group.norm(u),
     }
+}
+
+/// φ(z) = z/(eᶻ − 1) at z = −iθ: (θ/2)cot(θ/2) + iθ/2. `norm` is the size of u.
+fn phi(theta: f64, norm: f64) -> Result<(f64, f64), StepError> {
+    let half = 0.5 * theta;
+    if half.abs() < 1e-4 {
+        return Ok((1.0 - half * half / 3.0, half));
+    }
+    let (s, c) = half.sin_cos();
+    if s.abs() < SINGULAR * norm.max(1.0) {
+        return Err(SINGULAR_AT);
+    }
+    Ok((half * c / s, half))
+}
+
+/// φ₁(z) = (eᶻ − 1)/z at z = −iθ: e^{−iθ/2} sin(θ/2)/(θ/2).
+fn phi1(theta: f64) -> (f64, f64) {
+    let half = 0.5 * theta;
+    let (s, c) = half.sin_cos();
+    let sinc = if half.abs() < 1e-4 { 1.0 - half * half / 6.0 } else { s / half };
+    (sinc * c, -sinc * s)
 }
 
 impl CoordinateMap<MatrixGroup> for Exp {
@@ -149,7 +350,7 @@ impl CoordinateMap<MatrixGroup> for Exp {
         "exp"
     }
     fn at(&self, group: &MatrixGroup) -> Result<ExpAt, Error> {
-        Ok(ExpAt::new(group, matches!(group.form(), Form::Identity)))
+        Ok(ExpAt::new(group, true))
     }
     fn psi(
         &self,
@@ -167,31 +368,8 @@ impl CoordinateMap<MatrixGroup> for Exp {
         at: &mut ExpAt,
         v: &mut AlgebraMatrix,
     ) -> Result<(), StepError> {
-        let norm = ad_bound(group, u);
-        match &mut at.eigen {
-            Some(eigen) if norm > EIGEN_FROM => {
-                at.dexpinv = Dexpinv::Eigen;
-                eigen.function_of_ad(u, v, |theta| phi(theta, norm))
-            }
-            _ => at.series(group, u, None, v),
-        }
+        at.inverse(group, u, v)
     }
-}
-
-/// φ(z) = z/(eᶻ − 1) at z = −iθ: (θ/2)cot(θ/2) + iθ/2. `norm` is the size of u.
-fn phi(theta: f64, norm: f64) -> Result<(f64, f64), StepError> {
-    let half = 0.5 * theta;
-    if half.abs() < 1e-4 {
-        return Ok((1.0 - half * half / 3.0, half));
-    }
-    let (s, c) = half.sin_cos();
-    if s.abs() < SINGULAR * norm.max(1.0) {
-        return Err(StepError::OutsideChart {
-            map: "exp",
-            what: "an eigenvalue of ad_u is a multiple of 2πi",
-        });
-    }
-    Ok((half * c / s, half))
 }
 
 impl CoordinateMap<MatrixGroup> for TruncatedExp {
@@ -219,31 +397,9 @@ impl CoordinateMap<MatrixGroup> for TruncatedExp {
         at: &mut ExpAt,
         v: &mut AlgebraMatrix,
     ) -> Result<(), StepError> {
-        at.series(group, u, Some(self.q), v)
+        at.truncated(group, u, self.q, v).map(drop)
     }
     fn order(&self, _: &MatrixGroup) -> usize {
         self.order_kept()
-    }
-}
-
-/// dexpinv(u, v, q) of Table 1: Σ_{k=0}^{q} B_k/k! ad_u^k v, the truncated series (15), any n.
-///
-/// `u` and `v` are elements of the algebra of `group`; q brackets. q = 0 returns v. The series
-/// converges where the eigenvalues of ad_u are smaller than 2π in modulus; [`Exp`] sums it to
-/// rounding and says so where it cannot.
-///
-/// # Errors
-/// [`Error::Map`] when the result is not finite.
-pub fn dexpinv(
-    group: &MatrixGroup,
-    u: &AlgebraMatrix,
-    v: &AlgebraMatrix,
-    q: usize,
-) -> Result<AlgebraMatrix, Error> {
-    let (mut at, mut w) = (ExpAt::new(group, false), v.clone());
-    at.series(group, u, Some(q), &mut w)?;
-    match group.is_finite(&w) {
-        true => Ok(w),
-        false => Err(StepError::NotFinite { what: "dexpinv(u, v, q)" }.into()),
     }
 }

@@ -1,0 +1,168 @@
+//! Ad, ad and their duals.
+//!
+//! | | definition | so(3), ⟨m, v⟩ = m·v | n×n, ⟨m, v⟩ = tr(mᵀv) |
+//! |---|---|---|---|
+//! | [`big_ad`](Adjoint::big_ad) | Ad_g u = g u g⁻¹ | g u | g u g⁻¹ |
+//! | [`ad`](Adjoint::ad) | ad_u v = \[u, v\] | u × v | uv − vu |
+//! | [`coad_group`](Adjoint::coad_group) | ⟨Ad*_g m, v⟩ = ⟨m, Ad_g v⟩ (3) | gᵀ m | gᵀ m g⁻ᵀ |
+//! | [`coad`](Adjoint::coad) | ⟨ad*_u m, v⟩ = ⟨m, \[u, v\]⟩ | m × u | uᵀm − m uᵀ |
+//!
+//! Ad is a representation, Ad_{ab} = Ad_a Ad_b; Ad* runs the other way, Ad*_a Ad*_b = Ad*_{ba}, and
+//! the left action on 𝔤* is [`Coadjoint`](crate::actions::Coadjoint), Λ(g, m) = Ad*_{g⁻¹} m.
+//! In G_M an n×n matrix m stands for the functional v ↦ tr(mᵀv) on 𝔤; matrices that differ by one
+//! that vanishes on 𝔤 stand for the same.
+
+use faer::Mat;
+use nalgebra::{Matrix3, Vector3};
+
+use super::{AlgebraMatrix, Form, GroupMatrix, LieGroup, MatrixGroup, So3, apply3, cross};
+use crate::dense::{Lu, antisymmetrise, is_finite, mul, mul_add};
+use crate::error::StepError;
+use crate::scalar::Real;
+
+/// The adjoint and coadjoint representations of a group and of its algebra.
+pub trait Adjoint: LieGroup {
+    /// m ∈ 𝔤*.
+    type Dual: Clone;
+
+    /// out ← g⁻¹.
+    ///
+    /// # Errors
+    /// [`StepError::NotFinite`] for a singular g on GL(n).
+    fn inverse(&self, g: &Self::Elem, out: &mut Self::Elem) -> Result<(), StepError>;
+
+    /// out ← Ad_g u = g u g⁻¹.
+    ///
+    /// # Errors
+    /// As [`inverse`](Self::inverse); [`StepError::NotFinite`] when the result is not finite.
+    fn big_ad(&self, g: &Self::Elem, u: &Self::Alg, out: &mut Self::Alg) -> Result<(), StepError>;
+
+    /// out ← ad_u v = \[u, v\].
+    fn ad(&self, u: &Self::Alg, v: &Self::Alg, out: &mut Self::Alg) {
+        self.bracket(u, v, out);
+    }
+
+    /// out ← Ad*_g m: ⟨Ad*_g m, v⟩ = ⟨m, Ad_g v⟩ for all v ∈ 𝔤.
+    ///
+    /// # Errors
+    /// As [`big_ad`](Self::big_ad).
+    fn coad_group(
+        &self,
+        g: &Self::Elem,
+        m: &Self::Dual,
+        out: &mut Self::Dual,
+    ) -> Result<(), StepError>;
+
+    /// out ← ad*_u m: ⟨ad*_u m, v⟩ = ⟨m, \[u, v\]⟩ for all v ∈ 𝔤. Euler's equations are ṁ = ad*_ω m.
+    fn coad(&self, u: &Self::Alg, m: &Self::Dual, out: &mut Self::Dual);
+
+    /// ⟨m, v⟩.
+    fn pair(&self, m: &Self::Dual, v: &Self::Alg) -> Self::Scalar;
+}
+
+impl<S: Real> Adjoint for So3<S> {
+    type Dual = Vector3<S>;
+
+    fn inverse(&self, g: &Matrix3<S>, out: &mut Matrix3<S>) -> Result<(), StepError> {
+        *out = g.transpose();
+        Ok(())
+    }
+    #[inline]
+    fn big_ad(
+        &self,
+        g: &Matrix3<S>,
+        u: &Vector3<S>,
+        out: &mut Vector3<S>,
+    ) -> Result<(), StepError> {
+        *out = apply3(g, u);
+        finite(out.iter().all(|x| x.is_finite()))
+    }
+    #[inline]
+    fn coad_group(
+        &self,
+        g: &Matrix3<S>,
+        m: &Vector3<S>,
+        out: &mut Vector3<S>,
+    ) -> Result<(), StepError> {
+        *out = apply3(&g.transpose(), m);
+        finite(out.iter().all(|x| x.is_finite()))
+    }
+    #[inline]
+    fn coad(&self, u: &Vector3<S>, m: &Vector3<S>, out: &mut Vector3<S>) {
+        *out = cross(m, u);
+    }
+    #[inline]
+    fn pair(&self, m: &Vector3<S>, v: &Vector3<S>) -> S {
+        m[0] * v[0] + m[1] * v[1] + m[2] * v[2]
+    }
+}
+
+fn finite(is: bool) -> Result<(), StepError> {
+    if is { Ok(()) } else { Err(StepError::NotFinite { what: "Ad" }) }
+}
+
+/// Every call but [`pair`](Adjoint::pair) and [`ad`](Adjoint::ad) allocates. Cost: two products and
+/// the inverse, which is free on SO(n), two products on Sp(2m) and G_M, and an LU on GL(n).
+impl Adjoint for MatrixGroup {
+    type Dual = Mat<f64>;
+
+    fn inverse(&self, g: &GroupMatrix, out: &mut GroupMatrix) -> Result<(), StepError> {
+        match (self.form(), self.m()) {
+            (Form::Identity, _) => out.copy_from(g.transpose()),
+            (Form::Symplectic, Some(m)) => **out = m.transpose() * g.transpose() * &m,
+            (Form::Bilinear { m, inverse }, _) => **out = inverse * g.transpose() * m,
+            _ => {
+                let n = self.n();
+                let mut lu = Lu::new(n);
+                lu.a.copy_from(&**g);
+                if lu.factor() == 0.0 {
+                    return Err(StepError::NotFinite { what: "g⁻¹" });
+                }
+                **out = Mat::identity(n, n);
+                lu.solve(out.as_mut());
+            }
+        }
+        if is_finite(out) { Ok(()) } else { Err(StepError::NotFinite { what: "g⁻¹" }) }
+    }
+
+    fn big_ad(
+        &self,
+        g: &GroupMatrix,
+        u: &AlgebraMatrix,
+        out: &mut AlgebraMatrix,
+    ) -> Result<(), StepError> {
+        let (mut inverse, mut product) = (self.identity(), Mat::zeros(self.n(), self.n()));
+        self.inverse(g, &mut inverse)?;
+        mul(&mut product, g.as_ref(), u.as_ref());
+        mul(out, product.as_ref(), inverse.as_ref());
+        if matches!(self.form(), Form::Identity) {
+            // Skew to rounding; skew exactly.
+            antisymmetrise(out);
+            **out *= faer::Scale(0.5);
+        }
+        finite(is_finite(out))
+    }
+
+    fn coad_group(
+        &self,
+        g: &GroupMatrix,
+        m: &Mat<f64>,
+        out: &mut Mat<f64>,
+    ) -> Result<(), StepError> {
+        let (mut inverse, mut product) = (self.identity(), Mat::zeros(self.n(), self.n()));
+        self.inverse(g, &mut inverse)?;
+        mul(&mut product, g.transpose(), m.as_ref());
+        mul(out, product.as_ref(), inverse.transpose());
+        finite(is_finite(out))
+    }
+
+    fn coad(&self, u: &AlgebraMatrix, m: &Mat<f64>, out: &mut Mat<f64>) {
+        mul(out, u.transpose(), m.as_ref());
+        mul_add(out, -1.0, m.as_ref(), u.transpose());
+    }
+
+    fn pair(&self, m: &Mat<f64>, v: &AlgebraMatrix) -> f64 {
+        let column = |j| m.col_as_slice(j).iter().zip(v.col_as_slice(j)).map(|(m, v)| m * v);
+        (0..self.n()).flat_map(column).sum()
+    }
+}

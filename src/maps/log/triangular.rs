@@ -1,0 +1,91 @@
+//! log of a matrix by its complex Schur form: inverse scaling and squaring on the triangle.
+
+use faer::{Mat, c64};
+
+use super::{NODES, THETA, schur};
+use crate::error::{Error, StepError};
+
+/// Square roots halve the logarithm; 1100 halvings take the range of doubles to rounding.
+const ROOTS_MAX: u32 = 1100;
+
+/// The principal logarithm of a real g without eigenvalues on the negative real axis.
+pub(super) fn log(g: &Mat<f64>, group: impl Fn() -> String) -> Result<Mat<f64>, Error> {
+    let n = g.nrows();
+    let (mut t, q) = schur::complex(g)?;
+    let eigenvalues: Vec<c64> = (0..n).map(|i| t[(i, i)]).collect();
+    let size = eigenvalues.iter().fold(0.0f64, |s, z| s.max(z.re.hypot(z.im)));
+    // The Schur form is exact for a g moved by some ε‖g‖; an eigenvalue within that of the axis may
+    // belong to either side.
+    let margin = 4.0 * f64::EPSILON * n as f64 * size;
+    if let Some(z) = eigenvalues.iter().find(|z| z.re <= 0.0 && z.im.abs() <= margin) {
+        return Err(Error::NoLogarithm { group: group(), re: z.re, im: z.im });
+    }
+    let mut roots = 0;
+    while distance_to_identity(&t) > THETA {
+        if roots == ROOTS_MAX {
+            return Err(StepError::NotConverged { what: "log(g)" }.into());
+        }
+        t = square_root(&t);
+        roots += 1;
+    }
+    for i in 0..n {
+        t[(i, i)].re -= 1.0;
+    }
+    let mut l = pade(&t);
+    let scale = 2f64.powi(roots as i32);
+    for j in 0..n {
+        for i in 0..j {
+            l[(i, j)] *= scale;
+        }
+        l[(j, j)] = eigenvalues[j].ln();
+    }
+    let full = &q * &l * q.adjoint();
+    Ok(Mat::from_fn(n, n, |i, j| full[(i, j)].re))
+}
+
+/// ‖t − 𝟙‖₁ for upper triangular t; NaN counts as near, and the result is checked for it.
+fn distance_to_identity(t: &Mat<c64>) -> f64 {
+    let one = c64::new(1.0, 0.0);
+    (0..t.ncols()).fold(0.0, |norm: f64, j| {
+        let size = |z: c64| z.re.hypot(z.im);
+        norm.max((0..j).map(|i| size(t[(i, j)])).sum::<f64>() + size(t[(j, j)] - one))
+    })
+}
+
+/// The principal square root of an upper triangular matrix (Björck, Hammarling).
+fn square_root(t: &Mat<c64>) -> Mat<c64> {
+    let n = t.nrows();
+    let mut r = Mat::<c64>::zeros(n, n);
+    for j in 0..n {
+        r[(j, j)] = t[(j, j)].sqrt();
+        for i in (0..j).rev() {
+            let mut s = t[(i, j)];
+            for k in i + 1..j {
+                s -= r[(i, k)] * r[(k, j)];
+            }
+            r[(i, j)] = s / (r[(i, i)] + r[(j, j)]);
+        }
+    }
+    r
+}
+
+/// Σ w_j x (𝟙 + t_j x)⁻¹ for upper triangular x.
+fn pade(x: &Mat<c64>) -> Mat<c64> {
+    let n = x.nrows();
+    let one = c64::new(1.0, 0.0);
+    let mut sum = Mat::<c64>::zeros(n, n);
+    let mut y = Mat::<c64>::zeros(n, n);
+    for (t, w) in NODES {
+        for j in 0..n {
+            for i in (0..=j).rev() {
+                let mut s = x[(i, j)];
+                for k in i + 1..=j {
+                    s -= x[(i, k)] * y[(k, j)] * t;
+                }
+                y[(i, j)] = s / (one + x[(i, i)] * t);
+                sum[(i, j)] += y[(i, j)] * w;
+            }
+        }
+    }
+    sum
+}

@@ -1,0 +1,286 @@
+//! Commutator-free methods: stages and update are products of exponentials of sums of stages.
+//!
+//! k_i = f(t + c_i h, Y_i); Y_i = exp(h Σ_j α_ij^J k_j) ⋯ exp(h Σ_j α_ij^1 k_j) Y_from, and the same
+//! for the update. No bracket and no dΨ⁻¹.
+//!
+//! | table | order | stages | exponentials | source |
+//! |---|---|---|---|---|
+//! | [`CF3`] | 3 | 3 | 4 | Celledoni, Marthinsen, Owren 2003 |
+//! | [`CF4`] | 4 | 4 | 5 | the same |
+//! | [`CF43`] | 4(3) | 4, and 1 for the error | 5, and 3 | Curry, Owren 2019 |
+//!
+//! Crouch–Grossman methods are such tables with one stage in each exponential
+//! ([`crouch_grossman`](super::crouch_grossman)). The map is exp: its one-parameter subgroups are what
+//! the order conditions rest on, so no other Ψ keeps the order. Preserves: the group, and what the
+//! action leaves invariant. Source: E. Celledoni, A. Marthinsen, B. Owren, Commutator-free Lie group
+//! methods, FGCS 19 (2003); C. Curry, B. Owren, Variable step size commutator free Lie group
+//! integrators, Numer. Algorithms 82 (2019).
+
+use super::embedded::{between, without_pair};
+use super::{Embedded, LocalError, Method, Metric, Step};
+use crate::chart::ChartStore;
+use crate::error::{Error, StepError};
+use crate::groups::LieAlgebra;
+use crate::maps::{CoordinateMap, Exp};
+use crate::problems::{AlgOf, PointOf, Problem, ScalarOf};
+use crate::scalar::Real;
+
+/// A product of exponentials that acts on a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Product<const S: usize> {
+    /// The stage whose point it starts from; 0 is the start of the step.
+    pub from: usize,
+    /// The weights of the stages in each factor; the first is applied first.
+    pub factors: &'static [[f64; S]],
+}
+
+/// The coefficients of a commutator-free method with S stages.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ProductTableau<const S: usize> {
+    /// Its name.
+    pub name: &'static str,
+    /// Its order.
+    pub order: usize,
+    /// Nodes c_i.
+    pub c: [f64; S],
+    /// Stages; the first is the start of the step, a product without factors.
+    pub stages: [Product<S>; S],
+    /// The update.
+    pub update: Product<S>,
+    /// How many stages the update needs.
+    pub update_stages: usize,
+    /// A second result, of the order that is given, from the same stages.
+    pub embedded: Option<(usize, Product<S>)>,
+}
+
+/// The start of the step: the first stage of every table.
+pub(super) const fn start<const S: usize>() -> Product<S> {
+    Product { from: 0, factors: &[] }
+}
+
+/// Order 3 with 3 stages.
+pub const CF3: ProductTableau<3> = ProductTableau {
+    name: "cf3",
+    order: 3,
+    c: [0.0, 1.0 / 3.0, 2.0 / 3.0],
+    stages: [
+        start(),
+        Product { from: 0, factors: &[[1.0 / 3.0, 0.0, 0.0]] },
+        Product { from: 0, factors: &[[0.0, 2.0 / 3.0, 0.0]] },
+    ],
+    update: Product { from: 0, factors: &[[1.0 / 3.0, 0.0, 0.0], [-1.0 / 12.0, 0.0, 0.75]] },
+    update_stages: 3,
+    embedded: None,
+};
+
+const T: f64 = 1.0 / 12.0;
+
+/// Order 4 with 4 stages; the fourth starts from the second.
+pub const CF4: ProductTableau<4> = ProductTableau {
+    name: "cf4",
+    order: 4,
+    c: [0.0, 0.5, 0.5, 1.0],
+    stages: [
+        start(),
+        Product { from: 0, factors: &[[0.5, 0.0, 0.0, 0.0]] },
+        Product { from: 0, factors: &[[0.0, 0.5, 0.0, 0.0]] },
+        Product { from: 1, factors: &[[-0.5, 0.0, 1.0, 0.0]] },
+    ],
+    update: Product {
+        from: 0,
+        factors: &[[3.0 * T, 2.0 * T, 2.0 * T, -T], [-T, 2.0 * T, 2.0 * T, 3.0 * T]],
+    },
+    update_stages: 4,
+    embedded: None,
+};
+
+/// [`CF4`] with a fifth stage for an embedded result of order 3.
+pub const CF43: ProductTableau<5> = ProductTableau {
+    name: "cf43",
+    order: 4,
+    c: [0.0, 0.5, 0.5, 1.0, 0.75],
+    stages: [
+        start(),
+        Product { from: 0, factors: &[[0.5, 0.0, 0.0, 0.0, 0.0]] },
+        Product { from: 0, factors: &[[0.0, 0.5, 0.0, 0.0, 0.0]] },
+        Product { from: 1, factors: &[[-0.5, 0.0, 1.0, 0.0, 0.0]] },
+        Product { from: 0, factors: &[[0.0, 0.75, 0.0, 0.0, 0.0]] },
+    ],
+    update: Product {
+        from: 0,
+        factors: &[[3.0 * T, 2.0 * T, 2.0 * T, -T, 0.0], [-T, 2.0 * T, 2.0 * T, 3.0 * T, 0.0]],
+    },
+    update_stages: 4,
+    embedded: Some((
+        3,
+        Product {
+            from: 0,
+            factors: &[
+                [1.0 / 3.0, 0.0, 0.0, 0.0, 0.0],
+                [-1.0 / 9.0, 1.0 / 3.0, 0.0, 0.0, 4.0 / 9.0],
+            ],
+        },
+    )),
+};
+
+/// A commutator-free method with S stages.
+#[derive(Clone, Copy, Debug)]
+pub struct CommutatorFree<const S: usize>(pub ProductTableau<S>);
+
+/// Stages, their points, and the chart.
+#[allow(missing_debug_implementations)] // the parts belong to the problem's types
+pub struct CommutatorFreeWork<P: Problem, const S: usize>
+where
+    Exp: CoordinateMap<P::Group>,
+{
+    stages: Stages<P, S>,
+    y: PointOf<P>,
+}
+
+struct Stages<P: Problem, const S: usize>
+where
+    Exp: CoordinateMap<P::Group>,
+{
+    k: [AlgOf<P>; S],
+    points: [PointOf<P>; S],
+    u: AlgOf<P>,
+    aside: PointOf<P>,
+    chart: ChartStore<P, Exp>,
+}
+
+impl<P: Problem, const S: usize> Stages<P, S>
+where
+    Exp: CoordinateMap<P::Group>,
+{
+    /// `to` ← the product, acting on the point that it starts from. A product has factors.
+    #[inline(always)]
+    fn product(
+        &mut self,
+        problem: &P,
+        Step { n, h, .. }: Step<ScalarOf<P>>,
+        p: &PointOf<P>,
+        product: &Product<S>,
+        to: &mut PointOf<P>,
+    ) -> Result<(), StepError> {
+        let Stages { k, points, u, aside, chart } = self;
+        for (i, weights) in product.factors.iter().enumerate() {
+            problem.group().combine(h, weights, k, u);
+            let from = match (i, product.from) {
+                (0, 0) => p,
+                (0, from) => &points[from],
+                _ => {
+                    core::mem::swap(aside, to);
+                    &*aside
+                }
+            };
+            chart.around(problem, &Exp, n, from).lambda(u, to)?;
+        }
+        Ok(())
+    }
+
+    /// The first `count` stages, and `to` ← the update.
+    #[inline(always)]
+    fn advance(
+        &mut self,
+        table: &ProductTableau<S>,
+        count: usize,
+        problem: &P,
+        step: Step<ScalarOf<P>>,
+        p: &PointOf<P>,
+        to: &mut PointOf<P>,
+    ) -> Result<(), StepError> {
+        self.chart.around(problem, &Exp, step.n, p).field(step.t, &mut self.k[0]);
+        for i in 1..count {
+            self.product(problem, step, p, &table.stages[i], to)?;
+            core::mem::swap(&mut self.points[i], to);
+            let t = step.t + step.h * ScalarOf::<P>::lit(table.c[i]);
+            self.chart.around(problem, &Exp, step.n, &self.points[i]).field(t, &mut self.k[i]);
+        }
+        let finite = |k: &AlgOf<P>| problem.group().is_finite(k);
+        if let Some(stage) = self.k[..count].iter().position(|k| !finite(k)) {
+            return Err(StepError::NonFiniteRhs { stage: stage + 1 });
+        }
+        self.product(problem, step, p, &table.update, to)
+    }
+
+    /// The same error, or the stage whose f was not finite: that is where it came from.
+    #[cold]
+    fn explain(&mut self, alg: &P::Group, error: StepError) -> StepError {
+        let stage = self.k.iter().position(|k| !alg.is_finite(k));
+        // The next attempt must not see the numbers of this one.
+        self.k.iter_mut().for_each(|k| alg.set_zero(k));
+        stage.map_or(error, |stage| StepError::NonFiniteRhs { stage: stage + 1 })
+    }
+}
+
+impl<P: Problem, const S: usize> Method<P> for CommutatorFree<S>
+where
+    Exp: CoordinateMap<P::Group>,
+{
+    type Work = CommutatorFreeWork<P, S>;
+
+    fn order(&self, _: &P) -> usize {
+        self.0.order
+    }
+    fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
+        let alg = problem.group();
+        let stages = Stages {
+            k: core::array::from_fn(|_| alg.zero()),
+            points: core::array::from_fn(|_| like.clone()),
+            u: alg.zero(),
+            aside: like.clone(),
+            chart: ChartStore::new(problem, &Exp, like)?,
+        };
+        Ok(CommutatorFreeWork { stages, y: like.clone() })
+    }
+    #[inline]
+    fn step(
+        &self,
+        problem: &P,
+        step: Step<ScalarOf<P>>,
+        p: &mut PointOf<P>,
+        CommutatorFreeWork { stages, y }: &mut Self::Work,
+    ) -> Result<(), StepError> {
+        match stages.advance(&self.0, self.0.update_stages, problem, step, p, y) {
+            Ok(()) => {
+                core::mem::swap(p, y);
+                Ok(())
+            }
+            Err(error) => Err(stages.explain(problem.group(), error)),
+        }
+    }
+}
+
+impl<P: Problem, const S: usize> Embedded<P> for CommutatorFree<S>
+where
+    Exp: CoordinateMap<P::Group>,
+    PointOf<P>: Metric<Scalar = ScalarOf<P>>,
+{
+    fn error_order(&self, _: &P) -> Result<usize, Error> {
+        self.0.embedded.map(|(order, _)| order).ok_or_else(|| without_pair(self.0.name))
+    }
+    fn evaluations(&self) -> u64 {
+        S as u64
+    }
+    fn step_with_error(
+        &self,
+        problem: &P,
+        step: Step<ScalarOf<P>>,
+        from: &PointOf<P>,
+        CommutatorFreeWork { stages, y }: &mut Self::Work,
+        to: &mut PointOf<P>,
+    ) -> Result<LocalError<ScalarOf<P>>, StepError> {
+        let alg = problem.group();
+        if let Err(error) = stages.advance(&self.0, S, problem, step, from, to) {
+            return Err(stages.explain(alg, error));
+        }
+        let error = match &self.0.embedded {
+            Some((_, product)) => match stages.product(problem, step, from, product, y) {
+                Ok(()) => y.distance(to),
+                Err(error) => return Err(stages.explain(alg, error)),
+            },
+            None => ScalarOf::<P>::lit(f64::INFINITY),
+        };
+        Ok(between(error, from, to))
+    }
+}

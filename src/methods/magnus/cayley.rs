@@ -1,0 +1,129 @@
+//! Magnus methods in Cayley coordinates: y⁺ = cay(u) y, with no exponential.
+//!
+//! With u = Ω − Ω³/12 + Ω⁵/120 − …, cay(u) = exp(Ω). Order 4:
+//! u = h/2 (A₁ + A₂) − h²√3/12 \[A₁, A₂\] − h³/96 (A₁ + A₂)³. Odd products of elements of 𝔤_M that
+//! read the same backward lie in 𝔤_M again; they come from [`TripleProduct`].
+//! Source: A. Iserles, On Cayley-transform methods for the discretization of Lie-group equations,
+//! Found. Comput. Math. 1 (2001).
+
+use super::{GAUSS_2, GAUSS_3, MagnusWork, ROOT_15, magnus_method, sum};
+use crate::dense::{antisymmetrise, mul, mul_add};
+use crate::error::{Error, StepError};
+use crate::groups::{AlgebraMatrix, Form, LieAlgebra, MatrixGroup, So3};
+use crate::maps::{Cay, CoordinateMap};
+use crate::methods::Step;
+use crate::problems::{PointOf, ScalarOf};
+use crate::scalar::Real;
+
+use nalgebra::Vector3;
+
+/// An algebra of matrices with uvw + wvu ∈ 𝔤: gl(n) and every 𝔤_M.
+pub trait TripleProduct: LieAlgebra {
+    /// out ← uvw + wvu; `work` is scratch.
+    fn triple(
+        &self,
+        u: &Self::Alg,
+        v: &Self::Alg,
+        w: &Self::Alg,
+        work: &mut Self::Alg,
+        out: &mut Self::Alg,
+    );
+}
+
+/// On so(3) ≅ ℝ³: −(u·v) w − (v·w) u.
+impl<S: Real> TripleProduct for So3<S> {
+    #[inline]
+    fn triple(
+        &self,
+        u: &Vector3<S>,
+        v: &Vector3<S>,
+        w: &Vector3<S>,
+        _: &mut Vector3<S>,
+        out: &mut Vector3<S>,
+    ) {
+        let dot = |a: &Vector3<S>, b: &Vector3<S>| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        let (uv, vw) = (dot(u, v), dot(v, w));
+        for i in 0..3 {
+            out[i] = -(uv * w[i]) - vw * u[i];
+        }
+    }
+}
+
+/// Two products on so(n), where (uvw)ᵀ = −wvu; four elsewhere.
+impl TripleProduct for MatrixGroup {
+    fn triple(
+        &self,
+        u: &AlgebraMatrix,
+        v: &AlgebraMatrix,
+        w: &AlgebraMatrix,
+        work: &mut AlgebraMatrix,
+        out: &mut AlgebraMatrix,
+    ) {
+        mul(work, u.as_ref(), v.as_ref());
+        mul(out, work.as_ref(), w.as_ref());
+        match self.form() {
+            Form::Identity => antisymmetrise(out),
+            _ => {
+                mul(work, w.as_ref(), v.as_ref());
+                mul_add(out, 1.0, work.as_ref(), u.as_ref());
+            }
+        }
+    }
+}
+
+/// Order 4 in Cayley coordinates.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct CayleyMagnus4;
+/// Order 6 in Cayley coordinates.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct CayleyMagnus6;
+
+magnus_method!(CayleyMagnus4, 4, GAUSS_2, Cay, 2, 4, [TripleProduct], order_4);
+magnus_method!(CayleyMagnus6, 6, GAUSS_3, Cay, 3, 9, [TripleProduct], order_6);
+
+fn order_4<G: TripleProduct>(g: &G, h: G::Scalar, a: &[G::Alg; 2], work: &mut [G::Alg; 4]) {
+    let lit = G::Scalar::lit;
+    let [omega, s, x, y] = work;
+    g.combine(h, &[0.5, 0.5], a, s);
+    sum(g, [(lit(1.0), s)], omega);
+    g.bracket(&a[0], &a[1], x);
+    g.axpy(h * h * lit(-super::ROOT_3 / 12.0), x, omega);
+    g.triple(s, s, s, y, x); // 2s³ with s = h/2 (A₁ + A₂)
+    g.axpy(lit(-1.0 / 24.0), x, omega);
+}
+
+/// With w₁ = hA₂, w₂ = h√15/3 (A₃ − A₁), w₃ = 10h/3 (A₁ − 2A₂ + A₃):
+/// u/2 = w₁/2 + (w₃ − \[w₁, w₂\] − w₁³)/24 + (\[w₂, w₃\] − \[w₂, \[w₁, w₂\]\] − w₁²w₃ − w₃w₁² +
+/// \[w₁w₂w₁, w₁\])/480 − w₁w₃w₁/160 + (\[w₁³, w₂\] + w₁⁵)/240.
+fn order_6<G: TripleProduct>(g: &G, h: G::Scalar, a: &[G::Alg; 3], work: &mut [G::Alg; 9]) {
+    let lit = G::Scalar::lit;
+    let [u, w1, w2, w3, c, cube, x, y, z] = work;
+    g.combine(h, &[0.0, 1.0, 0.0], a, w1);
+    g.combine(h, &[-ROOT_15 / 3.0, 0.0, ROOT_15 / 3.0], a, w2);
+    g.combine(h, &[10.0 / 3.0, -20.0 / 3.0, 10.0 / 3.0], a, w3);
+    g.bracket(w1, w2, c);
+    g.triple(w1, w1, w1, x, cube); // 2w₁³
+    let twelfth = 1.0 / 12.0;
+    sum(
+        g,
+        [(lit(1.0), w1), (lit(twelfth), w3), (lit(-twelfth), c), (lit(-0.5 * twelfth), cube)],
+        u,
+    );
+    let mut add = |weight: f64, x: &G::Alg| g.axpy(lit(weight), x, u);
+    let t = 1.0 / 240.0;
+    g.bracket(w2, w3, x);
+    add(t, x);
+    g.bracket(w2, c, x);
+    add(-t, x);
+    g.triple(w1, w1, w3, y, x);
+    add(-t, x);
+    g.triple(w1, w2, w1, y, x); // 2w₁w₂w₁
+    g.bracket(x, w1, y);
+    add(0.5 * t, y);
+    g.triple(w1, w3, w1, y, x); // 2w₁w₃w₁
+    add(-1.5 * t, x);
+    g.bracket(cube, w2, x);
+    add(t, x);
+    g.triple(w1, cube, w1, y, z); // 4w₁⁵
+    add(0.5 * t, z);
+}

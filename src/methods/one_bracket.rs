@@ -1,0 +1,252 @@
+//! Methods whose dexp⁻¹ is written out: at most one bracket in each stage and in the update.
+//!
+//! k_i = f(t + c_i h, exp(u_i) y), u_i = h Σ_j w_ij k_j + h² \[k_1, Σ_j x_ij k_j\], and the same for v;
+//! y⁺ = exp(v) y.
+//!
+//! | table | order | f | exp | brackets | source |
+//! |---|---|---|---|---|---|
+//! | [`RKMK4_2C`] | 4 | 4 | 4 | 2 | Munthe-Kaas, Owren 1999 |
+//! | [`MAGNUS43`] | 4(3) | 6 | 6 | 3 | Casas, Iserles 2006 |
+//!
+//! The second is the Magnus method of nonlinear equations: its last stage lies at the result of order
+//! 3. The map is exp, which the brackets belong to. Preserves: the group, and what the action leaves
+//! invariant. Source: H. Munthe-Kaas, B. Owren, Computations in a free Lie algebra, Phil. Trans. R.
+//! Soc. A 357 (1999); F. Casas, A. Iserles, Explicit Magnus expansions for nonlinear equations,
+//! J. Phys. A 39 (2006).
+
+use super::embedded::without_pair;
+use super::{Embedded, LocalError, Method, Step};
+use crate::chart::ChartStore;
+use crate::error::{Error, StepError};
+use crate::groups::LieAlgebra;
+use crate::maps::{CoordinateMap, Exp};
+use crate::problems::{AlgOf, PointOf, Problem, ScalarOf};
+use crate::scalar::Real;
+
+/// One increment h Σ w_j k_j + h² \[k_1, Σ x_j k_j\].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Increment<const S: usize> {
+    /// w_j.
+    pub w: [f64; S],
+    /// x_j; all 0 when there is no bracket.
+    pub x: [f64; S],
+}
+
+impl<const S: usize> Increment<S> {
+    /// Without a bracket.
+    const fn plain(w: [f64; S]) -> Self {
+        Increment { w, x: [0.0; S] }
+    }
+}
+
+/// The coefficients of a method with S stages.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OneBracketTableau<const S: usize> {
+    /// Its name.
+    pub name: &'static str,
+    /// Its order.
+    pub order: usize,
+    /// Nodes c_i.
+    pub c: [f64; S],
+    /// u_i.
+    pub stages: [Increment<S>; S],
+    /// v.
+    pub update: Increment<S>,
+    /// The order of the last stage as a result at t + h, where it serves as an estimate.
+    pub embedded: Option<usize>,
+}
+
+/// RKMK of order 4 with two commutators.
+pub const RKMK4_2C: OneBracketTableau<4> = OneBracketTableau {
+    name: "rkmk4-2c",
+    order: 4,
+    c: [0.0, 0.5, 0.5, 1.0],
+    stages: [
+        Increment::plain([0.0; 4]),
+        Increment::plain([0.5, 0.0, 0.0, 0.0]),
+        Increment { w: [0.0, 0.5, 0.0, 0.0], x: [0.0, -1.0 / 8.0, 0.0, 0.0] },
+        Increment::plain([0.0, 0.0, 1.0, 0.0]),
+    ],
+    update: Increment {
+        w: [1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0],
+        x: [0.0, 0.0, 0.0, -1.0 / 12.0],
+    },
+    embedded: None,
+};
+
+/// The nonlinear Magnus pair 4(3).
+pub const MAGNUS43: OneBracketTableau<6> = OneBracketTableau {
+    name: "magnus43",
+    order: 4,
+    c: [0.0, 0.5, 0.5, 1.0, 0.5, 1.0],
+    stages: [
+        Increment::plain([0.0; 6]),
+        Increment::plain([0.5, 0.0, 0.0, 0.0, 0.0, 0.0]),
+        Increment::plain([0.25, 0.25, 0.0, 0.0, 0.0, 0.0]),
+        Increment::plain([0.0, 1.0, 0.0, 0.0, 0.0, 0.0]),
+        Increment {
+            w: [5.0 / 24.0, 0.0, 1.0 / 3.0, -1.0 / 24.0, 0.0, 0.0],
+            x: [0.0, -1.0 / 48.0, 0.0, 0.0, 0.0, 0.0],
+        },
+        Increment {
+            w: [1.0 / 6.0, 0.0, 2.0 / 3.0, 1.0 / 6.0, 0.0, 0.0],
+            x: [0.0, -1.0 / 6.0, 0.0, 0.0, 0.0, 0.0],
+        },
+    ],
+    update: Increment {
+        w: [1.0 / 6.0, 0.0, 0.0, 0.0, 2.0 / 3.0, 1.0 / 6.0],
+        x: [0.0, 0.0, 1.0 / 6.0, 0.0, -1.0 / 6.0, -1.0 / 12.0],
+    },
+    embedded: Some(3),
+};
+
+/// A method with at most one bracket in each stage.
+#[derive(Clone, Copy, Debug)]
+pub struct OneBracket<const S: usize>(pub OneBracketTableau<S>);
+
+/// Stages, increments and the chart.
+#[allow(missing_debug_implementations)] // the parts belong to the problem's types
+pub struct OneBracketWork<P: Problem, const S: usize>
+where
+    Exp: CoordinateMap<P::Group>,
+{
+    stages: Stages<P, S>,
+    y: PointOf<P>,
+}
+
+struct Stages<P: Problem, const S: usize>
+where
+    Exp: CoordinateMap<P::Group>,
+{
+    k: [AlgOf<P>; S],
+    u: AlgOf<P>,
+    v: AlgOf<P>,
+    x: AlgOf<P>,
+    bracket: AlgOf<P>,
+    at: PointOf<P>,
+    chart: ChartStore<P, Exp>,
+}
+
+impl<P: Problem, const S: usize> Stages<P, S>
+where
+    Exp: CoordinateMap<P::Group>,
+{
+    /// u ← the increment.
+    #[inline(always)]
+    fn increment(&mut self, alg: &P::Group, h: ScalarOf<P>, increment: &Increment<S>) {
+        let Stages { k, u, x, bracket, .. } = self;
+        alg.combine(h, &increment.w, k, u);
+        if increment.x.iter().any(|x| *x != 0.0) {
+            alg.combine(h, &increment.x, k, x);
+            alg.bracket(&k[0], x, bracket);
+            alg.axpy(h, bracket, u);
+        }
+    }
+
+    /// `to` ← the step from p. Then u is v, and v is the increment of the last stage.
+    #[inline(always)]
+    fn advance(
+        &mut self,
+        table: &OneBracketTableau<S>,
+        problem: &P,
+        Step { n, t, h }: Step<ScalarOf<P>>,
+        p: &PointOf<P>,
+        to: &mut PointOf<P>,
+    ) -> Result<(), StepError> {
+        let alg = problem.group();
+        self.chart.around(problem, &Exp, n, p).field(t, &mut self.k[0]);
+        for i in 1..S {
+            self.increment(alg, h, &table.stages[i]);
+            self.chart.around(problem, &Exp, n, p).lambda(&self.u, &mut self.at)?;
+            let t = t + h * ScalarOf::<P>::lit(table.c[i]);
+            self.chart.around(problem, &Exp, n, &self.at).field(t, &mut self.k[i]);
+        }
+        core::mem::swap(&mut self.u, &mut self.v);
+        self.increment(alg, h, &table.update);
+        if !alg.is_finite(&self.u) {
+            return Err(StepError::NotFinite { what: "the increment v" });
+        }
+        self.chart.around(problem, &Exp, n, p).lambda(&self.u, to)
+    }
+
+    /// The same error, or the stage whose f was not finite: that is where it came from.
+    #[cold]
+    fn explain(&mut self, alg: &P::Group, error: StepError) -> StepError {
+        let stage = self.k.iter().position(|k| !alg.is_finite(k));
+        // The next attempt must not see the numbers of this one.
+        self.k.iter_mut().for_each(|k| alg.set_zero(k));
+        stage.map_or(error, |stage| StepError::NonFiniteRhs { stage: stage + 1 })
+    }
+}
+
+impl<P: Problem, const S: usize> Method<P> for OneBracket<S>
+where
+    Exp: CoordinateMap<P::Group>,
+{
+    type Work = OneBracketWork<P, S>;
+
+    fn order(&self, _: &P) -> usize {
+        self.0.order
+    }
+    fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
+        let alg = problem.group();
+        let stages = Stages {
+            k: core::array::from_fn(|_| alg.zero()),
+            u: alg.zero(),
+            v: alg.zero(),
+            x: alg.zero(),
+            bracket: alg.zero(),
+            at: like.clone(),
+            chart: ChartStore::new(problem, &Exp, like)?,
+        };
+        Ok(OneBracketWork { stages, y: like.clone() })
+    }
+    #[inline]
+    fn step(
+        &self,
+        problem: &P,
+        step: Step<ScalarOf<P>>,
+        p: &mut PointOf<P>,
+        OneBracketWork { stages, y }: &mut Self::Work,
+    ) -> Result<(), StepError> {
+        match stages.advance(&self.0, problem, step, p, y) {
+            Ok(()) => {
+                core::mem::swap(p, y);
+                Ok(())
+            }
+            Err(error) => Err(stages.explain(problem.group(), error)),
+        }
+    }
+}
+
+impl<P: Problem, const S: usize> Embedded<P> for OneBracket<S>
+where
+    Exp: CoordinateMap<P::Group>,
+{
+    fn error_order(&self, _: &P) -> Result<usize, Error> {
+        self.0.embedded.ok_or_else(|| without_pair(self.0.name))
+    }
+    fn evaluations(&self) -> u64 {
+        S as u64
+    }
+    fn step_with_error(
+        &self,
+        problem: &P,
+        step: Step<ScalarOf<P>>,
+        from: &PointOf<P>,
+        OneBracketWork { stages, .. }: &mut Self::Work,
+        to: &mut PointOf<P>,
+    ) -> Result<LocalError<ScalarOf<P>>, StepError> {
+        let alg = problem.group();
+        if let Err(error) = stages.advance(&self.0, problem, step, from, to) {
+            return Err(stages.explain(alg, error));
+        }
+        let length = alg.norm(&stages.u);
+        alg.axpy(ScalarOf::<P>::lit(-1.0), &stages.u, &mut stages.v);
+        let error = match self.0.embedded {
+            Some(_) => alg.norm(&stages.v),
+            None => ScalarOf::<P>::lit(f64::INFINITY),
+        };
+        Ok(LocalError { error, length })
+    }
+}

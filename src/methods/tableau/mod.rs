@@ -1,0 +1,142 @@
+//! Explicit Butcher tableaus as constants, with the pairs that estimate their own error. Tests run
+//! the order conditions over every one, and over every embedded row.
+
+mod dop853;
+mod pairs;
+
+pub use dop853::DOP853;
+pub use pairs::{BS3, DOPRI5, RKF45, VERNER6};
+
+use crate::scalar::Real;
+
+/// An explicit Runge–Kutta tableau with S stages; `a[i]` is used for j < i only.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tableau<const S: usize> {
+    /// Its name in scene files.
+    pub name: &'static str,
+    /// Its classical order.
+    pub order: usize,
+    /// Stage weights a_ij.
+    pub a: [[f64; S]; S],
+    /// Update weights b_j.
+    pub b: [f64; S],
+    /// Nodes c_i.
+    pub c: [f64; S],
+    /// The error estimate of an embedded pair.
+    pub error: Option<ErrorEstimate<S>>,
+}
+
+impl<const S: usize> Tableau<S> {
+    /// How many stages the update needs: a last stage that only the error looks at is not one.
+    pub const fn update_stages(&self) -> usize {
+        let mut s = S;
+        while s > 1 && self.b[s - 1] == 0.0 {
+            s -= 1;
+        }
+        s
+    }
+}
+
+/// One error from ‖h Σ e_j k_j‖ and, where there is one, the size of the damping row:
+/// E²/√(E² + D²/100), and 0 when both vanish.
+#[inline]
+pub(super) fn fold_error<R: Real>(e: R, damp: Option<R>) -> R {
+    match damp {
+        Some(d) if !(e + d).all_below(f64::MIN_POSITIVE) => {
+            let d = R::lit(0.1) * d;
+            let top = e + d; // scaled by it, no square leaves the range
+            let (x, y) = (e / top, d / top);
+            e * x / (x * x + y * y).sqrt()
+        }
+        _ => e,
+    }
+}
+
+/// How a pair measures its error: ‖h Σ e_j k_j‖ with e = b − b̂.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ErrorEstimate<const S: usize> {
+    /// The error behaves like h to the power `order + 1`; the order of b̂, where there is one b̂.
+    pub order: usize,
+    /// e_j = b_j − b̂_j.
+    pub e: [f64; S],
+    /// A second row d, of a lower order: the error is then E²/√(E² + D²/100) for E = ‖h Σ e_j k_j‖,
+    /// D = ‖h Σ d_j k_j‖ (DOP853).
+    pub damp: Option<[f64; S]>,
+}
+
+impl<const S: usize> ErrorEstimate<S> {
+    /// From both rows of weights, b̂ of order `order`.
+    pub const fn of_pair(order: usize, b: [f64; S], b_hat: [f64; S]) -> Self {
+        ErrorEstimate { order, e: difference(b, b_hat), damp: None }
+    }
+}
+
+/// x − y.
+const fn difference<const S: usize>(x: [f64; S], y: [f64; S]) -> [f64; S] {
+    let mut d = [0.0; S];
+    let mut j = 0;
+    while j < S {
+        d[j] = x[j] - y[j];
+        j += 1;
+    }
+    d
+}
+
+/// The square matrix with these rows, filled up with zeros.
+pub(crate) const fn lower<const S: usize>(rows: [&[f64]; S]) -> [[f64; S]; S] {
+    let mut a = [[0.0; S]; S];
+    let mut i = 0;
+    while i < S {
+        let mut j = 0;
+        while j < rows[i].len() {
+            a[i][j] = rows[i][j];
+            j += 1;
+        }
+        i += 1;
+    }
+    a
+}
+
+/// Euler's method, order 1.
+pub const EULER: Tableau<1> =
+    Tableau { name: "euler", order: 1, a: [[0.0]], b: [1.0], c: [0.0], error: None };
+
+/// The explicit midpoint rule (Runge), order 2.
+pub const MIDPOINT: Tableau<2> = Tableau {
+    name: "midpoint",
+    order: 2,
+    a: [[0.0; 2], [0.5, 0.0]],
+    b: [0.0, 1.0],
+    c: [0.0, 0.5],
+    error: None,
+};
+
+/// Heun's method (the explicit trapezoidal rule), order 2.
+pub const HEUN: Tableau<2> = Tableau {
+    name: "heun",
+    order: 2,
+    a: [[0.0; 2], [1.0, 0.0]],
+    b: [0.5, 0.5],
+    c: [0.0, 1.0],
+    error: None,
+};
+
+/// The classical method of order 4 (Hairer, Nørsett, Wanner I, p. 138).
+pub const RK4: Tableau<4> = Tableau {
+    name: "rk4",
+    order: 4,
+    a: [[0.0; 4], [0.5, 0.0, 0.0, 0.0], [0.0, 0.5, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]],
+    b: [1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0],
+    c: [0.0, 0.5, 0.5, 1.0],
+    error: None,
+};
+
+/// Kutta's 3/8 rule, order 4 (Hairer, Nørsett, Wanner I, p. 138).
+pub const THREE_EIGHTHS: Tableau<4> = Tableau {
+    name: "three-eighths",
+    order: 4,
+    a: [[0.0; 4], [1.0 / 3.0, 0.0, 0.0, 0.0], [-1.0 / 3.0, 1.0, 0.0, 0.0], [1.0, -1.0, 1.0, 0.0]],
+    b: [1.0 / 8.0, 3.0 / 8.0, 3.0 / 8.0, 1.0 / 8.0],
+    c: [0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0],
+    error: None,
+};

@@ -1,0 +1,244 @@
+//! Runs that cannot go on say where and why, and keep what they have.
+
+use faer::Mat;
+use lieflow::actions::Linear;
+use lieflow::groups::{AlgebraMatrix, MatrixGroup, So3};
+use lieflow::maps::{CCSK, Cay, CoordinateMap, Exp};
+use lieflow::methods::{Method, Rk, Rkmk, Step, tableau::RK4};
+use lieflow::problems::{Ambient, PointOf, Problem, RigidBody};
+use lieflow::{Error, Failure, LieAlgebra, RunError, SaveAt, StepError, TimeGrid, integrate};
+use nalgebra::Vector3;
+
+use crate::says;
+
+/// A vector that turns about (1, 1, 1), by a field that gives out after a time.
+struct GivesOut {
+    group: So3,
+    after: f64,
+    value: f64,
+}
+
+impl Problem for GivesOut {
+    type Group = So3;
+    type Action = Linear;
+    type Work = ();
+    fn group(&self) -> &So3 {
+        &self.group
+    }
+    fn action(&self) -> &Linear {
+        &Linear
+    }
+    fn work(&self) {}
+    fn f(&self, t: f64, _: &Vector3<f64>, v: &mut Vector3<f64>, _: &mut ()) {
+        *v = Vector3::new(1.0, 1.0, if t > self.after { self.value } else { 1.0 });
+    }
+}
+
+impl Ambient for GivesOut {
+    fn field(&self, t: f64, y: &Vector3<f64>, dy: &mut Vector3<f64>, work: &mut ()) {
+        let mut v = self.group.zero();
+        self.f(t, y, &mut v, work);
+        *dy = v.cross(y);
+    }
+    fn copy(&self, x: &Vector3<f64>, y: &mut Vector3<f64>) {
+        *y = *x;
+    }
+    fn add(&self, a: f64, x: &Vector3<f64>, y: &mut Vector3<f64>) {
+        *y += a * x;
+    }
+    fn is_finite(&self, y: &Vector3<f64>) -> bool {
+        self.group.is_finite(y)
+    }
+}
+
+/// The same on n×n matrices.
+struct GivesOutN {
+    group: MatrixGroup,
+    after: f64,
+    value: f64,
+}
+
+impl Problem for GivesOutN {
+    type Group = MatrixGroup;
+    type Action = Linear;
+    type Work = ();
+    fn group(&self) -> &MatrixGroup {
+        &self.group
+    }
+    fn action(&self) -> &Linear {
+        &Linear
+    }
+    fn work(&self) {}
+    fn f(&self, t: f64, _: &Mat<f64>, v: &mut AlgebraMatrix, _: &mut ()) {
+        let a = if t > self.after { self.value } else { 1.0 };
+        let n = self.group.n();
+        *v = AlgebraMatrix::new_unchecked(Mat::from_fn(n, n, |i, j| {
+            a * ((i > j) as i32 - (i < j) as i32) as f64
+        }));
+    }
+}
+
+/// The output of a run.
+type Seen<P> = Vec<(f64, PointOf<P>)>;
+
+/// Ten steps of 0.1 with output after each.
+fn attempt<P: Problem, M: Method<P>>(
+    problem: &P,
+    method: &M,
+    y: &mut PointOf<P>,
+) -> (Result<(), RunError>, Seen<P>)
+where
+    P::Group: LieAlgebra<Scalar = f64>,
+{
+    let grid = TimeGrid::new([0.0, 1.0], 0.1).unwrap();
+    let mut seen = Vec::new();
+    let done = integrate(problem, method, &grid, &SaveAt::Every(1), y, |t, y| {
+        seen.push((t, y.clone()));
+    });
+    (done.map(|_| ()), seen)
+}
+
+/// With f finite until `after` and then not, the run fails in step `step` at stage `stage`, with
+/// y at the last accepted state.
+fn fails_at<P: Problem, M: Method<P>>(
+    problem: &P,
+    method: &M,
+    start: PointOf<P>,
+    (step, stage): (u64, usize),
+) where
+    P::Group: LieAlgebra<Scalar = f64>,
+    PointOf<P>: PartialEq + std::fmt::Debug,
+{
+    let mut y = start;
+    let (done, seen) = attempt(problem, method, &mut y);
+    let Err(RunError::Step(failure)) = done else { panic!("{done:?}") };
+    assert_eq!(failure.source, StepError::NonFiniteRhs { stage });
+    assert_eq!(failure.step, step);
+    assert!((failure.t - 0.1 * step as f64).abs() < 1e-15 && (failure.h - 0.1).abs() < 1e-15);
+    assert_eq!(seen.len() as u64, step + 1, "what was observed stands");
+    assert_eq!(seen.last().map(|(_, y)| y), Some(&y), "y is the last accepted state");
+    says(RunError::Step(failure), &[&format!("step {step}"), "f is not finite", "stage"]);
+}
+
+#[test]
+fn a_field_that_is_not_finite_is_named_with_its_stage() {
+    // Stage 1 at t, stages 2 and 3 at t + h/2, stage 4 at t + h.
+    for (after, place) in [(-1.0, (0, 1)), (0.04, (0, 2)), (0.52, (5, 2)), (0.58, (5, 4))] {
+        for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            let so3 = GivesOut { group: So3::new(), after, value };
+            let x = Vector3::new(0.3, -0.4, 0.5);
+            fails_at(&so3, &Rkmk::new(RK4, Exp), x, place);
+            fails_at(&so3, &Rkmk::new(RK4, Cay), x, place);
+            fails_at(&so3, &Rkmk::new(RK4, CCSK), x, place);
+            fails_at(&so3, &Rk(RK4), x, place);
+            for n in [3, 9] {
+                let x = Mat::from_fn(n, 1, |i, _| 0.1 + i as f64);
+                let so_n = GivesOutN { group: MatrixGroup::so(n).unwrap(), after, value };
+                fails_at(&so_n, &Rkmk::new(RK4, Exp), x.clone(), place);
+                fails_at(&so_n, &Rkmk::new(RK4, Exp.truncated(2)), x.clone(), place);
+                fails_at(&so_n, &Rkmk::new(RK4, Cay), x.clone(), place);
+                fails_at(&so_n, &Rkmk::new(RK4, CCSK), x.clone(), place);
+                let gl_n = GivesOutN { group: MatrixGroup::gl(n).unwrap(), after, value };
+                fails_at(&gl_n, &Rkmk::new(RK4, Exp), x.clone(), place);
+                fails_at(&gl_n, &Rkmk::new(RK4, Cay), x, place);
+            }
+        }
+    }
+}
+
+/// Finite values that no step can carry: an error, or a finite state.
+#[test]
+fn a_field_that_overflows_is_an_error() {
+    fn check<P: Problem, M: Method<P>>(
+        problem: &P,
+        method: &M,
+        start: PointOf<P>,
+        finite: Finite<P>,
+    ) where
+        P::Group: LieAlgebra<Scalar = f64>,
+    {
+        let mut y = start;
+        let (done, seen) = attempt(problem, method, &mut y);
+        assert!(finite(&y) && seen.iter().all(|(_, y)| finite(y)), "not a number in the output");
+        if let Err(error) = done {
+            assert!(matches!(error, RunError::Step(Failure { step: 5.., .. })), "{error}");
+        }
+    }
+    type Finite<P> = fn(&PointOf<P>) -> bool;
+    for value in [1e10, 1e100, 1e160, 1e300, f64::MAX] {
+        let so3 = GivesOut { group: So3::new(), after: 0.52, value };
+        let x = Vector3::new(0.3, -0.4, 0.5);
+        let finite = |x: &Vector3<f64>| x.iter().all(|x| x.is_finite());
+        check(&so3, &Rkmk::new(RK4, Exp), x, finite);
+        check(&so3, &Rkmk::new(RK4, Cay), x, finite);
+        check(&so3, &Rkmk::new(RK4, CCSK), x, finite);
+        check(&so3, &Rk(RK4), x, finite);
+        for group in [MatrixGroup::so(4).unwrap(), MatrixGroup::gl(4).unwrap()] {
+            let so_n = GivesOutN { group, after: 0.52, value };
+            let x = Mat::from_fn(4, 1, |i, _| 0.1 + i as f64);
+            let finite = |x: &Mat<f64>| x.col(0).iter().all(|x| x.is_finite());
+            check(&so_n, &Rkmk::new(RK4, Exp), x.clone(), finite);
+            check(&so_n, &Rkmk::new(RK4, Cay), x, finite);
+        }
+    }
+}
+
+/// A workspace that a step failed in is as good as new.
+#[test]
+fn a_failed_step_leaves_nothing_behind() {
+    fn check<Psi: CoordinateMap<So3>>(psi: Psi) {
+        let (body, method) = (RigidBody::new([1.0, 2.0, 3.5]).unwrap(), Rkmk::new(RK4, psi));
+        let start = Vector3::new(1.0, 0.8, -1.2);
+        let mut work = method.work(&body, &start).unwrap();
+        let good = Step { n: 0, t: 0.0, h: 0.1 };
+        let mut expected = start;
+        method.step(&body, good, &mut expected, &mut work).unwrap();
+        for h in [f64::NAN, f64::INFINITY, 1e200] {
+            let mut y = start;
+            assert!(method.step(&body, Step { h, ..good }, &mut y, &mut work).is_err(), "h = {h}");
+            assert_eq!(y, start, "untouched");
+            method.step(&body, good, &mut y, &mut work).unwrap();
+            assert_eq!(y, expected);
+        }
+    }
+    check(Exp);
+    check(Cay);
+}
+
+/// ẋ = x², whose solution ends at t = 1: an error there or later, never a number that is none.
+#[test]
+fn a_solution_that_blows_up_ends_in_an_error() {
+    struct BlowUp(MatrixGroup);
+    impl Problem for BlowUp {
+        type Group = MatrixGroup;
+        type Action = Linear;
+        type Work = ();
+        fn group(&self) -> &MatrixGroup {
+            &self.0
+        }
+        fn action(&self) -> &Linear {
+            &Linear
+        }
+        fn work(&self) {}
+        fn f(&self, _: f64, x: &Mat<f64>, v: &mut AlgebraMatrix, _: &mut ()) {
+            v[(0, 0)] = x[(0, 0)];
+        }
+    }
+    let problem = BlowUp(MatrixGroup::gl(1).unwrap());
+    let grid = TimeGrid::new([0.0, 5.0], 0.01).unwrap();
+    let mut x = Mat::from_fn(1, 1, |_, _| 1.0);
+    let done = integrate(&problem, &Rkmk::new(RK4, Exp), &grid, &SaveAt::Ends, &mut x, |_, _| {});
+    let Err(RunError::Step(failure)) = done else { panic!("{done:?}") };
+    assert!(x[(0, 0)].is_finite() && (0.99..1.2).contains(&failure.t), "{failure}, {x:?}");
+}
+
+#[test]
+fn parts_that_do_not_fit_are_refused_before_the_run() {
+    let problem =
+        GivesOutN { group: MatrixGroup::indefinite(2, 1).unwrap(), after: 9.0, value: 0.0 };
+    let mut x = Mat::from_fn(3, 1, |_, _| 1.0);
+    let (done, seen) = attempt(&problem, &Rkmk::new(RK4, CCSK), &mut x);
+    assert!(matches!(done, Err(RunError::Setup(Error::Unsupported { .. }))), "{done:?}");
+    says(done.unwrap_err(), &["ccsk", "SO(2,1)", "SO(n)"]);
+    assert!(seen.is_empty());
+}

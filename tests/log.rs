@@ -1,0 +1,258 @@
+//! The logarithm of matrix groups: references of 30 digits, exp and log as inverses, and refusals.
+
+use faer::Mat;
+use lieflow::groups::{AlgebraMatrix, GroupMatrix, MatrixGroup, Sample, So3};
+use lieflow::maps::{CoordinateMap, Exp};
+use lieflow::{Error, LieAlgebra, LieGroup, so3};
+use nalgebra::Matrix3;
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+use serde::Deserialize;
+use std::f64::consts::PI;
+
+const EPS: f64 = f64::EPSILON;
+
+#[derive(Deserialize)]
+struct Case {
+    id: String,
+    group: String,
+    n: usize,
+    g: Vec<String>,
+    log: Vec<String>,
+    cond: String,
+}
+
+#[derive(Deserialize)]
+struct References {
+    cases: Vec<Case>,
+}
+
+fn matrix(n: usize, text: &[String]) -> Mat<f64> {
+    Mat::from_fn(n, n, |i, j| text[i * n + j].parse().expect("a decimal number"))
+}
+
+fn group(kind: &str, n: usize) -> MatrixGroup {
+    match kind {
+        "so" => MatrixGroup::so(n),
+        "sp" => MatrixGroup::sp(n),
+        "gl" => MatrixGroup::gl(n),
+        _ => MatrixGroup::indefinite(3, 1),
+    }
+    .expect("a group")
+}
+
+/// Within 10 n ε·cond of the logarithm of exactly the matrix that was given.
+#[test]
+fn references() {
+    let all: References =
+        serde_json::from_str(include_str!("references/log.json")).expect("references");
+    let mut worst = (0.0, String::new());
+    for case in &all.cases {
+        let group = group(&case.group, case.n);
+        let g = group.element(matrix(case.n, &case.g)).expect("on the group");
+        let reference = matrix(case.n, &case.log);
+        let u = group.log(&g).unwrap_or_else(|error| panic!("{}: {error}", case.id));
+        let cond: f64 = case.cond.parse().expect("a number");
+        let gap = (&*u - &reference).norm_l2() / reference.norm_l2();
+        let units = gap / (EPS * case.n as f64 * cond.max(1.0));
+        println!("{:24} cond {cond:8.1e}: {units:5.2} n·eps·cond", case.id);
+        assert!(units <= 10.0, "{}: {units}", case.id);
+        assert!(
+            group.algebra((*u).clone()).is_ok(),
+            "{}: the logarithm is in the algebra",
+            case.id
+        );
+        if units > worst.0 {
+            worst = (units, case.id.clone());
+        }
+    }
+    println!("{} cases, worst {worst:?}", all.cases.len());
+    assert!(all.cases.len() > 60);
+}
+
+fn exp(group: &MatrixGroup, u: &AlgebraMatrix) -> GroupMatrix {
+    Exp.eval(group, u).expect("exp")
+}
+
+/// exp(log g) = g to 10 n ε·size², and log(exp u) = u inside the principal domain.
+#[test]
+fn inverse_of_exp() {
+    let mut rng = Pcg64::seed_from_u64(4);
+    let m = Mat::from_fn(3, 3, |i, j| [[2.0, 0.5, 0.0], [0.0, 1.0, -1.0], [0.3, 0.0, 1.5]][i][j]);
+    let groups = (2..=9).map(MatrixGroup::so).chain([
+        MatrixGroup::so(20),
+        MatrixGroup::sp(2),
+        MatrixGroup::sp(4),
+        MatrixGroup::sp(8),
+        MatrixGroup::gl(1),
+        MatrixGroup::gl(3),
+        MatrixGroup::gl(7),
+        MatrixGroup::indefinite(3, 1),
+        MatrixGroup::gm(m),
+    ]);
+    for group in groups {
+        let group = group.expect("a group");
+        let n = group.n() as f64;
+        for case in 0..30 {
+            let direction = group.sample_algebra(&mut rng, 1.0);
+            let mut u = group.zero();
+            // The spectral radius is below the Frobenius norm: no eigenvalue reaches iπ.
+            let size = 10f64.powf(rng.random_range(-6.0..0.49));
+            group.axpy(size / group.norm(&direction).max(1e-300), &direction, &mut u);
+            let g = exp(&group, &u);
+            let back = group.log(&g).unwrap_or_else(|error| panic!("{}: {error}", group.name()));
+            let gap = (&*back - &*u).norm_l2();
+            let both = g.norm_l2() * exp(&group, &negative(&group, &u)).norm_l2();
+            let bound = 10.0 * n * EPS * both / (PI - size).clamp(0.05, 1.0);
+            assert!(gap <= bound, "{} case {case}: {gap:e} > {bound:e}", group.name());
+            let again = group.distance(&exp(&group, &back), &g);
+            assert!(again <= 10.0 * n * EPS * both, "{}: {again:e}", group.name());
+        }
+    }
+}
+
+fn negative(group: &MatrixGroup, u: &AlgebraMatrix) -> AlgebraMatrix {
+    let mut out = group.zero();
+    group.axpy(-1.0, u, &mut out);
+    out
+}
+
+/// Every rotation has a logarithm: Haar's measure, half turns in pairs, permutations.
+#[test]
+fn all_of_so_n() {
+    let mut rng = Pcg64::seed_from_u64(5);
+    let worst = std::cell::Cell::new(0.0f64);
+    let check = |group: &MatrixGroup, g: &GroupMatrix, what: &str| {
+        let u = group.log(g).unwrap_or_else(|error| panic!("{what} on {}: {error}", group.name()));
+        let n = group.n() as f64;
+        let gap = group.distance(&exp(group, &u), g);
+        worst.set(worst.get().max(gap / (n * EPS)));
+        if gap > 10.0 * n * EPS {
+            println!("{what} on {}: {gap:e}", group.name());
+        }
+        assert!((&*u + u.transpose()).norm_l2() == 0.0, "skew");
+        // No angle exceeds π: ‖u‖² = 2 Σ θ².
+        assert!(group.norm(&u) <= (2.0 * (n / 2.0).floor()).sqrt() * PI * (1.0 + 8.0 * EPS));
+    };
+    for n in 2..=12 {
+        let group = MatrixGroup::so(n).expect("a group");
+        for _ in 0..20 {
+            check(&group, &group.sample_element(&mut rng), "Haar");
+        }
+        // diag(−1, −1, …) with pairs of −1, and the same in another basis.
+        for pairs in 1..=n / 2 {
+            let d = Mat::from_fn(n, n, |i, j| match i == j {
+                true if i < 2 * pairs => -1.0,
+                true => 1.0,
+                false => 0.0,
+            });
+            let q = group.sample_element(&mut rng).into_mat();
+            let turned = &q * &d * q.transpose();
+            check(&group, &group.element(d).expect("a rotation"), "half turns");
+            check(&group, &group.element(turned).expect("a rotation"), "turned half turns");
+        }
+        // A cyclic permutation (with one sign where it is odd), where plain QR steps stall.
+        let cycle = Mat::from_fn(n, n, |i, j| match i == (j + 1) % n {
+            true if n % 2 == 0 && j == n - 1 => -1.0,
+            true => 1.0,
+            false => 0.0,
+        });
+        check(&group, &group.element(cycle).expect("a rotation"), "cycle");
+        check(&group, &group.identity(), "identity");
+    }
+    println!("worst ‖exp(log g) − g‖ {:.2} nε", worst.get());
+    assert!(worst.get() <= 10.0);
+}
+
+/// The general layer at n = 3 is the closed form.
+#[test]
+fn layers_agree() {
+    let (closed, general) = (So3::<f64>::new(), MatrixGroup::so(3).expect("a group"));
+    let mut rng = Pcg64::seed_from_u64(6);
+    for _ in 0..500 {
+        let g: Matrix3<f64> = closed.sample_element(&mut rng);
+        let u = so3::log(&g).expect("log");
+        if u.norm() > 3.1 {
+            continue; // the axis is badly conditioned next to π
+        }
+        let element = general.element(Mat::from_fn(3, 3, |i, j| g[(i, j)])).expect("a rotation");
+        let w = general.log(&element).expect("log");
+        let vee = nalgebra::Vector3::new(w[(2, 1)], w[(0, 2)], w[(1, 0)]);
+        assert!((vee - u).norm() <= 40.0 * EPS / (PI - u.norm()).min(1.0), "{u:?}");
+    }
+}
+
+/// What has no real logarithm is refused, with the eigenvalue; and so is what is not on the group.
+#[test]
+fn refusals() {
+    let diagonal =
+        |d: &[f64]| Mat::from_fn(d.len(), d.len(), |i, j| if i == j { d[i] } else { 0.0 });
+    let gl = MatrixGroup::gl(2).expect("a group");
+    for d in [[-1.0, 2.0], [3.0, -1e-8], [-1.0, -1.0], [-5.0, -7.0]] {
+        let g = gl.element(diagonal(&d)).expect("invertible");
+        match gl.log(&g) {
+            Err(error @ Error::NoLogarithm { re, .. }) => {
+                assert!(re < 0.0);
+                assert!(error.to_string().contains("GL(2)"), "{error}");
+            }
+            other => panic!("{d:?}: {other:?}"),
+        }
+    }
+    let sp = MatrixGroup::sp(2).expect("a group");
+    let g = sp.element(diagonal(&[-2.0, -0.5])).expect("symplectic");
+    assert!(matches!(sp.log(&g), Err(Error::NoLogarithm { .. })));
+    let lorentz = MatrixGroup::indefinite(3, 1).expect("a group");
+    let reversal = lorentz.element(diagonal(&[1.0, 1.0, 1.0, -1.0])).expect("on the group");
+    assert!(matches!(lorentz.log(&reversal), Err(Error::NoLogarithm { .. })));
+
+    for n in [3, 5] {
+        let so = MatrixGroup::so(n).expect("a group");
+        let minus = GroupMatrix::new_unchecked(diagonal(&vec![-1.0; n]));
+        assert!(matches!(so.log(&minus), Err(Error::Reflection { arg: "g" })));
+        let mut nan = Mat::identity(n, n);
+        nan[(n - 1, 0)] = f64::NAN;
+        let nan = GroupMatrix::new_unchecked(nan);
+        assert!(matches!(so.log(&nan), Err(Error::NotFiniteEntry { .. })));
+        let mut far = Mat::identity(n, n);
+        far[(0, 1)] = 0.1;
+        assert!(matches!(
+            so.log(&GroupMatrix::new_unchecked(far)),
+            Err(Error::NotOnGroup { arg: "g", .. })
+        ));
+    }
+    let singular = GroupMatrix::new_unchecked(Mat::zeros(2, 2));
+    assert!(matches!(gl.log(&singular), Err(Error::Singular { .. })));
+    let wrong = GroupMatrix::new_unchecked(Mat::identity(3, 3));
+    assert!(matches!(gl.log(&wrong), Err(Error::Shape { .. })));
+}
+
+/// Wide scales and defective matrices.
+#[test]
+fn hard_matrices() {
+    let gl = |rows: &[&[f64]]| {
+        let n = rows.len();
+        let group = MatrixGroup::gl(n).expect("a group");
+        let g = group.element(Mat::from_fn(n, n, |i, j| rows[i][j])).expect("invertible");
+        (group, g)
+    };
+    // One Jordan block: log = N − N²/2 + …
+    let (group, g) = gl(&[&[1.0, 1.0, 0.0], &[0.0, 1.0, 1.0], &[0.0, 0.0, 1.0]]);
+    let u = group.log(&g).expect("log");
+    let expected = [[0.0, 1.0, -0.5], [0.0, 0.0, 1.0], [0.0, 0.0, 0.0]];
+    for i in 0..3 {
+        for j in 0..3 {
+            assert!((u[(i, j)] - expected[i][j]).abs() < 1e-14, "{u:?}");
+        }
+    }
+    // diag(1e6, 1e-6) is as good as two scalars.
+    let (group, g) = gl(&[&[1e6, 0.0], &[0.0, 1e-6]]);
+    let u = group.log(&g).expect("log");
+    assert!((u[(0, 0)] - 1e6f64.ln()).abs() < 1e-14 * 13.9, "{u:?}");
+    assert!((u[(1, 1)] - 1e-6f64.ln()).abs() < 1e-14 * 13.9, "{u:?}");
+    // Tiny: relative accuracy is kept.
+    let so = MatrixGroup::so(4).expect("a group");
+    let mut g = Mat::identity(4, 4);
+    (g[(0, 1)], g[(1, 0)], g[(2, 3)], g[(3, 2)]) = (-1e-200, 1e-200, 3e-310, -3e-310);
+    let u = so.log(&so.element(g).expect("a rotation")).expect("log");
+    assert!((u[(1, 0)] / 1e-200 - 1.0).abs() < 1e-15 && (u[(2, 3)] / 3e-310 - 1.0).abs() < 1e-12);
+}

@@ -1,0 +1,240 @@
+//! The suites catch broken methods: each fault here is put in on purpose, and the check of
+//! `laws.rs` or `orders.rs` that should see it must fail, for the reason it should.
+
+mod support;
+
+#[path = "mutations/actions.rs"]
+mod actions;
+#[path = "mutations/groups.rs"]
+mod groups;
+#[path = "mutations/maps.rs"]
+mod maps;
+#[path = "mutations/methods.rs"]
+mod methods;
+
+use lieflow::CoordinateMap;
+use lieflow::actions::{Coadjoint, LeftTranslation};
+use lieflow::groups::{MatrixGroup, So3};
+use lieflow::maps::{CCSK123, Cay, Exp};
+use lieflow::methods::{
+    Method, Rkmk, Tableau,
+    tableau::{HEUN, RK4, THREE_EIGHTHS},
+};
+use maps::{Faulty, WrongSign};
+use rand_pcg::Pcg64;
+use support::orders::{Flow, measure, measure_as, order_conditions, reference, wave};
+use support::represent::Represent;
+use support::{Verdict, holds, laws};
+
+const CASES: u32 = 32;
+
+fn so(n: usize) -> MatrixGroup {
+    MatrixGroup::so(n).unwrap()
+}
+
+/// The check failed, and its message says so in these words.
+fn caught(verdict: Verdict, reason: &str) {
+    match verdict {
+        Ok(()) => panic!("a fault was not seen, expected: {reason}"),
+        Err(seen) => assert!(seen.contains(reason), "seen: {seen}\nexpected: {reason}"),
+    }
+}
+
+fn map_laws<G: Represent, Psi: CoordinateMap<G>>(group: &G, psi: &Psi) -> Verdict {
+    holds(CASES, |rng: &mut Pcg64| laws::map(group, psi, 1.0, rng))
+}
+
+/// Does the harness find the order that the method claims, on the group's translation problem? And
+/// which order does it find on the grid of order `real`?
+fn order_on<G: Represent, M: Method<Flow<G, LeftTranslation>>>(
+    real: usize,
+    group: G,
+    method: &M,
+) -> (Verdict, Verdict)
+where
+    Cay: CoordinateMap<G>,
+{
+    let n = group.element_matrix(&group.identity()).nrows();
+    let flow = Flow::new(group, LeftTranslation, wave(n, 0.5, 12));
+    let reference = reference(&flow, flow.start(7));
+    let claim = measure(&flow, method, &reference).and_then(|e| e.check());
+    (claim, measure_as(real, &flow, method, &reference).and_then(|e| e.check()))
+}
+
+/// The harness refuses the claim, and finds the order that the fault leaves.
+fn falls_to<G: Represent, M: Method<Flow<G, LeftTranslation>>>(real: usize, group: G, method: &M)
+where
+    Cay: CoordinateMap<G>,
+{
+    let (claim, left) = order_on(real, group, method);
+    assert!(claim.is_err(), "the claimed order was found");
+    left.unwrap();
+}
+
+/// The harness finds order 4: it is the fault that it sees, not the code around it.
+fn keeps_order_4<G: Represent, M: Method<Flow<G, LeftTranslation>>>(group: G, method: &M)
+where
+    Cay: CoordinateMap<G>,
+{
+    order_on(4, group, method).0.unwrap();
+}
+
+const DIFFERENTIAL: &str = "Ψ(u + ε dΨ_u⁻¹v) = Ψ(εv)Ψ(u) + O(ε²)";
+
+#[test]
+fn dexpinv_without_its_brackets() {
+    let psi = Faulty(Exp, maps::Fault::NoDifferential);
+    caught(map_laws(&so(4), &psi), DIFFERENTIAL);
+    caught(map_laws(&So3::new(), &psi), DIFFERENTIAL);
+    falls_to(2, so(5), &Rkmk::new(RK4, psi));
+    falls_to(2, So3::new(), &Rkmk::new(RK4, psi));
+}
+
+#[test]
+fn a_wrong_baker_coefficient() {
+    let psi = Faulty(Exp, maps::Fault::Baker2);
+    caught(map_laws(&so(4), &psi), DIFFERENTIAL);
+    falls_to(3, so(5), &Rkmk::new(RK4, psi));
+}
+
+/// No method of order 4 can show this one; the law can.
+#[test]
+fn a_wrong_sign_in_the_fourth_baker_coefficient() {
+    let psi = Faulty(Exp, maps::Fault::Baker4Sign);
+    caught(map_laws(&so(4), &psi), DIFFERENTIAL);
+    caught(map_laws(&MatrixGroup::gl(3).unwrap(), &psi), DIFFERENTIAL);
+    keeps_order_4(so(5), &Rkmk::new(RK4, psi));
+}
+
+#[test]
+fn the_wrong_trivialisation() {
+    for_each_map(maps::Fault::LeftTrivialised, DIFFERENTIAL);
+    falls_to(2, so(5), &Rkmk::new(RK4, Faulty(Exp, maps::Fault::LeftTrivialised)));
+    falls_to(2, so(5), &Rkmk::new(RK4, Faulty(Cay, maps::Fault::LeftTrivialised)));
+}
+
+#[test]
+fn cayley_without_its_factors() {
+    let psi = Faulty(Cay, maps::Fault::NoQuarter);
+    caught(map_laws(&So3::new(), &psi), DIFFERENTIAL);
+    caught(map_laws(&MatrixGroup::sp(4).unwrap(), &psi), DIFFERENTIAL);
+    falls_to(2, So3::new(), &Rkmk::new(RK4, psi));
+    let psi = Faulty(Cay, maps::Fault::NoHalf);
+    caught(map_laws(&So3::new(), &psi), "dΨ₀⁻¹ = id");
+}
+
+#[test]
+fn ccsk_with_a_wrong_sign() {
+    caught(map_laws(&So3::new(), &WrongSign), DIFFERENTIAL);
+    falls_to(1, So3::new(), &Rkmk::new(RK4, WrongSign));
+}
+
+#[test]
+fn a_map_that_leaves_the_group() {
+    let psi = Faulty(Exp, maps::Fault::OffGroup);
+    for group in [so(4), MatrixGroup::sp(4).unwrap(), MatrixGroup::indefinite(3, 1).unwrap()] {
+        caught(holds(CASES, |rng| laws::map::closure(&group, &psi, 1.0, rng)), "Ψ(u) ∈ G");
+    }
+}
+
+#[test]
+fn a_short_way_that_is_another_way() {
+    for_each_map(maps::Fault::OnInverse, "psi_on = Ψ(u)·x");
+}
+
+#[test]
+fn a_workspace_that_remembers() {
+    for_each_map(maps::Fault::Stale, "depends on what was evaluated before");
+}
+
+fn for_each_map(fault: maps::Fault, reason: &str) {
+    caught(map_laws(&so(4), &Faulty(Exp, fault)), reason);
+    caught(map_laws(&so(4), &Faulty(Cay, fault)), reason);
+    caught(map_laws(&so(4), &Faulty(CCSK123, fault)), reason);
+    caught(map_laws(&So3::new(), &Faulty(CCSK123, fault)), reason);
+}
+
+#[test]
+fn actions_from_the_wrong_side() {
+    for fault in [actions::Fault::Transposed, actions::Fault::Swapped] {
+        let action = actions::Translation(fault);
+        let law = holds(CASES, |rng| laws::action(&so(4), &action, rng));
+        caught(law, "Λ(ab, p) = Λ(a, Λ(b, p))");
+        // The equation means the same, its reference is the same, and the method misses it.
+        let flow = Flow::new(so(4), action, wave(4, 0.5, 12));
+        let sound = Flow::new(so(4), LeftTranslation, wave(4, 0.5, 12));
+        let reference = reference(&sound, sound.start(7)).of_the_same_points(&flow);
+        caught(measure(&flow, &Rkmk::new(RK4, Exp), &reference).map(|_| ()), "too few errors");
+    }
+}
+
+/// The congruence g m gᵀ passes as an action; only the pairing tells it from the coadjoint one.
+#[test]
+fn congruence_in_place_of_the_coadjoint_action() {
+    let pairing = |group: &MatrixGroup| {
+        holds(CASES, |rng| laws::coadjoint_pairing(group, &actions::Congruence, rng))
+    };
+    pairing(&so(4)).unwrap();
+    for group in [MatrixGroup::gl(3).unwrap(), MatrixGroup::sp(4).unwrap()] {
+        caught(pairing(&group), "⟨Λ(g,m),v⟩ = ⟨m,g⁻¹vg⟩");
+        holds(CASES, |rng| laws::coadjoint_pairing(&group, &Coadjoint, rng)).unwrap();
+    }
+}
+
+#[test]
+fn groups_with_a_wrong_bracket_or_product() {
+    let lorentz = || MatrixGroup::indefinite(3, 1).unwrap();
+    let short_cut = groups::Faulty(lorentz(), groups::Fault::ShortCut);
+    caught(holds(CASES, |rng| laws::algebra(&short_cut, rng)), "[u,v] = uv − vu");
+    let reversed = groups::Faulty(so(4), groups::Fault::Reversed);
+    caught(holds(CASES, |rng| laws::algebra(&reversed, rng)), "[u,v] = uv − vu");
+    let swapped = groups::Faulty(lorentz(), groups::Fault::Swapped);
+    caught(holds(CASES, |rng| laws::group(&swapped, rng)), "a·b");
+}
+
+#[test]
+fn methods_with_a_wrong_stage() {
+    use methods::{Fault, Faulty};
+    for tableau in [RK4, THREE_EIGHTHS] {
+        keeps_order_4(so(5), &Faulty(tableau, Fault::None));
+        falls_to(1, so(5), &Faulty(tableau, Fault::FrozenTime));
+    }
+    // The row sums are right, hence order 2.
+    falls_to(2, so(5), &Faulty(THREE_EIGHTHS, Fault::ReversedRows));
+    caught(order_on(4, so(5), &Faulty(RK4, Fault::WrongBase)).0, "too few errors");
+}
+
+#[test]
+fn two_commutators_with_the_wrong_stage() {
+    keeps_order_4(so(5), &methods::TwoCommutators { wrong: false });
+    falls_to(2, so(5), &methods::TwoCommutators { wrong: true });
+}
+
+#[test]
+fn tableaus_with_a_wrong_coefficient() {
+    let c = |t: Tableau<4>| order_conditions(&t);
+    // a₃₁ and a₃₂ exchanged: the row sum is the same.
+    let mut swapped = THREE_EIGHTHS;
+    swapped.a[2].swap(0, 1);
+    caught(c(swapped), "condition of");
+    falls_to(2, so(5), &Rkmk::new(swapped, Exp));
+    // Stage 3 of RK4 built on k₁ in place of k₂.
+    let mut first = RK4;
+    first.a[2].swap(0, 1);
+    caught(c(first), "condition of");
+    falls_to(2, so(5), &Rkmk::new(first, Exp));
+    // Weights exchanged.
+    let mut weights = RK4;
+    weights.b.swap(2, 3);
+    caught(c(weights), "condition of");
+    falls_to(1, so(5), &Rkmk::new(weights, Exp));
+    // A node that is not its row sum: only a problem with time in it can tell.
+    let mut node = RK4;
+    node.c[3] = 0.5;
+    caught(c(node), "Σ a_ij");
+    falls_to(1, so(5), &Rkmk::new(node, Exp));
+    // An order claimed too high or too low.
+    caught(order_conditions(&Tableau { order: 3, ..HEUN }), "condition of");
+    caught(order_conditions(&Tableau { order: 3, ..RK4 }), "higher order");
+    falls_to(2, so(5), &Rkmk::new(Tableau { order: 3, ..HEUN }, Exp));
+}
