@@ -567,11 +567,12 @@ mod special;
 pub use embedded::{Doubled, OnEmbedded, with_embedded_method};
 pub use lists::{
     ATTITUDE_METHODS, BODY_METHODS, IMPLICIT_METHODS, ISOSPECTRAL_METHODS, LIE_POISSON_METHODS,
+    SERIES_METHODS,
 };
 use special::misfit;
 pub use special::{
     Needs, all_methods, with_attitude_method, with_body_method, with_implicit_method,
-    with_lie_poisson_method, with_momentum_method,
+    with_lie_poisson_method, with_momentum_method, with_series_method,
 };
 
 /// What to do with a method, whatever its type.

@@ -62,21 +62,24 @@ pub const IMPLICIT_METHODS: &[MethodInfo] = &[
         "Gauss collocation of three stages on the entries of the state",
         [QUADRATIC, "5–20 × 3 F", GAUSS],
     ),
-    in_coordinates(plain(
-        RKMK,
-        "rkmk-gauss4",
-        Some(4),
-        "implicit Runge–Kutta–Munthe-Kaas on the Gauss tableau of two stages",
-        [KEEPS_GROUP, "5–20 × (2 f, 2 Ψ, 2 dΨ⁻¹)", ZANNA],
-    )),
-    in_coordinates(plain(
-        RKMK,
-        "rkmk-gauss4-symmetric",
-        Some(4),
-        "implicit Runge–Kutta–Munthe-Kaas, its chart in the middle; exp or cay",
-        ["group, Casimirs, time symmetry", "5–20 × (2 f, 3 Ψ, 2 dΨ⁻¹)", ZANNA],
-    )),
+    rkmk_gauss("rkmk-gauss2", 2, "5–20 × (f, Ψ, dΨ⁻¹)"),
+    rkmk_gauss("rkmk-gauss4", 4, "5–20 × (2 f, 2 Ψ, 2 dΨ⁻¹)"),
+    rkmk_gauss("rkmk-gauss6", 6, "5–20 × (3 f, 3 Ψ, 3 dΨ⁻¹)"),
+    rkmk_gauss_symmetric("rkmk-gauss2-symmetric", 2, "5–20 × (f, 2 Ψ, dΨ⁻¹)"),
+    rkmk_gauss_symmetric("rkmk-gauss4-symmetric", 4, "5–20 × (2 f, 3 Ψ, 2 dΨ⁻¹)"),
+    rkmk_gauss_symmetric("rkmk-gauss6-symmetric", 6, "5–20 × (3 f, 4 Ψ, 3 dΨ⁻¹)"),
 ];
+
+const fn rkmk_gauss(name: &'static str, order: usize, cost: &'static str) -> MethodInfo {
+    let summary = "implicit Runge–Kutta–Munthe-Kaas on a Gauss tableau";
+    in_coordinates(plain(RKMK, name, Some(order), summary, [KEEPS_GROUP, cost, ZANNA]))
+}
+
+const fn rkmk_gauss_symmetric(name: &'static str, order: usize, cost: &'static str) -> MethodInfo {
+    let summary = "the same with its chart in the middle of the step; exp or cay";
+    let keeps = "group, Casimirs, time symmetry";
+    in_coordinates(plain(RKMK, name, Some(order), summary, [keeps, cost, ZANNA]))
+}
 
 const SPLIT: &str = "group, Casimirs, symplectic structure, time symmetry";
 const ALL_FIRST: &str = "energy, group, Casimirs, time symmetry";
@@ -88,26 +91,58 @@ const fn dmv(name: &'static str, order: usize, summary: &'static str) -> MethodI
     plain(DISCRETE, name, Some(order), summary, [ALL_FIRST, NEWTON, SOURCE])
 }
 
-const fn taylor(name: &'static str, order: usize, cost: &'static str) -> MethodInfo {
-    let summary = "Lie series of the rotation, taken to the unit quaternions";
-    plain(SERIES, name, Some(order), summary, [KEEPS_GROUP, cost, "Gröbner 1960"])
+const fn mr2(name: &'static str) -> MethodInfo {
+    let summary = "McLachlan–Reich splitting, the axes in this order (123 if none is named)";
+    plain(SPLITTING, name, Some(2), summary, [SPLIT, "5 axis rotations", MCLACHLAN])
+}
+
+const fn mr4(name: &'static str) -> MethodInfo {
+    let summary =
+        "McLachlan–Reich by the triple jump, the axes in this order (123 if none is named)";
+    plain(SPLITTING, name, Some(4), summary, [SPLIT, "13 axis rotations", MCLACHLAN])
 }
 
 /// Methods for the free rigid body in ℝ³: `with_body_method`.
 pub const BODY_METHODS: &[MethodInfo] = &[
+    mr2("mr2"),
+    mr2("mr2-132"),
+    mr2("mr2-213"),
+    mr2("mr2-231"),
+    mr2("mr2-312"),
+    mr2("mr2-321"),
+    mr4("mr4"),
+    mr4("mr4-132"),
+    mr4("mr4-213"),
+    mr4("mr4-231"),
+    mr4("mr4-312"),
+    mr4("mr4-321"),
     plain(
         SPLITTING,
-        "mr2",
-        Some(2),
-        "McLachlan–Reich splitting, ordering 123",
-        [SPLIT, "5 axis rotations", MCLACHLAN],
+        "mr4-suzuki",
+        Some(4),
+        "McLachlan–Reich composed by Suzuki's fractal",
+        [SPLIT, "21 axis rotations", "McLachlan 1993; Suzuki 1990"],
     ),
     plain(
         SPLITTING,
-        "mr4",
-        Some(4),
-        "McLachlan–Reich splitting, triple jump, ordering 123",
-        [SPLIT, "13 axis rotations", MCLACHLAN],
+        "mr6",
+        Some(6),
+        "McLachlan–Reich composed by nine stages",
+        [SPLIT, "37 axis rotations", "McLachlan 1993; Kahan & Li 1997"],
+    ),
+    plain(
+        SPLITTING,
+        "mr8",
+        Some(8),
+        "McLachlan–Reich composed by seventeen stages",
+        [SPLIT, "69 axis rotations", "McLachlan 1993; Kahan & Li 1997"],
+    ),
+    plain(
+        SPLITTING,
+        "mr10",
+        Some(10),
+        "McLachlan–Reich composed by thirty-five stages",
+        [SPLIT, "141 axis rotations", "McLachlan 1993; Sofroniou & Spaletta 2005"],
     ),
     plain(
         MOMENTUM,
@@ -122,6 +157,27 @@ pub const BODY_METHODS: &[MethodInfo] = &[
         Some(2),
         "Simo and Wong's implicit method with k = 1: the midpoint rule in cay",
         [ALL_FIRST, NEWTON, "Austin, Krishnaprasad & Wang 1993"],
+    ),
+    plain(
+        MOMENTUM,
+        "lewis-simo",
+        None,
+        "the same with the k that makes the momentum of order 4 (the attitude stays at 2)",
+        [ALL_FIRST, NEWTON, "Lewis & Simo 1994"],
+    ),
+    plain(
+        MOMENTUM,
+        "simo-wong4",
+        Some(4),
+        "Simo and Wong's method composed by Suzuki's fractal",
+        [ALL_FIRST, "5 simo-wong", "Simo & Wong 1991; Suzuki 1990"],
+    ),
+    plain(
+        MOMENTUM,
+        "simo-wong6",
+        Some(6),
+        "Simo and Wong's method composed by nine stages",
+        [ALL_FIRST, "9 simo-wong", "Simo & Wong 1991; Kahan & Li 1997"],
     ),
     plain(
         SERIES,
@@ -142,12 +198,23 @@ pub const BODY_METHODS: &[MethodInfo] = &[
         "the exact motion by elliptic functions, any step",
         ["everything", "1–2 µs whatever the step", "Jacobi 1850"],
     ),
-    taylor("taylor4", 4, "150 multiplications"),
-    taylor("taylor6", 6, "315 multiplications"),
-    taylor("taylor8", 8, "540 multiplications"),
-    taylor("taylor10", 10, "825 multiplications"),
-    taylor("taylor12", 12, "1170 multiplications"),
-    taylor("taylor16", 16, "2040 multiplications"),
+];
+
+const fn taylor(name: &'static str, order: usize, cost: &'static str) -> MethodInfo {
+    let summary = "Lie series: derivatives by recurrence, the flow taken to the group";
+    plain(SERIES, name, Some(order), summary, [KEEPS_GROUP, cost, "Gröbner 1960"])
+}
+
+/// Methods for fields with Taylor coefficients by recurrence: `with_series_method`, and the free
+/// rigid body in ℝ³.
+pub const SERIES_METHODS: &[MethodInfo] = &[
+    taylor("taylor4", 4, "150 multiplications in ℝ³; 20 products"),
+    taylor("taylor6", 6, "315 multiplications in ℝ³; 42 products"),
+    taylor("taylor8", 8, "540 multiplications in ℝ³; 72 products"),
+    taylor("taylor10", 10, "825 multiplications in ℝ³; 110 products"),
+    taylor("taylor12", 12, "1170 multiplications in ℝ³; 156 products"),
+    taylor("taylor14", 14, "1575 multiplications in ℝ³; 210 products"),
+    taylor("taylor16", 16, "2040 multiplications in ℝ³; 272 products"),
 ];
 
 const NEAREST: &str = "Hairer, Lubich, Wanner, Geometric Numerical Integration, IV.4";
@@ -170,18 +237,38 @@ pub const ATTITUDE_METHODS: &[MethodInfo] = &[
     ),
 ];
 
+const fn energy_casimir(
+    name: &'static str,
+    order: usize,
+    summary: &'static str,
+    cost: &'static str,
+) -> MethodInfo {
+    let keeps = "energy, Casimirs, time symmetry";
+    let source = "after Simo & Wong 1991; Lewis & Simo 1994";
+    in_coordinates(plain(LIE_POISSON, name, Some(order), summary, [keeps, cost, source]))
+}
+
 /// Methods for Lie–Poisson systems: `with_momentum_method`, `with_lie_poisson_method`.
-pub const LIE_POISSON_METHODS: &[MethodInfo] = &[in_coordinates(plain(
-    LIE_POISSON,
-    "energy-casimir",
-    Some(2),
-    "discrete gradient in the algebra and coadjoint action; exp or cay",
-    [
-        "energy, Casimirs, time symmetry",
+pub const LIE_POISSON_METHODS: &[MethodInfo] = &[
+    energy_casimir(
+        "energy-casimir",
+        2,
+        "discrete gradient in the algebra and coadjoint action; exp or cay",
         "5–20 × (∇H, Ψ, Λ)",
-        "after Simo & Wong 1991; Lewis & Simo 1994",
-    ],
-))];
+    ),
+    energy_casimir(
+        "energy-casimir4",
+        4,
+        "energy-casimir composed by Suzuki's fractal; exp or cay",
+        "5 energy-casimir",
+    ),
+    energy_casimir(
+        "energy-casimir6",
+        6,
+        "energy-casimir composed by nine stages; exp or cay",
+        "9 energy-casimir",
+    ),
+];
 
 const fn isospectral(
     name: &'static str,

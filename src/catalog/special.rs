@@ -12,23 +12,27 @@
 //! |---|---|---|
 //! | [`with_method`] | [`Ambient`] | `Field` |
 //! | [`with_implicit_method`] | and points with a norm | `Field`, `Norm` |
-//! | [`with_body_method`] | a free rigid body in ℝ³ | `Field`, `Norm`, `Body` |
-//! | [`with_attitude_method`] | and its attitude in the state | `Field`, `Norm`, `Body`, `Attitude` |
-//! | [`with_momentum_method`] | the body by its momentum | `Field`, `Norm`, `Body`, `LiePoisson` |
-//! | [`with_lie_poisson_method`] | momenta as matrices | `Field`, `Norm`, `LiePoisson`, `Isospectral` |
+//! | [`with_series_method`] | Taylor coefficients by recurrence | `Field`, `Norm`, `Series` |
+//! | [`with_lie_poisson_method`] | momenta as matrices | `Field`, `Norm`, `Series`, `LiePoisson`, `Isospectral` |
+//! | [`with_body_method`] | a free rigid body in ℝ³ | `Field`, `Norm`, `Series`, `Body` |
+//! | [`with_attitude_method`] | and its attitude in the state | `Field`, `Norm`, `Series`, `Body`, `Attitude` |
+//! | [`with_momentum_method`] | the body by its momentum | `Field`, `Norm`, `Series`, `Body`, `LiePoisson` |
 //! | [`with_linear_method`](super::with_linear_method) | ẏ = λ_*(A(t))(y) | `LinearType` |
 //!
-//! Each of the first six hands what is not its own to the function that it extends.
+//! Each but the last hands what is not its own to the function that it extends. With the visitor
+//! [`Doubled`](super::Doubled) any of them serves an adaptive run.
 
 use super::*;
-use crate::groups::LieAlgebra;
+use crate::actions::Coadjoint;
+use crate::groups::{LieAlgebra, MatrixGroup};
 use crate::methods::{
-    Buss4, DMV2, DMV4, DMV6, DMV8, DMV10, EnergyCasimir, ExactMotion, GAUSS2, GAUSS4, GAUSS6,
-    Gauss, IsospectralGauss, MR2, MR4, Metric, Projected, RkmkGauss, RkmkGaussSymmetric, SimoWong,
-    Taylor,
+    Buss4, Composition, DMV2, DMV4, DMV6, DMV8, DMV10, EnergyCasimir, ExactMotion, GAUSS2, GAUSS4,
+    GAUSS6, Gauss, IsospectralGauss, KAHAN_LI6, KAHAN_LI8, LieSeries, Metric, Projected, RkmkGauss,
+    RkmkGaussSymmetric, SOFRONIOU_SPALETTA10, STRANG, SUZUKI4, Scheme, SeriesGroup, SimoWong,
+    Splitting, Taylor, YOSHIDA4,
 };
 use crate::problems::{
-    FreeBody, Isospectral, LiePoisson, Orthogonal, PointOf, Projection, ScalarOf, Split,
+    FreeBody, LiePoisson, Orthogonal, PointOf, Problem, Projection, ScalarOf, Split, TaylorField,
 };
 
 /// What a method asks of a problem beyond f, and so what a problem may offer.
@@ -41,22 +45,25 @@ pub enum Needs {
     LinearType,
     /// A norm of the points ([`Metric`]).
     Norm,
+    /// Taylor coefficients by recurrence ([`TaylorField`]).
+    Series,
     /// The free rigid body in ℝ³ ([`FreeBody`], [`Split`]).
     Body,
     /// An orthogonal matrix in the state ([`Orthogonal`]).
     Attitude,
     /// A Hamiltonian on 𝔤* ([`LiePoisson`]).
     LiePoisson,
-    /// Ẇ = \[B(W), W\] ([`Isospectral`]).
+    /// The coadjoint action on matrices ([`Coadjoint`]): Ẇ = \[f, W\] for W = mᵀ.
     Isospectral,
 }
 
 impl Needs {
     /// Each of them.
-    pub const ALL: [Needs; 7] = [
+    pub const ALL: [Needs; 8] = [
         Needs::Field,
         Needs::LinearType,
         Needs::Norm,
+        Needs::Series,
         Needs::Body,
         Needs::Attitude,
         Needs::LiePoisson,
@@ -69,6 +76,7 @@ impl Needs {
             Needs::Field => METHODS,
             Needs::LinearType => LINEAR_METHODS,
             Needs::Norm => IMPLICIT_METHODS,
+            Needs::Series => SERIES_METHODS,
             Needs::Body => BODY_METHODS,
             Needs::Attitude => ATTITUDE_METHODS,
             Needs::LiePoisson => LIE_POISSON_METHODS,
@@ -86,6 +94,7 @@ impl Needs {
             Needs::Field => "it needs a vector field on the linear space around M",
             Needs::LinearType => "it needs an equation of linear type, f(t, y) = A(t)",
             Needs::Norm => "it needs a norm of the states",
+            Needs::Series => "it needs a field with Taylor coefficients by recurrence",
             Needs::Body => "it needs a free rigid body in three dimensions",
             Needs::Attitude => "it needs an attitude in the state",
             Needs::LiePoisson => "it needs a Lie–Poisson system, given by its momentum",
@@ -154,22 +163,78 @@ where
     Exp: CoordinateMap<P::Group>,
     Cay: CoordinateMap<P::Group>,
 {
+    let map = spec.map.as_deref().unwrap_or("exp");
     match spec.info()?.name {
         "midpoint-implicit" => Ok(on.call(Gauss(GAUSS2))),
         "gauss4" => Ok(on.call(Gauss(GAUSS4))),
         "gauss6" => Ok(on.call(Gauss(GAUSS6))),
-        "rkmk-gauss4" => {
-            let map = spec.map.as_deref().unwrap_or("exp");
-            each_map!(map, spec.q, psi => on.call(RkmkGauss::new(GAUSS4, psi)))
+        "rkmk-gauss2" => each_map!(map, spec.q, psi => on.call(RkmkGauss::new(GAUSS2, psi))),
+        "rkmk-gauss4" => each_map!(map, spec.q, psi => on.call(RkmkGauss::new(GAUSS4, psi))),
+        "rkmk-gauss6" => each_map!(map, spec.q, psi => on.call(RkmkGauss::new(GAUSS6, psi))),
+        "rkmk-gauss2-symmetric" => {
+            each_odd_map!(spec, psi => on.call(RkmkGaussSymmetric::new(GAUSS2, psi)))
         }
         "rkmk-gauss4-symmetric" => {
             each_odd_map!(spec, psi => on.call(RkmkGaussSymmetric::new(GAUSS4, psi)))
+        }
+        "rkmk-gauss6-symmetric" => {
+            each_odd_map!(spec, psi => on.call(RkmkGaussSymmetric::new(GAUSS6, psi)))
         }
         _ => with_method(spec, on),
     }
 }
 
-/// [`with_implicit_method`] and [`BODY_METHODS`]: the free rigid body in ℝ³.
+/// [`with_implicit_method`] and [`SERIES_METHODS`]: fields with Taylor coefficients by recurrence.
+///
+/// # Errors
+/// As [`with_method`].
+pub fn with_series_method<P: Ambient + TaylorField, V: OnMethod<P>>(
+    spec: &MethodSpec,
+    on: V,
+) -> Result<V::Out, Error>
+where
+    P::Group: CatalogGroup + SeriesGroup,
+    PointOf<P>: Metric<Scalar = f64>,
+    Exp: CoordinateMap<P::Group>,
+    Cay: CoordinateMap<P::Group>,
+{
+    match spec.info()?.name {
+        "taylor4" => Ok(on.call(LieSeries::new(4)?)),
+        "taylor6" => Ok(on.call(LieSeries::new(6)?)),
+        "taylor8" => Ok(on.call(LieSeries::new(8)?)),
+        "taylor10" => Ok(on.call(LieSeries::new(10)?)),
+        "taylor12" => Ok(on.call(LieSeries::new(12)?)),
+        "taylor14" => Ok(on.call(LieSeries::new(14)?)),
+        "taylor16" => Ok(on.call(LieSeries::new(16)?)),
+        _ => with_implicit_method(spec, on),
+    }
+}
+
+/// The splitting that a name asks for.
+fn splitting(name: &str) -> Option<Splitting<3>> {
+    let (scheme, axes) = name.split_once('-').unwrap_or((name, "123"));
+    let scheme: Scheme = match (scheme, axes) {
+        ("mr4", "suzuki") => return Some(Splitting::new([0, 1, 2], SUZUKI4)),
+        ("mr2", _) => STRANG,
+        ("mr4", _) => YOSHIDA4,
+        ("mr6", _) => KAHAN_LI6,
+        ("mr8", _) => KAHAN_LI8,
+        ("mr10", _) => SOFRONIOU_SPALETTA10,
+        _ => return None,
+    };
+    let parts = match axes {
+        "123" => [0, 1, 2],
+        "132" => [0, 2, 1],
+        "213" => [1, 0, 2],
+        "231" => [1, 2, 0],
+        "312" => [2, 0, 1],
+        "321" => [2, 1, 0],
+        _ => return None,
+    };
+    Some(Splitting::new(parts, scheme))
+}
+
+/// [`with_implicit_method`], [`SERIES_METHODS`] and [`BODY_METHODS`]: the free rigid body in ℝ³.
 ///
 /// # Errors
 /// As [`with_method`].
@@ -183,11 +248,16 @@ where
     Exp: CoordinateMap<P::Group>,
     Cay: CoordinateMap<P::Group>,
 {
-    match spec.info()?.name {
-        "mr2" => Ok(on.call(MR2)),
-        "mr4" => Ok(on.call(MR4)),
+    let name = spec.info()?.name;
+    if let Some(splitting) = splitting(name) {
+        return Ok(on.call(splitting));
+    }
+    match name {
         "simo-wong" => Ok(on.call(SimoWong::TAN)),
         "simo-wong-k1" => Ok(on.call(SimoWong::ONE)),
+        "lewis-simo" => Ok(on.call(SimoWong::LEWIS_SIMO)),
+        "simo-wong4" => Ok(on.call(Composition::new(SimoWong::TAN, SUZUKI4))),
+        "simo-wong6" => Ok(on.call(Composition::new(SimoWong::TAN, KAHAN_LI6))),
         "buss4" => Ok(on.call(Buss4)),
         "dmv2" => Ok(on.call(DMV2)),
         "dmv4" => Ok(on.call(DMV4)),
@@ -200,6 +270,7 @@ where
         "taylor8" => Ok(on.call(Taylor::<8>)),
         "taylor10" => Ok(on.call(Taylor::<10>)),
         "taylor12" => Ok(on.call(Taylor::<12>)),
+        "taylor14" => Ok(on.call(Taylor::<14>)),
         "taylor16" => Ok(on.call(Taylor::<16>)),
         _ => with_implicit_method(spec, on),
     }
@@ -226,6 +297,20 @@ where
     }
 }
 
+/// Hand the energy and Casimir preserving method of that name to `$on`, or go on to `$else`.
+macro_rules! each_energy_casimir {
+    ($spec:expr, $on:expr, else => $else:expr) => {
+        match $spec.info()?.name {
+            "energy-casimir" => each_odd_map!($spec, psi => $on.call(EnergyCasimir::new(psi))),
+            "energy-casimir4" => each_odd_map!($spec, psi =>
+                $on.call(Composition::new(EnergyCasimir::new(psi), SUZUKI4))),
+            "energy-casimir6" => each_odd_map!($spec, psi =>
+                $on.call(Composition::new(EnergyCasimir::new(psi), KAHAN_LI6))),
+            _ => $else,
+        }
+    };
+}
+
 /// [`with_body_method`] and [`LIE_POISSON_METHODS`]: the body in ℝ³ by its momentum.
 ///
 /// # Errors
@@ -240,26 +325,21 @@ where
     Exp: CoordinateMap<P::Group>,
     Cay: CoordinateMap<P::Group>,
 {
-    match spec.info()?.name {
-        "energy-casimir" => each_odd_map!(spec, psi => on.call(EnergyCasimir::new(psi))),
-        _ => with_body_method(spec, on),
-    }
+    each_energy_casimir!(spec, on, else => with_body_method(spec, on))
 }
 
-/// [`with_implicit_method`], [`LIE_POISSON_METHODS`] and [`ISOSPECTRAL_METHODS`]: momenta as
-/// matrices.
+/// [`with_series_method`], [`LIE_POISSON_METHODS`] and [`ISOSPECTRAL_METHODS`]: momenta as matrices.
 ///
 /// # Errors
 /// As [`with_method`].
-pub fn with_lie_poisson_method<P: LiePoisson + Isospectral, V: OnMethod<P>>(
-    spec: &MethodSpec,
-    on: V,
-) -> Result<V::Out, Error> {
+pub fn with_lie_poisson_method<P, V: OnMethod<P>>(spec: &MethodSpec, on: V) -> Result<V::Out, Error>
+where
+    P: LiePoisson + TaylorField + Problem<Group = MatrixGroup, Action = Coadjoint>,
+{
     match spec.info()?.name {
-        "energy-casimir" => each_odd_map!(spec, psi => on.call(EnergyCasimir::new(psi))),
         "isospectral2" => Ok(on.call(IsospectralGauss(GAUSS2))),
         "isospectral4" => Ok(on.call(IsospectralGauss(GAUSS4))),
         "isospectral6" => Ok(on.call(IsospectralGauss(GAUSS6))),
-        _ => with_implicit_method(spec, on),
+        _ => each_energy_casimir!(spec, on, else => with_series_method(spec, on)),
     }
 }

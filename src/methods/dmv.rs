@@ -10,7 +10,8 @@
 //! κ = ½h²|m|², which do not change along the motion: what depends on J is computed once.
 //!
 //! Preserves: energy, |m|, gm and the group to rounding at every order, the Poisson structure, time
-//! symmetry: it is the exact motion in another time. Converges for h|m|/min J ≤ 1. Cost: 3 to 5
+//! symmetry: it is the exact motion in another time. Converges for h|m|/min J ≤ 1; beyond that
+//! not for every m, and then fails with [`StepError::NewtonDidNotConverge`]. Cost: 3 to 5
 //! Newton iterations of one 3×3 solve each, one cay, and at most 30 multiplications for σ and δ;
 //! no trigonometric function.
 //! Source: J. Moser & A. P. Veselov, Comm. Math. Phys. 139 (1991); R. McLachlan & A. Zanna, Found.

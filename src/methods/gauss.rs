@@ -6,8 +6,9 @@
 //! Order 2S. Preserves: every quadratic invariant to the rounding of the iteration (|m|², gᵀg, gm,
 //! the energy of a rigid body by its momentum), time symmetry, the symplectic structure of linear
 //! symplectic spaces; not the group at large. The stages are found by fixed-point iteration, which
-//! converges while h times the Lipschitz constant of F stays below about 1. Cost: S evaluations of F
-//! an iteration, 5 to 20 iterations.
+//! converges while h times the Lipschitz constant of F stays below about 1; beyond that the step fails
+//! with [`StepError::FixedPointDidNotConverge`], which names the last change, and a run that stops says
+//! t and h with it. Cost: S evaluations of F an iteration, 5 to 20 iterations.
 //! Source: Hairer, Lubich, Wanner, Geometric Numerical Integration, II.1.3, IV.2.
 
 use super::newton::Progress;

@@ -9,9 +9,10 @@
 //! because the step back has it at the other end. The second has it in the middle, and is symmetric
 //! for maps with Ψ(−u) = Ψ(u)⁻¹.
 //!
-//! Order 2S. Preserves: the group, and what the action leaves invariant. The stages are found by
-//! fixed-point iteration, which converges while h times the Lipschitz constant of f stays below
-//! about 1. Cost: an iteration has S times f, Ψ and dΨ⁻¹ (and one Ψ more in the middle), 5 to 20
+//! Order 2S. Preserves: the group, and what the action leaves invariant; not the energy, and no
+//! symplectic structure. The stages are found by fixed-point iteration, which converges while h times
+//! the Lipschitz constant of f stays below about 1; beyond that the step fails with
+//! [`StepError::FixedPointDidNotConverge`]. Cost: an iteration has S times f, Ψ and dΨ⁻¹ (and one Ψ more in the middle), 5 to 20
 //! iterations.
 //! Source: A. Zanna, K. Engø & H. Munthe-Kaas, Adjoint and selfadjoint Lie-group methods, BIT 41
 //! (2001).

@@ -1,14 +1,20 @@
-//! Isospectral symplectic Runge–Kutta methods on so(n).
+//! Isospectral symplectic Runge–Kutta methods for Lie–Poisson systems on any matrix algebra.
 //!
-//! Ẇ = \[B(W), W\], B(W) ∈ so(n). With a Gauss tableau (a, b):
-//! Q_i = 𝟙 + h Σ_j a_ij B_j Q_j, B_j = B(W̃_j), W̃_j = Q_j W Q_jᵀ;
-//! Q⁺ = 𝟙 + h Σ_i b_i B_i Q_i, W⁺ = Q⁺ W Q⁺ᵀ.
+//! The coadjoint action Λ(g, m) = g⁻ᵀ m gᵀ conjugates W = mᵀ: Ẇ = \[B, W\] with B = f(t, m) ∈ 𝔤. With
+//! a Gauss tableau (a, b, c)
 //!
-//! Q⁺ is orthogonal, because the Gauss methods keep quadratic invariants: the spectrum of W (every
-//! Casimir) is kept to rounding. Order 2S, symmetric and Lie–Poisson symplectic: the energy error
-//! stays bounded. The stages are found by fixed-point iteration, which converges while h‖B‖ and h
-//! times the Lipschitz constant of W ↦ B(W) stay below about 1. Cost: 3S products an iteration, 8 to
-//! 25 iterations. S = 1 is the isospectral midpoint rule.
+//! Q_i = 𝟙 + h Σ_j a_ij B_j Q_j, P_i = 𝟙 − h Σ_j a_ij P_j B_j, B_j = f(t + c_j h, P_jᵀ m Q_jᵀ);
+//! Q⁺ = 𝟙 + h Σ_i b_i B_i Q_i, P⁺ = 𝟙 − h Σ_i b_i P_i B_i, m⁺ = P⁺ᵀ m Q⁺ᵀ.
+//!
+//! The Gauss methods keep quadratic invariants: P⁺Q⁺ = 𝟙, so that the spectrum of m (every Casimir
+//! of GL(n)) is kept to rounding, and Q⁺ ∈ G_M where G keeps a form. P_i is M⁻¹Q_iᵀM there; where
+//! every u ∈ 𝔤 is skew, as on SO(n), it is Q_iᵀ and is not computed.
+//!
+//! Order 2S. Preserves: Casimirs and group to rounding, time symmetry, the Lie–Poisson structure, so
+//! that the energy error stays bounded. The stages are found by fixed-point iteration, which converges while h‖B‖ and h times the Lipschitz constant of
+//! m ↦ f(m) stay below about 1; else [`StepError::FixedPointDidNotConverge`]. Cost of an iteration:
+//! S f and 3S products (4S where P is computed), 8 to 25 iterations. S = 1 is the isospectral
+//! midpoint rule.
 //! Source: K. Modin & M. Viviani, Lie–Poisson methods for isospectral flows, Found. Comput. Math. 20
 //! (2020).
 
@@ -17,10 +23,11 @@ use faer::Mat;
 use super::gauss::ImplicitTableau;
 use super::newton::Progress;
 use super::{Method, Step, Symmetric};
+use crate::actions::Coadjoint;
 use crate::dense::{axpy, is_finite, mul, norm_frobenius};
 use crate::error::{Error, StepError};
-use crate::groups::{AlgebraMatrix, Form, LieAlgebra};
-use crate::problems::{Isospectral, Problem};
+use crate::groups::{AlgebraMatrix, LieAlgebra, MatrixGroup};
+use crate::problems::Problem;
 
 /// An isospectral method on a Gauss tableau.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,105 +38,138 @@ impl<const S: usize> Symmetric for IsospectralGauss<S> {}
 /// Stages and scratch.
 #[allow(missing_debug_implementations)] // the parts belong to the problem's types
 pub struct IsospectralWork<P: Problem, const S: usize> {
-    q: [Mat<f64>; S],
-    /// B_i Q_i.
-    slope: [Mat<f64>; S],
+    q: Factor<S>,
+    /// `None` where it is Qᵀ.
+    p: Option<Factor<S>>,
     b: AlgebraMatrix,
     half: Mat<f64>,
-    w: Mat<f64>,
+    m: Mat<f64>,
     field: P::Work,
 }
 
-/// out ← 𝟙 + h Σ c_j x_j.
-fn stage<const S: usize>(h: f64, c: &[f64; S], x: &[Mat<f64>; S], out: &mut Mat<f64>) {
-    out.fill(0.0);
-    for (c, x) in c.iter().zip(x) {
-        axpy(h * c, x, out);
-    }
-    for i in 0..out.nrows() {
-        out[(i, i)] += 1.0;
-    }
+/// The stages Q_i (or P_i) and their slopes B_i Q_i (or −P_i B_i).
+struct Factor<const S: usize> {
+    stages: [Mat<f64>; S],
+    slopes: [Mat<f64>; S],
 }
 
-/// out ← the skew part of q w qᵀ, which is all of it but rounding.
-fn conjugate(q: &Mat<f64>, w: &Mat<f64>, half: &mut Mat<f64>, out: &mut Mat<f64>) {
-    mul(half, q.as_ref(), w.as_ref());
-    mul(out, half.as_ref(), q.transpose());
-    for j in 0..out.ncols() {
-        out[(j, j)] = 0.0;
-        for i in j + 1..out.nrows() {
-            let x = 0.5 * (out[(i, j)] - out[(j, i)]);
-            (out[(i, j)], out[(j, i)]) = (x, -x);
+impl<const S: usize> Factor<S> {
+    fn new(n: usize) -> Self {
+        let zeros = || core::array::from_fn(|_| Mat::zeros(n, n));
+        Factor { stages: zeros(), slopes: zeros() }
+    }
+
+    /// out ← 𝟙 + h Σ c_j slope_j.
+    fn sum(slopes: &[Mat<f64>; S], h: f64, c: &[f64; S], out: &mut Mat<f64>) {
+        out.fill(0.0);
+        for (c, x) in c.iter().zip(slopes) {
+            axpy(h * c, x, out);
+        }
+        for i in 0..out.nrows() {
+            out[(i, i)] += 1.0;
         }
     }
+
+    /// Every slope is ±b.
+    fn start(&mut self, sign: f64, b: &Mat<f64>, h: f64, a: &[[f64; S]; S]) {
+        for slope in &mut self.slopes {
+            slope.fill(0.0);
+            axpy(sign, b, slope);
+        }
+        for (row, stage) in a.iter().zip(&mut self.stages) {
+            Self::sum(&self.slopes, h, row, stage);
+        }
+    }
+
+    /// The slope in `half` becomes that of stage i, and the stage follows. Returns its change.
+    fn replace(&mut self, i: usize, h: f64, a: &[f64; S], half: &mut Mat<f64>) -> f64 {
+        core::mem::swap(half, &mut self.slopes[i]);
+        Self::sum(&self.slopes, h, a, half);
+        core::mem::swap(half, &mut self.stages[i]);
+        axpy(-1.0, &self.stages[i], half);
+        norm_frobenius(half)
+    }
 }
 
-impl<P: Isospectral, const S: usize> Method<P> for IsospectralGauss<S> {
+/// out ← pᵀ m qᵀ, with p = qᵀ where there is none.
+fn conjugate(
+    [q, p]: [&Mat<f64>; 2],
+    skew: bool,
+    m: &Mat<f64>,
+    half: &mut Mat<f64>,
+    out: &mut Mat<f64>,
+) {
+    mul(half, if skew { q.as_ref() } else { p.transpose() }, m.as_ref());
+    mul(out, half.as_ref(), q.transpose());
+}
+
+impl<P, const S: usize> Method<P> for IsospectralGauss<S>
+where
+    P: Problem<Group = MatrixGroup, Action = Coadjoint>,
+{
     type Work = IsospectralWork<P, S>;
 
     fn order(&self, _: &P) -> usize {
         self.0.order
     }
-    /// Also [`Error::Unsupported`] on a group other than SO(n).
     fn work(&self, problem: &P, _: &Mat<f64>) -> Result<Self::Work, Error> {
         let group = problem.group();
-        if !matches!(group.form(), Form::Identity) {
-            return Err(Error::Unsupported {
-                what: "isospectral",
-                with: group.name(),
-                why: "it is built for SO(n); use `energy-casimir`",
-            });
-        }
         let zero = || Mat::zeros(group.n(), group.n());
         Ok(IsospectralWork {
-            q: core::array::from_fn(|_| zero()),
-            slope: core::array::from_fn(|_| zero()),
+            q: Factor::new(group.n()),
+            p: (!group.is_skew()).then(|| Factor::new(group.n())),
             b: group.zero(),
             half: zero(),
-            w: zero(),
+            m: zero(),
             field: problem.work(),
         })
     }
     fn step(
         &self,
         problem: &P,
-        Step { h, .. }: Step<f64>,
+        Step { t, h, .. }: Step<f64>,
         y: &mut Mat<f64>,
-        IsospectralWork { q, slope, b, half, w, field }: &mut Self::Work,
+        IsospectralWork { q, p, b, half, m, field }: &mut Self::Work,
     ) -> Result<(), StepError> {
         let tab = &self.0;
-        problem.generator(y, b, field);
+        problem.f(t, y, b, field);
         if !is_finite(b) {
             return Err(StepError::NonFiniteRhs { stage: 1 });
         }
-        slope.iter_mut().for_each(|s| s.copy_from(&**b));
-        for i in 0..S {
-            stage(h, &tab.a[i], slope, &mut q[i]);
+        q.start(1.0, b, h, &tab.a);
+        if let Some(p) = p {
+            p.start(-1.0, b, h, &tab.a);
         }
         let scale = (y.nrows() as f64).sqrt(); // ‖𝟙‖
         let mut progress = Progress::new();
         loop {
             let mut change = 0.0;
             for i in 0..S {
-                conjugate(&q[i], y, half, w);
-                problem.generator(w, b, field);
-                mul(half, b.as_ref(), q[i].as_ref());
-                core::mem::swap(half, &mut slope[i]);
-                stage(h, &tab.a[i], slope, half);
-                core::mem::swap(half, &mut q[i]);
-                axpy(-1.0, &q[i], half);
-                change += norm_frobenius(half);
+                let left = p.as_ref().map_or(&q.stages[i], |p| &p.stages[i]);
+                conjugate([&q.stages[i], left], p.is_none(), y, half, m);
+                problem.f(t + tab.c[i] * h, m, b, field);
+                mul(half, b.as_ref(), q.stages[i].as_ref());
+                change += q.replace(i, h, &tab.a[i], half);
+                if let Some(p) = p {
+                    mul(half, p.stages[i].as_ref(), b.as_ref());
+                    *half *= faer::Scale(-1.0);
+                    change += p.replace(i, h, &tab.a[i], half);
+                }
             }
             if progress.done("isospectral", change / scale)? {
                 break;
             }
         }
-        stage(h, &tab.b, slope, &mut q[0]);
-        conjugate(&q[0], y, half, w);
-        if !is_finite(w) {
+        Factor::sum(&q.slopes, h, &tab.b, &mut q.stages[0]);
+        if let Some(p) = p {
+            Factor::sum(&p.slopes, h, &tab.b, &mut p.stages[0]);
+        }
+        let left = p.as_ref().map_or(&q.stages[0], |p| &p.stages[0]);
+        conjugate([&q.stages[0], left], p.is_none(), y, half, m);
+        if !is_finite(m) {
             return Err(StepError::NotFinite { what: "the state" });
         }
-        core::mem::swap(y, w);
+        core::mem::swap(y, m);
         Ok(())
     }
 }

@@ -4,7 +4,8 @@
 //! y = λ_p(v).
 //!
 //! Order: the tableau's, as long as the map's dΨ⁻¹ keeps it. Preserves: the group, and what the
-//! action leaves invariant (Casimirs on a coadjoint orbit). Cost of a step with S stages: S times f,
+//! action leaves invariant (Casimirs on a coadjoint orbit); not the energy, no symplectic structure,
+//! not symmetric in time. Cost of a step with S stages: S times f,
 //! S times Ψ (applied, not formed, where the action allows), S − 1 times dΨ⁻¹; a stage that only the
 //! error estimate looks at is left out when none is asked for.
 //! Source: H. Munthe-Kaas, High order Runge–Kutta methods on manifolds, Appl. Numer. Math. 29 (1999).

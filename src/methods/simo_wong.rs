@@ -1,16 +1,30 @@
 //! Simo and Wong's energy and momentum conserving method for the free rigid body.
 //!
-//! g⁺ = g cay(ζ), m⁺ = cay(−ζ) m, ζ = k(ζ̄) ζ̄, ζ̄ = (h/2) J⁻¹(m + m⁺),
-//! k = tan(|ζ̄|/2)/(|ζ̄|/2), for which cay(ζ) = exp(ζ̄); or k = 1.
+//! g⁺ = g cay(ζ), m⁺ = cay(−ζ) m, ζ = k ζ̄, ζ̄ = (h/2) J⁻¹s, s = m + m⁺, with a scalar k:
 //!
-//! Implicit in m⁺: F(x) = x − m + ½ k ζ̄ × (x + m) = 0 by Newton's iteration from x = m.
-//! Converges for h|m|/min J ≤ 1.6 (k = tan) and ≤ 4.7 (k = 1), whatever the direction of m; beyond
-//! that not for every m. Order 2, symmetric. Preserves: energy and momentum to rounding, for any k,
-//! and the group; with k = 1 also the symplectic structure. Cost: 3 to 6 Newton iterations of one
-//! 3×3 solve each (with one sine-cosine pair for k = tan), one cay.
+//! | | k | order | converges for h\|m\|/min J |
+//! |---|---|---|---|
+//! | [`TAN`](SimoWong::TAN) | tan(\|ζ̄\|/2)/(\|ζ̄\|/2), for which cay(ζ) = exp(ζ̄) | 2 | ≤ 1.6 |
+//! | [`ONE`](SimoWong::ONE) | 1, the midpoint rule | 2 | ≤ 4.7 |
+//! | [`LEWIS_SIMO`](SimoWong::LEWIS_SIMO) | 1 − (h²/48) Σ_i c_j c_k s_i², c_i = 1/J_k − 1/J_j | 4 in m, 2 in g | ≤ 1.6 |
+//!
+//! Implicit in m⁺: F(x) = x − m + ½ k ζ̄ × (x + m) = 0 by Newton's iteration from x = m, which
+//! converges within the limits above whatever the direction of m; beyond them not for every m, and
+//! then fails with [`StepError::NewtonDidNotConverge`].
+//!
+//! Any k that is symmetric in m and m⁺ keeps energy and |m|: on the orbit it only changes the time,
+//! h to kh. The modified equation of the midpoint rule, up to h⁴, is
+//! m' = (1 + (h²/12) Σ_i c_j c_k m_i²) m × J⁻¹m: a change of time as well, and the third k takes it
+//! back. It is the choice of k by which
+//! Lewis and Simo gain accuracy, derived here for a body with principal axes; the attitude turns
+//! about the momentum by an angle that a scalar does not reach.
+//!
+//! Symmetric. Preserves: energy and momentum to rounding, for any k, and the group; with k = 1 also
+//! the symplectic structure. Cost: 3 to 6 Newton iterations of one 3×3 solve each (with one
+//! sine-cosine pair for the first k), one cay.
 //! Source: J. C. Simo & K. K. Wong, Int. J. Numer. Methods Eng. 31 (1991); k = 1 is the midpoint
-//! rule of M. A. Austin, P. S. Krishnaprasad & L.-S. Wang, J. Comput. Phys. 107 (1993). In the paper
-//! (5.1) the norms in k are lost in print.
+//! rule of M. A. Austin, P. S. Krishnaprasad & L.-S. Wang, J. Comput. Phys. 107 (1993); D. Lewis &
+//! J. C. Simo, J. Nonlinear Sci. 4 (1994). In the paper (5.1) the norms in k are lost in print.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -27,6 +41,7 @@ use crate::scalar::{Real, Trig};
 enum Factor {
     Tan,
     One,
+    LewisSimo,
 }
 
 /// Simo and Wong's method.
@@ -38,19 +53,23 @@ impl SimoWong {
     pub const TAN: SimoWong = SimoWong(Factor::Tan);
     /// k = 1: the increment is cay(ζ̄).
     pub const ONE: SimoWong = SimoWong(Factor::One);
+    /// The k for which the momentum is of order 4.
+    pub const LEWIS_SIMO: SimoWong = SimoWong(Factor::LewisSimo);
 }
 
 impl Symmetric for SimoWong {}
 
 impl Factor {
-    /// k and dk/dζ̄ = k₁ζ̄, by |ζ̄|². k₁ stands in the Jacobian only, multiplied by |ζ̄|²: what cancels
-    /// in it at small |ζ̄| does not matter.
+    /// k and its gradient by x, from s = x + m and ζ̄.
     #[inline(always)]
-    fn k<S: Trig>(self, square: S) -> (S, S) {
+    fn k<S: Trig>(self, j: &Vector3<S>, h: S, s: &Vector3<S>, z: &Vector3<S>) -> (S, Vector3<S>) {
         let l = S::lit;
         match self {
-            Factor::One => (l(1.0), l(0.0)),
+            Factor::One => (l(1.0), Vector3::new(l(0.0), l(0.0), l(0.0))),
             Factor::Tan => {
+                let square = z[0] * z[0] + z[1] * z[1] + z[2] * z[2];
+                // dk/dζ̄ = k₁ζ̄. k₁ stands multiplied by |ζ̄|²: what cancels in it at small |ζ̄| does
+                // not matter.
                 let [k, k1] = square.branch(
                     1e-16,
                     || [l(1.0) + square * l(1.0 / 12.0), l(1.0 / 6.0)],
@@ -62,7 +81,14 @@ impl Factor {
                         [k, (l(1.0) + tan * tan - k) / square]
                     },
                 );
-                (k, k1)
+                (k, scaled(l(0.5) * h * k1, j, z))
+            }
+            Factor::LewisSimo => {
+                let c = [j[2] - j[1], j[0] - j[2], j[1] - j[0]];
+                let weights = Vector3::new(c[1] * c[2], c[2] * c[0], c[0] * c[1]);
+                let slope = scaled(h * h * l(-1.0 / 24.0), &weights, s);
+                let sum = slope[0] * s[0] + slope[1] * s[1] + slope[2] * s[2];
+                (l(1.0) + l(0.5) * sum, slope)
             }
         }
     }
@@ -70,6 +96,7 @@ impl Factor {
         match self {
             Factor::Tan => "simo-wong",
             Factor::One => "simo-wong-k1",
+            Factor::LewisSimo => "lewis-simo",
         }
     }
 }
@@ -82,44 +109,38 @@ fn scaled<S: Real>(a: S, j: &Vector3<S>, x: &Vector3<S>) -> Vector3<S> {
 impl SimoWong {
     /// ζ of the step from m.
     #[inline(always)]
-    fn zeta<S: Trig>(
-        self,
-        inverse_inertia: &Vector3<S>,
-        h: S,
-        m: &Vector3<S>,
-    ) -> Result<Vector3<S>, StepError> {
+    fn zeta<S: Trig>(self, j: &Vector3<S>, h: S, m: &Vector3<S>) -> Result<Vector3<S>, StepError> {
         let half = S::lit(0.5);
         let norm = So3::new().norm(m);
         let scale = if norm == S::lit(0.0) { S::lit(1.0) } else { norm };
         let zeta_bar = |x: &Vector3<S>| {
             let sum = Vector3::new(x[0] + m[0], x[1] + m[1], x[2] + m[2]);
-            (sum, scaled(half * h, inverse_inertia, &sum))
+            (sum, scaled(half * h, j, &sum))
         };
-        let square = |z: &Vector3<S>| z[0] * z[0] + z[1] * z[1] + z[2] * z[2];
         let x = newton3(self.0.name(), *m, scale, |x| {
             let (sum, z) = zeta_bar(x);
-            let (k, k1) = self.0.k(square(&z));
+            let (k, slope) = self.0.k(j, h, &sum, &z);
             let turn = cross(&z, &sum);
             let half_k = half * k;
             let mut residual = *x;
             let mut jacobian = Matrix3::from_element(S::lit(0.0));
-            // ∂ζ̄/∂x = (h/2)J⁻¹ = diag(d); F' = 𝟙 + ½k(ẑ − ŝ diag d) + ½k₁ (ζ̄×s)(ζ̄ᵀ diag d).
-            for j in 0..3 {
-                let d = half * h * inverse_inertia[j];
+            // ∂ζ̄/∂x = (h/2)J⁻¹ = diag(d); F' = 𝟙 + ½k(ẑ − ŝ diag d) + ½(ζ̄×s)(∂k/∂x)ᵀ.
+            for l in 0..3 {
+                let d = half * h * j[l];
                 for i in 0..3 {
-                    jacobian[(i, j)] = half * k1 * turn[i] * z[j] * d;
+                    jacobian[(i, l)] = half * turn[i] * slope[l];
                 }
-                let (p, q) = ((j + 1) % 3, (j + 2) % 3);
-                // Column j of ẑ is z × e_j: +z_q at p, −z_p at q.
-                jacobian[(j, j)] += S::lit(1.0);
-                jacobian[(p, j)] += half_k * (z[q] - d * sum[q]);
-                jacobian[(q, j)] -= half_k * (z[p] - d * sum[p]);
-                residual[j] = (x[j] - m[j]) + half_k * turn[j];
+                let (p, q) = ((l + 1) % 3, (l + 2) % 3);
+                // Column l of ẑ is z × e_l: +z_q at p, −z_p at q.
+                jacobian[(l, l)] += S::lit(1.0);
+                jacobian[(p, l)] += half_k * (z[q] - d * sum[q]);
+                jacobian[(q, l)] -= half_k * (z[p] - d * sum[p]);
+                residual[l] = (x[l] - m[l]) + half_k * turn[l];
             }
             (residual, jacobian)
         })?;
-        let (_, z) = zeta_bar(&x);
-        let (k, _) = self.0.k(square(&z));
+        let (sum, z) = zeta_bar(&x);
+        let (k, _) = self.0.k(j, h, &sum, &z);
         Ok(Vector3::new(k * z[0], k * z[1], k * z[2]))
     }
 }
@@ -131,7 +152,7 @@ where
     type Work = ();
 
     fn order(&self, _: &P) -> usize {
-        2
+        if self.0 == Factor::LewisSimo && !P::Frame::TURNS { 4 } else { 2 }
     }
     fn work(&self, _: &P, _: &PointOf<P>) -> Result<(), Error> {
         Ok(())

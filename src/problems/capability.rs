@@ -5,15 +5,12 @@
 //! |---|---|---|
 //! | [`Split`] | F = Σ F_k with exact flows | [`Splitting`](crate::methods::Splitting) |
 //! | [`LiePoisson`] | ṁ = ad*_{∇H(m)} m with a discrete gradient | [`EnergyCasimir`](crate::methods::EnergyCasimir) |
-//! | [`Isospectral`] | Ẇ = \[B(W), W\], W in a matrix algebra | [`IsospectralGauss`](crate::methods::IsospectralGauss) |
+//! | [`TaylorField`](super::TaylorField) | Taylor coefficients of f by recurrence | [`LieSeries`](crate::methods::LieSeries) |
 //! | [`Orthogonal`] | where the orthogonal matrix in y is | [`Projected`](crate::methods::Projected) |
 //! | [`FreeBody`](super::FreeBody) | a free rigid body in ℝ³ | Simo–Wong, Buss, DMV, exact, Taylor |
 
-use faer::Mat;
-
-use super::{AlgOf, Ambient, PointOf, Problem, ScalarOf};
+use super::{AlgOf, Ambient, PointOf, ScalarOf};
 use crate::error::StepError;
-use crate::groups::{AlgebraMatrix, MatrixGroup};
 
 /// F = F₁ + … + F_K, where the flow of each F_k is known exactly.
 pub trait Split: Ambient {
@@ -37,15 +34,6 @@ pub trait LiePoisson: Ambient {
         xi: &mut AlgOf<Self>,
         work: &mut Self::Work,
     );
-}
-
-/// An isospectral system Ẇ = \[B(W), W\] on the Lie algebra of a quadratic group, with
-/// B(W) = f(W) ∈ 𝔤 and the point W.
-pub trait Isospectral:
-    Problem<Group = MatrixGroup, Action: crate::Action<MatrixGroup, Point = Mat<f64>>>
-{
-    /// b ← B(W).
-    fn generator(&self, w: &Mat<f64>, b: &mut AlgebraMatrix, work: &mut Self::Work);
 }
 
 /// How a matrix near SO(n) is brought back to it.

@@ -3,15 +3,19 @@
 //! To add a problem: one file with an `impl` of [`Problem`], one line here.
 
 mod capability;
+mod lie_poisson;
 mod linear;
 mod rigid_body;
+mod series;
 
-pub use capability::{Isospectral, LiePoisson, Orthogonal, Projection, Split};
+pub use capability::{LiePoisson, Orthogonal, Projection, Split};
+pub use lie_poisson::{QuadraticLiePoisson, QuadraticWork};
 pub use linear::{LinearEquation, LinearField};
 pub use rigid_body::{
     BodyFrame, BodyState, Exact, Frame, FreeBody, RigidBody, RigidBodyAttitude, RigidBodyN,
     RigidBodyNAttitude, RigidBodyState,
 };
+pub use series::{MomentumSeries, TaylorField};
 
 use crate::actions::Action;
 use crate::groups::{LieAlgebra, LieGroup};

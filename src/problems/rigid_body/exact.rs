@@ -68,6 +68,7 @@ struct Elliptic {
     tau0: f64,
     /// 1 − k².
     kc2: f64,
+    ladder: Ladder,
     /// K, infinite on the separatrix.
     quarter: f64,
     /// B²/A².
@@ -87,10 +88,10 @@ struct Elliptic {
 /// after more than 300 of its time constants 1/λ only.
 const SEPARATRIX: f64 = 1e-280;
 
-/// The power of two at or below x.
+/// The power of two at or below x ≥ 0, within 2^±1000.
 fn power_of_two(x: f64) -> f64 {
-    let e = x.log2().floor().clamp(-1000.0, 1000.0) as i32;
-    2.0f64.powi(e)
+    const LOW: f64 = f64::from_bits((1023 - 1000) << 52);
+    f64::from_bits(x.to_bits() & (0x7ff << 52)).clamp(LOW, 1.0 / LOW)
 }
 
 fn carlson(x: Result<f64, &'static str>) -> Result<f64, Error> {
@@ -174,14 +175,16 @@ struct Phase {
 
 /// \[x̂, ŷ, ẑ\] as columns: ẑ = m/|m|, x̂ the direction of e_axis orthogonal to it.
 fn triad(m: &Vector3<f64>, axis: usize) -> Matrix3<f64> {
-    let scale = 1.0 / power_of_two(m.amax());
-    let m = m * scale;
-    let z = m / m.norm();
+    let m = m * (1.0 / power_of_two(m.amax()));
+    let z = m * (1.0 / m.norm());
     let (p, q) = ((axis + 1) % 3, (axis + 2) % 3);
-    let rho = m[p].hypot(m[q]);
-    // ŷ = ẑ × x̂ lies in the plane orthogonal to the axis; relative accuracy even for tiny rho.
+    // ŷ = ẑ × x̂ lies in the plane orthogonal to the axis; relative accuracy even for a tiny part of
+    // m there.
+    let scale = 1.0 / power_of_two(m[p].abs().max(m[q].abs()));
+    let (a, b) = (m[p] * scale, m[q] * scale);
+    let inverse = 1.0 / (a * a + b * b).sqrt();
     let mut y = Vector3::zeros();
-    (y[p], y[q]) = (m[q] / rho, -m[p] / rho);
+    (y[p], y[q]) = (b * inverse, -a * inverse);
     let x = cross(&y, &z);
     Matrix3::from_columns(&[x, y, z])
 }
@@ -256,6 +259,7 @@ impl Elliptic {
             lambda,
             tau0,
             kc2,
+            ladder: Ladder::new(kc2),
             quarter,
             ratio,
             base: length / high,
@@ -280,7 +284,7 @@ impl Elliptic {
             true => tau,
             false => (-2.0 * self.quarter).mul_add(half_turns, tau),
         };
-        let (sn, cn, dn) = jacobi(r, self.kc2);
+        let (sn, cn, dn) = self.ladder.jacobi(r);
         Phase { tau, half_turns, sn, cn, dn }
     }
 
@@ -339,40 +343,61 @@ impl Elliptic {
     }
 }
 
-/// sn, cn, dn of u with 1 − k² = `kc2`, by R. Bulirsch's descending Gauss transformation
-/// (Numer. Math. 7, 1965). 1 − k² is the argument so that k → 1 keeps its digits.
-pub(crate) fn jacobi(u: f64, kc2: f64) -> (f64, f64, f64) {
-    if kc2 == 0.0 {
-        let cn = 1.0 / u.cosh();
-        return (u.tanh(), cn, cn);
-    }
-    let (mut a, mut b) = (1.0, kc2.sqrt());
-    let mut means = [(0.0, 0.0); 16];
-    let mut levels = 0;
-    let mut c = 0.5 * (a + b);
-    for level in &mut means {
-        *level = (a, b);
-        levels += 1;
-        c = 0.5 * (a + b);
-        if (a - b).abs() <= 1e-9 * a {
-            break;
+/// The arithmetic-geometric mean of 1 and k' = √(1 − k²), from which sn, cn and dn follow at any u by
+/// R. Bulirsch's descending Gauss transformation (Numer. Math. 7, 1965). 1 − k² is the argument so
+/// that k → 1 keeps its digits.
+#[derive(Clone, Debug)]
+struct Ladder {
+    /// Both means at each level.
+    means: [(f64, f64); LEVELS],
+    levels: usize,
+    /// The mean that they come to.
+    last: f64,
+}
+
+/// 1 − k² ≥ 1e-280 needs fewer.
+const LEVELS: usize = 16;
+
+impl Ladder {
+    fn new(kc2: f64) -> Self {
+        let mut ladder = Ladder { means: [(0.0, 0.0); LEVELS], levels: 0, last: 1.0 };
+        let (mut a, mut b) = (1.0, kc2.sqrt());
+        if kc2 == 0.0 {
+            return ladder;
         }
-        b = (a * b).sqrt();
-        a = c;
+        for level in &mut ladder.means {
+            *level = (a, b);
+            ladder.levels += 1;
+            ladder.last = 0.5 * (a + b);
+            if (a - b).abs() <= 1e-9 * a {
+                break;
+            }
+            b = (a * b).sqrt();
+            a = ladder.last;
+        }
+        ladder
     }
-    let (s, k) = (c * u).sin_cos();
-    if s == 0.0 {
-        return (s, k, 1.0);
+
+    /// sn, cn, dn of u.
+    fn jacobi(&self, u: f64) -> (f64, f64, f64) {
+        if self.levels == 0 {
+            let cn = 1.0 / u.cosh();
+            return (u.tanh(), cn, cn);
+        }
+        let (s, k) = (self.last * u).sin_cos();
+        if s == 0.0 {
+            return (s, k, 1.0);
+        }
+        let mut dn = 1.0;
+        let mut ratio = k / s;
+        let mut cot = self.last * ratio;
+        for &(mean, root) in self.means[..self.levels].iter().rev() {
+            ratio *= cot;
+            cot *= dn;
+            dn = (root + ratio) / (mean + ratio);
+            ratio = cot / mean;
+        }
+        let sn = (1.0 / (cot * cot + 1.0).sqrt()).copysign(s);
+        (sn, cot * sn, dn)
     }
-    let mut dn = 1.0;
-    let mut ratio = k / s;
-    let mut cot = c * ratio;
-    for &(mean, root) in means[..levels].iter().rev() {
-        ratio *= cot;
-        cot *= dn;
-        dn = (root + ratio) / (mean + ratio);
-        ratio = cot / mean;
-    }
-    let sn = (1.0 / (cot * cot + 1.0).sqrt()).copysign(s);
-    (sn, cot * sn, dn)
 }

@@ -17,16 +17,20 @@ use crate::scalar::{Real, Trig};
 
 /// A frame fixed in the body: g, or nothing where only the momentum is wanted.
 pub trait Frame<S>: Copy {
+    /// Is there a frame that turns?
+    const TURNS: bool;
     /// g ← g·Ψ.
     fn turn(&mut self, psi: &Matrix3<S>);
 }
 
 impl<S> Frame<S> for () {
+    const TURNS: bool = false;
     #[inline(always)]
     fn turn(&mut self, _: &Matrix3<S>) {}
 }
 
 impl<S: Real> Frame<S> for Matrix3<S> {
+    const TURNS: bool = true;
     #[inline(always)]
     fn turn(&mut self, psi: &Matrix3<S>) {
         let g = *self;
@@ -104,16 +108,16 @@ fn turn_pair<S: Real>((c, s): (S, S), x: &mut S, y: &mut S) {
 }
 
 #[inline(always)]
-fn turn_momentum<S: Real>(m: &mut Vector3<S>, k: usize, turn: (S, S)) {
-    let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+fn turn_momentum<S: Real, const K: usize>(m: &mut Vector3<S>, turn: (S, S)) {
+    let (i, j) = ((K + 1) % 3, (K + 2) % 3);
     let (mut x, mut y) = (m[i], m[j]);
     turn_pair(turn, &mut x, &mut y);
     (m[i], m[j]) = (x, y);
 }
 
 #[inline(always)]
-fn turn_frame<S: Real>(g: &mut Matrix3<S>, k: usize, turn: (S, S)) {
-    let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+fn turn_frame<S: Real, const K: usize>(g: &mut Matrix3<S>, turn: (S, S)) {
+    let (i, j) = ((K + 1) % 3, (K + 2) % 3);
     for r in 0..3 {
         let (mut x, mut y) = (g[(r, i)], g[(r, j)]);
         turn_pair(turn, &mut x, &mut y);
@@ -121,41 +125,62 @@ fn turn_frame<S: Real>(g: &mut Matrix3<S>, k: usize, turn: (S, S)) {
     }
 }
 
-/// sin and cos of θ = t·m_k/J_k.
+/// cos and sin of θ = t·m_k/J_k.
 #[inline(always)]
-fn angle<S: Trig>(inverse_inertia: &Vector3<S>, k: usize, t: S, m_k: S) -> (S, S) {
-    let (s, c) = (t * inverse_inertia[k] * m_k).sin_cos();
+fn angle<S: Trig>(inverse_inertia: S, t: S, m_k: S) -> (S, S) {
+    let (s, c) = (t * inverse_inertia * m_k).sin_cos();
     (c, s)
 }
 
-impl<S: Trig> Split for RigidBody<S> {
-    const PARTS: usize = 3;
-    #[inline]
-    fn flow(&self, k: usize, t: S, m: &mut Vector3<S>) {
-        turn_momentum(m, k, angle(RigidBody::inverse_inertia(self), k, t, m[k]));
+/// A body whose flow about an axis is known with the axis as a constant: an index that is not known
+/// when the step is compiled costs more than the arithmetic.
+trait TurnsAbout<S>: FreeBody {
+    fn turn_about<const K: usize>(&self, t: S, y: &mut PointOf<Self>);
+}
+
+impl<S: Trig> TurnsAbout<S> for RigidBody<S> {
+    #[inline(always)]
+    fn turn_about<const K: usize>(&self, t: S, m: &mut Vector3<S>) {
+        let turn = angle(RigidBody::inverse_inertia(self)[K], t, m[K]);
+        turn_momentum::<S, K>(m, turn);
     }
 }
 
-impl<S: Trig> Split for RigidBodyAttitude<S> {
-    const PARTS: usize = 3;
+impl<S: Trig> TurnsAbout<S> for RigidBodyAttitude<S> {
     /// m_k is the product of column k of g with m_s: the momentum itself need not be turned.
-    #[inline]
-    fn flow(&self, k: usize, t: S, g: &mut Matrix3<S>) {
+    #[inline(always)]
+    fn turn_about<const K: usize>(&self, t: S, g: &mut Matrix3<S>) {
         let m_s = self.momentum_space();
-        let m_k = g[(0, k)] * m_s[0] + g[(1, k)] * m_s[1] + g[(2, k)] * m_s[2];
-        turn_frame(g, k, angle(self.body().inverse_inertia(), k, t, m_k));
+        let m_k = g[(0, K)] * m_s[0] + g[(1, K)] * m_s[1] + g[(2, K)] * m_s[2];
+        turn_frame::<S, K>(g, angle(self.body().inverse_inertia()[K], t, m_k));
     }
 }
 
-impl<S: Trig> Split for RigidBodyState<S> {
-    const PARTS: usize = 3;
-    #[inline]
-    fn flow(&self, k: usize, t: S, y: &mut BodyState<S>) {
-        let turn = angle(self.body().inverse_inertia(), k, t, y.m[k]);
-        turn_momentum(&mut y.m, k, turn);
-        turn_frame(&mut y.g, k, turn);
+impl<S: Trig> TurnsAbout<S> for RigidBodyState<S> {
+    #[inline(always)]
+    fn turn_about<const K: usize>(&self, t: S, y: &mut BodyState<S>) {
+        let turn = angle(self.body().inverse_inertia()[K], t, y.m[K]);
+        turn_momentum::<S, K>(&mut y.m, turn);
+        turn_frame::<S, K>(&mut y.g, turn);
     }
 }
+
+macro_rules! split {
+    ($($body:ident),*) => {$(
+        impl<S: Trig> Split for $body<S> {
+            const PARTS: usize = 3;
+            #[inline(always)]
+            fn flow(&self, k: usize, t: S, y: &mut PointOf<Self>) {
+                match k {
+                    0 => self.turn_about::<0>(t, y),
+                    1 => self.turn_about::<1>(t, y),
+                    _ => self.turn_about::<2>(t, y),
+                }
+            }
+        }
+    )*};
+}
+split!(RigidBody, RigidBodyAttitude, RigidBodyState);
 
 /// H = ½ m·J⁻¹m.
 impl<S: Real> LiePoisson for RigidBody<S> {

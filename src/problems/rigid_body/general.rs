@@ -7,7 +7,7 @@ use crate::actions::{Coadjoint, LeftTranslation};
 use crate::dense::{self, antisymmetrise, mul};
 use crate::error::Error;
 use crate::groups::{AlgebraMatrix, GroupMatrix, MatrixGroup};
-use crate::problems::{Ambient, Isospectral, LiePoisson, Problem};
+use crate::problems::{Ambient, LiePoisson, Problem};
 
 /// The free n-dimensional rigid body by its body momentum: ṁ = \[m, Ω\], Ω_ij = m_ij/J_ij, on a
 /// coadjoint orbit of SO(n). f(m) = −Ω; Λ(g, m) = g m gᵀ.
@@ -85,7 +85,7 @@ impl RigidBodyN {
     /// out ← sign·Ω(m), by the skew part of m: a momentum in so(n)* is nothing else. The coadjoint
     /// action g m gᵀ leaves rounding in the symmetric part; an Ω with some of it would not be in
     /// so(n), and |m| would drift quadratically with the number of steps.
-    fn omega(&self, sign: f64, m: &Mat<f64>, out: &mut Mat<f64>) {
+    pub(super) fn omega(&self, sign: f64, m: &Mat<f64>, out: &mut Mat<f64>) {
         let half = 0.5 * sign;
         for j in 0..m.ncols() {
             out[(j, j)] = 0.0;
@@ -155,6 +155,11 @@ impl RigidBodyNAttitude {
     /// The body alone.
     pub fn body(&self) -> &RigidBodyN {
         &self.body
+    }
+
+    /// m_s.
+    pub(super) fn momentum_space(&self) -> &Mat<f64> {
+        &self.momentum_space
     }
 
     /// gᵀ m_s g, the angular momentum in the body. Allocates.
@@ -232,12 +237,5 @@ impl LiePoisson for RigidBodyN {
     ) {
         dense::scaled_sum(work, [0.5, 0.5], [a, b], 0.0);
         self.omega(1.0, work, xi);
-    }
-}
-
-/// W = m and B(W) = −Ω.
-impl Isospectral for RigidBodyN {
-    fn generator(&self, m: &Mat<f64>, b: &mut AlgebraMatrix, _: &mut Mat<f64>) {
-        self.omega(-1.0, m, b);
     }
 }

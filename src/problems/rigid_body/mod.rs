@@ -5,6 +5,7 @@ mod closed;
 mod exact;
 mod free;
 mod general;
+mod series;
 mod state;
 
 pub use closed::{RigidBody, RigidBodyAttitude};

@@ -1,0 +1,146 @@
+//! Four doubles (x, y, z, w) at once, with the instructions that the machine has.
+
+/// The operations of the recurrences: a quaternion, its vector part first, or a vector with w = 0.
+pub(super) trait Lanes: Copy {
+    /// Four doubles.
+    type V: Copy;
+
+    fn load(self, x: [f64; 4]) -> Self::V;
+    fn store(self, v: Self::V) -> [f64; 4];
+    fn splat(self, x: f64) -> Self::V;
+    fn add(self, a: Self::V, b: Self::V) -> Self::V;
+    fn mul(self, a: Self::V, b: Self::V) -> Self::V;
+    /// a·b + c.
+    fn mul_add(self, a: Self::V, b: Self::V, c: Self::V) -> Self::V;
+    /// (y, z, x, w) and (z, x, y, w).
+    fn cycled(self, v: Self::V) -> [Self::V; 2];
+    /// (x, x, x, x), (y, y, y, y), (z, z, z, z).
+    fn spread(self, v: Self::V) -> [Self::V; 3];
+    /// q ∘ e₁, q ∘ e₂, q ∘ e₃.
+    fn products(self, q: Self::V) -> [Self::V; 3];
+}
+
+/// Arrays, for any machine.
+#[derive(Clone, Copy)]
+pub(super) struct Plain;
+
+impl Lanes for Plain {
+    type V = [f64; 4];
+
+    #[inline(always)]
+    fn load(self, x: [f64; 4]) -> [f64; 4] {
+        x
+    }
+    #[inline(always)]
+    fn store(self, v: [f64; 4]) -> [f64; 4] {
+        v
+    }
+    #[inline(always)]
+    fn splat(self, x: f64) -> [f64; 4] {
+        [x; 4]
+    }
+    #[inline(always)]
+    fn add(self, a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
+        [a[0] + b[0], a[1] + b[1], a[2] + b[2], a[3] + b[3]]
+    }
+    #[inline(always)]
+    fn mul(self, a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
+        [a[0] * b[0], a[1] * b[1], a[2] * b[2], a[3] * b[3]]
+    }
+    #[inline(always)]
+    fn mul_add(self, a: [f64; 4], b: [f64; 4], c: [f64; 4]) -> [f64; 4] {
+        self.add(self.mul(a, b), c)
+    }
+    #[inline(always)]
+    fn cycled(self, [x, y, z, w]: [f64; 4]) -> [[f64; 4]; 2] {
+        [[y, z, x, w], [z, x, y, w]]
+    }
+    #[inline(always)]
+    fn spread(self, [x, y, z, _]: [f64; 4]) -> [[f64; 4]; 3] {
+        [[x; 4], [y; 4], [z; 4]]
+    }
+    #[inline(always)]
+    fn products(self, [x, y, z, w]: [f64; 4]) -> [[f64; 4]; 3] {
+        [[w, z, -y, -x], [-z, w, x, -y], [y, -x, w, -z]]
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+impl Lanes for pulp::x86::V3 {
+    type V = core::arch::x86_64::__m256d;
+
+    #[inline(always)]
+    fn load(self, [x, y, z, w]: [f64; 4]) -> Self::V {
+        self.avx._mm256_setr_pd(x, y, z, w)
+    }
+    #[inline(always)]
+    fn store(self, v: Self::V) -> [f64; 4] {
+        pulp::cast(v)
+    }
+    #[inline(always)]
+    fn splat(self, x: f64) -> Self::V {
+        self.avx._mm256_set1_pd(x)
+    }
+    #[inline(always)]
+    fn add(self, a: Self::V, b: Self::V) -> Self::V {
+        self.avx._mm256_add_pd(a, b)
+    }
+    #[inline(always)]
+    fn mul(self, a: Self::V, b: Self::V) -> Self::V {
+        self.avx._mm256_mul_pd(a, b)
+    }
+    #[inline(always)]
+    fn mul_add(self, a: Self::V, b: Self::V, c: Self::V) -> Self::V {
+        self.fma._mm256_fmadd_pd(a, b, c)
+    }
+    #[inline(always)]
+    fn cycled(self, v: Self::V) -> [Self::V; 2] {
+        [
+            self.avx2._mm256_permute4x64_pd::<0b11_00_10_01>(v),
+            self.avx2._mm256_permute4x64_pd::<0b11_01_00_10>(v),
+        ]
+    }
+    #[inline(always)]
+    fn spread(self, v: Self::V) -> [Self::V; 3] {
+        [
+            self.avx2._mm256_permute4x64_pd::<0b00_00_00_00>(v),
+            self.avx2._mm256_permute4x64_pd::<0b01_01_01_01>(v),
+            self.avx2._mm256_permute4x64_pd::<0b10_10_10_10>(v),
+        ]
+    }
+    #[inline(always)]
+    fn products(self, q: Self::V) -> [Self::V; 3] {
+        let sign = |x: [f64; 4], v| self.avx._mm256_xor_pd(self.load(x), v);
+        [
+            sign([0.0, 0.0, -0.0, -0.0], self.avx2._mm256_permute4x64_pd::<0b00_01_10_11>(q)),
+            sign([-0.0, 0.0, 0.0, -0.0], self.avx2._mm256_permute4x64_pd::<0b01_00_11_10>(q)),
+            sign([0.0, -0.0, 0.0, -0.0], self.avx2._mm256_permute4x64_pd::<0b10_11_00_01>(q)),
+        ]
+    }
+}
+
+/// Work for lanes.
+pub(super) trait Kernel {
+    /// Its result.
+    type Out;
+    /// Do it. Inline, so that it is compiled for the instructions that it is given.
+    fn run<L: Lanes>(self, lanes: L) -> Self::Out;
+}
+
+/// Run a kernel with the best that the machine has.
+#[inline(always)]
+pub(super) fn dispatch<K: Kernel>(kernel: K) -> K::Out {
+    #[cfg(target_arch = "x86_64")]
+    if let Some(v3) = pulp::x86::V3::try_new() {
+        struct On<K>(pulp::x86::V3, K);
+        impl<K: Kernel> pulp::NullaryFnOnce for On<K> {
+            type Output = K::Out;
+            #[inline(always)]
+            fn call(self) -> K::Out {
+                self.1.run(self.0)
+            }
+        }
+        return v3.vectorize(On(v3, kernel));
+    }
+    kernel.run(Plain)
+}

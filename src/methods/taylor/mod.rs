@@ -1,0 +1,160 @@
+//! The Lie-series (Taylor) method of order 4 to 16 for the free rigid body.
+//!
+//! The body frame turns by Ψ(t), Ψ' = Ψ ω̂, Ψ(0) = 𝟙. With Ψ the rotation of the quaternion q, both
+//! fields are quadratic and their Taylor coefficients follow by recurrence:
+//!
+//! (k+1) m_{k+1} = Σ_j m_j × ω_{k−j}, ω_k = J⁻¹m_k, 2(k+1) q_{k+1} = Σ_j q_j ∘ ω_{k−j}.
+//!
+//! q(h) is cut after the power N and taken to the unit sphere, which changes it by less than the
+//! terms left out: Ψ(h) is a rotation, m⁺ = Ψᵀm, g⁺ = gΨ. Order N. Preserves: |m|, gm and the group
+//! to rounding; the energy, symplectic structure and symmetry to the terms left out. Cost: 3N(N+1)/2 + 6N(N+1) multiplications, four at once where the machine can, one
+//! division; no root, no trigonometric function; one step replaces N evaluations of f of other
+//! methods of this order.
+//!
+//! The last two coefficients tell the step: θ = min((tol/|q_{N−1}|)^{1/(N−1)}, (tol/|q_N|)^{1/N}).
+//! [`Taylor::advance`] takes the largest step within the tolerance, from coefficients that it needs
+//! anyway: no step is ever rejected. As an [`Embedded`] method it serves the adaptive driver.
+//! For other groups and fields see [`LieSeries`](super::LieSeries).
+//! Source: W. Gröbner, Die Lie-Reihen und ihre Anwendungen (1960); À. Jorba & M. Zou, Experiment.
+//! Math. 14 (2005), for the step.
+
+mod lanes;
+mod series;
+
+use lanes::dispatch;
+use series::{Advance, Body, OneStep, reach, rotation};
+
+use super::simo_wong::turn_by;
+use super::{Embedded, LocalError, Method, Step};
+use crate::error::{Error, StepError};
+use crate::groups::LieAlgebra;
+use crate::problems::{Frame, FreeBody, PointOf};
+
+/// The Taylor method of order N, 4 ≤ N ≤ 16: another N does not compile.
+///
+/// ```compile_fail,E0080
+/// use lieflow::methods::{Method, Taylor};
+/// use lieflow::problems::RigidBody;
+/// use lieflow::Step;
+/// let body = RigidBody::<f64>::new([1.0, 2.0, 3.0]).unwrap();
+/// let mut m = nalgebra::Vector3::x();
+/// let _ = Taylor::<17>.step(&body, Step { n: 0, t: 0.0, h: 0.1 }, &mut m, &mut ());
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Taylor<const N: usize>;
+
+impl<const N: usize> Taylor<N> {
+    /// The largest step from y whose local error in the attitude is about `tolerance`, by the last
+    /// two terms at the step `h` (any guess of it); infinite for a body at rest.
+    pub fn largest_step<P: FreeBody>(
+        &self,
+        problem: &P,
+        y: &PointOf<P>,
+        h: f64,
+        tolerance: f64,
+    ) -> f64
+    where
+        P::Group: LieAlgebra<Scalar = f64>,
+    {
+        let (body, m) = (Body::new(problem.inverse_inertia()), problem.load(y).0);
+        h * reach::<N>(dispatch(OneStep::<N> { body: &body, h, m }).1, tolerance)
+    }
+
+    /// Advance y over the time `span`, each step as long as the tolerance for its local error in the
+    /// attitude allows; `h` is a first guess and becomes the last step. Returns the number of steps.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for a span or a guess that is not finite, a guess of 0 or a tolerance
+    /// that is not positive; [`Error::Map`] with [`StepError::NotFinite`] when the state leaves the
+    /// range, [`StepError::NotConverged`] when the step shrinks to nothing or 10⁹ are not enough. y
+    /// is then the last good state.
+    pub fn advance<P: FreeBody>(
+        &self,
+        problem: &P,
+        span: f64,
+        tolerance: f64,
+        h: &mut f64,
+        y: &mut PointOf<P>,
+    ) -> Result<u64, Error>
+    where
+        P::Group: LieAlgebra<Scalar = f64>,
+    {
+        let range = |arg, x: f64, ok: bool, expected| match ok {
+            true => Ok(()),
+            false => Err(Error::out_of_range(arg, x, expected)),
+        };
+        range("span", span, span.is_finite(), "a finite number")?;
+        range("h", *h, h.is_finite() && *h != 0.0, "a finite number other than 0")?;
+        range("tolerance", tolerance, tolerance.is_finite() && tolerance > 0.0, "a number > 0")?;
+        let (m, mut frame) = problem.load(y);
+        let body = Body::new(problem.inverse_inertia());
+        let guess = h.abs().copysign(span);
+        let reached = dispatch(Advance::<N> { body: &body, span, tolerance, guess, m });
+        frame.turn(&rotation(reached.q));
+        problem.store(&reached.m, &frame, y);
+        *h = reached.h;
+        match reached.failed {
+            None => Ok(reached.steps),
+            Some(error) => Err(error.into()),
+        }
+    }
+}
+
+impl<P: FreeBody, const N: usize> Method<P> for Taylor<N>
+where
+    P::Group: LieAlgebra<Scalar = f64>,
+{
+    type Work = ();
+
+    fn order(&self, _: &P) -> usize {
+        N
+    }
+    fn work(&self, _: &P, _: &PointOf<P>) -> Result<(), Error> {
+        Ok(())
+    }
+    #[inline]
+    fn step(
+        &self,
+        problem: &P,
+        Step { h, .. }: Step<f64>,
+        y: &mut PointOf<P>,
+        (): &mut (),
+    ) -> Result<(), StepError> {
+        let (m, mut frame) = problem.load(y);
+        let body = Body::new(problem.inverse_inertia());
+        let (q, _) = dispatch(OneStep::<N> { body: &body, h, m });
+        turn_by(problem, &rotation(q), m, &mut frame, y)
+    }
+}
+
+/// The error of a step is its last term, twice that of the quaternion: the estimate is that of order
+/// N − 1.
+impl<P: FreeBody, const N: usize> Embedded<P> for Taylor<N>
+where
+    P::Group: LieAlgebra<Scalar = f64>,
+{
+    fn error_order(&self, _: &P) -> Result<usize, Error> {
+        Ok(N - 1)
+    }
+    fn evaluations(&self) -> u64 {
+        N as u64
+    }
+    fn step_with_error(
+        &self,
+        problem: &P,
+        Step { h, .. }: Step<f64>,
+        from: &PointOf<P>,
+        (): &mut (),
+        to: &mut PointOf<P>,
+    ) -> Result<LocalError<f64>, StepError> {
+        let (m, mut frame) = problem.load(from);
+        let j = problem.inverse_inertia();
+        let body = Body::new(j);
+        let (q, squares) = dispatch(OneStep::<N> { body: &body, h, m });
+        turn_by(problem, &rotation(q), m, &mut frame, to)?;
+        let n = N as f64;
+        // One of the last two may vanish where the motion is even or odd.
+        let error = 2.0 * squares[1].sqrt().max(squares[0].powf(0.5 * n / (n - 1.0)));
+        Ok(LocalError { error, length: h.abs() * j.component_mul(&m).norm() })
+    }
+}
