@@ -172,6 +172,18 @@ pub enum StepError {
         /// What overflowed.
         what: &'static str,
     },
+    /// A matrix has the wrong size for the group.
+    #[error("{arg}: {rows}×{cols}, expected {n}×{n}")]
+    Shape {
+        /// The argument.
+        arg: &'static str,
+        /// Its rows.
+        rows: usize,
+        /// Its columns.
+        cols: usize,
+        /// The n of the group.
+        n: usize,
+    },
     /// An argument of a map is so large that no digit of the result has a meaning.
     #[error(
         "{map}: the norm of the argument is too large for any digit of the result to have a meaning"

@@ -13,6 +13,7 @@ mod ccsk;
 mod exp;
 mod log;
 mod pade22;
+mod quotient;
 
 pub use alternating::{Alternating, AlternatingAt, CCSK};
 pub use cay::{Cay, CayleyGroup, cay_inv, dcay};

@@ -26,6 +26,9 @@ pub trait Real:
     + AddAssign
     + SubAssign
 {
+    /// A sum of squares up to this leaves room for products with ordinary numbers.
+    const SQUARE_MAX: f64 = 1e300;
+
     /// A constant of the formula (Butcher coefficients, Bernoulli numbers, ½).
     fn lit(x: f64) -> Self;
     /// √x.
@@ -73,8 +76,10 @@ impl<S: Real, const N: usize> Select<S> for [S; N] {
 }
 
 macro_rules! real_for_float {
-    ($($t:ty),*) => {$(
+    ($($t:ty, $square_max:literal;)*) => {$(
         impl Real for $t {
+            const SQUARE_MAX: f64 = $square_max;
+
             #[inline]
             fn lit(x: f64) -> Self {
                 x as $t
@@ -113,4 +118,7 @@ macro_rules! real_for_float {
         }
     )*};
 }
-real_for_float!(f32, f64);
+real_for_float! {
+    f32, 1e30;
+    f64, 1e300;
+}

@@ -78,6 +78,29 @@ pub(crate) fn rodrigues<S: Real>(u: &Vector3<S>, a: S, b: S) -> Matrix3<S> {
     g
 }
 
+/// The rotation of the quaternion (w, v), whose length is 1 but for rounding: the homogeneous form
+/// |q|²·R, and what |q|² is off by taken back. Rounding of q costs an angle, never orthogonality.
+#[inline(always)]
+pub(crate) fn rotation<S: Real>(w: S, v: &Vector3<S>) -> Matrix3<S> {
+    let (x, y, z) = (v[0], v[1], v[2]);
+    let (w2, x2, y2) = (w + w, x + x, y + y);
+    let (ww, xx, yy, zz) = (w * w, x * x, y * y, z * z);
+    let (wx, wy, wz) = (w2 * x, w2 * y, w2 * z);
+    let (xy, xz, yz) = (x2 * y, x2 * z, y2 * z);
+    // 1 − |q|², in two halves: each is a difference of numbers of one size.
+    let half = S::lit(0.5);
+    let off = ((half - ww) - zz) + ((half - xx) - yy);
+    let (a, b, c, d) = (ww - zz, xx - yy, ww + zz, xx + yy);
+    let scaled = |r: S| r + r * off;
+    #[rustfmt::skip]
+    let g = Matrix3::new(
+        scaled(a + b), scaled(xy - wz), scaled(xz + wy),
+        scaled(xy + wz), scaled(a - b), scaled(yz - wx),
+        scaled(xz - wy), scaled(yz + wx), scaled(c - d),
+    );
+    g
+}
+
 /// (𝟙 + a·û + b·û²)·x by two cross products.
 #[inline(always)]
 pub(crate) fn rodrigues_on<S: Real>(u: &Vector3<S>, a: S, b: S, x: &Vector3<S>) -> Vector3<S> {
