@@ -108,6 +108,14 @@ pub enum Error {
         /// The reason, and what to use.
         why: &'static str,
     },
+    /// A map could not be evaluated at one element of an array.
+    #[error("element {index}: {source}")]
+    Element {
+        /// Its number, from 0.
+        index: usize,
+        /// Why.
+        source: StepError,
+    },
     /// A map could not be evaluated.
     #[error(transparent)]
     Map(#[from] StepError),

@@ -4,11 +4,13 @@
 //! [`Counted`], which counts the operations it is put through.
 
 mod counted;
+mod sin_cos;
 
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 pub use counted::{Counted, Ops};
+pub(crate) use sin_cos::{SIN_COS_MAX, muladd, sin_cos};
 
 /// A real number, or several side by side (SIMD lanes), or one that counts its own operations.
 ///
@@ -31,6 +33,11 @@ pub trait Real:
 
     /// A constant of the formula (Butcher coefficients, Bernoulli numbers, ½).
     fn lit(x: f64) -> Self;
+    /// self·a + b, in one rounding where that costs nothing.
+    #[inline(always)]
+    fn mul_add(self, a: Self, b: Self) -> Self {
+        self * a + b
+    }
     /// √x.
     fn sqrt(self) -> Self;
     /// |x|.

@@ -19,9 +19,9 @@ pub struct Angle<S> {
 }
 
 /// Below this α² all coefficients are polynomials.
-const SERIES: f64 = 1.0;
+pub(super) const SERIES: f64 = 1.0;
 /// Below this |sin(α/2)| the rounding of α is taken back.
-const REFINE: f64 = 0.1;
+pub(super) const REFINE: f64 = 0.1;
 
 // Polynomials in α² that interpolate in the 8 Chebyshev nodes of [0, 1]: the relative error is below
 // 4e-18, where a Taylor polynomial would need two terms more. `make_so3.py --series` prints them.
@@ -136,6 +136,14 @@ impl<S: Trig> Angle<S> {
         Angle { alpha2, alpha, sin_half, cos_half }
     }
 
+    /// |sin(α/2)| where α² is not below [`SERIES`], else 1: where it is below [`REFINE`] the rounding
+    /// of α has to be taken back.
+    #[inline(always)]
+    pub(super) fn regular(&self) -> S {
+        let [r] = self.alpha2.branch(SERIES, || [S::lit(1.0)], || [self.sin_half.abs()]);
+        r
+    }
+
     /// (1 − (α/2)cot(α/2))/α².
     #[inline(always)]
     pub(crate) fn dexpinv_coefficient(&self) -> S {
@@ -231,7 +239,8 @@ fn add_exactly<S: Real>(a: S, b: S) -> (S, S) {
 /// three times as long.
 #[inline(always)]
 fn estrin<S: Real>(x: S, c: &[f64; 8]) -> S {
-    let pair = |k: usize| S::lit(c[k]) + S::lit(c[k + 1]) * x;
+    let pair = |k: usize| S::lit(c[k + 1]).mul_add(x, S::lit(c[k]));
     let x2 = x * x;
-    (pair(0) + pair(2) * x2) + (pair(4) + pair(6) * x2) * (x2 * x2)
+    let (low, high) = (pair(2).mul_add(x2, pair(0)), pair(6).mul_add(x2, pair(4)));
+    high.mul_add(x2 * x2, low)
 }

@@ -16,6 +16,8 @@
 //! | [`dccsk`], [`dccskinv`] | columns e_i, R_i e_j, R_i R_j e_k, and the inverse (18) | |
 //! | [`ccsk_inv`] | the three angles | |
 //!
+//! Arrays of many vectors go through [`batch`], in SIMD lanes.
+//!
 //! Every value is within 4·ε·cond of the exact one, from |u| = 0 to 1e300: the rounding of |u| is
 //! taken back where cot(α/2) would magnify it, and squares never leave the range. Forward maps are
 //! generic in the scalar; logarithms are in `f64`.
@@ -32,6 +34,7 @@
 //! ```
 
 mod angle;
+pub mod batch;
 mod cay;
 mod ccsk;
 mod exp;
