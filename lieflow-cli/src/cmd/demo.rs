@@ -102,7 +102,7 @@ pub fn run(args: &DemoArgs) -> Result<(), CliError> {
     }
     bar.set_message("maps");
     let effort = survey::Effort {
-        directions: if args.quick { 6 } else { 24 },
+        directions: if args.quick { 6 } else { 20 },
         largest: if args.quick { 12 } else { 32 },
         rounds: if args.quick { 3 } else { 7 },
     };

@@ -96,8 +96,10 @@ fn chart(
 fn charts(study: &Study) -> Block {
     let name = study.topic.name();
     let over = if angle(study) { "over the angle" } else { "over n" };
-    // Linear up to 1, where everything good lies; logarithmic beyond, where the rest does.
-    let units = Axis::new("error [eps·cond]", Scale::SymLog { linear: 1.0 });
+    let largest = study.lines.iter().filter_map(Line::worst).map(|p| p.error).fold(0.0, f64::max);
+    // Linear as long as that shows something of everybody.
+    let scale = if largest < 30.0 { Scale::Linear } else { Scale::SymLog { linear: 1.0 } };
+    let units = Axis::new("error [eps·cond]", scale);
     let time = Axis::new("CPU time of a call [s]", Scale::Log10);
     let timed = match study.topic.is_inverse_differential() {
         true => format!("Time of the map and {name} {over}"),

@@ -3,7 +3,7 @@
 //!
 //! An error is in units of ε·cond: the unit is ε times the size of the exact value plus what the
 //! exact value changes by when every number of the input moves by the relative amount ε, up or
-//! down as chance has it (the largest of a few draws). 1 is what rounding the input and the result
+//! down: all together, and as chance has it (the largest of the changes). 1 is what rounding the input and the result
 //! already costs. The unit is the same for every contender.
 
 mod contest;
@@ -196,8 +196,11 @@ impl Case {
         let [u, v, g] = [&self.u, &self.v, &self.g].map(Matrix::of);
         let value = topic.exact([&u, &v, &g], &correct)?;
         let mut change = 0f64;
-        for _ in 0..DRAWS {
-            let moved = [moved(&u, true, rng), moved(&v, true, rng), moved(&g, false, rng)];
+        for draw in 0..=DRAWS {
+            // All up first: where a map is singular, it is the size of u that matters.
+            let chance = if draw == 0 { 0.0 } else { 0.5 };
+            let moved =
+                [(&u, true), (&v, true), (&g, false)].map(|(x, skew)| moved(x, skew, chance, rng));
             // log looks for g near u, and g alone moves.
             let u = if topic == Topic::Log { &u } else { &moved[0] };
             let other = topic.exact([u, &moved[1], &moved[2]], &correct)?;
@@ -208,15 +211,15 @@ impl Case {
     }
 }
 
-/// Draws of the moves that condition is measured with, and their size.
+/// Random draws of the moves that condition is measured with, and the size of a move.
 const DRAWS: usize = 2;
 const MOVE: f64 = 1e-13;
 
-/// x with every number moved by the relative amount [`MOVE`], up or down; on so(n) the numbers are
-/// those below the diagonal.
-fn moved(x: &Matrix, skew: bool, rng: &mut Pcg64) -> Matrix {
+/// x with every number moved by the relative amount [`MOVE`], down with this probability and up
+/// otherwise; on so(n) the numbers are those below the diagonal.
+fn moved(x: &Matrix, skew: bool, down: f64, rng: &mut Pcg64) -> Matrix {
     let n = x.n();
-    let mut signs = Mat::from_fn(n, n, |_, _| if rng.random_bool(0.5) { MOVE } else { -MOVE });
+    let mut signs = Mat::from_fn(n, n, |_, _| if rng.random_bool(down) { -MOVE } else { MOVE });
     if skew {
         for i in 0..n {
             for j in i..n {
