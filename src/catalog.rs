@@ -109,9 +109,10 @@ pub const TABLEAUS: &[&str] = &[
     tableau::DOP853.name,
 ];
 
-/// Run `$body` with `$tableau` bound to the tableau of that name.
+/// Run `$body` with `$tableau` bound to the tableau of that name, and `$pair` where it is an embedded
+/// pair.
 macro_rules! each_tableau {
-    ($name:expr, $tableau:ident => $body:expr) => {
+    ($name:expr, $tableau:ident => $body:expr, pair => $pair:expr) => {
         match $name {
             "euler" => {
                 let $tableau = tableau::EULER;
@@ -135,23 +136,23 @@ macro_rules! each_tableau {
             }
             "bs3" => {
                 let $tableau = tableau::BS3;
-                $body
+                $pair
             }
             "rkf45" => {
                 let $tableau = tableau::RKF45;
-                $body
+                $pair
             }
             "dopri5" => {
                 let $tableau = tableau::DOPRI5;
-                $body
+                $pair
             }
             "verner6" => {
                 let $tableau = tableau::VERNER6;
-                $body
+                $pair
             }
             "dop853" => {
                 let $tableau = tableau::DOP853;
-                $body
+                $pair
             }
             other => Err(unknown("tableau", other, TABLEAUS.iter().copied())),
         }
@@ -433,6 +434,46 @@ impl<G> CatalogGroup for G where
 {
 }
 
+/// Hand the method that `$spec` names to `$single`, or to `$pair` where it estimates its own error,
+/// after `$on`.
+macro_rules! each_method {
+    ($spec:expr, $on:expr, $single:path, pair => $pair:path) => {{
+        let spec: &MethodSpec = $spec;
+        let info = spec.info()?;
+        let map = spec.map.as_deref().unwrap_or("exp");
+        let tableau = spec.tableau.as_deref().unwrap_or("rk4");
+        match info.name {
+            "rkmk4" => each_map!(map, spec.q, psi => $single($on, Rkmk::new(tableau::RK4, psi))),
+            "rkmk" => each_tableau!(tableau,
+                t => each_map!(map, spec.q, psi => $single($on, Rkmk::new(t, psi))),
+                pair => each_map!(map, spec.q, psi => $pair($on, Rkmk::new(t, psi)))),
+            "rk4" => Ok($single($on, Rk(tableau::RK4))),
+            "rk" => each_tableau!(tableau,
+                t => Ok($single($on, Rk(t))),
+                pair => Ok($pair($on, Rk(t)))),
+            "rkmk4-2c" => Ok($single($on, OneBracket(one_bracket::RKMK4_2C))),
+            "magnus43" => Ok($pair($on, OneBracket(one_bracket::MAGNUS43))),
+            "cf3" => Ok($single($on, CommutatorFree(commutator_free::CF3))),
+            "cf4" => Ok($single($on, CommutatorFree(commutator_free::CF4))),
+            "cf43" => Ok($pair($on, CommutatorFree(commutator_free::CF43))),
+            "cf-ls3" => Ok($single($on, LowStorage(low_storage::LS3))),
+            "cf-ls3-bp" => Ok($single($on, LowStorage(low_storage::LS3_BP))),
+            "cf-ls32" => Ok($pair($on, LowStorage(low_storage::LS32))),
+            "cf-ls4" => Ok($single($on, LowStorage(low_storage::LS4))),
+            "cf-ls5" => Ok($single($on, LowStorage(low_storage::LS5))),
+            "cf-ees25" => Ok($single($on, LowStorage(low_storage::EES25))),
+            "cf-ees27" => Ok($single($on, LowStorage(low_storage::EES27))),
+            "cg2" => Ok($single($on, CommutatorFree(crouch_grossman::CG2))),
+            "cg3" => Ok($single($on, CommutatorFree(crouch_grossman::CG3))),
+            "cg4" => Ok($single($on, CommutatorFree(crouch_grossman::CG4))),
+            other => Err(unknown("method", other, METHODS.iter().map(|m| m.name))),
+        }
+    }};
+}
+
+mod embedded;
+pub use embedded::{Doubled, OnEmbedded, with_embedded_method};
+
 /// What to do with a method, whatever its type.
 pub trait OnMethod<P: Problem> {
     /// The answer.
@@ -450,32 +491,7 @@ where
     P::Group: CatalogGroup,
     Exp: CoordinateMap<P::Group>,
 {
-    let info = spec.info()?;
-    let map = spec.map.as_deref().unwrap_or("exp");
-    let tableau = spec.tableau.as_deref().unwrap_or("rk4");
-    match info.name {
-        "rkmk4" => each_map!(map, spec.q, psi => on.call(Rkmk::new(tableau::RK4, psi))),
-        "rkmk" => each_tableau!(tableau, t =>
-            each_map!(map, spec.q, psi => on.call(Rkmk::new(t, psi)))),
-        "rk4" => Ok(on.call(Rk(tableau::RK4))),
-        "rk" => each_tableau!(tableau, t => Ok(on.call(Rk(t)))),
-        "rkmk4-2c" => Ok(on.call(OneBracket(one_bracket::RKMK4_2C))),
-        "magnus43" => Ok(on.call(OneBracket(one_bracket::MAGNUS43))),
-        "cf3" => Ok(on.call(CommutatorFree(commutator_free::CF3))),
-        "cf4" => Ok(on.call(CommutatorFree(commutator_free::CF4))),
-        "cf43" => Ok(on.call(CommutatorFree(commutator_free::CF43))),
-        "cf-ls3" => Ok(on.call(LowStorage(low_storage::LS3))),
-        "cf-ls3-bp" => Ok(on.call(LowStorage(low_storage::LS3_BP))),
-        "cf-ls32" => Ok(on.call(LowStorage(low_storage::LS32))),
-        "cf-ls4" => Ok(on.call(LowStorage(low_storage::LS4))),
-        "cf-ls5" => Ok(on.call(LowStorage(low_storage::LS5))),
-        "cf-ees25" => Ok(on.call(LowStorage(low_storage::EES25))),
-        "cf-ees27" => Ok(on.call(LowStorage(low_storage::EES27))),
-        "cg2" => Ok(on.call(CommutatorFree(crouch_grossman::CG2))),
-        "cg3" => Ok(on.call(CommutatorFree(crouch_grossman::CG3))),
-        "cg4" => Ok(on.call(CommutatorFree(crouch_grossman::CG4))),
-        other => Err(unknown("method", other, METHODS.iter().map(|m| m.name))),
-    }
+    each_method!(spec, on, OnMethod::<P>::call, pair => OnMethod::<P>::call)
 }
 
 /// Find the method for equations of linear type that has this name, and hand it over.

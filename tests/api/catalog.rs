@@ -1,7 +1,10 @@
 //! Names: every one that is listed resolves, any other is answered with the list.
 
-use lieflow::catalog::{MAPS, METHODS, MethodSpec, OnMethod, TABLEAUS, with_method};
-use lieflow::methods::Method;
+use lieflow::Step;
+use lieflow::catalog::{
+    MAPS, METHODS, MethodSpec, OnEmbedded, OnMethod, TABLEAUS, with_embedded_method, with_method,
+};
+use lieflow::methods::{Embedded, Method};
 use lieflow::problems::RigidBody;
 use nalgebra::Vector3;
 
@@ -46,6 +49,47 @@ fn every_listed_name_resolves() {
     for (q, order) in [(0, 2), (1, 3), (2, 4), (3, 4), (9, 4)] {
         assert_eq!(order_of(&MethodSpec { q: Some(q), ..cut.clone() }).unwrap(), order, "q = {q}");
     }
+}
+
+/// One step with its estimate: whether it doubles, the order of the estimate, and the estimate.
+struct Estimate<'a>(&'a RigidBody);
+
+impl OnEmbedded<RigidBody> for Estimate<'_> {
+    type Out = (bool, usize, f64);
+    fn call<M: Embedded<RigidBody>>(self, method: M) -> Self::Out {
+        let (start, mut to) = (Vector3::new(1.0, 0.8, -1.2), Vector3::zeros());
+        let mut work = method.work(self.0, &start).unwrap();
+        let step = Step { n: 0, t: 0.0, h: 0.4 };
+        let local = method.step_with_error(self.0, step, &start, &mut work, &mut to).unwrap();
+        let doubles = std::any::type_name::<M>().contains("Doubling");
+        (doubles, method.error_order(self.0).unwrap(), local.error)
+    }
+}
+
+#[test]
+fn every_listed_method_has_an_estimate() {
+    let body = RigidBody::new([1.0, 2.0, 3.0]).unwrap();
+    for method in METHODS {
+        let maps = if method.takes_map { &[None, Some("cay"), Some("ccsk")][..] } else { &[None] };
+        let tableaus = if method.takes_tableau { TABLEAUS } else { &["rk4"] };
+        for (map, tableau) in maps.iter().flat_map(|m| tableaus.iter().map(move |t| (m, t))) {
+            let tableau = method.takes_tableau.then(|| tableau.to_string());
+            let spec = MethodSpec { tableau, ..MethodSpec::new(method.name, *map) };
+            let (doubles, order, error) = with_embedded_method(&spec, Estimate(&body)).unwrap();
+            let label = spec.label();
+            assert_eq!(doubles, !spec.has_pair().unwrap(), "{label}");
+            let full = order_of(&spec).unwrap();
+            assert!(if doubles { order == full } else { order < full }, "{label}: {order}");
+            assert!(error.is_finite() && error > 0.0, "{label}: {error}");
+        }
+    }
+    let unknown = MethodSpec { tableau: Some("rk5".into()), ..MethodSpec::new("rkmk", None) };
+    assert!(unknown.has_pair().is_err());
+    assert_eq!(
+        with_embedded_method(&unknown, Estimate(&body)),
+        order_of(&unknown).map(|_| (false, 0, 0.0)),
+        "the same error"
+    );
 }
 
 #[test]
