@@ -186,6 +186,30 @@ pub enum StepError {
         /// The iteration.
         what: &'static str,
     },
+    /// Newton's iteration of an implicit step did not converge.
+    #[error(
+        "{method}: Newton's iteration did not converge: relative residual about 1e{residual_log10} after {iterations} iterations; take a smaller step"
+    )]
+    NewtonDidNotConverge {
+        /// The method.
+        method: &'static str,
+        /// The iterations made.
+        iterations: u32,
+        /// ⌈log₁₀⌉ of the last relative residual; 308 where it is not finite.
+        residual_log10: i32,
+    },
+    /// The fixed-point iteration of an implicit step did not converge.
+    #[error(
+        "{method}: the fixed-point iteration did not converge: last relative change about 1e{change_log10} after {iterations} iterations; take a smaller step"
+    )]
+    FixedPointDidNotConverge {
+        /// The method.
+        method: &'static str,
+        /// The iterations made.
+        iterations: u32,
+        /// ⌈log₁₀⌉ of the last relative change; 308 where it is not finite.
+        change_log10: i32,
+    },
     /// A matrix that a map has to invert is singular to working accuracy.
     #[error(
         "{map}: {what} is singular to working accuracy: rcond = {rcond:.3e}; take a smaller step"

@@ -54,7 +54,7 @@ fn laws_that_users_can_run() {
     let broken = laws(&So3::new(), &Exp.truncated(0), &mut rng, 50, 0.3).expect("so(3)");
     assert!(!broken[3].holds(), "{broken:?}");
 }
-/// The choice made is part of the result: every Padé degree, squarings and corrections, the series
+/// The choice made is part of the result: every degree, squarings and corrections, the series
 /// and the eigen form are taken somewhere on a ladder of norms, and each is right there.
 #[test]
 fn every_branch_of_the_dense_exponential() {
@@ -97,7 +97,7 @@ fn every_branch_of_the_dense_exponential() {
             }
         }
     }
-    assert_eq!(degrees, BTreeSet::from([3, 5, 7, 9, 13]));
+    assert_eq!(degrees, BTreeSet::from([2, 4, 8, 12, 18]));
     assert!(squarings.len() >= 10 && corrected && eigen, "{squarings:?} {corrected} {eigen}");
     assert!(series.contains(&2) && series.len() >= 5, "{series:?}");
 }

@@ -12,10 +12,10 @@ mod lu;
 mod ops;
 mod schur;
 
-pub(crate) use ad::{AdForm, AdSchur, Direction, Kind};
+pub(crate) use ad::{AdForm, AdSchur, Direction, Kind as AdKind};
 pub(crate) use eigen::SkewEigen;
-pub use expm::ExpmChoice;
-pub(crate) use expm::{Expm, Structure};
+pub(crate) use expm::Expm;
+pub use expm::{ApplyChoice, ExpmChoice, Exponential, Kind, Structure};
 pub(crate) use lu::Lu;
 pub(crate) use ops::{
     antisymmetrise, axpy, is_finite, mul, mul_add, norm_frobenius, norm1, orthogonalise, scaled_sum,

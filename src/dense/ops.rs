@@ -1,10 +1,14 @@
 //! Products, sums and norms.
 
 use faer::linalg::matmul::matmul;
+use faer::linalg::matmul::triangular::{BlockStructure, matmul as matmul_triangular};
 use faer::{Accum, Mat, MatRef, Par};
+use pulp::{Arch, NullaryFnOnce};
 
 /// The largest n with a const-size kernel.
 pub(crate) const SMALL: usize = 8;
+/// From this n on one triangle is cheaper than the whole product.
+const HALF_FROM: usize = 48;
 
 /// out ← a·b.
 pub(crate) fn mul(out: &mut Mat<f64>, a: MatRef<'_, f64>, b: MatRef<'_, f64>) {
@@ -29,6 +33,41 @@ fn product(out: &mut Mat<f64>, a: MatRef<'_, f64>, b: MatRef<'_, f64>, alpha: f6
         7 if square => small::<7>(out, a, b, alpha, accum),
         SMALL if square => small::<SMALL>(out, a, b, alpha, accum),
         _ => matmul(out.as_mut(), accum, a, b, alpha, Par::Seq),
+    }
+}
+
+/// out ← a·b, known to be symmetric (`sign` = 1) or skew (`sign` = −1).
+pub(crate) fn half_mul(out: &mut Mat<f64>, a: MatRef<'_, f64>, b: MatRef<'_, f64>, sign: f64) {
+    let n = a.nrows();
+    if n < HALF_FROM {
+        mul(out, a, b);
+        return;
+    }
+    let (lower, full) = (BlockStructure::TriangularLower, BlockStructure::Rectangular);
+    matmul_triangular(out.as_mut(), lower, Accum::Replace, a, full, b, full, 1.0, Par::Seq);
+    mirror(out, sign);
+}
+
+/// The upper triangle ← `sign` times the lower one, in tiles that stay in the cache.
+fn mirror(x: &mut Mat<f64>, sign: f64) {
+    const TILE: usize = 16;
+    let n = x.nrows();
+    let mut tile = [[0.0; TILE]; TILE];
+    for low in (0..n).step_by(TILE) {
+        let high = n.min(low + TILE);
+        for top in (low..n).step_by(TILE) {
+            let bottom = n.min(top + TILE);
+            for j in low..high {
+                let col = &x.col_as_slice(j)[top..bottom];
+                tile[j - low][..col.len()].copy_from_slice(col);
+            }
+            for i in top..bottom {
+                let col = &mut x.col_as_slice_mut(i)[low..high.min(i)];
+                for (j, x) in col.iter_mut().enumerate() {
+                    *x = sign * tile[j][i - top];
+                }
+            }
+        }
     }
 }
 
@@ -97,18 +136,40 @@ pub(crate) fn scaled_sum<const K: usize>(
     x: [&Mat<f64>; K],
     d: f64,
 ) {
-    for j in 0..out.ncols() {
-        let cols = x.map(|x| x.col_as_slice(j));
-        let out = out.col_as_slice_mut(j);
-        for (i, o) in out.iter_mut().enumerate() {
-            let mut s = 0.0;
+    let op = Sum { out, c, x, d };
+    if op.out.nrows() <= SMALL { op.call() } else { Arch::new().dispatch(op) }
+}
+
+/// A sum of matrices, compiled for every instruction set.
+struct Sum<'a, const K: usize> {
+    out: &'a mut Mat<f64>,
+    c: [f64; K],
+    x: [&'a Mat<f64>; K],
+    d: f64,
+}
+
+impl<const K: usize> NullaryFnOnce for Sum<'_, K> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Sum { out, c, x, d } = self;
+        for j in 0..out.ncols() {
+            let out = out.col_as_slice_mut(j);
+            let mut cols: [&[f64]; K] = [&[]; K];
             for k in 0..K {
-                s += c[k] * cols[k][i];
+                cols[k] = &x[k].col_as_slice(j)[..out.len()];
             }
-            *o = s;
-        }
-        if let Some(o) = out.get_mut(j) {
-            *o += d;
+            for i in 0..out.len() {
+                let mut s = 0.0;
+                for k in 0..K {
+                    s += c[k] * cols[k][i];
+                }
+                out[i] = s;
+            }
+            if let Some(o) = out.get_mut(j) {
+                *o += d;
+            }
         }
     }
 }
@@ -125,14 +186,29 @@ pub(crate) fn antisymmetrise(p: &mut Mat<f64>) {
     }
 }
 
+/// Σ f(x), in eight sums side by side.
+#[inline(always)]
+fn sum(x: &[f64], f: impl Fn(f64) -> f64) -> f64 {
+    let mut sums = [0.0; 8];
+    let mut chunks = x.chunks_exact(8);
+    for chunk in &mut chunks {
+        for k in 0..8 {
+            sums[k] += f(chunk[k]);
+        }
+    }
+    let rest: f64 = chunks.remainder().iter().map(|x| f(*x)).sum();
+    let [a, b, c, d, e, g, h, i] = sums;
+    ((a + b) + (c + d)) + ((e + g) + (h + i)) + rest
+}
+
 /// The 1-norm: the largest absolute column sum. NaN when an entry is NaN.
 pub(crate) fn norm1(x: MatRef<'_, f64>) -> f64 {
     let mut best = 0.0;
     for j in 0..x.ncols() {
-        let mut s = 0.0;
-        for i in 0..x.nrows() {
-            s += x[(i, j)].abs();
-        }
+        let s = match x.col(j).try_as_col_major() {
+            Some(col) => sum(col.as_slice(), f64::abs),
+            None => x.col(j).iter().map(|x| x.abs()).sum(),
+        };
         if s > best || s.is_nan() {
             best = s;
         }
@@ -142,12 +218,7 @@ pub(crate) fn norm1(x: MatRef<'_, f64>) -> f64 {
 
 /// The Frobenius norm.
 pub(crate) fn norm_frobenius(x: &Mat<f64>) -> f64 {
-    let mut s = 0.0;
-    for j in 0..x.ncols() {
-        for x in x.col_as_slice(j) {
-            s += x * x;
-        }
-    }
+    let s: f64 = (0..x.ncols()).map(|j| sum(x.col_as_slice(j), |x| x * x)).sum();
     if s.is_normal() {
         s.sqrt()
     } else {
@@ -155,9 +226,9 @@ pub(crate) fn norm_frobenius(x: &Mat<f64>) -> f64 {
     }
 }
 
-/// Is every entry finite?
+/// Is every entry finite? Not by sums of moduli: they overflow where no entry does.
 pub(crate) fn is_finite(x: &Mat<f64>) -> bool {
-    (0..x.ncols()).all(|j| x.col_as_slice(j).iter().map(|x| x.abs()).sum::<f64>() < f64::INFINITY)
+    (0..x.ncols()).all(|j| sum(x.col_as_slice(j), |x| 0.0 * x) == 0.0)
 }
 
 /// g ← g + g(𝟙 − gᵀg)/2 until ‖𝟙 − gᵀg‖ is at rounding level. What a solve or squarings have
@@ -165,7 +236,7 @@ pub(crate) fn is_finite(x: &Mat<f64>) -> bool {
 pub(crate) fn orthogonalise(g: &mut Mat<f64>, [gap, product]: [&mut Mat<f64>; 2]) -> u32 {
     let mut last = f64::INFINITY;
     for step in 0..6 {
-        mul(product, g.transpose(), g.as_ref());
+        half_mul(product, g.transpose(), g.as_ref(), 1.0);
         scaled_sum(gap, [-0.5], [product], 0.5);
         let residual = norm1(gap.as_ref());
         if residual <= f64::EPSILON || residual.is_nan() || residual >= 0.5 * last {
@@ -174,6 +245,9 @@ pub(crate) fn orthogonalise(g: &mut Mat<f64>, [gap, product]: [&mut Mat<f64>; 2]
         last = residual;
         mul(product, g.as_ref(), gap.as_ref());
         axpy(1.0, product, g);
+        if residual <= 1e-9 {
+            return step + 1; // the next residual is the square of this one
+        }
     }
     6
 }

@@ -4,7 +4,7 @@ use faer::{Mat, Scale};
 
 use super::sample::{Symmetry, symmetry};
 use super::{Form, MatrixGroup};
-use crate::dense::{AdForm, Kind, Lu, norm_frobenius};
+use crate::dense::{AdForm, AdKind, Lu, norm_frobenius};
 
 /// A symmetric or skew part of M stands for M only where it is as well conditioned as this.
 const PART_RCOND: f64 = 1e-6;
@@ -19,21 +19,21 @@ impl MatrixGroup {
         let m = self.m()?;
         match &self.form {
             Form::Free => None,
-            Form::Identity => Some(AdForm { kind: Kind::Skew, inverse: m.clone(), m }),
+            Form::Identity => Some(AdForm { kind: AdKind::Skew, inverse: m.clone(), m }),
             Form::Symplectic => {
-                Some(AdForm { kind: Kind::Symmetric, inverse: m.transpose().to_owned(), m })
+                Some(AdForm { kind: AdKind::Symmetric, inverse: m.transpose().to_owned(), m })
             }
             Form::Bilinear { inverse, .. } => match symmetry(&m) {
                 Some(Symmetry::Symmetric) => {
-                    Some(AdForm { kind: Kind::Skew, inverse: inverse.clone(), m })
+                    Some(AdForm { kind: AdKind::Skew, inverse: inverse.clone(), m })
                 }
                 Some(Symmetry::Skew) => {
-                    Some(AdForm { kind: Kind::Symmetric, inverse: inverse.clone(), m })
+                    Some(AdForm { kind: AdKind::Symmetric, inverse: inverse.clone(), m })
                 }
                 None => {
                     let parts = [
-                        (Kind::Skew, (&m + m.transpose()) * Scale(0.5)),
-                        (Kind::Symmetric, (&m - m.transpose()) * Scale(0.5)),
+                        (AdKind::Skew, (&m + m.transpose()) * Scale(0.5)),
+                        (AdKind::Symmetric, (&m - m.transpose()) * Scale(0.5)),
                     ];
                     parts.into_iter().find_map(|(kind, m)| {
                         if Lu::rcond(m.as_ref()) < PART_RCOND {

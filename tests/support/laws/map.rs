@@ -18,9 +18,8 @@ const C_ALGEBRA: f64 = 8.0;
 /// The remainder of the five-point rule, per step⁴·‖w‖·‖Ψ(u)‖.
 const C_STENCIL: f64 = 10.0;
 
-/// Roundings of three exponentials, per ε·(1 + ‖u‖)·‖·‖: a Padé approximant of degree 13 is the quotient
-/// of sums that are up to e^θ/2 times as large as they are, θ = 5.37, and 3·(e^θ/2)/(1 + θ) = 50.
-const C_SUBGROUP: f64 = 50.0;
+/// Roundings of three exponentials, per ε·(1 + ‖u‖)·‖·‖.
+const C_SUBGROUP: f64 = 8.0;
 
 fn say(error: impl Into<Error>) -> String {
     format!("refused within its domain: {}", error.into())

@@ -1,0 +1,239 @@
+//! N×N matrices in registers: const-size columns padded to whole SIMD lanes.
+//!
+//! Everything is `inline(always)`, so that it is compiled with the instruction set of the caller;
+//! the products alone stand out of line behind [`Simd::vectorize`].
+
+use faer::{Mat, MatRef};
+use pulp::{NullaryFnOnce, Simd, bytemuck};
+
+/// An N×N matrix as N columns of K registers; the padding is zero.
+pub(super) struct Cols<S: Simd, const N: usize, const K: usize>(pub(super) [[S::f64s; K]; N]);
+
+/// e_16 between zeros: `UNIT[16 − j..]` begins with e_j.
+const UNIT: [f64; 48] = {
+    let mut unit = [0.0; 48];
+    unit[16] = 1.0;
+    unit
+};
+
+#[inline(always)]
+fn read<S: Simd>(x: &[f64]) -> S::f64s {
+    bytemuck::pod_read_unaligned(bytemuck::cast_slice(&x[..S::F64_LANES]))
+}
+
+impl<S: Simd, const N: usize, const K: usize> Clone for Cols<S, N, K> {
+    #[inline(always)]
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+impl<S: Simd, const N: usize, const K: usize> Copy for Cols<S, N, K> {}
+
+impl<S: Simd, const N: usize, const K: usize> Cols<S, N, K> {
+    /// The distance of two columns in doubles.
+    const STRIDE: usize = K * S::F64_LANES;
+
+    #[inline(always)]
+    pub(super) fn zero(simd: S) -> Self {
+        Cols([[simd.splat_f64s(0.0); K]; N])
+    }
+
+    /// From an n×n matrix with n ≤ N, padded with zeros.
+    #[inline(always)]
+    pub(super) fn load(simd: S, a: MatRef<'_, f64>) -> Self {
+        let mut out = Self::zero(simd);
+        let n = a.nrows().min(N);
+        for j in 0..N {
+            if j == n {
+                break;
+            }
+            let Some(col) = a.col(j).try_as_col_major() else { continue };
+            let col = col.as_slice();
+            for q in 0..K {
+                let low = q * S::F64_LANES;
+                out.0[j][q] = if n == N && low + S::F64_LANES <= N {
+                    read::<S>(&col[low..])
+                } else {
+                    let mut tail = [0.0; 8];
+                    if n == N {
+                        tail[..N - low].copy_from_slice(&col[low..N]);
+                    } else if low < n {
+                        let high = n.min(low + S::F64_LANES);
+                        tail[..high - low].copy_from_slice(&col[low..high]);
+                    }
+                    read::<S>(&tail)
+                };
+            }
+        }
+        out
+    }
+
+    #[inline(always)]
+    pub(super) fn store(&self, out: &mut Mat<f64>) {
+        let n = out.nrows().min(N);
+        let flat = self.flat();
+        if n == N {
+            for j in 0..N {
+                let col = &flat[j * Self::STRIDE..][..N];
+                out.col_as_slice_mut(j)[..N].copy_from_slice(col);
+            }
+        } else {
+            for j in 0..n {
+                out.col_as_slice_mut(j).copy_from_slice(&flat[j * Self::STRIDE..][..n]);
+            }
+        }
+    }
+
+    /// The entries by columns, with the padding.
+    #[inline(always)]
+    pub(super) fn flat(&self) -> &[f64] {
+        bytemuck::cast_slice(self.0.as_flattened())
+    }
+
+    #[inline(always)]
+    pub(super) fn transpose(&self, simd: S) -> Self {
+        let mut out = Self::zero(simd);
+        let (from, to) = (self.flat(), bytemuck::cast_slice_mut(out.0.as_flattened_mut()));
+        for j in 0..N {
+            for i in 0..N {
+                let x: f64 = from[j * Self::STRIDE + i];
+                to[i * Self::STRIDE + j] = x;
+            }
+        }
+        out
+    }
+
+    /// The ∞-norm, the largest row sum of moduli: no horizontal sum but the last. NaN may be lost.
+    #[inline(always)]
+    pub(super) fn norm(&self, simd: S) -> f64 {
+        let mut sums = [simd.splat_f64s(0.0); K];
+        for j in 0..N {
+            for q in 0..K {
+                sums[q] = simd.add_f64s(sums[q], simd.abs_f64s(self.0[j][q]));
+            }
+        }
+        let mut top = 0.0;
+        for s in bytemuck::cast_slice::<S::f64s, f64>(&sums) {
+            if *s > top {
+                top = *s;
+            }
+        }
+        top
+    }
+
+    #[inline(always)]
+    pub(super) fn is_finite(&self, simd: S) -> bool {
+        let (mut sum, zero) = (simd.splat_f64s(0.0), simd.splat_f64s(0.0));
+        for j in 0..N {
+            for q in 0..K {
+                sum = simd.mul_add_e_f64s(zero, self.0[j][q], sum);
+            }
+        }
+        simd.reduce_sum_f64s(sum) == 0.0
+    }
+
+    /// Σ c_i·x_i + d·𝟙.
+    #[inline(always)]
+    pub(super) fn sum<const M: usize>(simd: S, c: [f64; M], x: [&Self; M], d: f64) -> Self {
+        let mut out = Self::zero(simd);
+        // No closures anywhere here: they would be compiled for the baseline instruction set.
+        let (mut cc, dd) = ([simd.splat_f64s(0.0); M], simd.splat_f64s(d));
+        for k in 0..M {
+            cc[k] = simd.splat_f64s(c[k]);
+        }
+        for j in 0..N {
+            for q in 0..K {
+                let mut s = simd.mul_f64s(cc[0], x[0].0[j][q]);
+                for k in 1..M {
+                    s = simd.mul_add_e_f64s(cc[k], x[k].0[j][q], s);
+                }
+                if d != 0.0 && q == j / S::F64_LANES {
+                    let unit = read::<S>(&UNIT[16 - j + q * S::F64_LANES..]);
+                    s = simd.mul_add_e_f64s(dd, unit, s);
+                }
+                out.0[j][q] = s;
+            }
+        }
+        out
+    }
+
+    /// a·b.
+    #[inline(always)]
+    pub(super) fn mul(simd: S, a: &Self, b: &Self) -> Self {
+        let mut out = Self::zero(simd);
+        simd.vectorize(Mul { simd, a, b, out: &mut out, add: false });
+        out
+    }
+
+    /// self ← self + a·b.
+    #[inline(always)]
+    pub(super) fn mul_add(&mut self, simd: S, a: &Self, b: &Self) {
+        simd.vectorize(Mul { simd, a, b, out: self, add: true });
+    }
+}
+
+/// One product. It carries its own `simd`; `vectorize` compiles `call` for that instruction set.
+struct Mul<'a, S: Simd, const N: usize, const K: usize> {
+    simd: S,
+    a: &'a Cols<S, N, K>,
+    b: &'a Cols<S, N, K>,
+    out: &'a mut Cols<S, N, K>,
+    add: bool,
+}
+
+impl<S: Simd, const N: usize, const K: usize> NullaryFnOnce for Mul<'_, S, N, K> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        // As many columns at once as the registers hold sums: 16 of 32, or 8 of 16.
+        match if S::F64_LANES == 8 { 16 / K } else { 8 / K } {
+            8.. => self.blocks::<8>(),
+            4..8 => self.blocks::<4>(),
+            2..4 => self.blocks::<2>(),
+            _ => self.blocks::<1>(),
+        }
+    }
+}
+
+impl<S: Simd, const N: usize, const K: usize> Mul<'_, S, N, K> {
+    #[inline(always)]
+    fn blocks<const W: usize>(mut self) {
+        let mut j = 0;
+        while j + W <= N {
+            self.block::<W>(j);
+            j += W;
+        }
+        match N % W {
+            1 => self.block::<1>(j),
+            2 => self.block::<2>(j),
+            3 => self.block::<3>(j),
+            4 => self.block::<4>(j),
+            5 => self.block::<5>(j),
+            6 => self.block::<6>(j),
+            7 => self.block::<7>(j),
+            _ => {}
+        }
+    }
+
+    /// Columns `first..first + W` of the product.
+    #[inline(always)]
+    fn block<const W: usize>(&mut self, first: usize) {
+        let Mul { simd, a, b, out, add } = self;
+        let mut sums = [[simd.splat_f64s(0.0); K]; W];
+        if *add {
+            sums.copy_from_slice(&out.0[first..first + W]);
+        }
+        let b = b.flat();
+        for k in 0..N {
+            let col = a.0[k];
+            for j in 0..W {
+                let s = simd.splat_f64s(b[(first + j) * Cols::<S, N, K>::STRIDE + k]);
+                for q in 0..K {
+                    sums[j][q] = simd.mul_add_e_f64s(col[q], s, sums[j][q]);
+                }
+            }
+        }
+        out.0[first..first + W].copy_from_slice(&sums);
+    }
+}

@@ -1,0 +1,148 @@
+//! What can be asked for beside exp(u): its condition, and exp(u)·x without exp(u).
+
+use faer::{Mat, MatRef};
+
+use super::{ExpmChoice, Exponential, Structure};
+use crate::dense::ops::{mul, norm_frobenius, norm1};
+use crate::error::StepError;
+
+/// How exp(u)·x was computed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum ApplyChoice {
+    /// exp(u) was formed.
+    Formed(ExpmChoice),
+    /// Taylor series of exp(u/s)·x, s times over.
+    Series {
+        /// s.
+        steps: u32,
+        /// Products u·x taken in all.
+        products: u32,
+    },
+}
+
+impl Exponential {
+    /// An estimate from below of the relative condition number of exp at u,
+    /// ‖L‖_F ‖u‖_F/‖exp(u)‖_F with L the Fréchet derivative: the power method on L*L, at most five
+    /// rounds. The error to expect of exp(u) is ε times this. Allocates; the cost is that of ten
+    /// exponentials of size 2n.
+    ///
+    /// # Errors
+    /// As [`exp`](Self::exp).
+    pub fn condition(u: &Mat<f64>) -> Result<f64, StepError> {
+        let n = u.nrows();
+        let size = norm_frobenius(u);
+        if size == 0.0 || n == 0 {
+            return Ok(0.0);
+        }
+        let transposed = u.transpose().to_owned();
+        let (mut wide, mut block) = (Exponential::new(2 * n), Mat::zeros(2 * n, 2 * n));
+        let mut image = block.clone();
+        let mut e = Mat::from_fn(n, n, |i, j| 1.0 + ((3 * i + 5 * j) % 7) as f64 / 8.0);
+        let (mut best, mut value) = (0.0f64, 1.0);
+        // The derivative is linear in e; small enough not to overflow where exp(u) does not.
+        let small = 0.5 * size.min(1.0);
+        for _ in 0..5 {
+            // exp[u e; 0 u] = [exp(u) L(u, e); 0 exp(u)], and L(u, ·)* = L(uᵀ, ·).
+            for a in [u, &transposed] {
+                let (top, rest) = scaled_norm(e.as_ref());
+                if top == 0.0 {
+                    return Ok(best * size);
+                }
+                let scale = small / rest;
+                for j in 0..n {
+                    for i in 0..n {
+                        block[(i, j)] = a[(i, j)];
+                        block[(i + n, j + n)] = a[(i, j)];
+                        block[(i, j + n)] = scale * (e[(i, j)] / top);
+                    }
+                }
+                wide.exp(&block, Structure::General, &mut image)?;
+                for j in 0..n {
+                    for i in 0..n {
+                        e[(i, j)] = image[(i, j + n)];
+                    }
+                }
+                let (top, rest) = scaled_norm(e.as_ref());
+                let (top_g, rest_g) = scaled_norm(image.as_ref().submatrix(0, 0, n, n));
+                value = (top / top_g) * (rest / rest_g) / small;
+            }
+            if value <= 1.01 * best {
+                break;
+            }
+            best = value;
+        }
+        Ok(best.max(value) * size)
+    }
+
+    /// x ← exp(u)·x for the columns of x, by the cheaper of two ways: the series of exp(u/s)x, or
+    /// exp(u) itself. The first takes some 11‖u‖₁ products u·x.
+    ///
+    /// Allocates three matrices of the size of x, and one n×n where exp(u) is formed.
+    ///
+    /// # Errors
+    /// As [`exp`](Self::exp), and [`StepError::NotFinite`] where the shapes do not fit.
+    pub fn apply(
+        &mut self,
+        u: &Mat<f64>,
+        structure: Structure,
+        x: &mut Mat<f64>,
+    ) -> Result<ApplyChoice, StepError> {
+        let (n, k) = (u.nrows(), x.ncols());
+        if u.ncols() != n || x.nrows() != n || n != self.0.a.nrows() {
+            return Err(StepError::NotFinite { what: "exp(u)·x: matrices that do not fit" });
+        }
+        let norm = norm1(u.as_ref());
+        if !norm.is_finite() {
+            return Err(StepError::NotFinite { what: "the argument of exp" });
+        }
+        if 11.0 * norm.max(1.0) * k as f64 > 5.0 * n as f64 {
+            let mut g = Mat::zeros(n, n);
+            let choice = self.exp(u, structure, &mut g)?;
+            let y = x.clone();
+            mul(x, g.as_ref(), y.as_ref());
+            return Ok(ApplyChoice::Formed(choice));
+        }
+        // Terms grow to e²/√(4π) at most, so that no more than a digit is lost in a step.
+        let steps = (0.5 * norm).ceil().max(1.0) as u32;
+        let (mut term, mut next) = (x.clone(), x.clone());
+        let mut products = 0;
+        for _ in 0..steps {
+            term.copy_from(&*x);
+            let mut last = norm_frobenius(&term);
+            for m in 1..40 {
+                mul(&mut next, u.as_ref(), term.as_ref());
+                core::mem::swap(&mut next, &mut term);
+                term *= faer::Scale(1.0 / (f64::from(m) * f64::from(steps)));
+                *x += &term;
+                products += 1;
+                let size = norm_frobenius(&term);
+                if size + last <= 0.5 * f64::EPSILON * norm_frobenius(x) {
+                    break;
+                }
+                last = size;
+            }
+        }
+        match crate::dense::is_finite(x) {
+            true => Ok(ApplyChoice::Series { steps, products }),
+            false => Err(StepError::NotFinite { what: "exp(u)·x" }),
+        }
+    }
+
+    /// ‖gᵀg − 𝟙‖_F, the residual of a rotation. Allocates.
+    pub fn residual(g: &Mat<f64>) -> f64 {
+        norm_frobenius(&(g.transpose() * g - Mat::<f64>::identity(g.ncols(), g.ncols())))
+    }
+}
+
+/// max|x_ij| and ‖x‖_F over it: their product may leave the range where no entry does.
+fn scaled_norm(x: MatRef<'_, f64>) -> (f64, f64) {
+    let top = x.norm_max();
+    let mut sum = 0.0;
+    for j in 0..x.ncols() {
+        for i in 0..x.nrows() {
+            sum += (x[(i, j)] / top) * (x[(i, j)] / top);
+        }
+    }
+    (top, sum.sqrt())
+}

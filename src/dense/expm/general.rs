@@ -1,0 +1,293 @@
+//! exp of a matrix of which nothing is known: balancing, trace reduction, power norms, triangular
+//! squaring.
+//!
+//! Sources: A. H. Al-Mohy, N. J. Higham, A new scaling and squaring algorithm for the matrix
+//! exponential, SIAM J. Matrix Anal. Appl. 31 (2009) 970–989 (scaling by ‖aᵏ‖^(1/k) with the safeguard
+//! ℓ, and the triangular squaring of its code fragment 2.1); B. N. Parlett, C. Reinsch, Balancing a
+//! matrix for calculation of eigenvalues and eigenvectors, Numer. Math. 13 (1969).
+
+use faer::Mat;
+
+use super::pade::THETA;
+use super::taylor::{B12, B18, T8, THETA_1, THETA_8, THETA_12, half_to_the, halvings, halvings_18};
+use super::{Expm, ExpmChoice, Kind};
+use crate::dense::ops::{mul, mul_add, norm1, scaled_sum};
+
+const THETA_13: f64 = THETA[4].1;
+
+#[derive(Clone, Copy, PartialEq)]
+enum Shape {
+    Full,
+    Upper,
+    Lower,
+}
+
+impl Expm {
+    /// out ← exp(x) for finite x.
+    pub(super) fn exp_general(&mut self, x: &Mat<f64>, pade_only: bool, out: &mut Mat<f64>) {
+        let n = x.nrows();
+        self.a.copy_from(x);
+        let mut norm = norm1(x.as_ref());
+        if norm <= THETA_1 {
+            scaled_sum(out, [1.0], [x], 1.0);
+            self.choice = ExpmChoice { kind: Kind::Taylor, degree: 1, ..Default::default() };
+            return;
+        }
+        let balanced = norm > 1.0 && self.balance(norm);
+        if balanced {
+            norm = norm1(self.a.as_ref());
+        } else {
+            self.a.copy_from(x);
+        }
+        let shape = shape(&self.a);
+        if shape == Shape::Lower {
+            self.t.copy_from(&self.a);
+            self.a.copy_from(self.t.transpose());
+            norm = norm1(self.a.as_ref());
+        }
+        let mut shift = 0.0;
+        if shape == Shape::Full && norm > THETA_13 {
+            let mean = (0..n).map(|i| self.a[(i, i)] / n as f64).sum::<f64>();
+            // e^mean must neither vanish nor overflow where the result does not.
+            if mean.abs() > 1.0 && mean.abs() <= 650.0 {
+                scaled_sum(&mut self.t, [1.0], [&self.a], -mean);
+                let reduced = norm1(self.t.as_ref());
+                if reduced <= 50.0 && reduced <= 0.5 * norm {
+                    core::mem::swap(&mut self.t, &mut self.a);
+                    (shift, norm) = (mean, reduced);
+                }
+            }
+        }
+        let mut choice = ExpmChoice::default();
+        let taylor = match shape {
+            Shape::Full if !pade_only => self.taylor(norm, out),
+            _ => None,
+        };
+        (choice.kind, choice.degree, choice.squarings) = match taylor {
+            Some((degree, squarings)) => (Kind::Taylor, degree, squarings),
+            None => {
+                let (degree, squarings) = self.scaled_pade(norm, out);
+                (Kind::Pade, degree, squarings)
+            }
+        };
+        let upper = shape != Shape::Full && choice.squarings > 0;
+        if upper {
+            exact_bands(&self.a, 1.0, out);
+        }
+        let mut factor = 1.0;
+        for _ in 0..choice.squarings {
+            mul(&mut self.t, out.as_ref(), out.as_ref());
+            core::mem::swap(&mut self.t, out);
+            if upper {
+                factor *= 2.0;
+                exact_bands(&self.a, factor, out);
+            }
+        }
+        if shape == Shape::Lower {
+            self.t.copy_from(&*out);
+            out.copy_from(self.t.transpose());
+        }
+        if shift != 0.0 {
+            *out *= faer::Scale(shift.exp());
+        }
+        if balanced {
+            for j in 0..n {
+                for i in 0..n {
+                    // In two factors: the quotient of two scales may leave the range.
+                    let e = self.exponents[i] - self.exponents[j];
+                    let half = e / 2;
+                    out[(i, j)] *= 2f64.powi(half);
+                    out[(i, j)] *= 2f64.powi(e - half);
+                }
+            }
+        }
+        choice.balanced = balanced;
+        self.choice = choice;
+    }
+
+    /// a ← D⁻¹aD with powers of two in D, until rows and columns are of one size. True if that made
+    /// the norm four times smaller; else a is to be restored.
+    fn balance(&mut self, norm: f64) -> bool {
+        let n = self.a.nrows();
+        self.exponents.fill(0);
+        for _ in 0..40 {
+            let mut changed = false;
+            for i in 0..n {
+                let (mut c, mut r) = (0.0, 0.0);
+                for j in (0..n).filter(|&j| j != i) {
+                    c += self.a[(j, i)].abs();
+                    r += self.a[(i, j)].abs();
+                }
+                if c == 0.0 || r == 0.0 || !f64::is_finite(c + r) {
+                    continue;
+                }
+                let k = (0.5 * (r.log2() - c.log2())).round().clamp(-500.0, 500.0) as i32;
+                let (up, down) = (2f64.powi(k), 2f64.powi(-k));
+                let e = self.exponents[i] + k;
+                if k == 0 || e.abs() > 1000 || c * up + r * down >= 0.95 * (c + r) {
+                    continue;
+                }
+                for j in (0..n).filter(|&j| j != i) {
+                    self.a[(j, i)] *= up;
+                    self.a[(i, j)] *= down;
+                }
+                self.exponents[i] = e;
+                changed = true;
+            }
+            if !changed {
+                break;
+            }
+        }
+        norm1(self.a.as_ref()) <= 0.25 * norm
+    }
+
+    /// out ← a Taylor polynomial at 2⁻ˢa, where that is as good as Padé: its degree, s. A solve
+    /// with n right-hand sides costs more than the two or three squarings that it saves.
+    fn taylor(&mut self, norm: f64, out: &mut Mat<f64>) -> Option<(usize, u32)> {
+        if norm > 1e3 {
+            return None;
+        }
+        let Expm { a, a2, a4, a6, u, v, t, .. } = self;
+        mul(a2, a.as_ref(), a.as_ref());
+        if norm <= THETA_8 {
+            let [x1, x2, x3, x4, x5, x6, x7, y2] = T8;
+            scaled_sum(t, [x1, x2], [a, a2], 0.0);
+            mul(a4, a2.as_ref(), t.as_ref());
+            scaled_sum(u, [x3, 1.0], [a2, a4], 0.0);
+            scaled_sum(v, [x5, x6, x7], [a, a2, a4], x4);
+            scaled_sum(out, [1.0, y2], [a, a2], 1.0);
+            mul_add(out, 1.0, u.as_ref(), v.as_ref());
+            return Some((8, 0));
+        }
+        let a3 = a4;
+        mul(a3, a2.as_ref(), a.as_ref());
+        // ‖a‖ as the powers see it: the error begins at a¹³ or a¹⁹, sums of a² and a³.
+        let alpha = norm.min(norm1(a2.as_ref()).sqrt().max(norm1(a3.as_ref()).cbrt()));
+        if norm > 4.0 * alpha.max(THETA_12) {
+            return None;
+        }
+        if alpha <= THETA_12 {
+            let b = |out: &mut Mat<f64>, c: [f64; 4]| {
+                scaled_sum(out, [c[1], c[2], c[3]], [&*a, &*a2, &*a3], c[0]);
+            };
+            b(u, B12[3]);
+            b(v, B12[2]);
+            mul_add(v, 1.0, u.as_ref(), u.as_ref());
+            let c = B12[1];
+            scaled_sum(t, [c[1], c[2], c[3], 1.0], [a, a2, a3, v], c[0]);
+            b(out, B12[0]);
+            mul_add(out, 1.0, t.as_ref(), v.as_ref());
+            return Some((12, 0));
+        }
+        mul(a6, a3.as_ref(), a3.as_ref());
+        let [n2, n3, n6] = [&*a2, &*a3, &*a6].map(|x| norm1(x.as_ref()));
+        let s = halvings_18(norm, n2, n3, n6);
+        let f = half_to_the(s);
+        let scale = [1.0, f, f * f, f * f * f, f * f * f * f * f * f];
+        let b = |out: &mut Mat<f64>, c: [f64; 5]| {
+            let c: [f64; 5] = core::array::from_fn(|i| c[i] * scale[i]);
+            scaled_sum(out, [c[1], c[2], c[3], c[4]], [&*a, &*a2, &*a3, &*a6], c[0]);
+        };
+        b(u, B18[0]);
+        b(t, B18[4]);
+        b(v, B18[3]);
+        mul_add(v, 1.0, u.as_ref(), t.as_ref());
+        b(t, B18[2]);
+        scaled_sum(u, [1.0, 1.0], [t, v], 0.0);
+        b(out, B18[1]);
+        mul_add(out, 1.0, u.as_ref(), v.as_ref());
+        Some((18, s))
+    }
+
+    /// out ← a Padé approximant at 2⁻ˢa; a is scaled. Returns its degree and s.
+    pub(super) fn scaled_pade(&mut self, norm: f64, out: &mut Mat<f64>) -> (usize, u32) {
+        if let Some((degree, _)) = THETA[..4].iter().find(|(_, theta)| norm <= *theta) {
+            self.even_powers(*degree);
+            self.pade(*degree, out);
+            return (*degree, 0);
+        }
+        // The norm alone asks for s halvings; the powers may allow `back` of them to be undone.
+        let s = halvings(norm, THETA_13, 1);
+        self.a *= faer::Scale(half_to_the(s));
+        self.even_powers(13);
+        let d4 = norm1(self.a4.as_ref()).sqrt().sqrt();
+        let d6 = norm1(self.a6.as_ref()).cbrt().sqrt();
+        let alpha = d4.max(d6);
+        let room = if alpha > 0.0 { (THETA_13 / alpha).log2().floor() } else { 80.0 };
+        let mut back = room.clamp(0.0, f64::from(s.min(80))) as u32;
+        if back > 0 {
+            back -= self.safeguard(norm * half_to_the(s), back).min(back);
+        }
+        if back > 0 {
+            let f = 2f64.powi(back as i32);
+            let Expm { a, a2, a4, a6, .. } = self;
+            for (x, f) in [(a, f), (a2, f * f), (a4, f.powi(4)), (a6, f.powi(6))] {
+                *x *= faer::Scale(f);
+            }
+        }
+        self.pade(13, out);
+        (13, s - back)
+    }
+
+    /// ℓ₁₃(2ᵇa): the halvings that keep the backward error of the rounded evaluation below 2⁻⁵³:
+    /// ⌈log₂(c₁₃·‖|2ᵇa|²⁷‖/‖2ᵇa‖·2⁵³)/26⌉.
+    fn safeguard(&mut self, norm: f64, b: u32) -> u32 {
+        /// log₂ of 13!²/(26!·27!), the first coefficient of the backward error.
+        const LOG2_C13: f64 = -116.44;
+        let n = self.a.nrows();
+        let [x, y] = &mut self.vectors;
+        x.fill(1.0);
+        let mut log2 = 0.0;
+        for _ in 0..27 {
+            let mut top = 0.0f64;
+            for j in 0..n {
+                let terms = self.a.col_as_slice(j).iter().zip(x.iter());
+                y[j] = terms.map(|(a, x)| a.abs() * x).sum();
+                top = top.max(y[j]);
+            }
+            if top == 0.0 || !top.is_finite() {
+                return 0;
+            }
+            log2 += top.log2();
+            for (x, y) in x.iter_mut().zip(y.iter()) {
+                *x = y / top;
+            }
+        }
+        let alpha = LOG2_C13 + log2 - norm.log2() + 26.0 * f64::from(b);
+        ((alpha + 53.0) / 26.0).ceil().max(0.0) as u32
+    }
+}
+
+fn shape(a: &Mat<f64>) -> Shape {
+    let n = a.nrows();
+    if (0..n).all(|j| a.col_as_slice(j)[j + 1..].iter().all(|x| *x == 0.0)) {
+        Shape::Upper
+    } else if (0..n).all(|j| a.col_as_slice(j)[..j].iter().all(|x| *x == 0.0)) {
+        Shape::Lower
+    } else {
+        Shape::Full
+    }
+}
+
+/// The diagonal and the one above it of exp(c·a) for upper triangular a, from their formulas.
+fn exact_bands(a: &Mat<f64>, c: f64, out: &mut Mat<f64>) {
+    for j in 0..a.ncols() {
+        let y = c * a[(j, j)];
+        out[(j, j)] = y.exp();
+        if j > 0 {
+            out[(j - 1, j)] = c * a[(j - 1, j)] * exp_difference(c * a[(j - 1, j - 1)], y);
+        }
+    }
+}
+
+/// (eˣ − eʸ)/(x − y).
+fn exp_difference(x: f64, y: f64) -> f64 {
+    let (low, gap) = (x.min(y), (x - y).abs());
+    if gap == 0.0 {
+        x.exp()
+    } else if gap < 1.0 {
+        low.exp() * (gap.exp_m1() / gap)
+    } else {
+        (x.max(y).exp() - low.exp()) / gap
+    }
+}

@@ -1,0 +1,234 @@
+//! exp of a small matrix as one kernel: load once, compute in padded local arrays, store once.
+
+use faer::Mat;
+use pulp::{Arch, Simd, WithSimd};
+
+use super::cols::Cols;
+use super::taylor::{
+    B12, B18, T8, THETA_1, THETA_2, THETA_4, THETA_8, THETA_12, THETA_18, THETA_18_6, half_to_the,
+    halvings, halvings_18,
+};
+use super::{ExpmChoice, Kind, Structure};
+
+/// The largest n with a kernel.
+pub(super) const N_MAX: usize = 16;
+/// Up to this norm a matrix of which nothing is known is scaled by its norm.
+const PLAIN: f64 = 16.0;
+/// Beyond this norm the kernel leaves a matrix of which nothing is known to the careful path.
+const NORM_MAX: f64 = 1e3;
+const NORM_MAX_SKEW: f64 = 1e15;
+
+/// out ← exp(x) for n ≤ [`N_MAX`]; `None` where the matrix needs more care than this gives, or is
+/// not finite.
+pub(super) fn exp(
+    arch: Arch,
+    x: &Mat<f64>,
+    structure: Structure,
+    out: &mut Mat<f64>,
+) -> Option<ExpmChoice> {
+    let skew = structure == Structure::Skew;
+    macro_rules! kernels {
+        ($($range:pat => $n:literal, $k8:literal, $k4:literal, $k2:literal;)*) => {
+            match x.nrows() {
+                $($range => arch.dispatch(Exp::<$n, $k8, $k4, $k2> { x, skew, out }),)*
+                _ => None,
+            }
+        };
+    }
+    // n ⇒ kernel size, registers a column with 8, 4 and 2 lanes.
+    kernels! {
+        1 | 2 => 2, 1, 1, 1;
+        3 => 3, 1, 1, 2;
+        4 => 4, 1, 1, 2;
+        5 => 5, 1, 2, 3;
+        6 => 6, 1, 2, 3;
+        7 => 7, 1, 2, 4;
+        8 => 8, 1, 2, 4;
+        9 | 10 => 10, 2, 3, 5;
+        11 | 12 => 12, 2, 3, 6;
+        13 | 14 => 14, 2, 4, 7;
+        15 | 16 => 16, 2, 4, 8;
+    }
+}
+
+struct Exp<'a, const N: usize, const K8: usize, const K4: usize, const K2: usize> {
+    x: &'a Mat<f64>,
+    skew: bool,
+    out: &'a mut Mat<f64>,
+}
+
+impl<const N: usize, const K8: usize, const K4: usize, const K2: usize> WithSimd
+    for Exp<'_, N, K8, K4, K2>
+{
+    type Output = Option<ExpmChoice>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Option<ExpmChoice> {
+        let Exp { x, skew, out } = self;
+        match S::F64_LANES {
+            8 => kernel::<S, N, K8>(simd, x, skew, out),
+            4 => kernel::<S, N, K4>(simd, x, skew, out),
+            2 => kernel::<S, N, K2>(simd, x, skew, out),
+            _ => kernel::<S, N, N>(simd, x, skew, out),
+        }
+    }
+}
+
+#[inline(always)]
+fn kernel<S: Simd, const N: usize, const K: usize>(
+    simd: S,
+    x: &Mat<f64>,
+    skew: bool,
+    out: &mut Mat<f64>,
+) -> Option<ExpmChoice> {
+    let a = Cols::<S, N, K>::load(simd, x.as_ref());
+    let norm = a.norm(simd);
+    let (mut g, degree, squarings) = taylor(simd, &a, norm, skew)?;
+    for _ in 0..squarings {
+        let h = g;
+        g = Cols::mul(simd, &h, &h);
+    }
+    let mut corrections = 0;
+    if skew && squarings > 0 {
+        corrections = orthogonalise(simd, &mut g);
+    }
+    if !g.is_finite(simd) {
+        return None;
+    }
+    g.store(out);
+    Some(ExpmChoice { kind: Kind::Taylor, degree, squarings, corrections, balanced: false })
+}
+
+/// The polynomial at 2⁻ˢa, its degree, and s.
+#[inline(always)]
+fn taylor<S: Simd, const N: usize, const K: usize>(
+    simd: S,
+    a: &Cols<S, N, K>,
+    norm: f64,
+    skew: bool,
+) -> Option<(Cols<S, N, K>, usize, u32)> {
+    if norm.is_nan() || norm > if skew { NORM_MAX_SKEW } else { NORM_MAX } {
+        return None;
+    }
+    if norm <= THETA_1 {
+        return Some((Cols::sum(simd, [1.0], [a], 1.0), 1, 0));
+    }
+    let a2 = Cols::mul(simd, a, a);
+    if norm <= THETA_2 {
+        return Some((Cols::sum(simd, [1.0, 0.5], [a, &a2], 1.0), 2, 0));
+    }
+    if norm <= THETA_4 {
+        let high = Cols::sum(simd, [1.0 / 6.0, 1.0 / 24.0], [a, &a2], 0.5);
+        let mut g = Cols::sum(simd, [1.0], [a], 1.0);
+        g.mul_add(simd, &a2, &high);
+        return Some((g, 4, 0));
+    }
+    if norm <= THETA_8 {
+        let [x1, x2, x3, x4, x5, x6, x7, y2] = T8;
+        let a4 = Cols::mul(simd, &a2, &Cols::sum(simd, [x1, x2], [a, &a2], 0.0));
+        let left = Cols::sum(simd, [x3, 1.0], [&a2, &a4], 0.0);
+        let right = Cols::sum(simd, [x5, x6, x7], [a, &a2, &a4], x4);
+        let mut g = Cols::sum(simd, [1.0, y2], [a, &a2], 1.0);
+        g.mul_add(simd, &left, &right);
+        return Some((g, 8, 0));
+    }
+    let a3 = Cols::mul(simd, &a2, a);
+    if norm <= THETA_12 {
+        let all = [a, &a2, &a3];
+        let [c0, c1, c2, c3] = B12;
+        let b3 = Cols::sum(simd, [c3[1], c3[2], c3[3]], all, c3[0]);
+        let mut s = Cols::sum(simd, [c2[1], c2[2], c2[3]], all, c2[0]);
+        s.mul_add(simd, &b3, &b3);
+        let left = Cols::sum(simd, [c1[1], c1[2], c1[3], 1.0], [a, &a2, &a3, &s], c1[0]);
+        let mut g = Cols::sum(simd, [c0[1], c0[2], c0[3]], all, c0[0]);
+        g.mul_add(simd, &left, &s);
+        return Some((g, 12, 0));
+    }
+    let a6 = Cols::mul(simd, &a3, &a3);
+    let mut squarings = halvings(norm, THETA_18, 1);
+    if squarings > 0 {
+        if skew {
+            // a is normal: |a|₂⁶ = |a⁶|₂ ≤ |a⁶|_∞.
+            squarings = squarings.min(halvings(a6.norm(simd), THETA_18_6, 6));
+        } else {
+            let n6 = a6.norm(simd);
+            // ‖a⁶‖^⅙ < ‖a‖/4: the powers grow slower than the norm says. Or a trace to take out, or
+            // a triangle, which is squared in a way of its own.
+            let slow = norm > PLAIN && (4096.0 * n6 < pow6(norm) || mean(a).abs() > 0.5 * norm);
+            if slow || triangular(a) {
+                return None;
+            }
+            squarings = halvings_18(norm, a2.norm(simd), a3.norm(simd), n6);
+        }
+    }
+    let f = half_to_the(squarings);
+    let (f2, f3) = (f * f, f * f * f);
+    let scale = [1.0, f, f2, f3, f3 * f3];
+    let mut c = B18;
+    for b in 0..5 {
+        for i in 0..5 {
+            c[b][i] *= scale[i];
+        }
+    }
+    let all = [a, &a2, &a3, &a6];
+    let b0 = Cols::sum(simd, [c[0][1], c[0][2], c[0][3]], [a, &a2, &a3], 0.0);
+    let b4 = Cols::sum(simd, [c[4][2], c[4][3], c[4][4]], [&a2, &a3, &a6], 0.0);
+    let mut s = Cols::sum(simd, [c[3][1], c[3][2], c[3][3], c[3][4]], all, c[3][0]);
+    s.mul_add(simd, &b0, &b4);
+    let c2 = c[2];
+    let left = Cols::sum(simd, [c2[1], c2[2], c2[3], c2[4], 1.0], [a, &a2, &a3, &a6, &s], c2[0]);
+    let mut g = Cols::sum(simd, [c[1][1], c[1][2], c[1][3], c[1][4]], all, 0.0);
+    g.mul_add(simd, &left, &s);
+    Some((g, 18, squarings))
+}
+
+/// The mean of the diagonal.
+#[inline(always)]
+fn mean<S: Simd, const N: usize, const K: usize>(a: &Cols<S, N, K>) -> f64 {
+    let (flat, mut sum) = (a.flat(), 0.0);
+    for j in 0..N {
+        sum += flat[j * K * S::F64_LANES + j];
+    }
+    sum / N as f64
+}
+
+#[inline(always)]
+fn pow6(x: f64) -> f64 {
+    let x3 = x * x * x;
+    x3 * x3
+}
+
+/// Is one triangle zero? For a full matrix the first entry looked at says no.
+#[inline(always)]
+fn triangular<S: Simd, const N: usize, const K: usize>(a: &Cols<S, N, K>) -> bool {
+    let flat = a.flat();
+    let (mut below, mut above) = (false, false);
+    for j in 1..N {
+        for i in 0..j {
+            above |= flat[j * K * S::F64_LANES + i] != 0.0;
+            below |= flat[i * K * S::F64_LANES + j] != 0.0;
+            if above && below {
+                return false;
+            }
+        }
+    }
+    true
+}
+
+/// g ← g + g(𝟙 − gᵀg)/2 until ‖𝟙 − gᵀg‖ is at rounding level: Newton–Schulz in residual form.
+#[inline(always)]
+fn orthogonalise<S: Simd, const N: usize, const K: usize>(simd: S, g: &mut Cols<S, N, K>) -> u32 {
+    let mut k = 0;
+    while k < 6 {
+        k += 1;
+        let gram = Cols::mul(simd, &g.transpose(simd), g);
+        let half = Cols::sum(simd, [-0.5], [&gram], 0.5);
+        let h = *g;
+        g.mul_add(simd, &h, &half);
+        // The next defect is the square of this one.
+        if half.norm(simd) <= 1e-9 {
+            break;
+        }
+    }
+    k
+}
