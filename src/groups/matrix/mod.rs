@@ -261,7 +261,7 @@ impl LieGroup for MatrixGroup {
     fn check_vector(&self, x: &Mat<f64>) -> Result<(), Error> {
         self.rows_fit("y", x, x.ncols())
     }
-    fn correct(&self, g: &mut GroupMatrix, scratch: &mut [GroupMatrix; 2]) -> f64 {
+    fn correct(&self, g: &mut GroupMatrix, scratch: [&mut GroupMatrix; 2]) -> f64 {
         self.newton_schulz(g, scratch)
     }
 }
