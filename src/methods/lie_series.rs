@@ -158,7 +158,7 @@ impl LieSeries {
         }
         group.clear(g);
         psi.iter().rev().for_each(|term| group.add(term, g)); // small terms first
-        let residual = group.correct(g, scratch);
+        let residual = group.correct(g, scratch.each_mut());
         if !group.size(g).is_finite() {
             return Err(StepError::NotFinite { what: "the Taylor series" });
         }
