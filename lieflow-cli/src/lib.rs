@@ -11,6 +11,7 @@ pub mod measure;
 pub mod model;
 pub mod output;
 pub mod page;
+pub mod paper;
 pub mod plot;
 pub mod report;
 pub mod scene;

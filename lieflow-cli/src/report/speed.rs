@@ -1,14 +1,15 @@
 //! Time against error.
 
-use super::{duration, order, scientific};
-use crate::measure::{Candidate, Curve};
+use super::choice::size_of;
+use super::{duration, order};
+use crate::measure::{Candidate, Curve, Size};
 use crate::model::Layer;
 use crate::page::{Column, Row, Table};
 use crate::plot::format::seconds;
 use crate::plot::{Axis, Chart, Marker, Point, Scale, Series};
 
 /// The errors for which tables give the time.
-const ERRORS: [f64; 3] = [1e-3, 1e-6, 1e-9];
+const ERRORS: [f64; 4] = super::ADVICE;
 
 /// The colour and marker of a method: by its map, the same in every figure; `None` for a method
 /// that has no map, whose place in the figure decides.
@@ -31,13 +32,10 @@ pub fn speed_chart<'a>(
     let series = curves.into_iter().enumerate().map(|(place, curve)| {
         let candidate = &curve.candidate;
         let look = look(candidate).unwrap_or(place);
-        let points = curve.points.iter().filter(|point| point.failure.is_none()).map(|point| {
-            Point::new(point.error, point.seconds_per_unit).with_note(format!(
-                "h = {}, {} steps",
-                scientific(point.h),
-                point.steps
-            ))
-        });
+        let points =
+            curve.points.iter().filter(|point| point.failure.is_none()).map(|point| {
+                Point::new(point.error, point.seconds_per_unit).with_note(size_of(point))
+            });
         Series {
             name: candidate.label(),
             colour: look,
@@ -55,6 +53,39 @@ pub fn speed_chart<'a>(
         series: series.collect(),
         caption: caption.into(),
     }
+}
+
+/// Evaluations of f against error, for the runs that counted them: those that chose their steps.
+pub fn evaluations_chart(id: &str, caption: &str, curves: &[Curve]) -> Option<Chart> {
+    let counted = |curve: &&Curve| curve.points.iter().any(|p| p.evaluations.is_some());
+    let series: Vec<Series> = curves
+        .iter()
+        .filter(counted)
+        .enumerate()
+        .map(|(place, curve)| Series {
+            name: curve.candidate.label(),
+            colour: look(&curve.candidate).unwrap_or(place),
+            marker: Marker::cycle(place),
+            dash: curve.candidate.layer == Layer::General,
+            points: curve
+                .points
+                .iter()
+                .filter(|p| p.failure.is_none())
+                .filter_map(|p| {
+                    Some(Point::new(p.error, p.evaluations? as f64).with_note(size_of(p)))
+                })
+                .collect(),
+            emphasised: false,
+        })
+        .collect();
+    (!series.is_empty()).then(|| Chart {
+        id: id.into(),
+        title: "Evaluations of f against error".into(),
+        x: Axis::new("global error at the end", Scale::Log10),
+        y: Axis::new("evaluations of f", Scale::Log10),
+        series,
+        caption: caption.into(),
+    })
 }
 
 /// The columns that [`SpeedRow`] fills.
@@ -118,31 +149,48 @@ pub fn speed_table(curves: &[Curve]) -> Table {
 }
 
 /// Every run as CSV.
-pub fn speed_csv<'a>(curves: impl IntoIterator<Item = (&'a str, &'a Curve)>) -> String {
+///
+/// Each curve comes with the name of its scene and the places of its points on the Pareto front.
+pub fn speed_csv<'a>(curves: impl IntoIterator<Item = (&'a str, &'a Curve, Vec<usize>)>) -> String {
     let mut text = String::from(
-        "scene,method,map,tableau,layer,order,steps,h,error,energy_error,seconds_per_unit,failure\n",
+        "scene,method,map,tableau,layer,adaptive,order,rtol,steps,rejected,h,evaluations,error,\
+         energy_error,casimir_error,group_residual,seconds_per_unit,pareto,failure\n",
     );
-    for (scene, curve) in curves {
-        let Candidate { method, layer } = &curve.candidate;
+    for (scene, curve, front) in curves {
+        let Candidate { method, layer, adaptive } = &curve.candidate;
         let (map, tableau) = (method.map.as_deref(), method.tableau.as_deref());
-        for p in &curve.points {
+        for (j, p) in curve.points.iter().enumerate() {
+            let rtol = match p.size {
+                Size::Steps(_) => String::new(),
+                Size::Tolerance(rtol) => format!("{rtol:e}"),
+            };
             text += &format!(
-                "{scene},{},{},{},{},{},{},{:e},{:e},{:e},{:e},{}\n",
+                "{scene},{},{},{},{},{adaptive},{},{rtol},{},{},{},{},{},{},{},{},{},{},{}\n",
                 method.name,
                 map.unwrap_or_default(),
                 tableau.unwrap_or_default(),
                 layer.name(),
                 curve.order,
                 p.steps,
-                p.h,
-                p.error,
-                p.energy_error,
-                p.seconds_per_unit,
+                p.rejected,
+                number(p.h),
+                p.evaluations.map_or(String::new(), |n| n.to_string()),
+                number(p.error),
+                number(p.energy_error),
+                number(p.casimir_error),
+                number(p.group_residual),
+                number(p.seconds_per_unit),
+                front.contains(&j),
                 quoted(p.failure.as_deref().unwrap_or_default()),
             );
         }
     }
     text
+}
+
+/// A number; nothing where there is none.
+fn number(x: f64) -> String {
+    if x.is_finite() { format!("{x:e}") } else { String::new() }
 }
 
 /// A CSV field in quotes, where it needs them.
