@@ -7,6 +7,7 @@
 //! | | 𝔤* | Λ(g, m) |
 //! |---|---|---|
 //! | so(3) | ℝ³, ⟨m, v⟩ = m·v | g m |
+//! | se(3) | (μ, π), ⟨m, v⟩ = μ·ω + π·v | (Rμ + x × Rπ, Rπ) |
 //! | any n | n×n matrices, ⟨m, v⟩ = tr(mᵀv) | g⁻ᵀ m gᵀ: g m gᵀ on SO(n), MgM⁻¹ m gᵀ on G_M |
 
 use faer::Mat;
@@ -16,7 +17,7 @@ use super::Action;
 use crate::chart::PsiOf;
 use crate::dense::{Lu, mul};
 use crate::error::StepError;
-use crate::groups::{Form, GroupMatrix, LieGroup, MatrixGroup, So3};
+use crate::groups::{Form, GroupMatrix, LieGroup, MatrixGroup, Se3, So3, add3, cross};
 use crate::maps::CoordinateMap;
 use crate::scalar::Real;
 
@@ -42,6 +43,26 @@ impl<S: Real> Action<So3<S>> for Coadjoint {
         _: &mut (),
     ) -> Result<(), StepError> {
         psi_u.on(p, q)
+    }
+}
+
+impl<S: Real> Action<Se3<S>> for Coadjoint {
+    type Point = (Vector3<S>, Vector3<S>);
+    type Work = ();
+
+    fn work(&self, _: &Se3<S>) {}
+    #[inline]
+    fn act(
+        &self,
+        _: &Se3<S>,
+        (r, x): &(Matrix3<S>, Vector3<S>),
+        (mu, pi): &Self::Point,
+        q: &mut Self::Point,
+        _: &mut (),
+    ) {
+        So3::new().apply(r, mu, &mut q.0);
+        So3::new().apply(r, pi, &mut q.1);
+        q.0 = add3(&q.0, &cross(x, &q.1));
     }
 }
 

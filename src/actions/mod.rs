@@ -4,10 +4,12 @@
 
 mod coadjoint;
 mod linear;
+mod parts;
 mod translation;
 
 pub use coadjoint::Coadjoint;
 pub use linear::Linear;
+pub use parts::{Each, Pair};
 pub use translation::LeftTranslation;
 
 use crate::chart::PsiOf;

@@ -20,6 +20,6 @@ impl<G: LieGroup> Action<G> for LeftTranslation {
         group.compose(g, p, q);
     }
     fn restore(&self, group: &G, p: &mut G::Elem, work: &mut Self::Work) -> Option<G::Scalar> {
-        Some(group.correct(p, work))
+        Some(group.correct(p, work.each_mut()))
     }
 }

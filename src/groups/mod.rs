@@ -10,10 +10,18 @@
 
 mod adjoint;
 mod matrix;
+mod power;
+mod product;
+mod se3;
 mod so3;
 
 pub use adjoint::Adjoint;
 pub use matrix::{AlgebraMatrix, Form, GroupMatrix, MEMBERSHIP, MatrixGroup, RCOND_MIN};
+pub use power::Power;
+pub use product::Product;
+pub(crate) use product::larger;
+pub use se3::Se3;
+pub(crate) use se3::{add3, finite_pair};
 pub use so3::{So3, hat, vee};
 pub(crate) use so3::{apply3, cross};
 
@@ -83,7 +91,7 @@ pub trait LieGroup: LieAlgebra {
     /// this returns is then the measure of membership. Groups without a form return 0.
     ///
     /// `scratch` is overwritten; nothing is allocated.
-    fn correct(&self, _g: &mut Self::Elem, _scratch: &mut [Self::Elem; 2]) -> Self::Scalar {
+    fn correct(&self, _g: &mut Self::Elem, _scratch: [&mut Self::Elem; 2]) -> Self::Scalar {
         Self::Scalar::lit(0.0)
     }
 }

@@ -38,7 +38,7 @@ const SINGULAR: f64 = 1e-12;
 
 /// (q, 1/(q² + α²/4)) at α².
 #[inline(always)]
-fn factors<S: Real>(u: &Vector3<S>) -> Result<(S, S), StepError> {
+pub(super) fn factors<S: Real>(u: &Vector3<S>) -> Result<(S, S), StepError> {
     let l = S::lit;
     let alpha2 = u[0] * u[0] + u[1] * u[1] + u[2] * u[2];
     if !alpha2.all_below(SQUARE_MAX) {

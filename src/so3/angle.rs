@@ -25,7 +25,7 @@ pub(crate) const SQUARE_MAX: f64 = 1e300;
 const REFINE: f64 = 0.1;
 
 // Polynomials in α² that interpolate in the 8 Chebyshev nodes of [0, 1]: the relative error is below
-// 4e-18, where a Taylor polynomial would need two terms more. `make_so3.py --series` prints them.
+// 5e-17, where a Taylor polynomial would need two terms more. `make_so3.py --series` prints them.
 /// sin α/α.
 #[rustfmt::skip]
 const SINC: [f64; 8] = [
@@ -49,6 +49,12 @@ const SINCC: [f64; 8] = [
 const COTC: [f64; 8] = [
     0.08333333333333333, 0.001388888888888926, 3.306878306800382e-05, 8.267195829413588e-07,
     2.087673262520767e-08, 5.284707066441219e-10, 1.332202514478385e-11, 3.754788167247988e-13,
+];
+/// d/dα² of (1 − (α/2)cot(α/2))/α².
+#[rustfmt::skip]
+const COTC_SLOPE: [f64; 8] = [
+    0.0013888888888888887, 6.613756613757471e-05, 2.480158729979068e-06, 8.350702938564351e-08,
+    2.64208945557739e-09, 8.030712340508873e-11, 2.35885576085506e-12, 7.706946286242862e-14,
 ];
 /// sin(α/2)/α.
 #[rustfmt::skip]
@@ -121,9 +127,24 @@ impl<S: Trig> Angle<S> {
         c
     }
 
+    /// The derivative of (1 − (α/2)cot(α/2))/α² in α²: ((α/2)cot(α/2) + (α/2)²/sin²(α/2) − 2)/(2α⁴).
+    #[inline(always)]
+    pub(crate) fn dexpinv_slope(&self) -> S {
+        let l = S::lit;
+        let [c] = self.alpha2.branch(
+            SERIES,
+            || [estrin(self.alpha2, &COTC_SLOPE)],
+            || {
+                let k = l(0.5) * self.alpha / self.sin_half;
+                [(k * self.cos_half + k * k - l(2.0)) / (l(2.0) * self.alpha2 * self.alpha2)]
+            },
+        );
+        c
+    }
+
     /// (1 − cos α)/α² and (α − sin α)/α³.
     #[inline(always)]
-    pub(super) fn dexp_coefficients(&self) -> (S, S) {
+    pub(crate) fn dexp_coefficients(&self) -> (S, S) {
         let l = S::lit;
         let [b, d] = self.alpha2.branch(
             SERIES,

@@ -255,7 +255,7 @@ impl LieGroup for MatrixGroup {
     fn defect(&self, g: &GroupMatrix) -> f64 {
         self.defect_of(g.as_ref()).map_or(0.0, |d| dense::norm_frobenius(&d))
     }
-    fn correct(&self, g: &mut GroupMatrix, scratch: &mut [GroupMatrix; 2]) -> f64 {
+    fn correct(&self, g: &mut GroupMatrix, scratch: [&mut GroupMatrix; 2]) -> f64 {
         self.newton_schulz(g, scratch)
     }
 }

@@ -70,7 +70,7 @@ impl<S: Real> Action<So3<S>> for BodyFrame {
     }
     /// g back to SO(3); m has no constraint.
     fn restore(&self, group: &So3<S>, p: &mut BodyState<S>, work: &mut Self::Work) -> Option<S> {
-        Some(group.correct(&mut p.g, work))
+        Some(group.correct(&mut p.g, work.each_mut()))
     }
 }
 
