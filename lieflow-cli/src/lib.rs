@@ -6,6 +6,7 @@
 
 pub mod args;
 pub mod cmd;
+pub mod erased;
 pub mod kinds;
 pub mod measure;
 pub mod model;

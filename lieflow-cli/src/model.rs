@@ -145,8 +145,8 @@ macro_rules! catalog {
                 on: V,
             ) -> Result<V::Out, lieflow::Error> {
                 match spec.has_pair()? {
-                    true => lieflow::catalog::with_embedded_method(spec, on),
-                    false => $with(spec, lieflow::catalog::Doubled(on)),
+                    true => lieflow::catalog::with_embedded_pair(spec, on),
+                    false => $with(spec, $crate::erased::Doubled(on)),
                 }
             }
         }

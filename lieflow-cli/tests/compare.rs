@@ -60,6 +60,14 @@ fn the_advice_follows_from_the_points() {
         }
     }
 
+    // Four evaluations a step of RKMK4 and of RK4; none that could be stated for the exact motion.
+    for (curve, stages) in [("rkmk4", Some(4)), ("rk4", Some(4)), ("exact", None)] {
+        let curve = curves.iter().find(|c| c["method"] == curve).unwrap();
+        let point = &curve["points"][0];
+        let expected = stages.map(|s: u64| s * point["steps"].as_u64().unwrap());
+        assert_eq!(point["evaluations"].as_u64(), expected, "{point}");
+    }
+
     // The front falls from left to right.
     let mut front: Vec<(f64, f64)> = Vec::new();
     for curve in curves {

@@ -263,7 +263,10 @@ fn adaptive_runs_reach_their_tolerance_and_say_what_they_did() {
             assert_eq!(chosen["accepted"].as_u64().unwrap() as usize + 1, rows.len(), "{method}");
             assert_eq!(summary["steps"], chosen["accepted"]);
             assert!(summary["dt"].is_null() && chosen["rejected"].is_number());
-            assert!(chosen["evaluations"].as_u64().unwrap() > rows.len() as u64);
+            let evaluations = chosen["evaluations"].as_u64();
+            let pair = ["dopri5", "cf43"].iter().any(|pair| method.contains(pair));
+            assert_eq!(evaluations.is_some(), pair, "{method}");
+            assert!(evaluations.is_none_or(|n| n > rows.len() as u64));
             assert!(chosen["largest_step"].as_f64().unwrap() <= 2.0);
             let ends: Vec<f64> = serde_json::from_str(t_span).unwrap();
             assert_eq!([rows[0][0], rows[rows.len() - 1][0]], ends[..]);

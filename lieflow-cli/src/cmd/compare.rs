@@ -15,7 +15,7 @@ use crate::measure::{
 };
 use crate::output;
 use crate::page::{Block, Page, Section};
-use crate::report::{self, CHOICE_HEADER, Choice, KEPT, choices};
+use crate::report::{self, CHOICE_HEADER, Choice, Cost, KEPT, choices};
 use crate::scene::Scene;
 
 /// Step sizes are those of the scene times these, from the largest to the smallest.
@@ -94,8 +94,8 @@ pub fn run(args: &CompareArgs) -> Result<(), CliError> {
     tolerances.sort_by(|a, b| b.total_cmp(a));
     tolerances.dedup();
     let effort = Effort {
-        rounds: args.repeat.unwrap_or(if args.quick { 3 } else { 7 }),
-        longest: Duration::from_millis(if args.quick { 5 } else { 50 }),
+        rounds: args.repeat.unwrap_or(if args.quick { 3 } else { 5 }),
+        longest: Duration::from_millis(if args.quick { 5 } else { 30 }),
         shortest: Duration::from_micros(if args.quick { 50 } else { 300 }),
         seed: args.seed,
     };
@@ -229,9 +229,12 @@ impl Comparison<'_> {
                 ))
             })
             .collect();
-        let counted = "Methods that choose their steps count the evaluations of f, rejected attempts \
-                       among them.";
-        charts.extend(report::evaluations_chart("evaluations", counted, curves).map(Block::Chart));
+        let counted = "Evaluations of f, of F or of A(t): the catalog's number for a step times the \
+                       steps, and what was counted where steps were chosen, rejected attempts among \
+                       them. Implicit methods and those without a field are left out.";
+        let title = "Runs that no other beats in both error and evaluations of f";
+        let chart = report::front_chart("evaluations", title, counted, curves, Cost::Evaluations);
+        charts.insert(0, Block::Chart(chart));
         let [advice, kept] = self.advice();
         let energy = format!(
             "The same where the energy must not drift: methods that keep it or keep it in bounds by \
@@ -245,7 +248,13 @@ impl Comparison<'_> {
             short.push(Block::Table(report::choice_table(&energy, &kept)));
         }
         short.extend([
-            Block::Chart(report::front_chart("pareto", what, curves)),
+            Block::Chart(report::front_chart(
+                "pareto",
+                "Runs that no other beats in both error and time",
+                what,
+                curves,
+                Cost::Time,
+            )),
             Block::Facts(vec![
                 ("Machine".into(), machine()),
                 (

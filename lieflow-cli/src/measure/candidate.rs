@@ -1,6 +1,7 @@
 //! What is compared: methods with their parts, on a layer, in steps of one size or of their own.
 
 use lieflow::catalog::{MAPS, MethodSpec, TABLEAUS, all_methods};
+use lieflow::methods::tableau;
 
 use crate::cmd::CliError;
 use crate::model::Layer;
@@ -15,6 +16,18 @@ pub struct Candidate {
     pub layer: Layer,
     /// Does it choose its steps by their error?
     pub adaptive: bool,
+}
+
+/// The stages of the tableau of that name.
+fn stages(name: &str) -> Option<u64> {
+    macro_rules! stages_of {
+        ($($tableau:ident),*) => {
+            [$((tableau::$tableau.name, tableau::$tableau.update_stages())),*]
+        };
+    }
+    let all =
+        stages_of!(EULER, MIDPOINT, HEUN, RK4, THREE_EIGHTHS, BS3, RKF45, DOPRI5, VERNER6, DOP853);
+    all.iter().find(|(known, _)| *known == name).map(|(_, stages)| *stages as u64)
 }
 
 impl Candidate {
@@ -56,6 +69,17 @@ impl Candidate {
         self.method.info().is_ok_and(|info| {
             ["energy", "symplectic", "everything"].iter().any(|what| info.preserves.contains(what))
         })
+    }
+
+    /// Evaluations of f, of F or of A in a step of one size, as the catalog states its cost; none for
+    /// an implicit method, whose number depends on the step, and for one that evaluates no field.
+    pub fn evaluations_per_step(&self) -> Option<u64> {
+        let (count, rest) = self.method.info().ok()?.cost.split_once(' ')?;
+        match count {
+            _ if !rest.starts_with(['f', 'F', 'A']) => None,
+            "s" => stages(self.method.tableau.as_deref().unwrap_or("rk4")),
+            _ => count.parse().ok(),
+        }
     }
 
     /// Everything in the catalog that runs on the problem of `scene` on this layer, each method with

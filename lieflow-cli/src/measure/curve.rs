@@ -78,23 +78,25 @@ pub struct Reached {
     pub energy_error: f64,
 }
 
-/// The runs that no other run beats in both error and time, as (curve, point), from the largest error
-/// to the smallest.
-pub fn pareto(curves: &[Curve]) -> Vec<(usize, usize)> {
-    let mut all: Vec<(usize, usize)> = Vec::new();
-    for (i, curve) in curves.iter().enumerate() {
-        let good = |p: &WorkPoint| p.error >= 0.0 && p.seconds_per_unit > 0.0;
-        all.extend((0..curve.points.len()).filter(|j| good(&curve.points[*j])).map(|j| (i, j)));
-    }
-    let point = |(i, j): (usize, usize)| &curves[i].points[j];
+/// The runs that no other run beats in both error and cost, as (curve, point), from the largest error
+/// to the smallest. A run without a cost is none.
+pub fn pareto(curves: &[Curve], cost: impl Fn(&WorkPoint) -> Option<f64>) -> Vec<(usize, usize)> {
+    let both = |(i, j): (usize, usize)| {
+        let point: &WorkPoint = &curves[i].points[j];
+        (point.error, cost(point).unwrap_or(f64::INFINITY))
+    };
+    let places = |(i, curve): (usize, &Curve)| (0..curve.points.len()).map(move |j| (i, j));
+    let mut all: Vec<(usize, usize)> = curves.iter().enumerate().flat_map(places).collect();
+    all.retain(|at| both(*at).0 >= 0.0);
     all.sort_by(|a, b| {
-        let (a, b) = (point(*a), point(*b));
-        (a.error.total_cmp(&b.error)).then(a.seconds_per_unit.total_cmp(&b.seconds_per_unit))
+        let (a, b) = (both(*a), both(*b));
+        a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1))
     });
     let mut least = f64::INFINITY;
     all.retain(|at| {
-        let kept = point(*at).seconds_per_unit < least;
-        least = least.min(point(*at).seconds_per_unit);
+        let (_, cost) = both(*at);
+        let kept = cost < least;
+        least = least.min(cost);
         kept
     });
     all.reverse();
@@ -137,8 +139,8 @@ impl Curve {
         (used.len() >= 3).then_some(sxy / sxx)
     }
 
-    /// Where this error is reached, between two runs by the line through them in the logarithms; `None`
-    /// where no run reaches it.
+    /// Where this error is reached soonest, by a run or between two by the line through them in the
+    /// logarithms; `None` where no run reaches it.
     pub fn reached(&self, error: f64) -> Option<Reached> {
         // No error is smaller than rounding, though a run may hit zero.
         let runs: Vec<&WorkPoint> =
@@ -156,12 +158,23 @@ impl Curve {
             (Size::Tolerance(x), Size::Tolerance(y)) => Some(between(x, y)),
             _ => None,
         };
-        Some(Reached {
+        let between = Reached {
             seconds: between(a.seconds_per_unit, b.seconds_per_unit),
             h: between(a.h, b.h),
             tolerance,
             energy_error: a.energy_error.max(b.energy_error),
-        })
+        };
+        // Where a run costs little more than its beginning, a more accurate one may be as fast.
+        let measured = runs[after..].iter().filter(|p| p.error <= error).map(|p| Reached {
+            seconds: p.seconds_per_unit,
+            h: p.h,
+            tolerance: match p.size {
+                Size::Tolerance(rtol) => Some(rtol),
+                Size::Steps(_) => None,
+            },
+            energy_error: p.energy_error,
+        });
+        core::iter::once(between).chain(measured).min_by(|a, b| a.seconds.total_cmp(&b.seconds))
     }
 
     /// The time per unit of simulated time at which this error is reached.
@@ -226,8 +239,10 @@ mod tests {
         }
         // Slower everywhere, but for one run that nobody else is as accurate as.
         slow.points[1].error = 1e-9;
-        assert_eq!(pareto(&[ideal(&[0.1, 0.01]), slow]), [(0, 0), (0, 1), (1, 1)]);
-        assert_eq!(pareto(&[]), []);
+        let time = |p: &WorkPoint| Some(p.seconds_per_unit);
+        let front = pareto(&[ideal(&[0.1, 0.01]), slow], time);
+        assert_eq!(front, [(0, 0), (0, 1), (1, 1)]);
+        assert_eq!(pareto(&[ideal(&[0.1])], |_| None), []);
     }
 
     #[test]

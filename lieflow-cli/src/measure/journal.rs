@@ -42,23 +42,23 @@ impl Journal {
         let path = folder.join(JOURNAL);
         let old = fs::read_to_string(&path).unwrap_or_default();
         // A line that was cut off by the interruption is no entry.
-        let mut entries = old.lines().map_while(|line| serde_json::from_str::<Entry>(line).ok());
-        let same = matches!(entries.next(), Some(Entry::Of(what)) if what == of);
+        let entry = |line| Some((line, serde_json::from_str::<Entry>(line).ok()?));
+        let mut entries = old.lines().map_while(entry);
+        let same = matches!(entries.next(), Some((_, Entry::Of(what))) if what == of);
         let (mut points, mut times) = (HashMap::new(), HashMap::<String, Vec<f64>>::new());
-        let mut kept = vec![Entry::Of(of.into())];
-        if same {
-            for entry in entries {
-                match &entry {
-                    Entry::Of(_) => {}
-                    Entry::Point(key, point) => drop(points.insert(key.clone(), point.clone())),
-                    Entry::Time(key, t) => times.entry(key.clone()).or_default().push(*t),
+        let mut text = line_of(&Entry::Of(of.into()))?;
+        for (line, entry) in entries.take_while(|_| same) {
+            match entry {
+                Entry::Of(_) => {}
+                Entry::Point(key, point) => {
+                    points.insert(key, point);
                 }
-                kept.push(entry);
+                Entry::Time(key, seconds) => times.entry(key).or_default().push(seconds),
             }
+            text += line;
+            text.push('\n');
         }
-        let lines: Result<Vec<String>, _> = kept.iter().map(serde_json::to_string).collect();
-        let lines = lines.map_err(|error| CliError::Message(format!("JSON: {error}")))?;
-        crate::output::write_file(&path, &(lines.join("\n") + "\n"))?;
+        crate::output::write_file(&path, &text)?;
         let file = OpenOptions::new().append(true).open(&path);
         let file = file.map_err(CliError::io("write", &path))?;
         Ok(Journal { path, file, points, times })
@@ -86,9 +86,8 @@ impl Journal {
     }
 
     fn append(&mut self, entry: &Entry) -> Result<(), CliError> {
-        let line = serde_json::to_string(entry);
-        let line = line.map_err(|error| CliError::Message(format!("JSON: {error}")))?;
-        writeln!(self.file, "{line}").map_err(CliError::io("write", &self.path))
+        let line = line_of(entry)?;
+        self.file.write_all(line.as_bytes()).map_err(CliError::io("write", &self.path))
     }
 
     /// Everything is measured: the next comparison begins anew.
@@ -99,6 +98,11 @@ impl Journal {
         drop(self.file);
         crate::output::remove_old(&self.path)
     }
+}
+
+fn line_of(entry: &Entry) -> Result<String, CliError> {
+    let line = serde_json::to_string(entry);
+    line.map(|line| line + "\n").map_err(|error| CliError::Message(format!("JSON: {error}")))
 }
 
 /// A number that may be none in JSON, where it is null.

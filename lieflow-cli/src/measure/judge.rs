@@ -177,8 +177,10 @@ impl Judge {
             Ok(done) => {
                 let length = (t_span[1] - t_span[0]).abs();
                 (point.steps, point.rejected) = (done.steps, done.rejected);
-                (point.h, point.evaluations) =
-                    (length / done.steps.max(1) as f64, done.evaluations);
+                point.h = length / done.steps.max(1) as f64;
+                point.evaluations = done
+                    .evaluations
+                    .or_else(|| candidate.evaluations_per_step().map(|n| n * done.steps));
                 point.error = self.error(&last);
                 for &(name, column) in &self.invariants {
                     let (start, end) = (first[column], last[column]);

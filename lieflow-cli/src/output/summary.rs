@@ -68,8 +68,8 @@ pub struct Chosen {
     pub accepted: u64,
     /// Attempts that were rejected, for their error or because the step failed.
     pub rejected: u64,
-    /// Evaluations of f.
-    pub evaluations: u64,
+    /// Evaluations of f, by an embedded pair; not counted where steps were doubled.
+    pub evaluations: Option<u64>,
     /// The smallest accepted step.
     pub smallest_step: f64,
     /// The largest accepted step.

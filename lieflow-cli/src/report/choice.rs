@@ -1,7 +1,7 @@
 //! Which method to take: the fastest for each error, and the runs that nothing beats.
 
-use super::{duration, look, scientific};
-use crate::measure::{Curve, Reached, pareto};
+use super::{duration, scientific};
+use crate::measure::{Curve, Reached, Size, WorkPoint, pareto};
 use crate::page::{Column, Row, Table};
 use crate::plot::{Axis, Chart, Marker, Point, Scale, Series};
 
@@ -73,38 +73,62 @@ pub fn choice_table(caption: &str, choices: &[Choice<'_>]) -> Table {
     }
 }
 
-/// For each curve the places of its points on the Pareto front.
+/// What a run costs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Cost {
+    /// CPU time per unit of simulated time.
+    Time,
+    /// Evaluations of f.
+    Evaluations,
+}
+
+impl Cost {
+    fn of(self, point: &WorkPoint) -> Option<f64> {
+        match self {
+            Cost::Time => Some(point.seconds_per_unit).filter(|t| *t > 0.0),
+            Cost::Evaluations => point.evaluations.map(|n| n as f64),
+        }
+    }
+    fn axis(self) -> Axis {
+        match self {
+            Cost::Time => Axis::new("CPU time per unit of simulated time [s]", Scale::Log10),
+            Cost::Evaluations => Axis::new("evaluations of f", Scale::Log10),
+        }
+    }
+}
+
+/// For each curve the places of its points on the Pareto front of error and time.
 pub fn fronts(curves: &[Curve]) -> Vec<Vec<usize>> {
     let mut fronts = vec![Vec::new(); curves.len()];
-    for (curve, point) in pareto(curves) {
+    for (curve, point) in pareto(curves, |p| Cost::Time.of(p)) {
         fronts[curve].push(point);
     }
     fronts
 }
 
-/// The runs that nothing beats in both error and time: the front, and the whole lines of the methods
+/// The runs that nothing beats in both error and cost: the front, and the whole lines of the methods
 /// on it.
-pub fn front_chart(id: &str, caption: &str, curves: &[Curve]) -> Chart {
-    let front = pareto(curves);
+pub fn front_chart(id: &str, title: &str, caption: &str, curves: &[Curve], cost: Cost) -> Chart {
+    let front = pareto(curves, |p| cost.of(p));
     let mut on_front: Vec<usize> = front.iter().map(|(curve, _)| *curve).collect();
     on_front.sort_unstable();
     on_front.dedup();
     let place = |(i, j): (usize, usize)| {
         let point = &curves[i].points[j];
         let note = format!("{}, {}", curves[i].candidate.label(), size_of(point));
-        Point::new(point.error, point.seconds_per_unit).with_note(note)
+        Some(Point::new(point.error, cost.of(point)?).with_note(note))
     };
     let mut series: Vec<Series> = on_front
         .iter()
         .enumerate()
         .map(|(rank, &i)| Series {
             name: curves[i].candidate.label(),
-            colour: look(&curves[i].candidate).unwrap_or(rank),
+            colour: rank,
             marker: Marker::cycle(rank),
             dash: false,
             points: (0..curves[i].points.len())
                 .filter(|j| curves[i].points[*j].failure.is_none())
-                .map(|j| place((i, j)))
+                .filter_map(|j| place((i, j)))
                 .collect(),
             emphasised: false,
         })
@@ -114,26 +138,26 @@ pub fn front_chart(id: &str, caption: &str, curves: &[Curve]) -> Chart {
         colour: 6,
         marker: Marker::Circle,
         dash: true,
-        points: front.iter().map(|at| place(*at)).collect(),
+        points: front.iter().filter_map(|at| place(*at)).collect(),
         emphasised: true,
     });
     Chart {
         id: id.into(),
-        title: "Runs that no other beats in both error and time".into(),
+        title: title.into(),
         x: Axis::new("global error at the end", Scale::Log10),
-        y: Axis::new("CPU time per unit of simulated time [s]", Scale::Log10),
+        y: cost.axis(),
         series,
         caption: caption.into(),
     }
 }
 
 /// The size of a run's steps, for a reader.
-pub(super) fn size_of(point: &crate::measure::WorkPoint) -> String {
+pub(super) fn size_of(point: &WorkPoint) -> String {
     match point.size {
-        crate::measure::Size::Steps(steps) => {
+        Size::Steps(steps) => {
             format!("h = {}, {steps} steps", scientific(point.h))
         }
-        crate::measure::Size::Tolerance(rtol) => {
+        Size::Tolerance(rtol) => {
             format!("rtol = {rtol:e}, {} steps, {} rejected", point.steps, point.rejected)
         }
     }

@@ -6,15 +6,12 @@ mod maps;
 mod speed;
 
 pub use choice::{
-    ADVICE, CHOICE_HEADER, Choice, KEPT, choice_cells, choice_table, choices, front_chart, fronts,
-    keeps_energy,
+    ADVICE, CHOICE_HEADER, Choice, Cost, KEPT, choice_cells, choice_table, choices, front_chart,
+    fronts, keeps_energy,
 };
 pub use energy::{EnergyRun, energy_chart, momentum_sphere};
 pub use maps::{MAPS_PAGE, write_maps};
-use speed::look;
-pub use speed::{
-    SpeedRow, evaluations_chart, speed_chart, speed_csv, speed_table, tolerance_header,
-};
+pub use speed::{SpeedRow, speed_chart, speed_csv, speed_table, tolerance_header};
 
 use std::path::{Path, PathBuf};
 

@@ -55,39 +55,6 @@ pub fn speed_chart<'a>(
     }
 }
 
-/// Evaluations of f against error, for the runs that counted them: those that chose their steps.
-pub fn evaluations_chart(id: &str, caption: &str, curves: &[Curve]) -> Option<Chart> {
-    let counted = |curve: &&Curve| curve.points.iter().any(|p| p.evaluations.is_some());
-    let series: Vec<Series> = curves
-        .iter()
-        .filter(counted)
-        .enumerate()
-        .map(|(place, curve)| Series {
-            name: curve.candidate.label(),
-            colour: look(&curve.candidate).unwrap_or(place),
-            marker: Marker::cycle(place),
-            dash: curve.candidate.layer == Layer::General,
-            points: curve
-                .points
-                .iter()
-                .filter(|p| p.failure.is_none())
-                .filter_map(|p| {
-                    Some(Point::new(p.error, p.evaluations? as f64).with_note(size_of(p)))
-                })
-                .collect(),
-            emphasised: false,
-        })
-        .collect();
-    (!series.is_empty()).then(|| Chart {
-        id: id.into(),
-        title: "Evaluations of f against error".into(),
-        x: Axis::new("global error at the end", Scale::Log10),
-        y: Axis::new("evaluations of f", Scale::Log10),
-        series,
-        caption: caption.into(),
-    })
-}
-
 /// The columns that [`SpeedRow`] fills.
 pub fn tolerance_header() -> Vec<Column> {
     let mut columns = vec![
