@@ -447,7 +447,7 @@ fn page(outcomes: &[Outcome], findings: &[Finding], quick: bool, took: Duration)
         ],
     )];
     sections.extend(outcomes.iter().map(Outcome::section));
-    sections.push(agreement(findings));
+    sections.push(report::agreement(findings));
     sections.push(Section::new(
         "Go on",
         vec![
@@ -473,40 +473,4 @@ fn page(outcomes: &[Outcome], findings: &[Finding], quick: bool, took: Duration)
         sections,
         footer: format!("lieflow {}", env!("CARGO_PKG_VERSION")),
     }
-}
-
-/// The table of the cross-checks.
-fn agreement(findings: &[Finding]) -> Section {
-    let rows = findings.iter().map(|f| Row {
-        cells: vec![
-            f.name.clone(),
-            f.cases.to_string(),
-            format!("{:.2}", f.worst),
-            f.bound.to_string(),
-            if f.holds() { "holds".into() } else { "out of bounds".into() },
-        ],
-        emphasised: !f.holds(),
-    });
-    Section::new(
-        "General against specialised",
-        vec![
-            Block::text(
-                "Every map and inverse differential of the general layer at n = 3 against the closed \
-                 forms, at random u from 1e-320 to 3e14; whole steps; and the laws of each group \
-                 with each map. Differences are in units of ε·cond·size: 1 is what one rounding of \
-                 the input already changes.",
-            ),
-            Block::Table(Table {
-                caption: "Largest differences found on this machine.".into(),
-                columns: vec![
-                    Column::text("Check"),
-                    Column::number("Cases"),
-                    Column::number("Worst [eps·cond]"),
-                    Column::number("Bound"),
-                    Column::text(""),
-                ],
-                rows: rows.collect(),
-            }),
-        ],
-    )
 }

@@ -6,6 +6,7 @@ pub mod counts;
 pub mod energy;
 mod files;
 pub mod findings;
+mod news;
 mod page;
 pub mod printed;
 pub mod rows;

@@ -1,10 +1,12 @@
 //! Measurements as figures, tables and files.
 
+mod agreement;
 mod choice;
 mod energy;
 mod maps;
 mod speed;
 
+pub use agreement::agreement;
 pub use choice::{
     ADVICE, CHOICE_HEADER, Choice, Cost, KEPT, choice_cells, choice_table, choices, front_chart,
     fronts, keeps_energy,
