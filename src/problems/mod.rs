@@ -2,16 +2,39 @@
 //!
 //! To add a problem: one file with an `impl` of [`Problem`], one line here.
 
+pub mod beam;
 mod capability;
+mod euler;
+mod heavy_top;
+pub mod inertia;
+mod invariants;
+mod isospectral;
 mod linear;
+mod lorentz;
+mod oja;
+mod periodic;
 mod rigid_body;
+mod space;
+mod spheres;
+mod torque;
 
 pub use capability::{Isospectral, LiePoisson, Orthogonal, Projection, Split};
+pub use euler::{Euler, EulerGroup, FromTheBody, Hamiltonian, Kinetic};
+pub use heavy_top::HeavyTop;
+pub use invariants::{Invariant, Invariants, Kept};
+pub use isospectral::{IsospectralFlow, toda_lattice};
 pub use linear::{LinearEquation, LinearField};
+pub use lorentz::ChargedParticle;
+pub use oja::Oja;
+pub use periodic::{Floquet, floquet, hill, mathieu, monodromy};
 pub use rigid_body::{
     BodyFrame, BodyState, Exact, Frame, FreeBody, RigidBody, RigidBodyAttitude, RigidBodyN,
     RigidBodyNAttitude, RigidBodyState,
 };
+
+pub use space::LinearSpace;
+pub use spheres::{SphericalPendulum, SpinChain};
+pub use torque::{BodyTorque, Motion, SpaceTorque, Torque, TorqueBody};
 
 use crate::actions::Action;
 use crate::groups::{LieAlgebra, LieGroup};
