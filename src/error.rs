@@ -108,6 +108,14 @@ pub enum Error {
         /// The reason, and what to use.
         why: &'static str,
     },
+    /// A map could not be evaluated at one element of an array.
+    #[error("element {index}: {source}")]
+    Element {
+        /// Its number, from 0.
+        index: usize,
+        /// Why.
+        source: StepError,
+    },
     /// A map could not be evaluated.
     #[error(transparent)]
     Map(#[from] StepError),
@@ -171,6 +179,18 @@ pub enum StepError {
     NotFinite {
         /// What overflowed.
         what: &'static str,
+    },
+    /// A matrix has the wrong size for the group.
+    #[error("{arg}: {rows}×{cols}, expected {n}×{n}")]
+    Shape {
+        /// The argument.
+        arg: &'static str,
+        /// Its rows.
+        rows: usize,
+        /// Its columns.
+        cols: usize,
+        /// The n of the group.
+        n: usize,
     },
     /// An argument of a map is so large that no digit of the result has a meaning.
     #[error(

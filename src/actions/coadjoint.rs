@@ -16,7 +16,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::Action;
 use crate::chart::PsiOf;
 use crate::dense::{Lu, mul};
-use crate::error::StepError;
+use crate::error::{Error, StepError};
 use crate::groups::{Form, GroupMatrix, LieGroup, MatrixGroup, Se3, So3, add3, cross};
 use crate::maps::CoordinateMap;
 use crate::scalar::Real;
@@ -82,6 +82,9 @@ impl Action<MatrixGroup> for Coadjoint {
         let n = group.n();
         let lu = matches!(group.form(), Form::Free).then(|| Lu::new(n));
         CoadjointWork { left: Mat::zeros(n, n), product: Mat::zeros(n, n), lu }
+    }
+    fn check(&self, group: &MatrixGroup, p: &Mat<f64>) -> Result<(), Error> {
+        group.rows_fit("y", p, group.n())
     }
     fn act(
         &self,

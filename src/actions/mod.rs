@@ -17,7 +17,7 @@ pub use parts::{Each, Pair};
 pub use translation::LeftTranslation;
 
 use crate::chart::PsiOf;
-use crate::error::StepError;
+use crate::error::{Error, StepError};
 use crate::groups::LieGroup;
 use crate::maps::CoordinateMap;
 
@@ -30,6 +30,14 @@ pub trait Action<G: LieGroup> {
 
     /// Scratch for [`act`](Self::act); the only call that allocates.
     fn work(&self, group: &G) -> Self::Work;
+
+    /// Has p the size that `group` acts on? Asked before a run.
+    ///
+    /// # Errors
+    /// [`Error::Shape`] with both sizes.
+    fn check(&self, _group: &G, _p: &Self::Point) -> Result<(), Error> {
+        Ok(())
+    }
 
     /// q ← Λ(g, p).
     fn act(

@@ -29,6 +29,7 @@ pub use translations::Translations;
 
 use rand::Rng;
 
+use crate::error::Error;
 use crate::scalar::Real;
 
 /// A Lie algebra 𝔤: a linear space with a bracket.
@@ -84,6 +85,21 @@ pub trait LieGroup: LieAlgebra {
     fn distance(&self, a: &Self::Elem, b: &Self::Elem) -> Self::Scalar;
     /// How far g is from G: ‖gᵀMg − M‖ (Frobenius), zero for GL(n).
     fn defect(&self, g: &Self::Elem) -> Self::Scalar;
+
+    /// Has g the size of this group's elements? Asked once a run, of what a user hands in.
+    ///
+    /// # Errors
+    /// [`Error::Shape`] with both sizes.
+    fn check_elem(&self, _g: &Self::Elem) -> Result<(), Error> {
+        Ok(())
+    }
+    /// Has x the size of this group's vectors?
+    ///
+    /// # Errors
+    /// [`Error::Shape`] with both sizes.
+    fn check_vector(&self, _x: &Self::Vector) -> Result<(), Error> {
+        Ok(())
+    }
 
     /// Take g back towards G, where rounding carried it off: g ← g + g(𝟙 − M⁻¹gᵀMg)/2, a
     /// Newton–Schulz step in residual form. Returns the residual ‖M⁻¹gᵀMg − 𝟙‖ found before.

@@ -14,6 +14,7 @@ mod exp;
 mod log;
 mod pade22;
 mod parts;
+mod quotient;
 mod se3;
 
 pub use alternating::{Alternating, AlternatingAt, CCSK};
