@@ -10,10 +10,14 @@ mod heavy_top;
 mod isospectral;
 #[path = "problems/lorentz.rs"]
 mod lorentz;
+#[path = "problems/lyapunov.rs"]
+mod lyapunov;
 #[path = "problems/oja.rs"]
 mod oja;
 #[path = "problems/periodic.rs"]
 mod periodic;
+#[path = "problems/rigid.rs"]
+mod rigid;
 #[path = "problems/spheres.rs"]
 mod spheres;
 #[path = "problems/torque.rs"]

@@ -142,6 +142,6 @@ pub fn tunes(cell: &GroupMatrix) -> [Option<f64>; 2] {
         let (half_trace, upper) = (0.5 * (cell[(i, i)] + cell[(i + 2, i + 2)]), cell[(i, i + 2)]);
         let mu = half_trace.acos() / core::f64::consts::TAU;
         // M₁₂ = β sin μ with β > 0.
-        (half_trace.abs() < 1.0).then(|| if upper >= 0.0 { mu } else { 1.0 - mu })
+        (half_trace.abs() < 1.0).then_some(if upper >= 0.0 { mu } else { 1.0 - mu })
     })
 }

@@ -201,7 +201,7 @@ impl<G, H> EulerGroup<G, H> {
 }
 
 /// Λ(a, (g, m)) = (g a⁻¹, Ad*_{a⁻¹} m): the group acts from the body's side. Where
-/// [`Adjoint::inverse`] allocates, on GL(n), Sp(2m) and G_M, so does this.
+/// [`Adjoint::inverse`] allocates, on GL(n) and G_M, so does this.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FromTheBody;
 

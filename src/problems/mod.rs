@@ -11,6 +11,7 @@ mod invariants;
 mod isospectral;
 mod linear;
 mod lorentz;
+mod lyapunov;
 mod oja;
 mod periodic;
 mod rigid_body;
@@ -25,13 +26,13 @@ pub use invariants::{Invariant, Invariants, Kept};
 pub use isospectral::{IsospectralFlow, toda_lattice};
 pub use linear::{LinearEquation, LinearField};
 pub use lorentz::ChargedParticle;
+pub use lyapunov::Lyapunov;
 pub use oja::Oja;
-pub use periodic::{Floquet, floquet, hill, mathieu, monodromy};
+pub use periodic::{Floquet, LinearHamiltonian, floquet, hill, mathieu, monodromy};
 pub use rigid_body::{
     BodyFrame, BodyState, Exact, Frame, FreeBody, RigidBody, RigidBodyAttitude, RigidBodyN,
-    RigidBodyNAttitude, RigidBodyState,
+    RigidBodyNAttitude, RigidBodyState, manakov_integrals,
 };
-
 pub use space::LinearSpace;
 pub use spheres::{SphericalPendulum, SpinChain};
 pub use torque::{BodyTorque, Motion, SpaceTorque, Torque, TorqueBody};

@@ -17,6 +17,9 @@ use crate::groups::{AlgebraMatrix, GroupMatrix, LieGroup, MatrixGroup};
 use crate::integrate::{RunError, SaveAt, TimeGrid, integrate};
 use crate::methods::Method;
 
+/// ġ = A(t)g on Sp(2m); the function writes A(t).
+pub type LinearHamiltonian<F> = LinearEquation<MatrixGroup, LeftTranslation, F>;
+
 /// ẍ + Q(t)x = 0 for x ∈ ℝᵐ on Sp(2m): `stiffness(t, i, j)` is Q_ij(t), of a symmetric Q.
 ///
 /// # Errors
@@ -24,7 +27,7 @@ use crate::methods::Method;
 pub fn hill<Q: Fn(f64, usize, usize) -> f64>(
     m: usize,
     stiffness: Q,
-) -> Result<LinearEquation<MatrixGroup, LeftTranslation, impl Fn(f64, &mut AlgebraMatrix)>, Error> {
+) -> Result<LinearHamiltonian<impl Fn(f64, &mut AlgebraMatrix)>, Error> {
     let group = MatrixGroup::sp(m.saturating_mul(2))?;
     let field = move |t: f64, v: &mut AlgebraMatrix| {
         v.fill(0.0);
@@ -57,7 +60,7 @@ pub fn hill<Q: Fn(f64, usize, usize) -> f64>(
 pub fn mathieu(
     a: f64,
     q: f64,
-) -> Result<LinearEquation<MatrixGroup, LeftTranslation, impl Fn(f64, &mut AlgebraMatrix)>, Error> {
+) -> Result<LinearHamiltonian<impl Fn(f64, &mut AlgebraMatrix)>, Error> {
     check_finite("a", &[a])?;
     check_finite("q", &[q])?;
     hill(1, move |t, _, _| a - 2.0 * q * (2.0 * t).cos())
