@@ -82,7 +82,6 @@ fn keeps_its_invariants<P: Invariants>(
     accuracy: f64,
 ) where
     P::Group: LieAlgebra<Scalar = f64>,
-    P: Problem,
     Exp: CoordinateMap<P::Group>,
 {
     let names = problem.invariants();

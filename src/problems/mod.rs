@@ -1,5 +1,20 @@
 //! f : M → 𝔤, the differential equations, and what else is known of each.
 //!
+//! | problem | group, action | |
+//! |---|---|---|
+//! | free rigid body in ℝ³ and ℝⁿ | SO(3), SO(n); coadjoint or translation | [`RigidBody`], [`RigidBodyAttitude`], [`RigidBodyState`], [`RigidBodyN`] |
+//! | Euler's equations of any Hamiltonian | any; coadjoint | [`Euler`], [`EulerGroup`], [`Kinetic`] |
+//! | heavy tops | SE(3); coadjoint | [`HeavyTop`] |
+//! | rigid body under torques | SO(3) × T(3); translation | [`TorqueBody`], [`inertia`] |
+//! | isospectral flows: Toda, QR, double bracket | SO(n); conjugation | [`IsospectralFlow`] |
+//! | spherical pendulum, spin chain | SE(3); coadjoint; SO(3)ᴺ; vectors | [`SphericalPendulum`], [`SpinChain`] |
+//! | Oja's flow | SO(n); n×k matrices | [`Oja`] |
+//! | Lyapunov exponents of a vector field | SO(n) × T(2n); translation | [`Lyapunov`] |
+//! | equations of linear type, Magnus | any | [`LinearEquation`] |
+//! | Hill, Mathieu, Floquet; beam lines | Sp(2m); translation | [`hill`], [`mathieu`], [`floquet`], [`beam`] |
+//! | Riccati | Sp(2m); [`Lagrangian`](crate::actions::Lagrangian) | [`LinearEquation`] |
+//! | charged particle | SO(3,1); vectors | [`ChargedParticle`] |
+//!
 //! To add a problem: one file with an `impl` of [`Problem`], one line here.
 
 pub mod beam;

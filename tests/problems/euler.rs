@@ -11,6 +11,8 @@ use rand::SeedableRng;
 use rand_pcg::Pcg64;
 
 type V = Vector3<f64>;
+type Pair = (V, V);
+type Inertia = fn(&Pair, &mut Pair);
 
 const INERTIA: [f64; 3] = [1.0, 2.0, 3.5];
 
@@ -49,7 +51,7 @@ fn on_so4_it_is_manakovs_body() {
     assert!((general.energy(&m) - 2.0 * body.energy(&m)).abs() < 1e-13);
 }
 
-fn kirchhoff() -> Euler<Se3, Kinetic<impl Fn(&(V, V), &mut (V, V))>> {
+fn kirchhoff() -> Euler<Se3, Kinetic<Inertia>> {
     Euler::new(
         Se3::new(),
         Kinetic(|m: &(V, V), u: &mut (V, V)| {

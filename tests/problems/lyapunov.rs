@@ -4,7 +4,11 @@ use super::*;
 use faer::{Mat, mat};
 use lieflow::problems::Lyapunov;
 
-fn linear(a: Mat<f64>) -> Lyapunov<impl Fn(f64, &Mat<f64>, &mut Mat<f64>, &mut Mat<f64>)> {
+/// A vector field with its Jacobian.
+trait Field: Fn(f64, &Mat<f64>, &mut Mat<f64>, &mut Mat<f64>) {}
+impl<F: Fn(f64, &Mat<f64>, &mut Mat<f64>, &mut Mat<f64>)> Field for F {}
+
+fn linear(a: Mat<f64>) -> Lyapunov<impl Field> {
     Lyapunov::new(a.nrows(), move |_, x: &Mat<f64>, dx: &mut Mat<f64>, jacobian: &mut Mat<f64>| {
         dx.copy_from(&a * x);
         jacobian.copy_from(&a);
@@ -12,7 +16,7 @@ fn linear(a: Mat<f64>) -> Lyapunov<impl Fn(f64, &Mat<f64>, &mut Mat<f64>, &mut M
     .unwrap()
 }
 
-fn lorenz() -> Lyapunov<impl Fn(f64, &Mat<f64>, &mut Mat<f64>, &mut Mat<f64>)> {
+fn lorenz() -> Lyapunov<impl Field> {
     Lyapunov::new(3, |_, u: &Mat<f64>, du: &mut Mat<f64>, jacobian: &mut Mat<f64>| {
         let (x, y, z) = (u[(0, 0)], u[(1, 0)], u[(2, 0)]);
         let (sigma, rho, beta) = (10.0, 28.0, 8.0 / 3.0);

@@ -11,6 +11,9 @@ use nalgebra::{Matrix3, Vector3};
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
 
+/// A vector for each body.
+type Bodies = Box<[Vector3<f64>]>;
+
 const INERTIA: [f64; 3] = [1.0, 2.0, 3.5];
 
 #[test]
@@ -61,7 +64,7 @@ fn manakovs_integrals() {
 #[test]
 fn many_bodies_at_once() {
     let inertia = |i: usize| Vector3::from(INERTIA) * (1.0 + 0.01 * i as f64);
-    let inverse = move |m: &Box<[Vector3<f64>]>, xi: &mut Box<[Vector3<f64>]>| {
+    let inverse = move |m: &Bodies, xi: &mut Bodies| {
         for (i, (m, xi)) in m.iter().zip(xi).enumerate() {
             *xi = m.component_div(&inertia(i));
         }
