@@ -1,10 +1,11 @@
-//! Isospectral symplectic Runge–Kutta methods for Lie–Poisson systems on any matrix algebra.
+//! Isospectral symplectic Runge–Kutta methods: Lie–Poisson systems on any matrix algebra, and every
+//! other flow by conjugation.
 //!
-//! The coadjoint action Λ(g, m) = g⁻ᵀ m gᵀ conjugates W = mᵀ: Ẇ = \[B, W\] with B = f(t, m) ∈ 𝔤. With
-//! a Gauss tableau (a, b, c)
+//! Ẇ = \[B, W\] with B = f(t, W) ∈ 𝔤, by the action of conjugation Λ(g, W) = g W g⁻¹, or by the
+//! coadjoint action Λ(g, m) = g⁻ᵀ m gᵀ for W = mᵀ. With a Gauss tableau (a, b, c)
 //!
-//! Q_i = 𝟙 + h Σ_j a_ij B_j Q_j, P_i = 𝟙 − h Σ_j a_ij P_j B_j, B_j = f(t + c_j h, P_jᵀ m Q_jᵀ);
-//! Q⁺ = 𝟙 + h Σ_i b_i B_i Q_i, P⁺ = 𝟙 − h Σ_i b_i P_i B_i, m⁺ = P⁺ᵀ m Q⁺ᵀ.
+//! Q_i = 𝟙 + h Σ_j a_ij B_j Q_j, P_i = 𝟙 − h Σ_j a_ij P_j B_j, B_j = f(t + c_j h, Q_j W P_j);
+//! Q⁺ = 𝟙 + h Σ_i b_i B_i Q_i, P⁺ = 𝟙 − h Σ_i b_i P_i B_i, W⁺ = Q⁺ W P⁺.
 //!
 //! The Gauss methods keep quadratic invariants: P⁺Q⁺ = 𝟙, so that the spectrum of m (every Casimir
 //! of GL(n)) is kept to rounding, and Q⁺ ∈ G_M where G keeps a form. P_i is M⁻¹Q_iᵀM there; where
@@ -23,7 +24,7 @@ use faer::Mat;
 use super::gauss::ImplicitTableau;
 use super::newton::Progress;
 use super::{Method, Step, Symmetric};
-use crate::actions::Coadjoint;
+use crate::actions::{Action, Coadjoint, Conjugation};
 use crate::dense::{axpy, is_finite, mul, norm_frobenius};
 use crate::error::{Error, StepError};
 use crate::groups::{AlgebraMatrix, LieAlgebra, MatrixGroup};
@@ -91,21 +92,42 @@ impl<const S: usize> Factor<S> {
     }
 }
 
-/// out ← pᵀ m qᵀ, with p = qᵀ where there is none.
-fn conjugate(
-    [q, p]: [&Mat<f64>; 2],
-    skew: bool,
+/// An action that conjugates matrices, or their transposes.
+pub trait Conjugates: Action<MatrixGroup, Point = Mat<f64>> {
+    /// Is the point mᵀ conjugated, and not m?
+    const TRANSPOSED: bool;
+}
+
+impl Conjugates for Conjugation {
+    const TRANSPOSED: bool = false;
+}
+
+impl Conjugates for Coadjoint {
+    const TRANSPOSED: bool = true;
+}
+
+/// out ← q m p, or pᵀ m qᵀ, with p = qᵀ where there is none.
+fn conjugate<A: Conjugates>(
+    q: &Mat<f64>,
+    p: Option<&Mat<f64>>,
     m: &Mat<f64>,
     half: &mut Mat<f64>,
     out: &mut Mat<f64>,
 ) {
-    mul(half, if skew { q.as_ref() } else { p.transpose() }, m.as_ref());
-    mul(out, half.as_ref(), q.transpose());
+    match (p, A::TRANSPOSED) {
+        (Some(p), true) => mul(half, p.transpose(), m.as_ref()),
+        _ => mul(half, q.as_ref(), m.as_ref()),
+    }
+    match (p, A::TRANSPOSED) {
+        (Some(p), false) => mul(out, half.as_ref(), p.as_ref()),
+        _ => mul(out, half.as_ref(), q.transpose()),
+    }
 }
 
 impl<P, const S: usize> Method<P> for IsospectralGauss<S>
 where
-    P: Problem<Group = MatrixGroup, Action = Coadjoint>,
+    P: Problem<Group = MatrixGroup>,
+    P::Action: Action<MatrixGroup, Point = Mat<f64>> + Conjugates,
 {
     type Work = IsospectralWork<P, S>;
 
@@ -145,8 +167,8 @@ where
         loop {
             let mut change = 0.0;
             for i in 0..S {
-                let left = p.as_ref().map_or(&q.stages[i], |p| &p.stages[i]);
-                conjugate([&q.stages[i], left], p.is_none(), y, half, m);
+                let back = p.as_ref().map(|p| &p.stages[i]);
+                conjugate::<P::Action>(&q.stages[i], back, y, half, m);
                 problem.f(t + tab.c[i] * h, m, b, field);
                 mul(half, b.as_ref(), q.stages[i].as_ref());
                 change += q.replace(i, h, &tab.a[i], half);
@@ -164,8 +186,8 @@ where
         if let Some(p) = p {
             Factor::sum(&p.slopes, h, &tab.b, &mut p.stages[0]);
         }
-        let left = p.as_ref().map_or(&q.stages[0], |p| &p.stages[0]);
-        conjugate([&q.stages[0], left], p.is_none(), y, half, m);
+        let back = p.as_ref().map(|p| &p.stages[0]);
+        conjugate::<P::Action>(&q.stages[0], back, y, half, m);
         if !is_finite(m) {
             return Err(StepError::NotFinite { what: "the state" });
         }

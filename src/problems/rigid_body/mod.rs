@@ -5,6 +5,7 @@ mod closed;
 mod exact;
 mod free;
 mod general;
+mod invariants;
 mod series;
 mod state;
 
@@ -12,6 +13,7 @@ pub use closed::{RigidBody, RigidBodyAttitude};
 pub use exact::Exact;
 pub use free::{Frame, FreeBody};
 pub use general::{RigidBodyN, RigidBodyNAttitude};
+pub use invariants::manakov_integrals;
 pub use state::{BodyFrame, BodyState, RigidBodyState};
 
 use crate::error::Error;
