@@ -162,6 +162,8 @@ macro_rules! each_tableau {
 /// A method that scene files can name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MethodInfo {
+    /// The family that it belongs to.
+    pub family: &'static str,
     /// Its name.
     pub name: &'static str,
     /// What it is, in one line.
@@ -180,12 +182,18 @@ pub struct MethodInfo {
     pub source: &'static str,
 }
 
+const RKMK: &str = "Runge–Kutta–Munthe-Kaas";
+const RUNGE_KUTTA: &str = "Runge–Kutta";
+const COMMUTATOR_FREE: &str = "commutator-free";
+const CROUCH_GROSSMAN: &str = "Crouch–Grossman";
+const MAGNUS: &str = "Magnus";
 const KEEPS_GROUP: &str = "group, Casimirs";
 const MUNTHE_KAAS: &str = "Munthe-Kaas 1999; Celledoni & Owren, Table 1";
 const KUTTA: &str = "Hairer, Nørsett, Wanner I, p. 138";
 
 /// A method whose map is exp and whose coefficients are fixed.
 const fn with_exp(
+    family: &'static str,
     name: &'static str,
     order: usize,
     summary: &'static str,
@@ -193,6 +201,7 @@ const fn with_exp(
     source: &'static str,
 ) -> MethodInfo {
     MethodInfo {
+        family,
         name,
         summary,
         order: Some(order),
@@ -212,6 +221,7 @@ const ALVERMANN: &str = "Alvermann, Fehske 2011";
 /// The methods.
 pub const METHODS: &[MethodInfo] = &[
     MethodInfo {
+        family: RKMK,
         name: "rkmk4",
         summary: "Runge–Kutta–Munthe-Kaas with the classical tableau",
         order: Some(4),
@@ -222,6 +232,7 @@ pub const METHODS: &[MethodInfo] = &[
         source: MUNTHE_KAAS,
     },
     MethodInfo {
+        family: RKMK,
         name: "rkmk",
         summary: "Runge–Kutta–Munthe-Kaas with any explicit tableau",
         order: None,
@@ -232,6 +243,7 @@ pub const METHODS: &[MethodInfo] = &[
         source: MUNTHE_KAAS,
     },
     MethodInfo {
+        family: RUNGE_KUTTA,
         name: "rk4",
         summary: "classical Runge–Kutta on the entries of the state",
         order: Some(4),
@@ -242,6 +254,7 @@ pub const METHODS: &[MethodInfo] = &[
         source: KUTTA,
     },
     MethodInfo {
+        family: RUNGE_KUTTA,
         name: "rk",
         summary: "explicit Runge–Kutta with any tableau on the entries of the state",
         order: None,
@@ -252,6 +265,7 @@ pub const METHODS: &[MethodInfo] = &[
         source: KUTTA,
     },
     with_exp(
+        RKMK,
         "rkmk4-2c",
         4,
         "RKMK of order 4 with two commutators",
@@ -259,43 +273,83 @@ pub const METHODS: &[MethodInfo] = &[
         "Munthe-Kaas, Owren 1999",
     ),
     with_exp(
+        MAGNUS,
         "magnus43",
         4,
         "Magnus method for nonlinear equations, pair 4(3)",
         "6 f, 6 exp, 3 brackets",
         "Casas, Iserles 2006",
     ),
-    with_exp("cf3", 3, "commutator-free, 3 stages", "3 f, 4 exp", CMO),
-    with_exp("cf4", 4, "commutator-free, 4 stages", "4 f, 5 exp", CMO),
+    with_exp(COMMUTATOR_FREE, "cf3", 3, "commutator-free, 3 stages", "3 f, 4 exp", CMO),
+    with_exp(COMMUTATOR_FREE, "cf4", 4, "commutator-free, 4 stages", "4 f, 5 exp", CMO),
     with_exp(
+        COMMUTATOR_FREE,
         "cf43",
         4,
         "commutator-free pair 4(3)",
         "4 f, 5 exp; 5 f, 8 exp with the error",
         "Curry, Owren 2019",
     ),
-    with_exp("cf-ls3", 3, "commutator-free in low storage (Lüscher)", "3 f, 3 exp", BAZAVOV),
     with_exp(
+        COMMUTATOR_FREE,
+        "cf-ls3",
+        3,
+        "commutator-free in low storage (Lüscher)",
+        "3 f, 3 exp",
+        BAZAVOV,
+    ),
+    with_exp(
+        COMMUTATOR_FREE,
         "cf-ls3-bp",
         3,
         "commutator-free in low storage (Bernardini, Pirozzoli)",
         "3 f, 3 exp",
         BAZAVOV,
     ),
-    with_exp("cf-ls32", 3, "commutator-free in low storage, pair 3(2)", "5 f, 5 exp", BAZAVOV),
     with_exp(
+        COMMUTATOR_FREE,
+        "cf-ls32",
+        3,
+        "commutator-free in low storage, pair 3(2)",
+        "5 f, 5 exp",
+        BAZAVOV,
+    ),
+    with_exp(
+        COMMUTATOR_FREE,
         "cf-ls4",
         4,
         "commutator-free in low storage (Carpenter, Kennedy)",
         "5 f, 5 exp",
         BAZAVOV,
     ),
-    with_exp("cf-ls5", 5, "commutator-free in low storage (Yan)", "13 f, 13 exp", BAZAVOV),
-    with_exp("cf-ees25", 2, "order 2, reversible to order 5", "3 f, 3 exp", EES),
-    with_exp("cf-ees27", 2, "order 2, reversible to order 7", "4 f, 4 exp", EES),
-    with_exp("cg2", 2, "Crouch–Grossman, 2 stages", "2 f, 2 exp", "Crouch, Grossman 1993"),
-    with_exp("cg3", 3, "Crouch–Grossman, 3 stages", "3 f, 6 exp", "Owren, Marthinsen 1999"),
     with_exp(
+        COMMUTATOR_FREE,
+        "cf-ls5",
+        5,
+        "commutator-free in low storage (Yan)",
+        "13 f, 13 exp",
+        BAZAVOV,
+    ),
+    with_exp(COMMUTATOR_FREE, "cf-ees25", 2, "order 2, reversible to order 5", "3 f, 3 exp", EES),
+    with_exp(COMMUTATOR_FREE, "cf-ees27", 2, "order 2, reversible to order 7", "4 f, 4 exp", EES),
+    with_exp(
+        CROUCH_GROSSMAN,
+        "cg2",
+        2,
+        "Crouch–Grossman, 2 stages",
+        "2 f, 2 exp",
+        "Crouch, Grossman 1993",
+    ),
+    with_exp(
+        CROUCH_GROSSMAN,
+        "cg3",
+        3,
+        "Crouch–Grossman, 3 stages",
+        "3 f, 6 exp",
+        "Owren, Marthinsen 1999",
+    ),
+    with_exp(
+        CROUCH_GROSSMAN,
         "cg4",
         4,
         "Crouch–Grossman, 5 stages (CG4a)",
@@ -306,14 +360,50 @@ pub const METHODS: &[MethodInfo] = &[
 
 /// The methods for equations of linear type, ẏ = λ_*(A(t))(y): see [`with_linear_method`].
 pub const LINEAR_METHODS: &[MethodInfo] = &[
-    with_exp("magnus4", 4, "Magnus, order 4", "2 A, 1 exp, 1 bracket", "Iserles, Nørsett 1999"),
-    with_exp("magnus6", 6, "Magnus, order 6", "3 A, 1 exp, 3 brackets", "Blanes, Casas, Ros 2000"),
-    with_exp("magnus8", 8, "Magnus, order 8", "4 A, 1 exp, 10 brackets", "Blanes, Casas, Ros 2000"),
-    with_exp("cfm4-2", 4, "commutator-free Magnus, order 4", "2 A, 2 exp", "Blanes, Moan 2006"),
-    with_exp("cfm4-3", 4, "commutator-free Magnus, order 4, optimised", "3 A, 3 exp", ALVERMANN),
-    with_exp("cfm6-5", 6, "commutator-free Magnus, order 6", "3 A, 5 exp", ALVERMANN),
-    with_exp("cfm8-11", 8, "commutator-free Magnus, order 8", "4 A, 11 exp", ALVERMANN),
     with_exp(
+        MAGNUS,
+        "magnus4",
+        4,
+        "Magnus, order 4",
+        "2 A, 1 exp, 1 bracket",
+        "Iserles, Nørsett 1999",
+    ),
+    with_exp(
+        MAGNUS,
+        "magnus6",
+        6,
+        "Magnus, order 6",
+        "3 A, 1 exp, 3 brackets",
+        "Blanes, Casas, Ros 2000",
+    ),
+    with_exp(
+        MAGNUS,
+        "magnus8",
+        8,
+        "Magnus, order 8",
+        "4 A, 1 exp, 10 brackets",
+        "Blanes, Casas, Ros 2000",
+    ),
+    with_exp(
+        MAGNUS,
+        "cfm4-2",
+        4,
+        "commutator-free Magnus, order 4",
+        "2 A, 2 exp",
+        "Blanes, Moan 2006",
+    ),
+    with_exp(
+        MAGNUS,
+        "cfm4-3",
+        4,
+        "commutator-free Magnus, order 4, optimised",
+        "3 A, 3 exp",
+        ALVERMANN,
+    ),
+    with_exp(MAGNUS, "cfm6-5", 6, "commutator-free Magnus, order 6", "3 A, 5 exp", ALVERMANN),
+    with_exp(MAGNUS, "cfm8-11", 8, "commutator-free Magnus, order 8", "4 A, 11 exp", ALVERMANN),
+    with_exp(
+        MAGNUS,
         "cayley-magnus4",
         4,
         "Magnus in Cayley coordinates, order 4",
@@ -321,6 +411,7 @@ pub const LINEAR_METHODS: &[MethodInfo] = &[
         "Iserles 2001",
     ),
     with_exp(
+        MAGNUS,
         "cayley-magnus6",
         6,
         "Magnus in Cayley coordinates, order 6",
@@ -353,10 +444,8 @@ impl MethodSpec {
     /// # Errors
     /// [`Error::UnknownName`], and [`Error::Unsupported`] for a part that the method does not take.
     pub fn info(&self) -> Result<&'static MethodInfo, Error> {
-        let info = METHODS
-            .iter()
-            .find(|m| m.name == self.name)
-            .ok_or_else(|| unknown("method", &self.name, METHODS.iter().map(|m| m.name)))?;
+        let info = all_methods().map(|(info, _)| info).find(|m| m.name == self.name);
+        let info = info.ok_or_else(|| misfit(&self.name))?;
         let refuse = |what, why| Error::Unsupported { what, with: format!("`{}`", info.name), why };
         if self.map.is_some() && !info.takes_map {
             return Err(refuse("map", "it works without coordinates; leave map out"));
@@ -466,13 +555,24 @@ macro_rules! each_method {
             "cg2" => Ok($single($on, CommutatorFree(crouch_grossman::CG2))),
             "cg3" => Ok($single($on, CommutatorFree(crouch_grossman::CG3))),
             "cg4" => Ok($single($on, CommutatorFree(crouch_grossman::CG4))),
-            other => Err(unknown("method", other, METHODS.iter().map(|m| m.name))),
+            other => Err(misfit(other)),
         }
     }};
 }
 
 mod embedded;
+mod lists;
+mod special;
+
 pub use embedded::{Doubled, OnEmbedded, with_embedded_method};
+pub use lists::{
+    ATTITUDE_METHODS, BODY_METHODS, IMPLICIT_METHODS, ISOSPECTRAL_METHODS, LIE_POISSON_METHODS,
+};
+use special::misfit;
+pub use special::{
+    Needs, all_methods, with_attitude_method, with_body_method, with_implicit_method,
+    with_lie_poisson_method, with_momentum_method,
+};
 
 /// What to do with a method, whatever its type.
 pub trait OnMethod<P: Problem> {

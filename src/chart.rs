@@ -51,9 +51,11 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>> ChartStore<P, Psi> {
     /// Storage sized for `problem`; `like` is any point of M.
     ///
     /// # Errors
-    /// [`Error::Unsupported`] when Ψ has no formula on the problem's group.
+    /// [`Error::Unsupported`] when Ψ has no formula on the problem's group, [`Error::Shape`] when
+    /// `like` has not the size that the group acts on.
     pub fn new(problem: &P, psi: &Psi, like: &PointOf<P>) -> Result<Self, Error> {
         let group = problem.group();
+        problem.action().check(group, like)?;
         Ok(ChartStore {
             at: psi.at(group)?,
             g: group.identity(),

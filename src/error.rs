@@ -108,6 +108,14 @@ pub enum Error {
         /// The reason, and what to use.
         why: &'static str,
     },
+    /// A map could not be evaluated at one element of an array.
+    #[error("element {index}: {source}")]
+    Element {
+        /// Its number, from 0.
+        index: usize,
+        /// Why.
+        source: StepError,
+    },
     /// A map could not be evaluated.
     #[error(transparent)]
     Map(#[from] StepError),
@@ -172,6 +180,18 @@ pub enum StepError {
         /// What overflowed.
         what: &'static str,
     },
+    /// A matrix has the wrong size for the group.
+    #[error("{arg}: {rows}×{cols}, expected {n}×{n}")]
+    Shape {
+        /// The argument.
+        arg: &'static str,
+        /// Its rows.
+        rows: usize,
+        /// Its columns.
+        cols: usize,
+        /// The n of the group.
+        n: usize,
+    },
     /// An argument of a map is so large that no digit of the result has a meaning.
     #[error(
         "{map}: the norm of the argument is too large for any digit of the result to have a meaning"
@@ -185,6 +205,30 @@ pub enum StepError {
     NotConverged {
         /// The iteration.
         what: &'static str,
+    },
+    /// Newton's iteration of an implicit step did not converge.
+    #[error(
+        "{method}: Newton's iteration did not converge: relative residual about 1e{residual_log10} after {iterations} iterations; take a smaller step"
+    )]
+    NewtonDidNotConverge {
+        /// The method.
+        method: &'static str,
+        /// The iterations made.
+        iterations: u32,
+        /// ⌈log₁₀⌉ of the last relative residual; 308 where it is not finite.
+        residual_log10: i32,
+    },
+    /// The fixed-point iteration of an implicit step did not converge.
+    #[error(
+        "{method}: the fixed-point iteration did not converge: last relative change about 1e{change_log10} after {iterations} iterations; take a smaller step"
+    )]
+    FixedPointDidNotConverge {
+        /// The method.
+        method: &'static str,
+        /// The iterations made.
+        iterations: u32,
+        /// ⌈log₁₀⌉ of the last relative change; 308 where it is not finite.
+        change_log10: i32,
     },
     /// A matrix that a map has to invert is singular to working accuracy.
     #[error(

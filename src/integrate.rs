@@ -260,6 +260,7 @@ pub fn integrate<P: Problem, Me: Method<P>>(
     mut observe: impl FnMut(f64, &PointOf<P>),
 ) -> Result<Stats, RunError> {
     save.check(grid)?;
+    problem.action().check(problem.group(), y)?;
     let mut work = method.work(problem, y)?;
     let mut aside = y.clone();
     let mut mend = problem.action().work(problem.group());

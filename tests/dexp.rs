@@ -132,13 +132,13 @@ fn inverse_of_each_other() {
     ] {
         let group = group.expect("a group");
         let mut at = Exp.at(&group).expect("exp");
-        for k in 0..40 {
+        for k in 0..60 {
             let v = group.sample_algebra(&mut rng, 1.0);
             let mut u = group.sample_algebra(&mut rng, 1.0);
             if group.norm(&u) == 0.0 {
                 continue; // dim 𝔤 = 0
             }
-            let size = 10f64.powf(-3.0 + 0.1 * f64::from(k)) / group.norm(&u);
+            let size = 10f64.powf(-3.0 + f64::from(k) / 15.0) / group.norm(&u);
             let direction = u.clone();
             group.set_zero(&mut u);
             group.axpy(size, &direction, &mut u);

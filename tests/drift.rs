@@ -221,7 +221,7 @@ fn one_correction() {
             let g = exact.as_ref() + exact.as_ref() * &off * faer::Scale(size / off.norm_l2());
             let mut g = GroupMatrix::new_unchecked(g);
             let before = group.defect(&g);
-            let residual = group.correct(&mut g, &mut scratch);
+            let residual = group.correct(&mut g, scratch.each_mut());
             (before, residual, g)
         };
         let (before, residual, g) = moved(1e-9);

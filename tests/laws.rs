@@ -6,7 +6,7 @@ mod support;
 
 use faer::{Mat, mat};
 use lieflow::actions::{Coadjoint, LeftTranslation, Linear};
-use lieflow::groups::{Form, MatrixGroup, Sample, So3, hat, vee};
+use lieflow::groups::{Form, MatrixGroup, Power, Product, Sample, Se3, So3, hat, vee};
 use lieflow::maps::{CCSK, CCSK123, CCSK321, Cay, Ccsk, CoordinateMap, Dexpinv, Exp, Pade22};
 use lieflow::{Action, Error, LieAlgebra, LieGroup};
 use rand::{RngExt, SeedableRng};
@@ -167,6 +167,10 @@ laws! {
     so22: indefinite(2, 2), general;
     u2: u2(), general;
     skewed4: skewed(4), general;
+    se3: Se3::<f64>::new(), closed;
+    so3_by_sp4: Product(So3::<f64>::new(), sp(4)), with_basis;
+    so3_to_the_3: Power::new(So3::<f64>::new(), 3).unwrap(), rotations;
+    nested: Product(Power::new(so(4), 2).unwrap(), gl(2)), general;
 }
 
 #[test]

@@ -76,10 +76,10 @@ fn every_branch() {
             let mut g = group.sample_element(&mut Pcg64::seed_from_u64(1));
             g[(0, 0)] += 1e-9;
             let mut scratch = [group.identity(), group.identity()];
-            group.correct(&mut g, &mut scratch);
+            group.correct(&mut g, scratch.each_mut());
             let before = ALLOCATIONS.get();
             g[(0, 0)] += 1e-9;
-            group.correct(&mut g, &mut scratch);
+            group.correct(&mut g, scratch.each_mut());
             assert_eq!(ALLOCATIONS.get(), before, "correction on {}", group.name());
         }
     }

@@ -14,3 +14,4 @@ pub mod page;
 pub mod plot;
 pub mod report;
 pub mod scene;
+pub mod survey;

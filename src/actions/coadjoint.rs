@@ -7,6 +7,7 @@
 //! | | 𝔤* | Λ(g, m) |
 //! |---|---|---|
 //! | so(3) | ℝ³, ⟨m, v⟩ = m·v | g m |
+//! | se(3) | (μ, π), ⟨m, v⟩ = μ·ω + π·v | (Rμ + x × Rπ, Rπ) |
 //! | any n | n×n matrices, ⟨m, v⟩ = tr(mᵀv) | g⁻ᵀ m gᵀ: g m gᵀ on SO(n), MgM⁻¹ m gᵀ on G_M |
 
 use faer::Mat;
@@ -15,8 +16,8 @@ use nalgebra::{Matrix3, Vector3};
 use super::Action;
 use crate::chart::PsiOf;
 use crate::dense::{Lu, mul};
-use crate::error::StepError;
-use crate::groups::{Form, GroupMatrix, LieGroup, MatrixGroup, So3};
+use crate::error::{Error, StepError};
+use crate::groups::{Form, GroupMatrix, LieGroup, MatrixGroup, Se3, So3, add3, cross};
 use crate::maps::CoordinateMap;
 use crate::scalar::Real;
 
@@ -45,6 +46,26 @@ impl<S: Real> Action<So3<S>> for Coadjoint {
     }
 }
 
+impl<S: Real> Action<Se3<S>> for Coadjoint {
+    type Point = (Vector3<S>, Vector3<S>);
+    type Work = ();
+
+    fn work(&self, _: &Se3<S>) {}
+    #[inline]
+    fn act(
+        &self,
+        _: &Se3<S>,
+        (r, x): &(Matrix3<S>, Vector3<S>),
+        (mu, pi): &Self::Point,
+        q: &mut Self::Point,
+        _: &mut (),
+    ) {
+        So3::new().apply(r, mu, &mut q.0);
+        So3::new().apply(r, pi, &mut q.1);
+        q.0 = add3(&q.0, &cross(x, &q.1));
+    }
+}
+
 /// Scratch of the coadjoint action on n×n matrices.
 #[derive(Debug)]
 pub struct CoadjointWork {
@@ -61,6 +82,9 @@ impl Action<MatrixGroup> for Coadjoint {
         let n = group.n();
         let lu = matches!(group.form(), Form::Free).then(|| Lu::new(n));
         CoadjointWork { left: Mat::zeros(n, n), product: Mat::zeros(n, n), lu }
+    }
+    fn check(&self, group: &MatrixGroup, p: &Mat<f64>) -> Result<(), Error> {
+        group.rows_fit("y", p, group.n())
     }
     fn act(
         &self,

@@ -3,7 +3,7 @@
 
 use super::Action;
 use crate::chart::PsiOf;
-use crate::error::StepError;
+use crate::error::{Error, StepError};
 use crate::groups::LieGroup;
 use crate::maps::CoordinateMap;
 
@@ -16,6 +16,9 @@ impl<G: LieGroup> Action<G> for Linear {
     type Work = ();
 
     fn work(&self, _: &G) {}
+    fn check(&self, group: &G, p: &G::Vector) -> Result<(), Error> {
+        group.check_vector(p)
+    }
     #[inline]
     fn act(&self, group: &G, g: &G::Elem, p: &G::Vector, q: &mut G::Vector, _: &mut ()) {
         group.apply(g, p, q);

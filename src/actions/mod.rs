@@ -4,14 +4,16 @@
 
 mod coadjoint;
 mod linear;
+mod parts;
 mod translation;
 
 pub use coadjoint::Coadjoint;
 pub use linear::Linear;
+pub use parts::{Each, Pair};
 pub use translation::LeftTranslation;
 
 use crate::chart::PsiOf;
-use crate::error::StepError;
+use crate::error::{Error, StepError};
 use crate::groups::LieGroup;
 use crate::maps::CoordinateMap;
 
@@ -24,6 +26,14 @@ pub trait Action<G: LieGroup> {
 
     /// Scratch for [`act`](Self::act); the only call that allocates.
     fn work(&self, group: &G) -> Self::Work;
+
+    /// Has p the size that `group` acts on? Asked before a run.
+    ///
+    /// # Errors
+    /// [`Error::Shape`] with both sizes.
+    fn check(&self, _group: &G, _p: &Self::Point) -> Result<(), Error> {
+        Ok(())
+    }
 
     /// q ← Λ(g, p).
     fn act(

@@ -1,6 +1,7 @@
 //! Left translation: M = G, Λ(g, p) = g·p. One `impl` for every group.
 
 use super::Action;
+use crate::error::Error;
 use crate::groups::LieGroup;
 
 /// G acting on itself from the left: ġ = f(g)·g, equation (12).
@@ -15,11 +16,14 @@ impl<G: LieGroup> Action<G> for LeftTranslation {
     fn work(&self, group: &G) -> Self::Work {
         [group.identity(), group.identity()]
     }
+    fn check(&self, group: &G, p: &G::Elem) -> Result<(), Error> {
+        group.check_elem(p)
+    }
     #[inline]
     fn act(&self, group: &G, g: &G::Elem, p: &G::Elem, q: &mut G::Elem, _: &mut Self::Work) {
         group.compose(g, p, q);
     }
     fn restore(&self, group: &G, p: &mut G::Elem, work: &mut Self::Work) -> Option<G::Scalar> {
-        Some(group.correct(p, work))
+        Some(group.correct(p, work.each_mut()))
     }
 }

@@ -1,6 +1,7 @@
 //! The loop: propose, step, accept or reject; output times and the end are hit exactly.
 
 use super::{Adaptive, Controller};
+use crate::actions::Action;
 use crate::error::{Error, StepError};
 use crate::groups::LieAlgebra;
 use crate::integrate::{SaveAt, TimeGrid};
@@ -121,6 +122,7 @@ where
 {
     let empty = t_span[0] == t_span[1];
     save.check(&TimeGrid::with_steps(t_span, if empty { 0 } else { 1 })?)?;
+    problem.action().check(problem.group(), y)?;
     let mut controller = Controller::new(method.error_order(problem)?);
     let mut run = Run {
         problem,

@@ -10,15 +10,24 @@
 
 mod adjoint;
 mod matrix;
+mod power;
+mod product;
+mod se3;
 mod so3;
 
 pub use adjoint::Adjoint;
 pub use matrix::{AlgebraMatrix, Form, GroupMatrix, MEMBERSHIP, MatrixGroup, RCOND_MIN};
+pub use power::Power;
+pub use product::Product;
+pub(crate) use product::larger;
+pub use se3::Se3;
+pub(crate) use se3::{add3, finite_pair};
 pub use so3::{So3, hat, vee};
 pub(crate) use so3::{apply3, cross};
 
 use rand::Rng;
 
+use crate::error::Error;
 use crate::scalar::Real;
 
 /// A Lie algebra 𝔤: a linear space with a bracket.
@@ -75,6 +84,21 @@ pub trait LieGroup: LieAlgebra {
     /// How far g is from G: ‖gᵀMg − M‖ (Frobenius), zero for GL(n).
     fn defect(&self, g: &Self::Elem) -> Self::Scalar;
 
+    /// Has g the size of this group's elements? Asked once a run, of what a user hands in.
+    ///
+    /// # Errors
+    /// [`Error::Shape`] with both sizes.
+    fn check_elem(&self, _g: &Self::Elem) -> Result<(), Error> {
+        Ok(())
+    }
+    /// Has x the size of this group's vectors?
+    ///
+    /// # Errors
+    /// [`Error::Shape`] with both sizes.
+    fn check_vector(&self, _x: &Self::Vector) -> Result<(), Error> {
+        Ok(())
+    }
+
     /// Take g back towards G, where rounding carried it off: g ← g + g(𝟙 − M⁻¹gᵀMg)/2, a
     /// Newton–Schulz step in residual form. Returns the residual ‖M⁻¹gᵀMg − 𝟙‖ found before.
     ///
@@ -83,7 +107,7 @@ pub trait LieGroup: LieAlgebra {
     /// this returns is then the measure of membership. Groups without a form return 0.
     ///
     /// `scratch` is overwritten; nothing is allocated.
-    fn correct(&self, _g: &mut Self::Elem, _scratch: &mut [Self::Elem; 2]) -> Self::Scalar {
+    fn correct(&self, _g: &mut Self::Elem, _scratch: [&mut Self::Elem; 2]) -> Self::Scalar {
         Self::Scalar::lit(0.0)
     }
 }

@@ -155,7 +155,7 @@ impl<S: Real> LieGroup for So3<S> {
         self.distance(&gram, &self.identity())
     }
     #[inline]
-    fn correct(&self, g: &mut Matrix3<S>, [half, step]: &mut [Matrix3<S>; 2]) -> S {
+    fn correct(&self, g: &mut Matrix3<S>, [half, step]: [&mut Matrix3<S>; 2]) -> S {
         compose3(&g.transpose(), g, step);
         for i in 0..3 {
             for j in 0..3 {

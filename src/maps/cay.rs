@@ -12,11 +12,10 @@ use faer::Mat;
 use nalgebra::{Matrix3, Vector3};
 
 use super::CoordinateMap;
-use crate::dense::{Lu, is_finite, mul, norm_frobenius, norm1, orthogonalise, scaled_sum};
+use super::quotient::{Quotient, finite, well_conditioned};
+use crate::dense::{Lu, mul, norm_frobenius, orthogonalise, scaled_sum};
 use crate::error::{Error, StepError};
-use crate::groups::{
-    AlgebraMatrix, Form, GroupMatrix, LieAlgebra, LieGroup, MatrixGroup, RCOND_MIN, So3,
-};
+use crate::groups::{AlgebraMatrix, Form, GroupMatrix, LieGroup, MatrixGroup, RCOND_MIN, So3};
 use crate::scalar::Real;
 use crate::so3;
 
@@ -79,32 +78,27 @@ impl<S: Real> CoordinateMap<So3<S>> for Cay {
 /// What cay keeps at u ∈ 𝔤 ⊂ gl(n): 𝟙 ± u/2, and the LU of 𝟙 − u/2.
 #[derive(Debug)]
 pub struct CayAt {
-    minus: Mat<f64>,
-    plus: Mat<f64>,
-    product: Mat<f64>,
+    quotient: Quotient,
     square: Mat<f64>,
-    lu: Lu,
 }
 
 impl CayAt {
     /// 𝟙 ± u/2, and the LU of 𝟙 − u/2.
     fn prepare(&mut self, group: &MatrixGroup, u: &AlgebraMatrix) -> Result<(), StepError> {
-        if !group.is_finite(u) {
-            return Err(StepError::NotFinite { what: "the argument of cay" });
-        }
-        scaled_sum(&mut self.minus, [-0.5], [u], 1.0);
-        scaled_sum(&mut self.plus, [0.5], [u], 1.0);
-        self.lu.a.copy_from(&self.minus);
+        group.operand("u in cay(u)", u)?;
+        let quotient = &mut self.quotient;
+        scaled_sum(&mut quotient.minus, [-0.5], [u], 1.0);
+        scaled_sum(&mut quotient.plus, [0.5], [u], 1.0);
         if matches!(group.form(), Form::Identity) {
             // The eigenvalues of 𝟙 − u/2 are 1 − iα/2: never zero, however large u. Beyond 1/ε the
             // 1 is lost next to u, and with it the axis.
             if norm_frobenius(u) > NORM_MAX_SKEW {
                 return Err(StepError::NormTooLarge { map: "cay" });
             }
-            self.lu.factor();
+            quotient.factor_regular();
             return Ok(());
         }
-        well_conditioned(&mut self.lu, &self.minus, &mut self.product, "cay", "𝟙 − u/2")
+        quotient.factor("cay", "𝟙 − u/2")
     }
 }
 
@@ -112,36 +106,10 @@ impl CayAt {
 const NORM_MAX_SKEW: f64 = 1e15;
 /// Above this norm of a skew u the result is put back on SO(n).
 const NORM_EXACT_SKEW: f64 = 4.0;
-/// Below this ratio of pivots the condition number is looked at.
-const PIVOTS_SAFE: f64 = 1e-3;
 
-/// Factor `lu.a`, a copy of `a`, and refuse it when its reciprocal condition number is below
-/// [`RCOND_MIN`]. `scratch` is for the inverse, which is formed only where the pivots are suspicious.
-pub(super) fn well_conditioned(
-    lu: &mut Lu,
-    a: &Mat<f64>,
-    scratch: &mut Mat<f64>,
-    map: &'static str,
-    what: &'static str,
-) -> Result<(), StepError> {
-    let pivots = lu.factor();
-    if pivots > PIVOTS_SAFE {
-        return Ok(());
-    }
-    let mut rcond = 0.0;
-    if pivots > 0.0 {
-        scratch.fill(0.0);
-        scratch.diagonal_mut().fill(1.0);
-        lu.solve(scratch.as_mut());
-        rcond = 1.0 / (norm1(a.as_ref()) * norm1(scratch.as_ref()));
-    }
-    match rcond >= RCOND_MIN {
-        true => Ok(()),
-        false => {
-            let rcond = if rcond.is_nan() { 0.0 } else { rcond };
-            Err(StepError::NearlySingular { map, what, rcond })
-        }
-    }
+/// Has the solve lost more than rounding of the group?
+fn is_put_back(group: &MatrixGroup, u: &AlgebraMatrix) -> bool {
+    matches!(group.form(), Form::Identity) && norm_frobenius(u) > NORM_EXACT_SKEW
 }
 
 impl CoordinateMap<MatrixGroup> for Cay {
@@ -152,8 +120,7 @@ impl CoordinateMap<MatrixGroup> for Cay {
     }
     fn at(&self, group: &MatrixGroup) -> Result<CayAt, Error> {
         let n = group.n();
-        let z = || Mat::zeros(n, n);
-        Ok(CayAt { minus: z(), plus: z(), product: z(), square: z(), lu: Lu::new(n) })
+        Ok(CayAt { quotient: Quotient::new(n), square: Mat::zeros(n, n) })
     }
     fn psi(
         &self,
@@ -163,17 +130,12 @@ impl CoordinateMap<MatrixGroup> for Cay {
         g: &mut GroupMatrix,
     ) -> Result<(), StepError> {
         at.prepare(group, u)?;
-        g.copy_from(&at.plus);
-        at.lu.solve(g.as_mut());
-        if matches!(group.form(), Form::Identity) && norm_frobenius(u) > NORM_EXACT_SKEW {
-            orthogonalise(g, [&mut at.product, &mut at.square]);
+        at.quotient.form("cay(u)", g)?;
+        if is_put_back(group, u) {
+            orthogonalise(g, [&mut at.quotient.product, &mut at.square]);
         }
-        match is_finite(g) {
-            true => Ok(()),
-            false => Err(StepError::NotFinite { what: "cay(u)" }),
-        }
+        Ok(())
     }
-    /// Solves for as many columns as x has.
     fn psi_on(
         &self,
         group: &MatrixGroup,
@@ -183,32 +145,24 @@ impl CoordinateMap<MatrixGroup> for Cay {
         x: &Mat<f64>,
         y: &mut Mat<f64>,
     ) -> Result<(), StepError> {
-        if matches!(group.form(), Form::Identity) && norm_frobenius(u) > NORM_EXACT_SKEW {
+        if group.fits("u", u).is_ok() && is_put_back(group, u) {
             self.psi(group, u, at, g)?;
             mul(y, g.as_ref(), x.as_ref());
             return Ok(());
         }
         at.prepare(group, u)?;
-        mul(y, at.plus.as_ref(), x.as_ref());
-        at.lu.solve(y.as_mut());
-        match is_finite(y) {
-            true => Ok(()),
-            false => Err(StepError::NotFinite { what: "cay(u)·x" }),
-        }
+        at.quotient.on("cay(u)·x", x, y)
     }
     fn dpsi_inv(
         &self,
-        _: &MatrixGroup,
+        group: &MatrixGroup,
         _: &AlgebraMatrix,
         at: &mut CayAt,
         v: &mut AlgebraMatrix,
     ) -> Result<(), StepError> {
-        mul(&mut at.product, at.minus.as_ref(), v.as_ref());
-        mul(v, at.product.as_ref(), at.plus.as_ref());
-        match is_finite(v) {
-            true => Ok(()),
-            false => Err(StepError::NotFinite { what: "dcay⁻¹" }),
-        }
+        group.fits("v", v)?;
+        at.quotient.conjugate(v);
+        finite(v, "dcay⁻¹")
     }
 }
 
@@ -284,17 +238,16 @@ impl CayleyGroup for MatrixGroup {
         self.shape("v", v.as_ref())?;
         let (mut at, mut w) = (Cay.at(self)?, v.clone());
         at.prepare(self, u)?;
-        at.lu.solve(w.as_mut());
+        let Quotient { plus, product, lu, .. } = &mut at.quotient;
+        lu.solve(w.as_mut());
         // w ← w (𝟙 + u/2)⁻¹ by the transposed system.
         let mut transposed = w.transpose().to_owned();
-        at.lu.a.copy_from(at.plus.transpose());
-        well_conditioned(&mut at.lu, &at.plus, &mut at.product, "cay", "𝟙 + u/2")?;
-        at.lu.solve(transposed.as_mut());
+        lu.a.copy_from(plus.transpose());
+        well_conditioned(lu, plus, product, "cay", "𝟙 + u/2")?;
+        lu.solve(transposed.as_mut());
         w.copy_from(transposed.transpose());
-        match self.is_finite(&w) {
-            true => Ok(w),
-            false => Err(StepError::NotFinite { what: "dcay(u, v)" }.into()),
-        }
+        finite(&w, "dcay(u, v)")?;
+        Ok(w)
     }
 }
 

@@ -13,6 +13,9 @@ mod ccsk;
 mod exp;
 mod log;
 mod pade22;
+mod parts;
+mod quotient;
+mod se3;
 
 pub use alternating::{Alternating, AlternatingAt, CCSK};
 pub use cay::{Cay, CayleyGroup, cay_inv, dcay};
@@ -22,6 +25,8 @@ pub use exp::{
     distance_to_singular,
 };
 pub use pade22::{Pade22, Pade22At};
+pub use parts::{Each, Pair};
+pub use se3::ScrewAt;
 
 use crate::error::{Error, StepError};
 use crate::groups::LieGroup;

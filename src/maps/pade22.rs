@@ -18,8 +18,8 @@ use faer::Mat;
 use nalgebra::{Matrix3, Vector3};
 
 use super::CoordinateMap;
-use super::cay::well_conditioned;
-use crate::dense::{AdSchur, Lu, mul, norm_frobenius, scaled_sum};
+use super::quotient::{Quotient, finite};
+use crate::dense::{AdSchur, mul, norm_frobenius, scaled_sum};
 use crate::error::{Error, StepError};
 use crate::groups::{AlgebraMatrix, GroupMatrix, LieAlgebra, MatrixGroup, So3, cross};
 use crate::scalar::Real;
@@ -38,7 +38,7 @@ const SINGULAR: f64 = 1e-12;
 
 /// (q, 1/(q² + α²/4)) at α².
 #[inline(always)]
-fn factors<S: Real>(u: &Vector3<S>) -> Result<(S, S), StepError> {
+pub(super) fn factors<S: Real>(u: &Vector3<S>) -> Result<(S, S), StepError> {
     let l = S::lit;
     let alpha2 = u[0] * u[0] + u[1] * u[1] + u[2] * u[2];
     if !alpha2.all_below(SQUARE_MAX) {
@@ -109,30 +109,25 @@ impl<S: Real> CoordinateMap<So3<S>> for Pade22 {
 /// What the Padé map keeps at u ∈ 𝔤 ⊂ gl(n): u²/12, D(±u), the LU of D(u), and workspace.
 #[derive(Debug)]
 pub struct Pade22At {
+    quotient: Quotient,
     square: Mat<f64>,
-    minus: Mat<f64>,
-    plus: Mat<f64>,
-    product: Mat<f64>,
     power: Mat<f64>,
-    lu: Lu,
     schur: Box<AdSchur>,
 }
 
 impl Pade22At {
+    /// u²/12, D(±u), and the LU of D(u).
     fn prepare(&mut self, group: &MatrixGroup, u: &AlgebraMatrix) -> Result<(), StepError> {
-        if !group.is_finite(u) {
-            return Err(StepError::NotFinite { what: "the argument of pade22" });
-        }
-        let Pade22At { square, minus, plus, product, lu, .. } = self;
-        mul(product, u.as_ref(), u.as_ref());
-        scaled_sum(square, [1.0 / 12.0], [product], 0.0);
-        scaled_sum(minus, [-0.5, 1.0], [u, square], 1.0);
-        scaled_sum(plus, [0.5, 1.0], [u, square], 1.0);
+        group.operand("u in pade22(u)", u)?;
+        let Pade22At { quotient, square, .. } = self;
+        mul(&mut quotient.product, u.as_ref(), u.as_ref());
+        scaled_sum(square, [1.0 / 12.0], [&quotient.product], 0.0);
         if !norm_frobenius(square).is_finite() {
             return Err(StepError::NormTooLarge { map: "pade22" });
         }
-        lu.a.copy_from(&*minus);
-        well_conditioned(lu, minus, product, "pade22", "𝟙 − u/2 + u²/12")
+        scaled_sum(&mut quotient.minus, [-0.5, 1.0], [u, square], 1.0);
+        scaled_sum(&mut quotient.plus, [0.5, 1.0], [u, square], 1.0);
+        quotient.factor("pade22", "𝟙 − u/2 + u²/12")
     }
 }
 
@@ -144,14 +139,10 @@ impl CoordinateMap<MatrixGroup> for Pade22 {
     }
     fn at(&self, group: &MatrixGroup) -> Result<Pade22At, Error> {
         let n = group.n();
-        let z = || Mat::zeros(n, n);
         Ok(Pade22At {
-            square: z(),
-            minus: z(),
-            plus: z(),
-            product: z(),
-            power: z(),
-            lu: Lu::new(n),
+            quotient: Quotient::new(n),
+            square: Mat::zeros(n, n),
+            power: Mat::zeros(n, n),
             schur: Box::new(AdSchur::new(n, group.ad_form())),
         })
     }
@@ -163,11 +154,8 @@ impl CoordinateMap<MatrixGroup> for Pade22 {
         g: &mut GroupMatrix,
     ) -> Result<(), StepError> {
         at.prepare(group, u)?;
-        g.copy_from(&at.plus);
-        at.lu.solve(g.as_mut());
-        Ok(())
+        at.quotient.form("pade22(u)", g)
     }
-    /// Solves for as many columns as x has.
     fn psi_on(
         &self,
         group: &MatrixGroup,
@@ -178,9 +166,7 @@ impl CoordinateMap<MatrixGroup> for Pade22 {
         y: &mut Mat<f64>,
     ) -> Result<(), StepError> {
         at.prepare(group, u)?;
-        mul(y, at.plus.as_ref(), x.as_ref());
-        at.lu.solve(y.as_mut());
-        Ok(())
+        at.quotient.on("pade22(u)·x", x, y)
     }
     fn dpsi_inv(
         &self,
@@ -189,9 +175,10 @@ impl CoordinateMap<MatrixGroup> for Pade22 {
         at: &mut Pade22At,
         v: &mut AlgebraMatrix,
     ) -> Result<(), StepError> {
-        let Pade22At { square, minus, plus, product, power, schur, .. } = at;
-        mul(product, minus.as_ref(), v.as_ref());
-        mul(v, product.as_ref(), plus.as_ref());
+        group.fits("v", v)?;
+        let Pade22At { quotient, square, power, schur } = at;
+        quotient.conjugate(v);
+        let Quotient { minus, product, .. } = quotient;
         let norm = group.norm(u);
         if norm * norm > DOUBLING_MAX {
             schur.factor(u)?;
@@ -218,9 +205,6 @@ impl CoordinateMap<MatrixGroup> for Pade22 {
             // D(u) was lent as scratch.
             scaled_sum(minus, [-0.5, 1.0], [u, square], 1.0);
         }
-        match group.is_finite(v) {
-            true => Ok(()),
-            false => Err(StepError::NotFinite { what: "dΨ⁻¹ of pade22" }),
-        }
+        finite(v, "dΨ⁻¹ of pade22")
     }
 }

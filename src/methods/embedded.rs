@@ -56,7 +56,8 @@ pub trait Embedded<P: Problem>: Method<P> {
 
 /// Points that can be compared: those of a linear space with a norm.
 ///
-/// Implemented for vectors and matrices of both layers, by the Frobenius norm. Allocates nothing.
+/// Implemented for vectors and matrices of both layers, by the Frobenius norm, and for pairs and
+/// boxed slices of them. Allocates nothing.
 pub trait Metric {
     /// The reals of the norm.
     type Scalar: Real;
@@ -147,3 +148,40 @@ macro_rules! metric_of_element {
     )*};
 }
 metric_of_element!(AlgebraMatrix, GroupMatrix);
+
+impl<A: Metric, B: Metric<Scalar = A::Scalar>> Metric for (A, B) {
+    type Scalar = A::Scalar;
+    #[inline]
+    fn assign(&mut self, x: &Self) {
+        self.0.assign(&x.0);
+        self.1.assign(&x.1);
+    }
+    #[inline]
+    fn size(&self) -> A::Scalar {
+        let (a, b) = (self.0.size(), self.1.size());
+        (a * a + b * b).sqrt()
+    }
+    #[inline]
+    fn distance(&self, x: &Self) -> A::Scalar {
+        let (a, b) = (self.0.distance(&x.0), self.1.distance(&x.1));
+        (a * a + b * b).sqrt()
+    }
+}
+
+impl<M: Metric> Metric for Box<[M]> {
+    type Scalar = M::Scalar;
+    #[inline]
+    fn assign(&mut self, x: &Self) {
+        for (y, x) in self.iter_mut().zip(x) {
+            y.assign(x);
+        }
+    }
+    fn size(&self) -> M::Scalar {
+        let squares = self.iter().map(|a| a.size()).fold(M::Scalar::lit(0.0), |s, a| s + a * a);
+        squares.sqrt()
+    }
+    fn distance(&self, x: &Self) -> M::Scalar {
+        let gaps = self.iter().zip(x).map(|(a, b)| a.distance(b));
+        gaps.fold(M::Scalar::lit(0.0), |s, d| s + d * d).sqrt()
+    }
+}

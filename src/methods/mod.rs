@@ -3,26 +3,54 @@
 //! To add a method: one file with an `impl` of [`Method`], one line here, one in the catalog, which
 //! puts it into the order tests and the command line at once.
 
+mod buss;
 pub mod commutator_free;
+mod composition;
 pub mod crouch_grossman;
+mod dmv;
 mod doubling;
 mod embedded;
+mod energy_casimir;
+mod exact;
+mod gauss;
+mod implicit_rkmk;
+mod isospectral;
 pub mod low_storage;
 pub mod magnus;
+mod newton;
 pub mod one_bracket;
+mod projection;
 mod rk;
 mod rkmk;
+mod simo_wong;
+mod splitting;
 pub mod tableau;
+mod taylor;
 
+pub use buss::Buss4;
 pub use commutator_free::CommutatorFree;
+pub use composition::{
+    Composition, CompositionWork, KAHAN_LI6, KAHAN_LI8, SCHEMES, SOFRONIOU_SPALETTA10, STRANG,
+    SUZUKI4, Scheme, YOSHIDA4,
+};
+pub use dmv::{DMV2, DMV4, DMV6, DMV8, DMV10, Dmv, DmvWork};
 pub use doubling::Doubling;
 pub use embedded::{Embedded, LocalError, Metric};
+pub use energy_casimir::{EnergyCasimir, EnergyCasimirWork};
+pub use exact::ExactMotion;
+pub use gauss::{GAUSS2, GAUSS4, GAUSS6, Gauss, GaussWork, ImplicitTableau};
+pub use implicit_rkmk::{OddMap, RkmkGauss, RkmkGaussSymmetric, RkmkGaussWork};
+pub use isospectral::{IsospectralGauss, IsospectralWork};
 pub use low_storage::LowStorage;
 pub use magnus::CfMagnus;
 pub use one_bracket::OneBracket;
+pub use projection::{Projected, ProjectedWork};
 pub use rk::Rk;
 pub use rkmk::Rkmk;
+pub use simo_wong::SimoWong;
+pub use splitting::{MR2, MR4, Splitting};
 pub use tableau::Tableau;
+pub use taylor::Taylor;
 
 use crate::error::{Error, StepError};
 use crate::problems::{PointOf, Problem, ScalarOf};
@@ -37,6 +65,10 @@ pub struct Step<S> {
     /// The size; negative when time runs backward.
     pub h: S,
 }
+
+/// A method whose step is undone by the step back: Φ_{−h} ∘ Φ_h = id, to rounding. Its order is even,
+/// and a [`Composition`] raises it.
+pub trait Symmetric {}
 
 /// A one-step method for problems of type `P`.
 pub trait Method<P: Problem> {

@@ -2,11 +2,16 @@
 //!
 //! To add a problem: one file with an `impl` of [`Problem`], one line here.
 
+mod capability;
 mod linear;
 mod rigid_body;
 
+pub use capability::{Isospectral, LiePoisson, Orthogonal, Projection, Split};
 pub use linear::{LinearEquation, LinearField};
-pub use rigid_body::{Exact, RigidBody, RigidBodyAttitude, RigidBodyN, RigidBodyNAttitude};
+pub use rigid_body::{
+    BodyFrame, BodyState, Exact, Frame, FreeBody, RigidBody, RigidBodyAttitude, RigidBodyN,
+    RigidBodyNAttitude, RigidBodyState,
+};
 
 use crate::actions::Action;
 use crate::groups::{LieAlgebra, LieGroup};

@@ -4,11 +4,13 @@
 //! [`Counted`], which counts the operations it is put through.
 
 mod counted;
+mod sin_cos;
 
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 pub use counted::{Counted, Ops};
+pub(crate) use sin_cos::{SIN_COS_MAX, muladd, sin_cos};
 
 /// A real number, or several side by side (SIMD lanes), or one that counts its own operations.
 ///
@@ -26,8 +28,16 @@ pub trait Real:
     + AddAssign
     + SubAssign
 {
+    /// A sum of squares up to this leaves room for products with ordinary numbers.
+    const SQUARE_MAX: f64 = 1e300;
+
     /// A constant of the formula (Butcher coefficients, Bernoulli numbers, ½).
     fn lit(x: f64) -> Self;
+    /// self·a + b, in one rounding where that costs nothing.
+    #[inline(always)]
+    fn mul_add(self, a: Self, b: Self) -> Self {
+        self * a + b
+    }
     /// √x.
     fn sqrt(self) -> Self;
     /// |x|.
@@ -73,8 +83,10 @@ impl<S: Real, const N: usize> Select<S> for [S; N] {
 }
 
 macro_rules! real_for_float {
-    ($($t:ty),*) => {$(
+    ($($t:ty, $square_max:literal;)*) => {$(
         impl Real for $t {
+            const SQUARE_MAX: f64 = $square_max;
+
             #[inline]
             fn lit(x: f64) -> Self {
                 x as $t
@@ -113,4 +125,7 @@ macro_rules! real_for_float {
         }
     )*};
 }
-real_for_float!(f32, f64);
+real_for_float! {
+    f32, 1e30;
+    f64, 1e300;
+}

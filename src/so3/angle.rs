@@ -1,11 +1,12 @@
 //! α = |u| and the coefficients of exp, dexp and dexp⁻¹.
 //!
 //! Below α² = 1 they are polynomials in α²: no root, no division, no trigonometric function. Above,
-//! half angles: sin α = 2 sin(α/2)cos(α/2), 1 − cos α = 2 sin²(α/2).
+//! half angles: sin α = 2 sin(α/2)cos(α/2), 1 − cos α = 2 sin²(α/2); exp as a matrix is there the
+//! rotation of the quaternion (cos(α/2), sin(α/2)/α u), which forgives the rounding of α.
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
-use super::dot;
+use super::{dot, rodrigues, rotation};
 use crate::scalar::{Real, Trig};
 
 /// α² = |u|² and, from [`SERIES`] on, α, sin(α/2), cos(α/2).
@@ -18,14 +19,12 @@ pub struct Angle<S> {
 }
 
 /// Below this α² all coefficients are polynomials.
-const SERIES: f64 = 1.0;
-/// Above this α² squares may overflow: see [`super::polar`].
-pub(crate) const SQUARE_MAX: f64 = 1e300;
+pub(super) const SERIES: f64 = 1.0;
 /// Below this |sin(α/2)| the rounding of α is taken back.
-const REFINE: f64 = 0.1;
+pub(super) const REFINE: f64 = 0.1;
 
 // Polynomials in α² that interpolate in the 8 Chebyshev nodes of [0, 1]: the relative error is below
-// 4e-18, where a Taylor polynomial would need two terms more. `make_so3.py --series` prints them.
+// 5e-17, where a Taylor polynomial would need two terms more. `make_so3.py --series` prints them.
 /// sin α/α.
 #[rustfmt::skip]
 const SINC: [f64; 8] = [
@@ -50,6 +49,12 @@ const COTC: [f64; 8] = [
     0.08333333333333333, 0.001388888888888926, 3.306878306800382e-05, 8.267195829413588e-07,
     2.087673262520767e-08, 5.284707066441219e-10, 1.332202514478385e-11, 3.754788167247988e-13,
 ];
+/// d/dα² of (1 − (α/2)cot(α/2))/α².
+#[rustfmt::skip]
+const COTC_SLOPE: [f64; 8] = [
+    0.0013888888888888887, 6.613756613757471e-05, 2.480158729979068e-06, 8.350702938564351e-08,
+    2.64208945557739e-09, 8.030712340508873e-11, 2.35885576085506e-12, 7.706946286242862e-14,
+];
 /// sin(α/2)/α.
 #[rustfmt::skip]
 const HALF_SINC: [f64; 8] = [
@@ -70,13 +75,41 @@ impl<S: Trig> Angle<S> {
         Angle { alpha2: o, alpha: o, sin_half: o, cos_half: i }
     }
 
-    /// Does α² lie within the range of these formulas? Not where u is not finite.
+    /// Does α² lie within the range of these formulas? Not where u is not finite; beyond see
+    /// [`super::polar`].
     #[inline(always)]
     pub(crate) fn in_range(&self) -> bool {
-        self.alpha2.all_below(SQUARE_MAX)
+        self.alpha2.all_below(S::SQUARE_MAX)
     }
 
-    /// The angle of u, with a = sin α/α and b = (1 − cos α)/α². Out of range they mean nothing.
+    /// The angle of u and exp(u). Out of range they mean nothing.
+    #[inline(always)]
+    pub(crate) fn with_matrix(u: &Vector3<S>) -> (Self, Matrix3<S>) {
+        let l = S::lit;
+        let alpha2 = dot(u, u);
+        let join = |g: Matrix3<S>, [alpha, s, c]: [S; 3]| {
+            let g = g.as_slice();
+            [g[0], g[1], g[2], g[3], g[4], g[5], g[6], g[7], g[8], alpha, s, c]
+        };
+        let [r0, r1, r2, r3, r4, r5, r6, r7, r8, alpha, sin_half, cos_half] = alpha2.branch(
+            SERIES,
+            || {
+                let (a, b) = (estrin(alpha2, &SINC), estrin(alpha2, &COSC));
+                join(rodrigues(u, a, b), [l(0.0), l(0.0), l(1.0)])
+            },
+            || {
+                let (alpha, s, c) = half_angle(u, alpha2);
+                let k = s / alpha;
+                let v = Vector3::new(k * u[0], k * u[1], k * u[2]);
+                join(rotation(c, &v), [alpha, s, c])
+            },
+        );
+        let g = Matrix3::new(r0, r3, r6, r1, r4, r7, r2, r5, r8);
+        (Angle { alpha2, alpha, sin_half, cos_half }, g)
+    }
+
+    /// The angle of u, with a = sin α/α and b = (1 − cos α)/α², for exp(u)·x without exp(u). Out of
+    /// range they mean nothing.
     #[inline(always)]
     pub(crate) fn with_exp(u: &Vector3<S>) -> (Self, S, S) {
         let l = S::lit;
@@ -109,6 +142,14 @@ impl<S: Trig> Angle<S> {
         Angle { alpha2, alpha, sin_half, cos_half }
     }
 
+    /// |sin(α/2)| where α² is not below [`SERIES`], else 1: where it is below [`REFINE`] the rounding
+    /// of α has to be taken back.
+    #[inline(always)]
+    pub(super) fn regular(&self) -> S {
+        let [r] = self.alpha2.branch(SERIES, || [S::lit(1.0)], || [self.sin_half.abs()]);
+        r
+    }
+
     /// (1 − (α/2)cot(α/2))/α².
     #[inline(always)]
     pub(crate) fn dexpinv_coefficient(&self) -> S {
@@ -121,9 +162,24 @@ impl<S: Trig> Angle<S> {
         c
     }
 
+    /// The derivative of (1 − (α/2)cot(α/2))/α² in α²: ((α/2)cot(α/2) + (α/2)²/sin²(α/2) − 2)/(2α⁴).
+    #[inline(always)]
+    pub(crate) fn dexpinv_slope(&self) -> S {
+        let l = S::lit;
+        let [c] = self.alpha2.branch(
+            SERIES,
+            || [estrin(self.alpha2, &COTC_SLOPE)],
+            || {
+                let k = l(0.5) * self.alpha / self.sin_half;
+                [(k * self.cos_half + k * k - l(2.0)) / (l(2.0) * self.alpha2 * self.alpha2)]
+            },
+        );
+        c
+    }
+
     /// (1 − cos α)/α² and (α − sin α)/α³.
     #[inline(always)]
-    pub(super) fn dexp_coefficients(&self) -> (S, S) {
+    pub(crate) fn dexp_coefficients(&self) -> (S, S) {
         let l = S::lit;
         let [b, d] = self.alpha2.branch(
             SERIES,
@@ -204,7 +260,8 @@ fn add_exactly<S: Real>(a: S, b: S) -> (S, S) {
 /// three times as long.
 #[inline(always)]
 fn estrin<S: Real>(x: S, c: &[f64; 8]) -> S {
-    let pair = |k: usize| S::lit(c[k]) + S::lit(c[k + 1]) * x;
+    let pair = |k: usize| S::lit(c[k + 1]).mul_add(x, S::lit(c[k]));
     let x2 = x * x;
-    (pair(0) + pair(2) * x2) + (pair(4) + pair(6) * x2) * (x2 * x2)
+    let (low, high) = (pair(2).mul_add(x2, pair(0)), pair(6).mul_add(x2, pair(4)));
+    high.mul_add(x2 * x2, low)
 }

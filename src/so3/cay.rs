@@ -2,7 +2,6 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::angle::SQUARE_MAX;
 use super::log::quaternion_of;
 use super::{dot, finite, finite_matrix, polar, rodrigues};
 use crate::error::{Error, StepError};
@@ -14,7 +13,7 @@ use crate::scalar::Real;
 #[inline(always)]
 pub(crate) fn cay_coefficients<S: Real>(u: &Vector3<S>) -> Option<(S, S)> {
     let alpha2 = dot(u, u);
-    if !alpha2.all_below(SQUARE_MAX) {
+    if !alpha2.all_below(S::SQUARE_MAX) {
         return None;
     }
     let a = S::lit(1.0) / (S::lit(1.0) + S::lit(0.25) * alpha2);

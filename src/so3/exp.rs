@@ -27,8 +27,8 @@ impl<S: Trig> Angle<S> {
 /// when |u| overflows.
 #[inline]
 pub fn exp<S: Trig>(u: &Vector3<S>) -> Result<Matrix3<S>, StepError> {
-    let (angle, a, b) = Angle::with_exp(u);
-    if angle.in_range() { Ok(rodrigues(u, a, b)) } else { polar::exp_huge(u) }
+    let (angle, g) = Angle::with_matrix(u);
+    if angle.in_range() { Ok(g) } else { polar::exp_huge(u) }
 }
 
 /// exp(u)·x without forming exp(u): two cross products.

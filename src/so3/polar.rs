@@ -10,7 +10,7 @@
 
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
-use super::{all_finite, dot, finite, rodrigues, rodrigues_on};
+use super::{all_finite, dot, finite, rodrigues, rodrigues_on, rotation};
 use crate::error::StepError;
 use crate::groups::cross;
 use crate::scalar::{Real, Trig};
@@ -22,7 +22,7 @@ pub(super) const SINGULAR: StepError =
 fn polar<S: Real>(map: &'static str, u: &Vector3<S>) -> Result<(Vector3<S>, S), StepError> {
     let size = u[0].abs() + u[1].abs() + u[2].abs();
     if !size.is_finite() {
-        let what = "the argument of a map on so(3)";
+        let what = "u in a map on so(3)";
         return Err(match all_finite(u) {
             true => StepError::NormTooLarge { map },
             false => StepError::NotFinite { what },
@@ -49,8 +49,8 @@ fn sine_versine<S: Trig>(alpha: S) -> (S, S) {
 #[cold]
 pub(crate) fn exp_huge<S: Trig>(u: &Vector3<S>) -> Result<Matrix3<S>, StepError> {
     let (n, alpha) = polar("exp", u)?;
-    let (a, b) = sine_versine(alpha);
-    Ok(rodrigues(&n, a, b))
+    let (s, c) = (S::lit(0.5) * alpha).sin_cos();
+    Ok(rotation(c, &n.map(|x| s * x)))
 }
 
 #[cold]
@@ -99,7 +99,7 @@ fn cay_scaled<S: Real>(u: &Vector3<S>) -> Result<(Vector3<S>, S, S), StepError> 
     let l = S::lit;
     let s = l(1.0) + u[0].abs() + u[1].abs() + u[2].abs();
     if !s.is_finite() {
-        return Err(StepError::NotFinite { what: "the argument of cay" });
+        return Err(StepError::NotFinite { what: "u in cay(u)" });
     }
     let (w, r) = (Vector3::new(u[0] / s, u[1] / s, u[2] / s), l(1.0) / s);
     let c = l(1.0) / (r * r + l(0.25) * (w[0] * w[0] + w[1] * w[1] + w[2] * w[2]));

@@ -177,6 +177,7 @@ def series():
         "(1 - cos a)/a^2": lambda k: (-1) ** k / f(2 * k + 2),
         "(a - sin a)/a^3": lambda k: (-1) ** k / f(2 * k + 3),
         "(1 - (a/2) cot(a/2))/a^2": lambda k: abs(mp.bernoulli(2 * k + 2)) / f(2 * k + 2),
+        "its derivative in a^2": lambda k: (k + 1) * abs(mp.bernoulli(2 * k + 4)) / f(2 * k + 4),
         "sin(a/2)/a": lambda k: (-1) ** k / f(2 * k + 1) / mpf(2) ** (2 * k + 1),
         "cos(a/2)": lambda k: (-1) ** k / f(2 * k) / mpf(4) ** k,
     }

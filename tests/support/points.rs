@@ -3,13 +3,13 @@
 
 use faer::Mat;
 use lieflow::Action;
-use lieflow::actions::{Coadjoint, LeftTranslation, Linear};
-use lieflow::groups::{MatrixGroup, So3, hat};
+use lieflow::actions::{Coadjoint, Each, LeftTranslation, Linear, Pair};
+use lieflow::groups::{Adjoint, MatrixGroup, Power, Product, Se3, So3, hat};
 use nalgebra::Vector3;
 use rand_pcg::Pcg64;
 
 use super::gaussian;
-use super::represent::Represent;
+use super::represent::{Represent, affine, blocks, cut, faer3, order_of};
 
 /// An action whose points the suites can draw and take apart.
 pub(crate) trait Points<G: Represent>: Action<G> {
@@ -80,6 +80,30 @@ impl Points<So3> for Coadjoint {
     }
 }
 
+/// (μ, π) as six numbers.
+impl Points<Se3> for Coadjoint {
+    fn draw(&self, group: &Se3, rng: &mut Pcg64) -> (Vector3<f64>, Vector3<f64>) {
+        self.with_numbers(group, &gaussian(rng, 6, 1))
+    }
+    fn numbers(&self, _: &Se3, m: &(Vector3<f64>, Vector3<f64>)) -> Mat<f64> {
+        Mat::from_fn(6, 1, |i, _| if i < 3 { m.0[i] } else { m.1[i - 3] })
+    }
+    fn with_numbers(&self, _: &Se3, x: &Mat<f64>) -> (Vector3<f64>, Vector3<f64>) {
+        (Vector3::from_fn(|i, _| x[(i, 0)]), Vector3::from_fn(|i, _| x[(i + 3, 0)]))
+    }
+    /// −ad*_ξ m by its definition: ⟨−ad*_ξ m, e⟩ = −⟨m, [ξ, e]⟩ for a basis of e.
+    fn generator(&self, group: &Se3, xi: &Mat<f64>, m: &(Vector3<f64>, Vector3<f64>)) -> Mat<f64> {
+        let xi = group.nearest(xi);
+        Mat::from_fn(6, 1, |i, _| {
+            let e = Mat::from_fn(6, 1, |k, _| if k == i { 1.0 } else { 0.0 });
+            -group.pair(m, &group.commutator(&xi, &self.with_numbers(group, &e)))
+        })
+    }
+    fn square(&self, _: &Se3, m: &(Vector3<f64>, Vector3<f64>)) -> Mat<f64> {
+        affine(&faer3(&hat(&m.0)), &m.1, 0.0)
+    }
+}
+
 /// 𝔤* as n×n matrices with ⟨m, v⟩ = tr(mᵀv).
 impl Points<MatrixGroup> for Coadjoint {
     fn draw(&self, group: &MatrixGroup, rng: &mut Pcg64) -> Mat<f64> {
@@ -96,3 +120,82 @@ impl Points<MatrixGroup> for Coadjoint {
         m * xi.transpose() - xi.transpose() * m
     }
 }
+
+/// Part by part, as blocks.
+impl<A: Represent, B: Represent, L: Points<A>, R: Points<B>> Points<Product<A, B>> for Pair<L, R> {
+    fn draw(&self, group: &Product<A, B>, rng: &mut Pcg64) -> Self::Point {
+        (self.0.draw(&group.0, rng), self.1.draw(&group.1, rng))
+    }
+    fn numbers(&self, group: &Product<A, B>, p: &Self::Point) -> Mat<f64> {
+        blocks(&[self.0.numbers(&group.0, &p.0), self.1.numbers(&group.1, &p.1)])
+    }
+    fn with_numbers(&self, group: &Product<A, B>, x: &Mat<f64>) -> Self::Point {
+        // The shapes are those of any point.
+        let like = self.draw(group, &mut rand::SeedableRng::seed_from_u64(0));
+        let (a, b) = (self.0.numbers(&group.0, &like.0), self.1.numbers(&group.1, &like.1));
+        let parts = cut(x, [a, b].map(|x| (x.nrows(), x.ncols())));
+        (self.0.with_numbers(&group.0, &parts[0]), self.1.with_numbers(&group.1, &parts[1]))
+    }
+    fn generator(&self, group: &Product<A, B>, xi: &Mat<f64>, p: &Self::Point) -> Mat<f64> {
+        let (m, n) = (order_of(&group.0), order_of(&group.1));
+        let xi = cut(xi, [(m, m), (n, n)]);
+        let first = self.0.generator(&group.0, &xi[0], &p.0);
+        blocks(&[first, self.1.generator(&group.1, &xi[1], &p.1)])
+    }
+    fn square(&self, group: &Product<A, B>, p: &Self::Point) -> Mat<f64> {
+        blocks(&[self.0.square(&group.0, &p.0), self.1.square(&group.1, &p.1)])
+    }
+}
+
+/// Copy by copy, as blocks.
+impl<G: Represent, L: Points<G>> Points<Power<G>> for Each<L> {
+    fn draw(&self, group: &Power<G>, rng: &mut Pcg64) -> Self::Point {
+        (0..group.copies()).map(|_| self.0.draw(group.group(), rng)).collect()
+    }
+    fn numbers(&self, group: &Power<G>, p: &Self::Point) -> Mat<f64> {
+        blocks(&p.iter().map(|p| self.0.numbers(group.group(), p)).collect::<Vec<_>>())
+    }
+    fn with_numbers(&self, group: &Power<G>, x: &Mat<f64>) -> Self::Point {
+        let (rows, cols) = (x.nrows() / group.copies(), x.ncols() / group.copies());
+        let parts = cut(x, vec![(rows, cols); group.copies()]);
+        parts.iter().map(|x| self.0.with_numbers(group.group(), x)).collect()
+    }
+    fn generator(&self, group: &Power<G>, xi: &Mat<f64>, p: &Self::Point) -> Mat<f64> {
+        let n = order_of(group.group());
+        let xi = cut(xi, vec![(n, n); group.copies()]);
+        let parts = xi.iter().zip(p).map(|(xi, p)| self.0.generator(group.group(), xi, p));
+        blocks(&parts.collect::<Vec<_>>())
+    }
+    fn square(&self, group: &Power<G>, p: &Self::Point) -> Mat<f64> {
+        blocks(&p.iter().map(|p| self.0.square(group.group(), p)).collect::<Vec<_>>())
+    }
+}
+
+/// `Coadjoint` on products is the coadjoint action of each part.
+macro_rules! coadjoint_by_parts {
+    ([$($parameters:tt)*] $group:ty, $parts:expr, [$($bounds:tt)*]) => {
+        impl<$($parameters)*> Points<$group> for Coadjoint where $($bounds)* {
+            fn draw(&self, group: &$group, rng: &mut Pcg64) -> Self::Point {
+                $parts.draw(group, rng)
+            }
+            fn numbers(&self, group: &$group, p: &Self::Point) -> Mat<f64> {
+                $parts.numbers(group, p)
+            }
+            fn with_numbers(&self, group: &$group, x: &Mat<f64>) -> Self::Point {
+                $parts.with_numbers(group, x)
+            }
+            fn generator(&self, group: &$group, xi: &Mat<f64>, p: &Self::Point) -> Mat<f64> {
+                $parts.generator(group, xi, p)
+            }
+            fn square(&self, group: &$group, p: &Self::Point) -> Mat<f64> {
+                $parts.square(group, p)
+            }
+        }
+    };
+}
+coadjoint_by_parts!(
+    [A: Represent, B: Represent] Product<A, B>,
+    Pair(Coadjoint, Coadjoint),
+    [Coadjoint: Points<A> + Points<B>]
+);
+coadjoint_by_parts!([G: Represent] Power<G>, Each(Coadjoint), [Coadjoint: Points<G>]);

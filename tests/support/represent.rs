@@ -2,7 +2,7 @@
 //! to the kernels under test.
 
 use faer::Mat;
-use lieflow::groups::{MatrixGroup, Sample, So3, hat};
+use lieflow::groups::{MatrixGroup, Power, Product, Sample, Se3, So3, hat};
 use nalgebra::{Matrix3, Vector3};
 
 /// A group that knows its elements as matrices. A new type of group implements it once; a new
@@ -105,5 +105,139 @@ impl Represent for MatrixGroup {
     }
     fn bilinear(&self) -> Option<Mat<f64>> {
         self.m()
+    }
+}
+
+/// [a x; 0 w].
+pub(crate) fn affine(a: &Mat<f64>, x: &Vector3<f64>, w: f64) -> Mat<f64> {
+    Mat::from_fn(4, 4, |i, j| match (i < 3, j < 3) {
+        (true, true) => a[(i, j)],
+        (true, false) => x[i],
+        (false, true) => 0.0,
+        (false, false) => w,
+    })
+}
+/// The last column of a 4×4 matrix, without its last entry.
+fn column(x: &Mat<f64>) -> Vector3<f64> {
+    Vector3::from_fn(|i, _| x[(i, x.ncols() - 1)])
+}
+
+impl Represent for Se3 {
+    fn algebra_matrix(&self, u: &(Vector3<f64>, Vector3<f64>)) -> Mat<f64> {
+        affine(&faer3(&hat(&u.0)), &u.1, 0.0)
+    }
+    fn element_matrix(&self, g: &(Matrix3<f64>, Vector3<f64>)) -> Mat<f64> {
+        affine(&faer3(&g.0), &g.1, 1.0)
+    }
+    /// (p, 1).
+    fn vector_matrix(&self, p: &Vector3<f64>) -> Mat<f64> {
+        Mat::from_fn(4, 1, |i, _| if i < 3 { p[i] } else { 1.0 })
+    }
+    fn nearest(&self, x: &Mat<f64>) -> (Vector3<f64>, Vector3<f64>) {
+        (So3::new().nearest(x), column(x))
+    }
+    fn element_of(&self, x: &Mat<f64>) -> (Matrix3<f64>, Vector3<f64>) {
+        (So3::new().element_of(x), column(x))
+    }
+    fn vector_of(&self, x: &Mat<f64>) -> Vector3<f64> {
+        column(x)
+    }
+    fn bilinear(&self) -> Option<Mat<f64>> {
+        None
+    }
+}
+
+/// The parts as the blocks of a block-diagonal matrix.
+pub(crate) fn blocks(parts: &[Mat<f64>]) -> Mat<f64> {
+    let rows = parts.iter().map(Mat::nrows).sum();
+    let cols = parts.iter().map(Mat::ncols).sum();
+    let (mut out, mut at) = (Mat::zeros(rows, cols), (0, 0));
+    for part in parts {
+        out.submatrix_mut(at.0, at.1, part.nrows(), part.ncols()).copy_from(part);
+        at = (at.0 + part.nrows(), at.1 + part.ncols());
+    }
+    out
+}
+
+/// The blocks of these shapes.
+pub(crate) fn cut(x: &Mat<f64>, shapes: impl IntoIterator<Item = (usize, usize)>) -> Vec<Mat<f64>> {
+    let mut at = (0, 0);
+    let mut take = |(rows, cols)| {
+        let block = x.submatrix(at.0, at.1, rows, cols).to_owned();
+        at = (at.0 + rows, at.1 + cols);
+        block
+    };
+    shapes.into_iter().map(&mut take).collect()
+}
+
+/// n of the n×n matrices of the group.
+pub(crate) fn order_of<G: Represent>(group: &G) -> usize {
+    group.element_matrix(&group.identity()).nrows()
+}
+
+/// The two diagonal blocks.
+fn halves<A: Represent, B: Represent>(group: &Product<A, B>, x: &Mat<f64>) -> [Mat<f64>; 2] {
+    let (m, n) = (order_of(&group.0), order_of(&group.1));
+    [cut(x, [(m, m)]).remove(0), cut(x, [(m, m), (n, n)]).remove(1)]
+}
+
+impl<A: Represent, B: Represent> Represent for Product<A, B> {
+    fn algebra_matrix(&self, u: &Self::Alg) -> Mat<f64> {
+        blocks(&[self.0.algebra_matrix(&u.0), self.1.algebra_matrix(&u.1)])
+    }
+    fn element_matrix(&self, g: &Self::Elem) -> Mat<f64> {
+        blocks(&[self.0.element_matrix(&g.0), self.1.element_matrix(&g.1)])
+    }
+    fn vector_matrix(&self, x: &Self::Vector) -> Mat<f64> {
+        blocks(&[self.0.vector_matrix(&x.0), self.1.vector_matrix(&x.1)])
+    }
+    fn nearest(&self, x: &Mat<f64>) -> Self::Alg {
+        let [a, b] = halves(self, x);
+        (self.0.nearest(&a), self.1.nearest(&b))
+    }
+    fn element_of(&self, x: &Mat<f64>) -> Self::Elem {
+        let [a, b] = halves(self, x);
+        (self.0.element_of(&a), self.1.element_of(&b))
+    }
+    fn vector_of(&self, x: &Mat<f64>) -> Self::Vector {
+        let (m, n) = (order_of(&self.0), order_of(&self.1));
+        let parts = cut(x, [(m, 1), (n, 1)]);
+        (self.0.vector_of(&parts[0]), self.1.vector_of(&parts[1]))
+    }
+    fn bilinear(&self) -> Option<Mat<f64>> {
+        Some(blocks(&[self.0.bilinear()?, self.1.bilinear()?]))
+    }
+}
+
+/// The matrices of all copies.
+fn all<T>(parts: &[T], matrix: impl Fn(&T) -> Mat<f64>) -> Mat<f64> {
+    blocks(&parts.iter().map(matrix).collect::<Vec<_>>())
+}
+
+impl<G: Represent> Represent for Power<G> {
+    fn algebra_matrix(&self, u: &Self::Alg) -> Mat<f64> {
+        all(u, |u| self.group().algebra_matrix(u))
+    }
+    fn element_matrix(&self, g: &Self::Elem) -> Mat<f64> {
+        all(g, |g| self.group().element_matrix(g))
+    }
+    fn vector_matrix(&self, x: &Self::Vector) -> Mat<f64> {
+        all(x, |x| self.group().vector_matrix(x))
+    }
+    fn nearest(&self, x: &Mat<f64>) -> Self::Alg {
+        let n = order_of(self.group());
+        cut(x, vec![(n, n); self.copies()]).iter().map(|x| self.group().nearest(x)).collect()
+    }
+    fn element_of(&self, x: &Mat<f64>) -> Self::Elem {
+        let n = order_of(self.group());
+        cut(x, vec![(n, n); self.copies()]).iter().map(|x| self.group().element_of(x)).collect()
+    }
+    fn vector_of(&self, x: &Mat<f64>) -> Self::Vector {
+        let n = order_of(self.group());
+        cut(x, vec![(n, 1); self.copies()]).iter().map(|x| self.group().vector_of(x)).collect()
+    }
+    fn bilinear(&self) -> Option<Mat<f64>> {
+        let m = self.group().bilinear()?;
+        Some(blocks(&vec![m; self.copies()]))
     }
 }

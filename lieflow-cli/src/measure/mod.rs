@@ -155,11 +155,17 @@ pub fn speed_against_error(
         }
     }
     let length = (t_span[1] - t_span[0]).abs();
-    for job in jobs {
+    for mut job in jobs {
         let point = &mut curves[job.curve].0.points[job.point];
-        point.seconds_per_unit = job.median() / length;
+        point.seconds_per_unit = median(&mut job.times) / length;
     }
     Ok(curves.into_iter().map(|(curve, _)| curve).collect())
+}
+
+/// The median; not a number where there are none.
+pub fn median(times: &mut [f64]) -> f64 {
+    times.sort_by(f64::total_cmp);
+    times.get(times.len() / 2).copied().unwrap_or(f64::NAN)
 }
 
 /// One run to be timed, round after round.
@@ -181,12 +187,6 @@ impl Job {
         }
         self.times.push((cpu_seconds() - start) / f64::from(self.repeats));
         Ok(())
-    }
-
-    fn median(&self) -> f64 {
-        let mut times = self.times.clone();
-        times.sort_by(f64::total_cmp);
-        times.get(times.len() / 2).copied().unwrap_or(f64::NAN)
     }
 }
 

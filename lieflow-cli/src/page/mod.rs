@@ -39,6 +39,13 @@ impl Section {
 pub enum Block {
     /// A paragraph of plain text.
     Paragraph(String),
+    /// A link to another page on a line of its own.
+    Link {
+        /// What it says.
+        text: String,
+        /// Where it leads, relative to this page.
+        href: String,
+    },
     /// Preformatted text such as a command.
     Code(String),
     /// Names with their values.

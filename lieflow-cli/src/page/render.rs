@@ -81,6 +81,9 @@ fn blocks(blocks: &[Block]) -> String {
 fn block(block: &Block) -> String {
     match block {
         Block::Paragraph(text) => format!("<p>{}</p>\n", escape(text)),
+        Block::Link { text, href } => {
+            format!("<p><a href=\"{}\">{}</a></p>\n", escape(href), escape(text))
+        }
         Block::Code(text) => {
             format!("<pre tabindex=\"0\"><code>{}</code></pre>\n", escape(text))
         }

@@ -1,9 +1,11 @@
 //! Measurements as figures, tables and files.
 
 mod energy;
+mod maps;
 mod speed;
 
 pub use energy::{EnergyRun, energy_chart, momentum_sphere};
+pub use maps::{MAPS_PAGE, write_maps};
 pub use speed::{SpeedRow, speed_chart, speed_csv, speed_table, tolerance_header};
 
 use std::path::{Path, PathBuf};
@@ -38,11 +40,19 @@ pub fn times(ratio: f64) -> String {
 /// # Errors
 /// A file cannot be written.
 pub fn write_page(folder: &Path, page: &Page) -> Result<PathBuf, CliError> {
+    write_page_as(folder, "index.html", page)
+}
+
+/// Write a page under this name with its figures as SVG files beside it; the path of the page.
+///
+/// # Errors
+/// A file cannot be written.
+pub fn write_page_as(folder: &Path, name: &str, page: &Page) -> Result<PathBuf, CliError> {
     output::make_folder(folder)?;
     for block in page.sections.iter().flat_map(|section| &section.blocks) {
         write_figures(folder, block)?;
     }
-    let path = folder.join("index.html");
+    let path = folder.join(name);
     output::write_file(&path, &page.html())?;
     Ok(path)
 }

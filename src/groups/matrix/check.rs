@@ -3,8 +3,8 @@
 use faer::{Mat, MatRef};
 
 use super::{AlgebraMatrix, Form, GroupMatrix, MatrixGroup};
-use crate::dense::{Lu, norm_frobenius};
-use crate::error::Error;
+use crate::dense::{Lu, is_finite, norm_frobenius};
+use crate::error::{Error, StepError};
 use crate::groups::LieAlgebra;
 
 /// The smallest reciprocal condition number (1-norm) that counts as invertible.
@@ -33,6 +33,38 @@ pub(super) fn finite(arg: &'static str, x: MatRef<'_, f64>) -> Result<(), Error>
 }
 
 impl MatrixGroup {
+    /// Is x n×n?
+    pub(crate) fn fits(&self, arg: &'static str, x: &Mat<f64>) -> Result<(), StepError> {
+        let (rows, cols, n) = (x.nrows(), x.ncols(), self.n());
+        match (rows, cols) == (n, n) {
+            true => Ok(()),
+            false => Err(StepError::Shape { arg, rows, cols, n }),
+        }
+    }
+
+    /// Is u, the argument of a map, n×n and finite? `what` names it in words.
+    pub(crate) fn operand(&self, what: &'static str, u: &Mat<f64>) -> Result<(), StepError> {
+        self.fits("u", u)?;
+        match is_finite(u) {
+            true => Ok(()),
+            false => Err(StepError::NotFinite { what }),
+        }
+    }
+
+    /// Is x n×`expected_cols`?
+    pub(crate) fn rows_fit(
+        &self,
+        arg: &'static str,
+        x: &Mat<f64>,
+        expected_cols: usize,
+    ) -> Result<(), Error> {
+        let (rows, cols, expected_rows) = (x.nrows(), x.ncols(), self.n());
+        match (rows, cols) == (expected_rows, expected_cols) {
+            true => Ok(()),
+            false => Err(Error::Shape { arg, rows, cols, expected_rows, expected_cols }),
+        }
+    }
+
     pub(crate) fn shape(&self, arg: &'static str, x: MatRef<'_, f64>) -> Result<(), Error> {
         square(arg, x)?;
         let n = self.n();

@@ -17,7 +17,7 @@ const ONE_STEP: f64 = 1e-8;
 
 impl MatrixGroup {
     /// [`LieGroup::correct`](crate::LieGroup::correct).
-    pub(super) fn newton_schulz(&self, g: &mut GroupMatrix, [a, b]: &mut [GroupMatrix; 2]) -> f64 {
+    pub(super) fn newton_schulz(&self, g: &mut GroupMatrix, [a, b]: [&mut GroupMatrix; 2]) -> f64 {
         let mut first = None;
         for _ in 0..STEPS_MAX {
             self.half_residual(g, a, b);

@@ -255,7 +255,13 @@ impl LieGroup for MatrixGroup {
     fn defect(&self, g: &GroupMatrix) -> f64 {
         self.defect_of(g.as_ref()).map_or(0.0, |d| dense::norm_frobenius(&d))
     }
-    fn correct(&self, g: &mut GroupMatrix, scratch: &mut [GroupMatrix; 2]) -> f64 {
+    fn check_elem(&self, g: &GroupMatrix) -> Result<(), Error> {
+        self.rows_fit("y", g, self.n)
+    }
+    fn check_vector(&self, x: &Mat<f64>) -> Result<(), Error> {
+        self.rows_fit("y", x, x.ncols())
+    }
+    fn correct(&self, g: &mut GroupMatrix, scratch: [&mut GroupMatrix; 2]) -> f64 {
         self.newton_schulz(g, scratch)
     }
 }

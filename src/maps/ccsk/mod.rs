@@ -23,7 +23,8 @@ use self::gl::Gl;
 use self::so_n::SoN;
 use self::sp::Sp;
 use super::CoordinateMap;
-use crate::dense::{is_finite, mul, scaled_sum};
+use super::quotient::finite;
+use crate::dense::{mul, scaled_sum};
 use crate::error::{Error, StepError};
 use crate::groups::{AlgebraMatrix, Form, GroupMatrix, LieAlgebra, MatrixGroup};
 
@@ -115,14 +116,11 @@ impl Product {
     /// g ← Ψ(u), the factors in order.
     fn psi(&mut self, u: &Mat<f64>, g: &mut Mat<f64>) -> Result<(), StepError> {
         match self {
-            Product::SoN(at) => at.psi(u, g)?,
+            Product::SoN(at) => at.psi(u, g),
             Product::Gl(at) => at.psi(u, g),
             Product::Sp(at) => at.psi(u, g),
         }
-        match is_finite(g) {
-            true => Ok(()),
-            false => Err(StepError::NotFinite { what: "ccsk(u)" }),
-        }
+        finite(g, "ccsk(u)")
     }
 
     /// v ← dΨ_u⁻¹ v at the u of the last [`psi`](Self::psi).
@@ -161,20 +159,22 @@ impl CoordinateMap<MatrixGroup> for Ccsk<2, 1, 0> {
     }
     fn psi(
         &self,
-        _: &MatrixGroup,
+        group: &MatrixGroup,
         u: &AlgebraMatrix,
         at: &mut CcskAt,
         g: &mut GroupMatrix,
     ) -> Result<(), StepError> {
+        group.operand("u in ccsk(u)", u)?;
         at.product.psi(u, g)
     }
     fn dpsi_inv(
         &self,
-        _: &MatrixGroup,
+        group: &MatrixGroup,
         u: &AlgebraMatrix,
         at: &mut CcskAt,
         v: &mut AlgebraMatrix,
     ) -> Result<(), StepError> {
+        group.fits("v", v)?;
         at.product.dpsi_inv(u, v, self.min_cos)
     }
 }
@@ -191,28 +191,27 @@ impl CoordinateMap<MatrixGroup> for Ccsk<0, 1, 2> {
     }
     fn psi(
         &self,
-        _: &MatrixGroup,
+        group: &MatrixGroup,
         u: &AlgebraMatrix,
         at: &mut CcskAt,
         g: &mut GroupMatrix,
     ) -> Result<(), StepError> {
+        group.operand("u in ccsk(u)", u)?;
         let CcskAt { product, minus, back, ahead, .. } = at;
         scaled_sum(minus, [-1.0], [u], 0.0);
         product.psi(minus, back)?;
         product.inverse(minus, back, ahead);
         g.copy_from(&*ahead);
-        match is_finite(g) {
-            true => Ok(()),
-            false => Err(StepError::NotFinite { what: "ccsk(u)" }),
-        }
+        finite(g, "ccsk(u)")
     }
     fn dpsi_inv(
         &self,
-        _: &MatrixGroup,
+        group: &MatrixGroup,
         _: &AlgebraMatrix,
         at: &mut CcskAt,
         v: &mut AlgebraMatrix,
     ) -> Result<(), StepError> {
+        group.fits("v", v)?;
         let CcskAt { product, minus, back, ahead, w } = at;
         mul(w, back.as_ref(), v.as_ref());
         mul(v, w.as_ref(), ahead.as_ref());

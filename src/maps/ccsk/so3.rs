@@ -29,7 +29,7 @@ impl<S: Trig, const I: usize, const J: usize, const K: usize> CoordinateMap<So3<
         g: &mut Matrix3<S>,
     ) -> Result<(), StepError> {
         if !(u[0].abs() + u[1].abs() + u[2].abs()).is_finite() {
-            return Err(StepError::NotFinite { what: "the argument of ccsk" });
+            return Err(StepError::NotFinite { what: "u in ccsk(u)" });
         }
         *at = ccsk_of::<S, I, J, K>(u, g);
         Ok(())

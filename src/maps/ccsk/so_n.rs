@@ -3,7 +3,6 @@
 use faer::Mat;
 
 use super::GIMBAL;
-use crate::dense::is_finite;
 use crate::error::StepError;
 
 /// Sines and cosines of the angles, and workspace.
@@ -23,11 +22,8 @@ impl SoN {
     }
 
     /// g ← ∏_c ∏_{r>c} G_rc(u_rc).
-    pub(super) fn psi(&mut self, u: &Mat<f64>, g: &mut Mat<f64>) -> Result<(), StepError> {
+    pub(super) fn psi(&mut self, u: &Mat<f64>, g: &mut Mat<f64>) {
         let n = u.nrows();
-        if !is_finite(u) {
-            return Err(StepError::NotFinite { what: "the argument of ccsk" });
-        }
         g.fill(0.0);
         g.diagonal_mut().fill(1.0);
         for c in 0..n {
@@ -38,7 +34,6 @@ impl SoN {
                 rotate_columns(g, r, c, s, k);
             }
         }
-        Ok(())
     }
 
     /// v ← dΨ_u⁻¹ v at the angles of the last [`psi`](Self::psi).

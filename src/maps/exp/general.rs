@@ -110,9 +110,7 @@ impl ExpAt {
         group: &MatrixGroup,
         u: &AlgebraMatrix,
     ) -> Result<f64, StepError> {
-        if !group.is_finite(u) {
-            return Err(StepError::NotFinite { what: "the argument of dexp" });
-        }
+        group.operand("u in dexp_u", u)?;
         let make = || Box::new(AdSchur::new(group.n(), group.ad_form()));
         let schur = self.spectrum.get_or_insert_with(make);
         schur.factor(u)?;
@@ -142,6 +140,7 @@ impl ExpAt {
         u: &AlgebraMatrix,
         g: &mut GroupMatrix,
     ) -> Result<(), StepError> {
+        group.fits("u", u)?;
         let structure = match group.form() {
             Form::Identity => Structure::Skew,
             _ => Structure::General,
@@ -157,6 +156,7 @@ impl ExpAt {
         q: usize,
         v: &mut AlgebraMatrix,
     ) -> Result<f64, StepError> {
+        group.fits("v", v)?;
         self.dexpinv = self.powers.baker(group, u, Some(q), v)?;
         Ok(group.norm(&self.powers.ad))
     }
@@ -168,6 +168,7 @@ impl ExpAt {
         u: &AlgebraMatrix,
         v: &mut AlgebraMatrix,
     ) -> Result<(), StepError> {
+        group.fits("v", v)?;
         let norm = ad_bound(group, u);
         self.halvings = 0;
         if norm <= EXACT_FROM {
@@ -176,6 +177,10 @@ impl ExpAt {
         }
         if !norm.is_finite() {
             return Err(StepError::NormTooLarge { map: "exp" });
+        }
+        if self.powers.commute(group, u, v) {
+            self.dexpinv = Dexpinv::Series(1);
+            return Ok(());
         }
         match &mut self.exact {
             Exact::None => Err(DIVERGES),
@@ -207,6 +212,9 @@ impl ExpAt {
         if !norm.is_finite() {
             return Err(StepError::NormTooLarge { map: "exp" });
         }
+        if self.powers.commute(group, u, v) {
+            return Ok(());
+        }
         match &mut self.exact {
             Exact::None => Err(DIVERGES),
             Exact::Eigen(eigen) => eigen.function_of_ad(u, v, |theta| Ok(phi1(theta))),
@@ -227,6 +235,12 @@ struct Powers {
 }
 
 impl Powers {
+    /// Is \[u, v\] = 0 exactly? Then dexp_u v = v.
+    fn commute(&mut self, group: &MatrixGroup, u: &AlgebraMatrix, v: &AlgebraMatrix) -> bool {
+        group.bracket(u, v, &mut self.next);
+        group.norm(&self.next) == 0.0
+    }
+
     fn advance(&mut self, group: &MatrixGroup, u: &AlgebraMatrix) {
         group.bracket(u, &self.ad, &mut self.next);
         core::mem::swap(&mut self.ad, &mut self.next);
@@ -329,7 +343,7 @@ fn phi(theta: f64, norm: f64) -> Result<(f64, f64), StepError> {
         return Ok((1.0 - half * half / 3.0, half));
     }
     let (s, c) = half.sin_cos();
-    if s.abs() < SINGULAR * norm.max(1.0) {
+    if 2.0 * s.abs() < SINGULAR * norm.max(1.0) {
         return Err(SINGULAR_AT);
     }
     Ok((half * c / s, half))

@@ -7,6 +7,7 @@
 
 mod functions;
 mod general;
+mod se3;
 mod so3;
 
 pub use functions::{Truncated, dexp, dexpinv, dexpinv_with_remainder, distance_to_singular};

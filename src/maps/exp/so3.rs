@@ -8,7 +8,7 @@ use crate::error::{Error, StepError};
 use crate::groups::{So3, cross};
 use crate::maps::CoordinateMap;
 use crate::scalar::Trig;
-use crate::so3::{self, Angle, rodrigues, rodrigues_on};
+use crate::so3::{self, Angle, rodrigues_on};
 
 impl<S: Trig> CoordinateMap<So3<S>> for Exp {
     type At = Angle<S>;
@@ -27,9 +27,9 @@ impl<S: Trig> CoordinateMap<So3<S>> for Exp {
         at: &mut Angle<S>,
         g: &mut Matrix3<S>,
     ) -> Result<(), StepError> {
-        let (angle, a, b) = Angle::with_exp(u);
+        let (angle, exp) = Angle::with_matrix(u);
         *at = angle;
-        *g = if angle.in_range() { rodrigues(u, a, b) } else { so3::exp_huge(u)? };
+        *g = if angle.in_range() { exp } else { so3::exp_huge(u)? };
         Ok(())
     }
     #[inline]

@@ -7,21 +7,27 @@ use crate::error::StepError;
 
 /// QR sweeps allowed per row; two or three are usual.
 const SWEEPS: usize = 40;
+/// Where eigenvalues cluster on the real axis, as at half turns, the shifts of the iteration are
+/// rounding; around the cluster they are not.
+const CENTRES: [f64; 3] = [0.0, -1.0, 1.0];
 
 /// (t, q) of a matrix of finite numbers.
 ///
 /// The iteration has no exceptional shifts: where it stalls (on a cyclic permutation, say), another
-/// basis starts it from another vector.
+/// centre starts it from another matrix, and another basis from another vector.
 fn form<T: ComplexField<RealField = f64>>(
     a: &DMatrix<T>,
 ) -> Result<(DMatrix<T>, DMatrix<T>), StepError> {
     let n = a.nrows();
     let mut basis = DMatrix::<T>::identity(n, n);
     for attempt in 0..3 {
-        let turned = basis.adjoint() * a * &basis;
-        if let Some(schur) = Schur::try_new(turned, f64::EPSILON, SWEEPS * n + 100) {
-            let (q, t) = schur.unpack();
-            return Ok((t, basis * q));
+        for centre in CENTRES {
+            let shift = DMatrix::<T>::from_diagonal_element(n, n, T::from_real(centre));
+            let turned = basis.adjoint() * (a - &shift) * &basis;
+            if let Some(schur) = Schur::try_new(turned, f64::EPSILON, SWEEPS * n + 100) {
+                let (q, t) = schur.unpack();
+                return Ok((t + shift, basis * q));
+            }
         }
         // A reflection in a vector that no matrix of small integers knows.
         let entry = |i: usize, _| T::from_real((1.0 + (i * (attempt + 2)) as f64).sqrt().sin());

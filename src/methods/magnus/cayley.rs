@@ -9,7 +9,7 @@
 use super::{GAUSS_2, GAUSS_3, MagnusWork, ROOT_15, magnus_method, sum};
 use crate::dense::{antisymmetrise, mul, mul_add};
 use crate::error::{Error, StepError};
-use crate::groups::{AlgebraMatrix, Form, LieAlgebra, MatrixGroup, So3};
+use crate::groups::{AlgebraMatrix, Form, LieAlgebra, MatrixGroup, Power, Product, So3};
 use crate::maps::{Cay, CoordinateMap};
 use crate::methods::Step;
 use crate::problems::{PointOf, ScalarOf};
@@ -67,6 +67,37 @@ impl TripleProduct for MatrixGroup {
                 mul(work, w.as_ref(), v.as_ref());
                 mul_add(out, 1.0, work.as_ref(), u.as_ref());
             }
+        }
+    }
+}
+
+impl<A: TripleProduct, B: TripleProduct<Scalar = A::Scalar>> TripleProduct for Product<A, B> {
+    #[inline]
+    fn triple(
+        &self,
+        u: &Self::Alg,
+        v: &Self::Alg,
+        w: &Self::Alg,
+        work: &mut Self::Alg,
+        out: &mut Self::Alg,
+    ) {
+        self.0.triple(&u.0, &v.0, &w.0, &mut work.0, &mut out.0);
+        self.1.triple(&u.1, &v.1, &w.1, &mut work.1, &mut out.1);
+    }
+}
+
+impl<G: TripleProduct> TripleProduct for Power<G> {
+    #[inline]
+    fn triple(
+        &self,
+        u: &Self::Alg,
+        v: &Self::Alg,
+        w: &Self::Alg,
+        work: &mut Self::Alg,
+        out: &mut Self::Alg,
+    ) {
+        for (i, (work, out)) in work.iter_mut().zip(out).enumerate() {
+            self.group().triple(&u[i], &v[i], &w[i], work, out);
         }
     }
 }

@@ -17,7 +17,7 @@ fn scale<S: Real>(inverse_inertia: &Vector3<S>, m: &Vector3<S>) -> Vector3<S> {
 
 /// gᵀ·m.
 #[inline(always)]
-fn apply_transpose<S: Real>(g: &Matrix3<S>, m: &Vector3<S>) -> Vector3<S> {
+pub(super) fn apply_transpose<S: Real>(g: &Matrix3<S>, m: &Vector3<S>) -> Vector3<S> {
     let row = |j| g[(0, j)] * m[0] + g[(1, j)] * m[1] + g[(2, j)] * m[2];
     Vector3::new(row(0), row(1), row(2))
 }
@@ -48,6 +48,12 @@ impl<S: Real> RigidBody<S> {
         check_inertia(&inertia)?;
         let [a, b, c] = inertia.map(|j| S::lit(1.0 / j));
         Ok(RigidBody { group: So3::new(), inverse_inertia: Vector3::new(a, b, c) })
+    }
+
+    /// The diagonal of J⁻¹.
+    #[inline]
+    pub(super) fn inverse_inertia(&self) -> &Vector3<S> {
+        &self.inverse_inertia
     }
 
     /// ω = J⁻¹m, the angular velocity in the body.
@@ -125,6 +131,12 @@ impl<S: Real> RigidBodyAttitude<S> {
     /// The body alone.
     pub fn body(&self) -> &RigidBody<S> {
         &self.body
+    }
+
+    /// m_s, the angular momentum in space.
+    #[inline]
+    pub fn momentum_space(&self) -> &Vector3<S> {
+        &self.momentum_space
     }
 
     /// m = gᵀm_s, the angular momentum in the body.

@@ -47,11 +47,12 @@ pub struct Exact {
 }
 
 #[derive(Clone, Debug)]
+#[allow(clippy::large_enum_variant)] // in a box, every step of the exact method would allocate
 enum Motion {
     /// Rotation about a fixed axis: m does not change.
     Steady,
     /// The general case.
-    Elliptic(Box<Elliptic>),
+    Elliptic(Elliptic),
 }
 
 #[derive(Clone, Debug)]
@@ -112,7 +113,7 @@ impl Exact {
         So3::new().check_element("attitude", &attitude, 1e-6)?;
         let m0 = Vector3::from(momentum_body);
         let motion = match Elliptic::new(inertia, m0, &attitude)? {
-            Some(elliptic) => Motion::Elliptic(Box::new(elliptic)),
+            Some(elliptic) => Motion::Elliptic(elliptic),
             None => Motion::Steady,
         };
         Ok(Exact { inertia, m0, g0: attitude, motion })

@@ -7,7 +7,7 @@ use crate::actions::{Coadjoint, LeftTranslation};
 use crate::dense::{self, antisymmetrise, mul};
 use crate::error::Error;
 use crate::groups::{AlgebraMatrix, GroupMatrix, MatrixGroup};
-use crate::problems::{Ambient, Problem};
+use crate::problems::{Ambient, Isospectral, LiePoisson, Problem};
 
 /// The free n-dimensional rigid body by its body momentum: ṁ = \[m, Ω\], Ω_ij = m_ij/J_ij, on a
 /// coadjoint orbit of SO(n). f(m) = −Ω; Λ(g, m) = g m gᵀ.
@@ -75,18 +75,23 @@ impl RigidBodyN {
         let mut twice = 0.0;
         for j in 0..m.ncols() {
             for i in 0..j {
-                twice += m[(i, j)] * m[(i, j)] * self.inverse_inertia[(i, j)];
+                let x = 0.5 * (m[(i, j)] - m[(j, i)]);
+                twice += x * x * self.inverse_inertia[(i, j)];
             }
         }
         0.5 * twice
     }
 
-    /// out ← sign·Ω(m).
+    /// out ← sign·Ω(m), by the skew part of m: a momentum in so(n)* is nothing else. The coadjoint
+    /// action g m gᵀ leaves rounding in the symmetric part; an Ω with some of it would not be in
+    /// so(n), and |m| would drift quadratically with the number of steps.
     fn omega(&self, sign: f64, m: &Mat<f64>, out: &mut Mat<f64>) {
+        let half = 0.5 * sign;
         for j in 0..m.ncols() {
-            let (m, w) = (m.col_as_slice(j), self.inverse_inertia.col_as_slice(j));
-            for ((o, m), w) in out.col_as_slice_mut(j).iter_mut().zip(m).zip(w) {
-                *o = sign * m * w;
+            out[(j, j)] = 0.0;
+            for i in j + 1..m.nrows() {
+                let w = half * (m[(i, j)] - m[(j, i)]) * self.inverse_inertia[(i, j)];
+                (out[(i, j)], out[(j, i)]) = (w, -w);
             }
         }
     }
@@ -210,5 +215,29 @@ impl Ambient for RigidBodyNAttitude {
     }
     fn is_finite(&self, g: &GroupMatrix) -> bool {
         dense::is_finite(g)
+    }
+}
+
+/// H = ½ Σ_{i<j} m_ij²/J_ij. Its gradient is Ω in the pairing ½tr(mᵀv), which counts each plane once.
+impl LiePoisson for RigidBodyN {
+    fn hamiltonian(&self, m: &Mat<f64>) -> f64 {
+        self.energy(m)
+    }
+    fn discrete_gradient(
+        &self,
+        a: &Mat<f64>,
+        b: &Mat<f64>,
+        xi: &mut AlgebraMatrix,
+        work: &mut Mat<f64>,
+    ) {
+        dense::scaled_sum(work, [0.5, 0.5], [a, b], 0.0);
+        self.omega(1.0, work, xi);
+    }
+}
+
+/// W = m and B(W) = −Ω.
+impl Isospectral for RigidBodyN {
+    fn generator(&self, m: &Mat<f64>, b: &mut AlgebraMatrix, _: &mut Mat<f64>) {
+        self.omega(-1.0, m, b);
     }
 }

@@ -3,11 +3,15 @@
 
 mod closed;
 mod exact;
+mod free;
 mod general;
+mod state;
 
 pub use closed::{RigidBody, RigidBodyAttitude};
 pub use exact::Exact;
+pub use free::{Frame, FreeBody};
 pub use general::{RigidBodyN, RigidBodyNAttitude};
+pub use state::{BodyFrame, BodyState, RigidBodyState};
 
 use crate::error::Error;
 

@@ -1,0 +1,155 @@
+//! Actions of products, part by part: Λ((a, b), (p, q)) = (Λ₁(a, p), Λ₂(b, q)) on A × B, and Λ on
+//! each of the copies of Gᴺ.
+//!
+//! [`Linear`](super::Linear) and [`LeftTranslation`](super::LeftTranslation) serve products as they
+//! are, and `Linear` forms no group elements: spins on spheres are `Linear` on SO(3)ᴺ.
+
+use super::{Action, Coadjoint};
+use crate::groups::{LieGroup, Power, Product, larger};
+use crate::scalar::Real;
+
+/// An action for each part of a [`Product`], on M₁ × M₂.
+///
+/// ```
+/// use lieflow::Action;
+/// use lieflow::actions::{LeftTranslation, Linear, Pair};
+/// use lieflow::groups::{LieGroup, Product, So3};
+/// use nalgebra::{Matrix3, Vector3};
+/// // An attitude, and a vector that another rotation turns.
+/// let (group, action) = (Product(So3::<f64>::new(), So3::new()), Pair(LeftTranslation, Linear));
+/// let p = (Matrix3::identity(), Vector3::new(1.0, 2.0, 3.0));
+/// let (mut q, mut work) = (p.clone(), action.work(&group));
+/// action.act(&group, &group.identity(), &p, &mut q, &mut work);
+/// assert_eq!(p, q);
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Pair<L, R>(pub L, pub R);
+
+/// One action for every copy of a [`Power`], on Mᴺ.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Each<L>(pub L);
+
+/// The larger of what was restored.
+fn worse<S: Real>(a: Option<S>, b: Option<S>) -> Option<S> {
+    match (a, b) {
+        (Some(a), Some(b)) => Some(larger(a, b)),
+        (a, b) => a.or(b),
+    }
+}
+
+impl<A, B, L, R> Action<Product<A, B>> for Pair<L, R>
+where
+    A: LieGroup,
+    B: LieGroup<Scalar = A::Scalar>,
+    L: Action<A>,
+    R: Action<B>,
+{
+    type Point = (L::Point, R::Point);
+    type Work = (L::Work, R::Work);
+
+    fn work(&self, group: &Product<A, B>) -> Self::Work {
+        (self.0.work(&group.0), self.1.work(&group.1))
+    }
+    #[inline]
+    fn act(
+        &self,
+        group: &Product<A, B>,
+        g: &(A::Elem, B::Elem),
+        p: &Self::Point,
+        q: &mut Self::Point,
+        work: &mut Self::Work,
+    ) {
+        self.0.act(&group.0, &g.0, &p.0, &mut q.0, &mut work.0);
+        self.1.act(&group.1, &g.1, &p.1, &mut q.1, &mut work.1);
+    }
+    fn restore(
+        &self,
+        group: &Product<A, B>,
+        p: &mut Self::Point,
+        work: &mut Self::Work,
+    ) -> Option<A::Scalar> {
+        let first = self.0.restore(&group.0, &mut p.0, &mut work.0);
+        worse(first, self.1.restore(&group.1, &mut p.1, &mut work.1))
+    }
+}
+
+impl<G: LieGroup, L: Action<G>> Action<Power<G>> for Each<L> {
+    type Point = Box<[L::Point]>;
+    /// The copies are served one after the other.
+    type Work = L::Work;
+
+    fn work(&self, group: &Power<G>) -> L::Work {
+        self.0.work(group.group())
+    }
+    #[inline]
+    fn act(
+        &self,
+        group: &Power<G>,
+        g: &Box<[G::Elem]>,
+        p: &Self::Point,
+        q: &mut Self::Point,
+        work: &mut L::Work,
+    ) {
+        for ((g, p), q) in g.iter().zip(p).zip(q) {
+            self.0.act(group.group(), g, p, q, work);
+        }
+    }
+    fn restore(
+        &self,
+        group: &Power<G>,
+        p: &mut Self::Point,
+        work: &mut L::Work,
+    ) -> Option<G::Scalar> {
+        p.iter_mut().fold(None, |all, p| worse(all, self.0.restore(group.group(), p, work)))
+    }
+}
+
+/// On 𝔞* × 𝔟*, each part on its own.
+impl<A, B> Action<Product<A, B>> for Coadjoint
+where
+    A: LieGroup,
+    B: LieGroup<Scalar = A::Scalar>,
+    Coadjoint: Action<A> + Action<B>,
+{
+    type Point = (<Coadjoint as Action<A>>::Point, <Coadjoint as Action<B>>::Point);
+    type Work = (<Coadjoint as Action<A>>::Work, <Coadjoint as Action<B>>::Work);
+
+    fn work(&self, group: &Product<A, B>) -> Self::Work {
+        Pair(Coadjoint, Coadjoint).work(group)
+    }
+    #[inline]
+    fn act(
+        &self,
+        group: &Product<A, B>,
+        g: &(A::Elem, B::Elem),
+        p: &Self::Point,
+        q: &mut Self::Point,
+        work: &mut Self::Work,
+    ) {
+        Pair(Coadjoint, Coadjoint).act(group, g, p, q, work);
+    }
+}
+
+/// On (𝔤*)ᴺ, copy by copy.
+impl<G: LieGroup> Action<Power<G>> for Coadjoint
+where
+    Coadjoint: Action<G>,
+{
+    type Point = Box<[<Coadjoint as Action<G>>::Point]>;
+    type Work = <Coadjoint as Action<G>>::Work;
+
+    fn work(&self, group: &Power<G>) -> Self::Work {
+        Each(Coadjoint).work(group)
+    }
+    #[inline]
+    fn act(
+        &self,
+        group: &Power<G>,
+        g: &Box<[G::Elem]>,
+        p: &Self::Point,
+        q: &mut Self::Point,
+        work: &mut Self::Work,
+    ) {
+        Each(Coadjoint).act(group, g, p, q, work);
+    }
+}

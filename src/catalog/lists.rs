@@ -1,0 +1,201 @@
+//! The methods that ask more of a problem than f, list by list.
+
+use super::{KEEPS_GROUP, MethodInfo, RKMK, RUNGE_KUTTA};
+
+const SPLITTING: &str = "splitting";
+const MOMENTUM: &str = "energy and momentum";
+const DISCRETE: &str = "discrete mechanics";
+const SERIES: &str = "Lie series";
+const PROJECTED: &str = "projection";
+const LIE_POISSON: &str = "Lie–Poisson";
+
+/// A method without map and tableau.
+const fn plain(
+    family: &'static str,
+    name: &'static str,
+    order: Option<usize>,
+    summary: &'static str,
+    [preserves, cost, source]: [&'static str; 3],
+) -> MethodInfo {
+    MethodInfo {
+        family,
+        name,
+        summary,
+        order,
+        takes_map: false,
+        takes_tableau: false,
+        preserves,
+        cost,
+        source,
+    }
+}
+
+/// The same in the coordinates exp or cay.
+const fn in_coordinates(info: MethodInfo) -> MethodInfo {
+    MethodInfo { takes_map: true, ..info }
+}
+
+const QUADRATIC: &str = "quadratic invariants, time symmetry";
+const ZANNA: &str = "Zanna, Engø & Munthe-Kaas 2001";
+const GAUSS: &str = "Hairer, Lubich, Wanner, Geometric Numerical Integration, II.1.3";
+
+/// Implicit methods for problems whose points have a norm: `with_implicit_method`.
+pub const IMPLICIT_METHODS: &[MethodInfo] = &[
+    plain(
+        RUNGE_KUTTA,
+        "midpoint-implicit",
+        Some(2),
+        "the implicit midpoint rule on the entries of the state",
+        [QUADRATIC, "5–20 F", GAUSS],
+    ),
+    plain(
+        RUNGE_KUTTA,
+        "gauss4",
+        Some(4),
+        "Gauss collocation of two stages on the entries of the state",
+        [QUADRATIC, "5–20 × 2 F", GAUSS],
+    ),
+    plain(
+        RUNGE_KUTTA,
+        "gauss6",
+        Some(6),
+        "Gauss collocation of three stages on the entries of the state",
+        [QUADRATIC, "5–20 × 3 F", GAUSS],
+    ),
+    in_coordinates(plain(
+        RKMK,
+        "rkmk-gauss4",
+        Some(4),
+        "implicit Runge–Kutta–Munthe-Kaas on the Gauss tableau of two stages",
+        [KEEPS_GROUP, "5–20 × (2 f, 2 Ψ, 2 dΨ⁻¹)", ZANNA],
+    )),
+    in_coordinates(plain(
+        RKMK,
+        "rkmk-gauss4-symmetric",
+        Some(4),
+        "implicit Runge–Kutta–Munthe-Kaas, its chart in the middle; exp or cay",
+        ["group, Casimirs, time symmetry", "5–20 × (2 f, 3 Ψ, 2 dΨ⁻¹)", ZANNA],
+    )),
+];
+
+const SPLIT: &str = "group, Casimirs, symplectic structure, time symmetry";
+const ALL_FIRST: &str = "energy, group, Casimirs, time symmetry";
+const MCLACHLAN: &str = "McLachlan 1993; Reich 1996";
+const NEWTON: &str = "3–6 Newton iterations, 1 Ψ";
+
+const fn dmv(name: &'static str, order: usize, summary: &'static str) -> MethodInfo {
+    const SOURCE: &str = "Moser & Veselov 1991; McLachlan & Zanna 2005; Hairer & Vilmart 2006";
+    plain(DISCRETE, name, Some(order), summary, [ALL_FIRST, NEWTON, SOURCE])
+}
+
+const fn taylor(name: &'static str, order: usize, cost: &'static str) -> MethodInfo {
+    let summary = "Lie series of the rotation, taken to the unit quaternions";
+    plain(SERIES, name, Some(order), summary, [KEEPS_GROUP, cost, "Gröbner 1960"])
+}
+
+/// Methods for the free rigid body in ℝ³: `with_body_method`.
+pub const BODY_METHODS: &[MethodInfo] = &[
+    plain(
+        SPLITTING,
+        "mr2",
+        Some(2),
+        "McLachlan–Reich splitting, ordering 123",
+        [SPLIT, "5 axis rotations", MCLACHLAN],
+    ),
+    plain(
+        SPLITTING,
+        "mr4",
+        Some(4),
+        "McLachlan–Reich splitting, triple jump, ordering 123",
+        [SPLIT, "13 axis rotations", MCLACHLAN],
+    ),
+    plain(
+        MOMENTUM,
+        "simo-wong",
+        Some(2),
+        "Simo and Wong's implicit method, increment exp(ζ)",
+        [ALL_FIRST, NEWTON, "Simo & Wong 1991"],
+    ),
+    plain(
+        MOMENTUM,
+        "simo-wong-k1",
+        Some(2),
+        "Simo and Wong's implicit method with k = 1: the midpoint rule in cay",
+        [ALL_FIRST, NEWTON, "Austin, Krishnaprasad & Wang 1993"],
+    ),
+    plain(
+        SERIES,
+        "buss4",
+        Some(4),
+        "Buss's augmented Taylor method",
+        [KEEPS_GROUP, "9 ×, 4 K, 1 exp", "Buss 2000"],
+    ),
+    dmv("dmv2", 2, "discrete Moser–Veselov"),
+    dmv("dmv4", 4, "discrete Moser–Veselov, preprocessed to order 4"),
+    dmv("dmv6", 6, "discrete Moser–Veselov, preprocessed to order 6"),
+    dmv("dmv8", 8, "discrete Moser–Veselov, preprocessed to order 8"),
+    dmv("dmv10", 10, "discrete Moser–Veselov, preprocessed to order 10"),
+    plain(
+        "exact",
+        "exact",
+        None,
+        "the exact motion by elliptic functions, any step",
+        ["everything", "1–2 µs whatever the step", "Jacobi 1850"],
+    ),
+    taylor("taylor4", 4, "150 multiplications"),
+    taylor("taylor6", 6, "315 multiplications"),
+    taylor("taylor8", 8, "540 multiplications"),
+    taylor("taylor10", 10, "825 multiplications"),
+    taylor("taylor12", 12, "1170 multiplications"),
+    taylor("taylor16", 16, "2040 multiplications"),
+];
+
+const NEAREST: &str = "Hairer, Lubich, Wanner, Geometric Numerical Integration, IV.4";
+
+/// Methods for a state that holds an attitude: `with_attitude_method`.
+pub const ATTITUDE_METHODS: &[MethodInfo] = &[
+    plain(
+        PROJECTED,
+        "rk4-qr",
+        Some(4),
+        "classical Runge–Kutta on the entries, then the factor Q of g = QR",
+        ["group", "4 F, 2 Gram–Schmidt", NEAREST],
+    ),
+    plain(
+        PROJECTED,
+        "rk4-polar",
+        Some(4),
+        "classical Runge–Kutta on the entries, then the polar factor of g",
+        ["group", "4 F, 2–3 Newton–Schulz", NEAREST],
+    ),
+];
+
+/// Methods for Lie–Poisson systems: `with_momentum_method`, `with_lie_poisson_method`.
+pub const LIE_POISSON_METHODS: &[MethodInfo] = &[in_coordinates(plain(
+    LIE_POISSON,
+    "energy-casimir",
+    Some(2),
+    "discrete gradient in the algebra and coadjoint action; exp or cay",
+    [
+        "energy, Casimirs, time symmetry",
+        "5–20 × (∇H, Ψ, Λ)",
+        "after Simo & Wong 1991; Lewis & Simo 1994",
+    ],
+))];
+
+const fn isospectral(
+    name: &'static str,
+    order: usize,
+    summary: &'static str,
+    cost: &'static str,
+) -> MethodInfo {
+    let keeps = "Casimirs, symplectic structure, time symmetry";
+    plain(LIE_POISSON, name, Some(order), summary, [keeps, cost, "Modin & Viviani 2020"])
+}
+
+/// Methods for isospectral systems on matrices: `with_lie_poisson_method`.
+pub const ISOSPECTRAL_METHODS: &[MethodInfo] = &[
+    isospectral("isospectral2", 2, "isospectral Gauss of one stage", "8–25 × 3 products"),
+    isospectral("isospectral4", 4, "isospectral Gauss of two stages", "8–25 × 6 products"),
+    isospectral("isospectral6", 6, "isospectral Gauss of three stages", "8–25 × 9 products"),
+];

@@ -1,0 +1,265 @@
+//! What methods ask of a problem, and a function for each kind of problem.
+//!
+//! Two questions are answered here:
+//!
+//! - *Which methods fit my problem?* Know what the problem offers, as [`Needs`]; each of them lists
+//!   its methods by [`Needs::methods`], and [`all_methods`] goes through all.
+//! - *Run this spec on my problem.* Call the function of the problem's kind with the spec and a
+//!   visitor ([`OnMethod`]); a method that is registered but does not fit is refused by
+//!   [`Error::Unsupported`] with what it needs, an unknown one by [`Error::UnknownName`].
+//!
+//! | function | problem | offers |
+//! |---|---|---|
+//! | [`with_method`] | [`Ambient`] | `Field` |
+//! | [`with_implicit_method`] | and points with a norm | `Field`, `Norm` |
+//! | [`with_body_method`] | a free rigid body in ℝ³ | `Field`, `Norm`, `Body` |
+//! | [`with_attitude_method`] | and its attitude in the state | `Field`, `Norm`, `Body`, `Attitude` |
+//! | [`with_momentum_method`] | the body by its momentum | `Field`, `Norm`, `Body`, `LiePoisson` |
+//! | [`with_lie_poisson_method`] | momenta as matrices | `Field`, `Norm`, `LiePoisson`, `Isospectral` |
+//! | [`with_linear_method`](super::with_linear_method) | ẏ = λ_*(A(t))(y) | `LinearType` |
+//!
+//! Each of the first six hands what is not its own to the function that it extends.
+
+use super::*;
+use crate::groups::LieAlgebra;
+use crate::methods::{
+    Buss4, DMV2, DMV4, DMV6, DMV8, DMV10, EnergyCasimir, ExactMotion, GAUSS2, GAUSS4, GAUSS6,
+    Gauss, IsospectralGauss, MR2, MR4, Metric, Projected, RkmkGauss, RkmkGaussSymmetric, SimoWong,
+    Taylor,
+};
+use crate::problems::{
+    FreeBody, Isospectral, LiePoisson, Orthogonal, PointOf, Projection, ScalarOf, Split,
+};
+
+/// What a method asks of a problem beyond f, and so what a problem may offer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Needs {
+    /// F on the linear space around M ([`Ambient`]).
+    Field,
+    /// f that depends on time alone ([`LinearField`](crate::problems::LinearField)).
+    LinearType,
+    /// A norm of the points ([`Metric`]).
+    Norm,
+    /// The free rigid body in ℝ³ ([`FreeBody`], [`Split`]).
+    Body,
+    /// An orthogonal matrix in the state ([`Orthogonal`]).
+    Attitude,
+    /// A Hamiltonian on 𝔤* ([`LiePoisson`]).
+    LiePoisson,
+    /// Ẇ = \[B(W), W\] ([`Isospectral`]).
+    Isospectral,
+}
+
+impl Needs {
+    /// Each of them.
+    pub const ALL: [Needs; 7] = [
+        Needs::Field,
+        Needs::LinearType,
+        Needs::Norm,
+        Needs::Body,
+        Needs::Attitude,
+        Needs::LiePoisson,
+        Needs::Isospectral,
+    ];
+
+    /// The methods that need it.
+    pub const fn methods(self) -> &'static [MethodInfo] {
+        match self {
+            Needs::Field => METHODS,
+            Needs::LinearType => LINEAR_METHODS,
+            Needs::Norm => IMPLICIT_METHODS,
+            Needs::Body => BODY_METHODS,
+            Needs::Attitude => ATTITUDE_METHODS,
+            Needs::LiePoisson => LIE_POISSON_METHODS,
+            Needs::Isospectral => ISOSPECTRAL_METHODS,
+        }
+    }
+
+    /// It in words.
+    pub fn describe(self) -> &'static str {
+        self.why().trim_start_matches("it needs ")
+    }
+
+    const fn why(self) -> &'static str {
+        match self {
+            Needs::Field => "it needs a vector field on the linear space around M",
+            Needs::LinearType => "it needs an equation of linear type, f(t, y) = A(t)",
+            Needs::Norm => "it needs a norm of the states",
+            Needs::Body => "it needs a free rigid body in three dimensions",
+            Needs::Attitude => "it needs an attitude in the state",
+            Needs::LiePoisson => "it needs a Lie–Poisson system, given by its momentum",
+            Needs::Isospectral => "it needs momenta as matrices",
+        }
+    }
+}
+
+/// Every method that some problem can ask for, with what it needs.
+///
+/// ```
+/// use lieflow::catalog::{Needs, all_methods};
+/// let body_in_space = [Needs::Field, Needs::Norm, Needs::Body, Needs::Attitude];
+/// let fitting: Vec<_> =
+///     all_methods().filter(|(_, needs)| body_in_space.contains(needs)).map(|(m, _)| m.name).collect();
+/// assert!(fitting.contains(&"rkmk4") && fitting.contains(&"dmv10"));
+/// assert!(!fitting.contains(&"magnus4"));
+/// ```
+pub fn all_methods() -> impl Iterator<Item = (&'static MethodInfo, Needs)> {
+    Needs::ALL.into_iter().flat_map(|needs| needs.methods().iter().map(move |m| (m, needs)))
+}
+
+/// The error of a method that is registered but does not fit the problem, or of an unknown one.
+pub(super) fn misfit(name: &str) -> Error {
+    match all_methods().find(|(m, _)| m.name == name) {
+        Some((m, needs)) => {
+            let with = "this problem".into();
+            Error::Unsupported { what: m.name, with, why: needs.why() }
+        }
+        None => unknown("method", name, all_methods().map(|(m, _)| m.name)),
+    }
+}
+
+/// Run `$body` with `$map` bound to exp or cay.
+macro_rules! each_odd_map {
+    ($spec:expr, $map:ident => $body:expr) => {
+        match ($spec.map.as_deref().unwrap_or("exp"), $spec.q) {
+            ("exp", None) => {
+                let $map = Exp;
+                Ok($body)
+            }
+            ("cay", None) => {
+                let $map = Cay;
+                Ok($body)
+            }
+            (map, q) => Err(Error::Unsupported {
+                what: if q.is_some() { "q" } else { "map" },
+                with: format!("`{}` with map `{map}`", $spec.name),
+                why: "it needs Ψ(−u) = Ψ(u)⁻¹ and dΨ⁻¹ to rounding: exp or cay",
+            }),
+        }
+    };
+}
+
+/// [`with_method`] and [`IMPLICIT_METHODS`].
+///
+/// # Errors
+/// As [`with_method`].
+pub fn with_implicit_method<P: Ambient, V: OnMethod<P>>(
+    spec: &MethodSpec,
+    on: V,
+) -> Result<V::Out, Error>
+where
+    P::Group: CatalogGroup,
+    PointOf<P>: Metric<Scalar = ScalarOf<P>>,
+    Exp: CoordinateMap<P::Group>,
+    Cay: CoordinateMap<P::Group>,
+{
+    match spec.info()?.name {
+        "midpoint-implicit" => Ok(on.call(Gauss(GAUSS2))),
+        "gauss4" => Ok(on.call(Gauss(GAUSS4))),
+        "gauss6" => Ok(on.call(Gauss(GAUSS6))),
+        "rkmk-gauss4" => {
+            let map = spec.map.as_deref().unwrap_or("exp");
+            each_map!(map, spec.q, psi => on.call(RkmkGauss::new(GAUSS4, psi)))
+        }
+        "rkmk-gauss4-symmetric" => {
+            each_odd_map!(spec, psi => on.call(RkmkGaussSymmetric::new(GAUSS4, psi)))
+        }
+        _ => with_method(spec, on),
+    }
+}
+
+/// [`with_implicit_method`] and [`BODY_METHODS`]: the free rigid body in ℝ³.
+///
+/// # Errors
+/// As [`with_method`].
+pub fn with_body_method<P: FreeBody + Split, V: OnMethod<P>>(
+    spec: &MethodSpec,
+    on: V,
+) -> Result<V::Out, Error>
+where
+    P::Group: CatalogGroup + LieAlgebra<Scalar = f64>,
+    PointOf<P>: Metric<Scalar = f64>,
+    Exp: CoordinateMap<P::Group>,
+    Cay: CoordinateMap<P::Group>,
+{
+    match spec.info()?.name {
+        "mr2" => Ok(on.call(MR2)),
+        "mr4" => Ok(on.call(MR4)),
+        "simo-wong" => Ok(on.call(SimoWong::TAN)),
+        "simo-wong-k1" => Ok(on.call(SimoWong::ONE)),
+        "buss4" => Ok(on.call(Buss4)),
+        "dmv2" => Ok(on.call(DMV2)),
+        "dmv4" => Ok(on.call(DMV4)),
+        "dmv6" => Ok(on.call(DMV6)),
+        "dmv8" => Ok(on.call(DMV8)),
+        "dmv10" => Ok(on.call(DMV10)),
+        "exact" => Ok(on.call(ExactMotion)),
+        "taylor4" => Ok(on.call(Taylor::<4>)),
+        "taylor6" => Ok(on.call(Taylor::<6>)),
+        "taylor8" => Ok(on.call(Taylor::<8>)),
+        "taylor10" => Ok(on.call(Taylor::<10>)),
+        "taylor12" => Ok(on.call(Taylor::<12>)),
+        "taylor16" => Ok(on.call(Taylor::<16>)),
+        _ => with_implicit_method(spec, on),
+    }
+}
+
+/// [`with_body_method`] and [`ATTITUDE_METHODS`]: the body with its attitude.
+///
+/// # Errors
+/// As [`with_method`].
+pub fn with_attitude_method<P: FreeBody + Split + Orthogonal, V: OnMethod<P>>(
+    spec: &MethodSpec,
+    on: V,
+) -> Result<V::Out, Error>
+where
+    P::Group: CatalogGroup + LieAlgebra<Scalar = f64>,
+    PointOf<P>: Metric<Scalar = f64>,
+    Exp: CoordinateMap<P::Group>,
+    Cay: CoordinateMap<P::Group>,
+{
+    match spec.info()?.name {
+        "rk4-qr" => Ok(on.call(Projected::new(Rk(tableau::RK4), Projection::Qr))),
+        "rk4-polar" => Ok(on.call(Projected::new(Rk(tableau::RK4), Projection::Polar))),
+        _ => with_body_method(spec, on),
+    }
+}
+
+/// [`with_body_method`] and [`LIE_POISSON_METHODS`]: the body in ℝ³ by its momentum.
+///
+/// # Errors
+/// As [`with_method`].
+pub fn with_momentum_method<P: FreeBody + Split + LiePoisson, V: OnMethod<P>>(
+    spec: &MethodSpec,
+    on: V,
+) -> Result<V::Out, Error>
+where
+    P::Group: CatalogGroup + LieAlgebra<Scalar = f64>,
+    PointOf<P>: Metric<Scalar = f64>,
+    Exp: CoordinateMap<P::Group>,
+    Cay: CoordinateMap<P::Group>,
+{
+    match spec.info()?.name {
+        "energy-casimir" => each_odd_map!(spec, psi => on.call(EnergyCasimir::new(psi))),
+        _ => with_body_method(spec, on),
+    }
+}
+
+/// [`with_implicit_method`], [`LIE_POISSON_METHODS`] and [`ISOSPECTRAL_METHODS`]: momenta as
+/// matrices.
+///
+/// # Errors
+/// As [`with_method`].
+pub fn with_lie_poisson_method<P: LiePoisson + Isospectral, V: OnMethod<P>>(
+    spec: &MethodSpec,
+    on: V,
+) -> Result<V::Out, Error> {
+    match spec.info()?.name {
+        "energy-casimir" => each_odd_map!(spec, psi => on.call(EnergyCasimir::new(psi))),
+        "isospectral2" => Ok(on.call(IsospectralGauss(GAUSS2))),
+        "isospectral4" => Ok(on.call(IsospectralGauss(GAUSS4))),
+        "isospectral6" => Ok(on.call(IsospectralGauss(GAUSS6))),
+        _ => with_implicit_method(spec, on),
+    }
+}

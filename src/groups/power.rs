@@ -1,0 +1,174 @@
+//! Gᴺ: N copies of one group, each operation copy by copy over one slice.
+
+use rand::Rng;
+
+use super::product::larger;
+use super::{Adjoint, LieAlgebra, LieGroup, Sample};
+use crate::error::{Error, StepError};
+use crate::scalar::Real;
+
+/// Gᴺ = G × … × G: many bodies, a chain of spins. Elements are boxed slices, made once; what is done
+/// with one copy is resolved at compile time, as for one copy alone.
+///
+/// Every coordinate map of the library that serves G serves Gᴺ; [`maps::Each`](crate::maps::Each)
+/// makes a map of one's own do so.
+///
+/// ```
+/// use lieflow::LieAlgebra;
+/// use lieflow::groups::{Power, So3};
+/// let group = Power::new(So3::<f64>::new(), 1000)?;
+/// assert_eq!((group.dim(), group.zero().len()), (3000, 1000));
+/// # Ok::<(), lieflow::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Power<G> {
+    group: G,
+    copies: usize,
+}
+
+impl<G> Power<G> {
+    /// Gᴺ with N = `copies`.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for N = 0.
+    pub fn new(group: G, copies: usize) -> Result<Self, Error> {
+        match copies {
+            0 => Err(Error::out_of_range("copies", 0.0, "at least 1")),
+            _ => Ok(Power { group, copies }),
+        }
+    }
+
+    /// G.
+    pub fn group(&self) -> &G {
+        &self.group
+    }
+
+    /// N.
+    pub fn copies(&self) -> usize {
+        self.copies
+    }
+
+    /// N values, made one by one.
+    pub(crate) fn fill<T>(&self, mut make: impl FnMut() -> T) -> Box<[T]> {
+        (0..self.copies).map(|_| make()).collect()
+    }
+}
+
+/// √Σx².
+fn norm2<S: Real>(parts: impl Iterator<Item = S>) -> S {
+    parts.fold(S::lit(0.0), |sum, x| sum + x * x).sqrt()
+}
+
+impl<G: LieAlgebra> LieAlgebra for Power<G> {
+    type Scalar = G::Scalar;
+    type Alg = Box<[G::Alg]>;
+
+    fn name(&self) -> String {
+        format!("{}^{}", self.group.name(), self.copies)
+    }
+    fn dim(&self) -> usize {
+        self.copies * self.group.dim()
+    }
+    fn zero(&self) -> Self::Alg {
+        self.fill(|| self.group.zero())
+    }
+    #[inline]
+    fn set_zero(&self, u: &mut Self::Alg) {
+        u.iter_mut().for_each(|u| self.group.set_zero(u));
+    }
+    #[inline]
+    fn axpy(&self, a: G::Scalar, x: &Self::Alg, y: &mut Self::Alg) {
+        for (x, y) in x.iter().zip(y) {
+            self.group.axpy(a, x, y);
+        }
+    }
+    #[inline]
+    fn bracket(&self, u: &Self::Alg, v: &Self::Alg, out: &mut Self::Alg) {
+        for ((u, v), out) in u.iter().zip(v).zip(out) {
+            self.group.bracket(u, v, out);
+        }
+    }
+    fn norm(&self, u: &Self::Alg) -> G::Scalar {
+        norm2(u.iter().map(|u| self.group.norm(u)))
+    }
+    fn is_finite(&self, u: &Self::Alg) -> bool {
+        u.iter().all(|u| self.group.is_finite(u))
+    }
+}
+
+impl<G: LieGroup> LieGroup for Power<G> {
+    type Elem = Box<[G::Elem]>;
+    type Vector = Box<[G::Vector]>;
+
+    fn identity(&self) -> Self::Elem {
+        self.fill(|| self.group.identity())
+    }
+    #[inline]
+    fn compose(&self, a: &Self::Elem, b: &Self::Elem, out: &mut Self::Elem) {
+        for ((a, b), out) in a.iter().zip(b).zip(out) {
+            self.group.compose(a, b, out);
+        }
+    }
+    #[inline]
+    fn apply(&self, g: &Self::Elem, x: &Self::Vector, y: &mut Self::Vector) {
+        for ((g, x), y) in g.iter().zip(x).zip(y) {
+            self.group.apply(g, x, y);
+        }
+    }
+    fn distance(&self, a: &Self::Elem, b: &Self::Elem) -> G::Scalar {
+        norm2(a.iter().zip(b).map(|(a, b)| self.group.distance(a, b)))
+    }
+    fn defect(&self, g: &Self::Elem) -> G::Scalar {
+        norm2(g.iter().map(|g| self.group.defect(g)))
+    }
+    /// Each copy by itself; returns the largest residual.
+    fn correct(&self, g: &mut Self::Elem, [s, t]: [&mut Self::Elem; 2]) -> G::Scalar {
+        let mut residual = G::Scalar::lit(0.0);
+        for ((g, s), t) in g.iter_mut().zip(s).zip(t) {
+            residual = larger(residual, self.group.correct(g, [s, t]));
+        }
+        residual
+    }
+}
+
+impl<G: Adjoint> Adjoint for Power<G> {
+    type Dual = Box<[G::Dual]>;
+
+    fn inverse(&self, g: &Self::Elem, out: &mut Self::Elem) -> Result<(), StepError> {
+        g.iter().zip(out).try_for_each(|(g, out)| self.group.inverse(g, out))
+    }
+    fn big_ad(&self, g: &Self::Elem, u: &Self::Alg, out: &mut Self::Alg) -> Result<(), StepError> {
+        let mut parts = g.iter().zip(u).zip(out);
+        parts.try_for_each(|((g, u), out)| self.group.big_ad(g, u, out))
+    }
+    fn coad_group(
+        &self,
+        g: &Self::Elem,
+        m: &Self::Dual,
+        out: &mut Self::Dual,
+    ) -> Result<(), StepError> {
+        let mut parts = g.iter().zip(m).zip(out);
+        parts.try_for_each(|((g, m), out)| self.group.coad_group(g, m, out))
+    }
+    fn coad(&self, u: &Self::Alg, m: &Self::Dual, out: &mut Self::Dual) {
+        for ((u, m), out) in u.iter().zip(m).zip(out) {
+            self.group.coad(u, m, out);
+        }
+    }
+    fn pair(&self, m: &Self::Dual, v: &Self::Alg) -> G::Scalar {
+        let parts = m.iter().zip(v).map(|(m, v)| self.group.pair(m, v));
+        parts.fold(G::Scalar::lit(0.0), |sum, x| sum + x)
+    }
+}
+
+impl<G: Sample> Sample for Power<G> {
+    fn sample_algebra<R: Rng + ?Sized>(&self, rng: &mut R, sigma: f64) -> Self::Alg {
+        self.fill(|| self.group.sample_algebra(rng, sigma))
+    }
+    fn sample_element<R: Rng + ?Sized>(&self, rng: &mut R) -> Self::Elem {
+        self.fill(|| self.group.sample_element(rng))
+    }
+    fn sample_vector<R: Rng + ?Sized>(&self, rng: &mut R) -> Self::Vector {
+        self.fill(|| self.group.sample_vector(rng))
+    }
+}

@@ -1,0 +1,151 @@
+//! A × B: pairs, each operation part by part.
+//!
+//! | | |
+//! |---|---|
+//! | \[(u, v), (u′, v′)\] | (\[u, u′\], \[v, v′\]) |
+//! | (a, b)·(a′, b′) | (aa′, bb′) |
+//! | (a, b)·(x, y) | (ax, by) |
+//! | ‖(u, v)‖ | (‖u‖² + ‖v‖²)^½ |
+
+use rand::Rng;
+
+use super::{Adjoint, LieAlgebra, LieGroup, Sample};
+use crate::error::StepError;
+use crate::scalar::Real;
+
+/// The product A × B of two groups, for systems that are made of two parts. Products nest, and every
+/// coordinate map of the library that serves A and B serves A × B; [`maps::Pair`](crate::maps::Pair)
+/// has a map of its own for each part. [`Power`](super::Power) is many copies of one group.
+///
+/// ```
+/// use lieflow::groups::{MatrixGroup, Product, So3};
+/// use lieflow::maps::Exp;
+/// use lieflow::{CoordinateMap, LieAlgebra};
+/// let group = Product(So3::new(), MatrixGroup::sp(4)?);
+/// assert_eq!((group.name().as_str(), group.dim()), ("SO(3) × Sp(4)", 13));
+/// let (r, s) = Exp.eval(&group, &group.zero())?;
+/// assert_eq!((r[(0, 0)], s[(0, 0)]), (1.0, 1.0));
+/// # Ok::<(), lieflow::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Product<A, B>(pub A, pub B);
+
+/// √(a² + b²).
+fn norm2<S: Real>(a: S, b: S) -> S {
+    (a * a + b * b).sqrt()
+}
+
+/// max(a, b); not a number where b is not.
+pub(crate) fn larger<S: Real>(a: S, b: S) -> S {
+    let [c] = (b - a).branch(0.0, || [a], || [b]);
+    c
+}
+
+impl<A: LieAlgebra, B: LieAlgebra<Scalar = A::Scalar>> LieAlgebra for Product<A, B> {
+    type Scalar = A::Scalar;
+    type Alg = (A::Alg, B::Alg);
+
+    fn name(&self) -> String {
+        format!("{} × {}", self.0.name(), self.1.name())
+    }
+    fn dim(&self) -> usize {
+        self.0.dim() + self.1.dim()
+    }
+    fn zero(&self) -> Self::Alg {
+        (self.0.zero(), self.1.zero())
+    }
+    #[inline]
+    fn set_zero(&self, u: &mut Self::Alg) {
+        self.0.set_zero(&mut u.0);
+        self.1.set_zero(&mut u.1);
+    }
+    #[inline]
+    fn axpy(&self, a: A::Scalar, x: &Self::Alg, y: &mut Self::Alg) {
+        self.0.axpy(a, &x.0, &mut y.0);
+        self.1.axpy(a, &x.1, &mut y.1);
+    }
+    #[inline]
+    fn bracket(&self, u: &Self::Alg, v: &Self::Alg, out: &mut Self::Alg) {
+        self.0.bracket(&u.0, &v.0, &mut out.0);
+        self.1.bracket(&u.1, &v.1, &mut out.1);
+    }
+    #[inline]
+    fn norm(&self, u: &Self::Alg) -> A::Scalar {
+        norm2(self.0.norm(&u.0), self.1.norm(&u.1))
+    }
+    #[inline]
+    fn is_finite(&self, u: &Self::Alg) -> bool {
+        self.0.is_finite(&u.0) && self.1.is_finite(&u.1)
+    }
+}
+
+impl<A: LieGroup, B: LieGroup<Scalar = A::Scalar>> LieGroup for Product<A, B> {
+    type Elem = (A::Elem, B::Elem);
+    type Vector = (A::Vector, B::Vector);
+
+    fn identity(&self) -> Self::Elem {
+        (self.0.identity(), self.1.identity())
+    }
+    #[inline]
+    fn compose(&self, a: &Self::Elem, b: &Self::Elem, out: &mut Self::Elem) {
+        self.0.compose(&a.0, &b.0, &mut out.0);
+        self.1.compose(&a.1, &b.1, &mut out.1);
+    }
+    #[inline]
+    fn apply(&self, g: &Self::Elem, x: &Self::Vector, y: &mut Self::Vector) {
+        self.0.apply(&g.0, &x.0, &mut y.0);
+        self.1.apply(&g.1, &x.1, &mut y.1);
+    }
+    fn distance(&self, a: &Self::Elem, b: &Self::Elem) -> A::Scalar {
+        norm2(self.0.distance(&a.0, &b.0), self.1.distance(&a.1, &b.1))
+    }
+    fn defect(&self, g: &Self::Elem) -> A::Scalar {
+        norm2(self.0.defect(&g.0), self.1.defect(&g.1))
+    }
+    /// Each part by itself; returns the larger residual.
+    fn correct(&self, g: &mut Self::Elem, [s, t]: [&mut Self::Elem; 2]) -> A::Scalar {
+        let first = self.0.correct(&mut g.0, [&mut s.0, &mut t.0]);
+        larger(first, self.1.correct(&mut g.1, [&mut s.1, &mut t.1]))
+    }
+}
+
+impl<A: Adjoint, B: Adjoint<Scalar = A::Scalar>> Adjoint for Product<A, B> {
+    type Dual = (A::Dual, B::Dual);
+
+    fn inverse(&self, g: &Self::Elem, out: &mut Self::Elem) -> Result<(), StepError> {
+        self.0.inverse(&g.0, &mut out.0)?;
+        self.1.inverse(&g.1, &mut out.1)
+    }
+    fn big_ad(&self, g: &Self::Elem, u: &Self::Alg, out: &mut Self::Alg) -> Result<(), StepError> {
+        self.0.big_ad(&g.0, &u.0, &mut out.0)?;
+        self.1.big_ad(&g.1, &u.1, &mut out.1)
+    }
+    fn coad_group(
+        &self,
+        g: &Self::Elem,
+        m: &Self::Dual,
+        out: &mut Self::Dual,
+    ) -> Result<(), StepError> {
+        self.0.coad_group(&g.0, &m.0, &mut out.0)?;
+        self.1.coad_group(&g.1, &m.1, &mut out.1)
+    }
+    fn coad(&self, u: &Self::Alg, m: &Self::Dual, out: &mut Self::Dual) {
+        self.0.coad(&u.0, &m.0, &mut out.0);
+        self.1.coad(&u.1, &m.1, &mut out.1);
+    }
+    fn pair(&self, m: &Self::Dual, v: &Self::Alg) -> A::Scalar {
+        self.0.pair(&m.0, &v.0) + self.1.pair(&m.1, &v.1)
+    }
+}
+
+impl<A: Sample, B: Sample<Scalar = A::Scalar>> Sample for Product<A, B> {
+    fn sample_algebra<R: Rng + ?Sized>(&self, rng: &mut R, sigma: f64) -> Self::Alg {
+        (self.0.sample_algebra(rng, sigma), self.1.sample_algebra(rng, sigma))
+    }
+    fn sample_element<R: Rng + ?Sized>(&self, rng: &mut R) -> Self::Elem {
+        (self.0.sample_element(rng), self.1.sample_element(rng))
+    }
+    fn sample_vector<R: Rng + ?Sized>(&self, rng: &mut R) -> Self::Vector {
+        (self.0.sample_vector(rng), self.1.sample_vector(rng))
+    }
+}

@@ -1,0 +1,217 @@
+//! SE(3), the motions of space: g = (R, x) moves a point p to Rp + x. Rotation first, everywhere.
+//!
+//! | | |
+//! |---|---|
+//! | u = (ω, v) ∈ se(3) | the 4×4 matrix \[ω̂ v; 0 0\] |
+//! | g = (R, x) | the 4×4 matrix \[R x; 0 1\] |
+//! | \[(ω, v), (ω′, v′)\] | (ω × ω′, ω × v′ + v × ω′) |
+//! | (R, x)(R′, x′) | (RR′, Rx′ + x) |
+//! | Ad_g (ω, v) | (Rω, Rv + x × Rω) |
+//! | (μ, π) ∈ se(3)*, ⟨(μ, π), (ω, v)⟩ | μ·ω + π·v |
+//! | Ad*_g (μ, π) | (Rᵀ(μ + π × x), Rᵀπ) |
+//! | ad*_(ω, v) (μ, π) | (μ × ω + π × v, π × ω) |
+//! | log (R, x) | (ω, dexp_ω⁻¹ x), ω = log R |
+//!
+//! The maps of SE(3) are in `maps/se3.rs` and `maps/exp/se3.rs`. The Casimirs of se(3)* are π·π and
+//! μ·π.
+
+use core::marker::PhantomData;
+
+use nalgebra::{Matrix3, Vector3};
+use rand::{Rng, RngExt};
+use rand_distr::StandardNormal;
+
+use super::{Adjoint, LieAlgebra, LieGroup, Sample, So3, apply3, cross};
+use crate::error::{Error, StepError};
+use crate::scalar::Real;
+use crate::so3;
+
+/// SE(3): elements of the algebra are (ω, v), of the group (R, x), of the dual (μ, π).
+///
+/// A twist's ω turns and its v moves; a momentum's μ is angular, its π linear (or, for a heavy top,
+/// the direction of gravity). [`LieGroup::apply`] moves a point of ℝ³.
+///
+/// ```
+/// use lieflow::CoordinateMap;
+/// use lieflow::groups::Se3;
+/// use lieflow::maps::Exp;
+/// use nalgebra::Vector3;
+/// // A quarter of a turn about e₃ that climbs by 1: a screw.
+/// let screw = (Vector3::new(0.0, 0.0, std::f64::consts::FRAC_PI_2), Vector3::new(0.0, 0.0, 1.0));
+/// let g = Exp.eval(&Se3::new(), &screw)?;
+/// assert!((g.0 * Vector3::x() + g.1 - Vector3::new(0.0, 1.0, 1.0)).norm() < 1e-15);
+/// let (omega, v) = Se3::new().log(&g)?;
+/// assert!((omega - screw.0).norm() + (v - screw.1).norm() < 1e-15);
+/// # Ok::<(), lieflow::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Se3<S = f64>(PhantomData<S>);
+
+impl<S> Se3<S> {
+    /// The group.
+    pub const fn new() -> Self {
+        Se3(PhantomData)
+    }
+}
+
+/// A pair of vectors: (ω, v), or (μ, π).
+type Pair<S> = (Vector3<S>, Vector3<S>);
+
+/// a + b.
+#[inline(always)]
+pub(crate) fn add3<S: Real>(a: &Vector3<S>, b: &Vector3<S>) -> Vector3<S> {
+    Vector3::new(a[0] + b[0], a[1] + b[1], a[2] + b[2])
+}
+
+/// a·b.
+#[inline(always)]
+fn dot3<S: Real>(a: &Vector3<S>, b: &Vector3<S>) -> S {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn is_finite3<S: Real>(a: &Vector3<S>) -> bool {
+    a[0].is_finite() && a[1].is_finite() && a[2].is_finite()
+}
+
+/// Both vectors, or that they are not finite.
+#[inline]
+pub(crate) fn finite_pair<S: Real>(u: &Pair<S>, what: &'static str) -> Result<(), StepError> {
+    match is_finite3(&u.0) && is_finite3(&u.1) {
+        true => Ok(()),
+        false => Err(StepError::NotFinite { what }),
+    }
+}
+
+impl<S: Real> LieAlgebra for Se3<S> {
+    type Scalar = S;
+    type Alg = (Vector3<S>, Vector3<S>);
+
+    fn name(&self) -> String {
+        "SE(3)".into()
+    }
+    fn dim(&self) -> usize {
+        6
+    }
+    #[inline]
+    fn zero(&self) -> Self::Alg {
+        let zero = So3::new().zero();
+        (zero, zero)
+    }
+    #[inline]
+    fn set_zero(&self, u: &mut Self::Alg) {
+        *u = self.zero();
+    }
+    #[inline]
+    fn axpy(&self, a: S, x: &Self::Alg, y: &mut Self::Alg) {
+        So3::new().axpy(a, &x.0, &mut y.0);
+        So3::new().axpy(a, &x.1, &mut y.1);
+    }
+    #[inline]
+    fn bracket(&self, u: &Self::Alg, v: &Self::Alg, out: &mut Self::Alg) {
+        *out = (cross(&u.0, &v.0), add3(&cross(&u.0, &v.1), &cross(&u.1, &v.0)));
+    }
+    /// (|ω|² + |v|²)^½: a radian counts as a unit of length.
+    #[inline]
+    fn norm(&self, u: &Self::Alg) -> S {
+        (dot3(&u.0, &u.0) + dot3(&u.1, &u.1)).sqrt()
+    }
+    #[inline]
+    fn is_finite(&self, u: &Self::Alg) -> bool {
+        is_finite3(&u.0) && is_finite3(&u.1)
+    }
+}
+
+impl<S: Real> LieGroup for Se3<S> {
+    type Elem = (Matrix3<S>, Vector3<S>);
+    /// A point p of space, the vector (p, 1) of the 4×4 matrices.
+    type Vector = Vector3<S>;
+
+    fn identity(&self) -> Self::Elem {
+        (So3::new().identity(), So3::new().zero())
+    }
+    #[inline]
+    fn compose(&self, a: &Self::Elem, b: &Self::Elem, out: &mut Self::Elem) {
+        So3::new().compose(&a.0, &b.0, &mut out.0);
+        out.1 = add3(&apply3(&a.0, &b.1), &a.1);
+    }
+    #[inline]
+    fn apply(&self, g: &Self::Elem, x: &Vector3<S>, y: &mut Vector3<S>) {
+        *y = add3(&apply3(&g.0, x), &g.1);
+    }
+    fn distance(&self, a: &Self::Elem, b: &Self::Elem) -> S {
+        let turned = So3::new().distance(&a.0, &b.0);
+        let mut moved = a.1;
+        So3::new().axpy(S::lit(-1.0), &b.1, &mut moved);
+        (turned * turned + dot3(&moved, &moved)).sqrt()
+    }
+    /// ‖RᵀR − 𝟙‖.
+    fn defect(&self, g: &Self::Elem) -> S {
+        So3::new().defect(&g.0)
+    }
+    /// R alone can leave the group.
+    #[inline]
+    fn correct(&self, g: &mut Self::Elem, [a, b]: [&mut Self::Elem; 2]) -> S {
+        So3::new().correct(&mut g.0, [&mut a.0, &mut b.0])
+    }
+}
+
+impl<S: Real> Adjoint for Se3<S> {
+    type Dual = (Vector3<S>, Vector3<S>);
+
+    fn inverse(&self, g: &Self::Elem, out: &mut Self::Elem) -> Result<(), StepError> {
+        out.0 = g.0.transpose();
+        let x = apply3(&out.0, &g.1);
+        out.1 = Vector3::new(-x[0], -x[1], -x[2]);
+        if is_finite3(&out.1) { Ok(()) } else { Err(StepError::NotFinite { what: "g⁻¹" }) }
+    }
+    #[inline]
+    fn big_ad(&self, g: &Self::Elem, u: &Self::Alg, out: &mut Self::Alg) -> Result<(), StepError> {
+        let omega = apply3(&g.0, &u.0);
+        *out = (omega, add3(&apply3(&g.0, &u.1), &cross(&g.1, &omega)));
+        finite_pair(out, "Ad")
+    }
+    #[inline]
+    fn coad_group(
+        &self,
+        g: &Self::Elem,
+        m: &Self::Dual,
+        out: &mut Self::Dual,
+    ) -> Result<(), StepError> {
+        let inverse = g.0.transpose();
+        *out = (apply3(&inverse, &add3(&m.0, &cross(&m.1, &g.1))), apply3(&inverse, &m.1));
+        finite_pair(out, "Ad*")
+    }
+    #[inline]
+    fn coad(&self, u: &Self::Alg, m: &Self::Dual, out: &mut Self::Dual) {
+        *out = (add3(&cross(&m.0, &u.0), &cross(&m.1, &u.1)), cross(&m.1, &u.0));
+    }
+    #[inline]
+    fn pair(&self, m: &Self::Dual, v: &Self::Alg) -> S {
+        dot3(&m.0, &v.0) + dot3(&m.1, &v.1)
+    }
+}
+
+impl Se3<f64> {
+    /// log(g): the twist u with exp(u) = g and |ω| ≤ π; at |ω| = π as [`so3::log`] chooses.
+    ///
+    /// # Errors
+    /// As [`so3::log`], and [`Error::Map`] when the result is not finite.
+    pub fn log(&self, g: &(Matrix3<f64>, Vector3<f64>)) -> Result<Pair<f64>, Error> {
+        let omega = so3::log(&g.0)?;
+        Ok((omega, so3::dexpinv(&omega, &g.1)?))
+    }
+}
+
+impl Sample for Se3<f64> {
+    /// Independent Gaussian components.
+    fn sample_algebra<R: Rng + ?Sized>(&self, rng: &mut R, sigma: f64) -> Pair<f64> {
+        (So3::new().sample_algebra(rng, sigma), So3::new().sample_algebra(rng, sigma))
+    }
+    /// R by Haar's measure, x Gaussian of standard deviation 1.
+    fn sample_element<R: Rng + ?Sized>(&self, rng: &mut R) -> (Matrix3<f64>, Vector3<f64>) {
+        (So3::new().sample_element(rng), self.sample_vector(rng))
+    }
+    fn sample_vector<R: Rng + ?Sized>(&self, rng: &mut R) -> Vector3<f64> {
+        Vector3::from_fn(|_, _| rng.sample(StandardNormal))
+    }
+}

@@ -1,0 +1,178 @@
+//! Implicit Runge–Kutta–Munthe-Kaas on Gauss tableaus, and its time-symmetric version.
+//!
+//! | | stages | step |
+//! |---|---|---|
+//! | [`RkmkGauss`] | u_i = h Σ a_ij K_j, K_i = dΨ⁻¹_{u_i} f(t + c_i h, λ_p(u_i)) | λ_p(h Σ b_i K_i) |
+//! | [`RkmkGaussSymmetric`] | q = λ_p(−θ), θ = −½h Σ b_j K_j, u_i = θ + h Σ a_ij K_j, K_i = dΨ⁻¹_{u_i} f(t + c_i h, λ_q(u_i)) | λ_q(−θ) |
+//!
+//! The first has its chart at the start of the step; with two stages or more it is not symmetric,
+//! because the step back has it at the other end. The second has it in the middle, and is symmetric
+//! for maps with Ψ(−u) = Ψ(u)⁻¹.
+//!
+//! Order 2S. Preserves: the group, and what the action leaves invariant. The stages are found by
+//! fixed-point iteration, which converges while h times the Lipschitz constant of f stays below
+//! about 1. Cost: an iteration has S times f, Ψ and dΨ⁻¹ (and one Ψ more in the middle), 5 to 20
+//! iterations.
+//! Source: A. Zanna, K. Engø & H. Munthe-Kaas, Adjoint and selfadjoint Lie-group methods, BIT 41
+//! (2001).
+
+use super::gauss::ImplicitTableau;
+use super::newton::Progress;
+use super::{Method, Step, Symmetric};
+use crate::chart::ChartStore;
+use crate::error::{Error, StepError};
+use crate::groups::LieAlgebra;
+use crate::maps::{Cay, CoordinateMap, Exp};
+use crate::problems::{AlgOf, PointOf, Problem, ScalarOf};
+use crate::scalar::Real;
+
+/// Implicit RKMK with its chart at the start of the step.
+#[derive(Clone, Copy, Debug)]
+pub struct RkmkGauss<Psi, const S: usize> {
+    tableau: ImplicitTableau<S>,
+    psi: Psi,
+}
+
+impl<Psi, const S: usize> RkmkGauss<Psi, S> {
+    /// The method.
+    pub const fn new(tableau: ImplicitTableau<S>, psi: Psi) -> Self {
+        RkmkGauss { tableau, psi }
+    }
+}
+
+/// A map with Ψ(−u) = Ψ(u)⁻¹.
+pub trait OddMap {}
+impl OddMap for Exp {}
+impl OddMap for Cay {}
+
+/// Implicit RKMK with its chart in the middle of the step. The coordinates of the second kind do
+/// not serve, since Ψ(−u) is not Ψ(u)⁻¹ there:
+///
+/// ```compile_fail
+/// use lieflow::methods::{GAUSS4, RkmkGaussSymmetric};
+/// use lieflow::maps::CCSK123;
+/// let _ = RkmkGaussSymmetric::new(GAUSS4, CCSK123);
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct RkmkGaussSymmetric<Psi, const S: usize> {
+    tableau: ImplicitTableau<S>,
+    psi: Psi,
+}
+
+impl<Psi: OddMap, const S: usize> RkmkGaussSymmetric<Psi, S> {
+    /// The method.
+    pub const fn new(tableau: ImplicitTableau<S>, psi: Psi) -> Self {
+        RkmkGaussSymmetric { tableau, psi }
+    }
+}
+
+impl<Psi: OddMap, const S: usize> Symmetric for RkmkGaussSymmetric<Psi, S> {}
+
+/// Stages and the chart.
+#[allow(missing_debug_implementations)] // the parts belong to the problem's types
+pub struct RkmkGaussWork<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> {
+    k: [AlgOf<P>; S],
+    u: AlgOf<P>,
+    old: AlgOf<P>,
+    middle: AlgOf<P>,
+    q: PointOf<P>,
+    y: PointOf<P>,
+    chart: ChartStore<P, Psi>,
+}
+
+impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> RkmkGaussWork<P, Psi, S> {
+    fn new(problem: &P, psi: &Psi, like: &PointOf<P>) -> Result<Self, Error> {
+        let alg = problem.group();
+        Ok(RkmkGaussWork {
+            k: core::array::from_fn(|_| alg.zero()),
+            u: alg.zero(),
+            old: alg.zero(),
+            middle: alg.zero(),
+            q: like.clone(),
+            y: like.clone(),
+            chart: ChartStore::new(problem, psi, like)?,
+        })
+    }
+
+    /// self.y ← the step from p.
+    fn advance(
+        &mut self,
+        name: &'static str,
+        (tab, psi, centred): (&ImplicitTableau<S>, &Psi, bool),
+        problem: &P,
+        Step { n, t, h }: Step<ScalarOf<P>>,
+        p: &PointOf<P>,
+    ) -> Result<(), StepError> {
+        let (alg, lit) = (problem.group(), ScalarOf::<P>::lit);
+        let RkmkGaussWork { k, u, old, middle, q, y, chart } = self;
+        for i in 0..S {
+            chart.around(problem, psi, n, p).field(t + h * lit(tab.c[i]), &mut k[i]);
+            if !alg.is_finite(&k[i]) {
+                return Err(StepError::NonFiniteRhs { stage: i + 1 });
+            }
+        }
+        let mut progress = Progress::new();
+        loop {
+            if centred {
+                alg.combine(h * lit(0.5), &tab.b, k, middle); // −θ
+                chart.around(problem, psi, n, p).lambda(middle, q)?;
+            }
+            let mut around = chart.around(problem, psi, n, if centred { &*q } else { p });
+            let (mut change, mut size) = (lit(0.0), lit(1.0));
+            for i in 0..S {
+                alg.combine(h, &tab.a[i], k, u);
+                if centred {
+                    alg.axpy(lit(-1.0), middle, u);
+                }
+                alg.set_zero(old);
+                alg.axpy(lit(1.0), &k[i], old);
+                around.pullback(t + h * lit(tab.c[i]), u, &mut k[i])?;
+                alg.axpy(lit(-1.0), &k[i], old);
+                change += h.abs() * alg.norm(old);
+                size += h.abs() * alg.norm(&k[i]);
+            }
+            if progress.done(name, change / size)? {
+                break;
+            }
+        }
+        if centred {
+            alg.combine(h * lit(0.5), &tab.b, k, middle);
+            chart.around(problem, psi, n, p).lambda(middle, q)?;
+            chart.around(problem, psi, n, q).lambda(middle, y)
+        } else {
+            alg.combine(h, &tab.b, k, u);
+            chart.around(problem, psi, n, p).lambda(u, y)
+        }
+    }
+}
+
+macro_rules! method {
+    ($name:ident, $label:literal, $centred:literal, $($bound:tt)*) => {
+        impl<P: Problem, Psi: CoordinateMap<P::Group> $($bound)*, const S: usize> Method<P>
+            for $name<Psi, S>
+        {
+            type Work = RkmkGaussWork<P, Psi, S>;
+
+            fn order(&self, problem: &P) -> usize {
+                self.tableau.order.min(self.psi.order(problem.group()))
+            }
+            fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
+                RkmkGaussWork::new(problem, &self.psi, like)
+            }
+            #[inline]
+            fn step(
+                &self,
+                problem: &P,
+                step: Step<ScalarOf<P>>,
+                p: &mut PointOf<P>,
+                w: &mut Self::Work,
+            ) -> Result<(), StepError> {
+                w.advance($label, (&self.tableau, &self.psi, $centred), problem, step, p)?;
+                core::mem::swap(p, &mut w.y);
+                Ok(())
+            }
+        }
+    };
+}
+method!(RkmkGauss, "rkmk-gauss", false,);
+method!(RkmkGaussSymmetric, "rkmk-gauss-symmetric", true, + OddMap);

@@ -1,0 +1,115 @@
+//! Iterations of the implicit methods: Newton in ℝ³, and the stopping rule of fixed-point iterations.
+
+use nalgebra::{Matrix3, Vector3};
+
+use crate::error::StepError;
+use crate::groups::cross;
+use crate::scalar::Real;
+
+/// Newton iterations before it is given up. Within the stated limits 3 to 6 are made.
+pub(super) const NEWTON_MAX: u32 = 20;
+/// Fixed-point iterations before it is given up: a contraction by 0.8 reaches rounding.
+pub(super) const FIXED_POINT_MAX: u32 = 200;
+
+/// The unit roundoff of S.
+#[inline(always)]
+pub(super) fn eps<S: Real>() -> f64 {
+    let wide = S::lit(1.0) + S::lit(1e-10) == S::lit(1.0);
+    if wide { f64::from(f32::EPSILON) } else { f64::EPSILON }
+}
+
+fn dot<S: Real>(a: &Vector3<S>, b: &Vector3<S>) -> S {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// x with A x = b by Cramer's rule; the columns of A are `a`. Not finite for a singular A.
+#[inline(always)]
+fn solve3<S: Real>(a: &Matrix3<S>, b: &Vector3<S>) -> Vector3<S> {
+    let col = |j| Vector3::new(a[(0, j)], a[(1, j)], a[(2, j)]);
+    let (p, q, r) = (col(0), col(1), col(2));
+    let qr = cross(&q, &r);
+    let s = S::lit(1.0) / dot(&p, &qr);
+    Vector3::new(s * dot(b, &qr), s * dot(b, &cross(&r, &p)), s * dot(b, &cross(&p, &q)))
+}
+
+/// Newton's iteration for F(x) = 0 from `x`; `f` returns F and F'. It ends with the correction that
+/// is below the root of the rounding, which leaves an error at rounding.
+///
+/// # Errors
+/// [`StepError::NewtonDidNotConverge`] after [`NEWTON_MAX`] iterations or when it leaves the range.
+#[inline(always)]
+pub(super) fn newton3<S: Real>(
+    method: &'static str,
+    mut x: Vector3<S>,
+    scale: S,
+    mut f: impl FnMut(&Vector3<S>) -> (Vector3<S>, Matrix3<S>),
+) -> Result<Vector3<S>, StepError> {
+    let near = eps::<S>().sqrt() / 64.0;
+    let mut size = S::lit(f64::INFINITY);
+    let mut iterations = 0;
+    while iterations < NEWTON_MAX {
+        iterations += 1;
+        let (residual, jacobian) = f(&x);
+        let d = solve3(&jacobian, &residual);
+        x = Vector3::new(x[0] - d[0], x[1] - d[1], x[2] - d[2]);
+        size = dot(&d, &d).sqrt();
+        if size.all_below(near) || (size / scale).all_below(near) {
+            return Ok(x);
+        }
+        if !size.is_finite() {
+            break;
+        }
+    }
+    Err(StepError::NewtonDidNotConverge {
+        method,
+        iterations,
+        residual_log10: log10_above(size / scale),
+    })
+}
+
+/// The least integer d with x < 10^d; 308 where x is not finite.
+#[cold]
+fn log10_above<S: Real>(x: S) -> i32 {
+    (-17..308).find(|&d| x.all_below(10f64.powi(d))).unwrap_or(308)
+}
+
+/// Watches a fixed-point iteration: it has converged when a change falls to rounding, or when near
+/// rounding the changes no longer shrink.
+pub(super) struct Progress<S> {
+    last: S,
+    iterations: u32,
+}
+
+impl<S: Real> Progress<S> {
+    #[inline]
+    pub(super) fn new() -> Self {
+        Progress { last: S::lit(f64::INFINITY), iterations: 0 }
+    }
+
+    /// Is it done after a change of this size, relative to the size of what is sought?
+    ///
+    /// # Errors
+    /// [`StepError::FixedPointDidNotConverge`] after [`FIXED_POINT_MAX`] iterations, or for a
+    /// change that is not finite.
+    #[inline]
+    pub(super) fn done(&mut self, method: &'static str, change: S) -> Result<bool, StepError> {
+        self.iterations += 1;
+        let tiny = 0.25 * eps::<S>();
+        let stalled = change.all_below(STALL * eps::<S>()) && !(change / self.last).all_below(0.9);
+        if change.all_below(tiny) || stalled {
+            return Ok(true);
+        }
+        if !change.is_finite() || self.iterations >= FIXED_POINT_MAX {
+            return Err(StepError::FixedPointDidNotConverge {
+                method,
+                iterations: self.iterations,
+                change_log10: log10_above(change),
+            });
+        }
+        self.last = change;
+        Ok(false)
+    }
+}
+
+/// Changes below this many units of rounding may count as stalled.
+const STALL: f64 = 64.0;

@@ -1,0 +1,67 @@
+//! What a problem may know about itself beyond f: each capability is a trait, and a method that
+//! needs one does not compile for a problem without it.
+//!
+//! | capability | what is known | methods |
+//! |---|---|---|
+//! | [`Split`] | F = Σ F_k with exact flows | [`Splitting`](crate::methods::Splitting) |
+//! | [`LiePoisson`] | ṁ = ad*_{∇H(m)} m with a discrete gradient | [`EnergyCasimir`](crate::methods::EnergyCasimir) |
+//! | [`Isospectral`] | Ẇ = \[B(W), W\], W in a matrix algebra | [`IsospectralGauss`](crate::methods::IsospectralGauss) |
+//! | [`Orthogonal`] | where the orthogonal matrix in y is | [`Projected`](crate::methods::Projected) |
+//! | [`FreeBody`](super::FreeBody) | a free rigid body in ℝ³ | Simo–Wong, Buss, DMV, exact, Taylor |
+
+use faer::Mat;
+
+use super::{AlgOf, Ambient, PointOf, Problem, ScalarOf};
+use crate::error::StepError;
+use crate::groups::{AlgebraMatrix, MatrixGroup};
+
+/// F = F₁ + … + F_K, where the flow of each F_k is known exactly.
+pub trait Split: Ambient {
+    /// K.
+    const PARTS: usize;
+    /// y ← φ_t(y), the exact flow of F_k over the time t; `part` = k − 1 < [`PARTS`](Self::PARTS).
+    fn flow(&self, part: usize, t: ScalarOf<Self>, y: &mut PointOf<Self>);
+}
+
+/// A Lie–Poisson system on 𝔤*: ṁ = ad*_{∇H(m)} m, in the convention of
+/// [`Coadjoint`](crate::actions::Coadjoint), f(m) = −∇H(m).
+pub trait LiePoisson: Ambient {
+    /// H(m).
+    fn hamiltonian(&self, m: &PointOf<Self>) -> ScalarOf<Self>;
+    /// ξ ← ∇̄H(a, b) ∈ 𝔤, a symmetric discrete gradient: ⟨b − a, ξ⟩ = H(b) − H(a) and
+    /// ∇̄H(m, m) = ∇H(m). For quadratic H it is ∇H((a + b)/2).
+    fn discrete_gradient(
+        &self,
+        a: &PointOf<Self>,
+        b: &PointOf<Self>,
+        xi: &mut AlgOf<Self>,
+        work: &mut Self::Work,
+    );
+}
+
+/// An isospectral system Ẇ = \[B(W), W\] on the Lie algebra of a quadratic group, with
+/// B(W) = f(W) ∈ 𝔤 and the point W.
+pub trait Isospectral:
+    Problem<Group = MatrixGroup, Action: crate::Action<MatrixGroup, Point = Mat<f64>>>
+{
+    /// b ← B(W).
+    fn generator(&self, w: &Mat<f64>, b: &mut AlgebraMatrix, work: &mut Self::Work);
+}
+
+/// How a matrix near SO(n) is brought back to it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Projection {
+    /// The factor Q of g = QR with positive diagonal R, by Gram–Schmidt twice.
+    Qr,
+    /// The orthogonal polar factor, the nearest orthogonal matrix, by Newton–Schulz.
+    Polar,
+}
+
+/// A problem whose point holds an orthogonal matrix in a linear space.
+pub trait Orthogonal: Ambient {
+    /// Bring the matrix in y back to the group; the rest of y stays.
+    ///
+    /// # Errors
+    /// [`StepError::OutsideChart`] when it is too far from every rotation.
+    fn project(&self, how: Projection, y: &mut PointOf<Self>) -> Result<(), StepError>;
+}

@@ -1,0 +1,88 @@
+//! (sin x, cos x) without a branch, so that a loop over many x runs in lanes.
+//!
+//! x = kπ/2 + r, |r| ≤ π/4: π/2 in three parts of 33, 33 and 53 bits (W. J. Cody, W. Waite), of which
+//! the first two times k are exact; r = r₁ + r₂ keeps its relative accuracy next to multiples of π/2.
+//! sin r = r − r³/6 + … and cos r = 1 − r²/2 + … by polynomials in r² that interpolate in Chebyshev
+//! nodes: relative error 1.3e-17 of sin, 5e-19 of cos. Together below 1 ε.
+
+use core::f64::consts::FRAC_2_PI;
+
+/// Up to this |x| the products with k are exact.
+pub(crate) const SIN_COS_MAX: f64 = 1e6;
+
+/// 1.5·2⁵²: adding it rounds to an integer, which then stands in the last bits.
+const ROUND: f64 = 6755399441055744.0;
+/// π/2.
+const HALF_PI: [f64; 3] = [1.5707963267341256, 6.077100506303966e-11, 2.0222662487959506e-21];
+/// (sin √z/√z − 1)/z.
+#[rustfmt::skip]
+const SIN: [f64; 6] = [
+    -0.16666666666666666, 0.008333333333330925, -0.00019841269836722418,
+    2.755731608381636e-06, -2.5051127944014188e-08, 1.5917848524808262e-10,
+];
+/// (cos √z − 1 + z/2)/z².
+#[rustfmt::skip]
+const COS: [f64; 6] = [
+    0.041666666666666664, -0.0013888888888887382, 2.480158729874307e-05,
+    -2.7557317260008837e-07, 2.0876143827993133e-09, -1.1382456778061306e-11,
+];
+
+/// a·b + c; fused where the instruction set has it, which the caller knows.
+#[inline(always)]
+pub(crate) fn muladd<const FUSED: bool>(a: f64, b: f64, c: f64) -> f64 {
+    if FUSED { a.mul_add(b, c) } else { a * b + c }
+}
+
+/// (sin x, cos x) for |x| ≤ [`SIN_COS_MAX`]; finite nonsense beyond.
+#[inline(always)]
+pub(crate) fn sin_cos<const FUSED: bool>(x: f64) -> (f64, f64) {
+    let shifted = x * FRAC_2_PI + ROUND;
+    let (quarter, k) = (shifted.to_bits(), shifted - ROUND);
+    // a − kP₂ − kP₃ with the rounding of the first difference kept.
+    let a = x - k * HALF_PI[0];
+    let p = k * HALF_PI[1];
+    let b = a - p;
+    let q = k * HALF_PI[2] - ((a - b) - p);
+    let r = b - q;
+    let low = (b - r) - q;
+
+    let z = r * r;
+    let (z2, poly) = (z * z, |c: &[f64; 6]| {
+        let pair = |i: usize| muladd::<FUSED>(c[i + 1], z, c[i]);
+        let z2 = z * z;
+        muladd::<FUSED>(muladd::<FUSED>(pair(4), z2, pair(2)), z2, pair(0))
+    });
+    let sin = r + muladd::<FUSED>(poly(&SIN), r * z, low - 0.5 * z * low);
+    let half = 0.5 * z;
+    let lead = 1.0 - half;
+    let cos = lead + (((1.0 - lead) - half) + (z2 * poly(&COS) - r * low));
+
+    let (s, c) = if quarter & 1 == 0 { (sin, cos) } else { (cos, sin) };
+    let sign = |bit: u64, x: f64| f64::from_bits(x.to_bits() ^ ((bit & 2) << 62));
+    (sign(quarter, s), sign(quarter.wrapping_add(1), c))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Within 1 ε of the platform's, itself within ½ ε; next to multiples of π/2 as well.
+    #[test]
+    fn agrees_with_the_platform() {
+        let mut x = 0.37f64;
+        for k in 0..200_000u32 {
+            x = (x * 997.13 + 0.17).fract();
+            let size = [1.0, 10.0, 1e3, 1e6][k as usize % 4];
+            let mut at = size * (2.0 * x - 1.0);
+            if k % 3 == 0 {
+                let quarter = core::f64::consts::FRAC_PI_2 * (at / 1.6).round();
+                at = quarter + quarter * f64::EPSILON * f64::from(k % 7);
+            }
+            for (s, c) in [sin_cos::<false>(at), sin_cos::<true>(at)] {
+                let (sin, cos) = at.sin_cos();
+                assert!((s - sin).abs() <= f64::EPSILON * sin.abs(), "sin {at:?}: {s:?} {sin:?}");
+                assert!((c - cos).abs() <= f64::EPSILON * cos.abs(), "cos {at:?}: {c:?} {cos:?}");
+            }
+        }
+    }
+}

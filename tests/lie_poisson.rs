@@ -1,0 +1,243 @@
+//! Lie–Poisson methods: energy and Casimirs, order, composition, spectrum, and the energy's behaviour
+//! over long times. On so(3) and on Manakov's body on so(5).
+
+use faer::Mat;
+use lieflow::catalog::{
+    MethodSpec, Needs, OnMethod, all_methods, with_attitude_method, with_body_method,
+    with_implicit_method, with_lie_poisson_method, with_method, with_momentum_method,
+};
+use lieflow::groups::Sample;
+use lieflow::maps::{Cay, Exp};
+use lieflow::methods::{
+    Composition, EnergyCasimir, GAUSS2, GAUSS4, GAUSS6, IsospectralGauss, KAHAN_LI6, SUZUKI4,
+    SimoWong,
+};
+use lieflow::problems::{
+    Exact, LiePoisson, RigidBody, RigidBodyAttitude, RigidBodyN, RigidBodyNAttitude, RigidBodyState,
+};
+use lieflow::{Error, Method, Problem, SaveAt, Step, StepError, TimeGrid, integrate};
+use nalgebra::{Matrix3, Vector3};
+use rand::SeedableRng;
+use rand_pcg::Pcg64;
+
+/// Manakov's body on so(5), its mass moments nothing special.
+fn body() -> (RigidBodyN, Mat<f64>) {
+    let body = RigidBodyN::manakov(&[0.4, 0.9, 1.3, 2.0, 2.8]).expect("a body");
+    let m = body.group().sample_algebra(&mut Pcg64::seed_from_u64(5), 0.7).into_mat();
+    (body, m)
+}
+
+/// The Casimirs of so(5): the moduli of the eigenvalues, in order.
+fn spectrum(m: &Mat<f64>) -> Vec<f64> {
+    let mut found: Vec<f64> = m.singular_values().expect("singular values");
+    found.sort_by(f64::total_cmp);
+    found
+}
+
+fn distance(a: &Mat<f64>, b: &Mat<f64>) -> f64 {
+    (a - b).norm_l2()
+}
+
+fn run<M: Method<RigidBodyN>>(method: &M, end: f64, steps: u64) -> Mat<f64> {
+    let (body, mut m) = body();
+    let grid = TimeGrid::with_steps([0.0, end], steps).expect("a grid");
+    integrate(&body, method, &grid, &SaveAt::Ends, &mut m, |_, _| {}).expect("a run");
+    m
+}
+
+/// The last three pairwise slopes lie within 0.15 of p, on a grid fixed in advance.
+fn check_order<M: Method<RigidBodyN>>(name: &str, method: &M, first: u64, reference: &Mat<f64>) {
+    let p = method.order(&body().0) as f64;
+    let grid = [4u64, 6, 9, 13].map(|n| n * first / 4);
+    let errors = grid.map(|n| distance(&run(method, 2.0, n), reference));
+    let slopes: Vec<f64> = grid
+        .windows(2)
+        .zip(errors.windows(2))
+        .map(|(n, e)| (e[0] / e[1]).ln() / (n[1] as f64 / n[0] as f64).ln())
+        .collect();
+    println!("{name:28} errors {errors:?} slopes {slopes:.2?}");
+    assert!(slopes.iter().all(|s| (s - p).abs() < 0.15), "{name}: {slopes:.3?}, expected {p}");
+}
+
+#[test]
+fn order_on_so5() {
+    let reference = run(&IsospectralGauss(GAUSS6), 2.0, 800);
+    // The reference is not its own judge: another method of order 6 is there to rounding.
+    let other = run(&Composition::new(EnergyCasimir::new(Exp), KAHAN_LI6), 2.0, 600);
+    assert!(distance(&reference, &other) < 1e-12, "{:e}", distance(&reference, &other));
+    check_order("energy-casimir exp", &EnergyCasimir::new(Exp), 32, &reference);
+    check_order("energy-casimir cay", &EnergyCasimir::new(Cay), 32, &reference);
+    let composed = Composition::new(EnergyCasimir::new(Cay), SUZUKI4);
+    check_order("energy-casimir suzuki4", &composed, 16, &reference);
+    let composed = Composition::new(EnergyCasimir::new(Cay), KAHAN_LI6);
+    check_order("energy-casimir kahan-li6", &composed, 4, &reference);
+    check_order("isospectral2", &IsospectralGauss(GAUSS2), 32, &reference);
+    check_order("isospectral4", &IsospectralGauss(GAUSS4), 24, &reference);
+    check_order("isospectral6", &IsospectralGauss(GAUSS6), 8, &reference);
+}
+
+/// Largest relative energy deviation in the first and in the second half of T = 300, and the
+/// deviation of the spectrum at the end.
+fn long_run<M: Method<RigidBodyN>>(name: &str, method: &M) -> ([f64; 2], f64) {
+    let (body, mut m) = body();
+    let (energy, casimirs) = (body.hamiltonian(&m), spectrum(&m));
+    let grid = TimeGrid::new([0.0, 300.0], 0.1).expect("a grid");
+    let mut worst = [0.0f64; 2];
+    integrate(&body, method, &grid, &SaveAt::Every(1), &mut m, |t, m| {
+        let half = &mut worst[usize::from(t > 150.0)];
+        *half = half.max((body.hamiltonian(m) / energy - 1.0).abs());
+    })
+    .expect("a run");
+    let gap = spectrum(&m).iter().zip(&casimirs).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    let gap = gap / casimirs[casimirs.len() - 1];
+    println!("{name:28} energy {worst:?} spectrum {gap:.1e}");
+    (worst, gap)
+}
+
+#[test]
+fn energy_and_spectrum_over_3000_steps() {
+    /// Spectrum and, where it is kept, energy.
+    const KEPT: f64 = 1e-13;
+    macro_rules! check {
+        ($($method:expr, $energy:expr;)*) => {$({
+            let ([first, second], gap) = long_run(stringify!($method), &$method);
+            assert!(gap < KEPT, "spectrum: {gap:e}");
+            // Kept, or bounded: the second half is no worse than the first.
+            assert!(second < $energy && second < KEPT.max(1.5 * first), "{first:e} {second:e}");
+            assert_eq!(first < KEPT, $energy == KEPT, "{}", stringify!($method));
+        })*};
+    }
+    check! {
+        EnergyCasimir::new(Cay), KEPT;
+        EnergyCasimir::new(Exp), KEPT;
+        Composition::new(EnergyCasimir::new(Cay), KAHAN_LI6), KEPT;
+        IsospectralGauss(GAUSS2), 1e-2;
+        IsospectralGauss(GAUSS4), 1e-5;
+        IsospectralGauss(GAUSS6), 1e-8;
+    }
+}
+
+/// On so(3) the energy–Casimir method with cay is Simo and Wong's with k = 1, step by step.
+#[test]
+fn on_so3_it_is_simo_and_wong() {
+    let body = RigidBody::<f64>::new([1.0, 2.0, 3.0]).expect("a body");
+    let start = Vector3::new(0.9, 1.0, 2.1);
+    let grid = TimeGrid::new([0.0, 5.0], 0.1).expect("a grid");
+    let (mut a, mut b, mut c) = (start, start, start);
+    let mut other = Vec::new();
+    integrate(&body, &SimoWong::ONE, &grid, &SaveAt::Every(1), &mut a, |_, m| other.push(*m))
+        .expect("a run");
+    let mut found = other.iter();
+    integrate(&body, &EnergyCasimir::new(Cay), &grid, &SaveAt::Every(1), &mut b, |_, m| {
+        let gap = found.next().map_or(f64::NAN, |x| (x - m).norm());
+        assert!(gap < 1e-13, "{gap:e}");
+    })
+    .expect("a run");
+    let tan = integrate(&body, &SimoWong::TAN, &grid, &SaveAt::Ends, &mut c, |_, _| {});
+    tan.expect("a run");
+    // exp(hξ) is Simo and Wong's with their own k.
+    let mut d = start;
+    integrate(&body, &EnergyCasimir::new(Exp), &grid, &SaveAt::Ends, &mut d, |_, _| {})
+        .expect("a run");
+    assert!((c - d).norm() < 1e-13 && (a - c).norm() > 1e-6);
+}
+
+/// Also on the layer over matrices, against the exact motion; a step beyond the contraction fails.
+#[test]
+fn matrices_at_n_3_and_steps_too_large() {
+    let inertia = [1.0, 2.0, 3.0];
+    let body = RigidBodyN::from_principal(inertia).expect("a body");
+    let m = Vector3::new(0.9, 1.0, 2.1);
+    let hat = |m: &Vector3<f64>| {
+        let h = lieflow::groups::hat(m);
+        Mat::from_fn(3, 3, |i, j| h[(i, j)])
+    };
+    let exact = Exact::new(inertia, m.into(), Matrix3::identity()).expect("a body");
+    let mut w = hat(&m);
+    let grid = TimeGrid::with_steps([0.0, 5.0], 100).expect("a grid");
+    integrate(&body, &IsospectralGauss(GAUSS6), &grid, &SaveAt::Ends, &mut w, |_, _| {})
+        .expect("a run");
+    let gap = distance(&w, &hat(&exact.momentum_body(5.0).expect("a time")));
+    assert!(gap < 1e-10, "{gap:e}");
+    macro_rules! fails {
+        ($($method:expr),*) => {$({
+            let (mut y, method) = (w.clone(), $method);
+            let mut work = method.work(&body, &y).expect("it fits");
+            let step = Step { n: 0, t: 0.0, h: 50.0 };
+            let error = method.step(&body, step, &mut y, &mut work).expect_err("too large");
+            assert!(matches!(error, StepError::FixedPointDidNotConverge { .. }), "{error}");
+            assert_eq!(y, w, "y is as it was");
+        })*};
+    }
+    fails!(EnergyCasimir::new(Exp), IsospectralGauss(GAUSS2), IsospectralGauss(GAUSS6));
+}
+
+/// One step, and the order.
+struct Take<'a, P: Problem>(&'a P, lieflow::problems::PointOf<P>);
+
+impl<P: Problem> OnMethod<P> for Take<'_, P>
+where
+    P::Group: lieflow::LieAlgebra<Scalar = f64>,
+{
+    type Out = usize;
+    fn call<M: Method<P>>(self, method: M) -> usize {
+        let Take(problem, mut y) = self;
+        let mut work = method.work(problem, &y).expect("it fits");
+        method.step(problem, Step { n: 0, t: 0.0, h: 0.01 }, &mut y, &mut work).expect("a step");
+        method.order(problem)
+    }
+}
+
+/// Each model of the body serves the methods that fit it, and names the others in a clear error.
+#[test]
+fn the_catalog_knows_which_method_fits() {
+    let inertia = [1.0, 2.0, 3.0];
+    let m = Vector3::new(0.9, 1.0, 2.1);
+    let momentum = RigidBody::<f64>::new(inertia).expect("a body");
+    let attitude = RigidBodyAttitude::<f64>::new(inertia, m.into()).expect("a body");
+    let both = RigidBodyState::<f64>::new(inertia).expect("a body");
+    let state = both.state(m.into(), Matrix3::identity()).expect("a state");
+    let (big, w) = body();
+    let big_attitude = RigidBodyNAttitude::new(big.clone(), w.clone()).expect("a body");
+    let identity = lieflow::LieGroup::identity(big_attitude.group());
+    // What each kind of problem offers, as the catalog's documentation says: no more and no less
+    // than that is served.
+    use Needs::{Attitude, Body, Field, Isospectral, LiePoisson, Norm};
+    let offers: [&[Needs]; 6] = [
+        &[Field, Norm, Body, LiePoisson],
+        &[Field, Norm, Body, Attitude],
+        &[Field, Norm, Body, Attitude],
+        &[Field, Norm, Body],
+        &[Field, Norm, LiePoisson, Isospectral],
+        &[Field, Norm],
+    ];
+    for (info, needs) in all_methods() {
+        let spec = MethodSpec::new(info.name, None);
+        let answers = [
+            with_momentum_method(&spec, Take(&momentum, m)),
+            with_attitude_method(&spec, Take(&attitude, Matrix3::identity())),
+            with_attitude_method(&spec, Take(&both, state)),
+            with_body_method(&spec, Take(&both, state)),
+            with_lie_poisson_method(&spec, Take(&big, w.clone())),
+            with_implicit_method(&spec, Take(&big_attitude, identity.clone())),
+        ];
+        for (offers, answer) in offers.iter().zip(answers) {
+            match answer {
+                Ok(order) => {
+                    assert!(info.order.is_none_or(|p| p == order), "{}: {order}", info.name);
+                    assert!(offers.contains(&needs), "{}: served without {needs:?}", info.name);
+                }
+                Err(error @ Error::Unsupported { what, .. }) => {
+                    assert_eq!(what, info.name);
+                    assert!(error.to_string().contains(needs.describe()), "{error}");
+                    assert!(!offers.contains(&needs), "{}: refused with {needs:?}", info.name);
+                }
+                Err(other) => panic!("{}: {other}", info.name),
+            }
+        }
+    }
+    let refused = with_method(&MethodSpec::new("mr4", None), Take(&big, w));
+    let text = refused.expect_err("it does not fit").to_string();
+    assert!(text.contains("mr4") && text.contains("a free rigid body"), "{text}");
+    assert!(matches!(MethodSpec::new("mr9", None).info(), Err(Error::UnknownName { .. })));
+}

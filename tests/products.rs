@@ -1,0 +1,226 @@
+//! Products and powers of groups: orders on coupled systems, the parts agree with each group alone,
+//! every map of the catalog by its name, actions put together and taken back to M part by part.
+
+mod support;
+
+use lieflow::actions::{Coadjoint, Each, LeftTranslation, Linear, Pair};
+use lieflow::catalog::CatalogGroup;
+use lieflow::groups::{Adjoint, LieGroup, MatrixGroup, Power, Product, Sample, So3};
+use lieflow::maps::{self, CCSK, CCSK123, CCSK321, Cay, CoordinateMap, Exp, Pade22};
+use lieflow::methods::commutator_free::CF4;
+use lieflow::methods::crouch_grossman::CG3;
+use lieflow::methods::low_storage::LS4;
+use lieflow::methods::magnus::{CayleyMagnus4, Magnus4, TripleProduct};
+use lieflow::methods::one_bracket::MAGNUS43;
+use lieflow::methods::{CommutatorFree, LowStorage, Method, OneBracket, Rkmk, tableau::RK4};
+use lieflow::problems::LinearEquation;
+use lieflow::{Action, Error, SaveAt, TimeGrid, integrate};
+use nalgebra::Vector3;
+use rand::SeedableRng;
+use rand_pcg::Pcg64;
+use support::EPS;
+use support::orders::{Flow, Reference, measure, reference, wave};
+use support::points::Points;
+use support::represent::Represent;
+
+type So3Sp4 = Product<So3, MatrixGroup>;
+
+fn product() -> So3Sp4 {
+    Product(So3::new(), MatrixGroup::sp(4).unwrap())
+}
+fn power(n: usize) -> Power<So3> {
+    Power::new(So3::new(), n).unwrap()
+}
+
+/// The order that the method claims is the one it has.
+fn has_its_order<G: Represent, A: Points<G>, M: Method<Flow<G, A>>>(
+    name: &str,
+    flow: &Flow<G, A>,
+    method: &M,
+    reference: &Reference<Flow<G, A>>,
+) where
+    Cay: CoordinateMap<G>,
+{
+    let measured = measure(flow, method, reference).and_then(|e| e.check());
+    measured.unwrap_or_else(|reason| panic!("{name}: {reason}"));
+}
+
+/// Methods of every family, on a field that couples the parts.
+fn orders<G: Represent + CatalogGroup, A: Points<G>>(flow: Flow<G, A>)
+where
+    Exp: CoordinateMap<G>,
+    Cay: CoordinateMap<G>,
+    Pade22: CoordinateMap<G>,
+{
+    let exact = reference(&flow, flow.start(7));
+    has_its_order("rkmk4 exp", &flow, &Rkmk::new(RK4, Exp), &exact);
+    has_its_order("rkmk4 cay", &flow, &Rkmk::new(RK4, Cay), &exact);
+    has_its_order("rkmk4 pade22", &flow, &Rkmk::new(RK4, Pade22), &exact);
+    has_its_order("cf4", &flow, &CommutatorFree(CF4), &exact);
+    has_its_order("cg3", &flow, &CommutatorFree(CG3), &exact);
+    has_its_order("ls4", &flow, &LowStorage(LS4), &exact);
+    has_its_order("magnus43", &flow, &OneBracket(MAGNUS43), &exact);
+}
+
+#[test]
+fn orders_on_a_product() {
+    orders(Flow::new(product(), LeftTranslation, wave(7, 0.25, 11)));
+    orders(Flow::new(product(), Linear, wave(7, 0.6, 12)));
+}
+
+#[test]
+fn orders_on_a_power() {
+    orders(Flow::new(power(3), LeftTranslation, wave(9, 0.25, 13)));
+    orders(Flow::new(power(3), Coadjoint, wave(9, 0.25, 14)));
+}
+
+#[test]
+fn orders_with_an_action_for_each_part() {
+    orders(Flow::new(product(), Pair(Coadjoint, LeftTranslation), wave(7, 0.5, 15)));
+    orders(Flow::new(power(3), Each(Linear), wave(9, 1.0, 16)));
+}
+
+#[test]
+fn ccsk_and_a_pair_of_maps_have_their_orders() {
+    let flow = Flow::new(product(), LeftTranslation, wave(7, 0.25, 17));
+    let exact = reference(&flow, flow.start(8));
+    has_its_order("ccsk", &flow, &Rkmk::new(RK4, CCSK), &exact);
+    has_its_order("ccsk123", &flow, &Rkmk::new(RK4, CCSK123), &exact);
+    has_its_order("exp, cay", &flow, &Rkmk::new(RK4, maps::Pair(Exp, Cay)), &exact);
+}
+
+/// The maps of the catalog have types on products: its methods run there by name.
+#[test]
+fn products_are_catalog_groups() {
+    fn every_map_serves<G: CatalogGroup + TripleProduct + Adjoint>(_: &G) {}
+    every_map_serves(&product());
+    every_map_serves(&power(2));
+    every_map_serves(&Product(power(2), product()));
+}
+
+/// A map without a formula on one of the parts is refused, with the part's reason.
+#[test]
+fn a_part_can_refuse_a_map() {
+    let group = Product(So3::<f64>::new(), MatrixGroup::indefinite(3, 1).unwrap());
+    assert!(matches!(CCSK123.at(&group), Err(Error::Unsupported { .. })));
+    assert!(matches!(CCSK321.at(&group), Err(Error::Unsupported { .. })));
+    let mixed = maps::Pair(CCSK123, Exp);
+    assert!(mixed.at(&group).is_ok());
+    assert_eq!((name(&mixed, &group), name(&maps::Pair(Exp, Exp), &group)), ("pair", "exp"));
+    assert!(matches!(Power::new(So3::<f64>::new(), 0), Err(Error::OutOfRange { .. })));
+}
+
+/// What happens in one part is bit for bit what happens in that group alone.
+#[test]
+fn parts_are_the_groups_alone() {
+    let mut rng = Pcg64::seed_from_u64(3);
+    let (group, so3, sp4) = (product(), So3::<f64>::new(), MatrixGroup::sp(4).unwrap());
+    for _ in 0..100 {
+        let u = group.sample_algebra(&mut rng, 0.5);
+        let v = group.sample_algebra(&mut rng, 1.0);
+        assert_eq!(Exp.eval(&group, &u), Ok((eval(&Exp, &so3, &u.0), eval(&Exp, &sp4, &u.1))));
+        let pair = maps::Pair(Cay, Exp);
+        assert_eq!(pair.eval(&group, &u), Ok((eval(&Cay, &so3, &u.0), eval(&Exp, &sp4, &u.1))));
+        let w = pair.eval_dpsi_inv(&group, &u, &v).unwrap();
+        assert_eq!(w.0, Cay.eval_dpsi_inv(&so3, &u.0, &v.0).unwrap());
+        assert_eq!(w.1, Exp.eval_dpsi_inv(&sp4, &u.1, &v.1).unwrap());
+    }
+    let group = power(5);
+    let u = group.sample_algebra(&mut rng, 1.0);
+    let g = Exp.eval(&group, &u).unwrap();
+    for (u, g) in u.iter().zip(&g) {
+        assert_eq!(*g, eval(&Exp, &so3, u));
+    }
+}
+
+fn name<G: LieGroup, Psi: CoordinateMap<G>>(psi: &Psi, _: &G) -> &'static str {
+    psi.name()
+}
+fn eval<G: LieGroup, Psi: CoordinateMap<G>>(psi: &Psi, group: &G, u: &G::Alg) -> G::Elem {
+    psi.eval(group, u).unwrap()
+}
+
+/// ⟨ad*_u m, v⟩ = ⟨m, [u, v]⟩ and ⟨Ad*_g m, v⟩ = ⟨m, Ad_g v⟩ hold for the sums over the parts.
+#[test]
+fn duals_pair_over_all_parts() {
+    fn check<G: Adjoint<Scalar = f64> + Sample>(group: &G, m: G::Dual, rng: &mut Pcg64) {
+        let [u, v] = [(); 2].map(|()| group.sample_algebra(rng, 1.0));
+        let g = group.sample_element(rng);
+        let (mut moved, mut w) = (m.clone(), group.zero());
+        let bound = 256.0 * EPS * group.dim() as f64;
+        group.coad(&u, &m, &mut moved);
+        group.bracket(&u, &v, &mut w);
+        assert!((group.pair(&moved, &v) - group.pair(&m, &w)).abs() < bound);
+        group.coad_group(&g, &m, &mut moved).unwrap();
+        group.big_ad(&g, &v, &mut w).unwrap();
+        let size = (1.0 + group.distance(&g, &group.identity())).powi(4);
+        assert!((group.pair(&moved, &v) - group.pair(&m, &w)).abs() < bound * size);
+    }
+    let mut rng = Pcg64::seed_from_u64(5);
+    for _ in 0..20 {
+        let m = Points::<So3Sp4>::draw(&Coadjoint, &product(), &mut rng);
+        check(&product(), m, &mut rng);
+        let m = Points::<Power<So3>>::draw(&Coadjoint, &power(4), &mut rng);
+        check(&power(4), m, &mut rng);
+    }
+}
+
+/// Magnus methods, in both coordinates, follow each spin's own equation.
+#[test]
+fn linear_equations_on_a_power() {
+    let turning = |i: usize, t: f64| Vector3::new((t * i as f64).cos(), 0.3 * i as f64, t);
+    let field = move |t: f64, v: &mut Box<[Vector3<f64>]>| {
+        v.iter_mut().enumerate().for_each(|(i, v)| *v = turning(i, t));
+    };
+    let spins = LinearEquation::new(power(4), Linear, field);
+    let grid = TimeGrid::new([0.0, 1.0], 0.125).unwrap();
+    let start = Vector3::new(0.0, 0.6, 0.8);
+    for cayley in [false, true] {
+        let mut x: Box<[Vector3<f64>]> = vec![start; 4].into();
+        match cayley {
+            false => integrate(&spins, &Magnus4, &grid, &SaveAt::Ends, &mut x, |_, _| {}),
+            true => integrate(&spins, &CayleyMagnus4, &grid, &SaveAt::Ends, &mut x, |_, _| {}),
+        }
+        .unwrap();
+        for (i, x) in x.iter().enumerate() {
+            let alone = LinearEquation::new(So3::new(), Linear, |t: f64, v: &mut Vector3<f64>| {
+                *v = turning(i, t);
+            });
+            let mut y = start;
+            match cayley {
+                false => integrate(&alone, &Magnus4, &grid, &SaveAt::Ends, &mut y, |_, _| {}),
+                true => integrate(&alone, &CayleyMagnus4, &grid, &SaveAt::Ends, &mut y, |_, _| {}),
+            }
+            .unwrap();
+            assert_eq!(*x, y, "spin {i}");
+        }
+    }
+}
+
+/// Each part is taken back to its group, and the largest residual is what is reported.
+#[test]
+fn drift_is_corrected_part_by_part() {
+    let mut rng = Pcg64::seed_from_u64(9);
+    let group = power(3);
+    let mut g = group.sample_element(&mut rng);
+    let exact = g.clone();
+    g[0][(0, 0)] += 1e-9;
+    g[2][(1, 2)] += 1e-8;
+    let mut work = LeftTranslation.work(&group);
+    let residual = LeftTranslation.restore(&group, &mut g, &mut work).unwrap();
+    assert!((1e-9..4e-8).contains(&residual), "{residual:e}");
+    assert!(group.defect(&g) < 16.0 * EPS, "{:e}", group.defect(&g));
+    assert!(group.distance(&g, &exact) < 2e-8);
+
+    // A part that has nothing to restore leaves the other's residual.
+    let group = Product(So3::<f64>::new(), So3::new());
+    let action = Pair(LeftTranslation, Linear);
+    let mut p = (group.0.sample_element(&mut rng), Vector3::new(1.0, 2.0, 3.0));
+    p.0[(0, 0)] += 1e-8;
+    let mut work = action.work(&group);
+    let residual = action.restore(&group, &mut p, &mut work).unwrap();
+    assert!(residual > 1e-9 && group.0.defect(&p.0) < 16.0 * EPS);
+    let vectors = Pair(Linear, Linear);
+    let mut p = (p.1, p.1);
+    assert_eq!(vectors.restore(&group, &mut p, &mut vectors.work(&group)), None);
+}
