@@ -266,7 +266,7 @@ fn exp_runs_along_one_parameter_groups() {
 fn every_branch_of_exp_is_reached() {
     for (n, ladder) in [
         (5, [(1e-9, 2), (1e-4, 4), (1e-2, 8), (0.1, 12), (0.6, 18), (4.0, 18), (40.0, 18)]),
-        (17, [(1e-9, 8), (1e-3, 8), (1e-2, 8), (0.1, 12), (0.6, 18), (4.0, 18), (40.0, 18)]),
+        (17, [(1e-9, 5), (1e-3, 5), (1e-2, 5), (0.1, 9), (0.6, 13), (4.0, 17), (40.0, 17)]),
     ] {
         let group = so(n);
         let mut rng = Pcg64::seed_from_u64(9);

@@ -17,7 +17,7 @@ use crate::error::StepError;
 /// exp of many n×n matrices that lie entry by entry: entry (i, j) of matrix m of `count` stands at
 /// `(j·n + i)·count + m`.
 ///
-/// The fast way is n ≤ 6, where a register holds one entry of 8, 4 or 2 matrices (AVX-512, AVX2, the
+/// The fast way is n ≤ 8, where a register holds one entry of 8, 4 or 2 matrices (AVX-512, AVX2, the
 /// baseline; chosen at run time): the Taylor polynomials of [`Exponential`] with a number of
 /// squarings for each matrix, and the same accuracy. Matrices that need more care, triangular or with
 /// a norm beyond 16 where nothing is known of them, and larger n go through [`Exponential`] one by one.
@@ -81,6 +81,8 @@ impl ExponentialBatch {
                 4 => self.arch.dispatch(Batch::<4> { u, skew, first, count, out }),
                 5 => self.arch.dispatch(Batch::<5> { u, skew, first, count, out }),
                 6 => self.arch.dispatch(Batch::<6> { u, skew, first, count, out }),
+                7 => self.arch.dispatch(Batch::<7> { u, skew, first, count, out }),
+                8 => self.arch.dispatch(Batch::<8> { u, skew, first, count, out }),
                 _ => first..count,
             };
             for m in careful.clone() {

@@ -151,7 +151,7 @@ impl Expm {
 
     /// out ← a Taylor polynomial at 2⁻ˢa, where that is as good as Padé: its degree, s. A solve
     /// with n right-hand sides costs more than the two or three squarings that it saves.
-    pub(super) fn taylor(&mut self, norm: f64, out: &mut Mat<f64>) -> Option<(usize, u32)> {
+    fn taylor(&mut self, norm: f64, out: &mut Mat<f64>) -> Option<(usize, u32)> {
         if norm > 1e3 {
             return None;
         }

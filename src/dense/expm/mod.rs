@@ -2,10 +2,10 @@
 //!
 //! | | n ≤ 16 | larger n |
 //! |---|---|---|
-//! | so(n) | Taylor with few products, one kernel ([`taylor`], [`small`]) | the same in whole matrices; from 160 on cos/sin split, half products ([`skew`]) |
+//! | so(n) | Taylor with few products, one kernel ([`taylor`], [`small`]) | cos/sin split, half products ([`skew`]) |
 //! | any matrix | the same; in doubt as for larger n | Taylor or Padé by cost, balancing, power norms ([`general`]) |
 //! | Padé asked for | Padé 3, 5, 7, 9, 13 ([`pade`]) | the same |
-//! | many matrices | n ≤ 6: one matrix a lane ([`batch`], [`lanes`]) | one by one |
+//! | many matrices | n ≤ 8: one matrix a lane ([`batch`], [`lanes`]) | one by one |
 //! | complex | Taylor by the norms of powers ([`complex`]) | the same |
 //!
 //! The result of squarings on so(n) is put back on the group by a residual-form Newton–Schulz step.

@@ -21,9 +21,6 @@ use crate::dense::ops::{
     half_mul, half_mul_add, mul, norm1, orthogonalise, scaled_sum, scaled_sums,
 };
 
-/// Below this n half products save less than the product that a Taylor polynomial saves.
-const SPLIT_FROM: usize = 160;
-
 const THETA_5: f64 = 0.0092;
 const THETA_9: f64 = 0.186;
 const THETA_13: f64 = 0.755;
@@ -65,13 +62,6 @@ const CS17: Pair<9> = [
 impl Expm {
     /// out ← exp(x) for skew x of 1-norm `norm`.
     pub(super) fn exp_skew(&mut self, x: &Mat<f64>, norm: f64, out: &mut Mat<f64>) {
-        if x.nrows() < SPLIT_FROM {
-            self.a.copy_from(x);
-            if let Some((degree, squarings)) = self.taylor(norm, out) {
-                self.rotate_back(Kind::Taylor, degree, squarings, out);
-                return;
-            }
-        }
         let Expm { a: b, a2: b2, a4: b3, a6: b4, u: c, v: s, t, .. } = self;
         let u = x.as_ref();
         half_mul(b, u, u, 1.0);
