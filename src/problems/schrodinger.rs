@@ -30,7 +30,7 @@ pub type Schrodinger<F> = LinearEquation<MatrixGroup, Linear, F>;
 /// // A π pulse on resonance, in the rotating frame: all of level 0 goes to level 1.
 /// let pulse = schrodinger(2, |_, i, j| if i == j { [0.0, 0.0] } else { [0.5, 0.0] })?;
 /// let mut psi = amplitudes(&[[1.0, 0.0], [0.0, 0.0]])?;
-/// let grid = TimeGrid::new([0.0, std::f64::consts::PI], 0.1)?;
+/// let grid = TimeGrid::with_steps([0.0, std::f64::consts::PI], 8)?;
 /// integrate(&pulse, &Magnus4, &grid, &SaveAt::Ends, &mut psi, |_, _| {})?;
 /// assert!((populations(&psi)[1] - 1.0).abs() < 1e-13);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
