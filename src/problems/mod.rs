@@ -13,6 +13,7 @@
 //! | equations of linear type, Magnus | any | [`LinearEquation`] |
 //! | Hill, Mathieu, Floquet; beam lines | Sp(2m); translation | [`hill`], [`mathieu`], [`floquet`], [`beam`] |
 //! | Riccati | Sp(2m); [`Lagrangian`](crate::actions::Lagrangian) | [`LinearEquation`] |
+//! | Schrödinger's equation, n levels | U(n) ⊂ SO(2n); vectors | [`schrodinger`](fn@schrodinger) |
 //! | charged particle | SO(3,1); vectors | [`ChargedParticle`] |
 //!
 //! To add a problem: one file with an `impl` of [`Problem`], one line here.
@@ -20,6 +21,7 @@
 pub mod beam;
 mod capability;
 mod euler;
+mod fallible;
 mod heavy_top;
 pub mod inertia;
 mod invariants;
@@ -30,12 +32,14 @@ mod lyapunov;
 mod oja;
 mod periodic;
 mod rigid_body;
+mod schrodinger;
 mod space;
 mod spheres;
 mod torque;
 
 pub use capability::{Isospectral, LiePoisson, Orthogonal, Projection, Split};
 pub use euler::{Euler, EulerGroup, FromTheBody, Hamiltonian, Kinetic};
+pub use fallible::{Fallible, InAlgebra, TryProblem};
 pub use heavy_top::HeavyTop;
 pub use invariants::{Invariant, Invariants, Kept};
 pub use isospectral::{IsospectralFlow, toda_lattice};
@@ -48,6 +52,7 @@ pub use rigid_body::{
     BodyFrame, BodyState, Exact, Frame, FreeBody, RigidBody, RigidBodyAttitude, RigidBodyN,
     RigidBodyNAttitude, RigidBodyState, manakov_integrals,
 };
+pub use schrodinger::{Schrodinger, amplitudes, populations, schrodinger};
 pub use space::LinearSpace;
 pub use spheres::{SphericalPendulum, SpinChain};
 pub use torque::{BodyTorque, Motion, SpaceTorque, Torque, TorqueBody};
@@ -101,7 +106,8 @@ pub trait Problem {
     /// Scratch for [`f`](Self::f); the only call that allocates.
     fn work(&self) -> Self::Work;
     /// v ← f(t, y) ∈ 𝔤. A field that has no value at (t, y) returns a number that is not finite;
-    /// the step then fails with [`StepError::NonFiniteRhs`](crate::StepError::NonFiniteRhs).
+    /// the step then fails with [`StepError::NonFiniteRhs`](crate::StepError::NonFiniteRhs). One with
+    /// errors of its own is a [`TryProblem`].
     fn f(&self, t: ScalarOf<Self>, y: &PointOf<Self>, v: &mut AlgOf<Self>, work: &mut Self::Work);
 }
 
