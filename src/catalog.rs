@@ -564,7 +564,7 @@ mod embedded;
 mod lists;
 mod special;
 
-pub use embedded::{Doubled, OnEmbedded, with_embedded_method};
+pub use embedded::{Doubled, OnEmbedded, with_embedded_method, with_embedded_pair};
 pub use lists::{
     ATTITUDE_METHODS, BODY_METHODS, IMPLICIT_METHODS, ISOSPECTRAL_METHODS, LIE_POISSON_METHODS,
 };

@@ -14,11 +14,11 @@
 //!
 //! | symbol | here |
 //! |---|---|
-//! | 𝔤, G | [`groups`]: [`LieAlgebra`], [`LieGroup`]; [`So3`](groups::So3), [`MatrixGroup`](groups::MatrixGroup) |
+//! | 𝔤, G | [`groups`]: [`LieAlgebra`], [`LieGroup`]; [`So3`](groups::So3), [`Se3`](groups::Se3), [`MatrixGroup`](groups::MatrixGroup), [`Product`](groups::Product), [`Power`](groups::Power) |
 //! | Ψ, dΨ⁻¹ | [`maps`]: [`CoordinateMap`]; [`Exp`](maps::Exp), [`Cay`](maps::Cay), [`CCSK123`](maps::CCSK123), [`CCSK321`](maps::CCSK321) |
-//! | Λ, M | [`actions`]: [`Action`]; left translation, coadjoint, linear |
+//! | Λ, M | [`actions`]: [`Action`]; left translation, coadjoint, linear, conjugation |
 //! | λ_p, f̃ | [`chart`] |
-//! | f : M → 𝔤 | [`problems`]: [`Problem`]; the rigid body |
+//! | f : M → 𝔤 | [`problems`]: [`Problem`]; rigid bodies, tops, Lie–Poisson, isospectral and other flows |
 //! | one step | [`methods`]: [`Method`]; [`Rkmk`](methods::Rkmk), [`Rk`](methods::Rk) |
 //! | many steps | [`integrate()`], [`TimeGrid`], [`SaveAt`] |
 //!

@@ -1,15 +1,20 @@
-//! A step on a product, a power or SE(3) allocates nothing, and neither does taking it back to M.
+//! A step on a product, a power, SE(3) or of a problem allocates nothing, nor does taking it back to M.
 #![allow(unsafe_code)] // the counting allocator
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
-use lieflow::actions::{Coadjoint, Each, LeftTranslation, Linear, Pair};
+use faer::{Mat, mat};
+use lieflow::actions::{Coadjoint, Conjugation, Each, Lagrangian, LeftTranslation, Linear, Pair};
 use lieflow::groups::{LieGroup, MatrixGroup, Power, Product, Sample, Se3, So3};
 use lieflow::maps::{CCSK, Cay, Ccsk, Exp, Pade22};
 use lieflow::methods::{CommutatorFree, Rkmk, commutator_free::CF4, tableau::RK4};
-use lieflow::problems::LinearEquation;
+use lieflow::problems::{
+    BodyTorque, ChargedParticle, Euler, HeavyTop, IsospectralFlow, Kinetic, LinearEquation, Motion,
+    Oja, SphericalPendulum, SpinChain, TorqueBody, toda_lattice,
+};
 use lieflow::{Action, CoordinateMap, LieAlgebra, Method, Problem, Step};
+use nalgebra::{Matrix3, Vector3};
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
 
@@ -99,4 +104,39 @@ fn products_powers_and_motions() {
     let motions = Se3::<f64>::new();
     check(&motions, LeftTranslation, motions.identity());
     check(&motions, Coadjoint, motions.sample_algebra(&mut rng, 1.0));
+}
+
+#[test]
+fn problems() {
+    let rkmk4 = Rkmk::new(RK4, Exp);
+    macro_rules! none {
+        ($problem:expr, $y:expr) => {
+            assert_eq!(steps_allocate(&$problem, &rkmk4, &$y), 0, stringify!($problem))
+        };
+    }
+    let v = |x: f64| Vector3::new(x, 0.5, -0.3);
+    let pair = (v(0.2), v(1.0));
+    let top = HeavyTop::new([1.0, 2.0, 2.5], [0.1, 0.2, 0.3]).expect("a top").problem();
+    none!(top, pair);
+    let kirchhoff = Kinetic(|m: &(Vector3<f64>, Vector3<f64>), u: &mut (_, _)| *u = *m);
+    let euler = Euler::new(Se3::<f64>::new(), kirchhoff);
+    none!(euler, pair);
+    none!(euler.with_group(), (Se3::<f64>::new().identity(), pair));
+    let damping = BodyTorque(|at: &Motion| -at.omega_body);
+    let body = TorqueBody::new([1.0, 2.0, 2.5], damping).expect("a body");
+    none!(body, (Matrix3::identity(), v(1.0)));
+    none!(SphericalPendulum::new(1.0).expect("a pendulum"), pair);
+    let chain = SpinChain::new(50).expect("a chain").with_damping(0.1).expect("a chain");
+    none!(chain, chain.spins(|i| v(i as f64)).expect("spins"));
+
+    let l = toda_lattice(&[0.0, 0.1, 0.2], &[0.3, 0.1, 0.2]).expect("a lattice");
+    none!(IsospectralFlow::toda(3).expect("a flow"), l);
+    none!(IsospectralFlow::double_bracket(&[1.0, 2.0, 3.0]).expect("a flow"), l);
+    none!(Oja::new(l.clone(), 2).expect("a flow"), mat![[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]]);
+    let particle = ChargedParticle::new(1.0, |_, _: &_| (v(0.1), v(0.2))).expect("a particle");
+    none!(particle, particle.four_velocity([0.1, 0.2, 0.3]).expect("a velocity"));
+    let sp4 = MatrixGroup::sp(4).expect("a group");
+    check(&sp4, Lagrangian, Mat::identity(2, 2));
+    let gl3 = MatrixGroup::gl(3).expect("a group");
+    check(&gl3, Conjugation, l);
 }

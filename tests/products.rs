@@ -4,7 +4,7 @@
 mod support;
 
 use lieflow::actions::{Coadjoint, Each, LeftTranslation, Linear, Pair};
-use lieflow::catalog::CatalogGroup;
+use lieflow::catalog::{CatalogGroup, MethodSpec, OnMethod, with_method};
 use lieflow::groups::{Adjoint, LieGroup, MatrixGroup, Power, Product, Sample, So3};
 use lieflow::maps::{self, CCSK, CCSK123, CCSK321, Cay, CoordinateMap, Exp, Pade22};
 use lieflow::methods::commutator_free::CF4;
@@ -13,7 +13,7 @@ use lieflow::methods::low_storage::LS4;
 use lieflow::methods::magnus::{CayleyMagnus4, Magnus4, TripleProduct};
 use lieflow::methods::one_bracket::MAGNUS43;
 use lieflow::methods::{CommutatorFree, LowStorage, Method, OneBracket, Rkmk, tableau::RK4};
-use lieflow::problems::LinearEquation;
+use lieflow::problems::{BodyTorque, LinearEquation, Motion, PointOf, Problem, TorqueBody};
 use lieflow::{Action, Error, SaveAt, TimeGrid, integrate};
 use nalgebra::Vector3;
 use rand::SeedableRng;
@@ -96,6 +96,36 @@ fn products_are_catalog_groups() {
     every_map_serves(&product());
     every_map_serves(&power(2));
     every_map_serves(&Product(power(2), product()));
+}
+
+/// A run of 20 steps, by whatever method.
+struct Run<'a, P: Problem>(&'a P, &'a PointOf<P>);
+
+impl<P: Problem> OnMethod<P> for Run<'_, P> {
+    type Out = PointOf<P>;
+    fn call<M: Method<P>>(self, method: M) -> PointOf<P> {
+        let (mut y, grid) = (self.1.clone(), TimeGrid::new([0.0, 0.2], 0.01).unwrap());
+        integrate(self.0, &method, &grid, &SaveAt::Ends, &mut y, |_, _| {}).unwrap();
+        y
+    }
+}
+
+/// Methods by name on a product: a damped body on SO(3) × T(3).
+#[test]
+fn methods_by_name_run_on_products() {
+    let damping = BodyTorque(|at: &Motion| -0.2 * at.omega_body);
+    let body = TorqueBody::new([1.0, 2.0, 2.5], damping).unwrap();
+    let start = body.state(nalgebra::Matrix3::identity(), [0.5, 0.4, -0.8]).unwrap();
+    let run = |name: &str, map| {
+        with_method(&MethodSpec::new(name, map), Run(&body, &start)).expect("a method")
+    };
+    let exact = run("rk4", None);
+    let methods =
+        [("cf4", None), ("magnus43", None), ("rkmk4", Some("cay")), ("rkmk4", Some("ccsk"))];
+    for (name, map) in methods {
+        let y = run(name, map);
+        assert!((y.0 - exact.0).norm() + (y.1 - exact.1).norm() < 1e-9, "{name} {map:?}");
+    }
 }
 
 /// A map without a formula on one of the parts is refused, with the part's reason.

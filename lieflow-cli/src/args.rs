@@ -20,7 +20,8 @@ use clap_complete::Shell;
   lieflow run asymmetric-top            run one of them
   lieflow scenes asymmetric-top > my.toml
                                         a scene of one's own to start from
-  lieflow run my.toml --out results     run it"
+  lieflow run my.toml --out results     run it
+  lieflow paper --out paper             the paper's tables and figures, computed again"
 )]
 pub struct Cli {
     /// The command; the demonstration when there is none.
@@ -38,6 +39,8 @@ pub enum Command {
     Run(RunArgs),
     /// Run a scene with every method, map and layer that fits, and write a report.
     Compare(CompareArgs),
+    /// Compute the paper's tables and figures again: paper.html, CSV and SVG files.
+    Paper(PaperArgs),
     /// Check the layers against each other, the laws of groups and maps, and the exact motion.
     Check(CheckArgs),
     /// List the scenes that come with the program, or print one to start from.
@@ -74,7 +77,12 @@ pub struct RunArgs {
 #[derive(Args, Clone, Debug)]
 #[command(after_help = "Examples:
   lieflow compare asymmetric-top
-  lieflow compare my.toml --out results --repeat 5")]
+  lieflow compare my.toml --out results --repeat 15
+  lieflow compare my.toml --methods rkmk4,mr4,taylor12,exact
+  lieflow compare my.toml --methods \"rkmk dopri5\" --tolerances 1e-4,1e-8,1e-12
+
+Written: index.html, speed.csv and speed.json with every run, the figures as SVG files. A comparison
+that is interrupted goes on where it was when it is started again with the same scene and options.")]
 pub struct CompareArgs {
     /// A scene file, or the name of a bundled scene.
     pub scene: PathBuf,
@@ -84,9 +92,42 @@ pub struct CompareArgs {
     /// Shorter runs.
     #[arg(long)]
     pub quick: bool,
-    /// Time each run so many times and keep the fastest.
+    /// Only these: names of methods, with parts where wanted, as in "rkmk dopri5 cay".
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    pub methods: Vec<String>,
+    /// Tolerances for the methods that choose their steps.
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = tolerance)]
+    pub tolerances: Vec<f64>,
+    /// Time each run so many times, in turns with the others, and take the median.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub repeat: Option<u32>,
+    /// The seed of the order in which runs take their turns.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+}
+
+fn tolerance(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(x) if x > 0.0 && x < 1.0 => Ok(x),
+        _ => Err("expected a number between 0 and 1, as 1e-6".into()),
+    }
+}
+
+/// Options of `paper`.
+#[derive(Args, Clone, Debug)]
+#[command(after_help = "Examples:
+  lieflow paper --out paper
+  lieflow paper --quick
+
+Written: paper.html, self-contained; table1.csv to table4.csv, figure3.csv to figure5.csv,
+frames.csv, drift.csv, separatrix.csv; every figure as an SVG file.")]
+pub struct PaperArgs {
+    /// Folder for the page and the data.
+    #[arg(long, value_name = "DIR", default_value = "lieflow-report")]
+    pub out: PathBuf,
+    /// Fewer space frames and fewer rounds of timing; the tables are the same.
+    #[arg(long)]
+    pub quick: bool,
 }
 
 /// Options of `check`.
@@ -165,7 +206,10 @@ A scene file, with everything that it can say about a rigid body:
   layer = \"closed\"                  # optional: closed, or general
   [time]
   t_span = [0.0, 400.0]             # may run backward
-  dt = 0.05                         # or steps = 8000
+  dt = 0.05                         # or steps = 8000, or steps chosen by their error:
+  rtol = 1e-9                       # instead of dt; error for each unit of the way; optional: 0
+  atol = 1e-12                      # error of each step; optional: 0; one of the two is needed
+  h_init = 0.01                     # optional, as are h_min, h_max, max_steps
   [output]
   quantities = [\"momentum_body\"]    # lieflow scenes lists what there is
   every = 10                        # or times = [1.5, 20]; optional: 1

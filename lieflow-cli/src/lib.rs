@@ -6,11 +6,13 @@
 
 pub mod args;
 pub mod cmd;
+pub mod erased;
 pub mod kinds;
 pub mod measure;
 pub mod model;
 pub mod output;
 pub mod page;
+pub mod paper;
 pub mod plot;
 pub mod report;
 pub mod scene;

@@ -13,6 +13,7 @@ fn dispatch(cli: &Cli) -> Result<(), CliError> {
         None => cmd::demo::run(&cli.demo),
         Some(Command::Compare(args)) => cmd::compare::run(args),
         Some(Command::Check(args)) => cmd::check::run(args),
+        Some(Command::Paper(args)) => cmd::paper::run(args),
         Some(Command::Run(args)) => cmd::run::run(args),
         Some(Command::Scenes(args)) => cmd::scenes::run(args),
         Some(Command::Methods(args)) => cmd::methods::run(args),

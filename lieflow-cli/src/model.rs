@@ -2,10 +2,11 @@
 
 use core::fmt::Debug;
 
-use lieflow::catalog::{CatalogGroup, MethodSpec, OnMethod, with_method};
-use lieflow::maps::{CoordinateMap, Exp};
-use lieflow::methods::Method;
-use lieflow::problems::{Ambient, PointOf, Problem};
+use lieflow::adaptive::{Adaptive, AdaptiveError, AdaptiveStats, integrate_adaptive};
+use lieflow::catalog::{MethodSpec, OnEmbedded, OnMethod};
+use lieflow::groups::LieAlgebra;
+use lieflow::methods::{Embedded, Method};
+use lieflow::problems::{PointOf, Problem};
 use lieflow::{Error, RunError, SaveAt, Stats, TimeGrid, integrate};
 
 /// Which code a problem runs on. Methods that stay on the group agree on the two to rounding; the
@@ -43,6 +44,15 @@ impl Layer {
     }
 }
 
+/// Steps that are chosen by their error.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Steps {
+    /// From when to when.
+    pub t_span: [f64; 2],
+    /// Tolerances and limits.
+    pub control: Adaptive,
+}
+
 /// What gets the rows of a run: t and one value per column.
 pub type Sink<'a> = dyn FnMut(f64, &[f64]) + 'a;
 
@@ -66,10 +76,22 @@ pub trait Model: Debug {
         sink: &mut Sink<'_>,
     ) -> Result<Stats, RunError>;
 
+    /// The same with steps that are chosen by their error.
+    ///
+    /// # Errors
+    /// As [`integrate_adaptive`].
+    fn adapt(
+        &self,
+        method: &MethodSpec,
+        steps: &Steps,
+        save: &SaveAt,
+        sink: &mut Sink<'_>,
+    ) -> Result<AdaptiveStats, AdaptiveError>;
+
     /// The order of a method on this problem.
     ///
     /// # Errors
-    /// As [`with_method`].
+    /// As [`Catalog::with`].
     fn order(&self, method: &MethodSpec) -> Result<usize, Error>;
 
     /// The same columns by the exact solution, `t` after the start; `None` where none is known.
@@ -88,6 +110,49 @@ pub trait Model: Debug {
     }
 }
 
+/// A problem with the methods that fit it.
+pub trait Catalog: Problem<Group: LieAlgebra<Scalar = f64>> {
+    /// Find the method that `spec` names and hand it over.
+    ///
+    /// # Errors
+    /// As [`lieflow::catalog::with_method`], for a method that does not fit.
+    fn with<V: OnMethod<Self>>(spec: &MethodSpec, on: V) -> Result<V::Out, Error>
+    where
+        Self: Sized;
+
+    /// The same, with an estimate of its error: of its embedded pair, or by doubling its steps.
+    ///
+    /// # Errors
+    /// As [`with`](Self::with).
+    fn with_estimate<V: OnEmbedded<Self>>(spec: &MethodSpec, on: V) -> Result<V::Out, Error>
+    where
+        Self: Sized;
+}
+
+/// [`Catalog`] for an [`Ambient`](lieflow::problems::Ambient) problem, by the catalog's function for its kind.
+#[macro_export]
+macro_rules! catalog {
+    ($problem:ty, $with:path) => {
+        impl $crate::model::Catalog for $problem {
+            fn with<V: lieflow::catalog::OnMethod<Self>>(
+                spec: &lieflow::catalog::MethodSpec,
+                on: V,
+            ) -> Result<V::Out, lieflow::Error> {
+                $with(spec, on)
+            }
+            fn with_estimate<V: lieflow::catalog::OnEmbedded<Self>>(
+                spec: &lieflow::catalog::MethodSpec,
+                on: V,
+            ) -> Result<V::Out, lieflow::Error> {
+                match spec.has_pair()? {
+                    true => lieflow::catalog::with_embedded_pair(spec, on),
+                    false => $with(spec, $crate::erased::Doubled(on)),
+                }
+            }
+        }
+    };
+}
+
 struct Integrate<'a, P: Problem, F> {
     problem: &'a P,
     y: PointOf<P>,
@@ -104,6 +169,27 @@ impl<P: Problem, F: FnMut(f64, &PointOf<P>)> OnMethod<P> for Integrate<'_, P, F>
     }
 }
 
+struct Adapt<'a, P: Problem, F> {
+    problem: &'a P,
+    y: PointOf<P>,
+    steps: &'a Steps,
+    save: &'a SaveAt,
+    observe: F,
+}
+
+impl<P, F> OnEmbedded<P> for Adapt<'_, P, F>
+where
+    P: Problem<Group: LieAlgebra<Scalar = f64>>,
+    F: FnMut(f64, &PointOf<P>),
+{
+    type Out = Result<AdaptiveStats, AdaptiveError>;
+    fn call<M: Embedded<P>>(self, method: M) -> Self::Out {
+        let Adapt { problem, mut y, steps, save, observe } = self;
+        let Steps { t_span, control } = steps;
+        integrate_adaptive(problem, &method, *t_span, control, save, &mut y, observe)
+    }
+}
+
 struct Order<'a, P>(&'a P);
 
 impl<P: Problem> OnMethod<P> for Order<'_, P> {
@@ -116,30 +202,37 @@ impl<P: Problem> OnMethod<P> for Order<'_, P> {
 /// Integrate `problem` from `y` by the method that `spec` names: what a [`Model::run`] calls.
 ///
 /// # Errors
-/// As [`with_method`] and [`integrate`].
-pub fn integrate_by<P: Ambient>(
+/// As [`Catalog::with`] and [`integrate`].
+pub fn integrate_by<P: Catalog>(
     spec: &MethodSpec,
     problem: &P,
     y: PointOf<P>,
     grid: &TimeGrid,
     save: &SaveAt,
     observe: impl FnMut(f64, &PointOf<P>),
-) -> Result<Stats, RunError>
-where
-    P::Group: CatalogGroup,
-    Exp: CoordinateMap<P::Group>,
-{
-    with_method(spec, Integrate { problem, y, grid, save, observe })?
+) -> Result<Stats, RunError> {
+    P::with(spec, Integrate { problem, y, grid, save, observe })?
+}
+
+/// The same with steps chosen by their error: what a [`Model::adapt`] calls.
+///
+/// # Errors
+/// As [`Catalog::with_estimate`] and [`integrate_adaptive`].
+pub fn adapt_by<P: Catalog>(
+    spec: &MethodSpec,
+    problem: &P,
+    y: PointOf<P>,
+    steps: &Steps,
+    save: &SaveAt,
+    observe: impl FnMut(f64, &PointOf<P>),
+) -> Result<AdaptiveStats, AdaptiveError> {
+    P::with_estimate(spec, Adapt { problem, y, steps, save, observe })?
 }
 
 /// The order of the method that `spec` names: what a [`Model::order`] calls.
 ///
 /// # Errors
-/// As [`with_method`].
-pub fn order_by<P: Ambient>(spec: &MethodSpec, problem: &P) -> Result<usize, Error>
-where
-    P::Group: CatalogGroup,
-    Exp: CoordinateMap<P::Group>,
-{
-    with_method(spec, Order(problem))
+/// As [`Catalog::with`].
+pub fn order_by<P: Catalog>(spec: &MethodSpec, problem: &P) -> Result<usize, Error> {
+    P::with(spec, Order(problem))
 }

@@ -17,8 +17,9 @@ fn shortened(name: &str) -> String {
     let text = BUNDLED.iter().find(|scene| scene.name == name).unwrap().text;
     let line = |line: &str| match line.split(' ').next() {
         Some("t_span") => "t_span = [1.0, 1.2]".into(),
-        Some("dt" | "steps") => "steps = 50".into(),
-        Some("every") => "every = 7".into(),
+        Some("dt" | "steps" | "rtol") => "steps = 50".into(),
+        Some("atol") => String::new(),
+        Some("every" | "times") => "every = 7".into(),
         _ => line.to_owned(),
     };
     text.lines().map(|text| line(text) + "\n").collect()
@@ -50,8 +51,12 @@ fn every_bundled_scene_runs_and_reads_back_exactly() {
         let summary = folder.json(&format!("{name}/summary.json"));
         assert_eq!(summary["completed"], true);
         assert_eq!((&summary["steps"], &summary["rows"]), (&50.into(), &9.into()));
-        assert_eq!(summary["method"]["order"], 4);
+        assert_eq!(summary["method"]["order"], model.order(&scene.method).unwrap());
         assert_eq!(summary["columns"].as_array().unwrap().len(), header.len());
+        if scene.problem.kind().name != "rigid-body" {
+            assert!(summary["error_at_end"].is_null());
+            continue;
+        }
         assert!(summary["drift"]["momentum_norm"]["max"].as_f64().unwrap() < 1e-13);
         assert!(summary["error_at_end"]["momentum_body"].as_f64().unwrap() < 2e-5);
         let with_attitude = scene.quantities.iter().any(|quantity| quantity == "attitude");
@@ -221,4 +226,123 @@ fn a_step_that_fails_keeps_the_rows_before_it() {
     folder.write("scene.toml", SCENE);
     folder.lieflow(&["run", "scene.toml", "--out", "out"]).ok();
     assert_eq!(folder.names("out"), ["summary.json", "trajectory.csv"]);
+}
+
+/// A scene with another method and other steps.
+fn with(method: &str, time: &str) -> String {
+    SCENE
+        .replace("name = \"rkmk4\"\nmap = \"exp\"", method)
+        .replace("t_span = [0, 2.0]\ndt = 0.05", time)
+        .replace("every = 10", "every = 1")
+}
+
+#[test]
+fn adaptive_runs_reach_their_tolerance_and_say_what_they_did() {
+    let folder = Folder::new();
+    let dopri5 = "name = \"rkmk\"\ntableau = \"dopri5\"\nmap = \"cay\"";
+    // A pair, methods without one, on either layer, forward and backward.
+    for (method, t_span) in [
+        (dopri5, "[0, 20]"),
+        (dopri5, "[20, 0]"),
+        ("name = \"rkmk4\"", "[0, 20]"),
+        ("name = \"taylor8\"", "[0, 20]"),
+        ("name = \"cf43\"\nlayer = \"general\"", "[0, 20]"),
+    ] {
+        let error = |rtol: &str| {
+            let method = if method.contains("layer") {
+                with(method, "").replace("layer = \"closed\"\n", "")
+            } else {
+                with(method, "")
+            };
+            let time = format!("[time]\nt_span = {t_span}\nrtol = {rtol}\nh_max = 2\n");
+            folder.write("scene.toml", &method.replace("[time]\n", &time));
+            folder.lieflow(&["run", "scene.toml", "--out", "out"]).ok();
+            let summary = folder.json("out/summary.json");
+            let chosen = &summary["adaptive"];
+            let (_, rows) = read_csv(&folder.read("out/trajectory.csv"));
+            assert_eq!(chosen["accepted"].as_u64().unwrap() as usize + 1, rows.len(), "{method}");
+            assert_eq!(summary["steps"], chosen["accepted"]);
+            assert!(summary["dt"].is_null() && chosen["rejected"].is_number());
+            let evaluations = chosen["evaluations"].as_u64();
+            let pair = ["dopri5", "cf43"].iter().any(|pair| method.contains(pair));
+            assert_eq!(evaluations.is_some(), pair, "{method}");
+            assert!(evaluations.is_none_or(|n| n > rows.len() as u64));
+            assert!(chosen["largest_step"].as_f64().unwrap() <= 2.0);
+            let ends: Vec<f64> = serde_json::from_str(t_span).unwrap();
+            assert_eq!([rows[0][0], rows[rows.len() - 1][0]], ends[..]);
+            summary["error_at_end"]["momentum_body"].as_f64().unwrap()
+        };
+        // rtol is an error for each unit of the way: some |m| ω t = 20 of them here.
+        let (coarse, fine) = (error("1e-5"), error("1e-8"));
+        assert!(coarse < 2e-3 && fine < 2e-6 && fine < coarse, "{method}: {coarse:e}, {fine:e}");
+    }
+}
+
+#[test]
+fn an_adaptive_run_that_cannot_go_on_keeps_its_rows() {
+    let folder = Folder::new();
+    folder.write(
+        "scene.toml",
+        &with("name = \"rkmk4\"", "t_span = [0, 200]\nrtol = 1e-8\nmax_steps = 20"),
+    );
+    let message = folder.lieflow(&["run", "scene.toml", "--out", "out"]).refused();
+    assert!(message.contains("20 attempts") && message.contains("max_steps"), "{message}");
+    assert_eq!(folder.names("out"), ["summary.json", "trajectory.partial.csv"]);
+}
+
+#[test]
+fn every_method_that_is_listed_runs_and_is_right() {
+    let folder = Folder::new();
+    for (layer, quantities) in
+        [("closed", "momentum_body"), ("closed", "attitude"), ("general", "momentum_body")]
+    {
+        let scene = |method: &str| {
+            with(method, "t_span = [0, 1]\ndt = 0.01")
+                .replace("layer = \"closed\"", &format!("layer = {layer:?}"))
+                .replace("\"momentum_body\", \"energy\"", &format!("{quantities:?}"))
+        };
+        let start = Scene::parse("scene", &scene("name = \"rk4\"")).unwrap();
+        let model = start.model().unwrap();
+        let mut seen = 0;
+        for (info, _) in lieflow::catalog::all_methods() {
+            let parsed = Scene::parse("scene", &scene(&format!("name = {:?}", info.name)));
+            let Ok(parsed) = parsed else {
+                let message = parsed.unwrap_err().to_string();
+                assert!(message.contains("methods that fit: rkmk4, rkmk, rk4"), "{message}");
+                assert!(message.starts_with("scene:7:"), "{message}");
+                continue;
+            };
+            let rows = rows_of(&parsed);
+            let exact = model.exact(1.0).unwrap().unwrap();
+            let gap = distance(&[rows[rows.len() - 1][1..].to_vec()], &[exact]);
+            assert!(gap < 2e-4, "{} on the {layer} layer: {gap:e}", info.name);
+            seen += 1;
+        }
+        assert!(seen > 20, "{seen}");
+    }
+    // A method that fits with some maps only names the map, not other methods.
+    folder.write(
+        "scene.toml",
+        &with("name = \"energy-casimir\"\nmap = \"ccsk123\"", "t_span = [0, 1]\ndt = 0.1"),
+    );
+    let message = folder.lieflow(&["run", "scene.toml"]).refused();
+    assert!(message.contains("exp or cay") && !message.contains("methods that fit"), "{message}");
+}
+
+/// Against the solution in the frame that turns with the field: x(t) = R₃(Ωt) exp(t(ω(0) − Ωe₃)) x(0).
+#[test]
+fn a_spin_precesses_about_the_field_in_the_frame_that_turns() {
+    let text = BUNDLED.iter().find(|s| s.name == "rotating-field").unwrap().text;
+    for method in ["magnus6", "magnus8", "cfm6-5", "rkmk4", "gauss6", "cf-ls5", "rk4"] {
+        let text = text.replace("magnus6", method).replace("dt = 0.25", "dt = 0.025");
+        let scene = Scene::parse("scene", &text).unwrap();
+        let rows = rows_of(&scene);
+        let last = &rows[rows.len() - 1];
+        let turn = |u: Vector3<f64>| lieflow::so3::exp(&(100.0 * u)).unwrap();
+        let exact = turn(Vector3::new(0.0, 0.0, 1.05))
+            * turn(Vector3::new(0.2, 0.0, 1.0 - 1.05))
+            * Vector3::new(0.0, 0.0, 1.0);
+        let gap = (Vector3::from_column_slice(&last[1..4]) - exact).norm();
+        assert!(gap < 2e-6, "{method}: {gap:e}");
+    }
 }

@@ -3,11 +3,15 @@
 //! To add an action: one file with an `impl` of [`Action`], one line here, one in the law tests.
 
 mod coadjoint;
+mod conjugation;
+mod lagrangian;
 mod linear;
 mod parts;
 mod translation;
 
 pub use coadjoint::Coadjoint;
+pub use conjugation::{Conjugation, ConjugationWork};
+pub use lagrangian::{Lagrangian, LagrangianWork};
 pub use linear::Linear;
 pub use parts::{Each, Pair};
 pub use translation::LeftTranslation;

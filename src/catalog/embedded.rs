@@ -70,6 +70,37 @@ where
     each_method!(spec, Doubled(on), OnMethod::<P>::call, pair => estimated)
 }
 
+/// Find the embedded pair that `spec` names, with its parts, and hand it over. As
+/// [`with_embedded_method`], without the code for the methods that would be doubled.
+///
+/// # Errors
+/// As [`with_method`], and [`Error::Unsupported`] for a method without a pair
+/// ([`MethodSpec::has_pair`]).
+pub fn with_embedded_pair<P: Ambient, V: OnEmbedded<P>>(
+    spec: &MethodSpec,
+    on: V,
+) -> Result<V::Out, Error>
+where
+    P::Group: CatalogGroup,
+    PointOf<P>: Metric<Scalar = ScalarOf<P>>,
+    Exp: CoordinateMap<P::Group>,
+{
+    let out: Result<Option<V::Out>, Error> = each_method!(spec, on, no_pair, pair => pair_of);
+    out?.ok_or_else(|| Error::Unsupported {
+        what: "an error estimate",
+        with: format!("`{}`", spec.label()),
+        why: "it has no embedded pair",
+    })
+}
+
+fn no_pair<P: Problem, V: OnEmbedded<P>, M: Method<P>>(_: V, _: M) -> Option<V::Out> {
+    None
+}
+
+fn pair_of<P: Problem, V: OnEmbedded<P>, M: Embedded<P>>(on: V, method: M) -> Option<V::Out> {
+    Some(on.call(method))
+}
+
 /// Past the doubling, for a method that does not need it.
 fn estimated<P: Problem, V: OnEmbedded<P>, M: Embedded<P>>(on: Doubled<V>, method: M) -> V::Out {
     on.0.call(method)

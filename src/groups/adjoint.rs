@@ -101,15 +101,27 @@ fn finite(is: bool) -> Result<(), StepError> {
     if is { Ok(()) } else { Err(StepError::NotFinite { what: "Ad" }) }
 }
 
-/// Every call but [`pair`](Adjoint::pair) and [`ad`](Adjoint::ad) allocates. Cost: two products and
-/// the inverse, which is free on SO(n), two products on Sp(2m) and G_M, and an LU on GL(n).
+/// [`big_ad`](Adjoint::big_ad) and [`coad_group`](Adjoint::coad_group) allocate, and so does the
+/// inverse on GL(n) and G_M. Cost: two products and the inverse, which is free on SO(n) and Sp(2m),
+/// two products on G_M, and an LU on GL(n).
 impl Adjoint for MatrixGroup {
     type Dual = Mat<f64>;
 
     fn inverse(&self, g: &GroupMatrix, out: &mut GroupMatrix) -> Result<(), StepError> {
         match (self.form(), self.m()) {
             (Form::Identity, _) => out.copy_from(g.transpose()),
-            (Form::Symplectic, Some(m)) => **out = m.transpose() * g.transpose() * &m,
+            // −JgᵀJ: blocks \[a b; c d\] become \[dᵀ −bᵀ; −cᵀ aᵀ\].
+            (Form::Symplectic, _) => {
+                let m = self.n() / 2;
+                for j in 0..m {
+                    for i in 0..m {
+                        out[(i, j)] = g[(j + m, i + m)];
+                        out[(i, j + m)] = -g[(j, i + m)];
+                        out[(i + m, j)] = -g[(j + m, i)];
+                        out[(i + m, j + m)] = g[(j, i)];
+                    }
+                }
+            }
             (Form::Bilinear { m, inverse }, _) => **out = inverse * g.transpose() * m,
             _ => {
                 let n = self.n();

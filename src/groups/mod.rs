@@ -14,6 +14,7 @@ mod power;
 mod product;
 mod se3;
 mod so3;
+mod translations;
 
 pub use adjoint::Adjoint;
 pub use matrix::{AlgebraMatrix, Form, GroupMatrix, MEMBERSHIP, MatrixGroup, RCOND_MIN};
@@ -24,6 +25,7 @@ pub use se3::Se3;
 pub(crate) use se3::{add3, finite_pair};
 pub use so3::{So3, hat, vee};
 pub(crate) use so3::{apply3, cross};
+pub use translations::Translations;
 
 use rand::Rng;
 

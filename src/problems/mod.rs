@@ -1,17 +1,56 @@
 //! f : M → 𝔤, the differential equations, and what else is known of each.
 //!
+//! | problem | group, action | |
+//! |---|---|---|
+//! | free rigid body in ℝ³ and ℝⁿ | SO(3), SO(n); coadjoint or translation | [`RigidBody`], [`RigidBodyAttitude`], [`RigidBodyState`], [`RigidBodyN`] |
+//! | Euler's equations of any Hamiltonian | any; coadjoint | [`Euler`], [`EulerGroup`], [`Kinetic`] |
+//! | heavy tops | SE(3); coadjoint | [`HeavyTop`] |
+//! | rigid body under torques | SO(3) × T(3); translation | [`TorqueBody`], [`inertia`] |
+//! | isospectral flows: Toda, QR, double bracket | SO(n); conjugation | [`IsospectralFlow`] |
+//! | spherical pendulum, spin chain | SE(3); coadjoint; SO(3)ᴺ; vectors | [`SphericalPendulum`], [`SpinChain`] |
+//! | Oja's flow | SO(n); n×k matrices | [`Oja`] |
+//! | Lyapunov exponents of a vector field | SO(n) × T(2n); translation | [`Lyapunov`] |
+//! | equations of linear type, Magnus | any | [`LinearEquation`] |
+//! | Hill, Mathieu, Floquet; beam lines | Sp(2m); translation | [`hill`], [`mathieu`], [`floquet`], [`beam`] |
+//! | Riccati | Sp(2m); [`Lagrangian`](crate::actions::Lagrangian) | [`LinearEquation`] |
+//! | charged particle | SO(3,1); vectors | [`ChargedParticle`] |
+//!
 //! To add a problem: one file with an `impl` of [`Problem`], one line here.
 
+pub mod beam;
 mod capability;
+mod euler;
+mod heavy_top;
+pub mod inertia;
+mod invariants;
+mod isospectral;
 mod linear;
+mod lorentz;
+mod lyapunov;
+mod oja;
+mod periodic;
 mod rigid_body;
+mod space;
+mod spheres;
+mod torque;
 
 pub use capability::{Isospectral, LiePoisson, Orthogonal, Projection, Split};
+pub use euler::{Euler, EulerGroup, FromTheBody, Hamiltonian, Kinetic};
+pub use heavy_top::HeavyTop;
+pub use invariants::{Invariant, Invariants, Kept};
+pub use isospectral::{IsospectralFlow, toda_lattice};
 pub use linear::{LinearEquation, LinearField};
+pub use lorentz::ChargedParticle;
+pub use lyapunov::Lyapunov;
+pub use oja::Oja;
+pub use periodic::{Floquet, LinearHamiltonian, floquet, hill, mathieu, monodromy};
 pub use rigid_body::{
     BodyFrame, BodyState, Exact, Frame, FreeBody, RigidBody, RigidBodyAttitude, RigidBodyN,
-    RigidBodyNAttitude, RigidBodyState,
+    RigidBodyNAttitude, RigidBodyState, manakov_integrals,
 };
+pub use space::LinearSpace;
+pub use spheres::{SphericalPendulum, SpinChain};
+pub use torque::{BodyTorque, Motion, SpaceTorque, Torque, TorqueBody};
 
 use crate::actions::Action;
 use crate::groups::{LieAlgebra, LieGroup};

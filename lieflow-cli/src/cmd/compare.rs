@@ -1,21 +1,40 @@
-//! `lieflow compare`: speed against error for one scene, over all methods that fit it.
+//! `lieflow compare`: speed against error for one scene, over all methods that fit it, ending in
+//! advice.
 
+use std::collections::hash_map::DefaultHasher;
+use std::hash::{Hash, Hasher};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde::Serialize;
 
 use super::CliError;
 use crate::args::CompareArgs;
-use crate::measure::{Candidate, Curve, Effort, WorkPoint, machine, speed_against_error};
+use crate::measure::{
+    Candidate, Curve, Effort, Journal, Plan, Reference, WorkPoint, machine, speed_against_error,
+};
 use crate::output;
 use crate::page::{Block, Page, Section};
-use crate::report;
+use crate::report::{self, CHOICE_HEADER, Choice, Cost, KEPT, choices};
 use crate::scene::Scene;
 
 /// Step sizes are those of the scene times these, from the largest to the smallest.
-const FACTORS: [f64; 8] = [8.0, 4.0, 2.0, 1.0, 0.5, 0.25, 0.125, 0.0625];
+const FACTORS: [f64; 11] = [32.0, 16.0, 8.0, 4.0, 2.0, 1.0, 0.5, 0.25, 0.125, 0.0625, 0.03125];
+
+/// Tolerances of the methods that choose their steps.
+const TOLERANCES: [f64; 7] = [1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-13];
+
+/// Everything as JSON.
+#[derive(Serialize)]
+struct Json<'a> {
+    scene: &'a str,
+    t_span: [f64; 2],
+    reference: String,
+    machine: String,
+    advice: Vec<AdviceJson>,
+    advice_energy_kept: Vec<AdviceJson>,
+    curves: Vec<CurveJson<'a>>,
+}
 
 /// A curve as JSON.
 #[derive(Serialize)]
@@ -24,15 +43,36 @@ struct CurveJson<'a> {
     map: Option<&'a str>,
     tableau: Option<&'a str>,
     layer: &'static str,
+    adaptive: bool,
     order: usize,
     measured_order: Option<f64>,
+    /// Places of the points that no other run beats.
+    pareto: Vec<usize>,
     points: &'a [WorkPoint],
+}
+
+/// The fastest method to an error.
+#[derive(Serialize)]
+struct AdviceJson {
+    error: f64,
+    method: Option<String>,
+    h: Option<f64>,
+    rtol: Option<f64>,
+    seconds_per_unit: Option<f64>,
+}
+
+/// What was measured.
+struct Comparison<'a> {
+    scene: &'a Scene,
+    curves: Vec<Curve>,
+    reference: Reference,
+    rounds: u32,
 }
 
 /// Run the command.
 ///
 /// # Errors
-/// A scene that cannot be used or has no exact solution, or a report that cannot be written.
+/// A scene that cannot be used, or a report that cannot be written.
 pub fn run(args: &CompareArgs) -> Result<(), CliError> {
     let clock = Instant::now();
     let scene = Scene::open(&args.scene)?;
@@ -40,38 +80,59 @@ pub fn run(args: &CompareArgs) -> Result<(), CliError> {
         Some(folder) => folder.clone(),
         None => Path::new("lieflow-compare").join(&scene.name),
     };
-    output::make_folder(&folder)?;
     let quantities: Vec<&str> = scene.quantities.iter().map(String::as_str).collect();
-    let candidates = Candidate::all_that_fit(&scene, &quantities)?;
+    let mut candidates = Candidate::all_that_fit(&scene, &quantities, scene.layer)?;
+    if !args.methods.is_empty() {
+        candidates = Candidate::chosen(&candidates, &args.methods)?;
+    }
+    output::make_folder(&folder)?;
     let steps = numbers_of_steps(&scene);
+    let mut tolerances = match args.tolerances.is_empty() {
+        true => TOLERANCES.to_vec(),
+        false => args.tolerances.clone(),
+    };
+    tolerances.sort_by(|a, b| b.total_cmp(a));
+    tolerances.dedup();
     let effort = Effort {
-        rounds: args.repeat.unwrap_or(if args.quick { 3 } else { 7 }),
-        longest: Duration::from_millis(if args.quick { 10 } else { 100 }),
-        shortest: Duration::from_micros(if args.quick { 100 } else { 500 }),
+        rounds: args.repeat.unwrap_or(if args.quick { 3 } else { 5 }),
+        longest: Duration::from_millis(if args.quick { 5 } else { 30 }),
+        shortest: Duration::from_micros(if args.quick { 50 } else { 300 }),
+        seed: args.seed,
     };
-    let bar = ProgressBar::with_draw_target(Some(1000), ProgressDrawTarget::stderr());
-    let bar = match ProgressStyle::with_template("{bar:40} {percent:>3}% {eta} left") {
-        Ok(style) => bar.with_style(style),
-        Err(_) => bar,
+    let plan = Plan {
+        quantities: &quantities,
+        candidates: &candidates,
+        t_span: scene.grid.t_span(),
+        steps: &steps,
+        tolerances: &tolerances,
     };
-    let span = scene.grid.t_span();
-    let curves =
-        speed_against_error(&scene, &quantities, &candidates, span, &steps, effort, |done| {
+    let mut journal = Journal::open(&folder, &identity(&scene, &plan, &effort))?;
+    if journal.known() > 0 {
+        output::print(&format!("going on with {} runs from before\n", journal.known()))?;
+    }
+    let bar = super::progress();
+    let (curves, reference) =
+        speed_against_error(&scene, &plan, effort, Some(&mut journal), |done| {
             bar.set_position((1000.0 * done) as u64)
         })?;
     bar.finish_and_clear();
 
-    let path = report::write_page(&folder, &page(&scene, &curves, &effort))?;
-    let rows = curves.iter().map(|curve| (scene.name.as_str(), curve));
-    output::write_file(&folder.join("speed.csv"), &report::speed_csv(rows))?;
-    let json: Vec<CurveJson<'_>> = curves.iter().map(curve_json).collect();
-    output::write_file(&folder.join("speed.json"), &output::to_json(&json)?)?;
-    output::print(&in_words(&scene, &curves))?;
+    let comparison = Comparison { scene: &scene, curves, reference, rounds: effort.rounds };
+    let path = comparison.write(&folder)?;
+    journal.finish()?;
+    output::print(&comparison.in_words())?;
     output::print(&format!(
         "\nThe report: {}\n({:.1} s)\n",
         path.display(),
         clock.elapsed().as_secs_f64()
     ))
+}
+
+/// What a comparison is about: another scene, other options or another program is another one.
+fn identity(scene: &Scene, plan: &Plan<'_>, effort: &Effort) -> String {
+    let mut hasher = DefaultHasher::new();
+    format!("{scene:?} {plan:?} {effort:?} {}", machine()).hash(&mut hasher);
+    format!("{} {} {:016x}", env!("CARGO_PKG_VERSION"), scene.name, hasher.finish())
 }
 
 fn numbers_of_steps(scene: &Scene) -> Vec<u64> {
@@ -83,81 +144,163 @@ fn numbers_of_steps(scene: &Scene) -> Vec<u64> {
     steps
 }
 
-fn curve_json(curve: &Curve) -> CurveJson<'_> {
+fn advice_json(choices: &[Choice<'_>]) -> Vec<AdviceJson> {
+    let json = |choice: &Choice<'_>| {
+        let best = choice.best.as_ref();
+        AdviceJson {
+            error: choice.error,
+            method: best.map(|(curve, _)| curve.candidate.label()),
+            h: best.map(|(_, reached)| reached.h),
+            rtol: best.and_then(|(_, reached)| reached.tolerance),
+            seconds_per_unit: best.map(|(_, reached)| reached.seconds),
+        }
+    };
+    choices.iter().map(json).collect()
+}
+
+impl Comparison<'_> {
+    /// The fastest to each error: of all, and of those whose energy does not drift.
+    fn advice(&self) -> [Vec<Choice<'_>>; 2] {
+        [choices(&self.curves, |_, _| true), choices(&self.curves, report::keeps_energy)]
+    }
+
+    /// Does the problem have an energy?
+    fn has_energy(&self) -> bool {
+        self.curves.iter().flat_map(|curve| &curve.points).any(|p| !p.energy_error.is_nan())
+    }
+
+    fn write(&self, folder: &Path) -> Result<PathBuf, CliError> {
+        let fronts = report::fronts(&self.curves);
+        let rows = self.curves.iter().zip(&fronts);
+        let rows = rows.map(|(curve, front)| (self.scene.name.as_str(), curve, front.clone()));
+        output::write_file(&folder.join("speed.csv"), &report::speed_csv(rows))?;
+        let [advice, kept] = self.advice();
+        let json = Json {
+            scene: &self.scene.name,
+            t_span: self.scene.grid.t_span(),
+            reference: self.reference.in_words(),
+            machine: machine(),
+            advice: advice_json(&advice),
+            advice_energy_kept: advice_json(&kept),
+            curves: self.curves.iter().zip(fronts).map(curve_json).collect(),
+        };
+        output::write_file(&folder.join("speed.json"), &output::to_json(&json)?)?;
+        report::write_page(folder, &self.page())
+    }
+
+    fn in_words(&self) -> String {
+        let table = |choices: &[Choice<'_>]| {
+            output::table(CHOICE_HEADER, choices.iter().map(report::choice_cells))
+        };
+        let [advice, kept] = self.advice();
+        let mut text = format!(
+            "{}: fastest to a global error at t = {}, of {} methods; times are CPU time per unit of \
+             simulated time\n{}",
+            self.scene.title,
+            self.scene.grid.t_span()[1],
+            self.curves.len(),
+            table(&advice),
+        );
+        if self.has_energy() {
+            text += &format!("\nThe same where the energy must not drift\n{}", table(&kept));
+        }
+        text + &format!("\nErrors are distances from {}.\n", self.reference.in_words())
+    }
+
+    fn page(&self) -> Page {
+        let [t0, t1] = self.scene.grid.t_span();
+        let curves = &self.curves;
+        let mut families: Vec<&str> = Vec::new();
+        for curve in curves {
+            if !families.contains(&curve.candidate.family()) {
+                families.push(curve.candidate.family());
+            }
+        }
+        let what = "The error is the largest relative distance of a part of the state from the \
+                    reference at the end.";
+        let mut charts: Vec<Block> = families
+            .iter()
+            .map(|family| {
+                Block::Chart(report::speed_chart(
+                    &format!("speed-{family}"),
+                    &format!("Speed against error: {family}"),
+                    what,
+                    curves.iter().filter(|curve| curve.candidate.family() == *family),
+                ))
+            })
+            .collect();
+        let counted = "Evaluations of f, of F or of A(t): the catalog's number for a step times the \
+                       steps, and what was counted where steps were chosen, rejected attempts among \
+                       them. Implicit methods and those without a field are left out.";
+        let title = "Runs that no other beats in both error and evaluations of f";
+        let chart = report::front_chart("evaluations", title, counted, curves, Cost::Evaluations);
+        charts.insert(0, Block::Chart(chart));
+        let [advice, kept] = self.advice();
+        let energy = format!(
+            "The same where the energy must not drift: methods that keep it or keep it in bounds by \
+             construction, and those that kept it within {KEPT:.0e} here."
+        );
+        let mut short = vec![Block::Table(report::choice_table(
+            "The fastest method for each error; times are CPU time per unit of simulated time.",
+            &advice,
+        ))];
+        if self.has_energy() {
+            short.push(Block::Table(report::choice_table(&energy, &kept)));
+        }
+        short.extend([
+            Block::Chart(report::front_chart(
+                "pareto",
+                "Runs that no other beats in both error and time",
+                what,
+                curves,
+                Cost::Time,
+            )),
+            Block::Facts(vec![
+                ("Machine".into(), machine()),
+                (
+                    "Times".into(),
+                    format!(
+                        "CPU time of one thread, medians of {} rounds that visit every method in turn",
+                        self.rounds
+                    ),
+                ),
+                ("Modelled".into(), self.scene.quantities.join(", ")),
+                ("Errors are distances from".into(), self.reference.in_words()),
+            ]),
+        ]);
+        Page {
+            title: format!("{}: which method?", self.scene.title),
+            subtitle: format!("t = {t0} … {t1}, {} methods on this machine", curves.len()),
+            sections: vec![
+                Section::new("In short", short),
+                Section::new("Figures", charts),
+                Section::new(
+                    "All methods",
+                    vec![
+                        Block::text(
+                            "speed.csv and speed.json beside this page have every run, with its \
+                             errors in the energy, in the Casimirs and of the group; every figure is \
+                             there as an SVG file.",
+                        ),
+                        Block::Table(report::speed_table(curves)),
+                    ],
+                ),
+            ],
+            footer: format!("lieflow {}", env!("CARGO_PKG_VERSION")),
+        }
+    }
+}
+
+fn curve_json((curve, pareto): (&Curve, Vec<usize>)) -> CurveJson<'_> {
     CurveJson {
         method: &curve.candidate.method.name,
         map: curve.candidate.method.map.as_deref(),
         tableau: curve.candidate.method.tableau.as_deref(),
         layer: curve.candidate.layer.name(),
+        adaptive: curve.candidate.adaptive,
         order: curve.order,
         measured_order: curve.measured_order(),
+        pareto,
         points: &curve.points,
-    }
-}
-
-fn in_words(scene: &Scene, curves: &[Curve]) -> String {
-    let rows = curves.iter().map(|curve| {
-        [
-            curve.candidate.label(),
-            curve.order.to_string(),
-            report::order(curve.measured_order()),
-            report::duration(curve.seconds_per_step()),
-            report::duration(curve.seconds_to(1e-3)),
-            report::duration(curve.seconds_to(1e-6)),
-            report::duration(curve.seconds_to(1e-9)),
-        ]
-    });
-    let header = ["method", "order", "measured", "a step", "to 1e-3", "to 1e-6", "to 1e-9"];
-    format!(
-        "{}: CPU time per unit of simulated time to a global error at t = {}\n{}\n{}\n",
-        scene.title,
-        scene.grid.t_span()[1],
-        output::table(header, rows),
-        report::speed_table(curves).caption
-    )
-}
-
-fn page(scene: &Scene, curves: &[Curve], effort: &Effort) -> Page {
-    let [t0, t1] = scene.grid.t_span();
-    let mut families: Vec<&str> = Vec::new();
-    for curve in curves {
-        if !families.contains(&curve.candidate.family()) {
-            families.push(curve.candidate.family());
-        }
-    }
-    let charts = families.iter().map(|family| {
-        Block::Chart(report::speed_chart(
-            &format!("speed-{family}"),
-            &format!("Speed against error: {family}"),
-            "The error is the largest relative distance of a part of the state from the exact \
-             solution at the end. Solid: closed forms; dashed: general layer.",
-            curves.iter().filter(|curve| curve.candidate.family() == *family),
-        ))
-    });
-    Page {
-        title: format!("{}: speed against error", scene.title),
-        subtitle: format!("t = {t0} … {t1}, {} methods on this machine", curves.len()),
-        sections: vec![
-            Section::new(
-                "In short",
-                vec![
-                    Block::Facts(vec![
-                        ("Machine".into(), machine()),
-                        (
-                            "Times".into(),
-                            format!(
-                                "CPU time of one thread, medians of {} rounds that visit every \
-                                 method in turn",
-                                effort.rounds
-                            ),
-                        ),
-                        ("Modelled".into(), scene.quantities.join(", ")),
-                    ]),
-                    Block::Table(report::speed_table(curves)),
-                ],
-            ),
-            Section::new("Figures", charts.collect()),
-        ],
-        footer: format!("lieflow {}", env!("CARGO_PKG_VERSION")),
     }
 }

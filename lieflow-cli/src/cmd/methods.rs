@@ -1,6 +1,6 @@
 //! `lieflow methods`: methods, coordinate maps and tableaus.
 
-use lieflow::catalog::{MAPS, METHODS, MethodInfo, MethodSpec, TABLEAUS};
+use lieflow::catalog::{MAPS, MethodInfo, MethodSpec, TABLEAUS, all_methods};
 use lieflow::problems::RigidBody;
 use serde::Serialize;
 
@@ -81,7 +81,7 @@ fn listing(scene: Option<&Scene>) -> Result<Listing, CliError> {
         Some(model) => model.fits(spec).is_ok(),
         None => true,
     };
-    let methods: Vec<_> = METHODS.iter().filter_map(|info| method_entry(info, fits)).collect();
+    let methods: Vec<_> = all_methods().filter_map(|(info, _)| method_entry(info, fits)).collect();
     let used = |map: &str| methods.iter().any(|method| method.maps.contains(&map));
     let maps = MAPS.iter().filter(|map| used(map.name));
     let maps = maps.map(|m| MapEntry { name: m.name, summary: m.summary, groups: m.groups });

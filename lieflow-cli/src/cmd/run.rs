@@ -6,11 +6,12 @@ use std::time::Instant;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use lieflow::RunError;
+use lieflow::adaptive::AdaptiveError;
 
 use super::CliError;
 use crate::args::RunArgs;
-use crate::model::Model;
-use crate::output::{self, Drift, MethodSummary, SUMMARY, Summary, Trajectory};
+use crate::model::{Model, Sink, Steps};
+use crate::output::{self, Chosen, Drift, MethodSummary, SUMMARY, Summary, Trajectory};
 use crate::scene::Scene;
 
 /// Run the command.
@@ -79,6 +80,48 @@ impl<'a> Watch<'a> {
         })
     }
 
+    /// Run the scene. A step that fails is an end, not an error.
+    fn run(&self, sink: &mut Sink<'_>) -> Result<Done, CliError> {
+        let Scene { method, grid, save, .. } = self.scene;
+        match self.scene.adaptive {
+            None => match self.model.run(method, grid, save, sink) {
+                Ok(stats) => Ok(Done {
+                    steps: stats.steps,
+                    side_steps: Some(stats.side_steps),
+                    ..Done::default()
+                }),
+                Err(RunError::Step(failure)) => Ok(Done::stopped(&failure, failure.step)),
+                Err(error) => Err(error.into()),
+            },
+            Some(control) => {
+                let steps = Steps { t_span: grid.t_span(), control };
+                match self.model.adapt(method, &steps, save, sink) {
+                    Ok(stats) => Ok(Done {
+                        steps: stats.accepted,
+                        side_steps: Some(stats.side_steps),
+                        chosen: Some(Chosen {
+                            accepted: stats.accepted,
+                            rejected: stats.rejected,
+                            evaluations: method.has_pair()?.then_some(stats.evaluations),
+                            smallest_step: stats.smallest_step,
+                            largest_step: stats.largest_step,
+                        }),
+                        failure: None,
+                    }),
+                    Err(AdaptiveError::Setup(error)) => Err(error.into()),
+                    Err(error) => {
+                        let steps = match &error {
+                            AdaptiveError::StepSizeUnderflow { accepted, .. }
+                            | AdaptiveError::TooManySteps { accepted, .. } => *accepted,
+                            _ => 0,
+                        };
+                        Ok(Done::stopped(&error, steps))
+                    }
+                }
+            }
+        }
+    }
+
     /// The distance from the exact solution at the end of the span.
     fn errors(&self, last: &[f64]) -> Option<BTreeMap<&'static str, f64>> {
         let [t0, t1] = self.scene.grid.t_span();
@@ -89,6 +132,21 @@ impl<'a> Watch<'a> {
             pairs.map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
         };
         Some(self.state.iter().map(|(name, range)| (*name, distance(range))).collect())
+    }
+}
+
+/// What a run did.
+#[derive(Default)]
+struct Done {
+    failure: Option<String>,
+    steps: u64,
+    side_steps: Option<u64>,
+    chosen: Option<Chosen>,
+}
+
+impl Done {
+    fn stopped(failure: &impl ToString, steps: u64) -> Self {
+        Done { failure: Some(failure.to_string()), steps, ..Done::default() }
     }
 }
 
@@ -118,7 +176,7 @@ pub fn run_scene(scene: &Scene, folder: &Path) -> Result<Summary, CliError> {
     let mut rows: Option<[(f64, Vec<f64>); 2]> = None;
     let mut drift: BTreeMap<&'static str, Drift> = BTreeMap::new();
     let clock = Instant::now();
-    let outcome = watch.model.run(&scene.method, &scene.grid, &scene.save, &mut |t, row| {
+    let outcome = watch.run(&mut |t, row| {
         trajectory.row(t, &row[..watch.asked]);
         for &(name, column) in &watch.invariants {
             drift.entry(name).or_insert_with(|| Drift::from(row[column])).see(row[column]);
@@ -134,15 +192,14 @@ pub fn run_scene(scene: &Scene, folder: &Path) -> Result<Summary, CliError> {
     });
     bar.finish_and_clear();
     let written = trajectory.rows();
-    let (failure, (steps, side_steps)) = match outcome {
-        Ok(stats) => (None, (stats.steps, Some(stats.side_steps))),
-        Err(RunError::Step(failure)) => (Some(failure.to_string()), (failure.step, None)),
+    let done = match outcome {
+        Ok(done) => done,
         Err(error) => {
             trajectory.discard();
-            return Err(error.into());
+            return Err(error);
         }
     };
-    let completed = failure.is_none();
+    let completed = done.failure.is_none();
     trajectory.finish(completed)?;
     let wall_time_s = clock.elapsed().as_secs_f64();
 
@@ -158,7 +215,7 @@ pub fn run_scene(scene: &Scene, folder: &Path) -> Result<Summary, CliError> {
         scene: scene.name.clone(),
         problem: scene.problem.kind().name,
         completed,
-        failure,
+        failure: done.failure,
         method: MethodSummary {
             name: method.name.clone(),
             label: method.label(),
@@ -173,9 +230,10 @@ pub fn run_scene(scene: &Scene, folder: &Path) -> Result<Summary, CliError> {
         columns: core::iter::once("t".into()).chain(columns).collect(),
         trajectory: if completed { output::COMPLETE } else { output::PARTIAL },
         t_span: [t0, t1],
-        dt: scene.grid.h().abs(),
-        steps,
-        side_steps,
+        dt: scene.adaptive.is_none().then(|| scene.grid.h().abs()),
+        steps: done.steps,
+        adaptive: done.chosen,
+        side_steps: done.side_steps,
         rows: written,
         wall_time_s,
         initial,
@@ -189,9 +247,17 @@ pub fn run_scene(scene: &Scene, folder: &Path) -> Result<Summary, CliError> {
 }
 
 fn in_words(summary: &Summary, folder: &Path) -> String {
-    let Summary { title, steps, dt, rows, wall_time_s, t_span: [t0, t1], .. } = summary;
+    let Summary { title, steps, rows, wall_time_s, t_span: [t0, t1], .. } = summary;
+    let sizes = match (summary.dt, &summary.adaptive) {
+        (Some(dt), _) => format!(" of {dt}"),
+        (None, Some(chosen)) => format!(
+            " of {:.2e} to {:.2e} ({} rejected)",
+            chosen.smallest_step, chosen.largest_step, chosen.rejected
+        ),
+        (None, None) => String::new(),
+    };
     let mut text = format!(
-        "{title}: {}, {}, {} layer\n  t = {t0} to {t1}, {steps} steps of {dt}, {rows} rows, \
+        "{title}: {}, {}, {} layer\n  t = {t0} to {t1}, {steps} steps{sizes}, {rows} rows, \
          {wall_time_s:.3} s\n",
         summary.modelled.join(", "),
         summary.method.label,

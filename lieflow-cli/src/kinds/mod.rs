@@ -3,8 +3,10 @@
 //! To add a kind: one file with its keys and its [`Model`], one line in [`KINDS`].
 
 mod rigid_body;
+mod spin;
 
 pub use rigid_body::RigidBodySpec;
+pub use spin::SpinSpec;
 
 use core::any::Any;
 use core::fmt::Debug;
@@ -16,7 +18,7 @@ use crate::model::{Layer, Model};
 use crate::scene::ReadError;
 
 /// Every kind.
-pub const KINDS: &[Kind] = &[rigid_body::KIND];
+pub const KINDS: &[Kind] = &[rigid_body::KIND, spin::KIND];
 
 /// A kind of problem.
 #[derive(Clone, Copy, Debug)]

@@ -1,24 +1,106 @@
 //! A method's line in the plot of time against error.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
-use super::Candidate;
+use super::journal::number;
+use super::{Candidate, Size};
 
 /// One run.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct WorkPoint {
+    /// How large its steps were.
+    pub size: Size,
     /// Its number of steps.
     pub steps: u64,
-    /// Its step size.
+    /// Attempts that were rejected.
+    pub rejected: u64,
+    /// Its step size; the mean where each step has its own.
+    #[serde(with = "number")]
     pub h: f64,
-    /// Relative distance of the final state from the exact one.
+    /// Evaluations of f, where they were counted.
+    pub evaluations: Option<u64>,
+    /// Relative distance of the final state from the reference.
+    #[serde(with = "number")]
     pub error: f64,
-    /// Final minus initial energy.
+    /// Relative change of the energy from the start to the end.
+    #[serde(with = "number")]
     pub energy_error: f64,
+    /// The same of a Casimir.
+    #[serde(with = "number")]
+    pub casimir_error: f64,
+    /// Distance of the final state from its group, where it has one.
+    #[serde(with = "number")]
+    pub group_residual: f64,
     /// CPU time per unit of simulated time.
+    #[serde(with = "number")]
     pub seconds_per_unit: f64,
+    /// Wall time of the first run.
+    #[serde(with = "number")]
+    pub first_seconds: f64,
     /// Why the run stopped early, when it did.
     pub failure: Option<String>,
+}
+
+impl WorkPoint {
+    /// A run of which nothing is known yet.
+    pub fn new(t_span: [f64; 2], size: Size) -> Self {
+        let steps = match size {
+            Size::Steps(steps) => steps,
+            Size::Tolerance(_) => 0,
+        };
+        WorkPoint {
+            size,
+            steps,
+            rejected: 0,
+            h: (t_span[1] - t_span[0]).abs() / steps as f64,
+            evaluations: None,
+            error: f64::NAN,
+            energy_error: f64::NAN,
+            casimir_error: f64::NAN,
+            group_residual: f64::NAN,
+            seconds_per_unit: f64::NAN,
+            first_seconds: f64::NAN,
+            failure: None,
+        }
+    }
+}
+
+/// Where a method reaches an error.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reached {
+    /// CPU time per unit of simulated time.
+    pub seconds: f64,
+    /// The step.
+    pub h: f64,
+    /// The tolerance, of a method that chooses its steps.
+    pub tolerance: Option<f64>,
+    /// The larger energy error of the runs on either side.
+    pub energy_error: f64,
+}
+
+/// The runs that no other run beats in both error and cost, as (curve, point), from the largest error
+/// to the smallest. A run without a cost is none.
+pub fn pareto(curves: &[Curve], cost: impl Fn(&WorkPoint) -> Option<f64>) -> Vec<(usize, usize)> {
+    let both = |(i, j): (usize, usize)| {
+        let point: &WorkPoint = &curves[i].points[j];
+        (point.error, cost(point).unwrap_or(f64::INFINITY))
+    };
+    let places = |(i, curve): (usize, &Curve)| (0..curve.points.len()).map(move |j| (i, j));
+    let mut all: Vec<(usize, usize)> = curves.iter().enumerate().flat_map(places).collect();
+    all.retain(|at| both(*at).0 >= 0.0);
+    all.sort_by(|a, b| {
+        let (a, b) = (both(*a), both(*b));
+        a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1))
+    });
+    let mut least = f64::INFINITY;
+    all.retain(|at| {
+        let (_, cost) = both(*at);
+        let kept = cost < least;
+        least = least.min(cost);
+        kept
+    });
+    all.reverse();
+    all
 }
 
 /// The runs of one method, from the largest step to the smallest.
@@ -57,24 +139,47 @@ impl Curve {
         (used.len() >= 3).then_some(sxy / sxx)
     }
 
-    /// The time per unit of simulated time at which this error is reached, between two runs by the
-    /// line through them in the logarithms; `None` where no run reaches it.
-    pub fn seconds_to(&self, error: f64) -> Option<f64> {
-        // (log error, log time); no error is smaller than rounding, though a run may hit zero.
-        let runs: Vec<(f64, f64)> = self
-            .points
-            .iter()
-            .filter(|p| p.error >= 0.0 && p.seconds_per_unit > 0.0)
-            .map(|p| (p.error.max(1e-17).ln(), p.seconds_per_unit.ln()))
-            .collect();
-        let target = error.ln();
-        let reached = runs.iter().position(|(error, _)| *error <= target)?;
-        let (e1, t1) = runs[reached];
-        let time = match reached.checked_sub(1).map(|before| runs[before]) {
-            Some((e0, t0)) => t0 + (e0 - target) / (e0 - e1) * (t1 - t0),
-            None => t1, // the coarsest run already does
+    /// Where this error is reached soonest, by a run or between two by the line through them in the
+    /// logarithms; `None` where no run reaches it.
+    pub fn reached(&self, error: f64) -> Option<Reached> {
+        // No error is smaller than rounding, though a run may hit zero.
+        let runs: Vec<&WorkPoint> =
+            self.points.iter().filter(|p| p.error >= 0.0 && p.seconds_per_unit > 0.0).collect();
+        let log_error = |p: &WorkPoint| p.error.max(1e-17).ln();
+        let after = runs.iter().position(|p| p.error <= error)?;
+        let b = runs[after];
+        let a = after.checked_sub(1).map_or(b, |before| runs[before]); // the coarsest run may do
+        let share = match log_error(a) - log_error(b) {
+            0.0 => 0.0,
+            way => (log_error(a) - error.ln()) / way,
         };
-        Some(time.exp())
+        let between = |x: f64, y: f64| (x.ln() + share * (y.ln() - x.ln())).exp();
+        let tolerance = match (a.size, b.size) {
+            (Size::Tolerance(x), Size::Tolerance(y)) => Some(between(x, y)),
+            _ => None,
+        };
+        let between = Reached {
+            seconds: between(a.seconds_per_unit, b.seconds_per_unit),
+            h: between(a.h, b.h),
+            tolerance,
+            energy_error: a.energy_error.max(b.energy_error),
+        };
+        // Where a run costs little more than its beginning, a more accurate one may be as fast.
+        let measured = runs[after..].iter().filter(|p| p.error <= error).map(|p| Reached {
+            seconds: p.seconds_per_unit,
+            h: p.h,
+            tolerance: match p.size {
+                Size::Tolerance(rtol) => Some(rtol),
+                Size::Steps(_) => None,
+            },
+            energy_error: p.energy_error,
+        });
+        core::iter::once(between).chain(measured).min_by(|a, b| a.seconds.total_cmp(&b.seconds))
+    }
+
+    /// The time per unit of simulated time at which this error is reached.
+    pub fn seconds_to(&self, error: f64) -> Option<f64> {
+        self.reached(error).map(|reached| reached.seconds)
     }
 
     /// CPU time of one step, at the smallest step.
@@ -95,12 +200,10 @@ mod tests {
         curve.points = hs
             .iter()
             .map(|&h| WorkPoint {
-                steps: 1,
                 h,
                 error: h.powi(4),
-                energy_error: 0.0,
                 seconds_per_unit: 1.0 / h,
-                failure: None,
+                ..WorkPoint::new([0.0, h], Size::Steps(1))
             })
             .collect();
         curve
@@ -120,6 +223,26 @@ mod tests {
         assert!((time - 10f64.powf(1.5)).abs() < 1e-9);
         assert_eq!(curve.seconds_to(1e-9), None);
         assert!((curve.seconds_to(1.0).expect("coarsest") - 10.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_step_to_an_error_lies_on_the_line_too() {
+        let reached = ideal(&[0.1, 0.01]).reached(1e-6).expect("reached");
+        assert!((reached.h - 1e-6f64.powf(0.25)).abs() < 1e-12 && reached.tolerance.is_none());
+    }
+
+    #[test]
+    fn the_front_is_what_nothing_beats_in_both() {
+        let mut slow = ideal(&[0.1, 0.01]);
+        for point in &mut slow.points {
+            point.seconds_per_unit *= 2.0;
+        }
+        // Slower everywhere, but for one run that nobody else is as accurate as.
+        slow.points[1].error = 1e-9;
+        let time = |p: &WorkPoint| Some(p.seconds_per_unit);
+        let front = pareto(&[ideal(&[0.1, 0.01]), slow], time);
+        assert_eq!(front, [(0, 0), (0, 1), (1, 1)]);
+        assert_eq!(pareto(&[ideal(&[0.1])], |_| None), []);
     }
 
     #[test]

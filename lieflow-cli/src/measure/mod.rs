@@ -1,93 +1,39 @@
-//! Speed against error: runs that are timed fairly and judged by the exact solution.
+//! Speed against error: runs that are timed fairly and judged by the exact solution, or by one that
+//! two independent methods agree on.
 //!
-//! Times are CPU time of this thread, medians over rounds; a round visits every method and step
-//! once, so that a slow moment of the machine meets all of them.
+//! Times are CPU time of this thread, medians over rounds; a round visits every method and step once,
+//! in an order of its own, so that a slow moment of the machine meets all of them.
 
+mod candidate;
 mod clock;
 mod curve;
+mod journal;
+mod judge;
 
+pub use candidate::Candidate;
 pub use clock::{cpu_seconds, machine};
-pub use curve::{Curve, WorkPoint};
+pub use curve::{Curve, Reached, WorkPoint, pareto};
+pub use journal::{JOURNAL, Journal};
+pub use judge::{Judge, Reference};
 
 use std::time::{Duration, Instant};
 
-use lieflow::catalog::{MAPS, METHODS, MethodSpec, TABLEAUS};
-use lieflow::{RunError, SaveAt, TimeGrid};
+use rand::SeedableRng;
+use rand::seq::SliceRandom;
+use rand_pcg::Pcg64;
+use serde::{Deserialize, Serialize};
 
 use crate::cmd::CliError;
-use crate::model::{Layer, Model};
+use crate::model::Model;
 use crate::scene::Scene;
 
-/// A method on a layer.
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
-pub struct Candidate {
-    /// The method.
-    pub method: MethodSpec,
-    /// The layer.
-    pub layer: Layer,
-}
-
-impl Candidate {
-    /// RKMK4 with a map on a layer.
-    pub fn rkmk4(map: &str, layer: Layer) -> Self {
-        Candidate { method: MethodSpec::new("rkmk4", Some(map)), layer }
-    }
-
-    /// Classical RK4 on the entries.
-    pub fn rk4(layer: Layer) -> Self {
-        Candidate { method: MethodSpec::new("rk4", None), layer }
-    }
-
-    /// Its name in tables and legends.
-    pub fn label(&self) -> String {
-        match self.layer {
-            Layer::Closed => self.method.label(),
-            Layer::General => format!("{}, general", self.method.label()),
-        }
-    }
-
-    /// The figure that it belongs to: its tableau, or the family of a method that has none.
-    pub fn family(&self) -> &str {
-        match self.method.name.as_str() {
-            "rkmk4" | "rk4" => "rk4",
-            name if name.starts_with("cf") => "commutator-free",
-            name if name.starts_with("cg") => "crouch-grossman",
-            _ => self.method.tableau.as_deref().unwrap_or("few-brackets"),
-        }
-    }
-
-    /// Everything in the catalog that runs on the problem of `scene`, each with the tableaus and
-    /// maps that it takes. A tableau that has a method of its own is listed under that.
-    ///
-    /// # Errors
-    /// The problem cannot be set up.
-    pub fn all_that_fit(scene: &Scene, quantities: &[&str]) -> Result<Vec<Self>, CliError> {
-        let mut fitting = Vec::new();
-        for layer in Layer::ALL {
-            let model = scene.model_with(layer, quantities)?;
-            for info in METHODS {
-                let none = [None];
-                let maps: Vec<Option<&str>> = match info.takes_map {
-                    true => MAPS.iter().map(|map| Some(map.name)).collect(),
-                    false => none.into(),
-                };
-                let tableaus: Vec<Option<&str>> = match info.takes_tableau {
-                    true => TABLEAUS.iter().filter(|t| **t != "rk4").map(|t| Some(*t)).collect(),
-                    false => none.into(),
-                };
-                for tableau in &tableaus {
-                    for map in &maps {
-                        let mut method = MethodSpec::new(info.name, *map);
-                        method.tableau = tableau.map(Into::into);
-                        if model.fits(&method).is_ok() {
-                            fitting.push(Candidate { method, layer });
-                        }
-                    }
-                }
-            }
-        }
-        Ok(fitting)
-    }
+/// How large the steps of a run are.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Size {
+    /// So many steps of one size.
+    Steps(u64),
+    /// Steps chosen by their error: rtol, with atol = 0.
+    Tolerance(f64),
 }
 
 /// How much is measured.
@@ -99,59 +45,101 @@ pub struct Effort {
     pub longest: Duration,
     /// A shorter run is repeated within a round until it has taken this long.
     pub shortest: Duration,
+    /// Of the order within the rounds.
+    pub seed: u64,
 }
 
-/// Measure every candidate on `scene` over `t_span` in each number of steps, against the exact
-/// solution at its end. `tick` is called after every run with the share of the work that is done.
+/// What is measured.
+#[derive(Clone, Copy, Debug)]
+pub struct Plan<'a> {
+    /// What the runs model.
+    pub quantities: &'a [&'a str],
+    /// The methods.
+    pub candidates: &'a [Candidate],
+    /// From when to when.
+    pub t_span: [f64; 2],
+    /// Numbers of steps for the methods with steps of one size, from few to many.
+    pub steps: &'a [u64],
+    /// Tolerances for those that choose their steps, from loose to tight.
+    pub tolerances: &'a [f64],
+}
+
+/// Measure every candidate on `scene` in each size of steps. `tick` is called after every run with the
+/// share of the work that is done. What `journal` knows is not measured again.
 ///
 /// # Errors
-/// The problem cannot be set up, or has no exact solution.
+/// The problem cannot be set up or has no reference; the journal cannot be written.
 pub fn speed_against_error(
     scene: &Scene,
-    quantities: &[&str],
-    candidates: &[Candidate],
-    t_span: [f64; 2],
-    steps: &[u64],
+    plan: &Plan<'_>,
     effort: Effort,
+    mut journal: Option<&mut Journal>,
     mut tick: impl FnMut(f64),
-) -> Result<Vec<Curve>, CliError> {
-    let judge = Judge::new(scene, quantities, t_span)?;
+) -> Result<(Vec<Curve>, Reference), CliError> {
+    let Plan { candidates, t_span, .. } = *plan;
+    let judge = Judge::new(scene, plan.quantities, t_span)?;
     let mut curves = Vec::new();
     let mut jobs = Vec::new();
     for (i, candidate) in candidates.iter().enumerate() {
         let model = scene.model_with(candidate.layer, &judge.quantities())?;
         let mut curve = Curve::new(candidate.clone(), model.order(&candidate.method)?);
-        for &steps in steps {
-            let grid = TimeGrid::with_steps(t_span, steps)?;
-            let start = Instant::now();
-            let point = judge.point(&*model, &candidate.method, &grid);
-            let took = start.elapsed();
+        let sizes: Vec<Size> = match candidate.adaptive {
+            false => plan.steps.iter().map(|n| Size::Steps(*n)).collect(),
+            true => plan.tolerances.iter().map(|tol| Size::Tolerance(*tol)).collect(),
+        };
+        for size in sizes {
+            let key = format!("{} {size:?}", candidate.label());
+            let known = journal.as_ref().and_then(|journal| journal.point(&key)).cloned();
+            let point = match known {
+                Some(point) => point,
+                None => {
+                    let start = Instant::now();
+                    let mut point = judge.point(&*model, candidate, t_span, size);
+                    point.first_seconds = start.elapsed().as_secs_f64();
+                    if let Some(journal) = &mut journal {
+                        journal.saw_point(&key, &point)?;
+                    }
+                    point
+                }
+            };
+            let took = point.first_seconds;
             if point.failure.is_none() {
-                let repeats = effort.shortest.as_secs_f64() / took.as_secs_f64().max(1e-9);
+                let times = journal.as_ref().map_or(&[][..], |journal| journal.times(&key));
                 jobs.push(Job {
                     curve: i,
                     point: curve.points.len(),
-                    grid,
-                    repeats: repeats.ceil().max(1.0) as u32,
-                    times: Vec::new(),
+                    size,
+                    repeats: (effort.shortest.as_secs_f64() / took.max(1e-9)).ceil().max(1.0)
+                        as u32,
+                    times: times.to_vec(),
+                    key,
                 });
             }
             curve.points.push(point);
-            if took > effort.longest {
+            if took > effort.longest.as_secs_f64() {
                 break;
             }
         }
         curves.push((curve, model));
         tick(0.2 * (i + 1) as f64 / candidates.len() as f64);
     }
-    let all = f64::from(effort.rounds) * jobs.len() as f64;
-    let mut done = 0.0;
-    for _ in 0..effort.rounds {
-        for job in &mut jobs {
-            let (curve, model) = &curves[job.curve];
-            job.time(&**model, &curve.candidate.method)?;
-            done += 1.0;
-            tick(0.2 + 0.8 * done / all);
+    let mut rng = Pcg64::seed_from_u64(effort.seed);
+    for round in 0..effort.rounds {
+        jobs.shuffle(&mut rng);
+        let share = |done: usize| {
+            let rounds = f64::from(round) + done as f64 / jobs.len() as f64;
+            0.2 + 0.8 * rounds / f64::from(effort.rounds)
+        };
+        let shares: Vec<f64> = (1..=jobs.len()).map(share).collect();
+        for (job, share) in jobs.iter_mut().zip(shares) {
+            if job.times.len() <= round as usize {
+                let (curve, model) = &curves[job.curve];
+                let seconds = job.time(&**model, &curve.candidate, t_span)?;
+                if let Some(journal) = &mut journal {
+                    journal.saw_time(&job.key, seconds)?;
+                }
+            }
+            tick(share);
         }
     }
     let length = (t_span[1] - t_span[0]).abs();
@@ -159,7 +147,7 @@ pub fn speed_against_error(
         let point = &mut curves[job.curve].0.points[job.point];
         point.seconds_per_unit = median(&mut job.times) / length;
     }
-    Ok(curves.into_iter().map(|(curve, _)| curve).collect())
+    Ok((curves.into_iter().map(|(curve, _)| curve).collect(), judge.reference))
 }
 
 /// The median; not a number where there are none.
@@ -172,99 +160,28 @@ pub fn median(times: &mut [f64]) -> f64 {
 struct Job {
     curve: usize,
     point: usize,
-    grid: TimeGrid,
+    size: Size,
     repeats: u32,
     times: Vec<f64>,
+    key: String,
 }
 
 impl Job {
-    fn time(&mut self, model: &dyn Model, method: &MethodSpec) -> Result<(), RunError> {
+    fn time(
+        &mut self,
+        model: &dyn Model,
+        candidate: &Candidate,
+        t_span: [f64; 2],
+    ) -> Result<f64, CliError> {
         let start = cpu_seconds();
         for _ in 0..self.repeats {
-            model.run(method, &self.grid, &SaveAt::Ends, &mut |_, row| {
+            let mut see = |_: f64, row: &[f64]| {
                 core::hint::black_box(row);
-            })?;
+            };
+            self.size.run(model, &candidate.method, t_span, &mut see).map_err(CliError::Message)?;
         }
-        self.times.push((cpu_seconds() - start) / f64::from(self.repeats));
-        Ok(())
-    }
-}
-
-/// The exact end of a run, and where in a row the state and the energy are.
-struct Judge {
-    state: Vec<(&'static str, core::ops::Range<usize>)>,
-    energy: Option<usize>,
-    exact: Vec<f64>,
-}
-
-impl Judge {
-    fn new(scene: &Scene, quantities: &[&str], t_span: [f64; 2]) -> Result<Self, CliError> {
-        let kind = scene.problem.kind();
-        let mut width = 0;
-        let mut state = Vec::new();
-        for name in scene.problem.state(quantities) {
-            let columns = kind.quantity(name)?.columns.len();
-            state.push((*name, width..width + columns));
-            width += columns;
-        }
-        let energy = kind.quantity("energy").is_ok().then_some(width);
-        let mut judge = Judge { state, energy, exact: Vec::new() };
-        let model = scene.model_with(Layer::Closed, &judge.quantities())?;
-        judge.exact = match model.exact(t_span[1] - t_span[0]) {
-            Some(exact) => exact?,
-            None => {
-                return Err(CliError::Message(format!(
-                    "no exact solution is known of `{}`",
-                    kind.name
-                )));
-            }
-        };
-        Ok(judge)
-    }
-
-    /// What a model must compute for [`point`](Self::point).
-    fn quantities(&self) -> Vec<&'static str> {
-        let names = self.state.iter().map(|(name, _)| *name);
-        names.chain(self.energy.map(|_| "energy")).collect()
-    }
-
-    fn point(&self, model: &dyn Model, method: &MethodSpec, grid: &TimeGrid) -> WorkPoint {
-        let (mut first, mut last) = (Vec::new(), Vec::new());
-        let outcome = model.run(method, grid, &SaveAt::Ends, &mut |_, row| {
-            if first.is_empty() {
-                first = row.to_vec();
-            }
-            last = row.to_vec();
-        });
-        let mut point = WorkPoint {
-            steps: grid.steps(),
-            h: grid.h().abs(),
-            error: f64::NAN,
-            energy_error: f64::NAN,
-            seconds_per_unit: f64::NAN,
-            failure: None,
-        };
-        match outcome {
-            Ok(_) => {
-                point.error = self.error(&last);
-                if let Some(column) = self.energy {
-                    point.energy_error = last[column] - first[column];
-                }
-            }
-            Err(error) => point.failure = Some(error.to_string()),
-        }
-        point
-    }
-
-    /// The largest relative distance of a part of the state from the exact one.
-    fn error(&self, row: &[f64]) -> f64 {
-        let norm = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
-        let relative = |(_, range): &(_, core::ops::Range<usize>)| {
-            let (x, exact) = (&row[range.clone()], &self.exact[range.clone()]);
-            let gap: Vec<f64> = x.iter().zip(exact).map(|(x, e)| x - e).collect();
-            let size = norm(exact);
-            if size > 0.0 { norm(&gap) / size } else { norm(&gap) }
-        };
-        self.state.iter().map(relative).fold(0.0, f64::max)
+        let seconds = (cpu_seconds() - start) / f64::from(self.repeats);
+        self.times.push(seconds);
+        Ok(seconds)
     }
 }

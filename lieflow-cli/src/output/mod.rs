@@ -4,7 +4,7 @@ mod csv;
 mod summary;
 
 pub use csv::{COMPLETE, PARTIAL, Trajectory};
-pub use summary::{Drift, MethodSummary, SUMMARY, Summary};
+pub use summary::{Chosen, Drift, MethodSummary, SUMMARY, Summary};
 
 use std::fs;
 use std::io::{self, Write};

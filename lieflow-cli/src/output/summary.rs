@@ -36,10 +36,12 @@ pub struct Summary {
     pub trajectory: &'static str,
     /// From when to when.
     pub t_span: [f64; 2],
-    /// The size of a step.
-    pub dt: f64,
+    /// The size of a step; none where each has its own.
+    pub dt: Option<f64>,
     /// The steps that were taken.
     pub steps: u64,
+    /// How steps were chosen, where they were.
+    pub adaptive: Option<Chosen>,
     /// Shorter steps to output times between them; not known when a step failed.
     pub side_steps: Option<u64>,
     /// The rows that were written.
@@ -57,6 +59,21 @@ pub struct Summary {
     pub drift: BTreeMap<&'static str, Drift>,
     /// The distance from the exact solution at the end, by quantity; none where none is known.
     pub error_at_end: Option<BTreeMap<&'static str, f64>>,
+}
+
+/// Steps that were chosen by their error.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Chosen {
+    /// Steps that were accepted.
+    pub accepted: u64,
+    /// Attempts that were rejected, for their error or because the step failed.
+    pub rejected: u64,
+    /// Evaluations of f, by an embedded pair; not counted where steps were doubled.
+    pub evaluations: Option<u64>,
+    /// The smallest accepted step.
+    pub smallest_step: f64,
+    /// The largest accepted step.
+    pub largest_step: f64,
 }
 
 /// A method with its parts.

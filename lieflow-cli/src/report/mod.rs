@@ -1,9 +1,16 @@
 //! Measurements as figures, tables and files.
 
+mod agreement;
+mod choice;
 mod energy;
 mod maps;
 mod speed;
 
+pub use agreement::agreement;
+pub use choice::{
+    ADVICE, CHOICE_HEADER, Choice, Cost, KEPT, choice_cells, choice_table, choices, front_chart,
+    fronts, keeps_energy,
+};
 pub use energy::{EnergyRun, energy_chart, momentum_sphere};
 pub use maps::{MAPS_PAGE, write_maps};
 pub use speed::{SpeedRow, speed_chart, speed_csv, speed_table, tolerance_header};

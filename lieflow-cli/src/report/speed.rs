@@ -1,14 +1,15 @@
 //! Time against error.
 
-use super::{duration, order, scientific};
-use crate::measure::{Candidate, Curve};
+use super::choice::size_of;
+use super::{duration, order};
+use crate::measure::{Candidate, Curve, Size};
 use crate::model::Layer;
 use crate::page::{Column, Row, Table};
 use crate::plot::format::seconds;
 use crate::plot::{Axis, Chart, Marker, Point, Scale, Series};
 
 /// The errors for which tables give the time.
-const ERRORS: [f64; 3] = [1e-3, 1e-6, 1e-9];
+const ERRORS: [f64; 4] = super::ADVICE;
 
 /// The colour and marker of a method: by its map, the same in every figure; `None` for a method
 /// that has no map, whose place in the figure decides.
@@ -31,13 +32,10 @@ pub fn speed_chart<'a>(
     let series = curves.into_iter().enumerate().map(|(place, curve)| {
         let candidate = &curve.candidate;
         let look = look(candidate).unwrap_or(place);
-        let points = curve.points.iter().filter(|point| point.failure.is_none()).map(|point| {
-            Point::new(point.error, point.seconds_per_unit).with_note(format!(
-                "h = {}, {} steps",
-                scientific(point.h),
-                point.steps
-            ))
-        });
+        let points =
+            curve.points.iter().filter(|point| point.failure.is_none()).map(|point| {
+                Point::new(point.error, point.seconds_per_unit).with_note(size_of(point))
+            });
         Series {
             name: candidate.label(),
             colour: look,
@@ -118,31 +116,48 @@ pub fn speed_table(curves: &[Curve]) -> Table {
 }
 
 /// Every run as CSV.
-pub fn speed_csv<'a>(curves: impl IntoIterator<Item = (&'a str, &'a Curve)>) -> String {
+///
+/// Each curve comes with the name of its scene and the places of its points on the Pareto front.
+pub fn speed_csv<'a>(curves: impl IntoIterator<Item = (&'a str, &'a Curve, Vec<usize>)>) -> String {
     let mut text = String::from(
-        "scene,method,map,tableau,layer,order,steps,h,error,energy_error,seconds_per_unit,failure\n",
+        "scene,method,map,tableau,layer,adaptive,order,rtol,steps,rejected,h,evaluations,error,\
+         energy_error,casimir_error,group_residual,seconds_per_unit,pareto,failure\n",
     );
-    for (scene, curve) in curves {
-        let Candidate { method, layer } = &curve.candidate;
+    for (scene, curve, front) in curves {
+        let Candidate { method, layer, adaptive } = &curve.candidate;
         let (map, tableau) = (method.map.as_deref(), method.tableau.as_deref());
-        for p in &curve.points {
+        for (j, p) in curve.points.iter().enumerate() {
+            let rtol = match p.size {
+                Size::Steps(_) => String::new(),
+                Size::Tolerance(rtol) => format!("{rtol:e}"),
+            };
             text += &format!(
-                "{scene},{},{},{},{},{},{},{:e},{:e},{:e},{:e},{}\n",
+                "{scene},{},{},{},{},{adaptive},{},{rtol},{},{},{},{},{},{},{},{},{},{},{}\n",
                 method.name,
                 map.unwrap_or_default(),
                 tableau.unwrap_or_default(),
                 layer.name(),
                 curve.order,
                 p.steps,
-                p.h,
-                p.error,
-                p.energy_error,
-                p.seconds_per_unit,
+                p.rejected,
+                number(p.h),
+                p.evaluations.map_or(String::new(), |n| n.to_string()),
+                number(p.error),
+                number(p.energy_error),
+                number(p.casimir_error),
+                number(p.group_residual),
+                number(p.seconds_per_unit),
+                front.contains(&j),
                 quoted(p.failure.as_deref().unwrap_or_default()),
             );
         }
     }
     text
+}
+
+/// A number; nothing where there is none.
+fn number(x: f64) -> String {
+    if x.is_finite() { format!("{x:e}") } else { String::new() }
 }
 
 /// A CSV field in quotes, where it needs them.

@@ -23,8 +23,10 @@ pub const BUNDLED: &[Bundled] = bundled![
     "asymmetric-top",
     "symmetric-top",
     "high-energy",
+    "adaptive-top",
     "tumbling-attitude",
     "general-layer",
+    "rotating-field",
 ];
 
 impl Bundled {

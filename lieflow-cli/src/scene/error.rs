@@ -126,6 +126,17 @@ pub struct Refusal {
 }
 
 impl Refusal {
+    /// The same with the names of the library in the words of scene files.
+    pub fn renamed(mut self, names: &[(&str, &str)]) -> Self {
+        for (from, to) in names {
+            if self.key.as_deref() == Some(from) {
+                self.key = Some((*to).into());
+            }
+            self.message = self.message.replace(from, to);
+        }
+        self
+    }
+
     /// A value that cannot be used.
     pub fn at(key: impl Into<String>, message: impl Into<String>) -> Self {
         Refusal { key: Some(key.into()), message: message.into(), help: None }

@@ -1,5 +1,6 @@
 //! The keys of the sections that every scene has.
 
+use lieflow::adaptive::Adaptive;
 use lieflow::catalog::MethodSpec;
 use lieflow::{SaveAt, TimeGrid};
 use serde::Deserialize;
@@ -48,27 +49,81 @@ pub(super) struct TimeKeys {
     t_span: Reals<2>,
     dt: Option<Real>,
     steps: Option<Whole<1>>,
+    rtol: Option<Real>,
+    atol: Option<Real>,
+    h_init: Option<Real>,
+    h_min: Option<Real>,
+    h_max: Option<Real>,
+    max_steps: Option<Whole<1>>,
 }
 
+/// The steps that `compare` starts from where a scene leaves them to the error.
+const STEPS: u64 = 1000;
+
 impl TimeKeys {
-    pub(super) fn resolve(self) -> Result<TimeGrid, Refusal> {
+    /// The steps of one size, and those that are chosen by their error where tolerances are given.
+    pub(super) fn resolve(self) -> Result<(TimeGrid, Option<Adaptive>), Refusal> {
         let [t0, t1] = self.t_span.0;
         if t0 == t1 {
             let message = format!("t_span is empty: it starts and ends at t = {t0}");
             return Err(Refusal::at("t_span", message));
         }
-        Ok(match exactly_one(("dt", self.dt), ("steps", self.steps))? {
-            Either::First(dt) => TimeGrid::new([t0, t1], dt.0)?,
-            Either::Second(steps) => {
-                TimeGrid::with_steps([t0, t1], steps.0).map_err(|error| {
-                    let mut refusal = Refusal::from(error);
-                    if refusal.key.as_deref() == Some("dt") {
-                        refusal.key = Some("steps".into()); // the key that this dt comes from
-                    }
-                    refusal
-                })?
+        if let Some(control) = self.adaptive()? {
+            let fixed = [("dt", self.dt.is_some()), ("steps", self.steps.is_some())];
+            if let Some((key, _)) = fixed.into_iter().find(|(_, given)| *given) {
+                let message = format!(
+                    "`{key}` fixes the steps and `rtol`, `atol` leave them to the error: expected \
+                     one of the two"
+                );
+                return Err(Refusal::at(key, message));
             }
-        })
+            return Ok((TimeGrid::with_steps([t0, t1], STEPS)?, Some(control)));
+        }
+        let grid = match exactly_one(("dt", self.dt), ("steps", self.steps))? {
+            Either::First(dt) => TimeGrid::new([t0, t1], dt.0)?,
+            Either::Second(steps) => TimeGrid::with_steps([t0, t1], steps.0)
+                .map_err(|error| Refusal::from(error).renamed(&[("dt", "steps")]))?,
+        };
+        Ok((grid, None))
+    }
+
+    /// Tolerances and limits; none where no tolerance is given.
+    fn adaptive(&self) -> Result<Option<Adaptive>, Refusal> {
+        if self.rtol.is_none() && self.atol.is_none() {
+            let limits = [
+                ("h_init", self.h_init.is_some()),
+                ("h_min", self.h_min.is_some()),
+                ("h_max", self.h_max.is_some()),
+                ("max_steps", self.max_steps.is_some()),
+            ];
+            return match limits.into_iter().find(|(_, given)| *given) {
+                None => Ok(None),
+                Some((key, _)) => {
+                    let message =
+                        format!("`{key}` is for steps chosen by error: add `rtol` or `atol`");
+                    Err(Refusal::at(key, message))
+                }
+            };
+        }
+        let tolerance = |x: Option<Real>| x.map_or(0.0, |x| x.0);
+        let control = || {
+            let mut control = Adaptive::new(tolerance(self.rtol), tolerance(self.atol))?;
+            if let Some(h) = self.h_init {
+                control = control.first_step(h.0)?;
+            }
+            if let Some(h) = self.h_max {
+                control = control.max_step(h.0)?;
+            }
+            if let Some(h) = self.h_min {
+                control = control.min_step(h.0)?;
+            }
+            if let Some(n) = self.max_steps {
+                control = control.max_steps(n.0)?;
+            }
+            Ok(control)
+        };
+        let names = [("first_step", "h_init"), ("min_step", "h_min"), ("max_step", "h_max")];
+        control().map(Some).map_err(|error: lieflow::Error| Refusal::from(error).renamed(&names))
     }
 }
 

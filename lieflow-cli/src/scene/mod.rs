@@ -15,7 +15,8 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-use lieflow::catalog::MethodSpec;
+use lieflow::adaptive::Adaptive;
+use lieflow::catalog::{MethodSpec, all_methods};
 use lieflow::{Error, SaveAt, TimeGrid};
 
 use self::document::{Document, deserializer};
@@ -36,8 +37,10 @@ pub struct Scene {
     pub method: MethodSpec,
     /// The layer.
     pub layer: Layer,
-    /// The steps.
+    /// The steps of one size; where `adaptive` chooses, those that `compare` starts from.
     pub grid: TimeGrid,
+    /// Tolerances and limits of steps that are chosen by their error, where the scene has them.
+    pub adaptive: Option<Adaptive>,
     /// Where rows are written.
     pub save: SaveAt,
     /// What is written, in this order.
@@ -61,7 +64,7 @@ impl Scene {
             .keys::<MethodKeys>("method")?
             .resolve()
             .map_err(|refusal| document.refusal("method", refusal))?;
-        let grid = document
+        let (grid, adaptive) = document
             .keys::<TimeKeys>("time")?
             .resolve()
             .map_err(|refusal| document.refusal("time", refusal))?;
@@ -71,9 +74,16 @@ impl Scene {
             .map_err(|refusal| document.refusal("output", refusal))?;
         let stem = Path::new(source).file_stem().unwrap_or_default().to_string_lossy();
         let name = if stem.is_empty() { "scene".into() } else { stem.into_owned() };
-        let scene = Scene { title, name, problem, method, layer, grid, save, quantities };
+        let scene = Scene { title, name, problem, method, layer, grid, adaptive, save, quantities };
         let model = scene.model().map_err(|error| document.refusal("problem", error.into()))?;
-        model.fits(&scene.method).map_err(|error| document.refusal("method", error.into()))?;
+        model.fits(&scene.method).map_err(|error| {
+            let mut refusal = Refusal::from(error);
+            if refusal.help.is_none() && scene.fits_in_no_way(&*model) {
+                refusal.key = Some("name".into());
+                refusal.help = Some(format!("methods that fit: {}", fitting(&*model).join(", ")));
+            }
+            document.refusal("method", refusal)
+        })?;
         Ok(scene)
     }
 
@@ -138,6 +148,11 @@ impl Scene {
         self.model_with(self.layer, &quantities)
     }
 
+    /// Does the method of the scene not run on the model, whatever its parts?
+    fn fits_in_no_way(&self, model: &dyn Model) -> bool {
+        model.fits(&MethodSpec::new(&self.method.name, None)).is_err()
+    }
+
     /// The problem on any layer with any quantities.
     ///
     /// # Errors
@@ -145,6 +160,12 @@ impl Scene {
     pub fn model_with(&self, layer: Layer, quantities: &[&str]) -> Result<Box<dyn Model>, Error> {
         self.problem.model(layer, quantities)
     }
+}
+
+/// The names of the methods that run on a problem, with their default parts.
+fn fitting(model: &dyn Model) -> Vec<&'static str> {
+    let fits = |name: &str| model.fits(&MethodSpec::new(name, None)).is_ok();
+    all_methods().map(|(info, _)| info.name).filter(|name| fits(name)).collect()
 }
 
 /// No scene has this name.

@@ -5,12 +5,14 @@ mod closed;
 mod exact;
 mod free;
 mod general;
+mod invariants;
 mod state;
 
 pub use closed::{RigidBody, RigidBodyAttitude};
 pub use exact::Exact;
 pub use free::{Frame, FreeBody};
 pub use general::{RigidBodyN, RigidBodyNAttitude};
+pub use invariants::manakov_integrals;
 pub use state::{BodyFrame, BodyState, RigidBodyState};
 
 use crate::error::Error;

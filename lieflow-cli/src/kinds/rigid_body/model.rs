@@ -1,14 +1,19 @@
 //! The rigid body on either layer, with or without its attitude.
 
 use faer::Mat;
-use lieflow::catalog::MethodSpec;
+use lieflow::adaptive::{AdaptiveError, AdaptiveStats};
+use lieflow::catalog::{
+    MethodSpec, with_attitude_method, with_implicit_method, with_lie_poisson_method,
+    with_momentum_method,
+};
 use lieflow::groups::{GroupMatrix, LieGroup, MatrixGroup, So3, hat, vee};
 use lieflow::problems::{Exact, RigidBody, RigidBodyAttitude, RigidBodyN, RigidBodyNAttitude};
 use lieflow::{Error, RunError, SaveAt, Stats, TimeGrid};
 use nalgebra::{Matrix3, Vector3};
 
 use super::{KIND, RigidBodySpec, needs_attitude};
-use crate::model::{Layer, Model, Sink, integrate_by, order_by};
+use crate::catalog;
+use crate::model::{Layer, Model, Sink, Steps, adapt_by, integrate_by, order_by};
 
 #[derive(Debug)]
 enum System {
@@ -35,6 +40,52 @@ fn to_faer(m: &Matrix3<f64>) -> Mat<f64> {
 
 fn to_nalgebra(m: &Mat<f64>) -> Matrix3<f64> {
     Matrix3::from_fn(|i, j| m[(i, j)])
+}
+
+catalog!(RigidBody, with_momentum_method);
+catalog!(RigidBodyAttitude, with_attitude_method);
+catalog!(RigidBodyN, with_lie_poisson_method);
+catalog!(RigidBodyNAttitude, with_implicit_method);
+
+/// Run `$run` on the problem of `$model` with its initial state and a function that shows a point of
+/// it as a row.
+macro_rules! on_system {
+    ($model:expr, $sink:expr, |$problem:ident, $y:ident, $see:ident| $run:expr) => {{
+        let model: &RigidBodyModel = $model;
+        let sink: &mut Sink<'_> = $sink;
+        let mut row = Vec::new();
+        let mut show = |t: f64, m: &Vector3<f64>, g: Option<&Matrix3<f64>>| {
+            model.fill(m, g, &mut row);
+            sink(t, &row);
+        };
+        match &model.system {
+            System::Momentum($problem) => {
+                let $y = model.momentum;
+                let $see = |t: f64, m: &Vector3<f64>| show(t, m, None);
+                $run
+            }
+            System::Attitude($problem) => {
+                let $y = model.attitude;
+                let $see = |t: f64, g: &Matrix3<f64>| {
+                    show(t, &$problem.momentum_body(g), Some(g));
+                };
+                $run
+            }
+            System::MomentumN($problem) => {
+                let $y = to_faer(&hat(&model.momentum));
+                let $see = |t: f64, m: &Mat<f64>| show(t, &vee(&to_nalgebra(m)), None);
+                $run
+            }
+            System::AttitudeN($problem) => {
+                let $y: GroupMatrix = MatrixGroup::so(3)?.element(to_faer(&model.attitude))?;
+                let $see = |t: f64, g: &GroupMatrix| {
+                    let m = vee(&to_nalgebra(&$problem.momentum_body(g)));
+                    show(t, &m, Some(&to_nalgebra(g)));
+                };
+                $run
+            }
+        }
+    }};
 }
 
 impl RigidBodyModel {
@@ -116,34 +167,17 @@ impl Model for RigidBodyModel {
         save: &SaveAt,
         sink: &mut Sink<'_>,
     ) -> Result<Stats, RunError> {
-        let mut row = Vec::new();
-        let mut show = |t: f64, m: &Vector3<f64>, g: Option<&Matrix3<f64>>| {
-            self.fill(m, g, &mut row);
-            sink(t, &row);
-        };
-        match &self.system {
-            System::Momentum(body) => {
-                integrate_by(method, body, self.momentum, grid, save, |t, m| show(t, m, None))
-            }
-            System::Attitude(body) => {
-                integrate_by(method, body, self.attitude, grid, save, |t, g| {
-                    show(t, &body.momentum_body(g), Some(g));
-                })
-            }
-            System::MomentumN(body) => {
-                let m = to_faer(&hat(&self.momentum));
-                integrate_by(method, body, m, grid, save, |t, m| {
-                    show(t, &vee(&to_nalgebra(m)), None);
-                })
-            }
-            System::AttitudeN(body) => {
-                let g: GroupMatrix = MatrixGroup::so(3)?.element(to_faer(&self.attitude))?;
-                integrate_by(method, body, g, grid, save, |t, g| {
-                    let m = vee(&to_nalgebra(&body.momentum_body(g)));
-                    show(t, &m, Some(&to_nalgebra(g)));
-                })
-            }
-        }
+        on_system!(self, sink, |problem, y, see| integrate_by(method, problem, y, grid, save, see))
+    }
+
+    fn adapt(
+        &self,
+        method: &MethodSpec,
+        steps: &Steps,
+        save: &SaveAt,
+        sink: &mut Sink<'_>,
+    ) -> Result<AdaptiveStats, AdaptiveError> {
+        on_system!(self, sink, |problem, y, see| adapt_by(method, problem, y, steps, save, see))
     }
 
     fn order(&self, method: &MethodSpec) -> Result<usize, Error> {

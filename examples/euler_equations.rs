@@ -1,0 +1,62 @@
+//! Euler's equations from a Hamiltonian and nothing else: an ellipsoid in an ideal fluid on se(3)*,
+//! and two bodies that feel each other on so(3)* × so(3)*.
+//!
+//! ```sh
+//! cargo run --release --example euler_equations
+//! ```
+
+use lieflow::groups::{LieGroup, Product, Se3, So3};
+use lieflow::maps::{Cay, Exp};
+use lieflow::methods::{EnergyCasimir, Rkmk, tableau::RK4};
+use lieflow::problems::{Euler, Kinetic};
+use lieflow::{SaveAt, TimeGrid, integrate};
+use nalgebra::Vector3;
+
+type V = Vector3<f64>;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    // Kirchhoff: H = ½⟨m, J⁻¹m⟩ with the inertia of the body and of the fluid that it moves.
+    let inverse = |m: &(V, V), u: &mut (V, V)| {
+        u.0 = m.0.component_div(&V::new(1.0, 2.0, 3.0));
+        u.1 = m.1.component_div(&V::new(1.5, 1.2, 1.0));
+    };
+    let body = Euler::new(Se3::<f64>::new(), Kinetic(inverse));
+    let start = (V::new(0.3, 0.6, 1.0), V::new(0.7, 0.4, 1.0));
+    let grid = TimeGrid::new([0.0, 100.0], 0.05)?;
+    println!("an ellipsoid in a fluid, t = 100: drift of the energy, of μ·π");
+    let drift =
+        |m: &(V, V)| (body.energy(m) - body.energy(&start), m.0.dot(&m.1) - start.0.dot(&start.1));
+    let mut m = start;
+    integrate(&body, &Rkmk::new(RK4, Exp), &grid, &SaveAt::Ends, &mut m, |_, _| {})?;
+    println!("  rkmk4 exp            {:8.1e} {:8.1e}", drift(&m).0, drift(&m).1);
+    let mut m = start;
+    integrate(&body, &EnergyCasimir::new(Cay), &grid, &SaveAt::Ends, &mut m, |_, _| {})?;
+    println!("  energy and Casimir   {:8.1e} {:8.1e}", drift(&m).0, drift(&m).1);
+    assert!(drift(&m).0.abs() < 1e-11 && drift(&m).1.abs() < 1e-11);
+
+    // Where it went: with g the same equations move the body through space.
+    let both = body.with_group();
+    let mut y = (Se3::<f64>::new().identity(), start);
+    integrate(&both, &Rkmk::new(RK4, Exp), &grid, &SaveAt::Ends, &mut y, |_, _| {})?;
+    println!("  it drifted to {:.2?}", y.0.1.as_slice());
+
+    // Any H with its gradient, on any group: here the coupling is not quadratic.
+    let j = V::new(1.0, 2.0, 3.5);
+    let energy = move |m: &(V, V)| {
+        0.5 * (m.0.dot(&m.0.component_div(&j)) + m.1.dot(&m.1.component_div(&j)))
+            + 0.3 * m.0.dot(&m.1).sin()
+    };
+    let gradient = move |m: &(V, V), xi: &mut (V, V)| {
+        let slope = 0.3 * m.0.dot(&m.1).cos();
+        *xi = (m.0.component_div(&j) + slope * m.1, m.1.component_div(&j) + slope * m.0);
+    };
+    let pair = Euler::new(Product(So3::<f64>::new(), So3::new()), (energy, gradient));
+    let start = (V::new(1.0, 0.2, -0.4), V::new(0.3, -0.8, 0.5));
+    let mut m = start;
+    integrate(&pair, &Rkmk::new(RK4, Exp), &grid, &SaveAt::Ends, &mut m, |_, _| {})?;
+    let lengths = (m.0.norm() - start.0.norm(), m.1.norm() - start.1.norm());
+    println!("two coupled bodies: drift of H {:.1e}", pair.energy(&m) - pair.energy(&start));
+    println!("  of the two lengths {:.1e}, {:.1e}", lengths.0, lengths.1);
+    assert!(lengths.0.abs() < 1e-12 && lengths.1.abs() < 1e-12);
+    Ok(())
+}

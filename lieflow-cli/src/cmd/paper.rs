@@ -1,0 +1,36 @@
+//! `lieflow paper`: the numerical section of the paper, computed again.
+
+use std::time::Instant;
+
+use super::CliError;
+use crate::args::PaperArgs;
+use crate::output;
+use crate::paper::{Effort, compute};
+
+/// Run the command.
+///
+/// # Errors
+/// A report that cannot be written.
+pub fn run(args: &PaperArgs) -> Result<(), CliError> {
+    let clock = Instant::now();
+    // A folder that cannot be written is better known before the work than after it.
+    output::make_folder(&args.out)?;
+    let effort = match args.quick {
+        true => Effort { frames: 30, rounds: 3, finer: 3 },
+        false => Effort { frames: 300, rounds: 7, finer: 4 },
+    };
+    let bar = super::progress();
+    let paper = compute(&effort, |done, what| {
+        bar.set_position((1000.0 * done) as u64);
+        bar.set_message(what.to_owned());
+    })?;
+    bar.finish_and_clear();
+    let path = paper.write(&args.out)?;
+    output::print(&paper.in_words())?;
+    output::print(&format!(
+        "\nThe page: {}\nThe data: table1.csv to table4.csv and figure3.csv to figure5.csv beside it\n\
+         ({:.1} s)\n",
+        path.display(),
+        clock.elapsed().as_secs_f64()
+    ))
+}

@@ -1,0 +1,57 @@
+//! Conjugation on n×n matrices: Λ(g, p) = g p g⁻¹, which keeps the eigenvalues of p. M is the set of
+//! matrices similar to one; with G = SO(n) and p symmetric, Λ(g, p) = g p gᵀ, symmetric again.
+
+use faer::Mat;
+
+use super::Action;
+use crate::dense::{Lu, mul};
+use crate::groups::{Form, GroupMatrix, MatrixGroup};
+
+/// Λ(g, p) = g p g⁻¹: isospectral flows, ṗ = \[f(p), p\].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Conjugation;
+
+/// Scratch of conjugation.
+#[derive(Debug)]
+pub struct ConjugationWork {
+    product: Mat<f64>,
+    /// Solves q g = product by its transpose; not needed on SO(n).
+    lu: Option<Lu>,
+}
+
+impl Action<MatrixGroup> for Conjugation {
+    type Point = Mat<f64>;
+    type Work = ConjugationWork;
+
+    fn work(&self, group: &MatrixGroup) -> ConjugationWork {
+        let n = group.n();
+        let lu = (!matches!(group.form(), Form::Identity)).then(|| Lu::new(n));
+        ConjugationWork { product: Mat::zeros(n, n), lu }
+    }
+    fn act(
+        &self,
+        _: &MatrixGroup,
+        g: &GroupMatrix,
+        p: &Mat<f64>,
+        q: &mut Mat<f64>,
+        ConjugationWork { product, lu }: &mut ConjugationWork,
+    ) {
+        mul(product, g.as_ref(), p.as_ref());
+        let Some(lu) = lu else {
+            mul(q, product.as_ref(), g.transpose());
+            return;
+        };
+        // gᵀ qᵀ = (g p)ᵀ.
+        lu.a.copy_from(g.transpose());
+        lu.factor();
+        q.copy_from(product.transpose());
+        lu.solve(q.as_mut());
+        for j in 0..q.ncols() {
+            for i in 0..j {
+                let swapped = q[(i, j)];
+                q[(i, j)] = q[(j, i)];
+                q[(j, i)] = swapped;
+            }
+        }
+    }
+}

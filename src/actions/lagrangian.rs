@@ -1,0 +1,99 @@
+//! Sp(2m) on Lagrangian subspaces: {(x, Px)} with symmetric P goes to {(x, QPx)} with
+//! Λ(g, P) = (C + DP)(A + BP)⁻¹, g = \[A B; C D\]. With ẏ = \[a b; c −aᵀ\] y below it, P satisfies the
+//! Riccati equation Ṗ = c − aᵀP − Pa − PbP, and a step may pass a pole of P.
+
+use faer::{Mat, MatRef};
+
+use super::Action;
+use crate::chart::PsiOf;
+use crate::dense::{Lu, is_finite, mul_add};
+use crate::error::StepError;
+use crate::groups::{GroupMatrix, MatrixGroup};
+use crate::maps::CoordinateMap;
+
+/// Λ(g, P) = (C + DP)(A + BP)⁻¹ on symmetric m×m matrices. Where A + BP is singular the subspace is
+/// no graph: a step that ends there fails with [`StepError::NotFinite`].
+///
+/// ```
+/// use lieflow::actions::Lagrangian;
+/// use lieflow::groups::{AlgebraMatrix, MatrixGroup};
+/// use lieflow::methods::magnus::Magnus4;
+/// use lieflow::problems::LinearEquation;
+/// use lieflow::{SaveAt, TimeGrid, integrate};
+/// // Ṗ = 1 + P² from 0: P = tan t, with a pole at π/2 that the steps pass.
+/// let a = |_: f64, v: &mut AlgebraMatrix| {
+///     (v[(1, 0)], v[(0, 1)]) = (1.0, -1.0);
+/// };
+/// let riccati = LinearEquation::new(MatrixGroup::sp(2)?, Lagrangian, a);
+/// let mut p = faer::mat![[0.0]];
+/// let grid = TimeGrid::new([0.0, 3.0], 0.1)?;
+/// integrate(&riccati, &Magnus4, &grid, &SaveAt::Ends, &mut p, |_, _| {})?;
+/// assert!((p[(0, 0)] - 3f64.tan()).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Lagrangian;
+
+/// Scratch of the action.
+#[derive(Debug)]
+pub struct LagrangianWork {
+    numerator: Mat<f64>,
+    denominator: Mat<f64>,
+    lu: Lu,
+}
+
+/// The four blocks A, B, C, D.
+fn blocks(g: &GroupMatrix) -> [MatRef<'_, f64>; 4] {
+    let m = g.nrows() / 2;
+    [(0, 0), (0, m), (m, 0), (m, m)].map(|(i, j)| g.as_ref().submatrix(i, j, m, m))
+}
+
+impl Action<MatrixGroup> for Lagrangian {
+    type Point = Mat<f64>;
+    type Work = LagrangianWork;
+
+    fn work(&self, group: &MatrixGroup) -> LagrangianWork {
+        let m = group.n() / 2;
+        let zero = || Mat::zeros(m, m);
+        LagrangianWork { numerator: zero(), denominator: zero(), lu: Lu::new(m) }
+    }
+    fn act(
+        &self,
+        _: &MatrixGroup,
+        g: &GroupMatrix,
+        p: &Mat<f64>,
+        q: &mut Mat<f64>,
+        LagrangianWork { numerator, denominator, lu }: &mut LagrangianWork,
+    ) {
+        let [a, b, c, d] = blocks(g);
+        numerator.copy_from(c);
+        mul_add(numerator, 1.0, d, p.as_ref());
+        denominator.copy_from(a);
+        mul_add(denominator, 1.0, b, p.as_ref());
+        // (A + BP)ᵀ Qᵀ = (C + DP)ᵀ.
+        lu.a.copy_from(denominator.transpose());
+        lu.factor();
+        q.copy_from(numerator.transpose());
+        lu.solve(q.as_mut());
+        for j in 0..q.ncols() {
+            for i in 0..j {
+                let mean = 0.5 * (q[(i, j)] + q[(j, i)]);
+                (q[(i, j)], q[(j, i)]) = (mean, mean);
+            }
+        }
+    }
+    fn lambda<Psi: CoordinateMap<MatrixGroup>>(
+        &self,
+        psi_u: PsiOf<'_, MatrixGroup, Psi>,
+        p: &Mat<f64>,
+        q: &mut Mat<f64>,
+        work: &mut LagrangianWork,
+    ) -> Result<(), StepError> {
+        let (group, g) = psi_u.form()?;
+        self.act(group, g, p, q, work);
+        match is_finite(q) {
+            true => Ok(()),
+            false => Err(StepError::NotFinite { what: "P" }),
+        }
+    }
+}

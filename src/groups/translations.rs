@@ -1,0 +1,128 @@
+//! The translations of a linear space V: an abelian group, whose maps are all the identity.
+//!
+//! u ∈ V, g ∈ V; \[u, v\] = 0; g·g′ = g + g′; g moves x ∈ V to x + g; Ψ(u) = u, dΨ⁻¹ = id. In a product
+//! it carries the part of a system that is not on a group: a momentum under forces, a controller's
+//! memory, a heat bath.
+
+use super::{LieAlgebra, LieGroup};
+use crate::error::{Error, StepError};
+use crate::maps::{Cay, Ccsk, CoordinateMap, Exp, Pade22, TruncatedExp};
+use crate::problems::LinearSpace;
+use crate::scalar::Real;
+
+/// The translations of the linear space that `zero` is the origin of.
+///
+/// ```
+/// use lieflow::groups::{LieGroup, Translations};
+/// use nalgebra::Vector3;
+/// let group = Translations::new(Vector3::<f64>::zeros(), 3);
+/// let mut y = Vector3::zeros();
+/// group.apply(&Vector3::new(1.0, 2.0, 3.0), &Vector3::new(1.0, 0.0, 0.0), &mut y);
+/// assert_eq!(y, Vector3::new(2.0, 2.0, 3.0));
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Translations<V> {
+    zero: V,
+    dim: usize,
+}
+
+impl<V: LinearSpace> Translations<V> {
+    /// The group; `dim` is the dimension of V.
+    pub const fn new(zero: V, dim: usize) -> Self {
+        Translations { zero, dim }
+    }
+}
+
+impl<V: LinearSpace> LieAlgebra for Translations<V> {
+    type Scalar = V::Scalar;
+    type Alg = V;
+
+    fn name(&self) -> String {
+        format!("T({})", self.dim)
+    }
+    fn dim(&self) -> usize {
+        self.dim
+    }
+    fn zero(&self) -> V {
+        self.zero.clone()
+    }
+    #[inline]
+    fn set_zero(&self, u: &mut V) {
+        u.clear();
+    }
+    #[inline]
+    fn axpy(&self, a: V::Scalar, x: &V, y: &mut V) {
+        y.add(a, x);
+    }
+    #[inline]
+    fn bracket(&self, _: &V, _: &V, out: &mut V) {
+        out.clear();
+    }
+    #[inline]
+    fn norm(&self, u: &V) -> V::Scalar {
+        u.size()
+    }
+    #[inline]
+    fn is_finite(&self, u: &V) -> bool {
+        u.is_finite()
+    }
+}
+
+impl<V: LinearSpace> LieGroup for Translations<V> {
+    type Elem = V;
+    type Vector = V;
+
+    fn identity(&self) -> V {
+        self.zero.clone()
+    }
+    #[inline]
+    fn compose(&self, a: &V, b: &V, out: &mut V) {
+        out.assign(a);
+        out.add(V::Scalar::lit(1.0), b);
+    }
+    /// x + g.
+    #[inline]
+    fn apply(&self, g: &V, x: &V, y: &mut V) {
+        self.compose(g, x, y);
+    }
+    fn distance(&self, a: &V, b: &V) -> V::Scalar {
+        a.distance(b)
+    }
+    fn defect(&self, _: &V) -> V::Scalar {
+        V::Scalar::lit(0.0)
+    }
+}
+
+macro_rules! identity_map {
+    ($($map:ty, $name:expr $(, $index:ident)*;)*) => {$(
+        impl<V: LinearSpace, $(const $index: usize),*> CoordinateMap<Translations<V>> for $map {
+            type At = ();
+
+            fn name(&self) -> &'static str {
+                $name
+            }
+            fn at(&self, _: &Translations<V>) -> Result<(), Error> {
+                Ok(())
+            }
+            #[inline]
+            fn psi(&self, _: &Translations<V>, u: &V, _: &mut (), g: &mut V) -> Result<(), StepError> {
+                g.assign(u);
+                match g.is_finite() {
+                    true => Ok(()),
+                    false => Err(StepError::NotFinite { what: "the translation" }),
+                }
+            }
+            #[inline]
+            fn dpsi_inv(&self, _: &Translations<V>, _: &V, _: &mut (), _: &mut V) -> Result<(), StepError> {
+                Ok(())
+            }
+        }
+    )*};
+}
+identity_map! {
+    Exp, "exp";
+    TruncatedExp, "exp";
+    Cay, "cay";
+    Pade22, "pade22";
+    Ccsk<I, J, K>, "ccsk", I, J, K;
+}

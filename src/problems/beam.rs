@@ -1,0 +1,147 @@
+//! Transfer maps of a beam line in Sp(4): y = (x, z, x′, z′) of a particle next to the design orbit,
+//! as it goes through drifts, quadrupoles and dipoles.
+//!
+//! Hard-edged, paraxial: x″ = −k_x x, z″ = −k_z z along an element of length L, so that its map is one
+//! exponential; in each plane
+//!
+//! ```text
+//!     k > 0, ω = √k:  ⎡ cos ωL      sin ωL/ω ⎤    k < 0: cosh and sinh    k = 0: ⎡ 1  L ⎤
+//!                     ⎣ −ω sin ωL   cos ωL   ⎦                                   ⎣ 0  1 ⎦
+//! ```
+//!
+//! | element | k_x | k_z |
+//! |---|---|---|
+//! | drift | 0 | 0 |
+//! | quadrupole of strength k | k | −k |
+//! | sector dipole of radius ρ | 1/ρ² | 0 |
+//!
+//! A cell's tune in a plane is μ/2π with cos μ = ½ tr; it is stable while |tr| < 2.
+//! Source: E. D. Courant, H. S. Snyder, Ann. Phys. 3 (1958).
+
+use faer::Mat;
+
+use super::rigid_body::check_finite;
+use crate::error::Error;
+use crate::groups::GroupMatrix;
+
+/// An element of a beam line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Element {
+    /// Nothing, over a length.
+    Drift {
+        /// L.
+        length: f64,
+    },
+    /// A quadrupole; k > 0 focuses x.
+    Quadrupole {
+        /// L.
+        length: f64,
+        /// k.
+        k: f64,
+    },
+    /// A quadrupole of no length: x′ changes by −x/f, z′ by z/f.
+    ThinLens {
+        /// f.
+        focal_length: f64,
+    },
+    /// A sector dipole.
+    Dipole {
+        /// L, along the arc.
+        length: f64,
+        /// ρ.
+        radius: f64,
+    },
+}
+
+/// The 2×2 map of u″ = −ku over a length.
+fn plane(length: f64, k: f64) -> [[f64; 2]; 2] {
+    let omega = k.abs().sqrt();
+    let phase = omega * length;
+    if phase == 0.0 {
+        return [[1.0, length], [-k * length, 1.0]];
+    }
+    let (s, c, sign) = match k > 0.0 {
+        true => (phase.sin(), phase.cos(), -1.0),
+        false => (phase.sinh(), phase.cosh(), 1.0),
+    };
+    [[c, s / omega], [sign * omega * s, c]]
+}
+
+impl Element {
+    /// The maps of the planes x and z.
+    fn planes(&self) -> Result<[[[f64; 2]; 2]; 2], Error> {
+        let planes = |length: f64, kx: f64, kz: f64| {
+            check_finite("length", &[length])?;
+            check_finite("k", &[kx, kz])?;
+            Ok([plane(length, kx), plane(length, kz)])
+        };
+        match *self {
+            Element::Drift { length } => planes(length, 0.0, 0.0),
+            Element::Quadrupole { length, k } => planes(length, k, -k),
+            Element::Dipole { length, radius } => planes(length, 1.0 / (radius * radius), 0.0),
+            Element::ThinLens { focal_length } => {
+                let kick = 1.0 / focal_length;
+                check_finite("1/focal_length", &[kick])?;
+                Ok([[[1.0, 0.0], [-kick, 1.0]], [[1.0, 0.0], [kick, 1.0]]])
+            }
+        }
+    }
+
+    /// Its transfer map.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for numbers that are not finite.
+    pub fn map(&self) -> Result<GroupMatrix, Error> {
+        transfer_map(core::slice::from_ref(self))
+    }
+}
+
+/// The transfer map of elements in the order in which the beam meets them.
+///
+/// ```
+/// use lieflow::problems::beam::{Element, transfer_map, tunes};
+/// // A FODO cell of thin lenses: sin(μ/2) = L/(4f).
+/// let (length, f) = (2.0, 1.0);
+/// let half = Element::Drift { length: length / 2.0 };
+/// let cell = [
+///     Element::ThinLens { focal_length: f },
+///     half,
+///     Element::ThinLens { focal_length: -f },
+///     half,
+/// ];
+/// let expected = 2.0 * (length / (4.0 * f)).asin() / std::f64::consts::TAU;
+/// let [x, z] = tunes(&transfer_map(&cell)?).map(|t| t.expect("a stable cell"));
+/// assert!((x - expected).abs() < 1e-15 && (z - expected).abs() < 1e-15);
+/// # Ok::<(), lieflow::Error>(())
+/// ```
+///
+/// # Errors
+/// [`Error::OutOfRange`] for numbers that are not finite.
+pub fn transfer_map(elements: &[Element]) -> Result<GroupMatrix, Error> {
+    let mut total = [[[1.0, 0.0], [0.0, 1.0]]; 2];
+    for element in elements {
+        for (total, m) in total.iter_mut().zip(element.planes()?) {
+            let t = *total;
+            *total = core::array::from_fn(|i| {
+                core::array::from_fn(|j| m[i][0] * t[0][j] + m[i][1] * t[1][j])
+            });
+        }
+    }
+    let entry = |i: usize, j: usize| match i % 2 == j % 2 {
+        true => total[i % 2][i / 2][j / 2],
+        false => 0.0,
+    };
+    check_finite("the map", &total.as_flattened().concat())?;
+    Ok(GroupMatrix::new_unchecked(Mat::from_fn(4, 4, entry)))
+}
+
+/// The tunes μ/2π ∈ (0, 1) of a cell without coupling, in x and in z; `None` where |tr| ≥ 2: the cell
+/// is unstable in that plane, or on the edge.
+pub fn tunes(cell: &GroupMatrix) -> [Option<f64>; 2] {
+    [0, 1].map(|i| {
+        let (half_trace, upper) = (0.5 * (cell[(i, i)] + cell[(i + 2, i + 2)]), cell[(i, i + 2)]);
+        let mu = half_trace.acos() / core::f64::consts::TAU;
+        // M₁₂ = β sin μ with β > 0.
+        (half_trace.abs() < 1.0).then_some(if upper >= 0.0 { mu } else { 1.0 - mu })
+    })
+}

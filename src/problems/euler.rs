@@ -1,0 +1,272 @@
+//! Euler's equations on the dual of any Lie algebra: ṁ = ad*_{∇H(m)} m, where ∇H(m) ∈ 𝔤.
+//!
+//! f(m) = −∇H(m); Λ = Ad*_{g⁻¹} (coadjoint): the motion stays on its coadjoint orbit, and every
+//! Casimir is kept. Invariants: H and the Casimirs.
+//!
+//! With g: (ġ, ṁ) = (g ∇H(m), ad*_{∇H(m)} m) on G × 𝔤*, Λ(a, (g, m)) = (g a⁻¹, Ad*_{a⁻¹} m), f as
+//! above; Ad*_{g⁻¹} m, the momentum in space, is kept by every method that acts by the group.
+
+use super::{Ambient, Invariant, Invariants, LiePoisson, LinearSpace, PointOf, Problem};
+use crate::actions::{Action, Coadjoint};
+use crate::groups::Adjoint;
+use crate::problems::space::linear_space;
+use crate::scalar::Real;
+
+/// H : 𝔤* → ℝ. A new Euler equation is an implementation of this, and nothing else.
+pub trait Hamiltonian<G: Adjoint> {
+    /// H(m).
+    fn value(&self, group: &G, m: &G::Dual) -> G::Scalar;
+    /// ξ ← ∇H(m) ∈ 𝔤: ⟨δm, ξ⟩ = dH(m)·δm.
+    fn gradient(&self, m: &G::Dual, xi: &mut G::Alg);
+    /// Further invariants: the Casimirs of the algebra, integrals of this flow.
+    fn further(&self) -> Vec<Invariant> {
+        Vec::new()
+    }
+    /// Their values.
+    fn further_values(&self, _m: &G::Dual) -> Vec<G::Scalar> {
+        Vec::new()
+    }
+}
+
+/// H = ½⟨m, J⁻¹m⟩ from the inverse inertia J⁻¹ : 𝔤* → 𝔤, linear and symmetric, as a function that
+/// writes J⁻¹m.
+#[derive(Clone, Copy, Debug)]
+pub struct Kinetic<F>(pub F);
+
+impl<G: Adjoint, F: Fn(&G::Dual, &mut G::Alg)> Hamiltonian<G> for Kinetic<F> {
+    fn value(&self, group: &G, m: &G::Dual) -> G::Scalar {
+        let mut xi = group.zero();
+        (self.0)(m, &mut xi);
+        G::Scalar::lit(0.5) * group.pair(m, &xi)
+    }
+    #[inline]
+    fn gradient(&self, m: &G::Dual, xi: &mut G::Alg) {
+        (self.0)(m, xi);
+    }
+}
+
+/// Any H with its gradient, as two functions.
+impl<G, H, D> Hamiltonian<G> for (H, D)
+where
+    G: Adjoint,
+    H: Fn(&G::Dual) -> G::Scalar,
+    D: Fn(&G::Dual, &mut G::Alg),
+{
+    fn value(&self, _: &G, m: &G::Dual) -> G::Scalar {
+        (self.0)(m)
+    }
+    #[inline]
+    fn gradient(&self, m: &G::Dual, xi: &mut G::Alg) {
+        (self.1)(m, xi);
+    }
+}
+
+/// ṁ = ad*_{∇H(m)} m from a group and a Hamiltonian.
+///
+/// ```
+/// use lieflow::groups::Se3;
+/// use lieflow::maps::Exp;
+/// use lieflow::methods::{Rkmk, tableau::RK4};
+/// use lieflow::problems::{Euler, Kinetic};
+/// use lieflow::{SaveAt, TimeGrid, integrate};
+/// use nalgebra::Vector3;
+/// type Pair = (Vector3<f64>, Vector3<f64>);
+///
+/// // Kirchhoff's equations: an ellipsoid in an ideal fluid.
+/// let body = Kinetic(|m: &Pair, u: &mut Pair| {
+///     u.0 = m.0.component_div(&Vector3::new(1.0, 2.0, 3.0));
+///     u.1 = m.1.component_div(&Vector3::new(1.5, 1.2, 1.0));
+/// });
+/// let problem = Euler::new(Se3::<f64>::new(), body);
+/// let mut m = (Vector3::new(0.3, 0.1, 1.0), Vector3::new(0.0, 0.4, 1.0));
+/// let start = (problem.energy(&m), m.0.dot(&m.1));
+/// let grid = TimeGrid::new([0.0, 10.0], 0.01)?;
+/// integrate(&problem, &Rkmk::new(RK4, Exp), &grid, &SaveAt::Ends, &mut m, |_, _| {})?;
+/// assert!((problem.energy(&m) - start.0).abs() < 1e-9);
+/// assert!((m.0.dot(&m.1) - start.1).abs() < 1e-13); // a Casimir
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Euler<G, H> {
+    group: G,
+    hamiltonian: H,
+}
+
+impl<G: Adjoint, H: Hamiltonian<G>> Euler<G, H> {
+    /// The equation.
+    pub const fn new(group: G, hamiltonian: H) -> Self {
+        Euler { group, hamiltonian }
+    }
+    /// H.
+    pub fn hamiltonian(&self) -> &H {
+        &self.hamiltonian
+    }
+    /// H(m).
+    pub fn energy(&self, m: &G::Dual) -> G::Scalar {
+        self.hamiltonian.value(&self.group, m)
+    }
+    /// The same system with g.
+    pub const fn with_group(self) -> EulerGroup<G, H> {
+        EulerGroup { system: self }
+    }
+    /// v ← −∇H(m).
+    fn minus_gradient(&self, m: &G::Dual, v: &mut G::Alg, xi: &mut G::Alg) {
+        self.hamiltonian.gradient(m, xi);
+        self.group.set_zero(v);
+        self.group.axpy(G::Scalar::lit(-1.0), xi, v);
+    }
+}
+
+impl<G: Adjoint, H: Hamiltonian<G>> Problem for Euler<G, H>
+where
+    Coadjoint: Action<G, Point = G::Dual>,
+{
+    type Group = G;
+    type Action = Coadjoint;
+    /// ∇H.
+    type Work = G::Alg;
+
+    fn group(&self) -> &G {
+        &self.group
+    }
+    fn action(&self) -> &Coadjoint {
+        &Coadjoint
+    }
+    fn work(&self) -> G::Alg {
+        self.group.zero()
+    }
+    #[inline]
+    fn f(&self, _: G::Scalar, m: &G::Dual, v: &mut G::Alg, xi: &mut G::Alg) {
+        self.minus_gradient(m, v, xi);
+    }
+}
+
+impl<G: Adjoint, H: Hamiltonian<G>> Ambient for Euler<G, H>
+where
+    Coadjoint: Action<G, Point = G::Dual>,
+    G::Dual: LinearSpace<Scalar = G::Scalar>,
+{
+    #[inline]
+    fn field(&self, _: G::Scalar, m: &G::Dual, dm: &mut G::Dual, xi: &mut G::Alg) {
+        self.hamiltonian.gradient(m, xi);
+        self.group.coad(xi, m, dm);
+    }
+    linear_space!();
+}
+
+impl<G: Adjoint, H: Hamiltonian<G>> Invariants for Euler<G, H>
+where
+    Coadjoint: Action<G, Point = G::Dual>,
+{
+    fn invariants(&self) -> Vec<Invariant> {
+        let energy = Invariant::of_the_flow("energy");
+        core::iter::once(energy).chain(self.hamiltonian.further()).collect()
+    }
+    fn values(&self, m: &G::Dual) -> Vec<G::Scalar> {
+        let further = self.hamiltonian.further_values(m);
+        core::iter::once(self.energy(m)).chain(further).collect()
+    }
+}
+
+/// For quadratic H the discrete gradient is ∇H((a + b)/2) = (∇H(a) + ∇H(b))/2.
+impl<G: Adjoint, F: Fn(&G::Dual, &mut G::Alg)> LiePoisson for Euler<G, Kinetic<F>>
+where
+    Coadjoint: Action<G, Point = G::Dual>,
+    G::Dual: LinearSpace<Scalar = G::Scalar>,
+{
+    fn hamiltonian(&self, m: &G::Dual) -> G::Scalar {
+        self.energy(m)
+    }
+    fn discrete_gradient(&self, a: &G::Dual, b: &G::Dual, xi: &mut G::Alg, work: &mut G::Alg) {
+        let half = G::Scalar::lit(0.5);
+        self.group.set_zero(xi);
+        for m in [a, b] {
+            (self.hamiltonian.0)(m, work);
+            self.group.axpy(half, work, xi);
+        }
+    }
+}
+
+/// Euler's equations with the motion of g: points (g, m).
+#[derive(Clone, Copy, Debug)]
+pub struct EulerGroup<G, H> {
+    system: Euler<G, H>,
+}
+
+impl<G, H> EulerGroup<G, H> {
+    /// The system of m alone.
+    pub fn system(&self) -> &Euler<G, H> {
+        &self.system
+    }
+}
+
+/// Λ(a, (g, m)) = (g a⁻¹, Ad*_{a⁻¹} m): the group acts from the body's side. Where
+/// [`Adjoint::inverse`] allocates, on GL(n) and G_M, so does this.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct FromTheBody;
+
+impl<G: Adjoint> Action<G> for FromTheBody
+where
+    Coadjoint: Action<G, Point = G::Dual>,
+{
+    type Point = (G::Elem, G::Dual);
+    type Work = (G::Elem, <Coadjoint as Action<G>>::Work, [G::Elem; 2]);
+
+    fn work(&self, group: &G) -> Self::Work {
+        let one = || group.identity();
+        (one(), Action::<G>::work(&Coadjoint, group), [one(), one()])
+    }
+    #[inline]
+    fn act(
+        &self,
+        group: &G,
+        a: &G::Elem,
+        p: &Self::Point,
+        q: &mut Self::Point,
+        (inverse, coadjoint, _): &mut Self::Work,
+    ) {
+        // A singular a is not in G; its numbers are not finite, and the step ends with that.
+        let _ = group.inverse(a, inverse);
+        group.compose(&p.0, inverse, &mut q.0);
+        Coadjoint.act(group, a, &p.1, &mut q.1, coadjoint);
+    }
+    /// g back to G.
+    fn restore(&self, group: &G, p: &mut Self::Point, work: &mut Self::Work) -> Option<G::Scalar> {
+        Some(group.correct(&mut p.0, work.2.each_mut()))
+    }
+}
+
+impl<G: Adjoint, H: Hamiltonian<G>> Problem for EulerGroup<G, H>
+where
+    Coadjoint: Action<G, Point = G::Dual>,
+{
+    type Group = G;
+    type Action = FromTheBody;
+    type Work = G::Alg;
+
+    fn group(&self) -> &G {
+        &self.system.group
+    }
+    fn action(&self) -> &FromTheBody {
+        &FromTheBody
+    }
+    fn work(&self) -> G::Alg {
+        self.group().zero()
+    }
+    #[inline]
+    fn f(&self, _: G::Scalar, y: &PointOf<Self>, v: &mut G::Alg, xi: &mut G::Alg) {
+        self.system.minus_gradient(&y.1, v, xi);
+    }
+}
+
+impl<G: Adjoint, H: Hamiltonian<G>> Invariants for EulerGroup<G, H>
+where
+    Coadjoint: Action<G, Point = G::Dual>,
+{
+    fn invariants(&self) -> Vec<Invariant> {
+        self.system.invariants()
+    }
+    fn values(&self, y: &PointOf<Self>) -> Vec<G::Scalar> {
+        self.system.values(&y.1)
+    }
+}

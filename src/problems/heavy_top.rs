@@ -1,0 +1,147 @@
+//! The heavy top on se(3)*: a rigid body that turns about a fixed point under gravity.
+//!
+//! With the momentum μ and the upward vertical γ, both in the body, and w = (weight)·(vector from
+//! the fixed point to the centre of mass):
+//!
+//! H(μ, γ) = ½ μ·J⁻¹μ + w·γ,    μ̇ = μ × ω + γ × w,    γ̇ = γ × ω,    ω = J⁻¹μ
+//!
+//! f = −∇H = −(ω, w); Λ coadjoint. Invariants: |γ|² and μ·γ (the Casimirs), H, and
+//!
+//! | | J | w | further |
+//! |---|---|---|---|
+//! | Euler | any | 0 | \|μ\|² |
+//! | Lagrange | (A, A, C) | (0, 0, w) | μ₃ |
+//! | Kovalevskaya | (2C, 2C, C) | (w, 0, 0) | \|(ω₁ + iω₂)² − (w/C)(γ₁ + iγ₂)\|² |
+//!
+//! Source: S. Kowalevski, Acta Math. 12 (1889); V. I. Arnold, Mathematical Methods, appendix 5.
+
+use nalgebra::Vector3;
+
+use super::rigid_body::{check_finite, check_inertia};
+use super::{Euler, Hamiltonian, Invariant};
+use crate::error::Error;
+use crate::groups::Se3;
+use crate::scalar::Real;
+
+/// The energy of a heavy top.
+///
+/// ```
+/// use lieflow::maps::Exp;
+/// use lieflow::methods::{Rkmk, tableau::RK4};
+/// use lieflow::problems::HeavyTop;
+/// use lieflow::{SaveAt, TimeGrid, integrate};
+/// use nalgebra::Vector3;
+/// let top = HeavyTop::<f64>::lagrange(1.0, 0.5, 1.0)?.problem();
+/// let mut y = (Vector3::new(0.1, 0.0, 2.0), Vector3::new(0.0, 0.6, 0.8));
+/// let grid = TimeGrid::new([0.0, 10.0], 0.01)?;
+/// integrate(&top, &Rkmk::new(RK4, Exp), &grid, &SaveAt::Ends, &mut y, |_, _| {})?;
+/// assert!((y.1.norm() - 1.0).abs() < 1e-13 && (y.0[2] - 2.0).abs() < 1e-8);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct HeavyTop<S = f64> {
+    inverse_inertia: Vector3<S>,
+    weight: Vector3<S>,
+    integral: Integral<S>,
+}
+
+/// The fourth integral, where there is one.
+#[derive(Clone, Copy, Debug)]
+enum Integral<S> {
+    None,
+    Euler,
+    Lagrange,
+    /// w/C.
+    Kovalevskaya(S),
+}
+
+impl<S: Real> HeavyTop<S> {
+    /// From the principal moments of inertia about the fixed point, and w. The integrable cases are
+    /// recognised by their numbers: μ₃ or |μ|² is then among the invariants.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for a moment that is not finite and positive, and a w that is not finite.
+    pub fn new(inertia: [f64; 3], weight: [f64; 3]) -> Result<Self, Error> {
+        check_inertia(&inertia)?;
+        check_finite("weight", &weight)?;
+        let ([a, b, c], [x, y, z]) = (inertia, weight);
+        let integral = if weight == [0.0; 3] {
+            Integral::Euler
+        } else if a == b && x == 0.0 && y == 0.0 {
+            Integral::Lagrange
+        } else if a == b && a == 2.0 * c && y == 0.0 && z == 0.0 {
+            Integral::Kovalevskaya(S::lit(x / c))
+        } else {
+            Integral::None
+        };
+        let vector = |x: [f64; 3]| Vector3::from(x.map(S::lit));
+        let inverse_inertia = vector(inertia.map(|j| 1.0 / j));
+        Ok(HeavyTop { inverse_inertia, weight: vector(weight), integral })
+    }
+
+    /// Lagrange's top: J = (A, A, C), the centre of mass on its axis, w = (0, 0, w).
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn lagrange(a: f64, c: f64, w: f64) -> Result<Self, Error> {
+        Self::new([a, a, c], [0.0, 0.0, w])
+    }
+
+    /// Kovalevskaya's top: J = (2C, 2C, C), the centre of mass in its equator, w = (w, 0, 0).
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn kovalevskaya(c: f64, w: f64) -> Result<Self, Error> {
+        Self::new([2.0 * c, 2.0 * c, c], [w, 0.0, 0.0])
+    }
+
+    /// Its equations on se(3)*.
+    pub fn problem(self) -> Euler<Se3<S>, Self> {
+        Euler::new(Se3::new(), self)
+    }
+
+    /// ω = J⁻¹μ.
+    #[inline]
+    pub fn omega(&self, mu: &Vector3<S>) -> Vector3<S> {
+        Vector3::from_fn(|i, _| self.inverse_inertia[i] * mu[i])
+    }
+}
+
+fn dot<S: Real>(a: &Vector3<S>, b: &Vector3<S>) -> S {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+impl<S: Real> Hamiltonian<Se3<S>> for HeavyTop<S> {
+    fn value(&self, _: &Se3<S>, (mu, gamma): &(Vector3<S>, Vector3<S>)) -> S {
+        S::lit(0.5) * dot(mu, &self.omega(mu)) + dot(&self.weight, gamma)
+    }
+    #[inline]
+    fn gradient(&self, (mu, _): &(Vector3<S>, Vector3<S>), xi: &mut (Vector3<S>, Vector3<S>)) {
+        *xi = (self.omega(mu), self.weight);
+    }
+    fn further(&self) -> Vec<Invariant> {
+        let casimirs = ["|γ|²", "μ·γ"].map(Invariant::of_the_action);
+        let fourth = match self.integral {
+            Integral::None => None,
+            Integral::Euler => Some("|μ|²"),
+            Integral::Lagrange => Some("μ₃"),
+            Integral::Kovalevskaya(_) => Some("Kovalevskaya's integral"),
+        };
+        casimirs.into_iter().chain(fourth.map(Invariant::of_the_flow)).collect()
+    }
+    fn further_values(&self, (mu, gamma): &(Vector3<S>, Vector3<S>)) -> Vec<S> {
+        let mut values = vec![dot(gamma, gamma), dot(mu, gamma)];
+        match self.integral {
+            Integral::None => {}
+            Integral::Euler => values.push(dot(mu, mu)),
+            Integral::Lagrange => values.push(mu[2]),
+            Integral::Kovalevskaya(c) => {
+                let w = self.omega(mu);
+                let re = w[0] * w[0] - w[1] * w[1] - c * gamma[0];
+                let im = S::lit(2.0) * w[0] * w[1] - c * gamma[1];
+                values.push(re * re + im * im);
+            }
+        }
+        values
+    }
+}

@@ -1,0 +1,192 @@
+//! Isospectral flows on symmetric matrices: L̇ = \[B(L), L\], B(L) skew. f(L) = B(L); Λ(g, L) = g L gᵀ.
+//!
+//! | | B(L) | L(t → ∞) |
+//! |---|---|---|
+//! | [`IsospectralFlow::toda`] | L₋ᵀ − L₋ for the strictly lower L₋ | diagonal, the eigenvalues in descending order |
+//! | [`IsospectralFlow::qr`] | log(L)₋ᵀ − log(L)₋, L > 0 | the same; L(k) are the iterates of the QR algorithm |
+//! | [`IsospectralFlow::double_bracket`] | \[N, L\], N diagonal | diagonal, sorted as N is |
+//!
+//! Invariants: the eigenvalues, kept to rounding by every method that acts by the group; reported as
+//! tr L, tr L², tr L³.
+//! Sources: W. W. Symes, Physica D 4 (1982), for the QR algorithm as a Toda flow at integer times;
+//! R. W. Brockett, Linear Algebra Appl. 146 (1991). Numbers: M. P. Calvo, A. Iserles, A. Zanna,
+//! Math. Comp. 66 (1997).
+
+use faer::{Mat, Side};
+
+use super::{Ambient, Invariant, Invariants, Problem, space::linear_space};
+use crate::actions::Conjugation;
+use crate::dense::{antisymmetrise, mul};
+use crate::error::{Error, StepError};
+use crate::groups::{AlgebraMatrix, MatrixGroup};
+
+/// Which B.
+#[derive(Clone, Debug)]
+enum Kind {
+    Toda,
+    Qr,
+    DoubleBracket(Mat<f64>),
+}
+
+/// L̇ = \[B(L), L\].
+///
+/// ```
+/// use faer::mat;
+/// use lieflow::maps::Cay;
+/// use lieflow::methods::{Rkmk, tableau::RK4};
+/// use lieflow::problems::IsospectralFlow;
+/// use lieflow::{SaveAt, TimeGrid, integrate};
+/// // Brockett: a flow that sorts 3, 1, 2, from a matrix that is not quite diagonal.
+/// let flow = IsospectralFlow::double_bracket(&[1.0, 2.0, 3.0])?;
+/// let mut l = mat![[3.0, 0.1, 0.1], [0.1, 1.0, 0.1], [0.1, 0.1, 2.0]];
+/// let grid = TimeGrid::new([0.0, 20.0], 0.05)?;
+/// integrate(&flow, &Rkmk::new(RK4, Cay), &grid, &SaveAt::Ends, &mut l, |_, _| {})?;
+/// assert!(l[(0, 0)] < l[(1, 1)] && l[(1, 1)] < l[(2, 2)] && l[(0, 1)].abs() < 1e-6);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct IsospectralFlow {
+    group: MatrixGroup,
+    kind: Kind,
+}
+
+impl IsospectralFlow {
+    /// Toda's flow on n×n matrices: B(L) = L₋ᵀ − L₋. On a tridiagonal L it is the Toda lattice of n
+    /// particles in Flaschka's variables (see [`toda_lattice`]).
+    ///
+    /// # Errors
+    /// As [`MatrixGroup::so`].
+    pub fn toda(n: usize) -> Result<Self, Error> {
+        Ok(IsospectralFlow { group: MatrixGroup::so(n)?, kind: Kind::Toda })
+    }
+
+    /// The QR flow: B(L) = log(L)₋ᵀ − log(L)₋ for positive definite L. Between the times k and k + 1
+    /// it does one step of the QR algorithm. Where L is not positive definite f has no value, and
+    /// the step ends with [`StepError::NonFiniteRhs`]. f allocates: it takes an eigenvalue problem.
+    ///
+    /// # Errors
+    /// As [`MatrixGroup::so`].
+    pub fn qr(n: usize) -> Result<Self, Error> {
+        Ok(IsospectralFlow { group: MatrixGroup::so(n)?, kind: Kind::Qr })
+    }
+
+    /// Brockett's flow L̇ = \[L, \[L, N\]\] with N = diag(`diagonal`), as B(L) = \[N, L\]: ‖L − N‖
+    /// falls, and the eigenvalues end on the diagonal in the order of N's.
+    ///
+    /// # Errors
+    /// As [`MatrixGroup::so`], and [`Error::OutOfRange`] for an entry that is not finite.
+    pub fn double_bracket(diagonal: &[f64]) -> Result<Self, Error> {
+        super::rigid_body::check_finite("diagonal", diagonal)?;
+        let n = diagonal.len();
+        let target = Mat::from_fn(n, n, |i, j| if i == j { diagonal[i] } else { 0.0 });
+        Ok(IsospectralFlow { group: MatrixGroup::so(n)?, kind: Kind::DoubleBracket(target) })
+    }
+
+    /// B(L), into v.
+    fn generator(&self, l: &Mat<f64>, v: &mut Mat<f64>) {
+        match &self.kind {
+            Kind::Toda => skew_of_lower(l, v),
+            Kind::Qr => match logarithm(l) {
+                Ok(log) => skew_of_lower(&log, v),
+                Err(_) => v.fill(f64::NAN),
+            },
+            // NL − LN = (NL) − (NL)ᵀ.
+            Kind::DoubleBracket(target) => {
+                mul(v, target.as_ref(), l.as_ref());
+                antisymmetrise(v);
+            }
+        }
+    }
+}
+
+/// v ← l₋ᵀ − l₋, with the strictly lower triangle l₋.
+fn skew_of_lower(l: &Mat<f64>, v: &mut Mat<f64>) {
+    for j in 0..l.ncols() {
+        v[(j, j)] = 0.0;
+        for i in j + 1..l.nrows() {
+            v[(i, j)] = -l[(i, j)];
+            v[(j, i)] = l[(i, j)];
+        }
+    }
+}
+
+/// log L by the eigenvectors of a positive definite L.
+fn logarithm(l: &Mat<f64>) -> Result<Mat<f64>, StepError> {
+    let failed = StepError::NotConverged { what: "the eigenvalues of L" };
+    let eigen = l.self_adjoint_eigen(Side::Lower).map_err(|_| failed)?;
+    let (q, d) = (eigen.U(), eigen.S().column_vector());
+    if d.iter().any(|x| !(x.is_finite() && *x > 0.0)) {
+        return Err(StepError::NotFinite { what: "log L" });
+    }
+    let scaled = Mat::from_fn(q.nrows(), q.ncols(), |i, j| q[(i, j)] * d[j].ln());
+    Ok(scaled * q.transpose())
+}
+
+impl Problem for IsospectralFlow {
+    type Group = MatrixGroup;
+    type Action = Conjugation;
+    /// B(L).
+    type Work = Mat<f64>;
+
+    fn group(&self) -> &MatrixGroup {
+        &self.group
+    }
+    fn action(&self) -> &Conjugation {
+        &Conjugation
+    }
+    fn work(&self) -> Mat<f64> {
+        Mat::zeros(self.group.n(), self.group.n())
+    }
+    fn f(&self, _: f64, l: &Mat<f64>, v: &mut AlgebraMatrix, _: &mut Mat<f64>) {
+        self.generator(l, v);
+    }
+}
+
+impl Ambient for IsospectralFlow {
+    /// BL − LB = BL + (BL)ᵀ.
+    fn field(&self, _: f64, l: &Mat<f64>, dl: &mut Mat<f64>, b: &mut Mat<f64>) {
+        self.generator(l, b);
+        mul(dl, b.as_ref(), l.as_ref());
+        for j in 0..dl.ncols() {
+            for i in 0..=j {
+                let sum = dl[(i, j)] + dl[(j, i)];
+                (dl[(i, j)], dl[(j, i)]) = (sum, sum);
+            }
+        }
+    }
+    linear_space!();
+}
+
+impl Invariants for IsospectralFlow {
+    fn invariants(&self) -> Vec<Invariant> {
+        ["tr L", "tr L²", "tr L³"].map(Invariant::of_the_action).into()
+    }
+    fn values(&self, l: &Mat<f64>) -> Vec<f64> {
+        let square = l * l;
+        let trace = |a: &Mat<f64>| (0..a.nrows()).map(|i| a[(i, i)]).sum::<f64>();
+        vec![trace(l), trace(&square), trace(&(&square * l))]
+    }
+}
+
+/// The Toda lattice in Flaschka's variables: n particles on a line with positions q and momenta p,
+/// H = ½Σp² + Σ e^{q_i − q_{i+1}}, as the tridiagonal L with L_ii = −p_i/2 and
+/// L_{i,i+1} = ½ e^{(q_i − q_{i+1})/2}, which moves by [`IsospectralFlow::toda`]. Its eigenvalues are −½
+/// times the momenta after the last collision.
+///
+/// # Errors
+/// [`Error::Shape`] for lists of different lengths, [`Error::OutOfRange`] for numbers that are not
+/// finite.
+pub fn toda_lattice(q: &[f64], p: &[f64]) -> Result<Mat<f64>, Error> {
+    let n = q.len();
+    if p.len() != n {
+        let (rows, cols) = (p.len(), 1);
+        return Err(Error::Shape { arg: "p", rows, cols, expected_rows: n, expected_cols: 1 });
+    }
+    super::rigid_body::check_finite("q", q)?;
+    super::rigid_body::check_finite("p", p)?;
+    Ok(Mat::from_fn(n, n, |i, j| match i.abs_diff(j) {
+        0 => -0.5 * p[i],
+        1 => 0.5 * (0.5 * (q[i.min(j)] - q[i.max(j)])).exp(),
+        _ => 0.0,
+    }))
+}
