@@ -1,5 +1,5 @@
 //! The scene parser on any text: a scene whose problem and grid are checked, or an error that has
-//! something to say. A plain module, run by `cargo test` in lieflow-cli as well.
+//! something to say.
 
 use lieflow_cli::scene::Scene;
 
