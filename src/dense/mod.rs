@@ -15,7 +15,10 @@ mod schur;
 pub(crate) use ad::{AdForm, AdSchur, Direction, Kind as AdKind};
 pub(crate) use eigen::SkewEigen;
 pub(crate) use expm::Expm;
-pub use expm::{ApplyChoice, ExpmChoice, Exponential, Kind, Structure};
+pub use expm::{
+    ApplyChoice, ComplexExponential, ExpmChoice, Exponential, ExponentialBatch, ExponentialF32,
+    Kind, Structure,
+};
 pub(crate) use lu::Lu;
 pub(crate) use ops::{
     antisymmetrise, axpy, is_finite, mul, mul_add, norm_frobenius, norm1, orthogonalise, scaled_sum,

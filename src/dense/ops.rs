@@ -8,7 +8,10 @@ use pulp::{Arch, NullaryFnOnce};
 /// The largest n with a const-size kernel.
 pub(crate) const SMALL: usize = 8;
 /// From this n on one triangle is cheaper than the whole product.
-const HALF_FROM: usize = 48;
+pub(crate) const HALF_FROM: usize = 48;
+/// From this n on faer's own triangle is faster than panels of [`PANEL`] columns.
+const TRIANGLE_FROM: usize = 224;
+const PANEL: usize = 16;
 
 /// out ← a·b.
 pub(crate) fn mul(out: &mut Mat<f64>, a: MatRef<'_, f64>, b: MatRef<'_, f64>) {
@@ -38,33 +41,76 @@ fn product(out: &mut Mat<f64>, a: MatRef<'_, f64>, b: MatRef<'_, f64>, alpha: f6
 
 /// out ← a·b, known to be symmetric (`sign` = 1) or skew (`sign` = −1).
 pub(crate) fn half_mul(out: &mut Mat<f64>, a: MatRef<'_, f64>, b: MatRef<'_, f64>, sign: f64) {
-    let n = a.nrows();
-    if n < HALF_FROM {
-        mul(out, a, b);
-        return;
-    }
-    let (lower, full) = (BlockStructure::TriangularLower, BlockStructure::Rectangular);
-    matmul_triangular(out.as_mut(), lower, Accum::Replace, a, full, b, full, 1.0, Par::Seq);
-    mirror(out, sign);
+    half_product(out, a, b, Accum::Replace, sign);
 }
 
-/// The upper triangle ← `sign` times the lower one, in tiles that stay in the cache.
-fn mirror(x: &mut Mat<f64>, sign: f64) {
-    const TILE: usize = 16;
-    let n = x.nrows();
-    let mut tile = [[0.0; TILE]; TILE];
-    for low in (0..n).step_by(TILE) {
-        let high = n.min(low + TILE);
-        for top in (low..n).step_by(TILE) {
-            let bottom = n.min(top + TILE);
-            for j in low..high {
-                let col = &x.col_as_slice(j)[top..bottom];
-                tile[j - low][..col.len()].copy_from_slice(col);
-            }
-            for i in top..bottom {
-                let col = &mut x.col_as_slice_mut(i)[low..high.min(i)];
-                for (j, x) in col.iter_mut().enumerate() {
-                    *x = sign * tile[j][i - top];
+/// out ← out + a·b, where both are symmetric.
+pub(crate) fn half_mul_add(out: &mut Mat<f64>, a: MatRef<'_, f64>, b: MatRef<'_, f64>) {
+    half_product(out, a, b, Accum::Add, 1.0);
+}
+
+fn half_product(
+    out: &mut Mat<f64>,
+    a: MatRef<'_, f64>,
+    b: MatRef<'_, f64>,
+    accum: Accum,
+    sign: f64,
+) {
+    let n = a.nrows();
+    if n < HALF_FROM {
+        product(out, a, b, 1.0, accum);
+        return;
+    }
+    if n < TRIANGLE_FROM {
+        for j in (0..n).step_by(PANEL) {
+            let width = PANEL.min(n - j);
+            let panel = out.as_mut().submatrix_mut(j, j, n - j, width);
+            let (a, b) = (a.subrows(j, n - j), b.subcols(j, width));
+            matmul(panel, accum, a, b, 1.0, Par::Seq);
+        }
+    } else {
+        let (lower, full) = (BlockStructure::TriangularLower, BlockStructure::Rectangular);
+        matmul_triangular(out.as_mut(), lower, accum, a, full, b, full, 1.0, Par::Seq);
+    }
+    wide(n, Mirror { x: out, sign });
+}
+
+/// The upper triangle ← `sign` times the lower one, in tiles that are transposed in registers.
+struct Mirror<'a> {
+    x: &'a mut Mat<f64>,
+    sign: f64,
+}
+
+impl NullaryFnOnce for Mirror<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Mirror { x, sign } = self;
+        let n = x.nrows();
+        for left in (0..n).step_by(CHUNK) {
+            let width = CHUNK.min(n - left);
+            for top in (left..n).step_by(CHUNK) {
+                let height = CHUNK.min(n - top);
+                let mut tile = [[0.0; CHUNK]; CHUNK];
+                for j in 0..width {
+                    let col = &x.col_as_slice(left + j)[top..];
+                    match col.first_chunk() {
+                        Some(whole) => tile[j] = *whole,
+                        None => tile[j][..height].copy_from_slice(col),
+                    }
+                }
+                for i in 0..height {
+                    let mut row = [0.0; CHUNK];
+                    for j in 0..CHUNK {
+                        row[j] = sign * tile[j][i];
+                    }
+                    let above = if top == left { i } else { width };
+                    let col = &mut x.col_as_slice_mut(top + i)[left..];
+                    match col.first_chunk_mut() {
+                        Some(whole) if above == CHUNK => *whole = row,
+                        _ => col[..above].copy_from_slice(&row[..above]),
+                    }
                 }
             }
         }
@@ -122,11 +168,7 @@ fn small<const N: usize>(
 
 /// y ← y + a·x.
 pub(crate) fn axpy(a: f64, x: &Mat<f64>, y: &mut Mat<f64>) {
-    for j in 0..y.ncols() {
-        for (y, x) in y.col_as_slice_mut(j).iter_mut().zip(x.col_as_slice(j)) {
-            *y += a * x;
-        }
-    }
+    add_scaled_sum(y, [a], [x], 0.0);
 }
 
 /// out ← Σ c_i·x_i + d·𝟙, in one pass.
@@ -136,39 +178,91 @@ pub(crate) fn scaled_sum<const K: usize>(
     x: [&Mat<f64>; K],
     d: f64,
 ) {
-    let op = Sum { out, c, x, d };
-    if op.out.nrows() <= SMALL { op.call() } else { Arch::new().dispatch(op) }
+    wide(out.nrows(), Sums { out: [out], c: [c], x, d: [d], add: false });
 }
 
-/// A sum of matrices, compiled for every instruction set.
-struct Sum<'a, const K: usize> {
-    out: &'a mut Mat<f64>,
+/// out ← out + Σ c_i·x_i + d·𝟙, in one pass.
+pub(crate) fn add_scaled_sum<const K: usize>(
+    out: &mut Mat<f64>,
     c: [f64; K],
-    x: [&'a Mat<f64>; K],
+    x: [&Mat<f64>; K],
     d: f64,
+) {
+    wide(out.nrows(), Sums { out: [out], c: [c], x, d: [d], add: true });
 }
 
-impl<const K: usize> NullaryFnOnce for Sum<'_, K> {
+/// out_m ← Σ c_mi·x_i + d_m·𝟙 for every m, in one pass: from n = 128 on what a sum costs is the way
+/// of its matrices through the caches.
+pub(crate) fn scaled_sums<const K: usize, const M: usize>(
+    out: [&mut Mat<f64>; M],
+    c: [[f64; K]; M],
+    x: [&Mat<f64>; K],
+    d: [f64; M],
+) {
+    wide(x[0].nrows(), Sums { out, c, x, d, add: false });
+}
+
+/// `op` with the widest instructions there are, where n is worth the choice.
+fn wide<Op: NullaryFnOnce>(n: usize, op: Op) -> Op::Output {
+    if n <= SMALL { op.call() } else { Arch::new().dispatch(op) }
+}
+
+/// Entries that are treated at once.
+const CHUNK: usize = 8;
+
+/// M sums of the same K matrices, compiled for every instruction set.
+struct Sums<'a, const K: usize, const M: usize> {
+    out: [&'a mut Mat<f64>; M],
+    c: [[f64; K]; M],
+    x: [&'a Mat<f64>; K],
+    d: [f64; M],
+    add: bool,
+}
+
+impl<const K: usize, const M: usize> NullaryFnOnce for Sums<'_, K, M> {
     type Output = ();
 
     #[inline(always)]
     fn call(self) {
-        let Sum { out, c, x, d } = self;
-        for j in 0..out.ncols() {
-            let out = out.col_as_slice_mut(j);
+        let Sums { mut out, c, x, d, add } = self;
+        let (rows, columns) = x.first().map_or((0, 0), |x| (x.nrows(), x.ncols()));
+        let whole = rows - rows % CHUNK;
+        for j in 0..columns {
             let mut cols: [&[f64]; K] = [&[]; K];
             for k in 0..K {
-                cols[k] = &x[k].col_as_slice(j)[..out.len()];
+                cols[k] = &x[k].col_as_slice(j)[..rows];
             }
-            for i in 0..out.len() {
-                let mut s = 0.0;
+            let out = out.each_mut().map(|out| &mut out.col_as_slice_mut(j)[..rows]);
+            for i in (0..whole).step_by(CHUNK) {
+                let mut part = [[0.0; CHUNK]; K];
                 for k in 0..K {
-                    s += c[k] * cols[k][i];
+                    part[k].copy_from_slice(&cols[k][i..i + CHUNK]);
                 }
-                out[i] = s;
+                for m in 0..M {
+                    let out = &mut out[m][i..i + CHUNK];
+                    let mut s = [0.0; CHUNK];
+                    if add {
+                        s.copy_from_slice(out);
+                    }
+                    for k in 0..K {
+                        for l in 0..CHUNK {
+                            s[l] += c[m][k] * part[k][l];
+                        }
+                    }
+                    out.copy_from_slice(&s);
+                }
             }
-            if let Some(o) = out.get_mut(j) {
-                *o += d;
+            for m in 0..M {
+                for i in whole..rows {
+                    let mut s = if add { out[m][i] } else { 0.0 };
+                    for k in 0..K {
+                        s += c[m][k] * cols[k][i];
+                    }
+                    out[m][i] = s;
+                }
+                if let Some(o) = out[m].get_mut(j) {
+                    *o += d[m];
+                }
             }
         }
     }
@@ -186,34 +280,93 @@ pub(crate) fn antisymmetrise(p: &mut Mat<f64>) {
     }
 }
 
-/// Σ f(x), in eight sums side by side.
+/// Σ f(x_i), in eight sums side by side.
 #[inline(always)]
 fn sum(x: &[f64], f: impl Fn(f64) -> f64) -> f64 {
-    let mut sums = [0.0; 8];
-    let mut chunks = x.chunks_exact(8);
-    for chunk in &mut chunks {
-        for k in 0..8 {
+    let mut sums = [0.0; CHUNK];
+    let (chunks, rest) = x.as_chunks::<CHUNK>();
+    for chunk in chunks {
+        for k in 0..CHUNK {
             sums[k] += f(chunk[k]);
         }
     }
-    let rest: f64 = chunks.remainder().iter().map(|x| f(*x)).sum();
     let [a, b, c, d, e, g, h, i] = sums;
+    let rest: f64 = rest.iter().map(|x| f(*x)).sum();
     ((a + b) + (c + d)) + ((e + g) + (h + i)) + rest
 }
 
 /// The 1-norm: the largest absolute column sum. NaN when an entry is NaN.
 pub(crate) fn norm1(x: MatRef<'_, f64>) -> f64 {
-    let mut best = 0.0;
-    for j in 0..x.ncols() {
-        let s = match x.col(j).try_as_col_major() {
-            Some(col) => sum(col.as_slice(), f64::abs),
-            None => x.col(j).iter().map(|x| x.abs()).sum(),
-        };
-        if s > best || s.is_nan() {
-            best = s;
+    wide(x.nrows(), Norm1(x))
+}
+
+struct Norm1<'a>(MatRef<'a, f64>);
+
+impl NullaryFnOnce for Norm1<'_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn call(self) -> f64 {
+        let mut best = 0.0;
+        for j in 0..self.0.ncols() {
+            let col = self.0.col(j);
+            let s = match col.try_as_col_major() {
+                Some(col) => sum(col.as_slice(), f64::abs),
+                None => col.iter().map(|x| x.abs()).sum(),
+            };
+            if s > best || s.is_nan() {
+                best = s;
+            }
         }
+        best
     }
-    best
+}
+
+/// y ← |a|ᵀx for x, y ≥ 0; returns the largest y_j.
+pub(crate) fn abs_mul(a: &Mat<f64>, x: &[f64], y: &mut [f64]) -> f64 {
+    wide(a.nrows(), AbsMul { a, x, y })
+}
+
+struct AbsMul<'a> {
+    a: &'a Mat<f64>,
+    x: &'a [f64],
+    y: &'a mut [f64],
+}
+
+impl NullaryFnOnce for AbsMul<'_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn call(self) -> f64 {
+        let AbsMul { a, x, y } = self;
+        let (chunks, rest) = x.as_chunks::<CHUNK>();
+        let mut top = 0.0f64;
+        for (j, y) in y.iter_mut().enumerate() {
+            let (cols, tail) = a.col_as_slice(j).as_chunks::<CHUNK>();
+            let mut sums = [0.0; CHUNK];
+            for (a, x) in cols.iter().zip(chunks) {
+                for l in 0..CHUNK {
+                    sums[l] += a[l].abs() * x[l];
+                }
+            }
+            let tail: f64 = tail.iter().zip(rest).map(|(a, x)| a.abs() * x).sum();
+            *y = sum(&sums, |s| s) + tail;
+            top = top.max(*y);
+        }
+        top
+    }
+}
+
+/// The sums of moduli off the diagonal, along rows and along columns.
+pub(crate) fn abs_sums(a: &Mat<f64>, rows: &mut [f64], cols: &mut [f64]) {
+    rows.fill(0.0);
+    for (j, c) in cols.iter_mut().enumerate() {
+        let col = a.col_as_slice(j);
+        for (i, (r, a)) in rows.iter_mut().zip(col).enumerate() {
+            *r += if i == j { 0.0 } else { a.abs() };
+        }
+        *c = sum(&col[..j], f64::abs) + sum(&col[j + 1..], f64::abs);
+    }
 }
 
 /// The Frobenius norm.

@@ -6,7 +6,12 @@
 use faer::{Mat, MatRef};
 use pulp::{NullaryFnOnce, Simd, bytemuck};
 
+use super::taylor::Packed;
+
 /// An N×N matrix as N columns of K registers; the padding is zero.
+///
+/// Aligned, because a register that straddles two cache lines is loaded and stored at half speed.
+#[repr(align(64))]
 pub(super) struct Cols<S: Simd, const N: usize, const K: usize>(pub(super) [[S::f64s; K]; N]);
 
 /// e_16 between zeros: `UNIT[16 − j..]` begins with e_j.
@@ -43,26 +48,17 @@ impl<S: Simd, const N: usize, const K: usize> Cols<S, N, K> {
     pub(super) fn load(simd: S, a: MatRef<'_, f64>) -> Self {
         let mut out = Self::zero(simd);
         let n = a.nrows().min(N);
+        let flat: &mut [f64] = bytemuck::cast_slice_mut(out.0.as_flattened_mut());
         for j in 0..N {
             if j == n {
                 break;
             }
             let Some(col) = a.col(j).try_as_col_major() else { continue };
             let col = col.as_slice();
-            for q in 0..K {
-                let low = q * S::F64_LANES;
-                out.0[j][q] = if n == N && low + S::F64_LANES <= N {
-                    read::<S>(&col[low..])
-                } else {
-                    let mut tail = [0.0; 8];
-                    if n == N {
-                        tail[..N - low].copy_from_slice(&col[low..N]);
-                    } else if low < n {
-                        let high = n.min(low + S::F64_LANES);
-                        tail[..high - low].copy_from_slice(&col[low..high]);
-                    }
-                    read::<S>(&tail)
-                };
+            if n == N {
+                flat[j * Self::STRIDE..][..N].copy_from_slice(&col[..N]);
+            } else {
+                flat[j * Self::STRIDE..][..n].copy_from_slice(&col[..n]);
             }
         }
         out
@@ -106,19 +102,20 @@ impl<S: Simd, const N: usize, const K: usize> Cols<S, N, K> {
     /// The ∞-norm, the largest row sum of moduli: no horizontal sum but the last. NaN may be lost.
     #[inline(always)]
     pub(super) fn norm(&self, simd: S) -> f64 {
-        let mut sums = [simd.splat_f64s(0.0); K];
+        let zero = simd.splat_f64s(0.0);
+        let mut sums = [zero; K];
         for j in 0..N {
             for q in 0..K {
-                sums[q] = simd.add_f64s(sums[q], simd.abs_f64s(self.0[j][q]));
+                let x = self.0[j][q];
+                // pulp's own modulus is a call that does not inline.
+                sums[q] = simd.add_f64s(sums[q], simd.max_f64s(x, simd.sub_f64s(zero, x)));
             }
         }
-        let mut top = 0.0;
-        for s in bytemuck::cast_slice::<S::f64s, f64>(&sums) {
-            if *s > top {
-                top = *s;
-            }
+        let mut top = sums[0];
+        for q in 1..K {
+            top = simd.max_f64s(top, sums[q]);
         }
-        top
+        simd.reduce_max_f64s(top)
     }
 
     #[inline(always)]
@@ -131,10 +128,11 @@ impl<S: Simd, const N: usize, const K: usize> Cols<S, N, K> {
         }
         simd.reduce_sum_f64s(sum) == 0.0
     }
+}
 
-    /// Σ c_i·x_i + d·𝟙.
+impl<S: Simd, const N: usize, const K: usize> Packed<S> for Cols<S, N, K> {
     #[inline(always)]
-    pub(super) fn sum<const M: usize>(simd: S, c: [f64; M], x: [&Self; M], d: f64) -> Self {
+    fn sum<const M: usize>(simd: S, c: [f64; M], x: [&Self; M], d: f64) -> Self {
         let mut out = Self::zero(simd);
         // No closures anywhere here: they would be compiled for the baseline instruction set.
         let (mut cc, dd) = ([simd.splat_f64s(0.0); M], simd.splat_f64s(d));
@@ -157,18 +155,16 @@ impl<S: Simd, const N: usize, const K: usize> Cols<S, N, K> {
         out
     }
 
-    /// a·b.
     #[inline(always)]
-    pub(super) fn mul(simd: S, a: &Self, b: &Self) -> Self {
+    fn mul(simd: S, a: &Self, b: &Self) -> Self {
         let mut out = Self::zero(simd);
-        simd.vectorize(Mul { simd, a, b, out: &mut out, add: false });
+        Mul { simd, a, b, out: &mut out, add: false }.run();
         out
     }
 
-    /// self ← self + a·b.
     #[inline(always)]
-    pub(super) fn mul_add(&mut self, simd: S, a: &Self, b: &Self) {
-        simd.vectorize(Mul { simd, a, b, out: self, add: true });
+    fn mul_add(&mut self, simd: S, a: &Self, b: &Self) {
+        Mul { simd, a, b, out: self, add: true }.run();
     }
 }
 
@@ -197,6 +193,12 @@ impl<S: Simd, const N: usize, const K: usize> NullaryFnOnce for Mul<'_, S, N, K>
 }
 
 impl<S: Simd, const N: usize, const K: usize> Mul<'_, S, N, K> {
+    /// In line where a call costs as much as the product.
+    #[inline(always)]
+    fn run(self) {
+        if N <= 4 { self.call() } else { self.simd.vectorize(self) }
+    }
+
     #[inline(always)]
     fn blocks<const W: usize>(mut self) {
         let mut j = 0;

@@ -11,7 +11,7 @@ use faer::Mat;
 use super::pade::THETA;
 use super::taylor::{B12, B18, T8, THETA_1, THETA_8, THETA_12, half_to_the, halvings, halvings_18};
 use super::{Expm, ExpmChoice, Kind};
-use crate::dense::ops::{mul, mul_add, norm1, scaled_sum};
+use crate::dense::ops::{abs_mul, abs_sums, axpy, mul, mul_add, norm1, scaled_sum, scaled_sums};
 
 const THETA_13: f64 = THETA[4].1;
 
@@ -33,11 +33,15 @@ impl Expm {
             self.choice = ExpmChoice { kind: Kind::Taylor, degree: 1, ..Default::default() };
             return;
         }
-        let balanced = norm > 1.0 && self.balance(norm);
+        let balanced = norm > 1.0 && !self.is_balanced() && {
+            let better = self.balance(norm);
+            if !better {
+                self.a.copy_from(x);
+            }
+            better
+        };
         if balanced {
             norm = norm1(self.a.as_ref());
-        } else {
-            self.a.copy_from(x);
         }
         let shape = shape(&self.a);
         if shape == Shape::Lower {
@@ -105,6 +109,13 @@ impl Expm {
         self.choice = choice;
     }
 
+    /// Would balancing leave every row and column as it is?
+    fn is_balanced(&mut self) -> bool {
+        let [rows, cols] = &mut self.vectors;
+        abs_sums(&self.a, rows, cols);
+        rows.iter().zip(cols.iter()).all(|(r, c)| imbalance(*c, *r).is_none())
+    }
+
     /// a ← D⁻¹aD with powers of two in D, until rows and columns are of one size. True if that made
     /// the norm four times smaller; else a is to be restored.
     fn balance(&mut self, norm: f64) -> bool {
@@ -118,13 +129,10 @@ impl Expm {
                     c += self.a[(j, i)].abs();
                     r += self.a[(i, j)].abs();
                 }
-                if c == 0.0 || r == 0.0 || !f64::is_finite(c + r) {
-                    continue;
-                }
-                let k = (0.5 * (r.log2() - c.log2())).round().clamp(-500.0, 500.0) as i32;
+                let Some(k) = imbalance(c, r) else { continue };
                 let (up, down) = (2f64.powi(k), 2f64.powi(-k));
                 let e = self.exponents[i] + k;
-                if k == 0 || e.abs() > 1000 || c * up + r * down >= 0.95 * (c + r) {
+                if e.abs() > 1000 {
                     continue;
                 }
                 for j in (0..n).filter(|&j| j != i) {
@@ -147,7 +155,7 @@ impl Expm {
         if norm > 1e3 {
             return None;
         }
-        let Expm { a, a2, a4, a6, u, v, t, .. } = self;
+        let Expm { a, a2, a4, a6, u, v, t, lu, .. } = self;
         mul(a2, a.as_ref(), a.as_ref());
         if norm <= THETA_8 {
             let [x1, x2, x3, x4, x5, x6, x7, y2] = T8;
@@ -163,19 +171,16 @@ impl Expm {
         mul(a3, a2.as_ref(), a.as_ref());
         // ‖a‖ as the powers see it: the error begins at a¹³ or a¹⁹, sums of a² and a³.
         let alpha = norm.min(norm1(a2.as_ref()).sqrt().max(norm1(a3.as_ref()).cbrt()));
-        if norm > 4.0 * alpha.max(THETA_12) {
+        if norm > 8.0 * alpha.max(THETA_12) {
             return None;
         }
         if alpha <= THETA_12 {
-            let b = |out: &mut Mat<f64>, c: [f64; 4]| {
-                scaled_sum(out, [c[1], c[2], c[3]], [&*a, &*a2, &*a3], c[0]);
-            };
-            b(u, B12[3]);
-            b(v, B12[2]);
+            let [b0, b1, b2, b3] = B12;
+            let c = [b0, b1, b2, b3].map(|c| [c[1], c[2], c[3]]);
+            let d = [b0[0], b1[0], b2[0], b3[0]];
+            scaled_sums([&mut *out, &mut *t, &mut *v, &mut *u], c, [&*a, &*a2, &*a3], d);
             mul_add(v, 1.0, u.as_ref(), u.as_ref());
-            let c = B12[1];
-            scaled_sum(t, [c[1], c[2], c[3], 1.0], [a, a2, a3, v], c[0]);
-            b(out, B12[0]);
+            axpy(1.0, v, t);
             mul_add(out, 1.0, t.as_ref(), v.as_ref());
             return Some((12, 0));
         }
@@ -183,19 +188,14 @@ impl Expm {
         let [n2, n3, n6] = [&*a2, &*a3, &*a6].map(|x| norm1(x.as_ref()));
         let s = halvings_18(norm, n2, n3, n6);
         let f = half_to_the(s);
-        let scale = [1.0, f, f * f, f * f * f, f * f * f * f * f * f];
-        let b = |out: &mut Mat<f64>, c: [f64; 5]| {
-            let c: [f64; 5] = core::array::from_fn(|i| c[i] * scale[i]);
-            scaled_sum(out, [c[1], c[2], c[3], c[4]], [&*a, &*a2, &*a3, &*a6], c[0]);
-        };
-        b(u, B18[0]);
-        b(t, B18[4]);
-        b(v, B18[3]);
+        let (f2, f3) = (f * f, f * f * f);
+        let c = B18.map(|c| [c[1] * f, c[2] * f2, c[3] * f3, c[4] * (f3 * f3)]);
+        let d = B18.map(|c| c[0]);
+        let w = &mut lu.a;
+        scaled_sums([&mut *u, &mut *out, &mut *w, &mut *v, &mut *t], c, [&*a, &*a2, &*a3, &*a6], d);
         mul_add(v, 1.0, u.as_ref(), t.as_ref());
-        b(t, B18[2]);
-        scaled_sum(u, [1.0, 1.0], [t, v], 0.0);
-        b(out, B18[1]);
-        mul_add(out, 1.0, u.as_ref(), v.as_ref());
+        axpy(1.0, v, w);
+        mul_add(out, 1.0, w.as_ref(), v.as_ref());
         Some((18, s))
     }
 
@@ -234,17 +234,11 @@ impl Expm {
     fn safeguard(&mut self, norm: f64, b: u32) -> u32 {
         /// log₂ of 13!²/(26!·27!), the first coefficient of the backward error.
         const LOG2_C13: f64 = -116.44;
-        let n = self.a.nrows();
         let [x, y] = &mut self.vectors;
         x.fill(1.0);
         let mut log2 = 0.0;
         for _ in 0..27 {
-            let mut top = 0.0f64;
-            for j in 0..n {
-                let terms = self.a.col_as_slice(j).iter().zip(x.iter());
-                y[j] = terms.map(|(a, x)| a.abs() * x).sum();
-                top = top.max(y[j]);
-            }
+            let top = abs_mul(&self.a, x, y);
             if top == 0.0 || !top.is_finite() {
                 return 0;
             }
@@ -256,6 +250,18 @@ impl Expm {
         let alpha = LOG2_C13 + log2 - norm.log2() + 26.0 * f64::from(b);
         ((alpha + 53.0) / 26.0).ceil().max(0.0) as u32
     }
+}
+
+/// The power of two that makes a column of size c and a row of size r one size, where that makes
+/// their sum smaller.
+fn imbalance(c: f64, r: f64) -> Option<i32> {
+    // Most pairs are within a factor of two; no logarithm is needed to see it.
+    if c == 0.0 || r == 0.0 || !f64::is_finite(c + r) || (c < 2.0 * r && r < 2.0 * c) {
+        return None;
+    }
+    let k = (0.5 * (r.log2() - c.log2())).round().clamp(-500.0, 500.0) as i32;
+    let better = c * 2f64.powi(k) + r * 2f64.powi(-k) < 0.95 * (c + r);
+    (k != 0 && better).then_some(k)
 }
 
 fn shape(a: &Mat<f64>) -> Shape {

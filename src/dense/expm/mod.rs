@@ -5,22 +5,31 @@
 //! | so(n) | Taylor with few products, one kernel ([`taylor`], [`small`]) | cos/sin split, half products ([`skew`]) |
 //! | any matrix | the same; in doubt as for larger n | Taylor or Padé by cost, balancing, power norms ([`general`]) |
 //! | Padé asked for | Padé 3, 5, 7, 9, 13 ([`pade`]) | the same |
+//! | many matrices | n ≤ 8: one matrix a lane ([`batch`], [`lanes`]) | one by one |
+//! | complex | Taylor by the norms of powers ([`complex`]) | the same |
 //!
 //! The result of squarings on so(n) is put back on the group by a residual-form Newton–Schulz step.
 
+mod batch;
 mod cols;
+mod complex;
 mod condition;
 mod general;
+mod lanes;
+mod narrow;
 mod pade;
 mod skew;
 mod small;
 mod taylor;
 
+pub use batch::ExponentialBatch;
+pub use complex::ComplexExponential;
 pub use condition::ApplyChoice;
 use faer::Mat;
+pub use narrow::ExponentialF32;
 use pulp::Arch;
 
-use super::ops::{norm1, orthogonalise};
+use super::ops::norm1;
 use super::{Lu, is_finite};
 use crate::error::StepError;
 
@@ -192,13 +201,7 @@ impl Expm {
         } else if self.pade_only {
             self.a.copy_from(x);
             let (degree, squarings) = self.scaled_pade(norm, out);
-            for _ in 0..squarings {
-                super::ops::mul(&mut self.t, out.as_ref(), out.as_ref());
-                core::mem::swap(&mut self.t, out);
-            }
-            let corrections =
-                if squarings > 0 { orthogonalise(out, [&mut self.t, &mut self.a2]) } else { 0 };
-            self.choice = ExpmChoice { degree, squarings, corrections, ..Default::default() };
+            self.rotate_back(Kind::Pade, degree, squarings, out);
         } else {
             self.exp_skew(x, norm, out);
         }

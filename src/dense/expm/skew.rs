@@ -13,12 +13,13 @@
 //!
 //! A half product computes one triangle. ‖u‖₂ is bounded by ‖u²ᵏ‖₁^(1/2k) of the powers at hand.
 
-use faer::linalg::matmul::matmul;
-use faer::{Accum, Mat, Par};
+use faer::Mat;
 
 use super::taylor::{half_to_the, halvings};
 use super::{Expm, ExpmChoice, Kind};
-use crate::dense::ops::{half_mul, norm1, orthogonalise, scaled_sum};
+use crate::dense::ops::{
+    half_mul, half_mul_add, mul, norm1, orthogonalise, scaled_sum, scaled_sums,
+};
 
 const THETA_5: f64 = 0.0092;
 const THETA_9: f64 = 0.186;
@@ -66,27 +67,35 @@ impl Expm {
         half_mul(b, u, u, 1.0);
         half_mul(b2, b.as_ref(), b.as_ref(), 1.0);
         let bound = norm.min(norm1(b.as_ref()).sqrt()).min(norm1(b2.as_ref()).sqrt().sqrt());
+        // c and s get the low powers, t and out what is multiplied with the highest one.
         let (degree, squarings, scale) = if bound <= THETA_5 {
-            for (dst, k) in [(&mut *c, CS5[0]), (&mut *s, CS5[1])] {
-                scaled_sum(dst, [k[1], k[2]], [&*b, &*b2], k[0]);
-            }
+            let [kc, ks] = CS5;
+            let pairs = [[kc[1], kc[2]], [ks[1], ks[2]]];
+            scaled_sums([&mut *c, &mut *s], pairs, [&*b, &*b2], [kc[0], ks[0]]);
             (5, 0, 1.0)
         } else if bound <= THETA_9 {
-            for (dst, k) in [(&mut *c, CS9[0]), (&mut *s, CS9[1])] {
-                scaled_sum(t, [k[3], k[4]], [&*b, &*b2], k[2]);
-                half_mul(dst, b2.as_ref(), t.as_ref(), 1.0);
-                add_sum(dst, [k[1]], [&*b], k[0]);
-            }
+            let [kc, ks] = CS9;
+            let low = [[kc[1], 0.0], [ks[1], 0.0]];
+            let high = [[kc[3], kc[4]], [ks[3], ks[4]]];
+            let to = [&mut *c, &mut *s, &mut *t, &mut *out];
+            let d = [kc[0], ks[0], kc[2], ks[2]];
+            scaled_sums(to, [low[0], low[1], high[0], high[1]], [&*b, &*b2], d);
+            half_mul_add(c, b2.as_ref(), t.as_ref());
+            half_mul_add(s, b2.as_ref(), out.as_ref());
             (9, 0, 1.0)
         } else {
             half_mul(b3, b2.as_ref(), b.as_ref(), 1.0);
             let bound = bound.min(norm1(b3.as_ref()).cbrt().sqrt());
             if bound <= THETA_13 {
-                for (dst, k) in [(&mut *c, CS13[0]), (&mut *s, CS13[1])] {
-                    scaled_sum(t, [k[4], k[5], k[6]], [&*b, &*b2, &*b3], k[3]);
-                    half_mul(dst, b3.as_ref(), t.as_ref(), 1.0);
-                    add_sum(dst, [k[1], k[2]], [&*b, &*b2], k[0]);
-                }
+                let [kc, ks] = CS13;
+                let low = |k: [f64; 7]| [k[1], k[2], 0.0];
+                let high = |k: [f64; 7]| [k[4], k[5], k[6]];
+                let to = [&mut *c, &mut *s, &mut *t, &mut *out];
+                let d = [kc[0], ks[0], kc[3], ks[3]];
+                let all = [low(kc), low(ks), high(kc), high(ks)];
+                scaled_sums(to, all, [&*b, &*b2, &*b3], d);
+                half_mul_add(c, b3.as_ref(), t.as_ref());
+                half_mul_add(s, b3.as_ref(), out.as_ref());
                 (13, 0, 1.0)
             } else {
                 half_mul(b4, b2.as_ref(), b2.as_ref(), 1.0);
@@ -95,42 +104,38 @@ impl Expm {
                 let f = half_to_the(q);
                 let f2 = f * f;
                 let (f4, f6, f8) = (f2 * f2, f2 * f2 * f2, f2 * f2 * f2 * f2);
-                for (dst, k) in [(&mut *c, CS17[0]), (&mut *s, CS17[1])] {
-                    let high = [k[5] * f2, k[6] * f4, k[7] * f6, k[8] * f8];
-                    scaled_sum(t, high, [&*b, &*b2, &*b3, &*b4], k[4]);
-                    half_mul(dst, b4.as_ref(), t.as_ref(), 1.0);
-                    let low = [k[1] * f2, k[2] * f4, k[3] * f6];
-                    scaled_sum(t, [low[0], low[1], low[2], f8], [&*b, &*b2, &*b3, &*dst], k[0]);
-                    core::mem::swap(t, dst);
-                }
+                let [kc, ks] = CS17;
+                let low = |k: [f64; 9]| [k[1] * f2, k[2] * f4, k[3] * f6, 0.0];
+                let high =
+                    |k: [f64; 9]| [k[5] * f2 * f8, k[6] * f4 * f8, k[7] * f6 * f8, k[8] * f8 * f8];
+                let to = [&mut *c, &mut *s, &mut *t, &mut *out];
+                let d = [kc[0], ks[0], kc[4] * f8, ks[4] * f8];
+                let all = [low(kc), low(ks), high(kc), high(ks)];
+                scaled_sums(to, all, [&*b, &*b2, &*b3, &*b4], d);
+                half_mul_add(c, b4.as_ref(), t.as_ref());
+                half_mul_add(s, b4.as_ref(), out.as_ref());
                 (17, q, f)
             }
         };
         half_mul(t, u, s.as_ref(), -1.0);
         scaled_sum(out, [1.0, scale], [&*c, &*t], 0.0);
+        self.rotate_back(Kind::CosSin, degree, squarings, out);
+    }
+
+    /// out ← out^(2^squarings), put back on the group: the choice made is complete.
+    pub(super) fn rotate_back(
+        &mut self,
+        kind: Kind,
+        degree: usize,
+        squarings: u32,
+        out: &mut Mat<f64>,
+    ) {
         for _ in 0..squarings {
-            matmul(t.as_mut(), Accum::Replace, out.as_ref(), out.as_ref(), 1.0, Par::Seq);
-            core::mem::swap(t, out);
+            mul(&mut self.t, out.as_ref(), out.as_ref());
+            core::mem::swap(&mut self.t, out);
         }
         let corrections =
             if squarings > 0 { orthogonalise(out, [&mut self.t, &mut self.a2]) } else { 0 };
-        self.choice =
-            ExpmChoice { kind: Kind::CosSin, degree, squarings, corrections, balanced: false };
-    }
-}
-
-/// out ← out + Σ c_i·x_i + d·𝟙.
-fn add_sum<const K: usize>(out: &mut Mat<f64>, c: [f64; K], x: [&Mat<f64>; K], d: f64) {
-    for j in 0..out.ncols() {
-        let cols = x.map(|x| x.col_as_slice(j));
-        let out = out.col_as_slice_mut(j);
-        for (i, o) in out.iter_mut().enumerate() {
-            for k in 0..K {
-                *o += c[k] * cols[k][i];
-            }
-        }
-        if let Some(o) = out.get_mut(j) {
-            *o += d;
-        }
+        self.choice = ExpmChoice { kind, degree, squarings, corrections, balanced: false };
     }
 }

@@ -5,18 +5,17 @@ use pulp::{Arch, Simd, WithSimd};
 
 use super::cols::Cols;
 use super::taylor::{
-    B12, B18, T8, THETA_1, THETA_2, THETA_4, THETA_8, THETA_12, THETA_18, THETA_18_6, half_to_the,
-    halvings, halvings_18,
+    B18, Packed, THETA_1, THETA_2, THETA_4, THETA_8, THETA_12, THETA_18, THETA_18_6, degree_8,
+    degree_12, degree_18, half_to_the, halvings, halvings_18,
 };
-use super::{ExpmChoice, Kind, Structure};
+use super::{ExpmChoice, Kind, NORM_MAX_SKEW, Structure};
 
 /// The largest n with a kernel.
 pub(super) const N_MAX: usize = 16;
 /// Up to this norm a matrix of which nothing is known is scaled by its norm.
-const PLAIN: f64 = 16.0;
+pub(super) const PLAIN: f64 = 16.0;
 /// Beyond this norm the kernel leaves a matrix of which nothing is known to the careful path.
 const NORM_MAX: f64 = 1e3;
-const NORM_MAX_SKEW: f64 = 1e15;
 
 /// out ← exp(x) for n ≤ [`N_MAX`]; `None` where the matrix needs more care than this gives, or is
 /// not finite.
@@ -124,25 +123,11 @@ fn taylor<S: Simd, const N: usize, const K: usize>(
         return Some((g, 4, 0));
     }
     if norm <= THETA_8 {
-        let [x1, x2, x3, x4, x5, x6, x7, y2] = T8;
-        let a4 = Cols::mul(simd, &a2, &Cols::sum(simd, [x1, x2], [a, &a2], 0.0));
-        let left = Cols::sum(simd, [x3, 1.0], [&a2, &a4], 0.0);
-        let right = Cols::sum(simd, [x5, x6, x7], [a, &a2, &a4], x4);
-        let mut g = Cols::sum(simd, [1.0, y2], [a, &a2], 1.0);
-        g.mul_add(simd, &left, &right);
-        return Some((g, 8, 0));
+        return Some((degree_8(simd, a, &a2), 8, 0));
     }
     let a3 = Cols::mul(simd, &a2, a);
     if norm <= THETA_12 {
-        let all = [a, &a2, &a3];
-        let [c0, c1, c2, c3] = B12;
-        let b3 = Cols::sum(simd, [c3[1], c3[2], c3[3]], all, c3[0]);
-        let mut s = Cols::sum(simd, [c2[1], c2[2], c2[3]], all, c2[0]);
-        s.mul_add(simd, &b3, &b3);
-        let left = Cols::sum(simd, [c1[1], c1[2], c1[3], 1.0], [a, &a2, &a3, &s], c1[0]);
-        let mut g = Cols::sum(simd, [c0[1], c0[2], c0[3]], all, c0[0]);
-        g.mul_add(simd, &left, &s);
-        return Some((g, 12, 0));
+        return Some((degree_12(simd, a, &a2, &a3), 12, 0));
     }
     let a6 = Cols::mul(simd, &a3, &a3);
     let mut squarings = halvings(norm, THETA_18, 1);
@@ -170,16 +155,7 @@ fn taylor<S: Simd, const N: usize, const K: usize>(
             c[b][i] *= scale[i];
         }
     }
-    let all = [a, &a2, &a3, &a6];
-    let b0 = Cols::sum(simd, [c[0][1], c[0][2], c[0][3]], [a, &a2, &a3], 0.0);
-    let b4 = Cols::sum(simd, [c[4][2], c[4][3], c[4][4]], [&a2, &a3, &a6], 0.0);
-    let mut s = Cols::sum(simd, [c[3][1], c[3][2], c[3][3], c[3][4]], all, c[3][0]);
-    s.mul_add(simd, &b0, &b4);
-    let c2 = c[2];
-    let left = Cols::sum(simd, [c2[1], c2[2], c2[3], c2[4], 1.0], [a, &a2, &a3, &a6, &s], c2[0]);
-    let mut g = Cols::sum(simd, [c[1][1], c[1][2], c[1][3], c[1][4]], all, 0.0);
-    g.mul_add(simd, &left, &s);
-    Some((g, 18, squarings))
+    Some((degree_18(simd, &c, [a, &a2, &a3, &a6]), 18, squarings))
 }
 
 /// The mean of the diagonal.

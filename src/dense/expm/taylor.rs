@@ -13,6 +13,8 @@
 //! 1/k! to 1e-40 (8), 5e-18 (12) and 1e-15 (18, of terms below 1e-3). θ bounds the norm for which
 //! the relative backward error is at most 2⁻⁵³; recomputed from the series of log(e⁻ˣT(x)).
 
+use pulp::Simd;
+
 pub(super) const THETA_1: f64 = 2.220446049250313e-16;
 pub(super) const THETA_2: f64 = 2.5809568029463e-8;
 pub(super) const THETA_4: f64 = 3.3971688399769620e-4;
@@ -102,4 +104,57 @@ pub(super) fn halvings(x: f64, limit: f64, p: i32) -> u32 {
 #[inline(always)]
 pub(super) fn half_to_the(s: u32) -> f64 {
     f64::from_bits((1023 - u64::from(s.min(1022))) << 52)
+}
+
+/// Matrices in registers: what the polynomials ask of them.
+pub(super) trait Packed<S: Simd>: Copy {
+    /// a·b.
+    fn mul(simd: S, a: &Self, b: &Self) -> Self;
+    /// self ← self + a·b.
+    fn mul_add(&mut self, simd: S, a: &Self, b: &Self);
+    /// Σ c_i·x_i + d·𝟙.
+    fn sum<const M: usize>(simd: S, c: [f64; M], x: [&Self; M], d: f64) -> Self;
+}
+
+#[inline(always)]
+pub(super) fn degree_8<S: Simd, M: Packed<S>>(simd: S, a: &M, a2: &M) -> M {
+    let [x1, x2, x3, x4, x5, x6, x7, y2] = T8;
+    let a4 = M::mul(simd, a2, &M::sum(simd, [x1, x2], [a, a2], 0.0));
+    let left = M::sum(simd, [x3, 1.0], [a2, &a4], 0.0);
+    let right = M::sum(simd, [x5, x6, x7], [a, a2, &a4], x4);
+    let mut g = M::sum(simd, [1.0, y2], [a, a2], 1.0);
+    g.mul_add(simd, &left, &right);
+    g
+}
+
+#[inline(always)]
+pub(super) fn degree_12<S: Simd, M: Packed<S>>(simd: S, a: &M, a2: &M, a3: &M) -> M {
+    let all = [a, a2, a3];
+    let [c0, c1, c2, c3] = B12;
+    let b3 = M::sum(simd, [c3[1], c3[2], c3[3]], all, c3[0]);
+    let mut s = M::sum(simd, [c2[1], c2[2], c2[3]], all, c2[0]);
+    s.mul_add(simd, &b3, &b3);
+    let left = M::sum(simd, [c1[1], c1[2], c1[3], 1.0], [a, a2, a3, &s], c1[0]);
+    let mut g = M::sum(simd, [c0[1], c0[2], c0[3]], all, c0[0]);
+    g.mul_add(simd, &left, &s);
+    g
+}
+
+/// With coefficients `c`, which are [`B18`] with the powers of a scale in them.
+#[inline(always)]
+pub(super) fn degree_18<S: Simd, M: Packed<S>>(
+    simd: S,
+    c: &[[f64; 5]; 5],
+    [a, a2, a3, a6]: [&M; 4],
+) -> M {
+    let all = [a, a2, a3, a6];
+    let b0 = M::sum(simd, [c[0][1], c[0][2], c[0][3]], [a, a2, a3], 0.0);
+    let b4 = M::sum(simd, [c[4][2], c[4][3], c[4][4]], [a2, a3, a6], 0.0);
+    let mut s = M::sum(simd, [c[3][1], c[3][2], c[3][3], c[3][4]], all, c[3][0]);
+    s.mul_add(simd, &b0, &b4);
+    let c2 = c[2];
+    let left = M::sum(simd, [c2[1], c2[2], c2[3], c2[4], 1.0], [a, a2, a3, a6, &s], c2[0]);
+    let mut g = M::sum(simd, [c[1][1], c[1][2], c[1][3], c[1][4]], all, 0.0);
+    g.mul_add(simd, &left, &s);
+    g
 }
