@@ -2,7 +2,7 @@
 
 use crate::actions::Action;
 use crate::error::{Error, Failure};
-use crate::groups::RESIDUAL_MAX;
+use crate::groups::{LieAlgebra, RESIDUAL_MAX};
 use crate::methods::{Method, Step};
 use crate::problems::{PointOf, Problem, ScalarOf};
 use crate::scalar::Real;
@@ -212,11 +212,50 @@ impl Stats {
     }
 }
 
+/// What takes the state of a run back to M.
+#[allow(missing_debug_implementations)] // the parts belong to the problem's types
+pub(crate) struct Mender<P: Problem> {
+    work: <P::Action as Action<P::Group>>::Work,
+    cadence: Cadence,
+}
+
+impl<P: Problem> Mender<P> {
+    /// For a method that stays on M, or does not: that one is left as it is.
+    pub(crate) fn new(problem: &P, stays_on_manifold: bool) -> Self {
+        let mut cadence = Cadence::new();
+        if !stays_on_manifold {
+            cadence.next = u64::MAX;
+        }
+        Mender { work: problem.action().work(problem.group()), cadence }
+    }
+    /// After so many steps: is it time to look at y?
+    #[inline]
+    pub(crate) fn after(&mut self, steps: u64, problem: &P, y: &mut PointOf<P>, stats: &mut Stats) {
+        if steps == self.cadence.next {
+            match problem.action().restore(problem.group(), y, &mut self.work) {
+                Some(residual) => {
+                    stats.saw(residual);
+                    self.cadence.saw(residual);
+                }
+                None => self.cadence.next = u64::MAX,
+            }
+        }
+    }
+}
+
+/// Is f(t, y) in 𝔤? Asked once, before the first step.
+pub(crate) fn check_field<P: Problem>(problem: &P, t: f64, y: &PointOf<P>) -> Result<(), Error> {
+    let mut v = problem.group().zero();
+    problem.f(ScalarOf::<P>::lit(t), y, &mut v, &mut problem.work());
+    problem.group().check("f", &v)
+}
+
 /// Why a run ended before its time.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RunError {
-    /// The method does not fit the problem, or the output times do not fit the grid.
+    /// The method does not fit the problem, the output times do not fit the grid, or the first value
+    /// of f is not in 𝔤 ([`LieAlgebra::check`](crate::LieAlgebra::check)).
     #[error(transparent)]
     Setup(#[from] Error),
     /// A step failed. The state is the last accepted one; what was observed stands.
@@ -263,10 +302,9 @@ pub fn integrate<P: Problem, Me: Method<P>>(
     problem.action().check(problem.group(), y)?;
     let mut work = method.work(problem, y)?;
     let mut aside = y.clone();
-    let mut mend = problem.action().work(problem.group());
-    let mut cadence = Cadence::new();
-    if !method.stays_on_manifold() {
-        cadence.next = u64::MAX;
+    let mut mender = Mender::new(problem, method.stays_on_manifold());
+    if grid.steps() > 0 {
+        check_field(problem, grid.t_span()[0], y)?;
     }
     let mut stats = Stats::default();
     let [t0, t1] = grid.t_span();
@@ -296,15 +334,7 @@ pub fn integrate<P: Problem, Me: Method<P>>(
         }
         take(end, y)?;
         stats.steps += 1;
-        if stats.steps == cadence.next {
-            match problem.action().restore(problem.group(), y, &mut mend) {
-                Some(residual) => {
-                    stats.saw(residual);
-                    cadence.saw(residual);
-                }
-                None => cadence.next = u64::MAX,
-            }
-        }
+        mender.after(stats.steps, problem, y, &mut stats);
         let on_grid = match save {
             SaveAt::Every(every) => (n + 1) % every == 0,
             SaveAt::Times(_) => times.first() == Some(&end),

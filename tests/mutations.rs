@@ -16,13 +16,21 @@ use lieflow::CoordinateMap;
 use lieflow::actions::{Coadjoint, LeftTranslation};
 use lieflow::groups::{MatrixGroup, So3};
 use lieflow::maps::{CCSK123, Cay, Exp};
+use lieflow::methods::commutator_free::{CF4, ProductTableau};
+use lieflow::methods::crouch_grossman::CG3;
+use lieflow::methods::low_storage::{LS4, LS5, TwoN};
+use lieflow::methods::magnus::CFM6_5;
+use lieflow::methods::one_bracket::RKMK4_2C;
 use lieflow::methods::{
-    Method, Rkmk, Tableau,
-    tableau::{HEUN, RK4, THREE_EIGHTHS},
+    CfMagnus, CommutatorFree, LowStorage, Method, OneBracket, Rkmk, Tableau,
+    tableau::{HEUN, RK4, THREE_EIGHTHS, VERNER6},
 };
 use maps::{Faulty, WrongSign};
 use rand_pcg::Pcg64;
-use support::orders::{Flow, measure, measure_as, order_conditions, reference, wave};
+use support::orders::{
+    Field, Flow, MEMBERS, Reference, clock, family, measure, measure_as, measure_over,
+    order_conditions, reference, wave,
+};
 use support::represent::Represent;
 use support::{Verdict, holds, laws};
 
@@ -208,6 +216,120 @@ fn methods_with_a_wrong_stage() {
 fn two_commutators_with_the_wrong_stage() {
     keeps_order_4(so(5), &methods::TwoCommutators { wrong: false });
     falls_to(2, so(5), &methods::TwoCommutators { wrong: true });
+}
+
+type OnSo5 = Flow<MatrixGroup, LeftTranslation>;
+
+/// An ensemble on SO(5).
+fn members(field: impl Fn(u64) -> Field) -> Vec<(OnSo5, Reference<OnSo5>)> {
+    family(MEMBERS, &so(5), field)
+        .into_iter()
+        .map(|(flow, start)| {
+            let reference = reference(&flow, start);
+            (flow, reference)
+        })
+        .collect()
+}
+
+/// The ensembles for orders above 4 see the same slips in a pair of order 6.
+#[test]
+fn a_pair_of_order_6_with_a_fault() {
+    let members = members(|i| wave(5, 0.5, 11 + i));
+    macro_rules! refused {
+        ($($method:expr),* $(,)?) => {$(
+            let seen = measure_over(&members, &$method).and_then(|e| e.check());
+            assert!(seen.is_err(), "{}", stringify!($method));
+        )*};
+    }
+    measure_over(&members, &Rkmk::new(VERNER6, Exp)).and_then(|e| e.check()).unwrap();
+    // Two a_ij exchanged, in one row: its sum is the same.
+    let mut swapped = VERNER6;
+    swapped.a[4].swap(1, 2);
+    let mut coefficient = VERNER6;
+    coefficient.a[4][3] += 1e-4;
+    refused!(
+        Rkmk::new(swapped, Exp),
+        Rkmk::new(coefficient, Exp),
+        Rkmk::new(Tableau { c: [0.0; 8], ..VERNER6 }, Exp),
+        Rkmk::new(Tableau { order: 7, ..VERNER6 }, Exp),
+        Rkmk::new(Tableau { order: 5, ..VERNER6 }, Exp),
+        Rkmk::new(VERNER6, Faulty(Exp, maps::Fault::NoDifferential)),
+        Rkmk::new(VERNER6, Faulty(Exp, maps::Fault::Baker2)),
+        Rkmk::new(VERNER6, Faulty(Exp, maps::Fault::Baker4Sign)),
+        Rkmk::new(VERNER6, Faulty(Exp, maps::Fault::LeftTrivialised)),
+        Rkmk::new(VERNER6, Faulty(Cay, maps::Fault::LeftTrivialised)),
+        Rkmk::new(VERNER6, Faulty(Cay, maps::Fault::NoQuarter)),
+    );
+    let mut wrong = LS5;
+    wrong.b[4] += 1e-4;
+    measure_over(&members, &LowStorage(LS5)).and_then(|e| e.check()).unwrap();
+    refused!(LowStorage(wrong), LowStorage(TwoN { c: [0.0; 13], ..LS5 }));
+    for fault in [actions::Fault::Transposed, actions::Fault::Swapped] {
+        let turned: Vec<_> = crate::members(|i| wave(5, 0.5, 11 + i))
+            .into_iter()
+            .zip(0u64..)
+            .map(|((_, reference), i)| {
+                let field = wave(5, 0.5, 11 + 100 * i);
+                let flow = Flow::new(so(5), actions::Translation(fault), field);
+                let reference = reference.of_the_same_points(&flow);
+                (flow, reference)
+            })
+            .collect();
+        let seen = measure_over(&turned, &Rkmk::new(VERNER6, Exp)).and_then(|e| e.check());
+        assert!(seen.is_err(), "{fault:?}");
+    }
+}
+
+/// And the harness for orders up to 4 sees them in methods without coordinates.
+#[test]
+fn commutator_free_methods_with_a_fault() {
+    keeps_order_4(so(5), &CommutatorFree(CF4));
+    // Two weights exchanged, in one factor.
+    let mut swapped = CF4;
+    swapped.update.factors = &[[T12[2], T12[3], T12[2], T12[0]], [T12[0], T12[2], T12[2], T12[3]]];
+    falls_to(1, so(5), &CommutatorFree(swapped));
+    // One exponential in place of two: the bracket that they make is gone.
+    let mut merged = CF4;
+    merged.update.factors = &[[1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0]];
+    falls_to(2, so(5), &CommutatorFree(merged));
+    // The factors from the other side, as with the other trivialisation.
+    let mut reversed = CF4;
+    reversed.update.factors = &[[T12[0], T12[2], T12[2], T12[3]], [T12[3], T12[2], T12[2], T12[0]]];
+    falls_to(2, so(5), &CommutatorFree(reversed));
+    falls_to(1, so(5), &CommutatorFree(ProductTableau { c: [0.0; 4], ..CF4 }));
+    let mut from_start = CF4;
+    from_start.stages[3].from = 0;
+    falls_to(1, so(5), &CommutatorFree(from_start));
+    let mut crouch_grossman = CG3;
+    crouch_grossman.update.factors =
+        &[[0.0, 0.0, 24.0 / 17.0], [0.0, -2.0 / 3.0, 0.0], [13.0 / 51.0, 0.0, 0.0]];
+    falls_to(2, so(5), &CommutatorFree(crouch_grossman));
+    let mut wrong_stage = RKMK4_2C;
+    wrong_stage.stages[2].w = [0.5, 0.0, 0.0, 0.0];
+    falls_to(2, so(5), &OneBracket(wrong_stage));
+    let mut no_bracket = RKMK4_2C;
+    no_bracket.update.x = [0.0; 4];
+    falls_to(2, so(5), &OneBracket(no_bracket));
+    let mut coefficient = LS4;
+    coefficient.a[3] += 1e-3;
+    assert!(order_on(4, so(5), &LowStorage(coefficient)).0.is_err());
+}
+
+/// −1/12, …: the weights of CF4 in twelfths.
+const T12: [f64; 4] = [-1.0 / 12.0, 0.0, 1.0 / 6.0, 0.25];
+
+/// Methods for fields of linear type: factors from the other side, and a digit lost.
+#[test]
+fn magnus_methods_with_a_fault() {
+    let members = members(|i| clock(5, 1.0, 21 + i));
+    let order = |method: &CfMagnus<3, 5>| measure_over(&members, method).and_then(|e| e.check());
+    order(&CfMagnus(CFM6_5)).unwrap();
+    let mut reversed = CFM6_5;
+    reversed.factors.reverse();
+    assert!(order(&CfMagnus(reversed)).is_err());
+    let mut coefficient = CFM6_5;
+    coefficient.factors[2][1] += 1e-5;
+    assert!(order(&CfMagnus(coefficient)).is_err());
 }
 
 #[test]

@@ -4,7 +4,7 @@ use super::{Adaptive, Controller};
 use crate::actions::Action;
 use crate::error::{Error, StepError};
 use crate::groups::LieAlgebra;
-use crate::integrate::{SaveAt, TimeGrid};
+use crate::integrate::{Mender, SaveAt, Stats, TimeGrid, check_field};
 use crate::methods::{Embedded, Step};
 use crate::problems::{PointOf, Problem};
 
@@ -24,6 +24,12 @@ pub struct AdaptiveStats {
     pub smallest_step: f64,
     /// The largest accepted step, without its sign.
     pub largest_step: f64,
+    /// How often the state was taken back to M ([`Stats::restored`]).
+    pub restored: u64,
+    /// How often it was too far off for that ([`Stats::not_restored`]).
+    pub not_restored: u64,
+    /// A power of two above every residual that was seen there ([`Stats::residual`]).
+    pub residual: f64,
 }
 
 /// Why a run ended before its time. The state handed to the driver is the last accepted one, that of
@@ -31,7 +37,8 @@ pub struct AdaptiveStats {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum AdaptiveError {
-    /// The method does not fit the problem, or the times are not usable.
+    /// The method does not fit the problem, the times are not usable, or the first value of f is not
+    /// in 𝔤.
     #[error(transparent)]
     Setup(#[from] Error),
     /// No step from t was small enough.
@@ -82,7 +89,8 @@ const REJECTIONS_MAX: u32 = 60;
 /// Integrate `problem` over `t_span` from y with steps that meet the tolerances of `control`, showing
 /// (t, y) to `observe` where `save` says; [`SaveAt::Every`] counts accepted steps, and a time of
 /// [`SaveAt::Times`] within a step is reached by a shorter step of the same method from its start. On
-/// return y is the state at the end, or the last accepted one. Time runs backward when t₁ < t₀.
+/// return y is the state at the end, or the last accepted one. Time runs backward when t₁ < t₀. The
+/// state is taken back to M from time to time, as by [`integrate`](crate::integrate()).
 ///
 /// Memory is allocated before the first step only.
 ///
@@ -145,6 +153,9 @@ where
         run.stats.smallest_step = 0.0;
         return Ok(run.stats);
     }
+    check_field(problem, run.t, y)?;
+    let mut mender = Mender::new(problem, method.stays_on_manifold());
+    let mut mended = Stats::default();
     let forward = run.t1 > run.t;
     let mut h = match control.first_step {
         Some(h) => h,
@@ -183,6 +194,7 @@ where
             Ok(ratio) if ratio <= 1.0 => {
                 core::mem::swap(y, &mut run.next);
                 run.accepted(end, size);
+                mender.after(run.stats.accepted, problem, y, &mut mended);
                 wall = wall.filter(|wall| if forward { end < *wall } else { end > *wall });
                 controller.hold |= wall.is_some();
                 h = (size * controller.accept(ratio)).max(control.min_step);
@@ -215,7 +227,8 @@ where
             }
         }
     }
-    Ok(run.stats)
+    let Stats { restored, not_restored, residual, .. } = mended;
+    Ok(AdaptiveStats { restored, not_restored, residual, ..run.stats })
 }
 
 /// A run under way.

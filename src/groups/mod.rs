@@ -56,6 +56,15 @@ pub trait LieAlgebra {
     /// Is every number in u finite?
     fn is_finite(&self, u: &Self::Alg) -> bool;
 
+    /// Is u in 𝔤? Storage that can hold nothing else says yes, which is the default.
+    ///
+    /// # Errors
+    /// [`Error::Shape`] and [`Error::NotInAlgebra`] with the name `arg`; numbers that are not finite
+    /// are no error here.
+    fn check(&self, _arg: &'static str, _u: &Self::Alg) -> Result<(), Error> {
+        Ok(())
+    }
+
     /// u ← Σ_j h·w_j·k_j, over the nonzero weights only.
     #[inline]
     fn combine(&self, h: Self::Scalar, weights: &[f64], terms: &[Self::Alg], u: &mut Self::Alg) {

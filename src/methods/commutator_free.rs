@@ -16,6 +16,7 @@
 //! methods, FGCS 19 (2003); C. Curry, B. Owren, Variable step size commutator free Lie group
 //! integrators, Numer. Algorithms 82 (2019).
 
+use super::blame::blame;
 use super::embedded::{between, without_pair};
 use super::{Embedded, LocalError, Method, Metric, Step};
 use crate::chart::ChartStore;
@@ -196,20 +197,10 @@ where
             let t = step.t + step.h * ScalarOf::<P>::lit(table.c[i]);
             self.chart.around(problem, &Exp, step.n, &self.points[i]).field(t, &mut self.k[i]);
         }
-        let finite = |k: &AlgOf<P>| problem.group().is_finite(k);
-        if let Some(stage) = self.k[..count].iter().position(|k| !finite(k)) {
-            return Err(StepError::NonFiniteRhs { stage: stage + 1 });
+        if !self.k[..count].iter().all(|k| problem.group().is_finite(k)) {
+            return Err(StepError::NotFinite { what: "a stage" });
         }
         self.product(problem, step, p, &table.update, to)
-    }
-
-    /// The same error, or the stage whose f was not finite: that is where it came from.
-    #[cold]
-    fn explain(&mut self, alg: &P::Group, error: StepError) -> StepError {
-        let stage = self.k.iter().position(|k| !alg.is_finite(k));
-        // The next attempt must not see the numbers of this one.
-        self.k.iter_mut().for_each(|k| alg.set_zero(k));
-        stage.map_or(error, |stage| StepError::NonFiniteRhs { stage: stage + 1 })
     }
 }
 
@@ -241,13 +232,11 @@ where
         p: &mut PointOf<P>,
         CommutatorFreeWork { stages, y }: &mut Self::Work,
     ) -> Result<(), StepError> {
-        match stages.advance(&self.0, self.0.update_stages, problem, step, p, y) {
-            Ok(()) => {
-                core::mem::swap(p, y);
-                Ok(())
-            }
-            Err(error) => Err(stages.explain(problem.group(), error)),
-        }
+        stages
+            .advance(&self.0, self.0.update_stages, problem, step, p, y)
+            .map_err(|error| blame(problem.group(), &mut stages.k, error))?;
+        core::mem::swap(p, y);
+        Ok(())
     }
 }
 
@@ -271,14 +260,14 @@ where
         to: &mut PointOf<P>,
     ) -> Result<LocalError<ScalarOf<P>>, StepError> {
         let alg = problem.group();
-        if let Err(error) = stages.advance(&self.0, S, problem, step, from, to) {
-            return Err(stages.explain(alg, error));
-        }
+        stages
+            .advance(&self.0, S, problem, step, from, to)
+            .map_err(|error| blame(alg, &mut stages.k, error))?;
         let error = match &self.0.embedded {
-            Some((_, product)) => match stages.product(problem, step, from, product, y) {
-                Ok(()) => y.distance(to),
-                Err(error) => return Err(stages.explain(alg, error)),
-            },
+            Some((_, product)) => {
+                stages.product(problem, step, from, product, y)?;
+                y.distance(to)
+            }
             None => ScalarOf::<P>::lit(f64::INFINITY),
         };
         Ok(between(error, from, to))

@@ -54,6 +54,9 @@ where
     fn order(&self, problem: &P) -> usize {
         self.0.order(problem)
     }
+    fn stays_on_manifold(&self) -> bool {
+        self.0.stays_on_manifold()
+    }
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
         Ok(DoublingWork { inner: self.0.work(problem, like)?, once: like.clone() })
     }

@@ -3,6 +3,7 @@
 //! To add a method: one file with an `impl` of [`Method`], one line here, one in the catalog, which
 //! puts it into the order tests and the command line at once.
 
+mod blame;
 mod buss;
 pub mod commutator_free;
 mod composition;

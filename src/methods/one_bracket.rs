@@ -14,6 +14,7 @@
 //! Soc. A 357 (1999); F. Casas, A. Iserles, Explicit Magnus expansions for nonlinear equations,
 //! J. Phys. A 39 (2006).
 
+use super::blame::blame;
 use super::embedded::without_pair;
 use super::{Embedded, LocalError, Method, Step};
 use crate::chart::ChartStore;
@@ -168,15 +169,6 @@ where
         }
         self.chart.around(problem, &Exp, n, p).lambda(&self.u, to)
     }
-
-    /// The same error, or the stage whose f was not finite: that is where it came from.
-    #[cold]
-    fn explain(&mut self, alg: &P::Group, error: StepError) -> StepError {
-        let stage = self.k.iter().position(|k| !alg.is_finite(k));
-        // The next attempt must not see the numbers of this one.
-        self.k.iter_mut().for_each(|k| alg.set_zero(k));
-        stage.map_or(error, |stage| StepError::NonFiniteRhs { stage: stage + 1 })
-    }
 }
 
 impl<P: Problem, const S: usize> Method<P> for OneBracket<S>
@@ -209,13 +201,11 @@ where
         p: &mut PointOf<P>,
         OneBracketWork { stages, y }: &mut Self::Work,
     ) -> Result<(), StepError> {
-        match stages.advance(&self.0, problem, step, p, y) {
-            Ok(()) => {
-                core::mem::swap(p, y);
-                Ok(())
-            }
-            Err(error) => Err(stages.explain(problem.group(), error)),
-        }
+        stages
+            .advance(&self.0, problem, step, p, y)
+            .map_err(|error| blame(problem.group(), &mut stages.k, error))?;
+        core::mem::swap(p, y);
+        Ok(())
     }
 }
 
@@ -238,9 +228,9 @@ where
         to: &mut PointOf<P>,
     ) -> Result<LocalError<ScalarOf<P>>, StepError> {
         let alg = problem.group();
-        if let Err(error) = stages.advance(&self.0, problem, step, from, to) {
-            return Err(stages.explain(alg, error));
-        }
+        stages
+            .advance(&self.0, problem, step, from, to)
+            .map_err(|error| blame(alg, &mut stages.k, error))?;
         let length = alg.norm(&stages.u);
         alg.axpy(ScalarOf::<P>::lit(-1.0), &stages.u, &mut stages.v);
         let error = match self.0.embedded {

@@ -9,6 +9,7 @@
 //! error estimate looks at is left out when none is asked for.
 //! Source: H. Munthe-Kaas, High order Runge–Kutta methods on manifolds, Appl. Numer. Math. 29 (1999).
 
+use super::blame::blame;
 use super::embedded::without_pair;
 use super::tableau::{ErrorEstimate, fold_error};
 use super::{Embedded, LocalError, Method, Step, Tableau};
@@ -79,15 +80,6 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> Stages<P, Psi, S>
         }
         chart.lambda(u, to)
     }
-
-    /// The same error, or the stage whose f was not finite: that is where it came from.
-    #[cold]
-    fn explain(&mut self, alg: &P::Group, error: StepError) -> StepError {
-        let stage = self.k.iter().position(|k| !alg.is_finite(k));
-        // The next attempt must not see the numbers of this one.
-        self.k.iter_mut().for_each(|k| alg.set_zero(k));
-        stage.map_or(error, |stage| StepError::NonFiniteRhs { stage: stage + 1 })
-    }
 }
 
 impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> Method<P> for Rkmk<Psi, S> {
@@ -113,13 +105,11 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> Method<P> for Rkm
         p: &mut PointOf<P>,
         RkmkWork { stages, y }: &mut Self::Work,
     ) -> Result<(), StepError> {
-        match stages.advance(self, self.stages, problem, step, p, y) {
-            Ok(()) => {
-                core::mem::swap(p, y);
-                Ok(())
-            }
-            Err(error) => Err(stages.explain(problem.group(), error)),
-        }
+        stages
+            .advance(self, self.stages, problem, step, p, y)
+            .map_err(|error| blame(problem.group(), &mut stages.k, error))?;
+        core::mem::swap(p, y);
+        Ok(())
     }
 }
 
@@ -143,9 +133,9 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> Embedded<P> for R
         to: &mut PointOf<P>,
     ) -> Result<LocalError<ScalarOf<P>>, StepError> {
         let alg = problem.group();
-        if let Err(error) = stages.advance(self, S, problem, step, from, to) {
-            return Err(stages.explain(alg, error));
-        }
+        stages
+            .advance(self, S, problem, step, from, to)
+            .map_err(|error| blame(alg, &mut stages.k, error))?;
         let Stages { k, u, .. } = stages;
         let length = alg.norm(u);
         let mut size = |weights: &[f64; S]| {
@@ -157,7 +147,8 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> Embedded<P> for R
             None => ScalarOf::<P>::lit(f64::INFINITY),
         };
         if !error.is_finite() && self.tableau.error.is_some() {
-            return Err(stages.explain(alg, StepError::NotFinite { what: "the error estimate" }));
+            let error = StepError::NotFinite { what: "the error estimate" };
+            return Err(blame(alg, &mut stages.k, error));
         }
         Ok(LocalError { error, length })
     }

@@ -20,6 +20,7 @@
 pub mod beam;
 mod capability;
 mod euler;
+mod fallible;
 mod heavy_top;
 pub mod inertia;
 mod invariants;
@@ -36,6 +37,7 @@ mod torque;
 
 pub use capability::{Isospectral, LiePoisson, Orthogonal, Projection, Split};
 pub use euler::{Euler, EulerGroup, FromTheBody, Hamiltonian, Kinetic};
+pub use fallible::{Fallible, InAlgebra, TryProblem};
 pub use heavy_top::HeavyTop;
 pub use invariants::{Invariant, Invariants, Kept};
 pub use isospectral::{IsospectralFlow, toda_lattice};
@@ -101,7 +103,8 @@ pub trait Problem {
     /// Scratch for [`f`](Self::f); the only call that allocates.
     fn work(&self) -> Self::Work;
     /// v ← f(t, y) ∈ 𝔤. A field that has no value at (t, y) returns a number that is not finite;
-    /// the step then fails with [`StepError::NonFiniteRhs`](crate::StepError::NonFiniteRhs).
+    /// the step then fails with [`StepError::NonFiniteRhs`](crate::StepError::NonFiniteRhs). One with
+    /// errors of its own is a [`TryProblem`].
     fn f(&self, t: ScalarOf<Self>, y: &PointOf<Self>, v: &mut AlgOf<Self>, work: &mut Self::Work);
 }
 

@@ -18,7 +18,7 @@ use crate::page::{Block, Page, Section};
 use crate::report::{self, CHOICE_HEADER, Choice, Cost, KEPT, choices};
 use crate::scene::Scene;
 
-/// Step sizes are those of the scene times these, from the largest to the smallest.
+/// Step sizes are the whole span, and those of the scene times these, from the largest to the smallest.
 const FACTORS: [f64; 11] = [32.0, 16.0, 8.0, 4.0, 2.0, 1.0, 0.5, 0.25, 0.125, 0.0625, 0.03125];
 
 /// Tolerances of the methods that choose their steps.
@@ -136,10 +136,10 @@ fn identity(scene: &Scene, plan: &Plan<'_>, effort: &Effort) -> String {
 }
 
 fn numbers_of_steps(scene: &Scene) -> Vec<u64> {
-    let mut steps: Vec<u64> = FACTORS
-        .iter()
-        .map(|factor| ((scene.grid.steps() as f64 / factor).round() as u64).max(1))
-        .collect();
+    let scaled = FACTORS.iter().map(|factor| scene.grid.steps() as f64 / factor);
+    // A single step first: some methods need no more.
+    let mut steps = vec![1];
+    steps.extend(scaled.map(|steps| (steps.round() as u64).max(1)));
     steps.dedup();
     steps
 }

@@ -79,7 +79,7 @@ pub struct Reached {
 }
 
 /// The runs that no other run beats in both error and cost, as (curve, point), from the largest error
-/// to the smallest. A run without a cost is none.
+/// to the smallest. A run without a cost is none, nor one that is more than a tenth off.
 pub fn pareto(curves: &[Curve], cost: impl Fn(&WorkPoint) -> Option<f64>) -> Vec<(usize, usize)> {
     let both = |(i, j): (usize, usize)| {
         let point: &WorkPoint = &curves[i].points[j];
@@ -87,7 +87,7 @@ pub fn pareto(curves: &[Curve], cost: impl Fn(&WorkPoint) -> Option<f64>) -> Vec
     };
     let places = |(i, curve): (usize, &Curve)| (0..curve.points.len()).map(move |j| (i, j));
     let mut all: Vec<(usize, usize)> = curves.iter().enumerate().flat_map(places).collect();
-    all.retain(|at| both(*at).0 >= 0.0);
+    all.retain(|at| (0.0..=0.1).contains(&both(*at).0));
     all.sort_by(|a, b| {
         let (a, b) = (both(*a), both(*b));
         a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1))

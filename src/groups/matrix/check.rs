@@ -67,12 +67,37 @@ impl MatrixGroup {
 
     pub(crate) fn shape(&self, arg: &'static str, x: MatRef<'_, f64>) -> Result<(), Error> {
         square(arg, x)?;
-        let n = self.n();
-        if x.nrows() != n {
-            let (rows, cols) = (x.nrows(), x.ncols());
-            return Err(Error::Shape { arg, rows, cols, expected_rows: n, expected_cols: n });
-        }
+        self.size(arg, x)?;
         finite(arg, x)
+    }
+
+    fn size(&self, arg: &'static str, x: MatRef<'_, f64>) -> Result<(), Error> {
+        let (n, rows, cols) = (self.n(), x.nrows(), x.ncols());
+        match (rows, cols) == (n, n) {
+            true => Ok(()),
+            false => Err(Error::Shape { arg, rows, cols, expected_rows: n, expected_cols: n }),
+        }
+    }
+
+    /// ‖uᵀM + Mu‖/(‖M‖‖u‖) is at most `tolerance`, or not a number.
+    fn belongs(&self, arg: &'static str, u: &Mat<f64>, tolerance: f64) -> Result<(), Error> {
+        let (Some(m), scale) = (self.m(), u.norm_max()) else { return Ok(()) };
+        if scale > 0.0 {
+            // The residual is relative: no overflow, and 1/scale might be one.
+            let v = Mat::from_fn(self.n(), self.n(), |i, j| u[(i, j)] / scale);
+            let gap = v.transpose() * &m + &m * &v;
+            let residual = norm_frobenius(&gap) / (norm_frobenius(&m) * norm_frobenius(&v));
+            if residual > tolerance {
+                return Err(Error::NotInAlgebra { arg, group: self.name(), residual, tolerance });
+            }
+        }
+        Ok(())
+    }
+
+    /// [`LieAlgebra::check`], to [`MEMBERSHIP`].
+    pub(super) fn check_algebra(&self, arg: &'static str, u: &Mat<f64>) -> Result<(), Error> {
+        self.size(arg, u.as_ref())?;
+        self.belongs(arg, u, MEMBERSHIP)
     }
 
     /// u as an element of the algebra, when it is one to [`MEMBERSHIP`].
@@ -100,18 +125,7 @@ impl MatrixGroup {
     /// As [`algebra`](Self::algebra).
     pub fn algebra_within(&self, u: Mat<f64>, tolerance: f64) -> Result<AlgebraMatrix, Error> {
         self.shape("u", u.as_ref())?;
-        if let Some(m) = self.m() {
-            let scale = u.norm_max();
-            if scale > 0.0 {
-                let v = &u * faer::Scale(1.0 / scale); // the residual is relative: no overflow
-                let gap = v.transpose() * &m + &m * &v;
-                let residual = norm_frobenius(&gap) / (norm_frobenius(&m) * norm_frobenius(&v));
-                if residual.is_nan() || residual > tolerance {
-                    let group = self.name();
-                    return Err(Error::NotInAlgebra { arg: "u", group, residual, tolerance });
-                }
-            }
-        }
+        self.belongs("u", &u, tolerance)?;
         Ok(AlgebraMatrix::new_unchecked(u))
     }
 

@@ -231,6 +231,9 @@ impl LieAlgebra for MatrixGroup {
     fn is_finite(&self, u: &AlgebraMatrix) -> bool {
         dense::is_finite(u)
     }
+    fn check(&self, arg: &'static str, u: &AlgebraMatrix) -> Result<(), Error> {
+        self.check_algebra(arg, u)
+    }
 }
 
 impl LieGroup for MatrixGroup {

@@ -2,10 +2,11 @@
 //! action; their reference solutions; errors of a method on them.
 
 use faer::Mat;
+use lieflow::actions::LeftTranslation;
 use lieflow::maps::{Cay, CoordinateMap};
 use lieflow::methods::{Method, Rk, Rkmk, tableau};
-use lieflow::problems::{Ambient, PointOf, Problem};
-use lieflow::{SaveAt, TimeGrid, integrate};
+use lieflow::problems::{Ambient, LinearField, PointOf, Problem};
+use lieflow::{Step, TimeGrid};
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
 
@@ -14,12 +15,14 @@ use super::super::represent::Represent;
 use super::super::{gap, gaussian, within};
 use super::estimate::{Estimate, estimate, grid};
 
-/// The span of every test run: not from 0, so that a dropped t₀ shows.
-const SPAN: [f64; 2] = [0.3, 1.3];
-/// Steps of the reference, of order 4; a method of that order is tested with 160 at most.
-const REFERENCE_STEPS: u64 = 2048;
-/// A reference must be better than this, relatively: 1/10 of the least error that is used.
-const REFERENCE_ERROR: f64 = 1e-12;
+/// The start of every test run: not 0, so that a dropped t₀ shows.
+const T0: f64 = 0.3;
+/// The length of every one on a single problem.
+pub(super) const SPAN: f64 = 1.0;
+/// Steps of the reference, of order 8; a method of that order is tested with 20 at most.
+const REFERENCE_STEPS: u64 = 256;
+/// A reference must be better than this, relatively: 1/2 of the least error that is used.
+const REFERENCE_ERROR: f64 = 5e-14;
 
 /// (t, a square matrix made from the point) ↦ a matrix; its projection on 𝔤 is f(t, y).
 pub(crate) type Field = Box<dyn Fn(f64, &Mat<f64>) -> Mat<f64>>;
@@ -51,13 +54,23 @@ pub(crate) fn wave(n: usize, strength: f64, seed: u64) -> Field {
     let mut rng = Pcg64::seed_from_u64(seed);
     let c: [Mat<f64>; 4] = core::array::from_fn(|_| gaussian(&mut rng, n, n));
     Box::new(move |t, y| {
-        let (c1y, c3y) = (&c[1] * y, &c[3] * y);
         let (y00, y12) = (y[(0, 0)], y[(1, 2)].tanh());
         let (fast, slow) = ((1.3 * t).cos(), t.cos());
         Mat::from_fn(n, n, |i, j| {
+            let times_y = |c: &Mat<f64>| (0..n).map(|k| c[(i, k)] * y[(k, j)]).sum::<f64>();
             let constant = c[0][(i, j)] * fast * y00 + 0.7 * c[2][(i, j)] * y12;
-            strength * (constant + (c1y[(i, j)] + t).sin() + c3y[(i, j)] * slow)
+            strength * (constant + (times_y(&c[1]) + t).sin() + times_y(&c[3]) * slow)
         })
+    })
+}
+
+/// `strength`·(C₀ cos 1.3t + C₁ sin t + C₂ t e⁻ᵗ): a field of linear type, which does not look at y.
+pub(crate) fn clock(n: usize, strength: f64, seed: u64) -> Field {
+    let mut rng = Pcg64::seed_from_u64(seed);
+    let c: [Mat<f64>; 3] = core::array::from_fn(|_| gaussian(&mut rng, n, n));
+    Box::new(move |t, _| {
+        let w = [(1.3 * t).cos(), t.sin(), t * (-t).exp()];
+        Mat::from_fn(n, n, |i, j| strength * (0..3).map(|k| w[k] * c[k][(i, j)]).sum::<f64>())
     })
 }
 
@@ -107,9 +120,17 @@ impl<G: Represent, A: Points<G>> Ambient for Flow<G, A> {
     }
 }
 
-/// Where a problem starts, and where it is at the end of [`SPAN`].
+/// For fields as [`clock`], which do not look at y.
+impl<G: Represent, A: Points<G>> LinearField for Flow<G, A> {
+    fn a(&self, t: f64, v: &mut G::Alg, _: &mut ()) {
+        *v = self.group.nearest(&(self.field)(t, &Mat::zeros(0, 0)));
+    }
+}
+
+/// Where a problem starts, and where it is at the end of its span.
 pub(crate) struct Reference<P: Problem> {
     start: PointOf<P>,
+    span: [f64; 2],
     end: Mat<f64>,
 }
 
@@ -119,30 +140,42 @@ impl<P: Problem> Reference<P> {
         &self.start
     }
 
+    /// Where it is at the end, in numbers.
+    pub(crate) fn end(&self) -> &Mat<f64> {
+        &self.end
+    }
+
     /// The same reference for another problem on the same points.
     pub(crate) fn of_the_same_points<Q: Problem>(self, _: &Q) -> Reference<Q>
     where
         Q::Action: lieflow::Action<Q::Group, Point = PointOf<P>>,
     {
-        Reference { start: self.start, end: self.end }
+        Reference { start: self.start, span: self.span, end: self.end }
     }
 }
 
-/// y at the end of [`SPAN`], as numbers.
-fn run<P: Problem, M: Method<P>>(
+/// y at the end of the reference's span, as numbers. The loop is a bare one: each method of the catalog on each
+/// type of problem is compiled here, and once.
+#[inline(never)]
+pub(super) fn run<P: Problem, M: Method<P>>(
     problem: &P,
     method: &M,
     steps: u64,
-    start: &PointOf<P>,
+    Reference { start, span, .. }: &Reference<P>,
 ) -> Result<Mat<f64>, String>
 where
     P::Group: Represent,
     P::Action: Points<P::Group>,
 {
-    let grid = TimeGrid::with_steps(SPAN, steps).map_err(|e| e.to_string())?;
+    let grid = TimeGrid::with_steps(*span, steps).map_err(|e| e.to_string())?;
     let mut y = start.clone();
-    integrate(problem, method, &grid, &SaveAt::Ends, &mut y, |_, _| {})
-        .map_err(|e| format!("{steps} steps: {e}"))?;
+    let mut work = method.work(problem, start).map_err(|e| e.to_string())?;
+    for n in 0..steps {
+        let (t, end) = (grid.time(n), grid.time(n + 1));
+        method
+            .step(problem, Step { n, t, h: end - t }, &mut y, &mut work)
+            .map_err(|e| format!("step {n} of {steps}: {e}"))?;
+    }
     Ok(problem.action().numbers(problem.group(), &y))
 }
 
@@ -154,17 +187,31 @@ where
     P::Action: Points<P::Group>,
     Cay: CoordinateMap<P::Group>,
 {
-    let classical = Rk(tableau::THREE_EIGHTHS);
-    let end = run(problem, &classical, REFERENCE_STEPS, &start).unwrap();
+    reference_after(SPAN, problem, start)
+}
+
+/// [`reference`] over a span of this length.
+pub(crate) fn reference_after<P: Ambient>(
+    length: f64,
+    problem: &P,
+    start: PointOf<P>,
+) -> Reference<P>
+where
+    P::Group: Represent,
+    P::Action: Points<P::Group>,
+    Cay: CoordinateMap<P::Group>,
+{
+    let mut reference = Reference { start, span: [T0, T0 + length], end: Mat::new() };
+    let classical = Rk(tableau::DOP853);
+    let end = run(problem, &classical, REFERENCE_STEPS, &reference).unwrap();
     let size = end.norm_l2();
-    // Richardson: the error of the finer run is 1/15 of what the halved one differs by.
-    let coarse = run(problem, &classical, REFERENCE_STEPS / 2, &start).unwrap();
-    within("reference against half its steps", gap(&end, &coarse) / size, 15.0 * REFERENCE_ERROR)
-        .unwrap();
-    let on_group = Rkmk::new(tableau::THREE_EIGHTHS, Cay);
-    let other = run(problem, &on_group, REFERENCE_STEPS / 2, &start).unwrap();
-    within("reference against RKMK", gap(&end, &other) / size, 16.0 * REFERENCE_ERROR).unwrap();
-    Reference { start, end }
+    let coarse = run(problem, &classical, REFERENCE_STEPS / 2, &reference).unwrap();
+    within("reference against half its steps", gap(&end, &coarse) / size, REFERENCE_ERROR).unwrap();
+    let on_group = Rkmk::new(tableau::DOP853, Cay);
+    let other = run(problem, &on_group, REFERENCE_STEPS / 2, &reference).unwrap();
+    within("reference against RKMK", gap(&end, &other) / size, REFERENCE_ERROR).unwrap();
+    reference.end = end;
+    reference
 }
 
 /// The order that `method` shows on `problem`, against the one that it claims.
@@ -198,11 +245,52 @@ where
     P::Group: Represent,
     P::Action: Points<P::Group>,
 {
+    on_grid(claimed, &reference.end, &|n| run(problem, method, n, reference))
+}
+
+/// [`measure_as`] from the runs with n steps.
+fn on_grid(
+    claimed: usize,
+    end: &Mat<f64>,
+    run: &dyn Fn(u64) -> Result<Mat<f64>, String>,
+) -> Result<Estimate, String> {
     let steps = grid(claimed);
-    let size = reference.end.norm_l2();
-    let errors = steps
-        .iter()
-        .map(|&n| Ok(gap(&run(problem, method, n, &reference.start)?, &reference.end) / size))
-        .collect::<Result<Vec<f64>, String>>()?;
+    let size = end.norm_l2();
+    let error = |&n: &u64| Ok(gap(&run(n)?, end) / size);
+    let errors = steps.iter().map(error).collect::<Result<Vec<f64>, String>>()?;
     estimate(claimed, &steps, &errors)
+}
+
+/// So many translation problems on a group that differ in their coefficients, with their start: 𝟙,
+/// where the field is as smooth as its coefficients say (sin(C₁y) is not, for large y).
+pub(crate) fn family<G: Represent + Clone>(
+    members: u64,
+    group: &G,
+    field: impl Fn(u64) -> Field,
+) -> Vec<(Flow<G, LeftTranslation>, G::Elem)> {
+    let flow = |i| (Flow::new(group.clone(), LeftTranslation, field(100 * i)), group.identity());
+    (0..members).map(flow).collect()
+}
+
+/// `$body` with `$flows` bound to so many translation problems with the field `$field`, on one group
+/// after the other.
+#[macro_export]
+macro_rules! on_every_group {
+    ($field:path, $members:expr, $flows:ident => $body:block) => {{
+        use lieflow::groups::{MatrixGroup, So3};
+        use $crate::support::orders::family;
+        {
+            let $flows = family($members, &So3::new(), |i| $field(3, 0.5, 11 + i));
+            $body
+        }
+        for (group, n, strength, seed) in [
+            (MatrixGroup::so(5).unwrap(), 5, 0.5, 11),
+            (MatrixGroup::gl(3).unwrap(), 3, 0.2, 12),
+            (MatrixGroup::sp(4).unwrap(), 4, 0.25, 12),
+            (MatrixGroup::indefinite(3, 1).unwrap(), 4, 0.35, 11),
+        ] {
+            let $flows = family($members, &group, |i| $field(n, strength, seed + i));
+            $body
+        }
+    }};
 }

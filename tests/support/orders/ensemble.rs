@@ -1,0 +1,127 @@
+//! Orders above 4. The way from the first asymptotic step to rounding is short there, and on a single
+//! problem one accident of the leading error term spoils it. So the error is a mean over several
+//! problems, the grid is fine, and where the leading term is small (DOPRI5 was made that way) the term
+//! after it is taken out.
+
+use faer::Mat;
+use lieflow::methods::Method;
+use lieflow::problems::Problem;
+
+use super::super::points::Points;
+use super::super::represent::Represent;
+use super::super::scale;
+use super::estimate::{Estimate, SLOPES, pairwise};
+use super::flow::{Reference, run};
+
+/// So many problems that differ in their coefficients and in where they start, for orders below 8.
+pub(crate) const MEMBERS: u64 = 8;
+/// And for order 8 and more, over a span of this length.
+pub(crate) const LONG: (u64, f64) = (24, 2.0);
+
+/// Numbers of steps, fixed here once for every method and problem: ratios from 1.14 to 1.25, and with
+/// each number its double.
+fn grid() -> impl Iterator<Item = u64> {
+    (0..24u64).map(|i| (8 + 2 * (i % 4)) << (i / 4))
+}
+/// n/2 stands so many places before n.
+const HALF: usize = 4;
+
+/// Errors above this are not asymptotic.
+const CEILING: f64 = 1e-3;
+/// Down to here they are looked at.
+const FLOOR: f64 = 1e-12;
+/// Order 8 goes from 1e-3 to 1e-12 within a factor of 13 in h, of which the last one counts. It is
+/// followed down to here, and so are differences of errors: rounding is some 5e-15.
+const LOW_FLOOR: f64 = 1e-13;
+
+/// The run of a member with so many steps, to the end.
+type Run<'a> = &'a dyn Fn(usize, u64) -> Result<Mat<f64>, String>;
+
+/// Relative errors of one method at every step of the grid: the members', one by one.
+struct Errors<'a> {
+    ends: &'a [&'a Mat<f64>],
+    run: Run<'a>,
+    steps: Vec<u64>,
+    errors: Vec<Vec<Mat<f64>>>,
+}
+
+/// The geometric mean of the errors: its slope is the mean of their slopes.
+fn mean(errors: &[Mat<f64>]) -> f64 {
+    (errors.iter().map(|e| e.norm_l2().ln()).sum::<f64>() / errors.len() as f64).exp()
+}
+
+impl Errors<'_> {
+    /// From coarse steps to fine ones, until the error falls below `floor`.
+    fn follow(&mut self, floor: f64) -> Result<(), String> {
+        let last = self.steps.last().copied().unwrap_or(0);
+        for n in grid().filter(|n| *n > last) {
+            if self.errors.last().is_some_and(|e| mean(e) < floor) {
+                break;
+            }
+            let error = |(i, end): (usize, &&Mat<f64>)| {
+                Ok(scale(1.0 / end.norm_l2(), &((self.run)(i, n)? - *end)))
+            };
+            let errors =
+                self.ends.iter().enumerate().map(error).collect::<Result<Vec<_>, String>>();
+            match errors {
+                Err(_) if self.steps.is_empty() => {} // far too large a step
+                errors => {
+                    self.errors.push(errors?);
+                    self.steps.push(n);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn estimate(&self, order: usize, floor: f64, sizes: impl Iterator<Item = f64>) -> Estimate {
+        let sizes: Vec<f64> = sizes.collect();
+        let from = self.steps.len() - sizes.len();
+        let points: Vec<(f64, f64)> = (self.steps[from..].iter().map(|&n| n as f64).zip(sizes))
+            .filter(|(_, e)| (floor..CEILING).contains(e))
+            .collect();
+        Estimate::new(order, pairwise(&points[points.len().saturating_sub(SLOPES + 1)..]))
+    }
+
+    /// The slopes of E(h), or where those do not show the order the slopes of E(h/2) − E(h)/2^(p+1):
+    /// that has the leading term of E and not the one after it. A method of lower order shows its own
+    /// order in both.
+    fn order(&mut self, order: usize) -> Result<Estimate, String> {
+        let floor = if order < 8 { FLOOR } else { LOW_FLOOR };
+        self.follow(floor)?;
+        let plain = self.estimate(order, floor, self.errors.iter().map(|e| mean(e)));
+        if plain.check().is_ok() {
+            return Ok(plain);
+        }
+        self.follow(LOW_FLOOR)?;
+        let weight = 0.5f64.powi(order as i32 + 1);
+        let differences =
+            self.errors.iter().zip(self.errors.iter().skip(HALF)).map(|(coarse, fine)| {
+                let pairs = fine.iter().zip(coarse);
+                mean(&pairs.map(|(fine, coarse)| fine - scale(weight, coarse)).collect::<Vec<_>>())
+            });
+        let two = self.estimate(order, LOW_FLOOR, differences);
+        Ok(if two.check().is_ok() { two.of_two_terms() } else { plain })
+    }
+}
+
+/// The order that a method shows over an ensemble.
+///
+/// # Errors
+/// A run that failed.
+pub(crate) fn measure_over<P: Problem, M: Method<P>>(
+    members: &[(P, Reference<P>)],
+    method: &M,
+) -> Result<Estimate, String>
+where
+    P::Group: Represent,
+    P::Action: Points<P::Group>,
+{
+    let ends: Vec<&Mat<f64>> = members.iter().map(|(_, reference)| reference.end()).collect();
+    let run = |i: usize, n| {
+        let (problem, reference) = &members[i];
+        run(problem, method, n, reference)
+    };
+    let mut errors = Errors { ends: &ends, run: &run, steps: Vec::new(), errors: Vec::new() };
+    errors.order(method.order(&members[0].0))
+}
