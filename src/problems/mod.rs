@@ -13,6 +13,7 @@
 //! | equations of linear type, Magnus | any | [`LinearEquation`] |
 //! | Hill, Mathieu, Floquet; beam lines | Sp(2m); translation | [`hill`], [`mathieu`], [`floquet`], [`beam`] |
 //! | Riccati | Sp(2m); [`Lagrangian`](crate::actions::Lagrangian) | [`LinearEquation`] |
+//! | Schrödinger's equation, n levels | U(n) ⊂ SO(2n); vectors | [`schrodinger`](fn@schrodinger) |
 //! | charged particle | SO(3,1); vectors | [`ChargedParticle`] |
 //!
 //! To add a problem: one file with an `impl` of [`Problem`], one line here.
@@ -31,6 +32,7 @@ mod lyapunov;
 mod oja;
 mod periodic;
 mod rigid_body;
+mod schrodinger;
 mod space;
 mod spheres;
 mod torque;
@@ -50,6 +52,7 @@ pub use rigid_body::{
     BodyFrame, BodyState, Exact, Frame, FreeBody, RigidBody, RigidBodyAttitude, RigidBodyN,
     RigidBodyNAttitude, RigidBodyState, manakov_integrals,
 };
+pub use schrodinger::{Schrodinger, amplitudes, populations, schrodinger};
 pub use space::LinearSpace;
 pub use spheres::{SphericalPendulum, SpinChain};
 pub use torque::{BodyTorque, Motion, SpaceTorque, Torque, TorqueBody};
