@@ -4,16 +4,16 @@
 set -eu
 cd "$(dirname "$0")/.."
 file=benches/instructions.toml
-bench=$(cargo bench --bench instructions --no-run 2>&1 | sed -n 's/.*instructions.rs (\(.*\))$/\1/p')
+bench=$(cargo test --release --bench instructions --no-run 2>&1 | sed -n "s/.*instructions.rs (\(.*\))$/\1/p")
 counted() { # NAME CALLS
     valgrind --tool=callgrind --callgrind-out-file=/dev/null "$bench" "$1" "$2" 2>&1 |
         sed -n 's/.*Collected : *//p'
 }
 found=$(for name in $("$bench"); do
     # The difference of two runs: what starts the process is in both.
-    few=$(counted "$name" 1000)
-    many=$(counted "$name" 3000)
-    echo "$name = $(((many - few) / 2000))"
+    few=$(counted "$name" 200)
+    many=$(counted "$name" 600)
+    echo "$name = $(((many - few) / 400))"
 done)
 if [ "${1:-}" = --record ]; then
     {

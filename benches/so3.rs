@@ -26,6 +26,11 @@ fn over<'a, I, O>(inputs: &'a [I], f: impl Fn(&I) -> O + 'a) -> Box<dyn FnMut() 
     })
 }
 
+/// The components of many vectors.
+fn columns(x: impl Iterator<Item = Vector3<f64>> + Clone) -> [Vec<f64>; 3] {
+    [0, 1, 2].map(|k| x.clone().map(|x| x[k]).collect())
+}
+
 fn compare(title: &str, mut runs: Vec<Run<'_>>) {
     let mut best = vec![f64::INFINITY; runs.len()];
     for _ in 0..ROUNDS {
@@ -62,6 +67,49 @@ fn main() {
         let q: Vec<UnitQuaternion<f64>> =
             u.iter().map(|u| UnitQuaternion::from_scaled_axis(*u)).collect();
 
+        let (us, vs) =
+            (columns(pairs.iter().map(|(u, _)| *u)), columns(pairs.iter().map(|(_, v)| *v)));
+        let views = |x: &'static [Vec<f64>; 3]| x.each_ref().map(|x| &x[..]);
+        let (us, vs) = (views(Box::leak(Box::new(us))), views(Box::leak(Box::new(vs))));
+        let mut out: [Vec<f64>; 9] = [(); 9].map(|()| vec![0.0; COUNT]);
+        let mut three: [Vec<f64>; 3] = [(); 3].map(|()| vec![0.0; COUNT]);
+        let (mut cay, mut dexp) = (out.clone(), three.clone());
+        compare(
+            &format!("arrays of {COUNT}, |u| in {range}, beside a loop of single calls"),
+            vec![
+                (
+                    "batch::exp",
+                    Box::new(|| {
+                        let r = out.each_mut().map(|x| &mut x[..]);
+                        let _ = black_box(so3::batch::exp(black_box(us), r));
+                    }),
+                ),
+                ("so3::exp", over(&u, so3::exp)),
+                ("nalgebra Rotation3", over(&u, |u| Rotation3::from_scaled_axis(*u))),
+                (
+                    "batch::dexpinv",
+                    Box::new(|| {
+                        let w = three.each_mut().map(|x| &mut x[..]);
+                        let _ = black_box(so3::batch::dexpinv(black_box(us), vs, w));
+                    }),
+                ),
+                ("so3::dexpinv", over(&pairs, |(u, v)| so3::dexpinv(u, v))),
+                (
+                    "batch::dexp",
+                    Box::new(|| {
+                        let w = dexp.each_mut().map(|x| &mut x[..]);
+                        let _ = black_box(so3::batch::dexp(black_box(us), vs, w));
+                    }),
+                ),
+                (
+                    "batch::cay",
+                    Box::new(|| {
+                        let r = cay.each_mut().map(|x| &mut x[..]);
+                        let _ = black_box(so3::batch::cay(black_box(us), r));
+                    }),
+                ),
+            ],
+        );
         compare(
             &format!("exp, |u| in {range}"),
             vec![

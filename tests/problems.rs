@@ -18,6 +18,8 @@ mod oja;
 mod periodic;
 #[path = "problems/rigid.rs"]
 mod rigid;
+#[path = "problems/schrodinger.rs"]
+mod schrodinger;
 #[path = "problems/spheres.rs"]
 mod spheres;
 #[path = "problems/torque.rs"]

@@ -14,7 +14,7 @@ use lieflow::methods::magnus::{CayleyMagnus4, Magnus4, TripleProduct};
 use lieflow::methods::one_bracket::MAGNUS43;
 use lieflow::methods::{CommutatorFree, LowStorage, Method, OneBracket, Rkmk, tableau::RK4};
 use lieflow::problems::{BodyTorque, LinearEquation, Motion, PointOf, Problem, TorqueBody};
-use lieflow::{Action, Error, SaveAt, TimeGrid, integrate};
+use lieflow::{Action, Error, LieAlgebra, SaveAt, TimeGrid, integrate};
 use nalgebra::Vector3;
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
@@ -253,4 +253,31 @@ fn drift_is_corrected_part_by_part() {
     let vectors = Pair(Linear, Linear);
     let mut p = (p.1, p.1);
     assert_eq!(vectors.restore(&group, &mut p, &mut vectors.work(&group)), None);
+}
+
+/// A field that leaves one part's algebra, and points of the wrong size, are refused before a run.
+#[test]
+fn what_does_not_fit_a_part_is_refused() {
+    let (group, spins) = (product(), power(4));
+    let mut u = group.zero();
+    group.check("f", &u).unwrap();
+    u.1[(0, 0)] = 1.0;
+    let error = group.check("f", &u).unwrap_err().to_string();
+    assert!(error.starts_with("f: not in the Lie algebra of Sp(4)"), "{error}");
+    let short = vec![Vector3::zeros(); 3].into_boxed_slice();
+    for refused in [
+        spins.check("f", &short),
+        Linear.check(&spins, &short),
+        Each(Linear).check(&spins, &short),
+        Coadjoint.check(&spins, &short),
+        LeftTranslation.check(&spins, &power(3).identity()),
+    ] {
+        let error = refused.unwrap_err().to_string();
+        assert!(error.ends_with("3×1, expected 4×1"), "{error}");
+    }
+    let so5 = MatrixGroup::so(5).unwrap();
+    let wrong = (group.0.identity(), so5.identity());
+    let refused = Pair(LeftTranslation, LeftTranslation).check(&group, &wrong);
+    assert!(refused.unwrap_err().to_string().contains("5×5, expected 4×4"));
+    assert!(LeftTranslation.check(&group, &wrong).is_err());
 }

@@ -75,14 +75,14 @@ fn counted(psi: impl CoordinateMap<So3<Counted>>) -> [Ops; 3] {
 
 /// The paper counts dΨ⁻¹ as a matrix; to apply it to v takes 15 operations more (10 for ccsk). Here
 /// it is applied and never formed. The two additions of ccsk beyond the paper's four are the test
-/// that u is finite. exp as a matrix goes by the quaternion: 21 operations more than (14) and half its
+/// that u is finite. exp as a matrix goes by the quaternion: 22 operations more than (14) and half its
 /// distance from the group.
 #[test]
 fn operations_of_the_maps_next_to_table_2() {
     println!("{:24} add  mul  div sqrt trig   total", "");
     #[rustfmt::skip]
     let rows = [
-        ("exp", counted(Exp), [ops(32, 26, 1, 1, 2), ops(14, 26, 1, 1, 2), ops(13, 20, 2, 0, 0)],
+        ("exp", counted(Exp), [ops(32, 27, 1, 1, 2), ops(14, 26, 1, 1, 2), ops(13, 20, 2, 0, 0)],
             "15/17/√1/trig 2 = 35, both 58 + 15"),
         ("cay", counted(Cay), [ops(15, 17, 1, 0, 0), ops(15, 23, 1, 0, 0), ops(11, 16, 0, 0, 0)],
             "15/20 = 35, both 47 + 15"),
@@ -131,7 +131,7 @@ fn operations_of_a_step_of_rkmk4() {
             assert_eq!((of_m, of_g), ($of_m, $of_g), $name);
         };
     }
-    steps!("exp", Exp, ops(181, 280, 0, 0, 0), ops(301, 436, 0, 0, 0));
+    steps!("exp", Exp, ops(181, 280, 0, 0, 0), ops(373, 476, 0, 0, 0));
     steps!("cay", Cay, ops(105, 183, 4, 0, 0), ops(225, 339, 4, 0, 0));
     steps!("ccsk123", CCSK123, ops(69, 150, 3, 0, 24), ops(165, 294, 3, 0, 24));
 }

@@ -88,11 +88,11 @@ pub trait Model: Debug {
         sink: &mut Sink<'_>,
     ) -> Result<AdaptiveStats, AdaptiveError>;
 
-    /// The order of a method on this problem.
+    /// The order of a method on this problem; none where it is exact.
     ///
     /// # Errors
     /// As [`Catalog::with`].
-    fn order(&self, method: &MethodSpec) -> Result<usize, Error>;
+    fn order(&self, method: &MethodSpec) -> Result<Option<usize>, Error>;
 
     /// The same columns by the exact solution, `t` after the start; `None` where none is known.
     fn exact(&self, t: f64) -> Option<Result<Vec<f64>, Error>>;
@@ -233,6 +233,7 @@ pub fn adapt_by<P: Catalog>(
 ///
 /// # Errors
 /// As [`Catalog::with`].
-pub fn order_by<P: Catalog>(spec: &MethodSpec, problem: &P) -> Result<usize, Error> {
-    P::with(spec, Order(problem))
+pub fn order_by<P: Catalog>(spec: &MethodSpec, problem: &P) -> Result<Option<usize>, Error> {
+    let order = P::with(spec, Order(problem))?;
+    Ok((order != usize::MAX).then_some(order))
 }

@@ -5,6 +5,7 @@
 //! are, and `Linear` forms no group elements: spins on spheres are `Linear` on SO(3)ᴺ.
 
 use super::{Action, Coadjoint};
+use crate::error::Error;
 use crate::groups::{LieGroup, Power, Product, larger};
 use crate::scalar::Real;
 
@@ -50,6 +51,10 @@ where
     fn work(&self, group: &Product<A, B>) -> Self::Work {
         (self.0.work(&group.0), self.1.work(&group.1))
     }
+    fn check(&self, group: &Product<A, B>, p: &Self::Point) -> Result<(), Error> {
+        self.0.check(&group.0, &p.0)?;
+        self.1.check(&group.1, &p.1)
+    }
     #[inline]
     fn act(
         &self,
@@ -80,6 +85,10 @@ impl<G: LieGroup, L: Action<G>> Action<Power<G>> for Each<L> {
 
     fn work(&self, group: &Power<G>) -> L::Work {
         self.0.work(group.group())
+    }
+    fn check(&self, group: &Power<G>, p: &Self::Point) -> Result<(), Error> {
+        group.check_copies("y", p)?;
+        p.iter().try_for_each(|p| self.0.check(group.group(), p))
     }
     #[inline]
     fn act(
@@ -117,6 +126,9 @@ where
     fn work(&self, group: &Product<A, B>) -> Self::Work {
         Pair(Coadjoint, Coadjoint).work(group)
     }
+    fn check(&self, group: &Product<A, B>, p: &Self::Point) -> Result<(), Error> {
+        Pair(Coadjoint, Coadjoint).check(group, p)
+    }
     #[inline]
     fn act(
         &self,
@@ -140,6 +152,9 @@ where
 
     fn work(&self, group: &Power<G>) -> Self::Work {
         Each(Coadjoint).work(group)
+    }
+    fn check(&self, group: &Power<G>, p: &Self::Point) -> Result<(), Error> {
+        Each(Coadjoint).check(group, p)
     }
     #[inline]
     fn act(

@@ -110,6 +110,12 @@ pub trait LieGroup: LieAlgebra {
         Ok(())
     }
 
+    /// Is every number in x finite? A product g·x may leave the range where g and x do not.
+    #[inline]
+    fn is_finite_vector(&self, _x: &Self::Vector) -> bool {
+        true
+    }
+
     /// Take g back towards G, where rounding carried it off: g ← g + g(𝟙 − M⁻¹gᵀMg)/2, a
     /// Newton–Schulz step in residual form. Returns the residual ‖M⁻¹gᵀMg − 𝟙‖ found before.
     ///

@@ -48,6 +48,20 @@ impl<G> Power<G> {
         self.copies
     }
 
+    /// Are there N parts?
+    pub(crate) fn check_copies<T>(&self, arg: &'static str, parts: &[T]) -> Result<(), Error> {
+        match parts.len() == self.copies {
+            true => Ok(()),
+            false => Err(Error::Shape {
+                arg,
+                rows: parts.len(),
+                cols: 1,
+                expected_rows: self.copies,
+                expected_cols: 1,
+            }),
+        }
+    }
+
     /// N values, made one by one.
     pub(crate) fn fill<T>(&self, mut make: impl FnMut() -> T) -> Box<[T]> {
         (0..self.copies).map(|_| make()).collect()
@@ -94,6 +108,10 @@ impl<G: LieAlgebra> LieAlgebra for Power<G> {
     fn is_finite(&self, u: &Self::Alg) -> bool {
         u.iter().all(|u| self.group.is_finite(u))
     }
+    fn check(&self, arg: &'static str, u: &Self::Alg) -> Result<(), Error> {
+        self.check_copies(arg, u)?;
+        u.iter().try_for_each(|u| self.group.check(arg, u))
+    }
 }
 
 impl<G: LieGroup> LieGroup for Power<G> {
@@ -120,6 +138,14 @@ impl<G: LieGroup> LieGroup for Power<G> {
     }
     fn defect(&self, g: &Self::Elem) -> G::Scalar {
         norm2(g.iter().map(|g| self.group.defect(g)))
+    }
+    fn check_elem(&self, g: &Self::Elem) -> Result<(), Error> {
+        self.check_copies("g", g)?;
+        g.iter().try_for_each(|g| self.group.check_elem(g))
+    }
+    fn check_vector(&self, x: &Self::Vector) -> Result<(), Error> {
+        self.check_copies("x", x)?;
+        x.iter().try_for_each(|x| self.group.check_vector(x))
     }
     /// Each copy by itself; returns the largest residual.
     fn correct(&self, g: &mut Self::Elem, [s, t]: [&mut Self::Elem; 2]) -> G::Scalar {

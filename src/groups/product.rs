@@ -10,7 +10,7 @@
 use rand::Rng;
 
 use super::{Adjoint, LieAlgebra, LieGroup, Sample};
-use crate::error::StepError;
+use crate::error::{Error, StepError};
 use crate::scalar::Real;
 
 /// The product A × B of two groups, for systems that are made of two parts. Products nest, and every
@@ -77,6 +77,10 @@ impl<A: LieAlgebra, B: LieAlgebra<Scalar = A::Scalar>> LieAlgebra for Product<A,
     fn is_finite(&self, u: &Self::Alg) -> bool {
         self.0.is_finite(&u.0) && self.1.is_finite(&u.1)
     }
+    fn check(&self, arg: &'static str, u: &Self::Alg) -> Result<(), Error> {
+        self.0.check(arg, &u.0)?;
+        self.1.check(arg, &u.1)
+    }
 }
 
 impl<A: LieGroup, B: LieGroup<Scalar = A::Scalar>> LieGroup for Product<A, B> {
@@ -101,6 +105,14 @@ impl<A: LieGroup, B: LieGroup<Scalar = A::Scalar>> LieGroup for Product<A, B> {
     }
     fn defect(&self, g: &Self::Elem) -> A::Scalar {
         norm2(self.0.defect(&g.0), self.1.defect(&g.1))
+    }
+    fn check_elem(&self, g: &Self::Elem) -> Result<(), Error> {
+        self.0.check_elem(&g.0)?;
+        self.1.check_elem(&g.1)
+    }
+    fn check_vector(&self, x: &Self::Vector) -> Result<(), Error> {
+        self.0.check_vector(&x.0)?;
+        self.1.check_vector(&x.1)
     }
     /// Each part by itself; returns the larger residual.
     fn correct(&self, g: &mut Self::Elem, [s, t]: [&mut Self::Elem; 2]) -> A::Scalar {

@@ -54,7 +54,7 @@ impl<S: Real> CoordinateMap<So3<S>> for Cay {
         y: &mut Vector3<S>,
     ) -> Result<(), StepError> {
         *y = match so3::cay_coefficients(u) {
-            Some((a, b)) => so3::rodrigues_on(u, a, b, x),
+            Some((a, b)) => so3::finite(so3::rodrigues_on(u, a, b, x), "cay(u)·x")?,
             None => so3::cay_huge_on(u, x)?,
         };
         Ok(())
@@ -67,11 +67,8 @@ impl<S: Real> CoordinateMap<So3<S>> for Cay {
         _: &mut (),
         v: &mut Vector3<S>,
     ) -> Result<(), StepError> {
-        *v = so3::dcayinv_of(u, v);
-        match v[0].is_finite() && v[1].is_finite() && v[2].is_finite() {
-            true => Ok(()),
-            false => Err(StepError::NotFinite { what: "dcay⁻¹" }),
-        }
+        *v = so3::finite(so3::dcayinv_of(u, v), "dcay⁻¹")?;
+        Ok(())
     }
 }
 

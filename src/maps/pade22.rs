@@ -23,7 +23,7 @@ use crate::dense::{AdSchur, mul, norm_frobenius, scaled_sum};
 use crate::error::{Error, StepError};
 use crate::groups::{AlgebraMatrix, GroupMatrix, LieAlgebra, MatrixGroup, So3, cross};
 use crate::scalar::Real;
-use crate::so3::{rodrigues, rodrigues_on};
+use crate::so3::{finite as finite3, rodrigues, rodrigues_on};
 
 /// The diagonal Padé map (2,2): Ψ(u) = (𝟙 − u/2 + u²/12)⁻¹(𝟙 + u/2 + u²/12).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -80,7 +80,7 @@ impl<S: Real> CoordinateMap<So3<S>> for Pade22 {
         y: &mut Vector3<S>,
     ) -> Result<(), StepError> {
         let (q, c) = factors(u)?;
-        *y = rodrigues_on(u, q * c, S::lit(0.5) * c, x);
+        *y = finite3(rodrigues_on(u, q * c, S::lit(0.5) * c, x), "pade22(u)·x")?;
         Ok(())
     }
     #[inline]
@@ -97,11 +97,12 @@ impl<S: Real> CoordinateMap<So3<S>> for Pade22 {
         let q = l(1.0) - l(1.0 / 12.0) * alpha2;
         let c = (l(1.0) + l(1.0 / 6.0) * alpha2) / (l(12.0) + alpha2) * dot;
         let w = cross(u, v);
-        *v = Vector3::new(
+        let next = Vector3::new(
             q * v[0] - l(0.5) * w[0] + c * u[0],
             q * v[1] - l(0.5) * w[1] + c * u[1],
             q * v[2] - l(0.5) * w[2] + c * u[2],
         );
+        *v = finite3(next, "dΨ⁻¹ of pade22")?;
         Ok(())
     }
 }

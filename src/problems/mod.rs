@@ -14,6 +14,7 @@
 //! | equations of linear type, Magnus | any | [`LinearEquation`] |
 //! | Hill, Mathieu, Floquet; beam lines | Sp(2m); translation | [`hill`], [`mathieu`], [`floquet`], [`beam`] |
 //! | Riccati | Sp(2m); [`Lagrangian`](crate::actions::Lagrangian) | [`LinearEquation`] |
+//! | Schrödinger's equation, n levels | U(n) ⊂ SO(2n); vectors | [`schrodinger`](fn@schrodinger) |
 //! | charged particle | SO(3,1); vectors | [`ChargedParticle`] |
 //!
 //! To add a problem: one file with an `impl` of [`Problem`], one line here.
@@ -33,6 +34,7 @@ mod lyapunov;
 mod oja;
 mod periodic;
 mod rigid_body;
+mod schrodinger;
 mod series;
 mod space;
 mod spheres;
@@ -54,6 +56,7 @@ pub use rigid_body::{
     BodyFrame, BodyState, Exact, Frame, FreeBody, RigidBody, RigidBodyAttitude, RigidBodyN,
     RigidBodyNAttitude, RigidBodyState, manakov_integrals,
 };
+pub use schrodinger::{Schrodinger, amplitudes, populations, schrodinger};
 pub use series::{MomentumSeries, TaylorField};
 pub use space::LinearSpace;
 pub use spheres::{SphericalPendulum, SpinChain};

@@ -9,8 +9,8 @@ mod sin_cos;
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
+pub(crate) use self::sin_cos::{SIN_COS_MAX, muladd, sin_cos};
 pub use counted::{Counted, Ops};
-pub(crate) use sin_cos::{SIN_COS_MAX, muladd, sin_cos};
 
 /// A real number, or several side by side (SIMD lanes), or one that counts its own operations.
 ///
@@ -117,15 +117,27 @@ macro_rules! real_for_float {
                 if self.all_below(bound) { small() } else { large() }
             }
         }
-        impl Trig for $t {
-            #[inline]
-            fn sin_cos(self) -> (Self, Self) {
-                <$t>::sin_cos(self)
-            }
-        }
     )*};
 }
 real_for_float! {
     f32, 1e30;
     f64, 1e300;
+}
+
+impl Trig for f32 {
+    #[inline]
+    fn sin_cos(self) -> (Self, Self) {
+        f32::sin_cos(self)
+    }
+}
+
+impl Trig for f64 {
+    /// In line up to 1e6: a call of the library costs as much as the polynomials.
+    #[inline]
+    fn sin_cos(self) -> (Self, Self) {
+        match self.abs() <= SIN_COS_MAX {
+            true => sin_cos::<false>(self),
+            false => f64::sin_cos(self),
+        }
+    }
 }

@@ -1,12 +1,12 @@
 //! α = |u| and the coefficients of exp, dexp and dexp⁻¹.
 //!
 //! Below α² = 1 they are polynomials in α²: no root, no division, no trigonometric function. Above,
-//! half angles: sin α = 2 sin(α/2)cos(α/2), 1 − cos α = 2 sin²(α/2); exp as a matrix is there the
-//! rotation of the quaternion (cos(α/2), sin(α/2)/α u), which forgives the rounding of α.
+//! half angles: sin α = 2 sin(α/2)cos(α/2), 1 − cos α = 2 sin²(α/2). exp as a matrix is the rotation of
+//! the quaternion (cos(α/2), sin(α/2)/α u), which forgives the rounding of α.
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::{dot, rodrigues, rotation};
+use super::{dot, rotation};
 use crate::scalar::{Real, Trig};
 
 /// α² = |u|² and, from [`SERIES`] on, α, sin(α/2), cos(α/2).
@@ -82,30 +82,13 @@ impl<S: Trig> Angle<S> {
         self.alpha2.all_below(S::SQUARE_MAX)
     }
 
-    /// The angle of u and exp(u). Out of range they mean nothing.
+    /// The angle of u and exp(u), the rotation of the quaternion (cos(α/2), (sin(α/2)/α)·u). Out of
+    /// range they mean nothing.
     #[inline(always)]
     pub(crate) fn with_matrix(u: &Vector3<S>) -> (Self, Matrix3<S>) {
-        let l = S::lit;
-        let alpha2 = dot(u, u);
-        let join = |g: Matrix3<S>, [alpha, s, c]: [S; 3]| {
-            let g = g.as_slice();
-            [g[0], g[1], g[2], g[3], g[4], g[5], g[6], g[7], g[8], alpha, s, c]
-        };
-        let [r0, r1, r2, r3, r4, r5, r6, r7, r8, alpha, sin_half, cos_half] = alpha2.branch(
-            SERIES,
-            || {
-                let (a, b) = (estrin(alpha2, &SINC), estrin(alpha2, &COSC));
-                join(rodrigues(u, a, b), [l(0.0), l(0.0), l(1.0)])
-            },
-            || {
-                let (alpha, s, c) = half_angle(u, alpha2);
-                let k = s / alpha;
-                let v = Vector3::new(k * u[0], k * u[1], k * u[2]);
-                join(rotation(c, &v), [alpha, s, c])
-            },
-        );
-        let g = Matrix3::new(r0, r3, r6, r1, r4, r7, r2, r5, r8);
-        (Angle { alpha2, alpha, sin_half, cos_half }, g)
+        let angle = Self::of(u);
+        let (c, k) = angle.quaternion_coefficients();
+        (angle, rotation(c, &Vector3::new(k * u[0], k * u[1], k * u[2])))
     }
 
     /// The angle of u, with a = sin α/α and b = (1 − cos α)/α², for exp(u)·x without exp(u). Out of
@@ -195,10 +178,12 @@ impl<S: Trig> Angle<S> {
     /// cos(α/2) and sin(α/2)/α: the unit quaternion of exp(u) is (cos(α/2), (sin(α/2)/α)·u).
     #[inline(always)]
     pub(super) fn quaternion_coefficients(&self) -> (S, S) {
+        let l = S::lit;
         let [c, s] = self.alpha2.branch(
             SERIES,
             || [estrin(self.alpha2, &HALF_COS), estrin(self.alpha2, &HALF_SINC)],
-            || [self.cos_half, self.sin_half / self.alpha],
+            // The quotient does not wait for the sine.
+            || [self.cos_half, self.sin_half * (l(1.0) / self.alpha)],
         );
         (c, s)
     }

@@ -222,17 +222,17 @@ impl<K: Kernel<IN, OUT>, const IN: usize, const OUT: usize> Run<'_, K, IN, OUT> 
                 x[..len].copy_from_slice(&input[start..start + len]);
                 x[len..].fill(0.0);
             }
-            let (mut low, mut high) = (f64::INFINITY, 0.0f64);
+            let (mut small, mut large) = (true, true);
             for i in 0..BLOCK {
                 let square = x[0][i] * x[0][i] + x[1][i] * x[1][i] + x[2][i] * x[2][i];
-                // A NaN is not below any bound.
+                // A NaN is neither.
                 guard[i] = if square < SQUARE_MAX { 1.0 } else { 0.0 };
-                low = if square < low { square } else { low };
-                high = if square < high { high } else { square };
+                small &= square < SERIES;
+                large &= square >= SERIES;
             }
-            if high < SERIES {
+            if small {
                 lanes::<K, FUSED, SMALL, IN, OUT>(&x, &mut y, &mut guard);
-            } else if low >= SERIES && len == BLOCK {
+            } else if large {
                 lanes::<K, FUSED, LARGE, IN, OUT>(&x, &mut y, &mut guard);
             } else {
                 lanes::<K, FUSED, MIXED, IN, OUT>(&x, &mut y, &mut guard);

@@ -130,7 +130,7 @@ fn all_finite<S: Real>(u: &Vector3<S>) -> bool {
 
 /// w, or that it is not finite.
 #[inline(always)]
-fn finite<S: Real>(w: Vector3<S>, what: &'static str) -> Result<Vector3<S>, StepError> {
+pub(crate) fn finite<S: Real>(w: Vector3<S>, what: &'static str) -> Result<Vector3<S>, StepError> {
     if all_finite(&w) { Ok(w) } else { Err(StepError::NotFinite { what }) }
 }
 

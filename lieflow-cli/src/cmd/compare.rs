@@ -44,7 +44,7 @@ struct CurveJson<'a> {
     tableau: Option<&'a str>,
     layer: &'static str,
     adaptive: bool,
-    order: usize,
+    order: Option<usize>,
     measured_order: Option<f64>,
     /// Places of the points that no other run beats.
     pareto: Vec<usize>,

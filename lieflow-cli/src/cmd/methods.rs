@@ -24,7 +24,7 @@ struct Listing {
 struct MethodEntry {
     name: &'static str,
     summary: &'static str,
-    /// Nothing where it is the tableau's.
+    /// None where it is the tableau's, or the method exact.
     order: Option<usize>,
     maps: Vec<&'static str>,
     tableaus: Vec<&'static str>,
@@ -43,7 +43,7 @@ struct MapEntry {
 #[derive(Serialize)]
 struct TableauEntry {
     name: &'static str,
-    order: usize,
+    order: Option<usize>,
 }
 
 /// The method as the catalog has it, with the maps and tableaus that `fits` lets through; nothing
@@ -109,9 +109,10 @@ fn in_words(listing: &Listing) -> String {
         ([], _) => "tableau",
         _ => "map, q, tableau",
     };
-    let order = |order: Option<usize>| order.map_or("tableau's".into(), |p| p.to_string());
+    let order = |order: Option<usize>, none: &str| order.map_or(none.into(), |p| p.to_string());
     let rows = listing.methods.iter().map(|m| {
-        [m.name.into(), order(m.order), takes(m).into(), m.preserves.into(), m.cost.into()]
+        let none = if m.tableaus.is_empty() { "exact" } else { "tableau's" };
+        [m.name.into(), order(m.order, none), takes(m).into(), m.preserves.into(), m.cost.into()]
     });
     text += &table(["name", "order", "takes", "preserves", "cost of a step"], rows);
     text += "\n";
@@ -125,7 +126,7 @@ fn in_words(listing: &Listing) -> String {
         text += &table(["name", "groups", "what it is"], rows);
     }
     text += "\nTableaus\n";
-    let rows = listing.tableaus.iter().map(|t| [t.name.into(), t.order.to_string()]);
+    let rows = listing.tableaus.iter().map(|t| [t.name.into(), order(t.order, "exact")]);
     text += &table(["name", "order"], rows);
     if listing.scene.is_some() {
         let differ = listing.methods.iter().filter(|method| !method.maps.is_empty());

@@ -108,8 +108,8 @@ pub fn pareto(curves: &[Curve], cost: impl Fn(&WorkPoint) -> Option<f64>) -> Vec
 pub struct Curve {
     /// The method.
     pub candidate: Candidate,
-    /// The order it should have.
-    pub order: usize,
+    /// The order it should have; none where it is exact.
+    pub order: Option<usize>,
     /// The runs.
     pub points: Vec<WorkPoint>,
 }
@@ -119,7 +119,7 @@ pub struct Curve {
 const ASYMPTOTIC: core::ops::Range<f64> = 1e-10..1e-2;
 
 impl Curve {
-    pub(super) fn new(candidate: Candidate, order: usize) -> Self {
+    pub(super) fn new(candidate: Candidate, order: Option<usize>) -> Self {
         Curve { candidate, order, points: Vec::new() }
     }
 
@@ -196,7 +196,7 @@ mod tests {
 
     /// error = h⁴, time per unit = 1/h.
     fn ideal(hs: &[f64]) -> Curve {
-        let mut curve = Curve::new(Candidate::rk4(Layer::Closed), 4);
+        let mut curve = Curve::new(Candidate::rk4(Layer::Closed), Some(4));
         curve.points = hs
             .iter()
             .map(|&h| WorkPoint {

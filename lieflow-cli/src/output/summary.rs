@@ -89,8 +89,8 @@ pub struct MethodSummary {
     pub tableau: Option<String>,
     /// The cut of the Baker series.
     pub q: Option<usize>,
-    /// Its order.
-    pub order: usize,
+    /// Its order; none where it is exact.
+    pub order: Option<usize>,
 }
 
 /// How far an invariant moved from its value at the start.

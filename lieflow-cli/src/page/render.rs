@@ -120,6 +120,9 @@ fn html_sphere(sphere: &Sphere) -> String {
     )
 }
 
+/// A column with a longer cell than this breaks its lines.
+const LONG: usize = 44;
+
 fn html_table(table: &Table) -> String {
     // A region that scrolls has to be reachable by the keyboard, and so needs a name.
     let mut out = format!(
@@ -127,10 +130,18 @@ fn html_table(table: &Table) -> String {
         escape(if table.caption.is_empty() { "Table" } else { &table.caption })
     );
     out.push_str(&optional("caption", "caption", &table.caption));
-    let class = |column: usize| {
-        let numeric = table.columns.get(column).is_some_and(|c| c.numeric);
-        if numeric { " class=\"number\"" } else { "" }
+    let long = |column: usize| {
+        let mut cells = table.rows.iter().filter_map(|row| row.cells.get(column));
+        cells.any(|cell| cell.chars().count() > LONG)
     };
+    let classes: Vec<&str> = (0..table.columns.len())
+        .map(|column| match table.columns[column].numeric {
+            true => " class=\"number\"",
+            false if long(column) => " class=\"long\"",
+            false => "",
+        })
+        .collect();
+    let class = |column: usize| classes.get(column).copied().unwrap_or_default();
     out.push_str("<thead><tr>");
     for (i, column) in table.columns.iter().enumerate() {
         out.push_str(&format!("<th scope=\"col\"{}>{}</th>", class(i), escape(&column.title)));

@@ -22,7 +22,8 @@ pub(super) fn look(candidate: &Candidate) -> Option<usize> {
     }
 }
 
-/// The plot of time against error: one line a method, dashed on the general layer.
+/// The plot of time against error: one line a method, dashed on the general layer and where steps are
+/// chosen by their error.
 pub fn speed_chart<'a>(
     id: &str,
     title: &str,
@@ -40,7 +41,7 @@ pub fn speed_chart<'a>(
             name: candidate.label(),
             colour: look,
             marker: Marker::cycle(look),
-            dash: candidate.layer == Layer::General,
+            dash: candidate.layer == Layer::General || candidate.adaptive,
             points: points.collect(),
             emphasised: false,
         }
@@ -77,7 +78,7 @@ impl SpeedRow<'_> {
         let curve = self.0;
         let mut cells = vec![
             curve.candidate.label(),
-            curve.order.to_string(),
+            curve.order.map_or_else(|| "exact".into(), |p| p.to_string()),
             order(curve.measured_order()),
             duration(curve.seconds_per_step()),
         ];
@@ -97,7 +98,10 @@ pub fn speed_table(curves: &[Curve]) -> Table {
             None => format!("to {error:.0e} none"),
         }
     });
-    let above = |c: &Curve| c.measured_order().is_some_and(|order| order > c.order as f64 + 0.5);
+    let above = |c: &Curve| match (c.measured_order(), c.order) {
+        (Some(measured), Some(order)) => measured > order as f64 + 0.5,
+        _ => false,
+    };
     let remark = match curves.iter().any(above) {
         true => {
             " A measured order one above the stated: over a long time the phase follows the drift of \
@@ -137,7 +141,7 @@ pub fn speed_csv<'a>(curves: impl IntoIterator<Item = (&'a str, &'a Curve, Vec<u
                 map.unwrap_or_default(),
                 tableau.unwrap_or_default(),
                 layer.name(),
-                curve.order,
+                curve.order.map_or(String::new(), |p| p.to_string()),
                 p.steps,
                 p.rejected,
                 number(p.h),

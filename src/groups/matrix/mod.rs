@@ -261,6 +261,9 @@ impl LieGroup for MatrixGroup {
     fn check_elem(&self, g: &GroupMatrix) -> Result<(), Error> {
         self.rows_fit("y", g, self.n)
     }
+    fn is_finite_vector(&self, x: &Mat<f64>) -> bool {
+        dense::is_finite(x)
+    }
     fn check_vector(&self, x: &Mat<f64>) -> Result<(), Error> {
         self.rows_fit("y", x, x.ncols())
     }

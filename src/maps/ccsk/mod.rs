@@ -126,16 +126,11 @@ impl Product {
     /// v ← dΨ_u⁻¹ v at the u of the last [`psi`](Self::psi).
     fn dpsi_inv(&mut self, u: &Mat<f64>, v: &mut Mat<f64>, min_cos: f64) -> Result<(), StepError> {
         match self {
-            Product::SoN(at) => at.dpsi_inv(v, min_cos),
-            Product::Gl(at) => {
-                at.dpsi_inv(u, v);
-                Ok(())
-            }
-            Product::Sp(at) => {
-                at.dpsi_inv(v);
-                Ok(())
-            }
+            Product::SoN(at) => at.dpsi_inv(v, min_cos)?,
+            Product::Gl(at) => at.dpsi_inv(u, v),
+            Product::Sp(at) => at.dpsi_inv(v),
         }
+        finite(v, "dccsk⁻¹")
     }
 
     /// g ← Ψ(u)⁻¹, given back = Ψ(u).

@@ -7,7 +7,7 @@ use crate::error::{Error, StepError};
 use crate::groups::So3;
 use crate::maps::CoordinateMap;
 use crate::scalar::Trig;
-use crate::so3::{Angles, ccsk_of, dccskinv_of};
+use crate::so3::{self, Angles, ccsk_of, dccskinv_of};
 
 impl<S: Trig, const I: usize, const J: usize, const K: usize> CoordinateMap<So3<S>>
     for Ccsk<I, J, K>
@@ -42,6 +42,7 @@ impl<S: Trig, const I: usize, const J: usize, const K: usize> CoordinateMap<So3<
         at: &mut Angles<S>,
         v: &mut Vector3<S>,
     ) -> Result<(), StepError> {
-        dccskinv_of::<S, I, J, K>(at, self.min_cos, v)
+        dccskinv_of::<S, I, J, K>(at, self.min_cos, v)?;
+        so3::finite(*v, "dccsk⁻¹").map(drop)
     }
 }

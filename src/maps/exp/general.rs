@@ -186,7 +186,8 @@ impl ExpAt {
             Exact::None => Err(DIVERGES),
             Exact::Eigen(eigen) => {
                 self.dexpinv = Dexpinv::Eigen;
-                eigen.function_of_ad(u, v, |theta| phi(theta, norm))
+                eigen.function_of_ad(u, v, |theta| phi(theta, norm))?;
+                finite(group, v)
             }
             Exact::Schur(schur) => {
                 let s = scale_down(u, norm, &mut self.scaled);

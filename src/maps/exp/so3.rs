@@ -44,7 +44,10 @@ impl<S: Trig> CoordinateMap<So3<S>> for Exp {
     ) -> Result<(), StepError> {
         let (angle, a, b) = Angle::with_exp(u);
         *at = angle;
-        *y = if angle.in_range() { rodrigues_on(u, a, b, x) } else { so3::exp_huge_on(u, x)? };
+        *y = match angle.in_range() {
+            true => so3::finite(rodrigues_on(u, a, b, x), "exp(u)·x")?,
+            false => so3::exp_huge_on(u, x)?,
+        };
         Ok(())
     }
     #[inline]
@@ -56,7 +59,7 @@ impl<S: Trig> CoordinateMap<So3<S>> for Exp {
         v: &mut Vector3<S>,
     ) -> Result<(), StepError> {
         *v = match at.in_range() {
-            true => rodrigues_on(u, S::lit(-0.5), at.dexpinv_regular()?, v),
+            true => so3::finite(rodrigues_on(u, S::lit(-0.5), at.dexpinv_regular()?, v), "dexp⁻¹")?,
             false => so3::dexpinv_huge(u, v)?,
         };
         Ok(())
@@ -110,10 +113,7 @@ impl<S: Trig> CoordinateMap<So3<S>> for TruncatedExp {
                 *v = Vector3::new(v[0] + c * ad[0], v[1] + c * ad[1], v[2] + c * ad[2]);
             }
         }
-        match v[0].is_finite() && v[1].is_finite() && v[2].is_finite() {
-            true => Ok(()),
-            false => Err(StepError::NotFinite { what: "dexp⁻¹" }),
-        }
+        so3::finite(*v, "dexp⁻¹").map(drop)
     }
     fn order(&self, _: &So3<S>) -> usize {
         self.order_kept()

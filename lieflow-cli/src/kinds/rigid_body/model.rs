@@ -180,7 +180,7 @@ impl Model for RigidBodyModel {
         on_system!(self, sink, |problem, y, see| adapt_by(method, problem, y, steps, save, see))
     }
 
-    fn order(&self, method: &MethodSpec) -> Result<usize, Error> {
+    fn order(&self, method: &MethodSpec) -> Result<Option<usize>, Error> {
         match &self.system {
             System::Momentum(body) => order_by(method, body),
             System::Attitude(body) => order_by(method, body),

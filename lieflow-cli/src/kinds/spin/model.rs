@@ -137,7 +137,7 @@ impl Model for SpinModel {
     ) -> Result<AdaptiveStats, AdaptiveError> {
         adapt_by(method, &self.spin, self.moment, steps, save, self.shown(sink))
     }
-    fn order(&self, method: &MethodSpec) -> Result<usize, Error> {
+    fn order(&self, method: &MethodSpec) -> Result<Option<usize>, Error> {
         order_by(method, &self.spin)
     }
     /// None is used: what compares methods makes its own reference.

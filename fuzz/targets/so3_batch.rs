@@ -1,0 +1,3 @@
+#![no_main]
+
+lieflow_fuzz::target!("so3_batch");
