@@ -88,9 +88,7 @@ fn kernel<S: Simd, const N: usize, const K: usize>(
         g = Cols::mul(simd, &h, &h);
     }
     let mut corrections = 0;
-    // Degrees 12 and 18 come to the identity by a sum whose rounding is the same at every call: a bias
-    // of some ε/2 in every step of a long run, which a correction takes out.
-    if skew && (squarings > 0 || degree >= 12) {
+    if skew && squarings > 0 {
         corrections = orthogonalise(simd, &mut g);
     }
     if !g.is_finite(simd) {
