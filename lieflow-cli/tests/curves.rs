@@ -36,6 +36,17 @@ fn the_time_to_an_error_lies_on_the_line() {
 }
 
 #[test]
+fn a_run_that_is_far_off_is_no_end_of_a_line() {
+    // A step over everything, and the next is accurate at once: nothing is known between them.
+    let mut curve = ideal(&[20.0, 0.01]);
+    curve.points[0].error = 0.9;
+    let reached = curve.reached(1e-6).expect("the second");
+    assert!((reached.h - 0.01).abs() < 1e-12);
+    curve.points[0].error = 0.05;
+    assert!(curve.reached(1e-6).expect("between").h > 0.02);
+}
+
+#[test]
 fn the_step_to_an_error_lies_on_the_line_too() {
     let reached = ideal(&[0.1, 0.01]).reached(1e-6).expect("reached");
     assert!((reached.h - 1e-6f64.powf(0.25)).abs() < 1e-12 && reached.tolerance.is_none());

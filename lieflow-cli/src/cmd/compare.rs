@@ -20,8 +20,8 @@ use crate::page::{Block, Page, Section};
 use crate::report::{self, CHOICE_HEADER, Choice, Cost, KEPT, choices};
 use crate::scene::Scene;
 
-/// Step sizes are the whole span, and those of the scene times these, from the largest to the smallest.
-const FACTORS: [f64; 11] = [32.0, 16.0, 8.0, 4.0, 2.0, 1.0, 0.5, 0.25, 0.125, 0.0625, 0.03125];
+/// Step sizes are that of the scene times powers of two, from the whole span to this power below it.
+const HALVINGS: i32 = 5;
 
 /// Tolerances of the methods that choose their steps.
 const TOLERANCES: [f64; 7] = [1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-13];
@@ -151,10 +151,12 @@ fn identity(scene: &Scene, plan: &Plan<'_>, effort: &Effort) -> String {
 }
 
 fn numbers_of_steps(scene: &Scene) -> Vec<u64> {
-    let scaled = FACTORS.iter().map(|factor| scene.grid.steps() as f64 / factor);
+    let own = scene.grid.steps().max(1);
     // A single step first: some methods need no more.
-    let mut steps = vec![1];
-    steps.extend(scaled.map(|steps| (steps.round() as u64).max(1)));
+    let doublings = own.ilog2() as i32;
+    let scaled = (-doublings..=HALVINGS).map(|power| own as f64 * f64::from(power).exp2());
+    let mut steps: Vec<u64> = scaled.map(|steps| (steps.round() as u64).max(1)).collect();
+    steps.insert(0, 1);
     steps.dedup();
     steps
 }

@@ -81,6 +81,9 @@ pub struct Reached {
     pub energy_error: f64,
 }
 
+/// A run with a larger error has lost the solution.
+const OFF: f64 = 0.1;
+
 /// The runs that no other run beats in both error and cost, as (curve, point), from the largest error
 /// to the smallest. A run without a cost is none, nor one that is more than a tenth off.
 pub fn pareto(
@@ -93,7 +96,7 @@ pub fn pareto(
     };
     let places = |(i, curve): (usize, &Curve)| (0..curve.points.len()).map(move |j| (i, j));
     let mut all: Vec<(usize, usize)> = curves.iter().enumerate().flat_map(places).collect();
-    all.retain(|at| (0.0..=0.1).contains(&both(*at).0));
+    all.retain(|at| (0.0..=OFF).contains(&both(*at).0));
     all.sort_by(|a, b| {
         let (a, b) = (both(*a), both(*b));
         a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1))
@@ -159,7 +162,9 @@ impl Curve {
         let log_error = |p: &WorkPoint| p.error.max(1e-17).ln();
         let after = runs.iter().position(|p| p.error <= error)?;
         let b = runs[after];
-        let a = after.checked_sub(1).map_or(b, |before| runs[before]); // the coarsest run may do
+        // The coarsest run may do, and one that is far off says nothing of what lies behind it.
+        let before = after.checked_sub(1).map(|before| runs[before]);
+        let a = before.filter(|run| run.error <= OFF).unwrap_or(b);
         let share = match log_error(a) - log_error(b) {
             0.0 => 0.0,
             way => (log_error(a) - error.ln()) / way,
