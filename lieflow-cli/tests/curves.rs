@@ -1,6 +1,6 @@
 //! What is read off a line of time against error.
 
-use lieflow_cli::measure::{Candidate, Curve, Size, WorkPoint, pareto};
+use lieflow_cli::measure::{Candidate, Curve, Reached, Size, WorkPoint, pareto};
 use lieflow_cli::model::Layer;
 
 /// error = h⁴, time per unit = 1/h.
