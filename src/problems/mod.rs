@@ -3,6 +3,7 @@
 //! | problem | group, action | |
 //! |---|---|---|
 //! | free rigid body in ℝ³ and ℝⁿ | SO(3), SO(n); coadjoint or translation | [`RigidBody`], [`RigidBodyAttitude`], [`RigidBodyState`], [`RigidBodyN`] |
+//! | and its attitude as a quaternion | S³; translation | [`RigidBodyQuaternion`] |
 //! | Euler's equations of any Hamiltonian | any; coadjoint | [`Euler`], [`EulerGroup`], [`Kinetic`] |
 //! | Lie–Poisson with a quadratic Hamiltonian | any matrix group; coadjoint | [`QuadraticLiePoisson`] |
 //! | heavy tops | SE(3); coadjoint | [`HeavyTop`] |
@@ -34,6 +35,7 @@ mod lorentz;
 mod lyapunov;
 mod oja;
 mod periodic;
+mod quaternion_body;
 mod rigid_body;
 mod schrodinger;
 mod series;
@@ -54,6 +56,7 @@ pub use lorentz::ChargedParticle;
 pub use lyapunov::Lyapunov;
 pub use oja::Oja;
 pub use periodic::{Floquet, LinearHamiltonian, floquet, hill, mathieu, monodromy};
+pub use quaternion_body::RigidBodyQuaternion;
 pub use rigid_body::{
     BodyFrame, BodyState, Exact, Frame, FreeBody, RigidBody, RigidBodyAttitude, RigidBodyN,
     RigidBodyNAttitude, RigidBodyState, manakov_integrals,

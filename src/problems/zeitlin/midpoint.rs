@@ -337,7 +337,10 @@ impl FluidMidpoint {
                 rate.saw(change / last);
             }
             // Changes need not fall monotonically: at rounding level is what falls no further.
-            if change < noise && change > 0.9 * least {
+            if !goes_on {
+                (least, idle) = (f64::INFINITY, 0);
+            }
+            if change < noise && change >= 0.9 * least {
                 idle += if change < f64::EPSILON * size { 4 } else { 1 };
             }
             least = least.min(change);
@@ -347,7 +350,7 @@ impl FluidMidpoint {
             let bound = self.tolerance * size;
             let converged = stalled || left <= bound;
             let lag = cubic_rate.get() * since_cubic;
-            if converged && (lag <= bound || stalled && (due || lag <= noise / 16.0)) {
+            if converged && (lag <= bound || stalled && (due && goes_on || lag <= noise / 16.0)) {
                 return Ok(());
             }
             (due, was_due) = (converged || cubic_rate.get() > 0.1, due);
