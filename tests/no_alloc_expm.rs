@@ -1,38 +1,19 @@
 //! The exponentials allocate nothing once their storage is made, whatever approximant they choose.
-#![allow(unsafe_code)] // the counting allocator
 
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
+#[path = "support/counting.rs"]
+mod counting;
 
 use faer::{Mat, c64};
 use lieflow::dense::{
     ComplexExponential, Exponential, ExponentialBatch, ExponentialF32, Structure,
 };
 
-struct Counting;
-
-thread_local!(static ALLOCATIONS: Cell<usize> = const { Cell::new(0) });
-
-// SAFETY: every call is handed to the system allocator unchanged.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        ALLOCATIONS.with(|n| n.set(n.get() + 1));
-        unsafe { System.alloc(layout) }
-    }
-    unsafe fn dealloc(&self, p: *mut u8, layout: Layout) {
-        unsafe { System.dealloc(p, layout) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
-
 /// The allocations of the second call: the product library makes its packing buffer at the first.
 fn allocations(mut f: impl FnMut() -> bool) -> usize {
     assert!(f());
-    let before = ALLOCATIONS.get();
+    let before = counting::total();
     assert!(f());
-    ALLOCATIONS.get() - before
+    counting::total() - before
 }
 
 /// Skew, with a Frobenius norm of about `size`.

@@ -1,8 +1,7 @@
 //! A step on a product, a power, SE(3) or of a problem allocates nothing, nor does taking it back to M.
-#![allow(unsafe_code)] // the counting allocator
 
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
+#[path = "support/counting.rs"]
+mod counting;
 
 use faer::{Mat, mat};
 use lieflow::actions::{Coadjoint, Conjugation, Each, Lagrangian, LeftTranslation, Linear, Pair};
@@ -18,32 +17,6 @@ use nalgebra::{Matrix3, Vector3};
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
 
-struct Counting;
-
-thread_local!(static ALLOCATIONS: Cell<usize> = const { Cell::new(0) });
-
-fn count() {
-    ALLOCATIONS.with(|n| n.set(n.get() + 1));
-}
-
-// SAFETY: every call is handed to the system allocator unchanged.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        count();
-        unsafe { System.alloc(layout) }
-    }
-    unsafe fn dealloc(&self, p: *mut u8, layout: Layout) {
-        unsafe { System.dealloc(p, layout) }
-    }
-    unsafe fn realloc(&self, p: *mut u8, layout: Layout, size: usize) -> *mut u8 {
-        count();
-        unsafe { System.realloc(p, layout, size) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
-
 fn steps_allocate<P: Problem, M: Method<P>>(
     problem: &P,
     method: &M,
@@ -52,16 +25,16 @@ fn steps_allocate<P: Problem, M: Method<P>>(
 where
     P::Group: LieAlgebra<Scalar = f64>,
 {
-    let (mut y, before) = (y.clone(), ALLOCATIONS.get());
+    let (mut y, before) = (y.clone(), counting::total());
     let mut work = method.work(problem, &y).expect("the method fits");
     let mut mend = problem.action().work(problem.group());
-    assert!(ALLOCATIONS.get() > before || size_of_val(&work) > 0, "the counter does not count");
-    let before = ALLOCATIONS.get();
+    assert!(counting::total() > before || size_of_val(&work) > 0, "the counter does not count");
+    let before = counting::total();
     for n in 0..10 {
         method.step(problem, Step { n, t: 0.0, h: 0.05 }, &mut y, &mut work).expect("a step");
         problem.action().restore(problem.group(), &mut y, &mut mend);
     }
-    ALLOCATIONS.get() - before
+    counting::total() - before
 }
 
 fn check<G: Sample<Scalar = f64> + Clone, A: Action<G>>(group: &G, action: A, y: A::Point)

@@ -8,7 +8,7 @@ use faer::Mat;
 use lieflow::actions::LeftTranslation;
 use lieflow::catalog::{
     LINEAR_METHODS, MAPS, MethodInfo, MethodSpec, Needs, OnMethod, TABLEAUS, all_methods,
-    with_attitude_method, with_lie_poisson_method, with_linear_method,
+    with_attitude_method, with_lie_poisson_method, with_linear_method, with_state_method,
 };
 use lieflow::groups::{MatrixGroup, Sample};
 use lieflow::maps::Exp;
@@ -124,12 +124,17 @@ fn of_the_body_with_its_attitude() {
     let mut wrong = Vec::new();
     let mut seen = 0;
     for (info, needs) in all_methods() {
-        if ![Needs::Field, Needs::Norm, Needs::Body, Needs::Attitude].contains(&needs) {
+        use Needs::{Attitude, Body, Field, Norm, Series, State};
+        if ![Field, Norm, Series, Body, Attitude, State].contains(&needs) {
             continue;
         }
         for spec in specs(info) {
             let measure = Measure { problem: &body, start: &start, quantities };
-            let found = with_attitude_method(&spec, measure).expect("a method");
+            let found = match needs {
+                State => with_state_method(&spec, measure),
+                _ => with_attitude_method(&spec, measure),
+            }
+            .expect("a method");
             judge(info, &spec.label(), &found, &mut wrong);
             seen += 1;
             if info.name == "rk4" {
