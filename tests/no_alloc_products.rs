@@ -5,7 +5,7 @@ mod counting;
 
 use faer::{Mat, mat};
 use lieflow::actions::{Coadjoint, Conjugation, Each, Lagrangian, LeftTranslation, Linear, Pair};
-use lieflow::groups::{LieGroup, MatrixGroup, Power, Product, Sample, Se3, So3};
+use lieflow::groups::{AlgebraMatrix, LieGroup, MatrixGroup, Power, Product, Sample, Se3, So3};
 use lieflow::maps::{CCSK, Cay, Ccsk, Exp, Pade22};
 use lieflow::methods::{CommutatorFree, Rkmk, commutator_free::CF4, tableau::RK4};
 use lieflow::problems::{
@@ -95,6 +95,13 @@ fn problems() {
     let euler = Euler::new(Se3::<f64>::new(), kirchhoff);
     none!(euler, pair);
     none!(euler.with_group(), (Se3::<f64>::new().identity(), pair));
+    for group in [MatrixGroup::gl(3), MatrixGroup::sp(4), MatrixGroup::indefinite(3, 1)] {
+        let group = group.expect("a group");
+        let m = group.sample_algebra(&mut Pcg64::seed_from_u64(3), 0.3);
+        let inverse = |m: &Mat<f64>, xi: &mut AlgebraMatrix| xi.copy_from(m);
+        let start = (group.identity(), m.into_mat());
+        none!(Euler::new(group, Kinetic(inverse)).with_group(), start);
+    }
     let damping = BodyTorque(|at: &Motion| -at.omega_body);
     let body = TorqueBody::new([1.0, 2.0, 2.5], damping).expect("a body");
     none!(body, (Matrix3::identity(), v(1.0)));
@@ -105,6 +112,8 @@ fn problems() {
     let l = toda_lattice(&[0.0, 0.1, 0.2], &[0.3, 0.1, 0.2]).expect("a lattice");
     none!(IsospectralFlow::toda(3).expect("a flow"), l);
     none!(IsospectralFlow::double_bracket(&[1.0, 2.0, 3.0]).expect("a flow"), l);
+    let positive = mat![[3.0, 0.3, 0.1], [0.3, 2.0, 0.2], [0.1, 0.2, 1.0]];
+    none!(IsospectralFlow::qr(3).expect("a flow"), positive);
     none!(Oja::new(l.clone(), 2).expect("a flow"), mat![[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]]);
     let particle = ChargedParticle::new(1.0, |_, _: &_| (v(0.1), v(0.2))).expect("a particle");
     none!(particle, particle.four_velocity([0.1, 0.2, 0.3]).expect("a velocity"));

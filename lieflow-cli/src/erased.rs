@@ -11,6 +11,7 @@ use lieflow::{Error, Method, Step, StepError};
 /// A method, whatever its type.
 trait AnyMethod<P: Problem> {
     fn order(&self, problem: &P) -> usize;
+    fn evaluations(&self, problem: &P) -> Option<u64>;
     fn stays_on_manifold(&self) -> bool;
     fn stepper<'a>(&'a self, problem: &P, like: &PointOf<P>) -> Result<AnyStepper<'a, P>, Error>;
 }
@@ -47,6 +48,9 @@ impl<P: Problem + 'static, M: Method<P>> AnyMethod<P> for M {
     fn order(&self, problem: &P) -> usize {
         Method::order(self, problem)
     }
+    fn evaluations(&self, problem: &P) -> Option<u64> {
+        Method::evaluations(self, problem)
+    }
     fn stays_on_manifold(&self) -> bool {
         Method::stays_on_manifold(self)
     }
@@ -63,6 +67,9 @@ impl<'a, P: Problem> Method<P> for Erased<'a, P> {
 
     fn order(&self, problem: &P) -> usize {
         self.0.order(problem)
+    }
+    fn evaluations(&self, problem: &P) -> Option<u64> {
+        self.0.evaluations(problem)
     }
     fn stays_on_manifold(&self) -> bool {
         self.0.stays_on_manifold()

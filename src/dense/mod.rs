@@ -11,6 +11,7 @@ mod expm;
 mod lu;
 mod ops;
 mod schur;
+mod symmetric;
 
 pub(crate) use ad::{AdForm, AdSchur, Direction, Kind as AdKind};
 pub(crate) use eigen::SkewEigen;
@@ -23,3 +24,4 @@ pub(crate) use lu::Lu;
 pub(crate) use ops::{
     antisymmetrise, axpy, is_finite, mul, mul_add, norm_frobenius, norm1, orthogonalise, scaled_sum,
 };
+pub(crate) use symmetric::SymmetricEigen;

@@ -16,7 +16,7 @@ mod se3;
 mod so3;
 mod translations;
 
-pub use adjoint::Adjoint;
+pub use adjoint::{Adjoint, InvertingWork};
 pub use matrix::{AlgebraMatrix, Form, GroupMatrix, MEMBERSHIP, MatrixGroup, RCOND_MIN};
 pub use power::Power;
 pub use product::Product;

@@ -89,6 +89,9 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> Method<P> for Rkm
     fn order(&self, problem: &P) -> usize {
         self.tableau.order.min(self.psi.order(problem.group()))
     }
+    fn evaluations(&self, _: &P) -> Option<u64> {
+        Some(self.stages as u64)
+    }
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
         let alg = problem.group();
         let stages = Stages {
@@ -122,8 +125,8 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> Embedded<P> for R
             None => Err(without_pair(self.tableau.name)),
         }
     }
-    fn evaluations(&self) -> u64 {
-        S as u64
+    fn evaluations_with_error(&self, _: &P) -> Option<u64> {
+        Some(S as u64)
     }
     fn step_with_error(
         &self,

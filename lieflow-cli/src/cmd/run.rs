@@ -102,7 +102,7 @@ impl<'a> Watch<'a> {
                         chosen: Some(Chosen {
                             accepted: stats.accepted,
                             rejected: stats.rejected,
-                            evaluations: method.has_pair()?.then_some(stats.evaluations),
+                            evaluations: stats.evaluations,
                             smallest_step: stats.smallest_step,
                             largest_step: stats.largest_step,
                         }),

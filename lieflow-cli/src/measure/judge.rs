@@ -247,7 +247,7 @@ impl Size {
                 Ok(Done {
                     steps: stats.accepted,
                     rejected: stats.rejected,
-                    evaluations: Some(stats.evaluations),
+                    evaluations: stats.evaluations,
                 })
             }
         }
