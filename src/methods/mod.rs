@@ -3,7 +3,6 @@
 //! To add a method: one file with an `impl` of [`Method`], one line here, one in the catalog, which
 //! puts it into the order tests and the command line at once.
 
-mod blame;
 mod buss;
 pub mod commutator_free;
 mod composition;
@@ -26,6 +25,7 @@ mod rk;
 mod rkmk;
 mod simo_wong;
 mod splitting;
+mod stages;
 pub mod tableau;
 mod taylor;
 

@@ -65,8 +65,6 @@ impl<P: Split, const K: usize> Method<P> for Splitting<K> {
     ) -> Result<(), StepError> {
         let lit = ScalarOf::<P>::lit;
         let [outer, inner @ ..] = self.parts.as_slice() else { return Ok(()) };
-        // In place: a swap at the end would read numbers that have just been written one by one as one
-        // vector, which costs more than a flow.
         problem.copy(y, before);
         let mut flow = |part: usize, weight: f64| problem.flow(part, h * lit(weight), y);
         let Some((last, middle)) = inner.split_last() else {

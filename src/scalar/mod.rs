@@ -6,6 +6,7 @@
 mod counted;
 mod sin_cos;
 
+use core::f64::consts::FRAC_PI_4;
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 

@@ -95,9 +95,13 @@ struct Elliptic {
 #[derive(Clone, Debug)]
 struct Fast {
     theta: Theta,
-    rate: f64,
+    /// In two parts, the first with half the digits.
+    rate: [f64; 2],
     /// S₀ turned back by p(τ₀).
     s0: Matrix3<f64>,
+    /// 2K in two parts as well, and 1/2K.
+    period: [f64; 2],
+    inverse: f64,
 }
 
 /// Below this 1 − k² the orbit is taken as the separatrix: it would come back to the middle axis
@@ -169,6 +173,35 @@ impl Exact {
                 Ok((self.m0, self.g0 * Exp.eval(&So3::new(), &angle)?))
             }
         }
+    }
+}
+
+/// x without the lower half of its digits: the product of two such numbers is exact.
+#[inline]
+fn half_the_digits(x: f64) -> f64 {
+    f64::from_bits(x.to_bits() >> 27 << 27)
+}
+
+impl Fast {
+    /// sin and cos of rate·t.
+    #[inline]
+    fn turn(&self, t: f64) -> (f64, f64) {
+        let head = half_the_digits(t);
+        let (first, second) = (self.rate[0] * head, self.rate[0] * (t - head) + self.rate[1] * t);
+        let phi = first + second;
+        let lost = (first - phi) + second;
+        let (s, c) = Trig::sin_cos(phi);
+        (s + c * lost, c - s * lost)
+    }
+    /// (sin v, cos v) at τ = 2Kj + r with |r| ≤ K, and the sign of sn and cn.
+    #[inline]
+    fn angle(&self, tau: f64) -> ((f64, f64), f64) {
+        // Adding 1.5·2⁵² rounds to a whole number, whose last bit is then the last one.
+        const ROUND: f64 = 6755399441055744.0;
+        let shifted = tau * self.inverse + ROUND;
+        let half_turns = shifted - ROUND;
+        let r = (tau - half_turns * self.period[0]) - half_turns * self.period[1];
+        (self.theta.angle(r), if shifted.to_bits() & 1 == 0 { 1.0 } else { -1.0 })
     }
 }
 
@@ -286,22 +319,38 @@ impl Elliptic {
         if quarter.is_finite() {
             motion.d_quarter = motion.third_kind(quarter, 1.0, 0.0, kc2.sqrt())?;
         }
-        motion.fast = motion.fast()?;
+        motion.fast = motion.fast(length, low, high)?;
         if motion.fast.is_none() {
             motion.d0 = motion.swept(&motion.phase(0.0))?;
         }
         Ok(Some(motion))
     }
 
-    fn fast(&self) -> Result<Option<Fast>, Error> {
+    /// From |m| and the two moments of inertia of the plane that m circles in.
+    fn fast(&self, length: f64, low: f64, high: f64) -> Result<Option<Fast>, Error> {
         let theta = match self.quarter.is_finite() {
             true => Theta::new(self.kc2, self.quarter, self.ratio)?,
             false => None,
         };
         Ok(theta.map(|theta| {
             let (s, c) = self.periodic(&theta, theta.angle(self.tau0));
-            let rate = self.base + self.swing * self.lambda * (self.d_quarter / self.quarter);
-            Fast { theta, rate, s0: self.s0 * about_z((-s, c)) }
+            // L/J_high·(1 + (J_high − J_low)/J_low·D/K), with what the rounding of its two largest
+            // steps leaves: after 1e5 radians the last digit of this rate is the error of the angle.
+            let base = length / high;
+            let left = base.mul_add(-high, length) / high;
+            let swing = base * ((high - low) / low * (self.d_quarter / self.quarter));
+            let rate = base + swing;
+            let added = rate - base;
+            let left = (base - (rate - added)) + (swing - added) + left;
+            let period = 2.0 * self.quarter;
+            let [period_first, rate_first] = [period, rate].map(half_the_digits);
+            Fast {
+                theta,
+                rate: [rate_first, (rate - rate_first) + left],
+                s0: self.s0 * about_z((-s, c)),
+                period: [period_first, period - period_first],
+                inverse: 1.0 / period,
+            }
         }))
     }
 
@@ -316,8 +365,9 @@ impl Elliptic {
     fn momentum(&self, t: f64) -> Vector3<f64> {
         let t = t * self.t_scale;
         match &self.fast {
-            Some(Fast { theta, .. }) => {
-                self.place(theta.jacobi(theta.angle(self.lambda * t + self.tau0)))
+            Some(fast) => {
+                let (v, sign) = fast.angle(self.lambda * t + self.tau0);
+                self.place(sign, fast.theta.jacobi(v))
             }
             None => self.place_at(&self.phase(t)),
         }
@@ -328,11 +378,11 @@ impl Elliptic {
     fn state(&self, t: f64) -> Result<(Vector3<f64>, Matrix3<f64>), Error> {
         let t = t * self.t_scale;
         let (m, turned) = match &self.fast {
-            Some(Fast { theta, rate, s0 }) => {
-                let v = theta.angle(self.lambda * t + self.tau0);
-                let (p, (s, c)) = (self.periodic(theta, v), Trig::sin_cos(rate * t));
+            Some(fast @ Fast { theta, s0, .. }) => {
+                let (v, sign) = fast.angle(self.lambda * t + self.tau0);
+                let (p, (s, c)) = (self.periodic(theta, v), fast.turn(t));
                 let sum = (s * p.1 + c * p.0, c * p.1 - s * p.0);
-                (self.place(theta.jacobi(v)), s0 * about_z(sum))
+                (self.place(sign, theta.jacobi(v)), s0 * about_z(sum))
             }
             None => {
                 let phase = self.phase(t);
@@ -356,15 +406,14 @@ impl Elliptic {
     }
 
     fn place_at(&self, &Phase { half_turns, sn, cn, dn, .. }: &Phase) -> Vector3<f64> {
-        let sign = if half_turns % 2.0 == 0.0 { 1.0 } else { -1.0 };
-        self.place((sign * sn, sign * cn, dn))
+        self.place(if half_turns % 2.0 == 0.0 { 1.0 } else { -1.0 }, (sn, cn, dn))
     }
 
     #[inline]
-    fn place(&self, (sn, cn, dn): (f64, f64, f64)) -> Vector3<f64> {
+    fn place(&self, sign: f64, (sn, cn, dn): (f64, f64, f64)) -> Vector3<f64> {
         let mut m = Vector3::zeros();
-        m[self.axes[0]] = self.m_scale * self.amplitude[0] * cn;
-        m[self.axes[1]] = self.m_scale * self.amplitude[1] * sn;
+        m[self.axes[0]] = self.m_scale * self.amplitude[0] * sign * cn;
+        m[self.axes[1]] = self.m_scale * self.amplitude[1] * sign * sn;
         m[self.axes[2]] = self.m_scale * self.amplitude[2] * dn;
         m
     }

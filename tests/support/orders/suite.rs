@@ -28,8 +28,9 @@ pub(crate) enum Outcome {
 /// Problems with their references. The first is for orders up to 4, all are for those above it.
 pub(crate) struct Problems<P: Problem> {
     short: Vec<(P, Reference<P>)>,
-    /// For orders from 8 on.
+    /// For orders from 8 to the highest that is measured here.
     long: Vec<(P, Reference<P>)>,
+    highest: usize,
 }
 
 impl<P: Ambient> Problems<P>
@@ -41,7 +42,7 @@ where
     /// A single one: orders above 4 are measured elsewhere.
     pub(crate) fn one(problem: P, start: PointOf<P>) -> Self {
         let reference = reference(&problem, start);
-        Problems { short: vec![(problem, reference)], long: Vec::new() }
+        Problems { short: vec![(problem, reference)], long: Vec::new(), highest: 4 }
     }
     /// An ensemble, of problems by their number.
     pub(crate) fn many(make: impl Fn(u64) -> (P, PointOf<P>)) -> Self {
@@ -61,7 +62,12 @@ where
         Problems {
             short: (0..MEMBERS).map(short).map(over(1.0)).collect(),
             long: (0..LONG.0).map(long).map(over(LONG.1)).collect(),
+            highest: 16,
         }
+    }
+    /// Orders above this are measured elsewhere.
+    pub(crate) fn up_to(self, highest: usize) -> Self {
+        Problems { highest, ..self }
     }
 
     /// The name of the group.
@@ -80,7 +86,7 @@ where
 {
     type Out = Outcome;
     fn call<M: Method<P>>(self, method: M) -> Outcome {
-        let Measure(Problems { short, long }, single) = self;
+        let Measure(Problems { short, long, highest }, single) = self;
         let (problem, reference) = &short[0];
         if matches!(method.work(problem, reference.start()), Err(Error::Unsupported { .. })) {
             return Outcome::Refused;
@@ -90,7 +96,7 @@ where
                 return Outcome::Exact(distance_in_one_step(problem, &method, reference));
             }
             ..=4 if single => measure(problem, &method, reference),
-            _ if long.is_empty() => return Outcome::Elsewhere,
+            order if order > *highest => return Outcome::Elsewhere,
             ..=7 => measure_over(short, &method),
             _ => measure_over(long, &method),
         })
