@@ -4,12 +4,12 @@
 //! embedded pair come here.
 
 use lieflow::catalog::{OnEmbedded, OnMethod};
-use lieflow::methods::{Doubling, Metric};
+use lieflow::methods::{Doubling, Embedded, LocalError, Metric};
 use lieflow::problems::{PointOf, Problem, ScalarOf};
 use lieflow::{Error, Method, Step, StepError};
 
 /// A method, whatever its type.
-trait AnyMethod<P: Problem> {
+pub(crate) trait AnyMethod<P: Problem> {
     fn order(&self, problem: &P) -> usize;
     fn evaluations(&self, problem: &P) -> Option<u64>;
     fn stays_on_manifold(&self) -> bool;
@@ -17,7 +17,7 @@ trait AnyMethod<P: Problem> {
 }
 
 /// A method with its workspace.
-trait Stepper<P: Problem> {
+pub(crate) trait Stepper<P: Problem> {
     fn step(
         &mut self,
         problem: &P,
@@ -26,7 +26,7 @@ trait Stepper<P: Problem> {
     ) -> Result<(), StepError>;
 }
 
-type AnyStepper<'a, P> = Box<dyn Stepper<P> + 'a>;
+pub(crate) type AnyStepper<'a, P> = Box<dyn Stepper<P> + 'a>;
 
 struct Both<'a, P: Problem, M: Method<P>> {
     method: &'a M,
@@ -60,7 +60,7 @@ impl<P: Problem + 'static, M: Method<P>> AnyMethod<P> for M {
 }
 
 /// The method again, as one type for all.
-struct Erased<'a, P: Problem>(&'a dyn AnyMethod<P>);
+pub(crate) struct Erased<'a, P: Problem>(pub(crate) &'a dyn AnyMethod<P>);
 
 impl<'a, P: Problem> Method<P> for Erased<'a, P> {
     type Work = AnyStepper<'a, P>;
@@ -85,6 +85,103 @@ impl<'a, P: Problem> Method<P> for Erased<'a, P> {
         work: &mut Self::Work,
     ) -> Result<(), StepError> {
         work.step(problem, step, y)
+    }
+}
+
+/// A method that estimates its own error, whatever its type.
+pub(crate) trait AnyPair<P: Problem> {
+    fn order(&self, problem: &P) -> usize;
+    fn stays_on_manifold(&self) -> bool;
+    fn error_order(&self, problem: &P) -> Result<usize, Error>;
+    fn evaluations_with_error(&self, problem: &P) -> Option<u64>;
+    fn stepper<'a>(&'a self, problem: &P, like: &PointOf<P>) -> Result<PairStepper<'a, P>, Error>;
+}
+
+/// A method that estimates its own error, with its workspace.
+pub(crate) trait StepperWithError<P: Problem>: Stepper<P> {
+    fn step_with_error(
+        &mut self,
+        problem: &P,
+        step: Step<ScalarOf<P>>,
+        from: &PointOf<P>,
+        to: &mut PointOf<P>,
+    ) -> Result<LocalError<ScalarOf<P>>, StepError>;
+}
+
+pub(crate) type PairStepper<'a, P> = Box<dyn StepperWithError<P> + 'a>;
+
+impl<P: Problem, M: Embedded<P>> StepperWithError<P> for Both<'_, P, M> {
+    fn step_with_error(
+        &mut self,
+        problem: &P,
+        step: Step<ScalarOf<P>>,
+        from: &PointOf<P>,
+        to: &mut PointOf<P>,
+    ) -> Result<LocalError<ScalarOf<P>>, StepError> {
+        self.method.step_with_error(problem, step, from, &mut self.work, to)
+    }
+}
+
+impl<P: Problem + 'static, M: Embedded<P>> AnyPair<P> for M {
+    fn order(&self, problem: &P) -> usize {
+        Method::order(self, problem)
+    }
+    fn stays_on_manifold(&self) -> bool {
+        Method::stays_on_manifold(self)
+    }
+    fn error_order(&self, problem: &P) -> Result<usize, Error> {
+        Embedded::error_order(self, problem)
+    }
+    fn evaluations_with_error(&self, problem: &P) -> Option<u64> {
+        Embedded::evaluations_with_error(self, problem)
+    }
+    fn stepper<'a>(&'a self, problem: &P, like: &PointOf<P>) -> Result<PairStepper<'a, P>, Error> {
+        Ok(Box::new(Both { method: self, work: self.work(problem, like)? }))
+    }
+}
+
+/// The method again, as one type for all.
+pub(crate) struct ErasedPair<'a, P: Problem>(pub(crate) &'a dyn AnyPair<P>);
+
+impl<'a, P: Problem> Method<P> for ErasedPair<'a, P> {
+    type Work = PairStepper<'a, P>;
+
+    fn order(&self, problem: &P) -> usize {
+        self.0.order(problem)
+    }
+    fn stays_on_manifold(&self) -> bool {
+        self.0.stays_on_manifold()
+    }
+    fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
+        self.0.stepper(problem, like)
+    }
+    fn step(
+        &self,
+        problem: &P,
+        step: Step<ScalarOf<P>>,
+        y: &mut PointOf<P>,
+        work: &mut Self::Work,
+    ) -> Result<(), StepError> {
+        work.step(problem, step, y)
+    }
+}
+
+impl<P: Problem> Embedded<P> for ErasedPair<'_, P> {
+    fn error_order(&self, problem: &P) -> Result<usize, Error> {
+        self.0.error_order(problem)
+    }
+    fn evaluations_with_error(&self, problem: &P) -> Option<u64> {
+        self.0.evaluations_with_error(problem)
+    }
+    fn step_with_error(
+        &self,
+        problem: &P,
+        step: Step<ScalarOf<P>>,
+        from: &PointOf<P>,
+        work: &mut Self::Work,
+        to: &mut PointOf<P>,
+    ) -> Result<LocalError<ScalarOf<P>>, StepError> {
+        work.step_with_error(problem, step, from, to)
     }
 }
 

@@ -27,16 +27,17 @@
 
 use super::*;
 use crate::actions::{Action, Coadjoint};
-use crate::groups::{LieAlgebra, MatrixGroup};
+use crate::groups::MatrixGroup;
 use crate::methods::{
     Buss4, Composition, DMV2, DMV4, DMV6, DMV8, DMV10, EnergyCasimir, ExactMotion, GAUSS2, GAUSS4,
     GAUSS6, Gauss, IsospectralGauss, KAHAN_LI6, KAHAN_LI8, LieSeries, Metric, Projected, RkmkGauss,
     RkmkGaussSymmetric, SOFRONIOU_SPALETTA10, STRANG, SUZUKI4, Scheme, SeriesGroup, SimoWong,
-    Splitting, Taylor, YOSHIDA4,
+    Splitting, Taylor, Wide, YOSHIDA4,
 };
 use crate::problems::{
     FreeBody, LiePoisson, Orthogonal, PointOf, Problem, Projection, ScalarOf, Split, TaylorField,
 };
+use crate::scalar::Trig;
 
 /// What a method asks of a problem beyond f, and so what a problem may offer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -260,7 +261,7 @@ pub fn with_body_method<P: Catalogued + FreeBody + Split, V: OnMethod<P>>(
     on: V,
 ) -> Result<V::Out, Error>
 where
-    P::Group: LieAlgebra<Scalar = f64>,
+    ScalarOf<P>: Trig + Wide + Into<f64>,
     Exp: CoordinateMap<P::Group>,
 {
     let name = spec.info()?.name;
@@ -300,7 +301,7 @@ pub fn with_attitude_method<P: Catalogued + FreeBody + Split + Orthogonal, V: On
     on: V,
 ) -> Result<V::Out, Error>
 where
-    P::Group: LieAlgebra<Scalar = f64>,
+    ScalarOf<P>: Trig + Wide + Into<f64>,
     Exp: CoordinateMap<P::Group>,
 {
     match spec.info()?.name {
@@ -333,7 +334,7 @@ pub fn with_momentum_method<P: Catalogued + FreeBody + Split + LiePoisson, V: On
     on: V,
 ) -> Result<V::Out, Error>
 where
-    P::Group: LieAlgebra<Scalar = f64>,
+    ScalarOf<P>: Trig + Wide + Into<f64>,
     Exp: CoordinateMap<P::Group>,
 {
     each_energy_casimir!(spec, on, else => with_body_method(spec, on))

@@ -6,6 +6,7 @@
 use super::*;
 use crate::methods::{GAUSS2, GAUSS4, GAUSS6, Gauss};
 use crate::problems::RigidBodyState;
+use crate::scalar::Real;
 
 /// Hand the method that `$spec` names to `$single`, or to `$pair` where it estimates its own error.
 macro_rules! each_state_method {
@@ -28,19 +29,19 @@ macro_rules! each_state_method {
 ///
 /// # Errors
 /// As [`with_method`].
-pub fn with_state_method<V: OnMethod<RigidBodyState>>(
+pub fn with_state_method<S: Real, V: OnMethod<RigidBodyState<S>>>(
     spec: &MethodSpec,
     on: V,
 ) -> Result<V::Out, Error> {
-    each_state_method!(spec, on, OnMethod::<RigidBodyState>::call,
-        pair => OnMethod::<RigidBodyState>::call)
+    each_state_method!(spec, on, OnMethod::<RigidBodyState<S>>::call,
+        pair => OnMethod::<RigidBodyState<S>>::call)
 }
 
 /// The embedded pairs among [`STATE_METHODS`].
 ///
 /// # Errors
 /// As [`with_embedded_pair`].
-pub fn with_state_pair<V: OnEmbedded<RigidBodyState>>(
+pub fn with_state_pair<S: Real, V: OnEmbedded<RigidBodyState<S>>>(
     spec: &MethodSpec,
     on: V,
 ) -> Result<V::Out, Error> {

@@ -22,6 +22,7 @@ pub use expm::{
 };
 pub(crate) use lu::Lu;
 pub(crate) use ops::{
-    antisymmetrise, axpy, is_finite, mul, mul_add, norm_frobenius, norm1, orthogonalise, scaled_sum,
+    antisymmetrise, axpy, is_finite, lower_product, mirror, mul, mul_add, norm_frobenius, norm1,
+    orthogonalise, scaled_sum, wide,
 };
 pub(crate) use symmetric::SymmetricEigen;

@@ -10,12 +10,14 @@ use lieflow::groups::{GroupMatrix, LieGroup, MatrixGroup, So3, hat, vee};
 use lieflow::problems::{
     BodyState, Exact, RigidBody, RigidBodyAttitude, RigidBodyN, RigidBodyNAttitude, RigidBodyState,
 };
+use lieflow::scalar::Counted;
 use lieflow::{Error, RunError, SaveAt, Stats, TimeGrid};
 use nalgebra::{Matrix3, Vector3};
 
 use super::{KIND, RigidBodySpec, needs_attitude};
 use crate::catalog;
 use crate::model::{Layer, Model, Sink, Steps, adapt_by, integrate_by, order_by};
+use crate::operations::{Pace, operations_by};
 
 #[derive(Debug)]
 enum System {
@@ -31,6 +33,7 @@ pub(super) struct RigidBodyModel {
     system: System,
     /// Where `system` is the attitude: both as one state, for the methods that want that.
     state: Option<System>,
+    inertia: [f64; 3],
     /// For ω and the energy of a row, on either layer.
     body: RigidBody,
     momentum: Vector3<f64>,
@@ -52,6 +55,9 @@ catalog!(RigidBodyAttitude, with_attitude_method);
 catalog!(RigidBodyState, with_state_method, with_state_pair);
 catalog!(RigidBodyN, with_lie_poisson_method);
 catalog!(RigidBodyNAttitude, with_implicit_method);
+catalog!(RigidBody<Counted>, with_momentum_method);
+catalog!(RigidBodyAttitude<Counted>, with_attitude_method);
+catalog!(RigidBodyState<Counted>, with_state_method, with_state_pair);
 
 /// Run `$run` on the problem of `$model` with its initial state and a function that shows a point of
 /// it as a row.
@@ -130,6 +136,7 @@ impl RigidBodyModel {
         Ok(RigidBodyModel {
             system,
             state,
+            inertia: spec.inertia,
             body: RigidBody::new(spec.inertia)?,
             momentum,
             attitude: spec.attitude,
@@ -214,6 +221,26 @@ impl Model for RigidBodyModel {
             System::State(body) => order_by(method, body),
             System::MomentumN(body) => order_by(method, body),
             System::AttitudeN(body) => order_by(method, body),
+        }
+    }
+
+    fn operations(&self, method: &MethodSpec, pace: Pace<'_>) -> Option<f64> {
+        match self.system(method) {
+            System::Momentum(_) => {
+                let body = RigidBody::<Counted>::new(self.inertia).ok()?;
+                operations_by(method, &body, self.momentum.map(Counted), pace)
+            }
+            System::Attitude(body) => {
+                let m_s = (*body.momentum_space()).into();
+                let body = RigidBodyAttitude::<Counted>::new(self.inertia, m_s).ok()?;
+                operations_by(method, &body, self.attitude.map(Counted), pace)
+            }
+            System::State(_) => {
+                let body = RigidBodyState::<Counted>::new(self.inertia).ok()?;
+                let y = BodyState { m: self.momentum.map(Counted), g: self.attitude.map(Counted) };
+                operations_by(method, &body, y, pace)
+            }
+            System::MomentumN(_) | System::AttitudeN(_) => None,
         }
     }
 
