@@ -1,13 +1,13 @@
 //! Order from errors on a grid fixed in advance.
 
 /// The mean of the slopes, and each of them, may differ from the order by so much: below order 8, where
-/// where rounding is far, and above, where three slopes stand on the last factor of 2 in h, and from 12 on
+/// rounding is far; above, where three slopes stand on the last factor of 2 in h; and from 12 on, where
 /// the whole way from 1e-3 to rounding is a factor of 4 to 6.
 pub(crate) fn tolerances(order: usize) -> [f64; 2] {
     match order {
-        ..8 => [0.15, 0.15],
-        ..10 => [0.15, 0.25],
-        ..12 => [0.25, 0.4],
+        0..8 => [0.15, 0.15],
+        8..10 => [0.15, 0.25],
+        10..12 => [0.25, 0.4],
         _ => [0.35, 0.5],
     }
 }
