@@ -52,3 +52,16 @@ fn no_exponential_allocates() {
         }
     }
 }
+
+/// Row E21 of the hard cases: the storage is that of nine matrices, one of them for the solve alone,
+/// with a tenth of one for each to pad its columns.
+#[test]
+fn storage_of_nine_matrices() {
+    for n in [64usize, 256, 1000] {
+        let before = counting::bytes();
+        let exponential = Exponential::new(n);
+        let words = (counting::bytes() - before) / size_of::<f64>();
+        assert!(words <= 9 * n * n * 11 / 10, "{n}: {:.2} n²", words as f64 / (n * n) as f64);
+        drop(exponential);
+    }
+}

@@ -4,7 +4,7 @@ use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::evd::{ComputeEigenvectors, self_adjoint_evd, self_adjoint_evd_scratch};
 use faer::{Col, Mat, Par};
 
-use super::ops::mul;
+use super::product::mul;
 use crate::error::StepError;
 
 /// Workspace for a = Q Λ Qᵀ.
