@@ -1,22 +1,16 @@
-//! Measured orders: the methods of the catalog that ask for a field and a norm, or for a field of linear
-//! type, on problems that do not commute, depend on time and depend on the state; orders above 4 on
-//! products too. Those that ask for more are in `orders_special.rs`, by the same harness.
+//! Measured orders: the methods of the catalog that ask for a field, or for one of linear type, on
+//! problems that do not commute, depend on time and depend on the state. Those that ask for more are in
+//! `orders_special.rs`, by the same harness.
 //! `cargo test --test orders -- --nocapture` prints the table.
 
 mod support;
 
 use lieflow::LieGroup;
 use lieflow::actions::{Coadjoint, LeftTranslation, Linear};
-use lieflow::catalog::{
-    CatalogGroup, MethodSpec, Needs, OnMethod, with_implicit_method, with_linear_method,
-    with_method,
-};
-use lieflow::groups::{MatrixGroup, Power, Product, Sample, Se3, So3};
+use lieflow::catalog::{CatalogGroup, MethodSpec, Needs, with_linear_method, with_method};
+use lieflow::groups::{MatrixGroup, Sample, So3};
 use lieflow::maps::{Cay, CoordinateMap, Exp};
-use lieflow::methods::low_storage::LS5;
 use lieflow::methods::magnus::TripleProduct;
-use lieflow::methods::tableau::{DOP853, DOPRI5, VERNER6};
-use lieflow::methods::{LowStorage, Metric, Rkmk};
 use lieflow::problems::{
     Ambient, LinearField, PointOf, Problem, RigidBody, RigidBodyAttitude, RigidBodyN,
     RigidBodyNAttitude,
@@ -41,19 +35,6 @@ where
     Report::of(title, &problems.group(), &[Needs::Field], measured);
 }
 
-/// The same, and the implicit ones.
-fn implicit_ones_too_on<P: Ambient>(title: &str, problems: Problems<P>)
-where
-    P::Group: Represent + CatalogGroup,
-    P::Action: Points<P::Group>,
-    PointOf<P>: Metric<Scalar = f64>,
-    Cay: CoordinateMap<P::Group>,
-    Exp: CoordinateMap<P::Group>,
-{
-    let measured = |spec: &MethodSpec| with_implicit_method(spec, Measure(&problems, true));
-    Report::of(title, &problems.group(), &[Needs::Field, Needs::Norm], measured);
-}
-
 /// The same for the methods that want a field of linear type. Some of order 4 are so accurate there
 /// that the grid of that order has rounding on it.
 fn every_linear_method_on<P: LinearField + Ambient>(title: &str, problems: Problems<P>)
@@ -65,23 +46,6 @@ where
 {
     let measured = |spec: &MethodSpec| with_linear_method(&spec.name, Measure(&problems, false));
     Report::of(title, &problems.group(), &[Needs::LinearType], measured);
-}
-
-/// Orders above 4, a method of each.
-fn high_orders_on<P: Ambient>(title: &str, problems: Problems<P>)
-where
-    P::Group: Represent,
-    P::Action: Points<P::Group>,
-    Cay: CoordinateMap<P::Group>,
-    Exp: CoordinateMap<P::Group>,
-{
-    let mut report = Report::new(title);
-    let measure = || Measure(&problems, false);
-    report.add("rkmk dopri5 exp", true, measure().call(Rkmk::new(DOPRI5, Exp)));
-    report.add("rkmk verner6 cay", true, measure().call(Rkmk::new(VERNER6, Cay)));
-    report.add("rkmk dop853 exp", true, measure().call(Rkmk::new(DOP853, Exp)));
-    report.add("cf-ls5", true, measure().call(LowStorage(LS5)));
-    report.assert();
 }
 
 /// One test a problem, from its group, its action and its field; `one` of them, or `many` with the
@@ -117,17 +81,13 @@ fn clocks(n: usize, strength: f64) -> impl Fn(u64) -> Field {
 }
 
 orders! {
-    implicit_ones_too_on:
+    every_method_on:
     translation_on_so3_closed: many, So3::new(), LeftTranslation, waves(3, 0.5, 11);
     translation_on_so5: many, MatrixGroup::so(5).unwrap(), LeftTranslation, waves(5, 0.5, 11);
     translation_on_gl3: many, MatrixGroup::gl(3).unwrap(), LeftTranslation, waves(3, 0.2, 12);
     translation_on_sp4: many, MatrixGroup::sp(4).unwrap(), LeftTranslation, waves(4, 0.25, 12);
     translation_on_so31: many, MatrixGroup::indefinite(3, 1).unwrap(), LeftTranslation, waves(4, 0.35, 11);
     translation_on_so3: one, MatrixGroup::so(3).unwrap(), LeftTranslation, waves(3, 0.5, 11);
-}
-
-orders! {
-    every_method_on:
     orbits_of_so3_closed: one, So3::new(), Coadjoint, |_| inertia(3);
     orbits_of_so4: one, MatrixGroup::so(4).unwrap(), Coadjoint, |_| inertia(4);
     orbits_of_sp4: one, MatrixGroup::sp(4).unwrap(), Coadjoint, waves(4, 0.25, 16);
@@ -142,13 +102,6 @@ orders! {
     linear_on_gl3: many, MatrixGroup::gl(3).unwrap(), LeftTranslation, clocks(3, 0.7);
     linear_on_sp4: many, MatrixGroup::sp(4).unwrap(), LeftTranslation, clocks(4, 0.7);
     linear_on_so31: many, MatrixGroup::indefinite(3, 1).unwrap(), LeftTranslation, clocks(4, 1.0);
-}
-
-orders! {
-    high_orders_on:
-    translation_on_se3: many, Se3::new(), LeftTranslation, waves(4, 0.3, 19);
-    translation_on_a_product: many, Product(So3::new(), Se3::new()), LeftTranslation, waves(7, 0.2, 23);
-    translation_on_a_power: many, Power::new(So3::new(), 2).unwrap(), LeftTranslation, waves(6, 0.25, 29);
 }
 
 #[test]

@@ -129,7 +129,8 @@ suites! {
     quadratic_systems: [Series, LiePoisson, Isospectral];
 }
 
-/// Every list of the catalog is measured, here or in `orders.rs`.
+/// Every list of the catalog is measured, here, in `orders.rs` or, the implicit methods, in
+/// `implicit.rs`.
 #[test]
 fn every_list_has_its_problems() {
     let fields = [Needs::Field, Needs::Norm, Needs::LinearType];
