@@ -11,6 +11,7 @@ use lieflow::{Error, Method, Step, StepError};
 /// A method, whatever its type.
 pub(crate) trait AnyMethod<P: Problem> {
     fn order(&self, problem: &P) -> usize;
+    fn evaluations(&self, problem: &P) -> Option<u64>;
     fn stays_on_manifold(&self) -> bool;
     fn stepper<'a>(&'a self, problem: &P, like: &PointOf<P>) -> Result<AnyStepper<'a, P>, Error>;
 }
@@ -47,6 +48,9 @@ impl<P: Problem + 'static, M: Method<P>> AnyMethod<P> for M {
     fn order(&self, problem: &P) -> usize {
         Method::order(self, problem)
     }
+    fn evaluations(&self, problem: &P) -> Option<u64> {
+        Method::evaluations(self, problem)
+    }
     fn stays_on_manifold(&self) -> bool {
         Method::stays_on_manifold(self)
     }
@@ -63,6 +67,9 @@ impl<'a, P: Problem> Method<P> for Erased<'a, P> {
 
     fn order(&self, problem: &P) -> usize {
         self.0.order(problem)
+    }
+    fn evaluations(&self, problem: &P) -> Option<u64> {
+        self.0.evaluations(problem)
     }
     fn stays_on_manifold(&self) -> bool {
         self.0.stays_on_manifold()
@@ -86,7 +93,7 @@ pub(crate) trait AnyPair<P: Problem> {
     fn order(&self, problem: &P) -> usize;
     fn stays_on_manifold(&self) -> bool;
     fn error_order(&self, problem: &P) -> Result<usize, Error>;
-    fn evaluations(&self) -> u64;
+    fn evaluations_with_error(&self, problem: &P) -> Option<u64>;
     fn stepper<'a>(&'a self, problem: &P, like: &PointOf<P>) -> Result<PairStepper<'a, P>, Error>;
 }
 
@@ -125,8 +132,8 @@ impl<P: Problem + 'static, M: Embedded<P>> AnyPair<P> for M {
     fn error_order(&self, problem: &P) -> Result<usize, Error> {
         Embedded::error_order(self, problem)
     }
-    fn evaluations(&self) -> u64 {
-        Embedded::evaluations(self)
+    fn evaluations_with_error(&self, problem: &P) -> Option<u64> {
+        Embedded::evaluations_with_error(self, problem)
     }
     fn stepper<'a>(&'a self, problem: &P, like: &PointOf<P>) -> Result<PairStepper<'a, P>, Error> {
         Ok(Box::new(Both { method: self, work: self.work(problem, like)? }))
@@ -163,8 +170,8 @@ impl<P: Problem> Embedded<P> for ErasedPair<'_, P> {
     fn error_order(&self, problem: &P) -> Result<usize, Error> {
         self.0.error_order(problem)
     }
-    fn evaluations(&self) -> u64 {
-        self.0.evaluations()
+    fn evaluations_with_error(&self, problem: &P) -> Option<u64> {
+        self.0.evaluations_with_error(problem)
     }
     fn step_with_error(
         &self,

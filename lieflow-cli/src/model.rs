@@ -63,8 +63,8 @@ pub trait Model: Debug {
     /// Names of the columns after `t`.
     fn columns(&self) -> Vec<String>;
 
-    /// What is integrated, in words. Nothing else is computed.
-    fn modelled(&self) -> Vec<String>;
+    /// What a method integrates, in words. Nothing else is computed.
+    fn modelled(&self, method: &MethodSpec) -> Vec<String>;
 
     /// Integrate from the initial state; `sink` gets a row where `save` says.
     ///
@@ -140,10 +140,14 @@ pub trait Catalog: Problem<Group: LieAlgebra<Scalar: Into<f64>>> {
         Self: Sized;
 }
 
-/// [`Catalog`] for an [`Ambient`](lieflow::problems::Ambient) problem, by the catalog's function for its kind.
+/// [`Catalog`] for an [`Ambient`](lieflow::problems::Ambient) problem, by the catalog's function for its
+/// kind, and the one for its embedded pairs.
 #[macro_export]
 macro_rules! catalog {
     ($problem:ty, $with:path) => {
+        $crate::catalog!($problem, $with, lieflow::catalog::with_embedded_pair);
+    };
+    ($problem:ty, $with:path, $pair:path) => {
         impl $crate::model::Catalog for $problem {
             fn with<V: lieflow::catalog::OnMethod<Self>>(
                 spec: &lieflow::catalog::MethodSpec,
@@ -156,7 +160,7 @@ macro_rules! catalog {
                 on: V,
             ) -> Result<V::Out, lieflow::Error> {
                 match spec.has_pair()? {
-                    true => lieflow::catalog::with_embedded_pair(spec, on),
+                    true => $pair(spec, on),
                     false => $with(spec, $crate::erased::Doubled(on)),
                 }
             }

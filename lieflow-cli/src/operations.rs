@@ -75,8 +75,8 @@ impl<P: Problem, M: Embedded<P>> Embedded<P> for Watched<'_, M> {
     fn error_order(&self, problem: &P) -> Result<usize, Error> {
         self.0.error_order(problem)
     }
-    fn evaluations(&self) -> u64 {
-        self.0.evaluations()
+    fn evaluations_with_error(&self, problem: &P) -> Option<u64> {
+        self.0.evaluations_with_error(problem)
     }
     fn step_with_error(
         &self,

@@ -75,8 +75,12 @@ fn methods_for_a_scene_are_those_that_run() {
     let closed = [&body[..], &series].concat();
     let linear = ["magnus4", "magnus6", "cfm6-5"];
     for (scene, with, without) in [
-        ("asymmetric-top", &[&closed[..], &["energy-casimir"]].concat()[..], &["rk4-qr"][..]),
-        ("tumbling-attitude", &[&closed[..], &["rk4-qr"]].concat(), &["energy-casimir"]),
+        (
+            "asymmetric-top",
+            &[&closed[..], &["energy-casimir"]].concat()[..],
+            &["rk4-qr", "rk4-mg"][..],
+        ),
+        ("tumbling-attitude", &[&closed[..], &["rk4-qr", "rk4-mg"]].concat(), &["energy-casimir"]),
         ("general-layer", &["energy-casimir", "isospectral4", "taylor12"], &body),
         ("rotating-field", &linear, &closed),
     ] {

@@ -12,6 +12,7 @@ mod lu;
 mod ops;
 mod product;
 mod schur;
+mod symmetric;
 
 pub(crate) use ad::{AdForm, AdSchur, Direction, Kind as AdKind};
 pub(crate) use eigen::SkewEigen;
@@ -25,3 +26,4 @@ pub(crate) use ops::{axpy, is_finite, norm_frobenius, norm1, scaled_sum, wide};
 pub(crate) use product::{
     antisymmetrise, congruence, lower_product, mirror, mul, mul_add, orthogonalise,
 };
+pub(crate) use symmetric::SymmetricEigen;

@@ -102,7 +102,7 @@ impl<'a> Watch<'a> {
                         chosen: Some(Chosen {
                             accepted: stats.accepted,
                             rejected: stats.rejected,
-                            evaluations: method.has_pair()?.then_some(stats.evaluations),
+                            evaluations: stats.evaluations,
                             smallest_step: stats.smallest_step,
                             largest_step: stats.largest_step,
                         }),
@@ -225,7 +225,7 @@ pub fn run_scene(scene: &Scene, folder: &Path) -> Result<Summary, CliError> {
             order: watch.model.order(method)?,
         },
         layer: scene.layer.name(),
-        modelled: watch.model.modelled(),
+        modelled: watch.model.modelled(method),
         quantities: scene.quantities.clone(),
         columns: core::iter::once("t".into()).chain(columns).collect(),
         trajectory: if completed { output::COMPLETE } else { output::PARTIAL },

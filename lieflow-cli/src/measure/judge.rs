@@ -306,7 +306,7 @@ impl Size {
                 Ok(Done {
                     steps: stats.accepted,
                     rejected: stats.rejected,
-                    evaluations: Some(stats.evaluations),
+                    evaluations: stats.evaluations,
                 })
             }
         }

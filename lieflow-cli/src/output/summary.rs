@@ -68,7 +68,7 @@ pub struct Chosen {
     pub accepted: u64,
     /// Attempts that were rejected, for their error or because the step failed.
     pub rejected: u64,
-    /// Evaluations of f, by an embedded pair; not counted where steps were doubled.
+    /// Evaluations of f, where the method knows them.
     pub evaluations: Option<u64>,
     /// The smallest accepted step.
     pub smallest_step: f64,

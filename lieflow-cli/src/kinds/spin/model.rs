@@ -116,7 +116,7 @@ impl Model for SpinModel {
         let infos = self.quantities.iter().flat_map(|name| KIND.quantity(name));
         infos.flat_map(|info| info.columns).map(|&column| column.into()).collect()
     }
-    fn modelled(&self) -> Vec<String> {
+    fn modelled(&self, _: &MethodSpec) -> Vec<String> {
         vec!["moment on the sphere".into()]
     }
     fn run(
