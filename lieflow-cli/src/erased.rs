@@ -1,10 +1,11 @@
-//! A method behind a pointer. Doubling the steps of every method with code of its own for each would
-//! triple what is compiled; a call through a pointer a step, around the step and not inside it, is
-//! nothing beside the three steps that doubling takes. Only adaptive runs of methods without an
-//! embedded pair come here.
+//! A method behind a pointer. The loops of fixed, adaptive and doubled steps with code of their own for
+//! every method would triple what is compiled; a call through a pointer a step is around the step and
+//! not inside it. Adaptive runs of methods without an embedded pair come here, where it is nothing beside
+//! the three steps that doubling takes, and every run of the problems of `kinds/flow.rs`, whose field is
+//! behind a pointer already.
 
 use lieflow::catalog::{OnEmbedded, OnMethod};
-use lieflow::methods::{Doubling, Metric};
+use lieflow::methods::{Doubling, Embedded, LocalError, Metric};
 use lieflow::problems::{PointOf, Problem, ScalarOf};
 use lieflow::{Error, Method, Step, StepError};
 
@@ -78,6 +79,113 @@ impl<'a, P: Problem> Method<P> for Erased<'a, P> {
         work: &mut Self::Work,
     ) -> Result<(), StepError> {
         work.step(problem, step, y)
+    }
+}
+
+/// A method with an estimate, whatever its type.
+trait AnyPair<P: Problem>: AnyMethod<P> {
+    fn error_order(&self, problem: &P) -> Result<usize, Error>;
+    fn evaluations(&self) -> u64;
+    fn pair<'a>(&'a self, problem: &P, like: &PointOf<P>) -> Result<AnyPairStepper<'a, P>, Error>;
+}
+
+/// A method with an estimate and its workspace.
+trait PairStepper<P: Problem>: Stepper<P> {
+    fn step_with_error(
+        &mut self,
+        problem: &P,
+        step: Step<ScalarOf<P>>,
+        from: &PointOf<P>,
+        to: &mut PointOf<P>,
+    ) -> Result<LocalError<ScalarOf<P>>, StepError>;
+}
+
+type AnyPairStepper<'a, P> = Box<dyn PairStepper<P> + 'a>;
+
+impl<P: Problem, M: Embedded<P>> PairStepper<P> for Both<'_, P, M> {
+    fn step_with_error(
+        &mut self,
+        problem: &P,
+        step: Step<ScalarOf<P>>,
+        from: &PointOf<P>,
+        to: &mut PointOf<P>,
+    ) -> Result<LocalError<ScalarOf<P>>, StepError> {
+        self.method.step_with_error(problem, step, from, &mut self.work, to)
+    }
+}
+
+impl<P: Problem + 'static, M: Embedded<P>> AnyPair<P> for M {
+    fn error_order(&self, problem: &P) -> Result<usize, Error> {
+        Embedded::error_order(self, problem)
+    }
+    fn evaluations(&self) -> u64 {
+        Embedded::evaluations(self)
+    }
+    fn pair<'a>(&'a self, problem: &P, like: &PointOf<P>) -> Result<AnyPairStepper<'a, P>, Error> {
+        Ok(Box::new(Both { method: self, work: self.work(problem, like)? }))
+    }
+}
+
+/// The method with its estimate again, as one type for all.
+struct ErasedPair<'a, P: Problem>(&'a dyn AnyPair<P>);
+
+impl<'a, P: Problem> Method<P> for ErasedPair<'a, P> {
+    type Work = AnyPairStepper<'a, P>;
+
+    fn order(&self, problem: &P) -> usize {
+        self.0.order(problem)
+    }
+    fn stays_on_manifold(&self) -> bool {
+        self.0.stays_on_manifold()
+    }
+    fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
+        self.0.pair(problem, like)
+    }
+    fn step(
+        &self,
+        problem: &P,
+        step: Step<ScalarOf<P>>,
+        y: &mut PointOf<P>,
+        work: &mut Self::Work,
+    ) -> Result<(), StepError> {
+        work.step(problem, step, y)
+    }
+}
+
+impl<P: Problem> Embedded<P> for ErasedPair<'_, P> {
+    fn error_order(&self, problem: &P) -> Result<usize, Error> {
+        self.0.error_order(problem)
+    }
+    fn evaluations(&self) -> u64 {
+        self.0.evaluations()
+    }
+    fn step_with_error(
+        &self,
+        problem: &P,
+        step: Step<ScalarOf<P>>,
+        from: &PointOf<P>,
+        work: &mut Self::Work,
+        to: &mut PointOf<P>,
+    ) -> Result<LocalError<ScalarOf<P>>, StepError> {
+        work.step_with_error(problem, step, from, to)
+    }
+}
+
+/// A visitor that gets every method as one type.
+#[derive(Clone, Copy, Debug)]
+pub struct Pointed<V>(pub V);
+
+impl<P: Problem + 'static, V: OnMethod<P>> OnMethod<P> for Pointed<V> {
+    type Out = V::Out;
+    fn call<M: Method<P>>(self, method: M) -> V::Out {
+        self.0.call(Erased(&method))
+    }
+}
+
+impl<P: Problem + 'static, V: OnEmbedded<P>> OnEmbedded<P> for Pointed<V> {
+    type Out = V::Out;
+    fn call<M: Embedded<P>>(self, method: M) -> V::Out {
+        self.0.call(ErasedPair(&method))
     }
 }
 
