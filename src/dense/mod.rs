@@ -21,5 +21,6 @@ pub use expm::{
 };
 pub(crate) use lu::Lu;
 pub(crate) use ops::{
-    antisymmetrise, axpy, is_finite, mul, mul_add, norm_frobenius, norm1, orthogonalise, scaled_sum,
+    antisymmetrise, axpy, is_finite, lower_product, mirror, mul, mul_add, norm_frobenius, norm1,
+    orthogonalise, scaled_sum, wide,
 };

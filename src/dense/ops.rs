@@ -56,23 +56,39 @@ fn half_product(
     accum: Accum,
     sign: f64,
 ) {
+    lower_product(out, a, b, 1.0, accum);
+    if a.nrows() >= HALF_FROM {
+        mirror(out, sign);
+    }
+}
+
+/// The lower triangle of out ← a·b (or out + alpha·a·b); the upper one holds nothing of use.
+pub(crate) fn lower_product(
+    out: &mut Mat<f64>,
+    a: MatRef<'_, f64>,
+    b: MatRef<'_, f64>,
+    alpha: f64,
+    accum: Accum,
+) {
     let n = a.nrows();
     if n < HALF_FROM {
-        product(out, a, b, 1.0, accum);
-        return;
-    }
-    if n < TRIANGLE_FROM {
+        product(out, a, b, alpha, accum);
+    } else if n < TRIANGLE_FROM {
         for j in (0..n).step_by(PANEL) {
             let width = PANEL.min(n - j);
             let panel = out.as_mut().submatrix_mut(j, j, n - j, width);
             let (a, b) = (a.subrows(j, n - j), b.subcols(j, width));
-            matmul(panel, accum, a, b, 1.0, Par::Seq);
+            matmul(panel, accum, a, b, alpha, Par::Seq);
         }
     } else {
         let (lower, full) = (BlockStructure::TriangularLower, BlockStructure::Rectangular);
-        matmul_triangular(out.as_mut(), lower, accum, a, full, b, full, 1.0, Par::Seq);
+        matmul_triangular(out.as_mut(), lower, accum, a, full, b, full, alpha, Par::Seq);
     }
-    wide(n, Mirror { x: out, sign });
+}
+
+/// The upper triangle ← `sign` times the lower one.
+pub(crate) fn mirror(x: &mut Mat<f64>, sign: f64) {
+    wide(x.nrows(), Mirror { x, sign });
 }
 
 /// The upper triangle ← `sign` times the lower one, in tiles that are transposed in registers.
@@ -203,7 +219,7 @@ pub(crate) fn scaled_sums<const K: usize, const M: usize>(
 }
 
 /// `op` with the widest instructions there are, where n is worth the choice.
-fn wide<Op: NullaryFnOnce>(n: usize, op: Op) -> Op::Output {
+pub(crate) fn wide<Op: NullaryFnOnce>(n: usize, op: Op) -> Op::Output {
     if n <= SMALL { op.call() } else { Arch::new().dispatch(op) }
 }
 

@@ -15,6 +15,7 @@ mod product;
 mod se3;
 mod so3;
 mod translations;
+mod unitary;
 
 pub use adjoint::Adjoint;
 pub use matrix::{AlgebraMatrix, Form, GroupMatrix, MEMBERSHIP, MatrixGroup, RCOND_MIN};
@@ -26,6 +27,8 @@ pub(crate) use se3::{add3, finite_pair};
 pub use so3::{So3, hat, vee};
 pub(crate) use so3::{apply3, cross};
 pub use translations::Translations;
+pub(crate) use unitary::mul_complex;
+pub use unitary::{ComplexMatrix, Unitary};
 
 use rand::Rng;
 

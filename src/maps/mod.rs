@@ -16,6 +16,7 @@ mod pade22;
 mod parts;
 mod quotient;
 mod se3;
+mod unitary;
 
 pub use alternating::{Alternating, AlternatingAt, CCSK};
 pub use cay::{Cay, CayleyGroup, cay_inv, dcay};
@@ -27,6 +28,7 @@ pub use exp::{
 pub use pade22::{Pade22, Pade22At};
 pub use parts::{Each, Pair};
 pub use se3::ScrewAt;
+pub use unitary::{UnitaryCayAt, UnitaryExpAt};
 
 use crate::error::{Error, StepError};
 use crate::groups::LieGroup;

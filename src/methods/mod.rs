@@ -76,7 +76,8 @@ pub trait Symmetric {}
 /// A one-step method for problems of type `P`.
 pub trait Method<P: Problem> {
     /// Everything a step needs besides y; made once, reused for every step. It carries nothing from
-    /// one step to the next: a step depends on its arguments alone.
+    /// one step to the next: a step depends on its arguments alone. One exception says so:
+    /// [`FluidMidpoint`](crate::problems::FluidMidpoint) starts its iteration from the steps before.
     type Work;
 
     /// The order that tests hold the method to.

@@ -15,6 +15,7 @@
 //! | Hill, Mathieu, Floquet; beam lines | Sp(2m); translation | [`hill`], [`mathieu`], [`floquet`], [`beam`] |
 //! | Riccati | Sp(2m); [`Lagrangian`](crate::actions::Lagrangian) | [`LinearEquation`] |
 //! | Schrödinger's equation, n levels | U(n) ⊂ SO(2n); vectors | [`schrodinger`](fn@schrodinger) |
+//! | ideal fluids on a sphere, Zeitlin's model | U(N); conjugation | [`Zeitlin`] |
 //! | charged particle | SO(3,1); vectors | [`ChargedParticle`] |
 //!
 //! To add a problem: one file with an `impl` of [`Problem`], one line here.
@@ -39,6 +40,7 @@ mod series;
 mod space;
 mod spheres;
 mod torque;
+mod zeitlin;
 
 pub use capability::{LiePoisson, Orthogonal, Projection, Split};
 pub use euler::{Euler, EulerGroup, FromTheBody, Hamiltonian, Kinetic};
@@ -61,6 +63,7 @@ pub use series::{MomentumSeries, TaylorField};
 pub use space::LinearSpace;
 pub use spheres::{SphericalPendulum, SpinChain};
 pub use torque::{BodyTorque, Motion, SpaceTorque, Torque, TorqueBody};
+pub use zeitlin::{FluidMidpoint, FluidWork, Keeps, Sphere, StreamWork, Surface, Vortex, Zeitlin};
 
 use crate::actions::Action;
 use crate::groups::{LieAlgebra, LieGroup};

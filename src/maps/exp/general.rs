@@ -30,7 +30,7 @@ const BAKER: [f64; 13] = [
 ];
 
 /// B_k/k!, the coefficient of ad_u^k.
-pub(super) fn baker(k: usize) -> f64 {
+pub(in crate::maps) fn baker(k: usize) -> f64 {
     match k {
         1 => -0.5,
         _ if k % 2 == 1 => 0.0,

@@ -11,6 +11,7 @@ mod se3;
 mod so3;
 
 pub use functions::{Truncated, dexp, dexpinv, dexpinv_with_remainder, distance_to_singular};
+pub(super) use general::baker;
 pub use general::{Dexpinv, ExpAt};
 
 /// The exponential map with dexp⁻¹ to rounding.

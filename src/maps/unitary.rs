@@ -1,0 +1,232 @@
+//! The maps on U(n).
+//!
+//! | | Ψ(u) | dΨ_u⁻¹ v |
+//! |---|---|---|
+//! | exp | scaled Taylor polynomials on u(n) | Σ B_k/k! ad_u^k v (15) |
+//! | cay | (𝟙 − u/2)⁻¹(𝟙 + u/2) | (𝟙 − u/2) v (𝟙 + u/2) |
+//!
+//! The Baker series is summed until its terms vanish in rounding. It converges where the eigenvalues
+//! of u lie within an interval of the imaginary axis shorter than 2π, and is refused where it takes
+//! more than 52 terms: from about half of that on.
+
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::lu::partial_pivoting::{factor, solve};
+use faer::perm::PermRef;
+use faer::{Mat, Par, c64};
+
+use super::exp::baker;
+use super::{Cay, CoordinateMap, Exp};
+use crate::dense::{ComplexExponential, Structure};
+use crate::error::{Error, StepError};
+use crate::groups::{ComplexMatrix, LieAlgebra, LieGroup, Unitary, mul_complex};
+use crate::methods::Metric;
+use crate::problems::LinearSpace;
+
+/// The longest series that is summed.
+const SERIES_MAX: usize = 52;
+/// Above this norm no digit of cay(u) has a meaning.
+const NORM_MAX: f64 = 1e15;
+/// Above this norm of u the solve has lost more than rounding of the group.
+const NORM_EXACT: f64 = 4.0;
+
+/// What exp keeps on U(n).
+#[derive(Debug)]
+pub struct UnitaryExpAt {
+    exponential: ComplexExponential,
+    u: Mat<c64>,
+    g: Mat<c64>,
+    ad: ComplexMatrix,
+    next: ComplexMatrix,
+}
+
+impl CoordinateMap<Unitary> for Exp {
+    type At = UnitaryExpAt;
+
+    fn name(&self) -> &'static str {
+        "exp"
+    }
+    fn at(&self, group: &Unitary) -> Result<UnitaryExpAt, Error> {
+        let (n, zero) = (group.n(), || group.zero());
+        let exponential = ComplexExponential::new(n);
+        Ok(UnitaryExpAt {
+            exponential,
+            u: Mat::zeros(n, n),
+            g: Mat::zeros(n, n),
+            ad: zero(),
+            next: zero(),
+        })
+    }
+    fn psi(
+        &self,
+        _: &Unitary,
+        u: &ComplexMatrix,
+        at: &mut UnitaryExpAt,
+        g: &mut ComplexMatrix,
+    ) -> Result<(), StepError> {
+        join(u, &mut at.u);
+        at.exponential.exp(&at.u, Structure::Skew, &mut at.g)?;
+        split(&at.g, g);
+        Ok(())
+    }
+    fn dpsi_inv(
+        &self,
+        group: &Unitary,
+        u: &ComplexMatrix,
+        at: &mut UnitaryExpAt,
+        v: &mut ComplexMatrix,
+    ) -> Result<(), StepError> {
+        let UnitaryExpAt { ad, next, .. } = at;
+        ad.assign(v);
+        let negligible = 0.25 * f64::EPSILON * v.size();
+        for k in 1..=SERIES_MAX {
+            group.bracket(u, ad, next);
+            core::mem::swap(ad, next);
+            if k > 1 && k % 2 == 1 {
+                continue; // B_k = 0
+            }
+            let term = baker(k) * ad.size();
+            v.add(baker(k), ad);
+            // After the first term every second one is 0.
+            if term.abs() <= negligible && k > 1 || term == 0.0 {
+                return finite(v, "dexp⁻¹");
+            }
+        }
+        Err(StepError::OutsideChart {
+            map: "exp",
+            what: "the Baker series of dexp⁻¹ does not converge",
+        })
+    }
+}
+
+/// What cay keeps on U(n): 𝟙 ± u/2 and the factors of 𝟙 − u/2.
+#[derive(Debug)]
+pub struct UnitaryCayAt {
+    minus: ComplexMatrix,
+    plus: ComplexMatrix,
+    product: ComplexMatrix,
+    lu: ComplexLu,
+}
+
+impl CoordinateMap<Unitary> for Cay {
+    type At = UnitaryCayAt;
+
+    fn name(&self) -> &'static str {
+        "cay"
+    }
+    fn at(&self, group: &Unitary) -> Result<UnitaryCayAt, Error> {
+        let zero = || group.zero();
+        let lu = ComplexLu::new(group.n());
+        Ok(UnitaryCayAt { minus: zero(), plus: zero(), product: zero(), lu })
+    }
+    fn psi(
+        &self,
+        group: &Unitary,
+        u: &ComplexMatrix,
+        at: &mut UnitaryCayAt,
+        g: &mut ComplexMatrix,
+    ) -> Result<(), StepError> {
+        finite(u, "u in cay(u)")?;
+        let norm = u.size();
+        if norm > NORM_MAX {
+            return Err(StepError::NormTooLarge { map: "cay" });
+        }
+        let UnitaryCayAt { minus, plus, product, lu } = at;
+        for (x, half) in [(&mut *minus, -0.5), (&mut *plus, 0.5)] {
+            x.clear();
+            x.add(half, u);
+            x.re.diagonal_mut().column_vector_mut().iter_mut().for_each(|d| *d += 1.0);
+        }
+        lu.solve(minus, plus);
+        split(&lu.b, g);
+        if norm > NORM_EXACT {
+            // Each time the residual is squared.
+            for _ in 0..3 {
+                group.correct(g, [&mut *product, &mut *minus]);
+            }
+            minus.clear();
+            minus.add(-0.5, u);
+            minus.re.diagonal_mut().column_vector_mut().iter_mut().for_each(|d| *d += 1.0);
+        }
+        finite(g, "cay(u)")
+    }
+    fn dpsi_inv(
+        &self,
+        _: &Unitary,
+        _: &ComplexMatrix,
+        UnitaryCayAt { minus, plus, product, .. }: &mut UnitaryCayAt,
+        v: &mut ComplexMatrix,
+    ) -> Result<(), StepError> {
+        mul_complex(product, minus, v);
+        mul_complex(v, product, plus);
+        finite(v, "dcay⁻¹")
+    }
+}
+
+/// a⁻¹b by an LU with partial pivoting.
+struct ComplexLu {
+    a: Mat<c64>,
+    b: Mat<c64>,
+    perm: Vec<usize>,
+    perm_inv: Vec<usize>,
+    mem: MemBuffer,
+}
+
+impl core::fmt::Debug for ComplexLu {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.debug_struct("ComplexLu").finish_non_exhaustive()
+    }
+}
+
+impl ComplexLu {
+    fn new(n: usize) -> Self {
+        let req = factor::lu_in_place_scratch::<usize, c64>(n, n, Par::Seq, Default::default())
+            .or(solve::solve_in_place_scratch::<usize, c64>(n, n, Par::Seq));
+        let (perm, perm_inv) = (vec![0; n], vec![0; n]);
+        ComplexLu {
+            a: Mat::zeros(n, n),
+            b: Mat::zeros(n, n),
+            perm,
+            perm_inv,
+            mem: MemBuffer::new(req),
+        }
+    }
+
+    /// self.b ← a⁻¹b. In cay a = 𝟙 − u/2 is regular: its eigenvalues are 1 − iα/2.
+    fn solve(&mut self, a: &ComplexMatrix, b: &ComplexMatrix) {
+        join(a, &mut self.a);
+        join(b, &mut self.b);
+        let stack = MemStack::new(&mut self.mem);
+        let (perm, perm_inv) = (&mut self.perm, &mut self.perm_inv);
+        factor::lu_in_place(self.a.as_mut(), perm, perm_inv, Par::Seq, stack, Default::default());
+        let perm = PermRef::new_checked(&self.perm, &self.perm_inv, self.a.nrows());
+        let stack = MemStack::new(&mut self.mem);
+        solve::solve_in_place(
+            self.a.as_ref(),
+            self.a.as_ref(),
+            perm,
+            self.b.as_mut(),
+            Par::Seq,
+            stack,
+        );
+    }
+}
+
+/// Both parts together.
+fn join(x: &ComplexMatrix, out: &mut Mat<c64>) {
+    for j in 0..out.ncols() {
+        let parts = x.re.col_as_slice(j).iter().zip(x.im.col_as_slice(j));
+        out.col_as_slice_mut(j).iter_mut().zip(parts).for_each(|(z, (a, b))| *z = c64::new(*a, *b));
+    }
+}
+
+/// The parts apart.
+fn split(x: &Mat<c64>, out: &mut ComplexMatrix) {
+    for j in 0..x.ncols() {
+        let parts = out.re.col_as_slice_mut(j).iter_mut().zip(out.im.col_as_slice_mut(j));
+        x.col_as_slice(j).iter().zip(parts).for_each(|(z, (a, b))| (*a, *b) = (z.re, z.im));
+    }
+}
+
+fn finite(x: &ComplexMatrix, what: &'static str) -> Result<(), StepError> {
+    if LinearSpace::is_finite(x) { Ok(()) } else { Err(StepError::NotFinite { what }) }
+}

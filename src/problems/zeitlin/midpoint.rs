@@ -1,0 +1,327 @@
+//! Two midpoint rules for fluids, by fixed-point iteration on the increment D.
+//!
+//! With ε = h/(2ħ), M = W + D, P = εΔ⁻¹M and C = \[P, M\]:
+//!
+//! | | D | W⁺ | |
+//! |---|---|---|---|
+//! | isospectral | C + P M P | W + 2C | (𝟙 − P)M(𝟙 + P) = W, W⁺ = (𝟙 + P)M(𝟙 − P) |
+//! | energy | C + P D P | W + 2D | W⁺ = cay(2P) W cay(2P)†, M = (W + W⁺)/2 |
+//!
+//! Order 2, symmetric. Preserves: the spectrum of W both; the first the Lie–Poisson structure and
+//! the invariants that are linear in W (angular momentum on the sphere), so that the energy error
+//! stays bounded; the second the energy, since tr(P W⁺) = tr(P W). All of it to the tolerance.
+//!
+//! An iteration is one Poisson solve, three real products for C (Gauss's three for a complex one;
+//! \[P, M\] = PM − (PM)†) and, where it still matters, three half products for the cubic term, which
+//! is skew-Hermitian. The first guess comes from the steps before ([`History`](super::history)).
+//! It converges while h/ħ times the bound of \[P, ·\] stays below about 1.
+//! Source: K. Modin & M. Viviani, J. Fluid Mech. 884 (2020), for the first, with the fixed point of
+//! P. Cifani, M. Viviani & K. Modin, J. Comput. Phys. 473 (2023); for the second see
+//! [`EnergyCasimir`](crate::methods::EnergyCasimir), which it is with cay.
+
+use faer::{Accum, Mat};
+
+use super::history::{History, Start};
+use super::triangle::{below, below_mut, norm, replace, sum, with_transpose};
+use super::{Surface, Zeitlin};
+use crate::dense::{lower_product, mirror, mul, scaled_sum, wide};
+use crate::error::{Error, StepError};
+use crate::groups::ComplexMatrix;
+use crate::methods::{Method, Step, Symmetric};
+use crate::problems::LinearSpace;
+
+/// What a midpoint rule keeps besides the spectrum.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Keeps {
+    /// The Lie–Poisson structure: Modin and Viviani's isospectral midpoint.
+    Structure,
+    /// The energy.
+    Energy,
+}
+
+/// A midpoint rule for [`Zeitlin`]'s fluids.
+///
+/// The steps of a run help each other: the first guess of an iteration is extrapolated from the
+/// increments of the steps before, where a step goes on from the last one with the same h. What the
+/// iteration ends at differs by the tolerance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FluidMidpoint {
+    keeps: Keeps,
+    tolerance: f64,
+}
+
+/// The residual that is iterated to, relative to ‖W‖.
+const TOLERANCE: f64 = 0.25 * f64::EPSILON;
+/// Below this residual an iteration that no longer contracts has reached rounding.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
+/// Iterations before it is given up: a contraction by 0.8 reaches rounding.
+const ITERATIONS_MAX: u32 = 200;
+
+impl FluidMidpoint {
+    /// The isospectral midpoint rule.
+    pub const fn isospectral() -> Self {
+        FluidMidpoint { keeps: Keeps::Structure, tolerance: TOLERANCE }
+    }
+    /// The midpoint rule that keeps the energy.
+    pub const fn energy() -> Self {
+        FluidMidpoint { keeps: Keeps::Energy, tolerance: TOLERANCE }
+    }
+    /// With this bound of the residual ‖D − D(D)‖/‖W‖ in place of a quarter of the rounding unit.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] unless it is finite and positive.
+    pub fn with_tolerance(self, tolerance: f64) -> Result<Self, Error> {
+        match tolerance.is_finite() && tolerance > 0.0 {
+            true => Ok(FluidMidpoint { tolerance, ..self }),
+            false => Err(Error::out_of_range("tolerance", tolerance, "a finite number > 0")),
+        }
+    }
+    /// What it keeps.
+    pub const fn keeps(&self) -> Keeps {
+        self.keeps
+    }
+}
+
+impl Symmetric for FluidMidpoint {}
+
+/// Everything a step needs, and the steps before.
+#[derive(Debug)]
+pub struct FluidWork {
+    /// D, on and below the diagonal.
+    d: ComplexMatrix,
+    /// C, on and below the diagonal.
+    bracket: ComplexMatrix,
+    /// P M P or P D P, on and below the diagonal.
+    cubic: ComplexMatrix,
+    product: Product,
+    scratch: ComplexMatrix,
+    history: History,
+    /// The contraction of the last step's iteration, and of its cubic term.
+    rates: [f64; 2],
+    iterations: u64,
+    solves: u64,
+}
+
+impl FluidWork {
+    /// Iterations of all steps, and how many of them computed the cubic term too.
+    pub fn iterations(&self) -> [u64; 2] {
+        [self.iterations, self.solves]
+    }
+}
+
+/// P·X for skew-Hermitian P and X by three real products.
+#[derive(Debug)]
+struct Product {
+    p: ComplexMatrix,
+    p_sum: Mat<f64>,
+    x: ComplexMatrix,
+    x_sum: Mat<f64>,
+    /// The real part, the sum of the parts, and the imaginary part of P·X.
+    re: Mat<f64>,
+    both: Mat<f64>,
+    im: Mat<f64>,
+}
+
+impl Product {
+    fn new(n: usize) -> Self {
+        let (zero, part) = (|| ComplexMatrix::zeros(n, n), || Mat::zeros(n, n));
+        let (p, x) = (zero(), zero());
+        Product { p, x, p_sum: part(), x_sum: part(), re: part(), both: part(), im: part() }
+    }
+
+    /// p and its sum from the triangle.
+    fn p_is_set(&mut self) {
+        complete(&mut self.p, &mut self.p_sum);
+    }
+
+    /// The product, from the triangle of x.
+    fn multiply(&mut self) {
+        let Product { p, p_sum, x, x_sum, re, both, im } = self;
+        complete(x, x_sum);
+        mul(re, p.re.as_ref(), x.re.as_ref());
+        mul(both, p.im.as_ref(), x.im.as_ref());
+        mul(im, p_sum.as_ref(), x_sum.as_ref());
+        wide(re.nrows(), || {
+            for j in 0..re.ncols() {
+                let (re, both) = (re.col_as_slice_mut(j), both.col_as_slice_mut(j));
+                for ((re, both), im) in re.iter_mut().zip(both).zip(im.col_as_slice_mut(j)) {
+                    let (a, b, c) = (*re, *both, *im);
+                    *re = a - b;
+                    *im = (c - b) - a;
+                    *both = (c - b) - b;
+                }
+            }
+        });
+    }
+
+    /// out ← PX − (PX)† on the triangle.
+    fn bracket(&self, out: &mut ComplexMatrix) {
+        with_transpose(&mut out.re, &self.re, -1.0);
+        with_transpose(&mut out.im, &self.im, 1.0);
+    }
+
+    /// out ← (PX)P on the triangle; x is overwritten.
+    fn sandwich(&mut self, out: &mut ComplexMatrix) {
+        let Product { p, p_sum, x_sum, re, both, im, .. } = self;
+        lower_product(&mut out.re, re.as_ref(), p.re.as_ref(), 1.0, Accum::Replace);
+        lower_product(x_sum, im.as_ref(), p.im.as_ref(), 1.0, Accum::Replace);
+        lower_product(&mut out.im, both.as_ref(), p_sum.as_ref(), 1.0, Accum::Replace);
+        let [re, im] = out.parts_mut();
+        wide(re.nrows(), || {
+            for j in 0..re.ncols() {
+                let parts = below_mut(re, j).iter_mut().zip(below_mut(im, j));
+                for ((re, im), b) in parts.zip(below(x_sum, j)) {
+                    *im = (*im - b) - *re;
+                    *re -= b;
+                }
+            }
+        });
+    }
+}
+
+/// All of x from its triangle, and the sum of its parts. The diagonal is imaginary.
+fn complete(x: &mut ComplexMatrix, both: &mut Mat<f64>) {
+    (0..x.nrows()).for_each(|i| x.re[(i, i)] = 0.0);
+    mirror(&mut x.re, -1.0);
+    mirror(&mut x.im, 1.0);
+    scaled_sum(both, [1.0, 1.0], [&x.re, &x.im], 0.0);
+}
+
+impl<S: Surface> Method<Zeitlin<S>> for FluidMidpoint {
+    type Work = FluidWork;
+
+    fn order(&self, _: &Zeitlin<S>) -> usize {
+        2
+    }
+    fn work(&self, fluid: &Zeitlin<S>, _: &ComplexMatrix) -> Result<FluidWork, Error> {
+        let n = fluid.n();
+        let zero = || ComplexMatrix::zeros(n, n);
+        Ok(FluidWork {
+            d: zero(),
+            bracket: zero(),
+            cubic: zero(),
+            product: Product::new(n),
+            scratch: fluid.surface().scratch(),
+            history: History::new(n),
+            rates: [1.0, f64::INFINITY],
+            iterations: 0,
+            solves: 0,
+        })
+    }
+    fn step(
+        &self,
+        fluid: &Zeitlin<S>,
+        Step { h, .. }: Step<f64>,
+        w: &mut ComplexMatrix,
+        work: &mut FluidWork,
+    ) -> Result<(), StepError> {
+        let start = work.history.start(h, w);
+        let mut rates = [1.0, f64::INFINITY];
+        match start {
+            Start::Warm => {
+                work.history.guess(&mut work.d);
+                rates = work.rates;
+            }
+            _ => work.d.clear(),
+        }
+        let rates = self.iterate(fluid.surface(), h, w, work, rates)?;
+        let FluidWork { d, bracket, product, history, .. } = work;
+        let increment = match self.keeps {
+            Keeps::Structure => &*bracket,
+            Keeps::Energy => &*d,
+        };
+        sum(&mut product.x, w, 2.0, increment);
+        complete(&mut product.x, &mut product.x_sum);
+        if !LinearSpace::is_finite(&product.x) {
+            return Err(StepError::NotFinite { what: "the state" });
+        }
+        core::mem::swap(w, &mut product.x);
+        history.record(start, h, d, w);
+        if start != Start::Aside {
+            work.rates = rates;
+        }
+        Ok(())
+    }
+}
+
+impl FluidMidpoint {
+    /// d ← its fixed point; returns the contraction rates of the iteration and of its cubic term.
+    fn iterate<S: Surface>(
+        &self,
+        surface: &S,
+        h: f64,
+        w: &ComplexMatrix,
+        work: &mut FluidWork,
+        [mut rate, mut cubic_rate]: [f64; 2],
+    ) -> Result<[f64; 2], StepError> {
+        let FluidWork { d, bracket, cubic, product, scratch, iterations, solves, .. } = work;
+        let size = norm(w).max(f64::MIN_POSITIVE);
+        let (mut last, mut since_cubic) = (f64::INFINITY, f64::INFINITY);
+        let mut due = true;
+        for iteration in 1..=ITERATIONS_MAX {
+            *iterations += 1;
+            sum(&mut product.x, w, 1.0, d);
+            sum(&mut product.p, w, 1.0, d);
+            surface.solve(&mut product.p, scratch);
+            scale(&mut product.p, 0.5 * h * surface.rate());
+            product.p_is_set();
+            product.multiply();
+            product.bracket(bracket);
+            if due {
+                *solves += 1;
+                if self.keeps == Keeps::Energy {
+                    sum(&mut product.x, d, 0.0, w);
+                    product.multiply();
+                }
+                // What the term was before moves to where it is compared.
+                core::mem::swap(cubic, &mut product.x);
+                product.sandwich(cubic);
+                if since_cubic.is_finite() && since_cubic > 0.0 {
+                    cubic_rate = distance(cubic, &product.x) / since_cubic;
+                }
+                since_cubic = 0.0;
+            }
+            let change = replace(d, bracket, cubic);
+            if !change.is_finite() || iteration == ITERATIONS_MAX {
+                return Err(StepError::FixedPointDidNotConverge {
+                    method: "fluid midpoint",
+                    iterations: iteration,
+                    change_log10: (change / size).log10().ceil().min(308.0) as i32,
+                });
+            }
+            since_cubic += change;
+            if iteration > 1 {
+                rate = (change / last).min(1.0);
+            }
+            let stalled = change < ROUNDING * size && change > 0.5 * last;
+            let converged = stalled || rate * change <= self.tolerance * size;
+            let cubic_lags = cubic_rate * since_cubic > self.tolerance * size;
+            if converged && (stalled || !cubic_lags) {
+                return Ok([rate, cubic_rate]);
+            }
+            due = converged || cubic_rate > 0.1;
+            last = change;
+        }
+        Ok([rate, cubic_rate])
+    }
+}
+
+/// x ← a·x on the triangle.
+fn scale(x: &mut ComplexMatrix, a: f64) {
+    wide(x.nrows(), || {
+        for x in x.parts_mut() {
+            for j in 0..x.ncols() {
+                below_mut(x, j).iter_mut().for_each(|x| *x *= a);
+            }
+        }
+    });
+}
+
+/// The norm of x − y on the triangle.
+fn distance(x: &ComplexMatrix, y: &ComplexMatrix) -> f64 {
+    let part = |x: &Mat<f64>, y: &Mat<f64>| {
+        let column = |j| below(x, j).iter().zip(below(y, j)).map(|(x, y)| (x - y) * (x - y));
+        (0..x.ncols()).flat_map(column).sum::<f64>()
+    };
+    (part(&x.re, &y.re) + part(&x.im, &y.im)).sqrt()
+}

@@ -1,0 +1,259 @@
+//! Ideal fluids on a sphere and on a torus, discretised: Zeitlin's model.
+//!
+//! Euler's equation in two dimensions, ω̇ = {ψ, ω} with Δψ = ω, for functions that are quantised: ω is a
+//! skew-Hermitian N×N matrix W, the Poisson bracket a commutator,
+//!
+//! Ẇ = \[P, W\]/ħ, ΔP = W: an isospectral flow. f(W) = P/ħ ∈ u(N); Λ(g, W) = g W g†.
+//!
+//! | | |
+//! |---|---|
+//! | mean of a product fg over the surface | ⟨F, G⟩ = tr(F†G)/N |
+//! | energy ½ mean\|u\|² = −½ mean(ψω) | −½⟨P, W⟩ |
+//! | enstrophy ½ mean(ω²) | ½⟨W, W⟩ |
+//! | mean(ω^k) | tr((−iW)^k)/N, the Casimirs |
+//! | the values that ω takes | the eigenvalues of −iW |
+//!
+//! Invariants: the spectrum of W, so every Casimir and the enstrophy (the action), the energy (the
+//! flow), on the sphere the angular momentum (the flow).
+//! [`FluidMidpoint`] is made for these problems; every method for a [`Problem`] with its group
+//! [`Unitary`] runs on them too.
+//! Source: V. Zeitlin, Physica D 49 (1991) for the torus, Phys. Rev. Lett. 93 (2004) for the sphere.
+
+mod fields;
+mod harmonics;
+mod history;
+mod midpoint;
+mod sphere;
+mod triangle;
+
+pub use fields::Vortex;
+pub use midpoint::{FluidMidpoint, FluidWork, Keeps};
+pub use sphere::Sphere;
+
+use faer::Side;
+
+use super::{Ambient, Invariant, Invariants, LiePoisson, Problem, space::linear_space};
+use crate::actions::Conjugation;
+use crate::dense::mirror;
+use crate::error::Error;
+use crate::groups::{ComplexMatrix, LieAlgebra, Unitary};
+use crate::methods::Metric;
+
+/// A quantised surface: what Zeitlin's model needs to know of it.
+pub trait Surface {
+    /// N.
+    fn n(&self) -> usize;
+    /// 1/ħ, the rate of Ẇ = \[P, W\]/ħ.
+    fn rate(&self) -> f64;
+    /// x ← Δ⁻¹x with trace 0, from and to what lies on and below the diagonal of a skew-Hermitian x;
+    /// what lies above holds nothing of use afterwards.
+    fn solve(&self, x: &mut ComplexMatrix, scratch: &mut ComplexMatrix);
+    /// Scratch of [`solve`](Self::solve); the only call that allocates.
+    fn scratch(&self) -> ComplexMatrix;
+    /// Linear invariants of the flow, by name.
+    fn momenta(&self) -> &'static [&'static str] {
+        &[]
+    }
+    /// Their values at W.
+    fn momenta_at(&self, _w: &ComplexMatrix) -> Vec<f64> {
+        Vec::new()
+    }
+}
+
+/// The fluid on a surface: Ẇ = \[P, W\]/ħ, ΔP = W.
+///
+/// ```
+/// use lieflow::problems::{FluidMidpoint, Zeitlin};
+/// use lieflow::{SaveAt, TimeGrid, integrate};
+/// use rand::SeedableRng;
+/// use rand_pcg::Pcg64;
+/// let fluid = Zeitlin::sphere(16)?;
+/// let mut w = fluid.random(&mut Pcg64::seed_from_u64(7), 6)?;
+/// let (energy, levels) = (fluid.energy(&w), fluid.spectrum(&w)?);
+/// let grid = TimeGrid::new([0.0, 2.0], 0.05)?;
+/// integrate(&fluid, &FluidMidpoint::energy(), &grid, &SaveAt::Ends, &mut w, |_, _| {})?;
+/// assert!((fluid.energy(&w) - energy).abs() < 1e-14);
+/// for (now, then) in fluid.spectrum(&w)?.iter().zip(levels) {
+///     assert!((now - then).abs() < 1e-13);
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Zeitlin<S> {
+    group: Unitary,
+    surface: S,
+}
+
+impl Zeitlin<Sphere> {
+    /// The sphere with N×N matrices: harmonics up to l = N − 1.
+    ///
+    /// # Errors
+    /// As [`Sphere::new`].
+    pub fn sphere(n: usize) -> Result<Self, Error> {
+        let surface = Sphere::new(n)?;
+        Ok(Zeitlin { group: Unitary::new(n)?, surface })
+    }
+}
+
+impl<S: Surface> Zeitlin<S> {
+    /// N.
+    pub fn n(&self) -> usize {
+        self.surface.n()
+    }
+    /// ħ: Ẇ = \[P, W\]/ħ.
+    pub fn hbar(&self) -> f64 {
+        1.0 / self.surface.rate()
+    }
+    /// The surface.
+    pub fn surface(&self) -> &S {
+        &self.surface
+    }
+
+    /// W, when it is a vorticity: N×N, finite and skew-Hermitian to
+    /// [`MEMBERSHIP`](crate::groups::MEMBERSHIP).
+    ///
+    /// # Errors
+    /// [`Error::Shape`], [`Error::NotFiniteEntry`], [`Error::NotInAlgebra`].
+    pub fn vorticity(&self, w: ComplexMatrix) -> Result<ComplexMatrix, Error> {
+        w.check("W", self.n(), self.n())?;
+        self.group.check("W", &w)?;
+        Ok(w)
+    }
+
+    /// P = Δ⁻¹W. Allocates.
+    pub fn stream(&self, w: &ComplexMatrix) -> ComplexMatrix {
+        let mut p = w.clone();
+        self.solve(&mut p, &mut self.surface.scratch());
+        p
+    }
+
+    fn solve(&self, p: &mut ComplexMatrix, scratch: &mut ComplexMatrix) {
+        self.surface.solve(p, scratch);
+        mirror(&mut p.re, -1.0);
+        mirror(&mut p.im, 1.0);
+    }
+
+    /// ⟨A, B⟩ = Re tr(A†B)/N, the mean of a product.
+    pub fn inner(&self, a: &ComplexMatrix, b: &ComplexMatrix) -> f64 {
+        let column = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let mut total = 0.0;
+        for (a, b) in a.parts().into_iter().zip(b.parts()) {
+            for j in 0..a.ncols() {
+                total += column(a.col_as_slice(j), b.col_as_slice(j));
+            }
+        }
+        total / self.n() as f64
+    }
+
+    /// −½⟨Δ⁻¹W, W⟩, the mean of ½|u|². Allocates.
+    pub fn energy(&self, w: &ComplexMatrix) -> f64 {
+        -0.5 * self.inner(&self.stream(w), w)
+    }
+    /// ½⟨W, W⟩, the mean of ½ω².
+    pub fn enstrophy(&self, w: &ComplexMatrix) -> f64 {
+        0.5 * self.inner(w, w)
+    }
+    /// The eigenvalues of −iW in ascending order: the values that the vorticity takes. Allocates.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] where they are not found.
+    pub fn spectrum(&self, w: &ComplexMatrix) -> Result<Vec<f64>, Error> {
+        let hermitian = faer::Mat::from_fn(w.nrows(), w.ncols(), |i, j| {
+            let z = w.get(i, j);
+            faer::c64::new(z.im, -z.re)
+        });
+        let failed = |_| Error::out_of_range("W", f64::NAN, "a matrix with eigenvalues");
+        hermitian.self_adjoint_eigenvalues(Side::Lower).map_err(failed)
+    }
+    /// tr((−iW)^k)/N, the mean of ω^k. Allocates.
+    ///
+    /// # Errors
+    /// As [`spectrum`](Self::spectrum).
+    pub fn casimir(&self, w: &ComplexMatrix, k: i32) -> Result<f64, Error> {
+        let levels = self.spectrum(w)?;
+        Ok(levels.iter().map(|x| x.powi(k)).sum::<f64>() / self.n() as f64)
+    }
+}
+
+/// What f of a fluid needs: P, and scratch of its solve.
+#[derive(Debug)]
+pub struct StreamWork {
+    p: ComplexMatrix,
+    scratch: ComplexMatrix,
+}
+
+impl<S: Surface> Problem for Zeitlin<S> {
+    type Group = Unitary;
+    type Action = Conjugation;
+    type Work = StreamWork;
+
+    fn group(&self) -> &Unitary {
+        &self.group
+    }
+    fn action(&self) -> &Conjugation {
+        &Conjugation
+    }
+    fn work(&self) -> StreamWork {
+        StreamWork { p: self.group.zero(), scratch: self.surface.scratch() }
+    }
+    /// P/ħ.
+    fn f(&self, _: f64, w: &ComplexMatrix, v: &mut ComplexMatrix, work: &mut StreamWork) {
+        work.p.assign(w);
+        self.solve(&mut work.p, &mut work.scratch);
+        self.group.set_zero(v);
+        self.group.axpy(self.surface.rate(), &work.p, v);
+    }
+}
+
+impl<S: Surface> Ambient for Zeitlin<S> {
+    /// \[P, W\]/ħ.
+    fn field(&self, _: f64, w: &ComplexMatrix, dw: &mut ComplexMatrix, work: &mut StreamWork) {
+        let StreamWork { p, scratch } = work;
+        p.assign(w);
+        self.solve(p, scratch);
+        for part in p.parts_mut() {
+            *part *= faer::Scale(self.surface.rate());
+        }
+        self.group.bracket(p, w, dw);
+    }
+    linear_space!();
+}
+
+impl<S: Surface> LiePoisson for Zeitlin<S> {
+    fn hamiltonian(&self, w: &ComplexMatrix) -> f64 {
+        self.energy(w)
+    }
+    /// −Δ⁻¹(a + b)/2ħ, for ⟨m, v⟩ = ħ⟨M, V⟩.
+    fn discrete_gradient(
+        &self,
+        a: &ComplexMatrix,
+        b: &ComplexMatrix,
+        xi: &mut ComplexMatrix,
+        work: &mut StreamWork,
+    ) {
+        work.p.assign(a);
+        self.group.axpy(1.0, b, &mut work.p);
+        self.solve(&mut work.p, &mut work.scratch);
+        self.group.set_zero(xi);
+        self.group.axpy(-0.5 * self.surface.rate(), &work.p, xi);
+    }
+}
+
+impl<S: Surface> Invariants for Zeitlin<S> {
+    fn invariants(&self) -> Vec<Invariant> {
+        let mut all = vec![
+            Invariant::of_the_flow("energy"),
+            Invariant::of_the_action("enstrophy"),
+            Invariant::of_the_action("mean ω³"),
+            Invariant::of_the_action("mean ω⁴"),
+        ];
+        all.extend(self.surface.momenta().iter().map(|m| Invariant::of_the_flow(*m)));
+        all
+    }
+    fn values(&self, w: &ComplexMatrix) -> Vec<f64> {
+        let casimir = |k| self.casimir(w, k).unwrap_or(f64::NAN);
+        let mut all = vec![self.energy(w), self.enstrophy(w), casimir(3), casimir(4)];
+        all.extend(self.surface.momenta_at(w));
+        all
+    }
+}
