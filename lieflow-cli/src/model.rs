@@ -147,7 +147,7 @@ macro_rules! catalog {
                 on: V,
             ) -> Result<V::Out, lieflow::Error> {
                 match spec.has_pair()? {
-                    true => lieflow::catalog::with_embedded_pair(spec, on),
+                    true => lieflow::catalog::with_embedded_pair(spec, $crate::erased::Pointed(on)),
                     false => $with(spec, $crate::erased::Doubled(on)),
                 }
             }

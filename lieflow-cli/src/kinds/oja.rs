@@ -102,7 +102,8 @@ impl System for OjaFlow {
         &["x"]
     }
     fn laws(&self) -> Vec<Law> {
-        vec![Law::of_the_action("stiefel_defect", 2).on_scale(Scale::One)]
+        // Off the manifold the classical form of the equation keeps it not.
+        vec![Law::of_the_action("stiefel_defect", 0).on_scale(Scale::One)]
     }
     fn columns(&self, quantity: &QuantityInfo) -> Vec<String> {
         let (n, k) = (self.x.nrows(), self.x.ncols());

@@ -77,7 +77,7 @@ struct Wave {
 }
 
 /// More spins are not meant.
-const SPINS_MAX: u64 = 1 << 20;
+const SPINS_MAX: u64 = 1 << 16;
 
 /// The chain with its initial spins.
 #[derive(Clone, Debug)]

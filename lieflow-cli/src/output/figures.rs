@@ -11,6 +11,8 @@ use crate::report::scientific;
 
 /// Rows that are kept for figures: some for each pixel.
 const KEPT: usize = 2048;
+/// Numbers that are kept: a row may have many.
+const NUMBERS: usize = 1 << 22;
 /// Points of a figure of points.
 const POINTS: usize = 128;
 /// Lines of a chart that a reader can tell apart.
@@ -35,7 +37,8 @@ impl Gathered {
     /// The next row.
     pub fn see(&mut self, t: f64, row: &[f64]) {
         if self.seen.is_multiple_of(self.every) {
-            if self.rows.len() == KEPT {
+            let room = KEPT.min(NUMBERS / row.len().max(1)).max(2);
+            if self.rows.len() >= room {
                 let mut odd = true;
                 self.rows.retain(|_| {
                     odd = !odd;

@@ -31,6 +31,7 @@ fn particles_part_with_the_eigenvalues() {
 #[test]
 fn a_double_bracket_sorts() {
     let text = bundled("sorting").replace("off_diagonal", "eigenvalues");
+    let text = text.replace("t_span = [0.0, 8.0]", "t_span = [0.0, 20.0]");
     let end = last(&Scene::parse("scene", &text).unwrap());
     let (diagonal, eigenvalues) = end.split_at(4);
     assert!(far(diagonal, eigenvalues) < 1e-5, "{end:?}");
