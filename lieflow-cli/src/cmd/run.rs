@@ -11,7 +11,7 @@ use lieflow::adaptive::AdaptiveError;
 
 use super::CliError;
 use crate::args::RunArgs;
-use crate::kinds::{Law, SIZE, Scale};
+use crate::kinds::{Figure, Law, SIZE, Scale};
 use crate::model::{Model, Sink, Steps};
 use crate::output::{
     self, Chosen, Drift, Gathered, MethodSummary, SUMMARY, Shown, Summary, Trajectory, Watched,
@@ -170,6 +170,16 @@ impl<'a> Watch<'a> {
         }
     }
 
+    /// The field at the end, where the figure is one.
+    fn field(&self, rows: &Gathered) -> Vec<Vec<f64>> {
+        match (self.scene.problem.figure(), rows.ends()) {
+            (Figure::Map(_), Some([_, (_, row)])) => {
+                self.scene.problem.field(&row[self.drawn.place.clone()])
+            }
+            _ => Vec::new(),
+        }
+    }
+
     /// The distance from the exact solution at the end of the span.
     fn errors(&self, last: &[f64]) -> Option<BTreeMap<String, f64>> {
         let [t0, t1] = self.scene.grid.t_span();
@@ -288,7 +298,7 @@ pub fn run_scene(scene: &Scene, folder: &Path) -> Result<Summary, CliError> {
     };
     output::write_file(&summary_path, &output::to_json(&summary)?)?;
     let laws: Vec<Shown> = watch.laws.iter().map(|(_, shown)| shown.clone()).collect();
-    let figure = scene.problem.figure();
+    let figure = (scene.problem.figure(), watch.field(&rows));
     let page = output::run_page(&summary, &rows, figure, &watch.drawn, &watch.asked, &laws);
     report::write_page(folder, &page)?;
     Ok(summary)

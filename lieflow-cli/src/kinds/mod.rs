@@ -6,6 +6,7 @@ mod beam_line;
 mod driven_body;
 mod euler;
 mod flow;
+mod fluid;
 mod heavy_top;
 mod hill;
 mod isospectral;
@@ -47,6 +48,7 @@ pub const KINDS: &[Kind] = &[
     heavy_top::KIND,
     kirchhoff::KIND,
     euler::KIND,
+    fluid::KIND,
     pendulum::KIND,
     spin::KIND,
     spin_chain::KIND,
@@ -138,6 +140,8 @@ pub enum Figure {
     Curve(&'static str),
     /// The same as points, where nothing lies between two rows.
     Points(&'static str),
+    /// A field on a sphere at the end, by [`ProblemSpec::field`] from a quantity.
+    Map(&'static str),
 }
 
 impl Figure {
@@ -147,7 +151,8 @@ impl Figure {
             Figure::Lines(name)
             | Figure::Sphere(name)
             | Figure::Curve(name)
-            | Figure::Points(name) => name,
+            | Figure::Points(name)
+            | Figure::Map(name) => name,
         }
     }
 }
@@ -195,6 +200,12 @@ pub trait ProblemSpec: Any + Debug + Send + Sync {
 
     /// The figure of a run.
     fn figure(&self) -> Figure;
+
+    /// The field that [`Figure::Map`] draws, from the values of its quantity: rows from north to south,
+    /// columns from west to east.
+    fn field(&self, _values: &[f64]) -> Vec<Vec<f64>> {
+        Vec::new()
+    }
 
     /// What is known before any run.
     fn facts(&self) -> Vec<Fact> {

@@ -48,6 +48,11 @@ pub(super) trait System: Clone + Debug + Send + Sync + 'static {
     fn figure(&self) -> Figure {
         Figure::Lines(self.state()[0])
     }
+    /// The field that [`Figure::Map`] draws, from its quantity: rows from north to south, columns from
+    /// west to east.
+    fn field(&self, _values: &[f64]) -> Vec<Vec<f64>> {
+        Vec::new()
+    }
     /// What is known before any run.
     fn facts(&self) -> Vec<Fact> {
         Vec::new()
@@ -95,6 +100,9 @@ impl<S: System> ProblemSpec for S {
     }
     fn figure(&self) -> Figure {
         System::figure(self)
+    }
+    fn field(&self, values: &[f64]) -> Vec<Vec<f64>> {
+        System::field(self, values)
     }
     fn facts(&self) -> Vec<Fact> {
         System::facts(self)

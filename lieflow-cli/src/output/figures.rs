@@ -6,7 +6,7 @@ use crate::kinds::Figure;
 use crate::output::Summary;
 use crate::page::{Block, Column, Page, Row, Section, Table};
 use crate::plot::format::sig;
-use crate::plot::{Axis, Chart, Marker, Path, Point, Scale, Series, Sphere};
+use crate::plot::{Axis, Chart, Heat, Marker, Path, Point, Scale, Series, Sphere};
 use crate::report::scientific;
 
 /// Rows that are kept for figures: some for each pixel.
@@ -83,17 +83,17 @@ pub struct Shown {
     pub columns: Vec<String>,
 }
 
-/// The page of a run: `asked` are the quantities of the scene, `drawn` the one of its figure, and
-/// `watched` the invariants.
+/// The page of a run: `asked` are the quantities of the scene, `drawn` the one of its figure, with the
+/// field where it is a map, and `watched` the invariants.
 pub fn run_page(
     summary: &Summary,
     rows: &Gathered,
-    figure: Figure,
+    (figure, field): (Figure, Vec<Vec<f64>>),
     drawn: &Shown,
     asked: &[Shown],
     watched: &[Shown],
 ) -> Page {
-    let own = own_figure(&summary.title, figure, drawn, rows);
+    let own = own_figure(&summary.title, (figure, field), drawn, rows);
     let drawn_already =
         |quantity: &Shown| quantity.name == drawn.name && matches!(figure, Figure::Lines(_));
     let over_time = asked.iter().filter(|quantity| !drawn_already(quantity)).map(|quantity| {
@@ -155,13 +155,22 @@ fn facts(summary: &Summary) -> Block {
     Block::Facts(facts)
 }
 
-fn own_figure(title: &str, figure: Figure, drawn: &Shown, rows: &Gathered) -> Block {
+fn own_figure(
+    title: &str,
+    (figure, field): (Figure, Vec<Vec<f64>>),
+    drawn: &Shown,
+    rows: &Gathered,
+) -> Block {
     let id = "figure".to_string();
     match figure {
         Figure::Lines(_) => Block::Chart(lines(id, title, drawn, rows)),
         Figure::Sphere(_) => Block::Sphere(sphere(id, title, drawn, rows)),
         Figure::Curve(_) => Block::Chart(plane(id, title, drawn, rows, false)),
         Figure::Points(_) => Block::Chart(plane(id, title, drawn, rows, true)),
+        Figure::Map(_) => {
+            let caption = "As it is at the end.".into();
+            Block::Heat(Heat { id, title: title.into(), values: field, caption })
+        }
     }
 }
 

@@ -35,6 +35,7 @@ pub const BUNDLED: &[Bundled] = bundled![
     "kovalevskaya-top",
     "ellipsoid-in-fluid",
     "euler-on-sl3",
+    "vortices-on-sphere",
     "spherical-pendulum",
     "rotating-field",
     "spin-wave",

@@ -49,7 +49,9 @@ fn every_method_that_fits_a_kind_is_right() {
             assert!(gap < 1e-3, "{} on {}: {gap:e}", info.name, bundled.name);
             seen += 1;
         }
-        assert!(seen >= 19, "{}: {seen} methods", bundled.name);
+        // On the unitary group of a fluid there are two maps, and fewer methods.
+        let least = if bundled.name == "vortices-on-sphere" { 9 } else { 19 };
+        assert!(seen >= least, "{}: {seen} methods", bundled.name);
     }
 }
 
@@ -88,6 +90,7 @@ fn promises_are_kept_and_only_those_are_made() {
         map("rkmk4", "cay"),
         MethodSpec::new("cf4", None),
         MethodSpec::new("gauss4", None),
+        MethodSpec::new("isospectral2", None),
         MethodSpec::new("isospectral4", None),
         MethodSpec::new("energy-casimir", None),
         MethodSpec::new("cfm4-2", None),
@@ -97,9 +100,14 @@ fn promises_are_kept_and_only_those_are_made() {
     for bundled in BUNDLED {
         let model = Scene::bundled(bundled.name).unwrap().model().unwrap();
         for method in methods.iter().filter(|method| model.fits(method).is_ok()) {
-            let of = short(bundled.name, method, 500);
+            let steps = if bundled.name == "vortices-on-sphere" { 50 } else { 500 };
+            let of = short(bundled.name, method, steps);
             let summary = run_scene(&of, folder.path()).unwrap();
-            assert!(summary.completed, "{} on {}", method.label(), bundled.name);
+            if !summary.completed {
+                // A classical method cannot pass a pole.
+                assert_eq!((bundled.name, method.map.is_none()), ("riccati-pole", true));
+                continue;
+            }
             for (name, drift) in &summary.drift {
                 assert!(
                     !drift.breaks_a_promise(),
@@ -126,6 +134,7 @@ fn promises_are_kept_and_only_those_are_made() {
         ("kovalevskaya-top", "momentum_vertical"),
         ("ellipsoid-in-fluid", "linear_norm2"),
         ("euler-on-sl3", "trm3"),
+        ("vortices-on-sphere", "enstrophy"),
         ("spherical-pendulum", "direction_norm2"),
         ("spherical-pendulum", "energy"),
         ("spin-wave", "lengths2"),

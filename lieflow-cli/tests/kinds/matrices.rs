@@ -216,3 +216,17 @@ fn eulers_equations_on_matrix_algebras() {
     let end = last(&Scene::bundled("euler-on-sl3").unwrap());
     assert!((end[0] + end[4] + end[8]).abs() < 1e-14, "{end:?}");
 }
+
+/// Jets are stationary, and the energy of the harmonic of degree l is ½a²/(l(l + 1)).
+#[test]
+fn jets_on_a_sphere_stand_still() {
+    let problem = "kind = \"fluid-on-sphere\"\nn = 8\njets = [[3, 0.7], [1, -0.4]]";
+    let time = "t_span = [0, 1]\ndt = 0.05";
+    for method in ["name = \"isospectral2\"", "name = \"energy-casimir\"", RKMK4_CAY] {
+        let end = last(&scene(problem, method, time, "[\"coefficients\", \"energy\"]"));
+        let mut expected = vec![0.0; 65];
+        (expected[2], expected[12]) = (-0.4, 0.7);
+        expected[64] = 0.5 * (0.16 / 2.0 + 0.49 / 12.0);
+        assert!(far(&end, &expected) < 1e-12, "{end:?}");
+    }
+}
