@@ -258,7 +258,7 @@ fn very_many_steps() {
 /// leaves the group is shown as it is.
 #[test]
 fn an_adaptive_run_is_kept_on_the_group() {
-    let body = RigidBodyAttitude::new([1.0, 2.0, 3.0], [0.9, 1.0, 2.1]).expect("a body");
+    let body = RigidBodyAttitude::<f64>::new([1.0, 2.0, 3.0], [0.9, 1.0, 2.1]).expect("a body");
     let fine = control().max_step(1e-2).expect("a limit");
     let mut g = Matrix3::identity();
     let stats = integrate_adaptive(

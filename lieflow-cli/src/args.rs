@@ -5,6 +5,8 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
 
+use crate::model::Layer;
+
 /// Integrate ordinary differential equations on Lie groups.
 ///
 /// Without a command: run the demonstration and write its report.
@@ -80,6 +82,7 @@ pub struct RunArgs {
   lieflow compare my.toml --out results --repeat 15
   lieflow compare my.toml --methods rkmk4,mr4,taylor12,exact
   lieflow compare my.toml --methods \"rkmk dopri5\" --tolerances 1e-4,1e-8,1e-12
+  lieflow compare my.toml --layers closed,general --methods rkmk4,rk4
 
 Written: index.html, speed.csv and speed.json with every run, the figures as SVG files. A comparison
 that is interrupted goes on where it was when it is started again with the same scene and options.")]
@@ -95,6 +98,9 @@ pub struct CompareArgs {
     /// Only these: names of methods, with parts where wanted, as in "rkmk dopri5 cay".
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub methods: Vec<String>,
+    /// The layers to run on: closed, general or both [default: the scene's].
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = layer)]
+    pub layers: Vec<Layer>,
     /// Tolerances for the methods that choose their steps.
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = tolerance)]
     pub tolerances: Vec<f64>,
@@ -104,6 +110,10 @@ pub struct CompareArgs {
     /// The seed of the order in which runs take their turns.
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
+}
+
+fn layer(text: &str) -> Result<Layer, String> {
+    Layer::named(text.trim()).map_err(|error| error.to_string())
 }
 
 fn tolerance(text: &str) -> Result<f64, String> {

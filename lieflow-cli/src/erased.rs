@@ -10,14 +10,14 @@ use lieflow::problems::{PointOf, Problem, ScalarOf};
 use lieflow::{Error, Method, Step, StepError};
 
 /// A method, whatever its type.
-trait AnyMethod<P: Problem> {
+pub(crate) trait AnyMethod<P: Problem> {
     fn order(&self, problem: &P) -> usize;
     fn stays_on_manifold(&self) -> bool;
     fn stepper<'a>(&'a self, problem: &P, like: &PointOf<P>) -> Result<AnyStepper<'a, P>, Error>;
 }
 
 /// A method with its workspace.
-trait Stepper<P: Problem> {
+pub(crate) trait Stepper<P: Problem> {
     fn step(
         &mut self,
         problem: &P,
@@ -26,7 +26,7 @@ trait Stepper<P: Problem> {
     ) -> Result<(), StepError>;
 }
 
-type AnyStepper<'a, P> = Box<dyn Stepper<P> + 'a>;
+pub(crate) type AnyStepper<'a, P> = Box<dyn Stepper<P> + 'a>;
 
 struct Both<'a, P: Problem, M: Method<P>> {
     method: &'a M,
@@ -57,7 +57,7 @@ impl<P: Problem + 'static, M: Method<P>> AnyMethod<P> for M {
 }
 
 /// The method again, as one type for all.
-struct Erased<'a, P: Problem>(&'a dyn AnyMethod<P>);
+pub(crate) struct Erased<'a, P: Problem>(pub(crate) &'a dyn AnyMethod<P>);
 
 impl<'a, P: Problem> Method<P> for Erased<'a, P> {
     type Work = AnyStepper<'a, P>;
@@ -82,15 +82,17 @@ impl<'a, P: Problem> Method<P> for Erased<'a, P> {
     }
 }
 
-/// A method with an estimate, whatever its type.
-trait AnyPair<P: Problem>: AnyMethod<P> {
+/// A method that estimates its own error, whatever its type.
+pub(crate) trait AnyPair<P: Problem> {
+    fn order(&self, problem: &P) -> usize;
+    fn stays_on_manifold(&self) -> bool;
     fn error_order(&self, problem: &P) -> Result<usize, Error>;
     fn evaluations(&self) -> u64;
-    fn pair<'a>(&'a self, problem: &P, like: &PointOf<P>) -> Result<AnyPairStepper<'a, P>, Error>;
+    fn stepper<'a>(&'a self, problem: &P, like: &PointOf<P>) -> Result<PairStepper<'a, P>, Error>;
 }
 
-/// A method with an estimate and its workspace.
-trait PairStepper<P: Problem>: Stepper<P> {
+/// A method that estimates its own error, with its workspace.
+pub(crate) trait StepperWithError<P: Problem>: Stepper<P> {
     fn step_with_error(
         &mut self,
         problem: &P,
@@ -100,9 +102,9 @@ trait PairStepper<P: Problem>: Stepper<P> {
     ) -> Result<LocalError<ScalarOf<P>>, StepError>;
 }
 
-type AnyPairStepper<'a, P> = Box<dyn PairStepper<P> + 'a>;
+pub(crate) type PairStepper<'a, P> = Box<dyn StepperWithError<P> + 'a>;
 
-impl<P: Problem, M: Embedded<P>> PairStepper<P> for Both<'_, P, M> {
+impl<P: Problem, M: Embedded<P>> StepperWithError<P> for Both<'_, P, M> {
     fn step_with_error(
         &mut self,
         problem: &P,
@@ -115,22 +117,28 @@ impl<P: Problem, M: Embedded<P>> PairStepper<P> for Both<'_, P, M> {
 }
 
 impl<P: Problem + 'static, M: Embedded<P>> AnyPair<P> for M {
+    fn order(&self, problem: &P) -> usize {
+        Method::order(self, problem)
+    }
+    fn stays_on_manifold(&self) -> bool {
+        Method::stays_on_manifold(self)
+    }
     fn error_order(&self, problem: &P) -> Result<usize, Error> {
         Embedded::error_order(self, problem)
     }
     fn evaluations(&self) -> u64 {
         Embedded::evaluations(self)
     }
-    fn pair<'a>(&'a self, problem: &P, like: &PointOf<P>) -> Result<AnyPairStepper<'a, P>, Error> {
+    fn stepper<'a>(&'a self, problem: &P, like: &PointOf<P>) -> Result<PairStepper<'a, P>, Error> {
         Ok(Box::new(Both { method: self, work: self.work(problem, like)? }))
     }
 }
 
-/// The method with its estimate again, as one type for all.
-struct ErasedPair<'a, P: Problem>(&'a dyn AnyPair<P>);
+/// The method again, as one type for all.
+pub(crate) struct ErasedPair<'a, P: Problem>(pub(crate) &'a dyn AnyPair<P>);
 
 impl<'a, P: Problem> Method<P> for ErasedPair<'a, P> {
-    type Work = AnyPairStepper<'a, P>;
+    type Work = PairStepper<'a, P>;
 
     fn order(&self, problem: &P) -> usize {
         self.0.order(problem)
@@ -139,7 +147,7 @@ impl<'a, P: Problem> Method<P> for ErasedPair<'a, P> {
         self.0.stays_on_manifold()
     }
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
-        self.0.pair(problem, like)
+        self.0.stepper(problem, like)
     }
     fn step(
         &self,

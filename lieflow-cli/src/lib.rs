@@ -10,6 +10,7 @@ pub mod erased;
 pub mod kinds;
 pub mod measure;
 pub mod model;
+pub mod operations;
 pub mod output;
 pub mod page;
 pub mod paper;

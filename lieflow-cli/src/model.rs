@@ -9,9 +9,11 @@ use lieflow::methods::{Embedded, Method};
 use lieflow::problems::{PointOf, Problem};
 use lieflow::{Error, RunError, SaveAt, Stats, TimeGrid, integrate};
 
+use crate::operations::Pace;
+
 /// Which code a problem runs on. Methods that stay on the group agree on the two to rounding; the
 /// stages of a classical one leave it, and what it makes of an attitude agrees to its order.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Layer {
     /// Closed formulas on so(3) ≅ ℝ³.
     #[default]
@@ -97,6 +99,15 @@ pub trait Model: Debug {
     /// The same columns by the exact solution, `t` after the start; `None` where none is known.
     fn exact(&self, t: f64) -> Option<Result<Vec<f64>, Error>>;
 
+    /// The operations of a step (additions, multiplications, divisions, square roots, sines and
+    /// cosines, each as one), in the mean over the first [`COUNTED_STEPS`]; `None` where the problem or
+    /// the method does not run on numbers that count.
+    ///
+    /// [`COUNTED_STEPS`]: crate::operations::COUNTED_STEPS
+    fn operations(&self, _: &MethodSpec, _: Pace<'_>) -> Option<f64> {
+        None
+    }
+
     /// Can this method run on this problem? Nothing is integrated.
     ///
     /// # Errors
@@ -111,7 +122,7 @@ pub trait Model: Debug {
 }
 
 /// A problem with the methods that fit it.
-pub trait Catalog: Problem<Group: LieAlgebra<Scalar = f64>> {
+pub trait Catalog: Problem<Group: LieAlgebra<Scalar: Into<f64>>> {
     /// Find the method that `spec` names and hand it over.
     ///
     /// # Errors
@@ -167,7 +178,7 @@ struct Integrate<'a, P: Problem> {
     observe: &'a mut Observer<'a, P>,
 }
 
-impl<P: Problem<Group: LieAlgebra<Scalar = f64>>> OnMethod<P> for Integrate<'_, P> {
+impl<P: Problem> OnMethod<P> for Integrate<'_, P> {
     type Out = Result<Stats, RunError>;
     fn call<M: Method<P>>(self, method: M) -> Self::Out {
         let Integrate { problem, mut y, grid, save, observe } = self;
@@ -183,7 +194,7 @@ struct Adapt<'a, P: Problem> {
     observe: &'a mut Observer<'a, P>,
 }
 
-impl<P: Problem<Group: LieAlgebra<Scalar = f64>>> OnEmbedded<P> for Adapt<'_, P> {
+impl<P: Problem<Group: LieAlgebra<Scalar: Into<f64>>>> OnEmbedded<P> for Adapt<'_, P> {
     type Out = Result<AdaptiveStats, AdaptiveError>;
     fn call<M: Embedded<P>>(self, method: M) -> Self::Out {
         let Adapt { problem, mut y, steps, save, observe } = self;

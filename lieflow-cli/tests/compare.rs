@@ -23,6 +23,7 @@ fn the_advice_follows_from_the_points() {
     let args = [&args[..], &["--methods", METHODS, "--tolerances", "1e-4,1e-8"]].concat();
     let told = folder.lieflow(&args).ok();
     assert!(told.contains("must not drift") && told.contains("the exact solution"), "{told}");
+    assert!(told.contains("without the exact motion"), "{told}");
     assert!(!folder.names("out").contains(&JOURNAL.to_string()));
 
     let json = folder.json("out/speed.json");
@@ -39,14 +40,20 @@ fn the_advice_follows_from_the_points() {
     assert_eq!(tolerances.as_array().unwrap().len(), 2);
     assert!(tolerances[1]["evaluations"].as_u64() > tolerances[0]["evaluations"].as_u64());
 
-    for (advice, kept) in [("advice", false), ("advice_energy_kept", true)] {
+    for (advice, kept, steps) in [
+        ("advice", false, false),
+        ("advice_energy_kept", true, false),
+        ("advice_steps", false, true),
+        ("advice_steps_energy_kept", true, true),
+    ] {
         let advice = json[advice].as_array().unwrap();
         assert_eq!(advice.len(), ADVICE.len());
         for choice in advice {
-            // The exact motion reaches every error and keeps the energy.
-            let seconds = choice["seconds_per_unit"].as_f64().unwrap();
+            // The exact motion reaches every error and keeps the energy; the others may not.
+            let seconds = choice["seconds_per_unit"].as_f64();
+            assert!(steps || seconds.is_some(), "{choice}");
             let error = choice["error"].as_f64().unwrap();
-            for curve in curves {
+            for curve in curves.iter().filter(|curve| !steps || curve["method"] != "exact") {
                 let points = curve["points"].as_array().unwrap();
                 let reaches = |p: &&serde_json::Value| {
                     p["error"].as_f64().is_some_and(|e| e <= error)
@@ -54,7 +61,7 @@ fn the_advice_follows_from_the_points() {
                 };
                 for point in points.iter().filter(reaches) {
                     let time = point["seconds_per_unit"].as_f64().unwrap();
-                    assert!(seconds <= time * (1.0 + 1e-9), "{choice} but {point}");
+                    assert!(seconds.unwrap() <= time * (1.0 + 1e-9), "{choice} but {point}");
                 }
             }
         }
@@ -68,9 +75,30 @@ fn the_advice_follows_from_the_points() {
         assert_eq!(point["evaluations"].as_u64(), expected, "{point}");
     }
 
-    // The front falls from left to right.
+    // Operations: the same in every step of an explicit method, the exact motion has none to count.
+    let per_step = |curve: &serde_json::Value| -> Vec<Option<f64>> {
+        let points = curve["points"].as_array().unwrap().iter();
+        let steps =
+            |p: &serde_json::Value| p["steps"].as_f64().unwrap() + p["rejected"].as_f64().unwrap();
+        points.map(|p| Some(p["operations"].as_f64()? / steps(p))).collect()
+    };
+    // 4 F of 12 operations, 7 sums y + h a k of 7, 4 times t + h c of 2; 13 flows of 11.
+    for (curve, expected) in [("rk4", Some(105.0)), ("mr4", Some(143.0)), ("exact", None)] {
+        let found = per_step(curves.iter().find(|c| c["method"] == curve).unwrap());
+        assert!(found.iter().all(|n| *n == expected), "{curve}: {found:?}");
+    }
+    for adaptive in [false, true] {
+        let dopri5 = |c: &&serde_json::Value| c["method"] == "rkmk" && c["adaptive"] == adaptive;
+        let found = per_step(curves.iter().find(dopri5).unwrap());
+        assert!(found.iter().all(|n| n.is_some_and(|n| n > 300.0)), "{found:?}");
+    }
+
+    // The front falls from left to right. The exact motion, which is there at once, is not on it.
     let mut front: Vec<(f64, f64)> = Vec::new();
     for curve in curves {
+        if curve["method"] == "exact" {
+            assert_eq!(curve["pareto"], serde_json::json!([]));
+        }
         for at in curve["pareto"].as_array().unwrap() {
             let point = &curve["points"][at.as_u64().unwrap() as usize];
             let number = |key: &str| point[key].as_f64().unwrap();
@@ -83,12 +111,90 @@ fn the_advice_follows_from_the_points() {
     let csv = folder.read("out/speed.csv");
     let points: usize = curves.iter().map(|c| c["points"].as_array().unwrap().len()).sum();
     assert_eq!(csv.lines().count(), points + 1);
-    for column in ["energy_error", "casimir_error", "group_residual", "evaluations", "pareto"] {
+    for column in
+        ["energy_error", "casimir_error", "group_residual", "evaluations", "operations", "pareto"]
+    {
         assert!(csv.lines().next().unwrap().contains(column), "{column}");
     }
     let page = folder.read("out/index.html");
     assert!(page.contains("Pareto front") && !page.contains("NaN"));
-    assert!(folder.read("out/pareto.svg").starts_with("<svg"));
+    for figure in ["pareto.svg", "operations.svg", "evaluations.svg", "speed-lie-series.svg"] {
+        assert!(folder.read(&format!("out/{figure}")).starts_with("<svg"), "{figure}");
+    }
+    assert!(json["reference_error"].as_f64().unwrap() < 1e-13);
+}
+
+#[test]
+fn both_layers_stand_side_by_side() {
+    let folder = Folder::new();
+    folder.write("scene.toml", SCENE);
+    let args = ["compare", "scene.toml", "--out", "out", "--quick", "--repeat", "1"];
+    let args = [&args[..], &["--layers", "general,closed", "--methods", "rkmk4 cay,rk4"]].concat();
+    folder.lieflow(&args).ok();
+    let json = folder.json("out/speed.json");
+    let curves = json["curves"].as_array().unwrap();
+    let layers: Vec<_> = curves.iter().map(|c| (&c["method"], &c["layer"])).collect();
+    let expected =
+        [("rkmk4", "closed"), ("rk4", "closed"), ("rkmk4", "general"), ("rk4", "general")];
+    assert!(layers.iter().zip(expected).all(|(a, b)| *a.0 == b.0 && *a.1 == b.1), "{layers:?}");
+    // The layers agree on the solution, and numbers that count are of the closed one.
+    for pair in [[0, 2], [1, 3]] {
+        let [closed, general] = pair.map(|i| &curves[i]["points"][3]);
+        let error = |p: &serde_json::Value| p["error"].as_f64().unwrap();
+        assert!((error(closed) - error(general)).abs() < 1e-9, "{closed} {general}");
+        assert!(closed["operations"].is_u64() && general["operations"].is_null());
+    }
+    let refused = folder.lieflow(&["compare", "scene.toml", "--layers", "open"]);
+    assert!(refused.code == Some(2) && refused.err.contains("closed"), "{refused:?}");
+}
+
+/// The operations of the bodies and methods of the paper, by another way to the same numbers.
+#[test]
+fn operations_are_those_of_a_step_on_counting_numbers() {
+    use lieflow_cli::measure::Size;
+    use lieflow_cli::paper::rows::{Body, Row};
+    let scene = Scene::parse("scene", SCENE).unwrap();
+    let body = Body::new([1.0, 2.0, 3.0], [0.2, 0.0, 3.0]);
+    let model = scene.model_with(Layer::Closed, &["attitude"]).unwrap();
+    for (row, name, map) in [
+        (Row::Exp, "rkmk4", Some("exp")),
+        (Row::Cay, "rkmk4", Some("cay")),
+        (Row::Mr, "mr4", None),
+        (Row::B4, "buss4", None),
+        (Row::S, "simo-wong", None),
+        (Row::Dmv10, "dmv10", None),
+    ] {
+        let method = lieflow::catalog::MethodSpec::new(name, map);
+        let ours = Size::Steps(1).operations(&*model, &method, [0.0, 0.05], 3);
+        let step = row.counted(&body, 0.05).unwrap().unwrap().total();
+        assert_eq!(ours, Some(3 * step), "{name}");
+    }
+}
+
+/// What the reference cannot tell from no error, nobody is advised for.
+#[test]
+fn no_advice_below_the_error_of_the_reference() {
+    use lieflow_cli::report::choices;
+    let scene = Scene::parse("scene", SCENE).unwrap();
+    let candidates = [Candidate::rkmk4("exp", Layer::Closed)];
+    let plan = Plan {
+        quantities: &["momentum_body"],
+        candidates: &candidates,
+        t_span: [0.0, 2.0],
+        steps: &[10, 1000],
+        tolerances: &[],
+    };
+    let second = Duration::from_secs(1);
+    let effort = Effort { rounds: 1, longest: second, shortest: Duration::ZERO, seed: 1 };
+    let (curves, _) = speed_against_error(&scene, &plan, effort, None, |_| {}).unwrap();
+    let own = |apart| Reference::Own { by: "a".into(), beside: "b".into(), apart };
+    for (apart, told) in [(1e-14, 4), (1e-8, 2), (1e-2, 0)] {
+        let reference = own(apart);
+        let choices = choices(&curves, &reference, |_, _| true);
+        let found = choices.iter().filter(|choice| choice.best.is_some()).count();
+        assert_eq!(found, told, "{apart:e}: {choices:?}");
+        assert_eq!(choices[2].judged, apart <= ADVICE[2]);
+    }
 }
 
 #[test]
@@ -137,7 +243,8 @@ fn what_was_measured_before_an_interruption_is_not_measured_again() {
     assert_eq!(known, 0);
     // Cut in the middle of a line among the timings of the second round.
     let text = folder.read(JOURNAL);
-    let half = text.len() * 2 / 3;
+    let whole_lines = text.lines().take(1 + 6 + 6 + 2).map(|line| line.len() + 1).sum::<usize>();
+    let half = whole_lines + 5;
     folder.write(JOURNAL, &text[..half]);
     let lines_before = text[..half].lines().count() - 1;
     let (known, resumed) = measure("a");
@@ -167,7 +274,8 @@ fn two_methods_agree_where_the_exact_solution_is_not_asked() {
     assert!(judge.reference.in_words().contains("they agree"));
 
     let exact = Judge::new(&scene, &["attitude"], [0.0, 2.0]).unwrap();
-    assert_eq!(exact.reference, Reference::Exact);
+    let Reference::Exact { apart: Some(apart) } = exact.reference else { panic!("not exact") };
+    assert!(apart < 1e-13, "{apart:e}");
     let model = scene.model_with(Layer::Closed, &judge.quantities()).unwrap();
     let candidate = Candidate::rkmk4("exp", Layer::Closed);
     let size = lieflow_cli::measure::Size::Steps(100);

@@ -6,7 +6,8 @@ use crate::error::{Error, StepError};
 use crate::groups::LieAlgebra;
 use crate::integrate::{Mender, SaveAt, Stats, TimeGrid, check_field};
 use crate::methods::{Embedded, Step};
-use crate::problems::{PointOf, Problem};
+use crate::problems::{PointOf, Problem, ScalarOf};
+use crate::scalar::Real;
 
 /// What a run did.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -126,7 +127,7 @@ pub fn integrate_adaptive<P: Problem, Me: Embedded<P>>(
     mut observe: impl FnMut(f64, &PointOf<P>),
 ) -> Result<AdaptiveStats, AdaptiveError>
 where
-    P::Group: LieAlgebra<Scalar = f64>,
+    ScalarOf<P>: Into<f64>,
 {
     let empty = t_span[0] == t_span[1];
     save.check(&TimeGrid::with_steps(t_span, if empty { 0 } else { 1 })?)?;
@@ -245,8 +246,14 @@ struct Run<'a, P: Problem, Me: Embedded<P>> {
 
 impl<P: Problem, Me: Embedded<P>> Run<'_, P, Me>
 where
-    P::Group: LieAlgebra<Scalar = f64>,
+    ScalarOf<P>: Into<f64>,
 {
+    /// A step from t to `end`.
+    fn step(&self, end: f64) -> Step<ScalarOf<P>> {
+        let lit = ScalarOf::<P>::lit;
+        Step { n: self.stats.accepted, t: lit(self.t), h: lit(end - self.t) }
+    }
+
     /// Is a step of this size lost in rounding next to t?
     fn lost(&self, h: f64) -> bool {
         self.t + h.copysign(self.t1 - self.t) == self.t
@@ -267,15 +274,16 @@ where
 
     /// next ← the step from y to `end`; its error in units of the tolerance.
     fn attempt(&mut self, end: f64, y: &PointOf<P>) -> Result<f64, StepError> {
-        let step = Step { n: self.stats.accepted, t: self.t, h: end - self.t };
+        let step = self.step(end);
         self.stats.evaluations += self.method.evaluations();
         let local =
             self.method.step_with_error(self.problem, step, y, &mut self.work, &mut self.next)?;
-        let tolerance = self.control.atol + self.control.rtol * local.length;
-        if !(local.error.is_finite() && tolerance.is_finite()) {
+        let (error, length): (f64, f64) = (local.error.into(), local.length.into());
+        let tolerance = self.control.atol + self.control.rtol * length;
+        if !(error.is_finite() && tolerance.is_finite()) {
             return Err(StepError::NotFinite { what: "the error estimate" });
         }
-        Ok(if local.error == 0.0 { 0.0 } else { local.error / tolerance })
+        Ok(if error == 0.0 { 0.0 } else { error / tolerance })
     }
 
     /// aside ← the state at `time`, by a step from y.
@@ -285,7 +293,7 @@ where
         y: &PointOf<P>,
         aside: &mut PointOf<P>,
     ) -> Result<(), StepError> {
-        let step = Step { n: self.stats.accepted, t: self.t, h: time - self.t };
+        let step = self.step(time);
         self.stats.evaluations += self.method.evaluations();
         self.method.step_with_error(self.problem, step, y, &mut self.work, aside)?;
         self.stats.side_steps += 1;
@@ -302,12 +310,12 @@ where
     /// Hairer, Nørsett, Wanner I, II.4, with the norm of 𝔤, where 1 is the natural unit: a step that
     /// moves by 1/100, looked at for how much f changes over it.
     fn first_step(&mut self, controller: &Controller, y: &PointOf<P>) -> f64 {
-        let group = self.problem.group();
+        let (group, lit) = (self.problem.group(), ScalarOf::<P>::lit);
         let (mut f0, mut f1, mut work) = (group.zero(), group.zero(), self.problem.work());
         let span = (self.t1 - self.t).abs();
-        self.problem.f(self.t, y, &mut f0, &mut work);
+        self.problem.f(lit(self.t), y, &mut f0, &mut work);
         self.stats.evaluations += 1;
-        let d1 = group.norm(&f0);
+        let d1: f64 = group.norm(&f0).into();
         if !d1.is_finite() {
             return 1e-3 * span; // the first attempt will say what is wrong
         }
@@ -320,11 +328,12 @@ where
         if self.attempt(end, y).is_err() {
             return h0;
         }
-        self.problem.f(end, &self.next, &mut f1, &mut work);
+        self.problem.f(lit(end), &self.next, &mut f1, &mut work);
         self.stats.evaluations += 1;
-        group.axpy(-1.0, &f0, &mut f1);
+        group.axpy(lit(-1.0), &f0, &mut f1);
         // Rates: f itself, and the root of its derivative.
-        let rate = d1.max((group.norm(&f1) / h0).sqrt());
+        let change: f64 = group.norm(&f1).into();
+        let rate = d1.max((change / h0).sqrt());
         let tolerance = self.control.atol + self.control.rtol * 0.01;
         let h1 = (0.01 * tolerance).powf(1.0 / controller.k) / rate;
         match h1.is_finite() {

@@ -24,16 +24,17 @@
 
 use super::*;
 use crate::actions::Coadjoint;
-use crate::groups::{LieAlgebra, MatrixGroup};
+use crate::groups::MatrixGroup;
 use crate::methods::{
     Buss4, Composition, DMV2, DMV4, DMV6, DMV8, DMV10, EnergyCasimir, ExactMotion, GAUSS2, GAUSS4,
     GAUSS6, Gauss, IsospectralGauss, KAHAN_LI6, KAHAN_LI8, LieSeries, Metric, Projected, RkmkGauss,
     RkmkGaussSymmetric, SOFRONIOU_SPALETTA10, STRANG, SUZUKI4, Scheme, SeriesGroup, SimoWong,
-    Splitting, Taylor, YOSHIDA4,
+    Splitting, Taylor, Wide, YOSHIDA4,
 };
 use crate::problems::{
     FreeBody, LiePoisson, Orthogonal, PointOf, Problem, Projection, ScalarOf, Split, TaylorField,
 };
+use crate::scalar::Trig;
 
 /// What a method asks of a problem beyond f, and so what a problem may offer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -243,8 +244,9 @@ pub fn with_body_method<P: FreeBody + Split, V: OnMethod<P>>(
     on: V,
 ) -> Result<V::Out, Error>
 where
-    P::Group: CatalogGroup + LieAlgebra<Scalar = f64>,
-    PointOf<P>: Metric<Scalar = f64>,
+    P::Group: CatalogGroup,
+    ScalarOf<P>: Trig + Wide + Into<f64>,
+    PointOf<P>: Metric<Scalar = ScalarOf<P>>,
     Exp: CoordinateMap<P::Group>,
     Cay: CoordinateMap<P::Group>,
 {
@@ -285,8 +287,9 @@ pub fn with_attitude_method<P: FreeBody + Split + Orthogonal, V: OnMethod<P>>(
     on: V,
 ) -> Result<V::Out, Error>
 where
-    P::Group: CatalogGroup + LieAlgebra<Scalar = f64>,
-    PointOf<P>: Metric<Scalar = f64>,
+    P::Group: CatalogGroup,
+    ScalarOf<P>: Trig + Wide + Into<f64>,
+    PointOf<P>: Metric<Scalar = ScalarOf<P>>,
     Exp: CoordinateMap<P::Group>,
     Cay: CoordinateMap<P::Group>,
 {
@@ -320,8 +323,9 @@ pub fn with_momentum_method<P: FreeBody + Split + LiePoisson, V: OnMethod<P>>(
     on: V,
 ) -> Result<V::Out, Error>
 where
-    P::Group: CatalogGroup + LieAlgebra<Scalar = f64>,
-    PointOf<P>: Metric<Scalar = f64>,
+    P::Group: CatalogGroup,
+    ScalarOf<P>: Trig + Wide + Into<f64>,
+    PointOf<P>: Metric<Scalar = ScalarOf<P>>,
     Exp: CoordinateMap<P::Group>,
     Cay: CoordinateMap<P::Group>,
 {

@@ -17,15 +17,16 @@
 //! Source: J. Moser & A. P. Veselov, Comm. Math. Phys. 139 (1991); R. McLachlan & A. Zanna, Found.
 //! Comput. Math. 5 (2005); E. Hairer & G. Vilmart, J. Phys. A 39 (2006).
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
 
 use super::newton::newton3;
 use super::simo_wong::turn_body;
 use super::{Method, Step, Symmetric};
 use crate::error::{Error, StepError};
-use crate::groups::LieAlgebra;
+use crate::groups::{LieAlgebra, LieGroup, So3};
 use crate::maps::Cay;
-use crate::problems::{FreeBody, PointOf};
+use crate::problems::{FreeBody, PointOf, ScalarOf};
+use crate::scalar::Real;
 
 /// The preprocessed discrete Moser–Veselov method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,7 +57,7 @@ pub struct DmvWork {
 
 impl DmvWork {
     #[rustfmt::skip]
-    fn new(inverse_inertia: &Vector3<f64>) -> Self {
+    fn new(inverse_inertia: Vector3<f64>) -> Self {
         let i = [0, 1, 2].map(|k| 1.0 / inverse_inertia[k]);
         let d = i[0] * i[1] * i[2];
         let s = |k: i32| i.iter().map(|i| i.powi(k)).sum::<f64>();
@@ -120,16 +121,16 @@ impl DmvWork {
 
     /// Σ over the degrees below order/2 of c_ab κᵃηᵇ.
     #[inline(always)]
-    fn series(order: usize, table: &[[f64; 5]; 4], kappa: f64, eta: f64) -> f64 {
-        let mut powers = [1.0; 5]; // of κ
-        for k in 1..powers.len() {
+    fn series<S: Real>(order: usize, table: &[[f64; 5]; 4], kappa: S, eta: S) -> S {
+        let mut powers = [S::lit(1.0); 5]; // of κ
+        for k in 1..order / 2 {
             powers[k] = powers[k - 1] * kappa;
         }
-        let mut sum = 0.0;
+        let mut sum = S::lit(0.0);
         for degree in 1..order / 2 {
             // Horner's rule in η.
-            let row = &table[degree - 1];
-            sum += (0..=degree).rev().fold(0.0, |s, b| s * eta + row[b] * powers[degree - b]);
+            let term = |b: usize| S::lit(table[degree - 1][b]) * powers[degree - b];
+            sum += (0..degree).rev().fold(term(degree), |s, b| s * eta + term(b));
         }
         sum
     }
@@ -138,35 +139,40 @@ impl DmvWork {
 impl Dmv {
     /// c of the step from m.
     #[inline(always)]
-    fn solve(
+    fn solve<S: Real>(
         &self,
         w: &DmvWork,
-        inverse: &Vector3<f64>,
-        h: f64,
-        m: &Vector3<f64>,
-    ) -> Result<Vector3<f64>, StepError> {
-        let half = 0.5 * h * h;
-        let kappa = half * (m[0] * m[0] + m[1] * m[1] + m[2] * m[2]);
+        inverse: &Vector3<S>,
+        h: S,
+        m: &Vector3<S>,
+    ) -> Result<Vector3<S>, StepError> {
+        let l = S::lit;
+        let half = l(0.5) * h * h;
+        let squares = [m[0] * m[0], m[1] * m[1], m[2] * m[2]];
+        let kappa = half * (squares[0] + squares[1] + squares[2]);
         let eta =
-            half * (m[0] * m[0] * inverse[0] + m[1] * m[1] * inverse[1] + m[2] * m[2] * inverse[2]);
-        let sigma = 1.0 + DmvWork::series(self.order, &w.sigma, kappa, eta);
+            half * (squares[0] * inverse[0] + squares[1] * inverse[1] + squares[2] * inverse[2]);
+        let sigma = l(1.0) + DmvWork::series(self.order, &w.sigma, kappa, eta);
         let delta = DmvWork::series(self.order, &w.delta, kappa, eta);
         let modified = [0, 1, 2].map(|i| sigma * inverse[i] + delta); // 1/Ĩ
-        let inertia = modified.map(|x| 1.0 / x);
-        let a = Vector3::from_fn(|i, _| 0.5 * h * m[i] * modified[i]);
+        let a = |i: usize| l(0.5) * h * m[i] * modified[i];
+        let a = Vector3::new(a(0), a(1), a(2));
         // (Ĩ_j − Ĩ_k)/Ĩ_i; for the true inertia without the rounding of 1/(1/I).
-        let i = if self.order == 2 { w.inertia } else { inertia };
+        let i = match self.order {
+            2 => w.inertia.map(l),
+            _ => modified.map(|x| l(1.0) / x),
+        };
         let d =
             [(i[1] - i[2]) * modified[0], (i[2] - i[0]) * modified[1], (i[0] - i[1]) * modified[2]];
-        newton3("dmv", a, a.norm(), |c| {
-            let grown = 1.0 + (c[0] * c[0] + c[1] * c[1] + c[2] * c[2]);
+        newton3("dmv", a, So3::new().norm(&a), |c| {
+            let grown = l(1.0) + (c[0] * c[0] + c[1] * c[1] + c[2] * c[2]);
             let mut residual = *c;
-            let mut jacobian = Matrix3::identity();
+            let mut jacobian = So3::new().identity();
             for i in 0..3 {
                 let (j, k) = ((i + 1) % 3, (i + 2) % 3);
                 residual[i] = c[i] - grown * a[i] - d[i] * c[j] * c[k];
-                for l in 0..3 {
-                    jacobian[(i, l)] -= 2.0 * a[i] * c[l];
+                for n in 0..3 {
+                    jacobian[(i, n)] -= l(2.0) * a[i] * c[n];
                 }
                 jacobian[(i, j)] -= d[i] * c[k];
                 jacobian[(i, k)] -= d[i] * c[j];
@@ -178,7 +184,7 @@ impl Dmv {
 
 impl<P: FreeBody> Method<P> for Dmv
 where
-    P::Group: LieAlgebra<Scalar = f64>,
+    ScalarOf<P>: Into<f64>,
 {
     type Work = DmvWork;
 
@@ -186,18 +192,19 @@ where
         self.order
     }
     fn work(&self, problem: &P, _: &PointOf<P>) -> Result<DmvWork, Error> {
-        Ok(DmvWork::new(problem.inverse_inertia()))
+        Ok(DmvWork::new(problem.inverse_inertia().map(Into::into)))
     }
     #[inline]
     fn step(
         &self,
         problem: &P,
-        Step { h, .. }: Step<f64>,
+        Step { h, .. }: Step<ScalarOf<P>>,
         y: &mut PointOf<P>,
         w: &mut DmvWork,
     ) -> Result<(), StepError> {
         let (m, frame) = problem.load(y);
         let c = self.solve(w, problem.inverse_inertia(), h, &m)?;
-        turn_body(problem, &Cay, &mut (), &(2.0 * c), m, frame, y)
+        let u = c.map(|x| ScalarOf::<P>::lit(2.0) * x);
+        turn_body(problem, &Cay, &mut (), &u, m, frame, y)
     }
 }

@@ -3,7 +3,7 @@
 //! From the momentum m at the start, m⁺ = m(h) and g⁺ = g Ψ(h) by Jacobi's elliptic functions
 //! ([`Exact`]). Order: unbounded, reported as `usize::MAX`. Preserves: everything, to the
 //! rounding of a step. Cost: the constants of one orbit and one evaluation, about 1 to 2 µs
-//! whatever h; to follow one orbit, [`Exact`] itself pays for the constants once.
+//! whatever h, in f64 whatever the scalar; to follow one orbit, [`Exact`] itself pays for the constants once.
 //! Source: C. G. J. Jacobi, J. reine angew. Math. 39 (1850); see [`Exact`].
 
 use nalgebra::Matrix3;
@@ -11,7 +11,8 @@ use nalgebra::Matrix3;
 use super::{Method, Step, Symmetric};
 use crate::error::{Error, StepError};
 use crate::groups::{LieAlgebra, So3};
-use crate::problems::{Exact, Frame, FreeBody, PointOf};
+use crate::problems::{Exact, Frame, FreeBody, PointOf, ScalarOf};
+use crate::scalar::Real;
 
 /// The exact motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -21,7 +22,7 @@ impl Symmetric for ExactMotion {}
 
 impl<P: FreeBody> Method<P> for ExactMotion
 where
-    P::Group: LieAlgebra<Scalar = f64>,
+    ScalarOf<P>: Into<f64>,
 {
     /// J.
     type Work = [f64; 3];
@@ -30,27 +31,27 @@ where
         usize::MAX
     }
     fn work(&self, problem: &P, _: &PointOf<P>) -> Result<[f64; 3], Error> {
-        Ok([0, 1, 2].map(|k| 1.0 / problem.inverse_inertia()[k]))
+        Ok([0, 1, 2].map(|k| 1.0 / problem.inverse_inertia()[k].into()))
     }
     #[inline]
     fn step(
         &self,
         problem: &P,
-        Step { h, .. }: Step<f64>,
+        Step { h, .. }: Step<ScalarOf<P>>,
         y: &mut PointOf<P>,
         inertia: &mut [f64; 3],
     ) -> Result<(), StepError> {
         let (m, mut frame) = problem.load(y);
         let failed = StepError::NotFinite { what: "the exact motion" };
-        let (next, turn) = Exact::new(*inertia, m.into(), Matrix3::identity())
-            .and_then(|motion| motion.state(h))
+        let (next, turn) = Exact::new(*inertia, m.map(Into::into).into(), Matrix3::identity())
+            .and_then(|motion| motion.state(h.into()))
             .map_err(|_| failed)?;
         let group = So3::<f64>::new();
         if !(group.is_finite(&next) && turn.iter().all(|x| x.is_finite())) {
             return Err(failed);
         }
-        frame.turn(&turn);
-        problem.store(&next, &frame, y);
+        frame.turn(&turn.map(Real::lit));
+        problem.store(&next.map(Real::lit), &frame, y);
         Ok(())
     }
 }

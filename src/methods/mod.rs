@@ -53,7 +53,7 @@ pub use rkmk::Rkmk;
 pub use simo_wong::SimoWong;
 pub use splitting::{MR2, MR4, Splitting};
 pub use tableau::Tableau;
-pub use taylor::Taylor;
+pub use taylor::{Taylor, Wide};
 
 use crate::error::{Error, StepError};
 use crate::problems::{PointOf, Problem, ScalarOf};

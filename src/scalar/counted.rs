@@ -58,6 +58,12 @@ impl Counted {
     }
 }
 
+impl From<Counted> for f64 {
+    fn from(x: Counted) -> f64 {
+        x.0
+    }
+}
+
 macro_rules! counted_operator {
     ($($trait:ident $method:ident $op:tt $field:ident;)*) => {$(
         impl $trait for Counted {

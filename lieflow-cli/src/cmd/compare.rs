@@ -11,15 +11,17 @@ use serde::Serialize;
 use super::CliError;
 use crate::args::CompareArgs;
 use crate::measure::{
-    Candidate, Curve, Effort, Journal, Plan, Reference, WorkPoint, machine, speed_against_error,
+    Candidate, Curve, Effort, Journal, Plan, Reached, Reference, WorkPoint, machine,
+    speed_against_error,
 };
+use crate::operations::COUNTED_STEPS;
 use crate::output;
 use crate::page::{Block, Page, Section};
 use crate::report::{self, CHOICE_HEADER, Choice, Cost, KEPT, choices};
 use crate::scene::Scene;
 
-/// Step sizes are the whole span, and those of the scene times these, from the largest to the smallest.
-const FACTORS: [f64; 11] = [32.0, 16.0, 8.0, 4.0, 2.0, 1.0, 0.5, 0.25, 0.125, 0.0625, 0.03125];
+/// Step sizes are that of the scene times powers of two, from the whole span to this power below it.
+const HALVINGS: i32 = 5;
 
 /// Tolerances of the methods that choose their steps.
 const TOLERANCES: [f64; 7] = [1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-13];
@@ -31,8 +33,12 @@ struct Json<'a> {
     t_span: [f64; 2],
     reference: String,
     machine: String,
+    reference_error: Option<f64>,
     advice: Vec<AdviceJson>,
     advice_energy_kept: Vec<AdviceJson>,
+    /// Without the exact motion, which goes in no steps.
+    advice_steps: Vec<AdviceJson>,
+    advice_steps_energy_kept: Vec<AdviceJson>,
     curves: Vec<CurveJson<'a>>,
 }
 
@@ -81,7 +87,16 @@ pub fn run(args: &CompareArgs) -> Result<(), CliError> {
         None => Path::new("lieflow-compare").join(&scene.name),
     };
     let quantities: Vec<&str> = scene.quantities.iter().map(String::as_str).collect();
-    let mut candidates = Candidate::all_that_fit(&scene, &quantities, scene.layer)?;
+    let mut layers = match args.layers.is_empty() {
+        true => vec![scene.layer],
+        false => args.layers.clone(),
+    };
+    layers.sort_unstable();
+    layers.dedup();
+    let mut candidates = Vec::new();
+    for layer in layers {
+        candidates.extend(Candidate::all_that_fit(&scene, &quantities, layer)?);
+    }
     if !args.methods.is_empty() {
         candidates = Candidate::chosen(&candidates, &args.methods)?;
     }
@@ -136,10 +151,12 @@ fn identity(scene: &Scene, plan: &Plan<'_>, effort: &Effort) -> String {
 }
 
 fn numbers_of_steps(scene: &Scene) -> Vec<u64> {
-    let scaled = FACTORS.iter().map(|factor| scene.grid.steps() as f64 / factor);
+    let own = scene.grid.steps().max(1);
     // A single step first: some methods need no more.
-    let mut steps = vec![1];
-    steps.extend(scaled.map(|steps| (steps.round() as u64).max(1)));
+    let doublings = own.ilog2() as i32;
+    let scaled = (-doublings..=HALVINGS).map(|power| own as f64 * f64::from(power).exp2());
+    let mut steps: Vec<u64> = scaled.map(|steps| (steps.round() as u64).max(1)).collect();
+    steps.insert(0, 1);
     steps.dedup();
     steps
 }
@@ -159,9 +176,43 @@ fn advice_json(choices: &[Choice<'_>]) -> Vec<AdviceJson> {
 }
 
 impl Comparison<'_> {
-    /// The fastest to each error: of all, and of those whose energy does not drift.
-    fn advice(&self) -> [Vec<Choice<'_>>; 2] {
-        [choices(&self.curves, |_, _| true), choices(&self.curves, report::keeps_energy)]
+    /// The fastest to each error: of all, and of those whose energy does not drift; then the same of
+    /// the methods that go in steps.
+    fn advice(&self) -> [Vec<Choice<'_>>; 4] {
+        let of = |pass: fn(&Curve, &Reached) -> bool| choices(&self.curves, &self.reference, pass);
+        [
+            of(|_, _| true),
+            of(report::keeps_energy),
+            of(|curve, _| report::steps(curve)),
+            of(|curve, reached| report::steps(curve) && report::keeps_energy(curve, reached)),
+        ]
+    }
+
+    /// The advice that says something, each with its caption.
+    fn advice_in_words(&self) -> Vec<(String, Vec<Choice<'_>>)> {
+        let [all, kept, stepping, stepping_kept] = self.advice();
+        let energy = format!(
+            "The same where the energy must not drift: methods that keep it or keep it in bounds by \
+             construction, and those that kept it within {KEPT:.0e} here."
+        );
+        let mut told = vec![(
+            "The fastest method for each error; times are CPU time per unit of simulated time."
+                .to_string(),
+            all,
+        )];
+        if self.has_energy() {
+            told.push((energy.clone(), kept));
+        }
+        let exact = self.curves.iter().filter(|curve| !report::steps(curve)).count();
+        if (1..self.curves.len()).contains(&exact) {
+            let apart = "The fastest without the exact motion, which is there in one step but serves \
+                         no other problem.";
+            told.push((apart.into(), stepping));
+            if self.has_energy() {
+                told.push((energy, stepping_kept));
+            }
+        }
+        told
     }
 
     /// Does the problem have an energy?
@@ -174,14 +225,17 @@ impl Comparison<'_> {
         let rows = self.curves.iter().zip(&fronts);
         let rows = rows.map(|(curve, front)| (self.scene.name.as_str(), curve, front.clone()));
         output::write_file(&folder.join("speed.csv"), &report::speed_csv(rows))?;
-        let [advice, kept] = self.advice();
+        let [all, kept, stepping, stepping_kept] = self.advice().map(|of| advice_json(&of));
         let json = Json {
             scene: &self.scene.name,
             t_span: self.scene.grid.t_span(),
             reference: self.reference.in_words(),
+            reference_error: self.reference.error(),
             machine: machine(),
-            advice: advice_json(&advice),
-            advice_energy_kept: advice_json(&kept),
+            advice: all,
+            advice_energy_kept: kept,
+            advice_steps: stepping,
+            advice_steps_energy_kept: stepping_kept,
             curves: self.curves.iter().zip(fronts).map(curve_json).collect(),
         };
         output::write_file(&folder.join("speed.json"), &output::to_json(&json)?)?;
@@ -189,22 +243,66 @@ impl Comparison<'_> {
     }
 
     fn in_words(&self) -> String {
-        let table = |choices: &[Choice<'_>]| {
-            output::table(CHOICE_HEADER, choices.iter().map(report::choice_cells))
-        };
-        let [advice, kept] = self.advice();
         let mut text = format!(
-            "{}: fastest to a global error at t = {}, of {} methods; times are CPU time per unit of \
-             simulated time\n{}",
+            "{}: global error at t = {}, {} methods\n",
             self.scene.title,
             self.scene.grid.t_span()[1],
             self.curves.len(),
-            table(&advice),
         );
-        if self.has_energy() {
-            text += &format!("\nThe same where the energy must not drift\n{}", table(&kept));
+        for (caption, choices) in self.advice_in_words() {
+            let table = output::table(CHOICE_HEADER, choices.iter().map(report::choice_cells));
+            text += &format!("\n{caption}\n{table}");
         }
         text + &format!("\nErrors are distances from {}.\n", self.reference.in_words())
+    }
+
+    /// What the figures of the front say of the exact motion.
+    fn left_out(&self) -> &'static str {
+        match self.curves.iter().all(report::steps) {
+            true => "",
+            false => {
+                " The front is that of the methods with steps; the exact motion stands beside it."
+            }
+        }
+    }
+
+    /// The figures of what is counted.
+    fn counts(&self) -> Vec<Block> {
+        let evaluations = "Evaluations of f, of F or of A(t): the catalog's number for a step times the \
+                           steps, and what was counted where steps were chosen, rejected attempts \
+                           among them. Implicit methods and those without a field are left out.";
+        let operations = format!(
+            "Additions, multiplications, divisions, square roots, sines and cosines, each as one, \
+             counted by running the steps on numbers that count; a run of more than {COUNTED_STEPS} \
+             steps is charged the mean of the first {COUNTED_STEPS} for each, rejected attempts among \
+             them. Left out are the exact motion, which is made of elliptic functions, and the general \
+             layer, which runs on machine numbers only."
+        );
+        let chart = |id, title, caption: &str, cost| {
+            Block::Chart(report::front_chart(id, title, caption, &self.curves, cost))
+        };
+        let counted = self.curves.iter().flat_map(|curve| &curve.points);
+        let by_operations = match counted.into_iter().any(|p| p.operations.is_some()) {
+            true => chart(
+                "operations",
+                "Runs that no other beats in both error and operations",
+                &operations,
+                Cost::Operations,
+            ),
+            false => Block::text(
+                "There is no figure of operations: what this problem runs on are machine numbers, and \
+                 products of matrices by their kernels, which nothing counts.",
+            ),
+        };
+        vec![
+            by_operations,
+            chart(
+                "evaluations",
+                "Runs that no other beats in both error and evaluations of f",
+                evaluations,
+                Cost::Evaluations,
+            ),
+        ]
     }
 
     fn page(&self) -> Page {
@@ -217,7 +315,7 @@ impl Comparison<'_> {
             }
         }
         let what = "The error is the largest relative distance of a part of the state from the \
-                    reference at the end.";
+                    reference at the end; runs with an error above 1 are not drawn.";
         let mut charts: Vec<Block> = families
             .iter()
             .map(|family| {
@@ -229,29 +327,20 @@ impl Comparison<'_> {
                 ))
             })
             .collect();
-        let counted = "Evaluations of f, of F or of A(t): the catalog's number for a step times the \
-                       steps, and what was counted where steps were chosen, rejected attempts among \
-                       them. Implicit methods and those without a field are left out.";
-        let title = "Runs that no other beats in both error and evaluations of f";
-        let chart = report::front_chart("evaluations", title, counted, curves, Cost::Evaluations);
-        charts.insert(0, Block::Chart(chart));
-        let [advice, kept] = self.advice();
-        let energy = format!(
-            "The same where the energy must not drift: methods that keep it or keep it in bounds by \
-             construction, and those that kept it within {KEPT:.0e} here."
-        );
-        let mut short = vec![Block::Table(report::choice_table(
-            "The fastest method for each error; times are CPU time per unit of simulated time.",
-            &advice,
-        ))];
-        if self.has_energy() {
-            short.push(Block::Table(report::choice_table(&energy, &kept)));
-        }
+        charts.splice(0..0, self.counts());
+        let advice = self.advice_in_words();
+        let table = |(caption, choices): &(String, Vec<Choice<'_>>)| {
+            Block::Table(report::choice_table(caption, choices))
+        };
+        // A pair is a row: with and without the energy.
+        let pairs = advice.chunks(if self.has_energy() { 2 } else { 1 });
+        let mut short: Vec<Block> =
+            pairs.map(|pair| Block::Row(pair.iter().map(table).collect())).collect();
         short.extend([
             Block::Chart(report::front_chart(
                 "pareto",
                 "Runs that no other beats in both error and time",
-                what,
+                &format!("{what}{}", self.left_out()),
                 curves,
                 Cost::Time,
             )),

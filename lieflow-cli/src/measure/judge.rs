@@ -9,13 +9,18 @@ use lieflow::{SaveAt, TimeGrid};
 use super::{Candidate, Size, WorkPoint};
 use crate::cmd::CliError;
 use crate::model::{Layer, Model, Steps};
+use crate::operations::Pace;
 use crate::scene::Scene;
 
 /// Where the end comes from that errors are measured against.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Reference {
     /// The exact solution.
-    Exact,
+    Exact {
+        /// How far it ends from itself in seven steps, relative: an estimate of its rounding; none
+        /// where it is no method too.
+        apart: Option<f64>,
+    },
     /// A run at the finest tolerance.
     Own {
         /// Its method.
@@ -28,10 +33,22 @@ pub enum Reference {
 }
 
 impl Reference {
+    /// An estimate of its own error, relative.
+    pub fn error(&self) -> Option<f64> {
+        match self {
+            Reference::Exact { apart } => *apart,
+            Reference::Own { apart, .. } => Some(*apart),
+        }
+    }
+
     /// It in a sentence.
     pub fn in_words(&self) -> String {
         match self {
-            Reference::Exact => "the exact solution".into(),
+            Reference::Exact { apart: None } => "the exact solution".into(),
+            Reference::Exact { apart: Some(apart) } => format!(
+                "the exact solution, which ends {apart:.0e} away, relative, when it goes in seven \
+                 steps: errors below that are rounding"
+            ),
             Reference::Own { by, beside, apart } => {
                 let verdict = if *apart <= AGREE { "they agree" } else { "they do NOT agree" };
                 format!(
@@ -45,6 +62,8 @@ impl Reference {
 
 /// The tolerance of a reference run.
 const TIGHT: f64 = 1e-13;
+/// The steps of the exact motion that say how much it rounds.
+const PARTS: u64 = 7;
 /// Two reference runs that are closer than this agree.
 const AGREE: f64 = 1e-9;
 
@@ -56,6 +75,8 @@ fn reference_methods() -> Vec<MethodSpec> {
     };
     vec![
         with("rkmk", "dop853"),
+        MethodSpec::new("taylor16", None),
+        MethodSpec::new("magnus8", None),
         MethodSpec::new("gauss6", None),
         MethodSpec::new("cf-ls5", None),
         with("rk", "dop853"),
@@ -85,7 +106,10 @@ impl Judge {
         let mut judge = Self::without_end(scene, quantities)?;
         let model = scene.model_with(reference_layer(scene), &judge.quantities())?;
         match model.exact(t_span[1] - t_span[0]) {
-            Some(Ok(exact)) => judge.end = exact,
+            Some(Ok(exact)) => {
+                judge.end = exact;
+                judge.reference = Reference::Exact { apart: judge.rounding(&*model, t_span) };
+            }
             _ => judge.find_end(&*model, t_span)?,
         }
         Ok(judge)
@@ -118,7 +142,12 @@ impl Judge {
         let invariants = scene.problem.invariants(quantities);
         let invariants = invariants.iter().map(|law| place(law.quantity));
         let invariants = invariants.collect::<Result<_, CliError>>()?;
-        Ok(Judge { state, invariants, end: Vec::new(), reference: Reference::Exact })
+        Ok(Judge {
+            state,
+            invariants,
+            end: Vec::new(),
+            reference: Reference::Exact { apart: None },
+        })
     }
 
     fn find_end(&mut self, model: &dyn Model, t_span: [f64; 2]) -> Result<(), CliError> {
@@ -149,6 +178,14 @@ impl Judge {
             }
         }
         Err(CliError::Message("no two methods for a reference solution fit this problem".into()))
+    }
+
+    /// How far from its end the exact motion comes in [`PARTS`] steps.
+    fn rounding(&self, model: &dyn Model, t_span: [f64; 2]) -> Option<f64> {
+        let mut last = Vec::new();
+        let mut see = |_: f64, row: &[f64]| last = row.to_vec();
+        Size::Steps(PARTS).run(model, &MethodSpec::new("exact", None), t_span, &mut see).ok()?;
+        Some(self.error(&last)).filter(|apart| apart.is_finite())
     }
 
     /// What a model must compute for [`point`](Self::point).
@@ -230,6 +267,28 @@ pub struct Done {
 }
 
 impl Size {
+    /// The operations of a run that took so many steps, rejected ones among them; none where the
+    /// problem or the method does not run on numbers that count.
+    pub fn operations(
+        self,
+        model: &dyn Model,
+        method: &MethodSpec,
+        t_span: [f64; 2],
+        steps: u64,
+    ) -> Option<u64> {
+        let a_step = match self {
+            Size::Steps(steps) => {
+                let grid = TimeGrid::with_steps(t_span, steps).ok()?;
+                model.operations(method, Pace::Fixed(&grid))?
+            }
+            Size::Tolerance(rtol) => {
+                let control = Adaptive::new(rtol, 0.0).ok()?;
+                model.operations(method, Pace::Chosen(&Steps { t_span, control }))?
+            }
+        };
+        Some((a_step * steps as f64).round() as u64)
+    }
+
     /// Run a method over a span in steps of this size; why not, in words.
     ///
     /// # Errors

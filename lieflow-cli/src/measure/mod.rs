@@ -96,6 +96,11 @@ pub fn speed_against_error(
                     let start = Instant::now();
                     let mut point = judge.point(&*model, candidate, t_span, size);
                     point.first_seconds = start.elapsed().as_secs_f64();
+                    if point.failure.is_none() {
+                        let attempts = point.steps + point.rejected;
+                        point.operations =
+                            size.operations(&*model, &candidate.method, t_span, attempts);
+                    }
                     if let Some(journal) = &mut journal {
                         journal.saw_point(&key, &point)?;
                     }

@@ -137,8 +137,9 @@ fn table2(paper: &Paper) -> Vec<Block> {
              dΨ⁻¹ and leaves its product with a vector out of the table (15 operations, 10 for ccsk): \
              “applied” adds it. Ours apply dΨ⁻¹ to a vector and never form it; “both” is dΨ⁻¹v after \
              Ψ, which shares its terms. Some of ours are there for accuracy at every angle, and to \
-             refuse what is not finite; exp as a matrix goes by the quaternion, 21 operations more \
-             than (14) for half its distance from the group. “Fewest known” counts the matrix, as the paper does.",
+             refuse what is not finite; exp as a matrix goes by the quaternion, which \
+             takes more operations than (14) for half its distance from the group. “Fewest known” counts \
+             the matrix, as the paper does.",
         ),
         Block::Table(Table {
             caption: "Operations on so(3).".into(),
@@ -280,7 +281,7 @@ fn cost_chart(
         Series {
             name: a.row.name().into(),
             colour: a.row.colour(),
-            marker: Marker::cycle(a.row.colour()),
+            marker: a.row.marker(),
             dash: a.row.is_added(),
             points: a.points.iter().enumerate().filter_map(point).collect(),
             emphasised: false,
@@ -302,7 +303,8 @@ fn table4(paper: &Paper) -> Vec<Block> {
          least squares through log operations against log error of six runs, read at ε. Its operations \
          of a step are not those of its text; they are the integers that its numbers imply. “Counted” \
          is the same line with the operations of the library's step, counted as it runs. “Time” is CPU \
-         time to ε, between the two runs around it.",
+         time to ε, between the two runs around it. S in the second test has no “ours”: no cost of a \
+         step fits its two numbers.",
     )];
     for (t, test) in TESTS.iter().enumerate() {
         let all = &paper.accuracy[t];

@@ -12,6 +12,8 @@ use lieflow::scalar::{Counted, Ops, Real};
 use lieflow::{Error, RunError, SaveAt, TimeGrid, integrate};
 use nalgebra::{Matrix3, Vector3};
 
+use crate::plot::Marker;
+
 /// A body of the paper with its initial data, angular momentum and attitude in space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Body {
@@ -158,6 +160,18 @@ impl Row {
         }
     }
 
+    /// Its marker in figures: rows of one colour have different ones.
+    pub fn marker(self) -> Marker {
+        let place = match self {
+            Row::S => 3,
+            Row::Dmv4 => 1,
+            Row::Dmv10 => 2,
+            Row::EnergyCasimir => 4,
+            row => row.colour(),
+        };
+        Marker::cycle(place)
+    }
+
     /// Is it one of those that the paper does not have?
     pub fn is_added(self) -> bool {
         Self::ADDED.contains(&self)
@@ -195,8 +209,7 @@ impl Row {
         })
     }
 
-    /// The operations of a step of this length from the initial state; none for a method that does
-    /// not run on a number which counts.
+    /// The operations of a step of this length from the initial state; none where the step fails.
     ///
     /// # Errors
     /// A body that cannot be.
@@ -219,7 +232,13 @@ impl Row {
                 let m = body.momentum_body().map(Counted::lit);
                 counted(&problem, &Rk(RK4), lieflow::problems::BodyState { m, g }, h)
             }
-            Row::Dmv4 | Row::Dmv10 | Row::EnergyCasimir => None,
+            Row::Dmv4 => counted(&problem, &DMV4, g, h),
+            Row::Dmv10 => counted(&problem, &DMV10, g, h),
+            Row::EnergyCasimir => {
+                let problem = RigidBody::<Counted>::new(body.inertia)?;
+                let m = body.momentum_body().map(Counted::lit);
+                counted(&problem, &EnergyCasimir::new(Exp), m, h)
+            }
         })
     }
 }

@@ -23,7 +23,7 @@ mod trace;
 pub use chart::Chart;
 pub use heat::Heat;
 pub use scale::{Axis, Scale};
-pub use series::{Marker, Point, Series};
+pub use series::{Marker, Point, Series, tell_apart};
 pub use sphere::{Path, Sphere};
 pub use svg::escape;
 pub use thin::{thin_path, thin_time_series};

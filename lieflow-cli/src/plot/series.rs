@@ -52,6 +52,20 @@ pub enum Marker {
     Hexagon,
 }
 
+/// Look like no other line: where several share a colour and a dash, each gets a marker of its own.
+pub fn tell_apart(series: &mut [Series]) {
+    for i in 1..series.len() {
+        let (before, rest) = series.split_at_mut(i);
+        let same = |a: &&Series| {
+            (a.colour % LINE_COLOURS, a.dash) == (rest[0].colour % LINE_COLOURS, rest[0].dash)
+        };
+        let alike = before.iter().filter(same).count();
+        if alike > 0 {
+            rest[0].marker = Marker::cycle(rest[0].colour + alike);
+        }
+    }
+}
+
 impl Marker {
     /// A different shape for each `index`, in turn.
     pub fn cycle(index: usize) -> Self {
@@ -155,6 +169,24 @@ impl Series {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn no_two_lines_look_alike() {
+        let look = |i: usize| Series {
+            colour: i % 11,
+            marker: Marker::cycle(i % 11),
+            dash: i.is_multiple_of(2),
+            ..Series::default()
+        };
+        let mut series: Vec<Series> = (0..40).map(look).collect();
+        tell_apart(&mut series);
+        let mut seen = Vec::new();
+        for line in &series {
+            let look = (line.colour % LINE_COLOURS, line.dash, line.marker);
+            assert!(!seen.contains(&look), "{look:?}");
+            seen.push(look);
+        }
+    }
 
     #[test]
     fn neighbouring_markers_differ() {

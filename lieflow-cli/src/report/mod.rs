@@ -9,7 +9,7 @@ mod speed;
 pub use agreement::agreement;
 pub use choice::{
     ADVICE, CHOICE_HEADER, Choice, Cost, KEPT, choice_cells, choice_table, choices, front_chart,
-    fronts, keeps_energy,
+    fronts, keeps_energy, steps,
 };
 pub use energy::{EnergyRun, energy_chart, momentum_sphere};
 pub use maps::{MAPS_PAGE, write_maps};
@@ -21,6 +21,7 @@ use crate::cmd::CliError;
 use crate::output;
 use crate::page::{Block, Page};
 use crate::plot::format::sig;
+use crate::plot::svg::slug;
 
 /// A number in scientific notation with two digits after the point, as `1.23e-4`; a dash for none.
 pub fn scientific(x: f64) -> String {
@@ -67,10 +68,10 @@ pub fn write_page_as(folder: &Path, name: &str, page: &Page) -> Result<PathBuf, 
 fn write_figures(folder: &Path, block: &Block) -> Result<(), CliError> {
     match block {
         Block::Chart(chart) => {
-            output::write_file(&folder.join(format!("{}.svg", chart.id)), &chart.svg())
+            output::write_file(&folder.join(format!("{}.svg", slug(&chart.id))), &chart.svg())
         }
         Block::Sphere(sphere) => {
-            output::write_file(&folder.join(format!("{}.svg", sphere.id)), &sphere.svg())
+            output::write_file(&folder.join(format!("{}.svg", slug(&sphere.id))), &sphere.svg())
         }
         Block::Heat(heat) => {
             output::write_file(&folder.join(format!("{}.svg", heat.id)), &heat.svg())

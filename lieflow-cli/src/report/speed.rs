@@ -1,12 +1,12 @@
 //! Time against error.
 
-use super::choice::size_of;
+use super::choice::{Cost, drawn, size_of};
 use super::{duration, order};
 use crate::measure::{Candidate, Curve, Size};
 use crate::model::Layer;
 use crate::page::{Column, Row, Table};
 use crate::plot::format::seconds;
-use crate::plot::{Axis, Chart, Marker, Point, Scale, Series};
+use crate::plot::{Axis, Chart, Marker, Scale, Series, tell_apart};
 
 /// The errors for which tables give the time.
 const ERRORS: [f64; 4] = super::ADVICE;
@@ -34,9 +34,7 @@ pub fn speed_chart<'a>(
         let candidate = &curve.candidate;
         let look = look(candidate).unwrap_or(place);
         let points =
-            curve.points.iter().filter(|point| point.failure.is_none()).map(|point| {
-                Point::new(point.error, point.seconds_per_unit).with_note(size_of(point))
-            });
+            curve.points.iter().filter_map(|point| drawn(point, Cost::Time, || size_of(point)));
         Series {
             name: candidate.label(),
             colour: look,
@@ -46,12 +44,14 @@ pub fn speed_chart<'a>(
             emphasised: false,
         }
     });
+    let mut series: Vec<Series> = series.filter(|line| !line.points.is_empty()).collect();
+    tell_apart(&mut series);
     Chart {
         id: id.into(),
         title: title.into(),
         x: Axis::new("global error at the end", Scale::Log10),
-        y: Axis::new("CPU time per unit of simulated time [s]", Scale::Log10),
-        series: series.collect(),
+        y: Cost::Time.axis(),
+        series,
         caption: caption.into(),
     }
 }
@@ -124,8 +124,8 @@ pub fn speed_table(curves: &[Curve]) -> Table {
 /// Each curve comes with the name of its scene and the places of its points on the Pareto front.
 pub fn speed_csv<'a>(curves: impl IntoIterator<Item = (&'a str, &'a Curve, Vec<usize>)>) -> String {
     let mut text = String::from(
-        "scene,method,map,tableau,layer,adaptive,order,rtol,steps,rejected,h,evaluations,error,\
-         energy_error,casimir_error,group_residual,seconds_per_unit,pareto,failure\n",
+        "scene,method,map,tableau,layer,adaptive,order,rtol,steps,rejected,h,evaluations,operations,\
+         error,energy_error,casimir_error,group_residual,seconds_per_unit,pareto,failure\n",
     );
     for (scene, curve, front) in curves {
         let Candidate { method, layer, adaptive } = &curve.candidate;
@@ -136,7 +136,7 @@ pub fn speed_csv<'a>(curves: impl IntoIterator<Item = (&'a str, &'a Curve, Vec<u
                 Size::Tolerance(rtol) => format!("{rtol:e}"),
             };
             text += &format!(
-                "{scene},{},{},{},{},{adaptive},{},{rtol},{},{},{},{},{},{},{},{},{},{},{}\n",
+                "{scene},{},{},{},{},{adaptive},{},{rtol},{},{},{},{},{},{},{},{},{},{},{},{}\n",
                 method.name,
                 map.unwrap_or_default(),
                 tableau.unwrap_or_default(),
@@ -146,6 +146,7 @@ pub fn speed_csv<'a>(curves: impl IntoIterator<Item = (&'a str, &'a Curve, Vec<u
                 p.rejected,
                 number(p.h),
                 p.evaluations.map_or(String::new(), |n| n.to_string()),
+                p.operations.map_or(String::new(), |n| n.to_string()),
                 number(p.error),
                 number(p.energy_error),
                 number(p.casimir_error),

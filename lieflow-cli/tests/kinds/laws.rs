@@ -3,6 +3,7 @@
 
 use lieflow::catalog::{MethodSpec, all_methods};
 use lieflow_cli::cmd::run::run_scene;
+use lieflow_cli::output::{Drift, Watched};
 
 use super::support::Folder;
 use super::*;
@@ -196,4 +197,28 @@ fn a_run_states_what_was_modelled_and_draws_it() {
     let told = folder.lieflow(&["run", "flat.toml", "--out", "out"]).ok();
     assert!(told.contains("warning: no body has"), "{told}");
     assert_eq!(folder.json("out/summary.json")["warnings"].as_array().unwrap().len(), 1);
+}
+
+#[test]
+fn the_slope_of_a_drift_is_that_of_the_line() {
+    let mut watched = Watched::new(2.0, 5.0, 5.0);
+    for i in 1..100 {
+        let t = 2.0 + 0.1 * f64::from(i);
+        let wave = if i % 2 == 0 { 1e-3 } else { -1e-3 };
+        watched.see(t, 5.0 - 0.25 * (t - 2.0) + wave, 5.0);
+    }
+    let drift = watched.drift(true, 99);
+    assert!((drift.slope + 0.25).abs() < 1e-4, "{drift:?}");
+    assert!((drift.at_end - 0.25 * 9.9).abs() < 2e-3 && drift.max >= drift.at_end);
+    assert!(drift.breaks_a_promise() && !Drift { promised: false, ..drift }.breaks_a_promise());
+    let still = Watched::new(0.0, 1.0, 1.0).drift(true, 0);
+    assert_eq!((still.max, still.slope, still.breaks_a_promise()), (0.0, 0.0, false));
+}
+
+#[test]
+fn what_is_not_a_number_is_no_promise_kept() {
+    let mut watched = Watched::new(0.0, 1.0, 1.0);
+    watched.see(1.0, f64::NAN, 1.0);
+    watched.see(2.0, 1.0, 1.0);
+    assert!(watched.drift(true, 2).breaks_a_promise());
 }

@@ -1,13 +1,16 @@
-//! Four doubles (x, y, z, w) at once, with the instructions that the machine has.
+//! Four numbers (x, y, z, w) at once: doubles with the instructions that the machine has, others as
+//! arrays.
+
+use crate::scalar::{Counted, Real};
 
 /// The operations of the recurrences: a quaternion, its vector part first, or a vector with w = 0.
-pub(super) trait Lanes: Copy {
-    /// Four doubles.
+pub trait Lanes<S>: Copy {
+    /// Four numbers.
     type V: Copy;
 
-    fn load(self, x: [f64; 4]) -> Self::V;
-    fn store(self, v: Self::V) -> [f64; 4];
-    fn splat(self, x: f64) -> Self::V;
+    fn load(self, x: [S; 4]) -> Self::V;
+    fn store(self, v: Self::V) -> [S; 4];
+    fn splat(self, x: S) -> Self::V;
     fn add(self, a: Self::V, b: Self::V) -> Self::V;
     fn mul(self, a: Self::V, b: Self::V) -> Self::V;
     /// a·b + c.
@@ -20,53 +23,53 @@ pub(super) trait Lanes: Copy {
     fn products(self, q: Self::V) -> [Self::V; 3];
 }
 
-/// Arrays, for any machine.
+/// Arrays, for any number and any machine.
 #[derive(Clone, Copy)]
 pub(super) struct Plain;
 
-impl Lanes for Plain {
-    type V = [f64; 4];
+impl<S: Real> Lanes<S> for Plain {
+    type V = [S; 4];
 
     #[inline(always)]
-    fn load(self, x: [f64; 4]) -> [f64; 4] {
+    fn load(self, x: [S; 4]) -> [S; 4] {
         x
     }
     #[inline(always)]
-    fn store(self, v: [f64; 4]) -> [f64; 4] {
+    fn store(self, v: [S; 4]) -> [S; 4] {
         v
     }
     #[inline(always)]
-    fn splat(self, x: f64) -> [f64; 4] {
+    fn splat(self, x: S) -> [S; 4] {
         [x; 4]
     }
     #[inline(always)]
-    fn add(self, a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
+    fn add(self, a: [S; 4], b: [S; 4]) -> [S; 4] {
         [a[0] + b[0], a[1] + b[1], a[2] + b[2], a[3] + b[3]]
     }
     #[inline(always)]
-    fn mul(self, a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
+    fn mul(self, a: [S; 4], b: [S; 4]) -> [S; 4] {
         [a[0] * b[0], a[1] * b[1], a[2] * b[2], a[3] * b[3]]
     }
     #[inline(always)]
-    fn mul_add(self, a: [f64; 4], b: [f64; 4], c: [f64; 4]) -> [f64; 4] {
-        self.add(self.mul(a, b), c)
+    fn mul_add(self, a: [S; 4], b: [S; 4], c: [S; 4]) -> [S; 4] {
+        Lanes::<S>::add(self, Lanes::<S>::mul(self, a, b), c)
     }
     #[inline(always)]
-    fn cycled(self, [x, y, z, w]: [f64; 4]) -> [[f64; 4]; 2] {
+    fn cycled(self, [x, y, z, w]: [S; 4]) -> [[S; 4]; 2] {
         [[y, z, x, w], [z, x, y, w]]
     }
     #[inline(always)]
-    fn spread(self, [x, y, z, _]: [f64; 4]) -> [[f64; 4]; 3] {
+    fn spread(self, [x, y, z, _]: [S; 4]) -> [[S; 4]; 3] {
         [[x; 4], [y; 4], [z; 4]]
     }
     #[inline(always)]
-    fn products(self, [x, y, z, w]: [f64; 4]) -> [[f64; 4]; 3] {
+    fn products(self, [x, y, z, w]: [S; 4]) -> [[S; 4]; 3] {
         [[w, z, -y, -x], [-z, w, x, -y], [y, -x, w, -z]]
     }
 }
 
 #[cfg(target_arch = "x86_64")]
-impl Lanes for pulp::x86::V3 {
+impl Lanes<f64> for pulp::x86::V3 {
     type V = core::arch::x86_64::__m256d;
 
     #[inline(always)]
@@ -120,27 +123,41 @@ impl Lanes for pulp::x86::V3 {
 }
 
 /// Work for lanes.
-pub(super) trait Kernel {
+pub trait Kernel<S> {
     /// Its result.
     type Out;
     /// Do it. Inline, so that it is compiled for the instructions that it is given.
-    fn run<L: Lanes>(self, lanes: L) -> Self::Out;
+    fn run<L: Lanes<S>>(self, lanes: L) -> Self::Out;
 }
 
-/// Run a kernel with the best that the machine has.
-#[inline(always)]
-pub(super) fn dispatch<K: Kernel>(kernel: K) -> K::Out {
-    #[cfg(target_arch = "x86_64")]
-    if let Some(v3) = pulp::x86::V3::try_new() {
-        struct On<K>(pulp::x86::V3, K);
-        impl<K: Kernel> pulp::NullaryFnOnce for On<K> {
-            type Output = K::Out;
-            #[inline(always)]
-            fn call(self) -> K::Out {
-                self.1.run(self.0)
-            }
-        }
-        return v3.vectorize(On(v3, kernel));
+/// A number that the recurrences run on.
+pub trait Wide: Real {
+    /// Run a kernel with the best that there is for this number.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn dispatch<K: Kernel<Self>>(kernel: K) -> K::Out {
+        kernel.run(Plain)
     }
-    kernel.run(Plain)
+}
+
+impl Wide for f32 {}
+impl Wide for Counted {}
+
+impl Wide for f64 {
+    #[inline(always)]
+    fn dispatch<K: Kernel<f64>>(kernel: K) -> K::Out {
+        #[cfg(target_arch = "x86_64")]
+        if let Some(v3) = pulp::x86::V3::try_new() {
+            struct On<K>(pulp::x86::V3, K);
+            impl<K: Kernel<f64>> pulp::NullaryFnOnce for On<K> {
+                type Output = K::Out;
+                #[inline(always)]
+                fn call(self) -> K::Out {
+                    self.1.run(self.0)
+                }
+            }
+            return v3.vectorize(On(v3, kernel));
+        }
+        kernel.run(Plain)
+    }
 }

@@ -21,14 +21,17 @@
 mod lanes;
 mod series;
 
-use lanes::dispatch;
+use nalgebra::Vector3;
+
+pub use lanes::Wide;
 use series::{Advance, Body, OneStep, reach, rotation};
 
 use super::simo_wong::turn_by;
 use super::{Embedded, LocalError, Method, Step};
 use crate::error::{Error, StepError};
-use crate::groups::LieAlgebra;
-use crate::problems::{Frame, FreeBody, PointOf};
+use crate::groups::{LieAlgebra, So3};
+use crate::problems::{Frame, FreeBody, PointOf, ScalarOf};
+use crate::scalar::Real;
 
 /// The Taylor method of order N, 4 ≤ N ≤ 16: another N does not compile.
 ///
@@ -57,7 +60,7 @@ impl<const N: usize> Taylor<N> {
         P::Group: LieAlgebra<Scalar = f64>,
     {
         let (body, m) = (Body::new(problem.inverse_inertia()), problem.load(y).0);
-        h * reach::<N>(dispatch(OneStep::<N> { body: &body, h, m }).1, tolerance)
+        h * reach::<N>(f64::dispatch(OneStep::<_, N> { body: &body, h, m }).1, tolerance)
     }
 
     /// Advance y over the time `span`, each step as long as the tolerance for its local error in the
@@ -89,7 +92,7 @@ impl<const N: usize> Taylor<N> {
         let (m, mut frame) = problem.load(y);
         let body = Body::new(problem.inverse_inertia());
         let guess = h.abs().copysign(span);
-        let reached = dispatch(Advance::<N> { body: &body, span, tolerance, guess, m });
+        let reached = f64::dispatch(Advance::<N> { body: &body, span, tolerance, guess, m });
         frame.turn(&rotation(reached.q));
         problem.store(&reached.m, &frame, y);
         *h = reached.h;
@@ -102,7 +105,7 @@ impl<const N: usize> Taylor<N> {
 
 impl<P: FreeBody, const N: usize> Method<P> for Taylor<N>
 where
-    P::Group: LieAlgebra<Scalar = f64>,
+    ScalarOf<P>: Wide,
 {
     type Work = ();
 
@@ -116,13 +119,13 @@ where
     fn step(
         &self,
         problem: &P,
-        Step { h, .. }: Step<f64>,
+        Step { h, .. }: Step<ScalarOf<P>>,
         y: &mut PointOf<P>,
         (): &mut (),
     ) -> Result<(), StepError> {
         let (m, mut frame) = problem.load(y);
         let body = Body::new(problem.inverse_inertia());
-        let (q, _) = dispatch(OneStep::<N> { body: &body, h, m });
+        let (q, _) = ScalarOf::<P>::dispatch(OneStep::<_, N> { body: &body, h, m });
         turn_by(problem, &rotation(q), m, &mut frame, y)
     }
 }
@@ -131,7 +134,7 @@ where
 /// N − 1.
 impl<P: FreeBody, const N: usize> Embedded<P> for Taylor<N>
 where
-    P::Group: LieAlgebra<Scalar = f64>,
+    ScalarOf<P>: Wide + Into<f64>,
 {
     fn error_order(&self, _: &P) -> Result<usize, Error> {
         Ok(N - 1)
@@ -142,19 +145,22 @@ where
     fn step_with_error(
         &self,
         problem: &P,
-        Step { h, .. }: Step<f64>,
+        Step { h, .. }: Step<ScalarOf<P>>,
         from: &PointOf<P>,
         (): &mut (),
         to: &mut PointOf<P>,
-    ) -> Result<LocalError<f64>, StepError> {
+    ) -> Result<LocalError<ScalarOf<P>>, StepError> {
         let (m, mut frame) = problem.load(from);
         let j = problem.inverse_inertia();
         let body = Body::new(j);
-        let (q, squares) = dispatch(OneStep::<N> { body: &body, h, m });
+        let (q, squares) = ScalarOf::<P>::dispatch(OneStep::<_, N> { body: &body, h, m });
         turn_by(problem, &rotation(q), m, &mut frame, to)?;
         let n = N as f64;
         // One of the last two may vanish where the motion is even or odd.
-        let error = 2.0 * squares[1].sqrt().max(squares[0].powf(0.5 * n / (n - 1.0)));
-        Ok(LocalError { error, length: h.abs() * j.component_mul(&m).norm() })
+        let [before, last] = squares.map(Into::<f64>::into);
+        let error = 2.0 * last.sqrt().max(before.powf(0.5 * n / (n - 1.0)));
+        let omega = Vector3::new(j[0] * m[0], j[1] * m[1], j[2] * m[2]);
+        let length = h.abs() * So3::new().norm(&omega);
+        Ok(LocalError { error: Real::lit(error), length })
     }
 }

@@ -4,6 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::lanes::{Kernel, Lanes};
 use crate::error::StepError;
+use crate::scalar::Real;
 
 /// 1/(k+1).
 const INVERSE: [f64; 16] = {
@@ -18,34 +19,41 @@ const INVERSE: [f64; 16] = {
 
 /// What the recurrences need of a body.
 #[derive(Clone, Copy)]
-pub(super) struct Body {
+pub(super) struct Body<S> {
     /// ṁ_i = rate_i m_j m_k.
-    rate: [f64; 4],
+    rate: [S; 4],
     /// ω/2 = half·m.
-    half: [f64; 4],
+    half: [S; 4],
 }
 
-impl Body {
+/// 𝟙 as a quaternion.
+#[inline(always)]
+fn unit<S: Real>() -> [S; 4] {
+    [0.0, 0.0, 0.0, 1.0].map(S::lit)
+}
+
+impl<S: Real> Body<S> {
     #[inline(always)]
-    pub(super) fn new(j: &Vector3<f64>) -> Self {
+    pub(super) fn new(j: &Vector3<S>) -> Self {
+        let (zero, half) = (S::lit(0.0), S::lit(0.5));
         Body {
-            rate: [j[2] - j[1], j[0] - j[2], j[1] - j[0], 0.0],
-            half: [0.5 * j[0], 0.5 * j[1], 0.5 * j[2], 0.0],
+            rate: [j[2] - j[1], j[0] - j[2], j[1] - j[0], zero],
+            half: [half * j[0], half * j[1], half * j[2], zero],
         }
     }
 
     /// The coefficients q₁ hᵏ, …, q_N hᵏ of the quaternion.
     #[inline(always)]
-    fn terms<L: Lanes, const N: usize>(&self, l: L, h: f64, m: L::V) -> [L::V; N] {
+    fn terms<L: Lanes<S>, const N: usize>(&self, l: L, h: S, m: L::V) -> [L::V; N] {
         const { assert!(4 <= N && N <= INVERSE.len(), "4 ≤ order ≤ 16") };
-        let zero = l.splat(0.0);
+        let zero = l.splat(S::lit(0.0));
         let (rate, half, h) = (l.load(self.rate), l.load(self.half), l.splat(h));
         let mut ms = [[zero; 2]; N];
         let mut ws = [[zero; 3]; N];
         // q_j ∘ e_i.
         let mut turned = [[zero; 3]; N];
         let mut out = [zero; N];
-        let (mut m, mut q) = (m, l.load([0.0, 0.0, 0.0, 1.0]));
+        let (mut m, mut q) = (m, l.load(unit()));
         for k in 0..N {
             ms[k] = l.cycled(m);
             ws[k] = l.spread(l.mul(half, m));
@@ -58,7 +66,7 @@ impl Body {
                     sums[a] = l.mul_add(turned[i][a], ws[k - i][a], sums[a]);
                 }
             }
-            let scale = l.mul(h, l.splat(INVERSE[k]));
+            let scale = l.mul(h, l.splat(S::lit(INVERSE[k])));
             q = l.mul(scale, l.add(sums[0], l.add(sums[1], sums[2])));
             m = l.mul(l.mul(scale, rate), sum);
             out[k] = q;
@@ -69,54 +77,55 @@ impl Body {
 
 /// |v|².
 #[inline(always)]
-fn square<L: Lanes>(l: L, v: L::V) -> f64 {
+fn square<S: Real, L: Lanes<S>>(l: L, v: L::V) -> S {
     let [x, y, z, w] = l.store(l.mul(v, v));
     (x + y) + (z + w)
 }
 
 /// One step: the quaternion at h, not yet of length 1, and the squares of its last two terms.
-pub(super) struct OneStep<'a, const N: usize> {
-    pub(super) body: &'a Body,
-    pub(super) h: f64,
-    pub(super) m: Vector3<f64>,
+pub(super) struct OneStep<'a, S, const N: usize> {
+    pub(super) body: &'a Body<S>,
+    pub(super) h: S,
+    pub(super) m: Vector3<S>,
 }
 
-impl<const N: usize> Kernel for OneStep<'_, N> {
-    type Out = ([f64; 4], [f64; 2]);
+impl<S: Real, const N: usize> Kernel<S> for OneStep<'_, S, N> {
+    type Out = ([S; 4], [S; 2]);
 
     #[inline(always)]
-    fn run<L: Lanes>(self, l: L) -> Self::Out {
-        let m = l.load([self.m[0], self.m[1], self.m[2], 0.0]);
+    fn run<L: Lanes<S>>(self, l: L) -> Self::Out {
+        let m = l.load([self.m[0], self.m[1], self.m[2], S::lit(0.0)]);
         let terms = self.body.terms::<L, N>(l, self.h, m);
-        let mut sum = l.splat(0.0);
+        let mut sum = l.splat(S::lit(0.0));
         for term in terms.iter().rev() {
             sum = l.add(sum, *term); // small terms first
         }
-        let q = l.add(sum, l.load([0.0, 0.0, 0.0, 1.0]));
+        let q = l.add(sum, l.load(unit()));
         (l.store(q), [square(l, terms[N - 2]), square(l, terms[N - 1])])
     }
 }
 
 /// The rotation of a quaternion of any length.
 #[inline(always)]
-pub(super) fn rotation([x, y, z, w]: [f64; 4]) -> Matrix3<f64> {
-    let s = 2.0 / ((x * x + y * y) + (z * z + w * w));
+pub(super) fn rotation<S: Real>([x, y, z, w]: [S; 4]) -> Matrix3<S> {
+    let one = S::lit(1.0);
+    let s = S::lit(2.0) / ((x * x + y * y) + (z * z + w * w));
     let (sx, sy, sz) = (s * x, s * y, s * z);
     let (xx, yy, zz) = (sx * x, sy * y, sz * z);
     let (xy, xz, yz) = (sx * y, sx * z, sy * z);
     let (wx, wy, wz) = (sx * w, sy * w, sz * w);
     #[rustfmt::skip]
     let g = Matrix3::new(
-        1.0 - yy - zz, xy - wz, xz + wy,
-        xy + wz, 1.0 - xx - zz, yz - wx,
-        xz - wy, yz + wx, 1.0 - xx - yy,
+        one - yy - zz, xy - wz, xz + wy,
+        xy + wz, one - xx - zz, yz - wx,
+        xz - wy, yz + wx, one - xx - yy,
     );
     g
 }
 
 /// Many steps, each as long as the tolerance allows.
 pub(super) struct Advance<'a, const N: usize> {
-    pub(super) body: &'a Body,
+    pub(super) body: &'a Body<f64>,
     pub(super) span: f64,
     pub(super) tolerance: f64,
     /// A guess of the first step, of the sign of the span.
@@ -163,13 +172,13 @@ pub(super) fn reach<const N: usize>(squares: [f64; 2], tolerance: f64) -> f64 {
     if a < b || a.is_nan() { a } else { b }
 }
 
-impl<const N: usize> Kernel for Advance<'_, N> {
+impl<const N: usize> Kernel<f64> for Advance<'_, N> {
     type Out = Reached;
 
     #[inline(always)]
-    fn run<L: Lanes>(self, l: L) -> Reached {
+    fn run<L: Lanes<f64>>(self, l: L) -> Reached {
         let Advance { body, span, tolerance, mut guess, m } = self;
-        let unit = l.load([0.0, 0.0, 0.0, 1.0]);
+        let unit = l.load(unit());
         let mut m = l.load([m[0], m[1], m[2], 0.0]);
         let mut whole = unit;
         let mut passed = 0.0;
@@ -221,7 +230,7 @@ impl<const N: usize> Kernel for Advance<'_, N> {
 
 /// p ∘ q.
 #[inline(always)]
-fn product<L: Lanes>(l: L, p: L::V, q: L::V) -> L::V {
+fn product<L: Lanes<f64>>(l: L, p: L::V, q: L::V) -> L::V {
     let [x, y, z] = l.spread(q);
     let [a, b, c] = l.products(p);
     let w = l.splat(l.store(q)[3]);
@@ -230,7 +239,7 @@ fn product<L: Lanes>(l: L, p: L::V, q: L::V) -> L::V {
 
 /// Rᵀm for the rotation R of q = (v, w): m + 2/|q|² (v × (v × m) − w v × m).
 #[inline(always)]
-fn turn_back<L: Lanes>(l: L, q: L::V, length: f64, m: L::V) -> L::V {
+fn turn_back<L: Lanes<f64>>(l: L, q: L::V, length: f64, m: L::V) -> L::V {
     let cross = |a: L::V, b: L::V| {
         let minus = l.splat(-1.0);
         let crossed = l.mul_add(a, l.cycled(b)[0], l.mul(minus, l.mul(l.cycled(a)[0], b)));

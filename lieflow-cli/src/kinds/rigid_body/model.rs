@@ -8,12 +8,14 @@ use lieflow::catalog::{
 };
 use lieflow::groups::{GroupMatrix, LieGroup, MatrixGroup, So3, hat, vee};
 use lieflow::problems::{Exact, RigidBody, RigidBodyAttitude, RigidBodyN, RigidBodyNAttitude};
+use lieflow::scalar::Counted;
 use lieflow::{Error, RunError, SaveAt, Stats, TimeGrid};
 use nalgebra::{Matrix3, Vector3};
 
 use super::{KIND, RigidBodySpec, needs_attitude};
 use crate::catalog;
 use crate::model::{Layer, Model, Sink, Steps, adapt_by, integrate_by, order_by};
+use crate::operations::{Pace, operations_by};
 
 #[derive(Debug)]
 enum System {
@@ -26,6 +28,7 @@ enum System {
 #[derive(Debug)]
 pub(super) struct RigidBodyModel {
     system: System,
+    inertia: [f64; 3],
     /// For ω and the energy of a row, on either layer.
     body: RigidBody,
     momentum: Vector3<f64>,
@@ -48,6 +51,8 @@ catalog!(RigidBody, with_momentum_method);
 catalog!(RigidBodyAttitude, with_attitude_method);
 catalog!(RigidBodyN, with_lie_poisson_method);
 catalog!(RigidBodyNAttitude, with_implicit_method);
+catalog!(RigidBody<Counted>, with_momentum_method);
+catalog!(RigidBodyAttitude<Counted>, with_attitude_method);
 
 /// Run `$run` on the problem of `$model` with its initial state and a function that shows a point of
 /// it as a row.
@@ -116,6 +121,7 @@ impl RigidBodyModel {
         };
         Ok(RigidBodyModel {
             system,
+            inertia: spec.inertia,
             body: RigidBody::new(spec.inertia)?,
             momentum,
             attitude: spec.attitude,
@@ -197,6 +203,21 @@ impl Model for RigidBodyModel {
             System::Attitude(body) => order_by(method, body),
             System::MomentumN(body) => order_by(method, body),
             System::AttitudeN(body) => order_by(method, body),
+        }
+    }
+
+    fn operations(&self, method: &MethodSpec, pace: Pace<'_>) -> Option<f64> {
+        match &self.system {
+            System::Momentum(_) => {
+                let body = RigidBody::<Counted>::new(self.inertia).ok()?;
+                operations_by(method, &body, self.momentum.map(Counted), pace)
+            }
+            System::Attitude(body) => {
+                let m_s = (*body.momentum_space()).into();
+                let body = RigidBodyAttitude::<Counted>::new(self.inertia, m_s).ok()?;
+                operations_by(method, &body, self.attitude.map(Counted), pace)
+            }
+            System::MomentumN(_) | System::AttitudeN(_) => None,
         }
     }
 

@@ -1,0 +1,15 @@
+//! The unit tests of what needs no integrator: pictures, pages, numbers. The library of the program
+//! holds every method for every problem; a second one for its unit tests would cost the compiler as
+//! much again, so it has none (`test = false`), and its modules with tests are compiled here.
+#![allow(dead_code, unused_imports, unreachable_pub)] // modules are here for their tests
+
+#[path = "../src/survey/dd.rs"]
+mod dd;
+#[path = "../src/survey/exact.rs"]
+mod exact;
+#[path = "../src/page/mod.rs"]
+mod page;
+#[path = "../src/plot/mod.rs"]
+mod plot;
+#[path = "../src/scene/suggest.rs"]
+mod suggest;
