@@ -180,8 +180,8 @@ pub enum StepError {
         /// What overflowed.
         what: &'static str,
     },
-    /// A matrix has the wrong size for the group.
-    #[error("{arg}: {rows}×{cols}, expected {n}×{n}")]
+    /// A matrix or an array has the wrong size for the group or the workspace.
+    #[error("{arg}: {rows}×{cols}, expected {expected_rows}×{expected_cols}")]
     Shape {
         /// The argument.
         arg: &'static str,
@@ -189,8 +189,10 @@ pub enum StepError {
         rows: usize,
         /// Its columns.
         cols: usize,
-        /// The n of the group.
-        n: usize,
+        /// The rows it should have.
+        expected_rows: usize,
+        /// The columns it should have.
+        expected_cols: usize,
     },
     /// An argument of a map is so large that no digit of the result has a meaning.
     #[error(
@@ -242,6 +244,20 @@ pub enum StepError {
         /// Its reciprocal condition number in the 1-norm.
         rcond: f64,
     },
+}
+
+impl StepError {
+    /// Is this size, rows×columns, the one that `arg` should have?
+    pub(crate) fn check_shape(
+        arg: &'static str,
+        (rows, cols): (usize, usize),
+        (expected_rows, expected_cols): (usize, usize),
+    ) -> Result<(), StepError> {
+        match (rows, cols) == (expected_rows, expected_cols) {
+            true => Ok(()),
+            false => Err(StepError::Shape { arg, rows, cols, expected_rows, expected_cols }),
+        }
+    }
 }
 
 /// A run that stopped early. The state handed to the driver holds the last accepted point.

@@ -1,10 +1,14 @@
 //! The dense exponential: hard cases against 34-digit references, laws, every branch, every error.
 
+use std::cmp::Ordering;
 use std::collections::BTreeSet;
 
-use faer::Mat;
+use faer::{Mat, c64};
 use lieflow::StepError;
-use lieflow::dense::{ApplyChoice, ExpmChoice, Exponential, Kind, Structure};
+use lieflow::dense::{
+    ApplyChoice, ComplexExponential, ExpmChoice, Exponential, ExponentialBatch, ExponentialF32,
+    Kind, Structure,
+};
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 
@@ -142,6 +146,113 @@ fn what_is_not_finite_is_an_error_wherever_it_stands() {
             }
         }
     }
+}
+
+/// What is not n×n is told with both sizes by every entry; what is not finite is no result of any.
+#[test]
+fn every_entry_checks_sizes_and_numbers() {
+    let told = |error: Result<(), StepError>, text: &str| {
+        assert_eq!(error.expect_err("a wrong size").to_string(), text);
+    };
+    for structure in [Structure::General, Structure::Skew] {
+        for n in [3usize, 20] {
+            let (mut real, mut narrow) = (Exponential::new(n), ExponentialF32::new(n));
+            let (mut complex, mut many) = (ComplexExponential::new(n), ExponentialBatch::new(n));
+            for (rows, cols) in [(n - 1, n - 1), (n + 1, n + 1), (n, n + 1), (n - 1, n), (0, 0)] {
+                let wrong = |arg: &str| format!("{arg}: {rows}×{cols}, expected {n}×{n}");
+                let mut bad = Mat::<f64>::zeros(rows, cols);
+                let mut good = Mat::<f64>::zeros(n, n);
+                told(real.exp(&bad, structure, &mut good).map(drop), &wrong("u"));
+                told(real.exp(&good, structure, &mut bad).map(drop), &wrong("out"));
+                told(real.apply(&bad, structure, &mut good).map(drop), &wrong("u"));
+                let (mut bad, mut good) = (Mat::<f32>::zeros(rows, cols), Mat::zeros(n, n));
+                told(narrow.exp(&bad, structure, &mut good).map(drop), &wrong("u"));
+                told(narrow.exp(&good, structure, &mut bad).map(drop), &wrong("out"));
+                let (mut bad, mut good) = (Mat::<c64>::zeros(rows, cols), Mat::zeros(n, n));
+                told(complex.exp(&bad, structure, &mut good).map(drop), &wrong("u"));
+                told(complex.exp(&good, structure, &mut bad).map(drop), &wrong("out"));
+            }
+            let u = Mat::zeros(n, n);
+            let columns = real.apply(&u, structure, &mut Mat::zeros(n + 1, 2));
+            told(columns.map(drop), &format!("x: {}×2, expected {n}×2", n + 1));
+            let (one, two) = (vec![0.0; n * n], vec![0.0; 2 * n * n]);
+            let short = many.exp(&two[1..], structure, &mut two.clone());
+            told(short, &format!("u: {}×1, expected {}×1", 2 * n * n - 1, 2 * n * n));
+            let fewer = many.exp(&two, structure, &mut one.clone());
+            told(fewer, &format!("out: {}×1, expected {}×1", n * n, 2 * n * n));
+
+            for bad in [f64::NAN, f64::INFINITY] {
+                let (mut u, mut out, one) = (u.clone(), u.clone(), Mat::<f64>::identity(n, n));
+                u[(n - 1, 0)] = bad;
+                let not = |error: Option<StepError>| {
+                    assert!(matches!(error, Some(StepError::NotFinite { .. })), "{error:?}");
+                };
+                not(real.exp(&u, structure, &mut out).err());
+                not(real.apply(&u, structure, &mut one.clone()).err());
+                not(real.apply(&one, structure, &mut u.clone()).err());
+                not(Exponential::condition(&u).err());
+                let narrow_u = Mat::from_fn(n, n, |i, j| u[(i, j)] as f32);
+                not(narrow.exp(&narrow_u, structure, &mut Mat::zeros(n, n)).err());
+                let complex_u = Mat::from_fn(n, n, |i, j| c64::new(0.0, u[(i, j)]));
+                not(complex.exp(&complex_u, structure, &mut Mat::zeros(n, n)).err());
+                let mut entries = one_after_another(&u);
+                not(many.exp(&entries.clone(), structure, &mut entries).err());
+            }
+        }
+    }
+    let error = Exponential::condition(&Mat::zeros(2, 3)).map(drop);
+    told(error, "u: 2×3, expected 2×2");
+}
+
+/// Row E21: rotations in 2×2 blocks seen through a reflection, u = hbh with h = 𝟙 − 2vvᵀ/v², so that
+/// exp(u) = h·exp(b)·h is known at any n; the general path is given the same matrix.
+#[test]
+fn large_matrices_with_a_known_exponential() {
+    let sizes: &[usize] = if cfg!(debug_assertions) { &[64, 150] } else { &[64, 256, 1000] };
+    for &n in sizes {
+        let mut rng = Pcg64::seed_from_u64(n as u64);
+        let angles: Vec<f64> = (0..n / 2).map(|_| 3.0 * uniform(&mut rng)).collect();
+        let v: Vec<f64> = (0..n).map(|_| uniform(&mut rng)).collect();
+        let square: f64 = v.iter().map(|x| x * x).sum();
+        let reflected = |block: &dyn Fn(f64) -> [f64; 2]| {
+            // hbh = b − v·wᵀ − z·vᵀ with w, z from bv, bᵀv, vᵀbv.
+            let b = Mat::from_fn(n, n, |i, j| {
+                let [c, s] = block(angles[i / 2]);
+                match (i / 2 == j / 2, i.cmp(&j)) {
+                    (false, _) => 0.0,
+                    (_, Ordering::Equal) => c,
+                    (_, Ordering::Greater) => s,
+                    (_, Ordering::Less) => -s,
+                }
+            });
+            let v = Mat::from_fn(n, 1, |i, _| v[i]);
+            let (bv, vb) = (&b * &v, v.transpose() * &b);
+            let vbv = (v.transpose() * &bv)[(0, 0)];
+            let f = 2.0 / square;
+            Mat::from_fn(n, n, |i, j| {
+                b[(i, j)] - f * v[(i, 0)] * vb[(0, j)] - f * bv[(i, 0)] * v[(j, 0)]
+                    + f * f * vbv * v[(i, 0)] * v[(j, 0)]
+            })
+        };
+        let u = reflected(&|angle| [0.0, angle]);
+        let expected = reflected(&|angle| [angle.cos(), angle.sin()]);
+        for structure in [Structure::Skew, Structure::General] {
+            let u = match structure {
+                Structure::Skew => (&u - u.transpose()) * faer::Scale(0.5),
+                Structure::General => u.clone(),
+            };
+            let start = std::time::Instant::now();
+            let (g, choice) = exp(&u, structure).expect("exp");
+            let (time, error) = (start.elapsed(), norm(&(&g - &expected)) / norm(&expected));
+            println!("n = {n}, {structure:?}: {time:.1?}, error {error:.1e}, {choice:?}");
+            // u is normal, and itself known to ε‖u‖.
+            assert!(error <= 10.0 * EPS * 3.0, "{n} {structure:?}: {error:e}");
+        }
+    }
+}
+
+fn one_after_another(x: &Mat<f64>) -> Vec<f64> {
+    (0..x.ncols()).flat_map(|j| x.col_as_slice(j).to_vec()).collect()
 }
 
 #[test]

@@ -135,9 +135,7 @@ fn what_is_not_finite_is_an_error_in_every_lane() {
     let mut large = element(&mut rng, 3, Structure::Skew, 1.0);
     (large[(0, 1)], large[(1, 0)]) = (1e16, -1e16);
     assert_eq!(batch(&[large], Structure::Skew), Err(StepError::NormTooLarge { map: "exp" }));
-    let mut batch = ExponentialBatch::new(3);
-    assert!(batch.exp(&[0.0; 10], Structure::General, &mut [0.0; 10]).is_err());
-    assert!(batch.exp(&[0.0; 18], Structure::General, &mut [0.0; 9]).is_err());
-    assert!(batch.exp(&[], Structure::General, &mut []).is_ok());
+    assert!(ExponentialBatch::new(3).exp(&[], Structure::General, &mut []).is_ok());
     assert!(ExponentialBatch::new(0).exp(&[], Structure::General, &mut []).is_ok());
+    assert!(ExponentialBatch::new(0).exp(&[1.0], Structure::General, &mut [0.0]).is_err());
 }

@@ -4,13 +4,18 @@
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
-use lieflow::actions::{Coadjoint, LeftTranslation, Linear};
+use faer::Mat;
+use lieflow::actions::{Coadjoint, Conjugation, Lagrangian, LeftTranslation, Linear, Pair};
 use lieflow::catalog::{METHODS, MethodSpec, OnMethod, TABLEAUS, with_method};
-use lieflow::groups::{AlgebraMatrix, LieGroup, MatrixGroup, Sample};
+use lieflow::groups::{AlgebraMatrix, LieGroup, MatrixGroup, Power, Product, Sample, Translations};
 use lieflow::maps::{Cay, Exp};
 use lieflow::methods::{Rkmk, tableau::RK4};
-use lieflow::problems::{PointOf, RigidBody, RigidBodyAttitude, RigidBodyN, RigidBodyNAttitude};
-use lieflow::{Action, LieAlgebra, Method, Problem, Step};
+use lieflow::problems::{
+    LinearEquation, PointOf, RigidBody, RigidBodyAttitude, RigidBodyN, RigidBodyNAttitude,
+};
+use lieflow::{
+    Action, CoordinateMap, LieAlgebra, Method, Problem, SaveAt, Step, TimeGrid, integrate,
+};
 use nalgebra::{Matrix3, Vector3};
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
@@ -182,10 +187,62 @@ fn every_group_and_action() {
     }
 }
 
+/// A run to t = 1 with this many output times between its steps: the allocations.
+fn allocations_beside<P: Problem>(problem: &P, y: &PointOf<P>, times: usize) -> usize
+where
+    P::Group: LieAlgebra<Scalar = f64>,
+    Exp: CoordinateMap<P::Group>,
+{
+    let grid = TimeGrid::with_steps([0.0, 1.0], 10).expect("a grid");
+    let save = SaveAt::Times((0..times).map(|i| (i as f64 + 0.5) / times as f64).collect());
+    let (mut y, method) = (y.clone(), Rkmk::new(RK4, Exp));
+    let before = ALLOCATIONS.get();
+    let stats = integrate(problem, &method, &grid, &save, &mut y, |_, _| {}).expect("a run");
+    let count = ALLOCATIONS.get() - before;
+    assert_eq!(stats.side_steps, times as u64);
+    count
+}
+
+/// A step aside, to a time between two steps, is a step like the others.
+#[test]
+fn steps_aside() {
+    macro_rules! check {
+        ($group:expr, $action:expr, $u:expr, $y:expr) => {
+            let (group, u, y) = ($group, $u, $y);
+            let field = |_: f64, v: &mut _| {
+                group.set_zero(v);
+                group.axpy(1.0, &u, v);
+            };
+            let problem = LinearEquation::new(group.clone(), $action, field);
+            let (few, many) =
+                (allocations_beside(&problem, &y, 4), allocations_beside(&problem, &y, 300));
+            assert_eq!(few, many, "{} on {}", stringify!($action), group.name());
+        };
+    }
+    let mut rng = Pcg64::seed_from_u64(6);
+    let so5 = &MatrixGroup::so(5).expect("SO(5)");
+    let u = so5.sample_algebra(&mut rng, 0.1);
+    let (m, x) = (u.clone().into_mat(), so5.sample_vector(&mut rng));
+    check!(so5, LeftTranslation, u.clone(), so5.identity());
+    check!(so5, Linear, u.clone(), x.clone());
+    check!(so5, Coadjoint, u.clone(), m.clone());
+    check!(so5, Conjugation, u.clone(), m.clone());
+    let sp4 = &MatrixGroup::sp(4).expect("Sp(4)");
+    check!(sp4, Lagrangian, sp4.sample_algebra(&mut rng, 0.1), Mat::identity(2, 2));
+    let (one, shift) = (so5.identity(), Translations::new(Mat::zeros(2, 2), 4));
+    let pair = &Product(so5.clone(), shift.clone());
+    let (uu, zero) = ((u.clone(), shift.zero()), shift.zero());
+    check!(pair, LeftTranslation, uu.clone(), (one, zero.clone()));
+    check!(pair, Pair(Coadjoint, Linear), uu.clone(), (m.clone(), zero));
+    let power = &Power::new(so5.clone(), 2).expect("SO(5)²");
+    let two: Box<[AlgebraMatrix]> = vec![u.clone(), u].into();
+    check!(power, Linear, two.clone(), vec![x.clone(), x].into());
+    check!(power, Coadjoint, two.clone(), vec![m.clone(), m].into());
+}
+
 /// The driver allocates before the first step only.
 #[test]
 fn a_long_run_allocates_as_often_as_a_short_one() {
-    use lieflow::{SaveAt, TimeGrid, integrate};
     let body = RigidBody::<f64>::new([1.0, 2.0, 3.0]).expect("a body");
     let run = |steps| {
         let grid = TimeGrid::with_steps([0.0, 1.0], steps).expect("a grid");

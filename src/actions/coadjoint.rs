@@ -15,7 +15,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::Action;
 use crate::chart::PsiOf;
-use crate::dense::{Lu, mul};
+use crate::dense::{Lu, congruence, mul};
 use crate::error::{Error, StepError};
 use crate::groups::{Form, GroupMatrix, LieGroup, MatrixGroup, Se3, So3, add3, cross};
 use crate::maps::CoordinateMap;
@@ -86,6 +86,9 @@ impl Action<MatrixGroup> for Coadjoint {
     fn check(&self, group: &MatrixGroup, p: &Mat<f64>) -> Result<(), Error> {
         group.rows_fit("y", p, group.n())
     }
+    fn assign(&self, _: &MatrixGroup, p: &Mat<f64>, q: &mut Mat<f64>) {
+        q.copy_from(p);
+    }
     fn act(
         &self,
         group: &MatrixGroup,
@@ -111,7 +114,7 @@ impl Action<MatrixGroup> for Coadjoint {
                 conjugate_by_j(g, left);
                 mul(product, left.as_ref(), p.as_ref());
             }
-            _ => mul(product, g.as_ref(), p.as_ref()),
+            _ => return congruence(q, g, p, product),
         }
         mul(q, product.as_ref(), g.transpose());
     }

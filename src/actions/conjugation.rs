@@ -4,7 +4,8 @@
 use faer::Mat;
 
 use super::Action;
-use crate::dense::{Lu, mul};
+use crate::dense::{Lu, congruence, mul};
+use crate::error::Error;
 use crate::groups::{Form, GroupMatrix, MatrixGroup};
 
 /// Λ(g, p) = g p g⁻¹: isospectral flows, ṗ = \[f(p), p\].
@@ -28,6 +29,12 @@ impl Action<MatrixGroup> for Conjugation {
         let lu = (!matches!(group.form(), Form::Identity)).then(|| Lu::new(n));
         ConjugationWork { product: Mat::zeros(n, n), lu }
     }
+    fn check(&self, group: &MatrixGroup, p: &Mat<f64>) -> Result<(), Error> {
+        group.rows_fit("y", p, group.n())
+    }
+    fn assign(&self, _: &MatrixGroup, p: &Mat<f64>, q: &mut Mat<f64>) {
+        q.copy_from(p);
+    }
     fn act(
         &self,
         _: &MatrixGroup,
@@ -36,11 +43,8 @@ impl Action<MatrixGroup> for Conjugation {
         q: &mut Mat<f64>,
         ConjugationWork { product, lu }: &mut ConjugationWork,
     ) {
+        let Some(lu) = lu else { return congruence(q, g, p, product) };
         mul(product, g.as_ref(), p.as_ref());
-        let Some(lu) = lu else {
-            mul(q, product.as_ref(), g.transpose());
-            return;
-        };
         // gᵀ qᵀ = (g p)ᵀ.
         lu.a.copy_from(g.transpose());
         lu.factor();

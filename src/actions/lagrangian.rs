@@ -7,7 +7,7 @@ use faer::{Mat, MatRef};
 use super::Action;
 use crate::chart::PsiOf;
 use crate::dense::{Lu, is_finite, mul_add};
-use crate::error::StepError;
+use crate::error::{Error, StepError};
 use crate::groups::{GroupMatrix, MatrixGroup};
 use crate::maps::CoordinateMap;
 
@@ -56,6 +56,16 @@ impl Action<MatrixGroup> for Lagrangian {
         let m = group.n() / 2;
         let zero = || Mat::zeros(m, m);
         LagrangianWork { numerator: zero(), denominator: zero(), lu: Lu::new(m) }
+    }
+    fn check(&self, group: &MatrixGroup, p: &Mat<f64>) -> Result<(), Error> {
+        let (rows, cols, m) = (p.nrows(), p.ncols(), group.n() / 2);
+        match (rows, cols) == (m, m) {
+            true => Ok(()),
+            false => Err(Error::Shape { arg: "y", rows, cols, expected_rows: m, expected_cols: m }),
+        }
+    }
+    fn assign(&self, _: &MatrixGroup, p: &Mat<f64>, q: &mut Mat<f64>) {
+        q.copy_from(p);
     }
     fn act(
         &self,

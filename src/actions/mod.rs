@@ -31,12 +31,19 @@ pub trait Action<G: LieGroup> {
     /// Scratch for [`act`](Self::act); the only call that allocates.
     fn work(&self, group: &G) -> Self::Work;
 
-    /// Has p the size that `group` acts on? Asked before a run.
+    /// Has p the size that `group` acts on, and are its numbers finite? Asked before a run.
     ///
     /// # Errors
-    /// [`Error::Shape`] with both sizes.
+    /// [`Error::Shape`] with both sizes, [`Error::NotFiniteEntry`].
     fn check(&self, _group: &G, _p: &Self::Point) -> Result<(), Error> {
         Ok(())
+    }
+
+    /// q ← p, into the storage that there is. The default is `clone_from`, which allocates for storage
+    /// that does not know better; the driver copies where it takes a step aside.
+    #[inline]
+    fn assign(&self, _group: &G, p: &Self::Point, q: &mut Self::Point) {
+        q.clone_from(p);
     }
 
     /// q ← Λ(g, p).

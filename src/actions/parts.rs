@@ -55,6 +55,10 @@ where
         self.0.check(&group.0, &p.0)?;
         self.1.check(&group.1, &p.1)
     }
+    fn assign(&self, group: &Product<A, B>, p: &Self::Point, q: &mut Self::Point) {
+        self.0.assign(&group.0, &p.0, &mut q.0);
+        self.1.assign(&group.1, &p.1, &mut q.1);
+    }
     #[inline]
     fn act(
         &self,
@@ -89,6 +93,9 @@ impl<G: LieGroup, L: Action<G>> Action<Power<G>> for Each<L> {
     fn check(&self, group: &Power<G>, p: &Self::Point) -> Result<(), Error> {
         group.check_copies("y", p)?;
         p.iter().try_for_each(|p| self.0.check(group.group(), p))
+    }
+    fn assign(&self, group: &Power<G>, p: &Self::Point, q: &mut Self::Point) {
+        p.iter().zip(q).for_each(|(p, q)| self.0.assign(group.group(), p, q));
     }
     #[inline]
     fn act(
@@ -129,6 +136,9 @@ where
     fn check(&self, group: &Product<A, B>, p: &Self::Point) -> Result<(), Error> {
         Pair(Coadjoint, Coadjoint).check(group, p)
     }
+    fn assign(&self, group: &Product<A, B>, p: &Self::Point, q: &mut Self::Point) {
+        Pair(Coadjoint, Coadjoint).assign(group, p, q);
+    }
     #[inline]
     fn act(
         &self,
@@ -155,6 +165,9 @@ where
     }
     fn check(&self, group: &Power<G>, p: &Self::Point) -> Result<(), Error> {
         Each(Coadjoint).check(group, p)
+    }
+    fn assign(&self, group: &Power<G>, p: &Self::Point, q: &mut Self::Point) {
+        Each(Coadjoint).assign(group, p, q);
     }
     #[inline]
     fn act(

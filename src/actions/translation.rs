@@ -19,6 +19,9 @@ impl<G: LieGroup> Action<G> for LeftTranslation {
     fn check(&self, group: &G, p: &G::Elem) -> Result<(), Error> {
         group.check_elem(p)
     }
+    fn assign(&self, group: &G, p: &G::Elem, q: &mut G::Elem) {
+        group.assign(p, q);
+    }
     #[inline]
     fn act(&self, group: &G, g: &G::Elem, p: &G::Elem, q: &mut G::Elem, _: &mut Self::Work) {
         group.compose(g, p, q);

@@ -19,7 +19,7 @@
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, Par, c64};
 
-use super::ops::mul;
+use super::product::mul;
 use super::schur::Schur;
 use crate::error::StepError;
 

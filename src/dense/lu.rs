@@ -5,7 +5,8 @@ use faer::linalg::lu::partial_pivoting::{factor, solve};
 use faer::perm::PermRef;
 use faer::{Mat, MatMut, MatRef, Par};
 
-use super::ops::{SMALL, load};
+use super::ops::SMALL;
+use super::product::load;
 
 /// An LU factorisation that can be redone in place.
 pub(crate) struct Lu {

@@ -2,7 +2,7 @@
 //!
 //! Workspaces are made once; after that nothing allocates. Every product runs on one core
 //! (`Par::Seq`): below n = 128 faer's parallel mode is slower, and ensembles parallelise outside.
-//! Products and solves of 8×8 and smaller run in const-size kernels, chosen once per call, because
+//! Products up to 16×16 and solves up to 8×8 run in const-size kernels, chosen once per call, because
 //! a library call costs more there than the arithmetic.
 
 mod ad;
@@ -10,6 +10,7 @@ mod eigen;
 mod expm;
 mod lu;
 mod ops;
+mod product;
 mod schur;
 
 pub(crate) use ad::{AdForm, AdSchur, Direction, Kind as AdKind};
@@ -20,7 +21,7 @@ pub use expm::{
     Kind, Structure,
 };
 pub(crate) use lu::Lu;
-pub(crate) use ops::{
-    antisymmetrise, axpy, is_finite, lower_product, mirror, mul, mul_add, norm_frobenius, norm1,
-    orthogonalise, scaled_sum, wide,
+pub(crate) use ops::{axpy, is_finite, norm_frobenius, norm1, scaled_sum, wide};
+pub(crate) use product::{
+    antisymmetrise, congruence, lower_product, mirror, mul, mul_add, orthogonalise,
 };

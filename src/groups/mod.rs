@@ -98,19 +98,32 @@ pub trait LieGroup: LieAlgebra {
     /// How far g is from G: ‖gᵀMg − M‖ (Frobenius), zero for GL(n).
     fn defect(&self, g: &Self::Elem) -> Self::Scalar;
 
-    /// Has g the size of this group's elements? Asked once a run, of what a user hands in.
+    /// Has g the size of this group's elements, and are its numbers finite? Asked once a run, of what a
+    /// user hands in.
     ///
     /// # Errors
-    /// [`Error::Shape`] with both sizes.
+    /// [`Error::Shape`] with both sizes, [`Error::NotFiniteEntry`].
     fn check_elem(&self, _g: &Self::Elem) -> Result<(), Error> {
         Ok(())
     }
-    /// Has x the size of this group's vectors?
+    /// As [`check_elem`](Self::check_elem), of vectors.
     ///
     /// # Errors
-    /// [`Error::Shape`] with both sizes.
+    /// As there.
     fn check_vector(&self, _x: &Self::Vector) -> Result<(), Error> {
         Ok(())
+    }
+
+    /// out ← g, into the storage that there is. The default is `clone_from`, which allocates for storage
+    /// that does not know better.
+    #[inline]
+    fn assign(&self, g: &Self::Elem, out: &mut Self::Elem) {
+        out.clone_from(g);
+    }
+    /// y ← x, as [`assign`](Self::assign).
+    #[inline]
+    fn assign_vector(&self, x: &Self::Vector, y: &mut Self::Vector) {
+        y.clone_from(x);
     }
 
     /// Is every number in x finite? A product g·x may leave the range where g and x do not.
@@ -119,11 +132,11 @@ pub trait LieGroup: LieAlgebra {
         true
     }
 
-    /// Take g back towards G, where rounding carried it off: g ← g + g(𝟙 − M⁻¹gᵀMg)/2, a
-    /// Newton–Schulz step in residual form. Returns the residual ‖M⁻¹gᵀMg − 𝟙‖ found before.
+    /// Take g back towards G, where rounding carried it off, by Newton–Schulz in residual form: where M
+    /// is symmetric or skew g ← g + g(𝟙 − M⁻¹gᵀMg)/2. Returns the residual ‖M⁻¹gᵀMg − 𝟙‖ found before.
     ///
-    /// Left alone are a g whose residual is at rounding level, ε‖g‖², and one whose residual is
-    /// [`RESIDUAL_MAX`] or more. On a non-compact group rounding level itself grows with ‖g‖²: what
+    /// Left alone are a g whose residual is at rounding level, ε‖g‖², one whose residual is
+    /// [`RESIDUAL_MAX`] or more, and every g where M is such that no step is known to converge. On a non-compact group rounding level itself grows with ‖g‖²: what
     /// this returns is then the measure of membership. Groups without a form return 0.
     ///
     /// `scratch` is overwritten; nothing is allocated.

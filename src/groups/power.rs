@@ -147,6 +147,12 @@ impl<G: LieGroup> LieGroup for Power<G> {
         self.check_copies("x", x)?;
         x.iter().try_for_each(|x| self.group.check_vector(x))
     }
+    fn assign(&self, g: &Self::Elem, out: &mut Self::Elem) {
+        g.iter().zip(out).for_each(|(g, out)| self.group.assign(g, out));
+    }
+    fn assign_vector(&self, x: &Self::Vector, y: &mut Self::Vector) {
+        x.iter().zip(y).for_each(|(x, y)| self.group.assign_vector(x, y));
+    }
     /// Each copy by itself; returns the largest residual.
     fn correct(&self, g: &mut Self::Elem, [s, t]: [&mut Self::Elem; 2]) -> G::Scalar {
         let mut residual = G::Scalar::lit(0.0);

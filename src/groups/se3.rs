@@ -21,6 +21,7 @@ use nalgebra::{Matrix3, Vector3};
 use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
 
+use super::so3::check_finite;
 use super::{Adjoint, LieAlgebra, LieGroup, Sample, So3, apply3, cross};
 use crate::error::{Error, StepError};
 use crate::scalar::Real;
@@ -137,6 +138,13 @@ impl<S: Real> LieGroup for Se3<S> {
     #[inline]
     fn apply(&self, g: &Self::Elem, x: &Vector3<S>, y: &mut Vector3<S>) {
         *y = add3(&apply3(&g.0, x), &g.1);
+    }
+    fn check_elem(&self, g: &Self::Elem) -> Result<(), Error> {
+        check_finite(g.0.as_slice())?;
+        check_finite(g.1.as_slice())
+    }
+    fn check_vector(&self, x: &Vector3<S>) -> Result<(), Error> {
+        check_finite(x.as_slice())
     }
     fn distance(&self, a: &Self::Elem, b: &Self::Elem) -> S {
         let turned = So3::new().distance(&a.0, &b.0);

@@ -62,6 +62,14 @@ fn compose3<S: Real>(a: &Matrix3<S>, b: &Matrix3<S>, out: &mut Matrix3<S>) {
     }
 }
 
+/// Are the numbers of a state finite?
+pub(super) fn check_finite<S: Real>(y: &[S]) -> Result<(), Error> {
+    match y.iter().all(|x| x.is_finite()) {
+        true => Ok(()),
+        false => Err(Error::out_of_range("y", f64::NAN, "finite numbers")),
+    }
+}
+
 /// √Σx².
 fn norm_of<S: Real>(x: &[S]) -> S {
     let squares = x.iter().fold(S::lit(0.0), |s, &x| s + x * x);
@@ -153,6 +161,12 @@ impl<S: Real> LieGroup for So3<S> {
         let mut gram = self.identity();
         compose3(&g.transpose(), g, &mut gram);
         self.distance(&gram, &self.identity())
+    }
+    fn check_elem(&self, g: &Matrix3<S>) -> Result<(), Error> {
+        check_finite(g.as_slice())
+    }
+    fn check_vector(&self, x: &Vector3<S>) -> Result<(), Error> {
+        check_finite(x.as_slice())
     }
     #[inline]
     fn correct(&self, g: &mut Matrix3<S>, [half, step]: [&mut Matrix3<S>; 2]) -> S {

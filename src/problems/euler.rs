@@ -216,6 +216,10 @@ where
         let one = || group.identity();
         (one(), Action::<G>::work(&Coadjoint, group), [one(), one()])
     }
+    fn assign(&self, group: &G, p: &Self::Point, q: &mut Self::Point) {
+        group.assign(&p.0, &mut q.0);
+        Coadjoint.assign(group, &p.1, &mut q.1);
+    }
     #[inline]
     fn act(
         &self,

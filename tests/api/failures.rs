@@ -1,12 +1,14 @@
 //! Runs that cannot go on say where and why, and keep what they have.
 
 use faer::Mat;
-use lieflow::actions::Linear;
+use lieflow::actions::{Coadjoint, Conjugation, LeftTranslation, Linear};
 use lieflow::groups::{AlgebraMatrix, MatrixGroup, So3};
 use lieflow::maps::{CCSK, Cay, CoordinateMap, Exp};
 use lieflow::methods::{Method, Rk, Rkmk, Step, tableau::RK4};
-use lieflow::problems::{Ambient, PointOf, Problem, RigidBody};
-use lieflow::{Error, Failure, LieAlgebra, RunError, SaveAt, StepError, TimeGrid, integrate};
+use lieflow::problems::{Ambient, LinearEquation, PointOf, Problem, RigidBody};
+use lieflow::{
+    Action, Error, Failure, LieAlgebra, LieGroup, RunError, SaveAt, StepError, TimeGrid, integrate,
+};
 use nalgebra::Vector3;
 
 use crate::says;
@@ -241,4 +243,29 @@ fn parts_that_do_not_fit_are_refused_before_the_run() {
     assert!(matches!(done, Err(RunError::Setup(Error::Unsupported { .. }))), "{done:?}");
     says(done.unwrap_err(), &["ccsk", "SO(2,1)", "SO(n)"]);
     assert!(seen.is_empty());
+}
+
+/// A state that outgrows the range in its very last step is found by the next run, wherever it lives.
+#[test]
+fn a_state_that_outgrew_the_range_is_no_start() {
+    fn twice<A: Action<MatrixGroup>>(group: &MatrixGroup, action: A, mut y: A::Point) {
+        let u = group.algebra(faer::mat![[400.0, 0.0], [0.0, -400.0]]).expect("in 𝔤");
+        let field = |_: f64, v: &mut AlgebraMatrix| v.copy_from(&*u);
+        let problem = LinearEquation::new(group.clone(), action, field);
+        let grid = TimeGrid::with_steps([0.0, 2.0], 2).expect("a grid");
+        let mut run =
+            || integrate(&problem, &Rkmk::new(RK4, Exp), &grid, &SaveAt::Ends, &mut y, |_, _| {});
+        // e⁸⁰⁰ is beyond the range, and nothing comes after it that could stumble over it.
+        match (run(), run()) {
+            (Ok(_), second) => says(second.expect_err("not finite"), &["y[", "finite"]),
+            (first, second) => assert!(second.is_err(), "{first:?}, then {second:?}"),
+        }
+    }
+    for group in [MatrixGroup::gl(2), MatrixGroup::sp(2)] {
+        let group = group.expect("a group");
+        twice(&group, LeftTranslation, group.identity());
+        twice(&group, Conjugation, Mat::from_fn(2, 2, |_, _| 1.0));
+        twice(&group, Coadjoint, Mat::from_fn(2, 2, |_, _| 1.0));
+        twice(&group, Linear, Mat::from_fn(2, 1, |_, _| 1.0));
+    }
 }

@@ -57,7 +57,7 @@ impl ExponentialBatch {
     ///
     /// # Errors
     /// As [`Exponential::exp`], for the first matrix that fails: what `out` holds then is not to be
-    /// used. [`StepError::NotFinite`] also where the lengths are not the same multiple of n².
+    /// used. [`StepError::Shape`] where u has not k·n² numbers or `out` not as many as u.
     pub fn exp(
         &mut self,
         u: &[f64],
@@ -65,13 +65,9 @@ impl ExponentialBatch {
         out: &mut [f64],
     ) -> Result<(), StepError> {
         let size = self.n * self.n;
-        if size == 0 || u.is_empty() {
-            return Ok(());
-        }
-        if u.len() != out.len() || !u.len().is_multiple_of(size) {
-            return Err(StepError::NotFinite { what: "exp: a batch of other lengths than k·n²" });
-        }
-        let (count, skew) = (u.len() / size, structure == Structure::Skew);
+        let (count, skew) = (u.len().div_ceil(size.max(1)), structure == Structure::Skew);
+        StepError::check_shape("u", (u.len(), 1), (count * size, 1))?;
+        StepError::check_shape("out", (out.len(), 1), (count * size, 1))?;
         let mut first = 0;
         while first < count {
             let careful = match self.n {

@@ -4,15 +4,72 @@
 //! the products alone stand out of line behind [`Simd::vectorize`].
 
 use faer::{Mat, MatRef};
-use pulp::{NullaryFnOnce, Simd, bytemuck};
+use pulp::{Arch, NullaryFnOnce, Simd, WithSimd, bytemuck};
 
 use super::taylor::Packed;
+
+/// The largest n with a kernel.
+pub(in crate::dense) const N_MAX: usize = 16;
+
+/// What is done with matrices in registers.
+pub(in crate::dense) trait Kernel {
+    /// What it gives.
+    type Output;
+    /// Do it with N×N matrices, N ≥ n, whose columns are K registers. `inline(always)`, please.
+    fn call<S: Simd, const N: usize, const K: usize>(self, simd: S) -> Self::Output;
+}
+
+/// `op` for n×n matrices with the widest registers there are; `None` for n = 0 or n > [`N_MAX`].
+#[inline]
+pub(in crate::dense) fn dispatch<Op: Kernel>(arch: Arch, n: usize, op: Op) -> Option<Op::Output> {
+    macro_rules! kernels {
+        ($($range:pat => $n:literal, $k8:literal, $k4:literal, $k2:literal;)*) => {
+            match n {
+                $($range => Some(arch.dispatch(Sized::<$n, $k8, $k4, $k2, Op>(op))),)*
+                _ => None,
+            }
+        };
+    }
+    // n ⇒ kernel size, registers a column with 8, 4 and 2 lanes.
+    kernels! {
+        1 | 2 => 2, 1, 1, 1;
+        3 => 3, 1, 1, 2;
+        4 => 4, 1, 1, 2;
+        5 => 5, 1, 2, 3;
+        6 => 6, 1, 2, 3;
+        7 => 7, 1, 2, 4;
+        8 => 8, 1, 2, 4;
+        9 | 10 => 10, 2, 3, 5;
+        11 | 12 => 12, 2, 3, 6;
+        13 | 14 => 14, 2, 4, 7;
+        15 | 16 => 16, 2, 4, 8;
+    }
+}
+
+/// A kernel with its N, and its K with 8, 4 and 2 lanes.
+struct Sized<const N: usize, const K8: usize, const K4: usize, const K2: usize, Op>(Op);
+
+impl<const N: usize, const K8: usize, const K4: usize, const K2: usize, Op: Kernel> WithSimd
+    for Sized<N, K8, K4, K2, Op>
+{
+    type Output = Op::Output;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Op::Output {
+        match S::F64_LANES {
+            8 => self.0.call::<S, N, K8>(simd),
+            4 => self.0.call::<S, N, K4>(simd),
+            2 => self.0.call::<S, N, K2>(simd),
+            _ => self.0.call::<S, N, N>(simd),
+        }
+    }
+}
 
 /// An N×N matrix as N columns of K registers; the padding is zero.
 ///
 /// Aligned, because a register that straddles two cache lines is loaded and stored at half speed.
 #[repr(align(64))]
-pub(super) struct Cols<S: Simd, const N: usize, const K: usize>(pub(super) [[S::f64s; K]; N]);
+pub(in crate::dense) struct Cols<S: Simd, const N: usize, const K: usize>([[S::f64s; K]; N]);
 
 /// e_16 between zeros: `UNIT[16 − j..]` begins with e_j.
 const UNIT: [f64; 48] = {
@@ -43,9 +100,17 @@ impl<S: Simd, const N: usize, const K: usize> Cols<S, N, K> {
         Cols([[simd.splat_f64s(0.0); K]; N])
     }
 
-    /// From an n×n matrix with n ≤ N, padded with zeros.
+    /// From an n×n matrix with n ≤ N, padded with zeros. Its columns or its rows lie in one piece.
     #[inline(always)]
-    pub(super) fn load(simd: S, a: MatRef<'_, f64>) -> Self {
+    pub(in crate::dense) fn load(simd: S, a: MatRef<'_, f64>) -> Self {
+        match a.row_stride() {
+            1 => Self::load_columns(simd, a),
+            _ => Self::load_columns(simd, a.transpose()).transpose(simd),
+        }
+    }
+
+    #[inline(always)]
+    fn load_columns(simd: S, a: MatRef<'_, f64>) -> Self {
         let mut out = Self::zero(simd);
         let n = a.nrows().min(N);
         let flat: &mut [f64] = bytemuck::cast_slice_mut(out.0.as_flattened_mut());
@@ -65,7 +130,7 @@ impl<S: Simd, const N: usize, const K: usize> Cols<S, N, K> {
     }
 
     #[inline(always)]
-    pub(super) fn store(&self, out: &mut Mat<f64>) {
+    pub(in crate::dense) fn store(&self, out: &mut Mat<f64>) {
         let n = out.nrows().min(N);
         let flat = self.flat();
         if n == N {

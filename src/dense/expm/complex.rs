@@ -68,9 +68,8 @@ impl ComplexExponential {
         out: &mut Mat<c64>,
     ) -> Result<ExpmChoice, StepError> {
         let n = self.powers[0].nrows();
-        if [u.nrows(), u.ncols(), out.nrows(), out.ncols()].iter().any(|m| *m != n) {
-            return Err(StepError::NotFinite { what: "exp: a matrix that is not n×n" });
-        }
+        StepError::check_shape("u", u.shape(), (n, n))?;
+        StepError::check_shape("out", out.shape(), (n, n))?;
         let (norm, skew) = (norm1(u.as_ref()), structure == Structure::Skew);
         if !norm.is_finite() {
             return Err(StepError::NotFinite { what: "the argument of exp" });

@@ -3,7 +3,8 @@
 use faer::{Mat, MatRef};
 
 use super::{ExpmChoice, Exponential, Structure};
-use crate::dense::ops::{mul, norm_frobenius, norm1};
+use crate::dense::ops::{is_finite, norm_frobenius, norm1};
+use crate::dense::product::mul;
 use crate::error::StepError;
 
 /// How exp(u)·x was computed.
@@ -31,6 +32,7 @@ impl Exponential {
     /// As [`exp`](Self::exp).
     pub fn condition(u: &Mat<f64>) -> Result<f64, StepError> {
         let n = u.nrows();
+        StepError::check_shape("u", u.shape(), (n, n))?;
         let size = norm_frobenius(u);
         if size == 0.0 || n == 0 {
             return Ok(0.0);
@@ -81,17 +83,16 @@ impl Exponential {
     /// Allocates three matrices of the size of x, and one n×n where exp(u) is formed.
     ///
     /// # Errors
-    /// As [`exp`](Self::exp), and [`StepError::NotFinite`] where the shapes do not fit.
+    /// As [`exp`](Self::exp); [`StepError::Shape`] also where x has not n rows.
     pub fn apply(
         &mut self,
         u: &Mat<f64>,
         structure: Structure,
         x: &mut Mat<f64>,
     ) -> Result<ApplyChoice, StepError> {
-        let (n, k) = (u.nrows(), x.ncols());
-        if u.ncols() != n || x.nrows() != n || n != self.0.a.nrows() {
-            return Err(StepError::NotFinite { what: "exp(u)·x: matrices that do not fit" });
-        }
+        let (n, k) = (self.0.a.nrows(), x.ncols());
+        StepError::check_shape("u", u.shape(), (n, n))?;
+        StepError::check_shape("x", x.shape(), (n, k))?;
         let norm = norm1(u.as_ref());
         if !norm.is_finite() {
             return Err(StepError::NotFinite { what: "the argument of exp" });
@@ -101,7 +102,7 @@ impl Exponential {
             let choice = self.exp(u, structure, &mut g)?;
             let y = x.clone();
             mul(x, g.as_ref(), y.as_ref());
-            return Ok(ApplyChoice::Formed(choice));
+            return finite(x, ApplyChoice::Formed(choice));
         }
         // Terms grow to e²/√(4π) at most, so that no more than a digit is lost in a step.
         let steps = (0.5 * norm).ceil().max(1.0) as u32;
@@ -123,15 +124,19 @@ impl Exponential {
                 last = size;
             }
         }
-        match crate::dense::is_finite(x) {
-            true => Ok(ApplyChoice::Series { steps, products }),
-            false => Err(StepError::NotFinite { what: "exp(u)·x" }),
-        }
+        finite(x, ApplyChoice::Series { steps, products })
     }
 
     /// ‖gᵀg − 𝟙‖_F, the residual of a rotation. Allocates.
     pub fn residual(g: &Mat<f64>) -> f64 {
         norm_frobenius(&(g.transpose() * g - Mat::<f64>::identity(g.ncols(), g.ncols())))
+    }
+}
+
+fn finite(x: &Mat<f64>, choice: ApplyChoice) -> Result<ApplyChoice, StepError> {
+    match is_finite(x) {
+        true => Ok(choice),
+        false => Err(StepError::NotFinite { what: "exp(u)·x" }),
     }
 }
 

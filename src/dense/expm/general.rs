@@ -11,7 +11,8 @@ use faer::Mat;
 use super::pade::THETA;
 use super::taylor::{B12, B18, T8, THETA_1, THETA_8, THETA_12, half_to_the, halvings, halvings_18};
 use super::{Expm, ExpmChoice, Kind};
-use crate::dense::ops::{abs_mul, abs_sums, axpy, mul, mul_add, norm1, scaled_sum, scaled_sums};
+use crate::dense::ops::{abs_mul, abs_sums, axpy, norm1, scaled_sum, scaled_sums};
+use crate::dense::product::{mul, mul_add};
 
 const THETA_13: f64 = THETA[4].1;
 

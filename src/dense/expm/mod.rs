@@ -11,7 +11,7 @@
 //! The result of squarings on so(n) is put back on the group by a residual-form Newton–Schulz step.
 
 mod batch;
-mod cols;
+pub(super) mod cols;
 mod complex;
 mod condition;
 mod general;
@@ -20,7 +20,7 @@ mod narrow;
 mod pade;
 mod skew;
 mod small;
-mod taylor;
+pub(super) mod taylor;
 
 pub use batch::ExponentialBatch;
 pub use complex::ComplexExponential;
@@ -106,8 +106,9 @@ impl Exponential {
     /// [`Structure::Skew`] ‖outᵀout − 𝟙‖_F ≤ 4√n ε at every norm. About 3 to 10 products.
     ///
     /// # Errors
-    /// [`StepError::NotFinite`] when u or exp(u) is not finite or one of the two matrices is not
-    /// n×n, [`StepError::NormTooLarge`] for a skew u beyond 1e15, where no digit of an angle is left.
+    /// [`StepError::Shape`] when one of the two matrices is not n×n, [`StepError::NotFinite`] when u or
+    /// exp(u) is not finite, [`StepError::NormTooLarge`] for a skew u beyond 1e15, where no digit of an
+    /// angle is left.
     pub fn exp(
         &mut self,
         u: &Mat<f64>,
@@ -115,9 +116,8 @@ impl Exponential {
         out: &mut Mat<f64>,
     ) -> Result<ExpmChoice, StepError> {
         let n = self.0.a.nrows();
-        if [u.nrows(), u.ncols(), out.nrows(), out.ncols()].iter().any(|m| *m != n) {
-            return Err(StepError::NotFinite { what: "exp: a matrix that is not n×n" });
-        }
+        StepError::check_shape("u", u.shape(), (n, n))?;
+        StepError::check_shape("out", out.shape(), (n, n))?;
         self.0.exp(u, structure, out)?;
         Ok(self.0.choice)
     }
@@ -179,7 +179,7 @@ impl Expm {
         out: &mut Mat<f64>,
     ) -> Result<(), StepError> {
         let n = x.nrows();
-        if n <= small::N_MAX
+        if n <= cols::N_MAX
             && !self.pade_only
             && let Some(choice) = small::exp(self.arch, x, structure, out)
         {

@@ -35,9 +35,8 @@ impl ExponentialF32 {
         out: &mut Mat<f32>,
     ) -> Result<ExpmChoice, StepError> {
         let n = self.u.nrows();
-        if [u.nrows(), u.ncols(), out.nrows(), out.ncols()].iter().any(|m| *m != n) {
-            return Err(StepError::NotFinite { what: "exp: a matrix that is not n×n" });
-        }
+        StepError::check_shape("u", u.shape(), (n, n))?;
+        StepError::check_shape("out", out.shape(), (n, n))?;
         for j in 0..n {
             for (to, from) in self.u.col_as_slice_mut(j).iter_mut().zip(u.col_as_slice(j)) {
                 *to = f64::from(*from);

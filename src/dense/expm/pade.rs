@@ -6,7 +6,8 @@
 use faer::Mat;
 
 use super::Expm;
-use crate::dense::ops::{mul, mul_add, scaled_sum};
+use crate::dense::ops::scaled_sum;
+use crate::dense::product::{mul, mul_add};
 
 const C3: &[f64] = &[120., 60., 12., 1.];
 const C5: &[f64] = &[30240., 15120., 3360., 420., 30., 1.];

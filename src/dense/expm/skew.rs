@@ -17,9 +17,8 @@ use faer::Mat;
 
 use super::taylor::{half_to_the, halvings};
 use super::{Expm, ExpmChoice, Kind};
-use crate::dense::ops::{
-    half_mul, half_mul_add, mul, norm1, orthogonalise, scaled_sum, scaled_sums,
-};
+use crate::dense::ops::{norm1, scaled_sum, scaled_sums};
+use crate::dense::product::{half_mul, half_mul_add, mul, orthogonalise};
 
 const THETA_5: f64 = 0.0092;
 const THETA_9: f64 = 0.186;

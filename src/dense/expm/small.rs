@@ -1,101 +1,59 @@
 //! exp of a small matrix as one kernel: load once, compute in padded local arrays, store once.
 
 use faer::Mat;
-use pulp::{Arch, Simd, WithSimd};
+use pulp::{Arch, Simd};
 
-use super::cols::Cols;
+use super::cols::{self, Cols, Kernel};
 use super::taylor::{
     B18, Packed, THETA_1, THETA_2, THETA_4, THETA_8, THETA_12, THETA_18, THETA_18_6, degree_8,
     degree_12, degree_18, half_to_the, halvings, halvings_18,
 };
 use super::{ExpmChoice, Kind, NORM_MAX_SKEW, Structure};
 
-/// The largest n with a kernel.
-pub(super) const N_MAX: usize = 16;
 /// Up to this norm a matrix of which nothing is known is scaled by its norm.
 pub(super) const PLAIN: f64 = 16.0;
 /// Beyond this norm the kernel leaves a matrix of which nothing is known to the careful path.
 const NORM_MAX: f64 = 1e3;
 
-/// out ← exp(x) for n ≤ [`N_MAX`]; `None` where the matrix needs more care than this gives, or is
-/// not finite.
+/// out ← exp(x) for n ≤ 16; `None` where the matrix needs more care than this gives, or is not finite.
 pub(super) fn exp(
     arch: Arch,
     x: &Mat<f64>,
     structure: Structure,
     out: &mut Mat<f64>,
 ) -> Option<ExpmChoice> {
-    let skew = structure == Structure::Skew;
-    macro_rules! kernels {
-        ($($range:pat => $n:literal, $k8:literal, $k4:literal, $k2:literal;)*) => {
-            match x.nrows() {
-                $($range => arch.dispatch(Exp::<$n, $k8, $k4, $k2> { x, skew, out }),)*
-                _ => None,
-            }
-        };
-    }
-    // n ⇒ kernel size, registers a column with 8, 4 and 2 lanes.
-    kernels! {
-        1 | 2 => 2, 1, 1, 1;
-        3 => 3, 1, 1, 2;
-        4 => 4, 1, 1, 2;
-        5 => 5, 1, 2, 3;
-        6 => 6, 1, 2, 3;
-        7 => 7, 1, 2, 4;
-        8 => 8, 1, 2, 4;
-        9 | 10 => 10, 2, 3, 5;
-        11 | 12 => 12, 2, 3, 6;
-        13 | 14 => 14, 2, 4, 7;
-        15 | 16 => 16, 2, 4, 8;
-    }
+    cols::dispatch(arch, x.nrows(), Exp { x, skew: structure == Structure::Skew, out })?
 }
 
-struct Exp<'a, const N: usize, const K8: usize, const K4: usize, const K2: usize> {
+struct Exp<'a> {
     x: &'a Mat<f64>,
     skew: bool,
     out: &'a mut Mat<f64>,
 }
 
-impl<const N: usize, const K8: usize, const K4: usize, const K2: usize> WithSimd
-    for Exp<'_, N, K8, K4, K2>
-{
+impl Kernel for Exp<'_> {
     type Output = Option<ExpmChoice>;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> Option<ExpmChoice> {
+    fn call<S: Simd, const N: usize, const K: usize>(self, simd: S) -> Option<ExpmChoice> {
         let Exp { x, skew, out } = self;
-        match S::F64_LANES {
-            8 => kernel::<S, N, K8>(simd, x, skew, out),
-            4 => kernel::<S, N, K4>(simd, x, skew, out),
-            2 => kernel::<S, N, K2>(simd, x, skew, out),
-            _ => kernel::<S, N, N>(simd, x, skew, out),
+        let a = Cols::<S, N, K>::load(simd, x.as_ref());
+        let norm = a.norm(simd);
+        let (mut g, degree, squarings) = taylor(simd, &a, norm, skew)?;
+        for _ in 0..squarings {
+            let h = g;
+            g = Cols::mul(simd, &h, &h);
         }
+        let mut corrections = 0;
+        if skew && squarings > 0 {
+            corrections = orthogonalise(simd, &mut g);
+        }
+        if !g.is_finite(simd) {
+            return None;
+        }
+        g.store(out);
+        Some(ExpmChoice { kind: Kind::Taylor, degree, squarings, corrections, balanced: false })
     }
-}
-
-#[inline(always)]
-fn kernel<S: Simd, const N: usize, const K: usize>(
-    simd: S,
-    x: &Mat<f64>,
-    skew: bool,
-    out: &mut Mat<f64>,
-) -> Option<ExpmChoice> {
-    let a = Cols::<S, N, K>::load(simd, x.as_ref());
-    let norm = a.norm(simd);
-    let (mut g, degree, squarings) = taylor(simd, &a, norm, skew)?;
-    for _ in 0..squarings {
-        let h = g;
-        g = Cols::mul(simd, &h, &h);
-    }
-    let mut corrections = 0;
-    if skew && squarings > 0 {
-        corrections = orthogonalise(simd, &mut g);
-    }
-    if !g.is_finite(simd) {
-        return None;
-    }
-    g.store(out);
-    Some(ExpmChoice { kind: Kind::Taylor, degree, squarings, corrections, balanced: false })
 }
 
 /// The polynomial at 2⁻ˢa, its degree, and s.

@@ -110,7 +110,7 @@ pub(super) fn half_to_the(s: u32) -> f64 {
 }
 
 /// Matrices in registers: what the polynomials ask of them.
-pub(super) trait Packed<S: Simd>: Copy {
+pub(in crate::dense) trait Packed<S: Simd>: Copy {
     /// a·b.
     fn mul(simd: S, a: &Self, b: &Self) -> Self;
     /// self ← self + a·b.

@@ -35,11 +35,7 @@ pub(super) fn finite(arg: &'static str, x: MatRef<'_, f64>) -> Result<(), Error>
 impl MatrixGroup {
     /// Is x n×n?
     pub(crate) fn fits(&self, arg: &'static str, x: &Mat<f64>) -> Result<(), StepError> {
-        let (rows, cols, n) = (x.nrows(), x.ncols(), self.n());
-        match (rows, cols) == (n, n) {
-            true => Ok(()),
-            false => Err(StepError::Shape { arg, rows, cols, n }),
-        }
+        StepError::check_shape(arg, x.shape(), (self.n(), self.n()))
     }
 
     /// Is u, the argument of a map, n×n and finite? `what` names it in words.
@@ -51,7 +47,7 @@ impl MatrixGroup {
         }
     }
 
-    /// Is x n×`expected_cols`?
+    /// Is x, a state, n×`expected_cols` and finite?
     pub(crate) fn rows_fit(
         &self,
         arg: &'static str,
@@ -60,7 +56,7 @@ impl MatrixGroup {
     ) -> Result<(), Error> {
         let (rows, cols, expected_rows) = (x.nrows(), x.ncols(), self.n());
         match (rows, cols) == (expected_rows, expected_cols) {
-            true => Ok(()),
+            true => finite(arg, x.as_ref()),
             false => Err(Error::Shape { arg, rows, cols, expected_rows, expected_cols }),
         }
     }

@@ -1,51 +1,103 @@
 //! g back to G_M: Newton–Schulz in residual form.
 //!
-//! g ← g + g(𝟙 − M⁻¹gᵀMg)/2, quadratic where M is symmetric or skew; elsewhere each step halves what
-//! the other part of M sees. The residual form adds a small correction to g instead of forming
-//! g(3·𝟙 − M⁻¹gᵀMg)/2: it rounds the correction, not g.
+//! With X♯ = M⁻¹XᵀM and D = 𝟙 − g♯g, the step g ← g(𝟙 + X) has to solve X + X♯ = D. It adds a small
+//! correction to g instead of forming g·(𝟙 + X): rounding is that of the correction, not of g. By
+//! P = M⁻ᵀM, with which X♯♯ = P⁻¹XP:
+//!
+//! | P | X | residual after it |
+//! |---|---|---|
+//! | ±𝟙: M symmetric or skew | D/2 | O(D²) |
+//! | P² = −𝟙: U(m), with M = 𝟙 + J | (3D − 2D♯ + D♯♯)/4 | O(D²) |
+//! | any other, 𝔤 skew: products of such | the same | \|1 + μ\|/2 of what was, X♯♯ = μX |
+//! | any other | 0 | nothing is known to converge |
 
 use faer::Mat;
 
 use super::{Form, GroupMatrix, MatrixGroup};
-use crate::dense::{axpy, mul, norm_frobenius, scaled_sum};
+use crate::dense::{axpy, mul, mul_add, norm_frobenius, scaled_sum};
 use crate::groups::RESIDUAL_MAX;
 
 /// No more steps than these.
 const STEPS_MAX: usize = 6;
-/// One step takes a residual below this to rounding where M is symmetric or skew.
+/// One quadratic step takes a residual below this to rounding.
 const ONE_STEP: f64 = 1e-8;
+
+/// What is known of P.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Cosquare {
+    /// P = ±𝟙.
+    One,
+    /// P² = −𝟙.
+    Quarter,
+    /// P is orthogonal.
+    Orthogonal,
+    /// Nothing.
+    Other,
+}
+
+impl Cosquare {
+    pub(super) fn of(form: &Form) -> Self {
+        let Form::Bilinear { m, inverse } = form else { return Cosquare::One };
+        if super::sample::symmetry(m).is_some() {
+            return Cosquare::One;
+        }
+        let n = m.nrows();
+        let p = inverse.transpose() * m;
+        let (square, gram) = (&p * &p, p.transpose() * &p);
+        let one = Mat::<f64>::identity(n, n);
+        let tolerance = 1e-10 * norm_frobenius(&p).powi(2);
+        if norm_frobenius(&(square + &one)) <= tolerance {
+            Cosquare::Quarter
+        } else if norm_frobenius(&(gram - &one)) <= tolerance {
+            Cosquare::Orthogonal
+        } else {
+            Cosquare::Other
+        }
+    }
+}
 
 impl MatrixGroup {
     /// [`LieGroup::correct`](crate::LieGroup::correct).
     pub(super) fn newton_schulz(&self, g: &mut GroupMatrix, [a, b]: [&mut GroupMatrix; 2]) -> f64 {
         let mut first = None;
         for _ in 0..STEPS_MAX {
-            self.half_residual(g, a, b);
-            let residual = 2.0 * norm_frobenius(a);
+            self.residual_of(g, a, b);
+            let residual = norm_frobenius(a);
             first.get_or_insert(residual);
-            let noise = f64::EPSILON * norm_frobenius(g).powi(2);
-            if !(residual > noise && residual < RESIDUAL_MAX) {
+            // The rounding of g♯g: ε‖g‖², and half of that where g is orthogonal.
+            let noise = f64::EPSILON * (norm_frobenius(g).powi(2) - 0.5 * self.n as f64);
+            let reach = residual > noise && residual < RESIDUAL_MAX;
+            if !reach || self.cosquare == Cosquare::Other {
                 break;
             }
-            mul(b, g.as_ref(), a.as_ref());
-            axpy(1.0, b, g);
-            if residual < ONE_STEP && self.is_quadratic() {
+            let quadratic = match (&self.form, self.cosquare) {
+                (Form::Bilinear { m, inverse }, Cosquare::Quarter | Cosquare::Orthogonal) => {
+                    // X = ¾D − ½Y♯ with Y = D − ½D♯; g moves in between, which is of second order.
+                    mul(b, g.as_ref(), a.as_ref());
+                    axpy(0.75, b, g);
+                    mul(b, a.transpose(), m.as_ref());
+                    mul_add(a, -0.5, inverse.as_ref(), b.as_ref());
+                    mul(b, a.transpose(), m.as_ref());
+                    mul(a, inverse.as_ref(), b.as_ref());
+                    mul(b, g.as_ref(), a.as_ref());
+                    axpy(-0.5, b, g);
+                    self.cosquare == Cosquare::Quarter
+                }
+                _ => {
+                    mul(b, g.as_ref(), a.as_ref());
+                    axpy(0.5, b, g);
+                    true
+                }
+            };
+            if residual < ONE_STEP && quadratic {
                 break;
             }
         }
         first.unwrap_or(0.0)
     }
 
-    /// Is M symmetric or skew?
-    fn is_quadratic(&self) -> bool {
-        let Form::Bilinear { m, .. } = &self.form else { return true };
-        let n = self.n;
-        let all = |sign: f64| (0..n).all(|j| (0..=j).all(|i| m[(i, j)] == sign * m[(j, i)]));
-        all(1.0) || all(-1.0)
-    }
-
-    /// a ← (𝟙 − M⁻¹gᵀMg)/2, b scratch.
-    fn half_residual(&self, g: &Mat<f64>, a: &mut Mat<f64>, b: &mut Mat<f64>) {
+    /// a ← D = 𝟙 − M⁻¹gᵀMg, b scratch.
+    fn residual_of(&self, g: &Mat<f64>, a: &mut Mat<f64>, b: &mut Mat<f64>) {
         match &self.form {
             Form::Free => {
                 a.fill(0.0);
@@ -56,16 +108,15 @@ impl MatrixGroup {
                 times_j(g, 1.0, a);
                 mul(b, g.transpose(), a.as_ref());
                 times_j(b, -1.0, a);
-                b.copy_from(&*a);
+                scaled_sum(b, [1.0], [a], 0.0);
             }
             Form::Bilinear { m, inverse } => {
-                mul(a, m.as_ref(), g.as_ref());
-                mul(b, g.transpose(), a.as_ref());
-                mul(a, inverse.as_ref(), b.as_ref());
-                b.copy_from(&*a);
+                mul(b, m.as_ref(), g.as_ref());
+                mul(a, g.transpose(), b.as_ref());
+                mul(b, inverse.as_ref(), a.as_ref());
             }
         }
-        scaled_sum(a, [-0.5], [b], 0.5);
+        scaled_sum(a, [-1.0], [b], 1.0);
     }
 }
 
@@ -73,9 +124,10 @@ impl MatrixGroup {
 fn times_j(x: &Mat<f64>, sign: f64, out: &mut Mat<f64>) {
     let m = x.nrows() / 2;
     for j in 0..x.ncols() {
+        let (x, out) = (x.col_as_slice(j), out.col_as_slice_mut(j));
         for i in 0..m {
-            out[(i, j)] = sign * x[(i + m, j)];
-            out[(i + m, j)] = -sign * x[(i, j)];
+            out[i] = sign * x[i + m];
+            out[i + m] = -sign * x[i];
         }
     }
 }

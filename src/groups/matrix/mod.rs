@@ -11,6 +11,7 @@ use std::sync::OnceLock;
 use faer::{Mat, MatRef};
 
 pub use check::{MEMBERSHIP, RCOND_MIN};
+use correct::Cosquare;
 pub use element::{AlgebraMatrix, GroupMatrix};
 
 use super::{LieAlgebra, LieGroup};
@@ -52,6 +53,8 @@ pub struct MatrixGroup {
     name: String,
     /// An orthonormal basis of 𝔤_M, one vectorised element a column; only where M needs one.
     basis: OnceLock<Mat<f64>>,
+    /// M⁻ᵀM: how elements are taken back to the group.
+    cosquare: Cosquare,
 }
 
 /// The largest n that constructors take; a matrix of this size has 8 GiB.
@@ -62,7 +65,8 @@ impl MatrixGroup {
         if n == 0 || n > N_MAX {
             return Err(Error::out_of_range("n", n as f64, format!("1 ≤ n ≤ {N_MAX}")));
         }
-        Ok(MatrixGroup { n, form, name, basis: OnceLock::new() })
+        let cosquare = Cosquare::of(&form);
+        Ok(MatrixGroup { n, form, name, basis: OnceLock::new(), cosquare })
     }
 
     /// GL(n).
@@ -260,6 +264,12 @@ impl LieGroup for MatrixGroup {
     }
     fn check_elem(&self, g: &GroupMatrix) -> Result<(), Error> {
         self.rows_fit("y", g, self.n)
+    }
+    fn assign(&self, g: &GroupMatrix, out: &mut GroupMatrix) {
+        out.copy_from(&**g);
+    }
+    fn assign_vector(&self, x: &Mat<f64>, y: &mut Mat<f64>) {
+        y.copy_from(x);
     }
     fn is_finite_vector(&self, x: &Mat<f64>) -> bool {
         dense::is_finite(x)

@@ -122,6 +122,12 @@ impl LieGroup for Unitary {
     fn identity(&self) -> ComplexMatrix {
         ComplexMatrix::identity(self.n)
     }
+    fn assign(&self, g: &ComplexMatrix, out: &mut ComplexMatrix) {
+        out.assign(g);
+    }
+    fn assign_vector(&self, x: &ComplexMatrix, y: &mut ComplexMatrix) {
+        y.assign(x);
+    }
     fn compose(&self, a: &ComplexMatrix, b: &ComplexMatrix, out: &mut ComplexMatrix) {
         mul_complex(out, a, b);
     }
@@ -172,6 +178,9 @@ impl Action<Unitary> for Conjugation {
     }
     fn check(&self, group: &Unitary, p: &ComplexMatrix) -> Result<(), Error> {
         group.check("p", p)
+    }
+    fn assign(&self, _: &Unitary, p: &ComplexMatrix, q: &mut ComplexMatrix) {
+        q.assign(p);
     }
     fn act(
         &self,
