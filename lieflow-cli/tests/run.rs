@@ -19,7 +19,8 @@ fn shortened(name: &str) -> String {
         Some("t_span") => "t_span = [1.0, 1.2]".into(),
         Some("dt" | "steps" | "rtol") => "steps = 50".into(),
         Some("atol") => String::new(),
-        Some("every" | "times") => "every = 7".into(),
+        Some("quantities") => format!("{line}\nevery = 7"),
+        Some("every" | "times") => String::new(),
         _ => line.to_owned(),
     };
     text.lines().map(|text| line(text) + "\n").collect()

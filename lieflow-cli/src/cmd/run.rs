@@ -311,6 +311,9 @@ fn broken_promise((name, drift): (&String, &Drift)) -> String {
     )
 }
 
+/// Drifts that are told; summary.json has all.
+const DRIFTS: usize = 10;
+
 fn in_words(summary: &Summary, folder: &Path) -> String {
     let Summary { title, steps, rows, wall_time_s, t_span: [t0, t1], .. } = summary;
     let sizes = match (summary.dt, &summary.adaptive) {
@@ -328,12 +331,19 @@ fn in_words(summary: &Summary, folder: &Path) -> String {
         summary.method.label,
         summary.layer,
     );
-    for (name, drift) in &summary.drift {
+    let mut drifts: Vec<_> = summary.drift.iter().collect();
+    if drifts.len() > DRIFTS {
+        drifts.sort_by(|(_, a), (_, b)| b.max.total_cmp(&a.max));
+    }
+    for (name, drift) in drifts.iter().take(DRIFTS) {
         text += &format!(
             "  drift of {name}: {:.2e} at most, {:.2e} at the end, {:.2e} a unit of time, on the \
              written rows\n",
             drift.max, drift.at_end, drift.slope
         );
+    }
+    if drifts.len() > DRIFTS {
+        text += &format!("  {} further drifts are smaller\n", drifts.len() - DRIFTS);
     }
     for (name, error) in summary.error_at_end.iter().flatten() {
         text += &format!("  error of {name} at the end: {error:.2e}\n");

@@ -2,13 +2,15 @@
 //! [`Zeitlin`].
 //!
 //! The methods of the catalog that are made for it are its two midpoint rules: `isospectral2`, which keeps
-//! the Lie–Poisson structure, and `energy-casimir`, which keeps the energy; both keep the spectrum.
+//! the Lie–Poisson structure, and `energy-casimir` with cay, which keeps the energy; both keep the spectrum.
 
 use lieflow::Error;
 use lieflow::catalog::{MethodSpec, OnEmbedded, OnMethod};
 use lieflow::groups::ComplexMatrix;
 use lieflow::maps::{Cay, Exp};
-use lieflow::methods::{CommutatorFree, GAUSS2, GAUSS4, Gauss, Rk, Rkmk, commutator_free, tableau};
+use lieflow::methods::{
+    CommutatorFree, EnergyCasimir, GAUSS2, GAUSS4, Gauss, Rk, Rkmk, commutator_free, tableau,
+};
 use lieflow::problems::{FluidMidpoint, Sphere, Vortex, Zeitlin};
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
@@ -187,10 +189,8 @@ macro_rules! fluid_method {
         }
         match (info.name, tableau) {
             ("isospectral2", _) => Ok($on.call(FluidMidpoint::isospectral())),
-            ("energy-casimir", _) if map == Some("exp") => {
-                refused(spec, "map", "it is made with cay; leave map out")
-            }
-            ("energy-casimir", _) => Ok($on.call(FluidMidpoint::energy())),
+            ("energy-casimir", _) if cay => Ok($on.call(FluidMidpoint::energy())),
+            ("energy-casimir", _) => Ok($on.call(EnergyCasimir::new(Exp))),
             ("rkmk4", _) | ("rkmk", "rk4") if cay => Ok($on.call(Rkmk::new(tableau::RK4, Cay))),
             ("rkmk4", _) | ("rkmk", "rk4") => Ok($on.call(Rkmk::new(tableau::RK4, Exp))),
             ("rk4", _) | ("rk", "rk4") => Ok($on.call(Rk(tableau::RK4))),

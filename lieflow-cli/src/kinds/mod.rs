@@ -1,6 +1,6 @@
 //! The kinds of problems that scene files can name.
 //!
-//! To add a kind: one file with its keys and its [`System`](system::System), one line in [`KINDS`].
+//! To add a kind: one file with its keys and its `System`, one line in [`KINDS`].
 
 mod beam_line;
 mod driven_body;
