@@ -12,7 +12,7 @@ const RADIUS: f64 = 0.5 * HEIGHT;
 const GLOBE: (f64, f64) = (LEFT + WIDTH + 24.0 + RADIUS, TOP + RADIUS);
 
 /// Cells along the diameter of the globe.
-const CELLS: usize = 96;
+const CELLS: usize = 80;
 /// Colours from the lowest to the highest value; odd, so that 0 has one.
 const LEVELS: usize = 17;
 

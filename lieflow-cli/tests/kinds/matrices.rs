@@ -101,7 +101,7 @@ fn hills_equation_without_a_drive() {
 #[test]
 fn a_cell_is_its_transfer_map() {
     let text = bundled("fodo-cell")
-        .replace("t_span = [0.0, 400.0]", "t_span = [0.0, 4.0]")
+        .replace("t_span = [0.0, 240.0]", "t_span = [0.0, 4.0]")
         .replace("every = 16", "every = 1")
         .replace("[\"phase_space\"]", "[\"map\"]");
     let of = Scene::parse("scene", &text).unwrap();
