@@ -152,7 +152,7 @@ pub fn operations_by<P: Catalog<Group: lieflow::groups::LieAlgebra<Scalar = Coun
     pace: Pace<'_>,
 ) -> Option<f64> {
     match pace {
-        Pace::Fixed(how) => P::with(spec, Run { problem, y, how }).ok()?,
-        Pace::Chosen(how) => P::with_estimate(spec, Run { problem, y, how }).ok()?,
+        Pace::Fixed(how) => problem.with(spec, Run { problem, y, how }).ok()?,
+        Pace::Chosen(how) => problem.with_estimate(spec, Run { problem, y, how }).ok()?,
     }
 }

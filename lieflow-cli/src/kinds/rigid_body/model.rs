@@ -38,6 +38,8 @@ pub(super) struct RigidBodyModel {
     body: RigidBody,
     momentum: Vector3<f64>,
     attitude: Matrix3<f64>,
+    /// The principal axes, where the scene is written in another frame.
+    axes: Option<Matrix3<f64>>,
     quantities: Vec<&'static str>,
     exact: Result<Exact, Error>,
 }
@@ -140,6 +142,7 @@ impl RigidBodyModel {
             body: RigidBody::new(spec.inertia)?,
             momentum,
             attitude: spec.attitude,
+            axes: spec.axes,
             quantities: names.collect::<Result<_, _>>()?,
             exact: Exact::new(spec.inertia, spec.momentum_body, spec.attitude),
         })
@@ -154,13 +157,17 @@ impl RigidBodyModel {
     /// row ← the quantities at body momentum m and attitude g.
     fn fill(&self, m: &Vector3<f64>, g: Option<&Matrix3<f64>>, row: &mut Vec<f64>) {
         row.clear();
+        let shown = |x: Vector3<f64>| self.axes.map_or(x, |axes| axes * x);
         for quantity in &self.quantities {
             match (*quantity, g) {
-                ("momentum_body", _) => row.extend(m.iter()),
-                ("omega_body", _) => row.extend(self.body.omega(m).iter()),
+                ("momentum_body", _) => row.extend(shown(*m).iter()),
+                ("omega_body", _) => row.extend(shown(self.body.omega(m)).iter()),
                 ("energy", _) => row.push(self.body.energy(m)),
                 ("momentum_norm", _) => row.push(m.norm()),
-                ("attitude", Some(g)) => row.extend(g.transpose().iter()),
+                ("attitude", Some(g)) => {
+                    let shown = self.axes.map_or(*g, |axes| g * axes.transpose());
+                    row.extend(shown.transpose().iter());
+                }
                 ("attitude_defect", Some(g)) => row.push(So3::new().defect(g)),
                 // The constructor takes registered names, and models the attitude where one needs it.
                 (name, _) => row.resize(row.len() + width(name), f64::NAN),
@@ -197,9 +204,9 @@ impl Model for RigidBodyModel {
         save: &SaveAt,
         sink: &mut Sink<'_>,
     ) -> Result<Stats, RunError> {
-        on_system!(self, method, sink, |problem, y, see| integrate_by(
-            method, problem, y, grid, save, see
-        ))
+        on_system!(self, method, sink, |problem, y, see| {
+            integrate_by(method, problem, y, grid, save, &mut { see })
+        })
     }
 
     fn adapt(
@@ -209,9 +216,9 @@ impl Model for RigidBodyModel {
         save: &SaveAt,
         sink: &mut Sink<'_>,
     ) -> Result<AdaptiveStats, AdaptiveError> {
-        on_system!(self, method, sink, |problem, y, see| adapt_by(
-            method, problem, y, steps, save, see
-        ))
+        on_system!(self, method, sink, |problem, y, see| {
+            adapt_by(method, problem, y, steps, save, &mut { see })
+        })
     }
 
     fn order(&self, method: &MethodSpec) -> Result<Option<usize>, Error> {
