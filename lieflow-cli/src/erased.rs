@@ -1,7 +1,7 @@
 //! A method behind a pointer. Doubling the steps of every method with code of its own for each would
 //! triple what is compiled; a call through a pointer a step, around the step and not inside it, is
-//! nothing beside the three steps that doubling takes. Only adaptive runs of methods without an
-//! embedded pair come here.
+//! nothing beside the three steps that doubling takes. Adaptive runs of methods without an embedded
+//! pair come here, and runs whose operations are counted.
 
 use lieflow::catalog::{OnEmbedded, OnMethod};
 use lieflow::methods::{Doubling, Embedded, LocalError, Metric};
