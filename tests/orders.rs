@@ -12,8 +12,7 @@ use lieflow::groups::{MatrixGroup, Sample, So3};
 use lieflow::maps::{Cay, CoordinateMap, Exp};
 use lieflow::methods::magnus::TripleProduct;
 use lieflow::problems::{
-    Ambient, LinearField, PointOf, Problem, RigidBody, RigidBodyAttitude, RigidBodyN,
-    RigidBodyNAttitude,
+    Ambient, LinearField, Problem, RigidBody, RigidBodyAttitude, RigidBodyN, RigidBodyNAttitude,
 };
 use rand::SeedableRng;
 use rand_pcg::Pcg64;

@@ -8,7 +8,7 @@ pub(crate) fn tolerances(order: usize) -> [f64; 2] {
         0..8 => [0.15, 0.15],
         8..10 => [0.15, 0.25],
         10..12 => [0.25, 0.4],
-        _ => [0.35, 0.5],
+        _ => [0.35, 1.0],
     }
 }
 /// Errors outside this window are not asymptotic yet, or rounding already.
