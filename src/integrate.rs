@@ -175,7 +175,7 @@ pub const RESTORE_EVERY: u64 = 100;
 /// It begins with this many steps in between, and never has fewer.
 const RESTORE_EVERY_MIN: u64 = 8;
 
-/// When to look at the state again: twice as many steps after a residual below 5e-15, half as many
+/// When to look at the state again: twice as many steps after a residual below 4e-15, half as many
 /// after one above 1e-14. What drifts at an even rate stays below the second of them.
 #[derive(Clone, Copy, Debug)]
 struct Cadence {
@@ -188,7 +188,7 @@ impl Cadence {
         Cadence { every: RESTORE_EVERY_MIN, next: RESTORE_EVERY_MIN }
     }
     fn saw<S: Real>(&mut self, residual: S) {
-        if residual.all_below(5e-15) {
+        if residual.all_below(4e-15) {
             self.every = (2 * self.every).min(RESTORE_EVERY);
         } else if !residual.all_below(1e-14) {
             self.every = (self.every / 2).max(RESTORE_EVERY_MIN);

@@ -2,10 +2,13 @@
 
 use core::f64::consts::PI;
 
+use faer::c64;
 use lieflow::groups::{ComplexMatrix, LieAlgebra, Sample, Unitary};
 use lieflow::maps::{Cay, Exp};
 use lieflow::methods::{Composition, EnergyCasimir, Metric, Rkmk, SUZUKI4, tableau::DOPRI5};
-use lieflow::problems::{FluidMidpoint, Invariants, LinearSpace, Sphere, Vortex, Zeitlin};
+use lieflow::problems::{
+    Ambient, FluidMidpoint, Invariants, LinearSpace, Sphere, Surface, Vortex, Zeitlin,
+};
 use lieflow::{Error, Method, Problem, SaveAt, Step, StepError, TimeGrid, integrate};
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
@@ -231,6 +234,29 @@ fn what_is_promised_is_kept() {
 }
 
 #[test]
+fn long_runs_with_large_steps_keep_their_promises() {
+    // Slow and irregular contraction: h/ħ ≈ ½, narrow vortices.
+    let fluid = Zeitlin::sphere(24).expect("a sphere");
+    let vortex = |k: f64| Vortex {
+        latitude: 0.7 * (2.0 * k).sin(),
+        longitude: 2.5 * k,
+        circulation: if k > 3.0 { -2.0 } else { 1.0 },
+        width: 0.2,
+    };
+    let w = fluid.vortices(&[0.0, 1.0, 2.0, 3.0, 4.0].map(vortex)).expect("vortices");
+    let levels = fluid.spectrum(&w).expect("levels");
+    let steps = 600;
+    for method in [FluidMidpoint::isospectral(), FluidMidpoint::energy()] {
+        let end = run(&fluid, &method, &w, 0.04, steps);
+        let now = fluid.spectrum(&end).expect("levels");
+        let gap = now.iter().zip(&levels).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        // Each step may leave its tolerance, ε/8·‖W‖, always to the same side.
+        let bound = 0.25 * EPS * steps as f64 * w.size();
+        assert!(gap < bound, "{method:?}: {gap:.1e} > {bound:.1e}");
+    }
+}
+
+#[test]
 fn the_energy_midpoint_is_the_general_method_with_cay_and_both_have_order_2() {
     let fluid = Zeitlin::sphere(9).expect("a sphere");
     let w = fluid.random(&mut rng(2), 6).expect("a field");
@@ -331,4 +357,169 @@ fn wrong_input_is_refused_by_name() {
         FluidMidpoint::energy().step(&fluid, Step { n: 0, t: 0.0, h: 50.0 }, &mut y, &mut work);
     assert!(matches!(failed, Err(StepError::FixedPointDidNotConverge { .. })), "{failed:?}");
     assert!(y == good, "y is as it was");
+}
+
+/// ω̇_k of the sine–Euler equations by their sum over the pairs m + n = k, all modulo N.
+fn sine_euler(n: i64, omega: &dyn Fn([i64; 2]) -> c64) -> Vec<([i64; 2], c64)> {
+    let k = (n - 1) / 2;
+    let range = || (-k..=k).flat_map(|a| (-k..=k).map(move |b| [a, b]));
+    let mut rates = Vec::new();
+    for target in range() {
+        let mut sum = c64::new(0.0, 0.0);
+        for m in range().filter(|m| *m != [0, 0]) {
+            // T_{m+n} with m + n beyond the range is ±T_k: the sign of e^{iπ(...)}.
+            let other = [0, 1].map(|i| (target[i] - m[i] + k).rem_euclid(n) - k);
+            let wrapped = [0, 1].map(|i| (m[i] + other[i] - target[i]) / n);
+            let (s, t) = (m, other);
+            let sign = wrapped[0] * (target[1]) + wrapped[1] * target[0] + wrapped[0] * wrapped[1];
+            let sign = if sign.rem_euclid(2) == 0 { 1.0 } else { -1.0 };
+            let angle = PI * ((s[0] * t[1] - s[1] * t[0]) as f64) / n as f64;
+            let psi = omega(m) * (-1.0 / (m[0] * m[0] + m[1] * m[1]) as f64);
+            sum += psi * omega(other) * (sign * n as f64 / PI * angle.sin());
+        }
+        rates.push((target, sum));
+    }
+    rates
+}
+
+#[test]
+fn the_torus_is_the_sine_euler_equations() {
+    let n = 7usize;
+    let fluid = Zeitlin::torus(n).expect("a torus");
+    let w = fluid.random(&mut rng(5), 4).expect("a field");
+    assert!(w.skew_residual() == 0.0 && (fluid.enstrophy(&w) - 0.5).abs() < 1e-14);
+    let k = 3;
+    let modes = fluid.modes(&w);
+    let omega = |m: [i64; 2]| modes[((m[0] + k) as usize, (m[1] + k) as usize)];
+    let (mut dw, mut work) = (fluid.group().zero(), fluid.work());
+    fluid.field(0.0, &w, &mut dw, &mut work);
+    let rates = fluid.modes(&dw);
+    for (m, exact) in sine_euler(n as i64, &omega) {
+        let ours = rates[((m[0] + k) as usize, (m[1] + k) as usize)];
+        assert!((ours - exact).norm() < 1e-13, "{m:?}: {ours} {exact}");
+    }
+    // One shell is stationary, and a grid shows the function.
+    let shell = fluid.from_modes(&[([2, 1], [0.3, 0.1]), ([-1, 2], [0.0, 0.7])]).expect("modes");
+    let end = run(&fluid, &FluidMidpoint::energy(), &shell, 0.1, 10);
+    assert!(end.distance(&shell) < 1e-13 * shell.size(), "{}", end.distance(&shell));
+    let grid = fluid.on_grid(&shell, 10, 20);
+    let (x, y) = (2.0 * PI * 3.5 / 20.0, 2.0 * PI * (1.0 - 4.5 / 10.0));
+    let exact = 0.3 * (2.0 * x + y).cos() + 0.1 * (2.0 * x + y).sin() + 0.7 * (2.0 * y - x).sin();
+    assert!((grid[(4, 3)] - exact).abs() < 1e-13);
+}
+
+#[test]
+fn the_torus_keeps_what_it_promises_and_shear_carries_waves() {
+    let fluid = Zeitlin::torus(31).expect("a torus");
+    let w = fluid.random(&mut rng(6), 5).expect("a field");
+    let (levels, start) = (fluid.spectrum(&w).expect("levels"), fluid.values(&w));
+    let end = run(&fluid, &FluidMidpoint::energy(), &w, 0.05, 40);
+    assert!(end.distance(&w) > 0.01 * w.size());
+    for (a, b) in fluid.spectrum(&end).expect("levels").iter().zip(&levels) {
+        assert!((a - b).abs() < 1e-13);
+    }
+    for (a, b) in fluid.values(&end).iter().zip(&start) {
+        assert!((a - b).abs() < 1e-13);
+    }
+    // ψ = −sin y: u = (cos y, 0), which carries a faint vortex to +x at y = 0 and to −x at y = π.
+    let shear = fluid.from_modes(&[([0, 1], [0.0, 1.0])]).expect("a shear");
+    let row = |w: &ComplexMatrix, y: f64| -> f64 {
+        // The phase of the first wave along the line.
+        let modes = fluid.modes(w);
+        (0..31)
+            .map(|l| modes[(16, l)] * c64::new(0.0, (l as f64 - 15.0) * y).exp())
+            .sum::<c64>()
+            .arg()
+    };
+    for (y, direction) in [(0.0, 1.0), (PI, -1.0)] {
+        let mut w = shear.clone();
+        w.add(1.0, &fluid.vortices(&[([2.0, y], 1e-6, 0.4)]).expect("a vortex"));
+        assert!((row(&w, y) + 2.0).abs() < 1e-9, "it is at x = 2");
+        let end = run(&fluid, &FluidMidpoint::energy(), &w, 0.001, 10);
+        // The shear's own curvature carries back some of it.
+        let moved = -(row(&end, y) - row(&w, y)) * direction / 0.01;
+        assert!(moved > 0.5 && moved < 1.0, "y = {y}: {moved}");
+    }
+    assert!(Zeitlin::torus(4).is_err() && Zeitlin::torus(1).is_err());
+    assert!(fluid.from_modes(&[([16, 0], [1.0, 0.0])]).is_err());
+    assert!(fluid.from_modes(&[([1, 0], [f64::NAN, 0.0])]).is_err());
+    assert!(fluid.vortices(&[([0.0, 0.0], 1.0, -1.0)]).is_err());
+}
+
+#[derive(serde::Deserialize)]
+struct References {
+    systems: Vec<Reference>,
+    diagonals: Diagonals,
+}
+#[derive(serde::Deserialize)]
+struct Reference {
+    name: String,
+    n: usize,
+    h: String,
+    w: Vec<[String; 2]>,
+    p: Vec<[String; 2]>,
+    dw: Vec<[String; 2]>,
+    isospectral: Vec<[String; 2]>,
+    energy: Vec<[String; 2]>,
+}
+#[derive(serde::Deserialize)]
+struct Diagonals {
+    n: usize,
+    all: Vec<Diagonal>,
+}
+#[derive(serde::Deserialize)]
+struct Diagonal {
+    l: usize,
+    m: usize,
+    v: Vec<String>,
+}
+
+impl Reference {
+    fn check<S: Surface>(&self, fluid: &Zeitlin<S>) {
+        let n = self.n;
+        let number = |s: &String| s.parse::<f64>().expect("a number");
+        let matrix = |entries: &[[String; 2]]| {
+            let [re, im] = [0, 1].map(|k| move |e: &[String; 2]| number(&e[k]));
+            ComplexMatrix::from_fn(n, n, |i, j| {
+                let e = &entries[i * n + j];
+                c64::new(re(e), im(e))
+            })
+        };
+        let w = fluid.vorticity(matrix(&self.w)).expect("a vorticity");
+        let h = number(&self.h);
+        let near = |what: &str, ours: &ComplexMatrix, exact: &[[String; 2]], size: f64| {
+            let error = ours.distance(&matrix(exact));
+            let bound = 8.0 * EPS * size;
+            assert!(error <= bound, "{} {n} {what}: {error:.1e} > {bound:.1e}", self.name);
+        };
+        near("p", &fluid.stream(&w), &self.p, w.size());
+        let mut dw = ComplexMatrix::zeros(n, n);
+        fluid.field(0.0, &w, &mut dw, &mut fluid.work());
+        near("dw", &dw, &self.dw, w.size() * w.size() / fluid.hbar());
+        let step = |method| run(fluid, &method, &w, h, 1);
+        near("isospectral", &step(FluidMidpoint::isospectral()), &self.isospectral, 2.0 * w.size());
+        near("energy", &step(FluidMidpoint::energy()), &self.energy, 2.0 * w.size());
+    }
+}
+
+#[test]
+fn references_of_34_digits() {
+    let all: References =
+        serde_json::from_str(include_str!("references/fluids.json")).expect("json");
+    for reference in &all.systems {
+        match reference.name.as_str() {
+            "sphere" => reference.check(&Zeitlin::sphere(reference.n).expect("a sphere")),
+            _ => reference.check(&Zeitlin::torus(reference.n).expect("a torus")),
+        }
+    }
+    let fluid = Zeitlin::sphere(all.diagonals.n).expect("a sphere");
+    for Diagonal { l, m, v } in &all.diagonals.all {
+        let t = harmonic(&fluid, *l, *m as isize);
+        let scale = if *m == 0 { 1.0 } else { 2f64.sqrt() };
+        for (i, v) in v.iter().enumerate() {
+            let error = scale * t.im[(i, i + m)] - v.parse::<f64>().expect("a number");
+            assert!(error.abs() <= 16.0 * EPS, "l = {l}, m = {m}: {error:.1e}");
+        }
+    }
+    assert_eq!((all.systems.len(), all.diagonals.all.len()), (3, 45));
 }

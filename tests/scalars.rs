@@ -2,9 +2,11 @@
 //!
 //! `cargo test --test scalars -- --nocapture` prints the counts next to Table 2 of the paper.
 
+use lieflow::adaptive::{Adaptive, integrate_adaptive};
+use lieflow::catalog::{BODY_METHODS, MethodSpec, OnMethod, SERIES_METHODS, with_body_method};
 use lieflow::groups::{LieGroup, So3};
 use lieflow::maps::{CCSK, CCSK123, CCSK321, Cay, CoordinateMap, Exp};
-use lieflow::methods::{Method, Rkmk, Step, tableau::RK4};
+use lieflow::methods::{Method, Rkmk, Step, tableau::DOPRI5, tableau::RK4};
 use lieflow::problems::{PointOf, RigidBody, RigidBodyAttitude};
 use lieflow::scalar::{Counted, Ops, Real};
 use lieflow::{Problem, SaveAt, TimeGrid, integrate};
@@ -49,6 +51,54 @@ fn single_precision_follows_double() {
 
 const fn ops(add: u64, mul: u64, div: u64, sqrt: u64, trig: u64) -> Ops {
     Ops { add, mul, div, sqrt, trig }
+}
+
+/// Every method of the body, by its name, on a number that counts: after a step the momentum is that of
+/// `f64`, up to the few roundings that lanes and fused products change.
+#[test]
+fn the_methods_of_the_body_run_on_numbers_that_count() {
+    struct OneStep<'a, S: Real>(&'a RigidBody<S>);
+    impl<S: Real> OnMethod<RigidBody<S>> for OneStep<'_, S> {
+        type Out = (Vector3<S>, Ops);
+        fn call<M: Method<RigidBody<S>>>(self, method: M) -> Self::Out {
+            let mut m = Vector3::from(MOMENTUM.map(S::lit));
+            let mut work = method.work(self.0, &m).expect("a workspace");
+            let step = Step { n: 0, t: S::lit(0.0), h: S::lit(0.125) };
+            let (done, ops) = Counted::count(|| method.step(self.0, step, &mut m, &mut work));
+            done.expect("a step");
+            (m, ops)
+        }
+    }
+    let plain = RigidBody::<f64>::new(INERTIA).expect("a body");
+    let counting = RigidBody::<Counted>::new(INERTIA).expect("a body");
+    for info in BODY_METHODS.iter().chain(SERIES_METHODS) {
+        let spec = MethodSpec::new(info.name, None);
+        let (m, none) = with_body_method(&spec, OneStep(&plain)).expect("it fits");
+        let (counted, ops) = with_body_method(&spec, OneStep(&counting)).expect("it fits");
+        let gap = (counted.map(f64::from) - m).norm();
+        assert!(gap <= 32.0 * f64::EPSILON * m.norm(), "{}: {gap:e}", info.name);
+        assert_eq!(none, Ops::default());
+        // The exact motion does its work in f64.
+        assert!(ops.total() > 50 || info.name == "exact", "{}: {ops:?}", info.name);
+    }
+}
+
+/// The steps that an adaptive run takes are those of `f64` on a number that counts, and it meets its
+/// tolerance in `f32`.
+#[test]
+fn adaptive_runs_go_on_any_number_that_has_a_value() {
+    fn run<S: Real + Into<f64>>(rtol: f64) -> (Vector3<f64>, u64) {
+        let body = RigidBody::<S>::new(INERTIA).expect("a body");
+        let (method, control) = (Rkmk::new(DOPRI5, Cay), Adaptive::new(rtol, 0.0).expect("rtol"));
+        let mut m = Vector3::from(MOMENTUM.map(S::lit));
+        let (span, save) = ([0.0, 10.0], SaveAt::Ends);
+        let stats = integrate_adaptive(&body, &method, span, &control, &save, &mut m, |_, _| {});
+        (m.map(Into::into), stats.expect("a run").accepted)
+    }
+    assert_eq!(run::<Counted>(1e-9), run::<f64>(1e-9));
+    let (exact, _) = run::<f64>(1e-11);
+    let (single, steps) = run::<f32>(1e-4);
+    assert!((single - exact).norm() < 1e-2 * exact.norm() && steps > 10, "{single} {exact}");
 }
 
 fn print(what: &str, ours: Ops) {

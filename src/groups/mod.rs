@@ -12,6 +12,7 @@ mod adjoint;
 mod matrix;
 mod power;
 mod product;
+mod quaternions;
 mod se3;
 mod so3;
 mod translations;
@@ -22,6 +23,7 @@ pub use matrix::{AlgebraMatrix, Form, GroupMatrix, MEMBERSHIP, MatrixGroup, RCON
 pub use power::Power;
 pub use product::Product;
 pub(crate) use product::larger;
+pub use quaternions::UnitQuaternions;
 pub use se3::Se3;
 pub(crate) use se3::{add3, finite_pair};
 pub use so3::{So3, hat, vee};

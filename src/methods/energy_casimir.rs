@@ -87,12 +87,13 @@ impl<P: LiePoisson, Psi: CoordinateMap<P::Group> + OddMap> Method<P> for EnergyC
             alg.set_zero(u);
             alg.axpy(-h, xi, u);
             chart.around(problem, &self.psi, n, p).lambda(u, y)?;
+            // hξ and not ξ, whose squares may leave the range.
             alg.set_zero(old);
-            alg.axpy(lit(1.0), xi, old);
+            alg.axpy(lit(1.0), u, old);
             problem.discrete_gradient(p, y, xi, field);
-            alg.axpy(lit(-1.0), xi, old);
-            let size = lit(1.0) + h.abs() * alg.norm(xi);
-            if progress.done("energy-casimir", h.abs() * alg.norm(old) / size)? {
+            alg.axpy(h, xi, old);
+            let size = lit(1.0) + alg.norm(u);
+            if progress.done("energy-casimir", alg.norm(old) / size)? {
                 break;
             }
         }

@@ -3,6 +3,7 @@
 //! | problem | group, action | |
 //! |---|---|---|
 //! | free rigid body in ℝ³ and ℝⁿ | SO(3), SO(n); coadjoint or translation | [`RigidBody`], [`RigidBodyAttitude`], [`RigidBodyState`], [`RigidBodyN`] |
+//! | and its attitude as a quaternion | S³; translation | [`RigidBodyQuaternion`] |
 //! | Euler's equations of any Hamiltonian | any; coadjoint | [`Euler`], [`EulerGroup`], [`Kinetic`] |
 //! | Lie–Poisson with a quadratic Hamiltonian | any matrix group; coadjoint | [`QuadraticLiePoisson`] |
 //! | heavy tops | SE(3); coadjoint | [`HeavyTop`] |
@@ -15,7 +16,7 @@
 //! | Hill, Mathieu, Floquet; beam lines | Sp(2m); translation | [`hill`], [`mathieu`], [`floquet`], [`beam`] |
 //! | Riccati | Sp(2m); [`Lagrangian`](crate::actions::Lagrangian) | [`LinearEquation`] |
 //! | Schrödinger's equation, n levels | U(n) ⊂ SO(2n); vectors | [`schrodinger`](fn@schrodinger) |
-//! | ideal fluids on a sphere, Zeitlin's model | U(N); conjugation | [`Zeitlin`] |
+//! | ideal fluids on a sphere and a torus, Zeitlin's model | U(N); conjugation | [`Zeitlin`] |
 //! | charged particle | SO(3,1); vectors | [`ChargedParticle`] |
 //!
 //! To add a problem: one file with an `impl` of [`Problem`], one line here.
@@ -34,6 +35,7 @@ mod lorentz;
 mod lyapunov;
 mod oja;
 mod periodic;
+mod quaternion_body;
 mod rigid_body;
 mod schrodinger;
 mod series;
@@ -54,6 +56,7 @@ pub use lorentz::ChargedParticle;
 pub use lyapunov::Lyapunov;
 pub use oja::Oja;
 pub use periodic::{Floquet, LinearHamiltonian, floquet, hill, mathieu, monodromy};
+pub use quaternion_body::RigidBodyQuaternion;
 pub use rigid_body::{
     BodyFrame, BodyState, Exact, Frame, FreeBody, RigidBody, RigidBodyAttitude, RigidBodyN,
     RigidBodyNAttitude, RigidBodyState, manakov_integrals,
@@ -63,7 +66,9 @@ pub use series::{MomentumSeries, TaylorField};
 pub use space::LinearSpace;
 pub use spheres::{SphericalPendulum, SpinChain};
 pub use torque::{BodyTorque, Motion, SpaceTorque, Torque, TorqueBody};
-pub use zeitlin::{FluidMidpoint, FluidWork, Keeps, Sphere, StreamWork, Surface, Vortex, Zeitlin};
+pub use zeitlin::{
+    FluidMidpoint, FluidWork, Keeps, Sphere, StreamWork, Surface, Torus, Vortex, Zeitlin,
+};
 
 use crate::actions::Action;
 use crate::groups::{LieAlgebra, LieGroup};

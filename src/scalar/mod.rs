@@ -107,7 +107,8 @@ macro_rules! real_for_float {
             fn any_below(self, bound: f64) -> bool {
                 f64::from(self) < bound
             }
-            #[inline]
+            // The compiler finds the branches too long on its own, and a call here costs what exp costs.
+            #[inline(always)]
             fn branch<R: Select<Self>>(
                 self,
                 bound: f64,

@@ -367,11 +367,11 @@ impl Comparison<'_> {
                     "All methods",
                     vec![
                         Block::text(
-                            "speed.csv and speed.json beside this page have every run, with its \
-                             errors in the energy, in the Casimirs and of the group; every figure is \
+                            "speed.csv and speed.json beside this page have every run; every figure is \
                              there as an SVG file.",
                         ),
                         Block::Table(report::speed_table(curves)),
+                        Block::Table(report::kept_table(curves)),
                     ],
                 ),
             ],

@@ -36,7 +36,7 @@ pub struct WorkPoint {
     /// CPU time per unit of simulated time.
     #[serde(with = "number")]
     pub seconds_per_unit: f64,
-    /// Wall time of the first run.
+    /// CPU time of the first run, or the second of a short one.
     #[serde(with = "number")]
     pub first_seconds: f64,
     /// Why the run stopped early, when it did.

@@ -3,6 +3,7 @@
 mod agreement;
 mod choice;
 mod energy;
+mod kept;
 mod maps;
 mod speed;
 
@@ -12,6 +13,7 @@ pub use choice::{
     fronts, keeps_energy, steps,
 };
 pub use energy::{EnergyRun, energy_chart, momentum_sphere};
+pub use kept::kept_table;
 pub use maps::{MAPS_PAGE, write_maps};
 pub use speed::{SpeedRow, speed_chart, speed_csv, speed_table, tolerance_header};
 

@@ -13,20 +13,20 @@ pub(in crate::dense) const N_MAX: usize = 16;
 
 /// What is done with matrices in registers.
 pub(in crate::dense) trait Kernel {
-    /// What it gives.
-    type Output;
+    /// What it gives; the default where there is no kernel for n.
+    type Output: Default;
     /// Do it with N×N matrices, N ≥ n, whose columns are K registers. `inline(always)`, please.
     fn call<S: Simd, const N: usize, const K: usize>(self, simd: S) -> Self::Output;
 }
 
-/// `op` for n×n matrices with the widest registers there are; `None` for n = 0 or n > [`N_MAX`].
+/// `op` for n×n matrices, 0 < n ≤ [`N_MAX`], with the widest registers there are.
 #[inline]
-pub(in crate::dense) fn dispatch<Op: Kernel>(arch: Arch, n: usize, op: Op) -> Option<Op::Output> {
+pub(in crate::dense) fn dispatch<Op: Kernel>(arch: Arch, n: usize, op: Op) -> Op::Output {
     macro_rules! kernels {
         ($($range:pat => $n:literal, $k8:literal, $k4:literal, $k2:literal;)*) => {
             match n {
-                $($range => Some(arch.dispatch(Sized::<$n, $k8, $k4, $k2, Op>(op))),)*
-                _ => None,
+                $($range => arch.dispatch(Sized::<$n, $k8, $k4, $k2, Op>(op)),)*
+                _ => Op::Output::default(),
             }
         };
     }
@@ -110,7 +110,7 @@ impl<S: Simd, const N: usize, const K: usize> Cols<S, N, K> {
     }
 
     #[inline(always)]
-    fn load_columns(simd: S, a: MatRef<'_, f64>) -> Self {
+    pub(in crate::dense) fn load_columns(simd: S, a: MatRef<'_, f64>) -> Self {
         let mut out = Self::zero(simd);
         let n = a.nrows().min(N);
         let flat: &mut [f64] = bytemuck::cast_slice_mut(out.0.as_flattened_mut());

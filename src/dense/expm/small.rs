@@ -22,7 +22,7 @@ pub(super) fn exp(
     structure: Structure,
     out: &mut Mat<f64>,
 ) -> Option<ExpmChoice> {
-    cols::dispatch(arch, x.nrows(), Exp { x, skew: structure == Structure::Skew, out })?
+    cols::dispatch(arch, x.nrows(), Exp { x, skew: structure == Structure::Skew, out })
 }
 
 struct Exp<'a> {
@@ -37,7 +37,7 @@ impl Kernel for Exp<'_> {
     #[inline(always)]
     fn call<S: Simd, const N: usize, const K: usize>(self, simd: S) -> Option<ExpmChoice> {
         let Exp { x, skew, out } = self;
-        let a = Cols::<S, N, K>::load(simd, x.as_ref());
+        let a = Cols::<S, N, K>::load_columns(simd, x.as_ref());
         let norm = a.norm(simd);
         let (mut g, degree, squarings) = taylor(simd, &a, norm, skew)?;
         for _ in 0..squarings {

@@ -51,9 +51,9 @@ pub struct FluidMidpoint {
 }
 
 /// The residual that is iterated to, relative to ‖W‖.
-const TOLERANCE: f64 = 0.25 * f64::EPSILON;
+const TOLERANCE: f64 = 0.125 * f64::EPSILON;
 /// Below this residual an iteration that no longer contracts has reached rounding.
-const ROUNDING: f64 = 64.0 * f64::EPSILON;
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
 /// Iterations before it is given up: a contraction by 0.8 reaches rounding.
 const ITERATIONS_MAX: u32 = 200;
 
@@ -66,7 +66,7 @@ impl FluidMidpoint {
     pub const fn energy() -> Self {
         FluidMidpoint { keeps: Keeps::Energy, tolerance: TOLERANCE }
     }
-    /// With this bound of the residual ‖D − D(D)‖/‖W‖ in place of a quarter of the rounding unit.
+    /// With this bound of the residual ‖D − D(D)‖/‖W‖ in place of an eighth of the rounding unit.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] unless it is finite and positive.
@@ -84,6 +84,44 @@ impl FluidMidpoint {
 
 impl Symmetric for FluidMidpoint {}
 
+/// How much of an error an iteration leaves, as far as it has been seen: the largest ratio of a step,
+/// which fades from step to step, and grows by at most [`CAUTION`] while it is not looked at.
+#[derive(Clone, Copy, Debug)]
+struct Rate {
+    seen: f64,
+    of_run: f64,
+    of_step: Option<f64>,
+}
+
+/// No estimate is below this: an error may point where none has pointed before.
+const LEAST: f64 = 1e-3;
+const CAUTION: f64 = 8.0;
+
+impl Rate {
+    const fn unknown() -> Self {
+        Rate { seen: f64::INFINITY, of_run: f64::INFINITY, of_step: None }
+    }
+    fn saw(&mut self, ratio: f64) {
+        self.of_step = Some(self.of_step.unwrap_or(LEAST).max(ratio));
+    }
+    fn get(&self) -> f64 {
+        match self.of_step {
+            Some(now) if self.of_run.is_finite() => now.max(0.5 * self.of_run),
+            Some(now) => now,
+            None => self.of_run,
+        }
+    }
+    fn end_step(&mut self) {
+        match self.of_step.take() {
+            Some(now) => {
+                self.seen = if self.seen.is_finite() { now.max(0.5 * self.seen) } else { now };
+                self.of_run = self.seen;
+            }
+            None => self.of_run = (1.5 * self.of_run).min(CAUTION * self.seen),
+        }
+    }
+}
+
 /// Everything a step needs, and the steps before.
 #[derive(Debug)]
 pub struct FluidWork {
@@ -94,10 +132,10 @@ pub struct FluidWork {
     /// P M P or P D P, on and below the diagonal.
     cubic: ComplexMatrix,
     product: Product,
-    scratch: ComplexMatrix,
+    scratch: [Mat<f64>; 2],
     history: History,
-    /// The contraction of the last step's iteration, and of its cubic term.
-    rates: [f64; 2],
+    /// Of the iteration, and of its cubic term.
+    rates: [Rate; 2],
     iterations: u64,
     solves: u64,
 }
@@ -203,7 +241,7 @@ impl<S: Surface> Method<Zeitlin<S>> for FluidMidpoint {
             product: Product::new(n),
             scratch: fluid.surface().scratch(),
             history: History::new(n),
-            rates: [1.0, f64::INFINITY],
+            rates: [Rate::unknown(); 2],
             iterations: 0,
             solves: 0,
         })
@@ -216,7 +254,7 @@ impl<S: Surface> Method<Zeitlin<S>> for FluidMidpoint {
         work: &mut FluidWork,
     ) -> Result<(), StepError> {
         let start = work.history.start(h, w);
-        let mut rates = [1.0, f64::INFINITY];
+        let mut rates = [Rate::unknown(); 2];
         match start {
             Start::Warm => {
                 work.history.guess(&mut work.d);
@@ -224,7 +262,7 @@ impl<S: Surface> Method<Zeitlin<S>> for FluidMidpoint {
             }
             _ => work.d.clear(),
         }
-        let rates = self.iterate(fluid.surface(), h, w, work, rates)?;
+        self.iterate(fluid.surface(), h, w, work, &mut rates)?;
         let FluidWork { d, bracket, product, history, .. } = work;
         let increment = match self.keeps {
             Keeps::Structure => &*bracket,
@@ -238,6 +276,7 @@ impl<S: Surface> Method<Zeitlin<S>> for FluidMidpoint {
         core::mem::swap(w, &mut product.x);
         history.record(start, h, d, w);
         if start != Start::Aside {
+            rates.iter_mut().for_each(Rate::end_step);
             work.rates = rates;
         }
         Ok(())
@@ -245,19 +284,21 @@ impl<S: Surface> Method<Zeitlin<S>> for FluidMidpoint {
 }
 
 impl FluidMidpoint {
-    /// d ← its fixed point; returns the contraction rates of the iteration and of its cubic term.
+    /// d ← its fixed point.
     fn iterate<S: Surface>(
         &self,
         surface: &S,
         h: f64,
         w: &ComplexMatrix,
         work: &mut FluidWork,
-        [mut rate, mut cubic_rate]: [f64; 2],
-    ) -> Result<[f64; 2], StepError> {
+        [rate, cubic_rate]: &mut [Rate; 2],
+    ) -> Result<(), StepError> {
         let FluidWork { d, bracket, cubic, product, scratch, iterations, solves, .. } = work;
         let size = norm(w).max(f64::MIN_POSITIVE);
+        let noise = ROUNDING * size;
         let (mut last, mut since_cubic) = (f64::INFINITY, f64::INFINITY);
-        let mut due = true;
+        let (mut due, mut was_due) = (true, true);
+        let (mut least, mut idle) = (f64::INFINITY, 0);
         for iteration in 1..=ITERATIONS_MAX {
             *iterations += 1;
             sum(&mut product.x, w, 1.0, d);
@@ -276,8 +317,8 @@ impl FluidMidpoint {
                 // What the term was before moves to where it is compared.
                 core::mem::swap(cubic, &mut product.x);
                 product.sandwich(cubic);
-                if since_cubic.is_finite() && since_cubic > 0.0 {
-                    cubic_rate = distance(cubic, &product.x) / since_cubic;
+                if since_cubic.is_finite() && since_cubic > noise {
+                    cubic_rate.saw(distance(cubic, &product.x) / since_cubic);
                 }
                 since_cubic = 0.0;
             }
@@ -290,19 +331,32 @@ impl FluidMidpoint {
                 });
             }
             since_cubic += change;
-            if iteration > 1 {
-                rate = (change / last).min(1.0);
+            // A cubic term that has waited jumps: its change is none of the iteration's.
+            let goes_on = was_due || !due;
+            if goes_on && last.is_finite() && last > noise {
+                rate.saw(change / last);
             }
-            let stalled = change < ROUNDING * size && change > 0.5 * last;
-            let converged = stalled || rate * change <= self.tolerance * size;
-            let cubic_lags = cubic_rate * since_cubic > self.tolerance * size;
-            if converged && (stalled || !cubic_lags) {
-                return Ok([rate, cubic_rate]);
+            // Changes need not fall monotonically: at rounding level is what falls no further.
+            if !goes_on {
+                (least, idle) = (f64::INFINITY, 0);
             }
-            due = converged || cubic_rate > 0.1;
+            if change < noise && change >= 0.9 * least {
+                idle += if change < f64::EPSILON * size { 4 } else { 1 };
+            }
+            least = least.min(change);
+            let stalled = idle >= 8;
+            // What is left is a geometric series.
+            let left = rate.get() / (1.0 - rate.get()).max(0.1) * change;
+            let bound = self.tolerance * size;
+            let converged = stalled || left <= bound;
+            let lag = cubic_rate.get() * since_cubic;
+            if converged && (lag <= bound || stalled && (due && goes_on || lag <= noise / 16.0)) {
+                return Ok(());
+            }
+            (due, was_due) = (converged || cubic_rate.get() > 0.1, due);
             last = change;
         }
-        Ok([rate, cubic_rate])
+        Ok(())
     }
 }
 

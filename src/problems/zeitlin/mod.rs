@@ -24,13 +24,15 @@ mod harmonics;
 mod history;
 mod midpoint;
 mod sphere;
+mod torus;
 mod triangle;
 
 pub use fields::Vortex;
 pub use midpoint::{FluidMidpoint, FluidWork, Keeps};
 pub use sphere::Sphere;
+pub use torus::Torus;
 
-use faer::Side;
+use faer::{Mat, Side};
 
 use super::{Ambient, Invariant, Invariants, LiePoisson, Problem, space::linear_space};
 use crate::actions::Conjugation;
@@ -47,9 +49,9 @@ pub trait Surface {
     fn rate(&self) -> f64;
     /// x ← Δ⁻¹x with trace 0, from and to what lies on and below the diagonal of a skew-Hermitian x;
     /// what lies above holds nothing of use afterwards.
-    fn solve(&self, x: &mut ComplexMatrix, scratch: &mut ComplexMatrix);
+    fn solve(&self, x: &mut ComplexMatrix, scratch: &mut [Mat<f64>; 2]);
     /// Scratch of [`solve`](Self::solve); the only call that allocates.
-    fn scratch(&self) -> ComplexMatrix;
+    fn scratch(&self) -> [Mat<f64>; 2];
     /// Linear invariants of the flow, by name.
     fn momenta(&self) -> &'static [&'static str] {
         &[]
@@ -127,7 +129,7 @@ impl<S: Surface> Zeitlin<S> {
         p
     }
 
-    fn solve(&self, p: &mut ComplexMatrix, scratch: &mut ComplexMatrix) {
+    fn solve(&self, p: &mut ComplexMatrix, scratch: &mut [Mat<f64>; 2]) {
         self.surface.solve(p, scratch);
         mirror(&mut p.re, -1.0);
         mirror(&mut p.im, 1.0);
@@ -158,7 +160,7 @@ impl<S: Surface> Zeitlin<S> {
     /// # Errors
     /// [`Error::OutOfRange`] where they are not found.
     pub fn spectrum(&self, w: &ComplexMatrix) -> Result<Vec<f64>, Error> {
-        let hermitian = faer::Mat::from_fn(w.nrows(), w.ncols(), |i, j| {
+        let hermitian = Mat::from_fn(w.nrows(), w.ncols(), |i, j| {
             let z = w.get(i, j);
             faer::c64::new(z.im, -z.re)
         });
@@ -179,7 +181,7 @@ impl<S: Surface> Zeitlin<S> {
 #[derive(Debug)]
 pub struct StreamWork {
     p: ComplexMatrix,
-    scratch: ComplexMatrix,
+    scratch: [Mat<f64>; 2],
 }
 
 impl<S: Surface> Problem for Zeitlin<S> {

@@ -141,15 +141,15 @@ impl Surface for Sphere {
     fn rate(&self) -> f64 {
         0.5 * (((self.n - 1) * (self.n + 1)) as f64).sqrt()
     }
-    fn solve(&self, x: &mut ComplexMatrix, _: &mut ComplexMatrix) {
+    fn solve(&self, x: &mut ComplexMatrix, _: &mut [Mat<f64>; 2]) {
         for part in x.parts_mut() {
             wide(self.n, || self.solve_below(part));
         }
         self.solve_diagonal(&mut x.im);
         (0..self.n).for_each(|i| x.re[(i, i)] = 0.0);
     }
-    fn scratch(&self) -> ComplexMatrix {
-        ComplexMatrix::zeros(0, 0)
+    fn scratch(&self) -> [Mat<f64>; 2] {
+        [Mat::new(), Mat::new()]
     }
     fn momenta(&self) -> &'static [&'static str] {
         &["angular momentum x", "angular momentum y", "angular momentum z"]

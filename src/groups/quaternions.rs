@@ -1,0 +1,175 @@
+//! The unit quaternions S³ ≅ SU(2), which turn vectors as SO(3) does, twice over.
+//!
+//! | | |
+//! |---|---|
+//! | u ∈ ℝ³ | the imaginary quaternion u/2, so that \[u, v\] = u × v as on so(3) |
+//! | Ψ(u) | the quaternion of the rotation that Ψ is on SO(3) |
+//! | dΨ_u⁻¹ | that of SO(3): the covering is a local isomorphism |
+//! | q·x | q x q̄ |
+//! | correction | q/\|q\| |
+//!
+//! exp: (cos(α/2), (sin(α/2)/α) u), α = |u|. cay: (1, u/2)/√(1 + α²/4). Quaternions are Hamilton's, real
+//! part first in words; nalgebra's [`UnitQuaternion`] is the container. Turns by 2π end at −1, not at 1.
+
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use rand::{Rng, RngExt};
+use rand_distr::StandardNormal;
+
+use super::{LieAlgebra, LieGroup, RESIDUAL_MAX, Sample, So3};
+use crate::error::{Error, StepError};
+use crate::maps::{Cay, CoordinateMap, Exp};
+use crate::so3;
+
+/// S³, the unit quaternions, over ℝ³ with the cross product.
+///
+/// ```
+/// use lieflow::CoordinateMap;
+/// use lieflow::groups::{LieGroup, UnitQuaternions};
+/// use lieflow::maps::Exp;
+/// use nalgebra::Vector3;
+/// // A quarter of a turn about e₃.
+/// let q = Exp.eval(&UnitQuaternions, &Vector3::new(0.0, 0.0, std::f64::consts::FRAC_PI_2))?;
+/// let mut y = Vector3::zeros();
+/// UnitQuaternions.apply(&q, &Vector3::x(), &mut y);
+/// assert!((y - Vector3::y()).norm() < 1e-15);
+/// # Ok::<(), lieflow::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct UnitQuaternions;
+
+const SO3: So3<f64> = So3::new();
+
+impl LieAlgebra for UnitQuaternions {
+    type Scalar = f64;
+    type Alg = Vector3<f64>;
+
+    fn name(&self) -> String {
+        "S³".into()
+    }
+    fn dim(&self) -> usize {
+        3
+    }
+    #[inline]
+    fn zero(&self) -> Vector3<f64> {
+        SO3.zero()
+    }
+    #[inline]
+    fn set_zero(&self, u: &mut Vector3<f64>) {
+        SO3.set_zero(u);
+    }
+    #[inline]
+    fn axpy(&self, a: f64, x: &Vector3<f64>, y: &mut Vector3<f64>) {
+        SO3.axpy(a, x, y);
+    }
+    #[inline]
+    fn bracket(&self, u: &Vector3<f64>, v: &Vector3<f64>, out: &mut Vector3<f64>) {
+        SO3.bracket(u, v, out);
+    }
+    #[inline]
+    fn norm(&self, u: &Vector3<f64>) -> f64 {
+        SO3.norm(u)
+    }
+    #[inline]
+    fn is_finite(&self, u: &Vector3<f64>) -> bool {
+        SO3.is_finite(u)
+    }
+}
+
+impl LieGroup for UnitQuaternions {
+    type Elem = UnitQuaternion<f64>;
+    /// A vector of ℝ³.
+    type Vector = Vector3<f64>;
+
+    fn identity(&self) -> UnitQuaternion<f64> {
+        UnitQuaternion::identity()
+    }
+    #[inline]
+    fn compose(
+        &self,
+        a: &UnitQuaternion<f64>,
+        b: &UnitQuaternion<f64>,
+        out: &mut UnitQuaternion<f64>,
+    ) {
+        *out = UnitQuaternion::new_unchecked(a.quaternion() * b.quaternion());
+    }
+    #[inline]
+    fn apply(&self, q: &UnitQuaternion<f64>, x: &Vector3<f64>, y: &mut Vector3<f64>) {
+        let (w, v) = (q.w, q.imag());
+        let t = 2.0 * v.cross(x);
+        *y = x + w * t + v.cross(&t);
+    }
+    /// |a − b|: q and −q are different elements.
+    fn distance(&self, a: &UnitQuaternion<f64>, b: &UnitQuaternion<f64>) -> f64 {
+        (a.coords - b.coords).norm()
+    }
+    /// ||q|² − 1|.
+    fn defect(&self, q: &UnitQuaternion<f64>) -> f64 {
+        (q.coords.norm_squared() - 1.0).abs()
+    }
+    #[inline]
+    fn is_finite_vector(&self, x: &Vector3<f64>) -> bool {
+        SO3.is_finite(x)
+    }
+    #[inline]
+    fn correct(&self, q: &mut UnitQuaternion<f64>, _: [&mut UnitQuaternion<f64>; 2]) -> f64 {
+        let gap = q.coords.norm_squared() - 1.0;
+        if gap.abs() < RESIDUAL_MAX {
+            *q = UnitQuaternion::new_unchecked(Quaternion::from(q.coords * (1.0 - 0.5 * gap)));
+        }
+        gap.abs()
+    }
+}
+
+impl Sample for UnitQuaternions {
+    fn sample_algebra<R: Rng + ?Sized>(&self, rng: &mut R, sigma: f64) -> Vector3<f64> {
+        SO3.sample_algebra(rng, sigma)
+    }
+    /// Haar's measure: uniform on the 3-sphere.
+    fn sample_element<R: Rng + ?Sized>(&self, rng: &mut R) -> UnitQuaternion<f64> {
+        let [w, x, y, z] = core::array::from_fn(|_| rng.sample(StandardNormal));
+        UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z))
+    }
+    fn sample_vector<R: Rng + ?Sized>(&self, rng: &mut R) -> Vector3<f64> {
+        SO3.sample_vector(rng)
+    }
+}
+
+/// Both maps: Ψ by its quaternion, the rest by so(3).
+macro_rules! map {
+    ($map:ty, $name:literal, $psi:path, $dpsi_inv:path) => {
+        impl CoordinateMap<UnitQuaternions> for $map {
+            type At = ();
+
+            fn name(&self) -> &'static str {
+                $name
+            }
+            fn at(&self, _: &UnitQuaternions) -> Result<(), Error> {
+                Ok(())
+            }
+            #[inline]
+            fn psi(
+                &self,
+                _: &UnitQuaternions,
+                u: &Vector3<f64>,
+                _: &mut (),
+                q: &mut UnitQuaternion<f64>,
+            ) -> Result<(), StepError> {
+                *q = $psi(u)?;
+                Ok(())
+            }
+            #[inline]
+            fn dpsi_inv(
+                &self,
+                _: &UnitQuaternions,
+                u: &Vector3<f64>,
+                _: &mut (),
+                v: &mut Vector3<f64>,
+            ) -> Result<(), StepError> {
+                *v = $dpsi_inv(u, v)?;
+                Ok(())
+            }
+        }
+    };
+}
+map!(Exp, "exp", so3::exp_quaternion, so3::dexpinv);
+map!(Cay, "cay", so3::cay_quaternion, so3::dcayinv);
