@@ -1,8 +1,8 @@
 //! A method behind a pointer. The loops of fixed, adaptive and doubled steps with code of their own for
 //! every method would triple what is compiled; a call through a pointer a step is around the step and
-//! not inside it. Adaptive runs come here, where it is nothing beside the choice of a step, and every run
-//! of the problems of `kinds/flow.rs`, whose field is behind a pointer already. Steps of one size of a
-//! rigid body, which are timed in nanoseconds, do not; its runs whose operations are counted do.
+//! not inside it. Adaptive runs come here, where it is nothing beside the choice of a step, runs whose
+//! operations are counted, and every run of the problems of `kinds/flow.rs`, whose field is behind a
+//! pointer already. Steps of one size of a rigid body, which are timed in nanoseconds, do not.
 
 use lieflow::catalog::{OnEmbedded, OnMethod};
 use lieflow::methods::{Doubling, Embedded, LocalError, Metric};
