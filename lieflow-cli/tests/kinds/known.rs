@@ -131,7 +131,7 @@ fn torques_are_modelled_where_they_are_named() {
     let body = "kind = \"driven-body\"\ninertia = [1, 2, 2.5]";
     let run = |more: &str, quantities: &str| {
         let of = scene(&format!("{body}\n{more}"), RKMK4, FINE, quantities);
-        (of.model().unwrap().modelled()[0].clone(), last(&of))
+        (of.model().unwrap().modelled(&of.method)[0].clone(), last(&of))
     };
     let spin = "omega_body = [0.5, 0.4, -0.8]";
     let (modelled, free) = run(spin, "[\"momentum_space\"]");
