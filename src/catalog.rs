@@ -8,7 +8,7 @@ use crate::groups::LieGroup;
 use crate::maps::{
     Alternating, CCSK, CCSK123, CCSK321, Cay, Ccsk, CoordinateMap, Exp, Pade22, TruncatedExp,
 };
-use crate::methods::{CfMagnus, CommutatorFree, LowStorage, Method, OneBracket, Rk, Rkmk};
+use crate::methods::{CfMagnus, CommutatorFree, LowStorage, Method, OddMap, OneBracket, Rk, Rkmk};
 use crate::methods::{commutator_free, crouch_grossman, low_storage, magnus, one_bracket, tableau};
 use crate::problems::{Ambient, LinearField, Problem};
 
@@ -55,41 +55,24 @@ pub const MAPS: &[MapInfo] = &[
 
 /// Run `$body` with `$map` bound to the map of that name.
 macro_rules! each_map {
+    (@bind $psi:expr, $map:ident => $body:expr) => {{
+        let $map = serve::<P::Group, _>($psi);
+        Ok($body)
+    }};
     ($name:expr, $q:expr, $map:ident => $body:expr) => {
         match ($name, $q) {
-            ("exp", Some(q)) => {
-                let $map = serve::<P::Group, _>(Exp.truncated(q));
-                Ok($body)
-            }
-            ("exp", None) => {
-                let $map = serve::<P::Group, _>(Exp);
-                Ok($body)
-            }
+            ("exp", Some(q)) => each_map!(@bind Exp.truncated(q), $map => $body),
+            ("exp", None) => each_map!(@bind Exp, $map => $body),
             (_, Some(_)) => Err(Error::Unsupported {
                 what: "q",
                 with: format!("map `{}`", $name),
                 why: "only the Baker series of exp can be cut; leave q out",
             }),
-            ("cay", _) => {
-                let $map = serve::<P::Group, _>(Cay);
-                Ok($body)
-            }
-            ("ccsk123", _) => {
-                let $map = serve::<P::Group, _>(CCSK123);
-                Ok($body)
-            }
-            ("ccsk321", _) => {
-                let $map = serve::<P::Group, _>(CCSK321);
-                Ok($body)
-            }
-            ("pade22", _) => {
-                let $map = serve::<P::Group, _>(Pade22);
-                Ok($body)
-            }
-            ("ccsk", _) => {
-                let $map = serve::<P::Group, _>(CCSK);
-                Ok($body)
-            }
+            ("cay", _) => each_map!(@bind Cay, $map => $body),
+            ("ccsk123", _) => each_map!(@bind CCSK123, $map => $body),
+            ("ccsk321", _) => each_map!(@bind CCSK321, $map => $body),
+            ("pade22", _) => each_map!(@bind Pade22, $map => $body),
+            ("ccsk", _) => each_map!(@bind CCSK, $map => $body),
             (other, _) => Err(unknown("map", other, MAPS.iter().map(|m| m.name))),
         }
     };
@@ -112,48 +95,22 @@ pub const TABLEAUS: &[&str] = &[
 /// Run `$body` with `$tableau` bound to the tableau of that name, and `$pair` where it is an embedded
 /// pair.
 macro_rules! each_tableau {
+    (@bind $which:ident, $tableau:ident => $body:expr) => {{
+        let $tableau = tableau::$which;
+        $body
+    }};
     ($name:expr, $tableau:ident => $body:expr, pair => $pair:expr) => {
         match $name {
-            "euler" => {
-                let $tableau = tableau::EULER;
-                $body
-            }
-            "midpoint" => {
-                let $tableau = tableau::MIDPOINT;
-                $body
-            }
-            "heun" => {
-                let $tableau = tableau::HEUN;
-                $body
-            }
-            "rk4" => {
-                let $tableau = tableau::RK4;
-                $body
-            }
-            "three-eighths" => {
-                let $tableau = tableau::THREE_EIGHTHS;
-                $body
-            }
-            "bs3" => {
-                let $tableau = tableau::BS3;
-                $pair
-            }
-            "rkf45" => {
-                let $tableau = tableau::RKF45;
-                $pair
-            }
-            "dopri5" => {
-                let $tableau = tableau::DOPRI5;
-                $pair
-            }
-            "verner6" => {
-                let $tableau = tableau::VERNER6;
-                $pair
-            }
-            "dop853" => {
-                let $tableau = tableau::DOP853;
-                $pair
-            }
+            "euler" => each_tableau!(@bind EULER, $tableau => $body),
+            "midpoint" => each_tableau!(@bind MIDPOINT, $tableau => $body),
+            "heun" => each_tableau!(@bind HEUN, $tableau => $body),
+            "rk4" => each_tableau!(@bind RK4, $tableau => $body),
+            "three-eighths" => each_tableau!(@bind THREE_EIGHTHS, $tableau => $body),
+            "bs3" => each_tableau!(@bind BS3, $tableau => $pair),
+            "rkf45" => each_tableau!(@bind RKF45, $tableau => $pair),
+            "dopri5" => each_tableau!(@bind DOPRI5, $tableau => $pair),
+            "verner6" => each_tableau!(@bind VERNER6, $tableau => $pair),
+            "dop853" => each_tableau!(@bind DOP853, $tableau => $pair),
             other => Err(unknown("tableau", other, TABLEAUS.iter().copied())),
         }
     };
@@ -266,7 +223,7 @@ fn serve<G: Serves<Psi>, Psi>(psi: Psi) -> G::Map {
 pub trait CatalogGroup:
     Serves<Exp>
     + Serves<TruncatedExp>
-    + Serves<Cay>
+    + Serves<Cay, Map: OddMap>
     + Serves<Pade22>
     + Serves<Ccsk<0, 1, 2>>
     + Serves<Ccsk<2, 1, 0>>
@@ -277,7 +234,7 @@ pub trait CatalogGroup:
 impl<G> CatalogGroup for G where
     G: Serves<Exp>
         + Serves<TruncatedExp>
-        + Serves<Cay>
+        + Serves<Cay, Map: OddMap>
         + Serves<Pade22>
         + Serves<Ccsk<0, 1, 2>>
         + Serves<Ccsk<2, 1, 0>>
@@ -325,17 +282,19 @@ macro_rules! each_method {
 mod embedded;
 mod lists;
 mod special;
+mod state;
 
 pub use embedded::{Doubled, OnEmbedded, with_embedded_method, with_embedded_pair};
 pub use lists::{
     ATTITUDE_METHODS, BODY_METHODS, IMPLICIT_METHODS, ISOSPECTRAL_METHODS, LIE_POISSON_METHODS,
-    LINEAR_METHODS, METHODS, SERIES_METHODS,
+    LINEAR_METHODS, METHODS, SERIES_METHODS, STATE_METHODS,
 };
 use special::misfit;
 pub use special::{
-    Needs, all_methods, with_attitude_method, with_body_method, with_implicit_method,
+    Catalogued, Needs, all_methods, with_attitude_method, with_body_method, with_implicit_method,
     with_lie_poisson_method, with_momentum_method, with_series_method,
 };
+pub use state::{with_state_method, with_state_pair};
 
 /// What to do with a method, whatever its type.
 pub trait OnMethod<P: Problem> {

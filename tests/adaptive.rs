@@ -56,7 +56,7 @@ fn every_pair_meets_its_tolerance_on_every_group() {
                     let found = flow.action().numbers(flow.group(), &y);
                     let error = gap(&found, exact.end()) / exact.end().norm_l2();
                     println!(
-                        "{:8} {:28} {tol:e}: {error:.1e}, {} + {} steps, {} f",
+                        "{:8} {:28} {tol:e}: {error:.1e}, {} + {} steps, {:?} f",
                         flow.group().name(), stringify!($method), stats.accepted, stats.rejected,
                         stats.evaluations
                     );
@@ -115,7 +115,7 @@ fn spans_and_arguments() {
     let method = Rkmk::new(DOPRI5, Exp);
     let tols = control(1e-6, 1e-6);
     let (y, stats) = go(&body, &method, [1.0, 1.0], &tols, &start).expect("an empty span");
-    assert_eq!((y, stats.accepted, stats.evaluations), (start, 0, 0));
+    assert_eq!((y, stats.accepted, stats.evaluations), (start, 0, Some(0)));
     let next = 1.0f64.next_up();
     match go(&body, &method, [1.0, next], &tols, &start) {
         Ok((_, stats)) => assert_eq!(stats.accepted, 1),
@@ -257,6 +257,42 @@ fn not_a_number() {
     {
         assert!((y.norm() - 1.0).abs() < 1e-12);
     }
+}
+
+/// What is counted is what the field sees, but for the one evaluation that asks whether f is in 𝔤.
+#[test]
+fn evaluations_are_counted() {
+    let seen = std::cell::Cell::new(0u64);
+    let turning = |t: f64, v: &mut Vector3<f64>| {
+        seen.set(seen.get() + 1);
+        *v = Vector3::new(3.0 * t.cos(), 1.0, t * t);
+    };
+    let problem = LinearEquation::new(So3::new(), Linear, turning);
+    macro_rules! check {
+        ($($method:expr),* $(,)?) => {$({
+            seen.set(0);
+            let tols = control(1e-7, 1e-7);
+            let (_, stats) =
+                go(&problem, &$method, [0.0, 2.0], &tols, &Vector3::x()).expect("a run");
+            assert!(stats.accepted > 3, "{stats:?}");
+            assert_eq!(stats.evaluations, Some(seen.get() - 1), "{}", stringify!($method));
+        })*};
+    }
+    check!(
+        Rkmk::new(DOPRI5, Exp),
+        Rkmk::new(DOP853, Cay),
+        CommutatorFree(CF43),
+        LowStorage(LS32),
+        OneBracket(MAGNUS43),
+        Doubling(CommutatorFree(CF43)),
+        Doubling(Rkmk::new(DOPRI5, Cay)),
+        Doubling(Magnus6),
+    );
+    let rotations = Doubling(lieflow::methods::ExactMotion);
+    let body = RigidBody::new([1.0, 2.0, 3.0]).expect("a body");
+    let (_, stats) =
+        go(&body, &rotations, [0.0, 2.0], &control(1e-7, 1e-7), &Vector3::x()).expect("a run");
+    assert_eq!(stats.evaluations, None);
 }
 
 /// ẏ = (y y) y on GL(1): y = 1/√(1 − 2t) blows up at t = ½ (T8).

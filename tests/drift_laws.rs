@@ -4,11 +4,11 @@
 //!
 //! | Ψ | the rate of E behaves like | a rotated frame |
 //! |---|---|---|
-//! | exp, cay, and RK4 on the entries | h⁵ | changes nothing |
+//! | exp, cay, Padé; Buss's method; RK4 on the entries | h⁵ | changes nothing |
 //! | ccsk | h⁴ on generic momenta, h⁵ when m_s has a zero component | changes E |
 
 use lieflow::maps::{CCSK, CCSK123, CCSK321, Cay, Exp, Pade22};
-use lieflow::methods::{Method, Rk, Rkmk, tableau::RK4};
+use lieflow::methods::{Buss4, Method, Rk, Rkmk, tableau::RK4};
 use lieflow::problems::RigidBodyAttitude;
 use lieflow::so3::exp;
 use lieflow::{SaveAt, TimeGrid, integrate};
@@ -74,7 +74,7 @@ macro_rules! check {
 #[test]
 fn the_energy_drifts_with_the_fifth_power() {
     check!(GENERIC, 2000.0, 5.0, Rkmk::new(RK4, Exp), Rkmk::new(RK4, Cay));
-    check!(GENERIC, 2000.0, 5.0, Rkmk::new(RK4, Pade22), Rk(RK4));
+    check!(GENERIC, 2000.0, 5.0, Rkmk::new(RK4, Pade22), Buss4, Rk(RK4));
 }
 
 /// The term of h⁵ is there as well; without it, in r(h/2) − r(h)/32, the fourth power is plain.
@@ -100,7 +100,7 @@ fn with_a_zero_in_the_momentum_ccsk_gains_a_power() {
     check!([0.9, 0.0, 2.1], 4000.0, 5.0, Rkmk::new(RK4, CCSK123), Rkmk::new(RK4, CCSK321));
 }
 
-/// exp, cay and RK4 do not see the frame, ccsk does.
+/// exp, cay, Buss's method and RK4 do not see the frame, ccsk does.
 #[test]
 fn rotated_frames() {
     let turn = exp(&Vector3::new(0.4, -1.1, 0.7)).expect("a rotation");
@@ -121,6 +121,7 @@ fn rotated_frames() {
         ("exp", gap!(Rkmk::new(RK4, Exp))),
         ("cay", gap!(Rkmk::new(RK4, Cay))),
         ("pade22", gap!(Rkmk::new(RK4, Pade22))),
+        ("buss4", gap!(Buss4)),
         ("rk4", gap!(Rk(RK4))),
     ] {
         println!("{name}: {gap:.1e} of {lost:.1e}");

@@ -7,7 +7,7 @@ use faer::Mat;
 use lieflow::catalog::{
     MethodSpec, Needs, OnMethod, all_methods, with_attitude_method, with_body_method,
     with_implicit_method, with_lie_poisson_method, with_method, with_momentum_method,
-    with_series_method,
+    with_series_method, with_state_method,
 };
 use lieflow::groups::Sample;
 use lieflow::maps::{Cay, Exp};
@@ -113,7 +113,7 @@ fn on_every_algebra() {
                 for (a, b) in systems::casimirs(&m).iter().zip(systems::casimirs(&start)) {
                     assert!((a - b).abs() < KEPT * growth, "{name} {}: {a} {b}", stringify!($method));
                 }
-                let drift = (system.hamiltonian(&m) - system.hamiltonian(&start)).abs();
+                let drift = (system.energy(&m) - system.energy(&start)).abs();
                 let kept = drift < KEPT * growth;
                 assert!(kept || !$energy, "{name} {}: {drift:e}", stringify!($method));
             })*};
@@ -255,8 +255,8 @@ fn the_catalog_knows_which_method_fits() {
     let identity = lieflow::LieGroup::identity(big_attitude.group());
     // What each kind of problem offers, as the catalog's documentation says: no more and no less
     // than that is served.
-    use Needs::{Attitude, Body, Field, Isospectral, LiePoisson, Norm, Series};
-    let offers: [&[Needs]; 7] = [
+    use Needs::{Attitude, Body, Field, Isospectral, LiePoisson, Norm, Series, State};
+    let offers: [&[Needs]; 8] = [
         &[Field, Norm, Series, Body, LiePoisson],
         &[Field, Norm, Series, Body, Attitude],
         &[Field, Norm, Series, Body, Attitude],
@@ -264,6 +264,7 @@ fn the_catalog_knows_which_method_fits() {
         &[Field, Norm, Series, LiePoisson, Isospectral],
         &[Field, Norm, Series],
         &[Field, Norm],
+        &[State],
     ];
     for (info, needs) in all_methods() {
         let spec = MethodSpec::new(info.name, None);
@@ -275,6 +276,7 @@ fn the_catalog_knows_which_method_fits() {
             with_lie_poisson_method(&spec, Take(&big, w.clone())),
             with_series_method(&spec, Take(&big_attitude, identity.clone())),
             with_implicit_method(&spec, Take(&big_attitude, identity.clone())),
+            with_state_method(&spec, Take(&both, state)),
         ];
         for (offers, answer) in offers.iter().zip(answers) {
             match answer {

@@ -1,8 +1,7 @@
 //! A step allocates nothing, on either layer, with any map and action, at any n.
-#![allow(unsafe_code)] // the counting allocator
 
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
+#[path = "support/counting.rs"]
+mod counting;
 
 use faer::Mat;
 use lieflow::actions::{Coadjoint, Conjugation, Lagrangian, LeftTranslation, Linear, Pair};
@@ -20,32 +19,6 @@ use nalgebra::{Matrix3, Vector3};
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
 
-struct Counting;
-
-thread_local!(static ALLOCATIONS: Cell<usize> = const { Cell::new(0) });
-
-fn count() {
-    ALLOCATIONS.with(|n| n.set(n.get() + 1));
-}
-
-// SAFETY: every call is handed to the system allocator unchanged.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        count();
-        unsafe { System.alloc(layout) }
-    }
-    unsafe fn dealloc(&self, p: *mut u8, layout: Layout) {
-        unsafe { System.dealloc(p, layout) }
-    }
-    unsafe fn realloc(&self, p: *mut u8, layout: Layout, size: usize) -> *mut u8 {
-        count();
-        unsafe { System.realloc(p, layout, size) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
-
 /// The allocations of ten steps after the workspace is made, and of making it. One step goes before:
 /// the product library makes its packing buffer once a thread, at the first large product.
 fn allocations<P: Problem, M: Method<P>>(problem: &P, method: &M, y: &PointOf<P>) -> (usize, usize)
@@ -53,17 +26,17 @@ where
     P::Group: LieAlgebra<Scalar = f64>,
 {
     let mut y = y.clone();
-    let before = ALLOCATIONS.get();
+    let before = counting::total();
     let mut work = method.work(problem, &y).expect("the method fits");
-    let setup = ALLOCATIONS.get() - before;
+    let setup = counting::total() - before;
     let step = Step { n: 0, t: 0.0, h: 0.05 };
     method.step(problem, step, &mut y, &mut work).expect("a step");
-    let before = ALLOCATIONS.get();
+    let before = counting::total();
     for n in 0..10 {
         let step = Step { n, t: 0.0, h: 0.05 };
         method.step(problem, step, &mut y, &mut work).expect("a step");
     }
-    (setup, ALLOCATIONS.get() - before)
+    (setup, counting::total() - before)
 }
 
 struct Count<'a, P: Problem>(&'a P, &'a PointOf<P>);
@@ -196,9 +169,9 @@ where
     let grid = TimeGrid::with_steps([0.0, 1.0], 10).expect("a grid");
     let save = SaveAt::Times((0..times).map(|i| (i as f64 + 0.5) / times as f64).collect());
     let (mut y, method) = (y.clone(), Rkmk::new(RK4, Exp));
-    let before = ALLOCATIONS.get();
+    let before = counting::total();
     let stats = integrate(problem, &method, &grid, &save, &mut y, |_, _| {}).expect("a run");
-    let count = ALLOCATIONS.get() - before;
+    let count = counting::total() - before;
     assert_eq!(stats.side_steps, times as u64);
     count
 }
@@ -247,10 +220,10 @@ fn a_long_run_allocates_as_often_as_a_short_one() {
     let run = |steps| {
         let grid = TimeGrid::with_steps([0.0, 1.0], steps).expect("a grid");
         let mut m = Vector3::new(0.2, 0.5, 3.0);
-        let before = ALLOCATIONS.get();
+        let before = counting::total();
         let method = Rkmk::new(RK4, Exp);
         integrate(&body, &method, &grid, &SaveAt::Every(7), &mut m, |_, _| {}).expect("a run");
-        ALLOCATIONS.get() - before
+        counting::total() - before
     };
     assert_eq!(run(10), run(10_000));
 }

@@ -1,40 +1,19 @@
 //! The exponentials allocate nothing once their storage is made, whatever approximant they choose.
-#![allow(unsafe_code)] // the counting allocator
 
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
+#[path = "support/counting.rs"]
+mod counting;
 
 use faer::{Mat, c64};
 use lieflow::dense::{
     ComplexExponential, Exponential, ExponentialBatch, ExponentialF32, Structure,
 };
 
-struct Counting;
-
-thread_local!(static ALLOCATIONS: Cell<usize> = const { Cell::new(0) });
-thread_local!(static BYTES: Cell<usize> = const { Cell::new(0) });
-
-// SAFETY: every call is handed to the system allocator unchanged.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        ALLOCATIONS.with(|n| n.set(n.get() + 1));
-        BYTES.with(|n| n.set(n.get() + layout.size()));
-        unsafe { System.alloc(layout) }
-    }
-    unsafe fn dealloc(&self, p: *mut u8, layout: Layout) {
-        unsafe { System.dealloc(p, layout) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
-
 /// The allocations of the second call: the product library makes its packing buffer at the first.
 fn allocations(mut f: impl FnMut() -> bool) -> usize {
     assert!(f());
-    let before = ALLOCATIONS.get();
+    let before = counting::total();
     assert!(f());
-    ALLOCATIONS.get() - before
+    counting::total() - before
 }
 
 /// Skew, with a Frobenius norm of about `size`.
@@ -79,9 +58,9 @@ fn no_exponential_allocates() {
 #[test]
 fn storage_of_nine_matrices() {
     for n in [64usize, 256, 1000] {
-        let before = BYTES.get();
+        let before = counting::bytes();
         let exponential = Exponential::new(n);
-        let words = (BYTES.get() - before) / size_of::<f64>();
+        let words = (counting::bytes() - before) / size_of::<f64>();
         assert!(words <= 9 * n * n * 11 / 10, "{n}: {:.2} n²", words as f64 / (n * n) as f64);
         drop(exponential);
     }

@@ -1,34 +1,15 @@
 //! Ψ and dΨ⁻¹ allocate nothing once their storage is made, in every branch: the series, the eigen
 //! form and the halvings of dexp⁻¹, doubling and Schur coordinates of the Padé map, ccsk on every
 //! group it serves, and the correction of drift.
-#![allow(unsafe_code)] // the counting allocator
 
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
+#[path = "support/counting.rs"]
+mod counting;
 
 use lieflow::groups::{MatrixGroup, Sample};
 use lieflow::maps::{CCSK, Cay, CoordinateMap, Exp, Pade22};
 use lieflow::{LieAlgebra, LieGroup};
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
-
-struct Counting;
-
-thread_local!(static ALLOCATIONS: Cell<usize> = const { Cell::new(0) });
-
-// SAFETY: every call is handed to the system allocator unchanged.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        ALLOCATIONS.with(|n| n.set(n.get() + 1));
-        unsafe { System.alloc(layout) }
-    }
-    unsafe fn dealloc(&self, p: *mut u8, layout: Layout) {
-        unsafe { System.dealloc(p, layout) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
 
 /// The allocations of the second Ψ and dΨ⁻¹ (the product library makes its packing buffer at the
 /// first large product).
@@ -38,20 +19,20 @@ fn allocations<Psi: CoordinateMap<MatrixGroup>>(
     size: f64,
 ) -> usize {
     let mut rng = Pcg64::seed_from_u64(group.n() as u64);
-    let before = ALLOCATIONS.get();
+    let before = counting::total();
     let mut at = psi.at(group).expect("the map serves the group");
-    assert!(ALLOCATIONS.get() > before, "the counter does not count");
+    assert!(counting::total() > before, "the counter does not count");
     let direction = group.sample_algebra(&mut rng, 1.0);
     let mut u = group.zero();
     group.axpy(size / group.norm(&direction), &direction, &mut u);
     let (mut v, mut g) = (group.sample_algebra(&mut rng, 1.0), group.identity());
     let mut before = 0;
     for _ in 0..2 {
-        before = ALLOCATIONS.get();
+        before = counting::total();
         psi.psi(group, &u, &mut at, &mut g).expect("Ψ(u)");
         psi.dpsi_inv(group, &u, &mut at, &mut v).expect("dΨ⁻¹");
     }
-    ALLOCATIONS.get() - before
+    counting::total() - before
 }
 
 #[test]
@@ -77,10 +58,10 @@ fn every_branch() {
             g[(0, 0)] += 1e-9;
             let mut scratch = [group.identity(), group.identity()];
             group.correct(&mut g, scratch.each_mut());
-            let before = ALLOCATIONS.get();
+            let before = counting::total();
             g[(0, 0)] += 1e-9;
             group.correct(&mut g, scratch.each_mut());
-            assert_eq!(ALLOCATIONS.get(), before, "correction on {}", group.name());
+            assert_eq!(counting::total(), before, "correction on {}", group.name());
         }
     }
 }

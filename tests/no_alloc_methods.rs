@@ -1,8 +1,7 @@
 //! Linear methods, error estimates, step doubling and the adaptive driver allocate nothing in a step.
-#![allow(unsafe_code)] // the counting allocator
 
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
+#[path = "support/counting.rs"]
+mod counting;
 
 use lieflow::actions::LeftTranslation;
 use lieflow::adaptive::{Adaptive, integrate_adaptive};
@@ -21,32 +20,6 @@ use nalgebra::Vector3;
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
 
-struct Counting;
-
-thread_local!(static ALLOCATIONS: Cell<usize> = const { Cell::new(0) });
-
-fn count() {
-    ALLOCATIONS.with(|n| n.set(n.get() + 1));
-}
-
-// SAFETY: every call is handed to the system allocator unchanged.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        count();
-        unsafe { System.alloc(layout) }
-    }
-    unsafe fn dealloc(&self, p: *mut u8, layout: Layout) {
-        unsafe { System.dealloc(p, layout) }
-    }
-    unsafe fn realloc(&self, p: *mut u8, layout: Layout, size: usize) -> *mut u8 {
-        count();
-        unsafe { System.realloc(p, layout, size) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
-
 /// Of ten steps after a first one, which may make a thread's packing buffers.
 struct Steps<'a, P: Problem>(&'a P, &'a PointOf<P>);
 
@@ -61,12 +34,12 @@ where
         let mut before = 0;
         for n in 0..11 {
             if n == 1 {
-                before = ALLOCATIONS.get();
+                before = counting::total();
             }
             let step = Step { n, t: 0.1, h: 0.05 };
             method.step(self.0, step, &mut y, &mut work).expect("a step");
         }
-        ALLOCATIONS.get() - before
+        counting::total() - before
     }
 }
 
@@ -121,11 +94,11 @@ fn adaptive_runs() {
                 let run = |end: f64| {
                     let mut y = $start.clone();
                     let control = Adaptive::new(1e-6, 1e-6).expect("tolerances");
-                    let before = ALLOCATIONS.get();
+                    let before = counting::total();
                     let stats = integrate_adaptive(
                         &$problem, &method, [0.0, end], &control, &SaveAt::Every(2), &mut y, |_, _| {},
                     );
-                    (stats.expect("a run").accepted, ALLOCATIONS.get() - before)
+                    (stats.expect("a run").accepted, counting::total() - before)
                 };
                 run(0.1);
                 let (short, long) = (run(0.5), run(5.0));
@@ -151,9 +124,9 @@ fn adaptive_runs() {
 /// Half of what this file is for: that the counter counts.
 #[test]
 fn the_counter_counts() {
-    let before = ALLOCATIONS.get();
+    let before = counting::total();
     let group = MatrixGroup::so(5).expect("SO(5)");
-    assert!(ALLOCATIONS.get() > before && group.n() == 5);
+    assert!(counting::total() > before && group.n() == 5);
     fn is_embedded<P: Problem, M: Embedded<P>>(_: &P, _: &M) {}
     let so3 = LinearEquation::new(So3::new(), LeftTranslation, |_: f64, v: &mut Vector3<f64>| {
         *v = Vector3::zeros();

@@ -1,12 +1,11 @@
 //! A step on a product, a power, SE(3) or of a problem allocates nothing, nor does taking it back to M.
-#![allow(unsafe_code)] // the counting allocator
 
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
+#[path = "support/counting.rs"]
+mod counting;
 
 use faer::{Mat, mat};
 use lieflow::actions::{Coadjoint, Conjugation, Each, Lagrangian, LeftTranslation, Linear, Pair};
-use lieflow::groups::{LieGroup, MatrixGroup, Power, Product, Sample, Se3, So3};
+use lieflow::groups::{AlgebraMatrix, LieGroup, MatrixGroup, Power, Product, Sample, Se3, So3};
 use lieflow::maps::{CCSK, Cay, Ccsk, Exp, Pade22};
 use lieflow::methods::{CommutatorFree, Rkmk, commutator_free::CF4, tableau::RK4};
 use lieflow::problems::{
@@ -18,32 +17,6 @@ use nalgebra::{Matrix3, Vector3};
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
 
-struct Counting;
-
-thread_local!(static ALLOCATIONS: Cell<usize> = const { Cell::new(0) });
-
-fn count() {
-    ALLOCATIONS.with(|n| n.set(n.get() + 1));
-}
-
-// SAFETY: every call is handed to the system allocator unchanged.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        count();
-        unsafe { System.alloc(layout) }
-    }
-    unsafe fn dealloc(&self, p: *mut u8, layout: Layout) {
-        unsafe { System.dealloc(p, layout) }
-    }
-    unsafe fn realloc(&self, p: *mut u8, layout: Layout, size: usize) -> *mut u8 {
-        count();
-        unsafe { System.realloc(p, layout, size) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
-
 fn steps_allocate<P: Problem, M: Method<P>>(
     problem: &P,
     method: &M,
@@ -52,16 +25,16 @@ fn steps_allocate<P: Problem, M: Method<P>>(
 where
     P::Group: LieAlgebra<Scalar = f64>,
 {
-    let (mut y, before) = (y.clone(), ALLOCATIONS.get());
+    let (mut y, before) = (y.clone(), counting::total());
     let mut work = method.work(problem, &y).expect("the method fits");
     let mut mend = problem.action().work(problem.group());
-    assert!(ALLOCATIONS.get() > before || size_of_val(&work) > 0, "the counter does not count");
-    let before = ALLOCATIONS.get();
+    assert!(counting::total() > before || size_of_val(&work) > 0, "the counter does not count");
+    let before = counting::total();
     for n in 0..10 {
         method.step(problem, Step { n, t: 0.0, h: 0.05 }, &mut y, &mut work).expect("a step");
         problem.action().restore(problem.group(), &mut y, &mut mend);
     }
-    ALLOCATIONS.get() - before
+    counting::total() - before
 }
 
 fn check<G: Sample<Scalar = f64> + Clone, A: Action<G>>(group: &G, action: A, y: A::Point)
@@ -122,6 +95,13 @@ fn problems() {
     let euler = Euler::new(Se3::<f64>::new(), kirchhoff);
     none!(euler, pair);
     none!(euler.with_group(), (Se3::<f64>::new().identity(), pair));
+    for group in [MatrixGroup::gl(3), MatrixGroup::sp(4), MatrixGroup::indefinite(3, 1)] {
+        let group = group.expect("a group");
+        let m = group.sample_algebra(&mut Pcg64::seed_from_u64(3), 0.3);
+        let inverse = |m: &Mat<f64>, xi: &mut AlgebraMatrix| xi.copy_from(m);
+        let start = (group.identity(), m.into_mat());
+        none!(Euler::new(group, Kinetic(inverse)).with_group(), start);
+    }
     let damping = BodyTorque(|at: &Motion| -at.omega_body);
     let body = TorqueBody::new([1.0, 2.0, 2.5], damping).expect("a body");
     none!(body, (Matrix3::identity(), v(1.0)));
@@ -132,6 +112,8 @@ fn problems() {
     let l = toda_lattice(&[0.0, 0.1, 0.2], &[0.3, 0.1, 0.2]).expect("a lattice");
     none!(IsospectralFlow::toda(3).expect("a flow"), l);
     none!(IsospectralFlow::double_bracket(&[1.0, 2.0, 3.0]).expect("a flow"), l);
+    let positive = mat![[3.0, 0.3, 0.1], [0.3, 2.0, 0.2], [0.1, 0.2, 1.0]];
+    none!(IsospectralFlow::qr(3).expect("a flow"), positive);
     none!(Oja::new(l.clone(), 2).expect("a flow"), mat![[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]]);
     let particle = ChargedParticle::new(1.0, |_, _: &_| (v(0.1), v(0.2))).expect("a particle");
     none!(particle, particle.four_velocity([0.1, 0.2, 0.3]).expect("a velocity"));

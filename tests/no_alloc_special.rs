@@ -1,12 +1,11 @@
 //! A step of the methods that ask more of a problem than f allocates nothing either.
-#![allow(unsafe_code)] // the counting allocator
 
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
+#[path = "support/counting.rs"]
+mod counting;
 
 use lieflow::catalog::{
     MethodSpec, OnMethod, all_methods, with_attitude_method, with_lie_poisson_method,
-    with_momentum_method, with_series_method,
+    with_momentum_method, with_series_method, with_state_method,
 };
 use lieflow::groups::{LieGroup, Sample};
 use lieflow::maps::Cay;
@@ -18,24 +17,6 @@ use lieflow::{Error, LieAlgebra, Method, Problem, Step};
 use nalgebra::{Matrix3, Vector3};
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
-
-struct Counting;
-
-thread_local!(static ALLOCATIONS: Cell<usize> = const { Cell::new(0) });
-
-// SAFETY: every call is handed to the system allocator unchanged.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        ALLOCATIONS.with(|n| n.set(n.get() + 1));
-        unsafe { System.alloc(layout) }
-    }
-    unsafe fn dealloc(&self, p: *mut u8, layout: Layout) {
-        unsafe { System.dealloc(p, layout) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
 
 /// The allocations of ten steps, after the workspace is made and one step has gone before.
 struct Count<'a, P: Problem>(&'a P, PointOf<P>);
@@ -53,9 +34,9 @@ where
             method.step(problem, step, &mut y, &mut work).expect("a step");
         };
         step(0);
-        let before = ALLOCATIONS.get();
+        let before = counting::total();
         (1..11).for_each(&mut step);
-        ALLOCATIONS.get() - before
+        counting::total() - before
     }
 }
 
@@ -85,6 +66,7 @@ fn every_method_on_every_model_of_the_body() {
         let g = Matrix3::identity();
         check(&mut served, name, with_attitude_method(&spec, Count(&attitude, g)));
         check(&mut served, name, with_attitude_method(&spec, Count(&both, state)));
+        check(&mut served, name, with_state_method(&spec, Count(&both, state)));
         for n in [3usize, 5, 9, 17] {
             let lambda: Vec<f64> = (0..n).map(|i| 1.0 + 0.1 * i as f64).collect();
             let body = RigidBodyN::manakov(&lambda).expect("a body");
@@ -101,7 +83,7 @@ fn every_method_on_every_model_of_the_body() {
         }
     }
     assert!(served > 100, "{served}");
-    let before = ALLOCATIONS.get();
+    let before = counting::total();
     drop(vec![0u8; 10]);
-    assert!(ALLOCATIONS.get() > before, "the counter does not count");
+    assert!(counting::total() > before, "the counter does not count");
 }

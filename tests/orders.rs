@@ -1,178 +1,50 @@
-//! Measured orders: every method of the catalog on problems that do not commute, depend on time and
-//! depend on the state. `cargo test --test orders -- --nocapture` prints the table.
+//! Measured orders: the methods of the catalog that ask for a field, or for one of linear type, on
+//! problems that do not commute, depend on time and depend on the state. Those that ask for more are in
+//! `orders_special.rs`, by the same harness.
+//! `cargo test --test orders -- --nocapture` prints the table.
 
 mod support;
 
+use lieflow::LieGroup;
 use lieflow::actions::{Coadjoint, LeftTranslation, Linear};
-use lieflow::catalog::{
-    CatalogGroup, LINEAR_METHODS, MAPS, MethodSpec, OnMethod, with_linear_method, with_method,
-};
+use lieflow::catalog::{CatalogGroup, MethodSpec, Needs, with_linear_method, with_method};
 use lieflow::groups::{MatrixGroup, Sample, So3};
 use lieflow::maps::{Cay, CoordinateMap, Exp};
-use lieflow::methods::Method;
 use lieflow::methods::magnus::TripleProduct;
 use lieflow::problems::{
-    Ambient, LinearField, PointOf, Problem, RigidBody, RigidBodyAttitude, RigidBodyN,
-    RigidBodyNAttitude,
+    Ambient, LinearField, Problem, RigidBody, RigidBodyAttitude, RigidBodyN, RigidBodyNAttitude,
 };
-use lieflow::{Error, LieAlgebra, LieGroup};
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
 use support::orders::{
-    Estimate, Field, Flow, LONG, MEMBERS, Reference, catalog, clock, estimate, grid, inertia,
-    measure, measure_over, reference, reference_after, wave,
+    Field, Flow, Measure, Problems, Report, clock, estimate, grid, inertia, wave,
 };
 use support::points::Points;
 use support::represent::Represent;
 
-/// What happened to one method.
-enum Outcome {
-    /// It does not fit the group.
-    Refused,
-    /// Its order is above 4, and the ensembles for that are elsewhere.
-    Elsewhere,
-    Measured(Result<Estimate, String>),
-}
-
-/// Problems with their references. The first is for orders up to 4, all are for those above it.
-struct Problems<P: Problem> {
-    short: Vec<(P, Reference<P>)>,
-    /// For orders from 8 on.
-    long: Vec<(P, Reference<P>)>,
-}
-
-impl<P: Ambient> Problems<P>
-where
-    P::Group: Represent,
-    P::Action: Points<P::Group>,
-    Cay: CoordinateMap<P::Group>,
-{
-    /// A single one: orders above 4 are measured elsewhere.
-    fn one(problem: P, start: PointOf<P>) -> Self {
-        let reference = reference(&problem, start);
-        Problems { short: vec![(problem, reference)], long: Vec::new() }
-    }
-    /// An ensemble, of problems by their number.
-    fn many(make: impl Fn(u64) -> (P, PointOf<P>)) -> Self {
-        let over = |length: f64| {
-            move |(problem, start)| {
-                let reference = reference_after(length, &problem, start);
-                (problem, reference)
-            }
-        };
-        Problems {
-            short: (0..MEMBERS).map(&make).map(over(1.0)).collect(),
-            long: (0..LONG.0).map(&make).map(over(LONG.1)).collect(),
-        }
-    }
-}
-
-/// What there is to measure on, and whether a single problem does for orders up to 4.
-struct Measure<'a, P: Problem>(&'a Problems<P>, bool);
-
-impl<P: Problem> OnMethod<P> for Measure<'_, P>
-where
-    P::Group: Represent,
-    P::Action: Points<P::Group>,
-{
-    type Out = Outcome;
-    fn call<M: Method<P>>(self, method: M) -> Outcome {
-        let Measure(Problems { short, long }, single) = self;
-        let (problem, reference) = &short[0];
-        if matches!(method.work(problem, reference.start()), Err(Error::Unsupported { .. })) {
-            return Outcome::Refused;
-        }
-        Outcome::Measured(match method.order(problem) {
-            ..=4 if single => measure(problem, &method, reference),
-            _ if long.is_empty() => return Outcome::Elsewhere,
-            ..=7 => measure_over(short, &method),
-            _ => measure_over(long, &method),
-        })
-    }
-}
-
-/// Does the catalog say that the method's map serves this group?
-fn serves(spec: &MethodSpec, group: &str) -> bool {
-    let Some(map) = &spec.map else { return true };
-    let groups = MAPS.iter().find(|m| m.name == map).map_or("", |m| m.groups);
-    let family = group.split('(').next().unwrap_or_default();
-    let plain = !group.contains(','); // SO(p,q) is no SO(n)
-    groups == "all" || (plain && groups.split(", ").any(|g| g.starts_with(&format!("{family}("))))
-}
-
-/// What was found on one problem: printed as a table, and all of it must hold.
-struct Report {
-    title: &'static str,
-    table: String,
-    failures: Vec<String>,
-}
-
-impl Report {
-    fn new(title: &'static str) -> Self {
-        Report { title, table: format!("{title}\n"), failures: Vec::new() }
-    }
-    /// A method that should be measured, or be refused.
-    fn add(&mut self, label: &str, serves: bool, outcome: Outcome) {
-        match outcome {
-            Outcome::Refused if serves => self.failures.push(format!("{label}: refused")),
-            Outcome::Refused | Outcome::Elsewhere => {}
-            Outcome::Measured(_) if !serves => {
-                self.failures.push(format!("{label}: taken although the catalog says otherwise"));
-            }
-            Outcome::Measured(measured) => {
-                let verdict = measured.as_ref().map_err(Clone::clone).and_then(Estimate::check);
-                if let Err(reason) = verdict {
-                    self.failures.push(format!("{label}: {reason}"));
-                }
-                if let Ok(m) = measured {
-                    let how = if m.two_terms { ", two terms" } else { "" };
-                    self.table += &format!("  {label:<30} {}  {:.2?}{how}\n", m.claimed, m.slopes);
-                }
-            }
-        }
-    }
-    fn assert(self) {
-        let Report { title, table, failures } = self;
-        println!("{table}");
-        assert!(failures.is_empty(), "{title}:\n  {}", failures.join("\n  "));
-    }
-}
-
-/// Measure every method of the catalog, and require the orders that they claim.
-fn every_method_on<P: Ambient>(title: &'static str, problems: Problems<P>)
+/// Measure every method for fields, and require the orders that they claim.
+fn every_method_on<P: Ambient>(title: &str, problems: Problems<P>)
 where
     P::Group: Represent + CatalogGroup,
     P::Action: Points<P::Group>,
     Cay: CoordinateMap<P::Group>,
     Exp: CoordinateMap<P::Group>,
 {
-    let group = problems.short[0].0.group().name();
-    let mut report = Report::new(title);
-    for spec in catalog() {
-        let outcome = with_method(&spec, Measure(&problems, true)).unwrap();
-        report.add(&spec.label(), serves(&spec, &group), outcome);
-    }
-    report.assert();
+    let measured = |spec: &MethodSpec| with_method(spec, Measure(&problems, true));
+    Report::of(title, &problems.group(), &[Needs::Field], measured);
 }
 
 /// The same for the methods that want a field of linear type. Some of order 4 are so accurate there
 /// that the grid of that order has rounding on it.
-fn every_linear_method_on<P: LinearField + Ambient>(title: &'static str, problems: Problems<P>)
+fn every_linear_method_on<P: LinearField + Ambient>(title: &str, problems: Problems<P>)
 where
     P::Group: Represent + TripleProduct,
     P::Action: Points<P::Group>,
     Cay: CoordinateMap<P::Group>,
     Exp: CoordinateMap<P::Group>,
 {
-    let mut report = Report::new(title);
-    for info in LINEAR_METHODS {
-        report.add(
-            info.name,
-            true,
-            with_linear_method(info.name, Measure(&problems, false)).unwrap(),
-        );
-    }
-    report.assert();
+    let measured = |spec: &MethodSpec| with_linear_method(&spec.name, Measure(&problems, false));
+    Report::of(title, &problems.group(), &[Needs::LinearType], measured);
 }
 
 /// One test a problem, from its group, its action and its field; `one` of them, or `many` with the
@@ -210,11 +82,11 @@ fn clocks(n: usize, strength: f64) -> impl Fn(u64) -> Field {
 orders! {
     every_method_on:
     translation_on_so3_closed: many, So3::new(), LeftTranslation, waves(3, 0.5, 11);
-    translation_on_so3: one, MatrixGroup::so(3).unwrap(), LeftTranslation, waves(3, 0.5, 11);
     translation_on_so5: many, MatrixGroup::so(5).unwrap(), LeftTranslation, waves(5, 0.5, 11);
     translation_on_gl3: many, MatrixGroup::gl(3).unwrap(), LeftTranslation, waves(3, 0.2, 12);
     translation_on_sp4: many, MatrixGroup::sp(4).unwrap(), LeftTranslation, waves(4, 0.25, 12);
     translation_on_so31: many, MatrixGroup::indefinite(3, 1).unwrap(), LeftTranslation, waves(4, 0.35, 11);
+    translation_on_so3: one, MatrixGroup::so(3).unwrap(), LeftTranslation, waves(3, 0.5, 11);
     orbits_of_so3_closed: one, So3::new(), Coadjoint, |_| inertia(3);
     orbits_of_so4: one, MatrixGroup::so(4).unwrap(), Coadjoint, |_| inertia(4);
     orbits_of_sp4: one, MatrixGroup::sp(4).unwrap(), Coadjoint, waves(4, 0.25, 16);

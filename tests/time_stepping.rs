@@ -2,12 +2,14 @@
 //! algebra, errors of the user's own, interrupted runs, very many steps. Spans, grids and output times
 //! are in `api/grids.rs`, adaptive runs in `adaptive.rs`.
 
+use std::cell::Cell;
+
 use faer::Mat;
 use lieflow::actions::{LeftTranslation, Linear};
 use lieflow::adaptive::{Adaptive, AdaptiveError, integrate_adaptive};
-use lieflow::groups::{AlgebraMatrix, GroupMatrix, MatrixGroup, So3};
+use lieflow::groups::{AlgebraMatrix, GroupMatrix, MatrixGroup, So3, Translations};
 use lieflow::maps::Exp;
-use lieflow::methods::tableau::{DOPRI5, MIDPOINT, RK4};
+use lieflow::methods::tableau::{DOPRI5, EULER, MIDPOINT, RK4};
 use lieflow::methods::{Doubling, Rk, Rkmk};
 use lieflow::problems::{
     Fallible, InAlgebra, LinearEquation, Problem, RigidBody, RigidBodyAttitude, TryProblem,
@@ -252,6 +254,28 @@ fn very_many_steps() {
     // angles of the steps, t·h to ε.
     let angle = 0.5 * end * end;
     assert!((y - Vector3::new(angle.cos(), angle.sin(), 0.0)).norm() < 1e-8, "{y}");
+}
+
+/// T12 as a run: the field sees each of 1e8 times within two units in the last place.
+#[test]
+#[ignore = "1e8 steps: cargo test --release --test time_stepping -- --ignored"]
+fn a_hundred_million_steps() {
+    let (steps, end, n, worst) = (100_000_000, 1e4, Cell::new(0u64), Cell::new(0.0f64));
+    let still = |t: f64, _: &mut Vector3<f64>| {
+        // The field is asked once before the run.
+        let exact = end * (n.get().saturating_sub(1) as f64 / steps as f64);
+        n.set(n.get() + 1);
+        worst.set(worst.get().max((t - exact).abs() / exact.max(1e-300)));
+    };
+    let group = Translations::new(Vector3::zeros(), 3);
+    let problem = LinearEquation::new(group, LeftTranslation, still);
+    let (mut y, mut last) = (Vector3::zeros(), 0.0);
+    let euler = Rkmk::new(EULER, Exp);
+    let stats =
+        integrate(&problem, &euler, &grid(end, steps), &SaveAt::Ends, &mut y, |t, _| last = t)
+            .expect("a run");
+    assert_eq!((stats.steps, last, n.get()), (steps, end, steps + 1));
+    assert!(worst.get() <= 2.0 * f64::EPSILON, "{:e}", worst.get());
 }
 
 /// An adaptive run of many steps stays on its group as a fixed one does, and one of a method that

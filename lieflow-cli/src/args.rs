@@ -37,7 +37,7 @@ pub struct Cli {
 /// A command.
 #[derive(Clone, Debug, Subcommand)]
 pub enum Command {
-    /// Run a scene: trajectory.csv and summary.json.
+    /// Run a scene: trajectory.csv, summary.json, and a page with figures.
     Run(RunArgs),
     /// Run a scene with every method, map and layer that fits, and write a report.
     Compare(CompareArgs),
@@ -70,7 +70,7 @@ pub struct DemoArgs {
 pub struct RunArgs {
     /// A scene file, or the name of a bundled scene.
     pub scene: PathBuf,
-    /// Folder for trajectory.csv and summary.json [default: lieflow-out/SCENE].
+    /// Folder for what is written [default: lieflow-out/SCENE].
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
 }
@@ -204,7 +204,8 @@ A scene file, with everything that it can say about a rigid body:
   title = \"Asymmetric top\"
   [problem]
   kind = \"rigid-body\"
-  inertia = [1.0, 2.0, 3.0]         # or inverse_inertia
+  inertia = [1.0, 2.0, 3.0]         # or the tensor as three rows, inverse_inertia, or
+                                    # shape = { kind = \"box\", mass = 1, sides = [1, 2, 3] }
   omega_body = [0.2, 0.0, 1.0]      # or momentum_body
   attitude = [[1,0,0],[0,1,0],[0,0,1]]
                                     # body to space; optional
@@ -225,5 +226,6 @@ A scene file, with everything that it can say about a rigid body:
   every = 10                        # or times = [1.5, 20]; optional: 1
 
 Written: trajectory.csv, a column t and the columns of each quantity, 17 significant digits, the
-start first and the end last; summary.json, what was run and how well it went. When a step fails,
-the rows up to it are in trajectory.partial.csv and the exit code is 2.";
+start first and the end last; summary.json, what was modelled and run, the drift of each invariant, and
+a warning where a method did not keep what it promises; index.html with figures, and each as an SVG file.
+When a step fails, the rows up to it are in trajectory.partial.csv and the exit code is 2.";

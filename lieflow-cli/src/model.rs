@@ -63,8 +63,8 @@ pub trait Model: Debug {
     /// Names of the columns after `t`.
     fn columns(&self) -> Vec<String>;
 
-    /// What is integrated, in words. Nothing else is computed.
-    fn modelled(&self) -> Vec<String>;
+    /// What a method integrates, in words. Nothing else is computed.
+    fn modelled(&self, method: &MethodSpec) -> Vec<String>;
 
     /// Integrate from the initial state; `sink` gets a row where `save` says.
     ///
@@ -127,7 +127,7 @@ pub trait Catalog: Problem<Group: LieAlgebra<Scalar: Into<f64>>> {
     ///
     /// # Errors
     /// As [`lieflow::catalog::with_method`], for a method that does not fit.
-    fn with<V: OnMethod<Self>>(spec: &MethodSpec, on: V) -> Result<V::Out, Error>
+    fn with<V: OnMethod<Self>>(&self, spec: &MethodSpec, on: V) -> Result<V::Out, Error>
     where
         Self: Sized;
 
@@ -135,28 +135,34 @@ pub trait Catalog: Problem<Group: LieAlgebra<Scalar: Into<f64>>> {
     ///
     /// # Errors
     /// As [`with`](Self::with).
-    fn with_estimate<V: OnEmbedded<Self>>(spec: &MethodSpec, on: V) -> Result<V::Out, Error>
+    fn with_estimate<V: OnEmbedded<Self>>(&self, spec: &MethodSpec, on: V) -> Result<V::Out, Error>
     where
         Self: Sized;
 }
 
-/// [`Catalog`] for an [`Ambient`](lieflow::problems::Ambient) problem, by the catalog's function for its kind.
+/// [`Catalog`] for an [`Ambient`](lieflow::problems::Ambient) problem, by the catalog's function for its
+/// kind, and the one for its embedded pairs.
 #[macro_export]
 macro_rules! catalog {
     ($problem:ty, $with:path) => {
+        $crate::catalog!($problem, $with, lieflow::catalog::with_embedded_pair);
+    };
+    ($problem:ty, $with:path, $pair:path) => {
         impl $crate::model::Catalog for $problem {
             fn with<V: lieflow::catalog::OnMethod<Self>>(
+                &self,
                 spec: &lieflow::catalog::MethodSpec,
                 on: V,
             ) -> Result<V::Out, lieflow::Error> {
                 $with(spec, on)
             }
             fn with_estimate<V: lieflow::catalog::OnEmbedded<Self>>(
+                &self,
                 spec: &lieflow::catalog::MethodSpec,
                 on: V,
             ) -> Result<V::Out, lieflow::Error> {
                 match spec.has_pair()? {
-                    true => lieflow::catalog::with_embedded_pair(spec, on),
+                    true => $pair(spec, $crate::erased::Pointed(on)),
                     false => $with(spec, $crate::erased::Doubled(on)),
                 }
             }
@@ -164,15 +170,19 @@ macro_rules! catalog {
     };
 }
 
-struct Integrate<'a, P: Problem, F> {
+/// What sees the points of a run. Behind a pointer, so that every kind with a type of problem shares
+/// what is compiled for it.
+pub type Observer<'a, P> = dyn FnMut(f64, &PointOf<P>) + 'a;
+
+struct Integrate<'a, P: Problem> {
     problem: &'a P,
     y: PointOf<P>,
     grid: &'a TimeGrid,
     save: &'a SaveAt,
-    observe: F,
+    observe: &'a mut Observer<'a, P>,
 }
 
-impl<P: Problem, F: FnMut(f64, &PointOf<P>)> OnMethod<P> for Integrate<'_, P, F> {
+impl<P: Problem> OnMethod<P> for Integrate<'_, P> {
     type Out = Result<Stats, RunError>;
     fn call<M: Method<P>>(self, method: M) -> Self::Out {
         let Integrate { problem, mut y, grid, save, observe } = self;
@@ -180,19 +190,15 @@ impl<P: Problem, F: FnMut(f64, &PointOf<P>)> OnMethod<P> for Integrate<'_, P, F>
     }
 }
 
-struct Adapt<'a, P: Problem, F> {
+struct Adapt<'a, P: Problem> {
     problem: &'a P,
     y: PointOf<P>,
     steps: &'a Steps,
     save: &'a SaveAt,
-    observe: F,
+    observe: &'a mut Observer<'a, P>,
 }
 
-impl<P, F> OnEmbedded<P> for Adapt<'_, P, F>
-where
-    P: Problem<Group: LieAlgebra<Scalar: Into<f64>>>,
-    F: FnMut(f64, &PointOf<P>),
-{
+impl<P: Problem<Group: LieAlgebra<Scalar: Into<f64>>>> OnEmbedded<P> for Adapt<'_, P> {
     type Out = Result<AdaptiveStats, AdaptiveError>;
     fn call<M: Embedded<P>>(self, method: M) -> Self::Out {
         let Adapt { problem, mut y, steps, save, observe } = self;
@@ -220,9 +226,9 @@ pub fn integrate_by<P: Catalog>(
     y: PointOf<P>,
     grid: &TimeGrid,
     save: &SaveAt,
-    observe: impl FnMut(f64, &PointOf<P>),
+    observe: &mut Observer<'_, P>,
 ) -> Result<Stats, RunError> {
-    P::with(spec, Integrate { problem, y, grid, save, observe })?
+    problem.with(spec, Integrate { problem, y, grid, save, observe })?
 }
 
 /// The same with steps chosen by their error: what a [`Model::adapt`] calls.
@@ -235,9 +241,9 @@ pub fn adapt_by<P: Catalog>(
     y: PointOf<P>,
     steps: &Steps,
     save: &SaveAt,
-    observe: impl FnMut(f64, &PointOf<P>),
+    observe: &mut Observer<'_, P>,
 ) -> Result<AdaptiveStats, AdaptiveError> {
-    P::with_estimate(spec, Adapt { problem, y, steps, save, observe })?
+    problem.with_estimate(spec, Adapt { problem, y, steps, save, observe })?
 }
 
 /// The order of the method that `spec` names: what a [`Model::order`] calls.
@@ -245,6 +251,6 @@ pub fn adapt_by<P: Catalog>(
 /// # Errors
 /// As [`Catalog::with`].
 pub fn order_by<P: Catalog>(spec: &MethodSpec, problem: &P) -> Result<Option<usize>, Error> {
-    let order = P::with(spec, Order(problem))?;
+    let order = problem.with(spec, Order(problem))?;
     Ok((order != usize::MAX).then_some(order))
 }

@@ -75,8 +75,8 @@ impl<P: Problem, M: Embedded<P>> Embedded<P> for Watched<'_, M> {
     fn error_order(&self, problem: &P) -> Result<usize, Error> {
         self.0.error_order(problem)
     }
-    fn evaluations(&self) -> u64 {
-        self.0.evaluations()
+    fn evaluations_with_error(&self, problem: &P) -> Option<u64> {
+        self.0.evaluations_with_error(problem)
     }
     fn step_with_error(
         &self,
@@ -152,7 +152,7 @@ pub fn operations_by<P: Catalog<Group: lieflow::groups::LieAlgebra<Scalar = Coun
     pace: Pace<'_>,
 ) -> Option<f64> {
     match pace {
-        Pace::Fixed(how) => P::with(spec, Run { problem, y, how }).ok()?,
-        Pace::Chosen(how) => P::with_estimate(spec, Run { problem, y, how }).ok()?,
+        Pace::Fixed(how) => problem.with(spec, Run { problem, y, how }).ok()?,
+        Pace::Chosen(how) => problem.with_estimate(spec, Run { problem, y, how }).ok()?,
     }
 }

@@ -39,7 +39,7 @@ fn a_printed_scene_runs() {
         let text = folder.lieflow(&["scenes", scene.name]).ok();
         folder.write("my.toml", &text);
         folder.lieflow(&["run", "my.toml"]).ok();
-        assert_eq!(folder.names("lieflow-out/my"), ["summary.json", "trajectory.csv"]);
+        assert_eq!(folder.data("lieflow-out/my"), ["summary.json", "trajectory.csv"]);
     }
     folder.lieflow(&["run", "symmetric-top"]).ok();
     assert_eq!(folder.names("lieflow-out"), ["my", "symmetric-top"]);
@@ -75,10 +75,17 @@ fn methods_for_a_scene_are_those_that_run() {
     let closed = [&body[..], &series].concat();
     let linear = ["magnus4", "magnus6", "cfm6-5"];
     for (scene, with, without) in [
-        ("asymmetric-top", &[&closed[..], &["energy-casimir"]].concat()[..], &["rk4-qr"][..]),
-        ("tumbling-attitude", &[&closed[..], &["rk4-qr"]].concat(), &["energy-casimir"]),
+        (
+            "asymmetric-top",
+            &[&closed[..], &["energy-casimir"]].concat()[..],
+            &["rk4-qr", "rk4-mg"][..],
+        ),
+        ("tumbling-attitude", &[&closed[..], &["rk4-qr", "rk4-mg"]].concat(), &["energy-casimir"]),
         ("general-layer", &["energy-casimir", "isospectral4", "taylor12"], &body),
         ("rotating-field", &linear, &closed),
+        ("rabi", &linear, &closed),
+        ("manakov-body", &["energy-casimir", "isospectral4", "taylor12"], &body),
+        ("spin-wave", &[], &closed),
     ] {
         let fitting = folder.lieflow(&["methods", "--for", scene, "--json"]).ok();
         let fitting: Value = serde_json::from_str(&fitting).unwrap();
@@ -86,7 +93,7 @@ fn methods_for_a_scene_are_those_that_run() {
         for name in everywhere.iter().chain(with) {
             assert!(fitting.contains(name), "{scene}: {name} is missing");
         }
-        let foreign = linear.iter().filter(|_| scene != "rotating-field");
+        let foreign = linear.iter().filter(|_| !["rotating-field", "rabi"].contains(&scene));
         for name in foreign.chain(without) {
             assert!(!fitting.contains(name), "{scene}: {name} does not fit");
         }
@@ -102,15 +109,24 @@ fn the_keys_and_quantities_that_are_listed_are_those_that_scenes_take() {
         let text = text.text.replace("[problem]", "[problem]\nno_such_key = 1");
         let message = Scene::parse("scene", &text).unwrap_err().to_string();
         let keys: Vec<_> = kind.keys.iter().map(|key| key.name).collect();
-        assert!(message.contains(&format!("expected one of {}", keys.join(", "))), "{message}");
+        let one_of = if keys.len() == 1 { "" } else { "one of " };
+        assert!(message.contains(&format!("expected {one_of}{}", keys.join(", "))), "{message}");
 
         let of_kind = |s: &&lieflow_cli::scene::Bundled| {
             Scene::bundled(s.name).unwrap().problem.kind().name == kind.name
         };
         let scene = Scene::bundled(BUNDLED.iter().find(of_kind).unwrap().name).unwrap();
-        let columns: Vec<_> = kind.quantities.iter().flat_map(|q| q.columns).collect();
         let model = scene.problem.model(scene.layer, &quantities).unwrap();
-        assert_eq!(model.columns().iter().collect::<Vec<_>>(), columns);
+        let all: Vec<_> = quantities.iter().map(|q| scene.problem.columns(q).unwrap()).collect();
+        assert_eq!(model.columns(), all.concat());
+        // Where the size of the problem says how many there are, the list names the first.
+        for (info, columns) in kind.quantities.iter().zip(&all) {
+            let open = info.columns.contains(&"…");
+            let listed: Vec<_> = info.columns.iter().take_while(|c| **c != "…").collect();
+            assert!(open || listed.len() == columns.len(), "{}: {columns:?}", info.name);
+            let named = listed.iter().zip(columns).all(|(a, b)| **a == b);
+            assert!(named, "{} {}: {columns:?}", kind.name, info.name);
+        }
     }
 }
 

@@ -18,9 +18,10 @@ pub struct AdaptiveStats {
     pub rejected: u64,
     /// Shorter steps taken to output times within a step.
     pub side_steps: u64,
-    /// Evaluations of f ([`Embedded::evaluations`] for each attempt, also for one that failed early;
-    /// and those of the choice of the first step).
-    pub evaluations: u64,
+    /// Evaluations of f ([`Embedded::evaluations_with_error`] for each attempt, also for one that
+    /// failed early, and those of the choice of the first step); `None` where the method does not know
+    /// them.
+    pub evaluations: Option<u64>,
     /// The smallest accepted step, without its sign.
     pub smallest_step: f64,
     /// The largest accepted step, without its sign.
@@ -141,7 +142,11 @@ where
         t1: t_span[1],
         work: method.work(problem, y)?,
         next: y.clone(),
-        stats: AdaptiveStats { smallest_step: f64::INFINITY, ..Default::default() },
+        stats: AdaptiveStats {
+            evaluations: Some(0),
+            smallest_step: f64::INFINITY,
+            ..Default::default()
+        },
     };
     let mut aside = y.clone();
     let mut times = match save {
@@ -275,7 +280,7 @@ where
     /// next ← the step from y to `end`; its error in units of the tolerance.
     fn attempt(&mut self, end: f64, y: &PointOf<P>) -> Result<f64, StepError> {
         let step = self.step(end);
-        self.stats.evaluations += self.method.evaluations();
+        self.evaluated(self.method.evaluations_with_error(self.problem));
         let local =
             self.method.step_with_error(self.problem, step, y, &mut self.work, &mut self.next)?;
         let (error, length): (f64, f64) = (local.error.into(), local.length.into());
@@ -294,10 +299,14 @@ where
         aside: &mut PointOf<P>,
     ) -> Result<(), StepError> {
         let step = self.step(time);
-        self.stats.evaluations += self.method.evaluations();
+        self.evaluated(self.method.evaluations_with_error(self.problem));
         self.method.step_with_error(self.problem, step, y, &mut self.work, aside)?;
         self.stats.side_steps += 1;
         Ok(())
+    }
+
+    fn evaluated(&mut self, more: Option<u64>) {
+        self.stats.evaluations = self.stats.evaluations.zip(more).map(|(n, more)| n + more);
     }
 
     fn accepted(&mut self, end: f64, size: f64) {
@@ -314,7 +323,7 @@ where
         let (mut f0, mut f1, mut work) = (group.zero(), group.zero(), self.problem.work());
         let span = (self.t1 - self.t).abs();
         self.problem.f(lit(self.t), y, &mut f0, &mut work);
-        self.stats.evaluations += 1;
+        self.evaluated(Some(1));
         let d1: f64 = group.norm(&f0).into();
         if !d1.is_finite() {
             return 1e-3 * span; // the first attempt will say what is wrong
@@ -329,7 +338,7 @@ where
             return h0;
         }
         self.problem.f(lit(end), &self.next, &mut f1, &mut work);
-        self.stats.evaluations += 1;
+        self.evaluated(Some(1));
         group.axpy(lit(-1.0), &f0, &mut f1);
         // Rates: f itself, and the root of its derivative.
         let change: f64 = group.norm(&f1).into();

@@ -85,7 +85,11 @@ where
     PointOf<P>: Metric<Scalar = ScalarOf<P>>,
     Exp: CoordinateMap<P::Group>,
 {
-    let out: Result<Option<V::Out>, Error> = each_method!(spec, on, no_pair, pair => pair_of);
+    only_pairs(spec, each_method!(spec, on, no_pair, pair => pair_of))
+}
+
+/// What a pair answered; without one, an error.
+pub(super) fn only_pairs<T>(spec: &MethodSpec, out: Result<Option<T>, Error>) -> Result<T, Error> {
     out?.ok_or_else(|| Error::Unsupported {
         what: "an error estimate",
         with: format!("`{}`", spec.label()),
@@ -93,11 +97,14 @@ where
     })
 }
 
-fn no_pair<P: Problem, V: OnEmbedded<P>, M: Method<P>>(_: V, _: M) -> Option<V::Out> {
+pub(super) fn no_pair<P: Problem, V: OnEmbedded<P>, M: Method<P>>(_: V, _: M) -> Option<V::Out> {
     None
 }
 
-fn pair_of<P: Problem, V: OnEmbedded<P>, M: Embedded<P>>(on: V, method: M) -> Option<V::Out> {
+pub(super) fn pair_of<P: Problem, V: OnEmbedded<P>, M: Embedded<P>>(
+    on: V,
+    method: M,
+) -> Option<V::Out> {
     Some(on.call(method))
 }
 

@@ -405,6 +405,47 @@ pub const ATTITUDE_METHODS: &[MethodInfo] = &[
     ),
 ];
 
+const ALL_QUADRATIC: &str = "energy, group, Casimirs, quadratic invariants, time symmetry";
+
+/// Classical methods on the momentum and the entries of the attitude as one state: `with_state_method`.
+pub const STATE_METHODS: &[MethodInfo] = &[
+    plain(
+        RUNGE_KUTTA,
+        "rk4-mg",
+        Some(4),
+        "classical Runge–Kutta on (m, g), the momentum and the entries of the attitude as one state",
+        [LINEAR_ONLY, "4 F", KUTTA],
+    ),
+    of_a_tableau(plain(
+        RUNGE_KUTTA,
+        "rk-mg",
+        None,
+        "explicit Runge–Kutta with any tableau on (m, g)",
+        [LINEAR_ONLY, "s F", KUTTA],
+    )),
+    plain(
+        RUNGE_KUTTA,
+        "midpoint-implicit-mg",
+        Some(2),
+        "the implicit midpoint rule on (m, g), where everything that the body keeps is quadratic",
+        [ALL_QUADRATIC, "5–20 F", GAUSS],
+    ),
+    plain(
+        RUNGE_KUTTA,
+        "gauss4-mg",
+        Some(4),
+        "Gauss collocation of two stages on (m, g)",
+        [ALL_QUADRATIC, "5–20 × 2 F", GAUSS],
+    ),
+    plain(
+        RUNGE_KUTTA,
+        "gauss6-mg",
+        Some(6),
+        "Gauss collocation of three stages on (m, g)",
+        [ALL_QUADRATIC, "5–20 × 3 F", GAUSS],
+    ),
+];
+
 const fn energy_casimir(
     name: &'static str,
     order: usize,

@@ -17,13 +17,16 @@
 //! | [`with_body_method`] | a free rigid body in ℝ³ | `Field`, `Norm`, `Series`, `Body` |
 //! | [`with_attitude_method`] | and its attitude in the state | `Field`, `Norm`, `Series`, `Body`, `Attitude` |
 //! | [`with_momentum_method`] | the body by its momentum | `Field`, `Norm`, `Series`, `Body`, `LiePoisson` |
+//! | [`with_state_method`](super::with_state_method) | both in one state, [`RigidBodyState`] | `State` |
 //! | [`with_linear_method`](super::with_linear_method) | ẏ = λ_*(A(t))(y) | `LinearType` |
 //!
-//! Each but the last hands what is not its own to the function that it extends. With the visitor
+//! Each but the last two hands what is not its own to the function that it extends. With the visitor
 //! [`Doubled`](super::Doubled) any of them serves an adaptive run.
+//!
+//! [`RigidBodyState`]: crate::problems::RigidBodyState
 
 use super::*;
-use crate::actions::Coadjoint;
+use crate::actions::{Action, Coadjoint};
 use crate::groups::MatrixGroup;
 use crate::methods::{
     Buss4, Composition, DMV2, DMV4, DMV6, DMV8, DMV10, EnergyCasimir, ExactMotion, GAUSS2, GAUSS4,
@@ -52,6 +55,8 @@ pub enum Needs {
     Body,
     /// An orthogonal matrix in the state ([`Orthogonal`]).
     Attitude,
+    /// The momentum and the attitude as one state ([`RigidBodyState`](crate::problems::RigidBodyState)).
+    State,
     /// A Hamiltonian on 𝔤* ([`LiePoisson`]).
     LiePoisson,
     /// The coadjoint action on matrices ([`Coadjoint`]): Ẇ = \[f, W\] for W = mᵀ.
@@ -60,13 +65,14 @@ pub enum Needs {
 
 impl Needs {
     /// Each of them.
-    pub const ALL: [Needs; 8] = [
+    pub const ALL: [Needs; 9] = [
         Needs::Field,
         Needs::LinearType,
         Needs::Norm,
         Needs::Series,
         Needs::Body,
         Needs::Attitude,
+        Needs::State,
         Needs::LiePoisson,
         Needs::Isospectral,
     ];
@@ -80,6 +86,7 @@ impl Needs {
             Needs::Series => SERIES_METHODS,
             Needs::Body => BODY_METHODS,
             Needs::Attitude => ATTITUDE_METHODS,
+            Needs::State => STATE_METHODS,
             Needs::LiePoisson => LIE_POISSON_METHODS,
             Needs::Isospectral => ISOSPECTRAL_METHODS,
         }
@@ -98,6 +105,9 @@ impl Needs {
             Needs::Series => "it needs a field with Taylor coefficients by recurrence",
             Needs::Body => "it needs a free rigid body in three dimensions",
             Needs::Attitude => "it needs an attitude in the state",
+            Needs::State => {
+                "it needs a rigid body in three dimensions by its momentum and its attitude"
+            }
             Needs::LiePoisson => "it needs a Lie–Poisson system, given by its momentum",
             Needs::Isospectral => "it needs momenta as matrices",
         }
@@ -129,6 +139,18 @@ pub(super) fn misfit(name: &str) -> Error {
     }
 }
 
+/// What the functions here ask of every problem: a group that all maps serve, and a norm of the points.
+pub trait Catalogued:
+    Ambient<
+        Group: CatalogGroup,
+        Action: Action<<Self as Problem>::Group, Point: Metric<Scalar = ScalarOf<Self>>>,
+    >
+{
+}
+
+impl<P: Ambient<Group: CatalogGroup>> Catalogued for P where PointOf<P>: Metric<Scalar = ScalarOf<P>>
+{}
+
 /// Run `$body` with `$map` bound to exp or cay.
 macro_rules! each_odd_map {
     ($spec:expr, $map:ident => $body:expr) => {
@@ -138,7 +160,7 @@ macro_rules! each_odd_map {
                 Ok($body)
             }
             ("cay", None) => {
-                let $map = Cay;
+                let $map = serve::<P::Group, _>(Cay);
                 Ok($body)
             }
             (map, q) => Err(Error::Unsupported {
@@ -154,15 +176,12 @@ macro_rules! each_odd_map {
 ///
 /// # Errors
 /// As [`with_method`].
-pub fn with_implicit_method<P: Ambient, V: OnMethod<P>>(
+pub fn with_implicit_method<P: Catalogued, V: OnMethod<P>>(
     spec: &MethodSpec,
     on: V,
 ) -> Result<V::Out, Error>
 where
-    P::Group: CatalogGroup,
-    PointOf<P>: Metric<Scalar = ScalarOf<P>>,
     Exp: CoordinateMap<P::Group>,
-    Cay: CoordinateMap<P::Group>,
 {
     let map = spec.map.as_deref().unwrap_or("exp");
     match spec.info()?.name {
@@ -189,15 +208,13 @@ where
 ///
 /// # Errors
 /// As [`with_method`].
-pub fn with_series_method<P: Ambient + TaylorField, V: OnMethod<P>>(
+pub fn with_series_method<P: Catalogued + TaylorField, V: OnMethod<P>>(
     spec: &MethodSpec,
     on: V,
 ) -> Result<V::Out, Error>
 where
-    P::Group: CatalogGroup + SeriesGroup,
-    PointOf<P>: Metric<Scalar = f64>,
+    P::Group: SeriesGroup,
     Exp: CoordinateMap<P::Group>,
-    Cay: CoordinateMap<P::Group>,
 {
     match spec.info()?.name {
         "taylor4" => Ok(on.call(LieSeries::new(4)?)),
@@ -239,16 +256,13 @@ fn splitting(name: &str) -> Option<Splitting<3>> {
 ///
 /// # Errors
 /// As [`with_method`].
-pub fn with_body_method<P: FreeBody + Split, V: OnMethod<P>>(
+pub fn with_body_method<P: Catalogued + FreeBody + Split, V: OnMethod<P>>(
     spec: &MethodSpec,
     on: V,
 ) -> Result<V::Out, Error>
 where
-    P::Group: CatalogGroup,
     ScalarOf<P>: Trig + Wide + Into<f64>,
-    PointOf<P>: Metric<Scalar = ScalarOf<P>>,
     Exp: CoordinateMap<P::Group>,
-    Cay: CoordinateMap<P::Group>,
 {
     let name = spec.info()?.name;
     if let Some(splitting) = splitting(name) {
@@ -282,16 +296,13 @@ where
 ///
 /// # Errors
 /// As [`with_method`].
-pub fn with_attitude_method<P: FreeBody + Split + Orthogonal, V: OnMethod<P>>(
+pub fn with_attitude_method<P: Catalogued + FreeBody + Split + Orthogonal, V: OnMethod<P>>(
     spec: &MethodSpec,
     on: V,
 ) -> Result<V::Out, Error>
 where
-    P::Group: CatalogGroup,
     ScalarOf<P>: Trig + Wide + Into<f64>,
-    PointOf<P>: Metric<Scalar = ScalarOf<P>>,
     Exp: CoordinateMap<P::Group>,
-    Cay: CoordinateMap<P::Group>,
 {
     match spec.info()?.name {
         "rk4-qr" => Ok(on.call(Projected::new(Rk(tableau::RK4), Projection::Qr))),
@@ -318,16 +329,13 @@ macro_rules! each_energy_casimir {
 ///
 /// # Errors
 /// As [`with_method`].
-pub fn with_momentum_method<P: FreeBody + Split + LiePoisson, V: OnMethod<P>>(
+pub fn with_momentum_method<P: Catalogued + FreeBody + Split + LiePoisson, V: OnMethod<P>>(
     spec: &MethodSpec,
     on: V,
 ) -> Result<V::Out, Error>
 where
-    P::Group: CatalogGroup,
     ScalarOf<P>: Trig + Wide + Into<f64>,
-    PointOf<P>: Metric<Scalar = ScalarOf<P>>,
     Exp: CoordinateMap<P::Group>,
-    Cay: CoordinateMap<P::Group>,
 {
     each_energy_casimir!(spec, on, else => with_body_method(spec, on))
 }

@@ -2,7 +2,7 @@
 //!
 //! Workspaces are made once; after that nothing allocates. Every product runs on one core
 //! (`Par::Seq`): below n = 128 faer's parallel mode is slower, and ensembles parallelise outside.
-//! Products up to 16×16 and solves up to 8×8 run in const-size kernels, chosen once per call, because
+//! Products and solves of 8×8 and smaller run in const-size kernels, chosen once per call, because
 //! a library call costs more there than the arithmetic.
 
 mod ad;
@@ -12,6 +12,7 @@ mod lu;
 mod ops;
 mod product;
 mod schur;
+mod symmetric;
 
 pub(crate) use ad::{AdForm, AdSchur, Direction, Kind as AdKind};
 pub(crate) use eigen::SkewEigen;
@@ -25,3 +26,4 @@ pub(crate) use ops::{axpy, is_finite, norm_frobenius, norm1, scaled_sum, wide};
 pub(crate) use product::{
     antisymmetrise, congruence, lower_product, mirror, mul, mul_add, orthogonalise,
 };
+pub(crate) use symmetric::SymmetricEigen;

@@ -24,12 +24,30 @@ use crate::scalar::Real;
 pub trait Adjoint: LieGroup {
     /// m ∈ 𝔤*.
     type Dual: Clone;
+    /// Scratch of [`invert`](Self::invert); `()` where it needs none.
+    type Inverting;
 
-    /// out ← g⁻¹.
+    /// Scratch for [`invert`](Self::invert).
+    fn inverting(&self) -> Self::Inverting;
+
+    /// out ← g⁻¹, without an allocation.
     ///
     /// # Errors
     /// [`StepError::NotFinite`] for a singular g on GL(n).
-    fn inverse(&self, g: &Self::Elem, out: &mut Self::Elem) -> Result<(), StepError>;
+    fn invert(
+        &self,
+        g: &Self::Elem,
+        scratch: &mut Self::Inverting,
+        out: &mut Self::Elem,
+    ) -> Result<(), StepError>;
+
+    /// out ← g⁻¹, with scratch made for it.
+    ///
+    /// # Errors
+    /// As [`invert`](Self::invert).
+    fn inverse(&self, g: &Self::Elem, out: &mut Self::Elem) -> Result<(), StepError> {
+        self.invert(g, &mut self.inverting(), out)
+    }
 
     /// out ← Ad_g u = g u g⁻¹.
     ///
@@ -62,8 +80,11 @@ pub trait Adjoint: LieGroup {
 
 impl<S: Real> Adjoint for So3<S> {
     type Dual = Vector3<S>;
+    type Inverting = ();
 
-    fn inverse(&self, g: &Matrix3<S>, out: &mut Matrix3<S>) -> Result<(), StepError> {
+    fn inverting(&self) {}
+    #[inline]
+    fn invert(&self, g: &Matrix3<S>, (): &mut (), out: &mut Matrix3<S>) -> Result<(), StepError> {
         *out = g.transpose();
         Ok(())
     }
@@ -101,17 +122,35 @@ fn finite(is: bool) -> Result<(), StepError> {
     if is { Ok(()) } else { Err(StepError::NotFinite { what: "Ad" }) }
 }
 
-/// [`big_ad`](Adjoint::big_ad) and [`coad_group`](Adjoint::coad_group) allocate, and so does the
-/// inverse on GL(n) and G_M. Cost: two products and the inverse, which is free on SO(n) and Sp(2m),
+/// Scratch of the inverse: M⁻¹gᵀ on G_M, the factors of g on GL(n).
+#[derive(Debug)]
+pub struct InvertingWork {
+    product: Mat<f64>,
+    lu: Option<Lu>,
+}
+
+/// [`big_ad`](Adjoint::big_ad) and [`coad_group`](Adjoint::coad_group) allocate. Cost: two products and the inverse, which is free on SO(n) and Sp(2m),
 /// two products on G_M, and an LU on GL(n).
 impl Adjoint for MatrixGroup {
     type Dual = Mat<f64>;
+    type Inverting = InvertingWork;
 
-    fn inverse(&self, g: &GroupMatrix, out: &mut GroupMatrix) -> Result<(), StepError> {
-        match (self.form(), self.m()) {
-            (Form::Identity, _) => out.copy_from(g.transpose()),
+    fn inverting(&self) -> InvertingWork {
+        let n = self.n();
+        let lu = matches!(self.form(), Form::Free).then(|| Lu::new(n));
+        InvertingWork { product: Mat::zeros(n, n), lu }
+    }
+
+    fn invert(
+        &self,
+        g: &GroupMatrix,
+        InvertingWork { product, lu }: &mut InvertingWork,
+        out: &mut GroupMatrix,
+    ) -> Result<(), StepError> {
+        match self.form() {
+            Form::Identity => out.copy_from(g.transpose()),
             // −JgᵀJ: blocks \[a b; c d\] become \[dᵀ −bᵀ; −cᵀ aᵀ\].
-            (Form::Symplectic, _) => {
+            Form::Symplectic => {
                 let m = self.n() / 2;
                 for j in 0..m {
                     for i in 0..m {
@@ -122,15 +161,18 @@ impl Adjoint for MatrixGroup {
                     }
                 }
             }
-            (Form::Bilinear { m, inverse }, _) => **out = inverse * g.transpose() * m,
-            _ => {
-                let n = self.n();
-                let mut lu = Lu::new(n);
+            Form::Bilinear { m, inverse } => {
+                mul(product, inverse.as_ref(), g.transpose());
+                mul(out, product.as_ref(), m.as_ref());
+            }
+            Form::Free => {
+                let lu = lu.get_or_insert_with(|| Lu::new(self.n()));
                 lu.a.copy_from(&**g);
                 if lu.factor() == 0.0 {
                     return Err(StepError::NotFinite { what: "g⁻¹" });
                 }
-                **out = Mat::identity(n, n);
+                out.fill(0.0);
+                out.diagonal_mut().fill(1.0);
                 lu.solve(out.as_mut());
             }
         }

@@ -18,7 +18,7 @@ mod so3;
 mod translations;
 mod unitary;
 
-pub use adjoint::Adjoint;
+pub use adjoint::{Adjoint, InvertingWork};
 pub use matrix::{AlgebraMatrix, Form, GroupMatrix, MEMBERSHIP, MatrixGroup, RCOND_MIN};
 pub use power::Power;
 pub use product::Product;

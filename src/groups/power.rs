@@ -166,8 +166,18 @@ impl<G: LieGroup> LieGroup for Power<G> {
 impl<G: Adjoint> Adjoint for Power<G> {
     type Dual = Box<[G::Dual]>;
 
-    fn inverse(&self, g: &Self::Elem, out: &mut Self::Elem) -> Result<(), StepError> {
-        g.iter().zip(out).try_for_each(|(g, out)| self.group.inverse(g, out))
+    type Inverting = G::Inverting;
+
+    fn inverting(&self) -> G::Inverting {
+        self.group.inverting()
+    }
+    fn invert(
+        &self,
+        g: &Self::Elem,
+        scratch: &mut G::Inverting,
+        out: &mut Self::Elem,
+    ) -> Result<(), StepError> {
+        g.iter().zip(out).try_for_each(|(g, out)| self.group.invert(g, scratch, out))
     }
     fn big_ad(&self, g: &Self::Elem, u: &Self::Alg, out: &mut Self::Alg) -> Result<(), StepError> {
         let mut parts = g.iter().zip(u).zip(out);

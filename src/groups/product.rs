@@ -134,9 +134,19 @@ impl<A: LieGroup, B: LieGroup<Scalar = A::Scalar>> LieGroup for Product<A, B> {
 impl<A: Adjoint, B: Adjoint<Scalar = A::Scalar>> Adjoint for Product<A, B> {
     type Dual = (A::Dual, B::Dual);
 
-    fn inverse(&self, g: &Self::Elem, out: &mut Self::Elem) -> Result<(), StepError> {
-        self.0.inverse(&g.0, &mut out.0)?;
-        self.1.inverse(&g.1, &mut out.1)
+    type Inverting = (A::Inverting, B::Inverting);
+
+    fn inverting(&self) -> Self::Inverting {
+        (self.0.inverting(), self.1.inverting())
+    }
+    fn invert(
+        &self,
+        g: &Self::Elem,
+        scratch: &mut Self::Inverting,
+        out: &mut Self::Elem,
+    ) -> Result<(), StepError> {
+        self.0.invert(&g.0, &mut scratch.0, &mut out.0)?;
+        self.1.invert(&g.1, &mut scratch.1, &mut out.1)
     }
     fn big_ad(&self, g: &Self::Elem, u: &Self::Alg, out: &mut Self::Alg) -> Result<(), StepError> {
         self.0.big_ad(&g.0, &u.0, &mut out.0)?;

@@ -166,7 +166,11 @@ impl<S: Real> LieGroup for Se3<S> {
 impl<S: Real> Adjoint for Se3<S> {
     type Dual = (Vector3<S>, Vector3<S>);
 
-    fn inverse(&self, g: &Self::Elem, out: &mut Self::Elem) -> Result<(), StepError> {
+    type Inverting = ();
+
+    fn inverting(&self) {}
+    #[inline]
+    fn invert(&self, g: &Self::Elem, (): &mut (), out: &mut Self::Elem) -> Result<(), StepError> {
         out.0 = g.0.transpose();
         let x = apply3(&out.0, &g.1);
         out.1 = Vector3::new(-x[0], -x[1], -x[2]);

@@ -26,28 +26,33 @@ use crate::scalar::{Real, Trig};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Buss4;
 
+/// (f(0), f(1), f(2)).
+#[inline(always)]
+fn map<S>(f: impl Fn(usize) -> S) -> Vector3<S> {
+    Vector3::new(f(0), f(1), f(2))
+}
+
 /// h ω̄.
 #[inline(always)]
 fn increment<S: Real>(inverse_inertia: &Vector3<S>, h: S, m: &Vector3<S>) -> Vector3<S> {
     let (j, l) = (inverse_inertia, S::lit);
     let scale = |x: &Vector3<S>| Vector3::new(j[0] * x[0], j[1] * x[1], j[2] * x[2]);
-    let map = |f: &dyn Fn(usize) -> S| Vector3::new(f(0), f(1), f(2));
     let w = scale(m);
     let a = cross(&w, m);
     let ka = scale(&a);
-    let w1 = map(&|i| -ka[i]);
+    let w1 = map(|i| -ka[i]);
     let a1 = cross(&w1, m);
     let wa = cross(&w, &a);
-    let b = map(&|i| wa[i] - a1[i]);
+    let b = map(|i| wa[i] - a1[i]);
     let kb = scale(&b);
     let ww1 = cross(&w, &w1);
-    let w2 = map(&|i| ww1[i] + kb[i]);
+    let w2 = map(|i| ww1[i] + kb[i]);
     let (p, q, r) = (cross(&w1, &a), cross(&w, &a1), cross(&w2, m));
     let wb = cross(&w, &b);
-    let c = scale(&map(&|i| p[i] + q[i] - r[i] - wb[i])); // K(b' − ω×b)
+    let c = scale(&map(|i| p[i] + q[i] - r[i] - wb[i])); // K(b' − ω×b)
     let wkb = cross(&w, &kb); // ω''' + ω''×ω = ω×Kb + K(b' − ω×b)
     let h2 = h * h;
-    map(&|i| {
+    map(|i| {
         h * (w[i]
             + h * l(0.5) * w1[i]
             + h2 * (l(1.0 / 6.0) * w2[i] - l(1.0 / 12.0) * ww1[i])

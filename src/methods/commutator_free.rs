@@ -16,14 +16,13 @@
 //! methods, FGCS 19 (2003); C. Curry, B. Owren, Variable step size commutator free Lie group
 //! integrators, Numer. Algorithms 82 (2019).
 
-use super::blame::blame;
 use super::embedded::{between, without_pair};
+use super::stages::Stages;
 use super::{Embedded, LocalError, Method, Metric, Step};
-use crate::chart::ChartStore;
 use crate::error::{Error, StepError};
 use crate::groups::LieAlgebra;
 use crate::maps::{CoordinateMap, Exp};
-use crate::problems::{AlgOf, PointOf, Problem, ScalarOf};
+use crate::problems::{PointOf, Problem, ScalarOf};
 use crate::scalar::Real;
 
 /// A product of exponentials that acts on a point.
@@ -134,22 +133,20 @@ pub struct CommutatorFreeWork<P: Problem, const S: usize>
 where
     Exp: CoordinateMap<P::Group>,
 {
-    stages: Stages<P, S>,
+    inner: Inner<P, S>,
     y: PointOf<P>,
 }
 
-struct Stages<P: Problem, const S: usize>
+struct Inner<P: Problem, const S: usize>
 where
     Exp: CoordinateMap<P::Group>,
 {
-    k: [AlgOf<P>; S],
+    stages: Stages<P, Exp, S>,
     points: [PointOf<P>; S],
-    u: AlgOf<P>,
     aside: PointOf<P>,
-    chart: ChartStore<P, Exp>,
 }
 
-impl<P: Problem, const S: usize> Stages<P, S>
+impl<P: Problem, const S: usize> Inner<P, S>
 where
     Exp: CoordinateMap<P::Group>,
 {
@@ -163,7 +160,7 @@ where
         product: &Product<S>,
         to: &mut PointOf<P>,
     ) -> Result<(), StepError> {
-        let Stages { k, points, u, aside, chart } = self;
+        let Inner { stages: Stages { k, u, chart }, points, aside } = self;
         for (i, weights) in product.factors.iter().enumerate() {
             problem.group().combine(h, weights, k, u);
             let from = match (i, product.from) {
@@ -190,14 +187,16 @@ where
         p: &PointOf<P>,
         to: &mut PointOf<P>,
     ) -> Result<(), StepError> {
-        self.chart.around(problem, &Exp, step.n, p).field(step.t, &mut self.k[0]);
+        let Stages { k, chart, .. } = &mut self.stages;
+        chart.around(problem, &Exp, step.n, p).field(step.t, &mut k[0]);
         for i in 1..count {
             self.product(problem, step, p, &table.stages[i], to)?;
             core::mem::swap(&mut self.points[i], to);
             let t = step.t + step.h * ScalarOf::<P>::lit(table.c[i]);
-            self.chart.around(problem, &Exp, step.n, &self.points[i]).field(t, &mut self.k[i]);
+            let Stages { k, chart, .. } = &mut self.stages;
+            chart.around(problem, &Exp, step.n, &self.points[i]).field(t, &mut k[i]);
         }
-        if !self.k[..count].iter().all(|k| problem.group().is_finite(k)) {
+        if !self.stages.k[..count].iter().all(|k| problem.group().is_finite(k)) {
             return Err(StepError::NotFinite { what: "a stage" });
         }
         self.product(problem, step, p, &table.update, to)
@@ -213,16 +212,16 @@ where
     fn order(&self, _: &P) -> usize {
         self.0.order
     }
+    fn evaluations(&self, _: &P) -> Option<u64> {
+        Some(self.0.update_stages as u64)
+    }
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
-        let alg = problem.group();
-        let stages = Stages {
-            k: core::array::from_fn(|_| alg.zero()),
+        let inner = Inner {
+            stages: Stages::new(problem, &Exp, like)?,
             points: core::array::from_fn(|_| like.clone()),
-            u: alg.zero(),
             aside: like.clone(),
-            chart: ChartStore::new(problem, &Exp, like)?,
         };
-        Ok(CommutatorFreeWork { stages, y: like.clone() })
+        Ok(CommutatorFreeWork { inner, y: like.clone() })
     }
     #[inline]
     fn step(
@@ -230,13 +229,10 @@ where
         problem: &P,
         step: Step<ScalarOf<P>>,
         p: &mut PointOf<P>,
-        CommutatorFreeWork { stages, y }: &mut Self::Work,
+        CommutatorFreeWork { inner, y }: &mut Self::Work,
     ) -> Result<(), StepError> {
-        stages
-            .advance(&self.0, self.0.update_stages, problem, step, p, y)
-            .map_err(|error| blame(problem.group(), &mut stages.k, error))?;
-        core::mem::swap(p, y);
-        Ok(())
+        let done = inner.advance(&self.0, self.0.update_stages, problem, step, p, y);
+        inner.stages.conclude(problem, done, p, y)
     }
 }
 
@@ -248,24 +244,22 @@ where
     fn error_order(&self, _: &P) -> Result<usize, Error> {
         self.0.embedded.map(|(order, _)| order).ok_or_else(|| without_pair(self.0.name))
     }
-    fn evaluations(&self) -> u64 {
-        S as u64
+    fn evaluations_with_error(&self, _: &P) -> Option<u64> {
+        Some(S as u64)
     }
     fn step_with_error(
         &self,
         problem: &P,
         step: Step<ScalarOf<P>>,
         from: &PointOf<P>,
-        CommutatorFreeWork { stages, y }: &mut Self::Work,
+        CommutatorFreeWork { inner, y }: &mut Self::Work,
         to: &mut PointOf<P>,
     ) -> Result<LocalError<ScalarOf<P>>, StepError> {
-        let alg = problem.group();
-        stages
-            .advance(&self.0, S, problem, step, from, to)
-            .map_err(|error| blame(alg, &mut stages.k, error))?;
+        let done = inner.advance(&self.0, S, problem, step, from, to);
+        done.map_err(|error| inner.stages.blame(problem, error))?;
         let error = match &self.0.embedded {
             Some((_, product)) => {
-                stages.product(problem, step, from, product, y)?;
+                inner.product(problem, step, from, product, y)?;
                 y.distance(to)
             }
             None => ScalarOf::<P>::lit(f64::INFINITY),

@@ -147,6 +147,9 @@ impl<P: Ambient, M: Method<P> + Symmetric> Method<P> for Composition<M> {
     fn order(&self, problem: &P) -> usize {
         self.base.order(problem).max(self.scheme.order)
     }
+    fn evaluations(&self, problem: &P) -> Option<u64> {
+        Some(self.scheme.weights.len() as u64 * self.base.evaluations(problem)?)
+    }
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
         Ok(CompositionWork { base: self.base.work(problem, like)?, start: like.clone() })
     }

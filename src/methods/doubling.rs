@@ -13,9 +13,6 @@ use crate::problems::{PointOf, Problem, ScalarOf};
 use crate::scalar::Real;
 
 /// A method with steps of half the size, and with an error estimate.
-///
-/// `evaluations` of its [`Embedded`] counts steps of the method, three each, for nothing more is
-/// known of its cost.
 #[derive(Clone, Copy, Debug)]
 pub struct Doubling<Me>(pub Me);
 
@@ -57,6 +54,9 @@ where
     fn stays_on_manifold(&self) -> bool {
         self.0.stays_on_manifold()
     }
+    fn evaluations(&self, problem: &P) -> Option<u64> {
+        Some(2 * self.0.evaluations(problem)?)
+    }
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
         Ok(DoublingWork { inner: self.0.work(problem, like)?, once: like.clone() })
     }
@@ -81,8 +81,8 @@ where
     fn error_order(&self, problem: &P) -> Result<usize, Error> {
         Ok(self.0.order(problem))
     }
-    fn evaluations(&self) -> u64 {
-        3
+    fn evaluations_with_error(&self, problem: &P) -> Option<u64> {
+        Some(3 * self.0.evaluations(problem)?)
     }
     fn step_with_error(
         &self,

@@ -36,8 +36,8 @@ pub trait Embedded<P: Problem>: Method<P> {
     /// [`Error::Unsupported`] when the tableau has no embedded row.
     fn error_order(&self, problem: &P) -> Result<usize, Error>;
 
-    /// Evaluations of f in a [`step_with_error`](Self::step_with_error).
-    fn evaluations(&self) -> u64;
+    /// [`evaluations`](Method::evaluations) of a [`step_with_error`](Self::step_with_error).
+    fn evaluations_with_error(&self, problem: &P) -> Option<u64>;
 
     /// `to` ← the approximation at t + h from the point `from` at t, with its estimated error, which
     /// is infinite when there is no estimate. On an error of the step, `to` holds nothing of use.

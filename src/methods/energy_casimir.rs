@@ -10,8 +10,8 @@
 //! not symplectic in general. The fixed-point iteration for ξ converges while h‖J⁻¹‖|m| stays below
 //! about 1; beyond that the step fails with [`StepError::FixedPointDidNotConverge`]. It serves every
 //! problem that is [`LiePoisson`]: the body in ℝ³ and ℝⁿ, and
-//! [`QuadraticLiePoisson`](crate::problems::QuadraticLiePoisson) on any matrix algebra. Cost: one Ψ,
-//! one action and one gradient an iteration, 5 to 20 iterations.
+//! [`Euler`](crate::problems::Euler)'s equations of a quadratic H on any algebra. Cost: one Ψ, one
+//! action and one discrete gradient an iteration, 5 to 20 iterations.
 //! Source: after J. C. Simo & K. K. Wong (1991) and D. Lewis & J. C. Simo, J. Nonlinear Sci. 4
 //! (1994); discrete gradients by R. McLachlan, G. Quispel & N. Robidoux (1999).
 

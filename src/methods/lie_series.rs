@@ -193,6 +193,9 @@ where
     fn order(&self, _: &P) -> usize {
         self.order
     }
+    fn evaluations(&self, _: &P) -> Option<u64> {
+        Some(self.order as u64)
+    }
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
         let group = problem.group();
         Ok(LieSeriesWork {
@@ -227,8 +230,8 @@ where
     fn error_order(&self, _: &P) -> Result<usize, Error> {
         Ok(self.order - 1)
     }
-    fn evaluations(&self) -> u64 {
-        self.order as u64
+    fn evaluations_with_error(&self, _: &P) -> Option<u64> {
+        Some(self.order as u64)
     }
     fn step_with_error(
         &self,

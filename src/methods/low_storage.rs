@@ -241,6 +241,9 @@ where
     fn order(&self, _: &P) -> usize {
         self.0.order
     }
+    fn evaluations(&self, _: &P) -> Option<u64> {
+        Some(S as u64)
+    }
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
         let alg = problem.group();
         let inner = Inner {
@@ -274,8 +277,8 @@ where
     fn error_order(&self, _: &P) -> Result<usize, Error> {
         self.0.embedded.ok_or_else(|| without_pair(self.0.name))
     }
-    fn evaluations(&self) -> u64 {
-        S as u64
+    fn evaluations_with_error(&self, _: &P) -> Option<u64> {
+        Some(S as u64)
     }
     fn step_with_error(
         &self,

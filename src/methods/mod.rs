@@ -3,7 +3,6 @@
 //! To add a method: one file with an `impl` of [`Method`], one line here, one in the catalog, which
 //! puts it into the order tests and the command line at once.
 
-mod blame;
 mod buss;
 pub mod commutator_free;
 mod composition;
@@ -26,6 +25,7 @@ mod rk;
 mod rkmk;
 mod simo_wong;
 mod splitting;
+mod stages;
 pub mod tableau;
 mod taylor;
 
@@ -82,6 +82,12 @@ pub trait Method<P: Problem> {
 
     /// The order that tests hold the method to.
     fn order(&self, problem: &P) -> usize;
+
+    /// Evaluations of f in a step (of F, or of A, where that is what the method asks for), where every
+    /// step has as many; of its coefficients for a Taylor method.
+    fn evaluations(&self, _problem: &P) -> Option<u64> {
+        None
+    }
 
     /// Does a step stay on M up to rounding? Then the driver takes the state back to M from time to
     /// time ([`Action::restore`](crate::Action::restore)); a method that leaves M is shown as it is.

@@ -14,10 +14,9 @@
 //! Soc. A 357 (1999); F. Casas, A. Iserles, Explicit Magnus expansions for nonlinear equations,
 //! J. Phys. A 39 (2006).
 
-use super::blame::blame;
 use super::embedded::without_pair;
+use super::stages::Stages;
 use super::{Embedded, LocalError, Method, Step};
-use crate::chart::ChartStore;
 use crate::error::{Error, StepError};
 use crate::groups::LieAlgebra;
 use crate::maps::{CoordinateMap, Exp};
@@ -111,31 +110,29 @@ pub struct OneBracketWork<P: Problem, const S: usize>
 where
     Exp: CoordinateMap<P::Group>,
 {
-    stages: Stages<P, S>,
+    inner: Inner<P, S>,
     y: PointOf<P>,
 }
 
-struct Stages<P: Problem, const S: usize>
+struct Inner<P: Problem, const S: usize>
 where
     Exp: CoordinateMap<P::Group>,
 {
-    k: [AlgOf<P>; S],
-    u: AlgOf<P>,
+    stages: Stages<P, Exp, S>,
     v: AlgOf<P>,
     x: AlgOf<P>,
     bracket: AlgOf<P>,
     at: PointOf<P>,
-    chart: ChartStore<P, Exp>,
 }
 
-impl<P: Problem, const S: usize> Stages<P, S>
+impl<P: Problem, const S: usize> Inner<P, S>
 where
     Exp: CoordinateMap<P::Group>,
 {
     /// u ← the increment.
     #[inline(always)]
     fn increment(&mut self, alg: &P::Group, h: ScalarOf<P>, increment: &Increment<S>) {
-        let Stages { k, u, x, bracket, .. } = self;
+        let Inner { stages: Stages { k, u, .. }, x, bracket, .. } = self;
         alg.combine(h, &increment.w, k, u);
         if increment.x.iter().any(|x| *x != 0.0) {
             alg.combine(h, &increment.x, k, x);
@@ -155,19 +152,22 @@ where
         to: &mut PointOf<P>,
     ) -> Result<(), StepError> {
         let alg = problem.group();
-        self.chart.around(problem, &Exp, n, p).field(t, &mut self.k[0]);
+        let Stages { k, chart, .. } = &mut self.stages;
+        chart.around(problem, &Exp, n, p).field(t, &mut k[0]);
         for i in 1..S {
             self.increment(alg, h, &table.stages[i]);
-            self.chart.around(problem, &Exp, n, p).lambda(&self.u, &mut self.at)?;
+            let Stages { k, u, chart } = &mut self.stages;
+            chart.around(problem, &Exp, n, p).lambda(u, &mut self.at)?;
             let t = t + h * ScalarOf::<P>::lit(table.c[i]);
-            self.chart.around(problem, &Exp, n, &self.at).field(t, &mut self.k[i]);
+            chart.around(problem, &Exp, n, &self.at).field(t, &mut k[i]);
         }
-        core::mem::swap(&mut self.u, &mut self.v);
+        core::mem::swap(&mut self.stages.u, &mut self.v);
         self.increment(alg, h, &table.update);
-        if !alg.is_finite(&self.u) {
+        let Stages { u, chart, .. } = &mut self.stages;
+        if !alg.is_finite(u) {
             return Err(StepError::NotFinite { what: "the increment v" });
         }
-        self.chart.around(problem, &Exp, n, p).lambda(&self.u, to)
+        chart.around(problem, &Exp, n, p).lambda(u, to)
     }
 }
 
@@ -180,18 +180,19 @@ where
     fn order(&self, _: &P) -> usize {
         self.0.order
     }
+    fn evaluations(&self, _: &P) -> Option<u64> {
+        Some(S as u64)
+    }
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
         let alg = problem.group();
-        let stages = Stages {
-            k: core::array::from_fn(|_| alg.zero()),
-            u: alg.zero(),
+        let inner = Inner {
+            stages: Stages::new(problem, &Exp, like)?,
             v: alg.zero(),
             x: alg.zero(),
             bracket: alg.zero(),
             at: like.clone(),
-            chart: ChartStore::new(problem, &Exp, like)?,
         };
-        Ok(OneBracketWork { stages, y: like.clone() })
+        Ok(OneBracketWork { inner, y: like.clone() })
     }
     #[inline]
     fn step(
@@ -199,13 +200,10 @@ where
         problem: &P,
         step: Step<ScalarOf<P>>,
         p: &mut PointOf<P>,
-        OneBracketWork { stages, y }: &mut Self::Work,
+        OneBracketWork { inner, y }: &mut Self::Work,
     ) -> Result<(), StepError> {
-        stages
-            .advance(&self.0, problem, step, p, y)
-            .map_err(|error| blame(problem.group(), &mut stages.k, error))?;
-        core::mem::swap(p, y);
-        Ok(())
+        let done = inner.advance(&self.0, problem, step, p, y);
+        inner.stages.conclude(problem, done, p, y)
     }
 }
 
@@ -216,25 +214,25 @@ where
     fn error_order(&self, _: &P) -> Result<usize, Error> {
         self.0.embedded.ok_or_else(|| without_pair(self.0.name))
     }
-    fn evaluations(&self) -> u64 {
-        S as u64
+    fn evaluations_with_error(&self, _: &P) -> Option<u64> {
+        Some(S as u64)
     }
     fn step_with_error(
         &self,
         problem: &P,
         step: Step<ScalarOf<P>>,
         from: &PointOf<P>,
-        OneBracketWork { stages, .. }: &mut Self::Work,
+        OneBracketWork { inner, .. }: &mut Self::Work,
         to: &mut PointOf<P>,
     ) -> Result<LocalError<ScalarOf<P>>, StepError> {
         let alg = problem.group();
-        stages
-            .advance(&self.0, problem, step, from, to)
-            .map_err(|error| blame(alg, &mut stages.k, error))?;
-        let length = alg.norm(&stages.u);
-        alg.axpy(ScalarOf::<P>::lit(-1.0), &stages.u, &mut stages.v);
+        let done = inner.advance(&self.0, problem, step, from, to);
+        done.map_err(|error| inner.stages.blame(problem, error))?;
+        let Inner { stages: Stages { u, .. }, v, .. } = inner;
+        let length = alg.norm(u);
+        alg.axpy(ScalarOf::<P>::lit(-1.0), u, v);
         let error = match self.0.embedded {
-            Some(_) => alg.norm(&stages.v),
+            Some(_) => alg.norm(v),
             None => ScalarOf::<P>::lit(f64::INFINITY),
         };
         Ok(LocalError { error, length })

@@ -52,6 +52,9 @@ impl<P: Orthogonal, M: Method<P>> Method<P> for Projected<M> {
     fn order(&self, problem: &P) -> usize {
         self.base.order(problem)
     }
+    fn evaluations(&self, problem: &P) -> Option<u64> {
+        self.base.evaluations(problem)
+    }
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
         Ok(ProjectedWork { base: self.base.work(problem, like)?, z: like.clone() })
     }

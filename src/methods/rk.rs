@@ -80,6 +80,9 @@ impl<P: Ambient, const S: usize> Method<P> for Rk<S> {
     fn order(&self, _: &P) -> usize {
         self.0.order
     }
+    fn evaluations(&self, _: &P) -> Option<u64> {
+        Some(self.0.update_stages() as u64)
+    }
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
         Ok(RkWork {
             k: core::array::from_fn(|_| like.clone()),
@@ -96,7 +99,7 @@ impl<P: Ambient, const S: usize> Method<P> for Rk<S> {
         work: &mut Self::Work,
     ) -> Result<(), StepError> {
         self.advance(self.0.update_stages(), problem, step, y, work)?;
-        core::mem::swap(y, &mut work.z);
+        problem.copy(&work.z, y);
         Ok(())
     }
 }
@@ -108,8 +111,8 @@ where
     fn error_order(&self, _: &P) -> Result<usize, Error> {
         self.0.error.map(|e| e.order).ok_or_else(|| without_pair(self.0.name))
     }
-    fn evaluations(&self) -> u64 {
-        S as u64
+    fn evaluations_with_error(&self, _: &P) -> Option<u64> {
+        Some(S as u64)
     }
     fn step_with_error(
         &self,

@@ -10,15 +10,14 @@
 //! error estimate looks at is left out when none is asked for.
 //! Source: H. Munthe-Kaas, High order Runge–Kutta methods on manifolds, Appl. Numer. Math. 29 (1999).
 
-use super::blame::blame;
 use super::embedded::without_pair;
+use super::stages::Stages;
 use super::tableau::{ErrorEstimate, fold_error};
 use super::{Embedded, LocalError, Method, Step, Tableau};
-use crate::chart::ChartStore;
 use crate::error::{Error, StepError};
 use crate::groups::LieAlgebra;
 use crate::maps::CoordinateMap;
-use crate::problems::{AlgOf, PointOf, Problem, ScalarOf};
+use crate::problems::{PointOf, Problem, ScalarOf};
 use crate::scalar::Real;
 
 /// RKMK with S stages in the coordinates Ψ.
@@ -46,27 +45,23 @@ pub struct RkmkWork<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> {
     y: PointOf<P>,
 }
 
-struct Stages<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> {
-    k: [AlgOf<P>; S],
-    u: AlgOf<P>,
-    chart: ChartStore<P, Psi>,
-}
-
-impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> Stages<P, Psi, S> {
+impl<Psi, const S: usize> Rkmk<Psi, S> {
     /// `to` ← the step from p, with the first `count` stages; then u is v.
     #[inline(always)]
-    fn advance(
-        &mut self,
-        method: &Rkmk<Psi, S>,
+    fn advance<P: Problem>(
+        &self,
         count: usize,
         problem: &P,
         Step { n, t, h }: Step<ScalarOf<P>>,
         p: &PointOf<P>,
+        Stages { k, u, chart }: &mut Stages<P, Psi, S>,
         to: &mut PointOf<P>,
-    ) -> Result<(), StepError> {
-        let (tab, alg) = (&method.tableau, problem.group());
-        let Stages { k, u, chart } = self;
-        let mut chart = chart.around(problem, &method.psi, n, p);
+    ) -> Result<(), StepError>
+    where
+        Psi: CoordinateMap<P::Group>,
+    {
+        let (tab, alg) = (&self.tableau, problem.group());
+        let mut chart = chart.around(problem, &self.psi, n, p);
         chart.field(t, &mut k[0]);
         for i in 1..S {
             if i >= count {
@@ -89,14 +84,11 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> Method<P> for Rkm
     fn order(&self, problem: &P) -> usize {
         self.tableau.order.min(self.psi.order(problem.group()))
     }
+    fn evaluations(&self, _: &P) -> Option<u64> {
+        Some(self.stages as u64)
+    }
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
-        let alg = problem.group();
-        let stages = Stages {
-            k: core::array::from_fn(|_| alg.zero()),
-            u: alg.zero(),
-            chart: ChartStore::new(problem, &self.psi, like)?,
-        };
-        Ok(RkmkWork { stages, y: like.clone() })
+        Ok(RkmkWork { stages: Stages::new(problem, &self.psi, like)?, y: like.clone() })
     }
     #[inline]
     fn step(
@@ -106,11 +98,8 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> Method<P> for Rkm
         p: &mut PointOf<P>,
         RkmkWork { stages, y }: &mut Self::Work,
     ) -> Result<(), StepError> {
-        stages
-            .advance(self, self.stages, problem, step, p, y)
-            .map_err(|error| blame(problem.group(), &mut stages.k, error))?;
-        core::mem::swap(p, y);
-        Ok(())
+        let done = self.advance(self.stages, problem, step, p, stages, y);
+        stages.conclude(problem, done, p, y)
     }
 }
 
@@ -122,8 +111,8 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> Embedded<P> for R
             None => Err(without_pair(self.tableau.name)),
         }
     }
-    fn evaluations(&self) -> u64 {
-        S as u64
+    fn evaluations_with_error(&self, _: &P) -> Option<u64> {
+        Some(S as u64)
     }
     fn step_with_error(
         &self,
@@ -134,9 +123,8 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> Embedded<P> for R
         to: &mut PointOf<P>,
     ) -> Result<LocalError<ScalarOf<P>>, StepError> {
         let alg = problem.group();
-        stages
-            .advance(self, S, problem, step, from, to)
-            .map_err(|error| blame(alg, &mut stages.k, error))?;
+        let done = self.advance(S, problem, step, from, stages, to);
+        done.map_err(|error| stages.blame(problem, error))?;
         let Stages { k, u, .. } = stages;
         let length = alg.norm(u);
         let mut size = |weights: &[f64; S]| {
@@ -149,7 +137,7 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> Embedded<P> for R
         };
         if !error.is_finite() && self.tableau.error.is_some() {
             let error = StepError::NotFinite { what: "the error estimate" };
-            return Err(blame(alg, &mut stages.k, error));
+            return Err(stages.blame(problem, error));
         }
         Ok(LocalError { error, length })
     }

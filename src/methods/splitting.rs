@@ -37,7 +37,7 @@ impl<const K: usize> Splitting<K> {
 impl<const K: usize> Symmetric for Splitting<K> {}
 
 impl<P: Split, const K: usize> Method<P> for Splitting<K> {
-    /// The state in progress.
+    /// The state before the step.
     type Work = PointOf<P>;
 
     fn order(&self, _: &P) -> usize {
@@ -61,15 +61,15 @@ impl<P: Split, const K: usize> Method<P> for Splitting<K> {
         problem: &P,
         Step { h, .. }: Step<ScalarOf<P>>,
         y: &mut PointOf<P>,
-        z: &mut PointOf<P>,
+        before: &mut PointOf<P>,
     ) -> Result<(), StepError> {
         let lit = ScalarOf::<P>::lit;
         let [outer, inner @ ..] = self.parts.as_slice() else { return Ok(()) };
-        problem.copy(y, z);
-        let mut flow = |part: usize, weight: f64| problem.flow(part, h * lit(weight), z);
+        problem.copy(y, before);
+        let mut flow = |part: usize, weight: f64| problem.flow(part, h * lit(weight), y);
         let Some((last, middle)) = inner.split_last() else {
             self.scheme.weights.iter().for_each(|&w| flow(*outer, w));
-            return finish(problem, y, z);
+            return finish(problem, before, y);
         };
         let mut pending = 0.0; // of the outermost part
         for &w in self.scheme.weights {
@@ -80,15 +80,15 @@ impl<P: Split, const K: usize> Method<P> for Splitting<K> {
             pending = 0.5 * w;
         }
         flow(*outer, pending);
-        finish(problem, y, z)
+        finish(problem, before, y)
     }
 }
 
 #[inline]
-fn finish<P: Split>(problem: &P, y: &mut PointOf<P>, z: &mut PointOf<P>) -> Result<(), StepError> {
-    if !problem.is_finite(z) {
+fn finish<P: Split>(problem: &P, before: &PointOf<P>, y: &mut PointOf<P>) -> Result<(), StepError> {
+    if !problem.is_finite(y) {
+        problem.copy(before, y);
         return Err(StepError::NotFinite { what: "the state" });
     }
-    core::mem::swap(y, z);
     Ok(())
 }

@@ -6,9 +6,14 @@
 //! With g: (ġ, ṁ) = (g ∇H(m), ad*_{∇H(m)} m) on G × 𝔤*, Λ(a, (g, m)) = (g a⁻¹, Ad*_{a⁻¹} m), f as
 //! above; Ad*_{g⁻¹} m, the momentum in space, is kept by every method that acts by the group.
 
-use super::{Ambient, Invariant, Invariants, LiePoisson, LinearSpace, PointOf, Problem};
+use faer::Mat;
+
+use super::{
+    Ambient, Invariant, Invariants, LiePoisson, LinearSpace, MomentumSeries, PointOf, Problem,
+    TaylorField,
+};
 use crate::actions::{Action, Coadjoint};
-use crate::groups::Adjoint;
+use crate::groups::{Adjoint, AlgebraMatrix, MatrixGroup};
 use crate::problems::space::linear_space;
 use crate::scalar::Real;
 
@@ -28,8 +33,9 @@ pub trait Hamiltonian<G: Adjoint> {
     }
 }
 
-/// H = ½⟨m, J⁻¹m⟩ from the inverse inertia J⁻¹ : 𝔤* → 𝔤, linear and symmetric, as a function that
-/// writes J⁻¹m.
+/// H = ½⟨m, J⁻¹m⟩ from the inverse inertia J⁻¹ : 𝔤* → 𝔤, as a function that writes J⁻¹m. It is linear
+/// and symmetric, ⟨m, J⁻¹n⟩ = ⟨n, J⁻¹m⟩, and takes its values in 𝔤. An n×n matrix m stands for the
+/// functional v ↦ tr(mᵀv): J⁻¹m must be the same for two that differ by one that vanishes on 𝔤.
 #[derive(Clone, Copy, Debug)]
 pub struct Kinetic<F>(pub F);
 
@@ -187,6 +193,29 @@ where
     }
 }
 
+/// The Taylor coefficients of −J⁻¹m, on the algebra of any matrix group.
+impl<F: Fn(&Mat<f64>, &mut AlgebraMatrix)> TaylorField for Euler<MatrixGroup, Kinetic<F>> {
+    type Series = MomentumSeries;
+
+    fn series(&self, order: usize) -> MomentumSeries {
+        MomentumSeries::new(self.group.n(), self.group.is_skew(), order)
+    }
+    fn coefficient(
+        &self,
+        [_, h]: [f64; 2],
+        m: &Mat<f64>,
+        k: usize,
+        f: &mut [AlgebraMatrix],
+        series: &mut MomentumSeries,
+    ) {
+        if k == 0 {
+            series.start().copy_from(m);
+        }
+        (self.hamiltonian.0)(series.next(h, k, f), &mut f[k]);
+        *f[k] *= faer::Scale(-1.0);
+    }
+}
+
 /// Euler's equations with the motion of g: points (g, m).
 #[derive(Clone, Copy, Debug)]
 pub struct EulerGroup<G, H> {
@@ -200,8 +229,7 @@ impl<G, H> EulerGroup<G, H> {
     }
 }
 
-/// Λ(a, (g, m)) = (g a⁻¹, Ad*_{a⁻¹} m): the group acts from the body's side. Where
-/// [`Adjoint::inverse`] allocates, on GL(n) and G_M, so does this.
+/// Λ(a, (g, m)) = (g a⁻¹, Ad*_{a⁻¹} m): the group acts from the body's side.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FromTheBody;
 
@@ -210,11 +238,13 @@ where
     Coadjoint: Action<G, Point = G::Dual>,
 {
     type Point = (G::Elem, G::Dual);
-    type Work = (G::Elem, <Coadjoint as Action<G>>::Work, [G::Elem; 2]);
+    /// a⁻¹ and what forming it takes, that of the coadjoint action, and that of
+    /// [`restore`](Action::restore).
+    type Work = ((G::Elem, G::Inverting), <Coadjoint as Action<G>>::Work, [G::Elem; 2]);
 
     fn work(&self, group: &G) -> Self::Work {
         let one = || group.identity();
-        (one(), Action::<G>::work(&Coadjoint, group), [one(), one()])
+        ((one(), group.inverting()), Action::<G>::work(&Coadjoint, group), [one(), one()])
     }
     fn assign(&self, group: &G, p: &Self::Point, q: &mut Self::Point) {
         group.assign(&p.0, &mut q.0);
@@ -227,10 +257,10 @@ where
         a: &G::Elem,
         p: &Self::Point,
         q: &mut Self::Point,
-        (inverse, coadjoint, _): &mut Self::Work,
+        ((inverse, inverting), coadjoint, _): &mut Self::Work,
     ) {
         // A singular a is not in G; its numbers are not finite, and the step ends with that.
-        let _ = group.inverse(a, inverse);
+        let _ = group.invert(a, inverting, inverse);
         group.compose(&p.0, inverse, &mut q.0);
         Coadjoint.act(group, a, &p.1, &mut q.1, coadjoint);
     }
@@ -272,5 +302,24 @@ where
     }
     fn values(&self, y: &PointOf<Self>) -> Vec<G::Scalar> {
         self.system.values(&y.1)
+    }
+}
+
+/// f is that of m alone: g follows.
+impl<F: Fn(&Mat<f64>, &mut AlgebraMatrix)> TaylorField for EulerGroup<MatrixGroup, Kinetic<F>> {
+    type Series = MomentumSeries;
+
+    fn series(&self, order: usize) -> MomentumSeries {
+        self.system.series(order)
+    }
+    fn coefficient(
+        &self,
+        time: [f64; 2],
+        (_, m): &PointOf<Self>,
+        k: usize,
+        f: &mut [AlgebraMatrix],
+        series: &mut MomentumSeries,
+    ) {
+        self.system.coefficient(time, m, k, f, series);
     }
 }

@@ -12,12 +12,12 @@
 //! R. W. Brockett, Linear Algebra Appl. 146 (1991). Numbers: M. P. Calvo, A. Iserles, A. Zanna,
 //! Math. Comp. 66 (1997).
 
-use faer::{Mat, Side};
+use faer::Mat;
 
 use super::{Ambient, Invariant, Invariants, Problem, space::linear_space};
 use crate::actions::Conjugation;
-use crate::dense::{antisymmetrise, mul};
-use crate::error::{Error, StepError};
+use crate::dense::{SymmetricEigen, antisymmetrise, mul};
+use crate::error::Error;
 use crate::groups::{AlgebraMatrix, MatrixGroup};
 
 /// Which B.
@@ -62,7 +62,8 @@ impl IsospectralFlow {
 
     /// The QR flow: B(L) = log(L)₋ᵀ − log(L)₋ for positive definite L. Between the times k and k + 1
     /// it does one step of the QR algorithm. Where L is not positive definite f has no value, and
-    /// the step ends with [`StepError::NonFiniteRhs`]. f allocates: it takes an eigenvalue problem.
+    /// the step ends with [`StepError::NonFiniteRhs`](crate::StepError::NonFiniteRhs). f solves an
+    /// eigenvalue problem.
     ///
     /// # Errors
     /// As [`MatrixGroup::so`].
@@ -83,15 +84,18 @@ impl IsospectralFlow {
     }
 
     /// B(L), into v.
-    fn generator(&self, l: &Mat<f64>, v: &mut Mat<f64>) {
-        match &self.kind {
-            Kind::Toda => skew_of_lower(l, v),
-            Kind::Qr => match logarithm(l) {
-                Ok(log) => skew_of_lower(&log, v),
-                Err(_) => v.fill(f64::NAN),
-            },
+    fn generator(&self, l: &Mat<f64>, v: &mut Mat<f64>, log: &mut Option<Logarithm>) {
+        match (&self.kind, log) {
+            (Kind::Qr, Some(Logarithm { eigen, log })) => {
+                let ln = |x: f64| if x > 0.0 { x.ln() } else { f64::NAN };
+                match eigen.function(l, ln, log) {
+                    Ok(()) => skew_of_lower(log, v),
+                    Err(_) => v.fill(f64::NAN),
+                }
+            }
+            (Kind::Toda | Kind::Qr, _) => skew_of_lower(l, v),
             // NL − LN = (NL) − (NL)ᵀ.
-            Kind::DoubleBracket(target) => {
+            (Kind::DoubleBracket(target), _) => {
                 mul(v, target.as_ref(), l.as_ref());
                 antisymmetrise(v);
             }
@@ -110,23 +114,23 @@ fn skew_of_lower(l: &Mat<f64>, v: &mut Mat<f64>) {
     }
 }
 
-/// log L by the eigenvectors of a positive definite L.
-fn logarithm(l: &Mat<f64>) -> Result<Mat<f64>, StepError> {
-    let failed = StepError::NotConverged { what: "the eigenvalues of L" };
-    let eigen = l.self_adjoint_eigen(Side::Lower).map_err(|_| failed)?;
-    let (q, d) = (eigen.U(), eigen.S().column_vector());
-    if d.iter().any(|x| !(x.is_finite() && *x > 0.0)) {
-        return Err(StepError::NotFinite { what: "log L" });
-    }
-    let scaled = Mat::from_fn(q.nrows(), q.ncols(), |i, j| q[(i, j)] * d[j].ln());
-    Ok(scaled * q.transpose())
+/// Scratch of the flows: B(L), and for the QR flow log L by its eigenvectors.
+#[derive(Debug)]
+pub struct IsospectralFlowWork {
+    b: Mat<f64>,
+    log: Option<Logarithm>,
+}
+
+#[derive(Debug)]
+struct Logarithm {
+    eigen: SymmetricEigen,
+    log: Mat<f64>,
 }
 
 impl Problem for IsospectralFlow {
     type Group = MatrixGroup;
     type Action = Conjugation;
-    /// B(L).
-    type Work = Mat<f64>;
+    type Work = IsospectralFlowWork;
 
     fn group(&self) -> &MatrixGroup {
         &self.group
@@ -134,18 +138,27 @@ impl Problem for IsospectralFlow {
     fn action(&self) -> &Conjugation {
         &Conjugation
     }
-    fn work(&self) -> Mat<f64> {
-        Mat::zeros(self.group.n(), self.group.n())
+    fn work(&self) -> IsospectralFlowWork {
+        let n = self.group.n();
+        let log = || Logarithm { eigen: SymmetricEigen::new(n), log: Mat::zeros(n, n) };
+        let log = matches!(self.kind, Kind::Qr).then(log);
+        IsospectralFlowWork { b: Mat::zeros(n, n), log }
     }
-    fn f(&self, _: f64, l: &Mat<f64>, v: &mut AlgebraMatrix, _: &mut Mat<f64>) {
-        self.generator(l, v);
+    fn f(&self, _: f64, l: &Mat<f64>, v: &mut AlgebraMatrix, work: &mut IsospectralFlowWork) {
+        self.generator(l, v, &mut work.log);
     }
 }
 
 impl Ambient for IsospectralFlow {
     /// BL − LB = BL + (BL)ᵀ.
-    fn field(&self, _: f64, l: &Mat<f64>, dl: &mut Mat<f64>, b: &mut Mat<f64>) {
-        self.generator(l, b);
+    fn field(
+        &self,
+        _: f64,
+        l: &Mat<f64>,
+        dl: &mut Mat<f64>,
+        IsospectralFlowWork { b, log }: &mut IsospectralFlowWork,
+    ) {
+        self.generator(l, b, log);
         mul(dl, b.as_ref(), l.as_ref());
         for j in 0..dl.ncols() {
             for i in 0..=j {

@@ -4,8 +4,7 @@
 //! |---|---|---|
 //! | free rigid body in ℝ³ and ℝⁿ | SO(3), SO(n); coadjoint or translation | [`RigidBody`], [`RigidBodyAttitude`], [`RigidBodyState`], [`RigidBodyN`] |
 //! | and its attitude as a quaternion | S³; translation | [`RigidBodyQuaternion`] |
-//! | Euler's equations of any Hamiltonian | any; coadjoint | [`Euler`], [`EulerGroup`], [`Kinetic`] |
-//! | Lie–Poisson with a quadratic Hamiltonian | any matrix group; coadjoint | [`QuadraticLiePoisson`] |
+//! | Lie–Poisson: Euler's equations of any Hamiltonian | any; coadjoint | [`Euler`], [`EulerGroup`], [`Kinetic`] |
 //! | heavy tops | SE(3); coadjoint | [`HeavyTop`] |
 //! | rigid body under torques | SO(3) × T(3); translation | [`TorqueBody`], [`inertia`] |
 //! | isospectral flows: Toda, QR, double bracket | SO(n); conjugation | [`IsospectralFlow`] |
@@ -31,7 +30,6 @@ mod heavy_top;
 pub mod inertia;
 mod invariants;
 mod isospectral;
-mod lie_poisson;
 mod linear;
 mod lorentz;
 mod lyapunov;
@@ -52,8 +50,7 @@ pub use fallible::{Fallible, InAlgebra, TryProblem};
 pub use grassmann::SubspaceFlow;
 pub use heavy_top::HeavyTop;
 pub use invariants::{Invariant, Invariants, Kept};
-pub use isospectral::{IsospectralFlow, toda_lattice};
-pub use lie_poisson::{QuadraticLiePoisson, QuadraticWork};
+pub use isospectral::{IsospectralFlow, IsospectralFlowWork, toda_lattice};
 pub use linear::{LinearEquation, LinearField};
 pub use lorentz::ChargedParticle;
 pub use lyapunov::Lyapunov;

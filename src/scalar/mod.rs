@@ -6,10 +6,11 @@
 mod counted;
 mod sin_cos;
 
+use core::f64::consts::FRAC_PI_4;
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-pub(crate) use self::sin_cos::{SIN_COS_MAX, muladd, sin_cos};
+pub(crate) use self::sin_cos::{SIN_COS_MAX, muladd, sin_cos, sin_cos_near_zero};
 pub use counted::{Counted, Ops};
 
 /// A real number, or several side by side (SIMD lanes), or one that counts its own operations.
@@ -133,12 +134,14 @@ impl Trig for f32 {
 }
 
 impl Trig for f64 {
-    /// In line up to 1e6: a call of the library costs as much as the polynomials.
+    /// In line up to 1e6: a call of the library costs as much as the polynomials. Up to π/4, where the
+    /// angles of most steps are, without their reduction, which is half of the way.
     #[inline]
     fn sin_cos(self) -> (Self, Self) {
-        match self.abs() <= SIN_COS_MAX {
-            true => sin_cos::<false>(self),
-            false => f64::sin_cos(self),
+        match self.abs() {
+            x if x <= FRAC_PI_4 => sin_cos_near_zero(self),
+            x if x <= SIN_COS_MAX => sin_cos::<false>(self),
+            _ => f64::sin_cos(self),
         }
     }
 }

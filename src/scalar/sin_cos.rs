@@ -33,6 +33,29 @@ pub(crate) fn muladd<const FUSED: bool>(a: f64, b: f64, c: f64) -> f64 {
     if FUSED { a.mul_add(b, c) } else { a * b + c }
 }
 
+/// The polynomials in z = r² at the end of [`SIN`] and [`COS`]. Their terms are paired, so that few of
+/// them wait for one another.
+#[inline(always)]
+fn polynomials<const FUSED: bool>(z: f64) -> (f64, f64) {
+    let z2 = z * z;
+    let z4 = z2 * z2;
+    let poly = |c: &[f64; 6]| {
+        let pair = |i: usize| muladd::<FUSED>(c[i + 1], z, c[i]);
+        muladd::<FUSED>(pair(4), z4, muladd::<FUSED>(pair(2), z2, pair(0)))
+    };
+    (poly(&SIN), z2 * poly(&COS))
+}
+
+/// (sin x, cos x) for |x| ≤ π/4, where there is nothing to reduce.
+#[inline(always)]
+pub(crate) fn sin_cos_near_zero(x: f64) -> (f64, f64) {
+    let z = x * x;
+    let (sin, cos) = polynomials::<false>(z);
+    let half = 0.5 * z;
+    let lead = 1.0 - half;
+    (x + sin * (x * z), lead + (((1.0 - lead) - half) + cos))
+}
+
 /// (sin x, cos x) for |x| ≤ [`SIN_COS_MAX`]; finite nonsense beyond.
 #[inline(always)]
 pub(crate) fn sin_cos<const FUSED: bool>(x: f64) -> (f64, f64) {
@@ -45,15 +68,11 @@ pub(crate) fn sin_cos<const FUSED: bool>(x: f64) -> (f64, f64) {
     let low = ((a - r) - p) - k * HALF_PI[2];
 
     let z = r * r;
-    let z2 = z * z;
-    let poly = |c: &[f64; 6]| {
-        let pair = |i: usize| muladd::<FUSED>(c[i + 1], z, c[i]);
-        muladd::<FUSED>(muladd::<FUSED>(pair(4), z2, pair(2)), z2, pair(0))
-    };
-    let sin = r + muladd::<FUSED>(poly(&SIN), r * z, low - 0.5 * z * low);
+    let (sin, cos) = polynomials::<FUSED>(z);
+    let sin = r + muladd::<FUSED>(sin, r * z, low - 0.5 * z * low);
     let half = 0.5 * z;
     let lead = 1.0 - half;
-    let cos = lead + (((1.0 - lead) - half) + (z2 * poly(&COS) - r * low));
+    let cos = lead + (((1.0 - lead) - half) + (cos - r * low));
 
     let (s, c) = if quarter & 1 == 0 { (sin, cos) } else { (cos, sin) };
     let sign = |bit: u64, x: f64| f64::from_bits(x.to_bits() ^ ((bit & 2) << 62));
@@ -63,6 +82,7 @@ pub(crate) fn sin_cos<const FUSED: bool>(x: f64) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use core::f64::consts::FRAC_PI_4;
 
     /// Within 1 ε of the platform's, itself within ½ ε; next to multiples of π/2 as well.
     #[test]
@@ -76,6 +96,10 @@ mod tests {
                 let quarter = core::f64::consts::FRAC_PI_2 * (at / 1.6).round();
                 at = quarter + quarter * f64::EPSILON * f64::from(k % 7);
             }
+            let near_zero = sin_cos_near_zero(at.clamp(-FRAC_PI_4, FRAC_PI_4));
+            let (sin, cos) = at.clamp(-FRAC_PI_4, FRAC_PI_4).sin_cos();
+            assert!((near_zero.0 - sin).abs() <= f64::EPSILON * sin.abs(), "sin {at:?}");
+            assert!((near_zero.1 - cos).abs() <= f64::EPSILON * cos.abs(), "cos {at:?}");
             for (s, c) in [sin_cos::<false>(at), sin_cos::<true>(at)] {
                 let (sin, cos) = at.sin_cos();
                 assert!((s - sin).abs() <= f64::EPSILON * sin.abs(), "sin {at:?}: {s:?} {sin:?}");

@@ -4,8 +4,9 @@
 use faer::Mat;
 use lieflow::Action;
 use lieflow::actions::{Coadjoint, Each, LeftTranslation, Linear, Pair};
-use lieflow::groups::{Adjoint, MatrixGroup, Power, Product, Se3, So3, hat};
-use nalgebra::Vector3;
+use lieflow::groups::{Adjoint, MatrixGroup, Power, Product, Sample, Se3, So3, hat};
+use lieflow::problems::{BodyFrame, BodyState};
+use nalgebra::{Matrix3, Vector3};
 use rand_pcg::Pcg64;
 
 use super::gaussian;
@@ -59,6 +60,31 @@ impl<G: Represent> Points<G> for Linear {
     fn square(&self, group: &G, x: &G::Vector) -> Mat<f64> {
         let x = group.vector_matrix(x);
         Mat::from_fn(x.nrows(), x.nrows(), |i, j| x[(i, 0)] / (j + 1) as f64)
+    }
+}
+
+/// (m, g) as a column of 12 numbers.
+impl Points<So3> for BodyFrame {
+    fn draw(&self, group: &So3, rng: &mut Pcg64) -> BodyState {
+        let m = gaussian(rng, 3, 1);
+        BodyState { m: group.vector_of(&m), g: group.sample_element(rng) }
+    }
+    fn numbers(&self, _: &So3, p: &BodyState) -> Mat<f64> {
+        Mat::from_fn(12, 1, |i, _| if i < 3 { p.m[i] } else { p.g[i - 3] })
+    }
+    fn with_numbers(&self, _: &So3, x: &Mat<f64>) -> BodyState {
+        let numbers = |from| move |i: usize| x[(from + i, 0)];
+        BodyState {
+            m: Vector3::from_iterator((0..3).map(numbers(0))),
+            g: Matrix3::from_iterator((0..9).map(numbers(3))),
+        }
+    }
+    fn generator(&self, group: &So3, xi: &Mat<f64>, p: &BodyState) -> Mat<f64> {
+        let xi = hat(&group.nearest(xi));
+        self.numbers(group, &BodyState { m: xi * p.m, g: p.g * xi.transpose() })
+    }
+    fn square(&self, _: &So3, p: &BodyState) -> Mat<f64> {
+        faer3(&p.g)
     }
 }
 

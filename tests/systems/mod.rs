@@ -4,7 +4,7 @@
 use faer::{Mat, Scale};
 use lieflow::LieAlgebra;
 use lieflow::groups::{AlgebraMatrix, MatrixGroup, Sample};
-use lieflow::problems::QuadraticLiePoisson;
+use lieflow::problems::{Euler, Kinetic};
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
 
@@ -20,15 +20,16 @@ fn part(form: Option<&[Mat<f64>; 2]>, x: &Mat<f64>) -> Mat<f64> {
 /// because π is.
 pub(crate) fn quadratic(
     group: MatrixGroup,
-) -> QuadraticLiePoisson<impl Fn(&Mat<f64>, &mut AlgebraMatrix)> {
+) -> Euler<MatrixGroup, Kinetic<impl Fn(&Mat<f64>, &mut AlgebraMatrix)>> {
     let form = group.m().map(|m| [m.clone(), m.transpose().to_owned()]);
-    QuadraticLiePoisson::new(group, move |m: &Mat<f64>, xi: &mut AlgebraMatrix| {
+    let inverse_inertia = move |m: &Mat<f64>, xi: &mut AlgebraMatrix| {
         let weighted = part(form.as_ref(), m);
         let weighted = Mat::from_fn(m.nrows(), m.ncols(), |i, j| {
             weighted[(i, j)] * (0.4 + 0.3 * ((3 * i + 5 * j) % 7) as f64)
         });
         xi.copy_from(part(form.as_ref(), &weighted));
-    })
+    };
+    Euler::new(group, Kinetic(inverse_inertia))
 }
 
 /// SO(5), Sp(4), GL(3) and SO(3,1), each with a momentum.

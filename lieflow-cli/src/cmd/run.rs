@@ -1,5 +1,6 @@
 //! `lieflow run`: one scene, one trajectory.
 
+use core::ops::Range;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -10,8 +11,12 @@ use lieflow::adaptive::AdaptiveError;
 
 use super::CliError;
 use crate::args::RunArgs;
+use crate::kinds::{Figure, Law, SIZE, Scale};
 use crate::model::{Model, Sink, Steps};
-use crate::output::{self, Chosen, Drift, MethodSummary, SUMMARY, Summary, Trajectory};
+use crate::output::{
+    self, Chosen, Drift, Gathered, MethodSummary, SUMMARY, Shown, Summary, Trajectory, Watched,
+};
+use crate::report;
 use crate::scene::Scene;
 
 /// Run the command.
@@ -35,49 +40,92 @@ pub fn run(args: &RunArgs) -> Result<(), CliError> {
     }
 }
 
-/// Everything that a run is watched for: what is written, what says how good it is.
+/// Everything that a run is watched for: what is written, what says how good it is, what is drawn.
 struct Watch<'a> {
     scene: &'a Scene,
     model: Box<dyn Model>,
-    /// Quantities with the place of their columns in a row of `model`.
-    state: Vec<(&'static str, core::ops::Range<usize>)>,
-    invariants: Vec<(&'static str, usize)>,
-    /// Columns that were asked for: the first ones.
-    asked: usize,
+    state: Vec<Shown>,
+    laws: Vec<(Law, Shown)>,
+    drawn: Shown,
+    asked: Vec<Shown>,
+    /// Where quantities are in a row of `model`.
+    places: BTreeMap<String, Range<usize>>,
+    /// The columns that were asked for: the first ones.
+    width: usize,
 }
 
 impl<'a> Watch<'a> {
     fn new(scene: &'a Scene) -> Result<Self, CliError> {
+        let problem = &scene.problem;
         let asked: Vec<&str> = scene.quantities.iter().map(String::as_str).collect();
-        let (state, invariants) = (scene.problem.state(&asked), scene.problem.invariants(&asked));
-        let mut all = asked.clone();
-        for &name in state.iter().chain(invariants) {
-            if !all.contains(&name) {
-                all.push(name);
+        let (state, laws) = (problem.state(&asked), problem.invariants(&asked));
+        let mut all: Vec<String> = scene.quantities.clone();
+        let further = state.iter().copied().chain(laws.iter().map(|law| law.quantity));
+        for name in further.chain([problem.figure().quantity()]) {
+            if !all.iter().any(|known| known == name) {
+                all.push(name.into());
             }
         }
-        let mut places = BTreeMap::new();
-        let mut width = 0;
-        let mut asked_width = 0;
-        for (i, &name) in all.iter().enumerate() {
-            let columns = scene.problem.kind().quantity(name)?.columns.len();
-            places.insert(name, width..width + columns);
-            width += columns;
-            if i < asked.len() {
-                asked_width = width;
-            }
+        let in_terms = laws.iter().filter(|law| law.scale == Scale::Terms);
+        all.extend(in_terms.map(|law| format!("{}{SIZE}", law.quantity)));
+
+        let (mut shown, mut end) = (Vec::new(), 0);
+        for name in &all {
+            let columns = problem.columns(name)?;
+            let place = end..end + columns.len();
+            end = place.end;
+            shown.push(Shown { name: name.clone(), place, columns });
         }
-        let place = |name: &'static str| places.get(name).map(|range| (name, range.clone()));
+        let find = |name: &str| shown.iter().find(|s| s.name == name).cloned();
+        let names: Vec<&str> = all.iter().map(String::as_str).collect();
         Ok(Watch {
             scene,
-            model: scene.model_with(scene.layer, &all)?,
-            state: state.iter().filter_map(|&name| place(name)).collect(),
-            invariants: invariants
-                .iter()
-                .filter_map(|&name| place(name).map(|(name, range)| (name, range.start)))
-                .collect(),
-            asked: asked_width,
+            model: scene.model_with(scene.layer, &names)?,
+            state: state.iter().filter_map(|name| find(name)).collect(),
+            laws: laws.iter().filter_map(|law| Some((*law, find(law.quantity)?))).collect(),
+            drawn: find(problem.figure().quantity()).unwrap_or_else(|| shown[0].clone()),
+            width: shown[asked.len() - 1].place.end,
+            places: shown.iter().map(|s| (s.name.clone(), s.place.clone())).collect(),
+            asked: shown.drain(..asked.len()).collect(),
         })
+    }
+
+    /// The size that the rounding of the column `i` of a law is relative to.
+    fn size(&self, law: &Law, i: usize, row: &[f64]) -> f64 {
+        match law.scale {
+            Scale::One => 1.0,
+            Scale::Value => row[i].abs(),
+            Scale::Terms => {
+                let place = self.places.get(&format!("{}{SIZE}", law.quantity));
+                place.map_or(f64::NAN, |place| row[place.start])
+            }
+        }
+    }
+
+    /// The invariants of the next row, each in its turn.
+    fn see(&self, t: f64, row: &[f64], watched: &mut Vec<Watched>) {
+        let first = watched.is_empty();
+        let mut next = 0;
+        for (law, shown) in &self.laws {
+            for i in shown.place.clone() {
+                let size = self.size(law, i, row);
+                match first {
+                    true => watched.push(Watched::new(t, row[i], size)),
+                    false => watched[next].see(t, row[i], size),
+                }
+                next += 1;
+            }
+        }
+    }
+
+    /// The drift of each invariant, by column.
+    fn drift(&self, watched: &[Watched], steps: u64) -> Result<BTreeMap<String, Drift>, CliError> {
+        let method = self.scene.method.info()?;
+        let columns = self.laws.iter().flat_map(|(law, shown)| {
+            shown.columns.iter().map(|column| (column.clone(), law.promised_by(method)))
+        });
+        let drifts = columns.zip(watched);
+        Ok(drifts.map(|((name, promised), w)| (name, w.drift(promised, steps))).collect())
     }
 
     /// Run the scene. A step that fails is an end, not an error.
@@ -102,7 +150,7 @@ impl<'a> Watch<'a> {
                         chosen: Some(Chosen {
                             accepted: stats.accepted,
                             rejected: stats.rejected,
-                            evaluations: method.has_pair()?.then_some(stats.evaluations),
+                            evaluations: stats.evaluations,
                             smallest_step: stats.smallest_step,
                             largest_step: stats.largest_step,
                         }),
@@ -122,16 +170,26 @@ impl<'a> Watch<'a> {
         }
     }
 
+    /// The field at the end, where the figure is one.
+    fn field(&self, rows: &Gathered) -> Vec<Vec<f64>> {
+        match (self.scene.problem.figure(), rows.ends()) {
+            (Figure::Map(_), Some([_, (_, row)])) => {
+                self.scene.problem.field(&row[self.drawn.place.clone()])
+            }
+            _ => Vec::new(),
+        }
+    }
+
     /// The distance from the exact solution at the end of the span.
-    fn errors(&self, last: &[f64]) -> Option<BTreeMap<&'static str, f64>> {
+    fn errors(&self, last: &[f64]) -> Option<BTreeMap<String, f64>> {
         let [t0, t1] = self.scene.grid.t_span();
         let exact = self.model.exact(t1 - t0)?.ok()?;
-        let distance = |range: &core::ops::Range<usize>| {
+        let distance = |range: &Range<usize>| {
             let pairs = last.get(range.clone()).into_iter().flatten();
             let pairs = pairs.zip(exact.get(range.clone()).into_iter().flatten());
             pairs.map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
         };
-        Some(self.state.iter().map(|(name, range)| (*name, distance(range))).collect())
+        Some(self.state.iter().map(|s| (s.name.clone(), distance(&s.place))).collect())
     }
 }
 
@@ -165,7 +223,7 @@ fn progress(steps: u64) -> ProgressBar {
 /// The scene does not run at all, or a file cannot be written.
 pub fn run_scene(scene: &Scene, folder: &Path) -> Result<Summary, CliError> {
     let watch = Watch::new(scene)?;
-    let columns: Vec<String> = watch.model.columns().drain(..watch.asked).collect();
+    let columns: Vec<String> = watch.model.columns().drain(..watch.width).collect();
     output::make_folder(folder)?;
     let summary_path: PathBuf = folder.join(SUMMARY);
     output::remove_old(&summary_path)?;
@@ -173,21 +231,13 @@ pub fn run_scene(scene: &Scene, folder: &Path) -> Result<Summary, CliError> {
 
     let [t0, t1] = scene.grid.t_span();
     let bar = progress(scene.grid.steps());
-    let mut rows: Option<[(f64, Vec<f64>); 2]> = None;
-    let mut drift: BTreeMap<&'static str, Drift> = BTreeMap::new();
+    let mut rows = Gathered::default();
+    let mut watched = Vec::new();
     let clock = Instant::now();
     let outcome = watch.run(&mut |t, row| {
-        trajectory.row(t, &row[..watch.asked]);
-        for &(name, column) in &watch.invariants {
-            drift.entry(name).or_insert_with(|| Drift::from(row[column])).see(row[column]);
-        }
-        match &mut rows {
-            None => rows = Some([(t, row.into()), (t, row.into())]),
-            Some([_, (time, last)]) => {
-                *time = t;
-                last.copy_from_slice(row);
-            }
-        }
+        trajectory.row(t, &row[..watch.width]);
+        watch.see(t, row, &mut watched);
+        rows.see(t, row);
         bar.set_position(((t - t0) / (t1 - t0) * scene.grid.steps() as f64) as u64);
     });
     bar.finish_and_clear();
@@ -204,10 +254,12 @@ pub fn run_scene(scene: &Scene, folder: &Path) -> Result<Summary, CliError> {
     let wall_time_s = clock.elapsed().as_secs_f64();
 
     let shown =
-        |(t, row): &(f64, Vec<f64>)| [&[*t], row.get(..watch.asked).unwrap_or_default()].concat();
-    let (initial, last) =
-        rows.as_ref().map_or_else(Default::default, |[a, b]| (shown(a), shown(b)));
-    let end = rows.as_ref().filter(|_| completed);
+        |(t, row): &(f64, Vec<f64>)| [&[*t], row.get(..watch.width).unwrap_or_default()].concat();
+    let (initial, last) = rows.ends().map_or_else(Default::default, |[a, b]| (shown(a), shown(b)));
+    let end = rows.ends().filter(|_| completed);
+    let drift = watch.drift(&watched, done.steps)?;
+    let mut warnings = scene.problem.warnings();
+    warnings.extend(drift.iter().filter(|(_, drift)| drift.breaks_a_promise()).map(broken_promise));
     let method = &scene.method;
     let summary = Summary {
         lieflow: env!("CARGO_PKG_VERSION"),
@@ -225,7 +277,9 @@ pub fn run_scene(scene: &Scene, folder: &Path) -> Result<Summary, CliError> {
             order: watch.model.order(method)?,
         },
         layer: scene.layer.name(),
-        modelled: watch.model.modelled(),
+        modelled: watch.model.modelled(method),
+        facts: scene.problem.facts().iter().map(|fact| (fact.name, fact.value)).collect(),
+        warnings,
         quantities: scene.quantities.clone(),
         columns: core::iter::once("t".into()).chain(columns).collect(),
         trajectory: if completed { output::COMPLETE } else { output::PARTIAL },
@@ -243,8 +297,22 @@ pub fn run_scene(scene: &Scene, folder: &Path) -> Result<Summary, CliError> {
         error_at_end: end.and_then(|[_, (_, row)]| watch.errors(row)),
     };
     output::write_file(&summary_path, &output::to_json(&summary)?)?;
+    let laws: Vec<Shown> = watch.laws.iter().map(|(_, shown)| shown.clone()).collect();
+    let figure = (scene.problem.figure(), watch.field(&rows));
+    let page = output::run_page(&summary, &rows, figure, &watch.drawn, &watch.asked, &laws);
+    report::write_page(folder, &page)?;
     Ok(summary)
 }
+
+fn broken_promise((name, drift): (&String, &Drift)) -> String {
+    format!(
+        "{name} moved by {:.2e}, though the method promises to keep it: rounding explains {:.2e}",
+        drift.max, drift.rounding
+    )
+}
+
+/// Drifts that are told; summary.json has all.
+const DRIFTS: usize = 10;
 
 fn in_words(summary: &Summary, folder: &Path) -> String {
     let Summary { title, steps, rows, wall_time_s, t_span: [t0, t1], .. } = summary;
@@ -263,13 +331,31 @@ fn in_words(summary: &Summary, folder: &Path) -> String {
         summary.method.label,
         summary.layer,
     );
-    for (name, drift) in &summary.drift {
-        text += &format!("  drift of {name}: {:.2e} at most, on the written rows\n", drift.max);
+    let mut drifts: Vec<_> = summary.drift.iter().collect();
+    if drifts.len() > DRIFTS {
+        drifts.sort_by(|(_, a), (_, b)| b.max.total_cmp(&a.max));
+    }
+    for (name, drift) in drifts.iter().take(DRIFTS) {
+        text += &format!(
+            "  drift of {name}: {:.2e} at most, {:.2e} at the end, {:.2e} a unit of time, on the \
+             written rows\n",
+            drift.max, drift.at_end, drift.slope
+        );
+    }
+    if drifts.len() > DRIFTS {
+        text += &format!("  {} further drifts are smaller\n", drifts.len() - DRIFTS);
     }
     for (name, error) in summary.error_at_end.iter().flatten() {
         text += &format!("  error of {name} at the end: {error:.2e}\n");
     }
+    for (name, value) in &summary.facts {
+        text += &format!("  {}: {}\n", name.replace('_', " "), output::in_digits(*value));
+    }
+    for warning in &summary.warnings {
+        text += &format!("  warning: {warning}\n");
+    }
     text += &format!("  {}\n", folder.join(summary.trajectory).display());
     text += &format!("  {}\n", folder.join(SUMMARY).display());
+    text += &format!("  {}\n", folder.join("index.html").display());
     text
 }

@@ -87,7 +87,7 @@ fn reference_methods() -> Vec<MethodSpec> {
 #[derive(Debug)]
 pub struct Judge {
     state: Vec<(&'static str, Range<usize>)>,
-    invariants: Vec<(&'static str, usize)>,
+    invariants: Vec<(&'static str, Range<usize>)>,
     end: Vec<f64>,
     /// Where the end comes from.
     pub reference: Reference,
@@ -104,7 +104,7 @@ impl Judge {
     /// The problem cannot be set up, or no reference can be computed.
     pub fn new(scene: &Scene, quantities: &[&str], t_span: [f64; 2]) -> Result<Self, CliError> {
         let mut judge = Self::without_end(scene, quantities)?;
-        let model = scene.model_with(Layer::Closed, &judge.quantities())?;
+        let model = scene.model_with(reference_layer(scene), &judge.quantities())?;
         match model.exact(t_span[1] - t_span[0]) {
             Some(Ok(exact)) => {
                 judge.end = exact;
@@ -125,22 +125,23 @@ impl Judge {
         t_span: [f64; 2],
     ) -> Result<Self, CliError> {
         let mut judge = Self::without_end(scene, quantities)?;
-        let model = scene.model_with(Layer::Closed, &judge.quantities())?;
+        let model = scene.model_with(reference_layer(scene), &judge.quantities())?;
         judge.find_end(&*model, t_span)?;
         Ok(judge)
     }
 
     fn without_end(scene: &Scene, quantities: &[&str]) -> Result<Self, CliError> {
-        let kind = scene.problem.kind();
         let mut width = 0;
-        let mut state = Vec::new();
-        for name in scene.problem.state(quantities) {
-            let columns = kind.quantity(name)?.columns.len();
-            state.push((*name, width..width + columns));
+        let mut place = |name: &'static str| {
+            let columns = scene.problem.columns(name)?.len();
             width += columns;
-        }
-        let names = scene.problem.invariants(quantities).iter();
-        let invariants = names.enumerate().map(|(i, name)| (*name, width + i)).collect();
+            Ok((name, width - columns..width))
+        };
+        let state = scene.problem.state(quantities).iter().map(|name| place(name));
+        let state = state.collect::<Result<_, CliError>>()?;
+        let invariants = scene.problem.invariants(quantities);
+        let invariants = invariants.iter().map(|law| place(law.quantity));
+        let invariants = invariants.collect::<Result<_, CliError>>()?;
         Ok(Judge {
             state,
             invariants,
@@ -219,13 +220,16 @@ impl Judge {
                     .evaluations
                     .or_else(|| candidate.evaluations_per_step().map(|n| n * done.steps));
                 point.error = self.error(&last);
-                for &(name, column) in &self.invariants {
-                    let (start, end) = (first[column], last[column]);
-                    match name {
-                        "energy" => point.energy_error = relative(end - start, start),
-                        // A defect is a distance from the group already.
-                        _ if name.ends_with("defect") => point.group_residual = end,
-                        _ => point.casimir_error = relative(end - start, start),
+                for (name, columns) in &self.invariants {
+                    for (&start, &end) in first[columns.clone()].iter().zip(&last[columns.clone()])
+                    {
+                        let moved = relative(end - start, start);
+                        match *name {
+                            "energy" => point.energy_error = moved,
+                            // A defect is a distance from the group already.
+                            name if name.ends_with("defect") => point.group_residual = end,
+                            _ => point.casimir_error = moved.max(point.casimir_error),
+                        }
                     }
                 }
             }
@@ -243,6 +247,11 @@ impl Judge {
         };
         self.state.iter().map(part).fold(0.0, f64::max)
     }
+}
+
+/// The layer that a reference is computed on: the first of the problem's.
+fn reference_layer(scene: &Scene) -> Layer {
+    scene.problem.layers().first().copied().unwrap_or(scene.layer)
 }
 
 fn relative(gap: f64, size: f64) -> f64 {
@@ -306,7 +315,7 @@ impl Size {
                 Ok(Done {
                     steps: stats.accepted,
                     rejected: stats.rejected,
-                    evaluations: Some(stats.evaluations),
+                    evaluations: stats.evaluations,
                 })
             }
         }

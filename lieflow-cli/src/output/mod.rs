@@ -1,10 +1,12 @@
 //! What goes to standard output and into files.
 
 mod csv;
+mod figures;
 mod summary;
 
 pub use csv::{COMPLETE, PARTIAL, Trajectory};
-pub use summary::{Chosen, Drift, MethodSummary, SUMMARY, Summary};
+pub use figures::{Gathered, Shown, in_digits, run_page};
+pub use summary::{Chosen, Drift, MethodSummary, SUMMARY, Summary, Watched};
 
 use std::fs;
 use std::io::{self, Write};

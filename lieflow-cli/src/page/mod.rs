@@ -3,7 +3,7 @@
 
 mod render;
 
-use crate::plot::{Chart, Sphere};
+use crate::plot::{Chart, Heat, Sphere};
 
 /// A page.
 #[derive(Clone, Debug, Default)]
@@ -56,6 +56,8 @@ pub enum Block {
     Chart(Chart),
     /// A momentum sphere, which a reader can turn.
     Sphere(Sphere),
+    /// A field on a sphere.
+    Heat(Heat),
     /// Blocks next to each other where there is room.
     Row(Vec<Block>),
     /// Content that is folded away under a summary.

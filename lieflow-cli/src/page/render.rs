@@ -96,6 +96,10 @@ fn block(block: &Block) -> String {
         Block::Table(table) => html_table(table),
         Block::Chart(chart) => html_chart(chart),
         Block::Sphere(sphere) => html_sphere(sphere),
+        Block::Heat(heat) => {
+            let caption = optional("figcaption", "caption", &heat.caption);
+            format!("<figure>\n{}\n{caption}</figure>\n", heat.svg())
+        }
         Block::Row(row) => format!("<div class=\"row\">\n{}</div>\n", blocks(row)),
         Block::Details { summary, blocks: folded } => format!(
             "<details>\n<summary>{}</summary>\n{}</details>\n",

@@ -176,7 +176,9 @@ impl Chart {
                 escape(&self.line_text(series, trace))
             ));
         } else {
-            out.push_str(&format!("<path class=\"lf-line\" d=\"{d}\"/>"));
+            if series.marker != Marker::Dot {
+                out.push_str(&format!("<path class=\"lf-line\" d=\"{d}\"/>"));
+            }
             let (class, outline) = (series.marker_classes(), series.outline());
             for point in trace.points.iter().map(|i| &series.points[*i]) {
                 let (Some(px_x), Some(px_y)) = (x.pixel(point.x), y.pixel(point.y)) else {

@@ -1,5 +1,5 @@
-//! Figures as standalone SVG text: line charts ([`Chart`]) and the momentum sphere of a rigid
-//! body ([`Sphere`]).
+//! Figures as standalone SVG text: line charts ([`Chart`]), the momentum sphere of a rigid body
+//! ([`Sphere`]), fields on a sphere ([`Heat`]).
 //!
 //! A figure is a plain value; `svg()` turns it into one complete `<svg>` element that serves both
 //! as a file of its own and inline in a page. Colours are CSS variables with light fallbacks (see
@@ -9,6 +9,7 @@ mod camera;
 mod chart;
 mod ellipsoid;
 pub mod format;
+mod heat;
 mod labels;
 mod scale;
 mod scene;
@@ -20,6 +21,7 @@ mod thin;
 mod trace;
 
 pub use chart::Chart;
+pub use heat::Heat;
 pub use scale::{Axis, Scale};
 pub use series::{Marker, Point, Series, tell_apart};
 pub use sphere::{Path, Sphere};

@@ -34,6 +34,8 @@ pub enum Marker {
     None,
     /// A disc.
     Circle,
+    /// A small disc, without a line from one to the next: for points between which nothing lies.
+    Dot,
     /// A square.
     Square,
     /// A triangle standing on its base.
@@ -88,7 +90,8 @@ impl Marker {
         };
         match self {
             Marker::None => String::new(),
-            Marker::Circle => {
+            Marker::Circle | Marker::Dot => {
+                let r = if self == Marker::Dot { 0.5 * r } else { r };
                 let (r, d) = (px(r), px(2.0 * r));
                 format!("M-{r} 0a{r} {r} 0 1 0 {d} 0a{r} {r} 0 1 0-{d} 0z")
             }

@@ -29,8 +29,10 @@ impl Trace {
         result.runs.retain(|run| !run.is_empty());
         if series.marker == Marker::None {
             for run in &mut result.runs {
-                let extent = run.iter().map(|p| p.0).fold(0.0, f64::max) - run[0].0;
-                *run = thin_time_series(run, extent.abs().ceil() as usize);
+                // A run backward in time, or a path in a plane, need not begin at the left.
+                let left = run.iter().map(|p| p.0).fold(f64::INFINITY, f64::min);
+                let right = run.iter().map(|p| p.0).fold(f64::NEG_INFINITY, f64::max);
+                *run = thin_time_series(run, (right - left).ceil() as usize);
             }
         }
         result

@@ -75,6 +75,9 @@ fn write_figures(folder: &Path, block: &Block) -> Result<(), CliError> {
         Block::Sphere(sphere) => {
             output::write_file(&folder.join(format!("{}.svg", slug(&sphere.id))), &sphere.svg())
         }
+        Block::Heat(heat) => {
+            output::write_file(&folder.join(format!("{}.svg", heat.id)), &heat.svg())
+        }
         Block::Row(blocks) | Block::Details { blocks, .. } => {
             blocks.iter().try_for_each(|block| write_figures(folder, block))
         }

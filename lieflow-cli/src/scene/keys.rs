@@ -22,9 +22,13 @@ pub(super) struct MethodKeys {
 }
 
 impl MethodKeys {
-    /// The method with what it takes by default spelt out.
-    pub(super) fn resolve(self) -> Result<(MethodSpec, Layer), Refusal> {
-        let layer = self.layer.map_or(Ok(Layer::default()), |name| Layer::named(&name))?;
+    /// The method with what it takes by default spelt out, and the layer: the first of those of the
+    /// problem where none is named.
+    pub(super) fn resolve(self, layers: &[Layer]) -> Result<(MethodSpec, Layer), Refusal> {
+        let layer = match self.layer {
+            Some(name) => Layer::named(&name)?,
+            None => layers.first().copied().unwrap_or_default(),
+        };
         let mut method = MethodSpec {
             name: self.name,
             map: self.map,

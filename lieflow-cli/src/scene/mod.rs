@@ -62,7 +62,7 @@ impl Scene {
         let problem = read_problem(&document)?;
         let (method, layer) = document
             .keys::<MethodKeys>("method")?
-            .resolve()
+            .resolve(problem.layers())
             .map_err(|refusal| document.refusal("method", refusal))?;
         let (grid, adaptive) = document
             .keys::<TimeKeys>("time")?

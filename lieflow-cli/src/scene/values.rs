@@ -2,7 +2,11 @@
 
 use core::fmt;
 
-use serde::de::{Deserialize, Deserializer, Error, SeqAccess, Visitor};
+use faer::Mat;
+use serde::Deserialize;
+use serde::de::{Deserializer, Error, SeqAccess, Visitor};
+
+use super::Refusal;
 
 /// A finite number; an integer is one too.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -110,5 +114,100 @@ impl<'de, const N: usize> Deserialize<'de> for Rows<N> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let entries: Entries<Reals<N>, N> = Entries::read(deserializer, "rows of numbers")?;
         Ok(Rows(entries.0.map(|row| row.0)))
+    }
+}
+
+/// Three numbers, or three rows of three.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Diagonal {
+    /// The diagonal.
+    List([f64; 3]),
+    /// The whole matrix.
+    Rows([[f64; 3]; 3]),
+}
+
+/// A number, or a row of three.
+enum Entry {
+    Number(f64),
+    Row([f64; 3]),
+}
+
+impl<'de> Deserialize<'de> for Entry {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct AsEntry;
+        impl<'de> Visitor<'de> for AsEntry {
+            type Value = Entry;
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a number")
+            }
+            fn visit_f64<E: Error>(self, x: f64) -> Result<Entry, E> {
+                match x.is_finite() {
+                    true => Ok(Entry::Number(x)),
+                    false => Err(E::custom(format!("found {x}, expected a finite number"))),
+                }
+            }
+            fn visit_i64<E: Error>(self, x: i64) -> Result<Entry, E> {
+                Ok(Entry::Number(x as f64))
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<Entry, A::Error> {
+                let list = serde::de::value::SeqAccessDeserializer::new(list);
+                Reals::<3>::deserialize(list).map(|row| Entry::Row(row.0))
+            }
+        }
+        deserializer.deserialize_any(AsEntry)
+    }
+}
+
+impl<'de> Deserialize<'de> for Diagonal {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        match Entries::<Entry, 3>::read(deserializer, "numbers")?.0 {
+            [Entry::Number(a), Entry::Number(b), Entry::Number(c)] => Ok(Diagonal::List([a, b, c])),
+            [Entry::Row(a), Entry::Row(b), Entry::Row(c)] => Ok(Diagonal::Rows([a, b, c])),
+            _ => Err(D::Error::custom("numbers and rows, expected 3 numbers or 3 rows of them")),
+        }
+    }
+}
+
+/// Any number of numbers.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(transparent)]
+pub struct List(Vec<Real>);
+
+impl List {
+    /// The numbers.
+    pub fn values(&self) -> Vec<f64> {
+        self.0.iter().map(|x| x.0).collect()
+    }
+}
+
+/// Rows of numbers, of one length.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(transparent)]
+pub struct Table(Vec<List>);
+
+impl Table {
+    /// The rows as a matrix, of as many columns as the first row has numbers.
+    ///
+    /// # Errors
+    /// As [`matrix`](Self::matrix).
+    pub fn columns(&self, key: &str) -> Result<Mat<f64>, Refusal> {
+        self.matrix(key, Some(self.0.first().map_or(0, |row| row.0.len())))
+    }
+
+    /// The rows as a matrix of so many columns; as many as rows where none is said.
+    ///
+    /// # Errors
+    /// A refusal of `key` for a row of another length, and for no rows.
+    pub fn matrix(&self, key: &str, columns: Option<usize>) -> Result<Mat<f64>, Refusal> {
+        let columns = columns.unwrap_or(self.0.len());
+        if self.0.is_empty() {
+            return Err(Refusal::at(key, "no rows, expected at least one"));
+        }
+        if let Some(i) = self.0.iter().position(|row| row.0.len() != columns) {
+            let found = self.0[i].0.len();
+            let message = format!("row {} has {found} numbers, expected {columns}", i + 1);
+            return Err(Refusal::at(format!("{key}[{i}]"), message));
+        }
+        Ok(Mat::from_fn(self.0.len(), columns, |i, j| self.0[i].0[j].0))
     }
 }

@@ -37,6 +37,11 @@ impl Folder {
         names.sort();
         names
     }
+    /// The same without pages and figures.
+    pub fn data(&self, below: &str) -> Vec<String> {
+        let drawn = |name: &String| name.ends_with(".svg") || name.ends_with(".html");
+        self.names(below).into_iter().filter(|name| !drawn(name)).collect()
+    }
     /// Run `lieflow` here.
     pub fn lieflow(&self, args: &[&str]) -> Run {
         let output = Command::new(env!("CARGO_BIN_EXE_lieflow"))

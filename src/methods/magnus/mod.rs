@@ -140,6 +140,9 @@ macro_rules! magnus_method {
             fn order(&self, _: &P) -> usize {
                 $order
             }
+            fn evaluations(&self, _: &P) -> Option<u64> {
+                Some($s)
+            }
             fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
                 MagnusWork::new(problem, &$psi, like)
             }

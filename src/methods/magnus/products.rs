@@ -152,6 +152,9 @@ where
     fn order(&self, _: &P) -> usize {
         self.0.order
     }
+    fn evaluations(&self, _: &P) -> Option<u64> {
+        Some(S as u64)
+    }
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
         Ok((MagnusWork::new(problem, &Exp, like)?, like.clone()))
     }

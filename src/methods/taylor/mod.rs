@@ -112,6 +112,9 @@ where
     fn order(&self, _: &P) -> usize {
         N
     }
+    fn evaluations(&self, _: &P) -> Option<u64> {
+        Some(N as u64)
+    }
     fn work(&self, _: &P, _: &PointOf<P>) -> Result<(), Error> {
         Ok(())
     }
@@ -139,8 +142,8 @@ where
     fn error_order(&self, _: &P) -> Result<usize, Error> {
         Ok(N - 1)
     }
-    fn evaluations(&self) -> u64 {
-        N as u64
+    fn evaluations_with_error(&self, _: &P) -> Option<u64> {
+        Some(N as u64)
     }
     fn step_with_error(
         &self,

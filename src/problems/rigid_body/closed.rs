@@ -91,9 +91,10 @@ impl<S: Real> Ambient for RigidBody<S> {
     fn field(&self, _: S, m: &Vector3<S>, dm: &mut Vector3<S>, _: &mut ()) {
         *dm = cross(m, &self.omega(m));
     }
+    /// Entry by entry: a vector that is copied whole goes through memory.
     #[inline]
     fn copy(&self, x: &Vector3<S>, y: &mut Vector3<S>) {
-        *y = *x;
+        (y[0], y[1], y[2]) = (x[0], x[1], x[2]);
     }
     #[inline]
     fn add(&self, a: S, x: &Vector3<S>, y: &mut Vector3<S>) {

@@ -8,6 +8,7 @@ mod general;
 mod invariants;
 mod series;
 mod state;
+mod theta;
 
 pub use closed::{RigidBody, RigidBodyAttitude};
 pub use exact::Exact;

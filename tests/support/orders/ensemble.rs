@@ -18,10 +18,10 @@ pub(crate) const MEMBERS: u64 = 8;
 /// And for order 8 and more, over a span of this length.
 pub(crate) const LONG: (u64, f64) = (24, 2.0);
 
-/// Numbers of steps, fixed here once for every method and problem: ratios from 1.14 to 1.25, and with
-/// each number its double.
+/// Numbers of steps from 4 on, fixed here once for every method and problem: ratios from 1.14 to 1.25,
+/// and with each number its double.
 fn grid() -> impl Iterator<Item = u64> {
-    (0..24u64).map(|i| (8 + 2 * (i % 4)) << (i / 4))
+    (0..28u64).map(|i| (4 + i % 4) << (i / 4))
 }
 /// n/2 stands so many places before n.
 const HALF: usize = 4;

@@ -1,18 +1,21 @@
 //! `kind = "rigid-body"`: the free rigid body in ℝ³.
 
 mod model;
+mod shape;
 
 use lieflow::Error;
 use lieflow::groups::{MEMBERSHIP, So3};
 use lieflow::problems::RigidBody;
+use lieflow::problems::inertia::{principal_axes, violates_triangle};
 use nalgebra::{Matrix3, Vector3};
 use serde::Deserialize;
 use toml::de::ValueDeserializer;
 
 use self::model::RigidBodyModel;
-use super::{KeyInfo, Kind, ProblemSpec, QuantityInfo};
+use self::shape::Shape;
+use super::{Figure, KeyInfo, Kind, Law, ProblemSpec, QuantityInfo, Scale};
 use crate::model::{Layer, Model};
-use crate::scene::values::{Reals, Rows};
+use crate::scene::values::{Diagonal, Reals, Rows};
 use crate::scene::{Either, ReadError, Refusal, exactly_one};
 
 /// The entry in the list of kinds.
@@ -20,8 +23,16 @@ pub(super) const KIND: Kind = Kind {
     name: "rigid-body",
     summary: "the free rigid body, by its momentum on so(3)* or its attitude on SO(3)",
     keys: &[
-        KeyInfo { name: "inertia", meaning: "principal moments of inertia [J1, J2, J3]" },
+        KeyInfo {
+            name: "inertia",
+            meaning: "principal moments of inertia [J1, J2, J3], or the tensor of inertia as three rows",
+        },
         KeyInfo { name: "inverse_inertia", meaning: "their reciprocals, instead of inertia" },
+        KeyInfo {
+            name: "shape",
+            meaning: "instead of inertia: {kind = \"box\", mass, sides = [a, b, c]}, {kind = \
+                      \"ellipsoid\", mass, semi_axes}, {kind = \"cylinder\", mass, radius, height}",
+        },
         KeyInfo { name: "omega_body", meaning: "initial angular velocity in the body" },
         KeyInfo {
             name: "momentum_body",
@@ -73,8 +84,9 @@ fn needs_attitude(quantities: &[&str]) -> bool {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Keys {
-    inertia: Option<Reals<3>>,
+    inertia: Option<Diagonal>,
     inverse_inertia: Option<Reals<3>>,
+    shape: Option<Shape>,
     omega_body: Option<Reals<3>>,
     momentum_body: Option<Reals<3>>,
     attitude: Option<Rows<3>>,
@@ -85,10 +97,13 @@ struct Keys {
 pub struct RigidBodySpec {
     /// Principal moments of inertia.
     pub inertia: [f64; 3],
-    /// Initial angular momentum in the body.
+    /// Initial angular momentum in the body, along the principal axes.
     pub momentum_body: [f64; 3],
-    /// Initial rotation from body to space.
+    /// Initial rotation to space, from the frame of the principal axes.
     pub attitude: Matrix3<f64>,
+    /// The principal axes, as columns, in the frame that the scene is written in, where that is
+    /// another.
+    pub axes: Option<Matrix3<f64>>,
 }
 
 impl RigidBodySpec {
@@ -105,7 +120,7 @@ impl RigidBodySpec {
         RigidBody::<f64>::new(inertia)?;
         check_each("momentum_body", momentum_body, "a finite number", f64::is_finite)?;
         So3::new().check_element("attitude", &attitude, MEMBERSHIP)?;
-        Ok(RigidBodySpec { inertia, momentum_body, attitude })
+        Ok(RigidBodySpec { inertia, momentum_body, attitude, axes: None })
     }
 }
 
@@ -125,26 +140,52 @@ fn check_each(
     }
 }
 
+/// Principal moments of inertia, and the principal axes where the scene's are others.
+type Principal = ([f64; 3], Option<Matrix3<f64>>);
+
+fn principal(keys: &Keys) -> Result<Principal, ReadError> {
+    if let Some(shape) = &keys.shape {
+        let others = [
+            ("inertia", keys.inertia.is_some()),
+            ("inverse_inertia", keys.inverse_inertia.is_some()),
+        ];
+        if let Some((other, _)) = others.iter().find(|(_, given)| *given) {
+            let message = format!("both `{other}` and `shape`, expected exactly one of them");
+            return Err(Refusal::at("shape", message).into());
+        }
+        return Ok((shape.moments()?, None));
+    }
+    match exactly_one(("inertia", keys.inertia), ("inverse_inertia", keys.inverse_inertia))? {
+        Either::First(Diagonal::List(inertia)) => Ok((inertia, None)),
+        Either::First(Diagonal::Rows(rows)) => {
+            let tensor = Matrix3::from_rows(&rows.map(|row| Vector3::from(row).transpose()));
+            let refused = |error: Error| Refusal::at("inertia", error.to_string());
+            let (inertia, axes) = principal_axes(&tensor).map_err(refused)?;
+            Ok((inertia, Some(axes)))
+        }
+        Either::Second(inverse) => {
+            let range = "a finite number > 0 with a finite reciprocal";
+            check_each("inverse_inertia", inverse.0, range, |x| x > 0.0 && (1.0 / x).is_normal())?;
+            Ok((inverse.0.map(f64::recip), None))
+        }
+    }
+}
+
 fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
     let keys = Keys::deserialize(section)?;
-    let inertia =
-        match exactly_one(("inertia", keys.inertia), ("inverse_inertia", keys.inverse_inertia))? {
-            Either::First(inertia) => inertia.0,
-            Either::Second(inverse) => {
-                let range = "a finite number > 0 with a finite reciprocal";
-                check_each("inverse_inertia", inverse.0, range, |x| {
-                    x > 0.0 && (1.0 / x).is_normal()
-                })?;
-                inverse.0.map(f64::recip)
-            }
-        };
+    let (inertia, axes) = principal(&keys)?;
+    let along = |x: [f64; 3]| match &axes {
+        Some(axes) => axes.tr_mul(&Vector3::from(x)).into(),
+        None => x,
+    };
     let momentum = match exactly_one(
         ("omega_body", keys.omega_body),
         ("momentum_body", keys.momentum_body),
     )? {
-        Either::Second(momentum) => momentum.0,
+        Either::Second(momentum) => along(momentum.0),
         Either::First(omega) => {
-            let momentum: [f64; 3] = core::array::from_fn(|i| inertia[i] * omega.0[i]);
+            let omega: [f64; 3] = along(omega.0);
+            let momentum: [f64; 3] = core::array::from_fn(|i| inertia[i] * omega[i]);
             if let Some(i) = momentum.iter().position(|m| !m.is_finite()) {
                 return Err(Refusal::at(
                     format!("omega_body[{i}]"),
@@ -158,7 +199,12 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
     let attitude = keys.attitude.map_or_else(Matrix3::identity, |rows| {
         Matrix3::from_rows(&rows.0.map(|row| Vector3::from(row).transpose()))
     });
-    Ok(Box::new(RigidBodySpec::new(inertia, momentum, attitude)?))
+    let mut body = RigidBodySpec::new(inertia, momentum, attitude)?;
+    if let Some(axes) = axes {
+        body.attitude *= axes;
+        body.axes = Some(axes);
+    }
+    Ok(Box::new(body))
 }
 
 impl ProblemSpec for RigidBodySpec {
@@ -174,10 +220,28 @@ impl ProblemSpec for RigidBodySpec {
             false => &["momentum_body"],
         }
     }
-    fn invariants(&self, quantities: &[&str]) -> &'static [&'static str] {
-        match needs_attitude(quantities) {
-            true => &["energy", "momentum_norm", "attitude_defect"],
-            false => &["energy", "momentum_norm"],
+    fn layers(&self) -> &'static [Layer] {
+        &Layer::ALL
+    }
+    fn invariants(&self, quantities: &[&str]) -> Vec<Law> {
+        let mut laws = vec![Law::of_the_flow("energy", 2), Law::of_the_action("momentum_norm", 2)];
+        if needs_attitude(quantities) {
+            laws.push(Law::of_the_action("attitude_defect", 2).on_scale(Scale::One));
         }
+        laws
+    }
+    fn figure(&self) -> Figure {
+        Figure::Sphere("momentum_body")
+    }
+    fn warnings(&self) -> Vec<String> {
+        let missed = violates_triangle(self.inertia);
+        let warning = |missed: f64| {
+            format!(
+                "no body has the moments of inertia {:?}: the largest is more than the sum of the \
+                 others, by {:.1e} of it",
+                self.inertia, missed
+            )
+        };
+        missed.map(warning).into_iter().collect()
     }
 }

@@ -3,11 +3,13 @@
 use faer::Mat;
 use lieflow::adaptive::{AdaptiveError, AdaptiveStats};
 use lieflow::catalog::{
-    MethodSpec, with_attitude_method, with_implicit_method, with_lie_poisson_method,
-    with_momentum_method,
+    MethodSpec, Needs, with_attitude_method, with_implicit_method, with_lie_poisson_method,
+    with_momentum_method, with_state_method, with_state_pair,
 };
 use lieflow::groups::{GroupMatrix, LieGroup, MatrixGroup, So3, hat, vee};
-use lieflow::problems::{Exact, RigidBody, RigidBodyAttitude, RigidBodyN, RigidBodyNAttitude};
+use lieflow::problems::{
+    BodyState, Exact, RigidBody, RigidBodyAttitude, RigidBodyN, RigidBodyNAttitude, RigidBodyState,
+};
 use lieflow::scalar::Counted;
 use lieflow::{Error, RunError, SaveAt, Stats, TimeGrid};
 use nalgebra::{Matrix3, Vector3};
@@ -21,6 +23,7 @@ use crate::operations::{Pace, operations_by};
 enum System {
     Momentum(RigidBody),
     Attitude(RigidBodyAttitude),
+    State(RigidBodyState),
     MomentumN(RigidBodyN),
     AttitudeN(RigidBodyNAttitude),
 }
@@ -28,11 +31,15 @@ enum System {
 #[derive(Debug)]
 pub(super) struct RigidBodyModel {
     system: System,
+    /// Where `system` is the attitude: both as one state, for the methods that want that.
+    state: Option<System>,
     inertia: [f64; 3],
     /// For ω and the energy of a row, on either layer.
     body: RigidBody,
     momentum: Vector3<f64>,
     attitude: Matrix3<f64>,
+    /// The principal axes, where the scene is written in another frame.
+    axes: Option<Matrix3<f64>>,
     quantities: Vec<&'static str>,
     exact: Result<Exact, Error>,
 }
@@ -47,15 +54,17 @@ fn to_nalgebra(m: &Mat<f64>) -> Matrix3<f64> {
 
 catalog!(RigidBody, with_momentum_method);
 catalog!(RigidBodyAttitude, with_attitude_method);
+catalog!(RigidBodyState, with_state_method, with_state_pair);
 catalog!(RigidBodyN, with_lie_poisson_method);
 catalog!(RigidBodyNAttitude, with_implicit_method);
 catalog!(RigidBody<Counted>, with_momentum_method);
 catalog!(RigidBodyAttitude<Counted>, with_attitude_method);
+catalog!(RigidBodyState<Counted>, with_state_method, with_state_pair);
 
 /// Run `$run` on the problem of `$model` with its initial state and a function that shows a point of
 /// it as a row.
 macro_rules! on_system {
-    ($model:expr, $sink:expr, |$problem:ident, $y:ident, $see:ident| $run:expr) => {{
+    ($model:expr, $method:expr, $sink:expr, |$problem:ident, $y:ident, $see:ident| $run:expr) => {{
         let model: &RigidBodyModel = $model;
         let sink: &mut Sink<'_> = $sink;
         let mut row = Vec::new();
@@ -63,7 +72,7 @@ macro_rules! on_system {
             model.fill(m, g, &mut row);
             sink(t, &row);
         };
-        match &model.system {
+        match model.system($method) {
             System::Momentum($problem) => {
                 let $y = model.momentum;
                 let $see = |t: f64, m: &Vector3<f64>| show(t, m, None);
@@ -74,6 +83,11 @@ macro_rules! on_system {
                 let $see = |t: f64, g: &Matrix3<f64>| {
                     show(t, &$problem.momentum_body(g), Some(g));
                 };
+                $run
+            }
+            System::State($problem) => {
+                let $y = BodyState { m: model.momentum, g: model.attitude };
+                let $see = |t: f64, y: &BodyState| show(t, &y.m, Some(&y.g));
                 $run
             }
             System::MomentumN($problem) => {
@@ -117,27 +131,43 @@ impl RigidBodyModel {
                 }
             }
         };
+        let state = match &system {
+            System::Attitude(_) => Some(System::State(RigidBodyState::new(spec.inertia)?)),
+            _ => None,
+        };
         Ok(RigidBodyModel {
             system,
+            state,
             inertia: spec.inertia,
             body: RigidBody::new(spec.inertia)?,
             momentum,
             attitude: spec.attitude,
+            axes: spec.axes,
             quantities: names.collect::<Result<_, _>>()?,
             exact: Exact::new(spec.inertia, spec.momentum_body, spec.attitude),
         })
     }
 
+    /// What the method integrates.
+    fn system(&self, method: &MethodSpec) -> &System {
+        let on_state = || Needs::State.methods().iter().any(|info| info.name == method.name);
+        self.state.as_ref().filter(|_| on_state()).unwrap_or(&self.system)
+    }
+
     /// row ← the quantities at body momentum m and attitude g.
     fn fill(&self, m: &Vector3<f64>, g: Option<&Matrix3<f64>>, row: &mut Vec<f64>) {
         row.clear();
+        let shown = |x: Vector3<f64>| self.axes.map_or(x, |axes| axes * x);
         for quantity in &self.quantities {
             match (*quantity, g) {
-                ("momentum_body", _) => row.extend(m.iter()),
-                ("omega_body", _) => row.extend(self.body.omega(m).iter()),
+                ("momentum_body", _) => row.extend(shown(*m).iter()),
+                ("omega_body", _) => row.extend(shown(self.body.omega(m)).iter()),
                 ("energy", _) => row.push(self.body.energy(m)),
                 ("momentum_norm", _) => row.push(m.norm()),
-                ("attitude", Some(g)) => row.extend(g.transpose().iter()),
+                ("attitude", Some(g)) => {
+                    let shown = self.axes.map_or(*g, |axes| g * axes.transpose());
+                    row.extend(shown.transpose().iter());
+                }
                 ("attitude_defect", Some(g)) => row.push(So3::new().defect(g)),
                 // The constructor takes registered names, and models the attitude where one needs it.
                 (name, _) => row.resize(row.len() + width(name), f64::NAN),
@@ -156,10 +186,11 @@ impl Model for RigidBodyModel {
         infos.flat_map(|info| info.columns).map(|&column| column.into()).collect()
     }
 
-    fn modelled(&self) -> Vec<String> {
-        let what = match self.system {
+    fn modelled(&self, method: &MethodSpec) -> Vec<String> {
+        let what = match self.system(method) {
             System::Momentum(_) => "momentum on so(3)*",
             System::Attitude(_) => "attitude on SO(3)",
+            System::State(_) => "momentum and attitude as one state of 12 numbers",
             System::MomentumN(_) => "momentum on so(n)*, n = 3",
             System::AttitudeN(_) => "attitude on SO(n), n = 3",
         };
@@ -173,7 +204,9 @@ impl Model for RigidBodyModel {
         save: &SaveAt,
         sink: &mut Sink<'_>,
     ) -> Result<Stats, RunError> {
-        on_system!(self, sink, |problem, y, see| integrate_by(method, problem, y, grid, save, see))
+        on_system!(self, method, sink, |problem, y, see| {
+            integrate_by(method, problem, y, grid, save, &mut { see })
+        })
     }
 
     fn adapt(
@@ -183,20 +216,23 @@ impl Model for RigidBodyModel {
         save: &SaveAt,
         sink: &mut Sink<'_>,
     ) -> Result<AdaptiveStats, AdaptiveError> {
-        on_system!(self, sink, |problem, y, see| adapt_by(method, problem, y, steps, save, see))
+        on_system!(self, method, sink, |problem, y, see| {
+            adapt_by(method, problem, y, steps, save, &mut { see })
+        })
     }
 
     fn order(&self, method: &MethodSpec) -> Result<Option<usize>, Error> {
-        match &self.system {
+        match self.system(method) {
             System::Momentum(body) => order_by(method, body),
             System::Attitude(body) => order_by(method, body),
+            System::State(body) => order_by(method, body),
             System::MomentumN(body) => order_by(method, body),
             System::AttitudeN(body) => order_by(method, body),
         }
     }
 
     fn operations(&self, method: &MethodSpec, pace: Pace<'_>) -> Option<f64> {
-        match &self.system {
+        match self.system(method) {
             System::Momentum(_) => {
                 let body = RigidBody::<Counted>::new(self.inertia).ok()?;
                 operations_by(method, &body, self.momentum.map(Counted), pace)
@@ -205,6 +241,11 @@ impl Model for RigidBodyModel {
                 let m_s = (*body.momentum_space()).into();
                 let body = RigidBodyAttitude::<Counted>::new(self.inertia, m_s).ok()?;
                 operations_by(method, &body, self.attitude.map(Counted), pace)
+            }
+            System::State(_) => {
+                let body = RigidBodyState::<Counted>::new(self.inertia).ok()?;
+                let y = BodyState { m: self.momentum.map(Counted), g: self.attitude.map(Counted) };
+                operations_by(method, &body, y, pace)
             }
             System::MomentumN(_) | System::AttitudeN(_) => None,
         }

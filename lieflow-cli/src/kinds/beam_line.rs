@@ -1,0 +1,202 @@
+//! `kind = "beam-line"`: a particle beside the design orbit through drifts, quadrupoles and dipoles, cell
+//! after cell, by the transfer map in Sp(4); see [`beam`](lieflow::problems::beam).
+//!
+//! ġ = A(s) g with A = \[0 𝟙; −K(s) 0\], K = diag(k_x, k_z) constant along an element: a step that ends
+//! where elements do is exact by every exponential method.
+
+use faer::Mat;
+use lieflow::Error;
+use lieflow::actions::LeftTranslation;
+use lieflow::groups::{AlgebraMatrix, MatrixGroup};
+use lieflow::problems::LinearEquation;
+use lieflow::problems::beam::{Element, transfer_map, tunes};
+use serde::Deserialize;
+use toml::de::ValueDeserializer;
+
+use super::flow::Flow;
+use super::hill::symplectic_defect;
+use super::matrix::MatrixAction;
+use super::system::System;
+use super::{Fact, Figure, KeyInfo, Kind, Law, ProblemSpec, QuantityInfo, Scale};
+use crate::model::Layer;
+use crate::scene::values::{Real, Reals};
+use crate::scene::{ReadError, Refusal, help_for};
+
+/// The entry in the list of kinds.
+pub(super) const KIND: Kind = Kind {
+    name: "beam-line",
+    summary: "a particle through the magnets of a periodic beam line; t is the path along it",
+    keys: &[
+        KeyInfo {
+            name: "elements",
+            meaning: "a cell: {kind = \"drift\", length}, {kind = \"quadrupole\", length, k}, \
+                      {kind = \"dipole\", length, radius}, in the order of the beam",
+        },
+        KeyInfo { name: "particle", meaning: "initial [x, z, x', z']" },
+    ],
+    quantities: &[
+        QuantityInfo {
+            name: "map",
+            columns: &["g11", "…", "g44"],
+            meaning: "the transfer map from the start, row by row, of (x, z, x', z')",
+        },
+        QuantityInfo {
+            name: "particle",
+            columns: &["x", "z", "x_slope", "z_slope"],
+            meaning: "the particle",
+        },
+        QuantityInfo {
+            name: "phase_space",
+            columns: &["x", "x_slope", "z", "z_slope"],
+            meaning: "the same, plane by plane",
+        },
+        QuantityInfo {
+            name: "symplectic_defect",
+            columns: &["symplectic_defect"],
+            meaning: "distance of g'Jg from J",
+        },
+    ],
+    read,
+};
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Keys {
+    elements: Vec<ElementKeys>,
+    particle: Reals<4>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ElementKeys {
+    kind: String,
+    length: Real,
+    k: Option<Real>,
+    radius: Option<Real>,
+}
+
+/// A cell, and the particle.
+#[derive(Clone, Debug)]
+struct BeamLine {
+    elements: Vec<Element>,
+    /// Where each element ends, and (k_x, k_z) along it.
+    strengths: Vec<(f64, [f64; 2])>,
+    particle: [f64; 4],
+}
+
+/// An element with (k_x, k_z).
+fn element(keys: &ElementKeys) -> Result<(Element, [f64; 2]), String> {
+    let length = keys.length.0;
+    if length <= 0.0 {
+        return Err(format!("length {length}, expected > 0"));
+    }
+    match (keys.kind.as_str(), keys.k, keys.radius) {
+        ("drift", None, None) => Ok((Element::Drift { length }, [0.0, 0.0])),
+        ("quadrupole", Some(Real(k)), None) => Ok((Element::Quadrupole { length, k }, [k, -k])),
+        ("dipole", None, Some(Real(radius))) if radius != 0.0 => {
+            Ok((Element::Dipole { length, radius }, [1.0 / (radius * radius), 0.0]))
+        }
+        ("drift", ..) => Err("a drift has a length and nothing else".into()),
+        ("quadrupole", ..) => Err("a quadrupole has a length and k".into()),
+        ("dipole", ..) => Err("a dipole has a length and a radius that is not 0".into()),
+        (other, ..) => {
+            let help = help_for(other, &["drift", "quadrupole", "dipole"]);
+            Err(format!("unknown element `{other}`: {help}"))
+        }
+    }
+}
+
+fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
+    let keys = Keys::deserialize(section)?;
+    let (mut elements, mut strengths, mut end) = (Vec::new(), Vec::new(), 0.0);
+    for (i, keys) in keys.elements.iter().enumerate() {
+        let refused = |message| Refusal::at(format!("elements[{i}]"), message);
+        let (element, strength) = element(keys).map_err(refused)?;
+        end += keys.length.0;
+        elements.push(element);
+        strengths.push((end, strength));
+    }
+    if elements.is_empty() {
+        return Err(Refusal::at("elements", "no elements, expected at least one").into());
+    }
+    transfer_map(&elements).map_err(|error| Refusal::at("elements", error.to_string()))?;
+    Ok(Box::new(BeamLine { elements, strengths, particle: keys.particle.0 }))
+}
+
+impl BeamLine {
+    fn cell_length(&self) -> f64 {
+        self.strengths.last().map_or(0.0, |(end, _)| *end)
+    }
+    /// (k_x, k_z) at s.
+    fn strength(&self, s: f64) -> [f64; 2] {
+        let s = s.rem_euclid(self.cell_length());
+        let here = self.strengths.iter().find(|(end, _)| s < *end).or(self.strengths.last());
+        here.map_or([0.0; 2], |(_, strength)| *strength)
+    }
+}
+
+impl System for BeamLine {
+    type Problem = Flow<MatrixGroup, MatrixAction>;
+
+    fn kind(&self) -> &'static Kind {
+        &KIND
+    }
+    fn layer(&self) -> Layer {
+        Layer::General
+    }
+    fn problem(&self) -> Result<(Self::Problem, Mat<f64>), Error> {
+        let line = self.clone();
+        let field = move |s: f64, v: &mut AlgebraMatrix| {
+            v.fill(0.0);
+            for (i, k) in line.strength(s).into_iter().enumerate() {
+                (v[(i, i + 2)], v[(i + 2, i)]) = (1.0, -k);
+            }
+        };
+        let equation = LinearEquation::new(MatrixGroup::sp(4)?, LeftTranslation, field);
+        Ok(Flow::linear(equation, MatrixAction::Translation, Mat::identity(4, 4)))
+    }
+    fn modelled(&self) -> String {
+        "transfer map in Sp(4)".into()
+    }
+    fn state(&self) -> &'static [&'static str] {
+        &["map"]
+    }
+    fn laws(&self) -> Vec<Law> {
+        vec![Law::of_the_action("symplectic_defect", 2).on_scale(Scale::Terms)]
+    }
+    fn columns(&self, quantity: &QuantityInfo) -> Vec<String> {
+        match quantity.name {
+            "map" => (1..=4).flat_map(|i| (1..=4).map(move |j| format!("g{i}{j}"))).collect(),
+            _ => quantity.columns.iter().map(|&column| column.into()).collect(),
+        }
+    }
+    fn show(&self, quantity: &str, _: f64, g: &Mat<f64>, row: &mut Vec<f64>) {
+        let particle = |i: usize| (0..4).map(|j| g[(i, j)] * self.particle[j]).sum::<f64>();
+        match quantity {
+            "map" => row.extend((0..4).flat_map(|i| (0..4).map(move |j| g[(i, j)]))),
+            "particle" => row.extend([0, 1, 2, 3].map(particle)),
+            "phase_space" => row.extend([0, 2, 1, 3].map(particle)),
+            _ => row.push(symplectic_defect(g)),
+        }
+    }
+    fn size(&self, _: &str, g: &Mat<f64>) -> f64 {
+        g.squared_norm_l2()
+    }
+    fn figure(&self) -> Figure {
+        Figure::Points("phase_space")
+    }
+    fn facts(&self) -> Vec<Fact> {
+        let Ok(cell) = transfer_map(&self.elements) else { return Vec::new() };
+        let [x, z] = tunes(&cell);
+        let trace = |i: usize| cell[(i, i)] + cell[(i + 2, i + 2)];
+        let mut facts = vec![
+            Fact { name: "cell_length", value: self.cell_length() },
+            Fact { name: "trace_x", value: trace(0) },
+            Fact { name: "trace_z", value: trace(1) },
+            Fact { name: "stable", value: f64::from(u8::from(x.is_some() && z.is_some())) },
+        ];
+        facts.extend(x.map(|value| Fact { name: "tune_x", value }));
+        facts.extend(z.map(|value| Fact { name: "tune_z", value }));
+        facts
+    }
+}

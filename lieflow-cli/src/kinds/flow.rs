@@ -1,0 +1,227 @@
+//! The problems of the library as few types: one for each group and action, whatever the field.
+//!
+//! Every type of problem costs the compiler every method of the catalog with every map. So kinds share
+//! a type where they share a group and an action, and the field stands behind a pointer: a call a stage,
+//! around the evaluation and not inside it, is nothing beside the matrices and rotations of a stage.
+//! The library has no such call.
+//!
+//! | family | kinds |
+//! |---|---|
+//! | SO(3), vectors | spin |
+//! | SO(3)ᴺ, vectors | spin chains, many bodies |
+//! | SE(3), coadjoint | heavy tops, the spherical pendulum, Euler's equations on se(3)* |
+//! | [`MatrixGroup`], [`MatrixAction`](super::matrix::MatrixAction) | all that is made of matrices |
+//! | SO(3) × T(3), SO(n) × T(2n), translation | bodies under torques, Lyapunov exponents |
+
+use core::fmt;
+
+use lieflow::Error;
+use lieflow::actions::{Action, Coadjoint, LeftTranslation, Linear};
+use lieflow::catalog::{
+    LINEAR_METHODS, MethodSpec, OnEmbedded, OnMethod, with_embedded_pair, with_implicit_method,
+    with_linear_method,
+};
+use lieflow::groups::{LieAlgebra, LieGroup, MatrixGroup, Power, Product, Se3, So3, Translations};
+use lieflow::methods::Metric;
+use lieflow::problems::{AlgOf, Ambient, LinearField, LinearSpace, PointOf, Problem};
+use nalgebra::Vector3;
+
+use super::matrix::MatrixAction;
+use crate::erased::{Doubled, Pointed};
+use crate::model::Catalog;
+
+/// A field with its scratch.
+pub(super) trait Field<G: LieGroup, M> {
+    /// v ← f(t, y).
+    fn f(&mut self, t: f64, y: &M, v: &mut G::Alg);
+    /// dy ← F(t, y).
+    fn ambient(&mut self, t: f64, y: &M, dy: &mut M);
+}
+
+/// What an element of 𝔤 does to a point of the linear space around M.
+pub(super) trait Generator<G: LieGroup>: Action<G> {
+    /// dy ← λ_*(v)(y).
+    fn generate(&self, v: &G::Alg, y: &Self::Point, dy: &mut Self::Point);
+}
+
+impl Generator<So3> for Linear {
+    fn generate(&self, v: &Vector3<f64>, y: &Vector3<f64>, dy: &mut Vector3<f64>) {
+        *dy = v.cross(y);
+    }
+}
+
+/// A problem on M by G and Λ, whatever its field.
+pub(super) struct Flow<G: LieGroup, A: Action<G>> {
+    group: G,
+    action: A,
+    start: A::Point,
+    linear: bool,
+    field: Box<dyn Fn() -> Box<dyn Field<G, A::Point>>>,
+}
+
+impl<G: LieGroup, A: Action<G>> fmt::Debug for Flow<G, A> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Flow").field("group", &self.group.name()).finish_non_exhaustive()
+    }
+}
+
+/// A problem of the library with its scratch.
+struct Running<P: Problem>(std::rc::Rc<P>, P::Work);
+
+impl<P: Ambient<Group: LieAlgebra<Scalar = f64>>> Field<P::Group, PointOf<P>> for Running<P> {
+    fn f(&mut self, t: f64, y: &PointOf<P>, v: &mut AlgOf<P>) {
+        self.0.f(t, y, v, &mut self.1);
+    }
+    fn ambient(&mut self, t: f64, y: &PointOf<P>, dy: &mut PointOf<P>) {
+        self.0.field(t, y, dy, &mut self.1);
+    }
+}
+
+/// An equation of linear type with its scratch, the action, and A(t).
+struct RunningLinear<P: Problem, A>(std::rc::Rc<P>, P::Work, A, AlgOf<P>);
+
+impl<P, A> Field<P::Group, A::Point> for RunningLinear<P, A>
+where
+    P: LinearField<Group: LieAlgebra<Scalar = f64>>,
+    A: Generator<P::Group>,
+{
+    fn f(&mut self, t: f64, _: &A::Point, v: &mut AlgOf<P>) {
+        self.0.a(t, v, &mut self.1);
+    }
+    fn ambient(&mut self, t: f64, y: &A::Point, dy: &mut A::Point) {
+        self.0.a(t, &mut self.3, &mut self.1);
+        self.2.generate(&self.3, y, dy);
+    }
+}
+
+impl<G, A> Flow<G, A>
+where
+    G: LieGroup<Scalar = f64> + Clone + 'static,
+    A: Action<G> + Clone + 'static,
+{
+    /// A problem of the library, and `start`; `action` is its action.
+    pub(super) fn nonlinear<P>(problem: P, action: A, start: A::Point) -> (Self, A::Point)
+    where
+        P: Ambient<Group = G> + 'static,
+        P::Action: Action<G, Point = A::Point>,
+    {
+        let group = problem.group().clone();
+        let problem = std::rc::Rc::new(problem);
+        let field = Box::new(move || -> Box<dyn Field<G, A::Point>> {
+            Box::new(Running(problem.clone(), problem.work()))
+        });
+        (Flow { group, action, start: start.clone(), linear: false, field }, start)
+    }
+
+    /// An equation of linear type, A(t) of `equation` by `action`, and `start`.
+    pub(super) fn linear<P>(equation: P, action: A, start: A::Point) -> (Self, A::Point)
+    where
+        P: LinearField<Group = G> + 'static,
+        A: Generator<G>,
+    {
+        let (group, of_run) = (equation.group().clone(), action.clone());
+        let equation = std::rc::Rc::new(equation);
+        let field = Box::new(move || -> Box<dyn Field<G, A::Point>> {
+            let (zero, work) = (equation.group().zero(), equation.work());
+            Box::new(RunningLinear(equation.clone(), work, of_run.clone(), zero))
+        });
+        (Flow { group, action, start: start.clone(), linear: true, field }, start)
+    }
+}
+
+impl<G, A> Problem for Flow<G, A>
+where
+    G: LieGroup<Scalar = f64>,
+    A: Action<G>,
+{
+    type Group = G;
+    type Action = A;
+    type Work = Box<dyn Field<G, A::Point>>;
+
+    fn group(&self) -> &G {
+        &self.group
+    }
+    fn action(&self) -> &A {
+        &self.action
+    }
+    fn work(&self) -> Self::Work {
+        (self.field)()
+    }
+    fn f(&self, t: f64, y: &A::Point, v: &mut G::Alg, work: &mut Self::Work) {
+        work.f(t, y, v);
+    }
+}
+
+/// For those of linear type: [`Catalog::with`] hands over no such method for others.
+impl<G, A> LinearField for Flow<G, A>
+where
+    G: LieGroup<Scalar = f64>,
+    A: Action<G>,
+{
+    fn a(&self, t: f64, v: &mut G::Alg, work: &mut Self::Work) {
+        work.f(t, &self.start, v);
+    }
+}
+
+impl<G, A> Ambient for Flow<G, A>
+where
+    G: LieGroup<Scalar = f64>,
+    A: Action<G, Point: LinearSpace<Scalar = f64>>,
+{
+    fn field(&self, t: f64, y: &A::Point, dy: &mut A::Point, work: &mut Self::Work) {
+        work.ambient(t, y, dy);
+    }
+    fn copy(&self, x: &A::Point, y: &mut A::Point) {
+        y.assign(x);
+    }
+    fn add(&self, a: f64, x: &A::Point, y: &mut A::Point) {
+        y.add(a, x);
+    }
+    fn is_finite(&self, y: &A::Point) -> bool {
+        y.is_finite()
+    }
+}
+
+macro_rules! family {
+    (@find $self:ident, $spec:ident, $on:expr, linear) => {{
+        let name = $spec.info()?.name;
+        match $self.linear && LINEAR_METHODS.iter().any(|linear| linear.name == name) {
+            true => with_linear_method(name, $on),
+            false => with_implicit_method($spec, $on),
+        }
+    }};
+    (@find $self:ident, $spec:ident, $on:expr, general) => { with_implicit_method($spec, $on) };
+    ($($group:ty, $action:ty, $type:ident;)*) => {$(
+        impl Catalog for Flow<$group, $action> {
+            fn with<V: OnMethod<Self>>(
+                &self,
+                spec: &MethodSpec,
+                on: V,
+            ) -> Result<V::Out, Error> {
+                family!(@find self, spec, Pointed(on), $type)
+            }
+            fn with_estimate<V: OnEmbedded<Self>>(
+                &self,
+                spec: &MethodSpec,
+                on: V,
+            ) -> Result<V::Out, Error> {
+                match spec.has_pair()? {
+                    true => with_embedded_pair(spec, Pointed(on)),
+                    false => family!(@find self, spec, Doubled(on), $type),
+                }
+            }
+        }
+    )*};
+}
+
+/// (σ, x) of Lyapunov exponents.
+pub(super) type Growth = (faer::Mat<f64>, faer::Mat<f64>);
+
+family! {
+    So3, Linear, linear;
+    Power<So3>, Linear, general;
+    Se3, Coadjoint, general;
+    MatrixGroup, MatrixAction, linear;
+    Product<So3, Translations<Vector3<f64>>>, LeftTranslation, general;
+    Product<MatrixGroup, Translations<Growth>>, LeftTranslation, general;
+}

@@ -1,0 +1,72 @@
+//! What a motion keeps, what a method promises to keep of it, and what rounding may do to that.
+
+use lieflow::catalog::MethodInfo;
+use lieflow::problems::Kept;
+
+/// A quantity whose columns the exact motion keeps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Law {
+    /// The quantity.
+    pub quantity: &'static str,
+    /// What keeps it: a method that acts by the group keeps what the action keeps.
+    pub kept: Kept,
+    /// Its degree as a polynomial of the state; 0 where it is none, or the motion keeps it on M alone.
+    pub degree: u32,
+    /// In what its rounding is measured.
+    pub scale: Scale,
+}
+
+/// The size that the rounding of an invariant is relative to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scale {
+    /// Its value.
+    Value,
+    /// The sizes of the terms that it is the sum of, and that may cancel: the quantity of its name with
+    /// [`SIZE`] after it.
+    Terms,
+    /// 1: it is a distance from a group.
+    One,
+}
+
+/// What follows the name of a quantity for the sizes of its terms.
+pub const SIZE: &str = ".size";
+
+/// A step rounds an invariant by a few tens of ε: some twenty operations of the action and of the
+/// update, each rounded once. The errors of steps are independent in all that was measured, and add up
+/// as the root of their number.
+const ROUNDINGS: f64 = 64.0;
+
+impl Law {
+    /// One that the action keeps.
+    pub const fn of_the_action(quantity: &'static str, degree: u32) -> Law {
+        Law { quantity, kept: Kept::ByTheAction, degree, scale: Scale::Value }
+    }
+    /// One that this flow keeps.
+    pub const fn of_the_flow(quantity: &'static str, degree: u32) -> Law {
+        Law { quantity, kept: Kept::ByTheFlow, degree, scale: Scale::Value }
+    }
+    /// The same, its rounding measured otherwise.
+    pub const fn on_scale(self, scale: Scale) -> Law {
+        Law { scale, ..self }
+    }
+
+    /// Does the method promise to keep it to rounding? By what the catalog says that it preserves.
+    pub fn promised_by(&self, method: &MethodInfo) -> bool {
+        let says = |word: &str| method.preserves.split(", ").any(|kept| kept.starts_with(word));
+        let polynomial = match self.degree {
+            1 => says("linear invariants") || says("quadratic invariants"),
+            2 => says("quadratic invariants"),
+            _ => false,
+        };
+        let by_its_kind = match self.kept {
+            Kept::ByTheAction => says("group") || says("Casimirs"),
+            Kept::ByTheFlow => self.quantity == "energy" && says("energy"),
+        };
+        says("everything") || polynomial || by_its_kind
+    }
+}
+
+/// What rounding explains of a drift after so many steps, for an invariant of this size.
+pub fn explained_by_rounding(steps: u64, size: f64) -> f64 {
+    ROUNDINGS * f64::EPSILON * (1.0 + steps as f64).sqrt() * size
+}

@@ -1,0 +1,136 @@
+//! The actions of a matrix group on matrices as one type, so that all problems of matrices are one
+//! [`Flow`](super::flow::Flow). The choice is made once a stage, beside products of matrices.
+//!
+//! | | Λ(g, p) | λ_*(v)(p) |
+//! |---|---|---|
+//! | `Linear` | g p | v p |
+//! | `Translation` | g p, p ∈ G | v p |
+//! | `Conjugation` | g p g⁻¹ | v p − p v |
+//! | `Coadjoint` | g⁻ᵀ p gᵀ | p vᵀ − vᵀ p |
+//! | `Lagrangian` | (C + Dp)(A + Bp)⁻¹ | c + dp − pa − pbp for v = \[a b; c d\] |
+
+use faer::linalg::matmul::matmul;
+use faer::{Accum, Mat, MatRef, Par};
+use lieflow::actions::{Action, Coadjoint, Conjugation, Lagrangian, LeftTranslation, Linear};
+use lieflow::chart::PsiOf;
+use lieflow::groups::{AlgebraMatrix, GroupMatrix, LieGroup, MatrixGroup};
+use lieflow::{CoordinateMap, Error, StepError};
+
+use super::flow::Generator;
+
+/// Which action.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum MatrixAction {
+    Linear,
+    Translation,
+    Conjugation,
+    Coadjoint,
+    Lagrangian,
+}
+
+/// Scratch of the one that was chosen.
+pub(super) enum MatrixWork {
+    Linear,
+    Translation([GroupMatrix; 2]),
+    Conjugation(<Conjugation as Action<MatrixGroup>>::Work),
+    Coadjoint(<Coadjoint as Action<MatrixGroup>>::Work),
+    Lagrangian(<Lagrangian as Action<MatrixGroup>>::Work),
+}
+
+impl Action<MatrixGroup> for MatrixAction {
+    type Point = Mat<f64>;
+    type Work = MatrixWork;
+
+    fn work(&self, group: &MatrixGroup) -> MatrixWork {
+        match self {
+            MatrixAction::Linear => MatrixWork::Linear,
+            MatrixAction::Translation => MatrixWork::Translation(LeftTranslation.work(group)),
+            MatrixAction::Conjugation => MatrixWork::Conjugation(Conjugation.work(group)),
+            MatrixAction::Coadjoint => MatrixWork::Coadjoint(Coadjoint.work(group)),
+            MatrixAction::Lagrangian => MatrixWork::Lagrangian(Lagrangian.work(group)),
+        }
+    }
+    fn check(&self, group: &MatrixGroup, p: &Mat<f64>) -> Result<(), Error> {
+        match self {
+            MatrixAction::Linear | MatrixAction::Translation => Linear.check(group, p),
+            MatrixAction::Conjugation => Conjugation.check(group, p),
+            MatrixAction::Coadjoint => Coadjoint.check(group, p),
+            MatrixAction::Lagrangian => Lagrangian.check(group, p),
+        }
+    }
+    fn act(
+        &self,
+        group: &MatrixGroup,
+        g: &GroupMatrix,
+        p: &Mat<f64>,
+        q: &mut Mat<f64>,
+        work: &mut MatrixWork,
+    ) {
+        match work {
+            MatrixWork::Linear | MatrixWork::Translation(_) => group.apply(g, p, q),
+            MatrixWork::Conjugation(work) => Conjugation.act(group, g, p, q, work),
+            MatrixWork::Coadjoint(work) => Coadjoint.act(group, g, p, q, work),
+            MatrixWork::Lagrangian(work) => Lagrangian.act(group, g, p, q, work),
+        }
+    }
+    fn lambda<Psi: CoordinateMap<MatrixGroup>>(
+        &self,
+        psi_u: PsiOf<'_, MatrixGroup, Psi>,
+        p: &Mat<f64>,
+        q: &mut Mat<f64>,
+        work: &mut MatrixWork,
+    ) -> Result<(), StepError> {
+        match work {
+            MatrixWork::Linear => psi_u.on(p, q),
+            MatrixWork::Lagrangian(work) => Lagrangian.lambda(psi_u, p, q, work),
+            work => {
+                let (group, g) = psi_u.form()?;
+                self.act(group, g, p, q, work);
+                Ok(())
+            }
+        }
+    }
+    fn restore(&self, group: &MatrixGroup, p: &mut Mat<f64>, work: &mut MatrixWork) -> Option<f64> {
+        let MatrixWork::Translation(scratch) = work else { return None };
+        let mut g = GroupMatrix::new_unchecked(core::mem::replace(p, Mat::new()));
+        let residual = group.correct(&mut g, scratch.each_mut());
+        *p = g.into_mat();
+        Some(residual)
+    }
+}
+
+/// out ← a·b.
+fn mul(out: &mut Mat<f64>, a: MatRef<'_, f64>, b: MatRef<'_, f64>) {
+    matmul(out, Accum::Replace, a, b, 1.0, Par::Seq);
+}
+
+/// out ← out + alpha·a·b.
+fn mul_add(out: &mut Mat<f64>, alpha: f64, a: MatRef<'_, f64>, b: MatRef<'_, f64>) {
+    matmul(out, Accum::Add, a, b, alpha, Par::Seq);
+}
+
+impl Generator<MatrixGroup> for MatrixAction {
+    fn generate(&self, v: &AlgebraMatrix, p: &Mat<f64>, dp: &mut Mat<f64>) {
+        let (v, p) = (v.as_ref(), p.as_ref());
+        match self {
+            MatrixAction::Linear | MatrixAction::Translation => mul(dp, v, p),
+            MatrixAction::Conjugation => {
+                mul(dp, v, p);
+                mul_add(dp, -1.0, p, v);
+            }
+            MatrixAction::Coadjoint => {
+                mul(dp, p, v.transpose());
+                mul_add(dp, -1.0, v.transpose(), p);
+            }
+            MatrixAction::Lagrangian => {
+                let m = p.nrows();
+                let block = |i: usize, j: usize| v.submatrix(i * m, j * m, m, m);
+                // The one of them that allocates.
+                let turned = block(0, 0) + block(0, 1) * p;
+                dp.copy_from(block(1, 0));
+                mul_add(dp, 1.0, block(1, 1), p);
+                mul_add(dp, -1.0, p, turned.as_ref());
+            }
+        }
+    }
+}

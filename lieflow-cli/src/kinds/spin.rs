@@ -1,0 +1,97 @@
+//! `kind = "spin"`: a magnetic moment in a field that turns, an equation of linear type on the sphere.
+//!
+//! ẋ = ω(t) × x, ω(t) = R₃(Ωt) ω(0). f(t, x) = ω(t); Λ(g, x) = g x. Invariant: |x|.
+
+use lieflow::Error;
+use lieflow::actions::Linear;
+use lieflow::groups::So3;
+use lieflow::problems::LinearEquation;
+use nalgebra::Vector3;
+use serde::Deserialize;
+use toml::de::ValueDeserializer;
+
+use super::flow::Flow;
+use super::system::System;
+use super::{Figure, KeyInfo, Kind, Law, ProblemSpec, QuantityInfo};
+use crate::model::Layer;
+use crate::scene::ReadError;
+use crate::scene::values::{Real, Reals};
+
+/// The entry in the list of kinds.
+pub(super) const KIND: Kind = Kind {
+    name: "spin",
+    summary: "a magnetic moment in a field that turns about the third axis, on the sphere",
+    keys: &[
+        KeyInfo { name: "field", meaning: "angular velocity of the precession at t = 0" },
+        KeyInfo { name: "rate", meaning: "angular velocity at which the field turns" },
+        KeyInfo { name: "moment", meaning: "initial moment" },
+    ],
+    quantities: &[
+        QuantityInfo { name: "moment", columns: &["x1", "x2", "x3"], meaning: "the moment" },
+        QuantityInfo {
+            name: "moment_norm",
+            columns: &["moment_norm"],
+            meaning: "length of the moment",
+        },
+    ],
+    read,
+};
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Keys {
+    field: Reals<3>,
+    rate: Real,
+    moment: Reals<3>,
+}
+
+/// The field and the initial state.
+#[derive(Clone, Copy, Debug)]
+struct Spin {
+    field: Vector3<f64>,
+    rate: f64,
+    moment: Vector3<f64>,
+}
+
+fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
+    let Keys { field, rate, moment } = Keys::deserialize(section)?;
+    Ok(Box::new(Spin { field: field.0.into(), rate: rate.0, moment: moment.0.into() }))
+}
+
+impl System for Spin {
+    type Problem = Flow<So3, Linear>;
+
+    fn kind(&self) -> &'static Kind {
+        &KIND
+    }
+    fn layer(&self) -> Layer {
+        Layer::Closed
+    }
+    fn problem(&self) -> Result<(Self::Problem, Vector3<f64>), Error> {
+        let Spin { field, rate, moment } = *self;
+        let omega = move |t: f64, v: &mut Vector3<f64>| {
+            let (s, c) = (rate * t).sin_cos();
+            *v = Vector3::new(c * field.x - s * field.y, s * field.x + c * field.y, field.z);
+        };
+        let equation = LinearEquation::new(So3::new(), Linear, omega);
+        Ok(Flow::linear(equation, Linear, moment))
+    }
+    fn modelled(&self) -> String {
+        "moment on the sphere".into()
+    }
+    fn state(&self) -> &'static [&'static str] {
+        &["moment"]
+    }
+    fn laws(&self) -> Vec<Law> {
+        vec![Law::of_the_action("moment_norm", 2)]
+    }
+    fn show(&self, quantity: &str, _: f64, x: &Vector3<f64>, row: &mut Vec<f64>) {
+        match quantity {
+            "moment" => row.extend(x.iter()),
+            _ => row.push(x.norm()),
+        }
+    }
+    fn figure(&self) -> Figure {
+        Figure::Sphere("moment")
+    }
+}

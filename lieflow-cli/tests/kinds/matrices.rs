@@ -1,0 +1,232 @@
+//! Flows of matrices, linear Hamiltonian systems and the others that live in matrix groups.
+
+use core::f64::consts::{PI, TAU};
+
+use faer::Mat;
+use lieflow::problems::beam::{Element, transfer_map};
+
+use super::*;
+
+fn fact(scene: &Scene, name: &str) -> f64 {
+    let facts = scene.problem.facts();
+    facts.iter().find(|fact| fact.name == name).unwrap_or_else(|| panic!("{facts:?}")).value
+}
+
+/// Toda's lattice ends with the momenta −2 times the eigenvalues, the fastest to the left ahead.
+#[test]
+fn particles_part_with_the_eigenvalues() {
+    let text = bundled("toda-lattice").replace("t_span = [0.0, 20.0]", "t_span = [0.0, 40.0]");
+    let text = text.replace("[\"diagonal\", \"off_diagonal\"]", "[\"diagonal\", \"eigenvalues\"]");
+    let end = last(&Scene::parse("scene", &text).unwrap());
+    let (diagonal, eigenvalues) = end.split_at(4);
+    let descending: Vec<f64> = eigenvalues.iter().rev().copied().collect();
+    assert!(far(diagonal, &descending) < 1e-6, "{end:?}");
+    // Two particles of momenta ±p far apart: the eigenvalues are ±½√(p² + e^{q₁−q₂}).
+    let two = "kind = \"toda\"\npositions = [0, 1]\nmomenta = [0.7, -0.7]";
+    let of = scene(two, "name = \"cf4\"", "t_span = [0, 1]\ndt = 0.05", "[\"eigenvalues\"]");
+    let expected = 0.5 * (0.49 + (-1.0f64).exp()).sqrt();
+    assert!(far(&last(&of), &[-expected, expected]) < 1e-13);
+}
+
+#[test]
+fn a_double_bracket_sorts() {
+    let text = bundled("sorting").replace("off_diagonal", "eigenvalues");
+    let text = text.replace("t_span = [0.0, 8.0]", "t_span = [0.0, 20.0]");
+    let end = last(&Scene::parse("scene", &text).unwrap());
+    let (diagonal, eigenvalues) = end.split_at(4);
+    assert!(far(diagonal, eigenvalues) < 1e-5, "{end:?}");
+    let text = text.replace("order = [1.0, 2.0, 3.0, 4.0]", "order = [4.0, 2.0, 3.0, 1.0]");
+    let end = last(&Scene::parse("scene", &text).unwrap());
+    let (d, e) = end.split_at(4);
+    assert!(far(d, &[e[3], e[1], e[2], e[0]]) < 1e-5, "{end:?}");
+}
+
+/// At t = 1, 2, … the flow has the iterates of the QR algorithm.
+#[test]
+fn the_qr_flow_does_the_qr_algorithm() {
+    let rows = rows(&Scene::bundled("qr-flow").unwrap());
+    let at = |row: &[f64]| {
+        let entry = |i: usize, j: usize| row[1 + [[0, 1, 2], [1, 3, 4], [2, 4, 5]][i][j]];
+        Mat::from_fn(3, 3, entry)
+    };
+    for (k, row) in rows.iter().enumerate().take(5) {
+        assert!((row[0] - k as f64).abs() < 1e-12);
+        let (l, next) = (at(row), at(&rows[k + 1]));
+        let qr = l.qr();
+        let (q, r) = (qr.compute_Q(), qr.thin_R());
+        let expected = r * &q;
+        for i in 0..3 {
+            for j in 0..3 {
+                // Up to the signs of the columns of Q.
+                let gap = (expected[(i, j)].abs() - next[(i, j)].abs()).abs();
+                assert!(gap < 1e-6, "{k}: {gap:e}");
+            }
+        }
+    }
+}
+
+/// At the characteristic values a₀(1) and b₁(1) (DLMF 28.2) the trace of the monodromy is 2 and −2.
+#[test]
+fn mathieus_characteristic_values() {
+    let period = format!("t_span = [0, {PI}]\nsteps = 200");
+    for (a, trace) in [(-0.45513860410741355, 2.0), (-0.11024881699209517, -2.0)] {
+        let problem = format!("kind = \"mathieu\"\na = {a}\nq = 1");
+        let of = scene(&problem, "name = \"magnus6\"", &period, "[\"trace\"]");
+        assert!(far(&last(&of), &[trace]) < 1e-10, "{:?}", last(&of));
+        assert!((fact(&of, "trace_of_the_monodromy") - trace).abs() < 1e-11);
+    }
+    let stable = |a: f64| {
+        let problem = format!("kind = \"mathieu\"\na = {a}\nq = 0.3");
+        fact(&scene(&problem, "name = \"magnus6\"", &period, "[\"trace\"]"), "stable")
+    };
+    assert_eq!([stable(1.0), stable(2.5)], [0.0, 1.0]);
+}
+
+/// Without a drive the solutions of Hill's equation are cosines.
+#[test]
+fn hills_equation_without_a_drive() {
+    let problem = "kind = \"hill\"\na = [[4, 0], [0, 9]]\nq = [[0, 0], [0, 0]]\nperiod = 1.3";
+    let of = scene(problem, "name = \"cfm4-2\"", "t_span = [0, 2]\ndt = 0.1", "[\"map\"]");
+    let g = last(&of);
+    for (i, w) in [2.0f64, 3.0].into_iter().enumerate() {
+        let (s, c) = (2.0 * w).sin_cos();
+        let block = [g[5 * i], g[5 * i + 2], g[5 * i + 8], g[5 * i + 10]];
+        assert!(far(&block, &[c, s / w, -w * s, c]) < 1e-13, "{g:?}");
+    }
+    let expected = 2.0 * (2.6f64.cos() + 3.9f64.cos());
+    assert!((fact(&of, "trace_of_the_monodromy") - expected).abs() < 1e-12);
+}
+
+/// A cell by steps that end where elements do is the product of the maps of its elements.
+#[test]
+fn a_cell_is_its_transfer_map() {
+    let text = bundled("fodo-cell")
+        .replace("t_span = [0.0, 240.0]", "t_span = [0.0, 4.0]")
+        .replace("every = 16", "every = 1")
+        .replace("[\"phase_space\"]", "[\"map\"]");
+    let of = Scene::parse("scene", &text).unwrap();
+    let drift = |length: f64| Element::Drift { length };
+    let quadrupole = |k: f64| Element::Quadrupole { length: 0.5, k };
+    let bend = [drift(0.25), Element::Dipole { length: 1.0, radius: 8.0 }, drift(0.25)];
+    let cell = [&[quadrupole(1.2)], &bend[..], &[quadrupole(-1.2)], &bend[..]].concat();
+    let map = transfer_map(&cell).unwrap();
+    let expected: Vec<f64> = (0..16).map(|k| map[(k / 4, k % 4)]).collect();
+    assert!(far(&last(&of), &expected) < 1e-13);
+    // The phase that the particle turns by in a cell is the tune.
+    let tune = fact(&of, "tune_x");
+    let trace = map[(0, 0)] + map[(2, 2)];
+    assert!(((TAU * tune).cos() - 0.5 * trace).abs() < 1e-14 && tune > 0.0 && tune < 1.0);
+    assert_eq!(fact(&of, "stable"), 1.0);
+}
+
+/// Ṗ = 1 + P² is P = tan t, far past the pole.
+#[test]
+fn riccati_past_a_pole() {
+    let problem = "kind = \"riccati\"\nc = [[1]]\nb = [[-1]]\np = [[0]]";
+    let of = scene(problem, "name = \"magnus4\"", "t_span = [0, 5]\ndt = 0.1", "[\"p\"]");
+    assert!(far(&last(&of), &[5f64.tan()]) < 1e-11);
+    // Ṗ = 2dP: a D alone.
+    let problem = "kind = \"riccati\"\nc = [[0]]\nd = [[0.3]]\nb = [[0]]\np = [[2]]";
+    for method in ["magnus4", "rk4", "rkmk4"] {
+        let method = format!("name = {method:?}");
+        let of = scene(problem, &method, "t_span = [0, 1]\ndt = 0.01", "[\"p\"]");
+        assert!(far(&last(&of), &[2.0 * 0.6f64.exp()]) < 1e-9, "{method}");
+    }
+}
+
+/// Without E the velocity turns at the rate qB/m in proper time; with E < B it drifts at E/B.
+#[test]
+fn a_particle_gyrates_and_drifts() {
+    let run = |electric: &str, velocity: &str, t: f64| {
+        let problem = format!(
+            "kind = \"lorentz\"\ncharge_to_mass = 1\nelectric = {electric}\nmagnetic = [0, 0, 1.3]\n\
+             velocity = {velocity}"
+        );
+        let time = format!("t_span = [0, {t}]\nsteps = 1000");
+        let of = scene(&problem, "name = \"rkmk4\"\nmap = \"cay\"", &time, "[\"velocity\"]");
+        let exact = of.model().unwrap().exact(t).unwrap().unwrap();
+        let end = last(&of);
+        assert!(far(&end, &exact) < 1e-8, "{end:?} {exact:?}");
+        end
+    };
+    // dv/dτ = v × B: against the turn of a right hand.
+    let (s, c) = (1.3f64 * 2.0).sin_cos();
+    assert!(far(&run("[0, 0, 0]", "[0.5, 0, 0.1]", 2.0), &[0.5 * c, -0.5 * s, 0.1]) < 1e-8);
+    // In the frame that moves at E/B there is no electric field: at that velocity nothing changes.
+    assert!(far(&run("[0, 0.52, 0]", "[0.4, 0, 0]", 2.0), &[0.4, 0.0, 0.0]) < 1e-8);
+}
+
+/// Two equal levels with a constant coupling c: the population swings as sin² ct.
+#[test]
+fn two_levels_swing() {
+    let problem = "kind = \"schrodinger\"\nenergies = [0.3, 0.3]\ncoupling = [[0, 0.4], [0.4, 0]]\n\
+                   amplitudes = [2, 0]";
+    for method in ["magnus4", "rkmk4", "rk4", "gauss4"] {
+        let method = format!("name = {method:?}");
+        let of = scene(problem, &method, "t_span = [0, 3]\ndt = 0.01", "[\"populations\"]");
+        let up = (0.4f64 * 3.0).sin().powi(2);
+        assert!(far(&last(&of), &[1.0 - up, up]) < 1e-9, "{method}");
+    }
+    // An imaginary coupling of either sign, H = ∓ sin: the same swing, with real amplitudes.
+    let problem = "kind = \"schrodinger\"\nenergies = [0, 0]\ncoupling = [[0, 0], [0, 0]]\n\
+                   coupling_imaginary = [[0, -0.4], [0.4, 0]]\namplitudes = [1, 0]";
+    let time = "t_span = [0, 3]\ndt = 0.1";
+    let end = last(&scene(problem, "name = \"magnus4\"", time, "[\"amplitudes\"]"));
+    assert!(far(&end, &[1.2f64.cos(), 1.2f64.sin(), 0.0, 0.0]) < 1e-12, "{end:?}");
+}
+
+#[test]
+fn ojas_flow_finds_the_leading_eigenvectors() {
+    let text = bundled("oja").replace("t_span = [0.0, 8.0]", "t_span = [0.0, 30.0]");
+    let of = Scene::parse("scene", &text).unwrap();
+    let end = last(&of);
+    let expected = fact(&of, "sum_of_the_leading_eigenvalues");
+    assert!((end[8] - expected).abs() < 1e-9, "{end:?} {expected}");
+}
+
+/// Of a linear field the exponents are the eigenvalues; of Lorenz' their sum is −41/3 at every time.
+#[test]
+fn lyapunov_exponents() {
+    let linear = "kind = \"lyapunov\"\nx = [0, 0.1]\nterms = [{ of = 1, coefficient = 1, powers = [1, \
+                  0] }, { of = 1, coefficient = 1, powers = [0, 1] }, { of = 2, coefficient = -2, \
+                  powers = [0, 1] }]";
+    let time = "t_span = [3, 43]\ndt = 0.05";
+    let end = last(&scene(linear, RKMK4_CAY, time, "[\"exponents\"]"));
+    assert!(far(&end, &[1.0, -2.0]) < 1e-2, "{end:?}");
+    let text = bundled("lorenz").replace("t_span = [0.0, 100.0]", "t_span = [0.0, 10.0]");
+    let rows = rows(&Scene::parse("scene", &text).unwrap());
+    for row in &rows[1..] {
+        let sum: f64 = row[4..].iter().sum();
+        assert!((sum + 41.0 / 3.0).abs() < 1e-7, "{row:?}");
+    }
+}
+
+const RKMK4_CAY: &str = "name = \"rkmk4\"\nmap = \"cay\"";
+
+/// On so(3) Euler's equations are the rigid body; in sl(3) the momentum stays there.
+#[test]
+fn eulers_equations_on_matrix_algebras() {
+    let so3 = "kind = \"euler\"\nalgebra = \"so\"\ninverse_inertia = [[0, 0.25, 0.5], [0.25, 0, 1], [0.5, \
+               1, 0]]\nmomentum = [[0, -3, 0.1], [3, 0, -0.2], [-0.1, 0.2, 0]]";
+    let body = "kind = \"rigid-body-n\"\ninertia = [4, 2, 1]\nmomentum = [-3, 0.1, -0.2]";
+    let time = "t_span = [0, 2]\ndt = 0.01";
+    let m = last(&scene(so3, RKMK4_CAY, time, "[\"momentum\"]"));
+    let of_body = last(&scene(body, RKMK4_CAY, time, "[\"momentum\"]"));
+    assert!(far(&[m[1], m[2], m[5]], &of_body) < 1e-13, "{m:?}");
+    let end = last(&Scene::bundled("euler-on-sl3").unwrap());
+    assert!((end[0] + end[4] + end[8]).abs() < 1e-14, "{end:?}");
+}
+
+/// Jets are stationary, and the energy of the harmonic of degree l is ½a²/(l(l + 1)).
+#[test]
+fn jets_on_a_sphere_stand_still() {
+    let problem = "kind = \"fluid-on-sphere\"\nn = 8\njets = [[3, 0.7], [1, -0.4]]";
+    let time = "t_span = [0, 1]\ndt = 0.05";
+    for method in ["name = \"isospectral2\"", "name = \"energy-casimir\"", RKMK4_CAY] {
+        let end = last(&scene(problem, method, time, "[\"coefficients\", \"energy\"]"));
+        let mut expected = vec![0.0; 65];
+        (expected[2], expected[12]) = (-0.4, 0.7);
+        expected[64] = 0.5 * (0.16 / 2.0 + 0.49 / 12.0);
+        assert!(far(&end, &expected) < 1e-12, "{end:?}");
+    }
+}

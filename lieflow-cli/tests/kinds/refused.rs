@@ -1,0 +1,132 @@
+//! Scenes of each kind that cannot be used: a message with the line of the key, and what was expected.
+
+use super::*;
+
+/// A line of a bundled scene, what stands there instead, and what the message says.
+const BROKEN: &[(&str, &str, &str, &[&str])] = &[
+    ("flipping-book", "sides = ", "edges = ", &["unknown key `edges`", "sides"]),
+    ("flipping-book", "kind = \"box\"", "kind = \"bax\"", &["unknown shape `bax`", "`box`"]),
+    ("flipping-book", "mass = 0.5", "mass = -1", &["mass = -1"]),
+    ("flipping-book", "mass = 0.5, ", "", &["missing key `mass`"]),
+    ("flipping-book", "sides = [0.2, 0.15, 0.03]", "radius = 1", &["a box has a mass and sides"]),
+    (
+        "asymmetric-top",
+        "inertia = [1.0, 2.0, 3.0]",
+        "inertia = [[1, 0, 0], [0.1, 2, 0], [0, 0, 3]]",
+        &["symmetric"],
+    ),
+    (
+        "asymmetric-top",
+        "inertia = [1.0, 2.0, 3.0]",
+        "inertia = [[1, 0, 0], 2, 3]",
+        &["numbers and rows"],
+    ),
+    ("damped-satellite", "damping = 0.1", "dampen = 0.1", &["did you mean `damping`?"]),
+    ("attitude-control", "control = [3.0, 4.0]", "control = 3.0", &["a list of 2 numbers"]),
+    ("attitude-control", "[0.0012727073855697268,", "[0.5,", &["SO(3)"]),
+    ("many-bodies", "inertia = [1.0, 1.0, 2.0]", "inertia = [1, 0, 2]", &["> 0"]),
+    ("manakov-body", "mass_moments = [0.4,", "mass_moments = [-1.4,", &["mass_moments[0]", "> 0"]),
+    ("manakov-body", "mass_moments = [0.4,", "mass_moments = [", &["found 3 numbers, expected 4"]),
+    ("manakov-body", "momentum = [1.0,", "momentum = [", &["n(n-1)/2"]),
+    ("manakov-body", "momentum = [1.0,", "momentum = [\"one\",", &["expected a number"]),
+    ("lagrange-top", "inertia = [1.0, 1.0, 0.5]", "inertia = [1, 1, -2]", &["inertia[2] = -2"]),
+    ("lagrange-top", "vertical = [0.6,", "vertical = [0.7,", &["length", "expected 1"]),
+    ("lagrange-top", "omega_body", "omega", &["unknown key `omega`", "omega_body"]),
+    ("ellipsoid-in-fluid", "mass = [1.5,", "mass = [0,", &["mass[0] = 0"]),
+    ("euler-on-sl3", "algebra = \"sl\"", "algebra = \"su\"", &["so"]),
+    ("euler-on-sl3", "momentum = [[0.2,", "momentum = [[0.3,", &["not in sl(3)"]),
+    ("euler-on-sl3", "inverse_inertia = [[0.4, ", "inverse_inertia = [[", &["row 1 has 2 numbers"]),
+    ("vortices-on-sphere", "n = 24", "n = 1", &["at least 2"]),
+    ("vortices-on-sphere", "n = 24", "n = 24\nrandom = { seed = 1, below = 3 }", &["exactly one"]),
+    ("vortices-on-sphere", "n = 24", "n = 24\njets = [[24, 1]]", &["degree 24"]),
+    (
+        "vortices-on-sphere",
+        "circulation = 6.0, width = 0.25",
+        "circulation = 6, width = 0",
+        &["> 0"],
+    ),
+    ("vortices-on-sphere", "isospectral2", "cf3", &["methods that fit: rkmk4"]),
+    ("spherical-pendulum", "direction = [0.8, 0.0, -0.6]", "direction = [0, 0, 0]", &["|q|"]),
+    ("spin-wave", "count = 8", "count = 1", &["at least 2"]),
+    ("spin-wave", "wave = { count = 8, turns = 1, cone = 0.8 }", "", &["`spins` or `wave`"]),
+    (
+        "spin-wave",
+        "wave = { count = 8, turns = 1, cone = 0.8 }",
+        "spins = [[1, 0, 0], [0, 0, 0]]",
+        &["|s[1]|"],
+    ),
+    ("toda-lattice", "momenta = [1.0, ", "momenta = [", &["3 momenta of 4 particles"]),
+    ("sorting", "  [4.0, 0.1, 0.1, 0.1],", "  [4.0, 0.2, 0.1, 0.1],", &["symmetric"]),
+    ("sorting", "order = [1.0, ", "order = [", &["found 3 numbers, expected 4"]),
+    ("qr-flow", "  [2.0, 1.0, 0.0],", "  [-2.0, 1.0, 0.0],", &["eigenvalue", "> 0"]),
+    ("oja", "  [4.0, 1.0,", "  [4.0, 2.0,", &["symmetric"]),
+    ("oja", "x = [[0.1, 0.2],", "x = [", &["found 3 rows, expected 4"]),
+    (
+        "oja",
+        "x = [[0.1, 0.2], [0.3, -0.5], [0.9, 0.4], [-0.2, 0.7]]",
+        "x = [[1, 2], [1, 2], [0, 0], [0, 0]]",
+        &["column 2 depends"],
+    ),
+    ("mathieu", "q = 0.3", "", &["missing key `q`"]),
+    ("coupled-oscillators", "period = 2.0", "period = 0", &["> 0"]),
+    ("coupled-oscillators", "q = [[0.0, 0.1],", "q = [[0.0, 0.2],", &["symmetric"]),
+    (
+        "fodo-cell",
+        "{ kind = \"drift\", length = 0.25 }",
+        "{ kind = \"drift\", length = -1 }",
+        &["> 0"],
+    ),
+    ("fodo-cell", "radius = 8.0", "k = 8.0", &["a dipole has a length and a radius"]),
+    ("fodo-cell", "kind = \"dipole\"", "kind = \"dipol\"", &["did you mean `dipole`?"]),
+    ("riccati-pole", "c = [[1.0, 0.0],", "c = [[1.0, 0.5],", &["symmetric"]),
+    ("riccati-pole", "p = [[0.0, 0.0], [0.0, 0.0]]", "p = []", &["no rows"]),
+    ("crossed-fields", "velocity = [0.0, 0.0, 0.3]", "velocity = [0, 0, 1]", &["less than 1"]),
+    ("rabi", "coupling = [[0.0, 0.1],", "coupling = [[0.0, 0.2],", &["equal to"]),
+    ("rabi", "amplitudes = [1.0, 0.0]", "amplitudes = [0, 0]", &["|ψ|"]),
+    ("rabi", "amplitudes = [1.0, 0.0]", "amplitudes = [1]", &["expected 2, one a level"]),
+    ("three-level-transfer", "12.533]", "0]", &["width 0"]),
+    (
+        "lorenz",
+        "{ of = 1, coefficient = -10.0, powers = [1, 0, 0] }",
+        "{ of = 4, coefficient = 1, powers \
+      = [1, 0, 0] }",
+        &["expected 1 to 3"],
+    ),
+    ("lorenz", "powers = [1, 1, 0] }", "powers = [1, 1] }", &["found 2 powers, expected 3"]),
+];
+
+#[test]
+fn each_names_the_line_and_what_was_expected() {
+    for (name, line, instead, words) in BROKEN {
+        let text = bundled(name);
+        let number = text.lines().position(|l| l.contains(line));
+        let number = 1 + number.unwrap_or_else(|| panic!("{name} has no {line}"));
+        let error = match Scene::parse(name, &text.replacen(line, instead, 1)) {
+            Ok(_) => panic!("{name} with {instead} was taken"),
+            Err(error) => error,
+        };
+        let message = error.to_string();
+        for word in *words {
+            assert!(message.contains(word), "{name}, {instead}: {message}");
+        }
+        // The key may begin above, the entry across may be the one that is named, and what is missing is
+        // missed in its section.
+        let at = error.line().unwrap_or_else(|| panic!("no line: {message}"));
+        assert!(at.abs_diff(number) < 12, "line {at} for {number}: {message}");
+    }
+}
+
+/// A layer that a kind does not have.
+#[test]
+fn a_kind_of_one_layer() {
+    for (name, layer) in [("rabi", "closed"), ("spin-wave", "general")] {
+        let text = bundled(name);
+        let asked = format!("[method]\nlayer = {layer:?}");
+        let message =
+            Scene::parse(name, &text.replace("[method]", &asked)).unwrap_err().to_string();
+        assert!(message.contains("leave layer out"), "{message}");
+        let own = if layer == "closed" { "general" } else { "closed" };
+        let asked = format!("[method]\nlayer = {own:?}");
+        assert!(Scene::parse(name, &text.replace("[method]", &asked)).is_ok());
+    }
+}

@@ -1,0 +1,64 @@
+//! Functions of a real symmetric matrix.
+
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::evd::{ComputeEigenvectors, self_adjoint_evd, self_adjoint_evd_scratch};
+use faer::{Col, Mat, Par};
+
+use super::product::mul;
+use crate::error::StepError;
+
+/// Workspace for a = Q Λ Qᵀ.
+pub(crate) struct SymmetricEigen {
+    q: Mat<f64>,
+    scaled: Mat<f64>,
+    lambda: Col<f64>,
+    mem: MemBuffer,
+}
+
+impl core::fmt::Debug for SymmetricEigen {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.debug_struct("SymmetricEigen").finish_non_exhaustive()
+    }
+}
+
+impl SymmetricEigen {
+    pub(crate) fn new(n: usize) -> Self {
+        let vectors = ComputeEigenvectors::Yes;
+        let req = self_adjoint_evd_scratch::<f64>(n, vectors, Par::Seq, Default::default());
+        let z = || Mat::zeros(n, n);
+        SymmetricEigen { q: z(), scaled: z(), lambda: Col::zeros(n), mem: MemBuffer::new(req) }
+    }
+
+    /// out ← φ(a) = Q φ(Λ) Qᵀ, from the lower triangle of a.
+    ///
+    /// # Errors
+    /// [`StepError::NotConverged`], and [`StepError::NotFinite`] where φ has no finite value.
+    pub(crate) fn function(
+        &mut self,
+        a: &Mat<f64>,
+        phi: impl Fn(f64) -> f64,
+        out: &mut Mat<f64>,
+    ) -> Result<(), StepError> {
+        let SymmetricEigen { q, scaled, lambda, mem } = self;
+        self_adjoint_evd(
+            a.as_ref(),
+            lambda.as_diagonal_mut(),
+            Some(q.as_mut()),
+            Par::Seq,
+            MemStack::new(mem),
+            Default::default(),
+        )
+        .map_err(|_| StepError::NotConverged { what: "the eigenvalues of a symmetric matrix" })?;
+        for j in 0..q.ncols() {
+            let value = phi(lambda[j]);
+            if !value.is_finite() {
+                return Err(StepError::NotFinite { what: "a function of an eigenvalue" });
+            }
+            for (scaled, q) in scaled.col_mut(j).iter_mut().zip(q.col(j).iter()) {
+                *scaled = value * q;
+            }
+        }
+        mul(out, scaled.as_ref(), q.transpose());
+        Ok(())
+    }
+}

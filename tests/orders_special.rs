@@ -1,0 +1,140 @@
+//! Measured orders of the methods that ask more of a problem than a field: rigid bodies, Taylor
+//! coefficients, Lie–Poisson systems. The harness is that of `orders.rs`; what is measured follows from
+//! the catalog's lists, and a list without a problem here makes a test fail.
+
+mod support;
+mod systems;
+
+use faer::Scale;
+use lieflow::catalog::{
+    MethodSpec, Needs, with_attitude_method, with_lie_poisson_method, with_momentum_method,
+    with_state_method,
+};
+use lieflow::groups::Sample;
+use lieflow::maps::Cay;
+use lieflow::problems::{Ambient, PointOf, RigidBody, RigidBodyAttitude, RigidBodyState};
+use lieflow::{CoordinateMap, LieAlgebra};
+use nalgebra::{Matrix3, Vector3};
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+use support::orders::{Measure, Problems, Report};
+use support::points::Points;
+use support::represent::Represent;
+
+const INERTIA: [f64; 3] = [1.0, 2.0, 3.5];
+
+/// Momenta that are nothing special, of this length.
+fn momentum(length: f64) -> impl Fn(u64) -> Vector3<f64> {
+    move |i| {
+        let mut rng = Pcg64::seed_from_u64(40 + i);
+        let mut entry = || rng.random_range(0.3..1.0);
+        Vector3::new(entry(), entry(), -entry()).normalize() * length
+    }
+}
+
+/// Lengths for orders below 8, and from 8 on: within a factor of some 4 in h those pass from 1e-3 to
+/// rounding, so that their steps must be large.
+const SHORT: f64 = 2.0;
+const LONG: f64 = 4.0;
+
+fn ensemble<P: Ambient>(make: impl Fn(Vector3<f64>) -> (P, PointOf<P>)) -> Problems<P>
+where
+    P::Group: Represent,
+    P::Action: Points<P::Group>,
+    Cay: CoordinateMap<P::Group>,
+{
+    Problems::of(|i| make(momentum(SHORT)(i)), |i| make(momentum(LONG)(i)))
+}
+
+fn attitude(title: &str, needs: &[Needs]) {
+    let problems = ensemble(|m| {
+        let body = RigidBodyAttitude::new(INERTIA, m.into()).unwrap();
+        (body, Matrix3::identity())
+    });
+    let measured = |spec: &MethodSpec| with_attitude_method(spec, Measure(&problems, true));
+    Report::of(title, "SO(3)", needs, measured);
+}
+
+/// Above order 10 see SO(5), and that both layers take the same steps (`lie_series.rs`).
+fn series(title: &str, needs: &[Needs]) {
+    let problems = ensemble(|m| {
+        let body = RigidBodyAttitude::new(INERTIA, m.into()).unwrap();
+        (body, Matrix3::identity())
+    });
+    let problems = problems.up_to(10);
+    let measured = |spec: &MethodSpec| with_attitude_method(spec, Measure(&problems, true));
+    Report::of(title, "SO(3)", needs, measured);
+}
+
+fn momentum_alone(title: &str, needs: &[Needs]) {
+    let problems = ensemble(|m| (RigidBody::new(INERTIA).unwrap(), m));
+    let measured = |spec: &MethodSpec| with_momentum_method(spec, Measure(&problems, true));
+    Report::of(title, "SO(3)", needs, measured);
+}
+
+fn both_in_one_state(title: &str, needs: &[Needs]) {
+    let problems = ensemble(|m| {
+        let body = RigidBodyState::new(INERTIA).unwrap();
+        (body, body.state(m.into(), Matrix3::identity()).unwrap())
+    });
+    let measured = |spec: &MethodSpec| with_state_method(spec, Measure(&problems, true));
+    Report::of(title, "SO(3)", needs, measured);
+}
+
+/// On SO(5), Sp(4), GL(3) and SO(3,1).
+fn quadratic_systems(title: &str, needs: &[Needs]) {
+    for (group, start) in systems::systems() {
+        let name = group.name();
+        // Near one another, so that none of them is at rounding before the others.
+        let make = |length: f64| {
+            let (group, start) = (group.clone(), &start);
+            move |i| {
+                let aside = group.sample_algebra(&mut Pcg64::seed_from_u64(60 + i), 1.0);
+                let m = start + Scale(0.4 / group.norm(&aside)) * aside.into_mat();
+                let length = length / m.norm_l2();
+                (systems::quadratic(group.clone()), m * Scale(length))
+            }
+        };
+        // Where the group is not compact the motion runs away, and may not be so strong.
+        let problems = match name.as_str() {
+            "SO(5)" => Problems::of(make(3.0), make(7.0)),
+            _ => Problems::of(make(1.0), make(1.0)).up_to(10),
+        };
+        let measured = |spec: &MethodSpec| with_lie_poisson_method(spec, Measure(&problems, true));
+        Report::of(&format!("{title}, {name}"), &name, needs, measured);
+    }
+}
+
+/// One test a problem, with the lists that are measured on it.
+macro_rules! suites {
+    ($($name:ident: [$($needs:ident),*];)*) => {
+        const MEASURED: &[Needs] = &[$($(Needs::$needs),*),*];
+        mod suites {
+            use lieflow::catalog::Needs;
+            $(
+                #[test]
+                fn $name() {
+                    super::$name(stringify!($name), &[$(Needs::$needs),*]);
+                }
+            )*
+        }
+    };
+}
+
+suites! {
+    attitude: [Body, Attitude];
+    momentum_alone: [Body, LiePoisson];
+    series: [Series];
+    both_in_one_state: [State];
+    quadratic_systems: [Series, LiePoisson, Isospectral];
+}
+
+/// Every list of the catalog is measured, here, in `orders.rs` or, the implicit methods, in
+/// `implicit.rs`.
+#[test]
+fn every_list_has_its_problems() {
+    let fields = [Needs::Field, Needs::Norm, Needs::LinearType];
+    for needs in Needs::ALL {
+        assert!(fields.contains(&needs) != MEASURED.contains(&needs), "{needs:?}");
+    }
+}

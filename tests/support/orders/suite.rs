@@ -1,0 +1,217 @@
+//! Methods by the lists of the catalog, on problems with references: what is measured of each, and the
+//! report that all of it must hold.
+
+use lieflow::catalog::{MAPS, MethodInfo, MethodSpec, Needs, OnMethod, TABLEAUS};
+use lieflow::maps::{Cay, CoordinateMap};
+use lieflow::methods::Method;
+use lieflow::problems::{Ambient, PointOf, Problem};
+use lieflow::{Error, LieAlgebra};
+
+use super::super::points::Points;
+use super::super::represent::Represent;
+use super::ensemble::{LONG, MEMBERS, measure_over};
+use super::estimate::Estimate;
+use super::flow::{Reference, distance_in_one_step, measure, reference, reference_after};
+
+/// What happened to one method.
+pub(crate) enum Outcome {
+    /// It does not fit the problem.
+    Refused,
+    /// Its order is above 4, and the ensembles for that are elsewhere.
+    Elsewhere,
+    /// Its order.
+    Measured(Result<Estimate, String>),
+    /// It claims no order but the motion itself: its relative error after one step.
+    Exact(Result<f64, String>),
+}
+
+/// Problems with their references. The first is for orders up to 4, all are for those above it.
+pub(crate) struct Problems<P: Problem> {
+    short: Vec<(P, Reference<P>)>,
+    /// For orders from 8 to the highest that is measured here.
+    long: Vec<(P, Reference<P>)>,
+    highest: usize,
+}
+
+impl<P: Ambient> Problems<P>
+where
+    P::Group: Represent,
+    P::Action: Points<P::Group>,
+    Cay: CoordinateMap<P::Group>,
+{
+    /// A single one: orders above 4 are measured elsewhere.
+    pub(crate) fn one(problem: P, start: PointOf<P>) -> Self {
+        let reference = reference(&problem, start);
+        Problems { short: vec![(problem, reference)], long: Vec::new(), highest: 4 }
+    }
+    /// An ensemble, of problems by their number.
+    pub(crate) fn many(make: impl Fn(u64) -> (P, PointOf<P>)) -> Self {
+        Self::of(&make, &make)
+    }
+    /// Two ensembles: for orders below 8, and from 8 on.
+    pub(crate) fn of(
+        short: impl Fn(u64) -> (P, PointOf<P>),
+        long: impl Fn(u64) -> (P, PointOf<P>),
+    ) -> Self {
+        let over = |length: f64| {
+            move |(problem, start)| {
+                let reference = reference_after(length, &problem, start);
+                (problem, reference)
+            }
+        };
+        Problems {
+            short: (0..MEMBERS).map(short).map(over(1.0)).collect(),
+            long: (0..LONG.0).map(long).map(over(LONG.1)).collect(),
+            highest: 16,
+        }
+    }
+    /// Orders above this are measured elsewhere.
+    pub(crate) fn up_to(self, highest: usize) -> Self {
+        Problems { highest, ..self }
+    }
+
+    /// The name of the group.
+    pub(crate) fn group(&self) -> String {
+        self.short[0].0.group().name()
+    }
+}
+
+/// What there is to measure on, and whether a single problem does for orders up to 4.
+pub(crate) struct Measure<'a, P: Problem>(pub(crate) &'a Problems<P>, pub(crate) bool);
+
+impl<P: Problem> OnMethod<P> for Measure<'_, P>
+where
+    P::Group: Represent,
+    P::Action: Points<P::Group>,
+{
+    type Out = Outcome;
+    fn call<M: Method<P>>(self, method: M) -> Outcome {
+        let Measure(Problems { short, long, highest }, single) = self;
+        let (problem, reference) = &short[0];
+        if matches!(method.work(problem, reference.start()), Err(Error::Unsupported { .. })) {
+            return Outcome::Refused;
+        }
+        Outcome::Measured(match method.order(problem) {
+            usize::MAX => {
+                return Outcome::Exact(distance_in_one_step(problem, &method, reference));
+            }
+            ..=4 if single => measure(problem, &method, reference),
+            order if order > *highest => return Outcome::Elsewhere,
+            ..=7 => measure_over(short, &method),
+            _ => measure_over(long, &method),
+        })
+    }
+}
+
+/// Where the tests cut the Baker series: q = p − 2 keeps the order, a smaller q leaves q + 2.
+fn cuts(method: &MethodInfo, tableau: Option<&str>) -> &'static [usize] {
+    match tableau.unwrap_or(method.name) {
+        "rkf45" | "dopri5" => &[3],
+        "verner6" => &[4],
+        "dop853" => &[6],
+        "rkmk4" => &[0, 1, 2],
+        _ if tableau.is_some() => &[0, 1, 2],
+        _ => &[],
+    }
+}
+
+/// Every method of the lists with every tableau, map and cut that it takes.
+pub(crate) fn specs(needs: &[Needs]) -> Vec<MethodSpec> {
+    let mut specs = Vec::new();
+    for method in needs.iter().flat_map(|needs| needs.methods()) {
+        let tableaus = match method.takes_tableau {
+            true => TABLEAUS.iter().copied().map(Some).collect(),
+            false => vec![None],
+        };
+        for tableau in tableaus {
+            let maps: Vec<_> = match method.takes_map {
+                true => (MAPS.iter().map(|m| (Some(m.name), None)))
+                    .chain(cuts(method, tableau).iter().map(|&q| (Some("exp"), Some(q))))
+                    .collect(),
+                false => vec![(None, None)],
+            };
+            for &(map, q) in &maps {
+                let tableau = tableau.map(Into::into);
+                specs.push(MethodSpec { tableau, q, ..MethodSpec::new(method.name, map) });
+            }
+        }
+    }
+    specs
+}
+
+/// Does the catalog say that the method's map serves it, and this group?
+fn serves(spec: &MethodSpec, group: &str) -> bool {
+    let Some(map) = &spec.map else { return true };
+    let odd_only = spec.info().is_ok_and(|info| info.summary.contains("exp or cay"));
+    if odd_only && !["exp", "cay"].contains(&map.as_str()) {
+        return false;
+    }
+    let groups = MAPS.iter().find(|m| m.name == map).map_or("", |m| m.groups);
+    let family = group.split('(').next().unwrap_or_default();
+    let plain = !group.contains(','); // SO(p,q) is no SO(n)
+    groups == "all" || (plain && groups.split(", ").any(|g| g.starts_with(&format!("{family}("))))
+}
+
+/// What is found on one problem: printed as a table, and all of it must hold.
+pub(crate) struct Report {
+    title: String,
+    table: String,
+    failures: Vec<String>,
+}
+
+impl Report {
+    /// On problems of this title.
+    pub(crate) fn new(title: &str) -> Self {
+        Report { title: title.into(), table: format!("{title}\n"), failures: Vec::new() }
+    }
+
+    /// Every method of the lists on a group: it is measured, or refused where the catalog says so.
+    pub(crate) fn of(
+        title: &str,
+        group: &str,
+        needs: &[Needs],
+        measured: impl Fn(&MethodSpec) -> Result<Outcome, Error>,
+    ) {
+        let mut report = Report::new(title);
+        for spec in specs(needs) {
+            let outcome = match measured(&spec) {
+                Err(Error::Unsupported { .. }) => Outcome::Refused,
+                outcome => outcome.unwrap(),
+            };
+            report.add(&spec.label(), serves(&spec, group), outcome);
+        }
+        report.assert();
+    }
+
+    /// A method that should be measured, or be refused.
+    pub(crate) fn add(&mut self, label: &str, serves: bool, outcome: Outcome) {
+        match outcome {
+            Outcome::Refused if serves => self.failures.push(format!("{label}: refused")),
+            Outcome::Refused | Outcome::Elsewhere => {}
+            _ if !serves => {
+                self.failures.push(format!("{label}: taken although the catalog says otherwise"));
+            }
+            Outcome::Exact(found) => match found {
+                Ok(gap) if gap < 1e-13 => self.table += &format!("  {label:<30} {gap:.1e}\n"),
+                other => self.failures.push(format!("{label}: {other:?}")),
+            },
+            Outcome::Measured(measured) => {
+                let verdict = measured.as_ref().map_err(Clone::clone).and_then(Estimate::check);
+                if let Err(reason) = verdict {
+                    self.failures.push(format!("{label}: {reason}"));
+                }
+                if let Ok(m) = measured {
+                    let how = if m.two_terms { ", two terms" } else { "" };
+                    self.table += &format!("  {label:<30} {}  {:.2?}{how}\n", m.claimed, m.slopes);
+                }
+            }
+        }
+    }
+
+    /// All of it held.
+    pub(crate) fn assert(self) {
+        let Report { title, table, failures, .. } = self;
+        println!("{table}");
+        assert!(failures.is_empty(), "{title}:\n  {}", failures.join("\n  "));
+    }
+}
