@@ -10,6 +10,7 @@
 //! | isospectral flows: Toda, QR, double bracket | SO(n); conjugation | [`IsospectralFlow`] |
 //! | spherical pendulum, spin chain | SE(3); coadjoint; SO(3)ᴺ; vectors | [`SphericalPendulum`], [`SpinChain`] |
 //! | Oja's flow | SO(n); n×k matrices | [`Oja`] |
+//! | subspaces, the Grassmann manifold | SO(n); conjugation of projectors | [`SubspaceFlow`] |
 //! | Lyapunov exponents of a vector field | SO(n) × T(2n); translation | [`Lyapunov`] |
 //! | equations of linear type, Magnus | any | [`LinearEquation`] |
 //! | Hill, Mathieu, Floquet; beam lines | Sp(2m); translation | [`hill`], [`mathieu`], [`floquet`], [`beam`] |
@@ -24,6 +25,7 @@ pub mod beam;
 mod capability;
 mod euler;
 mod fallible;
+mod grassmann;
 mod heavy_top;
 pub mod inertia;
 mod invariants;
@@ -45,6 +47,7 @@ mod zeitlin;
 pub use capability::{LiePoisson, Orthogonal, Projection, Split};
 pub use euler::{Euler, EulerGroup, FromTheBody, Hamiltonian, Kinetic};
 pub use fallible::{Fallible, InAlgebra, TryProblem};
+pub use grassmann::SubspaceFlow;
 pub use heavy_top::HeavyTop;
 pub use invariants::{Invariant, Invariants, Kept};
 pub use isospectral::{IsospectralFlow, IsospectralFlowWork, toda_lattice};

@@ -64,7 +64,11 @@ impl Errors<'_> {
             let errors =
                 self.ends.iter().enumerate().map(error).collect::<Result<Vec<_>, String>>();
             match errors {
-                Err(_) if self.steps.is_empty() => {} // far too large a step
+                // Far too large a step.
+                Err(_) if self.steps.is_empty() || n < 8 => {
+                    self.steps.clear();
+                    self.errors.clear();
+                }
                 errors => {
                     self.errors.push(errors?);
                     self.steps.push(n);
