@@ -8,7 +8,7 @@
 
 use lieflow::maps::{Cay, Exp};
 use lieflow::methods::{
-    EnergyCasimir, Rkmk, SimoWong,
+    DMV2, DMV10, EnergyCasimir, Rkmk, SimoWong,
     tableau::{DOPRI5, RK4},
 };
 use lieflow::problems::{Exact, RigidBody, RigidBodyAttitude, RigidBodyQuaternion};
@@ -242,6 +242,16 @@ fn r7_r12_scales_change_no_bit() {
         let (plain, scaled) =
             (run(&body, &implicit, &m, h, 40), run(&body, &implicit, &(s * m), h / s, 40) / s);
         assert_eq!(scaled, plain, "m times 2^{k}");
+        for implicit in [SimoWong::ONE, SimoWong::TAN, SimoWong::LEWIS_SIMO] {
+            let (plain, scaled) =
+                (run(&body, &implicit, &m, h, 40), run(&body, &implicit, &(s * m), h / s, 40) / s);
+            assert_eq!(scaled, plain, "m times 2^{k}, {implicit:?}");
+        }
+        for implicit in [DMV2, DMV10] {
+            let (plain, scaled) =
+                (run(&body, &implicit, &m, h, 40), run(&body, &implicit, &(s * m), h / s, 40) / s);
+            assert!((scaled - plain).norm() <= 1e-14 * plain.norm(), "m times 2^{k}, {implicit:?}");
+        }
     }
 }
 

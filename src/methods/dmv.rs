@@ -147,15 +147,17 @@ impl Dmv {
         m: &Vector3<S>,
     ) -> Result<Vector3<S>, StepError> {
         let l = S::lit;
-        let half = l(0.5) * h * h;
-        let squares = [m[0] * m[0], m[1] * m[1], m[2] * m[2]];
+        // h² and m² may leave the range where hm does not.
+        let half = l(0.5);
+        let turn = m.map(|m| h * m);
+        let squares = [turn[0] * turn[0], turn[1] * turn[1], turn[2] * turn[2]];
         let kappa = half * (squares[0] + squares[1] + squares[2]);
         let eta =
             half * (squares[0] * inverse[0] + squares[1] * inverse[1] + squares[2] * inverse[2]);
         let sigma = l(1.0) + DmvWork::series(self.order, &w.sigma, kappa, eta);
         let delta = DmvWork::series(self.order, &w.delta, kappa, eta);
         let modified = [0, 1, 2].map(|i| sigma * inverse[i] + delta); // 1/Ĩ
-        let a = |i: usize| l(0.5) * h * m[i] * modified[i];
+        let a = |i: usize| half * turn[i] * modified[i];
         let a = Vector3::new(a(0), a(1), a(2));
         // (Ĩ_j − Ĩ_k)/Ĩ_i; for the true inertia without the rounding of 1/(1/I).
         let i = match self.order {
@@ -164,7 +166,7 @@ impl Dmv {
         };
         let d =
             [(i[1] - i[2]) * modified[0], (i[2] - i[0]) * modified[1], (i[0] - i[1]) * modified[2]];
-        newton3("dmv", a, So3::new().norm(&a), |c| {
+        newton3("dmv", a, l(1.0) + So3::new().norm(&a), |c| {
             let grown = l(1.0) + (c[0] * c[0] + c[1] * c[1] + c[2] * c[2]);
             let mut residual = *c;
             let mut jacobian = So3::new().identity();

@@ -33,7 +33,8 @@ fn solve3<S: Real>(a: &Matrix3<S>, b: &Vector3<S>) -> Vector3<S> {
 }
 
 /// Newton's iteration for F(x) = 0 from `x`; `f` returns F and F'. It ends with the correction that
-/// is below the root of the rounding, which leaves an error at rounding.
+/// is below the root of the rounding next to `scale`, the size of what is sought, which leaves an error
+/// at rounding.
 ///
 /// # Errors
 /// [`StepError::NewtonDidNotConverge`] after [`NEWTON_MAX`] iterations or when it leaves the range.
@@ -52,19 +53,17 @@ pub(super) fn newton3<S: Real>(
         let (residual, jacobian) = f(&x);
         let d = solve3(&jacobian, &residual);
         x = Vector3::new(x[0] - d[0], x[1] - d[1], x[2] - d[2]);
-        size = dot(&d, &d).sqrt();
-        if size.all_below(near) || (size / scale).all_below(near) {
+        // Next to the scale, so that squares stay in range.
+        let part = d.map(|d| d / scale);
+        size = dot(&part, &part).sqrt();
+        if size.all_below(near) {
             return Ok(x);
         }
         if !size.is_finite() {
             break;
         }
     }
-    Err(StepError::NewtonDidNotConverge {
-        method,
-        iterations,
-        residual_log10: log10_above(size / scale),
-    })
+    Err(StepError::NewtonDidNotConverge { method, iterations, residual_log10: log10_above(size) })
 }
 
 /// The least integer d with x < 10^d; 308 where x is not finite.

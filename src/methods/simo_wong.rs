@@ -86,7 +86,9 @@ impl Factor {
             Factor::LewisSimo => {
                 let c = [j[2] - j[1], j[0] - j[2], j[1] - j[0]];
                 let weights = Vector3::new(c[1] * c[2], c[2] * c[0], c[0] * c[1]);
-                let slope = scaled(h * h * l(-1.0 / 24.0), &weights, s);
+                // h² may leave the range where hs does not.
+                let hs = Vector3::new(h * s[0], h * s[1], h * s[2]);
+                let slope = scaled(h * l(-1.0 / 24.0), &weights, &hs);
                 let sum = slope[0] * s[0] + slope[1] * s[1] + slope[2] * s[2];
                 (l(1.0) + l(0.5) * sum, slope)
             }
@@ -111,8 +113,9 @@ impl SimoWong {
     #[inline(always)]
     fn zeta<S: Trig>(self, j: &Vector3<S>, h: S, m: &Vector3<S>) -> Result<Vector3<S>, StepError> {
         let half = S::lit(0.5);
-        let norm = So3::new().norm(m);
-        let scale = if norm == S::lit(0.0) { S::lit(1.0) } else { norm };
+        // Without squares, which leave the range where |m| does not.
+        let size = m[0].abs() + m[1].abs() + m[2].abs();
+        let scale = if size == S::lit(0.0) { S::lit(1.0) } else { size };
         let zeta_bar = |x: &Vector3<S>| {
             let sum = Vector3::new(x[0] + m[0], x[1] + m[1], x[2] + m[2]);
             (sum, scaled(half * h, j, &sum))

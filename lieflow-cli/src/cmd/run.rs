@@ -233,9 +233,13 @@ pub fn run_scene(scene: &Scene, folder: &Path) -> Result<Summary, CliError> {
     let bar = progress(scene.grid.steps());
     let mut rows = Gathered::default();
     let mut watched = Vec::new();
+    let mut not_finite = vec![0u64; columns.len()];
     let clock = Instant::now();
     let outcome = watch.run(&mut |t, row| {
         trajectory.row(t, &row[..watch.width]);
+        for (count, x) in not_finite.iter_mut().zip(row) {
+            *count += u64::from(!x.is_finite());
+        }
         watch.see(t, row, &mut watched);
         rows.see(t, row);
         bar.set_position(((t - t0) / (t1 - t0) * scene.grid.steps() as f64) as u64);
@@ -260,6 +264,10 @@ pub fn run_scene(scene: &Scene, folder: &Path) -> Result<Summary, CliError> {
     let drift = watch.drift(&watched, done.steps)?;
     let mut warnings = scene.problem.warnings();
     warnings.extend(drift.iter().filter(|(_, drift)| drift.breaks_a_promise()).map(broken_promise));
+    let out_of_range = columns.iter().zip(&not_finite).filter(|(_, count)| **count > 0);
+    warnings.extend(out_of_range.map(|(column, count)| {
+        format!("{column} is not a finite number in {count} of {written} rows")
+    }));
     let method = &scene.method;
     let summary = Summary {
         lieflow: env!("CARGO_PKG_VERSION"),
