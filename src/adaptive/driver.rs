@@ -104,7 +104,7 @@ const REJECTIONS_MAX: u32 = 60;
 /// use lieflow::SaveAt;
 /// use nalgebra::Vector3;
 ///
-/// let body = RigidBody::new([1.0, 2.0, 3.0])?;
+/// let body = RigidBody::<f64>::new([1.0, 2.0, 3.0])?;
 /// let mut m = Vector3::new(0.2, 0.0, 3.0);
 /// let start = body.energy(&m);
 /// let (method, control) = (Rkmk::new(DOPRI5, Exp), Adaptive::new(1e-9, 1e-12)?);
