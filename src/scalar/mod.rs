@@ -135,8 +135,9 @@ impl Trig for f32 {
 
 impl Trig for f64 {
     /// In line up to 1e6: a call of the library costs as much as the polynomials. Up to π/4, where the
-    /// angles of most steps are, without their reduction, which is half of the way.
-    #[inline]
+    /// angles of most steps are, without their reduction, which is half of the way. The compiler finds it
+    /// too long on its own, and around a call exp takes half as long again.
+    #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
         match self.abs() {
             x if x <= FRAC_PI_4 => sin_cos_near_zero(self),
