@@ -40,12 +40,24 @@ pub(super) trait Field<G: LieGroup, M> {
 
 /// What an element of 𝔤 does to a point of the linear space around M.
 pub(super) trait Generator<G: LieGroup>: Action<G> {
-    /// dy ← λ_*(v)(y).
-    fn generate(&self, v: &G::Alg, y: &Self::Point, dy: &mut Self::Point);
+    /// dy ← λ_*(v)(y); `scratch` is a point like y.
+    fn generate(
+        &self,
+        v: &G::Alg,
+        y: &Self::Point,
+        dy: &mut Self::Point,
+        scratch: &mut Self::Point,
+    );
 }
 
 impl Generator<So3> for Linear {
-    fn generate(&self, v: &Vector3<f64>, y: &Vector3<f64>, dy: &mut Vector3<f64>) {
+    fn generate(
+        &self,
+        v: &Vector3<f64>,
+        y: &Vector3<f64>,
+        dy: &mut Vector3<f64>,
+        _: &mut Vector3<f64>,
+    ) {
         *dy = v.cross(y);
     }
 }
@@ -77,8 +89,15 @@ impl<P: Ambient<Group: LieAlgebra<Scalar = f64>>> Field<P::Group, PointOf<P>> fo
     }
 }
 
-/// An equation of linear type with its scratch, the action, and A(t).
-struct RunningLinear<P: Problem, A>(std::rc::Rc<P>, P::Work, A, AlgOf<P>);
+/// An equation of linear type with its scratch, and its action.
+struct RunningLinear<P: Problem, A: Action<P::Group>> {
+    equation: std::rc::Rc<P>,
+    work: P::Work,
+    action: A,
+    /// A(t).
+    a: AlgOf<P>,
+    scratch: A::Point,
+}
 
 impl<P, A> Field<P::Group, A::Point> for RunningLinear<P, A>
 where
@@ -86,11 +105,11 @@ where
     A: Generator<P::Group>,
 {
     fn f(&mut self, t: f64, _: &A::Point, v: &mut AlgOf<P>) {
-        self.0.a(t, v, &mut self.1);
+        self.equation.a(t, v, &mut self.work);
     }
     fn ambient(&mut self, t: f64, y: &A::Point, dy: &mut A::Point) {
-        self.0.a(t, &mut self.3, &mut self.1);
-        self.2.generate(&self.3, y, dy);
+        self.equation.a(t, &mut self.a, &mut self.work);
+        self.action.generate(&self.a, y, dy, &mut self.scratch);
     }
 }
 
@@ -119,11 +138,16 @@ where
         P: LinearField<Group = G> + 'static,
         A: Generator<G>,
     {
-        let (group, of_run) = (equation.group().clone(), action.clone());
+        let (group, of_run, like) = (equation.group().clone(), action.clone(), start.clone());
         let equation = std::rc::Rc::new(equation);
         let field = Box::new(move || -> Box<dyn Field<G, A::Point>> {
-            let (zero, work) = (equation.group().zero(), equation.work());
-            Box::new(RunningLinear(equation.clone(), work, of_run.clone(), zero))
+            Box::new(RunningLinear {
+                equation: equation.clone(),
+                work: equation.work(),
+                action: of_run.clone(),
+                a: equation.group().zero(),
+                scratch: like.clone(),
+            })
         });
         (Flow { group, action, start: start.clone(), linear: true, field }, start)
     }

@@ -58,6 +58,9 @@ impl Action<MatrixGroup> for MatrixAction {
             MatrixAction::Lagrangian => Lagrangian.check(group, p),
         }
     }
+    fn assign(&self, _: &MatrixGroup, p: &Mat<f64>, q: &mut Mat<f64>) {
+        q.copy_from(p);
+    }
     fn act(
         &self,
         group: &MatrixGroup,
@@ -110,7 +113,7 @@ fn mul_add(out: &mut Mat<f64>, alpha: f64, a: MatRef<'_, f64>, b: MatRef<'_, f64
 }
 
 impl Generator<MatrixGroup> for MatrixAction {
-    fn generate(&self, v: &AlgebraMatrix, p: &Mat<f64>, dp: &mut Mat<f64>) {
+    fn generate(&self, v: &AlgebraMatrix, p: &Mat<f64>, dp: &mut Mat<f64>, scratch: &mut Mat<f64>) {
         let (v, p) = (v.as_ref(), p.as_ref());
         match self {
             MatrixAction::Linear | MatrixAction::Translation => mul(dp, v, p),
@@ -125,11 +128,11 @@ impl Generator<MatrixGroup> for MatrixAction {
             MatrixAction::Lagrangian => {
                 let m = p.nrows();
                 let block = |i: usize, j: usize| v.submatrix(i * m, j * m, m, m);
-                // The one of them that allocates.
-                let turned = block(0, 0) + block(0, 1) * p;
+                scratch.copy_from(block(0, 0));
+                mul_add(scratch, 1.0, block(0, 1), p);
                 dp.copy_from(block(1, 0));
                 mul_add(dp, 1.0, block(1, 1), p);
-                mul_add(dp, -1.0, p, turned.as_ref());
+                mul_add(dp, -1.0, p, scratch.as_ref());
             }
         }
     }
