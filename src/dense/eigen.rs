@@ -7,6 +7,15 @@ use faer::{Accum, Mat, Par, c64};
 
 use crate::error::StepError;
 
+/// Entries below this share of the largest are dropped before an eigendecomposition over ℂ: they change no
+/// digit of it, and faer's reduction fails where the square of one underflows beside others.
+const NEGLIGIBLE: f64 = 1e-60;
+
+/// x, or 0 where it is negligible beside `largest`.
+fn significant(x: f64, largest: f64) -> f64 {
+    if x.abs() < NEGLIGIBLE * largest { 0.0 } else { x }
+}
+
 /// Workspace for iu = Q Λ Q* with u skew-symmetric.
 pub(crate) struct SkewEigen {
     h: Mat<c64>,
@@ -47,9 +56,10 @@ impl SkewEigen {
     ) -> Result<(), StepError> {
         let n = u.nrows();
         let SkewEigen { h, q, x, lambda, mem } = self;
+        let largest = u.norm_max();
         for j in 0..n {
             for i in 0..n {
-                h[(i, j)] = c64::new(0.0, u[(i, j)]);
+                h[(i, j)] = c64::new(0.0, significant(u[(i, j)], largest));
             }
         }
         self_adjoint_evd(
