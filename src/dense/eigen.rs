@@ -11,6 +11,10 @@ use crate::error::StepError;
 
 const ONE: c64 = c64::new(1.0, 0.0);
 
+/// Entries below this share of the largest are dropped before an eigendecomposition over ℂ: they change no
+/// digit of it, and faer's reduction fails where the square of one underflows beside others.
+const NEGLIGIBLE: f64 = 1e-60;
+
 /// Workspace for iu = Q Λ Q* with u skew-symmetric or skew-Hermitian.
 pub(crate) struct SkewEigen {
     /// iu, then the coordinates of v.
@@ -110,6 +114,11 @@ impl SkewEigen {
     /// h = QΛQ*.
     fn decompose(&mut self) -> Result<(), StepError> {
         let SkewEigen { h, q, x, lambda, mem } = self;
+        let negligible = NEGLIGIBLE * h.norm_max();
+        for z in h.col_iter_mut().flat_map(|column| column.iter_mut()) {
+            let significant = |x: f64| if x.abs() < negligible { 0.0 } else { x };
+            *z = c64::new(significant(z.re), significant(z.im));
+        }
         self_adjoint_evd(
             h.as_ref(),
             lambda.as_diagonal_mut(),
