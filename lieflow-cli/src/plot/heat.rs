@@ -71,7 +71,9 @@ impl Heat {
         if self.ground == Ground::Sphere {
             let east = self.strongest();
             out.push_str(&globe(rows, cols, east, level));
-            range.push_str(&format!("; the globe is seen above {:.0}° E", 360.0 * east - 180.0));
+            let longitude = 360.0 * east - 180.0;
+            let side = if longitude < 0.0 { 'W' } else { 'E' };
+            range.push_str(&format!("; the globe is seen above {:.0}° {side}", longitude.abs()));
         }
         out.push_str(&text("lf-tick", (LEFT, TOP + HEIGHT + 20.0), "start", &range));
         out.push_str("</svg>");
