@@ -5,16 +5,8 @@ use faer::linalg::evd::{ComputeEigenvectors, self_adjoint_evd, self_adjoint_evd_
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, Par, c64};
 
+use super::schur::NEGLIGIBLE;
 use crate::error::StepError;
-
-/// Entries below this share of the largest are dropped before an eigendecomposition over ℂ: they change no
-/// digit of it, and faer's reduction fails where the square of one underflows beside others.
-const NEGLIGIBLE: f64 = 1e-60;
-
-/// x, or 0 where it is negligible beside `largest`.
-fn significant(x: f64, largest: f64) -> f64 {
-    if x.abs() < NEGLIGIBLE * largest { 0.0 } else { x }
-}
 
 /// Workspace for iu = Q Λ Q* with u skew-symmetric.
 pub(crate) struct SkewEigen {
@@ -56,10 +48,12 @@ impl SkewEigen {
     ) -> Result<(), StepError> {
         let n = u.nrows();
         let SkewEigen { h, q, x, lambda, mem } = self;
-        let largest = u.norm_max();
+        // faer's reduction fails where the square of an entry underflows beside others.
+        let negligible = NEGLIGIBLE * u.norm_max();
+        let significant = |x: f64| if x.abs() < negligible { 0.0 } else { x };
         for j in 0..n {
             for i in 0..n {
-                h[(i, j)] = c64::new(0.0, significant(u[(i, j)], largest));
+                h[(i, j)] = c64::new(0.0, significant(u[(i, j)]));
             }
         }
         self_adjoint_evd(
