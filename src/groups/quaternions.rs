@@ -15,7 +15,8 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
 
-use super::{LieAlgebra, LieGroup, RESIDUAL_MAX, Sample, So3};
+use super::{Adjoint, LieAlgebra, LieGroup, RESIDUAL_MAX, Sample, So3};
+use crate::actions::{Action, Coadjoint};
 use crate::error::{Error, StepError};
 use crate::maps::{Cay, CoordinateMap, Exp};
 use crate::so3;
@@ -117,6 +118,69 @@ impl LieGroup for UnitQuaternions {
             *q = UnitQuaternion::new_unchecked(Quaternion::from(q.coords * (1.0 - 0.5 * gap)));
         }
         gap.abs()
+    }
+}
+
+/// As on SO(3), by q in place of its rotation.
+impl Adjoint for UnitQuaternions {
+    type Dual = Vector3<f64>;
+    type Inverting = ();
+
+    fn inverting(&self) {}
+    #[inline]
+    fn invert(
+        &self,
+        q: &UnitQuaternion<f64>,
+        (): &mut (),
+        out: &mut UnitQuaternion<f64>,
+    ) -> Result<(), StepError> {
+        *out = q.conjugate();
+        Ok(())
+    }
+    #[inline]
+    fn big_ad(
+        &self,
+        q: &UnitQuaternion<f64>,
+        u: &Vector3<f64>,
+        out: &mut Vector3<f64>,
+    ) -> Result<(), StepError> {
+        self.apply(q, u, out);
+        so3::finite(*out, "Ad").map(drop)
+    }
+    #[inline]
+    fn coad_group(
+        &self,
+        q: &UnitQuaternion<f64>,
+        m: &Vector3<f64>,
+        out: &mut Vector3<f64>,
+    ) -> Result<(), StepError> {
+        self.big_ad(&q.conjugate(), m, out)
+    }
+    #[inline]
+    fn coad(&self, u: &Vector3<f64>, m: &Vector3<f64>, out: &mut Vector3<f64>) {
+        SO3.coad(u, m, out);
+    }
+    #[inline]
+    fn pair(&self, m: &Vector3<f64>, v: &Vector3<f64>) -> f64 {
+        SO3.pair(m, v)
+    }
+}
+
+impl Action<UnitQuaternions> for Coadjoint {
+    type Point = Vector3<f64>;
+    type Work = ();
+
+    fn work(&self, _: &UnitQuaternions) {}
+    #[inline]
+    fn act(
+        &self,
+        group: &UnitQuaternions,
+        q: &UnitQuaternion<f64>,
+        m: &Vector3<f64>,
+        out: &mut Vector3<f64>,
+        _: &mut (),
+    ) {
+        group.apply(q, m, out);
     }
 }
 
