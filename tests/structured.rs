@@ -2,9 +2,10 @@
 //! permutations, small integers, numbers near the ends of the range. On every group exp, dexp, its inverse
 //! and log return, agree with each other to rounding, and fail only where they have to.
 
-use faer::Mat;
 use faer::linalg::solvers::DenseSolveCore;
-use lieflow::groups::{AlgebraMatrix, MatrixGroup, Sample};
+use faer::{Mat, c64};
+use lieflow::dense::{ComplexExponential, Exponential, ExponentialBatch, Structure};
+use lieflow::groups::{AlgebraMatrix, Form, MatrixGroup, Sample};
 use lieflow::maps::{Cay, Exp, cay_inv, dexp, distance_to_singular};
 use lieflow::{CoordinateMap, LieAlgebra};
 use rand::seq::SliceRandom;
@@ -144,5 +145,67 @@ fn a_graded_triangle_is_not_balanced_to_pieces() {
         let g = Exp.eval(&group, &u).unwrap_or_else(|e| panic!("{e}"));
         let gap = (&*g - &sum * faer::Scale(core::f64::consts::E)).norm_l2();
         assert!(gap <= 24.0 * EPS * size * u.norm_l2(), "{round}: {:e}", gap / size);
+    }
+}
+
+/// Padé's approximant, the default choice, a batch, complex numbers and exp(u)·x are one function.
+#[test]
+fn one_exponential() {
+    let mut rng = Pcg64::seed_from_u64(23);
+    for group in groups() {
+        let (name, n) = (group.name(), group.n());
+        let skew = match group.form() {
+            Form::Identity => Structure::Skew,
+            _ => Structure::General,
+        };
+        let mut out = Mat::zeros(n, n);
+        for round in 0..if n > 10 { 100 } else { 60 } {
+            let [shape, before, after] = [(); 3].map(|()| rng.random_range(0..9));
+            let u = structured(&group, shape, &mut rng).into_mat();
+            if u.norm_l2() > 200.0 {
+                continue;
+            }
+            let at = || format!("{name}, round {round}: u = {u:?}");
+            let mut exp = Exponential::new(n).insist_on_pade();
+            exp.exp(&u, Structure::General, &mut out).unwrap_or_else(|e| panic!("{e}: {}", at()));
+            let pade = out.clone();
+            let cond = Exponential::condition(&u).unwrap_or_else(|e| panic!("{e}: {}", at()));
+            let rounding = EPS * n as f64 * cond.max(1.0) * pade.norm_l2();
+            let close = |mine: &Mat<f64>, what: &str| {
+                let gap = (mine - &pade).norm_l2();
+                assert!(gap <= 8.0 * rounding, "{what}: {:.1}, {}", gap / rounding, at());
+            };
+
+            let mut exp = Exponential::new(n);
+            exp.exp(&u, skew, &mut out).unwrap_or_else(|e| panic!("{e}: {}", at()));
+            close(&out, "the default choice");
+
+            // Between strangers; one of them may be beyond the range, and then there is no batch.
+            let strangers = [before, after].map(|shape| structured(&group, shape, &mut rng));
+            let mut packed = vec![0.0; 3 * n * n];
+            for (m, x) in [&*strangers[0], &u, &*strangers[1]].into_iter().enumerate() {
+                for j in 0..n {
+                    for i in 0..n {
+                        packed[(j * n + i) * 3 + m] = x[(i, j)];
+                    }
+                }
+            }
+            let mut images = packed.clone();
+            if ExponentialBatch::new(n).exp(&packed, skew, &mut images).is_ok() {
+                close(&Mat::from_fn(n, n, |i, j| images[(j * n + i) * 3 + 1]), "a batch");
+            }
+
+            let z = Mat::from_fn(n, n, |i, j| c64::new(u[(i, j)], 0.0));
+            let (mut g, mut exp_z) = (z.clone(), ComplexExponential::new(n));
+            exp_z.exp(&z, skew, &mut g).unwrap_or_else(|e| panic!("{e}: {}", at()));
+            close(&Mat::from_fn(n, n, |i, j| g[(i, j)].re), "complex numbers");
+
+            let mut x = Mat::from_fn(n, 1, |i, _| 1.0 + i as f64);
+            let image = &pade * &x;
+            let size = x.norm_l2();
+            exp.apply(&u, skew, &mut x).unwrap_or_else(|e| panic!("{e}: {}", at()));
+            let gap = (&x - &image).norm_l2();
+            assert!(gap <= 8.0 * rounding * size, "exp(u)·x: {gap:e}, {}", at());
+        }
     }
 }
