@@ -64,13 +64,16 @@ impl Generator<So3> for Linear {
     }
 }
 
+/// H(m) of a Lie–Poisson system.
+type Energy<M> = Box<dyn Fn(&M) -> f64>;
+
 /// A problem on M by G and Λ, whatever its field.
 pub(super) struct Flow<G: LieGroup, A: Action<G>> {
     group: G,
     action: A,
     start: A::Point,
     linear: bool,
-    hamiltonian: Option<Box<dyn Fn(&A::Point) -> f64>>,
+    hamiltonian: Option<Energy<A::Point>>,
     field: Box<dyn Fn() -> Box<dyn Field<G, A::Point>>>,
 }
 
@@ -164,11 +167,11 @@ where
         let group = problem.group().clone();
         let problem = std::rc::Rc::new(problem);
         let of_energy = problem.clone();
-        let hamiltonian: Option<Box<dyn Fn(&A::Point) -> f64>> =
-            Some(Box::new(move |m| of_energy.hamiltonian(m)));
+        let energy: Energy<A::Point> = Box::new(move |m| of_energy.hamiltonian(m));
         let field = Box::new(move || -> Box<dyn Field<G, A::Point>> {
             Box::new(RunningPoisson(problem.clone(), problem.work()))
         });
+        let hamiltonian = Some(energy);
         let flow = Flow { group, action, start: start.clone(), linear: false, hamiltonian, field };
         (flow, start)
     }
