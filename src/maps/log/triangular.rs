@@ -8,8 +8,9 @@ use crate::error::{Error, StepError};
 /// Square roots halve the logarithm; 1100 halvings take the range of doubles to rounding.
 const ROOTS_MAX: u32 = 1100;
 
-/// The principal logarithm of a real g without eigenvalues on the negative real axis.
-pub(super) fn log(g: &Mat<f64>, group: impl Fn() -> String) -> Result<Mat<f64>, Error> {
+/// The logarithm of a real g, or the eigenvalues on the negative real axis, for which there is no principal
+/// one, and how far from it they may be by rounding.
+pub(super) fn log(g: &Mat<f64>) -> Result<Result<Mat<f64>, (Vec<c64>, f64)>, Error> {
     let n = g.nrows();
     let (mut t, q) = schur::complex(g)?;
     let eigenvalues: Vec<c64> = (0..n).map(|i| t[(i, i)]).collect();
@@ -17,8 +18,10 @@ pub(super) fn log(g: &Mat<f64>, group: impl Fn() -> String) -> Result<Mat<f64>, 
     // The Schur form is exact for a g moved by some ε‖g‖; an eigenvalue within that of the axis may
     // belong to either side.
     let margin = 4.0 * f64::EPSILON * n as f64 * size;
-    if let Some(z) = eigenvalues.iter().find(|z| z.re <= 0.0 && z.im.abs() <= margin) {
-        return Err(Error::NoLogarithm { group: group(), re: z.re, im: z.im });
+    let on_axis = |z: &&c64| z.re <= 0.0 && z.im.abs() <= margin;
+    let negative: Vec<c64> = eigenvalues.iter().filter(on_axis).copied().collect();
+    if !negative.is_empty() {
+        return Ok(Err((negative, margin)));
     }
     let mut roots = 0;
     while distance_to_identity(&t) > THETA {
@@ -40,7 +43,7 @@ pub(super) fn log(g: &Mat<f64>, group: impl Fn() -> String) -> Result<Mat<f64>, 
         l[(j, j)] = eigenvalues[j].ln();
     }
     let full = &q * &l * q.adjoint();
-    Ok(Mat::from_fn(n, n, |i, j| full[(i, j)].re))
+    Ok(Ok(Mat::from_fn(n, n, |i, j| full[(i, j)].re)))
 }
 
 /// ‖t − 𝟙‖₁ for upper triangular t; NaN counts as near, and the result is checked for it.
