@@ -24,6 +24,7 @@ use core::f64::consts::PI;
 use faer::{Mat, c64};
 use nalgebra::{DMatrix, SVD, SymmetricEigen};
 
+use super::triangular::Negative;
 use crate::dense::{AdForm, AdKind};
 use crate::error::NoLogarithm;
 
@@ -36,19 +37,17 @@ const SWEEPS: usize = 10_000;
 
 type Matrix = DMatrix<f64>;
 
-/// (g(𝟙 − 2P), πK), or the eigenvalue that has no logarithm. `negative` are the eigenvalues of g on the
-/// negative axis to within `margin`.
+/// (g(𝟙 − 2P), πK), or the eigenvalue that has no logarithm.
 pub(super) fn apart(
     g: &Mat<f64>,
     form: Option<&AdForm>,
-    negative: &[c64],
-    margin: f64,
+    negative: &Negative,
 ) -> Result<(Mat<f64>, Mat<f64>), (c64, NoLogarithm)> {
     let n = g.nrows();
     let dense = |x: &Mat<f64>| Matrix::from_fn(n, n, |i, j| x[(i, j)]);
     let form = form.map(|form| (form.kind, dense(&form.m), dense(&form.inverse)));
-    let together = 16.0 * margin;
-    let mut negative = negative.to_vec();
+    let together = 16.0 * negative.margin;
+    let mut negative = negative.eigenvalues.clone();
     negative.sort_by(|a, b| a.re.total_cmp(&b.re));
     let (mut p, mut k) = (Matrix::zeros(n, n), Matrix::zeros(n, n));
     for cluster in negative.chunk_by(|a, b| b.re - a.re <= together) {

@@ -17,6 +17,7 @@ mod schur;
 mod triangular;
 
 use faer::{Mat, c64};
+use triangular::Negative;
 
 use crate::dense::{Lu, is_finite, norm1, scaled_sum};
 use crate::error::{Error, NoLogarithm, StepError};
@@ -97,19 +98,21 @@ impl MatrixGroup {
     fn log_by_triangle(&self, g: &Mat<f64>) -> Result<Mat<f64>, Error> {
         let refuse =
             |z: c64, why| Error::NoLogarithm { group: self.name(), re: z.re, im: z.im, why };
-        let (negative, margin) = match triangular::log(g)? {
+        let negative = match triangular::log(g)? {
             Ok(u) => return Ok(u),
             Err(negative) => negative,
         };
-        let (rest, turn) = half_turns::apart(g, self.ad_form().as_ref(), &negative, margin)
+        let (rest, turn) = half_turns::apart(g, self.ad_form().as_ref(), &negative)
             .map_err(|(z, why)| refuse(z, why))?;
         // Where M is neither symmetric nor skew the turn keeps one part of it, perhaps not the other.
         if self.algebra_within(turn.clone(), IN_ALGEBRA).is_err() {
-            return Err(refuse(negative[0], NoLogarithm::Undecided));
+            return Err(refuse(negative.eigenvalues[0], NoLogarithm::Undecided));
         }
         match triangular::log(&rest)? {
             Ok(u) => Ok(u + turn),
-            Err((negative, _)) => Err(refuse(negative[0], NoLogarithm::Undecided)),
+            Err(Negative { eigenvalues, .. }) => {
+                Err(refuse(eigenvalues[0], NoLogarithm::Undecided))
+            }
         }
     }
 }

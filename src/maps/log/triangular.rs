@@ -8,9 +8,15 @@ use crate::error::{Error, StepError};
 /// Square roots halve the logarithm; 1100 halvings take the range of doubles to rounding.
 const ROOTS_MAX: u32 = 1100;
 
-/// The logarithm of a real g, or the eigenvalues on the negative real axis, for which there is no principal
-/// one, and how far from it they may be by rounding.
-pub(super) fn log(g: &Mat<f64>) -> Result<Result<Mat<f64>, (Vec<c64>, f64)>, Error> {
+/// Eigenvalues on the negative real axis: for them there is no principal logarithm.
+pub(super) struct Negative {
+    pub(super) eigenvalues: Vec<c64>,
+    /// How far from the axis they may be by rounding.
+    pub(super) margin: f64,
+}
+
+/// The principal logarithm of a real g, if it has one.
+pub(super) fn log(g: &Mat<f64>) -> Result<Result<Mat<f64>, Negative>, Error> {
     let n = g.nrows();
     let (mut t, q) = schur::complex(g)?;
     let eigenvalues: Vec<c64> = (0..n).map(|i| t[(i, i)]).collect();
@@ -19,9 +25,9 @@ pub(super) fn log(g: &Mat<f64>) -> Result<Result<Mat<f64>, (Vec<c64>, f64)>, Err
     // belong to either side.
     let margin = 4.0 * f64::EPSILON * n as f64 * size;
     let on_axis = |z: &&c64| z.re <= 0.0 && z.im.abs() <= margin;
-    let negative: Vec<c64> = eigenvalues.iter().filter(on_axis).copied().collect();
-    if !negative.is_empty() {
-        return Ok(Err((negative, margin)));
+    if eigenvalues.iter().any(|z| on_axis(&z)) {
+        let eigenvalues = eigenvalues.iter().filter(on_axis).copied().collect();
+        return Ok(Err(Negative { eigenvalues, margin }));
     }
     let mut roots = 0;
     while distance_to_identity(&t) > THETA {
