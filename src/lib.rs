@@ -21,6 +21,7 @@
 //! | f : M → 𝔤 | [`problems`]: [`Problem`]; rigid bodies, tops, Lie–Poisson, isospectral and other flows |
 //! | one step | [`methods`]: [`Method`]; [`Rkmk`](methods::Rkmk), [`Rk`](methods::Rk) |
 //! | many steps | [`integrate()`], [`TimeGrid`], [`SaveAt`] |
+//! | many bodies | [`ensemble`] |
 //!
 //! Two layers share every trait: closed forms on so(3) ≅ ℝ³ over nalgebra, and any n over faer. The
 //! same [`Rkmk`](methods::Rkmk) runs on both, and they agree to rounding.
@@ -56,6 +57,7 @@ pub mod catalog;
 pub mod chart;
 pub mod check;
 pub mod dense;
+pub mod ensemble;
 pub mod error;
 pub mod groups;
 mod integrate;

@@ -28,7 +28,7 @@ pub struct Angle<S> {
 }
 
 /// Below this α² the coefficients of dexp and dexp⁻¹ are polynomials, whose other form cancels there.
-pub(super) const SERIES: f64 = 1.0;
+pub(crate) const SERIES: f64 = 1.0;
 /// Below this α², π² and a little more, cos(α/2) and sin(α/2)/α are polynomials.
 pub(super) const TURN: f64 = 10.0;
 /// Below this |sin(α/2)| the rounding of α is taken back.

@@ -296,7 +296,7 @@ fn again<K: Kernel<IN, OUT>, const IN: usize, const OUT: usize>(
 }
 
 /// All α² of the block are below [`SERIES`].
-const SMALL: u8 = 0;
+pub(crate) const SMALL: u8 = 0;
 /// All are below [`TURN`].
 const BELOW: u8 = 1;
 /// None is below [`TURN`].
@@ -306,7 +306,7 @@ const MIXED: u8 = 3;
 
 /// One number of a block. It asks no questions: what needs an answer is done again by the scalar forms.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Lane<const FUSED: bool, const SIZE: u8>(f64);
+pub(crate) struct Lane<const FUSED: bool, const SIZE: u8>(pub(crate) f64);
 
 macro_rules! lane_operator {
     ($($trait:ident $method:ident $op:tt;)*) => {$(

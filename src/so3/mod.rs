@@ -42,7 +42,8 @@ mod log;
 mod polar;
 mod quaternion;
 
-pub(crate) use angle::Angle;
+pub(crate) use angle::{Angle, SERIES};
+pub(crate) use batch::{Lane, SMALL};
 pub(crate) use cay::{cay_coefficients, dcayinv_of};
 pub(crate) use ccsk::{Angles, ccsk_of, dccskinv_of};
 

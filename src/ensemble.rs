@@ -1,0 +1,611 @@
+//! Many free rigid bodies side by side, in the widest SIMD lanes of the machine, chosen at run time.
+//!
+//! Each has its own inertia, momentum m and, where it is asked for, attitude g from body to space:
+//! ṁ = m × J⁻¹m, ġ = g ω̂, so that m and the rows x of g move alike, ẋ = x × ω. With f = −ω a step is
+//!
+//! | | m⁺ | rows of g⁺ |
+//! |---|---|---|
+//! | [`EnsembleMethod::Rkmk4Exp`], [`Rkmk4Cay`](EnsembleMethod::Rkmk4Cay) | Ψ(v) m, v of Table 1 in Celledoni & Owren | Ψ(v) x |
+//! | [`EnsembleMethod::Rk4`] | classical Runge–Kutta on (m, g) | the same |
+//!
+//! These are the methods `rkmk4` and `rk4-mg` of the catalog, with their results to rounding. Bodies lie
+//! in blocks of 64, and a block takes all its steps before the next one takes its first, so that a
+//! million bodies cost what a hundred do, each. In a block the formulas run without a branch; where a
+//! stage turns by more than one radian ([`Rkmk`] says what it then costs) or is not finite, the body is
+//! done again by the scalar method, which also says what is wrong with it.
+//!
+//! Blocks do not know of each other: on any number of threads the results are the same bits.
+//!
+//! ```
+//! use lieflow::ensemble::{Ensemble, EnsembleMethod};
+//! let inertia = vec![[1.0, 2.0, 3.0]; 1000];
+//! let momentum: Vec<_> = (0..1000).map(|i| [0.2, 1e-3 * f64::from(i), 3.0]).collect();
+//! let mut bodies = Ensemble::new(&inertia, &momentum)?;
+//! bodies.advance(EnsembleMethod::Rkmk4Cay, 0.01, 100, 1)?;
+//! assert!((bodies.momentum(999).norm() - (0.04 + 0.999f64.powi(2) + 9.0).sqrt()).abs() < 1e-14);
+//! # Ok::<(), lieflow::Error>(())
+//! ```
+
+use nalgebra::{Matrix3, Vector3};
+use pulp::{Arch, Simd, WithSimd};
+
+use crate::error::{Error, StepError};
+use crate::groups::{So3, cross};
+use crate::maps::{Cay, Exp};
+use crate::methods::tableau::RK4;
+use crate::methods::{Method, Rk, Rkmk, Step};
+use crate::problems::{BodyState, RigidBodyState};
+use crate::scalar::{Real, Trig};
+use crate::so3::{Angle, Lane, SERIES, SMALL, cay_coefficients, rodrigues_on};
+
+/// How an ensemble takes its steps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum EnsembleMethod {
+    /// RKMK4 in coordinates of exp. Order 4; keeps |m|, g m and gᵀg = 𝟙.
+    Rkmk4Exp,
+    /// RKMK4 in coordinates of cay. Order 4; keeps |m|, g m and gᵀg = 𝟙.
+    Rkmk4Cay,
+    /// Classical Runge–Kutta on m and the entries of g. Order 4; keeps nothing.
+    Rk4,
+}
+
+/// Bodies in a block: their numbers stay in the first cache.
+const BLOCK: usize = 64;
+/// After so many steps of a method that keeps the group, g is taken back to it.
+const RESTORE_EVERY: u64 = 64;
+/// An attitude is a rotation to within this.
+const ROTATION: f64 = 1e-6;
+
+/// A number of each body of a block.
+type Numbers = [f64; BLOCK];
+/// A vector of each, by component.
+type Vectors = [Numbers; 3];
+
+/// The bodies of a block, with the rows of g: three of them, or none.
+#[derive(Clone, Copy, Debug)]
+struct Block<const ROWS: usize> {
+    /// 1/J.
+    inverse: Vectors,
+    state: State<ROWS>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct State<const ROWS: usize> {
+    m: Vectors,
+    g: [Vectors; ROWS],
+}
+
+const ZERO: Vectors = [[0.0; BLOCK]; 3];
+
+impl<const ROWS: usize> Block<ROWS> {
+    const EMPTY: Self = Block { inverse: ZERO, state: State { m: ZERO, g: [ZERO; ROWS] } };
+}
+
+#[derive(Clone, Debug)]
+enum Blocks {
+    Momentum(Vec<Block<0>>),
+    Attitude(Vec<Block<3>>),
+}
+
+/// Many free rigid bodies. Without attitudes none is stored or integrated.
+#[derive(Clone, Debug)]
+pub struct Ensemble {
+    len: usize,
+    blocks: Blocks,
+    /// Steps since g was last taken back to the group.
+    age: u64,
+}
+
+impl Ensemble {
+    /// Bodies by their principal moments of inertia and their momenta in the body.
+    ///
+    /// # Errors
+    /// [`Error::Shape`] for lists of different lengths; [`Error::OutOfRange`] for a moment of inertia that
+    /// is not positive and finite, or a momentum that is not finite, with its place.
+    pub fn new(inertia: &[[f64; 3]], momentum: &[[f64; 3]]) -> Result<Self, Error> {
+        let len = inertia.len();
+        check_length("momentum", momentum.len(), len)?;
+        let mut blocks = vec![Block::EMPTY; len.div_ceil(BLOCK)];
+        for (i, (inertia, momentum)) in inertia.iter().zip(momentum).enumerate() {
+            let block = &mut blocks[i / BLOCK];
+            for k in 0..3 {
+                let (j, m) = (inertia[k], momentum[k]);
+                if !(j > 0.0 && (1.0 / j).is_finite() && j.is_finite()) {
+                    let arg = format!("inertia[{i}][{k}]");
+                    return Err(Error::out_of_range(arg, j, "a finite number > 0"));
+                }
+                if !m.is_finite() {
+                    let arg = format!("momentum[{i}][{k}]");
+                    return Err(Error::out_of_range(arg, m, "a finite number"));
+                }
+                block.inverse[k][i % BLOCK] = 1.0 / j;
+                block.state.m[k][i % BLOCK] = m;
+            }
+        }
+        Ok(Ensemble { len, blocks: Blocks::Momentum(blocks), age: 0 })
+    }
+
+    /// The same bodies with their attitudes, rotations from body to space.
+    ///
+    /// # Errors
+    /// [`Error::Shape`] for a list of another length; as
+    /// [`So3::check_element`](crate::groups::So3::check_element) for what is no rotation.
+    pub fn with_attitudes(self, attitudes: &[Matrix3<f64>]) -> Result<Self, Error> {
+        check_length("attitudes", attitudes.len(), self.len)?;
+        let mut blocks = vec![Block::EMPTY; self.len.div_ceil(BLOCK)];
+        for (b, block) in blocks.iter_mut().enumerate() {
+            let (inverse, m) = self.block(b);
+            (block.inverse, block.state.m) = (*inverse, *m);
+        }
+        for (i, g) in attitudes.iter().enumerate() {
+            So3::new().check_element("attitudes", g, ROTATION)?;
+            for (r, row) in blocks[i / BLOCK].state.g.iter_mut().enumerate() {
+                for (c, entry) in row.iter_mut().enumerate() {
+                    entry[i % BLOCK] = g[(r, c)];
+                }
+            }
+        }
+        Ok(Ensemble { blocks: Blocks::Attitude(blocks), ..self })
+    }
+
+    /// How many bodies.
+    pub fn len(&self) -> usize {
+        self.len
+    }
+    /// Is there none?
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// 1/J and m of a block.
+    fn block(&self, b: usize) -> (&Vectors, &Vectors) {
+        match &self.blocks {
+            Blocks::Momentum(blocks) => (&blocks[b].inverse, &blocks[b].state.m),
+            Blocks::Attitude(blocks) => (&blocks[b].inverse, &blocks[b].state.m),
+        }
+    }
+
+    /// m of body i < [`len`](Self::len).
+    pub fn momentum(&self, i: usize) -> Vector3<f64> {
+        let (_, m) = self.block(i / BLOCK);
+        vector(m, i % BLOCK)
+    }
+    /// g of body i < [`len`](Self::len), where attitudes are integrated.
+    pub fn attitude(&self, i: usize) -> Option<Matrix3<f64>> {
+        match &self.blocks {
+            Blocks::Momentum(_) => None,
+            Blocks::Attitude(blocks) => {
+                let g = &blocks[i / BLOCK].state.g;
+                Some(Matrix3::from_fn(|r, c| g[r][c][i % BLOCK]))
+            }
+        }
+    }
+    /// ½ m·J⁻¹m of body i < [`len`](Self::len).
+    pub fn energy(&self, i: usize) -> f64 {
+        let (inverse, m) = self.block(i / BLOCK);
+        let (j, m) = (vector(inverse, i % BLOCK), vector(m, i % BLOCK));
+        0.5 * j.dot(&m.component_mul(&m))
+    }
+
+    /// So many steps of size h for every body, on this number of threads. Allocates nothing but threads,
+    /// of which one is the caller's own.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for an h that is not finite, or no threads; [`Error::Element`] with the number
+    /// of the first body for which a step failed, and why. That body stands where it was before the step,
+    /// and so do those of its block; of the others some are at the end.
+    pub fn advance(
+        &mut self,
+        method: EnsembleMethod,
+        h: f64,
+        steps: u64,
+        threads: usize,
+    ) -> Result<(), Error> {
+        if !h.is_finite() {
+            return Err(Error::out_of_range("h", h, "a finite number"));
+        }
+        if threads == 0 {
+            return Err(Error::out_of_range("threads", 0.0, "at least 1"));
+        }
+        let way = Way { method, h, steps, age: self.age };
+        match &mut self.blocks {
+            Blocks::Momentum(blocks) => on_threads(way, blocks, threads),
+            Blocks::Attitude(blocks) => on_threads(way, blocks, threads),
+        }?;
+        self.age = (self.age + steps) % RESTORE_EVERY;
+        Ok(())
+    }
+}
+
+fn check_length(arg: &'static str, rows: usize, expected_rows: usize) -> Result<(), Error> {
+    match rows == expected_rows {
+        true => Ok(()),
+        false => Err(Error::Shape { arg, rows, cols: 1, expected_rows, expected_cols: 1 }),
+    }
+}
+
+/// What is done to every body.
+#[derive(Clone, Copy)]
+struct Way {
+    method: EnsembleMethod,
+    h: f64,
+    steps: u64,
+    age: u64,
+}
+
+fn on_threads<const ROWS: usize>(
+    way: Way,
+    blocks: &mut [Block<ROWS>],
+    threads: usize,
+) -> Result<(), Error> {
+    let share = blocks.len().div_ceil(threads).max(1);
+    let work = |(i, blocks): (usize, &mut [Block<ROWS>])| {
+        let first = i * share * BLOCK;
+        Arch::new().dispatch(Run { way, blocks, first })
+    };
+    std::thread::scope(|scope| {
+        let mut shares = blocks.chunks_mut(share).enumerate();
+        let own = shares.next();
+        let others: Vec<_> = shares.map(|share| scope.spawn(move || work(share))).collect();
+        let mut done = own.map_or(Ok(()), work);
+        for other in others {
+            // A thread that panicked has nothing to say but that.
+            let result = other.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+            done = done.and(result);
+        }
+        done
+    })
+}
+
+struct Run<'a, const ROWS: usize> {
+    way: Way,
+    blocks: &'a mut [Block<ROWS>],
+    /// The number of the first body.
+    first: usize,
+}
+
+impl<const ROWS: usize> WithSimd for Run<'_, ROWS> {
+    type Output = Result<(), Error>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Self::Output {
+        let Run { way, blocks, first } = self;
+        // Every x86-64 machine with lanes of four has fused products.
+        let fused = S::F64_LANES >= 4;
+        for (number, block) in blocks.iter_mut().enumerate() {
+            let first = first + number * BLOCK;
+            match (way.method, fused) {
+                (EnsembleMethod::Rkmk4Exp, true) => steps::<InExp, true, ROWS>(way, block, first)?,
+                (EnsembleMethod::Rkmk4Exp, false) => {
+                    steps::<InExp, false, ROWS>(way, block, first)?
+                }
+                (EnsembleMethod::Rkmk4Cay, true) => steps::<InCay, true, ROWS>(way, block, first)?,
+                (EnsembleMethod::Rkmk4Cay, false) => {
+                    steps::<InCay, false, ROWS>(way, block, first)?
+                }
+                (EnsembleMethod::Rk4, true) => steps::<Classical, true, ROWS>(way, block, first)?,
+                (EnsembleMethod::Rk4, false) => steps::<Classical, false, ROWS>(way, block, first)?,
+            }
+        }
+        Ok(())
+    }
+}
+
+/// All steps of a block.
+#[inline(always)]
+fn steps<Rule: OneStep, const FUSED: bool, const ROWS: usize>(
+    way: Way,
+    block: &mut Block<ROWS>,
+    first: usize,
+) -> Result<(), Error> {
+    let Block { inverse, state } = block;
+    let mut spare = *state;
+    let (mut from, mut to, mut done) = (&mut *state, &mut spare, Ok(()));
+    let mut swapped = false;
+    let (mut guard, mut motion) = ([0.0; BLOCK], [[0.0; BLOCK]; MOTION]);
+    for n in 1..=way.steps {
+        momenta::<Rule, FUSED>(way.h, inverse, &from.m, &mut to.m, &mut motion, &mut guard);
+        for (from, to) in from.g.iter().zip(&mut to.g) {
+            rows::<Rule, FUSED>(way.h, &motion, from, to);
+        }
+        if !guard.iter().fold(true, |all, g| all & (*g < SERIES)) {
+            done = again::<Rule, ROWS>(way.h, &guard, inverse, from, to, first);
+            if done.is_err() {
+                break;
+            }
+        }
+        if Rule::KEEPS_GROUP && (way.age + n).is_multiple_of(RESTORE_EVERY) {
+            restore(&mut to.g);
+        }
+        core::mem::swap(&mut from, &mut to);
+        swapped = !swapped;
+    }
+    if swapped {
+        *state = spare;
+    }
+    done
+}
+
+/// A step of all momenta, what it leaves for the attitudes, and the largest |u|² of its stages; NaN where
+/// m is not finite. What is read and what is written are arguments, so that the compiler sees them apart.
+#[inline(always)]
+fn momenta<Rule: OneStep, const FUSED: bool>(
+    h: f64,
+    inverse: &Vectors,
+    from: &Vectors,
+    to: &mut Vectors,
+    motion: &mut [Numbers; MOTION],
+    guard: &mut Numbers,
+) {
+    for i in 0..BLOCK {
+        let lane = |x: &Vectors| vector(x, i).map(Lane::<FUSED, SMALL>);
+        let step = Rule::step(Lane(h), &lane(inverse), &lane(from));
+        for k in 0..3 {
+            to[k][i] = step.m[k].0;
+        }
+        for k in 0..MOTION {
+            motion[k][i] = step.motion[k].0;
+        }
+        // 0·m is NaN where m is not finite.
+        guard[i] = step.largest.0 + 0.0 * (step.m[0].0 + step.m[1].0 + step.m[2].0);
+    }
+}
+
+/// The same step of a row of all attitudes.
+#[inline(always)]
+fn rows<Rule: OneStep, const FUSED: bool>(
+    h: f64,
+    motion: &[Numbers; MOTION],
+    from: &Vectors,
+    to: &mut Vectors,
+) {
+    for i in 0..BLOCK {
+        let motion = core::array::from_fn(|k| Lane::<FUSED, SMALL>(motion[k][i]));
+        let row = Rule::carry(Lane(h), &motion, &vector(from, i).map(Lane));
+        for k in 0..3 {
+            to[k][i] = row[k].0;
+        }
+    }
+}
+
+/// The bodies whose guard is too large, by the scalar method.
+#[cold]
+#[inline(never)]
+fn again<Rule: OneStep, const ROWS: usize>(
+    h: f64,
+    guard: &Numbers,
+    inverse: &Vectors,
+    from: &State<ROWS>,
+    to: &mut State<ROWS>,
+    first: usize,
+) -> Result<(), Error> {
+    for (i, guard) in guard.iter().enumerate() {
+        if *guard < SERIES {
+            continue;
+        }
+        let (mut y, inverse) = (
+            BodyState { m: vector(&from.m, i), g: Matrix3::identity() },
+            vector(inverse, i).into(),
+        );
+        for (r, row) in from.g.iter().enumerate() {
+            y.g.set_row(r, &vector(row, i).transpose());
+        }
+        Rule::one(inverse, h, &mut y)
+            .map_err(|source| Error::Element { index: first + i, source })?;
+        for k in 0..3 {
+            to.m[k][i] = y.m[k];
+            for r in 0..ROWS {
+                to.g[r][k][i] = y.g[(r, k)];
+            }
+        }
+    }
+    Ok(())
+}
+
+/// g ← g − ½ g (gᵀg − 𝟙): a step of Newton–Schulz.
+#[inline(always)]
+fn restore<const ROWS: usize>(g: &mut [Vectors; ROWS]) {
+    for i in 0..BLOCK {
+        let mut e = [[0.0; 3]; 3];
+        for (a, e) in e.iter_mut().enumerate() {
+            for (b, e) in e.iter_mut().enumerate() {
+                let products = g.iter().map(|row| row[a][i] * row[b][i]);
+                *e = 0.5 * products.sum::<f64>() - if a == b { 0.5 } else { 0.0 };
+            }
+        }
+        for row in g.iter_mut() {
+            let x = vector(row, i);
+            for c in 0..3 {
+                row[c][i] -= x[0] * e[0][c] + x[1] * e[1][c] + x[2] * e[2][c];
+            }
+        }
+    }
+}
+
+/// The numbers that a step leaves for the attitude.
+const MOTION: usize = 12;
+
+/// What a step makes of the momentum.
+struct Moved<S> {
+    m: Vector3<S>,
+    motion: [S; MOTION],
+    /// The largest |u|² of the stages.
+    largest: S,
+}
+
+/// A method in lanes, and the scalar method that it is.
+trait OneStep {
+    const KEEPS_GROUP: bool;
+    /// A step of m, with the reciprocals j of the inertias.
+    fn step<S: Trig>(h: S, j: &Vector3<S>, m: &Vector3<S>) -> Moved<S>;
+    /// What it does to another vector that is fixed in space.
+    fn carry<S: Trig>(h: S, motion: &[S; MOTION], x: &Vector3<S>) -> Vector3<S>;
+    fn one(inverse_inertia: [f64; 3], h: f64, y: &mut BodyState) -> Result<(), StepError>;
+}
+
+fn scalar<M: Method<RigidBodyState>>(
+    method: &M,
+    inverse_inertia: [f64; 3],
+    h: f64,
+    y: &mut BodyState,
+) -> Result<(), StepError> {
+    // What was checked when the ensemble was made.
+    let refused = |_| StepError::NotFinite { what: "the inertia" };
+    let body = RigidBodyState::new(inverse_inertia.map(|x| 1.0 / x)).map_err(refused)?;
+    let mut work = method.work(&body, y).map_err(refused)?;
+    method.step(&body, Step { n: 0, t: 0.0, h }, y, &mut work)
+}
+
+/// That of body i.
+#[inline(always)]
+fn vector(x: &Vectors, i: usize) -> Vector3<f64> {
+    Vector3::new(x[0][i], x[1][i], x[2][i])
+}
+
+/// −J⁻¹m.
+#[inline(always)]
+fn field<S: Real>(j: &Vector3<S>, m: &Vector3<S>) -> Vector3<S> {
+    Vector3::new(-(j[0] * m[0]), -(j[1] * m[1]), -(j[2] * m[2]))
+}
+
+#[inline(always)]
+fn scaled<S: Real>(a: S, x: &Vector3<S>) -> Vector3<S> {
+    Vector3::new(a * x[0], a * x[1], a * x[2])
+}
+
+#[inline(always)]
+fn sum<S: Real>(x: &Vector3<S>, a: S, y: &Vector3<S>) -> Vector3<S> {
+    Vector3::new(a.mul_add(y[0], x[0]), a.mul_add(y[1], x[1]), a.mul_add(y[2], x[2]))
+}
+
+/// max, without a branch.
+#[inline(always)]
+fn larger<S: Real>(a: S, b: S) -> S {
+    let half = S::lit(0.5);
+    half * (a + b + (a - b).abs())
+}
+
+/// Ψ at u: Ψ(u) = 𝟙 + a û + b û², dΨ_u⁻¹ = (1 + s)𝟙 − û/2 + c û².
+struct Chart<S> {
+    u: Vector3<S>,
+    alpha2: S,
+    a: S,
+    b: S,
+    c: S,
+    s: S,
+}
+
+trait InChart {
+    fn at<S: Trig>(u: Vector3<S>) -> Chart<S>;
+    fn one(inverse_inertia: [f64; 3], h: f64, y: &mut BodyState) -> Result<(), StepError>;
+}
+
+struct InExp;
+impl InChart for InExp {
+    #[inline(always)]
+    fn at<S: Trig>(u: Vector3<S>) -> Chart<S> {
+        let (angle, a, b) = Angle::with_exp(&u);
+        Chart { u, alpha2: angle.alpha2, a, b, c: angle.dexpinv_coefficient(), s: S::lit(0.0) }
+    }
+    fn one(inverse_inertia: [f64; 3], h: f64, y: &mut BodyState) -> Result<(), StepError> {
+        scalar(&Rkmk::new(RK4, Exp), inverse_inertia, h, y)
+    }
+}
+
+struct InCay;
+impl InChart for InCay {
+    #[inline(always)]
+    fn at<S: Trig>(u: Vector3<S>) -> Chart<S> {
+        // In lanes it always has a value; where it is none the body is done again.
+        let (a, b) = cay_coefficients(&u).unwrap_or((S::lit(0.0), S::lit(0.0)));
+        let alpha2 = u[0] * u[0] + u[1] * u[1] + u[2] * u[2];
+        Chart { u, alpha2, a, b, c: S::lit(0.25), s: S::lit(0.25) * alpha2 }
+    }
+    fn one(inverse_inertia: [f64; 3], h: f64, y: &mut BodyState) -> Result<(), StepError> {
+        scalar(&Rkmk::new(RK4, Cay), inverse_inertia, h, y)
+    }
+}
+
+impl<Psi: InChart> OneStep for Psi {
+    const KEEPS_GROUP: bool = true;
+
+    #[inline(always)]
+    fn step<S: Trig>(h: S, j: &Vector3<S>, m: &Vector3<S>) -> Moved<S> {
+        // k = dΨ_u⁻¹ f(Ψ(u) m) at u = a·k of the stage before.
+        let mut largest = S::lit(0.0);
+        let mut stage = |a: S, k: &Vector3<S>| {
+            let Chart { u, alpha2, a, b, c, s } = Psi::at(scaled(a, k));
+            largest = larger(largest, alpha2);
+            let v = field(j, &rodrigues_on(&u, a, b, m));
+            sum(&rodrigues_on(&u, S::lit(-0.5), c, &v), s, &v)
+        };
+        let half = S::lit(0.5) * h;
+        let k1 = field(j, m);
+        let k2 = stage(half, &k1);
+        let k3 = stage(half, &k2);
+        let k4 = stage(h, &k3);
+        let two = S::lit(2.0);
+        let increment = sum(&sum(&sum(&k1, two, &k2), two, &k3), S::lit(1.0), &k4);
+        let Chart { u: v, alpha2, a, b, .. } = Psi::at(scaled(h * S::lit(1.0 / 6.0), &increment));
+        let mut motion = [S::lit(0.0); MOTION];
+        (motion[0], motion[1], motion[2], motion[3], motion[4]) = (v[0], v[1], v[2], a, b);
+        Moved { m: rodrigues_on(&v, a, b, m), motion, largest: larger(largest, alpha2) }
+    }
+    #[inline(always)]
+    fn carry<S: Trig>(_: S, motion: &[S; MOTION], x: &Vector3<S>) -> Vector3<S> {
+        rodrigues_on(&Vector3::new(motion[0], motion[1], motion[2]), motion[3], motion[4], x)
+    }
+    fn one(inverse_inertia: [f64; 3], h: f64, y: &mut BodyState) -> Result<(), StepError> {
+        <Psi as InChart>::one(inverse_inertia, h, y)
+    }
+}
+
+/// A step of ẋ = x × ω by the classical tableau.
+#[inline(always)]
+fn classical<S: Real>(
+    h: S,
+    x: &Vector3<S>,
+    mut omega: impl FnMut(&Vector3<S>) -> Vector3<S>,
+) -> Vector3<S> {
+    let mut rate = |x: &Vector3<S>| cross(x, &omega(x));
+    let half = S::lit(0.5) * h;
+    let k1 = rate(x);
+    let k2 = rate(&sum(x, half, &k1));
+    let k3 = rate(&sum(x, half, &k2));
+    let k4 = rate(&sum(x, h, &k3));
+    let two = S::lit(2.0);
+    let k = sum(&sum(&sum(&k1, two, &k2), two, &k3), S::lit(1.0), &k4);
+    sum(x, h * S::lit(1.0 / 6.0), &k)
+}
+
+struct Classical;
+impl OneStep for Classical {
+    const KEEPS_GROUP: bool = false;
+
+    #[inline(always)]
+    fn step<S: Trig>(h: S, j: &Vector3<S>, m: &Vector3<S>) -> Moved<S> {
+        let mut motion = [S::lit(0.0); MOTION];
+        let mut stage = 0;
+        let m = classical(h, m, |m| {
+            let omega = -field(j, m);
+            for k in 0..3 {
+                motion[stage + k] = omega[k];
+            }
+            stage += 3;
+            omega
+        });
+        Moved { m, motion, largest: S::lit(0.0) }
+    }
+    #[inline(always)]
+    fn carry<S: Trig>(h: S, motion: &[S; MOTION], x: &Vector3<S>) -> Vector3<S> {
+        let mut stage = 0;
+        classical(h, x, |_| {
+            stage += 3;
+            Vector3::new(motion[stage - 3], motion[stage - 2], motion[stage - 1])
+        })
+    }
+    fn one(inverse_inertia: [f64; 3], h: f64, y: &mut BodyState) -> Result<(), StepError> {
+        scalar(&Rk(RK4), inverse_inertia, h, y)
+    }
+}
