@@ -5,6 +5,7 @@
 
 mod counted;
 mod sin_cos;
+mod tally;
 
 use core::f64::consts::FRAC_PI_4;
 use core::fmt::Debug;
@@ -12,6 +13,7 @@ use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 pub(crate) use self::sin_cos::{SIN_COS_MAX, muladd, sin_cos, sin_cos_near_zero};
 pub use counted::{Counted, Ops};
+pub use tally::tally;
 
 /// A real number, or several side by side (SIMD lanes), or one that counts its own operations.
 ///

@@ -7,6 +7,7 @@ use faer::Mat;
 use lieflow::Error;
 use lieflow::groups::{AlgebraMatrix, MatrixGroup};
 use lieflow::problems::{Euler, Kinetic};
+use lieflow::scalar::{Ops, tally};
 use serde::Deserialize;
 use toml::de::ValueDeserializer;
 
@@ -137,6 +138,12 @@ impl EulerEquation {
         let gradient = move |m: &Mat<f64>, xi: &mut AlgebraMatrix| {
             let inside = this.part(m);
             let n = m.nrows();
+            let part = match this.algebra {
+                Algebra::Gl => Ops::NONE,
+                Algebra::Sl => Ops::adds(2 * n) + Ops::divs(1),
+                Algebra::So | Algebra::Sp => Ops::muladds(n * n),
+            };
+            tally(part * 2 + Ops::muls(n * n));
             let weighted = Mat::from_fn(n, n, |i, j| this.weights[(i, j)] * inside[(i, j)]);
             xi.copy_from(this.part(&weighted));
         };

@@ -5,6 +5,9 @@
 //! around the evaluation and not inside it, is nothing beside the matrices and rotations of a stage.
 //! The library has no such call.
 //!
+//! Those of vectors are there once more on numbers that count operations; matrices say themselves what they
+//! compute.
+//!
 //! | family | kinds |
 //! |---|---|
 //! | SO(3), vectors | spin |
@@ -23,19 +26,20 @@ use lieflow::catalog::{
 };
 use lieflow::groups::{LieAlgebra, LieGroup, MatrixGroup, Power, Product, Se3, So3, Translations};
 use lieflow::methods::Metric;
-use lieflow::problems::{AlgOf, Ambient, LinearField, LinearSpace, PointOf, Problem};
+use lieflow::problems::{AlgOf, Ambient, LinearField, LinearSpace, PointOf, Problem, ScalarOf};
+use lieflow::scalar::{Counted, Real};
 use nalgebra::Vector3;
 
 use super::matrix::MatrixAction;
-use crate::erased::{Doubled, Pointed};
+use crate::erased::{Doubled, pointed, pointed_pair};
 use crate::model::Catalog;
 
 /// A field with its scratch.
 pub(super) trait Field<G: LieGroup, M> {
     /// v ← f(t, y).
-    fn f(&mut self, t: f64, y: &M, v: &mut G::Alg);
+    fn f(&mut self, t: G::Scalar, y: &M, v: &mut G::Alg);
     /// dy ← F(t, y).
-    fn ambient(&mut self, t: f64, y: &M, dy: &mut M);
+    fn ambient(&mut self, t: G::Scalar, y: &M, dy: &mut M);
 }
 
 /// What an element of 𝔤 does to a point of the linear space around M.
@@ -50,15 +54,9 @@ pub(super) trait Generator<G: LieGroup>: Action<G> {
     );
 }
 
-impl Generator<So3> for Linear {
-    fn generate(
-        &self,
-        v: &Vector3<f64>,
-        y: &Vector3<f64>,
-        dy: &mut Vector3<f64>,
-        _: &mut Vector3<f64>,
-    ) {
-        *dy = v.cross(y);
+impl<S: Real> Generator<So3<S>> for Linear {
+    fn generate(&self, v: &Vector3<S>, y: &Vector3<S>, dy: &mut Vector3<S>, _: &mut Vector3<S>) {
+        So3::new().bracket(v, y, dy);
     }
 }
 
@@ -80,11 +78,11 @@ impl<G: LieGroup, A: Action<G>> fmt::Debug for Flow<G, A> {
 /// A problem of the library with its scratch.
 struct Running<P: Problem>(std::rc::Rc<P>, P::Work);
 
-impl<P: Ambient<Group: LieAlgebra<Scalar = f64>>> Field<P::Group, PointOf<P>> for Running<P> {
-    fn f(&mut self, t: f64, y: &PointOf<P>, v: &mut AlgOf<P>) {
+impl<P: Ambient> Field<P::Group, PointOf<P>> for Running<P> {
+    fn f(&mut self, t: ScalarOf<P>, y: &PointOf<P>, v: &mut AlgOf<P>) {
         self.0.f(t, y, v, &mut self.1);
     }
-    fn ambient(&mut self, t: f64, y: &PointOf<P>, dy: &mut PointOf<P>) {
+    fn ambient(&mut self, t: ScalarOf<P>, y: &PointOf<P>, dy: &mut PointOf<P>) {
         self.0.field(t, y, dy, &mut self.1);
     }
 }
@@ -101,13 +99,13 @@ struct RunningLinear<P: Problem, A: Action<P::Group>> {
 
 impl<P, A> Field<P::Group, A::Point> for RunningLinear<P, A>
 where
-    P: LinearField<Group: LieAlgebra<Scalar = f64>>,
+    P: LinearField,
     A: Generator<P::Group>,
 {
-    fn f(&mut self, t: f64, _: &A::Point, v: &mut AlgOf<P>) {
+    fn f(&mut self, t: ScalarOf<P>, _: &A::Point, v: &mut AlgOf<P>) {
         self.equation.a(t, v, &mut self.work);
     }
-    fn ambient(&mut self, t: f64, y: &A::Point, dy: &mut A::Point) {
+    fn ambient(&mut self, t: ScalarOf<P>, y: &A::Point, dy: &mut A::Point) {
         self.equation.a(t, &mut self.a, &mut self.work);
         self.action.generate(&self.a, y, dy, &mut self.scratch);
     }
@@ -115,7 +113,7 @@ where
 
 impl<G, A> Flow<G, A>
 where
-    G: LieGroup<Scalar = f64> + Clone + 'static,
+    G: LieGroup + Clone + 'static,
     A: Action<G> + Clone + 'static,
 {
     /// A problem of the library, and `start`; `action` is its action.
@@ -155,7 +153,7 @@ where
 
 impl<G, A> Problem for Flow<G, A>
 where
-    G: LieGroup<Scalar = f64>,
+    G: LieGroup,
     A: Action<G>,
 {
     type Group = G;
@@ -171,7 +169,7 @@ where
     fn work(&self) -> Self::Work {
         (self.field)()
     }
-    fn f(&self, t: f64, y: &A::Point, v: &mut G::Alg, work: &mut Self::Work) {
+    fn f(&self, t: G::Scalar, y: &A::Point, v: &mut G::Alg, work: &mut Self::Work) {
         work.f(t, y, v);
     }
 }
@@ -179,26 +177,26 @@ where
 /// For those of linear type: [`Catalog::with`] hands over no such method for others.
 impl<G, A> LinearField for Flow<G, A>
 where
-    G: LieGroup<Scalar = f64>,
+    G: LieGroup,
     A: Action<G>,
 {
-    fn a(&self, t: f64, v: &mut G::Alg, work: &mut Self::Work) {
+    fn a(&self, t: G::Scalar, v: &mut G::Alg, work: &mut Self::Work) {
         work.f(t, &self.start, v);
     }
 }
 
 impl<G, A> Ambient for Flow<G, A>
 where
-    G: LieGroup<Scalar = f64>,
-    A: Action<G, Point: LinearSpace<Scalar = f64>>,
+    G: LieGroup,
+    A: Action<G, Point: LinearSpace<Scalar = G::Scalar>>,
 {
-    fn field(&self, t: f64, y: &A::Point, dy: &mut A::Point, work: &mut Self::Work) {
+    fn field(&self, t: G::Scalar, y: &A::Point, dy: &mut A::Point, work: &mut Self::Work) {
         work.ambient(t, y, dy);
     }
     fn copy(&self, x: &A::Point, y: &mut A::Point) {
         y.assign(x);
     }
-    fn add(&self, a: f64, x: &A::Point, y: &mut A::Point) {
+    fn add(&self, a: G::Scalar, x: &A::Point, y: &mut A::Point) {
         y.add(a, x);
     }
     fn is_finite(&self, y: &A::Point) -> bool {
@@ -222,17 +220,18 @@ macro_rules! family {
                 spec: &MethodSpec,
                 on: V,
             ) -> Result<V::Out, Error> {
-                family!(@find self, spec, Pointed(on), $type)
+                pointed(on, |found| family!(@find self, spec, found, $type))
             }
             fn with_estimate<V: OnEmbedded<Self>>(
                 &self,
                 spec: &MethodSpec,
                 on: V,
             ) -> Result<V::Out, Error> {
-                match spec.has_pair()? {
-                    true => with_embedded_pair(spec, Pointed(on)),
-                    false => family!(@find self, spec, Doubled(on), $type),
-                }
+                let pair = spec.has_pair()?;
+                pointed_pair(on, |found| match pair {
+                    true => with_embedded_pair(spec, found),
+                    false => family!(@find self, spec, Doubled(found), $type),
+                })
             }
         }
     )*};
@@ -248,4 +247,8 @@ family! {
     MatrixGroup, MatrixAction, linear;
     Product<So3, Translations<Vector3<f64>>>, LeftTranslation, general;
     Product<MatrixGroup, Translations<Growth>>, LeftTranslation, general;
+    So3<Counted>, Linear, linear;
+    Power<So3<Counted>>, Linear, general;
+    Se3<Counted>, Coadjoint, general;
+    Product<So3<Counted>, Translations<Vector3<Counted>>>, LeftTranslation, general;
 }

@@ -24,6 +24,7 @@ use crate::actions::{Action, Conjugation};
 use crate::error::Error;
 use crate::methods::Metric;
 use crate::problems::LinearSpace;
+use crate::scalar::{Ops, tally};
 
 /// U(n) over its algebra u(n) of skew-Hermitian matrices.
 ///
@@ -154,6 +155,7 @@ impl LieGroup for Unitary {
     }
     fn correct(&self, g: &mut ComplexMatrix, [gap, step]: [&mut ComplexMatrix; 2]) -> f64 {
         adjoint_mul_complex(gap, g, g);
+        tally(Ops::adds(self.n));
         for i in 0..self.n {
             gap.re[(i, i)] -= 1.0;
         }
