@@ -2,9 +2,12 @@
 
 use faer::Mat;
 use lieflow::actions::Coadjoint;
-use lieflow::groups::{Adjoint, GroupMatrix, MatrixGroup, Sample, So3};
+use lieflow::groups::{
+    Adjoint, ComplexMatrix, GroupMatrix, MatrixGroup, Sample, So3, Translations, UnitQuaternions,
+    Unitary,
+};
 use lieflow::maps::{CoordinateMap, Exp};
-use lieflow::{Action, LieAlgebra, StepError};
+use lieflow::{Action, LieAlgebra, LieGroup, StepError};
 use nalgebra::Vector3;
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
@@ -24,6 +27,12 @@ impl Numbers for Vector3<f64> {
 impl Numbers for Mat<f64> {
     fn numbers(&self) -> Vec<f64> {
         self.col_iter().flat_map(|c| c.iter().copied().collect::<Vec<_>>()).collect()
+    }
+}
+
+impl Numbers for ComplexMatrix {
+    fn numbers(&self) -> Vec<f64> {
+        [self.re.numbers(), self.im.numbers()].concat()
     }
 }
 
@@ -152,6 +161,32 @@ impl Numbers for Zeros {
 fn on_so3() {
     let mut rng = Pcg64::seed_from_u64(1);
     laws(&So3::<f64>::new(), &mut rng, |_, draw| draw());
+}
+
+#[test]
+fn on_u_n_and_the_quaternions() {
+    let mut rng = Pcg64::seed_from_u64(4);
+    for n in [1, 2, 5] {
+        laws(&Unitary::new(n).expect("U(n)"), &mut rng, |_, draw| draw());
+    }
+    laws(&UnitQuaternions, &mut rng, |_, draw| draw());
+}
+
+/// Nothing moves, and ⟨m, v⟩ is the dot product.
+#[test]
+fn on_translations() {
+    let group = Translations::new(Vector3::<f64>::zeros(), 3);
+    let [g, u, m] = [1.0, -2.0, 0.5].map(|x| Vector3::new(x, x * x, 3.0));
+    let (mut out, mut there) = (group.zero(), group.zero());
+    group.inverse(&g, &mut out).expect("−g");
+    group.compose(&g, &out, &mut there);
+    assert_eq!(there, group.identity());
+    group.big_ad(&g, &u, &mut out).expect("Ad");
+    assert_eq!(out, u);
+    group.coad_group(&g, &m, &mut out).expect("Ad*");
+    assert_eq!(out, m);
+    group.coad(&u, &m, &mut out);
+    assert_eq!((out, group.pair(&m, &u)), (Vector3::zeros(), m.dot(&u)));
 }
 
 #[test]

@@ -7,6 +7,8 @@ mod catalog;
 mod constructors;
 #[path = "api/domains.rs"]
 mod domains;
+#[path = "../fuzz/src/draw.rs"]
+mod draw;
 #[path = "api/failures.rs"]
 mod failures;
 #[path = "api/grids.rs"]

@@ -3,12 +3,12 @@
 
 use core::f64::consts::{PI, TAU};
 
-use faer::Mat;
-use lieflow::groups::{AlgebraMatrix, MatrixGroup, Sample};
+use faer::{Mat, c64};
+use lieflow::groups::{AlgebraMatrix, ComplexMatrix, MatrixGroup, Sample, Unitary};
 use lieflow::maps::{
     Dexpinv, Exp, Pade22, dexp, dexpinv, dexpinv_with_remainder, distance_to_singular,
 };
-use lieflow::{CoordinateMap, Error, LieAlgebra};
+use lieflow::{CoordinateMap, Error, LieAlgebra, LieGroup};
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
 use serde::Deserialize;
@@ -112,6 +112,41 @@ fn references() {
         see("dpadeinv", units, 10.0);
     }
     assert_eq!(broken, 0);
+}
+
+/// The same references by complex matrices, in both forms of dexp⁻¹: at most 10 eps·cond.
+#[test]
+fn references_on_u_n() {
+    let text = include_str!("references/dexp.json");
+    let cases = serde_json::from_str::<Cases>(text).expect("references").cases;
+    let mut choices = Vec::new();
+    for case in cases.iter().filter(|case| case.group == "u") {
+        let (n, real) = (case.n, |x: &[String]| matrix(case.n, x));
+        let group = Unitary::new(n / 2).expect("U(n)");
+        let [u, v, w, inverse] = [&case.u, &case.v, &case.dexp, &case.dexpinv].map(|x| {
+            let x = real(x);
+            let half = x.submatrix(0, 0, n, n / 2);
+            ComplexMatrix::from_fn(n / 2, n / 2, |i, j| {
+                c64::new(half[(i, j)], half[(i + n / 2, j)])
+            })
+        });
+        let mut at = Exp.at(&group).expect("exp");
+        let units = |x: &ComplexMatrix, reference: &ComplexMatrix| {
+            group.distance(x, reference) / group.norm(reference) / EPS
+        };
+        let (cond, size) = (number(&case.cond_dexpinv), group.norm(&u).max(1.0));
+        let mut x = v.clone();
+        Exp.dpsi_inv(&group, &u, &mut at, &mut x).expect("dexp⁻¹");
+        assert!(units(&x, &inverse) <= 10.0 * cond, "{}: {}", case.id, units(&x, &inverse));
+        choices.push(at.dexpinv_choice());
+        let mut x = v.clone();
+        at.dexp(&group, &u, &mut x).expect("dexp");
+        assert!(units(&x, &w) <= 10.0 * cond.max(size), "{}: {}", case.id, units(&x, &w));
+        let far = at.distance_to_singular(&u).expect("a spectrum") - number(&case.distance);
+        assert!(far.abs() <= 20.0 * EPS * size, "{}: {far:e}", case.id);
+    }
+    assert!(choices.len() == 3 && choices.contains(&Dexpinv::Eigen), "{choices:?}");
+    assert!(choices.iter().any(|choice| matches!(choice, Dexpinv::Series(_))), "{choices:?}");
 }
 
 /// Random u on every group, both ways round: dexp then dexp⁻¹, at all sizes, every branch visited.

@@ -6,6 +6,8 @@
 
 #[path = "../fuzz/src/bodies.rs"]
 mod bodies;
+#[path = "../fuzz/src/draw.rs"]
+mod draw;
 
 use bodies::TARGETS;
 use rand::{RngExt, SeedableRng};
@@ -67,6 +69,7 @@ targets! {
     ccsk: 1_000;
     log: 600;
     adjoint: 1_000;
+    unitary: 1_000;
     integrate: 2_000;
     adaptive: 1_000;
 }

@@ -6,7 +6,9 @@ mod support;
 
 use faer::{Mat, mat};
 use lieflow::actions::{Coadjoint, LeftTranslation, Linear};
-use lieflow::groups::{Form, MatrixGroup, Power, Product, Sample, Se3, So3, hat, vee};
+use lieflow::groups::{
+    Form, MatrixGroup, Power, Product, Sample, Se3, So3, UnitQuaternions, Unitary, hat, vee,
+};
 use lieflow::maps::{CCSK, CCSK123, CCSK321, Cay, Ccsk, CoordinateMap, Dexpinv, Exp, Pade22};
 use lieflow::{Action, Error, LieAlgebra, LieGroup};
 use rand::{RngExt, SeedableRng};
@@ -29,6 +31,9 @@ fn sp(n: usize) -> MatrixGroup {
 }
 fn indefinite(p: usize, q: usize) -> MatrixGroup {
     MatrixGroup::indefinite(p, q).unwrap()
+}
+fn unitary(n: usize) -> Unitary {
+    Unitary::new(n).unwrap()
 }
 /// M = 𝟙 + J, neither symmetric nor skew: gᵀg = 𝟙 and gᵀJg = J, which is U(2).
 fn u2() -> MatrixGroup {
@@ -72,6 +77,15 @@ macro_rules! general {
             exp_truncated: Exp.truncated(20), up to 0.5;
             cay: Cay, up to 1.0;
             pade22: Pade22, up to 1.0;
+        }
+    };
+}
+/// The maps of groups that are not given by matrices of real numbers.
+macro_rules! exp_and_cay {
+    ($group:expr) => {
+        map_laws! { $group;
+            exp: Exp, up to 3.0;
+            cay: Cay, up to 1.0;
         }
     };
 }
@@ -168,6 +182,11 @@ laws! {
     u2: u2(), general;
     skewed4: skewed(4), general;
     se3: Se3::<f64>::new(), closed;
+    quaternions: UnitQuaternions, exp_and_cay;
+    unitary1: unitary(1), exp_and_cay;
+    unitary2: unitary(2), exp_and_cay;
+    unitary5: unitary(5), exp_and_cay;
+    unitary_squared: Power::new(unitary(3), 2).unwrap(), exp_and_cay;
     so3_by_sp4: Product(So3::<f64>::new(), sp(4)), with_basis;
     so3_to_the_3: Power::new(So3::<f64>::new(), 3).unwrap(), rotations;
     nested: Product(Power::new(so(4), 2).unwrap(), gl(2)), general;
@@ -216,6 +235,7 @@ fn dimensions() {
         assert_eq!(gl(n).dim(), n * n, "gl({n})");
         assert_eq!(sp(2 * n).dim(), n * (2 * n + 1), "sp({})", 2 * n);
     }
+    assert_eq!((UnitQuaternions.dim(), unitary(1).dim(), unitary(5).dim()), (3, 1, 25));
     assert_eq!((indefinite(3, 1).dim(), indefinite(2, 2).dim()), (6, 6));
     assert_eq!((u2().dim(), skewed(4).dim(), skewed(6).dim()), (4, 2, 3));
     for group in matrix_groups() {

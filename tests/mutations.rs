@@ -14,7 +14,7 @@ mod methods;
 
 use lieflow::CoordinateMap;
 use lieflow::actions::{Coadjoint, LeftTranslation};
-use lieflow::groups::{MatrixGroup, So3};
+use lieflow::groups::{MatrixGroup, Power, Product, So3};
 use lieflow::maps::{CCSK123, Cay, Exp};
 use lieflow::methods::commutator_free::{CF4, ProductTableau};
 use lieflow::methods::crouch_grossman::CG3;
@@ -26,6 +26,7 @@ use lieflow::methods::{
     tableau::{HEUN, RK4, THREE_EIGHTHS, VERNER6},
 };
 use maps::{Faulty, WrongSign};
+use rand::SeedableRng;
 use rand_pcg::Pcg64;
 use support::orders::{
     Field, Flow, MEMBERS, Reference, clock, family, measure, measure_as, measure_over,
@@ -198,6 +199,23 @@ fn groups_with_a_wrong_bracket_or_product() {
     caught(holds(CASES, |rng| laws::algebra(&reversed, rng)), "[u,v] = uv − vu");
     let swapped = groups::Faulty(lorentz(), groups::Fault::Swapped);
     caught(holds(CASES, |rng| laws::group(&swapped, rng)), "a·b");
+}
+
+/// `check::laws` sees a wrong bracket in one part of a product, although it is a bracket by itself.
+#[test]
+fn a_part_with_a_wrong_bracket() {
+    let check = |fault| {
+        let part = groups::Faulty(MatrixGroup::sp(4).unwrap(), fault);
+        let group = Product(Power::new(So3::new(), 3).unwrap(), part);
+        let laws = lieflow::check::laws(&group, &Exp, &mut Pcg64::seed_from_u64(1), 20, 0.3);
+        let broken = laws.unwrap().into_iter().filter(|law| !law.holds());
+        broken.map(|law| law.name).collect::<Vec<_>>()
+    };
+    assert_eq!(check(groups::Fault::Sound), [""; 0]);
+    for fault in [groups::Fault::NoBracket, groups::Fault::Reversed] {
+        let broken = check(fault);
+        assert!(broken.len() == 1 && broken[0].starts_with("[u, v] of commutators"), "{broken:?}");
+    }
 }
 
 #[test]

@@ -5,7 +5,7 @@
 #[path = "support/counting.rs"]
 mod counting;
 
-use lieflow::groups::{MatrixGroup, Sample};
+use lieflow::groups::{MatrixGroup, Sample, Unitary};
 use lieflow::maps::{CCSK, Cay, CoordinateMap, Exp, Pade22};
 use lieflow::{LieAlgebra, LieGroup};
 use rand::SeedableRng;
@@ -13,12 +13,12 @@ use rand_pcg::Pcg64;
 
 /// The allocations of the second Ψ and dΨ⁻¹ (the product library makes its packing buffer at the
 /// first large product).
-fn allocations<Psi: CoordinateMap<MatrixGroup>>(
+fn allocations<G: Sample<Scalar = f64>, Psi: CoordinateMap<G>>(
     psi: &Psi,
-    group: &MatrixGroup,
+    group: &G,
     size: f64,
 ) -> usize {
-    let mut rng = Pcg64::seed_from_u64(group.n() as u64);
+    let mut rng = Pcg64::seed_from_u64(group.dim() as u64);
     let before = counting::total();
     let mut at = psi.at(group).expect("the map serves the group");
     assert!(counting::total() > before, "the counter does not count");
@@ -33,6 +33,17 @@ fn allocations<Psi: CoordinateMap<MatrixGroup>>(
         psi.dpsi_inv(group, &u, &mut at, &mut v).expect("dΨ⁻¹");
     }
     counting::total() - before
+}
+
+#[test]
+fn unitary() {
+    for n in [2, 4, 10, 20] {
+        let group = Unitary::new(n).expect("U(n)");
+        for size in [0.1, 1.0, 5.0] {
+            assert_eq!(allocations(&Exp, &group, size), 0, "exp on U({n}) at {size}");
+            assert_eq!(allocations(&Cay, &group, size), 0, "cay on U({n}) at {size}");
+        }
+    }
 }
 
 #[test]

@@ -23,27 +23,21 @@ use support::represent::Represent;
 
 const INERTIA: [f64; 3] = [1.0, 2.0, 3.5];
 
-/// Momenta that are nothing special, of this length.
-fn momentum(length: f64) -> impl Fn(u64) -> Vector3<f64> {
-    move |i| {
-        let mut rng = Pcg64::seed_from_u64(40 + i);
-        let mut entry = || rng.random_range(0.3..1.0);
-        Vector3::new(entry(), entry(), -entry()).normalize() * length
-    }
+/// Momenta of length 2 that are nothing special.
+fn momentum(i: u64) -> Vector3<f64> {
+    let mut rng = Pcg64::seed_from_u64(40 + i);
+    let mut entry = || rng.random_range(0.3..1.0);
+    Vector3::new(entry(), entry(), -entry()).normalize() * 2.0
 }
 
-/// Lengths for orders below 8, and from 8 on: within a factor of some 4 in h those pass from 1e-3 to
-/// rounding, so that their steps must be large.
-const SHORT: f64 = 2.0;
-const LONG: f64 = 4.0;
-
+/// Orders from 8 on are in `orders_wide.rs`.
 fn ensemble<P: Ambient>(make: impl Fn(Vector3<f64>) -> (P, PointOf<P>)) -> Problems<P>
 where
     P::Group: Represent,
     P::Action: Points<P::Group>,
     Cay: CoordinateMap<P::Group>,
 {
-    Problems::of(|i| make(momentum(SHORT)(i)), |i| make(momentum(LONG)(i)))
+    Problems::below_8(|i| make(momentum(i)))
 }
 
 fn attitude(title: &str, needs: &[Needs]) {
@@ -51,17 +45,6 @@ fn attitude(title: &str, needs: &[Needs]) {
         let body = RigidBodyAttitude::new(INERTIA, m.into()).unwrap();
         (body, Matrix3::identity())
     });
-    let measured = |spec: &MethodSpec| with_attitude_method(spec, Measure(&problems, true));
-    Report::of(title, "SO(3)", needs, measured);
-}
-
-/// Above order 10 see SO(5), and that both layers take the same steps (`lie_series.rs`).
-fn series(title: &str, needs: &[Needs]) {
-    let problems = ensemble(|m| {
-        let body = RigidBodyAttitude::new(INERTIA, m.into()).unwrap();
-        (body, Matrix3::identity())
-    });
-    let problems = problems.up_to(10);
     let measured = |spec: &MethodSpec| with_attitude_method(spec, Measure(&problems, true));
     Report::of(title, "SO(3)", needs, measured);
 }
@@ -123,9 +106,8 @@ macro_rules! suites {
 }
 
 suites! {
-    attitude: [Body, Attitude];
-    momentum_alone: [Body, LiePoisson];
-    series: [Series];
+    attitude: [Series, Body, Attitude];
+    momentum_alone: [Series, Body, LiePoisson];
     both_in_one_state: [State];
     quadratic_systems: [Series, LiePoisson, Isospectral];
 }

@@ -289,7 +289,7 @@ fn canonical_coordinates() {
                     for i in c..n {
                         now[i] = now[i] * angles[r][c].1;
                     }
-                    now[r] = now[r] - angles[r][c].0;
+                    now[r] -= angles[r][c].0;
                 }
                 for r in c + 1..n {
                     let x = w.0[r][c] / rho[r][c];
@@ -299,8 +299,8 @@ fn canonical_coordinates() {
                     for i in c..n {
                         // One product serves the row and the column.
                         let x = out.0[r][c];
-                        w.0[r][i] = w.0[r][i] - x * rho[r][i];
-                        w.0[i][r] = w.0[i][r] + x * rho[r][i];
+                        w.0[r][i] -= x * rho[r][i];
+                        w.0[i][r] += x * rho[r][i];
                     }
                 }
             }

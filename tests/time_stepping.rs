@@ -256,6 +256,23 @@ fn very_many_steps() {
     assert!((y - Vector3::new(angle.cos(), angle.sin(), 0.0)).norm() < 1e-8, "{y}");
 }
 
+/// A free body does not know what time it is: steps are even beside t = 1.7e9, where ulps of t are 2e-7, and
+/// a run begun there is that begun at 0, bit by bit.
+#[test]
+fn steps_are_even_beside_a_large_time() {
+    let body = RigidBody::new([1.0, 2.0, 3.0]).expect("a body");
+    let run = |t_span| {
+        let (mut y, mut sum) = (Vector3::new(0.9, 1.0, 2.1), 0.0);
+        let (grid, save) = (TimeGrid::new(t_span, 0.01).expect("a grid"), SaveAt::Every(1));
+        let rkmk4 = Rkmk::new(RK4, Exp);
+        integrate(&body, &rkmk4, &grid, &save, &mut y, |_, y| sum += y[0]).expect("a run");
+        (y, sum)
+    };
+    let start = 1.7e9;
+    assert_eq!(run([0.0, 100.0]), run([start, start + 100.0]));
+    assert_eq!(run([0.0, -100.0]), run([start, start - 100.0]));
+}
+
 /// T12 as a run: the field sees each of 1e8 times within two units in the last place.
 #[test]
 #[ignore = "1e8 steps: cargo test --release --test time_stepping -- --ignored"]

@@ -1,16 +1,16 @@
 //! U(n) over complex matrices and the unit quaternions: laws, drift, order, and agreement with the
 //! groups that they are other forms of.
 
-use faer::Mat;
+use faer::{Mat, c64};
 use lieflow::check::laws;
 use lieflow::groups::{ComplexMatrix, MatrixGroup, Sample, So3, UnitQuaternions, Unitary};
-use lieflow::maps::{Cay, Exp};
+use lieflow::maps::{Cay, Dexpinv, Exp};
 use lieflow::methods::{
     Rkmk,
     tableau::{DOPRI5, RK4},
 };
 use lieflow::problems::{Exact, RigidBodyAttitude, RigidBodyQuaternion};
-use lieflow::{CoordinateMap, LieAlgebra, LieGroup, SaveAt, TimeGrid, integrate};
+use lieflow::{CoordinateMap, Error, LieAlgebra, LieGroup, SaveAt, StepError, TimeGrid, integrate};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
@@ -78,11 +78,14 @@ fn the_complex_maps_are_those_of_the_real_form() {
                 near(&d, &Exp.eval_dpsi_inv(&real, &ur, &vr).expect("dexp⁻¹"), bound, "dexp⁻¹");
             }
         }
-        // Beyond the series dexp⁻¹ is refused, not wrong.
-        let large = group.sample_algebra(&mut rng, 50.0);
-        let v = group.sample_algebra(&mut rng, 1.0);
-        let refused = Exp.eval_dpsi_inv(&group, &large, &v);
-        assert!(n == 1 || refused.is_err());
+        // Beyond the series both ways are exact: each undoes the other.
+        let (u, v) = (group.sample_algebra(&mut rng, 50.0), group.sample_algebra(&mut rng, 1.0));
+        let (mut at, mut w) = (Exp.at(&group).expect("exp"), v.clone());
+        Exp.dpsi_inv(&group, &u, &mut at, &mut w).expect("dexp⁻¹");
+        assert!(n == 1 || at.dexpinv_choice() == Dexpinv::Eigen, "{:?}", at.dexpinv_choice());
+        let size = group.norm(&w);
+        at.dexp(&group, &u, &mut w).expect("dexp");
+        assert!(group.distance(&w, &v) <= 64.0 * EPS * group.norm(&u).max(1.0) * size);
         // And what has drifted is taken back.
         let mut g = group.sample_element(&mut rng);
         assert!(group.defect(&g) <= 16.0 * EPS * n as f64, "{}", group.defect(&g));
@@ -93,6 +96,32 @@ fn the_complex_maps_are_those_of_the_real_form() {
         }
         assert!(group.defect(&g) <= 16.0 * EPS * n as f64);
     }
+}
+
+/// diag(iπ, −iπ): a difference of eigenvalues is 2π, and dexp singular off the diagonal.
+#[test]
+fn dexp_is_singular_where_eigenvalues_differ_by_a_turn() {
+    use std::f64::consts::PI;
+    let group = Unitary::new(2).expect("U(2)");
+    let diagonal = |a: f64, b: f64| {
+        let z = |i, j| if i != j { 0.0 } else { [a, b][i] };
+        ComplexMatrix::from_fn(2, 2, |i, j| c64::new(0.0, z(i, j)))
+    };
+    let across = ComplexMatrix::from_fn(2, 2, |i, j| c64::new(i as f64 - j as f64, 0.0));
+    let (u, mut at) = (diagonal(PI, -PI), Exp.at(&group).expect("exp"));
+    assert!(at.distance_to_singular(&u).expect("a spectrum") < 1e-15);
+    let refused = Exp.eval_dpsi_inv(&group, &u, &across);
+    let outside = matches!(refused, Err(Error::Map(StepError::OutsideChart { map: "exp", .. })));
+    assert!(outside, "{refused:?}");
+    // What commutes with u has no part there, and nearby the result is large and finite.
+    assert_eq!(Exp.eval_dpsi_inv(&group, &u, &diagonal(0.3, 2.0)), Ok(diagonal(0.3, 2.0)));
+    let near = diagonal(PI, -PI * (1.0 - 1e-9));
+    let size = group.norm(&Exp.eval_dpsi_inv(&group, &near, &across).expect("dexp⁻¹"));
+    // |φ(−iθ)| = |θ/2 / sin(θ/2)|, here π/(π·1e-9/2), twice.
+    assert!((size * 1e-9 / 8f64.sqrt() - 1.0).abs() < 1e-5, "{size:e}");
+    let nan = ComplexMatrix::from_fn(2, 2, |_, _| c64::new(0.0, f64::NAN));
+    assert!(Exp.eval_dpsi_inv(&group, &nan, &across).is_err());
+    assert!(at.distance_to_singular(&nan).is_err());
 }
 
 #[test]

@@ -2,9 +2,12 @@
 //! names what was wrong. A plain module of functions from bytes: `cargo fuzz` runs them on what it
 //! learns, and `cargo test` on random bytes (tests/fuzz.rs).
 
-use faer::Mat;
+use crate::draw::Draw;
+use faer::{Mat, c64};
 use lieflow::adaptive::{Adaptive, integrate_adaptive};
-use lieflow::groups::{Adjoint, AlgebraMatrix, GroupMatrix, MatrixGroup, So3};
+use lieflow::groups::{
+    Adjoint, AlgebraMatrix, ComplexMatrix, GroupMatrix, MatrixGroup, So3, UnitQuaternions, Unitary,
+};
 use lieflow::maps::{
     CCSK, CCSK123, CCSK321, Cay, CoordinateMap, Exp, Pade22, cay_inv, dcay, dexp,
     dexpinv_with_remainder, distance_to_singular,
@@ -13,7 +16,7 @@ use lieflow::methods::{Rkmk, tableau};
 use lieflow::problems::RigidBody;
 use lieflow::{Error, LieAlgebra, LieGroup, SaveAt, StepError, TimeGrid, integrate, so3};
 use nalgebra::{Matrix3, Vector3};
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::PI;
 
 /// A target: its name and its body.
 pub type Target = (&'static str, fn(&[u8]));
@@ -33,67 +36,12 @@ pub const TARGETS: &[Target] = &[
     ("ccsk", ccsk),
     ("log", log),
     ("adjoint", adjoint),
+    ("unitary", unitary),
     ("integrate", fixed_steps),
     ("adaptive", chosen_steps),
 ];
 
-/// Numbers out of bytes; zeros when they have run out.
-struct Draw<'a>(&'a [u8]);
-
 impl Draw<'_> {
-    fn byte(&mut self) -> u8 {
-        match self.0 {
-            [first, rest @ ..] => {
-                self.0 = rest;
-                *first
-            }
-            [] => 0,
-        }
-    }
-    fn bits(&mut self, count: u32) -> u64 {
-        (0..count).fold(0, |x, _| x << 8 | u64::from(self.byte()))
-    }
-    /// Below `n`.
-    fn below(&mut self, n: usize) -> usize {
-        self.bits(2) as usize % n
-    }
-    /// In [−1, 1].
-    fn unit(&mut self) -> f64 {
-        self.bits(4) as f64 / f64::from(1u32 << 31) - 1.0
-    }
-    /// Special values, magnitudes over the whole range, ulps around multiples of π/2, any bits, and
-    /// mostly ordinary numbers.
-    fn number(&mut self) -> f64 {
-        const SPECIAL: [f64; 16] = [
-            0.0,
-            -0.0,
-            f64::NAN,
-            f64::INFINITY,
-            f64::NEG_INFINITY,
-            f64::MAX,
-            f64::MIN,
-            f64::MIN_POSITIVE,
-            5e-324,
-            -5e-324,
-            f64::EPSILON,
-            1.0,
-            2.0,
-            PI,
-            1e160,
-            -1e200,
-        ];
-        match self.byte() {
-            k @ 0..16 => SPECIAL[usize::from(k)],
-            16..32 => f64::from_bits(self.bits(8)),
-            32..64 => self.unit().signum() * 10f64.powf(-6.0 + 314.0 * self.unit()),
-            64..96 => {
-                let x = FRAC_PI_2 * self.below(9) as f64;
-                f64::from_bits(x.to_bits().wrapping_add(self.bits(1)).wrapping_sub(128))
-            }
-            96..128 => 10.0 * self.unit(),
-            _ => self.unit(),
-        }
-    }
     fn vector(&mut self) -> Vector3<f64> {
         match self.byte() % 4 {
             // Of a chosen length.
@@ -392,6 +340,57 @@ fn adjoint(data: &[u8]) {
     let mut w = u;
     if so3.big_ad(&r, &u, &mut w).is_ok() {
         assert!(so3.is_finite(&w));
+    }
+}
+
+/// The maps of U(n) and of the unit quaternions, dexp both ways, log, Ad.
+fn unitary(data: &[u8]) {
+    let mut draw = Draw(data);
+    let n = 1 + draw.below(6);
+    let group = Unitary::new(n).expect("a group of ordinary size");
+    let mut element = || {
+        let (re, im) = (draw.matrix(n), draw.matrix(n));
+        ComplexMatrix { re, im }
+    };
+    let (x, y, wild) = (element(), element(), element());
+    let skew = |x: &ComplexMatrix| {
+        let z = |i, j| 0.5 * (x.get(i, j) - x.get(j, i).conj());
+        ComplexMatrix::from_fn(
+            n,
+            n,
+            |i, j| if i == j { c64::new(0.0, z(i, i).im) } else { z(i, j) },
+        )
+    };
+    let (u, v) = (skew(&x), skew(&y));
+    let finite = |x: &ComplexMatrix| all_finite(&x.re) && all_finite(&x.im);
+    for g in [Exp.eval(&group, &u), Cay.eval(&group, &u)] {
+        match g {
+            Ok(g) => assert!(finite(&u) && group.defect(&g) <= 1e-12, "{u:?}"),
+            Err(error) => told(&error),
+        }
+    }
+    for w in [Exp.eval_dpsi_inv(&group, &u, &v), Cay.eval_dpsi_inv(&group, &u, &v)] {
+        match w {
+            Ok(w) => assert!(finite(&w), "{u:?} {v:?}"),
+            Err(error) => told(&error),
+        }
+    }
+    let mut at = Exp.at(&group).expect("exp serves the group");
+    let mut w = v.clone();
+    assert!(at.dexp(&group, &u, &mut w).is_err() || finite(&w), "{u:?} {v:?}");
+    match at.distance_to_singular(&u) {
+        Ok(distance) => assert!(distance >= 0.0, "{distance} at {u:?}"),
+        Err(error) => told(&error.into()),
+    }
+    assert!(group.big_ad(&wild, &u, &mut w).is_err() || finite(&w), "{wild:?} {u:?}");
+    assert!(group.coad_group(&wild, &u, &mut w).is_err() || finite(&w), "{wild:?} {u:?}");
+    let mut g = wild;
+    group.correct(&mut g, [&mut group.identity(), &mut group.identity()]);
+    let (u, v) = (draw.vector(), draw.vector());
+    for w in
+        [Exp.eval_dpsi_inv(&UnitQuaternions, &u, &v), Cay.eval_dpsi_inv(&UnitQuaternions, &u, &v)]
+    {
+        assert!(w.is_err() || w.is_ok_and(|w| w.iter().all(|x| x.is_finite())), "{u:?} {v:?}");
     }
 }
 

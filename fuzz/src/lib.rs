@@ -1,6 +1,7 @@
 //! Fuzz targets of lieflow; the bodies are in [`bodies`] and [`scene`].
 
 pub mod bodies;
+mod draw;
 pub mod scene;
 
 #[doc(hidden)]

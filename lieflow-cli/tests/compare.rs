@@ -334,7 +334,27 @@ fn long_times_are_gone_through_to_the_wanted_error() {
     let reached = curves.iter().flat_map(|c| &c.points).filter(|p| p.error <= 1e-6).count();
     assert!((1..=6).contains(&reached), "{reached} runs reach it, at most one round of them");
     assert!(runs(&curves).iter().sum::<usize>() < candidates.len() * 10, "{:?}", runs(&curves));
-    assert!(curves.iter().flat_map(|c| &c.points).all(|p| p.seconds_per_unit > 0.0));
+    let timed =
+        |p: &lieflow_cli::measure::WorkPoint| p.seconds_per_unit > 0.0 || p.failure.is_some();
+    assert!(curves.iter().flat_map(|c| &c.points).all(timed));
+}
+
+/// A run that has left the range of the arithmetic is no hit.
+#[test]
+fn a_run_without_numbers_reaches_no_error() {
+    let scene = Scene::bundled("fodo-cell").unwrap();
+    let t_span = scene.grid.t_span();
+    let judge = Judge::new(&scene, &["phase_space"], t_span).unwrap();
+    let all = Candidate::all_that_fit(&scene, &["phase_space"], Layer::General).unwrap();
+    let model = scene.model_with(Layer::General, &judge.quantities()).unwrap();
+    for name in ["rkmk dopri5 exp", "rk dop853"] {
+        let candidate = all.iter().find(|c| c.method.label() == name && !c.adaptive).unwrap();
+        for steps in [30, 60, 120] {
+            let size = lieflow_cli::measure::Size::Steps(steps);
+            let point = judge.point(&*model, candidate, t_span, size);
+            assert!(point.error.is_nan() || point.error > 1e-3, "{name}, {steps}: {point:?}");
+        }
+    }
 }
 
 #[test]

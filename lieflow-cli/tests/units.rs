@@ -3,8 +3,6 @@
 //! much again, so it has none (`test = false`), and its modules with tests are compiled here.
 #![allow(dead_code, unused_imports, unreachable_pub)] // modules are here for their tests
 
-#[path = "../src/survey/dd.rs"]
-mod dd;
 #[path = "../src/survey/exact.rs"]
 mod exact;
 #[path = "../src/page/mod.rs"]

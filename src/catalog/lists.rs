@@ -489,9 +489,21 @@ const fn isospectral(
     plain(LIE_POISSON, name, Some(order), summary, [keeps, cost, "Modin & Viviani 2020"])
 }
 
-/// Methods for isospectral systems on matrices: `with_lie_poisson_method`.
+/// Methods for isospectral systems on matrices: `with_lie_poisson_method`, `with_fluid_method`.
 pub const ISOSPECTRAL_METHODS: &[MethodInfo] = &[
     isospectral("isospectral2", 2, "isospectral Gauss of one stage", "8–25 × 3 products"),
     isospectral("isospectral4", 4, "isospectral Gauss of two stages", "8–25 × 6 products"),
     isospectral("isospectral6", 6, "isospectral Gauss of three stages", "8–25 × 9 products"),
+    isospectral(
+        "isospectral-suzuki4",
+        4,
+        "isospectral2 composed by Suzuki's fractal",
+        "5 isospectral2",
+    ),
+    isospectral(
+        "isospectral-kahan-li6",
+        6,
+        "isospectral2 composed by nine stages",
+        "9 isospectral2",
+    ),
 ];

@@ -17,6 +17,9 @@
 //! | [`with_body_method`] | a free rigid body in ℝ³ | `Field`, `Norm`, `Series`, `Body` |
 //! | [`with_attitude_method`] | and its attitude in the state | `Field`, `Norm`, `Series`, `Body`, `Attitude` |
 //! | [`with_momentum_method`] | the body by its momentum | `Field`, `Norm`, `Series`, `Body`, `LiePoisson` |
+//! | [`with_exp_cay_method`](super::with_exp_cay_method) | on a group with the maps exp and cay | `Field`, `Norm` |
+//! | [`with_quaternion_method`] | a free rigid body by its quaternion | `Field`, `Norm`, `Series`, `Body` |
+//! | [`with_fluid_method`](super::with_fluid_method) | an ideal fluid, [`Zeitlin`](crate::problems::Zeitlin) | `Field`, `Norm`, `LiePoisson`, of `Isospectral` the midpoint rules |
 //! | [`with_state_method`](super::with_state_method) | both in one state, [`RigidBodyState`] | `State` |
 //! | [`with_linear_method`](super::with_linear_method) | ẏ = λ_*(A(t))(y) | `LinearType` |
 //!
@@ -35,7 +38,8 @@ use crate::methods::{
     Splitting, Taylor, Wide, YOSHIDA4,
 };
 use crate::problems::{
-    FreeBody, LiePoisson, Orthogonal, PointOf, Problem, Projection, ScalarOf, Split, TaylorField,
+    FreeBody, LiePoisson, Orthogonal, PointOf, Problem, Projection, RigidBodyQuaternion, ScalarOf,
+    Split, TaylorField,
 };
 use crate::scalar::Trig;
 
@@ -252,6 +256,36 @@ fn splitting(name: &str) -> Option<Splitting<3>> {
     Some(Splitting::new(parts, scheme))
 }
 
+/// Hand the method for a free rigid body of that name to `$on`, or go on to `$else`.
+macro_rules! each_body_method {
+    ($name:expr, $on:expr, else => $else:expr) => {
+        match $name {
+            "simo-wong" => Ok($on.call(SimoWong::TAN)),
+            "simo-wong-k1" => Ok($on.call(SimoWong::ONE)),
+            "lewis-simo" => Ok($on.call(SimoWong::LEWIS_SIMO)),
+            "simo-wong4" => Ok($on.call(Composition::new(SimoWong::TAN, SUZUKI4))),
+            "simo-wong6" => Ok($on.call(Composition::new(SimoWong::TAN, KAHAN_LI6))),
+            "buss4" => Ok($on.call(Buss4)),
+            "dmv2" => Ok($on.call(DMV2)),
+            "dmv4" => Ok($on.call(DMV4)),
+            "dmv6" => Ok($on.call(DMV6)),
+            "dmv8" => Ok($on.call(DMV8)),
+            "dmv10" => Ok($on.call(DMV10)),
+            "exact" => Ok($on.call(ExactMotion)),
+            "taylor4" => Ok($on.call(Taylor::<4>)),
+            "taylor6" => Ok($on.call(Taylor::<6>)),
+            "taylor8" => Ok($on.call(Taylor::<8>)),
+            "taylor10" => Ok($on.call(Taylor::<10>)),
+            "taylor12" => Ok($on.call(Taylor::<12>)),
+            "taylor14" => Ok($on.call(Taylor::<14>)),
+            "taylor16" => Ok($on.call(Taylor::<16>)),
+            name => match splitting(name) {
+                Some(splitting) => Ok($on.call(splitting)),
+                None => $else,
+            },
+        }
+    };
+}
 /// [`with_implicit_method`], [`SERIES_METHODS`] and [`BODY_METHODS`]: the free rigid body in ℝ³.
 ///
 /// # Errors
@@ -264,32 +298,18 @@ where
     ScalarOf<P>: Trig + Wide + Into<f64>,
     Exp: CoordinateMap<P::Group>,
 {
-    let name = spec.info()?.name;
-    if let Some(splitting) = splitting(name) {
-        return Ok(on.call(splitting));
-    }
-    match name {
-        "simo-wong" => Ok(on.call(SimoWong::TAN)),
-        "simo-wong-k1" => Ok(on.call(SimoWong::ONE)),
-        "lewis-simo" => Ok(on.call(SimoWong::LEWIS_SIMO)),
-        "simo-wong4" => Ok(on.call(Composition::new(SimoWong::TAN, SUZUKI4))),
-        "simo-wong6" => Ok(on.call(Composition::new(SimoWong::TAN, KAHAN_LI6))),
-        "buss4" => Ok(on.call(Buss4)),
-        "dmv2" => Ok(on.call(DMV2)),
-        "dmv4" => Ok(on.call(DMV4)),
-        "dmv6" => Ok(on.call(DMV6)),
-        "dmv8" => Ok(on.call(DMV8)),
-        "dmv10" => Ok(on.call(DMV10)),
-        "exact" => Ok(on.call(ExactMotion)),
-        "taylor4" => Ok(on.call(Taylor::<4>)),
-        "taylor6" => Ok(on.call(Taylor::<6>)),
-        "taylor8" => Ok(on.call(Taylor::<8>)),
-        "taylor10" => Ok(on.call(Taylor::<10>)),
-        "taylor12" => Ok(on.call(Taylor::<12>)),
-        "taylor14" => Ok(on.call(Taylor::<14>)),
-        "taylor16" => Ok(on.call(Taylor::<16>)),
-        _ => with_implicit_method(spec, on),
-    }
+    each_body_method!(spec.info()?.name, on, else => with_implicit_method(spec, on))
+}
+
+/// [`with_exp_cay_method`], [`SERIES_METHODS`] and [`BODY_METHODS`]: the body in ℝ³ by the quaternion of its attitude.
+///
+/// # Errors
+/// As [`with_method`].
+pub fn with_quaternion_method<V: OnMethod<RigidBodyQuaternion>>(
+    spec: &MethodSpec,
+    on: V,
+) -> Result<V::Out, Error> {
+    each_body_method!(spec.info()?.name, on, else => with_exp_cay_method(spec, on))
 }
 
 /// [`with_body_method`] and [`ATTITUDE_METHODS`]: the body with its attitude.
@@ -352,6 +372,10 @@ where
         "isospectral2" => Ok(on.call(IsospectralGauss(GAUSS2))),
         "isospectral4" => Ok(on.call(IsospectralGauss(GAUSS4))),
         "isospectral6" => Ok(on.call(IsospectralGauss(GAUSS6))),
+        "isospectral-suzuki4" => Ok(on.call(Composition::new(IsospectralGauss(GAUSS2), SUZUKI4))),
+        "isospectral-kahan-li6" => {
+            Ok(on.call(Composition::new(IsospectralGauss(GAUSS2), KAHAN_LI6)))
+        }
         _ => each_energy_casimir!(spec, on, else => with_series_method(spec, on)),
     }
 }

@@ -1,19 +1,29 @@
-//! Eigendecomposition of a real skew-symmetric matrix, and functions of ad_u built on it.
+//! Eigendecomposition of a skew-symmetric or skew-Hermitian matrix, and functions of ad_u built on it.
+
+use core::f64::consts::TAU;
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::evd::{ComputeEigenvectors, self_adjoint_evd, self_adjoint_evd_scratch};
 use faer::linalg::matmul::matmul;
-use faer::{Accum, Mat, Par, c64};
+use faer::{Accum, Col, Mat, Par, c64};
 
 use crate::error::StepError;
 use crate::scalar::{Ops, tally};
 
-/// Workspace for iu = Q Λ Q* with u skew-symmetric.
+const ONE: c64 = c64::new(1.0, 0.0);
+
+/// Entries below this share of the largest are dropped before an eigendecomposition over ℂ: they change no
+/// digit of it, and faer's reduction fails where the square of one underflows beside others.
+const NEGLIGIBLE: f64 = 1e-60;
+
+/// Workspace for iu = Q Λ Q* with u skew-symmetric or skew-Hermitian.
 pub(crate) struct SkewEigen {
+    /// iu, then the coordinates of v.
     h: Mat<c64>,
     q: Mat<c64>,
     x: Mat<c64>,
-    lambda: faer::Col<c64>,
+    /// Λ, ascending.
+    lambda: Col<c64>,
     mem: MemBuffer,
 }
 
@@ -32,7 +42,7 @@ impl SkewEigen {
             Default::default(),
         );
         let z = || Mat::zeros(n, n);
-        SkewEigen { h: z(), q: z(), x: z(), lambda: faer::Col::zeros(n), mem: MemBuffer::new(req) }
+        SkewEigen { h: z(), q: z(), x: z(), lambda: Col::zeros(n), mem: MemBuffer::new(req) }
     }
 
     /// v ← φ(ad_u) v for u, v skew. `phi(θ)` is (Re, Im) of φ at the eigenvalue −iθ of ad_u.
@@ -47,16 +57,73 @@ impl SkewEigen {
         phi: impl Fn(f64) -> Result<(f64, f64), StepError>,
     ) -> Result<(), StepError> {
         let n = u.nrows();
-        let SkewEigen { h, q, x, lambda, mem } = self;
-        // The eigenvectors by the usual estimate of 9n³ complex operations; then five products, n norms,
-        // n Rayleigh quotients, φ and its product for each entry, and the skew part.
-        tally(Ops::complex_muladds(9 * n * n * n / 2 + 5 * n * n * n) + Ops::muladds(4 * n * n));
-        tally((Ops::muls(2 * n + 1) + Ops::divs(1) + Ops::sqrts(1)) * n);
-        tally((Ops::muls(6) + Ops::adds(4) + Ops::divs(1) + Ops::trigs(2)) * (n * n));
+        fill(&mut self.h, |i, j| c64::new(0.0, u[(i, j)]));
+        self.decompose()?;
+        fill(&mut self.h, |i, j| c64::new(v[(i, j)], 0.0));
+        // Eigenvalues ascend, so the conjugate of number j is number n − 1 − j.
+        self.multiply(phi, |lambda, j, k| j + k == n - 1 && j != k && isolated(lambda, j))?;
+        let h = &self.h;
+        tally((Ops::adds(1) + Ops::muls(1)) * (n * n.saturating_sub(1) / 2));
         for j in 0..n {
-            for i in 0..n {
-                h[(i, j)] = c64::new(0.0, u[(i, j)]);
+            v[(j, j)] = 0.0;
+            for i in j + 1..n {
+                let w = 0.5 * (h[(i, j)].re - h[(j, i)].re);
+                v[(i, j)] = w;
+                v[(j, i)] = -w;
             }
+        }
+        Ok(())
+    }
+
+    /// v ← φ(ad_u) v for u, v skew-Hermitian, as [`function_of_ad`](Self::function_of_ad): u(n) sees
+    /// every eigenvalue.
+    pub(crate) fn function_of_complex_ad(
+        &mut self,
+        u: &Mat<c64>,
+        v: &mut Mat<c64>,
+        phi: impl Fn(f64) -> Result<(f64, f64), StepError>,
+    ) -> Result<(), StepError> {
+        self.decompose_complex(u)?;
+        self.h.copy_from(&*v);
+        self.multiply(phi, |_, _, _| false)?;
+        let h = &self.h;
+        fill(v, |i, j| 0.5 * (h[(i, j)] - h[(j, i)].conj()));
+        Ok(())
+    }
+
+    /// The smallest distance of an eigenvalue −i(λ_j − λ_k) of ad_u on u(n) to 2πik, k ≠ 0.
+    pub(crate) fn distance_to_singular(&mut self, u: &Mat<c64>) -> Result<f64, StepError> {
+        self.decompose_complex(u)?;
+        if self.lambda.iter().any(|x| !x.re.is_finite()) {
+            return Err(StepError::NotFinite { what: "an eigenvalue of u" });
+        }
+        // A difference of 0 is 2π away: those with j = k.
+        let mut best = TAU;
+        for j in 0..u.nrows() {
+            for k in 0..j {
+                let theta = self.lambda[j].re - self.lambda[k].re;
+                best = best.min((theta - TAU * (theta / TAU).round().max(1.0)).abs());
+            }
+        }
+        Ok(best)
+    }
+
+    fn decompose_complex(&mut self, u: &Mat<c64>) -> Result<(), StepError> {
+        fill(&mut self.h, |i, j| c64::new(-u[(i, j)].im, u[(i, j)].re));
+        self.decompose()
+    }
+
+    /// h = QΛQ*.
+    fn decompose(&mut self) -> Result<(), StepError> {
+        let SkewEigen { h, q, x, lambda, mem } = self;
+        // The eigenvectors by the usual estimate of 9n³ complex operations, a product, norms, quotients.
+        let n = h.nrows();
+        tally(Ops::complex_muladds(9 * n * n * n / 2 + n * n * n));
+        tally(Ops::muladds(4 * n * n) + Ops::muls(2 * n * n) + (Ops::divs(1) + Ops::sqrts(1)) * n);
+        let negligible = NEGLIGIBLE * h.norm_max();
+        for z in h.col_iter_mut().flat_map(|column| column.iter_mut()) {
+            let significant = |x: f64| if x.abs() < negligible { 0.0 } else { x };
+            *z = c64::new(significant(z.re), significant(z.im));
         }
         self_adjoint_evd(
             h.as_ref(),
@@ -69,27 +136,34 @@ impl SkewEigen {
         .map_err(|_| StepError::NotConverged { what: "the eigendecomposition of u" })?;
         // The columns arrive orthogonal to ε but normalised to some 10ε only, and the eigenvalues
         // no better: normalise, and take Rayleigh quotients.
-        for j in 0..n {
-            let inverse = 1.0 / q.col(j).norm_l2();
-            q.col_mut(j).iter_mut().for_each(|x| *x *= inverse);
+        for column in q.col_iter_mut() {
+            let inverse = 1.0 / column.norm_l2();
+            column.iter_mut().for_each(|x| *x *= inverse);
         }
-        let one = c64::new(1.0, 0.0);
-        matmul(x.as_mut(), Accum::Replace, h.as_ref(), q.as_ref(), one, Par::Seq);
-        for j in 0..n {
+        matmul(x.as_mut(), Accum::Replace, h.as_ref(), q.as_ref(), ONE, Par::Seq);
+        for j in 0..h.nrows() {
             let terms = q.col(j).iter().zip(x.col(j).iter());
             lambda[j].re = terms.map(|(q, x)| q.re * x.re + q.im * x.im).sum();
         }
-        for j in 0..n {
-            for i in 0..n {
-                h[(i, j)] = c64::new(v[(i, j)], 0.0);
-            }
-        }
-        matmul(x.as_mut(), Accum::Replace, h.as_ref(), q.as_ref(), one, Par::Seq);
-        matmul(h.as_mut(), Accum::Replace, q.adjoint(), x.as_ref(), one, Par::Seq);
-        for k in 0..n {
-            for j in 0..n {
-                // Eigenvalues ascend, so the conjugate of number j is number n − 1 − j.
-                if j + k == n - 1 && j != k && isolated(lambda, j) {
+        Ok(())
+    }
+
+    /// h ← Q (φ(−i(λ_j − λ_k)) ∘ Q*hQ) Q*, with the components that are `absent` set to zero.
+    fn multiply(
+        &mut self,
+        phi: impl Fn(f64) -> Result<(f64, f64), StepError>,
+        absent: impl Fn(&Col<c64>, usize, usize) -> bool,
+    ) -> Result<(), StepError> {
+        let SkewEigen { h, q, x, lambda, .. } = self;
+        // Four products; φ of a difference and its product for each entry.
+        let n = h.nrows();
+        tally(Ops::dots(8 * n * n, 2 * n));
+        tally((Ops::muls(6) + Ops::adds(3) + Ops::divs(1) + Ops::trigs(2)) * (n * n));
+        matmul(x.as_mut(), Accum::Replace, h.as_ref(), q.as_ref(), ONE, Par::Seq);
+        matmul(h.as_mut(), Accum::Replace, q.adjoint(), x.as_ref(), ONE, Par::Seq);
+        for k in 0..h.ncols() {
+            for j in 0..h.nrows() {
+                if absent(lambda, j, k) {
                     h[(j, k)] = c64::new(0.0, 0.0);
                 } else {
                     let (re, im) = phi(lambda[j].re - lambda[k].re)?;
@@ -97,22 +171,22 @@ impl SkewEigen {
                 }
             }
         }
-        matmul(x.as_mut(), Accum::Replace, q.as_ref(), h.as_ref(), one, Par::Seq);
-        matmul(h.as_mut(), Accum::Replace, x.as_ref(), q.adjoint(), one, Par::Seq);
-        for j in 0..n {
-            v[(j, j)] = 0.0;
-            for i in j + 1..n {
-                let w = 0.5 * (h[(i, j)].re - h[(j, i)].re);
-                v[(i, j)] = w;
-                v[(j, i)] = -w;
-            }
-        }
+        matmul(x.as_mut(), Accum::Replace, q.as_ref(), h.as_ref(), ONE, Par::Seq);
+        matmul(h.as_mut(), Accum::Replace, x.as_ref(), q.adjoint(), ONE, Par::Seq);
         Ok(())
     }
 }
 
+fn fill(x: &mut Mat<c64>, entry: impl Fn(usize, usize) -> c64) {
+    for j in 0..x.ncols() {
+        for i in 0..x.nrows() {
+            x[(i, j)] = entry(i, j);
+        }
+    }
+}
+
 /// Is eigenvalue j far enough from its neighbours for its eigenvector to be its own?
-fn isolated(lambda: &faer::Col<c64>, j: usize) -> bool {
+fn isolated(lambda: &Col<c64>, j: usize) -> bool {
     let n = lambda.nrows();
     let gap = 1e-6 * lambda[n - 1].re.abs().max(lambda[0].re.abs());
     (j == 0 || lambda[j].re - lambda[j - 1].re > gap)

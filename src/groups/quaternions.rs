@@ -15,9 +15,11 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
 
-use super::{LieAlgebra, LieGroup, RESIDUAL_MAX, Sample, So3};
+use super::{Adjoint, LieAlgebra, LieGroup, RESIDUAL_MAX, Sample, So3};
+use crate::actions::{Action, Coadjoint};
 use crate::error::{Error, StepError};
 use crate::maps::{Cay, CoordinateMap, Exp};
+use crate::scalar::{Counted, Ops, tally, tally_by};
 use crate::so3;
 
 /// S³, the unit quaternions, over ℝ³ with the cross product.
@@ -39,6 +41,11 @@ pub struct UnitQuaternions;
 
 const SO3: So3<f64> = So3::new();
 
+/// u × v.
+const CROSS: Ops = Ops { mul: 6, add: 3, ..Ops::NONE };
+/// A product of quaternions.
+pub(crate) const QUATERNION_PRODUCT: Ops = Ops { mul: 16, add: 12, ..Ops::NONE };
+
 impl LieAlgebra for UnitQuaternions {
     type Scalar = f64;
     type Alg = Vector3<f64>;
@@ -59,14 +66,17 @@ impl LieAlgebra for UnitQuaternions {
     }
     #[inline]
     fn axpy(&self, a: f64, x: &Vector3<f64>, y: &mut Vector3<f64>) {
+        tally(Ops::muladds(3));
         SO3.axpy(a, x, y);
     }
     #[inline]
     fn bracket(&self, u: &Vector3<f64>, v: &Vector3<f64>, out: &mut Vector3<f64>) {
+        tally(CROSS);
         SO3.bracket(u, v, out);
     }
     #[inline]
     fn norm(&self, u: &Vector3<f64>) -> f64 {
+        tally(Ops::dots(1, 3) + Ops::sqrts(1));
         SO3.norm(u)
     }
     #[inline]
@@ -90,11 +100,13 @@ impl LieGroup for UnitQuaternions {
         b: &UnitQuaternion<f64>,
         out: &mut UnitQuaternion<f64>,
     ) {
+        tally(QUATERNION_PRODUCT);
         *out = UnitQuaternion::new_unchecked(a.quaternion() * b.quaternion());
     }
     #[inline]
     fn apply(&self, q: &UnitQuaternion<f64>, x: &Vector3<f64>, y: &mut Vector3<f64>) {
         let (w, v) = (q.w, q.imag());
+        tally(CROSS * 2 + Ops::muls(6) + Ops::adds(6));
         let t = 2.0 * v.cross(x);
         *y = x + w * t + v.cross(&t);
     }
@@ -113,10 +125,74 @@ impl LieGroup for UnitQuaternions {
     #[inline]
     fn correct(&self, q: &mut UnitQuaternion<f64>, _: [&mut UnitQuaternion<f64>; 2]) -> f64 {
         let gap = q.coords.norm_squared() - 1.0;
+        tally(Ops::dots(1, 4) + Ops::adds(2) + Ops::muls(5));
         if gap.abs() < RESIDUAL_MAX {
             *q = UnitQuaternion::new_unchecked(Quaternion::from(q.coords * (1.0 - 0.5 * gap)));
         }
         gap.abs()
+    }
+}
+
+/// As on SO(3), by q in place of its rotation.
+impl Adjoint for UnitQuaternions {
+    type Dual = Vector3<f64>;
+    type Inverting = ();
+
+    fn inverting(&self) {}
+    #[inline]
+    fn invert(
+        &self,
+        q: &UnitQuaternion<f64>,
+        (): &mut (),
+        out: &mut UnitQuaternion<f64>,
+    ) -> Result<(), StepError> {
+        *out = q.conjugate();
+        Ok(())
+    }
+    #[inline]
+    fn big_ad(
+        &self,
+        q: &UnitQuaternion<f64>,
+        u: &Vector3<f64>,
+        out: &mut Vector3<f64>,
+    ) -> Result<(), StepError> {
+        self.apply(q, u, out);
+        so3::finite(*out, "Ad").map(drop)
+    }
+    #[inline]
+    fn coad_group(
+        &self,
+        q: &UnitQuaternion<f64>,
+        m: &Vector3<f64>,
+        out: &mut Vector3<f64>,
+    ) -> Result<(), StepError> {
+        self.big_ad(&q.conjugate(), m, out)
+    }
+    #[inline]
+    fn coad(&self, u: &Vector3<f64>, m: &Vector3<f64>, out: &mut Vector3<f64>) {
+        SO3.coad(u, m, out);
+    }
+    #[inline]
+    fn pair(&self, m: &Vector3<f64>, v: &Vector3<f64>) -> f64 {
+        SO3.pair(m, v)
+    }
+}
+
+impl Action<UnitQuaternions> for Coadjoint {
+    type Point = Vector3<f64>;
+    type Work = ();
+
+    fn work(&self, _: &UnitQuaternions) {}
+    #[inline]
+    fn act(
+        &self,
+        group: &UnitQuaternions,
+        q: &UnitQuaternion<f64>,
+        m: &Vector3<f64>,
+        out: &mut Vector3<f64>,
+        _: &mut (),
+    ) {
+        group.apply(q, m, out);
     }
 }
 
@@ -136,7 +212,7 @@ impl Sample for UnitQuaternions {
 
 /// Both maps: Ψ by its quaternion, the rest by so(3).
 macro_rules! map {
-    ($map:ty, $name:literal, $psi:path, $dpsi_inv:path) => {
+    ($map:ty, $name:literal, $psi:path, $dpsi_inv:path, |$u:ident| $tally:expr) => {
         impl CoordinateMap<UnitQuaternions> for $map {
             type At = ();
 
@@ -154,6 +230,8 @@ macro_rules! map {
                 _: &mut (),
                 q: &mut UnitQuaternion<f64>,
             ) -> Result<(), StepError> {
+                let $u = u;
+                $tally;
                 *q = $psi(u)?;
                 Ok(())
             }
@@ -165,11 +243,18 @@ macro_rules! map {
                 _: &mut (),
                 v: &mut Vector3<f64>,
             ) -> Result<(), StepError> {
+                tally_by(|| $dpsi_inv(&u.map(Counted), &v.map(Counted)));
                 *v = $dpsi_inv(u, v)?;
                 Ok(())
             }
         }
     };
 }
-map!(Exp, "exp", so3::exp_quaternion, so3::dexpinv);
-map!(Cay, "cay", so3::cay_quaternion, so3::dcayinv);
+map!(Exp, "exp", so3::exp_quaternion, so3::dexpinv, |u| {
+    tally_by(|| so3::half_angle(&u.map(Counted)));
+    tally(Ops::muls(3));
+});
+// Scaled: four divisions, the norm, four more.
+map!(Cay, "cay", so3::cay_quaternion, so3::dcayinv, |_u| {
+    tally(Ops::divs(8) + Ops::dots(1, 4) + Ops::sqrts(1));
+});

@@ -4,7 +4,7 @@
 //! it carries the part of a system that is not on a group: a momentum under forces, a controller's
 //! memory, a heat bath.
 
-use super::{LieAlgebra, LieGroup};
+use super::{Adjoint, LieAlgebra, LieGroup};
 use crate::error::{Error, StepError};
 use crate::maps::{Cay, Ccsk, CoordinateMap, Exp, Pade22, TruncatedExp};
 use crate::problems::LinearSpace;
@@ -98,6 +98,38 @@ impl<V: LinearSpace> LieGroup for Translations<V> {
     }
     fn defect(&self, _: &V) -> V::Scalar {
         V::Scalar::lit(0.0)
+    }
+}
+
+/// Ad_g = id and ad_u = 0, on V and, by ⟨m, v⟩ = Σ mᵢvᵢ, on its dual.
+impl<V: LinearSpace> Adjoint for Translations<V> {
+    type Dual = V;
+    type Inverting = ();
+
+    fn inverting(&self) {}
+    #[inline]
+    fn invert(&self, g: &V, (): &mut (), out: &mut V) -> Result<(), StepError> {
+        out.clear();
+        out.add(V::Scalar::lit(-1.0), g);
+        Ok(())
+    }
+    #[inline]
+    fn big_ad(&self, _: &V, u: &V, out: &mut V) -> Result<(), StepError> {
+        out.assign(u);
+        Ok(())
+    }
+    #[inline]
+    fn coad_group(&self, _: &V, m: &V, out: &mut V) -> Result<(), StepError> {
+        out.assign(m);
+        Ok(())
+    }
+    #[inline]
+    fn coad(&self, _: &V, _: &V, out: &mut V) {
+        out.clear();
+    }
+    #[inline]
+    fn pair(&self, m: &V, v: &V) -> V::Scalar {
+        m.dot(v)
     }
 }
 

@@ -2,42 +2,99 @@
 //!
 //! | | Ψ(u) | dΨ_u⁻¹ v |
 //! |---|---|---|
-//! | exp | scaled Taylor polynomials on u(n) | Σ B_k/k! ad_u^k v (15) |
+//! | exp | scaled Taylor polynomials on u(n) | Σ B_k/k! ad_u^k v (15); the eigen form where ‖u‖ > 2.1 |
 //! | cay | (𝟙 − u/2)⁻¹(𝟙 + u/2) | (𝟙 − u/2) v (𝟙 + u/2) |
 //!
-//! The Baker series is summed until its terms vanish in rounding. It converges where the eigenvalues
-//! of u lie within an interval of the imaginary axis shorter than 2π, and is refused where it takes
-//! more than 52 terms: from about half of that on.
+//! dexp⁻¹ is as on so(n): with iu = QΛQ*, (Q*(dexp_u⁻¹v)Q)_jk = φ(−i(λ_j − λ_k))·(Q*vQ)_jk, exact at
+//! any ‖u‖, and refused where a difference of eigenvalues is within about 1e-12·max(1, ‖u‖) of 2πk.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::lu::partial_pivoting::{factor, solve};
 use faer::perm::PermRef;
 use faer::{Mat, Par, c64};
 
-use super::exp::baker;
+use super::exp::{Dexpinv, EXACT_FROM, Powers, phi, phi1};
 use super::{Cay, CoordinateMap, Exp};
-use crate::dense::{ComplexExponential, Structure};
+use crate::dense::{ComplexExponential, SkewEigen, Structure};
 use crate::error::{Error, StepError};
 use crate::groups::{ComplexMatrix, LieAlgebra, LieGroup, Unitary, mul_complex};
 use crate::methods::Metric;
 use crate::problems::LinearSpace;
 use crate::scalar::{Ops, tally};
 
-/// The longest series that is summed.
-const SERIES_MAX: usize = 52;
 /// Above this norm no digit of cay(u) has a meaning.
 const NORM_MAX: f64 = 1e15;
 /// Above this norm of u the solve has lost more than rounding of the group.
 const NORM_EXACT: f64 = 4.0;
 
-/// What exp keeps on U(n).
+/// What exp keeps on U(n): workspaces, and how the last dexp⁻¹ was computed.
 #[derive(Debug)]
 pub struct UnitaryExpAt {
     exponential: ComplexExponential,
     u: Mat<c64>,
+    /// exp(u), or v.
     g: Mat<c64>,
-    ad: ComplexMatrix,
-    next: ComplexMatrix,
+    powers: Powers<ComplexMatrix>,
+    eigen: SkewEigen,
+    dexpinv: Dexpinv,
+}
+
+impl UnitaryExpAt {
+    /// How the last dexp⁻¹ was computed.
+    pub fn dexpinv_choice(&self) -> Dexpinv {
+        self.dexpinv
+    }
+
+    /// v ← dexp_u v to rounding at any ‖u‖: right trivialised, d/dε exp(u + εv)|₀ = dexp_u(v)·exp(u).
+    ///
+    /// # Errors
+    /// [`StepError::NormTooLarge`], [`StepError::NotFinite`], [`StepError::NotConverged`].
+    pub fn dexp(
+        &mut self,
+        group: &Unitary,
+        u: &ComplexMatrix,
+        v: &mut ComplexMatrix,
+    ) -> Result<(), StepError> {
+        let radius = ad_bound(u)?;
+        if radius <= EXACT_FROM {
+            self.powers.ad.assign(v);
+            self.powers.phi1(group, u, v);
+        } else if !self.powers.commute(group, u, v) {
+            self.eigen(u, v, |theta| Ok(phi1(theta)))?;
+        }
+        finite(v, "dexp_u")
+    }
+
+    /// The smallest distance of an eigenvalue of ad_u to the singular set 2πik, k ≠ 0, of dexp_u, as
+    /// [`ExpAt::distance_to_singular`](super::ExpAt::distance_to_singular).
+    ///
+    /// # Errors
+    /// [`StepError::NotFinite`], [`StepError::NotConverged`].
+    pub fn distance_to_singular(&mut self, u: &ComplexMatrix) -> Result<f64, StepError> {
+        finite(u, "u in dexp_u")?;
+        join(u, &mut self.u);
+        self.eigen.distance_to_singular(&self.u)
+    }
+
+    /// v ← φ(ad_u) v by the eigenvectors of u.
+    fn eigen(
+        &mut self,
+        u: &ComplexMatrix,
+        v: &mut ComplexMatrix,
+        phi: impl Fn(f64) -> Result<(f64, f64), StepError>,
+    ) -> Result<(), StepError> {
+        join(u, &mut self.u);
+        join(v, &mut self.g);
+        self.eigen.function_of_complex_ad(&self.u, &mut self.g, phi)?;
+        split(&self.g, v);
+        Ok(())
+    }
+}
+
+/// A bound of ‖ad_u‖ in the Frobenius norm: |λ_j − λ_k| ≤ √2·‖u‖.
+fn ad_bound(u: &ComplexMatrix) -> Result<f64, StepError> {
+    let bound = core::f64::consts::SQRT_2 * u.size();
+    if bound.is_finite() { Ok(bound) } else { Err(StepError::NormTooLarge { map: "exp" }) }
 }
 
 impl CoordinateMap<Unitary> for Exp {
@@ -47,14 +104,14 @@ impl CoordinateMap<Unitary> for Exp {
         "exp"
     }
     fn at(&self, group: &Unitary) -> Result<UnitaryExpAt, Error> {
-        let (n, zero) = (group.n(), || group.zero());
-        let exponential = ComplexExponential::new(n);
+        let n = group.n();
         Ok(UnitaryExpAt {
-            exponential,
+            exponential: ComplexExponential::new(n),
             u: Mat::zeros(n, n),
             g: Mat::zeros(n, n),
-            ad: zero(),
-            next: zero(),
+            powers: Powers::new(|| group.zero()),
+            eigen: SkewEigen::new(n),
+            dexpinv: Dexpinv::None,
         })
     }
     fn psi(
@@ -76,26 +133,17 @@ impl CoordinateMap<Unitary> for Exp {
         at: &mut UnitaryExpAt,
         v: &mut ComplexMatrix,
     ) -> Result<(), StepError> {
-        let UnitaryExpAt { ad, next, .. } = at;
-        ad.assign(v);
-        let negligible = 0.25 * f64::EPSILON * v.size();
-        for k in 1..=SERIES_MAX {
-            group.bracket(u, ad, next);
-            core::mem::swap(ad, next);
-            if k > 1 && k % 2 == 1 {
-                continue; // B_k = 0
-            }
-            let term = baker(k) * ad.size();
-            v.add(baker(k), ad);
-            // After the first term every second one is 0.
-            if term.abs() <= negligible && k > 1 || term == 0.0 {
-                return finite(v, "dexp⁻¹");
-            }
+        let radius = ad_bound(u)?;
+        if radius <= EXACT_FROM {
+            at.powers.ad.assign(v);
+            at.dexpinv = at.powers.baker(group, u, radius, None, v)?;
+        } else if at.powers.commute(group, u, v) {
+            at.dexpinv = Dexpinv::Series(1);
+        } else {
+            at.dexpinv = Dexpinv::Eigen;
+            at.eigen(u, v, |theta| phi(theta, radius))?;
         }
-        Err(StepError::OutsideChart {
-            map: "exp",
-            what: "the Baker series of dexp⁻¹ does not converge",
-        })
+        finite(v, "dexp⁻¹")
     }
 }
 

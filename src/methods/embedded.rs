@@ -73,7 +73,7 @@ pub trait Metric {
 /// rounding alone may do to the difference is no error of the step: it counts as 0.
 #[inline]
 pub(super) fn between<S: Real, M: Metric<Scalar = S>>(error: S, from: &M, to: &M) -> LocalError<S> {
-    let noise = S::lit(8.0 * f64::EPSILON) * to.size();
+    let noise = S::lit(8.0 * S::EPSILON) * to.size();
     let error = if (error - noise).all_below(0.0) { S::lit(0.0) } else { error };
     LocalError { error, length: to.distance(from) }
 }

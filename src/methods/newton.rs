@@ -11,13 +11,6 @@ pub(super) const NEWTON_MAX: u32 = 20;
 /// Fixed-point iterations before it is given up: a contraction by 0.8 reaches rounding.
 pub(super) const FIXED_POINT_MAX: u32 = 200;
 
-/// The unit roundoff of S.
-#[inline(always)]
-pub(super) fn eps<S: Real>() -> f64 {
-    let wide = S::lit(1.0) + S::lit(1e-10) == S::lit(1.0);
-    if wide { f64::from(f32::EPSILON) } else { f64::EPSILON }
-}
-
 fn dot<S: Real>(a: &Vector3<S>, b: &Vector3<S>) -> S {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
@@ -45,7 +38,7 @@ pub(super) fn newton3<S: Real>(
     scale: S,
     mut f: impl FnMut(&Vector3<S>) -> (Vector3<S>, Matrix3<S>),
 ) -> Result<Vector3<S>, StepError> {
-    let near = eps::<S>().sqrt() / 64.0;
+    let near = S::EPSILON.sqrt() / 64.0;
     let mut size = S::lit(f64::INFINITY);
     let mut iterations = 0;
     while iterations < NEWTON_MAX {
@@ -93,8 +86,8 @@ impl<S: Real> Progress<S> {
     #[inline]
     pub(super) fn done(&mut self, method: &'static str, change: S) -> Result<bool, StepError> {
         self.iterations += 1;
-        let tiny = 0.25 * eps::<S>();
-        let stalled = change.all_below(STALL * eps::<S>()) && !(change / self.last).all_below(0.9);
+        let tiny = 0.25 * S::EPSILON;
+        let stalled = change.all_below(STALL * S::EPSILON) && !(change / self.last).all_below(0.9);
         if change.all_below(tiny) || stalled {
             return Ok(true);
         }

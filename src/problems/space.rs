@@ -6,7 +6,7 @@ use nalgebra::{Matrix3, Vector3};
 use crate::dense;
 use crate::groups::{AlgebraMatrix, GroupMatrix};
 use crate::methods::Metric;
-use crate::scalar::Real;
+use crate::scalar::{Ops, Real, tally};
 
 /// A point of a linear space with a norm: vectors and matrices of both layers, pairs and boxed
 /// slices of them. Allocates nothing.
@@ -15,6 +15,8 @@ pub trait LinearSpace: Metric + Clone {
     fn clear(&mut self);
     /// self ← self + a·x.
     fn add(&mut self, a: Self::Scalar, x: &Self);
+    /// ⟨self, x⟩, the sum of the products of their numbers.
+    fn dot(&self, x: &Self) -> Self::Scalar;
     /// Is every number finite?
     fn is_finite(&self) -> bool;
 }
@@ -33,6 +35,10 @@ macro_rules! small {
                 }
             }
             #[inline]
+            fn dot(&self, x: &Self) -> S {
+                self.iter().zip(x).fold(S::lit(0.0), |sum, (y, x)| sum + *y * *x)
+            }
+            #[inline]
             fn is_finite(&self) -> bool {
                 self.iter().all(|x| Real::is_finite(*x))
             }
@@ -49,6 +55,11 @@ macro_rules! dense {
             }
             fn add(&mut self, a: f64, x: &Self) {
                 dense::axpy(a, x, self);
+            }
+            fn dot(&self, x: &Self) -> f64 {
+                tally(Ops::dots(1, x.nrows() * x.ncols()));
+                let column = |j| self.col_as_slice(j).iter().zip(x.col_as_slice(j));
+                (0..self.ncols()).flat_map(column).map(|(y, x)| y * x).sum()
             }
             fn is_finite(&self) -> bool {
                 dense::is_finite(self)
@@ -70,6 +81,10 @@ impl<A: LinearSpace, B: LinearSpace<Scalar = A::Scalar>> LinearSpace for (A, B) 
         self.1.add(a, &x.1);
     }
     #[inline]
+    fn dot(&self, x: &Self) -> A::Scalar {
+        self.0.dot(&x.0) + self.1.dot(&x.1)
+    }
+    #[inline]
     fn is_finite(&self) -> bool {
         self.0.is_finite() && self.1.is_finite()
     }
@@ -85,6 +100,10 @@ impl<A: LinearSpace> LinearSpace for Box<[A]> {
         for (y, x) in self.iter_mut().zip(x) {
             y.add(a, x);
         }
+    }
+    #[inline]
+    fn dot(&self, x: &Self) -> A::Scalar {
+        self.iter().zip(x).fold(A::Scalar::lit(0.0), |sum, (y, x)| sum + y.dot(x))
     }
     #[inline]
     fn is_finite(&self) -> bool {

@@ -32,6 +32,18 @@ thread_local! {
         const { Cell::new(Ops { add: 0, mul: 0, div: 0, sqrt: 0, trig: 0 }) };
 }
 
+#[cfg(feature = "tally")]
+thread_local! {
+    static COUNTING: Cell<bool> = const { Cell::new(false) };
+}
+
+/// Does anybody count?
+#[cfg(feature = "tally")]
+#[inline(always)]
+pub(super) fn is_counting() -> bool {
+    COUNTING.get()
+}
+
 /// What a kernel on machine numbers says that it has done.
 #[cfg(feature = "tally")]
 #[inline(always)]
@@ -54,7 +66,11 @@ impl Counted {
     /// matrices of the library too; see [`tally`](super::tally()).
     pub fn count<R>(f: impl FnOnce() -> R) -> (R, Ops) {
         let before = OPS.replace(Ops::default());
+        #[cfg(feature = "tally")]
+        let around = COUNTING.replace(true);
         let out = f();
+        #[cfg(feature = "tally")]
+        COUNTING.set(around);
         (out, OPS.replace(before))
     }
 

@@ -1,9 +1,10 @@
 //! The numbers that the closed forms run on.
 //!
-//! A formula is written once, generic in [`Real`], and runs in `f64`, in `f32` and on
-//! [`Counted`], which counts the operations it is put through.
+//! A formula is written once, generic in [`Real`], and runs in `f64`, in `f32`, on [`Counted`], which
+//! counts the operations it is put through, and on [`DoubleDouble`], which has 32 digits.
 
 mod counted;
+mod double_double;
 mod sin_cos;
 mod tally;
 
@@ -13,7 +14,9 @@ use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 pub(crate) use self::sin_cos::{SIN_COS_MAX, muladd, sin_cos, sin_cos_near_zero};
 pub use counted::{Counted, Ops};
+pub use double_double::DoubleDouble;
 pub use tally::tally;
+pub(crate) use tally::tally_by;
 
 /// A real number, or several side by side (SIMD lanes), or one that counts its own operations.
 ///
@@ -31,6 +34,8 @@ pub trait Real:
     + AddAssign
     + SubAssign
 {
+    /// The relative rounding of a sum or a product: what iterations stop at.
+    const EPSILON: f64 = f64::EPSILON;
     /// A sum of squares up to this leaves room for products with ordinary numbers.
     const SQUARE_MAX: f64 = 1e300;
 
@@ -88,6 +93,7 @@ impl<S: Real, const N: usize> Select<S> for [S; N] {
 macro_rules! real_for_float {
     ($($t:ty, $square_max:literal;)*) => {$(
         impl Real for $t {
+            const EPSILON: f64 = <$t>::EPSILON as f64;
             const SQUARE_MAX: f64 = $square_max;
 
             #[inline]

@@ -27,6 +27,18 @@ pub fn tally(ops: Ops) {
     let _ = ops;
 }
 
+/// Run `f`, a formula on numbers that count, for its operations alone, and only while somebody counts:
+/// beside the same formula on machine numbers, where it has branches and nothing fixed could be said.
+#[inline(always)]
+pub(crate) fn tally_by<T>(f: impl FnOnce() -> T) {
+    #[cfg(feature = "tally")]
+    if super::counted::is_counting() {
+        let _ = f();
+    }
+    #[cfg(not(feature = "tally"))]
+    let _ = f;
+}
+
 impl Ops {
     /// None.
     pub const NONE: Ops = Ops { add: 0, mul: 0, div: 0, sqrt: 0, trig: 0 };

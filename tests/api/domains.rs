@@ -10,6 +10,7 @@ use nalgebra::{Matrix3, Vector3};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
+use crate::draw::Draw;
 use crate::says;
 
 fn so(n: usize) -> MatrixGroup {
@@ -149,34 +150,9 @@ fn dexpinv_is_refused_near_its_singular_set() {
     }
 }
 
-/// Entries as they come from broken input: special values, and all magnitudes.
+/// An entry as it comes from broken input.
 fn entry(rng: &mut Pcg64) -> f64 {
-    const SPECIAL: [f64; 16] = [
-        0.0,
-        -0.0,
-        f64::NAN,
-        f64::INFINITY,
-        f64::NEG_INFINITY,
-        f64::MAX,
-        f64::MIN,
-        f64::MIN_POSITIVE,
-        5e-324,
-        PI,
-        TAU,
-        FRAC_PI_2,
-        1e160,
-        -1e200,
-        1e308,
-        2.0,
-    ];
-    let sign = if rng.random_bool(0.5) { 1.0 } else { -1.0 };
-    match rng.random_range(0..40) {
-        k @ 0..16 => SPECIAL[k],
-        16..20 => f64::from_bits(rng.random()),
-        20..24 => sign * 10f64.powf(rng.random_range(-320.0..308.0)),
-        24..28 => sign * FRAC_PI_2 * rng.random_range(1..9) as f64 * (1.0 + 1e-15),
-        _ => sign * 10f64.powf(rng.random_range(-8.0..3.0)),
-    }
+    Draw(&rng.random::<[u8; 10]>()).wild()
 }
 
 /// Every result is finite or an error, and no input that is not finite has a result.

@@ -2,7 +2,8 @@
 
 use faer::Mat;
 use lieflow::groups::{AlgebraMatrix, GroupMatrix, MatrixGroup, Sample};
-use lieflow::{LieAlgebra, LieGroup};
+use lieflow::maps::Exp;
+use lieflow::{CoordinateMap, Error, LieAlgebra, LieGroup, StepError};
 use rand::Rng;
 
 use crate::support::represent::Represent;
@@ -10,10 +11,14 @@ use crate::support::represent::Represent;
 /// What is wrong with the group.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Fault {
+    /// Nothing.
+    Sound,
     /// [u, v] = uv − (uv)ᵀ, the short cut of so(n), on any group.
     ShortCut,
     /// [u, v] = vu − uv.
     Reversed,
+    /// [u, v] = 0.
+    NoBracket,
     /// a·b is b·a.
     Swapped,
 }
@@ -45,7 +50,8 @@ impl LieAlgebra for Faulty {
         *out = AlgebraMatrix::new_unchecked(match self.1 {
             Fault::ShortCut => &uv - uv.transpose(),
             Fault::Reversed => v.as_ref() * u.as_ref() - &uv,
-            Fault::Swapped => &uv - v.as_ref() * u.as_ref(),
+            Fault::NoBracket => faer::Scale(0.0) * uv,
+            Fault::Sound | Fault::Swapped => &uv - v.as_ref() * u.as_ref(),
         });
     }
     fn norm(&self, u: &AlgebraMatrix) -> f64 {
@@ -112,5 +118,35 @@ impl Represent for Faulty {
     }
     fn bilinear(&self) -> Option<Mat<f64>> {
         self.0.bilinear()
+    }
+}
+
+/// The map is sound: the fault is the group's.
+impl CoordinateMap<Faulty> for Exp {
+    type At = <Exp as CoordinateMap<MatrixGroup>>::At;
+
+    fn name(&self) -> &'static str {
+        "exp"
+    }
+    fn at(&self, group: &Faulty) -> Result<Self::At, Error> {
+        self.at(&group.0)
+    }
+    fn psi(
+        &self,
+        group: &Faulty,
+        u: &AlgebraMatrix,
+        at: &mut Self::At,
+        g: &mut GroupMatrix,
+    ) -> Result<(), StepError> {
+        self.psi(&group.0, u, at, g)
+    }
+    fn dpsi_inv(
+        &self,
+        group: &Faulty,
+        u: &AlgebraMatrix,
+        at: &mut Self::At,
+        v: &mut AlgebraMatrix,
+    ) -> Result<(), StepError> {
+        self.dpsi_inv(&group.0, u, at, v)
     }
 }

@@ -4,13 +4,16 @@
 use faer::Mat;
 use lieflow::Action;
 use lieflow::actions::{Coadjoint, Each, LeftTranslation, Linear, Pair};
-use lieflow::groups::{Adjoint, MatrixGroup, Power, Product, Sample, Se3, So3, hat};
+use lieflow::groups::{
+    Adjoint, ComplexMatrix, MatrixGroup, Power, Product, Sample, Se3, So3, UnitQuaternions,
+    Unitary, hat,
+};
 use lieflow::problems::{BodyFrame, BodyState};
 use nalgebra::{Matrix3, Vector3};
 use rand_pcg::Pcg64;
 
 use super::gaussian;
-use super::represent::{Represent, affine, blocks, cut, faer3, order_of};
+use super::represent::{Represent, affine, blocks, complex_form, cut, faer3, order_of, real_form};
 
 /// An action whose points the suites can draw and take apart.
 pub(crate) trait Points<G: Represent>: Action<G> {
@@ -54,7 +57,7 @@ impl<G: Represent> Points<G> for Linear {
         group.vector_of(x)
     }
     fn generator(&self, group: &G, xi: &Mat<f64>, x: &G::Vector) -> Mat<f64> {
-        xi * group.vector_matrix(x)
+        group.tangent(xi, &group.vector_matrix(x))
     }
     /// Column j is x/(j + 1).
     fn square(&self, group: &G, x: &G::Vector) -> Mat<f64> {
@@ -103,6 +106,38 @@ impl Points<So3> for Coadjoint {
     }
     fn square(&self, _: &So3, m: &Vector3<f64>) -> Mat<f64> {
         super::represent::faer3(&hat(m))
+    }
+}
+
+impl Points<UnitQuaternions> for Coadjoint {
+    fn draw(&self, group: &UnitQuaternions, rng: &mut Pcg64) -> Vector3<f64> {
+        group.sample_vector(rng)
+    }
+    fn numbers(&self, group: &UnitQuaternions, m: &Vector3<f64>) -> Mat<f64> {
+        group.vector_matrix(m)
+    }
+    fn with_numbers(&self, group: &UnitQuaternions, x: &Mat<f64>) -> Vector3<f64> {
+        group.vector_of(x)
+    }
+    fn generator(&self, group: &UnitQuaternions, xi: &Mat<f64>, m: &Vector3<f64>) -> Mat<f64> {
+        group.tangent(xi, &group.vector_matrix(m))
+    }
+}
+
+impl Points<Unitary> for Coadjoint {
+    fn draw(&self, group: &Unitary, rng: &mut Pcg64) -> ComplexMatrix {
+        group.sample_algebra(rng, 1.0)
+    }
+    fn numbers(&self, _: &Unitary, m: &ComplexMatrix) -> Mat<f64> {
+        real_form(m)
+    }
+    fn with_numbers(&self, _: &Unitary, x: &Mat<f64>) -> ComplexMatrix {
+        complex_form(x)
+    }
+    /// −ad*_ξ m = [ξ, m].
+    fn generator(&self, _: &Unitary, xi: &Mat<f64>, m: &ComplexMatrix) -> Mat<f64> {
+        let m = real_form(m);
+        xi * &m - &m * xi
     }
 }
 

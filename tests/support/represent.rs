@@ -1,9 +1,11 @@
 //! Elements as matrices, so that a law is said in plain products of faer matrices and owes nothing
 //! to the kernels under test.
 
-use faer::Mat;
-use lieflow::groups::{MatrixGroup, Power, Product, Sample, Se3, So3, hat};
-use nalgebra::{Matrix3, Vector3};
+use faer::{Mat, c64};
+use lieflow::groups::{
+    ComplexMatrix, MatrixGroup, Power, Product, Sample, Se3, So3, UnitQuaternions, Unitary, hat,
+};
+use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
 /// A group that knows its elements as matrices. A new type of group implements it once; a new
 /// [`MatrixGroup`] has it already.
@@ -22,6 +24,19 @@ pub(crate) trait Represent: Sample<Scalar = f64> {
     fn vector_of(&self, x: &Mat<f64>) -> Self::Vector;
     /// M of gᵀMg = M; nothing on GL(n).
     fn bilinear(&self) -> Option<Mat<f64>>;
+
+    /// ‖g‖ (Frobenius) as a matrix, over ‖g‖ in the norm of `distance`.
+    fn norm_ratio(&self) -> f64 {
+        1.0
+    }
+    /// g·x of the matrices of both.
+    fn applied(&self, g: &Mat<f64>, x: &Mat<f64>) -> Mat<f64> {
+        g * x
+    }
+    /// d/dt exp(tξ)·x at t = 0, of the matrices of both.
+    fn tangent(&self, xi: &Mat<f64>, x: &Mat<f64>) -> Mat<f64> {
+        xi * x
+    }
 
     /// a·u.
     fn scaled(&self, a: f64, u: &Self::Alg) -> Self::Alg {
@@ -147,6 +162,108 @@ impl Represent for Se3 {
     }
 }
 
+/// [re −im; im re].
+pub(crate) fn real_form(x: &ComplexMatrix) -> Mat<f64> {
+    let (m, n) = (x.nrows(), x.ncols());
+    let mut out = Mat::zeros(2 * m, 2 * n);
+    for j in 0..n {
+        for i in 0..m {
+            let z = x.get(i, j);
+            (out[(i, j)], out[(i + m, j + n)]) = (z.re, z.re);
+            (out[(i + m, j)], out[(i, j + n)]) = (z.im, -z.im);
+        }
+    }
+    out
+}
+/// re + i·im from [re −im; im re].
+pub(crate) fn complex_form(x: &Mat<f64>) -> ComplexMatrix {
+    let (m, n) = (x.nrows() / 2, x.ncols() / 2);
+    ComplexMatrix::from_fn(m, n, |i, j| c64::new(x[(i, j)], x[(i + m, j)]))
+}
+
+impl Represent for Unitary {
+    fn algebra_matrix(&self, u: &ComplexMatrix) -> Mat<f64> {
+        real_form(u)
+    }
+    fn element_matrix(&self, g: &ComplexMatrix) -> Mat<f64> {
+        real_form(g)
+    }
+    fn vector_matrix(&self, x: &ComplexMatrix) -> Mat<f64> {
+        real_form(x)
+    }
+    fn nearest(&self, x: &Mat<f64>) -> ComplexMatrix {
+        let n = self.n();
+        let mean = |i, j| {
+            let re = x[(i, j)] + x[(i + n, j + n)];
+            c64::new(0.5 * re, 0.5 * (x[(i + n, j)] - x[(i, j + n)]))
+        };
+        ComplexMatrix::from_fn(n, n, |i, j| 0.5 * (mean(i, j) - mean(j, i).conj()))
+    }
+    fn element_of(&self, x: &Mat<f64>) -> ComplexMatrix {
+        complex_form(x)
+    }
+    fn vector_of(&self, x: &Mat<f64>) -> ComplexMatrix {
+        complex_form(x)
+    }
+    fn bilinear(&self) -> Option<Mat<f64>> {
+        Some(Mat::identity(2 * self.n(), 2 * self.n()))
+    }
+    fn norm_ratio(&self) -> f64 {
+        std::f64::consts::SQRT_2
+    }
+}
+
+/// The matrix of y ↦ (w, v)·y on the quaternions ℝ⁴.
+fn left(w: f64, v: &Vector3<f64>) -> Mat<f64> {
+    faer::mat![
+        [w, -v[0], -v[1], -v[2]],
+        [v[0], w, -v[2], v[1]],
+        [v[1], v[2], w, -v[0]],
+        [v[2], -v[1], v[0], w],
+    ]
+}
+/// v of the part of x that has the form of `left`.
+fn imaginary(x: &Mat<f64>) -> Vector3<f64> {
+    let mean =
+        |i: usize, j: usize, k: usize| 0.25 * (x[(i, 0)] - x[(0, i)] + x[(k, j)] - x[(j, k)]);
+    Vector3::new(mean(1, 2, 3), mean(2, 3, 1), mean(3, 1, 2))
+}
+
+/// u is the imaginary quaternion u/2, and q·x is q x q̄.
+impl Represent for UnitQuaternions {
+    fn algebra_matrix(&self, u: &Vector3<f64>) -> Mat<f64> {
+        left(0.0, &(0.5 * u))
+    }
+    fn element_matrix(&self, q: &UnitQuaternion<f64>) -> Mat<f64> {
+        left(q.w, &q.imag())
+    }
+    fn vector_matrix(&self, x: &Vector3<f64>) -> Mat<f64> {
+        left(0.0, x)
+    }
+    fn nearest(&self, x: &Mat<f64>) -> Vector3<f64> {
+        2.0 * imaginary(x)
+    }
+    fn element_of(&self, x: &Mat<f64>) -> UnitQuaternion<f64> {
+        let [w, i, j, k] = [0, 1, 2, 3].map(|i| x[(i, 0)]);
+        UnitQuaternion::new_unchecked(Quaternion::new(w, i, j, k))
+    }
+    fn vector_of(&self, x: &Mat<f64>) -> Vector3<f64> {
+        imaginary(x)
+    }
+    fn bilinear(&self) -> Option<Mat<f64>> {
+        Some(Mat::identity(4, 4))
+    }
+    fn norm_ratio(&self) -> f64 {
+        2.0
+    }
+    fn applied(&self, q: &Mat<f64>, x: &Mat<f64>) -> Mat<f64> {
+        q * x * q.transpose()
+    }
+    fn tangent(&self, xi: &Mat<f64>, x: &Mat<f64>) -> Mat<f64> {
+        xi * x - x * xi
+    }
+}
+
 /// The parts as the blocks of a block-diagonal matrix.
 pub(crate) fn blocks(parts: &[Mat<f64>]) -> Mat<f64> {
     let rows = parts.iter().map(Mat::nrows).sum();
@@ -207,6 +324,11 @@ impl<A: Represent, B: Represent> Represent for Product<A, B> {
     fn bilinear(&self) -> Option<Mat<f64>> {
         Some(blocks(&[self.0.bilinear()?, self.1.bilinear()?]))
     }
+    /// Where both parts have the same.
+    fn norm_ratio(&self) -> f64 {
+        assert_eq!(self.0.norm_ratio(), self.1.norm_ratio());
+        self.0.norm_ratio()
+    }
 }
 
 /// The matrices of all copies.
@@ -239,5 +361,8 @@ impl<G: Represent> Represent for Power<G> {
     fn bilinear(&self) -> Option<Mat<f64>> {
         let m = self.group().bilinear()?;
         Some(blocks(&vec![m; self.copies()]))
+    }
+    fn norm_ratio(&self) -> f64 {
+        self.group().norm_ratio()
     }
 }

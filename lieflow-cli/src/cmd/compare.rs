@@ -313,8 +313,8 @@ impl Comparison<'_> {
                 Cost::Operations,
             ),
             false => Block::text(
-                "There is no figure of operations: no run of these methods has operations to count. The \
-                 exact motion is made of elliptic functions.",
+                "There is no figure of operations: none of these runs has operations to count. The exact \
+                 motion is made of elliptic functions.",
             ),
         };
         vec![

@@ -1,6 +1,6 @@
 //! The coordinate maps to 30 digits, on matrices of any size: what the library's values are
 //! compared with. Nothing here is shared with the library; where its dΨ⁻¹ serves to find a
-//! reference, the residual of the equation dΨ_u(w) = v in [`Dd`] says when it is found.
+//! reference, the residual of the equation dΨ_u(w) = v in [`DoubleDouble`](Dd) says when it is found.
 //!
 //! | | |
 //! |---|---|
@@ -15,8 +15,7 @@
 use core::ops::{Add, Mul, Sub};
 
 use faer::Mat;
-
-use super::dd::Dd;
+use lieflow::scalar::DoubleDouble as Dd;
 
 /// A square matrix in twice the precision.
 #[derive(Clone, Debug)]

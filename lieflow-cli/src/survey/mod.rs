@@ -7,7 +7,6 @@
 //! already costs. The unit is the same for every contender.
 
 mod contest;
-pub mod dd;
 pub mod exact;
 
 use core::f64::consts::{PI, TAU};

@@ -127,15 +127,27 @@ pub(crate) fn adjoint_mul_complex(out: &mut ComplexMatrix, a: &ComplexMatrix, b:
 
 /// out ← a·b†, known to be skew-Hermitian.
 pub(crate) fn mul_adjoint_skew(out: &mut ComplexMatrix, a: &ComplexMatrix, b: &ComplexMatrix) {
-    let part = |out: &mut Mat<f64>, [x, y, z, w]: [MatRef<'_, f64>; 4], sign: f64| {
-        lower_product(out, x, y, 1.0, Accum::Replace);
-        lower_product(out, z, w, -sign, Accum::Add);
-        mirror(out, sign);
-    };
-    let (re, im) = (a.re.as_ref(), a.im.as_ref());
-    let (re_t, im_t) = (b.re.transpose(), b.im.transpose());
-    part(&mut out.re, [re, re_t, im, im_t], -1.0);
-    part(&mut out.im, [im, re_t, re, im_t], 1.0);
+    lower_skew(out, a, [b.re.transpose(), b.im.transpose()], -1.0);
+}
+
+/// out ← a·b, known to be skew-Hermitian.
+pub(crate) fn mul_skew(out: &mut ComplexMatrix, a: &ComplexMatrix, b: &ComplexMatrix) {
+    lower_skew(out, a, [b.re.as_ref(), b.im.as_ref()], 1.0);
+}
+
+/// out ← a·(re + i·sign·im), known to be skew-Hermitian.
+fn lower_skew(
+    out: &mut ComplexMatrix,
+    a: &ComplexMatrix,
+    [re, im]: [MatRef<'_, f64>; 2],
+    sign: f64,
+) {
+    lower_product(&mut out.re, a.re.as_ref(), re, 1.0, Accum::Replace);
+    lower_product(&mut out.re, a.im.as_ref(), im, -sign, Accum::Add);
+    mirror(&mut out.re, -1.0);
+    lower_product(&mut out.im, a.im.as_ref(), re, 1.0, Accum::Replace);
+    lower_product(&mut out.im, a.re.as_ref(), im, sign, Accum::Add);
+    mirror(&mut out.im, 1.0);
 }
 
 /// x ← x − x†: \[a, b\] from a·b, for skew-Hermitian a and b.
@@ -174,6 +186,9 @@ impl LinearSpace for ComplexMatrix {
     fn add(&mut self, a: f64, x: &Self) {
         self.re.add(a, &x.re);
         self.im.add(a, &x.im);
+    }
+    fn dot(&self, x: &Self) -> f64 {
+        self.re.dot(&x.re) + self.im.dot(&x.im)
     }
     fn is_finite(&self) -> bool {
         is_finite(&self.re) && is_finite(&self.im)

@@ -7,20 +7,21 @@
 //! | ‖u‖ | Frobenius, tr(u†u)^½ |
 //! | g ∈ U(n) | g†g = 𝟙 |
 //!
-//! SU(n) and su(n) act by conjugation as U(n) and u(n) do. The maps of U(n) are in `maps/unitary.rs`.
+//! SU(n) and su(n) act by conjugation as U(n) and u(n) do. Ad and the actions are in `adjoint.rs`, the
+//! maps of U(n) in `maps/unitary.rs`.
 
+mod adjoint;
 mod matrix;
 
 pub use matrix::ComplexMatrix;
 pub(crate) use matrix::mul_complex;
-use matrix::{adjoint_mul_complex, minus_adjoint, mul_adjoint_skew};
+use matrix::{adjoint_mul_complex, minus_adjoint};
 
 use faer::c64;
 use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
 
 use super::{LieAlgebra, LieGroup, MEMBERSHIP, RESIDUAL_MAX, Sample};
-use crate::actions::{Action, Conjugation};
 use crate::error::Error;
 use crate::methods::Metric;
 use crate::problems::LinearSpace;
@@ -165,35 +166,6 @@ impl LieGroup for Unitary {
             g.add(-0.5, step);
         }
         residual
-    }
-}
-
-/// Λ(g, p) = g p g† on the skew-Hermitian matrices: the coadjoint orbits of U(n). The eigenvalues of
-/// p are kept.
-impl Action<Unitary> for Conjugation {
-    type Point = ComplexMatrix;
-    /// g p.
-    type Work = ComplexMatrix;
-
-    fn work(&self, group: &Unitary) -> ComplexMatrix {
-        group.zero()
-    }
-    fn check(&self, group: &Unitary, p: &ComplexMatrix) -> Result<(), Error> {
-        group.check("p", p)
-    }
-    fn assign(&self, _: &Unitary, p: &ComplexMatrix, q: &mut ComplexMatrix) {
-        q.assign(p);
-    }
-    fn act(
-        &self,
-        _: &Unitary,
-        g: &ComplexMatrix,
-        p: &ComplexMatrix,
-        q: &mut ComplexMatrix,
-        product: &mut ComplexMatrix,
-    ) {
-        mul_complex(product, g, p);
-        mul_adjoint_skew(q, product, g);
     }
 }
 

@@ -2,22 +2,24 @@
 //!
 //! | | exp(u) | dexp_u⁻¹ |
 //! |---|---|---|
-//! | any n | Padé, scaling and squaring | Σ B_k/k! ad_u^k (15); beyond its radius the eigen form on so(n), halvings of u in Schur coordinates elsewhere |
+//! | any n | Padé, scaling and squaring | Σ B_k/k! ad_u^k (15); beyond its radius the eigen form on so(n) and u(n), halvings of u in Schur coordinates elsewhere |
 //! | so(3) | 𝟙 + (sin α/α) u + ((1−cos α)/α²) u² (14) | 𝟙 − u/2 + ((1−(α/2)cot(α/2))/α²) u² (16) |
 
 mod functions;
 mod general;
 mod se3;
+mod series;
 mod so3;
 
 pub use functions::{Truncated, dexp, dexpinv, dexpinv_with_remainder, distance_to_singular};
-pub(super) use general::baker;
-pub use general::{Dexpinv, ExpAt};
+pub use general::ExpAt;
+pub use series::Dexpinv;
+pub(super) use series::{EXACT_FROM, Powers, phi, phi1};
 
 /// The exponential map with dexp⁻¹ to rounding.
 ///
 /// On n×n matrices dexp⁻¹ is the Baker series summed until its terms vanish in rounding. Beyond the
-/// series' useful radius it is the eigen form where u is skew, and elsewhere s halvings
+/// series' useful radius it is the eigen form where u is skew or skew-Hermitian, and elsewhere s halvings
 /// dexp_u = dexp_{u/2} ∘ ½(1 + Ad_{exp(u/2)}), exact at any ‖u‖. It is refused where an eigenvalue of
 /// ad_u is closer to 2πik, k ≠ 0, than about 1e-12·max(1, ‖u‖); [`distance_to_singular`] tells.
 /// Where M is neither symmetric nor skew also where only an eigenvalue of ad_u outside 𝔤 is.

@@ -11,7 +11,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::general::baker;
+use super::series::baker;
 use super::{Exp, TruncatedExp};
 use crate::error::{Error, StepError};
 use crate::groups::{LieAlgebra, Se3, add3, cross, finite_pair};

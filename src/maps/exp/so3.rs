@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::general::baker;
+use super::series::baker;
 use super::{Exp, TruncatedExp};
 use crate::error::{Error, StepError};
 use crate::groups::{So3, cross};

@@ -1,7 +1,7 @@
 //! Four numbers (x, y, z, w) at once: doubles with the instructions that the machine has, others as
 //! arrays.
 
-use crate::scalar::{Counted, Real};
+use crate::scalar::{Counted, DoubleDouble, Real};
 
 /// The operations of the recurrences: a quaternion, its vector part first, or a vector with w = 0.
 pub trait Lanes<S>: Copy {
@@ -130,8 +130,25 @@ pub trait Kernel<S> {
     fn run<L: Lanes<S>>(self, lanes: L) -> Self::Out;
 }
 
+/// 1/(k+1).
+pub(super) const INVERSE: [f64; 16] = {
+    let mut table = [0.0; 16];
+    let mut k = 0;
+    while k < table.len() {
+        table[k] = 1.0 / (k + 1) as f64;
+        k += 1;
+    }
+    table
+};
+
 /// A number that the recurrences run on.
 pub trait Wide: Real {
+    /// 1/(k+1) for k < 16.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn inverse(k: usize) -> Self {
+        Self::lit(INVERSE[k])
+    }
     /// Run a kernel with the best that there is for this number.
     #[doc(hidden)]
     #[inline(always)]
@@ -142,6 +159,11 @@ pub trait Wide: Real {
 
 impl Wide for f32 {}
 impl Wide for Counted {}
+impl Wide for DoubleDouble {
+    fn inverse(k: usize) -> Self {
+        Self::lit(1.0) / Self::lit((k + 1) as f64)
+    }
+}
 
 impl Wide for f64 {
     #[inline(always)]

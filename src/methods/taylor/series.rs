@@ -2,20 +2,9 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::lanes::{Kernel, Lanes};
+use super::lanes::{INVERSE, Kernel, Lanes, Wide};
 use crate::error::StepError;
 use crate::scalar::Real;
-
-/// 1/(k+1).
-const INVERSE: [f64; 16] = {
-    let mut table = [0.0; 16];
-    let mut k = 0;
-    while k < table.len() {
-        table[k] = 1.0 / (k + 1) as f64;
-        k += 1;
-    }
-    table
-};
 
 /// What the recurrences need of a body.
 #[derive(Clone, Copy)]
@@ -32,7 +21,7 @@ fn unit<S: Real>() -> [S; 4] {
     [0.0, 0.0, 0.0, 1.0].map(S::lit)
 }
 
-impl<S: Real> Body<S> {
+impl<S: Wide> Body<S> {
     #[inline(always)]
     pub(super) fn new(j: &Vector3<S>) -> Self {
         let (zero, half) = (S::lit(0.0), S::lit(0.5));
@@ -66,7 +55,7 @@ impl<S: Real> Body<S> {
                     sums[a] = l.mul_add(turned[i][a], ws[k - i][a], sums[a]);
                 }
             }
-            let scale = l.mul(h, l.splat(S::lit(INVERSE[k])));
+            let scale = l.mul(h, l.splat(S::inverse(k)));
             q = l.mul(scale, l.add(sums[0], l.add(sums[1], sums[2])));
             m = l.mul(l.mul(scale, rate), sum);
             out[k] = q;
@@ -89,7 +78,7 @@ pub(super) struct OneStep<'a, S, const N: usize> {
     pub(super) m: Vector3<S>,
 }
 
-impl<S: Real, const N: usize> Kernel<S> for OneStep<'_, S, N> {
+impl<S: Wide, const N: usize> Kernel<S> for OneStep<'_, S, N> {
     type Out = ([S; 4], [S; 2]);
 
     #[inline(always)]

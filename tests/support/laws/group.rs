@@ -30,13 +30,13 @@ pub(crate) fn group<G: Represent>(group: &G, rng: &mut Pcg64) -> Verdict {
     within("𝟙", gap(&matrix(&one), &Mat::identity(n, n)), 0.0)?;
     within("𝟙a = a", group.distance(&group.product(&one, &a), &a), 0.0)?;
     within("a𝟙 = a", group.distance(&group.product(&a, &one), &a), 0.0)?;
-    let apart = (group.distance(&a, &b) - gap(&matrix(&a), &matrix(&b))).abs();
+    let apart = (group.norm_ratio() * group.distance(&a, &b) - gap(&matrix(&a), &matrix(&b))).abs();
     within("distance(a, b) = ‖a − b‖", apart, C_PRODUCT * EPS * (na + nb))?;
 
     let mut y = x.clone();
     group.apply(&a, &x, &mut y);
     let x = group.vector_matrix(&x);
-    let far = gap(&group.vector_matrix(&y), &(matrix(&a) * &x));
+    let far = gap(&group.vector_matrix(&y), &group.applied(&matrix(&a), &x));
     within("apply(a, x) = a·x", far, C_PRODUCT * EPS * na * x.norm_l2())?;
 
     on_group("g ∈ G", group, &a, C_ELEMENT)?;

@@ -121,7 +121,7 @@ pub(crate) fn on_vectors<G: Represent, Psi: CoordinateMap<G>>(
     let mut w = v.clone();
     psi.dpsi_inv(group, &u, &mut at, &mut w).map_err(say)?;
     let x = group.vector_matrix(&x);
-    let far = gap(&group.vector_matrix(&y), &(&g * &x));
+    let far = gap(&group.vector_matrix(&y), &group.applied(&g, &x));
     within("psi_on = Ψ(u)·x", far, C_PSI * EPS * g.norm_l2() * x.norm_l2())?;
     let expected = psi.eval_dpsi_inv(group, &u, &v).map_err(say)?;
     let same = same_bits(&group.algebra_matrix(&w), &group.algebra_matrix(&expected));

@@ -10,7 +10,7 @@ use lieflow::problems::Problem;
 use super::super::points::Points;
 use super::super::represent::Represent;
 use super::super::scale;
-use super::estimate::{Estimate, SLOPES, pairwise};
+use super::estimate::{Estimate, SLOPES, pairwise, tolerances};
 use super::flow::{Reference, run};
 
 /// So many problems that differ in their coefficients and in where they start, for orders below 8.
@@ -34,12 +34,12 @@ const FLOOR: f64 = 1e-12;
 /// followed down to here, and so are differences of errors: rounding is some 5e-15.
 const LOW_FLOOR: f64 = 1e-13;
 
-/// The run of a member with so many steps, to the end.
-type Run<'a> = &'a dyn Fn(usize, u64) -> Result<Mat<f64>, String>;
+/// The relative error of a member, in numbers, at the end of a run with so many steps.
+pub(crate) type Run<'a> = &'a dyn Fn(usize, u64) -> Result<Mat<f64>, String>;
 
-/// Relative errors of one method at every step of the grid: the members', one by one.
+/// Errors of one method at every step of the grid: the members', one by one.
 struct Errors<'a> {
-    ends: &'a [&'a Mat<f64>],
+    members: usize,
     run: Run<'a>,
     steps: Vec<u64>,
     errors: Vec<Vec<Mat<f64>>>,
@@ -58,11 +58,7 @@ impl Errors<'_> {
             if self.errors.last().is_some_and(|e| mean(e) < floor) {
                 break;
             }
-            let error = |(i, end): (usize, &&Mat<f64>)| {
-                Ok(scale(1.0 / end.norm_l2(), &((self.run)(i, n)? - *end)))
-            };
-            let errors =
-                self.ends.iter().enumerate().map(error).collect::<Result<Vec<_>, String>>();
+            let errors = (0..self.members).map(|i| (self.run)(i, n)).collect::<Result<Vec<_>, _>>();
             match errors {
                 // Far too large a step.
                 Err(_) if self.steps.is_empty() || n < 8 => {
@@ -86,27 +82,43 @@ impl Errors<'_> {
             .collect();
         Estimate::new(order, pairwise(&points[points.len().saturating_sub(SLOPES + 1)..]))
     }
+}
 
-    /// The slopes of E(h), or where those do not show the order the slopes of E(h/2) − E(h)/2^(p+1):
-    /// that has the leading term of E and not the one after it. A method of lower order shows its own
-    /// order in both.
-    fn order(&mut self, order: usize) -> Result<Estimate, String> {
-        let floor = if order < 8 { FLOOR } else { LOW_FLOOR };
-        self.follow(floor)?;
-        let plain = self.estimate(order, floor, self.errors.iter().map(|e| mean(e)));
-        if plain.check().is_ok() {
-            return Ok(plain);
-        }
-        self.follow(LOW_FLOOR)?;
-        let weight = 0.5f64.powi(order as i32 + 1);
-        let differences =
-            self.errors.iter().zip(self.errors.iter().skip(HALF)).map(|(coarse, fine)| {
-                let pairs = fine.iter().zip(coarse);
-                mean(&pairs.map(|(fine, coarse)| fine - scale(weight, coarse)).collect::<Vec<_>>())
-            });
-        let two = self.estimate(order, LOW_FLOOR, differences);
-        Ok(if two.check().is_ok() { two.of_two_terms() } else { plain })
+/// The order over so many members, from errors down to `floor`: the slopes of E(h), or where those do not
+/// show the order the slopes of E(h/2) − E(h)/2^(p+1), down to `low`, or with p + 2, for methods that are
+/// symmetric in time. That has the leading term of E and not the one after it; a method of lower order
+/// shows its own order in each.
+///
+/// # Errors
+/// A run that failed.
+pub(crate) fn order_over(
+    order: usize,
+    members: usize,
+    [floor, low]: [f64; 2],
+    tolerances: [f64; 2],
+    run: Run,
+) -> Result<Estimate, String> {
+    let mut errors = Errors { members, run, steps: Vec::new(), errors: Vec::new() };
+    errors.follow(floor)?;
+    let plain =
+        errors.estimate(order, floor, errors.errors.iter().map(|e| mean(e))).within(tolerances);
+    if plain.check().is_ok() {
+        return Ok(plain);
     }
+    errors.follow(low)?;
+    for next in [1, 2] {
+        let weight = 0.5f64.powi(order as i32 + next);
+        let pairs = errors.errors.iter().zip(errors.errors.iter().skip(HALF));
+        let differences = pairs.map(|(coarse, fine)| {
+            let pairs = fine.iter().zip(coarse);
+            mean(&pairs.map(|(fine, coarse)| fine - scale(weight, coarse)).collect::<Vec<_>>())
+        });
+        let two = errors.estimate(order, low, differences).within(tolerances);
+        if two.check().is_ok() {
+            return Ok(two.of_two_terms());
+        }
+    }
+    Ok(plain)
 }
 
 /// The order that a method shows over an ensemble.
@@ -121,11 +133,12 @@ where
     P::Group: Represent,
     P::Action: Points<P::Group>,
 {
-    let ends: Vec<&Mat<f64>> = members.iter().map(|(_, reference)| reference.end()).collect();
-    let run = |i: usize, n| {
+    let order = method.order(&members[0].0);
+    let error = |i: usize, n| {
         let (problem, reference) = &members[i];
-        run(problem, method, n, reference)
+        let end = reference.end();
+        Ok(scale(1.0 / end.norm_l2(), &(run(problem, method, n, reference)? - end)))
     };
-    let mut errors = Errors { ends: &ends, run: &run, steps: Vec::new(), errors: Vec::new() };
-    errors.order(method.order(&members[0].0))
+    let floor = if order < 8 { FLOOR } else { LOW_FLOOR };
+    order_over(order, members.len(), [floor, LOW_FLOOR], tolerances(order), &error)
 }

@@ -7,11 +7,11 @@ mod flow;
 mod suite;
 mod tree;
 
-pub(crate) use ensemble::{LONG, MEMBERS, measure_over};
-pub(crate) use estimate::{Estimate, estimate, grid, slopes};
+pub(crate) use ensemble::{LONG, MEMBERS, Run, measure_over, order_over};
+pub(crate) use estimate::{Estimate, STRICT, estimate, grid, slopes};
 pub(crate) use flow::{
     Field, Flow, Reference, clock, family, inertia, measure, measure_as, reference,
     reference_after, wave,
 };
-pub(crate) use suite::{Measure, Problems, Report};
+pub(crate) use suite::{Measure, Outcome, Problems, Report, specs};
 pub(crate) use tree::{defects, order_conditions, row_conditions};

@@ -53,17 +53,13 @@ where
         short: impl Fn(u64) -> (P, PointOf<P>),
         long: impl Fn(u64) -> (P, PointOf<P>),
     ) -> Self {
-        let over = |length: f64| {
-            move |(problem, start)| {
-                let reference = reference_after(length, &problem, start);
-                (problem, reference)
-            }
-        };
-        Problems {
-            short: (0..MEMBERS).map(short).map(over(1.0)).collect(),
-            long: (0..LONG.0).map(long).map(over(LONG.1)).collect(),
-            highest: 16,
-        }
+        let long = (0..LONG.0).map(long).map(over(LONG.1)).collect();
+        Problems { long, highest: 16, ..Self::below_8(short) }
+    }
+    /// One ensemble: orders from 8 on are measured elsewhere.
+    pub(crate) fn below_8(make: impl Fn(u64) -> (P, PointOf<P>)) -> Self {
+        let short = (0..MEMBERS).map(make).map(over(1.0)).collect();
+        Problems { short, long: Vec::new(), highest: 7 }
     }
     /// Orders above this are measured elsewhere.
     pub(crate) fn up_to(self, highest: usize) -> Self {
@@ -73,6 +69,19 @@ where
     /// The name of the group.
     pub(crate) fn group(&self) -> String {
         self.short[0].0.group().name()
+    }
+}
+
+/// A problem with its reference over a span of this length.
+fn over<P: Ambient>(length: f64) -> impl Fn((P, PointOf<P>)) -> (P, Reference<P>)
+where
+    P::Group: Represent,
+    P::Action: Points<P::Group>,
+    Cay: CoordinateMap<P::Group>,
+{
+    move |(problem, start)| {
+        let reference = reference_after(length, &problem, start);
+        (problem, reference)
     }
 }
 

@@ -1,0 +1,3 @@
+#![no_main]
+
+lieflow_fuzz::target!("unitary");
