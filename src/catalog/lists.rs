@@ -457,7 +457,8 @@ const fn energy_casimir(
     in_coordinates(plain(LIE_POISSON, name, Some(order), summary, [keeps, cost, source]))
 }
 
-/// Methods for Lie–Poisson systems: `with_momentum_method`, `with_lie_poisson_method`.
+/// Methods for Lie–Poisson systems: `with_euler_method`, `with_momentum_method`,
+/// `with_lie_poisson_method`, `with_fluid_method`.
 pub const LIE_POISSON_METHODS: &[MethodInfo] = &[
     energy_casimir(
         "energy-casimir",

@@ -13,6 +13,7 @@
 //! | [`with_method`] | [`Ambient`] | `Field` |
 //! | [`with_implicit_method`] | and points with a norm | `Field`, `Norm` |
 //! | [`with_series_method`] | Taylor coefficients by recurrence | `Field`, `Norm`, `Series` |
+//! | [`with_euler_method`] | Euler's equations on any algebra, by a discrete gradient | `Field`, `Norm`, `LiePoisson` |
 //! | [`with_lie_poisson_method`] | momenta as matrices | `Field`, `Norm`, `Series`, `LiePoisson`, `Isospectral` |
 //! | [`with_body_method`] | a free rigid body in ℝ³ | `Field`, `Norm`, `Series`, `Body` |
 //! | [`with_attitude_method`] | and its attitude in the state | `Field`, `Norm`, `Series`, `Body`, `Attitude` |
@@ -343,6 +344,20 @@ macro_rules! each_energy_casimir {
             _ => $else,
         }
     };
+}
+
+/// [`with_implicit_method`] and [`LIE_POISSON_METHODS`]: Euler's equations on any algebra.
+///
+/// # Errors
+/// As [`with_method`].
+pub fn with_euler_method<P: Catalogued + LiePoisson, V: OnMethod<P>>(
+    spec: &MethodSpec,
+    on: V,
+) -> Result<V::Out, Error>
+where
+    Exp: CoordinateMap<P::Group>,
+{
+    each_energy_casimir!(spec, on, else => with_implicit_method(spec, on))
 }
 
 /// [`with_body_method`] and [`LIE_POISSON_METHODS`]: the body in ℝ³ by its momentum.

@@ -14,7 +14,7 @@
 use nalgebra::Vector3;
 
 use super::rigid_body::check_finite;
-use super::{Ambient, Invariant, Invariants, Problem, space::linear_space};
+use super::{Ambient, Invariant, Invariants, LiePoisson, Problem, space::linear_space};
 use crate::actions::{Coadjoint, Linear};
 use crate::error::Error;
 use crate::groups::{Power, Se3, So3, add3, cross};
@@ -95,6 +95,24 @@ impl<S: Real> Ambient for SphericalPendulum<S> {
         *dy = (torque, cross(omega, q));
     }
     linear_space!();
+}
+
+/// On the dual of se(3) by −H: f = (ω, (g/ℓ) e₃) is the gradient of the energy H, affine in (ω, q).
+impl<S: Real> LiePoisson for SphericalPendulum<S> {
+    fn hamiltonian(&self, y: &(V<S>, V<S>)) -> S {
+        -self.energy(y)
+    }
+    fn discrete_gradient(
+        &self,
+        a: &(V<S>, V<S>),
+        b: &(V<S>, V<S>),
+        xi: &mut (V<S>, V<S>),
+        _: &mut (),
+    ) {
+        let twice = add3(&a.0, &b.0);
+        let zero = S::lit(0.0);
+        *xi = (twice.map(|w| S::lit(-0.5) * w), V::new(zero, zero, -self.rate2));
+    }
 }
 
 impl<S: Real> Invariants for SphericalPendulum<S> {

@@ -142,12 +142,12 @@ impl System for Top {
         Layer::Closed
     }
     fn problem(&self) -> Result<(Self::Problem, Point), Error> {
-        Ok(Flow::nonlinear(self.top.problem(), Coadjoint, self.start))
+        Ok(Flow::lie_poisson(self.top.problem(), Coadjoint, self.start))
     }
     fn operations(&self, method: &MethodSpec, pace: Pace<'_>) -> Option<f64> {
         let start = (self.start.0.map(Counted), self.start.1.map(Counted));
         let top = HeavyTop::<Counted>::new(self.inertia, self.weight.into()).ok()?;
-        let (flow, start) = Flow::nonlinear(top.problem(), Coadjoint, start);
+        let (flow, start) = Flow::lie_poisson(top.problem(), Coadjoint, start);
         operations_by(method, &flow, start, pace)
     }
     fn modelled(&self) -> String {

@@ -106,7 +106,7 @@ impl Body {
             );
         };
         let start = (in_s(&self.start.0), in_s(&self.start.1));
-        Flow::nonlinear(Euler::new(Se3::new(), Kinetic(gradient)), Coadjoint, start)
+        Flow::lie_poisson(Euler::new(Se3::new(), Kinetic(gradient)), Coadjoint, start)
     }
     fn energy(&self, (mu, pi): &Point) -> f64 {
         0.5 * (mu.dot(&mu.component_div(&self.inertia)) + pi.dot(&pi.component_div(&self.mass)))

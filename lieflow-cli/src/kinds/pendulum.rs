@@ -96,11 +96,11 @@ impl System for Pendulum {
         Layer::Closed
     }
     fn problem(&self) -> Result<(Self::Problem, Point), Error> {
-        Ok(Flow::nonlinear(self.pendulum, Coadjoint, self.start))
+        Ok(Flow::lie_poisson(self.pendulum, Coadjoint, self.start))
     }
     fn operations(&self, method: &MethodSpec, pace: Pace<'_>) -> Option<f64> {
         let start = (self.start.0.map(Counted), self.start.1.map(Counted));
-        let (flow, start) = Flow::nonlinear(self.pendulum.on::<Counted>(), Coadjoint, start);
+        let (flow, start) = Flow::lie_poisson(self.pendulum.on::<Counted>(), Coadjoint, start);
         operations_by(method, &flow, start, pace)
     }
     fn modelled(&self) -> String {

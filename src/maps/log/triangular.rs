@@ -2,7 +2,8 @@
 
 use faer::{Mat, c64};
 
-use super::{NODES, THETA, schur};
+use super::{NODES, THETA};
+use crate::dense::Schur;
 use crate::error::{Error, StepError};
 
 /// Square roots halve the logarithm; 1100 halvings take the range of doubles to rounding.
@@ -11,7 +12,10 @@ const ROOTS_MAX: u32 = 1100;
 /// The principal logarithm of a real g without eigenvalues on the negative real axis.
 pub(super) fn log(g: &Mat<f64>, group: impl Fn() -> String) -> Result<Mat<f64>, Error> {
     let n = g.nrows();
-    let (mut t, q) = schur::complex(g)?;
+    let mut schur = Schur::new(n);
+    (0..n).for_each(|j| (0..n).for_each(|i| schur.t[(i, j)] = c64::new(g[(i, j)], 0.0)));
+    schur.factor().map_err(|_| StepError::NotConverged { what: "the Schur form of g" })?;
+    let Schur { mut t, q, .. } = schur;
     let eigenvalues: Vec<c64> = (0..n).map(|i| t[(i, i)]).collect();
     let size = eigenvalues.iter().fold(0.0f64, |s, z| s.max(z.re.hypot(z.im)));
     // The Schur form is exact for a g moved by some ε‖g‖; an eigenvalue within that of the axis may
