@@ -23,7 +23,9 @@ use lieflow::catalog::{
 };
 use lieflow::groups::{LieAlgebra, LieGroup, MatrixGroup, Power, Product, Se3, So3, Translations};
 use lieflow::methods::Metric;
-use lieflow::problems::{AlgOf, Ambient, LiePoisson, LinearField, LinearSpace, PointOf, Problem};
+use lieflow::problems::{
+    AlgOf, Ambient, FromTheBody, LiePoisson, LinearField, LinearSpace, PointOf, Problem,
+};
 use nalgebra::Vector3;
 
 use super::matrix::MatrixAction;
@@ -277,7 +279,7 @@ macro_rules! family {
         let name = $spec.info()?.name;
         match $self.linear && LINEAR_METHODS.iter().any(|linear| linear.name == name) {
             true => with_linear_method(name, $on),
-            false => with_implicit_method($spec, $on),
+            false => family!(@find $self, $spec, $on, lie_poisson),
         }
     }};
     (@find $self:ident, $spec:ident, $on:expr, lie_poisson) => {
@@ -318,6 +320,7 @@ family! {
     Power<So3>, Linear, general;
     Se3, Coadjoint, lie_poisson;
     MatrixGroup, MatrixAction, linear;
+    MatrixGroup, FromTheBody, general;
     Product<So3, Translations<Vector3<f64>>>, LeftTranslation, general;
     Product<MatrixGroup, Translations<Growth>>, LeftTranslation, general;
 }
