@@ -293,9 +293,9 @@ pub use lists::{
 };
 use special::misfit;
 pub use special::{
-    Catalogued, Needs, all_methods, with_attitude_method, with_body_method, with_euler_method,
-    with_implicit_method, with_lie_poisson_method, with_momentum_method, with_quaternion_method,
-    with_series_method,
+    Catalogued, Needs, all_methods, with_attitude_method, with_attitude_pair, with_body_method,
+    with_euler_method, with_implicit_method, with_lie_poisson_method, with_momentum_method,
+    with_quaternion_method, with_series_method,
 };
 pub use state::{with_state_method, with_state_pair};
 
