@@ -90,6 +90,7 @@ fn methods_for_a_scene_are_those_that_run() {
         ("ellipsoid-in-fluid", &["energy-casimir4"], &closed),
         ("spherical-pendulum", &["energy-casimir"], &closed),
         ("shear-layer", &["isospectral2", "isospectral-suzuki4", "energy-casimir6"], &closed),
+        ("euler-on-sl3", &["energy-casimir"], &linear),
         ("wing-nut", &closed, &["rk4-qr", "energy-casimir"]),
     ] {
         let fitting = folder.lieflow(&["methods", "--for", scene, "--json"]).ok();

@@ -27,7 +27,7 @@ use lieflow::catalog::{
 use lieflow::groups::{LieAlgebra, LieGroup, MatrixGroup, Power, Product, Se3, So3, Translations};
 use lieflow::methods::Metric;
 use lieflow::problems::{
-    AlgOf, Ambient, LiePoisson, LinearField, LinearSpace, PointOf, Problem, ScalarOf,
+    AlgOf, Ambient, FromTheBody, LiePoisson, LinearField, LinearSpace, PointOf, Problem, ScalarOf,
 };
 use lieflow::scalar::{Counted, Real};
 use nalgebra::Vector3;
@@ -274,7 +274,7 @@ macro_rules! family {
         let name = $spec.info()?.name;
         match $self.linear && LINEAR_METHODS.iter().any(|linear| linear.name == name) {
             true => with_linear_method(name, $on),
-            false => with_implicit_method($spec, $on),
+            false => family!(@find $self, $spec, $on, lie_poisson),
         }
     }};
     (@find $self:ident, $spec:ident, $on:expr, lie_poisson) => {
@@ -316,6 +316,7 @@ family! {
     Power<So3>, Linear, general;
     Se3, Coadjoint, lie_poisson;
     MatrixGroup, MatrixAction, linear;
+    MatrixGroup, FromTheBody, general;
     Product<So3, Translations<Vector3<f64>>>, LeftTranslation, general;
     Product<MatrixGroup, Translations<Growth>>, LeftTranslation, general;
     So3<Counted>, Linear, linear;

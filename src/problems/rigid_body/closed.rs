@@ -62,7 +62,8 @@ impl<S: Real> RigidBody<S> {
         scale(&self.inverse_inertia, m)
     }
 
-    /// E = ½ m·J⁻¹m.
+    /// E = ½ m·J⁻¹m: infinite where that is beyond the largest number, as for |m| = 1e200 with J = 1,
+    /// and 0 below the least. The motion itself has no such limits.
     pub fn energy(&self, m: &Vector3<S>) -> S {
         kinetic_energy(&self.inverse_inertia, m)
     }
