@@ -60,7 +60,7 @@ impl Kernel for Exp<'_> {
         } else {
             4
         };
-        tally(Cost(x.nrows()).of(degree, norms, [squarings, corrections]));
+        tally(|| Cost(x.nrows()).of(degree, norms, [squarings, corrections]));
         Some(ExpmChoice { kind: Kind::Taylor, degree, squarings, corrections, balanced: false })
     }
 }
