@@ -1,5 +1,5 @@
-//! Two more groups: Oja's flow finds leading eigenvectors on a Stiefel manifold, and the Lorentz group
-//! keeps a charged particle on its mass shell.
+//! Stiefel, Grassmann, Lorentz: Oja's flow finds leading eigenvectors, its flow of subspaces their span, and
+//! the Lorentz group keeps a charged particle on its mass shell.
 //!
 //! ```sh
 //! cargo run --release --example stiefel_and_lorentz
@@ -8,7 +8,7 @@
 use faer::{Mat, Side};
 use lieflow::maps::{Cay, Exp};
 use lieflow::methods::{Rk, Rkmk, tableau::RK4};
-use lieflow::problems::{ChargedParticle, Invariants, Oja};
+use lieflow::problems::{ChargedParticle, Invariants, Oja, SubspaceFlow};
 use lieflow::{SaveAt, TimeGrid, integrate};
 use nalgebra::Vector3;
 
@@ -25,6 +25,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("Oja: tr XᵀAX = {:.10}, λ₅ + λ₆ = {:.10}", oja.trace(&x), values[4] + values[5]);
     println!("  ‖XᵀX − 𝟙‖ = {off:.0e}");
     assert!((oja.trace(&x) - values[4] - values[5]).abs() < 1e-10 && off < 1e-13);
+
+    // The span of the same vectors, as a projector: where the frame goes within it is left out.
+    let subspaces = SubspaceFlow::new(a)?;
+    let mut p = subspaces.span(&Mat::from_fn(6, 2, |i, j| f64::from(u8::from(i == j))))?;
+    integrate(&subspaces, &Rkmk::new(RK4, Cay), &grid, &SaveAt::Ends, &mut p, |_, _| {})?;
+    let (gap, off) = ((&x * x.transpose() - &p).norm_l2(), (&p * &p - &p).norm_l2());
+    println!("Grassmann: ‖P − XXᵀ‖ = {gap:.0e}, ‖P² − P‖ = {off:.0e}");
+    assert!(gap < 1e-6 && off < 1e-13);
 
     // A particle in a magnetic field and an electric wave, in proper time.
     let field = |tau: f64, _: &Mat<f64>| {

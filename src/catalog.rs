@@ -243,18 +243,18 @@ impl<G> CatalogGroup for G where
 }
 
 /// Hand the method that `$spec` names to `$single`, or to `$pair` where it estimates its own error,
-/// after `$on`.
+/// after `$on`; `$each_map` binds the maps of the group.
 macro_rules! each_method {
-    ($spec:expr, $on:expr, $single:path, pair => $pair:path) => {{
+    ($spec:expr, $on:expr, $each_map:ident, $single:path, pair => $pair:path) => {{
         let spec: &MethodSpec = $spec;
         let info = spec.info()?;
         let map = spec.map.as_deref().unwrap_or("exp");
         let tableau = spec.tableau.as_deref().unwrap_or("rk4");
         match info.name {
-            "rkmk4" => each_map!(map, spec.q, psi => $single($on, Rkmk::new(tableau::RK4, psi))),
+            "rkmk4" => $each_map!(map, spec.q, psi => $single($on, Rkmk::new(tableau::RK4, psi))),
             "rkmk" => each_tableau!(tableau,
-                t => each_map!(map, spec.q, psi => $single($on, Rkmk::new(t, psi))),
-                pair => each_map!(map, spec.q, psi => $pair($on, Rkmk::new(t, psi)))),
+                t => $each_map!(map, spec.q, psi => $single($on, Rkmk::new(t, psi))),
+                pair => $each_map!(map, spec.q, psi => $pair($on, Rkmk::new(t, psi)))),
             "rk4" => Ok($single($on, Rk(tableau::RK4))),
             "rk" => each_tableau!(tableau,
                 t => Ok($single($on, Rk(t))),
@@ -280,19 +280,22 @@ macro_rules! each_method {
 }
 
 mod embedded;
+mod exp_cay;
 mod lists;
 mod special;
 mod state;
 
 pub use embedded::{Doubled, OnEmbedded, with_embedded_method, with_embedded_pair};
+pub use exp_cay::{with_exp_cay_method, with_exp_cay_pair, with_fluid_method};
 pub use lists::{
     ATTITUDE_METHODS, BODY_METHODS, IMPLICIT_METHODS, ISOSPECTRAL_METHODS, LIE_POISSON_METHODS,
     LINEAR_METHODS, METHODS, SERIES_METHODS, STATE_METHODS,
 };
 use special::misfit;
 pub use special::{
-    Catalogued, Needs, all_methods, with_attitude_method, with_body_method, with_implicit_method,
-    with_lie_poisson_method, with_momentum_method, with_series_method,
+    Catalogued, Needs, all_methods, with_attitude_method, with_attitude_pair, with_body_method,
+    with_euler_method, with_implicit_method, with_lie_poisson_method, with_momentum_method,
+    with_quaternion_method, with_series_method,
 };
 pub use state::{with_state_method, with_state_pair};
 
@@ -313,7 +316,7 @@ where
     P::Group: CatalogGroup,
     Exp: CoordinateMap<P::Group>,
 {
-    each_method!(spec, on, OnMethod::<P>::call, pair => OnMethod::<P>::call)
+    each_method!(spec, on, each_map, OnMethod::<P>::call, pair => OnMethod::<P>::call)
 }
 
 /// Find the method for equations of linear type that has this name, and hand it over.

@@ -129,9 +129,9 @@ pub enum Error {
         /// The names that are registered.
         expected: Vec<&'static str>,
     },
-    /// A group element has no principal real logarithm.
+    /// A group element has no real logarithm in the algebra, or none that can be told from rounding.
     #[error(
-        "g: no principal real logarithm in {group}: the eigenvalue {re:.3e} {im:+.1e}i lies on the negative real axis"
+        "g: no logarithm in the algebra of {group}: the eigenvalue {re:.3e} {im:+.1e}i lies on the negative real axis, and {why}"
     )]
     NoLogarithm {
         /// The group.
@@ -140,7 +140,27 @@ pub enum Error {
         re: f64,
         /// Its imaginary part, zero to rounding.
         im: f64,
+        /// What is the case there.
+        why: NoLogarithm,
     },
+}
+
+/// Why a negative eigenvalue of g stands in the way of a real logarithm.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ThisError)]
+pub enum NoLogarithm {
+    /// Its multiplicity is odd: no real matrix has g as its exponential.
+    #[error("its multiplicity is odd: no real matrix has g as its exponential")]
+    Odd,
+    /// The eigenvalue −1 with a form of odd signature on its eigenspace: g = exp(u) has real solutions u,
+    /// and none of them lies in 𝔤.
+    #[error("real logarithms exist, but none of them is in the algebra")]
+    Outside,
+    /// It is defective, or M is neither symmetric nor skew: a logarithm, if there is one, is not
+    /// principal and not computed.
+    #[error(
+        "a real logarithm, if there is one, is not principal; it is not computed where the eigenvalue is defective or M neither symmetric nor skew"
+    )]
+    Undecided,
 }
 
 impl Error {

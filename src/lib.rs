@@ -66,7 +66,7 @@ pub mod scalar;
 pub mod so3;
 
 pub use actions::Action;
-pub use error::{Error, Failure, StepError};
+pub use error::{Error, Failure, NoLogarithm, StepError};
 pub use groups::{LieAlgebra, LieGroup};
 pub use integrate::{RESTORE_EVERY, RunError, SaveAt, Stats, TimeGrid, integrate};
 pub use maps::CoordinateMap;

@@ -52,7 +52,7 @@ fn laws_that_users_can_run() {
     assert_all(&found);
     // A dexp⁻¹ that is cut too early is seen.
     let broken = laws(&So3::new(), &Exp.truncated(0), &mut rng, 50, 0.3).expect("so(3)");
-    assert!(!broken[3].holds(), "{broken:?}");
+    assert!(broken.iter().any(|f| f.name.starts_with("dΨ⁻¹") && !f.holds()), "{broken:?}");
 }
 /// The choice made is part of the result: every degree, squarings and corrections, the series
 /// and the eigen form are taken somewhere on a ladder of norms, and each is right there.

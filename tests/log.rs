@@ -3,7 +3,7 @@
 use faer::Mat;
 use lieflow::groups::{AlgebraMatrix, GroupMatrix, MatrixGroup, Sample, So3};
 use lieflow::maps::{CoordinateMap, Exp};
-use lieflow::{Error, LieAlgebra, LieGroup, so3};
+use lieflow::{Error, LieAlgebra, LieGroup, NoLogarithm, so3};
 use nalgebra::Matrix3;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
@@ -188,10 +188,10 @@ fn refusals() {
     let diagonal =
         |d: &[f64]| Mat::from_fn(d.len(), d.len(), |i, j| if i == j { d[i] } else { 0.0 });
     let gl = MatrixGroup::gl(2).expect("a group");
-    for d in [[-1.0, 2.0], [3.0, -1e-8], [-1.0, -1.0], [-5.0, -7.0]] {
+    for d in [[-1.0, 2.0], [3.0, -1e-8], [-5.0, -7.0]] {
         let g = gl.element(diagonal(&d)).expect("invertible");
         match gl.log(&g) {
-            Err(error @ Error::NoLogarithm { re, .. }) => {
+            Err(error @ Error::NoLogarithm { re, why: NoLogarithm::Odd, .. }) => {
                 assert!(re < 0.0);
                 assert!(error.to_string().contains("GL(2)"), "{error}");
             }
@@ -200,10 +200,19 @@ fn refusals() {
     }
     let sp = MatrixGroup::sp(2).expect("a group");
     let g = sp.element(diagonal(&[-2.0, -0.5])).expect("symplectic");
-    assert!(matches!(sp.log(&g), Err(Error::NoLogarithm { .. })));
+    assert!(matches!(sp.log(&g), Err(Error::NoLogarithm { why: NoLogarithm::Odd, .. })));
     let lorentz = MatrixGroup::indefinite(3, 1).expect("a group");
     let reversal = lorentz.element(diagonal(&[1.0, 1.0, 1.0, -1.0])).expect("on the group");
-    assert!(matches!(lorentz.log(&reversal), Err(Error::NoLogarithm { .. })));
+    let refused = lorentz.log(&reversal);
+    assert!(matches!(refused, Err(Error::NoLogarithm { why: NoLogarithm::Odd, .. })));
+    // −1 on one direction of space and on time: turns by π exist, but they mix the two.
+    let both = lorentz.element(diagonal(&[1.0, 1.0, -1.0, -1.0])).expect("on the group");
+    let refused = lorentz.log(&both);
+    assert!(matches!(refused, Err(Error::NoLogarithm { why: NoLogarithm::Outside, .. })));
+    // One Jordan block of −1 has no real logarithm, two of them have; neither is told from the other.
+    let jordan = gl.element(faer::mat![[-1.0, 1.0], [0.0, -1.0]]).expect("invertible");
+    let refused = gl.log(&jordan);
+    assert!(matches!(refused, Err(Error::NoLogarithm { why: NoLogarithm::Undecided, .. })));
 
     for n in [3, 5] {
         let so = MatrixGroup::so(n).expect("a group");
@@ -224,6 +233,58 @@ fn refusals() {
     assert!(matches!(gl.log(&singular), Err(Error::Singular { .. })));
     let wrong = GroupMatrix::new_unchecked(Mat::identity(3, 3));
     assert!(matches!(gl.log(&wrong), Err(Error::Shape { .. })));
+}
+
+/// Negative eigenvalues in pairs: exp(log g) = g, and log g ∈ 𝔤 with a turn by π in each pair, as g
+/// stands and in other bases.
+#[test]
+fn pairs_of_half_turns() {
+    let mut rng = Pcg64::seed_from_u64(7);
+    let skewed = {
+        let signs = [3.0, -2.0, 2.0, -3.0];
+        MatrixGroup::gm(Mat::from_fn(4, 4, |i, j| if i == j { signs[i] } else { 0.3 }))
+    };
+    for (group, d) in [
+        (MatrixGroup::gl(2), vec![-1.0; 2]),
+        (MatrixGroup::gl(3), vec![-5.0, 3.0, -5.0]),
+        (MatrixGroup::gl(5), vec![-5.0, -0.1, 3.0, -5.0, -0.1]),
+        (MatrixGroup::gl(8), vec![-1.0; 8]),
+        (MatrixGroup::sp(2), vec![-1.0; 2]),
+        (MatrixGroup::sp(4), vec![-1.0; 4]),
+        (MatrixGroup::sp(4), vec![-1.0, 2.0, -1.0, 0.5]),
+        (MatrixGroup::sp(8), vec![-2.0, -2.0, -1.0, 3.0, -0.5, -0.5, -1.0, 1.0 / 3.0]),
+        (MatrixGroup::indefinite(3, 1), vec![-1.0, 1.0, -1.0, 1.0]),
+        (MatrixGroup::indefinite(2, 2), vec![-1.0; 4]),
+        (MatrixGroup::indefinite(2, 2), vec![1.0, 1.0, -1.0, -1.0]),
+        (
+            MatrixGroup::gm(Mat::from_fn(4, 4, |i, j| f64::from(u8::from(i + j == 3)))),
+            vec![-1.0; 4],
+        ),
+        (skewed, vec![-1.0; 4]),
+    ] {
+        let group = group.expect("a group");
+        let n = group.n();
+        let d = Mat::from_fn(n, n, |i, j| if i == j { d[i] } else { 0.0 });
+        for case in 0..10 {
+            // h d h⁻¹, with h = 𝟙 at first.
+            let mut v = group.sample_algebra(&mut rng, 0.3);
+            if case == 0 {
+                group.set_zero(&mut v);
+            }
+            let (h, inverse) = (exp(&group, &v), exp(&group, &negative(&group, &v)));
+            let g = GroupMatrix::new_unchecked(&*h * &d * &*inverse);
+            let u = group.log(&g).unwrap_or_else(|error| panic!("{}: {error}", group.name()));
+            assert!(group.algebra((*u).clone()).is_ok(), "{}: in the algebra", group.name());
+            let cond = (h.norm_l2() * inverse.norm_l2()).powi(2) * group.norm(&u).max(1.0);
+            let gap = group.distance(&exp(&group, &u), &g) / g.norm_l2();
+            assert!(gap <= 4.0 * EPS * cond, "{} case {case}: {gap:e}", group.name());
+            // tr log g = ln det g, and every pair turns by π.
+            let eigenvalues = u.eigenvalues().expect("eigenvalues");
+            let turns = eigenvalues.iter().filter(|z| (z.im.abs() - PI).abs() < 1e-6).count();
+            let pairs = (0..n).filter(|&i| d[(i, i)] < 0.0).count();
+            assert_eq!(turns, pairs, "{}: {eigenvalues:?}", group.name());
+        }
+    }
 }
 
 /// Wide scales and defective matrices.

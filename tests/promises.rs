@@ -85,8 +85,8 @@ where
 /// Kahan and Li.
 fn updates(name: &str) -> f64 {
     match name {
-        "energy-casimir4" => 5.0,
-        "energy-casimir6" => 9.0,
+        "energy-casimir4" | "isospectral-suzuki4" => 5.0,
+        "energy-casimir6" | "isospectral-kahan-li6" => 9.0,
         _ => 1.0,
     }
 }

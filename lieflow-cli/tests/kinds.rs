@@ -8,6 +8,8 @@ mod known;
 mod laws;
 #[path = "kinds/matrices.rs"]
 mod matrices;
+#[path = "kinds/mutants.rs"]
+mod mutants;
 #[path = "kinds/refused.rs"]
 mod refused;
 

@@ -86,6 +86,11 @@ fn methods_for_a_scene_are_those_that_run() {
         ("rabi", &linear, &closed),
         ("manakov-body", &["energy-casimir", "isospectral4", "taylor12"], &body),
         ("spin-wave", &[], &closed),
+        ("lagrange-top", &["energy-casimir", "energy-casimir6"], &["isospectral2", "taylor12"]),
+        ("ellipsoid-in-fluid", &["energy-casimir4"], &closed),
+        ("spherical-pendulum", &["energy-casimir"], &closed),
+        ("shear-layer", &["isospectral2", "isospectral-suzuki4", "energy-casimir6"], &closed),
+        ("wing-nut", &closed, &["rk4-qr", "energy-casimir"]),
     ] {
         let fitting = folder.lieflow(&["methods", "--for", scene, "--json"]).ok();
         let fitting: Value = serde_json::from_str(&fitting).unwrap();

@@ -67,10 +67,13 @@ fn every_bundled_scene_runs_and_reads_back_exactly() {
         }
         assert!(summary["drift"]["momentum_norm"]["max"].as_f64().unwrap() < 1e-13);
         assert!(summary["error_at_end"]["momentum_body"].as_f64().unwrap() < 2e-5);
-        let with_attitude = scene.quantities.iter().any(|quantity| quantity == "attitude");
+        let asks = |name: &str| scene.quantities.iter().any(|quantity| quantity == name);
+        let with_attitude = asks("attitude") || asks("quaternion");
         let modelled = summary["modelled"].to_string();
         assert_eq!(modelled.contains("attitude"), with_attitude, "{modelled}");
-        assert_eq!(summary["drift"]["attitude_defect"].is_object(), with_attitude);
+        assert_eq!(modelled.contains("quaternion"), asks("quaternion"), "{modelled}");
+        assert_eq!(summary["drift"]["attitude_defect"].is_object(), asks("attitude"));
+        assert_eq!(summary["drift"]["quaternion_defect"].is_object(), asks("quaternion"));
         assert_eq!(summary["error_at_end"]["attitude"].is_number(), with_attitude);
     }
 }

@@ -67,7 +67,7 @@ where
     PointOf<P>: Metric<Scalar = ScalarOf<P>>,
     Exp: CoordinateMap<P::Group>,
 {
-    each_method!(spec, Doubled(on), OnMethod::<P>::call, pair => estimated)
+    each_method!(spec, Doubled(on), each_map, OnMethod::<P>::call, pair => estimated)
 }
 
 /// Find the embedded pair that `spec` names, with its parts, and hand it over. As
@@ -85,7 +85,7 @@ where
     PointOf<P>: Metric<Scalar = ScalarOf<P>>,
     Exp: CoordinateMap<P::Group>,
 {
-    only_pairs(spec, each_method!(spec, on, no_pair, pair => pair_of))
+    only_pairs(spec, each_method!(spec, on, each_map, no_pair, pair => pair_of))
 }
 
 /// What a pair answered; without one, an error.

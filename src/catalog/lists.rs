@@ -396,6 +396,13 @@ pub const ATTITUDE_METHODS: &[MethodInfo] = &[
         "classical Runge–Kutta on the entries, then the factor Q of g = QR",
         ["group", "4 F, 2 Gram–Schmidt", NEAREST],
     ),
+    of_a_tableau(plain(
+        PROJECTED,
+        "rk-qr",
+        None,
+        "explicit Runge–Kutta with any tableau on the entries, then the factor Q of g = QR",
+        ["group", "s F, 2 Gram–Schmidt", NEAREST],
+    )),
     plain(
         PROJECTED,
         "rk4-polar",
@@ -403,6 +410,13 @@ pub const ATTITUDE_METHODS: &[MethodInfo] = &[
         "classical Runge–Kutta on the entries, then the polar factor of g",
         ["group", "4 F, 2–3 Newton–Schulz", NEAREST],
     ),
+    of_a_tableau(plain(
+        PROJECTED,
+        "rk-polar",
+        None,
+        "explicit Runge–Kutta with any tableau on the entries, then the polar factor of g",
+        ["group", "s F, 2–3 Newton–Schulz", NEAREST],
+    )),
 ];
 
 const ALL_QUADRATIC: &str = "energy, group, Casimirs, quadratic invariants, time symmetry";
@@ -457,7 +471,8 @@ const fn energy_casimir(
     in_coordinates(plain(LIE_POISSON, name, Some(order), summary, [keeps, cost, source]))
 }
 
-/// Methods for Lie–Poisson systems: `with_momentum_method`, `with_lie_poisson_method`.
+/// Methods for Lie–Poisson systems: `with_euler_method`, `with_momentum_method`,
+/// `with_lie_poisson_method`, `with_fluid_method`.
 pub const LIE_POISSON_METHODS: &[MethodInfo] = &[
     energy_casimir(
         "energy-casimir",
@@ -489,9 +504,21 @@ const fn isospectral(
     plain(LIE_POISSON, name, Some(order), summary, [keeps, cost, "Modin & Viviani 2020"])
 }
 
-/// Methods for isospectral systems on matrices: `with_lie_poisson_method`.
+/// Methods for isospectral systems on matrices: `with_lie_poisson_method`, `with_fluid_method`.
 pub const ISOSPECTRAL_METHODS: &[MethodInfo] = &[
     isospectral("isospectral2", 2, "isospectral Gauss of one stage", "8–25 × 3 products"),
     isospectral("isospectral4", 4, "isospectral Gauss of two stages", "8–25 × 6 products"),
     isospectral("isospectral6", 6, "isospectral Gauss of three stages", "8–25 × 9 products"),
+    isospectral(
+        "isospectral-suzuki4",
+        4,
+        "isospectral2 composed by Suzuki's fractal",
+        "5 isospectral2",
+    ),
+    isospectral(
+        "isospectral-kahan-li6",
+        6,
+        "isospectral2 composed by nine stages",
+        "9 isospectral2",
+    ),
 ];

@@ -13,10 +13,14 @@
 //! | [`with_method`] | [`Ambient`] | `Field` |
 //! | [`with_implicit_method`] | and points with a norm | `Field`, `Norm` |
 //! | [`with_series_method`] | Taylor coefficients by recurrence | `Field`, `Norm`, `Series` |
+//! | [`with_euler_method`] | Euler's equations on any algebra, by a discrete gradient | `Field`, `Norm`, `LiePoisson` |
 //! | [`with_lie_poisson_method`] | momenta as matrices | `Field`, `Norm`, `Series`, `LiePoisson`, `Isospectral` |
 //! | [`with_body_method`] | a free rigid body in ℝ³ | `Field`, `Norm`, `Series`, `Body` |
 //! | [`with_attitude_method`] | and its attitude in the state | `Field`, `Norm`, `Series`, `Body`, `Attitude` |
 //! | [`with_momentum_method`] | the body by its momentum | `Field`, `Norm`, `Series`, `Body`, `LiePoisson` |
+//! | [`with_exp_cay_method`](super::with_exp_cay_method) | on a group with the maps exp and cay | `Field`, `Norm` |
+//! | [`with_quaternion_method`] | a free rigid body by its quaternion | `Field`, `Norm`, `Series`, `Body` |
+//! | [`with_fluid_method`](super::with_fluid_method) | an ideal fluid, [`Zeitlin`](crate::problems::Zeitlin) | `Field`, `Norm`, `LiePoisson`, of `Isospectral` the midpoint rules |
 //! | [`with_state_method`](super::with_state_method) | both in one state, [`RigidBodyState`] | `State` |
 //! | [`with_linear_method`](super::with_linear_method) | ẏ = λ_*(A(t))(y) | `LinearType` |
 //!
@@ -35,7 +39,8 @@ use crate::methods::{
     Splitting, Taylor, Wide, YOSHIDA4,
 };
 use crate::problems::{
-    FreeBody, LiePoisson, Orthogonal, PointOf, Problem, Projection, ScalarOf, Split, TaylorField,
+    FreeBody, LiePoisson, Orthogonal, PointOf, Problem, Projection, RigidBodyQuaternion, ScalarOf,
+    Split, TaylorField,
 };
 use crate::scalar::Trig;
 
@@ -252,6 +257,36 @@ fn splitting(name: &str) -> Option<Splitting<3>> {
     Some(Splitting::new(parts, scheme))
 }
 
+/// Hand the method for a free rigid body of that name to `$on`, or go on to `$else`.
+macro_rules! each_body_method {
+    ($name:expr, $on:expr, else => $else:expr) => {
+        match $name {
+            "simo-wong" => Ok($on.call(SimoWong::TAN)),
+            "simo-wong-k1" => Ok($on.call(SimoWong::ONE)),
+            "lewis-simo" => Ok($on.call(SimoWong::LEWIS_SIMO)),
+            "simo-wong4" => Ok($on.call(Composition::new(SimoWong::TAN, SUZUKI4))),
+            "simo-wong6" => Ok($on.call(Composition::new(SimoWong::TAN, KAHAN_LI6))),
+            "buss4" => Ok($on.call(Buss4)),
+            "dmv2" => Ok($on.call(DMV2)),
+            "dmv4" => Ok($on.call(DMV4)),
+            "dmv6" => Ok($on.call(DMV6)),
+            "dmv8" => Ok($on.call(DMV8)),
+            "dmv10" => Ok($on.call(DMV10)),
+            "exact" => Ok($on.call(ExactMotion)),
+            "taylor4" => Ok($on.call(Taylor::<4>)),
+            "taylor6" => Ok($on.call(Taylor::<6>)),
+            "taylor8" => Ok($on.call(Taylor::<8>)),
+            "taylor10" => Ok($on.call(Taylor::<10>)),
+            "taylor12" => Ok($on.call(Taylor::<12>)),
+            "taylor14" => Ok($on.call(Taylor::<14>)),
+            "taylor16" => Ok($on.call(Taylor::<16>)),
+            name => match splitting(name) {
+                Some(splitting) => Ok($on.call(splitting)),
+                None => $else,
+            },
+        }
+    };
+}
 /// [`with_implicit_method`], [`SERIES_METHODS`] and [`BODY_METHODS`]: the free rigid body in ℝ³.
 ///
 /// # Errors
@@ -264,32 +299,39 @@ where
     ScalarOf<P>: Trig + Wide + Into<f64>,
     Exp: CoordinateMap<P::Group>,
 {
-    let name = spec.info()?.name;
-    if let Some(splitting) = splitting(name) {
-        return Ok(on.call(splitting));
-    }
-    match name {
-        "simo-wong" => Ok(on.call(SimoWong::TAN)),
-        "simo-wong-k1" => Ok(on.call(SimoWong::ONE)),
-        "lewis-simo" => Ok(on.call(SimoWong::LEWIS_SIMO)),
-        "simo-wong4" => Ok(on.call(Composition::new(SimoWong::TAN, SUZUKI4))),
-        "simo-wong6" => Ok(on.call(Composition::new(SimoWong::TAN, KAHAN_LI6))),
-        "buss4" => Ok(on.call(Buss4)),
-        "dmv2" => Ok(on.call(DMV2)),
-        "dmv4" => Ok(on.call(DMV4)),
-        "dmv6" => Ok(on.call(DMV6)),
-        "dmv8" => Ok(on.call(DMV8)),
-        "dmv10" => Ok(on.call(DMV10)),
-        "exact" => Ok(on.call(ExactMotion)),
-        "taylor4" => Ok(on.call(Taylor::<4>)),
-        "taylor6" => Ok(on.call(Taylor::<6>)),
-        "taylor8" => Ok(on.call(Taylor::<8>)),
-        "taylor10" => Ok(on.call(Taylor::<10>)),
-        "taylor12" => Ok(on.call(Taylor::<12>)),
-        "taylor14" => Ok(on.call(Taylor::<14>)),
-        "taylor16" => Ok(on.call(Taylor::<16>)),
-        _ => with_implicit_method(spec, on),
-    }
+    each_body_method!(spec.info()?.name, on, else => with_implicit_method(spec, on))
+}
+
+/// [`with_exp_cay_method`], [`SERIES_METHODS`] and [`BODY_METHODS`]: the body in ℝ³ by the quaternion of its attitude.
+///
+/// # Errors
+/// As [`with_method`].
+pub fn with_quaternion_method<V: OnMethod<RigidBodyQuaternion>>(
+    spec: &MethodSpec,
+    on: V,
+) -> Result<V::Out, Error> {
+    each_body_method!(spec.info()?.name, on, else => with_exp_cay_method(spec, on))
+}
+
+/// Hand the projected method that `$spec` names to `$single`, or to `$pair` where it estimates its own
+/// error, or go on to `$else`.
+macro_rules! each_projected {
+    (@of $spec:expr, $on:expr, $how:expr, $single:path, pair => $pair:path) => {
+        each_tableau!($spec.tableau.as_deref().unwrap_or("rk4"),
+            t => Ok($single($on, Projected::new(Rk(t), $how))),
+            pair => Ok($pair($on, Projected::new(Rk(t), $how))))
+    };
+    ($spec:expr, $on:expr, $single:path, pair => $pair:path, else => $else:expr) => {{
+        let how = match $spec.info()?.name {
+            "rk4-qr" | "rk-qr" => Some(Projection::Qr),
+            "rk4-polar" | "rk-polar" => Some(Projection::Polar),
+            _ => None,
+        };
+        match how {
+            Some(how) => each_projected!(@of $spec, $on, how, $single, pair => $pair),
+            None => $else,
+        }
+    }};
 }
 
 /// [`with_body_method`] and [`ATTITUDE_METHODS`]: the body with its attitude.
@@ -304,11 +346,25 @@ where
     ScalarOf<P>: Trig + Wide + Into<f64>,
     Exp: CoordinateMap<P::Group>,
 {
-    match spec.info()?.name {
-        "rk4-qr" => Ok(on.call(Projected::new(Rk(tableau::RK4), Projection::Qr))),
-        "rk4-polar" => Ok(on.call(Projected::new(Rk(tableau::RK4), Projection::Polar))),
-        _ => with_body_method(spec, on),
-    }
+    each_projected!(spec, on, OnMethod::<P>::call, pair => OnMethod::<P>::call,
+        else => with_body_method(spec, on))
+}
+
+/// The embedded pairs among [`ATTITUDE_METHODS`] and those of [`with_embedded_pair`].
+///
+/// # Errors
+/// As [`with_embedded_pair`].
+pub fn with_attitude_pair<P: Catalogued + Orthogonal, V: OnEmbedded<P>>(
+    spec: &MethodSpec,
+    on: V,
+) -> Result<V::Out, Error>
+where
+    PointOf<P>: Metric<Scalar = ScalarOf<P>>,
+    Exp: CoordinateMap<P::Group>,
+{
+    let pair = each_projected!(spec, on, embedded::no_pair, pair => embedded::pair_of,
+        else => return with_embedded_pair(spec, on));
+    embedded::only_pairs(spec, pair)
 }
 
 /// Hand the energy and Casimir preserving method of that name to `$on`, or go on to `$else`.
@@ -323,6 +379,20 @@ macro_rules! each_energy_casimir {
             _ => $else,
         }
     };
+}
+
+/// [`with_implicit_method`] and [`LIE_POISSON_METHODS`]: Euler's equations on any algebra.
+///
+/// # Errors
+/// As [`with_method`].
+pub fn with_euler_method<P: Catalogued + LiePoisson, V: OnMethod<P>>(
+    spec: &MethodSpec,
+    on: V,
+) -> Result<V::Out, Error>
+where
+    Exp: CoordinateMap<P::Group>,
+{
+    each_energy_casimir!(spec, on, else => with_implicit_method(spec, on))
 }
 
 /// [`with_body_method`] and [`LIE_POISSON_METHODS`]: the body in ℝ³ by its momentum.
@@ -352,6 +422,10 @@ where
         "isospectral2" => Ok(on.call(IsospectralGauss(GAUSS2))),
         "isospectral4" => Ok(on.call(IsospectralGauss(GAUSS4))),
         "isospectral6" => Ok(on.call(IsospectralGauss(GAUSS6))),
+        "isospectral-suzuki4" => Ok(on.call(Composition::new(IsospectralGauss(GAUSS2), SUZUKI4))),
+        "isospectral-kahan-li6" => {
+            Ok(on.call(Composition::new(IsospectralGauss(GAUSS2), KAHAN_LI6)))
+        }
         _ => each_energy_casimir!(spec, on, else => with_series_method(spec, on)),
     }
 }

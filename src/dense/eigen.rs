@@ -7,13 +7,10 @@ use faer::linalg::evd::{ComputeEigenvectors, self_adjoint_evd, self_adjoint_evd_
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Col, Mat, Par, c64};
 
+use super::schur::NEGLIGIBLE;
 use crate::error::StepError;
 
 const ONE: c64 = c64::new(1.0, 0.0);
-
-/// Entries below this share of the largest are dropped before an eigendecomposition over ℂ: they change no
-/// digit of it, and faer's reduction fails where the square of one underflows beside others.
-const NEGLIGIBLE: f64 = 1e-60;
 
 /// Workspace for iu = Q Λ Q* with u skew-symmetric or skew-Hermitian.
 pub(crate) struct SkewEigen {
@@ -114,6 +111,7 @@ impl SkewEigen {
     /// h = QΛQ*.
     fn decompose(&mut self) -> Result<(), StepError> {
         let SkewEigen { h, q, x, lambda, mem } = self;
+        // faer's reduction fails where the square of an entry underflows beside others.
         let negligible = NEGLIGIBLE * h.norm_max();
         for z in h.col_iter_mut().flat_map(|column| column.iter_mut()) {
             let significant = |x: f64| if x.abs() < negligible { 0.0 } else { x };

@@ -26,4 +26,5 @@ pub(crate) use ops::{axpy, is_finite, norm_frobenius, norm1, scaled_sum, wide};
 pub(crate) use product::{
     antisymmetrise, congruence, lower_product, mirror, mul, mul_add, orthogonalise,
 };
+pub(crate) use schur::{NEGLIGIBLE, Schur};
 pub(crate) use symmetric::SymmetricEigen;

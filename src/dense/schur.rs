@@ -12,6 +12,8 @@ const ZERO: c64 = c64::new(0.0, 0.0);
 const ONE: c64 = c64::new(1.0, 0.0);
 /// Iterations without deflation before an eigenvalue counts as lost; two or three are usual.
 const SWEEPS_MAX: usize = 60;
+/// What lies below this share of the largest entry is no matter of its rounding.
+pub(crate) const NEGLIGIBLE: f64 = 1e-60;
 
 /// Workspace for u = Q T Q*.
 #[derive(Debug)]
@@ -63,6 +65,11 @@ impl Rotation {
     }
 }
 
+/// 2ᵉx. In two factors, for the power itself may be out of the range.
+fn scaled(x: c64, e: i32) -> c64 {
+    x * 2f64.powi(e / 2) * 2f64.powi(e - e / 2)
+}
+
 impl Schur {
     pub(crate) fn new(n: usize) -> Self {
         Schur { t: Mat::zeros(n, n), q: Mat::zeros(n, n), reflector: vec![ZERO; n] }
@@ -74,10 +81,29 @@ impl Schur {
     /// # Errors
     /// [`StepError::NotConverged`].
     pub(crate) fn factor(&mut self) -> Result<(), StepError> {
+        let exponent = self.normalise();
         self.hessenberg();
         self.iterate()?;
+        // Before they are sorted: 1/4 is meant at the size that u has.
+        self.t
+            .col_iter_mut()
+            .for_each(|col| col.iter_mut().for_each(|x| *x = scaled(*x, exponent)));
         self.sort();
         Ok(())
+    }
+
+    /// t ← 2⁻ᵉt with its largest entry near 1, without what lies below [`NEGLIGIBLE`]; returns e. The
+    /// iteration multiplies entries by each other, and sees no end where such a product underflows.
+    fn normalise(&mut self) -> i32 {
+        let entries = self.t.col_iter().flat_map(|col| col.iter());
+        let largest = entries.fold(0.0, |most: f64, x| most.max(x.re.abs()).max(x.im.abs()));
+        let exponent = largest.log2().clamp(-1100.0, 1100.0).floor() as i32;
+        let significant = |x: f64| if x.abs() < NEGLIGIBLE { 0.0 } else { x };
+        for x in self.t.col_iter_mut().flat_map(|col| col.iter_mut()) {
+            let c64 { re, im } = scaled(*x, -exponent);
+            *x = c64::new(significant(re), significant(im));
+        }
+        exponent
     }
 
     fn hessenberg(&mut self) {
@@ -135,7 +161,7 @@ impl Schur {
             let mut low = high;
             while low > 0 {
                 let beside = t[(low, low)].norm() + t[(low - 1, low - 1)].norm();
-                if t[(low, low - 1)].norm() <= 0.5 * f64::EPSILON * beside {
+                if t[(low, low - 1)].norm() <= 0.5 * f64::EPSILON * beside.max(NEGLIGIBLE) {
                     t[(low, low - 1)] = ZERO;
                     break;
                 }

@@ -33,6 +33,20 @@ pub trait Hamiltonian<G: Adjoint> {
     }
 }
 
+/// H with a discrete gradient, for methods that keep the energy. One of degree at most 2 has it from its
+/// gradient: `impl DiscreteGradient<G> for MyHamiltonian {}`.
+pub trait DiscreteGradient<G: Adjoint>: Hamiltonian<G> {
+    /// ξ ← ∇̄H(a, b), symmetric in a and b: ⟨b − a, ξ⟩ = H(b) − H(a), ∇̄H(m, m) = ∇H(m). Unless it is
+    /// overridden (∇H(a) + ∇H(b))/2, which is one where ∇H is affine and not elsewhere.
+    fn between(&self, group: &G, a: &G::Dual, b: &G::Dual, xi: &mut G::Alg, scratch: &mut G::Alg) {
+        group.set_zero(xi);
+        for m in [a, b] {
+            self.gradient(m, scratch);
+            group.axpy(G::Scalar::lit(0.5), scratch, xi);
+        }
+    }
+}
+
 /// H = ½⟨m, J⁻¹m⟩ from the inverse inertia J⁻¹ : 𝔤* → 𝔤, as a function that writes J⁻¹m. It is linear
 /// and symmetric, ⟨m, J⁻¹n⟩ = ⟨n, J⁻¹m⟩, and takes its values in 𝔤. An n×n matrix m stands for the
 /// functional v ↦ tr(mᵀv): J⁻¹m must be the same for two that differ by one that vanishes on 𝔤.
@@ -50,6 +64,8 @@ impl<G: Adjoint, F: Fn(&G::Dual, &mut G::Alg)> Hamiltonian<G> for Kinetic<F> {
         (self.0)(m, xi);
     }
 }
+
+impl<G: Adjoint, F: Fn(&G::Dual, &mut G::Alg)> DiscreteGradient<G> for Kinetic<F> {}
 
 /// Any H with its gradient, as two functions.
 impl<G, H, D> Hamiltonian<G> for (H, D)
@@ -174,8 +190,7 @@ where
     }
 }
 
-/// For quadratic H the discrete gradient is ∇H((a + b)/2) = (∇H(a) + ∇H(b))/2.
-impl<G: Adjoint, F: Fn(&G::Dual, &mut G::Alg)> LiePoisson for Euler<G, Kinetic<F>>
+impl<G: Adjoint, H: DiscreteGradient<G>> LiePoisson for Euler<G, H>
 where
     Coadjoint: Action<G, Point = G::Dual>,
     G::Dual: LinearSpace<Scalar = G::Scalar>,
@@ -184,12 +199,7 @@ where
         self.energy(m)
     }
     fn discrete_gradient(&self, a: &G::Dual, b: &G::Dual, xi: &mut G::Alg, work: &mut G::Alg) {
-        let half = G::Scalar::lit(0.5);
-        self.group.set_zero(xi);
-        for m in [a, b] {
-            (self.hamiltonian.0)(m, work);
-            self.group.axpy(half, work, xi);
-        }
+        self.hamiltonian.between(&self.group, a, b, xi, work);
     }
 }
 

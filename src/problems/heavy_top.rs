@@ -18,7 +18,7 @@
 use nalgebra::Vector3;
 
 use super::rigid_body::{check_finite, check_inertia};
-use super::{Euler, Hamiltonian, Invariant};
+use super::{DiscreteGradient, Euler, Hamiltonian, Invariant};
 use crate::error::Error;
 use crate::groups::Se3;
 use crate::scalar::Real;
@@ -145,3 +145,5 @@ impl<S: Real> Hamiltonian<Se3<S>> for HeavyTop<S> {
         values
     }
 }
+
+impl<S: Real> DiscreteGradient<Se3<S>> for HeavyTop<S> {}

@@ -45,7 +45,7 @@ mod torque;
 mod zeitlin;
 
 pub use capability::{LiePoisson, Orthogonal, Projection, Split};
-pub use euler::{Euler, EulerGroup, FromTheBody, Hamiltonian, Kinetic};
+pub use euler::{DiscreteGradient, Euler, EulerGroup, FromTheBody, Hamiltonian, Kinetic};
 pub use fallible::{Fallible, InAlgebra, TryProblem};
 pub use grassmann::SubspaceFlow;
 pub use heavy_top::HeavyTop;

@@ -1,15 +1,23 @@
 //! The free rigid body with its attitude as a unit quaternion: q̇ = f(q)·q on S³,
 //! f(q) = ω_s = q J⁻¹(q̄ m_s q) q̄, equation (11) on the double cover; Λ is left translation.
 //!
+//! In ℝ⁴ q̇ = ½ (0, ω_s) q, so that |q| is kept by every method that keeps quadratic invariants. The flow
+//! about the axis e_k is q ← q (cos θ/2, sin θ/2 e_k), θ = t m_k/J_k.
+//!
 //! Invariants: |q| (the action), the energy (the flow). The body momentum is q̄ m_s q.
 
-use nalgebra::{UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
 use super::rigid_body::check_finite;
-use super::{Invariant, Invariants, Problem, RigidBody};
+use super::space::linear_space;
+use super::{
+    Ambient, Frame, FreeBody, Invariant, Invariants, LinearSpace, Problem, RigidBody, Split,
+};
 use crate::actions::LeftTranslation;
 use crate::error::Error;
 use crate::groups::{LieGroup, UnitQuaternions};
+use crate::methods::Metric;
+use crate::so3;
 
 /// The free rigid body by the quaternion of its attitude, from body to space.
 ///
@@ -74,6 +82,96 @@ impl Problem for RigidBodyQuaternion {
     #[inline]
     fn f(&self, _: f64, q: &UnitQuaternion<f64>, v: &mut Vector3<f64>, _: &mut ()) {
         UnitQuaternions.apply(q, &self.body.omega(&self.momentum_body(q)), v);
+    }
+}
+
+impl Ambient for RigidBodyQuaternion {
+    fn field(&self, t: f64, q: &UnitQuaternion<f64>, dq: &mut UnitQuaternion<f64>, work: &mut ()) {
+        let mut omega = Vector3::zeros();
+        self.f(t, q, &mut omega, work);
+        let product = Quaternion::from_imag(0.5 * omega) * q.quaternion();
+        *dq = UnitQuaternion::new_unchecked(product);
+    }
+    linear_space!();
+}
+
+/// As points of ℝ⁴.
+impl Metric for UnitQuaternion<f64> {
+    type Scalar = f64;
+    #[inline]
+    fn assign(&mut self, x: &Self) {
+        *self = *x;
+    }
+    #[inline]
+    fn size(&self) -> f64 {
+        self.coords.norm()
+    }
+    /// |a − b|: q and −q are different points.
+    #[inline]
+    fn distance(&self, x: &Self) -> f64 {
+        (self.coords - x.coords).norm()
+    }
+}
+
+impl LinearSpace for UnitQuaternion<f64> {
+    #[inline]
+    fn clear(&mut self) {
+        *self = UnitQuaternion::new_unchecked(Quaternion::new(0.0, 0.0, 0.0, 0.0));
+    }
+    #[inline]
+    fn add(&mut self, a: f64, x: &Self) {
+        *self = UnitQuaternion::new_unchecked(Quaternion::from(self.coords + a * x.coords));
+    }
+    #[inline]
+    fn dot(&self, x: &Self) -> f64 {
+        self.coords.dot(&x.coords)
+    }
+    #[inline]
+    fn is_finite(&self) -> bool {
+        self.coords.iter().all(|x| x.is_finite())
+    }
+}
+
+impl Frame<f64> for UnitQuaternion<f64> {
+    const TURNS: bool = true;
+    /// By the quaternion of Ψ that is nearer to 1, and not a number where Ψ is no rotation.
+    #[inline]
+    fn turn(&mut self, psi: &Matrix3<f64>) {
+        let turned = match so3::quaternion_from_matrix(psi) {
+            Ok(step) => self.quaternion() * step.quaternion() * 1f64.copysign(step.w),
+            Err(_) => Quaternion::from(self.coords * f64::NAN),
+        };
+        *self = UnitQuaternion::new_unchecked(turned);
+    }
+}
+
+impl FreeBody for RigidBodyQuaternion {
+    type Frame = UnitQuaternion<f64>;
+    #[inline]
+    fn inverse_inertia(&self) -> &Vector3<f64> {
+        FreeBody::inverse_inertia(&self.body)
+    }
+    #[inline]
+    fn load(&self, q: &UnitQuaternion<f64>) -> (Vector3<f64>, UnitQuaternion<f64>) {
+        (self.momentum_body(q), *q)
+    }
+    /// m follows from q.
+    #[inline]
+    fn store(&self, _: &Vector3<f64>, frame: &UnitQuaternion<f64>, q: &mut UnitQuaternion<f64>) {
+        *q = *frame;
+    }
+}
+
+impl Split for RigidBodyQuaternion {
+    const PARTS: usize = 3;
+    #[inline]
+    fn flow(&self, k: usize, t: f64, q: &mut UnitQuaternion<f64>) {
+        let rate = FreeBody::inverse_inertia(&self.body)[k] * self.momentum_body(q)[k];
+        let (s, c) = (0.5 * t * rate).sin_cos();
+        let mut axis = Vector3::zeros();
+        axis[k] = s;
+        let product = q.quaternion() * Quaternion::from_parts(c, axis);
+        *q = UnitQuaternion::new_unchecked(product);
     }
 }
 

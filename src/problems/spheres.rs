@@ -14,7 +14,7 @@
 use nalgebra::Vector3;
 
 use super::rigid_body::check_finite;
-use super::{Ambient, Invariant, Invariants, Problem, space::linear_space};
+use super::{Ambient, Invariant, Invariants, LiePoisson, Problem, space::linear_space};
 use crate::actions::{Coadjoint, Linear};
 use crate::error::Error;
 use crate::groups::{Power, Se3, So3};
@@ -82,6 +82,16 @@ impl Ambient for SphericalPendulum {
         *dy = (V::new(-self.rate2 * q[1], self.rate2 * q[0], 0.0), omega.cross(q));
     }
     linear_space!();
+}
+
+/// On the dual of se(3) by −H: f = (ω, (g/ℓ) e₃) is the gradient of the energy H, affine in (ω, q).
+impl LiePoisson for SphericalPendulum {
+    fn hamiltonian(&self, y: &(V, V)) -> f64 {
+        -self.energy(y)
+    }
+    fn discrete_gradient(&self, a: &(V, V), b: &(V, V), xi: &mut (V, V), _: &mut ()) {
+        *xi = (-0.5 * (a.0 + b.0), V::new(0.0, 0.0, -self.rate2));
+    }
 }
 
 impl Invariants for SphericalPendulum {

@@ -1,41 +1,52 @@
 //! α = |u| and the coefficients of exp, dexp and dexp⁻¹.
 //!
-//! Below α² = 1 they are polynomials in α²: no root, no division, no trigonometric function. Above,
-//! half angles: sin α = 2 sin(α/2)cos(α/2), 1 − cos α = 2 sin²(α/2). exp as a matrix is the rotation of
-//! the quaternion (cos(α/2), sin(α/2)/α u), which forgives the rounding of α.
+//! With c = cos(α/2) and k = sin(α/2)/α:
+//!
+//! | | α² < 1 | beyond |
+//! |---|---|---|
+//! | sin α/α | 2kc | |
+//! | (1 − cos α)/α² | 2k² | |
+//! | (α − sin α)/α³ | a polynomial in α² | (1 − 2kc)/α² |
+//! | (1 − (α/2)cot(α/2))/α² | a polynomial in α² | (1 − c/2k)/α² |
+//! | its derivative in α² | a polynomial in α² | (c/2k + 1/4k² − 2)/2α⁴ |
+//!
+//! c and k themselves are polynomials in α² for all rotations by up to π and a little more: no root, no
+//! division, no trigonometric function. exp as a matrix is the rotation of the quaternion (c, k·u), which
+//! forgives the rounding of α.
 
 use nalgebra::{Matrix3, Vector3};
 
 use super::{dot, rotation};
 use crate::scalar::{Real, Trig};
 
-/// α² = |u|² and, from [`SERIES`] on, α, sin(α/2), cos(α/2).
+/// α² = |u|² and, where they have been asked for or α² is not below [`SERIES`], cos(α/2) and sin(α/2)/α.
 #[derive(Clone, Copy, Debug)]
 pub struct Angle<S> {
     pub(crate) alpha2: S,
-    alpha: S,
-    sin_half: S,
     cos_half: S,
+    half_sinc: S,
 }
 
-/// Below this α² all coefficients are polynomials.
+/// Below this α² the coefficients of dexp and dexp⁻¹ are polynomials, whose other form cancels there.
 pub(super) const SERIES: f64 = 1.0;
+/// Below this α², π² and a little more, cos(α/2) and sin(α/2)/α are polynomials.
+pub(super) const TURN: f64 = 10.0;
 /// Below this |sin(α/2)| the rounding of α is taken back.
 pub(super) const REFINE: f64 = 0.1;
 
-// Polynomials in α² that interpolate in the 8 Chebyshev nodes of [0, 1]: the relative error is below
+// Polynomials in α² that interpolate in the Chebyshev nodes of [0, 1] or [0, 10]: the error is below
 // 5e-17, where a Taylor polynomial would need two terms more. `make_so3.py --series` prints them.
-/// sin α/α.
+/// cos(α/2) for α² < 10.
 #[rustfmt::skip]
-const SINC: [f64; 8] = [
-    1.0, -0.16666666666666666, 0.008333333333333106, -0.0001984126984108742,
-    2.7557319152292533e-06, -2.5052093081256153e-08, 1.605723315933452e-10, -7.535482987408254e-13,
+const HALF_COS: [f64; 9] = [
+    1.0, -0.12499999999999993, 0.002604166666666476, -2.1701388888693032e-05, 9.688120029603478e-08,
+    -2.691144164002177e-10, 5.096814958637438e-13, -6.99627421852193e-16, 7.029362648743178e-19,
 ];
-/// (1 − cos α)/α².
+/// sin(α/2)/α for α² < 10.
 #[rustfmt::skip]
-const COSC: [f64; 8] = [
-    0.5, -0.041666666666666664, 0.0013888888888888761, -2.480158730148584e-05,
-    2.755731918411258e-07, -2.087674847675659e-09, 1.1469738737883868e-11, -4.7173894321989566e-14,
+const HALF_SINC: [f64; 9] = [
+    0.5, -0.020833333333333332, 0.0002604166666666616, -1.550099206344038e-06, 5.382288908275181e-09,
+    -1.2232474028563473e-11, 1.9603194306661677e-14, -2.3324333693681166e-17, 2.0755049949455216e-20,
 ];
 /// (α − sin α)/α³.
 #[rustfmt::skip]
@@ -55,24 +66,10 @@ const COTC_SLOPE: [f64; 8] = [
     0.0013888888888888887, 6.613756613757471e-05, 2.480158729979068e-06, 8.350702938564351e-08,
     2.64208945557739e-09, 8.030712340508873e-11, 2.35885576085506e-12, 7.706946286242862e-14,
 ];
-/// sin(α/2)/α.
-#[rustfmt::skip]
-const HALF_SINC: [f64; 8] = [
-    0.5, -0.020833333333333332, 0.00026041666666666666, -1.5500992063491924e-06,
-    5.382288910879596e-09, -1.2232474679909654e-11, 1.960318589399966e-14, -2.3251641588806655e-17,
-];
-/// cos(α/2).
-#[rustfmt::skip]
-const HALF_COS: [f64; 8] = [
-    1.0, -0.125, 0.0026041666666666665, -2.1701388888888412e-05,
-    9.688120039495094e-08, -2.691144415471956e-10, 5.096817217095995e-13, -6.972072418915916e-16,
-];
-
 impl<S: Trig> Angle<S> {
     /// The angle of u = 0.
     pub(crate) fn zero() -> Self {
-        let (o, i) = (S::lit(0.0), S::lit(1.0));
-        Angle { alpha2: o, alpha: o, sin_half: o, cos_half: i }
+        Angle { alpha2: S::lit(0.0), cos_half: S::lit(1.0), half_sinc: S::lit(0.5) }
     }
 
     /// Does α² lie within the range of these formulas? Not where u is not finite; beyond see
@@ -82,54 +79,48 @@ impl<S: Trig> Angle<S> {
         self.alpha2.all_below(S::SQUARE_MAX)
     }
 
+    /// The angle of u with cos(α/2) and sin(α/2)/α. Out of range they mean nothing.
+    #[inline(always)]
+    pub(super) fn with_half(u: &Vector3<S>) -> Self {
+        let alpha2 = dot(u, u);
+        let [cos_half, half_sinc] = half(u, alpha2);
+        Angle { alpha2, cos_half, half_sinc }
+    }
+
     /// The angle of u and exp(u), the rotation of the quaternion (cos(α/2), (sin(α/2)/α)·u). Out of
     /// range they mean nothing.
     #[inline(always)]
     pub(crate) fn with_matrix(u: &Vector3<S>) -> (Self, Matrix3<S>) {
-        let angle = Self::of(u);
-        let (c, k) = angle.quaternion_coefficients();
-        (angle, rotation(c, &Vector3::new(k * u[0], k * u[1], k * u[2])))
+        let angle = Self::with_half(u);
+        let k = angle.half_sinc;
+        (angle, rotation(angle.cos_half, &Vector3::new(k * u[0], k * u[1], k * u[2])))
     }
 
     /// The angle of u, with a = sin α/α and b = (1 − cos α)/α², for exp(u)·x without exp(u). Out of
     /// range they mean nothing.
     #[inline(always)]
     pub(crate) fn with_exp(u: &Vector3<S>) -> (Self, S, S) {
-        let l = S::lit;
-        let alpha2 = dot(u, u);
-        let [a, b, alpha, sin_half, cos_half] = alpha2.branch(
-            SERIES,
-            || [estrin(alpha2, &SINC), estrin(alpha2, &COSC), l(0.0), l(0.0), l(1.0)],
-            || {
-                let (alpha, s, c) = half_angle(u, alpha2);
-                let k = l(2.0) * s / alpha2; // not by squaring 2s/α: that doubles the rounding of α
-                [k * alpha * c, k * s, alpha, s, c]
-            },
-        );
-        (Angle { alpha2, alpha, sin_half, cos_half }, a, b)
+        let angle = Self::with_half(u);
+        let twice = angle.half_sinc + angle.half_sinc;
+        (angle, twice * angle.cos_half, twice * angle.half_sinc)
     }
 
     /// The angle of u alone.
     #[inline(always)]
     pub(super) fn of(u: &Vector3<S>) -> Self {
-        let l = S::lit;
         let alpha2 = dot(u, u);
-        let [alpha, sin_half, cos_half] = alpha2.branch(
-            SERIES,
-            || [l(0.0), l(0.0), l(1.0)],
-            || {
-                let (alpha, s, c) = half_angle(u, alpha2);
-                [alpha, s, c]
-            },
-        );
-        Angle { alpha2, alpha, sin_half, cos_half }
+        let [cos_half, half_sinc] =
+            alpha2.branch(SERIES, || [S::lit(1.0), S::lit(0.5)], || half(u, alpha2));
+        Angle { alpha2, cos_half, half_sinc }
     }
 
-    /// |sin(α/2)| where α² is not below [`SERIES`], else 1: where it is below [`REFINE`] the rounding
-    /// of α has to be taken back.
+    /// Of the order of |sin(α/2)|² where α² is not below [`TURN`], else 1: where it is below [`REFINE`] the
+    /// rounding of α has to be taken back.
     #[inline(always)]
     pub(super) fn regular(&self) -> S {
-        let [r] = self.alpha2.branch(SERIES, || [S::lit(1.0)], || [self.sin_half.abs()]);
+        let k = self.half_sinc;
+        let [r] =
+            self.alpha2.branch(TURN, || [S::lit(1.0)], || [S::lit(10.0) * self.alpha2 * k * k]);
         r
     }
 
@@ -140,7 +131,7 @@ impl<S: Trig> Angle<S> {
         let [c] = self.alpha2.branch(
             SERIES,
             || [estrin(self.alpha2, &COTC)],
-            || [(l(1.0) - l(0.5) * self.alpha * self.cos_half / self.sin_half) / self.alpha2],
+            || [(l(1.0) - l(0.5) * self.cos_half / self.half_sinc) / self.alpha2],
         );
         c
     }
@@ -153,61 +144,58 @@ impl<S: Trig> Angle<S> {
             SERIES,
             || [estrin(self.alpha2, &COTC_SLOPE)],
             || {
-                let k = l(0.5) * self.alpha / self.sin_half;
+                let k = l(0.5) / self.half_sinc;
                 [(k * self.cos_half + k * k - l(2.0)) / (l(2.0) * self.alpha2 * self.alpha2)]
             },
         );
         c
     }
 
-    /// (1 − cos α)/α² and (α − sin α)/α³.
+    /// (1 − cos α)/α² and (α − sin α)/α³, of an angle that has its half.
     #[inline(always)]
     pub(crate) fn dexp_coefficients(&self) -> (S, S) {
-        let l = S::lit;
-        let [b, d] = self.alpha2.branch(
+        let twice = self.half_sinc + self.half_sinc;
+        let [d] = self.alpha2.branch(
             SERIES,
-            || [estrin(self.alpha2, &COSC), estrin(self.alpha2, &SINCC)],
-            || {
-                let k = l(2.0) * self.sin_half / self.alpha;
-                [l(0.5) * k * k, (l(1.0) - k * self.cos_half) / self.alpha2]
-            },
+            || [estrin(self.alpha2, &SINCC)],
+            || [(S::lit(1.0) - twice * self.cos_half) / self.alpha2],
         );
-        (b, d)
+        (twice * self.half_sinc, d)
     }
 
     /// cos(α/2) and sin(α/2)/α: the unit quaternion of exp(u) is (cos(α/2), (sin(α/2)/α)·u).
     #[inline(always)]
     pub(super) fn quaternion_coefficients(&self) -> (S, S) {
-        let l = S::lit;
-        let [c, s] = self.alpha2.branch(
-            SERIES,
-            || [estrin(self.alpha2, &HALF_COS), estrin(self.alpha2, &HALF_SINC)],
-            // The quotient does not wait for the sine.
-            || [self.cos_half, self.sin_half * (l(1.0) / self.alpha)],
-        );
-        (c, s)
+        (self.cos_half, self.half_sinc)
     }
 }
 
-/// α, sin(α/2), cos(α/2).
+/// cos(α/2) and sin(α/2)/α.
 #[inline(always)]
-fn half_angle<S: Trig>(u: &Vector3<S>, alpha2: S) -> (S, S, S) {
-    let alpha = alpha2.sqrt();
-    let (s, c) = (S::lit(0.5) * alpha).sin_cos();
-    // |sin| < 0.1 says |cos| > 0.9; asked together, both are wanted here, and come from one call.
-    if s.abs().any_below(REFINE) & !c.abs().all_below(0.9) {
-        return refined(u, alpha, s, c);
-    }
-    (alpha, s, c)
+fn half<S: Trig>(u: &Vector3<S>, alpha2: S) -> [S; 2] {
+    alpha2.branch(
+        TURN,
+        || [&HALF_COS, &HALF_SINC].map(|[low @ .., last]| longer(alpha2, low, *last)),
+        || {
+            let alpha = alpha2.sqrt();
+            let (s, c) = (S::lit(0.5) * alpha).sin_cos();
+            // |sin| < 0.1 says |cos| > 0.9; asked together, both are wanted here, and come from one call.
+            let (s, c) = match s.abs().any_below(REFINE) & !c.abs().all_below(0.9) {
+                true => refined(u, alpha, s, c),
+                false => (s, c),
+            };
+            [c, s * (S::lit(1.0) / alpha)] // the quotient does not wait for the sine
+        },
+    )
 }
 
 /// u is exact, α = fl|u| is not. Near α = 2πk that rounding would be magnified by α/|α − 2πk|;
 /// turning by what is missing takes it back.
 #[cold]
 #[inline(never)]
-fn refined<S: Trig>(u: &Vector3<S>, alpha: S, s: S, c: S) -> (S, S, S) {
+fn refined<S: Trig>(u: &Vector3<S>, alpha: S, s: S, c: S) -> (S, S) {
     let (se, ce) = (S::lit(0.5) * norm_remainder(u, alpha)).sin_cos();
-    (alpha, s * ce + c * se, c * ce - s * se)
+    (s * ce + c * se, c * ce - s * se)
 }
 
 /// |u| − alpha for alpha = fl|u|, to working accuracy: (Σu_i² − alpha²)/(2 alpha), the squares and
@@ -245,8 +233,27 @@ fn add_exactly<S: Real>(a: S, b: S) -> (S, S) {
 /// three times as long.
 #[inline(always)]
 fn estrin<S: Real>(x: S, c: &[f64; 8]) -> S {
-    let pair = |k: usize| S::lit(c[k + 1]).mul_add(x, S::lit(c[k]));
     let x2 = x * x;
-    let (low, high) = (pair(2).mul_add(x2, pair(0)), pair(6).mul_add(x2, pair(4)));
+    even(x, x2, c, pair(x, c[6], c[7]))
+}
+
+/// The same with `last`·x⁸.
+#[inline(always)]
+fn longer<S: Real>(x: S, c: &[f64; 8], last: f64) -> S {
+    let x2 = x * x;
+    even(x, x2, c, S::lit(last).mul_add(x2, pair(x, c[6], c[7])))
+}
+
+/// c₀ + … + c₅x⁵ + x⁶·rest.
+#[inline(always)]
+fn even<S: Real>(x: S, x2: S, c: &[f64; 8], rest: S) -> S {
+    let low = pair(x, c[2], c[3]).mul_add(x2, pair(x, c[0], c[1]));
+    let high = rest.mul_add(x2, pair(x, c[4], c[5]));
     high.mul_add(x2 * x2, low)
+}
+
+/// a + bx.
+#[inline(always)]
+fn pair<S: Real>(x: S, a: f64, b: f64) -> S {
+    S::lit(b).mul_add(x, S::lit(a))
 }

@@ -26,7 +26,7 @@ use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 use nalgebra::{Matrix3, Vector3};
 use pulp::{Arch, Simd, WithSimd};
 
-use super::angle::{Angle, REFINE, SERIES};
+use super::angle::{Angle, REFINE, SERIES, TURN};
 use super::{cay_coefficients, rodrigues, rodrigues_on};
 use crate::error::{Error, StepError};
 use crate::scalar::{Real, SIN_COS_MAX, Select, Trig, muladd, sin_cos};
@@ -78,7 +78,7 @@ fn both<'a>([a, b, c]: [&'a [f64]; 3], [d, e, f]: [&'a [f64]; 3]) -> [&'a [f64];
 
 /// A map of IN numbers, the first three of which are u, to OUT numbers.
 trait Kernel<const IN: usize, const OUT: usize> {
-    /// The value by formulas without a branch, and |sin(α/2)| or what else must not be small for them
+    /// The value by formulas without a branch, and |sin(α/2)|² or what else must not be small for them
     /// to hold; NaN where a result is not finite.
     fn lane<S: Trig>(x: &[S; IN]) -> ([S; OUT], S);
     /// The value by the scalar form.
@@ -131,7 +131,7 @@ impl Kernel<6, 3> for DexpOf {
     #[inline(always)]
     fn lane<S: Trig>(x: &[S; 6]) -> ([S; 3], S) {
         let u = u_of(x);
-        let angle = Angle::of(&u);
+        let angle = Angle::with_half(&u);
         let (b, d) = angle.dexp_coefficients();
         finite(rodrigues_on(&u, b, d, &u_of(&x[3..])), angle.regular())
     }
@@ -222,27 +222,28 @@ impl<K: Kernel<IN, OUT>, const IN: usize, const OUT: usize> Run<'_, K, IN, OUT> 
                 x[..len].copy_from_slice(&input[start..start + len]);
                 x[len..].fill(0.0);
             }
-            let (mut small, mut large) = (true, true);
+            let (mut small, mut below, mut large) = (true, true, true);
             for i in 0..BLOCK {
                 let square = x[0][i] * x[0][i] + x[1][i] * x[1][i] + x[2][i] * x[2][i];
                 // A NaN is neither.
                 guard[i] = if square < SQUARE_MAX { 1.0 } else { 0.0 };
                 small &= square < SERIES;
-                large &= square >= SERIES;
+                below &= square < TURN;
+                large &= square >= TURN;
             }
-            if small {
-                lanes::<K, FUSED, SMALL, IN, OUT>(&x, &mut y, &mut guard);
-            } else if large {
-                lanes::<K, FUSED, LARGE, IN, OUT>(&x, &mut y, &mut guard);
-            } else {
-                lanes::<K, FUSED, MIXED, IN, OUT>(&x, &mut y, &mut guard);
+            let (x, y, guard) = (&x, &mut y, &mut guard);
+            match (small, below, large) {
+                (true, ..) => lanes::<K, FUSED, SMALL, IN, OUT>(x, y, guard),
+                (_, true, _) => lanes::<K, FUSED, BELOW, IN, OUT>(x, y, guard),
+                (.., true) => lanes::<K, FUSED, LARGE, IN, OUT>(x, y, guard),
+                _ => lanes::<K, FUSED, MIXED, IN, OUT>(x, y, guard),
             }
             for (y, output) in y.iter().zip(&mut output) {
                 output[start..start + len].copy_from_slice(&y[..len]);
             }
             let all = guard.iter().fold(true, |all, g| all & (*g >= REFINE));
             if !all {
-                again::<K, IN, OUT>(start, &guard[..len], &x, &mut output)?;
+                again::<K, IN, OUT>(start, &guard[..len], x, &mut output)?;
             }
         }
         Ok(())
@@ -296,10 +297,12 @@ fn again<K: Kernel<IN, OUT>, const IN: usize, const OUT: usize>(
 
 /// All α² of the block are below [`SERIES`].
 const SMALL: u8 = 0;
-/// None is.
-const LARGE: u8 = 1;
-/// Some are: both formulas run, and one result is selected.
-const MIXED: u8 = 2;
+/// All are below [`TURN`].
+const BELOW: u8 = 1;
+/// None is below [`TURN`].
+const LARGE: u8 = 2;
+/// Anything.
+const MIXED: u8 = 3;
 
 /// One number of a block. It asks no questions: what needs an answer is done again by the scalar forms.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -376,7 +379,9 @@ impl<const FUSED: bool, const SIZE: u8> Real for Lane<FUSED, SIZE> {
     ) -> R {
         match SIZE {
             SMALL => small(),
+            BELOW if bound == TURN => small(),
             LARGE => large(),
+            // Both formulas run, and one result is selected.
             _ => {
                 let below = self.0 < bound;
                 R::select(&mut |a: Self, b: Self| if below { a } else { b }, small(), large())

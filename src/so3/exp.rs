@@ -50,7 +50,7 @@ pub fn exp_on<S: Trig>(u: &Vector3<S>, x: &Vector3<S>) -> Result<Vector3<S>, Ste
 /// As [`exp`]; [`StepError::NotFinite`] when the result is not finite.
 #[inline]
 pub fn dexp<S: Trig>(u: &Vector3<S>, v: &Vector3<S>) -> Result<Vector3<S>, StepError> {
-    let angle = Angle::of(u);
+    let angle = Angle::with_half(u);
     if !angle.in_range() {
         return polar::dexp_huge(u, v);
     }
@@ -64,7 +64,7 @@ pub fn dexp<S: Trig>(u: &Vector3<S>, v: &Vector3<S>) -> Result<Vector3<S>, StepE
 /// As [`exp`].
 #[inline]
 pub fn dexp_matrix<S: Trig>(u: &Vector3<S>) -> Result<Matrix3<S>, StepError> {
-    let angle = Angle::of(u);
+    let angle = Angle::with_half(u);
     if !angle.in_range() {
         return polar::columns(|e| polar::dexp_huge(u, e));
     }

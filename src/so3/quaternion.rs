@@ -17,7 +17,7 @@ use crate::error::{Error, StepError};
 /// As [`exp`](super::exp()).
 #[inline]
 pub fn exp_quaternion(u: &Vector3<f64>) -> Result<UnitQuaternion<f64>, StepError> {
-    let angle = Angle::of(u);
+    let angle = Angle::with_half(u);
     if !angle.in_range() {
         return polar::exp_huge_quaternion(u);
     }

@@ -172,22 +172,24 @@ def make_log():
 def series():
     mp.dps = 60
     f = mp.factorial
+    cot, slope = ([abs(mp.bernoulli(2 * k + i)) / f(2 * k + i) for k in range(60)] for i in (2, 4))
     table = {
-        "sin a/a": lambda k: (-1) ** k / f(2 * k + 1),
-        "(1 - cos a)/a^2": lambda k: (-1) ** k / f(2 * k + 2),
-        "(a - sin a)/a^3": lambda k: (-1) ** k / f(2 * k + 3),
-        "(1 - (a/2) cot(a/2))/a^2": lambda k: abs(mp.bernoulli(2 * k + 2)) / f(2 * k + 2),
-        "its derivative in a^2": lambda k: (k + 1) * abs(mp.bernoulli(2 * k + 4)) / f(2 * k + 4),
-        "sin(a/2)/a": lambda k: (-1) ** k / f(2 * k + 1) / mpf(2) ** (2 * k + 1),
-        "cos(a/2)": lambda k: (-1) ** k / f(2 * k) / mpf(4) ** k,
+        "(a - sin a)/a^3": (8, 1, lambda k: (-1) ** k / f(2 * k + 3)),
+        "(1 - (a/2) cot(a/2))/a^2": (8, 1, lambda k: cot[k]),
+        "its derivative in a^2": (8, 1, lambda k: (k + 1) * slope[k]),
+        "sin(a/2)/a": (9, 10, lambda k: (-1) ** k / f(2 * k + 1) / mpf(2) ** (2 * k + 1)),
+        "cos(a/2)": (9, 10, lambda k: (-1) ** k / f(2 * k) / mpf(4) ** k),
     }
-    for name, taylor in table.items():
+    for name, (terms, end, taylor) in table.items():
         c = [mpf(taylor(k)) for k in range(60)]
         value = lambda x: sum(t * x ** k for k, t in enumerate(c))
-        nodes = [(1 + mp.cos(mp.pi * (2 * j + 1) / 16)) / 2 for j in range(8)]
-        p = mp.lu_solve(mp.matrix([[x ** k for k in range(8)] for x in nodes]), mp.matrix([value(x) for x in nodes]))
-        error = max(abs(sum(p[k] * x ** k for k in range(8)) / value(x) - 1) for x in mp.linspace(0, 1, 201))
-        print(name, "relative error", mp.nstr(error, 3))
+        nodes = [end * (1 + mp.cos(mp.pi * (2 * j + 1) / (2 * terms))) / 2 for j in range(terms)]
+        p = mp.lu_solve(mp.matrix([[x ** k for k in range(terms)] for x in nodes]), mp.matrix([value(x) for x in nodes]))
+        p = [mpf(float(x)) for x in p]
+        # cos(a/2) passes through 0 next to a = pi: there the error is absolute.
+        size = lambda x: 1 if name == "cos(a/2)" else value(x)
+        error = max(abs((sum(p[k] * x ** k for k in range(terms)) - value(x)) / size(x)) for x in mp.linspace(0, end, 201))
+        print(name, "error", mp.nstr(error, 3))
         print("   ", ", ".join(repr(float(x)) for x in p))
 
 

@@ -173,7 +173,7 @@ impl<'a> Watch<'a> {
     /// The field at the end, where the figure is one.
     fn field(&self, rows: &Gathered) -> Vec<Vec<f64>> {
         match (self.scene.problem.figure(), rows.ends()) {
-            (Figure::Map(_), Some([_, (_, row)])) => {
+            (Figure::Map(..), Some([_, (_, row)])) => {
                 self.scene.problem.field(&row[self.drawn.place.clone()])
             }
             _ => Vec::new(),

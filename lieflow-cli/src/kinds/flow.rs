@@ -18,12 +18,12 @@ use core::fmt;
 use lieflow::Error;
 use lieflow::actions::{Action, Coadjoint, LeftTranslation, Linear};
 use lieflow::catalog::{
-    LINEAR_METHODS, MethodSpec, OnEmbedded, OnMethod, with_embedded_pair, with_implicit_method,
-    with_linear_method,
+    LINEAR_METHODS, MethodSpec, OnEmbedded, OnMethod, with_embedded_pair, with_euler_method,
+    with_implicit_method, with_linear_method,
 };
 use lieflow::groups::{LieAlgebra, LieGroup, MatrixGroup, Power, Product, Se3, So3, Translations};
 use lieflow::methods::Metric;
-use lieflow::problems::{AlgOf, Ambient, LinearField, LinearSpace, PointOf, Problem};
+use lieflow::problems::{AlgOf, Ambient, LiePoisson, LinearField, LinearSpace, PointOf, Problem};
 use nalgebra::Vector3;
 
 use super::matrix::MatrixAction;
@@ -36,6 +36,8 @@ pub(super) trait Field<G: LieGroup, M> {
     fn f(&mut self, t: f64, y: &M, v: &mut G::Alg);
     /// dy ← F(t, y).
     fn ambient(&mut self, t: f64, y: &M, dy: &mut M);
+    /// ξ ← ∇̄H(a, b). For Lie–Poisson systems: [`Catalog::with`] hands over no method that asks others.
+    fn discrete_gradient(&mut self, _a: &M, _b: &M, _xi: &mut G::Alg) {}
 }
 
 /// What an element of 𝔤 does to a point of the linear space around M.
@@ -62,12 +64,16 @@ impl Generator<So3> for Linear {
     }
 }
 
+/// H(m) of a Lie–Poisson system.
+type Energy<M> = Box<dyn Fn(&M) -> f64>;
+
 /// A problem on M by G and Λ, whatever its field.
 pub(super) struct Flow<G: LieGroup, A: Action<G>> {
     group: G,
     action: A,
     start: A::Point,
     linear: bool,
+    hamiltonian: Option<Energy<A::Point>>,
     field: Box<dyn Fn() -> Box<dyn Field<G, A::Point>>>,
 }
 
@@ -86,6 +92,24 @@ impl<P: Ambient<Group: LieAlgebra<Scalar = f64>>> Field<P::Group, PointOf<P>> fo
     }
     fn ambient(&mut self, t: f64, y: &PointOf<P>, dy: &mut PointOf<P>) {
         self.0.field(t, y, dy, &mut self.1);
+    }
+}
+
+/// A Lie–Poisson system with its scratch.
+struct RunningPoisson<P: Problem>(std::rc::Rc<P>, P::Work);
+
+impl<P> Field<P::Group, PointOf<P>> for RunningPoisson<P>
+where
+    P: LiePoisson<Group: LieAlgebra<Scalar = f64>>,
+{
+    fn f(&mut self, t: f64, y: &PointOf<P>, v: &mut AlgOf<P>) {
+        self.0.f(t, y, v, &mut self.1);
+    }
+    fn ambient(&mut self, t: f64, y: &PointOf<P>, dy: &mut PointOf<P>) {
+        self.0.field(t, y, dy, &mut self.1);
+    }
+    fn discrete_gradient(&mut self, a: &PointOf<P>, b: &PointOf<P>, xi: &mut AlgOf<P>) {
+        self.0.discrete_gradient(a, b, xi, &mut self.1);
     }
 }
 
@@ -129,7 +153,27 @@ where
         let field = Box::new(move || -> Box<dyn Field<G, A::Point>> {
             Box::new(Running(problem.clone(), problem.work()))
         });
-        (Flow { group, action, start: start.clone(), linear: false, field }, start)
+        let flow =
+            Flow { group, action, start: start.clone(), linear: false, hamiltonian: None, field };
+        (flow, start)
+    }
+
+    /// A Lie–Poisson system of the library, and `start`; `action` is its action.
+    pub(super) fn lie_poisson<P>(problem: P, action: A, start: A::Point) -> (Self, A::Point)
+    where
+        P: LiePoisson + Problem<Group = G> + 'static,
+        P::Action: Action<G, Point = A::Point>,
+    {
+        let group = problem.group().clone();
+        let problem = std::rc::Rc::new(problem);
+        let of_energy = problem.clone();
+        let energy: Energy<A::Point> = Box::new(move |m| of_energy.hamiltonian(m));
+        let field = Box::new(move || -> Box<dyn Field<G, A::Point>> {
+            Box::new(RunningPoisson(problem.clone(), problem.work()))
+        });
+        let hamiltonian = Some(energy);
+        let flow = Flow { group, action, start: start.clone(), linear: false, hamiltonian, field };
+        (flow, start)
     }
 
     /// An equation of linear type, A(t) of `equation` by `action`, and `start`.
@@ -149,7 +193,9 @@ where
                 scratch: like.clone(),
             })
         });
-        (Flow { group, action, start: start.clone(), linear: true, field }, start)
+        let flow =
+            Flow { group, action, start: start.clone(), linear: true, hamiltonian: None, field };
+        (flow, start)
     }
 }
 
@@ -206,6 +252,26 @@ where
     }
 }
 
+/// For Lie–Poisson systems: [`Catalog::with`] hands over no such method for others.
+impl<G, A> LiePoisson for Flow<G, A>
+where
+    G: LieGroup<Scalar = f64>,
+    A: Action<G, Point: LinearSpace<Scalar = f64>>,
+{
+    fn hamiltonian(&self, m: &A::Point) -> f64 {
+        self.hamiltonian.as_ref().map_or(f64::NAN, |hamiltonian| hamiltonian(m))
+    }
+    fn discrete_gradient(
+        &self,
+        a: &A::Point,
+        b: &A::Point,
+        xi: &mut G::Alg,
+        work: &mut Self::Work,
+    ) {
+        work.discrete_gradient(a, b, xi);
+    }
+}
+
 macro_rules! family {
     (@find $self:ident, $spec:ident, $on:expr, linear) => {{
         let name = $spec.info()?.name;
@@ -214,6 +280,12 @@ macro_rules! family {
             false => with_implicit_method($spec, $on),
         }
     }};
+    (@find $self:ident, $spec:ident, $on:expr, lie_poisson) => {
+        match $self.hamiltonian {
+            Some(_) => with_euler_method($spec, $on),
+            None => with_implicit_method($spec, $on),
+        }
+    };
     (@find $self:ident, $spec:ident, $on:expr, general) => { with_implicit_method($spec, $on) };
     ($($group:ty, $action:ty, $type:ident;)*) => {$(
         impl Catalog for Flow<$group, $action> {
@@ -244,7 +316,7 @@ pub(super) type Growth = (faer::Mat<f64>, faer::Mat<f64>);
 family! {
     So3, Linear, linear;
     Power<So3>, Linear, general;
-    Se3, Coadjoint, general;
+    Se3, Coadjoint, lie_poisson;
     MatrixGroup, MatrixAction, linear;
     Product<So3, Translations<Vector3<f64>>>, LeftTranslation, general;
     Product<MatrixGroup, Translations<Growth>>, LeftTranslation, general;

@@ -137,7 +137,7 @@ impl System for Top {
         Layer::Closed
     }
     fn problem(&self) -> Result<(Self::Problem, Point), Error> {
-        Ok(Flow::nonlinear(self.top.problem(), Coadjoint, self.start))
+        Ok(Flow::lie_poisson(self.top.problem(), Coadjoint, self.start))
     }
     fn modelled(&self) -> String {
         "momentum and vertical on se(3)*".into()

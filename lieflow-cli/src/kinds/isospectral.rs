@@ -130,7 +130,12 @@ fn read_toda(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, Rea
                     format!("found {} momenta of {} particles, expected as many", p.len(), q.len());
                 return Err(Refusal::at("momenta", message).into());
             }
-            toda_lattice(&q, &p)?
+            let matrix = toda_lattice(&q, &p)?;
+            if !matrix.norm_max().is_finite() {
+                let message = "two neighbours overlap so far that their force is not finite";
+                return Err(Refusal::at("positions", message).into());
+            }
+            matrix
         }
         Either::Second(_) if keys.momenta.is_some() => {
             return Err(Refusal::at("momenta", "a matrix has no momenta; leave momenta out").into());

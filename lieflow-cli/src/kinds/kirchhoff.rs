@@ -112,7 +112,7 @@ impl System for Body {
         let gradient = move |m: &Point, xi: &mut Point| {
             *xi = (m.0.component_div(&inertia), m.1.component_div(&mass));
         };
-        Ok(Flow::nonlinear(Euler::new(Se3::new(), Kinetic(gradient)), Coadjoint, start))
+        Ok(Flow::lie_poisson(Euler::new(Se3::new(), Kinetic(gradient)), Coadjoint, start))
     }
     fn modelled(&self) -> String {
         "angular and linear momentum on se(3)*".into()

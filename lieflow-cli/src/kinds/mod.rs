@@ -24,6 +24,7 @@ mod rigid_body_n;
 mod schrodinger;
 mod spin;
 mod spin_chain;
+mod subspace;
 mod system;
 
 pub use law::{Law, SIZE, Scale, explained_by_rounding};
@@ -37,6 +38,7 @@ use serde::Serialize;
 use toml::de::ValueDeserializer;
 
 use crate::model::{Layer, Model};
+use crate::plot::Ground;
 use crate::scene::ReadError;
 
 /// Every kind.
@@ -56,6 +58,7 @@ pub const KINDS: &[Kind] = &[
     isospectral::DOUBLE_BRACKET,
     isospectral::QR_FLOW,
     oja::KIND,
+    subspace::KIND,
     hill::MATHIEU,
     hill::HILL,
     beam_line::KIND,
@@ -140,8 +143,8 @@ pub enum Figure {
     Curve(&'static str),
     /// The same as points, where nothing lies between two rows.
     Points(&'static str),
-    /// A field on a sphere at the end, by [`ProblemSpec::field`] from a quantity.
-    Map(&'static str),
+    /// A field on a surface at the end, by [`ProblemSpec::field`] from a quantity.
+    Map(&'static str, Ground),
 }
 
 impl Figure {
@@ -152,7 +155,7 @@ impl Figure {
             | Figure::Sphere(name)
             | Figure::Curve(name)
             | Figure::Points(name)
-            | Figure::Map(name) => name,
+            | Figure::Map(name, _) => name,
         }
     }
 }

@@ -69,8 +69,12 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
         let message = format!("found {} rows, expected {} as a has them", x.nrows(), a.nrows());
         return Err(Refusal::at("x", message).into());
     }
-    let named = |error: Error| Refusal::from(error).renamed(&[("A", "a"), ("k", "x")]);
-    let flow = Oja::new(a.clone(), x.ncols()).map_err(named)?;
+    if x.ncols() > x.nrows() {
+        let message = format!("{} columns of {} rows depend on each other", x.ncols(), x.nrows());
+        return Err(Refusal::at("x", message).into());
+    }
+    let wrong = |error: Error| Refusal::at("a", error.to_string().replace('A', "a"));
+    let flow = Oja::new(a.clone(), x.ncols()).map_err(wrong)?;
     let qr = x.qr();
     let r = qr.thin_R();
     let depends = |j: &usize| r[(*j, *j)].abs() <= DEPENDENT * x.col(*j).norm_l2();

@@ -93,7 +93,7 @@ impl System for Pendulum {
         Layer::Closed
     }
     fn problem(&self) -> Result<(Self::Problem, Point), Error> {
-        Ok(Flow::nonlinear(self.pendulum, Coadjoint, self.start))
+        Ok(Flow::lie_poisson(self.pendulum, Coadjoint, self.start))
     }
     fn modelled(&self) -> String {
         "angular velocity and direction on an orbit of SE(3)".into()

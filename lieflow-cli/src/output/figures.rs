@@ -167,9 +167,9 @@ fn own_figure(
         Figure::Sphere(_) => Block::Sphere(sphere(id, title, drawn, rows)),
         Figure::Curve(_) => Block::Chart(plane(id, title, drawn, rows, false)),
         Figure::Points(_) => Block::Chart(plane(id, title, drawn, rows, true)),
-        Figure::Map(_) => {
+        Figure::Map(_, ground) => {
             let caption = "As it is at the end.".into();
-            Block::Heat(Heat { id, title: title.into(), values: field, caption })
+            Block::Heat(Heat { id, title: title.into(), ground, values: field, caption })
         }
     }
 }

@@ -1,29 +1,40 @@
-//! A field on a sphere: its values on a grid of latitudes and longitudes, flat and as a globe.
+//! A field on a surface: its values on a grid, on a sphere flat and as a globe.
 
 use super::svg::{escape, px, slug, text};
 use super::theme;
 
-/// The size of the flat picture, and the place of the globe.
-const WIDTH: f64 = 576.0;
-const HEIGHT: f64 = 288.0;
+/// Where the flat picture begins, and its height.
 const LEFT: f64 = 16.0;
 const TOP: f64 = 42.0;
+const HEIGHT: f64 = 288.0;
+/// The globe beside the flat picture of a sphere, which is twice as wide as high.
 const RADIUS: f64 = 0.5 * HEIGHT;
-const GLOBE: (f64, f64) = (LEFT + WIDTH + 24.0 + RADIUS, TOP + RADIUS);
+const GLOBE: (f64, f64) = (LEFT + 2.0 * HEIGHT + 24.0 + RADIUS, TOP + RADIUS);
 
 /// Cells along the diameter of the globe.
-const CELLS: usize = 80;
+const CELLS: usize = 64;
 /// Colours from the lowest to the highest value; odd, so that 0 has one.
 const LEVELS: usize = 17;
 
-/// A field on a sphere, equirectangular and orthographic.
+/// What a field lies on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ground {
+    /// A sphere: rows from north to south, columns from west to east.
+    Sphere,
+    /// A square torus: rows from the largest y to the least, columns from the least x.
+    Torus,
+}
+
+/// A field on a surface: of a sphere equirectangular and orthographic, of a torus one period.
 #[derive(Clone, Debug)]
 pub struct Heat {
     /// An identifier that is unique within the page.
     pub id: String,
     /// The title above the picture.
     pub title: String,
-    /// The values: rows from north to south, columns from west to east.
+    /// The surface.
+    pub ground: Ground,
+    /// The values, in rows.
     pub values: Vec<Vec<f64>>,
     /// The text below the picture.
     pub caption: String,
@@ -32,16 +43,21 @@ pub struct Heat {
 impl Heat {
     /// The picture as a complete `<svg>` element.
     pub fn svg(&self) -> String {
-        let (width, height) = (GLOBE.0 + RADIUS + 16.0, TOP + HEIGHT + 30.0);
+        let (what, flat, width) = match self.ground {
+            Ground::Sphere => {
+                ("a sphere, flat and as a globe", 2.0 * HEIGHT, GLOBE.0 + RADIUS + 16.0)
+            }
+            Ground::Torus => ("a torus", HEIGHT, LEFT + HEIGHT + 16.0),
+        };
+        let height = TOP + HEIGHT + 30.0;
         let largest = self.largest();
         let id = slug(&self.id);
         let mut out = format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"lf lf-heat\" id=\"{id}\" \
              viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" role=\"img\" \
              aria-labelledby=\"{id}-t {id}-d\"><title id=\"{id}-t\">{}</title>\
-             <desc id=\"{id}-d\">A field on a sphere from {:.3e} to {largest:.3e}, flat and as a \
-             globe. {}</desc><style>{}</style>\
-             <rect class=\"lf-paper\" width=\"{width}\" height=\"{height}\"/>",
+             <desc id=\"{id}-d\">A field on {what}, from {:.3e} to {largest:.3e}. {}</desc>\
+             <style>{}</style><rect class=\"lf-paper\" width=\"{width}\" height=\"{height}\"/>",
             escape(&self.title),
             -largest,
             escape(&self.caption),
@@ -49,29 +65,16 @@ impl Heat {
         );
         out.push_str(&text("lf-title", (LEFT, 24.0), "start", &self.title));
         let (rows, cols) = (self.values.len(), self.values.first().map_or(0, Vec::len));
-        let cell = (WIDTH / cols.max(1) as f64, HEIGHT / rows.max(1) as f64);
         let level = |i: usize, j: usize| self.level(largest, i, j);
-        out.push_str(&fills((LEFT, TOP), cell, rows, cols, level));
-        let side = 2.0 * RADIUS / CELLS as f64;
-        let corner = (GLOBE.0 - RADIUS, GLOBE.1 - RADIUS);
-        let seen = |i: usize, j: usize| {
-            let at = |k: usize| (k as f64 + 0.5) / (0.5 * CELLS as f64) - 1.0;
-            let (x, z) = (at(j), -at(i));
-            let y2 = 1.0 - x * x - z * z;
-            if y2 < 0.0 || rows == 0 || cols == 0 {
-                return None;
-            }
-            let longitude = x.atan2(y2.sqrt()) / core::f64::consts::TAU + 0.5;
-            let latitude = 0.5 - z.asin() / core::f64::consts::PI;
-            let row = ((latitude * rows as f64) as usize).min(rows - 1);
-            level(row, ((longitude * cols as f64) as usize).min(cols - 1))
-        };
-        out.push_str(&fills(corner, (side, side), CELLS, CELLS, seen));
-        out.push_str(&format!(
-            "<circle cx=\"{}\" cy=\"{}\" r=\"{RADIUS}\" fill=\"none\" class=\"lf-frame\"/>",
-            GLOBE.0, GLOBE.1
-        ));
-        let range = format!("blue {:.3} to red {largest:.3}; white is 0", -largest);
+        out.push_str(&fills((LEFT, TOP), (flat, HEIGHT), (rows, cols), level));
+        let mut range = format!("blue {:.3} to red {largest:.3}; white is 0", -largest);
+        if self.ground == Ground::Sphere {
+            let east = self.strongest();
+            out.push_str(&globe(rows, cols, east, level));
+            let longitude = 360.0 * east - 180.0;
+            let side = if longitude < 0.0 { 'W' } else { 'E' };
+            range.push_str(&format!("; the globe is seen above {:.0}° {side}", longitude.abs()));
+        }
         out.push_str(&text("lf-tick", (LEFT, TOP + HEIGHT + 20.0), "start", &range));
         out.push_str("</svg>");
         out
@@ -83,6 +86,17 @@ impl Heat {
         values.fold(0.0, |a: f64, x| a.max(x.abs()))
     }
 
+    /// The longitude, as a part of the width, where most of the field is.
+    fn strongest(&self) -> f64 {
+        let cols = self.values.first().map_or(0, Vec::len);
+        let sum = |j: &usize| -> f64 {
+            let column = self.values.iter().filter_map(|row| row.get(*j));
+            column.filter(|x| x.is_finite()).map(|x| x * x).sum()
+        };
+        let column = (0..cols).max_by(|a, b| sum(a).total_cmp(&sum(b)));
+        column.map_or(0.5, |j| (j as f64 + 0.5) / cols as f64)
+    }
+
     /// The colour of a cell; none for what is not a number.
     fn level(&self, largest: f64, i: usize, j: usize) -> Option<usize> {
         let x = *self.values.get(i)?.get(j)?;
@@ -92,12 +106,39 @@ impl Heat {
     }
 }
 
-/// Runs of cells of one colour along each row, a path for each colour.
+/// The sphere as it is seen from far above the equator at a longitude, a part of the width.
+fn globe(
+    rows: usize,
+    cols: usize,
+    east: f64,
+    level: impl Fn(usize, usize) -> Option<usize>,
+) -> String {
+    let seen = |i: usize, j: usize| {
+        let at = |k: usize| (k as f64 + 0.5) / (0.5 * CELLS as f64) - 1.0;
+        let (x, z) = (at(j), -at(i));
+        let y2 = 1.0 - x * x - z * z;
+        if y2 < 0.0 || rows == 0 || cols == 0 {
+            return None;
+        }
+        let longitude = (x.atan2(y2.sqrt()) / core::f64::consts::TAU + east).rem_euclid(1.0);
+        let latitude = 0.5 - z.asin() / core::f64::consts::PI;
+        let row = ((latitude * rows as f64) as usize).min(rows - 1);
+        level(row, ((longitude * cols as f64) as usize).min(cols - 1))
+    };
+    let corner = (GLOBE.0 - RADIUS, GLOBE.1 - RADIUS);
+    let cells = fills(corner, (2.0 * RADIUS, 2.0 * RADIUS), (CELLS, CELLS), seen);
+    let (x, y) = GLOBE;
+    format!(
+        "{cells}<circle cx=\"{x}\" cy=\"{y}\" r=\"{RADIUS}\" fill=\"none\" class=\"lf-frame\"/>"
+    )
+}
+
+/// Runs of cells of one colour along each row, a path for each colour: in cells, so that every number is
+/// a small one.
 fn fills(
     (left, top): (f64, f64),
     (width, height): (f64, f64),
-    rows: usize,
-    cols: usize,
+    (rows, cols): (usize, usize),
     level: impl Fn(usize, usize) -> Option<usize>,
 ) -> String {
     let mut paths = vec![String::new(); LEVELS];
@@ -109,20 +150,21 @@ fn fills(
                 j += 1;
             }
             if let Some(path) = here.and_then(|k| paths.get_mut(k)) {
-                // A little over the edge, so that no seam shows.
-                path.push_str(&format!(
-                    "M{} {}h{}v{}h-{}z",
-                    px(left + start as f64 * width),
-                    px(top + i as f64 * height),
-                    px((j - start) as f64 * width + 0.2),
-                    px(height + 0.2),
-                    px((j - start) as f64 * width + 0.2),
-                ));
+                path.push_str(&format!("M{start} {i}h{}v1h-{}z", j - start, j - start));
             }
         }
     }
     let drawn = paths.iter().enumerate().filter(|(_, path)| !path.is_empty());
-    drawn.map(|(k, d)| format!("<path fill=\"{}\" d=\"{d}\"/>", colour(k))).collect()
+    let drawn: String =
+        drawn.map(|(k, d)| format!("<path fill=\"{}\" d=\"{d}\"/>", colour(k))).collect();
+    let cell = [width / cols.max(1) as f64, height / rows.max(1) as f64];
+    format!(
+        "<g shape-rendering=\"crispEdges\" transform=\"translate({} {}) scale({} {})\">{drawn}</g>",
+        px(left),
+        px(top),
+        cell[0],
+        cell[1]
+    )
 }
 
 /// From blue over white to red.
@@ -137,25 +179,40 @@ fn colour(level: usize) -> String {
 mod tests {
     use super::*;
 
-    fn heat(values: Vec<Vec<f64>>) -> String {
-        Heat { id: "h".into(), title: "a & b".into(), values, caption: String::new() }.svg()
+    fn heat(ground: Ground, values: Vec<Vec<f64>>) -> String {
+        let (id, title, caption) = ("h".into(), "a & b".into(), String::new());
+        Heat { id, title, ground, values, caption }.svg()
     }
 
     #[test]
     fn values_have_their_colours() {
-        let svg = heat(vec![vec![-1.0, 0.0, 1.0]; 2]);
-        for level in [0, LEVELS / 2, LEVELS - 1] {
-            assert!(svg.contains(&colour(level)), "{svg}");
+        for ground in [Ground::Sphere, Ground::Torus] {
+            let svg = heat(ground, vec![vec![-1.0, 0.0, 1.0]; 2]);
+            for level in [0, LEVELS / 2, LEVELS - 1] {
+                assert!(svg.contains(&colour(level)), "{svg}");
+            }
+            assert_eq!(svg.contains("<circle"), ground == Ground::Sphere);
         }
         assert_eq!(colour(LEVELS / 2), "#f7f7f7");
-        assert!(svg.contains("a &amp; b") && svg.ends_with("</svg>"));
+    }
+
+    /// A field that is positive in the east alone is seen from there: the globe is red.
+    #[test]
+    fn the_globe_shows_where_the_field_is() {
+        let east = vec![0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 0.0];
+        let svg = heat(Ground::Sphere, vec![east; 4]);
+        assert!(svg.contains("above 105° E"), "{svg}");
+        let globe = svg.rsplit("<g ").next().unwrap_or_default();
+        let middle = format!("fill=\"{}\" d=\"", colour(LEVELS - 1));
+        assert!(globe.contains(&middle), "{globe}");
     }
 
     #[test]
     fn fields_of_nothing_are_pictures_too() {
         for values in [vec![], vec![vec![]], vec![vec![f64::NAN; 4]; 2], vec![vec![0.0; 4]; 2]] {
-            let svg = heat(values);
+            let svg = heat(Ground::Sphere, values);
             assert!(!svg.contains("NaN") && svg.ends_with("</svg>"));
+            assert!(svg.contains("a &amp; b"));
         }
     }
 }

@@ -1,5 +1,5 @@
 //! Figures as standalone SVG text: line charts ([`Chart`]), the momentum sphere of a rigid body
-//! ([`Sphere`]), fields on a sphere ([`Heat`]).
+//! ([`Sphere`]), fields on surfaces ([`Heat`]).
 //!
 //! A figure is a plain value; `svg()` turns it into one complete `<svg>` element that serves both
 //! as a file of its own and inline in a page. Colours are CSS variables with light fallbacks (see
@@ -21,7 +21,7 @@ mod thin;
 mod trace;
 
 pub use chart::Chart;
-pub use heat::Heat;
+pub use heat::{Ground, Heat};
 pub use scale::{Axis, Scale};
 pub use series::{Marker, Point, Series, tell_apart};
 pub use sphere::{Path, Sphere};

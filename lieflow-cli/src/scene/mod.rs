@@ -72,6 +72,14 @@ impl Scene {
             .keys::<OutputKeys>("output")?
             .resolve(problem.kind(), &grid)
             .map_err(|refusal| document.refusal("output", refusal))?;
+        for (i, name) in quantities.iter().enumerate() {
+            if problem.columns(name).is_ok_and(|columns| columns.is_empty()) {
+                let message = format!("this problem has no `{name}`");
+                return Err(
+                    document.refusal("output", Refusal::at(format!("quantities[{i}]"), message))
+                );
+            }
+        }
         let stem = Path::new(source).file_stem().unwrap_or_default().to_string_lossy();
         let name = if stem.is_empty() { "scene".into() } else { stem.into_owned() };
         let scene = Scene { title, name, problem, method, layer, grid, adaptive, save, quantities };

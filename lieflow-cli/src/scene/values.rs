@@ -189,9 +189,12 @@ impl Table {
     /// The rows as a matrix, of as many columns as the first row has numbers.
     ///
     /// # Errors
-    /// As [`matrix`](Self::matrix).
+    /// As [`matrix`](Self::matrix), and for rows of no numbers.
     pub fn columns(&self, key: &str) -> Result<Mat<f64>, Refusal> {
-        self.matrix(key, Some(self.0.first().map_or(0, |row| row.0.len())))
+        match self.0.first().map(|row| row.0.len()) {
+            Some(0) => Err(Refusal::at(key, "rows of no numbers, expected at least one column")),
+            columns => self.matrix(key, columns),
+        }
     }
 
     /// The rows as a matrix of so many columns; as many as rows where none is said.

@@ -125,6 +125,51 @@ fn many_bodies_are_each_alone() {
     assert!(far(&last(&of), &exact) < 1e-5);
 }
 
+/// By its quaternion a body moves as by its matrix, in the scene's own frame.
+#[test]
+fn a_body_by_its_quaternion() {
+    let quantities = "[\"attitude\", \"momentum_body\"]";
+    let (s, c) = 0.4f64.sin_cos();
+    let start = format!("[{c}, 0, {s}, 0]"); // about e2 by 0.8
+    let rows = "[[0.6967067093471654, 0, 0.7173560908995228], [0, 1, 0], [-0.7173560908995228, 0, \
+                0.6967067093471654]]";
+    for inertia in ["[1, 2, 3]", "[[1.5, 0.2, -0.1], [0.2, 2.0, 0.3], [-0.1, 0.3, 2.5]]"] {
+        let body =
+            format!("kind = \"rigid-body\"\ninertia = {inertia}\nomega_body = [0.3, 0.5, 1]");
+        let run = |attitude: &str, method: &str, quantities: &str| {
+            let of = scene(&format!("{body}\n{attitude}"), method, FINE, quantities);
+            (of.model().unwrap().modelled(&of.method)[0].clone(), last(&of))
+        };
+        let quaternion = format!("quaternion = {start}");
+        let (modelled, q) = run(&quaternion, RKMK4, quantities);
+        assert!(modelled.contains("quaternion"), "{modelled}");
+        let (_, g) = run(&format!("attitude = {rows}"), RKMK4, quantities);
+        assert!(far(&q, &g) < 1e-12, "{inertia}");
+        for method in
+            ["name = \"exact\"", "name = \"mr10\"", "name = \"dmv10\"", "name = \"gauss6\""]
+        {
+            assert!(far(&run(&quaternion, method, quantities).1, &g) < 1e-8, "{method}");
+        }
+        // w, x, y, z, and the rotation that they are.
+        let (_, wxyz) = run(&quaternion, RKMK4, "[\"quaternion\", \"quaternion_defect\"]");
+        let [w, x, y, z] = [wxyz[0], wxyz[1], wxyz[2], wxyz[3]];
+        assert!(far(&[1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z)], &q[..2]) < 1e-13);
+        assert!(wxyz[4] < 1e-14);
+        // The same from the matrix, up to the sign.
+        let (_, of_g) = run(&format!("attitude = {rows}"), RKMK4, "[\"quaternion\"]");
+        assert!(
+            of_g[0] >= 0.0
+                && far(&of_g, &wxyz[..4].iter().map(|x| x * w.signum()).collect::<Vec<_>>())
+                    < 1e-12
+        );
+    }
+    // What is not asked for is not modelled.
+    let body = "kind = \"rigid-body\"\ninertia = [1, 2, 3]\nomega_body = [0.3, 0.5, 1]\n\
+                quaternion = [1, 0, 0, 0]";
+    let of = scene(body, RKMK4, FINE, "[\"energy\"]");
+    assert_eq!(of.model().unwrap().modelled(&of.method), ["momentum on so(3)*"]);
+}
+
 /// The torques that are named, and no other.
 #[test]
 fn torques_are_modelled_where_they_are_named() {

@@ -217,10 +217,39 @@ fn eulers_equations_on_matrix_algebras() {
     assert!((end[0] + end[4] + end[8]).abs() < 1e-14, "{end:?}");
 }
 
+/// A line in the plane turns to the leading eigenvector by tan θ = e^{−(λ₁−λ₂)t} tan θ₀; in five dimensions a
+/// plane moves as the span of e^{tA}X, with Oja's frames and without.
+#[test]
+fn subspaces_turn_to_the_leading_ones() {
+    let line = "kind = \"subspace\"\na = [[3, 0], [0, 1]]\nx = [[1], [5]]";
+    let of = scene(line, RKMK4_CAY, "t_span = [0, 2]\ndt = 0.01", "[\"angles\", \"trace\"]");
+    let angle = (5.0 * (-4.0f64).exp()).atan();
+    assert!(far(&last(&of), &[angle, 3.0 - 2.0 * angle.sin().powi(2)]) < 1e-8);
+    assert!((fact(&of, "rate_of_convergence") - 2.0).abs() < 1e-14);
+
+    let none = line.replace("[[1], [5]]", "[[0], [0]]");
+    let none = format!("title = \"\"\n[problem]\n{none}\n[method]\n{RKMK4_CAY}");
+    let message = Scene::parse("scene", &none).unwrap_err().to_string();
+    assert!(message.contains("scene:5") && message.contains("singular"), "{message}");
+
+    let text = bundled("subspaces").replace("[\"angles\"", "[\"projector\", \"angles\"");
+    let plane = Scene::parse("scene", &text).unwrap();
+    let (end, exact) = (last(&plane), plane.model().unwrap().exact(8.0).unwrap().unwrap());
+    assert!(far(&end[..17], &exact[..17]) < 1e-6, "{end:?}");
+    assert!(end[15] < 0.1 && end[15] > end[16], "the plane has come near: {end:?}");
+    let of = text.replace("\"subspace\"", "\"oja\"");
+    let i = of.find("quantities").unwrap();
+    let of = Scene::parse("scene", &format!("{}quantities = [\"x\"]", &of[..i])).unwrap();
+    let x = Mat::from_fn(5, 2, |i, j| last(&of)[2 * i + j]);
+    let p = &x * x.transpose();
+    let above = (0..5).flat_map(|i| (i..5).map(move |j| (i, j)));
+    assert!(far(&end[..15], &above.map(|place| p[place]).collect::<Vec<_>>()) < 1e-5);
+}
+
 /// Jets are stationary, and the energy of the harmonic of degree l is ½a²/(l(l + 1)).
 #[test]
 fn jets_on_a_sphere_stand_still() {
-    let problem = "kind = \"fluid-on-sphere\"\nn = 8\njets = [[3, 0.7], [1, -0.4]]";
+    let problem = "kind = \"fluid\"\nsurface = \"sphere\"\nn = 8\njets = [[3, 0.7], [1, -0.4]]";
     let time = "t_span = [0, 1]\ndt = 0.05";
     for method in ["name = \"isospectral2\"", "name = \"energy-casimir\"", RKMK4_CAY] {
         let end = last(&scene(problem, method, time, "[\"coefficients\", \"energy\"]"));
@@ -229,4 +258,65 @@ fn jets_on_a_sphere_stand_still() {
         expected[64] = 0.5 * (0.16 / 2.0 + 0.49 / 12.0);
         assert!(far(&end, &expected) < 1e-12, "{end:?}");
     }
+}
+
+/// On the rotation Ω a wave of degree l and order m turns by m Ω(1 − 2/(l(l + 1))) a time.
+#[test]
+fn rossby_haurwitz_waves_turn_at_their_speed() {
+    let (rate, a) = (1.5, 0.4);
+    let problem = format!(
+        "kind = \"fluid\"\nsurface = \"sphere\"\nn = 8\njets = [[1, {}]]\nmodes = [[4, 3, {a}]]",
+        2.0 * rate / 3f64.sqrt()
+    );
+    let time = "t_span = [0, 0.8]\ndt = 0.02";
+    let end = last(&scene(&problem, "name = \"gauss6\"", time, "[\"coefficients\"]"));
+    let (s, c) = (3.0 * rate * 0.9 * 0.8).sin_cos();
+    assert!(far(&[end[16 + 4 + 3], end[16 + 4 - 3]], &[a * c, a * s]) < 1e-8);
+}
+
+/// Waves of one length on the torus are stationary together, and their energies add.
+#[test]
+fn waves_of_one_length_on_a_torus_stand_still() {
+    let problem = "kind = \"fluid\"\nsurface = \"torus\"\nn = 11\njets = [[5, 0.3]]\n\
+                   modes = [[3, 4, 0.7, 0.2], [4, -3, 0, 0.5]]";
+    let time = "t_span = [0, 1]\ndt = 0.05";
+    let quantities = "[\"coefficients\", \"energy\", \"enstrophy\"]";
+    for method in ["name = \"isospectral-suzuki4\"", "name = \"energy-casimir\"", RKMK4_CAY] {
+        let of = scene(problem, method, time, quantities);
+        let (columns, end) = (of.problem.columns("coefficients").unwrap(), last(&of));
+        let squares = 0.3 * 0.3 + 0.7 * 0.7 + 0.2 * 0.2 + 0.5 * 0.5;
+        let at = |name: &str| columns.iter().position(|column| column == name).unwrap();
+        let mut expected = vec![0.0; columns.len()];
+        for (name, x) in [("a0_5", 0.3), ("a3_4", 0.7), ("b3_4", 0.2), ("b4_-3", 0.5)] {
+            expected[at(name)] = x;
+        }
+        expected.extend([squares / 100.0, 0.25 * squares]);
+        assert!(far(&end, &expected) < 1e-12, "{method}: {end:?}");
+    }
+}
+
+/// A vortex on a torus is where it was put: the wave numbers of its Gaussian turn with it. And the same
+/// seed is the same field.
+#[test]
+fn vortices_on_a_torus_and_random_fields() {
+    let fluid = "kind = \"fluid\"\nsurface = \"torus\"\nn = 9";
+    let start = |more: &str| {
+        let quantities = "[\"coefficients\", \"enstrophy\"]";
+        let of =
+            scene(&format!("{fluid}\n{more}"), RKMK4_CAY, "t_span = [0, 1]\nsteps = 1", quantities);
+        let columns = of.problem.columns("coefficients").unwrap();
+        (columns, rows(&of).remove(0).split_off(1))
+    };
+    let vortex = "vortices = [{ x = 1, y = 2, circulation = 3, width = 0.5 }]";
+    let (columns, omega) = start(vortex);
+    let size = 3.0 / (2.0 * PI * PI) * (-0.125f64 * 5.0).exp();
+    let at = |name: &str| omega[columns.iter().position(|column| column == name).unwrap()];
+    // m·x₀ = 2·1 − 1·2 for m = (2, −1).
+    assert!(far(&[at("a2_-1"), at("b2_-1")], &[size, 0.0]) < 1e-14);
+    assert!((at("b2_1") - size * 4f64.sin()).abs() < 1e-14);
+    let random = |seed: u32| start(&format!("random = {{ seed = {seed}, below = 4 }}")).1;
+    assert_eq!(random(7), random(7));
+    assert!(far(&random(7), &random(8)) > 0.1);
+    // Of root mean square 1.
+    assert!((random(7).last().unwrap() - 0.5).abs() < 1e-14);
 }

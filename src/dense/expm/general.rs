@@ -26,24 +26,29 @@ enum Shape {
 impl Expm {
     /// out ← exp(x) for finite x.
     pub(super) fn exp_general(&mut self, x: &Mat<f64>, pade_only: bool, out: &mut Mat<f64>) {
-        let n = x.nrows();
-        self.a.copy_from(x);
-        let mut norm = norm1(x.as_ref());
+        let norm = norm1(x.as_ref());
         if norm <= THETA_1 {
             scaled_sum(out, [1.0], [x], 1.0);
             self.choice = ExpmChoice { kind: Kind::Taylor, degree: 1, ..Default::default() };
             return;
         }
-        let balanced = norm > 1.0 && !self.is_balanced() && {
-            let better = self.balance(norm);
-            if !better {
-                self.a.copy_from(x);
+        self.a.copy_from(x);
+        if norm > 1.0 && !self.is_balanced() {
+            if self.balance(norm) {
+                self.exp_of_a(norm1(self.a.as_ref()), pade_only, out);
+                if self.unbalance(norm, out) {
+                    self.choice.balanced = true;
+                    return;
+                }
             }
-            better
-        };
-        if balanced {
-            norm = norm1(self.a.as_ref());
+            self.a.copy_from(x);
         }
+        self.exp_of_a(norm, pade_only, out);
+    }
+
+    /// out ← exp(a), with ‖a‖₁; a is lost.
+    fn exp_of_a(&mut self, mut norm: f64, pade_only: bool, out: &mut Mat<f64>) {
+        let n = self.a.nrows();
         let shape = shape(&self.a);
         if shape == Shape::Lower {
             self.t.copy_from(&self.a);
@@ -95,18 +100,6 @@ impl Expm {
         if shift != 0.0 {
             *out *= faer::Scale(shift.exp());
         }
-        if balanced {
-            for j in 0..n {
-                for i in 0..n {
-                    // In two factors: the quotient of two scales may leave the range.
-                    let e = self.exponents[i] - self.exponents[j];
-                    let half = e / 2;
-                    out[(i, j)] *= 2f64.powi(half);
-                    out[(i, j)] *= 2f64.powi(e - half);
-                }
-            }
-        }
-        choice.balanced = balanced;
         self.choice = choice;
     }
 
@@ -118,7 +111,7 @@ impl Expm {
     }
 
     /// a ← D⁻¹aD with powers of two in D, until rows and columns are of one size. True if that made
-    /// the norm four times smaller; else a is to be restored.
+    /// the norm four times smaller; else a is of no use.
     fn balance(&mut self, norm: f64) -> bool {
         let n = self.a.nrows();
         self.exponents.fill(0);
@@ -148,6 +141,29 @@ impl Expm {
             }
         }
         norm1(self.a.as_ref()) <= 0.25 * norm
+    }
+
+    /// out ← D·out·D⁻¹. False if that may have cost more digits than the smaller norm has saved: rounding
+    /// is ε‖out‖ in every entry before, and where D is steep and the result is not (a triangle in
+    /// disguise, D. S. Watkins, A case where balancing is harmful, ETNA 23 (2006)) some of it outgrows
+    /// what the norm of x, which is ‖x‖ = `norm`, explains.
+    fn unbalance(&mut self, norm: f64, out: &mut Mat<f64>) -> bool {
+        let before = norm1(out.as_ref()).log2();
+        let mut steepest = 0;
+        for j in 0..out.ncols() {
+            for i in 0..out.nrows() {
+                let x = &mut out[(i, j)];
+                if *x != 0.0 {
+                    // In two factors: the quotient of two scales may leave the range.
+                    let e = self.exponents[i] - self.exponents[j];
+                    let half = e / 2;
+                    *x *= 2f64.powi(half);
+                    *x *= 2f64.powi(e - half);
+                    steepest = steepest.max(e);
+                }
+            }
+        }
+        before + f64::from(steepest) <= norm1(out.as_ref()).log2() + norm.log2() + 3.0
     }
 
     /// out ← a Taylor polynomial at 2⁻ˢa, where that is as good as Padé: its degree, s. A solve

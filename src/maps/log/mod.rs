@@ -1,27 +1,34 @@
-//! log : G → 𝔤, the principal logarithm of a matrix group, the inverse of exp near 𝟙.
+//! log : G → 𝔤, the logarithm of a matrix group, the inverse of exp near 𝟙: the principal one, and where
+//! negative eigenvalues come in pairs one with turns by π.
 //!
 //! | | how |
 //! |---|---|
 //! | ‖g − 𝟙‖₁ ≤ 0.264 | the \[7/7\] Padé approximant of log(𝟙 + x) by its partial fractions, x = g − 𝟙 |
 //! | SO(n) | real Schur form: planes turned by θ = atan2(sin θ, cos θ); eigenvalues −1 in pairs |
 //! | otherwise | complex Schur form, square roots of the triangle until the first case, scaled back |
+//! | eigenvalues −λ in pairs | the same for g(𝟙 − 2P), and a turn by π in each pair: `half_turns.rs` |
 //!
 //! The result is projected onto the algebra. Source: N. J. Higham, Functions of Matrices, SIAM 2008,
 //! chapter 11; A. H. Al-Mohy, N. J. Higham, SIAM J. Sci. Comput. 34 (2012).
 
+mod half_turns;
 mod rotation;
 mod schur;
 mod triangular;
 
-use faer::Mat;
+use faer::{Mat, c64};
+use triangular::Negative;
 
 use crate::dense::{Lu, is_finite, norm1, scaled_sum};
-use crate::error::{Error, StepError};
+use crate::error::{Error, NoLogarithm, StepError};
 use crate::groups::{AlgebraMatrix, Form, GroupMatrix, LieAlgebra, MatrixGroup};
 use crate::so3::POLAR_MAX;
 
 /// Up to this 1-norm of x the \[7/7\] approximant of log(𝟙 + x) is exact to rounding.
 const THETA: f64 = 0.264;
+
+/// Relative residual of a turn by π in 𝔤: rounding, times the condition of its eigenspace.
+const IN_ALGEBRA: f64 = 1e-8;
 
 /// Gauss–Legendre nodes and weights on \[0, 1\]: log(𝟙 + x) ≈ Σ w_j x (𝟙 + t_j x)⁻¹.
 const NODES: [(f64, f64); 7] = {
@@ -42,10 +49,13 @@ const NODES: [(f64, f64); 7] = {
 };
 
 impl MatrixGroup {
-    /// log(g): the real u ∈ 𝔤 with exp(u) = g whose eigenvalues have imaginary parts in (−π, π).
+    /// log(g): the real u ∈ 𝔤 with exp(u) = g whose eigenvalues have imaginary parts in (−π, π), or
+    /// ±π where g has negative eigenvalues.
     ///
     /// On SO(n) every g has a logarithm: a pair of eigenvalues −1 is a turn by π in the plane of its
-    /// two Schur vectors, in the direction from the first to the second. A g that is off the group by
+    /// two Schur vectors, in the direction from the first to the second. So it is elsewhere with negative
+    /// eigenvalues of even multiplicity that have as many eigenvectors, if 𝔤 has such a turn: one of
+    /// several real logarithms then, continuous in g nowhere near. A g that is off the group by
     /// at most 1e-5 is taken for the nearby element, with an error of that size.
     ///
     /// ```
@@ -59,7 +69,8 @@ impl MatrixGroup {
     ///
     /// # Errors
     /// As [`element`](Self::element), with [`Error::Reflection`] for determinant −1 on SO(n);
-    /// [`Error::NoLogarithm`] when an eigenvalue is negative, except on SO(n);
+    /// [`Error::NoLogarithm`] with a negative eigenvalue that is not as above, and the reason: there is
+    /// no real logarithm at all, none in 𝔤, or it is not decided;
     /// [`Error::Map`] when an iteration does not converge or the result is not finite. Cost: O(n³),
     /// some 30 products; allocates.
     pub fn log(&self, g: &GroupMatrix) -> Result<AlgebraMatrix, Error> {
@@ -75,10 +86,34 @@ impl MatrixGroup {
         } else if matches!(self.form(), Form::Identity) {
             rotation::log(&g)?
         } else {
-            triangular::log(&g, || self.name())?
+            self.log_by_triangle(&g)?
         };
         let u = self.project_algebra(u.as_ref());
         if is_finite(&u) { Ok(u) } else { Err(StepError::NotFinite { what: "log(g)" }.into()) }
+    }
+}
+
+impl MatrixGroup {
+    /// Where negative eigenvalues come in pairs, with a turn by π taken out.
+    fn log_by_triangle(&self, g: &Mat<f64>) -> Result<Mat<f64>, Error> {
+        let refuse =
+            |z: c64, why| Error::NoLogarithm { group: self.name(), re: z.re, im: z.im, why };
+        let negative = match triangular::log(g)? {
+            Ok(u) => return Ok(u),
+            Err(negative) => negative,
+        };
+        let (rest, turn) = half_turns::apart(g, self.ad_form().as_ref(), &negative)
+            .map_err(|(z, why)| refuse(z, why))?;
+        // Where M is neither symmetric nor skew the turn keeps one part of it, perhaps not the other.
+        if self.algebra_within(turn.clone(), IN_ALGEBRA).is_err() {
+            return Err(refuse(negative.eigenvalues[0], NoLogarithm::Undecided));
+        }
+        match triangular::log(&rest)? {
+            Ok(u) => Ok(u + turn),
+            Err(Negative { eigenvalues, .. }) => {
+                Err(refuse(eigenvalues[0], NoLogarithm::Undecided))
+            }
+        }
     }
 }
 

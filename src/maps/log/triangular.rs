@@ -2,23 +2,36 @@
 
 use faer::{Mat, c64};
 
-use super::{NODES, THETA, schur};
+use super::{NODES, THETA};
+use crate::dense::Schur;
 use crate::error::{Error, StepError};
 
 /// Square roots halve the logarithm; 1100 halvings take the range of doubles to rounding.
 const ROOTS_MAX: u32 = 1100;
 
-/// The principal logarithm of a real g without eigenvalues on the negative real axis.
-pub(super) fn log(g: &Mat<f64>, group: impl Fn() -> String) -> Result<Mat<f64>, Error> {
+/// Eigenvalues on the negative real axis: for them there is no principal logarithm.
+pub(super) struct Negative {
+    pub(super) eigenvalues: Vec<c64>,
+    /// How far from the axis they may be by rounding.
+    pub(super) margin: f64,
+}
+
+/// The principal logarithm of a real g, if it has one.
+pub(super) fn log(g: &Mat<f64>) -> Result<Result<Mat<f64>, Negative>, Error> {
     let n = g.nrows();
-    let (mut t, q) = schur::complex(g)?;
+    let mut schur = Schur::new(n);
+    (0..n).for_each(|j| (0..n).for_each(|i| schur.t[(i, j)] = c64::new(g[(i, j)], 0.0)));
+    schur.factor().map_err(|_| StepError::NotConverged { what: "the Schur form of g" })?;
+    let Schur { mut t, q, .. } = schur;
     let eigenvalues: Vec<c64> = (0..n).map(|i| t[(i, i)]).collect();
     let size = eigenvalues.iter().fold(0.0f64, |s, z| s.max(z.re.hypot(z.im)));
     // The Schur form is exact for a g moved by some ε‖g‖; an eigenvalue within that of the axis may
     // belong to either side.
     let margin = 4.0 * f64::EPSILON * n as f64 * size;
-    if let Some(z) = eigenvalues.iter().find(|z| z.re <= 0.0 && z.im.abs() <= margin) {
-        return Err(Error::NoLogarithm { group: group(), re: z.re, im: z.im });
+    let on_axis = |z: &&c64| z.re <= 0.0 && z.im.abs() <= margin;
+    if eigenvalues.iter().any(|z| on_axis(&z)) {
+        let eigenvalues = eigenvalues.iter().filter(on_axis).copied().collect();
+        return Ok(Err(Negative { eigenvalues, margin }));
     }
     let mut roots = 0;
     while distance_to_identity(&t) > THETA {
@@ -40,7 +53,7 @@ pub(super) fn log(g: &Mat<f64>, group: impl Fn() -> String) -> Result<Mat<f64>, 
         l[(j, j)] = eigenvalues[j].ln();
     }
     let full = &q * &l * q.adjoint();
-    Ok(Mat::from_fn(n, n, |i, j| full[(i, j)].re))
+    Ok(Ok(Mat::from_fn(n, n, |i, j| full[(i, j)].re)))
 }
 
 /// ‖t − 𝟙‖₁ for upper triangular t; NaN counts as near, and the result is checked for it.

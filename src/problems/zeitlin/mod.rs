@@ -92,12 +92,18 @@ impl Zeitlin<Sphere> {
     /// # Errors
     /// As [`Sphere::new`].
     pub fn sphere(n: usize) -> Result<Self, Error> {
-        let surface = Sphere::new(n)?;
-        Ok(Zeitlin { group: Unitary::new(n)?, surface })
+        Zeitlin::new(Sphere::new(n)?)
     }
 }
 
 impl<S: Surface> Zeitlin<S> {
+    /// The fluid on a surface.
+    ///
+    /// # Errors
+    /// As [`Unitary::new`].
+    pub fn new(surface: S) -> Result<Self, Error> {
+        Ok(Zeitlin { group: Unitary::new(surface.n())?, surface })
+    }
     /// N.
     pub fn n(&self) -> usize {
         self.surface.n()

@@ -20,7 +20,7 @@ use rand_distr::StandardNormal;
 use super::{Surface, Zeitlin};
 use crate::dense::mul;
 use crate::error::Error;
-use crate::groups::{ComplexMatrix, Unitary};
+use crate::groups::ComplexMatrix;
 
 /// The quantised torus: 1/ħ = N/2π.
 #[derive(Clone, Debug)]
@@ -30,6 +30,8 @@ pub struct Torus {
     basis: Mat<f64>,
     /// −1/(m₁² + m₂²) at (column of the basis, m₂); 0 at m = 0.
     inverse: Mat<f64>,
+    /// e^{πik/N}, 0 ≤ k < 2N.
+    phases: Vec<c64>,
 }
 
 impl Torus {
@@ -56,12 +58,21 @@ impl Torus {
             0 => 0.0,
             square => -1.0 / square as f64,
         });
-        Ok(Torus { n, basis, inverse })
+        let phase = |k: usize| c64::new(0.0, PI * k as f64 / n as f64).exp();
+        Ok(Torus { n, basis, inverse, phases: (0..2 * n).map(phase).collect() })
     }
 
     /// The largest wave number, (N − 1)/2.
     pub fn wave_number_max(&self) -> usize {
         (self.n - 1) / 2
+    }
+
+    /// The column of T_m's entry in row r, and the entry e^{2πi m₁(r + m₂/2)/N}.
+    fn entry(&self, m: [i32; 2], r: usize) -> (usize, c64) {
+        let (n, m) = (self.n as i64, m.map(i64::from));
+        let halves = m[0] * (2 * r as i64 + m[1]);
+        let column = (r as i64 + m[1]).rem_euclid(n);
+        (column as usize, self.phases[halves.rem_euclid(2 * n) as usize])
     }
 }
 
@@ -127,8 +138,7 @@ impl Zeitlin<Torus> {
     /// # Errors
     /// As [`Torus::new`].
     pub fn torus(n: usize) -> Result<Self, Error> {
-        let surface = Torus::new(n)?;
-        Ok(Zeitlin { group: Unitary::new(n)?, surface })
+        Zeitlin::new(Torus::new(n)?)
     }
 
     /// ω = Σ a cos(m·x) + b sin(m·x), from (\[m₁, m₂\], \[a, b\]). m = 0 is left out: the mean is 0.
@@ -154,8 +164,8 @@ impl Zeitlin<Torus> {
             for (m, b) in [(m, amplitudes[1]), ([-m[0], -m[1]], -amplitudes[1])] {
                 let omega = c64::new(0.5 * amplitudes[0], -0.5 * b);
                 for r in 0..n {
-                    let c = (r as i64 + i64::from(m[1])).rem_euclid(n as i64) as usize;
-                    let z = omega * phase(n, m, r);
+                    let (c, entry) = self.surface.entry(m, r);
+                    let z = omega * entry;
                     w.re[(r, c)] -= z.im;
                     w.im[(r, c)] += z.re;
                 }
@@ -170,9 +180,9 @@ impl Zeitlin<Torus> {
         Mat::from_fn(n, n, |i, j| {
             let m = [i as i32 - max, j as i32 - max];
             let along = |r: usize| {
-                let c = (r as i64 + i64::from(m[1])).rem_euclid(n as i64) as usize;
+                let (c, entry) = self.surface.entry(m, r);
                 let z = w.get(r, c);
-                c64::new(z.im, -z.re) * phase(n, m, r).conj()
+                c64::new(z.im, -z.re) * entry.conj()
             };
             (0..n).map(along).sum::<c64>() / n as f64
         })
@@ -227,17 +237,25 @@ impl Zeitlin<Torus> {
     /// [`Error::OutOfRange`] for numbers that are not finite, and widths that are not positive.
     pub fn vortices(&self, vortices: &[([f64; 2], f64, f64)]) -> Result<ComplexMatrix, Error> {
         let max = self.surface.wave_number_max() as i32;
-        let mut modes = Vec::new();
+        let mut modes: Vec<_> = half_plane(max).map(|m| (m, [0.0; 2])).collect();
         for (i, &([x, y], circulation, width)) in vortices.iter().enumerate() {
-            if !(width > 0.0 && (x + y + circulation + width).is_finite()) {
-                let arg = format!("vortices[{i}].width");
-                return Err(Error::out_of_range(arg, width, "finite numbers, and a width > 0"));
+            for (name, value) in [("x", x), ("y", y), ("circulation", circulation)] {
+                if !value.is_finite() {
+                    let arg = format!("vortices[{i}].{name}");
+                    return Err(Error::out_of_range(arg, value, "a finite number"));
+                }
             }
-            for m in half_plane(max) {
-                let square = f64::from(m[0] * m[0] + m[1] * m[1]);
-                let size = circulation / (2.0 * PI * PI) * (-0.5 * width * width * square).exp();
-                let (s, c) = (f64::from(m[0]) * x + f64::from(m[1]) * y).sin_cos();
-                modes.push((m, [size * c, size * s]));
+            if !(width.is_finite() && width > 0.0) {
+                let arg = format!("vortices[{i}].width");
+                return Err(Error::out_of_range(arg, width, "a finite number > 0"));
+            }
+            for (m, [a, b]) in &mut modes {
+                let [m1, m2] = m.map(f64::from);
+                let decay = (-0.5 * width * width * (m1 * m1 + m2 * m2)).exp();
+                let size = circulation / (2.0 * PI * PI) * decay;
+                let (s, c) = (m1 * x + m2 * y).sin_cos();
+                *a += size * c;
+                *b += size * s;
             }
         }
         self.from_modes(&modes)
@@ -247,13 +265,6 @@ impl Zeitlin<Torus> {
 /// One of every pair m, −m with |m₁|, |m₂| ≤ k, m ≠ 0.
 fn half_plane(k: i32) -> impl Iterator<Item = [i32; 2]> {
     (0..=k).flat_map(move |a| (-k..=k).map(move |b| [a, b])).filter(|m| m[0] > 0 || m[1] > 0)
-}
-
-/// e^{2πi m₁(r + m₂/2)/N}, the angle reduced first.
-fn phase(n: usize, m: [i32; 2], r: usize) -> c64 {
-    let halves = i64::from(m[0]) * (2 * r as i64 + i64::from(m[1]));
-    let angle = PI * halves.rem_euclid(2 * n as i64) as f64 / n as f64;
-    c64::new(angle.cos(), angle.sin())
 }
 
 /// (w − w†)/2: what rounding adds is taken out.

@@ -7,7 +7,8 @@ use lieflow::Error;
 use lieflow::groups::{MEMBERSHIP, So3};
 use lieflow::problems::RigidBody;
 use lieflow::problems::inertia::{principal_axes, violates_triangle};
-use nalgebra::{Matrix3, Vector3};
+use lieflow::so3::{quaternion_from_matrix, quaternion_from_wxyz};
+use nalgebra::{Matrix3, UnitQuaternion, Vector3, Vector4};
 use serde::Deserialize;
 use toml::de::ValueDeserializer;
 
@@ -21,7 +22,7 @@ use crate::scene::{Either, ReadError, Refusal, exactly_one};
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {
     name: "rigid-body",
-    summary: "the free rigid body, by its momentum on so(3)* or its attitude on SO(3)",
+    summary: "the free rigid body, by its momentum on so(3)*, its attitude on SO(3) or its quaternion",
     keys: &[
         KeyInfo {
             name: "inertia",
@@ -41,6 +42,11 @@ pub(super) const KIND: Kind = Kind {
         KeyInfo {
             name: "attitude",
             meaning: "initial rotation from body to space, three rows; optional, the identity",
+        },
+        KeyInfo {
+            name: "quaternion",
+            meaning: "the same as a unit quaternion [w, x, y, z], instead of attitude: it is then \
+                      integrated as one",
         },
     ],
     quantities: QUANTITIES,
@@ -63,6 +69,12 @@ const QUANTITIES: &[QuantityInfo] = &[
         columns: &["g11", "g12", "g13", "g21", "g22", "g23", "g31", "g32", "g33"],
         meaning: "rotation from body to space, row by row; integrated only when asked for",
     },
+    QuantityInfo {
+        name: "quaternion",
+        columns: &["qw", "qx", "qy", "qz"],
+        meaning: "the same as a unit quaternion, real part first, x -> q x q*; with the key quaternion \
+                  it is what is integrated, and without it has w >= 0",
+    },
     QuantityInfo { name: "energy", columns: &["energy"], meaning: "kinetic energy" },
     QuantityInfo {
         name: "momentum_norm",
@@ -74,11 +86,16 @@ const QUANTITIES: &[QuantityInfo] = &[
         columns: &["attitude_defect"],
         meaning: "distance of gᵀg from the identity; needs the attitude, which is then integrated",
     },
+    QuantityInfo {
+        name: "quaternion_defect",
+        columns: &["quaternion_defect"],
+        meaning: "distance of the quaternion's square from 1",
+    },
 ];
 
 /// Do these quantities need the attitude?
 fn needs_attitude(quantities: &[&str]) -> bool {
-    quantities.iter().any(|name| matches!(*name, "attitude" | "attitude_defect"))
+    quantities.iter().any(|name| name.starts_with("attitude") || name.starts_with("quaternion"))
 }
 
 #[derive(Deserialize)]
@@ -90,6 +107,7 @@ struct Keys {
     omega_body: Option<Reals<3>>,
     momentum_body: Option<Reals<3>>,
     attitude: Option<Rows<3>>,
+    quaternion: Option<Reals<4>>,
 }
 
 /// A free rigid body with its initial state.
@@ -101,6 +119,8 @@ pub struct RigidBodySpec {
     pub momentum_body: [f64; 3],
     /// Initial rotation to space, from the frame of the principal axes.
     pub attitude: Matrix3<f64>,
+    /// The same as a quaternion, where it is to be integrated as one.
+    pub quaternion: Option<UnitQuaternion<f64>>,
     /// The principal axes, as columns, in the frame that the scene is written in, where that is
     /// another.
     pub axes: Option<Matrix3<f64>>,
@@ -120,7 +140,7 @@ impl RigidBodySpec {
         RigidBody::<f64>::new(inertia)?;
         check_each("momentum_body", momentum_body, "a finite number", f64::is_finite)?;
         So3::new().check_element("attitude", &attitude, MEMBERSHIP)?;
-        Ok(RigidBodySpec { inertia, momentum_body, attitude, axes: None })
+        Ok(RigidBodySpec { inertia, momentum_body, attitude, quaternion: None, axes: None })
     }
 }
 
@@ -171,6 +191,25 @@ fn principal(keys: &Keys) -> Result<Principal, ReadError> {
     }
 }
 
+/// The length of a quaternion may differ from 1 by the digits that it is written with.
+const UNIT: f64 = 1e-6;
+
+fn unit(quaternion: Reals<4>) -> Result<UnitQuaternion<f64>, Refusal> {
+    let q = Vector4::from(quaternion.0);
+    match (q.norm() - 1.0).abs() <= UNIT {
+        true => Ok(quaternion_from_wxyz(quaternion.0)?),
+        false => {
+            let message = format!("its length is {}, expected 1", q.norm());
+            Err(Refusal::at("quaternion", message))
+        }
+    }
+}
+
+/// The rotation of a quaternion.
+fn rotation(q: &UnitQuaternion<f64>) -> Matrix3<f64> {
+    q.to_rotation_matrix().into_inner()
+}
+
 fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
     let keys = Keys::deserialize(section)?;
     let (inertia, axes) = principal(&keys)?;
@@ -196,12 +235,23 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
             momentum
         }
     };
-    let attitude = keys.attitude.map_or_else(Matrix3::identity, |rows| {
-        Matrix3::from_rows(&rows.0.map(|row| Vector3::from(row).transpose()))
-    });
+    if keys.attitude.is_some() && keys.quaternion.is_some() {
+        let message = "both `attitude` and `quaternion`, expected at most one of them";
+        return Err(Refusal::at("quaternion", message).into());
+    }
+    let quaternion = keys.quaternion.map(unit).transpose()?;
+    let attitude = match (keys.attitude, &quaternion) {
+        (Some(rows), _) => Matrix3::from_rows(&rows.0.map(|row| Vector3::from(row).transpose())),
+        (None, Some(q)) => rotation(q),
+        (None, None) => Matrix3::identity(),
+    };
     let mut body = RigidBodySpec::new(inertia, momentum, attitude)?;
+    body.quaternion = quaternion;
     if let Some(axes) = axes {
         body.attitude *= axes;
+        if let Some(q) = &mut body.quaternion {
+            *q *= quaternion_from_matrix(&axes)?;
+        }
         body.axes = Some(axes);
     }
     Ok(Box::new(body))
@@ -221,12 +271,20 @@ impl ProblemSpec for RigidBodySpec {
         }
     }
     fn layers(&self) -> &'static [Layer] {
-        &Layer::ALL
+        match self.quaternion {
+            Some(_) => &[Layer::Closed],
+            None => &Layer::ALL,
+        }
     }
     fn invariants(&self, quantities: &[&str]) -> Vec<Law> {
-        let mut laws = vec![Law::of_the_flow("energy", 2), Law::of_the_action("momentum_norm", 2)];
+        // Of degree 4 in a quaternion.
+        let by_quaternion = self.quaternion.is_some() && needs_attitude(quantities);
+        let degree = if by_quaternion { 0 } else { 2 };
+        let mut laws =
+            vec![Law::of_the_flow("energy", degree), Law::of_the_action("momentum_norm", degree)];
         if needs_attitude(quantities) {
-            laws.push(Law::of_the_action("attitude_defect", 2).on_scale(Scale::One));
+            let defect = if by_quaternion { "quaternion_defect" } else { "attitude_defect" };
+            laws.push(Law::of_the_action(defect, 2).on_scale(Scale::One));
         }
         laws
     }

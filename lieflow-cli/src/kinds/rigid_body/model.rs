@@ -3,18 +3,21 @@
 use faer::Mat;
 use lieflow::adaptive::{AdaptiveError, AdaptiveStats};
 use lieflow::catalog::{
-    MethodSpec, Needs, with_attitude_method, with_implicit_method, with_lie_poisson_method,
-    with_momentum_method, with_state_method, with_state_pair,
+    MethodSpec, Needs, with_attitude_method, with_attitude_pair, with_exp_cay_pair,
+    with_implicit_method, with_lie_poisson_method, with_momentum_method, with_quaternion_method,
+    with_state_method, with_state_pair,
 };
-use lieflow::groups::{GroupMatrix, LieGroup, MatrixGroup, So3, hat, vee};
+use lieflow::groups::{GroupMatrix, LieGroup, MatrixGroup, So3, UnitQuaternions, hat, vee};
 use lieflow::problems::{
-    BodyState, Exact, RigidBody, RigidBodyAttitude, RigidBodyN, RigidBodyNAttitude, RigidBodyState,
+    BodyState, Exact, RigidBody, RigidBodyAttitude, RigidBodyN, RigidBodyNAttitude,
+    RigidBodyQuaternion, RigidBodyState,
 };
 use lieflow::scalar::Counted;
+use lieflow::so3::{quaternion_from_matrix, quaternion_to_wxyz};
 use lieflow::{Error, RunError, SaveAt, Stats, TimeGrid};
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
-use super::{KIND, RigidBodySpec, needs_attitude};
+use super::{KIND, RigidBodySpec, needs_attitude, rotation};
 use crate::catalog;
 use crate::model::{Layer, Model, Sink, Steps, adapt_by, integrate_by, order_by};
 use crate::operations::{Pace, operations_by};
@@ -23,6 +26,7 @@ use crate::operations::{Pace, operations_by};
 enum System {
     Momentum(RigidBody),
     Attitude(RigidBodyAttitude),
+    Quaternion(RigidBodyQuaternion),
     State(RigidBodyState),
     MomentumN(RigidBodyN),
     AttitudeN(RigidBodyNAttitude),
@@ -38,6 +42,7 @@ pub(super) struct RigidBodyModel {
     body: RigidBody,
     momentum: Vector3<f64>,
     attitude: Matrix3<f64>,
+    quaternion: UnitQuaternion<f64>,
     /// The principal axes, where the scene is written in another frame.
     axes: Option<Matrix3<f64>>,
     quantities: Vec<&'static str>,
@@ -53,12 +58,13 @@ fn to_nalgebra(m: &Mat<f64>) -> Matrix3<f64> {
 }
 
 catalog!(RigidBody, with_momentum_method);
-catalog!(RigidBodyAttitude, with_attitude_method);
+catalog!(RigidBodyAttitude, with_attitude_method, with_attitude_pair);
+catalog!(RigidBodyQuaternion, with_quaternion_method, with_exp_cay_pair);
 catalog!(RigidBodyState, with_state_method, with_state_pair);
 catalog!(RigidBodyN, with_lie_poisson_method);
 catalog!(RigidBodyNAttitude, with_implicit_method);
 catalog!(RigidBody<Counted>, with_momentum_method);
-catalog!(RigidBodyAttitude<Counted>, with_attitude_method);
+catalog!(RigidBodyAttitude<Counted>, with_attitude_method, with_attitude_pair);
 catalog!(RigidBodyState<Counted>, with_state_method, with_state_pair);
 
 /// Run `$run` on the problem of `$model` with its initial state and a function that shows a point of
@@ -68,7 +74,7 @@ macro_rules! on_system {
         let model: &RigidBodyModel = $model;
         let sink: &mut Sink<'_> = $sink;
         let mut row = Vec::new();
-        let mut show = |t: f64, m: &Vector3<f64>, g: Option<&Matrix3<f64>>| {
+        let mut show = |t: f64, m: &Vector3<f64>, g: Option<Attitude<'_>>| {
             model.fill(m, g, &mut row);
             sink(t, &row);
         };
@@ -81,13 +87,20 @@ macro_rules! on_system {
             System::Attitude($problem) => {
                 let $y = model.attitude;
                 let $see = |t: f64, g: &Matrix3<f64>| {
-                    show(t, &$problem.momentum_body(g), Some(g));
+                    show(t, &$problem.momentum_body(g), Some(Attitude::Matrix(g)));
+                };
+                $run
+            }
+            System::Quaternion($problem) => {
+                let $y = model.quaternion;
+                let $see = |t: f64, q: &UnitQuaternion<f64>| {
+                    show(t, &$problem.momentum_body(q), Some(Attitude::Quaternion(q)));
                 };
                 $run
             }
             System::State($problem) => {
                 let $y = BodyState { m: model.momentum, g: model.attitude };
-                let $see = |t: f64, y: &BodyState| show(t, &y.m, Some(&y.g));
+                let $see = |t: f64, y: &BodyState| show(t, &y.m, Some(Attitude::Matrix(&y.g)));
                 $run
             }
             System::MomentumN($problem) => {
@@ -99,7 +112,7 @@ macro_rules! on_system {
                 let $y: GroupMatrix = MatrixGroup::so(3)?.element(to_faer(&model.attitude))?;
                 let $see = |t: f64, g: &GroupMatrix| {
                     let m = vee(&to_nalgebra(&$problem.momentum_body(g)));
-                    show(t, &m, Some(&to_nalgebra(g)));
+                    show(t, &m, Some(Attitude::Matrix(&to_nalgebra(g))));
                 };
                 $run
             }
@@ -117,6 +130,16 @@ impl RigidBodyModel {
         let momentum = Vector3::from(spec.momentum_body);
         let in_space = spec.attitude * momentum;
         let system = match (layer, needs_attitude(quantities)) {
+            (Layer::General, _) if spec.quaternion.is_some() => {
+                return Err(Error::Unsupported {
+                    what: "layer",
+                    with: "`general` and a quaternion".into(),
+                    why: "quaternions have closed forms only; leave layer out",
+                });
+            }
+            (Layer::Closed, true) if spec.quaternion.is_some() => {
+                System::Quaternion(RigidBodyQuaternion::new(spec.inertia, in_space.into())?)
+            }
             (Layer::Closed, false) => System::Momentum(RigidBody::new(spec.inertia)?),
             (Layer::Closed, true) => {
                 System::Attitude(RigidBodyAttitude::new(spec.inertia, in_space.into())?)
@@ -142,6 +165,7 @@ impl RigidBodyModel {
             body: RigidBody::new(spec.inertia)?,
             momentum,
             attitude: spec.attitude,
+            quaternion: spec.quaternion.unwrap_or_default(),
             axes: spec.axes,
             quantities: names.collect::<Result<_, _>>()?,
             exact: Exact::new(spec.inertia, spec.momentum_body, spec.attitude),
@@ -155,7 +179,7 @@ impl RigidBodyModel {
     }
 
     /// row ← the quantities at body momentum m and attitude g.
-    fn fill(&self, m: &Vector3<f64>, g: Option<&Matrix3<f64>>, row: &mut Vec<f64>) {
+    fn fill(&self, m: &Vector3<f64>, g: Option<Attitude<'_>>, row: &mut Vec<f64>) {
         row.clear();
         let shown = |x: Vector3<f64>| self.axes.map_or(x, |axes| axes * x);
         for quantity in &self.quantities {
@@ -165,13 +189,48 @@ impl RigidBodyModel {
                 ("energy", _) => row.push(self.body.energy(m)),
                 ("momentum_norm", _) => row.push(m.norm()),
                 ("attitude", Some(g)) => {
-                    let shown = self.axes.map_or(*g, |axes| g * axes.transpose());
+                    let g = g.rotation();
+                    let shown = self.axes.map_or(g, |axes| g * axes.transpose());
                     row.extend(shown.transpose().iter());
                 }
-                ("attitude_defect", Some(g)) => row.push(So3::new().defect(g)),
+                ("attitude_defect", Some(g)) => row.push(So3::new().defect(&g.rotation())),
+                ("quaternion", Some(g)) => {
+                    let axes = self.axes.map_or(Ok(UnitQuaternion::identity()), |axes| {
+                        quaternion_from_matrix(&axes.transpose())
+                    });
+                    let shown = axes.map(|axes| quaternion_to_wxyz(&(g.quaternion() * axes)));
+                    row.extend(shown.unwrap_or([f64::NAN; 4]));
+                }
+                ("quaternion_defect", Some(g)) => row.push(UnitQuaternions.defect(&g.quaternion())),
                 // The constructor takes registered names, and models the attitude where one needs it.
                 (name, _) => row.resize(row.len() + width(name), f64::NAN),
             }
+        }
+    }
+}
+
+/// An attitude, as it was integrated.
+#[derive(Clone, Copy)]
+enum Attitude<'a> {
+    Matrix(&'a Matrix3<f64>),
+    Quaternion(&'a UnitQuaternion<f64>),
+}
+
+impl Attitude<'_> {
+    fn rotation(self) -> Matrix3<f64> {
+        match self {
+            Attitude::Matrix(g) => *g,
+            Attitude::Quaternion(q) => rotation(q),
+        }
+    }
+    /// Of the two of a rotation, that with w ≥ 0; not a number where there is none.
+    fn quaternion(self) -> UnitQuaternion<f64> {
+        match self {
+            Attitude::Matrix(g) => quaternion_from_matrix(g).map_or_else(
+                |_| UnitQuaternion::new_unchecked([f64::NAN; 4].into()),
+                |q| if q.w < 0.0 { UnitQuaternion::new_unchecked(-q.into_inner()) } else { q },
+            ),
+            Attitude::Quaternion(q) => *q,
         }
     }
 }
@@ -190,6 +249,7 @@ impl Model for RigidBodyModel {
         let what = match self.system(method) {
             System::Momentum(_) => "momentum on so(3)*",
             System::Attitude(_) => "attitude on SO(3)",
+            System::Quaternion(_) => "attitude on S³, a unit quaternion",
             System::State(_) => "momentum and attitude as one state of 12 numbers",
             System::MomentumN(_) => "momentum on so(n)*, n = 3",
             System::AttitudeN(_) => "attitude on SO(n), n = 3",
@@ -225,6 +285,7 @@ impl Model for RigidBodyModel {
         match self.system(method) {
             System::Momentum(body) => order_by(method, body),
             System::Attitude(body) => order_by(method, body),
+            System::Quaternion(body) => order_by(method, body),
             System::State(body) => order_by(method, body),
             System::MomentumN(body) => order_by(method, body),
             System::AttitudeN(body) => order_by(method, body),
@@ -247,7 +308,7 @@ impl Model for RigidBodyModel {
                 let y = BodyState { m: self.momentum.map(Counted), g: self.attitude.map(Counted) };
                 operations_by(method, &body, y, pace)
             }
-            System::MomentumN(_) | System::AttitudeN(_) => None,
+            System::Quaternion(_) | System::MomentumN(_) | System::AttitudeN(_) => None,
         }
     }
 
@@ -256,7 +317,7 @@ impl Model for RigidBodyModel {
         let filled = self.exact.as_ref().map_err(Clone::clone).and_then(|exact| {
             if needs_attitude(&self.quantities) {
                 let (m, g) = exact.state(t)?;
-                self.fill(&m, Some(&g), &mut row);
+                self.fill(&m, Some(Attitude::Matrix(&g)), &mut row);
             } else {
                 self.fill(&exact.momentum_body(t)?, None, &mut row);
             }

@@ -1,0 +1,171 @@
+//! The energy and Casimir preserving method beyond matrix algebras: heavy tops, a body in a fluid and the
+//! spherical pendulum on se(3)*, and Hamiltonians with a discrete gradient of their own.
+
+use lieflow::catalog::{LIE_POISSON_METHODS, MethodSpec, OnMethod, with_euler_method};
+use lieflow::groups::{Se3, So3};
+use lieflow::maps::{Cay, Exp};
+use lieflow::methods::{EnergyCasimir, Metric, Rkmk, tableau::DOP853};
+use lieflow::problems::{
+    Ambient, DiscreteGradient, Euler, Hamiltonian, HeavyTop, Kinetic, LiePoisson, PointOf, Problem,
+    SphericalPendulum,
+};
+use lieflow::{Action, LieAlgebra, Method, SaveAt, TimeGrid, integrate};
+use nalgebra::Vector3;
+
+type V = Vector3<f64>;
+type Pair = (V, V);
+
+/// The state at t in so many steps.
+fn run<P: Problem<Group: LieAlgebra<Scalar = f64>>, M: Method<P>>(
+    problem: &P,
+    method: &M,
+    start: &PointOf<P>,
+    t: f64,
+    steps: u64,
+    mut see: impl FnMut(&PointOf<P>),
+) -> PointOf<P> {
+    let mut y = start.clone();
+    let grid = TimeGrid::with_steps([0.0, t], steps).expect("a grid");
+    integrate(problem, method, &grid, &SaveAt::Every(1), &mut y, |_, y| see(y)).expect("a run");
+    y
+}
+
+struct End<'a, P: Problem>(&'a P, &'a PointOf<P>, u64);
+
+impl<P: Problem<Group: LieAlgebra<Scalar = f64>>> OnMethod<P> for End<'_, P> {
+    type Out = PointOf<P>;
+    fn call<M: Method<P>>(self, method: M) -> PointOf<P> {
+        run(self.0, &method, self.1, 1.0, self.2, |_| {})
+    }
+}
+
+/// Orders 2, 4 and 6 by name with both maps, and the energy and |γ|², μ·γ over 20 000 steps.
+fn check<P>(title: &str, problem: &P, start: Pair)
+where
+    P: LiePoisson + Ambient + Problem<Group = Se3>,
+    P::Action: Action<Se3, Point = Pair>,
+{
+    let exact = run(problem, &Rkmk::new(DOP853, Exp), &start, 1.0, 200, |_| {});
+    for info in LIE_POISSON_METHODS {
+        for map in ["exp", "cay"] {
+            let spec = MethodSpec::new(info.name, Some(map));
+            let error = |steps| {
+                let end = with_euler_method(&spec, End(problem, &start, steps)).expect("it fits");
+                end.distance(&exact)
+            };
+            let (coarse, fine) = (error(20), error(40));
+            let slope = (coarse / fine).log2();
+            let order = info.order.expect("an order") as f64;
+            assert!(
+                slope > order - 0.3 || fine < 1e-13 * start.size(),
+                "{title}, {}: {slope:.2}, {coarse:.1e} {fine:.1e}",
+                spec.label()
+            );
+        }
+    }
+    let of = |y: &Pair| [problem.hamiltonian(y), y.1.norm_squared(), y.0.dot(&y.1)];
+    // The terms of each may cancel; a step rounds them a few times, and steps add up as a walk.
+    let size = [1.0 + start.0.norm_squared(), start.1.norm_squared(), start.0.norm()];
+    let steps = 20_000;
+    let bound = 64.0 * f64::EPSILON * (steps as f64).sqrt();
+    let check = |drift: [f64; 3], map: &str| {
+        for (drift, size) in drift.iter().zip(size) {
+            assert!(*drift < bound * size, "{title}, {map}: {drift:.1e} of {size}");
+        }
+    };
+    let first = of(&start);
+    let mut drift = [0.0f64; 3];
+    let mut see = |y: &Pair| {
+        for ((drift, now), then) in drift.iter_mut().zip(of(y)).zip(first) {
+            *drift = drift.max((now - then).abs());
+        }
+    };
+    run(problem, &EnergyCasimir::new(Exp), &start, 400.0, steps, &mut see);
+    run(problem, &EnergyCasimir::new(Cay), &start, 400.0, steps, &mut see);
+    check(drift, "exp and cay");
+}
+
+#[test]
+fn heavy_tops() {
+    let start = (V::new(0.4, -0.3, 1.8), V::new(0.0, 0.6, 0.8));
+    let top = HeavyTop::new([1.0, 1.6, 0.7], [0.2, 0.5, 0.9]).expect("a top");
+    check("a top", &top.problem(), start);
+    let kovalevskaya = HeavyTop::kovalevskaya(0.8, 1.1).expect("a top");
+    check("Kovalevskaya's", &kovalevskaya.problem(), start);
+}
+
+#[test]
+fn a_body_in_a_fluid() {
+    let body = Kinetic(|m: &Pair, xi: &mut Pair| {
+        xi.0 = m.0.component_div(&V::new(1.0, 2.0, 3.0));
+        xi.1 = m.1.component_div(&V::new(1.5, 1.2, 1.0));
+    });
+    let start = (V::new(0.3, 0.1, 1.0), V::new(0.0, 0.6, 0.8));
+    check("a body in a fluid", &Euler::new(Se3::<f64>::new(), body), start);
+}
+
+#[test]
+fn a_spherical_pendulum() {
+    let pendulum = SphericalPendulum::new(1.7).expect("a pendulum");
+    let start = pendulum.state([0.6, 0.0, -0.8], [0.1, 0.9, 0.2]).expect("a state");
+    check("a pendulum", &pendulum, start);
+}
+
+/// H = ½ m·J⁻¹m + ¼ Σ m_i⁴: a discrete gradient of its own, (H_i(b_i) − H_i(a_i))/(b_i − a_i) as a
+/// polynomial; and the same H with the mean of gradients, which is none for it.
+#[derive(Clone, Copy)]
+struct Quartic {
+    mean: bool,
+}
+
+const RATES: [f64; 3] = [1.0, 0.6, 0.3];
+
+impl Hamiltonian<So3> for Quartic {
+    fn value(&self, _: &So3, m: &V) -> f64 {
+        (0..3).map(|i| 0.5 * RATES[i] * m[i] * m[i] + 0.25 * m[i].powi(4)).sum()
+    }
+    fn gradient(&self, m: &V, xi: &mut V) {
+        *xi = V::from_fn(|i, _| RATES[i] * m[i] + m[i].powi(3));
+    }
+}
+
+impl DiscreteGradient<So3> for Quartic {
+    fn between(&self, group: &So3, a: &V, b: &V, xi: &mut V, scratch: &mut V) {
+        if self.mean {
+            return mean_gradient(self, group, a, b, xi, scratch);
+        }
+        *xi = V::from_fn(|i, _| {
+            let (a, b) = (a[i], b[i]);
+            0.5 * RATES[i] * (a + b) + 0.25 * (a + b) * (a * a + b * b)
+        });
+    }
+}
+
+/// What a quadratic H has by default.
+fn mean_gradient(h: &Quartic, group: &So3, a: &V, b: &V, xi: &mut V, scratch: &mut V) {
+    struct Mean(Quartic);
+    impl Hamiltonian<So3> for Mean {
+        fn value(&self, group: &So3, m: &V) -> f64 {
+            self.0.value(group, m)
+        }
+        fn gradient(&self, m: &V, xi: &mut V) {
+            self.0.gradient(m, xi);
+        }
+    }
+    impl DiscreteGradient<So3> for Mean {}
+    Mean(*h).between(group, a, b, xi, scratch);
+}
+
+#[test]
+fn a_hamiltonian_with_a_discrete_gradient_of_its_own() {
+    let start = V::new(0.7, -0.4, 0.9);
+    let drift = |h: Quartic| {
+        let problem = Euler::new(So3::<f64>::new(), h);
+        let (first, mut worst) = (problem.energy(&start), 0.0f64);
+        let see = |m: &V| worst = worst.max((problem.energy(m) - first).abs());
+        run(&problem, &EnergyCasimir::new(Cay), &start, 100.0, 2000, see);
+        worst
+    };
+    assert!(drift(Quartic { mean: false }) < 1e-13);
+    assert!(drift(Quartic { mean: true }) > 1e-7, "the mean of gradients is none for degree 4");
+}
