@@ -2,8 +2,10 @@
 
 use lieflow::Error;
 use lieflow::actions::Linear;
+use lieflow::catalog::MethodSpec;
 use lieflow::groups::{Power, So3};
 use lieflow::problems::SpinChain;
+use lieflow::scalar::Counted;
 use nalgebra::Vector3;
 use serde::Deserialize;
 use toml::de::ValueDeserializer;
@@ -12,6 +14,7 @@ use super::flow::Flow;
 use super::system::System;
 use super::{Figure, KeyInfo, Kind, Law, ProblemSpec, QuantityInfo, Scale};
 use crate::model::Layer;
+use crate::operations::{Pace, operations_by};
 use crate::scene::values::{Real, Reals, Whole};
 use crate::scene::{Either, ReadError, Refusal, exactly_one};
 
@@ -132,6 +135,11 @@ impl System for Chain {
     }
     fn problem(&self) -> Result<(Self::Problem, Box<[Vector3<f64>]>), Error> {
         Ok(Flow::nonlinear(self.chain, Linear, self.start.clone()))
+    }
+    fn operations(&self, method: &MethodSpec, pace: Pace<'_>) -> Option<f64> {
+        let start = self.start.iter().map(|s| s.map(Counted)).collect();
+        let (flow, start) = Flow::nonlinear(self.chain.on::<Counted>().ok()?, Linear, start);
+        operations_by(method, &flow, start, pace)
     }
     fn modelled(&self) -> String {
         format!("{} spins on spheres", self.start.len())

@@ -17,7 +17,7 @@ fn scale<S: Real>(inverse_inertia: &Vector3<S>, m: &Vector3<S>) -> Vector3<S> {
 
 /// gᵀ·m.
 #[inline(always)]
-pub(super) fn apply_transpose<S: Real>(g: &Matrix3<S>, m: &Vector3<S>) -> Vector3<S> {
+pub(in crate::problems) fn apply_transpose<S: Real>(g: &Matrix3<S>, m: &Vector3<S>) -> Vector3<S> {
     let row = |j| g[(0, j)] * m[0] + g[(1, j)] * m[1] + g[(2, j)] * m[2];
     Vector3::new(row(0), row(1), row(2))
 }
