@@ -20,7 +20,7 @@ use super::system::System;
 use super::{Figure, KeyInfo, Kind, Law, ProblemSpec, QuantityInfo, Scale};
 use crate::model::{Layer, Model};
 use crate::scene::values::Table;
-use crate::scene::{ReadError, Refusal};
+use crate::scene::{ReadError, Refusal, help_for};
 
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {
@@ -66,13 +66,12 @@ pub(super) const KIND: Kind = Kind {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Keys {
-    algebra: Algebra,
+    algebra: String,
     inverse_inertia: Table,
     momentum: Table,
 }
 
-#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
-#[serde(rename_all = "lowercase")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Algebra {
     So,
     Sl,
@@ -81,6 +80,15 @@ enum Algebra {
 }
 
 impl Algebra {
+    const ALL: [Algebra; 4] = [Algebra::So, Algebra::Sl, Algebra::Gl, Algebra::Sp];
+
+    fn named(name: &str) -> Result<Algebra, Refusal> {
+        Self::ALL.into_iter().find(|algebra| algebra.name() == name).ok_or_else(|| {
+            let help = help_for(name, &Self::ALL.map(Algebra::name));
+            let refusal = Refusal::at("algebra", format!("unknown algebra `{name}`"));
+            Refusal { help: Some(help), ..refusal }
+        })
+    }
     fn name(self) -> &'static str {
         match self {
             Algebra::So => "so",
@@ -120,13 +128,13 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
         let message = format!("found {} rows, expected {n} as momentum has them", weights.nrows());
         return Err(Refusal::at("inverse_inertia", message).into());
     }
-    let group =
-        keys.algebra.group(n).map_err(|error| Refusal::at("momentum", error.to_string()))?;
-    let system = EulerEquation { algebra: keys.algebra, group, weights, momentum };
+    let algebra = Algebra::named(&keys.algebra)?;
+    let group = algebra.group(n).map_err(|error| Refusal::at("momentum", error.to_string()))?;
+    let system = EulerEquation { algebra, group, weights, momentum };
     let mut inside = system.momentum.clone();
     system.project(&mut inside);
     if (&inside - &system.momentum).norm_max() > ROUNDING * system.momentum.norm_max() {
-        let message = format!("it is not in {}({n})", keys.algebra.name());
+        let message = format!("it is not in {}({n})", algebra.name());
         return Err(Refusal::at("momentum", message).into());
     }
     Ok(Box::new(Spec { with_group: WithGroup(system.clone()), alone: system }))
