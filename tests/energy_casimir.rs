@@ -124,7 +124,7 @@ fn a_chain_of_spins() {
     let slope = (error(20) / error(40)).log2();
     assert!((slope - 2.0).abs() < 0.2, "{slope:.2}");
     let (first, steps, mut drift) = (chain.energy(&start), 4000, 0.0f64);
-    let see = |s: &Box<[V]>| {
+    let see = |s: &PointOf<SpinChain>| {
         drift = drift.max((chain.energy(s) - first).abs());
         drift = s.iter().map(|s| (s.norm() - 1.0).abs()).fold(drift, f64::max);
     };

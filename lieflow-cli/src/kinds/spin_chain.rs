@@ -124,12 +124,14 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
     Ok(Box::new(Chain { chain, damped: damping != 0.0, field: field.into(), start }))
 }
 
+type Spins<S> = Box<[Vector3<S>]>;
+
 /// The chain, a Lie–Poisson system where nothing damps it.
 fn flow<S: Scalar>(
     chain: SpinChain<S>,
     damped: bool,
-    start: Box<[Vector3<S>]>,
-) -> (Flow<Power<So3<S>>, Linear>, Box<[Vector3<S>]>) {
+    start: Spins<S>,
+) -> (Flow<Power<So3<S>>, Linear>, Spins<S>) {
     match damped {
         true => Flow::nonlinear(chain, Linear, start),
         false => Flow::lie_poisson(chain, Linear, start),
