@@ -396,6 +396,13 @@ pub const ATTITUDE_METHODS: &[MethodInfo] = &[
         "classical Runge–Kutta on the entries, then the factor Q of g = QR",
         ["group", "4 F, 2 Gram–Schmidt", NEAREST],
     ),
+    of_a_tableau(plain(
+        PROJECTED,
+        "rk-qr",
+        None,
+        "explicit Runge–Kutta with any tableau on the entries, then the factor Q of g = QR",
+        ["group", "s F, 2 Gram–Schmidt", NEAREST],
+    )),
     plain(
         PROJECTED,
         "rk4-polar",
@@ -403,6 +410,13 @@ pub const ATTITUDE_METHODS: &[MethodInfo] = &[
         "classical Runge–Kutta on the entries, then the polar factor of g",
         ["group", "4 F, 2–3 Newton–Schulz", NEAREST],
     ),
+    of_a_tableau(plain(
+        PROJECTED,
+        "rk-polar",
+        None,
+        "explicit Runge–Kutta with any tableau on the entries, then the polar factor of g",
+        ["group", "s F, 2–3 Newton–Schulz", NEAREST],
+    )),
 ];
 
 const ALL_QUADRATIC: &str = "energy, group, Casimirs, quadratic invariants, time symmetry";

@@ -313,6 +313,27 @@ pub fn with_quaternion_method<V: OnMethod<RigidBodyQuaternion>>(
     each_body_method!(spec.info()?.name, on, else => with_exp_cay_method(spec, on))
 }
 
+/// Hand the projected method that `$spec` names to `$single`, or to `$pair` where it estimates its own
+/// error, or go on to `$else`.
+macro_rules! each_projected {
+    (@of $spec:expr, $on:expr, $how:expr, $single:path, pair => $pair:path) => {
+        each_tableau!($spec.tableau.as_deref().unwrap_or("rk4"),
+            t => Ok($single($on, Projected::new(Rk(t), $how))),
+            pair => Ok($pair($on, Projected::new(Rk(t), $how))))
+    };
+    ($spec:expr, $on:expr, $single:path, pair => $pair:path, else => $else:expr) => {{
+        let how = match $spec.info()?.name {
+            "rk4-qr" | "rk-qr" => Some(Projection::Qr),
+            "rk4-polar" | "rk-polar" => Some(Projection::Polar),
+            _ => None,
+        };
+        match how {
+            Some(how) => each_projected!(@of $spec, $on, how, $single, pair => $pair),
+            None => $else,
+        }
+    }};
+}
+
 /// [`with_body_method`] and [`ATTITUDE_METHODS`]: the body with its attitude.
 ///
 /// # Errors
@@ -325,11 +346,25 @@ where
     ScalarOf<P>: Trig + Wide + Into<f64>,
     Exp: CoordinateMap<P::Group>,
 {
-    match spec.info()?.name {
-        "rk4-qr" => Ok(on.call(Projected::new(Rk(tableau::RK4), Projection::Qr))),
-        "rk4-polar" => Ok(on.call(Projected::new(Rk(tableau::RK4), Projection::Polar))),
-        _ => with_body_method(spec, on),
-    }
+    each_projected!(spec, on, OnMethod::<P>::call, pair => OnMethod::<P>::call,
+        else => with_body_method(spec, on))
+}
+
+/// The embedded pairs among [`ATTITUDE_METHODS`] and those of [`with_embedded_pair`].
+///
+/// # Errors
+/// As [`with_embedded_pair`].
+pub fn with_attitude_pair<P: Catalogued + Orthogonal, V: OnEmbedded<P>>(
+    spec: &MethodSpec,
+    on: V,
+) -> Result<V::Out, Error>
+where
+    PointOf<P>: Metric<Scalar = ScalarOf<P>>,
+    Exp: CoordinateMap<P::Group>,
+{
+    let pair = each_projected!(spec, on, embedded::no_pair, pair => embedded::pair_of,
+        else => return with_embedded_pair(spec, on));
+    embedded::only_pairs(spec, pair)
 }
 
 /// Hand the energy and Casimir preserving method of that name to `$on`, or go on to `$else`.

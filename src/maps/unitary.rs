@@ -20,6 +20,7 @@ use crate::error::{Error, StepError};
 use crate::groups::{ComplexMatrix, LieAlgebra, LieGroup, Unitary, mul_complex};
 use crate::methods::Metric;
 use crate::problems::LinearSpace;
+use crate::scalar::{Ops, tally};
 
 /// Above this norm no digit of cay(u) has a meaning.
 const NORM_MAX: f64 = 1e15;
@@ -187,6 +188,7 @@ impl CoordinateMap<Unitary> for Cay {
         for (x, half) in [(&mut *minus, -0.5), (&mut *plus, 0.5)] {
             x.clear();
             x.add(half, u);
+            tally(Ops::adds(group.n()));
             x.re.diagonal_mut().column_vector_mut().iter_mut().for_each(|d| *d += 1.0);
         }
         lu.solve(minus, plus);
@@ -254,6 +256,11 @@ impl ComplexLu {
 
     /// self.b ← a⁻¹b. In cay a = 𝟙 − u/2 is regular: its eigenvalues are 1 − iα/2.
     fn solve(&mut self, a: &ComplexMatrix, b: &ComplexMatrix) {
+        // As in `Lu`, in complex numbers.
+        let n = self.a.nrows();
+        let below = n * n.saturating_sub(1) / 2;
+        let factor = below * (2 * n).saturating_sub(1) / 3;
+        tally(Ops::complex_muladds(factor + n * n * n) + Ops::divs(6 * n));
         join(a, &mut self.a);
         join(b, &mut self.b);
         let stack = MemStack::new(&mut self.mem);

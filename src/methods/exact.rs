@@ -6,7 +6,7 @@
 //! whatever h, in f64 whatever the scalar; to follow one orbit, [`Exact`] itself pays for the constants once.
 //! Source: C. G. J. Jacobi, J. reine angew. Math. 39 (1850); see [`Exact`].
 
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Vector3};
 
 use super::{Method, Step, Symmetric};
 use crate::error::{Error, StepError};
@@ -42,10 +42,17 @@ where
         inertia: &mut [f64; 3],
     ) -> Result<(), StepError> {
         let (m, mut frame) = problem.load(y);
+        let before: Vector3<f64> = m.map(Into::into);
         let failed = StepError::NotFinite { what: "the exact motion" };
-        let (next, turn) = Exact::new(*inertia, m.map(Into::into).into(), Matrix3::identity())
+        let (next, turn) = Exact::new(*inertia, before.into(), Matrix3::identity())
             .and_then(|motion| motion.state(h.into()))
             .map_err(|_| failed)?;
+        // Both are right to ε, but the same h rounds them the same way in every step: a step of Newton's
+        // iteration each takes them back to |m| and to the group.
+        let size = before.amax();
+        let [old, new] = [before, next].map(|m| m.unscale(size).norm_squared());
+        let next = if size > 0.0 { next + next * (0.5 * (old - new) / old) } else { next };
+        let turn = turn - turn * (turn.transpose() * turn - Matrix3::identity()) * 0.5;
         let group = So3::<f64>::new();
         if !(group.is_finite(&next) && turn.iter().all(|x| x.is_finite())) {
             return Err(failed);

@@ -7,7 +7,7 @@
 //! steps of two products; QR: Gram–Schmidt twice).
 //! Source: Hairer, Lubich, Wanner, Geometric Numerical Integration, IV.4; Celledoni & Owren, 1.
 
-use super::{Method, Step};
+use super::{Embedded, LocalError, Method, Step};
 use crate::error::{Error, StepError};
 use crate::problems::{Orthogonal, PointOf, Projection, ScalarOf};
 
@@ -71,5 +71,27 @@ impl<P: Orthogonal, M: Method<P>> Method<P> for Projected<M> {
         problem.project(self.how, z)?;
         core::mem::swap(y, z);
         Ok(())
+    }
+}
+
+/// The estimate is that of the base method, before the projection: what that moves is no larger.
+impl<P: Orthogonal, M: Embedded<P>> Embedded<P> for Projected<M> {
+    fn error_order(&self, problem: &P) -> Result<usize, Error> {
+        self.base.error_order(problem)
+    }
+    fn evaluations_with_error(&self, problem: &P) -> Option<u64> {
+        self.base.evaluations_with_error(problem)
+    }
+    fn step_with_error(
+        &self,
+        problem: &P,
+        step: Step<ScalarOf<P>>,
+        from: &PointOf<P>,
+        work: &mut Self::Work,
+        to: &mut PointOf<P>,
+    ) -> Result<LocalError<ScalarOf<P>>, StepError> {
+        let local = self.base.step_with_error(problem, step, from, &mut work.base, to)?;
+        problem.project(self.how, to)?;
+        Ok(local)
     }
 }

@@ -9,6 +9,7 @@ use super::taylor::{
     degree_12, degree_18, half_to_the, halvings, halvings_18,
 };
 use super::{ExpmChoice, Kind, NORM_MAX_SKEW, Structure};
+use crate::scalar::{Ops, tally};
 
 /// Up to this norm a matrix of which nothing is known is scaled by its norm.
 pub(super) const PLAIN: f64 = 16.0;
@@ -38,8 +39,11 @@ impl Kernel for Exp<'_> {
     fn call<S: Simd, const N: usize, const K: usize>(self, simd: S) -> Option<ExpmChoice> {
         let Exp { x, skew, out } = self;
         let a = Cols::<S, N, K>::load_columns(simd, x.as_ref());
+        let cost = Cost(x.nrows());
         let norm = a.norm(simd);
-        let (mut g, degree, squarings) = taylor(simd, &a, norm, skew)?;
+        tally(cost.norm());
+        let (mut g, degree, squarings) = taylor(simd, cost, &a, norm, skew)?;
+        tally(cost.product() * squarings as usize);
         for _ in 0..squarings {
             let h = g;
             g = Cols::mul(simd, &h, &h);
@@ -47,6 +51,8 @@ impl Kernel for Exp<'_> {
         let mut corrections = 0;
         if skew && squarings > 0 {
             corrections = orthogonalise(simd, &mut g);
+            let one = cost.product() * 2 + cost.sum_and_one(1) + cost.added() + cost.norm();
+            tally(one * corrections as usize);
         }
         if !g.is_finite(simd) {
             return None;
@@ -56,10 +62,58 @@ impl Kernel for Exp<'_> {
     }
 }
 
+/// The operations on n×n matrices, whatever the padding of the kernel.
+#[derive(Clone, Copy)]
+struct Cost(usize);
+
+impl Cost {
+    /// a·b.
+    #[inline(always)]
+    fn product(self) -> Ops {
+        Ops::dots(self.0 * self.0, self.0)
+    }
+    /// What it takes to add a product.
+    #[inline(always)]
+    fn added(self) -> Ops {
+        Ops::adds(self.0 * self.0)
+    }
+    /// Σ c_i·x_i over k matrices.
+    #[inline(always)]
+    fn sum(self, k: usize) -> Ops {
+        Ops::dots(self.0 * self.0, k)
+    }
+    /// Σ c_i·x_i + d·𝟙.
+    #[inline(always)]
+    fn sum_and_one(self, k: usize) -> Ops {
+        self.sum(k) + Ops::adds(self.0)
+    }
+    #[inline(always)]
+    fn norm(self) -> Ops {
+        Ops::adds(self.0 * (self.0 - 1))
+    }
+    /// [`degree_8`] and its siblings, which get the powers.
+    #[inline(always)]
+    fn degree_8(self) -> Ops {
+        let sums = self.sum(2) * 2 + self.sum_and_one(3) + self.sum_and_one(2);
+        self.product() * 2 + self.added() + sums
+    }
+    #[inline(always)]
+    fn degree_12(self) -> Ops {
+        let sums = self.sum(3) * 2 + self.sum_and_one(4) + self.sum_and_one(3);
+        (self.product() + self.added()) * 2 + sums
+    }
+    #[inline(always)]
+    fn degree_18(self) -> Ops {
+        let sums = self.sum(3) * 2 + self.sum(4) + self.sum_and_one(5) + self.sum_and_one(4);
+        (self.product() + self.added()) * 2 + sums
+    }
+}
+
 /// The polynomial at 2⁻ˢa, its degree, and s.
 #[inline(always)]
 fn taylor<S: Simd, const N: usize, const K: usize>(
     simd: S,
+    cost: Cost,
     a: &Cols<S, N, K>,
     norm: f64,
     skew: bool,
@@ -68,28 +122,37 @@ fn taylor<S: Simd, const N: usize, const K: usize>(
         return None;
     }
     if norm <= THETA_1 {
+        tally(cost.sum_and_one(1));
         return Some((Cols::sum(simd, [1.0], [a], 1.0), 1, 0));
     }
     let a2 = Cols::mul(simd, a, a);
+    tally(cost.product());
     if norm <= THETA_2 {
+        tally(cost.sum_and_one(2));
         return Some((Cols::sum(simd, [1.0, 0.5], [a, &a2], 1.0), 2, 0));
     }
     if norm <= THETA_4 {
         let high = Cols::sum(simd, [1.0 / 6.0, 1.0 / 24.0], [a, &a2], 0.5);
         let mut g = Cols::sum(simd, [1.0], [a], 1.0);
         g.mul_add(simd, &a2, &high);
+        tally(cost.sum_and_one(2) + cost.sum_and_one(1) + cost.product() + cost.added());
         return Some((g, 4, 0));
     }
     if norm <= THETA_8 {
+        tally(cost.degree_8());
         return Some((degree_8(simd, a, &a2), 8, 0));
     }
     let a3 = Cols::mul(simd, &a2, a);
+    tally(cost.product());
     if norm <= THETA_12 {
+        tally(cost.degree_12());
         return Some((degree_12(simd, a, &a2, &a3), 12, 0));
     }
     let a6 = Cols::mul(simd, &a3, &a3);
+    tally(cost.product());
     let mut squarings = halvings(norm, THETA_18, 1);
     if squarings > 0 {
+        tally(cost.norm() * if skew { 1 } else { 3 });
         if skew {
             // a is normal: |a|₂⁶ = |a⁶|₂ ≤ |a⁶|_∞.
             squarings = squarings.min(halvings(a6.norm(simd), THETA_18_6, 6));
@@ -113,6 +176,7 @@ fn taylor<S: Simd, const N: usize, const K: usize>(
             c[b][i] *= scale[i];
         }
     }
+    tally(cost.degree_18());
     Some((degree_18(simd, &c, [a, &a2, &a3, &a6]), 18, squarings))
 }
 

@@ -3,9 +3,9 @@
 use faer::Mat;
 use lieflow::adaptive::{AdaptiveError, AdaptiveStats};
 use lieflow::catalog::{
-    MethodSpec, Needs, with_attitude_method, with_exp_cay_pair, with_implicit_method,
-    with_lie_poisson_method, with_momentum_method, with_quaternion_method, with_state_method,
-    with_state_pair,
+    MethodSpec, Needs, with_attitude_method, with_attitude_pair, with_exp_cay_pair,
+    with_implicit_method, with_lie_poisson_method, with_momentum_method, with_quaternion_method,
+    with_state_method, with_state_pair,
 };
 use lieflow::groups::{GroupMatrix, LieGroup, MatrixGroup, So3, UnitQuaternions, hat, vee};
 use lieflow::problems::{
@@ -58,14 +58,14 @@ fn to_nalgebra(m: &Mat<f64>) -> Matrix3<f64> {
 }
 
 catalog!(RigidBody, with_momentum_method);
-catalog!(RigidBodyAttitude, with_attitude_method);
+catalog!(RigidBodyAttitude, with_attitude_method, with_attitude_pair);
 catalog!(RigidBodyQuaternion, with_quaternion_method, with_exp_cay_pair);
 catalog!(RigidBodyState, with_state_method, with_state_pair);
 catalog!(RigidBodyN, with_lie_poisson_method);
 catalog!(RigidBodyNAttitude, with_implicit_method);
-catalog!(RigidBody<Counted>, with_momentum_method);
-catalog!(RigidBodyAttitude<Counted>, with_attitude_method);
-catalog!(RigidBodyState<Counted>, with_state_method, with_state_pair);
+catalog!(counted RigidBody<Counted>, with_momentum_method);
+catalog!(counted RigidBodyAttitude<Counted>, with_attitude_method, with_attitude_pair);
+catalog!(counted RigidBodyState<Counted>, with_state_method, with_state_pair);
 
 /// Run `$run` on the problem of `$model` with its initial state and a function that shows a point of
 /// it as a row.
@@ -308,7 +308,14 @@ impl Model for RigidBodyModel {
                 let y = BodyState { m: self.momentum.map(Counted), g: self.attitude.map(Counted) };
                 operations_by(method, &body, y, pace)
             }
-            System::Quaternion(_) | System::MomentumN(_) | System::AttitudeN(_) => None,
+            System::Quaternion(body) => operations_by(method, body, self.quaternion, pace),
+            System::MomentumN(body) => {
+                operations_by(method, body, to_faer(&hat(&self.momentum)), pace)
+            }
+            System::AttitudeN(body) => {
+                let g = MatrixGroup::so(3).ok()?.element(to_faer(&self.attitude)).ok()?;
+                operations_by(method, body, g, pace)
+            }
         }
     }
 
