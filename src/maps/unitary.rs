@@ -27,6 +27,11 @@ const NORM_MAX: f64 = 1e15;
 /// Above this norm of u the solve has lost more than rounding of the group.
 const NORM_EXACT: f64 = 4.0;
 
+/// One correction takes a residual below this to rounding.
+const ONE_STEP: f64 = 1e-8;
+/// From a residual of 0.1 on four are needed.
+const CORRECTIONS_MAX: usize = 6;
+
 /// What exp keeps on U(n): workspaces, and how the last dexp⁻¹ was computed.
 #[derive(Debug)]
 pub struct UnitaryExpAt {
@@ -189,9 +194,17 @@ impl CoordinateMap<Unitary> for Cay {
         lu.solve(minus, plus);
         split(&lu.b, g);
         if norm > NORM_EXACT {
-            // Each time the residual is squared.
-            for _ in 0..3 {
-                group.correct(g, [&mut *product, &mut *minus]);
+            // Each time the residual is squared; what a solve without digits leaves does not converge.
+            let mut residual = f64::INFINITY;
+            for _ in 0..CORRECTIONS_MAX {
+                residual = group.correct(g, [&mut *product, &mut *minus]);
+                if residual <= ONE_STEP {
+                    break;
+                }
+            }
+            if residual.is_nan() || residual > ONE_STEP {
+                let (what, rcond) = ("𝟙 − u/2", 1.0 / (1.0 + 0.5 * norm));
+                return Err(StepError::NearlySingular { map: "cay", what, rcond });
             }
             minus.clear();
             minus.add(-0.5, u);

@@ -295,6 +295,28 @@ impl<S: Real> Ambient for SpinChain<S> {
     linear_space!();
 }
 
+/// Without damping: f = −∇H for the energy H, of degree 2. With damping there is none, and the discrete
+/// gradient is not a number.
+impl<S: Real> LiePoisson for SpinChain<S> {
+    fn hamiltonian(&self, s: &Box<[V<S>]>) -> S {
+        self.energy(s)
+    }
+    fn discrete_gradient(
+        &self,
+        a: &Box<[V<S>]>,
+        b: &Box<[V<S>]>,
+        xi: &mut Box<[V<S>]>,
+        _: &mut (),
+    ) {
+        let conserves = self.damping == S::lit(0.0);
+        let half = S::lit(if conserves { -0.5 } else { f64::NAN });
+        for (i, xi) in xi.iter_mut().enumerate() {
+            let twice = add3(&self.effective_field(a, i), &self.effective_field(b, i));
+            *xi = twice.map(|x| half * x);
+        }
+    }
+}
+
 impl<S: Real> Invariants for SpinChain<S> {
     fn invariants(&self) -> Vec<Invariant> {
         let mut all = vec![Invariant::of_the_action("Σ|s_i|²")];

@@ -317,14 +317,14 @@ pub(super) type Growth = (faer::Mat<f64>, faer::Mat<f64>);
 
 family! {
     So3, Linear, linear;
-    Power<So3>, Linear, general;
+    Power<So3>, Linear, lie_poisson;
     Se3, Coadjoint, lie_poisson;
     MatrixGroup, MatrixAction, linear;
     MatrixGroup, FromTheBody, general;
     Product<So3, Translations<Vector3<f64>>>, LeftTranslation, general;
     Product<MatrixGroup, Translations<Growth>>, LeftTranslation, general;
     So3<Counted>, Linear, linear;
-    Power<So3<Counted>>, Linear, general;
+    Power<So3<Counted>>, Linear, lie_poisson;
     Se3<Counted>, Coadjoint, lie_poisson;
     Product<So3<Counted>, Translations<Vector3<Counted>>>, LeftTranslation, general;
 }

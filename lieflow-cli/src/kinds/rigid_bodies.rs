@@ -95,7 +95,7 @@ fn flow<S: Real>(
             *xi = body.omega(m);
         }
     };
-    Ok(Flow::nonlinear(Euler::new(group, Kinetic(omega)), Linear, start.clone()).0)
+    Ok(Flow::lie_poisson(Euler::new(group, Kinetic(omega)), Linear, start.clone()).0)
 }
 
 impl System for Bodies {
