@@ -7,9 +7,9 @@ use lieflow::maps::{Cay, Exp};
 use lieflow::methods::{EnergyCasimir, Metric, Rkmk, tableau::DOP853};
 use lieflow::problems::{
     Ambient, DiscreteGradient, Euler, Hamiltonian, HeavyTop, Kinetic, LiePoisson, PointOf, Problem,
-    SphericalPendulum,
+    SphericalPendulum, SpinChain,
 };
-use lieflow::{Action, LieAlgebra, Method, SaveAt, TimeGrid, integrate};
+use lieflow::{Action, LieAlgebra, Method, SaveAt, Step, StepError, TimeGrid, integrate};
 use nalgebra::Vector3;
 
 type V = Vector3<f64>;
@@ -109,6 +109,34 @@ fn a_spherical_pendulum() {
     let pendulum = SphericalPendulum::new(1.7).expect("a pendulum");
     let start = pendulum.state([0.6, 0.0, -0.8], [0.1, 0.9, 0.2]).expect("a state");
     check("a pendulum", &pendulum, start);
+}
+
+/// Spins without damping: the energy, and every length.
+#[test]
+fn a_chain_of_spins() {
+    let chain = SpinChain::new(5).and_then(|chain| chain.with_anisotropy(0.4)).expect("a chain");
+    let chain = chain.with_field([0.1, -0.2, 0.3]).expect("a chain");
+    let spins = chain.spins(|i| V::new((i as f64).sin(), (2.0 * i as f64).cos(), 0.5));
+    let start = spins.expect("spins");
+    let exact = run(&chain, &Rkmk::new(DOP853, Exp), &start, 1.0, 200, |_| {});
+    let error =
+        |steps| run(&chain, &EnergyCasimir::new(Cay), &start, 1.0, steps, |_| {}).distance(&exact);
+    let slope = (error(20) / error(40)).log2();
+    assert!((slope - 2.0).abs() < 0.2, "{slope:.2}");
+    let (first, steps, mut drift) = (chain.energy(&start), 4000, 0.0f64);
+    let see = |s: &PointOf<SpinChain>| {
+        drift = drift.max((chain.energy(s) - first).abs());
+        drift = s.iter().map(|s| (s.norm() - 1.0).abs()).fold(drift, f64::max);
+    };
+    run(&chain, &EnergyCasimir::new(Cay), &start, 200.0, steps, see);
+    // A sum of 5 × 4 terms below 1 each.
+    assert!(drift < 20.0 * f64::EPSILON * (steps as f64).sqrt(), "{drift:.1e}");
+    // With damping there is no such method.
+    let damped = chain.with_damping(0.1).expect("a chain");
+    let method = EnergyCasimir::new(Cay);
+    let mut work = method.work(&damped, &start).expect("a workspace");
+    let failed = method.step(&damped, Step { n: 0, t: 0.0, h: 0.1 }, &mut start.clone(), &mut work);
+    assert!(matches!(failed, Err(StepError::NonFiniteRhs { .. })));
 }
 
 /// H = ½ m·J⁻¹m + ¼ Σ m_i⁴: a discrete gradient of its own, (H_i(b_i) − H_i(a_i))/(b_i − a_i) as a

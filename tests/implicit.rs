@@ -1,4 +1,4 @@
-//! Implicit methods: Gauss on the linear space, implicit RKMK and its symmetric version. Order,
+//! Implicit methods: Gauss on the linear space, implicit RKMK and its symmetric version. Order in m and g,
 //! symmetry, invariants, typed errors; on so(3) in closed form and on so(n) over matrices.
 
 use lieflow::error::StepError;
@@ -94,40 +94,7 @@ impl Problem for Driven {
     }
 }
 
-#[test]
-fn order_of_implicit_rkmk_on_four_groups() {
-    let groups = [
-        MatrixGroup::so(4).expect("SO(4)"),
-        MatrixGroup::so(5).expect("SO(5)"),
-        MatrixGroup::gl(3).expect("GL(3)"),
-        MatrixGroup::sp(4).expect("Sp(4)"),
-    ];
-    for group in groups {
-        let (name, start) = (group.name(), group.identity());
-        let problem = Driven::new(group, 7);
-        let reference = run(&problem, &RkmkGaussSymmetric::new(GAUSS6, Exp), &start, 1.0, 160);
-        macro_rules! check {
-            ($($method:expr, $p:expr, $first:expr;)*) => {$({
-                let grid = grid($first);
-                let errors = grid.map(|n| {
-                    problem.group().distance(&run(&problem, &$method, &start, 1.0, n), &reference)
-                });
-                assert_order(&format!("{name} {}", stringify!($method)), $p, &grid, &errors);
-            })*};
-        }
-        check! {
-            RkmkGauss::new(GAUSS2, Exp), 2.0, 16;
-            RkmkGauss::new(GAUSS4, Exp), 4.0, 12;
-            RkmkGauss::new(GAUSS4, Cay), 4.0, 12;
-            RkmkGauss::new(GAUSS6, Exp), 6.0, 4;
-            RkmkGaussSymmetric::new(GAUSS2, Exp), 2.0, 16;
-            RkmkGaussSymmetric::new(GAUSS4, Exp), 4.0, 12;
-            RkmkGaussSymmetric::new(GAUSS4, Cay), 4.0, 12;
-            RkmkGaussSymmetric::new(GAUSS6, Exp), 6.0, 4;
-        }
-    }
-}
-
+/// Orders in m and in g apart; every method on every group is in `orders.rs`.
 #[test]
 fn order_on_the_rigid_body() {
     let body = RigidBodyState::new(INERTIA).expect("a body");

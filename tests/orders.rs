@@ -1,86 +1,21 @@
 //! Measured orders: the methods of the catalog that ask for a field, or for one of linear type, on
-//! problems that do not commute, depend on time and depend on the state. Those that ask for more are in
-//! `orders_special.rs`, by the same harness.
+//! problems that do not commute, depend on time and depend on the state. By the same harness: products
+//! and SE(3) in `orders_products.rs`, orders from 8 on on SO(3) in `orders_wide.rs`, methods that ask for
+//! more in `orders_special.rs`.
 //! `cargo test --test orders -- --nocapture` prints the table.
 
 mod support;
 
-use lieflow::LieGroup;
+use lieflow::Problem;
 use lieflow::actions::{Coadjoint, LeftTranslation, Linear};
-use lieflow::catalog::{CatalogGroup, MethodSpec, Needs, with_linear_method, with_method};
 use lieflow::groups::{MatrixGroup, Sample, So3};
-use lieflow::maps::{Cay, CoordinateMap, Exp};
-use lieflow::methods::magnus::TripleProduct;
-use lieflow::problems::{
-    Ambient, LinearField, Problem, RigidBody, RigidBodyAttitude, RigidBodyN, RigidBodyNAttitude,
-};
+use lieflow::problems::{RigidBody, RigidBodyAttitude, RigidBodyN, RigidBodyNAttitude};
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
 use support::orders::{
-    Field, Flow, Measure, Problems, Report, clock, estimate, grid, inertia, wave,
+    Problems, clocks, estimate, every_explicit_method_on, every_linear_method_on, every_method_on,
+    grid, inertia, waves,
 };
-use support::points::Points;
-use support::represent::Represent;
-
-/// Measure every method for fields, and require the orders that they claim.
-fn every_method_on<P: Ambient>(title: &str, problems: Problems<P>)
-where
-    P::Group: Represent + CatalogGroup,
-    P::Action: Points<P::Group>,
-    Cay: CoordinateMap<P::Group>,
-    Exp: CoordinateMap<P::Group>,
-{
-    let measured = |spec: &MethodSpec| with_method(spec, Measure(&problems, true));
-    Report::of(title, &problems.group(), &[Needs::Field], measured);
-}
-
-/// The same for the methods that want a field of linear type. Some of order 4 are so accurate there
-/// that the grid of that order has rounding on it.
-fn every_linear_method_on<P: LinearField + Ambient>(title: &str, problems: Problems<P>)
-where
-    P::Group: Represent + TripleProduct,
-    P::Action: Points<P::Group>,
-    Cay: CoordinateMap<P::Group>,
-    Exp: CoordinateMap<P::Group>,
-{
-    let measured = |spec: &MethodSpec| with_linear_method(&spec.name, Measure(&problems, false));
-    Report::of(title, &problems.group(), &[Needs::LinearType], measured);
-}
-
-/// One test a problem, from its group, its action and its field; `one` of them, or `many` with the
-/// number of each in the seeds; `below_8` where `orders_wide.rs` has orders from 8 on.
-macro_rules! orders {
-    ($every:ident: $($name:ident: $count:ident, $group:expr, $action:expr, $field:expr;)*) => {$(
-        #[test]
-        fn $name() {
-            let flow = |i: u64| Flow::new($group, $action, $field(i));
-            $every(stringify!($name), problems!($count, flow));
-        }
-    )*};
-}
-macro_rules! problems {
-    (one, $flow:ident) => {{
-        let flow = $flow(0);
-        let start = flow.start(7);
-        Problems::one(flow, start)
-    }};
-    (many, $flow:ident) => {
-        Problems::many(|i| ($flow(i), $flow(i).group().identity()))
-    };
-    (below_8, $flow:ident) => {
-        Problems::below_8(|i| ($flow(i), $flow(i).group().identity()))
-    };
-}
-
-/// [`wave`] in dimension n, so strong, with coefficients from this seed on.
-fn waves(n: usize, strength: f64, seed: u64) -> impl Fn(u64) -> Field {
-    move |i| wave(n, strength, seed + 100 * i)
-}
-
-/// [`clock`] in the same way.
-fn clocks(n: usize, strength: f64) -> impl Fn(u64) -> Field {
-    move |i| clock(n, strength, 21 + 100 * i)
-}
 
 orders! {
     every_method_on:
@@ -90,6 +25,10 @@ orders! {
     translation_on_sp4: many, MatrixGroup::sp(4).unwrap(), LeftTranslation, waves(4, 0.25, 12);
     translation_on_so31: many, MatrixGroup::indefinite(3, 1).unwrap(), LeftTranslation, waves(4, 0.35, 11);
     translation_on_so3: one, MatrixGroup::so(3).unwrap(), LeftTranslation, waves(3, 0.5, 11);
+}
+
+orders! {
+    every_explicit_method_on:
     orbits_of_so3_closed: one, So3::new(), Coadjoint, |_| inertia(3);
     orbits_of_so4: one, MatrixGroup::so(4).unwrap(), Coadjoint, |_| inertia(4);
     orbits_of_sp4: one, MatrixGroup::sp(4).unwrap(), Coadjoint, waves(4, 0.25, 16);
@@ -110,17 +49,26 @@ orders! {
 fn rigid_bodies() {
     let (inertia, momentum) = ([1.0, 2.0, 3.5], [1.0, 0.8, -1.2]);
     let body = RigidBody::new(inertia).unwrap();
-    every_method_on("the rigid body", Problems::one(body, momentum.into()));
+    every_explicit_method_on("the rigid body", Problems::one(body, momentum.into()));
     let attitude = RigidBodyAttitude::new(inertia, momentum).unwrap();
-    every_method_on("its attitude", Problems::one(attitude, nalgebra::Matrix3::identity()));
+    every_explicit_method_on(
+        "its attitude",
+        Problems::one(attitude, nalgebra::Matrix3::identity()),
+    );
 
     let manakov = RigidBodyN::manakov(&[0.4, 1.1, 1.9, 2.5]).unwrap();
     let group = manakov.group().clone();
     let mut rng = Pcg64::seed_from_u64(8);
     let start = group.sample_algebra(&mut rng, 2.0).into_mat();
-    every_method_on("Manakov's body, n = 4", Problems::one(manakov.clone(), start.clone()));
+    every_explicit_method_on(
+        "Manakov's body, n = 4",
+        Problems::one(manakov.clone(), start.clone()),
+    );
     let attitude = RigidBodyNAttitude::new(manakov, start).unwrap();
-    every_method_on("its attitude, n = 4", Problems::one(attitude, group.sample_element(&mut rng)));
+    every_explicit_method_on(
+        "its attitude, n = 4",
+        Problems::one(attitude, group.sample_element(&mut rng)),
+    );
 }
 
 #[test]

@@ -1,27 +1,21 @@
-//! Products and powers of groups: orders on coupled systems, the parts agree with each group alone,
-//! every map of the catalog by its name, actions put together and taken back to M part by part.
+//! Products and powers of groups: the parts agree with each group alone, every map of the catalog by its name, actions put together and taken back to M part by part.
 
 mod support;
 
 use lieflow::actions::{Coadjoint, Each, LeftTranslation, Linear, Pair};
 use lieflow::catalog::{CatalogGroup, MethodSpec, OnMethod, with_method};
 use lieflow::groups::{Adjoint, LieGroup, MatrixGroup, Power, Product, Sample, So3};
-use lieflow::maps::{self, CCSK, CCSK123, CCSK321, Cay, CoordinateMap, Exp, Pade22};
-use lieflow::methods::commutator_free::CF4;
-use lieflow::methods::crouch_grossman::CG3;
-use lieflow::methods::low_storage::LS4;
+use lieflow::maps::{self, CCSK123, CCSK321, Cay, CoordinateMap, Exp};
 use lieflow::methods::magnus::{CayleyMagnus4, Magnus4, TripleProduct};
-use lieflow::methods::one_bracket::MAGNUS43;
-use lieflow::methods::{CommutatorFree, LowStorage, Method, OneBracket, Rkmk, tableau::RK4};
+use lieflow::methods::{Method, Rkmk, tableau::RK4};
 use lieflow::problems::{BodyTorque, LinearEquation, Motion, PointOf, Problem, TorqueBody};
 use lieflow::{Action, Error, LieAlgebra, SaveAt, TimeGrid, integrate};
 use nalgebra::Vector3;
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
 use support::EPS;
-use support::orders::{Flow, Reference, measure, reference, wave};
+use support::orders::{Flow, measure, reference, wave};
 use support::points::Points;
-use support::represent::Represent;
 
 type So3Sp4 = Product<So3, MatrixGroup>;
 
@@ -32,61 +26,13 @@ fn power(n: usize) -> Power<So3> {
     Power::new(So3::new(), n).unwrap()
 }
 
-/// The order that the method claims is the one it has.
-fn has_its_order<G: Represent, A: Points<G>, M: Method<Flow<G, A>>>(
-    name: &str,
-    flow: &Flow<G, A>,
-    method: &M,
-    reference: &Reference<Flow<G, A>>,
-) where
-    Cay: CoordinateMap<G>,
-{
-    let measured = measure(flow, method, reference).and_then(|e| e.check());
-    measured.unwrap_or_else(|reason| panic!("{name}: {reason}"));
-}
-
-/// Methods of every family, on a field that couples the parts.
-fn orders<G: Represent + CatalogGroup, A: Points<G>>(flow: Flow<G, A>)
-where
-    Exp: CoordinateMap<G>,
-    Cay: CoordinateMap<G>,
-    Pade22: CoordinateMap<G>,
-{
-    let exact = reference(&flow, flow.start(7));
-    has_its_order("rkmk4 exp", &flow, &Rkmk::new(RK4, Exp), &exact);
-    has_its_order("rkmk4 cay", &flow, &Rkmk::new(RK4, Cay), &exact);
-    has_its_order("rkmk4 pade22", &flow, &Rkmk::new(RK4, Pade22), &exact);
-    has_its_order("cf4", &flow, &CommutatorFree(CF4), &exact);
-    has_its_order("cg3", &flow, &CommutatorFree(CG3), &exact);
-    has_its_order("ls4", &flow, &LowStorage(LS4), &exact);
-    has_its_order("magnus43", &flow, &OneBracket(MAGNUS43), &exact);
-}
-
+/// Two maps on one product have the order of the method; every map alone is in `orders_products.rs`.
 #[test]
-fn orders_on_a_product() {
-    orders(Flow::new(product(), LeftTranslation, wave(7, 0.25, 11)));
-    orders(Flow::new(product(), Linear, wave(7, 0.6, 12)));
-}
-
-#[test]
-fn orders_on_a_power() {
-    orders(Flow::new(power(3), LeftTranslation, wave(9, 0.25, 13)));
-    orders(Flow::new(power(3), Coadjoint, wave(9, 0.25, 14)));
-}
-
-#[test]
-fn orders_with_an_action_for_each_part() {
-    orders(Flow::new(product(), Pair(Coadjoint, LeftTranslation), wave(7, 0.5, 15)));
-    orders(Flow::new(power(3), Each(Linear), wave(9, 1.0, 16)));
-}
-
-#[test]
-fn ccsk_and_a_pair_of_maps_have_their_orders() {
+fn a_pair_of_maps_has_its_order() {
     let flow = Flow::new(product(), LeftTranslation, wave(7, 0.25, 17));
     let exact = reference(&flow, flow.start(8));
-    has_its_order("ccsk", &flow, &Rkmk::new(RK4, CCSK), &exact);
-    has_its_order("ccsk123", &flow, &Rkmk::new(RK4, CCSK123), &exact);
-    has_its_order("exp, cay", &flow, &Rkmk::new(RK4, maps::Pair(Exp, Cay)), &exact);
+    let method = Rkmk::new(RK4, maps::Pair(Exp, Cay));
+    measure(&flow, &method, &exact).and_then(|e| e.check()).unwrap();
 }
 
 /// The maps of the catalog have types on products: its methods run there by name.

@@ -1,21 +1,18 @@
 //! SE(3): against references of 36 digits, against the general 4×4 matrices, the representations on
-//! the algebra and its dual, the logarithm, orders, and what is refused.
+//! the algebra and its dual, the logarithm, and what is refused.
 
 mod support;
 
 use faer::Mat;
 use faer::prelude::Solve;
 use lieflow::actions::{Coadjoint, LeftTranslation, Linear};
-use lieflow::catalog::CatalogGroup;
 use lieflow::groups::{Adjoint, AlgebraMatrix, LieGroup, MatrixGroup, Sample, Se3};
-use lieflow::maps::{CCSK, CCSK123, Cay, CoordinateMap, Exp, Pade22};
-use lieflow::methods::{CommutatorFree, Method, Rkmk, commutator_free::CF4, tableau::RK4};
+use lieflow::maps::{CCSK123, Cay, CoordinateMap, Exp, Pade22};
 use lieflow::{Action, StepError};
 use nalgebra::Vector3;
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
 use serde::Deserialize;
-use support::orders::{Flow, measure, reference, wave};
 use support::points::Points;
 use support::represent::{Represent, affine};
 use support::{EPS, gap};
@@ -169,32 +166,6 @@ fn logarithm() {
     assert!(SE3.distance(&again, &g) < 64.0 * EPS);
     let off = (g.0 * 1.5, g.1);
     assert!(SE3.log(&off).is_err());
-}
-
-#[test]
-fn orders() {
-    fn check<A: Points<Se3>>(flow: Flow<Se3, A>) {
-        let exact = reference(&flow, flow.start(5));
-        let has_order = |claim: &str, estimate: Result<support::orders::Estimate, String>| {
-            estimate.and_then(|e| e.check()).unwrap_or_else(|e| panic!("{claim}: {e}"));
-        };
-        fn measured<A: Points<Se3>, M: Method<Flow<Se3, A>>>(
-            flow: &Flow<Se3, A>,
-            method: M,
-            exact: &support::orders::Reference<Flow<Se3, A>>,
-        ) -> Result<support::orders::Estimate, String> {
-            measure(flow, &method, exact)
-        }
-        has_order("exp", measured(&flow, Rkmk::new(RK4, Exp), &exact));
-        has_order("cay", measured(&flow, Rkmk::new(RK4, Cay), &exact));
-        has_order("pade22", measured(&flow, Rkmk::new(RK4, Pade22), &exact));
-        has_order("ccsk", measured(&flow, Rkmk::new(RK4, CCSK), &exact));
-        has_order("cf4", measured(&flow, CommutatorFree(CF4), &exact));
-    }
-    check(Flow::new(SE3, LeftTranslation, wave(4, 0.5, 21)));
-    check(Flow::new(SE3, Coadjoint, wave(4, 0.5, 22)));
-    fn every_map_serves<G: CatalogGroup>(_: &G) {}
-    every_map_serves(&SE3);
 }
 
 #[test]

@@ -419,7 +419,8 @@ fn fixed_steps(data: &[u8]) {
     let method = Rkmk::new(tableau::RK4, Exp);
     let found = integrate(&body, &method, &grid, &save, &mut m, look);
     assert!(!finite || seen.iter().all(|(t, m)| t.is_finite() && m.iter().all(|x| x.is_finite())));
-    assert!(finite || steps == 0 || found.is_err(), "a start that is not finite");
+    // An empty span has no steps, whatever was asked for.
+    assert!(finite || grid.steps() == 0 || found.is_err(), "a start that is not finite");
     if let Err(error) = found {
         assert!(!error.to_string().is_empty());
     }

@@ -103,9 +103,11 @@ pub struct CompareArgs {
     pub layers: Vec<Layer>,
     /// Tolerances for the methods that choose their steps.
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = tolerance)]
+    #[arg(allow_negative_numbers = true)]
     pub tolerances: Vec<f64>,
     /// Time each run so many times, in turns with the others, and take the median.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(allow_negative_numbers = true)]
     pub repeat: Option<u32>,
     /// The seed of the order in which runs take their turns.
     #[arg(long, value_name = "N", default_value_t = 1)]

@@ -100,13 +100,11 @@ pub trait Model: Debug {
     fn exact(&self, t: f64) -> Option<Result<Vec<f64>, Error>>;
 
     /// The operations of a step (additions, multiplications, divisions, square roots, sines and
-    /// cosines, each as one), in the mean over the first [`COUNTED_STEPS`]; `None` where the problem or
-    /// the method does not run on numbers that count.
+    /// cosines, each as one), in the mean over the first [`COUNTED_STEPS`]; `None` where the method has
+    /// none to count, as the exact motion.
     ///
     /// [`COUNTED_STEPS`]: crate::operations::COUNTED_STEPS
-    fn operations(&self, _: &MethodSpec, _: Pace<'_>) -> Option<f64> {
-        None
-    }
+    fn operations(&self, method: &MethodSpec, pace: Pace<'_>) -> Option<f64>;
 
     /// Can this method run on this problem? Nothing is integrated.
     ///
@@ -141,30 +139,43 @@ pub trait Catalog: Problem<Group: LieAlgebra<Scalar: Into<f64>>> {
 }
 
 /// [`Catalog`] for an [`Ambient`](lieflow::problems::Ambient) problem, by the catalog's function for its
-/// kind, and the one for its embedded pairs.
+/// kind, and the one for its embedded pairs. `pointed` is for problems whose methods may stand behind a
+/// pointer: on numbers that count nothing is timed, and beside large matrices a call is nothing.
 #[macro_export]
 macro_rules! catalog {
     ($problem:ty, $with:path) => {
         $crate::catalog!($problem, $with, lieflow::catalog::with_embedded_pair);
     };
     ($problem:ty, $with:path, $pair:path) => {
+        $crate::catalog!(@impl $problem, $with, $pair, |spec, on| $with(spec, on));
+    };
+    (pointed $problem:ty, $with:path) => {
+        $crate::catalog!(pointed $problem, $with, lieflow::catalog::with_embedded_pair);
+    };
+    (pointed $problem:ty, $with:path, $pair:path) => {
+        $crate::catalog!(@impl $problem, $with, $pair, |spec, on| {
+            $crate::erased::pointed(on, |found| $with(spec, found))
+        });
+    };
+    (@impl $problem:ty, $with:path, $pair:path, |$spec:ident, $on:ident| $find:expr) => {
         impl $crate::model::Catalog for $problem {
             fn with<V: lieflow::catalog::OnMethod<Self>>(
                 &self,
-                spec: &lieflow::catalog::MethodSpec,
-                on: V,
+                $spec: &lieflow::catalog::MethodSpec,
+                $on: V,
             ) -> Result<V::Out, lieflow::Error> {
-                $with(spec, on)
+                $find
             }
             fn with_estimate<V: lieflow::catalog::OnEmbedded<Self>>(
                 &self,
                 spec: &lieflow::catalog::MethodSpec,
                 on: V,
             ) -> Result<V::Out, lieflow::Error> {
-                match spec.has_pair()? {
-                    true => $pair(spec, $crate::erased::Pointed(on)),
-                    false => $with(spec, $crate::erased::Doubled(on)),
-                }
+                let pair = spec.has_pair()?;
+                $crate::erased::pointed_pair(on, |found| match pair {
+                    true => $pair(spec, found),
+                    false => $with(spec, $crate::erased::Doubled(found)),
+                })
             }
         }
     };

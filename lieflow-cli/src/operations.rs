@@ -1,20 +1,25 @@
-//! The operations of a run, by running it on numbers that count them.
+//! The operations of a run, by running it: on numbers that count what is done to them, where a problem is
+//! made of vectors, and by what matrices say that they have computed ([`lieflow::scalar::tally`]), where it
+//! is made of those.
 
-use core::cell::Cell;
-
+use lieflow::TimeGrid;
 use lieflow::adaptive::{AdaptiveError, integrate_adaptive};
 use lieflow::catalog::{MethodSpec, OnEmbedded, OnMethod};
-use lieflow::methods::{Embedded, LocalError, Method};
-use lieflow::problems::{PointOf, Problem, ScalarOf};
-use lieflow::scalar::{Counted, Real};
-use lieflow::{Error, SaveAt, Step, StepError, TimeGrid};
+use lieflow::methods::{Embedded, Method};
+use lieflow::problems::{PointOf, ScalarOf};
+use lieflow::scalar::Real;
+use lieflow::{SaveAt, Step};
 
-use crate::erased::{Erased, ErasedPair};
+use crate::erased::{Erased, Tally, with_pair, with_plain};
 use crate::model::{Catalog, Steps};
 
 /// So many steps of a run are counted, attempts that are rejected among them; a longer run is charged
 /// their mean for each of its steps.
 pub const COUNTED_STEPS: u64 = 256;
+/// Steps that take so many operations together are enough of them: large problems need few.
+const COUNTED_OPERATIONS: u64 = 2_000_000;
+/// But these many at least.
+const COUNTED_AT_LEAST: u64 = 8;
 
 /// How a run goes through time.
 #[derive(Clone, Copy, Debug)]
@@ -25,73 +30,8 @@ pub enum Pace<'a> {
     Chosen(&'a Steps),
 }
 
-/// What was counted.
-#[derive(Debug, Default)]
-struct Tally {
-    operations: Cell<u64>,
-    steps: Cell<u64>,
-}
-
-impl Tally {
-    fn count<T>(&self, step: impl FnOnce() -> T) -> T {
-        let (done, operations) = Counted::count(step);
-        self.operations.update(|n| n + operations.total());
-        self.steps.update(|n| n + 1);
-        done
-    }
-    fn mean(&self) -> Option<f64> {
-        let steps = self.steps.get();
-        (steps > 0).then(|| self.operations.get() as f64 / steps as f64)
-    }
-}
-
-/// A method whose steps are counted.
-struct Watched<'a, M>(M, &'a Tally);
-
-impl<P: Problem, M: Method<P>> Method<P> for Watched<'_, M> {
-    type Work = M::Work;
-
-    fn order(&self, problem: &P) -> usize {
-        self.0.order(problem)
-    }
-    fn stays_on_manifold(&self) -> bool {
-        self.0.stays_on_manifold()
-    }
-    fn work(&self, problem: &P, like: &PointOf<P>) -> Result<M::Work, Error> {
-        self.0.work(problem, like)
-    }
-    fn step(
-        &self,
-        problem: &P,
-        step: Step<ScalarOf<P>>,
-        y: &mut PointOf<P>,
-        work: &mut M::Work,
-    ) -> Result<(), StepError> {
-        self.1.count(|| self.0.step(problem, step, y, work))
-    }
-}
-
-impl<P: Problem, M: Embedded<P>> Embedded<P> for Watched<'_, M> {
-    fn error_order(&self, problem: &P) -> Result<usize, Error> {
-        self.0.error_order(problem)
-    }
-    fn evaluations_with_error(&self, problem: &P) -> Option<u64> {
-        self.0.evaluations_with_error(problem)
-    }
-    fn step_with_error(
-        &self,
-        problem: &P,
-        step: Step<ScalarOf<P>>,
-        from: &PointOf<P>,
-        work: &mut M::Work,
-        to: &mut PointOf<P>,
-    ) -> Result<LocalError<ScalarOf<P>>, StepError> {
-        self.1.count(|| self.0.step_with_error(problem, step, from, work, to))
-    }
-}
-
 /// A run to be counted.
-struct Run<'a, P: Problem, How> {
+struct Run<'a, P: Catalog, How> {
     problem: &'a P,
     y: PointOf<P>,
     how: &'a How,
@@ -100,27 +40,30 @@ struct Run<'a, P: Problem, How> {
 impl<P: Catalog + 'static> OnMethod<P> for Run<'_, P, TimeGrid> {
     type Out = Option<f64>;
     fn call<M: Method<P>>(self, method: M) -> Option<f64> {
-        self.fixed(Erased(&method))
+        let tally = Tally::default();
+        with_plain(&method, Some(&tally), |method| self.fixed(&method, &tally))
     }
 }
 
 impl<P: Catalog + 'static> OnEmbedded<P> for Run<'_, P, Steps> {
     type Out = Option<f64>;
     fn call<M: Embedded<P>>(self, method: M) -> Option<f64> {
-        self.chosen(ErasedPair(&method))
+        let tally = Tally::default();
+        with_pair(&method, Some(&tally), |method| self.chosen(&method, &tally))
     }
 }
 
 impl<P: Catalog> Run<'_, P, TimeGrid> {
-    fn fixed(mut self, method: Erased<'_, P>) -> Option<f64> {
+    fn fixed(mut self, method: &Erased<'_, P>, tally: &Tally) -> Option<f64> {
         if method.order(self.problem) == usize::MAX {
             return None;
         }
-        let tally = Tally::default();
-        let method = Watched(method, &tally);
         let mut work = method.work(self.problem, &self.y).ok()?;
         let lit = ScalarOf::<P>::lit;
         for n in 0..self.how.steps().min(COUNTED_STEPS) {
+            if n >= COUNTED_AT_LEAST && tally.operations() > COUNTED_OPERATIONS {
+                break;
+            }
             let step = Step { n, t: lit(self.how.time(n)), h: lit(self.how.h()) };
             method.step(self.problem, step, &mut self.y, &mut work).ok()?;
         }
@@ -129,23 +72,32 @@ impl<P: Catalog> Run<'_, P, TimeGrid> {
 }
 
 impl<P: Catalog> Run<'_, P, Steps> {
-    fn chosen(mut self, method: ErasedPair<'_, P>) -> Option<f64> {
-        let (tally, Steps { t_span, control }) = (Tally::default(), self.how);
-        let method = Watched(method, &tally);
-        let control = control.max_steps(COUNTED_STEPS).ok()?;
-        let see = |_: f64, _: &PointOf<P>| {};
-        let (problem, y, save) = (self.problem, &mut self.y, &SaveAt::Ends);
-        match integrate_adaptive(problem, &method, *t_span, &control, save, y, see) {
-            Ok(_) | Err(AdaptiveError::TooManySteps { .. }) => tally.mean(),
-            Err(_) => None,
+    fn chosen(self, method: &Erased<'_, P>, tally: &Tally) -> Option<f64> {
+        let Steps { t_span, control } = self.how;
+        let upto = |steps: u64| {
+            tally.clear();
+            let (mut y, control) = (self.y.clone(), control.max_steps(steps).ok()?);
+            let see = |_: f64, _: &PointOf<P>| {};
+            let (problem, save) = (self.problem, &SaveAt::Ends);
+            match integrate_adaptive(problem, method, *t_span, &control, save, &mut y, see) {
+                Ok(_) | Err(AdaptiveError::TooManySteps { .. }) => tally.mean(),
+                Err(_) => None,
+            }
+        };
+        // A first look says how many steps are enough.
+        let first = upto(COUNTED_AT_LEAST)?;
+        let enough = (COUNTED_OPERATIONS as f64 / first) as u64;
+        match enough.min(COUNTED_STEPS) {
+            steps if steps > COUNTED_AT_LEAST => upto(steps),
+            _ => Some(first),
         }
     }
 }
 
 /// The mean operations of a step of `problem` from `y`, over the first of the run: what a
-/// [`Model::operations`](crate::model::Model::operations) calls. None where the method does nothing
-/// with such numbers, as the exact motion, or fails.
-pub fn operations_by<P: Catalog<Group: lieflow::groups::LieAlgebra<Scalar = Counted>> + 'static>(
+/// [`Model::operations`](crate::model::Model::operations) calls. None where nothing is counted, as of the
+/// exact motion, or the method fails.
+pub fn operations_by<P: Catalog + 'static>(
     spec: &MethodSpec,
     problem: &P,
     y: PointOf<P>,

@@ -118,6 +118,7 @@ fn the_advice_follows_from_the_points() {
     }
     let page = folder.read("out/index.html");
     assert!(page.contains("Pareto front") && !page.contains("NaN"));
+    assert!(page.contains("until a run takes 5ms; up to 100ms"));
     assert!(page.contains("Casimir") && page.contains("nearest to 1e-6"));
     for figure in ["pareto.svg", "operations.svg", "evaluations.svg", "speed-lie-series.svg"] {
         assert!(folder.read(&format!("out/{figure}")).starts_with("<svg"), "{figure}");
@@ -138,13 +139,21 @@ fn both_layers_stand_side_by_side() {
     let expected =
         [("rkmk4", "closed"), ("rk4", "closed"), ("rkmk4", "general"), ("rk4", "general")];
     assert!(layers.iter().zip(expected).all(|(a, b)| *a.0 == b.0 && *a.1 == b.1), "{layers:?}");
-    // The layers agree on the solution, and numbers that count are of the closed one.
+    // The layers agree on the solution; closed formulas take fewer operations than 3×3 matrices.
     for pair in [[0, 2], [1, 3]] {
         let [closed, general] = pair.map(|i| &curves[i]["points"][3]);
         let error = |p: &serde_json::Value| p["error"].as_f64().unwrap();
         assert!((error(closed) - error(general)).abs() < 1e-9, "{closed} {general}");
-        assert!(closed["operations"].is_u64() && general["operations"].is_null());
+        let operations = |p: &serde_json::Value| p["operations"].as_u64().unwrap();
+        assert!(operations(closed) < operations(general), "{closed} {general}");
+        // RK4: four fields of three weights (3), a product (27 + 18) and its skew part (3); seven sums.
+        if general["steps"] == closed["steps"] && pair[0] == 1 {
+            let step = 4 * (3 * 3 + 45 + 3) + 7 * 18;
+            assert_eq!(operations(general), step * general["steps"].as_u64().unwrap());
+        }
     }
+    let page = folder.read("out/index.html");
+    assert!(page.contains("on the general one by every product"), "what an operation is");
     let refused = folder.lieflow(&["compare", "scene.toml", "--layers", "open"]);
     assert!(refused.code == Some(2) && refused.err.contains("closed"), "{refused:?}");
 }
@@ -186,7 +195,14 @@ fn no_advice_below_the_error_of_the_reference() {
         tolerances: &[],
     };
     let second = Duration::from_secs(1);
-    let effort = Effort { rounds: 1, longest: second, shortest: Duration::ZERO, seed: 1 };
+    let effort = Effort {
+        rounds: 1,
+        longest: second,
+        shortest: Duration::ZERO,
+        seed: 1,
+        wanted: &[],
+        patience: second,
+    };
     let (curves, _) = speed_against_error(&scene, &plan, effort, None, |_| {}).unwrap();
     let own = |apart| Reference::Own { by: "a".into(), beside: "b".into(), apart };
     for (apart, told) in [(1e-14, 4), (1e-8, 2), (1e-2, 0)] {
@@ -198,6 +214,21 @@ fn no_advice_below_the_error_of_the_reference() {
     }
 }
 
+/// A list with spaces, and a method as the tables name it.
+#[test]
+fn methods_are_named_as_a_reader_would() {
+    let scene = Scene::parse("scene", SCENE).unwrap();
+    let all = Candidate::all_that_fit(&scene, &["momentum_body"], Layer::General).unwrap();
+    let chosen = |names: &str| {
+        let names: Vec<String> = names.split(',').map(Into::into).collect();
+        let chosen = Candidate::chosen(&all, &names).unwrap();
+        chosen.iter().map(Candidate::label).collect::<Vec<_>>()
+    };
+    assert_eq!(chosen("rk4, taylor8"), ["rk4, general", "taylor8, general"]);
+    let pair = ["rkmk dopri5 cay, general", "rkmk dopri5 cay, adaptive, general"];
+    assert_eq!(chosen(pair[1]), pair);
+}
+
 #[test]
 fn wrong_options_are_refused_by_one_sentence() {
     let folder = Folder::new();
@@ -205,6 +236,9 @@ fn wrong_options_are_refused_by_one_sentence() {
     for (options, words) in [
         (["--methods", "rkmk5"], &["no method `rkmk5` fits", "did you mean `rkmk"][..]),
         (["--methods", "magnus4"], &["no method `magnus4` fits", "rkmk4"]),
+        (["--methods", "adaptive"], &["no method is named"]),
+        (["--tolerances", "-1"], &["between 0 and 1"]),
+        (["--repeat", "-3"], &["--repeat"]),
         (["--tolerances", "0"], &["between 0 and 1"]),
         (["--tolerances", "small"], &["between 0 and 1"]),
         (["--repeat", "0"], &["--repeat"]),
@@ -232,7 +266,14 @@ fn what_was_measured_before_an_interruption_is_not_measured_again() {
         tolerances: &[],
     };
     let millisecond = Duration::from_millis(1);
-    let effort = Effort { rounds: 3, longest: 100 * millisecond, shortest: millisecond, seed: 1 };
+    let effort = Effort {
+        rounds: 3,
+        longest: 100 * millisecond,
+        shortest: millisecond,
+        seed: 1,
+        wanted: &[],
+        patience: Duration::ZERO,
+    };
     let measure = |of: &str| {
         let mut journal = Journal::open(folder.path(), of).unwrap();
         let known = journal.known();
@@ -263,6 +304,58 @@ fn what_was_measured_before_an_interruption_is_not_measured_again() {
     }
     // About something else it begins anew.
     assert_eq!(measure("b").0, 0);
+}
+
+/// Where the usual length of a run reaches no error that is wanted, some methods go on until one does.
+#[test]
+fn long_times_are_gone_through_to_the_wanted_error() {
+    let scene = Scene::parse("scene", SCENE).unwrap();
+    let names = ["rkmk4 exp", "rkmk4 cay", "rk4", "cf4", "gauss4", "cf3", "cg3", "taylor4", "mr4"];
+    let all = Candidate::all_that_fit(&scene, &["momentum_body"], Layer::Closed).unwrap();
+    let candidates = Candidate::chosen(&all, &names.map(String::from)).unwrap();
+    let steps: Vec<u64> = (2..16).map(|k| 1 << k).collect();
+    let plan = Plan {
+        quantities: &["momentum_body"],
+        candidates: &candidates,
+        t_span: [0.0, 20.0],
+        steps: &steps,
+        tolerances: &[],
+    };
+    let measure = |wanted| {
+        // Every run takes too long to go on by itself.
+        let (longest, patience) = (Duration::ZERO, Duration::from_secs(60));
+        let effort = Effort { rounds: 1, longest, shortest: longest, seed: 1, wanted, patience };
+        speed_against_error(&scene, &plan, effort, None, |_| {}).unwrap().0
+    };
+    let runs = |curves: &[lieflow_cli::measure::Curve]| -> Vec<usize> {
+        curves.iter().map(|curve| curve.points.len()).collect()
+    };
+    assert!(runs(&measure(&[])).iter().all(|n| *n == 1));
+    let curves = measure(&[1e-3, 1e-6]);
+    let reached = curves.iter().flat_map(|c| &c.points).filter(|p| p.error <= 1e-6).count();
+    assert!((1..=6).contains(&reached), "{reached} runs reach it, at most one round of them");
+    assert!(runs(&curves).iter().sum::<usize>() < candidates.len() * 10, "{:?}", runs(&curves));
+    let timed =
+        |p: &lieflow_cli::measure::WorkPoint| p.seconds_per_unit > 0.0 || p.failure.is_some();
+    assert!(curves.iter().flat_map(|c| &c.points).all(timed));
+}
+
+/// A run that has left the range of the arithmetic is no hit.
+#[test]
+fn a_run_without_numbers_reaches_no_error() {
+    let scene = Scene::bundled("fodo-cell").unwrap();
+    let t_span = scene.grid.t_span();
+    let judge = Judge::new(&scene, &["phase_space"], t_span).unwrap();
+    let all = Candidate::all_that_fit(&scene, &["phase_space"], Layer::General).unwrap();
+    let model = scene.model_with(Layer::General, &judge.quantities()).unwrap();
+    for name in ["rkmk dopri5 exp", "rk dop853"] {
+        let candidate = all.iter().find(|c| c.method.label() == name && !c.adaptive).unwrap();
+        for steps in [30, 60, 120] {
+            let size = lieflow_cli::measure::Size::Steps(steps);
+            let point = judge.point(&*model, candidate, t_span, size);
+            assert!(point.error.is_nan() || point.error > 1e-3, "{name}, {steps}: {point:?}");
+        }
+    }
 }
 
 #[test]

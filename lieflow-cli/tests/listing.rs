@@ -85,11 +85,14 @@ fn methods_for_a_scene_are_those_that_run() {
         ("rotating-field", &linear, &closed),
         ("rabi", &linear, &closed),
         ("manakov-body", &["energy-casimir", "isospectral4", "taylor12"], &body),
-        ("spin-wave", &[], &closed),
+        ("spin-wave", &["energy-casimir"], &closed),
+        ("many-bodies", &["energy-casimir6"], &closed),
+        ("relaxing-spins", &[], &["energy-casimir"]),
         ("lagrange-top", &["energy-casimir", "energy-casimir6"], &["isospectral2", "taylor12"]),
         ("ellipsoid-in-fluid", &["energy-casimir4"], &closed),
         ("spherical-pendulum", &["energy-casimir"], &closed),
         ("shear-layer", &["isospectral2", "isospectral-suzuki4", "energy-casimir6"], &closed),
+        ("euler-on-sl3", &["energy-casimir"], &linear),
         ("wing-nut", &closed, &["rk4-qr", "energy-casimir"]),
     ] {
         let fitting = folder.lieflow(&["methods", "--for", scene, "--json"]).ok();

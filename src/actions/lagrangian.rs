@@ -10,6 +10,7 @@ use crate::dense::{Lu, is_finite, mul_add};
 use crate::error::{Error, StepError};
 use crate::groups::{GroupMatrix, MatrixGroup};
 use crate::maps::CoordinateMap;
+use crate::scalar::{Ops, tally};
 
 /// Λ(g, P) = (C + DP)(A + BP)⁻¹ on symmetric m×m matrices. Where A + BP is singular the subspace is
 /// no graph: a step that ends there fails with [`StepError::NotFinite`].
@@ -85,6 +86,7 @@ impl Action<MatrixGroup> for Lagrangian {
         lu.factor();
         q.copy_from(numerator.transpose());
         lu.solve(q.as_mut());
+        tally(|| (Ops::adds(1) + Ops::muls(1)) * (q.ncols() * q.ncols().saturating_sub(1) / 2));
         for j in 0..q.ncols() {
             for i in 0..j {
                 let mean = 0.5 * (q[(i, j)] + q[(j, i)]);

@@ -22,6 +22,7 @@ use faer::{Accum, Mat, Par, c64};
 use super::product::mul;
 use super::schur::Schur;
 use crate::error::StepError;
+use crate::scalar::{Ops, tally};
 
 /// A coefficient of the substitution is zero to within the bound that was given.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -126,6 +127,7 @@ impl AdSchur {
             }
         }
         let q = &schur.q;
+        tally(|| Ops::dots(4 * n * n, 2 * n));
         matmul(x.as_mut(), Accum::Replace, q.adjoint(), f.as_ref(), ONE, Par::Seq);
         match form {
             Some(_) => matmul(y.as_mut(), Accum::Replace, x.as_ref(), q.conjugate(), ONE, Par::Seq),
@@ -144,6 +146,7 @@ impl AdSchur {
         if form.is_none() {
             reverse_columns(y);
         }
+        tally(|| Ops::dots(4 * n * n, 2 * n));
         matmul(x.as_mut(), Accum::Replace, q.as_ref(), y.as_ref(), ONE, Par::Seq);
         match form {
             Some(_) => matmul(f.as_mut(), Accum::Replace, x.as_ref(), q.transpose(), ONE, Par::Seq),
@@ -234,6 +237,10 @@ impl AdSchur {
         let AdSchur { f, g, y, x, .. } = self;
         let n = y.nrows();
         let w = x.col_as_slice_mut(0);
+        // For column k: the sum w, the weight, F w, and the substitution with its pivots.
+        let half = n * n.saturating_sub(1) / 2;
+        tally(|| Ops::complex_muladds(n * half + n * (n + half) + n * half));
+        tally(|| (Ops::muls(2) + Ops::muladds(8) + Ops::divs(2)) * (n * n));
         for k in (0..n).rev() {
             // w = Σ_{m>k} X_m g_km; what is left of the right-hand side is weight·Y_k − F w.
             w.fill(ZERO);
@@ -278,6 +285,8 @@ impl AdSchur {
     /// Y ← ½(Y + FYGᵀ).
     fn average(&mut self) {
         let AdSchur { f, g, y, x, .. } = self;
+        let n = y.nrows();
+        tally(|| Ops::dots(4 * n * n, 2 * n) + (Ops::muls(4) + Ops::adds(2)) * (n * n));
         let half = c64::new(0.5, 0.0);
         matmul(x.as_mut(), Accum::Replace, f.as_ref(), y.as_ref(), half, Par::Seq);
         for j in 0..y.ncols() {
@@ -331,6 +340,7 @@ fn exp_triangular(t: &Mat<c64>, shift: f64, scale: f64, out: &mut Mat<c64>, x: &
     let n = t.nrows();
     out.fill(ZERO);
     out.diagonal_mut().fill(ONE);
+    tally(|| (Ops::complex_muladds(triangle(n)) + Ops::muladds(n * (n + 1))) * TAYLOR);
     for degree in (1..=TAYLOR).rev() {
         // out ← 𝟙 + t·out/degree
         let c = scale / degree as f64;
@@ -355,6 +365,7 @@ fn exp_triangular(t: &Mat<c64>, shift: f64, scale: f64, out: &mut Mat<c64>, x: &
 /// f ← f², with the diagonal exp(scale·(t + shift)).
 fn square(f: &mut Mat<c64>, x: &mut Mat<c64>, t: &Mat<c64>, shift: f64, scale: f64) {
     let n = f.nrows();
+    tally(|| Ops::complex_muladds(triangle(n)));
     for j in 0..n {
         let col = x.col_as_slice_mut(j);
         col.fill(ZERO);
@@ -370,7 +381,13 @@ fn square(f: &mut Mat<c64>, x: &mut Mat<c64>, t: &Mat<c64>, shift: f64, scale: f
     exact_diagonal(f, t, shift, scale);
 }
 
+/// The i ≤ k ≤ j < n of a product of two upper triangles.
+fn triangle(n: usize) -> usize {
+    n * (n + 1) * (n + 2) / 6
+}
+
 fn exact_diagonal(f: &mut Mat<c64>, t: &Mat<c64>, shift: f64, scale: f64) {
+    tally(|| (Ops::adds(1) + Ops::muls(4) + Ops::trigs(3)) * t.nrows());
     for i in 0..t.nrows() {
         f[(i, i)] = ((t[(i, i)] + shift) * scale).exp();
     }

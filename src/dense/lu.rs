@@ -7,6 +7,7 @@ use faer::{Mat, MatMut, MatRef, Par};
 
 use super::ops::SMALL;
 use super::product::load;
+use crate::scalar::{Ops, tally};
 
 /// An LU factorisation that can be redone in place.
 pub(crate) struct Lu {
@@ -23,6 +24,19 @@ impl core::fmt::Debug for Lu {
     }
 }
 
+/// n reciprocals of pivots, n(n − 1)/2 multipliers and a row operation for every i, j > k.
+#[inline(always)]
+fn factor_ops(n: usize) -> Ops {
+    let below = n * n.saturating_sub(1) / 2;
+    Ops::divs(n) + Ops::muls(below) + Ops::muladds(below * (2 * n).saturating_sub(1) / 3)
+}
+
+/// n reciprocals; for every column both triangles and a product with each reciprocal.
+#[inline(always)]
+fn solve_ops(n: usize, columns: usize) -> Ops {
+    Ops::divs(n) + (Ops::muladds(n * n.saturating_sub(1)) + Ops::muls(n)) * columns
+}
+
 impl Lu {
     /// Workspace for n×n, with at most n right-hand sides.
     pub(crate) fn new(n: usize) -> Self {
@@ -34,6 +48,7 @@ impl Lu {
     /// Factor `a` in place. Returns min|u_ii|/max|u_ii|, a cheap sign of singularity: 0 for a
     /// singular matrix, and never NaN.
     pub(crate) fn factor(&mut self) -> f64 {
+        tally(|| factor_ops(self.a.nrows()));
         match self.a.nrows() {
             2 => self.factor_small::<2>(),
             3 => self.factor_small::<3>(),
@@ -66,6 +81,7 @@ impl Lu {
 
     /// b ← a⁻¹b. `b` has at most n columns.
     pub(crate) fn solve(&mut self, mut b: MatMut<'_, f64>) {
+        tally(|| solve_ops(self.a.nrows(), b.ncols()));
         match self.a.nrows() {
             2 => self.solve_small::<2>(b),
             3 => self.solve_small::<3>(b),

@@ -3,6 +3,8 @@
 use faer::{Mat, MatRef};
 use pulp::{Arch, NullaryFnOnce};
 
+use crate::scalar::{Ops, tally};
+
 /// The largest n with a const-size LU, and the largest for which wide instructions are not looked for.
 pub(crate) const SMALL: usize = 8;
 
@@ -18,6 +20,7 @@ pub(crate) fn scaled_sum<const K: usize>(
     x: [&Mat<f64>; K],
     d: f64,
 ) {
+    tally_sum(K, x[0], d, false);
     wide(out.nrows(), Sums { out: [out], c: [c], x, d: [d], add: false });
 }
 
@@ -28,6 +31,7 @@ pub(crate) fn add_scaled_sum<const K: usize>(
     x: [&Mat<f64>; K],
     d: f64,
 ) {
+    tally_sum(K, x[0], d, true);
     wide(out.nrows(), Sums { out: [out], c: [c], x, d: [d], add: true });
 }
 
@@ -39,7 +43,17 @@ pub(crate) fn scaled_sums<const K: usize, const M: usize>(
     x: [&Mat<f64>; K],
     d: [f64; M],
 ) {
+    d.iter().for_each(|d| tally_sum(K, x[0], *d, false));
     wide(x[0].nrows(), Sums { out, c, x, d, add: false });
+}
+
+/// The operations of a sum of K matrices.
+#[inline(always)]
+fn tally_sum(k: usize, like: &Mat<f64>, d: f64, add: bool) {
+    let (rows, columns) = (like.nrows(), like.ncols());
+    let diagonal = if d == 0.0 { 0 } else { rows.min(columns) };
+    let entries = rows * columns;
+    tally(|| Ops::dots(entries, k) + Ops::adds(diagonal + if add { entries } else { 0 }));
 }
 
 /// `op` with the widest instructions there are, where n is worth the choice.
@@ -125,6 +139,7 @@ fn sum(x: &[f64], f: impl Fn(f64) -> f64) -> f64 {
 
 /// The 1-norm: the largest absolute column sum. NaN when an entry is NaN.
 pub(crate) fn norm1(x: MatRef<'_, f64>) -> f64 {
+    tally(|| Ops::adds(x.nrows().saturating_sub(1) * x.ncols()));
     wide(x.nrows(), Norm1(x))
 }
 
@@ -152,6 +167,7 @@ impl NullaryFnOnce for Norm1<'_> {
 
 /// y ← |a|ᵀx for x, y ≥ 0; returns the largest y_j.
 pub(crate) fn abs_mul(a: &Mat<f64>, x: &[f64], y: &mut [f64]) -> f64 {
+    tally(|| Ops::dots(y.len(), x.len()));
     wide(a.nrows(), AbsMul { a, x, y })
 }
 
@@ -187,6 +203,7 @@ impl NullaryFnOnce for AbsMul<'_> {
 
 /// The sums of moduli off the diagonal, along rows and along columns.
 pub(crate) fn abs_sums(a: &Mat<f64>, rows: &mut [f64], cols: &mut [f64]) {
+    tally(|| Ops::adds(2 * rows.len() * cols.len().saturating_sub(2)));
     rows.fill(0.0);
     for (j, c) in cols.iter_mut().enumerate() {
         let col = a.col_as_slice(j);
@@ -199,6 +216,7 @@ pub(crate) fn abs_sums(a: &Mat<f64>, rows: &mut [f64], cols: &mut [f64]) {
 
 /// The Frobenius norm.
 pub(crate) fn norm_frobenius(x: &Mat<f64>) -> f64 {
+    tally(|| Ops::dots(1, x.nrows() * x.ncols()) + Ops::sqrts(1));
     let s: f64 = (0..x.ncols()).map(|j| sum(x.col_as_slice(j), |x| x * x)).sum();
     if s.is_normal() {
         s.sqrt()

@@ -15,6 +15,7 @@ use pulp::{Arch, NullaryFnOnce, Simd};
 use super::expm::cols::{Cols, Kernel, N_MAX, dispatch};
 use super::expm::taylor::Packed;
 use super::ops::{SMALL, axpy, norm1, scaled_sum, wide};
+use crate::scalar::{Ops, tally};
 
 /// From this n on one triangle is cheaper than the whole product.
 pub(crate) const HALF_FROM: usize = 48;
@@ -36,6 +37,7 @@ fn product(out: &mut Mat<f64>, a: MatRef<'_, f64>, b: MatRef<'_, f64>, alpha: f6
     let n = a.nrows();
     let square = a.ncols() == n && b.nrows() == n && b.ncols() == n;
     let add = matches!(accum, Accum::Add);
+    tally_product(n * b.ncols(), a.ncols(), alpha, add);
     match n {
         1 if square => Small::<1> { a, b, alpha, add, out }.call(),
         2 if square => Small::<2> { a, b, alpha, add, out }.call(),
@@ -51,6 +53,14 @@ fn product(out: &mut Mat<f64>, a: MatRef<'_, f64>, b: MatRef<'_, f64>, alpha: f6
         }
         _ => matmul(out.as_mut(), accum, a, b, alpha, Par::Seq),
     }
+}
+
+/// The operations of so many entries of a product.
+#[inline(always)]
+fn tally_product(entries: usize, k: usize, alpha: f64, add: bool) {
+    let scaled = if alpha.abs() == 1.0 { 0 } else { entries };
+    let added = if add { entries } else { 0 };
+    tally(|| Ops::dots(entries, k) + Ops::muls(scaled) + Ops::adds(added));
 }
 
 /// out ← alpha·a·b, or out ← out + alpha·a·b, of const size.
@@ -207,9 +217,11 @@ pub(crate) fn lower_product(
             let width = PANEL.min(n - j);
             let panel = out.as_mut().submatrix_mut(j, j, n - j, width);
             let (a, b) = (a.subrows(j, n - j), b.subcols(j, width));
+            tally_product((n - j) * width, n, alpha, matches!(accum, Accum::Add));
             matmul(panel, accum, a, b, alpha, Par::Seq);
         }
     } else {
+        tally_product(n * (n + 1) / 2, n, alpha, matches!(accum, Accum::Add));
         let (lower, full) = (BlockStructure::TriangularLower, BlockStructure::Rectangular);
         matmul_triangular(out.as_mut(), lower, accum, a, full, b, full, alpha, Par::Seq);
     }
@@ -323,6 +335,7 @@ pub(super) fn load<const N: usize>(a: MatRef<'_, f64>) -> [[f64; N]; N] {
 
 /// p ← p − pᵀ. With p = u·v and u, v skew this is \[u, v\] for one product.
 pub(crate) fn antisymmetrise(p: &mut Mat<f64>) {
+    tally(|| Ops::adds(p.nrows() * p.ncols().saturating_sub(1) / 2));
     if p.nrows() > N_MAX {
         return wide(p.nrows(), Mirror::<true> { x: p, sign: -1.0 });
     }

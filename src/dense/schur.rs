@@ -7,6 +7,7 @@
 use faer::{Mat, c64};
 
 use crate::error::StepError;
+use crate::scalar::{Ops, tally};
 
 const ZERO: c64 = c64::new(0.0, 0.0);
 const ONE: c64 = c64::new(1.0, 0.0);
@@ -33,6 +34,9 @@ struct Rotation {
 }
 
 impl Rotation {
+    /// Of a pair of numbers: each times c, plus the other times s.
+    const OPS: Ops = Ops { add: 8, mul: 12, ..Ops::NONE };
+
     fn new(a: c64, b: c64) -> Self {
         let (size_a, size_b) = (a.norm(), b.norm());
         if size_b == 0.0 {
@@ -47,6 +51,7 @@ impl Rotation {
 
     /// Rows k and k + 1 of `x`, columns `from`….
     fn rows(self, x: &mut Mat<c64>, k: usize, from: usize) {
+        tally(|| Rotation::OPS * x.ncols().saturating_sub(from));
         for j in from..x.ncols() {
             let col = x.col_as_slice_mut(j);
             let (a, b) = (col[k], col[k + 1]);
@@ -57,6 +62,7 @@ impl Rotation {
 
     /// Columns k and k + 1 of `x`, rows up to `to`, from the right by the adjoint.
     fn columns(self, x: &mut Mat<c64>, k: usize, to: usize) {
+        tally(|| Rotation::OPS * to);
         for i in 0..to {
             let (a, b) = (x[(i, k)], x[(i, k + 1)]);
             x[(i, k)] = a * self.c + self.s.conj() * b;
@@ -125,6 +131,9 @@ impl Schur {
             w[k + 1] += phase;
             let size = (k + 1..n).map(|i| w[i].norm()).fold(0.0f64, f64::hypot);
             w[k + 1..].iter_mut().for_each(|x| *x /= size);
+            let (rows, vectors) = (n - k - 1, n - k + 2 * n);
+            tally(|| Ops::muladds(4 * rows) + Ops::divs(4 * rows) + Ops::sqrts(2 * rows));
+            tally(|| (Ops::complex_muladds(2 * rows) + Ops::muls(2 * rows)) * vectors);
             for j in k..n {
                 let col = t.col_as_slice_mut(j);
                 let mut dot = ZERO;

@@ -6,6 +6,7 @@ use faer::{Col, Mat, Par};
 
 use super::product::mul;
 use crate::error::StepError;
+use crate::scalar::{Ops, tally};
 
 /// Workspace for a = Q Λ Qᵀ.
 pub(crate) struct SymmetricEigen {
@@ -40,6 +41,8 @@ impl SymmetricEigen {
         out: &mut Mat<f64>,
     ) -> Result<(), StepError> {
         let SymmetricEigen { q, scaled, lambda, mem } = self;
+        let n = a.nrows();
+        tally(|| Ops::muladds(9 * n * n * n / 2) + Ops::trigs(n) + Ops::muls(n * n));
         self_adjoint_evd(
             a.as_ref(),
             lambda.as_diagonal_mut(),

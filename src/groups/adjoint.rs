@@ -19,7 +19,7 @@ use super::{AlgebraMatrix, Form, GroupMatrix, LieGroup, MatrixGroup, So3, apply3
 use crate::dense::{Lu, antisymmetrise, is_finite, mul, mul_add};
 use crate::error::StepError;
 use crate::problems::LinearSpace;
-use crate::scalar::Real;
+use crate::scalar::{Ops, Real, tally};
 
 /// The adjoint and coadjoint representations of a group and of its algebra.
 pub trait Adjoint: LieGroup {
@@ -193,6 +193,7 @@ impl Adjoint for MatrixGroup {
         if matches!(self.form(), Form::Identity) {
             // Skew to rounding; skew exactly.
             antisymmetrise(out);
+            tally(|| Ops::muls(self.n() * self.n()));
             **out *= faer::Scale(0.5);
         }
         finite(is_finite(out))

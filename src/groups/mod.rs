@@ -23,6 +23,7 @@ pub use matrix::{AlgebraMatrix, Form, GroupMatrix, MEMBERSHIP, MatrixGroup, RCON
 pub use power::Power;
 pub use product::Product;
 pub(crate) use product::larger;
+pub(crate) use quaternions::QUATERNION_PRODUCT;
 pub use quaternions::UnitQuaternions;
 pub use se3::Se3;
 pub(crate) use se3::{add3, finite_pair};

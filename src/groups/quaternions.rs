@@ -19,6 +19,7 @@ use super::{Adjoint, LieAlgebra, LieGroup, RESIDUAL_MAX, Sample, So3};
 use crate::actions::{Action, Coadjoint};
 use crate::error::{Error, StepError};
 use crate::maps::{Cay, CoordinateMap, Exp};
+use crate::scalar::{Counted, Ops, tally, tally_by};
 use crate::so3;
 
 /// S³, the unit quaternions, over ℝ³ with the cross product.
@@ -40,6 +41,11 @@ pub struct UnitQuaternions;
 
 const SO3: So3<f64> = So3::new();
 
+/// u × v.
+const CROSS: Ops = Ops { mul: 6, add: 3, ..Ops::NONE };
+/// A product of quaternions.
+pub(crate) const QUATERNION_PRODUCT: Ops = Ops { mul: 16, add: 12, ..Ops::NONE };
+
 impl LieAlgebra for UnitQuaternions {
     type Scalar = f64;
     type Alg = Vector3<f64>;
@@ -60,14 +66,17 @@ impl LieAlgebra for UnitQuaternions {
     }
     #[inline]
     fn axpy(&self, a: f64, x: &Vector3<f64>, y: &mut Vector3<f64>) {
+        tally(|| Ops::muladds(3));
         SO3.axpy(a, x, y);
     }
     #[inline]
     fn bracket(&self, u: &Vector3<f64>, v: &Vector3<f64>, out: &mut Vector3<f64>) {
+        tally(|| CROSS);
         SO3.bracket(u, v, out);
     }
     #[inline]
     fn norm(&self, u: &Vector3<f64>) -> f64 {
+        tally(|| Ops::dots(1, 3) + Ops::sqrts(1));
         SO3.norm(u)
     }
     #[inline]
@@ -91,11 +100,13 @@ impl LieGroup for UnitQuaternions {
         b: &UnitQuaternion<f64>,
         out: &mut UnitQuaternion<f64>,
     ) {
+        tally(|| QUATERNION_PRODUCT);
         *out = UnitQuaternion::new_unchecked(a.quaternion() * b.quaternion());
     }
     #[inline]
     fn apply(&self, q: &UnitQuaternion<f64>, x: &Vector3<f64>, y: &mut Vector3<f64>) {
         let (w, v) = (q.w, q.imag());
+        tally(|| CROSS * 2 + Ops::muls(6) + Ops::adds(6));
         let t = 2.0 * v.cross(x);
         *y = x + w * t + v.cross(&t);
     }
@@ -114,6 +125,7 @@ impl LieGroup for UnitQuaternions {
     #[inline]
     fn correct(&self, q: &mut UnitQuaternion<f64>, _: [&mut UnitQuaternion<f64>; 2]) -> f64 {
         let gap = q.coords.norm_squared() - 1.0;
+        tally(|| Ops::dots(1, 4) + Ops::adds(2) + Ops::muls(5));
         if gap.abs() < RESIDUAL_MAX {
             *q = UnitQuaternion::new_unchecked(Quaternion::from(q.coords * (1.0 - 0.5 * gap)));
         }
@@ -200,7 +212,7 @@ impl Sample for UnitQuaternions {
 
 /// Both maps: Ψ by its quaternion, the rest by so(3).
 macro_rules! map {
-    ($map:ty, $name:literal, $psi:path, $dpsi_inv:path) => {
+    ($map:ty, $name:literal, $psi:path, $dpsi_inv:path, |$u:ident| $tally:expr) => {
         impl CoordinateMap<UnitQuaternions> for $map {
             type At = ();
 
@@ -218,6 +230,8 @@ macro_rules! map {
                 _: &mut (),
                 q: &mut UnitQuaternion<f64>,
             ) -> Result<(), StepError> {
+                let $u = u;
+                $tally;
                 *q = $psi(u)?;
                 Ok(())
             }
@@ -229,11 +243,18 @@ macro_rules! map {
                 _: &mut (),
                 v: &mut Vector3<f64>,
             ) -> Result<(), StepError> {
+                tally_by(|| $dpsi_inv(&u.map(Counted), &v.map(Counted)));
                 *v = $dpsi_inv(u, v)?;
                 Ok(())
             }
         }
     };
 }
-map!(Exp, "exp", so3::exp_quaternion, so3::dexpinv);
-map!(Cay, "cay", so3::cay_quaternion, so3::dcayinv);
+map!(Exp, "exp", so3::exp_quaternion, so3::dexpinv, |u| {
+    tally_by(|| so3::half_angle(&u.map(Counted)));
+    tally(|| Ops::muls(3));
+});
+// Scaled: four divisions, the norm, four more.
+map!(Cay, "cay", so3::cay_quaternion, so3::dcayinv, |_u| {
+    tally(|| Ops::divs(8) + Ops::dots(1, 4) + Ops::sqrts(1));
+});

@@ -20,11 +20,17 @@ use crate::error::{Error, StepError};
 use crate::groups::{ComplexMatrix, LieAlgebra, LieGroup, Unitary, mul_complex};
 use crate::methods::Metric;
 use crate::problems::LinearSpace;
+use crate::scalar::{Ops, tally};
 
 /// Above this norm no digit of cay(u) has a meaning.
 const NORM_MAX: f64 = 1e15;
 /// Above this norm of u the solve has lost more than rounding of the group.
 const NORM_EXACT: f64 = 4.0;
+
+/// One correction takes a residual below this to rounding.
+const ONE_STEP: f64 = 1e-8;
+/// From a residual of 0.1 on four are needed.
+const CORRECTIONS_MAX: usize = 6;
 
 /// What exp keeps on U(n): workspaces, and how the last dexp⁻¹ was computed.
 #[derive(Debug)]
@@ -182,14 +188,23 @@ impl CoordinateMap<Unitary> for Cay {
         for (x, half) in [(&mut *minus, -0.5), (&mut *plus, 0.5)] {
             x.clear();
             x.add(half, u);
+            tally(|| Ops::adds(group.n()));
             x.re.diagonal_mut().column_vector_mut().iter_mut().for_each(|d| *d += 1.0);
         }
         lu.solve(minus, plus);
         split(&lu.b, g);
         if norm > NORM_EXACT {
-            // Each time the residual is squared.
-            for _ in 0..3 {
-                group.correct(g, [&mut *product, &mut *minus]);
+            // Each time the residual is squared; what a solve without digits leaves does not converge.
+            let mut residual = f64::INFINITY;
+            for _ in 0..CORRECTIONS_MAX {
+                residual = group.correct(g, [&mut *product, &mut *minus]);
+                if residual <= ONE_STEP {
+                    break;
+                }
+            }
+            if residual.is_nan() || residual > ONE_STEP {
+                let (what, rcond) = ("𝟙 − u/2", 1.0 / (1.0 + 0.5 * norm));
+                return Err(StepError::NearlySingular { map: "cay", what, rcond });
             }
             minus.clear();
             minus.add(-0.5, u);
@@ -241,6 +256,11 @@ impl ComplexLu {
 
     /// self.b ← a⁻¹b. In cay a = 𝟙 − u/2 is regular: its eigenvalues are 1 − iα/2.
     fn solve(&mut self, a: &ComplexMatrix, b: &ComplexMatrix) {
+        // As in `Lu`, in complex numbers.
+        let n = self.a.nrows();
+        let below = n * n.saturating_sub(1) / 2;
+        let factor = below * (2 * n).saturating_sub(1) / 3;
+        tally(|| Ops::complex_muladds(factor + n * n * n) + Ops::divs(6 * n));
         join(a, &mut self.a);
         join(b, &mut self.b);
         let stack = MemStack::new(&mut self.mem);

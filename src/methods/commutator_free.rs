@@ -10,11 +10,11 @@
 //! | [`CF43`] | 4(3) | 4, and 1 for the error | 5, and 3 | Curry, Owren 2019 |
 //!
 //! Crouch–Grossman methods are such tables with one stage in each exponential
-//! ([`crouch_grossman`](super::crouch_grossman)). The map is exp: its one-parameter subgroups are what
-//! the order conditions rest on, so no other Ψ keeps the order. Preserves: the group, and what the
-//! action leaves invariant. Source: E. Celledoni, A. Marthinsen, B. Owren, Commutator-free Lie group
-//! methods, FGCS 19 (2003); C. Curry, B. Owren, Variable step size commutator free Lie group
-//! integrators, Numer. Algorithms 82 (2019).
+//! ([`crouch_grossman`](super::crouch_grossman)). The map is exp: its one-parameter subgroups are
+//! what the order conditions rest on, so no other Ψ keeps the order. Cost: f once a stage, exp once a
+//! factor, applied to a point. Preserves: the group, and what the action leaves invariant. Source: E.
+//! Celledoni, A. Marthinsen, B. Owren, Commutator-free Lie group methods, FGCS 19 (2003); C. Curry,
+//! B. Owren, Variable step size commutator free Lie group integrators, Numer. Algorithms 82 (2019).
 
 use super::embedded::{between, without_pair};
 use super::stages::Stages;

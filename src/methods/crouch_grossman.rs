@@ -9,9 +9,9 @@
 //! | [`CG3`] | 3 | 3 | 6 | Crouch, Grossman 1993; Owren, Marthinsen 1999 |
 //! | [`CG4`] | 4 | 5 | 15 | Jackiewicz, Marthinsen, Owren 2000 (CG4a) |
 //!
-//! They run as [`CommutatorFree`](super::CommutatorFree) tables. The map is exp. Preserves: the
-//! group, and what the action leaves invariant. Source: P. Crouch, R. Grossman, Numerical integration
-//! of ordinary differential equations on manifolds, J. Nonlinear Sci. 3 (1993).
+//! They run as [`CommutatorFree`](super::CommutatorFree) tables. The map is exp. Cost: the table.
+//! Preserves: the group, and what the action leaves invariant. Source: P. Crouch, R. Grossman,
+//! Numerical integration of ordinary differential equations on manifolds, J. Nonlinear Sci. 3 (1993).
 
 use super::commutator_free::{Product, ProductTableau, start};
 

@@ -29,6 +29,7 @@ use crate::dense::{axpy, is_finite, mul, norm_frobenius};
 use crate::error::{Error, StepError};
 use crate::groups::{AlgebraMatrix, LieAlgebra, MatrixGroup};
 use crate::problems::Problem;
+use crate::scalar::{Ops, tally};
 
 /// An isospectral method on a Gauss tableau.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,6 +67,7 @@ impl<const S: usize> Factor<S> {
         for (c, x) in c.iter().zip(slopes) {
             axpy(h * c, x, out);
         }
+        tally(|| Ops::adds(out.nrows()));
         for i in 0..out.nrows() {
             out[(i, i)] += 1.0;
         }

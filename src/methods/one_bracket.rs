@@ -9,10 +9,10 @@
 //! | [`MAGNUS43`] | 4(3) | 6 | 6 | 3 | Casas, Iserles 2006 |
 //!
 //! The second is the Magnus method of nonlinear equations: its last stage lies at the result of order
-//! 3. The map is exp, which the brackets belong to. Preserves: the group, and what the action leaves
-//! invariant. Source: H. Munthe-Kaas, B. Owren, Computations in a free Lie algebra, Phil. Trans. R.
-//! Soc. A 357 (1999); F. Casas, A. Iserles, Explicit Magnus expansions for nonlinear equations,
-//! J. Phys. A 39 (2006).
+//! 3. The map is exp, which the brackets belong to. Cost: the table. Preserves: the group, and what
+//! the action leaves invariant. Source: H. Munthe-Kaas, B. Owren, Computations in a free Lie algebra,
+//! Phil. Trans. R. Soc. A 357 (1999); F. Casas, A. Iserles, Explicit Magnus expansions for nonlinear
+//! equations, J. Phys. A 39 (2006).
 
 use super::embedded::without_pair;
 use super::stages::Stages;

@@ -13,6 +13,7 @@ use super::{
     TaylorField,
 };
 use crate::actions::{Action, Coadjoint};
+use crate::dense::mul;
 use crate::groups::{Adjoint, AlgebraMatrix, MatrixGroup};
 use crate::problems::space::linear_space;
 use crate::scalar::Real;
@@ -301,6 +302,22 @@ where
     fn f(&self, _: G::Scalar, y: &PointOf<Self>, v: &mut G::Alg, xi: &mut G::Alg) {
         self.system.minus_gradient(&y.1, v, xi);
     }
+}
+
+/// (g ∇H, ad*_{∇H} m), by the entries of g and m.
+impl<H: Hamiltonian<MatrixGroup>> Ambient for EulerGroup<MatrixGroup, H> {
+    fn field(
+        &self,
+        _: f64,
+        (g, m): &PointOf<Self>,
+        (dg, dm): &mut PointOf<Self>,
+        xi: &mut AlgebraMatrix,
+    ) {
+        self.system.hamiltonian.gradient(m, xi);
+        mul(dg, g.as_ref(), xi.as_ref());
+        self.group().coad(xi, m, dm);
+    }
+    linear_space!();
 }
 
 impl<G: Adjoint, H: Hamiltonian<G>> Invariants for EulerGroup<G, H>

@@ -15,8 +15,9 @@ use super::{
 };
 use crate::actions::LeftTranslation;
 use crate::error::Error;
-use crate::groups::{LieGroup, UnitQuaternions};
+use crate::groups::{LieGroup, QUATERNION_PRODUCT, UnitQuaternions};
 use crate::methods::Metric;
+use crate::scalar::{Ops, tally};
 use crate::so3;
 
 /// The free rigid body by the quaternion of its attitude, from body to space.
@@ -81,6 +82,7 @@ impl Problem for RigidBodyQuaternion {
     fn work(&self) {}
     #[inline]
     fn f(&self, _: f64, q: &UnitQuaternion<f64>, v: &mut Vector3<f64>, _: &mut ()) {
+        tally(|| Ops::muls(3)); // ω of m
         UnitQuaternions.apply(q, &self.body.omega(&self.momentum_body(q)), v);
     }
 }
@@ -89,6 +91,7 @@ impl Ambient for RigidBodyQuaternion {
     fn field(&self, t: f64, q: &UnitQuaternion<f64>, dq: &mut UnitQuaternion<f64>, work: &mut ()) {
         let mut omega = Vector3::zeros();
         self.f(t, q, &mut omega, work);
+        tally(|| Ops::muls(3) + QUATERNION_PRODUCT);
         let product = Quaternion::from_imag(0.5 * omega) * q.quaternion();
         *dq = UnitQuaternion::new_unchecked(product);
     }
@@ -104,11 +107,13 @@ impl Metric for UnitQuaternion<f64> {
     }
     #[inline]
     fn size(&self) -> f64 {
+        tally(|| Ops::dots(1, 4) + Ops::sqrts(1));
         self.coords.norm()
     }
     /// |a − b|: q and −q are different points.
     #[inline]
     fn distance(&self, x: &Self) -> f64 {
+        tally(|| Ops::adds(4) + Ops::dots(1, 4) + Ops::sqrts(1));
         (self.coords - x.coords).norm()
     }
 }
@@ -120,10 +125,12 @@ impl LinearSpace for UnitQuaternion<f64> {
     }
     #[inline]
     fn add(&mut self, a: f64, x: &Self) {
+        tally(|| Ops::muladds(4));
         *self = UnitQuaternion::new_unchecked(Quaternion::from(self.coords + a * x.coords));
     }
     #[inline]
     fn dot(&self, x: &Self) -> f64 {
+        tally(|| Ops::dots(1, 4));
         self.coords.dot(&x.coords)
     }
     #[inline]

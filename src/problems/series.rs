@@ -6,6 +6,7 @@ use faer::Mat;
 use super::{AlgOf, PointOf, Problem, ScalarOf};
 use crate::dense::{antisymmetrise, mul_add};
 use crate::groups::AlgebraMatrix;
+use crate::scalar::{Ops, tally};
 
 /// A capability: the Taylor coefficients of the field along the solution through a point.
 ///
@@ -58,6 +59,7 @@ impl MomentumSeries {
             if self.skew {
                 // The symmetric part of a momentum vanishes on 𝔤.
                 antisymmetrise(&mut self.m[0]);
+                tally(|| Ops::muls(self.m[0].nrows() * self.m[0].ncols()));
                 self.m[0] *= faer::Scale(0.5);
             }
             return &self.m[0];

@@ -6,7 +6,7 @@ use nalgebra::{Matrix3, Vector3};
 use crate::dense;
 use crate::groups::{AlgebraMatrix, GroupMatrix};
 use crate::methods::Metric;
-use crate::scalar::Real;
+use crate::scalar::{Ops, Real, tally};
 
 /// A point of a linear space with a norm: vectors and matrices of both layers, pairs and boxed
 /// slices of them. Allocates nothing.
@@ -57,6 +57,7 @@ macro_rules! dense {
                 dense::axpy(a, x, self);
             }
             fn dot(&self, x: &Self) -> f64 {
+                tally(|| Ops::dots(1, x.nrows() * x.ncols()));
                 let column = |j| self.col_as_slice(j).iter().zip(x.col_as_slice(j));
                 (0..self.ncols()).flat_map(column).map(|(y, x)| y * x).sum()
             }

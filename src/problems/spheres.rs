@@ -17,15 +17,20 @@ use super::rigid_body::check_finite;
 use super::{Ambient, Invariant, Invariants, LiePoisson, Problem, space::linear_space};
 use crate::actions::{Coadjoint, Linear};
 use crate::error::Error;
-use crate::groups::{Power, Se3, So3};
+use crate::groups::{Power, Se3, So3, add3, cross};
+use crate::scalar::Real;
 
-type V = Vector3<f64>;
+type V<S = f64> = Vector3<S>;
+
+fn dot<S: Real>(a: &V<S>, b: &V<S>) -> S {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
 
 /// A point mass on a rod that turns in every direction; e₃ points up. Points are (ω, q).
 #[derive(Clone, Copy, Debug)]
-pub struct SphericalPendulum {
+pub struct SphericalPendulum<S = f64> {
     /// g/ℓ.
-    rate2: f64,
+    rate2: S,
 }
 
 impl SphericalPendulum {
@@ -53,18 +58,25 @@ impl SphericalPendulum {
         Ok((q.cross(&V::from(velocity)), q))
     }
 
-    /// ½|ω|² + (g/ℓ) q₃.
-    pub fn energy(&self, (omega, q): &(V, V)) -> f64 {
-        0.5 * omega.norm_squared() + self.rate2 * q[2]
+    /// The same pendulum in other numbers.
+    pub fn on<S: Real>(&self) -> SphericalPendulum<S> {
+        SphericalPendulum { rate2: S::lit(self.rate2) }
     }
 }
 
-impl Problem for SphericalPendulum {
-    type Group = Se3;
+impl<S: Real> SphericalPendulum<S> {
+    /// ½|ω|² + (g/ℓ) q₃.
+    pub fn energy(&self, (omega, q): &(V<S>, V<S>)) -> S {
+        S::lit(0.5) * dot(omega, omega) + self.rate2 * q[2]
+    }
+}
+
+impl<S: Real> Problem for SphericalPendulum<S> {
+    type Group = Se3<S>;
     type Action = Coadjoint;
     type Work = ();
 
-    fn group(&self) -> &Se3 {
+    fn group(&self) -> &Se3<S> {
         const { &Se3::new() }
     }
     fn action(&self) -> &Coadjoint {
@@ -72,36 +84,45 @@ impl Problem for SphericalPendulum {
     }
     fn work(&self) {}
     #[inline]
-    fn f(&self, _: f64, (omega, _): &(V, V), v: &mut (V, V), _: &mut ()) {
-        *v = (*omega, V::new(0.0, 0.0, self.rate2));
+    fn f(&self, _: S, (omega, _): &(V<S>, V<S>), v: &mut (V<S>, V<S>), _: &mut ()) {
+        *v = (*omega, V::new(S::lit(0.0), S::lit(0.0), self.rate2));
     }
 }
 
-impl Ambient for SphericalPendulum {
-    fn field(&self, _: f64, (omega, q): &(V, V), dy: &mut (V, V), _: &mut ()) {
-        *dy = (V::new(-self.rate2 * q[1], self.rate2 * q[0], 0.0), omega.cross(q));
+impl<S: Real> Ambient for SphericalPendulum<S> {
+    fn field(&self, _: S, (omega, q): &(V<S>, V<S>), dy: &mut (V<S>, V<S>), _: &mut ()) {
+        let torque = V::new(-(self.rate2 * q[1]), self.rate2 * q[0], S::lit(0.0));
+        *dy = (torque, cross(omega, q));
     }
     linear_space!();
 }
 
 /// On the dual of se(3) by −H: f = (ω, (g/ℓ) e₃) is the gradient of the energy H, affine in (ω, q).
-impl LiePoisson for SphericalPendulum {
-    fn hamiltonian(&self, y: &(V, V)) -> f64 {
+impl<S: Real> LiePoisson for SphericalPendulum<S> {
+    fn hamiltonian(&self, y: &(V<S>, V<S>)) -> S {
         -self.energy(y)
     }
-    fn discrete_gradient(&self, a: &(V, V), b: &(V, V), xi: &mut (V, V), _: &mut ()) {
-        *xi = (-0.5 * (a.0 + b.0), V::new(0.0, 0.0, -self.rate2));
+    fn discrete_gradient(
+        &self,
+        a: &(V<S>, V<S>),
+        b: &(V<S>, V<S>),
+        xi: &mut (V<S>, V<S>),
+        _: &mut (),
+    ) {
+        let twice = add3(&a.0, &b.0);
+        let zero = S::lit(0.0);
+        *xi = (twice.map(|w| S::lit(-0.5) * w), V::new(zero, zero, -self.rate2));
     }
 }
 
-impl Invariants for SphericalPendulum {
+impl<S: Real> Invariants for SphericalPendulum<S> {
     fn invariants(&self) -> Vec<Invariant> {
         let mut all: Vec<_> = ["|q|²", "ω·q"].map(Invariant::of_the_action).into();
         all.extend(["energy", "ω₃"].map(Invariant::of_the_flow));
         all
     }
-    fn values(&self, y: &(V, V)) -> Vec<f64> {
-        vec![y.1.norm_squared(), y.0.dot(&y.1), self.energy(y), y.0[2]]
+    fn values(&self, y: &(V<S>, V<S>)) -> Vec<S> {
+        vec![dot(&y.1, &y.1), dot(&y.0, &y.1), self.energy(y), y.0[2]]
     }
 }
 
@@ -123,12 +144,12 @@ impl Invariants for SphericalPendulum {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug)]
-pub struct SpinChain {
-    group: Power<So3>,
+pub struct SpinChain<S = f64> {
+    group: Power<So3<S>>,
     periodic: bool,
-    anisotropy: f64,
-    damping: f64,
-    field: V,
+    anisotropy: S,
+    damping: S,
+    field: V<S>,
 }
 
 impl SpinChain {
@@ -191,80 +212,126 @@ impl SpinChain {
         (0..self.group.copies()).map(unit).collect()
     }
 
+    /// The same chain in other numbers.
+    ///
+    /// # Errors
+    /// None that [`new`](Self::new) has not found.
+    pub fn on<S: Real>(&self) -> Result<SpinChain<S>, Error> {
+        Ok(SpinChain {
+            group: Power::new(So3::new(), self.group.copies())?,
+            periodic: self.periodic,
+            anisotropy: S::lit(self.anisotropy),
+            damping: S::lit(self.damping),
+            field: self.field.map(S::lit),
+        })
+    }
+}
+
+impl<S: Real> SpinChain<S> {
     /// The neighbours' sum s_{i−1} + s_{i+1}.
     #[inline]
-    fn neighbours(&self, s: &[V], i: usize) -> V {
+    fn neighbours(&self, s: &[V<S>], i: usize) -> V<S> {
         let last = s.len() - 1;
         let left = if i > 0 { Some(i - 1) } else { self.periodic.then_some(last) };
         let right = if i < last { Some(i + 1) } else { self.periodic.then_some(0) };
-        [left, right].into_iter().flatten().fold(V::zeros(), |sum, j| sum + s[j])
+        match (left, right) {
+            (Some(left), Some(right)) => add3(&s[left], &s[right]),
+            (Some(only), None) | (None, Some(only)) => s[only],
+            (None, None) => V::from_element(S::lit(0.0)),
+        }
     }
 
     /// H_i.
     #[inline]
-    fn effective_field(&self, s: &[V], i: usize) -> V {
-        self.neighbours(s, i) + self.field + V::new(0.0, 0.0, self.anisotropy * s[i][2])
+    fn effective_field(&self, s: &[V<S>], i: usize) -> V<S> {
+        let mut field = add3(&self.neighbours(s, i), &self.field);
+        field[2] += self.anisotropy * s[i][2];
+        field
     }
 
     /// −Σ s_i·s_{i+1} − ½K Σ (s_i)₃² − Σ B·s_i.
-    pub fn energy(&self, s: &[V]) -> f64 {
-        let of_spin = |(i, spin): (usize, &V)| {
-            let exchange = 0.5 * spin.dot(&self.neighbours(s, i)); // each pair is seen twice
-            exchange + 0.5 * self.anisotropy * spin[2] * spin[2] + spin.dot(&self.field)
+    pub fn energy(&self, s: &[V<S>]) -> S {
+        let half = S::lit(0.5);
+        let of_spin = |(i, spin): (usize, &V<S>)| {
+            let exchange = half * dot(spin, &self.neighbours(s, i)); // each pair is seen twice
+            exchange + half * self.anisotropy * spin[2] * spin[2] + dot(spin, &self.field)
         };
-        -s.iter().enumerate().map(of_spin).sum::<f64>()
+        -s.iter().enumerate().map(of_spin).fold(S::lit(0.0), |sum, x| sum + x)
     }
 }
 
-impl Problem for SpinChain {
-    type Group = Power<So3>;
+impl<S: Real> Problem for SpinChain<S> {
+    type Group = Power<So3<S>>;
     type Action = Linear;
     type Work = ();
 
-    fn group(&self) -> &Power<So3> {
+    fn group(&self) -> &Power<So3<S>> {
         &self.group
     }
     fn action(&self) -> &Linear {
         &Linear
     }
     fn work(&self) {}
-    fn f(&self, _: f64, s: &Box<[V]>, v: &mut Box<[V]>, _: &mut ()) {
+    fn f(&self, _: S, s: &Box<[V<S>]>, v: &mut Box<[V<S>]>, _: &mut ()) {
         for (i, v) in v.iter_mut().enumerate() {
             *v = self.effective_field(s, i);
-            if self.damping != 0.0 {
-                *v += self.damping * s[i].cross(v);
+            if self.damping != S::lit(0.0) {
+                let down = cross(&s[i], v);
+                for k in 0..3 {
+                    v[k] += self.damping * down[k];
+                }
             }
         }
     }
 }
 
-impl Ambient for SpinChain {
-    fn field(&self, t: f64, s: &Box<[V]>, ds: &mut Box<[V]>, work: &mut ()) {
+impl<S: Real> Ambient for SpinChain<S> {
+    fn field(&self, t: S, s: &Box<[V<S>]>, ds: &mut Box<[V<S>]>, work: &mut ()) {
         self.f(t, s, ds, work);
         for (ds, s) in ds.iter_mut().zip(s) {
-            *ds = ds.cross(s);
+            *ds = cross(ds, s);
         }
     }
     linear_space!();
 }
 
-impl Invariants for SpinChain {
+/// Without damping: f = −∇H for the energy H, of degree 2. With damping there is none, and the discrete
+/// gradient is not a number.
+impl<S: Real> LiePoisson for SpinChain<S> {
+    fn hamiltonian(&self, s: &Box<[V<S>]>) -> S {
+        self.energy(s)
+    }
+    fn discrete_gradient(
+        &self,
+        a: &Box<[V<S>]>,
+        b: &Box<[V<S>]>,
+        xi: &mut Box<[V<S>]>,
+        _: &mut (),
+    ) {
+        let conserves = self.damping == S::lit(0.0);
+        let half = S::lit(if conserves { -0.5 } else { f64::NAN });
+        for (i, xi) in xi.iter_mut().enumerate() {
+            let twice = add3(&self.effective_field(a, i), &self.effective_field(b, i));
+            *xi = twice.map(|x| half * x);
+        }
+    }
+}
+
+impl<S: Real> Invariants for SpinChain<S> {
     fn invariants(&self) -> Vec<Invariant> {
         let mut all = vec![Invariant::of_the_action("Σ|s_i|²")];
-        if self.damping == 0.0 {
+        let zero = S::lit(0.0);
+        if self.damping == zero {
             all.push(Invariant::of_the_flow("energy"));
-            if self.field[0] == 0.0 && self.field[1] == 0.0 {
+            if self.field[0] == zero && self.field[1] == zero {
                 all.push(Invariant::of_the_flow("Σ(s_i)₃"));
             }
         }
         all
     }
-    fn values(&self, s: &Box<[V]>) -> Vec<f64> {
-        let all = [
-            s.iter().map(V::norm_squared).sum(),
-            self.energy(s),
-            s.iter().map(|s| s[2]).sum::<f64>(),
-        ];
+    fn values(&self, s: &Box<[V<S>]>) -> Vec<S> {
+        let sum = |of: fn(&V<S>) -> S| s.iter().map(of).fold(S::lit(0.0), |sum, x| sum + x);
+        let all = [sum(|s| dot(s, s)), self.energy(s), sum(|s| s[2])];
         all[..self.invariants().len()].into()
     }
 }

@@ -8,38 +8,39 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::rigid_body::{check_finite, check_inertia};
+use super::rigid_body::{apply_transpose, check_finite, check_inertia};
 use super::{Ambient, Problem, space::linear_space};
 use crate::actions::LeftTranslation;
 use crate::error::Error;
-use crate::groups::{Product, So3, Translations, hat};
+use crate::groups::{Product, So3, Translations, add3, apply3, cross};
+use crate::scalar::Real;
 
 /// What a torque may depend on.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Motion {
+pub struct Motion<S = f64> {
     /// t.
-    pub t: f64,
+    pub t: S,
     /// g, from body to space.
-    pub attitude: Matrix3<f64>,
+    pub attitude: Matrix3<S>,
     /// m_s, the angular momentum in space.
-    pub momentum_space: Vector3<f64>,
+    pub momentum_space: Vector3<S>,
     /// ω_b = J⁻¹gᵀm_s, the angular velocity in the body.
-    pub omega_body: Vector3<f64>,
+    pub omega_body: Vector3<S>,
 }
 
 /// A torque, in the frame where it is simple.
-pub trait Torque {
+pub trait Torque<S = f64> {
     /// τ_s, the torque in space.
-    fn in_space(&self, at: &Motion) -> Vector3<f64>;
+    fn in_space(&self, at: &Motion<S>) -> Vector3<S>;
 }
 
 /// A torque that is given in space: a function of the [`Motion`].
 #[derive(Clone, Copy, Debug)]
 pub struct SpaceTorque<F>(pub F);
 
-impl<F: Fn(&Motion) -> Vector3<f64>> Torque for SpaceTorque<F> {
+impl<S, F: Fn(&Motion<S>) -> Vector3<S>> Torque<S> for SpaceTorque<F> {
     #[inline]
-    fn in_space(&self, at: &Motion) -> Vector3<f64> {
+    fn in_space(&self, at: &Motion<S>) -> Vector3<S> {
         (self.0)(at)
     }
 }
@@ -48,18 +49,18 @@ impl<F: Fn(&Motion) -> Vector3<f64>> Torque for SpaceTorque<F> {
 #[derive(Clone, Copy, Debug)]
 pub struct BodyTorque<F>(pub F);
 
-impl<F: Fn(&Motion) -> Vector3<f64>> Torque for BodyTorque<F> {
+impl<S: Real, F: Fn(&Motion<S>) -> Vector3<S>> Torque<S> for BodyTorque<F> {
     #[inline]
-    fn in_space(&self, at: &Motion) -> Vector3<f64> {
-        at.attitude * (self.0)(at)
+    fn in_space(&self, at: &Motion<S>) -> Vector3<S> {
+        apply3(&at.attitude, &(self.0)(at))
     }
 }
 
 /// The sum of two torques.
-impl<A: Torque, B: Torque> Torque for (A, B) {
+impl<S: Real, A: Torque<S>, B: Torque<S>> Torque<S> for (A, B) {
     #[inline]
-    fn in_space(&self, at: &Motion) -> Vector3<f64> {
-        self.0.in_space(at) + self.1.in_space(at)
+    fn in_space(&self, at: &Motion<S>) -> Vector3<S> {
+        add3(&self.0.in_space(at), &self.1.in_space(at))
     }
 }
 
@@ -81,10 +82,10 @@ impl<A: Torque, B: Torque> Torque for (A, B) {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct TorqueBody<T> {
-    group: Product<So3, Translations<Vector3<f64>>>,
-    inertia: Vector3<f64>,
-    inverse_inertia: Vector3<f64>,
+pub struct TorqueBody<T, S = f64> {
+    group: Product<So3<S>, Translations<Vector3<S>>>,
+    inertia: Vector3<S>,
+    inverse_inertia: Vector3<S>,
     torque: T,
 }
 
@@ -95,12 +96,7 @@ impl<T: Torque> TorqueBody<T> {
     /// [`Error::OutOfRange`] for a moment that is not finite and positive.
     pub fn new(inertia: [f64; 3], torque: T) -> Result<Self, Error> {
         check_inertia(&inertia)?;
-        Ok(TorqueBody {
-            group: Product(So3::new(), Translations::new(Vector3::zeros(), 3)),
-            inertia: inertia.into(),
-            inverse_inertia: inertia.map(|j| 1.0 / j).into(),
-            torque,
-        })
+        Ok(Self::of(inertia.into(), torque))
     }
 
     /// The state with this attitude and angular velocity in the body: (g, gJω_b).
@@ -118,22 +114,44 @@ impl<T: Torque> TorqueBody<T> {
         Ok((attitude, attitude * m))
     }
 
+    /// The same body in other numbers, under a torque in those.
+    pub fn on<S: Real, U: Torque<S>>(&self, torque: U) -> TorqueBody<U, S> {
+        TorqueBody::of(self.inertia, torque)
+    }
+}
+
+/// g and m_s.
+type Point<S> = (Matrix3<S>, Vector3<S>);
+
+impl<S: Real, T: Torque<S>> TorqueBody<T, S> {
+    fn of(inertia: Vector3<f64>, torque: T) -> Self {
+        let zero = Vector3::from_element(S::lit(0.0));
+        TorqueBody {
+            group: Product(So3::new(), Translations::new(zero, 3)),
+            inertia: inertia.map(S::lit),
+            inverse_inertia: inertia.map(|j| S::lit(1.0 / j)),
+            torque,
+        }
+    }
+
     /// What a torque sees at (t, y).
     #[inline]
-    pub fn motion(&self, t: f64, y: &(Matrix3<f64>, Vector3<f64>)) -> Motion {
-        let omega_body = self.inverse_inertia.component_mul(&y.0.tr_mul(&y.1));
+    pub fn motion(&self, t: S, y: &Point<S>) -> Motion<S> {
+        let momentum = apply_transpose(&y.0, &y.1);
+        let omega_body = Vector3::from_fn(|i, _| self.inverse_inertia[i] * momentum[i]);
         Motion { t, attitude: y.0, momentum_space: y.1, omega_body }
     }
 
     /// ½ ω·Jω.
-    pub fn kinetic_energy(&self, y: &(Matrix3<f64>, Vector3<f64>)) -> f64 {
-        let omega = self.motion(0.0, y).omega_body;
-        0.5 * omega.dot(&self.inertia.component_mul(&omega))
+    pub fn kinetic_energy(&self, y: &Point<S>) -> S {
+        let omega = self.motion(S::lit(0.0), y).omega_body;
+        let of = |i: usize| self.inertia[i] * omega[i] * omega[i];
+        S::lit(0.5) * (of(0) + of(1) + of(2))
     }
 }
 
-impl<T: Torque> Problem for TorqueBody<T> {
-    type Group = Product<So3, Translations<Vector3<f64>>>;
+impl<S: Real, T: Torque<S>> Problem for TorqueBody<T, S> {
+    type Group = Product<So3<S>, Translations<Vector3<S>>>;
     type Action = LeftTranslation;
     type Work = ();
 
@@ -145,28 +163,24 @@ impl<T: Torque> Problem for TorqueBody<T> {
     }
     fn work(&self) {}
     #[inline]
-    fn f(
-        &self,
-        t: f64,
-        y: &(Matrix3<f64>, Vector3<f64>),
-        v: &mut (Vector3<f64>, Vector3<f64>),
-        _: &mut (),
-    ) {
+    fn f(&self, t: S, y: &Point<S>, v: &mut (Vector3<S>, Vector3<S>), _: &mut ()) {
         let at = self.motion(t, y);
-        *v = (y.0 * at.omega_body, self.torque.in_space(&at));
+        *v = (apply3(&y.0, &at.omega_body), self.torque.in_space(&at));
     }
 }
 
-impl<T: Torque> Ambient for TorqueBody<T> {
-    fn field(
-        &self,
-        t: f64,
-        y: &(Matrix3<f64>, Vector3<f64>),
-        dy: &mut (Matrix3<f64>, Vector3<f64>),
-        _: &mut (),
-    ) {
+impl<S: Real, T: Torque<S>> Ambient for TorqueBody<T, S> {
+    fn field(&self, t: S, y: &Point<S>, dy: &mut Point<S>, _: &mut ()) {
         let at = self.motion(t, y);
-        *dy = (y.0 * hat(&at.omega_body), self.torque.in_space(&at));
+        // gω̂ row by row: r ω̂ = r × ω.
+        for i in 0..3 {
+            let row = Vector3::new(y.0[(i, 0)], y.0[(i, 1)], y.0[(i, 2)]);
+            let turned = cross(&row, &at.omega_body);
+            for j in 0..3 {
+                dy.0[(i, j)] = turned[j];
+            }
+        }
+        dy.1 = self.torque.in_space(&at);
     }
     linear_space!();
 }

@@ -16,7 +16,7 @@ pub struct Ops {
     pub div: u64,
     /// Square roots.
     pub sqrt: u64,
-    /// Sines and cosines, each counted.
+    /// Sines and cosines, each counted; on machine numbers exponentials and logarithms too.
     pub trig: u64,
 }
 
@@ -32,6 +32,24 @@ thread_local! {
         const { Cell::new(Ops { add: 0, mul: 0, div: 0, sqrt: 0, trig: 0 }) };
 }
 
+#[cfg(feature = "tally")]
+thread_local! {
+    static COUNTING: Cell<bool> = const { Cell::new(false) };
+}
+
+/// Does anybody count?
+#[cfg(feature = "tally")]
+#[inline(always)]
+pub(super) fn is_counting() -> bool {
+    COUNTING.get()
+}
+
+/// What a kernel on machine numbers says that it has done.
+#[cfg(feature = "tally")]
+pub(super) fn add(ops: Ops) {
+    OPS.set(OPS.get() + ops);
+}
+
 /// An `f64` that counts, per thread.
 ///
 /// ```
@@ -43,10 +61,15 @@ thread_local! {
 pub struct Counted(pub f64);
 
 impl Counted {
-    /// Run `f`, and say which operations it did.
+    /// Run `f`, and say which operations it did: on such numbers, and with the feature `tally` in the
+    /// matrices of the library too; see [`tally`](super::tally()).
     pub fn count<R>(f: impl FnOnce() -> R) -> (R, Ops) {
         let before = OPS.replace(Ops::default());
+        #[cfg(feature = "tally")]
+        let around = COUNTING.replace(true);
         let out = f();
+        #[cfg(feature = "tally")]
+        COUNTING.set(around);
         (out, OPS.replace(before))
     }
 

@@ -6,6 +6,7 @@
 mod counted;
 mod double_double;
 mod sin_cos;
+mod tally;
 
 use core::f64::consts::FRAC_PI_4;
 use core::fmt::Debug;
@@ -14,6 +15,8 @@ use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 pub(crate) use self::sin_cos::{SIN_COS_MAX, muladd, sin_cos, sin_cos_near_zero};
 pub use counted::{Counted, Ops};
 pub use double_double::DoubleDouble;
+pub use tally::tally;
+pub(crate) use tally::tally_by;
 
 /// A real number, or several side by side (SIMD lanes), or one that counts its own operations.
 ///

@@ -51,6 +51,7 @@ pub use cay::{cay, cay_inv, dcay, dcay_matrix, dcayinv, dcayinv_matrix};
 pub use ccsk::{ccsk, ccsk_inv, dccsk, dccsk_matrix, dccskinv, dccskinv_matrix};
 pub use exp::{dexp, dexp_matrix, dexpinv, dexpinv_matrix, exp, exp_on};
 pub use log::{POLAR_MAX, log};
+pub(crate) use quaternion::half_angle;
 pub use quaternion::{
     cay_quaternion, ccsk_quaternion, exp_quaternion, log_quaternion, quaternion_from_matrix,
     quaternion_from_wxyz, quaternion_from_xyzw, quaternion_to_wxyz, quaternion_to_xyzw,

@@ -25,6 +25,12 @@ pub fn exp_quaternion(u: &Vector3<f64>) -> Result<UnitQuaternion<f64>, StepError
     Ok(UnitQuaternion::new_unchecked(Quaternion::new(c, s * u[0], s * u[1], s * u[2])))
 }
 
+/// cos(α/2) and sin(α/2)/α: what [`exp_quaternion`] takes of u, for any number; none for huge u.
+pub(crate) fn half_angle<S: crate::scalar::Trig>(u: &Vector3<S>) -> Option<(S, S)> {
+    let angle = Angle::of(u);
+    angle.in_range().then(|| angle.quaternion_coefficients())
+}
+
 /// log of the rotation of q, |log| ≤ π: q and −q give the same. A rotation by exactly π has two
 /// logarithms; then the first component that is not zero is positive.
 ///

@@ -1,4 +1,5 @@
 //! Actions with one fault each.
+#![allow(dead_code, reason = "each suite uses its part")]
 
 use faer::Mat;
 use lieflow::Action;

@@ -1,7 +1,9 @@
 //! Coordinate maps with one fault each.
+#![allow(dead_code, reason = "each suite uses its part")]
 
 use lieflow::groups::So3;
 use lieflow::maps::CCSK123;
+use lieflow::methods::OddMap;
 use lieflow::{CoordinateMap, Error, LieAlgebra, StepError};
 use nalgebra::{Matrix3, Vector3};
 
@@ -115,6 +117,8 @@ impl<G: Represent, Psi: CoordinateMap<G>> CoordinateMap<G> for Faulty<Psi> {
         Ok(())
     }
 }
+
+impl<Psi: OddMap> OddMap for Faulty<Psi> {}
 
 /// ccsk123 on so(3) with the wrong sign at sin u₂ in (18).
 #[derive(Clone, Copy, Debug)]

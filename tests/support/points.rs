@@ -23,6 +23,12 @@ pub(crate) trait Points<G: Represent>: Action<G> {
     fn numbers(&self, group: &G, p: &Self::Point) -> Mat<f64>;
     /// The point with these numbers.
     fn with_numbers(&self, group: &G, x: &Mat<f64>) -> Self::Point;
+    /// Rows and columns of the numbers of any point.
+    fn shape(&self, group: &G) -> (usize, usize) {
+        let p = self.draw(group, &mut rand::SeedableRng::seed_from_u64(0));
+        let x = self.numbers(group, &p);
+        (x.nrows(), x.ncols())
+    }
     /// The numbers of λ_*(ξ)(p).
     fn generator(&self, group: &G, xi: &Mat<f64>, p: &Self::Point) -> Mat<f64>;
     /// An n×n matrix made from p, smooth in p: what test fields are functions of.
@@ -40,6 +46,9 @@ impl<G: Represent> Points<G> for LeftTranslation {
     }
     fn with_numbers(&self, group: &G, x: &Mat<f64>) -> G::Elem {
         group.element_of(x)
+    }
+    fn shape(&self, group: &G) -> (usize, usize) {
+        (order_of(group), order_of(group))
     }
     fn generator(&self, group: &G, xi: &Mat<f64>, g: &G::Elem) -> Mat<f64> {
         xi * group.element_matrix(g)
@@ -191,10 +200,7 @@ impl<A: Represent, B: Represent, L: Points<A>, R: Points<B>> Points<Product<A, B
         blocks(&[self.0.numbers(&group.0, &p.0), self.1.numbers(&group.1, &p.1)])
     }
     fn with_numbers(&self, group: &Product<A, B>, x: &Mat<f64>) -> Self::Point {
-        // The shapes are those of any point.
-        let like = self.draw(group, &mut rand::SeedableRng::seed_from_u64(0));
-        let (a, b) = (self.0.numbers(&group.0, &like.0), self.1.numbers(&group.1, &like.1));
-        let parts = cut(x, [a, b].map(|x| (x.nrows(), x.ncols())));
+        let parts = cut(x, [self.0.shape(&group.0), self.1.shape(&group.1)]);
         (self.0.with_numbers(&group.0, &parts[0]), self.1.with_numbers(&group.1, &parts[1]))
     }
     fn generator(&self, group: &Product<A, B>, xi: &Mat<f64>, p: &Self::Point) -> Mat<f64> {

@@ -14,6 +14,7 @@ use crate::measure::{
     Candidate, Curve, Effort, Journal, Plan, Reached, Reference, WorkPoint, machine,
     speed_against_error,
 };
+use crate::model::Layer;
 use crate::operations::COUNTED_STEPS;
 use crate::output;
 use crate::page::{Block, Page, Section};
@@ -72,7 +73,7 @@ struct Comparison<'a> {
     scene: &'a Scene,
     curves: Vec<Curve>,
     reference: Reference,
-    rounds: u32,
+    effort: Effort,
 }
 
 /// Run the command.
@@ -113,6 +114,8 @@ pub fn run(args: &CompareArgs) -> Result<(), CliError> {
         longest: Duration::from_millis(if args.quick { 5 } else { 30 }),
         shortest: Duration::from_micros(if args.quick { 50 } else { 300 }),
         seed: args.seed,
+        wanted: &report::ADVICE,
+        patience: Duration::from_millis(if args.quick { 100 } else { 1000 }),
     };
     let plan = Plan {
         quantities: &quantities,
@@ -132,7 +135,7 @@ pub fn run(args: &CompareArgs) -> Result<(), CliError> {
         })?;
     bar.finish_and_clear();
 
-    let comparison = Comparison { scene: &scene, curves, reference, rounds: effort.rounds };
+    let comparison = Comparison { scene: &scene, curves, reference, effort };
     let path = comparison.write(&folder)?;
     journal.finish()?;
     output::print(&comparison.in_words())?;
@@ -271,13 +274,33 @@ impl Comparison<'_> {
         let evaluations = "Evaluations of f, of F or of A(t): the catalog's number for a step times the \
                            steps, and what was counted where steps were chosen, rejected attempts \
                            among them. Implicit methods and those without a field are left out.";
-        let operations = format!(
-            "Additions, multiplications, divisions, square roots, sines and cosines, each as one, \
-             counted by running the steps on numbers that count; a run of more than {COUNTED_STEPS} \
-             steps is charged the mean of the first {COUNTED_STEPS} for each, rejected attempts among \
-             them. Left out are the exact motion, which is made of elliptic functions, and the general \
-             layer, which runs on machine numbers only."
+        let layers = |layer: Layer| self.curves.iter().any(|c| c.candidate.layer == layer);
+        let mut operations =
+            "Additions, multiplications, divisions, square roots, sines and cosines, \
+                              each as one, counted while the steps run: "
+                .to_string();
+        operations += match (layers(Layer::Closed), layers(Layer::General)) {
+            (_, false) => "the closed formulas on numbers that count what is done to them",
+            (false, _) => {
+                "every product, solve, sum and rotation of matrices says what it has done"
+            }
+            (true, true) => {
+                "on the closed layer by numbers that count what is done to them, on the general one by \
+                 every product, solve, sum and rotation of matrices, which says what it has done"
+            }
+        };
+        operations += &format!(
+            ". A run of more than {COUNTED_STEPS} steps is charged the mean of the first \
+             {COUNTED_STEPS} for each, or of fewer where these take millions of operations; rejected \
+             attempts are among them."
         );
+        if layers(Layer::General) {
+            operations += " Signs, copies and the arithmetic of single numbers beside a matrix are free; \
+                           eigenvectors count as 9n³.";
+        }
+        if self.curves.iter().any(|curve| !report::steps(curve)) {
+            operations += " The exact motion, which is made of elliptic functions, has no count.";
+        }
         let chart = |id, title, caption: &str, cost| {
             Block::Chart(report::front_chart(id, title, caption, &self.curves, cost))
         };
@@ -290,8 +313,8 @@ impl Comparison<'_> {
                 Cost::Operations,
             ),
             false => Block::text(
-                "There is no figure of operations: what this problem runs on are machine numbers, and \
-                 products of matrices by their kernels, which nothing counts.",
+                "There is no figure of operations: none of these runs has operations to count. The exact \
+                 motion is made of elliptic functions.",
             ),
         };
         vec![
@@ -332,10 +355,8 @@ impl Comparison<'_> {
         let table = |(caption, choices): &(String, Vec<Choice<'_>>)| {
             Block::Table(report::choice_table(caption, choices))
         };
-        // A pair is a row: with and without the energy.
-        let pairs = advice.chunks(if self.has_energy() { 2 } else { 1 });
-        let mut short: Vec<Block> =
-            pairs.map(|pair| Block::Row(pair.iter().map(table).collect())).collect();
+        // One below the other: two side by side hide their last columns.
+        let mut short: Vec<Block> = advice.iter().map(table).collect();
         short.extend([
             Block::Chart(report::front_chart(
                 "pareto",
@@ -350,7 +371,15 @@ impl Comparison<'_> {
                     "Times".into(),
                     format!(
                         "CPU time of one thread, medians of {} rounds that visit every method in turn",
-                        self.rounds
+                        self.effort.rounds
+                    ),
+                ),
+                (
+                    "Runs".into(),
+                    format!(
+                        "steps get smaller until a run takes {:?}; up to {:?} for the methods that promise \
+                         most where none has reached an error of the tables",
+                        self.effort.longest, self.effort.patience
                     ),
                 ),
                 ("Modelled".into(), self.scene.quantities.join(", ")),

@@ -189,6 +189,8 @@ impl Experiment {
             rounds: if quick { 3 } else { 9 },
             longest: Duration::from_millis(if quick { 20 } else { 200 }),
             shortest: Duration::from_micros(if quick { 200 } else { 1000 }),
+            wanted: &[],
+            patience: Duration::ZERO,
             seed: SEED,
         };
         let steps = if quick { &self.steps[..6] } else { self.steps };

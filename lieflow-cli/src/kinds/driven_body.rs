@@ -10,8 +10,10 @@
 
 use lieflow::Error;
 use lieflow::actions::LeftTranslation;
+use lieflow::catalog::MethodSpec;
 use lieflow::groups::{LieGroup, Product, So3, Translations, vee};
-use lieflow::problems::{BodyTorque, Motion, SpaceTorque, Torque, TorqueBody};
+use lieflow::problems::{BodyTorque, Motion, Torque, TorqueBody};
+use lieflow::scalar::Counted;
 use nalgebra::{Matrix3, Vector3};
 use serde::Deserialize;
 use toml::de::ValueDeserializer;
@@ -20,6 +22,7 @@ use super::flow::Flow;
 use super::system::System;
 use super::{Figure, KeyInfo, Kind, Law, ProblemSpec, QuantityInfo, Scale};
 use crate::model::Layer;
+use crate::operations::{Pace, operations_by};
 use crate::scene::ReadError;
 use crate::scene::values::{Real, Reals, Rows};
 
@@ -114,25 +117,34 @@ struct Torques {
     control: Option<[f64; 2]>,
 }
 
-impl Torque for Torques {
-    fn in_space(&self, at: &Motion) -> Vector3<f64> {
-        let mut torque = Vector3::zeros();
+impl<S: lieflow::scalar::Real> Torque<S> for Torques {
+    fn in_space(&self, at: &Motion<S>) -> Vector3<S> {
+        let lit = |x: Vector3<f64>| x.map(S::lit);
+        let g = &at.attitude;
+        let damped = |c: f64| at.omega_body.map(|w| S::lit(-c) * w);
+        let mut torque = lit(Vector3::zeros());
+        let mut add = |other: Vector3<S>| {
+            for i in 0..3 {
+                torque[i] += other[i];
+            }
+        };
         if let Some(weight) = self.weight {
-            let gravity = SpaceTorque(|at: &Motion| Vector3::z().cross(&(at.attitude * weight)));
-            torque += gravity.in_space(at);
+            let mut down = lit(weight);
+            So3::new().apply(g, &lit(weight), &mut down);
+            add(Vector3::new(-down[1], down[0], S::lit(0.0)));
         }
         if let Some(thruster) = self.thruster {
-            torque += BodyTorque(|_: &Motion| thruster).in_space(at);
+            add(BodyTorque(|_: &Motion<S>| lit(thruster)).in_space(at));
         }
         if let Some(damping) = self.damping {
-            torque += BodyTorque(|at: &Motion| -damping * at.omega_body).in_space(at);
+            add(BodyTorque(|_: &Motion<S>| damped(damping)).in_space(at));
         }
         if let Some([stiffness, damping]) = self.control {
-            let law = |at: &Motion| {
-                let away = vee(&((at.attitude - at.attitude.transpose()) * 0.5));
-                -stiffness * away - damping * at.omega_body
-            };
-            torque += BodyTorque(law).in_space(at);
+            let half = |i: usize, j: usize| S::lit(0.5) * (g[(i, j)] - g[(j, i)]);
+            let away = Vector3::new(half(2, 1), half(0, 2), half(1, 0));
+            let (k, slow) = (S::lit(-stiffness), damped(damping));
+            let law = |_: &Motion<S>| Vector3::from_fn(|i, _| k * away[i] + slow[i]);
+            add(BodyTorque(law).in_space(at));
         }
         torque
     }
@@ -185,6 +197,12 @@ impl System for Driven {
     }
     fn problem(&self) -> Result<(Self::Problem, Point), Error> {
         Ok(Flow::nonlinear(self.body.clone(), LeftTranslation, self.start))
+    }
+    fn operations(&self, method: &MethodSpec, pace: Pace<'_>) -> Option<f64> {
+        let start = (self.start.0.map(Counted), self.start.1.map(Counted));
+        let body = self.body.on::<Counted, _>(self.torques);
+        let (flow, start) = Flow::nonlinear(body, LeftTranslation, start);
+        operations_by(method, &flow, start, pace)
     }
     fn modelled(&self) -> String {
         let Torques { weight, thruster, damping, control } = self.torques;

@@ -5,6 +5,9 @@
 //! around the evaluation and not inside it, is nothing beside the matrices and rotations of a stage.
 //! The library has no such call.
 //!
+//! Those of vectors are there once more on numbers that count operations; matrices say themselves what they
+//! compute.
+//!
 //! | family | kinds |
 //! |---|---|
 //! | SO(3), vectors | spin |
@@ -23,19 +26,22 @@ use lieflow::catalog::{
 };
 use lieflow::groups::{LieAlgebra, LieGroup, MatrixGroup, Power, Product, Se3, So3, Translations};
 use lieflow::methods::Metric;
-use lieflow::problems::{AlgOf, Ambient, LiePoisson, LinearField, LinearSpace, PointOf, Problem};
+use lieflow::problems::{
+    AlgOf, Ambient, FromTheBody, LiePoisson, LinearField, LinearSpace, PointOf, Problem, ScalarOf,
+};
+use lieflow::scalar::{Counted, Real};
 use nalgebra::Vector3;
 
 use super::matrix::MatrixAction;
-use crate::erased::{Doubled, Pointed};
+use crate::erased::{Doubled, pointed, pointed_pair};
 use crate::model::Catalog;
 
 /// A field with its scratch.
 pub(super) trait Field<G: LieGroup, M> {
     /// v ← f(t, y).
-    fn f(&mut self, t: f64, y: &M, v: &mut G::Alg);
+    fn f(&mut self, t: G::Scalar, y: &M, v: &mut G::Alg);
     /// dy ← F(t, y).
-    fn ambient(&mut self, t: f64, y: &M, dy: &mut M);
+    fn ambient(&mut self, t: G::Scalar, y: &M, dy: &mut M);
     /// ξ ← ∇̄H(a, b). For Lie–Poisson systems: [`Catalog::with`] hands over no method that asks others.
     fn discrete_gradient(&mut self, _a: &M, _b: &M, _xi: &mut G::Alg) {}
 }
@@ -52,20 +58,14 @@ pub(super) trait Generator<G: LieGroup>: Action<G> {
     );
 }
 
-impl Generator<So3> for Linear {
-    fn generate(
-        &self,
-        v: &Vector3<f64>,
-        y: &Vector3<f64>,
-        dy: &mut Vector3<f64>,
-        _: &mut Vector3<f64>,
-    ) {
-        *dy = v.cross(y);
+impl<S: Real> Generator<So3<S>> for Linear {
+    fn generate(&self, v: &Vector3<S>, y: &Vector3<S>, dy: &mut Vector3<S>, _: &mut Vector3<S>) {
+        So3::new().bracket(v, y, dy);
     }
 }
 
 /// H(m) of a Lie–Poisson system.
-type Energy<M> = Box<dyn Fn(&M) -> f64>;
+type Energy<M, S> = Box<dyn Fn(&M) -> S>;
 
 /// A problem on M by G and Λ, whatever its field.
 pub(super) struct Flow<G: LieGroup, A: Action<G>> {
@@ -73,7 +73,7 @@ pub(super) struct Flow<G: LieGroup, A: Action<G>> {
     action: A,
     start: A::Point,
     linear: bool,
-    hamiltonian: Option<Energy<A::Point>>,
+    hamiltonian: Option<Energy<A::Point, G::Scalar>>,
     field: Box<dyn Fn() -> Box<dyn Field<G, A::Point>>>,
 }
 
@@ -83,33 +83,27 @@ impl<G: LieGroup, A: Action<G>> fmt::Debug for Flow<G, A> {
     }
 }
 
-/// A problem of the library with its scratch.
-struct Running<P: Problem>(std::rc::Rc<P>, P::Work);
+/// ξ ← ∇̄H(a, b), from the problem, a, b, ξ and scratch.
+type Gradient<P> = fn(&P, &PointOf<P>, &PointOf<P>, &mut AlgOf<P>, &mut <P as Problem>::Work);
 
-impl<P: Ambient<Group: LieAlgebra<Scalar = f64>>> Field<P::Group, PointOf<P>> for Running<P> {
-    fn f(&mut self, t: f64, y: &PointOf<P>, v: &mut AlgOf<P>) {
-        self.0.f(t, y, v, &mut self.1);
-    }
-    fn ambient(&mut self, t: f64, y: &PointOf<P>, dy: &mut PointOf<P>) {
-        self.0.field(t, y, dy, &mut self.1);
-    }
+/// A problem of the library with its scratch; with its gradient where it is a Lie–Poisson system.
+struct Running<P: Problem> {
+    problem: std::rc::Rc<P>,
+    work: P::Work,
+    gradient: Option<Gradient<P>>,
 }
 
-/// A Lie–Poisson system with its scratch.
-struct RunningPoisson<P: Problem>(std::rc::Rc<P>, P::Work);
-
-impl<P> Field<P::Group, PointOf<P>> for RunningPoisson<P>
-where
-    P: LiePoisson<Group: LieAlgebra<Scalar = f64>>,
-{
-    fn f(&mut self, t: f64, y: &PointOf<P>, v: &mut AlgOf<P>) {
-        self.0.f(t, y, v, &mut self.1);
+impl<P: Ambient> Field<P::Group, PointOf<P>> for Running<P> {
+    fn f(&mut self, t: ScalarOf<P>, y: &PointOf<P>, v: &mut AlgOf<P>) {
+        self.problem.f(t, y, v, &mut self.work);
     }
-    fn ambient(&mut self, t: f64, y: &PointOf<P>, dy: &mut PointOf<P>) {
-        self.0.field(t, y, dy, &mut self.1);
+    fn ambient(&mut self, t: ScalarOf<P>, y: &PointOf<P>, dy: &mut PointOf<P>) {
+        self.problem.field(t, y, dy, &mut self.work);
     }
     fn discrete_gradient(&mut self, a: &PointOf<P>, b: &PointOf<P>, xi: &mut AlgOf<P>) {
-        self.0.discrete_gradient(a, b, xi, &mut self.1);
+        if let Some(gradient) = self.gradient {
+            gradient(&self.problem, a, b, xi, &mut self.work);
+        }
     }
 }
 
@@ -125,13 +119,13 @@ struct RunningLinear<P: Problem, A: Action<P::Group>> {
 
 impl<P, A> Field<P::Group, A::Point> for RunningLinear<P, A>
 where
-    P: LinearField<Group: LieAlgebra<Scalar = f64>>,
+    P: LinearField,
     A: Generator<P::Group>,
 {
-    fn f(&mut self, t: f64, _: &A::Point, v: &mut AlgOf<P>) {
+    fn f(&mut self, t: ScalarOf<P>, _: &A::Point, v: &mut AlgOf<P>) {
         self.equation.a(t, v, &mut self.work);
     }
-    fn ambient(&mut self, t: f64, y: &A::Point, dy: &mut A::Point) {
+    fn ambient(&mut self, t: ScalarOf<P>, y: &A::Point, dy: &mut A::Point) {
         self.equation.a(t, &mut self.a, &mut self.work);
         self.action.generate(&self.a, y, dy, &mut self.scratch);
     }
@@ -139,7 +133,7 @@ where
 
 impl<G, A> Flow<G, A>
 where
-    G: LieGroup<Scalar = f64> + Clone + 'static,
+    G: LieGroup + Clone + 'static,
     A: Action<G> + Clone + 'static,
 {
     /// A problem of the library, and `start`; `action` is its action.
@@ -148,14 +142,7 @@ where
         P: Ambient<Group = G> + 'static,
         P::Action: Action<G, Point = A::Point>,
     {
-        let group = problem.group().clone();
-        let problem = std::rc::Rc::new(problem);
-        let field = Box::new(move || -> Box<dyn Field<G, A::Point>> {
-            Box::new(Running(problem.clone(), problem.work()))
-        });
-        let flow =
-            Flow { group, action, start: start.clone(), linear: false, hamiltonian: None, field };
-        (flow, start)
+        Self::of(std::rc::Rc::new(problem), action, start, None)
     }
 
     /// A Lie–Poisson system of the library, and `start`; `action` is its action.
@@ -164,15 +151,29 @@ where
         P: LiePoisson + Problem<Group = G> + 'static,
         P::Action: Action<G, Point = A::Point>,
     {
-        let group = problem.group().clone();
         let problem = std::rc::Rc::new(problem);
-        let of_energy = problem.clone();
-        let energy: Energy<A::Point> = Box::new(move |m| of_energy.hamiltonian(m));
+        let gradient: Gradient<P> = P::discrete_gradient;
+        let (mut flow, start) = Self::of(problem.clone(), action, start, Some(gradient));
+        flow.hamiltonian = Some(Box::new(move |m| problem.hamiltonian(m)));
+        (flow, start)
+    }
+
+    fn of<P>(
+        problem: std::rc::Rc<P>,
+        action: A,
+        start: A::Point,
+        gradient: Option<Gradient<P>>,
+    ) -> (Self, A::Point)
+    where
+        P: Ambient<Group = G> + 'static,
+        P::Action: Action<G, Point = A::Point>,
+    {
+        let group = problem.group().clone();
         let field = Box::new(move || -> Box<dyn Field<G, A::Point>> {
-            Box::new(RunningPoisson(problem.clone(), problem.work()))
+            Box::new(Running { problem: problem.clone(), work: problem.work(), gradient })
         });
-        let hamiltonian = Some(energy);
-        let flow = Flow { group, action, start: start.clone(), linear: false, hamiltonian, field };
+        let flow =
+            Flow { group, action, start: start.clone(), linear: false, hamiltonian: None, field };
         (flow, start)
     }
 
@@ -201,7 +202,7 @@ where
 
 impl<G, A> Problem for Flow<G, A>
 where
-    G: LieGroup<Scalar = f64>,
+    G: LieGroup,
     A: Action<G>,
 {
     type Group = G;
@@ -217,7 +218,7 @@ where
     fn work(&self) -> Self::Work {
         (self.field)()
     }
-    fn f(&self, t: f64, y: &A::Point, v: &mut G::Alg, work: &mut Self::Work) {
+    fn f(&self, t: G::Scalar, y: &A::Point, v: &mut G::Alg, work: &mut Self::Work) {
         work.f(t, y, v);
     }
 }
@@ -225,26 +226,26 @@ where
 /// For those of linear type: [`Catalog::with`] hands over no such method for others.
 impl<G, A> LinearField for Flow<G, A>
 where
-    G: LieGroup<Scalar = f64>,
+    G: LieGroup,
     A: Action<G>,
 {
-    fn a(&self, t: f64, v: &mut G::Alg, work: &mut Self::Work) {
+    fn a(&self, t: G::Scalar, v: &mut G::Alg, work: &mut Self::Work) {
         work.f(t, &self.start, v);
     }
 }
 
 impl<G, A> Ambient for Flow<G, A>
 where
-    G: LieGroup<Scalar = f64>,
-    A: Action<G, Point: LinearSpace<Scalar = f64>>,
+    G: LieGroup,
+    A: Action<G, Point: LinearSpace<Scalar = G::Scalar>>,
 {
-    fn field(&self, t: f64, y: &A::Point, dy: &mut A::Point, work: &mut Self::Work) {
+    fn field(&self, t: G::Scalar, y: &A::Point, dy: &mut A::Point, work: &mut Self::Work) {
         work.ambient(t, y, dy);
     }
     fn copy(&self, x: &A::Point, y: &mut A::Point) {
         y.assign(x);
     }
-    fn add(&self, a: f64, x: &A::Point, y: &mut A::Point) {
+    fn add(&self, a: G::Scalar, x: &A::Point, y: &mut A::Point) {
         y.add(a, x);
     }
     fn is_finite(&self, y: &A::Point) -> bool {
@@ -255,11 +256,11 @@ where
 /// For Lie–Poisson systems: [`Catalog::with`] hands over no such method for others.
 impl<G, A> LiePoisson for Flow<G, A>
 where
-    G: LieGroup<Scalar = f64>,
-    A: Action<G, Point: LinearSpace<Scalar = f64>>,
+    G: LieGroup,
+    A: Action<G, Point: LinearSpace<Scalar = G::Scalar>>,
 {
-    fn hamiltonian(&self, m: &A::Point) -> f64 {
-        self.hamiltonian.as_ref().map_or(f64::NAN, |hamiltonian| hamiltonian(m))
+    fn hamiltonian(&self, m: &A::Point) -> G::Scalar {
+        self.hamiltonian.as_ref().map_or(G::Scalar::lit(f64::NAN), |hamiltonian| hamiltonian(m))
     }
     fn discrete_gradient(
         &self,
@@ -277,7 +278,7 @@ macro_rules! family {
         let name = $spec.info()?.name;
         match $self.linear && LINEAR_METHODS.iter().any(|linear| linear.name == name) {
             true => with_linear_method(name, $on),
-            false => with_implicit_method($spec, $on),
+            false => family!(@find $self, $spec, $on, lie_poisson),
         }
     }};
     (@find $self:ident, $spec:ident, $on:expr, lie_poisson) => {
@@ -294,17 +295,18 @@ macro_rules! family {
                 spec: &MethodSpec,
                 on: V,
             ) -> Result<V::Out, Error> {
-                family!(@find self, spec, Pointed(on), $type)
+                pointed(on, |found| family!(@find self, spec, found, $type))
             }
             fn with_estimate<V: OnEmbedded<Self>>(
                 &self,
                 spec: &MethodSpec,
                 on: V,
             ) -> Result<V::Out, Error> {
-                match spec.has_pair()? {
-                    true => with_embedded_pair(spec, Pointed(on)),
-                    false => family!(@find self, spec, Doubled(on), $type),
-                }
+                let pair = spec.has_pair()?;
+                pointed_pair(on, |found| match pair {
+                    true => with_embedded_pair(spec, found),
+                    false => family!(@find self, spec, Doubled(found), $type),
+                })
             }
         }
     )*};
@@ -315,9 +317,14 @@ pub(super) type Growth = (faer::Mat<f64>, faer::Mat<f64>);
 
 family! {
     So3, Linear, linear;
-    Power<So3>, Linear, general;
+    Power<So3>, Linear, lie_poisson;
     Se3, Coadjoint, lie_poisson;
     MatrixGroup, MatrixAction, linear;
+    MatrixGroup, FromTheBody, general;
     Product<So3, Translations<Vector3<f64>>>, LeftTranslation, general;
     Product<MatrixGroup, Translations<Growth>>, LeftTranslation, general;
+    So3<Counted>, Linear, linear;
+    Power<So3<Counted>>, Linear, lie_poisson;
+    Se3<Counted>, Coadjoint, lie_poisson;
+    Product<So3<Counted>, Translations<Vector3<Counted>>>, LeftTranslation, general;
 }

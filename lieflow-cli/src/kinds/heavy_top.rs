@@ -3,8 +3,10 @@
 
 use lieflow::Error;
 use lieflow::actions::Coadjoint;
+use lieflow::catalog::MethodSpec;
 use lieflow::groups::Se3;
 use lieflow::problems::{HeavyTop, Invariants};
+use lieflow::scalar::Counted;
 use nalgebra::Vector3;
 use serde::Deserialize;
 use toml::de::ValueDeserializer;
@@ -13,6 +15,7 @@ use super::flow::Flow;
 use super::system::System;
 use super::{Figure, KeyInfo, Kind, Law, ProblemSpec, QuantityInfo, Scale};
 use crate::model::Layer;
+use crate::operations::{Pace, operations_by};
 use crate::scene::values::Reals;
 use crate::scene::{Either, ReadError, Refusal, exactly_one};
 
@@ -91,6 +94,7 @@ struct Keys {
 #[derive(Clone, Copy, Debug)]
 struct Top {
     top: HeavyTop,
+    inertia: [f64; 3],
     weight: Vector3<f64>,
     start: Point,
 }
@@ -117,7 +121,8 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
         let message = format!("its length is {length}, expected 1");
         return Err(Refusal::at("vertical", message).into());
     }
-    Ok(Box::new(Top { top, weight: keys.weight.0.into(), start: (momentum, vertical / length) }))
+    let (inertia, weight) = (keys.inertia.0, keys.weight.0.into());
+    Ok(Box::new(Top { top, inertia, weight, start: (momentum, vertical / length) }))
 }
 
 impl Top {
@@ -138,6 +143,12 @@ impl System for Top {
     }
     fn problem(&self) -> Result<(Self::Problem, Point), Error> {
         Ok(Flow::lie_poisson(self.top.problem(), Coadjoint, self.start))
+    }
+    fn operations(&self, method: &MethodSpec, pace: Pace<'_>) -> Option<f64> {
+        let start = (self.start.0.map(Counted), self.start.1.map(Counted));
+        let top = HeavyTop::<Counted>::new(self.inertia, self.weight.into()).ok()?;
+        let (flow, start) = Flow::lie_poisson(top.problem(), Coadjoint, start);
+        operations_by(method, &flow, start, pace)
     }
     fn modelled(&self) -> String {
         "momentum and vertical on se(3)*".into()

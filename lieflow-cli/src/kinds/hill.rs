@@ -8,6 +8,7 @@ use lieflow::Error;
 use lieflow::groups::{GroupMatrix, LieGroup, MatrixGroup};
 use lieflow::methods::magnus::Magnus6;
 use lieflow::problems::{Floquet, LinearHamiltonian, floquet, hill, monodromy};
+use lieflow::scalar::{Ops, tally};
 use serde::Deserialize;
 use toml::de::ValueDeserializer;
 
@@ -131,7 +132,10 @@ impl Hill {
     ) -> Result<LinearHamiltonian<impl Fn(f64, &mut lieflow::groups::AlgebraMatrix) + use<>>, Error>
     {
         let Hill { a, q, period, .. } = self.clone();
-        hill(a.nrows(), move |t, i, j| a[(i, j)] - 2.0 * q[(i, j)] * (TAU / period * t).cos())
+        hill(a.nrows(), move |t, i, j| {
+            tally(|| Ops::muls(3) + Ops::adds(1) + Ops::divs(1) + Ops::trigs(1));
+            a[(i, j)] - 2.0 * q[(i, j)] * (TAU / period * t).cos()
+        })
     }
 
     /// The multipliers of a period from t = 0, and the trace of its monodromy.

@@ -6,8 +6,10 @@
 
 use lieflow::Error;
 use lieflow::actions::Coadjoint;
+use lieflow::catalog::MethodSpec;
 use lieflow::groups::Se3;
 use lieflow::problems::{Euler, Kinetic};
+use lieflow::scalar::{Counted, Real};
 use nalgebra::Vector3;
 use serde::Deserialize;
 use toml::de::ValueDeserializer;
@@ -16,6 +18,7 @@ use super::flow::Flow;
 use super::system::System;
 use super::{Figure, KeyInfo, Kind, Law, ProblemSpec, QuantityInfo, Scale};
 use crate::model::Layer;
+use crate::operations::{Pace, operations_by};
 use crate::scene::values::Reals;
 use crate::scene::{ReadError, Refusal};
 
@@ -67,7 +70,7 @@ struct Keys {
     linear_momentum: Reals<3>,
 }
 
-type Point = (Vector3<f64>, Vector3<f64>);
+type Point<S = f64> = (Vector3<S>, Vector3<S>);
 
 /// The body with its initial momenta (μ, π).
 #[derive(Clone, Copy, Debug)]
@@ -93,6 +96,18 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
 }
 
 impl Body {
+    fn flow<S: Real>(&self) -> (Flow<Se3<S>, Coadjoint>, Point<S>) {
+        let in_s = |x: &Vector3<f64>| x.map(S::lit);
+        let (inertia, mass) = (in_s(&self.inertia), in_s(&self.mass));
+        let gradient = move |m: &Point<S>, xi: &mut Point<S>| {
+            *xi = (
+                Vector3::from_fn(|i, _| m.0[i] / inertia[i]),
+                Vector3::from_fn(|i, _| m.1[i] / mass[i]),
+            );
+        };
+        let start = (in_s(&self.start.0), in_s(&self.start.1));
+        Flow::lie_poisson(Euler::new(Se3::new(), Kinetic(gradient)), Coadjoint, start)
+    }
     fn energy(&self, (mu, pi): &Point) -> f64 {
         0.5 * (mu.dot(&mu.component_div(&self.inertia)) + pi.dot(&pi.component_div(&self.mass)))
     }
@@ -108,11 +123,11 @@ impl System for Body {
         Layer::Closed
     }
     fn problem(&self) -> Result<(Self::Problem, Point), Error> {
-        let Body { inertia, mass, start } = *self;
-        let gradient = move |m: &Point, xi: &mut Point| {
-            *xi = (m.0.component_div(&inertia), m.1.component_div(&mass));
-        };
-        Ok(Flow::lie_poisson(Euler::new(Se3::new(), Kinetic(gradient)), Coadjoint, start))
+        Ok(self.flow())
+    }
+    fn operations(&self, method: &MethodSpec, pace: Pace<'_>) -> Option<f64> {
+        let (flow, start) = self.flow::<Counted>();
+        operations_by(method, &flow, start, pace)
     }
     fn modelled(&self) -> String {
         "angular and linear momentum on se(3)*".into()

@@ -6,6 +6,7 @@ use lieflow::Error;
 use lieflow::actions::LeftTranslation;
 use lieflow::groups::{GroupMatrix, LieGroup, MatrixGroup, Product, Translations};
 use lieflow::problems::Lyapunov;
+use lieflow::scalar::{Ops, tally};
 use serde::Deserialize;
 use toml::de::ValueDeserializer;
 
@@ -81,6 +82,9 @@ impl Term {
     /// Its value, and with `by` its derivative by that coordinate.
     fn value(&self, x: &Mat<f64>, by: Option<usize>) -> f64 {
         let mut value = self.coefficient;
+        // A product for each coordinate, and those of its power.
+        let products = |power: &i32| (*power).max(1) as usize;
+        tally(|| Ops::muls(self.powers.iter().map(products).sum()) + Ops::adds(1));
         for (i, &power) in self.powers.iter().enumerate() {
             value *= match (by == Some(i), power) {
                 (true, 0) => 0.0,

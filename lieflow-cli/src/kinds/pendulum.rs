@@ -3,8 +3,10 @@
 
 use lieflow::Error;
 use lieflow::actions::Coadjoint;
+use lieflow::catalog::MethodSpec;
 use lieflow::groups::Se3;
 use lieflow::problems::SphericalPendulum;
+use lieflow::scalar::Counted;
 use nalgebra::Vector3;
 use serde::Deserialize;
 use toml::de::ValueDeserializer;
@@ -13,6 +15,7 @@ use super::flow::Flow;
 use super::system::System;
 use super::{Figure, KeyInfo, Kind, Law, ProblemSpec, QuantityInfo, Scale};
 use crate::model::Layer;
+use crate::operations::{Pace, operations_by};
 use crate::scene::values::{Real, Reals};
 use crate::scene::{ReadError, Refusal};
 
@@ -94,6 +97,11 @@ impl System for Pendulum {
     }
     fn problem(&self) -> Result<(Self::Problem, Point), Error> {
         Ok(Flow::lie_poisson(self.pendulum, Coadjoint, self.start))
+    }
+    fn operations(&self, method: &MethodSpec, pace: Pace<'_>) -> Option<f64> {
+        let start = (self.start.0.map(Counted), self.start.1.map(Counted));
+        let (flow, start) = Flow::lie_poisson(self.pendulum.on::<Counted>(), Coadjoint, start);
+        operations_by(method, &flow, start, pace)
     }
     fn modelled(&self) -> String {
         "angular velocity and direction on an orbit of SE(3)".into()

@@ -5,8 +5,10 @@
 
 use lieflow::Error;
 use lieflow::actions::Linear;
+use lieflow::catalog::MethodSpec;
 use lieflow::groups::{Power, So3};
 use lieflow::problems::{Euler, Exact, Kinetic, RigidBody};
+use lieflow::scalar::{Counted, Real};
 use nalgebra::{Matrix3, Vector3};
 use serde::Deserialize;
 use toml::de::ValueDeserializer;
@@ -15,6 +17,7 @@ use super::flow::Flow;
 use super::system::System;
 use super::{Figure, KeyInfo, Kind, Law, ProblemSpec, QuantityInfo};
 use crate::model::Layer;
+use crate::operations::{Pace, operations_by};
 use crate::scene::values::Reals;
 use crate::scene::{ReadError, Refusal};
 
@@ -59,7 +62,7 @@ struct BodyKeys {
     momentum_body: Reals<3>,
 }
 
-type Momenta = Box<[Vector3<f64>]>;
+type Momenta<S = f64> = Box<[Vector3<S>]>;
 
 /// The bodies with their initial momenta.
 #[derive(Clone, Debug)]
@@ -82,6 +85,19 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
     Ok(Box::new(Bodies { bodies, start }))
 }
 
+fn flow<S: Real>(
+    bodies: Vec<RigidBody<S>>,
+    start: &Momenta<S>,
+) -> Result<Flow<Power<So3<S>>, Linear>, Error> {
+    let group = Power::new(So3::new(), bodies.len())?;
+    let omega = move |m: &Momenta<S>, xi: &mut Momenta<S>| {
+        for ((body, m), xi) in bodies.iter().zip(m).zip(xi) {
+            *xi = body.omega(m);
+        }
+    };
+    Ok(Flow::lie_poisson(Euler::new(group, Kinetic(omega)), Linear, start.clone()).0)
+}
+
 impl System for Bodies {
     type Problem = Flow<Power<So3>, Linear>;
 
@@ -92,15 +108,14 @@ impl System for Bodies {
         Layer::Closed
     }
     fn problem(&self) -> Result<(Self::Problem, Momenta), Error> {
-        let bodies: Vec<RigidBody> = self.bodies.iter().map(|(_, body)| *body).collect();
-        let group = Power::new(So3::new(), bodies.len())?;
-        let omega = move |m: &Momenta, xi: &mut Momenta| {
-            for ((body, m), xi) in bodies.iter().zip(m).zip(xi) {
-                *xi = body.omega(m);
-            }
-        };
-        let problem = Euler::new(group, Kinetic(omega));
-        Ok(Flow::nonlinear(problem, Linear, self.start.clone()))
+        let bodies = self.bodies.iter().map(|(_, body)| *body).collect();
+        Ok((flow(bodies, &self.start)?, self.start.clone()))
+    }
+    fn operations(&self, method: &MethodSpec, pace: Pace<'_>) -> Option<f64> {
+        let body = |(inertia, _): &([f64; 3], RigidBody)| RigidBody::<Counted>::new(*inertia);
+        let bodies = self.bodies.iter().map(body).collect::<Result<_, _>>().ok()?;
+        let start = self.start.iter().map(|m| m.map(Counted)).collect();
+        operations_by(method, &flow(bodies, &start).ok()?, start, pace)
     }
     fn modelled(&self) -> String {
         format!("momenta of {} bodies", self.bodies.len())

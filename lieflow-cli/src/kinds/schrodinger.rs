@@ -5,6 +5,7 @@ use faer::Mat;
 use lieflow::Error;
 use lieflow::groups::MatrixGroup;
 use lieflow::problems::{amplitudes, populations, schrodinger};
+use lieflow::scalar::{Ops, tally};
 use serde::Deserialize;
 use toml::de::ValueDeserializer;
 
@@ -136,6 +137,8 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
 impl Levels {
     /// a(t).
     fn drive(&self, t: f64) -> f64 {
+        let pulse = Ops::adds(1) + Ops::divs(1) + Ops::muls(1) + Ops::trigs(1);
+        tally(|| pulse * self.pulse.iter().count() + Ops::muls(2) + Ops::adds(1) + Ops::trigs(1));
         let envelope = self.pulse.map_or(1.0, |[at, width]| (-((t - at) / width).powi(2)).exp());
         envelope * (self.frequency * t + self.phase).cos()
     }
@@ -155,6 +158,7 @@ impl System for Levels {
         let hamiltonian = move |t: f64, i: usize, j: usize| {
             let (drive, [re, im]) = (levels.drive(t), &levels.coupling);
             let energy = if i == j { levels.energies[i] } else { 0.0 };
+            tally(|| Ops::muls(2) + Ops::adds(1));
             [energy + drive * re[(i, j)], drive * im[(i, j)]]
         };
         let equation = schrodinger(self.energies.len(), hamiltonian)?;

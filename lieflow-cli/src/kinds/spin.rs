@@ -4,8 +4,10 @@
 
 use lieflow::Error;
 use lieflow::actions::Linear;
+use lieflow::catalog::MethodSpec;
 use lieflow::groups::So3;
 use lieflow::problems::LinearEquation;
+use lieflow::scalar::{Counted, Trig};
 use nalgebra::Vector3;
 use serde::Deserialize;
 use toml::de::ValueDeserializer;
@@ -14,6 +16,7 @@ use super::flow::Flow;
 use super::system::System;
 use super::{Figure, KeyInfo, Kind, Law, ProblemSpec, QuantityInfo};
 use crate::model::Layer;
+use crate::operations::{Pace, operations_by};
 use crate::scene::ReadError;
 use crate::scene::values::{Real, Reals};
 
@@ -58,6 +61,19 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
     Ok(Box::new(Spin { field: field.0.into(), rate: rate.0, moment: moment.0.into() }))
 }
 
+impl Spin {
+    fn flow<S: Trig>(&self) -> (Flow<So3<S>, Linear>, Vector3<S>) {
+        let [field, moment] = [self.field, self.moment].map(|x| x.map(S::lit));
+        let rate = S::lit(self.rate);
+        let omega = move |t: S, v: &mut Vector3<S>| {
+            let (s, c) = (rate * t).sin_cos();
+            let turned = [c * field[0] - s * field[1], s * field[0] + c * field[1]];
+            *v = Vector3::new(turned[0], turned[1], field[2]);
+        };
+        Flow::linear(LinearEquation::new(So3::new(), Linear, omega), Linear, moment)
+    }
+}
+
 impl System for Spin {
     type Problem = Flow<So3, Linear>;
 
@@ -68,13 +84,11 @@ impl System for Spin {
         Layer::Closed
     }
     fn problem(&self) -> Result<(Self::Problem, Vector3<f64>), Error> {
-        let Spin { field, rate, moment } = *self;
-        let omega = move |t: f64, v: &mut Vector3<f64>| {
-            let (s, c) = (rate * t).sin_cos();
-            *v = Vector3::new(c * field.x - s * field.y, s * field.x + c * field.y, field.z);
-        };
-        let equation = LinearEquation::new(So3::new(), Linear, omega);
-        Ok(Flow::linear(equation, Linear, moment))
+        Ok(self.flow())
+    }
+    fn operations(&self, method: &MethodSpec, pace: Pace<'_>) -> Option<f64> {
+        let (flow, start) = self.flow::<Counted>();
+        operations_by(method, &flow, start, pace)
     }
     fn modelled(&self) -> String {
         "moment on the sphere".into()

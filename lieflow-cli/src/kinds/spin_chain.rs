@@ -2,8 +2,10 @@
 
 use lieflow::Error;
 use lieflow::actions::Linear;
+use lieflow::catalog::MethodSpec;
 use lieflow::groups::{Power, So3};
 use lieflow::problems::SpinChain;
+use lieflow::scalar::{Counted, Real as Scalar};
 use nalgebra::Vector3;
 use serde::Deserialize;
 use toml::de::ValueDeserializer;
@@ -12,6 +14,7 @@ use super::flow::Flow;
 use super::system::System;
 use super::{Figure, KeyInfo, Kind, Law, ProblemSpec, QuantityInfo, Scale};
 use crate::model::Layer;
+use crate::operations::{Pace, operations_by};
 use crate::scene::values::{Real, Reals, Whole};
 use crate::scene::{Either, ReadError, Refusal, exactly_one};
 
@@ -121,6 +124,20 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
     Ok(Box::new(Chain { chain, damped: damping != 0.0, field: field.into(), start }))
 }
 
+type Spins<S> = Box<[Vector3<S>]>;
+
+/// The chain, a Lie–Poisson system where nothing damps it.
+fn flow<S: Scalar>(
+    chain: SpinChain<S>,
+    damped: bool,
+    start: Spins<S>,
+) -> (Flow<Power<So3<S>>, Linear>, Spins<S>) {
+    match damped {
+        true => Flow::nonlinear(chain, Linear, start),
+        false => Flow::lie_poisson(chain, Linear, start),
+    }
+}
+
 impl System for Chain {
     type Problem = Flow<Power<So3>, Linear>;
 
@@ -131,7 +148,12 @@ impl System for Chain {
         Layer::Closed
     }
     fn problem(&self) -> Result<(Self::Problem, Box<[Vector3<f64>]>), Error> {
-        Ok(Flow::nonlinear(self.chain, Linear, self.start.clone()))
+        Ok(flow(self.chain, self.damped, self.start.clone()))
+    }
+    fn operations(&self, method: &MethodSpec, pace: Pace<'_>) -> Option<f64> {
+        let start = self.start.iter().map(|s| s.map(Counted)).collect();
+        let (flow, start) = flow(self.chain.on::<Counted>().ok()?, self.damped, start);
+        operations_by(method, &flow, start, pace)
     }
     fn modelled(&self) -> String {
         format!("{} spins on spheres", self.start.len())

@@ -11,6 +11,7 @@ use lieflow::{Error, RunError, SaveAt, Stats, TimeGrid};
 use super::law::{Law, SIZE};
 use super::{Fact, Figure, Kind, ProblemSpec, QuantityInfo};
 use crate::model::{Catalog, Layer, Model, Sink, Steps, adapt_by, integrate_by, order_by};
+use crate::operations::{Pace, operations_by};
 
 /// A problem of one kind, as its scene states it and checked: what the kind's file is about.
 pub(super) trait System: Clone + Debug + Send + Sync + 'static {
@@ -43,6 +44,12 @@ pub(super) trait System: Clone + Debug + Send + Sync + 'static {
     /// y at `t` after the start, where it is known.
     fn exact(&self, _t: f64) -> Option<Result<PointOf<Self::Problem>, Error>> {
         None
+    }
+    /// The operations of a step: see [`Model::operations`]. A problem of vectors counts them on the numbers
+    /// that count, matrices say what they compute.
+    fn operations(&self, method: &MethodSpec, pace: Pace<'_>) -> Option<f64> {
+        let (problem, start) = self.problem().ok()?;
+        operations_by(method, &problem, start, pace)
     }
     /// The figure of a run.
     fn figure(&self) -> Figure {
@@ -185,6 +192,9 @@ impl<S: System> Model for SystemModel<S> {
     }
     fn order(&self, method: &MethodSpec) -> Result<Option<usize>, Error> {
         order_by(method, &self.problem)
+    }
+    fn operations(&self, method: &MethodSpec, pace: Pace<'_>) -> Option<f64> {
+        self.system.operations(method, pace)
     }
     fn exact(&self, t: f64) -> Option<Result<Vec<f64>, Error>> {
         let mut row = Vec::new();

@@ -124,7 +124,8 @@ impl Candidate {
     }
 
     /// Those of `all` that a name stands for: that of a method, or a method with parts as in
-    /// `rkmk dopri5 cay`.
+    /// `rkmk dopri5 cay`. What follows a method in the tables, `, adaptive, general`, may stand in the list
+    /// as it does there: pairs go in both kinds of steps anyway, and layers are chosen apart.
     ///
     /// # Errors
     /// A name that stands for none of them.
@@ -133,7 +134,14 @@ impl Candidate {
             let label = candidate.method.label();
             label == name || label.strip_prefix(name).is_some_and(|rest| rest.starts_with(' '))
         };
-        for name in names {
+        let names = || {
+            let names = names.iter().map(|name| name.trim());
+            names.filter(|name| !["adaptive", "general"].contains(name))
+        };
+        if names().next().is_none() {
+            return Err(CliError::Message("--methods: no method is named".into()));
+        }
+        for name in names() {
             if !all.iter().any(|candidate| stands_for(name, candidate)) {
                 let mut known: Vec<&str> = all.iter().map(|c| c.method.name.as_str()).collect();
                 known.dedup();
@@ -145,7 +153,7 @@ impl Candidate {
                 )));
             }
         }
-        let chosen = |candidate: &&Candidate| names.iter().any(|name| stands_for(name, candidate));
+        let chosen = |candidate: &&Candidate| names().any(|name| stands_for(name, candidate));
         Ok(all.iter().filter(chosen).cloned().collect())
     }
 }

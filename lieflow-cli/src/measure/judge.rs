@@ -245,7 +245,9 @@ impl Judge {
             let gap: Vec<f64> = x.iter().zip(end).map(|(x, e)| x - e).collect();
             relative(norm(&gap), norm(end))
         };
-        self.state.iter().map(part).fold(0.0, f64::max)
+        // A part that is no number has left the solution: `f64::max` would forget it.
+        let worst = |a: f64, b: f64| if a >= b || a.is_nan() { a } else { b };
+        self.state.iter().map(part).fold(0.0, worst)
     }
 }
 

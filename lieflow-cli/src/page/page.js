@@ -104,6 +104,20 @@
     }
   };
 
+  // Numbers along the axis that would touch are left out, those between the decades first.
+  const thinOut = (svg) => {
+    const labels = all(".lf-tick[text-anchor=middle]", svg);
+    labels.forEach((label) => label.classList.remove("lf-off"));
+    const kept = [];
+    const between = (label) => label.textContent.includes("×");
+    for (const label of [...labels.filter((l) => !between(l)), ...labels.filter(between)]) {
+      const half = label.getComputedTextLength() / 2 + 4, at = Number(label.getAttribute("x"));
+      const touches = kept.some((other) => Math.abs(other.at - at) < other.half + half);
+      if (touches) label.classList.add("lf-off");
+      else kept.push({ at, half });
+    }
+  };
+
   // On a narrow screen the names of the lines move below the data.
   const reflow = (svg) => {
     const [, , wide, high] = svg.getAttribute("viewBox").split(" ");
@@ -116,9 +130,16 @@
         const dx = 71 - box.getAttribute("x"), dy = 470 + 24 * i - box.getAttribute("y");
         key.setAttribute("transform", narrow ? `translate(${dx} ${dy})` : "");
       });
-      const [width, height] = narrow ? [588, 478 + 24 * keys.length] : [wide, high];
-      Object.entries({ viewBox: `0 0 ${width} ${height}`, width, height })
+      // The letters are larger there, and the title of the upward axis moves away from its numbers.
+      const [left, width, height] =
+        narrow ? [-34, 622, 478 + 24 * keys.length] : [0, wide, high];
+      Object.entries({ viewBox: `${left} 0 ${width} ${height}`, width, height })
         .forEach(([name, value]) => svg.setAttribute(name, value));
+      thinOut(svg);
+      const title = svg.querySelector(".lf-title");
+      title.style.fontSize = "";
+      const excess = title.getComputedTextLength() / (left + width - title.getAttribute("x") - 4);
+      if (narrow && excess > 1) title.style.fontSize = `${19 / excess}px`;
     };
     query.addEventListener("change", () => apply(query.matches));
     addEventListener("beforeprint", () => apply(false));

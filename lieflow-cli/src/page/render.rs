@@ -128,12 +128,14 @@ fn html_sphere(sphere: &Sphere) -> String {
 const LONG: usize = 44;
 
 fn html_table(table: &Table) -> String {
-    // A region that scrolls has to be reachable by the keyboard, and so needs a name.
+    // The caption stands outside of what scrolls, so that all of it is read. A region that scrolls has to
+    // be reachable by the keyboard, and so needs a name.
+    let name = escape(if table.caption.is_empty() { "Table" } else { &table.caption });
     let mut out = format!(
-        "<div class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\"{}\">\n<table>\n",
-        escape(if table.caption.is_empty() { "Table" } else { &table.caption })
+        "<div class=\"table\">\n{}<div class=\"scroll\" role=\"region\" tabindex=\"0\" \
+         aria-label=\"{name}\">\n<table aria-label=\"{name}\">\n",
+        optional("p", "caption", &table.caption)
     );
-    out.push_str(&optional("caption", "caption", &table.caption));
     let long = |column: usize| {
         let mut cells = table.rows.iter().filter_map(|row| row.cells.get(column));
         cells.any(|cell| cell.chars().count() > LONG)
@@ -159,7 +161,7 @@ fn html_table(table: &Table) -> String {
         }
         out.push_str("</tr>\n");
     }
-    out.push_str("</tbody>\n</table>\n</div>\n");
+    out.push_str("</tbody>\n</table>\n</div>\n</div>\n");
     out
 }
 
@@ -226,6 +228,14 @@ mod tests {
         assert!(html.contains("<th scope=\"col\" class=\"number\">error</th>"));
         assert!(html.contains("<tr class=\"strong\"><th scope=\"row\">RKMK4</th>"));
         assert!(html.contains("<td class=\"number\">1.0</td>"));
-        assert!(!html.contains("<caption"));
+        assert!(!html.contains("class=\"caption\""));
+    }
+
+    #[test]
+    fn the_caption_of_a_table_does_not_scroll_away() {
+        let columns = vec![Column::text("method")];
+        let html = html_table(&Table { caption: "All of it".into(), columns, rows: vec![] });
+        let caption = html.find("<p class=\"caption\">All of it</p>");
+        assert!(caption < html.find("class=\"scroll\"") && caption.is_some(), "{html}");
     }
 }

@@ -153,8 +153,8 @@ impl Chart {
         out.push_str(&text("lf-title", (LEFT, 24.0), "start", &self.title));
         out.push_str(&text("lf-label", (middle, BOTTOM + 41.0), "middle", &self.x.title));
         out.push_str(&format!(
-            "<text class=\"lf-label\" transform=\"translate(18 {}) rotate(-90)\" \
-             text-anchor=\"middle\">{}</text>",
+            "<g class=\"lf-upward\"><text class=\"lf-label\" \
+             transform=\"translate(18 {}) rotate(-90)\" text-anchor=\"middle\">{}</text></g>",
             (TOP + BOTTOM) / 2.0,
             escape(&self.y.title)
         ));

@@ -3,7 +3,9 @@
 use core::f64::consts::{PI, TAU};
 
 use faer::Mat;
+use lieflow::problems::Exact;
 use lieflow::problems::beam::{Element, transfer_map};
+use nalgebra::Matrix3;
 
 use super::*;
 
@@ -215,6 +217,42 @@ fn eulers_equations_on_matrix_algebras() {
     assert!(far(&[m[1], m[2], m[5]], &of_body) < 1e-13, "{m:?}");
     let end = last(&Scene::bundled("euler-on-sl3").unwrap());
     assert!((end[0] + end[4] + end[8]).abs() < 1e-14, "{end:?}");
+
+    // With g: on SO(3) the attitude of the body; on SL(3) det g = 1, and Ad* carries the momentum back.
+    let of = scene(so3, RKMK4_CAY, time, "[\"momentum\", \"group\"]");
+    let exact = Exact::new([1.0, 2.0, 4.0], [0.2, 0.1, 3.0], Matrix3::identity()).unwrap();
+    let (_, g) = exact.state(2.0).unwrap();
+    let with_g = last(&of);
+    assert!(far(&with_g[..9], &m) < 1e-14 && far(&with_g[9..], g.transpose().as_slice()) < 1e-8);
+    let text =
+        bundled("euler-on-sl3").replace("[\"momentum\", ", "[\"group\", \"momentum_space\", ");
+    let of = Scene::parse("scene", &text).unwrap();
+    assert_eq!(of.model().unwrap().modelled(&of.method), ["momentum on sl(3)* and g in GL(3)"]);
+    let end = last(&of);
+    let g = Matrix3::from_row_slice(&end[..9]);
+    assert!((g.determinant() - 1.0).abs() < 1e-12 && (g - Matrix3::identity()).norm() > 0.5);
+    assert!(far(&end[9..18], &[0.2, 0.1, -0.3, -0.2, 0.1, 0.2, 0.3, -0.1, -0.3]) < 1e-12);
+    // Without it nothing but the momentum is modelled.
+    let alone = Scene::bundled("euler-on-sl3").unwrap();
+    assert_eq!(alone.model().unwrap().modelled(&alone.method), ["momentum on sl(3)*"]);
+}
+
+/// On the dual of sp(4) the projection stays in the algebra, and the energy and the Casimirs are kept.
+#[test]
+fn eulers_equations_on_sp4() {
+    let problem = "kind = \"euler\"\nalgebra = \"sp\"\ninverse_inertia = [[1, 2, 3, 4], [2, 5, 1, 3], [3, 1, \
+                   4, 2], [1, 3, 2, 1]]\nmomentum = [[0.1, 0.2, 0.3, 0.1], [-0.1, 0.2, 0.1, 0.4], [0.2, \
+                   0.3, -0.1, 0.1], [0.3, -0.2, -0.2, -0.2]]";
+    let quantities = "[\"momentum\", \"energy\", \"casimirs\"]";
+    let of = |method: &str| rows(&scene(problem, method, "t_span = [0, 3]\ndt = 0.02", quantities));
+    let kept = of("name = \"energy-casimir\"\nmap = \"cay\"");
+    let (first, end) = (&kept[0][1..], &kept.last().unwrap()[1..]);
+    assert!(far(&first[..16], &end[..16]) > 0.1 && far(&first[16..], &end[16..]) < 1e-13);
+    // [a b; c −aᵀ].
+    assert!((end[0] + end[10]).abs() < 1e-14 && (end[1] + end[14]).abs() < 1e-14);
+    assert!((end[3] - end[6]).abs() < 1e-14 && (end[9] - end[12]).abs() < 1e-14);
+    let fine = of(RKMK4_CAY);
+    assert!(far(&fine.last().unwrap()[1..17], &end[..16]) < 1e-2);
 }
 
 /// A line in the plane turns to the leading eigenvector by tan θ = e^{−(λ₁−λ₂)t} tan θ₀; in five dimensions a

@@ -1,12 +1,12 @@
-//! Every number of every bundled problem in turn as something else: refused with its line, or run; never a
-//! panic, never for long.
+//! Every number and every word of every bundled problem in turn as something else: refused with its line, or
+//! run; never a panic, never for long.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::{Duration, Instant};
 
 use super::*;
 
-const INSTEAD: [&str; 14] = [
+const INSTEAD: [&str; 15] = [
     "0",
     "-1",
     "1",
@@ -21,30 +21,34 @@ const INSTEAD: [&str; 14] = [
     "\"one\"",
     "[]",
     "1000000007",
+    "0, 0",
 ];
 
-/// Where the numbers of [problem] stand.
-fn numbers(text: &str) -> Vec<core::ops::Range<usize>> {
+/// Instead of a word; the kind itself is looked at elsewhere.
+const INSTEAD_OF_WORDS: [&str; 5] = ["\"x\"", "\"\"", "7", "[]", "{}"];
+
+/// Where the numbers and the words of [problem] stand.
+fn places(text: &str) -> Vec<core::ops::Range<usize>> {
     let start = text.find("[problem]").unwrap() + "[problem]".len();
     let end = text.find("[method]").unwrap();
     let (mut found, mut at) = (Vec::new(), start);
     let bytes = text.as_bytes();
-    let mut quoted = false;
     while at < end {
         let c = bytes[at] as char;
-        let word = |c: char| c.is_ascii_alphanumeric() || c == '_';
-        if c == '"' {
-            quoted = !quoted;
-        }
-        if c == '#' && !quoted {
-            at += text[at..].find('\n').unwrap();
-        } else if !quoted && (c.is_ascii_digit() || c == '-') && !word(bytes[at - 1] as char) {
-            let number = |c: char| c.is_ascii_digit() || "+-.e_".contains(c);
-            let length = text[at..].find(|c| !number(c)).unwrap();
+        let in_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
+        let length = match c {
+            '#' => text[at..].find('\n').unwrap(),
+            '"' => 2 + text[at + 1..].find('"').unwrap(),
+            '-' | '0'..='9' if !in_word(bytes[at - 1] as char) => {
+                let number = |c: char| c.is_ascii_digit() || "+-.e_".contains(c);
+                text[at..].find(|c| !number(c)).unwrap()
+            }
+            _ => 1,
+        };
+        if length > 1 && c != '#' || c.is_ascii_digit() && !in_word(bytes[at - 1] as char) {
             found.push(at..at + length);
-            at += length - 1;
         }
-        at += 1;
+        at += length;
     }
     found
 }
@@ -68,11 +72,13 @@ fn outcome(name: &str, text: &str) -> Option<String> {
 }
 
 #[test]
-fn every_number_may_be_another() {
+fn every_value_may_be_another() {
     let (mut tried, mut refused, mut wrong) = (0, 0, Vec::new());
     for scene in BUNDLED {
-        for place in numbers(scene.text) {
-            for instead in INSTEAD {
+        for place in places(scene.text) {
+            let word = scene.text[place.clone()].starts_with('"');
+            let instead: &[&str] = if word { &INSTEAD_OF_WORDS } else { &INSTEAD };
+            for instead in instead {
                 let text =
                     format!("{}{instead}{}", &scene.text[..place.start], &scene.text[place.end..]);
                 let begin = Instant::now();

@@ -41,7 +41,7 @@ const BROKEN: &[(&str, &str, &str, &[&str])] = &[
     ("lagrange-top", "vertical = [0.6,", "vertical = [0.7,", &["length", "expected 1"]),
     ("lagrange-top", "omega_body", "omega", &["unknown key `omega`", "omega_body"]),
     ("ellipsoid-in-fluid", "mass = [1.5,", "mass = [0,", &["mass[0] = 0"]),
-    ("euler-on-sl3", "algebra = \"sl\"", "algebra = \"su\"", &["so"]),
+    ("euler-on-sl3", "algebra = \"sl\"", "algebra = \"su\"", &["unknown algebra `su`", "so"]),
     ("euler-on-sl3", "momentum = [[0.2,", "momentum = [[0.3,", &["not in sl(3)"]),
     ("euler-on-sl3", "inverse_inertia = [[0.4, ", "inverse_inertia = [[", &["row 1 has 2 numbers"]),
     ("vortices-on-sphere", "n = 24", "n = 1", &["at least 2"]),

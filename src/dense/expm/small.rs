@@ -9,6 +9,7 @@ use super::taylor::{
     degree_12, degree_18, half_to_the, halvings, halvings_18,
 };
 use super::{ExpmChoice, Kind, NORM_MAX_SKEW, Structure};
+use crate::scalar::{Ops, tally};
 
 /// Up to this norm a matrix of which nothing is known is scaled by its norm.
 pub(super) const PLAIN: f64 = 16.0;
@@ -52,7 +53,75 @@ impl Kernel for Exp<'_> {
             return None;
         }
         g.store(out);
+        let norms = if norm <= THETA_18 {
+            1
+        } else if skew {
+            2
+        } else {
+            4
+        };
+        tally(|| Cost(x.nrows()).of(degree, norms, [squarings, corrections]));
         Some(ExpmChoice { kind: Kind::Taylor, degree, squarings, corrections, balanced: false })
+    }
+}
+
+/// The operations on n×n matrices, whatever the padding of the kernel.
+#[derive(Clone, Copy)]
+struct Cost(usize);
+
+impl Cost {
+    /// a·b.
+    #[inline(always)]
+    fn product(self) -> Ops {
+        Ops::dots(self.0 * self.0, self.0)
+    }
+    /// What it takes to add a product.
+    #[inline(always)]
+    fn added(self) -> Ops {
+        Ops::adds(self.0 * self.0)
+    }
+    /// Σ c_i·x_i over k matrices.
+    #[inline(always)]
+    fn sum(self, k: usize) -> Ops {
+        Ops::dots(self.0 * self.0, k)
+    }
+    /// Σ c_i·x_i + d·𝟙.
+    #[inline(always)]
+    fn sum_and_one(self, k: usize) -> Ops {
+        self.sum(k) + Ops::adds(self.0)
+    }
+    #[inline(always)]
+    fn norm(self) -> Ops {
+        Ops::adds(self.0 * (self.0 - 1))
+    }
+    /// exp by the polynomial of a degree, with so many norms, squarings and corrections. Said once, for a
+    /// kernel of a hundred instructions notices each time.
+    #[inline(always)]
+    fn of(self, degree: usize, norms: usize, [squarings, corrections]: [u32; 2]) -> Ops {
+        let (product, added) = (self.product(), self.added());
+        let polynomial = match degree {
+            1 => self.sum_and_one(1),
+            2 => product + self.sum_and_one(2),
+            4 => product * 2 + added + self.sum_and_one(2) + self.sum_and_one(1),
+            8 => {
+                let sums = self.sum(2) * 2 + self.sum_and_one(3) + self.sum_and_one(2);
+                product * 3 + added + sums
+            }
+            12 => {
+                let sums = self.sum(3) * 2 + self.sum_and_one(4) + self.sum_and_one(3);
+                product * 4 + added * 2 + sums
+            }
+            _ => {
+                let sums =
+                    self.sum(3) * 2 + self.sum(4) + self.sum_and_one(5) + self.sum_and_one(4);
+                product * 5 + added * 2 + sums
+            }
+        };
+        let correction = product * 2 + self.sum_and_one(1) + added + self.norm();
+        polynomial
+            + self.norm() * norms
+            + product * squarings as usize
+            + correction * corrections as usize
     }
 }
 

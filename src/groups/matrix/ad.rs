@@ -57,13 +57,14 @@ impl MatrixGroup {
         match &self.form {
             Form::Free | Form::Symplectic => false,
             Form::Identity => true,
-            Form::Bilinear { m, .. } => {
-                let part = (m + m.transpose()) * Scale(0.5);
-                let c = part[(0, 0)];
-                c != 0.0
-                    && norm_frobenius(&(part - Mat::<f64>::identity(self.n, self.n) * Scale(c)))
-                        == 0.0
-            }
+            Form::Bilinear { m, .. } => has_scalar_part(m),
         }
     }
+}
+
+/// Is the symmetric part of M a multiple of 𝟙, exactly?
+pub(super) fn has_scalar_part(m: &Mat<f64>) -> bool {
+    let (n, part) = (m.nrows(), (m + m.transpose()) * Scale(0.5));
+    let c = part[(0, 0)];
+    c != 0.0 && norm_frobenius(&(part - Mat::<f64>::identity(n, n) * Scale(c))) == 0.0
 }

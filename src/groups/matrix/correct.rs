@@ -7,12 +7,17 @@
 //! | P | X | residual after it |
 //! |---|---|---|
 //! | ±𝟙: M symmetric or skew | D/2 | O(D²) |
-//! | P² = −𝟙: U(m), with M = 𝟙 + J | (3D − 2D♯ + D♯♯)/4 | O(D²) |
+//! | P² = −𝟙 | (3D − 2D♯ + D♯♯)/4 | O(D²) |
 //! | any other, 𝔤 skew: products of such | the same | \|1 + μ\|/2 of what was, X♯♯ = μX |
 //! | any other | 0 | nothing is known to converge |
+//!
+//! On U(m), with M = c𝟙 + K and P = K/c, an element is orthogonal and commutes with P. There the part that
+//! does not commute, A = (g + PgP)/2, is taken off, and D is 𝟙 − gᵀg of the rest: four products in place of
+//! nine. ‖A‖ and ‖D‖ make up the residual, ‖𝟙 − g♯g‖² = ‖D‖² + 2‖A‖² but for second order.
 
 use faer::Mat;
 
+use super::ad::has_scalar_part;
 use super::{Form, GroupMatrix, MatrixGroup};
 use crate::dense::{axpy, mul, mul_add, norm_frobenius, scaled_sum};
 use crate::groups::RESIDUAL_MAX;
@@ -23,12 +28,14 @@ const STEPS_MAX: usize = 6;
 const ONE_STEP: f64 = 1e-8;
 
 /// What is known of P.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug)]
 pub(super) enum Cosquare {
     /// P = ±𝟙.
     One,
     /// P² = −𝟙.
     Quarter,
+    /// P, where M is a multiple of 𝟙 + P and P² = −𝟙.
+    Unitary(Mat<f64>),
     /// P is orthogonal.
     Orthogonal,
     /// Nothing.
@@ -47,7 +54,10 @@ impl Cosquare {
         let one = Mat::<f64>::identity(n, n);
         let tolerance = 1e-10 * norm_frobenius(&p).powi(2);
         if norm_frobenius(&(square + &one)) <= tolerance {
-            Cosquare::Quarter
+            match has_scalar_part(m) {
+                true => Cosquare::Unitary(p),
+                false => Cosquare::Quarter,
+            }
         } else if norm_frobenius(&(gram - &one)) <= tolerance {
             Cosquare::Orthogonal
         } else {
@@ -61,16 +71,26 @@ impl MatrixGroup {
     pub(super) fn newton_schulz(&self, g: &mut GroupMatrix, [a, b]: [&mut GroupMatrix; 2]) -> f64 {
         let mut first = None;
         for _ in 0..STEPS_MAX {
-            self.residual_of(g, a, b);
-            let residual = norm_frobenius(a);
+            let residual = match &self.cosquare {
+                Cosquare::Unitary(p) => residual_of_unitary(g, p, a, b),
+                _ => {
+                    self.residual_of(g, a, b);
+                    norm_frobenius(a)
+                }
+            };
             first.get_or_insert(residual);
             // The rounding of g♯g: ε‖g‖², and half of that where g is orthogonal.
             let noise = f64::EPSILON * (norm_frobenius(g).powi(2) - 0.5 * self.n as f64);
             let reach = residual > noise && residual < RESIDUAL_MAX;
-            if !reach || self.cosquare == Cosquare::Other {
+            if !reach || matches!(self.cosquare, Cosquare::Other) {
                 break;
             }
-            let quadratic = match (&self.form, self.cosquare) {
+            let quadratic = match (&self.form, &self.cosquare) {
+                (_, Cosquare::Unitary(_)) => {
+                    g.copy_from(&**b);
+                    mul_add(g, 0.5, b.as_ref(), a.as_ref());
+                    true
+                }
                 (Form::Bilinear { m, inverse }, Cosquare::Quarter | Cosquare::Orthogonal) => {
                     // X = ¾D − ½Y♯ with Y = D − ½D♯; g moves in between, which is of second order.
                     mul(b, g.as_ref(), a.as_ref());
@@ -81,7 +101,7 @@ impl MatrixGroup {
                     mul(a, inverse.as_ref(), b.as_ref());
                     mul(b, g.as_ref(), a.as_ref());
                     axpy(-0.5, b, g);
-                    self.cosquare == Cosquare::Quarter
+                    matches!(self.cosquare, Cosquare::Quarter)
                 }
                 _ => {
                     mul(b, g.as_ref(), a.as_ref());
@@ -118,6 +138,19 @@ impl MatrixGroup {
         }
         scaled_sum(a, [-1.0], [b], 1.0);
     }
+}
+
+/// b ← g without the part that does not commute with P, a ← 𝟙 − bᵀb; the residual of g.
+fn residual_of_unitary(g: &Mat<f64>, p: &Mat<f64>, a: &mut Mat<f64>, b: &mut Mat<f64>) -> f64 {
+    mul(a, g.as_ref(), p.as_ref());
+    mul(b, p.as_ref(), a.as_ref());
+    scaled_sum(a, [0.5, 0.5], [g, b], 0.0);
+    let away = norm_frobenius(a);
+    scaled_sum(b, [1.0, -1.0], [g, a], 0.0);
+    mul(a, b.transpose(), b.as_ref());
+    a.col_iter_mut().for_each(|col| col.iter_mut().for_each(|x| *x = -*x));
+    a.diagonal_mut().column_vector_mut().iter_mut().for_each(|x| *x += 1.0);
+    norm_frobenius(a).hypot(core::f64::consts::SQRT_2 * away)
 }
 
 /// out ← ±J·x.

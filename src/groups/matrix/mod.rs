@@ -17,6 +17,7 @@ pub use element::{AlgebraMatrix, GroupMatrix};
 use super::{LieAlgebra, LieGroup};
 use crate::dense::{self, Lu, antisymmetrise, mul, mul_add};
 use crate::error::Error;
+use crate::scalar::{Ops, tally};
 
 /// Which bilinear form the group keeps: gᵀMg = M (paper 4.3).
 #[derive(Clone, Debug)]
@@ -173,6 +174,7 @@ impl MatrixGroup {
 /// p ← p − J⁻¹pᵀJ. With p = u·v and u, v ∈ sp(2m) this is \[u, v\] for one product.
 fn symplectic_antisymmetrise(p: &mut Mat<f64>) {
     let m = p.nrows() / 2;
+    tally(|| Ops::adds(m * m + m * (m + 1)));
     for j in 0..m {
         for i in 0..m {
             let d = p[(i, j)] - p[(j + m, i + m)];

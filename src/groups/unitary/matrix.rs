@@ -12,6 +12,7 @@ use crate::dense::{is_finite, lower_product, mirror, mul, mul_add, norm_frobeniu
 use crate::error::Error;
 use crate::methods::Metric;
 use crate::problems::LinearSpace;
+use crate::scalar::{Ops, tally};
 
 /// A complex matrix re + i·im.
 ///
@@ -151,6 +152,8 @@ fn lower_skew(
 
 /// x ← x − x†: \[a, b\] from a·b, for skew-Hermitian a and b.
 pub(crate) fn minus_adjoint(x: &mut ComplexMatrix) {
+    let n = x.ncols();
+    tally(|| Ops::adds(n * n.saturating_sub(1)) + Ops::muls(n));
     for j in 0..x.ncols() {
         (x.re[(j, j)], x.im[(j, j)]) = (0.0, 2.0 * x.im[(j, j)]);
         for i in j + 1..x.nrows() {

@@ -25,6 +25,7 @@ use super::{LieAlgebra, LieGroup, MEMBERSHIP, RESIDUAL_MAX, Sample};
 use crate::error::Error;
 use crate::methods::Metric;
 use crate::problems::LinearSpace;
+use crate::scalar::{Ops, tally};
 
 /// U(n) over its algebra u(n) of skew-Hermitian matrices.
 ///
@@ -155,6 +156,7 @@ impl LieGroup for Unitary {
     }
     fn correct(&self, g: &mut ComplexMatrix, [gap, step]: [&mut ComplexMatrix; 2]) -> f64 {
         adjoint_mul_complex(gap, g, g);
+        tally(|| Ops::adds(self.n));
         for i in 0..self.n {
             gap.re[(i, i)] -= 1.0;
         }

@@ -4,6 +4,7 @@ use faer::Mat;
 
 use super::GIMBAL;
 use crate::error::StepError;
+use crate::scalar::{Ops, tally};
 
 /// Sines and cosines of the angles, and workspace.
 #[derive(Debug)]
@@ -24,6 +25,7 @@ impl SoN {
     /// g ← ∏_c ∏_{r>c} G_rc(u_rc).
     pub(super) fn psi(&mut self, u: &Mat<f64>, g: &mut Mat<f64>) {
         let n = u.nrows();
+        tally(|| (Ops::trigs(2) + ROTATED * n) * (n * n.saturating_sub(1) / 2));
         g.fill(0.0);
         g.diagonal_mut().fill(1.0);
         for c in 0..n {
@@ -46,6 +48,12 @@ impl SoN {
         let SoN { sin, cos, w, rho, .. } = self;
         w.copy_from(&*v);
         for c in 0..n {
+            // Both sides of each rotation, ρ^(r), a quotient, and what is subtracted.
+            let (angles, rest) = (n - c - 1, n - c);
+            let carried = Ops::muls(rest) + Ops::adds(1);
+            tally(|| {
+                (ROTATED * (2 * n) + carried + Ops::divs(1) + Ops::muladds(2 * rest)) * angles
+            });
             for r in c + 1..n {
                 rotate_rows_and_columns(w, r, c, sin[(r, c)], cos[(r, c)]);
             }
@@ -82,6 +90,9 @@ impl SoN {
         Ok(())
     }
 }
+
+/// A pair of numbers turned: four products, two sums.
+const ROTATED: Ops = Ops { add: 2, mul: 4, ..Ops::NONE };
 
 /// g ← g·G with G = exp(θ(e_r e_cᵀ − e_c e_rᵀ)).
 fn rotate_columns(g: &mut Mat<f64>, r: usize, c: usize, sin: f64, cos: f64) {

@@ -9,7 +9,9 @@
 use super::{GAUSS_2, GAUSS_3, MagnusWork, ROOT_15, magnus_method, sum};
 use crate::dense::{antisymmetrise, mul, mul_add};
 use crate::error::{Error, StepError};
-use crate::groups::{AlgebraMatrix, Form, LieAlgebra, MatrixGroup, Power, Product, So3};
+use crate::groups::{
+    AlgebraMatrix, Form, LieAlgebra, MatrixGroup, Power, Product, Se3, So3, cross,
+};
 use crate::maps::{Cay, CoordinateMap};
 use crate::methods::Step;
 use crate::problems::{PointOf, ScalarOf};
@@ -46,6 +48,24 @@ impl<S: Real> TripleProduct for So3<S> {
         for i in 0..3 {
             out[i] = -(uv * w[i]) - vw * u[i];
         }
+    }
+}
+
+/// On se(3), (a, x): the triple product of the rotations, and a × (b × z) + c × (b × x).
+impl<S: Real> TripleProduct for Se3<S> {
+    #[inline]
+    fn triple(
+        &self,
+        u: &Self::Alg,
+        v: &Self::Alg,
+        w: &Self::Alg,
+        work: &mut Self::Alg,
+        out: &mut Self::Alg,
+    ) {
+        So3::new().triple(&u.0, &v.0, &w.0, &mut work.0, &mut out.0);
+        let first = cross(&u.0, &cross(&v.0, &w.1));
+        let second = cross(&w.0, &cross(&v.0, &u.1));
+        out.1 = Vector3::from_fn(|i, _| first[i] + second[i]);
     }
 }
 

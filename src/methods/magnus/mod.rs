@@ -11,9 +11,10 @@
 //! | [`CFM4_2`], [`CFM4_3`] | 4 | 2, 3 | 0 | 2, 3 | Blanes, Moan 2006; Alvermann, Fehske 2011 |
 //! | [`CFM6_5`] | 6 | 3 | 0 | 5 | Alvermann, Fehske 2011 |
 //! | [`CFM8_11`] | 8 | 4 | 0 | 11 | the same |
-//! | [`CayleyMagnus4`], [`CayleyMagnus6`] | 4, 6 | 2, 3 | 1, 6 | 1 cay | Iserles 2001 |
+//! | [`CayleyMagnus4`], [`CayleyMagnus6`] | 4, 6 | 2, 3 | 1, 5 and as many triple products | 1 cay | Iserles 2001 |
 //!
-//! Preserves: the group, and what the action leaves invariant. Symmetric in time, all of them.
+//! Preserves: the group, and what the action leaves invariant. Symmetric in time, all of them. Cost: the
+//! table.
 //! Source: S. Blanes, F. Casas, J. A. Oteo, J. Ros, The Magnus expansion and some of its
 //! applications, Phys. Rep. 470 (2009).
 //!

@@ -17,7 +17,7 @@ fn scale<S: Real>(inverse_inertia: &Vector3<S>, m: &Vector3<S>) -> Vector3<S> {
 
 /// gᵀ·m.
 #[inline(always)]
-pub(super) fn apply_transpose<S: Real>(g: &Matrix3<S>, m: &Vector3<S>) -> Vector3<S> {
+pub(in crate::problems) fn apply_transpose<S: Real>(g: &Matrix3<S>, m: &Vector3<S>) -> Vector3<S> {
     let row = |j| g[(0, j)] * m[0] + g[(1, j)] * m[1] + g[(2, j)] * m[2];
     Vector3::new(row(0), row(1), row(2))
 }
@@ -62,7 +62,8 @@ impl<S: Real> RigidBody<S> {
         scale(&self.inverse_inertia, m)
     }
 
-    /// E = ½ m·J⁻¹m.
+    /// E = ½ m·J⁻¹m: infinite where that is beyond the largest number, as for |m| = 1e200 with J = 1,
+    /// and 0 below the least. The motion itself has no such limits.
     pub fn energy(&self, m: &Vector3<S>) -> S {
         kinetic_energy(&self.inverse_inertia, m)
     }

@@ -10,6 +10,7 @@ mod series;
 mod state;
 mod theta;
 
+pub(super) use closed::apply_transpose;
 pub use closed::{RigidBody, RigidBodyAttitude};
 pub use exact::Exact;
 pub use free::{Frame, FreeBody};

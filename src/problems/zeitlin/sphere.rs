@@ -21,6 +21,7 @@ use super::Surface;
 use crate::dense::wide;
 use crate::error::Error;
 use crate::groups::ComplexMatrix;
+use crate::scalar::{Ops, tally};
 
 /// The quantised sphere: 1/ħ = ½√(N² − 1).
 #[derive(Clone, Debug)]
@@ -126,6 +127,11 @@ impl Sphere {
 }
 
 /// Column j of a matrix whose columns are contiguous.
+/// The entries below the diagonal.
+fn triangle(n: usize) -> usize {
+    n * n.saturating_sub(1) / 2
+}
+
 fn slice(x: faer::MatRef<'_, f64>, j: usize) -> &[f64] {
     x.col(j).try_as_col_major().map_or(&[], |c| c.as_slice())
 }
@@ -142,6 +148,10 @@ impl Surface for Sphere {
         0.5 * (((self.n - 1) * (self.n + 1)) as f64).sqrt()
     }
     fn solve(&self, x: &mut ComplexMatrix, _: &mut [Mat<f64>; 2]) {
+        // Forward below the first column; backward a product each, and one more with a neighbour.
+        let (below, inner) = (triangle(self.n), triangle(self.n.saturating_sub(1)));
+        tally(|| (Ops::muls(below) + Ops::muladds(2 * inner)) * 2);
+        tally(|| (Ops::adds(6) + Ops::divs(1)) * self.n);
         for part in x.parts_mut() {
             wide(self.n, || self.solve_below(part));
         }

@@ -293,10 +293,19 @@ pub(crate) fn family<G: Represent + Clone>(
 #[macro_export]
 macro_rules! on_every_group {
     ($field:path, $members:expr, $flows:ident => $body:block) => {{
-        use lieflow::groups::{MatrixGroup, So3};
+        use lieflow::groups::{MatrixGroup, Product, Se3, So3};
         use $crate::support::orders::family;
         {
             let $flows = family($members, &So3::new(), |i| $field(3, 0.5, 11 + i));
+            $body
+        }
+        {
+            let $flows = family($members, &Se3::new(), |i| $field(4, 0.5, 23 + i));
+            $body
+        }
+        {
+            let group = Product(So3::new(), MatrixGroup::sp(4).unwrap());
+            let $flows = family($members, &group, |i| $field(7, 0.25, 11 + i));
             $body
         }
         for (group, n, strength, seed) in [

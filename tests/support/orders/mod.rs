@@ -1,12 +1,16 @@
 //! The order harness: test problems, a reference that owes nothing to the methods, and an estimator
 //! that is told the grid before it sees an error.
 
+mod by_name;
 mod ensemble;
 mod estimate;
 mod flow;
 mod suite;
 mod tree;
 
+pub(crate) use by_name::{
+    clocks, every_explicit_method_on, every_linear_method_on, every_method_on, waves,
+};
 pub(crate) use ensemble::{LONG, MEMBERS, Run, measure_over, order_over};
 pub(crate) use estimate::{Estimate, STRICT, estimate, grid, slopes};
 pub(crate) use flow::{

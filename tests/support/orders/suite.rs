@@ -104,7 +104,10 @@ where
             usize::MAX => {
                 return Outcome::Exact(distance_in_one_step(problem, &method, reference));
             }
-            ..=4 if single => measure(problem, &method, reference),
+            // Where the grid of the order has rounding on it, the one that begins at 4 steps has room.
+            ..=4 if single => {
+                measure(problem, &method, reference).or_else(|_| measure_over(short, &method))
+            }
             order if order > *highest => return Outcome::Elsewhere,
             ..=7 => measure_over(short, &method),
             _ => measure_over(long, &method),
@@ -156,9 +159,14 @@ fn serves(spec: &MethodSpec, group: &str) -> bool {
         return false;
     }
     let groups = MAPS.iter().find(|m| m.name == map).map_or("", |m| m.groups);
+    groups == "all" || group.split(" × ").all(|part| is_among(part, groups))
+}
+
+/// Is the group, or what it is a power of, one of these families?
+fn is_among(group: &str, families: &str) -> bool {
     let family = group.split('(').next().unwrap_or_default();
     let plain = !group.contains(','); // SO(p,q) is no SO(n)
-    groups == "all" || (plain && groups.split(", ").any(|g| g.starts_with(&format!("{family}("))))
+    plain && families.split(", ").any(|g| g.starts_with(&format!("{family}(")))
 }
 
 /// What is found on one problem: printed as a table, and all of it must hold.

@@ -63,9 +63,9 @@ catalog!(RigidBodyQuaternion, with_quaternion_method, with_exp_cay_pair);
 catalog!(RigidBodyState, with_state_method, with_state_pair);
 catalog!(RigidBodyN, with_lie_poisson_method);
 catalog!(RigidBodyNAttitude, with_implicit_method);
-catalog!(RigidBody<Counted>, with_momentum_method);
-catalog!(RigidBodyAttitude<Counted>, with_attitude_method, with_attitude_pair);
-catalog!(RigidBodyState<Counted>, with_state_method, with_state_pair);
+catalog!(pointed RigidBody<Counted>, with_momentum_method);
+catalog!(pointed RigidBodyAttitude<Counted>, with_attitude_method, with_attitude_pair);
+catalog!(pointed RigidBodyState<Counted>, with_state_method, with_state_pair);
 
 /// Run `$run` on the problem of `$model` with its initial state and a function that shows a point of
 /// it as a row.
@@ -308,7 +308,14 @@ impl Model for RigidBodyModel {
                 let y = BodyState { m: self.momentum.map(Counted), g: self.attitude.map(Counted) };
                 operations_by(method, &body, y, pace)
             }
-            System::Quaternion(_) | System::MomentumN(_) | System::AttitudeN(_) => None,
+            System::Quaternion(body) => operations_by(method, body, self.quaternion, pace),
+            System::MomentumN(body) => {
+                operations_by(method, body, to_faer(&hat(&self.momentum)), pace)
+            }
+            System::AttitudeN(body) => {
+                let g = MatrixGroup::so(3).ok()?.element(to_faer(&self.attitude)).ok()?;
+                operations_by(method, body, g, pace)
+            }
         }
     }
 

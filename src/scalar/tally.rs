@@ -1,0 +1,134 @@
+//! The operations of kernels on machine numbers: each says what it has just done, and
+//! [`Counted::count`](super::Counted::count) hears it.
+//!
+//! An `f64` cannot count itself, and a kernel of the dense layer that did would be no kernel. So a
+//! product, a solve, a sum of matrices states its operations beside its loop, from the sizes and the
+//! choices of that very call: how many squarings, sweeps, corrections there were is counted, not known
+//! beforehand. `tests/tally.rs` runs the same mathematics entry by entry on
+//! [`Counted`](super::Counted) and compares.
+//!
+//! | counted | not counted |
+//! |---|---|
+//! | products, solves, sums, norms, brackets, rotations of matrices | copies, signs, comparisons, \|x\|, "is it finite?", powers of two to balance |
+//! | functions of one number (exp, ln, sin, cos): each as one | what is done to single numbers beside a matrix: h·a_ij, a bound, a ratio of norms |
+//! | the eigenvectors of a symmetric matrix: 9n³, the usual estimate; that routine is not ours | |
+
+use core::ops::{Add, Mul};
+
+use super::Ops;
+
+/// Say that these operations have been done on machine numbers. Without the feature `tally` this is
+/// nothing at all; with it, it is a question while nobody counts, and `ops` is asked only where somebody
+/// does.
+///
+/// ```
+/// use lieflow::scalar::{Counted, Ops, tally};
+/// let ((), ops) = Counted::count(|| tally(|| Ops::muladds(3) + Ops::divs(1)));
+/// assert!(ops.total() == 7 || !cfg!(feature = "tally"));
+/// ```
+#[inline(always)]
+pub fn tally(ops: impl FnOnce() -> Ops) {
+    #[cfg(feature = "tally")]
+    if super::counted::is_counting() {
+        aside(|| super::counted::add(ops()));
+    }
+    #[cfg(not(feature = "tally"))]
+    let _ = ops;
+}
+
+/// Out of the way of the kernels.
+#[cfg(feature = "tally")]
+#[cold]
+#[inline(never)]
+fn aside<T>(f: impl FnOnce() -> T) -> T {
+    f()
+}
+
+/// Run `f`, a formula on numbers that count, for its operations alone, and only while somebody counts:
+/// beside the same formula on machine numbers, where it has branches and nothing fixed could be said.
+#[inline(always)]
+pub(crate) fn tally_by<T>(f: impl FnOnce() -> T) {
+    #[cfg(feature = "tally")]
+    if super::counted::is_counting() {
+        let _ = aside(f);
+    }
+    #[cfg(not(feature = "tally"))]
+    let _ = f;
+}
+
+impl Ops {
+    /// None.
+    pub const NONE: Ops = Ops { add: 0, mul: 0, div: 0, sqrt: 0, trig: 0 };
+
+    /// So many additions.
+    #[inline(always)]
+    pub const fn adds(n: usize) -> Ops {
+        Ops { add: n as u64, ..Ops::NONE }
+    }
+    /// So many multiplications.
+    #[inline(always)]
+    pub const fn muls(n: usize) -> Ops {
+        Ops { mul: n as u64, ..Ops::NONE }
+    }
+    /// So many divisions.
+    #[inline(always)]
+    pub const fn divs(n: usize) -> Ops {
+        Ops { div: n as u64, ..Ops::NONE }
+    }
+    /// So many square roots.
+    #[inline(always)]
+    pub const fn sqrts(n: usize) -> Ops {
+        Ops { sqrt: n as u64, ..Ops::NONE }
+    }
+    /// So many sines, cosines, exponentials or logarithms.
+    #[inline(always)]
+    pub const fn trigs(n: usize) -> Ops {
+        Ops { trig: n as u64, ..Ops::NONE }
+    }
+    /// So many times x ← x + a·b.
+    #[inline(always)]
+    pub const fn muladds(n: usize) -> Ops {
+        Ops { add: n as u64, mul: n as u64, ..Ops::NONE }
+    }
+    /// So many times z ← z + a·b in complex numbers: four products and four sums.
+    #[inline(always)]
+    pub const fn complex_muladds(n: usize) -> Ops {
+        Ops::muladds(4 * n)
+    }
+    /// So many entries, each a sum of k products.
+    #[inline(always)]
+    pub const fn dots(entries: usize, k: usize) -> Ops {
+        let (mul, add) = (entries * k, entries * k.saturating_sub(1));
+        Ops { mul: mul as u64, add: add as u64, ..Ops::NONE }
+    }
+}
+
+impl Add for Ops {
+    type Output = Ops;
+    #[inline(always)]
+    fn add(self, other: Ops) -> Ops {
+        Ops {
+            add: self.add + other.add,
+            mul: self.mul + other.mul,
+            div: self.div + other.div,
+            sqrt: self.sqrt + other.sqrt,
+            trig: self.trig + other.trig,
+        }
+    }
+}
+
+/// So many times the same.
+impl Mul<usize> for Ops {
+    type Output = Ops;
+    #[inline(always)]
+    fn mul(self, times: usize) -> Ops {
+        let n = times as u64;
+        Ops {
+            add: n * self.add,
+            mul: n * self.mul,
+            div: n * self.div,
+            sqrt: n * self.sqrt,
+            trig: n * self.trig,
+        }
+    }
+}
