@@ -20,7 +20,9 @@ const ROUNDS: usize = 15;
 const WORK: usize = 1 << 18;
 const H: f64 = 0.02;
 
-fn fastest(runs: &mut [(&str, Box<dyn FnMut() + '_>)], bodies: usize, steps: usize) {
+type Run<'a> = (&'a str, Box<dyn FnMut() + 'a>);
+
+fn fastest(runs: &mut [Run<'_>], bodies: usize, steps: usize) {
     let mut best = vec![f64::INFINITY; runs.len()];
     for _ in 0..ROUNDS {
         for (run, best) in runs.iter_mut().zip(&mut best) {
@@ -71,7 +73,7 @@ fn main() {
         let ensemble = Ensemble::new(&inertia, &momentum).expect("bodies");
         let attitudes = ensemble.clone().with_attitudes(&identity).expect("attitudes");
 
-        let mut runs: Vec<(&str, Box<dyn FnMut()>)> = Vec::new();
+        let mut runs: Vec<Run<'_>> = Vec::new();
         macro_rules! pair {
             ($name:literal, $alone:literal, $how:expr, $from:expr, $problems:expr, $y:expr, $method:expr) => {
                 let mut many = $from.clone();
