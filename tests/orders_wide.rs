@@ -18,9 +18,12 @@ use lieflow::maps::{CCSK, CCSK123, CCSK321, Cay, Exp, Pade22};
 use lieflow::methods::magnus::{CFM8_11, Magnus8};
 use lieflow::methods::tableau::DOP853;
 use lieflow::methods::{
-    CfMagnus, DMV8, DMV10, KAHAN_LI8, Method, Rk, Rkmk, SOFRONIOU_SPALETTA10, Splitting, Taylor,
+    CfMagnus, DMV8, DMV10, KAHAN_LI8, Method, Projected, Rk, Rkmk, SOFRONIOU_SPALETTA10, Splitting,
+    Taylor,
 };
-use lieflow::problems::{Ambient, LinearField, PointOf, Problem, RigidBody, RigidBodyAttitude};
+use lieflow::problems::{
+    Ambient, LinearField, PointOf, Problem, Projection, RigidBody, RigidBodyAttitude,
+};
 use lieflow::scalar::{DoubleDouble, Real, Trig};
 use nalgebra::{Matrix3, Vector3};
 use rand::{RngExt, SeedableRng};
@@ -309,30 +312,35 @@ fn momentum(i: u64) -> [f64; 3] {
     [m[0], m[1], -m[2]]
 }
 
-/// Every method for the body of order 8 and more, with the attitude and by the momentum alone.
+/// Every method for the body of order 8 and more, and those that only one of its problems has.
 macro_rules! bodies {
-    ($($test:ident: $title:literal, $needs:expr, $make:expr;)*) => {$(
+    ($body:ident, $even:ident: $($test:ident: $title:literal, $needs:expr, $make:expr, {$($more:tt)*};)*) => {$(
         #[test]
         fn $test() {
-            let [body, even] = [INERTIA, EVEN].map(|inertia| members(BODIES, $make(inertia)));
+            let [$body, $even] = [INERTIA, EVEN].map(|inertia| members(BODIES, $make(inertia)));
             measured!($title, $needs, {
-                ("mr8", ..) => even, STORED, Splitting::new([0, 1, 2], KAHAN_LI8);
-                ("mr10", ..) => even, CANCELLED, Splitting::new([0, 1, 2], SOFRONIOU_SPALETTA10);
-                ("dmv8", ..) => body, STORED, DMV8;
-                ("dmv10", ..) => body, STORED, DMV10;
-                ("taylor8", ..) => body, RATIONAL, Taylor::<8>;
-                ("taylor10", ..) => body, RATIONAL, Taylor::<10>;
-                ("taylor12", ..) => body, RATIONAL, Taylor::<12>;
-                ("taylor14", ..) => body, RATIONAL, Taylor::<14>;
-                ("taylor16", ..) => body, RATIONAL, Taylor::<16>;
+                ("mr8", ..) => $even, STORED, Splitting::new([0, 1, 2], KAHAN_LI8);
+                ("mr10", ..) => $even, CANCELLED, Splitting::new([0, 1, 2], SOFRONIOU_SPALETTA10);
+                ("dmv8", ..) => $body, STORED, DMV8;
+                ("dmv10", ..) => $body, STORED, DMV10;
+                ("taylor8", ..) => $body, RATIONAL, Taylor::<8>;
+                ("taylor10", ..) => $body, RATIONAL, Taylor::<10>;
+                ("taylor12", ..) => $body, RATIONAL, Taylor::<12>;
+                ("taylor14", ..) => $body, RATIONAL, Taylor::<14>;
+                ("taylor16", ..) => $body, RATIONAL, Taylor::<16>;
+                $($more)*
             });
         }
     )*};
 }
 
 bodies! {
+    body, even:
     attitudes: "a body by its attitude", [Needs::Series, Needs::Body, Needs::Attitude],
-        |j| move |i| (RigidBodyAttitude::new(j, momentum(i)).unwrap(), identity());
+        |j| move |i| (RigidBodyAttitude::new(j, momentum(i)).unwrap(), identity()), {
+            ("rk-qr", ..) => body, STORED, Projected::new(Rk(DOP853), Projection::Qr);
+            ("rk-polar", ..) => body, STORED, Projected::new(Rk(DOP853), Projection::Polar);
+        };
     momenta: "a body by its momentum", [Needs::Series, Needs::Body, Needs::LiePoisson],
-        |j| move |i| (RigidBody::new(j).unwrap(), Vector3::from(momentum(i)).map(D::lit));
+        |j| move |i| (RigidBody::new(j).unwrap(), Vector3::from(momentum(i)).map(D::lit)), {};
 }

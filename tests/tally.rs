@@ -423,9 +423,9 @@ fn a_step_of_rk4() {
 fn counts_are_kept_apart() {
     let said = Ops::muladds(3) + Ops::divs(1) * 2;
     let ((), outer) = Counted::count(|| {
-        tally(said);
+        tally(|| said);
         // What is counted within is not counted around it.
-        let ((), inner) = Counted::count(|| tally(Ops::trigs(5)));
+        let ((), inner) = Counted::count(|| tally(|| Ops::trigs(5)));
         assert_eq!(inner.trig, 5);
     });
     assert_eq!(outer, Ops { add: 3, mul: 3, div: 2, ..Ops::NONE });

@@ -318,21 +318,3 @@ where
         with_plain(&method, None, |method| self.0.call(Doubling(method)))
     }
 }
-
-/// A visitor that gets every method as one type.
-#[derive(Clone, Copy, Debug)]
-pub struct Pointed<V>(pub V);
-
-impl<P: Problem + 'static, V: OnMethod<P>> OnMethod<P> for Pointed<V> {
-    type Out = V::Out;
-    fn call<M: Method<P>>(self, method: M) -> V::Out {
-        with_plain(&method, None, |method| self.0.call(method))
-    }
-}
-
-impl<P: Problem + 'static, V: OnEmbedded<P>> OnEmbedded<P> for Pointed<V> {
-    type Out = V::Out;
-    fn call<M: Embedded<P>>(self, method: M) -> V::Out {
-        with_pair(&method, None, |method| self.0.call(method))
-    }
-}

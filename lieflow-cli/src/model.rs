@@ -139,8 +139,8 @@ pub trait Catalog: Problem<Group: LieAlgebra<Scalar: Into<f64>>> {
 }
 
 /// [`Catalog`] for an [`Ambient`](lieflow::problems::Ambient) problem, by the catalog's function for its
-/// kind, and the one for its embedded pairs. `counted` is for numbers that count: nothing is timed, and
-/// methods may stand behind a pointer.
+/// kind, and the one for its embedded pairs. `pointed` is for problems whose methods may stand behind a
+/// pointer: on numbers that count nothing is timed, and beside large matrices a call is nothing.
 #[macro_export]
 macro_rules! catalog {
     ($problem:ty, $with:path) => {
@@ -149,10 +149,10 @@ macro_rules! catalog {
     ($problem:ty, $with:path, $pair:path) => {
         $crate::catalog!(@impl $problem, $with, $pair, |spec, on| $with(spec, on));
     };
-    (counted $problem:ty, $with:path) => {
-        $crate::catalog!(counted $problem, $with, lieflow::catalog::with_embedded_pair);
+    (pointed $problem:ty, $with:path) => {
+        $crate::catalog!(pointed $problem, $with, lieflow::catalog::with_embedded_pair);
     };
-    (counted $problem:ty, $with:path, $pair:path) => {
+    (pointed $problem:ty, $with:path, $pair:path) => {
         $crate::catalog!(@impl $problem, $with, $pair, |spec, on| {
             $crate::erased::pointed(on, |found| $with(spec, found))
         });

@@ -118,6 +118,7 @@ fn the_advice_follows_from_the_points() {
     }
     let page = folder.read("out/index.html");
     assert!(page.contains("Pareto front") && !page.contains("NaN"));
+    assert!(page.contains("until a run takes 5ms; up to 100ms"));
     assert!(page.contains("Casimir") && page.contains("nearest to 1e-6"));
     for figure in ["pareto.svg", "operations.svg", "evaluations.svg", "speed-lie-series.svg"] {
         assert!(folder.read(&format!("out/{figure}")).starts_with("<svg"), "{figure}");

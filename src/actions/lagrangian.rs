@@ -86,7 +86,7 @@ impl Action<MatrixGroup> for Lagrangian {
         lu.factor();
         q.copy_from(numerator.transpose());
         lu.solve(q.as_mut());
-        tally((Ops::adds(1) + Ops::muls(1)) * (q.ncols() * q.ncols().saturating_sub(1) / 2));
+        tally(|| (Ops::adds(1) + Ops::muls(1)) * (q.ncols() * q.ncols().saturating_sub(1) / 2));
         for j in 0..q.ncols() {
             for i in 0..j {
                 let mean = 0.5 * (q[(i, j)] + q[(j, i)]);

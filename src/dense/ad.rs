@@ -127,7 +127,7 @@ impl AdSchur {
             }
         }
         let q = &schur.q;
-        tally(Ops::dots(4 * n * n, 2 * n));
+        tally(|| Ops::dots(4 * n * n, 2 * n));
         matmul(x.as_mut(), Accum::Replace, q.adjoint(), f.as_ref(), ONE, Par::Seq);
         match form {
             Some(_) => matmul(y.as_mut(), Accum::Replace, x.as_ref(), q.conjugate(), ONE, Par::Seq),
@@ -146,7 +146,7 @@ impl AdSchur {
         if form.is_none() {
             reverse_columns(y);
         }
-        tally(Ops::dots(4 * n * n, 2 * n));
+        tally(|| Ops::dots(4 * n * n, 2 * n));
         matmul(x.as_mut(), Accum::Replace, q.as_ref(), y.as_ref(), ONE, Par::Seq);
         match form {
             Some(_) => matmul(f.as_mut(), Accum::Replace, x.as_ref(), q.transpose(), ONE, Par::Seq),
@@ -239,8 +239,8 @@ impl AdSchur {
         let w = x.col_as_slice_mut(0);
         // For column k: the sum w, the weight, F w, and the substitution with its pivots.
         let half = n * n.saturating_sub(1) / 2;
-        tally(Ops::complex_muladds(n * half + n * (n + half) + n * half));
-        tally((Ops::muls(2) + Ops::muladds(8) + Ops::divs(2)) * (n * n));
+        tally(|| Ops::complex_muladds(n * half + n * (n + half) + n * half));
+        tally(|| (Ops::muls(2) + Ops::muladds(8) + Ops::divs(2)) * (n * n));
         for k in (0..n).rev() {
             // w = Σ_{m>k} X_m g_km; what is left of the right-hand side is weight·Y_k − F w.
             w.fill(ZERO);
@@ -286,7 +286,7 @@ impl AdSchur {
     fn average(&mut self) {
         let AdSchur { f, g, y, x, .. } = self;
         let n = y.nrows();
-        tally(Ops::dots(4 * n * n, 2 * n) + (Ops::muls(4) + Ops::adds(2)) * (n * n));
+        tally(|| Ops::dots(4 * n * n, 2 * n) + (Ops::muls(4) + Ops::adds(2)) * (n * n));
         let half = c64::new(0.5, 0.0);
         matmul(x.as_mut(), Accum::Replace, f.as_ref(), y.as_ref(), half, Par::Seq);
         for j in 0..y.ncols() {
@@ -340,7 +340,7 @@ fn exp_triangular(t: &Mat<c64>, shift: f64, scale: f64, out: &mut Mat<c64>, x: &
     let n = t.nrows();
     out.fill(ZERO);
     out.diagonal_mut().fill(ONE);
-    tally((Ops::complex_muladds(triangle(n)) + Ops::muladds(n * (n + 1))) * TAYLOR);
+    tally(|| (Ops::complex_muladds(triangle(n)) + Ops::muladds(n * (n + 1))) * TAYLOR);
     for degree in (1..=TAYLOR).rev() {
         // out ← 𝟙 + t·out/degree
         let c = scale / degree as f64;
@@ -365,7 +365,7 @@ fn exp_triangular(t: &Mat<c64>, shift: f64, scale: f64, out: &mut Mat<c64>, x: &
 /// f ← f², with the diagonal exp(scale·(t + shift)).
 fn square(f: &mut Mat<c64>, x: &mut Mat<c64>, t: &Mat<c64>, shift: f64, scale: f64) {
     let n = f.nrows();
-    tally(Ops::complex_muladds(triangle(n)));
+    tally(|| Ops::complex_muladds(triangle(n)));
     for j in 0..n {
         let col = x.col_as_slice_mut(j);
         col.fill(ZERO);
@@ -387,7 +387,7 @@ fn triangle(n: usize) -> usize {
 }
 
 fn exact_diagonal(f: &mut Mat<c64>, t: &Mat<c64>, shift: f64, scale: f64) {
-    tally((Ops::adds(1) + Ops::muls(4) + Ops::trigs(3)) * t.nrows());
+    tally(|| (Ops::adds(1) + Ops::muls(4) + Ops::trigs(3)) * t.nrows());
     for i in 0..t.nrows() {
         f[(i, i)] = ((t[(i, i)] + shift) * scale).exp();
     }

@@ -60,7 +60,7 @@ impl SkewEigen {
         // Eigenvalues ascend, so the conjugate of number j is number n − 1 − j.
         self.multiply(phi, |lambda, j, k| j + k == n - 1 && j != k && isolated(lambda, j))?;
         let h = &self.h;
-        tally((Ops::adds(1) + Ops::muls(1)) * (n * n.saturating_sub(1) / 2));
+        tally(|| (Ops::adds(1) + Ops::muls(1)) * (n * n.saturating_sub(1) / 2));
         for j in 0..n {
             v[(j, j)] = 0.0;
             for i in j + 1..n {
@@ -115,8 +115,10 @@ impl SkewEigen {
         let SkewEigen { h, q, x, lambda, mem } = self;
         // The eigenvectors by the usual estimate of 9n³ complex operations, a product, norms, quotients.
         let n = h.nrows();
-        tally(Ops::complex_muladds(9 * n * n * n / 2 + n * n * n));
-        tally(Ops::muladds(4 * n * n) + Ops::muls(2 * n * n) + (Ops::divs(1) + Ops::sqrts(1)) * n);
+        tally(|| Ops::complex_muladds(9 * n * n * n / 2 + n * n * n));
+        tally(|| {
+            Ops::muladds(4 * n * n) + Ops::muls(2 * n * n) + (Ops::divs(1) + Ops::sqrts(1)) * n
+        });
         // faer's reduction fails where the square of an entry underflows beside others.
         let negligible = NEGLIGIBLE * h.norm_max();
         for z in h.col_iter_mut().flat_map(|column| column.iter_mut()) {
@@ -155,8 +157,8 @@ impl SkewEigen {
         let SkewEigen { h, q, x, lambda, .. } = self;
         // Four products; φ of a difference and its product for each entry.
         let n = h.nrows();
-        tally(Ops::dots(8 * n * n, 2 * n));
-        tally((Ops::muls(6) + Ops::adds(3) + Ops::divs(1) + Ops::trigs(2)) * (n * n));
+        tally(|| Ops::dots(8 * n * n, 2 * n));
+        tally(|| (Ops::muls(6) + Ops::adds(3) + Ops::divs(1) + Ops::trigs(2)) * (n * n));
         matmul(x.as_mut(), Accum::Replace, h.as_ref(), q.as_ref(), ONE, Par::Seq);
         matmul(h.as_mut(), Accum::Replace, q.adjoint(), x.as_ref(), ONE, Par::Seq);
         for k in 0..h.ncols() {

@@ -48,7 +48,7 @@ impl Lu {
     /// Factor `a` in place. Returns min|u_ii|/max|u_ii|, a cheap sign of singularity: 0 for a
     /// singular matrix, and never NaN.
     pub(crate) fn factor(&mut self) -> f64 {
-        tally(factor_ops(self.a.nrows()));
+        tally(|| factor_ops(self.a.nrows()));
         match self.a.nrows() {
             2 => self.factor_small::<2>(),
             3 => self.factor_small::<3>(),
@@ -81,7 +81,7 @@ impl Lu {
 
     /// b ← a⁻¹b. `b` has at most n columns.
     pub(crate) fn solve(&mut self, mut b: MatMut<'_, f64>) {
-        tally(solve_ops(self.a.nrows(), b.ncols()));
+        tally(|| solve_ops(self.a.nrows(), b.ncols()));
         match self.a.nrows() {
             2 => self.solve_small::<2>(b),
             3 => self.solve_small::<3>(b),

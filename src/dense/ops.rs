@@ -53,7 +53,7 @@ fn tally_sum(k: usize, like: &Mat<f64>, d: f64, add: bool) {
     let (rows, columns) = (like.nrows(), like.ncols());
     let diagonal = if d == 0.0 { 0 } else { rows.min(columns) };
     let entries = rows * columns;
-    tally(Ops::dots(entries, k) + Ops::adds(diagonal + if add { entries } else { 0 }));
+    tally(|| Ops::dots(entries, k) + Ops::adds(diagonal + if add { entries } else { 0 }));
 }
 
 /// `op` with the widest instructions there are, where n is worth the choice.
@@ -139,7 +139,7 @@ fn sum(x: &[f64], f: impl Fn(f64) -> f64) -> f64 {
 
 /// The 1-norm: the largest absolute column sum. NaN when an entry is NaN.
 pub(crate) fn norm1(x: MatRef<'_, f64>) -> f64 {
-    tally(Ops::adds(x.nrows().saturating_sub(1) * x.ncols()));
+    tally(|| Ops::adds(x.nrows().saturating_sub(1) * x.ncols()));
     wide(x.nrows(), Norm1(x))
 }
 
@@ -167,7 +167,7 @@ impl NullaryFnOnce for Norm1<'_> {
 
 /// y ← |a|ᵀx for x, y ≥ 0; returns the largest y_j.
 pub(crate) fn abs_mul(a: &Mat<f64>, x: &[f64], y: &mut [f64]) -> f64 {
-    tally(Ops::dots(y.len(), x.len()));
+    tally(|| Ops::dots(y.len(), x.len()));
     wide(a.nrows(), AbsMul { a, x, y })
 }
 
@@ -203,7 +203,7 @@ impl NullaryFnOnce for AbsMul<'_> {
 
 /// The sums of moduli off the diagonal, along rows and along columns.
 pub(crate) fn abs_sums(a: &Mat<f64>, rows: &mut [f64], cols: &mut [f64]) {
-    tally(Ops::adds(2 * rows.len() * cols.len().saturating_sub(2)));
+    tally(|| Ops::adds(2 * rows.len() * cols.len().saturating_sub(2)));
     rows.fill(0.0);
     for (j, c) in cols.iter_mut().enumerate() {
         let col = a.col_as_slice(j);
@@ -216,7 +216,7 @@ pub(crate) fn abs_sums(a: &Mat<f64>, rows: &mut [f64], cols: &mut [f64]) {
 
 /// The Frobenius norm.
 pub(crate) fn norm_frobenius(x: &Mat<f64>) -> f64 {
-    tally(Ops::dots(1, x.nrows() * x.ncols()) + Ops::sqrts(1));
+    tally(|| Ops::dots(1, x.nrows() * x.ncols()) + Ops::sqrts(1));
     let s: f64 = (0..x.ncols()).map(|j| sum(x.col_as_slice(j), |x| x * x)).sum();
     if s.is_normal() {
         s.sqrt()

@@ -60,7 +60,7 @@ fn product(out: &mut Mat<f64>, a: MatRef<'_, f64>, b: MatRef<'_, f64>, alpha: f6
 fn tally_product(entries: usize, k: usize, alpha: f64, add: bool) {
     let scaled = if alpha.abs() == 1.0 { 0 } else { entries };
     let added = if add { entries } else { 0 };
-    tally(Ops::dots(entries, k) + Ops::muls(scaled) + Ops::adds(added));
+    tally(|| Ops::dots(entries, k) + Ops::muls(scaled) + Ops::adds(added));
 }
 
 /// out ← alpha·a·b, or out ← out + alpha·a·b, of const size.
@@ -335,7 +335,7 @@ pub(super) fn load<const N: usize>(a: MatRef<'_, f64>) -> [[f64; N]; N] {
 
 /// p ← p − pᵀ. With p = u·v and u, v skew this is \[u, v\] for one product.
 pub(crate) fn antisymmetrise(p: &mut Mat<f64>) {
-    tally(Ops::adds(p.nrows() * p.ncols().saturating_sub(1) / 2));
+    tally(|| Ops::adds(p.nrows() * p.ncols().saturating_sub(1) / 2));
     if p.nrows() > N_MAX {
         return wide(p.nrows(), Mirror::<true> { x: p, sign: -1.0 });
     }

@@ -51,7 +51,7 @@ impl Rotation {
 
     /// Rows k and k + 1 of `x`, columns `from`….
     fn rows(self, x: &mut Mat<c64>, k: usize, from: usize) {
-        tally(Rotation::OPS * x.ncols().saturating_sub(from));
+        tally(|| Rotation::OPS * x.ncols().saturating_sub(from));
         for j in from..x.ncols() {
             let col = x.col_as_slice_mut(j);
             let (a, b) = (col[k], col[k + 1]);
@@ -62,7 +62,7 @@ impl Rotation {
 
     /// Columns k and k + 1 of `x`, rows up to `to`, from the right by the adjoint.
     fn columns(self, x: &mut Mat<c64>, k: usize, to: usize) {
-        tally(Rotation::OPS * to);
+        tally(|| Rotation::OPS * to);
         for i in 0..to {
             let (a, b) = (x[(i, k)], x[(i, k + 1)]);
             x[(i, k)] = a * self.c + self.s.conj() * b;
@@ -132,8 +132,8 @@ impl Schur {
             let size = (k + 1..n).map(|i| w[i].norm()).fold(0.0f64, f64::hypot);
             w[k + 1..].iter_mut().for_each(|x| *x /= size);
             let (rows, vectors) = (n - k - 1, n - k + 2 * n);
-            tally(Ops::muladds(4 * rows) + Ops::divs(4 * rows) + Ops::sqrts(2 * rows));
-            tally((Ops::complex_muladds(2 * rows) + Ops::muls(2 * rows)) * vectors);
+            tally(|| Ops::muladds(4 * rows) + Ops::divs(4 * rows) + Ops::sqrts(2 * rows));
+            tally(|| (Ops::complex_muladds(2 * rows) + Ops::muls(2 * rows)) * vectors);
             for j in k..n {
                 let col = t.col_as_slice_mut(j);
                 let mut dot = ZERO;

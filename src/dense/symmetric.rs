@@ -42,7 +42,7 @@ impl SymmetricEigen {
     ) -> Result<(), StepError> {
         let SymmetricEigen { q, scaled, lambda, mem } = self;
         let n = a.nrows();
-        tally(Ops::muladds(9 * n * n * n / 2) + Ops::trigs(n) + Ops::muls(n * n));
+        tally(|| Ops::muladds(9 * n * n * n / 2) + Ops::trigs(n) + Ops::muls(n * n));
         self_adjoint_evd(
             a.as_ref(),
             lambda.as_diagonal_mut(),

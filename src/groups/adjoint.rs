@@ -193,7 +193,7 @@ impl Adjoint for MatrixGroup {
         if matches!(self.form(), Form::Identity) {
             // Skew to rounding; skew exactly.
             antisymmetrise(out);
-            tally(Ops::muls(self.n() * self.n()));
+            tally(|| Ops::muls(self.n() * self.n()));
             **out *= faer::Scale(0.5);
         }
         finite(is_finite(out))

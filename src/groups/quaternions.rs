@@ -66,17 +66,17 @@ impl LieAlgebra for UnitQuaternions {
     }
     #[inline]
     fn axpy(&self, a: f64, x: &Vector3<f64>, y: &mut Vector3<f64>) {
-        tally(Ops::muladds(3));
+        tally(|| Ops::muladds(3));
         SO3.axpy(a, x, y);
     }
     #[inline]
     fn bracket(&self, u: &Vector3<f64>, v: &Vector3<f64>, out: &mut Vector3<f64>) {
-        tally(CROSS);
+        tally(|| CROSS);
         SO3.bracket(u, v, out);
     }
     #[inline]
     fn norm(&self, u: &Vector3<f64>) -> f64 {
-        tally(Ops::dots(1, 3) + Ops::sqrts(1));
+        tally(|| Ops::dots(1, 3) + Ops::sqrts(1));
         SO3.norm(u)
     }
     #[inline]
@@ -100,13 +100,13 @@ impl LieGroup for UnitQuaternions {
         b: &UnitQuaternion<f64>,
         out: &mut UnitQuaternion<f64>,
     ) {
-        tally(QUATERNION_PRODUCT);
+        tally(|| QUATERNION_PRODUCT);
         *out = UnitQuaternion::new_unchecked(a.quaternion() * b.quaternion());
     }
     #[inline]
     fn apply(&self, q: &UnitQuaternion<f64>, x: &Vector3<f64>, y: &mut Vector3<f64>) {
         let (w, v) = (q.w, q.imag());
-        tally(CROSS * 2 + Ops::muls(6) + Ops::adds(6));
+        tally(|| CROSS * 2 + Ops::muls(6) + Ops::adds(6));
         let t = 2.0 * v.cross(x);
         *y = x + w * t + v.cross(&t);
     }
@@ -125,7 +125,7 @@ impl LieGroup for UnitQuaternions {
     #[inline]
     fn correct(&self, q: &mut UnitQuaternion<f64>, _: [&mut UnitQuaternion<f64>; 2]) -> f64 {
         let gap = q.coords.norm_squared() - 1.0;
-        tally(Ops::dots(1, 4) + Ops::adds(2) + Ops::muls(5));
+        tally(|| Ops::dots(1, 4) + Ops::adds(2) + Ops::muls(5));
         if gap.abs() < RESIDUAL_MAX {
             *q = UnitQuaternion::new_unchecked(Quaternion::from(q.coords * (1.0 - 0.5 * gap)));
         }
@@ -252,9 +252,9 @@ macro_rules! map {
 }
 map!(Exp, "exp", so3::exp_quaternion, so3::dexpinv, |u| {
     tally_by(|| so3::half_angle(&u.map(Counted)));
-    tally(Ops::muls(3));
+    tally(|| Ops::muls(3));
 });
 // Scaled: four divisions, the norm, four more.
 map!(Cay, "cay", so3::cay_quaternion, so3::dcayinv, |_u| {
-    tally(Ops::divs(8) + Ops::dots(1, 4) + Ops::sqrts(1));
+    tally(|| Ops::divs(8) + Ops::dots(1, 4) + Ops::sqrts(1));
 });

@@ -188,7 +188,7 @@ impl CoordinateMap<Unitary> for Cay {
         for (x, half) in [(&mut *minus, -0.5), (&mut *plus, 0.5)] {
             x.clear();
             x.add(half, u);
-            tally(Ops::adds(group.n()));
+            tally(|| Ops::adds(group.n()));
             x.re.diagonal_mut().column_vector_mut().iter_mut().for_each(|d| *d += 1.0);
         }
         lu.solve(minus, plus);
@@ -260,7 +260,7 @@ impl ComplexLu {
         let n = self.a.nrows();
         let below = n * n.saturating_sub(1) / 2;
         let factor = below * (2 * n).saturating_sub(1) / 3;
-        tally(Ops::complex_muladds(factor + n * n * n) + Ops::divs(6 * n));
+        tally(|| Ops::complex_muladds(factor + n * n * n) + Ops::divs(6 * n));
         join(a, &mut self.a);
         join(b, &mut self.b);
         let stack = MemStack::new(&mut self.mem);

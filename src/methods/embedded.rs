@@ -121,7 +121,7 @@ impl Metric for Mat<f64> {
         norm_frobenius(self)
     }
     fn distance(&self, x: &Self) -> f64 {
-        tally(Ops::adds(2 * x.nrows() * x.ncols()) + Ops::muls(x.nrows() * x.ncols()));
+        tally(|| Ops::adds(2 * x.nrows() * x.ncols()) + Ops::muls(x.nrows() * x.ncols()));
         let mut s = 0.0;
         for j in 0..self.ncols() {
             for (a, b) in self.col_as_slice(j).iter().zip(x.col_as_slice(j)) {

@@ -67,7 +67,7 @@ impl<const S: usize> Factor<S> {
         for (c, x) in c.iter().zip(slopes) {
             axpy(h * c, x, out);
         }
-        tally(Ops::adds(out.nrows()));
+        tally(|| Ops::adds(out.nrows()));
         for i in 0..out.nrows() {
             out[(i, i)] += 1.0;
         }

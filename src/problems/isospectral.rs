@@ -161,7 +161,7 @@ impl Ambient for IsospectralFlow {
     ) {
         self.generator(l, b, log);
         mul(dl, b.as_ref(), l.as_ref());
-        tally(Ops::adds(dl.ncols() * (dl.ncols() + 1) / 2));
+        tally(|| Ops::adds(dl.ncols() * (dl.ncols() + 1) / 2));
         for j in 0..dl.ncols() {
             for i in 0..=j {
                 let sum = dl[(i, j)] + dl[(j, i)];

@@ -73,7 +73,7 @@ impl<F: Fn(f64, &Mat<f64>) -> (Vector3<f64>, Vector3<f64>)> ChargedParticle<F> {
     fn tensor(&self, tau: f64, u: &Mat<f64>, f: &mut Mat<f64>) {
         let (e, b) = (self.field)(tau, u);
         f.fill(0.0);
-        tally(Ops::muls(6));
+        tally(|| Ops::muls(6));
         for i in 0..3 {
             let (j, k) = ((i + 1) % 3, (i + 2) % 3);
             (f[(i, 3)], f[(3, i)]) = (self.ratio * e[i], self.ratio * e[i]);

@@ -82,7 +82,7 @@ impl Problem for RigidBodyQuaternion {
     fn work(&self) {}
     #[inline]
     fn f(&self, _: f64, q: &UnitQuaternion<f64>, v: &mut Vector3<f64>, _: &mut ()) {
-        tally(Ops::muls(3)); // ω of m
+        tally(|| Ops::muls(3)); // ω of m
         UnitQuaternions.apply(q, &self.body.omega(&self.momentum_body(q)), v);
     }
 }
@@ -91,7 +91,7 @@ impl Ambient for RigidBodyQuaternion {
     fn field(&self, t: f64, q: &UnitQuaternion<f64>, dq: &mut UnitQuaternion<f64>, work: &mut ()) {
         let mut omega = Vector3::zeros();
         self.f(t, q, &mut omega, work);
-        tally(Ops::muls(3) + QUATERNION_PRODUCT);
+        tally(|| Ops::muls(3) + QUATERNION_PRODUCT);
         let product = Quaternion::from_imag(0.5 * omega) * q.quaternion();
         *dq = UnitQuaternion::new_unchecked(product);
     }
@@ -107,13 +107,13 @@ impl Metric for UnitQuaternion<f64> {
     }
     #[inline]
     fn size(&self) -> f64 {
-        tally(Ops::dots(1, 4) + Ops::sqrts(1));
+        tally(|| Ops::dots(1, 4) + Ops::sqrts(1));
         self.coords.norm()
     }
     /// |a − b|: q and −q are different points.
     #[inline]
     fn distance(&self, x: &Self) -> f64 {
-        tally(Ops::adds(4) + Ops::dots(1, 4) + Ops::sqrts(1));
+        tally(|| Ops::adds(4) + Ops::dots(1, 4) + Ops::sqrts(1));
         (self.coords - x.coords).norm()
     }
 }
@@ -125,12 +125,12 @@ impl LinearSpace for UnitQuaternion<f64> {
     }
     #[inline]
     fn add(&mut self, a: f64, x: &Self) {
-        tally(Ops::muladds(4));
+        tally(|| Ops::muladds(4));
         *self = UnitQuaternion::new_unchecked(Quaternion::from(self.coords + a * x.coords));
     }
     #[inline]
     fn dot(&self, x: &Self) -> f64 {
-        tally(Ops::dots(1, 4));
+        tally(|| Ops::dots(1, 4));
         self.coords.dot(&x.coords)
     }
     #[inline]

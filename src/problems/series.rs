@@ -59,7 +59,7 @@ impl MomentumSeries {
             if self.skew {
                 // The symmetric part of a momentum vanishes on 𝔤.
                 antisymmetrise(&mut self.m[0]);
-                tally(Ops::muls(self.m[0].nrows() * self.m[0].ncols()));
+                tally(|| Ops::muls(self.m[0].nrows() * self.m[0].ncols()));
                 self.m[0] *= faer::Scale(0.5);
             }
             return &self.m[0];

@@ -57,7 +57,7 @@ macro_rules! dense {
                 dense::axpy(a, x, self);
             }
             fn dot(&self, x: &Self) -> f64 {
-                tally(Ops::dots(1, x.nrows() * x.ncols()));
+                tally(|| Ops::dots(1, x.nrows() * x.ncols()));
                 let column = |j| self.col_as_slice(j).iter().zip(x.col_as_slice(j));
                 (0..self.ncols()).flat_map(column).map(|(y, x)| y * x).sum()
             }

@@ -46,7 +46,6 @@ pub(super) fn is_counting() -> bool {
 
 /// What a kernel on machine numbers says that it has done.
 #[cfg(feature = "tally")]
-#[inline(always)]
 pub(super) fn add(ops: Ops) {
     OPS.set(OPS.get() + ops);
 }

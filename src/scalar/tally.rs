@@ -18,13 +18,30 @@ use core::ops::{Add, Mul};
 use super::Ops;
 
 /// Say that these operations have been done on machine numbers. Without the feature `tally` this is
-/// nothing at all, and what goes into it is not computed either.
+/// nothing at all; with it, it is a question while nobody counts, and `ops` is asked only where somebody
+/// does.
+///
+/// ```
+/// use lieflow::scalar::{Counted, Ops, tally};
+/// let ((), ops) = Counted::count(|| tally(|| Ops::muladds(3) + Ops::divs(1)));
+/// assert!(ops.total() == 7 || !cfg!(feature = "tally"));
+/// ```
 #[inline(always)]
-pub fn tally(ops: Ops) {
+pub fn tally(ops: impl FnOnce() -> Ops) {
     #[cfg(feature = "tally")]
-    super::counted::add(ops);
+    if super::counted::is_counting() {
+        aside(|| super::counted::add(ops()));
+    }
     #[cfg(not(feature = "tally"))]
     let _ = ops;
+}
+
+/// Out of the way of the kernels.
+#[cfg(feature = "tally")]
+#[cold]
+#[inline(never)]
+fn aside<T>(f: impl FnOnce() -> T) -> T {
+    f()
 }
 
 /// Run `f`, a formula on numbers that count, for its operations alone, and only while somebody counts:
@@ -33,7 +50,7 @@ pub fn tally(ops: Ops) {
 pub(crate) fn tally_by<T>(f: impl FnOnce() -> T) {
     #[cfg(feature = "tally")]
     if super::counted::is_counting() {
-        let _ = f();
+        let _ = aside(f);
     }
     #[cfg(not(feature = "tally"))]
     let _ = f;

@@ -73,7 +73,7 @@ struct Comparison<'a> {
     scene: &'a Scene,
     curves: Vec<Curve>,
     reference: Reference,
-    rounds: u32,
+    effort: Effort,
 }
 
 /// Run the command.
@@ -135,7 +135,7 @@ pub fn run(args: &CompareArgs) -> Result<(), CliError> {
         })?;
     bar.finish_and_clear();
 
-    let comparison = Comparison { scene: &scene, curves, reference, rounds: effort.rounds };
+    let comparison = Comparison { scene: &scene, curves, reference, effort };
     let path = comparison.write(&folder)?;
     journal.finish()?;
     output::print(&comparison.in_words())?;
@@ -371,7 +371,15 @@ impl Comparison<'_> {
                     "Times".into(),
                     format!(
                         "CPU time of one thread, medians of {} rounds that visit every method in turn",
-                        self.rounds
+                        self.effort.rounds
+                    ),
+                ),
+                (
+                    "Runs".into(),
+                    format!(
+                        "steps get smaller until a run takes {:?}; up to {:?} for the methods that promise \
+                         most where none has reached an error of the tables",
+                        self.effort.longest, self.effort.patience
                     ),
                 ),
                 ("Modelled".into(), self.scene.quantities.join(", ")),

@@ -83,30 +83,27 @@ impl<G: LieGroup, A: Action<G>> fmt::Debug for Flow<G, A> {
     }
 }
 
-/// A problem of the library with its scratch.
-struct Running<P: Problem>(std::rc::Rc<P>, P::Work);
+/// ξ ← ∇̄H(a, b), from the problem, a, b, ξ and scratch.
+type Gradient<P> = fn(&P, &PointOf<P>, &PointOf<P>, &mut AlgOf<P>, &mut <P as Problem>::Work);
+
+/// A problem of the library with its scratch; with its gradient where it is a Lie–Poisson system.
+struct Running<P: Problem> {
+    problem: std::rc::Rc<P>,
+    work: P::Work,
+    gradient: Option<Gradient<P>>,
+}
 
 impl<P: Ambient> Field<P::Group, PointOf<P>> for Running<P> {
     fn f(&mut self, t: ScalarOf<P>, y: &PointOf<P>, v: &mut AlgOf<P>) {
-        self.0.f(t, y, v, &mut self.1);
+        self.problem.f(t, y, v, &mut self.work);
     }
     fn ambient(&mut self, t: ScalarOf<P>, y: &PointOf<P>, dy: &mut PointOf<P>) {
-        self.0.field(t, y, dy, &mut self.1);
-    }
-}
-
-/// A Lie–Poisson system with its scratch.
-struct RunningPoisson<P: Problem>(std::rc::Rc<P>, P::Work);
-
-impl<P: LiePoisson> Field<P::Group, PointOf<P>> for RunningPoisson<P> {
-    fn f(&mut self, t: ScalarOf<P>, y: &PointOf<P>, v: &mut AlgOf<P>) {
-        self.0.f(t, y, v, &mut self.1);
-    }
-    fn ambient(&mut self, t: ScalarOf<P>, y: &PointOf<P>, dy: &mut PointOf<P>) {
-        self.0.field(t, y, dy, &mut self.1);
+        self.problem.field(t, y, dy, &mut self.work);
     }
     fn discrete_gradient(&mut self, a: &PointOf<P>, b: &PointOf<P>, xi: &mut AlgOf<P>) {
-        self.0.discrete_gradient(a, b, xi, &mut self.1);
+        if let Some(gradient) = self.gradient {
+            gradient(&self.problem, a, b, xi, &mut self.work);
+        }
     }
 }
 
@@ -145,14 +142,7 @@ where
         P: Ambient<Group = G> + 'static,
         P::Action: Action<G, Point = A::Point>,
     {
-        let group = problem.group().clone();
-        let problem = std::rc::Rc::new(problem);
-        let field = Box::new(move || -> Box<dyn Field<G, A::Point>> {
-            Box::new(Running(problem.clone(), problem.work()))
-        });
-        let flow =
-            Flow { group, action, start: start.clone(), linear: false, hamiltonian: None, field };
-        (flow, start)
+        Self::of(std::rc::Rc::new(problem), action, start, None)
     }
 
     /// A Lie–Poisson system of the library, and `start`; `action` is its action.
@@ -161,15 +151,29 @@ where
         P: LiePoisson + Problem<Group = G> + 'static,
         P::Action: Action<G, Point = A::Point>,
     {
-        let group = problem.group().clone();
         let problem = std::rc::Rc::new(problem);
-        let of_energy = problem.clone();
-        let energy: Energy<A::Point, G::Scalar> = Box::new(move |m| of_energy.hamiltonian(m));
+        let gradient: Gradient<P> = P::discrete_gradient;
+        let (mut flow, start) = Self::of(problem.clone(), action, start, Some(gradient));
+        flow.hamiltonian = Some(Box::new(move |m| problem.hamiltonian(m)));
+        (flow, start)
+    }
+
+    fn of<P>(
+        problem: std::rc::Rc<P>,
+        action: A,
+        start: A::Point,
+        gradient: Option<Gradient<P>>,
+    ) -> (Self, A::Point)
+    where
+        P: Ambient<Group = G> + 'static,
+        P::Action: Action<G, Point = A::Point>,
+    {
+        let group = problem.group().clone();
         let field = Box::new(move || -> Box<dyn Field<G, A::Point>> {
-            Box::new(RunningPoisson(problem.clone(), problem.work()))
+            Box::new(Running { problem: problem.clone(), work: problem.work(), gradient })
         });
-        let hamiltonian = Some(energy);
-        let flow = Flow { group, action, start: start.clone(), linear: false, hamiltonian, field };
+        let flow =
+            Flow { group, action, start: start.clone(), linear: false, hamiltonian: None, field };
         (flow, start)
     }
 

@@ -133,7 +133,7 @@ impl Hill {
     {
         let Hill { a, q, period, .. } = self.clone();
         hill(a.nrows(), move |t, i, j| {
-            tally(Ops::muls(3) + Ops::adds(1) + Ops::divs(1) + Ops::trigs(1));
+            tally(|| Ops::muls(3) + Ops::adds(1) + Ops::divs(1) + Ops::trigs(1));
             a[(i, j)] - 2.0 * q[(i, j)] * (TAU / period * t).cos()
         })
     }

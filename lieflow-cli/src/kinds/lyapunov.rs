@@ -84,7 +84,7 @@ impl Term {
         let mut value = self.coefficient;
         // A product for each coordinate, and those of its power.
         let products = |power: &i32| (*power).max(1) as usize;
-        tally(Ops::muls(self.powers.iter().map(products).sum()) + Ops::adds(1));
+        tally(|| Ops::muls(self.powers.iter().map(products).sum()) + Ops::adds(1));
         for (i, &power) in self.powers.iter().enumerate() {
             value *= match (by == Some(i), power) {
                 (true, 0) => 0.0,

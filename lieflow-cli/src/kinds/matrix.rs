@@ -105,13 +105,13 @@ impl Action<MatrixGroup> for MatrixAction {
 
 /// out ← a·b.
 fn mul(out: &mut Mat<f64>, a: MatRef<'_, f64>, b: MatRef<'_, f64>) {
-    tally(Ops::dots(a.nrows() * b.ncols(), a.ncols()));
+    tally(|| Ops::dots(a.nrows() * b.ncols(), a.ncols()));
     matmul(out, Accum::Replace, a, b, 1.0, Par::Seq);
 }
 
 /// out ← out ± a·b.
 fn mul_add(out: &mut Mat<f64>, alpha: f64, a: MatRef<'_, f64>, b: MatRef<'_, f64>) {
-    tally(Ops::muladds(a.nrows() * b.ncols() * a.ncols()));
+    tally(|| Ops::muladds(a.nrows() * b.ncols() * a.ncols()));
     matmul(out, Accum::Add, a, b, alpha, Par::Seq);
 }
 

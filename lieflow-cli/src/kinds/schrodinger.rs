@@ -138,7 +138,7 @@ impl Levels {
     /// a(t).
     fn drive(&self, t: f64) -> f64 {
         let pulse = Ops::adds(1) + Ops::divs(1) + Ops::muls(1) + Ops::trigs(1);
-        tally(pulse * self.pulse.iter().count() + Ops::muls(2) + Ops::adds(1) + Ops::trigs(1));
+        tally(|| pulse * self.pulse.iter().count() + Ops::muls(2) + Ops::adds(1) + Ops::trigs(1));
         let envelope = self.pulse.map_or(1.0, |[at, width]| (-((t - at) / width).powi(2)).exp());
         envelope * (self.frequency * t + self.phase).cos()
     }
@@ -158,7 +158,7 @@ impl System for Levels {
         let hamiltonian = move |t: f64, i: usize, j: usize| {
             let (drive, [re, im]) = (levels.drive(t), &levels.coupling);
             let energy = if i == j { levels.energies[i] } else { 0.0 };
-            tally(Ops::muls(2) + Ops::adds(1));
+            tally(|| Ops::muls(2) + Ops::adds(1));
             [energy + drive * re[(i, j)], drive * im[(i, j)]]
         };
         let equation = schrodinger(self.energies.len(), hamiltonian)?;

@@ -86,14 +86,16 @@ impl Heat {
         values.fold(0.0, |a: f64, x| a.max(x.abs()))
     }
 
-    /// The longitude, as a part of the width, where most of the field is.
+    /// The longitude, as a part of the width, where most of the field is: with its neighbours, so that the
+    /// middle of a patch wins.
     fn strongest(&self) -> f64 {
         let cols = self.values.first().map_or(0, Vec::len);
-        let sum = |j: &usize| -> f64 {
-            let column = self.values.iter().filter_map(|row| row.get(*j));
+        let sum = |j: usize| -> f64 {
+            let column = self.values.iter().filter_map(|row| row.get(j % cols));
             column.filter(|x| x.is_finite()).map(|x| x * x).sum()
         };
-        let column = (0..cols).max_by(|a, b| sum(a).total_cmp(&sum(b)));
+        let around = |j: &usize| sum(j + cols - 1) + sum(*j) + sum(j + 1);
+        let column = (0..cols).max_by(|a, b| around(a).total_cmp(&around(b)));
         column.map_or(0.5, |j| (j as f64 + 0.5) / cols as f64)
     }
 

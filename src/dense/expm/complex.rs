@@ -196,7 +196,7 @@ impl ComplexExponential {
             sum(half, [-0.5], [gram], 0.5);
             let defect = norm1(half.as_ref());
             mul(gram, Accum::Replace, g.as_ref(), half.as_ref());
-            tally(Ops::adds(2 * g.nrows() * g.ncols()));
+            tally(|| Ops::adds(2 * g.nrows() * g.ncols()));
             for j in 0..g.ncols() {
                 for (x, dx) in g.col_as_slice_mut(j).iter_mut().zip(gram.col_as_slice(j)) {
                     *x += dx;
@@ -214,7 +214,7 @@ impl ComplexExponential {
 /// A complex product is four real ones; that is how it is counted too.
 fn tally_product(n: usize, accum: Accum) {
     let more = if matches!(accum, Accum::Add) { 2 * n * n } else { 0 };
-    tally(Ops::dots(2 * n * n, 2 * n) + Ops::adds(more));
+    tally(|| Ops::dots(2 * n * n, 2 * n) + Ops::adds(more));
 }
 
 fn mul(out: &mut Mat<c64>, accum: Accum, a: MatRef<'_, c64>, b: MatRef<'_, c64>) {
@@ -229,7 +229,7 @@ fn square(out: &mut Mat<c64>, a: &Mat<c64>) {
 /// out ← Σ c_i·x_i + d·𝟙.
 fn sum<const K: usize>(out: &mut Mat<c64>, c: [f64; K], x: [&Mat<c64>; K], d: f64) {
     let (n, diagonal) = (out.nrows(), if d == 0.0 { 0 } else { out.nrows() });
-    tally(Ops::dots(2 * n * n, K) + Ops::adds(diagonal));
+    tally(|| Ops::dots(2 * n * n, K) + Ops::adds(diagonal));
     for j in 0..out.ncols() {
         let cols = x.map(|x| x.col_as_slice(j));
         let out = out.col_as_slice_mut(j);
@@ -243,7 +243,7 @@ fn sum<const K: usize>(out: &mut Mat<c64>, c: [f64; K], x: [&Mat<c64>; K], d: f6
 }
 
 fn for_all(x: &mut Mat<c64>, f: impl Fn(c64) -> c64) {
-    tally(Ops::muls(2 * x.nrows() * x.ncols()));
+    tally(|| Ops::muls(2 * x.nrows() * x.ncols()));
     for j in 0..x.ncols() {
         x.col_as_slice_mut(j).iter_mut().for_each(|x| *x = f(*x));
     }
@@ -251,7 +251,7 @@ fn for_all(x: &mut Mat<c64>, f: impl Fn(c64) -> c64) {
 
 /// The largest column sum of |re| + |im|; NaN when an entry is NaN.
 fn norm1(x: MatRef<'_, c64>) -> f64 {
-    tally(Ops::adds((2 * x.nrows()).saturating_sub(1) * x.ncols()));
+    tally(|| Ops::adds((2 * x.nrows()).saturating_sub(1) * x.ncols()));
     let mut best = 0.0;
     for col in x.col_iter() {
         let s: f64 = col.iter().map(|z| z.re.abs() + z.im.abs()).sum();

@@ -99,7 +99,7 @@ impl Expm {
             out.copy_from(self.t.transpose());
         }
         if shift != 0.0 {
-            tally(Ops::muls(n * n) + Ops::trigs(1));
+            tally(|| Ops::muls(n * n) + Ops::trigs(1));
             *out *= faer::Scale(shift.exp());
         }
         self.choice = choice;
@@ -227,7 +227,7 @@ impl Expm {
         }
         // The norm alone asks for s halvings; the powers may allow `back` of them to be undone.
         let s = halvings(norm, THETA_13, 1);
-        tally(Ops::muls(self.a.nrows() * self.a.ncols()));
+        tally(|| Ops::muls(self.a.nrows() * self.a.ncols()));
         self.a *= faer::Scale(half_to_the(s));
         self.even_powers(13);
         let d4 = norm1(self.a4.as_ref()).sqrt().sqrt();
@@ -242,7 +242,7 @@ impl Expm {
             let f = 2f64.powi(back as i32);
             let Expm { a, a2, a4, a6, .. } = self;
             for (x, f) in [(a, f), (a2, f * f), (a4, f.powi(4)), (a6, f.powi(6))] {
-                tally(Ops::muls(x.nrows() * x.ncols()));
+                tally(|| Ops::muls(x.nrows() * x.ncols()));
                 *x *= faer::Scale(f);
             }
         }
@@ -264,7 +264,7 @@ impl Expm {
                 return 0;
             }
             log2 += top.log2();
-            tally(Ops::divs(x.len()) + Ops::trigs(1));
+            tally(|| Ops::divs(x.len()) + Ops::trigs(1));
             for (x, y) in x.iter_mut().zip(y.iter()) {
                 *x = y / top;
             }
@@ -300,7 +300,7 @@ fn shape(a: &Mat<f64>) -> Shape {
 /// The diagonal and the one above it of exp(c·a) for upper triangular a, from their formulas.
 fn exact_bands(a: &Mat<f64>, c: f64, out: &mut Mat<f64>) {
     // A product and an exponential on the diagonal; three and two of a quotient beside it.
-    tally((Ops::muls(4) + Ops::adds(2) + Ops::divs(1) + Ops::trigs(3)) * a.ncols());
+    tally(|| (Ops::muls(4) + Ops::adds(2) + Ops::divs(1) + Ops::trigs(3)) * a.ncols());
     for j in 0..a.ncols() {
         let y = c * a[(j, j)];
         out[(j, j)] = y.exp();

@@ -39,11 +39,8 @@ impl Kernel for Exp<'_> {
     fn call<S: Simd, const N: usize, const K: usize>(self, simd: S) -> Option<ExpmChoice> {
         let Exp { x, skew, out } = self;
         let a = Cols::<S, N, K>::load_columns(simd, x.as_ref());
-        let cost = Cost(x.nrows());
         let norm = a.norm(simd);
-        tally(cost.norm());
-        let (mut g, degree, squarings) = taylor(simd, cost, &a, norm, skew)?;
-        tally(cost.product() * squarings as usize);
+        let (mut g, degree, squarings) = taylor(simd, &a, norm, skew)?;
         for _ in 0..squarings {
             let h = g;
             g = Cols::mul(simd, &h, &h);
@@ -51,13 +48,19 @@ impl Kernel for Exp<'_> {
         let mut corrections = 0;
         if skew && squarings > 0 {
             corrections = orthogonalise(simd, &mut g);
-            let one = cost.product() * 2 + cost.sum_and_one(1) + cost.added() + cost.norm();
-            tally(one * corrections as usize);
         }
         if !g.is_finite(simd) {
             return None;
         }
         g.store(out);
+        let norms = if norm <= THETA_18 {
+            1
+        } else if skew {
+            2
+        } else {
+            4
+        };
+        tally(|| Cost(x.nrows()).of(degree, norms, [squarings, corrections]));
         Some(ExpmChoice { kind: Kind::Taylor, degree, squarings, corrections, balanced: false })
     }
 }
@@ -91,21 +94,34 @@ impl Cost {
     fn norm(self) -> Ops {
         Ops::adds(self.0 * (self.0 - 1))
     }
-    /// [`degree_8`] and its siblings, which get the powers.
+    /// exp by the polynomial of a degree, with so many norms, squarings and corrections. Said once, for a
+    /// kernel of a hundred instructions notices each time.
     #[inline(always)]
-    fn degree_8(self) -> Ops {
-        let sums = self.sum(2) * 2 + self.sum_and_one(3) + self.sum_and_one(2);
-        self.product() * 2 + self.added() + sums
-    }
-    #[inline(always)]
-    fn degree_12(self) -> Ops {
-        let sums = self.sum(3) * 2 + self.sum_and_one(4) + self.sum_and_one(3);
-        (self.product() + self.added()) * 2 + sums
-    }
-    #[inline(always)]
-    fn degree_18(self) -> Ops {
-        let sums = self.sum(3) * 2 + self.sum(4) + self.sum_and_one(5) + self.sum_and_one(4);
-        (self.product() + self.added()) * 2 + sums
+    fn of(self, degree: usize, norms: usize, [squarings, corrections]: [u32; 2]) -> Ops {
+        let (product, added) = (self.product(), self.added());
+        let polynomial = match degree {
+            1 => self.sum_and_one(1),
+            2 => product + self.sum_and_one(2),
+            4 => product * 2 + added + self.sum_and_one(2) + self.sum_and_one(1),
+            8 => {
+                let sums = self.sum(2) * 2 + self.sum_and_one(3) + self.sum_and_one(2);
+                product * 3 + added + sums
+            }
+            12 => {
+                let sums = self.sum(3) * 2 + self.sum_and_one(4) + self.sum_and_one(3);
+                product * 4 + added * 2 + sums
+            }
+            _ => {
+                let sums =
+                    self.sum(3) * 2 + self.sum(4) + self.sum_and_one(5) + self.sum_and_one(4);
+                product * 5 + added * 2 + sums
+            }
+        };
+        let correction = product * 2 + self.sum_and_one(1) + added + self.norm();
+        polynomial
+            + self.norm() * norms
+            + product * squarings as usize
+            + correction * corrections as usize
     }
 }
 
@@ -113,7 +129,6 @@ impl Cost {
 #[inline(always)]
 fn taylor<S: Simd, const N: usize, const K: usize>(
     simd: S,
-    cost: Cost,
     a: &Cols<S, N, K>,
     norm: f64,
     skew: bool,
@@ -122,37 +137,28 @@ fn taylor<S: Simd, const N: usize, const K: usize>(
         return None;
     }
     if norm <= THETA_1 {
-        tally(cost.sum_and_one(1));
         return Some((Cols::sum(simd, [1.0], [a], 1.0), 1, 0));
     }
     let a2 = Cols::mul(simd, a, a);
-    tally(cost.product());
     if norm <= THETA_2 {
-        tally(cost.sum_and_one(2));
         return Some((Cols::sum(simd, [1.0, 0.5], [a, &a2], 1.0), 2, 0));
     }
     if norm <= THETA_4 {
         let high = Cols::sum(simd, [1.0 / 6.0, 1.0 / 24.0], [a, &a2], 0.5);
         let mut g = Cols::sum(simd, [1.0], [a], 1.0);
         g.mul_add(simd, &a2, &high);
-        tally(cost.sum_and_one(2) + cost.sum_and_one(1) + cost.product() + cost.added());
         return Some((g, 4, 0));
     }
     if norm <= THETA_8 {
-        tally(cost.degree_8());
         return Some((degree_8(simd, a, &a2), 8, 0));
     }
     let a3 = Cols::mul(simd, &a2, a);
-    tally(cost.product());
     if norm <= THETA_12 {
-        tally(cost.degree_12());
         return Some((degree_12(simd, a, &a2, &a3), 12, 0));
     }
     let a6 = Cols::mul(simd, &a3, &a3);
-    tally(cost.product());
     let mut squarings = halvings(norm, THETA_18, 1);
     if squarings > 0 {
-        tally(cost.norm() * if skew { 1 } else { 3 });
         if skew {
             // a is normal: |a|₂⁶ = |a⁶|₂ ≤ |a⁶|_∞.
             squarings = squarings.min(halvings(a6.norm(simd), THETA_18_6, 6));
@@ -176,7 +182,6 @@ fn taylor<S: Simd, const N: usize, const K: usize>(
             c[b][i] *= scale[i];
         }
     }
-    tally(cost.degree_18());
     Some((degree_18(simd, &c, [a, &a2, &a3, &a6]), 18, squarings))
 }
 

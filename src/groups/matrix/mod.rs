@@ -174,7 +174,7 @@ impl MatrixGroup {
 /// p ← p − J⁻¹pᵀJ. With p = u·v and u, v ∈ sp(2m) this is \[u, v\] for one product.
 fn symplectic_antisymmetrise(p: &mut Mat<f64>) {
     let m = p.nrows() / 2;
-    tally(Ops::adds(m * m + m * (m + 1)));
+    tally(|| Ops::adds(m * m + m * (m + 1)));
     for j in 0..m {
         for i in 0..m {
             let d = p[(i, j)] - p[(j + m, i + m)];

@@ -153,7 +153,7 @@ fn lower_skew(
 /// x ← x − x†: \[a, b\] from a·b, for skew-Hermitian a and b.
 pub(crate) fn minus_adjoint(x: &mut ComplexMatrix) {
     let n = x.ncols();
-    tally(Ops::adds(n * n.saturating_sub(1)) + Ops::muls(n));
+    tally(|| Ops::adds(n * n.saturating_sub(1)) + Ops::muls(n));
     for j in 0..x.ncols() {
         (x.re[(j, j)], x.im[(j, j)]) = (0.0, 2.0 * x.im[(j, j)]);
         for i in j + 1..x.nrows() {

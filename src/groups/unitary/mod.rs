@@ -156,7 +156,7 @@ impl LieGroup for Unitary {
     }
     fn correct(&self, g: &mut ComplexMatrix, [gap, step]: [&mut ComplexMatrix; 2]) -> f64 {
         adjoint_mul_complex(gap, g, g);
-        tally(Ops::adds(self.n));
+        tally(|| Ops::adds(self.n));
         for i in 0..self.n {
             gap.re[(i, i)] -= 1.0;
         }

@@ -23,7 +23,7 @@ impl Gl {
     /// g ← Ψ(u).
     pub(super) fn psi(&mut self, u: &Mat<f64>, g: &mut Mat<f64>) {
         let n = u.nrows();
-        tally(Ops::trigs(n) + Ops::muls(pairs(n)));
+        tally(|| Ops::trigs(n) + Ops::muls(pairs(n)));
         for j in 0..n {
             for i in 0..n {
                 let d = u[(i, i)].exp();
@@ -44,7 +44,7 @@ impl Gl {
         let n = u.nrows();
         upper_solve(u, v);
         times_upper(v, u);
-        tally((Ops::muls(1) + Ops::adds(1) + Ops::trigs(1)) * pairs(n));
+        tally(|| (Ops::muls(1) + Ops::adds(1) + Ops::trigs(1)) * pairs(n));
         let Gl { upper, lower } = self;
         for j in 0..n {
             for i in 0..n {
@@ -70,7 +70,7 @@ pub(super) fn inverse(u: &Mat<f64>, g: &mut Mat<f64>) {
     g.fill(0.0);
     g.diagonal_mut().fill(1.0);
     upper_solve(u, g);
-    tally(Ops::trigs(n) + Ops::muls(n * n) + Ops::muladds(n * pairs(n)));
+    tally(|| Ops::trigs(n) + Ops::muls(n * n) + Ops::muladds(n * pairs(n)));
     for j in 0..n {
         for i in 0..n {
             g[(i, j)] *= (-u[(i, i)]).exp();
@@ -95,7 +95,7 @@ fn pairs(n: usize) -> usize {
 /// x ← (𝟙 + U₊)·x.
 fn upper_times(u: &Mat<f64>, x: &mut Mat<f64>) {
     let n = u.nrows();
-    tally(Ops::muladds(n * pairs(n)));
+    tally(|| Ops::muladds(n * pairs(n)));
     for j in 0..n {
         let x = x.col_as_slice_mut(j);
         for k in 1..n {
@@ -109,7 +109,7 @@ fn upper_times(u: &Mat<f64>, x: &mut Mat<f64>) {
 /// x ← (𝟙 + U₊)⁻¹·x.
 fn upper_solve(u: &Mat<f64>, x: &mut Mat<f64>) {
     let n = u.nrows();
-    tally(Ops::muladds(n * pairs(n)));
+    tally(|| Ops::muladds(n * pairs(n)));
     for j in 0..n {
         let x = x.col_as_slice_mut(j);
         for k in (1..n).rev() {
@@ -123,7 +123,7 @@ fn upper_solve(u: &Mat<f64>, x: &mut Mat<f64>) {
 /// x ← x·(𝟙 + U₊).
 fn times_upper(x: &mut Mat<f64>, u: &Mat<f64>) {
     let n = u.nrows();
-    tally(Ops::muladds(n * pairs(n)));
+    tally(|| Ops::muladds(n * pairs(n)));
     for j in (1..n).rev() {
         for k in 0..j {
             for i in 0..n {
@@ -136,7 +136,7 @@ fn times_upper(x: &mut Mat<f64>, u: &Mat<f64>) {
 /// x ← x·(𝟙 + U₋).
 fn times_lower(x: &mut Mat<f64>, u: &Mat<f64>) {
     let n = u.nrows();
-    tally(Ops::muladds(n * pairs(n)));
+    tally(|| Ops::muladds(n * pairs(n)));
     for j in 0..n {
         for k in j + 1..n {
             for i in 0..n {

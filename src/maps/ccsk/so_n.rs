@@ -25,7 +25,7 @@ impl SoN {
     /// g ← ∏_c ∏_{r>c} G_rc(u_rc).
     pub(super) fn psi(&mut self, u: &Mat<f64>, g: &mut Mat<f64>) {
         let n = u.nrows();
-        tally((Ops::trigs(2) + ROTATED * n) * (n * n.saturating_sub(1) / 2));
+        tally(|| (Ops::trigs(2) + ROTATED * n) * (n * n.saturating_sub(1) / 2));
         g.fill(0.0);
         g.diagonal_mut().fill(1.0);
         for c in 0..n {
@@ -51,7 +51,9 @@ impl SoN {
             // Both sides of each rotation, ρ^(r), a quotient, and what is subtracted.
             let (angles, rest) = (n - c - 1, n - c);
             let carried = Ops::muls(rest) + Ops::adds(1);
-            tally((ROTATED * (2 * n) + carried + Ops::divs(1) + Ops::muladds(2 * rest)) * angles);
+            tally(|| {
+                (ROTATED * (2 * n) + carried + Ops::divs(1) + Ops::muladds(2 * rest)) * angles
+            });
             for r in c + 1..n {
                 rotate_rows_and_columns(w, r, c, sin[(r, c)], cos[(r, c)]);
             }

@@ -62,7 +62,7 @@ impl Sp {
         mul_add(x12, 1.0, x11.as_ref(), b.as_ref());
         mul_add(x12, -1.0, b.as_ref(), v.submatrix(m, m, m, m));
         gl.dpsi_inv(a, x11);
-        tally(Ops::muladds(2 * m * m));
+        tally(|| Ops::muladds(2 * m * m));
         for j in 0..m {
             for i in 0..m {
                 v[(i, j)] = x11[(i, j)];

@@ -74,7 +74,7 @@ impl RigidBodyN {
     /// E = ½ Σ_{i<j} m_ij²/J_ij.
     pub fn energy(&self, m: &Mat<f64>) -> f64 {
         let mut twice = 0.0;
-        tally((Ops::adds(2) + Ops::muls(3)) * (m.ncols() * m.ncols().saturating_sub(1) / 2));
+        tally(|| (Ops::adds(2) + Ops::muls(3)) * (m.ncols() * m.ncols().saturating_sub(1) / 2));
         for j in 0..m.ncols() {
             for i in 0..j {
                 let x = 0.5 * (m[(i, j)] - m[(j, i)]);
@@ -89,7 +89,7 @@ impl RigidBodyN {
     /// so(n), and |m| would drift quadratically with the number of steps.
     pub(super) fn omega(&self, sign: f64, m: &Mat<f64>, out: &mut Mat<f64>) {
         let half = 0.5 * sign;
-        tally((Ops::adds(1) + Ops::muls(2)) * (m.ncols() * m.ncols().saturating_sub(1) / 2));
+        tally(|| (Ops::adds(1) + Ops::muls(2)) * (m.ncols() * m.ncols().saturating_sub(1) / 2));
         for j in 0..m.ncols() {
             out[(j, j)] = 0.0;
             for i in j + 1..m.nrows() {
@@ -199,7 +199,7 @@ impl Problem for RigidBodyNAttitude {
     fn f(&self, _: f64, g: &GroupMatrix, v: &mut AlgebraMatrix, work: &mut [Mat<f64>; 3]) {
         self.omega_space(g, work);
         v.copy_from(&work[2]);
-        tally((Ops::adds(1) + Ops::muls(1)) * (v.ncols() * v.ncols().saturating_sub(1) / 2));
+        tally(|| (Ops::adds(1) + Ops::muls(1)) * (v.ncols() * v.ncols().saturating_sub(1) / 2));
         // Two congruences leave rounding in the symmetric part; so(n) has none.
         for j in 0..v.ncols() {
             v[(j, j)] = 0.0;

@@ -66,7 +66,7 @@ impl History {
         let degree = (0..known.saturating_sub(1))
             .min_by(|&a, &b| self.norms[a + 1].total_cmp(&self.norms[b + 1]))
             .unwrap_or(0);
-        tally(Ops::adds(degree * entries(d)));
+        tally(|| Ops::adds(degree * entries(d)));
         wide(d.nrows(), || {
             for (part, out) in d.parts_mut().into_iter().enumerate() {
                 for j in 0..out.ncols() {
@@ -92,7 +92,7 @@ impl History {
         let known = (*steps).min(DEPTH - 1);
         norms.fill(f64::INFINITY);
         norms[..=known].fill(0.0);
-        tally((Ops::muladds(1) + Ops::adds(1)) * ((known + 1) * entries(d)));
+        tally(|| (Ops::muladds(1) + Ops::adds(1)) * ((known + 1) * entries(d)));
         wide(d.nrows(), || {
             for (part, d) in d.parts().into_iter().enumerate() {
                 for j in 0..d.ncols() {

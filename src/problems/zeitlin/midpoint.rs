@@ -180,7 +180,7 @@ impl Product {
         mul(re, p.re.as_ref(), x.re.as_ref());
         mul(both, p.im.as_ref(), x.im.as_ref());
         mul(im, p_sum.as_ref(), x_sum.as_ref());
-        tally(Ops::adds(4 * re.nrows() * re.ncols()));
+        tally(|| Ops::adds(4 * re.nrows() * re.ncols()));
         wide(re.nrows(), || {
             for j in 0..re.ncols() {
                 let (re, both) = (re.col_as_slice_mut(j), both.col_as_slice_mut(j));
@@ -206,7 +206,7 @@ impl Product {
         lower_product(&mut out.re, re.as_ref(), p.re.as_ref(), 1.0, Accum::Replace);
         lower_product(x_sum, im.as_ref(), p.im.as_ref(), 1.0, Accum::Replace);
         lower_product(&mut out.im, both.as_ref(), p_sum.as_ref(), 1.0, Accum::Replace);
-        tally(Ops::adds(3 * entries(out) / 2));
+        tally(|| Ops::adds(3 * entries(out) / 2));
         let [re, im] = out.parts_mut();
         wide(re.nrows(), || {
             for j in 0..re.ncols() {
@@ -369,7 +369,7 @@ impl FluidMidpoint {
 
 /// x ← a·x on the triangle.
 fn scale(x: &mut ComplexMatrix, a: f64) {
-    tally(Ops::muls(entries(x)));
+    tally(|| Ops::muls(entries(x)));
     wide(x.nrows(), || {
         for x in x.parts_mut() {
             for j in 0..x.ncols() {
@@ -381,7 +381,7 @@ fn scale(x: &mut ComplexMatrix, a: f64) {
 
 /// The norm of x − y on the triangle.
 fn distance(x: &ComplexMatrix, y: &ComplexMatrix) -> f64 {
-    tally((Ops::adds(1) + Ops::muladds(1)) * entries(x) + Ops::sqrts(1));
+    tally(|| (Ops::adds(1) + Ops::muladds(1)) * entries(x) + Ops::sqrts(1));
     let part = |x: &Mat<f64>, y: &Mat<f64>| {
         let column = |j| below(x, j).iter().zip(below(y, j)).map(|(x, y)| (x - y) * (x - y));
         (0..x.ncols()).flat_map(column).sum::<f64>()

@@ -146,7 +146,7 @@ impl<S: Surface> Zeitlin<S> {
     pub fn inner(&self, a: &ComplexMatrix, b: &ComplexMatrix) -> f64 {
         let column = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let mut total = 0.0;
-        tally(Ops::dots(1, 2 * self.n() * self.n()) + Ops::divs(1));
+        tally(|| Ops::dots(1, 2 * self.n() * self.n()) + Ops::divs(1));
         for (a, b) in a.parts().into_iter().zip(b.parts()) {
             for j in 0..a.ncols() {
                 total += column(a.col_as_slice(j), b.col_as_slice(j));
@@ -221,7 +221,7 @@ impl<S: Surface> Ambient for Zeitlin<S> {
         let StreamWork { p, scratch } = work;
         p.assign(w);
         self.solve(p, scratch);
-        tally(Ops::muls(2 * self.n() * self.n()));
+        tally(|| Ops::muls(2 * self.n() * self.n()));
         for part in p.parts_mut() {
             *part *= faer::Scale(self.surface.rate());
         }

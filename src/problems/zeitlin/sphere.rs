@@ -150,8 +150,8 @@ impl Surface for Sphere {
     fn solve(&self, x: &mut ComplexMatrix, _: &mut [Mat<f64>; 2]) {
         // Forward below the first column; backward a product each, and one more with a neighbour.
         let (below, inner) = (triangle(self.n), triangle(self.n.saturating_sub(1)));
-        tally((Ops::muls(below) + Ops::muladds(2 * inner)) * 2);
-        tally((Ops::adds(6) + Ops::divs(1)) * self.n);
+        tally(|| (Ops::muls(below) + Ops::muladds(2 * inner)) * 2);
+        tally(|| (Ops::adds(6) + Ops::divs(1)) * self.n);
         for part in x.parts_mut() {
             wide(self.n, || self.solve_below(part));
         }

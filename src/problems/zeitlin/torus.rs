@@ -111,7 +111,7 @@ impl Surface for Torus {
             }
         }
         mul(modes, self.basis.transpose(), diagonals.as_ref());
-        tally(Ops::muls(2 * half * n));
+        tally(|| Ops::muls(2 * half * n));
         for d in 0..2 * half {
             let column = self.inverse.col_as_slice(d % half);
             modes.col_as_slice_mut(d).iter_mut().zip(column).for_each(|(x, i)| *x *= i);

@@ -40,7 +40,7 @@ pub(super) fn squares(x: &[f64]) -> f64 {
 
 /// The norm of the triangle: Frobenius, each pair of entries counted once.
 pub(super) fn norm(x: &ComplexMatrix) -> f64 {
-    tally(Ops::dots(1, entries(x)) + Ops::sqrts(1));
+    tally(|| Ops::dots(1, entries(x)) + Ops::sqrts(1));
     wide(x.nrows(), || {
         let part = |x: &Mat<f64>| (0..x.ncols()).map(|j| squares(below(x, j))).sum::<f64>();
         (part(&x.re) + part(&x.im)).sqrt()
@@ -49,7 +49,7 @@ pub(super) fn norm(x: &ComplexMatrix) -> f64 {
 
 /// out ← x + a·y on the triangle.
 pub(super) fn sum(out: &mut ComplexMatrix, x: &ComplexMatrix, a: f64, y: &ComplexMatrix) {
-    tally(Ops::adds(entries(x)) + Ops::muls(if a.abs() == 1.0 { 0 } else { entries(x) }));
+    tally(|| Ops::adds(entries(x)) + Ops::muls(if a.abs() == 1.0 { 0 } else { entries(x) }));
     wide(out.nrows(), || {
         for (out, (x, y)) in out.parts_mut().into_iter().zip(x.parts().into_iter().zip(y.parts())) {
             for j in 0..x.ncols() {
@@ -62,7 +62,7 @@ pub(super) fn sum(out: &mut ComplexMatrix, x: &ComplexMatrix, a: f64, y: &Comple
 
 /// d ← x + y on the triangle; returns the norm of the change of d.
 pub(super) fn replace(d: &mut ComplexMatrix, x: &ComplexMatrix, y: &ComplexMatrix) -> f64 {
-    tally((Ops::adds(2) + Ops::muladds(1)) * entries(d) + Ops::sqrts(1));
+    tally(|| (Ops::adds(2) + Ops::muladds(1)) * entries(d) + Ops::sqrts(1));
     wide(d.nrows(), || {
         let mut total = 0.0;
         for (d, (x, y)) in d.parts_mut().into_iter().zip(x.parts().into_iter().zip(y.parts())) {
@@ -95,7 +95,7 @@ pub(super) fn replace(d: &mut ComplexMatrix, x: &ComplexMatrix, y: &ComplexMatri
 /// out ← g + sign·gᵀ on the triangle, tile by tile.
 pub(super) fn with_transpose(out: &mut Mat<f64>, g: &Mat<f64>, sign: f64) {
     let n = g.nrows();
-    tally(Ops::adds(n * (n + 1) / 2));
+    tally(|| Ops::adds(n * (n + 1) / 2));
     wide(n, || {
         for left in (0..n).step_by(LANES) {
             let width = LANES.min(n - left);

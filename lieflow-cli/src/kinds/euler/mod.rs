@@ -147,12 +147,12 @@ impl EulerEquation {
         match self.algebra {
             Algebra::Gl => {}
             Algebra::Sl => {
-                tally(Ops::adds((2 * n).saturating_sub(1)) + Ops::divs(1));
+                tally(|| Ops::adds((2 * n).saturating_sub(1)) + Ops::divs(1));
                 let mean = (0..n).map(|i| x[(i, i)]).sum::<f64>() / n as f64;
                 (0..n).for_each(|i| x[(i, i)] -= mean);
             }
             Algebra::So => {
-                tally(Ops::muladds(n * (n + 1) / 2));
+                tally(|| Ops::muladds(n * (n + 1) / 2));
                 for (i, j) in (0..n).flat_map(|i| (0..=i).map(move |j| (i, j))) {
                     let half = 0.5 * (x[(i, j)] - x[(j, i)]);
                     (x[(i, j)], x[(j, i)]) = (half, -half);
@@ -161,7 +161,7 @@ impl EulerEquation {
             // [a b; c −aᵀ] with symmetric b and c.
             Algebra::Sp => {
                 let m = n / 2;
-                tally(Ops::muladds(3 * m * m));
+                tally(|| Ops::muladds(3 * m * m));
                 for (i, j) in (0..m).flat_map(|i| (0..m).map(move |j| (i, j))) {
                     let half = 0.5 * (x[(i, j)] - x[(j + m, i + m)]);
                     (x[(i, j)], x[(j + m, i + m)]) = (half, -half);
@@ -181,7 +181,7 @@ impl EulerEquation {
         let this = self.clone();
         // π(W ∘ π(m)) is symmetric, as a gradient of a quadratic energy must be.
         let gradient = move |m: &Mat<f64>, xi: &mut AlgebraMatrix| {
-            tally(Ops::muls(m.nrows() * m.ncols()));
+            tally(|| Ops::muls(m.nrows() * m.ncols()));
             xi.copy_from(m);
             this.project(xi);
             for (xi, weights) in xi.col_iter_mut().zip(this.weights.col_iter()) {

@@ -8,7 +8,7 @@ mod place;
 mod start;
 
 use lieflow::Error;
-use lieflow::catalog::{MethodSpec, OnEmbedded, OnMethod, with_exp_cay_pair, with_fluid_method};
+use lieflow::catalog::{with_exp_cay_pair, with_fluid_method};
 use lieflow::groups::ComplexMatrix;
 use lieflow::problems::{Surface, Zeitlin};
 use serde::Deserialize;
@@ -18,8 +18,8 @@ use self::place::Place;
 use self::start::Keys;
 use super::system::System;
 use super::{Figure, KeyInfo, Kind, Law, ProblemSpec, QuantityInfo, Scale};
-use crate::erased::{Doubled, Pointed};
-use crate::model::{Catalog, Layer};
+use crate::catalog;
+use crate::model::Layer;
 use crate::scene::ReadError;
 
 /// The entry in the list of kinds.
@@ -111,21 +111,7 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
     Ok(Box::new(Fluid { fluid: Zeitlin::new(place)?, start }))
 }
 
-impl<S: Surface + 'static> Catalog for Zeitlin<S> {
-    fn with<V: OnMethod<Self>>(&self, spec: &MethodSpec, on: V) -> Result<V::Out, Error> {
-        with_fluid_method(spec, Pointed(on))
-    }
-    fn with_estimate<V: OnEmbedded<Self>>(
-        &self,
-        spec: &MethodSpec,
-        on: V,
-    ) -> Result<V::Out, Error> {
-        match spec.has_pair()? {
-            true => with_exp_cay_pair(spec, Pointed(on)),
-            false => with_fluid_method(spec, Doubled(on)),
-        }
-    }
-}
+catalog!(pointed Zeitlin<Place>, with_fluid_method, with_exp_cay_pair);
 
 impl System for Fluid {
     type Problem = Zeitlin<Place>;

@@ -63,9 +63,9 @@ catalog!(RigidBodyQuaternion, with_quaternion_method, with_exp_cay_pair);
 catalog!(RigidBodyState, with_state_method, with_state_pair);
 catalog!(RigidBodyN, with_lie_poisson_method);
 catalog!(RigidBodyNAttitude, with_implicit_method);
-catalog!(counted RigidBody<Counted>, with_momentum_method);
-catalog!(counted RigidBodyAttitude<Counted>, with_attitude_method, with_attitude_pair);
-catalog!(counted RigidBodyState<Counted>, with_state_method, with_state_pair);
+catalog!(pointed RigidBody<Counted>, with_momentum_method);
+catalog!(pointed RigidBodyAttitude<Counted>, with_attitude_method, with_attitude_pair);
+catalog!(pointed RigidBodyState<Counted>, with_state_method, with_state_pair);
 
 /// Run `$run` on the problem of `$model` with its initial state and a function that shows a point of
 /// it as a row.
