@@ -11,8 +11,8 @@
 //! These are the methods `rkmk4` and `rk4-mg` of the catalog, with their results to rounding. Bodies lie
 //! in blocks of 64, and a block takes all its steps before the next one takes its first, so that a
 //! million bodies cost what a hundred do, each. In a block the formulas run without a branch; where a
-//! stage turns by more than one radian ([`Rkmk`] says what it then costs) or is not finite, the body is
-//! done again by the scalar method, which also says what is wrong with it.
+//! stage turns by more than one radian, or is not finite, the body is done again by the scalar method, which
+//! takes its own time and also says what is wrong.
 //!
 //! Blocks do not know of each other: on any number of threads the results are the same bits.
 //!

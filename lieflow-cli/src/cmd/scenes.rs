@@ -30,6 +30,7 @@ struct SceneEntry {
 struct KindEntry {
     name: &'static str,
     summary: &'static str,
+    equation: &'static str,
     keys: Vec<Meaning>,
     quantities: Vec<Meaning>,
 }
@@ -62,6 +63,7 @@ fn kind_entry(kind: &Kind) -> KindEntry {
     KindEntry {
         name: kind.name,
         summary: kind.summary,
+        equation: kind.equation,
         keys: keys.map(|k| Meaning { name: k.name, columns: &[], meaning: k.meaning }).collect(),
         quantities: quantities
             .map(|q| Meaning { name: q.name, columns: q.columns, meaning: q.meaning })
@@ -77,6 +79,7 @@ fn in_words(listing: &Listing) -> String {
     }
     for kind in &listing.kinds {
         text += &format!("\n[problem] kind = {:?}: {}\n", kind.name, kind.summary);
+        text += &wrap(kind.equation, "  ");
         for (heading, list) in [("key", &kind.keys), ("quantity", &kind.quantities)] {
             let rows = list.iter().map(|m| [m.name.into(), m.meaning.into()]);
             text += &table([heading, "meaning"], rows);

@@ -25,6 +25,7 @@ use crate::scene::{ReadError, Refusal, help_for};
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {
     name: "beam-line",
+    equation: "x″ = −k_x x, z″ = −k_z z: (k_x, k_z) = (k, −k) in a quadrupole, (1/radius², 0) in a dipole",
     summary: "a particle through the magnets of a periodic beam line; t is the path along it",
     keys: &[
         KeyInfo {

@@ -29,6 +29,7 @@ use crate::scene::values::{Real, Reals, Rows};
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {
     name: "driven-body",
+    equation: "m = Jω; ṁ = m × ω + gᵀ(e₃ × g weight) + thruster − damping ω − k (g − gᵀ)ᵛ/2 − c ω, ġ = gω̂",
     summary: "a rigid body with its attitude under the torques that are named",
     keys: &[
         KeyInfo { name: "inertia", meaning: "principal moments of inertia [J1, J2, J3]" },

@@ -22,6 +22,7 @@ use crate::scene::{Either, ReadError, Refusal, exactly_one};
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {
     name: "heavy-top",
+    equation: "μ̇ = μ × ω + γ × w, γ̇ = γ × ω, μ = Jω, γ upward, w the weight, all in the body",
     summary: "the heavy top about a fixed point, by its momentum and the vertical in the body",
     keys: &[
         KeyInfo {

@@ -23,6 +23,7 @@ use crate::scene::{ReadError, Refusal};
 /// The entry of Mathieu's equation in the list of kinds.
 pub(super) const MATHIEU: Kind = Kind {
     name: "mathieu",
+    equation: "ġ = [0 1; −(a − 2q cos 2t) 0] g, g = 𝟙 at the start",
     summary: "Mathieu's equation x'' + (a - 2q cos 2t) x = 0, its solutions as a matrix of Sp(2)",
     keys: &[
         KeyInfo { name: "a", meaning: "a" },
@@ -35,6 +36,7 @@ pub(super) const MATHIEU: Kind = Kind {
 /// The entry of Hill's equation in the list of kinds.
 pub(super) const HILL: Kind = Kind {
     name: "hill",
+    equation: "ġ = [0 𝟙; −(A − 2Q cos 2πt/T) 0] g, g = 𝟙 at the start",
     summary: "m coupled equations x'' + (A - 2Q cos 2πt/T) x = 0, their solutions as a matrix of \
               Sp(2m)",
     keys: &[

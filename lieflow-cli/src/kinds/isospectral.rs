@@ -19,6 +19,7 @@ use crate::scene::{Either, ReadError, Refusal, exactly_one};
 /// The entry of Toda's flow in the list of kinds.
 pub(super) const TODA: Kind = Kind {
     name: "toda",
+    equation: "L̇ = [L₋ᵀ − L₋, L], L₋ what is below the diagonal",
     summary: "Toda's flow of a symmetric matrix, and the lattice of particles in Flaschka's variables",
     keys: &[
         KeyInfo { name: "positions", meaning: "initial positions of the particles" },
@@ -32,6 +33,7 @@ pub(super) const TODA: Kind = Kind {
 /// The entry of Brockett's flow in the list of kinds.
 pub(super) const DOUBLE_BRACKET: Kind = Kind {
     name: "double-bracket",
+    equation: "L̇ = [[N, L], L], N diagonal",
     summary: "Brockett's flow of a symmetric matrix, which diagonalises and sorts",
     keys: &[
         KeyInfo { name: "matrix", meaning: "the initial symmetric matrix" },
@@ -44,6 +46,7 @@ pub(super) const DOUBLE_BRACKET: Kind = Kind {
 /// The entry of the QR flow in the list of kinds.
 pub(super) const QR_FLOW: Kind = Kind {
     name: "qr-flow",
+    equation: "L̇ = [log(L)₋ᵀ − log(L)₋, L]: L(k) is the k-th iterate",
     summary: "the flow through the iterates of the QR algorithm of a positive definite matrix",
     keys: &[KeyInfo { name: "matrix", meaning: "the initial matrix, symmetric and positive" }],
     quantities: QUANTITIES,

@@ -25,6 +25,7 @@ use crate::scene::{ReadError, Refusal};
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {
     name: "kirchhoff",
+    equation: "μ̇ = μ × ω + π × v, π̇ = π × ω, μ = Jω, π = Mv, all in the body",
     summary: "a body in an ideal fluid, by its angular and linear momentum on se(3)*",
     keys: &[
         KeyInfo {

@@ -22,6 +22,7 @@ use crate::scene::{ReadError, Refusal};
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {
     name: "lorentz",
+    equation: "d(γv)/dτ = (q/m)(γE + γv × B), dγ/dτ = (q/m) E·γv",
     summary: "a charged particle in constant fields, by its four-velocity; t is its proper time",
     keys: &[
         KeyInfo { name: "charge_to_mass", meaning: "charge over mass" },

@@ -20,6 +20,7 @@ use crate::scene::{ReadError, Refusal};
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {
     name: "lyapunov",
+    equation: "ẋ = F(x), Ẏ = DF(x)Y = d(QR)/dt, growth ln R_ii",
     summary: "Lyapunov exponents of a polynomial vector field by continuous QR",
     keys: &[
         KeyInfo { name: "x", meaning: "initial point" },

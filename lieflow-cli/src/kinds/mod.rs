@@ -73,6 +73,8 @@ pub const KINDS: &[Kind] = &[
 pub struct Kind {
     /// Its name in scene files.
     pub name: &'static str,
+    /// What is integrated: the equations of motion with their signs.
+    pub equation: &'static str,
     /// What it is, in one line.
     pub summary: &'static str,
     /// The keys of `[problem]`, besides `kind`.

@@ -19,6 +19,7 @@ use crate::scene::{ReadError, Refusal};
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {
     name: "oja",
+    equation: "Ẋ = AX − XXᵀAX",
     summary: "Oja's flow on orthonormal columns, to the leading eigenvectors of a symmetric matrix",
     keys: &[
         KeyInfo { name: "a", meaning: "the symmetric matrix A" },

@@ -22,6 +22,7 @@ use crate::scene::{ReadError, Refusal};
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {
     name: "spherical-pendulum",
+    equation: "q̇ = ω × q, ω̇ = −(g/ℓ) q × e₃",
     summary: "the spherical pendulum, by its direction and its angular velocity; e3 points upward",
     keys: &[
         KeyInfo { name: "gravity_over_length", meaning: "gravity over the length of the rod" },

@@ -22,6 +22,7 @@ use crate::scene::{ReadError, Refusal};
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {
     name: "riccati",
+    equation: "Ṗ = C + DP + PDᵀ − PBP",
     summary: "the matrix Riccati equation P' = C + DP + PD' − PBP, on Lagrangian subspaces",
     keys: &[
         KeyInfo { name: "c", meaning: "C, symmetric" },

@@ -24,6 +24,7 @@ use crate::scene::{ReadError, Refusal};
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {
     name: "rigid-bodies",
+    equation: "ṁᵢ = mᵢ × Jᵢ⁻¹mᵢ, each in its body",
     summary: "many free rigid bodies as one system, by their momenta",
     keys: &[KeyInfo {
         name: "bodies",

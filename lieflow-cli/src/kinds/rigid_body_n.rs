@@ -18,6 +18,7 @@ use crate::scene::{Either, ReadError, Refusal, exactly_one};
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {
     name: "rigid-body-n",
+    equation: "ṁ = [m, Ω], Ω_ij = m_ij/J_ij, with J_ij = λ_i + λ_j for Manakov's body",
     summary: "the free rigid body in n dimensions, by its momentum on so(n)*",
     keys: &[
         KeyInfo {

@@ -20,6 +20,7 @@ use crate::scene::{ReadError, Refusal};
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {
     name: "schrodinger",
+    equation: "iψ̇ = (H₀ + a(t)H₁)ψ, a(t) = cos(ωt + φ) exp(−((t − t₁)/w)²), the last factor with a pulse",
     summary: "Schrödinger's equation with n levels under a drive",
     keys: &[
         KeyInfo { name: "energies", meaning: "energies of the levels without the drive" },

@@ -23,6 +23,7 @@ use crate::scene::values::{Real, Reals};
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {
     name: "spin",
+    equation: "ẋ = ω(t) × x, ω(t) = the field turned about e₃ by rate·t",
     summary: "a magnetic moment in a field that turns about the third axis, on the sphere",
     keys: &[
         KeyInfo { name: "field", meaning: "angular velocity of the precession at t = 0" },

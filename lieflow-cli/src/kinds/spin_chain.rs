@@ -21,6 +21,7 @@ use crate::scene::{Either, ReadError, Refusal, exactly_one};
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {
     name: "spin-chain",
+    equation: "ṡᵢ = Hᵢ × sᵢ + α (sᵢ × Hᵢ) × sᵢ, Hᵢ = sᵢ₋₁ + sᵢ₊₁ + K (sᵢ)₃ e₃ + B, α the damping",
     summary: "a chain of spins with exchange, anisotropy, a field and damping, on spheres",
     keys: &[
         KeyInfo { name: "spins", meaning: "initial directions, one row a spin, normalised" },

@@ -24,6 +24,7 @@ use crate::scene::{ReadError, Refusal};
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {
     name: "subspace",
+    equation: "Ṗ = [[A, P], P] for the projector P on the subspace",
     summary: "the flow of subspaces to the leading invariant subspace of a symmetric matrix",
     keys: &[
         KeyInfo { name: "a", meaning: "the symmetric matrix A" },

@@ -25,6 +25,7 @@ use crate::scene::{ReadError, Refusal, help_for};
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {
     name: "euler",
+    equation: "ṁ = P(ξᵀm − mξᵀ), ξ = P(W ∘ m), P the orthogonal projection on the algebra; energy ½ tr mᵀξ",
     summary: "Euler's equations with a quadratic energy on the dual of so(n), sl(n), gl(n) or sp(2m)",
     keys: &[
         KeyInfo { name: "algebra", meaning: "\"so\", \"sl\", \"gl\" or \"sp\"" },

@@ -25,6 +25,7 @@ use crate::scene::ReadError;
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {
     name: "fluid",
+    equation: "Ẇ = [P, W]/ħ, ΔP = W: vorticity ω carried by the stream function ψ, Δψ = ω",
     summary: "an ideal fluid on the sphere or the torus, Zeitlin's model with N×N matrices",
     keys: &[
         KeyInfo {

@@ -22,6 +22,7 @@ use crate::scene::{Either, ReadError, Refusal, exactly_one};
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {
     name: "rigid-body",
+    equation: "ṁ = m × ω, m = Jω, in the body; ġ = gω̂ takes the body to space",
     summary: "the free rigid body, by its momentum on so(3)*, its attitude on SO(3) or its quaternion",
     keys: &[
         KeyInfo {
