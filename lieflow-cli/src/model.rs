@@ -96,8 +96,8 @@ pub trait Model: Debug {
     /// As [`Catalog::with`].
     fn order(&self, method: &MethodSpec) -> Result<Option<usize>, Error>;
 
-    /// The same columns by the exact solution, `t` after the start; `None` where none is known.
-    fn exact(&self, t: f64) -> Option<Result<Vec<f64>, Error>>;
+    /// The same columns at the end of a span by the exact solution; `None` where none is known.
+    fn exact(&self, t_span: [f64; 2]) -> Option<Result<Vec<f64>, Error>>;
 
     /// The operations of a step (additions, multiplications, divisions, square roots, sines and
     /// cosines, each as one), in the mean over the first [`COUNTED_STEPS`]; `None` where the method has

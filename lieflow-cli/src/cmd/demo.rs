@@ -239,8 +239,7 @@ fn energy_run(scene: &Scene, candidate: &Candidate) -> Result<EnergyRun, CliErro
         last.clear();
         last.extend_from_slice(row);
     })?;
-    let [t0, t1] = scene.grid.t_span();
-    if let (Some(exact), Some(&defect)) = (model.exact(t1 - t0), last.last()) {
+    if let (Some(exact), Some(&defect)) = (model.exact(scene.grid.t_span()), last.last()) {
         let exact = exact?;
         run.error = distance(&last[3..12], &exact[3..12]) / 3f64.sqrt();
         run.defect = defect;

@@ -182,8 +182,7 @@ impl<'a> Watch<'a> {
 
     /// The distance from the exact solution at the end of the span.
     fn errors(&self, last: &[f64]) -> Option<BTreeMap<String, f64>> {
-        let [t0, t1] = self.scene.grid.t_span();
-        let exact = self.model.exact(t1 - t0)?.ok()?;
+        let exact = self.model.exact(self.scene.grid.t_span())?.ok()?;
         let distance = |range: &Range<usize>| {
             let pairs = last.get(range.clone()).into_iter().flatten();
             let pairs = pairs.zip(exact.get(range.clone()).into_iter().flatten());

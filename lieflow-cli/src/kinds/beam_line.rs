@@ -128,12 +128,54 @@ impl BeamLine {
     fn cell_length(&self) -> f64 {
         self.strengths.last().map_or(0.0, |(end, _)| *end)
     }
+    /// The map from 0 to s: whole cells, and the elements of the last one up to s.
+    fn map_to(&self, s: f64) -> Result<Mat<f64>, Error> {
+        let cells = (s / self.cell_length()).floor();
+        let (mut rest, mut begun) = (s.rem_euclid(self.cell_length()), Vec::new());
+        for element in &self.elements {
+            let (Element::Drift { length }
+            | Element::Quadrupole { length, .. }
+            | Element::Dipole { length, .. }) = element
+            else {
+                continue;
+            };
+            let part = length.min(rest);
+            begun.push(match *element {
+                Element::Quadrupole { k, .. } => Element::Quadrupole { length: part, k },
+                Element::Dipole { radius, .. } => Element::Dipole { length: part, radius },
+                _ => Element::Drift { length: part },
+            });
+            rest -= part;
+        }
+        let cell = transfer_map(&self.elements)?.into_mat();
+        let cell = if cells < 0.0 { inverse(&cell) } else { cell };
+        Ok(transfer_map(&begun)?.into_mat() * power(cell, cells.abs() as u64))
+    }
     /// (k_x, k_z) at s.
     fn strength(&self, s: f64) -> [f64; 2] {
         let s = s.rem_euclid(self.cell_length());
         let here = self.strengths.iter().find(|(end, _)| s < *end).or(self.strengths.last());
         here.map_or([0.0; 2], |(_, strength)| *strength)
     }
+}
+
+/// −J gᵀJ.
+fn inverse(g: &Mat<f64>) -> Mat<f64> {
+    let sign = |i: usize, j: usize| if i / 2 == j / 2 { 1.0 } else { -1.0 };
+    Mat::from_fn(4, 4, |i, j| sign(i, j) * g[((j + 2) % 4, (i + 2) % 4)])
+}
+
+/// gᵏ by squarings.
+fn power(mut g: Mat<f64>, mut k: u64) -> Mat<f64> {
+    let mut product = Mat::identity(4, 4);
+    while k > 0 {
+        if k % 2 == 1 {
+            product = &g * &product;
+        }
+        g = &g * &g;
+        k /= 2;
+    }
+    product
 }
 
 impl System for BeamLine {
@@ -182,6 +224,10 @@ impl System for BeamLine {
     }
     fn size(&self, _: &str, g: &Mat<f64>) -> f64 {
         g.squared_norm_l2()
+    }
+    fn exact(&self, [s0, s1]: [f64; 2]) -> Option<Result<Mat<f64>, Error>> {
+        let both = self.map_to(s0).and_then(|to_start| Ok((to_start, self.map_to(s1)?)));
+        Some(both.map(|(to_start, to_end)| to_end * inverse(&to_start)))
     }
     fn figure(&self) -> Figure {
         Figure::Points("phase_space")

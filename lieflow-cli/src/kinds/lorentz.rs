@@ -123,10 +123,10 @@ impl System for Particle {
     fn size(&self, _: &str, u: &Mat<f64>) -> f64 {
         u.squared_norm_l2()
     }
-    fn exact(&self, t: f64) -> Option<Result<Mat<f64>, Error>> {
+    fn exact(&self, [t0, t1]: [f64; 2]) -> Option<Result<Mat<f64>, Error>> {
         let turned = MatrixGroup::indefinite(3, 1).and_then(|group| {
             let mut tensor = group.zero();
-            group.axpy(t, &self.tensor, &mut tensor);
+            group.axpy(t1 - t0, &self.tensor, &mut tensor);
             Exp.eval(&group, &tensor)
         });
         Some(turned.map(|g| &*g * &self.start))

@@ -146,10 +146,10 @@ impl System for Bodies {
             _ => row.extend(m.iter().map(Vector3::norm)),
         }
     }
-    fn exact(&self, t: f64) -> Option<Result<Momenta, Error>> {
+    fn exact(&self, [t0, t1]: [f64; 2]) -> Option<Result<Momenta, Error>> {
         let bodies = self.bodies.iter().zip(&self.start);
         let moved = bodies.map(|((inertia, _), m)| {
-            Exact::new(*inertia, (*m).into(), Matrix3::identity())?.momentum_body(t)
+            Exact::new(*inertia, (*m).into(), Matrix3::identity())?.momentum_body(t1 - t0)
         });
         Some(moved.collect())
     }

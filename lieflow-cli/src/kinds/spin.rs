@@ -2,12 +2,12 @@
 //!
 //! ẋ = ω(t) × x, ω(t) = R₃(Ωt) ω(0). f(t, x) = ω(t); Λ(g, x) = g x. Invariant: |x|.
 
-use lieflow::Error;
 use lieflow::actions::Linear;
 use lieflow::catalog::MethodSpec;
 use lieflow::groups::So3;
 use lieflow::problems::LinearEquation;
 use lieflow::scalar::{Counted, Trig};
+use lieflow::{Error, so3};
 use nalgebra::Vector3;
 use serde::Deserialize;
 use toml::de::ValueDeserializer;
@@ -105,6 +105,15 @@ impl System for Spin {
             "moment" => row.extend(x.iter()),
             _ => row.push(x.norm()),
         }
+    }
+    /// In the frame that turns with the field, Ω = rate·e₃, the field stands still: y = R₃(−Ωt)x moves by
+    /// ẏ = (ω(0) − Ω) × y.
+    fn exact(&self, [t0, t1]: [f64; 2]) -> Option<Result<Vector3<f64>, Error>> {
+        let rate = Vector3::new(0.0, 0.0, self.rate);
+        let turned = |u: Vector3<f64>, x: Vector3<f64>| so3::exp_on(&u, &x).map_err(Error::from);
+        let still = turned(rate * -t0, self.moment);
+        let moved = still.and_then(|y| turned((self.field - rate) * (t1 - t0), y));
+        Some(moved.and_then(|y| turned(rate * t1, y)))
     }
     fn figure(&self) -> Figure {
         Figure::Sphere("moment")

@@ -181,12 +181,12 @@ impl System for Subspace {
         }
     }
     /// Z(t)_ij = e^{t(λ_i − λ_j)} Z_ij, which falls where the columns of e^{tA}X become one.
-    fn exact(&self, t: f64) -> Option<Result<Mat<f64>, Error>> {
+    fn exact(&self, [t0, t1]: [f64; 2]) -> Option<Result<Mat<f64>, Error>> {
         let mut z = self.graph.clone()?;
         let (others, leading) = self.eigenvalues.split_at(z.nrows());
         for (j, of_column) in leading.iter().enumerate() {
             for (i, of_row) in others.iter().enumerate() {
-                z[(i, j)] *= (t * (of_row - of_column)).exp();
+                z[(i, j)] *= ((t1 - t0) * (of_row - of_column)).exp();
             }
         }
         let [v2, v1] = self.parts();

@@ -41,8 +41,8 @@ pub(super) trait System: Clone + Debug + Send + Sync + 'static {
     fn size(&self, _quantity: &str, _y: &PointOf<Self::Problem>) -> f64 {
         f64::NAN
     }
-    /// y at `t` after the start, where it is known.
-    fn exact(&self, _t: f64) -> Option<Result<PointOf<Self::Problem>, Error>> {
+    /// y at the end of a span, where it is known.
+    fn exact(&self, _t_span: [f64; 2]) -> Option<Result<PointOf<Self::Problem>, Error>> {
         None
     }
     /// The operations of a step: see [`Model::operations`]. A problem of vectors counts them on the numbers
@@ -196,9 +196,10 @@ impl<S: System> Model for SystemModel<S> {
     fn operations(&self, method: &MethodSpec, pace: Pace<'_>) -> Option<f64> {
         self.system.operations(method, pace)
     }
-    fn exact(&self, t: f64) -> Option<Result<Vec<f64>, Error>> {
+    fn exact(&self, t_span: [f64; 2]) -> Option<Result<Vec<f64>, Error>> {
         let mut row = Vec::new();
-        let shown = self.system.exact(t)?.map(|y| self.fill(t, &y, &mut row));
+        let exact = self.system.exact(t_span)?;
+        let shown = exact.map(|y| self.fill(t_span[1] - t_span[0], &y, &mut row));
         Some(shown.map(|()| row))
     }
 }

@@ -105,7 +105,7 @@ impl Judge {
     pub fn new(scene: &Scene, quantities: &[&str], t_span: [f64; 2]) -> Result<Self, CliError> {
         let mut judge = Self::without_end(scene, quantities)?;
         let model = scene.model_with(reference_layer(scene), &judge.quantities())?;
-        match model.exact(t_span[1] - t_span[0]) {
+        match model.exact(t_span) {
             Some(Ok(exact)) => {
                 judge.end = exact;
                 judge.reference = Reference::Exact { apart: judge.rounding(&*model, t_span) };

@@ -319,8 +319,8 @@ impl Model for RigidBodyModel {
         }
     }
 
-    fn exact(&self, t: f64) -> Option<Result<Vec<f64>, Error>> {
-        let mut row = Vec::new();
+    fn exact(&self, [t0, t1]: [f64; 2]) -> Option<Result<Vec<f64>, Error>> {
+        let (mut row, t) = (Vec::new(), t1 - t0);
         let filled = self.exact.as_ref().map_err(Clone::clone).and_then(|exact| {
             if needs_attitude(&self.quantities) {
                 let (m, g) = exact.state(t)?;
