@@ -234,7 +234,8 @@ fn log_of_blocks() {
             let near = |x: f64| 1.0 / (PI - x);
             let cond = near(a.norm()).max(near(b.norm())).max(1.0);
             let gap = (&*u - &*closed).norm_l2();
-            worst.see(gap, (n as f64).sqrt() * cond * a.norm().max(b.norm()).max(1.0), at);
+            // n ε·cond, as promised of log on any group.
+            worst.see(gap, n as f64 * cond * a.norm().max(b.norm()).max(1.0), at);
         }
     }
     worst.holds("log");

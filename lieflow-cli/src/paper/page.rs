@@ -138,7 +138,9 @@ fn table2(paper: &Paper) -> Vec<Block> {
              “applied” adds it. Ours apply dΨ⁻¹ to a vector and never form it; “both” is dΨ⁻¹v after \
              Ψ, which shares its terms. Some of ours are there for accuracy at every angle, and to \
              refuse what is not finite; exp as a matrix goes by the quaternion, which \
-             takes more operations than (14) for half its distance from the group. “Fewest known” counts \
+             takes more operations than (14) for half its distance from the group. Counted is exp at \
+             |u| > π; up to there polynomials stand for root, sine and cosine: more operations, and less \
+             time. “Fewest known” counts \
              the matrix, as the paper does.",
         ),
         Block::Table(Table {
