@@ -381,7 +381,7 @@ fn two_methods_agree_where_the_exact_solution_is_not_asked() {
 fn a_scene_without_an_exact_solution_is_judged_by_two_runs() {
     let folder = Folder::new();
     let methods = "magnus4,magnus6,rkmk4 exp,rk4";
-    let args = ["compare", "rotating-field", "--out", "out", "--quick", "--methods", methods];
+    let args = ["compare", "rabi", "--out", "out", "--quick", "--methods", methods];
     let told = folder.lieflow(&args).ok();
     assert!(told.contains("they agree"), "{told}");
     let json = folder.json("out/speed.json");

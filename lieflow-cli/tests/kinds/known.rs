@@ -120,7 +120,7 @@ fn spin_waves() {
 fn many_bodies_are_each_alone() {
     let text = bundled("many-bodies").replace("dt = 0.02", "dt = 0.005");
     let of = Scene::parse("scene", &text).unwrap();
-    let exact = of.model().unwrap().exact(20.0).unwrap().unwrap();
+    let exact = of.model().unwrap().exact([0.0, 20.0]).unwrap().unwrap();
     assert_eq!(exact.len(), 16);
     assert!(far(&last(&of), &exact) < 1e-5);
 }
@@ -256,4 +256,30 @@ fn moments_of_inertia_from_shapes_and_tensors() {
     assert_eq!(of("inertia = [1, 2, 3]", "[\"energy\"]").problem.warnings(), [""; 0]);
     let warnings = of("inertia = [1, 2, 3.1]", "[\"energy\"]").problem.warnings();
     assert!(warnings.len() == 1 && warnings[0].contains("no body has"), "{warnings:?}");
+}
+
+/// Equations that depend on time, from any start, forward and backward: a moment in a turning field, and a
+/// beam line whose elements end where steps do.
+#[test]
+fn exact_solutions_from_any_start() {
+    let spin = "kind = \"spin\"\nfield = [0.3, 0.1, 1.0]\nrate = 0.9\nmoment = [0.2, -0.5, 1.0]";
+    let beam = "kind = \"beam-line\"\nparticle = [1, 1, 0, 0]\nelements = [\n\
+                { kind = \"quadrupole\", length = 0.5, k = 1.2 },\n\
+                { kind = \"dipole\", length = 1.0, radius = 8.0 },\n\
+                { kind = \"quadrupole\", length = 0.5, k = -1.2 },\n\
+                { kind = \"drift\", length = 0.25 }]";
+    for span in ["[0, 4.5]", "[0.75, 41.25]", "[-3.5, 6.0]", "[2.25, -1.75]"] {
+        for (problem, quantity, method, dt) in
+            [(spin, "moment", "magnus8", 0.01), (beam, "map", "cfm4-2", 0.25)]
+        {
+            let time = format!("t_span = {span}\ndt = {dt}");
+            let quantities = format!("[{quantity:?}]");
+            let of = scene(problem, &format!("name = {method:?}"), &time, &quantities);
+            let model = of.problem.model(of.layer, &[quantity]).unwrap();
+            let exact = model.exact(of.grid.t_span()).unwrap().unwrap();
+            let size = exact.iter().fold(1.0, |size: f64, x| size.max(x.abs()));
+            let gap = far(&last(&of), &exact) / size;
+            assert!(gap < 1e-11, "{quantity}, {span}: {gap:e}");
+        }
+    }
 }

@@ -146,7 +146,7 @@ fn a_particle_gyrates_and_drifts() {
         );
         let time = format!("t_span = [0, {t}]\nsteps = 1000");
         let of = scene(&problem, "name = \"rkmk4\"\nmap = \"cay\"", &time, "[\"velocity\"]");
-        let exact = of.model().unwrap().exact(t).unwrap().unwrap();
+        let exact = of.model().unwrap().exact([0.0, t]).unwrap().unwrap();
         let end = last(&of);
         assert!(far(&end, &exact) < 1e-8, "{end:?} {exact:?}");
         end
@@ -272,7 +272,7 @@ fn subspaces_turn_to_the_leading_ones() {
 
     let text = bundled("subspaces").replace("[\"angles\"", "[\"projector\", \"angles\"");
     let plane = Scene::parse("scene", &text).unwrap();
-    let (end, exact) = (last(&plane), plane.model().unwrap().exact(8.0).unwrap().unwrap());
+    let (end, exact) = (last(&plane), plane.model().unwrap().exact([0.0, 8.0]).unwrap().unwrap());
     assert!(far(&end[..17], &exact[..17]) < 1e-6, "{end:?}");
     assert!(end[15] < 0.1 && end[15] > end[16], "the plane has come near: {end:?}");
     let of = text.replace("\"subspace\"", "\"oja\"");
