@@ -3,7 +3,7 @@
 use faer::Mat;
 use lieflow::actions::LeftTranslation;
 use lieflow::error::StepError;
-use lieflow::groups::{GroupMatrix, MatrixGroup, Sample, So3};
+use lieflow::groups::{GroupMatrix, MatrixGroup, Sample, So3, Unitary};
 use lieflow::maps::Exp;
 use lieflow::methods::tableau::{EULER, RK4, Tableau};
 use lieflow::methods::{Rk, Rkmk};
@@ -166,6 +166,7 @@ fn compact_groups_at_every_step() {
     for (name, problem) in compact() {
         assert_held(name, &problem, STEPS);
     }
+    assert_held("U(3), complex", &complex(3), STEPS);
 }
 
 /// The time of a run with what takes its state back over that without: CPU time of the thread, minima
@@ -197,6 +198,18 @@ where
     assert!(with <= 1.1 * without, "{name}: {with} beside {without} without the correction");
 }
 
+/// With a velocity of norm 1 in a random direction.
+fn constant<G: LieGroup<Scalar = f64> + Sample>(group: G) -> Constant<G> {
+    let mut rng = Pcg64::seed_from_u64(43);
+    let u = scaled(&group, &group.sample_algebra(&mut rng, 1.0), 1.0);
+    Constant { group, u }
+}
+
+/// U(m) over complex matrices.
+fn complex(m: usize) -> Constant<Unitary> {
+    constant(Unitary::new(m).expect("U(m)"))
+}
+
 /// Ten million steps, and what the correction costs.
 #[test]
 #[ignore = "two minutes, with a timing: cargo test --release --test drift -- --ignored --nocapture"]
@@ -214,16 +227,16 @@ fn ten_million_steps() {
 #[test]
 #[ignore = "a timing: cargo test --release --test drift -- --ignored --nocapture"]
 fn larger_matrices() {
-    let constant = |group: MatrixGroup| {
-        let mut rng = Pcg64::seed_from_u64(43);
-        let u = scaled(&group, &group.sample_algebra(&mut rng, 1.0), 1.0);
-        Constant { group, u }
-    };
     let so20 = constant(MatrixGroup::so(20).expect("SO(20)"));
     assert_held("SO(20)", &so20, 200_000);
     assert_cheap("SO(20)", &so20, EULER);
     // Four products every eighth step, beside an exponential that costs no more than four: by Euler's method
     // a sixth.
+    for m in [2, 5, 8] {
+        let name = format!("U({m}), complex");
+        assert_held(&name, &complex(m), 200_000);
+        assert_cheap(&name, &complex(m), EULER);
+    }
     let u5 = constant(unitary(5));
     assert_held("U(5)", &u5, 200_000);
     assert_cheap("U(5)", &u5, RK4);
