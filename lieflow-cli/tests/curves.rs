@@ -46,6 +46,14 @@ fn a_run_that_is_far_off_is_no_end_of_a_line() {
     assert!(curve.reached(1e-6).expect("between").h > 0.02);
 }
 
+/// Where f jumps, steps that end at the jumps are exact, and those between two such sizes are not.
+#[test]
+fn nothing_is_read_between_runs_that_the_order_does_not_join() {
+    let mut curve = ideal(&[0.11, 0.1]);
+    (curve.points[0].error, curve.points[1].error) = (1e-2, 1e-14);
+    assert!((curve.reached(1e-6).expect("the second").h - 0.1).abs() < 1e-15);
+}
+
 #[test]
 fn the_step_to_an_error_lies_on_the_line_too() {
     let reached = ideal(&[0.1, 0.01]).reached(1e-6).expect("reached");

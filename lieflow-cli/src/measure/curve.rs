@@ -164,7 +164,17 @@ impl Curve {
         let b = runs[after];
         // The coarsest run may do, and one that is far off says nothing of what lies behind it.
         let before = after.checked_sub(1).map(|before| runs[before]);
-        let a = before.filter(|run| run.error <= OFF).unwrap_or(b);
+        // Nor does one whose error falls faster than the step explains: where f jumps, steps that end at the
+        // jumps are exact, and none between two of them is.
+        let explained = |a: &WorkPoint| match (b.size, self.order) {
+            (Size::Steps(_), Some(order)) => {
+                // Near rounding a run may be more accurate than it should.
+                let slope = (a.error / b.error.max(1e-12)).ln() / (a.h / b.h).ln();
+                slope <= 2.0 * order as f64 + 2.0
+            }
+            _ => true,
+        };
+        let a = before.filter(|run| run.error <= OFF && explained(run)).unwrap_or(b);
         let share = match log_error(a) - log_error(b) {
             0.0 => 0.0,
             way => (log_error(a) - error.ln()) / way,
