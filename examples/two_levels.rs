@@ -1,5 +1,5 @@
 //! A two-level atom in a light field, by a Magnus method: Rabi's oscillations, and a chirped pulse
-//! that carries the population over whatever its strength.
+//! that carries the population over whatever its strength. Then five levels: a spin 2 that turns.
 //!
 //! ```sh
 //! cargo run --release --example two_levels
@@ -41,6 +41,22 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         // Landau and Zener: 1 − e^{−πs²/2}.
         let expected = 1.0 - (-0.5 * std::f64::consts::PI * strength * strength).exp();
         println!("  s = {strength}: {:.4}, Landau–Zener {expected:.4}", populations(&psi)[1]);
+    }
+
+    // A spin 2 in a transverse field, H = J_x: as four spins ½, so that its populations are binomial.
+    let turning = schrodinger(5, |_: f64, i, j| match i.abs_diff(j) {
+        1 => [0.5 * f64::sqrt(((i.min(j) + 1) * (4 - i.min(j))) as f64), 0.0],
+        _ => [0.0, 0.0],
+    })?;
+    let mut psi = amplitudes(&[[1.0, 0.0], [0.0, 0.0], [0.0, 0.0], [0.0, 0.0], [0.0, 0.0]])?;
+    let (angle, grid) = (1.2f64, TimeGrid::new([0.0, 1.2], 0.1)?);
+    integrate(&turning, &Magnus6, &grid, &SaveAt::Ends, &mut psi, |_, _| {})?;
+    let (stay, flip) = ((0.5 * angle).cos().powi(2), (0.5 * angle).sin().powi(2));
+    println!("a spin 2 that has turned by {angle}:");
+    for (k, ways) in [1.0, 4.0, 6.0, 4.0, 1.0].into_iter().enumerate() {
+        let expected = ways * stay.powi(4 - k as i32) * flip.powi(k as i32);
+        println!("  level {k}: {:.6}, binomial {expected:.6}", populations(&psi)[k]);
+        assert!((populations(&psi)[k] - expected).abs() < 1e-13);
     }
     Ok(())
 }

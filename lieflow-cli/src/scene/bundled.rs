@@ -34,6 +34,7 @@ pub const BUNDLED: &[Bundled] = bundled![
     "manakov-body",
     "lagrange-top",
     "kovalevskaya-top",
+    "general-top",
     "ellipsoid-in-fluid",
     "euler-on-sl3",
     "vortices-on-sphere",
