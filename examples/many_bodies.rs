@@ -16,7 +16,7 @@ fn main() -> Result<(), lieflow::Error> {
     let attitude = vec![Matrix3::identity(); BODIES];
 
     let mut cloud = Ensemble::new(&inertia, &momentum)?.with_attitudes(&attitude)?;
-    let energy = |cloud: &Ensemble| (0..cloud.len()).map(|i| cloud.energy(i)).sum::<f64>();
+    let energy = |cloud: &Ensemble| (0..cloud.len()).filter_map(|i| cloud.energy(i)).sum::<f64>();
     let start = energy(&cloud);
     for k in 1..=4 {
         cloud.advance(EnsembleMethod::Rkmk4Cay, 0.05, 100, 2)?;
@@ -27,8 +27,8 @@ fn main() -> Result<(), lieflow::Error> {
     }
     // At the start g = 𝟙: the momentum in space is that in the body.
     let moved = |i: usize| {
-        let m = cloud.attitude(i).map_or(Vector3::zeros(), |g| g * cloud.momentum(i));
-        (m - Vector3::from(momentum[i])).norm()
+        let in_space = cloud.attitude(i).zip(cloud.momentum(i)).map(|(g, m)| g * m);
+        in_space.map_or(f64::NAN, |m| (m - Vector3::from(momentum[i])).norm())
     };
     println!("momenta in space moved by {:.1e}", (0..BODIES).map(moved).fold(0.0, f64::max));
     Ok(())

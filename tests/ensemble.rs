@@ -34,6 +34,10 @@ fn bodies(len: usize, seed: u64) -> Bodies {
     }
 }
 
+fn bodies_of(len: usize) -> Ensemble {
+    bodies(len, 6).ensemble()
+}
+
 impl Bodies {
     fn ensemble(&self) -> Ensemble {
         let bodies = Ensemble::new(&self.inertia, &self.momentum).expect("bodies");
@@ -92,11 +96,11 @@ fn each_body_as_if_it_were_alone() {
                 // Rounding of each step, and neighbouring motions that part over the run.
                 let turned = h * steps as f64 * size / smallest;
                 let rounding = 4.0 * EPS * (steps as f64 + turned) * (1.0 + turned);
-                let gap = (together.momentum(i) - m).norm() / size;
+                let gap = (together.momentum(i).expect("a body") - m).norm() / size;
                 assert!(gap <= rounding, "{method:?}, h = {h}, {i}: m {:e}", gap / rounding);
                 let gap = (together.attitude(i).expect("an attitude") - g).norm();
                 assert!(gap <= rounding, "{method:?}, h = {h}, {i}: g {:e}", gap / rounding);
-                let gap = (momenta.momentum(i) - m).norm() / size;
+                let gap = (momenta.momentum(i).expect("a body") - m).norm() / size;
                 assert!(gap <= rounding && momenta.attitude(i).is_none(), "{method:?}, {i}");
             }
         }
@@ -114,7 +118,7 @@ fn order_4_against_the_exact_motion() {
                 let exact = Exact::new(all.inertia[i], all.momentum[i], all.attitude[i]);
                 let (m, g) = exact.and_then(|exact| exact.state(1.0)).expect("the exact motion");
                 let g_error = (together.attitude(i).expect("an attitude") - g).norm_squared();
-                (together.momentum(i) - m).norm_squared() + g_error
+                (together.momentum(i).expect("a body") - m).norm_squared() + g_error
             };
             (0..64).map(error).sum::<f64>().sqrt()
         });
@@ -142,7 +146,8 @@ fn what_is_kept_over_a_hundred_thousand_steps() {
             }
         }
         for i in 0..20 {
-            let (m, start) = (together.momentum(i), Vector3::from(all.momentum[i]));
+            let (m, start) =
+                (together.momentum(i).expect("a body"), Vector3::from(all.momentum[i]));
             let space = together.attitude(i).expect("an attitude") * m;
             // 1e5 steps of half an ulp as a walk are 160.
             let gap = (m.norm() / start.norm() - 1.0).abs() / EPS;
@@ -178,7 +183,8 @@ fn forward_and_back() {
     let mut there = all.ensemble();
     there.advance(EnsembleMethod::Rkmk4Cay, 0.01, 100, 1).expect("a run");
     there.advance(EnsembleMethod::Rkmk4Cay, -0.01, 100, 1).expect("the way back");
-    let gap = |i: usize| (there.momentum(i) - Vector3::from(all.momentum[i])).norm();
+    let gap =
+        |i: usize| (there.momentum(i).expect("a body") - Vector3::from(all.momentum[i])).norm();
     assert!((0..10).all(|i| gap(i) < 1e-6 && gap(i) > 0.0));
 }
 
@@ -206,11 +212,17 @@ fn what_is_refused() {
     let fast = [1.0, 1e200, -1e200];
     let mut momenta = vec![momentum; 100];
     momenta[77] = fast;
+    let all_with_g = bodies_of(100);
     let mut bodies = Ensemble::new(&[good; 100], &momenta).expect("bodies");
     match bodies.advance(EnsembleMethod::Rk4, PI, 5, 2) {
         Err(Error::Element { index: 77, source: StepError::NonFiniteRhs { .. } }) => {}
         other => panic!("{other:?}"),
     }
-    assert_eq!(bodies.momentum(77), Vector3::from(fast));
+    assert_eq!(bodies.momentum(77), Some(Vector3::from(fast)));
+    // Lanes that are filled up hold no bodies.
+    assert!(bodies.momentum(99).is_some() && bodies.energy(99).is_some());
+    assert!(bodies.momentum(100).is_none() && bodies.energy(100).is_none());
+    assert!(bodies.attitude(0).is_none() && all_with_g.attitude(99).is_some());
+    assert!(all_with_g.attitude(100).is_none() && all_with_g.momentum(usize::MAX).is_none());
     assert!(Ensemble::new(&[], &[]).expect("none").advance(EnsembleMethod::Rk4, 0.1, 9, 4).is_ok());
 }

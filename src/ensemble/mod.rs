@@ -22,7 +22,8 @@
 //! let momentum: Vec<_> = (0..1000).map(|i| [0.2, 1e-3 * f64::from(i), 3.0]).collect();
 //! let mut bodies = Ensemble::new(&inertia, &momentum)?;
 //! bodies.advance(EnsembleMethod::Rkmk4Cay, 0.01, 100, 1)?;
-//! assert!((bodies.momentum(999).norm() - (0.04 + 0.999f64.powi(2) + 9.0).sqrt()).abs() < 1e-14);
+//! let m = bodies.momentum(999).expect("the last of a thousand");
+//! assert!((m.norm() - (0.04 + 0.999f64.powi(2) + 9.0).sqrt()).abs() < 1e-14);
 //! # Ok::<(), lieflow::Error>(())
 //! ```
 
@@ -157,7 +158,7 @@ impl Ensemble {
         self.len == 0
     }
 
-    /// 1/J and m of a block.
+    /// 1/J and m of block b, of which there is one.
     fn block(&self, b: usize) -> (&Vectors, &Vectors) {
         match &self.blocks {
             Blocks::Momentum(blocks) => (&blocks[b].inverse, &blocks[b].state.m),
@@ -165,26 +166,30 @@ impl Ensemble {
         }
     }
 
-    /// m of body i < [`len`](Self::len).
-    pub fn momentum(&self, i: usize) -> Vector3<f64> {
-        let (_, m) = self.block(i / BLOCK);
-        vector(m, i % BLOCK)
+    /// 1/J and m of body i.
+    fn body(&self, i: usize) -> Option<(Vector3<f64>, Vector3<f64>)> {
+        (i < self.len).then(|| {
+            let (inverse, m) = self.block(i / BLOCK);
+            (vector(inverse, i % BLOCK), vector(m, i % BLOCK))
+        })
     }
-    /// g of body i < [`len`](Self::len), where attitudes are integrated.
+    /// m of body i; none from [`len`](Self::len) on.
+    pub fn momentum(&self, i: usize) -> Option<Vector3<f64>> {
+        self.body(i).map(|(_, m)| m)
+    }
+    /// g of body i; none from [`len`](Self::len) on, or where no attitudes are integrated.
     pub fn attitude(&self, i: usize) -> Option<Matrix3<f64>> {
         match &self.blocks {
-            Blocks::Momentum(_) => None,
-            Blocks::Attitude(blocks) => {
+            Blocks::Attitude(blocks) if i < self.len => {
                 let g = &blocks[i / BLOCK].state.g;
                 Some(Matrix3::from_fn(|r, c| g[r][c][i % BLOCK]))
             }
+            _ => None,
         }
     }
-    /// ½ m·J⁻¹m of body i < [`len`](Self::len).
-    pub fn energy(&self, i: usize) -> f64 {
-        let (inverse, m) = self.block(i / BLOCK);
-        let (j, m) = (vector(inverse, i % BLOCK), vector(m, i % BLOCK));
-        0.5 * j.dot(&m.component_mul(&m))
+    /// ½ m·J⁻¹m of body i; none from [`len`](Self::len) on.
+    pub fn energy(&self, i: usize) -> Option<f64> {
+        self.body(i).map(|(inverse, m)| 0.5 * inverse.dot(&m.component_mul(&m)))
     }
 
     /// So many steps of size h for every body, on this number of threads. Allocates nothing but threads,
@@ -212,7 +217,7 @@ impl Ensemble {
             Blocks::Momentum(blocks) => on_threads(way, blocks, threads),
             Blocks::Attitude(blocks) => on_threads(way, blocks, threads),
         }?;
-        self.age = (self.age + steps) % RESTORE_EVERY;
+        self.age = (self.age + steps % RESTORE_EVERY) % RESTORE_EVERY;
         Ok(())
     }
 }
