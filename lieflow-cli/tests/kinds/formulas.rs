@@ -65,6 +65,18 @@ fn a_torque_that_varies_in_time() {
     assert!(of.problem.invariants(&[]).iter().all(|law| law.quantity == "attitude_defect"));
 }
 
+/// A run ends where a formula has no value any more; the rows before are there.
+#[test]
+fn a_run_ends_where_a_formula_has_no_value() {
+    let body = format!("{BODY}\ntorque = [\"sqrt(1 - t)\", \"0\", \"0\"]");
+    let of = scene(&body, RKMK4, "t_span = [0, 2]\ndt = 0.125", "[\"axis\"]");
+    let mut times = Vec::new();
+    let mut sink = |t: f64, _: &[f64]| times.push(t);
+    let ended = of.model().unwrap().run(&of.method, &of.grid, &of.save, &mut sink);
+    assert!(ended.is_err_and(|error| error.to_string().contains("not finite")));
+    assert_eq!(times.last(), Some(&1.0));
+}
+
 #[test]
 fn formulas_are_refused_at_their_line() {
     let torque = |texts: &str| format!("{BODY}\ntorque = {texts}");
