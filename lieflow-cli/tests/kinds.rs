@@ -2,6 +2,8 @@
 
 mod support;
 
+#[path = "kinds/formulas.rs"]
+mod formulas;
 #[path = "kinds/known.rs"]
 mod known;
 #[path = "kinds/laws.rs"]

@@ -39,7 +39,7 @@ use toml::de::ValueDeserializer;
 
 use crate::model::{Layer, Model};
 use crate::plot::Ground;
-use crate::scene::ReadError;
+use crate::scene::{ReadError, Refusal};
 
 /// Every kind.
 pub const KINDS: &[Kind] = &[
@@ -93,6 +93,12 @@ pub struct KeyInfo {
     /// What it means, and what it holds.
     pub meaning: &'static str,
 }
+
+/// The key of the constants, for every kind that reads formulas.
+const PARAMETERS: KeyInfo = KeyInfo {
+    name: "parameters",
+    meaning: "constants for the formulas: a table [problem.parameters] of names and numbers; optional",
+};
 
 /// A quantity that can be asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -195,6 +201,14 @@ pub trait ProblemSpec: Any + Debug + Send + Sync {
     /// # Errors
     /// [`Error::UnknownName`] for a quantity that the kind does not have.
     fn model(&self, layer: Layer, quantities: &[&str]) -> Result<Box<dyn Model>, Error>;
+
+    /// That what the scene states in formulas has a value at the start.
+    ///
+    /// # Errors
+    /// A refusal of the first key that has none.
+    fn check_start(&self, _t0: f64) -> Result<(), Refusal> {
+        Ok(())
+    }
 
     /// The quantities that make up what these quantities model: those to compare with the exact
     /// solution.
