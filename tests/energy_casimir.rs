@@ -205,8 +205,9 @@ fn the_mean_of_gradients_on_the_way_is_a_discrete_gradient() {
     let start = V::new(0.7, -0.4, 0.9);
     let drift = |value: fn(f64) -> f64, slope: fn(f64) -> f64, start: V, h: f64| {
         let energy = move |m: &V| (0..3).map(|i| RATES[i] * value(m[i])).sum::<f64>();
-        let along = move |a: &V, b: &V, s: f64, xi: &mut V| {
-            *xi = V::from_fn(|i, _| RATES[i] * slope(a[i] + s * (b[i] - a[i])));
+        let along = move |a: &V, way: Option<(&V, f64)>, xi: &mut V| {
+            let m = way.map_or(*a, |(b, s)| a + (b - a) * s);
+            *xi = V::from_fn(|i, _| RATES[i] * slope(m[i]));
         };
         let problem = Euler::new(So3::<f64>::new(), Averaged(energy, along));
         let (first, mut worst) = (problem.energy(&start), 0.0f64);
@@ -232,8 +233,8 @@ fn the_mean_of_gradients_on_the_way_is_a_discrete_gradient() {
     let energy = move |m: &Pair| {
         0.5 * m.0.component_mul(&inverse).dot(&m.0) + m.1[2].powi(3) - (m.1[0] + 0.3 * m.1[1]).exp()
     };
-    let along = move |a: &Pair, b: &Pair, s: f64, xi: &mut Pair| {
-        let (m, p) = (a.0 + (b.0 - a.0) * s, a.1 + (b.1 - a.1) * s);
+    let along = move |a: &Pair, way: Option<(&Pair, f64)>, xi: &mut Pair| {
+        let (m, p) = way.map_or(*a, |(b, s)| (a.0 + (b.0 - a.0) * s, a.1 + (b.1 - a.1) * s));
         let e = (p[0] + 0.3 * p[1]).exp();
         *xi = (m.component_mul(&inverse), V::new(-e, -0.3 * e, 3.0 * p[2] * p[2]));
     };

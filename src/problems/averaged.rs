@@ -15,9 +15,9 @@ use crate::groups::Adjoint;
 use crate::maps::GAUSS_LEGENDRE7;
 use crate::scalar::Real;
 
-/// Any H by two functions: its value H(m), and its gradient on the way between two momenta,
-/// ξ ← ∇H((1 − s)a + sb) ∈ 𝔤 from a, b, s, ξ. Methods that keep the energy keep it; a discrete gradient
-/// takes seven gradients.
+/// Any H by two functions: its value H(m), and its gradient at a momentum or on the way from it to another,
+/// ξ ← ∇H(a) ∈ 𝔤 or, where (b, s) is given, ξ ← ∇H((1 − s)a + sb). Methods that keep the energy keep it; a
+/// discrete gradient takes seven gradients.
 ///
 /// ```
 /// use lieflow::groups::So3;
@@ -31,8 +31,8 @@ use crate::scalar::Real;
 /// // H = Σ cosh(k_i m_i).
 /// let k = V::new(1.0, 0.6, 0.3);
 /// let energy = move |m: &V| m.component_mul(&k).map(f64::cosh).sum();
-/// let gradient = move |a: &V, b: &V, s: f64, xi: &mut V| {
-///     let m = a + (b - a) * s;
+/// let gradient = move |a: &V, way: Option<(&V, f64)>, xi: &mut V| {
+///     let m = way.map_or(*a, |(b, s)| a + (b - a) * s);
 ///     *xi = k.component_mul(&m.component_mul(&k).map(f64::sinh));
 /// };
 /// let problem = Euler::new(So3::<f64>::new(), Averaged(energy, gradient));
@@ -50,14 +50,14 @@ impl<G, H, D> Hamiltonian<G> for Averaged<H, D>
 where
     G: Adjoint,
     H: Fn(&G::Dual) -> G::Scalar,
-    D: Fn(&G::Dual, &G::Dual, G::Scalar, &mut G::Alg),
+    D: Fn(&G::Dual, Option<(&G::Dual, G::Scalar)>, &mut G::Alg),
 {
     fn value(&self, _: &G, m: &G::Dual) -> G::Scalar {
         (self.0)(m)
     }
     #[inline]
     fn gradient(&self, m: &G::Dual, xi: &mut G::Alg) {
-        (self.1)(m, m, G::Scalar::lit(0.0), xi);
+        (self.1)(m, None, xi);
     }
 }
 
@@ -65,13 +65,13 @@ impl<G, H, D> DiscreteGradient<G> for Averaged<H, D>
 where
     G: Adjoint,
     H: Fn(&G::Dual) -> G::Scalar,
-    D: Fn(&G::Dual, &G::Dual, G::Scalar, &mut G::Alg),
+    D: Fn(&G::Dual, Option<(&G::Dual, G::Scalar)>, &mut G::Alg),
 {
     fn between(&self, group: &G, a: &G::Dual, b: &G::Dual, xi: &mut G::Alg, scratch: &mut G::Alg) {
         let lit = G::Scalar::lit;
         group.set_zero(xi);
         for (s, weight) in GAUSS_LEGENDRE7 {
-            (self.1)(a, b, lit(s), scratch);
+            (self.1)(a, Some((b, lit(s))), scratch);
             group.axpy(lit(weight), scratch, xi);
         }
     }
