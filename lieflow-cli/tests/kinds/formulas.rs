@@ -112,13 +112,15 @@ fn formulas_are_refused_at_their_line() {
     assert!(last(&late).iter().all(|x| x.is_finite()));
 }
 
+type Rows = Vec<Vec<f64>>;
+
 /// A matrix as a scene has it.
 fn text(m: &[Vec<f64>]) -> String {
     format!("{m:?}")
 }
 
 /// Momenta of all algebras of matrices, with weights.
-fn on_matrices() -> Vec<(&'static str, Vec<Vec<f64>>, Vec<Vec<f64>>)> {
+fn on_matrices() -> Vec<(&'static str, Rows, Rows)> {
     let rows = |rows: &[&[f64]]| rows.iter().map(|row| row.to_vec()).collect::<Vec<_>>();
     vec![
         (
