@@ -16,6 +16,8 @@ mod support;
 mod agreement;
 #[path = "orders_wide/bodies.rs"]
 mod bodies;
+#[path = "orders_wide/faults.rs"]
+mod faults;
 #[path = "orders_wide/fields.rs"]
 mod fields;
 #[path = "orders_wide/group.rs"]

@@ -192,7 +192,12 @@ impl SeriesGroup for Matrices {
 
 impl Wide for Matrices {
     fn algebra(&self, next: &mut dyn FnMut() -> D) -> Square {
-        self.basis.iter().fold(self.zero(), |u, e| u + *e * next())
+        let mut u = self.zero();
+        for e in &self.basis {
+            let x = next();
+            e.nonzero().for_each(|at| u[at] += x * e[at]);
+        }
+        u
     }
     fn tangent(&self, u: &Square, g: &Square, out: &mut Square) {
         *out = *u * *g;

@@ -38,6 +38,12 @@ impl Square {
         self.rows[..self.n].iter().flat_map(|row| &row[..self.n])
     }
 
+    /// Where the entries are that are not 0.
+    pub(crate) fn nonzero(&self) -> impl Iterator<Item = (usize, usize)> {
+        let all = (0..self.n).flat_map(|i| (0..self.n).map(move |j| (i, j)));
+        all.filter(|&at| self[at] != D::lit(0.0))
+    }
+
     /// self⁻¹·b; not finite where self is singular.
     pub(crate) fn solve(self, b: Square) -> Square {
         let mut rows = [[D::lit(0.0); 2 * ROWS]; ROWS];
