@@ -11,6 +11,7 @@
 //! bracket and no coefficient of a method.
 
 mod support;
+mod systems;
 
 #[path = "orders_wide/agreement.rs"]
 mod agreement;
@@ -22,6 +23,8 @@ mod faults;
 mod fields;
 #[path = "orders_wide/group.rs"]
 mod group;
+#[path = "orders_wide/lie_poisson.rs"]
+mod lie_poisson;
 #[path = "orders_wide/maps.rs"]
 mod maps;
 #[path = "orders_wide/members.rs"]

@@ -90,6 +90,11 @@ impl Matrices {
         }))
     }
 
+    /// The part of x in 𝔤: (x − x♯)/2, or x.
+    pub(crate) fn project(&self, x: &Square) -> Square {
+        self.adjoint(x).map_or(*x, |adjoint| (*x - adjoint) * D::lit(0.5))
+    }
+
     /// 𝟙 − g♯g, or 0.
     fn residual(&self, g: &Square) -> Square {
         match self.adjoint(g) {

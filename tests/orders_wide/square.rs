@@ -34,6 +34,9 @@ impl Square {
     pub(crate) fn n(&self) -> usize {
         self.n
     }
+    pub(crate) fn transpose(&self) -> Square {
+        Square::from_fn(self.n, |i, j| self.rows[j][i])
+    }
     fn entries(&self) -> impl Iterator<Item = &D> {
         self.rows[..self.n].iter().flat_map(|row| &row[..self.n])
     }
