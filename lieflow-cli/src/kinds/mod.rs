@@ -16,6 +16,7 @@ mod law;
 mod lorentz;
 mod lyapunov;
 mod matrix;
+mod matrix_ode;
 mod oja;
 mod pendulum;
 mod riccati;
@@ -66,6 +67,7 @@ pub const KINDS: &[Kind] = &[
     riccati::KIND,
     lorentz::KIND,
     schrodinger::KIND,
+    matrix_ode::KIND,
     lyapunov::KIND,
 ];
 
