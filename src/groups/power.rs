@@ -38,6 +38,11 @@ impl<G> Power<G> {
         }
     }
 
+    /// G⁰ = {𝟙}: no copy, for the part of a product that a system may not have.
+    pub const fn none(group: G) -> Self {
+        Power { group, copies: 0 }
+    }
+
     /// G.
     pub fn group(&self) -> &G {
         &self.group
