@@ -2,7 +2,7 @@
 
 use rand::Rng;
 
-use super::product::larger;
+use super::product::{larger, worse};
 use super::{Adjoint, LieAlgebra, LieGroup, Sample};
 use crate::error::{Error, StepError};
 use crate::scalar::Real;
@@ -165,6 +165,11 @@ impl<G: LieGroup> LieGroup for Power<G> {
             residual = larger(residual, self.group.correct(g, [s, t]));
         }
         residual
+    }
+    /// Each copy by itself; returns the largest of what was found.
+    fn correct_vector(&self, from: &Self::Vector, x: &mut Self::Vector) -> Option<G::Scalar> {
+        let each = from.iter().zip(x);
+        each.fold(None, |all, (from, x)| worse(all, self.group.correct_vector(from, x)))
     }
 }
 
