@@ -3,11 +3,20 @@
 //! much again, so it has none (`test = false`), and its modules with tests are compiled here.
 #![allow(dead_code, unused_imports, unreachable_pub)] // modules are here for their tests
 
+#[path = "../src/scene/error.rs"]
+mod error;
 #[path = "../src/survey/exact.rs"]
 mod exact;
+#[path = "../src/scene/formula/mod.rs"]
+mod formula;
 #[path = "../src/page/mod.rs"]
 mod page;
 #[path = "../src/plot/mod.rs"]
 mod plot;
 #[path = "../src/scene/suggest.rs"]
 mod suggest;
+#[path = "../src/scene/values.rs"]
+mod values;
+
+use error::Refusal;
+use suggest::help_for;

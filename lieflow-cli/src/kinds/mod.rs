@@ -39,7 +39,7 @@ use toml::de::ValueDeserializer;
 
 use crate::model::{Layer, Model};
 use crate::plot::Ground;
-use crate::scene::ReadError;
+use crate::scene::{ReadError, Refusal};
 
 /// Every kind.
 pub const KINDS: &[Kind] = &[
@@ -195,6 +195,14 @@ pub trait ProblemSpec: Any + Debug + Send + Sync {
     /// # Errors
     /// [`Error::UnknownName`] for a quantity that the kind does not have.
     fn model(&self, layer: Layer, quantities: &[&str]) -> Result<Box<dyn Model>, Error>;
+
+    /// That what the scene states in formulas has a value at the start.
+    ///
+    /// # Errors
+    /// A refusal of the first key that has none.
+    fn check_start(&self, _t0: f64) -> Result<(), Refusal> {
+        Ok(())
+    }
 
     /// The quantities that make up what these quantities model: those to compare with the exact
     /// solution.

@@ -12,6 +12,7 @@ use super::law::{Law, SIZE};
 use super::{Fact, Figure, Kind, ProblemSpec, QuantityInfo};
 use crate::model::{Catalog, Layer, Model, Sink, Steps, adapt_by, integrate_by, order_by};
 use crate::operations::{Pace, operations_by};
+use crate::scene::Refusal;
 
 /// A problem of one kind, as its scene states it and checked: what the kind's file is about.
 pub(super) trait System: Clone + Debug + Send + Sync + 'static {
@@ -24,6 +25,10 @@ pub(super) trait System: Clone + Debug + Send + Sync + 'static {
     fn layer(&self) -> Layer;
     /// The problem, and y(t₀).
     fn problem(&self) -> Result<(Self::Problem, PointOf<Self::Problem>), Error>;
+    /// See [`ProblemSpec::check_start`].
+    fn check_start(&self, _t0: f64) -> Result<(), Refusal> {
+        Ok(())
+    }
     /// What is integrated, in words.
     fn modelled(&self) -> String;
     /// The quantities that make up the state.
@@ -98,6 +103,9 @@ impl<S: System> ProblemSpec for S {
         };
         let quantities = quantities.iter().map(asked).collect::<Result<_, Error>>()?;
         Ok(Box::new(SystemModel { system: self.clone(), problem, start, quantities }))
+    }
+    fn check_start(&self, t0: f64) -> Result<(), Refusal> {
+        System::check_start(self, t0)
     }
     fn state(&self, _: &[&str]) -> &'static [&'static str] {
         System::state(self)

@@ -3,6 +3,7 @@
 mod bundled;
 mod document;
 mod error;
+pub mod formula;
 mod keys;
 mod suggest;
 pub mod values;
@@ -68,6 +69,9 @@ impl Scene {
             .keys::<TimeKeys>("time")?
             .resolve()
             .map_err(|refusal| document.refusal("time", refusal))?;
+        problem
+            .check_start(grid.t_span()[0])
+            .map_err(|refusal| document.refusal("problem", refusal))?;
         let (quantities, save) = document
             .keys::<OutputKeys>("output")?
             .resolve(problem.kind(), &grid)

@@ -1,0 +1,263 @@
+//! Formulas: what they mean, their derivatives against differences, and texts that are none.
+
+use lieflow::scalar::{Counted, Ops};
+
+use super::super::Refusal;
+use super::{Formula, Names, Parameters, read_all};
+
+fn names() -> Names {
+    Parameters::default().names("variables", ["x", "y", "w_1"]).expect("three names")
+}
+fn read(text: &str) -> Result<Formula, Refusal> {
+    Formula::read("f", text, &names())
+}
+fn value(text: &str, at: [f64; 3]) -> f64 {
+    read(text).unwrap_or_else(|refusal| panic!("{text}: {refusal:?}")).value(&at)
+}
+
+#[test]
+fn formulas_mean_what_they_mean_on_paper() {
+    let (x, y, w) = (0.75, -1.25, 3.5);
+    for (text, expected) in [
+        ("-2^2", -4.0),
+        ("2^-1", 0.5),
+        ("2^3^2", 512.0),
+        ("(2^3)^2", 64.0),
+        ("2^-2^2", 0.0625),
+        ("-x^2", -x * x),
+        ("2--3", 5.0),
+        ("- -3 + +1", 4.0),
+        ("8/4/2", 1.0),
+        ("8 - 4 - 2", 2.0),
+        ("2*3 + 4*5", 26.0),
+        ("1e-3 + 1.5E+2 + .5 + 2.", 152.501),
+        ("2*e", 2.0 * core::f64::consts::E),
+        ("cos(pi)", -1.0),
+        ("x*y - w_1/(x + 1)", x * y - w / (x + 1.0)),
+        ("x^0.5", x.powf(0.5)),
+        ("x^y", x.powf(y)),
+        ("w_1^3", w * w * w),
+        ("1/w_1^2", 1.0 / (w * w)),
+        ("w_1^-2", 1.0 / (w * w)),
+        ("min(x, max(y, 0.5))", 0.5),
+        ("atan2(x, y)", x.atan2(y)),
+        ("sign(y)*abs(y) + sign(0)", y),
+        ("sinh(x) + cosh(x) - exp(x)", 0.0),
+        ("asin(sin(x)) + acos(cos(x)) + atan(tan(x))", 3.0 * x),
+        ("tanh(x) - sinh(x)/cosh(x)", 0.0),
+        ("ln(x) - log10(x)/log10(e)", 0.0),
+        ("\n x\n\t+ 1", x + 1.0),
+    ] {
+        let got = value(text, [x, y, w]);
+        assert!(
+            (got - expected).abs() <= 4.0 * f64::EPSILON * (1.0 + expected.abs()),
+            "{text}: {got}"
+        );
+    }
+}
+
+#[test]
+fn a_formula_has_no_value_where_it_has_none() {
+    for text in ["ln(y)", "sqrt(y)", "0*ln(y)", "min(x, ln(y))", "y^0.5", "asin(2)"] {
+        assert!(value(text, [0.75, -1.25, 3.5]).is_nan(), "{text}");
+    }
+    let pole = read("1/(x - 1)").unwrap();
+    let refusal = pole.check("f", &[1.0, 0.0, 0.0]).unwrap_err();
+    assert_eq!(refusal.message, "f is inf at the start, expected a number");
+    assert_eq!(pole.check("f", &[2.0, 0.0, 0.0]), Ok(()));
+    assert!(pole.value::<f64>(&[]).is_nan(), "a value that is missing is none");
+}
+
+/// f′ against (8(f(h) − f(−h)) − (f(2h) − f(−2h)))/12h, whose error is h⁴f⁽⁵⁾/30 and ε|f|/h: with
+/// h = 2⁻¹⁰ that is 1e-12 for the derivatives of these.
+#[test]
+fn derivatives_agree_with_differences() {
+    let at = [0.6, 0.35, 1.4];
+    for text in [
+        "x + y - w_1",
+        "x*y*w_1",
+        "x/(y + w_1)",
+        "(x + 1)/2",
+        "2/x",
+        "-x^3 + y^-2",
+        "x^y",
+        "2^x",
+        "x^w_1",
+        "x^0.5",
+        "sin(x*y)",
+        "cos(x + y)",
+        "tan(x*w_1)",
+        "asin(x*y)",
+        "acos(x*y)",
+        "atan(x/y)",
+        "atan2(x, y)",
+        "atan2(x*y, w_1)",
+        "sinh(x)*cosh(y)",
+        "tanh(x*y)",
+        "exp(-x^2/y)",
+        "ln(x*w_1)",
+        "log10(x + y^2)",
+        "sqrt(x^2 + y^2 + w_1^2)",
+        "abs(y - x)",
+        "sign(x - y)*x",
+        "min(x*y, w_1*x)",
+        "max(x*y, w_1*x)",
+        "max(2, x) - min(x, 2)",
+        "sin(cos(tan(x)*y)^2 + w_1)^3",
+        "x - x",
+        "3",
+    ] {
+        let f = read(text).unwrap();
+        for i in 0..3 {
+            let slope = f.derivative("f", i).unwrap().value(&at);
+            let h = 1.0 / 1024.0;
+            let shifted = |by: f64| {
+                let mut at = at;
+                at[i] += by * h;
+                f.value(&at)
+            };
+            let near = shifted(1.0) - shifted(-1.0);
+            let far = shifted(2.0) - shifted(-2.0);
+            let expected = (8.0 * near - far) / (12.0 * h);
+            assert!(
+                (slope - expected).abs() < 2e-9 * (1.0 + expected.abs()),
+                "{text} by {i}: {slope} {expected}"
+            );
+            assert!(f.uses(i) || slope == 0.0, "{text} by {i}");
+        }
+    }
+    let second = read("x^3*y").unwrap().derivative("f", 0).unwrap().derivative("f", 1).unwrap();
+    assert_eq!(second.value(&[2.0, 5.0, 0.0]), 12.0);
+}
+
+/// A product of many factors has derivatives that are a few times as long.
+#[test]
+fn derivatives_stay_short() {
+    let factors: Vec<String> = (1..=600).map(|i| format!("(x + {i}/600)")).collect();
+    let product = read(&factors.join("*")).unwrap();
+    let slope = product.derivative("f", 0).unwrap();
+    let logarithmic = (1..=600).map(|i| 1.0 / (0.5 + f64::from(i) / 600.0)).sum::<f64>();
+    let (f, df) = (product.value(&[0.5, 0.0, 0.0]), slope.value(&[0.5, 0.0, 0.0]));
+    // 600 factors, each with two roundings.
+    assert!((df / f - logarithmic).abs() < 2000.0 * f64::EPSILON * logarithmic, "{df} {f}");
+}
+
+#[test]
+fn operations_are_counted() {
+    let f = read("2*sin(x)*sin(x) + y/w_1 - sqrt(x)^5").unwrap();
+    let at = [0.5, 1.0, 2.0];
+    let expected = Ops { add: 2, mul: 5, div: 1, sqrt: 1, trig: 1 };
+    let (plain, ops) = Counted::count(|| f.value(&at));
+    assert_eq!(ops, expected);
+    let (counted, ops) = Counted::count(|| f.value(&at.map(Counted)));
+    assert_eq!((ops, counted.0), (expected, plain));
+}
+
+#[test]
+fn parameters_are_numbers_with_names() {
+    let parameters: Parameters = toml::from_str("k = 3\nc = 0.5").unwrap();
+    let names = parameters.names("variables", ["x"]).unwrap();
+    let f = Formula::read("f", "k*x^k + c", &names).unwrap();
+    assert_eq!(f.value(&[2.0]), 24.5);
+    assert_eq!(f.derivative("f", 0).unwrap().value(&[2.0]), 36.0);
+    for (text, variable, why) in [
+        ("x = 1", "x", "`x` is the name of a variable already"),
+        ("sin = 1", "x", "`sin` is the name of a function"),
+        ("pi = 3", "x", "`pi` is the name of a number"),
+        ("\"a b\" = 3", "x", "`a b` is no name"),
+        ("k = 3", "2x", "`2x` is no name"),
+        ("k = 3", "", "`` is no name"),
+    ] {
+        let parameters: Parameters = toml::from_str(text).unwrap();
+        let refusal = parameters.names("variables", [variable]).unwrap_err();
+        assert!(refusal.message.starts_with(why), "{}", refusal.message);
+    }
+    assert!(toml::from_str::<Parameters>("k = inf").is_err());
+}
+
+#[test]
+fn what_is_wrong_is_said_with_its_place() {
+    for (text, message, help) in [
+        ("", "found nothing more, expected a number, a name or a parenthesis at character 1", None),
+        (
+            "x + ",
+            "found nothing more, expected a number, a name or a parenthesis at character 5",
+            None,
+        ),
+        ("2x", "found `x`, expected an operator or the end at character 2", Some("2*x")),
+        (
+            "x**2",
+            "found `*`, expected a number, a name or a parenthesis at character 3",
+            Some("x^2"),
+        ),
+        ("(x + 1", "found nothing more, expected an operator or `)` at character 7", None),
+        ("x)", "found `)`, expected an operator or the end at character 2", None),
+        ("3*w1", "unknown name `w1` at character 3", Some("did you mean `w_1`?")),
+        ("sine(x)", "unknown function `sine` at character 1", Some("did you mean `sin`?")),
+        ("x(2)", "found `(`, expected an operator or the end at character 2", Some("2*x")),
+        ("sin x", "found `x`, expected `(` after sin at character 5", None),
+        ("min(x)", "found `)`, expected `,`: min takes two numbers at character 6", None),
+        ("sin(x, y)", "found `,`, expected an operator or `)` at character 6", None),
+        ("1e999", "the number 1e999 is out of range at character 1", None),
+        ("1.2.3", "`1.2.3` is no number at character 1", None),
+        ("x $ y", "found `$`, expected an operator or the end at character 3", None),
+    ] {
+        let refusal = read(text).unwrap_err();
+        assert_eq!(refusal.message, format!("f: {message} of the formula"), "{text}");
+        match help {
+            None => assert_eq!(refusal.help, None, "{text}"),
+            Some(help) => assert!(refusal.help.is_some_and(|said| said.contains(help)), "{text}"),
+        }
+    }
+    let texts = ["x".into(), "y +".into()];
+    assert_eq!(read_all("torque", &texts, &names()).unwrap_err().key.as_deref(), Some("torque[1]"));
+}
+
+#[test]
+fn absurd_formulas_are_refused() {
+    let nested = |levels: usize| format!("{}x{}", "(".repeat(levels), ")".repeat(levels));
+    assert!(read(&nested(60)).is_ok());
+    for text in
+        [nested(100_000 / 2), nested(200), "-".repeat(60_000), format!("{}2", "2^".repeat(9_000))]
+    {
+        let refusal = read(&text).unwrap_err();
+        assert!(
+            refusal.message.contains("levels") || refusal.message.contains("bytes"),
+            "{refusal:?}"
+        );
+    }
+    assert!(read(&"x + ".repeat(20_000)).unwrap_err().message.contains("bytes"));
+    let long: Vec<String> = (0..5000).map(|i| format!("x*{i}")).collect();
+    assert!(read(&long.join("+")).unwrap_err().message.contains("more than 4096 operations"));
+    // As a text, each level of the derivative would be as long as all below it.
+    let folded = (0..30).fold("x".to_owned(), |text, _| format!("sin({text})"));
+    assert!(
+        read(&folded).unwrap().derivative("f", 0).unwrap().value(&[0.5_f64, 0.0, 0.0]).is_finite()
+    );
+}
+
+/// Random texts from the pieces of formulas: read or refused, evaluated, derived, and never a panic.
+#[test]
+fn random_texts_are_read_or_refused() {
+    let pieces = [
+        "x", "y", "w_1", "2", "1e", "e-3", ".", "+", "-", "*", "/", "^", "(", ")", ",", " ",
+        "sin(", "min(", "atan2", "pi", "µ", "\u{301}", "\0", "{", "\"", "9e99", "(x)", "^2",
+        "sqrt(x", "😀",
+    ];
+    let mut seed = 1_u64;
+    let mut draw = |n: usize| {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (seed >> 33) as usize % n
+    };
+    let mut read_ones = 0;
+    for _ in 0..20_000 {
+        let length = draw(12);
+        let text: String = (0..=length).map(|_| pieces[draw(pieces.len())]).collect();
+        if let Ok(formula) = read(&text) {
+            read_ones += 1;
+            let _ = formula.value(&[0.3, -0.2, 1e300]);
+            assert!(formula.derivative("f", draw(3)).is_ok(), "{text}");
+        }
+    }
+    assert!(read_ones > 500, "{read_ones}");
+}
