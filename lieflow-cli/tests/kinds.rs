@@ -2,6 +2,8 @@
 
 mod support;
 
+#[path = "kinds/composed.rs"]
+mod composed;
 #[path = "kinds/known.rs"]
 mod known;
 #[path = "kinds/laws.rs"]

@@ -3,6 +3,7 @@
 //! To add a kind: one file with its keys and its `System`, one line in [`KINDS`].
 
 mod beam_line;
+mod composed;
 mod driven_body;
 mod euler;
 mod flow;
@@ -66,6 +67,7 @@ pub const KINDS: &[Kind] = &[
     lorentz::KIND,
     schrodinger::KIND,
     lyapunov::KIND,
+    composed::KIND,
 ];
 
 /// A kind of problem.

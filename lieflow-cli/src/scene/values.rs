@@ -168,6 +168,31 @@ impl<'de> Deserialize<'de> for Diagonal {
     }
 }
 
+/// Any number of numbers, or three rows of three.
+#[derive(Clone, Debug, PartialEq)]
+pub enum NumbersOrRows {
+    /// Numbers.
+    Numbers(Vec<f64>),
+    /// A matrix.
+    Rows([[f64; 3]; 3]),
+}
+
+impl<'de> Deserialize<'de> for NumbersOrRows {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let entries = Vec::<Entry>::deserialize(deserializer)?;
+        if let [Entry::Row(a), Entry::Row(b), Entry::Row(c)] = entries[..] {
+            return Ok(NumbersOrRows::Rows([a, b, c]));
+        }
+        let number = |entry: &Entry| match entry {
+            Entry::Number(x) => Some(*x),
+            Entry::Row(_) => None,
+        };
+        let numbers = entries.iter().map(number).collect::<Option<_>>();
+        let expected = || D::Error::custom("expected numbers, or 3 rows of 3 numbers");
+        numbers.map(NumbersOrRows::Numbers).ok_or_else(expected)
+    }
+}
+
 /// Any number of numbers.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(transparent)]
