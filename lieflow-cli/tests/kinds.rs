@@ -4,6 +4,8 @@ mod support;
 
 #[path = "kinds/composed.rs"]
 mod composed;
+#[path = "kinds/formulas.rs"]
+mod formulas;
 #[path = "kinds/known.rs"]
 mod known;
 #[path = "kinds/laws.rs"]

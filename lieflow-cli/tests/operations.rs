@@ -102,6 +102,13 @@ fn classical_steps_on_vectors_take_what_their_fields_take() {
             "axis",
             rk4(15 + 3 + 3 * cross + 3 + 15 + 3, 12),
         ),
+        // As formulas.
+        (
+            "kind = \"driven-body\"\ninertia = [1.0, 2.0, 3.0]\nomega_body = [1.0, 0.2, 0.0]\n\
+             torque = [\"-0.1*w1\", \"-0.1*w2\", \"-0.1*w3\"]",
+            "axis",
+            rk4(15 + 3 + 3 * cross + 3 + 15 + 3, 12),
+        ),
     ] {
         let found =
             a_step(&scene(problem, quantity), &MethodSpec::new("rk4", None), Size::Steps(3));

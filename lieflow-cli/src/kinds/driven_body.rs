@@ -1,5 +1,5 @@
-//! `kind = "driven-body"`: a rigid body with its attitude under gravity, thrusters, damping and a control
-//! law, each only where the scene names it; see [`TorqueBody`].
+//! `kind = "driven-body"`: a rigid body with its attitude under gravity, thrusters, damping, a control law
+//! and torques in formulas, each only where the scene names it; see [`TorqueBody`].
 //!
 //! | key | torque | frame |
 //! |---|---|---|
@@ -7,29 +7,33 @@
 //! | `thruster` | τ, constant | body |
 //! | `damping` | −cω | body |
 //! | `control` = \[k, c\] | −k ½(g − gᵀ)^∨ − cω, toward g = 𝟙 | body |
+//! | `torque`, `torque_space` | formulas in t, ω, m_s and g | body, space |
+
+use std::sync::Arc;
 
 use lieflow::Error;
 use lieflow::actions::LeftTranslation;
 use lieflow::catalog::MethodSpec;
 use lieflow::groups::{LieGroup, Product, So3, Translations, vee};
 use lieflow::problems::{BodyTorque, Motion, Torque, TorqueBody};
-use lieflow::scalar::Counted;
+use lieflow::scalar::{Counted, Real};
 use nalgebra::{Matrix3, Vector3};
 use serde::Deserialize;
 use toml::de::ValueDeserializer;
 
 use super::flow::Flow;
 use super::system::System;
-use super::{Figure, KeyInfo, Kind, Law, ProblemSpec, QuantityInfo, Scale};
+use super::{Figure, KeyInfo, Kind, Law, PARAMETERS, ProblemSpec, QuantityInfo, Scale};
 use crate::model::Layer;
 use crate::operations::{Pace, operations_by};
-use crate::scene::ReadError;
-use crate::scene::values::{Real, Reals, Rows};
+use crate::scene::formula::{Formula, Parameters, read_all};
+use crate::scene::values::{self, Reals, Rows, Texts};
+use crate::scene::{ReadError, Refusal};
 
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {
     name: "driven-body",
-    equation: "m = Jω; ṁ = m × ω + gᵀ(e₃ × g weight) + thruster − damping ω − k (g − gᵀ)ᵛ/2 − c ω, ġ = gω̂",
+    equation: "m = Jω; ṁ = m × ω + gᵀ(e₃ × g weight) + thruster − damping ω − k (g − gᵀ)ᵛ/2 − c ω + torque + gᵀ torque_space, ġ = gω̂",
     summary: "a rigid body with its attitude under the torques that are named",
     keys: &[
         KeyInfo { name: "inertia", meaning: "principal moments of inertia [J1, J2, J3]" },
@@ -49,6 +53,16 @@ pub(super) const KIND: Kind = Kind {
             name: "control",
             meaning: "[k, c] of a law that brings the attitude to the identity; optional",
         },
+        KeyInfo {
+            name: "torque",
+            meaning: "a torque in the body, three formulas in t, the angular velocity in the body w1, w2, \
+                      w3, the momentum in space m1, m2, m3 and the attitude g11, ..., g33; optional",
+        },
+        KeyInfo {
+            name: "torque_space",
+            meaning: "a torque in space, three formulas in the same variables; optional",
+        },
+        PARAMETERS,
     ],
     quantities: &[
         QuantityInfo {
@@ -103,22 +117,53 @@ struct Keys {
     attitude: Option<Rows<3>>,
     weight: Option<Reals<3>>,
     thruster: Option<Reals<3>>,
-    damping: Option<Real>,
+    damping: Option<values::Real>,
     control: Option<Reals<2>>,
+    torque: Option<Texts<3>>,
+    torque_space: Option<Texts<3>>,
+    #[serde(default)]
+    parameters: Parameters,
+}
+
+/// What a torque may depend on, in the order of [`variables`].
+#[rustfmt::skip]
+const VARIABLES: [&str; 16] = [
+    "t", "w1", "w2", "w3", "m1", "m2", "m3",
+    "g11", "g12", "g13", "g21", "g22", "g23", "g31", "g32", "g33",
+];
+
+fn variables<S: Copy>(at: &Motion<S>) -> [S; 16] {
+    let (w, m, g) = (&at.omega_body, &at.momentum_space, &at.attitude);
+    core::array::from_fn(|i| match i {
+        0 => at.t,
+        1..=3 => w[i - 1],
+        4..=6 => m[i - 4],
+        _ => g[((i - 7) / 3, (i - 7) % 3)],
+    })
+}
+
+/// A torque in formulas, one for each component.
+type Formulas = Arc<[Formula]>;
+
+fn evaluated<S: Real + Into<f64>>(torque: &Formulas, at: &Motion<S>) -> Vector3<S> {
+    let variables = variables(at);
+    Vector3::from_fn(|i, _| torque[i].value(&variables))
 }
 
 type Point = (Matrix3<f64>, Vector3<f64>);
 
 /// The torques that were named.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 struct Torques {
     weight: Option<Vector3<f64>>,
     thruster: Option<Vector3<f64>>,
     damping: Option<f64>,
     control: Option<[f64; 2]>,
+    in_the_body: Option<Formulas>,
+    in_space: Option<Formulas>,
 }
 
-impl<S: lieflow::scalar::Real> Torque<S> for Torques {
+impl<S: Real + Into<f64>> Torque<S> for Torques {
     fn in_space(&self, at: &Motion<S>) -> Vector3<S> {
         let lit = |x: Vector3<f64>| x.map(S::lit);
         let g = &at.attitude;
@@ -147,6 +192,12 @@ impl<S: lieflow::scalar::Real> Torque<S> for Torques {
             let law = |_: &Motion<S>| Vector3::from_fn(|i, _| k * away[i] + slow[i]);
             add(BodyTorque(law).in_space(at));
         }
+        if let Some(formulas) = &self.in_the_body {
+            add(BodyTorque(|at: &Motion<S>| evaluated(formulas, at)).in_space(at));
+        }
+        if let Some(formulas) = &self.in_space {
+            add(evaluated(formulas, at));
+        }
         torque
     }
 }
@@ -161,16 +212,23 @@ struct Driven {
 
 fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
     let keys = Keys::deserialize(section)?;
+    let names = keys.parameters.names("torque", VARIABLES)?;
+    let formulas = |key: &str, texts: Option<Texts<3>>| match texts {
+        Some(Texts(texts)) => read_all(key, &texts, &names).map(|formulas| Some(formulas.into())),
+        None => Ok(None),
+    };
     let torques = Torques {
         weight: keys.weight.map(|x| x.0.into()),
         thruster: keys.thruster.map(|x| x.0.into()),
         damping: keys.damping.map(|x| x.0),
         control: keys.control.map(|x| x.0),
+        in_the_body: formulas("torque", keys.torque)?,
+        in_space: formulas("torque_space", keys.torque_space)?,
     };
     let attitude = keys.attitude.map_or_else(Matrix3::identity, |rows| {
         Matrix3::from_rows(&rows.0.map(|row| Vector3::from(row).transpose()))
     });
-    let body = TorqueBody::new(keys.inertia.0, torques)?;
+    let body = TorqueBody::new(keys.inertia.0, torques.clone())?;
     let start = body.state(attitude, keys.omega_body.0)?;
     Ok(Box::new(Driven { body, torques, start }))
 }
@@ -178,8 +236,10 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
 impl Driven {
     /// Is gravity the only torque, or none?
     fn is_conservative(&self) -> bool {
-        let Torques { thruster, damping, control, .. } = self.torques;
-        thruster.is_none() && damping.is_none() && control.is_none()
+        let Torques { weight: _, thruster, damping, control, in_the_body, in_space } =
+            &self.torques;
+        let formulas = in_the_body.is_some() || in_space.is_some();
+        thruster.is_none() && damping.is_none() && control.is_none() && !formulas
     }
     fn energy(&self, y: &Point) -> f64 {
         let height = self.torques.weight.map_or(0.0, |weight| (y.0 * weight)[2]);
@@ -201,17 +261,29 @@ impl System for Driven {
     }
     fn operations(&self, method: &MethodSpec, pace: Pace<'_>) -> Option<f64> {
         let start = (self.start.0.map(Counted), self.start.1.map(Counted));
-        let body = self.body.on::<Counted, _>(self.torques);
+        let body = self.body.on::<Counted, _>(self.torques.clone());
         let (flow, start) = Flow::nonlinear(body, LeftTranslation, start);
         operations_by(method, &flow, start, pace)
     }
+    fn check_start(&self, t0: f64) -> Result<(), Refusal> {
+        let at = variables(&self.body.motion(t0, &self.start));
+        let Torques { in_the_body, in_space, .. } = &self.torques;
+        for (key, torque) in [("torque", in_the_body), ("torque_space", in_space)] {
+            for (i, formula) in torque.iter().flat_map(|formulas| formulas.iter()).enumerate() {
+                formula.check(&format!("{key}[{i}]"), &at)?;
+            }
+        }
+        Ok(())
+    }
     fn modelled(&self) -> String {
-        let Torques { weight, thruster, damping, control } = self.torques;
+        let Torques { weight, thruster, damping, control, in_the_body, in_space } = &self.torques;
         let named = [
             ("gravity", weight.is_some()),
             ("thruster", thruster.is_some()),
             ("damping", damping.is_some()),
             ("control", control.is_some()),
+            ("formulas in the body", in_the_body.is_some()),
+            ("formulas in space", in_space.is_some()),
         ];
         let named = named.iter().filter(|(_, named)| *named).map(|(name, _)| *name);
         let torques: Vec<_> = named.collect();
@@ -255,9 +327,9 @@ impl System for Driven {
         }
     }
     fn figure(&self) -> Figure {
-        match self.torques.control {
-            Some(_) => Figure::Lines("omega_body"),
-            None => Figure::Sphere("axis"),
+        match (&self.torques.control, &self.torques.in_the_body) {
+            (None, None) => Figure::Sphere("axis"),
+            _ => Figure::Lines("omega_body"),
         }
     }
 }

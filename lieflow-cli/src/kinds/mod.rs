@@ -96,6 +96,12 @@ pub struct KeyInfo {
     pub meaning: &'static str,
 }
 
+/// The key of the constants, for every kind that reads formulas.
+const PARAMETERS: KeyInfo = KeyInfo {
+    name: "parameters",
+    meaning: "constants for the formulas: a table [problem.parameters] of names and numbers; optional",
+};
+
 /// A quantity that can be asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct QuantityInfo {

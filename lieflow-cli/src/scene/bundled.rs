@@ -30,6 +30,7 @@ pub const BUNDLED: &[Bundled] = bundled![
     "flipping-book",
     "damped-satellite",
     "attitude-control",
+    "saturated-control",
     "many-bodies",
     "manakov-body",
     "lagrange-top",

@@ -117,6 +117,16 @@ impl<'de, const N: usize> Deserialize<'de> for Rows<N> {
     }
 }
 
+/// N formulas.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Texts<const N: usize>(pub [String; N]);
+
+impl<'de, const N: usize> Deserialize<'de> for Texts<N> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        Entries::read(deserializer, "formulas").map(|entries| Texts(entries.0))
+    }
+}
+
 /// Three numbers, or three rows of three.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Diagonal {
