@@ -163,6 +163,18 @@ const BROKEN: &[(&str, &str, &str, &[&str])] = &[
     ("spin-pair", "start = [0.6, 0.0, 0.8]", "start = [[1, 2, 3]]", &["3 rows of 3 numbers"]),
     ("spin-pair", "start = [0.6, 0.0, 0.8]", "", &["the start of `a` is to be 3 numbers"]),
     ("spin-pair", "invariants = { energy", "invariants = { a1", &["`a1`", "something else"]),
+    (
+        "spin-pair",
+        "field = [\"b1\", ",
+        "field = [\"1/a2\", ",
+        &["parts[0].field[0] is inf at the start"],
+    ),
+    (
+        "spin-pair",
+        "total3 = \"a3",
+        "total3 = \"ln(b1) + a3",
+        &["invariants.total3", "at the start"],
+    ),
     ("spin-pair", "total3 = \"a3", "total3 = \"t + a3", &["invariants.total3", "`t`"]),
     ("spin-pair", "parameters = { K", "parameters = { a1", &["`a1`"]),
     ("gyrostat", "start = [0.0]", "start = []", &["the start of `h` is to be a list of numbers"]),

@@ -253,6 +253,18 @@ impl System for Composed {
         let (flow, start) = Flow::nonlinear(coupled, ON_PARTS, start);
         operations_by(method, &flow, start, pace)
     }
+    fn check_start(&self, t0: f64) -> Result<(), Refusal> {
+        let mut at = vec![t0];
+        self.parts.iter().for_each(|part| part.space.show(&self.start, &mut at));
+        for (i, part) in self.parts.iter().enumerate() {
+            for (j, formula) in part.field.iter().enumerate() {
+                formula.check(&format!("parts[{i}].field[{j}]"), &at)?;
+            }
+        }
+        let mut invariants = self.invariants.iter();
+        invariants
+            .try_for_each(|(name, formula)| formula.check(&format!("invariants.{name}"), &at[1..]))
+    }
     fn modelled(&self) -> String {
         let parts =
             self.parts.iter().map(|part| format!("{} {}", part.space.describe(), part.name));
