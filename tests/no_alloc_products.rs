@@ -84,6 +84,7 @@ fn products_powers_and_motions() {
 /// Vectors, rotations and numbers, as many as there are of each.
 #[test]
 fn unlike_parts() {
+    type Many = Box<[Vector3<f64>]>;
     let so3 = So3::<f64>::new();
     let powers = [Power::none(so3), Power::new(so3, 3).expect("a power")];
     for (vectors, rotations, numbers) in [(1, 1, 5), (1, 0, 0), (0, 1, 2), (0, 0, 1)] {
@@ -93,7 +94,7 @@ fn unlike_parts() {
             (vectors.sample_vector(&mut Pcg64::seed_from_u64(4)), (rotations.identity(), zero));
         let translations = Translations::new(start.1.1.clone(), numbers);
         let group = Product(vectors, Product(rotations, translations));
-        let field = |t: f64, v: &mut (Box<[_]>, (Box<[_]>, Box<[f64]>))| {
+        let field = |t: f64, v: &mut (Many, (Many, Box<[f64]>))| {
             v.0.iter_mut().chain(&mut *v.1.0).for_each(|v| *v = Vector3::new(t, 1.0, -0.5));
             v.1.1.fill(1.0);
         };
