@@ -6,8 +6,8 @@ use lieflow::groups::{Se3, So3};
 use lieflow::maps::{Cay, Exp};
 use lieflow::methods::{EnergyCasimir, Metric, Rkmk, tableau::DOP853};
 use lieflow::problems::{
-    Ambient, DiscreteGradient, Euler, Hamiltonian, HeavyTop, Kinetic, LiePoisson, PointOf, Problem,
-    SphericalPendulum, SpinChain,
+    Ambient, Averaged, DiscreteGradient, Euler, Hamiltonian, HeavyTop, Kinetic, LiePoisson,
+    PointOf, Problem, SphericalPendulum, SpinChain,
 };
 use lieflow::{Action, LieAlgebra, Method, SaveAt, Step, StepError, TimeGrid, integrate};
 use nalgebra::Vector3;
@@ -196,4 +196,48 @@ fn a_hamiltonian_with_a_discrete_gradient_of_its_own() {
     };
     assert!(drift(Quartic { mean: false }) < 1e-13);
     assert!(drift(Quartic { mean: true }) > 1e-7, "the mean of gradients is none for degree 4");
+}
+
+/// The mean of its gradients is one for any H: polynomials of degree 4 and 14, and one that is none; near an
+/// equilibrium, where |b − a| falls to rounding, and on se(3)* with order and Casimirs.
+#[test]
+fn the_mean_of_gradients_on_the_way_is_a_discrete_gradient() {
+    let start = V::new(0.7, -0.4, 0.9);
+    let drift = |value: fn(f64) -> f64, slope: fn(f64) -> f64, start: V, h: f64| {
+        let energy = move |m: &V| (0..3).map(|i| RATES[i] * value(m[i])).sum::<f64>();
+        let along = move |a: &V, way: Option<(&V, f64)>, xi: &mut V| {
+            let m = way.map_or(*a, |(b, s)| a + (b - a) * s);
+            *xi = V::from_fn(|i, _| RATES[i] * slope(m[i]));
+        };
+        let problem = Euler::new(So3::<f64>::new(), Averaged(energy, along));
+        let (first, mut worst) = (problem.energy(&start), 0.0f64);
+        let see = |m: &V| worst = worst.max((problem.energy(m) - first).abs() / first);
+        run(&problem, &EnergyCasimir::new(Cay), &start, 2000.0 * h, 2000, see);
+        worst
+    };
+    // A step rounds the energy a few times.
+    let bound = 64.0 * f64::EPSILON * 2000f64.sqrt();
+    let quartic: [fn(f64) -> f64; 2] = [|x| 0.5 * x * x + 0.25 * x.powi(4), |x| x + x.powi(3)];
+    let degree14: [fn(f64) -> f64; 2] = [|x| x.powi(14), |x| 14.0 * x.powi(13)];
+    let cosh: [fn(f64) -> f64; 2] = [f64::cosh, f64::sinh];
+    for ([value, slope], h) in [(quartic, 0.05), (quartic, 0.3), (degree14, 0.02), (cosh, 0.2)] {
+        let worst = drift(value, slope, start, h);
+        assert!(worst < bound, "{worst:e}");
+        // An axis is an equilibrium.
+        let worst = drift(value, slope, V::new(0.0, 1e-9, 1.0), h);
+        assert!(worst < bound, "{worst:e}");
+    }
+
+    // A top in a field that is none of the usual.
+    let inverse = V::new(0.8, 0.6, 1.7);
+    let energy = move |m: &Pair| {
+        0.5 * m.0.component_mul(&inverse).dot(&m.0) + m.1[2].powi(3) - (m.1[0] + 0.3 * m.1[1]).exp()
+    };
+    let along = move |a: &Pair, way: Option<(&Pair, f64)>, xi: &mut Pair| {
+        let (m, p) = way.map_or(*a, |(b, s)| (a.0 + (b.0 - a.0) * s, a.1 + (b.1 - a.1) * s));
+        let e = (p[0] + 0.3 * p[1]).exp();
+        *xi = (m.component_mul(&inverse), V::new(-e, -0.3 * e, 3.0 * p[2] * p[2]));
+    };
+    let problem = Euler::new(Se3::<f64>::new(), Averaged(energy, along));
+    check("an unusual top", &problem, (V::new(0.2, 0.5, 0.3), V::new(0.6, 0.0, 0.8)));
 }

@@ -25,6 +25,7 @@ pub use exp::{
     Dexpinv, Exp, ExpAt, Truncated, TruncatedExp, dexp, dexpinv, dexpinv_with_remainder,
     distance_to_singular,
 };
+pub(crate) use log::GAUSS_LEGENDRE7;
 pub use pade22::{Pade22, Pade22At};
 pub use parts::{Each, Pair};
 pub use se3::ScrewAt;

@@ -35,7 +35,8 @@ pub trait Hamiltonian<G: Adjoint> {
 }
 
 /// H with a discrete gradient, for methods that keep the energy. One of degree at most 2 has it from its
-/// gradient: `impl DiscreteGradient<G> for MyHamiltonian {}`.
+/// gradient: `impl DiscreteGradient<G> for MyHamiltonian {}`; any other has the mean of its gradients,
+/// [`Averaged`](super::Averaged).
 pub trait DiscreteGradient<G: Adjoint>: Hamiltonian<G> {
     /// ξ ← ∇̄H(a, b), symmetric in a and b: ⟨b − a, ξ⟩ = H(b) − H(a), ∇̄H(m, m) = ∇H(m). Unless it is
     /// overridden (∇H(a) + ∇H(b))/2, which is one where ∇H is affine and not elsewhere.

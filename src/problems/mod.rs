@@ -21,6 +21,7 @@
 //!
 //! To add a problem: one file with an `impl` of [`Problem`], one line here.
 
+mod averaged;
 pub mod beam;
 mod capability;
 mod euler;
@@ -44,6 +45,7 @@ mod spheres;
 mod torque;
 mod zeitlin;
 
+pub use averaged::Averaged;
 pub use capability::{LiePoisson, Orthogonal, Projection, Split};
 pub use euler::{DiscreteGradient, Euler, EulerGroup, FromTheBody, Hamiltonian, Kinetic};
 pub use fallible::{Fallible, InAlgebra, TryProblem};

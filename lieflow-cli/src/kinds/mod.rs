@@ -2,6 +2,7 @@
 //!
 //! To add a kind: one file with its keys and its `System`, one line in [`KINDS`].
 
+mod algebra;
 mod beam_line;
 mod composed;
 mod driven_body;

@@ -38,6 +38,7 @@ pub const BUNDLED: &[Bundled] = bundled![
     "general-top",
     "ellipsoid-in-fluid",
     "euler-on-sl3",
+    "cubic-anisotropy",
     "vortices-on-sphere",
     "shear-layer",
     "spherical-pendulum",

@@ -136,70 +136,100 @@ pub enum Diagonal {
     Rows([[f64; 3]; 3]),
 }
 
-/// A number, or a row of three.
-enum Entry {
+/// A number, or a row.
+enum Entry<R> {
     Number(f64),
-    Row([f64; 3]),
+    Row(R),
 }
 
-impl<'de> Deserialize<'de> for Entry {
+impl<'de, R: Deserialize<'de>> Deserialize<'de> for Entry<R> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct AsEntry;
-        impl<'de> Visitor<'de> for AsEntry {
-            type Value = Entry;
+        struct AsEntry<R>(core::marker::PhantomData<R>);
+        impl<'de, R: Deserialize<'de>> Visitor<'de> for AsEntry<R> {
+            type Value = Entry<R>;
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
                 f.write_str("a number")
             }
-            fn visit_f64<E: Error>(self, x: f64) -> Result<Entry, E> {
+            fn visit_f64<E: Error>(self, x: f64) -> Result<Entry<R>, E> {
                 match x.is_finite() {
                     true => Ok(Entry::Number(x)),
                     false => Err(E::custom(format!("found {x}, expected a finite number"))),
                 }
             }
-            fn visit_i64<E: Error>(self, x: i64) -> Result<Entry, E> {
+            fn visit_i64<E: Error>(self, x: i64) -> Result<Entry<R>, E> {
                 Ok(Entry::Number(x as f64))
             }
-            fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<Entry, A::Error> {
+            fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<Entry<R>, A::Error> {
                 let list = serde::de::value::SeqAccessDeserializer::new(list);
-                Reals::<3>::deserialize(list).map(|row| Entry::Row(row.0))
+                R::deserialize(list).map(Entry::Row)
             }
         }
-        deserializer.deserialize_any(AsEntry)
+        deserializer.deserialize_any(AsEntry(core::marker::PhantomData))
     }
 }
 
 impl<'de> Deserialize<'de> for Diagonal {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        match Entries::<Entry, 3>::read(deserializer, "numbers")?.0 {
+        match Entries::<Entry<Reals<3>>, 3>::read(deserializer, "numbers")?.0 {
             [Entry::Number(a), Entry::Number(b), Entry::Number(c)] => Ok(Diagonal::List([a, b, c])),
-            [Entry::Row(a), Entry::Row(b), Entry::Row(c)] => Ok(Diagonal::Rows([a, b, c])),
+            [Entry::Row(a), Entry::Row(b), Entry::Row(c)] => Ok(Diagonal::Rows([a.0, b.0, c.0])),
             _ => Err(D::Error::custom("numbers and rows, expected 3 numbers or 3 rows of them")),
         }
     }
 }
 
-/// Any number of numbers, or three rows of three.
+/// Numbers, or rows of them.
 #[derive(Clone, Debug, PartialEq)]
-pub enum NumbersOrRows {
-    /// Numbers.
-    Numbers(Vec<f64>),
-    /// A matrix.
-    Rows([[f64; 3]; 3]),
+pub enum Numbers {
+    /// Numbers; also where there are none.
+    List(Vec<f64>),
+    /// Rows.
+    Rows(Table),
 }
 
-impl<'de> Deserialize<'de> for NumbersOrRows {
+impl<'de> Deserialize<'de> for Numbers {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let entries = Vec::<Entry>::deserialize(deserializer)?;
-        if let [Entry::Row(a), Entry::Row(b), Entry::Row(c)] = entries[..] {
-            return Ok(NumbersOrRows::Rows([a, b, c]));
+        let (mut numbers, mut rows) = (Vec::new(), Vec::new());
+        for entry in Vec::<Entry<List>>::deserialize(deserializer)? {
+            match entry {
+                Entry::Number(x) => numbers.push(x),
+                Entry::Row(row) => rows.push(row),
+            }
         }
-        let number = |entry: &Entry| match entry {
-            Entry::Number(x) => Some(*x),
-            Entry::Row(_) => None,
-        };
-        let numbers = entries.iter().map(number).collect::<Option<_>>();
-        let expected = || D::Error::custom("expected numbers, or 3 rows of 3 numbers");
-        numbers.map(NumbersOrRows::Numbers).ok_or_else(expected)
+        match (numbers.is_empty(), rows.is_empty()) {
+            (_, true) => Ok(Numbers::List(numbers)),
+            (true, false) => Ok(Numbers::Rows(Table(rows))),
+            (false, false) => Err(D::Error::custom("numbers and rows, expected one of the two")),
+        }
+    }
+}
+
+impl Numbers {
+    /// The numbers, where there are N.
+    ///
+    /// # Errors
+    /// A refusal of `key` for rows and for another count.
+    pub fn list<const N: usize>(self, key: &str) -> Result<[f64; N], Refusal> {
+        let refused =
+            |found: String| Refusal::at(key, format!("found {found}, expected {N} numbers"));
+        match self {
+            Numbers::List(list) => {
+                list.try_into().map_err(|list: Vec<_>| refused(list.len().to_string()))
+            }
+            Numbers::Rows(_) => Err(refused("rows of numbers".into())),
+        }
+    }
+
+    /// The rows as a matrix of as many columns as rows.
+    ///
+    /// # Errors
+    /// A refusal of `key` for numbers that are no rows, and as [`Table::matrix`].
+    pub fn square(self, key: &str) -> Result<Mat<f64>, Refusal> {
+        match self {
+            Numbers::Rows(table) => table.matrix(key, None),
+            Numbers::List(list) if list.is_empty() => Table(Vec::new()).matrix(key, None),
+            Numbers::List(_) => Err(Refusal::at(key, "found numbers, expected rows of numbers")),
+        }
     }
 }
 

@@ -160,7 +160,12 @@ const BROKEN: &[(&str, &str, &str, &[&str])] = &[
         &["expected 3 numbers, found 2"],
     ),
     ("spin-pair", "start = [0.6, 0.0, 0.8]", "start = [0.6, nan, 0]", &["a finite number"]),
-    ("spin-pair", "start = [0.6, 0.0, 0.8]", "start = [[1, 2, 3]]", &["3 rows of 3 numbers"]),
+    (
+        "spin-pair",
+        "start = [0.6, 0.0, 0.8]",
+        "start = [[1, 2, 3]]",
+        &["the start of `a` is to be 3 numbers"],
+    ),
     ("spin-pair", "start = [0.6, 0.0, 0.8]", "", &["the start of `a` is to be 3 numbers"]),
     ("spin-pair", "invariants = { energy", "invariants = { a1", &["`a1`", "something else"]),
     (

@@ -30,8 +30,8 @@ const THETA: f64 = 0.264;
 /// Relative residual of a turn by π in 𝔤: rounding, times the condition of its eigenspace.
 const IN_ALGEBRA: f64 = 1e-8;
 
-/// Gauss–Legendre nodes and weights on \[0, 1\]: log(𝟙 + x) ≈ Σ w_j x (𝟙 + t_j x)⁻¹.
-const NODES: [(f64, f64); 7] = {
+/// Gauss–Legendre nodes and weights on \[0, 1\], exact to degree 13: log(𝟙 + x) ≈ Σ w_j x (𝟙 + t_j x)⁻¹.
+pub(crate) const GAUSS_LEGENDRE7: [(f64, f64); 7] = {
     let half: [(f64, f64); 3] = [
         (0.405_845_151_377_397_2, 0.381_830_050_505_118_94),
         (0.741_531_185_599_394_4, 0.279_705_391_489_276_7),
@@ -121,7 +121,7 @@ impl MatrixGroup {
 fn near_identity(x: &Mat<f64>) -> Mat<f64> {
     let n = x.nrows();
     let (mut sum, mut lu) = (Mat::zeros(n, n), Lu::new(n));
-    for (t, w) in NODES {
+    for (t, w) in GAUSS_LEGENDRE7 {
         scaled_sum(&mut lu.a, [t], [x], 1.0);
         lu.factor();
         let mut y = x.clone();

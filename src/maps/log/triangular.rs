@@ -2,7 +2,7 @@
 
 use faer::{Mat, c64};
 
-use super::{NODES, THETA};
+use super::{GAUSS_LEGENDRE7, THETA};
 use crate::dense::Schur;
 use crate::error::{Error, StepError};
 
@@ -88,7 +88,7 @@ fn pade(x: &Mat<c64>) -> Mat<c64> {
     let one = c64::new(1.0, 0.0);
     let mut sum = Mat::<c64>::zeros(n, n);
     let mut y = Mat::<c64>::zeros(n, n);
-    for (t, w) in NODES {
+    for (t, w) in GAUSS_LEGENDRE7 {
         for j in 0..n {
             for i in (0..=j).rev() {
                 let mut s = x[(i, j)];

@@ -20,7 +20,7 @@ use super::{Figure, KeyInfo, Kind, Law, ProblemSpec, QuantityInfo, Scale};
 use crate::model::Layer;
 use crate::operations::{Pace, operations_by};
 use crate::scene::formula::{Formula, Parameters, read_all};
-use crate::scene::values::NumbersOrRows;
+use crate::scene::values::{Numbers, Table};
 use crate::scene::{ReadError, Refusal, help_for};
 
 pub(super) use self::system::{OnParts, Parts};
@@ -88,7 +88,7 @@ struct Keys {
 struct PartKeys {
     name: String,
     space: String,
-    start: Option<NumbersOrRows>,
+    start: Option<Numbers>,
     field: Vec<String>,
 }
 
@@ -146,7 +146,7 @@ fn places(keys: &[PartKeys]) -> Result<(Vec<Space>, Point), Refusal> {
         let refused =
             |key: &str, message: String| Refusal::at(format!("parts[{i}].{key}"), message);
         spaces.push(match (part.space.as_str(), &part.start) {
-            ("vector", Some(NumbersOrRows::Numbers(x))) => {
+            ("vector", Some(Numbers::List(x))) => {
                 vectors.push(vector(x).map_err(|message| refused("start", message))?);
                 Space::Vector(vectors.len() - 1)
             }
@@ -154,14 +154,11 @@ fn places(keys: &[PartKeys]) -> Result<(Vec<Space>, Point), Refusal> {
                 rotations.push(Matrix3::identity());
                 Space::Rotation(rotations.len() - 1)
             }
-            ("rotation", Some(NumbersOrRows::Rows(rows))) => {
-                let g = Matrix3::from_fn(|i, j| rows[i][j]);
-                let check = So3::new().check_element("start", &g, MEMBERSHIP);
-                check.map_err(|error| refused("start", error.to_string()))?;
-                rotations.push(g);
+            ("rotation", Some(Numbers::Rows(rows))) => {
+                rotations.push(rotation(&format!("parts[{i}].start"), rows)?);
                 Space::Rotation(rotations.len() - 1)
             }
-            ("numbers", Some(NumbersOrRows::Numbers(x))) if !x.is_empty() => {
+            ("numbers", Some(Numbers::List(x))) if !x.is_empty() => {
                 numbers.extend(x);
                 Space::Numbers(numbers.len() - x.len()..numbers.len())
             }
@@ -182,6 +179,19 @@ fn places(keys: &[PartKeys]) -> Result<(Vec<Space>, Point), Refusal> {
         });
     }
     Ok((spaces, (vectors.into(), (rotations.into(), numbers.into()))))
+}
+
+/// A matrix of SO(3).
+fn rotation(key: &str, rows: &Table) -> Result<Matrix3<f64>, Refusal> {
+    let rows = rows.matrix(key, Some(3))?;
+    if rows.nrows() != 3 {
+        return Err(Refusal::at(key, format!("found {} rows, expected 3", rows.nrows())));
+    }
+    let g = Matrix3::from_fn(|i, j| rows[(i, j)]);
+    match So3::new().check_element("start", &g, MEMBERSHIP) {
+        Ok(()) => Ok(g),
+        Err(error) => Err(Refusal::at(key, error.to_string())),
+    }
 }
 
 /// A vector on a sphere.

@@ -5,10 +5,11 @@ use faer::Mat;
 use faer::linalg::solvers::DenseSolveCore;
 use lieflow::Error;
 use lieflow::actions::{Action, Coadjoint};
-use lieflow::groups::{GroupMatrix, LieAlgebra, LieGroup, MatrixGroup};
+use lieflow::groups::{GroupMatrix, LieAlgebra, MatrixGroup};
 use lieflow::problems::FromTheBody;
 
-use super::{EulerEquation, KIND, by_rows, names};
+use super::KIND;
+use super::matrices::{EulerEquation, by_rows, names};
 use crate::kinds::flow::Flow;
 use crate::kinds::system::System;
 use crate::kinds::{Figure, Kind, Law, QuantityInfo, Scale};
@@ -39,8 +40,7 @@ impl System for WithGroup {
         Layer::General
     }
     fn problem(&self) -> Result<(Self::Problem, Point), Error> {
-        let start = (self.0.group.identity(), self.0.momentum.clone());
-        Ok(Flow::nonlinear(self.0.system().with_group(), FromTheBody, start))
+        Ok(self.0.flow_with_group())
     }
     fn modelled(&self) -> String {
         format!("{} and g in {}", System::modelled(&self.0), self.0.group.name())

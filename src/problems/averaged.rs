@@ -1,0 +1,78 @@
+//! Any H with a discrete gradient: the mean of ∇H on the way from a to b.
+//!
+//! ∇̄H(a, b) = ∫₀¹ ∇H((1 − s)a + sb) ds, so that ⟨b − a, ∇̄H(a, b)⟩ = H(b) − H(a) by the fundamental theorem;
+//! symmetric, and ∇̄H(m, m) = ∇H(m). The integral is that of Gauss and Legendre with seven nodes: exact where
+//! H is a polynomial of degree at most 14, and elsewhere with the error 6.5·10⁻²⁰ H⁽¹⁵⁾|b − a|¹⁵ of the
+//! energy, which is below rounding where H is smooth on the scale of a step. No quotient by |b − a|, as
+//! Gonzalez's discrete gradient has: near an equilibrium that is rounding over rounding, and an iteration
+//! does not settle on it.
+//!
+//! Source: A. Harten, P. Lax & B. van Leer (1983); R. McLachlan, G. Quispel & N. Robidoux, Geometric
+//! integration using discrete gradients (1999); G. Quispel & D. McLaren (2008).
+
+use super::{DiscreteGradient, Hamiltonian};
+use crate::groups::Adjoint;
+use crate::maps::GAUSS_LEGENDRE7;
+use crate::scalar::Real;
+
+/// Any H by two functions: its value H(m), and its gradient at a momentum or on the way from it to another,
+/// ξ ← ∇H(a) ∈ 𝔤 or, where (b, s) is given, ξ ← ∇H((1 − s)a + sb). Methods that keep the energy keep it; a
+/// discrete gradient takes seven gradients.
+///
+/// ```
+/// use lieflow::groups::So3;
+/// use lieflow::maps::Cay;
+/// use lieflow::methods::EnergyCasimir;
+/// use lieflow::problems::{Averaged, Euler};
+/// use lieflow::{SaveAt, TimeGrid, integrate};
+/// use nalgebra::Vector3;
+/// type V = Vector3<f64>;
+///
+/// // H = Σ cosh(k_i m_i).
+/// let k = V::new(1.0, 0.6, 0.3);
+/// let energy = move |m: &V| m.component_mul(&k).map(f64::cosh).sum();
+/// let gradient = move |a: &V, way: Option<(&V, f64)>, xi: &mut V| {
+///     let m = way.map_or(*a, |(b, s)| a + (b - a) * s);
+///     *xi = k.component_mul(&m.component_mul(&k).map(f64::sinh));
+/// };
+/// let problem = Euler::new(So3::<f64>::new(), Averaged(energy, gradient));
+/// let mut m = V::new(0.3, 0.1, 1.0);
+/// let start = (problem.energy(&m), m.norm());
+/// let grid = TimeGrid::new([0.0, 100.0], 0.1)?;
+/// integrate(&problem, &EnergyCasimir::new(Cay), &grid, &SaveAt::Ends, &mut m, |_, _| {})?;
+/// assert!((problem.energy(&m) - start.0).abs() < 1e-13 && (m.norm() - start.1).abs() < 1e-13);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Averaged<H, D>(pub H, pub D);
+
+impl<G, H, D> Hamiltonian<G> for Averaged<H, D>
+where
+    G: Adjoint,
+    H: Fn(&G::Dual) -> G::Scalar,
+    D: Fn(&G::Dual, Option<(&G::Dual, G::Scalar)>, &mut G::Alg),
+{
+    fn value(&self, _: &G, m: &G::Dual) -> G::Scalar {
+        (self.0)(m)
+    }
+    #[inline]
+    fn gradient(&self, m: &G::Dual, xi: &mut G::Alg) {
+        (self.1)(m, None, xi);
+    }
+}
+
+impl<G, H, D> DiscreteGradient<G> for Averaged<H, D>
+where
+    G: Adjoint,
+    H: Fn(&G::Dual) -> G::Scalar,
+    D: Fn(&G::Dual, Option<(&G::Dual, G::Scalar)>, &mut G::Alg),
+{
+    fn between(&self, group: &G, a: &G::Dual, b: &G::Dual, xi: &mut G::Alg, scratch: &mut G::Alg) {
+        let lit = G::Scalar::lit;
+        group.set_zero(xi);
+        for (s, weight) in GAUSS_LEGENDRE7 {
+            (self.1)(a, Some((b, lit(s))), scratch);
+            group.axpy(lit(weight), scratch, xi);
+        }
+    }
+}
