@@ -4,6 +4,7 @@
 
 mod algebra;
 mod beam_line;
+mod composed;
 mod driven_body;
 mod euler;
 mod flow;
@@ -67,6 +68,7 @@ pub const KINDS: &[Kind] = &[
     lorentz::KIND,
     schrodinger::KIND,
     lyapunov::KIND,
+    composed::KIND,
 ];
 
 /// A kind of problem.

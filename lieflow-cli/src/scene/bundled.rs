@@ -58,6 +58,9 @@ pub const BUNDLED: &[Bundled] = bundled![
     "rabi",
     "three-level-transfer",
     "lorenz",
+    "spin-and-oscillator",
+    "gyrostat",
+    "spin-pair",
 ];
 
 impl Bundled {
