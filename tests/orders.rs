@@ -1,6 +1,6 @@
 //! Measured orders: the methods of the catalog that ask for a field, or for one of linear type, on
 //! problems that do not commute, depend on time and depend on the state. By the same harness: products
-//! and SE(3) in `orders_products.rs`, orders from 8 on on SO(3) in `orders_wide.rs`, methods that ask for
+//! and SE(3) in `orders_products.rs`, orders from 8 on in `orders_wide.rs`, methods that ask for
 //! more in `orders_special.rs`.
 //! `cargo test --test orders -- --nocapture` prints the table.
 
@@ -19,7 +19,7 @@ use support::orders::{
 
 orders! {
     every_method_on:
-    translation_on_so3_closed: below_8, So3::new(), LeftTranslation, waves(3, 0.5, 11);
+    translation_on_so3_closed: many, So3::new(), LeftTranslation, waves(3, 0.5, 11);
     translation_on_so5: many, MatrixGroup::so(5).unwrap(), LeftTranslation, waves(5, 0.5, 11);
     translation_on_gl3: many, MatrixGroup::gl(3).unwrap(), LeftTranslation, waves(3, 0.2, 12);
     translation_on_sp4: many, MatrixGroup::sp(4).unwrap(), LeftTranslation, waves(4, 0.25, 12);
@@ -38,7 +38,7 @@ orders! {
 
 orders! {
     every_linear_method_on:
-    linear_on_so3_closed: below_8, So3::new(), LeftTranslation, clocks(3, 1.5);
+    linear_on_so3_closed: many, So3::new(), LeftTranslation, clocks(3, 1.5);
     linear_on_so5: many, MatrixGroup::so(5).unwrap(), LeftTranslation, clocks(5, 1.0);
     linear_on_gl3: many, MatrixGroup::gl(3).unwrap(), LeftTranslation, clocks(3, 0.7);
     linear_on_sp4: many, MatrixGroup::sp(4).unwrap(), LeftTranslation, clocks(4, 0.7);

@@ -1,5 +1,5 @@
 //! Measured orders on products of groups and on SE(3): every method of the catalog for fields, on fields
-//! that couple the parts. The harness is that of `orders.rs`; order 8 is measured on SE(3).
+//! that couple the parts. The harness is that of `orders.rs`.
 
 mod support;
 
@@ -18,8 +18,8 @@ fn power() -> Power<So3> {
 
 orders! {
     every_method_on:
-    translation_on_a_product: below_8, product(), LeftTranslation, waves(7, 0.25, 11);
-    translation_on_a_power: below_8, power(), LeftTranslation, waves(6, 0.25, 13);
+    translation_on_a_product: many, product(), LeftTranslation, waves(7, 0.25, 11);
+    translation_on_a_power: many, power(), LeftTranslation, waves(6, 0.25, 13);
     translation_on_se3: many, Se3::new(), LeftTranslation, waves(4, 0.5, 23);
 }
 

@@ -30,14 +30,13 @@ fn momentum(i: u64) -> Vector3<f64> {
     Vector3::new(entry(), entry(), -entry()).normalize() * 2.0
 }
 
-/// Orders from 8 on are in `orders_wide.rs`.
 fn ensemble<P: Ambient>(make: impl Fn(Vector3<f64>) -> (P, PointOf<P>)) -> Problems<P>
 where
     P::Group: Represent,
     P::Action: Points<P::Group>,
     Cay: CoordinateMap<P::Group>,
 {
-    Problems::below_8(|i| make(momentum(i)))
+    Problems::many(|i| make(momentum(i)))
 }
 
 fn attitude(title: &str, needs: &[Needs]) {
@@ -78,11 +77,8 @@ fn quadratic_systems(title: &str, needs: &[Needs]) {
                 (systems::quadratic(group.clone()), m * Scale(length))
             }
         };
-        // Where the group is not compact the motion runs away: orders from 8 on there are not measured.
-        let problems = match name.as_str() {
-            "SO(5)" => Problems::of(make(3.0), make(7.0)),
-            _ => Problems::below_8(make(0.7)),
-        };
+        // Where the group is not compact the motion runs away.
+        let problems = Problems::many(make(if name == "SO(5)" { 3.0 } else { 0.7 }));
         let measured = |spec: &MethodSpec| with_lie_poisson_method(spec, Measure(&problems, true));
         Report::of(&format!("{title}, {name}"), &name, needs, measured);
     }

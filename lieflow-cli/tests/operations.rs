@@ -86,6 +86,15 @@ fn classical_steps_on_vectors_take_what_their_fields_take() {
             "axis",
             rk4(15 + 3 + 3 * cross, 12),
         ),
+        // Two spins as parts: a sum and a product in each field. One more number, and its product with t.
+        (
+            "kind = \"composed\"\nparameters = { K = 0.5 }\nparts = [{ name = \"a\", space = \"vector\", start \
+             = [1, 0, 0], field = [\"b1\", \"b2\", \"b3 + K*a3\"] }, { name = \"b\", space = \"vector\", start = \
+             [0, 0, 1], field = [\"a1\", \"a2\", \"a3 + K*b3\"] }, { name = \"x\", space = \"numbers\", start \
+             = [1], field = [\"t*x\"] }]",
+            "state",
+            rk4(2 * (2 + cross) + 1, 7),
+        ),
         // With damping: −c·ω, turned, and added to no torque.
         (
             "kind = \"driven-body\"\ninertia = [1.0, 2.0, 3.0]\nomega_body = [1.0, 0.2, 0.0]\n\

@@ -25,10 +25,11 @@ use crate::error::{Error, StepError};
 use crate::groups::{
     AlgebraMatrix, GroupMatrix, LieAlgebra, LieGroup, MatrixGroup, RESIDUAL_MAX, So3, hat,
 };
-use crate::problems::{AlgOf, ElemOf, PointOf, TaylorField};
+use crate::problems::{AlgOf, ElemOf, PointOf, ScalarOf, TaylorField};
+use crate::scalar::Real;
 
 /// A group whose elements lie in a linear space, where the product with an element of 𝔤 is known.
-pub trait SeriesGroup: LieGroup<Scalar = f64> {
+pub trait SeriesGroup: LieGroup {
     /// x ← 0.
     fn clear(&self, x: &mut Self::Elem);
     /// y ← y + x.
@@ -36,14 +37,14 @@ pub trait SeriesGroup: LieGroup<Scalar = f64> {
     /// out ← out + a·u·x, or a·x·u from the right.
     fn add_product(
         &self,
-        a: f64,
+        a: Self::Scalar,
         u: &Self::Alg,
         x: &Self::Elem,
         from_right: bool,
         out: &mut Self::Elem,
     );
     /// ‖x‖.
-    fn size(&self, x: &Self::Elem) -> f64;
+    fn size(&self, x: &Self::Elem) -> Self::Scalar;
 }
 
 impl SeriesGroup for So3 {
@@ -133,7 +134,7 @@ impl LieSeries {
     fn flow<P: TaylorField>(
         &self,
         problem: &P,
-        Step { t, h, .. }: Step<f64>,
+        Step { t, h, .. }: Step<ScalarOf<P>>,
         y: &PointOf<P>,
         LieSeriesWork { f, psi, g, scratch, series, .. }: &mut LieSeriesWork<P>,
     ) -> Result<(), StepError>
@@ -150,7 +151,7 @@ impl LieSeries {
                 });
             }
             let (known, rest) = psi.split_at_mut(k + 1);
-            let scale = h / (k + 1) as f64;
+            let scale = h / ScalarOf::<P>::lit((k + 1) as f64);
             group.clear(&mut rest[0]);
             for (f, psi) in f[..=k].iter().rev().zip(&*known) {
                 group.add_product(scale, f, psi, P::MOVING, &mut rest[0]);
@@ -162,7 +163,7 @@ impl LieSeries {
         if !group.size(g).is_finite() {
             return Err(StepError::NotFinite { what: "the Taylor series" });
         }
-        if residual >= RESIDUAL_MAX {
+        if !residual.all_below(RESIDUAL_MAX) {
             return Err(StepError::OutsideChart {
                 map: "Lie series",
                 what: "its terms have not become small",
@@ -211,7 +212,7 @@ where
     fn step(
         &self,
         problem: &P,
-        step: Step<f64>,
+        step: Step<ScalarOf<P>>,
         p: &mut PointOf<P>,
         w: &mut Self::Work,
     ) -> Result<(), StepError> {
@@ -226,6 +227,7 @@ where
 impl<P: TaylorField> Embedded<P> for LieSeries
 where
     P::Group: SeriesGroup,
+    ScalarOf<P>: Into<f64>,
 {
     fn error_order(&self, _: &P) -> Result<usize, Error> {
         Ok(self.order - 1)
@@ -236,18 +238,19 @@ where
     fn step_with_error(
         &self,
         problem: &P,
-        step: Step<f64>,
+        step: Step<ScalarOf<P>>,
         from: &PointOf<P>,
         w: &mut Self::Work,
         to: &mut PointOf<P>,
-    ) -> Result<LocalError<f64>, StepError> {
+    ) -> Result<LocalError<ScalarOf<P>>, StepError> {
         self.flow(problem, step, from, w)?;
         let group = problem.group();
         problem.action().act(group, &w.g, from, to, &mut w.act);
-        let sizes = [self.order - 1, self.order].map(|k| group.size(&w.psi[k]));
+        let [before, last] =
+            [self.order - 1, self.order].map(|k| Into::<f64>::into(group.size(&w.psi[k])));
         let n = self.order as f64;
         // One of the last two may vanish where the solution is even or odd.
-        let error = sizes[1].max(sizes[0].powf(n / (n - 1.0)));
+        let error = Real::lit(last.max(before.powf(n / (n - 1.0))));
         Ok(LocalError { error, length: step.h.abs() * group.norm(&w.f[0]) })
     }
 }

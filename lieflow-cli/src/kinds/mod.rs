@@ -4,6 +4,7 @@
 
 mod algebra;
 mod beam_line;
+mod composed;
 mod driven_body;
 mod euler;
 mod flow;
@@ -69,6 +70,7 @@ pub const KINDS: &[Kind] = &[
     schrodinger::KIND,
     matrix_ode::KIND,
     lyapunov::KIND,
+    composed::KIND,
 ];
 
 /// A kind of problem.

@@ -59,6 +59,9 @@ pub const BUNDLED: &[Bundled] = bundled![
     "three-level-transfer",
     "rotating-drive",
     "lorenz",
+    "spin-and-oscillator",
+    "gyrostat",
+    "spin-pair",
 ];
 
 impl Bundled {

@@ -41,9 +41,14 @@ pub struct TruncatedExp {
 }
 
 impl TruncatedExp {
+    /// q.
+    pub const fn q(self) -> usize {
+        self.q
+    }
+
     /// The highest order of a method that keeps it with the series cut at q: q + 2, and one more
     /// for even q ≥ 2, because the next coefficient is zero.
-    fn order_kept(self) -> usize {
+    pub const fn order_kept(self) -> usize {
         if self.q >= 2 && self.q.is_multiple_of(2) { self.q + 3 } else { self.q + 2 }
     }
 }

@@ -52,7 +52,7 @@ where
 }
 
 /// One test a problem, from its group, its action and its field; `one` of them, or `many` with the
-/// number of each in the seeds; `below_8` where `orders_wide.rs` has orders from 8 on.
+/// number of each in the seeds.
 #[macro_export]
 macro_rules! orders {
     ($every:ident: $($name:ident: $count:ident, $group:expr, $action:expr, $field:expr;)*) => {$(

@@ -10,13 +10,11 @@ use lieflow::problems::Problem;
 use super::super::points::Points;
 use super::super::represent::Represent;
 use super::super::scale;
-use super::estimate::{Estimate, SLOPES, pairwise, tolerances};
+use super::estimate::{Estimate, SLOPES, pairwise};
 use super::flow::{Reference, run};
 
-/// So many problems that differ in their coefficients and in where they start, for orders below 8.
+/// So many problems that differ in their coefficients and in where they start.
 pub(crate) const MEMBERS: u64 = 8;
-/// And for order 8 and more, over a span of this length.
-pub(crate) const LONG: (u64, f64) = (24, 2.0);
 
 /// Numbers of steps from 4 on, fixed here once for every method and problem: ratios from 1.14 to 1.25,
 /// and with each number its double.
@@ -28,11 +26,8 @@ const HALF: usize = 4;
 
 /// Errors above this are not asymptotic.
 const CEILING: f64 = 1e-3;
-/// Down to here they are looked at.
-const FLOOR: f64 = 1e-12;
-/// Order 8 goes from 1e-3 to 1e-12 within a factor of 13 in h, of which the last one counts. It is
-/// followed down to here, and so are differences of errors: rounding is some 5e-15.
-const LOW_FLOOR: f64 = 1e-13;
+/// Down to here they are looked at, and differences of errors to there: rounding is some 5e-15.
+const FLOORS: [f64; 2] = [1e-12, 1e-13];
 
 /// The relative error of a member, in numbers, at the end of a run with so many steps.
 pub(crate) type Run<'a> = &'a dyn Fn(usize, u64) -> Result<Mat<f64>, String>;
@@ -95,13 +90,11 @@ pub(crate) fn order_over(
     order: usize,
     members: usize,
     [floor, low]: [f64; 2],
-    tolerances: [f64; 2],
     run: Run,
 ) -> Result<Estimate, String> {
     let mut errors = Errors { members, run, steps: Vec::new(), errors: Vec::new() };
     errors.follow(floor)?;
-    let plain =
-        errors.estimate(order, floor, errors.errors.iter().map(|e| mean(e))).within(tolerances);
+    let plain = errors.estimate(order, floor, errors.errors.iter().map(|e| mean(e)));
     if plain.check().is_ok() {
         return Ok(plain);
     }
@@ -113,12 +106,46 @@ pub(crate) fn order_over(
             let pairs = fine.iter().zip(coarse);
             mean(&pairs.map(|(fine, coarse)| fine - scale(weight, coarse)).collect::<Vec<_>>())
         });
-        let two = errors.estimate(order, low, differences).within(tolerances);
+        let two = errors.estimate(order, low, differences);
         if two.check().is_ok() {
             return Ok(two.of_two_terms());
         }
     }
     Ok(plain)
+}
+
+/// The relative error of a method on one of an ensemble.
+fn error<P: Problem, M: Method<P>>(
+    (problem, reference): &(P, Reference<P>),
+    method: &M,
+    steps: u64,
+) -> Result<Mat<f64>, String>
+where
+    P::Group: Represent,
+    P::Action: Points<P::Group>,
+{
+    let end = reference.end();
+    Ok(scale(1.0 / end.norm_l2(), &(run(problem, method, steps, reference)? - end)))
+}
+
+/// The largest relative error of a method over an ensemble.
+///
+/// # Errors
+/// A run that failed.
+pub(crate) fn largest_error<P: Problem, M: Method<P>>(
+    members: &[(P, Reference<P>)],
+    method: &M,
+    steps: u64,
+) -> Result<f64, String>
+where
+    P::Group: Represent,
+    P::Action: Points<P::Group>,
+{
+    members.iter().try_fold(0.0, |largest: f64, member| {
+        let error = error(member, method, steps)?.norm_l2();
+        // max() would pass over what is not a number.
+        Ok(if largest.is_nan() || error <= largest { largest } else { error })
+    })
 }
 
 /// The order that a method shows over an ensemble.
@@ -134,11 +161,5 @@ where
     P::Action: Points<P::Group>,
 {
     let order = method.order(&members[0].0);
-    let error = |i: usize, n| {
-        let (problem, reference) = &members[i];
-        let end = reference.end();
-        Ok(scale(1.0 / end.norm_l2(), &(run(problem, method, n, reference)? - end)))
-    };
-    let floor = if order < 8 { FLOOR } else { LOW_FLOOR };
-    order_over(order, members.len(), [floor, LOW_FLOOR], tolerances(order), &error)
+    order_over(order, members.len(), FLOORS, &|i, n| error(&members[i], method, n))
 }

@@ -1,18 +1,8 @@
 //! Order from errors on a grid fixed in advance.
 
-/// The mean of the slopes, and each of them, may differ from the order by so much.
-pub(crate) const STRICT: [f64; 2] = [0.15, 0.15];
+/// Each slope may differ from the order by so much.
+const TOLERANCE: f64 = 0.15;
 
-/// The same in `f64`, where rounding is near from order 8 on: three slopes stand on the last factor of 2
-/// in h; and from 12 on the whole way from 1e-3 to rounding is a factor of 4 to 6.
-pub(crate) fn tolerances(order: usize) -> [f64; 2] {
-    match order {
-        0..8 => STRICT,
-        8..10 => [0.15, 0.25],
-        10..12 => [0.25, 0.4],
-        _ => [0.35, 1.0],
-    }
-}
 /// Errors outside this window are not asymptotic yet, or rounding already.
 const WINDOW: core::ops::Range<f64> = 1e-11..1e-3;
 /// So many slopes are required, the last ones in the window.
@@ -39,20 +29,14 @@ pub(crate) struct Estimate {
     pub(crate) claimed: usize,
     /// Was the second term of the error taken out?
     pub(crate) two_terms: bool,
-    /// What the mean of the slopes, and each of them, may differ from the order by.
-    tolerances: [f64; 2],
 }
 
 impl Estimate {
     pub(super) fn new(claimed: usize, slopes: Vec<f64>) -> Self {
-        Estimate { slopes, claimed, two_terms: false, tolerances: STRICT }
+        Estimate { slopes, claimed, two_terms: false }
     }
     pub(super) fn of_two_terms(self) -> Self {
         Estimate { two_terms: true, ..self }
-    }
-
-    pub(super) fn within(self, tolerances: [f64; 2]) -> Self {
-        Estimate { tolerances, ..self }
     }
 
     /// The last slope.
@@ -60,16 +44,13 @@ impl Estimate {
         self.slopes.last().copied().unwrap_or(f64::NAN)
     }
 
-    /// The last slopes lie by the claimed order, within its tolerances.
+    /// Each of the last slopes lies within [`TOLERANCE`] of the claimed order.
     ///
     /// # Errors
     /// The slopes, when one does not.
     pub(crate) fn check(&self) -> super::super::Verdict {
-        let off = |s: f64| (s - self.claimed as f64).abs();
-        let mean = self.slopes.iter().sum::<f64>() / self.slopes.len() as f64;
-        let [of_the_mean, each] = self.tolerances;
-        let near = off(mean) <= of_the_mean && self.slopes.iter().all(|&s| off(s) <= each);
-        match self.slopes.len() >= SLOPES && near {
+        let near = |s: &f64| (s - self.claimed as f64).abs() <= TOLERANCE;
+        match self.slopes.len() >= SLOPES && self.slopes.iter().all(near) {
             true => Ok(()),
             false => Err(format!("order {} claimed, slopes {:.2?}", self.claimed, self.slopes)),
         }

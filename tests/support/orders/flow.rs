@@ -214,22 +214,6 @@ where
     reference
 }
 
-/// The relative error of one step over the whole span.
-///
-/// # Errors
-/// A step that failed.
-pub(crate) fn distance_in_one_step<P: Problem, M: Method<P>>(
-    problem: &P,
-    method: &M,
-    reference: &Reference<P>,
-) -> Result<f64, String>
-where
-    P::Group: Represent,
-    P::Action: Points<P::Group>,
-{
-    Ok(gap(&run(problem, method, 1, reference)?, &reference.end) / reference.end.norm_l2())
-}
-
 /// The order that `method` shows on `problem`, against the one that it claims.
 ///
 /// # Errors

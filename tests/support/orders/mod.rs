@@ -11,8 +11,8 @@ mod tree;
 pub(crate) use by_name::{
     clocks, every_explicit_method_on, every_linear_method_on, every_method_on, waves,
 };
-pub(crate) use ensemble::{LONG, MEMBERS, Run, measure_over, order_over};
-pub(crate) use estimate::{Estimate, STRICT, estimate, grid, slopes};
+pub(crate) use ensemble::{MEMBERS, Run, measure_over, order_over};
+pub(crate) use estimate::{Estimate, estimate, grid, slopes};
 pub(crate) use flow::{
     Field, Flow, Reference, clock, family, inertia, measure, measure_as, reference,
     reference_after, wave,
