@@ -159,18 +159,18 @@ pub struct Stats {
     /// Shorter steps taken to output times between grid points.
     pub side_steps: u64,
     /// How often the state was looked at, and taken back to M where it had left it
-    /// ([`Action::restore`]).
+    /// ([`Action::restore_to`]).
     pub restored: u64,
     /// How often it was left where it was, because it was too far off
     /// ([`RESIDUAL_MAX`](crate::groups::RESIDUAL_MAX)).
     pub not_restored: u64,
-    /// A power of two above every residual that was seen there, ‖M⁻¹gᵀMg − 𝟙‖ on a group; 0 when
-    /// none was. On a compact group it stays near 1e-14. On a non-compact one rounding level is
+    /// A power of two above every residual that was seen there, ‖M⁻¹gᵀMg − 𝟙‖ on a group,
+    /// ||x|²/|x₀|² − 1| of a vector under SO(3); 0 when none was. On a compact group it stays near 1e-14. On a non-compact one rounding level is
     /// ε‖g‖²: compare with that.
     pub residual: f64,
 }
 
-/// The driver calls [`Action::restore`] after every so many steps at most: rounding takes g off its
+/// The driver calls [`Action::restore_to`] after every so many steps at most: rounding takes g off its
 /// group by some ε a step, and a hundred steps stay below 2e-14 at a hundredth of the cost of one.
 pub const RESTORE_EVERY: u64 = 100;
 /// It begins with this many steps in between, and never has fewer.
@@ -217,23 +217,26 @@ impl Stats {
 #[allow(missing_debug_implementations)] // the parts belong to the problem's types
 pub(crate) struct Mender<P: Problem> {
     work: <P::Action as Action<P::Group>>::Work,
+    /// The start of the run: its orbit is where the state is taken back to.
+    from: PointOf<P>,
     cadence: Cadence,
 }
 
 impl<P: Problem> Mender<P> {
     /// For a method that stays on M, or does not: that one is left as it is.
-    pub(crate) fn new(problem: &P, stays_on_manifold: bool) -> Self {
+    pub(crate) fn new(problem: &P, from: &PointOf<P>, stays_on_manifold: bool) -> Self {
         let mut cadence = Cadence::new();
         if !stays_on_manifold {
             cadence.next = u64::MAX;
         }
-        Mender { work: problem.action().work(problem.group()), cadence }
+        Mender { work: problem.action().work(problem.group()), from: from.clone(), cadence }
     }
     /// After so many steps: is it time to look at y?
     #[inline]
     pub(crate) fn after(&mut self, steps: u64, problem: &P, y: &mut PointOf<P>, stats: &mut Stats) {
         if steps == self.cadence.next {
-            match problem.action().restore(problem.group(), y, &mut self.work) {
+            let (action, group) = (problem.action(), problem.group());
+            match action.restore_to(group, &self.from, y, &mut self.work) {
                 Some(residual) => {
                     stats.saw(residual);
                     self.cadence.saw(residual);
@@ -268,8 +271,8 @@ pub enum RunError {
 /// `save` says. On return y is the state at the end, or the last accepted one.
 ///
 /// Every [`RESTORE_EVERY`] steps, or sooner where it drifts faster, a method that stays on M has its
-/// state taken back to M ([`Action::restore`]): without it rounding carries g off its group by some
-/// ε a step.
+/// state taken back to M and to the orbit that it started on ([`Action::restore_to`]): without it
+/// rounding carries g off its group, and a vector off its sphere, by some ε a step.
 ///
 /// Memory is allocated before the first step only.
 ///
@@ -303,7 +306,7 @@ pub fn integrate<P: Problem, Me: Method<P>>(
     problem.action().check(problem.group(), y)?;
     let mut work = method.work(problem, y)?;
     let mut aside = y.clone();
-    let mut mender = Mender::new(problem, method.stays_on_manifold());
+    let mut mender = Mender::new(problem, y, method.stays_on_manifold());
     if grid.steps() > 0 {
         check_field(problem, grid.t_span()[0], y)?;
     }

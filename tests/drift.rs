@@ -1,20 +1,23 @@
 //! Rounding must not carry g off its group: long runs stay within 2e-14 at every step.
 
+#[path = "support/uncorrected.rs"]
+mod uncorrected;
+
 use faer::Mat;
 use lieflow::actions::LeftTranslation;
-use lieflow::error::StepError;
 use lieflow::groups::{GroupMatrix, MatrixGroup, Sample, So3, Unitary};
 use lieflow::maps::Exp;
 use lieflow::methods::tableau::{EULER, RK4, Tableau};
 use lieflow::methods::{Rk, Rkmk};
-use lieflow::problems::{PointOf, RigidBodyAttitude, RigidBodyN, ScalarOf};
+use lieflow::problems::{RigidBodyAttitude, RigidBodyN};
 use lieflow::{
-    Action, CoordinateMap, Error, LieAlgebra, LieGroup, Method, Problem, RESTORE_EVERY, SaveAt,
-    Stats, Step, TimeGrid, integrate,
+    Action, CoordinateMap, LieAlgebra, LieGroup, Method, Problem, RESTORE_EVERY, SaveAt, Stats,
+    TimeGrid, integrate,
 };
 use nalgebra::{Matrix3, Vector3};
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
+use uncorrected::{Uncorrected, cpu_seconds};
 
 /// ġ = u·g with a constant u, the worst case: each step errs the same way.
 struct Constant<G: LieGroup> {
@@ -39,37 +42,6 @@ where
     fn f(&self, _: G::Scalar, _: &G::Elem, v: &mut G::Alg, _: &mut ()) {
         v.clone_from(&self.u);
     }
-}
-
-/// A method whose state the driver leaves alone.
-struct Uncorrected<M>(M);
-
-impl<P: Problem, M: Method<P>> Method<P> for Uncorrected<M> {
-    type Work = M::Work;
-    fn order(&self, problem: &P) -> usize {
-        self.0.order(problem)
-    }
-    fn stays_on_manifold(&self) -> bool {
-        false
-    }
-    fn work(&self, problem: &P, like: &PointOf<P>) -> Result<M::Work, Error> {
-        self.0.work(problem, like)
-    }
-    fn step(
-        &self,
-        problem: &P,
-        step: Step<ScalarOf<P>>,
-        y: &mut PointOf<P>,
-        work: &mut M::Work,
-    ) -> Result<(), StepError> {
-        self.0.step(problem, step, y, work)
-    }
-}
-
-/// CPU time of this thread where the system tells (Linux), else 0.
-fn cpu_seconds() -> f64 {
-    let text = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
-    text.split(' ').next().and_then(|x| x.parse::<f64>().ok()).unwrap_or(0.0) * 1e-9
 }
 
 /// What a run found.

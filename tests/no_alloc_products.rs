@@ -5,7 +5,9 @@ mod counting;
 
 use faer::{Mat, mat};
 use lieflow::actions::{Coadjoint, Conjugation, Each, Lagrangian, LeftTranslation, Linear, Pair};
-use lieflow::groups::{AlgebraMatrix, LieGroup, MatrixGroup, Power, Product, Sample, Se3, So3};
+use lieflow::groups::{
+    AlgebraMatrix, LieGroup, MatrixGroup, Power, Product, Sample, Se3, So3, Translations,
+};
 use lieflow::maps::{CCSK, Cay, Ccsk, Exp, Pade22};
 use lieflow::methods::{CommutatorFree, Rkmk, commutator_free::CF4, tableau::RK4};
 use lieflow::problems::{
@@ -20,19 +22,19 @@ use rand_pcg::Pcg64;
 fn steps_allocate<P: Problem, M: Method<P>>(
     problem: &P,
     method: &M,
-    y: &<P::Action as Action<P::Group>>::Point,
+    start: &<P::Action as Action<P::Group>>::Point,
 ) -> usize
 where
     P::Group: LieAlgebra<Scalar = f64>,
 {
-    let (mut y, before) = (y.clone(), counting::total());
+    let (mut y, before) = (start.clone(), counting::total());
     let mut work = method.work(problem, &y).expect("the method fits");
     let mut mend = problem.action().work(problem.group());
     assert!(counting::total() > before || size_of_val(&work) > 0, "the counter does not count");
     let before = counting::total();
     for n in 0..10 {
         method.step(problem, Step { n, t: 0.0, h: 0.05 }, &mut y, &mut work).expect("a step");
-        problem.action().restore(problem.group(), &mut y, &mut mend);
+        problem.action().restore_to(problem.group(), start, &mut y, &mut mend);
     }
     counting::total() - before
 }
@@ -77,6 +79,29 @@ fn products_powers_and_motions() {
     let motions = Se3::<f64>::new();
     check(&motions, LeftTranslation, motions.identity());
     check(&motions, Coadjoint, motions.sample_algebra(&mut rng, 1.0));
+}
+
+/// Vectors, rotations and numbers, as many as there are of each.
+#[test]
+fn unlike_parts() {
+    type Many = Box<[Vector3<f64>]>;
+    let so3 = So3::<f64>::new();
+    let powers = [Power::none(so3), Power::new(so3, 3).expect("a power")];
+    for (vectors, rotations, numbers) in [(1, 1, 5), (1, 0, 0), (0, 1, 2), (0, 0, 1)] {
+        let (vectors, rotations) = (powers[vectors], powers[rotations]);
+        let zero: Box<[f64]> = vec![0.0; numbers].into();
+        let start =
+            (vectors.sample_vector(&mut Pcg64::seed_from_u64(4)), (rotations.identity(), zero));
+        let translations = Translations::new(start.1.1.clone(), numbers);
+        let group = Product(vectors, Product(rotations, translations));
+        let field = |t: f64, v: &mut (Many, (Many, Box<[f64]>))| {
+            v.0.iter_mut().chain(&mut *v.1.0).for_each(|v| *v = Vector3::new(t, 1.0, -0.5));
+            v.1.1.fill(1.0);
+        };
+        let problem = LinearEquation::new(group, Pair(Linear, LeftTranslation), field);
+        assert_eq!(steps_allocate(&problem, &Rkmk::new(RK4, Exp), &start), 0);
+        assert_eq!(steps_allocate(&problem, &CommutatorFree(CF4), &start), 0);
+    }
 }
 
 #[test]

@@ -4,7 +4,7 @@ mod support;
 
 use lieflow::actions::{Coadjoint, Each, LeftTranslation, Linear, Pair};
 use lieflow::catalog::{CatalogGroup, MethodSpec, OnMethod, with_method};
-use lieflow::groups::{Adjoint, LieGroup, MatrixGroup, Power, Product, Sample, So3};
+use lieflow::groups::{Adjoint, LieGroup, MatrixGroup, Power, Product, Sample, So3, Translations};
 use lieflow::maps::{self, CCSK123, CCSK321, Cay, CoordinateMap, Exp};
 use lieflow::methods::magnus::{CayleyMagnus4, Magnus4, TripleProduct};
 use lieflow::methods::{Method, Rkmk, tableau::RK4};
@@ -107,6 +107,40 @@ fn parts_are_the_groups_alone() {
     for (u, g) in u.iter().zip(&g) {
         assert_eq!(*g, eval(&Exp, &so3, u));
     }
+}
+
+/// G⁰ and T(0) as parts change nothing; numbers and pairs of them are translations as vectors are.
+#[test]
+fn a_part_may_be_empty() {
+    let mut rng = Pcg64::seed_from_u64(7);
+    let so3 = So3::<f64>::new();
+    let nothing: Box<[f64]> = [].into();
+    let group = Product(so3, Product(Power::none(so3), Translations::new(nothing, 0)));
+    assert_eq!((group.dim(), group.name().as_str()), (3, "SO(3) × SO(3)^0 × T(0)"));
+    let [u, v] = [(); 2].map(|()| {
+        let mut u = group.zero();
+        u.0 = so3.sample_algebra(&mut rng, 1.0);
+        u
+    });
+    macro_rules! is_alone {
+        ($psi:expr) => {
+            let (g, w) =
+                ($psi.eval(&group, &u).unwrap(), $psi.eval_dpsi_inv(&group, &u, &v).unwrap());
+            assert_eq!((g.0, g.1.0.len(), g.1.1.len()), (eval(&$psi, &so3, &u.0), 0, 0));
+            assert_eq!(w.0, $psi.eval_dpsi_inv(&so3, &u.0, &v.0).unwrap());
+        };
+    }
+    is_alone!(Exp);
+    is_alone!(Cay);
+    assert_eq!(group.norm(&u), so3.norm(&u.0));
+
+    let pairs = Translations::new((0.0, Box::from([0.0])), 2);
+    let g = eval(&Cay, &pairs, &(1.0, Box::from([2.0])));
+    let mut y = pairs.identity();
+    pairs.apply(&g, &(0.5, Box::from([0.25])), &mut y);
+    assert_eq!(y, (1.5, Box::from([2.25])));
+    assert_eq!(pairs.norm(&(3.0, Box::from([-4.0]))), 5.0);
+    assert!(!pairs.is_finite(&(1.0, Box::from([f64::NAN]))));
 }
 
 fn name<G: LieGroup, Psi: CoordinateMap<G>>(psi: &Psi, _: &G) -> &'static str {

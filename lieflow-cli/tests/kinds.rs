@@ -2,6 +2,8 @@
 
 mod support;
 
+#[path = "kinds/composed.rs"]
+mod composed;
 #[path = "kinds/formulas.rs"]
 mod formulas;
 #[path = "kinds/known.rs"]

@@ -86,6 +86,15 @@ fn classical_steps_on_vectors_take_what_their_fields_take() {
             "axis",
             rk4(15 + 3 + 3 * cross, 12),
         ),
+        // Two spins as parts: a sum and a product in each field. One more number, and its product with t.
+        (
+            "kind = \"composed\"\nparameters = { K = 0.5 }\nparts = [{ name = \"a\", space = \"vector\", start \
+             = [1, 0, 0], field = [\"b1\", \"b2\", \"b3 + K*a3\"] }, { name = \"b\", space = \"vector\", start = \
+             [0, 0, 1], field = [\"a1\", \"a2\", \"a3 + K*b3\"] }, { name = \"x\", space = \"numbers\", start \
+             = [1], field = [\"t*x\"] }]",
+            "state",
+            rk4(2 * (2 + cross) + 1, 7),
+        ),
         // With damping: −c·ω, turned, and added to no torque.
         (
             "kind = \"driven-body\"\ninertia = [1.0, 2.0, 3.0]\nomega_body = [1.0, 0.2, 0.0]\n\
@@ -121,4 +130,9 @@ fn classical_steps_on_matrices_take_what_their_products_take() {
     let mathieu = scene("kind = \"mathieu\"\na = 1.0\nq = 0.2", "solution");
     let found = a_step(&mathieu, &MethodSpec::new("rk4", None), Size::Steps(3));
     assert_eq!(found, Some(expected));
+    // The same as formulas: 2t, its cosine, a product and a difference, and three means of the projection.
+    let own = "kind = \"matrix-ode\"\ngroup = \"sp\"\n\
+               field = [[\"0\", \"1\"], [\"-(1 - 0.4*cos(2*t))\", \"0\"]]";
+    let found = a_step(&scene(own, "point"), &MethodSpec::new("rk4", None), Size::Steps(3));
+    assert_eq!(found, Some(4 * (4 + 6 + product) + 7 * 2 * numbers));
 }

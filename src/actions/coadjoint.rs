@@ -17,7 +17,10 @@ use super::Action;
 use crate::chart::PsiOf;
 use crate::dense::{Lu, congruence, mul};
 use crate::error::{Error, StepError};
-use crate::groups::{Form, GroupMatrix, LieGroup, MatrixGroup, Se3, So3, add3, cross};
+use crate::groups::{
+    Form, GroupMatrix, LieAlgebra, LieGroup, MatrixGroup, RESIDUAL_MAX, Se3, So3, add3, cross,
+    dot3, in_range, worse,
+};
 use crate::maps::CoordinateMap;
 use crate::scalar::Real;
 
@@ -44,6 +47,16 @@ impl<S: Real> Action<So3<S>> for Coadjoint {
     ) -> Result<(), StepError> {
         psi_u.on(p, q)
     }
+    #[inline]
+    fn restore_to(
+        &self,
+        group: &So3<S>,
+        from: &Vector3<S>,
+        p: &mut Vector3<S>,
+        _: &mut (),
+    ) -> Option<S> {
+        group.correct_vector(from, p)
+    }
 }
 
 impl<S: Real> Action<Se3<S>> for Coadjoint {
@@ -63,6 +76,27 @@ impl<S: Real> Action<Se3<S>> for Coadjoint {
         So3::new().apply(r, mu, &mut q.0);
         So3::new().apply(r, pi, &mut q.1);
         q.0 = add3(&q.0, &cross(x, &q.1));
+    }
+    /// The orbit is that of |π| and μ·π: π as a vector, then μ along π.
+    fn restore_to(
+        &self,
+        _: &Se3<S>,
+        from: &Self::Point,
+        p: &mut Self::Point,
+        _: &mut (),
+    ) -> Option<S> {
+        let so3 = So3::new();
+        let found = so3.correct_vector(&from.1, &mut p.1);
+        let (pi2, size2) = (dot3(&p.1, &p.1), dot3(&p.0, &p.0) * dot3(&p.1, &p.1));
+        if !in_range(pi2) || !in_range(size2) {
+            return found;
+        }
+        let missing = dot3(&from.0, &from.1) - dot3(&p.0, &p.1);
+        let residual = missing.abs() / size2.sqrt();
+        if residual.all_below(RESIDUAL_MAX) {
+            so3.axpy(missing / pi2, &p.1, &mut p.0);
+        }
+        worse(found, Some(residual))
     }
 }
 

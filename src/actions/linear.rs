@@ -36,4 +36,14 @@ impl<G: LieGroup> Action<G> for Linear {
     ) -> Result<(), StepError> {
         psi_u.on(p, q)
     }
+    #[inline]
+    fn restore_to(
+        &self,
+        group: &G,
+        from: &G::Vector,
+        p: &mut G::Vector,
+        _: &mut (),
+    ) -> Option<G::Scalar> {
+        group.correct_vector(from, p)
+    }
 }

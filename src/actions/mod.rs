@@ -74,7 +74,7 @@ pub trait Action<G: LieGroup> {
         Ok(())
     }
 
-    /// Take p back to M, where rounding carried it off over many steps; the driver calls it every
+    /// Take p back to M, where rounding carried it off over many steps; the driver does so every
     /// [`RESTORE_EVERY`](crate::RESTORE_EVERY) steps or sooner. Returns how far p was, `None` where nothing is
     /// done, which is the default. Left translation corrects by [`LieGroup::correct`].
     #[inline]
@@ -85,5 +85,18 @@ pub trait Action<G: LieGroup> {
         _work: &mut Self::Work,
     ) -> Option<G::Scalar> {
         None
+    }
+
+    /// The same, and back to the orbit of `from`, which a run that starts there never leaves: |x| of a
+    /// vector under SO(3). What the driver calls; the default is [`restore`](Self::restore).
+    #[inline]
+    fn restore_to(
+        &self,
+        group: &G,
+        _from: &Self::Point,
+        p: &mut Self::Point,
+        work: &mut Self::Work,
+    ) -> Option<G::Scalar> {
+        self.restore(group, p, work)
     }
 }

@@ -6,8 +6,7 @@
 
 use super::{Action, Coadjoint};
 use crate::error::Error;
-use crate::groups::{LieGroup, Power, Product, larger};
-use crate::scalar::Real;
+use crate::groups::{LieGroup, Power, Product, worse};
 
 /// An action for each part of a [`Product`], on M₁ × M₂.
 ///
@@ -29,14 +28,6 @@ pub struct Pair<L, R>(pub L, pub R);
 /// One action for every copy of a [`Power`], on Mᴺ.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Each<L>(pub L);
-
-/// The larger of what was restored.
-fn worse<S: Real>(a: Option<S>, b: Option<S>) -> Option<S> {
-    match (a, b) {
-        (Some(a), Some(b)) => Some(larger(a, b)),
-        (a, b) => a.or(b),
-    }
-}
 
 impl<A, B, L, R> Action<Product<A, B>> for Pair<L, R>
 where
@@ -80,6 +71,16 @@ where
         let first = self.0.restore(&group.0, &mut p.0, &mut work.0);
         worse(first, self.1.restore(&group.1, &mut p.1, &mut work.1))
     }
+    fn restore_to(
+        &self,
+        group: &Product<A, B>,
+        from: &Self::Point,
+        p: &mut Self::Point,
+        work: &mut Self::Work,
+    ) -> Option<A::Scalar> {
+        let first = self.0.restore_to(&group.0, &from.0, &mut p.0, &mut work.0);
+        worse(first, self.1.restore_to(&group.1, &from.1, &mut p.1, &mut work.1))
+    }
 }
 
 impl<G: LieGroup, L: Action<G>> Action<Power<G>> for Each<L> {
@@ -118,6 +119,18 @@ impl<G: LieGroup, L: Action<G>> Action<Power<G>> for Each<L> {
     ) -> Option<G::Scalar> {
         p.iter_mut().fold(None, |all, p| worse(all, self.0.restore(group.group(), p, work)))
     }
+    fn restore_to(
+        &self,
+        group: &Power<G>,
+        from: &Self::Point,
+        p: &mut Self::Point,
+        work: &mut L::Work,
+    ) -> Option<G::Scalar> {
+        let each = from.iter().zip(p);
+        each.fold(None, |all, (from, p)| {
+            worse(all, self.0.restore_to(group.group(), from, p, work))
+        })
+    }
 }
 
 /// On 𝔞* × 𝔟*, each part on its own.
@@ -150,6 +163,15 @@ where
     ) {
         Pair(Coadjoint, Coadjoint).act(group, g, p, q, work);
     }
+    fn restore_to(
+        &self,
+        group: &Product<A, B>,
+        from: &Self::Point,
+        p: &mut Self::Point,
+        work: &mut Self::Work,
+    ) -> Option<A::Scalar> {
+        Pair(Coadjoint, Coadjoint).restore_to(group, from, p, work)
+    }
 }
 
 /// On (𝔤*)ᴺ, copy by copy.
@@ -179,5 +201,14 @@ where
         work: &mut Self::Work,
     ) {
         Each(Coadjoint).act(group, g, p, q, work);
+    }
+    fn restore_to(
+        &self,
+        group: &Power<G>,
+        from: &Self::Point,
+        p: &mut Self::Point,
+        work: &mut Self::Work,
+    ) -> Option<G::Scalar> {
+        Each(Coadjoint).restore_to(group, from, p, work)
     }
 }

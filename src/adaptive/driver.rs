@@ -160,7 +160,7 @@ where
         return Ok(run.stats);
     }
     check_field(problem, run.t, y)?;
-    let mut mender = Mender::new(problem, method.stays_on_manifold());
+    let mut mender = Mender::new(problem, y, method.stays_on_manifold());
     let mut mended = Stats::default();
     let forward = run.t1 > run.t;
     let mut h = match control.first_step {

@@ -22,13 +22,13 @@ pub use adjoint::{Adjoint, InvertingWork};
 pub use matrix::{AlgebraMatrix, Form, GroupMatrix, MEMBERSHIP, MatrixGroup, RCOND_MIN};
 pub use power::Power;
 pub use product::Product;
-pub(crate) use product::larger;
+pub(crate) use product::worse;
 pub(crate) use quaternions::QUATERNION_PRODUCT;
 pub use quaternions::UnitQuaternions;
 pub use se3::Se3;
 pub(crate) use se3::{add3, finite_pair};
 pub use so3::{So3, hat, vee};
-pub(crate) use so3::{apply3, cross};
+pub(crate) use so3::{apply3, cross, dot3, in_range};
 pub use translations::Translations;
 pub(crate) use unitary::mul_complex;
 pub use unitary::{ComplexMatrix, Unitary};
@@ -145,6 +145,17 @@ pub trait LieGroup: LieAlgebra {
     /// `scratch` is overwritten; nothing is allocated.
     fn correct(&self, _g: &mut Self::Elem, _scratch: [&mut Self::Elem; 2]) -> Self::Scalar {
         Self::Scalar::lit(0.0)
+    }
+
+    /// Take x back towards the orbit G·`from`, where rounding carried it off: on SO(3)
+    /// x ← x + ½x(|from|² − |x|²)/|from|². Returns how far it was, ||x|²/|from|² − 1|, `None` where
+    /// nothing is done, which is the default.
+    ///
+    /// Left alone is an x that is as far off as [`RESIDUAL_MAX`], and one on an orbit whose squares leave
+    /// the range.
+    #[inline]
+    fn correct_vector(&self, _from: &Self::Vector, _x: &mut Self::Vector) -> Option<Self::Scalar> {
+        None
     }
 }
 

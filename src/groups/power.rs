@@ -2,7 +2,7 @@
 
 use rand::Rng;
 
-use super::product::larger;
+use super::product::{larger, worse};
 use super::{Adjoint, LieAlgebra, LieGroup, Sample};
 use crate::error::{Error, StepError};
 use crate::scalar::Real;
@@ -36,6 +36,11 @@ impl<G> Power<G> {
             0 => Err(Error::out_of_range("copies", 0.0, "at least 1")),
             _ => Ok(Power { group, copies }),
         }
+    }
+
+    /// G⁰ = {𝟙}: no copy, for the part of a product that a system may not have.
+    pub const fn none(group: G) -> Self {
+        Power { group, copies: 0 }
     }
 
     /// G.
@@ -160,6 +165,11 @@ impl<G: LieGroup> LieGroup for Power<G> {
             residual = larger(residual, self.group.correct(g, [s, t]));
         }
         residual
+    }
+    /// Each copy by itself; returns the largest of what was found.
+    fn correct_vector(&self, from: &Self::Vector, x: &mut Self::Vector) -> Option<G::Scalar> {
+        let each = from.iter().zip(x);
+        each.fold(None, |all, (from, x)| worse(all, self.group.correct_vector(from, x)))
     }
 }
 

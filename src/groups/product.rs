@@ -35,6 +35,14 @@ fn norm2<S: Real>(a: S, b: S) -> S {
     (a * a + b * b).sqrt()
 }
 
+/// The larger of what was found in two parts.
+pub(crate) fn worse<S: Real>(a: Option<S>, b: Option<S>) -> Option<S> {
+    match (a, b) {
+        (Some(a), Some(b)) => Some(larger(a, b)),
+        (a, b) => a.or(b),
+    }
+}
+
 /// max(a, b); not a number where b is not.
 pub(crate) fn larger<S: Real>(a: S, b: S) -> S {
     let [c] = (b - a).branch(0.0, || [a], || [b]);
@@ -128,6 +136,11 @@ impl<A: LieGroup, B: LieGroup<Scalar = A::Scalar>> LieGroup for Product<A, B> {
     fn correct(&self, g: &mut Self::Elem, [s, t]: [&mut Self::Elem; 2]) -> A::Scalar {
         let first = self.0.correct(&mut g.0, [&mut s.0, &mut t.0]);
         larger(first, self.1.correct(&mut g.1, [&mut s.1, &mut t.1]))
+    }
+    /// Each part by itself; returns the larger of what was found.
+    fn correct_vector(&self, from: &Self::Vector, x: &mut Self::Vector) -> Option<A::Scalar> {
+        let first = self.0.correct_vector(&from.0, &mut x.0);
+        worse(first, self.1.correct_vector(&from.1, &mut x.1))
     }
 }
 

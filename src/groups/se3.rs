@@ -22,7 +22,7 @@ use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
 
 use super::so3::check_finite;
-use super::{Adjoint, LieAlgebra, LieGroup, Sample, So3, apply3, cross};
+use super::{Adjoint, LieAlgebra, LieGroup, Sample, So3, apply3, cross, dot3};
 use crate::error::{Error, StepError};
 use crate::scalar::Real;
 use crate::so3;
@@ -62,12 +62,6 @@ type Pair<S> = (Vector3<S>, Vector3<S>);
 #[inline(always)]
 pub(crate) fn add3<S: Real>(a: &Vector3<S>, b: &Vector3<S>) -> Vector3<S> {
     Vector3::new(a[0] + b[0], a[1] + b[1], a[2] + b[2])
-}
-
-/// a·b.
-#[inline(always)]
-fn dot3<S: Real>(a: &Vector3<S>, b: &Vector3<S>) -> S {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 fn is_finite3<S: Real>(a: &Vector3<S>) -> bool {

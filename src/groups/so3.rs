@@ -42,6 +42,18 @@ pub(crate) fn cross<S: Real>(u: &Vector3<S>, v: &Vector3<S>) -> Vector3<S> {
     Vector3::new(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0])
 }
 
+/// u·v.
+#[inline(always)]
+pub(crate) fn dot3<S: Real>(u: &Vector3<S>, v: &Vector3<S>) -> S {
+    u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
+}
+
+/// Is a square neither beyond the range of squares nor below it?
+#[inline(always)]
+pub(crate) fn in_range<S: Real>(square: S) -> bool {
+    square.all_below(S::SQUARE_MAX) && !square.any_below(1.0 / S::SQUARE_MAX)
+}
+
 /// g·x.
 #[inline(always)]
 pub(crate) fn apply3<S: Real>(g: &Matrix3<S>, x: &Vector3<S>) -> Vector3<S> {
@@ -185,6 +197,18 @@ impl<S: Real> LieGroup for So3<S> {
             }
         }
         residual
+    }
+    #[inline]
+    fn correct_vector(&self, from: &Vector3<S>, x: &mut Vector3<S>) -> Option<S> {
+        let (from2, x2) = (dot3(from, from), dot3(x, x));
+        if !in_range(from2) {
+            return Some(S::lit(0.0));
+        }
+        let missing = (from2 - x2) / from2;
+        if missing.abs().all_below(RESIDUAL_MAX) {
+            self.axpy(S::lit(0.5) * missing, &x.clone_owned(), x);
+        }
+        Some(missing.abs())
     }
 }
 

@@ -17,7 +17,7 @@ use crate::dense::norm_frobenius;
 use crate::error::{Error, StepError};
 use crate::groups::{AlgebraMatrix, GroupMatrix};
 use crate::problems::{PointOf, Problem, ScalarOf};
-use crate::scalar::{Ops, Real, tally};
+use crate::scalar::{Counted, DoubleDouble, Ops, Real, tally};
 
 /// What a step says of its own error.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,8 +56,8 @@ pub trait Embedded<P: Problem>: Method<P> {
 
 /// Points that can be compared: those of a linear space with a norm.
 ///
-/// Implemented for vectors and matrices of both layers, by the Frobenius norm, and for pairs and
-/// boxed slices of them. Allocates nothing.
+/// Implemented for numbers, for vectors and matrices of both layers, by the Frobenius norm, and for
+/// pairs and boxed slices of them. Allocates nothing.
 pub trait Metric {
     /// The reals of the norm.
     type Scalar: Real;
@@ -86,6 +86,27 @@ pub(super) fn without_pair(tableau: &'static str) -> Error {
         why: "it has no embedded row; use a pair such as `dopri5`, or step doubling",
     }
 }
+
+macro_rules! metric_of_numbers {
+    ($($t:ty),*) => {$(
+        impl Metric for $t {
+            type Scalar = $t;
+            #[inline]
+            fn assign(&mut self, x: &Self) {
+                *self = *x;
+            }
+            #[inline]
+            fn size(&self) -> $t {
+                Real::abs(*self)
+            }
+            #[inline]
+            fn distance(&self, x: &Self) -> $t {
+                Real::abs(*self - *x)
+            }
+        }
+    )*};
+}
+metric_of_numbers!(f32, f64, Counted, DoubleDouble);
 
 macro_rules! metric_of_small {
     ($($t:ident),*) => {$(

@@ -14,7 +14,7 @@ use super::{
 };
 use crate::actions::{Action, Coadjoint};
 use crate::dense::mul;
-use crate::groups::{Adjoint, AlgebraMatrix, MatrixGroup};
+use crate::groups::{Adjoint, AlgebraMatrix, MatrixGroup, worse};
 use crate::problems::space::linear_space;
 use crate::scalar::Real;
 
@@ -279,6 +279,17 @@ where
     /// g back to G.
     fn restore(&self, group: &G, p: &mut Self::Point, work: &mut Self::Work) -> Option<G::Scalar> {
         Some(group.correct(&mut p.0, work.2.each_mut()))
+    }
+    /// And m to its orbit.
+    fn restore_to(
+        &self,
+        group: &G,
+        from: &Self::Point,
+        p: &mut Self::Point,
+        work: &mut Self::Work,
+    ) -> Option<G::Scalar> {
+        let moved = Coadjoint.restore_to(group, &from.1, &mut p.1, &mut work.1);
+        worse(moved, self.restore(group, p, work))
     }
 }
 

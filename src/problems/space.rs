@@ -6,10 +6,10 @@ use nalgebra::{Matrix3, Vector3};
 use crate::dense;
 use crate::groups::{AlgebraMatrix, GroupMatrix};
 use crate::methods::Metric;
-use crate::scalar::{Ops, Real, tally};
+use crate::scalar::{Counted, DoubleDouble, Ops, Real, tally};
 
-/// A point of a linear space with a norm: vectors and matrices of both layers, pairs and boxed
-/// slices of them. Allocates nothing.
+/// A point of a linear space with a norm: numbers, vectors and matrices of both layers, pairs and
+/// boxed slices of them. Allocates nothing.
 pub trait LinearSpace: Metric + Clone {
     /// self ← 0.
     fn clear(&mut self);
@@ -20,6 +20,30 @@ pub trait LinearSpace: Metric + Clone {
     /// Is every number finite?
     fn is_finite(&self) -> bool;
 }
+
+macro_rules! number {
+    ($($t:ty),*) => {$(
+        impl LinearSpace for $t {
+            #[inline]
+            fn clear(&mut self) {
+                *self = <$t>::lit(0.0);
+            }
+            #[inline]
+            fn add(&mut self, a: $t, x: &Self) {
+                *self += a * *x;
+            }
+            #[inline]
+            fn dot(&self, x: &Self) -> $t {
+                *self * *x
+            }
+            #[inline]
+            fn is_finite(&self) -> bool {
+                Real::is_finite(*self)
+            }
+        }
+    )*};
+}
+number!(f32, f64, Counted, DoubleDouble);
 
 macro_rules! small {
     ($($t:ident),*) => {$(

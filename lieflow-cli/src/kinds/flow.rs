@@ -14,6 +14,7 @@
 //! | SO(3)ᴺ, vectors | spin chains, many bodies |
 //! | SE(3), coadjoint | heavy tops, the spherical pendulum, Euler's equations on se(3)* |
 //! | [`MatrixGroup`], [`MatrixAction`](super::matrix::MatrixAction) | all that is made of matrices |
+//! | SO(3)ⁿ × SO(3)ᵐ × T(k), vectors and translation | what scenes compose from parts |
 //! | SO(3) × T(3), SO(n) × T(2n), translation | bodies under torques, Lyapunov exponents |
 
 use core::fmt;
@@ -32,6 +33,7 @@ use lieflow::problems::{
 use lieflow::scalar::{Counted, Real};
 use nalgebra::Vector3;
 
+use super::composed::{OnParts, Parts};
 use super::matrix::MatrixAction;
 use crate::erased::{Doubled, pointed, pointed_pair};
 use crate::model::Catalog;
@@ -323,8 +325,10 @@ family! {
     MatrixGroup, FromTheBody, general;
     Product<So3, Translations<Vector3<f64>>>, LeftTranslation, general;
     Product<MatrixGroup, Translations<Growth>>, LeftTranslation, general;
+    Parts, OnParts, general;
     So3<Counted>, Linear, linear;
     Power<So3<Counted>>, Linear, lie_poisson;
     Se3<Counted>, Coadjoint, lie_poisson;
     Product<So3<Counted>, Translations<Vector3<Counted>>>, LeftTranslation, general;
+    Parts<Counted>, OnParts, general;
 }

@@ -4,6 +4,7 @@
 
 mod algebra;
 mod beam_line;
+mod composed;
 mod driven_body;
 mod euler;
 mod flow;
@@ -16,6 +17,7 @@ mod law;
 mod lorentz;
 mod lyapunov;
 mod matrix;
+mod matrix_ode;
 mod oja;
 mod pendulum;
 mod riccati;
@@ -66,7 +68,9 @@ pub const KINDS: &[Kind] = &[
     riccati::KIND,
     lorentz::KIND,
     schrodinger::KIND,
+    matrix_ode::KIND,
     lyapunov::KIND,
+    composed::KIND,
 ];
 
 /// A kind of problem.

@@ -57,7 +57,11 @@ pub const BUNDLED: &[Bundled] = bundled![
     "crossed-fields",
     "rabi",
     "three-level-transfer",
+    "rotating-drive",
     "lorenz",
+    "spin-and-oscillator",
+    "gyrostat",
+    "spin-pair",
 ];
 
 impl Bundled {

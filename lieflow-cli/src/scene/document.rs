@@ -94,20 +94,27 @@ impl<'a> Document<'a> {
         self.error(message, place).with_help(help)
     }
 
-    /// Where `key`, `key[i]` or `key[i,j]` stands, first in this section, then in the others.
+    /// Where `key`, `key[i]`, `key[i,j]` or `key[i].name[j]` stands, first in this section, then in the
+    /// others.
     fn locate(&self, section: &str, key: &str) -> Option<Range<usize>> {
-        let (name, index) = key.split_once('[').unwrap_or((key, ""));
-        let value = [section].iter().chain(TOP).find_map(|section| {
+        let mut path =
+            key.split(['[', ']', ',', '.']).map(str::trim).filter(|step| !step.is_empty());
+        let name = path.next()?;
+        let mut place = [section].iter().chain(TOP).find_map(|section| {
             match self.root.get(*section)?.get_ref() {
                 DeValue::Table(table) => table.get(name),
                 _ => None,
             }
         })?;
-        let mut place = value;
-        for i in index.trim_end_matches(']').split(',') {
-            match (i.trim().parse::<usize>(), place.get_ref()) {
-                (Ok(i), DeValue::Array(list)) => place = list.get(i).unwrap_or(place),
-                _ => break,
+        for step in path {
+            let next = match (step.parse::<usize>(), place.get_ref()) {
+                (Ok(i), DeValue::Array(list)) => list.get(i),
+                (_, DeValue::Table(table)) => table.get(step),
+                _ => None,
+            };
+            match next {
+                Some(next) => place = next,
+                None => break,
             }
         }
         Some(place.span())

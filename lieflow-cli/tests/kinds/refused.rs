@@ -132,14 +132,86 @@ const BROKEN: &[(&str, &str, &str, &[&str])] = &[
     ("rabi", "amplitudes = [1.0, 0.0]", "amplitudes = [0, 0]", &["|ψ|"]),
     ("rabi", "amplitudes = [1.0, 0.0]", "amplitudes = [1]", &["expected 2, one a level"]),
     ("three-level-transfer", "12.533]", "0]", &["width 0"]),
+    ("lorenz", "\"x*y - beta*z\"", "\"x*y - betta*z\"", &["character 7", "did you mean `beta`?"]),
+    ("lorenz", "[\"x\", \"y\", \"z\"]", "[\"x\", \"y\"]", &["found 2 names, expected 3"]),
     (
         "lorenz",
-        "{ of = 1, coefficient = -10.0, powers = [1, 0, 0] }",
-        "{ of = 4, coefficient = 1, powers \
-      = [1, 0, 0] }",
-        &["expected 1 to 3"],
+        "[\"x\", \"y\", \"z\"]",
+        "[\"x\", \"y\", \"t\"]",
+        &["`t` is the name of a variable"],
     ),
-    ("lorenz", "powers = [1, 1, 0] }", "powers = [1, 1] }", &["found 2 powers, expected 3"]),
+    ("lorenz", "[\"x\", \"y\", \"z\"]", "[\"x\", \"y\", \"2z\"]", &["`2z` is no name"]),
+    ("lorenz", "\"x*(rho - z) - y\", ", "", &["found 2 formulas, expected 3"]),
+    ("lorenz", "sigma*(y - x)", "sqrt(x - y)", &["field[0]: its derivative by x is inf"]),
+    ("lorenz", "sigma = 10", "sigma = \"10\"", &["expected a number"]),
+    ("spin-pair", "name = \"b\"", "name = \"a\"", &["`a1` is of another part"]),
+    ("spin-pair", "name = \"b\"", "name = \"2b\"", &["`2b1` is no name"]),
+    ("spin-pair", "name = \"b\"", "", &["missing key `name`"]),
+    ("gyrostat", "name = \"h\"", "name = \"m1\"", &["`m1` is of another part"]),
+    ("gyrostat", "name = \"h\"", "name = \"m_length\"", &["`m_length` is of another part"]),
+    ("gyrostat", "name = \"h\"", "name = \"t\"", &["`t` is the name of a variable"]),
+    ("gyrostat", "name = \"h\"", "name = \"sin\"", &["`sin` is the name of a function"]),
+    ("gyrostat", "name = \"h\"", "name = \"\"", &["is no name"]),
+    ("spin-pair", "field = [\"b1\", ", "field = [", &["found 2 formulas of `a`, expected 3"]),
+    ("spin-pair", "field = [\"b1\", ", "field = [\"c1\", ", &["parts[0].field[0]", "`c1`"]),
+    ("spin-pair", "field = [\"a1\", ", "field = [\"a1 +\", ", &["parts[1].field[0]"]),
+    ("spin-pair", "field = [\"a1\", ", "field = [1, ", &["string"]),
+    ("spin-pair", "start = [0.6, 0.0, 0.8]", "start = [0, 0, 0]", &["a vector of length 0"]),
+    ("spin-pair", "start = [0.6, 0.0, 0.8]", "start = [1e200, 0, 0]", &["length inf"]),
+    (
+        "spin-pair",
+        "start = [0.6, 0.0, 0.8]",
+        "start = [0.6, 0.8]",
+        &["expected 3 numbers, found 2"],
+    ),
+    ("spin-pair", "start = [0.6, 0.0, 0.8]", "start = [0.6, nan, 0]", &["a finite number"]),
+    (
+        "spin-pair",
+        "start = [0.6, 0.0, 0.8]",
+        "start = [[1, 2, 3]]",
+        &["the start of `a` is to be 3 numbers"],
+    ),
+    ("spin-pair", "start = [0.6, 0.0, 0.8]", "", &["the start of `a` is to be 3 numbers"]),
+    ("spin-pair", "invariants = { energy", "invariants = { a1", &["`a1`", "something else"]),
+    (
+        "spin-pair",
+        "field = [\"b1\", ",
+        "field = [\"1/a2\", ",
+        &["parts[0].field[0] is inf at the start"],
+    ),
+    (
+        "spin-pair",
+        "total3 = \"a3",
+        "total3 = \"ln(b1) + a3",
+        &["invariants.total3", "at the start"],
+    ),
+    ("spin-pair", "total3 = \"a3", "total3 = \"t + a3", &["invariants.total3", "`t`"]),
+    ("spin-pair", "parameters = { K", "parameters = { a1", &["`a1`"]),
+    ("gyrostat", "start = [0.0]", "start = []", &["the start of `h` is to be a list of numbers"]),
+    (
+        "gyrostat",
+        "space = \"rotation\"",
+        "space = \"rotatoin\"",
+        &["unknown space `rotatoin`", "did you mean `rotation`?"],
+    ),
+    (
+        "gyrostat",
+        "space = \"rotation\"",
+        "space = \"rotation\"\nstart = [[1, 0, 0], [0, 1, 0], [0, 1, 1]]",
+        &["start", "SO(3)"],
+    ),
+    (
+        "gyrostat",
+        "space = \"rotation\"",
+        "space = \"rotation\"\nstart = [[1, 0, 0], [0, 1, 0], [0, 0, -1]]",
+        &["start", "rotation"],
+    ),
+    (
+        "gyrostat",
+        "space = \"rotation\"",
+        "space = \"rotation\"\nstart = [1, 0, 0]",
+        &["the start of `g` is to be 3 rows of 3 numbers"],
+    ),
 ];
 
 #[test]
@@ -160,6 +232,22 @@ fn each_names_the_line_and_what_was_expected() {
         // missed in its section.
         let at = error.line().unwrap_or_else(|| panic!("no line: {message}"));
         assert!(at.abs_diff(number) < 12, "line {at} for {number}: {message}");
+    }
+}
+
+/// The line is that of the part, however far below; without parts there is no system.
+#[test]
+fn a_part_is_named_by_its_line() {
+    let text = bundled("gyrostat").replace("\"u*(h/Jw", "\"u*(v/Jw");
+    let line = 1 + text.lines().position(|line| line.contains("u*(v/Jw")).unwrap();
+    assert_eq!(Scene::parse("gyrostat", &text).unwrap_err().line(), Some(line));
+
+    let text = bundled("spin-pair");
+    let (start, end) = (text.find("[[problem.parts]]").unwrap(), text.find("[method]").unwrap());
+    for (parts, word) in [("", "missing key `parts`"), ("parts = []\n", "at least one")] {
+        let text = format!("{}{parts}{}", &text[..start], &text[end..]);
+        let message = Scene::parse("scene", &text).unwrap_err().to_string();
+        assert!(message.contains(word), "{message}");
     }
 }
 

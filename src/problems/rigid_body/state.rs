@@ -11,7 +11,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::RigidBody;
 use crate::actions::Action;
 use crate::error::Error;
-use crate::groups::{LieAlgebra, LieGroup, So3, apply3, cross, hat};
+use crate::groups::{LieAlgebra, LieGroup, So3, apply3, cross, hat, worse};
 use crate::methods::Metric;
 use crate::problems::{Ambient, Problem};
 use crate::scalar::Real;
@@ -71,6 +71,16 @@ impl<S: Real> Action<So3<S>> for BodyFrame {
     /// g back to SO(3); m has no constraint.
     fn restore(&self, group: &So3<S>, p: &mut BodyState<S>, work: &mut Self::Work) -> Option<S> {
         Some(group.correct(&mut p.g, work.each_mut()))
+    }
+    /// And m to its sphere.
+    fn restore_to(
+        &self,
+        group: &So3<S>,
+        from: &BodyState<S>,
+        p: &mut BodyState<S>,
+        work: &mut Self::Work,
+    ) -> Option<S> {
+        worse(group.correct_vector(&from.m, &mut p.m), self.restore(group, p, work))
     }
 }
 
