@@ -39,10 +39,13 @@ use lieflow::groups::{Power, Product, Se3, So3, Translations};
 use lieflow::maps::{CCSK, CCSK123, CCSK321, Cay, Ccsk, CoordinateMap, Exp, Pade22, TruncatedExp};
 use lieflow::methods::magnus::{CFM8_11, Magnus8};
 use lieflow::methods::tableau::DOP853;
-use lieflow::methods::{CfMagnus, LieSeries, Rk, Rkmk, SeriesGroup};
-use lieflow::scalar::DoubleDouble;
+use lieflow::methods::{CfMagnus, Embedded, LieSeries, Rk, Rkmk, SeriesGroup};
+use lieflow::problems::{PointOf, Problem};
+use lieflow::scalar::{DoubleDouble, Real};
+use lieflow::{LieAlgebra, Step};
 use members::{STORED, Span, by_name, high_orders, members, rational};
 use nalgebra::Vector3;
+use support::orders::slopes;
 
 type D = DoubleDouble;
 
@@ -103,6 +106,47 @@ fn series_on<G: Wide + SeriesGroup>(group: &G, strength: f64) {
             "taylor16" => &all, rational(16), of(16);
         })
     });
+    let flow = |i| Flow::new(group, Kind::Polynomial, strength, 31 + i);
+    let flows: Vec<_> = (0..MEMBERS).map(flow).collect();
+    for order in [8, 10, 12, 14, 16] {
+        check_estimate(&flows, &of(order), order);
+    }
+}
+
+/// The estimate of one step is of this order.
+fn check_estimate<P: Problem, M: Embedded<P>>(flows: &[(P, PointOf<P>)], method: &M, order: usize)
+where
+    P::Group: LieAlgebra<Scalar = D>,
+{
+    const STEPS: [f64; 4] = [0.02, 0.016, 0.0125, 0.01];
+    assert_eq!(method.error_order(&flows[0].0), Ok(order - 1));
+    let errors = STEPS.map(|h| {
+        let logs = flows.iter().map(|(flow, start)| {
+            let (mut work, mut to) = (method.work(flow, start).unwrap(), start.clone());
+            let step = Step { n: 0, t: D::lit(0.25), h: D::lit(h) };
+            let found = method.step_with_error(flow, step, start, &mut work, &mut to).unwrap();
+            found.error.value().ln()
+        });
+        (logs.sum::<f64>() / flows.len() as f64).exp()
+    });
+    let found = slopes(&STEPS.map(|h| 1.0 / h), &errors);
+    println!("{}, estimate: {order} {found:.2?}", flows[0].0.group().name());
+    assert!(
+        found.iter().all(|slope| (slope - order as f64).abs() < 0.15),
+        "{found:.2?} {errors:?}"
+    );
+}
+
+/// That of DOP853 is E²/√(E² + D²/100) with its rows of orders 5 and 3: of order 8 once E is far below
+/// D/10, where in `f64` it is rounding.
+fn estimate_on<G: Wide>(group: &G, strength: f64)
+where
+    Exp: CoordinateMap<G>,
+{
+    let flows: Vec<_> =
+        (0..MEMBERS).map(|i| Flow::new(group, Kind::Wave, strength, 71 + i)).collect();
+    check_estimate(&flows, &Rkmk::new(DOP853, Exp), 8);
+    check_estimate(&flows, &Rk(DOP853), 8);
 }
 
 /// One test a group.
@@ -130,6 +174,17 @@ measure! {
     fields_on_a_product: Product(So3::new(), Matrices::sp4()), 0.3;
     fields_on_a_product_with_translations: so3_and_translations(), 0.7;
     fields_on_a_power: Power::new(So3::new(), 2).unwrap(), 1.0;
+}
+
+measure! {
+    estimate_on:
+    estimate_on_so3: So3::new(), 1.0;
+    estimate_on_so5: Matrices::so5(), 0.5;
+    estimate_on_gl3: Matrices::gl3(), 0.5;
+    estimate_on_sp4: Matrices::sp4(), 0.4;
+    estimate_on_so31: Matrices::so31(), 0.5;
+    estimate_on_se3: Se3::new(), 0.7;
+    estimate_on_a_product: Product(So3::new(), Matrices::sp4()), 0.3;
 }
 
 measure! {

@@ -90,6 +90,10 @@ impl Matrices {
         }))
     }
 
+    /// g⁻¹: g♯, or by solving.
+    pub(crate) fn inverse(&self, g: &Square) -> Square {
+        self.adjoint(g).unwrap_or_else(|| g.solve(Square::identity(self.n)))
+    }
     /// The part of x in 𝔤: (x − x♯)/2, or x.
     pub(crate) fn project(&self, x: &Square) -> Square {
         self.adjoint(x).map_or(*x, |adjoint| (*x - adjoint) * D::lit(0.5))

@@ -227,7 +227,7 @@ fn inverse_differential<'a>(
     let mut p = Square::identity(group.n());
     let mut elements = Vec::with_capacity(dim);
     for (k, (e, theta)) in factors.enumerate() {
-        let carried = p * *e * p.solve(Square::identity(group.n()));
+        let carried = p * *e * group.inverse(&p);
         group.coordinates(&carried).enumerate().for_each(|(i, x)| rows[i][k] = x);
         times_exponential(&mut p, e, theta);
         elements.push(*e);
