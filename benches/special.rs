@@ -293,7 +293,7 @@ fn attitude() {
             ));
         )*};
     }
-    taylor!(8 10 12 16);
+    taylor!(8 9 10 12 13 15 16);
     for (name, on_group) in [("dop853, rkmk exp", true), ("dop853, nine entries", false)] {
         let runs = tolerances.iter().map(|&tol| dop853(&exact, tol, on_group)).collect();
         families.push((name.into(), runs));

@@ -1,5 +1,10 @@
 //! Scenes with formulas: against the same stated by keys, closed forms, and what is refused.
 
+use faer::Mat;
+use lieflow::CoordinateMap;
+use lieflow::catalog::MethodSpec;
+use lieflow::groups::{LieGroup, MatrixGroup};
+use lieflow::maps::Exp;
 use lieflow::problems::Exact;
 use nalgebra::Matrix3;
 
@@ -375,4 +380,160 @@ fn hamiltonians_are_refused_at_their_line() {
         "kind = \"euler\"\nalgebra = \"so3\"\nhamiltonian = \"m1^2\"\nmomentum = [1, 0, 0]";
     let (_, message) = refused(problem, FINE, "group");
     assert!(message.contains("this problem has no `group`"), "{message}");
+}
+
+/// exp of an element of so(n).
+fn exp(u: Mat<f64>) -> Mat<f64> {
+    let group = MatrixGroup::so(u.nrows()).unwrap();
+    let u = group.algebra(u).unwrap();
+    let (mut at, mut g) = (Exp.at(&group).unwrap(), group.identity());
+    Exp.psi(&group, &u, &mut at, &mut g).unwrap();
+    g.into_mat()
+}
+
+/// In the frame that turns with the drive the field is constant: y = e^{tB} e^{t(A − B)}.
+#[test]
+fn a_rotation_that_is_driven() {
+    let of = Scene::bundled("rotating-drive").unwrap();
+    let (a, b, c, w, t) = (1.0, 0.7, 0.4, 2.0, 20.0);
+    let skew = |entries: &[(usize, usize, f64)]| {
+        let mut u = Mat::zeros(5, 5);
+        for &(i, j, x) in entries {
+            (u[(i, j)], u[(j, i)]) = (t * x, -t * x);
+        }
+        u
+    };
+    let turn = exp(skew(&[(1, 0, w)]));
+    let exact = turn * exp(skew(&[(0, 2, a), (2, 3, b), (3, 4, c), (1, 0, -w)]));
+    let exact: Vec<f64> = (0..25).map(|k| exact[(k / 5, k % 5)]).collect();
+    let end = last(&of);
+    assert!(far(&end[..25], &exact) < 1e-8, "{:e}", far(&end[..25], &exact));
+    assert!(end[25] < 1e-13);
+    // With the order of the method, and with a method that is not for linear equations.
+    for (method, order) in [("magnus6", 6.0), ("magnus4", 4.0), ("rkmk4", 4.0), ("cf4", 4.0)] {
+        let error = |dt: &str| {
+            let text = bundled("rotating-drive").replace("dt = 0.05", &format!("dt = {dt}"));
+            let text = text.replace("\"magnus6\"", &format!("\"{method}\""));
+            far(&last(&Scene::parse("scene", &text).unwrap())[..25], &exact)
+        };
+        let slope = (error("0.2") / error("0.1")).log2();
+        assert!((slope - order).abs() < 0.5, "{method}: {slope}");
+    }
+}
+
+/// The flow that sorts, the learning of a plane and Euler's equations as equations of one's own.
+#[test]
+fn kinds_of_flows_as_equations_of_ones_own() {
+    let time = "t_span = [0, 1]\ndt = 0.01";
+    let ode = |group: &str, action: &str, field: &str, more: &str| {
+        let problem = format!(
+            "kind = \"matrix-ode\"\ngroup = \"{group}\"\naction = \"{action}\"\nfield = {field}\n{more}"
+        );
+        let of = scene(&problem, RKMK4, time, "[\"point\"]");
+        let rk = MethodSpec { tableau: Some("dop853".into()), ..MethodSpec::new("rk", None) };
+        let mut by_rk = Vec::new();
+        let mut sink = |_: f64, row: &[f64]| by_rk = row.to_vec();
+        of.model().unwrap().run(&rk, &of.grid, &of.save, &mut sink).unwrap();
+        let end = last(&of);
+        assert!(far(&end, &by_rk) < 1e-6, "{field}: the field and the action disagree");
+        end
+    };
+    // f = [N, L].
+    let matrix = "[[2, 0.5, -0.3], [0.5, 1, 0.4], [-0.3, 0.4, 3]]";
+    let bracket: Vec<Vec<String>> =
+        (1..=3).map(|i| (1..=3).map(|j| format!("({i} - {j})*y{i}{j}")).collect()).collect();
+    let ours = ode("so", "conjugation", &format!("{bracket:?}"), &format!("start = {matrix}"));
+    let sorting = format!("kind = \"double-bracket\"\nmatrix = {matrix}\norder = [1, 2, 3]");
+    let theirs = last(&scene(&sorting, RKMK4, time, "[\"matrix\"]"));
+    let upper = [ours[0], ours[1], ours[2], ours[4], ours[5], ours[8]];
+    assert!(far(&upper, &theirs) < SAME);
+    // Oja on the sphere, f = A x xᵀ − x xᵀ A with A diagonal: x(t) = e^{tA}x/|e^{tA}x|.
+    let oja: Vec<Vec<String>> =
+        (1..=3).map(|i| (1..=3).map(|j| format!("({i} - {j})*y{i}1*y{j}1")).collect()).collect();
+    let end = ode("so", "linear", &format!("{oja:?}"), "start = [[0.6], [0.48], [0.64]]");
+    let grown: Vec<f64> =
+        [0.6, 0.48, 0.64].iter().zip(1..).map(|(x, a)| x * f64::from(a).exp()).collect();
+    let norm = grown.iter().map(|x| x * x).sum::<f64>().sqrt();
+    assert!(far(&end, &grown.iter().map(|x| x / norm).collect::<Vec<_>>()) < 1e-7);
+    // Euler's equations: f = −∇H by the coadjoint action.
+    let momentum = "[[0.2, 0.1, -0.3], [-0.2, 0.1, 0.2], [0.3, -0.1, -0.3]]";
+    let weights = [[0.4, 0.7, 1.0], [0.6, 0.9, 0.5], [0.8, 0.3, 0.6]];
+    let trace = "(0.4*y11 + 0.9*y22 + 0.6*y33)/3";
+    let field: Vec<Vec<String>> = (0..3)
+        .map(|i| {
+            let part = |j: usize| if i == j { trace } else { "0" };
+            (0..3).map(|j| format!("{} - {}*y{}{}", part(j), weights[i][j], i + 1, j + 1)).collect()
+        })
+        .collect();
+    let ours = ode("sl", "coadjoint", &format!("{field:?}"), &format!("start = {momentum}"));
+    let euler = format!(
+        "kind = \"euler\"\nalgebra = \"sl\"\nmomentum = {momentum}\ninverse_inertia = {weights:?}"
+    );
+    assert!(far(&ours, &last(&scene(&euler, RKMK4, time, "[\"momentum\"]"))) < SAME);
+    // Translation on Sp(2): an oscillator whose stiffness depends on where the first column is.
+    let pendulum = "[[\"0\", \"1\"], [\"-sinc\", \"0\"]]".replace("sinc", "y11^2");
+    let end = ode("sp", "translation", &pendulum, "");
+    assert!((end[0] * end[3] - end[1] * end[2] - 1.0).abs() < 1e-14);
+    // ẍ = −x³ from 1 at rest: ½ẋ² + ¼x⁴ is kept.
+    assert!((0.5 * end[2] * end[2] + 0.25 * end[0].powi(4) - 0.25).abs() < 1e-8);
+    // The Lorentz group: a boost at a rate that grows.
+    let boost = ode("so(1,1)", "translation", "[[\"0\", \"2*t\"], [\"2*t\", \"0\"]]", "");
+    assert!(far(&boost, &[1f64.cosh(), 1f64.sinh(), 1f64.sinh(), 1f64.cosh()]) < 1e-8);
+}
+
+#[test]
+fn equations_that_are_none_are_refused_at_their_line() {
+    for (keys, line, expected) in [
+        (
+            "group = \"so\"\nfield = [[\"0\", \"1\"], [\"1\", \"0\"]]",
+            5,
+            &["field[", "the field is not in so(2)"][..],
+        ),
+        (
+            "group = \"so\"\nfield = [[\"0\", \"y12\"], [\"-y12\", \"y12\"]]",
+            5,
+            &["field[1,1]", "beside the start"],
+        ),
+        (
+            "group = \"so\"\nfield = [[\"t\", \"1\"], [\"-1\", \"0\"]]",
+            5,
+            &["field[0,0] is 0.5 beside"],
+        ),
+        ("group = \"sl\"\nfield = [[\"1\", \"1\"], [\"1\", \"0\"]]", 5, &["is not in sl(2)"]),
+        (
+            "group = \"so\"\nfield = [[\"0\", \"1/t\"], [\"-1/t\", \"0\"]]",
+            5,
+            &["field[0,1] is inf at the start"],
+        ),
+        (
+            "group = \"so\"\nfield = [[\"0\", \"x\"], [\"-1\", \"0\"]]",
+            5,
+            &["field[0,1]: unknown name `x`", "y11"],
+        ),
+        (
+            "group = \"so\"\nfield = [[\"0\", \"1\"], [\"-1\"]]",
+            5,
+            &["row 2 has 1 formulas, expected 2"],
+        ),
+        ("group = \"so\"\nfield = []", 5, &["found 0 rows"]),
+        ("field = [[\"0\"]]\ngroup = \"su\"", 5, &["unknown group `su`", "sp"]),
+        ("field = [[\"0\"]]\ngroup = \"sp\"", 4, &["even"]),
+        ("field = [[\"0\"]]\ngroup = \"so(2,1)\"", 4, &["p + q = 1"]),
+        (
+            "field = [[\"0\"]]\ngroup = \"so\"\naction = \"rotation\"",
+            6,
+            &["unknown action", "translation"],
+        ),
+        ("field = [[\"0\"]]\ngroup = \"so\"\nstart = [[2]]", 6, &["start"]),
+        ("field = [[\"0\"]]\ngroup = \"so\"\nstart = [[1, 2]]", 6, &["expected 1 rows of 1"]),
+        ("field = [[\"0\"]]\ngroup = \"sl\"\nstart = [[2]]", 6, &["determinant is 2"]),
+        ("field = [[\"0\"]]\ngroup = \"so\"\naction = \"linear\"", 2, &["missing key `start`"]),
+    ] {
+        let (at, message) = refused(&format!("kind = \"matrix-ode\"\n{keys}"), FINE, "point");
+        assert!(expected.iter().all(|part| message.contains(part)), "{message}");
+        assert_eq!(at, line, "{message}");
+    }
+    let problem = "kind = \"matrix-ode\"\ngroup = \"gl\"\nfield = [[\"1\"]]";
+    let (_, message) = refused(problem, FINE, "group_defect");
+    assert!(message.contains("this problem has no `group_defect`"), "{message}");
 }

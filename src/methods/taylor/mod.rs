@@ -7,9 +7,9 @@
 //!
 //! q(h) is cut after the power N and taken to the unit sphere, which changes it by less than the
 //! terms left out: Ψ(h) is a rotation, m⁺ = Ψᵀm, g⁺ = gΨ. Order N. Preserves: |m|, gm and the group
-//! to rounding; the energy, symplectic structure and symmetry to the terms left out. Cost: 3N(N+1)/2 + 6N(N+1) multiplications, four at once where the machine can, one
-//! division; no root, no trigonometric function; one step replaces N evaluations of f of other
-//! methods of this order.
+//! to rounding; the energy, symplectic structure and symmetry to the terms left out. Cost: some 15N²/2
+//! multiplications, eight at once where the machine can, one division; no root, no trigonometric
+//! function; one step replaces N evaluations of f of other methods of this order.
 //!
 //! The last two coefficients tell the step: θ = min((tol/|q_{N−1}|)^{1/(N−1)}, (tol/|q_N|)^{1/N}).
 //! [`Taylor::advance`] takes the largest step within the tolerance, from coefficients that it needs
