@@ -43,9 +43,13 @@ macro_rules! bodies {
                 "dmv8" => &$body, STORED, DMV8;
                 "dmv10" => &$body, STORED, DMV10;
                 "taylor8" => &$body, rational(8), Taylor::<8>;
+                "taylor9" => &$body, rational(9), Taylor::<9>;
                 "taylor10" => &$body, rational(10), Taylor::<10>;
+                "taylor11" => &$body, rational(11), Taylor::<11>;
                 "taylor12" => &$body, rational(12), Taylor::<12>;
+                "taylor13" => &$body, rational(13), Taylor::<13>;
                 "taylor14" => &$body, rational(14), Taylor::<14>;
+                "taylor15" => &$body, rational(15), Taylor::<15>;
                 "taylor16" => &$body, rational(16), Taylor::<16>;
                 $($more)*
             }));
