@@ -96,7 +96,7 @@ where
 
 /// The Lie series, on polynomial fields.
 fn series_on<G: Wide + SeriesGroup>(group: &G, strength: f64) {
-    let span = Span { length: 1.0, rate: 128.0, gap: 1e-28 };
+    let span = Span { length: 1.0, rate: 96.0, gap: 1e-28 };
     let all = members(MEMBERS, span, |i| Flow::new(group, Kind::Polynomial, strength, 31 + i));
     let of = |order| LieSeries::new(order).unwrap();
     high_orders("polynomial fields", &group.name(), &[Needs::Series], |spec| {
