@@ -15,6 +15,8 @@ mod systems;
 
 #[path = "orders_wide/agreement.rs"]
 mod agreement;
+#[path = "orders_wide/attitude.rs"]
+mod attitude;
 #[path = "orders_wide/bodies.rs"]
 mod bodies;
 #[path = "orders_wide/faults.rs"]

@@ -6,14 +6,14 @@ use lieflow::LieAlgebra;
 use lieflow::actions::{Action, Coadjoint};
 use lieflow::catalog::Needs;
 use lieflow::groups::{MatrixGroup, Sample};
-use lieflow::methods::{LieSeries, Method, Metric, Step};
+use lieflow::methods::{LieSeries, Metric};
 use lieflow::problems::{Ambient, LinearSpace, Problem, TaylorField};
 use lieflow::scalar::Real;
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
 
 use super::D;
-use super::agreement::{near, wide};
+use super::agreement::{same_steps, wide};
 use super::group::Matrices;
 use super::members::{Span, by_name, high_orders, members, rational};
 use super::square::Square;
@@ -45,7 +45,7 @@ impl Quadratic {
 }
 
 /// mfᵀ − fᵀm.
-fn rate(m: &Square, f: &Square) -> Square {
+pub(crate) fn rate(m: &Square, f: &Square) -> Square {
     let f = f.transpose();
     *m * f - f * *m
 }
@@ -159,22 +159,7 @@ const LONG: [f64; 4] = [1.6, 0.4, 0.4, 0.8];
 #[test]
 fn a_step_of_the_library_is_the_same() {
     for ((library, ours, start), h) in systems().zip(LONG) {
-        let system = systems::quadratic(library.clone());
-        let problem = Quadratic(ours);
-        let mut before = problem.0.zero();
-        for order in 8..=16 {
-            let method = series(order);
-            let mut m = start;
-            let mut work = method.work(&problem, &m).unwrap();
-            let step = Step { n: 0, t: D::lit(0.0), h: D::lit(h) };
-            method.step(&problem, step, &mut m, &mut work).unwrap();
-
-            let mut found = faer::Mat::from_fn(m.n(), m.n(), |i, j| start[(i, j)].value());
-            let mut work = method.work(&system, &found).unwrap();
-            method.step(&system, Step { n: 0, t: 0.0, h }, &mut found, &mut work).unwrap();
-            near(&format!("order {order} on {}", library.name()), &m, &found).unwrap();
-            assert!(m.distance(&before).value() > 1e-10, "order {order} on {}", library.name());
-            before = m;
-        }
+        let m = faer::Mat::from_fn(start.n(), start.n(), |i, j| start[(i, j)].value());
+        same_steps((&systems::quadratic(library), m), |m| m, (Quadratic(ours), start), h);
     }
 }
