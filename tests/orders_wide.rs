@@ -11,15 +11,20 @@
 //! bracket and no coefficient of a method.
 
 mod support;
+mod systems;
 
 #[path = "orders_wide/agreement.rs"]
 mod agreement;
 #[path = "orders_wide/bodies.rs"]
 mod bodies;
+#[path = "orders_wide/faults.rs"]
+mod faults;
 #[path = "orders_wide/fields.rs"]
 mod fields;
 #[path = "orders_wide/group.rs"]
 mod group;
+#[path = "orders_wide/lie_poisson.rs"]
+mod lie_poisson;
 #[path = "orders_wide/maps.rs"]
 mod maps;
 #[path = "orders_wide/members.rs"]

@@ -15,10 +15,11 @@ use super::support::{EPS, Verdict, gap, holds, scale, within};
 /// Roundings of some twenty products of n×n matrices.
 const ROUNDING: f64 = 40.0 * EPS;
 
-fn wide(x: &Mat<f64>) -> Square {
+pub(crate) fn wide(x: &Mat<f64>) -> Square {
     Square::from_fn(x.nrows(), |i, j| D::lit(x[(i, j)]))
 }
-fn near(claim: &str, ours: &Square, library: &Mat<f64>) -> Verdict {
+/// ‖ours − library‖ is rounding.
+pub(crate) fn near(claim: &str, ours: &Square, library: &Mat<f64>) -> Verdict {
     let ours = Mat::from_fn(ours.n(), ours.n(), |i, j| ours[(i, j)].value());
     within(claim, gap(&ours, library), ROUNDING * library.norm_l2().max(1.0))
 }

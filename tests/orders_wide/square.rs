@@ -34,8 +34,17 @@ impl Square {
     pub(crate) fn n(&self) -> usize {
         self.n
     }
+    pub(crate) fn transpose(&self) -> Square {
+        Square::from_fn(self.n, |i, j| self.rows[j][i])
+    }
     fn entries(&self) -> impl Iterator<Item = &D> {
         self.rows[..self.n].iter().flat_map(|row| &row[..self.n])
+    }
+
+    /// Where the entries are that are not 0.
+    pub(crate) fn nonzero(&self) -> impl Iterator<Item = (usize, usize)> {
+        let all = (0..self.n).flat_map(|i| (0..self.n).map(move |j| (i, j)));
+        all.filter(|&at| self[at] != D::lit(0.0))
     }
 
     /// self⁻¹·b; not finite where self is singular.
