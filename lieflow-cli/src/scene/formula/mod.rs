@@ -65,6 +65,11 @@ impl Formula {
         self.tape.ops().contains(&tape::Op::Variable(variable))
     }
 
+    /// The length of its list of operations.
+    pub fn operations(&self) -> usize {
+        self.tape.ops().len()
+    }
+
     /// That it has a value at the start.
     ///
     /// # Errors
