@@ -204,6 +204,8 @@ measure! {
     composition_on_so31: Matrices::so31(), 1.0;
     composition_on_se3: Se3::new(), 2.0;
     composition_on_a_product: Product(So3::new(), Matrices::sp4()), 0.7;
+    composition_on_a_product_with_translations: so3_and_translations(), 2.0;
+    composition_on_a_power: Power::new(So3::new(), 2).unwrap(), 2.0;
 }
 
 measure! {
@@ -215,6 +217,7 @@ measure! {
     estimate_on_so31: Matrices::so31(), 0.5;
     estimate_on_se3: Se3::new(), 0.7;
     estimate_on_a_product: Product(So3::new(), Matrices::sp4()), 0.3;
+    estimate_on_a_power: Power::new(So3::new(), 2).unwrap(), 1.0;
 }
 
 measure! {
