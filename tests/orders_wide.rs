@@ -48,7 +48,7 @@ use lieflow::methods::{
 use lieflow::problems::{PointOf, Problem};
 use lieflow::scalar::{DoubleDouble, Real};
 use lieflow::{LieAlgebra, Step};
-use members::{STORED, Span, by_name, high_orders, members, order, rational};
+use members::{STORED, UNIT, UNIT_FINE, by_name, high_orders, members, order, rational};
 use nalgebra::Vector3;
 use support::orders::{Report, slopes};
 
@@ -66,8 +66,7 @@ where
     Ccsk<0, 1, 2>: CoordinateMap<G>,
     Ccsk<2, 1, 0>: CoordinateMap<G>,
 {
-    let span = Span { length: 1.0, rate: 24.0, gap: 1e-17 };
-    let all = members(MEMBERS, span, |i| Flow::new(group, Kind::Wave, strength, 71 + i));
+    let all = members(MEMBERS, UNIT, |i| Flow::new(group, Kind::Wave, strength, 71 + i));
     high_orders("fields", &group.name(), &[Needs::Field, Needs::Norm], |spec| {
         by_name!(spec, {
             "rk" => &all, STORED, Rk(DOP853);
@@ -87,8 +86,7 @@ fn linear_on<G: Wide>(group: &G, strength: f64)
 where
     Exp: CoordinateMap<G>,
 {
-    let span = Span { length: 1.0, rate: 24.0, gap: 1e-17 };
-    let all = members(MEMBERS, span, |i| Flow::new(group, Kind::Clock, strength, 21 + i));
+    let all = members(MEMBERS, UNIT, |i| Flow::new(group, Kind::Clock, strength, 21 + i));
     high_orders("fields of linear type", &group.name(), &[Needs::LinearType], |spec| {
         by_name!(spec, {
             "magnus8" => &all, STORED, Magnus8;
@@ -103,8 +101,7 @@ fn composition_on<G: Wide>(group: &G, strength: f64)
 where
     Exp: CoordinateMap<G>,
 {
-    let span = Span { length: 1.0, rate: 24.0, gap: 1e-17 };
-    let all = members(MEMBERS, span, |i| Flow::new(group, Kind::Clock, strength, 21 + i));
+    let all = members(MEMBERS, UNIT, |i| Flow::new(group, Kind::Clock, strength, 21 + i));
     let mut report = Report::new(&format!("a composition on {}", group.name()));
     let composed = Composition::new(RkmkGaussSymmetric::new(GAUSS2, Exp), KAHAN_LI8);
     report.add(KAHAN_LI8.name, true, order(&all, STORED, &composed));
@@ -113,8 +110,7 @@ where
 
 /// The Lie series, on polynomial fields.
 fn series_on<G: Wide + SeriesGroup>(group: &G, strength: f64) {
-    let span = Span { length: 1.0, rate: 96.0, gap: 1e-28 };
-    let all = members(MEMBERS, span, |i| Flow::new(group, Kind::Polynomial, strength, 31 + i));
+    let all = members(MEMBERS, UNIT_FINE, |i| Flow::new(group, Kind::Polynomial, strength, 31 + i));
     let of = |order| LieSeries::new(order).unwrap();
     high_orders("polynomial fields", &group.name(), &[Needs::Series], |spec| {
         by_name!(spec, {

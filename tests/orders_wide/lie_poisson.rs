@@ -15,7 +15,7 @@ use rand_pcg::Pcg64;
 use super::D;
 use super::agreement::{same_steps, wide};
 use super::group::Matrices;
-use super::members::{Span, by_name, high_orders, members, rational};
+use super::members::{UNIT_FINE, by_name, high_orders, members, rational};
 use super::square::Square;
 use super::systems;
 
@@ -120,6 +120,9 @@ fn series(order: usize) -> LieSeries {
     LieSeries::new(order).unwrap()
 }
 
+/// The lists of which every method of order 8 and more is measured here.
+const NEEDS: [Needs; 3] = [Needs::Series, Needs::LiePoisson, Needs::Isospectral];
+
 /// One test a group: where it is not compact the motion runs away, and a shorter momentum is as far.
 macro_rules! measure {
     ($($name:ident: $group:literal, $length:literal;)*) => {$(
@@ -127,14 +130,13 @@ macro_rules! measure {
         fn $name() {
             let (library, ours, start) =
                 systems().find(|(library, ..)| library.name() == $group).unwrap();
-            let span = Span { length: 1.0, rate: 96.0, gap: 1e-28 };
             // Near one another, so that none of them is at rounding before the others.
-            let all = members(4, span, |i| {
+            let all = members(4, UNIT_FINE, |i| {
                 let aside = library.sample_algebra(&mut Pcg64::seed_from_u64(60 + i), 1.0);
                 let m = start + wide(&aside) * D::lit(0.4 / library.norm(&aside));
                 (Quadratic(ours.clone()), m * (D::lit($length) / m.size()))
             });
-            high_orders("quadratic systems", $group, &[Needs::Series, Needs::LiePoisson], |spec| {
+            high_orders("quadratic systems", $group, &NEEDS, |spec| {
                 by_name!(spec, {
                     "taylor8" => &all, rational(8), series(8);
                     "taylor10" => &all, rational(10), series(10);
