@@ -117,7 +117,7 @@ fn attitude(i: u64) -> (Attitude, Square) {
 
 #[test]
 fn attitudes_on_so5() {
-    let all = members(4, Span { length: 2.0, rate: 64.0, gap: 1e-28 }, attitude);
+    let all = members(4, Span { length: 2.0, rate: 48.0, gap: 1e-28 }, attitude);
     let of = |order| LieSeries::new(order).unwrap();
     high_orders("attitudes", "SO(5)", &[Needs::Series], |spec| {
         by_name!(spec, {

@@ -127,7 +127,7 @@ macro_rules! measure {
         fn $name() {
             let (library, ours, start) =
                 systems().find(|(library, ..)| library.name() == $group).unwrap();
-            let span = Span { length: 1.0, rate: 128.0, gap: 1e-28 };
+            let span = Span { length: 1.0, rate: 96.0, gap: 1e-28 };
             // Near one another, so that none of them is at rounding before the others.
             let all = members(4, span, |i| {
                 let aside = library.sample_algebra(&mut Pcg64::seed_from_u64(60 + i), 1.0);
