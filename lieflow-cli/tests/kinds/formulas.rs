@@ -203,6 +203,14 @@ fn kinds_of_flows_as_equations_of_ones_own() {
         "kind = \"euler\"\nalgebra = \"sl\"\nmomentum = {momentum}\ninverse_inertia = {weights:?}"
     );
     assert!(far(&ours, &last(&scene(&euler, RKMK4, time, "[\"momentum\"]"))) < SAME);
+    // A Riccati equation, f = [−Dᵀ B; C D].
+    let riccati = "[[\"0\", \"0\", \"-1\", \"0\"], [\"-0.2\", \"0\", \"0\", \"-1\"], [\"1\", \"0\", \"0\", \"0.2\"], \
+                   [\"0\", \"0.5\", \"0\", \"0\"]]";
+    let ours = ode("sp", "lagrangian", riccati, "start = [[0, 0], [0, 0]]");
+    let keys = "kind = \"riccati\"\nc = [[1, 0], [0, 0.5]]\nd = [[0, 0.2], [0, 0]]\n\
+                b = [[-1, 0], [0, -1]]\np = [[0, 0], [0, 0]]";
+    let theirs = last(&scene(keys, RKMK4, time, "[\"p\"]"));
+    assert!(far(&[ours[0], ours[1], ours[3]], &theirs) < SAME);
     // Translation on Sp(2): an oscillator whose stiffness depends on where the first column is.
     let pendulum = "[[\"0\", \"1\"], [\"-sinc\", \"0\"]]".replace("sinc", "y11^2");
     let end = ode("sp", "translation", &pendulum, "");
@@ -259,6 +267,12 @@ fn equations_that_are_none_are_refused_at_their_line() {
         ),
         ("field = [[\"0\"]]\ngroup = \"so\"\nstart = [[2]]", 6, &["start"]),
         ("field = [[\"0\"]]\ngroup = \"so\"\nstart = [[1, 2]]", 6, &["expected 1 rows of 1"]),
+        ("field = [[\"0\"]]\ngroup = \"so\"\naction = \"lagrangian\"", 6, &["an action of sp"]),
+        (
+            "field = [[\"0\", \"1\"], [\"1\", \"0\"]]\ngroup = \"sp\"\naction = \"lagrangian\"\nstart = [[0, 1], [0, 0]]",
+            7,
+            &["expected 1 rows of 1"],
+        ),
         ("field = [[\"0\"]]\ngroup = \"sl\"\nstart = [[2]]", 6, &["determinant is 2"]),
         ("field = [[\"0\"]]\ngroup = \"so\"\naction = \"linear\"", 2, &["missing key `start`"]),
     ] {

@@ -39,12 +39,13 @@ const IN_THE_ALGEBRA: f64 = 1e-8;
 impl Equation {
     /// f(t, y) as it is stated.
     fn stated(&self, t: f64, y: &Mat<f64>, v: &mut Mat<f64>) {
-        let (n, k) = (y.nrows(), y.ncols());
+        let (rows, k) = (y.nrows(), y.ncols());
         let mut values = [0.0; 1 + NAMED_MAX * NAMED_MAX];
         values[0] = t;
-        for (i, j) in (0..n).flat_map(|i| (0..k).map(move |j| (i, j))) {
+        for (i, j) in (0..rows).flat_map(|i| (0..k).map(move |j| (i, j))) {
             values[1 + i * k + j] = y[(i, j)];
         }
+        let n = self.group.n();
         for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))) {
             v[(i, j)] = self.field[i * n + j].value(&values);
         }
@@ -77,6 +78,8 @@ impl Equation {
     fn kept(&self) -> Option<&'static str> {
         match self.action {
             MatrixAction::Conjugation | MatrixAction::Coadjoint => Some("traces"),
+            // Each Lagrangian subspace can be moved to each.
+            MatrixAction::Lagrangian => None,
             _ if !self.keeps_a_form() => None,
             MatrixAction::Translation => Some("group_defect"),
             _ => Some("form"),

@@ -6,6 +6,7 @@
 //! | linear | f y | yᵀMy |
 //! | conjugation | f y − y f | tr yᵏ |
 //! | coadjoint | y fᵀ − fᵀ y | tr yᵏ |
+//! | lagrangian | c + dy − ya − yby, f = \[a b; c d\] in sp(2m), y symmetric | |
 //!
 //! M is that of the group; GL(n) and SL(n) have none. The equation is that of the part of f in 𝔤: a f
 //! that is not in 𝔤 at the start, or at a point of M beside it, is refused, and later the projection
@@ -29,13 +30,15 @@ use crate::scene::{ReadError, Refusal, help_for};
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {
     name: "matrix-ode",
-    equation: "ẏ = f y (translation, linear), f y − y f (conjugation), y fᵀ − fᵀ y (coadjoint), f(t, y) in the algebra",
+    equation: "ẏ = f y (translation, linear), f y − y f (conjugation), y fᵀ − fᵀ y (coadjoint), c + d y − y a − y b y \
+               (lagrangian, f = [a b; c d]), f(t, y) in the algebra",
     summary: "an equation of one's own on matrices, by the action of a matrix group",
     keys: &[
         KeyInfo { name: "group", meaning: "\"so\", \"sl\", \"gl\", \"sp\" or \"so(p,q)\"" },
         KeyInfo {
             name: "action",
-            meaning: "\"translation\", \"linear\", \"conjugation\" or \"coadjoint\"; optional: translation",
+            meaning: "\"translation\", \"linear\", \"conjugation\", \"coadjoint\" or, of sp, \"lagrangian\"; optional: \
+                      translation",
         },
         KeyInfo {
             name: "field",
@@ -44,7 +47,8 @@ pub(super) const KIND: Kind = Kind {
         },
         KeyInfo {
             name: "start",
-            meaning: "initial point, n rows; for translation in the group and optional, the identity",
+            meaning: "initial point, n rows, of n numbers but for linear; for translation in the group and \
+                      optional, the identity; for lagrangian symmetric, n/2 rows of n/2",
         },
         PARAMETERS,
     ],
@@ -89,11 +93,12 @@ struct Keys {
     parameters: Parameters,
 }
 
-const ACTIONS: [(&str, MatrixAction); 4] = [
+const ACTIONS: [(&str, MatrixAction); 5] = [
     ("translation", MatrixAction::Translation),
     ("linear", MatrixAction::Linear),
     ("conjugation", MatrixAction::Conjugation),
     ("coadjoint", MatrixAction::Coadjoint),
+    ("lagrangian", MatrixAction::Lagrangian),
 ];
 
 /// Formulas name entries by one digit for the row and one for the column.
@@ -118,9 +123,12 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
         return Err(Refusal::at(format!("field[{i}]"), message).into());
     }
     let group = algebra.group(n, "field")?;
+    if action == MatrixAction::Lagrangian && algebra != Algebra::Sp {
+        return Err(Refusal::at("action", "lagrangian is an action of sp").into());
+    }
     let start = start(algebra, &group, action, keys.start)?;
     let entry = |i: usize| (1..=start.ncols()).map(move |j| format!("y{i}{j}"));
-    let variables = ["t".to_owned()].into_iter().chain((1..=n).flat_map(entry));
+    let variables = ["t".to_owned()].into_iter().chain((1..=start.nrows()).flat_map(entry));
     let names = keys.parameters.names("field", variables)?;
     let mut field = Vec::new();
     for (i, row) in keys.field.iter().enumerate() {
@@ -151,13 +159,19 @@ fn start(
         (None, MatrixAction::Translation) => Mat::identity(n, n),
         (None, _) => return Err(Refusal::section("missing key `start` in [problem]")),
     };
-    let columns = if action == MatrixAction::Linear { start.ncols().min(NAMED_MAX) } else { n };
-    if (start.nrows(), start.ncols()) != (n, columns) {
-        let (rows, found) = (start.nrows(), start.ncols());
-        let expected = if action == MatrixAction::Linear { "1 to 9".into() } else { n.to_string() };
+    let (rows, columns) = match action {
+        MatrixAction::Lagrangian => (n / 2, n / 2),
+        MatrixAction::Linear => (n, start.ncols().min(NAMED_MAX)),
+        _ => (n, n),
+    };
+    if (start.nrows(), start.ncols()) != (rows, columns) {
+        let (found, of) = (start.nrows(), start.ncols());
         return Err(refused(format!(
-            "found {rows} rows of {found} numbers, expected {n} rows of {expected} as field has them"
+            "found {found} rows of {of} numbers, expected {rows} rows of {columns} as field has them"
         )));
+    }
+    if action == MatrixAction::Lagrangian && start != start.transpose() {
+        return Err(refused("it is not symmetric".into()));
     }
     if action == MatrixAction::Translation {
         let on_group = group.element(start.clone());
