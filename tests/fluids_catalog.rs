@@ -80,8 +80,16 @@ fn check<S: Surface>(fluid: &Zeitlin<S>, start: &ComplexMatrix) {
             seen.push(label);
         }
     }
-    for name in ["isospectral-kahan-li6", "energy-casimir6 cay", "cf4", "cg4", "gauss6", "cf-ees27"]
-    {
+    for name in [
+        "isospectral4",
+        "isospectral6",
+        "isospectral-kahan-li6",
+        "energy-casimir6 cay",
+        "cf4",
+        "cg4",
+        "gauss6",
+        "cf-ees27",
+    ] {
         assert!(seen.iter().any(|label| label == name), "{name} is not among {seen:?}");
     }
     for map in [None, Some("cay")] {
@@ -124,7 +132,6 @@ fn parts_that_do_not_fit() {
         (MethodSpec::new("rkmk-gauss4", Some("log")), "unknown map"),
         (cut, "leave q out"),
         (MethodSpec::new("magnus4", None), "linear type"),
-        (MethodSpec::new("isospectral4", None), "isospectral2 and its compositions"),
     ] {
         let message = refusal(&spec);
         assert!(message.contains(words), "{}: {message}", spec.label());

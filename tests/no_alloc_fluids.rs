@@ -5,7 +5,7 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
 use lieflow::maps::{Cay, Exp};
-use lieflow::methods::{EnergyCasimir, Rkmk, tableau::RK4};
+use lieflow::methods::{EnergyCasimir, GAUSS4, GAUSS6, IsospectralGauss, Rkmk, tableau::RK4};
 use lieflow::problems::{FluidMidpoint, Surface, Zeitlin};
 use lieflow::{Method, Step, groups::ComplexMatrix};
 use rand::SeedableRng;
@@ -53,6 +53,8 @@ fn check<S: Surface>(fluid: &Zeitlin<S>, w: &ComplexMatrix) {
     assert_eq!(steps_allocate(fluid, &Rkmk::new(RK4, Exp), w), 0, "exp, N = {}", fluid.n());
     assert_eq!(steps_allocate(fluid, &Rkmk::new(RK4, Cay), w), 0, "cay, N = {}", fluid.n());
     assert_eq!(steps_allocate(fluid, &EnergyCasimir::new(Cay), w), 0, "N = {}", fluid.n());
+    assert_eq!(steps_allocate(fluid, &IsospectralGauss(GAUSS4), w), 0, "N = {}", fluid.n());
+    assert_eq!(steps_allocate(fluid, &IsospectralGauss(GAUSS6), w), 0, "N = {}", fluid.n());
 }
 
 #[test]

@@ -91,7 +91,7 @@ fn methods_for_a_scene_are_those_that_run() {
         ("lagrange-top", &["energy-casimir", "energy-casimir6"], &["isospectral2", "taylor12"]),
         ("ellipsoid-in-fluid", &["energy-casimir4"], &closed),
         ("spherical-pendulum", &["energy-casimir"], &closed),
-        ("shear-layer", &["isospectral2", "isospectral-suzuki4", "energy-casimir6"], &closed),
+        ("shear-layer", &["isospectral2", "isospectral6", "energy-casimir6"], &closed),
         ("euler-on-sl3", &["energy-casimir"], &linear),
         ("wing-nut", &closed, &["rk4-qr", "energy-casimir"]),
     ] {

@@ -130,4 +130,9 @@ fn classical_steps_on_matrices_take_what_their_products_take() {
     let mathieu = scene("kind = \"mathieu\"\na = 1.0\nq = 0.2", "solution");
     let found = a_step(&mathieu, &MethodSpec::new("rk4", None), Size::Steps(3));
     assert_eq!(found, Some(expected));
+    // The same as formulas: 2t, its cosine, a product and a difference, and three means of the projection.
+    let own = "kind = \"matrix-ode\"\ngroup = \"sp\"\n\
+               field = [[\"0\", \"1\"], [\"-(1 - 0.4*cos(2*t))\", \"0\"]]";
+    let found = a_step(&scene(own, "point"), &MethodSpec::new("rk4", None), Size::Steps(3));
+    assert_eq!(found, Some(4 * (4 + 6 + product) + 7 * 2 * numbers));
 }

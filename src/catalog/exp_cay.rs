@@ -4,8 +4,8 @@
 use super::embedded::{no_pair, only_pairs, pair_of};
 use super::*;
 use crate::methods::{
-    Composition, EnergyCasimir, GAUSS2, GAUSS4, GAUSS6, Gauss, KAHAN_LI6, Metric, RkmkGauss,
-    RkmkGaussSymmetric, SUZUKI4,
+    Composition, EnergyCasimir, GAUSS2, GAUSS4, GAUSS6, Gauss, IsospectralGauss, KAHAN_LI6, Metric,
+    RkmkGauss, RkmkGaussSymmetric, SUZUKI4,
 };
 use crate::problems::{FluidMidpoint, PointOf, ScalarOf, Surface, Zeitlin};
 
@@ -84,8 +84,8 @@ where
     only_pairs(spec, each_method!(spec, on, exp_or_cay, no_pair, pair => pair_of))
 }
 
-/// [`with_exp_cay_method`], [`LIE_POISSON_METHODS`] and, of [`ISOSPECTRAL_METHODS`], the midpoint rule and
-/// its compositions: an ideal fluid. The midpoint rules are [`FluidMidpoint`]'s, which are the general
+/// [`with_exp_cay_method`], [`LIE_POISSON_METHODS`] and [`ISOSPECTRAL_METHODS`]: an ideal fluid. The midpoint
+/// rules are [`FluidMidpoint`]'s, which are the general
 /// ones with less work.
 ///
 /// # Errors
@@ -111,11 +111,8 @@ pub fn with_fluid_method<S: Surface, V: OnMethod<Zeitlin<S>>>(
         ("isospectral2", _) => Ok(on.call(ISOSPECTRAL)),
         ("isospectral-suzuki4", _) => Ok(on.call(Composition::new(ISOSPECTRAL, SUZUKI4))),
         ("isospectral-kahan-li6", _) => Ok(on.call(Composition::new(ISOSPECTRAL, KAHAN_LI6))),
-        ("isospectral4" | "isospectral6", _) => Err(Error::Unsupported {
-            what: "method",
-            with: format!("`{name}` on a fluid"),
-            why: "of the isospectral methods a fluid has isospectral2 and its compositions",
-        }),
+        ("isospectral4", _) => Ok(on.call(IsospectralGauss(GAUSS4))),
+        ("isospectral6", _) => Ok(on.call(IsospectralGauss(GAUSS6))),
         _ => with_exp_cay_method(spec, on),
     }
 }

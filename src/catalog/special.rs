@@ -20,7 +20,7 @@
 //! | [`with_momentum_method`] | the body by its momentum | `Field`, `Norm`, `Series`, `Body`, `LiePoisson` |
 //! | [`with_exp_cay_method`](super::with_exp_cay_method) | on a group with the maps exp and cay | `Field`, `Norm` |
 //! | [`with_quaternion_method`] | a free rigid body by its quaternion | `Field`, `Norm`, `Series`, `Body` |
-//! | [`with_fluid_method`](super::with_fluid_method) | an ideal fluid, [`Zeitlin`](crate::problems::Zeitlin) | `Field`, `Norm`, `LiePoisson`, of `Isospectral` the midpoint rules |
+//! | [`with_fluid_method`](super::with_fluid_method) | an ideal fluid, [`Zeitlin`](crate::problems::Zeitlin) | `Field`, `Norm`, `LiePoisson`, `Isospectral` |
 //! | [`with_state_method`](super::with_state_method) | both in one state, [`RigidBodyState`] | `State` |
 //! | [`with_linear_method`](super::with_linear_method) | ẏ = λ_*(A(t))(y) | `LinearType` |
 //!

@@ -30,8 +30,8 @@ pub(crate) use se3::{add3, finite_pair};
 pub use so3::{So3, hat, vee};
 pub(crate) use so3::{apply3, cross, dot3, in_range};
 pub use translations::Translations;
-pub(crate) use unitary::mul_complex;
 pub use unitary::{ComplexMatrix, Unitary};
+pub(crate) use unitary::{mul_adjoint_skew, mul_complex};
 
 use rand::Rng;
 

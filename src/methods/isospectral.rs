@@ -7,6 +7,8 @@
 //! Q_i = 𝟙 + h Σ_j a_ij B_j Q_j, P_i = 𝟙 − h Σ_j a_ij P_j B_j, B_j = f(t + c_j h, Q_j W P_j);
 //! Q⁺ = 𝟙 + h Σ_i b_i B_i Q_i, P⁺ = 𝟙 − h Σ_i b_i P_i B_i, W⁺ = Q⁺ W P⁺.
 //!
+//! On 𝔲(n), of complex matrices, ᵀ is † throughout.
+//!
 //! The Gauss methods keep quadratic invariants: P⁺Q⁺ = 𝟙, so that the spectrum of m (every Casimir
 //! of GL(n)) is kept to rounding, and Q⁺ ∈ G_M where G keeps a form. P_i is M⁻¹Q_iᵀM there; where
 //! every u ∈ 𝔤 is skew, as on SO(n), it is Q_iᵀ and is not computed.
@@ -25,10 +27,12 @@ use super::gauss::ImplicitTableau;
 use super::newton::Progress;
 use super::{Method, Step, Symmetric};
 use crate::actions::{Action, Coadjoint, Conjugation};
-use crate::dense::{axpy, is_finite, mul, norm_frobenius};
+use crate::dense::mul;
 use crate::error::{Error, StepError};
-use crate::groups::{AlgebraMatrix, LieAlgebra, MatrixGroup};
-use crate::problems::Problem;
+use crate::groups::{
+    ComplexMatrix, LieAlgebra, LieGroup, MatrixGroup, Unitary, mul_adjoint_skew, mul_complex,
+};
+use crate::problems::{AlgOf, LinearSpace, PointOf, Problem};
 use crate::scalar::{Ops, tally};
 
 /// An isospectral method on a Gauss tableau.
@@ -37,114 +41,235 @@ pub struct IsospectralGauss<const S: usize>(pub ImplicitTableau<S>);
 
 impl<const S: usize> Symmetric for IsospectralGauss<S> {}
 
+/// A group of n×n matrices, real or complex, that isospectral methods conjugate by.
+pub trait Conjugating: LieGroup<Scalar = f64> {
+    /// A stage Q_i or P_i, an n×n matrix that need not be in G.
+    type Stage: LinearSpace<Scalar = f64>;
+
+    /// n.
+    fn rows(&self) -> usize;
+    /// Fresh storage.
+    fn stage(&self) -> Self::Stage;
+    /// Is u† = −u for every u ∈ 𝔤? Then P_i = Q_i†.
+    fn is_skew(&self) -> bool;
+    /// x ← x + 𝟙.
+    fn add_identity(&self, x: &mut Self::Stage);
+    /// x ← x + a·b.
+    fn add_algebra(&self, a: f64, b: &Self::Alg, x: &mut Self::Stage);
+    /// out ← b·q.
+    fn slope_of_q(&self, b: &Self::Alg, q: &Self::Stage, out: &mut Self::Stage);
+    /// out ← −p·b.
+    fn slope_of_p(&self, p: &Self::Stage, b: &Self::Alg, out: &mut Self::Stage);
+}
+
+/// An action that conjugates matrices, or their transposes.
+pub trait Conjugates<G: Conjugating>: Action<G, Point: LinearSpace<Scalar = f64>> {
+    /// out ← q m p, or pᵀ m qᵀ where m is transposed, with p = q† where there is none; `half` is scratch.
+    fn conjugate(
+        q: &G::Stage,
+        p: Option<&G::Stage>,
+        m: &Self::Point,
+        half: &mut G::Stage,
+        out: &mut Self::Point,
+    );
+}
+
+type StageOf<P> = <<P as Problem>::Group as Conjugating>::Stage;
+
 /// Stages and scratch.
 #[allow(missing_debug_implementations)] // the parts belong to the problem's types
-pub struct IsospectralWork<P: Problem, const S: usize> {
-    q: Factor<S>,
-    /// `None` where it is Qᵀ.
-    p: Option<Factor<S>>,
-    b: AlgebraMatrix,
-    half: Mat<f64>,
-    m: Mat<f64>,
+pub struct IsospectralWork<P: Problem<Group: Conjugating>, const S: usize> {
+    q: Factor<StageOf<P>, S>,
+    /// `None` where it is Q†.
+    p: Option<Factor<StageOf<P>, S>>,
+    b: AlgOf<P>,
+    half: StageOf<P>,
+    m: PointOf<P>,
     field: P::Work,
 }
 
 /// The stages Q_i (or P_i) and their slopes B_i Q_i (or −P_i B_i).
-struct Factor<const S: usize> {
-    stages: [Mat<f64>; S],
-    slopes: [Mat<f64>; S],
+struct Factor<X, const S: usize> {
+    stages: [X; S],
+    slopes: [X; S],
 }
 
-impl<const S: usize> Factor<S> {
-    fn new(n: usize) -> Self {
-        let zeros = || core::array::from_fn(|_| Mat::zeros(n, n));
+impl<X: LinearSpace<Scalar = f64>, const S: usize> Factor<X, S> {
+    fn new<G: Conjugating<Stage = X>>(group: &G) -> Self {
+        let zeros = || core::array::from_fn(|_| group.stage());
         Factor { stages: zeros(), slopes: zeros() }
     }
 
     /// out ← 𝟙 + h Σ c_j slope_j.
-    fn sum(slopes: &[Mat<f64>; S], h: f64, c: &[f64; S], out: &mut Mat<f64>) {
-        out.fill(0.0);
+    fn sum<G>(group: &G, slopes: &[X; S], h: f64, c: &[f64; S], out: &mut X)
+    where
+        G: Conjugating<Stage = X>,
+    {
+        out.clear();
         for (c, x) in c.iter().zip(slopes) {
-            axpy(h * c, x, out);
+            out.add(h * c, x);
         }
-        tally(|| Ops::adds(out.nrows()));
-        for i in 0..out.nrows() {
-            out[(i, i)] += 1.0;
-        }
+        group.add_identity(out);
     }
 
     /// Every slope is ±b.
-    fn start(&mut self, sign: f64, b: &Mat<f64>, h: f64, a: &[[f64; S]; S]) {
+    fn start<G>(&mut self, group: &G, sign: f64, b: &G::Alg, h: f64, a: &[[f64; S]; S])
+    where
+        G: Conjugating<Stage = X>,
+    {
         for slope in &mut self.slopes {
-            slope.fill(0.0);
-            axpy(sign, b, slope);
+            slope.clear();
+            group.add_algebra(sign, b, slope);
         }
         for (row, stage) in a.iter().zip(&mut self.stages) {
-            Self::sum(&self.slopes, h, row, stage);
+            Self::sum(group, &self.slopes, h, row, stage);
         }
     }
 
     /// The slope in `half` becomes that of stage i, and the stage follows. Returns its change.
-    fn replace(&mut self, i: usize, h: f64, a: &[f64; S], half: &mut Mat<f64>) -> f64 {
+    fn replace<G>(&mut self, group: &G, i: usize, h: f64, a: &[f64; S], half: &mut X) -> f64
+    where
+        G: Conjugating<Stage = X>,
+    {
         core::mem::swap(half, &mut self.slopes[i]);
-        Self::sum(&self.slopes, h, a, half);
+        Self::sum(group, &self.slopes, h, a, half);
         core::mem::swap(half, &mut self.stages[i]);
-        axpy(-1.0, &self.stages[i], half);
-        norm_frobenius(half)
+        half.add(-1.0, &self.stages[i]);
+        half.size()
     }
 }
 
-/// An action that conjugates matrices, or their transposes.
-pub trait Conjugates: Action<MatrixGroup, Point = Mat<f64>> {
-    /// Is the point mᵀ conjugated, and not m?
-    const TRANSPOSED: bool;
-}
+impl Conjugating for MatrixGroup {
+    type Stage = Mat<f64>;
 
-impl Conjugates for Conjugation {
-    const TRANSPOSED: bool = false;
-}
-
-impl Conjugates for Coadjoint {
-    const TRANSPOSED: bool = true;
-}
-
-/// out ← q m p, or pᵀ m qᵀ, with p = qᵀ where there is none.
-fn conjugate<A: Conjugates>(
-    q: &Mat<f64>,
-    p: Option<&Mat<f64>>,
-    m: &Mat<f64>,
-    half: &mut Mat<f64>,
-    out: &mut Mat<f64>,
-) {
-    match (p, A::TRANSPOSED) {
-        (Some(p), true) => mul(half, p.transpose(), m.as_ref()),
-        _ => mul(half, q.as_ref(), m.as_ref()),
+    fn rows(&self) -> usize {
+        self.n()
     }
-    match (p, A::TRANSPOSED) {
-        (Some(p), false) => mul(out, half.as_ref(), p.as_ref()),
-        _ => mul(out, half.as_ref(), q.transpose()),
+    fn stage(&self) -> Mat<f64> {
+        Mat::zeros(self.n(), self.n())
+    }
+    fn is_skew(&self) -> bool {
+        MatrixGroup::is_skew(self)
+    }
+    fn add_identity(&self, x: &mut Mat<f64>) {
+        add_one(x);
+    }
+    fn add_algebra(&self, a: f64, b: &Self::Alg, x: &mut Mat<f64>) {
+        LinearSpace::add(x, a, b);
+    }
+    fn slope_of_q(&self, b: &Self::Alg, q: &Mat<f64>, out: &mut Mat<f64>) {
+        mul(out, b.as_ref(), q.as_ref());
+    }
+    fn slope_of_p(&self, p: &Mat<f64>, b: &Self::Alg, out: &mut Mat<f64>) {
+        mul(out, p.as_ref(), b.as_ref());
+        *out *= faer::Scale(-1.0);
     }
 }
+
+impl Conjugating for Unitary {
+    type Stage = ComplexMatrix;
+
+    fn rows(&self) -> usize {
+        self.n()
+    }
+    fn stage(&self) -> ComplexMatrix {
+        self.zero()
+    }
+    fn is_skew(&self) -> bool {
+        true
+    }
+    fn add_identity(&self, x: &mut ComplexMatrix) {
+        add_one(&mut x.re);
+    }
+    fn add_algebra(&self, a: f64, b: &ComplexMatrix, x: &mut ComplexMatrix) {
+        x.add(a, b);
+    }
+    fn slope_of_q(&self, b: &ComplexMatrix, q: &ComplexMatrix, out: &mut ComplexMatrix) {
+        mul_complex(out, b, q);
+    }
+    fn slope_of_p(&self, p: &ComplexMatrix, b: &ComplexMatrix, out: &mut ComplexMatrix) {
+        mul_complex(out, p, b);
+        out.parts_mut().into_iter().for_each(|part| *part *= faer::Scale(-1.0));
+    }
+}
+
+fn add_one(x: &mut Mat<f64>) {
+    tally(|| Ops::adds(x.nrows()));
+    for i in 0..x.nrows() {
+        x[(i, i)] += 1.0;
+    }
+}
+
+impl Conjugates<MatrixGroup> for Conjugation {
+    fn conjugate(
+        q: &Mat<f64>,
+        p: Option<&Mat<f64>>,
+        m: &Mat<f64>,
+        half: &mut Mat<f64>,
+        out: &mut Mat<f64>,
+    ) {
+        mul(half, q.as_ref(), m.as_ref());
+        match p {
+            Some(p) => mul(out, half.as_ref(), p.as_ref()),
+            None => mul(out, half.as_ref(), q.transpose()),
+        }
+    }
+}
+
+/// The point is Wᵀ.
+impl Conjugates<MatrixGroup> for Coadjoint {
+    fn conjugate(
+        q: &Mat<f64>,
+        p: Option<&Mat<f64>>,
+        m: &Mat<f64>,
+        half: &mut Mat<f64>,
+        out: &mut Mat<f64>,
+    ) {
+        match p {
+            Some(p) => mul(half, p.transpose(), m.as_ref()),
+            None => mul(half, q.as_ref(), m.as_ref()),
+        }
+        mul(out, half.as_ref(), q.transpose());
+    }
+}
+
+/// q m q† of a skew-Hermitian m, by one product and a half.
+macro_rules! of_skew_hermitian {
+    ($($action:ty),*) => {$(
+        impl Conjugates<Unitary> for $action {
+            fn conjugate(
+                q: &ComplexMatrix,
+                _: Option<&ComplexMatrix>,
+                m: &ComplexMatrix,
+                half: &mut ComplexMatrix,
+                out: &mut ComplexMatrix,
+            ) {
+                mul_complex(half, q, m);
+                mul_adjoint_skew(out, half, q);
+            }
+        }
+    )*};
+}
+of_skew_hermitian!(Conjugation, Coadjoint);
 
 impl<P, const S: usize> Method<P> for IsospectralGauss<S>
 where
-    P: Problem<Group = MatrixGroup>,
-    P::Action: Action<MatrixGroup, Point = Mat<f64>> + Conjugates,
+    P: Problem<Group: Conjugating>,
+    P::Action: Conjugates<P::Group>,
 {
     type Work = IsospectralWork<P, S>;
 
     fn order(&self, _: &P) -> usize {
         self.0.order
     }
-    fn work(&self, problem: &P, _: &Mat<f64>) -> Result<Self::Work, Error> {
+    fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
         let group = problem.group();
-        let zero = || Mat::zeros(group.n(), group.n());
         Ok(IsospectralWork {
-            q: Factor::new(group.n()),
-            p: (!group.is_skew()).then(|| Factor::new(group.n())),
+            q: Factor::new(group),
+            p: (!group.is_skew()).then(|| Factor::new(group)),
             b: group.zero(),
-            half: zero(),
-            m: zero(),
+            half: group.stage(),
+            m: like.clone(),
             field: problem.work(),
         })
     }
@@ -152,45 +277,44 @@ where
         &self,
         problem: &P,
         Step { t, h, .. }: Step<f64>,
-        y: &mut Mat<f64>,
+        y: &mut PointOf<P>,
         IsospectralWork { q, p, b, half, m, field }: &mut Self::Work,
     ) -> Result<(), StepError> {
-        let tab = &self.0;
+        let (tab, group) = (&self.0, problem.group());
         problem.f(t, y, b, field);
-        if !is_finite(b) {
+        if !group.is_finite(b) {
             return Err(StepError::NonFiniteRhs { stage: 1 });
         }
-        q.start(1.0, b, h, &tab.a);
+        q.start(group, 1.0, b, h, &tab.a);
         if let Some(p) = p {
-            p.start(-1.0, b, h, &tab.a);
+            p.start(group, -1.0, b, h, &tab.a);
         }
-        let scale = (y.nrows() as f64).sqrt(); // ‖𝟙‖
+        let scale = (group.rows() as f64).sqrt(); // ‖𝟙‖
         let mut progress = Progress::new();
         loop {
             let mut change = 0.0;
             for i in 0..S {
                 let back = p.as_ref().map(|p| &p.stages[i]);
-                conjugate::<P::Action>(&q.stages[i], back, y, half, m);
+                P::Action::conjugate(&q.stages[i], back, y, half, m);
                 problem.f(t + tab.c[i] * h, m, b, field);
-                mul(half, b.as_ref(), q.stages[i].as_ref());
-                change += q.replace(i, h, &tab.a[i], half);
+                group.slope_of_q(b, &q.stages[i], half);
+                change += q.replace(group, i, h, &tab.a[i], half);
                 if let Some(p) = p {
-                    mul(half, p.stages[i].as_ref(), b.as_ref());
-                    *half *= faer::Scale(-1.0);
-                    change += p.replace(i, h, &tab.a[i], half);
+                    group.slope_of_p(&p.stages[i], b, half);
+                    change += p.replace(group, i, h, &tab.a[i], half);
                 }
             }
             if progress.done("isospectral", change / scale)? {
                 break;
             }
         }
-        Factor::sum(&q.slopes, h, &tab.b, &mut q.stages[0]);
+        Factor::sum(group, &q.slopes, h, &tab.b, &mut q.stages[0]);
         if let Some(p) = p {
-            Factor::sum(&p.slopes, h, &tab.b, &mut p.stages[0]);
+            Factor::sum(group, &p.slopes, h, &tab.b, &mut p.stages[0]);
         }
         let back = p.as_ref().map(|p| &p.stages[0]);
-        conjugate::<P::Action>(&q.stages[0], back, y, half, m);
-        if !is_finite(m) {
+        P::Action::conjugate(&q.stages[0], back, y, half, m);
+        if !m.is_finite() {
             return Err(StepError::NotFinite { what: "the state" });
         }
         core::mem::swap(y, m);

@@ -42,7 +42,7 @@ pub use energy_casimir::{EnergyCasimir, EnergyCasimirWork};
 pub use exact::ExactMotion;
 pub use gauss::{GAUSS2, GAUSS4, GAUSS6, Gauss, GaussWork, ImplicitTableau};
 pub use implicit_rkmk::{OddMap, RkmkGauss, RkmkGaussSymmetric, RkmkGaussWork};
-pub use isospectral::{Conjugates, IsospectralGauss, IsospectralWork};
+pub use isospectral::{Conjugates, Conjugating, IsospectralGauss, IsospectralWork};
 pub use lie_series::{LieSeries, LieSeriesWork, SeriesGroup};
 pub use low_storage::LowStorage;
 pub use magnus::CfMagnus;

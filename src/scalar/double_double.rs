@@ -32,6 +32,7 @@ pub struct DoubleDouble {
 }
 
 /// a + b without error, for any a and b.
+#[inline]
 const fn two_sum(a: f64, b: f64) -> DoubleDouble {
     let hi = a + b;
     let b_kept = hi - a;
@@ -39,12 +40,14 @@ const fn two_sum(a: f64, b: f64) -> DoubleDouble {
 }
 
 /// a + b without error, for |a| ≥ |b|.
+#[inline]
 const fn quick_two_sum(a: f64, b: f64) -> DoubleDouble {
     let hi = a + b;
     DoubleDouble { hi, lo: b - (hi - a) }
 }
 
 /// The upper 26 bits of a and the rest.
+#[inline]
 const fn split(a: f64) -> (f64, f64) {
     let t = 134_217_729.0 * a; // 2²⁷ + 1
     let upper = t - (t - a);
@@ -52,6 +55,7 @@ const fn split(a: f64) -> (f64, f64) {
 }
 
 /// a·b without error, where nothing over- or underflows.
+#[inline]
 const fn two_prod(a: f64, b: f64) -> DoubleDouble {
     let hi = a * b;
     let ((a1, a2), (b1, b2)) = (split(a), split(b));
@@ -60,18 +64,22 @@ const fn two_prod(a: f64, b: f64) -> DoubleDouble {
 
 /// The operators, as functions that constants can be made with.
 impl DoubleDouble {
+    #[inline]
     const fn new(x: f64) -> Self {
         DoubleDouble { hi: x, lo: 0.0 }
     }
+    #[inline]
     const fn plus(self, other: Self) -> Self {
         let (s, t) = (two_sum(self.hi, other.hi), two_sum(self.lo, other.lo));
         let s = quick_two_sum(s.hi, s.lo + t.hi);
         quick_two_sum(s.hi, s.lo + t.lo)
     }
+    #[inline]
     const fn times(self, other: Self) -> Self {
         let p = two_prod(self.hi, other.hi);
         quick_two_sum(p.hi, p.lo + (self.hi * other.lo + self.lo * other.hi))
     }
+    #[inline]
     const fn minus(self) -> Self {
         DoubleDouble { hi: -self.hi, lo: -self.lo }
     }
@@ -103,24 +111,28 @@ impl From<DoubleDouble> for f64 {
 
 impl Add for DoubleDouble {
     type Output = Self;
+    #[inline]
     fn add(self, other: Self) -> Self {
         self.plus(other)
     }
 }
 impl Neg for DoubleDouble {
     type Output = Self;
+    #[inline]
     fn neg(self) -> Self {
         self.minus()
     }
 }
 impl Sub for DoubleDouble {
     type Output = Self;
+    #[inline]
     fn sub(self, other: Self) -> Self {
         self.plus(other.minus())
     }
 }
 impl Mul for DoubleDouble {
     type Output = Self;
+    #[inline]
     fn mul(self, other: Self) -> Self {
         self.times(other)
     }
@@ -132,11 +144,13 @@ impl Div for DoubleDouble {
     }
 }
 impl AddAssign for DoubleDouble {
+    #[inline]
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
     }
 }
 impl SubAssign for DoubleDouble {
+    #[inline]
     fn sub_assign(&mut self, other: Self) {
         *self = *self - other;
     }
@@ -152,6 +166,7 @@ impl Real for DoubleDouble {
     /// The products of Dekker need room.
     const SQUARE_MAX: f64 = 1e290;
 
+    #[inline]
     fn lit(x: f64) -> Self {
         Self::new(x)
     }

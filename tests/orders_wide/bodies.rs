@@ -17,7 +17,7 @@ use super::members::{CANCELLED, STORED, Span, by_name, high_orders, members, rat
 
 const MEMBERS: u64 = 12;
 /// Methods for bodies take larger steps.
-const SPAN: Span = Span { length: 4.0, rate: 128.0, gap: 5e-28 };
+const SPAN: Span = Span { length: 4.0, rate: 80.0, gap: 5e-28 };
 
 /// A body that is nothing special, and one that is more even: compositions show their order there before
 /// the rounding of their weights.

@@ -90,6 +90,15 @@ impl Matrices {
         }))
     }
 
+    /// g⁻¹: g♯, or by solving.
+    pub(crate) fn inverse(&self, g: &Square) -> Square {
+        self.adjoint(g).unwrap_or_else(|| g.solve(Square::identity(self.n)))
+    }
+    /// The part of x in 𝔤: (x − x♯)/2, or x.
+    pub(crate) fn project(&self, x: &Square) -> Square {
+        self.adjoint(x).map_or(*x, |adjoint| (*x - adjoint) * D::lit(0.5))
+    }
+
     /// 𝟙 − g♯g, or 0.
     fn residual(&self, g: &Square) -> Square {
         match self.adjoint(g) {
@@ -192,7 +201,12 @@ impl SeriesGroup for Matrices {
 
 impl Wide for Matrices {
     fn algebra(&self, next: &mut dyn FnMut() -> D) -> Square {
-        self.basis.iter().fold(self.zero(), |u, e| u + *e * next())
+        let mut u = self.zero();
+        for e in &self.basis {
+            let x = next();
+            e.nonzero().for_each(|at| u[at] += x * e[at]);
+        }
+        u
     }
     fn tangent(&self, u: &Square, g: &Square, out: &mut Square) {
         *out = *u * *g;

@@ -183,25 +183,23 @@ fn ordered(group: &Matrices) -> Result<(), Error> {
 /// e_k and its exponentials: g ← g·exp(θe).
 fn times_exponential(g: &mut Square, e: &Square, theta: D) {
     let n = e.n();
-    let nonzero = |&(i, j): &(usize, usize)| e[(i, j)] != D::lit(0.0);
-    let entries = || (0..n * n).map(move |k| (k / n, k % n)).filter(nonzero);
-    if entries().all(|(i, j)| i == j) {
+    if e.nonzero().all(|(i, j)| i == j) {
         let scale = Square::from_fn(1, |_, _| theta).exp()[(0, 0)];
-        for (i, _) in entries() {
+        for (i, _) in e.nonzero() {
             let up = e[(i, i)] == D::lit(1.0);
             let scale = if up { scale } else { D::lit(1.0) / scale };
             (0..n).for_each(|k| g[(k, i)] = g[(k, i)] * scale);
         }
-    } else if entries().all(|(i, j)| e[(j, i)] == -e[(i, j)]) {
+    } else if e.nonzero().all(|(i, j)| e[(j, i)] == -e[(i, j)]) {
         let (sin, cos) = theta.sin_cos();
-        let Some((r, c)) = entries().find(|(r, c)| r > c) else { return };
+        let Some((r, c)) = e.nonzero().find(|(r, c)| r > c) else { return };
         for k in 0..n {
             let (x, y) = (g[(k, c)], g[(k, r)]);
             (g[(k, c)], g[(k, r)]) = (cos * x + sin * y, cos * y - sin * x);
         }
     } else {
         // e² = 0
-        for (i, j) in entries() {
+        for (i, j) in e.nonzero() {
             (0..n).for_each(|k| g[(k, j)] = g[(k, j)] + theta * e[(i, j)] * g[(k, i)]);
         }
     }
@@ -229,7 +227,7 @@ fn inverse_differential<'a>(
     let mut p = Square::identity(group.n());
     let mut elements = Vec::with_capacity(dim);
     for (k, (e, theta)) in factors.enumerate() {
-        let carried = p * *e * p.solve(Square::identity(group.n()));
+        let carried = p * *e * group.inverse(&p);
         group.coordinates(&carried).enumerate().for_each(|(i, x)| rows[i][k] = x);
         times_exponential(&mut p, e, theta);
         elements.push(*e);

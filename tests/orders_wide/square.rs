@@ -34,8 +34,17 @@ impl Square {
     pub(crate) fn n(&self) -> usize {
         self.n
     }
+    pub(crate) fn transpose(&self) -> Square {
+        Square::from_fn(self.n, |i, j| self.rows[j][i])
+    }
     fn entries(&self) -> impl Iterator<Item = &D> {
         self.rows[..self.n].iter().flat_map(|row| &row[..self.n])
+    }
+
+    /// Where the entries are that are not 0.
+    pub(crate) fn nonzero(&self) -> impl Iterator<Item = (usize, usize)> {
+        let all = (0..self.n).flat_map(|i| (0..self.n).map(move |j| (i, j)));
+        all.filter(|&at| self[at] != D::lit(0.0))
     }
 
     /// self⁻¹·b; not finite where self is singular.
@@ -63,7 +72,8 @@ impl Square {
         let (powers, fourth) = ([one, x, square, square * x], square * square);
         let mut sum = Square::zero(self.n);
         for c in INVERSE_FACTORIALS.chunks(4).rev() {
-            sum = powers.iter().zip(c).fold(sum * fourth, |sum, (x, c)| sum + *x * *c);
+            sum = sum * fourth;
+            powers.iter().zip(c).for_each(|(x, c)| LinearSpace::add(&mut sum, *c, x));
         }
         (0..s).fold(sum, |x, _| x * x)
     }

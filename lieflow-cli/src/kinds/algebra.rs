@@ -120,15 +120,12 @@ fn skew(x: &mut Mat<f64>, p: usize) {
     }
 }
 
-/// Where x is farthest from the algebra, if that is more than rounding of its size.
-pub(super) fn outside(algebra: Algebra, x: &Mat<f64>) -> Option<(usize, usize)> {
+/// Where x is farthest from the algebra, if that is more than `tolerance` of its size.
+pub(super) fn outside(algebra: Algebra, x: &Mat<f64>, tolerance: f64) -> Option<(usize, usize)> {
     let mut inside = x.clone();
     algebra.project(&mut inside);
     let entries = (0..x.nrows()).flat_map(|i| (0..x.ncols()).map(move |j| (i, j)));
     let away = |&(i, j): &(usize, usize)| (x[(i, j)] - inside[(i, j)]).abs();
     let farthest = entries.max_by(|a, b| away(a).total_cmp(&away(b)))?;
-    (away(&farthest) > ROUNDING * x.norm_max()).then_some(farthest)
+    (away(&farthest) > tolerance * x.norm_max()).then_some(farthest)
 }
-
-/// What a matrix may have outside of its algebra, relative to its size.
-const ROUNDING: f64 = 1e-12;

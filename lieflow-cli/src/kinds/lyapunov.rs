@@ -1,37 +1,47 @@
-//! `kind = "lyapunov"`: the Lyapunov exponents of a polynomial vector field by continuous QR; see
-//! [`Lyapunov`].
+//! `kind = "lyapunov"`: the Lyapunov exponents of a user's vector field by continuous QR; the field is in
+//! formulas and its Jacobian by their derivatives. See [`Lyapunov`].
+
+use std::sync::Arc;
 
 use faer::Mat;
 use lieflow::Error;
 use lieflow::actions::LeftTranslation;
 use lieflow::groups::{GroupMatrix, LieGroup, MatrixGroup, Product, Translations};
 use lieflow::problems::Lyapunov;
-use lieflow::scalar::{Ops, tally};
 use serde::Deserialize;
 use toml::de::ValueDeserializer;
 
 use super::flow::{Flow, Growth};
 use super::system::System;
-use super::{Figure, KeyInfo, Kind, Law, ProblemSpec, QuantityInfo, Scale};
+use super::{Figure, KeyInfo, Kind, Law, PARAMETERS, ProblemSpec, QuantityInfo, Scale};
 use crate::model::Layer;
-use crate::scene::values::{List, Real, Whole};
+use crate::scene::formula::{Formula, Names, Parameters, read_all};
+use crate::scene::values::List;
 use crate::scene::{ReadError, Refusal};
 
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {
     name: "lyapunov",
-    equation: "ẋ = F(x), Ẏ = DF(x)Y = d(QR)/dt, growth ln R_ii",
-    summary: "Lyapunov exponents of a polynomial vector field by continuous QR",
+    equation: "ẋ = F(t, x), Ẏ = DF(t, x)Y = d(QR)/dt, growth ln R_ii",
+    summary: "Lyapunov exponents of a vector field of one's own by continuous QR",
     keys: &[
-        KeyInfo { name: "x", meaning: "initial point" },
+        KeyInfo { name: "x", meaning: "initial point, at most 128 numbers" },
         KeyInfo {
-            name: "terms",
-            meaning: "a list of {of, coefficient, powers}: coefficient · x_1^powers[0] · … is a term \
-                      of the derivative of x_of",
+            name: "variables",
+            meaning: "names of the coordinates, [\"x\", \"y\", ...]; optional: x1, x2, ...",
         },
+        KeyInfo {
+            name: "field",
+            meaning: "a formula for the derivative of each coordinate, in the time t and the coordinates",
+        },
+        PARAMETERS,
     ],
     quantities: &[
-        QuantityInfo { name: "x", columns: &["x1", "…", "xn"], meaning: "the point" },
+        QuantityInfo {
+            name: "x",
+            columns: &["…"],
+            meaning: "the point, by the names of its coordinates",
+        },
         QuantityInfo {
             name: "growth",
             columns: &["s1", "…", "sn"],
@@ -60,80 +70,63 @@ pub(super) const KIND: Kind = Kind {
 #[serde(deny_unknown_fields)]
 struct Keys {
     x: List,
-    terms: Vec<TermKeys>,
+    variables: Option<Vec<String>>,
+    field: Vec<String>,
+    #[serde(default)]
+    parameters: Parameters,
 }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct TermKeys {
-    of: Whole<1>,
-    coefficient: Real,
-    powers: Vec<Whole<0>>,
-}
-
-/// c xᵏ, a term of ẋ_of.
-#[derive(Clone, Debug)]
-struct Term {
-    of: usize,
-    coefficient: f64,
-    powers: Vec<i32>,
-}
-
-impl Term {
-    /// Its value, and with `by` its derivative by that coordinate.
-    fn value(&self, x: &Mat<f64>, by: Option<usize>) -> f64 {
-        let mut value = self.coefficient;
-        // A product for each coordinate, and those of its power.
-        let products = |power: &i32| (*power).max(1) as usize;
-        tally(|| Ops::muls(self.powers.iter().map(products).sum()) + Ops::adds(1));
-        for (i, &power) in self.powers.iter().enumerate() {
-            value *= match (by == Some(i), power) {
-                (true, 0) => 0.0,
-                (true, _) => f64::from(power) * x[(i, 0)].powi(power - 1),
-                (false, _) => x[(i, 0)].powi(power),
-            };
-        }
-        value
-    }
-}
-
-/// The field, and the initial point.
+/// The field and its Jacobian, row by row, and the initial point.
 #[derive(Clone, Debug)]
 struct Exponents {
-    terms: Vec<Term>,
+    /// t, and the coordinates.
+    names: Names,
+    field: Arc<[Formula]>,
+    jacobian: Arc<[Formula]>,
     x: Vec<f64>,
 }
 
-/// Higher powers are not meant.
-const POWER_MAX: u64 = 64;
+/// The most coordinates: their values lie on the stack.
+const MAX: usize = 128;
+
+/// The most operations of formulas that are derived, each counted for every coordinate in it.
+const DERIVED_MAX: usize = 1 << 18;
 
 fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
     let keys = Keys::deserialize(section)?;
     let x = keys.x.values();
     let n = x.len();
-    if n == 0 {
-        return Err(Refusal::at("x", "no numbers, expected at least one").into());
+    if !(1..=MAX).contains(&n) {
+        return Err(Refusal::at("x", format!("found {n} numbers, expected 1 to {MAX}")).into());
     }
-    let mut terms = Vec::new();
-    for (i, term) in keys.terms.iter().enumerate() {
-        let refused = |message| Refusal::at(format!("terms[{i}]"), message);
-        if term.of.0 > n as u64 {
-            return Err(refused(format!("of = {}, expected 1 to {n}", term.of.0)).into());
-        }
-        if term.powers.len() != n {
-            let found = term.powers.len();
-            return Err(refused(format!("found {found} powers, expected {n}")).into());
-        }
-        if let Some(power) = term.powers.iter().find(|power| power.0 > POWER_MAX) {
-            return Err(refused(format!("power {}, expected at most {POWER_MAX}", power.0)).into());
-        }
-        terms.push(Term {
-            of: term.of.0 as usize - 1,
-            coefficient: term.coefficient.0,
-            powers: term.powers.iter().map(|power| power.0 as i32).collect(),
-        });
+    let numbered = || (1..=n).map(|i| format!("x{i}")).collect();
+    let variables = keys.variables.unwrap_or_else(numbered);
+    let lists = [("variables", "names", variables.len()), ("field", "formulas", keys.field.len())];
+    if let Some((key, what, found)) = lists.into_iter().find(|(.., found)| *found != n) {
+        let message = format!("found {found} {what}, expected {n} as x has numbers");
+        return Err(Refusal::at(key, message).into());
     }
-    Ok(Box::new(Exponents { terms, x }))
+    let names = ["t".into()].into_iter().chain(variables);
+    let names = keys.parameters.names("variables", names)?;
+    let field = read_all("field", &keys.field, &names)?;
+    let derived = |f: &Formula| f.operations() * (1..=n).filter(|&j| f.uses(j)).count();
+    if field.iter().map(derived).sum::<usize>() > DERIVED_MAX {
+        let message = format!("its derivatives take more than {DERIVED_MAX} operations");
+        return Err(Refusal::at("field", message).into());
+    }
+    let by = |(i, f): (usize, &Formula)| {
+        let key = format!("field[{i}]");
+        (1..=n).map(|j| f.derivative(&key, j)).collect::<Result<Vec<_>, _>>()
+    };
+    let jacobian = field.iter().enumerate().map(by).collect::<Result<Vec<_>, _>>()?.concat();
+    Ok(Box::new(Exponents { names, field: field.into(), jacobian: jacobian.into(), x }))
+}
+
+/// t and x, for formulas.
+fn values(t: f64, x: &[f64]) -> [f64; 1 + MAX] {
+    let mut values = [t; 1 + MAX];
+    values[1..].iter_mut().zip(x).for_each(|(value, x)| *value = *x);
+    values
 }
 
 type Point = (GroupMatrix, Growth);
@@ -148,20 +141,35 @@ impl System for Exponents {
         Layer::General
     }
     fn problem(&self) -> Result<(Self::Problem, Point), Error> {
-        let (n, terms) = (self.x.len(), self.terms.clone());
-        let field = move |_: f64, x: &Mat<f64>, dx: &mut Mat<f64>, jacobian: &mut Mat<f64>| {
-            dx.fill(0.0);
-            jacobian.fill(0.0);
-            for term in &terms {
-                dx[(term.of, 0)] += term.value(x, None);
+        let (n, field, by) = (self.x.len(), self.field.clone(), self.jacobian.clone());
+        let field = move |t: f64, x: &Mat<f64>, dx: &mut Mat<f64>, jacobian: &mut Mat<f64>| {
+            let values = values(t, x.col_as_slice(0));
+            for i in 0..n {
+                dx[(i, 0)] = field[i].value(&values);
                 for j in 0..n {
-                    jacobian[(term.of, j)] += term.value(x, Some(j));
+                    jacobian[(i, j)] = by[i * n + j].value(&values);
                 }
             }
         };
         let system = Lyapunov::new(n, field)?;
         let start = system.state(&self.x)?;
         Ok(Flow::nonlinear(system, LeftTranslation, start))
+    }
+    fn check_start(&self, t0: f64) -> Result<(), Refusal> {
+        let (n, values) = (self.x.len(), values(t0, &self.x));
+        for i in 0..n {
+            let key = format!("field[{i}]");
+            self.field[i].check(&key, &values)?;
+            for (j, name) in self.names.variables()[1..].iter().enumerate() {
+                let slope = self.jacobian[i * n + j].value::<f64>(&values);
+                if !slope.is_finite() {
+                    let message =
+                        format!("{key}: its derivative by {name} is {slope} at the start");
+                    return Err(Refusal::at(key, message));
+                }
+            }
+        }
+        Ok(())
     }
     fn modelled(&self) -> String {
         format!("point, frame in SO({0}) and growth in {0} directions", self.x.len())
@@ -176,7 +184,7 @@ impl System for Exponents {
         let n = self.x.len();
         let numbered = |name: &str| (1..=n).map(|i| format!("{name}{i}")).collect();
         match quantity.name {
-            "x" => numbered("x"),
+            "x" => self.names.variables()[1..].to_vec(),
             "growth" => numbered("s"),
             "exponents" => numbered("e"),
             "frame" => (1..=n).flat_map(|i| (1..=n).map(move |j| format!("q{i}{j}"))).collect(),

@@ -17,6 +17,7 @@ mod law;
 mod lorentz;
 mod lyapunov;
 mod matrix;
+mod matrix_ode;
 mod oja;
 mod pendulum;
 mod riccati;
@@ -67,6 +68,7 @@ pub const KINDS: &[Kind] = &[
     riccati::KIND,
     lorentz::KIND,
     schrodinger::KIND,
+    matrix_ode::KIND,
     lyapunov::KIND,
     composed::KIND,
 ];

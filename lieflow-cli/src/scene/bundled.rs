@@ -57,6 +57,7 @@ pub const BUNDLED: &[Bundled] = bundled![
     "crossed-fields",
     "rabi",
     "three-level-transfer",
+    "rotating-drive",
     "lorenz",
     "spin-and-oscillator",
     "gyrostat",

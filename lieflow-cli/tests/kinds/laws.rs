@@ -72,6 +72,7 @@ fn magnus_methods_fit_linear_equations() {
         "crossed-fields",
         "rabi",
         "three-level-transfer",
+        "rotating-drive",
     ];
     for bundled in BUNDLED {
         let fits = Scene::bundled(bundled.name).unwrap().model().unwrap();

@@ -189,18 +189,24 @@ fn ojas_flow_finds_the_leading_eigenvectors() {
 /// Of a linear field the exponents are the eigenvalues; of Lorenz' their sum is −41/3 at every time.
 #[test]
 fn lyapunov_exponents() {
-    let linear = "kind = \"lyapunov\"\nx = [0, 0.1]\nterms = [{ of = 1, coefficient = 1, powers = [1, \
-                  0] }, { of = 1, coefficient = 1, powers = [0, 1] }, { of = 2, coefficient = -2, \
-                  powers = [0, 1] }]";
+    let linear = "kind = \"lyapunov\"\nx = [0, 0.1]\nfield = [\"x1 + x2\", \"-2*x2\"]";
     let time = "t_span = [3, 43]\ndt = 0.05";
     let end = last(&scene(linear, RKMK4_CAY, time, "[\"exponents\"]"));
-    assert!(far(&end, &[1.0, -2.0]) < 1e-2, "{end:?}");
+    // The first direction stays where it is, at every time: so it does not with DFᵀ for DF.
+    assert!(far(&end, &[1.0, -2.0]) < 1e-12, "{end:?}");
     let text = bundled("lorenz").replace("t_span = [0.0, 100.0]", "t_span = [0.0, 10.0]");
     let rows = rows(&Scene::parse("scene", &text).unwrap());
     for row in &rows[1..] {
         let sum: f64 = row[4..].iter().sum();
         assert!((sum + 41.0 / 3.0).abs() < 1e-7, "{row:?}");
     }
+    // A pendulum that is driven and damped: whatever it does, the sum is minus the damping.
+    let pendulum = "kind = \"lyapunov\"\nx = [0.5, 0]\nvariables = [\"q\", \"p\"]\n\
+                    field = [\"p\", \"-sin(q) - 0.2*p + 1.2*cos(2*t/3)\"]";
+    let of = scene(pendulum, RKMK4_CAY, "t_span = [1, 21]\ndt = 0.02", "[\"x\", \"exponents\"]");
+    assert_eq!(of.problem.columns("x").unwrap(), ["q", "p"]);
+    let end = last(&of);
+    assert!((end[2] + end[3] + 0.2).abs() < 1e-8, "{end:?}");
 }
 
 const RKMK4_CAY: &str = "name = \"rkmk4\"\nmap = \"cay\"";

@@ -132,13 +132,18 @@ const BROKEN: &[(&str, &str, &str, &[&str])] = &[
     ("rabi", "amplitudes = [1.0, 0.0]", "amplitudes = [0, 0]", &["|ψ|"]),
     ("rabi", "amplitudes = [1.0, 0.0]", "amplitudes = [1]", &["expected 2, one a level"]),
     ("three-level-transfer", "12.533]", "0]", &["width 0"]),
+    ("lorenz", "\"x*y - beta*z\"", "\"x*y - betta*z\"", &["character 7", "did you mean `beta`?"]),
+    ("lorenz", "[\"x\", \"y\", \"z\"]", "[\"x\", \"y\"]", &["found 2 names, expected 3"]),
     (
         "lorenz",
-        "{ of = 1, coefficient = -10.0, powers = [1, 0, 0] }",
-        "{ of = 4, coefficient = 1, powers \
-      = [1, 0, 0] }",
-        &["expected 1 to 3"],
+        "[\"x\", \"y\", \"z\"]",
+        "[\"x\", \"y\", \"t\"]",
+        &["`t` is the name of a variable"],
     ),
+    ("lorenz", "[\"x\", \"y\", \"z\"]", "[\"x\", \"y\", \"2z\"]", &["`2z` is no name"]),
+    ("lorenz", "\"x*(rho - z) - y\", ", "", &["found 2 formulas, expected 3"]),
+    ("lorenz", "sigma*(y - x)", "sqrt(x - y)", &["field[0]: its derivative by x is inf"]),
+    ("lorenz", "sigma = 10", "sigma = \"10\"", &["expected a number"]),
     ("spin-pair", "name = \"b\"", "name = \"a\"", &["`a1` is of another part"]),
     ("spin-pair", "name = \"b\"", "name = \"2b\"", &["`2b1` is no name"]),
     ("spin-pair", "name = \"b\"", "", &["missing key `name`"]),
@@ -207,7 +212,6 @@ const BROKEN: &[(&str, &str, &str, &[&str])] = &[
         "space = \"rotation\"\nstart = [1, 0, 0]",
         &["the start of `g` is to be 3 rows of 3 numbers"],
     ),
-    ("lorenz", "powers = [1, 1, 0] }", "powers = [1, 1] }", &["found 2 powers, expected 3"]),
 ];
 
 #[test]

@@ -145,6 +145,7 @@ fn lower_skew(
     lower_product(&mut out.re, a.re.as_ref(), re, 1.0, Accum::Replace);
     lower_product(&mut out.re, a.im.as_ref(), im, -sign, Accum::Add);
     mirror(&mut out.re, -1.0);
+    (0..out.nrows()).for_each(|i| out.re[(i, i)] = 0.0);
     lower_product(&mut out.im, a.im.as_ref(), re, 1.0, Accum::Replace);
     lower_product(&mut out.im, a.re.as_ref(), im, sign, Accum::Add);
     mirror(&mut out.im, 1.0);

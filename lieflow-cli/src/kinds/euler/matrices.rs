@@ -35,6 +35,9 @@ pub(super) struct EulerEquation {
     pub(super) momentum: Mat<f64>,
 }
 
+/// What a momentum may have outside of the algebra, relative to its size.
+const ROUNDING: f64 = 1e-12;
+
 /// Formulas name entries by one digit for the row and one for the column.
 const NAMED_MAX: usize = 9;
 
@@ -62,7 +65,7 @@ pub(super) fn on(algebra: Algebra, keys: Keys) -> Result<Box<dyn ProblemSpec>, R
         }
     };
     let group = algebra.group(n, "momentum")?;
-    if outside(algebra, &momentum).is_some() {
+    if outside(algebra, &momentum, ROUNDING).is_some() {
         return Err(Refusal::at("momentum", format!("it is not in {}", algebra.name(n))));
     }
     let alone = EulerEquation { algebra, group, form, momentum };
