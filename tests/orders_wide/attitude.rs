@@ -122,9 +122,13 @@ fn attitudes_on_so5() {
     high_orders("attitudes", "SO(5)", &[Needs::Series], |spec| {
         by_name!(spec, {
             "taylor8" => &all, rational(8), of(8);
+            "taylor9" => &all, rational(9), of(9);
             "taylor10" => &all, rational(10), of(10);
+            "taylor11" => &all, rational(11), of(11);
             "taylor12" => &all, rational(12), of(12);
+            "taylor13" => &all, rational(13), of(13);
             "taylor14" => &all, rational(14), of(14);
+            "taylor15" => &all, rational(15), of(15);
             "taylor16" => &all, rational(16), of(16);
         })
     });

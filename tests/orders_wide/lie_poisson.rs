@@ -139,9 +139,13 @@ macro_rules! measure {
             high_orders("quadratic systems", $group, &NEEDS, |spec| {
                 by_name!(spec, {
                     "taylor8" => &all, rational(8), series(8);
+                    "taylor9" => &all, rational(9), series(9);
                     "taylor10" => &all, rational(10), series(10);
+                    "taylor11" => &all, rational(11), series(11);
                     "taylor12" => &all, rational(12), series(12);
+                    "taylor13" => &all, rational(13), series(13);
                     "taylor14" => &all, rational(14), series(14);
+                    "taylor15" => &all, rational(15), series(15);
                     "taylor16" => &all, rational(16), series(16);
                 })
             });
