@@ -8,7 +8,7 @@
 use lieflow::groups::{LieGroup, Product, Se3, So3};
 use lieflow::maps::{Cay, Exp};
 use lieflow::methods::{EnergyCasimir, Rkmk, tableau::RK4};
-use lieflow::problems::{Euler, Kinetic};
+use lieflow::problems::{Averaged, Euler, Kinetic};
 use lieflow::{SaveAt, TimeGrid, integrate};
 use nalgebra::Vector3;
 
@@ -40,23 +40,34 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     integrate(&both, &Rkmk::new(RK4, Exp), &grid, &SaveAt::Ends, &mut y, |_, _| {})?;
     println!("  it drifted to {:.2?}", y.0.1.as_slice());
 
-    // Any H with its gradient, on any group: here the coupling is not quadratic.
+    // Any H with its gradient, on any group: here the coupling is not quadratic. With the gradient on the
+    // way between two momenta too, methods that keep the energy run.
     let j = V::new(1.0, 2.0, 3.5);
     let energy = move |m: &(V, V)| {
         0.5 * (m.0.dot(&m.0.component_div(&j)) + m.1.dot(&m.1.component_div(&j)))
             + 0.3 * m.0.dot(&m.1).sin()
     };
-    let gradient = move |m: &(V, V), xi: &mut (V, V)| {
+    let gradient = move |a: &(V, V), way: Option<(&(V, V), f64)>, xi: &mut (V, V)| {
+        let m = way.map_or(*a, |(b, s)| (a.0 + (b.0 - a.0) * s, a.1 + (b.1 - a.1) * s));
         let slope = 0.3 * m.0.dot(&m.1).cos();
         *xi = (m.0.component_div(&j) + slope * m.1, m.1.component_div(&j) + slope * m.0);
     };
-    let pair = Euler::new(Product(So3::<f64>::new(), So3::new()), (energy, gradient));
+    let pair = Euler::new(Product(So3::<f64>::new(), So3::new()), Averaged(energy, gradient));
     let start = (V::new(1.0, 0.2, -0.4), V::new(0.3, -0.8, 0.5));
+    println!("two coupled bodies: drift of the energy, of the two lengths");
+    let drift = |m: &(V, V)| {
+        let lengths = (m.0.norm() - start.0.norm(), m.1.norm() - start.1.norm());
+        (pair.energy(m) - pair.energy(&start), lengths.0, lengths.1)
+    };
     let mut m = start;
     integrate(&pair, &Rkmk::new(RK4, Exp), &grid, &SaveAt::Ends, &mut m, |_, _| {})?;
-    let lengths = (m.0.norm() - start.0.norm(), m.1.norm() - start.1.norm());
-    println!("two coupled bodies: drift of H {:.1e}", pair.energy(&m) - pair.energy(&start));
-    println!("  of the two lengths {:.1e}, {:.1e}", lengths.0, lengths.1);
-    assert!(lengths.0.abs() < 1e-12 && lengths.1.abs() < 1e-12);
+    let (h, one, two) = drift(&m);
+    println!("  rkmk4 exp            {h:8.1e} {one:8.1e} {two:8.1e}");
+    assert!(one.abs() < 1e-12 && two.abs() < 1e-12);
+    let mut m = start;
+    integrate(&pair, &EnergyCasimir::new(Cay), &grid, &SaveAt::Ends, &mut m, |_, _| {})?;
+    let (h, one, two) = drift(&m);
+    println!("  energy and Casimir   {h:8.1e} {one:8.1e} {two:8.1e}");
+    assert!(h.abs() < 1e-12 && one.abs() < 1e-12 && two.abs() < 1e-12);
     Ok(())
 }

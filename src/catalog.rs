@@ -34,12 +34,12 @@ pub const MAPS: &[MapInfo] = &[
     MapInfo {
         name: "ccsk123",
         summary: "canonical coordinates of the second kind, ordering 123 (ccskf)",
-        groups: "SO(n), GL(n), Sp(2m), SE(3)",
+        groups: "SO(n), GL(n), Sp(2m), SE(3), T(n)",
     },
     MapInfo {
         name: "ccsk321",
         summary: "canonical coordinates of the second kind, ordering 321 (ccskb)",
-        groups: "SO(n), GL(n), Sp(2m), SE(3)",
+        groups: "SO(n), GL(n), Sp(2m), SE(3), T(n)",
     },
     MapInfo {
         name: "pade22",
@@ -49,7 +49,7 @@ pub const MAPS: &[MapInfo] = &[
     MapInfo {
         name: "ccsk",
         summary: "the orderings 321 and 123 on alternate steps",
-        groups: "SO(n), GL(n), Sp(2m), SE(3)",
+        groups: "SO(n), GL(n), Sp(2m), SE(3), T(n)",
     },
 ];
 

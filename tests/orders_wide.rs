@@ -15,6 +15,8 @@ mod systems;
 
 #[path = "orders_wide/agreement.rs"]
 mod agreement;
+#[path = "orders_wide/attitude.rs"]
+mod attitude;
 #[path = "orders_wide/bodies.rs"]
 mod bodies;
 #[path = "orders_wide/faults.rs"]
@@ -39,13 +41,16 @@ use lieflow::groups::{Power, Product, Se3, So3, Translations};
 use lieflow::maps::{CCSK, CCSK123, CCSK321, Cay, Ccsk, CoordinateMap, Exp, Pade22, TruncatedExp};
 use lieflow::methods::magnus::{CFM8_11, Magnus8};
 use lieflow::methods::tableau::DOP853;
-use lieflow::methods::{CfMagnus, Embedded, LieSeries, Rk, Rkmk, SeriesGroup};
+use lieflow::methods::{
+    CfMagnus, Composition, Embedded, GAUSS2, KAHAN_LI8, LieSeries, Rk, Rkmk, RkmkGaussSymmetric,
+    SeriesGroup,
+};
 use lieflow::problems::{PointOf, Problem};
 use lieflow::scalar::{DoubleDouble, Real};
 use lieflow::{LieAlgebra, Step};
-use members::{STORED, Span, by_name, high_orders, members, rational};
+use members::{STORED, UNIT, UNIT_FINE, by_name, high_orders, members, order, rational};
 use nalgebra::Vector3;
-use support::orders::slopes;
+use support::orders::{Report, slopes};
 
 type D = DoubleDouble;
 
@@ -61,8 +66,7 @@ where
     Ccsk<0, 1, 2>: CoordinateMap<G>,
     Ccsk<2, 1, 0>: CoordinateMap<G>,
 {
-    let span = Span { length: 1.0, rate: 24.0, gap: 1e-17 };
-    let all = members(MEMBERS, span, |i| Flow::new(group, Kind::Wave, strength, 71 + i));
+    let all = members(MEMBERS, UNIT, |i| Flow::new(group, Kind::Wave, strength, 71 + i));
     high_orders("fields", &group.name(), &[Needs::Field, Needs::Norm], |spec| {
         by_name!(spec, {
             "rk" => &all, STORED, Rk(DOP853);
@@ -82,8 +86,7 @@ fn linear_on<G: Wide>(group: &G, strength: f64)
 where
     Exp: CoordinateMap<G>,
 {
-    let span = Span { length: 1.0, rate: 24.0, gap: 1e-17 };
-    let all = members(MEMBERS, span, |i| Flow::new(group, Kind::Clock, strength, 21 + i));
+    let all = members(MEMBERS, UNIT, |i| Flow::new(group, Kind::Clock, strength, 21 + i));
     high_orders("fields of linear type", &group.name(), &[Needs::LinearType], |spec| {
         by_name!(spec, {
             "magnus8" => &all, STORED, Magnus8;
@@ -92,17 +95,33 @@ where
     });
 }
 
+/// A composition of order 8, which is a type and no name: of the symmetric midpoint rule on the group, on the
+/// same fields, where its iteration ends at once. The scheme of order 10 is that of `mr10`, in `bodies`.
+fn composition_on<G: Wide>(group: &G, strength: f64)
+where
+    Exp: CoordinateMap<G>,
+{
+    let all = members(MEMBERS, UNIT, |i| Flow::new(group, Kind::Clock, strength, 21 + i));
+    let mut report = Report::new(&format!("a composition on {}", group.name()));
+    let composed = Composition::new(RkmkGaussSymmetric::new(GAUSS2, Exp), KAHAN_LI8);
+    report.add(KAHAN_LI8.name, true, order(&all, STORED, &composed));
+    report.assert();
+}
+
 /// The Lie series, on polynomial fields.
 fn series_on<G: Wide + SeriesGroup>(group: &G, strength: f64) {
-    let span = Span { length: 1.0, rate: 128.0, gap: 1e-28 };
-    let all = members(MEMBERS, span, |i| Flow::new(group, Kind::Polynomial, strength, 31 + i));
+    let all = members(MEMBERS, UNIT_FINE, |i| Flow::new(group, Kind::Polynomial, strength, 31 + i));
     let of = |order| LieSeries::new(order).unwrap();
     high_orders("polynomial fields", &group.name(), &[Needs::Series], |spec| {
         by_name!(spec, {
             "taylor8" => &all, rational(8), of(8);
+            "taylor9" => &all, rational(9), of(9);
             "taylor10" => &all, rational(10), of(10);
+            "taylor11" => &all, rational(11), of(11);
             "taylor12" => &all, rational(12), of(12);
+            "taylor13" => &all, rational(13), of(13);
             "taylor14" => &all, rational(14), of(14);
+            "taylor15" => &all, rational(15), of(15);
             "taylor16" => &all, rational(16), of(16);
         })
     });
@@ -177,6 +196,19 @@ measure! {
 }
 
 measure! {
+    composition_on:
+    composition_on_so3: So3::new(), 2.0;
+    composition_on_so5: Matrices::so5(), 1.0;
+    composition_on_gl3: Matrices::gl3(), 1.0;
+    composition_on_sp4: Matrices::sp4(), 0.7;
+    composition_on_so31: Matrices::so31(), 1.0;
+    composition_on_se3: Se3::new(), 2.0;
+    composition_on_a_product: Product(So3::new(), Matrices::sp4()), 0.7;
+    composition_on_a_product_with_translations: so3_and_translations(), 2.0;
+    composition_on_a_power: Power::new(So3::new(), 2).unwrap(), 2.0;
+}
+
+measure! {
     estimate_on:
     estimate_on_so3: So3::new(), 1.0;
     estimate_on_so5: Matrices::so5(), 0.5;
@@ -185,6 +217,7 @@ measure! {
     estimate_on_so31: Matrices::so31(), 0.5;
     estimate_on_se3: Se3::new(), 0.7;
     estimate_on_a_product: Product(So3::new(), Matrices::sp4()), 0.3;
+    estimate_on_a_power: Power::new(So3::new(), 2).unwrap(), 1.0;
 }
 
 measure! {

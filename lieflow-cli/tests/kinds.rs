@@ -4,6 +4,8 @@ mod support;
 
 #[path = "kinds/composed.rs"]
 mod composed;
+#[path = "kinds/energies.rs"]
+mod energies;
 #[path = "kinds/formulas.rs"]
 mod formulas;
 #[path = "kinds/known.rs"]

@@ -221,14 +221,9 @@ where
     P::Group: SeriesGroup,
     Exp: CoordinateMap<P::Group>,
 {
-    match spec.info()?.name {
-        "taylor4" => Ok(on.call(LieSeries::new(4)?)),
-        "taylor6" => Ok(on.call(LieSeries::new(6)?)),
-        "taylor8" => Ok(on.call(LieSeries::new(8)?)),
-        "taylor10" => Ok(on.call(LieSeries::new(10)?)),
-        "taylor12" => Ok(on.call(LieSeries::new(12)?)),
-        "taylor14" => Ok(on.call(LieSeries::new(14)?)),
-        "taylor16" => Ok(on.call(LieSeries::new(16)?)),
+    let name = spec.info()?.name;
+    match name.strip_prefix("taylor").map(str::parse) {
+        Some(Ok(order)) => Ok(on.call(LieSeries::new(order)?)),
         _ => with_implicit_method(spec, on),
     }
 }
@@ -274,11 +269,17 @@ macro_rules! each_body_method {
             "dmv10" => Ok($on.call(DMV10)),
             "exact" => Ok($on.call(ExactMotion)),
             "taylor4" => Ok($on.call(Taylor::<4>)),
+            "taylor5" => Ok($on.call(Taylor::<5>)),
             "taylor6" => Ok($on.call(Taylor::<6>)),
+            "taylor7" => Ok($on.call(Taylor::<7>)),
             "taylor8" => Ok($on.call(Taylor::<8>)),
+            "taylor9" => Ok($on.call(Taylor::<9>)),
             "taylor10" => Ok($on.call(Taylor::<10>)),
+            "taylor11" => Ok($on.call(Taylor::<11>)),
             "taylor12" => Ok($on.call(Taylor::<12>)),
+            "taylor13" => Ok($on.call(Taylor::<13>)),
             "taylor14" => Ok($on.call(Taylor::<14>)),
+            "taylor15" => Ok($on.call(Taylor::<15>)),
             "taylor16" => Ok($on.call(Taylor::<16>)),
             name => match splitting(name) {
                 Some(splitting) => Ok($on.call(splitting)),

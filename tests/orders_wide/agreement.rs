@@ -1,11 +1,13 @@
 //! The groups and maps of this test are those of the library: for the same u and v both have the same
-//! results, to the rounding of `f64`.
+//! results, to the rounding of `f64`; and so have steps of the Lie series.
 
 use faer::Mat;
 use lieflow::groups::{AlgebraMatrix, MatrixGroup, Sample};
 use lieflow::maps::{CCSK123, CCSK321, Cay, CoordinateMap, Exp, Pade22};
+use lieflow::methods::{LieSeries, Method, Metric};
+use lieflow::problems::{PointOf, TaylorField};
 use lieflow::scalar::Real;
-use lieflow::{LieAlgebra, LieGroup};
+use lieflow::{Action, LieAlgebra, LieGroup, Step};
 
 use super::D;
 use super::group::Matrices;
@@ -92,5 +94,32 @@ fn groups_and_maps_are_those_of_the_library() {
             same_map(&CCSK123, library, ours, pair)
         })
         .unwrap();
+    }
+}
+
+/// One step of the Lie series of each order by the library and here. Each term must be far above rounding.
+pub(crate) fn same_steps<P, Q>(
+    (library, start): (&P, PointOf<P>),
+    matrix: impl Fn(&PointOf<P>) -> &Mat<f64>,
+    (ours, start_here): (Q, Square),
+    h: f64,
+) where
+    P: TaylorField<Group = MatrixGroup>,
+    Q: TaylorField<Group = Matrices, Action: Action<Matrices, Point = Square>>,
+{
+    let mut before = ours.group().zero();
+    for order in 8..=16 {
+        let (method, claim) =
+            (LieSeries::new(order).unwrap(), format!("order {order} on {}", ours.group().name()));
+        let mut here = start_here;
+        let mut work = method.work(&ours, &here).unwrap();
+        let step = Step { n: 0, t: D::lit(0.0), h: D::lit(h) };
+        method.step(&ours, step, &mut here, &mut work).unwrap();
+        let mut there = start.clone();
+        let mut work = method.work(library, &there).unwrap();
+        method.step(library, Step { n: 0, t: 0.0, h }, &mut there, &mut work).unwrap();
+        near(&claim, &here, matrix(&there)).unwrap();
+        assert!(here.distance(&before).value() > 1e-10, "{claim}");
+        before = here;
     }
 }

@@ -17,7 +17,7 @@ use super::members::{CANCELLED, STORED, Span, by_name, high_orders, members, rat
 
 const MEMBERS: u64 = 12;
 /// Methods for bodies take larger steps.
-const SPAN: Span = Span { length: 4.0, rate: 128.0, gap: 5e-28 };
+const SPAN: Span = Span { length: 4.0, rate: 80.0, gap: 5e-28 };
 
 /// A body that is nothing special, and one that is more even: compositions show their order there before
 /// the rounding of their weights.
@@ -43,9 +43,13 @@ macro_rules! bodies {
                 "dmv8" => &$body, STORED, DMV8;
                 "dmv10" => &$body, STORED, DMV10;
                 "taylor8" => &$body, rational(8), Taylor::<8>;
+                "taylor9" => &$body, rational(9), Taylor::<9>;
                 "taylor10" => &$body, rational(10), Taylor::<10>;
+                "taylor11" => &$body, rational(11), Taylor::<11>;
                 "taylor12" => &$body, rational(12), Taylor::<12>;
+                "taylor13" => &$body, rational(13), Taylor::<13>;
                 "taylor14" => &$body, rational(14), Taylor::<14>;
+                "taylor15" => &$body, rational(15), Taylor::<15>;
                 "taylor16" => &$body, rational(16), Taylor::<16>;
                 $($more)*
             }));

@@ -8,14 +8,13 @@ use lieflow::methods::{CfMagnus, Method, Rkmk, Tableau};
 
 use super::D;
 use super::fields::{Flow, Kind};
-use super::members::{Member, STORED, Span, members, order};
+use super::members::{Member, STORED, UNIT, members, order};
 use super::support::orders::{Estimate, Outcome};
 
 type OnSo3 = Flow<So3<D>>;
 
 fn on_so3(kind: Kind, strength: f64) -> Vec<Member<OnSo3>> {
-    let span = Span { length: 1.0, rate: 24.0, gap: 1e-17 };
-    members(8, span, |i| Flow::new(&So3::new(), kind, strength, 71 + i))
+    members(8, UNIT, |i| Flow::new(&So3::new(), kind, strength, 71 + i))
 }
 
 fn measured<M: Method<OnSo3>>(members: &[Member<OnSo3>], method: &M) -> Estimate {

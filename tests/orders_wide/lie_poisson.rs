@@ -6,16 +6,16 @@ use lieflow::LieAlgebra;
 use lieflow::actions::{Action, Coadjoint};
 use lieflow::catalog::Needs;
 use lieflow::groups::{MatrixGroup, Sample};
-use lieflow::methods::{LieSeries, Method, Metric, Step};
+use lieflow::methods::{LieSeries, Metric};
 use lieflow::problems::{Ambient, LinearSpace, Problem, TaylorField};
 use lieflow::scalar::Real;
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
 
 use super::D;
-use super::agreement::{near, wide};
+use super::agreement::{same_steps, wide};
 use super::group::Matrices;
-use super::members::{Span, by_name, high_orders, members, rational};
+use super::members::{UNIT_FINE, by_name, high_orders, members, rational};
 use super::square::Square;
 use super::systems;
 
@@ -45,7 +45,7 @@ impl Quadratic {
 }
 
 /// mfᵀ − fᵀm.
-fn rate(m: &Square, f: &Square) -> Square {
+pub(crate) fn rate(m: &Square, f: &Square) -> Square {
     let f = f.transpose();
     *m * f - f * *m
 }
@@ -120,6 +120,9 @@ fn series(order: usize) -> LieSeries {
     LieSeries::new(order).unwrap()
 }
 
+/// The lists of which every method of order 8 and more is measured here.
+const NEEDS: [Needs; 3] = [Needs::Series, Needs::LiePoisson, Needs::Isospectral];
+
 /// One test a group: where it is not compact the motion runs away, and a shorter momentum is as far.
 macro_rules! measure {
     ($($name:ident: $group:literal, $length:literal;)*) => {$(
@@ -127,19 +130,22 @@ macro_rules! measure {
         fn $name() {
             let (library, ours, start) =
                 systems().find(|(library, ..)| library.name() == $group).unwrap();
-            let span = Span { length: 1.0, rate: 128.0, gap: 1e-28 };
             // Near one another, so that none of them is at rounding before the others.
-            let all = members(4, span, |i| {
+            let all = members(4, UNIT_FINE, |i| {
                 let aside = library.sample_algebra(&mut Pcg64::seed_from_u64(60 + i), 1.0);
                 let m = start + wide(&aside) * D::lit(0.4 / library.norm(&aside));
                 (Quadratic(ours.clone()), m * (D::lit($length) / m.size()))
             });
-            high_orders("quadratic systems", $group, &[Needs::Series, Needs::LiePoisson], |spec| {
+            high_orders("quadratic systems", $group, &NEEDS, |spec| {
                 by_name!(spec, {
                     "taylor8" => &all, rational(8), series(8);
+                    "taylor9" => &all, rational(9), series(9);
                     "taylor10" => &all, rational(10), series(10);
+                    "taylor11" => &all, rational(11), series(11);
                     "taylor12" => &all, rational(12), series(12);
+                    "taylor13" => &all, rational(13), series(13);
                     "taylor14" => &all, rational(14), series(14);
+                    "taylor15" => &all, rational(15), series(15);
                     "taylor16" => &all, rational(16), series(16);
                 })
             });
@@ -159,22 +165,7 @@ const LONG: [f64; 4] = [1.6, 0.4, 0.4, 0.8];
 #[test]
 fn a_step_of_the_library_is_the_same() {
     for ((library, ours, start), h) in systems().zip(LONG) {
-        let system = systems::quadratic(library.clone());
-        let problem = Quadratic(ours);
-        let mut before = problem.0.zero();
-        for order in 8..=16 {
-            let method = series(order);
-            let mut m = start;
-            let mut work = method.work(&problem, &m).unwrap();
-            let step = Step { n: 0, t: D::lit(0.0), h: D::lit(h) };
-            method.step(&problem, step, &mut m, &mut work).unwrap();
-
-            let mut found = faer::Mat::from_fn(m.n(), m.n(), |i, j| start[(i, j)].value());
-            let mut work = method.work(&system, &found).unwrap();
-            method.step(&system, Step { n: 0, t: 0.0, h }, &mut found, &mut work).unwrap();
-            near(&format!("order {order} on {}", library.name()), &m, &found).unwrap();
-            assert!(m.distance(&before).value() > 1e-10, "order {order} on {}", library.name());
-            before = m;
-        }
+        let m = faer::Mat::from_fn(start.n(), start.n(), |i, j| start[(i, j)].value());
+        same_steps((&systems::quadratic(library), m), |m| m, (Quadratic(ours), start), h);
     }
 }

@@ -92,6 +92,10 @@ pub(crate) struct Span {
     pub(crate) gap: f64,
 }
 
+/// For errors down to [`STORED`], and for those of the Lie series.
+pub(crate) const UNIT: Span = Span { length: 1.0, rate: 24.0, gap: 1e-17 };
+pub(crate) const UNIT_FINE: Span = Span { length: 1.0, rate: 96.0, gap: 1e-28 };
+
 /// A problem, where it starts and where it is at the end.
 pub(crate) struct Member<P: Measurable> {
     problem: P,

@@ -72,7 +72,8 @@ impl Square {
         let (powers, fourth) = ([one, x, square, square * x], square * square);
         let mut sum = Square::zero(self.n);
         for c in INVERSE_FACTORIALS.chunks(4).rev() {
-            sum = powers.iter().zip(c).fold(sum * fourth, |sum, (x, c)| sum + *x * *c);
+            sum = sum * fourth;
+            powers.iter().zip(c).for_each(|(x, c)| LinearSpace::add(&mut sum, *c, x));
         }
         (0..s).fold(sum, |x, _| x * x)
     }

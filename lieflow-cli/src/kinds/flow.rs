@@ -11,7 +11,7 @@
 //! | family | kinds |
 //! |---|---|
 //! | SO(3), vectors | spin |
-//! | SO(3)ᴺ, vectors | spin chains, many bodies |
+//! | SO(3)ᴺ, vectors | spin chains, many bodies, Euler's equations on so(3)* |
 //! | SE(3), coadjoint | heavy tops, the spherical pendulum, Euler's equations on se(3)* |
 //! | [`MatrixGroup`], [`MatrixAction`](super::matrix::MatrixAction) | all that is made of matrices |
 //! | SO(3)ⁿ × SO(3)ᵐ × T(k), vectors and translation | what scenes compose from parts |

@@ -89,6 +89,9 @@ struct Exponents {
 /// The most coordinates: their values lie on the stack.
 const MAX: usize = 128;
 
+/// The most operations of formulas that are derived, each counted for every coordinate in it.
+const DERIVED_MAX: usize = 1 << 18;
+
 fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
     let keys = Keys::deserialize(section)?;
     let x = keys.x.values();
@@ -106,6 +109,11 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
     let names = ["t".into()].into_iter().chain(variables);
     let names = keys.parameters.names("variables", names)?;
     let field = read_all("field", &keys.field, &names)?;
+    let derived = |f: &Formula| f.operations() * (1..=n).filter(|&j| f.uses(j)).count();
+    if field.iter().map(derived).sum::<usize>() > DERIVED_MAX {
+        let message = format!("its derivatives take more than {DERIVED_MAX} operations");
+        return Err(Refusal::at("field", message).into());
+    }
     let by = |(i, f): (usize, &Formula)| {
         let key = format!("field[{i}]");
         (1..=n).map(|j| f.derivative(&key, j)).collect::<Result<Vec<_>, _>>()

@@ -203,6 +203,12 @@ pub trait Kernel<S> {
     fn run<L: Lanes<S>>(self, lanes: L) -> Self::Out;
 }
 
+/// One copy for each kernel and number, and not one for each problem.
+#[inline(never)]
+fn on_arrays<S: Real, K: Kernel<S>>(kernel: K) -> K::Out {
+    kernel.run(Plain)
+}
+
 /// 1/(k+1).
 pub(super) const INVERSE: [f64; 16] = {
     let mut table = [0.0; 16];
@@ -226,7 +232,7 @@ pub trait Wide: Real {
     #[doc(hidden)]
     #[inline(always)]
     fn dispatch<K: Kernel<Self>>(kernel: K) -> K::Out {
-        kernel.run(Plain)
+        on_arrays(kernel)
     }
 }
 
@@ -258,7 +264,7 @@ impl Wide for f64 {
                 return v3.vectorize(On(v3, kernel));
             }
         }
-        kernel.run(Plain)
+        on_arrays(kernel)
     }
 }
 

@@ -22,6 +22,7 @@
 use ellip::{elliprc, elliprf, elliprj};
 use nalgebra::{Matrix3, Vector3};
 
+use super::ladder::Ladder;
 use super::theta::Theta;
 use super::{check_finite, check_inertia};
 use crate::error::{Error, StepError};
@@ -460,64 +461,5 @@ impl Elliptic {
             (false, true) => Ok(tau - x_part()?),
             (false, false) => Ok(n * s * s2 / 3.0 * carlson(elliprj(c2, d2, 1.0, p))?),
         }
-    }
-}
-
-/// The arithmetic-geometric mean of 1 and k' = √(1 − k²), from which sn, cn and dn follow at any u by
-/// R. Bulirsch's descending Gauss transformation (Numer. Math. 7, 1965). 1 − k² is the argument so
-/// that k → 1 keeps its digits.
-#[derive(Clone, Debug)]
-struct Ladder {
-    /// Both means at each level.
-    means: [(f64, f64); LEVELS],
-    levels: usize,
-    /// The mean that they come to.
-    last: f64,
-}
-
-/// 1 − k² ≥ 1e-280 needs fewer.
-const LEVELS: usize = 16;
-
-impl Ladder {
-    fn new(kc2: f64) -> Self {
-        let mut ladder = Ladder { means: [(0.0, 0.0); LEVELS], levels: 0, last: 1.0 };
-        let (mut a, mut b) = (1.0, kc2.sqrt());
-        if kc2 == 0.0 {
-            return ladder;
-        }
-        for level in &mut ladder.means {
-            *level = (a, b);
-            ladder.levels += 1;
-            ladder.last = 0.5 * (a + b);
-            if (a - b).abs() <= 1e-9 * a {
-                break;
-            }
-            b = (a * b).sqrt();
-            a = ladder.last;
-        }
-        ladder
-    }
-
-    /// sn, cn, dn of u.
-    fn jacobi(&self, u: f64) -> (f64, f64, f64) {
-        if self.levels == 0 {
-            let cn = 1.0 / u.cosh();
-            return (u.tanh(), cn, cn);
-        }
-        let (s, k) = (self.last * u).sin_cos();
-        if s == 0.0 {
-            return (s, k, 1.0);
-        }
-        let mut dn = 1.0;
-        let mut ratio = k / s;
-        let mut cot = self.last * ratio;
-        for &(mean, root) in self.means[..self.levels].iter().rev() {
-            ratio *= cot;
-            cot *= dn;
-            dn = (root + ratio) / (mean + ratio);
-            ratio = cot / mean;
-        }
-        let sn = (1.0 / (cot * cot + 1.0).sqrt()).copysign(s);
-        (sn, cot * sn, dn)
     }
 }

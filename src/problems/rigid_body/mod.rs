@@ -6,6 +6,7 @@ mod exact;
 mod free;
 mod general;
 mod invariants;
+mod ladder;
 mod series;
 mod state;
 mod theta;

@@ -18,6 +18,11 @@ use super::tape::{Builder, Op, Tape};
 
 /// The derivative; none where it is too long.
 pub(super) fn derivative(tape: &Tape, variable: usize) -> Option<Tape> {
+    if !tape.ops().contains(&Op::Variable(variable)) {
+        let mut build = Builder::default();
+        let zero = build.number(0.0);
+        return build.finish(zero);
+    }
     let mut build = Builder::from_ops(tape.ops());
     // Nothing stands for 0.
     let mut slopes: Vec<Option<usize>> = Vec::with_capacity(tape.ops().len());

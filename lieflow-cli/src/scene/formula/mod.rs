@@ -9,6 +9,9 @@
 //!
 //! A formula is read once, to a list of operations; its derivative is another one. Evaluating it allocates
 //! nothing and cannot fail: where it has no value, the value is NaN.
+//!
+//! The crates for expressions have one thing or another of what is needed: powers before signs and to the
+//! right, `1e-3`, mistakes with their place, derivatives, operations that are counted. None has all.
 
 mod calculus;
 mod functions;
@@ -63,6 +66,11 @@ impl Formula {
     /// Does the value depend on this variable?
     pub fn uses(&self, variable: usize) -> bool {
         self.tape.ops().contains(&tape::Op::Variable(variable))
+    }
+
+    /// The length of its list of operations.
+    pub fn operations(&self) -> usize {
+        self.tape.ops().len()
     }
 
     /// That it has a value at the start.

@@ -55,6 +55,7 @@ impl Tape {
                 Op::Variable(at) => values.get(at).map_or(f64::NAN, |&x| x.into()),
                 Op::Apply(function, x) => function.value(done[x]),
                 Op::Combine(operator, x, y) => operator.value(done[x], done[y]),
+                Op::Power(x, 2) => done[x] * done[x],
                 Op::Power(x, n) => done[x].powi(n),
             };
             done[i] = last;

@@ -1,15 +1,4 @@
-//! `kind = "matrix-ode"`: a user's own equation, ẏ = λ_*(f(t, y))(y), with f(t, y) ∈ 𝔤 in formulas.
-//!
-//! | action | ẏ | kept by the action |
-//! |---|---|---|
-//! | translation | f y, y ∈ G | yᵀMy = M |
-//! | linear | f y | yᵀMy |
-//! | conjugation | f y − y f | tr yᵏ |
-//! | coadjoint | y fᵀ − fᵀ y | tr yᵏ |
-//!
-//! M is that of the group; GL(n) and SL(n) have none. The equation is that of the part of f in 𝔤: a f
-//! that is not in 𝔤 at the start, or at a point of M beside it, is refused, and later the projection
-//! takes rounding away. Where f depends on t alone the equation is of linear type, and Magnus methods fit.
+//! The equation: its field at a point, what it keeps, and the problem that it is.
 
 use std::sync::Arc;
 
@@ -20,178 +9,29 @@ use lieflow::groups::{AlgebraMatrix, LieAlgebra, LieGroup, MatrixGroup};
 use lieflow::maps::{CoordinateMap, Exp};
 use lieflow::methods::Metric;
 use lieflow::problems::{Ambient, LinearEquation, LinearSpace, Problem};
-use serde::Deserialize;
-use toml::de::ValueDeserializer;
 
-use super::algebra::{ALGEBRAS, Algebra, outside};
-use super::flow::{Flow, Generator};
-use super::matrix::MatrixAction;
-use super::system::System;
-use super::{Figure, KeyInfo, Kind, Law, PARAMETERS, ProblemSpec, QuantityInfo, Scale};
+use super::{ACTIONS, KIND, NAMED_MAX};
+use crate::kinds::algebra::{Algebra, outside};
+use crate::kinds::flow::{Flow, Generator};
+use crate::kinds::matrix::MatrixAction;
+use crate::kinds::system::System;
+use crate::kinds::{Figure, Kind, Law, QuantityInfo, Scale};
 use crate::model::Layer;
-use crate::scene::formula::{Formula, Parameters, read_all};
-use crate::scene::values::Table;
-use crate::scene::{ReadError, Refusal, help_for};
-
-/// The entry in the list of kinds.
-pub(super) const KIND: Kind = Kind {
-    name: "matrix-ode",
-    equation: "ẏ = f y (translation, linear), f y − y f (conjugation), y fᵀ − fᵀ y (coadjoint), f(t, y) in the algebra",
-    summary: "an equation of one's own on matrices, by the action of a matrix group",
-    keys: &[
-        KeyInfo { name: "group", meaning: "\"so\", \"sl\", \"gl\", \"sp\" or \"so(p,q)\"" },
-        KeyInfo {
-            name: "action",
-            meaning: "\"translation\", \"linear\", \"conjugation\" or \"coadjoint\"; optional: translation",
-        },
-        KeyInfo {
-            name: "field",
-            meaning: "n rows of n formulas, n at most 9: f in the algebra, by the time t and the entries y11, \
-                      y12, ... of the point",
-        },
-        KeyInfo {
-            name: "start",
-            meaning: "initial point, n rows; for translation in the group and optional, the identity",
-        },
-        PARAMETERS,
-    ],
-    quantities: &[
-        QuantityInfo {
-            name: "point",
-            columns: &["y11", "…", "ynk"],
-            meaning: "the point, row by row",
-        },
-        QuantityInfo {
-            name: "column",
-            columns: &["y11", "…", "yn1"],
-            meaning: "the first column of the point: where the first direction goes",
-        },
-        QuantityInfo {
-            name: "group_defect",
-            columns: &["group_defect"],
-            meaning: "distance of y'My from M, for translation on so, sp and so(p,q)",
-        },
-        QuantityInfo {
-            name: "form",
-            columns: &["f11", "…", "fkk"],
-            meaning: "y'My, on and above the diagonal, for the linear action of so, sp and so(p,q)",
-        },
-        QuantityInfo {
-            name: "traces",
-            columns: &["tr1", "…", "trn"],
-            meaning: "traces of the powers of the point, for conjugation and coadjoint",
-        },
-    ],
-    read,
-};
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Keys {
-    group: String,
-    action: Option<String>,
-    field: Vec<Vec<String>>,
-    start: Option<Table>,
-    #[serde(default)]
-    parameters: Parameters,
-}
-
-const ACTIONS: [(&str, MatrixAction); 4] = [
-    ("translation", MatrixAction::Translation),
-    ("linear", MatrixAction::Linear),
-    ("conjugation", MatrixAction::Conjugation),
-    ("coadjoint", MatrixAction::Coadjoint),
-];
-
-/// Formulas name entries by one digit for the row and one for the column.
-const NAMED_MAX: usize = 9;
+use crate::scene::Refusal;
+use crate::scene::formula::Formula;
 
 /// The equation with its initial point.
 #[derive(Clone, Debug)]
-struct Equation {
-    algebra: Algebra,
-    group: MatrixGroup,
-    action: MatrixAction,
+pub(super) struct Equation {
+    pub(super) algebra: Algebra,
+    pub(super) group: MatrixGroup,
+    pub(super) action: MatrixAction,
     /// f, row by row.
-    field: Arc<[Formula]>,
+    pub(super) field: Arc<[Formula]>,
     /// Is f a function of t alone?
-    linear: bool,
-    start: Mat<f64>,
+    pub(super) linear: bool,
+    pub(super) start: Mat<f64>,
 }
-
-fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
-    let keys = Keys::deserialize(section)?;
-    let algebra = Algebra::named(&keys.group)
-        .ok_or_else(|| Algebra::unknown("group", &keys.group, &ALGEBRAS))?;
-    let action = keys.action.as_deref().unwrap_or("translation");
-    let (_, action) = *ACTIONS.iter().find(|(name, _)| *name == action).ok_or_else(|| {
-        let refusal = Refusal::at("action", format!("unknown action `{action}`"));
-        Refusal { help: Some(help_for(action, &ACTIONS.map(|(name, _)| name))), ..refusal }
-    })?;
-    let n = keys.field.len();
-    if !(1..=NAMED_MAX).contains(&n) {
-        let message = format!("found {n} rows, expected 1 to {NAMED_MAX}");
-        return Err(Refusal::at("field", message).into());
-    }
-    if let Some(i) = keys.field.iter().position(|row| row.len() != n) {
-        let message = format!("row {} has {} formulas, expected {n}", i + 1, keys.field[i].len());
-        return Err(Refusal::at(format!("field[{i}]"), message).into());
-    }
-    let group = algebra.group(n, "field")?;
-    let start = start(algebra, &group, action, keys.start)?;
-    let entry = |i: usize| (1..=start.ncols()).map(move |j| format!("y{i}{j}"));
-    let variables = ["t".to_owned()].into_iter().chain((1..=n).flat_map(entry));
-    let names = keys.parameters.names("field", variables)?;
-    let mut field = Vec::new();
-    for (i, row) in keys.field.iter().enumerate() {
-        let read = read_all("field", row, &names);
-        field.extend(read.map_err(|refusal| of_row(i, refusal))?);
-    }
-    let linear = (1..names.variables().len()).all(|y| field.iter().all(|f| !f.uses(y)));
-    Ok(Box::new(Equation { algebra, group, action, field: field.into(), linear, start }))
-}
-
-/// `field[j]` of row i is `field[i,j]`.
-fn of_row(i: usize, Refusal { key, message, help }: Refusal) -> Refusal {
-    let with_row = |text: String| text.replacen("field[", &format!("field[{i},"), 1);
-    Refusal { key: key.map(with_row), message: with_row(message), help }
-}
-
-/// The initial point, where the action takes it.
-fn start(
-    algebra: Algebra,
-    group: &MatrixGroup,
-    action: MatrixAction,
-    stated: Option<Table>,
-) -> Result<Mat<f64>, Refusal> {
-    let n = group.n();
-    let refused = |message: String| Refusal::at("start", message);
-    let start = match (stated, action) {
-        (Some(table), _) => table.columns("start")?,
-        (None, MatrixAction::Translation) => Mat::identity(n, n),
-        (None, _) => return Err(Refusal::section("missing key `start` in [problem]")),
-    };
-    let columns = if action == MatrixAction::Linear { start.ncols().min(NAMED_MAX) } else { n };
-    if (start.nrows(), start.ncols()) != (n, columns) {
-        let (rows, found) = (start.nrows(), start.ncols());
-        let expected = if action == MatrixAction::Linear { "1 to 9".into() } else { n.to_string() };
-        return Err(refused(format!(
-            "found {rows} rows of {found} numbers, expected {n} rows of {expected} as field has them"
-        )));
-    }
-    if action == MatrixAction::Translation {
-        let on_group = group.element(start.clone());
-        on_group.map_err(|error| refused(format!("start: {error}")))?;
-        let det = start.determinant();
-        if algebra == Algebra::Sl && (det - 1.0).abs() > ON_THE_GROUP {
-            return Err(refused(format!("its determinant is {det}, expected 1")));
-        }
-    }
-    Ok(start)
-}
-
-/// How far the determinant of a start in SL(n) may be from 1.
-const ON_THE_GROUP: f64 = 1e-10;
 
 /// What f may have outside of the algebra at the points where it is looked at, relative to its size.
 const IN_THE_ALGEBRA: f64 = 1e-8;
@@ -199,12 +39,13 @@ const IN_THE_ALGEBRA: f64 = 1e-8;
 impl Equation {
     /// f(t, y) as it is stated.
     fn stated(&self, t: f64, y: &Mat<f64>, v: &mut Mat<f64>) {
-        let (n, k) = (y.nrows(), y.ncols());
+        let (rows, k) = (y.nrows(), y.ncols());
         let mut values = [0.0; 1 + NAMED_MAX * NAMED_MAX];
         values[0] = t;
-        for (i, j) in (0..n).flat_map(|i| (0..k).map(move |j| (i, j))) {
+        for (i, j) in (0..rows).flat_map(|i| (0..k).map(move |j| (i, j))) {
             values[1 + i * k + j] = y[(i, j)];
         }
+        let n = self.group.n();
         for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))) {
             v[(i, j)] = self.field[i * n + j].value(&values);
         }
@@ -237,6 +78,8 @@ impl Equation {
     fn kept(&self) -> Option<&'static str> {
         match self.action {
             MatrixAction::Conjugation | MatrixAction::Coadjoint => Some("traces"),
+            // Each Lagrangian subspace can be moved to each.
+            MatrixAction::Lagrangian => None,
             _ if !self.keeps_a_form() => None,
             MatrixAction::Translation => Some("group_defect"),
             _ => Some("form"),

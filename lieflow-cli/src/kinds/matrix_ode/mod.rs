@@ -1,0 +1,188 @@
+//! `kind = "matrix-ode"`: a user's own equation, ẏ = λ_*(f(t, y))(y), with f(t, y) ∈ 𝔤 in formulas.
+//!
+//! | action | ẏ | kept by the action |
+//! |---|---|---|
+//! | translation | f y, y ∈ G | yᵀMy = M |
+//! | linear | f y | yᵀMy |
+//! | conjugation | f y − y f | tr yᵏ |
+//! | coadjoint | y fᵀ − fᵀ y | tr yᵏ |
+//! | lagrangian | c + dy − ya − yby, f = \[a b; c d\] in sp(2m), y symmetric | |
+//!
+//! M is that of the group; GL(n) and SL(n) have none. The equation is that of the part of f in 𝔤: a f
+//! that is not in 𝔤 at the start, or at a point of M beside it, is refused, and later the projection
+//! takes rounding away. Where f depends on t alone the equation is of linear type, and Magnus methods fit.
+
+mod equation;
+
+use faer::Mat;
+use lieflow::groups::MatrixGroup;
+use serde::Deserialize;
+use toml::de::ValueDeserializer;
+
+use self::equation::Equation;
+use super::algebra::{ALGEBRAS, Algebra};
+use super::matrix::MatrixAction;
+use super::{KeyInfo, Kind, PARAMETERS, ProblemSpec, QuantityInfo};
+use crate::scene::formula::{Parameters, read_all};
+use crate::scene::values::Table;
+use crate::scene::{ReadError, Refusal, help_for};
+
+/// The entry in the list of kinds.
+pub(super) const KIND: Kind = Kind {
+    name: "matrix-ode",
+    equation: "ẏ = f y (translation, linear), f y − y f (conjugation), y fᵀ − fᵀ y (coadjoint), c + d y − y a − y b y \
+               (lagrangian, f = [a b; c d]), f(t, y) in the algebra",
+    summary: "an equation of one's own on matrices, by the action of a matrix group",
+    keys: &[
+        KeyInfo { name: "group", meaning: "\"so\", \"sl\", \"gl\", \"sp\" or \"so(p,q)\"" },
+        KeyInfo {
+            name: "action",
+            meaning: "\"translation\", \"linear\", \"conjugation\", \"coadjoint\" or, of sp, \"lagrangian\"; optional: \
+                      translation",
+        },
+        KeyInfo {
+            name: "field",
+            meaning: "n rows of n formulas, n at most 9: f in the algebra, by the time t and the entries y11, \
+                      y12, ... of the point",
+        },
+        KeyInfo {
+            name: "start",
+            meaning: "initial point, n rows, of n numbers but for linear; for translation in the group and \
+                      optional, the identity; for lagrangian symmetric, n/2 rows of n/2",
+        },
+        PARAMETERS,
+    ],
+    quantities: &[
+        QuantityInfo {
+            name: "point",
+            columns: &["y11", "…", "ynk"],
+            meaning: "the point, row by row",
+        },
+        QuantityInfo {
+            name: "column",
+            columns: &["y11", "…", "yn1"],
+            meaning: "the first column of the point: where the first direction goes",
+        },
+        QuantityInfo {
+            name: "group_defect",
+            columns: &["group_defect"],
+            meaning: "distance of y'My from M, for translation on so, sp and so(p,q)",
+        },
+        QuantityInfo {
+            name: "form",
+            columns: &["f11", "…", "fkk"],
+            meaning: "y'My, on and above the diagonal, for the linear action of so, sp and so(p,q)",
+        },
+        QuantityInfo {
+            name: "traces",
+            columns: &["tr1", "…", "trn"],
+            meaning: "traces of the powers of the point, for conjugation and coadjoint",
+        },
+    ],
+    read,
+};
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Keys {
+    group: String,
+    action: Option<String>,
+    field: Vec<Vec<String>>,
+    start: Option<Table>,
+    #[serde(default)]
+    parameters: Parameters,
+}
+
+const ACTIONS: [(&str, MatrixAction); 5] = [
+    ("translation", MatrixAction::Translation),
+    ("linear", MatrixAction::Linear),
+    ("conjugation", MatrixAction::Conjugation),
+    ("coadjoint", MatrixAction::Coadjoint),
+    ("lagrangian", MatrixAction::Lagrangian),
+];
+
+/// Formulas name entries by one digit for the row and one for the column.
+const NAMED_MAX: usize = 9;
+
+fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
+    let keys = Keys::deserialize(section)?;
+    let algebra = Algebra::named(&keys.group)
+        .ok_or_else(|| Algebra::unknown("group", &keys.group, &ALGEBRAS))?;
+    let action = keys.action.as_deref().unwrap_or("translation");
+    let (_, action) = *ACTIONS.iter().find(|(name, _)| *name == action).ok_or_else(|| {
+        let refusal = Refusal::at("action", format!("unknown action `{action}`"));
+        Refusal { help: Some(help_for(action, &ACTIONS.map(|(name, _)| name))), ..refusal }
+    })?;
+    let n = keys.field.len();
+    if !(1..=NAMED_MAX).contains(&n) {
+        let message = format!("found {n} rows, expected 1 to {NAMED_MAX}");
+        return Err(Refusal::at("field", message).into());
+    }
+    if let Some(i) = keys.field.iter().position(|row| row.len() != n) {
+        let message = format!("row {} has {} formulas, expected {n}", i + 1, keys.field[i].len());
+        return Err(Refusal::at(format!("field[{i}]"), message).into());
+    }
+    let group = algebra.group(n, "field")?;
+    if action == MatrixAction::Lagrangian && algebra != Algebra::Sp {
+        return Err(Refusal::at("action", "lagrangian is an action of sp").into());
+    }
+    let start = start(algebra, &group, action, keys.start)?;
+    let entry = |i: usize| (1..=start.ncols()).map(move |j| format!("y{i}{j}"));
+    let variables = ["t".to_owned()].into_iter().chain((1..=start.nrows()).flat_map(entry));
+    let names = keys.parameters.names("field", variables)?;
+    let mut field = Vec::new();
+    for (i, row) in keys.field.iter().enumerate() {
+        let read = read_all("field", row, &names);
+        field.extend(read.map_err(|refusal| of_row(i, refusal))?);
+    }
+    let linear = (1..names.variables().len()).all(|y| field.iter().all(|f| !f.uses(y)));
+    Ok(Box::new(Equation { algebra, group, action, field: field.into(), linear, start }))
+}
+
+/// `field[j]` of row i is `field[i,j]`.
+fn of_row(i: usize, Refusal { key, message, help }: Refusal) -> Refusal {
+    let with_row = |text: String| text.replacen("field[", &format!("field[{i},"), 1);
+    Refusal { key: key.map(with_row), message: with_row(message), help }
+}
+
+/// The initial point, where the action takes it.
+fn start(
+    algebra: Algebra,
+    group: &MatrixGroup,
+    action: MatrixAction,
+    stated: Option<Table>,
+) -> Result<Mat<f64>, Refusal> {
+    let n = group.n();
+    let refused = |message: String| Refusal::at("start", message);
+    let start = match (stated, action) {
+        (Some(table), _) => table.columns("start")?,
+        (None, MatrixAction::Translation) => Mat::identity(n, n),
+        (None, _) => return Err(Refusal::section("missing key `start` in [problem]")),
+    };
+    let (rows, columns) = match action {
+        MatrixAction::Lagrangian => (n / 2, n / 2),
+        MatrixAction::Linear => (n, start.ncols().min(NAMED_MAX)),
+        _ => (n, n),
+    };
+    if (start.nrows(), start.ncols()) != (rows, columns) {
+        let (found, of) = (start.nrows(), start.ncols());
+        return Err(refused(format!(
+            "found {found} rows of {of} numbers, expected {rows} rows of {columns} as field has them"
+        )));
+    }
+    if action == MatrixAction::Lagrangian && start != start.transpose() {
+        return Err(refused("it is not symmetric".into()));
+    }
+    if action == MatrixAction::Translation {
+        let on_group = group.element(start.clone());
+        on_group.map_err(|error| refused(format!("start: {error}")))?;
+        let det = start.determinant();
+        if algebra == Algebra::Sl && (det - 1.0).abs() > ON_THE_GROUP {
+            return Err(refused(format!("its determinant is {det}, expected 1")));
+        }
+    }
+    Ok(start)
+}
+
+/// How far the determinant of a start in SL(n) may be from 1.
+const ON_THE_GROUP: f64 = 1e-10;

@@ -1,0 +1,63 @@
+//! Jacobi's elliptic functions sn, cn, dn from the arithmetic-geometric mean.
+//!
+//! Source: R. Bulirsch, Numerical calculation of elliptic integrals and elliptic functions, Numer. Math. 7
+//! (1965): the descending Gauss transformation.
+
+/// The arithmetic-geometric mean of 1 and k' = √(1 − k²), from which sn, cn and dn follow at any u. 1 − k² is
+/// the argument so that k → 1 keeps its digits.
+#[derive(Clone, Debug)]
+pub(super) struct Ladder {
+    /// Both means at each level.
+    means: [(f64, f64); LEVELS],
+    levels: usize,
+    /// The mean that they come to.
+    last: f64,
+}
+
+/// 1 − k² ≥ 1e-280 needs fewer.
+const LEVELS: usize = 16;
+
+impl Ladder {
+    /// That of 1 − k².
+    pub(super) fn new(kc2: f64) -> Self {
+        let mut ladder = Ladder { means: [(0.0, 0.0); LEVELS], levels: 0, last: 1.0 };
+        let (mut a, mut b) = (1.0, kc2.sqrt());
+        if kc2 == 0.0 {
+            return ladder;
+        }
+        for level in &mut ladder.means {
+            *level = (a, b);
+            ladder.levels += 1;
+            ladder.last = 0.5 * (a + b);
+            if (a - b).abs() <= 1e-9 * a {
+                break;
+            }
+            b = (a * b).sqrt();
+            a = ladder.last;
+        }
+        ladder
+    }
+
+    /// sn, cn, dn of u.
+    pub(super) fn jacobi(&self, u: f64) -> (f64, f64, f64) {
+        if self.levels == 0 {
+            let cn = 1.0 / u.cosh();
+            return (u.tanh(), cn, cn);
+        }
+        let (s, k) = (self.last * u).sin_cos();
+        if s == 0.0 {
+            return (s, k, 1.0);
+        }
+        let mut dn = 1.0;
+        let mut ratio = k / s;
+        let mut cot = self.last * ratio;
+        for &(mean, root) in self.means[..self.levels].iter().rev() {
+            ratio *= cot;
+            cot *= dn;
+            dn = (root + ratio) / (mean + ratio);
+            ratio = cot / mean;
+        }
+        let sn = (1.0 / (cot * cot + 1.0).sqrt()).copysign(s);
+        (sn, cot * sn, dn)
+    }
+}
