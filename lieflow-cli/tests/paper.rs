@@ -2,12 +2,17 @@
 
 mod support;
 
-use lieflow_cli::paper::accuracy::{EPSILONS, TESTS, accuracy};
-use lieflow_cli::paper::counts::table2;
+use lieflow_cli::paper::accuracy::EPSILONS;
 use lieflow_cli::paper::printed::{TABLE2, TABLE4};
 use lieflow_cli::paper::rows::Row;
-use lieflow_cli::paper::{Effort, compute, example, findings};
+use lieflow_cli::paper::{Effort, Paper, compute, findings};
+use std::sync::LazyLock;
 use support::{Folder, read_csv};
+
+/// All of it, once, with few frames: the runs are seconds.
+static PAPER: LazyLock<Paper> = LazyLock::new(|| {
+    compute(&Effort { frames: 3, rounds: 1, finer: 0 }, |_, _| {}).expect("the paper's bodies")
+});
 
 /// E(400) − E(0) in example 3 and the mean of the error, in 80-bit arithmetic.
 const TABLE3: &[(&str, f64, f64)] = &[
@@ -84,9 +89,8 @@ fn close(a: f64, b: f64, what: &str) {
 
 #[test]
 fn table_3_is_that_of_the_paper() {
-    let runs = example(3).unwrap();
     for (key, last, mean) in TABLE3 {
-        let run = runs.iter().find(|run| run.row.key() == *key).unwrap();
+        let run = PAPER.energy[2].iter().find(|run| run.row.key() == *key).unwrap();
         close(run.last(), *last, key);
         close(run.mean().abs(), mean.abs(), key);
     }
@@ -94,8 +98,7 @@ fn table_3_is_that_of_the_paper() {
 
 #[test]
 fn table_4_is_that_of_the_paper_with_its_operations_of_a_step() {
-    for (t, (test, pinned)) in TESTS.iter().zip([SYMMETRIC, ASYMMETRIC]).enumerate() {
-        let all = accuracy(test, 0, 1).unwrap();
+    for (t, (all, pinned)) in PAPER.accuracy.iter().zip([SYMMETRIC, ASYMMETRIC]).enumerate() {
         for (key, errors) in pinned {
             let accuracy = all.iter().find(|a| a.row.key() == *key).unwrap();
             for (point, error) in accuracy.printed().iter().zip(errors) {
@@ -126,7 +129,7 @@ fn table_4_is_that_of_the_paper_with_its_operations_of_a_step() {
 /// dΨ⁻¹ is applied, which adds a product to the paper's count.
 #[test]
 fn table_2_is_counted_on_the_formulas_of_the_library() {
-    let counts = table2().unwrap();
+    let counts = &PAPER.counts;
     assert_eq!(counts.len(), TABLE2.len());
     for (map, part, printed) in &TABLE2 {
         let ours = counts.iter().find(|c| c.map == *map && c.part == *part).unwrap();
@@ -157,7 +160,7 @@ fn what_is_new_holds() {
     }
     let ccskb = frames.iter().find(|f| f.example == 3 && f.row == Row::Ccsk321).unwrap();
     assert!(ccskb.quantile(0.5) > 10.0 * ccskb.printed, "{ccskb:?}");
-    for drift in findings::drift_orders().unwrap() {
+    for drift in &PAPER.drift {
         let expected = match drift.row {
             Row::Ccsk321 => 4.0,
             Row::Ccsk123 => continue, // its terms of h⁴ and h⁵ cancel within these steps
@@ -166,7 +169,7 @@ fn what_is_new_holds() {
         let last = drift.orders()[3];
         assert!((last - expected).abs() < 0.35, "{:?}: {:?}", drift.row, drift.orders());
     }
-    for near in findings::separatrix().unwrap() {
+    for near in &PAPER.separatrix {
         let (start, end) = (near.side[0].1, near.side[near.side.len() - 1].1);
         let kept = (end / start - 1.0).abs() < 0.02;
         let on_g_by_stages = matches!(near.row, Row::Exp | Row::Cay | Row::Rk4);
@@ -177,8 +180,7 @@ fn what_is_new_holds() {
 #[test]
 fn the_page_and_its_files_are_complete() {
     let folder = Folder::new();
-    let paper = compute(&Effort { frames: 3, rounds: 1, finer: 0 }, |_, _| {}).unwrap();
-    paper.write(folder.path()).unwrap();
+    PAPER.write(folder.path()).unwrap();
     let page = folder.read("paper.html");
     assert!(page.contains("16 of 16 numbers as printed"), "Table 3 differs");
     assert!(!page.contains("NaN") && !page.contains("inf "));
