@@ -9,7 +9,7 @@ use lieflow_cli::paper::{Effort, Paper, compute, findings};
 use std::sync::LazyLock;
 use support::{Folder, read_csv};
 
-/// All of it, once, with few frames: the runs are seconds.
+/// All of it, once, with few frames: the runs are seconds. `findings_hold` goes beside it.
 static PAPER: LazyLock<Paper> = LazyLock::new(|| {
     compute(&Effort { frames: 3, rounds: 1, finer: 0 }, |_, _| {}).expect("the paper's bodies")
 });
@@ -146,7 +146,7 @@ fn table_2_is_counted_on_the_formulas_of_the_library() {
 /// exp does not see the frame in space; ccsk does, and the paper's frame is a lucky one. exp, cay, B4
 /// and RK4 drift as h⁵ on generic data, ccsk as h⁴.
 #[test]
-fn what_is_new_holds() {
+fn findings_hold() {
     let frames = findings::frames(30, 1, |_| {}).unwrap();
     for f in &frames {
         match f.row {
