@@ -34,7 +34,7 @@ use pulp::{Arch, Simd, WithSimd};
 
 use self::step::{Classical, InCay, InExp, MOTION, OneStep};
 use crate::error::Error;
-use crate::groups::So3;
+use crate::groups::{RESIDUAL_MAX, So3};
 use crate::problems::BodyState;
 use crate::so3::{Lane, SERIES, SMALL};
 
@@ -52,7 +52,7 @@ pub enum EnsembleMethod {
 
 /// Bodies in a block: their numbers stay in the first cache.
 const BLOCK: usize = 64;
-/// After so many steps of a method that keeps the group, g is taken back to it.
+/// After so many steps of a method that keeps the group, g is taken back to it, and |m| to what it was.
 const RESTORE_EVERY: u64 = 64;
 /// An attitude is a rotation to within this.
 const ROTATION: f64 = 1e-6;
@@ -67,6 +67,8 @@ type Vectors = [Numbers; 3];
 struct Block<const ROWS: usize> {
     /// 1/J.
     inverse: Vectors,
+    /// |m|² of the orbit.
+    square: Numbers,
     state: State<ROWS>,
 }
 
@@ -79,7 +81,8 @@ struct State<const ROWS: usize> {
 const ZERO: Vectors = [[0.0; BLOCK]; 3];
 
 impl<const ROWS: usize> Block<ROWS> {
-    const EMPTY: Self = Block { inverse: ZERO, state: State { m: ZERO, g: [ZERO; ROWS] } };
+    const EMPTY: Self =
+        Block { inverse: ZERO, square: [0.0; BLOCK], state: State { m: ZERO, g: [ZERO; ROWS] } };
 }
 
 #[derive(Clone, Debug)]
@@ -93,7 +96,7 @@ enum Blocks {
 pub struct Ensemble {
     len: usize,
     blocks: Blocks,
-    /// Steps since g was last taken back to the group.
+    /// Steps since g and m were last taken back to their orbits.
     age: u64,
 }
 
@@ -123,6 +126,7 @@ impl Ensemble {
                 block.state.m[k][i % BLOCK] = m;
             }
         }
+        blocks.iter_mut().for_each(|block| block.square = squares(&block.state.m));
         Ok(Ensemble { len, blocks: Blocks::Momentum(blocks), age: 0 })
     }
 
@@ -136,7 +140,7 @@ impl Ensemble {
         let mut blocks = vec![Block::EMPTY; self.len.div_ceil(BLOCK)];
         for (b, block) in blocks.iter_mut().enumerate() {
             let (inverse, m) = self.block(b);
-            (block.inverse, block.state.m) = (*inverse, *m);
+            (block.inverse, block.square, block.state.m) = (*inverse, squares(m), *m);
         }
         for (i, g) in attitudes.iter().enumerate() {
             So3::new().check_element("attitudes", g, ROTATION)?;
@@ -303,7 +307,7 @@ fn steps<Rule: OneStep, const FUSED: bool, const ROWS: usize>(
     block: &mut Block<ROWS>,
     first: usize,
 ) -> Result<(), Error> {
-    let Block { inverse, state } = block;
+    let Block { inverse, square, state } = block;
     let mut spare = *state;
     let (mut from, mut to, mut done) = (&mut *state, &mut spare, Ok(()));
     let mut swapped = false;
@@ -321,12 +325,16 @@ fn steps<Rule: OneStep, const FUSED: bool, const ROWS: usize>(
         }
         if Rule::KEEPS_GROUP && (way.age + n).is_multiple_of(RESTORE_EVERY) {
             restore(&mut to.g);
+            restore_momenta(square, &mut to.m);
         }
         core::mem::swap(&mut from, &mut to);
         swapped = !swapped;
     }
     if swapped {
         *state = spare;
+    }
+    if !Rule::KEEPS_GROUP {
+        *square = squares(&state.m);
     }
     done
 }
@@ -429,6 +437,24 @@ fn restore<const ROWS: usize>(g: &mut [Vectors; ROWS]) {
             for c in 0..3 {
                 row[c][i] -= x[0] * e[0][c] + x[1] * e[1][c] + x[2] * e[2][c];
             }
+        }
+    }
+}
+
+/// |m|².
+fn squares(m: &Vectors) -> Numbers {
+    core::array::from_fn(|i| m[0][i] * m[0][i] + m[1][i] * m[1][i] + m[2][i] * m[2][i])
+}
+
+/// m ← m + ½m(1 − |m|²/|m₀|²), as [`LieGroup::correct_vector`](crate::LieGroup::correct_vector) has it.
+#[inline(always)]
+fn restore_momenta(square: &Numbers, m: &mut Vectors) {
+    for (i, found) in squares(m).into_iter().enumerate() {
+        let missing = 1.0 - found / square[i];
+        // Not a number where squares leave the range, and at m = 0.
+        let step = if missing.abs() < RESIDUAL_MAX { 0.5 * missing } else { 0.0 };
+        for m in m.iter_mut() {
+            m[i] += step * m[i];
         }
     }
 }
