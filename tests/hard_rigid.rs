@@ -4,7 +4,7 @@
 //! | rows | where |
 //! |---|---|
 //! | R1 – R9, R12 | here: the methods that step |
-//! | R10 | `drift.rs`; R11 `lie_poisson.rs`, `problems/rigid.rs` |
+//! | R10 | `drift.rs`; R11 `special/lie_poisson.rs`, `problems/rigid.rs` |
 
 use lieflow::maps::{Cay, Exp};
 use lieflow::methods::{

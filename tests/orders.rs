@@ -1,20 +1,16 @@
 //! Measured orders: the methods of the catalog that ask for a field, or for one of linear type, on
 //! problems that do not commute, depend on time and depend on the state. By the same harness: products
 //! and SE(3) in `orders_products.rs`, orders from 8 on in `orders_wide.rs`, methods that ask for
-//! more in `orders_special.rs`.
+//! more in `special/orders.rs`.
 //! `cargo test --test orders -- --nocapture` prints the table.
 
 mod support;
 
-use lieflow::Problem;
 use lieflow::actions::{Coadjoint, LeftTranslation, Linear};
-use lieflow::groups::{MatrixGroup, Sample, So3};
-use lieflow::problems::{RigidBody, RigidBodyAttitude, RigidBodyN, RigidBodyNAttitude};
-use rand::SeedableRng;
-use rand_pcg::Pcg64;
+use lieflow::groups::{MatrixGroup, So3};
 use support::orders::{
-    Problems, clocks, estimate, every_explicit_method_on, every_linear_method_on, every_method_on,
-    grid, inertia, waves,
+    clocks, estimate, every_explicit_method_on, every_linear_method_on, every_method_on, grid,
+    inertia, waves,
 };
 
 orders! {
@@ -43,32 +39,6 @@ orders! {
     linear_on_gl3: many, MatrixGroup::gl(3).unwrap(), LeftTranslation, clocks(3, 0.7);
     linear_on_sp4: many, MatrixGroup::sp(4).unwrap(), LeftTranslation, clocks(4, 0.7);
     linear_on_so31: many, MatrixGroup::indefinite(3, 1).unwrap(), LeftTranslation, clocks(4, 1.0);
-}
-
-#[test]
-fn rigid_bodies() {
-    let (inertia, momentum) = ([1.0, 2.0, 3.5], [1.0, 0.8, -1.2]);
-    let body = RigidBody::new(inertia).unwrap();
-    every_explicit_method_on("the rigid body", Problems::one(body, momentum.into()));
-    let attitude = RigidBodyAttitude::new(inertia, momentum).unwrap();
-    every_explicit_method_on(
-        "its attitude",
-        Problems::one(attitude, nalgebra::Matrix3::identity()),
-    );
-
-    let manakov = RigidBodyN::manakov(&[0.4, 1.1, 1.9, 2.5]).unwrap();
-    let group = manakov.group().clone();
-    let mut rng = Pcg64::seed_from_u64(8);
-    let start = group.sample_algebra(&mut rng, 2.0).into_mat();
-    every_explicit_method_on(
-        "Manakov's body, n = 4",
-        Problems::one(manakov.clone(), start.clone()),
-    );
-    let attitude = RigidBodyNAttitude::new(manakov, start).unwrap();
-    every_explicit_method_on(
-        "its attitude, n = 4",
-        Problems::one(attitude, group.sample_element(&mut rng)),
-    );
 }
 
 #[test]

@@ -2,7 +2,7 @@
 //! group over a thousand steps, time symmetry by a step that is undone by a step back. The words are
 //! read from the catalog, so that a promise that is not kept fails here.
 
-mod support;
+use crate::support;
 
 use faer::Mat;
 use lieflow::actions::LeftTranslation;
@@ -220,7 +220,7 @@ fn nearly_symmetric_methods_come_back_with_a_high_order() {
 /// docs/methods.md names every method, map and tableau.
 #[test]
 fn the_guide_knows_them_all() {
-    let guide = include_str!("../docs/methods.md");
+    let guide = include_str!("../../docs/methods.md");
     let methods = all_methods().map(|(info, _)| info.name);
     for name in methods.chain(TABLEAUS.iter().copied()).chain(MAPS.iter().map(|m| m.name)) {
         let named = guide.contains(&format!("`{name}`")) || name.starts_with("ccsk");

@@ -2,8 +2,8 @@
 //! coefficients, Lie–Poisson systems. The harness is that of `orders.rs`; what is measured follows from
 //! the catalog's lists, and a list without a problem here makes a test fail.
 
-mod support;
-mod systems;
+use crate::support;
+use crate::systems;
 
 use faer::Scale;
 use lieflow::catalog::{
@@ -12,12 +12,15 @@ use lieflow::catalog::{
 };
 use lieflow::groups::Sample;
 use lieflow::maps::Cay;
-use lieflow::problems::{Ambient, PointOf, RigidBody, RigidBodyAttitude, RigidBodyState};
+use lieflow::problems::{
+    Ambient, PointOf, Problem, RigidBody, RigidBodyAttitude, RigidBodyN, RigidBodyNAttitude,
+    RigidBodyState,
+};
 use lieflow::{CoordinateMap, LieAlgebra};
 use nalgebra::{Matrix3, Vector3};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
-use support::orders::{Measure, Problems, Report};
+use support::orders::{Measure, Problems, Report, every_explicit_method_on};
 use support::points::Points;
 use support::represent::Represent;
 
@@ -115,4 +118,28 @@ fn every_list_has_its_problems() {
     for needs in Needs::ALL {
         assert!(fields.contains(&needs) != MEASURED.contains(&needs), "{needs:?}");
     }
+}
+
+/// The methods for any field, on bodies: here, where these are compiled anyway.
+#[test]
+fn rigid_bodies() {
+    let (inertia, momentum) = ([1.0, 2.0, 3.5], [1.0, 0.8, -1.2]);
+    let body = RigidBody::new(inertia).unwrap();
+    every_explicit_method_on("the rigid body", Problems::one(body, momentum.into()));
+    let attitude = RigidBodyAttitude::new(inertia, momentum).unwrap();
+    every_explicit_method_on("its attitude", Problems::one(attitude, Matrix3::identity()));
+
+    let manakov = RigidBodyN::manakov(&[0.4, 1.1, 1.9, 2.5]).unwrap();
+    let group = manakov.group().clone();
+    let mut rng = Pcg64::seed_from_u64(8);
+    let start = group.sample_algebra(&mut rng, 2.0).into_mat();
+    every_explicit_method_on(
+        "Manakov's body, n = 4",
+        Problems::one(manakov.clone(), start.clone()),
+    );
+    let attitude = RigidBodyNAttitude::new(manakov, start).unwrap();
+    every_explicit_method_on(
+        "its attitude, n = 4",
+        Problems::one(attitude, group.sample_element(&mut rng)),
+    );
 }

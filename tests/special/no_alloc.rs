@@ -1,7 +1,6 @@
 //! A step of the methods that ask more of a problem than f allocates nothing either.
 
-#[path = "support/counting.rs"]
-mod counting;
+use crate::counting;
 
 use lieflow::catalog::{
     MethodSpec, OnMethod, all_methods, with_attitude_method, with_lie_poisson_method,

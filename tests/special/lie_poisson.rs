@@ -1,7 +1,7 @@
 //! Lie–Poisson methods: energy and Casimirs, composition, spectrum, and the energy's behaviour
 //! over long times. On so(3), on Manakov's body on so(5), and on quadratic systems of other algebras.
 
-mod systems;
+use crate::systems;
 
 use faer::Mat;
 use lieflow::catalog::{
@@ -42,7 +42,7 @@ fn distance(a: &Mat<f64>, b: &Mat<f64>) -> f64 {
     (a - b).norm_l2()
 }
 
-/// On SO(5), Sp(4), GL(3) and SO(3,1): what is kept over 300 steps. Orders are in `orders_special.rs`.
+/// On SO(5), Sp(4), GL(3) and SO(3,1): what is kept over 300 steps. Orders are in `orders.rs`.
 #[test]
 fn on_every_algebra() {
     /// Rounding of 300 steps, for momenta of about 1.
