@@ -48,7 +48,7 @@ use lieflow::methods::{
 use lieflow::problems::{PointOf, Problem};
 use lieflow::scalar::{DoubleDouble, Real};
 use lieflow::{LieAlgebra, Step};
-use members::{STORED, UNIT, UNIT_FINE, by_name, high_orders, members, order, rational};
+use members::{STORED, UNIT, UNIT_FINE, by_name, high_orders, lie_series, members, order};
 use nalgebra::Vector3;
 use support::orders::{Report, slopes};
 
@@ -113,21 +113,11 @@ fn series_on<G: Wide + SeriesGroup>(group: &G, strength: f64) {
     let all = members(MEMBERS, UNIT_FINE, |i| Flow::new(group, Kind::Polynomial, strength, 31 + i));
     let of = |order| LieSeries::new(order).unwrap();
     high_orders("polynomial fields", &group.name(), &[Needs::Series], |spec| {
-        by_name!(spec, {
-            "taylor8" => &all, rational(8), of(8);
-            "taylor9" => &all, rational(9), of(9);
-            "taylor10" => &all, rational(10), of(10);
-            "taylor11" => &all, rational(11), of(11);
-            "taylor12" => &all, rational(12), of(12);
-            "taylor13" => &all, rational(13), of(13);
-            "taylor14" => &all, rational(14), of(14);
-            "taylor15" => &all, rational(15), of(15);
-            "taylor16" => &all, rational(16), of(16);
-        })
+        lie_series(spec, &all)
     });
     let flow = |i| Flow::new(group, Kind::Polynomial, strength, 31 + i);
     let flows: Vec<_> = (0..MEMBERS).map(flow).collect();
-    for order in [8, 10, 12, 14, 16] {
+    for order in 8..=16 {
         check_estimate(&flows, &of(order), order);
     }
 }

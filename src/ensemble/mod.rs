@@ -139,8 +139,8 @@ impl Ensemble {
         check_length("attitudes", attitudes.len(), self.len)?;
         let mut blocks = vec![Block::EMPTY; self.len.div_ceil(BLOCK)];
         for (b, block) in blocks.iter_mut().enumerate() {
-            let (inverse, m) = self.block(b);
-            (block.inverse, block.square, block.state.m) = (*inverse, squares(m), *m);
+            let (inverse, square, m) = self.block(b);
+            (block.inverse, block.square, block.state.m) = (*inverse, *square, *m);
         }
         for (i, g) in attitudes.iter().enumerate() {
             So3::new().check_element("attitudes", g, ROTATION)?;
@@ -162,18 +162,21 @@ impl Ensemble {
         self.len == 0
     }
 
-    /// 1/J and m of block b, of which there is one.
-    fn block(&self, b: usize) -> (&Vectors, &Vectors) {
+    /// 1/J, |m|² of the orbit and m of block b, of which there is one.
+    fn block(&self, b: usize) -> (&Vectors, &Numbers, &Vectors) {
+        fn of<const ROWS: usize>(block: &Block<ROWS>) -> (&Vectors, &Numbers, &Vectors) {
+            (&block.inverse, &block.square, &block.state.m)
+        }
         match &self.blocks {
-            Blocks::Momentum(blocks) => (&blocks[b].inverse, &blocks[b].state.m),
-            Blocks::Attitude(blocks) => (&blocks[b].inverse, &blocks[b].state.m),
+            Blocks::Momentum(blocks) => of(&blocks[b]),
+            Blocks::Attitude(blocks) => of(&blocks[b]),
         }
     }
 
     /// 1/J and m of body i.
     fn body(&self, i: usize) -> Option<(Vector3<f64>, Vector3<f64>)> {
         (i < self.len).then(|| {
-            let (inverse, m) = self.block(i / BLOCK);
+            let (inverse, _, m) = self.block(i / BLOCK);
             (vector(inverse, i % BLOCK), vector(m, i % BLOCK))
         })
     }

@@ -5,7 +5,6 @@
 use lieflow::actions::LeftTranslation;
 use lieflow::catalog::Needs;
 use lieflow::groups::{MatrixGroup, Sample};
-use lieflow::methods::LieSeries;
 use lieflow::problems::{
     Ambient, LinearSpace, Problem, RigidBodyN, RigidBodyNAttitude, TaylorField,
 };
@@ -18,7 +17,7 @@ use super::D;
 use super::agreement::{same_steps, wide};
 use super::group::Matrices;
 use super::lie_poisson::rate;
-use super::members::{Span, by_name, high_orders, members, rational};
+use super::members::{Span, high_orders, lie_series, members};
 use super::square::Square;
 
 const LAMBDA: [f64; 5] = [0.5, 0.9, 1.3, 1.7, 2.1];
@@ -118,20 +117,7 @@ fn attitude(i: u64) -> (Attitude, Square) {
 #[test]
 fn attitudes_on_so5() {
     let all = members(4, Span { length: 2.0, rate: 48.0, gap: 1e-28 }, attitude);
-    let of = |order| LieSeries::new(order).unwrap();
-    high_orders("attitudes", "SO(5)", &[Needs::Series], |spec| {
-        by_name!(spec, {
-            "taylor8" => &all, rational(8), of(8);
-            "taylor9" => &all, rational(9), of(9);
-            "taylor10" => &all, rational(10), of(10);
-            "taylor11" => &all, rational(11), of(11);
-            "taylor12" => &all, rational(12), of(12);
-            "taylor13" => &all, rational(13), of(13);
-            "taylor14" => &all, rational(14), of(14);
-            "taylor15" => &all, rational(15), of(15);
-            "taylor16" => &all, rational(16), of(16);
-        })
-    });
+    high_orders("attitudes", "SO(5)", &[Needs::Series], |spec| lie_series(spec, &all));
 }
 
 #[test]

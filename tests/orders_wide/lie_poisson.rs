@@ -6,7 +6,7 @@ use lieflow::LieAlgebra;
 use lieflow::actions::{Action, Coadjoint};
 use lieflow::catalog::Needs;
 use lieflow::groups::{MatrixGroup, Sample};
-use lieflow::methods::{LieSeries, Metric};
+use lieflow::methods::Metric;
 use lieflow::problems::{Ambient, LinearSpace, Problem, TaylorField};
 use lieflow::scalar::Real;
 use rand::SeedableRng;
@@ -15,7 +15,7 @@ use rand_pcg::Pcg64;
 use super::D;
 use super::agreement::{same_steps, wide};
 use super::group::Matrices;
-use super::members::{UNIT_FINE, by_name, high_orders, members, rational};
+use super::members::{UNIT_FINE, high_orders, lie_series, members};
 use super::square::Square;
 use super::systems;
 
@@ -116,10 +116,6 @@ fn systems() -> impl Iterator<Item = (MatrixGroup, Matrices, Square)> {
     })
 }
 
-fn series(order: usize) -> LieSeries {
-    LieSeries::new(order).unwrap()
-}
-
 /// The lists of which every method of order 8 and more is measured here.
 const NEEDS: [Needs; 3] = [Needs::Series, Needs::LiePoisson, Needs::Isospectral];
 
@@ -136,19 +132,7 @@ macro_rules! measure {
                 let m = start + wide(&aside) * D::lit(0.4 / library.norm(&aside));
                 (Quadratic(ours.clone()), m * (D::lit($length) / m.size()))
             });
-            high_orders("quadratic systems", $group, &NEEDS, |spec| {
-                by_name!(spec, {
-                    "taylor8" => &all, rational(8), series(8);
-                    "taylor9" => &all, rational(9), series(9);
-                    "taylor10" => &all, rational(10), series(10);
-                    "taylor11" => &all, rational(11), series(11);
-                    "taylor12" => &all, rational(12), series(12);
-                    "taylor13" => &all, rational(13), series(13);
-                    "taylor14" => &all, rational(14), series(14);
-                    "taylor15" => &all, rational(15), series(15);
-                    "taylor16" => &all, rational(16), series(16);
-                })
-            });
+            high_orders("quadratic systems", $group, &NEEDS, |spec| lie_series(spec, &all));
         }
     )*};
 }

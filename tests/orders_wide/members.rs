@@ -3,7 +3,7 @@
 use faer::Mat;
 use lieflow::catalog::{MethodSpec, Needs};
 use lieflow::methods::tableau::DOP853;
-use lieflow::methods::{Method, Step};
+use lieflow::methods::{LieSeries, Method, Step};
 use lieflow::problems::{Ambient, BodyState, PointOf};
 use lieflow::scalar::Real;
 use lieflow::{Error, LieAlgebra};
@@ -217,6 +217,17 @@ pub(crate) fn high_orders(
         let is_high = spec.info()?.order.is_some_and(|p| p >= LEAST) || of_tableau;
         Ok(if is_high { measured(spec) } else { Outcome::Elsewhere })
     });
+}
+
+/// The outcome of a Lie series, whose order is in its name; of another method none.
+pub(crate) fn lie_series<P: Measurable>(spec: &MethodSpec, members: &[Member<P>]) -> Outcome
+where
+    LieSeries: Method<P>,
+{
+    match spec.name.strip_prefix("taylor").map(str::parse) {
+        Some(Ok(p)) => order(members, rational(p as i32), &LieSeries::new(p).unwrap()),
+        _ => Outcome::Measured(Err("not measured".into())),
+    }
 }
 
 /// The outcome of `spec`, by the type of each method: all of the catalog's on one more type of problem would
