@@ -1,0 +1,233 @@
+//! The options of the command line.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand};
+use clap_complete::Shell;
+
+use lieflow_model::model::Layer;
+
+/// Integrate ordinary differential equations on Lie groups.
+///
+/// Without a command: run the demonstration and write its report.
+#[derive(Clone, Debug, Parser)]
+#[command(
+    name = "lieflow",
+    version,
+    args_conflicts_with_subcommands = true,
+    after_help = "Examples:
+  lieflow                               the demonstration: lieflow-report/index.html
+  lieflow --quick                       the same in a few seconds
+  lieflow scenes                        the scenes that come with the program
+  lieflow run asymmetric-top            run one of them
+  lieflow scenes asymmetric-top > my.toml
+                                        a scene of one's own to start from
+  lieflow run my.toml --out results     run it
+  lieflow paper --out paper             the paper's tables and figures, computed again"
+)]
+pub struct Cli {
+    /// The command; the demonstration when there is none.
+    #[command(subcommand)]
+    pub command: Option<Command>,
+    /// Options of the demonstration.
+    #[command(flatten)]
+    pub demo: DemoArgs,
+}
+
+/// A command.
+#[derive(Clone, Debug, Subcommand)]
+pub enum Command {
+    /// Run a scene: trajectory.csv, summary.json, and a page with figures.
+    Run(RunArgs),
+    /// Run a scene with every method, map and layer that fits, and write a report.
+    Compare(CompareArgs),
+    /// Compute the paper's tables and figures again: paper.html, CSV and SVG files.
+    Paper(PaperArgs),
+    /// Check the layers against each other, the laws of groups and maps, and the exact motion.
+    Check(CheckArgs),
+    /// List the scenes that come with the program, or print one to start from.
+    Scenes(ScenesArgs),
+    /// List the methods, coordinate maps and tableaus.
+    Methods(MethodsArgs),
+    /// Print completions for a shell.
+    Completions(CompletionsArgs),
+}
+
+/// Options of the demonstration.
+#[derive(Args, Clone, Debug)]
+pub struct DemoArgs {
+    /// Shorter runs: a few seconds, the same figures with less in them.
+    #[arg(long)]
+    pub quick: bool,
+    /// Folder for the report.
+    #[arg(long, value_name = "DIR", default_value = "lieflow-report")]
+    pub out: PathBuf,
+}
+
+/// Options of `run`.
+#[derive(Args, Clone, Debug)]
+#[command(after_help = SCENE_HELP)]
+pub struct RunArgs {
+    /// A scene file, or the name of a bundled scene.
+    pub scene: PathBuf,
+    /// Folder for what is written [default: lieflow-out/SCENE].
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+}
+
+/// Options of `compare`.
+#[derive(Args, Clone, Debug)]
+#[command(after_help = "Examples:
+  lieflow compare asymmetric-top
+  lieflow compare my.toml --out results --repeat 15
+  lieflow compare my.toml --methods rkmk4,mr4,taylor12,exact
+  lieflow compare my.toml --methods \"rkmk dopri5\" --tolerances 1e-4,1e-8,1e-12
+  lieflow compare my.toml --layers closed,general --methods rkmk4,rk4
+
+Written: index.html, speed.csv and speed.json with every run, the figures as SVG files. A comparison
+that is interrupted goes on where it was when it is started again with the same scene and options.")]
+pub struct CompareArgs {
+    /// A scene file, or the name of a bundled scene.
+    pub scene: PathBuf,
+    /// Folder for the report [default: lieflow-compare/SCENE].
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Shorter runs.
+    #[arg(long)]
+    pub quick: bool,
+    /// Only these: names of methods, with parts where wanted, as in "rkmk dopri5 cay".
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    pub methods: Vec<String>,
+    /// The layers to run on: closed, general or both [default: the scene's].
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = layer)]
+    pub layers: Vec<Layer>,
+    /// Tolerances for the methods that choose their steps.
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = tolerance)]
+    #[arg(allow_negative_numbers = true)]
+    pub tolerances: Vec<f64>,
+    /// Time each run so many times, in turns with the others, and take the median.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(allow_negative_numbers = true)]
+    pub repeat: Option<u32>,
+    /// The seed of the order in which runs take their turns.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+}
+
+fn layer(text: &str) -> Result<Layer, String> {
+    Layer::named(text.trim()).map_err(|error| error.to_string())
+}
+
+fn tolerance(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(x) if x > 0.0 && x < 1.0 => Ok(x),
+        _ => Err("expected a number between 0 and 1, as 1e-6".into()),
+    }
+}
+
+/// Options of `paper`.
+#[derive(Args, Clone, Debug)]
+#[command(after_help = "Examples:
+  lieflow paper --out paper
+  lieflow paper --quick
+
+Written: paper.html, self-contained; table1.csv to table4.csv, figure3.csv to figure5.csv,
+frames.csv, drift.csv, separatrix.csv; every figure as an SVG file.")]
+pub struct PaperArgs {
+    /// Folder for the page and the data.
+    #[arg(long, value_name = "DIR", default_value = "lieflow-report")]
+    pub out: PathBuf,
+    /// Fewer space frames and fewer rounds of timing; the tables are the same.
+    #[arg(long)]
+    pub quick: bool,
+}
+
+/// Options of `check`.
+#[derive(Args, Clone, Debug)]
+#[command(after_help = "Examples:
+  lieflow check
+  lieflow check --quick --json
+
+The exit code is 0 when every check holds, and 1 when one does not.")]
+pub struct CheckArgs {
+    /// Fewer and shorter runs.
+    #[arg(long)]
+    pub quick: bool,
+    /// Print JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Options of `scenes`.
+#[derive(Args, Clone, Debug)]
+#[command(after_help = "Examples:
+  lieflow scenes
+  lieflow scenes --json
+  lieflow scenes tumbling-attitude > my.toml")]
+pub struct ScenesArgs {
+    /// Print this scene.
+    pub name: Option<String>,
+    /// Print JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Options of `methods`.
+#[derive(Args, Clone, Debug)]
+#[command(after_help = "Examples:
+  lieflow methods
+  lieflow methods --json
+  lieflow methods --for my.toml")]
+pub struct MethodsArgs {
+    /// Only what fits this scene: a scene file, or the name of a bundled scene.
+    #[arg(long = "for", value_name = "SCENE")]
+    pub scene: Option<PathBuf>,
+    /// Print JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Options of `completions`.
+#[derive(Args, Clone, Debug)]
+#[command(after_help = "Examples:
+  lieflow completions bash > ~/.local/share/bash-completion/completions/lieflow
+  lieflow completions zsh > ~/.zfunc/_lieflow
+  lieflow completions fish > ~/.config/fish/completions/lieflow.fish")]
+pub struct CompletionsArgs {
+    /// The shell.
+    pub shell: Shell,
+}
+
+const SCENE_HELP: &str = "Examples:
+  lieflow run asymmetric-top
+  lieflow run my.toml --out results
+
+A scene file, with everything that it can say about a rigid body:
+  title = \"Asymmetric top\"
+  [problem]
+  kind = \"rigid-body\"
+  inertia = [1.0, 2.0, 3.0]         # or the tensor as three rows, inverse_inertia, or
+                                    # shape = { kind = \"box\", mass = 1, sides = [1, 2, 3] }
+  omega_body = [0.2, 0.0, 1.0]      # or momentum_body
+  attitude = [[1,0,0],[0,1,0],[0,0,1]]
+                                    # body to space; optional
+  [method]
+  name = \"rkmk4\"                    # lieflow methods lists the names
+  map = \"exp\"                       # optional: exp
+  tableau = \"heun\"                  # optional: rk4; for rkmk and rk only
+  q = 2                             # optional: cut of the Baker series; for exp only
+  layer = \"closed\"                  # optional: closed, or general
+  [time]
+  t_span = [0.0, 400.0]             # may run backward
+  dt = 0.05                         # or steps = 8000, or steps chosen by their error:
+  rtol = 1e-9                       # instead of dt; error for each unit of the way; optional: 0
+  atol = 1e-12                      # error of each step; optional: 0; one of the two is needed
+  h_init = 0.01                     # optional, as are h_min, h_max, max_steps
+  [output]
+  quantities = [\"momentum_body\"]    # lieflow scenes lists what there is
+  every = 10                        # or times = [1.5, 20]; optional: 1
+
+Written: trajectory.csv, a column t and the columns of each quantity, 17 significant digits, the
+start first and the end last; summary.json, what was modelled and run, the drift of each invariant, and
+a warning where a method did not keep what it promises; index.html with figures, and each as an SVG file.
+When a step fails, the rows up to it are in trajectory.partial.csv and the exit code is 2.";

@@ -1,0 +1,75 @@
+//! The commands, one file each, and what they fail with.
+
+pub mod check;
+pub mod compare;
+pub mod completions;
+pub mod demo;
+pub mod methods;
+pub mod paper;
+pub mod run;
+pub mod scenes;
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+use lieflow_model::scene::SceneError;
+
+/// Why a command ended without doing its work: one message for stderr.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum CliError {
+    /// The scene cannot be used.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// An argument cannot be used.
+    #[error(transparent)]
+    Setup(#[from] lieflow::Error),
+    /// A run stopped early.
+    #[error(transparent)]
+    Run(#[from] lieflow::RunError),
+    /// A file cannot be read or written.
+    #[error("cannot {doing} `{}`: {source}", path.display())]
+    Io {
+        /// What was tried, as "write".
+        doing: &'static str,
+        /// The file or folder.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+    /// Standard output cannot be written.
+    #[error("cannot write to standard output: {0}")]
+    Stdout(io::Error),
+    /// Anything else, in words.
+    #[error("{0}")]
+    Message(String),
+    /// The command did its work and what it checked does not hold.
+    #[error("{0}")]
+    Failed(String),
+}
+
+/// A bar of a thousand parts on standard error.
+fn progress() -> ProgressBar {
+    let bar = ProgressBar::with_draw_target(Some(1000), ProgressDrawTarget::stderr());
+    match ProgressStyle::with_template("{bar:40} {percent:>3}% {msg}") {
+        Ok(style) => bar.with_style(style),
+        Err(_) => bar,
+    }
+}
+
+impl CliError {
+    /// For `map_err` on what is done with a file.
+    pub fn io(doing: &'static str, path: &Path) -> impl FnOnce(io::Error) -> CliError {
+        move |source| CliError::Io { doing, path: path.into(), source }
+    }
+
+    /// The exit code: 1 for a check that does not hold, 2 for everything else.
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            CliError::Failed(_) => 1,
+            _ => 2,
+        }
+    }
+}

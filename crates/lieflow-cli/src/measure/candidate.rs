@@ -1,0 +1,159 @@
+//! What is compared: methods with their parts, on a layer, in steps of one size or of their own.
+
+use lieflow::catalog::{MAPS, MethodSpec, TABLEAUS, all_methods};
+use lieflow::methods::tableau;
+
+use crate::cmd::CliError;
+use lieflow_model::model::Layer;
+use lieflow_model::scene::{Scene, suggest};
+
+/// A method on a layer.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct Candidate {
+    /// The method.
+    pub method: MethodSpec,
+    /// The layer.
+    pub layer: Layer,
+    /// Does it choose its steps by their error?
+    pub adaptive: bool,
+}
+
+/// The stages of the tableau of that name.
+fn stages(name: &str) -> Option<u64> {
+    macro_rules! stages_of {
+        ($($tableau:ident),*) => {
+            [$((tableau::$tableau.name, tableau::$tableau.update_stages())),*]
+        };
+    }
+    let all =
+        stages_of!(EULER, MIDPOINT, HEUN, RK4, THREE_EIGHTHS, BS3, RKF45, DOPRI5, VERNER6, DOP853);
+    all.iter().find(|(known, _)| *known == name).map(|(_, stages)| *stages as u64)
+}
+
+impl Candidate {
+    /// RKMK4 with a map on a layer.
+    pub fn rkmk4(map: &str, layer: Layer) -> Self {
+        Candidate { method: MethodSpec::new("rkmk4", Some(map)), layer, adaptive: false }
+    }
+
+    /// Classical RK4 on the entries.
+    pub fn rk4(layer: Layer) -> Self {
+        Candidate { method: MethodSpec::new("rk4", None), layer, adaptive: false }
+    }
+
+    /// Its name in tables and legends.
+    pub fn label(&self) -> String {
+        let mut label = self.method.label();
+        if self.adaptive {
+            label += ", adaptive";
+        }
+        if self.layer == Layer::General {
+            label += ", general";
+        }
+        label
+    }
+
+    /// The figure that it belongs to: its tableau, or the family of a method that has none.
+    pub fn family(&self) -> &str {
+        match self.method.name.as_str() {
+            "rkmk4" | "rk4" => "rk4",
+            _ => match &self.method.tableau {
+                Some(tableau) => tableau,
+                None => self.method.info().map_or("", |info| info.family),
+            },
+        }
+    }
+
+    /// Does the catalog say that it keeps the energy, or keeps it within bounds (symplectic)?
+    pub fn keeps_energy(&self) -> bool {
+        self.method.info().is_ok_and(|info| {
+            ["energy", "symplectic", "everything"].iter().any(|what| info.preserves.contains(what))
+        })
+    }
+
+    /// Evaluations of f, of F or of A in a step of one size, as the catalog states its cost; none for
+    /// an implicit method, whose number depends on the step, and for one that evaluates no field.
+    pub fn evaluations_per_step(&self) -> Option<u64> {
+        let (count, rest) = self.method.info().ok()?.cost.split_once(' ')?;
+        match count {
+            _ if !rest.starts_with(['f', 'F', 'A']) => None,
+            "s" => stages(self.method.tableau.as_deref().unwrap_or("rk4")),
+            _ => count.parse().ok(),
+        }
+    }
+
+    /// Everything in the catalog that runs on the problem of `scene` on this layer, each method with
+    /// the tableaus and maps that it takes, in steps of one size, and those that estimate their own
+    /// error in steps of their own too. A tableau that has a method of its own is listed under that.
+    ///
+    /// # Errors
+    /// The problem cannot be set up.
+    pub fn all_that_fit(
+        scene: &Scene,
+        quantities: &[&str],
+        layer: Layer,
+    ) -> Result<Vec<Self>, CliError> {
+        let model = scene.model_with(layer, quantities)?;
+        let mut fitting = Vec::new();
+        for (info, _) in all_methods() {
+            let none = [None];
+            let maps: Vec<Option<&str>> = match info.takes_map {
+                true => MAPS.iter().map(|map| Some(map.name)).collect(),
+                false => none.into(),
+            };
+            let tableaus: Vec<Option<&str>> = match info.takes_tableau {
+                true => TABLEAUS.iter().filter(|t| **t != "rk4").map(|t| Some(*t)).collect(),
+                false => none.into(),
+            };
+            for tableau in &tableaus {
+                for map in &maps {
+                    let mut method = MethodSpec::new(info.name, *map);
+                    method.tableau = tableau.map(Into::into);
+                    if model.fits(&method).is_err() {
+                        continue;
+                    }
+                    let pair = method.has_pair()?;
+                    fitting.push(Candidate { method: method.clone(), layer, adaptive: false });
+                    if pair {
+                        fitting.push(Candidate { method, layer, adaptive: true });
+                    }
+                }
+            }
+        }
+        Ok(fitting)
+    }
+
+    /// Those of `all` that a name stands for: that of a method, or a method with parts as in
+    /// `rkmk dopri5 cay`. What follows a method in the tables, `, adaptive, general`, may stand in the list
+    /// as it does there: pairs go in both kinds of steps anyway, and layers are chosen apart.
+    ///
+    /// # Errors
+    /// A name that stands for none of them.
+    pub fn chosen(all: &[Self], names: &[String]) -> Result<Vec<Self>, CliError> {
+        let stands_for = |name: &str, candidate: &Candidate| {
+            let label = candidate.method.label();
+            label == name || label.strip_prefix(name).is_some_and(|rest| rest.starts_with(' '))
+        };
+        let names = || {
+            let names = names.iter().map(|name| name.trim());
+            names.filter(|name| !["adaptive", "general"].contains(name))
+        };
+        if names().next().is_none() {
+            return Err(CliError::Message("--methods: no method is named".into()));
+        }
+        for name in names() {
+            if !all.iter().any(|candidate| stands_for(name, candidate)) {
+                let mut known: Vec<&str> = all.iter().map(|c| c.method.name.as_str()).collect();
+                known.dedup();
+                let near = suggest(name, &known).map(|near| format!("; did you mean `{near}`?"));
+                return Err(CliError::Message(format!(
+                    "--methods: no method `{name}` fits this scene{} It takes: {}",
+                    near.unwrap_or_else(|| ".".into()),
+                    known.join(", ")
+                )));
+            }
+        }
+        let chosen = |candidate: &&Candidate| names().any(|name| stands_for(name, candidate));
+        Ok(all.iter().filter(chosen).cloned().collect())
+    }
+}

@@ -1,0 +1,178 @@
+//! summary.json: what was run, and how well it went.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use lieflow_model::kinds::explained_by_rounding;
+
+/// The name of the file.
+pub const SUMMARY: &str = "summary.json";
+
+/// What was run, and how well it went.
+#[derive(Clone, Debug, Serialize)]
+pub struct Summary {
+    /// The version of the program.
+    pub lieflow: &'static str,
+    /// The title of the scene.
+    pub title: String,
+    /// The name of the scene.
+    pub scene: String,
+    /// The kind of problem.
+    pub problem: &'static str,
+    /// Did the run reach its end?
+    pub completed: bool,
+    /// Why not.
+    pub failure: Option<String>,
+    /// The method.
+    pub method: MethodSummary,
+    /// The layer.
+    pub layer: &'static str,
+    /// What was integrated.
+    pub modelled: Vec<String>,
+    /// What is known of the problem before any run.
+    pub facts: BTreeMap<&'static str, f64>,
+    /// What a reader should know: a body that cannot be, an invariant that moved.
+    pub warnings: Vec<String>,
+    /// What was written.
+    pub quantities: Vec<String>,
+    /// The columns of the trajectory.
+    pub columns: Vec<String>,
+    /// The file of the trajectory, next to this one.
+    pub trajectory: &'static str,
+    /// From when to when.
+    pub t_span: [f64; 2],
+    /// The size of a step; none where each has its own.
+    pub dt: Option<f64>,
+    /// The steps that were taken.
+    pub steps: u64,
+    /// How steps were chosen, where they were.
+    pub adaptive: Option<Chosen>,
+    /// Shorter steps to output times between them; not known when a step failed.
+    pub side_steps: Option<u64>,
+    /// The rows that were written.
+    pub rows: u64,
+    /// Seconds, with writing.
+    pub wall_time_s: f64,
+    /// The first row, by column.
+    pub initial: Vec<f64>,
+    /// The last row, by column.
+    #[serde(rename = "final")]
+    pub last: Vec<f64>,
+    /// Where the drifts were looked at.
+    pub drift_computed_at: &'static str,
+    /// The drift of each invariant that follows from what was modelled, by column.
+    pub drift: BTreeMap<String, Drift>,
+    /// The distance from the exact solution at the end, by quantity; none where none is known.
+    pub error_at_end: Option<BTreeMap<String, f64>>,
+}
+
+/// Steps that were chosen by their error.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Chosen {
+    /// Steps that were accepted.
+    pub accepted: u64,
+    /// Attempts that were rejected, for their error or because the step failed.
+    pub rejected: u64,
+    /// Evaluations of f, where the method knows them.
+    pub evaluations: Option<u64>,
+    /// The smallest accepted step.
+    pub smallest_step: f64,
+    /// The largest accepted step.
+    pub largest_step: f64,
+}
+
+/// A method with its parts.
+#[derive(Clone, Debug, Serialize)]
+pub struct MethodSummary {
+    /// Its name.
+    pub name: String,
+    /// Its name with its parts.
+    pub label: String,
+    /// Its map.
+    pub map: Option<String>,
+    /// Its tableau.
+    pub tableau: Option<String>,
+    /// The cut of the Baker series.
+    pub q: Option<usize>,
+    /// Its order; none where it is exact.
+    pub order: Option<usize>,
+}
+
+/// How far an invariant moved from its value at the start.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Drift {
+    /// Its value at the start.
+    pub initial: f64,
+    /// |value − initial| at the end.
+    pub at_end: f64,
+    /// The largest |value − initial|.
+    pub max: f64,
+    /// What it moves by in a unit of time: the slope of the line with the least squares.
+    pub slope: f64,
+    /// Does the method promise to keep it to rounding?
+    pub promised: bool,
+    /// What rounding explains of `max`.
+    pub rounding: f64,
+}
+
+impl Drift {
+    /// Did it move by more than rounding explains, though the method promises to keep it?
+    pub fn breaks_a_promise(&self) -> bool {
+        self.promised && (self.max.is_nan() || self.max > self.rounding)
+    }
+}
+
+/// A drift that is being watched.
+#[derive(Clone, Copy, Debug)]
+pub struct Watched {
+    start: [f64; 2],
+    at_end: f64,
+    max: f64,
+    /// The largest size of its terms.
+    size: f64,
+    rows: f64,
+    /// Means of t and of the value, from the start.
+    mean: [f64; 2],
+    /// Σ(t − mean)(value − mean) and Σ(t − mean)².
+    squares: [f64; 2],
+}
+
+impl Watched {
+    /// The value and the size of its terms at the start.
+    pub fn new(t: f64, value: f64, size: f64) -> Self {
+        let (mean, squares) = ([0.0; 2], [0.0; 2]);
+        let start = [t, value];
+        Watched { start, at_end: 0.0, max: 0.0, size, rows: 1.0, mean, squares }
+    }
+
+    /// The next row.
+    pub fn see(&mut self, t: f64, value: f64, size: f64) {
+        let now = [t - self.start[0], value - self.start[1]];
+        self.at_end = now[1].abs();
+        // A value that is not a number is a drift of no size, and stays one.
+        self.max =
+            if self.at_end > self.max || self.at_end.is_nan() { self.at_end } else { self.max };
+        self.size = self.size.max(size);
+        self.rows += 1.0;
+        let before = [now[0] - self.mean[0], now[1] - self.mean[1]];
+        for i in 0..2 {
+            self.mean[i] += before[i] / self.rows;
+        }
+        self.squares[0] += before[0] * (now[1] - self.mean[1]);
+        self.squares[1] += before[0] * (now[0] - self.mean[0]);
+    }
+
+    /// What was seen, by a method that took so many steps.
+    pub fn drift(&self, promised: bool, steps: u64) -> Drift {
+        let [together, alone] = self.squares;
+        Drift {
+            initial: self.start[1],
+            at_end: self.at_end,
+            max: self.max,
+            slope: if alone > 0.0 { together / alone } else { 0.0 },
+            promised,
+            rounding: explained_by_rounding(steps, self.size),
+        }
+    }
+}

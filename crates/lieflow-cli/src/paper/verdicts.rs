@@ -1,0 +1,89 @@
+//! The reading of section 5.3, judged by the numbers of this run.
+
+use super::Paper;
+use super::accuracy::{Accuracy, EPSILONS, TESTS};
+use super::rows::Row;
+use lieflow_figures::plot::format::seconds;
+
+/// A sentence of the paper and what the measurements say.
+#[derive(Clone, Debug)]
+pub(super) struct Verdict {
+    /// The sentence.
+    pub(super) claim: &'static str,
+    /// The answer.
+    pub(super) answer: String,
+}
+
+const LIE: [Row; 5] = [Row::Exp, Row::Ccsk, Row::Ccsk321, Row::Ccsk123, Row::Cay];
+
+fn find(all: &[Accuracy], row: Row) -> Option<&Accuracy> {
+    all.iter().find(|a| a.row == row)
+}
+
+/// The time of a row to ε, in words.
+fn time(all: &[Accuracy], row: Row, epsilon: f64) -> String {
+    let time = find(all, row).and_then(|a| a.seconds_to(epsilon));
+    format!("{} {}", row.name(), time.map_or("–".into(), seconds))
+}
+
+/// Every sentence.
+pub(super) fn all(paper: &Paper) -> Vec<Verdict> {
+    let cells = || {
+        (0..2)
+            .flat_map(|test| EPSILONS.map(|epsilon| (test, epsilon)))
+            .map(|(test, epsilon)| (&paper.accuracy[test], TESTS[test].name, epsilon))
+    };
+    let faster = |all: &[Accuracy], a: Row, b: Row, epsilon: f64| {
+        let time = |row| find(all, row).and_then(|x| x.seconds_to(epsilon));
+        matches!((time(a), time(b)), (Some(a), Some(b)) if a < b)
+    };
+    let mut against_mr = Vec::new();
+    let mut all_faster = true;
+    for (all, name, epsilon) in cells() {
+        let ahead = LIE.into_iter().filter(|row| faster(all, *row, Row::Mr, epsilon)).count();
+        all_faster &= ahead == LIE.len();
+        against_mr.push(format!(
+            "{name} to {epsilon:.0e}: {} of {} are faster ({}, {})",
+            ahead,
+            LIE.len(),
+            time(all, Row::Mr, epsilon),
+            time(all, Row::Exp, epsilon)
+        ));
+    }
+    let mut against_rk = Vec::new();
+    for (all, name, epsilon) in cells() {
+        let ahead = LIE.into_iter().chain([Row::B4]);
+        let ahead: Vec<_> = ahead.filter(|row| faster(all, *row, Row::Rk4, epsilon)).collect();
+        let names: Vec<_> = ahead.iter().map(|row| row.name()).collect();
+        let names = if names.is_empty() { "none".into() } else { names.join(", ") };
+        against_rk
+            .push(format!("{name} to {epsilon:.0e}: {names} ({})", time(all, Row::Rk4, epsilon)));
+    }
+    let fastest = cells().map(|(all, name, epsilon)| {
+        let timed = all.iter().filter_map(|a| Some((a.seconds_to(epsilon)?, a.row)));
+        let best = timed.min_by(|a, b| a.0.total_cmp(&b.0));
+        let best =
+            best.map_or("none".into(), |(t, row)| format!("{} ({})", row.name(), seconds(t)));
+        format!("{name} to {epsilon:.0e}: {best}")
+    });
+    vec![
+        Verdict {
+            claim: "“The Lie group methods and Runge–Kutta perform clearly better than \
+                    McLachlan–Reich”",
+            answer: format!(
+                "{}. Of exp, cay and the three ccsk, by CPU time: {}.",
+                if all_faster { "it holds here" } else { "it does not hold here" },
+                against_mr.join("; ")
+            ),
+        },
+        Verdict {
+            claim: "“Some Lie group methods perform even better than the explicit Runge–Kutta \
+                    method”",
+            answer: format!("faster than RK4 on g are: {}.", against_rk.join("; ")),
+        },
+        Verdict {
+            claim: "Fastest of all that are here",
+            answer: format!("{}.", fastest.collect::<Vec<_>>().join("; ")),
+        },
+    ]
+}

@@ -1,0 +1,392 @@
+//! `lieflow compare`: every point is written, the advice follows from them, and a comparison that was
+//! interrupted goes on.
+
+mod support;
+
+use std::time::Duration;
+
+use lieflow_cli::measure::{
+    Candidate, Effort, JOURNAL, Journal, Judge, Plan, Reference, speed_against_error,
+};
+use lieflow_cli::report::ADVICE;
+use lieflow_model::model::Layer;
+use lieflow_model::scene::Scene;
+use support::{Folder, SCENE};
+
+const METHODS: &str = "rkmk4 exp,rk4,mr4,taylor8,exact,rkmk dopri5 cay";
+
+#[test]
+fn the_advice_follows_from_the_points() {
+    let folder = Folder::new();
+    folder.write("scene.toml", SCENE);
+    let args = ["compare", "scene.toml", "--out", "out", "--quick", "--repeat", "2", "--seed", "3"];
+    let args = [&args[..], &["--methods", METHODS, "--tolerances", "1e-4,1e-8"]].concat();
+    let told = folder.lieflow(&args).ok();
+    assert!(told.contains("must not drift") && told.contains("the exact solution"), "{told}");
+    assert!(told.contains("without the exact motion"), "{told}");
+    assert!(!folder.names("out").contains(&JOURNAL.to_string()));
+
+    let json = folder.json("out/speed.json");
+    let curves = json["curves"].as_array().unwrap();
+    let label = |c: &serde_json::Value| format!("{} {}", c["method"], c["adaptive"]);
+    let labels: Vec<_> = curves.iter().map(label).collect();
+    for expected in ["rkmk4", "rk4", "mr4", "taylor8", "exact"] {
+        assert!(labels.contains(&format!("{expected:?} false")), "{labels:?}");
+    }
+    // A pair in steps of one size and in steps of its own.
+    assert!(labels.contains(&"\"rkmk\" false".into()) && labels.contains(&"\"rkmk\" true".into()));
+    assert_eq!(labels.len(), 7);
+    let tolerances = &curves.iter().find(|c| c["adaptive"] == true).unwrap()["points"];
+    assert_eq!(tolerances.as_array().unwrap().len(), 2);
+    assert!(tolerances[1]["evaluations"].as_u64() > tolerances[0]["evaluations"].as_u64());
+
+    for (advice, kept, steps) in [
+        ("advice", false, false),
+        ("advice_energy_kept", true, false),
+        ("advice_steps", false, true),
+        ("advice_steps_energy_kept", true, true),
+    ] {
+        let advice = json[advice].as_array().unwrap();
+        assert_eq!(advice.len(), ADVICE.len());
+        for choice in advice {
+            // The exact motion reaches every error and keeps the energy; the others may not.
+            let seconds = choice["seconds_per_unit"].as_f64();
+            assert!(steps || seconds.is_some(), "{choice}");
+            let error = choice["error"].as_f64().unwrap();
+            for curve in curves.iter().filter(|curve| !steps || curve["method"] != "exact") {
+                let points = curve["points"].as_array().unwrap();
+                let reaches = |p: &&serde_json::Value| {
+                    p["error"].as_f64().is_some_and(|e| e <= error)
+                        && (!kept || p["energy_error"].as_f64().unwrap() < 1e-13)
+                };
+                for point in points.iter().filter(reaches) {
+                    let time = point["seconds_per_unit"].as_f64().unwrap();
+                    assert!(seconds.unwrap() <= time * (1.0 + 1e-9), "{choice} but {point}");
+                }
+            }
+        }
+    }
+
+    // Four evaluations a step of RKMK4 and of RK4; none that could be stated for the exact motion.
+    for (curve, stages) in [("rkmk4", Some(4)), ("rk4", Some(4)), ("exact", None)] {
+        let curve = curves.iter().find(|c| c["method"] == curve).unwrap();
+        let point = &curve["points"][0];
+        let expected = stages.map(|s: u64| s * point["steps"].as_u64().unwrap());
+        assert_eq!(point["evaluations"].as_u64(), expected, "{point}");
+    }
+
+    // Operations: the same in every step of an explicit method, the exact motion has none to count.
+    let per_step = |curve: &serde_json::Value| -> Vec<Option<f64>> {
+        let points = curve["points"].as_array().unwrap().iter();
+        let steps =
+            |p: &serde_json::Value| p["steps"].as_f64().unwrap() + p["rejected"].as_f64().unwrap();
+        points.map(|p| Some(p["operations"].as_f64()? / steps(p))).collect()
+    };
+    // 4 F of 12 operations, 7 sums y + h a k of 7, 4 times t + h c of 2; 13 flows of 11.
+    for (curve, expected) in [("rk4", Some(105.0)), ("mr4", Some(143.0)), ("exact", None)] {
+        let found = per_step(curves.iter().find(|c| c["method"] == curve).unwrap());
+        assert!(found.iter().all(|n| *n == expected), "{curve}: {found:?}");
+    }
+    for adaptive in [false, true] {
+        let dopri5 = |c: &&serde_json::Value| c["method"] == "rkmk" && c["adaptive"] == adaptive;
+        let found = per_step(curves.iter().find(dopri5).unwrap());
+        assert!(found.iter().all(|n| n.is_some_and(|n| n > 300.0)), "{found:?}");
+    }
+
+    // The front falls from left to right. The exact motion, which is there at once, is not on it.
+    let mut front: Vec<(f64, f64)> = Vec::new();
+    for curve in curves {
+        if curve["method"] == "exact" {
+            assert_eq!(curve["pareto"], serde_json::json!([]));
+        }
+        for at in curve["pareto"].as_array().unwrap() {
+            let point = &curve["points"][at.as_u64().unwrap() as usize];
+            let number = |key: &str| point[key].as_f64().unwrap();
+            front.push((number("error"), number("seconds_per_unit")));
+        }
+    }
+    front.sort_by(|a, b| a.0.total_cmp(&b.0));
+    assert!(!front.is_empty() && front.windows(2).all(|w| w[0].1 > w[1].1), "{front:?}");
+
+    let csv = folder.read("out/speed.csv");
+    let points: usize = curves.iter().map(|c| c["points"].as_array().unwrap().len()).sum();
+    assert_eq!(csv.lines().count(), points + 1);
+    for column in
+        ["energy_error", "casimir_error", "group_residual", "evaluations", "operations", "pareto"]
+    {
+        assert!(csv.lines().next().unwrap().contains(column), "{column}");
+    }
+    let page = folder.read("out/index.html");
+    assert!(page.contains("Pareto front") && !page.contains("NaN"));
+    assert!(page.contains("until a run takes 5ms; up to 100ms"));
+    assert!(page.contains("Casimir") && page.contains("nearest to 1e-6"));
+    for figure in ["pareto.svg", "operations.svg", "evaluations.svg", "speed-lie-series.svg"] {
+        assert!(folder.read(&format!("out/{figure}")).starts_with("<svg"), "{figure}");
+    }
+    assert!(json["reference_error"].as_f64().unwrap() < 1e-13);
+}
+
+#[test]
+fn both_layers_stand_side_by_side() {
+    let folder = Folder::new();
+    folder.write("scene.toml", SCENE);
+    let args = ["compare", "scene.toml", "--out", "out", "--quick", "--repeat", "1"];
+    let args = [&args[..], &["--layers", "general,closed", "--methods", "rkmk4 cay,rk4"]].concat();
+    folder.lieflow(&args).ok();
+    let json = folder.json("out/speed.json");
+    let curves = json["curves"].as_array().unwrap();
+    let layers: Vec<_> = curves.iter().map(|c| (&c["method"], &c["layer"])).collect();
+    let expected =
+        [("rkmk4", "closed"), ("rk4", "closed"), ("rkmk4", "general"), ("rk4", "general")];
+    assert!(layers.iter().zip(expected).all(|(a, b)| *a.0 == b.0 && *a.1 == b.1), "{layers:?}");
+    // The layers agree on the solution; closed formulas take fewer operations than 3×3 matrices.
+    for pair in [[0, 2], [1, 3]] {
+        let [closed, general] = pair.map(|i| &curves[i]["points"][3]);
+        let error = |p: &serde_json::Value| p["error"].as_f64().unwrap();
+        assert!((error(closed) - error(general)).abs() < 1e-9, "{closed} {general}");
+        let operations = |p: &serde_json::Value| p["operations"].as_u64().unwrap();
+        assert!(operations(closed) < operations(general), "{closed} {general}");
+        // RK4: four fields of three weights (3), a product (27 + 18) and its skew part (3); seven sums.
+        if general["steps"] == closed["steps"] && pair[0] == 1 {
+            let step = 4 * (3 * 3 + 45 + 3) + 7 * 18;
+            assert_eq!(operations(general), step * general["steps"].as_u64().unwrap());
+        }
+    }
+    let page = folder.read("out/index.html");
+    assert!(page.contains("on the general one by every product"), "what an operation is");
+    let refused = folder.lieflow(&["compare", "scene.toml", "--layers", "open"]);
+    assert!(refused.code == Some(2) && refused.err.contains("closed"), "{refused:?}");
+}
+
+/// The operations of the bodies and methods of the paper, by another way to the same numbers.
+#[test]
+fn operations_are_those_of_a_step_on_counting_numbers() {
+    use lieflow_cli::measure::Size;
+    use lieflow_cli::paper::rows::{Body, Row};
+    let scene = Scene::parse("scene", SCENE).unwrap();
+    let body = Body::new([1.0, 2.0, 3.0], [0.2, 0.0, 3.0]);
+    let model = scene.model_with(Layer::Closed, &["attitude"]).unwrap();
+    for (row, name, map) in [
+        (Row::Exp, "rkmk4", Some("exp")),
+        (Row::Cay, "rkmk4", Some("cay")),
+        (Row::Mr, "mr4", None),
+        (Row::B4, "buss4", None),
+        (Row::S, "simo-wong", None),
+        (Row::Dmv10, "dmv10", None),
+    ] {
+        let method = lieflow::catalog::MethodSpec::new(name, map);
+        let ours = Size::Steps(1).operations(&*model, &method, [0.0, 0.05], 3);
+        let step = row.counted(&body, 0.05).unwrap().unwrap().total();
+        assert_eq!(ours, Some(3 * step), "{name}");
+    }
+}
+
+/// What the reference cannot tell from no error, nobody is advised for.
+#[test]
+fn no_advice_below_the_error_of_the_reference() {
+    use lieflow_cli::report::choices;
+    let scene = Scene::parse("scene", SCENE).unwrap();
+    let candidates = [Candidate::rkmk4("exp", Layer::Closed)];
+    let plan = Plan {
+        quantities: &["momentum_body"],
+        candidates: &candidates,
+        t_span: [0.0, 2.0],
+        steps: &[10, 1000],
+        tolerances: &[],
+    };
+    let second = Duration::from_secs(1);
+    let effort = Effort {
+        rounds: 1,
+        longest: second,
+        shortest: Duration::ZERO,
+        seed: 1,
+        wanted: &[],
+        patience: second,
+    };
+    let (curves, _) = speed_against_error(&scene, &plan, effort, None, |_| {}).unwrap();
+    let own = |apart| Reference::Own { by: "a".into(), beside: "b".into(), apart };
+    for (apart, told) in [(1e-14, 4), (1e-8, 2), (1e-2, 0)] {
+        let reference = own(apart);
+        let choices = choices(&curves, &reference, |_, _| true);
+        let found = choices.iter().filter(|choice| choice.best.is_some()).count();
+        assert_eq!(found, told, "{apart:e}: {choices:?}");
+        assert_eq!(choices[2].judged, apart <= ADVICE[2]);
+    }
+}
+
+/// A list with spaces, and a method as the tables name it.
+#[test]
+fn methods_are_named_as_a_reader_would() {
+    let scene = Scene::parse("scene", SCENE).unwrap();
+    let all = Candidate::all_that_fit(&scene, &["momentum_body"], Layer::General).unwrap();
+    let chosen = |names: &str| {
+        let names: Vec<String> = names.split(',').map(Into::into).collect();
+        let chosen = Candidate::chosen(&all, &names).unwrap();
+        chosen.iter().map(Candidate::label).collect::<Vec<_>>()
+    };
+    assert_eq!(chosen("rk4, taylor8"), ["rk4, general", "taylor8, general"]);
+    let pair = ["rkmk dopri5 cay, general", "rkmk dopri5 cay, adaptive, general"];
+    assert_eq!(chosen(pair[1]), pair);
+}
+
+#[test]
+fn wrong_options_are_refused_by_one_sentence() {
+    let folder = Folder::new();
+    folder.write("scene.toml", SCENE);
+    for (options, words) in [
+        (["--methods", "rkmk5"], &["no method `rkmk5` fits", "did you mean `rkmk"][..]),
+        (["--methods", "magnus4"], &["no method `magnus4` fits", "rkmk4"]),
+        (["--methods", "adaptive"], &["no method is named"]),
+        (["--tolerances", "-1"], &["between 0 and 1"]),
+        (["--repeat", "-3"], &["--repeat"]),
+        (["--tolerances", "0"], &["between 0 and 1"]),
+        (["--tolerances", "small"], &["between 0 and 1"]),
+        (["--repeat", "0"], &["--repeat"]),
+    ] {
+        let run =
+            folder.lieflow(&[&["compare", "scene.toml", "--out", "out"], &options[..]].concat());
+        assert_eq!(run.code, Some(2), "{run:?}");
+        for word in words {
+            assert!(run.err.contains(word), "{options:?}: {}", run.err);
+        }
+        assert_eq!(folder.names("out"), [""; 0], "{options:?}");
+    }
+}
+
+#[test]
+fn what_was_measured_before_an_interruption_is_not_measured_again() {
+    let folder = Folder::new();
+    let scene = Scene::parse("scene", SCENE).unwrap();
+    let candidates = [Candidate::rkmk4("exp", Layer::Closed), Candidate::rk4(Layer::Closed)];
+    let plan = Plan {
+        quantities: &["momentum_body"],
+        candidates: &candidates,
+        t_span: [0.0, 2.0],
+        steps: &[10, 20, 40],
+        tolerances: &[],
+    };
+    let millisecond = Duration::from_millis(1);
+    let effort = Effort {
+        rounds: 3,
+        longest: 100 * millisecond,
+        shortest: millisecond,
+        seed: 1,
+        wanted: &[],
+        patience: Duration::ZERO,
+    };
+    let measure = |of: &str| {
+        let mut journal = Journal::open(folder.path(), of).unwrap();
+        let known = journal.known();
+        let (curves, _) =
+            speed_against_error(&scene, &plan, effort, Some(&mut journal), |_| {}).unwrap();
+        (known, curves)
+    };
+    let (known, whole) = measure("a");
+    assert_eq!(known, 0);
+    // Cut in the middle of a line among the timings of the second round.
+    let text = folder.read(JOURNAL);
+    let whole_lines = text.lines().take(1 + 6 + 6 + 2).map(|line| line.len() + 1).sum::<usize>();
+    let half = whole_lines + 5;
+    folder.write(JOURNAL, &text[..half]);
+    let lines_before = text[..half].lines().count() - 1;
+    let (known, resumed) = measure("a");
+    assert_eq!(known, 6);
+    assert!(folder.read(JOURNAL).starts_with(
+        &text.lines().take(lines_before).map(|line| format!("{line}\n")).collect::<String>()
+    ));
+    assert_eq!(folder.read(JOURNAL).lines().count(), text.lines().count());
+    for (a, b) in whole.iter().zip(&resumed) {
+        for (p, q) in a.points.iter().zip(&b.points) {
+            // The first run was timed once.
+            assert!((p.first_seconds - q.first_seconds).abs() <= 1e-12 * p.first_seconds);
+            assert!((p.error - q.error).abs() <= 1e-12 * p.error);
+        }
+    }
+    // About something else it begins anew.
+    assert_eq!(measure("b").0, 0);
+}
+
+/// Where the usual length of a run reaches no error that is wanted, some methods go on until one does.
+#[test]
+fn long_times_are_gone_through_to_the_wanted_error() {
+    let scene = Scene::parse("scene", SCENE).unwrap();
+    let names = ["rkmk4 exp", "rkmk4 cay", "rk4", "cf4", "gauss4", "cf3", "cg3", "taylor4", "mr4"];
+    let all = Candidate::all_that_fit(&scene, &["momentum_body"], Layer::Closed).unwrap();
+    let candidates = Candidate::chosen(&all, &names.map(String::from)).unwrap();
+    let steps: Vec<u64> = (2..16).map(|k| 1 << k).collect();
+    let plan = Plan {
+        quantities: &["momentum_body"],
+        candidates: &candidates,
+        t_span: [0.0, 20.0],
+        steps: &steps,
+        tolerances: &[],
+    };
+    let measure = |wanted| {
+        // Every run takes too long to go on by itself.
+        let (longest, patience) = (Duration::ZERO, Duration::from_secs(60));
+        let effort = Effort { rounds: 1, longest, shortest: longest, seed: 1, wanted, patience };
+        speed_against_error(&scene, &plan, effort, None, |_| {}).unwrap().0
+    };
+    let runs = |curves: &[lieflow_cli::measure::Curve]| -> Vec<usize> {
+        curves.iter().map(|curve| curve.points.len()).collect()
+    };
+    assert!(runs(&measure(&[])).iter().all(|n| *n == 1));
+    let curves = measure(&[1e-3, 1e-6]);
+    let reached = curves.iter().flat_map(|c| &c.points).filter(|p| p.error <= 1e-6).count();
+    assert!((1..=6).contains(&reached), "{reached} runs reach it, at most one round of them");
+    assert!(runs(&curves).iter().sum::<usize>() < candidates.len() * 10, "{:?}", runs(&curves));
+    let timed =
+        |p: &lieflow_cli::measure::WorkPoint| p.seconds_per_unit > 0.0 || p.failure.is_some();
+    assert!(curves.iter().flat_map(|c| &c.points).all(timed));
+}
+
+/// A run that has left the range of the arithmetic is no hit.
+#[test]
+fn a_run_without_numbers_reaches_no_error() {
+    let scene = Scene::bundled("fodo-cell").unwrap();
+    let t_span = scene.grid.t_span();
+    let judge = Judge::new(&scene, &["phase_space"], t_span).unwrap();
+    let all = Candidate::all_that_fit(&scene, &["phase_space"], Layer::General).unwrap();
+    let model = scene.model_with(Layer::General, &judge.quantities()).unwrap();
+    for name in ["rkmk dopri5 exp", "rk dop853"] {
+        let candidate = all.iter().find(|c| c.method.label() == name && !c.adaptive).unwrap();
+        for steps in [30, 60, 120] {
+            let size = lieflow_cli::measure::Size::Steps(steps);
+            let point = judge.point(&*model, candidate, t_span, size);
+            assert!(point.error.is_nan() || point.error > 1e-3, "{name}, {steps}: {point:?}");
+        }
+    }
+}
+
+#[test]
+fn two_methods_agree_where_the_exact_solution_is_not_asked() {
+    let scene = Scene::parse("scene", SCENE).unwrap();
+    let judge = Judge::by_two_runs(&scene, &["attitude"], [0.0, 2.0]).unwrap();
+    let Reference::Own { by, beside, apart } = &judge.reference else { panic!("not exact") };
+    assert_ne!(by, beside);
+    assert!(*apart < 1e-11, "{apart:e}");
+    assert!(judge.reference.in_words().contains("they agree"));
+
+    let exact = Judge::new(&scene, &["attitude"], [0.0, 2.0]).unwrap();
+    let Reference::Exact { apart: Some(apart) } = exact.reference else { panic!("not exact") };
+    assert!(apart < 1e-13, "{apart:e}");
+    let model = scene.model_with(Layer::Closed, &judge.quantities()).unwrap();
+    let candidate = Candidate::rkmk4("exp", Layer::Closed);
+    let size = lieflow_cli::measure::Size::Steps(100);
+    let [a, b] = [&judge, &exact].map(|j| j.point(&*model, &candidate, [0.0, 2.0], size).error);
+    assert!((a - b).abs() < 1e-10, "{a:e} {b:e}");
+}
+
+#[test]
+fn a_scene_without_an_exact_solution_is_judged_by_two_runs() {
+    let folder = Folder::new();
+    let methods = "magnus4,magnus6,rkmk4 exp,rk4";
+    let args = ["compare", "rabi", "--out", "out", "--quick", "--methods", methods];
+    let told = folder.lieflow(&args).ok();
+    assert!(told.contains("they agree"), "{told}");
+    let json = folder.json("out/speed.json");
+    assert!(json["reference"].as_str().unwrap().contains("dop853"), "{json}");
+    let best = json["advice"][1]["method"].as_str().unwrap();
+    assert!(best.starts_with("magnus"), "{best}");
+    assert!(!folder.read("out/index.html").contains("must not drift"));
+}

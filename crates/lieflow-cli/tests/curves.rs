@@ -1,0 +1,95 @@
+//! What is read off a line of time against error.
+
+use lieflow_cli::measure::{Candidate, Curve, Reached, Size, WorkPoint, pareto};
+use lieflow_model::model::Layer;
+
+/// error = h⁴, time per unit = 1/h.
+fn ideal(hs: &[f64]) -> Curve {
+    let mut curve =
+        Curve { candidate: Candidate::rk4(Layer::Closed), order: Some(4), points: Vec::new() };
+    curve.points = hs
+        .iter()
+        .map(|&h| WorkPoint {
+            h,
+            error: h.powi(4),
+            seconds_per_unit: 1.0 / h,
+            ..WorkPoint::new([0.0, h], Size::Steps(1))
+        })
+        .collect();
+    curve
+}
+
+#[test]
+fn the_order_of_an_ideal_method() {
+    let order = ideal(&[0.2, 0.13, 0.07, 0.05]).measured_order();
+    assert!((order.expect("enough points") - 4.0).abs() < 1e-12);
+    assert_eq!(ideal(&[0.2, 0.1]).measured_order(), None);
+}
+
+#[test]
+fn the_time_to_an_error_lies_on_the_line() {
+    let curve = ideal(&[0.1, 0.01]);
+    let time = curve.seconds_to(1e-6).expect("reached");
+    assert!((time - 10f64.powf(1.5)).abs() < 1e-9);
+    assert_eq!(curve.seconds_to(1e-9), None);
+    assert!((curve.seconds_to(1.0).expect("coarsest") - 10.0).abs() < 1e-12);
+}
+
+#[test]
+fn a_run_that_is_far_off_is_no_end_of_a_line() {
+    // A step over everything, and the next is accurate at once: nothing is known between them.
+    let mut curve = ideal(&[20.0, 0.01]);
+    curve.points[0].error = 0.9;
+    let reached = curve.reached(1e-6).expect("the second");
+    assert!((reached.h - 0.01).abs() < 1e-12);
+    curve.points[0].error = 0.05;
+    assert!(curve.reached(1e-6).expect("between").h > 0.02);
+}
+
+/// Where f jumps, steps that end at the jumps are exact, and those between two such sizes are not.
+#[test]
+fn nothing_is_read_between_runs_that_the_order_does_not_join() {
+    let mut curve = ideal(&[0.11, 0.1]);
+    (curve.points[0].error, curve.points[1].error) = (1e-2, 1e-14);
+    assert!((curve.reached(1e-6).expect("the second").h - 0.1).abs() < 1e-15);
+}
+
+#[test]
+fn the_step_to_an_error_lies_on_the_line_too() {
+    let reached = ideal(&[0.1, 0.01]).reached(1e-6).expect("reached");
+    assert!((reached.h - 1e-6f64.powf(0.25)).abs() < 1e-12 && reached.tolerance.is_none());
+}
+
+#[test]
+fn a_more_accurate_run_may_pass_where_the_soonest_does_not() {
+    let mut curve = ideal(&[0.1, 0.01, 0.001]);
+    for point in &mut curve.points {
+        point.energy_error = point.error;
+    }
+    let kept = |reached: &Reached| reached.energy_error <= 1e-11;
+    let reached = curve.reached_where(1e-6, kept).expect("the last run");
+    assert!((reached.h - 0.001).abs() < 1e-12);
+    assert_eq!(curve.reached_where(1e-6, |reached| reached.energy_error < 0.0), None);
+}
+
+#[test]
+fn the_front_is_what_nothing_beats_in_both() {
+    let mut slow = ideal(&[0.1, 0.01]);
+    for point in &mut slow.points {
+        point.seconds_per_unit *= 2.0;
+    }
+    // Slower everywhere, but for one run that nobody else is as accurate as.
+    slow.points[1].error = 1e-9;
+    let time = |_: &Curve, p: &WorkPoint| Some(p.seconds_per_unit);
+    let front = pareto(&[ideal(&[0.1, 0.01]), slow], time);
+    assert_eq!(front, [(0, 0), (0, 1), (1, 1)]);
+    assert_eq!(pareto(&[ideal(&[0.1])], |_, _| None), []);
+}
+
+#[test]
+fn an_error_of_zero_reaches_every_error() {
+    let mut curve = ideal(&[0.1, 0.01]);
+    curve.points[1].error = 0.0;
+    let time = curve.seconds_to(1e-12).expect("reached");
+    assert!(time > 10.0 && time < 100.0);
+}

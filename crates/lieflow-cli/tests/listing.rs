@@ -1,0 +1,181 @@
+//! `lieflow scenes`, `methods`, `completions` and the help texts.
+
+mod support;
+
+use std::process::{Command, Stdio};
+
+use lieflow::catalog::{MAPS, TABLEAUS, all_methods};
+use lieflow_model::kinds::KINDS;
+use lieflow_model::scene::{BUNDLED, Scene};
+use serde_json::Value;
+use support::Folder;
+
+fn names(list: &Value) -> Vec<&str> {
+    list.as_array().unwrap().iter().map(|entry| entry["name"].as_str().unwrap()).collect()
+}
+
+#[test]
+fn scenes_are_listed_and_printed() {
+    let folder = Folder::new();
+    let listed = folder.lieflow(&["scenes"]).ok();
+    let json: Value = serde_json::from_str(&folder.lieflow(&["scenes", "--json"]).ok()).unwrap();
+    assert_eq!(names(&json["scenes"]), BUNDLED.iter().map(|s| s.name).collect::<Vec<_>>());
+    assert_eq!(names(&json["kinds"]), KINDS.iter().map(|k| k.name).collect::<Vec<_>>());
+    for scene in BUNDLED {
+        assert!(listed.contains(scene.name), "{listed}");
+        assert!(!scene.description().is_empty());
+        assert_eq!(folder.lieflow(&["scenes", scene.name]).ok(), scene.text);
+        let one = folder.lieflow(&["scenes", scene.name, "--json"]).ok();
+        assert_eq!(serde_json::from_str::<Value>(&one).unwrap()["text"], scene.text);
+    }
+    let message = folder.lieflow(&["scenes", "symetric-top"]).refused();
+    assert!(message.contains("did you mean `symmetric-top`?"), "{message}");
+}
+
+#[test]
+fn a_printed_scene_runs() {
+    let folder = Folder::new();
+    for scene in BUNDLED {
+        let text = folder.lieflow(&["scenes", scene.name]).ok();
+        folder.write("my.toml", &text);
+        folder.lieflow(&["run", "my.toml"]).ok();
+        assert_eq!(folder.data("lieflow-out/my"), ["summary.json", "trajectory.csv"]);
+    }
+    folder.lieflow(&["run", "symmetric-top"]).ok();
+    assert_eq!(folder.names("lieflow-out"), ["my", "symmetric-top"]);
+}
+
+#[test]
+fn methods_are_listed_from_the_catalog() {
+    let folder = Folder::new();
+    let listed = folder.lieflow(&["methods"]).ok();
+    let json: Value = serde_json::from_str(&folder.lieflow(&["methods", "--json"]).ok()).unwrap();
+    let registered: Vec<_> = all_methods().map(|(m, _)| m.name).collect();
+    assert_eq!(names(&json["methods"]), registered);
+    assert_eq!(names(&json["maps"]), MAPS.iter().map(|m| m.name).collect::<Vec<_>>());
+    assert_eq!(names(&json["tableaus"]), TABLEAUS);
+    assert_eq!(json["tableaus"][0]["order"], 1);
+    for name in names(&json["methods"]).iter().chain(&names(&json["maps"])) {
+        assert!(listed.contains(name), "{listed}");
+    }
+    for entry in json["methods"].as_array().unwrap() {
+        for what in ["summary", "preserves", "cost", "source"] {
+            assert!(!entry[what].as_str().unwrap().is_empty(), "{entry}");
+        }
+    }
+}
+
+/// What fits the momentum, the attitude and the momentum as a matrix, and what does not.
+#[test]
+fn methods_for_a_scene_are_those_that_run() {
+    let folder = Folder::new();
+    let everywhere = ["rkmk4", "rkmk", "rk4", "cf4", "gauss4", "magnus43"];
+    let body = ["mr2", "mr4", "simo-wong", "buss4", "dmv10", "exact"];
+    let series = ["taylor12"];
+    let closed = [&body[..], &series].concat();
+    let linear = ["magnus4", "magnus6", "cfm6-5"];
+    for (scene, with, without) in [
+        (
+            "asymmetric-top",
+            &[&closed[..], &["energy-casimir"]].concat()[..],
+            &["rk4-qr", "rk4-mg"][..],
+        ),
+        ("tumbling-attitude", &[&closed[..], &["rk4-qr", "rk4-mg"]].concat(), &["energy-casimir"]),
+        ("general-layer", &["energy-casimir", "isospectral4", "taylor12"], &body),
+        ("rotating-field", &linear, &closed),
+        ("rabi", &linear, &closed),
+        ("manakov-body", &["energy-casimir", "isospectral4", "taylor12"], &body),
+        ("spin-wave", &["energy-casimir"], &closed),
+        ("many-bodies", &["energy-casimir6"], &closed),
+        ("relaxing-spins", &[], &["energy-casimir"]),
+        ("lagrange-top", &["energy-casimir", "energy-casimir6"], &["isospectral2", "taylor12"]),
+        ("ellipsoid-in-fluid", &["energy-casimir4"], &closed),
+        ("spherical-pendulum", &["energy-casimir"], &closed),
+        ("shear-layer", &["isospectral2", "isospectral6", "energy-casimir6"], &closed),
+        ("euler-on-sl3", &["energy-casimir"], &linear),
+        ("wing-nut", &closed, &["rk4-qr", "energy-casimir"]),
+    ] {
+        let fitting = folder.lieflow(&["methods", "--for", scene, "--json"]).ok();
+        let fitting: Value = serde_json::from_str(&fitting).unwrap();
+        let fitting = names(&fitting["methods"]);
+        for name in everywhere.iter().chain(with) {
+            assert!(fitting.contains(name), "{scene}: {name} is missing");
+        }
+        let foreign = linear.iter().filter(|_| !["rotating-field", "rabi"].contains(&scene));
+        for name in foreign.chain(without) {
+            assert!(!fitting.contains(name), "{scene}: {name} does not fit");
+        }
+        assert!(folder.lieflow(&["methods", "--for", scene]).ok().contains(scene));
+    }
+}
+
+#[test]
+fn the_keys_and_quantities_that_are_listed_are_those_that_scenes_take() {
+    for kind in KINDS {
+        let quantities: Vec<_> = kind.quantities.iter().map(|quantity| quantity.name).collect();
+        let text = BUNDLED.iter().find(|s| s.text.contains(&format!("{:?}", kind.name))).unwrap();
+        let text = text.text.replace("[problem]", "[problem]\nno_such_key = 1");
+        let message = Scene::parse("scene", &text).unwrap_err().to_string();
+        let keys: Vec<_> = kind.keys.iter().map(|key| key.name).collect();
+        let one_of = if keys.len() == 1 { "" } else { "one of " };
+        assert!(message.contains(&format!("expected {one_of}{}", keys.join(", "))), "{message}");
+
+        let of_kind = |s: &&lieflow_model::scene::Bundled| {
+            Scene::bundled(s.name).unwrap().problem.kind().name == kind.name
+        };
+        let scene = Scene::bundled(BUNDLED.iter().find(of_kind).unwrap().name).unwrap();
+        let model = scene.problem.model(scene.layer, &quantities).unwrap();
+        let all: Vec<_> = quantities.iter().map(|q| scene.problem.columns(q).unwrap()).collect();
+        assert_eq!(model.columns(), all.concat());
+        // Where the size of the problem says how many there are, the list names the first.
+        for (info, columns) in kind.quantities.iter().zip(&all) {
+            let open = info.columns.contains(&"…");
+            let listed: Vec<_> = info.columns.iter().take_while(|c| **c != "…").collect();
+            assert!(open || listed.len() == columns.len(), "{}: {columns:?}", info.name);
+            let named = listed.iter().zip(columns).all(|(a, b)| **a == b);
+            assert!(named, "{} {}: {columns:?}", kind.name, info.name);
+        }
+    }
+}
+
+#[test]
+fn help_has_examples() {
+    let folder = Folder::new();
+    let commands = ["run", "compare", "paper", "check", "scenes", "methods", "completions"];
+    let top = folder.lieflow(&["--help"]).ok();
+    for command in commands {
+        assert!(top.contains(command), "{top}");
+        let help = folder.lieflow(&[command, "--help"]).ok();
+        assert!(help.contains("Examples:") && help.contains("lieflow "), "{help}");
+    }
+    for option in ["--quick", "--out", "Examples:"] {
+        assert!(top.contains(option), "{top}");
+    }
+    assert!(folder.lieflow(&["--version"]).ok().starts_with("lieflow "));
+    assert_eq!(folder.lieflow(&["no-such-command"]).code, Some(2));
+    assert_eq!(folder.lieflow(&["run"]).code, Some(2));
+}
+
+#[test]
+fn completions_are_printed() {
+    let folder = Folder::new();
+    for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
+        assert!(folder.lieflow(&["completions", shell]).ok().contains("lieflow"));
+    }
+}
+
+#[test]
+fn a_reader_that_goes_away_is_no_error() {
+    for args in [&["scenes"][..], &["methods"], &["completions", "zsh"], &["--help"]] {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_lieflow"))
+            .args(args)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        drop(child.stdout.take());
+        let output = child.wait_with_output().unwrap();
+        assert_eq!(String::from_utf8(output.stderr).unwrap(), "", "{args:?}");
+        assert!(output.status.success(), "{args:?}");
+    }
+}

@@ -1,0 +1,101 @@
+//! Small pieces of SVG text: escaping, coordinates, path data.
+
+/// `text` with the five special characters of HTML and XML replaced by entities. Control
+/// characters, which XML forbids, become spaces.
+pub fn escape(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '"' => out.push_str("&quot;"),
+            '\'' => out.push_str("&#39;"),
+            '\n' | '\t' => out.push(c),
+            c if c.is_control() => out.push(' '),
+            c => out.push(c),
+        }
+    }
+    out
+}
+
+/// `text` reduced to an identifier: letters, digits and hyphens, beginning with a letter.
+pub fn slug(text: &str) -> String {
+    let mut out = String::new();
+    for c in text.chars() {
+        if c.is_ascii_alphanumeric() {
+            out.push(c.to_ascii_lowercase());
+        } else if !out.ends_with('-') && !out.is_empty() {
+            out.push('-');
+        }
+    }
+    let out = out.trim_end_matches('-');
+    if out.starts_with(|c: char| c.is_ascii_alphabetic()) {
+        out.to_string()
+    } else {
+        format!("f-{out}")
+    }
+}
+
+/// A coordinate with one decimal, which is finer than a pixel, in as few characters as possible.
+pub(crate) fn px(x: f64) -> String {
+    let tenths = (x * 10.0).round();
+    if tenths % 10.0 == 0.0 {
+        format!("{}", (tenths / 10.0) as i64)
+    } else {
+        format!("{:.1}", tenths / 10.0)
+    }
+}
+
+/// Path data through `points`. A single point becomes a segment of length zero, which round line
+/// caps show as a dot.
+pub(crate) fn polyline(points: &[(f64, f64)]) -> String {
+    let pairs: Vec<String> = points.iter().map(|p| format!("{} {}", px(p.0), px(p.1))).collect();
+    match pairs.as_slice() {
+        [] => String::new(),
+        [only] => format!("M{only}h0"),
+        [first, rest @ ..] => format!("M{first}L{}", rest.join(" ")),
+    }
+}
+
+/// The estimated width of `text` set in a sans-serif font of `size` pixels.
+pub(crate) fn text_width(text: &str, size: f64) -> f64 {
+    0.56 * size * text.chars().count() as f64
+}
+
+/// A line of text at a point, which `anchor` relates to its start, middle or end.
+pub(crate) fn text(class: &str, (x, y): (f64, f64), anchor: &str, content: &str) -> String {
+    format!(
+        "<text class=\"{class}\" x=\"{}\" y=\"{}\" text-anchor=\"{anchor}\">{}</text>",
+        px(x),
+        px(y),
+        escape(content)
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn special_characters_are_escaped() {
+        assert_eq!(escape(r#"<a href="x">&'"#), "&lt;a href=&quot;x&quot;&gt;&amp;&#39;");
+        assert_eq!(escape("a\u{0}b"), "a b");
+    }
+
+    #[test]
+    fn identifiers() {
+        assert_eq!(slug("Speed & error (1)"), "speed-error-1");
+        assert_eq!(slug("3D"), "f-3d");
+        assert_eq!(slug("\"><script>"), "script");
+    }
+
+    #[test]
+    fn coordinates() {
+        assert_eq!(px(12.0), "12");
+        assert_eq!(px(-0.04), "0");
+        assert_eq!(px(3.1449), "3.1");
+        assert_eq!(polyline(&[(1.0, 2.0), (3.0, 4.5)]), "M1 2L3 4.5");
+        assert_eq!(polyline(&[(1.0, 2.0)]), "M1 2h0");
+    }
+}

@@ -1,0 +1,251 @@
+//! The kinds of problems that scene files can name.
+//!
+//! To add a kind: one file with its keys and its `System`, one line in [`KINDS`].
+
+mod algebra;
+mod beam_line;
+mod composed;
+mod driven_body;
+mod euler;
+mod flow;
+mod fluid;
+mod heavy_top;
+mod hill;
+mod isospectral;
+mod kirchhoff;
+mod law;
+mod lorentz;
+mod lyapunov;
+mod matrix;
+mod matrix_ode;
+mod oja;
+mod pendulum;
+mod riccati;
+mod rigid_bodies;
+mod rigid_body;
+mod rigid_body_n;
+mod schrodinger;
+mod spin;
+mod spin_chain;
+mod subspace;
+mod system;
+
+pub use law::{Law, SIZE, Scale, explained_by_rounding};
+pub use rigid_body::RigidBodySpec;
+
+use core::any::Any;
+use core::fmt::Debug;
+
+use lieflow::Error;
+use serde::Serialize;
+use toml::de::ValueDeserializer;
+
+use crate::model::{Layer, Model};
+use crate::scene::{ReadError, Refusal};
+
+/// Every kind.
+pub const KINDS: &[Kind] = &[
+    rigid_body::KIND,
+    driven_body::KIND,
+    rigid_bodies::KIND,
+    rigid_body_n::KIND,
+    heavy_top::KIND,
+    kirchhoff::KIND,
+    euler::KIND,
+    fluid::KIND,
+    pendulum::KIND,
+    spin::KIND,
+    spin_chain::KIND,
+    isospectral::TODA,
+    isospectral::DOUBLE_BRACKET,
+    isospectral::QR_FLOW,
+    oja::KIND,
+    subspace::KIND,
+    hill::MATHIEU,
+    hill::HILL,
+    beam_line::KIND,
+    riccati::KIND,
+    lorentz::KIND,
+    schrodinger::KIND,
+    matrix_ode::KIND,
+    lyapunov::KIND,
+    composed::KIND,
+];
+
+/// A kind of problem.
+#[derive(Clone, Copy, Debug)]
+pub struct Kind {
+    /// Its name in scene files.
+    pub name: &'static str,
+    /// What is integrated: the equations of motion with their signs.
+    pub equation: &'static str,
+    /// What it is, in one line.
+    pub summary: &'static str,
+    /// The keys of `[problem]`, besides `kind`.
+    pub keys: &'static [KeyInfo],
+    /// What can be asked of it.
+    pub quantities: &'static [QuantityInfo],
+    /// Reads the keys of `[problem]`, without `kind`.
+    pub read: fn(ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError>,
+}
+
+/// A key of `[problem]`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct KeyInfo {
+    /// The key.
+    pub name: &'static str,
+    /// What it means, and what it holds.
+    pub meaning: &'static str,
+}
+
+/// The key of the constants, for every kind that reads formulas.
+const PARAMETERS: KeyInfo = KeyInfo {
+    name: "parameters",
+    meaning: "constants for the formulas: a table [problem.parameters] of names and numbers; optional",
+};
+
+/// A quantity that can be asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct QuantityInfo {
+    /// Its name in scene files.
+    pub name: &'static str,
+    /// Its columns; with an `…` between the first and the last where the size of the problem says how
+    /// many there are.
+    pub columns: &'static [&'static str],
+    /// What it means.
+    pub meaning: &'static str,
+}
+
+impl Kind {
+    /// The kind of that name.
+    ///
+    /// # Errors
+    /// [`Error::UnknownName`].
+    pub fn named(name: &str) -> Result<&'static Kind, Error> {
+        KINDS.iter().find(|kind| kind.name == name).ok_or_else(|| Error::UnknownName {
+            kind: "kind of problem",
+            name: name.into(),
+            expected: KINDS.iter().map(|kind| kind.name).collect(),
+        })
+    }
+
+    /// The quantity of that name.
+    ///
+    /// # Errors
+    /// [`Error::UnknownName`].
+    pub fn quantity(&self, name: &str) -> Result<&'static QuantityInfo, Error> {
+        self.quantities.iter().find(|quantity| quantity.name == name).ok_or_else(|| {
+            Error::UnknownName {
+                kind: "quantity",
+                name: name.into(),
+                expected: self.quantities.iter().map(|quantity| quantity.name).collect(),
+            }
+        })
+    }
+}
+
+/// What a field lies on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ground {
+    /// A sphere: rows from north to south, columns from west to east.
+    Sphere,
+    /// A square torus: rows from the largest y to the least, columns from the least x.
+    Torus,
+}
+
+/// The figure of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Figure {
+    /// The columns of a quantity against time.
+    Lines(&'static str),
+    /// Three columns of a quantity after the other: paths on a sphere.
+    Sphere(&'static str),
+    /// Two columns of a quantity after the other: paths in a plane.
+    Curve(&'static str),
+    /// The same as points, where nothing lies between two rows.
+    Points(&'static str),
+    /// A field on a surface at the end, by [`ProblemSpec::field`] from a quantity.
+    Map(&'static str, Ground),
+}
+
+impl Figure {
+    /// The quantity that is drawn.
+    pub fn quantity(self) -> &'static str {
+        match self {
+            Figure::Lines(name)
+            | Figure::Sphere(name)
+            | Figure::Curve(name)
+            | Figure::Points(name)
+            | Figure::Map(name, _) => name,
+        }
+    }
+}
+
+/// Something that is known of a problem before any run.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Fact {
+    /// What.
+    pub name: &'static str,
+    /// Its value; a number that is not finite is none.
+    pub value: f64,
+}
+
+/// A problem as its scene states it: checked, and not yet tied to a layer or to quantities.
+///
+/// The type behind it is found by `downcast_ref` on `&dyn Any`.
+pub trait ProblemSpec: Any + Debug + Send + Sync {
+    /// Its kind.
+    fn kind(&self) -> &'static Kind;
+
+    /// The layers that it runs on; the first where a scene names none.
+    fn layers(&self) -> &'static [Layer];
+
+    /// The columns of a quantity.
+    ///
+    /// # Errors
+    /// [`Error::UnknownName`] for a quantity that the kind does not have.
+    fn columns(&self, quantity: &str) -> Result<Vec<String>, Error> {
+        let info = self.kind().quantity(quantity)?;
+        Ok(info.columns.iter().map(|&column| column.into()).collect())
+    }
+
+    /// The problem on a layer, modelling what the quantities need and no more.
+    ///
+    /// # Errors
+    /// [`Error::UnknownName`] for a quantity that the kind does not have.
+    fn model(&self, layer: Layer, quantities: &[&str]) -> Result<Box<dyn Model>, Error>;
+
+    /// That what the scene states in formulas has a value at the start.
+    ///
+    /// # Errors
+    /// A refusal of the first key that has none.
+    fn check_start(&self, _t0: f64) -> Result<(), Refusal> {
+        Ok(())
+    }
+
+    /// The quantities that make up what these quantities model: those to compare with the exact
+    /// solution.
+    fn state(&self, quantities: &[&str]) -> &'static [&'static str];
+
+    /// What the exact motion keeps, of what follows from what these quantities model.
+    fn invariants(&self, quantities: &[&str]) -> Vec<Law>;
+
+    /// The figure of a run.
+    fn figure(&self) -> Figure;
+
+    /// The field that [`Figure::Map`] draws, from the values of its quantity: rows from north to south,
+    /// columns from west to east.
+    fn field(&self, _values: &[f64]) -> Vec<Vec<f64>> {
+        Vec::new()
+    }
+
+    /// What is known before any run.
+    fn facts(&self) -> Vec<Fact> {
+        Vec::new()
+    }
+
+    /// What a reader of the scene should know, though it can be run.
+    fn warnings(&self) -> Vec<String> {
+        Vec::new()
+    }
+}

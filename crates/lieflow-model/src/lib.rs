@@ -1,0 +1,11 @@
+//! Scenes and the problems that they name: what the program `lieflow` runs, without its command line.
+//!
+//! A scene file becomes a [`Scene`](scene::Scene). Its problem, one of [`kinds::KINDS`], becomes a
+//! [`Model`](model::Model), which any method of the catalog runs on.
+#![forbid(unsafe_code)]
+
+pub mod erased;
+pub mod kinds;
+pub mod model;
+pub mod operations;
+pub mod scene;

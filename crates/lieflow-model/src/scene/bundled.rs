@@ -1,0 +1,78 @@
+//! The scenes that come with the program.
+
+/// A scene that comes with the program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Bundled {
+    /// Its name.
+    pub name: &'static str,
+    /// Its text.
+    pub text: &'static str,
+}
+
+macro_rules! bundled {
+    ($($name:literal),* $(,)?) => {
+        &[$(Bundled {
+            name: $name,
+            text: include_str!(concat!("../../scenes/", $name, ".toml")),
+        }),*]
+    };
+}
+
+/// The scenes, in the order of the list that `lieflow scenes` prints.
+pub const BUNDLED: &[Bundled] = bundled![
+    "asymmetric-top",
+    "symmetric-top",
+    "high-energy",
+    "adaptive-top",
+    "tumbling-attitude",
+    "wing-nut",
+    "general-layer",
+    "flipping-book",
+    "damped-satellite",
+    "attitude-control",
+    "saturated-control",
+    "many-bodies",
+    "manakov-body",
+    "lagrange-top",
+    "kovalevskaya-top",
+    "general-top",
+    "ellipsoid-in-fluid",
+    "euler-on-sl3",
+    "cubic-anisotropy",
+    "vortices-on-sphere",
+    "shear-layer",
+    "spherical-pendulum",
+    "rotating-field",
+    "spin-wave",
+    "relaxing-spins",
+    "toda-lattice",
+    "sorting",
+    "qr-flow",
+    "oja",
+    "subspaces",
+    "mathieu",
+    "coupled-oscillators",
+    "fodo-cell",
+    "riccati-pole",
+    "crossed-fields",
+    "rabi",
+    "three-level-transfer",
+    "rotating-drive",
+    "lorenz",
+    "spin-and-oscillator",
+    "gyrostat",
+    "spin-pair",
+];
+
+impl Bundled {
+    /// The scene of that name.
+    pub fn named(name: &str) -> Option<&'static Bundled> {
+        BUNDLED.iter().find(|scene| scene.name == name)
+    }
+
+    /// The first paragraph of the comment that the scene starts with.
+    pub fn description(&self) -> String {
+        let comment = self.text.lines().map_while(|line| line.strip_prefix('#')).map(str::trim);
+        comment.take_while(|line| !line.is_empty()).collect::<Vec<_>>().join(" ")
+    }
+}

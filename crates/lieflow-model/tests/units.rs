@@ -1,0 +1,16 @@
+//! The unit tests of what needs no integrator. The library holds every method for every problem; a second
+//! one for its unit tests would cost the compiler as much again, so it has none (`test = false`), and its
+//! modules with tests are compiled here.
+#![allow(dead_code, unused_imports, unreachable_pub)] // modules are here for their tests
+
+#[path = "../src/scene/error.rs"]
+mod error;
+#[path = "../src/scene/formula/mod.rs"]
+mod formula;
+#[path = "../src/scene/suggest.rs"]
+mod suggest;
+#[path = "../src/scene/values.rs"]
+mod values;
+
+use error::Refusal;
+use suggest::help_for;
