@@ -11,8 +11,8 @@ use lieflow::check::laws;
 use lieflow::groups::{Sample, So3};
 use lieflow::maps::Cay;
 use lieflow::methods::{Rkmk, tableau::RK4};
-use lieflow::problems::RigidBodyAttitude;
-use lieflow::{CoordinateMap, Error, LieAlgebra, LieGroup, Problem, SaveAt, StepError, TimeGrid};
+use lieflow::problems::{Flow, RigidBodyAttitude};
+use lieflow::{CoordinateMap, Error, LieAlgebra, LieGroup, SaveAt, StepError, TimeGrid};
 use nalgebra::{Matrix3, Vector3};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_distr::StandardNormal;
@@ -70,6 +70,13 @@ impl LieGroup for Su2 {
         let t = 2.0 * v.cross(x);
         *y = x + q[0] * t + v.cross(&t);
     }
+    /// (v/2)·q.
+    fn tangent(&self, v: &V, q: &[f64; 4], out: &mut [f64; 4]) {
+        self.compose(&[0.0, 0.5 * v[0], 0.5 * v[1], 0.5 * v[2]], q, out);
+    }
+    fn apply_algebra(&self, v: &V, x: &V, y: &mut V) {
+        *y = v.cross(x);
+    }
     fn distance(&self, a: &[f64; 4], b: &[f64; 4]) -> f64 {
         a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
     }
@@ -113,31 +120,6 @@ impl Sample for Su2 {
     }
 }
 
-/// The free rigid body by its attitude quaternion: q̇ = f(q)·q, f(q) = q J⁻¹ q̄ m_s.
-struct Body {
-    inertia: V,
-    momentum_space: V,
-}
-
-impl Problem for Body {
-    type Group = Su2;
-    type Action = LeftTranslation;
-    type Work = ();
-
-    fn group(&self) -> &Su2 {
-        &Su2
-    }
-    fn action(&self) -> &LeftTranslation {
-        &LeftTranslation
-    }
-    fn work(&self) {}
-    fn f(&self, _: f64, q: &[f64; 4], omega: &mut V, _: &mut ()) {
-        let mut m = V::zeros();
-        Su2.apply(&[q[0], -q[1], -q[2], -q[3]], &self.momentum_space, &mut m);
-        Su2.apply(q, &m.component_div(&self.inertia), omega);
-    }
-}
-
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     for law in laws(&Su2, &Cay, &mut rand_pcg::Pcg64::seed_from_u64(1), 200, 0.5)? {
         println!("{:24} {:6.2} of {}", law.name, law.worst, law.bound);
@@ -147,7 +129,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (inertia, momentum) = ([1.0, 2.0, 3.0], [0.2, 0.5, 3.0]);
     let grid = TimeGrid::new([0.0, 20.0], 0.02)?;
     let method = Rkmk::new(RK4, Cay);
-    let body = Body { inertia: inertia.into(), momentum_space: momentum.into() };
+    // The free rigid body by its attitude quaternion: q̇ = f(q)·q, f(q) = q J⁻¹ q̄ m_s.
+    let body = Flow::new(Su2, LeftTranslation, |_, q, omega| {
+        let mut m = V::zeros();
+        Su2.apply(&[q[0], -q[1], -q[2], -q[3]], &V::from(momentum), &mut m);
+        Su2.apply(q, &m.component_div(&V::from(inertia)), omega);
+    });
     let mut q = Su2.identity();
     lieflow::integrate(&body, &method, &grid, &SaveAt::Ends, &mut q, |_, _| {})?;
 

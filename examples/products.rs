@@ -9,88 +9,47 @@ use lieflow::actions::{LeftTranslation, Linear, Pair};
 use lieflow::groups::{LieGroup, Product, So3, Translations};
 use lieflow::maps::{Cay, Exp};
 use lieflow::methods::{Rkmk, tableau::RK4};
-use lieflow::problems::{AlgOf, PointOf, Problem};
+use lieflow::problems::Flow;
 use lieflow::{SaveAt, TimeGrid, integrate};
 use nalgebra::{Matrix3, Vector3};
 
-/// H = w s₃ + w (q² + p²)/2 + k (q s₁ − p s₂): ṡ = ∇_s H × s, q̇ = ∂H/∂p, ṗ = −∂H/∂q.
-struct SpinAndOscillator {
-    group: Product<So3, Translations<(f64, f64)>>,
-    w: f64,
-    k: f64,
-}
-
-impl Problem for SpinAndOscillator {
-    type Group = Product<So3, Translations<(f64, f64)>>;
-    type Action = Linear; // of each part: a rotation turns s, a translation moves (q, p)
-    type Work = ();
-
-    fn group(&self) -> &Self::Group {
-        &self.group
-    }
-    fn action(&self) -> &Linear {
-        &Linear
-    }
-    fn work(&self) {}
-    fn f(&self, _: f64, (s, (q, p)): &PointOf<Self>, v: &mut AlgOf<Self>, _: &mut ()) {
-        let &SpinAndOscillator { w, k, .. } = self;
-        v.0 = Vector3::new(k * q, -k * p, w);
-        v.1 = (w * p - k * s[1], -w * q - k * s[0]);
-    }
-}
-
-impl SpinAndOscillator {
-    /// From (−e₃, (2, 0)): in the frame that turns with the field the angle of the spin from −e₃ is that of a
-    /// pendulum that comes to rest at the top, sin(a/2) = tanh kt.
-    fn exact(&self, t: f64) -> (Vector3<f64>, (f64, f64)) {
-        let (half, (sine, cosine)) = ((self.k * t).tanh(), (self.w * t).sin_cos());
-        let rest = 1.0 / (self.k * t).cosh();
-        let (across, q) = (2.0 * half * rest, 2.0 * rest);
-        let s = Vector3::new(-sine * across, cosine * across, 2.0 * half * half - 1.0);
-        (s, (cosine * q, -sine * q))
-    }
-}
-
-/// m in the body, g from body to space, and the wheel's momentum h about the first axis, which a motor turns
-/// with the torque u: ṁ = m × ω, ġ = gω̂, ḣ = u, with ω = J⁻¹(m − h e₁).
-struct Satellite {
-    group: Product<So3, Product<So3, Translations<f64>>>,
-    inertia: Vector3<f64>,
-    torque: f64,
-}
-
-impl Problem for Satellite {
-    type Group = Product<So3, Product<So3, Translations<f64>>>;
-    type Action = Pair<Linear, LeftTranslation>; // m is turned; g and h are multiplied
-    type Work = ();
-
-    fn group(&self) -> &Self::Group {
-        &self.group
-    }
-    fn action(&self) -> &Self::Action {
-        &Pair(Linear, LeftTranslation)
-    }
-    fn work(&self) {}
-    fn f(&self, _: f64, (m, (g, h)): &PointOf<Self>, v: &mut AlgOf<Self>, _: &mut ()) {
-        let omega = (m - Vector3::x() * *h).component_div(&self.inertia);
-        *v = (-omega, (g * omega, self.torque));
-    }
+/// From (−e₃, (2, 0)): in the frame that turns with the field the angle of the spin from −e₃ is that of a
+/// pendulum that comes to rest at the top, sin(a/2) = tanh kt.
+fn exact(w: f64, k: f64, t: f64) -> (Vector3<f64>, (f64, f64)) {
+    let (half, (sine, cosine)) = ((k * t).tanh(), (w * t).sin_cos());
+    let rest = 1.0 / (k * t).cosh();
+    let (across, q) = (2.0 * half * rest, 2.0 * rest);
+    let s = Vector3::new(-sine * across, cosine * across, 2.0 * half * half - 1.0);
+    (s, (cosine * q, -sine * q))
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let pair = Product(So3::new(), Translations::new((0.0, 0.0), 2));
-    let system = SpinAndOscillator { group: pair, w: 3.0, k: 0.5 };
+    // H = w s₃ + w (q² + p²)/2 + k (q s₁ − p s₂): ṡ = ∇_s H × s, q̇ = ∂H/∂p, ṗ = −∂H/∂q. The action is linear
+    // on each part: a rotation turns s, a translation moves (q, p).
+    let (w, k) = (3.0, 0.5);
+    let pair = Product(So3::<f64>::new(), Translations::new((0.0, 0.0), 2));
+    let system = Flow::new(pair, Linear, |_, (s, (q, p)), v| {
+        v.0 = Vector3::new(k * q, -k * p, w);
+        v.1 = (w * p - k * s[1], -w * q - k * s[0]);
+    });
     println!("a spin and an oscillator, error at t = 8:");
     for steps in [200, 400, 800, 1600] {
-        let (mut y, grid) = (system.exact(0.0), TimeGrid::with_steps([0.0, 8.0], steps)?);
+        let (mut y, grid) = (exact(w, k, 0.0), TimeGrid::with_steps([0.0, 8.0], steps)?);
         integrate(&system, &Rkmk::new(RK4, Exp), &grid, &SaveAt::Ends, &mut y, |_, _| {})?;
-        let (s, (q, p)) = system.exact(8.0);
+        let (s, (q, p)) = exact(w, k, 8.0);
         let error = (y.0 - s).norm() + (y.1.0 - q).hypot(y.1.1 - p);
         println!("  {steps:4} steps: {error:.1e}, |s| − 1 = {:8.1e}", y.0.norm() - 1.0);
     }
 
-    let parts = Product(So3::new(), Product(So3::new(), Translations::new(0.0, 1)));
-    let satellite = Satellite { group: parts, inertia: Vector3::new(2.0, 2.5, 3.0), torque: 0.002 };
+    // m in the body, g from body to space, and the wheel's momentum h about the first axis, which a motor
+    // turns with the torque u: ṁ = m × ω, ġ = gω̂, ḣ = u, with ω = J⁻¹(m − h e₁). m is turned; g and h are
+    // multiplied.
+    let (inertia, torque) = (Vector3::new(2.0, 2.5, 3.0), 0.002);
+    let parts = Product(So3::<f64>::new(), Product(So3::new(), Translations::new(0.0, 1)));
+    let satellite = Flow::new(parts, Pair(Linear, LeftTranslation), |_, (m, (g, h)), v| {
+        let omega = (m - Vector3::x() * *h).component_div(&inertia);
+        *v = (-omega, (g * omega, torque));
+    });
     let start = Vector3::new(0.1, 0.0, 1.0);
     let mut y = (start, (Matrix3::identity(), 0.0));
     let grid = TimeGrid::new([0.0, 450.0], 0.1)?;

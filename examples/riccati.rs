@@ -9,13 +9,13 @@ use faer::{Mat, mat};
 use lieflow::actions::Lagrangian;
 use lieflow::groups::{AlgebraMatrix, MatrixGroup};
 use lieflow::methods::magnus::Magnus6;
-use lieflow::problems::LinearEquation;
+use lieflow::problems::Flow;
 use lieflow::{SaveAt, TimeGrid, integrate};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // Ṗ = 1 + P²: P = tan t, and steps pass its poles at π/2 and 3π/2.
     let field = |_: f64, v: &mut AlgebraMatrix| (v[(1, 0)], v[(0, 1)]) = (1.0, -1.0);
-    let tangent = LinearEquation::new(MatrixGroup::sp(2)?, Lagrangian, field);
+    let tangent = Flow::of_time(MatrixGroup::sp(2)?, Lagrangian, field);
     let mut p = mat![[0.0]];
     let grid = TimeGrid::new([0.0, 6.0], 0.1)?;
     integrate(&tangent, &Magnus6, &grid, &SaveAt::Ends, &mut p, |_, _| {})?;
@@ -45,7 +45,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             }
         }
     };
-    let regulator = LinearEquation::new(MatrixGroup::sp(8)?, Lagrangian, field);
+    let regulator = Flow::of_time(MatrixGroup::sp(8)?, Lagrangian, field);
     let mut p = Mat::zeros(4, 4);
     let grid = TimeGrid::new([0.0, 40.0], 0.1)?;
     integrate(&regulator, &Magnus6, &grid, &SaveAt::Ends, &mut p, |_, _| {})?;

@@ -9,68 +9,43 @@ use std::f64::consts::TAU;
 
 use faer::Mat;
 use lieflow::actions::LeftTranslation;
-use lieflow::groups::{AlgebraMatrix, GroupMatrix, MatrixGroup};
+use lieflow::groups::{AlgebraMatrix, LieGroup, MatrixGroup};
 use lieflow::maps::{Cay, Exp};
 use lieflow::methods::{Rkmk, tableau::RK4};
-use lieflow::{CoordinateMap, LieGroup, Problem, RunError, SaveAt, TimeGrid, integrate};
+use lieflow::problems::{Flow, LinearHamiltonian, monodromy};
 
-/// A(t) = [0 𝟙; −K(t) 0] with K(t) = diag(stiffness) + drive·cos t·𝟙 + coupling.
-struct Mathieu {
+/// ġ = A(t)g, A(t) = [0 𝟙; −K(t) 0] with K(t) = diag(stiffness) + drive·cos t·𝟙 + coupling.
+fn mathieu(
     group: MatrixGroup,
     stiffness: [f64; 2],
     coupling: f64,
     drive: f64,
-}
-
-impl Problem for Mathieu {
-    type Group = MatrixGroup;
-    type Action = LeftTranslation;
-    type Work = ();
-
-    fn group(&self) -> &MatrixGroup {
-        &self.group
-    }
-    fn action(&self) -> &LeftTranslation {
-        &LeftTranslation
-    }
-    fn work(&self) {}
-    fn f(&self, t: f64, _: &GroupMatrix, a: &mut AlgebraMatrix, _: &mut ()) {
+) -> LinearHamiltonian<impl Fn(f64, &mut AlgebraMatrix)> {
+    Flow::of_time(group, LeftTranslation, move |t, a: &mut AlgebraMatrix| {
         a.fill(0.0);
         for i in 0..2 {
             a[(i, 2 + i)] = 1.0;
-            a[(2 + i, i)] = -(self.stiffness[i] + self.drive * t.cos());
-            a[(2 + i, 1 - i)] = -self.coupling;
+            a[(2 + i, i)] = -(stiffness[i] + drive * t.cos());
+            a[(2 + i, 1 - i)] = -coupling;
         }
-    }
-}
-
-impl Mathieu {
-    /// g(2π), from g(0) = 𝟙.
-    fn monodromy(
-        &self,
-        psi: impl CoordinateMap<MatrixGroup>,
-        steps: u64,
-    ) -> Result<GroupMatrix, RunError> {
-        let grid = TimeGrid::with_steps([0.0, TAU], steps)?;
-        let mut g = self.group.identity();
-        integrate(self, &Rkmk::new(RK4, psi), &grid, &SaveAt::Ends, &mut g, |_, _| {})?;
-        Ok(g)
-    }
+    })
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // A drive of frequency 1 resonates with an oscillator of frequency 1/2.
     for (name, stiffness) in [("off resonance", [0.49, 0.64]), ("in resonance", [0.25, 0.64])] {
         let group = MatrixGroup::sp(4)?;
-        let system = Mathieu { group, stiffness, coupling: 0.05, drive: 0.1 };
-        let reference = system.monodromy(Exp, 2560)?;
+        let system = mathieu(group.clone(), stiffness, 0.05, 0.1);
+        let by_exp = |steps| monodromy(&system, &Rkmk::new(RK4, Exp), [0.0, TAU], steps);
+        let by_cay = |steps| monodromy(&system, &Rkmk::new(RK4, Cay), [0.0, TAU], steps);
+        let reference = by_exp(2560)?;
         println!("{name}: steps, error with exp (order), with cay (order), |gᵀJg − J|");
         let mut coarser = [f64::NAN; 2];
         for steps in [40, 80, 160] {
-            let both = [system.monodromy(Exp, steps)?, system.monodromy(Cay, steps)?];
-            let error = both.each_ref().map(|g| system.group.distance(g, &reference));
+            let both = [by_exp(steps)?, by_cay(steps)?];
+            let error = both.each_ref().map(|g| group.distance(g, &reference));
             let order = [0, 1].map(|i| (coarser[i] / error[i]).log2());
-            let defect = both.each_ref().map(|g| system.group.defect(g));
+            let defect = both.each_ref().map(|g| group.defect(g));
             println!(
                 "{steps:6} {:9.1e} ({:4.2}) {:9.1e} ({:4.2}) {:8.0e}",
                 error[0],

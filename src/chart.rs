@@ -1,8 +1,9 @@
-//! λ_p = Λ_p ∘ Ψ and the pulled-back field f̃: the one place where the three maps of Figure 2 meet.
+//! λ_p = Λ_p ∘ Ψ, the pulled-back field f̃, and the field λ_*∘f on M: the one place where the maps of
+//! Figure 2 meet.
 
 use crate::actions::Action;
 use crate::error::{Error, StepError};
-use crate::groups::LieGroup;
+use crate::groups::{LieAlgebra, LieGroup};
 use crate::maps::CoordinateMap;
 use crate::problems::{AlgOf, ElemOf, PointOf, Problem, ScalarOf};
 
@@ -76,6 +77,25 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>> ChartStore<P, Psi> {
     ) -> Chart<'a, P, Psi> {
         psi.begin_step(&mut self.at, n);
         Chart { problem, psi, p, store: self }
+    }
+}
+
+/// Storage of the field F(t, y) = λ_*(f(t, y))(y) on M; made once.
+#[allow(missing_debug_implementations)] // the parts belong to the problem's types
+pub struct FieldStore<P: Problem + ?Sized> {
+    /// f(t, y).
+    pub v: AlgOf<P>,
+    /// Scratch of the action.
+    pub action: <P::Action as Action<P::Group>>::Work,
+    /// Scratch of f.
+    pub work: P::Work,
+}
+
+impl<P: Problem> FieldStore<P> {
+    /// Storage sized for `problem`.
+    pub fn new(problem: &P) -> Self {
+        let group = problem.group();
+        FieldStore { v: group.zero(), action: problem.action().work(group), work: problem.work() }
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::actions::Action;
 use crate::error::{Error, Failure};
 use crate::groups::{LieAlgebra, RESIDUAL_MAX};
-use crate::methods::{Method, Step};
+use crate::methods::{EqualSteps, Method, Step};
 use crate::problems::{PointOf, Problem, ScalarOf};
 use crate::scalar::Real;
 
@@ -76,6 +76,13 @@ impl TimeGrid {
         Ok(grid)
     }
 
+    /// So many steps may be taken from step `n` on without passing `time`: at least one.
+    fn last_before(&self, n: u64, time: Option<&f64>) -> Option<u64> {
+        let steps = ((*time? - self.t0) / self.h()).floor();
+        // One less, for rounding.
+        Some((steps as u64).saturating_sub(1).max(n + 1))
+    }
+
     fn check_span([t0, t1]: [f64; 2]) -> Result<f64, Error> {
         for (i, t) in [t0, t1].into_iter().enumerate() {
             if !t.is_finite() {
@@ -121,6 +128,14 @@ pub enum SaveAt {
 }
 
 impl SaveAt {
+    /// The number of the next step after `n` that is shown whatever the time.
+    fn next_after(&self, n: u64) -> Option<u64> {
+        match self {
+            SaveAt::Every(every) => Some((n - n % every).saturating_add(*every)),
+            SaveAt::Ends | SaveAt::Times(_) => None,
+        }
+    }
+
     /// Check against the grid.
     ///
     /// # Errors
@@ -231,6 +246,11 @@ impl<P: Problem> Mender<P> {
         }
         Mender { work: problem.action().work(problem.group()), from: from.clone(), cadence }
     }
+    /// The number of steps after which y is looked at again.
+    #[inline]
+    pub(crate) fn next(&self) -> u64 {
+        self.cadence.next
+    }
     /// After so many steps: is it time to look at y?
     #[inline]
     pub(crate) fn after(&mut self, steps: u64, problem: &P, y: &mut PointOf<P>, stats: &mut Stats) {
@@ -319,37 +339,50 @@ pub fn integrate<P: Problem, Me: Method<P>>(
     };
     times = times.strip_prefix(&[t0]).unwrap_or(times);
     observe(t0, y);
-    for n in 0..grid.steps() {
-        let (t, end) = (grid.time(n), grid.time(n + 1));
-        let fail = |h, source| Failure { step: n, t, h, source };
-        let mut take = |h: f64, y: &mut PointOf<P>| {
-            let step = Step { n, t: ScalarOf::<P>::lit(t), h: ScalarOf::<P>::lit(h) };
-            method.step(problem, step, y, &mut work).map_err(|source| fail(h, source))
-        };
+    let equal = EqualSteps { first: 0, end: grid.steps(), t0, h: grid.h() };
+    let fail = |step: u64, h, source| Failure { step, t: grid.time(step), h, source };
+    let mut n = 0;
+    while n < grid.steps() {
+        // Output times within the step that comes next.
         while let [time, rest @ ..] = times
-            && (if forward { *time < end } else { *time > end })
+            && (if forward { *time < grid.time(n + 1) } else { *time > grid.time(n + 1) })
         {
+            let (t, h) = (grid.time(n), *time - grid.time(n));
+            let lit = ScalarOf::<P>::lit;
             problem.action().assign(problem.group(), y, &mut aside);
-            take(*time - t, &mut aside)?;
+            method
+                .step(problem, Step { n, t: lit(t), h: lit(h) }, &mut aside, &mut work)
+                .map_err(|source| fail(n, h, source))?;
             stats.side_steps += 1;
             observe(*time, &aside);
             times = rest;
         }
-        // Not end − t, which the rounding of a large t makes uneven: to methods that keep an energy near
-        // their own a step of changing size is a drift.
-        take(grid.h(), y)?;
-        stats.steps += 1;
-        mender.after(stats.steps, problem, y, &mut stats);
+        let end = [Some(grid.steps()), save.next_after(n), grid.last_before(n, times.first())];
+        let end = end.into_iter().flatten().fold(mender.next(), u64::min);
+        problem.action().assign(problem.group(), y, &mut aside);
+        if let Err((step, source)) =
+            method.steps(problem, EqualSteps { first: n, end, ..equal }, y, &mut work)
+        {
+            // The state of an error is the last accepted one.
+            core::mem::swap(y, &mut aside);
+            let _ =
+                method.steps(problem, EqualSteps { first: n, end: step, ..equal }, y, &mut work);
+            return Err(fail(step, grid.h(), source).into());
+        }
+        n = end;
+        stats.steps = n;
+        mender.after(n, problem, y, &mut stats);
+        let t = grid.time(n);
         let on_grid = match save {
-            SaveAt::Every(every) => (n + 1) % every == 0,
-            SaveAt::Times(_) => times.first() == Some(&end),
+            SaveAt::Every(every) => n.is_multiple_of(*every),
+            SaveAt::Times(_) => times.first() == Some(&t),
             SaveAt::Ends => false,
         };
         if on_grid {
             times = times.get(1..).unwrap_or_default();
         }
-        if on_grid || n + 1 == grid.steps() {
-            observe(end, y);
+        if on_grid || n == grid.steps() {
+            observe(t, y);
         }
     }
     Ok(stats)

@@ -51,6 +51,11 @@
 #![forbid(unsafe_code)]
 #![deny(missing_docs, rustdoc::broken_intra_doc_links)]
 
+/// The programs of README.md, as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
+
 pub mod actions;
 pub mod adaptive;
 pub mod catalog;
@@ -66,6 +71,7 @@ pub mod methods;
 pub mod problems;
 pub mod scalar;
 pub mod so3;
+pub mod space;
 
 pub use actions::Action;
 pub use error::{Error, Failure, NoLogarithm, StepError};

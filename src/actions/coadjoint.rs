@@ -4,22 +4,22 @@
 //! Λ(g, m) = Ad*_{g⁻¹} m. Its infinitesimal generator at ξ is −ad*_ξ m, so that Euler's equations
 //! ṁ = ad*_ω m are f(m) = −ω.
 //!
-//! | | 𝔤* | Λ(g, m) |
-//! |---|---|---|
-//! | so(3) | ℝ³, ⟨m, v⟩ = m·v | g m |
-//! | se(3) | (μ, π), ⟨m, v⟩ = μ·ω + π·v | (Rμ + x × Rπ, Rπ) |
-//! | any n | n×n matrices, ⟨m, v⟩ = tr(mᵀv) | g⁻ᵀ m gᵀ: g m gᵀ on SO(n), MgM⁻¹ m gᵀ on G_M |
+//! | | 𝔤* | Λ(g, m) | λ_*(v)(m) |
+//! |---|---|---|---|
+//! | so(3) | ℝ³, ⟨m, v⟩ = m·v | g m | v × m |
+//! | se(3) | (μ, π), ⟨m, v⟩ = μ·ω + π·v | (Rμ + x × Rπ, Rπ) | (ω × μ + v × π, ω × π) |
+//! | any n | n×n matrices, ⟨m, v⟩ = tr(mᵀv) | g⁻ᵀ m gᵀ: g m gᵀ on SO(n), MgM⁻¹ m gᵀ on G_M | m vᵀ − vᵀ m |
 
 use faer::Mat;
 use nalgebra::{Matrix3, Vector3};
 
 use super::Action;
 use crate::chart::PsiOf;
-use crate::dense::{Lu, congruence, mul};
+use crate::dense::{Lu, congruence, mul, mul_add, skew_commutator};
 use crate::error::{Error, StepError};
 use crate::groups::{
-    Form, GroupMatrix, LieAlgebra, LieGroup, MatrixGroup, RESIDUAL_MAX, Se3, So3, add3, cross,
-    dot3, in_range, worse,
+    AlgebraMatrix, Form, GroupMatrix, LieAlgebra, LieGroup, MatrixGroup, RESIDUAL_MAX, Se3, So3,
+    add3, cross, dot3, in_range, worse,
 };
 use crate::maps::CoordinateMap;
 use crate::scalar::Real;
@@ -34,8 +34,23 @@ impl<S: Real> Action<So3<S>> for Coadjoint {
 
     fn work(&self, _: &So3<S>) {}
     #[inline]
+    fn check(&self, group: &So3<S>, p: &Vector3<S>) -> Result<(), Error> {
+        group.check_vector(p)
+    }
+    #[inline]
     fn act(&self, group: &So3<S>, g: &Matrix3<S>, p: &Vector3<S>, q: &mut Vector3<S>, _: &mut ()) {
         group.apply(g, p, q);
+    }
+    #[inline]
+    fn generate(
+        &self,
+        _: &So3<S>,
+        v: &Vector3<S>,
+        m: &Vector3<S>,
+        dm: &mut Vector3<S>,
+        _: &mut (),
+    ) {
+        *dm = cross(v, m);
     }
     #[inline]
     fn lambda<Psi: CoordinateMap<So3<S>>>(
@@ -65,6 +80,11 @@ impl<S: Real> Action<Se3<S>> for Coadjoint {
 
     fn work(&self, _: &Se3<S>) {}
     #[inline]
+    fn check(&self, _: &Se3<S>, p: &Self::Point) -> Result<(), Error> {
+        So3::new().check_vector(&p.0)?;
+        So3::new().check_vector(&p.1)
+    }
+    #[inline]
     fn act(
         &self,
         _: &Se3<S>,
@@ -76,6 +96,17 @@ impl<S: Real> Action<Se3<S>> for Coadjoint {
         So3::new().apply(r, mu, &mut q.0);
         So3::new().apply(r, pi, &mut q.1);
         q.0 = add3(&q.0, &cross(x, &q.1));
+    }
+    #[inline]
+    fn generate(
+        &self,
+        _: &Se3<S>,
+        (omega, v): &Self::Point,
+        (mu, pi): &Self::Point,
+        dm: &mut Self::Point,
+        _: &mut (),
+    ) {
+        *dm = (add3(&cross(omega, mu), &cross(v, pi)), cross(omega, pi));
     }
     /// The orbit is that of |π| and μ·π: π as a vector, then μ along π.
     fn restore_to(
@@ -151,6 +182,20 @@ impl Action<MatrixGroup> for Coadjoint {
             _ => return congruence(q, g, p, product),
         }
         mul(q, product.as_ref(), g.transpose());
+    }
+    fn generate(
+        &self,
+        group: &MatrixGroup,
+        v: &AlgebraMatrix,
+        m: &Mat<f64>,
+        dm: &mut Mat<f64>,
+        _: &mut CoadjointWork,
+    ) {
+        if matches!(group.form(), Form::Identity) {
+            return skew_commutator(dm, v, m);
+        }
+        mul(dm, m.as_ref(), v.transpose());
+        mul_add(dm, -1.0, v.transpose(), m.as_ref());
     }
 }
 

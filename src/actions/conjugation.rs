@@ -4,9 +4,9 @@
 use faer::Mat;
 
 use super::Action;
-use crate::dense::{Lu, congruence, mul};
+use crate::dense::{Lu, congruence, mul, mul_add, skew_commutator};
 use crate::error::Error;
-use crate::groups::{Form, GroupMatrix, MatrixGroup};
+use crate::groups::{AlgebraMatrix, Form, GroupMatrix, MatrixGroup};
 
 /// Λ(g, p) = g p g⁻¹: isospectral flows, ṗ = \[f(p), p\].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -57,5 +57,20 @@ impl Action<MatrixGroup> for Conjugation {
                 q[(j, i)] = swapped;
             }
         }
+    }
+    /// v p − p v.
+    fn generate(
+        &self,
+        group: &MatrixGroup,
+        v: &AlgebraMatrix,
+        p: &Mat<f64>,
+        dp: &mut Mat<f64>,
+        _: &mut ConjugationWork,
+    ) {
+        if matches!(group.form(), Form::Identity) {
+            return skew_commutator(dp, v, p);
+        }
+        mul(dp, v.as_ref(), p.as_ref());
+        mul_add(dp, -1.0, p.as_ref(), v.as_ref());
     }
 }

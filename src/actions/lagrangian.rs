@@ -8,7 +8,7 @@ use super::Action;
 use crate::chart::PsiOf;
 use crate::dense::{Lu, is_finite, mul_add};
 use crate::error::{Error, StepError};
-use crate::groups::{GroupMatrix, MatrixGroup};
+use crate::groups::{AlgebraMatrix, GroupMatrix, MatrixGroup, check_entries};
 use crate::maps::CoordinateMap;
 use crate::scalar::{Ops, tally};
 
@@ -17,15 +17,14 @@ use crate::scalar::{Ops, tally};
 ///
 /// ```
 /// use lieflow::actions::Lagrangian;
-/// use lieflow::groups::{AlgebraMatrix, MatrixGroup};
+/// use lieflow::groups::MatrixGroup;
 /// use lieflow::methods::magnus::Magnus4;
-/// use lieflow::problems::LinearEquation;
+/// use lieflow::problems::Flow;
 /// use lieflow::{SaveAt, TimeGrid, integrate};
 /// // Ṗ = 1 + P² from 0: P = tan t, with a pole at π/2 that the steps pass.
-/// let a = |_: f64, v: &mut AlgebraMatrix| {
+/// let riccati = Flow::of_time(MatrixGroup::sp(2)?, Lagrangian, |_, v| {
 ///     (v[(1, 0)], v[(0, 1)]) = (1.0, -1.0);
-/// };
-/// let riccati = LinearEquation::new(MatrixGroup::sp(2)?, Lagrangian, a);
+/// });
 /// let mut p = faer::mat![[0.0]];
 /// let grid = TimeGrid::new([0.0, 3.0], 0.1)?;
 /// integrate(&riccati, &Magnus4, &grid, &SaveAt::Ends, &mut p, |_, _| {})?;
@@ -44,7 +43,7 @@ pub struct LagrangianWork {
 }
 
 /// The four blocks A, B, C, D.
-fn blocks(g: &GroupMatrix) -> [MatRef<'_, f64>; 4] {
+fn blocks(g: &Mat<f64>) -> [MatRef<'_, f64>; 4] {
     let m = g.nrows() / 2;
     [(0, 0), (0, m), (m, 0), (m, m)].map(|(i, j)| g.as_ref().submatrix(i, j, m, m))
 }
@@ -61,7 +60,7 @@ impl Action<MatrixGroup> for Lagrangian {
     fn check(&self, group: &MatrixGroup, p: &Mat<f64>) -> Result<(), Error> {
         let (rows, cols, m) = (p.nrows(), p.ncols(), group.n() / 2);
         match (rows, cols) == (m, m) {
-            true => Ok(()),
+            true => check_entries("y", p.as_ref()),
             false => Err(Error::Shape { arg: "y", rows, cols, expected_rows: m, expected_cols: m }),
         }
     }
@@ -93,6 +92,22 @@ impl Action<MatrixGroup> for Lagrangian {
                 (q[(i, j)], q[(j, i)]) = (mean, mean);
             }
         }
+    }
+    /// c + dP − P(a + bP), v = \[a b; c d\].
+    fn generate(
+        &self,
+        _: &MatrixGroup,
+        v: &AlgebraMatrix,
+        p: &Mat<f64>,
+        dp: &mut Mat<f64>,
+        LagrangianWork { denominator, .. }: &mut LagrangianWork,
+    ) {
+        let [a, b, c, d] = blocks(v);
+        denominator.copy_from(a);
+        mul_add(denominator, 1.0, b, p.as_ref());
+        dp.copy_from(c);
+        mul_add(dp, 1.0, d, p.as_ref());
+        mul_add(dp, -1.0, p.as_ref(), denominator.as_ref());
     }
     fn lambda<Psi: CoordinateMap<MatrixGroup>>(
         &self,

@@ -27,6 +27,10 @@ impl<G: LieGroup> Action<G> for Linear {
         group.apply(g, p, q);
     }
     #[inline]
+    fn generate(&self, group: &G, v: &G::Alg, x: &G::Vector, dx: &mut G::Vector, _: &mut ()) {
+        group.apply_algebra(v, x, dx);
+    }
+    #[inline]
     fn lambda<Psi: CoordinateMap<G>>(
         &self,
         psi_u: PsiOf<'_, G, Psi>,

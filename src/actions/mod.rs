@@ -39,6 +39,13 @@ pub trait Action<G: LieGroup> {
         Ok(())
     }
 
+    /// Are the numbers of p finite? Asked after every step of a run, so that a state that leaves the range of
+    /// the arithmetic ends it. The default is [`check`](Self::check).
+    #[inline]
+    fn is_finite(&self, group: &G, p: &Self::Point) -> bool {
+        self.check(group, p).is_ok()
+    }
+
     /// q ← p, into the storage that there is. The default is `clone_from`, which allocates for storage
     /// that does not know better; the driver copies where it takes a step aside.
     #[inline]
@@ -53,6 +60,17 @@ pub trait Action<G: LieGroup> {
         g: &G::Elem,
         p: &Self::Point,
         q: &mut Self::Point,
+        work: &mut Self::Work,
+    );
+
+    /// dy ← λ_*(v)(y) = d/dε Λ(Ψ(εv), y) at ε = 0, equation (13): the velocity that v gives to y, a
+    /// tangent of M in the storage of a point.
+    fn generate(
+        &self,
+        group: &G,
+        v: &G::Alg,
+        y: &Self::Point,
+        dy: &mut Self::Point,
         work: &mut Self::Work,
     );
 

@@ -62,6 +62,18 @@ where
         self.0.act(&group.0, &g.0, &p.0, &mut q.0, &mut work.0);
         self.1.act(&group.1, &g.1, &p.1, &mut q.1, &mut work.1);
     }
+    #[inline]
+    fn generate(
+        &self,
+        group: &Product<A, B>,
+        v: &(A::Alg, B::Alg),
+        y: &Self::Point,
+        dy: &mut Self::Point,
+        work: &mut Self::Work,
+    ) {
+        self.0.generate(&group.0, &v.0, &y.0, &mut dy.0, &mut work.0);
+        self.1.generate(&group.1, &v.1, &y.1, &mut dy.1, &mut work.1);
+    }
     fn restore(
         &self,
         group: &Product<A, B>,
@@ -109,6 +121,19 @@ impl<G: LieGroup, L: Action<G>> Action<Power<G>> for Each<L> {
     ) {
         for ((g, p), q) in g.iter().zip(p).zip(q) {
             self.0.act(group.group(), g, p, q, work);
+        }
+    }
+    #[inline]
+    fn generate(
+        &self,
+        group: &Power<G>,
+        v: &Box<[G::Alg]>,
+        y: &Self::Point,
+        dy: &mut Self::Point,
+        work: &mut L::Work,
+    ) {
+        for ((v, y), dy) in v.iter().zip(y).zip(dy) {
+            self.0.generate(group.group(), v, y, dy, work);
         }
     }
     fn restore(
@@ -163,6 +188,17 @@ where
     ) {
         Pair(Coadjoint, Coadjoint).act(group, g, p, q, work);
     }
+    #[inline]
+    fn generate(
+        &self,
+        group: &Product<A, B>,
+        v: &(A::Alg, B::Alg),
+        y: &Self::Point,
+        dy: &mut Self::Point,
+        work: &mut Self::Work,
+    ) {
+        Pair(Coadjoint, Coadjoint).generate(group, v, y, dy, work);
+    }
     fn restore_to(
         &self,
         group: &Product<A, B>,
@@ -201,6 +237,17 @@ where
         work: &mut Self::Work,
     ) {
         Each(Coadjoint).act(group, g, p, q, work);
+    }
+    #[inline]
+    fn generate(
+        &self,
+        group: &Power<G>,
+        v: &Box<[G::Alg]>,
+        y: &Self::Point,
+        dy: &mut Self::Point,
+        work: &mut Self::Work,
+    ) {
+        Each(Coadjoint).generate(group, v, y, dy, work);
     }
     fn restore_to(
         &self,

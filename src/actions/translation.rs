@@ -26,6 +26,10 @@ impl<G: LieGroup> Action<G> for LeftTranslation {
     fn act(&self, group: &G, g: &G::Elem, p: &G::Elem, q: &mut G::Elem, _: &mut Self::Work) {
         group.compose(g, p, q);
     }
+    #[inline]
+    fn generate(&self, group: &G, v: &G::Alg, g: &G::Elem, dg: &mut G::Elem, _: &mut Self::Work) {
+        group.tangent(v, g, dg);
+    }
     fn restore(&self, group: &G, p: &mut G::Elem, work: &mut Self::Work) -> Option<G::Scalar> {
         Some(group.correct(p, work.each_mut()))
     }

@@ -285,6 +285,9 @@ where
             self.method.step_with_error(self.problem, step, y, &mut self.work, &mut self.next)?;
         let (error, length): (f64, f64) = (local.error.into(), local.length.into());
         let tolerance = self.control.atol + self.control.rtol * length;
+        if !self.problem.action().is_finite(self.problem.group(), &self.next) {
+            return Err(StepError::NotFinite { what: "the state" });
+        }
         if !(error.is_finite() && tolerance.is_finite()) {
             return Err(StepError::NotFinite { what: "the error estimate" });
         }

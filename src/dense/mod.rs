@@ -24,7 +24,7 @@ pub use expm::{
 pub(crate) use lu::Lu;
 pub(crate) use ops::{axpy, is_finite, norm_frobenius, norm1, scaled_sum, wide};
 pub(crate) use product::{
-    antisymmetrise, congruence, lower_product, mirror, mul, mul_add, orthogonalise,
+    antisymmetrise, congruence, lower_product, mirror, mul, mul_add, orthogonalise, skew_commutator,
 };
 pub(crate) use schur::{NEGLIGIBLE, Schur};
 pub(crate) use symmetric::SymmetricEigen;

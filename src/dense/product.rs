@@ -145,6 +145,27 @@ pub(crate) fn congruence(out: &mut Mat<f64>, g: &Mat<f64>, p: &Mat<f64>, product
     }
 }
 
+/// out ← v·p − p·v for a skew v: one product where p is symmetric or skew, exactly.
+pub(crate) fn skew_commutator(out: &mut Mat<f64>, v: &Mat<f64>, p: &Mat<f64>) {
+    mul(out, v.as_ref(), p.as_ref());
+    match wide(p.nrows(), Symmetry(p)) {
+        Some(1.0) => add_transpose(out),
+        Some(_) => antisymmetrise(out),
+        None => mul_add(out, -1.0, p.as_ref(), v.as_ref()),
+    }
+}
+
+/// x ← x + xᵀ.
+fn add_transpose(x: &mut Mat<f64>) {
+    tally(|| Ops::adds(x.ncols() * (x.ncols() + 1) / 2));
+    for j in 0..x.ncols() {
+        for i in 0..=j {
+            let sum = x[(i, j)] + x[(j, i)];
+            (x[(i, j)], x[(j, i)]) = (sum, sum);
+        }
+    }
+}
+
 /// The sign for which x = ±xᵀ, entry by entry.
 struct Symmetry<'a>(&'a Mat<f64>);
 

@@ -18,8 +18,8 @@ use nalgebra::{Matrix3, Vector3};
 use super::{AlgebraMatrix, Form, GroupMatrix, LieGroup, MatrixGroup, So3, apply3, cross};
 use crate::dense::{Lu, antisymmetrise, is_finite, mul, mul_add};
 use crate::error::StepError;
-use crate::problems::LinearSpace;
 use crate::scalar::{Ops, Real, tally};
+use crate::space::LinearSpace;
 
 /// The adjoint and coadjoint representations of a group and of its algebra.
 pub trait Adjoint: LieGroup {
@@ -56,6 +56,9 @@ pub trait Adjoint: LieGroup {
     /// As [`inverse`](Self::inverse); [`StepError::NotFinite`] when the result is not finite.
     fn big_ad(&self, g: &Self::Elem, u: &Self::Alg, out: &mut Self::Alg) -> Result<(), StepError>;
 
+    /// out ← g·v = d/dε g·Ψ(εv) at ε = 0: a tangent of G at g, left trivialised.
+    fn tangent_in_body(&self, g: &Self::Elem, v: &Self::Alg, out: &mut Self::Elem);
+
     /// out ← ad_u v = \[u, v\].
     fn ad(&self, u: &Self::Alg, v: &Self::Alg, out: &mut Self::Alg) {
         self.bracket(u, v, out);
@@ -88,6 +91,14 @@ impl<S: Real> Adjoint for So3<S> {
     fn invert(&self, g: &Matrix3<S>, (): &mut (), out: &mut Matrix3<S>) -> Result<(), StepError> {
         *out = g.transpose();
         Ok(())
+    }
+    /// Row by row: r v̂ = r × v.
+    #[inline]
+    fn tangent_in_body(&self, g: &Matrix3<S>, v: &Vector3<S>, out: &mut Matrix3<S>) {
+        for i in 0..3 {
+            let row = cross(&Vector3::new(g[(i, 0)], g[(i, 1)], g[(i, 2)]), v);
+            (out[(i, 0)], out[(i, 1)], out[(i, 2)]) = (row[0], row[1], row[2]);
+        }
     }
     #[inline]
     fn big_ad(
@@ -178,6 +189,10 @@ impl Adjoint for MatrixGroup {
             }
         }
         if is_finite(out) { Ok(()) } else { Err(StepError::NotFinite { what: "g⁻¹" }) }
+    }
+
+    fn tangent_in_body(&self, g: &GroupMatrix, v: &AlgebraMatrix, out: &mut GroupMatrix) {
+        mul(out, g.as_ref(), v.as_ref());
     }
 
     fn big_ad(

@@ -19,11 +19,11 @@ mod translations;
 mod unitary;
 
 pub use adjoint::{Adjoint, InvertingWork};
+pub(crate) use matrix::finite as check_entries;
 pub use matrix::{AlgebraMatrix, Form, GroupMatrix, MEMBERSHIP, MatrixGroup, RCOND_MIN};
 pub use power::Power;
 pub use product::Product;
 pub(crate) use product::worse;
-pub(crate) use quaternions::QUATERNION_PRODUCT;
 pub use quaternions::UnitQuaternions;
 pub use se3::Se3;
 pub(crate) use se3::{add3, finite_pair};
@@ -96,6 +96,10 @@ pub trait LieGroup: LieAlgebra {
     fn compose(&self, a: &Self::Elem, b: &Self::Elem, out: &mut Self::Elem);
     /// y ← g·x.
     fn apply(&self, g: &Self::Elem, x: &Self::Vector, y: &mut Self::Vector);
+    /// out ← v·g = d/dε Ψ(εv)·g at ε = 0: a tangent of G at g, right trivialised.
+    fn tangent(&self, v: &Self::Alg, g: &Self::Elem, out: &mut Self::Elem);
+    /// y ← v·x = d/dε Ψ(εv)·x at ε = 0.
+    fn apply_algebra(&self, v: &Self::Alg, x: &Self::Vector, y: &mut Self::Vector);
     /// ‖a − b‖ (Frobenius).
     fn distance(&self, a: &Self::Elem, b: &Self::Elem) -> Self::Scalar;
     /// How far g is from G: ‖gᵀMg − M‖ (Frobenius), zero for GL(n).

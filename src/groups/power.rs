@@ -138,6 +138,18 @@ impl<G: LieGroup> LieGroup for Power<G> {
             self.group.apply(g, x, y);
         }
     }
+    #[inline]
+    fn tangent(&self, v: &Self::Alg, g: &Self::Elem, out: &mut Self::Elem) {
+        for ((v, g), out) in v.iter().zip(g).zip(out) {
+            self.group.tangent(v, g, out);
+        }
+    }
+    #[inline]
+    fn apply_algebra(&self, v: &Self::Alg, x: &Self::Vector, y: &mut Self::Vector) {
+        for ((v, x), y) in v.iter().zip(x).zip(y) {
+            self.group.apply_algebra(v, x, y);
+        }
+    }
     fn distance(&self, a: &Self::Elem, b: &Self::Elem) -> G::Scalar {
         norm2(a.iter().zip(b).map(|(a, b)| self.group.distance(a, b)))
     }
@@ -188,6 +200,11 @@ impl<G: Adjoint> Adjoint for Power<G> {
         out: &mut Self::Elem,
     ) -> Result<(), StepError> {
         g.iter().zip(out).try_for_each(|(g, out)| self.group.invert(g, scratch, out))
+    }
+    fn tangent_in_body(&self, g: &Self::Elem, v: &Self::Alg, out: &mut Self::Elem) {
+        for ((g, v), out) in g.iter().zip(v).zip(out) {
+            self.group.tangent_in_body(g, v, out);
+        }
     }
     fn big_ad(&self, g: &Self::Elem, u: &Self::Alg, out: &mut Self::Alg) -> Result<(), StepError> {
         let mut parts = g.iter().zip(u).zip(out);

@@ -108,6 +108,16 @@ impl<A: LieGroup, B: LieGroup<Scalar = A::Scalar>> LieGroup for Product<A, B> {
         self.0.apply(&g.0, &x.0, &mut y.0);
         self.1.apply(&g.1, &x.1, &mut y.1);
     }
+    #[inline]
+    fn tangent(&self, v: &Self::Alg, g: &Self::Elem, out: &mut Self::Elem) {
+        self.0.tangent(&v.0, &g.0, &mut out.0);
+        self.1.tangent(&v.1, &g.1, &mut out.1);
+    }
+    #[inline]
+    fn apply_algebra(&self, v: &Self::Alg, x: &Self::Vector, y: &mut Self::Vector) {
+        self.0.apply_algebra(&v.0, &x.0, &mut y.0);
+        self.1.apply_algebra(&v.1, &x.1, &mut y.1);
+    }
     fn distance(&self, a: &Self::Elem, b: &Self::Elem) -> A::Scalar {
         norm2(self.0.distance(&a.0, &b.0), self.1.distance(&a.1, &b.1))
     }
@@ -160,6 +170,10 @@ impl<A: Adjoint, B: Adjoint<Scalar = A::Scalar>> Adjoint for Product<A, B> {
     ) -> Result<(), StepError> {
         self.0.invert(&g.0, &mut scratch.0, &mut out.0)?;
         self.1.invert(&g.1, &mut scratch.1, &mut out.1)
+    }
+    fn tangent_in_body(&self, g: &Self::Elem, v: &Self::Alg, out: &mut Self::Elem) {
+        self.0.tangent_in_body(&g.0, &v.0, &mut out.0);
+        self.1.tangent_in_body(&g.1, &v.1, &mut out.1);
     }
     fn big_ad(&self, g: &Self::Elem, u: &Self::Alg, out: &mut Self::Alg) -> Result<(), StepError> {
         self.0.big_ad(&g.0, &u.0, &mut out.0)?;

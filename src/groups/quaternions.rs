@@ -15,6 +15,7 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
 
+use super::so3::check_finite;
 use super::{Adjoint, LieAlgebra, LieGroup, RESIDUAL_MAX, Sample, So3};
 use crate::actions::{Action, Coadjoint};
 use crate::error::{Error, StepError};
@@ -44,7 +45,7 @@ const SO3: So3<f64> = So3::new();
 /// u × v.
 const CROSS: Ops = Ops { mul: 6, add: 3, ..Ops::NONE };
 /// A product of quaternions.
-pub(crate) const QUATERNION_PRODUCT: Ops = Ops { mul: 16, add: 12, ..Ops::NONE };
+const QUATERNION_PRODUCT: Ops = Ops { mul: 16, add: 12, ..Ops::NONE };
 
 impl LieAlgebra for UnitQuaternions {
     type Scalar = f64;
@@ -110,6 +111,24 @@ impl LieGroup for UnitQuaternions {
         let t = 2.0 * v.cross(x);
         *y = x + w * t + v.cross(&t);
     }
+    /// (v/2)·q.
+    #[inline]
+    fn tangent(&self, v: &Vector3<f64>, q: &UnitQuaternion<f64>, out: &mut UnitQuaternion<f64>) {
+        tally(|| Ops::muls(3) + QUATERNION_PRODUCT);
+        *out = UnitQuaternion::new_unchecked(Quaternion::from_imag(0.5 * v) * q.quaternion());
+    }
+    #[inline]
+    fn apply_algebra(&self, v: &Vector3<f64>, x: &Vector3<f64>, y: &mut Vector3<f64>) {
+        self.bracket(v, x, y);
+    }
+    #[inline]
+    fn check_elem(&self, q: &UnitQuaternion<f64>) -> Result<(), Error> {
+        check_finite(q.coords.as_slice())
+    }
+    #[inline]
+    fn check_vector(&self, x: &Vector3<f64>) -> Result<(), Error> {
+        check_finite(x.as_slice())
+    }
     /// |a − b|: q and −q are different elements.
     fn distance(&self, a: &UnitQuaternion<f64>, b: &UnitQuaternion<f64>) -> f64 {
         (a.coords - b.coords).norm()
@@ -150,6 +169,16 @@ impl Adjoint for UnitQuaternions {
         Ok(())
     }
     #[inline]
+    fn tangent_in_body(
+        &self,
+        q: &UnitQuaternion<f64>,
+        v: &Vector3<f64>,
+        out: &mut UnitQuaternion<f64>,
+    ) {
+        tally(|| Ops::muls(3) + QUATERNION_PRODUCT);
+        *out = UnitQuaternion::new_unchecked(q.quaternion() * Quaternion::from_imag(0.5 * v));
+    }
+    #[inline]
     fn big_ad(
         &self,
         q: &UnitQuaternion<f64>,
@@ -184,6 +213,10 @@ impl Action<UnitQuaternions> for Coadjoint {
 
     fn work(&self, _: &UnitQuaternions) {}
     #[inline]
+    fn check(&self, group: &UnitQuaternions, m: &Vector3<f64>) -> Result<(), Error> {
+        group.check_vector(m)
+    }
+    #[inline]
     fn act(
         &self,
         group: &UnitQuaternions,
@@ -193,6 +226,17 @@ impl Action<UnitQuaternions> for Coadjoint {
         _: &mut (),
     ) {
         group.apply(q, m, out);
+    }
+    #[inline]
+    fn generate(
+        &self,
+        group: &UnitQuaternions,
+        v: &Vector3<f64>,
+        m: &Vector3<f64>,
+        dm: &mut Vector3<f64>,
+        _: &mut (),
+    ) {
+        group.apply_algebra(v, m, dm);
     }
 }
 

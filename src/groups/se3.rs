@@ -133,6 +133,17 @@ impl<S: Real> LieGroup for Se3<S> {
     fn apply(&self, g: &Self::Elem, x: &Vector3<S>, y: &mut Vector3<S>) {
         *y = add3(&apply3(&g.0, x), &g.1);
     }
+    /// (ω̂R, ω × x + v).
+    #[inline]
+    fn tangent(&self, v: &Self::Alg, g: &Self::Elem, out: &mut Self::Elem) {
+        So3::new().tangent(&v.0, &g.0, &mut out.0);
+        self.apply_algebra(v, &g.1, &mut out.1);
+    }
+    /// ω × p + v.
+    #[inline]
+    fn apply_algebra(&self, v: &Self::Alg, p: &Vector3<S>, y: &mut Vector3<S>) {
+        *y = add3(&cross(&v.0, p), &v.1);
+    }
     fn check_elem(&self, g: &Self::Elem) -> Result<(), Error> {
         check_finite(g.0.as_slice())?;
         check_finite(g.1.as_slice())
@@ -169,6 +180,12 @@ impl<S: Real> Adjoint for Se3<S> {
         let x = apply3(&out.0, &g.1);
         out.1 = Vector3::new(-x[0], -x[1], -x[2]);
         if is_finite3(&out.1) { Ok(()) } else { Err(StepError::NotFinite { what: "g⁻¹" }) }
+    }
+    /// (Rω̂, Rv).
+    #[inline]
+    fn tangent_in_body(&self, g: &Self::Elem, v: &Self::Alg, out: &mut Self::Elem) {
+        So3::new().tangent_in_body(&g.0, &v.0, &mut out.0);
+        out.1 = apply3(&g.0, &v.1);
     }
     #[inline]
     fn big_ad(&self, g: &Self::Elem, u: &Self::Alg, out: &mut Self::Alg) -> Result<(), StepError> {

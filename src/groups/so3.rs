@@ -162,6 +162,18 @@ impl<S: Real> LieGroup for So3<S> {
     fn apply(&self, g: &Matrix3<S>, x: &Vector3<S>, y: &mut Vector3<S>) {
         *y = apply3(g, x);
     }
+    /// Column by column: v̂ x = v × x.
+    #[inline]
+    fn tangent(&self, v: &Vector3<S>, g: &Matrix3<S>, out: &mut Matrix3<S>) {
+        for j in 0..3 {
+            let column = cross(v, &Vector3::new(g[(0, j)], g[(1, j)], g[(2, j)]));
+            (out[(0, j)], out[(1, j)], out[(2, j)]) = (column[0], column[1], column[2]);
+        }
+    }
+    #[inline]
+    fn apply_algebra(&self, v: &Vector3<S>, x: &Vector3<S>, y: &mut Vector3<S>) {
+        *y = cross(v, x);
+    }
     fn distance(&self, a: &Matrix3<S>, b: &Matrix3<S>) -> S {
         let mut d = *a;
         for (d, b) in d.iter_mut().zip(b) {

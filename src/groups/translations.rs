@@ -7,8 +7,8 @@
 use super::{Adjoint, LieAlgebra, LieGroup};
 use crate::error::{Error, StepError};
 use crate::maps::{Cay, Ccsk, CoordinateMap, Exp, Pade22, TruncatedExp};
-use crate::problems::LinearSpace;
 use crate::scalar::Real;
+use crate::space::LinearSpace;
 
 /// The translations of the linear space that `zero` is the origin of.
 ///
@@ -93,6 +93,25 @@ impl<V: LinearSpace> LieGroup for Translations<V> {
     fn apply(&self, g: &V, x: &V, y: &mut V) {
         self.compose(g, x, y);
     }
+    #[inline]
+    fn tangent(&self, v: &V, _: &V, out: &mut V) {
+        out.assign(v);
+    }
+    #[inline]
+    fn apply_algebra(&self, v: &V, _: &V, y: &mut V) {
+        y.assign(v);
+    }
+    #[inline]
+    fn check_elem(&self, g: &V) -> Result<(), Error> {
+        match g.is_finite() {
+            true => Ok(()),
+            false => Err(Error::out_of_range("y", f64::NAN, "finite numbers")),
+        }
+    }
+    #[inline]
+    fn check_vector(&self, x: &V) -> Result<(), Error> {
+        self.check_elem(x)
+    }
     fn distance(&self, a: &V, b: &V) -> V::Scalar {
         a.distance(b)
     }
@@ -112,6 +131,10 @@ impl<V: LinearSpace> Adjoint for Translations<V> {
         out.clear();
         out.add(V::Scalar::lit(-1.0), g);
         Ok(())
+    }
+    #[inline]
+    fn tangent_in_body(&self, _: &V, v: &V, out: &mut V) {
+        out.assign(v);
     }
     #[inline]
     fn big_ad(&self, _: &V, u: &V, out: &mut V) -> Result<(), StepError> {

@@ -12,6 +12,7 @@ mod cay;
 mod ccsk;
 mod exp;
 mod log;
+mod named;
 mod pade22;
 mod parts;
 mod quotient;
@@ -26,6 +27,10 @@ pub use exp::{
     distance_to_singular,
 };
 pub(crate) use log::GAUSS_LEGENDRE7;
+pub use named::{
+    AllMaps, ExpOrCay, ExpOrCayAt, FromName, Groups, HasExpAndCay, MAPS, MapInfo, MapsByName,
+    NamedAt, NamedMap, Serves,
+};
 pub use pade22::{Pade22, Pade22At};
 pub use parts::{Each, Pair};
 pub use se3::ScrewAt;

@@ -18,9 +18,8 @@ use super::{Cay, CoordinateMap, Exp};
 use crate::dense::{ComplexExponential, SkewEigen, Structure};
 use crate::error::{Error, StepError};
 use crate::groups::{ComplexMatrix, LieAlgebra, LieGroup, Unitary, mul_complex};
-use crate::methods::Metric;
-use crate::problems::LinearSpace;
 use crate::scalar::{Ops, tally};
+use crate::space::{LinearSpace, Metric};
 
 /// Above this norm no digit of cay(u) has a meaning.
 const NORM_MAX: f64 = 1e15;

@@ -17,6 +17,7 @@ use super::{Method, Step, Symmetric};
 use crate::error::{Error, StepError};
 use crate::problems::{Ambient, PointOf, ScalarOf};
 use crate::scalar::Real;
+use crate::space::Metric;
 
 /// The weights of a symmetric composition.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -162,12 +163,12 @@ impl<P: Ambient, M: Method<P> + Symmetric> Method<P> for Composition<M> {
         w: &mut Self::Work,
     ) -> Result<(), StepError> {
         let lit = ScalarOf::<P>::lit;
-        problem.copy(y, &mut w.start);
+        w.start.assign(y);
         let mut passed = 0.0;
         for &weight in self.scheme.weights {
             let stage = Step { n, t: t + h * lit(passed), h: h * lit(weight) };
             if let Err(error) = self.base.step(problem, stage, y, &mut w.base) {
-                problem.copy(&w.start, y);
+                y.assign(&w.start);
                 return Err(error);
             }
             passed += weight;

@@ -47,6 +47,13 @@ pub const DMV10: Dmv = Dmv { order: 10 };
 
 impl Symmetric for Dmv {}
 
+impl Dmv {
+    /// The order.
+    pub const fn order(self) -> usize {
+        self.order
+    }
+}
+
 /// The coefficients of σ and δ in κᵃηᵇ, degree by degree: degree d has a = d, …, 0.
 #[derive(Clone, Copy, Debug)]
 pub struct DmvWork {

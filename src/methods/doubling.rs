@@ -23,23 +23,34 @@ pub struct DoublingWork<P: Problem, Me: Method<P>> {
     once: PointOf<P>,
 }
 
-impl<Me> Doubling<Me> {
-    /// y ← two steps of h/2. On an error y may be half way.
-    fn halves<P: Problem>(
-        &self,
-        problem: &P,
-        Step { n, t, h }: Step<ScalarOf<P>>,
-        y: &mut PointOf<P>,
-        inner: &mut Me::Work,
-    ) -> Result<(), StepError>
-    where
-        Me: Method<P>,
-    {
-        let half = ScalarOf::<P>::lit(0.5) * h;
-        let first = Step { n: 2 * n, t, h: half };
-        self.0.step(problem, first, y, inner)?;
-        self.0.step(problem, Step { n: 2 * n + 1, t: t + half, h: half }, y, inner)
-    }
+/// y ← two steps of h/2, each by `take`. On an error y may be half way.
+fn halves<S: Real, Y>(
+    Step { n, t, h }: Step<S>,
+    y: &mut Y,
+    mut take: impl FnMut(Step<S>, &mut Y) -> Result<(), StepError>,
+) -> Result<(), StepError> {
+    let half = S::lit(0.5) * h;
+    take(Step { n: 2 * n, t, h: half }, y)?;
+    take(Step { n: 2 * n + 1, t: t + half, h: half }, y)
+}
+
+/// `to` ← two steps of h/2 of a method of this order from `from`, with the error by one step of h, which
+/// `once` is for.
+pub(super) fn doubled<S: Real, Y: Metric<Scalar = S>>(
+    order: usize,
+    step: Step<S>,
+    from: &Y,
+    once: &mut Y,
+    to: &mut Y,
+    mut take: impl FnMut(Step<S>, &mut Y) -> Result<(), StepError>,
+) -> Result<LocalError<S>, StepError> {
+    once.assign(from);
+    take(step, once)?;
+    to.assign(from);
+    halves(step, to, take)?;
+    let weight = 0.5f64.powi(order.min(60) as i32);
+    let error = once.distance(to) * S::lit(weight / (1.0 - weight));
+    Ok(between(error, from, to))
 }
 
 impl<P: Problem, Me: Method<P>> Method<P> for Doubling<Me>
@@ -68,7 +79,7 @@ where
         DoublingWork { inner, once }: &mut Self::Work,
     ) -> Result<(), StepError> {
         once.assign(y);
-        self.halves(problem, step, once, inner)?;
+        halves(step, once, |step, y| self.0.step(problem, step, y, inner))?;
         core::mem::swap(y, once);
         Ok(())
     }
@@ -92,12 +103,8 @@ where
         DoublingWork { inner, once }: &mut Self::Work,
         to: &mut PointOf<P>,
     ) -> Result<LocalError<ScalarOf<P>>, StepError> {
-        once.assign(from);
-        self.0.step(problem, step, once, inner)?;
-        to.assign(from);
-        self.halves(problem, step, to, inner)?;
-        let weight = 0.5f64.powi(self.0.order(problem).min(60) as i32);
-        let error = once.distance(to) * ScalarOf::<P>::lit(weight / (1.0 - weight));
-        Ok(between(error, from, to))
+        doubled(self.0.order(problem), step, from, once, to, |step, y| {
+            self.0.step(problem, step, y, inner)
+        })
     }
 }

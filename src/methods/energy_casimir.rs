@@ -24,6 +24,7 @@ use crate::groups::LieAlgebra;
 use crate::maps::CoordinateMap;
 use crate::problems::{AlgOf, LiePoisson, PointOf, ScalarOf};
 use crate::scalar::Real;
+use crate::space::LinearSpace;
 
 /// The method, in the coordinates Ψ: exp or cay, or any map with Ψ(u) a function of u alone.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -47,6 +48,7 @@ pub struct EnergyCasimirWork<P: LiePoisson, Psi: CoordinateMap<P::Group>> {
     old: AlgOf<P>,
     u: AlgOf<P>,
     y: PointOf<P>,
+    scratch: (PointOf<P>, AlgOf<P>),
     chart: ChartStore<P, Psi>,
     field: P::Work,
 }
@@ -64,6 +66,7 @@ impl<P: LiePoisson, Psi: CoordinateMap<P::Group> + OddMap> Method<P> for EnergyC
             old: alg.zero(),
             u: alg.zero(),
             y: like.clone(),
+            scratch: (like.clone(), alg.zero()),
             chart: ChartStore::new(problem, &self.psi, like)?,
             field: problem.work(),
         })
@@ -77,8 +80,8 @@ impl<P: LiePoisson, Psi: CoordinateMap<P::Group> + OddMap> Method<P> for EnergyC
         w: &mut Self::Work,
     ) -> Result<(), StepError> {
         let (alg, lit) = (problem.group(), ScalarOf::<P>::lit);
-        let EnergyCasimirWork { xi, old, u, y, chart, field } = w;
-        problem.discrete_gradient(p, p, xi, field);
+        let EnergyCasimirWork { xi, old, u, y, scratch: (m, v), chart, field } = w;
+        problem.discrete_gradient(p, p, xi, (m, v), field);
         if !alg.is_finite(xi) {
             return Err(StepError::NonFiniteRhs { stage: 1 });
         }
@@ -90,14 +93,14 @@ impl<P: LiePoisson, Psi: CoordinateMap<P::Group> + OddMap> Method<P> for EnergyC
             // hξ and not ξ, whose squares may leave the range.
             alg.set_zero(old);
             alg.axpy(lit(1.0), u, old);
-            problem.discrete_gradient(p, y, xi, field);
+            problem.discrete_gradient(p, y, xi, (m, v), field);
             alg.axpy(h, xi, old);
             let size = lit(1.0) + alg.norm(u);
             if progress.done("energy-casimir", alg.norm(old) / size)? {
                 break;
             }
         }
-        if !problem.is_finite(y) {
+        if !y.is_finite() {
             return Err(StepError::NotFinite { what: "the state" });
         }
         core::mem::swap(p, y);

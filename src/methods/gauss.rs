@@ -12,10 +12,13 @@
 //! Source: Hairer, Lubich, Wanner, Geometric Numerical Integration, II.1.3, IV.2.
 
 use super::newton::Progress;
-use super::{Method, Metric, Step, Symmetric};
+use super::tableau::pad;
+use super::{Method, Step, Symmetric};
+use crate::chart::FieldStore;
 use crate::error::{Error, StepError};
 use crate::problems::{Ambient, PointOf, ScalarOf};
 use crate::scalar::Real;
+use crate::space::{LinearSpace, Metric};
 
 /// An implicit Runge–Kutta tableau with S stages; every `a[i][j]` is used.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,6 +33,28 @@ pub struct ImplicitTableau<const S: usize> {
     pub b: [f64; S],
     /// Nodes c_i.
     pub c: [f64; S],
+}
+
+impl<const S: usize> ImplicitTableau<S> {
+    /// How many stages there are: S, but for a [`padded`](Self::padded) one.
+    pub const fn stages(&self) -> usize {
+        let mut s = S;
+        while s > 1 && self.b[s - 1] == 0.0 {
+            s -= 1;
+        }
+        s
+    }
+
+    /// The same method with room for N ≥ S stages: those that are added are never evaluated.
+    pub const fn padded<const N: usize>(&self) -> ImplicitTableau<N> {
+        let mut a = [[0.0; N]; N];
+        let mut i = 0;
+        while i < S {
+            a[i] = pad(&self.a[i]);
+            i += 1;
+        }
+        ImplicitTableau { name: self.name, order: self.order, a, b: pad(&self.b), c: pad(&self.c) }
+    }
 }
 
 /// √3/6.
@@ -75,13 +100,10 @@ pub struct GaussWork<P: Ambient, const S: usize> {
     k: [PointOf<P>; S],
     old: PointOf<P>,
     z: PointOf<P>,
-    field: P::Work,
+    field: FieldStore<P>,
 }
 
-impl<P: Ambient, const S: usize> Method<P> for Gauss<S>
-where
-    PointOf<P>: Metric<Scalar = ScalarOf<P>>,
-{
+impl<P: Ambient, const S: usize> Method<P> for Gauss<S> {
     type Work = GaussWork<P, S>;
 
     fn order(&self, _: &P) -> usize {
@@ -96,7 +118,7 @@ where
             k: core::array::from_fn(|_| like.clone()),
             old: like.clone(),
             z: like.clone(),
-            field: problem.work(),
+            field: FieldStore::new(problem),
         })
     }
     #[inline]
@@ -109,15 +131,16 @@ where
     ) -> Result<(), StepError> {
         let (tab, lit) = (&self.0, ScalarOf::<P>::lit);
         let sum = |z: &mut PointOf<P>, weights: &[f64], k: &[PointOf<P>]| {
-            problem.copy(y, z);
+            z.assign(y);
             for (&w, k) in weights.iter().zip(k) {
-                problem.add(h * lit(w), k, z);
+                z.add(h * lit(w), k);
             }
         };
         let time = |i: usize| t + h * lit(tab.c[i]);
-        for i in 0..S {
+        let stages = tab.stages();
+        for i in 0..stages {
             problem.field(time(i), y, &mut k[i], field);
-            if !problem.is_finite(&k[i]) {
+            if !k[i].is_finite() {
                 return Err(StepError::NonFiniteRhs { stage: i + 1 });
             }
         }
@@ -126,9 +149,9 @@ where
         let mut progress = Progress::new();
         loop {
             let mut change = lit(0.0);
-            for i in 0..S {
-                sum(z, &tab.a[i], k);
-                problem.copy(&k[i], old);
+            for i in 0..stages {
+                sum(z, &tab.a[i][..stages], k);
+                old.assign(&k[i]);
                 problem.field(time(i), z, &mut k[i], field);
                 change += k[i].distance(old);
             }
@@ -136,8 +159,8 @@ where
                 break;
             }
         }
-        sum(z, &tab.b, k);
-        if !problem.is_finite(z) {
+        sum(z, &tab.b[..stages], k);
+        if !z.is_finite() {
             return Err(StepError::NotFinite { what: "the state" });
         }
         core::mem::swap(y, z);

@@ -23,7 +23,7 @@ use super::{Method, Step, Symmetric};
 use crate::chart::ChartStore;
 use crate::error::{Error, StepError};
 use crate::groups::LieAlgebra;
-use crate::maps::{Cay, CoordinateMap, Exp};
+use crate::maps::{Cay, CoordinateMap, Exp, ExpOrCay};
 use crate::problems::{AlgOf, PointOf, Problem, ScalarOf};
 use crate::scalar::Real;
 
@@ -45,6 +45,7 @@ impl<Psi, const S: usize> RkmkGauss<Psi, S> {
 pub trait OddMap {}
 impl OddMap for Exp {}
 impl OddMap for Cay {}
+impl OddMap for ExpOrCay {}
 
 /// Implicit RKMK with its chart in the middle of the step. The coordinates of the second kind do
 /// not serve, since Ψ(−u) is not Ψ(u)⁻¹ there:
@@ -106,7 +107,8 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> RkmkGaussWork<P, 
     ) -> Result<(), StepError> {
         let (alg, lit) = (problem.group(), ScalarOf::<P>::lit);
         let RkmkGaussWork { k, u, old, middle, q, y, chart } = self;
-        for i in 0..S {
+        let stages = tab.stages();
+        for i in 0..stages {
             chart.around(problem, psi, n, p).field(t + h * lit(tab.c[i]), &mut k[i]);
             if !alg.is_finite(&k[i]) {
                 return Err(StepError::NonFiniteRhs { stage: i + 1 });
@@ -120,7 +122,7 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> RkmkGaussWork<P, 
             }
             let mut around = chart.around(problem, psi, n, if centred { &*q } else { p });
             let (mut change, mut size) = (lit(0.0), lit(1.0));
-            for i in 0..S {
+            for i in 0..stages {
                 alg.combine(h, &tab.a[i], k, u);
                 if centred {
                     alg.axpy(lit(-1.0), middle, u);

@@ -19,6 +19,7 @@
 //! Cost: s f, s exponentials.
 
 use super::embedded::without_pair;
+use super::tableau::pad;
 use super::{Embedded, LocalError, Method, Step};
 use crate::chart::ChartStore;
 use crate::error::{Error, StepError};
@@ -42,6 +43,23 @@ pub struct TwoN<const S: usize> {
     pub c: [f64; S],
     /// The order at t + h of the point before the last exponential, where it serves as an estimate.
     pub embedded: Option<usize>,
+}
+
+impl<const S: usize> TwoN<S> {
+    /// How many stages there are: S, but for a [`padded`](Self::padded) one.
+    pub const fn stages(&self) -> usize {
+        let mut s = S;
+        while s > 1 && self.b[s - 1] == 0.0 {
+            s -= 1;
+        }
+        s
+    }
+
+    /// The same method with room for N ≥ S stages: those that are added are never evaluated.
+    pub const fn padded<const N: usize>(&self) -> TwoN<N> {
+        let TwoN { name, order, embedded, .. } = *self;
+        TwoN { name, order, a: pad(&self.a), b: pad(&self.b), c: pad(&self.c), embedded }
+    }
 }
 
 /// Williamson's sixth method, known from Lüscher's Wilson flow; order 3.
@@ -201,7 +219,7 @@ where
         let (alg, lit) = (problem.group(), ScalarOf::<P>::lit);
         let Inner { sum, k, u, aside, chart } = self;
         let mut local = LocalError { error: lit(0.0), length: lit(0.0) };
-        for i in 0..S {
+        for i in 0..table.stages() {
             let from = match i {
                 0 => p,
                 _ => {
@@ -242,7 +260,7 @@ where
         self.0.order
     }
     fn evaluations(&self, _: &P) -> Option<u64> {
-        Some(S as u64)
+        Some(self.0.stages() as u64)
     }
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
         let alg = problem.group();
@@ -278,7 +296,7 @@ where
         self.0.embedded.ok_or_else(|| without_pair(self.0.name))
     }
     fn evaluations_with_error(&self, _: &P) -> Option<u64> {
-        Some(S as u64)
+        Some(self.0.stages() as u64)
     }
     fn step_with_error(
         &self,

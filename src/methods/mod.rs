@@ -3,6 +3,7 @@
 //! To add a method: one file with an `impl` of [`Method`], one line here, one in the catalog, which
 //! puts it into the order tests and the command line at once.
 
+mod any;
 mod buss;
 pub mod commutator_free;
 mod composition;
@@ -29,6 +30,8 @@ mod stages;
 pub mod tableau;
 mod taylor;
 
+pub use crate::space::Metric;
+pub use any::{AnyMethod, AnyWork};
 pub use buss::Buss4;
 pub use commutator_free::CommutatorFree;
 pub use composition::{
@@ -37,7 +40,7 @@ pub use composition::{
 };
 pub use dmv::{DMV2, DMV4, DMV6, DMV8, DMV10, Dmv, DmvWork};
 pub use doubling::Doubling;
-pub use embedded::{Embedded, LocalError, Metric};
+pub use embedded::{Embedded, LocalError};
 pub use energy_casimir::{EnergyCasimir, EnergyCasimirWork};
 pub use exact::ExactMotion;
 pub use gauss::{GAUSS2, GAUSS4, GAUSS6, Gauss, GaussWork, ImplicitTableau};
@@ -55,8 +58,10 @@ pub use splitting::{MR2, MR4, Splitting};
 pub use tableau::Tableau;
 pub use taylor::{Taylor, Wide};
 
+use crate::actions::Action;
 use crate::error::{Error, StepError};
 use crate::problems::{PointOf, Problem, ScalarOf};
+use crate::scalar::Real;
 
 /// Which step is taken: number n of the run, from t to t + h.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,6 +72,27 @@ pub struct Step<S> {
     pub t: S,
     /// The size; negative when time runs backward.
     pub h: S,
+}
+
+/// Steps of one size, one after the other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EqualSteps {
+    /// The number of the first step.
+    pub first: u64,
+    /// The number after that of the last step.
+    pub end: u64,
+    /// The time of step number 0.
+    pub t0: f64,
+    /// The size; negative when time runs backward.
+    pub h: f64,
+}
+
+impl EqualSteps {
+    /// The step of this number: it starts at t₀ + nh, so that no error accumulates in t.
+    #[inline]
+    pub fn step<S: Real>(&self, n: u64) -> Step<S> {
+        Step { n, t: S::lit(self.t0 + n as f64 * self.h), h: S::lit(self.h) }
+    }
 }
 
 /// A method whose step is undone by the step back: Φ_{−h} ∘ Φ_h = id, to rounding. Its order is even,
@@ -112,4 +138,26 @@ pub trait Method<P: Problem> {
         y: &mut PointOf<P>,
         work: &mut Self::Work,
     ) -> Result<(), StepError>;
+
+    /// Take these steps. After each the numbers of y must be finite ([`Action::is_finite`]).
+    ///
+    /// # Errors
+    /// The number of the step that failed, with its reason. Where [`step`](Self::step) failed y is the last
+    /// point before; where the numbers of y left the range they are still in y.
+    #[inline]
+    fn steps(
+        &self,
+        problem: &P,
+        steps: EqualSteps,
+        y: &mut PointOf<P>,
+        work: &mut Self::Work,
+    ) -> Result<(), (u64, StepError)> {
+        for n in steps.first..steps.end {
+            self.step(problem, steps.step(n), y, work).map_err(|error| (n, error))?;
+            if !problem.action().is_finite(problem.group(), y) {
+                return Err((n, StepError::NotFinite { what: "the state" }));
+            }
+        }
+        Ok(())
+    }
 }

@@ -16,6 +16,7 @@
 
 use super::embedded::without_pair;
 use super::stages::Stages;
+use super::tableau::pad;
 use super::{Embedded, LocalError, Method, Step};
 use crate::error::{Error, StepError};
 use crate::groups::LieAlgebra;
@@ -54,6 +55,36 @@ pub struct OneBracketTableau<const S: usize> {
     pub update: Increment<S>,
     /// The order of the last stage as a result at t + h, where it serves as an estimate.
     pub embedded: Option<usize>,
+}
+
+impl<const S: usize> Increment<S> {
+    const fn padded<const N: usize>(&self) -> Increment<N> {
+        Increment { w: pad(&self.w), x: pad(&self.x) }
+    }
+}
+
+impl<const S: usize> OneBracketTableau<S> {
+    /// How many stages there are: S, but for a [`padded`](Self::padded) one.
+    pub const fn stages(&self) -> usize {
+        let mut s = S;
+        while s > 1 && self.update.w[s - 1] == 0.0 && self.update.x[s - 1] == 0.0 {
+            s -= 1;
+        }
+        s
+    }
+
+    /// The same method with room for N ≥ S stages: those that are added are never evaluated.
+    pub const fn padded<const N: usize>(&self) -> OneBracketTableau<N> {
+        let mut stages = [Increment::plain([0.0; N]); N];
+        let mut i = 0;
+        while i < S {
+            stages[i] = self.stages[i].padded();
+            i += 1;
+        }
+        let OneBracketTableau { name, order, embedded, .. } = *self;
+        let (c, update) = (pad(&self.c), self.update.padded());
+        OneBracketTableau { name, order, c, stages, update, embedded }
+    }
 }
 
 /// RKMK of order 4 with two commutators.
@@ -154,7 +185,7 @@ where
         let alg = problem.group();
         let Stages { k, chart, .. } = &mut self.stages;
         chart.around(problem, &Exp, n, p).field(t, &mut k[0]);
-        for i in 1..S {
+        for i in 1..table.stages() {
             self.increment(alg, h, &table.stages[i]);
             let Stages { k, u, chart } = &mut self.stages;
             chart.around(problem, &Exp, n, p).lambda(u, &mut self.at)?;
@@ -181,7 +212,7 @@ where
         self.0.order
     }
     fn evaluations(&self, _: &P) -> Option<u64> {
-        Some(S as u64)
+        Some(self.0.stages() as u64)
     }
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
         let alg = problem.group();
@@ -215,7 +246,7 @@ where
         self.0.embedded.ok_or_else(|| without_pair(self.0.name))
     }
     fn evaluations_with_error(&self, _: &P) -> Option<u64> {
-        Some(S as u64)
+        Some(self.0.stages() as u64)
     }
     fn step_with_error(
         &self,

@@ -10,6 +10,7 @@
 use super::{Embedded, LocalError, Method, Step};
 use crate::error::{Error, StepError};
 use crate::problems::{Orthogonal, PointOf, Projection, ScalarOf};
+use crate::space::Metric;
 
 /// A method followed by a projection.
 ///
@@ -66,7 +67,7 @@ impl<P: Orthogonal, M: Method<P>> Method<P> for Projected<M> {
         y: &mut PointOf<P>,
         ProjectedWork { base, z }: &mut Self::Work,
     ) -> Result<(), StepError> {
-        problem.copy(y, z);
+        z.assign(y);
         self.base.step(problem, step, z, base)?;
         problem.project(self.how, z)?;
         core::mem::swap(y, z);

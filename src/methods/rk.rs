@@ -6,10 +6,12 @@
 
 use super::embedded::{between, without_pair};
 use super::tableau::{ErrorEstimate, fold_error};
-use super::{Embedded, LocalError, Method, Metric, Step, Tableau};
+use super::{Embedded, LocalError, Method, Step, Tableau};
+use crate::chart::FieldStore;
 use crate::error::{Error, StepError};
 use crate::problems::{Ambient, PointOf, ScalarOf};
 use crate::scalar::Real;
+use crate::space::{LinearSpace, Metric};
 
 /// An explicit Runge–Kutta method on the entries of y.
 #[derive(Clone, Copy, Debug)]
@@ -20,24 +22,23 @@ pub struct Rk<const S: usize>(pub Tableau<S>);
 pub struct RkWork<P: Ambient, const S: usize> {
     k: [PointOf<P>; S],
     z: PointOf<P>,
-    field: P::Work,
+    field: FieldStore<P>,
 }
 
 impl<const S: usize> Rk<S> {
     /// z ← y + h Σ_j w_j k_j.
     #[inline(always)]
     fn sum<P: Ambient>(
-        problem: &P,
         h: ScalarOf<P>,
         y: &PointOf<P>,
         weights: &[f64],
         k: &[PointOf<P>],
         z: &mut PointOf<P>,
     ) {
-        problem.copy(y, z);
+        z.assign(y);
         for (&w, k) in weights.iter().zip(k) {
             if w != 0.0 {
-                problem.add(h * ScalarOf::<P>::lit(w), k, z);
+                z.add(h * ScalarOf::<P>::lit(w), k);
             }
         }
     }
@@ -57,12 +58,12 @@ impl<const S: usize> Rk<S> {
             if i >= count {
                 break;
             }
-            Self::sum(problem, h, y, &tab.a[i][..i], k, z);
+            Self::sum::<P>(h, y, &tab.a[i][..i], k, z);
             problem.field(t + h * ScalarOf::<P>::lit(tab.c[i]), z, &mut k[i], field);
         }
-        Self::sum(problem, h, y, &tab.b[..count], k, z);
-        if !problem.is_finite(z) {
-            return Err(match k[..count].iter().position(|k| !problem.is_finite(k)) {
+        Self::sum::<P>(h, y, &tab.b[..count], k, z);
+        if !z.is_finite() {
+            return Err(match k[..count].iter().position(|k| !k.is_finite()) {
                 Some(stage) => StepError::NonFiniteRhs { stage: stage + 1 },
                 None => StepError::NotFinite { what: "the state" },
             });
@@ -87,7 +88,7 @@ impl<P: Ambient, const S: usize> Method<P> for Rk<S> {
         Ok(RkWork {
             k: core::array::from_fn(|_| like.clone()),
             z: like.clone(),
-            field: problem.work(),
+            field: FieldStore::new(problem),
         })
     }
     #[inline]
@@ -99,20 +100,17 @@ impl<P: Ambient, const S: usize> Method<P> for Rk<S> {
         work: &mut Self::Work,
     ) -> Result<(), StepError> {
         self.advance(self.0.update_stages(), problem, step, y, work)?;
-        problem.copy(&work.z, y);
+        y.assign(&work.z);
         Ok(())
     }
 }
 
-impl<P: Ambient, const S: usize> Embedded<P> for Rk<S>
-where
-    PointOf<P>: Metric<Scalar = ScalarOf<P>>,
-{
+impl<P: Ambient, const S: usize> Embedded<P> for Rk<S> {
     fn error_order(&self, _: &P) -> Result<usize, Error> {
         self.0.error.map(|e| e.order).ok_or_else(|| without_pair(self.0.name))
     }
     fn evaluations_with_error(&self, _: &P) -> Option<u64> {
-        Some(S as u64)
+        Some(self.0.all_stages() as u64)
     }
     fn step_with_error(
         &self,
@@ -122,15 +120,16 @@ where
         work: &mut Self::Work,
         to: &mut PointOf<P>,
     ) -> Result<LocalError<ScalarOf<P>>, StepError> {
-        self.advance(S, problem, step, from, work)?;
+        let stages = self.0.all_stages();
+        self.advance(stages, problem, step, from, work)?;
         let RkWork { k, z, .. } = work;
         to.assign(z);
         let minus = ScalarOf::<P>::lit(-1.0);
         let mut size = |weights: &[f64; S]| {
             z.assign(&k[0]);
-            problem.add(minus, &k[0], z); // 0
-            for (&w, k) in weights.iter().zip(k.iter()) {
-                problem.add(step.h * ScalarOf::<P>::lit(w), k, z);
+            z.add(minus, &k[0]); // 0
+            for (&w, k) in weights[..stages].iter().zip(k.iter()) {
+                z.add(step.h * ScalarOf::<P>::lit(w), k);
             }
             z.size()
         };

@@ -112,7 +112,7 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> Embedded<P> for R
         }
     }
     fn evaluations_with_error(&self, _: &P) -> Option<u64> {
-        Some(S as u64)
+        Some(self.tableau.all_stages() as u64)
     }
     fn step_with_error(
         &self,
@@ -123,7 +123,7 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> Embedded<P> for R
         to: &mut PointOf<P>,
     ) -> Result<LocalError<ScalarOf<P>>, StepError> {
         let alg = problem.group();
-        let done = self.advance(S, problem, step, from, stages, to);
+        let done = self.advance(self.tableau.all_stages(), problem, step, from, stages, to);
         done.map_err(|error| stages.blame(problem, error))?;
         let Stages { k, u, .. } = stages;
         let length = alg.norm(u);

@@ -14,6 +14,7 @@ use super::{Method, STRANG, Scheme, Step, Symmetric, YOSHIDA4};
 use crate::error::{Error, StepError};
 use crate::problems::{PointOf, ScalarOf, Split};
 use crate::scalar::Real;
+use crate::space::{LinearSpace, Metric};
 
 /// A symmetric splitting method over K parts.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,11 +66,11 @@ impl<P: Split, const K: usize> Method<P> for Splitting<K> {
     ) -> Result<(), StepError> {
         let lit = ScalarOf::<P>::lit;
         let [outer, inner @ ..] = self.parts.as_slice() else { return Ok(()) };
-        problem.copy(y, before);
+        before.assign(y);
         let mut flow = |part: usize, weight: f64| problem.flow(part, h * lit(weight), y);
         let Some((last, middle)) = inner.split_last() else {
             self.scheme.weights.iter().for_each(|&w| flow(*outer, w));
-            return finish(problem, before, y);
+            return finish::<P>(before, y);
         };
         let mut pending = 0.0; // of the outermost part
         for &w in self.scheme.weights {
@@ -80,14 +81,14 @@ impl<P: Split, const K: usize> Method<P> for Splitting<K> {
             pending = 0.5 * w;
         }
         flow(*outer, pending);
-        finish(problem, before, y)
+        finish::<P>(before, y)
     }
 }
 
 #[inline]
-fn finish<P: Split>(problem: &P, before: &PointOf<P>, y: &mut PointOf<P>) -> Result<(), StepError> {
-    if !problem.is_finite(y) {
-        problem.copy(before, y);
+fn finish<P: Split>(before: &PointOf<P>, y: &mut PointOf<P>) -> Result<(), StepError> {
+    if !y.is_finite() {
+        y.assign(before);
         return Err(StepError::NotFinite { what: "the state" });
     }
     Ok(())

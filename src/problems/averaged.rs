@@ -11,7 +11,7 @@
 //! integration using discrete gradients (1999); G. Quispel & D. McLaren (2008).
 
 use super::{DiscreteGradient, Hamiltonian};
-use crate::groups::Adjoint;
+use crate::groups::{Adjoint, LieAlgebra};
 use crate::maps::GAUSS_LEGENDRE7;
 use crate::scalar::Real;
 
@@ -68,11 +68,22 @@ where
     D: Fn(&G::Dual, Option<(&G::Dual, G::Scalar)>, &mut G::Alg),
 {
     fn between(&self, group: &G, a: &G::Dual, b: &G::Dual, xi: &mut G::Alg, scratch: &mut G::Alg) {
-        let lit = G::Scalar::lit;
-        group.set_zero(xi);
-        for (s, weight) in GAUSS_LEGENDRE7 {
-            (self.1)(a, Some((b, lit(s))), scratch);
-            group.axpy(lit(weight), scratch, xi);
-        }
+        mean_of_gradients(group, xi, scratch, |s, out| (self.1)(a, Some((b, s)), out));
+    }
+}
+
+/// ξ ← ∫₀¹ ∇H((1 − s)a + sb) ds from `gradient(s, out)`.
+#[inline]
+pub(super) fn mean_of_gradients<G: LieAlgebra>(
+    group: &G,
+    xi: &mut G::Alg,
+    scratch: &mut G::Alg,
+    mut gradient: impl FnMut(G::Scalar, &mut G::Alg),
+) {
+    let lit = G::Scalar::lit;
+    group.set_zero(xi);
+    for (s, weight) in GAUSS_LEGENDRE7 {
+        gradient(lit(s), scratch);
+        group.axpy(lit(weight), scratch, xi);
     }
 }

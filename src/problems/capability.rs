@@ -5,11 +5,12 @@
 //! |---|---|---|
 //! | [`Split`] | F = Σ F_k with exact flows | [`Splitting`](crate::methods::Splitting) |
 //! | [`LiePoisson`] | ṁ = ad*_{∇H(m)} m with a discrete gradient | [`EnergyCasimir`](crate::methods::EnergyCasimir) |
+//! | [`LinearField`] | f depends on t alone | [`magnus`](crate::methods::magnus) |
 //! | [`TaylorField`](super::TaylorField) | Taylor coefficients of f by recurrence | [`LieSeries`](crate::methods::LieSeries) |
 //! | [`Orthogonal`] | where the orthogonal matrix in y is | [`Projected`](crate::methods::Projected) |
 //! | [`FreeBody`](super::FreeBody) | a free rigid body in ℝ³ | Simo–Wong, Buss, DMV, exact, Taylor |
 
-use super::{AlgOf, Ambient, PointOf, ScalarOf};
+use super::{AlgOf, Ambient, PointOf, Problem, ScalarOf};
 use crate::error::StepError;
 
 /// F = F₁ + … + F_K, where the flow of each F_k is known exactly.
@@ -26,15 +27,19 @@ pub trait LiePoisson: Ambient {
     /// H(m).
     fn hamiltonian(&self, m: &PointOf<Self>) -> ScalarOf<Self>;
     /// ξ ← ∇̄H(a, b) ∈ 𝔤, a symmetric discrete gradient: ⟨b − a, ξ⟩ = H(b) − H(a) and
-    /// ∇̄H(m, m) = ∇H(m). For quadratic H it is ∇H((a + b)/2).
+    /// ∇̄H(m, m) = ∇H(m). For quadratic H it is ∇H((a + b)/2). `scratch` is a point and an element of 𝔤.
     fn discrete_gradient(
         &self,
         a: &PointOf<Self>,
         b: &PointOf<Self>,
         xi: &mut AlgOf<Self>,
+        scratch: (&mut PointOf<Self>, &mut AlgOf<Self>),
         work: &mut Self::Work,
     );
 }
+
+/// A capability: f(t, y) does not depend on y, f(t, y) = A(t). What a Magnus method asks for.
+pub trait LinearField: Problem {}
 
 /// How a matrix near SO(n) is brought back to it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

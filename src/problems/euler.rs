@@ -9,13 +9,11 @@
 use faer::Mat;
 
 use super::{
-    Ambient, Invariant, Invariants, LiePoisson, LinearSpace, MomentumSeries, PointOf, Problem,
-    TaylorField,
+    Invariant, Invariants, LiePoisson, LinearSpace, MomentumSeries, PointOf, Problem, TaylorField,
 };
 use crate::actions::{Action, Coadjoint};
-use crate::dense::mul;
+use crate::error::Error;
 use crate::groups::{Adjoint, AlgebraMatrix, MatrixGroup, worse};
-use crate::problems::space::linear_space;
 use crate::scalar::Real;
 
 /// H : 𝔤* → ℝ. A new Euler equation is an implementation of this, and nothing else.
@@ -165,19 +163,6 @@ where
     }
 }
 
-impl<G: Adjoint, H: Hamiltonian<G>> Ambient for Euler<G, H>
-where
-    Coadjoint: Action<G, Point = G::Dual>,
-    G::Dual: LinearSpace<Scalar = G::Scalar>,
-{
-    #[inline]
-    fn field(&self, _: G::Scalar, m: &G::Dual, dm: &mut G::Dual, xi: &mut G::Alg) {
-        self.hamiltonian.gradient(m, xi);
-        self.group.coad(xi, m, dm);
-    }
-    linear_space!();
-}
-
 impl<G: Adjoint, H: Hamiltonian<G>> Invariants for Euler<G, H>
 where
     Coadjoint: Action<G, Point = G::Dual>,
@@ -200,7 +185,14 @@ where
     fn hamiltonian(&self, m: &G::Dual) -> G::Scalar {
         self.energy(m)
     }
-    fn discrete_gradient(&self, a: &G::Dual, b: &G::Dual, xi: &mut G::Alg, work: &mut G::Alg) {
+    fn discrete_gradient(
+        &self,
+        a: &G::Dual,
+        b: &G::Dual,
+        xi: &mut G::Alg,
+        _: (&mut G::Dual, &mut G::Alg),
+        work: &mut G::Alg,
+    ) {
         self.hamiltonian.between(&self.group, a, b, xi, work);
     }
 }
@@ -250,13 +242,18 @@ where
     Coadjoint: Action<G, Point = G::Dual>,
 {
     type Point = (G::Elem, G::Dual);
-    /// a⁻¹ and what forming it takes, that of the coadjoint action, and that of
-    /// [`restore`](Action::restore).
-    type Work = ((G::Elem, G::Inverting), <Coadjoint as Action<G>>::Work, [G::Elem; 2]);
+    /// a⁻¹ and what forming it takes, that of the coadjoint action, that of
+    /// [`restore`](Action::restore), and −v.
+    type Work = ((G::Elem, G::Inverting), <Coadjoint as Action<G>>::Work, [G::Elem; 2], G::Alg);
 
     fn work(&self, group: &G) -> Self::Work {
         let one = || group.identity();
-        ((one(), group.inverting()), Action::<G>::work(&Coadjoint, group), [one(), one()])
+        let coadjoint = Action::<G>::work(&Coadjoint, group);
+        ((one(), group.inverting()), coadjoint, [one(), one()], group.zero())
+    }
+    fn check(&self, group: &G, p: &Self::Point) -> Result<(), Error> {
+        group.check_elem(&p.0)?;
+        Coadjoint.check(group, &p.1)
     }
     fn assign(&self, group: &G, p: &Self::Point, q: &mut Self::Point) {
         group.assign(&p.0, &mut q.0);
@@ -269,12 +266,27 @@ where
         a: &G::Elem,
         p: &Self::Point,
         q: &mut Self::Point,
-        ((inverse, inverting), coadjoint, _): &mut Self::Work,
+        ((inverse, inverting), coadjoint, ..): &mut Self::Work,
     ) {
         // A singular a is not in G; its numbers are not finite, and the step ends with that.
         let _ = group.invert(a, inverting, inverse);
         group.compose(&p.0, inverse, &mut q.0);
         Coadjoint.act(group, a, &p.1, &mut q.1, coadjoint);
+    }
+    /// (−g v, −ad*_v m).
+    #[inline]
+    fn generate(
+        &self,
+        group: &G,
+        v: &G::Alg,
+        (g, m): &Self::Point,
+        (dg, dm): &mut Self::Point,
+        (_, coadjoint, _, minus): &mut Self::Work,
+    ) {
+        group.set_zero(minus);
+        group.axpy(G::Scalar::lit(-1.0), v, minus);
+        group.tangent_in_body(g, minus, dg);
+        Coadjoint.generate(group, v, m, dm, coadjoint);
     }
     /// g back to G.
     fn restore(&self, group: &G, p: &mut Self::Point, work: &mut Self::Work) -> Option<G::Scalar> {
@@ -314,22 +326,6 @@ where
     fn f(&self, _: G::Scalar, y: &PointOf<Self>, v: &mut G::Alg, xi: &mut G::Alg) {
         self.system.minus_gradient(&y.1, v, xi);
     }
-}
-
-/// (g ∇H, ad*_{∇H} m), by the entries of g and m.
-impl<H: Hamiltonian<MatrixGroup>> Ambient for EulerGroup<MatrixGroup, H> {
-    fn field(
-        &self,
-        _: f64,
-        (g, m): &PointOf<Self>,
-        (dg, dm): &mut PointOf<Self>,
-        xi: &mut AlgebraMatrix,
-    ) {
-        self.system.hamiltonian.gradient(m, xi);
-        mul(dg, g.as_ref(), xi.as_ref());
-        self.group().coad(xi, m, dm);
-    }
-    linear_space!();
 }
 
 impl<G: Adjoint, H: Hamiltonian<G>> Invariants for EulerGroup<G, H>

@@ -11,7 +11,7 @@
 
 use faer::Mat;
 
-use super::{Ambient, Invariant, Invariants, Oja, Problem, space::linear_space};
+use super::{Invariant, Invariants, Oja, Problem};
 use crate::actions::Conjugation;
 use crate::dense::{antisymmetrise, mul};
 use crate::error::Error;
@@ -90,8 +90,7 @@ impl SubspaceFlow {
 impl Problem for SubspaceFlow {
     type Group = MatrixGroup;
     type Action = Conjugation;
-    /// AP − PA.
-    type Work = Mat<f64>;
+    type Work = ();
 
     fn group(&self) -> &MatrixGroup {
         &self.group
@@ -99,30 +98,12 @@ impl Problem for SubspaceFlow {
     fn action(&self) -> &Conjugation {
         &Conjugation
     }
-    fn work(&self) -> Mat<f64> {
-        Mat::zeros(self.group.n(), self.group.n())
-    }
+    fn work(&self) {}
     /// AP − (AP)ᵀ.
-    fn f(&self, _: f64, p: &Mat<f64>, v: &mut AlgebraMatrix, _: &mut Mat<f64>) {
+    fn f(&self, _: f64, p: &Mat<f64>, v: &mut AlgebraMatrix, _: &mut ()) {
         mul(v, self.a.as_ref(), p.as_ref());
         antisymmetrise(v);
     }
-}
-
-impl Ambient for SubspaceFlow {
-    /// BP + (BP)ᵀ with B = AP − PA.
-    fn field(&self, _: f64, p: &Mat<f64>, dp: &mut Mat<f64>, b: &mut Mat<f64>) {
-        mul(b, self.a.as_ref(), p.as_ref());
-        antisymmetrise(b);
-        mul(dp, b.as_ref(), p.as_ref());
-        for j in 0..dp.ncols() {
-            for i in 0..=j {
-                let sum = dp[(i, j)] + dp[(j, i)];
-                (dp[(i, j)], dp[(j, i)]) = (sum, sum);
-            }
-        }
-    }
-    linear_space!();
 }
 
 impl Invariants for SubspaceFlow {

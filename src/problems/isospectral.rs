@@ -14,12 +14,11 @@
 
 use faer::Mat;
 
-use super::{Ambient, Invariant, Invariants, Problem, space::linear_space};
+use super::{Invariant, Invariants, Problem};
 use crate::actions::Conjugation;
 use crate::dense::{SymmetricEigen, antisymmetrise, mul};
 use crate::error::Error;
 use crate::groups::{AlgebraMatrix, MatrixGroup};
-use crate::scalar::{Ops, tally};
 
 /// Which B.
 #[derive(Clone, Debug)]
@@ -115,10 +114,9 @@ fn skew_of_lower(l: &Mat<f64>, v: &mut Mat<f64>) {
     }
 }
 
-/// Scratch of the flows: B(L), and for the QR flow log L by its eigenvectors.
+/// Scratch of the flows: for the QR flow, log L by its eigenvectors.
 #[derive(Debug)]
 pub struct IsospectralFlowWork {
-    b: Mat<f64>,
     log: Option<Logarithm>,
 }
 
@@ -142,34 +140,11 @@ impl Problem for IsospectralFlow {
     fn work(&self) -> IsospectralFlowWork {
         let n = self.group.n();
         let log = || Logarithm { eigen: SymmetricEigen::new(n), log: Mat::zeros(n, n) };
-        let log = matches!(self.kind, Kind::Qr).then(log);
-        IsospectralFlowWork { b: Mat::zeros(n, n), log }
+        IsospectralFlowWork { log: matches!(self.kind, Kind::Qr).then(log) }
     }
     fn f(&self, _: f64, l: &Mat<f64>, v: &mut AlgebraMatrix, work: &mut IsospectralFlowWork) {
         self.generator(l, v, &mut work.log);
     }
-}
-
-impl Ambient for IsospectralFlow {
-    /// BL − LB = BL + (BL)ᵀ.
-    fn field(
-        &self,
-        _: f64,
-        l: &Mat<f64>,
-        dl: &mut Mat<f64>,
-        IsospectralFlowWork { b, log }: &mut IsospectralFlowWork,
-    ) {
-        self.generator(l, b, log);
-        mul(dl, b.as_ref(), l.as_ref());
-        tally(|| Ops::adds(dl.ncols() * (dl.ncols() + 1) / 2));
-        for j in 0..dl.ncols() {
-            for i in 0..=j {
-                let sum = dl[(i, j)] + dl[(j, i)];
-                (dl[(i, j)], dl[(j, i)]) = (sum, sum);
-            }
-        }
-    }
-    linear_space!();
 }
 
 impl Invariants for IsospectralFlow {

@@ -14,9 +14,8 @@
 use faer::Mat;
 use nalgebra::Vector3;
 
-use super::{Ambient, Invariant, Invariants, Problem, space::linear_space};
+use super::{Invariant, Invariants, Problem};
 use crate::actions::Linear;
-use crate::dense::mul;
 use crate::error::Error;
 use crate::groups::{AlgebraMatrix, MatrixGroup};
 use crate::scalar::{Ops, tally};
@@ -68,9 +67,22 @@ impl<F: Fn(f64, &Mat<f64>) -> (Vector3<f64>, Vector3<f64>)> ChargedParticle<F> {
         let gamma = 1.0 / ((1.0 - speed) * (1.0 + speed)).sqrt();
         Ok(Mat::from_fn(4, 1, |i, _| if i < 3 { gamma * v[i] } else { gamma }))
     }
+}
 
-    /// f ← (q/m) F.
-    fn tensor(&self, tau: f64, u: &Mat<f64>, f: &mut Mat<f64>) {
+impl<F: Fn(f64, &Mat<f64>) -> (Vector3<f64>, Vector3<f64>)> Problem for ChargedParticle<F> {
+    type Group = MatrixGroup;
+    type Action = Linear;
+    type Work = ();
+
+    fn group(&self) -> &MatrixGroup {
+        &self.group
+    }
+    fn action(&self) -> &Linear {
+        &Linear
+    }
+    fn work(&self) {}
+    /// (q/m) F.
+    fn f(&self, tau: f64, u: &Mat<f64>, f: &mut AlgebraMatrix, _: &mut ()) {
         let (e, b) = (self.field)(tau, u);
         f.fill(0.0);
         tally(|| Ops::muls(6));
@@ -80,34 +92,6 @@ impl<F: Fn(f64, &Mat<f64>) -> (Vector3<f64>, Vector3<f64>)> ChargedParticle<F> {
             (f[(k, j)], f[(j, k)]) = (-self.ratio * b[i], self.ratio * b[i]);
         }
     }
-}
-
-impl<F: Fn(f64, &Mat<f64>) -> (Vector3<f64>, Vector3<f64>)> Problem for ChargedParticle<F> {
-    type Group = MatrixGroup;
-    type Action = Linear;
-    /// F.
-    type Work = Mat<f64>;
-
-    fn group(&self) -> &MatrixGroup {
-        &self.group
-    }
-    fn action(&self) -> &Linear {
-        &Linear
-    }
-    fn work(&self) -> Mat<f64> {
-        Mat::zeros(4, 4)
-    }
-    fn f(&self, tau: f64, u: &Mat<f64>, v: &mut AlgebraMatrix, _: &mut Mat<f64>) {
-        self.tensor(tau, u, v);
-    }
-}
-
-impl<F: Fn(f64, &Mat<f64>) -> (Vector3<f64>, Vector3<f64>)> Ambient for ChargedParticle<F> {
-    fn field(&self, tau: f64, u: &Mat<f64>, du: &mut Mat<f64>, f: &mut Mat<f64>) {
-        self.tensor(tau, u, f);
-        mul(du, f.as_ref(), u.as_ref());
-    }
-    linear_space!();
 }
 
 impl<F: Fn(f64, &Mat<f64>) -> (Vector3<f64>, Vector3<f64>)> Invariants for ChargedParticle<F> {

@@ -11,8 +11,8 @@
 
 use faer::Mat;
 
+use super::Problem;
 use super::rigid_body::check_finite;
-use super::{Ambient, Problem, space::linear_space};
 use crate::actions::LeftTranslation;
 use crate::dense::{antisymmetrise, mul};
 use crate::error::Error;
@@ -79,13 +79,29 @@ impl<F: Fn(f64, &Mat<f64>, &mut Mat<f64>, &mut Mat<f64>)> Lyapunov<F> {
     pub fn exponents(&self, t: f64, (_, (sigma, _)): &(GroupMatrix, Growth)) -> Vec<f64> {
         sigma.col_as_slice(0).iter().map(|s| s / t).collect()
     }
+}
 
-    /// (turn, (growth, dx)) ← f.
-    fn rates(
+impl<F: Fn(f64, &Mat<f64>, &mut Mat<f64>, &mut Mat<f64>)> Problem for Lyapunov<F> {
+    type Group = Product<MatrixGroup, Translations<Growth>>;
+    type Action = LeftTranslation;
+    /// B, DF and a product.
+    type Work = [Mat<f64>; 3];
+
+    fn group(&self) -> &Self::Group {
+        &self.group
+    }
+    fn action(&self) -> &LeftTranslation {
+        &LeftTranslation
+    }
+    fn work(&self) -> Self::Work {
+        let n = self.group.0.n();
+        core::array::from_fn(|_| Mat::zeros(n, n))
+    }
+    fn f(
         &self,
         t: f64,
         (q, (_, x)): &(GroupMatrix, Growth),
-        (turn, (growth, dx)): (&mut Mat<f64>, &mut Growth),
+        (turn, (growth, dx)): &mut (AlgebraMatrix, Growth),
         [b, jacobian, product]: &mut [Mat<f64>; 3],
     ) {
         (self.field)(t, x, dx, jacobian);
@@ -100,45 +116,4 @@ impl<F: Fn(f64, &Mat<f64>, &mut Mat<f64>, &mut Mat<f64>)> Lyapunov<F> {
         mul(turn, product.as_ref(), q.transpose());
         antisymmetrise(turn);
     }
-}
-
-impl<F: Fn(f64, &Mat<f64>, &mut Mat<f64>, &mut Mat<f64>)> Problem for Lyapunov<F> {
-    type Group = Product<MatrixGroup, Translations<Growth>>;
-    type Action = LeftTranslation;
-    /// Scratch, and the element of so(n) of [`Ambient::field`].
-    type Work = ([Mat<f64>; 3], Mat<f64>);
-
-    fn group(&self) -> &Self::Group {
-        &self.group
-    }
-    fn action(&self) -> &LeftTranslation {
-        &LeftTranslation
-    }
-    fn work(&self) -> Self::Work {
-        let zero = || Mat::zeros(self.group.0.n(), self.group.0.n());
-        ([zero(), zero(), zero()], zero())
-    }
-    fn f(
-        &self,
-        t: f64,
-        y: &(GroupMatrix, Growth),
-        (turn, rest): &mut (AlgebraMatrix, Growth),
-        (work, _): &mut Self::Work,
-    ) {
-        self.rates(t, y, (turn, rest), work);
-    }
-}
-
-impl<F: Fn(f64, &Mat<f64>, &mut Mat<f64>, &mut Mat<f64>)> Ambient for Lyapunov<F> {
-    fn field(
-        &self,
-        t: f64,
-        y: &(GroupMatrix, Growth),
-        (dq, rest): &mut (GroupMatrix, Growth),
-        (work, turn): &mut Self::Work,
-    ) {
-        self.rates(t, y, (turn, rest), work);
-        mul(dq, turn.as_ref(), y.0.as_ref());
-    }
-    linear_space!();
 }

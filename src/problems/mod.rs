@@ -12,9 +12,9 @@
 //! | Oja's flow | SO(n); n×k matrices | [`Oja`] |
 //! | subspaces, the Grassmann manifold | SO(n); conjugation of projectors | [`SubspaceFlow`] |
 //! | Lyapunov exponents of a vector field | SO(n) × T(2n); translation | [`Lyapunov`] |
-//! | equations of linear type, Magnus | any | [`LinearEquation`] |
+//! | a closure of (t, y), or of t alone | any | [`Flow`]; [`DynFlow`] behind a pointer |
 //! | Hill, Mathieu, Floquet; beam lines | Sp(2m); translation | [`hill`], [`mathieu`], [`floquet`], [`beam`] |
-//! | Riccati | Sp(2m); [`Lagrangian`](crate::actions::Lagrangian) | [`LinearEquation`] |
+//! | Riccati | Sp(2m); [`Lagrangian`](crate::actions::Lagrangian) | [`Flow::of_time`] |
 //! | Schrödinger's equation, n levels | U(n) ⊂ SO(2n); vectors | [`schrodinger`](fn@schrodinger) |
 //! | ideal fluids on a sphere and a torus, Zeitlin's model | U(N); conjugation | [`Zeitlin`] |
 //! | charged particle | SO(3,1); vectors | [`ChargedParticle`] |
@@ -24,14 +24,15 @@
 mod averaged;
 pub mod beam;
 mod capability;
+mod dyn_flow;
 mod euler;
 mod fallible;
+mod flow;
 mod grassmann;
 mod heavy_top;
 pub mod inertia;
 mod invariants;
 mod isospectral;
-mod linear;
 mod lorentz;
 mod lyapunov;
 mod oja;
@@ -40,20 +41,21 @@ mod quaternion_body;
 mod rigid_body;
 mod schrodinger;
 mod series;
-mod space;
 mod spheres;
 mod torque;
 mod zeitlin;
 
+pub use crate::space::LinearSpace;
 pub use averaged::Averaged;
-pub use capability::{LiePoisson, Orthogonal, Projection, Split};
+pub use capability::{LiePoisson, LinearField, Orthogonal, Projection, Split};
+pub use dyn_flow::{DynFlow, DynWork, Known};
 pub use euler::{DiscreteGradient, Euler, EulerGroup, FromTheBody, Hamiltonian, Kinetic};
 pub use fallible::{Fallible, InAlgebra, TryProblem};
+pub use flow::{Energy, Facts, Field, Flow, LinearFlow, TimeAlone};
 pub use grassmann::SubspaceFlow;
 pub use heavy_top::HeavyTop;
 pub use invariants::{Invariant, Invariants, Kept};
 pub use isospectral::{IsospectralFlow, IsospectralFlowWork, toda_lattice};
-pub use linear::{LinearEquation, LinearField};
 pub use lorentz::ChargedParticle;
 pub use lyapunov::Lyapunov;
 pub use oja::Oja;
@@ -65,7 +67,6 @@ pub use rigid_body::{
 };
 pub use schrodinger::{Schrodinger, amplitudes, populations, schrodinger};
 pub use series::{MomentumSeries, TaylorField};
-pub use space::LinearSpace;
 pub use spheres::{SphericalPendulum, SpinChain};
 pub use torque::{BodyTorque, Motion, SpaceTorque, Torque, TorqueBody};
 pub use zeitlin::{
@@ -73,6 +74,7 @@ pub use zeitlin::{
 };
 
 use crate::actions::Action;
+use crate::chart::FieldStore;
 use crate::groups::{LieAlgebra, LieGroup};
 
 /// 𝔤-element of a problem.
@@ -124,22 +126,31 @@ pub trait Problem {
     /// the step then fails with [`StepError::NonFiniteRhs`](crate::StepError::NonFiniteRhs). One with
     /// errors of its own is a [`TryProblem`].
     fn f(&self, t: ScalarOf<Self>, y: &PointOf<Self>, v: &mut AlgOf<Self>, work: &mut Self::Work);
-}
 
-/// A capability: M lies in a linear space and F is known there, so that classical methods apply.
-pub trait Ambient: Problem {
-    /// dy ← F(t, y).
+    /// dy ← F(t, y) = λ_*(f(t, y))(y), equation (13), a tangent of M in the storage of a point. Override
+    /// it where F is cheaper than f and λ_*.
+    #[inline]
     fn field(
         &self,
         t: ScalarOf<Self>,
         y: &PointOf<Self>,
         dy: &mut PointOf<Self>,
-        work: &mut Self::Work,
-    );
-    /// y ← x, into the storage that y has.
-    fn copy(&self, x: &PointOf<Self>, y: &mut PointOf<Self>);
-    /// y ← y + a·x.
-    fn add(&self, a: ScalarOf<Self>, x: &PointOf<Self>, y: &mut PointOf<Self>);
-    /// Is every number in y finite?
-    fn is_finite(&self, y: &PointOf<Self>) -> bool;
+        store: &mut FieldStore<Self>,
+    ) {
+        let FieldStore { v, action, work } = store;
+        self.f(t, y, v, work);
+        self.action().generate(self.group(), v, y, dy, action);
+    }
+}
+
+/// A capability: M lies in a linear space, so that classical methods apply too. Every problem has it
+/// whose points are a [`LinearSpace`].
+pub trait Ambient:
+    Problem<Action: Action<Self::Group, Point: LinearSpace<Scalar = ScalarOf<Self>>>>
+{
+}
+
+impl<P: Problem> Ambient for P where
+    P::Action: Action<P::Group, Point: LinearSpace<Scalar = ScalarOf<P>>>
+{
 }

@@ -8,8 +8,9 @@
 
 use faer::Mat;
 
-use super::{Ambient, Invariant, Invariants, Problem, space::linear_space};
+use super::{Invariant, Invariants, Problem};
 use crate::actions::Linear;
+use crate::chart::FieldStore;
 use crate::dense::{antisymmetrise, axpy, mul};
 use crate::error::Error;
 use crate::groups::{AlgebraMatrix, MatrixGroup};
@@ -88,18 +89,20 @@ impl Problem for Oja {
         mul(v, ax.as_ref(), x.transpose());
         antisymmetrise(v);
     }
-}
-
-impl Ambient for Oja {
-    fn field(&self, _: f64, x: &Mat<f64>, dx: &mut Mat<f64>, work: &mut [Mat<f64>; 3]) {
-        let [ax, inner, back] = work;
+    /// AX − X(XᵀAX): without the n×n matrix f, which for few columns is most of the work.
+    fn field(
+        &self,
+        _: f64,
+        x: &Mat<f64>,
+        dx: &mut Mat<f64>,
+        FieldStore { work: [ax, inner, back], .. }: &mut FieldStore<Self>,
+    ) {
         mul(ax, self.a.as_ref(), x.as_ref());
         mul(inner, x.transpose(), ax.as_ref());
         mul(back, x.as_ref(), inner.as_ref());
         dx.copy_from(&*ax);
         axpy(-1.0, back, dx);
     }
-    linear_space!();
 }
 
 impl Invariants for Oja {

@@ -10,7 +10,7 @@
 use faer::Mat;
 
 use super::rigid_body::check_finite;
-use super::{LinearEquation, PointOf, Problem};
+use super::{Flow, LinearFlow, PointOf, Problem};
 use crate::actions::LeftTranslation;
 use crate::error::Error;
 use crate::groups::{AlgebraMatrix, GroupMatrix, LieGroup, MatrixGroup};
@@ -18,7 +18,7 @@ use crate::integrate::{RunError, SaveAt, TimeGrid, integrate};
 use crate::methods::Method;
 
 /// ġ = A(t)g on Sp(2m); the function writes A(t).
-pub type LinearHamiltonian<F> = LinearEquation<MatrixGroup, LeftTranslation, F>;
+pub type LinearHamiltonian<F> = LinearFlow<MatrixGroup, LeftTranslation, F>;
 
 /// ẍ + Q(t)x = 0 for x ∈ ℝᵐ on Sp(2m): `stiffness(t, i, j)` is Q_ij(t), of a symmetric Q.
 ///
@@ -39,7 +39,7 @@ pub fn hill<Q: Fn(f64, usize, usize) -> f64>(
             }
         }
     };
-    Ok(LinearEquation::new(group, LeftTranslation, field))
+    Ok(Flow::of_time(group, LeftTranslation, field))
 }
 
 /// Mathieu's equation ẍ + (a − 2q cos 2t)x = 0 on Sp(2), of period π.

@@ -9,14 +9,10 @@
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
 use super::rigid_body::check_finite;
-use super::space::linear_space;
-use super::{
-    Ambient, Frame, FreeBody, Invariant, Invariants, LinearSpace, Problem, RigidBody, Split,
-};
+use super::{Frame, FreeBody, Invariant, Invariants, Problem, RigidBody, Split};
 use crate::actions::LeftTranslation;
 use crate::error::Error;
-use crate::groups::{LieGroup, QUATERNION_PRODUCT, UnitQuaternions};
-use crate::methods::Metric;
+use crate::groups::{LieGroup, UnitQuaternions};
 use crate::scalar::{Ops, tally};
 use crate::so3;
 
@@ -84,58 +80,6 @@ impl Problem for RigidBodyQuaternion {
     fn f(&self, _: f64, q: &UnitQuaternion<f64>, v: &mut Vector3<f64>, _: &mut ()) {
         tally(|| Ops::muls(3)); // ω of m
         UnitQuaternions.apply(q, &self.body.omega(&self.momentum_body(q)), v);
-    }
-}
-
-impl Ambient for RigidBodyQuaternion {
-    fn field(&self, t: f64, q: &UnitQuaternion<f64>, dq: &mut UnitQuaternion<f64>, work: &mut ()) {
-        let mut omega = Vector3::zeros();
-        self.f(t, q, &mut omega, work);
-        tally(|| Ops::muls(3) + QUATERNION_PRODUCT);
-        let product = Quaternion::from_imag(0.5 * omega) * q.quaternion();
-        *dq = UnitQuaternion::new_unchecked(product);
-    }
-    linear_space!();
-}
-
-/// As points of ℝ⁴.
-impl Metric for UnitQuaternion<f64> {
-    type Scalar = f64;
-    #[inline]
-    fn assign(&mut self, x: &Self) {
-        *self = *x;
-    }
-    #[inline]
-    fn size(&self) -> f64 {
-        tally(|| Ops::dots(1, 4) + Ops::sqrts(1));
-        self.coords.norm()
-    }
-    /// |a − b|: q and −q are different points.
-    #[inline]
-    fn distance(&self, x: &Self) -> f64 {
-        tally(|| Ops::adds(4) + Ops::dots(1, 4) + Ops::sqrts(1));
-        (self.coords - x.coords).norm()
-    }
-}
-
-impl LinearSpace for UnitQuaternion<f64> {
-    #[inline]
-    fn clear(&mut self) {
-        *self = UnitQuaternion::new_unchecked(Quaternion::new(0.0, 0.0, 0.0, 0.0));
-    }
-    #[inline]
-    fn add(&mut self, a: f64, x: &Self) {
-        tally(|| Ops::muladds(4));
-        *self = UnitQuaternion::new_unchecked(Quaternion::from(self.coords + a * x.coords));
-    }
-    #[inline]
-    fn dot(&self, x: &Self) -> f64 {
-        tally(|| Ops::dots(1, 4));
-        self.coords.dot(&x.coords)
-    }
-    #[inline]
-    fn is_finite(&self) -> bool {
-        self.coords.iter().all(|x| x.is_finite())
     }
 }
 

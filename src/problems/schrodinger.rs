@@ -12,13 +12,13 @@
 
 use faer::Mat;
 
-use super::LinearEquation;
+use super::{Flow, LinearFlow};
 use crate::actions::Linear;
 use crate::error::Error;
 use crate::groups::{AlgebraMatrix, MatrixGroup};
 
 /// iψ̇ = H(t)ψ on SO(2n); the function writes the element of u(n).
-pub type Schrodinger<F> = LinearEquation<MatrixGroup, Linear, F>;
+pub type Schrodinger<F> = LinearFlow<MatrixGroup, Linear, F>;
 
 /// iψ̇ = H(t)ψ with n levels: `hamiltonian(t, i, j)` is (Re, Im) of H_ij, asked for i ≤ j alone; the
 /// imaginary part of the diagonal is not looked at.
@@ -55,7 +55,7 @@ pub fn schrodinger<H: Fn(f64, usize, usize) -> [f64; 2]>(
             }
         }
     };
-    Ok(LinearEquation::new(group, Linear, field))
+    Ok(Flow::of_time(group, Linear, field))
 }
 
 /// The state with these complex amplitudes (re, im), of length 1: they are normalised.

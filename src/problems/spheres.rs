@@ -14,7 +14,7 @@
 use nalgebra::Vector3;
 
 use super::rigid_body::check_finite;
-use super::{Ambient, Invariant, Invariants, LiePoisson, Problem, space::linear_space};
+use super::{Invariant, Invariants, LiePoisson, Problem};
 use crate::actions::{Coadjoint, Linear};
 use crate::error::Error;
 use crate::groups::{Power, Se3, So3, add3, cross};
@@ -89,14 +89,6 @@ impl<S: Real> Problem for SphericalPendulum<S> {
     }
 }
 
-impl<S: Real> Ambient for SphericalPendulum<S> {
-    fn field(&self, _: S, (omega, q): &(V<S>, V<S>), dy: &mut (V<S>, V<S>), _: &mut ()) {
-        let torque = V::new(-(self.rate2 * q[1]), self.rate2 * q[0], S::lit(0.0));
-        *dy = (torque, cross(omega, q));
-    }
-    linear_space!();
-}
-
 /// On the dual of se(3) by −H: f = (ω, (g/ℓ) e₃) is the gradient of the energy H, affine in (ω, q).
 impl<S: Real> LiePoisson for SphericalPendulum<S> {
     fn hamiltonian(&self, y: &(V<S>, V<S>)) -> S {
@@ -107,6 +99,7 @@ impl<S: Real> LiePoisson for SphericalPendulum<S> {
         a: &(V<S>, V<S>),
         b: &(V<S>, V<S>),
         xi: &mut (V<S>, V<S>),
+        _: (&mut (V<S>, V<S>), &mut (V<S>, V<S>)),
         _: &mut (),
     ) {
         let twice = add3(&a.0, &b.0);
@@ -285,16 +278,6 @@ impl<S: Real> Problem for SpinChain<S> {
     }
 }
 
-impl<S: Real> Ambient for SpinChain<S> {
-    fn field(&self, t: S, s: &Box<[V<S>]>, ds: &mut Box<[V<S>]>, work: &mut ()) {
-        self.f(t, s, ds, work);
-        for (ds, s) in ds.iter_mut().zip(s) {
-            *ds = cross(ds, s);
-        }
-    }
-    linear_space!();
-}
-
 /// Without damping: f = −∇H for the energy H, of degree 2. With damping there is none, and the discrete
 /// gradient is not a number.
 impl<S: Real> LiePoisson for SpinChain<S> {
@@ -306,6 +289,7 @@ impl<S: Real> LiePoisson for SpinChain<S> {
         a: &Box<[V<S>]>,
         b: &Box<[V<S>]>,
         xi: &mut Box<[V<S>]>,
+        _: (&mut Box<[V<S>]>, &mut Box<[V<S>]>),
         _: &mut (),
     ) {
         let conserves = self.damping == S::lit(0.0);

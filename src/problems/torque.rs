@@ -8,11 +8,11 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::Problem;
 use super::rigid_body::{apply_transpose, check_finite, check_inertia};
-use super::{Ambient, Problem, space::linear_space};
 use crate::actions::LeftTranslation;
 use crate::error::Error;
-use crate::groups::{Product, So3, Translations, add3, apply3, cross};
+use crate::groups::{Product, So3, Translations, add3, apply3};
 use crate::scalar::Real;
 
 /// What a torque may depend on.
@@ -167,20 +167,4 @@ impl<S: Real, T: Torque<S>> Problem for TorqueBody<T, S> {
         let at = self.motion(t, y);
         *v = (apply3(&y.0, &at.omega_body), self.torque.in_space(&at));
     }
-}
-
-impl<S: Real, T: Torque<S>> Ambient for TorqueBody<T, S> {
-    fn field(&self, t: S, y: &Point<S>, dy: &mut Point<S>, _: &mut ()) {
-        let at = self.motion(t, y);
-        // gω̂ row by row: r ω̂ = r × ω.
-        for i in 0..3 {
-            let row = Vector3::new(y.0[(i, 0)], y.0[(i, 1)], y.0[(i, 2)]);
-            let turned = cross(&row, &at.omega_body);
-            for j in 0..3 {
-                dy.0[(i, j)] = turned[j];
-            }
-        }
-        dy.1 = self.torque.in_space(&at);
-    }
-    linear_space!();
 }

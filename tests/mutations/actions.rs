@@ -2,9 +2,9 @@
 #![allow(dead_code, reason = "each suite uses its part")]
 
 use faer::Mat;
-use lieflow::Action;
 use lieflow::actions::LeftTranslation;
-use lieflow::groups::{GroupMatrix, MatrixGroup};
+use lieflow::groups::{AlgebraMatrix, GroupMatrix, MatrixGroup};
+use lieflow::{Action, LieGroup};
 use rand_pcg::Pcg64;
 
 use crate::support::points::Points;
@@ -39,9 +39,19 @@ impl Action<MatrixGroup> for Translation {
             Fault::Swapped => p.as_ref() * g.as_ref(),
         });
     }
+    /// The sound one: what the equation means does not change with the fault.
+    fn generate(
+        &self,
+        group: &MatrixGroup,
+        v: &AlgebraMatrix,
+        p: &GroupMatrix,
+        dp: &mut GroupMatrix,
+        _: &mut (),
+    ) {
+        group.tangent(v, p, dp);
+    }
 }
 
-/// The sound generator: what the equation means does not change with the fault.
 impl Points<MatrixGroup> for Translation {
     fn draw(&self, group: &MatrixGroup, rng: &mut Pcg64) -> GroupMatrix {
         LeftTranslation.draw(group, rng)
@@ -67,5 +77,15 @@ impl Action<MatrixGroup> for Congruence {
     fn work(&self, _: &MatrixGroup) {}
     fn act(&self, _: &MatrixGroup, g: &GroupMatrix, p: &Mat<f64>, q: &mut Mat<f64>, _: &mut ()) {
         *q = g.as_ref() * p * g.transpose();
+    }
+    fn generate(
+        &self,
+        _: &MatrixGroup,
+        v: &AlgebraMatrix,
+        p: &Mat<f64>,
+        dp: &mut Mat<f64>,
+        _: &mut (),
+    ) {
+        *dp = v.as_ref() * p + p * v.transpose();
     }
 }

@@ -77,6 +77,12 @@ impl LieGroup for Faulty {
     fn apply(&self, g: &GroupMatrix, x: &Mat<f64>, y: &mut Mat<f64>) {
         self.0.apply(g, x, y);
     }
+    fn tangent(&self, v: &AlgebraMatrix, g: &GroupMatrix, out: &mut GroupMatrix) {
+        self.0.tangent(v, g, out);
+    }
+    fn apply_algebra(&self, v: &AlgebraMatrix, x: &Mat<f64>, y: &mut Mat<f64>) {
+        self.0.apply_algebra(v, x, y);
+    }
     fn distance(&self, a: &GroupMatrix, b: &GroupMatrix) -> f64 {
         self.0.distance(a, b)
     }

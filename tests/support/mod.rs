@@ -5,9 +5,13 @@
 #![allow(dead_code, unused_imports, reason = "each suite uses its part")]
 
 pub(crate) mod laws;
+pub(crate) mod named;
 pub(crate) mod orders;
 pub(crate) mod points;
+pub(crate) mod references;
 pub(crate) mod represent;
+pub(crate) mod systems;
+pub(crate) mod uncorrected;
 
 use faer::Mat;
 use proptest::prelude::any;

@@ -66,7 +66,7 @@ impl<G: Represent> Points<G> for Linear {
         group.vector_of(x)
     }
     fn generator(&self, group: &G, xi: &Mat<f64>, x: &G::Vector) -> Mat<f64> {
-        group.tangent(xi, &group.vector_matrix(x))
+        group.tangent_matrix(xi, &group.vector_matrix(x))
     }
     /// Column j is x/(j + 1).
     fn square(&self, group: &G, x: &G::Vector) -> Mat<f64> {
@@ -129,7 +129,7 @@ impl Points<UnitQuaternions> for Coadjoint {
         group.vector_of(x)
     }
     fn generator(&self, group: &UnitQuaternions, xi: &Mat<f64>, m: &Vector3<f64>) -> Mat<f64> {
-        group.tangent(xi, &group.vector_matrix(m))
+        group.tangent_matrix(xi, &group.vector_matrix(m))
     }
 }
 

@@ -34,7 +34,7 @@ pub(crate) trait Represent: Sample<Scalar = f64> {
         g * x
     }
     /// d/dt exp(tξ)·x at t = 0, of the matrices of both.
-    fn tangent(&self, xi: &Mat<f64>, x: &Mat<f64>) -> Mat<f64> {
+    fn tangent_matrix(&self, xi: &Mat<f64>, x: &Mat<f64>) -> Mat<f64> {
         xi * x
     }
 
@@ -259,7 +259,7 @@ impl Represent for UnitQuaternions {
     fn applied(&self, q: &Mat<f64>, x: &Mat<f64>) -> Mat<f64> {
         q * x * q.transpose()
     }
-    fn tangent(&self, xi: &Mat<f64>, x: &Mat<f64>) -> Mat<f64> {
+    fn tangent_matrix(&self, xi: &Mat<f64>, x: &Mat<f64>) -> Mat<f64> {
         xi * x - x * xi
     }
 }

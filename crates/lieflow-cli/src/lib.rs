@@ -7,4 +7,3 @@ pub mod measure;
 pub mod output;
 pub mod paper;
 pub mod report;
-pub mod survey;

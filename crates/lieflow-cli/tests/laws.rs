@@ -53,7 +53,7 @@ fn every_method_that_fits_a_kind_is_right() {
         assert!(start.is_ok());
         let size = reference.iter().fold(1e-3, |a: f64, x| a.max(x.abs()));
         let mut seen = 0;
-        for (info, _) in all_methods() {
+        for info in all_methods() {
             let method = MethodSpec::new(info.name, None);
             if model.fits(&method).is_err() {
                 continue;

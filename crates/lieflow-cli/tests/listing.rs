@@ -50,10 +50,10 @@ fn methods_are_listed_from_the_catalog() {
     let folder = Folder::new();
     let listed = folder.lieflow(&["methods"]).ok();
     let json: Value = serde_json::from_str(&folder.lieflow(&["methods", "--json"]).ok()).unwrap();
-    let registered: Vec<_> = all_methods().map(|(m, _)| m.name).collect();
+    let registered: Vec<_> = all_methods().map(|m| m.name).collect();
     assert_eq!(names(&json["methods"]), registered);
     assert_eq!(names(&json["maps"]), MAPS.iter().map(|m| m.name).collect::<Vec<_>>());
-    assert_eq!(names(&json["tableaus"]), TABLEAUS);
+    assert_eq!(names(&json["tableaus"]), TABLEAUS.iter().map(|t| t.name).collect::<Vec<_>>());
     assert_eq!(json["tableaus"][0]["order"], 1);
     for name in names(&json["methods"]).iter().chain(&names(&json["maps"])) {
         assert!(listed.contains(name), "{listed}");
@@ -112,7 +112,7 @@ fn methods_for_a_scene_are_those_that_run() {
 #[test]
 fn the_keys_and_quantities_that_are_listed_are_those_that_scenes_take() {
     for kind in KINDS {
-        let quantities: Vec<_> = kind.quantities.iter().map(|quantity| quantity.name).collect();
+        let quantities: Vec<_> = (kind.quantities)().iter().map(|quantity| quantity.name).collect();
         let text = BUNDLED.iter().find(|s| s.text.contains(&format!("{:?}", kind.name))).unwrap();
         let text = text.text.replace("[problem]", "[problem]\nno_such_key = 1");
         let message = Scene::parse("scene", &text).unwrap_err().to_string();
@@ -128,7 +128,7 @@ fn the_keys_and_quantities_that_are_listed_are_those_that_scenes_take() {
         let all: Vec<_> = quantities.iter().map(|q| scene.problem.columns(q).unwrap()).collect();
         assert_eq!(model.columns(), all.concat());
         // Where the size of the problem says how many there are, the list names the first.
-        for (info, columns) in kind.quantities.iter().zip(&all) {
+        for (info, columns) in (kind.quantities)().iter().zip(&all) {
             let open = info.columns.contains(&"…");
             let listed: Vec<_> = info.columns.iter().take_while(|c| **c != "…").collect();
             assert!(open || listed.len() == columns.len(), "{}: {columns:?}", info.name);

@@ -315,7 +315,7 @@ fn every_method_that_is_listed_runs_and_is_right() {
         let start = Scene::parse("scene", &scene("name = \"rk4\"")).unwrap();
         let model = start.model().unwrap();
         let mut seen = 0;
-        for (info, _) in lieflow::catalog::all_methods() {
+        for info in lieflow::catalog::all_methods() {
             let parsed = Scene::parse("scene", &scene(&format!("name = {:?}", info.name)));
             let Ok(parsed) = parsed else {
                 let message = parsed.unwrap_err().to_string();
@@ -355,5 +355,29 @@ fn a_spin_precesses_about_the_field_in_the_frame_that_turns() {
             * Vector3::new(0.0, 0.0, 1.0);
         let gap = (Vector3::from_column_slice(&last[1..4]) - exact).norm();
         assert!(gap < 2e-6, "{method}: {gap:e}");
+    }
+}
+
+/// A quantity may overflow where the state does not: the warning names its column, and no other.
+#[test]
+fn a_column_that_is_not_finite_is_warned_of_by_its_name() {
+    let folder = Folder::new();
+    for quantity in ["phase_space", "particle"] {
+        folder.write(
+            "far.toml",
+            &format!(
+                "title = \"Far\"\n[problem]\nkind = \"beam-line\"\n\
+                 elements = [{{ kind = \"drift\", length = 4.0 }}]\n\
+                 particle = [0.001, 0.001, 1e308, 0.0]\n[method]\nname = \"cfm4-2\"\n\
+                 [time]\nt_span = [0.0, 12.0]\ndt = 1.0\n[output]\nquantities = [\"{quantity}\"]\n"
+            ),
+        );
+        folder.lieflow(&["run", "far.toml", "--out", "out"]).ok();
+        let warnings = folder.json("out/summary.json")["warnings"].clone();
+        assert_eq!(
+            warnings,
+            serde_json::json!(["x is not a finite number in 11 of 13 rows"]),
+            "{quantity}"
+        );
     }
 }

@@ -4,8 +4,7 @@ mod support;
 
 use core::f64::consts::{PI, TAU};
 
-use lieflow_cli::report::{MAPS_PAGE, write_maps};
-use lieflow_cli::survey::{Effort, Over, Topic, survey};
+use lieflow_cli::paper::maps::{Effort, MAPS_PAGE, Over, Topic, survey, write};
 use support::Folder;
 
 /// What the closed forms on so(3) promise, in units of ε·cond.
@@ -48,7 +47,7 @@ fn maps_are_as_accurate_as_promised_and_all_are_shown() {
     }
 
     let folder = Folder::new();
-    write_maps(folder.path(), &studies).unwrap();
+    write(folder.path(), &studies).unwrap();
     let page = folder.read(MAPS_PAGE);
     assert_eq!(page.matches("<figure>").count(), 2 * studies.len());
     assert!(!page.contains("NaN") && page.contains("href=\"index.html\""));

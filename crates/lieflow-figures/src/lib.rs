@@ -1,7 +1,15 @@
 //! Figures and pages without anything from the network: plain values in, SVG and HTML text out.
 //!
-//! [`plot`] has charts, spheres and maps of fields; [`page`] has pages that hold them.
+//! A figure ([`Chart`], [`Sphere`], [`Heat`]) is a plain value; `svg()` turns it into one complete `<svg>`
+//! element, which serves as a file and inline in a [`Page`]. Colours are CSS variables with light
+//! fallbacks, so that an inline figure follows the theme of its page and a file is light.
 #![forbid(unsafe_code)]
 
-pub mod page;
-pub mod plot;
+pub mod number;
+mod page;
+mod plot;
+
+pub use page::{Block, Column, Page, Row, Section, Table};
+pub use plot::{
+    Axis, Chart, Ground, Heat, Marker, Path, Point, Scale, Series, Sphere, escape, slug, tell_apart,
+};

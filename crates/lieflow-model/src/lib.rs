@@ -4,7 +4,6 @@
 //! [`Model`](model::Model), which any method of the catalog runs on.
 #![forbid(unsafe_code)]
 
-pub mod erased;
 pub mod kinds;
 pub mod model;
 pub mod operations;

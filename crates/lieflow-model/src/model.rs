@@ -3,10 +3,10 @@
 use core::fmt::Debug;
 
 use lieflow::adaptive::{Adaptive, AdaptiveError, AdaptiveStats, integrate_adaptive};
-use lieflow::catalog::{MethodSpec, OnEmbedded, OnMethod};
+use lieflow::catalog::{MethodSpec, MethodsByName};
 use lieflow::groups::LieAlgebra;
-use lieflow::methods::{Embedded, Method};
-use lieflow::problems::{PointOf, Problem};
+use lieflow::methods::Method;
+use lieflow::problems::PointOf;
 use lieflow::{Error, RunError, SaveAt, Stats, TimeGrid, integrate};
 
 use crate::operations::Pace;
@@ -93,7 +93,7 @@ pub trait Model: Debug {
     /// The order of a method on this problem; none where it is exact.
     ///
     /// # Errors
-    /// As [`Catalog::with`].
+    /// As [`MethodsByName::method`].
     fn order(&self, method: &MethodSpec) -> Result<Option<usize>, Error>;
 
     /// The same columns at the end of a span by the exact solution; `None` where none is known.
@@ -110,158 +110,60 @@ pub trait Model: Debug {
     ///
     /// # Errors
     /// The reason why it cannot.
-    fn fits(&self, method: &MethodSpec) -> Result<(), Error> {
-        let nowhere = TimeGrid::with_steps([0.0, 0.0], 0)?;
-        match self.run(method, &nowhere, &SaveAt::Ends, &mut |_, _| {}) {
-            Err(RunError::Setup(error)) => Err(error),
-            _ => Ok(()),
-        }
-    }
+    fn fits(&self, method: &MethodSpec) -> Result<(), Error>;
 }
 
-/// A problem with the methods that fit it.
-pub trait Catalog: Problem<Group: LieAlgebra<Scalar: Into<f64>>> {
-    /// Find the method that `spec` names and hand it over.
-    ///
-    /// # Errors
-    /// As [`lieflow::catalog::with_method`], for a method that does not fit.
-    fn with<V: OnMethod<Self>>(&self, spec: &MethodSpec, on: V) -> Result<V::Out, Error>
-    where
-        Self: Sized;
-
-    /// The same, with an estimate of its error: of its embedded pair, or by doubling its steps.
-    ///
-    /// # Errors
-    /// As [`with`](Self::with).
-    fn with_estimate<V: OnEmbedded<Self>>(&self, spec: &MethodSpec, on: V) -> Result<V::Out, Error>
-    where
-        Self: Sized;
-}
-
-/// [`Catalog`] for an [`Ambient`](lieflow::problems::Ambient) problem, by the catalog's function for its
-/// kind, and the one for its embedded pairs. `pointed` is for problems whose methods may stand behind a
-/// pointer: on numbers that count nothing is timed, and beside large matrices a call is nothing.
-#[macro_export]
-macro_rules! catalog {
-    ($problem:ty, $with:path) => {
-        $crate::catalog!($problem, $with, lieflow::catalog::with_embedded_pair);
-    };
-    ($problem:ty, $with:path, $pair:path) => {
-        $crate::catalog!(@impl $problem, $with, $pair, |spec, on| $with(spec, on));
-    };
-    (pointed $problem:ty, $with:path) => {
-        $crate::catalog!(pointed $problem, $with, lieflow::catalog::with_embedded_pair);
-    };
-    (pointed $problem:ty, $with:path, $pair:path) => {
-        $crate::catalog!(@impl $problem, $with, $pair, |spec, on| {
-            $crate::erased::pointed(on, |found| $with(spec, found))
-        });
-    };
-    (@impl $problem:ty, $with:path, $pair:path, |$spec:ident, $on:ident| $find:expr) => {
-        impl $crate::model::Catalog for $problem {
-            fn with<V: lieflow::catalog::OnMethod<Self>>(
-                &self,
-                $spec: &lieflow::catalog::MethodSpec,
-                $on: V,
-            ) -> Result<V::Out, lieflow::Error> {
-                $find
-            }
-            fn with_estimate<V: lieflow::catalog::OnEmbedded<Self>>(
-                &self,
-                spec: &lieflow::catalog::MethodSpec,
-                on: V,
-            ) -> Result<V::Out, lieflow::Error> {
-                let pair = spec.has_pair()?;
-                $crate::erased::pointed_pair(on, |found| match pair {
-                    true => $pair(spec, found),
-                    false => $with(spec, $crate::erased::Doubled(found)),
-                })
-            }
-        }
-    };
-}
+/// A problem that runs are made of: its methods by name, on numbers that a file can hold.
+pub trait Runnable: MethodsByName<Group: LieAlgebra<Scalar: Into<f64>>> + 'static {}
+impl<P: MethodsByName<Group: LieAlgebra<Scalar: Into<f64>>> + 'static> Runnable for P {}
 
 /// What sees the points of a run. Behind a pointer, so that every kind with a type of problem shares
 /// what is compiled for it.
 pub type Observer<'a, P> = dyn FnMut(f64, &PointOf<P>) + 'a;
 
-struct Integrate<'a, P: Problem> {
-    problem: &'a P,
-    y: PointOf<P>,
-    grid: &'a TimeGrid,
-    save: &'a SaveAt,
-    observe: &'a mut Observer<'a, P>,
-}
-
-impl<P: Problem> OnMethod<P> for Integrate<'_, P> {
-    type Out = Result<Stats, RunError>;
-    fn call<M: Method<P>>(self, method: M) -> Self::Out {
-        let Integrate { problem, mut y, grid, save, observe } = self;
-        integrate(problem, &method, grid, save, &mut y, observe)
-    }
-}
-
-struct Adapt<'a, P: Problem> {
-    problem: &'a P,
-    y: PointOf<P>,
-    steps: &'a Steps,
-    save: &'a SaveAt,
-    observe: &'a mut Observer<'a, P>,
-}
-
-impl<P: Problem<Group: LieAlgebra<Scalar: Into<f64>>>> OnEmbedded<P> for Adapt<'_, P> {
-    type Out = Result<AdaptiveStats, AdaptiveError>;
-    fn call<M: Embedded<P>>(self, method: M) -> Self::Out {
-        let Adapt { problem, mut y, steps, save, observe } = self;
-        let Steps { t_span, control } = steps;
-        integrate_adaptive(problem, &method, *t_span, control, save, &mut y, observe)
-    }
-}
-
-struct Order<'a, P>(&'a P);
-
-impl<P: Problem> OnMethod<P> for Order<'_, P> {
-    type Out = usize;
-    fn call<M: Method<P>>(self, method: M) -> usize {
-        method.order(self.0)
-    }
-}
-
 /// Integrate `problem` from `y` by the method that `spec` names: what a [`Model::run`] calls.
 ///
 /// # Errors
-/// As [`Catalog::with`] and [`integrate`].
-pub fn integrate_by<P: Catalog>(
+/// As [`MethodsByName::method`] and [`integrate`].
+pub fn integrate_by<P: Runnable>(
     spec: &MethodSpec,
     problem: &P,
-    y: PointOf<P>,
+    mut y: PointOf<P>,
     grid: &TimeGrid,
     save: &SaveAt,
     observe: &mut Observer<'_, P>,
 ) -> Result<Stats, RunError> {
-    problem.with(spec, Integrate { problem, y, grid, save, observe })?
+    integrate(problem, &problem.method(spec)?, grid, save, &mut y, observe)
 }
 
 /// The same with steps chosen by their error: what a [`Model::adapt`] calls.
 ///
 /// # Errors
-/// As [`Catalog::with_estimate`] and [`integrate_adaptive`].
-pub fn adapt_by<P: Catalog>(
+/// As [`MethodsByName::method`] and [`integrate_adaptive`].
+pub fn adapt_by<P: Runnable>(
     spec: &MethodSpec,
     problem: &P,
-    y: PointOf<P>,
-    steps: &Steps,
+    mut y: PointOf<P>,
+    Steps { t_span, control }: &Steps,
     save: &SaveAt,
     observe: &mut Observer<'_, P>,
 ) -> Result<AdaptiveStats, AdaptiveError> {
-    problem.with_estimate(spec, Adapt { problem, y, steps, save, observe })?
+    integrate_adaptive(problem, &problem.method(spec)?, *t_span, control, save, &mut y, observe)
 }
 
 /// The order of the method that `spec` names: what a [`Model::order`] calls.
 ///
 /// # Errors
-/// As [`Catalog::with`].
-pub fn order_by<P: Catalog>(spec: &MethodSpec, problem: &P) -> Result<Option<usize>, Error> {
-    let order = problem.with(spec, Order(problem))?;
+/// As [`MethodsByName::method`].
+pub fn order_by<P: Runnable>(spec: &MethodSpec, problem: &P) -> Result<Option<usize>, Error> {
+    let order = problem.method(spec)?.order(problem);
     Ok((order != usize::MAX).then_some(order))
+}
+
+/// Can the method that `spec` names run on the problem? What a [`Model::fits`] calls.
+///
+/// # Errors
+/// The reason why it cannot.
+pub fn fits_by<P: Runnable>(spec: &MethodSpec, problem: &P, y: &PointOf<P>) -> Result<(), Error> {
+    problem.method(spec)?.work(problem, y).map(drop)
 }

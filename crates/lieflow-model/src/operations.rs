@@ -2,16 +2,16 @@
 //! made of vectors, and by what matrices say that they have computed ([`lieflow::scalar::tally`]), where it
 //! is made of those.
 
-use lieflow::TimeGrid;
-use lieflow::adaptive::{AdaptiveError, integrate_adaptive};
-use lieflow::catalog::{MethodSpec, OnEmbedded, OnMethod};
-use lieflow::methods::{Embedded, Method};
-use lieflow::problems::{PointOf, ScalarOf};
-use lieflow::scalar::Real;
-use lieflow::{SaveAt, Step};
+use core::cell::Cell;
 
-use crate::erased::{Erased, Tally, with_pair, with_plain};
-use crate::model::{Catalog, Steps};
+use lieflow::adaptive::{AdaptiveError, integrate_adaptive};
+use lieflow::catalog::MethodSpec;
+use lieflow::methods::{AnyMethod, AnyWork, Embedded, LocalError, Method};
+use lieflow::problems::{PointOf, ScalarOf};
+use lieflow::scalar::{Counted, Real};
+use lieflow::{Error, SaveAt, Step, StepError, TimeGrid};
+
+use crate::model::{Runnable, Steps};
 
 /// So many steps of a run are counted, attempts that are rejected among them; a longer run is charged
 /// their mean for each of its steps.
@@ -30,81 +30,136 @@ pub enum Pace<'a> {
     Chosen(&'a Steps),
 }
 
-/// A run to be counted.
-struct Run<'a, P: Catalog, How> {
-    problem: &'a P,
-    y: PointOf<P>,
-    how: &'a How,
+/// What was counted of the steps of a method.
+#[derive(Debug, Default)]
+struct Tally {
+    operations: Cell<u64>,
+    steps: Cell<u64>,
 }
 
-impl<P: Catalog + 'static> OnMethod<P> for Run<'_, P, TimeGrid> {
-    type Out = Option<f64>;
-    fn call<M: Method<P>>(self, method: M) -> Option<f64> {
-        let tally = Tally::default();
-        with_plain(&method, Some(&tally), |method| self.fixed(&method, &tally))
+impl Tally {
+    fn count<T>(&self, step: impl FnOnce() -> T) -> T {
+        let (done, operations) = Counted::count(step);
+        self.operations.update(|n| n + operations.total());
+        self.steps.update(|n| n + 1);
+        done
+    }
+    /// Operations of a step; none where nothing was counted.
+    fn mean(&self) -> Option<f64> {
+        let (steps, operations) = (self.steps.get(), self.operations.get());
+        (steps > 0 && operations > 0).then(|| operations as f64 / steps as f64)
     }
 }
 
-impl<P: Catalog + 'static> OnEmbedded<P> for Run<'_, P, Steps> {
-    type Out = Option<f64>;
-    fn call<M: Embedded<P>>(self, method: M) -> Option<f64> {
-        let tally = Tally::default();
-        with_pair(&method, Some(&tally), |method| self.chosen(&method, &tally))
+/// A method whose steps are counted.
+struct CountedMethod<'a, P: Runnable> {
+    method: AnyMethod<'static, P>,
+    tally: &'a Tally,
+}
+
+impl<P: Runnable> Method<P> for CountedMethod<'_, P> {
+    type Work = AnyWork<'static, P>;
+
+    fn order(&self, problem: &P) -> usize {
+        self.method.order(problem)
+    }
+    fn evaluations(&self, problem: &P) -> Option<u64> {
+        self.method.evaluations(problem)
+    }
+    fn stays_on_manifold(&self) -> bool {
+        self.method.stays_on_manifold()
+    }
+    fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
+        self.method.work(problem, like)
+    }
+    fn step(
+        &self,
+        problem: &P,
+        step: Step<ScalarOf<P>>,
+        y: &mut PointOf<P>,
+        work: &mut Self::Work,
+    ) -> Result<(), StepError> {
+        self.tally.count(|| self.method.step(problem, step, y, work))
     }
 }
 
-impl<P: Catalog> Run<'_, P, TimeGrid> {
-    fn fixed(mut self, method: &Erased<'_, P>, tally: &Tally) -> Option<f64> {
-        if method.order(self.problem) == usize::MAX {
-            return None;
-        }
-        let mut work = method.work(self.problem, &self.y).ok()?;
-        let lit = ScalarOf::<P>::lit;
-        for n in 0..self.how.steps().min(COUNTED_STEPS) {
-            if n >= COUNTED_AT_LEAST && tally.operations() > COUNTED_OPERATIONS {
-                break;
-            }
-            let step = Step { n, t: lit(self.how.time(n)), h: lit(self.how.h()) };
-            method.step(self.problem, step, &mut self.y, &mut work).ok()?;
-        }
-        tally.mean()
+impl<P: Runnable> Embedded<P> for CountedMethod<'_, P> {
+    fn error_order(&self, problem: &P) -> Result<usize, Error> {
+        self.method.error_order(problem)
     }
-}
-
-impl<P: Catalog> Run<'_, P, Steps> {
-    fn chosen(self, method: &Erased<'_, P>, tally: &Tally) -> Option<f64> {
-        let Steps { t_span, control } = self.how;
-        let upto = |steps: u64| {
-            tally.clear();
-            let (mut y, control) = (self.y.clone(), control.max_steps(steps).ok()?);
-            let see = |_: f64, _: &PointOf<P>| {};
-            let (problem, save) = (self.problem, &SaveAt::Ends);
-            match integrate_adaptive(problem, method, *t_span, &control, save, &mut y, see) {
-                Ok(_) | Err(AdaptiveError::TooManySteps { .. }) => tally.mean(),
-                Err(_) => None,
-            }
-        };
-        // A first look says how many steps are enough.
-        let first = upto(COUNTED_AT_LEAST)?;
-        let enough = (COUNTED_OPERATIONS as f64 / first) as u64;
-        match enough.min(COUNTED_STEPS) {
-            steps if steps > COUNTED_AT_LEAST => upto(steps),
-            _ => Some(first),
-        }
+    fn evaluations_with_error(&self, problem: &P) -> Option<u64> {
+        self.method.evaluations_with_error(problem)
+    }
+    fn step_with_error(
+        &self,
+        problem: &P,
+        step: Step<ScalarOf<P>>,
+        from: &PointOf<P>,
+        work: &mut Self::Work,
+        to: &mut PointOf<P>,
+    ) -> Result<LocalError<ScalarOf<P>>, StepError> {
+        self.tally.count(|| self.method.step_with_error(problem, step, from, work, to))
     }
 }
 
 /// The mean operations of a step of `problem` from `y`, over the first of the run: what a
 /// [`Model::operations`](crate::model::Model::operations) calls. None where nothing is counted, as of the
 /// exact motion, or the method fails.
-pub fn operations_by<P: Catalog + 'static>(
+pub fn operations_by<P: Runnable>(
     spec: &MethodSpec,
     problem: &P,
     y: PointOf<P>,
     pace: Pace<'_>,
 ) -> Option<f64> {
+    let method = problem.method(spec).ok()?;
     match pace {
-        Pace::Fixed(how) => problem.with(spec, Run { problem, y, how }).ok()?,
-        Pace::Chosen(how) => problem.with_estimate(spec, Run { problem, y, how }).ok()?,
+        Pace::Fixed(_) if method.order(problem) == usize::MAX => None,
+        Pace::Fixed(grid) => operations_fixed(problem, method, y, grid),
+        Pace::Chosen(steps) => operations_chosen(problem, &method, &y, steps),
+    }
+}
+
+fn operations_fixed<P: Runnable>(
+    problem: &P,
+    method: AnyMethod<'static, P>,
+    mut y: PointOf<P>,
+    grid: &TimeGrid,
+) -> Option<f64> {
+    let tally = Tally::default();
+    let method = CountedMethod { method, tally: &tally };
+    let mut work = method.work(problem, &y).ok()?;
+    let lit = ScalarOf::<P>::lit;
+    for n in 0..grid.steps().min(COUNTED_STEPS) {
+        if n >= COUNTED_AT_LEAST && tally.operations.get() > COUNTED_OPERATIONS {
+            break;
+        }
+        let step = Step { n, t: lit(grid.time(n)), h: lit(grid.h()) };
+        method.step(problem, step, &mut y, &mut work).ok()?;
+    }
+    tally.mean()
+}
+
+fn operations_chosen<P: Runnable>(
+    problem: &P,
+    method: &AnyMethod<'static, P>,
+    y: &PointOf<P>,
+    Steps { t_span, control }: &Steps,
+) -> Option<f64> {
+    let upto = |steps: u64| {
+        let tally = Tally::default();
+        let method = CountedMethod { method: method.clone(), tally: &tally };
+        let (mut y, control) = (y.clone(), control.max_steps(steps).ok()?);
+        let see = |_: f64, _: &PointOf<P>| {};
+        match integrate_adaptive(problem, &method, *t_span, &control, &SaveAt::Ends, &mut y, see) {
+            Ok(_) | Err(AdaptiveError::TooManySteps { .. }) => tally.mean(),
+            Err(_) => None,
+        }
+    };
+    // A first look says how many steps are enough.
+    let first = upto(COUNTED_AT_LEAST)?;
+    let enough = (COUNTED_OPERATIONS as f64 / first) as u64;
+    match enough.min(COUNTED_STEPS) {
+        steps if steps > COUNTED_AT_LEAST => upto(steps),
+        _ => Some(first),
     }
 }

@@ -1,225 +1,330 @@
 //! The methods for the free rigid body in ℝ³, for fields with Taylor coefficients, and for states that hold an
 //! attitude.
 
-use super::{
-    DISCRETE, GAUSS, KEEPS_GROUP, KUTTA, LINEAR_ONLY, MOMENTUM, PROJECTED, RUNGE_KUTTA, SERIES,
-    SPLITTING, of_a_tableau, plain,
+use super::{Energy, GAUSS, KEEPS_GROUP, KUTTA, LINEAR_ONLY, gauss, of_a_tableau, plain, stages};
+use crate::catalog::facts::{
+    Cost, Count, Family, Instead, MethodInfo, Needs, Operation, Order, Structure, Work, times,
 };
-use crate::catalog::MethodInfo;
+use crate::catalog::recipe::Recipe;
+use crate::methods::{
+    DMV2, DMV4, DMV6, DMV8, DMV10, Dmv, GAUSS2, GAUSS4, GAUSS6, ImplicitTableau, KAHAN_LI6,
+    KAHAN_LI8, SOFRONIOU_SPALETTA10, STRANG, SUZUKI4, Scheme, SimoWong, Splitting, YOSHIDA4,
+};
+use crate::problems::Projection;
+use Operation::{
+    AmbientField, AxisRotation, CrossProduct, Exp, GramSchmidt, InverseInertia, Microsecond,
+    Multiplication, NewtonIteration, NewtonSchulz, Product, Psi, SimoWongStep,
+};
+use Structure::{Casimirs, Everything, Group, QuadraticInvariants, Symplectic, TimeSymmetry};
 
-const SPLIT: &str = "group, Casimirs, symplectic structure, time symmetry";
-const ALL_FIRST: &str = "energy, group, Casimirs, time symmetry";
+const SPLIT: &[Structure] = &[Group, Casimirs, Symplectic, TimeSymmetry];
+const ALL_FIRST: &[Structure] = &[Energy, Group, Casimirs, TimeSymmetry];
 const MCLACHLAN: &str = "McLachlan 1993; Reich 1996";
-const NEWTON: &str = "3–6 Newton iterations, 1 Ψ";
+const NEWTON: Cost =
+    Cost::of(&[Work { count: Count::Between(3, 6), operation: NewtonIteration }, times(1, Psi)]);
 
-const fn dmv(name: &'static str, order: usize, summary: &'static str) -> MethodInfo {
+const fn dmv(name: &'static str, summary: &'static str, method: Dmv) -> MethodInfo {
     const SOURCE: &str = "Moser & Veselov 1991; McLachlan & Zanna 2005; Hairer & Vilmart 2006";
-    plain(DISCRETE, name, Some(order), summary, [ALL_FIRST, NEWTON, SOURCE])
+    let family = (Family::DiscreteMechanics, Needs::Body);
+    plain(family, name, method.order(), summary, ALL_FIRST, NEWTON, SOURCE, Recipe::Dmv(method))
 }
 
-const fn mr2(name: &'static str) -> MethodInfo {
+/// A splitting by the axes in this order.
+const fn splitting(
+    name: &'static str,
+    axes: [usize; 3],
+    scheme: Scheme,
+    summary: &'static str,
+    rotations: &'static [Work],
+    source: &'static str,
+) -> MethodInfo {
+    let (family, cost) = ((Family::Splitting, Needs::Body), Cost::of(rotations));
+    let recipe = Recipe::Splitting(Splitting::new(axes, scheme));
+    plain(family, name, scheme.order, summary, SPLIT, cost, source, recipe)
+}
+
+const fn mr2(name: &'static str, axes: [usize; 3]) -> MethodInfo {
     let summary = "McLachlan–Reich splitting, the axes in this order (123 if none is named)";
-    plain(SPLITTING, name, Some(2), summary, [SPLIT, "5 axis rotations", MCLACHLAN])
+    splitting(name, axes, STRANG, summary, &const { [times(5, AxisRotation)] }, MCLACHLAN)
 }
 
-const fn mr4(name: &'static str) -> MethodInfo {
+const fn mr4(name: &'static str, axes: [usize; 3]) -> MethodInfo {
     let summary =
         "McLachlan–Reich by the triple jump, the axes in this order (123 if none is named)";
-    plain(SPLITTING, name, Some(4), summary, [SPLIT, "13 axis rotations", MCLACHLAN])
+    splitting(name, axes, YOSHIDA4, summary, &const { [times(13, AxisRotation)] }, MCLACHLAN)
 }
 
-/// Methods for the free rigid body in ℝ³: `with_body_method`.
-pub const BODY_METHODS: &[MethodInfo] = &[
-    mr2("mr2"),
-    mr2("mr2-132"),
-    mr2("mr2-213"),
-    mr2("mr2-231"),
-    mr2("mr2-312"),
-    mr2("mr2-321"),
-    mr4("mr4"),
-    mr4("mr4-132"),
-    mr4("mr4-213"),
-    mr4("mr4-231"),
-    mr4("mr4-312"),
-    mr4("mr4-321"),
-    plain(
-        SPLITTING,
+const fn simo_wong(
+    name: &'static str,
+    order: usize,
+    summary: &'static str,
+    cost: Cost,
+    source: &'static str,
+    recipe: Recipe,
+) -> MethodInfo {
+    let family = (Family::EnergyMomentum, Needs::Body);
+    plain(family, name, order, summary, ALL_FIRST, cost, source, recipe)
+}
+
+/// For the free rigid body in ℝ³.
+pub(super) const BODY: &[MethodInfo] = &[
+    mr2("mr2", [0, 1, 2]),
+    mr2("mr2-132", [0, 2, 1]),
+    mr2("mr2-213", [1, 0, 2]),
+    mr2("mr2-231", [1, 2, 0]),
+    mr2("mr2-312", [2, 0, 1]),
+    mr2("mr2-321", [2, 1, 0]),
+    mr4("mr4", [0, 1, 2]),
+    mr4("mr4-132", [0, 2, 1]),
+    mr4("mr4-213", [1, 0, 2]),
+    mr4("mr4-231", [1, 2, 0]),
+    mr4("mr4-312", [2, 0, 1]),
+    mr4("mr4-321", [2, 1, 0]),
+    splitting(
         "mr4-suzuki",
-        Some(4),
+        [0, 1, 2],
+        SUZUKI4,
         "McLachlan–Reich composed by Suzuki's fractal",
-        [SPLIT, "21 axis rotations", "McLachlan 1993; Suzuki 1990"],
+        &[times(21, AxisRotation)],
+        "McLachlan 1993; Suzuki 1990",
     ),
-    plain(
-        SPLITTING,
+    splitting(
         "mr6",
-        Some(6),
+        [0, 1, 2],
+        KAHAN_LI6,
         "McLachlan–Reich composed by nine stages",
-        [SPLIT, "37 axis rotations", "McLachlan 1993; Kahan & Li 1997"],
+        &[times(37, AxisRotation)],
+        "McLachlan 1993; Kahan & Li 1997",
     ),
-    plain(
-        SPLITTING,
+    splitting(
         "mr8",
-        Some(8),
+        [0, 1, 2],
+        KAHAN_LI8,
         "McLachlan–Reich composed by seventeen stages",
-        [SPLIT, "69 axis rotations", "McLachlan 1993; Kahan & Li 1997"],
+        &[times(69, AxisRotation)],
+        "McLachlan 1993; Kahan & Li 1997",
     ),
-    plain(
-        SPLITTING,
+    splitting(
         "mr10",
-        Some(10),
+        [0, 1, 2],
+        SOFRONIOU_SPALETTA10,
         "McLachlan–Reich composed by thirty-five stages",
-        [SPLIT, "141 axis rotations", "McLachlan 1993; Sofroniou & Spaletta 2005"],
+        &[times(141, AxisRotation)],
+        "McLachlan 1993; Sofroniou & Spaletta 2005",
     ),
-    plain(
-        MOMENTUM,
+    simo_wong(
         "simo-wong",
-        Some(2),
+        2,
         "Simo and Wong's implicit method, increment exp(ζ)",
-        [ALL_FIRST, NEWTON, "Simo & Wong 1991"],
+        NEWTON,
+        "Simo & Wong 1991",
+        Recipe::SimoWong(SimoWong::TAN),
     ),
-    plain(
-        MOMENTUM,
+    simo_wong(
         "simo-wong-k1",
-        Some(2),
+        2,
         "Simo and Wong's implicit method with k = 1: the midpoint rule in cay",
-        [ALL_FIRST, NEWTON, "Austin, Krishnaprasad & Wang 1993"],
+        NEWTON,
+        "Austin, Krishnaprasad & Wang 1993",
+        Recipe::SimoWong(SimoWong::ONE),
     ),
-    plain(
-        MOMENTUM,
-        "lewis-simo",
-        None,
-        "the same with the k that makes the momentum of order 4 (the attitude stays at 2)",
-        [ALL_FIRST, NEWTON, "Lewis & Simo 1994"],
-    ),
-    plain(
-        MOMENTUM,
+    MethodInfo {
+        order: Order::MomentumAndAttitude(4, 2),
+        ..simo_wong(
+            "lewis-simo",
+            0,
+            "the same with the k that makes the momentum of order 4 (the attitude stays at 2)",
+            NEWTON,
+            "Lewis & Simo 1994",
+            Recipe::SimoWong(SimoWong::LEWIS_SIMO),
+        )
+    },
+    simo_wong(
         "simo-wong4",
-        Some(4),
+        4,
         "Simo and Wong's method composed by Suzuki's fractal",
-        [ALL_FIRST, "5 simo-wong", "Simo & Wong 1991; Suzuki 1990"],
+        Cost::of(&[times(5, SimoWongStep)]),
+        "Simo & Wong 1991; Suzuki 1990",
+        Recipe::ComposedSimoWong(SUZUKI4),
     ),
-    plain(
-        MOMENTUM,
+    simo_wong(
         "simo-wong6",
-        Some(6),
+        6,
         "Simo and Wong's method composed by nine stages",
-        [ALL_FIRST, "9 simo-wong", "Simo & Wong 1991; Kahan & Li 1997"],
+        Cost::of(&[times(9, SimoWongStep)]),
+        "Simo & Wong 1991; Kahan & Li 1997",
+        Recipe::ComposedSimoWong(KAHAN_LI6),
     ),
     plain(
-        SERIES,
+        (Family::LieSeries, Needs::Body),
         "buss4",
-        Some(4),
+        4,
         "Buss's augmented Taylor method",
-        [KEEPS_GROUP, "9 ×, 4 K, 1 exp", "Buss 2000"],
+        KEEPS_GROUP,
+        Cost::of(&[times(9, CrossProduct), times(4, InverseInertia), times(1, Exp)]),
+        "Buss 2000",
+        Recipe::Buss,
     ),
-    dmv("dmv2", 2, "discrete Moser–Veselov"),
-    dmv("dmv4", 4, "discrete Moser–Veselov, preprocessed to order 4"),
-    dmv("dmv6", 6, "discrete Moser–Veselov, preprocessed to order 6"),
-    dmv("dmv8", 8, "discrete Moser–Veselov, preprocessed to order 8"),
-    dmv("dmv10", 10, "discrete Moser–Veselov, preprocessed to order 10"),
-    plain(
-        "exact",
-        "exact",
-        None,
-        "the exact motion by elliptic functions, any step",
-        ["everything", "1–2 µs whatever the step", "Jacobi 1850"],
-    ),
+    dmv("dmv2", "discrete Moser–Veselov", DMV2),
+    dmv("dmv4", "discrete Moser–Veselov, preprocessed to order 4", DMV4),
+    dmv("dmv6", "discrete Moser–Veselov, preprocessed to order 6", DMV6),
+    dmv("dmv8", "discrete Moser–Veselov, preprocessed to order 8", DMV8),
+    dmv("dmv10", "discrete Moser–Veselov, preprocessed to order 10", DMV10),
+    MethodInfo {
+        order: Order::Exact,
+        ..plain(
+            (Family::Exact, Needs::Body),
+            "exact",
+            0,
+            "the exact motion by elliptic functions, any step",
+            &[Everything],
+            Cost::of(&[Work { count: Count::Between(1, 2), operation: Microsecond }]),
+            "Jacobi 1850",
+            Recipe::Exact,
+        )
+    },
 ];
 
-const fn taylor(name: &'static str, order: usize, cost: &'static str) -> MethodInfo {
-    let summary = "Lie series: derivatives by recurrence, the flow taken to the group";
-    plain(SERIES, name, Some(order), summary, [KEEPS_GROUP, cost, "Gröbner 1960"])
+/// 15 p (p + 1)/2 multiplications for a vector, p (p + 1) products of matrices.
+const fn taylor_work(p: u32) -> [Work; 2] {
+    [times(15 * p * (p + 1) / 2, Multiplication), times(p * (p + 1), Product)]
 }
 
-/// Methods for fields with Taylor coefficients by recurrence: `with_series_method`, and the free
-/// rigid body in ℝ³.
-pub const SERIES_METHODS: &[MethodInfo] = &[
-    taylor("taylor4", 4, "150 multiplications in ℝ³; 20 products"),
-    taylor("taylor5", 5, "225 multiplications in ℝ³; 30 products"),
-    taylor("taylor6", 6, "315 multiplications in ℝ³; 42 products"),
-    taylor("taylor7", 7, "420 multiplications in ℝ³; 56 products"),
-    taylor("taylor8", 8, "540 multiplications in ℝ³; 72 products"),
-    taylor("taylor9", 9, "675 multiplications in ℝ³; 90 products"),
-    taylor("taylor10", 10, "825 multiplications in ℝ³; 110 products"),
-    taylor("taylor11", 11, "990 multiplications in ℝ³; 132 products"),
-    taylor("taylor12", 12, "1170 multiplications in ℝ³; 156 products"),
-    taylor("taylor13", 13, "1365 multiplications in ℝ³; 182 products"),
-    taylor("taylor14", 14, "1575 multiplications in ℝ³; 210 products"),
-    taylor("taylor15", 15, "1800 multiplications in ℝ³; 240 products"),
-    taylor("taylor16", 16, "2040 multiplications in ℝ³; 272 products"),
-];
-
-const NEAREST: &str = "Hairer, Lubich, Wanner, Geometric Numerical Integration, IV.4";
-
-/// Methods for a state that holds an attitude: `with_attitude_method`.
-pub const ATTITUDE_METHODS: &[MethodInfo] = &[
+const fn taylor(
+    name: &'static str,
+    [vectors, matrices]: &'static [Work; 2],
+    order: usize,
+) -> MethodInfo {
     plain(
-        PROJECTED,
+        (Family::LieSeries, Needs::Series),
+        name,
+        order,
+        "Lie series: derivatives by recurrence, the flow taken to the group",
+        KEEPS_GROUP,
+        Cost {
+            instead: Instead::OnMatrices(core::slice::from_ref(matrices)),
+            ..Cost::of(core::slice::from_ref(vectors))
+        },
+        "Gröbner 1960",
+        Recipe::Series(order),
+    )
+}
+
+macro_rules! taylor {
+    ($($name:literal $order:literal,)*) => {
+        /// For fields with Taylor coefficients by recurrence, and the free rigid body in ℝ³.
+        pub(super) const SERIES: &[MethodInfo] = &[
+            $(taylor($name, &const { taylor_work($order) }, $order),)*
+        ];
+    };
+}
+taylor! {
+    "taylor4" 4,
+    "taylor5" 5,
+    "taylor6" 6,
+    "taylor7" 7,
+    "taylor8" 8,
+    "taylor9" 9,
+    "taylor10" 10,
+    "taylor11" 11,
+    "taylor12" 12,
+    "taylor13" 13,
+    "taylor14" 14,
+    "taylor15" 15,
+    "taylor16" 16,
+}
+
+const fn projected(
+    name: &'static str,
+    summary: &'static str,
+    work: &'static [Work],
+    how: Projection,
+) -> MethodInfo {
+    const NEAREST: &str = "Hairer, Lubich, Wanner, Geometric Numerical Integration, IV.4";
+    let (family, cost) = ((Family::Projection, Needs::Attitude), Cost::of(work));
+    plain(family, name, 4, summary, &[Group], cost, NEAREST, Recipe::Projected(how))
+}
+
+const SCHULZ: Work = Work { count: Count::Between(2, 3), operation: NewtonSchulz };
+
+/// For a state that holds an attitude.
+pub(super) const ATTITUDE: &[MethodInfo] = &[
+    projected(
         "rk4-qr",
-        Some(4),
         "classical Runge–Kutta on the entries, then the factor Q of g = QR",
-        ["group", "4 F, 2 Gram–Schmidt", NEAREST],
+        &[times(4, AmbientField), times(2, GramSchmidt)],
+        Projection::Qr,
     ),
-    of_a_tableau(plain(
-        PROJECTED,
+    of_a_tableau(projected(
         "rk-qr",
-        None,
         "explicit Runge–Kutta with any tableau on the entries, then the factor Q of g = QR",
-        ["group", "s F, 2 Gram–Schmidt", NEAREST],
+        &[stages(AmbientField), times(2, GramSchmidt)],
+        Projection::Qr,
     )),
-    plain(
-        PROJECTED,
+    projected(
         "rk4-polar",
-        Some(4),
         "classical Runge–Kutta on the entries, then the polar factor of g",
-        ["group", "4 F, 2–3 Newton–Schulz", NEAREST],
+        &[times(4, AmbientField), SCHULZ],
+        Projection::Polar,
     ),
-    of_a_tableau(plain(
-        PROJECTED,
+    of_a_tableau(projected(
         "rk-polar",
-        None,
         "explicit Runge–Kutta with any tableau on the entries, then the polar factor of g",
-        ["group", "s F, 2–3 Newton–Schulz", NEAREST],
+        &[stages(AmbientField), SCHULZ],
+        Projection::Polar,
     )),
 ];
 
-const ALL_QUADRATIC: &str = "energy, group, Casimirs, quadratic invariants, time symmetry";
+/// Everything that a body keeps is quadratic in (m, g).
+const fn gauss_mg(
+    name: &'static str,
+    summary: &'static str,
+    work: &'static [Work],
+    table: ImplicitTableau<3>,
+) -> MethodInfo {
+    const ALL: &[Structure] = &[Energy, Group, Casimirs, QuadraticInvariants, TimeSymmetry];
+    let info = gauss(name, summary, work, table);
+    MethodInfo { preserves: ALL, needs: Needs::State, source: GAUSS, ..info }
+}
 
-/// Classical methods on the momentum and the entries of the attitude as one state: `with_state_method`.
-pub const STATE_METHODS: &[MethodInfo] = &[
+/// Classical methods on the momentum and the entries of the attitude as one state.
+pub(super) const STATE: &[MethodInfo] = &[
     plain(
-        RUNGE_KUTTA,
+        (Family::RungeKutta, Needs::State),
         "rk4-mg",
-        Some(4),
+        4,
         "classical Runge–Kutta on (m, g), the momentum and the entries of the attitude as one state",
-        [LINEAR_ONLY, "4 F", KUTTA],
+        LINEAR_ONLY,
+        Cost::of(&[times(4, AmbientField)]),
+        KUTTA,
+        Recipe::Rk,
     ),
     of_a_tableau(plain(
-        RUNGE_KUTTA,
+        (Family::RungeKutta, Needs::State),
         "rk-mg",
-        None,
+        0,
         "explicit Runge–Kutta with any tableau on (m, g)",
-        [LINEAR_ONLY, "s F", KUTTA],
+        LINEAR_ONLY,
+        Cost::of(&[stages(AmbientField)]),
+        KUTTA,
+        Recipe::Rk,
     )),
-    plain(
-        RUNGE_KUTTA,
+    gauss_mg(
         "midpoint-implicit-mg",
-        Some(2),
         "the implicit midpoint rule on (m, g), where everything that the body keeps is quadratic",
-        [ALL_QUADRATIC, "5–20 F", GAUSS],
+        &[times(1, AmbientField)],
+        GAUSS2.padded(),
     ),
-    plain(
-        RUNGE_KUTTA,
+    gauss_mg(
         "gauss4-mg",
-        Some(4),
         "Gauss collocation of two stages on (m, g)",
-        [ALL_QUADRATIC, "5–20 × 2 F", GAUSS],
+        &[times(2, AmbientField)],
+        GAUSS4.padded(),
     ),
-    plain(
-        RUNGE_KUTTA,
+    gauss_mg(
         "gauss6-mg",
-        Some(6),
         "Gauss collocation of three stages on (m, g)",
-        [ALL_QUADRATIC, "5–20 × 3 F", GAUSS],
+        &[times(3, AmbientField)],
+        GAUSS6,
     ),
 ];

@@ -2,288 +2,511 @@
 
 mod body;
 
-pub use body::{ATTITUDE_METHODS, BODY_METHODS, SERIES_METHODS, STATE_METHODS};
+use super::facts::{
+    Cost, Count, Family, Instead, Maps, MethodInfo, Needs, Operation, Order, Structure, Work, times,
+};
+use super::recipe::Recipe;
+use crate::methods::commutator_free::{CF3, CF4, CF43};
+use crate::methods::crouch_grossman::{CG2, CG3, CG4};
+use crate::methods::low_storage::{EES25, EES27, LS3, LS3_BP, LS4, LS5, LS32};
+use crate::methods::one_bracket::{MAGNUS43, RKMK4_2C};
+use crate::methods::{GAUSS2, GAUSS4, GAUSS6, ImplicitTableau, KAHAN_LI6, SUZUKI4};
+use Operation::{
+    Act, AmbientField, Bracket, Cay, DpsiInv, EnergyCasimirStep, Exp, Field, Gradient,
+    IsospectralStep, LinearField, Product, Psi, TripleProduct,
+};
+use Structure::{
+    Casimirs, Energy, Group, LinearInvariants, QuadraticInvariants, Symplectic, TimeSymmetry,
+};
 
-use super::MethodInfo;
+impl Needs {
+    /// The methods that need this, and nothing more.
+    pub const fn methods(self) -> &'static [MethodInfo] {
+        match self {
+            Needs::Field => FIELD,
+            Needs::LinearType => LINEAR_TYPE,
+            Needs::Norm => NORM,
+            Needs::Series => body::SERIES,
+            Needs::Body => body::BODY,
+            Needs::Attitude => body::ATTITUDE,
+            Needs::State => body::STATE,
+            Needs::LiePoisson => LIE_POISSON,
+            Needs::Isospectral => ISOSPECTRAL,
+        }
+    }
+}
 
-const RKMK: &str = "Runge–Kutta–Munthe-Kaas";
-const RUNGE_KUTTA: &str = "Runge–Kutta";
-const COMMUTATOR_FREE: &str = "commutator-free";
-const CROUCH_GROSSMAN: &str = "Crouch–Grossman";
-const MAGNUS: &str = "Magnus";
-const SPLITTING: &str = "splitting";
-const MOMENTUM: &str = "energy and momentum";
-const DISCRETE: &str = "discrete mechanics";
-const SERIES: &str = "Lie series";
-const PROJECTED: &str = "projection";
-const LIE_POISSON: &str = "Lie–Poisson";
+/// Every method that some problem can ask for.
+///
+/// ```
+/// use lieflow::catalog::{Needs, all_methods};
+/// let body_in_space = [Needs::Field, Needs::Norm, Needs::Body, Needs::Attitude];
+/// let fitting: Vec<_> =
+///     all_methods().filter(|m| body_in_space.contains(&m.needs)).map(|m| m.name).collect();
+/// assert!(fitting.contains(&"rkmk4") && fitting.contains(&"dmv10"));
+/// assert!(!fitting.contains(&"magnus4"));
+/// ```
+pub fn all_methods() -> impl Iterator<Item = &'static MethodInfo> {
+    Needs::ALL.into_iter().flat_map(Needs::methods)
+}
 
 /// A method without map and tableau.
 const fn plain(
-    family: &'static str,
+    (family, needs): (Family, Needs),
     name: &'static str,
-    order: Option<usize>,
+    order: usize,
     summary: &'static str,
-    [preserves, cost, source]: [&'static str; 3],
+    preserves: &'static [Structure],
+    cost: Cost,
+    source: &'static str,
+    recipe: Recipe,
 ) -> MethodInfo {
     MethodInfo {
         family,
         name,
         summary,
-        order,
-        takes_map: false,
+        order: Order::Of(order),
+        maps: Maps::None,
         takes_tableau: false,
         preserves,
         cost,
         source,
+        needs,
+        recipe,
     }
 }
 
-/// The same in coordinates that are chosen.
-const fn in_coordinates(info: MethodInfo) -> MethodInfo {
-    MethodInfo { takes_map: true, ..info }
+/// The method in coordinates that are chosen.
+const fn in_coordinates(info: MethodInfo, maps: Maps) -> MethodInfo {
+    MethodInfo { maps, ..info }
 }
 
-/// The same with a tableau that is chosen.
+/// The method with a tableau that is chosen.
 const fn of_a_tableau(info: MethodInfo) -> MethodInfo {
-    MethodInfo { takes_tableau: true, ..info }
+    MethodInfo { takes_tableau: true, order: Order::Tableau, ..info }
 }
 
-const KEEPS_GROUP: &str = "group, Casimirs";
-const LINEAR_ONLY: &str = "linear invariants only";
+/// As often as the tableau has stages.
+const fn stages(operation: Operation) -> Work {
+    Work { count: Count::Stages, operation }
+}
+
+const KEEPS_GROUP: &[Structure] = &[Group, Casimirs];
+const GROUP_AND_TIME: &[Structure] = &[Group, Casimirs, TimeSymmetry];
+const LINEAR_ONLY: &[Structure] = &[LinearInvariants];
 const MUNTHE_KAAS: &str = "Munthe-Kaas 1999; Celledoni & Owren, Table 1";
 const KUTTA: &str = "Hairer, Nørsett, Wanner I, p. 138";
-
-/// A method that keeps the group, in exp.
-const fn with_exp(
-    family: &'static str,
-    name: &'static str,
-    order: usize,
-    summary: &'static str,
-    [cost, source]: [&'static str; 2],
-) -> MethodInfo {
-    plain(family, name, Some(order), summary, [KEEPS_GROUP, cost, source])
-}
-
-const fn cf(
-    name: &'static str,
-    order: usize,
-    summary: &'static str,
-    cost: &'static str,
-    source: &'static str,
-) -> MethodInfo {
-    with_exp(COMMUTATOR_FREE, name, order, summary, [cost, source])
-}
-
 const CMO: &str = "Celledoni, Marthinsen, Owren 2003";
 const BAZAVOV: &str = "Bazavov 2022";
 const EES: &str = "Shmelev, Thompson, Salvi 2025";
 
-/// The methods for every problem: `with_method`.
-pub const METHODS: &[MethodInfo] = &[
-    in_coordinates(plain(
-        RKMK,
-        "rkmk4",
-        Some(4),
-        "Runge–Kutta–Munthe-Kaas with the classical tableau",
-        [KEEPS_GROUP, "4 f, 4 Ψ, 3 dΨ⁻¹", MUNTHE_KAAS],
+/// An explicit method in exp for any field.
+const fn in_exp(
+    family: Family,
+    name: &'static str,
+    order: usize,
+    summary: &'static str,
+    work: &'static [Work],
+    source: &'static str,
+    recipe: Recipe,
+) -> MethodInfo {
+    plain((family, Needs::Field), name, order, summary, KEEPS_GROUP, Cost::of(work), source, recipe)
+}
+
+const CF: Family = Family::CommutatorFree;
+
+/// For every problem.
+const FIELD: &[MethodInfo] = &[
+    in_coordinates(
+        plain(
+            (Family::Rkmk, Needs::Field),
+            "rkmk4",
+            4,
+            "Runge–Kutta–Munthe-Kaas with the classical tableau",
+            KEEPS_GROUP,
+            Cost::of(&[times(4, Field), times(4, Psi), times(3, DpsiInv)]),
+            MUNTHE_KAAS,
+            Recipe::Rkmk,
+        ),
+        Maps::All,
+    ),
+    of_a_tableau(in_coordinates(
+        plain(
+            (Family::Rkmk, Needs::Field),
+            "rkmk",
+            0,
+            "Runge–Kutta–Munthe-Kaas with any explicit tableau",
+            KEEPS_GROUP,
+            Cost::of(&[
+                stages(Field),
+                stages(Psi),
+                Work { count: Count::StagesLessOne, operation: DpsiInv },
+            ]),
+            MUNTHE_KAAS,
+            Recipe::Rkmk,
+        ),
+        Maps::All,
     )),
-    of_a_tableau(in_coordinates(plain(
-        RKMK,
-        "rkmk",
-        None,
-        "Runge–Kutta–Munthe-Kaas with any explicit tableau",
-        [KEEPS_GROUP, "s f, s Ψ, s−1 dΨ⁻¹", MUNTHE_KAAS],
-    ))),
     plain(
-        RUNGE_KUTTA,
+        (Family::RungeKutta, Needs::Field),
         "rk4",
-        Some(4),
+        4,
         "classical Runge–Kutta on the entries of the state",
-        [LINEAR_ONLY, "4 F", KUTTA],
+        LINEAR_ONLY,
+        Cost::of(&[times(4, AmbientField)]),
+        KUTTA,
+        Recipe::Rk,
     ),
     of_a_tableau(plain(
-        RUNGE_KUTTA,
+        (Family::RungeKutta, Needs::Field),
         "rk",
-        None,
+        0,
         "explicit Runge–Kutta with any tableau on the entries of the state",
-        [LINEAR_ONLY, "s F", KUTTA],
+        LINEAR_ONLY,
+        Cost::of(&[stages(AmbientField)]),
+        KUTTA,
+        Recipe::Rk,
     )),
-    with_exp(
-        RKMK,
+    in_exp(
+        Family::Rkmk,
         "rkmk4-2c",
         4,
         "RKMK of order 4 with two commutators",
-        ["4 f, 4 exp, 2 brackets", "Munthe-Kaas, Owren 1999"],
+        &[times(4, Field), times(4, Exp), times(2, Bracket)],
+        "Munthe-Kaas, Owren 1999",
+        Recipe::OneBracket(RKMK4_2C.padded()),
     ),
-    with_exp(
-        MAGNUS,
+    in_exp(
+        Family::Magnus,
         "magnus43",
         4,
         "Magnus method for nonlinear equations, pair 4(3)",
-        ["6 f, 6 exp, 3 brackets", "Casas, Iserles 2006"],
+        &[times(6, Field), times(6, Exp), times(3, Bracket)],
+        "Casas, Iserles 2006",
+        Recipe::OneBracket(MAGNUS43),
     ),
-    cf("cf3", 3, "commutator-free, 3 stages", "3 f, 4 exp", CMO),
-    cf("cf4", 4, "commutator-free, 4 stages", "4 f, 5 exp", CMO),
-    cf(
+    in_exp(
+        CF,
+        "cf3",
+        3,
+        "commutator-free, 3 stages",
+        &[times(3, Field), times(4, Exp)],
+        CMO,
+        Recipe::ProductOf3(CF3),
+    ),
+    in_exp(
+        CF,
+        "cf4",
+        4,
+        "commutator-free, 4 stages",
+        &[times(4, Field), times(5, Exp)],
+        CMO,
+        Recipe::ProductOf4(CF4),
+    ),
+    plain(
+        (CF, Needs::Field),
         "cf43",
         4,
         "commutator-free pair 4(3)",
-        "4 f, 5 exp; 5 f, 8 exp with the error",
+        KEEPS_GROUP,
+        Cost {
+            instead: Instead::WithError(&[times(5, Field), times(8, Exp)]),
+            ..Cost::of(&[times(4, Field), times(5, Exp)])
+        },
         "Curry, Owren 2019",
+        Recipe::ProductOf5(CF43),
     ),
-    cf("cf-ls3", 3, "commutator-free in low storage (Lüscher)", "3 f, 3 exp", BAZAVOV),
-    cf(
+    low_storage("cf-ls3", 3, "commutator-free in low storage (Lüscher)", &SAME[0], LS3.padded()),
+    low_storage(
         "cf-ls3-bp",
         3,
         "commutator-free in low storage (Bernardini, Pirozzoli)",
-        "3 f, 3 exp",
-        BAZAVOV,
+        &SAME[0],
+        LS3_BP.padded(),
     ),
-    cf("cf-ls32", 3, "commutator-free in low storage, pair 3(2)", "5 f, 5 exp", BAZAVOV),
-    cf("cf-ls4", 4, "commutator-free in low storage (Carpenter, Kennedy)", "5 f, 5 exp", BAZAVOV),
-    cf("cf-ls5", 5, "commutator-free in low storage (Yan)", "13 f, 13 exp", BAZAVOV),
-    cf("cf-ees25", 2, "order 2, reversible to order 5", "3 f, 3 exp", EES),
-    cf("cf-ees27", 2, "order 2, reversible to order 7", "4 f, 4 exp", EES),
-    with_exp(
-        CROUCH_GROSSMAN,
+    low_storage("cf-ls32", 3, "commutator-free in low storage, pair 3(2)", &SAME[2], LS32.padded()),
+    low_storage(
+        "cf-ls4",
+        4,
+        "commutator-free in low storage (Carpenter, Kennedy)",
+        &SAME[2],
+        LS4.padded(),
+    ),
+    low_storage("cf-ls5", 5, "commutator-free in low storage (Yan)", &SAME[3], LS5),
+    MethodInfo {
+        source: EES,
+        ..low_storage("cf-ees25", 2, "order 2, reversible to order 5", &SAME[0], EES25.padded())
+    },
+    MethodInfo {
+        source: EES,
+        ..low_storage("cf-ees27", 2, "order 2, reversible to order 7", &SAME[1], EES27.padded())
+    },
+    in_exp(
+        Family::CrouchGrossman,
         "cg2",
         2,
         "Crouch–Grossman, 2 stages",
-        ["2 f, 2 exp", "Crouch, Grossman 1993"],
+        &[times(2, Field), times(2, Exp)],
+        "Crouch, Grossman 1993",
+        Recipe::ProductOf2(CG2),
     ),
-    with_exp(
-        CROUCH_GROSSMAN,
+    in_exp(
+        Family::CrouchGrossman,
         "cg3",
         3,
         "Crouch–Grossman, 3 stages",
-        ["3 f, 6 exp", "Owren, Marthinsen 1999"],
+        &[times(3, Field), times(6, Exp)],
+        "Owren, Marthinsen 1999",
+        Recipe::ProductOf3(CG3),
     ),
-    with_exp(
-        CROUCH_GROSSMAN,
+    in_exp(
+        Family::CrouchGrossman,
         "cg4",
         4,
         "Crouch–Grossman, 5 stages (CG4a)",
-        ["5 f, 15 exp", "Jackiewicz, Marthinsen, Owren 2000"],
+        &[times(5, Field), times(15, Exp)],
+        "Jackiewicz, Marthinsen, Owren 2000",
+        Recipe::ProductOf5(CG4),
     ),
 ];
+
+/// As many f as exp: 3, 4, 5 or 13.
+const SAME: [[Work; 2]; 4] = [
+    [times(3, Field), times(3, Exp)],
+    [times(4, Field), times(4, Exp)],
+    [times(5, Field), times(5, Exp)],
+    [times(13, Field), times(13, Exp)],
+];
+
+const fn low_storage(
+    name: &'static str,
+    order: usize,
+    summary: &'static str,
+    work: &'static [Work],
+    table: crate::methods::low_storage::TwoN<13>,
+) -> MethodInfo {
+    in_exp(CF, name, order, summary, work, BAZAVOV, Recipe::LowStorage(table))
+}
 
 const fn magnus(
     name: &'static str,
     order: usize,
     summary: &'static str,
-    cost: &'static str,
+    work: &'static [Work],
     source: &'static str,
+    recipe: Recipe,
 ) -> MethodInfo {
-    let keeps = "group, Casimirs, time symmetry";
-    plain(MAGNUS, name, Some(order), summary, [keeps, cost, source])
+    let family = (Family::Magnus, Needs::LinearType);
+    plain(family, name, order, summary, GROUP_AND_TIME, Cost::of(work), source, recipe)
 }
 
 const BLANES: &str = "Blanes, Casas, Ros 2000";
 const ALVERMANN: &str = "Alvermann, Fehske 2011";
 
-/// The methods for equations of linear type, ẏ = λ_*(A(t))(y): `with_linear_method`.
-pub const LINEAR_METHODS: &[MethodInfo] = &[
-    magnus("magnus4", 4, "Magnus, order 4", "2 A, 1 exp, 1 bracket", "Iserles, Nørsett 1999"),
-    magnus("magnus6", 6, "Magnus, order 6", "3 A, 1 exp, 3 brackets", BLANES),
-    magnus("magnus8", 8, "Magnus, order 8", "4 A, 1 exp, 10 brackets", BLANES),
-    magnus("cfm4-2", 4, "commutator-free Magnus, order 4", "2 A, 2 exp", "Blanes, Moan 2006"),
-    magnus("cfm4-3", 4, "commutator-free Magnus, order 4, optimised", "3 A, 3 exp", ALVERMANN),
-    magnus("cfm6-5", 6, "commutator-free Magnus, order 6", "3 A, 5 exp", ALVERMANN),
-    magnus("cfm8-11", 8, "commutator-free Magnus, order 8", "4 A, 11 exp", ALVERMANN),
+/// For equations of linear type, ẏ = λ_*(A(t))(y).
+const LINEAR_TYPE: &[MethodInfo] = &[
+    magnus(
+        "magnus4",
+        4,
+        "Magnus, order 4",
+        &[times(2, LinearField), times(1, Exp), times(1, Bracket)],
+        "Iserles, Nørsett 1999",
+        Recipe::Magnus4,
+    ),
+    magnus(
+        "magnus6",
+        6,
+        "Magnus, order 6",
+        &[times(3, LinearField), times(1, Exp), times(3, Bracket)],
+        BLANES,
+        Recipe::Magnus6,
+    ),
+    magnus(
+        "magnus8",
+        8,
+        "Magnus, order 8",
+        &[times(4, LinearField), times(1, Exp), times(10, Bracket)],
+        BLANES,
+        Recipe::Magnus8,
+    ),
+    magnus(
+        "cfm4-2",
+        4,
+        "commutator-free Magnus, order 4",
+        &[times(2, LinearField), times(2, Exp)],
+        "Blanes, Moan 2006",
+        Recipe::Cfm42,
+    ),
+    magnus(
+        "cfm4-3",
+        4,
+        "commutator-free Magnus, order 4, optimised",
+        &[times(3, LinearField), times(3, Exp)],
+        ALVERMANN,
+        Recipe::Cfm43,
+    ),
+    magnus(
+        "cfm6-5",
+        6,
+        "commutator-free Magnus, order 6",
+        &[times(3, LinearField), times(5, Exp)],
+        ALVERMANN,
+        Recipe::Cfm65,
+    ),
+    magnus(
+        "cfm8-11",
+        8,
+        "commutator-free Magnus, order 8",
+        &[times(4, LinearField), times(11, Exp)],
+        ALVERMANN,
+        Recipe::Cfm811,
+    ),
     magnus(
         "cayley-magnus4",
         4,
         "Magnus in Cayley coordinates, order 4",
-        "2 A, 1 cay, 1 bracket, 1 triple product",
+        &[times(2, LinearField), times(1, Cay), times(1, Bracket), times(1, TripleProduct)],
         "Iserles 2001",
+        Recipe::CayleyMagnus4,
     ),
     magnus(
         "cayley-magnus6",
         6,
         "Magnus in Cayley coordinates, order 6",
-        "3 A, 1 cay, 5 brackets, 5 triple products",
+        &[times(3, LinearField), times(1, Cay), times(5, Bracket), times(5, TripleProduct)],
         "Iserles 2001",
+        Recipe::CayleyMagnus6,
     ),
 ];
 
-const QUADRATIC: &str = "quadratic invariants, time symmetry";
+const QUADRATIC: &[Structure] = &[QuadraticInvariants, TimeSymmetry];
 const ZANNA: &str = "Zanna, Engø & Munthe-Kaas 2001";
 const GAUSS: &str = "Hairer, Lubich, Wanner, Geometric Numerical Integration, II.1.3";
+const ITERATIONS: (u32, u32) = (5, 20);
 
-/// Implicit methods for problems whose points have a norm: `with_implicit_method`.
-pub const IMPLICIT_METHODS: &[MethodInfo] = &[
-    plain(
-        RUNGE_KUTTA,
+/// Implicit methods for problems whose points have a norm.
+const NORM: &[MethodInfo] = &[
+    gauss(
         "midpoint-implicit",
-        Some(2),
         "the implicit midpoint rule on the entries of the state",
-        [QUADRATIC, "5–20 F", GAUSS],
+        &[times(1, AmbientField)],
+        GAUSS2.padded(),
     ),
-    plain(
-        RUNGE_KUTTA,
+    gauss(
         "gauss4",
-        Some(4),
         "Gauss collocation of two stages on the entries of the state",
-        [QUADRATIC, "5–20 × 2 F", GAUSS],
+        &[times(2, AmbientField)],
+        GAUSS4.padded(),
     ),
-    plain(
-        RUNGE_KUTTA,
+    gauss(
         "gauss6",
-        Some(6),
         "Gauss collocation of three stages on the entries of the state",
-        [QUADRATIC, "5–20 × 3 F", GAUSS],
+        &[times(3, AmbientField)],
+        GAUSS6,
     ),
-    rkmk_gauss("rkmk-gauss2", 2, "5–20 × (f, Ψ, dΨ⁻¹)"),
-    rkmk_gauss("rkmk-gauss4", 4, "5–20 × (2 f, 2 Ψ, 2 dΨ⁻¹)"),
-    rkmk_gauss("rkmk-gauss6", 6, "5–20 × (3 f, 3 Ψ, 3 dΨ⁻¹)"),
-    rkmk_gauss_symmetric("rkmk-gauss2-symmetric", 2, "5–20 × (f, 2 Ψ, dΨ⁻¹)"),
-    rkmk_gauss_symmetric("rkmk-gauss4-symmetric", 4, "5–20 × (2 f, 3 Ψ, 2 dΨ⁻¹)"),
-    rkmk_gauss_symmetric("rkmk-gauss6-symmetric", 6, "5–20 × (3 f, 4 Ψ, 3 dΨ⁻¹)"),
+    rkmk_gauss(
+        "rkmk-gauss2",
+        &[times(1, Field), times(1, Psi), times(1, DpsiInv)],
+        GAUSS2.padded(),
+    ),
+    rkmk_gauss(
+        "rkmk-gauss4",
+        &[times(2, Field), times(2, Psi), times(2, DpsiInv)],
+        GAUSS4.padded(),
+    ),
+    rkmk_gauss("rkmk-gauss6", &[times(3, Field), times(3, Psi), times(3, DpsiInv)], GAUSS6),
+    rkmk_gauss_symmetric(
+        "rkmk-gauss2-symmetric",
+        &[times(1, Field), times(2, Psi), times(1, DpsiInv)],
+        GAUSS2.padded(),
+    ),
+    rkmk_gauss_symmetric(
+        "rkmk-gauss4-symmetric",
+        &[times(2, Field), times(3, Psi), times(2, DpsiInv)],
+        GAUSS4.padded(),
+    ),
+    rkmk_gauss_symmetric(
+        "rkmk-gauss6-symmetric",
+        &[times(3, Field), times(4, Psi), times(3, DpsiInv)],
+        GAUSS6,
+    ),
 ];
 
-const fn rkmk_gauss(name: &'static str, order: usize, cost: &'static str) -> MethodInfo {
-    let summary = "implicit Runge–Kutta–Munthe-Kaas on a Gauss tableau";
-    in_coordinates(plain(RKMK, name, Some(order), summary, [KEEPS_GROUP, cost, ZANNA]))
+/// A Gauss method on the entries.
+const fn gauss(
+    name: &'static str,
+    summary: &'static str,
+    work: &'static [Work],
+    table: ImplicitTableau<3>,
+) -> MethodInfo {
+    let (family, cost) = ((Family::RungeKutta, Needs::Norm), Cost::iterated(ITERATIONS, work));
+    plain(family, name, table.order, summary, QUADRATIC, cost, GAUSS, Recipe::Gauss(table))
 }
 
-const fn rkmk_gauss_symmetric(name: &'static str, order: usize, cost: &'static str) -> MethodInfo {
+const fn rkmk_gauss(
+    name: &'static str,
+    work: &'static [Work],
+    table: ImplicitTableau<3>,
+) -> MethodInfo {
+    let summary = "implicit Runge–Kutta–Munthe-Kaas on a Gauss tableau";
+    let (family, cost) = ((Family::Rkmk, Needs::Norm), Cost::iterated(ITERATIONS, work));
+    let recipe = Recipe::RkmkGauss(table);
+    in_coordinates(
+        plain(family, name, table.order, summary, KEEPS_GROUP, cost, ZANNA, recipe),
+        Maps::All,
+    )
+}
+
+const fn rkmk_gauss_symmetric(
+    name: &'static str,
+    work: &'static [Work],
+    table: ImplicitTableau<3>,
+) -> MethodInfo {
     let summary = "the same with its chart in the middle of the step; exp or cay";
-    let keeps = "group, Casimirs, time symmetry";
-    in_coordinates(plain(RKMK, name, Some(order), summary, [keeps, cost, ZANNA]))
+    MethodInfo {
+        summary,
+        maps: Maps::Odd,
+        preserves: GROUP_AND_TIME,
+        recipe: Recipe::RkmkGaussSymmetric(table),
+        ..rkmk_gauss(name, work, table)
+    }
 }
 
 const fn energy_casimir(
     name: &'static str,
     order: usize,
     summary: &'static str,
-    cost: &'static str,
+    cost: Cost,
+    recipe: Recipe,
 ) -> MethodInfo {
-    let keeps = "energy, Casimirs, time symmetry";
-    let source = "after Simo & Wong 1991; Lewis & Simo 1994";
-    in_coordinates(plain(LIE_POISSON, name, Some(order), summary, [keeps, cost, source]))
+    let (keeps, source): (&[_], _) =
+        (&[Energy, Casimirs, TimeSymmetry], "after Simo & Wong 1991; Lewis & Simo 1994");
+    let family = (Family::LiePoisson, Needs::LiePoisson);
+    in_coordinates(plain(family, name, order, summary, keeps, cost, source, recipe), Maps::Odd)
 }
 
-/// Methods for Lie–Poisson systems: `with_euler_method`, `with_momentum_method`,
-/// `with_lie_poisson_method`, `with_fluid_method`.
-pub const LIE_POISSON_METHODS: &[MethodInfo] = &[
+/// For Lie–Poisson systems.
+const LIE_POISSON: &[MethodInfo] = &[
     energy_casimir(
         "energy-casimir",
         2,
         "discrete gradient in the algebra and coadjoint action; exp or cay",
-        "5–20 × (∇H, Ψ, Λ)",
+        Cost::iterated(ITERATIONS, &[times(1, Gradient), times(1, Psi), times(1, Act)]),
+        Recipe::EnergyCasimir,
     ),
     energy_casimir(
         "energy-casimir4",
         4,
         "energy-casimir composed by Suzuki's fractal; exp or cay",
-        "5 energy-casimir",
+        Cost::of(&[times(5, EnergyCasimirStep)]),
+        Recipe::ComposedEnergyCasimir(SUZUKI4),
     ),
     energy_casimir(
         "energy-casimir6",
         6,
         "energy-casimir composed by nine stages; exp or cay",
-        "9 energy-casimir",
+        Cost::of(&[times(9, EnergyCasimirStep)]),
+        Recipe::ComposedEnergyCasimir(KAHAN_LI6),
     ),
 ];
 
@@ -291,27 +514,49 @@ const fn isospectral(
     name: &'static str,
     order: usize,
     summary: &'static str,
-    cost: &'static str,
+    cost: Cost,
+    recipe: Recipe,
 ) -> MethodInfo {
-    let keeps = "Casimirs, symplectic structure, time symmetry";
-    plain(LIE_POISSON, name, Some(order), summary, [keeps, cost, "Modin & Viviani 2020"])
+    let family = (Family::LiePoisson, Needs::Isospectral);
+    let keeps: &[_] = &[Casimirs, Symplectic, TimeSymmetry];
+    plain(family, name, order, summary, keeps, cost, "Modin & Viviani 2020", recipe)
 }
 
-/// Methods for isospectral systems on matrices: `with_lie_poisson_method`, `with_fluid_method`.
-pub const ISOSPECTRAL_METHODS: &[MethodInfo] = &[
-    isospectral("isospectral2", 2, "isospectral Gauss of one stage", "8–25 × 3 products"),
-    isospectral("isospectral4", 4, "isospectral Gauss of two stages", "8–25 × 6 products"),
-    isospectral("isospectral6", 6, "isospectral Gauss of three stages", "8–25 × 9 products"),
+/// For isospectral systems on matrices.
+const ISOSPECTRAL: &[MethodInfo] = &[
+    isospectral(
+        "isospectral2",
+        2,
+        "isospectral Gauss of one stage",
+        Cost::iterated((8, 25), &[times(3, Product)]),
+        Recipe::Isospectral2,
+    ),
+    isospectral(
+        "isospectral4",
+        4,
+        "isospectral Gauss of two stages",
+        Cost::iterated((8, 25), &[times(6, Product)]),
+        Recipe::Isospectral4,
+    ),
+    isospectral(
+        "isospectral6",
+        6,
+        "isospectral Gauss of three stages",
+        Cost::iterated((8, 25), &[times(9, Product)]),
+        Recipe::Isospectral6,
+    ),
     isospectral(
         "isospectral-suzuki4",
         4,
         "isospectral2 composed by Suzuki's fractal",
-        "5 isospectral2",
+        Cost::of(&[times(5, IsospectralStep)]),
+        Recipe::ComposedIsospectral(SUZUKI4),
     ),
     isospectral(
         "isospectral-kahan-li6",
         6,
         "isospectral2 composed by nine stages",
-        "9 isospectral2",
+        Cost::of(&[times(9, IsospectralStep)]),
+        Recipe::ComposedIsospectral(KAHAN_LI6),
     ),
 ];

@@ -5,6 +5,8 @@ use core::ops::{Deref, DerefMut};
 use approx::{AbsDiffEq, RelativeEq};
 use faer::Mat;
 
+use crate::space::{LinearSpace, Metric};
+
 macro_rules! matrix_element {
     ($(#[$doc:meta])* $name:ident) => {
         $(#[$doc])*
@@ -34,6 +36,33 @@ macro_rules! matrix_element {
         impl DerefMut for $name {
             fn deref_mut(&mut self) -> &mut Mat<f64> {
                 &mut self.0
+            }
+        }
+
+        impl Metric for $name {
+            type Scalar = f64;
+            fn assign(&mut self, x: &Self) {
+                self.0.assign(x);
+            }
+            fn size(&self) -> f64 {
+                self.0.size()
+            }
+            fn distance(&self, x: &Self) -> f64 {
+                self.0.distance(x)
+            }
+        }
+        impl LinearSpace for $name {
+            fn clear(&mut self) {
+                self.0.clear();
+            }
+            fn add(&mut self, a: f64, x: &Self) {
+                self.0.add(a, x);
+            }
+            fn dot(&self, x: &Self) -> f64 {
+                self.0.dot(x)
+            }
+            fn is_finite(&self) -> bool {
+                self.0.is_finite()
             }
         }
 

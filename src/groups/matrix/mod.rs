@@ -10,6 +10,7 @@ use std::sync::OnceLock;
 
 use faer::{Mat, MatRef};
 
+pub(crate) use check::finite;
 pub use check::{MEMBERSHIP, RCOND_MIN};
 use correct::Cosquare;
 pub use element::{AlgebraMatrix, GroupMatrix};
@@ -255,6 +256,12 @@ impl LieGroup for MatrixGroup {
     }
     fn apply(&self, g: &GroupMatrix, x: &Mat<f64>, y: &mut Mat<f64>) {
         mul(y, g.as_ref(), x.as_ref());
+    }
+    fn tangent(&self, v: &AlgebraMatrix, g: &GroupMatrix, out: &mut GroupMatrix) {
+        mul(out, v.as_ref(), g.as_ref());
+    }
+    fn apply_algebra(&self, v: &AlgebraMatrix, x: &Mat<f64>, y: &mut Mat<f64>) {
+        mul(y, v.as_ref(), x.as_ref());
     }
     /// Allocates.
     fn distance(&self, a: &GroupMatrix, b: &GroupMatrix) -> f64 {

@@ -12,7 +12,7 @@ use super::matrix::{ComplexMatrix, adjoint_mul_complex, mul_adjoint_skew, mul_co
 use crate::actions::{Action, Coadjoint, Conjugation};
 use crate::error::{Error, StepError};
 use crate::groups::{Adjoint, LieAlgebra};
-use crate::problems::LinearSpace;
+use crate::space::{LinearSpace, Metric};
 
 fn finite(x: &ComplexMatrix) -> Result<(), StepError> {
     if x.is_finite() { Ok(()) } else { Err(StepError::NotFinite { what: "Ad" }) }
@@ -36,6 +36,9 @@ impl Adjoint for Unitary {
         out.im.copy_from(g.im.transpose());
         out.im.col_iter_mut().for_each(|col| col.iter_mut().for_each(|x| *x = -*x));
         finite(out)
+    }
+    fn tangent_in_body(&self, g: &ComplexMatrix, v: &ComplexMatrix, out: &mut ComplexMatrix) {
+        mul_complex(out, g, v);
     }
     fn big_ad(
         &self,
@@ -77,8 +80,12 @@ impl Action<Unitary> for Conjugation {
     fn check(&self, group: &Unitary, p: &ComplexMatrix) -> Result<(), Error> {
         group.check("p", p)
     }
+    #[inline]
+    fn is_finite(&self, group: &Unitary, p: &ComplexMatrix) -> bool {
+        group.is_finite(p)
+    }
     fn assign(&self, _: &Unitary, p: &ComplexMatrix, q: &mut ComplexMatrix) {
-        crate::methods::Metric::assign(q, p);
+        q.assign(p);
     }
     fn act(
         &self,
@@ -90,6 +97,17 @@ impl Action<Unitary> for Conjugation {
     ) {
         mul_complex(product, g, p);
         mul_adjoint_skew(q, product, g);
+    }
+    /// \[v, p\].
+    fn generate(
+        &self,
+        group: &Unitary,
+        v: &ComplexMatrix,
+        p: &ComplexMatrix,
+        dp: &mut ComplexMatrix,
+        _: &mut ComplexMatrix,
+    ) {
+        group.bracket(v, p, dp);
     }
 }
 
@@ -104,6 +122,10 @@ impl Action<Unitary> for Coadjoint {
     fn check(&self, group: &Unitary, m: &ComplexMatrix) -> Result<(), Error> {
         Conjugation.check(group, m)
     }
+    #[inline]
+    fn is_finite(&self, group: &Unitary, m: &ComplexMatrix) -> bool {
+        group.is_finite(m)
+    }
     fn assign(&self, group: &Unitary, m: &ComplexMatrix, q: &mut ComplexMatrix) {
         Conjugation.assign(group, m, q);
     }
@@ -116,5 +138,15 @@ impl Action<Unitary> for Coadjoint {
         product: &mut ComplexMatrix,
     ) {
         Conjugation.act(group, g, m, q, product);
+    }
+    fn generate(
+        &self,
+        group: &Unitary,
+        v: &ComplexMatrix,
+        m: &ComplexMatrix,
+        dm: &mut ComplexMatrix,
+        work: &mut ComplexMatrix,
+    ) {
+        Conjugation.generate(group, v, m, dm, work);
     }
 }

@@ -10,9 +10,8 @@ use faer::{Accum, Mat, MatRef, c64};
 
 use crate::dense::{is_finite, lower_product, mirror, mul, mul_add, norm_frobenius};
 use crate::error::Error;
-use crate::methods::Metric;
-use crate::problems::LinearSpace;
 use crate::scalar::{Ops, tally};
+use crate::space::{LinearSpace, Metric};
 
 /// A complex matrix re + i·im.
 ///

@@ -23,9 +23,8 @@ use rand_distr::StandardNormal;
 
 use super::{LieAlgebra, LieGroup, MEMBERSHIP, RESIDUAL_MAX, Sample};
 use crate::error::Error;
-use crate::methods::Metric;
-use crate::problems::LinearSpace;
 use crate::scalar::{Ops, tally};
+use crate::space::{LinearSpace, Metric};
 
 /// U(n) over its algebra u(n) of skew-Hermitian matrices.
 ///
@@ -135,6 +134,12 @@ impl LieGroup for Unitary {
     }
     fn apply(&self, g: &ComplexMatrix, x: &ComplexMatrix, y: &mut ComplexMatrix) {
         mul_complex(y, g, x);
+    }
+    fn tangent(&self, v: &ComplexMatrix, g: &ComplexMatrix, out: &mut ComplexMatrix) {
+        mul_complex(out, v, g);
+    }
+    fn apply_algebra(&self, v: &ComplexMatrix, x: &ComplexMatrix, y: &mut ComplexMatrix) {
+        mul_complex(y, v, x);
     }
     fn distance(&self, a: &ComplexMatrix, b: &ComplexMatrix) -> f64 {
         Metric::distance(a, b)

@@ -79,16 +79,17 @@ impl<P: LinearField, Psi: CoordinateMap<P::Group>, const S: usize, const K: usiz
         })
     }
 
-    /// A at the nodes.
+    /// A at the nodes; y is any point.
     #[inline]
     fn sample(
         &mut self,
         problem: &P,
         nodes: &[f64; S],
         Step { t, h, .. }: Step<ScalarOf<P>>,
+        y: &PointOf<P>,
     ) -> Result<(), StepError> {
         for (i, (a, c)) in self.a.iter_mut().zip(nodes).enumerate() {
-            problem.a(t + h * ScalarOf::<P>::lit(*c), a, &mut self.field);
+            problem.f(t + h * ScalarOf::<P>::lit(*c), y, a, &mut self.field);
             if !problem.group().is_finite(a) {
                 return Err(StepError::NonFiniteRhs { stage: i + 1 });
             }
@@ -155,7 +156,7 @@ macro_rules! magnus_method {
                 y: &mut PointOf<P>,
                 work: &mut Self::Work,
             ) -> Result<(), StepError> {
-                work.sample(problem, &$nodes, step)?;
+                work.sample(problem, &$nodes, step, y)?;
                 $omega(problem.group(), step.h, &work.a, &mut work.scratch);
                 work.apply(problem, &$psi, step.n, y)
             }

@@ -166,7 +166,7 @@ where
         y: &mut PointOf<P>,
         (work, next): &mut Self::Work,
     ) -> Result<(), StepError> {
-        work.sample(problem, &self.0.nodes, step)?;
+        work.sample(problem, &self.0.nodes, step, y)?;
         for (i, weights) in self.0.factors.iter().enumerate() {
             let MagnusWork { a, scratch: [u], y: aside, chart, .. } = work;
             problem.group().combine(step.h, weights, a, u);

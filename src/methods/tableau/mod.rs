@@ -35,6 +35,54 @@ impl<const S: usize> Tableau<S> {
         }
         s
     }
+
+    /// How many stages the update and the error estimate need: S, but for a [`padded`](Self::padded) one.
+    pub const fn all_stages(&self) -> usize {
+        let Some(ErrorEstimate { e, damp, .. }) = self.error else { return self.update_stages() };
+        let mut s = S;
+        while s > 1 && self.b[s - 1] == 0.0 && e[s - 1] == 0.0 {
+            if let Some(d) = damp
+                && d[s - 1] != 0.0
+            {
+                break;
+            }
+            s -= 1;
+        }
+        s
+    }
+
+    /// The same method with room for N ≥ S stages. The stages that are added have the weight 0 and are never
+    /// evaluated: methods chosen by name share one type this way.
+    pub const fn padded<const N: usize>(&self) -> Tableau<N> {
+        let mut a = [[0.0; N]; N];
+        let mut i = 0;
+        while i < S {
+            a[i] = pad(&self.a[i]);
+            i += 1;
+        }
+        let error = match &self.error {
+            None => None,
+            Some(ErrorEstimate { order, e, damp }) => {
+                let damp = match damp {
+                    Some(d) => Some(pad(d)),
+                    None => None,
+                };
+                Some(ErrorEstimate { order: *order, e: pad(e), damp })
+            }
+        };
+        Tableau { name: self.name, order: self.order, a, b: pad(&self.b), c: pad(&self.c), error }
+    }
+}
+
+/// x with zeros after it.
+pub(super) const fn pad<const S: usize, const N: usize>(x: &[f64; S]) -> [f64; N] {
+    let mut padded = [0.0; N];
+    let mut i = 0;
+    while i < S {
+        padded[i] = x[i];
+        i += 1;
+    }
+    padded
 }
 
 /// One error from ‖h Σ e_j k_j‖ and, where there is one, the size of the damping row:

@@ -5,8 +5,8 @@ use nalgebra::{Matrix3, Vector3};
 use super::{check_finite, check_inertia};
 use crate::actions::{Coadjoint, LeftTranslation};
 use crate::error::Error;
-use crate::groups::{LieAlgebra, So3, apply3, cross, hat};
-use crate::problems::{Ambient, Problem};
+use crate::groups::{So3, apply3};
+use crate::problems::Problem;
 use crate::scalar::Real;
 
 /// J⁻¹·m for diagonal J.
@@ -87,26 +87,6 @@ impl<S: Real> Problem for RigidBody<S> {
     }
 }
 
-impl<S: Real> Ambient for RigidBody<S> {
-    #[inline]
-    fn field(&self, _: S, m: &Vector3<S>, dm: &mut Vector3<S>, _: &mut ()) {
-        *dm = cross(m, &self.omega(m));
-    }
-    /// Entry by entry: a vector that is copied whole goes through memory.
-    #[inline]
-    fn copy(&self, x: &Vector3<S>, y: &mut Vector3<S>) {
-        (y[0], y[1], y[2]) = (x[0], x[1], x[2]);
-    }
-    #[inline]
-    fn add(&self, a: S, x: &Vector3<S>, y: &mut Vector3<S>) {
-        self.group.axpy(a, x, y);
-    }
-    #[inline]
-    fn is_finite(&self, m: &Vector3<S>) -> bool {
-        self.group.is_finite(m)
-    }
-}
-
 /// The free rigid body with its attitude, as the paper integrates it: ġ = f(g)·g on SO(3),
 /// f(g) = ω_s = g J⁻¹ gᵀ m_s, equation (11); m_s is constant, the body momentum is gᵀm_s.
 #[derive(Clone, Copy, Debug)]
@@ -169,30 +149,5 @@ impl<S: Real> Problem for RigidBodyAttitude<S> {
     #[inline]
     fn f(&self, _: S, g: &Matrix3<S>, v: &mut Vector3<S>, _: &mut ()) {
         *v = self.omega_space(g);
-    }
-}
-
-impl<S: Real> Ambient for RigidBodyAttitude<S> {
-    #[inline]
-    fn field(&self, _: S, g: &Matrix3<S>, dg: &mut Matrix3<S>, _: &mut ()) {
-        let w = hat(&self.omega_space(g));
-        for j in 0..3 {
-            let col = Vector3::new(g[(0, j)], g[(1, j)], g[(2, j)]);
-            dg.set_column(j, &apply3(&w, &col));
-        }
-    }
-    #[inline]
-    fn copy(&self, x: &Matrix3<S>, y: &mut Matrix3<S>) {
-        *y = *x;
-    }
-    #[inline]
-    fn add(&self, a: S, x: &Matrix3<S>, y: &mut Matrix3<S>) {
-        for (y, x) in y.iter_mut().zip(x) {
-            *y += a * *x;
-        }
-    }
-    #[inline]
-    fn is_finite(&self, g: &Matrix3<S>) -> bool {
-        g.iter().fold(S::lit(0.0), |s, x| s + x.abs()).is_finite()
     }
 }

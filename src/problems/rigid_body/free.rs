@@ -188,7 +188,14 @@ impl<S: Real> LiePoisson for RigidBody<S> {
         self.energy(m)
     }
     #[inline]
-    fn discrete_gradient(&self, a: &Vector3<S>, b: &Vector3<S>, xi: &mut Vector3<S>, _: &mut ()) {
+    fn discrete_gradient(
+        &self,
+        a: &Vector3<S>,
+        b: &Vector3<S>,
+        xi: &mut Vector3<S>,
+        _: (&mut Vector3<S>, &mut Vector3<S>),
+        _: &mut (),
+    ) {
         let mean = |i: usize| S::lit(0.5) * (a[i] + b[i]);
         *xi = self.omega(&Vector3::new(mean(0), mean(1), mean(2)));
     }

@@ -4,10 +4,10 @@ use faer::Mat;
 
 use super::{check_finite, check_inertia};
 use crate::actions::{Coadjoint, LeftTranslation};
-use crate::dense::{self, antisymmetrise, mul};
+use crate::dense::{mul, scaled_sum};
 use crate::error::Error;
 use crate::groups::{AlgebraMatrix, GroupMatrix, MatrixGroup};
-use crate::problems::{Ambient, LiePoisson, Problem};
+use crate::problems::{LiePoisson, Problem};
 use crate::scalar::{Ops, tally};
 
 /// The free n-dimensional rigid body by its body momentum: ṁ = \[m, Ω\], Ω_ij = m_ij/J_ij, on a
@@ -103,7 +103,7 @@ impl RigidBodyN {
 impl Problem for RigidBodyN {
     type Group = MatrixGroup;
     type Action = Coadjoint;
-    type Work = Mat<f64>;
+    type Work = ();
 
     fn group(&self) -> &MatrixGroup {
         &self.group
@@ -111,29 +111,9 @@ impl Problem for RigidBodyN {
     fn action(&self) -> &Coadjoint {
         &Coadjoint
     }
-    fn work(&self) -> Mat<f64> {
-        Mat::zeros(self.group.n(), self.group.n())
-    }
-    fn f(&self, _: f64, m: &Mat<f64>, v: &mut AlgebraMatrix, _: &mut Mat<f64>) {
+    fn work(&self) {}
+    fn f(&self, _: f64, m: &Mat<f64>, v: &mut AlgebraMatrix, _: &mut ()) {
         self.omega(-1.0, m, v);
-    }
-}
-
-impl Ambient for RigidBodyN {
-    /// One product: \[m, Ω\] = P − Pᵀ with P = mΩ.
-    fn field(&self, _: f64, m: &Mat<f64>, dm: &mut Mat<f64>, omega: &mut Mat<f64>) {
-        self.omega(1.0, m, omega);
-        mul(dm, m.as_ref(), omega.as_ref());
-        antisymmetrise(dm);
-    }
-    fn copy(&self, x: &Mat<f64>, y: &mut Mat<f64>) {
-        y.copy_from(x);
-    }
-    fn add(&self, a: f64, x: &Mat<f64>, y: &mut Mat<f64>) {
-        dense::axpy(a, x, y);
-    }
-    fn is_finite(&self, m: &Mat<f64>) -> bool {
-        dense::is_finite(m)
     }
 }
 
@@ -211,22 +191,6 @@ impl Problem for RigidBodyNAttitude {
     }
 }
 
-impl Ambient for RigidBodyNAttitude {
-    fn field(&self, _: f64, g: &GroupMatrix, dg: &mut GroupMatrix, work: &mut [Mat<f64>; 3]) {
-        self.omega_space(g, work);
-        mul(dg, work[2].as_ref(), g.as_ref());
-    }
-    fn copy(&self, x: &GroupMatrix, y: &mut GroupMatrix) {
-        y.copy_from(&**x);
-    }
-    fn add(&self, a: f64, x: &GroupMatrix, y: &mut GroupMatrix) {
-        dense::axpy(a, x, y);
-    }
-    fn is_finite(&self, g: &GroupMatrix) -> bool {
-        dense::is_finite(g)
-    }
-}
-
 /// H = ½ Σ_{i<j} m_ij²/J_ij. Its gradient is Ω in the pairing ½tr(mᵀv), which counts each plane once.
 impl LiePoisson for RigidBodyN {
     fn hamiltonian(&self, m: &Mat<f64>) -> f64 {
@@ -237,9 +201,10 @@ impl LiePoisson for RigidBodyN {
         a: &Mat<f64>,
         b: &Mat<f64>,
         xi: &mut AlgebraMatrix,
-        work: &mut Mat<f64>,
+        (m, _): (&mut Mat<f64>, &mut AlgebraMatrix),
+        _: &mut (),
     ) {
-        dense::scaled_sum(work, [0.5, 0.5], [a, b], 0.0);
-        self.omega(1.0, work, xi);
+        scaled_sum(m, [0.5, 0.5], [a, b], 0.0);
+        self.omega(1.0, m, xi);
     }
 }

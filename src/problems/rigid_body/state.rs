@@ -11,10 +11,10 @@ use nalgebra::{Matrix3, Vector3};
 use super::RigidBody;
 use crate::actions::Action;
 use crate::error::Error;
-use crate::groups::{LieAlgebra, LieGroup, So3, apply3, cross, hat, worse};
-use crate::methods::Metric;
-use crate::problems::{Ambient, Problem};
+use crate::groups::{Adjoint, LieGroup, So3, apply3, cross, worse};
+use crate::problems::Problem;
 use crate::scalar::Real;
+use crate::space::{LinearSpace, Metric};
 
 /// The body momentum m and the attitude g.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,6 +44,27 @@ impl<S: Real> Metric for BodyState<S> {
     }
 }
 
+impl<S: Real> LinearSpace for BodyState<S> {
+    #[inline]
+    fn clear(&mut self) {
+        self.m.clear();
+        self.g.clear();
+    }
+    #[inline]
+    fn add(&mut self, a: S, x: &Self) {
+        self.m.add(a, &x.m);
+        self.g.add(a, &x.g);
+    }
+    #[inline]
+    fn dot(&self, x: &Self) -> S {
+        LinearSpace::dot(&self.m, &x.m) + LinearSpace::dot(&self.g, &x.g)
+    }
+    #[inline]
+    fn is_finite(&self) -> bool {
+        self.m.is_finite() && self.g.is_finite()
+    }
+}
+
 /// Λ(a, (m, g)) = (a m, g aᵀ).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct BodyFrame;
@@ -57,6 +78,11 @@ impl<S: Real> Action<So3<S>> for BodyFrame {
         [group.identity(), group.identity()]
     }
     #[inline]
+    fn check(&self, group: &So3<S>, p: &BodyState<S>) -> Result<(), Error> {
+        group.check_vector(&p.m)?;
+        group.check_elem(&p.g)
+    }
+    #[inline]
     fn act(
         &self,
         group: &So3<S>,
@@ -67,6 +93,19 @@ impl<S: Real> Action<So3<S>> for BodyFrame {
     ) {
         group.apply(a, &p.m, &mut q.m);
         group.compose(&p.g, &a.transpose(), &mut q.g);
+    }
+    /// (v × m, −g v̂): row by row r v̂ = r × v.
+    #[inline]
+    fn generate(
+        &self,
+        group: &So3<S>,
+        v: &Vector3<S>,
+        y: &BodyState<S>,
+        dy: &mut BodyState<S>,
+        _: &mut Self::Work,
+    ) {
+        dy.m = cross(v, &y.m);
+        group.tangent_in_body(&y.g, &-v, &mut dy.g);
     }
     /// g back to SO(3); m has no constraint.
     fn restore(&self, group: &So3<S>, p: &mut BodyState<S>, work: &mut Self::Work) -> Option<S> {
@@ -165,30 +204,5 @@ impl<S: Real> Problem for RigidBodyState<S> {
     #[inline]
     fn f(&self, t: S, y: &BodyState<S>, v: &mut Vector3<S>, work: &mut ()) {
         self.body.f(t, &y.m, v, work);
-    }
-}
-
-impl<S: Real> Ambient for RigidBodyState<S> {
-    #[inline]
-    fn field(&self, _: S, y: &BodyState<S>, dy: &mut BodyState<S>, _: &mut ()) {
-        let omega = self.body.omega(&y.m);
-        dy.m = cross(&y.m, &omega);
-        self.group().compose(&y.g, &hat(&omega), &mut dy.g);
-    }
-    #[inline]
-    fn copy(&self, x: &BodyState<S>, y: &mut BodyState<S>) {
-        *y = *x;
-    }
-    #[inline]
-    fn add(&self, a: S, x: &BodyState<S>, y: &mut BodyState<S>) {
-        self.group().axpy(a, &x.m, &mut y.m);
-        for (y, x) in y.g.iter_mut().zip(&x.g) {
-            *y += a * *x;
-        }
-    }
-    #[inline]
-    fn is_finite(&self, y: &BodyState<S>) -> bool {
-        let entries = y.g.iter().fold(S::lit(0.0), |s, x| s + x.abs());
-        self.group().is_finite(&y.m) && entries.is_finite()
     }
 }

@@ -7,8 +7,8 @@
 use super::triangle::{below, below_mut, entries, squares};
 use crate::dense::wide;
 use crate::groups::ComplexMatrix;
-use crate::methods::Metric;
 use crate::scalar::{Ops, tally};
+use crate::space::Metric;
 
 /// Differences that are kept.
 const DEPTH: usize = 8;

@@ -28,8 +28,8 @@ use crate::dense::{lower_product, mirror, mul, scaled_sum, wide};
 use crate::error::{Error, StepError};
 use crate::groups::ComplexMatrix;
 use crate::methods::{Method, Step, Symmetric};
-use crate::problems::LinearSpace;
 use crate::scalar::{Ops, tally};
+use crate::space::LinearSpace;
 
 /// What a midpoint rule keeps besides the spectrum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -34,13 +34,13 @@ pub use torus::Torus;
 
 use faer::{Mat, Side};
 
-use super::{Ambient, Invariant, Invariants, LiePoisson, Problem, space::linear_space};
+use super::{Invariant, Invariants, LiePoisson, Problem};
 use crate::actions::Conjugation;
 use crate::dense::mirror;
 use crate::error::Error;
 use crate::groups::{ComplexMatrix, LieAlgebra, Unitary};
-use crate::methods::Metric;
 use crate::scalar::{Ops, tally};
+use crate::space::Metric;
 
 /// A quantised surface: what Zeitlin's model needs to know of it.
 pub trait Surface {
@@ -215,21 +215,6 @@ impl<S: Surface> Problem for Zeitlin<S> {
     }
 }
 
-impl<S: Surface> Ambient for Zeitlin<S> {
-    /// \[P, W\]/ħ.
-    fn field(&self, _: f64, w: &ComplexMatrix, dw: &mut ComplexMatrix, work: &mut StreamWork) {
-        let StreamWork { p, scratch } = work;
-        p.assign(w);
-        self.solve(p, scratch);
-        tally(|| Ops::muls(2 * self.n() * self.n()));
-        for part in p.parts_mut() {
-            *part *= faer::Scale(self.surface.rate());
-        }
-        self.group.bracket(p, w, dw);
-    }
-    linear_space!();
-}
-
 impl<S: Surface> LiePoisson for Zeitlin<S> {
     fn hamiltonian(&self, w: &ComplexMatrix) -> f64 {
         self.energy(w)
@@ -240,6 +225,7 @@ impl<S: Surface> LiePoisson for Zeitlin<S> {
         a: &ComplexMatrix,
         b: &ComplexMatrix,
         xi: &mut ComplexMatrix,
+        _: (&mut ComplexMatrix, &mut ComplexMatrix),
         work: &mut StreamWork,
     ) {
         work.p.assign(a);

@@ -5,7 +5,9 @@ use faer::prelude::Solve;
 use lieflow::actions::Coadjoint;
 use lieflow::chart::ChartStore;
 use lieflow::groups::{MatrixGroup, Sample};
+use lieflow::maps::Exp;
 use lieflow::problems::Problem;
+use lieflow::space::{LinearSpace, Metric};
 use lieflow::{Action, CoordinateMap, LieGroup};
 use rand_pcg::Pcg64;
 
@@ -38,6 +40,77 @@ pub(crate) fn action<G: Represent, A: Points<G>>(
     // An action is linear in g or has g⁻¹ beside it.
     let size = spread(group, &a) * spread(group, &b);
     within("Λ(ab, p) = Λ(a, Λ(b, p))", gap(&numbers(&once), &numbers(&twice)), unit * size)
+}
+
+/// The step of the central differences of [`generator`]: rounding over ε and ε⁴ are then of one size.
+const STEP: f64 = 1.0 / 256.0;
+
+/// λ_*(v)(y) is the derivative of ε ↦ Λ(exp(εv), y) at 0, by central differences with ε and ε/2 that
+/// leave an error of ε⁴|v|⁵; and λ_*(v + aw)(y) = λ_*(v)(y) + a λ_*(w)(y).
+pub(crate) fn generator<G, A>(group: &G, action: &A, y: &A::Point, rng: &mut Pcg64) -> Verdict
+where
+    G: Sample<Scalar = f64>,
+    A: Action<G, Point: LinearSpace<Scalar = f64>>,
+    Exp: CoordinateMap<G>,
+{
+    let draw = |rng: &mut Pcg64| {
+        let (u, mut v) = (group.sample_algebra(rng, 1.0), group.zero());
+        group.axpy(1.0 / group.norm(&u), &u, &mut v);
+        v
+    };
+    let (v, w, a) = (draw(rng), draw(rng), -0.7);
+    let mut work = action.work(group);
+    let mut generate = |v: &G::Alg| {
+        let mut dy = y.clone();
+        action.generate(group, v, y, &mut dy, &mut work);
+        dy
+    };
+    let (of_v, of_w) = (generate(&v), generate(&w));
+    // The Riccati action is of degree 2 in y, the others of degree 1.
+    let size = (1.0 + y.size()).powi(2);
+
+    let mut work = action.work(group);
+    let mut moved = |epsilon: f64| -> Result<A::Point, String> {
+        let (mut u, mut q) = (group.zero(), y.clone());
+        group.axpy(epsilon, &v, &mut u);
+        let g = Exp.eval(group, &u).map_err(|e| e.to_string())?;
+        action.act(group, &g, y, &mut q, &mut work);
+        Ok(q)
+    };
+    let mut derivative = y.clone();
+    derivative.clear();
+    for (epsilon, weight) in [(STEP, -1.0 / 3.0), (0.5 * STEP, 4.0 / 3.0)] {
+        derivative.add(0.5 * weight / epsilon, &moved(epsilon)?);
+        derivative.add(-0.5 * weight / epsilon, &moved(-epsilon)?);
+    }
+    let bound = (4.0 * C_ACT * EPS / STEP + STEP.powi(4)) * size;
+    within("λ_*(v)(y) = d/dε Λ(exp(εv), y)", derivative.distance(&of_v), bound)?;
+
+    let mut both = v.clone();
+    group.axpy(a, &w, &mut both);
+    let (together, mut apart) = (generate(&both), of_v);
+    apart.add(a, &of_w);
+    let bound = C_ACT * EPS * size;
+    within("λ_* is linear in v", together.distance(&apart), bound)
+}
+
+/// The formula of λ_* is that of matrices in [`Points::generator`].
+pub(crate) fn generator_of_matrices<G, A>(group: &G, action: &A, rng: &mut Pcg64) -> Verdict
+where
+    G: Represent,
+    A: Points<G, Point: LinearSpace<Scalar = f64>>,
+    Exp: CoordinateMap<G>,
+{
+    let (v, y) = (group.of_size(rng, 1.0), action.draw(group, rng));
+    let (mut dy, mut zero) = (y.clone(), y.clone());
+    action.generate(group, &v, &y, &mut dy, &mut action.work(group));
+    zero.clear();
+    // The numbers of a point may be affine in it, as \[R x; 0 1\] is.
+    let ours = action.numbers(group, &dy) - action.numbers(group, &zero);
+    let expected = action.generator(group, &group.algebra_matrix(&v), &y);
+    let bound = C_ACT * EPS * (1.0 + action.numbers(group, &y).norm_l2());
+    within("λ_*(v)(y) of matrices", gap(&ours, &expected), bound)?;
+    generator(group, action, &y, rng)
 }
 
 /// ‖g‖·‖g⁻¹‖, which bounds how much an action on g and g⁻¹ stretches.

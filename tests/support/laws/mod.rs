@@ -6,7 +6,9 @@ mod group;
 pub(crate) mod map;
 mod sampling;
 
-pub(crate) use action::{action, coadjoint_pairing, coadjoint_spectrum, lambda};
+pub(crate) use action::{
+    action, coadjoint_pairing, coadjoint_spectrum, generator, generator_of_matrices, lambda,
+};
 pub(crate) use algebra::algebra;
 pub(crate) use group::group;
 pub(crate) use map::{map, one_parameter};

@@ -1,27 +1,25 @@
 //! Every method for fields on one problem after the other: a test a problem.
 
-use lieflow::catalog::{
-    CatalogGroup, Catalogued, MethodSpec, Needs, with_implicit_method, with_linear_method,
-    with_method,
-};
-use lieflow::maps::{Cay, CoordinateMap, Exp};
+use lieflow::catalog::{MethodSpec, Needs};
+use lieflow::maps::{AllMaps, Cay, CoordinateMap, Exp};
 use lieflow::methods::magnus::TripleProduct;
 use lieflow::problems::{Ambient, LinearField};
 
+use super::super::named;
 use super::super::points::Points;
 use super::super::represent::Represent;
 use super::flow::{Field, clock, wave};
-use super::suite::{Measure, Problems, Report};
+use super::suite::{Problems, Report};
 
 /// Measure every method for fields, explicit and implicit, and require the orders that they claim.
-pub(crate) fn every_method_on<P: Catalogued>(title: &str, problems: Problems<P>)
+pub(crate) fn every_method_on<P: Ambient>(title: &str, problems: Problems<P>)
 where
-    P::Group: Represent + CatalogGroup,
+    P::Group: Represent + AllMaps,
     P::Action: Points<P::Group>,
     Cay: CoordinateMap<P::Group>,
     Exp: CoordinateMap<P::Group>,
 {
-    let measured = |spec: &MethodSpec| with_implicit_method(spec, Measure(&problems, true));
+    let measured = |spec: &MethodSpec| named::field(spec, |method| problems.measure(method, true));
     Report::of(title, &problems.group(), &[Needs::Field, Needs::Norm], measured);
 }
 
@@ -29,12 +27,13 @@ where
 /// method is one more to compile for each type of problem.
 pub(crate) fn every_explicit_method_on<P: Ambient>(title: &str, problems: Problems<P>)
 where
-    P::Group: Represent + CatalogGroup,
+    P::Group: Represent + AllMaps,
     P::Action: Points<P::Group>,
     Cay: CoordinateMap<P::Group>,
     Exp: CoordinateMap<P::Group>,
 {
-    let measured = |spec: &MethodSpec| with_method(spec, Measure(&problems, true));
+    let measured =
+        |spec: &MethodSpec| named::explicit(spec, |method| problems.measure(method, true));
     Report::of(title, &problems.group(), &[Needs::Field], measured);
 }
 
@@ -47,7 +46,8 @@ where
     Cay: CoordinateMap<P::Group>,
     Exp: CoordinateMap<P::Group>,
 {
-    let measured = |spec: &MethodSpec| with_linear_method(&spec.name, Measure(&problems, false));
+    let measured =
+        |spec: &MethodSpec| named::linear(spec, |method| problems.measure(method, false));
     Report::of(title, &problems.group(), &[Needs::LinearType], measured);
 }
 
@@ -58,7 +58,7 @@ macro_rules! orders {
     ($every:ident: $($name:ident: $count:ident, $group:expr, $action:expr, $field:expr;)*) => {$(
         #[test]
         fn $name() {
-            let flow = |i: u64| $crate::support::orders::Flow::new($group, $action, $field(i));
+            let flow = |i: u64| $crate::support::orders::flow($group, $action, $field(i));
             $every(stringify!($name), $crate::problems!($count, flow));
         }
     )*};
@@ -68,7 +68,7 @@ macro_rules! orders {
 macro_rules! problems {
     (one, $flow:ident) => {{
         let flow = $flow(0);
-        let start = flow.start(7);
+        let start = $crate::support::orders::start(&flow, 7);
         $crate::support::orders::Problems::one(flow, start)
     }};
     ($count:ident, $flow:ident) => {

@@ -5,7 +5,7 @@ use faer::Mat;
 use lieflow::actions::LeftTranslation;
 use lieflow::maps::{Cay, CoordinateMap};
 use lieflow::methods::{Method, Rk, Rkmk, tableau};
-use lieflow::problems::{Ambient, LinearField, PointOf, Problem};
+use lieflow::problems::{self, Ambient, DynFlow, PointOf, Problem, TimeAlone};
 use lieflow::{Step, TimeGrid};
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
@@ -27,26 +27,25 @@ const REFERENCE_ERROR: f64 = 5e-14;
 /// (t, a square matrix made from the point) ↦ a matrix; its projection on 𝔤 is f(t, y).
 pub(crate) type Field = Box<dyn Fn(f64, &Mat<f64>) -> Mat<f64>>;
 
-/// ẏ = λ_*(f(t, y))(y) for any group and action.
-pub(crate) struct Flow<G: Represent, A: Points<G>> {
-    group: G,
-    action: A,
-    field: Field,
+/// A test problem on any group and action; those with a field as [`clock`] are of linear type.
+pub(crate) type Flow<G, A> = DynFlow<G, A, TimeAlone>;
+
+/// ẏ = λ_*(f(t, y))(y) with f from `field`.
+pub(crate) fn flow<G, A>(group: G, action: A, field: Field) -> Flow<G, A>
+where
+    G: Represent + Clone + 'static,
+    A: Points<G> + Clone + 'static,
+{
+    let (of_run, points) = (group.clone(), action.clone());
+    let f = move |t: f64, y: &A::Point, v: &mut G::Alg| {
+        *v = of_run.nearest(&field(t, &points.square(&of_run, y)));
+    };
+    DynFlow::new(problems::Flow::new(group, action.clone(), f), action)
 }
 
-impl<G: Represent, A: Points<G>> Flow<G, A> {
-    pub(crate) fn new(group: G, action: A, field: Field) -> Self {
-        Flow { group, action, field }
-    }
-
-    /// A random initial point.
-    pub(crate) fn start(&self, seed: u64) -> A::Point {
-        self.action.draw(&self.group, &mut Pcg64::seed_from_u64(seed))
-    }
-
-    fn xi(&self, t: f64, y: &A::Point) -> G::Alg {
-        self.group.nearest(&(self.field)(t, &self.action.square(&self.group, y)))
-    }
+/// A random initial point.
+pub(crate) fn start<G: Represent, A: Points<G>>(flow: &Flow<G, A>, seed: u64) -> A::Point {
+    flow.action().draw(flow.group(), &mut Pcg64::seed_from_u64(seed))
 }
 
 /// `strength`·(C₀ cos 1.3t Y₀₀ + sin(C₁Y + t) + 0.7 C₂ tanh Y₁₂ + C₃Y cos t), functions by entries.
@@ -83,48 +82,6 @@ pub(crate) fn inertia(n: usize) -> Field {
             -2.0 * m[(i, j)] * (1.0 + 0.5 * (t + k).sin()) / (1.0 + 0.7 * k.sqrt())
         })
     })
-}
-
-impl<G: Represent, A: Points<G>> Problem for Flow<G, A> {
-    type Group = G;
-    type Action = A;
-    type Work = ();
-    fn group(&self) -> &G {
-        &self.group
-    }
-    fn action(&self) -> &A {
-        &self.action
-    }
-    fn work(&self) {}
-    fn f(&self, t: f64, y: &A::Point, v: &mut G::Alg, _: &mut ()) {
-        *v = self.xi(t, y);
-    }
-}
-
-impl<G: Represent, A: Points<G>> Ambient for Flow<G, A> {
-    fn field(&self, t: f64, y: &A::Point, dy: &mut A::Point, _: &mut ()) {
-        let xi = self.group.algebra_matrix(&self.xi(t, y));
-        let numbers = self.action.generator(&self.group, &xi, y);
-        *dy = self.action.with_numbers(&self.group, &numbers);
-    }
-    fn copy(&self, x: &A::Point, y: &mut A::Point) {
-        y.clone_from(x);
-    }
-    fn add(&self, a: f64, x: &A::Point, y: &mut A::Point) {
-        let numbers = |p: &A::Point| self.action.numbers(&self.group, p);
-        let sum = numbers(y) + numbers(x) * faer::Scale(a);
-        *y = self.action.with_numbers(&self.group, &sum);
-    }
-    fn is_finite(&self, y: &A::Point) -> bool {
-        self.action.numbers(&self.group, y).norm_l1().is_finite()
-    }
-}
-
-/// For fields as [`clock`], which do not look at y.
-impl<G: Represent, A: Points<G>> LinearField for Flow<G, A> {
-    fn a(&self, t: f64, v: &mut G::Alg, _: &mut ()) {
-        *v = self.group.nearest(&(self.field)(t, &Mat::zeros(0, 0)));
-    }
 }
 
 /// Where a problem starts, and where it is at the end of its span.
@@ -263,13 +220,13 @@ fn on_grid(
 
 /// So many translation problems on a group that differ in their coefficients, with their start: 𝟙,
 /// where the field is as smooth as its coefficients say (sin(C₁y) is not, for large y).
-pub(crate) fn family<G: Represent + Clone>(
+pub(crate) fn family<G: Represent + Clone + 'static>(
     members: u64,
     group: &G,
     field: impl Fn(u64) -> Field,
 ) -> Vec<(Flow<G, LeftTranslation>, G::Elem)> {
-    let flow = |i| (Flow::new(group.clone(), LeftTranslation, field(100 * i)), group.identity());
-    (0..members).map(flow).collect()
+    let member = |i| (flow(group.clone(), LeftTranslation, field(100 * i)), group.identity());
+    (0..members).map(member).collect()
 }
 
 /// `$body` with `$flows` bound to so many translation problems with the field `$field`, on one group

@@ -14,8 +14,8 @@ pub(crate) use by_name::{
 pub(crate) use ensemble::{MEMBERS, Run, measure_over, order_over};
 pub(crate) use estimate::{Estimate, estimate, grid, slopes};
 pub(crate) use flow::{
-    Field, Flow, Reference, clock, family, inertia, measure, measure_as, reference,
-    reference_after, wave,
+    Field, Flow, Reference, clock, family, flow, inertia, measure, measure_as, reference,
+    reference_after, start, wave,
 };
-pub(crate) use suite::{Measure, Outcome, Problems, Report, specs};
+pub(crate) use suite::{Outcome, Problems, Report, specs};
 pub(crate) use tree::{defects, order_conditions, row_conditions};

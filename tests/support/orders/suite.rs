@@ -1,7 +1,7 @@
 //! Methods by the lists of the catalog, on problems with references: what is measured of each, and the
 //! report that all of it must hold.
 
-use lieflow::catalog::{MAPS, MethodInfo, MethodSpec, Needs, OnMethod, TABLEAUS};
+use lieflow::catalog::{MAPS, Maps, MethodInfo, MethodSpec, Needs, TABLEAUS};
 use lieflow::maps::{Cay, CoordinateMap};
 use lieflow::methods::Method;
 use lieflow::problems::{Ambient, PointOf, Problem};
@@ -58,32 +58,23 @@ where
     pub(crate) fn group(&self) -> String {
         self.0[0].0.group().name()
     }
-}
 
-/// What there is to measure on, and whether a single problem does for orders up to 4.
-pub(crate) struct Measure<'a, P: Problem>(pub(crate) &'a Problems<P>, pub(crate) bool);
-
-impl<P: Problem> OnMethod<P> for Measure<'_, P>
-where
-    P::Group: Represent,
-    P::Action: Points<P::Group>,
-{
-    type Out = Outcome;
-    fn call<M: Method<P>>(self, method: M) -> Outcome {
-        let Measure(Problems(members), single) = self;
+    /// Measure a method; `single`: one problem is enough for orders up to 4.
+    pub(crate) fn measure<M: Method<P>>(&self, method: &M, single: bool) -> Outcome {
+        let Problems(members) = self;
         let (problem, reference) = &members[0];
         if matches!(method.work(problem, reference.start()), Err(Error::Unsupported { .. })) {
             return Outcome::Refused;
         }
         match method.order(problem) {
-            usize::MAX => Outcome::Below(EXACT, largest_error(&members[..1], &method, 1)),
+            usize::MAX => Outcome::Below(EXACT, largest_error(&members[..1], method, 1)),
             // Where the grid of the order has rounding on it, the one that begins at 4 steps has room.
             ..=4 if single => Outcome::Measured(
-                measure(problem, &method, reference).or_else(|_| measure_over(members, &method)),
+                measure(problem, method, reference).or_else(|_| measure_over(members, method)),
             ),
             5.. if members.len() == 1 => Outcome::Elsewhere,
-            ..=7 => Outcome::Measured(measure_over(members, &method)),
-            _ => Outcome::Below(FINE.1, largest_error(members, &method, FINE.0)),
+            ..=7 => Outcome::Measured(measure_over(members, method)),
+            _ => Outcome::Below(FINE.1, largest_error(members, method, FINE.0)),
         }
     }
 }
@@ -105,11 +96,11 @@ pub(crate) fn specs(needs: &[Needs]) -> Vec<MethodSpec> {
     let mut specs = Vec::new();
     for method in needs.iter().flat_map(|needs| needs.methods()) {
         let tableaus = match method.takes_tableau {
-            true => TABLEAUS.iter().copied().map(Some).collect(),
+            true => TABLEAUS.iter().map(|t| Some(t.name)).collect(),
             false => vec![None],
         };
         for tableau in tableaus {
-            let maps: Vec<_> = match method.takes_map {
+            let maps: Vec<_> = match method.takes_map() {
                 true => (MAPS.iter().map(|m| (Some(m.name), None)))
                     .chain(cuts(method, tableau).iter().map(|&q| (Some("exp"), Some(q))))
                     .collect(),
@@ -127,20 +118,9 @@ pub(crate) fn specs(needs: &[Needs]) -> Vec<MethodSpec> {
 /// Does the catalog say that the method's map serves it, and this group?
 fn serves(spec: &MethodSpec, group: &str) -> bool {
     let Some(map) = &spec.map else { return true };
-    let odd_only = spec.info().is_ok_and(|info| info.summary.contains("exp or cay"));
-    if odd_only && !["exp", "cay"].contains(&map.as_str()) {
-        return false;
-    }
-    let groups = MAPS.iter().find(|m| m.name == map).map_or("", |m| m.groups);
-    let serves_part = |part: &str| part.starts_with("T(") || is_among(part, groups);
-    groups == "all" || group.split(" × ").all(serves_part)
-}
-
-/// Is the group, or what it is a power of, one of these families?
-fn is_among(group: &str, families: &str) -> bool {
-    let family = group.split('(').next().unwrap_or_default();
-    let plain = !group.contains(','); // SO(p,q) is no SO(n)
-    plain && families.split(", ").any(|g| g.starts_with(&format!("{family}(")))
+    let Some(map) = MAPS.iter().find(|m| m.name == map) else { return false };
+    let odd_only = spec.info().is_ok_and(|info| info.maps == Maps::Odd);
+    (map.odd || !odd_only) && map.groups.contain(group)
 }
 
 /// What is found on one problem: printed as a table, and all of it must hold.

@@ -1,22 +1,15 @@
 //! `lieflow check`: the general layer against the closed forms, and the laws of every group with
 //! every map, on this machine.
 
-use lieflow::check::{Finding, laws, maps_agree, steps_agree};
-use lieflow::groups::{MatrixGroup, So3};
-use lieflow::maps::{CCSK, CCSK123, CCSK321, Cay, Exp};
-use lieflow::problems::Exact;
-use nalgebra::Matrix3;
-use rand::{RngExt, SeedableRng};
-use rand_pcg::Pcg64;
+use lieflow::check::Finding;
 use serde::Serialize;
 
 use super::CliError;
 use crate::args::CheckArgs;
+use crate::measure::checks;
 use crate::output;
 
-/// The seed of the random inputs: the same numbers on every machine.
-const SEED: u64 = 2003;
-
+/// A check as JSON.
 #[derive(Serialize)]
 struct Line {
     check: String,
@@ -27,114 +20,38 @@ struct Line {
     at: String,
 }
 
-impl From<&Finding> for Line {
-    fn from(finding: &Finding) -> Self {
-        Line {
-            check: finding.name.clone(),
-            cases: finding.cases,
-            worst: finding.worst,
-            bound: finding.bound,
-            holds: finding.holds(),
-            at: finding.at.clone(),
-        }
-    }
-}
-
 /// Run the command.
 ///
 /// # Errors
 /// [`CliError::Failed`] when a check does not hold.
 pub fn run(args: &CheckArgs) -> Result<(), CliError> {
-    let found = findings(if args.quick { 2_000 } else { 100_000 })?;
-    let lines: Vec<Line> = found.iter().map(Line::from).collect();
+    let findings = checks(if args.quick { 2_000 } else { 100_000 })?;
     if args.json {
-        output::print_json(&lines)?;
+        let line = |f: &Finding| Line {
+            check: f.name.clone(),
+            cases: f.cases,
+            worst: f.worst,
+            bound: f.bound,
+            holds: f.holds(),
+            at: f.at.clone(),
+        };
+        output::print_json(&findings.iter().map(line).collect::<Vec<_>>())?;
     } else {
-        let rows = lines.iter().map(|line| {
-            let verdict = if line.holds { "ok" } else { "OUT OF BOUNDS" };
-            [
-                line.check.clone(),
-                line.cases.to_string(),
-                format!("{:.2}", line.worst),
-                format!("{}", line.bound),
-                verdict.to_string(),
-            ]
+        let rows = findings.iter().map(|f| {
+            let verdict = if f.holds() { "ok" } else { "OUT OF BOUNDS" };
+            let (worst, bound) = (format!("{:.2}", f.worst), f.bound.to_string());
+            [f.name.clone(), f.cases.to_string(), worst, bound, verdict.into()]
         });
         let header = ["check", "cases", "worst [eps·cond]", "bound", ""];
         output::print(&output::table(header, rows))?;
     }
-    let broken: Vec<String> = lines
+    let broken: Vec<String> = findings
         .iter()
-        .filter(|line| !line.holds)
-        .map(|line| format!("  {}: {:.3e} at {}", line.check, line.worst, line.at))
+        .filter(|f| !f.holds())
+        .map(|f| format!("  {}: {:.3e} at {}", f.name, f.worst, f.at))
         .collect();
     match broken.is_empty() {
         true => Ok(()),
         false => Err(CliError::Failed(format!("out of bounds:\n{}", broken.join("\n")))),
     }
-}
-
-/// All checks, with `cases` random vectors for the maps.
-///
-/// # Errors
-/// A check that cannot be set up.
-pub fn findings(cases: usize) -> Result<Vec<Finding>, CliError> {
-    let mut rng = Pcg64::seed_from_u64(SEED);
-    let mut found = maps_agree(&mut rng, cases)?;
-    found.extend(steps_agree(&mut rng, cases / 50)?);
-    macro_rules! check_laws {
-        ($group:expr, $($psi:expr),*) => {$(
-            found.extend(laws(&$group, &$psi, &mut rng, 100, 0.3)?);
-        )*};
-    }
-    check_laws!(So3::new(), Exp, Cay, CCSK123, CCSK321, CCSK);
-    for n in [3, 5, 10] {
-        check_laws!(MatrixGroup::so(n)?, Exp, Cay, CCSK123, CCSK321, CCSK);
-    }
-    check_laws!(MatrixGroup::gl(3)?, Exp, Cay);
-    check_laws!(MatrixGroup::sp(4)?, Exp, Cay);
-    check_laws!(MatrixGroup::indefinite(3, 1)?, Exp, Cay);
-    // The law of the bracket does not know the map: once a group is enough.
-    let mut seen = std::collections::BTreeSet::new();
-    found.retain(|finding| seen.insert(finding.name.clone()));
-    found.push(exact_restarts(&mut rng, cases / 100)?);
-    Ok(found)
-}
-
-/// The exact motion taken at once, and in two parts: m and g at random bodies, in units of the
-/// rounding of the angle that was turned.
-fn exact_restarts(rng: &mut Pcg64, cases: usize) -> Result<Finding, CliError> {
-    let mut finding = Finding {
-        name: "exact motion: restart at t/3".into(),
-        cases,
-        worst: 0.0,
-        at: String::new(),
-        bound: 32.0,
-    };
-    for _ in 0..cases {
-        let inertia = [(); 3].map(|()| rng.random_range(0.5..3.0));
-        let momentum = [(); 3].map(|()| rng.random_range(-1.0..1.0));
-        let t = rng.random_range(0.1..20.0);
-        let whole = Exact::new(inertia, momentum, Matrix3::identity())?;
-        let (m, g) = whole.state(t)?;
-        let (m1, g1) = whole.state(t / 3.0)?;
-        let (m2, g2) = Exact::new(inertia, m1.into(), g1)?.state(t - t / 3.0)?;
-        // A rounding of m moves the end by ε t |m|/J times what the orbit stretches, which near
-        // the separatrix is exponential in λt.
-        let speed = m.norm() / 0.5;
-        let stretch = 1.0 + speed * t;
-        let gap = (g - g2).norm().max((m - m2).norm() / m.norm());
-        let growth = {
-            let [x, y, z] = momentum;
-            let nudged = [x * (1.0 + 1e-9), y, z];
-            let (m3, g3) = Exact::new(inertia, nudged, Matrix3::identity())?.state(t)?;
-            ((g - g3).norm() + (m - m3).norm() / m.norm()) / 1e-9
-        };
-        let units = gap / (f64::EPSILON * stretch.max(growth));
-        if units > finding.worst || units.is_nan() {
-            (finding.worst, finding.at) =
-                (units, format!("J = {inertia:?}, m = {momentum:?}, t = {t}"));
-        }
-    }
-    Ok(finding)
 }

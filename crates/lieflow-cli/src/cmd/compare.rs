@@ -14,9 +14,9 @@ use crate::measure::{
     Candidate, Curve, Effort, Journal, Plan, Reached, Reference, WorkPoint, machine,
     speed_against_error,
 };
-use crate::output;
+use crate::output::{self, Progress};
 use crate::report::{self, CHOICE_HEADER, Choice, Cost, KEPT, choices};
-use lieflow_figures::page::{Block, Page, Section};
+use lieflow_figures::{Block, Page, Section};
 use lieflow_model::model::Layer;
 use lieflow_model::operations::COUNTED_STEPS;
 use lieflow_model::scene::Scene;
@@ -128,12 +128,10 @@ pub fn run(args: &CompareArgs) -> Result<(), CliError> {
     if journal.known() > 0 {
         output::print(&format!("going on with {} runs from before\n", journal.known()))?;
     }
-    let bar = super::progress();
+    let bar = Progress::new();
     let (curves, reference) =
-        speed_against_error(&scene, &plan, effort, Some(&mut journal), |done| {
-            bar.set_position((1000.0 * done) as u64)
-        })?;
-    bar.finish_and_clear();
+        speed_against_error(&scene, &plan, effort, Some(&mut journal), |done| bar.at(done))?;
+    drop(bar);
 
     let comparison = Comparison { scene: &scene, curves, reference, effort };
     let path = comparison.write(&folder)?;
@@ -164,18 +162,17 @@ fn numbers_of_steps(scene: &Scene) -> Vec<u64> {
     steps
 }
 
-fn advice_json(choices: &[Choice<'_>]) -> Vec<AdviceJson> {
-    let json = |choice: &Choice<'_>| {
-        let best = choice.best.as_ref();
+impl From<&Choice<'_>> for AdviceJson {
+    fn from(choice: &Choice<'_>) -> Self {
+        let (curve, reached) = choice.best.unzip();
         AdviceJson {
             error: choice.error,
-            method: best.map(|(curve, _)| curve.candidate.label()),
-            h: best.map(|(_, reached)| reached.h),
-            rtol: best.and_then(|(_, reached)| reached.tolerance),
-            seconds_per_unit: best.map(|(_, reached)| reached.seconds),
+            method: curve.map(|curve| curve.candidate.label()),
+            h: reached.map(|reached| reached.h),
+            rtol: reached.and_then(|reached| reached.tolerance),
+            seconds_per_unit: reached.map(|reached| reached.seconds),
         }
-    };
-    choices.iter().map(json).collect()
+    }
 }
 
 impl Comparison<'_> {
@@ -224,25 +221,24 @@ impl Comparison<'_> {
     }
 
     fn write(&self, folder: &Path) -> Result<PathBuf, CliError> {
-        let fronts = report::fronts(&self.curves);
-        let rows = self.curves.iter().zip(&fronts);
-        let rows = rows.map(|(curve, front)| (self.scene.name.as_str(), curve, front.clone()));
-        output::write_file(&folder.join("speed.csv"), &report::speed_csv(rows))?;
-        let [all, kept, stepping, stepping_kept] = self.advice().map(|of| advice_json(&of));
+        let curves = [(self.scene.name.as_str(), &self.curves[..])];
+        report::write_speed_csv(&folder.join("speed.csv"), curves)?;
+        let [advice, advice_energy_kept, advice_steps, advice_steps_energy_kept] =
+            self.advice().map(|choices| choices.iter().map(AdviceJson::from).collect());
         let json = Json {
             scene: &self.scene.name,
             t_span: self.scene.grid.t_span(),
             reference: self.reference.in_words(),
-            reference_error: self.reference.error(),
             machine: machine(),
-            advice: all,
-            advice_energy_kept: kept,
-            advice_steps: stepping,
-            advice_steps_energy_kept: stepping_kept,
-            curves: self.curves.iter().zip(fronts).map(curve_json).collect(),
+            reference_error: self.reference.error(),
+            advice,
+            advice_energy_kept,
+            advice_steps,
+            advice_steps_energy_kept,
+            curves: self.curves.iter().zip(report::fronts(&self.curves)).map(curve_json).collect(),
         };
-        output::write_file(&folder.join("speed.json"), &output::to_json(&json)?)?;
-        report::write_page(folder, &self.page())
+        output::write_file(&folder.join("speed.json"), output::to_json(&json)?)?;
+        output::write_page(folder, "index.html", &self.page())
     }
 
     fn in_words(&self) -> String {
@@ -302,7 +298,7 @@ impl Comparison<'_> {
             operations += " The exact motion, which is made of elliptic functions, has no count.";
         }
         let chart = |id, title, caption: &str, cost| {
-            Block::Chart(report::front_chart(id, title, caption, &self.curves, cost))
+            report::front_chart(id, title, &self.curves, cost).with_caption(caption).into()
         };
         let counted = self.curves.iter().flat_map(|curve| &curve.points);
         let by_operations = match counted.into_iter().any(|p| p.operations.is_some()) {
@@ -342,54 +338,47 @@ impl Comparison<'_> {
         let mut charts: Vec<Block> = families
             .iter()
             .map(|family| {
-                Block::Chart(report::speed_chart(
-                    &format!("speed-{family}"),
-                    &format!("Speed against error: {family}"),
-                    what,
-                    curves.iter().filter(|curve| curve.candidate.family() == *family),
-                ))
+                let of_family = curves.iter().filter(|c| c.candidate.family() == *family);
+                let title = format!("Speed against error: {family}");
+                let chart = report::speed_chart(&format!("speed-{family}"), &title, of_family);
+                chart.with_caption(what).into()
             })
             .collect();
         charts.splice(0..0, self.counts());
         let advice = self.advice_in_words();
         let table = |(caption, choices): &(String, Vec<Choice<'_>>)| {
-            Block::Table(report::choice_table(caption, choices))
+            report::choice_table(caption, choices).into()
         };
+        let mut facts = report::measured(self.effort.rounds).to_vec();
+        facts.extend([
+            (
+                "Runs".into(),
+                format!(
+                    "steps get smaller until a run takes {:?}; up to {:?} for the methods that promise \
+                     most where none has reached an error of the tables",
+                    self.effort.longest, self.effort.patience
+                ),
+            ),
+            ("Modelled".into(), self.scene.quantities.join(", ")),
+            ("Errors are distances from".into(), self.reference.in_words()),
+        ]);
         // One below the other: two side by side hide their last columns.
         let mut short: Vec<Block> = advice.iter().map(table).collect();
         short.extend([
-            Block::Chart(report::front_chart(
+            report::front_chart(
                 "pareto",
                 "Runs that no other beats in both error and time",
-                &format!("{what}{}", self.left_out()),
                 curves,
                 Cost::Time,
-            )),
-            Block::Facts(vec![
-                ("Machine".into(), machine()),
-                (
-                    "Times".into(),
-                    format!(
-                        "CPU time of one thread, medians of {} rounds that visit every method in turn",
-                        self.effort.rounds
-                    ),
-                ),
-                (
-                    "Runs".into(),
-                    format!(
-                        "steps get smaller until a run takes {:?}; up to {:?} for the methods that promise \
-                         most where none has reached an error of the tables",
-                        self.effort.longest, self.effort.patience
-                    ),
-                ),
-                ("Modelled".into(), self.scene.quantities.join(", ")),
-                ("Errors are distances from".into(), self.reference.in_words()),
-            ]),
+            )
+            .with_caption(format!("{what}{}", self.left_out()))
+            .into(),
+            Block::Facts(facts),
         ]);
-        Page {
-            title: format!("{}: which method?", self.scene.title),
-            subtitle: format!("t = {t0} … {t1}, {} methods on this machine", curves.len()),
-            sections: vec![
+        report::page(
+            format!("{}: which method?", self.scene.title),
+            format!("t = {t0} … {t1}, {} methods on this machine", curves.len()),
+            vec![
                 Section::new("In short", short),
                 Section::new("Figures", charts),
                 Section::new(
@@ -399,13 +388,12 @@ impl Comparison<'_> {
                             "speed.csv and speed.json beside this page have every run; every figure is \
                              there as an SVG file.",
                         ),
-                        Block::Table(report::speed_table(curves)),
-                        Block::Table(report::kept_table(curves)),
+                        report::speed_table(curves).into(),
+                        report::kept_table(curves).into(),
                     ],
                 ),
             ],
-            footer: format!("lieflow {}", env!("CARGO_PKG_VERSION")),
-        }
+        )
     }
 }
 

@@ -1,13 +1,12 @@
 //! `lieflow methods`: methods, coordinate maps and tableaus.
 
-use lieflow::catalog::{MAPS, MethodInfo, MethodSpec, TABLEAUS, all_methods};
-use lieflow::problems::RigidBody;
+use lieflow::catalog::{MethodInfo, MethodSpec, Order, TABLEAUS, all_methods};
+use lieflow::maps::MAPS;
 use serde::Serialize;
 
 use super::CliError;
 use crate::args::MethodsArgs;
 use crate::output::{print, print_json, table, wrap};
-use lieflow_model::model::order_by;
 use lieflow_model::scene::Scene;
 
 #[derive(Serialize)]
@@ -26,10 +25,13 @@ struct MethodEntry {
     summary: &'static str,
     /// None where it is the tableau's, or the method exact.
     order: Option<usize>,
+    /// The order in words.
+    #[serde(skip)]
+    says_order: Order,
     maps: Vec<&'static str>,
     tableaus: Vec<&'static str>,
-    preserves: &'static str,
-    cost: &'static str,
+    preserves: String,
+    cost: String,
     source: &'static str,
 }
 
@@ -37,13 +39,13 @@ struct MethodEntry {
 struct MapEntry {
     name: &'static str,
     summary: &'static str,
-    groups: &'static str,
+    groups: String,
 }
 
 #[derive(Serialize)]
 struct TableauEntry {
     name: &'static str,
-    order: Option<usize>,
+    order: usize,
 }
 
 /// The method as the catalog has it, with the maps and tableaus that `fits` lets through; nothing
@@ -53,23 +55,24 @@ fn method_entry(info: &MethodInfo, fits: impl Fn(&MethodSpec) -> bool) -> Option
     let mut entry = MethodEntry {
         name: info.name,
         summary: info.summary,
-        order: info.order,
+        order: info.order.number(),
+        says_order: info.order,
         maps: Vec::new(),
         tableaus: Vec::new(),
-        preserves: info.preserves,
-        cost: info.cost,
+        preserves: info.preserves_in_words(),
+        cost: info.cost.to_string(),
         source: info.source,
     };
-    if info.takes_map {
+    if info.takes_map() {
         let names = MAPS.iter().map(|map| map.name);
         entry.maps = names.filter(|map| fits(&MethodSpec::new(info.name, Some(map)))).collect();
     }
     let base = MethodSpec { map: entry.maps.first().map(|&map| map.into()), ..plain };
     if info.takes_tableau {
         let with = |name: &str| MethodSpec { tableau: Some(name.into()), ..base.clone() };
-        entry.tableaus = TABLEAUS.iter().copied().filter(|name| fits(&with(name))).collect();
+        entry.tableaus = TABLEAUS.iter().map(|t| t.name).filter(|name| fits(&with(name))).collect();
     }
-    let lost = (info.takes_map && entry.maps.is_empty())
+    let lost = (info.takes_map() && entry.maps.is_empty())
         || (info.takes_tableau && entry.tableaus.is_empty())
         || !fits(&base);
     (!lost).then_some(entry)
@@ -81,19 +84,16 @@ fn listing(scene: Option<&Scene>) -> Result<Listing, CliError> {
         Some(model) => model.fits(spec).is_ok(),
         None => true,
     };
-    let methods: Vec<_> = all_methods().filter_map(|(info, _)| method_entry(info, fits)).collect();
+    let methods: Vec<_> = all_methods().filter_map(|info| method_entry(info, fits)).collect();
     let used = |map: &str| methods.iter().any(|method| method.maps.contains(&map));
     let maps = MAPS.iter().filter(|map| used(map.name));
-    let maps = maps.map(|m| MapEntry { name: m.name, summary: m.summary, groups: m.groups });
-    let body = RigidBody::<f64>::new([1.0; 3])?;
-    let tableaus = TABLEAUS.iter().map(|&name| {
-        let spec = MethodSpec { tableau: Some(name.into()), ..MethodSpec::new("rk", None) };
-        Ok(TableauEntry { name, order: order_by(&spec, &body)? })
-    });
+    let maps =
+        maps.map(|m| MapEntry { name: m.name, summary: m.summary, groups: m.groups.to_string() });
+    let tableaus = TABLEAUS.iter().map(|t| TableauEntry { name: t.name, order: t.order });
     Ok(Listing {
         scene: scene.map(|scene| scene.name.clone()),
         maps: maps.collect(),
-        tableaus: tableaus.collect::<Result<_, lieflow::Error>>()?,
+        tableaus: tableaus.collect(),
         methods,
     })
 }
@@ -109,10 +109,9 @@ fn in_words(listing: &Listing) -> String {
         ([], _) => "tableau",
         _ => "map, q, tableau",
     };
-    let order = |order: Option<usize>, none: &str| order.map_or(none.into(), |p| p.to_string());
     let rows = listing.methods.iter().map(|m| {
-        let none = if m.tableaus.is_empty() { "exact" } else { "tableau's" };
-        [m.name.into(), order(m.order, none), takes(m).into(), m.preserves.into(), m.cost.into()]
+        let order = m.says_order.to_string();
+        [m.name.into(), order, takes(m).into(), m.preserves.clone(), m.cost.clone()]
     });
     text += &table(["name", "order", "takes", "preserves", "cost of a step"], rows);
     text += "\n";
@@ -122,11 +121,11 @@ fn in_words(listing: &Listing) -> String {
     }
     if !listing.maps.is_empty() {
         text += "\nCoordinate maps\n";
-        let rows = listing.maps.iter().map(|m| [m.name.into(), m.groups.into(), m.summary.into()]);
+        let rows = listing.maps.iter().map(|m| [m.name.into(), m.groups.clone(), m.summary.into()]);
         text += &table(["name", "groups", "what it is"], rows);
     }
     text += "\nTableaus\n";
-    let rows = listing.tableaus.iter().map(|t| [t.name.into(), order(t.order, "exact")]);
+    let rows = listing.tableaus.iter().map(|t| [t.name.into(), t.order.to_string()]);
     text += &table(["name", "order"], rows);
     if listing.scene.is_some() {
         let differ = listing.methods.iter().filter(|method| !method.maps.is_empty());

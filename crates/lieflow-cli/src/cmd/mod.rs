@@ -12,8 +12,6 @@ pub mod scenes;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-
 use lieflow_model::scene::SceneError;
 
 /// Why a command ended without doing its work: one message for stderr.
@@ -48,15 +46,6 @@ pub enum CliError {
     /// The command did its work and what it checked does not hold.
     #[error("{0}")]
     Failed(String),
-}
-
-/// A bar of a thousand parts on standard error.
-fn progress() -> ProgressBar {
-    let bar = ProgressBar::with_draw_target(Some(1000), ProgressDrawTarget::stderr());
-    match ProgressStyle::with_template("{bar:40} {percent:>3}% {msg}") {
-        Ok(style) => bar.with_style(style),
-        Err(_) => bar,
-    }
 }
 
 impl CliError {

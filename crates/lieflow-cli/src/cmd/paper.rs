@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use super::CliError;
 use crate::args::PaperArgs;
-use crate::output;
+use crate::output::{self, Progress};
 use crate::paper::{Effort, compute};
 
 /// Run the command.
@@ -19,17 +19,14 @@ pub fn run(args: &PaperArgs) -> Result<(), CliError> {
         true => Effort { frames: 30, rounds: 3, finer: 3 },
         false => Effort { frames: 300, rounds: 7, finer: 4 },
     };
-    let bar = super::progress();
-    let paper = compute(&effort, |done, what| {
-        bar.set_position((1000.0 * done) as u64);
-        bar.set_message(what.to_owned());
-    })?;
-    bar.finish_and_clear();
+    let bar = Progress::new();
+    let paper = compute(&effort, |done, what| bar.now(done, what))?;
+    drop(bar);
     let path = paper.write(&args.out)?;
-    output::print(&paper.in_words())?;
     output::print(&format!(
-        "\nThe page: {}\nThe data: table1.csv to table4.csv and figure3.csv to figure5.csv beside it\n\
+        "{}\nThe page: {}\nThe data: table1.csv to table4.csv and figure3.csv to figure5.csv beside it\n\
          ({:.1} s)\n",
+        paper.in_words(),
         path.display(),
         clock.elapsed().as_secs_f64()
     ))

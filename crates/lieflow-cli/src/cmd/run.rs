@@ -5,16 +5,15 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use lieflow::RunError;
 use lieflow::adaptive::AdaptiveError;
 
 use super::CliError;
 use crate::args::RunArgs;
 use crate::output::{
-    self, Chosen, Drift, Gathered, MethodSummary, SUMMARY, Shown, Summary, Trajectory, Watched,
+    self, Chosen, Drift, Gathered, MethodSummary, Progress, SUMMARY, Shown, Summary, Trajectory,
+    Watched,
 };
-use crate::report;
 use lieflow_model::kinds::{Figure, Law, SIZE, Scale};
 use lieflow_model::model::{Model, Sink, Steps};
 use lieflow_model::scene::Scene;
@@ -207,14 +206,6 @@ impl Done {
     }
 }
 
-fn progress(steps: u64) -> ProgressBar {
-    let bar = ProgressBar::with_draw_target(Some(steps), ProgressDrawTarget::stderr());
-    match ProgressStyle::with_template("{bar:40} {percent}% {eta} left") {
-        Ok(style) => bar.with_style(style),
-        Err(_) => bar,
-    }
-}
-
 /// Run a scene and write its trajectory and summary into a folder. A step that fails is no error
 /// here: the summary says so, and the rows up to there are kept.
 ///
@@ -229,7 +220,7 @@ pub fn run_scene(scene: &Scene, folder: &Path) -> Result<Summary, CliError> {
     let mut trajectory = Trajectory::create(folder, &columns)?;
 
     let [t0, t1] = scene.grid.t_span();
-    let bar = progress(scene.grid.steps());
+    let bar = Progress::new();
     let mut rows = Gathered::default();
     let mut watched = Vec::new();
     let mut not_finite = vec![0u64; columns.len()];
@@ -241,9 +232,9 @@ pub fn run_scene(scene: &Scene, folder: &Path) -> Result<Summary, CliError> {
         }
         watch.see(t, row, &mut watched);
         rows.see(t, row);
-        bar.set_position(((t - t0) / (t1 - t0) * scene.grid.steps() as f64) as u64);
+        bar.at((t - t0) / (t1 - t0));
     });
-    bar.finish_and_clear();
+    drop(bar);
     let written = trajectory.rows();
     let done = match outcome {
         Ok(done) => done,
@@ -307,7 +298,7 @@ pub fn run_scene(scene: &Scene, folder: &Path) -> Result<Summary, CliError> {
     let laws: Vec<Shown> = watch.laws.iter().map(|(_, shown)| shown.clone()).collect();
     let figure = (scene.problem.figure(), watch.field(&rows));
     let page = output::run_page(&summary, &rows, figure, &watch.drawn, &watch.asked, &laws);
-    report::write_page(folder, &page)?;
+    output::write_page(folder, "index.html", &page)?;
     Ok(summary)
 }
 

@@ -59,7 +59,7 @@ fn scene_entry(bundled: &Bundled) -> Result<SceneEntry, CliError> {
 
 fn kind_entry(kind: &Kind) -> KindEntry {
     let keys = kind.keys.iter();
-    let quantities = kind.quantities.iter();
+    let quantities = (kind.quantities)().into_iter();
     KindEntry {
         name: kind.name,
         summary: kind.summary,

@@ -1,7 +1,7 @@
 //! What is compared: methods with their parts, on a layer, in steps of one size or of their own.
 
-use lieflow::catalog::{MAPS, MethodSpec, TABLEAUS, all_methods};
-use lieflow::methods::tableau;
+use lieflow::catalog::{MethodInfo, MethodSpec, Structure, TABLEAUS, all_methods};
+use lieflow::maps::MAPS;
 
 use crate::cmd::CliError;
 use lieflow_model::model::Layer;
@@ -16,18 +16,6 @@ pub struct Candidate {
     pub layer: Layer,
     /// Does it choose its steps by their error?
     pub adaptive: bool,
-}
-
-/// The stages of the tableau of that name.
-fn stages(name: &str) -> Option<u64> {
-    macro_rules! stages_of {
-        ($($tableau:ident),*) => {
-            [$((tableau::$tableau.name, tableau::$tableau.update_stages())),*]
-        };
-    }
-    let all =
-        stages_of!(EULER, MIDPOINT, HEUN, RK4, THREE_EIGHTHS, BS3, RKF45, DOPRI5, VERNER6, DOP853);
-    all.iter().find(|(known, _)| *known == name).map(|(_, stages)| *stages as u64)
 }
 
 impl Candidate {
@@ -59,27 +47,22 @@ impl Candidate {
             "rkmk4" | "rk4" => "rk4",
             _ => match &self.method.tableau {
                 Some(tableau) => tableau,
-                None => self.method.info().map_or("", |info| info.family),
+                None => self.method.info().map_or("", |info| info.family.name()),
             },
         }
     }
 
     /// Does the catalog say that it keeps the energy, or keeps it within bounds (symplectic)?
     pub fn keeps_energy(&self) -> bool {
-        self.method.info().is_ok_and(|info| {
-            ["energy", "symplectic", "everything"].iter().any(|what| info.preserves.contains(what))
-        })
+        let keeps =
+            |info: &MethodInfo| info.keeps(Structure::Energy) || info.keeps(Structure::Symplectic);
+        self.method.info().is_ok_and(keeps)
     }
 
     /// Evaluations of f, of F or of A in a step of one size, as the catalog states its cost; none for
     /// an implicit method, whose number depends on the step, and for one that evaluates no field.
     pub fn evaluations_per_step(&self) -> Option<u64> {
-        let (count, rest) = self.method.info().ok()?.cost.split_once(' ')?;
-        match count {
-            _ if !rest.starts_with(['f', 'F', 'A']) => None,
-            "s" => stages(self.method.tableau.as_deref().unwrap_or("rk4")),
-            _ => count.parse().ok(),
-        }
+        self.method.evaluations().ok()?
     }
 
     /// Everything in the catalog that runs on the problem of `scene` on this layer, each method with
@@ -95,14 +78,14 @@ impl Candidate {
     ) -> Result<Vec<Self>, CliError> {
         let model = scene.model_with(layer, quantities)?;
         let mut fitting = Vec::new();
-        for (info, _) in all_methods() {
+        for info in all_methods() {
             let none = [None];
-            let maps: Vec<Option<&str>> = match info.takes_map {
+            let maps: Vec<Option<&str>> = match info.takes_map() {
                 true => MAPS.iter().map(|map| Some(map.name)).collect(),
                 false => none.into(),
             };
             let tableaus: Vec<Option<&str>> = match info.takes_tableau {
-                true => TABLEAUS.iter().filter(|t| **t != "rk4").map(|t| Some(*t)).collect(),
+                true => TABLEAUS.iter().filter(|t| t.name != "rk4").map(|t| Some(t.name)).collect(),
                 false => none.into(),
             };
             for tableau in &tableaus {
@@ -123,7 +106,7 @@ impl Candidate {
         Ok(fitting)
     }
 
-    /// Those of `all` that a name stands for: that of a method, or a method with parts as in
+    /// The candidates that a name stands for: the name of a method, or a method with parts as in
     /// `rkmk dopri5 cay`. What follows a method in the tables, `, adaptive, general`, may stand in the list
     /// as it does there: pairs go in both kinds of steps anyway, and layers are chosen apart.
     ///

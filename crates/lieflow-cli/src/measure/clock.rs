@@ -16,6 +16,19 @@ pub fn cpu_seconds() -> f64 {
     START.get_or_init(Instant::now).elapsed().as_secs_f64()
 }
 
+/// The CPU time of a call, which is repeated until all have taken `shortest` seconds.
+pub fn seconds_of(shortest: f64, mut call: impl FnMut()) -> f64 {
+    let (start, mut calls) = (cpu_seconds(), 0.0);
+    loop {
+        call();
+        calls += 1.0;
+        let took = cpu_seconds() - start;
+        if took >= shortest {
+            return took / calls;
+        }
+    }
+}
+
 /// The machine in words: processor, cores, system, and how the program was built.
 pub fn machine() -> String {
     let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::journal::number;
-use super::{Candidate, Size};
+use super::{Candidate, Fit, Size};
 
 /// One run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -27,7 +27,7 @@ pub struct WorkPoint {
     /// Relative change of the energy from the start to the end.
     #[serde(with = "number")]
     pub energy_error: f64,
-    /// The same of a Casimir.
+    /// Relative change of a Casimir from the start to the end.
     #[serde(with = "number")]
     pub casimir_error: f64,
     /// Distance of the final state from its group, where it has one.
@@ -134,18 +134,9 @@ impl Curve {
 
     /// The measured order: the slope of the least-squares line through log h, log error.
     pub fn measured_order(&self) -> Option<f64> {
-        let used: Vec<(f64, f64)> = self
-            .points
-            .iter()
-            .filter(|p| ASYMPTOTIC.contains(&p.error))
-            .map(|p| (p.h.ln(), p.error.ln()))
-            .collect();
-        let n = used.len() as f64;
-        let (x, y) =
-            (used.iter().map(|p| p.0).sum::<f64>() / n, used.iter().map(|p| p.1).sum::<f64>() / n);
-        let sxx: f64 = used.iter().map(|p| (p.0 - x).powi(2)).sum();
-        let sxy: f64 = used.iter().map(|p| (p.0 - x) * (p.1 - y)).sum();
-        (used.len() >= 3).then_some(sxy / sxx)
+        let used = || self.points.iter().filter(|p| ASYMPTOTIC.contains(&p.error));
+        let fit: Fit = used().map(|p| (p.h.ln(), p.error.ln())).collect();
+        fit.slope().filter(|_| used().count() >= 3)
     }
 
     /// Where this error is reached soonest, by a run or between two by the line through them in the
@@ -154,7 +145,8 @@ impl Curve {
         self.reached_where(error, |_| true)
     }
 
-    /// The same of what passes: a run that is more accurate may do where the soonest does not.
+    /// Where this error is reached soonest among what passes. A run that is more accurate may pass where the
+    /// soonest does not.
     pub fn reached_where(&self, error: f64, pass: impl Fn(&Reached) -> bool) -> Option<Reached> {
         // No error is smaller than rounding, though a run may hit zero.
         let runs: Vec<&WorkPoint> =

@@ -33,7 +33,7 @@ pub enum Reference {
 }
 
 impl Reference {
-    /// An estimate of its own error, relative.
+    /// An estimate of the relative error of the reference.
     pub fn error(&self) -> Option<f64> {
         match self {
             Reference::Exact { apart } => *apart,
@@ -41,7 +41,7 @@ impl Reference {
         }
     }
 
-    /// It in a sentence.
+    /// A sentence that says what the reference is.
     pub fn in_words(&self) -> String {
         match self {
             Reference::Exact { apart: None } => "the exact solution".into(),
@@ -115,7 +115,7 @@ impl Judge {
         Ok(judge)
     }
 
-    /// The same with a reference of two runs, whether an exact solution is known or not.
+    /// A judge with a reference of two runs, whether an exact solution is known or not.
     ///
     /// # Errors
     /// As [`new`](Self::new).

@@ -5,14 +5,18 @@
 //! in an order of its own, so that a slow moment of the machine meets all of them.
 
 mod candidate;
+mod checks;
 mod clock;
 mod curve;
+mod fit;
 mod journal;
 mod judge;
 
 pub use candidate::Candidate;
-pub use clock::{cpu_seconds, machine};
+pub use checks::checks;
+pub use clock::{cpu_seconds, machine, seconds_of};
 pub use curve::{Curve, Reached, WorkPoint, pareto};
+pub use fit::Fit;
 pub use journal::{JOURNAL, Journal};
 pub use judge::{Judge, Reference};
 

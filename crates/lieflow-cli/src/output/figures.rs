@@ -3,11 +3,10 @@
 use core::ops::Range;
 
 use crate::output::Summary;
-use crate::report::scientific;
-use lieflow_figures::page::{Block, Column, Page, Row, Section, Table};
-use lieflow_figures::plot::format::sig;
-use lieflow_figures::plot::{
-    Axis, Chart, Ground, Heat, Marker, Path, Point, Scale, Series, Sphere,
+use lieflow_figures::number::{scientific, sig};
+use lieflow_figures::{
+    Axis, Block, Chart, Column, Ground, Heat, Marker, Page, Path, Point, Row, Scale, Section,
+    Series, Sphere, Table,
 };
 use lieflow_model::kinds::{self, Figure};
 

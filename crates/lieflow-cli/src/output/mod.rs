@@ -1,16 +1,19 @@
 //! What goes to standard output and into files.
 
-mod csv;
 mod figures;
+mod files;
+mod progress;
 mod summary;
+mod trajectory;
 
-pub use csv::{COMPLETE, PARTIAL, Trajectory};
 pub use figures::{Gathered, Shown, in_digits, run_page};
+pub(crate) use files::fields;
+pub use files::{in_full, make_folder, optional, remove_old, write_csv, write_file, write_page};
+pub use progress::Progress;
 pub use summary::{Chosen, Drift, MethodSummary, SUMMARY, Summary, Watched};
+pub use trajectory::{COMPLETE, PARTIAL, Trajectory};
 
-use std::fs;
 use std::io::{self, Write};
-use std::path::Path;
 
 use comfy_table::{Table, presets};
 use serde::Serialize;
@@ -75,37 +78,4 @@ pub fn wrap(text: &str, indent: &str) -> String {
         line += word;
     }
     if line.is_empty() { lines } else { lines + indent + &line + "\n" }
-}
-
-/// Write a file at once: under another name first, so that no half of it ever has this name.
-///
-/// # Errors
-/// The file cannot be written.
-pub fn write_file(path: &Path, content: &str) -> Result<(), CliError> {
-    let mut partial = path.as_os_str().to_owned();
-    partial.push(".partial");
-    let partial = Path::new(&partial);
-    fs::write(partial, content).map_err(CliError::io("write", partial))?;
-    fs::rename(partial, path).map_err(CliError::io("write", path))
-}
-
-/// Make a folder for results, with those above it.
-///
-/// # Errors
-/// It cannot be made.
-pub fn make_folder(path: &Path) -> Result<(), CliError> {
-    fs::create_dir_all(path).map_err(CliError::io("make the folder", path))
-}
-
-/// Remove a file of an earlier run, if there is one.
-///
-/// # Errors
-/// It is there and stays.
-pub fn remove_old(path: &Path) -> Result<(), CliError> {
-    match fs::remove_file(path) {
-        Err(error) if error.kind() != io::ErrorKind::NotFound => {
-            Err(CliError::Io { doing: "replace", path: path.into(), source: error })
-        }
-        _ => Ok(()),
-    }
 }

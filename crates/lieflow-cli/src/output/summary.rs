@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
+use crate::measure::Fit;
 use lieflow_model::kinds::explained_by_rounding;
 
 /// The name of the file.
@@ -131,19 +132,15 @@ pub struct Watched {
     max: f64,
     /// The largest size of its terms.
     size: f64,
-    rows: f64,
-    /// Means of t and of the value, from the start.
-    mean: [f64; 2],
-    /// Σ(t − mean)(value − mean) and Σ(t − mean)².
-    squares: [f64; 2],
+    /// t and the value, from the start.
+    fit: Fit,
 }
 
 impl Watched {
     /// The value and the size of its terms at the start.
     pub fn new(t: f64, value: f64, size: f64) -> Self {
-        let (mean, squares) = ([0.0; 2], [0.0; 2]);
-        let start = [t, value];
-        Watched { start, at_end: 0.0, max: 0.0, size, rows: 1.0, mean, squares }
+        let fit = Fit::from_iter([(0.0, 0.0)]);
+        Watched { start: [t, value], at_end: 0.0, max: 0.0, size, fit }
     }
 
     /// The next row.
@@ -154,23 +151,17 @@ impl Watched {
         self.max =
             if self.at_end > self.max || self.at_end.is_nan() { self.at_end } else { self.max };
         self.size = self.size.max(size);
-        self.rows += 1.0;
-        let before = [now[0] - self.mean[0], now[1] - self.mean[1]];
-        for i in 0..2 {
-            self.mean[i] += before[i] / self.rows;
-        }
-        self.squares[0] += before[0] * (now[1] - self.mean[1]);
-        self.squares[1] += before[0] * (now[0] - self.mean[0]);
+        self.fit.add((now[0], now[1]));
     }
 
     /// What was seen, by a method that took so many steps.
     pub fn drift(&self, promised: bool, steps: u64) -> Drift {
-        let [together, alone] = self.squares;
         Drift {
             initial: self.start[1],
             at_end: self.at_end,
             max: self.max,
-            slope: if alone > 0.0 { together / alone } else { 0.0 },
+            // One row alone has no slope.
+            slope: self.fit.slope().unwrap_or(0.0),
             promised,
             rounding: explained_by_rounding(steps, self.size),
         }

@@ -1,13 +1,14 @@
 //! The error at t = 1 over the number of steps: Table 4 and Figure 5.
 
-use lieflow::problems::{Exact, PointOf};
 use lieflow::scalar::Ops;
-use lieflow::{Method, RunError, SaveAt, TimeGrid, integrate};
-use nalgebra::{Matrix3, Vector3};
+use lieflow::{SaveAt, TimeGrid};
+use nalgebra::Matrix3;
 
-use super::rows::{Body, EXAMPLE2, EXAMPLE3, Row, Seen, Visit, Watch};
+use super::experiments::{EXAMPLE2, EXAMPLE3};
+use super::printed::{Table4, table4};
+use super::rows::{Body, Row};
 use crate::cmd::CliError;
-use crate::measure::{cpu_seconds, median};
+use crate::measure::{Fit, median};
 
 /// One of the two accuracy tests of section 5.3.
 #[derive(Clone, Copy, Debug)]
@@ -27,13 +28,13 @@ pub const TESTS: [Test; 2] = [
     Test {
         key: "symmetric",
         name: "J = diag(1, 1, 2)",
-        body: EXAMPLE2,
+        body: EXAMPLE2.body,
         powers: [1, 2, 3, 4, 5, 6],
     },
     Test {
         key: "asymmetric",
         name: "J⁻¹ = diag(1, 4, 18)",
-        body: EXAMPLE3,
+        body: EXAMPLE3.body,
         powers: [5, 6, 7, 8, 9, 10],
     },
 ];
@@ -55,6 +56,8 @@ pub struct Point {
 /// A method in a test.
 #[derive(Clone, Debug)]
 pub struct Accuracy {
+    /// The test, by its place in [`TESTS`].
+    pub test: usize,
     /// The method.
     pub row: Row,
     /// The paper's six runs, and finer ones.
@@ -63,17 +66,46 @@ pub struct Accuracy {
     pub ops: Option<Ops>,
 }
 
-/// The line of least squares through (x, y).
-fn line(points: &[(f64, f64)]) -> impl Fn(f64) -> f64 {
-    let n = points.len() as f64;
-    let (x, y) =
-        (points.iter().map(|p| p.0).sum::<f64>() / n, points.iter().map(|p| p.1).sum::<f64>() / n);
-    let sxx: f64 = points.iter().map(|p| (p.0 - x).powi(2)).sum();
-    let sxy: f64 = points.iter().map(|p| (p.0 - x) * (p.1 - y)).sum();
-    move |at| y + sxy / sxx * (at - x)
+/// What Table 4 has of a method at an error: log₁₀ of operations, and the time.
+#[derive(Clone, Copy, Debug)]
+pub struct Cost {
+    /// Operations as printed.
+    pub printed: Option<f64>,
+    /// Operations of our runs with the paper's operations of a step.
+    pub ours: Option<f64>,
+    /// Operations of our runs, as they are counted.
+    pub counted: Option<f64>,
+    /// CPU time in seconds.
+    pub seconds: Option<f64>,
 }
 
 impl Accuracy {
+    /// What the paper prints for the method.
+    fn print(&self) -> Option<&'static Table4> {
+        table4(self.row)
+    }
+
+    /// The operations of a step that the paper's numbers imply.
+    pub fn printed_step(&self) -> Option<f64> {
+        self.print().and_then(|printed| printed.per_step[self.test])
+    }
+
+    /// The operations of a step as they are counted.
+    pub fn counted_step(&self) -> Option<u64> {
+        self.ops.map(|ops| ops.total())
+    }
+
+    /// What it costs to reach the error of this place in [`EPSILONS`].
+    pub fn cost(&self, e: usize) -> Cost {
+        let n = self.log_steps(EPSILONS[e]);
+        Cost {
+            printed: self.print().map(|printed| printed.printed[self.test][e]),
+            ours: self.printed_step().map(|ops| n + ops.log10()),
+            counted: self.counted_step().map(|ops| n + (ops as f64).log10()),
+            seconds: self.seconds_to(EPSILONS[e]),
+        }
+    }
+
     /// The paper's points.
     pub fn printed(&self) -> &[Point] {
         &self.points[..6.min(self.points.len())]
@@ -82,9 +114,8 @@ impl Accuracy {
     /// log₁₀ of the number of steps that reach ε, as the paper reads it: on the line of least squares
     /// through log cost against log error of its six runs.
     pub fn log_steps(&self, epsilon: f64) -> f64 {
-        let logs: Vec<_> =
-            self.printed().iter().map(|p| (p.error.log10(), (p.steps as f64).log10())).collect();
-        line(&logs)(epsilon.log10())
+        let logs = self.printed().iter().map(|p| (p.error.log10(), (p.steps as f64).log10()));
+        logs.collect::<Fit>().at(epsilon.log10()).unwrap_or(f64::NAN)
     }
 
     /// The CPU time that reaches ε, between two runs by the line through them in the logarithms; none
@@ -99,23 +130,18 @@ impl Accuracy {
     }
 }
 
-/// Measure every row with an attitude, in rounds that take turns.
-///
-/// # Errors
-/// None with the paper's bodies.
-pub fn accuracy(test: &Test, finer: u32, rounds: u32) -> Result<Vec<Accuracy>, CliError> {
-    let body = test.body;
-    let exact = Exact::new(body.inertia, body.momentum_body().into(), body.attitude)?;
-    let (_, exact) = exact.state(1.0)?;
-    let powers = test.powers[0]..=test.powers[5] + finer;
+/// Measure every row with an attitude in the test of this place in [`TESTS`], in rounds that take turns.
+pub fn accuracy(test: usize, finer: u32, rounds: u32) -> Result<Vec<Accuracy>, CliError> {
+    let Test { body, powers: paper, .. } = TESTS[test];
+    let (_, exact) = body.exact(1.0)?;
+    let powers = paper[0]..=paper[5] + finer;
     let mut all = Vec::new();
     for row in Row::all().filter(|row| *row != Row::EnergyCasimir) {
         let mut points = Vec::new();
         for power in powers.clone() {
             let grid = TimeGrid::with_steps([0.0, 1.0], 1 << power)?;
             let mut end = None;
-            let see = |_: f64, _: Vector3<f64>, g: Option<Matrix3<f64>>| end = g;
-            let outcome = row.visit(&body, Watch { grid: &grid, save: SaveAt::Ends, see })?;
+            let outcome = row.run(&body, &grid, SaveAt::Ends, &mut |_, _, g| end = g);
             let gap = |g: Matrix3<f64>| (g - exact).singular_values().max();
             let error = match (outcome, end) {
                 (Ok(()), Some(g)) => gap(g),
@@ -123,8 +149,8 @@ pub fn accuracy(test: &Test, finer: u32, rounds: u32) -> Result<Vec<Accuracy>, C
             };
             points.push(Point { steps: 1 << power, error, seconds: f64::NAN });
         }
-        let ops = row.counted(&body, 1.0 / f64::from(1u32 << test.powers[3]))?;
-        all.push(Accuracy { row, points, ops });
+        let ops = row.counted(&body, 1.0 / f64::from(1u32 << paper[3]))?;
+        all.push(Accuracy { test, row, points, ops });
     }
     time(&mut all, &body, rounds)?;
     Ok(all)
@@ -141,7 +167,7 @@ fn time(all: &mut [Accuracy], body: &Body, rounds: u32) -> Result<(), CliError> 
             for (point, times) in accuracy.points.iter().zip(times) {
                 if !point.error.is_nan() {
                     let grid = TimeGrid::with_steps([0.0, 1.0], point.steps)?;
-                    times.push(accuracy.row.visit(body, Clock { grid })??);
+                    times.push(accuracy.row.seconds(body, &grid, SHORTEST)?);
                 }
             }
         }
@@ -152,28 +178,4 @@ fn time(all: &mut [Accuracy], body: &Body, rounds: u32) -> Result<(), CliError> 
         }
     }
     Ok(())
-}
-
-/// The CPU time of a run.
-struct Clock {
-    grid: TimeGrid,
-}
-
-impl Visit for Clock {
-    type Out = Result<f64, RunError>;
-    fn call<P: Seen, M: Method<P>>(self, problem: &P, method: &M, start: PointOf<P>) -> Self::Out {
-        let clock = cpu_seconds();
-        let mut runs = 0.0;
-        loop {
-            let mut y = start.clone();
-            integrate(problem, method, &self.grid, &SaveAt::Ends, &mut y, |_, y| {
-                core::hint::black_box(y);
-            })?;
-            runs += 1.0;
-            let took = cpu_seconds() - clock;
-            if took >= SHORTEST {
-                return Ok(took / runs);
-            }
-        }
-    }
 }

@@ -62,9 +62,6 @@ fn columns<Psi: CoordinateMap<So3<Counted>>>(
 }
 
 /// Every column, map by map.
-///
-/// # Errors
-/// None at this u.
 pub fn table2() -> Result<Vec<Count>, Error> {
     let maps = [
         columns("exp", Exp, so3::dexpinv)?,

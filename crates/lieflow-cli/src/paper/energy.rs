@@ -2,10 +2,12 @@
 
 use lieflow::problems::RigidBody;
 use lieflow::{RunError, SaveAt, TimeGrid};
+use lieflow_figures::{Axis, Chart, Series};
+use nalgebra::Matrix3;
 
-use super::rows::{Body, Row, Watch};
+use super::rows::{Body, Row};
 use crate::cmd::CliError;
-use crate::measure::cpu_seconds;
+use crate::measure::{Fit, cpu_seconds};
 
 /// The energy error of one run, sample by sample.
 #[derive(Clone, Debug)]
@@ -14,9 +16,16 @@ pub struct EnergyRun {
     pub row: Row,
     /// t and E(t) − E(0), at the start and after every step.
     pub error: Vec<(f64, f64)>,
+    /// The momentum in the body at the first thousands of samples.
+    pub momentum: Vec<[f64; 3]>,
+    /// The attitude at the end, where it is in the state.
+    pub end: Option<Matrix3<f64>>,
     /// CPU time of a step.
     pub seconds_per_step: f64,
 }
+
+/// The samples whose momentum is kept.
+const MOMENTA: usize = 4000;
 
 impl EnergyRun {
     /// E(t) − E(0) at the end.
@@ -25,7 +34,14 @@ impl EnergyRun {
     }
     /// The mean of E − E(0) over all samples, the first among them.
     pub fn mean(&self) -> f64 {
-        self.error.iter().map(|(_, e)| e).sum::<f64>() / self.error.len() as f64
+        self.mean_of(|error| error)
+    }
+    /// The mean of |E − E(0)|.
+    pub fn mean_size(&self) -> f64 {
+        self.mean_of(f64::abs)
+    }
+    fn mean_of(&self, f: fn(f64) -> f64) -> f64 {
+        self.error.iter().map(|(_, e)| f(*e)).sum::<f64>() / self.error.len() as f64
     }
     /// The largest |E − E(0)|.
     pub fn max(&self) -> f64 {
@@ -33,11 +49,24 @@ impl EnergyRun {
     }
     /// The slope of the line that fits E(t) best.
     pub fn drift(&self) -> f64 {
-        let n = self.error.len() as f64;
-        let sum = |f: &dyn Fn(&(f64, f64)) -> f64| self.error.iter().map(f).sum::<f64>();
-        let (x, y) = (sum(&|p| p.0) / n, sum(&|p| p.1) / n);
-        sum(&|p| (p.0 - x) * (p.1 - y)) / sum(&|p| (p.0 - x).powi(2))
+        self.error.iter().copied().collect::<Fit>().slope().unwrap_or(f64::NAN)
     }
+    /// Its line in a chart of energies, over t in these units.
+    pub fn line(&self, unit: f64) -> Series {
+        // A point where the error is exactly zero, as at the start, has no place on a logarithm.
+        let drawn = self.error.iter().filter(|(_, error)| *error != 0.0 && !error.is_nan());
+        self.row.line(drawn.map(|(t, error)| (t * unit, error.abs())))
+    }
+}
+
+/// |E(t) − E(0)| over time, or over what stands for it.
+pub(super) fn energy_chart(
+    id: &str,
+    title: &str,
+    time: &str,
+    lines: impl IntoIterator<Item = Series>,
+) -> Chart {
+    Chart::new(id, title, [Axis::linear(time), Axis::log("energy error |E(t) − E(0)|")], lines)
 }
 
 /// The energy of the body's momentum gᵀm_s along a run. A step that fails ends it.
@@ -48,16 +77,21 @@ pub fn energy_run(body: &Body, row: Row, grid: &TimeGrid) -> Result<EnergyRun, C
     let energy = RigidBody::<f64>::new(body.inertia)?;
     let start = energy.energy(&body.momentum_body());
     let mut error = Vec::with_capacity(grid.steps() as usize + 1);
-    let see = |t: f64, m: nalgebra::Vector3<f64>, _: Option<nalgebra::Matrix3<f64>>| {
-        error.push((t, energy.energy(&m) - start));
-    };
+    let (mut momentum, mut end) = (Vec::new(), None);
     let clock = cpu_seconds();
-    let outcome = row.visit(body, Watch { grid, save: SaveAt::Every(1), see })?;
+    let outcome = row.run(body, grid, SaveAt::Every(1), &mut |t, m, g| {
+        error.push((t, energy.energy(&m) - start));
+        if momentum.len() < MOMENTA {
+            momentum.push(m.into());
+        }
+        end = g;
+    });
     let seconds_per_step = (cpu_seconds() - clock) / grid.steps() as f64;
     match outcome {
-        Ok(()) => Ok(EnergyRun { row, error, seconds_per_step }),
-        Err(RunError::Setup(refused)) => Err(refused.into()),
+        Ok(()) => {}
+        Err(RunError::Setup(refused)) => return Err(refused.into()),
         // A run that stops has no number at its end.
-        Err(_) => Ok(EnergyRun { row, error: vec![(0.0, f64::NAN)], seconds_per_step }),
+        Err(_) => (error, end) = (vec![(0.0, f64::NAN)], None),
     }
+    Ok(EnergyRun { row, error, momentum, end, seconds_per_step })
 }

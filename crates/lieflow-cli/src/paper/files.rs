@@ -4,184 +4,139 @@ use super::Paper;
 use super::accuracy::{EPSILONS, TESTS};
 use super::counts::Count;
 use super::energy::EnergyRun;
-use super::printed::{OPTIMUM, TABLE2, TABLE3, TABLE4};
+use super::printed::{self, table3};
+use crate::output::{fields, in_full, optional};
 
-/// Every file with its name.
-pub(super) fn all(paper: &Paper) -> Vec<(String, String)> {
-    let mut files = vec![
-        ("table1.csv".into(), table1(paper)),
-        ("table2.csv".into(), table2(&paper.counts)),
-        ("table3.csv".into(), table3(&paper.energy[2])),
-        ("table4.csv".into(), table4(paper)),
-        ("figure3.csv".into(), energy(&paper.energy[0])),
-        ("figure4.csv".into(), energy(&paper.energy[1])),
-        ("figure5.csv".into(), figure5(paper)),
-    ];
-    let mut frames = String::from("example,method,frame,energy_error\n");
-    for f in &paper.frames {
-        let (example, key) = (f.example, f.row.key());
-        frames += &format!("{example},{key},printed,{:e}\n", f.printed);
-        for x in &f.random {
-            frames += &format!("{example},{key},random,{x:e}\n");
-        }
-    }
-    files.push(("frames.csv".into(), frames));
-    let mut drift = String::from("method,h,drift\n");
-    for d in &paper.drift {
-        for (h, slope) in &d.points {
-            drift += &format!("{},{h:e},{slope:e}\n", d.row.key());
-        }
-    }
-    files.push(("drift.csv".into(), drift));
-    let mut near = String::from("method,t,side\n");
-    for s in &paper.separatrix {
-        for (t, side) in &s.side {
-            near += &format!("{},{t:e},{side:e}\n", s.row.key());
-        }
-    }
-    files.push(("separatrix.csv".into(), near));
-    files
+/// The name of a file, its columns and its rows.
+type Data = (&'static str, String, Vec<Vec<String>>);
+
+/// Every file.
+pub(super) fn all(paper: &Paper) -> Vec<Data> {
+    let series = |name: &str, points: &[(f64, f64)]| {
+        let row = |(x, y): &(f64, f64)| fields![name, in_full(*x), in_full(*y)];
+        points.iter().map(row).collect::<Vec<_>>()
+    };
+    let drift = paper.drift.iter().flat_map(|d| series(d.row.key(), &d.points));
+    let near = paper.separatrix.iter().flat_map(|s| series(s.row.key(), &s.side));
+    let frames = paper.frames.iter().flat_map(|f| {
+        let printed = core::iter::once(("printed", &f.printed));
+        let all = printed.chain(f.random.iter().map(|x| ("random", x)));
+        all.map(|(frame, x)| fields![f.example, f.row.key(), frame, in_full(*x)])
+    });
+    vec![
+        ("table1.csv", "layer,stage,u1,u2,u3,k1,k2,k3".into(), table1_rows(paper)),
+        table2(&paper.counts),
+        table3_file(&paper.energy[2]),
+        table4(paper),
+        energy("figure3.csv", &paper.energy[0]),
+        energy("figure4.csv", &paper.energy[1]),
+        figure5(paper),
+        ("frames.csv", "example,method,frame,energy_error".into(), frames.collect()),
+        ("drift.csv", "method,h,drift".into(), drift.collect()),
+        ("separatrix.csv", "method,t,side".into(), near.collect()),
+    ]
 }
 
-fn table1(paper: &Paper) -> String {
-    let mut text = String::from("layer,stage,u1,u2,u3,k1,k2,k3\n");
+fn table1_rows(paper: &Paper) -> Vec<Vec<String>> {
+    let mut rows = Vec::new();
     for (layer, trace) in ["closed", "general"].iter().zip(&paper.trace) {
         for (i, stage) in trace.stages.iter().enumerate() {
             let name = if stage.k.is_some() { (i + 1).to_string() } else { "v".into() };
-            let [a, b, c] = stage.u;
-            let k = stage.k.map_or(",,".into(), |[x, y, z]| format!("{x:e},{y:e},{z:e}"));
-            text += &format!("{layer},{name},{a:e},{b:e},{c:e},{k}\n");
+            let mut row = fields![layer, name];
+            row.extend(stage.u.map(in_full));
+            row.extend(stage.k.map_or_else(Default::default, |k| k.map(in_full)));
+            rows.push(row);
         }
     }
-    text
+    rows
 }
 
 /// Printed, counted and the fewest known.
-fn table2(counts: &[Count]) -> String {
-    let mut text = String::from(
-        "map,part,printed_add,printed_mul,printed_sqrt,printed_trig,printed_total,\
-         printed_with_product,add,mul,div,sqrt,trig,total,optimum\n",
-    );
-    for c in counts {
-        let same = |map: &str, part: &str| map == c.map && part == c.part;
-        let printed = TABLE2.iter().find(|(map, part, _)| same(map, part));
-        let [a, m, s, t] = printed.map_or([0; 4], |(.., numbers)| *numbers);
-        let optimum = OPTIMUM.iter().find(|(map, part, _)| same(map, part)).map_or(0, |o| o.2);
-        let (o, total) = (c.ops, a + m + s + t);
-        text += &format!(
-            "{},{},{a},{m},{s},{t},{total},{},{},{},{},{},{},{},{optimum}\n",
-            c.map,
-            ascii(c.part),
-            total + c.product(),
-            o.add,
-            o.mul,
-            o.div,
-            o.sqrt,
-            o.trig,
-            o.total()
-        );
-    }
-    text
-}
-
-/// The name of a part without signs beyond ASCII.
-fn ascii(part: &str) -> &str {
-    match part {
-        "Ψ" => "psi",
-        "dΨ⁻¹" => "dpsi_inv",
-        other => other,
-    }
+fn table2(counts: &[Count]) -> Data {
+    let header = "map,part,printed_add,printed_mul,printed_sqrt,printed_trig,printed_total,\
+                  printed_with_product,add,mul,div,sqrt,trig,total,optimum";
+    let rows = counts.iter().map(|c| {
+        // ASCII alone.
+        let part = match c.part {
+            "Ψ" => "psi",
+            "dΨ⁻¹" => "dpsi_inv",
+            other => other,
+        };
+        let ([a, m, s, t], fewest) = printed::table2(c.map, c.part);
+        let (o, total, sum) = (c.ops, c.ops.total(), a + m + s + t);
+        let applied = sum + c.product();
+        fields![
+            c.map, part, a, m, s, t, sum, applied, o.add, o.mul, o.div, o.sqrt, o.trig, total,
+            fewest
+        ]
+    });
+    ("table2.csv", header.into(), rows.collect())
 }
 
 /// The errors as the paper prints them, without their sign.
-fn table3(runs: &[EnergyRun]) -> String {
-    let mut text = String::from(
-        "method,energy_error,mean_energy_error,printed_energy_error,printed_mean_energy_error\n",
-    );
-    for run in runs {
-        let printed = TABLE3.iter().find(|(row, ..)| *row == run.row);
-        let (last, mean) = printed.map_or(("", ""), |(_, last, mean)| (*last, *mean));
-        let (a, b) = (number(run.last().abs()), number(run.mean().abs()));
-        text += &format!("{},{a},{b},{last},{mean}\n", run.row.key());
-    }
-    text
-}
-
-/// A number with nine digits; nothing where there is none.
-fn number(x: f64) -> String {
-    if x.is_nan() { String::new() } else { format!("{x:.8e}") }
-}
-
-fn optional(x: Option<f64>) -> String {
-    x.map_or_else(String::new, |x| format!("{x:.4}"))
+fn table3_file(runs: &[EnergyRun]) -> Data {
+    let header =
+        "method,energy_error,mean_energy_error,printed_energy_error,printed_mean_energy_error";
+    let rows = runs.iter().map(|run| {
+        let [last, mean] = table3(run.row).unwrap_or_default();
+        fields![run.row.key(), in_full(run.last().abs()), in_full(run.mean().abs()), last, mean]
+    });
+    ("table3.csv", header.into(), rows.collect())
 }
 
 /// log₁₀ of operations: printed, by the paper's operations of a step, by counted ones; and the time.
-fn table4(paper: &Paper) -> String {
-    let mut text = String::from(
-        "test,method,epsilon,printed_log10_ops,log10_ops_paper_step,ops_of_step_paper,\
-         log10_ops_counted,ops_of_step_counted,seconds\n",
-    );
-    for (t, test) in TESTS.iter().enumerate() {
-        for a in &paper.accuracy[t] {
-            let printed = TABLE4.iter().find(|p| p.row == a.row);
-            for (e, epsilon) in EPSILONS.into_iter().enumerate() {
-                let n = a.log_steps(epsilon);
-                let step = printed.and_then(|p| p.per_step[t]);
-                let counted = a.ops.map(|ops| ops.total() as f64);
-                text += &format!(
-                    "{},{},{epsilon:e},{},{},{},{},{},{}\n",
-                    test.key,
-                    a.row.key(),
-                    optional(printed.map(|p| p.printed[t][e])),
-                    optional(step.map(|c| n + c.log10())),
-                    step.map_or(String::new(), |c| c.to_string()),
-                    optional(counted.map(|c| n + c.log10())),
-                    counted.map_or(String::new(), |c| c.to_string()),
-                    a.seconds_to(epsilon).map_or(String::new(), |s| format!("{s:e}")),
-                );
-            }
+fn table4(paper: &Paper) -> Data {
+    let header = "test,method,epsilon,printed_log10_ops,log10_ops_paper_step,ops_of_step_paper,\
+                  log10_ops_counted,ops_of_step_counted,seconds";
+    let mut rows = Vec::new();
+    let four = |x: Option<f64>| optional(x.map(|x| format!("{x:.4}")));
+    for a in paper.accuracy.iter().flatten() {
+        for (e, epsilon) in EPSILONS.into_iter().enumerate() {
+            let cost = a.cost(e);
+            rows.push(fields![
+                TESTS[a.test].key,
+                a.row.key(),
+                in_full(epsilon),
+                four(cost.printed),
+                four(cost.ours),
+                optional(a.printed_step()),
+                four(cost.counted),
+                optional(a.counted_step()),
+                optional(cost.seconds.map(in_full)),
+            ]);
         }
     }
-    text
+    ("table4.csv", header.into(), rows)
 }
 
 /// t and the energy error of each method, every tenth step.
-fn energy(runs: &[EnergyRun]) -> String {
+fn energy(name: &'static str, runs: &[EnergyRun]) -> Data {
     let names: Vec<&str> = runs.iter().map(|run| run.row.key()).collect();
-    let mut text = format!("t,{}\n", names.join(","));
     let steps = runs.iter().map(|run| run.error.len()).max().unwrap_or(0);
-    for i in (0..steps).step_by(10) {
-        let t = runs.iter().find_map(|run| run.error.get(i)).map_or(f64::NAN, |(t, _)| *t);
-        text += &format!("{t}");
-        for run in runs {
-            text += ",";
-            text += &run.error.get(i).map_or(String::new(), |(_, error)| number(*error));
-        }
-        text.push('\n');
-    }
-    text
+    let rows = (0..steps).step_by(10).map(|i| {
+        let at = |run: &EnergyRun| run.error.get(i).copied();
+        let t = runs.iter().find_map(at).map_or(f64::NAN, |(t, _)| t);
+        let errors = runs.iter().map(|run| optional(at(run).map(|(_, error)| in_full(error))));
+        core::iter::once(t.to_string()).chain(errors).collect()
+    });
+    (name, format!("t,{}", names.join(",")), rows.collect())
 }
 
-fn figure5(paper: &Paper) -> String {
-    let mut text = String::from("test,method,steps,error,ops_paper_step,ops_counted,seconds\n");
-    for (t, test) in TESTS.iter().enumerate() {
-        for a in &paper.accuracy[t] {
-            let step = TABLE4.iter().find(|p| p.row == a.row).and_then(|p| p.per_step[t]);
-            for p in &a.points {
-                let n = p.steps as f64;
-                text += &format!(
-                    "{},{},{},{},{},{},{}\n",
-                    test.key,
-                    a.row.key(),
-                    p.steps,
-                    number(p.error),
-                    step.map_or(String::new(), |c| (c * n).to_string()),
-                    a.ops.map_or(String::new(), |ops| (ops.total() * p.steps).to_string()),
-                    number(p.seconds)
-                );
-            }
-        }
+fn figure5(paper: &Paper) -> Data {
+    let header = "test,method,steps,error,ops_paper_step,ops_counted,seconds";
+    let mut rows = Vec::new();
+    for a in paper.accuracy.iter().flatten() {
+        rows.extend(a.points.iter().map(|p| {
+            fields![
+                TESTS[a.test].key,
+                a.row.key(),
+                p.steps,
+                in_full(p.error),
+                optional(a.printed_step().map(|ops| ops * p.steps as f64)),
+                optional(a.counted_step().map(|ops| ops * p.steps)),
+                in_full(p.seconds)
+            ]
+        }));
     }
-    text
+    ("figure5.csv", header.into(), rows)
 }

@@ -1,14 +1,15 @@
 //! What is not in the paper: the space frame and ccsk, the orders of the drift, the separatrix.
 
 use lieflow::groups::{Sample, So3};
-use lieflow::problems::Exact;
+use lieflow::problems::RigidBody;
 use lieflow::{SaveAt, TimeGrid};
 use nalgebra::{Matrix3, Vector3};
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
 
 use super::energy::energy_run;
-use super::rows::{Body, EXAMPLE1, EXAMPLE3, Row, Watch};
+use super::experiments::{EXAMPLE1, EXAMPLE3, Experiment};
+use super::rows::{Body, Row};
 use crate::cmd::CliError;
 
 /// The energy drift of one method in many space frames.
@@ -22,7 +23,7 @@ pub struct Frames {
     pub row: Row,
     /// |E(t) − E(0)| in the frame of the paper.
     pub printed: f64,
-    /// The same in random frames, in order of size.
+    /// |E(t) − E(0)| in random frames, in order of size.
     pub random: Vec<f64>,
 }
 
@@ -39,15 +40,14 @@ impl Frames {
 }
 
 /// The drift in `count` random frames, for exp and both orderings of ccsk, in examples 1 and 3.
-///
-/// # Errors
-/// None with the paper's bodies.
 pub fn frames(count: usize, seed: u64, mut tick: impl FnMut(f64)) -> Result<Vec<Frames>, CliError> {
     let mut rng = Pcg64::seed_from_u64(seed);
     let turns: Vec<Matrix3<f64>> =
         (0..count).map(|_| So3::<f64>::new().sample_element(&mut rng)).collect();
     let mut all = Vec::new();
-    for (example, body, t, dt) in [(1, EXAMPLE1, 400.0, 0.05), (3, EXAMPLE3, 80.0, 0.004)] {
+    for (example, Experiment { body, dt, .. }, t) in
+        [(1, EXAMPLE1, Experiment::END), (3, EXAMPLE3, 80.0)]
+    {
         let grid = TimeGrid::new([0.0, t], dt)?;
         for row in [Row::Exp, Row::Ccsk321, Row::Ccsk123] {
             // exp does not see the frame: a few show it.
@@ -65,11 +65,10 @@ pub fn frames(count: usize, seed: u64, mut tick: impl FnMut(f64)) -> Result<Vec<
 
 /// E(t) − E(0) at the end, with nothing looked at on the way.
 fn end_of(body: &Body, row: Row, grid: &TimeGrid) -> Result<f64, CliError> {
-    let energy = lieflow::problems::RigidBody::<f64>::new(body.inertia)?;
+    let energy = RigidBody::<f64>::new(body.inertia)?;
     let start = energy.energy(&body.momentum_body());
     let mut last = f64::NAN;
-    let see = |_: f64, m: Vector3<f64>, _: Option<Matrix3<f64>>| last = energy.energy(&m) - start;
-    row.visit(body, Watch { grid, save: SaveAt::Ends, see })??;
+    row.run(body, grid, SaveAt::Ends, &mut |_, m, _| last = energy.energy(&m) - start)?;
     Ok(last)
 }
 
@@ -94,9 +93,6 @@ impl DriftOrder {
 pub const GENERIC: Body = Body::new([1.0, 2.0, 3.0], [0.9, 1.0, 2.1]);
 
 /// How the drift falls with the step on generic data, over t = 0 … 400.
-///
-/// # Errors
-/// None.
 pub fn drift_orders() -> Result<Vec<DriftOrder>, CliError> {
     let rows = [Row::Exp, Row::Cay, Row::B4, Row::Rk4, Row::Ccsk321, Row::Ccsk123];
     let order = |row| {
@@ -131,23 +127,18 @@ pub fn side(body: &Body, m: &Vector3<f64>) -> f64 {
 }
 
 /// Methods on g and methods that keep m as a state, over t = 0 … 200 with steps of 0.05.
-///
-/// # Errors
-/// None.
 pub fn separatrix() -> Result<Vec<Separatrix>, CliError> {
     let body = NEAR_SEPARATRIX;
     let grid = TimeGrid::new([0.0, 200.0], 0.05)?;
-    let exact = Exact::new(body.inertia, body.momentum_body().into(), body.attitude)?;
-    let (_, exact) = exact.state(200.0)?;
+    let (_, exact) = body.exact(200.0)?;
     let rows = [Row::Exp, Row::Cay, Row::Rk4, Row::Mr, Row::Mr2, Row::S, Row::Rk4mg];
     let run = |row: Row| {
         let mut side_of = Vec::new();
         let mut end = None;
-        let see = |t: f64, m: Vector3<f64>, g: Option<Matrix3<f64>>| {
+        row.run(&body, &grid, SaveAt::Every(20), &mut |t, m, g| {
             side_of.push((t, side(&body, &m)));
             end = g;
-        };
-        row.visit(&body, Watch { grid: &grid, save: SaveAt::Every(20), see })??;
+        })?;
         let error = end.map_or(f64::NAN, |g| (g - exact).norm());
         Ok(Separatrix { row, side: side_of, error })
     };

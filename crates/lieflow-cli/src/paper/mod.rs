@@ -1,29 +1,34 @@
-//! The numerical section of the paper, computed again: its tables and figures beside what is printed,
-//! what is wrong in the print, and what it does not have.
+//! The numerical section of the paper, computed again, as one edition of which a command takes a part:
+//! `lieflow paper` the tables and figures beside what is printed ([`Paper`]), what is wrong in the print,
+//! and what it does not have; `lieflow` the three experiments with speed against error on both layers
+//! ([`speed`]), and the accuracy of the maps ([`maps`]).
 
 pub mod accuracy;
 pub mod counts;
 pub mod energy;
+pub mod experiments;
 mod files;
 pub mod findings;
+pub mod maps;
 mod news;
 mod page;
 pub mod printed;
 pub mod rows;
+pub mod speed;
 pub mod trace;
 mod verdicts;
 
 use std::path::{Path, PathBuf};
 
-use lieflow::TimeGrid;
-
-use self::accuracy::{Accuracy, TESTS, accuracy};
+use self::accuracy::{Accuracy, accuracy};
 use self::counts::{Count, table2};
-use self::energy::{EnergyRun, energy_run};
+use self::energy::EnergyRun;
+use self::experiments::{EXAMPLE1, EXPERIMENTS, SEED};
 use self::findings::{DriftOrder, Frames, Separatrix};
-use self::rows::{EXAMPLE1, EXAMPLE2, EXAMPLE3, Row};
+use self::rows::Row;
 use self::trace::Trace;
 use crate::cmd::CliError;
+use crate::output;
 
 /// Everything that the page shows.
 #[derive(Debug)]
@@ -55,38 +60,17 @@ pub struct Effort {
     pub finer: u32,
 }
 
-/// The seed of the random frames.
-const SEED: u64 = 2003;
-
-/// The energy of an example with the paper's step.
-///
-/// # Errors
-/// None with the paper's bodies.
-pub fn example(number: u8) -> Result<Vec<EnergyRun>, CliError> {
-    let (body, dt) = match number {
-        1 => (EXAMPLE1, 0.05),
-        2 => (EXAMPLE2, 0.05),
-        _ => (EXAMPLE3, 0.004),
-    };
-    let grid = TimeGrid::new([0.0, 400.0], dt)?;
-    Row::all().map(|row| energy_run(&body, row, &grid)).collect()
-}
-
 /// Compute everything. `tick` gets the share of the work that is done and what is under way.
-///
-/// # Errors
-/// None with the paper's bodies.
 pub fn compute(effort: &Effort, mut tick: impl FnMut(f64, &str)) -> Result<Paper, CliError> {
     tick(0.0, "Tables 1 and 2");
-    let trace = trace::both_layers(&EXAMPLE1, 0.05)?;
+    let trace = trace::both_layers(&EXAMPLE1.body, EXAMPLE1.dt)?;
     let counts = table2()?;
     tick(0.02, "Table 3, Figures 3 and 4");
-    let energy = [example(1)?, example(2)?, example(3)?];
+    let [first, second, third] = EXPERIMENTS.map(|experiment| experiment.energy(Row::all()));
+    let energy = [first?, second?, third?];
     tick(0.3, "Table 4, Figure 5");
-    let accuracy = [
-        accuracy(&TESTS[0], effort.finer, effort.rounds)?,
-        accuracy(&TESTS[1], effort.finer, effort.rounds)?,
-    ];
+    let [first, second] = [0, 1].map(|test| accuracy(test, effort.finer, effort.rounds));
+    let accuracy = [first?, second?];
     let frames =
         findings::frames(effort.frames, SEED, |done| tick(0.5 + 0.4 * done, "space frames"))?;
     tick(0.9, "drift and separatrix");
@@ -104,27 +88,23 @@ impl Paper {
     /// # Errors
     /// A file cannot be written.
     pub fn write(&self, folder: &Path) -> Result<PathBuf, CliError> {
-        crate::output::make_folder(folder)?;
-        for (name, text) in files::all(self) {
-            crate::output::write_file(&folder.join(name), &text)?;
+        for (name, header, rows) in files::all(self) {
+            output::write_csv(&folder.join(name), header.split(','), rows)?;
         }
-        crate::report::write_page_as(folder, PAPER_PAGE, &page::page(self))
+        output::write_page(folder, PAPER_PAGE, &page::page(self))
     }
 
     /// What a terminal is told.
     pub fn in_words(&self) -> String {
-        let mut text = String::from("Table 3: printed, and computed again\n");
-        let rows = printed::TABLE3.iter().filter_map(|(row, last, mean)| {
-            let run = self.energy[2].iter().find(|run| run.row == *row)?;
+        let rows = self.energy[2].iter().filter_map(|run| {
+            let [last, mean] = printed::table3(run.row)?.map(String::from);
             let ours = |x: f64| format!("{:.6e}", x.abs());
-            let [a, b] = [ours(run.last()), ours(run.mean())];
-            Some([row.name().into(), (*last).into(), a, (*mean).into(), b])
+            Some([run.row.name().into(), last, ours(run.last()), mean, ours(run.mean())])
         });
-        let header = ["method", "energy error", "ours", "mean", "ours"];
-        text += &crate::output::table(header, rows);
-        text += "\n";
+        let table = output::table(["method", "energy error", "ours", "mean", "ours"], rows);
+        let mut text = format!("Table 3: printed, and computed again\n{table}\n");
         for verdict in verdicts::all(self) {
-            text += &crate::output::wrap(&format!("{}: {}", verdict.claim, verdict.answer), " ");
+            text += &output::wrap(&format!("{}: {}", verdict.claim, verdict.answer), " ");
         }
         text
     }

@@ -3,38 +3,23 @@
 use super::Paper;
 use super::findings::{Frames, Separatrix};
 use super::rows::Row as Method;
-use crate::report::scientific;
-use lieflow_figures::page::{Block, Column, Row, Table};
-use lieflow_figures::plot::format::sig;
-use lieflow_figures::plot::{Axis, Chart, Marker, Point, Scale, Series};
+use lieflow_figures::number::{DASH, scientific, sig};
+use lieflow_figures::{Axis, Block, Chart, Column, Scale, Table};
 
 fn frames(frames: &[&Frames]) -> Chart {
-    let series = frames.iter().map(|f| Series {
-        name: f.row.name().into(),
-        colour: f.row.colour(),
-        marker: Marker::None,
-        dash: false,
-        points: match f.row {
-            // One value, drawn over all frames.
-            Method::Exp => [0.0, 1.0].map(|x| Point::new(x, f.printed)).to_vec(),
-            _ => f
-                .random
-                .iter()
-                .enumerate()
-                .map(|(i, x)| Point::new((i as f64 + 0.5) / f.random.len() as f64, *x))
-                .collect(),
-        },
-        emphasised: false,
+    let series = frames.iter().map(|f| match f.row {
+        // One value, drawn over all frames.
+        Method::Exp => f.row.line([0.0, 1.0].map(|x| (x, f.printed))),
+        _ => {
+            let share = |i: usize| (i as f64 + 0.5) / f.random.len() as f64;
+            f.row.line(f.random.iter().enumerate().map(|(i, x)| (share(i), *x)))
+        }
     });
     let example = frames.first().map_or(0, |f| f.example);
-    Chart {
-        id: format!("frames-{example}"),
-        title: format!("Example {example}: energy error in random space frames"),
-        x: Axis::new("share of the frames", Scale::Linear),
-        y: Axis::new("energy error |E(t) − E(0)| below which it lies", Scale::Log10),
-        series: series.collect(),
-        caption: String::new(),
-    }
+    let title = format!("Example {example}: energy error in random space frames");
+    let below = Axis::log("energy error |E(t) − E(0)| below which it lies");
+    let axes = [Axis::linear("share of the frames"), below];
+    Chart::new(format!("frames-{example}"), title, axes, series)
 }
 
 pub(super) fn blocks(paper: &Paper) -> Vec<Block> {
@@ -46,14 +31,14 @@ pub(super) fn blocks(paper: &Paper) -> Vec<Block> {
              examples 1 and 3 by rotations R drawn uniformly from SO(3), with a fixed seed and the same \
              for each method, and running each with the paper's step; of each run |E − E(0)| at its end.",
         ),
-        Block::Table(frames_table(&paper.frames)),
+        frames_table(&paper.frames).into(),
     ];
     let of = |example: u8| paper.frames.iter().filter(|f| f.example == example).collect::<Vec<_>>();
-    blocks.push(Block::Row(vec![Block::Chart(frames(&of(1))), Block::Chart(frames(&of(3)))]));
+    blocks.push(Block::Row([1, 3].map(|example| frames(&of(example)).into()).into()));
 
-    let rows = paper.drift.iter().map(|d| {
-        let orders = d.orders().iter().map(|p| format!("{p:.2}")).collect::<Vec<_>>();
-        Row::new(core::iter::once(d.row.name().to_string()).chain(orders).collect())
+    let orders = paper.drift.iter().map(|d| {
+        let orders = d.orders().into_iter().map(|p| format!("{p:.2}"));
+        core::iter::once(d.row.name().into()).chain(orders).collect::<Vec<_>>()
     });
     blocks.push(Block::text(
         "Ours: the order of the drift. On data where no component of m_s is zero, the slope of the \
@@ -63,33 +48,21 @@ pub(super) fn blocks(paper: &Paper) -> Vec<Block> {
          motion, and ccsk gains the order too. Obtained by runs over t = 0 … 400 in five steps, each \
          half the one before: the slope is that of the line of least squares through E(t) at every step.",
     ));
+    let lines = paper.drift.iter().map(|d| d.row.marked_line(d.points.iter().copied()));
     blocks.push(Block::Row(vec![
-        Block::Chart(Chart {
-            id: "drift".into(),
-            title: "Energy drift over the step, J = diag(1, 2, 3), m_s = (0.9, 1, 2.1)".into(),
-            x: Axis::new("step h", Scale::Log10),
-            y: Axis::new("slope of the energy |dE/dt|", Scale::Log10),
-            series: paper
-                .drift
-                .iter()
-                .map(|d| Series {
-                    name: d.row.name().into(),
-                    colour: d.row.colour(),
-                    marker: d.row.marker(),
-                    dash: false,
-                    points: d.points.iter().map(|(h, slope)| Point::new(*h, *slope)).collect(),
-                    emphasised: false,
-                })
-                .collect(),
-            caption: String::new(),
-        }),
-        Block::Table(Table {
-            caption: "Order of the drift between neighbouring steps, from large to small.".into(),
-            columns: core::iter::once(Column::text("Method"))
-                .chain(["0.1 → 0.05", "→ 0.025", "→ 0.0125", "→ 0.00625"].map(Column::number))
-                .collect(),
-            rows: rows.collect(),
-        }),
+        Chart::new(
+            "drift",
+            "Energy drift over the step, J = diag(1, 2, 3), m_s = (0.9, 1, 2.1)",
+            [Axis::log("step h"), Axis::log("slope of the energy |dE/dt|")],
+            lines,
+        )
+        .into(),
+        Table::new(
+            "Order of the drift between neighbouring steps, from large to small.",
+            Column::all(["Method"], ["0.1 → 0.05", "→ 0.025", "→ 0.0125", "→ 0.00625"]),
+            orders,
+        )
+        .into(),
     ]));
     blocks.extend(separatrix(&paper.separatrix));
     blocks
@@ -100,9 +73,8 @@ fn frames_table(all: &[Frames]) -> Table {
         let exp = all.iter().find(|e| e.example == f.example && e.row == Method::Exp);
         let better = exp.map_or(f64::NAN, |e| f.below(e.printed));
         let percent = |x: f64| format!("{:.1} %", 100.0 * x);
-        let dash = || "–".to_string();
-        let seen = f.row != Method::Exp;
-        Row::new(vec![
+        let seen = |x: f64| if f.row == Method::Exp { DASH.into() } else { percent(x) };
+        [
             format!("example {}, t = {}", f.example, f.t),
             f.row.name().into(),
             f.random.len().to_string(),
@@ -110,9 +82,9 @@ fn frames_table(all: &[Frames]) -> Table {
             scientific(f.quantile(0.1)),
             scientific(f.quantile(0.5)),
             scientific(f.quantile(0.9)),
-            if seen { percent(better) } else { dash() },
-            if seen { percent(f.below(f.printed)) } else { dash() },
-        ])
+            seen(better),
+            seen(f.below(f.printed)),
+        ]
     });
     let columns = [
         "frames",
@@ -123,25 +95,12 @@ fn frames_table(all: &[Frames]) -> Table {
         "better than exp",
         "better than in the paper's frame",
     ];
-    Table {
-        caption: "Energy error at the end, over random space frames.".into(),
-        columns: [Column::text("Run"), Column::text("Method")]
-            .into_iter()
-            .chain(columns.map(Column::number))
-            .collect(),
-        rows: rows.collect(),
-    }
+    let caption = "Energy error at the end, over random space frames.";
+    Table::new(caption, Column::all(["Run", "Method"], columns), rows)
 }
 
 fn separatrix(all: &[Separatrix]) -> Vec<Block> {
-    let series = all.iter().map(|s| Series {
-        name: s.row.name().into(),
-        colour: s.row.colour(),
-        marker: Marker::None,
-        dash: s.row.is_added(),
-        points: s.side.iter().map(|(t, x)| Point::new(*t, *x)).collect(),
-        emphasised: false,
-    });
+    let lines = all.iter().map(|s| s.row.line(s.side.iter().copied()));
     let rows = all.iter().map(|s| {
         let start = s.side.first().map_or(f64::NAN, |p| p.1);
         let end = s.side.last().map_or(f64::NAN, |p| p.1);
@@ -150,7 +109,7 @@ fn separatrix(all: &[Separatrix]) -> Vec<Block> {
             ratio if ratio < 0.0 => "crossed",
             _ => "lost",
         };
-        Row::new(vec![s.row.name().into(), scientific(end), verdict.into(), sig(s.error, 2)])
+        [s.row.name().into(), scientific(end), verdict.into(), sig(s.error, 2)]
     });
     let start = all.first().and_then(|s| s.side.first()).map_or(f64::NAN, |p| p.1);
     vec![
@@ -166,24 +125,25 @@ fn separatrix(all: &[Separatrix]) -> Vec<Block> {
             scientific(start)
         )),
         Block::Row(vec![
-            Block::Chart(Chart {
-                id: "separatrix".into(),
-                title: "Side of the separatrix".into(),
-                x: Axis::new("time t", Scale::Linear),
-                y: Axis::new("L² − 2EJ₂", Scale::SymLog { linear: 1e-13 }),
-                series: series.collect(),
-                caption: "Zero is the separatrix; the exact motion stays where it starts.".into(),
-            }),
-            Block::Table(Table {
-                caption: "At t = 200.".into(),
-                columns: vec![
+            Chart::new(
+                "separatrix",
+                "Side of the separatrix",
+                [Axis::linear("time t"), Axis::new("L² − 2EJ₂", Scale::SymLog { linear: 1e-13 })],
+                lines,
+            )
+            .with_caption("Zero is the separatrix; the exact motion stays where it starts.")
+            .into(),
+            Table::new(
+                "At t = 200.",
+                vec![
                     Column::text("Method"),
                     Column::number("L² − 2EJ₂"),
                     Column::text(""),
                     Column::number("error of g"),
                 ],
-                rows: rows.collect(),
-            }),
+                rows,
+            )
+            .into(),
         ]),
     ]
 }

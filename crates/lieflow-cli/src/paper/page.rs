@@ -2,23 +2,20 @@
 
 use super::Paper;
 use super::accuracy::{Accuracy, EPSILONS, TESTS};
-use super::energy::EnergyRun;
-use super::printed::{ERRATA, OPTIMUM, TABLE2, TABLE3, TABLE4};
+use super::energy::{EnergyRun, energy_chart};
+use super::printed::{self, ERRATA, TABLE3};
 use super::rows::Row as Method;
 use super::{news, verdicts};
 use crate::measure::machine;
-use crate::report::scientific;
-use lieflow_figures::page::{Block, Column, Page, Row, Section, Table};
-use lieflow_figures::plot::format::seconds;
-use lieflow_figures::plot::{Axis, Chart, Marker, Point, Scale, Series};
+use crate::report;
+use lieflow_figures::number::{DASH, or_dash, scientific, seconds};
+use lieflow_figures::{Axis, Block, Chart, Column, Page, Point, Section, Table};
 
 pub(super) fn page(paper: &Paper) -> Page {
-    Page {
-        title: "Lie group methods for rigid body dynamics: the numbers again".into(),
-        subtitle: "The numerical section of Celledoni & Owren (2003), computed by lieflow beside \
-                   what is printed"
-            .into(),
-        sections: vec![
+    report::page(
+        "Lie group methods for rigid body dynamics: the numbers again",
+        "The numerical section of Celledoni & Owren (2003), computed by lieflow beside what is printed",
+        vec![
             Section::new("In short", in_short(paper)),
             Section::new("Table 1: one step", table1(paper)),
             Section::new("Table 2: operations", table2(paper)),
@@ -28,8 +25,7 @@ pub(super) fn page(paper: &Paper) -> Page {
             Section::new("What is new", news::blocks(paper)),
             Section::new("Errata", errata()),
         ],
-        footer: format!("lieflow {}", env!("CARGO_PKG_VERSION")),
-    }
+    )
 }
 
 fn in_short(paper: &Paper) -> Vec<Block> {
@@ -48,11 +44,11 @@ fn in_short(paper: &Paper) -> Vec<Block> {
              parameters that the printed numbers belong to (see the errata). What the paper does not \
              have is marked as ours.",
         ),
-        Block::Facts(vec![
-            ("Machine".into(), machine()),
-            ("Table 3".into(), format!("{agree} of 16 numbers as printed, to every digit")),
+        Block::facts([
+            ("Machine", machine()),
+            ("Table 3", format!("{agree} of 16 numbers as printed, to every digit")),
             (
-                "Times".into(),
+                "Times",
                 "CPU time of one thread, medians of rounds that visit every method in turn".into(),
             ),
         ]),
@@ -84,9 +80,9 @@ fn table1(paper: &Paper) -> Vec<Block> {
     let mut rows = Vec::new();
     for (i, (a, b)) in closed.stages.iter().zip(&general.stages).enumerate() {
         let name = if a.k.is_some() { format!("u{}", i + 1) } else { "v".into() };
-        rows.push(Row::new(vec![name, vector(&a.u), gap(&a.u, &b.u)]));
+        rows.push([name, vector(&a.u), gap(&a.u, &b.u)]);
         if let (Some(x), Some(y)) = (a.k, b.k) {
-            rows.push(Row::new(vec![format!("k̃{}", i + 1), vector(&x), gap(&x, &y)]));
+            rows.push([format!("k̃{}", i + 1), vector(&x), gap(&x, &y)]);
         }
     }
     let end = (closed.end - general.end).norm();
@@ -97,37 +93,23 @@ fn table1(paper: &Paper) -> Vec<Block> {
              are shown; beside them, how far the general layer for matrices of any size is. The two \
              g⁺ differ by {end:.0e}."
         )),
-        Block::Table(Table {
-            caption: "Stage by stage.".into(),
-            columns: vec![
-                Column::text(""),
-                Column::text("closed form"),
-                Column::number("general layer differs by"),
-            ],
+        Table::new(
+            "Stage by stage.",
+            Column::all(["", "closed form"], ["general layer differs by"]),
             rows,
-        }),
+        )
+        .into(),
     ]
 }
 
 fn table2(paper: &Paper) -> Vec<Block> {
     let rows = paper.counts.iter().map(|c| {
-        let same = |map: &str, part: &str| map == c.map && part == c.part;
-        let printed = TABLE2.iter().find(|(map, part, _)| same(map, part));
-        let total: u64 = printed.map_or(0, |(.., n)| n.iter().sum());
-        let optimum = OPTIMUM.iter().find(|(map, part, _)| same(map, part)).map_or(0, |o| o.2);
-        let o = c.ops;
-        Row::new(vec![
-            format!("{} {}", c.part, c.map),
-            total.to_string(),
-            (total + c.product()).to_string(),
-            o.total().to_string(),
-            o.add.to_string(),
-            o.mul.to_string(),
-            o.div.to_string(),
-            o.sqrt.to_string(),
-            o.trig.to_string(),
-            optimum.to_string(),
-        ])
+        let (printed, fewest) = printed::table2(c.map, c.part);
+        let (o, total) = (c.ops, printed.iter().sum::<u64>());
+        let numbers =
+            [total, total + c.product(), o.total(), o.add, o.mul, o.div, o.sqrt, o.trig, fewest];
+        let name = format!("{} {}", c.part, c.map);
+        core::iter::once(name).chain(numbers.map(|n| n.to_string())).collect::<Vec<_>>()
     });
     let columns =
         ["printed", "printed, applied", "ours", "add", "mul", "div", "√", "trig", "fewest known"];
@@ -143,52 +125,18 @@ fn table2(paper: &Paper) -> Vec<Block> {
              time. “Fewest known” counts \
              the matrix, as the paper does.",
         ),
-        Block::Table(Table {
-            caption: "Operations on so(3).".into(),
-            columns: core::iter::once(Column::text(""))
-                .chain(columns.map(Column::number))
-                .collect(),
-            rows: rows.collect(),
-        }),
+        Table::new("Operations on so(3).", Column::all([""], columns), rows).into(),
     ]
 }
 
 /// The energy over the time of the motion, or over the CPU time that it took.
-fn energy_chart(
-    id: &str,
-    title: &str,
-    runs: &[EnergyRun],
-    rows: &[Method],
-    measured: bool,
-) -> Chart {
-    let series = rows.iter().filter_map(|row| runs.iter().find(|run| run.row == *row)).map(|run| {
+fn chart(id: &str, title: &str, runs: &[EnergyRun], rows: &[Method], measured: bool) -> Chart {
+    let runs = rows.iter().filter_map(|row| runs.iter().find(|run| run.row == *row));
+    let lines = runs.map(|run| {
         let h = run.error.get(1).map_or(1.0, |(t, _)| *t);
-        let unit = if measured { run.seconds_per_step / h } else { 1.0 };
-        Series {
-            name: run.row.name().into(),
-            colour: run.row.colour(),
-            marker: Marker::None,
-            dash: run.row.is_added(),
-            points: run
-                .error
-                .iter()
-                .filter(|(_, error)| *error != 0.0 && !error.is_nan())
-                .map(|(t, error)| Point::new(t * unit, error.abs()))
-                .collect(),
-            emphasised: false,
-        }
+        run.line(if measured { run.seconds_per_step / h } else { 1.0 })
     });
-    Chart {
-        id: id.into(),
-        title: title.into(),
-        x: match measured {
-            true => Axis::new("CPU time [s]", Scale::Linear),
-            false => Axis::new("time t", Scale::Linear),
-        },
-        y: Axis::new("energy error |E(t) − E(0)|", Scale::Log10),
-        series: series.collect(),
-        caption: String::new(),
-    }
+    energy_chart(id, title, if measured { "CPU time [s]" } else { "time t" }, lines)
 }
 
 fn figures34(paper: &Paper) -> Vec<Block> {
@@ -210,33 +158,22 @@ fn figures34(paper: &Paper) -> Vec<Block> {
     )];
     for (n, example) in [(3, 0), (4, 1)] {
         let name = ["asymmetric, J = diag(1, 2, 3)", "symmetric, J = diag(1, 1, 2)"][example];
-        let chart = |id: &str, measured| {
-            let title = format!("Figure {n}: {name}");
-            Block::Chart(energy_chart(id, &title, &paper.energy[example], &rows, measured))
-        };
-        blocks.push(Block::Row(vec![
-            chart(&format!("figure{n}"), false),
-            chart(&format!("figure{n}-time"), true),
-        ]));
+        let title = format!("Figure {n}: {name}");
+        let over = [(format!("figure{n}"), false), (format!("figure{n}-time"), true)];
+        let charts = over.map(|(id, measured)| {
+            chart(&id, &title, &paper.energy[example], &rows, measured).into()
+        });
+        blocks.push(Block::Row(charts.into()));
     }
     blocks
 }
 
 fn table3(paper: &Paper) -> Vec<Block> {
     let rows = paper.energy[2].iter().map(|run| {
-        let printed = TABLE3.iter().find(|(row, ..)| *row == run.row);
-        let dash = || "–".to_string();
-        let (last, mean) =
-            printed.map_or((dash(), dash()), |(_, last, mean)| ((*last).into(), (*mean).into()));
-        let nine = |x: f64| if x.is_nan() { dash() } else { format!("{x:.8e}") };
-        Row::new(vec![
-            run.row.name().into(),
-            last,
-            nine(run.last()),
-            mean,
-            nine(run.mean()),
-            scientific(run.max()),
-        ])
+        let [last, mean] = printed::table3(run.row).unwrap_or([DASH; 2]).map(String::from);
+        let nine = |x: f64| or_dash((!x.is_nan()).then_some(x), |x| format!("{x:.8e}"));
+        let (ours, our_mean) = (nine(run.last()), nine(run.mean()));
+        [run.row.name().into(), last, ours, mean, our_mean, scientific(run.max())]
     });
     vec![
         Block::text(
@@ -245,58 +182,40 @@ fn table3(paper: &Paper) -> Vec<Block> {
              MR2, S, DMV, RK4 on (m, g) and the energy and Casimir preserving method are ours; so are \
              the signs. A dash: the method has no step of this size here.",
         ),
-        Block::Table(Table {
-            caption: "Energy error at t = 400 and its mean.".into(),
-            columns: vec![
-                Column::text("Method"),
-                Column::number("printed"),
-                Column::number("ours"),
-                Column::number("printed mean"),
-                Column::number("our mean"),
-                Column::number("largest"),
-            ],
-            rows: rows.collect(),
-        }),
-        Block::Chart(energy_chart(
+        Table::new(
+            "Energy error at t = 400 and its mean.",
+            Column::all(["Method"], ["printed", "ours", "printed mean", "our mean", "largest"]),
+            rows,
+        )
+        .into(),
+        chart(
             "example3",
             "Energy in example 3",
             &paper.energy[2],
             // The widest bands first, below the others.
             &[&[Method::Mr2][..], &Method::PRINTED, &Method::ADDED[1..]].concat(),
             false,
-        )),
+        )
+        .into(),
     ]
 }
 
+/// The error over what it costs.
 fn cost_chart(
-    id: String,
-    title: String,
-    y: Axis,
+    id: &str,
+    title: &str,
+    cost: &str,
     all: &[Accuracy],
-    cost: impl Fn(&Accuracy, usize) -> Option<f64>,
-) -> Chart {
-    let series = all.iter().map(|a| {
-        let point = |(i, p): (usize, &super::accuracy::Point)| {
-            let note = format!("{} steps", p.steps);
-            (!p.error.is_nan()).then(|| Some(Point::new(p.error, cost(a, i)?).with_note(note)))?
-        };
-        Series {
-            name: a.row.name().into(),
-            colour: a.row.colour(),
-            marker: a.row.marker(),
-            dash: a.row.is_added(),
-            points: a.points.iter().enumerate().filter_map(point).collect(),
-            emphasised: false,
-        }
+    of: impl Fn(&Accuracy, usize) -> Option<f64>,
+) -> Block {
+    let lines = all.iter().map(|a| {
+        let points = a.points.iter().enumerate().filter(|(_, p)| !p.error.is_nan());
+        a.row.marked_line(points.filter_map(|(i, p)| {
+            Some(Point::new(p.error, of(a, i)?).with_note(format!("{} steps", p.steps)))
+        }))
     });
-    Chart {
-        id,
-        title,
-        x: Axis::new("global error at t = 1", Scale::Log10),
-        y,
-        series: series.filter(|s| !s.points.is_empty()).collect(),
-        caption: String::new(),
-    }
+    let axes = [Axis::log("global error at t = 1"), Axis::log(cost)];
+    Chart::new(id, title, axes, lines.filter(|line| !line.points.is_empty())).into()
 }
 
 fn table4(paper: &Paper) -> Vec<Block> {
@@ -310,52 +229,41 @@ fn table4(paper: &Paper) -> Vec<Block> {
     )];
     for (t, test) in TESTS.iter().enumerate() {
         let all = &paper.accuracy[t];
-        let mut rows = Vec::new();
-        for a in all {
-            let printed = TABLE4.iter().find(|p| p.row == a.row);
-            let step = printed.and_then(|p| p.per_step[t]);
-            let dash = |x: Option<f64>| x.map_or("–".into(), |x| format!("{x:.4}"));
+        let rows = all.iter().map(|a| {
+            let four = |x: Option<f64>| or_dash(x, |x| format!("{x:.4}"));
             let mut cells = vec![a.row.name().to_string()];
-            for (e, epsilon) in EPSILONS.into_iter().enumerate() {
-                let n = a.log_steps(epsilon);
-                cells.push(dash(printed.map(|p| p.printed[t][e])));
-                cells.push(dash(step.map(|c| n + c.log10())));
-                cells.push(dash(a.ops.map(|ops| n + (ops.total() as f64).log10())));
-                cells.push(a.seconds_to(epsilon).map_or("–".into(), seconds));
+            for cost in [0, 1].map(|e| a.cost(e)) {
+                cells.extend([cost.printed, cost.ours, cost.counted].map(four));
+                cells.push(or_dash(cost.seconds, seconds));
             }
-            cells.push(step.map_or("–".into(), |c| c.to_string()));
-            cells.push(a.ops.map_or("–".into(), |ops| ops.total().to_string()));
-            rows.push(Row::new(cells));
-        }
+            cells.push(or_dash(a.printed_step(), |ops| ops.to_string()));
+            cells.push(or_dash(a.counted_step(), |ops| ops.to_string()));
+            cells
+        });
         let mut columns = vec![Column::text("Method")];
-        for epsilon in ["1e-3", "1e-6"] {
-            columns.push(Column::number(format!("{epsilon}: printed")));
+        for epsilon in EPSILONS {
+            columns.push(Column::number(format!("{epsilon:e}: printed")));
             columns.extend(["ours", "counted", "time"].map(Column::number));
         }
         columns.extend(["a step, paper", "a step, counted"].map(Column::number));
-        blocks.push(Block::Table(Table {
-            caption: format!("{}: log₁₀ of operations, and time, to ε.", test.name),
-            columns,
-            rows,
-        }));
-        let step =
-            |a: &Accuracy| TABLE4.iter().find(|p| p.row == a.row).and_then(|p| p.per_step[t]);
+        let caption = format!("{}: log₁₀ of operations, and time, to ε.", test.name);
+        blocks.push(Table::new(caption, columns, rows).into());
         let figure = if t == 0 { "Figure 5" } else { "The same" };
         blocks.push(Block::Row(vec![
-            Block::Chart(cost_chart(
-                format!("figure5-{}", test.key),
-                format!("{figure}: operations, {}", test.name),
-                Axis::new("operations, as the paper counts", Scale::Log10),
+            cost_chart(
+                &format!("figure5-{}", test.key),
+                &format!("{figure}: operations, {}", test.name),
+                "operations, as the paper counts",
                 all,
-                |a, i| Some(step(a)? * a.points[i].steps as f64),
-            )),
-            Block::Chart(cost_chart(
-                format!("figure5-{}-time", test.key),
-                format!("{figure}: measured time, {}", test.name),
-                Axis::new("CPU time [s]", Scale::Log10),
+                |a, i| Some(a.printed_step()? * a.points[i].steps as f64),
+            ),
+            cost_chart(
+                &format!("figure5-{}-time", test.key),
+                &format!("{figure}: measured time, {}", test.name),
+                "CPU time [s]",
                 all,
                 |a, i| Some(a.points[i].seconds),
-            )),
+            ),
         ]));
     }
     blocks
@@ -368,13 +276,11 @@ fn errata() -> Vec<Block> {
              (10) to (12), (14) to (16), (18) and Table 1 among it, was checked and is right as \
              printed, for the right-trivialised differential.",
         ),
-        Block::Table(Table {
-            caption: "Printed and right.".into(),
-            columns: ["Where", "Printed", "Right"].map(Column::text).to_vec(),
-            rows: ERRATA
-                .iter()
-                .map(|row| Row::new(row.iter().map(|cell| (*cell).into()).collect()))
-                .collect(),
-        }),
+        Table::new(
+            "Printed and right.",
+            Column::all(["Where", "Printed", "Right"], []),
+            ERRATA.map(|row| row.map(String::from)),
+        )
+        .into(),
     ]
 }

@@ -6,13 +6,16 @@ use lieflow::methods::{
     Buss4, DMV4, DMV10, EnergyCasimir, MR2, MR4, Method, Rk, Rkmk, SimoWong, Step,
 };
 use lieflow::problems::{
-    Ambient, PointOf, Problem, RigidBody, RigidBodyAttitude, RigidBodyState, ScalarOf,
+    Ambient, BodyState, Exact, PointOf, Problem, RigidBody, RigidBodyAttitude, RigidBodyState,
+    ScalarOf,
 };
 use lieflow::scalar::{Counted, Ops, Real};
 use lieflow::{Error, RunError, SaveAt, TimeGrid, integrate};
 use nalgebra::{Matrix3, Vector3};
 
-use lieflow_figures::plot::Marker;
+use lieflow_figures::{Marker, Point, Series};
+
+use crate::measure::seconds_of;
 
 /// A body of the paper with its initial data, angular momentum and attitude in space.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,13 +27,6 @@ pub struct Body {
     /// g(0).
     pub attitude: Matrix3<f64>,
 }
-
-/// J = diag(1, 2, 3), ω(0) = (0.2, 0, 1).
-pub const EXAMPLE1: Body = Body::new([1.0, 2.0, 3.0], [0.2, 0.0, 3.0]);
-/// J = diag(1, 1, 2), ω(0) = (0.2, 0, 1).
-pub const EXAMPLE2: Body = Body::new([1.0, 1.0, 2.0], [0.2, 0.0, 2.0]);
-/// J⁻¹ = diag(1, 4, 18): the paper prints it as J.
-pub const EXAMPLE3: Body = Body::new([1.0, 0.25, 1.0 / 18.0], [0.0, 2.75, 2.75]);
 
 impl Body {
     /// A body with g(0) = 𝟙.
@@ -44,7 +40,7 @@ impl Body {
         Body { inertia, momentum_space, attitude }
     }
 
-    /// The same motion seen from a frame in space that is turned by r: m_s → r m_s, g → r g.
+    /// The body seen from a frame in space that is turned by r: m_s → r m_s, g → r g.
     pub fn turned(&self, r: &Matrix3<f64>) -> Self {
         let m_s = r * Vector3::from(self.momentum_space);
         Body { momentum_space: m_s.into(), attitude: r * self.attitude, ..*self }
@@ -55,8 +51,12 @@ impl Body {
         self.attitude.transpose() * Vector3::from(self.momentum_space)
     }
 
-    fn problem<S: Real>(&self) -> Result<RigidBodyAttitude<S>, Error> {
-        RigidBodyAttitude::new(self.inertia, self.momentum_space)
+    /// The exact momentum in the body and attitude at t.
+    ///
+    /// # Errors
+    /// A body that cannot be.
+    pub fn exact(&self, t: f64) -> Result<(Vector3<f64>, Matrix3<f64>), Error> {
+        Exact::new(self.inertia, self.momentum_body().into(), self.attitude)?.state(t)
     }
 }
 
@@ -93,11 +93,49 @@ pub enum Row {
     EnergyCasimir,
 }
 
+/// `$call` on the problem, the method and the start of a row, on numbers of a type.
+macro_rules! on_row {
+    ($row:expr, $body:expr, $number:ty, |$problem:ident, $method:ident, $start:ident| $call:expr) => {{
+        let body: &Body = $body;
+        let attitude = body.attitude.map(<$number>::lit);
+        let on_g = RigidBodyAttitude::<$number>::new(body.inertia, body.momentum_space)?;
+        let momentum = body.momentum_body().map(<$number>::lit);
+        macro_rules! arm {
+            ($of:expr, $by:expr, $from:expr) => {{
+                let ($problem, $method, $start) = ($of, $by, $from);
+                $call
+            }};
+        }
+        match $row {
+            Row::Mr => arm!(&on_g, &MR4, attitude),
+            Row::Exp => arm!(&on_g, &Rkmk::new(RK4, Exp), attitude),
+            Row::Ccsk => arm!(&on_g, &Rkmk::new(RK4, CCSK), attitude),
+            Row::Ccsk321 => arm!(&on_g, &Rkmk::new(RK4, CCSK321), attitude),
+            Row::Ccsk123 => arm!(&on_g, &Rkmk::new(RK4, CCSK123), attitude),
+            Row::Cay => arm!(&on_g, &Rkmk::new(RK4, Cay), attitude),
+            Row::B4 => arm!(&on_g, &Buss4, attitude),
+            Row::Rk4 => arm!(&on_g, &Rk(RK4), attitude),
+            Row::Mr2 => arm!(&on_g, &MR2, attitude),
+            Row::S => arm!(&on_g, &SimoWong::TAN, attitude),
+            Row::Dmv4 => arm!(&on_g, &DMV4, attitude),
+            Row::Dmv10 => arm!(&on_g, &DMV10, attitude),
+            Row::Rk4mg => {
+                let state = BodyState { m: momentum, g: attitude };
+                arm!(&RigidBodyState::<$number>::new(body.inertia)?, &Rk(RK4), state)
+            }
+            Row::EnergyCasimir => {
+                let on_m = RigidBody::<$number>::new(body.inertia)?;
+                arm!(&on_m, &EnergyCasimir::new(Exp), momentum)
+            }
+        }
+    }};
+}
+
 impl Row {
-    /// Those of Table 3, in its order.
+    /// The rows of Table 3, in its order.
     pub const PRINTED: [Row; 8] =
         [Row::Mr, Row::Exp, Row::Ccsk, Row::Ccsk321, Row::Ccsk123, Row::Cay, Row::B4, Row::Rk4];
-    /// Those that are added.
+    /// The rows that the paper does not have.
     pub const ADDED: [Row; 6] =
         [Row::Mr2, Row::S, Row::Dmv4, Row::Dmv10, Row::Rk4mg, Row::EnergyCasimir];
 
@@ -106,106 +144,72 @@ impl Row {
         Self::PRINTED.into_iter().chain(Self::ADDED)
     }
 
-    /// Its name in files.
+    /// Its name in files and for people, the paper's where it has one, its colour and its marker in
+    /// figures: rows of one colour have different markers.
+    #[rustfmt::skip]
+    const fn look(self) -> (&'static str, &'static str, usize, usize) {
+        match self {
+            Row::Mr => ("mr", "MR", 6, 6),
+            Row::Exp => ("exp", "exp", 0, 0),
+            Row::Ccsk => ("ccsk", "ccsk", 4, 4),
+            Row::Ccsk321 => ("ccsk321", "ccskb (321)", 3, 3),
+            Row::Ccsk123 => ("ccsk123", "ccskf (123)", 2, 2),
+            Row::Cay => ("cay", "cay", 1, 1),
+            Row::B4 => ("b4", "B4", 7, 7),
+            Row::Rk4 => ("rk4", "RK4", 5, 5),
+            Row::Mr2 => ("mr2", "MR2", 6, 6),
+            Row::S => ("simo-wong", "S", 7, 3),
+            Row::Dmv4 => ("dmv4", "DMV4", 7, 1),
+            Row::Dmv10 => ("dmv10", "DMV10", 7, 2),
+            Row::Rk4mg => ("rk4-mg", "RK4 on (m, g)", 5, 5),
+            Row::EnergyCasimir => ("energy-casimir", "energy-Casimir", 7, 4),
+        }
+    }
+
+    /// Its name in files; of RKMK4 that of its map.
     pub fn key(self) -> &'static str {
-        match self {
-            Row::Mr => "mr",
-            Row::Exp => "exp",
-            Row::Ccsk => "ccsk",
-            Row::Ccsk321 => "ccsk321",
-            Row::Ccsk123 => "ccsk123",
-            Row::Cay => "cay",
-            Row::B4 => "b4",
-            Row::Rk4 => "rk4",
-            Row::Mr2 => "mr2",
-            Row::S => "simo-wong",
-            Row::Dmv4 => "dmv4",
-            Row::Dmv10 => "dmv10",
-            Row::Rk4mg => "rk4-mg",
-            Row::EnergyCasimir => "energy-casimir",
-        }
+        self.look().0
     }
 
-    /// Its name for people, the paper's where it has one.
+    /// Its name for people.
     pub fn name(self) -> &'static str {
-        match self {
-            Row::Mr => "MR",
-            Row::Exp => "exp",
-            Row::Ccsk => "ccsk",
-            Row::Ccsk321 => "ccskb (321)",
-            Row::Ccsk123 => "ccskf (123)",
-            Row::Cay => "cay",
-            Row::B4 => "B4",
-            Row::Rk4 => "RK4",
-            Row::Mr2 => "MR2",
-            Row::S => "S",
-            Row::Dmv4 => "DMV4",
-            Row::Dmv10 => "DMV10",
-            Row::Rk4mg => "RK4 on (m, g)",
-            Row::EnergyCasimir => "energy-Casimir",
-        }
+        self.look().1
     }
 
-    /// Its colour in figures.
-    pub fn colour(self) -> usize {
-        match self {
-            Row::Exp => 0,
-            Row::Cay => 1,
-            Row::Ccsk123 => 2,
-            Row::Ccsk321 => 3,
-            Row::Ccsk => 4,
-            Row::Rk4 | Row::Rk4mg => 5,
-            Row::Mr | Row::Mr2 => 6,
-            Row::B4 | Row::S | Row::Dmv4 | Row::Dmv10 | Row::EnergyCasimir => 7,
-        }
+    /// Its line in a figure, dashed where the paper does not have it.
+    pub fn line<P: Into<Point>>(self, points: impl IntoIterator<Item = P>) -> Series {
+        Series::line(self.name(), self.look().2, points).with_dash(Self::ADDED.contains(&self))
     }
 
-    /// Its marker in figures: rows of one colour have different ones.
-    pub fn marker(self) -> Marker {
-        let place = match self {
-            Row::S => 3,
-            Row::Dmv4 => 1,
-            Row::Dmv10 => 2,
-            Row::EnergyCasimir => 4,
-            row => row.colour(),
-        };
-        Marker::cycle(place)
+    /// Its line with a marker at each point.
+    pub fn marked_line<P: Into<Point>>(self, points: impl IntoIterator<Item = P>) -> Series {
+        self.line(points).with_marker(Marker::cycle(self.look().3))
     }
 
-    /// Is it one of those that the paper does not have?
-    pub fn is_added(self) -> bool {
-        Self::ADDED.contains(&self)
-    }
-
-    /// Hand over its problem, its method and the initial state.
+    /// Run it from the initial data, and show t, the momentum in the body and the attitude, where it is in
+    /// the state, after every so many steps.
     ///
     /// # Errors
-    /// A body that cannot be.
-    pub fn visit<V: Visit>(self, body: &Body, visitor: V) -> Result<V::Out, Error> {
-        let problem = body.problem::<f64>()?;
-        let g = body.attitude;
-        Ok(match self {
-            Row::Mr => visitor.call(&problem, &MR4, g),
-            Row::Exp => visitor.call(&problem, &Rkmk::new(RK4, Exp), g),
-            Row::Ccsk => visitor.call(&problem, &Rkmk::new(RK4, CCSK), g),
-            Row::Ccsk321 => visitor.call(&problem, &Rkmk::new(RK4, CCSK321), g),
-            Row::Ccsk123 => visitor.call(&problem, &Rkmk::new(RK4, CCSK123), g),
-            Row::Cay => visitor.call(&problem, &Rkmk::new(RK4, Cay), g),
-            Row::B4 => visitor.call(&problem, &Buss4, g),
-            Row::Rk4 => visitor.call(&problem, &Rk(RK4), g),
-            Row::Mr2 => visitor.call(&problem, &MR2, g),
-            Row::S => visitor.call(&problem, &SimoWong::TAN, g),
-            Row::Dmv4 => visitor.call(&problem, &DMV4, g),
-            Row::Dmv10 => visitor.call(&problem, &DMV10, g),
-            Row::Rk4mg => {
-                let problem = RigidBodyState::new(body.inertia)?;
-                let state = problem.state(body.momentum_body().into(), g)?;
-                visitor.call(&problem, &Rk(RK4), state)
-            }
-            Row::EnergyCasimir => {
-                let problem = RigidBody::new(body.inertia)?;
-                visitor.call(&problem, &EnergyCasimir::new(Exp), body.momentum_body())
-            }
+    /// A body that cannot be, or a step that fails.
+    pub fn run(
+        self,
+        body: &Body,
+        grid: &TimeGrid,
+        save: SaveAt,
+        see: &mut See<'_>,
+    ) -> Result<(), RunError> {
+        on_row!(self, body, f64, |problem, method, start| {
+            run(problem, method, start, (grid, save), see)
+        })
+    }
+
+    /// The CPU time of a run, which is repeated until all have taken `shortest` seconds.
+    ///
+    /// # Errors
+    /// As [`run`](Self::run).
+    pub fn seconds(self, body: &Body, grid: &TimeGrid, shortest: f64) -> Result<f64, RunError> {
+        on_row!(self, body, f64, |problem, method, start| {
+            seconds(problem, method, &start, grid, shortest)
         })
     }
 
@@ -214,32 +218,9 @@ impl Row {
     /// # Errors
     /// A body that cannot be.
     pub fn counted(self, body: &Body, h: f64) -> Result<Option<Ops>, Error> {
-        let problem = body.problem::<Counted>()?;
-        let g = body.attitude.map(Counted::lit);
-        Ok(match self {
-            Row::Mr => counted(&problem, &MR4, g, h),
-            Row::Exp => counted(&problem, &Rkmk::new(RK4, Exp), g, h),
-            Row::Ccsk => counted(&problem, &Rkmk::new(RK4, CCSK), g, h),
-            Row::Ccsk321 => counted(&problem, &Rkmk::new(RK4, CCSK321), g, h),
-            Row::Ccsk123 => counted(&problem, &Rkmk::new(RK4, CCSK123), g, h),
-            Row::Cay => counted(&problem, &Rkmk::new(RK4, Cay), g, h),
-            Row::B4 => counted(&problem, &Buss4, g, h),
-            Row::Rk4 => counted(&problem, &Rk(RK4), g, h),
-            Row::Mr2 => counted(&problem, &MR2, g, h),
-            Row::S => counted(&problem, &SimoWong::TAN, g, h),
-            Row::Rk4mg => {
-                let problem = RigidBodyState::<Counted>::new(body.inertia)?;
-                let m = body.momentum_body().map(Counted::lit);
-                counted(&problem, &Rk(RK4), lieflow::problems::BodyState { m, g }, h)
-            }
-            Row::Dmv4 => counted(&problem, &DMV4, g, h),
-            Row::Dmv10 => counted(&problem, &DMV10, g, h),
-            Row::EnergyCasimir => {
-                let problem = RigidBody::<Counted>::new(body.inertia)?;
-                let m = body.momentum_body().map(Counted::lit);
-                counted(&problem, &EnergyCasimir::new(Exp), m, h)
-            }
-        })
+        on_row!(self, body, Counted, |problem, method, start| Ok(counted(
+            problem, method, start, h
+        )))
     }
 }
 
@@ -255,7 +236,7 @@ fn counted<P: Problem, M: Method<P>>(
     done.ok().map(|()| ops)
 }
 
-/// A body by what a table can ask of it.
+/// A body whose momentum and attitude can be read from its state.
 pub trait Seen: Ambient {
     /// The momentum in the body.
     fn momentum(&self, y: &PointOf<Self>) -> Vector3<f64>;
@@ -290,36 +271,34 @@ impl Seen for RigidBodyState {
     }
 }
 
-/// What to do with a row.
-pub trait Visit {
-    /// The answer.
-    type Out;
-    /// Do it.
-    fn call<P: Seen, M: Method<P>>(self, problem: &P, method: &M, start: PointOf<P>) -> Self::Out;
+/// What gets t, m and g.
+pub type See<'a> = dyn FnMut(f64, Vector3<f64>, Option<Matrix3<f64>>) + 'a;
+
+fn run<P: Seen, M: Method<P>>(
+    problem: &P,
+    method: &M,
+    mut y: PointOf<P>,
+    (grid, save): (&TimeGrid, SaveAt),
+    see: &mut See<'_>,
+) -> Result<(), RunError> {
+    let see = |t, y: &PointOf<P>| see(t, problem.momentum(y), problem.attitude(y));
+    integrate(problem, method, grid, &save, &mut y, see).map(|_| ())
 }
 
-/// Show t, m and g after every so many steps.
-#[allow(missing_debug_implementations)] // it holds a closure
-pub struct Watch<'a, F> {
-    /// The steps.
-    pub grid: &'a TimeGrid,
-    /// Where to look.
-    pub save: SaveAt,
-    /// Who looks.
-    pub see: F,
-}
-
-impl<F: FnMut(f64, Vector3<f64>, Option<Matrix3<f64>>)> Visit for Watch<'_, F> {
-    type Out = Result<(), RunError>;
-    fn call<P: Seen, M: Method<P>>(
-        mut self,
-        problem: &P,
-        method: &M,
-        mut y: PointOf<P>,
-    ) -> Self::Out {
-        integrate(problem, method, self.grid, &self.save, &mut y, |t, y| {
-            (self.see)(t, problem.momentum(y), problem.attitude(y));
-        })
-        .map(|_| ())
-    }
+fn seconds<P: Seen, M: Method<P>>(
+    problem: &P,
+    method: &M,
+    start: &PointOf<P>,
+    grid: &TimeGrid,
+    shortest: f64,
+) -> Result<f64, RunError> {
+    let mut outcome = Ok(());
+    let seconds = seconds_of(shortest, || {
+        let mut y = start.clone();
+        let see = |_, y: &PointOf<P>| {
+            core::hint::black_box(y);
+        };
+        outcome = integrate(problem, method, grid, &SaveAt::Ends, &mut y, see).map(|_| ());
+    });
+    outcome.map(|()| seconds)
 }

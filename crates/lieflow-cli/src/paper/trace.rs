@@ -70,9 +70,6 @@ where
 }
 
 /// One step of RKMK4 with exp on the closed and on the general layer.
-///
-/// # Errors
-/// None with the paper's bodies.
 pub fn both_layers(body: &Body, h: f64) -> Result<[Trace; 2], Error> {
     let closed = RigidBodyAttitude::new(body.inertia, body.momentum_space)?;
     let (stages, end) = traced(&closed, &Exp, body.attitude, h, |u: &Vector3<f64>| (*u).into())?;

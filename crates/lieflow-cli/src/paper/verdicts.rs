@@ -3,7 +3,7 @@
 use super::Paper;
 use super::accuracy::{Accuracy, EPSILONS, TESTS};
 use super::rows::Row;
-use lieflow_figures::plot::format::seconds;
+use lieflow_figures::number::{or_dash, seconds};
 
 /// A sentence of the paper and what the measurements say.
 #[derive(Clone, Debug)]
@@ -23,7 +23,7 @@ fn find(all: &[Accuracy], row: Row) -> Option<&Accuracy> {
 /// The time of a row to ε, in words.
 fn time(all: &[Accuracy], row: Row, epsilon: f64) -> String {
     let time = find(all, row).and_then(|a| a.seconds_to(epsilon));
-    format!("{} {}", row.name(), time.map_or("–".into(), seconds))
+    format!("{} {}", row.name(), or_dash(time, seconds))
 }
 
 /// Every sentence.

@@ -1,9 +1,8 @@
 //! Which method to take: the fastest for each error, and the runs that nothing beats.
 
-use super::{duration, scientific};
 use crate::measure::{Curve, Reached, Reference, Size, WorkPoint, pareto};
-use lieflow_figures::page::{Column, Row, Table};
-use lieflow_figures::plot::{Axis, Chart, Marker, Point, Scale, Series, tell_apart};
+use lieflow_figures::number::{DASH, scientific, seconds};
+use lieflow_figures::{Axis, Chart, Column, Marker, Point, Series, Table, tell_apart};
 
 /// The errors that advice is given for.
 pub const ADVICE: [f64; 4] = [1e-3, 1e-6, 1e-9, 1e-12];
@@ -60,7 +59,7 @@ pub fn choice_cells(choice: &Choice<'_>) -> [String; 5] {
                 true => "none reaches it",
                 false => "below the error of the reference",
             };
-            [error, why.into(), "–".into(), "–".into(), "–".into()]
+            [error, why.into(), DASH.into(), DASH.into(), DASH.into()]
         }
         Some((curve, reached)) => [
             error,
@@ -69,7 +68,7 @@ pub fn choice_cells(choice: &Choice<'_>) -> [String; 5] {
                 None => format!("h = {}", scientific(reached.h)),
                 Some(rtol) => format!("rtol = {}", scientific(rtol)),
             },
-            duration(Some(reached.seconds)),
+            seconds(reached.seconds),
             scientific(reached.energy_error),
         ],
     }
@@ -81,17 +80,8 @@ pub const CHOICE_HEADER: [&str; 5] = ["error", "fastest", "its step", "its time"
 /// The advice as a table.
 pub fn choice_table(caption: &str, choices: &[Choice<'_>]) -> Table {
     let [error, fastest, step, time, energy] = CHOICE_HEADER;
-    Table {
-        caption: caption.into(),
-        columns: vec![
-            Column::text(error),
-            Column::text(fastest),
-            Column::number(step),
-            Column::number(time),
-            Column::number(energy),
-        ],
-        rows: choices.iter().map(|choice| Row::new(choice_cells(choice).into())).collect(),
-    }
+    let columns = Column::all([error, fastest], [step, time, energy]);
+    Table::new(caption, columns, choices.iter().map(choice_cells))
 }
 
 /// What a run costs.
@@ -113,12 +103,16 @@ impl Cost {
             Cost::Operations => point.operations.map(|n| n as f64),
         }
     }
-    pub(super) fn axis(self) -> Axis {
+    fn axis(self) -> Axis {
         match self {
-            Cost::Time => Axis::new("CPU time per unit of simulated time [s]", Scale::Log10),
-            Cost::Evaluations => Axis::new("evaluations of f", Scale::Log10),
-            Cost::Operations => Axis::new("operations", Scale::Log10),
+            Cost::Time => Axis::log("CPU time per unit of simulated time [s]"),
+            Cost::Evaluations => Axis::log("evaluations of f"),
+            Cost::Operations => Axis::log("operations"),
         }
+    }
+    /// A chart of error and cost.
+    pub(super) fn chart(self, id: &str, title: &str, series: Vec<Series>) -> Chart {
+        Chart::new(id, title, [Axis::log("global error at the end"), self.axis()], series)
     }
 }
 
@@ -149,7 +143,7 @@ pub(super) fn drawn(point: &WorkPoint, cost: Cost, note: impl FnOnce() -> String
 
 /// The runs that no other method with steps beats in both error and cost: the front, and the whole
 /// lines of the methods on it, beside that of the exact motion.
-pub fn front_chart(id: &str, title: &str, caption: &str, curves: &[Curve], cost: Cost) -> Chart {
+pub fn front_chart(id: &str, title: &str, curves: &[Curve], cost: Cost) -> Chart {
     let front = front(curves, cost);
     let exact = (0..curves.len()).filter(|&i| !steps(&curves[i]));
     let mut shown: Vec<usize> = front.iter().map(|(curve, _)| *curve).chain(exact).collect();
@@ -163,32 +157,14 @@ pub fn front_chart(id: &str, title: &str, caption: &str, curves: &[Curve], cost:
     let lines = shown.iter().map(|&i| (i, of_curve(i).collect::<Vec<_>>()));
     let lines = lines.filter(|(_, points)| !points.is_empty()).enumerate();
     let mut series: Vec<Series> = lines
-        .map(|(rank, (i, points))| Series {
-            name: curves[i].candidate.label(),
-            colour: rank,
-            marker: Marker::cycle(rank),
-            dash: false,
-            points,
-            emphasised: false,
+        .map(|(rank, (i, points))| {
+            Series::line(curves[i].candidate.label(), rank, points).with_marker(Marker::cycle(rank))
         })
         .collect();
     tell_apart(&mut series);
-    series.push(Series {
-        name: "Pareto front".into(),
-        colour: 6,
-        marker: Marker::Circle,
-        dash: true,
-        points: front.iter().filter_map(|at| place(*at)).collect(),
-        emphasised: true,
-    });
-    Chart {
-        id: id.into(),
-        title: title.into(),
-        x: Axis::new("global error at the end", Scale::Log10),
-        y: cost.axis(),
-        series,
-        caption: caption.into(),
-    }
+    let front = Series::line("Pareto front", 6, front.iter().filter_map(|at| place(*at)));
+    series.push(Series { emphasised: true, ..front.with_marker(Marker::Circle).with_dash(true) });
+    cost.chart(id, title, series)
 }
 
 /// The size of a run's steps, for a reader.

@@ -1,9 +1,9 @@
 //! What each method keeps, at about the same error of the state.
 
 use super::choice::size_of;
-use super::scientific;
 use crate::measure::{Curve, WorkPoint};
-use lieflow_figures::page::{Column, Row, Table};
+use lieflow_figures::number::scientific;
+use lieflow_figures::{Column, Table};
 
 /// The error of the state at which methods are compared.
 const AT: f64 = 1e-6;
@@ -22,16 +22,15 @@ pub fn kept_table(curves: &[Curve]) -> Table {
         let run = nearest(curve)?;
         let errors = [run.error, run.energy_error, run.casimir_error, run.group_residual];
         let texts = [curve.candidate.label(), size_of(run)];
-        Some(Row::new(texts.into_iter().chain(errors.map(scientific)).collect()))
+        Some(texts.into_iter().chain(errors.map(scientific)).collect::<Vec<_>>())
     });
-    let mut columns = vec![Column::text("Method"), Column::text("Run")];
-    columns.extend(["State", "Energy", "Casimir", "Group"].map(Column::number));
-    Table {
-        caption: format!(
-            "The run of each method whose error is nearest to {AT:.0e}: the relative error of its state, \
-             energy and Casimir at the end, and its distance from the group."
-        ),
-        columns,
-        rows: rows.collect(),
-    }
+    let caption = format!(
+        "The run of each method whose error is nearest to {AT:.0e}: the relative error of its state, \
+         energy and Casimir at the end, and its distance from the group."
+    );
+    Table::new(
+        caption,
+        Column::all(["Method", "Run"], ["State", "Energy", "Casimir", "Group"]),
+        rows,
+    )
 }

@@ -1,86 +1,36 @@
-//! Measurements as figures, tables and files.
+//! Measured curves as figures, tables and files.
 
-mod agreement;
 mod choice;
-mod energy;
 mod kept;
-mod maps;
 mod speed;
 
-pub use agreement::agreement;
 pub use choice::{
     ADVICE, CHOICE_HEADER, Choice, Cost, KEPT, choice_cells, choice_table, choices, front_chart,
     fronts, keeps_energy, steps,
 };
-pub use energy::{EnergyRun, energy_chart, momentum_sphere};
 pub use kept::kept_table;
-pub use maps::{MAPS_PAGE, write_maps};
-pub use speed::{SpeedRow, speed_chart, speed_csv, speed_table, tolerance_header};
+pub use speed::{speed_chart, speed_table, write_speed_csv};
 
-use std::path::{Path, PathBuf};
+use lieflow_figures::number::sig;
+use lieflow_figures::{Page, Section};
 
-use crate::cmd::CliError;
-use crate::output;
-use lieflow_figures::page::{Block, Page};
-use lieflow_figures::plot::format::sig;
-use lieflow_figures::plot::slug;
-
-/// A number in scientific notation with two digits after the point, as `1.23e-4`; a dash for none.
-pub fn scientific(x: f64) -> String {
-    if x.is_nan() { "–".into() } else { format!("{x:.2e}") }
-}
-
-/// A duration in people's units; a dash for none.
-pub fn duration(seconds: Option<f64>) -> String {
-    seconds.map_or_else(|| "–".into(), lieflow_figures::plot::format::seconds)
-}
-
-/// A measured order with two decimals; a dash where too few runs are asymptotic.
-pub fn order(order: Option<f64>) -> String {
-    order.map_or_else(|| "–".into(), |order| format!("{order:.2}"))
-}
+use crate::measure::machine;
 
 /// How many times faster, as `3.2×`.
 pub fn times(ratio: f64) -> String {
     format!("{}×", sig(ratio, 2))
 }
 
-/// Write a page as `index.html` with its figures as SVG files beside it; the path of the page.
-///
-/// # Errors
-/// A file cannot be written.
-pub fn write_page(folder: &Path, page: &Page) -> Result<PathBuf, CliError> {
-    write_page_as(folder, "index.html", page)
+/// On which machine and how times are measured, as facts of a page.
+pub fn measured(rounds: u32) -> [(String, String); 2] {
+    let how = format!(
+        "CPU time of one thread, medians of {rounds} rounds that visit every method in turn"
+    );
+    [("Machine".into(), machine()), ("Times".into(), how)]
 }
 
-/// Write a page under this name with its figures as SVG files beside it; the path of the page.
-///
-/// # Errors
-/// A file cannot be written.
-pub fn write_page_as(folder: &Path, name: &str, page: &Page) -> Result<PathBuf, CliError> {
-    output::make_folder(folder)?;
-    for block in page.sections.iter().flat_map(|section| &section.blocks) {
-        write_figures(folder, block)?;
-    }
-    let path = folder.join(name);
-    output::write_file(&path, &page.html())?;
-    Ok(path)
-}
-
-fn write_figures(folder: &Path, block: &Block) -> Result<(), CliError> {
-    match block {
-        Block::Chart(chart) => {
-            output::write_file(&folder.join(format!("{}.svg", slug(&chart.id))), &chart.svg())
-        }
-        Block::Sphere(sphere) => {
-            output::write_file(&folder.join(format!("{}.svg", slug(&sphere.id))), &sphere.svg())
-        }
-        Block::Heat(heat) => {
-            output::write_file(&folder.join(format!("{}.svg", heat.id)), &heat.svg())
-        }
-        Block::Row(blocks) | Block::Details { blocks, .. } => {
-            blocks.iter().try_for_each(|block| write_figures(folder, block))
-        }
-        _ => Ok(()),
-    }
+/// A page with the version of the program at its foot.
+pub fn page(title: impl Into<String>, subtitle: impl Into<String>, sections: Vec<Section>) -> Page {
+    let footer = format!("lieflow {}", env!("CARGO_PKG_VERSION"));
+    Page { title: title.into(), subtitle: subtitle.into(), sections, footer }
 }

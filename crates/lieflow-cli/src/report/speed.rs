@@ -1,11 +1,13 @@
 //! Time against error.
 
-use super::choice::{Cost, drawn, size_of};
-use super::{duration, order};
+use std::path::Path;
+
+use super::choice::{Cost, drawn, fronts, size_of};
+use crate::cmd::CliError;
 use crate::measure::{Candidate, Curve, Size};
-use lieflow_figures::page::{Column, Row, Table};
-use lieflow_figures::plot::format::seconds;
-use lieflow_figures::plot::{Axis, Chart, Marker, Scale, Series, tell_apart};
+use crate::output::{fields, in_full, optional, write_csv};
+use lieflow_figures::number::{or_dash, seconds};
+use lieflow_figures::{Chart, Column, Marker, Series, Table, tell_apart};
 use lieflow_model::model::Layer;
 
 /// The errors for which tables give the time.
@@ -13,7 +15,7 @@ const ERRORS: [f64; 4] = super::ADVICE;
 
 /// The colour and marker of a method: by its map, the same in every figure; `None` for a method
 /// that has no map, whose place in the figure decides.
-pub(super) fn look(candidate: &Candidate) -> Option<usize> {
+fn look(candidate: &Candidate) -> Option<usize> {
     let maps = ["exp", "cay", "ccsk123", "ccsk321", "ccsk", "", "pade22"];
     match candidate.method.map.as_deref() {
         Some(map) => maps.iter().position(|name| *name == map),
@@ -27,7 +29,6 @@ pub(super) fn look(candidate: &Candidate) -> Option<usize> {
 pub fn speed_chart<'a>(
     id: &str,
     title: &str,
-    caption: &str,
     curves: impl IntoIterator<Item = &'a Curve>,
 ) -> Chart {
     let series = curves.into_iter().enumerate().map(|(place, curve)| {
@@ -35,56 +36,13 @@ pub fn speed_chart<'a>(
         let look = look(candidate).unwrap_or(place);
         let points =
             curve.points.iter().filter_map(|point| drawn(point, Cost::Time, || size_of(point)));
-        Series {
-            name: candidate.label(),
-            colour: look,
-            marker: Marker::cycle(look),
-            dash: candidate.layer == Layer::General || candidate.adaptive,
-            points: points.collect(),
-            emphasised: false,
-        }
+        Series::line(candidate.label(), look, points)
+            .with_marker(Marker::cycle(look))
+            .with_dash(candidate.layer == Layer::General || candidate.adaptive)
     });
     let mut series: Vec<Series> = series.filter(|line| !line.points.is_empty()).collect();
     tell_apart(&mut series);
-    Chart {
-        id: id.into(),
-        title: title.into(),
-        x: Axis::new("global error at the end", Scale::Log10),
-        y: Cost::Time.axis(),
-        series,
-        caption: caption.into(),
-    }
-}
-
-/// The columns that [`SpeedRow`] fills.
-pub fn tolerance_header() -> Vec<Column> {
-    let mut columns = vec![
-        Column::text("Method"),
-        Column::number("Order"),
-        Column::number("Measured"),
-        Column::number("Time a step"),
-    ];
-    columns.extend(ERRORS.map(|error| Column::number(format!("Time to {error:.0e}"))));
-    columns
-}
-
-/// A line of the table of times.
-#[derive(Clone, Copy, Debug)]
-pub struct SpeedRow<'a>(pub &'a Curve);
-
-impl SpeedRow<'_> {
-    /// Its cells.
-    pub fn cells(&self) -> Vec<String> {
-        let curve = self.0;
-        let mut cells = vec![
-            curve.candidate.label(),
-            curve.order.map_or_else(|| "exact".into(), |p| p.to_string()),
-            order(curve.measured_order()),
-            duration(curve.seconds_per_step()),
-        ];
-        cells.extend(ERRORS.map(|error| duration(curve.seconds_to(error))));
-        cells
-    }
+    Cost::Time.chart(id, title, series)
 }
 
 /// The table of times to given errors, with the fastest method for each error said in its caption.
@@ -109,66 +67,68 @@ pub fn speed_table(curves: &[Curve]) -> Table {
         }
         false => "",
     };
-    Table {
-        caption: format!(
-            "CPU time per unit of simulated time. Fastest: {}. A dash: not reached.{remark}",
-            fastest.join(", ")
-        ),
-        columns: tolerance_header(),
-        rows: curves.iter().map(|curve| Row::new(SpeedRow(curve).cells())).collect(),
-    }
+    let mut columns = Column::all(["Method"], ["Order", "Measured", "Time a step"]);
+    columns.extend(ERRORS.map(|error| Column::number(format!("Time to {error:.0e}"))));
+    let rows = curves.iter().map(|curve| {
+        let mut cells = vec![
+            curve.candidate.label(),
+            curve.order.map_or_else(|| "exact".into(), |p| p.to_string()),
+            or_dash(curve.measured_order(), |p| format!("{p:.2}")),
+            or_dash(curve.seconds_per_step(), seconds),
+        ];
+        cells.extend(ERRORS.map(|error| or_dash(curve.seconds_to(error), seconds)));
+        cells
+    });
+    let fastest = fastest.join(", ");
+    let caption = format!(
+        "CPU time per unit of simulated time. Fastest: {fastest}. A dash: not reached.{remark}"
+    );
+    Table::new(caption, columns, rows)
 }
 
-/// Every run as CSV.
+/// Write every run of the curves of each scene as CSV, with whether it is on the Pareto front of them.
 ///
-/// Each curve comes with the name of its scene and the places of its points on the Pareto front.
-pub fn speed_csv<'a>(curves: impl IntoIterator<Item = (&'a str, &'a Curve, Vec<usize>)>) -> String {
-    let mut text = String::from(
-        "scene,method,map,tableau,layer,adaptive,order,rtol,steps,rejected,h,evaluations,operations,\
-         error,energy_error,casimir_error,group_residual,seconds_per_unit,pareto,failure\n",
-    );
-    for (scene, curve, front) in curves {
-        let Candidate { method, layer, adaptive } = &curve.candidate;
-        let (map, tableau) = (method.map.as_deref(), method.tableau.as_deref());
-        for (j, p) in curve.points.iter().enumerate() {
-            let rtol = match p.size {
-                Size::Steps(_) => String::new(),
-                Size::Tolerance(rtol) => format!("{rtol:e}"),
-            };
-            text += &format!(
-                "{scene},{},{},{},{},{adaptive},{},{rtol},{},{},{},{},{},{},{},{},{},{},{},{}\n",
-                method.name,
-                map.unwrap_or_default(),
-                tableau.unwrap_or_default(),
-                layer.name(),
-                curve.order.map_or(String::new(), |p| p.to_string()),
-                p.steps,
-                p.rejected,
-                number(p.h),
-                p.evaluations.map_or(String::new(), |n| n.to_string()),
-                p.operations.map_or(String::new(), |n| n.to_string()),
-                number(p.error),
-                number(p.energy_error),
-                number(p.casimir_error),
-                number(p.group_residual),
-                number(p.seconds_per_unit),
-                front.contains(&j),
-                quoted(p.failure.as_deref().unwrap_or_default()),
-            );
+/// # Errors
+/// The file cannot be written.
+pub fn write_speed_csv<'a>(
+    path: &Path,
+    scenes: impl IntoIterator<Item = (&'a str, &'a [Curve])>,
+) -> Result<(), CliError> {
+    let header = "scene,method,map,tableau,layer,adaptive,order,rtol,steps,rejected,h,evaluations,operations,\
+         error,energy_error,casimir_error,group_residual,seconds_per_unit,pareto,failure";
+    let mut rows = Vec::new();
+    for (scene, curves) in scenes {
+        for (curve, front) in curves.iter().zip(fronts(curves)) {
+            let Candidate { method, layer, adaptive } = &curve.candidate;
+            rows.extend(curve.points.iter().enumerate().map(|(j, p)| {
+                let rtol = match p.size {
+                    Size::Steps(_) => String::new(),
+                    Size::Tolerance(rtol) => in_full(rtol),
+                };
+                fields![
+                    scene,
+                    method.name,
+                    method.map.as_deref().unwrap_or_default(),
+                    method.tableau.as_deref().unwrap_or_default(),
+                    layer.name(),
+                    adaptive,
+                    optional(curve.order),
+                    rtol,
+                    p.steps,
+                    p.rejected,
+                    in_full(p.h),
+                    optional(p.evaluations),
+                    optional(p.operations),
+                    in_full(p.error),
+                    in_full(p.energy_error),
+                    in_full(p.casimir_error),
+                    in_full(p.group_residual),
+                    in_full(p.seconds_per_unit),
+                    front.contains(&j),
+                    p.failure.as_deref().unwrap_or_default(),
+                ]
+            }));
         }
     }
-    text
-}
-
-/// A number; nothing where there is none.
-fn number(x: f64) -> String {
-    if x.is_finite() { format!("{x:e}") } else { String::new() }
-}
-
-/// A CSV field in quotes, where it needs them.
-fn quoted(field: &str) -> String {
-    match field.contains([',', '"', '\n']) {
-        true => format!("\"{}\"", field.replace('"', "\"\"")),
-        false => field.into(),
-    }
+    write_csv(path, header.split(','), rows)
 }

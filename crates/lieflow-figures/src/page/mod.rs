@@ -3,7 +3,7 @@
 
 mod render;
 
-use crate::plot::{Chart, Heat, Sphere};
+use crate::plot::{Chart, Heat, Sphere, slug};
 
 /// A page.
 #[derive(Clone, Debug, Default)]
@@ -34,6 +34,14 @@ impl Section {
     }
 }
 
+impl Page {
+    /// Every figure of the page: the name of a file beside it, and what that holds.
+    pub fn figures(&self) -> Vec<(String, String)> {
+        let blocks = self.sections.iter().flat_map(|section| &section.blocks);
+        blocks.flat_map(Block::figures).collect()
+    }
+}
+
 /// A piece of content.
 #[derive(Clone, Debug)]
 pub enum Block {
@@ -60,19 +68,47 @@ pub enum Block {
     Heat(Heat),
     /// Blocks next to each other where there is room.
     Row(Vec<Block>),
-    /// Content that is folded away under a summary.
-    Details {
-        /// The visible line.
-        summary: String,
-        /// The folded content.
-        blocks: Vec<Block>,
-    },
 }
 
 impl Block {
     /// A paragraph of plain text.
     pub fn text(text: impl Into<String>) -> Self {
         Block::Paragraph(text.into())
+    }
+
+    /// Names with their values.
+    pub fn facts<N: Into<String>, V: Into<String>>(
+        facts: impl IntoIterator<Item = (N, V)>,
+    ) -> Self {
+        Block::Facts(facts.into_iter().map(|(name, value)| (name.into(), value.into())).collect())
+    }
+
+    /// The figures of this block: the name of a file, and what it holds.
+    fn figures(&self) -> Vec<(String, String)> {
+        let file = |id: &str, svg: String| vec![(format!("{}.svg", slug(id)), svg)];
+        match self {
+            Block::Chart(chart) => file(&chart.id, chart.svg()),
+            Block::Sphere(sphere) => file(&sphere.id, sphere.svg()),
+            Block::Heat(heat) => file(&heat.id, heat.svg()),
+            Block::Row(blocks) => blocks.iter().flat_map(Block::figures).collect(),
+            _ => Vec::new(),
+        }
+    }
+}
+
+impl From<Table> for Block {
+    fn from(table: Table) -> Self {
+        Block::Table(table)
+    }
+}
+impl From<Chart> for Block {
+    fn from(chart: Chart) -> Self {
+        Block::Chart(chart)
+    }
+}
+impl From<Sphere> for Block {
+    fn from(sphere: Sphere) -> Self {
+        Block::Sphere(sphere)
     }
 }
 
@@ -95,6 +131,11 @@ impl Column {
     pub fn number(title: impl Into<String>) -> Self {
         Column { title: title.into(), numeric: true }
     }
+
+    /// Columns of text, then columns of numbers.
+    pub fn all<const T: usize, const N: usize>(texts: [&str; T], numbers: [&str; N]) -> Vec<Self> {
+        texts.into_iter().map(Column::text).chain(numbers.map(Column::number)).collect()
+    }
 }
 
 /// A row of a table; its first cell is the heading of the row.
@@ -106,10 +147,9 @@ pub struct Row {
     pub emphasised: bool,
 }
 
-impl Row {
-    /// A row of `cells`.
-    pub fn new(cells: Vec<String>) -> Self {
-        Row { cells, emphasised: false }
+impl<C: Into<Vec<String>>> From<C> for Row {
+    fn from(cells: C) -> Self {
+        Row { cells: cells.into(), emphasised: false }
     }
 }
 
@@ -122,4 +162,16 @@ pub struct Table {
     pub columns: Vec<Column>,
     /// The rows.
     pub rows: Vec<Row>,
+}
+
+impl Table {
+    /// A table of these rows.
+    pub fn new<R: Into<Row>>(
+        caption: impl Into<String>,
+        columns: Vec<Column>,
+        rows: impl IntoIterator<Item = R>,
+    ) -> Self {
+        let rows = rows.into_iter().map(Into::into).collect();
+        Table { caption: caption.into(), columns, rows }
+    }
 }

@@ -229,9 +229,6 @@
     reflow(svg);
   };
 
-  // Paper cannot be unfolded.
-  addEventListener("beforeprint", () => all("details").forEach((fold) => { fold.open = true; }));
-
   all("svg.lf-chart").forEach(chart);
   all("svg.lf-sphere").forEach((svg) => {
     titleToLabel(svg);

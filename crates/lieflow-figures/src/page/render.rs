@@ -1,7 +1,7 @@
 //! From a page to HTML text.
 
 use super::{Block, Page, Table};
-use crate::plot::{Chart, Sphere, escape, svg::slug, theme};
+use crate::plot::{Chart, Sphere, escape, slug, theme};
 
 const STYLE: &str = include_str!("page.css");
 const SCRIPT: &str = concat!(include_str!("page.js"), include_str!("sphere.js"));
@@ -101,11 +101,6 @@ fn block(block: &Block) -> String {
             format!("<figure>\n{}\n{caption}</figure>\n", heat.svg())
         }
         Block::Row(row) => format!("<div class=\"row\">\n{}</div>\n", blocks(row)),
-        Block::Details { summary, blocks: folded } => format!(
-            "<details>\n<summary>{}</summary>\n{}</details>\n",
-            escape(summary),
-            blocks(folded)
-        ),
     }
 }
 
@@ -183,17 +178,12 @@ mod tests {
     #[test]
     fn all_text_is_escaped() {
         let evil = "<script>alert(1)</script>";
-        let table = Table {
-            caption: evil.into(),
-            columns: vec![Column::text(evil)],
-            rows: vec![Row::new(vec![evil.into()])],
-        };
+        let table = Table::new(evil, vec![Column::text(evil)], [[evil.to_string()]]);
         let html = page(vec![
             Block::text(evil),
             Block::Code(evil.into()),
             Block::Facts(vec![(evil.into(), evil.into())]),
             Block::Table(table),
-            Block::Details { summary: evil.into(), blocks: vec![Block::text(evil)] },
         ])
         .html();
         assert!(!html.contains(evil));
@@ -221,10 +211,9 @@ mod tests {
 
     #[test]
     fn tables_have_headings_and_alignment() {
-        let mut row = Row::new(vec!["RKMK4".into(), "1.0".into()]);
-        row.emphasised = true;
-        let columns = vec![Column::text("method"), Column::number("error")];
-        let html = html_table(&Table { caption: String::new(), columns, rows: vec![row] });
+        let row = Row { cells: vec!["RKMK4".into(), "1.0".into()], emphasised: true };
+        let columns = Column::all(["method"], ["error"]);
+        let html = html_table(&Table::new("", columns, [row]));
         assert!(html.contains("<th scope=\"col\" class=\"number\">error</th>"));
         assert!(html.contains("<tr class=\"strong\"><th scope=\"row\">RKMK4</th>"));
         assert!(html.contains("<td class=\"number\">1.0</td>"));
@@ -234,7 +223,7 @@ mod tests {
     #[test]
     fn the_caption_of_a_table_does_not_scroll_away() {
         let columns = vec![Column::text("method")];
-        let html = html_table(&Table { caption: "All of it".into(), columns, rows: vec![] });
+        let html = html_table(&Table::new("All of it", columns, [[]]));
         let caption = html.find("<p class=\"caption\">All of it</p>");
         assert!(caption < html.find("class=\"scroll\"") && caption.is_some(), "{html}");
     }

@@ -1,6 +1,6 @@
 //! A field on a surface: its values on a grid, on a sphere flat and as a globe.
 
-use super::svg::{escape, px, slug, text};
+use super::svg::{Opening, px, slug, text};
 use super::theme;
 
 /// Where the flat picture begins, and its height.
@@ -52,17 +52,18 @@ impl Heat {
         let height = TOP + HEIGHT + 30.0;
         let largest = self.largest();
         let id = slug(&self.id);
-        let mut out = format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"lf lf-heat\" id=\"{id}\" \
-             viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" role=\"img\" \
-             aria-labelledby=\"{id}-t {id}-d\"><title id=\"{id}-t\">{}</title>\
-             <desc id=\"{id}-d\">A field on {what}, from {:.3e} to {largest:.3e}. {}</desc>\
-             <style>{}</style><rect class=\"lf-paper\" width=\"{width}\" height=\"{height}\"/>",
-            escape(&self.title),
-            -largest,
-            escape(&self.caption),
-            theme::chart_css()
-        );
+        let range = format!("from {:.3e} to {largest:.3e}", -largest);
+        let opening = Opening {
+            class: "lf-heat",
+            id: &id,
+            size: (width, height),
+            title: &self.title,
+            description: &format!("A field on {what}, {range}. {}", self.caption),
+            css: theme::chart_css(),
+            attributes: String::new(),
+            defs: String::new(),
+        };
+        let mut out = opening.svg();
         out.push_str(&text("lf-title", (LEFT, 24.0), "start", &self.title));
         let (rows, cols) = (self.values.len(), self.values.first().map_or(0, Vec::len));
         let level = |i: usize, j: usize| self.level(largest, i, j);

@@ -1,14 +1,8 @@
-//! Figures as standalone SVG text: line charts ([`Chart`]), the momentum sphere of a rigid body
-//! ([`Sphere`]), fields on surfaces ([`Heat`]).
-//!
-//! A figure is a plain value; `svg()` turns it into one complete `<svg>` element that serves both
-//! as a file of its own and inline in a page. Colours are CSS variables with light fallbacks (see
-//! [`theme`]), so an inline figure follows the theme of its page and a file is light.
+//! Figures as standalone SVG text.
 
 mod camera;
 mod chart;
 mod ellipsoid;
-pub mod format;
 mod heat;
 mod labels;
 mod scale;
@@ -16,7 +10,7 @@ mod scene;
 mod series;
 mod sphere;
 pub(crate) mod svg;
-pub mod theme;
+pub(crate) mod theme;
 mod thin;
 mod trace;
 
@@ -26,4 +20,3 @@ pub use scale::{Axis, Scale};
 pub use series::{Marker, Point, Series, tell_apart};
 pub use sphere::{Path, Sphere};
 pub use svg::{escape, slug};
-pub use thin::{thin_path, thin_time_series};

@@ -1,6 +1,6 @@
 //! Axes: from data to pixels, and where the ticks are.
 
-use super::format::{fixed, power_of_ten, seconds, sig};
+use crate::number::{fixed, power_of_ten, seconds, sig};
 
 /// How the values of an axis are spread over its length.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,21 +36,29 @@ impl Scale {
     }
 }
 
-/// An axis: its title, scale and, if it is not to follow the data, its range.
+/// An axis, which follows the range of the data.
 #[derive(Clone, Debug)]
 pub struct Axis {
     /// The quantity with its unit in brackets: `"CPU time [s]"`.
     pub title: String,
     /// The scale.
     pub scale: Scale,
-    /// The drawn range; `None` takes the range of the data.
-    pub range: Option<(f64, f64)>,
 }
 
 impl Axis {
-    /// An axis that follows the range of the data.
+    /// An axis of this title and scale.
     pub fn new(title: impl Into<String>, scale: Scale) -> Self {
-        Axis { title: title.into(), scale, range: None }
+        Axis { title: title.into(), scale }
+    }
+
+    /// A linear axis.
+    pub fn linear(title: impl Into<String>) -> Self {
+        Axis::new(title, Scale::Linear)
+    }
+
+    /// A logarithmic axis.
+    pub fn log(title: impl Into<String>) -> Self {
+        Axis::new(title, Scale::Log10)
     }
 
     /// The title without its unit.
@@ -88,12 +96,8 @@ impl Axis {
         padding: f64,
     ) -> Map {
         let scale = self.scale;
-        let (lo, hi) = match self.range {
-            Some((a, b)) if a < b && scale.accepts(a) && scale.accepts(b) => {
-                (scale.warp(a), scale.warp(b))
-            }
-            _ => padded(data.filter(|v| scale.accepts(*v)).map(|v| scale.warp(v)), padding),
-        };
+        let placed = data.filter(|v| scale.accepts(*v)).map(|v| scale.warp(v));
+        let (lo, hi) = padded(placed, padding);
         Map { scale, lo, hi, from: pixels.0, to: pixels.1 }
     }
 }
@@ -246,8 +250,7 @@ mod tests {
     use super::*;
 
     fn map(scale: Scale, range: (f64, f64), pixels: (f64, f64)) -> Map {
-        let axis = Axis { title: String::new(), scale, range: Some(range) };
-        axis.map(std::iter::empty(), pixels, 0.0)
+        Axis::new("", scale).map([range.0, range.1].into_iter(), pixels, 0.0)
     }
 
     fn labels(map: &Map, spacing: f64) -> Vec<String> {
@@ -306,7 +309,7 @@ mod tests {
 
     #[test]
     fn degenerate_ranges() {
-        let axis = Axis::new("x", Scale::Linear);
+        let axis = Axis::linear("x");
         for data in [vec![], vec![3.0], vec![0.0, 0.0], vec![-1e300, f64::NAN]] {
             let m = axis.map(data.into_iter(), (0.0, 100.0), 0.05);
             assert!(m.lo < m.hi && m.pixel(3.0).unwrap().is_finite());
@@ -315,9 +318,9 @@ mod tests {
 
     #[test]
     fn titles_and_units() {
-        let axis = Axis::new("CPU time [s]", Scale::Log10);
+        let axis = Axis::log("CPU time [s]");
         assert_eq!((axis.quantity(), axis.unit()), ("CPU time", "s"));
         assert_eq!(axis.value_text(0.0125), "12.5\u{a0}ms");
-        assert_eq!(Axis::new("error", Scale::Log10).unit(), "");
+        assert_eq!(Axis::log("error").unit(), "");
     }
 }

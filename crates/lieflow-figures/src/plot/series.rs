@@ -20,9 +20,15 @@ impl Point {
         Point { x, y, note: String::new() }
     }
 
-    /// The same point with a remark.
+    /// The point with a remark.
     pub fn with_note(self, note: impl Into<String>) -> Self {
         Point { note: note.into(), ..self }
+    }
+}
+
+impl From<(f64, f64)> for Point {
+    fn from((x, y): (f64, f64)) -> Self {
+        Point::new(x, y)
     }
 }
 
@@ -52,7 +58,7 @@ pub enum Marker {
     Hexagon,
 }
 
-/// Look like no other line: where several share a colour and a dash, each gets a marker of its own.
+/// Give each of several lines with one colour and one dash another marker.
 pub fn tell_apart(series: &mut [Series]) {
     for i in 1..series.len() {
         let (before, rest) = series.split_at_mut(i);
@@ -143,6 +149,26 @@ pub struct Series {
 }
 
 impl Series {
+    /// A solid line without markers.
+    pub fn line<P: Into<Point>>(
+        name: impl Into<String>,
+        colour: usize,
+        points: impl IntoIterator<Item = P>,
+    ) -> Self {
+        let points = points.into_iter().map(Into::into).collect();
+        Series { name: name.into(), colour, points, ..Series::default() }
+    }
+
+    /// The line with a marker at each point.
+    pub fn with_marker(self, marker: Marker) -> Self {
+        Series { marker, ..self }
+    }
+
+    /// The line dashed, or not.
+    pub fn with_dash(self, dash: bool) -> Self {
+        Series { dash, ..self }
+    }
+
     /// The CSS classes of this line and of its legend entry.
     pub(crate) fn classes(&self) -> String {
         let mut classes = format!("lf-c{}", self.colour % LINE_COLOURS);

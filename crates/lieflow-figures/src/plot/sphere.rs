@@ -4,7 +4,7 @@ use super::camera::{Camera, Vec3, clip, dot, norm, split};
 use super::labels::{self, ROW};
 use super::scene::{Kind, Line, Scene};
 use super::series::Series;
-use super::svg::{escape, polyline, px, slug};
+use super::svg::{Opening, polyline, px, slug, text};
 use super::theme::{self, SHADES};
 
 /// The size of the picture without the names of the paths, and the centre of the sphere.
@@ -59,19 +59,18 @@ impl Sphere {
         let scale = HALF / scene.extent;
         let height = HEIGHT + ROW * self.paths.len() as f64 + 8.0;
         let id = slug(&self.id);
-        let mut out = format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"lf lf-sphere\" id=\"{id}\" \
-             viewBox=\"0 0 {WIDTH} {height}\" width=\"{WIDTH}\" height=\"{height}\" role=\"img\" \
-             aria-labelledby=\"{id}-t {id}-d\"><title id=\"{id}-t\">{}</title>\
-             <desc id=\"{id}-d\">{}</desc><style>{}</style><defs>{}</defs>\
-             <rect class=\"lf-paper\" width=\"{WIDTH}\" height=\"{height}\"/>\
-             <text class=\"lf-title\" x=\"16\" y=\"24\">{}</text>",
-            escape(&self.title),
-            escape(&self.description()),
-            theme::sphere_css(),
-            definitions(&id),
-            escape(&self.title),
-        );
+        let opening = Opening {
+            class: "lf-sphere",
+            id: &id,
+            size: (WIDTH, height),
+            title: &self.title,
+            description: &self.description(),
+            css: theme::sphere_css(),
+            attributes: String::new(),
+            defs: format!("<defs>{}</defs>", definitions(&id)),
+        };
+        let mut out = opening.svg();
+        out += &text("lf-title", (16.0, 24.0), "start", &self.title);
         let mask = if scene.cut { format!(" mask=\"url(#{id}-m)\"") } else { String::new() };
         out.push_str(&format!("<g{mask}>"));
         let fills = fills(&scene, &camera, scale);

@@ -19,6 +19,36 @@ pub fn escape(text: &str) -> String {
     out
 }
 
+/// The start of a picture: its size, its title and description for readers who do not see it, and its
+/// paper. What follows is the drawing and `</svg>`.
+pub(crate) struct Opening<'a> {
+    /// The class of its kind, after `lf `.
+    pub(crate) class: &'a str,
+    pub(crate) id: &'a str,
+    pub(crate) size: (f64, f64),
+    pub(crate) title: &'a str,
+    pub(crate) description: &'a str,
+    pub(crate) css: String,
+    /// Further attributes, with a space before each.
+    pub(crate) attributes: String,
+    /// Further elements, behind the paper.
+    pub(crate) defs: String,
+}
+
+impl Opening<'_> {
+    pub(crate) fn svg(&self) -> String {
+        let Opening { class, id, size: (width, height), css, attributes, defs, .. } = self;
+        let (title, description) = (escape(self.title), escape(self.description));
+        format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"lf {class}\" id=\"{id}\" \
+             viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" role=\"img\" \
+             aria-labelledby=\"{id}-t {id}-d\"{attributes}><title id=\"{id}-t\">{title}</title>\
+             <desc id=\"{id}-d\">{description}</desc><style>{css}</style>{defs}\
+             <rect class=\"lf-paper\" width=\"{width}\" height=\"{height}\"/>"
+        )
+    }
+}
+
 /// `text` reduced to an identifier: letters, digits and hyphens, beginning with a letter.
 pub fn slug(text: &str) -> String {
     let mut out = String::new();

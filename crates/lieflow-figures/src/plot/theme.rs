@@ -15,7 +15,7 @@ const fn colour(name: &'static str, light: &'static str, dark: &'static str) -> 
 }
 
 /// The number of different line colours.
-pub const LINE_COLOURS: usize = 8;
+pub(crate) const LINE_COLOURS: usize = 8;
 
 /// The number of brightness levels of the ellipsoid.
 pub(crate) const SHADES: usize = 16;
@@ -50,7 +50,7 @@ const COLOURS: [Colour; 16 + LINE_COLOURS] = [
 ];
 
 /// The CSS declarations that set all colour variables for the light or the dark theme.
-pub fn variables(dark: bool) -> String {
+pub(crate) fn variables(dark: bool) -> String {
     let value = |c: &Colour| if dark { c.dark } else { c.light };
     let named = COLOURS.iter().map(|c| format!("--lf-{}:{};", c.name, value(c)));
     let shades = (0..SHADES).map(|k| format!("--lf-e{k}:{};", shade(k, dark)));
@@ -73,87 +73,40 @@ fn shade(k: usize, dark: bool) -> String {
     format!("#{:02x}{:02x}{:02x}", mix(16), mix(8), mix(0))
 }
 
-/// `property` set to a named colour. It is declared twice because some SVG converters do not know
-/// variables: they keep the first declaration.
-fn declare(property: &str, name: &str) -> String {
-    let light = match name.strip_prefix('e').and_then(|k| k.parse().ok()) {
-        Some(k) => shade(k, false),
-        None => COLOURS.iter().find(|c| c.name == name).map_or("", |c| c.light).to_string(),
+/// A style sheet in one line, with each `property:@name` as that property in a named colour. It is
+/// declared twice because some SVG converters do not know variables: they keep the first declaration.
+fn style(template: &str) -> String {
+    let declaration = |text: &str| match text.split_once(":@") {
+        None => text.to_string(),
+        Some((property, name)) => {
+            let light = match name.strip_prefix('e').and_then(|k| k.parse().ok()) {
+                Some(k) => shade(k, false),
+                None => COLOURS.iter().find(|c| c.name == name).map_or("", |c| c.light).into(),
+            };
+            format!("{property}:{light};{property}:var(--lf-{name},{light})")
+        }
     };
-    format!("{property}:{light};{property}:var(--lf-{name},{light})")
+    let rule = |line: &str| {
+        let (selector, body) = line.trim_end_matches('}').split_once('{').unwrap_or((line, ""));
+        let body: Vec<String> = body.split(';').map(declaration).collect();
+        format!("{selector}{{{}}}", body.join(";"))
+    };
+    template.lines().map(rule).collect()
 }
 
 /// The style sheet of a line chart.
 pub(crate) fn chart_css() -> String {
-    let mut css = common_css();
-    let mut rule =
-        |selector: &str, body: String| css.push_str(&format!(".lf {selector}{{{body}}}"));
-    rule(".lf-grid", format!("{};stroke-width:1", declare("stroke", "rule")));
-    rule(".lf-minor", format!("{};stroke-width:.75", declare("stroke", "faint")));
-    rule(".lf-frame", format!("fill:none;{};stroke-width:1", declare("stroke", "frame")));
-    rule(".lf-leader", "stroke:currentColor;fill:none;stroke-width:.8;opacity:.6".into());
-    rule(
-        ".lf-line",
-        "fill:none;stroke:currentColor;stroke-width:1.4;stroke-linejoin:round;stroke-linecap:round"
-            .into(),
-    );
-    rule(".lf-strong .lf-line", "stroke-width:2.6".into());
-    rule(".lf-dash .lf-line", "stroke-dasharray:5 4".into());
-    rule(
-        ".lf-p,.lf .lf-m",
-        format!("fill:currentColor;stroke-width:.9;{};outline:none", declare("stroke", "paper")),
-    );
-    rule(
-        ".lf-dash .lf-p,.lf .lf-dash .lf-m,.lf .lf-open",
-        format!("stroke:currentColor;stroke-width:1.4;{}", declare("fill", "paper")),
-    );
-    css
+    style(concat!(include_str!("common.css"), include_str!("chart.css")))
 }
 
 /// The style sheet of a momentum sphere.
 pub(crate) fn sphere_css() -> String {
-    let mut css = common_css();
-    let mut rule =
-        |selector: &str, body: String| css.push_str(&format!(".lf {selector}{{{body}}}"));
-    rule(".lf-b0", declare("stop-color", "ball-light"));
-    rule(".lf-b1", declare("stop-color", "ball"));
-    rule(".lf-b2", declare("stop-color", "ball-edge"));
-    for k in 0..SHADES {
-        let name = format!("e{k}");
-        let body =
-            format!("{};{};stroke-width:.6", declare("fill", &name), declare("stroke", &name));
-        rule(&format!(".lf-{name}"), format!("{body};stroke-linejoin:round"));
-    }
-    rule(".lf-ball", format!("{};stroke-width:.8", declare("stroke", "grid")));
-    rule(".lf-far", "opacity:.45".into());
-    let line = "fill:none;stroke-linejoin:round;stroke-linecap:round";
-    rule(".lf-graticule", format!("{line};{};stroke-width:.6", declare("stroke", "grid")));
-    rule(".lf-wire", format!("{line};{};stroke-width:.6", declare("stroke", "wire")));
-    rule(".lf-polhode", format!("{line};{};stroke-width:1", declare("stroke", "polhode")));
-    rule(".lf-path", format!("{line};stroke:currentColor;stroke-width:2.2"));
-    rule(".lf-axis", format!("{line};{};stroke-width:1.3", declare("stroke", "ink")));
-    rule(".lf-back", "stroke-dasharray:2.5 3.5;stroke-width:1;opacity:.5".into());
-    rule(".lf-path.lf-back", "stroke-width:1.4;opacity:.65".into());
-    rule(".lf-head", declare("fill", "ink"));
-    rule(".lf-name", "font-size:15px;font-style:italic;font-weight:600;text-anchor:middle".into());
-    css
-}
-
-fn common_css() -> String {
-    let font = "font:12.5px system-ui,-apple-system,'Segoe UI',Roboto,'Helvetica Neue',Arial,\
-                'Liberation Sans',sans-serif";
-    let mut css = format!(".lf text{{{font};{}}}", declare("fill", "ink"));
-    css.push_str(".lf .lf-title{font-size:15px;font-weight:600}");
-    css.push_str(".lf .lf-tick{font-size:12px;font-variant-numeric:tabular-nums}");
-    css.push_str(".lf .lf-strong text{font-weight:600}");
-    css.push_str(&format!(".lf .lf-note{{font-size:11.5px;{}}}", declare("fill", "muted")));
-    css.push_str(&format!(".lf .lf-paper{{{}}}", declare("fill", "paper")));
-    css.push_str(".lf .lf-key-line{fill:none;stroke:currentColor;stroke-width:2}");
-    css.push_str(".lf .lf-dash .lf-key-line{stroke-dasharray:5 4}");
-    for k in 0..LINE_COLOURS {
-        css.push_str(&format!(".lf .lf-c{k}{{{}}}", declare("color", &format!("c{k}"))));
-    }
-    css
+    let shade = |k| {
+        format!(".lf .lf-e{k}{{fill:@e{k};stroke:@e{k};stroke-width:.6;stroke-linejoin:round}}\n")
+    };
+    let shades: String = (0..SHADES).map(shade).collect();
+    let template = concat!(include_str!("common.css"), include_str!("sphere.css"));
+    style(&(template.to_string() + &shades))
 }
 
 #[cfg(test)]

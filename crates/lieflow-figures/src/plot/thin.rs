@@ -3,7 +3,7 @@
 /// At most four points for each run of points in one of `columns` equal columns of the range of
 /// x: the first, the lowest, the highest and the last. A line through them covers the same pixels
 /// as the full line when there is a column for each pixel. Points that are not finite are dropped.
-pub fn thin_time_series(points: &[(f64, f64)], columns: usize) -> Vec<(f64, f64)> {
+pub(crate) fn thin_time_series(points: &[(f64, f64)], columns: usize) -> Vec<(f64, f64)> {
     let finite = points.iter().copied().filter(|p| p.0.is_finite() && p.1.is_finite());
     let finite: Vec<(f64, f64)> = finite.collect();
     let lo = finite.iter().map(|p| p.0).fold(f64::INFINITY, f64::min);
@@ -25,7 +25,7 @@ fn extremes(run: &[(f64, f64)]) -> Vec<(f64, f64)> {
 }
 
 /// The points of a path that are needed to stay within `tolerance` of it (Douglas–Peucker).
-pub fn thin_path<const N: usize>(points: &[[f64; N]], tolerance: f64) -> Vec<[f64; N]> {
+pub(crate) fn thin_path<const N: usize>(points: &[[f64; N]], tolerance: f64) -> Vec<[f64; N]> {
     if points.len() < 3 {
         return points.to_vec();
     }

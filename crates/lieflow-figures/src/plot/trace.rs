@@ -16,7 +16,7 @@ impl Trace {
         let mut result = Trace { runs: vec![Vec::new()], points: Vec::new() };
         for (i, point) in series.points.iter().enumerate() {
             let place = x.pixel(point.x).zip(y.pixel(point.y));
-            match place.filter(|p| x.contains(p.0) && y.contains(p.1)) {
+            match place {
                 Some(place) => {
                     result.points.push(i);
                     if let Some(run) = result.runs.last_mut() {
@@ -43,8 +43,7 @@ impl Trace {
 pub(crate) fn omission(axis: &Axis, map: &Map, value: f64) -> Option<String> {
     let quantity = axis.quantity();
     match map.pixel(value) {
-        Some(pixel) if map.contains(pixel) => None,
-        Some(_) => Some(format!("with {quantity} outside of the drawn range")),
+        Some(_) => None,
         None if value == 0.0 => Some(format!("with {quantity} 0")),
         None if value.is_finite() && value < 0.0 && axis.scale == Scale::Log10 => {
             Some(format!("with negative {quantity}"))

@@ -6,18 +6,17 @@
 
 use faer::Mat;
 use lieflow::Error;
-use lieflow::actions::LeftTranslation;
 use lieflow::groups::{AlgebraMatrix, MatrixGroup};
-use lieflow::problems::LinearEquation;
+use lieflow::problems::Flow;
 use lieflow::problems::beam::{Element, transfer_map, tunes};
 use serde::Deserialize;
 use toml::de::ValueDeserializer;
 
-use super::flow::Flow;
 use super::hill::symplectic_defect;
 use super::matrix::MatrixAction;
-use super::system::System;
+use super::old_system::System;
 use super::{Fact, Figure, KeyInfo, Kind, Law, ProblemSpec, QuantityInfo, Scale};
+use crate::kinds::flow::OnMatrices;
 use crate::model::Layer;
 use crate::scene::values::{Real, Reals};
 use crate::scene::{ReadError, Refusal, help_for};
@@ -35,28 +34,30 @@ pub(super) const KIND: Kind = Kind {
         },
         KeyInfo { name: "particle", meaning: "initial [x, z, x', z']" },
     ],
-    quantities: &[
-        QuantityInfo {
-            name: "map",
-            columns: &["g11", "…", "g44"],
-            meaning: "the transfer map from the start, row by row, of (x, z, x', z')",
-        },
-        QuantityInfo {
-            name: "particle",
-            columns: &["x", "z", "x_slope", "z_slope"],
-            meaning: "the particle",
-        },
-        QuantityInfo {
-            name: "phase_space",
-            columns: &["x", "x_slope", "z", "z_slope"],
-            meaning: "the same, plane by plane",
-        },
-        QuantityInfo {
-            name: "symplectic_defect",
-            columns: &["symplectic_defect"],
-            meaning: "distance of g'Jg from J",
-        },
-    ],
+    quantities: || {
+        vec![
+            QuantityInfo {
+                name: "map",
+                columns: &["g11", "…", "g44"],
+                meaning: "the transfer map from the start, row by row, of (x, z, x', z')",
+            },
+            QuantityInfo {
+                name: "particle",
+                columns: &["x", "z", "x_slope", "z_slope"],
+                meaning: "the particle",
+            },
+            QuantityInfo {
+                name: "phase_space",
+                columns: &["x", "x_slope", "z", "z_slope"],
+                meaning: "the same, plane by plane",
+            },
+            QuantityInfo {
+                name: "symplectic_defect",
+                columns: &["symplectic_defect"],
+                meaning: "distance of g'Jg from J",
+            },
+        ]
+    },
     read,
 };
 
@@ -179,7 +180,7 @@ fn power(mut g: Mat<f64>, mut k: u64) -> Mat<f64> {
 }
 
 impl System for BeamLine {
-    type Problem = Flow<MatrixGroup, MatrixAction>;
+    type Problem = OnMatrices;
 
     fn kind(&self) -> &'static Kind {
         &KIND
@@ -195,8 +196,8 @@ impl System for BeamLine {
                 (v[(i, i + 2)], v[(i + 2, i)]) = (1.0, -k);
             }
         };
-        let equation = LinearEquation::new(MatrixGroup::sp(4)?, LeftTranslation, field);
-        Ok(Flow::linear(equation, MatrixAction::Translation, Mat::identity(4, 4)))
+        let (group, action) = (MatrixGroup::sp(4)?, MatrixAction::Translation);
+        Ok((OnMatrices::linear(Flow::of_time(group, action, field), action), Mat::identity(4, 4)))
     }
     fn modelled(&self) -> String {
         "transfer map in Sp(4)".into()

@@ -14,15 +14,15 @@ use std::sync::Arc;
 use lieflow::Error;
 use lieflow::actions::LeftTranslation;
 use lieflow::catalog::MethodSpec;
-use lieflow::groups::{LieGroup, Product, So3, Translations, vee};
+use lieflow::groups::{LieGroup, So3, vee};
 use lieflow::problems::{BodyTorque, Motion, Torque, TorqueBody};
 use lieflow::scalar::{Counted, Real};
 use nalgebra::{Matrix3, Vector3};
 use serde::Deserialize;
 use toml::de::ValueDeserializer;
 
-use super::flow::Flow;
-use super::system::System;
+use super::flow;
+use super::old_system::System;
 use super::{Figure, KeyInfo, Kind, Law, PARAMETERS, ProblemSpec, QuantityInfo, Scale};
 use crate::model::Layer;
 use crate::operations::{Pace, operations_by};
@@ -64,48 +64,50 @@ pub(super) const KIND: Kind = Kind {
         },
         PARAMETERS,
     ],
-    quantities: &[
-        QuantityInfo {
-            name: "attitude",
-            columns: &["g11", "g12", "g13", "g21", "g22", "g23", "g31", "g32", "g33"],
-            meaning: "rotation from body to space, row by row",
-        },
-        QuantityInfo {
-            name: "momentum_space",
-            columns: &["l1", "l2", "l3"],
-            meaning: "angular momentum in space",
-        },
-        QuantityInfo {
-            name: "omega_body",
-            columns: &["w1", "w2", "w3"],
-            meaning: "angular velocity in the body",
-        },
-        QuantityInfo {
-            name: "axis",
-            columns: &["a1", "a2", "a3"],
-            meaning: "the third axis of the body, in space",
-        },
-        QuantityInfo {
-            name: "energy",
-            columns: &["energy"],
-            meaning: "kinetic energy, and that of the weight",
-        },
-        QuantityInfo {
-            name: "angle",
-            columns: &["angle"],
-            meaning: "angle of the attitude from the identity",
-        },
-        QuantityInfo {
-            name: "vertical_momentum",
-            columns: &["vertical_momentum"],
-            meaning: "angular momentum about e3 in space",
-        },
-        QuantityInfo {
-            name: "attitude_defect",
-            columns: &["attitude_defect"],
-            meaning: "distance of g'g from the identity",
-        },
-    ],
+    quantities: || {
+        vec![
+            QuantityInfo {
+                name: "attitude",
+                columns: &["g11", "g12", "g13", "g21", "g22", "g23", "g31", "g32", "g33"],
+                meaning: "rotation from body to space, row by row",
+            },
+            QuantityInfo {
+                name: "momentum_space",
+                columns: &["l1", "l2", "l3"],
+                meaning: "angular momentum in space",
+            },
+            QuantityInfo {
+                name: "omega_body",
+                columns: &["w1", "w2", "w3"],
+                meaning: "angular velocity in the body",
+            },
+            QuantityInfo {
+                name: "axis",
+                columns: &["a1", "a2", "a3"],
+                meaning: "the third axis of the body, in space",
+            },
+            QuantityInfo {
+                name: "energy",
+                columns: &["energy"],
+                meaning: "kinetic energy, and that of the weight",
+            },
+            QuantityInfo {
+                name: "angle",
+                columns: &["angle"],
+                meaning: "angle of the attitude from the identity",
+            },
+            QuantityInfo {
+                name: "vertical_momentum",
+                columns: &["vertical_momentum"],
+                meaning: "angular momentum about e3 in space",
+            },
+            QuantityInfo {
+                name: "attitude_defect",
+                columns: &["attitude_defect"],
+                meaning: "distance of g'g from the identity",
+            },
+        ]
+    },
     read,
 };
 
@@ -248,7 +250,7 @@ impl Driven {
 }
 
 impl System for Driven {
-    type Problem = Flow<Product<So3, Translations<Vector3<f64>>>, LeftTranslation>;
+    type Problem = flow::Driven<f64>;
 
     fn kind(&self) -> &'static Kind {
         &KIND
@@ -257,12 +259,12 @@ impl System for Driven {
         Layer::Closed
     }
     fn problem(&self) -> Result<(Self::Problem, Point), Error> {
-        Ok(Flow::nonlinear(self.body.clone(), LeftTranslation, self.start))
+        Ok((flow::Driven::new(self.body.clone(), LeftTranslation), self.start))
     }
     fn operations(&self, method: &MethodSpec, pace: Pace<'_>) -> Option<f64> {
         let start = (self.start.0.map(Counted), self.start.1.map(Counted));
         let body = self.body.on::<Counted, _>(self.torques.clone());
-        let (flow, start) = Flow::nonlinear(body, LeftTranslation, start);
+        let (flow, start) = (flow::Driven::new(body, LeftTranslation), start);
         operations_by(method, &flow, start, pace)
     }
     fn check_start(&self, t0: f64) -> Result<(), Refusal> {

@@ -12,10 +12,10 @@ use lieflow::scalar::{Ops, tally};
 use serde::Deserialize;
 use toml::de::ValueDeserializer;
 
-use super::flow::Flow;
 use super::matrix::MatrixAction;
-use super::system::System;
+use super::old_system::System;
 use super::{Fact, Figure, KeyInfo, Kind, Law, ProblemSpec, QuantityInfo, Scale};
+use crate::kinds::flow::OnMatrices;
 use crate::model::Layer;
 use crate::scene::values::{Real, Table};
 use crate::scene::{ReadError, Refusal};
@@ -29,7 +29,7 @@ pub(super) const MATHIEU: Kind = Kind {
         KeyInfo { name: "a", meaning: "a" },
         KeyInfo { name: "q", meaning: "q, half the strength of the drive" },
     ],
-    quantities: QUANTITIES,
+    quantities: || QUANTITIES.to_vec(),
     read: |section| read_mathieu(section),
 };
 
@@ -44,7 +44,7 @@ pub(super) const HILL: Kind = Kind {
         KeyInfo { name: "q", meaning: "Q, symmetric" },
         KeyInfo { name: "period", meaning: "T" },
     ],
-    quantities: QUANTITIES,
+    quantities: || QUANTITIES.to_vec(),
     read: |section| read_hill(section),
 };
 
@@ -149,7 +149,7 @@ impl Hill {
 }
 
 impl System for Hill {
-    type Problem = Flow<MatrixGroup, MatrixAction>;
+    type Problem = OnMatrices;
 
     fn kind(&self) -> &'static Kind {
         self.kind
@@ -159,7 +159,8 @@ impl System for Hill {
     }
     fn problem(&self) -> Result<(Self::Problem, Mat<f64>), Error> {
         let one = Mat::identity(2 * self.a.nrows(), 2 * self.a.nrows());
-        Ok(Flow::linear(self.equation()?, MatrixAction::Translation, one))
+        let action = MatrixAction::Translation;
+        Ok((OnMatrices::linear(self.equation()?.by(action), action), one))
     }
     fn modelled(&self) -> String {
         format!("fundamental solution in Sp({})", 2 * self.a.nrows())

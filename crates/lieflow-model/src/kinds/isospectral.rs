@@ -3,15 +3,14 @@
 
 use faer::{Mat, Side};
 use lieflow::Error;
-use lieflow::groups::MatrixGroup;
 use lieflow::problems::{IsospectralFlow, toda_lattice};
 use serde::Deserialize;
 use toml::de::ValueDeserializer;
 
-use super::flow::Flow;
 use super::matrix::MatrixAction;
-use super::system::System;
+use super::old_system::System;
 use super::{Figure, KeyInfo, Kind, Law, ProblemSpec, QuantityInfo, Scale};
+use crate::kinds::flow::OnMatrices;
 use crate::model::Layer;
 use crate::scene::values::{List, Table};
 use crate::scene::{Either, ReadError, Refusal, exactly_one};
@@ -26,7 +25,7 @@ pub(super) const TODA: Kind = Kind {
         KeyInfo { name: "momenta", meaning: "their momenta" },
         KeyInfo { name: "matrix", meaning: "a symmetric matrix, instead of particles" },
     ],
-    quantities: QUANTITIES,
+    quantities: || QUANTITIES.to_vec(),
     read: |section| read_toda(section),
 };
 
@@ -39,7 +38,7 @@ pub(super) const DOUBLE_BRACKET: Kind = Kind {
         KeyInfo { name: "matrix", meaning: "the initial symmetric matrix" },
         KeyInfo { name: "order", meaning: "the diagonal of N: eigenvalues end sorted as it is" },
     ],
-    quantities: QUANTITIES,
+    quantities: || QUANTITIES.to_vec(),
     read: |section| read_double_bracket(section),
 };
 
@@ -49,7 +48,7 @@ pub(super) const QR_FLOW: Kind = Kind {
     equation: "L̇ = [log(L)₋ᵀ − log(L)₋, L]: L(k) is the k-th iterate",
     summary: "the flow through the iterates of the QR algorithm of a positive definite matrix",
     keys: &[KeyInfo { name: "matrix", meaning: "the initial matrix, symmetric and positive" }],
-    quantities: QUANTITIES,
+    quantities: || QUANTITIES.to_vec(),
     read: |section| read_qr(section),
 };
 
@@ -178,7 +177,7 @@ fn eigenvalues(l: &Mat<f64>) -> Vec<f64> {
 }
 
 impl System for Isospectral {
-    type Problem = Flow<MatrixGroup, MatrixAction>;
+    type Problem = OnMatrices;
 
     fn kind(&self) -> &'static Kind {
         self.kind
@@ -188,7 +187,7 @@ impl System for Isospectral {
     }
     fn problem(&self) -> Result<(Self::Problem, Mat<f64>), Error> {
         let action = MatrixAction::Conjugation;
-        Ok(Flow::nonlinear(self.flow.clone(), action, self.matrix.clone()))
+        Ok((OnMatrices::new(self.flow.clone(), action), self.matrix.clone()))
     }
     fn modelled(&self) -> String {
         format!("symmetric {0}×{0} matrix, conjugated by SO({0})", self.matrix.nrows())

@@ -14,9 +14,9 @@ use nalgebra::Vector3;
 use serde::Deserialize;
 use toml::de::ValueDeserializer;
 
-use super::flow::Flow;
-use super::system::System;
+use super::old_system::System;
 use super::{Figure, KeyInfo, Kind, Law, ProblemSpec, QuantityInfo, Scale};
+use crate::kinds::flow::OnSe3;
 use crate::model::Layer;
 use crate::operations::{Pace, operations_by};
 use crate::scene::values::Reals;
@@ -36,29 +36,31 @@ pub(super) const KIND: Kind = Kind {
         KeyInfo { name: "angular_momentum", meaning: "initial angular momentum in the body" },
         KeyInfo { name: "linear_momentum", meaning: "initial linear momentum in the body" },
     ],
-    quantities: &[
-        QuantityInfo {
-            name: "angular_momentum",
-            columns: &["m1", "m2", "m3"],
-            meaning: "angular momentum in the body",
-        },
-        QuantityInfo {
-            name: "linear_momentum",
-            columns: &["p1", "p2", "p3"],
-            meaning: "linear momentum in the body",
-        },
-        QuantityInfo { name: "energy", columns: &["energy"], meaning: "kinetic energy" },
-        QuantityInfo {
-            name: "linear_norm2",
-            columns: &["linear_norm2"],
-            meaning: "square of the length of the linear momentum",
-        },
-        QuantityInfo {
-            name: "momenta_product",
-            columns: &["momenta_product"],
-            meaning: "product of the two momenta",
-        },
-    ],
+    quantities: || {
+        vec![
+            QuantityInfo {
+                name: "angular_momentum",
+                columns: &["m1", "m2", "m3"],
+                meaning: "angular momentum in the body",
+            },
+            QuantityInfo {
+                name: "linear_momentum",
+                columns: &["p1", "p2", "p3"],
+                meaning: "linear momentum in the body",
+            },
+            QuantityInfo { name: "energy", columns: &["energy"], meaning: "kinetic energy" },
+            QuantityInfo {
+                name: "linear_norm2",
+                columns: &["linear_norm2"],
+                meaning: "square of the length of the linear momentum",
+            },
+            QuantityInfo {
+                name: "momenta_product",
+                columns: &["momenta_product"],
+                meaning: "product of the two momenta",
+            },
+        ]
+    },
     read,
 };
 
@@ -97,7 +99,7 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
 }
 
 impl Body {
-    fn flow<S: Real>(&self) -> (Flow<Se3<S>, Coadjoint>, Point<S>) {
+    fn flow<S: Real>(&self) -> (OnSe3<S>, Point<S>) {
         let in_s = |x: &Vector3<f64>| x.map(S::lit);
         let (inertia, mass) = (in_s(&self.inertia), in_s(&self.mass));
         let gradient = move |m: &Point<S>, xi: &mut Point<S>| {
@@ -107,7 +109,7 @@ impl Body {
             );
         };
         let start = (in_s(&self.start.0), in_s(&self.start.1));
-        Flow::lie_poisson(Euler::new(Se3::new(), Kinetic(gradient)), Coadjoint, start)
+        (OnSe3::lie_poisson(Euler::new(Se3::new(), Kinetic(gradient)), Coadjoint), start)
     }
     fn energy(&self, (mu, pi): &Point) -> f64 {
         0.5 * (mu.dot(&mu.component_div(&self.inertia)) + pi.dot(&pi.component_div(&self.mass)))
@@ -115,7 +117,7 @@ impl Body {
 }
 
 impl System for Body {
-    type Problem = Flow<Se3, Coadjoint>;
+    type Problem = OnSe3<f64>;
 
     fn kind(&self) -> &'static Kind {
         &KIND

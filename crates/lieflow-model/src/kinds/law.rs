@@ -1,6 +1,6 @@
 //! What a motion keeps, what a method promises to keep of it, and what rounding may do to that.
 
-use lieflow::catalog::MethodInfo;
+use lieflow::catalog::{MethodInfo, Structure};
 use lieflow::problems::Kept;
 
 /// A quantity whose columns the exact motion keeps.
@@ -37,6 +37,14 @@ pub const SIZE: &str = ".size";
 const ROUNDINGS: f64 = 64.0;
 
 impl Law {
+    /// The action keeps it.
+    pub(super) const fn by_the_action(degree: u32) -> Law {
+        Law::of_the_action("", degree)
+    }
+    /// This flow keeps it.
+    pub(super) const fn by_the_flow(degree: u32) -> Law {
+        Law::of_the_flow("", degree)
+    }
     /// One that the action keeps.
     pub const fn of_the_action(quantity: &'static str, degree: u32) -> Law {
         Law { quantity, kept: Kept::ByTheAction, degree, scale: Scale::Value }
@@ -52,17 +60,13 @@ impl Law {
 
     /// Does the method promise to keep it to rounding? By what the catalog says that it preserves.
     pub fn promised_by(&self, method: &MethodInfo) -> bool {
-        let says = |word: &str| method.preserves.split(", ").any(|kept| kept.starts_with(word));
-        let polynomial = match self.degree {
-            1 => says("linear invariants") || says("quadratic invariants"),
-            2 => says("quadratic invariants"),
-            _ => false,
-        };
         let by_its_kind = match self.kept {
-            Kept::ByTheAction => says("group") || says("Casimirs"),
-            Kept::ByTheFlow => self.quantity == "energy" && says("energy"),
+            Kept::ByTheAction => {
+                method.keeps(Structure::Group) || method.keeps(Structure::Casimirs)
+            }
+            Kept::ByTheFlow => self.quantity == "energy" && method.keeps(Structure::Energy),
         };
-        says("everything") || polynomial || by_its_kind
+        by_its_kind || method.keeps_polynomials(self.degree) || method.keeps(Structure::Everything)
     }
 }
 

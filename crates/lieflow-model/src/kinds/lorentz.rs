@@ -2,19 +2,18 @@
 //! [`ChargedParticle`]. u̇ = (q/m) F u in the particle's proper time, an equation of linear type.
 
 use faer::Mat;
-use lieflow::actions::Linear;
 use lieflow::groups::{AlgebraMatrix, LieAlgebra, MatrixGroup};
 use lieflow::maps::Exp;
-use lieflow::problems::{ChargedParticle, LinearEquation};
+use lieflow::problems::{ChargedParticle, Flow};
 use lieflow::{CoordinateMap, Error, Problem};
 use nalgebra::Vector3;
 use serde::Deserialize;
 use toml::de::ValueDeserializer;
 
-use super::flow::Flow;
 use super::matrix::MatrixAction;
-use super::system::System;
+use super::old_system::System;
 use super::{Figure, KeyInfo, Kind, Law, ProblemSpec, QuantityInfo, Scale};
+use crate::kinds::flow::OnMatrices;
 use crate::model::Layer;
 use crate::scene::values::{Real, Reals};
 use crate::scene::{ReadError, Refusal};
@@ -30,28 +29,30 @@ pub(super) const KIND: Kind = Kind {
         KeyInfo { name: "magnetic", meaning: "the magnetic field, times the speed of light" },
         KeyInfo { name: "velocity", meaning: "initial velocity over the speed of light" },
     ],
-    quantities: &[
-        QuantityInfo {
-            name: "four_velocity",
-            columns: &["u1", "u2", "u3", "gamma"],
-            meaning: "gamma times the velocity, and gamma",
-        },
-        QuantityInfo {
-            name: "velocity",
-            columns: &["v1", "v2", "v3"],
-            meaning: "the velocity over the speed of light",
-        },
-        QuantityInfo {
-            name: "energy",
-            columns: &["gamma_energy"],
-            meaning: "gamma, the energy over that at rest; kept where there is no electric field",
-        },
-        QuantityInfo {
-            name: "mass_shell",
-            columns: &["mass_shell"],
-            meaning: "square of the four-velocity, -1",
-        },
-    ],
+    quantities: || {
+        vec![
+            QuantityInfo {
+                name: "four_velocity",
+                columns: &["u1", "u2", "u3", "gamma"],
+                meaning: "gamma times the velocity, and gamma",
+            },
+            QuantityInfo {
+                name: "velocity",
+                columns: &["v1", "v2", "v3"],
+                meaning: "the velocity over the speed of light",
+            },
+            QuantityInfo {
+                name: "energy",
+                columns: &["gamma_energy"],
+                meaning: "gamma, the energy over that at rest; kept where there is no electric field",
+            },
+            QuantityInfo {
+                name: "mass_shell",
+                columns: &["mass_shell"],
+                meaning: "square of the four-velocity, -1",
+            },
+        ]
+    },
     read,
 };
 
@@ -84,7 +85,7 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
 }
 
 impl System for Particle {
-    type Problem = Flow<MatrixGroup, MatrixAction>;
+    type Problem = OnMatrices;
 
     fn kind(&self) -> &'static Kind {
         &KIND
@@ -95,8 +96,8 @@ impl System for Particle {
     fn problem(&self) -> Result<(Self::Problem, Mat<f64>), Error> {
         let tensor = self.tensor.clone();
         let field = move |_: f64, v: &mut AlgebraMatrix| v.copy_from(&*tensor);
-        let equation = LinearEquation::new(MatrixGroup::indefinite(3, 1)?, Linear, field);
-        Ok(Flow::linear(equation, MatrixAction::Linear, self.start.clone()))
+        let (group, action) = (MatrixGroup::indefinite(3, 1)?, MatrixAction::Linear);
+        Ok((OnMatrices::linear(Flow::of_time(group, action, field), action), self.start.clone()))
     }
     fn modelled(&self) -> String {
         "four-velocity, by SO(3,1)".into()

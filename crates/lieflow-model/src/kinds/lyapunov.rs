@@ -6,13 +6,13 @@ use std::sync::Arc;
 use faer::Mat;
 use lieflow::Error;
 use lieflow::actions::LeftTranslation;
-use lieflow::groups::{GroupMatrix, LieGroup, MatrixGroup, Product, Translations};
+use lieflow::groups::{GroupMatrix, LieGroup, MatrixGroup};
 use lieflow::problems::Lyapunov;
 use serde::Deserialize;
 use toml::de::ValueDeserializer;
 
-use super::flow::{Flow, Growth};
-use super::system::System;
+use super::flow::{Growing, Growth};
+use super::old_system::System;
 use super::{Figure, KeyInfo, Kind, Law, PARAMETERS, ProblemSpec, QuantityInfo, Scale};
 use crate::model::Layer;
 use crate::scene::formula::{Formula, Names, Parameters, read_all};
@@ -36,33 +36,35 @@ pub(super) const KIND: Kind = Kind {
         },
         PARAMETERS,
     ],
-    quantities: &[
-        QuantityInfo {
-            name: "x",
-            columns: &["…"],
-            meaning: "the point, by the names of its coordinates",
-        },
-        QuantityInfo {
-            name: "growth",
-            columns: &["s1", "…", "sn"],
-            meaning: "logarithms of the growth of perturbations, in falling order",
-        },
-        QuantityInfo {
-            name: "exponents",
-            columns: &["e1", "…", "en"],
-            meaning: "growth over time: the exponents where the time is long; 0 at the start",
-        },
-        QuantityInfo {
-            name: "frame",
-            columns: &["q11", "…", "qnn"],
-            meaning: "directions of the perturbations, row by row",
-        },
-        QuantityInfo {
-            name: "frame_defect",
-            columns: &["frame_defect"],
-            meaning: "distance of Q'Q from the identity",
-        },
-    ],
+    quantities: || {
+        vec![
+            QuantityInfo {
+                name: "x",
+                columns: &["…"],
+                meaning: "the point, by the names of its coordinates",
+            },
+            QuantityInfo {
+                name: "growth",
+                columns: &["s1", "…", "sn"],
+                meaning: "logarithms of the growth of perturbations, in falling order",
+            },
+            QuantityInfo {
+                name: "exponents",
+                columns: &["e1", "…", "en"],
+                meaning: "growth over time: the exponents where the time is long; 0 at the start",
+            },
+            QuantityInfo {
+                name: "frame",
+                columns: &["q11", "…", "qnn"],
+                meaning: "directions of the perturbations, row by row",
+            },
+            QuantityInfo {
+                name: "frame_defect",
+                columns: &["frame_defect"],
+                meaning: "distance of Q'Q from the identity",
+            },
+        ]
+    },
     read,
 };
 
@@ -132,7 +134,7 @@ fn values(t: f64, x: &[f64]) -> [f64; 1 + MAX] {
 type Point = (GroupMatrix, Growth);
 
 impl System for Exponents {
-    type Problem = Flow<Product<MatrixGroup, Translations<Growth>>, LeftTranslation>;
+    type Problem = Growing;
 
     fn kind(&self) -> &'static Kind {
         &KIND
@@ -153,7 +155,7 @@ impl System for Exponents {
         };
         let system = Lyapunov::new(n, field)?;
         let start = system.state(&self.x)?;
-        Ok(Flow::nonlinear(system, LeftTranslation, start))
+        Ok((Growing::new(system, LeftTranslation), start))
     }
     fn check_start(&self, t0: f64) -> Result<(), Refusal> {
         let (n, values) = (self.x.len(), values(t0, &self.x));

@@ -1,23 +1,19 @@
 //! The actions of a matrix group on matrices as one type, so that all problems of matrices are one
 //! [`Flow`](super::flow::Flow). The choice is made once a stage, beside products of matrices.
 //!
-//! | | Λ(g, p) | λ_*(v)(p) |
-//! |---|---|---|
-//! | `Linear` | g p | v p |
-//! | `Translation` | g p, p ∈ G | v p |
-//! | `Conjugation` | g p g⁻¹ | v p − p v |
-//! | `Coadjoint` | g⁻ᵀ p gᵀ | p vᵀ − vᵀ p |
-//! | `Lagrangian` | (C + Dp)(A + Bp)⁻¹ | c + dp − pa − pbp for v = \[a b; c d\] |
+//! | | Λ(g, p) |
+//! |---|---|
+//! | `Linear` | g p |
+//! | `Translation` | g p, p ∈ G |
+//! | `Conjugation` | g p g⁻¹ |
+//! | `Coadjoint` | g⁻ᵀ p gᵀ |
+//! | `Lagrangian` | (C + Dp)(A + Bp)⁻¹ |
 
-use faer::linalg::matmul::matmul;
-use faer::{Accum, Mat, MatRef, Par};
+use faer::Mat;
 use lieflow::actions::{Action, Coadjoint, Conjugation, Lagrangian, LeftTranslation, Linear};
 use lieflow::chart::PsiOf;
 use lieflow::groups::{AlgebraMatrix, GroupMatrix, LieGroup, MatrixGroup};
-use lieflow::scalar::{Ops, tally};
 use lieflow::{CoordinateMap, Error, StepError};
-
-use super::flow::Generator;
 
 /// Which action.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -77,6 +73,21 @@ impl Action<MatrixGroup> for MatrixAction {
             MatrixWork::Lagrangian(work) => Lagrangian.act(group, g, p, q, work),
         }
     }
+    fn generate(
+        &self,
+        group: &MatrixGroup,
+        v: &AlgebraMatrix,
+        p: &Mat<f64>,
+        dp: &mut Mat<f64>,
+        work: &mut MatrixWork,
+    ) {
+        match work {
+            MatrixWork::Linear | MatrixWork::Translation(_) => group.apply_algebra(v, p, dp),
+            MatrixWork::Conjugation(work) => Conjugation.generate(group, v, p, dp, work),
+            MatrixWork::Coadjoint(work) => Coadjoint.generate(group, v, p, dp, work),
+            MatrixWork::Lagrangian(work) => Lagrangian.generate(group, v, p, dp, work),
+        }
+    }
     fn lambda<Psi: CoordinateMap<MatrixGroup>>(
         &self,
         psi_u: PsiOf<'_, MatrixGroup, Psi>,
@@ -100,43 +111,5 @@ impl Action<MatrixGroup> for MatrixAction {
         let residual = group.correct(&mut g, scratch.each_mut());
         *p = g.into_mat();
         Some(residual)
-    }
-}
-
-/// out ← a·b.
-fn mul(out: &mut Mat<f64>, a: MatRef<'_, f64>, b: MatRef<'_, f64>) {
-    tally(|| Ops::dots(a.nrows() * b.ncols(), a.ncols()));
-    matmul(out, Accum::Replace, a, b, 1.0, Par::Seq);
-}
-
-/// out ← out ± a·b.
-fn mul_add(out: &mut Mat<f64>, alpha: f64, a: MatRef<'_, f64>, b: MatRef<'_, f64>) {
-    tally(|| Ops::muladds(a.nrows() * b.ncols() * a.ncols()));
-    matmul(out, Accum::Add, a, b, alpha, Par::Seq);
-}
-
-impl Generator<MatrixGroup> for MatrixAction {
-    fn generate(&self, v: &AlgebraMatrix, p: &Mat<f64>, dp: &mut Mat<f64>, scratch: &mut Mat<f64>) {
-        let (v, p) = (v.as_ref(), p.as_ref());
-        match self {
-            MatrixAction::Linear | MatrixAction::Translation => mul(dp, v, p),
-            MatrixAction::Conjugation => {
-                mul(dp, v, p);
-                mul_add(dp, -1.0, p, v);
-            }
-            MatrixAction::Coadjoint => {
-                mul(dp, p, v.transpose());
-                mul_add(dp, -1.0, v.transpose(), p);
-            }
-            MatrixAction::Lagrangian => {
-                let m = p.nrows();
-                let block = |i: usize, j: usize| v.submatrix(i * m, j * m, m, m);
-                scratch.copy_from(block(0, 0));
-                mul_add(scratch, 1.0, block(0, 1), p);
-                dp.copy_from(block(1, 0));
-                mul_add(dp, 1.0, block(1, 1), p);
-                mul_add(dp, -1.0, p, scratch.as_ref());
-            }
-        }
     }
 }

@@ -19,7 +19,9 @@ mod lyapunov;
 mod matrix;
 mod matrix_ode;
 mod oja;
+mod old_system;
 mod pendulum;
+mod quantity;
 mod riccati;
 mod rigid_bodies;
 mod rigid_body;
@@ -84,7 +86,7 @@ pub struct Kind {
     /// The keys of `[problem]`, besides `kind`.
     pub keys: &'static [KeyInfo],
     /// What can be asked of it.
-    pub quantities: &'static [QuantityInfo],
+    pub quantities: fn() -> Vec<QuantityInfo>,
     /// Reads the keys of `[problem]`, without `kind`.
     pub read: fn(ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError>,
 }
@@ -104,16 +106,43 @@ const PARAMETERS: KeyInfo = KeyInfo {
     meaning: "constants for the formulas: a table [problem.parameters] of names and numbers; optional",
 };
 
+/// The keys of a kind, once: the table that `serde` reads, and what listings say of each key.
+macro_rules! keys {
+    ($name:ident { $($(#[$attribute:meta])* $key:ident: $type:ty = $meaning:expr,)* }) => {
+        #[derive(serde::Deserialize)]
+        #[serde(deny_unknown_fields)]
+        struct $name {
+            $($(#[$attribute])* $key: $type,)*
+        }
+
+        impl $name {
+            const INFO: &'static [$crate::kinds::KeyInfo] =
+                &[$($crate::kinds::KeyInfo { name: stringify!($key), meaning: $meaning },)*];
+        }
+    };
+}
+use keys;
+
 /// A quantity that can be asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct QuantityInfo {
     /// Its name in scene files.
     pub name: &'static str,
-    /// Its columns; with an `…` between the first and the last where the size of the problem says how
-    /// many there are.
+    /// Its columns; none where it has one of its own name; with an `…` between the first and the last where
+    /// the size of the problem says how many there are.
     pub columns: &'static [&'static str],
     /// What it means.
     pub meaning: &'static str,
+}
+
+impl QuantityInfo {
+    /// The names of the columns.
+    pub fn column_names(&self) -> Vec<String> {
+        match self.columns {
+            [] => vec![self.name.into()],
+            columns => columns.iter().map(|&column| column.into()).collect(),
+        }
+    }
 }
 
 impl Kind {
@@ -133,12 +162,13 @@ impl Kind {
     ///
     /// # Errors
     /// [`Error::UnknownName`].
-    pub fn quantity(&self, name: &str) -> Result<&'static QuantityInfo, Error> {
-        self.quantities.iter().find(|quantity| quantity.name == name).ok_or_else(|| {
+    pub fn quantity(&self, name: &str) -> Result<QuantityInfo, Error> {
+        let quantities = (self.quantities)();
+        quantities.iter().copied().find(|quantity| quantity.name == name).ok_or_else(|| {
             Error::UnknownName {
                 kind: "quantity",
                 name: name.into(),
-                expected: self.quantities.iter().map(|quantity| quantity.name).collect(),
+                expected: quantities.iter().map(|quantity| quantity.name).collect(),
             }
         })
     }
@@ -206,7 +236,7 @@ pub trait ProblemSpec: Any + Debug + Send + Sync {
     /// [`Error::UnknownName`] for a quantity that the kind does not have.
     fn columns(&self, quantity: &str) -> Result<Vec<String>, Error> {
         let info = self.kind().quantity(quantity)?;
-        Ok(info.columns.iter().map(|&column| column.into()).collect())
+        Ok(info.column_names())
     }
 
     /// The problem on a layer, modelling what the quantities need and no more.

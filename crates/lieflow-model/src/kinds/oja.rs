@@ -3,15 +3,14 @@
 
 use faer::{Mat, Side};
 use lieflow::Error;
-use lieflow::groups::MatrixGroup;
 use lieflow::problems::Oja;
 use serde::Deserialize;
 use toml::de::ValueDeserializer;
 
-use super::flow::Flow;
 use super::matrix::MatrixAction;
-use super::system::System;
+use super::old_system::System;
 use super::{Fact, Figure, KeyInfo, Kind, Law, ProblemSpec, QuantityInfo, Scale};
+use crate::kinds::flow::OnMatrices;
 use crate::model::Layer;
 use crate::scene::values::Table;
 use crate::scene::{ReadError, Refusal};
@@ -25,23 +24,25 @@ pub(super) const KIND: Kind = Kind {
         KeyInfo { name: "a", meaning: "the symmetric matrix A" },
         KeyInfo { name: "x", meaning: "the initial n×k matrix; its columns are made orthonormal" },
     ],
-    quantities: &[
-        QuantityInfo {
-            name: "x",
-            columns: &["x11", "…", "xnk"],
-            meaning: "the entries of X, row by row",
-        },
-        QuantityInfo {
-            name: "trace",
-            columns: &["trace"],
-            meaning: "trace of X'AX, which grows to the sum of the leading eigenvalues",
-        },
-        QuantityInfo {
-            name: "stiefel_defect",
-            columns: &["stiefel_defect"],
-            meaning: "distance of X'X from the identity",
-        },
-    ],
+    quantities: || {
+        vec![
+            QuantityInfo {
+                name: "x",
+                columns: &["x11", "…", "xnk"],
+                meaning: "the entries of X, row by row",
+            },
+            QuantityInfo {
+                name: "trace",
+                columns: &["trace"],
+                meaning: "trace of X'AX, which grows to the sum of the leading eigenvalues",
+            },
+            QuantityInfo {
+                name: "stiefel_defect",
+                columns: &["stiefel_defect"],
+                meaning: "distance of X'X from the identity",
+            },
+        ]
+    },
     read,
 };
 
@@ -89,7 +90,7 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
 }
 
 impl System for OjaFlow {
-    type Problem = Flow<MatrixGroup, MatrixAction>;
+    type Problem = OnMatrices;
 
     fn kind(&self) -> &'static Kind {
         &KIND
@@ -98,7 +99,7 @@ impl System for OjaFlow {
         Layer::General
     }
     fn problem(&self) -> Result<(Self::Problem, Mat<f64>), Error> {
-        Ok(Flow::nonlinear(self.flow.clone(), MatrixAction::Linear, self.x.clone()))
+        Ok((OnMatrices::new(self.flow.clone(), MatrixAction::Linear), self.x.clone()))
     }
     fn modelled(&self) -> String {
         format!("{} orthonormal columns in {} dimensions", self.x.ncols(), self.x.nrows())

@@ -4,16 +4,15 @@
 use lieflow::Error;
 use lieflow::actions::Coadjoint;
 use lieflow::catalog::MethodSpec;
-use lieflow::groups::Se3;
 use lieflow::problems::SphericalPendulum;
 use lieflow::scalar::Counted;
 use nalgebra::Vector3;
 use serde::Deserialize;
 use toml::de::ValueDeserializer;
 
-use super::flow::Flow;
-use super::system::System;
+use super::old_system::System;
 use super::{Figure, KeyInfo, Kind, Law, ProblemSpec, QuantityInfo, Scale};
+use crate::kinds::flow::OnSe3;
 use crate::model::Layer;
 use crate::operations::{Pace, operations_by};
 use crate::scene::values::{Real, Reals};
@@ -32,30 +31,36 @@ pub(super) const KIND: Kind = Kind {
             meaning: "initial velocity of the direction; its part along the rod is left out",
         },
     ],
-    quantities: &[
-        QuantityInfo {
-            name: "direction",
-            columns: &["q1", "q2", "q3"],
-            meaning: "direction of the rod",
-        },
-        QuantityInfo { name: "omega", columns: &["w1", "w2", "w3"], meaning: "angular velocity" },
-        QuantityInfo { name: "energy", columns: &["energy"], meaning: "energy" },
-        QuantityInfo {
-            name: "vertical_momentum",
-            columns: &["vertical_momentum"],
-            meaning: "angular momentum about the vertical",
-        },
-        QuantityInfo {
-            name: "direction_norm2",
-            columns: &["direction_norm2"],
-            meaning: "square of the length of the direction",
-        },
-        QuantityInfo {
-            name: "omega_along",
-            columns: &["omega_along"],
-            meaning: "angular velocity along the rod, 0",
-        },
-    ],
+    quantities: || {
+        vec![
+            QuantityInfo {
+                name: "direction",
+                columns: &["q1", "q2", "q3"],
+                meaning: "direction of the rod",
+            },
+            QuantityInfo {
+                name: "omega",
+                columns: &["w1", "w2", "w3"],
+                meaning: "angular velocity",
+            },
+            QuantityInfo { name: "energy", columns: &["energy"], meaning: "energy" },
+            QuantityInfo {
+                name: "vertical_momentum",
+                columns: &["vertical_momentum"],
+                meaning: "angular momentum about the vertical",
+            },
+            QuantityInfo {
+                name: "direction_norm2",
+                columns: &["direction_norm2"],
+                meaning: "square of the length of the direction",
+            },
+            QuantityInfo {
+                name: "omega_along",
+                columns: &["omega_along"],
+                meaning: "angular velocity along the rod, 0",
+            },
+        ]
+    },
     read,
 };
 
@@ -88,7 +93,7 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
 }
 
 impl System for Pendulum {
-    type Problem = Flow<Se3, Coadjoint>;
+    type Problem = OnSe3<f64>;
 
     fn kind(&self) -> &'static Kind {
         &KIND
@@ -97,11 +102,11 @@ impl System for Pendulum {
         Layer::Closed
     }
     fn problem(&self) -> Result<(Self::Problem, Point), Error> {
-        Ok(Flow::lie_poisson(self.pendulum, Coadjoint, self.start))
+        Ok((OnSe3::lie_poisson(self.pendulum, Coadjoint), self.start))
     }
     fn operations(&self, method: &MethodSpec, pace: Pace<'_>) -> Option<f64> {
         let start = (self.start.0.map(Counted), self.start.1.map(Counted));
-        let (flow, start) = Flow::lie_poisson(self.pendulum.on::<Counted>(), Coadjoint, start);
+        let (flow, start) = (OnSe3::lie_poisson(self.pendulum.on::<Counted>(), Coadjoint), start);
         operations_by(method, &flow, start, pace)
     }
     fn modelled(&self) -> String {

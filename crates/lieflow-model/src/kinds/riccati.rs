@@ -5,16 +5,15 @@
 
 use faer::{Mat, Side};
 use lieflow::Error;
-use lieflow::actions::Lagrangian;
 use lieflow::groups::{AlgebraMatrix, MatrixGroup};
-use lieflow::problems::LinearEquation;
+use lieflow::problems::Flow;
 use serde::Deserialize;
 use toml::de::ValueDeserializer;
 
-use super::flow::Flow;
 use super::matrix::MatrixAction;
-use super::system::System;
+use super::old_system::System;
 use super::{Figure, KeyInfo, Kind, Law, ProblemSpec, QuantityInfo};
+use crate::kinds::flow::OnMatrices;
 use crate::model::Layer;
 use crate::scene::values::Table;
 use crate::scene::{ReadError, Refusal};
@@ -30,18 +29,20 @@ pub(super) const KIND: Kind = Kind {
         KeyInfo { name: "b", meaning: "B, symmetric" },
         KeyInfo { name: "p", meaning: "the initial P, symmetric" },
     ],
-    quantities: &[
-        QuantityInfo {
-            name: "p",
-            columns: &["p11", "…", "pmm"],
-            meaning: "the entries of P on and above the diagonal, row by row",
-        },
-        QuantityInfo {
-            name: "angles",
-            columns: &["angle1", "…", "anglem"],
-            meaning: "arctan of the eigenvalues of P in ascending order: they jump at a pole",
-        },
-    ],
+    quantities: || {
+        vec![
+            QuantityInfo {
+                name: "p",
+                columns: &["p11", "…", "pmm"],
+                meaning: "the entries of P on and above the diagonal, row by row",
+            },
+            QuantityInfo {
+                name: "angles",
+                columns: &["angle1", "…", "anglem"],
+                meaning: "arctan of the eigenvalues of P in ascending order: they jump at a pole",
+            },
+        ]
+    },
     read,
 };
 
@@ -88,7 +89,7 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
 }
 
 impl System for Riccati {
-    type Problem = Flow<MatrixGroup, MatrixAction>;
+    type Problem = OnMatrices;
 
     fn kind(&self) -> &'static Kind {
         &KIND
@@ -107,8 +108,8 @@ impl System for Riccati {
                 }
             }
         };
-        let equation = LinearEquation::new(MatrixGroup::sp(2 * m)?, Lagrangian, field);
-        Ok(Flow::linear(equation, MatrixAction::Lagrangian, self.p.clone()))
+        let (group, action) = (MatrixGroup::sp(2 * m)?, MatrixAction::Lagrangian);
+        Ok((OnMatrices::linear(Flow::of_time(group, action, field), action), self.p.clone()))
     }
     fn modelled(&self) -> String {
         format!("symmetric {0}×{0} matrix, a Lagrangian subspace of dimension {0}", self.p.nrows())

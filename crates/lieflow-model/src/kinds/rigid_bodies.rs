@@ -13,9 +13,9 @@ use nalgebra::{Matrix3, Vector3};
 use serde::Deserialize;
 use toml::de::ValueDeserializer;
 
-use super::flow::Flow;
-use super::system::System;
+use super::old_system::System;
 use super::{Figure, KeyInfo, Kind, Law, ProblemSpec, QuantityInfo};
+use crate::kinds::flow::OnSpheres;
 use crate::model::Layer;
 use crate::operations::{Pace, operations_by};
 use crate::scene::values::Reals;
@@ -30,23 +30,25 @@ pub(super) const KIND: Kind = Kind {
         name: "bodies",
         meaning: "a list of {inertia = [J1, J2, J3], momentum_body = [m1, m2, m3]}",
     }],
-    quantities: &[
-        QuantityInfo {
-            name: "momentum_body",
-            columns: &["m1_1", "m1_2", "m1_3", "…", "mN_3"],
-            meaning: "angular momenta in the bodies, one after the other",
-        },
-        QuantityInfo {
-            name: "energy",
-            columns: &["energy1", "…", "energyN"],
-            meaning: "kinetic energy of each",
-        },
-        QuantityInfo {
-            name: "momentum_norm",
-            columns: &["norm1", "…", "normN"],
-            meaning: "length of the angular momentum of each",
-        },
-    ],
+    quantities: || {
+        vec![
+            QuantityInfo {
+                name: "momentum_body",
+                columns: &["m1_1", "m1_2", "m1_3", "…", "mN_3"],
+                meaning: "angular momenta in the bodies, one after the other",
+            },
+            QuantityInfo {
+                name: "energy",
+                columns: &["energy1", "…", "energyN"],
+                meaning: "kinetic energy of each",
+            },
+            QuantityInfo {
+                name: "momentum_norm",
+                columns: &["norm1", "…", "normN"],
+                meaning: "length of the angular momentum of each",
+            },
+        ]
+    },
     read,
 };
 
@@ -86,21 +88,18 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
     Ok(Box::new(Bodies { bodies, start }))
 }
 
-fn flow<S: Real>(
-    bodies: Vec<RigidBody<S>>,
-    start: &Momenta<S>,
-) -> Result<Flow<Power<So3<S>>, Linear>, Error> {
+fn flow<S: Real>(bodies: Vec<RigidBody<S>>, start: &Momenta<S>) -> Result<OnSpheres<S>, Error> {
     let group = Power::new(So3::new(), bodies.len())?;
     let omega = move |m: &Momenta<S>, xi: &mut Momenta<S>| {
         for ((body, m), xi) in bodies.iter().zip(m).zip(xi) {
             *xi = body.omega(m);
         }
     };
-    Ok(Flow::lie_poisson(Euler::new(group, Kinetic(omega)), Linear, start.clone()).0)
+    Ok((OnSpheres::lie_poisson(Euler::new(group, Kinetic(omega)), Linear), start.clone()).0)
 }
 
 impl System for Bodies {
-    type Problem = Flow<Power<So3>, Linear>;
+    type Problem = OnSpheres<f64>;
 
     fn kind(&self) -> &'static Kind {
         &KIND

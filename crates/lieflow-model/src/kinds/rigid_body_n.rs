@@ -9,7 +9,7 @@ use lieflow::problems::{RigidBodyN, manakov_integrals};
 use serde::Deserialize;
 use toml::de::ValueDeserializer;
 
-use super::system::System;
+use super::old_system::System;
 use super::{Figure, KeyInfo, Kind, Law, ProblemSpec, QuantityInfo};
 use crate::model::Layer;
 use crate::scene::values::List;
@@ -34,24 +34,26 @@ pub(super) const KIND: Kind = Kind {
             meaning: "initial angular momentum in the body, m_12, m_13, …, m_1n, m_23, …",
         },
     ],
-    quantities: &[
-        QuantityInfo {
-            name: "momentum",
-            columns: &["m12", "…", "m(n-1)n"],
-            meaning: "angular momentum in the body, plane by plane",
-        },
-        QuantityInfo { name: "energy", columns: &["energy"], meaning: "kinetic energy" },
-        QuantityInfo {
-            name: "casimirs",
-            columns: &["trm2", "…", "trmn"],
-            meaning: "traces of the even powers of m, up to the n-th",
-        },
-        QuantityInfo {
-            name: "manakov_integrals",
-            columns: &["integral1", "…", "integralk"],
-            meaning: "the further integrals of Manakov's body; none for another",
-        },
-    ],
+    quantities: || {
+        vec![
+            QuantityInfo {
+                name: "momentum",
+                columns: &["m12", "…", "m(n-1)n"],
+                meaning: "angular momentum in the body, plane by plane",
+            },
+            QuantityInfo { name: "energy", columns: &["energy"], meaning: "kinetic energy" },
+            QuantityInfo {
+                name: "casimirs",
+                columns: &["trm2", "…", "trmn"],
+                meaning: "traces of the even powers of m, up to the n-th",
+            },
+            QuantityInfo {
+                name: "manakov_integrals",
+                columns: &["integral1", "…", "integralk"],
+                meaning: "the further integrals of Manakov's body; none for another",
+            },
+        ]
+    },
     read,
 };
 

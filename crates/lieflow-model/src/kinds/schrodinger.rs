@@ -3,16 +3,15 @@
 
 use faer::Mat;
 use lieflow::Error;
-use lieflow::groups::MatrixGroup;
 use lieflow::problems::{amplitudes, populations, schrodinger};
 use lieflow::scalar::{Ops, tally};
 use serde::Deserialize;
 use toml::de::ValueDeserializer;
 
-use super::flow::Flow;
 use super::matrix::MatrixAction;
-use super::system::System;
+use super::old_system::System;
 use super::{Figure, KeyInfo, Kind, Law, ProblemSpec, QuantityInfo};
+use crate::kinds::flow::OnMatrices;
 use crate::model::Layer;
 use crate::scene::values::{List, Real, Reals, Table};
 use crate::scene::{ReadError, Refusal};
@@ -38,23 +37,25 @@ pub(super) const KIND: Kind = Kind {
         KeyInfo { name: "amplitudes", meaning: "initial real parts, normalised" },
         KeyInfo { name: "amplitudes_imaginary", meaning: "imaginary parts; optional, 0" },
     ],
-    quantities: &[
-        QuantityInfo {
-            name: "amplitudes",
-            columns: &["re1", "…", "ren", "im1", "…", "imn"],
-            meaning: "real parts, then imaginary parts",
-        },
-        QuantityInfo {
-            name: "populations",
-            columns: &["p1", "…", "pn"],
-            meaning: "probability of each level",
-        },
-        QuantityInfo {
-            name: "probability",
-            columns: &["probability"],
-            meaning: "sum of the populations",
-        },
-    ],
+    quantities: || {
+        vec![
+            QuantityInfo {
+                name: "amplitudes",
+                columns: &["re1", "…", "ren", "im1", "…", "imn"],
+                meaning: "real parts, then imaginary parts",
+            },
+            QuantityInfo {
+                name: "populations",
+                columns: &["p1", "…", "pn"],
+                meaning: "probability of each level",
+            },
+            QuantityInfo {
+                name: "probability",
+                columns: &["probability"],
+                meaning: "sum of the populations",
+            },
+        ]
+    },
     read,
 };
 
@@ -146,7 +147,7 @@ impl Levels {
 }
 
 impl System for Levels {
-    type Problem = Flow<MatrixGroup, MatrixAction>;
+    type Problem = OnMatrices;
 
     fn kind(&self) -> &'static Kind {
         &KIND
@@ -163,7 +164,7 @@ impl System for Levels {
             [energy + drive * re[(i, j)], drive * im[(i, j)]]
         };
         let equation = schrodinger(self.energies.len(), hamiltonian)?;
-        Ok(Flow::linear(equation, MatrixAction::Linear, self.start.clone()))
+        Ok((OnMatrices::linear(equation, MatrixAction::Linear), self.start.clone()))
     }
     fn modelled(&self) -> String {
         format!("state of {} levels, real and imaginary parts", self.energies.len())

@@ -5,16 +5,16 @@
 use lieflow::actions::Linear;
 use lieflow::catalog::MethodSpec;
 use lieflow::groups::So3;
-use lieflow::problems::LinearEquation;
+use lieflow::problems::Flow;
 use lieflow::scalar::{Counted, Trig};
 use lieflow::{Error, so3};
 use nalgebra::Vector3;
 use serde::Deserialize;
 use toml::de::ValueDeserializer;
 
-use super::flow::Flow;
-use super::system::System;
+use super::old_system::System;
 use super::{Figure, KeyInfo, Kind, Law, ProblemSpec, QuantityInfo};
+use crate::kinds::flow::OnSphere;
 use crate::model::Layer;
 use crate::operations::{Pace, operations_by};
 use crate::scene::ReadError;
@@ -30,14 +30,16 @@ pub(super) const KIND: Kind = Kind {
         KeyInfo { name: "rate", meaning: "angular velocity at which the field turns" },
         KeyInfo { name: "moment", meaning: "initial moment" },
     ],
-    quantities: &[
-        QuantityInfo { name: "moment", columns: &["x1", "x2", "x3"], meaning: "the moment" },
-        QuantityInfo {
-            name: "moment_norm",
-            columns: &["moment_norm"],
-            meaning: "length of the moment",
-        },
-    ],
+    quantities: || {
+        vec![
+            QuantityInfo { name: "moment", columns: &["x1", "x2", "x3"], meaning: "the moment" },
+            QuantityInfo {
+                name: "moment_norm",
+                columns: &["moment_norm"],
+                meaning: "length of the moment",
+            },
+        ]
+    },
     read,
 };
 
@@ -63,7 +65,7 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
 }
 
 impl Spin {
-    fn flow<S: Trig>(&self) -> (Flow<So3<S>, Linear>, Vector3<S>) {
+    fn flow<S: Trig>(&self) -> (OnSphere<S>, Vector3<S>) {
         let [field, moment] = [self.field, self.moment].map(|x| x.map(S::lit));
         let rate = S::lit(self.rate);
         let omega = move |t: S, v: &mut Vector3<S>| {
@@ -71,12 +73,12 @@ impl Spin {
             let turned = [c * field[0] - s * field[1], s * field[0] + c * field[1]];
             *v = Vector3::new(turned[0], turned[1], field[2]);
         };
-        Flow::linear(LinearEquation::new(So3::new(), Linear, omega), Linear, moment)
+        (OnSphere::linear(Flow::of_time(So3::new(), Linear, omega), Linear), moment)
     }
 }
 
 impl System for Spin {
-    type Problem = Flow<So3, Linear>;
+    type Problem = OnSphere<f64>;
 
     fn kind(&self) -> &'static Kind {
         &KIND

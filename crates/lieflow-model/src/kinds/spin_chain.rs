@@ -3,16 +3,15 @@
 use lieflow::Error;
 use lieflow::actions::Linear;
 use lieflow::catalog::MethodSpec;
-use lieflow::groups::{Power, So3};
 use lieflow::problems::SpinChain;
 use lieflow::scalar::{Counted, Real as Scalar};
 use nalgebra::Vector3;
 use serde::Deserialize;
 use toml::de::ValueDeserializer;
 
-use super::flow::Flow;
-use super::system::System;
+use super::old_system::System;
 use super::{Figure, KeyInfo, Kind, Law, ProblemSpec, QuantityInfo, Scale};
+use crate::kinds::flow::OnSpheres;
 use crate::model::Layer;
 use crate::operations::{Pace, operations_by};
 use crate::scene::values::{Real, Reals, Whole};
@@ -35,29 +34,31 @@ pub(super) const KIND: Kind = Kind {
         KeyInfo { name: "field", meaning: "the field; optional, 0" },
         KeyInfo { name: "damping", meaning: "Gilbert's damping, at least 0; optional, 0" },
     ],
-    quantities: &[
-        QuantityInfo {
-            name: "spins",
-            columns: &["s1x", "s1y", "s1z", "…", "sNz"],
-            meaning: "the spins, one after the other",
-        },
-        QuantityInfo {
-            name: "magnetisation",
-            columns: &["mx", "my", "mz"],
-            meaning: "mean of the spins",
-        },
-        QuantityInfo { name: "energy", columns: &["energy"], meaning: "energy" },
-        QuantityInfo {
-            name: "total_spin3",
-            columns: &["total_spin3"],
-            meaning: "sum of the third components",
-        },
-        QuantityInfo {
-            name: "lengths2",
-            columns: &["lengths2"],
-            meaning: "sum of the squares of the lengths",
-        },
-    ],
+    quantities: || {
+        vec![
+            QuantityInfo {
+                name: "spins",
+                columns: &["s1x", "s1y", "s1z", "…", "sNz"],
+                meaning: "the spins, one after the other",
+            },
+            QuantityInfo {
+                name: "magnetisation",
+                columns: &["mx", "my", "mz"],
+                meaning: "mean of the spins",
+            },
+            QuantityInfo { name: "energy", columns: &["energy"], meaning: "energy" },
+            QuantityInfo {
+                name: "total_spin3",
+                columns: &["total_spin3"],
+                meaning: "sum of the third components",
+            },
+            QuantityInfo {
+                name: "lengths2",
+                columns: &["lengths2"],
+                meaning: "sum of the squares of the lengths",
+            },
+        ]
+    },
     read,
 };
 
@@ -128,19 +129,15 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
 type Spins<S> = Box<[Vector3<S>]>;
 
 /// The chain, a Lie–Poisson system where nothing damps it.
-fn flow<S: Scalar>(
-    chain: SpinChain<S>,
-    damped: bool,
-    start: Spins<S>,
-) -> (Flow<Power<So3<S>>, Linear>, Spins<S>) {
+fn flow<S: Scalar>(chain: SpinChain<S>, damped: bool, start: Spins<S>) -> (OnSpheres<S>, Spins<S>) {
     match damped {
-        true => Flow::nonlinear(chain, Linear, start),
-        false => Flow::lie_poisson(chain, Linear, start),
+        true => (OnSpheres::new(chain, Linear), start),
+        false => (OnSpheres::lie_poisson(chain, Linear), start),
     }
 }
 
 impl System for Chain {
-    type Problem = Flow<Power<So3>, Linear>;
+    type Problem = OnSpheres<f64>;
 
     fn kind(&self) -> &'static Kind {
         &KIND

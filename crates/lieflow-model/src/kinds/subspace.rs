@@ -8,15 +8,14 @@
 use faer::linalg::solvers::DenseSolveCore;
 use faer::{Mat, MatRef, Side};
 use lieflow::Error;
-use lieflow::groups::MatrixGroup;
 use lieflow::problems::SubspaceFlow;
 use serde::Deserialize;
 use toml::de::ValueDeserializer;
 
-use super::flow::Flow;
 use super::matrix::MatrixAction;
-use super::system::System;
+use super::old_system::System;
 use super::{Fact, Figure, KeyInfo, Kind, Law, ProblemSpec, QuantityInfo, Scale};
+use crate::kinds::flow::OnMatrices;
 use crate::model::Layer;
 use crate::scene::values::Table;
 use crate::scene::{ReadError, Refusal};
@@ -30,33 +29,35 @@ pub(super) const KIND: Kind = Kind {
         KeyInfo { name: "a", meaning: "the symmetric matrix A" },
         KeyInfo { name: "x", meaning: "an n×k matrix; its columns span the initial subspace" },
     ],
-    quantities: &[
-        QuantityInfo {
-            name: "projector",
-            columns: &["p11", "…", "pnn"],
-            meaning: "the entries of the projector P on and above the diagonal, row by row",
-        },
-        QuantityInfo {
-            name: "angles",
-            columns: &["angle1", "…", "anglek"],
-            meaning: "principal angles to the span of the k leading eigenvectors, the largest first",
-        },
-        QuantityInfo {
-            name: "trace",
-            columns: &["trace"],
-            meaning: "trace of AP, which grows to the sum of the k leading eigenvalues",
-        },
-        QuantityInfo {
-            name: "dimension",
-            columns: &["dimension"],
-            meaning: "trace of P, the dimension of the subspace",
-        },
-        QuantityInfo {
-            name: "projector_defect",
-            columns: &["projector_defect"],
-            meaning: "distance of P² from P",
-        },
-    ],
+    quantities: || {
+        vec![
+            QuantityInfo {
+                name: "projector",
+                columns: &["p11", "…", "pnn"],
+                meaning: "the entries of the projector P on and above the diagonal, row by row",
+            },
+            QuantityInfo {
+                name: "angles",
+                columns: &["angle1", "…", "anglek"],
+                meaning: "principal angles to the span of the k leading eigenvectors, the largest first",
+            },
+            QuantityInfo {
+                name: "trace",
+                columns: &["trace"],
+                meaning: "trace of AP, which grows to the sum of the k leading eigenvalues",
+            },
+            QuantityInfo {
+                name: "dimension",
+                columns: &["dimension"],
+                meaning: "trace of P, the dimension of the subspace",
+            },
+            QuantityInfo {
+                name: "projector_defect",
+                columns: &["projector_defect"],
+                meaning: "distance of P² from P",
+            },
+        ]
+    },
     read,
 };
 
@@ -138,7 +139,7 @@ fn above(n: usize) -> impl Iterator<Item = (usize, usize)> {
 }
 
 impl System for Subspace {
-    type Problem = Flow<MatrixGroup, MatrixAction>;
+    type Problem = OnMatrices;
 
     fn kind(&self) -> &'static Kind {
         &KIND
@@ -147,7 +148,7 @@ impl System for Subspace {
         Layer::General
     }
     fn problem(&self) -> Result<(Self::Problem, Mat<f64>), Error> {
-        Ok(Flow::nonlinear(self.flow.clone(), MatrixAction::Conjugation, self.start.clone()))
+        Ok((OnMatrices::new(self.flow.clone(), MatrixAction::Conjugation), self.start.clone()))
     }
     fn modelled(&self) -> String {
         let n = self.start.nrows();

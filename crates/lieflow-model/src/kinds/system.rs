@@ -5,60 +5,63 @@ use core::fmt::{self, Debug};
 
 use lieflow::adaptive::{AdaptiveError, AdaptiveStats};
 use lieflow::catalog::MethodSpec;
-use lieflow::problems::PointOf;
+use lieflow::methods::Wide;
+use lieflow::problems::LinearSpace;
+use lieflow::scalar::{Counted, Trig};
 use lieflow::{Error, RunError, SaveAt, Stats, TimeGrid};
 
 use super::law::{Law, SIZE};
+use super::quantity::{Quantity, Value};
 use super::{Fact, Figure, Kind, ProblemSpec, QuantityInfo};
-use crate::model::{Catalog, Layer, Model, Sink, Steps, adapt_by, integrate_by, order_by};
+use crate::model::{
+    Layer, Model, Runnable, Sink, Steps, adapt_by, fits_by, integrate_by, order_by,
+};
 use crate::operations::{Pace, operations_by};
 use crate::scene::Refusal;
 
+/// The numbers that a problem of vectors is made of: `f64`, and [`Counted`] where operations are counted.
+/// Matrices count for themselves.
+pub(super) trait Number: Trig + Wide + Into<f64> + LinearSpace<Scalar = Self> {}
+impl Number for f64 {}
+impl Number for Counted {}
+
+/// A problem with the point that it starts from.
+pub(super) type Start<P> = (P, lieflow::problems::PointOf<P>);
+
+/// A point of a system.
+pub(super) type PointOf<S> = lieflow::problems::PointOf<<S as System>::Problem<f64>>;
+
 /// A problem of one kind, as its scene states it and checked: what the kind's file is about.
 pub(super) trait System: Clone + Debug + Send + Sync + 'static {
-    /// The problem of the library.
-    type Problem: Catalog + Debug;
+    /// The problem of the library; one of matrices is the same on all numbers.
+    type Problem<N: Number>: Runnable;
+    /// The quantities, in the order of listings.
+    const QUANTITIES: &'static [Quantity<Self>];
+    /// The quantities that make up the state.
+    const STATE: &'static [&'static str];
 
-    /// Its entry in the list of kinds.
+    /// The entry in the list of kinds.
     fn kind(&self) -> &'static Kind;
     /// The layer that it is made of.
     fn layer(&self) -> Layer;
     /// The problem, and y(t₀).
-    fn problem(&self) -> Result<(Self::Problem, PointOf<Self::Problem>), Error>;
+    ///
+    /// # Errors
+    /// What the library refuses.
+    fn problem<N: Number>(&self) -> Result<Start<Self::Problem<N>>, Error>;
+    /// What is integrated, in words.
+    fn modelled(&self) -> String;
     /// See [`ProblemSpec::check_start`].
     fn check_start(&self, _t0: f64) -> Result<(), Refusal> {
         Ok(())
     }
-    /// What is integrated, in words.
-    fn modelled(&self) -> String;
-    /// The quantities that make up the state.
-    fn state(&self) -> &'static [&'static str];
-    /// What the exact motion keeps.
-    fn laws(&self) -> Vec<Law>;
-    /// The columns of a quantity; those of the kind, where the size of the problem does not matter.
-    fn columns(&self, quantity: &QuantityInfo) -> Vec<String> {
-        quantity.columns.iter().map(|&column| column.into()).collect()
-    }
-    /// The values of a quantity at y, `t` after the start, go to the end of `row`.
-    fn show(&self, quantity: &str, t: f64, y: &PointOf<Self::Problem>, row: &mut Vec<f64>);
-    /// The sizes of the terms that an invariant is the sum of, for
-    /// [`Scale::Terms`](super::Scale::Terms).
-    fn size(&self, _quantity: &str, _y: &PointOf<Self::Problem>) -> f64 {
-        f64::NAN
-    }
     /// y at the end of a span, where it is known.
-    fn exact(&self, _t_span: [f64; 2]) -> Option<Result<PointOf<Self::Problem>, Error>> {
+    fn exact(&self, _t_span: [f64; 2]) -> Option<Result<PointOf<Self>, Error>> {
         None
-    }
-    /// The operations of a step: see [`Model::operations`]. A problem of vectors counts them on the numbers
-    /// that count, matrices say what they compute.
-    fn operations(&self, method: &MethodSpec, pace: Pace<'_>) -> Option<f64> {
-        let (problem, start) = self.problem().ok()?;
-        operations_by(method, &problem, start, pace)
     }
     /// The figure of a run.
     fn figure(&self) -> Figure {
-        Figure::Lines(self.state()[0])
+        Figure::Lines(Self::STATE[0])
     }
     /// The field that [`Figure::Map`] draws, from its quantity: rows from north to south, columns from
     /// west to east.
@@ -71,12 +74,37 @@ pub(super) trait System: Clone + Debug + Send + Sync + 'static {
     }
 }
 
-impl<S: System> ProblemSpec for S {
+/// What listings say of the quantities of a system.
+pub(super) fn quantities_of<S: System>() -> Vec<QuantityInfo> {
+    S::QUANTITIES.iter().map(|quantity| quantity.info).collect()
+}
+
+/// The problem of a scene from its system.
+#[derive(Clone, Debug)]
+pub(super) struct Stated<S>(pub(super) S);
+
+/// The quantity of that name, where this problem has it.
+fn find<S: System>(system: &S, name: &str) -> Result<&'static Quantity<S>, Error> {
+    let known = S::QUANTITIES.iter().find(|quantity| quantity.info.name == name);
+    let quantity = known.ok_or_else(|| Error::UnknownName {
+        kind: "quantity",
+        name: name.into(),
+        expected: S::QUANTITIES.iter().map(|quantity| quantity.info.name).collect(),
+    })?;
+    match (quantity.missing)(system) {
+        None => Ok(quantity),
+        Some(why) => {
+            Err(Error::Unsupported { what: quantity.info.name, with: "this problem".into(), why })
+        }
+    }
+}
+
+impl<S: System> ProblemSpec for Stated<S> {
     fn kind(&self) -> &'static Kind {
-        System::kind(self)
+        self.0.kind()
     }
     fn layers(&self) -> &'static [Layer] {
-        match self.layer() {
+        match self.0.layer() {
             Layer::Closed => &[Layer::Closed],
             Layer::General => &[Layer::General],
         }
@@ -84,81 +112,86 @@ impl<S: System> ProblemSpec for S {
     fn columns(&self, quantity: &str) -> Result<Vec<String>, Error> {
         match quantity.strip_suffix(SIZE) {
             Some(_) => Ok(vec![quantity.into()]),
-            None => Ok(System::columns(self, System::kind(self).quantity(quantity)?)),
+            None => Ok(find(&self.0, quantity)?.column_names(&self.0)),
         }
     }
     fn model(&self, layer: Layer, quantities: &[&str]) -> Result<Box<dyn Model>, Error> {
-        let kind = System::kind(self);
-        if layer != self.layer() {
+        let system = &self.0;
+        if layer != system.layer() {
             return Err(Error::Unsupported {
                 what: "layer",
-                with: format!("`{}` and a problem of kind `{}`", layer.name(), kind.name),
+                with: format!("`{}` and a problem of kind `{}`", layer.name(), system.kind().name),
                 why: "it has one layer only; leave layer out",
             });
         }
-        let (problem, start) = self.problem()?;
+        let (problem, start) = system.problem()?;
         let asked = |name: &&str| match name.strip_suffix(SIZE) {
-            Some(name) => Ok(Asked::Size(kind.quantity(name)?)),
-            None => Ok(Asked::Value(kind.quantity(name)?)),
+            Some(name) => Ok(Asked::Terms(find(system, name)?)),
+            None => Ok(Asked::Value(find(system, name)?)),
         };
         let quantities = quantities.iter().map(asked).collect::<Result<_, Error>>()?;
-        Ok(Box::new(SystemModel { system: self.clone(), problem, start, quantities }))
+        Ok(Box::new(SystemModel { system: system.clone(), problem, start, quantities }))
     }
     fn check_start(&self, t0: f64) -> Result<(), Refusal> {
-        System::check_start(self, t0)
+        self.0.check_start(t0)
     }
     fn state(&self, _: &[&str]) -> &'static [&'static str] {
-        System::state(self)
+        S::STATE
     }
     fn invariants(&self, _: &[&str]) -> Vec<Law> {
-        self.laws()
+        let present = S::QUANTITIES.iter().filter(|quantity| (quantity.missing)(&self.0).is_none());
+        present.filter_map(|quantity| quantity.law(&self.0)).collect()
     }
     fn figure(&self) -> Figure {
-        System::figure(self)
+        self.0.figure()
     }
     fn field(&self, values: &[f64]) -> Vec<Vec<f64>> {
-        System::field(self, values)
+        self.0.field(values)
     }
     fn facts(&self) -> Vec<Fact> {
-        System::facts(self)
+        self.0.facts()
     }
 }
 
 /// What a row shows.
-#[derive(Clone, Copy, Debug)]
-enum Asked {
-    Value(&'static QuantityInfo),
-    Size(&'static QuantityInfo),
+enum Asked<S: System> {
+    Value(&'static Quantity<S>),
+    Terms(&'static Quantity<S>),
 }
 
 /// The model of a [`System`].
 struct SystemModel<S: System> {
     system: S,
-    problem: S::Problem,
-    start: PointOf<S::Problem>,
-    quantities: Vec<Asked>,
+    problem: S::Problem<f64>,
+    start: PointOf<S>,
+    quantities: Vec<Asked<S>>,
 }
 
 impl<S: System> Debug for SystemModel<S> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_tuple("SystemModel").field(&self.system).field(&self.quantities).finish()
+        f.debug_tuple("SystemModel").field(&self.system).field(&self.columns()).finish()
     }
 }
 
 impl<S: System> SystemModel<S> {
     /// row ← the quantities at y, `t` after the start.
-    fn fill(&self, t: f64, y: &PointOf<S::Problem>, row: &mut Vec<f64>) {
+    fn fill(&self, t: f64, y: &PointOf<S>, row: &mut Vec<f64>) {
         row.clear();
         for asked in &self.quantities {
             match asked {
-                Asked::Value(quantity) => self.system.show(quantity.name, t, y, row),
-                Asked::Size(quantity) => row.push(self.system.size(quantity.name, y)),
+                Asked::Value(quantity) => match quantity.value {
+                    Value::Number(value) => row.push(value(&self.system, t, y)),
+                    Value::Numbers(values) => values(&self.system, t, y, row),
+                },
+                Asked::Terms(quantity) => {
+                    row.push(quantity.terms.map_or(f64::NAN, |terms| terms(&self.system, y)));
+                }
             }
         }
     }
 
     /// What shows a point as a row.
-    fn shown<'a>(&'a self, sink: &'a mut Sink<'_>) -> impl FnMut(f64, &PointOf<S::Problem>) + 'a {
+    fn shown<'a>(&'a self, sink: &'a mut Sink<'_>) -> impl FnMut(f64, &PointOf<S>) + 'a {
         let (mut row, mut start) = (Vec::new(), None);
         move |t, y| {
             self.fill(t - *start.get_or_insert(t), y, &mut row);
@@ -169,11 +202,11 @@ impl<S: System> SystemModel<S> {
 
 impl<S: System> Model for SystemModel<S> {
     fn columns(&self) -> Vec<String> {
-        let columns = |asked: &Asked| match asked {
-            Asked::Value(quantity) => self.system.columns(quantity),
-            Asked::Size(quantity) => vec![format!("{}{SIZE}", quantity.name)],
+        let of = |asked: &Asked<S>| match asked {
+            Asked::Value(quantity) => quantity.column_names(&self.system),
+            Asked::Terms(quantity) => vec![format!("{}{SIZE}", quantity.info.name)],
         };
-        self.quantities.iter().flat_map(columns).collect()
+        self.quantities.iter().flat_map(of).collect()
     }
     fn modelled(&self, _: &MethodSpec) -> Vec<String> {
         vec![self.system.modelled()]
@@ -201,8 +234,12 @@ impl<S: System> Model for SystemModel<S> {
     fn order(&self, method: &MethodSpec) -> Result<Option<usize>, Error> {
         order_by(method, &self.problem)
     }
+    fn fits(&self, method: &MethodSpec) -> Result<(), Error> {
+        fits_by(method, &self.problem, &self.start)
+    }
     fn operations(&self, method: &MethodSpec, pace: Pace<'_>) -> Option<f64> {
-        self.system.operations(method, pace)
+        let (problem, start) = self.system.problem::<Counted>().ok()?;
+        operations_by(method, &problem, start, pace)
     }
     fn exact(&self, t_span: [f64; 2]) -> Option<Result<Vec<f64>, Error>> {
         let mut row = Vec::new();

@@ -36,7 +36,7 @@ impl MethodKeys {
             q: self.q.map(|q| usize::try_from(q.0).unwrap_or(usize::MAX)),
         };
         let info = method.info()?;
-        if info.takes_map && method.map.is_none() {
+        if info.takes_map() && method.map.is_none() {
             method.map = Some("exp".into());
         }
         if info.takes_tableau && method.tableau.is_none() {
@@ -161,7 +161,7 @@ impl OutputKeys {
 
 fn check_quantities(quantities: &[String], kind: &Kind) -> Result<(), Refusal> {
     if quantities.is_empty() {
-        let names: Vec<_> = kind.quantities.iter().map(|quantity| quantity.name).collect();
+        let names: Vec<_> = (kind.quantities)().iter().map(|quantity| quantity.name).collect();
         let mut refusal = Refusal::at("quantities", "no quantities, expected at least one");
         refusal.help = Some(format!("choose from {}", names.join(", ")));
         return Err(refusal);

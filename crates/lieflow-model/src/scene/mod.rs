@@ -177,7 +177,7 @@ impl Scene {
 /// The names of the methods that run on a problem, with their default parts.
 fn fitting(model: &dyn Model) -> Vec<&'static str> {
     let fits = |name: &str| model.fits(&MethodSpec::new(name, None)).is_ok();
-    all_methods().map(|(info, _)| info.name).filter(|name| fits(name)).collect()
+    all_methods().map(|info| info.name).filter(|name| fits(name)).collect()
 }
 
 /// No scene has this name.

@@ -14,8 +14,8 @@ use serde::Deserialize;
 use toml::de::ValueDeserializer;
 
 use self::system::{Coupled, ON_PARTS, Part, Point, Space, counted};
-use super::flow::Flow;
-use super::system::System;
+use super::flow;
+use super::old_system::System;
 use super::{Figure, KeyInfo, Kind, Law, ProblemSpec, QuantityInfo, Scale};
 use crate::model::Layer;
 use crate::operations::{Pace, operations_by};
@@ -47,29 +47,31 @@ pub(super) const KIND: Kind = Kind {
                       keeps; optional",
         },
     ],
-    quantities: &[
-        QuantityInfo {
-            name: "state",
-            columns: &["…"],
-            meaning: "the coordinates of all parts, in the order of the scene",
-        },
-        QuantityInfo {
-            name: "vectors",
-            columns: &["…"],
-            meaning: "the coordinates of the vectors",
-        },
-        QuantityInfo {
-            name: "lengths",
-            columns: &["…"],
-            meaning: "the lengths of the vectors, NAME_length",
-        },
-        QuantityInfo {
-            name: "defects",
-            columns: &["…"],
-            meaning: "distances of g'g from the identity, of the rotations, NAME_defect",
-        },
-        QuantityInfo { name: "invariants", columns: &["…"], meaning: "what the scene names" },
-    ],
+    quantities: || {
+        vec![
+            QuantityInfo {
+                name: "state",
+                columns: &["…"],
+                meaning: "the coordinates of all parts, in the order of the scene",
+            },
+            QuantityInfo {
+                name: "vectors",
+                columns: &["…"],
+                meaning: "the coordinates of the vectors",
+            },
+            QuantityInfo {
+                name: "lengths",
+                columns: &["…"],
+                meaning: "the lengths of the vectors, NAME_length",
+            },
+            QuantityInfo {
+                name: "defects",
+                columns: &["…"],
+                meaning: "distances of g'g from the identity, of the rotations, NAME_defect",
+            },
+            QuantityInfo { name: "invariants", columns: &["…"], meaning: "what the scene names" },
+        ]
+    },
     read,
 };
 
@@ -245,7 +247,7 @@ impl Composed {
 }
 
 impl System for Composed {
-    type Problem = Flow<Parts, OnParts>;
+    type Problem = flow::Composed<f64>;
 
     fn kind(&self) -> &'static Kind {
         &KIND
@@ -255,12 +257,12 @@ impl System for Composed {
     }
     fn problem(&self) -> Result<(Self::Problem, Point), Error> {
         let coupled = Coupled::new(self.parts.clone(), &self.start)?;
-        Ok(Flow::nonlinear(coupled, ON_PARTS, self.start.clone()))
+        Ok((flow::Composed::new(coupled, ON_PARTS), self.start.clone()))
     }
     fn operations(&self, method: &MethodSpec, pace: Pace<'_>) -> Option<f64> {
         let start = counted(&self.start);
         let coupled = Coupled::<Counted>::new(self.parts.clone(), &start).ok()?;
-        let (flow, start) = Flow::nonlinear(coupled, ON_PARTS, start);
+        let (flow, start) = (flow::Composed::new(coupled, ON_PARTS), start);
         operations_by(method, &flow, start, pace)
     }
     fn check_start(&self, t0: f64) -> Result<(), Refusal> {

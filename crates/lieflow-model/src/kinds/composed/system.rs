@@ -14,8 +14,7 @@ use core::ops::Range;
 use lieflow::Error;
 use lieflow::actions::{LeftTranslation, Linear, Pair};
 use lieflow::groups::{LieAlgebra, Power, Product, So3, Translations};
-use lieflow::methods::Metric;
-use lieflow::problems::{Ambient, LinearSpace, Problem};
+use lieflow::problems::{LinearSpace, Problem};
 use lieflow::scalar::{Counted, Real};
 use nalgebra::{Matrix3, Vector3};
 
@@ -138,8 +137,26 @@ impl<S: Number> Coupled<S> {
             Product(copies(vectors.len())?, Product(copies(rotations.len())?, translations));
         Ok(Coupled { group, parts })
     }
+}
 
-    fn evaluate(&self, t: S, y: &Point<S>, values: &mut Vec<S>, v: &mut Field<S>) {
+impl<S: Number> Problem for Coupled<S> {
+    type Group = Parts<S>;
+    type Action = OnParts;
+    /// t with the coordinates.
+    type Work = Vec<S>;
+
+    fn group(&self) -> &Parts<S> {
+        &self.group
+    }
+    fn action(&self) -> &OnParts {
+        &ON_PARTS
+    }
+    fn work(&self) -> Vec<S> {
+        let Product(vectors, Product(rotations, numbers)) = &self.group;
+        let numbers = 1 + 3 * vectors.copies() + 9 * rotations.copies() + numbers.dim();
+        Vec::with_capacity(numbers)
+    }
+    fn f(&self, t: S, y: &Point<S>, v: &mut Field<S>, values: &mut Vec<S>) {
         values.clear();
         values.push(t);
         self.parts.iter().for_each(|part| part.space.show(y, values));
@@ -148,55 +165,6 @@ impl<S: Number> Coupled<S> {
                 *v = formula.value(values);
             }
         }
-    }
-}
-
-impl<S: Number> Problem for Coupled<S> {
-    type Group = Parts<S>;
-    type Action = OnParts;
-    /// t with the coordinates, and f.
-    type Work = (Vec<S>, Field<S>);
-
-    fn group(&self) -> &Parts<S> {
-        &self.group
-    }
-    fn action(&self) -> &OnParts {
-        &ON_PARTS
-    }
-    fn work(&self) -> Self::Work {
-        let Product(vectors, Product(rotations, numbers)) = &self.group;
-        let numbers = 1 + 3 * vectors.copies() + 9 * rotations.copies() + numbers.dim();
-        (Vec::with_capacity(numbers), self.group.zero())
-    }
-    fn f(&self, t: S, y: &Point<S>, v: &mut Field<S>, (values, _): &mut Self::Work) {
-        self.evaluate(t, y, values, v);
-    }
-}
-
-impl<S: Number> Ambient for Coupled<S> {
-    fn field(&self, t: S, y: &Point<S>, dy: &mut Point<S>, (values, v): &mut Self::Work) {
-        self.evaluate(t, y, values, v);
-        let so3 = So3::new();
-        for ((v, x), dx) in v.0.iter().zip(&y.0).zip(&mut dy.0) {
-            so3.bracket(v, x, dx);
-        }
-        for ((v, g), dg) in v.1.0.iter().zip(&y.1.0).zip(&mut dy.1.0) {
-            for j in 0..3 {
-                let mut moved = *v;
-                so3.bracket(v, &g.column(j).into_owned(), &mut moved);
-                dg.set_column(j, &moved);
-            }
-        }
-        dy.1.1.assign(&v.1.1);
-    }
-    fn copy(&self, x: &Point<S>, y: &mut Point<S>) {
-        y.assign(x);
-    }
-    fn add(&self, a: S, x: &Point<S>, y: &mut Point<S>) {
-        y.add(a, x);
-    }
-    fn is_finite(&self, y: &Point<S>) -> bool {
-        y.is_finite()
     }
 }
 

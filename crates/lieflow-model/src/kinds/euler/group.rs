@@ -6,12 +6,11 @@ use faer::linalg::solvers::DenseSolveCore;
 use lieflow::Error;
 use lieflow::actions::{Action, Coadjoint};
 use lieflow::groups::{GroupMatrix, LieAlgebra, MatrixGroup};
-use lieflow::problems::FromTheBody;
+use lieflow::problems::{DynFlow, FromTheBody};
 
 use super::KIND;
 use super::matrices::{EulerEquation, by_rows, names};
-use crate::kinds::flow::Flow;
-use crate::kinds::system::System;
+use crate::kinds::old_system::System;
 use crate::kinds::{Figure, Kind, Law, QuantityInfo, Scale};
 use crate::model::Layer;
 
@@ -31,7 +30,7 @@ impl WithGroup {
 }
 
 impl System for WithGroup {
-    type Problem = Flow<MatrixGroup, FromTheBody>;
+    type Problem = DynFlow<MatrixGroup, FromTheBody>;
 
     fn kind(&self) -> &'static Kind {
         &KIND

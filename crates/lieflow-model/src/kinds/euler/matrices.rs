@@ -4,16 +4,18 @@ use faer::Mat;
 use lieflow::Error;
 use lieflow::actions::Action;
 use lieflow::groups::{AlgebraMatrix, LieAlgebra, LieGroup, MatrixGroup};
-use lieflow::problems::{Averaged, DiscreteGradient, Euler, FromTheBody, Hamiltonian, Kinetic};
+use lieflow::problems::{
+    Averaged, DiscreteGradient, DynFlow, Euler, FromTheBody, Hamiltonian, Kinetic,
+};
 use lieflow::scalar::{Ops, tally};
 
 use super::energy::Energy;
 use super::group::WithGroup;
 use super::{KIND, Keys};
 use crate::kinds::algebra::{Algebra, outside};
-use crate::kinds::flow::Flow;
+use crate::kinds::flow::OnMatrices;
 use crate::kinds::matrix::MatrixAction;
-use crate::kinds::system::System;
+use crate::kinds::old_system::System;
 use crate::kinds::{Figure, Kind, Law, ProblemSpec, QuantityInfo, Scale};
 use crate::model::{Layer, Model};
 use crate::scene::{Either, Refusal, exactly_one};
@@ -128,17 +130,17 @@ impl EulerEquation {
     }
 
     /// The same with g, from g = 𝟙.
-    pub(super) fn flow_with_group(&self) -> (Flow<MatrixGroup, FromTheBody>, PointWithGroup) {
+    pub(super) fn flow_with_group(&self) -> (DynFlow<MatrixGroup, FromTheBody>, PointWithGroup) {
         let start = (self.group.identity(), self.momentum.clone());
         let group = self.group.clone();
         match &self.form {
             Form::Weights(weights) => {
                 let system = Euler::new(group, self.weighted(weights));
-                Flow::nonlinear(system.with_group(), FromTheBody, start)
+                (DynFlow::new(system.with_group(), FromTheBody), start)
             }
             Form::Formula(energy) => {
                 let system = Euler::new(group, self.stated(energy));
-                Flow::nonlinear(system.with_group(), FromTheBody, start)
+                (DynFlow::new(system.with_group(), FromTheBody), start)
             }
         }
     }
@@ -209,7 +211,7 @@ impl ProblemSpec for Spec {
 }
 
 impl System for EulerEquation {
-    type Problem = Flow<MatrixGroup, MatrixAction>;
+    type Problem = OnMatrices;
 
     fn kind(&self) -> &'static Kind {
         &KIND
@@ -222,10 +224,10 @@ impl System for EulerEquation {
         let start = self.momentum.clone();
         Ok(match &self.form {
             Form::Weights(weights) => {
-                Flow::lie_poisson(Euler::new(group, self.weighted(weights)), action, start)
+                (OnMatrices::lie_poisson(Euler::new(group, self.weighted(weights)), action), start)
             }
             Form::Formula(energy) => {
-                Flow::lie_poisson(Euler::new(group, self.stated(energy)), action, start)
+                (OnMatrices::lie_poisson(Euler::new(group, self.stated(energy)), action), start)
             }
         })
     }

@@ -52,31 +52,33 @@ pub(super) const KIND: Kind = Kind {
         },
         PARAMETERS,
     ],
-    quantities: &[
-        QuantityInfo {
-            name: "momentum",
-            columns: &["m11", "…", "mnn"],
-            meaning: "momentum, row by row; m1, m2, m3 on so3, and p1, p2, p3 on se3",
-        },
-        QuantityInfo { name: "energy", columns: &["energy"], meaning: "the energy" },
-        QuantityInfo {
-            name: "casimirs",
-            columns: &["trm1", "…", "trmn"],
-            meaning: "traces of the powers of the momentum; m·m on so3, p·p and m·p on se3",
-        },
-        QuantityInfo {
-            name: "group",
-            columns: &["g11", "…", "gnn"],
-            meaning: "g with the velocity g grad H, from the identity, row by row; integrated only when \
+    quantities: || {
+        vec![
+            QuantityInfo {
+                name: "momentum",
+                columns: &["m11", "…", "mnn"],
+                meaning: "momentum, row by row; m1, m2, m3 on so3, and p1, p2, p3 on se3",
+            },
+            QuantityInfo { name: "energy", columns: &["energy"], meaning: "the energy" },
+            QuantityInfo {
+                name: "casimirs",
+                columns: &["trm1", "…", "trmn"],
+                meaning: "traces of the powers of the momentum; m·m on so3, p·p and m·p on se3",
+            },
+            QuantityInfo {
+                name: "group",
+                columns: &["g11", "…", "gnn"],
+                meaning: "g with the velocity g grad H, from the identity, row by row; integrated only when \
                       asked for, for matrices",
-        },
-        QuantityInfo {
-            name: "momentum_space",
-            columns: &["s11", "…", "snn"],
-            meaning: "the momentum in space, Ad* of the inverse of g, row by row; needs g, which is then \
+            },
+            QuantityInfo {
+                name: "momentum_space",
+                columns: &["s11", "…", "snn"],
+                meaning: "the momentum in space, Ad* of the inverse of g, row by row; needs g, which is then \
                       integrated",
-        },
-    ],
+            },
+        ]
+    },
     read,
 };
 

@@ -10,8 +10,8 @@ use nalgebra::Vector3;
 
 use super::energy::Energy;
 use super::{KIND, Keys};
-use crate::kinds::flow::Flow;
-use crate::kinds::system::System;
+use crate::kinds::flow::{OnSe3, OnSpheres};
+use crate::kinds::old_system::System;
 use crate::kinds::{Figure, Kind, Law, ProblemSpec, QuantityInfo, Scale};
 use crate::model::Layer;
 use crate::operations::{Pace, operations_by};
@@ -79,7 +79,7 @@ impl<const N: usize> Vectors<N> {
 type Momentum<S = f64> = Box<[Vector3<S>]>;
 
 /// The problem with its start.
-type OnSo3<S> = (Flow<Power<So3<S>>, Linear>, Momentum<S>);
+type OnSo3<S> = (OnSpheres<S>, Momentum<S>);
 
 fn three<S: Real>(m: &Momentum<S>) -> [S; 3] {
     m.first().map_or([S::lit(f64::NAN); 3], |m| (*m).into())
@@ -96,12 +96,12 @@ impl Vectors<3> {
             },
         );
         let start = Box::new([Vector3::from(self.momentum.map(S::lit))]);
-        Ok(Flow::lie_poisson(Euler::new(Power::new(So3::new(), 1)?, energy), Linear, start))
+        Ok((OnSpheres::lie_poisson(Euler::new(Power::new(So3::new(), 1)?, energy), Linear), start))
     }
 }
 
 impl System for Vectors<3> {
-    type Problem = Flow<Power<So3>, Linear>;
+    type Problem = OnSpheres<f64>;
 
     fn kind(&self) -> &'static Kind {
         &KIND
@@ -162,7 +162,7 @@ fn pair<S: Real>(of: impl Fn(usize) -> S) -> Pair<S> {
 }
 
 impl Vectors<6> {
-    fn flow<S: Real + Into<f64>>(&self) -> (Flow<Se3<S>, Coadjoint>, Pair<S>) {
+    fn flow<S: Real + Into<f64>>(&self) -> (OnSe3<S>, Pair<S>) {
         let (value, gradient) = (self.energy.clone(), self.energy.clone());
         let energy = Averaged(
             move |m: &Pair<S>| value.value(&six(m)),
@@ -172,12 +172,12 @@ impl Vectors<6> {
             },
         );
         let start = pair(|i| S::lit(self.momentum[i]));
-        Flow::lie_poisson(Euler::new(Se3::new(), energy), Coadjoint, start)
+        (OnSe3::lie_poisson(Euler::new(Se3::new(), energy), Coadjoint), start)
     }
 }
 
 impl System for Vectors<6> {
-    type Problem = Flow<Se3, Coadjoint>;
+    type Problem = OnSe3<f64>;
 
     fn kind(&self) -> &'static Kind {
         &KIND

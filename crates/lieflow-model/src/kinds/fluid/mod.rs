@@ -8,7 +8,6 @@ mod place;
 mod start;
 
 use lieflow::Error;
-use lieflow::catalog::{with_exp_cay_pair, with_fluid_method};
 use lieflow::groups::ComplexMatrix;
 use lieflow::problems::{Surface, Zeitlin};
 use serde::Deserialize;
@@ -16,9 +15,8 @@ use toml::de::ValueDeserializer;
 
 use self::place::Place;
 use self::start::Keys;
-use super::system::System;
+use super::old_system::System;
 use super::{Figure, KeyInfo, Kind, Law, ProblemSpec, QuantityInfo, Scale};
-use crate::catalog;
 use crate::model::Layer;
 use crate::scene::ReadError;
 
@@ -58,36 +56,38 @@ pub(super) const KIND: Kind = Kind {
                       radians on the sphere, of {x, y, circulation, width} on the torus",
         },
     ],
-    quantities: &[
-        QuantityInfo {
-            name: "matrix",
-            columns: &["w1_1", "re2_1", "im2_1", "…", "wN_N"],
-            meaning: "W on and below the diagonal, column by column: the imaginary part of the diagonal, \
+    quantities: || {
+        vec![
+            QuantityInfo {
+                name: "matrix",
+                columns: &["w1_1", "re2_1", "im2_1", "…", "wN_N"],
+                meaning: "W on and below the diagonal, column by column: the imaginary part of the diagonal, \
                       real and imaginary parts below it",
-        },
-        QuantityInfo {
-            name: "coefficients",
-            columns: &["w1", "…", "wNN"],
-            meaning: "coefficients of the harmonics, by degree l and then by order -l to l; on the torus \
+            },
+            QuantityInfo {
+                name: "coefficients",
+                columns: &["w1", "…", "wNN"],
+                meaning: "coefficients of the harmonics, by degree l and then by order -l to l; on the torus \
                       a and b of the waves of one of every m and -m, by m1 and then by m2",
-        },
-        QuantityInfo { name: "energy", columns: &["energy"], meaning: "kinetic energy" },
-        QuantityInfo {
-            name: "enstrophy",
-            columns: &["enstrophy"],
-            meaning: "half the mean of the vorticity's square",
-        },
-        QuantityInfo {
-            name: "levels",
-            columns: &["level1", "…", "levelN"],
-            meaning: "the values that the vorticity takes, in ascending order",
-        },
-        QuantityInfo {
-            name: "angular_momentum",
-            columns: &["l1", "l2", "l3"],
-            meaning: "angular momentum; on the sphere",
-        },
-    ],
+            },
+            QuantityInfo { name: "energy", columns: &["energy"], meaning: "kinetic energy" },
+            QuantityInfo {
+                name: "enstrophy",
+                columns: &["enstrophy"],
+                meaning: "half the mean of the vorticity's square",
+            },
+            QuantityInfo {
+                name: "levels",
+                columns: &["level1", "…", "levelN"],
+                meaning: "the values that the vorticity takes, in ascending order",
+            },
+            QuantityInfo {
+                name: "angular_momentum",
+                columns: &["l1", "l2", "l3"],
+                meaning: "angular momentum; on the sphere",
+            },
+        ]
+    },
     read,
 };
 
@@ -111,8 +111,6 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
     let (place, start) = Keys::deserialize(section)?.resolve()?;
     Ok(Box::new(Fluid { fluid: Zeitlin::new(place)?, start }))
 }
-
-catalog!(pointed Zeitlin<Place>, with_fluid_method, with_exp_cay_pair);
 
 impl System for Fluid {
     type Problem = Zeitlin<Place>;

@@ -7,14 +7,13 @@ use lieflow::Error;
 use lieflow::actions::Action;
 use lieflow::groups::{AlgebraMatrix, LieAlgebra, LieGroup, MatrixGroup};
 use lieflow::maps::{CoordinateMap, Exp};
-use lieflow::methods::Metric;
-use lieflow::problems::{Ambient, LinearEquation, LinearSpace, Problem};
+use lieflow::problems::{Flow, Problem};
 
 use super::{ACTIONS, KIND, NAMED_MAX};
 use crate::kinds::algebra::{Algebra, outside};
-use crate::kinds::flow::{Flow, Generator};
+use crate::kinds::flow::OnMatrices;
 use crate::kinds::matrix::MatrixAction;
-use crate::kinds::system::System;
+use crate::kinds::old_system::System;
 use crate::kinds::{Figure, Kind, Law, QuantityInfo, Scale};
 use crate::model::Layer;
 use crate::scene::Refusal;
@@ -90,8 +89,7 @@ impl Equation {
 impl Problem for Equation {
     type Group = MatrixGroup;
     type Action = MatrixAction;
-    /// f, and a matrix like y.
-    type Work = (AlgebraMatrix, Mat<f64>);
+    type Work = ();
 
     fn group(&self) -> &MatrixGroup {
         &self.group
@@ -99,32 +97,14 @@ impl Problem for Equation {
     fn action(&self) -> &MatrixAction {
         &self.action
     }
-    fn work(&self) -> Self::Work {
-        (self.group.zero(), self.start.clone())
-    }
-    fn f(&self, t: f64, y: &Mat<f64>, v: &mut AlgebraMatrix, _: &mut Self::Work) {
+    fn work(&self) {}
+    fn f(&self, t: f64, y: &Mat<f64>, v: &mut AlgebraMatrix, _: &mut ()) {
         self.projected(t, y, v);
-    }
-}
-
-impl Ambient for Equation {
-    fn field(&self, t: f64, y: &Mat<f64>, dy: &mut Mat<f64>, (v, scratch): &mut Self::Work) {
-        self.projected(t, y, v);
-        self.action.generate(v, y, dy, scratch);
-    }
-    fn copy(&self, x: &Mat<f64>, y: &mut Mat<f64>) {
-        y.assign(x);
-    }
-    fn add(&self, a: f64, x: &Mat<f64>, y: &mut Mat<f64>) {
-        LinearSpace::add(y, a, x);
-    }
-    fn is_finite(&self, y: &Mat<f64>) -> bool {
-        LinearSpace::is_finite(y)
     }
 }
 
 impl System for Equation {
-    type Problem = Flow<MatrixGroup, MatrixAction>;
+    type Problem = OnMatrices;
 
     fn kind(&self) -> &'static Kind {
         &KIND
@@ -135,11 +115,11 @@ impl System for Equation {
     fn problem(&self) -> Result<(Self::Problem, Mat<f64>), Error> {
         let (action, start) = (self.action, self.start.clone());
         if !self.linear {
-            return Ok(Flow::nonlinear(self.clone(), action, start));
+            return Ok((OnMatrices::new(self.clone(), action), start));
         }
         let (this, like) = (self.clone(), start.clone());
         let a = move |t: f64, v: &mut AlgebraMatrix| this.projected(t, &like, v);
-        Ok(Flow::linear(LinearEquation::new(self.group.clone(), action, a), action, start))
+        Ok((OnMatrices::linear(Flow::of_time(self.group.clone(), action, a), action), start))
     }
     fn check_start(&self, t0: f64) -> Result<(), Refusal> {
         let n = self.group.n();

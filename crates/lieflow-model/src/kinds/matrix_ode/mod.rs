@@ -52,33 +52,35 @@ pub(super) const KIND: Kind = Kind {
         },
         PARAMETERS,
     ],
-    quantities: &[
-        QuantityInfo {
-            name: "point",
-            columns: &["y11", "…", "ynk"],
-            meaning: "the point, row by row",
-        },
-        QuantityInfo {
-            name: "column",
-            columns: &["y11", "…", "yn1"],
-            meaning: "the first column of the point: where the first direction goes",
-        },
-        QuantityInfo {
-            name: "group_defect",
-            columns: &["group_defect"],
-            meaning: "distance of y'My from M, for translation on so, sp and so(p,q)",
-        },
-        QuantityInfo {
-            name: "form",
-            columns: &["f11", "…", "fkk"],
-            meaning: "y'My, on and above the diagonal, for the linear action of so, sp and so(p,q)",
-        },
-        QuantityInfo {
-            name: "traces",
-            columns: &["tr1", "…", "trn"],
-            meaning: "traces of the powers of the point, for conjugation and coadjoint",
-        },
-    ],
+    quantities: || {
+        vec![
+            QuantityInfo {
+                name: "point",
+                columns: &["y11", "…", "ynk"],
+                meaning: "the point, row by row",
+            },
+            QuantityInfo {
+                name: "column",
+                columns: &["y11", "…", "yn1"],
+                meaning: "the first column of the point: where the first direction goes",
+            },
+            QuantityInfo {
+                name: "group_defect",
+                columns: &["group_defect"],
+                meaning: "distance of y'My from M, for translation on so, sp and so(p,q)",
+            },
+            QuantityInfo {
+                name: "form",
+                columns: &["f11", "…", "fkk"],
+                meaning: "y'My, on and above the diagonal, for the linear action of so, sp and so(p,q)",
+            },
+            QuantityInfo {
+                name: "traces",
+                columns: &["tr1", "…", "trn"],
+                meaning: "traces of the powers of the point, for conjugation and coadjoint",
+            },
+        ]
+    },
     read,
 };
 

@@ -50,7 +50,7 @@ pub(super) const KIND: Kind = Kind {
                       integrated as one",
         },
     ],
-    quantities: QUANTITIES,
+    quantities: || QUANTITIES.to_vec(),
     read,
 };
 

@@ -2,11 +2,7 @@
 
 use faer::Mat;
 use lieflow::adaptive::{AdaptiveError, AdaptiveStats};
-use lieflow::catalog::{
-    MethodSpec, Needs, with_attitude_method, with_attitude_pair, with_exp_cay_pair,
-    with_implicit_method, with_lie_poisson_method, with_momentum_method, with_quaternion_method,
-    with_state_method, with_state_pair,
-};
+use lieflow::catalog::{MethodSpec, Needs};
 use lieflow::groups::{GroupMatrix, LieGroup, MatrixGroup, So3, UnitQuaternions, hat, vee};
 use lieflow::problems::{
     BodyState, Exact, RigidBody, RigidBodyAttitude, RigidBodyN, RigidBodyNAttitude,
@@ -18,8 +14,7 @@ use lieflow::{Error, RunError, SaveAt, Stats, TimeGrid};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 use super::{KIND, RigidBodySpec, needs_attitude, rotation};
-use crate::catalog;
-use crate::model::{Layer, Model, Sink, Steps, adapt_by, integrate_by, order_by};
+use crate::model::{Layer, Model, Sink, Steps, adapt_by, fits_by, integrate_by, order_by};
 use crate::operations::{Pace, operations_by};
 
 #[derive(Debug)]
@@ -56,16 +51,6 @@ fn to_faer(m: &Matrix3<f64>) -> Mat<f64> {
 fn to_nalgebra(m: &Mat<f64>) -> Matrix3<f64> {
     Matrix3::from_fn(|i, j| m[(i, j)])
 }
-
-catalog!(RigidBody, with_momentum_method);
-catalog!(RigidBodyAttitude, with_attitude_method, with_attitude_pair);
-catalog!(RigidBodyQuaternion, with_quaternion_method, with_exp_cay_pair);
-catalog!(RigidBodyState, with_state_method, with_state_pair);
-catalog!(RigidBodyN, with_lie_poisson_method);
-catalog!(RigidBodyNAttitude, with_implicit_method);
-catalog!(pointed RigidBody<Counted>, with_momentum_method);
-catalog!(pointed RigidBodyAttitude<Counted>, with_attitude_method, with_attitude_pair);
-catalog!(pointed RigidBodyState<Counted>, with_state_method, with_state_pair);
 
 /// Run `$run` on the problem of `$model` with its initial state and a function that shows a point of
 /// it as a row.
@@ -174,7 +159,7 @@ impl RigidBodyModel {
 
     /// What the method integrates.
     fn system(&self, method: &MethodSpec) -> &System {
-        let on_state = || Needs::State.methods().iter().any(|info| info.name == method.name);
+        let on_state = || method.info().is_ok_and(|info| info.needs == Needs::State);
         self.state.as_ref().filter(|_| on_state()).unwrap_or(&self.system)
     }
 
@@ -290,6 +275,14 @@ impl Model for RigidBodyModel {
             System::MomentumN(body) => order_by(method, body),
             System::AttitudeN(body) => order_by(method, body),
         }
+    }
+
+    fn fits(&self, method: &MethodSpec) -> Result<(), Error> {
+        let sink: &mut Sink<'_> = &mut |_, _| {};
+        on_system!(self, method, sink, |problem, y, see| {
+            let _ = see;
+            fits_by(method, problem, &y)
+        })
     }
 
     fn operations(&self, method: &MethodSpec, pace: Pace<'_>) -> Option<f64> {

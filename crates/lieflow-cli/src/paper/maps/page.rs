@@ -1,0 +1,154 @@
+//! The page of the maps: how accurate each is and what it costs.
+
+use lieflow_figures::number::{or_dash, seconds, sig};
+use lieflow_figures::{
+    Axis, Block, Chart, Column, Marker, Page, Point, Scale, Section, Series, Table,
+};
+
+use super::{Line, Over, Study};
+use crate::measure::machine;
+use crate::output::{fields, in_full};
+use crate::report;
+
+/// Every point, as rows of CSV.
+pub(super) fn points(studies: &[Study]) -> Vec<Vec<String>> {
+    let mut rows = Vec::new();
+    for study in studies {
+        let (map, over) = (study.topic.key(), if angle(study) { "angle" } else { "n" });
+        for line in &study.lines {
+            rows.extend(line.points.iter().map(|p| {
+                let (error, seconds) = (in_full(p.error), in_full(p.seconds));
+                fields![map, over, line.name, in_full(p.at), p.cases, p.refused, error, seconds]
+            }));
+        }
+    }
+    rows
+}
+
+fn angle(study: &Study) -> bool {
+    study.over == Over::Angle
+}
+
+/// The colour of a contender: the same in every figure.
+fn colour(name: &str) -> usize {
+    match name {
+        "closed form" => 0,
+        "general layer" => 1,
+        "nalgebra Matrix3::exp" => 3,
+        _ => 2,
+    }
+}
+
+fn chart(
+    study: &Study,
+    what: &str,
+    title: String,
+    y: Axis,
+    value: fn(&super::Point) -> f64,
+) -> Chart {
+    let series = study.lines.iter().map(|line| {
+        let points = line.points.iter().filter(|p| !value(p).is_nan()).map(|p| {
+            let inputs = format!("{} inputs, {} refused", p.cases, p.refused);
+            Point::new(p.at, value(p)).with_note(inputs)
+        });
+        Series::line(line.name, colour(line.name), points)
+            .with_marker(Marker::cycle(colour(line.name)))
+            .with_dash(line.name.starts_with("nalgebra"))
+    });
+    let (x, over) = match study.over {
+        Over::Angle => ("angle |u| [rad]", "angle"),
+        Over::Size => ("n", "n"),
+    };
+    let id = format!("{}-{what}-{over}", study.topic.key());
+    Chart::new(id, title, [Axis::log(x), y], series)
+}
+
+/// Error beside time.
+fn charts(study: &Study) -> Block {
+    let name = study.topic.name();
+    let over = if angle(study) { "over the angle" } else { "over n" };
+    let largest = study.lines.iter().filter_map(Line::worst).map(|p| p.error).fold(0.0, f64::max);
+    // Linear as long as that shows something of everybody.
+    let scale = if largest < 30.0 { Scale::Linear } else { Scale::SymLog { linear: 1.0 } };
+    let units = Axis::new("error [eps·cond]", scale);
+    let time = Axis::log("CPU time of a call [s]");
+    let timed = match study.topic.is_inverse_differential() {
+        true => format!("Time of the map and {name} {over}"),
+        false => format!("Time of {name} {over}"),
+    };
+    Block::Row(vec![
+        chart(study, "error", format!("Error of {name} {over}"), units, |p| p.error).into(),
+        chart(study, "time", timed, time, |p| p.seconds).into(),
+    ])
+}
+
+fn table(studies: &[&Study], caption: &str, place: &str) -> Table {
+    let lines = studies.iter().flat_map(|study| study.lines.iter().map(|line| (study.topic, line)));
+    let rows = lines.map(|(topic, line)| {
+        let refused: usize = line.points.iter().map(|p| p.refused).sum();
+        let cases: usize = line.points.iter().map(|p| p.cases).sum();
+        [
+            topic.name().into(),
+            line.name.into(),
+            or_dash(line.worst(), |p| sig(p.error, 2)),
+            or_dash(line.worst(), |p| sig(p.at, 3)),
+            format!("{refused} of {cases}"),
+            seconds(line.seconds()),
+        ]
+    });
+    let numbers = ["Largest error [eps·cond]", place, "Refused", "Median time"];
+    Table::new(caption, Column::all(["Map", "By"], numbers), rows)
+}
+
+pub(super) fn page(studies: &[Study]) -> Page {
+    let (over_angle, over_n): (Vec<&Study>, Vec<&Study>) =
+        studies.iter().partition(|study| angle(study));
+    let drawn = |studies: &[&Study]| studies.iter().map(|s| charts(s)).collect::<Vec<_>>();
+    let mut angle_blocks = vec![
+        Block::text(
+            "u on so(3), in random directions, from |u| = 1e-16 to 2π and close to π and 2π; g is \
+             exp(u) rounded. log is asked up to π, where exp stops being one to one. dexp⁻¹ has no \
+             value at 2π: there it refuses.",
+        ),
+        table(&over_angle, "On so(3), over all angles.", "at |u|").into(),
+    ];
+    angle_blocks.extend(drawn(&over_angle));
+    let mut n_blocks = vec![
+        Block::text(
+            "u on so(n), random, of spectral norm about 1. What is not drawn at n = 3 is in the \
+             figures over the angle.",
+        ),
+        table(&over_n, "On so(n), over all n.", "at n").into(),
+    ];
+    n_blocks.extend(drawn(&over_n));
+    report::page(
+        "The maps: accuracy and time",
+        "Closed forms on so(3) and the general layer for any n, beside nalgebra",
+        vec![
+            Section::new(
+                "What is measured",
+                vec![
+                    Block::text(
+                        "Errors are distances (Frobenius) from values of 30 digits, which this \
+                         program computes in twice the working precision by other formulas: Taylor \
+                         series, elimination, and iterative refinement of the forward differential. \
+                         The unit ε·cond is ε times the size of the value plus what the value \
+                         changes by when each number of the input moves by ε of itself; it is the \
+                         same for everybody. 1 is what rounding already costs; the promise is 4 on \
+                         so(3).",
+                    ),
+                    Block::facts([
+                        ("Machine", machine().as_str()),
+                        (
+                            "Times",
+                            "CPU time of one thread, medians of rounds that visit everybody in turn",
+                        ),
+                    ]),
+                    Block::Link { text: "Back to the report".into(), href: "index.html".into() },
+                ],
+            ),
+            Section::new("Over the angle", angle_blocks),
+            Section::new("Over n", n_blocks),
+        ],
+    )
+}

@@ -1,0 +1,224 @@
+//! The main job: the three experiments on both layers, against the exact solution, with the report of
+//! speed against error.
+
+mod page;
+
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use lieflow::SaveAt;
+use lieflow::check::Finding;
+use lieflow_figures::number::{or_dash, scientific, seconds};
+use lieflow_model::model::Layer;
+use lieflow_model::scene::Scene;
+
+use super::energy::EnergyRun;
+use super::experiments::{EXPERIMENTS, Experiment, SEED};
+use super::maps::{self, Study};
+use super::rows::Row;
+use crate::cmd::CliError;
+use crate::measure::{Candidate, Curve, Effort, Plan, checks, speed_against_error};
+use crate::output;
+use crate::report;
+
+/// RKMK4 with each map. Classical Runge–Kutta, on the closed layer alone, comes after them.
+const MAPS: [Row; 5] = [Row::Exp, Row::Cay, Row::Ccsk123, Row::Ccsk321, Row::Ccsk];
+
+/// The attitude is what the paper integrates; the momentum and the energy follow from it.
+const QUANTITIES: [&str; 4] = ["momentum_body", "attitude", "energy", "attitude_defect"];
+
+/// A row on a layer, as the catalog names it.
+fn candidate(row: Row, layer: Layer) -> Candidate {
+    match row {
+        Row::Rk4 => Candidate::rk4(layer),
+        _ => Candidate::rkmk4(row.key(), layer),
+    }
+}
+
+/// What the main job shows.
+#[derive(Debug)]
+pub struct Speed {
+    outcomes: Vec<Outcome>,
+    findings: Vec<Finding>,
+    studies: Vec<Study>,
+    quick: bool,
+    took: Duration,
+}
+
+/// What one experiment gave.
+#[derive(Debug)]
+struct Outcome {
+    experiment: Experiment,
+    title: String,
+    curves: Vec<Curve>,
+    /// On the closed layer, by row.
+    runs: Vec<Run>,
+}
+
+/// A row on the closed layer over the whole span of the energy runs.
+#[derive(Debug)]
+struct Run {
+    label: String,
+    energy: EnergyRun,
+    /// Difference of the final momentum between the layers, relative; not a number for RK4.
+    layers_differ: f64,
+}
+
+impl Speed {
+    /// Compute everything. `tick` gets the share of the work that is done and what is under way.
+    pub fn compute(quick: bool, mut tick: impl FnMut(f64, &str)) -> Result<Self, CliError> {
+        let clock = Instant::now();
+        tick(0.0, "");
+        let findings = checks(if quick { 2_000 } else { 50_000 })?;
+        let mut outcomes = Vec::new();
+        for (i, experiment) in EXPERIMENTS.into_iter().enumerate() {
+            let share = |done: f64| tick(0.1 + 0.26 * (i as f64 + done), experiment.scene);
+            outcomes.push(Outcome::of(experiment, quick, share)?);
+        }
+        let effort = maps::Effort {
+            directions: if quick { 6 } else { 20 },
+            largest: if quick { 12 } else { 32 },
+            rounds: if quick { 3 } else { 7 },
+        };
+        let studies = maps::survey(&effort, SEED, |done| tick(0.9 + 0.1 * done, "maps"))?;
+        Ok(Speed { outcomes, findings, studies, quick, took: clock.elapsed() })
+    }
+
+    /// Write the pages, their figures as SVG and the data as CSV; the paths of the two pages.
+    ///
+    /// # Errors
+    /// A file cannot be written.
+    pub fn write(&self, folder: &Path) -> Result<[PathBuf; 2], CliError> {
+        let maps = maps::write(folder, &self.studies)?;
+        let page = output::write_page(folder, "index.html", &self.page())?;
+        let curves = self.outcomes.iter().map(|o| (o.experiment.scene, &o.curves[..]));
+        report::write_speed_csv(&folder.join("speed.csv"), curves)?;
+        Ok([page, maps])
+    }
+
+    /// The number of checks that do not hold.
+    pub fn broken(&self) -> usize {
+        self.findings.iter().filter(|f| !f.holds()).count()
+    }
+
+    /// The largest difference that a check found.
+    fn worst(&self) -> f64 {
+        self.findings.iter().map(|f| f.worst).fold(0.0, f64::max)
+    }
+
+    /// What a terminal is told.
+    pub fn in_words(&self) -> String {
+        let mut text: String = self.outcomes.iter().map(Outcome::in_words).collect();
+        // The largest error over all maps and angles.
+        let maps = |name: &str| {
+            let lines = self.studies.iter().flat_map(|study| &study.lines);
+            let lines = lines.filter(|line| line.name == name);
+            lines.filter_map(|line| Some(line.worst()?.error)).fold(0.0, f64::max)
+        };
+        text += &format!(
+            "\nGeneral against closed, and the laws of the groups: {} checks, worst {:.1} eps·cond\n\
+             Maps against 30 digits: closed forms within {:.1} eps·cond, general layer within {:.1}\n",
+            self.findings.len(),
+            self.worst(),
+            maps("closed form"),
+            maps("general layer")
+        );
+        text
+    }
+}
+
+impl Outcome {
+    fn of(
+        experiment: Experiment,
+        quick: bool,
+        mut share: impl FnMut(f64),
+    ) -> Result<Self, CliError> {
+        let scene = Scene::bundled(experiment.scene)?;
+        share(0.0);
+        let run = |energy: EnergyRun| {
+            let layers_differ = match energy.row {
+                Row::Rk4 => f64::NAN,
+                row => layers_differ(&scene, row)?,
+            };
+            Ok(Run { label: candidate(energy.row, Layer::Closed).label(), energy, layers_differ })
+        };
+        let runs = experiment.energy(MAPS.into_iter().chain([Row::Rk4]))?.into_iter().map(run);
+        let runs = runs.collect::<Result<Vec<_>, CliError>>()?;
+        share(0.2);
+        let mut candidates = Layer::ALL.map(|layer| MAPS.map(|row| candidate(row, layer))).concat();
+        candidates.push(candidate(Row::Rk4, Layer::Closed));
+        let effort = Effort {
+            rounds: rounds(quick),
+            longest: Duration::from_millis(if quick { 20 } else { 200 }),
+            shortest: Duration::from_micros(if quick { 200 } else { 1000 }),
+            wanted: &[],
+            patience: Duration::ZERO,
+            seed: SEED,
+        };
+        let plan = Plan {
+            quantities: &QUANTITIES,
+            candidates: &candidates,
+            t_span: experiment.window,
+            steps: if quick { &experiment.steps[..6] } else { experiment.steps },
+            tolerances: &[],
+        };
+        let done = |done| share(0.2 + 0.8 * done);
+        let (curves, _) = speed_against_error(&scene, &plan, effort, None, done)?;
+        Ok(Outcome { experiment, title: scene.title, curves, runs })
+    }
+
+    /// The table for a terminal.
+    fn in_words(&self) -> String {
+        let header = [
+            "method",
+            "order",
+            "a step",
+            "to 1e-3",
+            "to 1e-6",
+            "to 1e-9",
+            "energy error",
+            "layers differ",
+        ];
+        let rows = self.runs.iter().filter_map(|run| {
+            let curve = self.curves.iter().find(|curve| curve.candidate.label() == run.label)?;
+            let to = |error| or_dash(curve.seconds_to(error), seconds);
+            Some([
+                run.label.clone(),
+                or_dash(curve.measured_order(), |p| format!("{p:.2}")),
+                or_dash(curve.seconds_per_step(), seconds),
+                to(1e-3),
+                to(1e-6),
+                to(1e-9),
+                scientific(run.energy.last()),
+                scientific(run.layers_differ),
+            ])
+        });
+        let (window, end, dt) = (self.experiment.window[1], Experiment::END, self.experiment.dt);
+        format!(
+            "\n{} (times: CPU time per unit of simulated time to a global error at t = {window}; \
+             energy error and difference of the layers at t = {end}, from t = 0 with dt = {dt})\n{}",
+            self.title,
+            output::table(header, rows)
+        )
+    }
+}
+
+/// The rounds of timing.
+fn rounds(quick: bool) -> u32 {
+    if quick { 3 } else { 9 }
+}
+
+/// The relative difference of the momentum at the end of the scene's span between the layers.
+fn layers_differ(scene: &Scene, row: Row) -> Result<f64, CliError> {
+    let mut ends = [[0.0; 3]; 2];
+    for (layer, end) in Layer::ALL.into_iter().zip(&mut ends) {
+        let model = scene.model_with(layer, &["momentum_body"])?;
+        let method = candidate(row, layer).method;
+        model.run(&method, &scene.grid, &SaveAt::Ends, &mut |_, row| {
+            end.copy_from_slice(row);
+        })?;
+    }
+    let [a, b] = ends.map(nalgebra::Vector3::from);
+    let size = a.norm();
+    Ok((a - b).norm() / if size > 0.0 { size } else { 1.0 })
+}

@@ -1,0 +1,128 @@
+//! Numbers formatted for people.
+
+/// `x` rounded to `digits` significant digits: `0.0123`, `4560`, `1.23×10⁻⁸`, `−2.50`.
+///
+/// Magnitudes below 10⁻³ or from 10⁶ on are written with a power of ten. Infinities become `∞`,
+/// an undefined value becomes `n/a`.
+pub fn sig(x: f64, digits: usize) -> String {
+    if x.is_nan() {
+        return "n/a".to_string();
+    }
+    let sign = if x < 0.0 { "−" } else { "" };
+    if x.is_infinite() {
+        return format!("{sign}∞");
+    }
+    if x == 0.0 {
+        return "0".to_string();
+    }
+    let (mantissa, exponent) = decimal_parts(x.abs(), digits.max(1));
+    if (-3..6).contains(&exponent) {
+        format!("{sign}{}", plain(&mantissa, exponent))
+    } else {
+        format!("{sign}{mantissa}×{}", power_of_ten(exponent))
+    }
+}
+
+/// A number in scientific notation with two digits after the point, as `1.23e-4`; a dash for none.
+pub fn scientific(x: f64) -> String {
+    if x.is_nan() { DASH.into() } else { format!("{x:.2e}") }
+}
+
+/// What stands for no value.
+pub const DASH: &str = "–";
+
+/// A value in its format; a dash for none.
+pub fn or_dash<T>(x: Option<T>, format: impl FnOnce(T) -> String) -> String {
+    x.map_or_else(|| DASH.into(), format)
+}
+
+/// The power of ten with a superscript exponent: `10⁻⁸`.
+pub fn power_of_ten(exponent: i32) -> String {
+    format!("10{}", superscript(exponent))
+}
+
+/// A duration of `t` seconds in engineering units with three significant digits: `1.32 ms`.
+pub fn seconds(t: f64) -> String {
+    let size = t.abs();
+    let (factor, unit) = if size == 0.0 || size >= 1.0 || !size.is_finite() {
+        (1.0, "s")
+    } else if size >= 1e-3 {
+        (1e3, "ms")
+    } else if size >= 1e-6 {
+        (1e6, "µs")
+    } else {
+        (1e9, "ns")
+    };
+    format!("{}\u{a0}{unit}", sig(t * factor, 3))
+}
+
+/// `value` with exactly `decimals` digits after the point and a true minus sign.
+pub fn fixed(value: f64, decimals: usize) -> String {
+    let text = format!("{:.decimals$}", value.abs());
+    let zero = text.chars().all(|c| c == '0' || c == '.');
+    if value < 0.0 && !zero { format!("−{text}") } else { text }
+}
+
+/// The digits of a positive number as `d.ddd` and its decimal exponent after rounding.
+fn decimal_parts(x: f64, digits: usize) -> (String, i32) {
+    let text = format!("{x:.*e}", digits - 1);
+    match text.split_once('e') {
+        Some((mantissa, exponent)) => (mantissa.to_string(), exponent.parse().unwrap_or(0)),
+        None => (text, 0),
+    }
+}
+
+/// `mantissa · 10^exponent` written without a power of ten.
+fn plain(mantissa: &str, exponent: i32) -> String {
+    let digits: String = mantissa.chars().filter(char::is_ascii_digit).collect();
+    let Ok(whole) = usize::try_from(exponent + 1) else {
+        return format!("0.{}{digits}", "0".repeat(exponent.unsigned_abs() as usize - 1));
+    };
+    match whole {
+        0 => format!("0.{digits}"),
+        n if n >= digits.len() => format!("{digits}{}", "0".repeat(n - digits.len())),
+        n => format!("{}.{}", &digits[..n], &digits[n..]),
+    }
+}
+
+fn superscript(n: i32) -> String {
+    let digits = n.to_string();
+    digits
+        .chars()
+        .map(|c| match c.to_digit(10) {
+            Some(digit) => ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'][digit as usize],
+            None => '⁻',
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn significant_digits() {
+        assert_eq!(sig(0.012345, 3), "0.0123");
+        assert_eq!(sig(0.12345, 3), "0.123");
+        assert_eq!(sig(9.999, 3), "10.0");
+        assert_eq!(sig(4561.0, 3), "4560");
+        assert_eq!(sig(-2.5, 3), "−2.50");
+        assert_eq!(sig(1.234e-8, 3), "1.23×10⁻⁸");
+        assert_eq!(sig(1.0e6, 1), "1×10⁶");
+        assert_eq!(sig(0.0, 3), "0");
+        assert_eq!(sig(f64::NAN, 3), "n/a");
+        assert_eq!(sig(f64::NEG_INFINITY, 3), "−∞");
+    }
+
+    #[test]
+    fn powers_and_times() {
+        assert_eq!(power_of_ten(-13), "10⁻¹³");
+        assert_eq!(power_of_ten(0), "10⁰");
+        assert_eq!(seconds(1.3249e-3), "1.32\u{a0}ms");
+        assert_eq!(seconds(2.5e-9), "2.50\u{a0}ns");
+        assert_eq!(seconds(42e-6), "42.0\u{a0}µs");
+        assert_eq!(seconds(0.0), "0\u{a0}s");
+        assert_eq!(fixed(-0.001, 2), "0.00");
+        assert_eq!(fixed(-1.25, 1), "−1.2");
+    }
+}

@@ -1,0 +1,104 @@
+//! What can be asked of a problem: every quantity is stated once, with its columns, its meaning, its value and
+//! the law that it obeys.
+
+use super::QuantityInfo;
+use super::law::{Law, Scale};
+use super::system::{PointOf, System};
+
+/// The value of a quantity at y, a time `t` after the start.
+pub(super) enum Value<S: System> {
+    /// A number.
+    Number(fn(&S, f64, &PointOf<S>) -> f64),
+    /// Numbers, which go to the end of the row.
+    Numbers(fn(&S, f64, &PointOf<S>, &mut Vec<f64>)),
+}
+
+/// Whether a problem keeps a quantity.
+enum Kept<S> {
+    No,
+    Always(Law),
+    Where(fn(&S) -> Option<Law>),
+}
+
+/// A quantity of the problems of type `S`.
+pub(super) struct Quantity<S: System> {
+    pub(super) info: QuantityInfo,
+    pub(super) value: Value<S>,
+    /// The columns where the size of the problem says how many there are.
+    pub(super) columns: Option<fn(&S) -> Vec<String>>,
+    law: Kept<S>,
+    /// The size of the terms that the quantity is the sum of.
+    pub(super) terms: Option<fn(&S, &PointOf<S>) -> f64>,
+    /// Why this problem has no such quantity.
+    pub(super) missing: fn(&S) -> Option<&'static str>,
+}
+
+impl<S: System> Quantity<S> {
+    const fn new(info: QuantityInfo, value: Value<S>) -> Self {
+        Quantity { info, value, columns: None, law: Kept::No, terms: None, missing: |_| None }
+    }
+
+    /// A number; its column has its name.
+    pub(super) const fn number(
+        name: &'static str,
+        meaning: &'static str,
+        value: fn(&S, f64, &PointOf<S>) -> f64,
+    ) -> Self {
+        Self::new(QuantityInfo { name, columns: &[], meaning }, Value::Number(value))
+    }
+
+    /// Numbers under these columns; with an `…` between the first and the last where the size of the problem says
+    /// how many there are ([`with_columns`](Self::with_columns)).
+    pub(super) const fn numbers(
+        name: &'static str,
+        columns: &'static [&'static str],
+        meaning: &'static str,
+        value: fn(&S, f64, &PointOf<S>, &mut Vec<f64>),
+    ) -> Self {
+        Self::new(QuantityInfo { name, columns, meaning }, Value::Numbers(value))
+    }
+
+    /// With columns that depend on the problem.
+    pub(super) const fn with_columns(self, columns: fn(&S) -> Vec<String>) -> Self {
+        Quantity { columns: Some(columns), ..self }
+    }
+
+    /// Every problem of the kind keeps the quantity.
+    pub(super) const fn kept(self, law: Law) -> Self {
+        Quantity { law: Kept::Always(law), ..self }
+    }
+
+    /// Some problems of the kind keep the quantity, or each by a law of its own.
+    pub(super) const fn kept_where(self, law: fn(&S) -> Option<Law>) -> Self {
+        Quantity { law: Kept::Where(law), ..self }
+    }
+
+    /// The quantity is a sum of terms of this size, which may cancel: its rounding is measured in that.
+    pub(super) const fn in_terms(self, terms: fn(&S, &PointOf<S>) -> f64) -> Self {
+        Quantity { terms: Some(terms), ..self }
+    }
+
+    /// Some problems have no such quantity: this says why.
+    pub(super) const fn missing_where(self, missing: fn(&S) -> Option<&'static str>) -> Self {
+        Quantity { missing, ..self }
+    }
+
+    /// The law that the quantity obeys in this problem.
+    pub(super) fn law(&self, system: &S) -> Option<Law> {
+        let law = match self.law {
+            Kept::No => None,
+            Kept::Always(law) => Some(law),
+            Kept::Where(law) => law(system),
+        }?;
+        let scale = if self.terms.is_some() { Scale::Terms } else { law.scale };
+        Some(Law { quantity: self.info.name, scale, ..law })
+    }
+
+    /// The names of the columns.
+    pub(super) fn column_names(&self, system: &S) -> Vec<String> {
+        match self.columns {
+            Some(columns) => columns(system),
+            None => self.info.column_names(),
+        }
+    }
+}

@@ -1,0 +1,326 @@
+//! Methods by name: what a scene file, a bench or a test can ask for.
+//!
+//! A name becomes a method in three lines, and the method runs like any other:
+//!
+//! ```
+//! use lieflow::catalog::MethodsByName;
+//! use lieflow::problems::RigidBody;
+//! use lieflow::{SaveAt, TimeGrid, integrate};
+//! use nalgebra::Vector3;
+//!
+//! let (body, mut m) = (RigidBody::new([1.0, 2.0, 3.0])?, Vector3::new(0.2, 0.0, 3.0));
+//! let grid = TimeGrid::new([0.0, 10.0], 0.05)?;
+//!
+//! let method = body.method(&"rkmk4 cay".parse()?)?;
+//! integrate(&body, &method, &grid, &SaveAt::Ends, &mut m, |_, _| {})?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! | question | answer |
+//! |---|---|
+//! | Which methods are there? | [`all_methods`], with what is known of each: [`MethodInfo`] |
+//! | Which methods fit my problem? | those whose [`Needs`] the problem [`offers`](MethodsByName::offers) |
+//! | Run this one | [`MethodsByName::method`] gives an [`AnyMethod`]: a [`Method`](crate::Method) and an [`Embedded`](crate::methods::Embedded) |
+//!
+//! A method is one line of the lists in `lists/`: what is known of it, and its coefficients. Which code runs them
+//! is decided in `build.rs`, once a family.
+
+mod build;
+mod facts;
+mod lists;
+mod problems;
+mod recipe;
+
+pub use build::{
+    bodies, classical, closed_rkmk, energy_casimir, fields, implicit, isospectral, linear_type,
+    projected, series,
+};
+pub use facts::{
+    Cost, Count, Family, Instead, Maps, MethodInfo, Needs, Operation, Order, Structure, Work,
+};
+pub use lists::all_methods;
+pub use problems::{Fact, fluids};
+
+use core::str::FromStr;
+
+use crate::error::Error;
+use crate::maps::{ExpOrCay, FromName, MapsByName, NamedMap};
+pub use crate::maps::{MAPS, MapInfo};
+use crate::methods::{AnyMethod, tableau};
+use crate::problems::{Ambient, Problem};
+use recipe::SizedTableau;
+
+/// An explicit tableau that scene files can name.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub struct TableauInfo {
+    /// Its name.
+    pub name: &'static str,
+    /// Its order.
+    pub order: usize,
+    /// The stages of a step without an error estimate.
+    pub stages: usize,
+    /// Is it an embedded pair?
+    pub pair: bool,
+    pub(crate) table: SizedTableau,
+}
+
+macro_rules! tableaus {
+    ($($size:ident: $($tableau:ident)*;)*) => {
+        /// The explicit tableaus, in the order of listings.
+        pub const TABLEAUS: &[TableauInfo] = &[$($(TableauInfo {
+            name: tableau::$tableau.name,
+            order: tableau::$tableau.order,
+            stages: tableau::$tableau.update_stages(),
+            pair: tableau::$tableau.error.is_some(),
+            table: SizedTableau::$size(tableau::$tableau.padded()),
+        },)*)*];
+    };
+}
+tableaus! {
+    Small: EULER MIDPOINT HEUN RK4 THREE_EIGHTHS BS3;
+    Large: RKF45 DOPRI5 VERNER6 DOP853;
+}
+
+/// The tableau where none is named.
+const RK4: &str = tableau::RK4.name;
+/// The map where none is named.
+const EXP: &str = "exp";
+
+/// A method by name, with its parts. As text: `rkmk dopri5 cay`, `rkmk4 exp q=2`.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct MethodSpec {
+    /// The method.
+    pub name: String,
+    /// Its coordinate map, when it takes one; exp when none is given.
+    pub map: Option<String>,
+    /// Its tableau, when it takes one; rk4 when none is given.
+    pub tableau: Option<String>,
+    /// Where the Baker series of dexp⁻¹ is cut (exp only); to rounding when none is given.
+    pub q: Option<usize>,
+}
+
+impl MethodSpec {
+    /// A method with its map.
+    pub fn new(name: &str, map: Option<&str>) -> Self {
+        MethodSpec { name: name.into(), map: map.map(Into::into), tableau: None, q: None }
+    }
+
+    /// The registered method.
+    ///
+    /// # Errors
+    /// [`Error::UnknownName`], and [`Error::Unsupported`] for a part that the method does not take.
+    pub fn info(&self) -> Result<&'static MethodInfo, Error> {
+        let info = all_methods().find(|m| m.name == self.name);
+        let names = || all_methods().map(|m| m.name);
+        let info = info.ok_or_else(|| unknown("method", &self.name, names()))?;
+        let refuse = |what, why| Error::Unsupported { what, with: format!("`{}`", info.name), why };
+        if self.map.is_some() && !info.takes_map() {
+            return Err(refuse("map", "it works without coordinates; leave map out"));
+        }
+        if self.q.is_some() && !info.takes_map() {
+            return Err(refuse("q", "it has no dexp⁻¹; leave q out"));
+        }
+        if self.tableau.is_some() && !info.takes_tableau {
+            return Err(refuse(
+                "tableau",
+                "its tableau is fixed; use `rkmk` or `rk` to choose one",
+            ));
+        }
+        Ok(info)
+    }
+
+    /// The registered method with its parts.
+    ///
+    /// # Errors
+    /// As [`info`](Self::info), and [`Error::UnknownName`] for a map or a tableau that there is not,
+    /// [`Error::Unsupported`] for a map that the method cannot take.
+    pub fn choose(&self) -> Result<Choice<'_>, Error> {
+        let info = self.info()?;
+        let tableau = self.tableau.as_deref().unwrap_or(RK4);
+        let tableau = TABLEAUS
+            .iter()
+            .find(|t| t.name == tableau)
+            .ok_or_else(|| unknown("tableau", tableau, TABLEAUS.iter().map(|t| t.name)))?;
+        let choice = Choice { info, tableau, map: self.map.as_deref().unwrap_or(EXP), q: self.q };
+        if info.takes_map() {
+            NamedMap::named(choice.map, choice.q)?;
+        }
+        let is_odd = |name| MAPS.iter().any(|map| map.name == name && map.odd);
+        if info.maps == Maps::Odd && (choice.q.is_some() || !is_odd(choice.map)) {
+            return Err(Error::Unsupported {
+                what: if choice.q.is_some() { "q" } else { "map" },
+                with: format!("`{}` with map `{}`", self.name, choice.map),
+                why: "it needs Ψ(−u) = Ψ(u)⁻¹ and dΨ⁻¹ to rounding: exp or cay",
+            });
+        }
+        Ok(choice)
+    }
+
+    /// Has the method an error estimate of its own? If not, an adaptive run doubles its steps.
+    ///
+    /// # Errors
+    /// As [`choose`](Self::choose).
+    pub fn has_pair(&self) -> Result<bool, Error> {
+        let Choice { info, tableau, .. } = self.choose()?;
+        Ok(if info.takes_tableau { tableau.pair } else { info.recipe.is_pair() })
+    }
+
+    /// Evaluations of f, F or A in a step of one size; none for an implicit method, whose number depends on the
+    /// step, and for a method that evaluates no field.
+    ///
+    /// # Errors
+    /// As [`choose`](Self::choose).
+    pub fn evaluations(&self) -> Result<Option<u64>, Error> {
+        let Choice { info, tableau, .. } = self.choose()?;
+        Ok(info.cost.evaluations(tableau.stages as u64))
+    }
+
+    /// A name for tables: `rkmk4 exp`.
+    pub fn label(&self) -> String {
+        let mut label = self.name.clone();
+        for part in [&self.tableau, &self.map].into_iter().flatten() {
+            label = format!("{label} {part}");
+        }
+        match self.q {
+            Some(q) => format!("{label} q={q}"),
+            None => label,
+        }
+    }
+}
+
+/// The inverse of [`MethodSpec::label`]: the method, then its parts in any order.
+impl FromStr for MethodSpec {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self, Error> {
+        let mut words = text.split_whitespace();
+        let mut spec = MethodSpec::new(words.next().unwrap_or_default(), None);
+        for word in words {
+            if let Some(q) = word.strip_prefix("q=") {
+                let q = q.parse().map_err(|_| Error::OutOfRange {
+                    arg: "q".into(),
+                    value: q.parse().unwrap_or(f64::NAN),
+                    expected: "a whole number".into(),
+                })?;
+                spec.q = Some(q);
+            } else if TABLEAUS.iter().any(|t| t.name == word) {
+                spec.tableau = Some(word.into());
+            } else if MAPS.iter().any(|map| map.name == word) {
+                spec.map = Some(word.into());
+            } else {
+                let parts = MAPS.iter().map(|m| m.name).chain(TABLEAUS.iter().map(|t| t.name));
+                return Err(unknown("map or tableau", word, parts));
+            }
+        }
+        spec.choose()?;
+        Ok(spec)
+    }
+}
+
+fn unknown(kind: &'static str, name: &str, expected: impl Iterator<Item = &'static str>) -> Error {
+    Error::UnknownName { kind, name: name.into(), expected: expected.collect() }
+}
+
+/// A registered method with its parts.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub struct Choice<'a> {
+    /// The method.
+    pub info: &'static MethodInfo,
+    /// Its tableau; that of rk4 where it takes none.
+    pub tableau: &'static TableauInfo,
+    /// The name of its map; exp where it takes none.
+    pub map: &'a str,
+    /// Where the Baker series of dexp⁻¹ is cut.
+    pub q: Option<usize>,
+}
+
+impl Choice<'_> {
+    /// The map on a group.
+    ///
+    /// # Errors
+    /// [`Error::Unsupported`] for a map that the group does not have.
+    fn map<G: MapsByName>(&self) -> Result<G::Map, Error> {
+        G::Map::named(self.map, self.q)
+    }
+    /// The map of a method with an odd map.
+    fn odd_map(&self) -> Result<ExpOrCay, Error> {
+        ExpOrCay::named(self.map, self.q)
+    }
+}
+
+/// What a function that makes methods answers: none for a method that is not its own.
+pub type Made<'p, P> = Result<Option<AnyMethod<'p, P>>, Error>;
+
+/// A problem whose methods can be chosen by name.
+///
+/// For a problem of your own, list what it offers and the functions of this module that make those methods:
+///
+/// ```
+/// use lieflow::catalog::{Choice, Made, MethodsByName, Needs, fields, first, implicit};
+/// # use lieflow::{actions::Linear, groups::So3, problems::Problem};
+/// # use nalgebra::Vector3;
+/// # struct Spin(So3, Linear);
+/// # impl Problem for Spin {
+/// #     type Group = So3;
+/// #     type Action = Linear;
+/// #     type Work = ();
+/// #     fn group(&self) -> &So3 { &self.0 }
+/// #     fn action(&self) -> &Linear { &self.1 }
+/// #     fn work(&self) {}
+/// #     fn f(&self, t: f64, _x: &Vector3<f64>, v: &mut Vector3<f64>, _: &mut ()) { *v = Vector3::new(0.0, 0.0, t); }
+/// # }
+/// impl MethodsByName for Spin {
+///     fn offers(&self) -> Vec<Needs> {
+///         vec![Needs::Field, Needs::Norm]
+///     }
+///     fn make<'p>(&self, choice: &Choice<'_>) -> Made<'p, Self> where Self: 'p {
+///         first([fields, implicit], choice)
+///     }
+/// }
+/// ```
+pub trait MethodsByName: Ambient {
+    /// What the problem offers: the methods that need no more fit it.
+    fn offers(&self) -> Vec<Needs>;
+
+    /// The method that is chosen, one that needs what the problem offers.
+    ///
+    /// # Errors
+    /// [`Error::Unsupported`] for a map that the group does not have.
+    fn make<'p>(&self, choice: &Choice<'_>) -> Made<'p, Self>
+    where
+        Self: Sized + 'p;
+
+    /// The method that `spec` names, with its parts. It is checked to fit the problem; nothing is integrated.
+    ///
+    /// # Errors
+    /// As [`MethodSpec::choose`]; [`Error::Unsupported`] with what the method needs and the problem does not offer,
+    /// and for a map without a formula on the group.
+    fn method<'p>(&self, spec: &MethodSpec) -> Result<AnyMethod<'p, Self>, Error>
+    where
+        Self: Sized + 'p,
+    {
+        let choice = spec.choose()?;
+        let misfit = || Error::Unsupported {
+            what: choice.info.name,
+            with: "this problem".into(),
+            why: choice.info.needs.why(),
+        };
+        if !self.offers().contains(&choice.info.needs) {
+            return Err(misfit());
+        }
+        self.make(&choice)?.ok_or_else(misfit)
+    }
+}
+
+/// The answer of the first of these functions that makes the method.
+///
+/// # Errors
+/// Those of the functions.
+pub fn first<'p, P: Problem, const N: usize>(
+    makers: [fn(&Choice<'_>) -> Made<'p, P>; N],
+    choice: &Choice<'_>,
+) -> Made<'p, P> {
+    makers.into_iter().find_map(|make| make(choice).transpose()).transpose()
+}

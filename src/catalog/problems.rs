@@ -1,0 +1,176 @@
+//! The problems of the library whose methods can be chosen by name: what each offers, and what makes its methods.
+
+use super::recipe::Recipe;
+use super::{
+    Choice, Made, MethodsByName, Needs, bodies, classical, closed_rkmk, energy_casimir, fields,
+    first, implicit, isospectral, linear_type, projected, series,
+};
+use crate::actions::Action;
+use crate::maps::{Cay, CoordinateMap, Exp, ExpOrCay, MapsByName};
+use crate::methods::magnus::TripleProduct;
+use crate::methods::{AnyMethod, Composition, Wide};
+use crate::problems::{
+    DynFlow, Energy, Facts, Field, Flow, FluidMidpoint, Known, LiePoisson, LinearField, Problem,
+    RigidBody, RigidBodyAttitude, RigidBodyN, RigidBodyNAttitude, RigidBodyQuaternion,
+    RigidBodyState, Surface, TimeAlone, Zeitlin,
+};
+use crate::scalar::{Real, Trig};
+use crate::space::LinearSpace;
+
+/// One line a problem: what it offers, and the functions that make its methods.
+macro_rules! by_name {
+    ($([$($generic:tt)*] $problem:ty, $($needs:ident)*: $($make:ident)*;)*) => {$(
+        impl<$($generic)*> MethodsByName for $problem {
+            fn offers(&self) -> Vec<Needs> {
+                vec![$(Needs::$needs),*]
+            }
+            fn make<'p>(&self, choice: &Choice<'_>) -> Made<'p, Self>
+            where
+                Self: 'p,
+            {
+                first([$($make),*], choice)
+            }
+        }
+    )*};
+}
+
+by_name! {
+    [S: Trig + Wide + Into<f64>] RigidBody<S>,
+        Field Norm Series Body LiePoisson: closed_rkmk fields implicit bodies energy_casimir;
+    [S: Trig + Wide + Into<f64>] RigidBodyAttitude<S>,
+        Field Norm Series Body Attitude: closed_rkmk fields implicit bodies projected;
+    [] RigidBodyQuaternion, Field Norm Series Body: fields implicit bodies;
+    [S: Real] RigidBodyState<S>, State: classical;
+    [] RigidBodyN, Field Norm Series LiePoisson Isospectral:
+        fields implicit series energy_casimir isospectral;
+    [] RigidBodyNAttitude, Field Norm Series: fields implicit series;
+    [S: Surface] Zeitlin<S>, Field Norm LiePoisson Isospectral:
+        fluids fields implicit energy_casimir isospectral;
+}
+
+/// The midpoint rules that are made for fluids: the general ones with less work.
+/// # Errors
+/// [`Error::Unsupported`](crate::Error::Unsupported) for another map than exp and cay.
+pub fn fluids<'p, S: Surface + 'p>(choice: &Choice<'_>) -> Made<'p, Zeitlin<S>> {
+    const ISOSPECTRAL: FluidMidpoint = FluidMidpoint::isospectral();
+    const ENERGY: FluidMidpoint = FluidMidpoint::energy();
+    Ok(Some(match (choice.info.recipe, choice.odd_map()?) {
+        (Recipe::EnergyCasimir, ExpOrCay::Cay(_)) => AnyMethod::new(ENERGY),
+        (Recipe::ComposedEnergyCasimir(scheme), ExpOrCay::Cay(_)) => {
+            AnyMethod::new(Composition::new(ENERGY, scheme))
+        }
+        (Recipe::Isospectral2, _) => AnyMethod::new(ISOSPECTRAL),
+        (Recipe::ComposedIsospectral(scheme), _) => {
+            AnyMethod::new(Composition::new(ISOSPECTRAL, scheme))
+        }
+        _ => return Ok(None),
+    }))
+}
+
+/// What is known of a problem beyond f, and the methods that rest on it.
+pub trait Fact<P: Problem> {
+    /// What the problem offers for it.
+    const OFFERS: Option<Needs>;
+    /// The method that is chosen, where it rests on this fact.
+    ///
+    /// # Errors
+    /// As [`MethodsByName::make`].
+    fn make<'p>(choice: &Choice<'_>) -> Made<'p, P>
+    where
+        P: 'p;
+}
+
+impl<P: Problem> Fact<P> for () {
+    const OFFERS: Option<Needs> = None;
+    fn make<'p>(_: &Choice<'_>) -> Made<'p, P>
+    where
+        P: 'p,
+    {
+        Ok(None)
+    }
+}
+
+impl<P> Fact<P> for TimeAlone
+where
+    P: LinearField,
+    P::Group: TripleProduct,
+    Exp: CoordinateMap<P::Group>,
+    Cay: CoordinateMap<P::Group>,
+{
+    const OFFERS: Option<Needs> = Some(Needs::LinearType);
+    fn make<'p>(choice: &Choice<'_>) -> Made<'p, P>
+    where
+        P: 'p,
+    {
+        linear_type(choice)
+    }
+}
+
+macro_rules! hamiltonian {
+    ($([$($generic:ident)?] $fact:ty;)*) => {$(
+        impl<P: LiePoisson, $($generic)?> Fact<P> for $fact
+        where
+            ExpOrCay: CoordinateMap<P::Group>,
+        {
+            const OFFERS: Option<Needs> = Some(Needs::LiePoisson);
+            fn make<'p>(choice: &Choice<'_>) -> Made<'p, P>
+            where
+                P: 'p,
+            {
+                energy_casimir(choice)
+            }
+        }
+    )*};
+}
+hamiltonian! {
+    [E] Energy<E>;
+    [] Known;
+}
+
+/// A closure: what is known of it decides what it offers.
+impl<G, A, F, L, H, I> MethodsByName for Flow<G, A, F, Facts<L, H, I>>
+where
+    G: MapsByName,
+    A: Action<G, Point: LinearSpace<Scalar = G::Scalar>>,
+    F: Field<G, A>,
+    Exp: CoordinateMap<G>,
+    ExpOrCay: CoordinateMap<G>,
+    L: Fact<Self>,
+    H: Fact<Self>,
+{
+    fn offers(&self) -> Vec<Needs> {
+        [Some(Needs::Field), Some(Needs::Norm), L::OFFERS, H::OFFERS]
+            .into_iter()
+            .flatten()
+            .collect()
+    }
+    fn make<'p>(&self, choice: &Choice<'_>) -> Made<'p, Self>
+    where
+        Self: 'p,
+    {
+        first([fields, implicit, L::make, H::make], choice)
+    }
+}
+
+/// Of what its type may be, each problem offers what it is.
+impl<G, A, L, H> MethodsByName for DynFlow<G, A, L, H>
+where
+    G: MapsByName,
+    A: Action<G, Point: LinearSpace<Scalar = G::Scalar>>,
+    Exp: CoordinateMap<G>,
+    ExpOrCay: CoordinateMap<G>,
+    L: Fact<Self>,
+    H: Fact<Self>,
+{
+    fn offers(&self) -> Vec<Needs> {
+        let linear = L::OFFERS.filter(|_| self.is_linear());
+        let energy = H::OFFERS.filter(|_| self.is_lie_poisson());
+        [Some(Needs::Field), Some(Needs::Norm), linear, energy].into_iter().flatten().collect()
+    }
+    fn make<'p>(&self, choice: &Choice<'_>) -> Made<'p, Self>
+    where
+        Self: 'p,
+    {
+        first([fields, implicit, L::make, H::make], choice)
+    }
+}

@@ -1,0 +1,294 @@
+//! A method whose type is known at run time only: what a method chosen by name is.
+//!
+//! [`AnyMethod`] is a [`Method`] and an [`Embedded`] for one type of problem, whatever is inside. Drivers, step
+//! doubling and counting are compiled once for a problem with it, and not once for each method. A run of equal
+//! steps is one call through a pointer for many steps ([`Method::steps`]), so that the loop over the steps is
+//! compiled with the method inside.
+
+use core::fmt;
+use core::marker::PhantomData;
+use std::sync::Arc;
+
+use super::doubling::doubled;
+use super::{Embedded, EqualSteps, LocalError, Method, Metric, Step};
+use crate::error::{Error, StepError};
+use crate::problems::{PointOf, Problem, ScalarOf};
+
+/// A method for problems of type `P`, behind a pointer. Cloning copies the pointer.
+///
+/// A method without an estimate of its own error gets one by step doubling
+/// ([`Doubling`](super::Doubling)): [`has_pair`](Self::has_pair) tells which it is.
+pub struct AnyMethod<'p, P: Problem> {
+    inner: Arc<dyn Inner<'p, P> + 'p>,
+}
+
+impl<P: Problem> Clone for AnyMethod<'_, P> {
+    fn clone(&self) -> Self {
+        AnyMethod { inner: self.inner.clone() }
+    }
+}
+
+impl<P: Problem> fmt::Debug for AnyMethod<'_, P> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("AnyMethod").field(&self.inner.name()).finish()
+    }
+}
+
+impl<'p, P: Problem + 'p> AnyMethod<'p, P> {
+    /// A method without an estimate of its own.
+    pub fn new<M: Method<P> + 'p>(method: M) -> Self {
+        AnyMethod { inner: Arc::new(Erased { method: Arc::new(method), estimate: NoEstimate }) }
+    }
+
+    /// A method with its estimate, where it has one.
+    pub fn embedded<M: Embedded<P> + 'p>(method: M) -> Self {
+        AnyMethod { inner: Arc::new(Erased { method: Arc::new(method), estimate: OwnEstimate }) }
+    }
+
+    /// Does the method estimate its own error on this problem? Otherwise steps are doubled.
+    pub fn has_pair(&self, problem: &P) -> bool {
+        self.inner.pair(problem).is_some()
+    }
+}
+
+/// An embedded estimate: the order of the error, and the evaluations of a step with it.
+struct Pair {
+    error_order: usize,
+    evaluations: Option<u64>,
+}
+
+/// A method behind the pointer.
+trait Inner<'p, P: Problem> {
+    fn name(&self) -> &'static str;
+    fn order(&self, problem: &P) -> usize;
+    fn evaluations(&self, problem: &P) -> Option<u64>;
+    fn stays_on_manifold(&self) -> bool;
+    fn pair(&self, problem: &P) -> Option<Pair>;
+    fn stepper(&self, problem: &P, like: &PointOf<P>) -> Result<Box<dyn Stepper<P> + 'p>, Error>;
+}
+
+/// A method with its workspace behind the pointer.
+trait Stepper<P: Problem> {
+    fn step(
+        &mut self,
+        problem: &P,
+        step: Step<ScalarOf<P>>,
+        y: &mut PointOf<P>,
+    ) -> Result<(), StepError>;
+    fn steps(
+        &mut self,
+        problem: &P,
+        steps: EqualSteps,
+        y: &mut PointOf<P>,
+    ) -> Result<(), (u64, StepError)>;
+    fn step_with_error(
+        &mut self,
+        problem: &P,
+        step: Step<ScalarOf<P>>,
+        from: &PointOf<P>,
+        to: &mut PointOf<P>,
+    ) -> Option<Result<LocalError<ScalarOf<P>>, StepError>>;
+}
+
+/// Where the estimate of a method comes from.
+trait Estimate<P: Problem, M: Method<P>>: Copy {
+    fn pair(self, method: &M, problem: &P) -> Option<Pair>;
+    fn step(
+        self,
+        method: &M,
+        problem: &P,
+        step: Step<ScalarOf<P>>,
+        from: &PointOf<P>,
+        work: &mut M::Work,
+        to: &mut PointOf<P>,
+    ) -> Option<Result<LocalError<ScalarOf<P>>, StepError>>;
+}
+
+#[derive(Clone, Copy)]
+struct NoEstimate;
+
+impl<P: Problem, M: Method<P>> Estimate<P, M> for NoEstimate {
+    fn pair(self, _: &M, _: &P) -> Option<Pair> {
+        None
+    }
+    #[inline(always)]
+    fn step(
+        self,
+        _: &M,
+        _: &P,
+        _: Step<ScalarOf<P>>,
+        _: &PointOf<P>,
+        _: &mut M::Work,
+        _: &mut PointOf<P>,
+    ) -> Option<Result<LocalError<ScalarOf<P>>, StepError>> {
+        None
+    }
+}
+
+#[derive(Clone, Copy)]
+struct OwnEstimate;
+
+impl<P: Problem, M: Embedded<P>> Estimate<P, M> for OwnEstimate {
+    fn pair(self, method: &M, problem: &P) -> Option<Pair> {
+        let error_order = method.error_order(problem).ok()?;
+        Some(Pair { error_order, evaluations: method.evaluations_with_error(problem) })
+    }
+    #[inline(always)]
+    fn step(
+        self,
+        method: &M,
+        problem: &P,
+        step: Step<ScalarOf<P>>,
+        from: &PointOf<P>,
+        work: &mut M::Work,
+        to: &mut PointOf<P>,
+    ) -> Option<Result<LocalError<ScalarOf<P>>, StepError>> {
+        Some(method.step_with_error(problem, step, from, work, to))
+    }
+}
+
+struct Erased<M, E> {
+    method: Arc<M>,
+    estimate: E,
+}
+
+impl<'p, P, M, E> Inner<'p, P> for Erased<M, E>
+where
+    P: Problem + 'p,
+    M: Method<P> + 'p,
+    E: Estimate<P, M> + 'p,
+{
+    fn name(&self) -> &'static str {
+        core::any::type_name::<M>()
+    }
+    fn order(&self, problem: &P) -> usize {
+        self.method.order(problem)
+    }
+    fn evaluations(&self, problem: &P) -> Option<u64> {
+        self.method.evaluations(problem)
+    }
+    fn stays_on_manifold(&self) -> bool {
+        self.method.stays_on_manifold()
+    }
+    fn pair(&self, problem: &P) -> Option<Pair> {
+        self.estimate.pair(&self.method, problem)
+    }
+    fn stepper(&self, problem: &P, like: &PointOf<P>) -> Result<Box<dyn Stepper<P> + 'p>, Error> {
+        let work = self.method.work(problem, like)?;
+        let (method, estimate) = (self.method.clone(), self.estimate);
+        Ok(Box::new(Working { method, work, estimate, problem: PhantomData::<fn(&P)> }))
+    }
+}
+
+struct Working<P: Problem, M: Method<P>, E> {
+    method: Arc<M>,
+    work: M::Work,
+    estimate: E,
+    problem: PhantomData<fn(&P)>,
+}
+
+impl<P: Problem, M: Method<P>, E: Estimate<P, M>> Stepper<P> for Working<P, M, E> {
+    fn step(
+        &mut self,
+        problem: &P,
+        step: Step<ScalarOf<P>>,
+        y: &mut PointOf<P>,
+    ) -> Result<(), StepError> {
+        self.method.step(problem, step, y, &mut self.work)
+    }
+    fn steps(
+        &mut self,
+        problem: &P,
+        steps: EqualSteps,
+        y: &mut PointOf<P>,
+    ) -> Result<(), (u64, StepError)> {
+        self.method.steps(problem, steps, y, &mut self.work)
+    }
+    fn step_with_error(
+        &mut self,
+        problem: &P,
+        step: Step<ScalarOf<P>>,
+        from: &PointOf<P>,
+        to: &mut PointOf<P>,
+    ) -> Option<Result<LocalError<ScalarOf<P>>, StepError>> {
+        self.estimate.step(&self.method, problem, step, from, &mut self.work, to)
+    }
+}
+
+/// The workspace of an [`AnyMethod`].
+#[allow(missing_debug_implementations)] // the parts belong to the problem's types
+pub struct AnyWork<'p, P: Problem> {
+    stepper: Box<dyn Stepper<P> + 'p>,
+    /// The point after one long step, where steps are doubled.
+    once: PointOf<P>,
+}
+
+impl<'p, P> Method<P> for AnyMethod<'p, P>
+where
+    P: Problem + 'p,
+    PointOf<P>: Metric<Scalar = ScalarOf<P>>,
+{
+    type Work = AnyWork<'p, P>;
+
+    fn order(&self, problem: &P) -> usize {
+        self.inner.order(problem)
+    }
+    fn evaluations(&self, problem: &P) -> Option<u64> {
+        self.inner.evaluations(problem)
+    }
+    fn stays_on_manifold(&self) -> bool {
+        self.inner.stays_on_manifold()
+    }
+    fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
+        Ok(AnyWork { stepper: self.inner.stepper(problem, like)?, once: like.clone() })
+    }
+    fn step(
+        &self,
+        problem: &P,
+        step: Step<ScalarOf<P>>,
+        y: &mut PointOf<P>,
+        work: &mut Self::Work,
+    ) -> Result<(), StepError> {
+        work.stepper.step(problem, step, y)
+    }
+    fn steps(
+        &self,
+        problem: &P,
+        steps: EqualSteps,
+        y: &mut PointOf<P>,
+        work: &mut Self::Work,
+    ) -> Result<(), (u64, StepError)> {
+        work.stepper.steps(problem, steps, y)
+    }
+}
+
+impl<'p, P> Embedded<P> for AnyMethod<'p, P>
+where
+    P: Problem + 'p,
+    PointOf<P>: Metric<Scalar = ScalarOf<P>>,
+{
+    fn error_order(&self, problem: &P) -> Result<usize, Error> {
+        Ok(self.inner.pair(problem).map_or(self.inner.order(problem), |pair| pair.error_order))
+    }
+    fn evaluations_with_error(&self, problem: &P) -> Option<u64> {
+        match self.inner.pair(problem) {
+            Some(pair) => pair.evaluations,
+            None => Some(3 * self.inner.evaluations(problem)?),
+        }
+    }
+    fn step_with_error(
+        &self,
+        problem: &P,
+        step: Step<ScalarOf<P>>,
+        from: &PointOf<P>,
+        AnyWork { stepper, once }: &mut Self::Work,
+        to: &mut PointOf<P>,
+    ) -> Result<LocalError<ScalarOf<P>>, StepError> {
+        match stepper.step_with_error(problem, step, from, to) {
+            Some(local) => local,
+            None => doubled(self.order(problem), step, from, once, to, |step, y| {
+                stepper.step(problem, step, y)
+            }),
+        }
+    }
+}

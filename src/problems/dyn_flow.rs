@@ -1,0 +1,226 @@
+//! All problems on one group and action as one type: f is behind a pointer.
+//!
+//! A type of problem costs the compiler every method that is used with it. A program that offers many
+//! problems by many methods shares the type where they share a group and an action, and pays one call
+//! for each evaluation of f.
+
+use core::fmt;
+use core::marker::PhantomData;
+use std::sync::Arc;
+
+use super::flow::TimeAlone;
+use super::{AlgOf, LiePoisson, LinearField, LinearSpace, PointOf, Problem, ScalarOf};
+use crate::actions::Action;
+use crate::chart::FieldStore;
+use crate::groups::{LieAlgebra, LieGroup};
+use crate::scalar::Real;
+
+/// A problem on M by G and Λ, whatever its field; what is known of it beyond f is known at run time.
+///
+/// The type says what its problems may be: with L = [`TimeAlone`] some are of linear type, with H = [`Known`]
+/// some are Lie–Poisson systems. Each problem says which it is: [`is_linear`](Self::is_linear),
+/// [`is_lie_poisson`](Self::is_lie_poisson). Methods by name look at that.
+///
+/// ```
+/// use lieflow::actions::Linear;
+/// use lieflow::groups::So3;
+/// use lieflow::methods::{Rk, tableau::RK4};
+/// use lieflow::problems::{DynFlow, Flow, TimeAlone};
+/// use lieflow::{SaveAt, TimeGrid, integrate};
+/// use nalgebra::Vector3;
+/// let so3 = So3::<f64>::new();
+/// let problems: [DynFlow<_, _, TimeAlone>; 2] = [
+///     DynFlow::new(Flow::new(so3, Linear, |_, x, v| *v = Vector3::new(0.0, 0.0, x[0])), Linear),
+///     DynFlow::linear(Flow::of_time(so3, Linear, |t, v| *v = Vector3::new(0.0, 0.0, t)), Linear),
+/// ];
+/// let grid = TimeGrid::new([0.0, 1.0], 0.1)?;
+/// for problem in &problems {
+///     let mut x = Vector3::x();
+///     integrate(problem, &Rk(RK4), &grid, &SaveAt::Ends, &mut x, |_, _| {})?;
+///     assert!((x.norm() - 1.0).abs() < 1e-5);
+/// }
+/// assert!(problems[1].is_linear());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct DynFlow<G: LieGroup, A: Action<G>, L = (), H = ()> {
+    known: PhantomData<fn() -> (L, H)>,
+    group: G,
+    action: A,
+    linear: bool,
+    energy: Option<Energy<A::Point, G::Scalar>>,
+    work: Box<dyn Fn() -> DynWork<G, A::Point>>,
+}
+
+/// The mark of a type of problems of which some have a Hamiltonian.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Known;
+
+/// H(m).
+type Energy<M, S> = Box<dyn Fn(&M) -> S>;
+
+/// The problem of a [`DynFlow`] with its scratch.
+#[allow(missing_debug_implementations)] // nothing of it is known
+pub struct DynWork<G: LieGroup, M>(Box<dyn Running<G, M>>);
+
+/// A problem with its scratch.
+trait Running<G: LieGroup, M> {
+    fn f(&mut self, t: G::Scalar, y: &M, v: &mut G::Alg);
+    fn field(&mut self, t: G::Scalar, y: &M, dy: &mut M);
+    fn discrete_gradient(&mut self, a: &M, b: &M, xi: &mut G::Alg, scratch: (&mut M, &mut G::Alg));
+}
+
+/// [`LiePoisson::discrete_gradient`] of a problem.
+type Gradient<P> = fn(
+    &P,
+    &PointOf<P>,
+    &PointOf<P>,
+    &mut AlgOf<P>,
+    (&mut PointOf<P>, &mut AlgOf<P>),
+    &mut <P as Problem>::Work,
+);
+
+struct Run<P: Problem> {
+    problem: Arc<P>,
+    store: FieldStore<P>,
+    gradient: Option<Gradient<P>>,
+}
+
+impl<P: Problem> Running<P::Group, PointOf<P>> for Run<P> {
+    fn f(&mut self, t: ScalarOf<P>, y: &PointOf<P>, v: &mut AlgOf<P>) {
+        self.problem.f(t, y, v, &mut self.store.work);
+    }
+    fn field(&mut self, t: ScalarOf<P>, y: &PointOf<P>, dy: &mut PointOf<P>) {
+        self.problem.field(t, y, dy, &mut self.store);
+    }
+    fn discrete_gradient(
+        &mut self,
+        a: &PointOf<P>,
+        b: &PointOf<P>,
+        xi: &mut AlgOf<P>,
+        scratch: (&mut PointOf<P>, &mut AlgOf<P>),
+    ) {
+        match self.gradient {
+            Some(gradient) => gradient(&self.problem, a, b, xi, scratch, &mut self.store.work),
+            None => {
+                let (group, lit) = (self.problem.group(), ScalarOf::<P>::lit);
+                group.set_zero(scratch.1);
+                group.set_zero(xi);
+                group.axpy(lit(f64::NAN), scratch.1, xi);
+            }
+        }
+    }
+}
+
+impl<G: LieGroup + Clone + 'static, A: Action<G> + 'static, L, H> DynFlow<G, A, L, H> {
+    /// The problem; `action` is its action, or another one with the same values.
+    pub fn new<P>(problem: P, action: A) -> Self
+    where
+        P: Problem<Group = G> + 'static,
+        P::Action: Action<G, Point = A::Point>,
+    {
+        Self::of(Arc::new(problem), action, None)
+    }
+
+    fn of<P>(problem: Arc<P>, action: A, gradient: Option<Gradient<P>>) -> Self
+    where
+        P: Problem<Group = G> + 'static,
+        P::Action: Action<G, Point = A::Point>,
+    {
+        let group = problem.group().clone();
+        let work = Box::new(move || {
+            let (problem, store) = (problem.clone(), FieldStore::new(&*problem));
+            DynWork(Box::new(Run { problem, store, gradient }) as Box<dyn Running<G, A::Point>>)
+        });
+        DynFlow { known: PhantomData, group, action, linear: false, energy: None, work }
+    }
+}
+
+impl<G: LieGroup + Clone + 'static, A: Action<G> + 'static, H> DynFlow<G, A, TimeAlone, H> {
+    /// The equation of linear type.
+    pub fn linear<P>(problem: P, action: A) -> Self
+    where
+        P: LinearField<Group = G> + 'static,
+        P::Action: Action<G, Point = A::Point>,
+    {
+        DynFlow { linear: true, ..Self::new(problem, action) }
+    }
+}
+
+impl<G: LieGroup + Clone + 'static, A: Action<G> + 'static, L> DynFlow<G, A, L, Known> {
+    /// The Lie–Poisson system.
+    pub fn lie_poisson<P>(problem: P, action: A) -> Self
+    where
+        P: LiePoisson + Problem<Group = G> + 'static,
+        P::Action: Action<G, Point = A::Point>,
+    {
+        let problem = Arc::new(problem);
+        let energy: Energy<_, _> = Box::new({
+            let problem = problem.clone();
+            move |m| problem.hamiltonian(m)
+        });
+        DynFlow { energy: Some(energy), ..Self::of(problem, action, Some(P::discrete_gradient)) }
+    }
+}
+
+impl<G: LieGroup, A: Action<G>, L, H> DynFlow<G, A, L, H> {
+    /// Does f depend on t alone?
+    pub fn is_linear(&self) -> bool {
+        self.linear
+    }
+
+    /// Is it a Lie–Poisson system?
+    pub fn is_lie_poisson(&self) -> bool {
+        self.energy.is_some()
+    }
+}
+
+impl<G: LieGroup, A: Action<G>, L, H> fmt::Debug for DynFlow<G, A, L, H> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("DynFlow").field("group", &self.group.name()).finish_non_exhaustive()
+    }
+}
+
+impl<G: LieGroup, A: Action<G>, L, H> Problem for DynFlow<G, A, L, H> {
+    type Group = G;
+    type Action = A;
+    type Work = DynWork<G, A::Point>;
+
+    fn group(&self) -> &G {
+        &self.group
+    }
+    fn action(&self) -> &A {
+        &self.action
+    }
+    fn work(&self) -> Self::Work {
+        (self.work)()
+    }
+    fn f(&self, t: G::Scalar, y: &A::Point, v: &mut G::Alg, work: &mut Self::Work) {
+        work.0.f(t, y, v);
+    }
+    fn field(&self, t: G::Scalar, y: &A::Point, dy: &mut A::Point, store: &mut FieldStore<Self>) {
+        store.work.0.field(t, y, dy);
+    }
+}
+
+/// Of those that are made by [`DynFlow::linear`].
+impl<G: LieGroup, A: Action<G>, H> LinearField for DynFlow<G, A, TimeAlone, H> {}
+
+/// Of those that are made by [`DynFlow::lie_poisson`]; of others H and its gradient are not numbers.
+impl<G: LieGroup, A, L> LiePoisson for DynFlow<G, A, L, Known>
+where
+    A: Action<G, Point: LinearSpace<Scalar = G::Scalar>>,
+{
+    fn hamiltonian(&self, m: &A::Point) -> G::Scalar {
+        self.energy.as_ref().map_or(G::Scalar::lit(f64::NAN), |energy| energy(m))
+    }
+    fn discrete_gradient(
+        &self,
+        a: &A::Point,
+        b: &A::Point,
+        xi: &mut G::Alg,
+        scratch: (&mut A::Point, &mut G::Alg),
+        work: &mut Self::Work,
+    ) {
+        work.0.discrete_gradient(a, b, xi, scratch);
+    }
+}

@@ -1,0 +1,348 @@
+//! A problem from a closure: a group, an action and f(t, y), with what else is known of it.
+//!
+//! | known | by | capability |
+//! |---|---|---|
+//! | f depends on t alone, f(t, y) = A(t) | [`Flow::of_time`], [`Flow::linear`] | [`LinearField`] |
+//! | f(m) = −∇H(m) | [`Flow::hamiltonian`] | [`LiePoisson`], [`Invariants`] |
+//! | a quantity that is constant | [`Flow::invariant`] | [`Invariants`] |
+
+use core::fmt;
+
+use super::averaged::mean_of_gradients;
+use super::{Invariant, Invariants, LiePoisson, LinearField, LinearSpace, Problem};
+use crate::actions::Action;
+use crate::groups::{LieAlgebra, LieGroup};
+use crate::scalar::Real;
+use crate::space::Metric;
+
+/// ẏ = λ_*(f(t, y))(y) from a group, an action and a closure that writes f(t, y) ∈ 𝔤.
+///
+/// It is compiled for its closure: a step costs what it costs with a hand-written [`Problem`].
+///
+/// ```
+/// use lieflow::actions::Coadjoint;
+/// use lieflow::groups::So3;
+/// use lieflow::maps::Cay;
+/// use lieflow::methods::EnergyCasimir;
+/// use lieflow::problems::Flow;
+/// use lieflow::{SaveAt, TimeGrid, integrate};
+/// use nalgebra::Vector3;
+///
+/// // A free rigid body: f = −J⁻¹m, H = ½ m·J⁻¹m.
+/// let omega = |m: &Vector3<f64>| m.component_div(&Vector3::new(1.0, 2.0, 3.0));
+/// let body = Flow::new(So3::<f64>::new(), Coadjoint, |_, m, v| *v = -omega(m))
+///     .hamiltonian(|m| 0.5 * m.dot(&omega(m)));
+/// let (mut m, start) = (Vector3::new(0.2, 1.0, 3.0), Vector3::new(0.2, 1.0, 3.0));
+/// let grid = TimeGrid::new([0.0, 100.0], 0.1)?;
+/// integrate(&body, &EnergyCasimir::new(Cay), &grid, &SaveAt::Ends, &mut m, |_, _| {})?;
+/// assert!((m.dot(&omega(&m)) - start.dot(&omega(&start))).abs() < 1e-13);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// A method that needs more than is known does not compile:
+/// ```compile_fail
+/// # use lieflow::{actions::Coadjoint, groups::So3, maps::Cay, methods::EnergyCasimir, problems::Flow};
+/// let body = Flow::new(So3::<f64>::new(), Coadjoint, |_, m, v| *v = -m);
+/// lieflow::Method::order(&EnergyCasimir::new(Cay), &body);
+/// ```
+#[derive(Clone, Copy)]
+pub struct Flow<G, A, F, K = Facts> {
+    group: G,
+    action: A,
+    field: F,
+    facts: K,
+}
+
+/// A [`Flow`] whose closure writes A(t), f(t, y) = A(t).
+pub type LinearFlow<G, A, F> = Flow<G, A, OfTime<F>, Facts<TimeAlone>>;
+
+/// What is known of a [`Flow`] beyond f: whether it depends on t alone, H, and further invariants.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Facts<L = (), H = (), I = ()> {
+    linear: L,
+    energy: H,
+    invariants: I,
+}
+
+/// The fact that f depends on t alone.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct TimeAlone;
+
+type With<G, A, F, L, H, I> = Flow<G, A, F, Facts<L, H, I>>;
+
+/// f(t, y) of a [`Flow`]: a closure, or one with scratch.
+pub trait Field<G: LieGroup, A: Action<G>> {
+    /// Scratch.
+    type Work;
+    /// Scratch for [`f`](Self::f).
+    fn work(&self) -> Self::Work;
+    /// v ← f(t, y).
+    fn f(&self, t: G::Scalar, y: &A::Point, v: &mut G::Alg, work: &mut Self::Work);
+}
+
+impl<G: LieGroup, A: Action<G>, F: Fn(G::Scalar, &A::Point, &mut G::Alg)> Field<G, A> for F {
+    type Work = ();
+
+    fn work(&self) {}
+    #[inline]
+    fn f(&self, t: G::Scalar, y: &A::Point, v: &mut G::Alg, _: &mut ()) {
+        self(t, y, v);
+    }
+}
+
+/// A closure of t alone.
+#[derive(Clone, Copy, Debug)]
+pub struct OfTime<F>(F);
+
+impl<G: LieGroup, A: Action<G>, F: Fn(G::Scalar, &mut G::Alg)> Field<G, A> for OfTime<F> {
+    type Work = ();
+
+    fn work(&self) {}
+    #[inline]
+    fn f(&self, t: G::Scalar, _: &A::Point, v: &mut G::Alg, _: &mut ()) {
+        (self.0)(t, v);
+    }
+}
+
+/// A closure with scratch, and the closure that makes the scratch.
+#[derive(Clone, Copy, Debug)]
+pub struct WithWork<M, F> {
+    make: M,
+    field: F,
+}
+
+impl<G, A, W, M, F> Field<G, A> for WithWork<M, F>
+where
+    G: LieGroup,
+    A: Action<G>,
+    M: Fn() -> W,
+    F: Fn(G::Scalar, &A::Point, &mut G::Alg, &mut W),
+{
+    type Work = W;
+
+    fn work(&self) -> W {
+        (self.make)()
+    }
+    #[inline]
+    fn f(&self, t: G::Scalar, y: &A::Point, v: &mut G::Alg, work: &mut W) {
+        (self.field)(t, y, v, work);
+    }
+}
+
+const UNKNOWN: Facts = Facts { linear: (), energy: (), invariants: () };
+
+impl<G: LieGroup, A: Action<G>, F: Fn(G::Scalar, &A::Point, &mut G::Alg)> Flow<G, A, F> {
+    /// The problem; `field(t, y, v)` writes f(t, y) into v, all of it.
+    pub const fn new(group: G, action: A, field: F) -> Self {
+        Flow { group, action, field, facts: UNKNOWN }
+    }
+}
+
+impl<G: LieGroup, A: Action<G>, F: Fn(G::Scalar, &mut G::Alg)> LinearFlow<G, A, F> {
+    /// The equation of linear type ẏ = λ_*(A(t))(y), Ẏ = A(t)Y on a matrix group; `field(t, v)` writes A(t)
+    /// into v, all of it.
+    ///
+    /// ```
+    /// use lieflow::actions::Linear;
+    /// use lieflow::groups::So3;
+    /// use lieflow::methods::magnus::Magnus4;
+    /// use lieflow::problems::Flow;
+    /// use lieflow::{SaveAt, TimeGrid, integrate};
+    /// use nalgebra::Vector3;
+    ///
+    /// // A spin in a field that turns.
+    /// let spin = Flow::of_time(So3::<f64>::new(), Linear, |t, v| {
+    ///     *v = Vector3::new(t.cos(), t.sin(), 2.0);
+    /// });
+    /// let mut x = Vector3::new(0.0, 0.0, 1.0);
+    /// let grid = TimeGrid::new([0.0, 1.0], 0.01)?;
+    /// integrate(&spin, &Magnus4, &grid, &SaveAt::Ends, &mut x, |_, _| {})?;
+    /// assert!((x.norm() - 1.0).abs() < 1e-13);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub const fn of_time(group: G, action: A, field: F) -> Self {
+        let facts = Facts { linear: TimeAlone, energy: (), invariants: () };
+        Flow { group, action, field: OfTime(field), facts }
+    }
+
+    /// The equation with the same A(t), on the points of another action.
+    pub fn by<B: Action<G>>(self, action: B) -> LinearFlow<G, B, F> {
+        Flow { group: self.group, action, field: self.field, facts: self.facts }
+    }
+}
+
+impl<G: LieGroup, A: Action<G>, M, F> Flow<G, A, WithWork<M, F>> {
+    /// The problem of a field with scratch: `make()` makes the scratch, once a run, and
+    /// `field(t, y, v, scratch)` writes f(t, y) into v, all of it.
+    pub const fn with_work<W>(group: G, action: A, make: M, field: F) -> Self
+    where
+        M: Fn() -> W,
+        F: Fn(G::Scalar, &A::Point, &mut G::Alg, &mut W),
+    {
+        Flow { group, action, field: WithWork { make, field }, facts: UNKNOWN }
+    }
+}
+
+impl<G: LieGroup, A: Action<G>, F, L, H, I> With<G, A, F, L, H, I> {
+    /// The same problem, known to be of linear type: f depends on t alone. Magnus methods rest on it.
+    pub fn linear(self) -> With<G, A, F, TimeAlone, H, I> {
+        let Flow { group, action, field, facts: Facts { energy, invariants, .. } } = self;
+        Flow { group, action, field, facts: Facts { linear: TimeAlone, energy, invariants } }
+    }
+
+    /// The same problem with its Hamiltonian, f(m) = −∇H(m) under the coadjoint action: H is the invariant
+    /// `energy`, and methods that keep it have the mean of −f between two points as discrete gradient.
+    pub fn hamiltonian<E: Fn(&A::Point) -> G::Scalar>(
+        self,
+        value: E,
+    ) -> With<G, A, F, L, Energy<E>, I> {
+        let Flow { group, action, field, facts: Facts { linear, invariants, .. } } = self;
+        Flow { group, action, field, facts: Facts { linear, energy: Energy(value), invariants } }
+    }
+
+    /// The same problem with a further invariant and its value.
+    pub fn invariant<Q: Fn(&A::Point) -> G::Scalar>(
+        self,
+        invariant: Invariant,
+        value: Q,
+    ) -> With<G, A, F, L, H, Quantity<I, Q>> {
+        let Flow { group, action, field, facts: Facts { linear, energy, invariants } } = self;
+        let invariants = Quantity { before: invariants, invariant, value };
+        Flow { group, action, field, facts: Facts { linear, energy, invariants } }
+    }
+}
+
+/// The Hamiltonian of a [`Flow`].
+#[derive(Clone, Copy, Debug)]
+pub struct Energy<E>(E);
+
+/// An invariant of a [`Flow`], after those that were named before it.
+#[derive(Clone, Debug)]
+pub struct Quantity<I, Q> {
+    before: I,
+    invariant: Invariant,
+    value: Q,
+}
+
+/// A list of invariants.
+pub trait Quantities<M, S> {
+    /// Calls `take` with each and its value at y.
+    fn each(&self, y: &M, take: &mut dyn FnMut(S));
+    /// Their names.
+    fn names(&self) -> Vec<Invariant>;
+}
+
+impl<M, S> Quantities<M, S> for () {
+    fn each(&self, _: &M, _: &mut dyn FnMut(S)) {}
+    fn names(&self) -> Vec<Invariant> {
+        Vec::new()
+    }
+}
+
+impl<M, S, E: Fn(&M) -> S> Quantities<M, S> for Energy<E> {
+    fn each(&self, y: &M, take: &mut dyn FnMut(S)) {
+        take((self.0)(y));
+    }
+    fn names(&self) -> Vec<Invariant> {
+        vec![Invariant::of_the_flow("energy")]
+    }
+}
+
+impl<M, S, I: Quantities<M, S>, Q: Fn(&M) -> S> Quantities<M, S> for Quantity<I, Q> {
+    fn each(&self, y: &M, take: &mut dyn FnMut(S)) {
+        self.before.each(y, take);
+        take((self.value)(y));
+    }
+    fn names(&self) -> Vec<Invariant> {
+        let mut names = self.before.names();
+        names.push(self.invariant.clone());
+        names
+    }
+}
+
+impl<G: LieAlgebra, A, F, K> fmt::Debug for Flow<G, A, F, K> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Flow").field("group", &self.group.name()).finish_non_exhaustive()
+    }
+}
+
+impl<G: LieGroup, A: Action<G>, F: Field<G, A>, K> Problem for Flow<G, A, F, K> {
+    type Group = G;
+    type Action = A;
+    type Work = F::Work;
+
+    fn group(&self) -> &G {
+        &self.group
+    }
+    fn action(&self) -> &A {
+        &self.action
+    }
+    fn work(&self) -> F::Work {
+        self.field.work()
+    }
+    #[inline]
+    fn f(&self, t: G::Scalar, y: &A::Point, v: &mut G::Alg, work: &mut F::Work) {
+        self.field.f(t, y, v, work);
+    }
+}
+
+impl<G, A, F, H, I> LinearField for Flow<G, A, F, Facts<TimeAlone, H, I>>
+where
+    G: LieGroup,
+    A: Action<G>,
+    F: Field<G, A>,
+{
+}
+
+impl<G, A, F, L, E, I> LiePoisson for Flow<G, A, F, Facts<L, Energy<E>, I>>
+where
+    G: LieGroup,
+    A: Action<G, Point: LinearSpace<Scalar = G::Scalar>>,
+    F: Field<G, A>,
+    E: Fn(&A::Point) -> G::Scalar,
+{
+    fn hamiltonian(&self, m: &A::Point) -> G::Scalar {
+        (self.facts.energy.0)(m)
+    }
+    /// At t = 0: a Hamiltonian system has no other time.
+    fn discrete_gradient(
+        &self,
+        a: &A::Point,
+        b: &A::Point,
+        xi: &mut G::Alg,
+        (m, v): (&mut A::Point, &mut G::Alg),
+        work: &mut F::Work,
+    ) {
+        let lit = G::Scalar::lit;
+        mean_of_gradients(&self.group, xi, v, |s, v| {
+            m.assign(a);
+            m.add(-s, a);
+            m.add(s, b);
+            self.f(lit(0.0), m, v, work);
+        });
+        self.group.set_zero(v);
+        self.group.axpy(lit(-1.0), xi, v);
+        core::mem::swap(v, xi);
+    }
+}
+
+impl<G, A, F, L, H, I> Invariants for Flow<G, A, F, Facts<L, H, I>>
+where
+    G: LieGroup,
+    A: Action<G>,
+    F: Field<G, A>,
+    H: Quantities<A::Point, G::Scalar>,
+    I: Quantities<A::Point, G::Scalar>,
+{
+    fn invariants(&self) -> Vec<Invariant> {
+        let mut all = self.facts.energy.names();
+        all.extend(self.facts.invariants.names());
+        all
+    }
+    fn values(&self, y: &A::Point) -> Vec<G::Scalar> {
+        let mut all = Vec::new();
+        self.facts.energy.each(y, &mut |x| all.push(x));
+        self.facts.invariants.each(y, &mut |x| all.push(x));
+        all
+    }
+}

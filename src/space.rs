@@ -1,0 +1,292 @@
+//! Linear spaces with a norm: what the points of M, the elements of 𝔤 and those of G are kept in.
+//!
+//! A manifold of your own implements [`Metric`] and [`LinearSpace`] for the storage of its points, and
+//! every method of the library runs on it: classical ones too.
+
+use faer::Mat;
+use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
+
+use crate::dense;
+use crate::scalar::{Counted, DoubleDouble, Ops, Real, tally};
+
+/// Points that can be compared: those of a linear space with a norm.
+///
+/// Implemented for numbers, for vectors and matrices of both layers by the Frobenius norm, and for
+/// pairs and boxed slices of them. Allocates nothing.
+pub trait Metric {
+    /// The reals of the norm.
+    type Scalar: Real;
+    /// self ← x, into the storage that there is.
+    fn assign(&mut self, x: &Self);
+    /// ‖self‖.
+    fn size(&self) -> Self::Scalar;
+    /// ‖self − x‖.
+    fn distance(&self, x: &Self) -> Self::Scalar;
+}
+
+/// A point of a linear space with a norm. Allocates nothing.
+///
+/// ```
+/// use lieflow::space::{LinearSpace, Metric};
+/// use nalgebra::Vector3;
+/// // A vector and a number: pairs of points are points.
+/// let mut y = (Vector3::new(1.0, 0.0, 0.0), 2.0);
+/// y.add(-0.5, &y.clone());
+/// assert_eq!(y, (Vector3::new(0.5, 0.0, 0.0), 1.0));
+/// assert_eq!(y.dot(&y), 1.25);
+/// ```
+pub trait LinearSpace: Metric + Clone {
+    /// self ← 0.
+    fn clear(&mut self);
+    /// self ← self + a·x.
+    fn add(&mut self, a: Self::Scalar, x: &Self);
+    /// ⟨self, x⟩, the sum of the products of their numbers.
+    fn dot(&self, x: &Self) -> Self::Scalar;
+    /// Is every number finite?
+    fn is_finite(&self) -> bool;
+}
+
+macro_rules! number {
+    ($($t:ty),*) => {$(
+        impl Metric for $t {
+            type Scalar = $t;
+            #[inline]
+            fn assign(&mut self, x: &Self) {
+                *self = *x;
+            }
+            #[inline]
+            fn size(&self) -> $t {
+                Real::abs(*self)
+            }
+            #[inline]
+            fn distance(&self, x: &Self) -> $t {
+                Real::abs(*self - *x)
+            }
+        }
+
+        impl LinearSpace for $t {
+            #[inline]
+            fn clear(&mut self) {
+                *self = <$t>::lit(0.0);
+            }
+            #[inline]
+            fn add(&mut self, a: $t, x: &Self) {
+                *self += a * *x;
+            }
+            #[inline]
+            fn dot(&self, x: &Self) -> $t {
+                *self * *x
+            }
+            #[inline]
+            fn is_finite(&self) -> bool {
+                Real::is_finite(*self)
+            }
+        }
+    )*};
+}
+number!(f32, f64, Counted, DoubleDouble);
+
+macro_rules! small {
+    ($($t:ident),*) => {$(
+        impl<S: Real> Metric for $t<S> {
+            type Scalar = S;
+            /// Entry by entry: a vector that is copied whole goes through memory.
+            #[inline]
+            fn assign(&mut self, x: &Self) {
+                self.as_mut_slice().iter_mut().zip(x.as_slice()).for_each(|(y, x)| *y = *x);
+            }
+            #[inline]
+            fn size(&self) -> S {
+                self.as_slice().iter().fold(S::lit(0.0), |s, &x| s + x * x).sqrt()
+            }
+            #[inline]
+            fn distance(&self, x: &Self) -> S {
+                let pairs = self.as_slice().iter().zip(x.as_slice());
+                let squares = pairs.fold(S::lit(0.0), |s, (&a, &b)| {
+                    let d = a - b;
+                    s + d * d
+                });
+                squares.sqrt()
+            }
+        }
+
+        impl<S: Real> LinearSpace for $t<S> {
+            #[inline]
+            fn clear(&mut self) {
+                self.as_mut_slice().fill(S::lit(0.0));
+            }
+            #[inline]
+            fn add(&mut self, a: S, x: &Self) {
+                for (y, x) in self.as_mut_slice().iter_mut().zip(x.as_slice()) {
+                    *y += a * *x;
+                }
+            }
+            #[inline]
+            fn dot(&self, x: &Self) -> S {
+                let pairs = self.as_slice().iter().zip(x.as_slice());
+                pairs.fold(S::lit(0.0), |sum, (y, x)| sum + *y * *x)
+            }
+            #[inline]
+            fn is_finite(&self) -> bool {
+                self.as_slice().iter().all(|x| x.is_finite())
+            }
+        }
+    )*};
+}
+small!(Vector3, Matrix3);
+
+impl Metric for Mat<f64> {
+    type Scalar = f64;
+    fn assign(&mut self, x: &Self) {
+        self.copy_from(x);
+    }
+    fn size(&self) -> f64 {
+        dense::norm_frobenius(self)
+    }
+    fn distance(&self, x: &Self) -> f64 {
+        tally(|| Ops::adds(2 * x.nrows() * x.ncols()) + Ops::muls(x.nrows() * x.ncols()));
+        let mut s = 0.0;
+        for j in 0..self.ncols() {
+            for (a, b) in self.col_as_slice(j).iter().zip(x.col_as_slice(j)) {
+                s += (a - b) * (a - b);
+            }
+        }
+        s.sqrt()
+    }
+}
+
+impl LinearSpace for Mat<f64> {
+    fn clear(&mut self) {
+        self.fill(0.0);
+    }
+    fn add(&mut self, a: f64, x: &Self) {
+        dense::axpy(a, x, self);
+    }
+    fn dot(&self, x: &Self) -> f64 {
+        tally(|| Ops::dots(1, x.nrows() * x.ncols()));
+        let column = |j| self.col_as_slice(j).iter().zip(x.col_as_slice(j));
+        (0..self.ncols()).flat_map(column).map(|(y, x)| y * x).sum()
+    }
+    fn is_finite(&self) -> bool {
+        dense::is_finite(self)
+    }
+}
+
+/// As a point of ℝ⁴: q and −q are different points.
+impl Metric for UnitQuaternion<f64> {
+    type Scalar = f64;
+    #[inline]
+    fn assign(&mut self, x: &Self) {
+        *self = *x;
+    }
+    #[inline]
+    fn size(&self) -> f64 {
+        tally(|| Ops::dots(1, 4) + Ops::sqrts(1));
+        self.coords.norm()
+    }
+    #[inline]
+    fn distance(&self, x: &Self) -> f64 {
+        tally(|| Ops::adds(4) + Ops::dots(1, 4) + Ops::sqrts(1));
+        (self.coords - x.coords).norm()
+    }
+}
+
+impl LinearSpace for UnitQuaternion<f64> {
+    #[inline]
+    fn clear(&mut self) {
+        *self = UnitQuaternion::new_unchecked(Quaternion::new(0.0, 0.0, 0.0, 0.0));
+    }
+    #[inline]
+    fn add(&mut self, a: f64, x: &Self) {
+        tally(|| Ops::muladds(4));
+        *self = UnitQuaternion::new_unchecked(Quaternion::from(self.coords + a * x.coords));
+    }
+    #[inline]
+    fn dot(&self, x: &Self) -> f64 {
+        tally(|| Ops::dots(1, 4));
+        self.coords.dot(&x.coords)
+    }
+    #[inline]
+    fn is_finite(&self) -> bool {
+        self.coords.iter().all(|x| x.is_finite())
+    }
+}
+
+impl<A: Metric, B: Metric<Scalar = A::Scalar>> Metric for (A, B) {
+    type Scalar = A::Scalar;
+    #[inline]
+    fn assign(&mut self, x: &Self) {
+        self.0.assign(&x.0);
+        self.1.assign(&x.1);
+    }
+    #[inline]
+    fn size(&self) -> A::Scalar {
+        let (a, b) = (self.0.size(), self.1.size());
+        (a * a + b * b).sqrt()
+    }
+    #[inline]
+    fn distance(&self, x: &Self) -> A::Scalar {
+        let (a, b) = (self.0.distance(&x.0), self.1.distance(&x.1));
+        (a * a + b * b).sqrt()
+    }
+}
+
+impl<A: LinearSpace, B: LinearSpace<Scalar = A::Scalar>> LinearSpace for (A, B) {
+    #[inline]
+    fn clear(&mut self) {
+        self.0.clear();
+        self.1.clear();
+    }
+    #[inline]
+    fn add(&mut self, a: A::Scalar, x: &Self) {
+        self.0.add(a, &x.0);
+        self.1.add(a, &x.1);
+    }
+    #[inline]
+    fn dot(&self, x: &Self) -> A::Scalar {
+        self.0.dot(&x.0) + self.1.dot(&x.1)
+    }
+    #[inline]
+    fn is_finite(&self) -> bool {
+        self.0.is_finite() && self.1.is_finite()
+    }
+}
+
+impl<M: Metric> Metric for Box<[M]> {
+    type Scalar = M::Scalar;
+    #[inline]
+    fn assign(&mut self, x: &Self) {
+        for (y, x) in self.iter_mut().zip(x) {
+            y.assign(x);
+        }
+    }
+    fn size(&self) -> M::Scalar {
+        let squares = self.iter().map(|a| a.size()).fold(M::Scalar::lit(0.0), |s, a| s + a * a);
+        squares.sqrt()
+    }
+    fn distance(&self, x: &Self) -> M::Scalar {
+        let gaps = self.iter().zip(x).map(|(a, b)| a.distance(b));
+        gaps.fold(M::Scalar::lit(0.0), |s, d| s + d * d).sqrt()
+    }
+}
+
+impl<A: LinearSpace> LinearSpace for Box<[A]> {
+    #[inline]
+    fn clear(&mut self) {
+        self.iter_mut().for_each(A::clear);
+    }
+    #[inline]
+    fn add(&mut self, a: A::Scalar, x: &Self) {
+        for (y, x) in self.iter_mut().zip(x) {
+            y.add(a, x);
+        }
+    }
+    #[inline]
+    fn dot(&self, x: &Self) -> A::Scalar {
+        self.iter().zip(x).fold(A::Scalar::lit(0.0), |sum, (y, x)| sum + y.dot(x))
+    }
+    #[inline]
+    fn is_finite(&self) -> bool {
+        self.iter().all(A::is_finite)
+    }
+}

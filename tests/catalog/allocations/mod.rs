@@ -1,0 +1,43 @@
+//! What allocates once, when it is made, and not in a step.
+
+mod adaptive;
+mod exponentials;
+mod maps;
+mod products;
+mod steps;
+
+use lieflow::problems::{PointOf, Problem};
+use lieflow::{Action, LieAlgebra, Method, Step};
+
+use crate::counting;
+
+/// The allocations of ten steps, each with its way back to M, after the workspace is made. A step goes
+/// before: the product library makes its packing buffer at the first large product of a thread.
+pub(crate) fn of_steps<P: Problem, M: Method<P>>(
+    problem: &P,
+    method: &M,
+    start: &PointOf<P>,
+) -> usize
+where
+    P::Group: LieAlgebra<Scalar = f64>,
+{
+    let mut y = start.clone();
+    let mut work = method.work(problem, &y).expect("the method fits");
+    let mut back = problem.action().work(problem.group());
+    let mut step = |n| {
+        let step = Step { n, t: 0.1, h: 0.02 };
+        method.step(problem, step, &mut y, &mut work).expect("a step");
+        problem.action().restore_to(problem.group(), start, &mut y, &mut back);
+    };
+    step(0);
+    let before = counting::total();
+    (1..11).for_each(step);
+    counting::total() - before
+}
+
+#[test]
+fn the_counter_counts() {
+    let before = (counting::total(), counting::bytes());
+    drop(std::hint::black_box(vec![0u8; 10]));
+    assert_eq!((counting::total(), counting::bytes()), (before.0 + 1, before.1 + 10));
+}

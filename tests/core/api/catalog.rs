@@ -1,0 +1,138 @@
+//! Names: every one that is listed resolves, any other is answered with the list.
+
+use lieflow::Step;
+use lieflow::catalog::{MAPS, MethodSpec, Needs, TABLEAUS, all_methods};
+use lieflow::methods::{Embedded, Method};
+use lieflow::problems::RigidBody;
+use nalgebra::Vector3;
+
+use super::says;
+use crate::support::named;
+
+fn body() -> RigidBody {
+    RigidBody::new([1.0, 2.0, 3.0]).unwrap()
+}
+
+fn order_of(spec: &MethodSpec) -> Result<usize, lieflow::Error> {
+    named::explicit(spec, |method| {
+        method.work(&body(), &Vector3::x()).unwrap();
+        method.order(&body())
+    })
+}
+
+#[test]
+fn every_listed_name_resolves() {
+    for method in Needs::Field.methods() {
+        let maps: Vec<_> = if method.takes_map() {
+            MAPS.iter().map(|m| Some(m.name)).collect()
+        } else {
+            vec![None]
+        };
+        let tableaus: Vec<_> = if method.takes_tableau {
+            TABLEAUS.iter().map(|t| Some(t.name)).collect()
+        } else {
+            vec![None]
+        };
+        for map in maps.iter().copied().chain([None]) {
+            for tableau in &tableaus {
+                let tableau = tableau.map(|t| t.to_string());
+                let spec = MethodSpec { tableau, ..MethodSpec::new(method.name, map) };
+                let order = order_of(&spec).unwrap();
+                assert!(
+                    method.order.number().is_none_or(|o| o == order),
+                    "{}: {order}",
+                    spec.label()
+                );
+                for part in [map, spec.tableau.as_deref(), Some(method.name)].into_iter().flatten()
+                {
+                    assert!(spec.label().contains(part), "{}", spec.label());
+                }
+            }
+        }
+    }
+    let cut = MethodSpec { q: Some(1), ..MethodSpec::new("rkmk4", Some("exp")) };
+    assert_eq!((order_of(&cut).unwrap(), cut.label()), (3, "rkmk4 exp q=1".into()));
+    for (q, order) in [(0, 2), (1, 3), (2, 4), (3, 4), (9, 4)] {
+        assert_eq!(order_of(&MethodSpec { q: Some(q), ..cut.clone() }).unwrap(), order, "q = {q}");
+    }
+}
+
+/// One step with its estimate: the order of the estimate, and the estimate.
+fn estimate(spec: &MethodSpec) -> Result<(usize, f64), lieflow::Error> {
+    named::explicit(spec, |method| {
+        let (start, mut to) = (Vector3::new(1.0, 0.8, -1.2), Vector3::zeros());
+        let mut work = method.work(&body(), &start).unwrap();
+        let step = Step { n: 0, t: 0.0, h: 0.4 };
+        let local = method.step_with_error(&body(), step, &start, &mut work, &mut to).unwrap();
+        (method.error_order(&body()).unwrap(), local.error)
+    })
+}
+
+#[test]
+fn every_listed_method_has_an_estimate() {
+    for method in Needs::Field.methods() {
+        let maps =
+            if method.takes_map() { &[None, Some("cay"), Some("ccsk")][..] } else { &[None] };
+        let tableaus = if method.takes_tableau { TABLEAUS } else { &TABLEAUS[..1] };
+        for (map, tableau) in maps.iter().flat_map(|m| tableaus.iter().map(move |t| (m, t))) {
+            let tableau = method.takes_tableau.then(|| tableau.name.to_string());
+            let spec = MethodSpec { tableau, ..MethodSpec::new(method.name, *map) };
+            let (order, error) = estimate(&spec).unwrap();
+            let (label, full) = (spec.label(), order_of(&spec).unwrap());
+            // Step doubling estimates to the order of the method, a pair to a lower one.
+            assert_eq!(order < full, spec.has_pair().unwrap(), "{label}: {order}");
+            assert!(order <= full, "{label}: {order}");
+            assert!(error.is_finite() && error > 0.0, "{label}: {error}");
+        }
+    }
+    let unknown = MethodSpec { tableau: Some("rk5".into()), ..MethodSpec::new("rkmk", None) };
+    assert!(unknown.has_pair().is_err());
+    assert_eq!(estimate(&unknown).unwrap_err(), order_of(&unknown).unwrap_err());
+}
+
+#[test]
+fn unknown_names_are_answered_with_the_list() {
+    let names: Vec<_> = Needs::Field.methods().iter().map(|m| m.name).collect();
+    let refused = order_of(&MethodSpec::new("leapfrog", None)).unwrap_err();
+    says(&refused, &["method", "`leapfrog`"]);
+    says(&refused, &names);
+    let names: Vec<_> = MAPS.iter().map(|m| m.name).collect();
+    let refused = order_of(&MethodSpec::new("rkmk4", Some("Exp"))).unwrap_err();
+    says(&refused, &["map", "`Exp`"]);
+    says(&refused, &names);
+    for method in ["rkmk", "rk"] {
+        let tableau = Some("rk5".to_string());
+        let spec = MethodSpec { tableau, ..MethodSpec::new(method, None) };
+        let refused = order_of(&spec).unwrap_err();
+        says(&refused, &["tableau", "`rk5`"]);
+        says(&refused, &TABLEAUS.iter().map(|t| t.name).collect::<Vec<_>>());
+    }
+    assert!(order_of(&MethodSpec::new("", None)).is_err());
+}
+
+#[test]
+fn parts_that_a_method_does_not_take_are_refused() {
+    let part = |method, map, tableau: Option<&str>, q| {
+        let tableau = tableau.map(Into::into);
+        order_of(&MethodSpec { tableau, q, ..MethodSpec::new(method, map) }).unwrap_err()
+    };
+    says(part("rk4", Some("exp"), None, None), &["map", "`rk4`", "leave map out"]);
+    says(part("rk", Some("cay"), None, None), &["map", "`rk`"]);
+    says(part("rk4", None, None, Some(2)), &["q", "`rk4`", "leave q out"]);
+    says(part("rkmk4", None, Some("heun"), None), &["tableau", "`rkmk4`", "`rkmk`"]);
+    says(part("rk4", None, Some("heun"), None), &["tableau", "`rk4`"]);
+    for map in MAPS.iter().filter(|m| m.name != "exp") {
+        says(part("rkmk4", Some(map.name), None, Some(2)), &["q", map.name, "exp"]);
+    }
+}
+
+/// docs/methods.md names every method, map and tableau.
+#[test]
+fn the_guide_knows_them_all() {
+    let guide = include_str!("../../../docs/methods.md");
+    let methods = all_methods().map(|info| info.name);
+    for name in methods.chain(TABLEAUS.iter().map(|t| t.name)).chain(MAPS.iter().map(|m| m.name)) {
+        let named = guide.contains(&format!("`{name}`")) || name.starts_with("ccsk");
+        assert!(named, "`{name}` is not in docs/methods.md");
+    }
+}

@@ -1,0 +1,143 @@
+//! Groups, elements and problems are checked where they are made.
+
+use approx::{AbsDiffEq, RelativeEq, assert_abs_diff_eq, assert_relative_eq};
+use faer::{Mat, mat};
+use lieflow::Error;
+use lieflow::groups::{MEMBERSHIP, MatrixGroup, RCOND_MIN, So3};
+use lieflow::problems::{Exact, RigidBody, RigidBodyAttitude, RigidBodyN, RigidBodyNAttitude};
+use nalgebra::Matrix3;
+
+use super::says;
+
+fn so(n: usize) -> MatrixGroup {
+    MatrixGroup::so(n).unwrap()
+}
+
+#[test]
+fn groups_check_their_size() {
+    for refused in [MatrixGroup::so(0), MatrixGroup::gl(0), MatrixGroup::indefinite(0, 0)] {
+        says(refused.unwrap_err(), &["n = 0", "1 ≤ n"]);
+    }
+    assert!(MatrixGroup::sp(0).is_err());
+    says(MatrixGroup::sp(3).unwrap_err(), &["n = 3", "even"]);
+    for huge in [32769, usize::MAX] {
+        for refused in [MatrixGroup::so(huge), MatrixGroup::gl(huge)] {
+            says(refused.unwrap_err(), &["n = ", "n ≤ 32768"]);
+        }
+        assert!(MatrixGroup::indefinite(huge, huge).is_err());
+    }
+    for n in [1, 2, 9] {
+        assert_eq!(so(n).n(), n);
+    }
+}
+
+#[test]
+fn the_form_of_a_group_is_checked() {
+    says(MatrixGroup::gm(Mat::zeros(2, 3)).unwrap_err(), &["M: 2×3", "square"]);
+    says(MatrixGroup::gm(Mat::zeros(0, 0)).unwrap_err(), &["n = 0"]);
+    let nan = mat![[1.0, 0.0], [f64::NAN, 1.0]];
+    says(MatrixGroup::gm(nan).unwrap_err(), &["M[1,0] = NaN", "finite"]);
+    let infinite = mat![[1.0, f64::NEG_INFINITY], [0.0, 1.0]];
+    says(MatrixGroup::gm(infinite).unwrap_err(), &["M[0,1] = -inf", "finite"]);
+    let rank_one = mat![[1.0, 2.0], [2.0, 4.0]];
+    for singular in [rank_one, Mat::zeros(3, 3)] {
+        let refused = MatrixGroup::gm(singular).unwrap_err();
+        assert!(matches!(refused, Error::Singular { rcond: 0.0, .. }), "{refused}");
+        says(refused, &["M", "singular", "rcond = 0", "1.0e-14"]);
+    }
+    // Nearly singular: the reciprocal condition number decides, and it is scale-free.
+    for scale in [1e-100, 1.0, 1e100] {
+        let near = |gap: f64| mat![[1.0, 0.0], [0.0, gap]] * faer::Scale(scale);
+        says(MatrixGroup::gm(near(1e-16)).unwrap_err(), &["rcond = 1.000e-16"]);
+        assert!(MatrixGroup::gm(near(2.0 * RCOND_MIN)).is_ok(), "scale {scale}");
+    }
+}
+
+#[test]
+fn elements_of_the_algebra_are_checked() {
+    says(so(2).algebra(Mat::zeros(2, 3)).unwrap_err(), &["u: 2×3", "square"]);
+    says(so(3).algebra(Mat::zeros(2, 2)).unwrap_err(), &["u: 2×2", "3×3"]);
+    let nan = mat![[0.0, f64::NAN], [0.0, 0.0]];
+    says(so(2).algebra(nan.clone()).unwrap_err(), &["u[0,1] = NaN", "finite"]);
+    says(MatrixGroup::gl(2).unwrap().algebra(nan).unwrap_err(), &["u[0,1] = NaN"]);
+    let symmetric = mat![[0.0, 1.0], [1.0, 0.0]];
+    says(so(2).algebra(symmetric.clone()).unwrap_err(), &["u", "SO(2)", "residual", "1.0e-12"]);
+    assert!(MatrixGroup::gl(2).unwrap().algebra(symmetric.clone()).is_ok());
+    assert!(MatrixGroup::sp(2).unwrap().algebra(symmetric).is_ok());
+    // The residual is relative: the same answer at every size, without overflow.
+    for size in [1e-300, 1e-10, 1.0, 1e300, 1e308] {
+        let skewed = |gap: f64| mat![[0.0, -size], [size * (1.0 + gap), 0.0]];
+        assert!(so(2).algebra(skewed(0.1 * MEMBERSHIP)).is_ok(), "size {size}");
+        assert!(so(2).algebra(skewed(10.0 * MEMBERSHIP)).is_err(), "size {size}");
+        assert!(so(2).algebra_within(skewed(1e-3), 1e-2).is_ok(), "size {size}");
+    }
+    assert!(so(2).algebra(Mat::zeros(2, 2)).is_ok());
+}
+
+#[test]
+fn elements_of_the_group_are_checked() {
+    says(so(2).element(Mat::zeros(3, 2)).unwrap_err(), &["g: 3×2", "square"]);
+    says(so(3).element(Mat::identity(2, 2)).unwrap_err(), &["g: 2×2", "3×3"]);
+    let nan = mat![[1.0, 0.0], [0.0, f64::INFINITY]];
+    says(so(2).element(nan).unwrap_err(), &["g[1,1] = inf", "finite"]);
+    let stretched = mat![[1.0, 0.0], [0.0, 1.0 + 1e-9]];
+    says(so(2).element(stretched.clone()).unwrap_err(), &["g", "SO(2)", "residual", "1.0e-12"]);
+    assert!(so(2).element_within(stretched, 1e-8).is_ok());
+    says(so(2).element(Mat::zeros(2, 2)).unwrap_err(), &["g", "SO(2)"]);
+    let reflection = mat![[1.0, 0.0], [0.0, -1.0]];
+    assert_eq!(so(2).element(reflection), Err(Error::Reflection { arg: "g" }));
+    says(Error::Reflection { arg: "g" }, &["g", "determinant is −1", "+1"]);
+    says(
+        MatrixGroup::gl(2).unwrap().element(mat![[1.0, 1.0], [1.0, 1.0]]).unwrap_err(),
+        &["g", "singular", "rcond"],
+    );
+    let squeeze = mat![[1e5, 0.0], [0.0, 1e-5]];
+    assert!(MatrixGroup::sp(2).unwrap().element(squeeze).is_ok());
+    for g in [1e200, 1e308] {
+        assert!(so(2).element(mat![[g, 0.0], [0.0, g]]).is_err(), "{g}");
+    }
+}
+
+#[test]
+fn rotations_in_closed_form_are_checked() {
+    let check = |g: Matrix3<f64>| So3::new().check_element("g", &g, MEMBERSHIP);
+    assert_eq!(check(Matrix3::identity()), Ok(()));
+    let mut g = Matrix3::identity();
+    g[(2, 1)] = f64::NAN;
+    says(check(g).unwrap_err(), &["g[2,1] = NaN", "finite"]);
+    says(check(Matrix3::identity() * 1.01).unwrap_err(), &["g", "SO(3)", "residual"]);
+    assert_eq!(check(-Matrix3::identity()), Err(Error::Reflection { arg: "g" }));
+    assert!(check(Matrix3::identity() * 1e200).is_err());
+}
+
+#[test]
+fn problems_check_their_parameters() {
+    for bad in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e-320] {
+        let value = format!("inertia[1] = {bad:?}");
+        let words = [value.as_str(), "finite number > 0"];
+        says(RigidBody::<f64>::new([1.0, bad, 2.0]).unwrap_err(), &words);
+        says(RigidBodyN::from_principal([1.0, bad, 2.0]).unwrap_err(), &words);
+        says(Exact::new([1.0, bad, 2.0], [1.0; 3], Matrix3::identity()).unwrap_err(), &words);
+    }
+    let refused = RigidBodyAttitude::<f64>::new([1.0; 3], [0.0, 0.0, f64::NAN]).unwrap_err();
+    says(refused, &["momentum_space[2] = NaN", "finite"]);
+    says(RigidBodyN::from_pairs(4, &[1.0; 5]).unwrap_err(), &["inertia: 5×1", "6×1"]);
+    assert!(RigidBodyN::from_pairs(0, &[]).is_err());
+    says(RigidBodyN::manakov(&[1.0, f64::NAN]).unwrap_err(), &["lambda[1] = NaN"]);
+    assert!(RigidBodyN::manakov(&[1.0, -1.0, 2.0]).is_err(), "J = 0");
+    let body = RigidBodyN::from_principal([1.0, 2.0, 3.0]).unwrap();
+    assert!(RigidBodyNAttitude::new(body, Mat::identity(3, 3)).is_err(), "not skew");
+}
+
+#[test]
+fn elements_compare_approximately() {
+    let u = |x: f64| so(2).algebra(mat![[0.0, -x], [x, 0.0]]).unwrap();
+    assert_abs_diff_eq!(u(1.0), u(1.0 + 1e-10), epsilon = 1e-9);
+    assert_relative_eq!(u(1e8), u(1e8 + 1e-2), max_relative = 1e-9);
+    assert!(!u(1.0).abs_diff_eq(&u(1.1), 1e-3));
+    assert!(!u(1.0).relative_eq(&u(1.1), 1e-3, 1e-3));
+    let one = |n: usize| so(n).element(Mat::identity(n, n)).unwrap();
+    assert_abs_diff_eq!(one(3), one(3));
+    assert!(!one(2).abs_diff_eq(&one(3), 1e9), "matrices of different sizes differ");
+    assert_eq!(u(0.5).into_mat()[(1, 0)], 0.5);
+}

@@ -1,0 +1,193 @@
+//! SE(3): against references of 36 digits, against the general 4×4 matrices, the representations on
+//! the algebra and its dual, the logarithm, and what is refused.
+
+use crate::support::points::Points;
+use crate::support::references::{Case, Implementation};
+use crate::support::represent::{Represent, affine};
+use crate::support::{EPS, gap};
+use faer::Mat;
+use faer::prelude::Solve;
+use lieflow::actions::{Coadjoint, LeftTranslation, Linear};
+use lieflow::groups::{Adjoint, AlgebraMatrix, LieGroup, MatrixGroup, Sample, Se3};
+use lieflow::maps::{CCSK123, Cay, CoordinateMap, Exp, Pade22};
+use lieflow::{Action, StepError};
+use nalgebra::Vector3;
+use rand::SeedableRng;
+use rand_pcg::Pcg64;
+
+type Twist = (Vector3<f64>, Vector3<f64>);
+
+const SE3: Se3 = Se3::new();
+
+fn twist(x: &[f64]) -> Twist {
+    (Vector3::new(x[0], x[1], x[2]), Vector3::new(x[3], x[4], x[5]))
+}
+
+#[test]
+fn exp_and_its_differential_against_36_digits() {
+    fn compute(case: &Case, function: &str) -> Option<Result<Vec<f64>, String>> {
+        let [u, v] = ["u", "v"].map(|name| twist(&case.numbers(name)));
+        let text = |error: lieflow::Error| error.to_string();
+        let concat = |r: &[f64], x: &Vector3<f64>| [r, x.as_slice()].concat();
+        Some(match function {
+            "exp" => Exp.eval(&SE3, &u).map(|g| concat(g.0.transpose().as_slice(), &g.1)),
+            _ => Exp.eval_dpsi_inv(&SE3, &u, &v).map(|w| concat(w.0.as_slice(), &w.1)),
+        })
+        .map(|value| value.map_err(text))
+    }
+    Implementation {
+        name: "SE(3)",
+        eps: EPS,
+        compute,
+        // The condition is that of the absolute error.
+        bound: |_, _, output| {
+            let size = output.numbers().iter().map(|x| x * x).sum::<f64>().sqrt();
+            4.0 * output.measure("cond").expect("a condition") / size
+        },
+        may_refuse: |_, _, _| false,
+    }
+    .check(&["se3"], 50);
+}
+
+fn dense(u: &Twist) -> AlgebraMatrix {
+    AlgebraMatrix::new_unchecked(SE3.algebra_matrix(u))
+}
+
+/// The 4×4 matrices in GL(4) have the same Ψ and dΨ⁻¹.
+#[test]
+fn closed_forms_are_those_of_the_4x4_matrices() {
+    fn check<Psi: CoordinateMap<Se3> + CoordinateMap<MatrixGroup>>(psi: Psi, c: f64) {
+        let gl4 = MatrixGroup::gl(4).unwrap();
+        let mut rng = Pcg64::seed_from_u64(1);
+        for k in 0..200 {
+            let size = 10f64.powf(-6.0 + 6.4 * k as f64 / 200.0);
+            let (u, a) = (SE3.of_size(&mut rng, size), SE3.of_size(&mut rng, 1.0));
+            let closed = SE3.element_matrix(&psi.eval(&SE3, &u).unwrap());
+            let general = psi.eval(&gl4, &dense(&u)).unwrap();
+            assert!(gap(&closed, &general) < c * EPS * general.norm_l2(), "Ψ, case {k}");
+            let closed = SE3.algebra_matrix(&psi.eval_dpsi_inv(&SE3, &u, &a).unwrap());
+            let general = psi.eval_dpsi_inv(&gl4, &dense(&u), &dense(&a)).unwrap();
+            let far = gap(&closed, &general);
+            assert!(far < c * EPS * (1.0 + size).powi(2), "dΨ⁻¹, case {k}: {far:e}");
+        }
+    }
+    check(Exp, 32.0);
+    check(Cay, 32.0);
+    check(Pade22, 32.0);
+}
+
+fn inverse(g: &Mat<f64>) -> Mat<f64> {
+    g.partial_piv_lu().solve(Mat::<f64>::identity(4, 4))
+}
+
+#[test]
+fn adjoint_and_coadjoint() {
+    let mut rng = Pcg64::seed_from_u64(2);
+    for _ in 0..100 {
+        let [a, b] = [(); 2].map(|()| SE3.sample_element(&mut rng));
+        let [u, v] = [(); 2].map(|()| SE3.sample_algebra(&mut rng, 1.0));
+        let m = Points::<Se3>::draw(&Coadjoint, &SE3, &mut rng);
+        let (mut out, mut moved, mut one) = (SE3.zero_twist(), m, SE3.identity());
+        let matrix = SE3.element_matrix(&a);
+        let size = matrix.norm_l2().powi(2);
+
+        SE3.inverse(&a, &mut one).unwrap();
+        assert!(gap(&SE3.element_matrix(&one), &inverse(&matrix)) < 16.0 * EPS * size);
+        SE3.big_ad(&a, &u, &mut out).unwrap();
+        let expected = &matrix * SE3.algebra_matrix(&u) * inverse(&matrix);
+        assert!(gap(&SE3.algebra_matrix(&out), &expected) < 32.0 * EPS * size);
+
+        // ⟨Ad*_a m, u⟩ = ⟨m, Ad_a u⟩ and ⟨ad*_u m, v⟩ = ⟨m, [u, v]⟩.
+        SE3.coad_group(&a, &m, &mut moved).unwrap();
+        assert!((SE3.pair(&moved, &u) - SE3.pair(&m, &out)).abs() < 64.0 * EPS * size);
+        SE3.coad(&u, &m, &mut moved);
+        let bracket = SE3.commutator(&u, &v);
+        assert!((SE3.pair(&moved, &v) - SE3.pair(&m, &bracket)).abs() < 64.0 * EPS);
+
+        // The action is Ad*_{g⁻¹}, and keeps π·π and μ·π.
+        let mut acted = m;
+        Coadjoint.act(&SE3, &a, &m, &mut acted, &mut ());
+        SE3.coad_group(&one, &m, &mut moved).unwrap();
+        assert!((acted.0 - moved.0).norm() + (acted.1 - moved.1).norm() < 32.0 * EPS * size);
+        let mut twice = m;
+        Coadjoint.act(&SE3, &b, &acted, &mut twice, &mut ());
+        assert!((twice.1.norm() - m.1.norm()).abs() < 32.0 * EPS * m.1.norm());
+        let casimir = |m: &Twist| m.0.dot(&m.1);
+        let bound = 64.0 * EPS * size * SE3.element_matrix(&b).norm_l2() * m.1.norm_squared();
+        assert!(
+            (casimir(&twice) - casimir(&m)).abs() < bound + 64.0 * EPS * m.0.norm() * m.1.norm()
+        );
+    }
+}
+
+trait ZeroTwist {
+    fn zero_twist(&self) -> Twist;
+}
+impl ZeroTwist for Se3 {
+    fn zero_twist(&self) -> Twist {
+        lieflow::LieAlgebra::zero(self)
+    }
+}
+
+#[test]
+fn logarithm() {
+    let mut rng = Pcg64::seed_from_u64(3);
+    let pi = core::f64::consts::PI;
+    for angle in [0.0, 1e-300, 1e-12, 1e-3, 0.5, 1.0, 2.0, 3.0, pi - 1e-6] {
+        for _ in 0..20 {
+            let (direction, v) =
+                (SE3.sample_vector(&mut rng).normalize(), SE3.sample_vector(&mut rng));
+            let u = (direction * angle, v);
+            let back = SE3.log(&Exp.eval(&SE3, &u).unwrap()).unwrap();
+            let far = (back.0 - u.0).norm() + (back.1 - u.1).norm();
+            assert!(far < 32.0 * EPS * (1.0 + v.norm()), "at {angle}: {far:e}");
+            assert!((back.0 - u.0).norm() <= 16.0 * EPS * angle.max(1e-290), "at {angle}");
+        }
+    }
+    let g = SE3.sample_element(&mut rng);
+    let again = Exp.eval(&SE3, &SE3.log(&g).unwrap()).unwrap();
+    assert!(SE3.distance(&again, &g) < 64.0 * EPS);
+    let off = (g.0 * 1.5, g.1);
+    assert!(SE3.log(&off).is_err());
+}
+
+#[test]
+fn what_cannot_be_computed_is_refused() {
+    let nan = (Vector3::new(0.1, f64::NAN, 0.0), Vector3::zeros());
+    let far = (Vector3::new(0.1, 0.2, 0.3), Vector3::new(0.0, f64::INFINITY, 0.0));
+    let turn = (Vector3::new(0.0, core::f64::consts::TAU, 0.0), Vector3::new(1.0, 0.0, 0.0));
+    let huge = (Vector3::new(1e160, 0.0, 0.0), Vector3::new(1.0, 2.0, 3.0));
+    let a = (Vector3::x(), Vector3::y());
+    for u in [nan, far] {
+        assert!(Exp.eval(&SE3, &u).is_err() && Cay.eval(&SE3, &u).is_err());
+        assert!(Pade22.eval(&SE3, &u).is_err() && CCSK123.eval(&SE3, &u).is_err());
+    }
+    let singular = Exp.eval_dpsi_inv(&SE3, &turn, &a);
+    assert!(matches!(
+        singular,
+        Err(lieflow::Error::Map(StepError::OutsideChart { map: "exp", .. }))
+    ));
+    assert!(Exp.eval_dpsi_inv(&SE3, &huge, &a).is_err() && Pade22.eval(&SE3, &huge).is_err());
+    // The map itself has a value: a rotation, and a translation that is nearly along the axis.
+    let g = Exp.eval(&SE3, &huge).unwrap();
+    assert!(SE3.defect(&g) < 16.0 * EPS && (g.1[0] - 1.0).abs() < 1e-12);
+}
+
+/// Left translation takes R back to SO(3) and leaves x.
+#[test]
+fn drift_is_corrected() {
+    let mut rng = Pcg64::seed_from_u64(4);
+    let mut g = SE3.sample_element(&mut rng);
+    let x = g.1;
+    g.0[(0, 1)] += 1e-9;
+    let mut work = Action::<Se3>::work(&LeftTranslation, &SE3);
+    let residual = LeftTranslation.restore(&SE3, &mut g, &mut work).unwrap();
+    assert!(residual > 1e-10 && SE3.defect(&g) < 16.0 * EPS && g.1 == x);
+    // A point moves as the 4×4 matrix says.
+    let p = SE3.sample_vector(&mut rng);
+    let mut q = p;
+    Linear.act(&SE3, &g, &p, &mut q, &mut ());
+    let by_matrix =
+        affine(&Mat::from_fn(3, 3, |i, j| g.0[(i, j)]), &g.1, 1.0) * SE3.vector_matrix(&p);
+    assert!(gap(&SE3.vector_matrix(&q), &by_matrix) < 8.0 * EPS * by_matrix.norm_l2());
+}

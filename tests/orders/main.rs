@@ -1,0 +1,17 @@
+//! Orders and costs: every method of the catalog, measured on problems that depend on t and y and do
+//! not commute.
+
+#[path = "../support/mod.rs"]
+mod support;
+
+mod adaptive;
+mod costs;
+mod fields;
+mod implicit;
+mod lie_series;
+mod not_computed;
+mod products;
+mod rigid_body;
+mod rigid_methods;
+mod second_results;
+mod wide;

@@ -1,0 +1,63 @@
+//! The exact solution of the rigid body against references of 36 digits.
+
+use lieflow::methods::Taylor;
+use lieflow::problems::{Exact, RigidBodyState};
+use nalgebra::{Matrix3, Vector3};
+
+use crate::support::references::motions;
+
+/// Orbits from the separatrix to the axes, which take one form near the former and another elsewhere,
+/// against a Lie series. Each starts again from its state at half the time.
+#[test]
+fn every_orbit_moves_as_the_lie_series_says() {
+    let mut worst = 0.0f64;
+    for inertia in [[1.0, 2.0, 3.0], [18.0, 4.0, 1.0], [1.0, 1.0, 2.0], [1.0, 1.001, 1.5]] {
+        for k in 0..=60 {
+            let angle = std::f64::consts::FRAC_PI_2 * f64::from(k) / 60.0;
+            let m = Vector3::new(angle.cos(), 0.3, -angle.sin()).normalize();
+            let start = Exact::new(inertia, m.into(), Matrix3::identity()).expect("a body");
+            let (half_m, half_g) = start.state(2.0).expect("a time");
+            let (end_m, end_g) = start.state(4.0).expect("a time");
+            let again = Exact::new(inertia, half_m.into(), half_g).expect("a body");
+            let (again_m, again_g) = again.state(2.0).expect("a time");
+            let body = RigidBodyState::new(inertia).expect("a body");
+            let mut y = body.state(m.into(), Matrix3::identity()).expect("a state");
+            Taylor::<16>.advance(&body, 4.0, 1e-16, &mut 0.1, &mut y).expect("a run");
+            for (m, g) in [(again_m, again_g), (y.m, y.g)] {
+                let gap = (m - end_m).norm() + (g - end_g).norm();
+                assert!(gap < 3e-13, "{inertia:?}, {m:?}: {gap:e}");
+                worst = worst.max(gap);
+            }
+        }
+    }
+    println!("worst {worst:.1e}");
+}
+
+/// Within 3 times what one ulp of the input changes, plus 3e-14 (of |m|, and of g).
+#[test]
+fn momentum_and_attitude_at_every_reference() {
+    let motions = motions("");
+    assert!(motions.len() >= 100);
+    let mut failures = Vec::new();
+    for case in &motions {
+        let g0 = case.attitude0.unwrap_or_else(Matrix3::identity);
+        let body = Exact::new(case.inertia, case.momentum, g0).expect("a valid body");
+        let (m, g) = body.state(case.t).expect("a state");
+        let (m_ref, g_ref) = (case.m, case.g);
+        let scale = m_ref.amax().max(f64::MIN_POSITIVE);
+        let error_m = ((m - m_ref) / scale).norm();
+        let error_g = (g - g_ref).norm();
+        let bound_m = 3.0 * case.ulp[0] / scale + 3e-14;
+        let bound_g = 3.0 * case.ulp[1] + 3e-14;
+        eprintln!(
+            "{:40} m {error_m:.1e} ({:.2})  g {error_g:.1e} ({:.2})",
+            case.id,
+            error_m / bound_m,
+            error_g / bound_g
+        );
+        if !(error_m <= bound_m && error_g <= bound_g) {
+            failures.push(&case.id);
+        }
+    }
+    assert!(failures.is_empty(), "{failures:?}");
+}

@@ -1,0 +1,135 @@
+//! Problems from closures: the same bits as a problem written by hand, and what is known beyond f.
+
+use super::*;
+use faer::Mat;
+use lieflow::LieGroup;
+use lieflow::actions::{Coadjoint, LeftTranslation, Linear};
+use lieflow::groups::{MatrixGroup, Product, Sample, So3, Translations};
+use lieflow::methods::magnus::Magnus4;
+use lieflow::methods::{EnergyCasimir, GAUSS4, Gauss};
+use lieflow::problems::{
+    DynFlow, Flow, Invariant, Known, LiePoisson, Oja, RigidBody, RigidBodyN, SphericalPendulum,
+};
+use nalgebra::Vector3;
+use rand::SeedableRng;
+use rand_pcg::Pcg64;
+
+type V = Vector3<f64>;
+const INERTIA: [f64; 3] = [1.0, 2.0, 3.0];
+
+fn momentum() -> V {
+    V::new(0.2, 1.0, 3.0)
+}
+
+/// By a method of each kind.
+fn ends<P>(problem: &P, y: &PointOf<P>) -> [PointOf<P>; 3]
+where
+    P: Ambient,
+    Cay: CoordinateMap<P::Group>,
+{
+    [
+        run(problem, &Rkmk::new(RK4, Cay), 1.0, 20, y),
+        run(problem, &Rk(RK4), 1.0, 20, y),
+        run(problem, &Gauss(GAUSS4), 1.0, 20, y),
+    ]
+}
+
+#[test]
+fn a_closure_is_the_problem_written_by_hand() {
+    let body = RigidBody::<f64>::new(INERTIA).unwrap();
+    let closure = Flow::new(So3::<f64>::new(), Coadjoint, |_, m, v| *v = -body.omega(m));
+    assert_eq!(ends(&closure, &momentum()), ends(&body, &momentum()));
+    assert_eq!(format!("{closure:?}"), "Flow { group: \"SO(3)\", .. }");
+
+    // The dense layer, with scratch.
+    let so4 = MatrixGroup::so(4).unwrap();
+    let body = RigidBodyN::manakov(&[1.0, 2.0, 3.0, 4.0]).unwrap();
+    let m = so4.sample_algebra(&mut Pcg64::seed_from_u64(1), 1.0).into_mat();
+    let make = || Mat::<f64>::zeros(4, 4);
+    let closure = Flow::with_work(so4, Coadjoint, make, |_, m, v, scratch: &mut Mat<f64>| {
+        scratch.copy_from(m);
+        body.f(0.0, scratch, v, &mut ());
+    });
+    assert_eq!(ends(&closure, &m), ends(&body, &m));
+}
+
+#[test]
+fn on_a_product() {
+    // ẋ = (0, 0, s) × x, ṡ = 1: x turns by the angle t²/2.
+    let group = Product(So3::<f64>::new(), Translations::new(0.0, 1));
+    let flow = Flow::new(group, Linear, |_, y, v| *v = (V::new(0.0, 0.0, y.1), 1.0));
+    let (x, s) = run(&flow, &Rkmk::new(RK4, Exp), 2.0, 10, &(V::x(), 0.0));
+    assert!((x - V::new(2f64.cos(), 2f64.sin(), 0.0)).norm() < 1e-14 && (s - 2.0).abs() < 1e-14);
+}
+
+#[test]
+fn linear_type_by_its_type_and_by_its_name() {
+    let a = |t: f64| V::new(t.cos(), t.sin(), 2.0);
+    let of_time = Flow::of_time(So3::<f64>::new(), Linear, |t, v| *v = a(t));
+    let by_name = Flow::new(So3::<f64>::new(), Linear, |t, _, v| *v = a(t)).linear();
+    let end = run(&of_time, &Magnus4, 1.0, 10, &V::x());
+    assert_eq!(end, run(&by_name, &Magnus4, 1.0, 10, &V::x()));
+    // The first column of ġ = A(t)g.
+    let one = of_time.group().identity();
+    let g = run(&of_time.by(LeftTranslation), &Magnus4, 1.0, 10, &one);
+    assert!((g * V::x() - end).norm() < 1e-15);
+}
+
+/// H = Σ cosh(k_i m_i), which is not quadratic.
+#[test]
+fn a_hamiltonian_and_invariants() {
+    let k = V::new(1.0, 0.6, 0.3);
+    let energy = move |m: &V| m.component_mul(&k).map(f64::cosh).sum();
+    let flow = Flow::new(So3::<f64>::new(), Coadjoint, move |_, m, v| {
+        *v = -k.component_mul(&m.component_mul(&k).map(f64::sinh));
+    })
+    .hamiltonian(energy)
+    .invariant(Invariant::of_the_action("|m|²"), |m| m.norm_squared());
+
+    let names = [Invariant::of_the_flow("energy"), Invariant::of_the_action("|m|²")];
+    assert_eq!(flow.invariants(), names);
+    let m = V::new(0.3, 0.1, 1.0);
+    assert_eq!(flow.values(&m), [energy(&m), m.norm_squared()]);
+
+    let (b, mut xi, mut scratch) = (V::new(-0.4, 1.3, 0.2), V::zeros(), (V::zeros(), V::zeros()));
+    let (point, v) = (&mut scratch.0, &mut scratch.1);
+    flow.discrete_gradient(&m, &b, &mut xi, (point, v), &mut ());
+    assert!(((b - m).dot(&xi) - (energy(&b) - energy(&m))).abs() < 4.0 * EPS * energy(&b));
+
+    let end = run(&flow, &EnergyCasimir::new(Cay), 20.0, 200, &m);
+    assert!((energy(&end) - energy(&m)).abs() < 200.0 * EPS * energy(&m));
+    keeps_its_invariants(&flow, &m, 10.0, 100, 1e-4);
+}
+
+/// The same bits behind a pointer, with a field on M of its own (Oja) and without one.
+#[test]
+fn behind_a_pointer() {
+    let body = RigidBody::<f64>::new(INERTIA).unwrap();
+    let pointed: DynFlow<_, _, (), Known> = DynFlow::lie_poisson(body, Coadjoint);
+    assert_eq!(ends(&pointed, &momentum()), ends(&body, &momentum()));
+    assert_eq!(pointed.hamiltonian(&momentum()), body.energy(&momentum()));
+    assert!(pointed.is_lie_poisson() && !pointed.is_linear());
+    let by = EnergyCasimir::new(Cay);
+    assert_eq!(run(&pointed, &by, 1.0, 10, &momentum()), run(&body, &by, 1.0, 10, &momentum()));
+
+    let a = faer::mat![[2.0, 0.5, 0.1], [0.5, 1.0, -0.3], [0.1, -0.3, 0.2]];
+    let (oja, x) = (Oja::new(a, 1).unwrap(), faer::mat![[0.6], [0.0], [0.8]]);
+    let pointed: DynFlow<_, _> = DynFlow::new(oja.clone(), Linear);
+    assert_eq!(ends(&pointed, &x), ends(&oja, &x));
+
+    let pendulum = SphericalPendulum::new(9.81).unwrap();
+    let start = (V::new(0.3, 0.1, 0.0), V::new(0.0, 0.6, 0.8));
+    let pointed: DynFlow<_, _, (), Known> = DynFlow::lie_poisson(pendulum, Coadjoint);
+    assert_eq!(ends(&pointed, &start), ends(&pendulum, &start));
+}
+
+/// Without a Hamiltonian the gradient is not a number: a method that asks for it fails at the first step.
+#[test]
+fn a_pointer_to_a_problem_without_a_hamiltonian() {
+    let turn = Flow::new(So3::<f64>::new(), Coadjoint, |_, _, v| *v = V::x());
+    let pointed: DynFlow<_, _, (), Known> = DynFlow::new(turn, Coadjoint);
+    assert!(pointed.hamiltonian(&momentum()).is_nan());
+    let (mut m, grid) = (momentum(), TimeGrid::with_steps([0.0, 1.0], 2).unwrap());
+    let by = EnergyCasimir::new(Cay);
+    assert!(integrate(&pointed, &by, &grid, &SaveAt::Ends, &mut m, |_, _| {}).is_err());
+}

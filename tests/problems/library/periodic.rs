@@ -1,0 +1,174 @@
+//! Linear Hamiltonian systems: Mathieu's characteristic values, Hill's multipliers, beam lines, and
+//! Riccati's equation.
+
+use super::*;
+use faer::{Mat, mat};
+use lieflow::actions::Lagrangian;
+use lieflow::groups::{AlgebraMatrix, GroupMatrix, LieGroup, MatrixGroup};
+use lieflow::methods::magnus::{Magnus4, Magnus6, Magnus8};
+use lieflow::problems::beam::{Element, transfer_map, tunes};
+use lieflow::problems::{Flow, floquet, hill, mathieu, monodromy};
+use lieflow::{RunError, StepError};
+
+const PI: f64 = core::f64::consts::PI;
+
+fn trace(g: &GroupMatrix) -> f64 {
+    (0..g.nrows()).map(|i| g[(i, i)]).sum()
+}
+
+/// At its characteristic values for q = 1 (DLMF 28.2; eigenvalues of the recurrence, 25 digits)
+/// Mathieu's equation has a solution of period π or 2π: tr M = ±2.
+#[test]
+fn mathieus_characteristic_values() {
+    for (a, expected) in [
+        (-0.4551386041074135482326332, 2.0), // a₀
+        (-0.1102488169920951699065, -2.0),   // b₁
+        (1.859108072514363472329918, -2.0),  // a₁
+        (3.917024772998471186703417, 2.0),   // b₂
+    ] {
+        let m = monodromy(&mathieu(a, 1.0).unwrap(), &Magnus8, [0.0, PI], 60).unwrap();
+        assert!((trace(&m) - expected).abs() < 1e-10, "a = {a}: {}", trace(&m));
+        // Next to it one side is stable, the other not.
+        let radius = |a: f64| {
+            let m = monodromy(&mathieu(a, 1.0).unwrap(), &Magnus6, [0.0, PI], 60).unwrap();
+            floquet(&m).unwrap().spectral_radius()
+        };
+        let (below, above) = (radius(a - 1e-3), radius(a + 1e-3));
+        assert!(below.min(above) < 1.0 + 1e-12 && below.max(above) > 1.01, "{below} {above}");
+    }
+}
+
+/// Without modulation the multipliers are e^{±iωT}; with it they come in pairs λ, 1/λ.
+#[test]
+fn hills_multipliers() {
+    let plain = monodromy(&mathieu(2.0, 0.0).unwrap(), &Magnus4, [0.0, PI], 4).unwrap();
+    let [re, im] = floquet(&plain).unwrap().multipliers[0];
+    let phase = 2f64.sqrt() * PI;
+    assert!((re - phase.cos()).abs() < 1e-13 && (im.abs() - phase.sin().abs()).abs() < 1e-13);
+
+    let stiffness = |t: f64, i: usize, j: usize| match i == j {
+        true => 1.0 + i as f64 + 0.8 * (2.0 * t).cos(),
+        false => 0.3 * (2.0 * t).sin(),
+    };
+    let m = monodromy(&hill(2, stiffness).unwrap(), &Magnus6, [0.0, PI], 100).unwrap();
+    let sp = MatrixGroup::sp(4).unwrap();
+    assert!(sp.defect(&m) < 1e-13 * m.norm_l2().powi(2), "{:e}", sp.defect(&m));
+    let multipliers = floquet(&m).unwrap().multipliers;
+    let product = multipliers
+        .iter()
+        .fold([1.0, 0.0], |[a, b]: [f64; 2], [c, d]| [a * c - b * d, a * d + b * c]);
+    assert!((product[0] - 1.0).abs() + product[1].abs() < 1e-11);
+    for [re, im] in &multipliers {
+        let square = re * re + im * im;
+        let inverse = [re / square, -im / square];
+        let near = multipliers.iter().map(|z| (z[0] - inverse[0]).hypot(z[1] - inverse[1]));
+        assert!(near.fold(f64::INFINITY, f64::min) < 1e-10);
+    }
+    // The same by steps of another method.
+    let rkmk = Rkmk::new(RK4, Cay);
+    let again = monodromy(&hill(2, stiffness).unwrap(), &rkmk, [0.0, PI], 1000).unwrap();
+    assert!((&*again - &*m).norm_l2() < 1e-9);
+    assert!(hill(0, stiffness).is_err() && mathieu(f64::NAN, 1.0).is_err());
+}
+
+#[test]
+fn beam_lines() {
+    // Elements against the flow of their own equations.
+    for (element, length, kx, kz) in [
+        (Element::Drift { length: 1.3 }, 1.3, 0.0, 0.0),
+        (Element::Quadrupole { length: 0.4, k: 2.5 }, 0.4, 2.5, -2.5),
+        (Element::Quadrupole { length: 0.4, k: -2.5 }, 0.4, -2.5, 2.5),
+        (Element::Dipole { length: 2.0, radius: 5.0 }, 2.0, 0.04, 0.0),
+    ] {
+        let equation = hill(2, |_, i, j| if i != j { 0.0 } else { [kx, kz][i] }).unwrap();
+        let m = monodromy(&equation, &Magnus4, [0.0, length], 1).unwrap();
+        assert!((&*m - &*element.map().unwrap()).norm_l2() < 1e-14, "{element:?}");
+    }
+    // A thick FODO cell near the thin one; its maps compose and are symplectic.
+    let (f, drift) = (1.5, Element::Drift { length: 1.0 });
+    let thick = |sign: f64| Element::Quadrupole { length: 1e-4, k: sign * 1e4 / f };
+    let thin = |sign: f64| Element::ThinLens { focal_length: sign * f };
+    let cell = transfer_map(&[thick(1.0), drift, thick(-1.0), drift]).unwrap();
+    let ideal = transfer_map(&[thin(1.0), drift, thin(-1.0), drift]).unwrap();
+    let expected = 2.0 * (2.0 / (4.0 * f)).asin() / (2.0 * PI); // sin(μ/2) = L/(4f)
+    for (a, b) in tunes(&cell).into_iter().zip(tunes(&ideal)) {
+        assert!((a.unwrap() - expected).abs() < 1e-4 && (b.unwrap() - expected).abs() < 1e-15);
+    }
+    let sp = MatrixGroup::sp(4).unwrap();
+    assert!(sp.defect(&cell) < 1e-13);
+    let half = transfer_map(&[thick(1.0), drift]).unwrap();
+    let other = transfer_map(&[thick(-1.0), drift]).unwrap();
+    assert!((&*other * &*half - &*cell).norm_l2() < 1e-14);
+    // Lenses too strong for their distance: f < L/4 is unstable in both planes.
+    let strong = |sign: f64| Element::ThinLens { focal_length: sign * 0.4 };
+    let unstable = transfer_map(&[strong(1.0), drift, strong(-1.0), drift]).unwrap();
+    assert_eq!(tunes(&unstable), [None, None]);
+    assert!(floquet(&unstable).unwrap().spectral_radius() > 1.5);
+    assert!(Element::ThinLens { focal_length: 0.0 }.map().is_err());
+    assert!(Element::Quadrupole { length: f64::NAN, k: 1.0 }.map().is_err());
+}
+
+/// Ṗ = c − aᵀP − Pa − PbP on symmetric 2×2 matrices, with coefficients that depend on t.
+#[test]
+fn riccati_on_lagrangian_subspaces() {
+    let blocks = |t: f64| {
+        let a = mat![[0.1, 0.4 * t.cos()], [-0.2, 0.3]];
+        let b = mat![[1.0, 0.2], [0.2, 0.5 + 0.3 * t.sin()]];
+        let c = mat![[0.8, -0.1 * t], [-0.1 * t, 1.1]];
+        (a, b, c)
+    };
+    let field = move |t: f64, v: &mut AlgebraMatrix| {
+        let (a, b, c) = blocks(t);
+        for j in 0..2 {
+            for i in 0..2 {
+                (v[(i, j)], v[(i, j + 2)]) = (a[(i, j)], b[(i, j)]);
+                (v[(i + 2, j)], v[(i + 2, j + 2)]) = (c[(i, j)], -a[(j, i)]);
+            }
+        }
+    };
+    let sp = MatrixGroup::sp(4).unwrap();
+    let riccati = Flow::of_time(sp, Lagrangian, field);
+    let start = mat![[0.3, 0.1], [0.1, -0.2]];
+    // The same equation by its entries, with the classical method.
+    let slope = |t: f64, p: &Mat<f64>| {
+        let (a, b, c) = blocks(t);
+        c - a.transpose() * p - p * &a - p * b * p
+    };
+    let (mut p, n) = (start.clone(), 4000);
+    let h = 2.0 / n as f64;
+    for k in 0..n {
+        let t = k as f64 * h;
+        let at = |s: f64, k: &Mat<f64>| slope(t + s * h, &(&p + k * faer::Scale(s * h)));
+        let k1 = slope(t, &p);
+        let k2 = at(0.5, &k1);
+        let k3 = at(0.5, &k2);
+        let k4 = at(1.0, &k3);
+        p = &p + (k1 + (k2 + k3) * faer::Scale(2.0) + k4) * faer::Scale(h / 6.0);
+    }
+    for (far, name) in [
+        (run(&riccati, &Magnus4, 2.0, 400, &start), "magnus4"),
+        (run(&riccati, &Rkmk::new(RK4, Cay), 2.0, 400, &start), "rkmk4"),
+    ] {
+        assert!((&far - &p).norm_l2() < 1e-8, "{name}: {:e}", (&far - &p).norm_l2());
+    }
+    let end = run(&riccati, &Magnus4, 2.0, 100, &start);
+    assert_eq!(end[(0, 1)], end[(1, 0)]);
+}
+
+/// P may become infinite between steps; where a step ends there it says so.
+#[test]
+fn poles_of_riccatis_equation() {
+    let turn =
+        Flow::of_time(MatrixGroup::sp(2).unwrap(), Lagrangian, |_: f64, v: &mut AlgebraMatrix| {
+            (v[(1, 0)], v[(0, 1)]) = (1.0, -1.0)
+        });
+    let end = run(&turn, &Magnus4, 10.0, 70, &mat![[0.0]]);
+    assert!((end[(0, 0)] - 10f64.tan()).abs() < 1e-11);
+    // cay(u) for u = 2·[0 −1; 1 0] is a quarter of a turn, exactly: A + BP = 0.
+    let grid = TimeGrid::with_steps([0.0, 2.0], 1).unwrap();
+    let mut p = mat![[0.0]];
+    let method = Rkmk::new(lieflow::methods::tableau::EULER, Cay);
+    let failed = integrate(&turn, &method, &grid, &SaveAt::Ends, &mut p, |_, _| {});
+    let Err(RunError::Step(failure)) = failed else { panic!("{failed:?}, P = {p:?}") };
+    assert_eq!(failure.source, StepError::NotFinite { what: "P" });
+}

@@ -1,0 +1,1 @@
+"""Makes the reference files: see ../README.md."""
