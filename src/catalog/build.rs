@@ -19,12 +19,12 @@ use crate::problems::{
 use crate::scalar::Trig;
 
 /// A method without an estimate of its own.
-fn plain<'p, P: Problem + 'p>(method: impl crate::Method<P> + 'p) -> Made<'p, P> {
+fn plain<'p, P: Problem + 'p>(method: impl crate::Method<P> + Clone + 'p) -> Made<'p, P> {
     Ok(Some(AnyMethod::new(method)))
 }
 
 /// A method with one.
-fn pair<'p, P: Problem + 'p>(method: impl crate::methods::Embedded<P> + 'p) -> Made<'p, P> {
+fn pair<'p, P: Problem + 'p>(method: impl crate::methods::Embedded<P> + Clone + 'p) -> Made<'p, P> {
     Ok(Some(AnyMethod::embedded(method)))
 }
 
@@ -47,10 +47,7 @@ where
             }
         }
         Recipe::OneBracket(table) => pair(OneBracket(table)),
-        Recipe::ProductOf2(table) => pair(CommutatorFree(table)),
-        Recipe::ProductOf3(table) => pair(CommutatorFree(table)),
-        Recipe::ProductOf4(table) => pair(CommutatorFree(table)),
-        Recipe::ProductOf5(table) => pair(CommutatorFree(table)),
+        Recipe::CommutatorFree(table) => pair(CommutatorFree(table)),
         Recipe::LowStorage(table) => pair(LowStorage(table)),
         _ => classical(choice),
     }

@@ -322,5 +322,10 @@ pub fn first<'p, P: Problem, const N: usize>(
     makers: [fn(&Choice<'_>) -> Made<'p, P>; N],
     choice: &Choice<'_>,
 ) -> Made<'p, P> {
-    makers.into_iter().find_map(|make| make(choice).transpose()).transpose()
+    for make in &makers {
+        if let Some(method) = make(choice)? {
+            return Ok(Some(method));
+        }
+    }
+    Ok(None)
 }

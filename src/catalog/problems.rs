@@ -127,6 +127,12 @@ hamiltonian! {
     [] Known;
 }
 
+/// What a field offers, with what is known of it besides.
+fn offered(linear: Option<Needs>, energy: Option<Needs>) -> Vec<Needs> {
+    let all = [Some(Needs::Field), Some(Needs::Norm), linear, energy];
+    all.into_iter().flatten().collect()
+}
+
 /// A closure: what is known of it decides what it offers.
 impl<G, A, F, L, H, I> MethodsByName for Flow<G, A, F, Facts<L, H, I>>
 where
@@ -163,9 +169,10 @@ where
     H: Fact<Self>,
 {
     fn offers(&self) -> Vec<Needs> {
-        let linear = L::OFFERS.filter(|_| self.is_linear());
-        let energy = H::OFFERS.filter(|_| self.is_lie_poisson());
-        [Some(Needs::Field), Some(Needs::Norm), linear, energy].into_iter().flatten().collect()
+        offered(
+            if self.is_linear() { L::OFFERS } else { None },
+            if self.is_lie_poisson() { H::OFFERS } else { None },
+        )
     }
     fn make<'p>(&self, choice: &Choice<'_>) -> Made<'p, Self>
     where

@@ -7,6 +7,7 @@ use crate::methods::{Dmv, ImplicitTableau, Scheme, SimoWong, Splitting, Tableau}
 use crate::problems::Projection;
 
 /// The stages of the explicit tableaus, in two sizes: methods by name share two types.
+#[allow(clippy::large_enum_variant)] // constants, never moved in a step
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum SizedTableau {
     /// At most four stages.
@@ -16,6 +17,7 @@ pub(crate) enum SizedTableau {
 }
 
 /// What makes a method, before its map and its tableau are chosen.
+#[allow(clippy::large_enum_variant)] // constants, never moved in a step
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Recipe {
     /// RKMK with the tableau and the map that are chosen.
@@ -25,10 +27,7 @@ pub(crate) enum Recipe {
     /// The same with a projection.
     Projected(Projection),
     OneBracket(OneBracketTableau<6>),
-    ProductOf2(ProductTableau<2>),
-    ProductOf3(ProductTableau<3>),
-    ProductOf4(ProductTableau<4>),
-    ProductOf5(ProductTableau<5>),
+    CommutatorFree(ProductTableau<5>),
     LowStorage(TwoN<13>),
     Magnus4,
     Magnus6,
@@ -63,10 +62,7 @@ impl Recipe {
     pub(crate) fn is_pair(&self) -> bool {
         match self {
             Recipe::OneBracket(table) => table.embedded.is_some(),
-            Recipe::ProductOf2(table) => table.embedded.is_some(),
-            Recipe::ProductOf3(table) => table.embedded.is_some(),
-            Recipe::ProductOf4(table) => table.embedded.is_some(),
-            Recipe::ProductOf5(table) => table.embedded.is_some(),
+            Recipe::CommutatorFree(table) => table.embedded.is_some(),
             Recipe::LowStorage(table) => table.embedded.is_some(),
             _ => false,
         }

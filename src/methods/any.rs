@@ -36,13 +36,13 @@ impl<P: Problem> fmt::Debug for AnyMethod<'_, P> {
 
 impl<'p, P: Problem + 'p> AnyMethod<'p, P> {
     /// A method without an estimate of its own.
-    pub fn new<M: Method<P> + 'p>(method: M) -> Self {
-        AnyMethod { inner: Arc::new(Erased { method: Arc::new(method), estimate: NoEstimate }) }
+    pub fn new<M: Method<P> + Clone + 'p>(method: M) -> Self {
+        AnyMethod { inner: Arc::new(Erased { method, estimate: NoEstimate }) }
     }
 
     /// A method with its estimate, where it has one.
-    pub fn embedded<M: Embedded<P> + 'p>(method: M) -> Self {
-        AnyMethod { inner: Arc::new(Erased { method: Arc::new(method), estimate: OwnEstimate }) }
+    pub fn embedded<M: Embedded<P> + Clone + 'p>(method: M) -> Self {
+        AnyMethod { inner: Arc::new(Erased { method, estimate: OwnEstimate }) }
     }
 
     /// Does the method estimate its own error on this problem? Otherwise steps are doubled.
@@ -148,14 +148,14 @@ impl<P: Problem, M: Embedded<P>> Estimate<P, M> for OwnEstimate {
 }
 
 struct Erased<M, E> {
-    method: Arc<M>,
+    method: M,
     estimate: E,
 }
 
 impl<'p, P, M, E> Inner<'p, P> for Erased<M, E>
 where
     P: Problem + 'p,
-    M: Method<P> + 'p,
+    M: Method<P> + Clone + 'p,
     E: Estimate<P, M> + 'p,
 {
     fn name(&self) -> &'static str {
@@ -181,7 +181,7 @@ where
 }
 
 struct Working<P: Problem, M: Method<P>, E> {
-    method: Arc<M>,
+    method: M,
     work: M::Work,
     estimate: E,
     problem: PhantomData<fn(&P)>,

@@ -18,6 +18,7 @@
 
 use super::embedded::{between, without_pair};
 use super::stages::Stages;
+use super::tableau::pad;
 use super::{Embedded, LocalError, Method, Metric, Step};
 use crate::error::{Error, StepError};
 use crate::groups::LieAlgebra;
@@ -53,74 +54,90 @@ pub struct ProductTableau<const S: usize> {
     pub embedded: Option<(usize, Product<S>)>,
 }
 
+impl<const S: usize> ProductTableau<S> {
+    /// How many stages the update and the second result need.
+    const fn all_stages(&self) -> usize {
+        if self.embedded.is_some() { S } else { self.update_stages }
+    }
+}
+
 /// The start of the step: the first stage of every table.
 pub(super) const fn start<const S: usize>() -> Product<S> {
     Product { from: 0, factors: &[] }
 }
 
+/// The stages of a table: the start of the step, these, and room for more that are never evaluated.
+pub(super) const fn stages<const S: usize, const N: usize>(
+    later: [Product<S>; N],
+) -> [Product<S>; S] {
+    let mut stages = [start(); S];
+    let mut i = 0;
+    while i < N {
+        stages[i + 1] = later[i];
+        i += 1;
+    }
+    stages
+}
+
 /// Order 3 with 3 stages.
-pub const CF3: ProductTableau<3> = ProductTableau {
-    name: "cf3",
-    order: 3,
-    c: [0.0, 1.0 / 3.0, 2.0 / 3.0],
-    stages: [
-        start(),
-        Product { from: 0, factors: &[[1.0 / 3.0, 0.0, 0.0]] },
-        Product { from: 0, factors: &[[0.0, 2.0 / 3.0, 0.0]] },
-    ],
-    update: Product { from: 0, factors: &[[1.0 / 3.0, 0.0, 0.0], [-1.0 / 12.0, 0.0, 0.75]] },
-    update_stages: 3,
-    embedded: None,
-};
+pub const CF3: ProductTableau<3> = cf3();
+
+/// [`CF3`] with room for S stages: methods chosen by name share one type this way.
+pub(crate) const fn cf3<const S: usize>() -> ProductTableau<S> {
+    ProductTableau {
+        name: "cf3",
+        order: 3,
+        c: pad(&[0.0, 1.0 / 3.0, 2.0 / 3.0]),
+        stages: stages([
+            Product { from: 0, factors: const { &[pad(&[1.0 / 3.0])] } },
+            Product { from: 0, factors: const { &[pad(&[0.0, 2.0 / 3.0])] } },
+        ]),
+        update: Product {
+            from: 0,
+            factors: const { &[pad(&[1.0 / 3.0]), pad(&[-1.0 / 12.0, 0.0, 0.75])] },
+        },
+        update_stages: 3,
+        embedded: None,
+    }
+}
 
 const T: f64 = 1.0 / 12.0;
 
 /// Order 4 with 4 stages; the fourth starts from the second.
-pub const CF4: ProductTableau<4> = ProductTableau {
-    name: "cf4",
-    order: 4,
-    c: [0.0, 0.5, 0.5, 1.0],
-    stages: [
-        start(),
-        Product { from: 0, factors: &[[0.5, 0.0, 0.0, 0.0]] },
-        Product { from: 0, factors: &[[0.0, 0.5, 0.0, 0.0]] },
-        Product { from: 1, factors: &[[-0.5, 0.0, 1.0, 0.0]] },
-    ],
-    update: Product {
-        from: 0,
-        factors: &[[3.0 * T, 2.0 * T, 2.0 * T, -T], [-T, 2.0 * T, 2.0 * T, 3.0 * T]],
-    },
-    update_stages: 4,
-    embedded: None,
-};
+pub const CF4: ProductTableau<4> = cf4();
+
+/// [`CF4`] with room for S stages.
+pub(crate) const fn cf4<const S: usize>() -> ProductTableau<S> {
+    ProductTableau {
+        name: "cf4",
+        order: 4,
+        c: pad(&[0.0, 0.5, 0.5, 1.0]),
+        stages: stages([
+            Product { from: 0, factors: const { &[pad(&[0.5])] } },
+            Product { from: 0, factors: const { &[pad(&[0.0, 0.5])] } },
+            Product { from: 1, factors: const { &[pad(&[-0.5, 0.0, 1.0])] } },
+        ]),
+        update: Product {
+            from: 0,
+            factors: const {
+                &[pad(&[3.0 * T, 2.0 * T, 2.0 * T, -T]), pad(&[-T, 2.0 * T, 2.0 * T, 3.0 * T])]
+            },
+        },
+        update_stages: 4,
+        embedded: None,
+    }
+}
 
 /// [`CF4`] with a fifth stage for an embedded result of order 3.
-pub const CF43: ProductTableau<5> = ProductTableau {
-    name: "cf43",
-    order: 4,
-    c: [0.0, 0.5, 0.5, 1.0, 0.75],
-    stages: [
-        start(),
-        Product { from: 0, factors: &[[0.5, 0.0, 0.0, 0.0, 0.0]] },
-        Product { from: 0, factors: &[[0.0, 0.5, 0.0, 0.0, 0.0]] },
-        Product { from: 1, factors: &[[-0.5, 0.0, 1.0, 0.0, 0.0]] },
-        Product { from: 0, factors: &[[0.0, 0.75, 0.0, 0.0, 0.0]] },
-    ],
-    update: Product {
+pub const CF43: ProductTableau<5> = {
+    let ProductTableau { mut c, mut stages, update, .. } = cf4::<5>();
+    (c[4], stages[4]) = (0.75, Product { from: 0, factors: &[[0.0, 0.75, 0.0, 0.0, 0.0]] });
+    let embedded = Product {
         from: 0,
-        factors: &[[3.0 * T, 2.0 * T, 2.0 * T, -T, 0.0], [-T, 2.0 * T, 2.0 * T, 3.0 * T, 0.0]],
-    },
-    update_stages: 4,
-    embedded: Some((
-        3,
-        Product {
-            from: 0,
-            factors: &[
-                [1.0 / 3.0, 0.0, 0.0, 0.0, 0.0],
-                [-1.0 / 9.0, 1.0 / 3.0, 0.0, 0.0, 4.0 / 9.0],
-            ],
-        },
-    )),
+        factors: &[[1.0 / 3.0, 0.0, 0.0, 0.0, 0.0], [-1.0 / 9.0, 1.0 / 3.0, 0.0, 0.0, 4.0 / 9.0]],
+    };
+    let embedded = Some((3, embedded));
+    ProductTableau { name: "cf43", order: 4, c, stages, update, update_stages: 4, embedded }
 };
 
 /// A commutator-free method with S stages.
@@ -245,7 +262,7 @@ where
         self.0.embedded.map(|(order, _)| order).ok_or_else(|| without_pair(self.0.name))
     }
     fn evaluations_with_error(&self, _: &P) -> Option<u64> {
-        Some(S as u64)
+        Some(self.0.all_stages() as u64)
     }
     fn step_with_error(
         &self,
@@ -255,7 +272,7 @@ where
         CommutatorFreeWork { inner, y }: &mut Self::Work,
         to: &mut PointOf<P>,
     ) -> Result<LocalError<ScalarOf<P>>, StepError> {
-        let done = inner.advance(&self.0, S, problem, step, from, to);
+        let done = inner.advance(&self.0, self.0.all_stages(), problem, step, from, to);
         done.map_err(|error| inner.stages.blame(problem, error))?;
         let error = match &self.0.embedded {
             Some((_, product)) => {

@@ -13,7 +13,8 @@
 //! Preserves: the group, and what the action leaves invariant. Source: P. Crouch, R. Grossman,
 //! Numerical integration of ordinary differential equations on manifolds, J. Nonlinear Sci. 3 (1993).
 
-use super::commutator_free::{Product, ProductTableau, start};
+use super::commutator_free::{Product, ProductTableau, stages, start};
+use super::tableau::pad;
 
 /// The weights of stage j alone.
 const fn only<const S: usize>(j: usize, weight: f64) -> [f64; S] {
@@ -34,30 +35,42 @@ const fn factors<const S: usize, const N: usize>(weights: [f64; N]) -> [[f64; S]
 }
 
 /// Order 2 with 2 stages.
-pub const CG2: ProductTableau<2> = ProductTableau {
-    name: "cg2",
-    order: 2,
-    c: [0.0, 0.5],
-    stages: [start(), Product { from: 0, factors: &factors([0.5]) }],
-    update: Product { from: 0, factors: &[only(1, 1.0)] },
-    update_stages: 2,
-    embedded: None,
-};
+pub const CG2: ProductTableau<2> = cg2();
+
+/// [`CG2`] with room for S stages.
+pub(crate) const fn cg2<const S: usize>() -> ProductTableau<S> {
+    ProductTableau {
+        name: "cg2",
+        order: 2,
+        c: pad(&[0.0, 0.5]),
+        stages: stages([Product { from: 0, factors: const { &factors([0.5]) } }]),
+        update: Product { from: 0, factors: const { &[only(1, 1.0)] } },
+        update_stages: 2,
+        embedded: None,
+    }
+}
 
 /// Order 3 with 3 stages.
-pub const CG3: ProductTableau<3> = ProductTableau {
-    name: "cg3",
-    order: 3,
-    c: [0.0, 0.75, 17.0 / 24.0],
-    stages: [
-        start(),
-        Product { from: 0, factors: &factors([0.75]) },
-        Product { from: 0, factors: &factors([119.0 / 216.0, 17.0 / 108.0]) },
-    ],
-    update: Product { from: 0, factors: &factors([13.0 / 51.0, -2.0 / 3.0, 24.0 / 17.0]) },
-    update_stages: 3,
-    embedded: None,
-};
+pub const CG3: ProductTableau<3> = cg3();
+
+/// [`CG3`] with room for S stages.
+pub(crate) const fn cg3<const S: usize>() -> ProductTableau<S> {
+    ProductTableau {
+        name: "cg3",
+        order: 3,
+        c: pad(&[0.0, 0.75, 17.0 / 24.0]),
+        stages: stages([
+            Product { from: 0, factors: const { &factors([0.75]) } },
+            Product { from: 0, factors: const { &factors([119.0 / 216.0, 17.0 / 108.0]) } },
+        ]),
+        update: Product {
+            from: 0,
+            factors: const { &factors([13.0 / 51.0, -2.0 / 3.0, 24.0 / 17.0]) },
+        },
+        update_stages: 3,
+        embedded: None,
+    }
+}
 
 const A2: [f64; 1] = [0.8177227988124852];
 const A3: [f64; 2] = [0.3199876375476427, 0.0659864263556022];

@@ -152,11 +152,15 @@ pub trait Method<P: Problem> {
         y: &mut PointOf<P>,
         work: &mut Self::Work,
     ) -> Result<(), (u64, StepError)> {
-        for n in steps.first..steps.end {
-            self.step(problem, steps.step(n), y, work).map_err(|error| (n, error))?;
+        let mut n = steps.first;
+        while n < steps.end {
+            if let Err(error) = self.step(problem, steps.step(n), y, work) {
+                return Err((n, error));
+            }
             if !problem.action().is_finite(problem.group(), y) {
                 return Err((n, StepError::NotFinite { what: "the state" }));
             }
+            n += 1;
         }
         Ok(())
     }

@@ -39,8 +39,13 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> Stages<P, Psi, S>
     #[cold]
     pub(super) fn blame(&mut self, problem: &P, error: StepError) -> StepError {
         let alg = problem.group();
-        let stage = self.k.iter().position(|k| !alg.is_finite(k));
-        self.k.iter_mut().for_each(|k| alg.set_zero(k));
-        stage.map_or(error, |stage| StepError::NonFiniteRhs { stage: stage + 1 })
+        let mut error = error;
+        for i in (0..S).rev() {
+            if !alg.is_finite(&self.k[i]) {
+                error = StepError::NonFiniteRhs { stage: i + 1 };
+            }
+            alg.set_zero(&mut self.k[i]);
+        }
+        error
     }
 }

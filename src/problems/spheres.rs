@@ -16,6 +16,7 @@ use nalgebra::Vector3;
 use super::rigid_body::check_finite;
 use super::{Invariant, Invariants, LiePoisson, Problem};
 use crate::actions::{Coadjoint, Linear};
+use crate::chart::FieldStore;
 use crate::error::Error;
 use crate::groups::{Power, Se3, So3, add3, cross};
 use crate::scalar::Real;
@@ -86,6 +87,17 @@ impl<S: Real> Problem for SphericalPendulum<S> {
     #[inline]
     fn f(&self, _: S, (omega, _): &(V<S>, V<S>), v: &mut (V<S>, V<S>), _: &mut ()) {
         *v = (*omega, V::new(S::lit(0.0), S::lit(0.0), self.rate2));
+    }
+    /// (torque, ω × q): f has parts that the action takes nothing from, and λ_* would multiply by them.
+    fn field(
+        &self,
+        _: S,
+        (omega, q): &(V<S>, V<S>),
+        dy: &mut (V<S>, V<S>),
+        _: &mut FieldStore<Self>,
+    ) {
+        let torque = V::new(-(self.rate2 * q[1]), self.rate2 * q[0], S::lit(0.0));
+        *dy = (torque, cross(omega, q));
     }
 }
 

@@ -25,7 +25,7 @@ fn power(n: usize) -> Power<So3> {
     Power::new(So3::new(), n).unwrap()
 }
 
-/// Two maps on one product have the order of the method; every map alone is in `orders_products.rs`.
+/// Two maps on one product have the order of the method; every map alone is in `orders/products.rs`.
 #[test]
 fn a_pair_of_maps_has_its_order() {
     let flow = flow(product(), LeftTranslation, wave(7, 0.25, 17));

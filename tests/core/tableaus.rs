@@ -1,6 +1,6 @@
 //! The order conditions of every tableau of the catalog, tree by tree, and of every embedded row.
 
-use crate::support::orders::{defects, order_conditions, row_conditions};
+use crate::support::orders::{defects, order_conditions, row_conditions, tree_counts};
 use lieflow::catalog::TABLEAUS;
 use lieflow::methods::{Tableau, tableau};
 
@@ -40,4 +40,9 @@ fn a_wrong_coefficient_is_seen() {
     let found = defects(5, &broken.a, &broken.b);
     assert!(found.iter().any(|d| *d > 1e-13), "{found:?}");
     assert!(row_conditions("broken", &broken.a, &broken.b, 5).is_err());
+}
+
+#[test]
+fn rooted_trees_are_all_there() {
+    assert_eq!(tree_counts(9), [1, 1, 2, 4, 9, 20, 48, 115, 286]); // OEIS A000081
 }

@@ -9,7 +9,7 @@
 //! | K1 – K3 | `maps/references.rs`, `core/so3_closed.rs`, `maps/ccsk.rs`; K4 here |
 //! | L1, L2, L5 | `core/so3_closed.rs`; L3, L4 here and in `maps/log.rs` |
 //! | E6, E16 on so(3) | here |
-//! | X1 – X3 | `hard/maps/input.rs`; constructors in `core/api/` |
+//! | X1 – X3 | `maps/input.rs`; constructors in `core/api/` |
 
 mod input;
 

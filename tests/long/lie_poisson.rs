@@ -33,7 +33,7 @@ fn distance(a: &Mat<f64>, b: &Mat<f64>) -> f64 {
     (a - b).norm_l2()
 }
 
-/// On SO(5), Sp(4), GL(3) and SO(3,1): what is kept over 300 steps. Orders are in `orders.rs`.
+/// On SO(5), Sp(4), GL(3) and SO(3,1): what is kept over 300 steps. Orders are in `orders/fields.rs`.
 #[test]
 fn on_every_algebra() {
     /// Rounding of 300 steps, for momenta of about 1.

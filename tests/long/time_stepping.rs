@@ -1,6 +1,6 @@
 //! Hard cases of time stepping that concern the field and the record of a run: values outside the
 //! algebra, errors of the user's own, interrupted runs, very many steps. Spans, grids and output times
-//! are in `api/grids.rs`, adaptive runs in `adaptive.rs`.
+//! are in `core/api/grids.rs`, adaptive runs in `orders/adaptive.rs`.
 
 use std::cell::Cell;
 
@@ -260,7 +260,7 @@ fn steps_are_even_beside_a_large_time() {
 
 /// T12 as a run: the field sees each of 1e8 times within two units in the last place.
 #[test]
-#[ignore = "1e8 steps: cargo test --release --test time_stepping -- --ignored"]
+#[ignore = "1e8 steps: cargo test --release --test long time_stepping -- --ignored"]
 fn a_hundred_million_steps() {
     let (steps, end, n, worst) = (100_000_000, 1e4, Cell::new(0u64), Cell::new(0.0f64));
     let still = |t: f64, _: &mut Vector3<f64>| {

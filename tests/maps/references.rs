@@ -13,13 +13,11 @@ use lieflow::scalar::{Counted, Trig};
 use lieflow::{StepError, so3};
 use nalgebra::{Matrix3, Vector3};
 
-use crate::support::references::{Case, Implementation, Output, cases, rows};
+use crate::support::references::{Answer, Case, Implementation, Output, cases, rows};
 
 const EPS: f64 = f64::EPSILON;
 /// All files with coordinate maps.
 const MAPS: &[&str] = &["maps", "so3", "dexp", "hard", "expm"];
-
-type Answer = Option<Result<Vec<f64>, String>>;
 
 fn told<T>(value: Result<T, impl ToString>, entries: impl Fn(T) -> Vec<f64>) -> Answer {
     Some(value.map(entries).map_err(|error| error.to_string()))

@@ -2,7 +2,7 @@
 //! the algebra and its dual, the logarithm, and what is refused.
 
 use crate::support::points::Points;
-use crate::support::references::{Case, Implementation};
+use crate::support::references::{Answer, Case, Implementation};
 use crate::support::represent::{Represent, affine};
 use crate::support::{EPS, gap};
 use faer::Mat;
@@ -25,7 +25,7 @@ fn twist(x: &[f64]) -> Twist {
 
 #[test]
 fn exp_and_its_differential_against_36_digits() {
-    fn compute(case: &Case, function: &str) -> Option<Result<Vec<f64>, String>> {
+    fn compute(case: &Case, function: &str) -> Answer {
         let [u, v] = ["u", "v"].map(|name| twist(&case.numbers(name)));
         let text = |error: lieflow::Error| error.to_string();
         let concat = |r: &[f64], x: &Vector3<f64>| [r, x.as_slice()].concat();

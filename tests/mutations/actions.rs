@@ -3,7 +3,7 @@
 
 use faer::Mat;
 use lieflow::actions::LeftTranslation;
-use lieflow::groups::{AlgebraMatrix, GroupMatrix, MatrixGroup};
+use lieflow::groups::{Adjoint, AlgebraMatrix, GroupMatrix, MatrixGroup};
 use lieflow::{Action, LieGroup};
 use rand_pcg::Pcg64;
 
@@ -16,6 +16,8 @@ pub(crate) enum Fault {
     Transposed,
     /// Λ(g, p) = pg.
     Swapped,
+    /// λ_*(v)(p) = pv.
+    Generator,
 }
 
 /// Left translation with a fault.
@@ -37,9 +39,10 @@ impl Action<MatrixGroup> for Translation {
         *q = GroupMatrix::new_unchecked(match self.0 {
             Fault::Transposed => g.transpose() * p.as_ref(),
             Fault::Swapped => p.as_ref() * g.as_ref(),
+            Fault::Generator => g.as_ref() * p.as_ref(),
         });
     }
-    /// The sound one: what the equation means does not change with the fault.
+    /// Sound where the fault is in Λ: what the equation means does not change with it.
     fn generate(
         &self,
         group: &MatrixGroup,
@@ -48,7 +51,10 @@ impl Action<MatrixGroup> for Translation {
         dp: &mut GroupMatrix,
         _: &mut (),
     ) {
-        group.tangent(v, p, dp);
+        match self.0 {
+            Fault::Generator => group.tangent_in_body(p, v, dp),
+            _ => group.tangent(v, p, dp),
+        }
     }
 }
 

@@ -1,11 +1,11 @@
 //! The same five slips in every family of methods: two coefficients exchanged, a bracket dropped, time
 //! frozen, the wrong trivialisation, a transposed action. Each is put in on purpose, and the order
 //! harness refuses what comes out; the sound method passes on the same problem. Explicit RKMK and
-//! commutator-free methods have more of them in `mutations.rs`.
+//! commutator-free methods have more of them in `faults.rs`.
 //!
 //! | | exchanged | bracket | time | trivialisation | action |
 //! |---|---|---|---|---|---|
-//! | RKMK | `mutations.rs` | dΨ⁻¹ = id | c = 0 | dΨ⁻¹ at −u | gᵀy |
+//! | RKMK | `faults.rs` | dΨ⁻¹ = id | c = 0 | dΨ⁻¹ at −u | gᵀy |
 //! | commutator-free, Crouch–Grossman | weights | factors merged | c = 0 | factors reversed | gᵀy |
 //! | Magnus | A₁, A₂: the same as | \[A₁, A₂\] | A(t) alone | −\[A₁, A₂\] | gᵀy |
 //! | implicit RKMK | a_ij | dΨ⁻¹ = id | c = 0 | dΨ⁻¹ at −u | gᵀy |

@@ -1,5 +1,5 @@
 //! The suites catch broken methods: each fault here is put in on purpose, and the check of
-//! `laws.rs` or `orders.rs` that should see it must fail, for the reason it should.
+//! `core/laws.rs` or `orders/fields.rs` that should see it must fail, for the reason it should.
 
 use crate::maps::{Faulty, WrongSign};
 use crate::support::orders::{
@@ -10,7 +10,7 @@ use crate::support::represent::Represent;
 use crate::support::{Verdict, holds, laws};
 use lieflow::CoordinateMap;
 use lieflow::actions::{Coadjoint, LeftTranslation};
-use lieflow::groups::{MatrixGroup, Power, Product, So3};
+use lieflow::groups::{MatrixGroup, Power, Product, Sample, So3};
 use lieflow::maps::{CCSK123, Cay, Exp};
 use lieflow::methods::commutator_free::{CF4, ProductTableau};
 use lieflow::methods::crouch_grossman::CG3;
@@ -173,6 +173,18 @@ fn actions_from_the_wrong_side() {
         let reference = reference(&sound, start(&sound, 7)).of_the_same_points(&faulty);
         caught(measure(&faulty, &Rkmk::new(RK4, Exp), &reference).map(|_| ()), "too few errors");
     }
+}
+
+#[test]
+fn a_generator_from_the_wrong_side() {
+    let action = crate::actions::Translation(crate::actions::Fault::Generator);
+    let law = |rng: &mut Pcg64| {
+        let g = so(4).sample_element(rng);
+        laws::generator(&so(4), &action, &g, rng)
+    };
+    caught(holds(CASES, law), "λ_*(v)(y) = d/dε Λ(exp(εv), y)");
+    let law = |rng: &mut Pcg64| laws::generator_of_matrices(&so(4), &action, rng);
+    caught(holds(CASES, law), "λ_*(v)(y) of matrices");
 }
 
 /// The congruence g m gᵀ passes as an action; only the pairing tells it from the coadjoint one.

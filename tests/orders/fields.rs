@@ -1,7 +1,7 @@
 //! Measured orders: the methods of the catalog that ask for a field, or for one of linear type, on
 //! problems that do not commute, depend on time and depend on the state. By the same harness: products
-//! and SE(3) in `orders_products.rs`, orders from 8 on in `orders_wide.rs`, methods that ask for
-//! more in `special/orders.rs`.
+//! and SE(3) in `products.rs`, orders from 8 on in `wide.rs`, methods that ask for
+//! more in `rigid_body.rs`.
 //! `cargo test --test orders -- --nocapture` prints the table.
 
 use crate::support::orders::{

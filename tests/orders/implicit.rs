@@ -68,7 +68,7 @@ fn driven(
     })
 }
 
-/// Orders in m and in g apart; every method on every group is in `orders.rs`.
+/// Orders in m and in g apart; every method on every group is in `fields.rs`.
 #[test]
 fn order_on_the_rigid_body() {
     let body = RigidBodyState::new(INERTIA).expect("a body");

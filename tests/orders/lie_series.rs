@@ -42,7 +42,7 @@ const ORDERS_NOT_COMPACT: [(usize, [u64; 4]); 2] =
     [(4, [72, 108, 162, 234]), (6, [36, 54, 81, 117])];
 
 /// The motion of g besides that of m, on SO(5), Sp(4), GL(3) and SO(3,1). Orders of m alone are in
-/// `special/orders.rs`.
+/// `rigid_body.rs`.
 #[test]
 fn order_of_the_attitude_on_every_group() {
     for (group, momentum) in systems() {

@@ -1,5 +1,5 @@
 //! Measured orders on products of groups and on SE(3): every method of the catalog for fields, on fields
-//! that couple the parts. The harness is that of `orders.rs`.
+//! that couple the parts. The harness is that of `fields.rs`.
 
 use crate::support::orders::{
     clocks, every_explicit_method_on, every_linear_method_on, every_method_on, waves,

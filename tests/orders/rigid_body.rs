@@ -1,5 +1,5 @@
 //! Measured orders of the methods that ask more of a problem than a field: rigid bodies, Taylor
-//! coefficients, Lie–Poisson systems. The harness is that of `orders.rs`; what is measured follows from
+//! coefficients, Lie–Poisson systems. The harness is that of `fields.rs`; what is measured follows from
 //! the catalog's lists, and a list without a problem here makes a test fail.
 
 use crate::support::orders::{Problems, Report, every_explicit_method_on};
@@ -108,7 +108,7 @@ suites! {
     quadratic_systems: [Series, LiePoisson, Isospectral];
 }
 
-/// Every list of the catalog is measured, here, in `orders.rs` or, the implicit methods, in
+/// Every list of the catalog is measured, here, in `fields.rs` or, the implicit methods, in
 /// `implicit.rs`.
 #[test]
 fn every_list_has_its_problems() {

@@ -76,7 +76,7 @@ fn embedded_results_have_their_orders() {
 }
 
 /// The estimate of one step is of order p̂ + 1: of the difference that it is, and not of rounding. Those of
-/// order 8 and more are in `orders_wide.rs`.
+/// order 8 and more are in `wide.rs`.
 #[test]
 fn estimates_have_their_orders() {
     let mut wrong = Vec::new();

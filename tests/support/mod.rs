@@ -1,7 +1,7 @@
 //! What the test suites share.
 //!
-//! A law or an order is a function that returns a [`Verdict`]: `laws.rs` and `orders.rs` ask that it
-//! holds, `mutations.rs` asks that it fails on a method broken on purpose.
+//! A law or an order is a function that returns a [`Verdict`]: `core/laws.rs` and `orders/fields.rs` ask that it
+//! holds, `mutations/faults.rs` asks that it fails on a method broken on purpose.
 #![allow(dead_code, unused_imports, reason = "each suite uses its part")]
 
 pub(crate) mod laws;

@@ -154,13 +154,15 @@ pub(crate) fn relative_error(x: &[f64], r: &[f64]) -> f64 {
     norm(&mut x.iter().zip(r).map(|(x, r)| x - r)) / norm(&mut r.iter().copied())
 }
 
+/// A value by rows, or why it is refused; none where the implementation cannot do this.
+pub(crate) type Answer = Option<Result<Vec<f64>, String>>;
+
 /// An implementation of some of the functions.
 pub(crate) struct Implementation {
     pub(crate) name: &'static str,
     /// The rounding unit of its numbers.
     pub(crate) eps: f64,
-    /// The value by rows; none where it cannot do this.
-    pub(crate) compute: fn(&Case, &str) -> Option<Result<Vec<f64>, String>>,
+    pub(crate) compute: fn(&Case, &str) -> Answer,
     /// The promise at a case: the largest relative error in units of `eps`.
     pub(crate) bound: fn(&Case, &str, &Output) -> f64,
     /// May it refuse this?

@@ -162,17 +162,17 @@ fn both_layers_stand_side_by_side() {
 #[test]
 fn operations_are_those_of_a_step_on_counting_numbers() {
     use lieflow_cli::measure::Size;
-    use lieflow_cli::paper::rows::{Body, Row};
+    use lieflow_cli::paper::methods::{Body, PaperMethod};
     let scene = Scene::parse("scene", SCENE).unwrap();
     let body = Body::new([1.0, 2.0, 3.0], [0.2, 0.0, 3.0]);
     let model = scene.model_with(Layer::Closed, &["attitude"]).unwrap();
     for (row, name, map) in [
-        (Row::Exp, "rkmk4", Some("exp")),
-        (Row::Cay, "rkmk4", Some("cay")),
-        (Row::Mr, "mr4", None),
-        (Row::B4, "buss4", None),
-        (Row::S, "simo-wong", None),
-        (Row::Dmv10, "dmv10", None),
+        (PaperMethod::Exp, "rkmk4", Some("exp")),
+        (PaperMethod::Cay, "rkmk4", Some("cay")),
+        (PaperMethod::Mr, "mr4", None),
+        (PaperMethod::B4, "buss4", None),
+        (PaperMethod::S, "simo-wong", None),
+        (PaperMethod::Dmv10, "dmv10", None),
     ] {
         let method = lieflow::catalog::MethodSpec::new(name, map);
         let ours = Size::Steps(1).operations(&*model, &method, [0.0, 0.05], 3);

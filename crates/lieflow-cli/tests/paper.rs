@@ -3,15 +3,15 @@
 mod support;
 
 use lieflow_cli::paper::accuracy::EPSILONS;
+use lieflow_cli::paper::methods::PaperMethod;
 use lieflow_cli::paper::printed::{TABLE2, TABLE4};
-use lieflow_cli::paper::rows::Row;
-use lieflow_cli::paper::{Effort, Paper, compute, findings};
+use lieflow_cli::paper::{Paper, PaperExtent, compute, findings};
 use std::sync::LazyLock;
 use support::{Folder, read_csv};
 
 /// All of it, once, with few frames: the runs are seconds. `findings_hold` goes beside it.
 static PAPER: LazyLock<Paper> = LazyLock::new(|| {
-    compute(&Effort { frames: 3, rounds: 1, finer: 0 }, |_, _| {}).expect("the paper's bodies")
+    compute(&PaperExtent { frames: 3, rounds: 1, finer: 0 }, |_, _| {}).expect("the paper's bodies")
 });
 
 /// E(400) − E(0) in example 3 and the mean of the error, in 80-bit arithmetic.
@@ -90,7 +90,7 @@ fn close(a: f64, b: f64, what: &str) {
 #[test]
 fn table_3_is_that_of_the_paper() {
     for (key, last, mean) in TABLE3 {
-        let run = PAPER.energy[2].iter().find(|run| run.row.key() == *key).unwrap();
+        let run = PAPER.energy[2].iter().find(|run| run.method.key() == *key).unwrap();
         close(run.last(), *last, key);
         close(run.mean().abs(), mean.abs(), key);
     }
@@ -100,7 +100,7 @@ fn table_3_is_that_of_the_paper() {
 fn table_4_is_that_of_the_paper_with_its_operations_of_a_step() {
     for (t, (all, pinned)) in PAPER.accuracy.iter().zip([SYMMETRIC, ASYMMETRIC]).enumerate() {
         for (key, errors) in pinned {
-            let accuracy = all.iter().find(|a| a.row.key() == *key).unwrap();
+            let accuracy = all.iter().find(|a| a.method.key() == *key).unwrap();
             for (point, error) in accuracy.printed().iter().zip(errors) {
                 // An ε a step is rounding: it is seen in the seventh digit of errors below 1e-6.
                 let bound = PINNED * error + f64::EPSILON * point.steps as f64;
@@ -113,13 +113,17 @@ fn table_4_is_that_of_the_paper_with_its_operations_of_a_step() {
             }
         }
         for row in &TABLE4 {
-            let accuracy = all.iter().find(|a| a.row == row.row).unwrap();
+            let accuracy = all.iter().find(|a| a.method == row.method).unwrap();
             let Some(step) = row.per_step[t] else { continue };
             // McLachlan–Reich: the paper skips something in its first step.
-            let tolerance = if row.row == Row::Mr { 3e-3 } else { 3e-4 };
+            let tolerance = if row.method == PaperMethod::Mr { 3e-3 } else { 3e-4 };
             for (epsilon, printed) in EPSILONS.into_iter().zip(row.printed[t]) {
                 let ours = accuracy.log_steps(epsilon) + step.log10();
-                assert!((ours - printed).abs() < tolerance, "{}: {ours} {printed}", row.row.key());
+                assert!(
+                    (ours - printed).abs() < tolerance,
+                    "{}: {ours} {printed}",
+                    row.method.key()
+                );
             }
         }
     }
@@ -149,8 +153,8 @@ fn table_2_is_counted_on_the_formulas_of_the_library() {
 fn findings_hold() {
     let frames = findings::frames(30, 1, |_| {}).unwrap();
     for f in &frames {
-        match f.row {
-            Row::Exp => {
+        match f.method {
+            PaperMethod::Exp => {
                 for x in &f.random {
                     assert!((x - f.printed).abs() < 1e-5 * f.printed, "{f:?}");
                 }
@@ -158,22 +162,23 @@ fn findings_hold() {
             _ => assert!(f.quantile(0.9) > 2.0 * f.quantile(0.1), "{f:?}"),
         }
     }
-    let ccskb = frames.iter().find(|f| f.example == 3 && f.row == Row::Ccsk321).unwrap();
+    let ccskb = frames.iter().find(|f| f.example == 3 && f.method == PaperMethod::Ccsk321).unwrap();
     assert!(ccskb.quantile(0.5) > 10.0 * ccskb.printed, "{ccskb:?}");
     for drift in &PAPER.drift {
-        let expected = match drift.row {
-            Row::Ccsk321 => 4.0,
-            Row::Ccsk123 => continue, // its terms of h⁴ and h⁵ cancel within these steps
+        let expected = match drift.method {
+            PaperMethod::Ccsk321 => 4.0,
+            PaperMethod::Ccsk123 => continue, // its terms of h⁴ and h⁵ cancel within these steps
             _ => 5.0,
         };
         let last = drift.orders()[3];
-        assert!((last - expected).abs() < 0.35, "{:?}: {:?}", drift.row, drift.orders());
+        assert!((last - expected).abs() < 0.35, "{:?}: {:?}", drift.method, drift.orders());
     }
     for near in &PAPER.separatrix {
         let (start, end) = (near.side[0].1, near.side[near.side.len() - 1].1);
         let kept = (end / start - 1.0).abs() < 0.02;
-        let on_g_by_stages = matches!(near.row, Row::Exp | Row::Cay | Row::Rk4);
-        assert_eq!(kept, !on_g_by_stages, "{:?}: {start:e}, {end:e}", near.row);
+        let on_g_by_stages =
+            matches!(near.method, PaperMethod::Exp | PaperMethod::Cay | PaperMethod::Rk4);
+        assert_eq!(kept, !on_g_by_stages, "{:?}: {start:e}, {end:e}", near.method);
     }
 }
 

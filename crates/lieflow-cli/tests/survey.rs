@@ -4,7 +4,7 @@ mod support;
 
 use core::f64::consts::{PI, TAU};
 
-use lieflow_cli::paper::maps::{Effort, MAPS_PAGE, Over, Topic, survey, write};
+use lieflow_cli::paper::maps::{MAPS_PAGE, Over, StudyExtent, Topic, survey, write};
 use support::Folder;
 
 /// What the closed forms on so(3) promise, in units of ε·cond.
@@ -15,7 +15,7 @@ const GENERAL: f64 = 8.0;
 
 #[test]
 fn maps_are_as_accurate_as_promised_and_all_are_shown() {
-    let effort = Effort { directions: 4, largest: 6, rounds: 1 };
+    let effort = StudyExtent { directions: 4, largest: 6, rounds: 1 };
     let studies = survey(&effort, 1, |_| {}).unwrap();
     assert_eq!(studies.len(), 2 * Topic::ALL.len());
     for study in &studies {

@@ -10,6 +10,4 @@ mod page;
 mod plot;
 
 pub use page::{Block, Column, Page, Row, Section, Table};
-pub use plot::{
-    Axis, Chart, Ground, Heat, Marker, Path, Point, Scale, Series, Sphere, escape, slug, tell_apart,
-};
+pub use plot::{Axis, Chart, Ground, Heat, Marker, Path, Point, Scale, Series, Sphere, tell_apart};

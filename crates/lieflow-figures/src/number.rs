@@ -37,7 +37,7 @@ pub fn or_dash<T>(x: Option<T>, format: impl FnOnce(T) -> String) -> String {
 }
 
 /// The power of ten with a superscript exponent: `10⁻⁸`.
-pub fn power_of_ten(exponent: i32) -> String {
+pub(crate) fn power_of_ten(exponent: i32) -> String {
     format!("10{}", superscript(exponent))
 }
 

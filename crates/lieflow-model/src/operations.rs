@@ -3,6 +3,7 @@
 //! is made of those.
 
 use core::cell::Cell;
+use std::rc::Rc;
 
 use lieflow::adaptive::{AdaptiveError, integrate_adaptive};
 use lieflow::catalog::MethodSpec;
@@ -11,7 +12,7 @@ use lieflow::problems::{PointOf, ScalarOf};
 use lieflow::scalar::{Counted, Real};
 use lieflow::{Error, SaveAt, Step, StepError, TimeGrid};
 
-use crate::model::{Runnable, Steps};
+use crate::model::{Observer, Runnable, Steps};
 
 /// So many steps of a run are counted, attempts that are rejected among them; a longer run is charged
 /// their mean for each of its steps.
@@ -52,12 +53,18 @@ impl Tally {
 }
 
 /// A method whose steps are counted.
-struct CountedMethod<'a, P: Runnable> {
+struct CountedMethod<P: Runnable> {
     method: AnyMethod<'static, P>,
-    tally: &'a Tally,
+    tally: Rc<Tally>,
 }
 
-impl<P: Runnable> Method<P> for CountedMethod<'_, P> {
+impl<P: Runnable> Clone for CountedMethod<P> {
+    fn clone(&self) -> Self {
+        CountedMethod { method: self.method.clone(), tally: self.tally.clone() }
+    }
+}
+
+impl<P: Runnable> Method<P> for CountedMethod<P> {
     type Work = AnyWork<'static, P>;
 
     fn order(&self, problem: &P) -> usize {
@@ -83,7 +90,7 @@ impl<P: Runnable> Method<P> for CountedMethod<'_, P> {
     }
 }
 
-impl<P: Runnable> Embedded<P> for CountedMethod<'_, P> {
+impl<P: Runnable> Embedded<P> for CountedMethod<P> {
     fn error_order(&self, problem: &P) -> Result<usize, Error> {
         self.method.error_order(problem)
     }
@@ -126,7 +133,6 @@ fn operations_fixed<P: Runnable>(
     grid: &TimeGrid,
 ) -> Option<f64> {
     let tally = Tally::default();
-    let method = CountedMethod { method, tally: &tally };
     let mut work = method.work(problem, &y).ok()?;
     let lit = ScalarOf::<P>::lit;
     for n in 0..grid.steps().min(COUNTED_STEPS) {
@@ -134,7 +140,7 @@ fn operations_fixed<P: Runnable>(
             break;
         }
         let step = Step { n, t: lit(grid.time(n)), h: lit(grid.h()) };
-        method.step(problem, step, &mut y, &mut work).ok()?;
+        tally.count(|| method.step(problem, step, &mut y, &mut work)).ok()?;
     }
     tally.mean()
 }
@@ -146,11 +152,13 @@ fn operations_chosen<P: Runnable>(
     Steps { t_span, control }: &Steps,
 ) -> Option<f64> {
     let upto = |steps: u64| {
-        let tally = Tally::default();
-        let method = CountedMethod { method: method.clone(), tally: &tally };
+        let tally = Rc::new(Tally::default());
+        // Behind a pointer again: the driver is compiled for one type of method.
+        let counted = CountedMethod { method: method.clone(), tally: tally.clone() };
+        let counted = AnyMethod::embedded(counted);
         let (mut y, control) = (y.clone(), control.max_steps(steps).ok()?);
-        let see = |_: f64, _: &PointOf<P>| {};
-        match integrate_adaptive(problem, &method, *t_span, &control, &SaveAt::Ends, &mut y, see) {
+        let see: &mut Observer<'_, P> = &mut |_, _| {};
+        match integrate_adaptive(problem, &counted, *t_span, &control, &SaveAt::Ends, &mut y, see) {
             Ok(_) | Err(AdaptiveError::TooManySteps { .. }) => tally.mean(),
             Err(_) => None,
         }

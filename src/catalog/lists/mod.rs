@@ -6,8 +6,8 @@ use super::facts::{
     Cost, Count, Family, Instead, Maps, MethodInfo, Needs, Operation, Order, Structure, Work, times,
 };
 use super::recipe::Recipe;
-use crate::methods::commutator_free::{CF3, CF4, CF43};
-use crate::methods::crouch_grossman::{CG2, CG3, CG4};
+use crate::methods::commutator_free::{CF43, cf3, cf4};
+use crate::methods::crouch_grossman::{CG4, cg2, cg3};
 use crate::methods::low_storage::{EES25, EES27, LS3, LS3_BP, LS4, LS5, LS32};
 use crate::methods::one_bracket::{MAGNUS43, RKMK4_2C};
 use crate::methods::{GAUSS2, GAUSS4, GAUSS6, ImplicitTableau, KAHAN_LI6, SUZUKI4};
@@ -192,7 +192,7 @@ const FIELD: &[MethodInfo] = &[
         "commutator-free, 3 stages",
         &[times(3, Field), times(4, Exp)],
         CMO,
-        Recipe::ProductOf3(CF3),
+        Recipe::CommutatorFree(cf3()),
     ),
     in_exp(
         CF,
@@ -201,7 +201,7 @@ const FIELD: &[MethodInfo] = &[
         "commutator-free, 4 stages",
         &[times(4, Field), times(5, Exp)],
         CMO,
-        Recipe::ProductOf4(CF4),
+        Recipe::CommutatorFree(cf4()),
     ),
     plain(
         (CF, Needs::Field),
@@ -214,7 +214,7 @@ const FIELD: &[MethodInfo] = &[
             ..Cost::of(&[times(4, Field), times(5, Exp)])
         },
         "Curry, Owren 2019",
-        Recipe::ProductOf5(CF43),
+        Recipe::CommutatorFree(CF43),
     ),
     low_storage("cf-ls3", 3, "commutator-free in low storage (Lüscher)", &SAME[0], LS3.padded()),
     low_storage(
@@ -248,7 +248,7 @@ const FIELD: &[MethodInfo] = &[
         "Crouch–Grossman, 2 stages",
         &[times(2, Field), times(2, Exp)],
         "Crouch, Grossman 1993",
-        Recipe::ProductOf2(CG2),
+        Recipe::CommutatorFree(cg2()),
     ),
     in_exp(
         Family::CrouchGrossman,
@@ -257,7 +257,7 @@ const FIELD: &[MethodInfo] = &[
         "Crouch–Grossman, 3 stages",
         &[times(3, Field), times(6, Exp)],
         "Owren, Marthinsen 1999",
-        Recipe::ProductOf3(CG3),
+        Recipe::CommutatorFree(cg3()),
     ),
     in_exp(
         Family::CrouchGrossman,
@@ -266,7 +266,7 @@ const FIELD: &[MethodInfo] = &[
         "Crouch–Grossman, 5 stages (CG4a)",
         &[times(5, Field), times(15, Exp)],
         "Jackiewicz, Marthinsen, Owren 2000",
-        Recipe::ProductOf5(CG4),
+        Recipe::CommutatorFree(CG4),
     ),
 ];
 

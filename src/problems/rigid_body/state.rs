@@ -125,7 +125,7 @@ impl<S: Real> Action<So3<S>> for BodyFrame {
 
 /// The free rigid body on 𝔰𝔬(3)* × SO(3): ṁ = m × J⁻¹m, ġ = g ω̂ with ω = J⁻¹m.
 ///
-/// As an [`Ambient`] problem it has 12 components.
+/// As an [`Ambient`](crate::problems::Ambient) problem it has 12 components.
 ///
 /// ```
 /// use lieflow::methods::{Splitting, YOSHIDA4};

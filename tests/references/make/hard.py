@@ -20,7 +20,7 @@ from fractions import Fraction
 from mpmath import mp, mpf
 
 from .maps import (add, commutator, condition3, dexpinv3, digits, exp3, eye, gl_element, hat, inverse,
-                   lorentz_element, matmul, norm, phi, scaled, so_element, sp_element, spectral)
+                   lorentz_element, matmul, norm, so_element, sp_element, spectral)
 from .schema import case, exact, flat, value, write
 
 mp.dps = 60

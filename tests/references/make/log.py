@@ -17,7 +17,7 @@ import random
 from mpmath import mp, mpf
 
 from .maps import (add, divided, expm, gl_element, group, lorentz_element, matmul,
-                       norm, operator_norm, scaled, so_element, sp_element, spectral, star)
+                  norm, operator_norm, so_element, sp_element, spectral, star)
 from .schema import case, check, exact, flat, value, write
 
 

@@ -46,8 +46,7 @@ from .schema import case, check, exact, flat, value, write
 
 DIGITS = 36      # significant digits written
 GUARD = 70       # working digits beyond those lost to small parameters
-TOL = mpf(10) ** -33
-MAX_STEPS = int(sys.argv[1]) if len(sys.argv) > 1 else 4000
+MAX_STEPS = 4000
 
 
 def real(q):
@@ -376,7 +375,7 @@ def main():
         check("orthogonality", ident, norm(
             dot(a, b) - (i == j) for i, a in enumerate(g1) for j, b in enumerate(g1)))
         check("space momentum", ident, norm(dot(r, m1) - real(v) for r, v in zip(g1, mq)) / mnorm)
-        ulp = sensitivity(Jq, mq, tq)
+        sens_m, sens_g = sensitivity(Jq, mq, tq)
         energy = sum(a * a / b for a, b in zip(mq, Jq)) / 2
         check("energy", ident, abs(sum(a * a / real(b) for a, b in zip(m1, Jq)) / 2 - real(energy))
               / (real(energy) or 1))

@@ -23,7 +23,7 @@ def exact(entries):
 
 
 def complex_exact(entries):
-    return [[repr(float(x.real)), repr(float(x.imag))] for x in entries]
+    return [[repr(x.real), repr(x.imag)] for x in entries]
 
 
 def value(entries, **measures):

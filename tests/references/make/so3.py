@@ -23,7 +23,7 @@ import random
 
 from mpmath import mp, mpf
 
-from .maps import (DIGITS3, add, ccsk, condition3, cross, dccskinv, dexpinv3, digits, exp3, eye, group,
+from .maps import (add, ccsk, condition3, cross, dccskinv, dexpinv3, digits, exp3, eye, group,
                    hat, inverse, matmul, norm, scaled, transpose)
 from .schema import case, check, exact, flat, value, write
 

@@ -45,7 +45,7 @@ where
         Problems(vec![(problem, reference)])
     }
     /// An ensemble, of problems by their number. Orders from 8 on, for which there is no room in `f64`, are
-    /// measured in `orders_wide.rs`; here such a method must solve the problems.
+    /// measured in `orders/wide.rs`; here such a method must solve the problems.
     pub(crate) fn many(make: impl Fn(u64) -> (P, PointOf<P>)) -> Self {
         let with_reference = |(problem, start)| {
             let reference = reference(&problem, start);

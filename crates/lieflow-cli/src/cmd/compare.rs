@@ -349,7 +349,7 @@ impl Comparison<'_> {
         let table = |(caption, choices): &(String, Vec<Choice<'_>>)| {
             report::choice_table(caption, choices).into()
         };
-        let mut facts = report::measured(self.effort.rounds).to_vec();
+        let mut facts = report::conditions(self.effort.rounds).to_vec();
         facts.extend([
             (
                 "Runs".into(),

@@ -5,7 +5,7 @@ use std::time::Instant;
 use super::CliError;
 use crate::args::PaperArgs;
 use crate::output::{self, Progress};
-use crate::paper::{Effort, compute};
+use crate::paper::{PaperExtent, compute};
 
 /// Run the command.
 ///
@@ -16,8 +16,8 @@ pub fn run(args: &PaperArgs) -> Result<(), CliError> {
     // A folder that cannot be written is better known before the work than after it.
     output::make_folder(&args.out)?;
     let effort = match args.quick {
-        true => Effort { frames: 30, rounds: 3, finer: 3 },
-        false => Effort { frames: 300, rounds: 7, finer: 4 },
+        true => PaperExtent { frames: 30, rounds: 3, finer: 3 },
+        false => PaperExtent { frames: 300, rounds: 7, finer: 4 },
     };
     let bar = Progress::new();
     let paper = compute(&effort, |done, what| bar.now(done, what))?;

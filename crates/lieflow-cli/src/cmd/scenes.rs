@@ -38,8 +38,8 @@ struct KindEntry {
 #[derive(Serialize)]
 struct Meaning {
     name: &'static str,
-    #[serde(skip_serializing_if = "<[_]>::is_empty")]
-    columns: &'static [&'static str],
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    columns: Vec<String>,
     meaning: &'static str,
 }
 
@@ -64,9 +64,9 @@ fn kind_entry(kind: &Kind) -> KindEntry {
         name: kind.name,
         summary: kind.summary,
         equation: kind.equation,
-        keys: keys.map(|k| Meaning { name: k.name, columns: &[], meaning: k.meaning }).collect(),
+        keys: keys.map(|k| Meaning { name: k.name, columns: vec![], meaning: k.meaning }).collect(),
         quantities: quantities
-            .map(|q| Meaning { name: q.name, columns: q.columns, meaning: q.meaning })
+            .map(|q| Meaning { name: q.name, columns: q.column_names(), meaning: q.meaning })
             .collect(),
     }
 }

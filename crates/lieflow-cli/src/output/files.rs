@@ -10,37 +10,31 @@ use crate::cmd::CliError;
 
 /// A file that is being written beside its place.
 #[derive(Debug)]
-pub(super) struct Growing {
-    path: PathBuf,
-    /// The file.
-    pub(super) file: File,
-}
+pub(super) struct NewFile(PathBuf);
 
-impl Growing {
+impl NewFile {
     /// Start a file that may get the name `place`.
-    pub(super) fn create(place: &Path) -> Result<Self, CliError> {
+    pub(super) fn create(place: &Path) -> Result<(Self, File), CliError> {
         let mut path = place.as_os_str().to_owned();
         path.push(".partial");
         let path = PathBuf::from(path);
         match File::create(&path) {
-            Ok(file) => Ok(Growing { path, file }),
+            Ok(file) => Ok((NewFile(path), file)),
             Err(source) => Err(CliError::Io { doing: "write", path, source }),
         }
     }
 
     /// Name the file; remove it if it was not `written`, or cannot be named.
     pub(super) fn finish(self, written: io::Result<()>, place: &Path) -> Result<(), CliError> {
-        drop(self.file);
-        written.and_then(|()| fs::rename(&self.path, place)).map_err(|source| {
-            let _ = fs::remove_file(&self.path);
+        written.and_then(|()| fs::rename(&self.0, place)).map_err(|source| {
+            self.discard();
             CliError::Io { doing: "write", path: place.into(), source }
         })
     }
 
     /// Leave nothing.
-    pub(super) fn discard(self) {
-        drop(self.file);
-        let _ = fs::remove_file(self.path);
+    pub(super) fn discard(&self) {
+        let _ = fs::remove_file(&self.0);
     }
 }
 
@@ -49,9 +43,10 @@ impl Growing {
 /// # Errors
 /// The file cannot be written.
 pub fn write_file(path: &Path, content: impl AsRef<[u8]>) -> Result<(), CliError> {
-    let mut growing = Growing::create(path)?;
-    let written = growing.file.write_all(content.as_ref());
-    growing.finish(written, path)
+    let (new, mut file) = NewFile::create(path)?;
+    let written = file.write_all(content.as_ref());
+    drop(file);
+    new.finish(written, path)
 }
 
 /// Write a table as CSV.

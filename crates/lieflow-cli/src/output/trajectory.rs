@@ -4,7 +4,7 @@ use core::fmt::Write;
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
-use super::files::{Growing, remove_old};
+use super::files::{NewFile, remove_old};
 use crate::cmd::CliError;
 
 /// A complete trajectory.
@@ -16,7 +16,7 @@ pub const PARTIAL: &str = "trajectory.partial.csv";
 #[derive(Debug)]
 pub struct Trajectory {
     folder: PathBuf,
-    growing: Growing,
+    new: NewFile,
     csv: csv::Writer<File>,
     field: String,
     rows: u64,
@@ -33,19 +33,11 @@ impl Trajectory {
             remove_old(&folder.join(old))?;
         }
         let place = folder.join(COMPLETE);
-        let growing = Growing::create(&place)?;
-        let failed = CliError::io("write", &place);
-        let mut csv = csv::Writer::from_writer(growing.file.try_clone().map_err(failed)?);
+        let (new, file) = NewFile::create(&place)?;
+        let mut csv = csv::Writer::from_writer(file);
         let header = core::iter::once("t").chain(columns.iter().map(String::as_str));
         let failure = csv.write_record(header).err();
-        Ok(Trajectory {
-            folder: folder.into(),
-            growing,
-            csv,
-            field: String::new(),
-            rows: 0,
-            failure,
-        })
+        Ok(Trajectory { folder: folder.into(), new, csv, field: String::new(), rows: 0, failure })
     }
 
     /// Write a row. What goes wrong is kept for the end.
@@ -76,20 +68,23 @@ impl Trajectory {
 
     /// Leave nothing.
     pub fn discard(self) {
-        self.growing.discard();
+        drop(self.csv);
+        self.new.discard();
     }
 
     /// Name the file: [`COMPLETE`], or [`PARTIAL`] when the run stopped early.
     ///
     /// # Errors
     /// A row or the file could not be written; nothing is left then.
-    pub fn finish(mut self, complete: bool) -> Result<PathBuf, CliError> {
-        let path = self.folder.join(if complete { COMPLETE } else { PARTIAL });
-        let written = match self.failure.take() {
+    pub fn finish(self, complete: bool) -> Result<PathBuf, CliError> {
+        let Trajectory { folder, new, mut csv, failure, .. } = self;
+        let path = folder.join(if complete { COMPLETE } else { PARTIAL });
+        let written = match failure {
             Some(error) => Err(error.into()),
-            None => self.csv.flush(),
+            None => csv.flush(),
         };
-        self.growing.finish(written, &path)?;
+        drop(csv);
+        new.finish(written, &path)?;
         Ok(path)
     }
 }

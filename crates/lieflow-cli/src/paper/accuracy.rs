@@ -5,8 +5,8 @@ use lieflow::{SaveAt, TimeGrid};
 use nalgebra::Matrix3;
 
 use super::experiments::{EXAMPLE2, EXAMPLE3};
+use super::methods::{Body, PaperMethod};
 use super::printed::{Table4, table4};
-use super::rows::{Body, Row};
 use crate::cmd::CliError;
 use crate::measure::{Fit, median};
 
@@ -44,7 +44,7 @@ pub const EPSILONS: [f64; 2] = [1e-3, 1e-6];
 
 /// A run.
 #[derive(Clone, Copy, Debug)]
-pub struct Point {
+pub struct AccuracyPoint {
     /// Its steps.
     pub steps: u64,
     /// ‖g(1) − exact‖, the spectral norm; not a number when a step failed.
@@ -59,9 +59,9 @@ pub struct Accuracy {
     /// The test, by its place in [`TESTS`].
     pub test: usize,
     /// The method.
-    pub row: Row,
+    pub method: PaperMethod,
     /// The paper's six runs, and finer ones.
-    pub points: Vec<Point>,
+    pub points: Vec<AccuracyPoint>,
     /// The operations of a step, where they can be counted.
     pub ops: Option<Ops>,
 }
@@ -82,7 +82,7 @@ pub struct Cost {
 impl Accuracy {
     /// What the paper prints for the method.
     fn print(&self) -> Option<&'static Table4> {
-        table4(self.row)
+        table4(self.method)
     }
 
     /// The operations of a step that the paper's numbers imply.
@@ -107,7 +107,7 @@ impl Accuracy {
     }
 
     /// The paper's points.
-    pub fn printed(&self) -> &[Point] {
+    pub fn printed(&self) -> &[AccuracyPoint] {
         &self.points[..6.min(self.points.len())]
     }
 
@@ -130,27 +130,27 @@ impl Accuracy {
     }
 }
 
-/// Measure every row with an attitude in the test of this place in [`TESTS`], in rounds that take turns.
+/// Measure every method with an attitude in the test of this place in [`TESTS`], in rounds that take turns.
 pub fn accuracy(test: usize, finer: u32, rounds: u32) -> Result<Vec<Accuracy>, CliError> {
     let Test { body, powers: paper, .. } = TESTS[test];
     let (_, exact) = body.exact(1.0)?;
     let powers = paper[0]..=paper[5] + finer;
     let mut all = Vec::new();
-    for row in Row::all().filter(|row| *row != Row::EnergyCasimir) {
+    for method in PaperMethod::all().filter(|method| *method != PaperMethod::EnergyCasimir) {
         let mut points = Vec::new();
         for power in powers.clone() {
             let grid = TimeGrid::with_steps([0.0, 1.0], 1 << power)?;
             let mut end = None;
-            let outcome = row.run(&body, &grid, SaveAt::Ends, &mut |_, _, g| end = g);
+            let outcome = method.run(&body, &grid, SaveAt::Ends, &mut |_, _, g| end = g);
             let gap = |g: Matrix3<f64>| (g - exact).singular_values().max();
             let error = match (outcome, end) {
                 (Ok(()), Some(g)) => gap(g),
                 _ => f64::NAN,
             };
-            points.push(Point { steps: 1 << power, error, seconds: f64::NAN });
+            points.push(AccuracyPoint { steps: 1 << power, error, seconds: f64::NAN });
         }
-        let ops = row.counted(&body, 1.0 / f64::from(1u32 << paper[3]))?;
-        all.push(Accuracy { test, row, points, ops });
+        let ops = method.counted(&body, 1.0 / f64::from(1u32 << paper[3]))?;
+        all.push(Accuracy { test, method, points, ops });
     }
     time(&mut all, &body, rounds)?;
     Ok(all)
@@ -167,7 +167,7 @@ fn time(all: &mut [Accuracy], body: &Body, rounds: u32) -> Result<(), CliError> 
             for (point, times) in accuracy.points.iter().zip(times) {
                 if !point.error.is_nan() {
                     let grid = TimeGrid::with_steps([0.0, 1.0], point.steps)?;
-                    times.push(accuracy.row.seconds(body, &grid, SHORTEST)?);
+                    times.push(accuracy.method.seconds(body, &grid, SHORTEST)?);
                 }
             }
         }

@@ -5,7 +5,7 @@ use lieflow::{RunError, SaveAt, TimeGrid};
 use lieflow_figures::{Axis, Chart, Series};
 use nalgebra::Matrix3;
 
-use super::rows::{Body, Row};
+use super::methods::{Body, PaperMethod};
 use crate::cmd::CliError;
 use crate::measure::{Fit, cpu_seconds};
 
@@ -13,7 +13,7 @@ use crate::measure::{Fit, cpu_seconds};
 #[derive(Clone, Debug)]
 pub struct EnergyRun {
     /// The method.
-    pub row: Row,
+    pub method: PaperMethod,
     /// t and E(t) − E(0), at the start and after every step.
     pub error: Vec<(f64, f64)>,
     /// The momentum in the body at the first thousands of samples.
@@ -55,7 +55,7 @@ impl EnergyRun {
     pub fn line(&self, unit: f64) -> Series {
         // A point where the error is exactly zero, as at the start, has no place on a logarithm.
         let drawn = self.error.iter().filter(|(_, error)| *error != 0.0 && !error.is_nan());
-        self.row.line(drawn.map(|(t, error)| (t * unit, error.abs())))
+        self.method.line(drawn.map(|(t, error)| (t * unit, error.abs())))
     }
 }
 
@@ -73,13 +73,17 @@ pub(super) fn energy_chart(
 ///
 /// # Errors
 /// A body or a grid that cannot be.
-pub fn energy_run(body: &Body, row: Row, grid: &TimeGrid) -> Result<EnergyRun, CliError> {
+pub fn energy_run(
+    body: &Body,
+    method: PaperMethod,
+    grid: &TimeGrid,
+) -> Result<EnergyRun, CliError> {
     let energy = RigidBody::<f64>::new(body.inertia)?;
     let start = energy.energy(&body.momentum_body());
     let mut error = Vec::with_capacity(grid.steps() as usize + 1);
     let (mut momentum, mut end) = (Vec::new(), None);
     let clock = cpu_seconds();
-    let outcome = row.run(body, grid, SaveAt::Every(1), &mut |t, m, g| {
+    let outcome = method.run(body, grid, SaveAt::Every(1), &mut |t, m, g| {
         error.push((t, energy.energy(&m) - start));
         if momentum.len() < MOMENTA {
             momentum.push(m.into());
@@ -93,5 +97,5 @@ pub fn energy_run(body: &Body, row: Row, grid: &TimeGrid) -> Result<EnergyRun, C
         // A run that stops has no number at its end.
         Err(_) => (error, end) = (vec![(0.0, f64::NAN)], None),
     }
-    Ok(EnergyRun { row, error, momentum, end, seconds_per_step })
+    Ok(EnergyRun { method, error, momentum, end, seconds_per_step })
 }

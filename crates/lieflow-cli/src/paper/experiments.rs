@@ -3,7 +3,7 @@
 use lieflow::TimeGrid;
 
 use super::energy::{EnergyRun, energy_run};
-use super::rows::{Body, Row};
+use super::methods::{Body, PaperMethod};
 use crate::cmd::CliError;
 
 /// An experiment. Its body and its step are those of a bundled scene.
@@ -55,9 +55,12 @@ impl Experiment {
     pub const END: f64 = 400.0;
 
     /// The energy along a run of each method.
-    pub fn energy(&self, rows: impl IntoIterator<Item = Row>) -> Result<Vec<EnergyRun>, CliError> {
+    pub fn energy(
+        &self,
+        methods: impl IntoIterator<Item = PaperMethod>,
+    ) -> Result<Vec<EnergyRun>, CliError> {
         let grid = TimeGrid::new([0.0, Self::END], self.dt)?;
-        rows.into_iter().map(|row| energy_run(&self.body, row, &grid)).collect()
+        methods.into_iter().map(|method| energy_run(&self.body, method, &grid)).collect()
     }
 }
 

@@ -16,12 +16,12 @@ pub(super) fn all(paper: &Paper) -> Vec<Data> {
         let row = |(x, y): &(f64, f64)| fields![name, in_full(*x), in_full(*y)];
         points.iter().map(row).collect::<Vec<_>>()
     };
-    let drift = paper.drift.iter().flat_map(|d| series(d.row.key(), &d.points));
-    let near = paper.separatrix.iter().flat_map(|s| series(s.row.key(), &s.side));
+    let drift = paper.drift.iter().flat_map(|d| series(d.method.key(), &d.points));
+    let near = paper.separatrix.iter().flat_map(|s| series(s.method.key(), &s.side));
     let frames = paper.frames.iter().flat_map(|f| {
         let printed = core::iter::once(("printed", &f.printed));
         let all = printed.chain(f.random.iter().map(|x| ("random", x)));
-        all.map(|(frame, x)| fields![f.example, f.row.key(), frame, in_full(*x)])
+        all.map(|(frame, x)| fields![f.example, f.method.key(), frame, in_full(*x)])
     });
     vec![
         ("table1.csv", "layer,stage,u1,u2,u3,k1,k2,k3".into(), table1_rows(paper)),
@@ -78,8 +78,8 @@ fn table3_file(runs: &[EnergyRun]) -> Data {
     let header =
         "method,energy_error,mean_energy_error,printed_energy_error,printed_mean_energy_error";
     let rows = runs.iter().map(|run| {
-        let [last, mean] = table3(run.row).unwrap_or_default();
-        fields![run.row.key(), in_full(run.last().abs()), in_full(run.mean().abs()), last, mean]
+        let [last, mean] = table3(run.method).unwrap_or_default();
+        fields![run.method.key(), in_full(run.last().abs()), in_full(run.mean().abs()), last, mean]
     });
     ("table3.csv", header.into(), rows.collect())
 }
@@ -95,7 +95,7 @@ fn table4(paper: &Paper) -> Data {
             let cost = a.cost(e);
             rows.push(fields![
                 TESTS[a.test].key,
-                a.row.key(),
+                a.method.key(),
                 in_full(epsilon),
                 four(cost.printed),
                 four(cost.ours),
@@ -111,7 +111,7 @@ fn table4(paper: &Paper) -> Data {
 
 /// t and the energy error of each method, every tenth step.
 fn energy(name: &'static str, runs: &[EnergyRun]) -> Data {
-    let names: Vec<&str> = runs.iter().map(|run| run.row.key()).collect();
+    let names: Vec<&str> = runs.iter().map(|run| run.method.key()).collect();
     let steps = runs.iter().map(|run| run.error.len()).max().unwrap_or(0);
     let rows = (0..steps).step_by(10).map(|i| {
         let at = |run: &EnergyRun| run.error.get(i).copied();
@@ -129,7 +129,7 @@ fn figure5(paper: &Paper) -> Data {
         rows.extend(a.points.iter().map(|p| {
             fields![
                 TESTS[a.test].key,
-                a.row.key(),
+                a.method.key(),
                 p.steps,
                 in_full(p.error),
                 optional(a.printed_step().map(|ops| ops * p.steps as f64)),

@@ -9,7 +9,7 @@ use rand_pcg::Pcg64;
 
 use super::energy::energy_run;
 use super::experiments::{EXAMPLE1, EXAMPLE3, Experiment};
-use super::rows::{Body, Row};
+use super::methods::{Body, PaperMethod};
 use crate::cmd::CliError;
 
 /// The energy drift of one method in many space frames.
@@ -20,7 +20,7 @@ pub struct Frames {
     /// The end of the run.
     pub t: f64,
     /// The method.
-    pub row: Row,
+    pub method: PaperMethod,
     /// |E(t) − E(0)| in the frame of the paper.
     pub printed: f64,
     /// |E(t) − E(0)| in random frames, in order of size.
@@ -49,14 +49,15 @@ pub fn frames(count: usize, seed: u64, mut tick: impl FnMut(f64)) -> Result<Vec<
         [(1, EXAMPLE1, Experiment::END), (3, EXAMPLE3, 80.0)]
     {
         let grid = TimeGrid::new([0.0, t], dt)?;
-        for row in [Row::Exp, Row::Ccsk321, Row::Ccsk123] {
+        for method in [PaperMethod::Exp, PaperMethod::Ccsk321, PaperMethod::Ccsk123] {
             // exp does not see the frame: a few show it.
-            let turns = if row == Row::Exp { &turns[..count.min(10)] } else { &turns[..] };
-            let drift = |body: &Body| Ok::<_, CliError>(end_of(body, row, &grid)?.abs());
+            let turns =
+                if method == PaperMethod::Exp { &turns[..count.min(10)] } else { &turns[..] };
+            let drift = |body: &Body| Ok::<_, CliError>(end_of(body, method, &grid)?.abs());
             let mut random =
                 turns.iter().map(|r| drift(&body.turned(r))).collect::<Result<Vec<_>, _>>()?;
             random.sort_by(f64::total_cmp);
-            all.push(Frames { example, t, row, printed: drift(&body)?, random });
+            all.push(Frames { example, t, method, printed: drift(&body)?, random });
             tick(all.len() as f64 / 6.0);
         }
     }
@@ -64,11 +65,11 @@ pub fn frames(count: usize, seed: u64, mut tick: impl FnMut(f64)) -> Result<Vec<
 }
 
 /// E(t) − E(0) at the end, with nothing looked at on the way.
-fn end_of(body: &Body, row: Row, grid: &TimeGrid) -> Result<f64, CliError> {
+fn end_of(body: &Body, method: PaperMethod, grid: &TimeGrid) -> Result<f64, CliError> {
     let energy = RigidBody::<f64>::new(body.inertia)?;
     let start = energy.energy(&body.momentum_body());
     let mut last = f64::NAN;
-    row.run(body, grid, SaveAt::Ends, &mut |_, m, _| last = energy.energy(&m) - start)?;
+    method.run(body, grid, SaveAt::Ends, &mut |_, m, _| last = energy.energy(&m) - start)?;
     Ok(last)
 }
 
@@ -76,7 +77,7 @@ fn end_of(body: &Body, row: Row, grid: &TimeGrid) -> Result<f64, CliError> {
 #[derive(Clone, Debug)]
 pub struct DriftOrder {
     /// The method.
-    pub row: Row,
+    pub method: PaperMethod,
     /// h and |slope of E(t)|.
     pub points: Vec<(f64, f64)>,
 }
@@ -94,24 +95,31 @@ pub const GENERIC: Body = Body::new([1.0, 2.0, 3.0], [0.9, 1.0, 2.1]);
 
 /// How the drift falls with the step on generic data, over t = 0 … 400.
 pub fn drift_orders() -> Result<Vec<DriftOrder>, CliError> {
-    let rows = [Row::Exp, Row::Cay, Row::B4, Row::Rk4, Row::Ccsk321, Row::Ccsk123];
-    let order = |row| {
+    let methods = [
+        PaperMethod::Exp,
+        PaperMethod::Cay,
+        PaperMethod::B4,
+        PaperMethod::Rk4,
+        PaperMethod::Ccsk321,
+        PaperMethod::Ccsk123,
+    ];
+    let order = |method| {
         let point = |h: f64| {
             let grid = TimeGrid::new([0.0, 400.0], h)?;
-            Ok::<_, CliError>((h, energy_run(&GENERIC, row, &grid)?.drift().abs()))
+            Ok::<_, CliError>((h, energy_run(&GENERIC, method, &grid)?.drift().abs()))
         };
         let points =
             [0.1, 0.05, 0.025, 0.0125, 0.00625].into_iter().map(point).collect::<Result<_, _>>()?;
-        Ok(DriftOrder { row, points })
+        Ok(DriftOrder { method, points })
     };
-    rows.into_iter().map(order).collect()
+    methods.into_iter().map(order).collect()
 }
 
 /// One method near the separatrix.
 #[derive(Clone, Debug)]
 pub struct Separatrix {
     /// The method.
-    pub row: Row,
+    pub method: PaperMethod,
     /// t and L² − 2EJ₂, whose sign says on which side of the separatrix the motion is.
     pub side: Vec<(f64, f64)>,
     /// ‖g − exact‖ at the end.
@@ -131,16 +139,24 @@ pub fn separatrix() -> Result<Vec<Separatrix>, CliError> {
     let body = NEAR_SEPARATRIX;
     let grid = TimeGrid::new([0.0, 200.0], 0.05)?;
     let (_, exact) = body.exact(200.0)?;
-    let rows = [Row::Exp, Row::Cay, Row::Rk4, Row::Mr, Row::Mr2, Row::S, Row::Rk4mg];
-    let run = |row: Row| {
+    let methods = [
+        PaperMethod::Exp,
+        PaperMethod::Cay,
+        PaperMethod::Rk4,
+        PaperMethod::Mr,
+        PaperMethod::Mr2,
+        PaperMethod::S,
+        PaperMethod::Rk4mg,
+    ];
+    let run = |method: PaperMethod| {
         let mut side_of = Vec::new();
         let mut end = None;
-        row.run(&body, &grid, SaveAt::Every(20), &mut |t, m, g| {
+        method.run(&body, &grid, SaveAt::Every(20), &mut |t, m, g| {
             side_of.push((t, side(&body, &m)));
             end = g;
         })?;
         let error = end.map_or(f64::NAN, |g| (g - exact).norm());
-        Ok(Separatrix { row, side: side_of, error })
+        Ok(Separatrix { method, side: side_of, error })
     };
-    rows.into_iter().map(run).collect()
+    methods.into_iter().map(run).collect()
 }

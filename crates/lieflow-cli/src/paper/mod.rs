@@ -10,10 +10,10 @@ pub mod experiments;
 mod files;
 pub mod findings;
 pub mod maps;
+pub mod methods;
 mod news;
 mod page;
 pub mod printed;
-pub mod rows;
 pub mod speed;
 pub mod trace;
 mod verdicts;
@@ -25,7 +25,7 @@ use self::counts::{Count, table2};
 use self::energy::EnergyRun;
 use self::experiments::{EXAMPLE1, EXPERIMENTS, SEED};
 use self::findings::{DriftOrder, Frames, Separatrix};
-use self::rows::Row;
+use self::methods::PaperMethod;
 use self::trace::Trace;
 use crate::cmd::CliError;
 use crate::output;
@@ -51,7 +51,7 @@ pub struct Paper {
 
 /// How much is computed.
 #[derive(Clone, Copy, Debug)]
-pub struct Effort {
+pub struct PaperExtent {
     /// Random space frames.
     pub frames: usize,
     /// Rounds of timing.
@@ -61,12 +61,13 @@ pub struct Effort {
 }
 
 /// Compute everything. `tick` gets the share of the work that is done and what is under way.
-pub fn compute(effort: &Effort, mut tick: impl FnMut(f64, &str)) -> Result<Paper, CliError> {
+pub fn compute(effort: &PaperExtent, mut tick: impl FnMut(f64, &str)) -> Result<Paper, CliError> {
     tick(0.0, "Tables 1 and 2");
     let trace = trace::both_layers(&EXAMPLE1.body, EXAMPLE1.dt)?;
     let counts = table2()?;
     tick(0.02, "Table 3, Figures 3 and 4");
-    let [first, second, third] = EXPERIMENTS.map(|experiment| experiment.energy(Row::all()));
+    let [first, second, third] =
+        EXPERIMENTS.map(|experiment| experiment.energy(PaperMethod::all()));
     let energy = [first?, second?, third?];
     tick(0.3, "Table 4, Figure 5");
     let [first, second] = [0, 1].map(|test| accuracy(test, effort.finer, effort.rounds));
@@ -97,9 +98,9 @@ impl Paper {
     /// What a terminal is told.
     pub fn in_words(&self) -> String {
         let rows = self.energy[2].iter().filter_map(|run| {
-            let [last, mean] = printed::table3(run.row)?.map(String::from);
+            let [last, mean] = printed::table3(run.method)?.map(String::from);
             let ours = |x: f64| format!("{:.6e}", x.abs());
-            Some([run.row.name().into(), last, ours(run.last()), mean, ours(run.mean())])
+            Some([run.method.name().into(), last, ours(run.last()), mean, ours(run.mean())])
         });
         let table = output::table(["method", "energy error", "ours", "mean", "ours"], rows);
         let mut text = format!("Table 3: printed, and computed again\n{table}\n");

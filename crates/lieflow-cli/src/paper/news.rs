@@ -2,17 +2,17 @@
 
 use super::Paper;
 use super::findings::{Frames, Separatrix};
-use super::rows::Row as Method;
+use super::methods::PaperMethod;
 use lieflow_figures::number::{DASH, scientific, sig};
 use lieflow_figures::{Axis, Block, Chart, Column, Scale, Table};
 
 fn frames(frames: &[&Frames]) -> Chart {
-    let series = frames.iter().map(|f| match f.row {
+    let series = frames.iter().map(|f| match f.method {
         // One value, drawn over all frames.
-        Method::Exp => f.row.line([0.0, 1.0].map(|x| (x, f.printed))),
+        PaperMethod::Exp => f.method.line([0.0, 1.0].map(|x| (x, f.printed))),
         _ => {
             let share = |i: usize| (i as f64 + 0.5) / f.random.len() as f64;
-            f.row.line(f.random.iter().enumerate().map(|(i, x)| (share(i), *x)))
+            f.method.line(f.random.iter().enumerate().map(|(i, x)| (share(i), *x)))
         }
     });
     let example = frames.first().map_or(0, |f| f.example);
@@ -38,7 +38,7 @@ pub(super) fn blocks(paper: &Paper) -> Vec<Block> {
 
     let orders = paper.drift.iter().map(|d| {
         let orders = d.orders().into_iter().map(|p| format!("{p:.2}"));
-        core::iter::once(d.row.name().into()).chain(orders).collect::<Vec<_>>()
+        core::iter::once(d.method.name().into()).chain(orders).collect::<Vec<_>>()
     });
     blocks.push(Block::text(
         "Ours: the order of the drift. On data where no component of m_s is zero, the slope of the \
@@ -48,7 +48,7 @@ pub(super) fn blocks(paper: &Paper) -> Vec<Block> {
          motion, and ccsk gains the order too. Obtained by runs over t = 0 … 400 in five steps, each \
          half the one before: the slope is that of the line of least squares through E(t) at every step.",
     ));
-    let lines = paper.drift.iter().map(|d| d.row.marked_line(d.points.iter().copied()));
+    let lines = paper.drift.iter().map(|d| d.method.marked_line(d.points.iter().copied()));
     blocks.push(Block::Row(vec![
         Chart::new(
             "drift",
@@ -70,13 +70,13 @@ pub(super) fn blocks(paper: &Paper) -> Vec<Block> {
 
 fn frames_table(all: &[Frames]) -> Table {
     let rows = all.iter().map(|f| {
-        let exp = all.iter().find(|e| e.example == f.example && e.row == Method::Exp);
+        let exp = all.iter().find(|e| e.example == f.example && e.method == PaperMethod::Exp);
         let better = exp.map_or(f64::NAN, |e| f.below(e.printed));
         let percent = |x: f64| format!("{:.1} %", 100.0 * x);
-        let seen = |x: f64| if f.row == Method::Exp { DASH.into() } else { percent(x) };
+        let seen = |x: f64| if f.method == PaperMethod::Exp { DASH.into() } else { percent(x) };
         [
             format!("example {}, t = {}", f.example, f.t),
-            f.row.name().into(),
+            f.method.name().into(),
             f.random.len().to_string(),
             scientific(f.printed),
             scientific(f.quantile(0.1)),
@@ -100,7 +100,7 @@ fn frames_table(all: &[Frames]) -> Table {
 }
 
 fn separatrix(all: &[Separatrix]) -> Vec<Block> {
-    let lines = all.iter().map(|s| s.row.line(s.side.iter().copied()));
+    let lines = all.iter().map(|s| s.method.line(s.side.iter().copied()));
     let rows = all.iter().map(|s| {
         let start = s.side.first().map_or(f64::NAN, |p| p.1);
         let end = s.side.last().map_or(f64::NAN, |p| p.1);
@@ -109,7 +109,7 @@ fn separatrix(all: &[Separatrix]) -> Vec<Block> {
             ratio if ratio < 0.0 => "crossed",
             _ => "lost",
         };
-        [s.row.name().into(), scientific(end), verdict.into(), sig(s.error, 2)]
+        [s.method.name().into(), scientific(end), verdict.into(), sig(s.error, 2)]
     });
     let start = all.first().and_then(|s| s.side.first()).map_or(f64::NAN, |p| p.1);
     vec![

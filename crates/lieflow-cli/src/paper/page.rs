@@ -3,8 +3,8 @@
 use super::Paper;
 use super::accuracy::{Accuracy, EPSILONS, TESTS};
 use super::energy::{EnergyRun, energy_chart};
+use super::methods::PaperMethod;
 use super::printed::{self, ERRATA, TABLE3};
-use super::rows::Row as Method;
 use super::{news, verdicts};
 use crate::measure::machine;
 use crate::report;
@@ -30,7 +30,7 @@ pub(super) fn page(paper: &Paper) -> Page {
 
 fn in_short(paper: &Paper) -> Vec<Block> {
     let agree = TABLE3.iter().flat_map(|(row, last, mean)| {
-        let run = paper.energy[2].iter().find(|run| run.row == *row);
+        let run = paper.energy[2].iter().find(|run| run.method == *row);
         let pair = run.map_or([f64::NAN; 2], |run| [run.last().abs(), run.mean().abs()]);
         [(pair[0], *last), (pair[1], *mean)]
     });
@@ -130,8 +130,8 @@ fn table2(paper: &Paper) -> Vec<Block> {
 }
 
 /// The energy over the time of the motion, or over the CPU time that it took.
-fn chart(id: &str, title: &str, runs: &[EnergyRun], rows: &[Method], measured: bool) -> Chart {
-    let runs = rows.iter().filter_map(|row| runs.iter().find(|run| run.row == *row));
+fn chart(id: &str, title: &str, runs: &[EnergyRun], rows: &[PaperMethod], measured: bool) -> Chart {
+    let runs = rows.iter().filter_map(|row| runs.iter().find(|run| run.method == *row));
     let lines = runs.map(|run| {
         let h = run.error.get(1).map_or(1.0, |(t, _)| *t);
         run.line(if measured { run.seconds_per_step / h } else { 1.0 })
@@ -142,14 +142,14 @@ fn chart(id: &str, title: &str, runs: &[EnergyRun], rows: &[Method], measured: b
 fn figures34(paper: &Paper) -> Vec<Block> {
     // What the paper draws, and what it might have drawn.
     let rows = [
-        Method::Mr,
-        Method::Exp,
-        Method::Ccsk321,
-        Method::Cay,
-        Method::B4,
-        Method::Rk4,
-        Method::S,
-        Method::Rk4mg,
+        PaperMethod::Mr,
+        PaperMethod::Exp,
+        PaperMethod::Ccsk321,
+        PaperMethod::Cay,
+        PaperMethod::B4,
+        PaperMethod::Rk4,
+        PaperMethod::S,
+        PaperMethod::Rk4mg,
     ];
     let mut blocks = vec![Block::text(
         "Δt = 0.05, 8000 steps. Dashed: not in the paper's figures, or its method on other variables. \
@@ -170,10 +170,10 @@ fn figures34(paper: &Paper) -> Vec<Block> {
 
 fn table3(paper: &Paper) -> Vec<Block> {
     let rows = paper.energy[2].iter().map(|run| {
-        let [last, mean] = printed::table3(run.row).unwrap_or([DASH; 2]).map(String::from);
+        let [last, mean] = printed::table3(run.method).unwrap_or([DASH; 2]).map(String::from);
         let nine = |x: f64| or_dash((!x.is_nan()).then_some(x), |x| format!("{x:.8e}"));
         let (ours, our_mean) = (nine(run.last()), nine(run.mean()));
-        [run.row.name().into(), last, ours, mean, our_mean, scientific(run.max())]
+        [run.method.name().into(), last, ours, mean, our_mean, scientific(run.max())]
     });
     vec![
         Block::text(
@@ -193,7 +193,7 @@ fn table3(paper: &Paper) -> Vec<Block> {
             "Energy in example 3",
             &paper.energy[2],
             // The widest bands first, below the others.
-            &[&[Method::Mr2][..], &Method::PRINTED, &Method::ADDED[1..]].concat(),
+            &[&[PaperMethod::Mr2][..], &PaperMethod::PRINTED, &PaperMethod::ADDED[1..]].concat(),
             false,
         )
         .into(),
@@ -210,7 +210,7 @@ fn cost_chart(
 ) -> Block {
     let lines = all.iter().map(|a| {
         let points = a.points.iter().enumerate().filter(|(_, p)| !p.error.is_nan());
-        a.row.marked_line(points.filter_map(|(i, p)| {
+        a.method.marked_line(points.filter_map(|(i, p)| {
             Some(Point::new(p.error, of(a, i)?).with_note(format!("{} steps", p.steps)))
         }))
     });
@@ -231,7 +231,7 @@ fn table4(paper: &Paper) -> Vec<Block> {
         let all = &paper.accuracy[t];
         let rows = all.iter().map(|a| {
             let four = |x: Option<f64>| or_dash(x, |x| format!("{x:.4}"));
-            let mut cells = vec![a.row.name().to_string()];
+            let mut cells = vec![a.method.name().to_string()];
             for cost in [0, 1].map(|e| a.cost(e)) {
                 cells.extend([cost.printed, cost.ours, cost.counted].map(four));
                 cells.push(or_dash(cost.seconds, seconds));

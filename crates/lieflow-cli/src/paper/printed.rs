@@ -1,17 +1,17 @@
 //! What the paper prints, and what is wrong in it.
 
-use super::rows::Row;
+use super::methods::PaperMethod;
 
 /// A row of Table 3: energy error at t = 400, and its mean.
-pub const TABLE3: [(Row, &str, &str); 8] = [
-    (Row::Mr, "1.0330e-05", "8.5929e-04"),
-    (Row::Exp, "0.0300", "0.0150"),
-    (Row::Ccsk, "0.2064", "0.1026"),
-    (Row::Ccsk321, "0.0089", "0.0046"),
-    (Row::Ccsk123, "0.4204", "0.2094"),
-    (Row::Cay, "0.3339", "0.1671"),
-    (Row::B4, "0.1450", "0.0726"),
-    (Row::Rk4, "0.5863", "0.2958"),
+pub const TABLE3: [(PaperMethod, &str, &str); 8] = [
+    (PaperMethod::Mr, "1.0330e-05", "8.5929e-04"),
+    (PaperMethod::Exp, "0.0300", "0.0150"),
+    (PaperMethod::Ccsk, "0.2064", "0.1026"),
+    (PaperMethod::Ccsk321, "0.0089", "0.0046"),
+    (PaperMethod::Ccsk123, "0.4204", "0.2094"),
+    (PaperMethod::Cay, "0.3339", "0.1671"),
+    (PaperMethod::B4, "0.1450", "0.0726"),
+    (PaperMethod::Rk4, "0.5863", "0.2958"),
 ];
 
 /// A row of Table 4: log₁₀ of the operations to 1e-3 and 1e-6 in the two tests, and the operations of
@@ -19,39 +19,39 @@ pub const TABLE3: [(Row, &str, &str); 8] = [
 #[derive(Clone, Copy, Debug)]
 pub struct Table4 {
     /// The method.
-    pub row: Row,
+    pub method: PaperMethod,
     /// To 1e-3 and 1e-6, for each test.
     pub printed: [[f64; 2]; 2],
     /// Operations of a step, for each test; none where no constant fits the two numbers.
     pub per_step: [Option<f64>; 2],
 }
 
-const fn line(row: Row, p: [f64; 4], per_step: [Option<f64>; 2]) -> Table4 {
-    Table4 { row, printed: [[p[0], p[1]], [p[2], p[3]]], per_step }
+const fn line(method: PaperMethod, p: [f64; 4], per_step: [Option<f64>; 2]) -> Table4 {
+    Table4 { method, printed: [[p[0], p[1]], [p[2], p[3]]], per_step }
 }
 
 /// Table 4. The operations of a step are not in the paper: they are the integers that its numbers
 /// imply, one for two numbers.
 pub const TABLE4: [Table4; 9] = [
-    line(Row::Mr, [3.7350, 4.5078, 5.3546, 6.0545], [Some(1767.0), Some(1684.0)]),
-    line(Row::S, [3.0821, 4.5864, 6.3032, 7.4649], [Some(667.0), None]),
-    line(Row::Exp, [3.0635, 3.8140, 4.9248, 5.6144], [Some(749.0), Some(713.0)]),
-    line(Row::Ccsk, [3.0764, 3.8278, 5.1211, 5.8551], [Some(651.0), Some(615.0)]),
-    line(Row::Ccsk321, [2.8129, 3.5740, 5.0725, 5.8319], [Some(651.0), Some(615.0)]),
-    line(Row::Ccsk123, [3.1603, 3.9074, 5.2132, 5.9964], [Some(651.0), Some(615.0)]),
-    line(Row::Cay, [3.0539, 3.8052, 5.0890, 5.7877], [Some(713.0), Some(677.0)]),
-    line(Row::B4, [2.7731, 3.5237, 4.7440, 5.4732], [Some(417.0), Some(408.0)]),
-    line(Row::Rk4, [3.0773, 3.8207, 5.2167, 5.9541], [Some(657.0), Some(621.0)]),
+    line(PaperMethod::Mr, [3.7350, 4.5078, 5.3546, 6.0545], [Some(1767.0), Some(1684.0)]),
+    line(PaperMethod::S, [3.0821, 4.5864, 6.3032, 7.4649], [Some(667.0), None]),
+    line(PaperMethod::Exp, [3.0635, 3.8140, 4.9248, 5.6144], [Some(749.0), Some(713.0)]),
+    line(PaperMethod::Ccsk, [3.0764, 3.8278, 5.1211, 5.8551], [Some(651.0), Some(615.0)]),
+    line(PaperMethod::Ccsk321, [2.8129, 3.5740, 5.0725, 5.8319], [Some(651.0), Some(615.0)]),
+    line(PaperMethod::Ccsk123, [3.1603, 3.9074, 5.2132, 5.9964], [Some(651.0), Some(615.0)]),
+    line(PaperMethod::Cay, [3.0539, 3.8052, 5.0890, 5.7877], [Some(713.0), Some(677.0)]),
+    line(PaperMethod::B4, [2.7731, 3.5237, 4.7440, 5.4732], [Some(417.0), Some(408.0)]),
+    line(PaperMethod::Rk4, [3.0773, 3.8207, 5.2167, 5.9541], [Some(657.0), Some(621.0)]),
 ];
 
-/// The energy error that Table 3 prints for a row, and its mean.
-pub fn table3(row: Row) -> Option<[&'static str; 2]> {
-    TABLE3.iter().find(|(printed, ..)| *printed == row).map(|(_, last, mean)| [*last, *mean])
+/// The energy error that Table 3 prints for a method, and its mean.
+pub fn table3(method: PaperMethod) -> Option<[&'static str; 2]> {
+    TABLE3.iter().find(|(printed, ..)| *printed == method).map(|(_, last, mean)| [*last, *mean])
 }
 
-/// What Table 4 prints for a row.
-pub fn table4(row: Row) -> Option<&'static Table4> {
-    TABLE4.iter().find(|printed| printed.row == row)
+/// What Table 4 prints for a method.
+pub fn table4(method: PaperMethod) -> Option<&'static Table4> {
+    TABLE4.iter().find(|printed| printed.method == method)
 }
 
 /// The operations that Table 2 prints for a part of a map, and the fewest known.
@@ -101,7 +101,7 @@ pub const ERRATA: [[&str; 3]; 17] = [
     [
         "§4.2, (18)",
         "given for the ordering 123 alone",
-        "321: rows (cos u₃ sec u₂, sin u₃ sec u₂, 0), (−sin u₃, cos u₃, 0), \
+        "321: methods (cos u₃ sec u₂, sin u₃ sec u₂, 0), (−sin u₃, cos u₃, 0), \
          (cos u₃ tan u₂, sin u₃ tan u₂, 1); both singular at u₂ = ±π/2",
     ],
     [

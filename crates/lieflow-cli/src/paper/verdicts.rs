@@ -2,7 +2,7 @@
 
 use super::Paper;
 use super::accuracy::{Accuracy, EPSILONS, TESTS};
-use super::rows::Row;
+use super::methods::PaperMethod;
 use lieflow_figures::number::{or_dash, seconds};
 
 /// A sentence of the paper and what the measurements say.
@@ -14,16 +14,22 @@ pub(super) struct Verdict {
     pub(super) answer: String,
 }
 
-const LIE: [Row; 5] = [Row::Exp, Row::Ccsk, Row::Ccsk321, Row::Ccsk123, Row::Cay];
+const LIE: [PaperMethod; 5] = [
+    PaperMethod::Exp,
+    PaperMethod::Ccsk,
+    PaperMethod::Ccsk321,
+    PaperMethod::Ccsk123,
+    PaperMethod::Cay,
+];
 
-fn find(all: &[Accuracy], row: Row) -> Option<&Accuracy> {
-    all.iter().find(|a| a.row == row)
+fn find(all: &[Accuracy], method: PaperMethod) -> Option<&Accuracy> {
+    all.iter().find(|a| a.method == method)
 }
 
-/// The time of a row to ε, in words.
-fn time(all: &[Accuracy], row: Row, epsilon: f64) -> String {
-    let time = find(all, row).and_then(|a| a.seconds_to(epsilon));
-    format!("{} {}", row.name(), or_dash(time, seconds))
+/// The time of a method to ε, in words.
+fn time(all: &[Accuracy], method: PaperMethod, epsilon: f64) -> String {
+    let time = find(all, method).and_then(|a| a.seconds_to(epsilon));
+    format!("{} {}", method.name(), or_dash(time, seconds))
 }
 
 /// Every sentence.
@@ -33,37 +39,41 @@ pub(super) fn all(paper: &Paper) -> Vec<Verdict> {
             .flat_map(|test| EPSILONS.map(|epsilon| (test, epsilon)))
             .map(|(test, epsilon)| (&paper.accuracy[test], TESTS[test].name, epsilon))
     };
-    let faster = |all: &[Accuracy], a: Row, b: Row, epsilon: f64| {
-        let time = |row| find(all, row).and_then(|x| x.seconds_to(epsilon));
+    let faster = |all: &[Accuracy], a: PaperMethod, b: PaperMethod, epsilon: f64| {
+        let time = |method| find(all, method).and_then(|x| x.seconds_to(epsilon));
         matches!((time(a), time(b)), (Some(a), Some(b)) if a < b)
     };
     let mut against_mr = Vec::new();
     let mut all_faster = true;
     for (all, name, epsilon) in cells() {
-        let ahead = LIE.into_iter().filter(|row| faster(all, *row, Row::Mr, epsilon)).count();
+        let ahead =
+            LIE.into_iter().filter(|method| faster(all, *method, PaperMethod::Mr, epsilon)).count();
         all_faster &= ahead == LIE.len();
         against_mr.push(format!(
             "{name} to {epsilon:.0e}: {} of {} are faster ({}, {})",
             ahead,
             LIE.len(),
-            time(all, Row::Mr, epsilon),
-            time(all, Row::Exp, epsilon)
+            time(all, PaperMethod::Mr, epsilon),
+            time(all, PaperMethod::Exp, epsilon)
         ));
     }
     let mut against_rk = Vec::new();
     for (all, name, epsilon) in cells() {
-        let ahead = LIE.into_iter().chain([Row::B4]);
-        let ahead: Vec<_> = ahead.filter(|row| faster(all, *row, Row::Rk4, epsilon)).collect();
-        let names: Vec<_> = ahead.iter().map(|row| row.name()).collect();
+        let ahead = LIE.into_iter().chain([PaperMethod::B4]);
+        let ahead: Vec<_> =
+            ahead.filter(|method| faster(all, *method, PaperMethod::Rk4, epsilon)).collect();
+        let names: Vec<_> = ahead.iter().map(|method| method.name()).collect();
         let names = if names.is_empty() { "none".into() } else { names.join(", ") };
-        against_rk
-            .push(format!("{name} to {epsilon:.0e}: {names} ({})", time(all, Row::Rk4, epsilon)));
+        against_rk.push(format!(
+            "{name} to {epsilon:.0e}: {names} ({})",
+            time(all, PaperMethod::Rk4, epsilon)
+        ));
     }
     let fastest = cells().map(|(all, name, epsilon)| {
-        let timed = all.iter().filter_map(|a| Some((a.seconds_to(epsilon)?, a.row)));
+        let timed = all.iter().filter_map(|a| Some((a.seconds_to(epsilon)?, a.method)));
         let best = timed.min_by(|a, b| a.0.total_cmp(&b.0));
         let best =
-            best.map_or("none".into(), |(t, row)| format!("{} ({})", row.name(), seconds(t)));
+            best.map_or("none".into(), |(t, method)| format!("{} ({})", method.name(), seconds(t)));
         format!("{name} to {epsilon:.0e}: {best}")
     });
     vec![

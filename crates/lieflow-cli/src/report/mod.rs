@@ -22,7 +22,7 @@ pub fn times(ratio: f64) -> String {
 }
 
 /// On which machine and how times are measured, as facts of a page.
-pub fn measured(rounds: u32) -> [(String, String); 2] {
+pub fn conditions(rounds: u32) -> [(String, String); 2] {
     let how = format!(
         "CPU time of one thread, medians of {rounds} rounds that visit every method in turn"
     );

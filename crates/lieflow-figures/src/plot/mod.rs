@@ -19,4 +19,4 @@ pub use heat::{Ground, Heat};
 pub use scale::{Axis, Scale};
 pub use series::{Marker, Point, Series, tell_apart};
 pub use sphere::{Path, Sphere};
-pub use svg::{escape, slug};
+pub(crate) use svg::{escape, slug};

@@ -135,8 +135,8 @@ impl Marker {
 pub struct Series {
     /// The name in the legend.
     pub name: String,
-    /// The index of the colour; lines that belong together may share it. It counts modulo
-    /// [`LINE_COLOURS`](super::theme::LINE_COLOURS).
+    /// The index of the colour; lines that belong together may share it. After eight colours they begin
+    /// again.
     pub colour: usize,
     /// The shape at the points. [`Marker::None`] is for dense lines.
     pub marker: Marker,

@@ -2,7 +2,7 @@
 
 /// `text` with the five special characters of HTML and XML replaced by entities. Control
 /// characters, which XML forbids, become spaces.
-pub fn escape(text: &str) -> String {
+pub(crate) fn escape(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
         match c {
@@ -50,7 +50,7 @@ impl Opening<'_> {
 }
 
 /// `text` reduced to an identifier: letters, digits and hyphens, beginning with a letter.
-pub fn slug(text: &str) -> String {
+pub(crate) fn slug(text: &str) -> String {
     let mut out = String::new();
     for c in text.chars() {
         if c.is_ascii_alphanumeric() {

@@ -12,7 +12,7 @@ use lieflow::Error;
 use lieflow::groups::MatrixGroup;
 use lieflow::scalar::{Ops, tally};
 
-use crate::scene::{Refusal, help_for};
+use crate::scene::Refusal;
 
 /// An algebra of n×n matrices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,11 +25,11 @@ pub(super) enum Algebra {
     Sp,
 }
 
-/// What may be named; `so(p,q)` with numbers.
+/// The names in scenes; `so(p,q)` with numbers for p and q.
 pub(super) const ALGEBRAS: [&str; 5] = ["so", "sl", "gl", "sp", "so(p,q)"];
 
 impl Algebra {
-    /// The algebra that `key` names; none where it is no such name.
+    /// The algebra of that name; none for other names.
     pub(super) fn named(name: &str) -> Option<Algebra> {
         match name {
             "gl" => Some(Algebra::Gl),
@@ -43,12 +43,6 @@ impl Algebra {
         }
     }
 
-    /// That `name`, which `key` has, is none of these.
-    pub(super) fn unknown(key: &str, name: &str, names: &[&str]) -> Refusal {
-        let refusal = Refusal::at(key, format!("unknown {key} `{name}`"));
-        Refusal { help: Some(help_for(name, names)), ..refusal }
-    }
-
     /// Its name with n.
     pub(super) fn name(self, n: usize) -> String {
         match self {
@@ -60,10 +54,10 @@ impl Algebra {
         }
     }
 
-    /// The group; that of sl(n) is GL(n), in which nothing moves out of SL(n).
+    /// The group. For sl(n) it is GL(n): a field in sl(n) moves nothing out of SL(n).
     ///
     /// # Errors
-    /// A refusal of `key`, which says n.
+    /// A refusal of `key`, whose value has n rows.
     pub(super) fn group(self, n: usize, key: &str) -> Result<MatrixGroup, Refusal> {
         let group = match self {
             Algebra::Gl | Algebra::Sl => MatrixGroup::gl(n),
@@ -80,7 +74,7 @@ impl Algebra {
         group.map_err(|error: Error| Refusal::at(key, error.to_string()))
     }
 
-    /// x ← its part in the algebra.
+    /// x ← its projection on the algebra.
     pub(super) fn project(self, x: &mut Mat<f64>) {
         let n = x.nrows();
         match self {
@@ -120,7 +114,7 @@ fn skew(x: &mut Mat<f64>, p: usize) {
     }
 }
 
-/// Where x is farthest from the algebra, if that is more than `tolerance` of its size.
+/// The entry of x that is farthest from the algebra, where that is more than `tolerance` times its size.
 pub(super) fn outside(algebra: Algebra, x: &Mat<f64>, tolerance: f64) -> Option<(usize, usize)> {
     let mut inside = x.clone();
     algebra.project(&mut inside);

@@ -4,69 +4,30 @@
 //! ġ = A(s) g with A = \[0 𝟙; −K(s) 0\], K = diag(k_x, k_z) constant along an element: a step that ends
 //! where elements do is exact by every exponential method.
 
-use faer::Mat;
-use lieflow::Error;
 use lieflow::groups::{AlgebraMatrix, MatrixGroup};
 use lieflow::problems::Flow;
 use lieflow::problems::beam::{Element, transfer_map, tunes};
-use serde::Deserialize;
-use toml::de::ValueDeserializer;
 
-use super::hill::symplectic_defect;
+use super::entries::{row_columns, rows, symplectic_defect};
+use super::flow::OnMatrices;
 use super::matrix::MatrixAction;
-use super::old_system::System;
-use super::{Fact, Figure, KeyInfo, Kind, Law, ProblemSpec, QuantityInfo, Scale};
-use crate::kinds::flow::OnMatrices;
-use crate::model::Layer;
-use crate::scene::values::{Real, Reals};
-use crate::scene::{ReadError, Refusal, help_for};
+use super::prelude::*;
 
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {
     name: "beam-line",
     equation: "x″ = −k_x x, z″ = −k_z z: (k_x, k_z) = (k, −k) in a quadrupole, (1/radius², 0) in a dipole",
     summary: "a particle through the magnets of a periodic beam line; t is the path along it",
-    keys: &[
-        KeyInfo {
-            name: "elements",
-            meaning: "a cell: {kind = \"drift\", length}, {kind = \"quadrupole\", length, k}, \
-                      {kind = \"dipole\", length, radius}, in the order of the beam",
-        },
-        KeyInfo { name: "particle", meaning: "initial [x, z, x', z']" },
-    ],
-    quantities: || {
-        vec![
-            QuantityInfo {
-                name: "map",
-                columns: &["g11", "…", "g44"],
-                meaning: "the transfer map from the start, row by row, of (x, z, x', z')",
-            },
-            QuantityInfo {
-                name: "particle",
-                columns: &["x", "z", "x_slope", "z_slope"],
-                meaning: "the particle",
-            },
-            QuantityInfo {
-                name: "phase_space",
-                columns: &["x", "x_slope", "z", "z_slope"],
-                meaning: "the same, plane by plane",
-            },
-            QuantityInfo {
-                name: "symplectic_defect",
-                columns: &["symplectic_defect"],
-                meaning: "distance of g'Jg from J",
-            },
-        ]
-    },
+    keys: Keys::INFO,
+    quantities: quantities_of::<BeamLine>,
     read,
 };
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Keys {
-    elements: Vec<ElementKeys>,
-    particle: Reals<4>,
-}
+keys! { Keys {
+    elements: Vec<ElementKeys> = "a cell: {kind = \"drift\", length}, {kind = \"quadrupole\", length, k}, \
+                                  {kind = \"dipole\", length, radius}, in the order of the beam",
+    particle: Reals<4> = "initial [x, z, x', z']",
+} }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -85,6 +46,8 @@ struct BeamLine {
     strengths: Vec<(f64, [f64; 2])>,
     particle: [f64; 4],
 }
+
+type Q = Quantity<BeamLine>;
 
 /// An element with (k_x, k_z).
 fn element(keys: &ElementKeys) -> Result<(Element, [f64; 2]), String> {
@@ -122,7 +85,7 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
         return Err(Refusal::at("elements", "no elements, expected at least one").into());
     }
     transfer_map(&elements).map_err(|error| Refusal::at("elements", error.to_string()))?;
-    Ok(Box::new(BeamLine { elements, strengths, particle: keys.particle.0 }))
+    Ok(Box::new(Stated(BeamLine { elements, strengths, particle: keys.particle.0 })))
 }
 
 impl BeamLine {
@@ -152,6 +115,10 @@ impl BeamLine {
         let cell = if cells < 0.0 { inverse(&cell) } else { cell };
         Ok(transfer_map(&begun)?.into_mat() * power(cell, cells.abs() as u64))
     }
+    /// The coordinates of the particle where the map is g.
+    fn particle(&self, g: &Mat<f64>, coordinates: [usize; 4]) -> [f64; 4] {
+        coordinates.map(|i| (0..4).map(|j| g[(i, j)] * self.particle[j]).sum())
+    }
     /// (k_x, k_z) at s.
     fn strength(&self, s: f64) -> [f64; 2] {
         let s = s.rem_euclid(self.cell_length());
@@ -180,15 +147,36 @@ fn power(mut g: Mat<f64>, mut k: u64) -> Mat<f64> {
 }
 
 impl System for BeamLine {
-    type Problem = OnMatrices;
+    type Problem<N: Number> = OnMatrices;
+
+    const STATE: &'static [&'static str] = &["map"];
+    const QUANTITIES: &'static [Q] = &[
+        Q::numbers(
+            "map",
+            &["g11", "…", "g44"],
+            "the transfer map from the start, row by row, of (x, z, x', z')",
+            |_, _, g, row| row.extend(rows(g)),
+        )
+        .with_columns(|_| row_columns("g", 4, 4)),
+        Q::numbers(
+            "particle",
+            &["x", "z", "x_slope", "z_slope"],
+            "the particle",
+            |line, _, g, row| row.extend(line.particle(g, [0, 1, 2, 3])),
+        ),
+        Q::numbers(
+            "phase_space",
+            &["x", "x_slope", "z", "z_slope"],
+            "the particle, plane by plane",
+            |line, _, g, row| row.extend(line.particle(g, [0, 2, 1, 3])),
+        ),
+        symplectic_defect(),
+    ];
 
     fn kind(&self) -> &'static Kind {
         &KIND
     }
-    fn layer(&self) -> Layer {
-        Layer::General
-    }
-    fn problem(&self) -> Result<(Self::Problem, Mat<f64>), Error> {
+    fn problem<N: Number>(&self) -> Result<Start<OnMatrices>, Error> {
         let line = self.clone();
         let field = move |s: f64, v: &mut AlgebraMatrix| {
             v.fill(0.0);
@@ -201,30 +189,6 @@ impl System for BeamLine {
     }
     fn modelled(&self) -> String {
         "transfer map in Sp(4)".into()
-    }
-    fn state(&self) -> &'static [&'static str] {
-        &["map"]
-    }
-    fn laws(&self) -> Vec<Law> {
-        vec![Law::of_the_action("symplectic_defect", 2).on_scale(Scale::Terms)]
-    }
-    fn columns(&self, quantity: &QuantityInfo) -> Vec<String> {
-        match quantity.name {
-            "map" => (1..=4).flat_map(|i| (1..=4).map(move |j| format!("g{i}{j}"))).collect(),
-            _ => quantity.columns.iter().map(|&column| column.into()).collect(),
-        }
-    }
-    fn show(&self, quantity: &str, _: f64, g: &Mat<f64>, row: &mut Vec<f64>) {
-        let particle = |i: usize| (0..4).map(|j| g[(i, j)] * self.particle[j]).sum::<f64>();
-        match quantity {
-            "map" => row.extend((0..4).flat_map(|i| (0..4).map(move |j| g[(i, j)]))),
-            "particle" => row.extend([0, 1, 2, 3].map(particle)),
-            "phase_space" => row.extend([0, 2, 1, 3].map(particle)),
-            _ => row.push(symplectic_defect(g)),
-        }
-    }
-    fn size(&self, _: &str, g: &Mat<f64>) -> f64 {
-        g.squared_norm_l2()
     }
     fn exact(&self, [s0, s1]: [f64; 2]) -> Option<Result<Mat<f64>, Error>> {
         let both = self.map_to(s0).and_then(|to_start| Ok((to_start, self.map_to(s1)?)));

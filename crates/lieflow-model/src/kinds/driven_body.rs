@@ -13,19 +13,19 @@ use std::sync::Arc;
 
 use lieflow::Error;
 use lieflow::actions::LeftTranslation;
-use lieflow::catalog::MethodSpec;
 use lieflow::groups::{LieGroup, So3, vee};
 use lieflow::problems::{BodyTorque, Motion, Torque, TorqueBody};
-use lieflow::scalar::{Counted, Real};
+use lieflow::scalar::Real;
 use nalgebra::{Matrix3, Vector3};
 use serde::Deserialize;
 use toml::de::ValueDeserializer;
 
+use super::body::{ATTITUDE, ROTATION, attitude, by_rows};
 use super::flow;
-use super::old_system::System;
-use super::{Figure, KeyInfo, Kind, Law, PARAMETERS, ProblemSpec, QuantityInfo, Scale};
+use super::quantity::Quantity;
+use super::system::{Number, Start, Stated, System, quantities_of};
+use super::{Figure, Kind, Law, PARAMETERS, ProblemSpec, Scale, keys};
 use crate::model::Layer;
-use crate::operations::{Pace, operations_by};
 use crate::scene::formula::{Formula, Parameters, read_all};
 use crate::scene::values::{self, Reals, Rows, Texts};
 use crate::scene::{ReadError, Refusal};
@@ -35,97 +35,27 @@ pub(super) const KIND: Kind = Kind {
     name: "driven-body",
     equation: "m = Jω; ṁ = m × ω + gᵀ(e₃ × g weight) + thruster − damping ω − k (g − gᵀ)ᵛ/2 − c ω + torque + gᵀ torque_space, ġ = gω̂",
     summary: "a rigid body with its attitude under the torques that are named",
-    keys: &[
-        KeyInfo { name: "inertia", meaning: "principal moments of inertia [J1, J2, J3]" },
-        KeyInfo { name: "omega_body", meaning: "initial angular velocity in the body" },
-        KeyInfo {
-            name: "attitude",
-            meaning: "initial rotation from body to space, three rows; optional, the identity",
-        },
-        KeyInfo {
-            name: "weight",
-            meaning: "gravity: weight times the vector from the fixed point to the centre of mass, in \
-                      the body; optional",
-        },
-        KeyInfo { name: "thruster", meaning: "a constant torque in the body; optional" },
-        KeyInfo { name: "damping", meaning: "c of a torque -c omega in the body; optional" },
-        KeyInfo {
-            name: "control",
-            meaning: "[k, c] of a law that brings the attitude to the identity; optional",
-        },
-        KeyInfo {
-            name: "torque",
-            meaning: "a torque in the body, three formulas in t, the angular velocity in the body w1, w2, \
-                      w3, the momentum in space m1, m2, m3 and the attitude g11, ..., g33; optional",
-        },
-        KeyInfo {
-            name: "torque_space",
-            meaning: "a torque in space, three formulas in the same variables; optional",
-        },
-        PARAMETERS,
-    ],
-    quantities: || {
-        vec![
-            QuantityInfo {
-                name: "attitude",
-                columns: &["g11", "g12", "g13", "g21", "g22", "g23", "g31", "g32", "g33"],
-                meaning: "rotation from body to space, row by row",
-            },
-            QuantityInfo {
-                name: "momentum_space",
-                columns: &["l1", "l2", "l3"],
-                meaning: "angular momentum in space",
-            },
-            QuantityInfo {
-                name: "omega_body",
-                columns: &["w1", "w2", "w3"],
-                meaning: "angular velocity in the body",
-            },
-            QuantityInfo {
-                name: "axis",
-                columns: &["a1", "a2", "a3"],
-                meaning: "the third axis of the body, in space",
-            },
-            QuantityInfo {
-                name: "energy",
-                columns: &["energy"],
-                meaning: "kinetic energy, and that of the weight",
-            },
-            QuantityInfo {
-                name: "angle",
-                columns: &["angle"],
-                meaning: "angle of the attitude from the identity",
-            },
-            QuantityInfo {
-                name: "vertical_momentum",
-                columns: &["vertical_momentum"],
-                meaning: "angular momentum about e3 in space",
-            },
-            QuantityInfo {
-                name: "attitude_defect",
-                columns: &["attitude_defect"],
-                meaning: "distance of g'g from the identity",
-            },
-        ]
-    },
+    keys: Keys::INFO,
+    quantities: quantities_of::<Driven>,
     read,
 };
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Keys {
-    inertia: Reals<3>,
-    omega_body: Reals<3>,
-    attitude: Option<Rows<3>>,
-    weight: Option<Reals<3>>,
-    thruster: Option<Reals<3>>,
-    damping: Option<values::Real>,
-    control: Option<Reals<2>>,
-    torque: Option<Texts<3>>,
-    torque_space: Option<Texts<3>>,
+keys! { Keys {
+    inertia: Reals<3> = "principal moments of inertia [J1, J2, J3]",
+    omega_body: Reals<3> = "initial angular velocity in the body",
+    attitude: Option<Rows<3>> = ATTITUDE,
+    weight: Option<Reals<3>> =
+        "gravity: weight times the vector from the fixed point to the centre of mass, in the body; optional",
+    thruster: Option<Reals<3>> = "a constant torque in the body; optional",
+    damping: Option<values::Real> = "c of a torque -c omega in the body; optional",
+    control: Option<Reals<2>> = "[k, c] of a law that brings the attitude to the identity; optional",
+    torque: Option<Texts<3>> =
+        "a torque in the body, three formulas in t, the angular velocity in the body w1, w2, w3, the \
+         momentum in space m1, m2, m3 and the attitude g11, ..., g33; optional",
+    torque_space: Option<Texts<3>> = "a torque in space, three formulas in the same variables; optional",
     #[serde(default)]
-    parameters: Parameters,
-}
+    parameters: Parameters = PARAMETERS.meaning,
+} }
 
 /// What a torque may depend on, in the order of [`variables`].
 #[rustfmt::skip]
@@ -212,6 +142,8 @@ struct Driven {
     start: Point,
 }
 
+type Q = Quantity<Driven>;
+
 fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
     let keys = Keys::deserialize(section)?;
     let names = keys.parameters.names("torque", VARIABLES)?;
@@ -227,30 +159,72 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
         in_the_body: formulas("torque", keys.torque)?,
         in_space: formulas("torque_space", keys.torque_space)?,
     };
-    let attitude = keys.attitude.map_or_else(Matrix3::identity, |rows| {
-        Matrix3::from_rows(&rows.0.map(|row| Vector3::from(row).transpose()))
-    });
     let body = TorqueBody::new(keys.inertia.0, torques.clone())?;
-    let start = body.state(attitude, keys.omega_body.0)?;
-    Ok(Box::new(Driven { body, torques, start }))
+    let start = body.state(attitude(keys.attitude), keys.omega_body.0)?;
+    Ok(Box::new(Stated(Driven { body, torques, start })))
 }
 
 impl Driven {
-    /// Is gravity the only torque, or none?
-    fn is_conservative(&self) -> bool {
+    /// A law of the motion under gravity alone, or under no torque.
+    fn undriven(&self, law: Law) -> Option<Law> {
         let Torques { weight: _, thruster, damping, control, in_the_body, in_space } =
             &self.torques;
         let formulas = in_the_body.is_some() || in_space.is_some();
-        thruster.is_none() && damping.is_none() && control.is_none() && !formulas
-    }
-    fn energy(&self, y: &Point) -> f64 {
-        let height = self.torques.weight.map_or(0.0, |weight| (y.0 * weight)[2]);
-        self.body.kinetic_energy(y) + height
+        let driven = thruster.is_some() || damping.is_some() || control.is_some() || formulas;
+        (!driven).then_some(law)
     }
 }
 
 impl System for Driven {
-    type Problem = flow::Driven<f64>;
+    type Problem<N: Number> = flow::Driven<N>;
+
+    const STATE: &'static [&'static str] = &["attitude", "momentum_space"];
+    const QUANTITIES: &'static [Q] = &[
+        Q::numbers(
+            "attitude",
+            ROTATION,
+            "rotation from body to space, row by row",
+            |_, _, (g, _), row| by_rows(g, row),
+        ),
+        Q::numbers(
+            "momentum_space",
+            &["l1", "l2", "l3"],
+            "angular momentum in space",
+            |_, _, (_, m), row| row.extend(m.iter()),
+        ),
+        Q::numbers(
+            "omega_body",
+            &["w1", "w2", "w3"],
+            "angular velocity in the body",
+            |driven, t, y, row| row.extend(driven.body.motion(t, y).omega_body.iter()),
+        ),
+        Q::numbers(
+            "axis",
+            &["a1", "a2", "a3"],
+            "the third axis of the body, in space",
+            |_, _, (g, _), row| row.extend(g.column(2).iter()),
+        ),
+        Q::number("energy", "kinetic energy, and that of the weight", |driven, _, y| {
+            let height = driven.torques.weight.map_or(0.0, |weight| (y.0 * weight)[2]);
+            driven.body.kinetic_energy(y) + height
+        })
+        .kept_where(|driven| driven.undriven(Law::by_the_flow(0)))
+        .in_terms(|driven, y| {
+            driven.body.kinetic_energy(y) + driven.torques.weight.map_or(0.0, |w| w.norm())
+        }),
+        // Exact near 0 and near π: the sine and the cosine.
+        Q::number("angle", "angle of the attitude from the identity", |_, _, (g, _)| {
+            let sine = vee(&((g - g.transpose()) * 0.5)).norm();
+            sine.atan2(0.5 * (g.trace() - 1.0))
+        }),
+        Q::number("vertical_momentum", "angular momentum about e3 in space", |_, _, (_, m)| m[2])
+            .kept_where(|driven| driven.undriven(Law::by_the_flow(1)))
+            .in_terms(|_, (_, m)| m.norm()),
+        Q::number("attitude_defect", "distance of g'g from the identity", |_, _, (g, _)| {
+            So3::new().defect(g)
+        })
+        .kept(Law::by_the_action(2).on_scale(Scale::One)),
+    ];
 
     fn kind(&self) -> &'static Kind {
         &KIND
@@ -258,14 +232,10 @@ impl System for Driven {
     fn layer(&self) -> Layer {
         Layer::Closed
     }
-    fn problem(&self) -> Result<(Self::Problem, Point), Error> {
-        Ok((flow::Driven::new(self.body.clone(), LeftTranslation), self.start))
-    }
-    fn operations(&self, method: &MethodSpec, pace: Pace<'_>) -> Option<f64> {
-        let start = (self.start.0.map(Counted), self.start.1.map(Counted));
-        let body = self.body.on::<Counted, _>(self.torques.clone());
-        let (flow, start) = (flow::Driven::new(body, LeftTranslation), start);
-        operations_by(method, &flow, start, pace)
+    fn problem<N: Number>(&self) -> Result<Start<flow::Driven<N>>, Error> {
+        let body = self.body.on::<N, _>(self.torques.clone());
+        let start = (self.start.0.map(N::lit), self.start.1.map(N::lit));
+        Ok((flow::Driven::new(body, LeftTranslation), start))
     }
     fn check_start(&self, t0: f64) -> Result<(), Refusal> {
         let at = variables(&self.body.motion(t0, &self.start));
@@ -292,40 +262,6 @@ impl System for Driven {
         match torques.is_empty() {
             true => "attitude and momentum in space, no torque".into(),
             false => format!("attitude and momentum in space; torques: {}", torques.join(", ")),
-        }
-    }
-    fn state(&self) -> &'static [&'static str] {
-        &["attitude", "momentum_space"]
-    }
-    fn laws(&self) -> Vec<Law> {
-        let mut laws = vec![Law::of_the_action("attitude_defect", 2).on_scale(Scale::One)];
-        if self.is_conservative() {
-            laws.push(Law::of_the_flow("energy", 0).on_scale(Scale::Terms));
-            laws.push(Law::of_the_flow("vertical_momentum", 1).on_scale(Scale::Terms));
-        }
-        laws
-    }
-    fn show(&self, quantity: &str, t: f64, y: &Point, row: &mut Vec<f64>) {
-        let (g, m) = y;
-        match quantity {
-            "attitude" => row.extend(g.transpose().iter()),
-            "momentum_space" => row.extend(m.iter()),
-            "omega_body" => row.extend(self.body.motion(t, y).omega_body.iter()),
-            "axis" => row.extend(g.column(2).iter()),
-            "energy" => row.push(self.energy(y)),
-            // Exact near 0 and near π: the sine and the cosine.
-            "angle" => {
-                let sine = vee(&((g - g.transpose()) * 0.5)).norm();
-                row.push(sine.atan2(0.5 * (g.trace() - 1.0)));
-            }
-            "vertical_momentum" => row.push(m[2]),
-            _ => row.push(So3::new().defect(g)),
-        }
-    }
-    fn size(&self, quantity: &str, y: &Point) -> f64 {
-        match quantity {
-            "energy" => self.body.kinetic_energy(y) + self.torques.weight.map_or(0.0, |w| w.norm()),
-            _ => y.1.norm(),
         }
     }
     fn figure(&self) -> Figure {

@@ -8,13 +8,14 @@ use nalgebra::Vector3;
 use serde::Deserialize;
 use toml::de::ValueDeserializer;
 
+use super::body::{check_unit, momentum_body};
 use super::flow::OnSe3;
 use super::quantity::Quantity;
 use super::system::{Number, Start, Stated, System, quantities_of};
 use super::{Figure, Kind, Law, ProblemSpec, keys};
 use crate::model::Layer;
+use crate::scene::ReadError;
 use crate::scene::values::Reals;
-use crate::scene::{Either, ReadError, Refusal, exactly_one};
 
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {
@@ -47,28 +48,16 @@ type Point = (Vector3<f64>, Vector3<f64>);
 
 type Q = Quantity<Top>;
 
-/// The length of the vertical may differ from 1 by the digits that it is written with.
-const UNIT: f64 = 1e-6;
-
 fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
     let keys = Keys::deserialize(section)?;
     let top = HeavyTop::new(keys.inertia.0, keys.weight.0)?;
-    let either =
-        exactly_one(("omega_body", keys.omega_body), ("momentum_body", keys.momentum_body));
-    let momentum = match either? {
-        Either::First(omega) => {
-            Vector3::from(omega.0).component_mul(&Vector3::from(keys.inertia.0))
-        }
-        Either::Second(momentum) => momentum.0.into(),
-    };
+    let inertia = keys.inertia.0;
+    let momentum = momentum_body(inertia, None, keys.omega_body, keys.momentum_body)?;
     let vertical = Vector3::from(keys.vertical.0);
     let length = vertical.norm();
-    if (length - 1.0).abs() > UNIT {
-        let message = format!("its length is {length}, expected 1");
-        return Err(Refusal::at("vertical", message).into());
-    }
-    let (inertia, weight) = (keys.inertia.0, keys.weight.0.into());
-    Ok(Box::new(Stated(Top { top, inertia, weight, start: (momentum, vertical / length) })))
+    check_unit("vertical", length)?;
+    let start = (momentum, vertical / length);
+    Ok(Box::new(Stated(Top { top, inertia, weight: keys.weight.0.into(), start })))
 }
 
 impl Top {
@@ -125,9 +114,9 @@ impl System for Top {
         )
         .kept(Law::by_the_flow(0))
         .missing_where(|top| {
-            let general = !top.is_integrable();
-            general
-                .then(|| "only Euler's, Lagrange's and Kovalevskaya's top have a fourth integral")
+            const NONE: &str =
+                "only Euler's, Lagrange's and Kovalevskaya's top have a fourth integral";
+            (!top.is_integrable()).then_some(NONE)
         }),
     ];
 

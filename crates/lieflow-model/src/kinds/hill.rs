@@ -3,34 +3,26 @@
 
 use core::f64::consts::{PI, TAU};
 
-use faer::Mat;
-use lieflow::Error;
-use lieflow::groups::{GroupMatrix, LieGroup, MatrixGroup};
+use lieflow::groups::AlgebraMatrix;
 use lieflow::methods::magnus::Magnus6;
 use lieflow::problems::{Floquet, LinearHamiltonian, floquet, hill, monodromy};
 use lieflow::scalar::{Ops, tally};
-use serde::Deserialize;
-use toml::de::ValueDeserializer;
 
+use super::entries::{
+    check_symmetric, numbered, row_columns, rows, square, symplectic_defect, trace,
+};
+use super::flow::OnMatrices;
 use super::matrix::MatrixAction;
-use super::old_system::System;
-use super::{Fact, Figure, KeyInfo, Kind, Law, ProblemSpec, QuantityInfo, Scale};
-use crate::kinds::flow::OnMatrices;
-use crate::model::Layer;
-use crate::scene::values::{Real, Table};
-use crate::scene::{ReadError, Refusal};
+use super::prelude::*;
 
 /// The entry of Mathieu's equation in the list of kinds.
 pub(super) const MATHIEU: Kind = Kind {
     name: "mathieu",
     equation: "ġ = [0 1; −(a − 2q cos 2t) 0] g, g = 𝟙 at the start",
     summary: "Mathieu's equation x'' + (a - 2q cos 2t) x = 0, its solutions as a matrix of Sp(2)",
-    keys: &[
-        KeyInfo { name: "a", meaning: "a" },
-        KeyInfo { name: "q", meaning: "q, half the strength of the drive" },
-    ],
-    quantities: || QUANTITIES.to_vec(),
-    read: |section| read_mathieu(section),
+    keys: MathieuKeys::INFO,
+    quantities: quantities_of::<Hill>,
+    read: read_mathieu,
 };
 
 /// The entry of Hill's equation in the list of kinds.
@@ -39,48 +31,21 @@ pub(super) const HILL: Kind = Kind {
     equation: "ġ = [0 𝟙; −(A − 2Q cos 2πt/T) 0] g, g = 𝟙 at the start",
     summary: "m coupled equations x'' + (A - 2Q cos 2πt/T) x = 0, their solutions as a matrix of \
               Sp(2m)",
-    keys: &[
-        KeyInfo { name: "a", meaning: "A, symmetric" },
-        KeyInfo { name: "q", meaning: "Q, symmetric" },
-        KeyInfo { name: "period", meaning: "T" },
-    ],
-    quantities: || QUANTITIES.to_vec(),
-    read: |section| read_hill(section),
+    keys: HillKeys::INFO,
+    quantities: quantities_of::<Hill>,
+    read: read_hill,
 };
 
-const QUANTITIES: &[QuantityInfo] = &[
-    QuantityInfo {
-        name: "map",
-        columns: &["g11", "…", "g(2m)(2m)"],
-        meaning: "the fundamental solution, row by row; the monodromy after a period",
-    },
-    QuantityInfo {
-        name: "solution",
-        columns: &["x1", "…", "xm"],
-        meaning: "the solution that starts with the first displacement 1, at rest",
-    },
-    QuantityInfo { name: "trace", columns: &["trace"], meaning: "trace of the map" },
-    QuantityInfo {
-        name: "symplectic_defect",
-        columns: &["symplectic_defect"],
-        meaning: "distance of g'Jg from J",
-    },
-];
+keys! { MathieuKeys {
+    a: Real = "a",
+    q: Real = "q, half the strength of the drive",
+} }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct MathieuKeys {
-    a: Real,
-    q: Real,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct HillKeys {
-    a: Table,
-    q: Table,
-    period: Real,
-}
+keys! { HillKeys {
+    a: Table = "A, symmetric",
+    q: Table = "Q, symmetric",
+    period: Real = "T",
+} }
 
 /// A, Q and T.
 #[derive(Clone, Debug)]
@@ -91,48 +56,37 @@ struct Hill {
     period: f64,
 }
 
+type Q = Quantity<Hill>;
+
 fn read_mathieu(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
     let MathieuKeys { a, q } = MathieuKeys::deserialize(section)?;
-    let one = |x: Real| Mat::from_fn(1, 1, |_, _| x.0);
-    Ok(Box::new(Hill { kind: &MATHIEU, a: one(a), q: one(q), period: PI }))
+    let one = |x: Real| Mat::full(1, 1, x.0);
+    Ok(Box::new(Stated(Hill { kind: &MATHIEU, a: one(a), q: one(q), period: PI })))
 }
 
 fn read_hill(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
     let keys = HillKeys::deserialize(section)?;
     let a = keys.a.matrix("a", None)?;
-    let q = keys.q.matrix("q", Some(a.nrows()))?;
-    if q.nrows() != a.nrows() {
-        let message = format!("found {} rows, expected {} as a has them", q.nrows(), a.nrows());
-        return Err(Refusal::at("q", message).into());
-    }
-    for (key, x) in [("a", &a), ("q", &q)] {
-        let mut below = (0..x.nrows()).flat_map(|i| (0..i).map(move |j| (i, j)));
-        if let Some((i, j)) = below.find(|&(i, j)| x[(i, j)] != x[(j, i)]) {
-            let message = format!(
-                "{} stands across from {}, expected a symmetric matrix",
-                x[(i, j)],
-                x[(j, i)]
-            );
-            return Err(Refusal::at(format!("{key}[{i},{j}]"), message).into());
-        }
-    }
+    let q = square("q", &keys.q, a.nrows())?;
+    check_symmetric("a", &a, 0.0)?;
+    check_symmetric("q", &q, 0.0)?;
     match keys.period.0 > 0.0 {
-        true => Ok(Box::new(Hill { kind: &HILL, a, q, period: keys.period.0 })),
+        true => Ok(Box::new(Stated(Hill { kind: &HILL, a, q, period: keys.period.0 }))),
         false => Err(Refusal::at("period", format!("{}, expected > 0", keys.period.0)).into()),
     }
 }
 
-/// Steps of the monodromy of the facts: to rounding where a period has a few oscillations.
+/// Steps over the period of the monodromy in the facts: it is exact to rounding where a period has a few
+/// oscillations.
 const STEPS: u64 = 1000;
-/// Multipliers this far out of the unit circle are out of it; where two meet on it, rounding in the
+/// A multiplier counts as outside of the unit circle from this distance on: where two meet on it, rounding in the
 /// monodromy moves them by its root.
 const OFF_THE_CIRCLE: f64 = 1e-6;
 
 impl Hill {
     fn equation(
         &self,
-    ) -> Result<LinearHamiltonian<impl Fn(f64, &mut lieflow::groups::AlgebraMatrix) + use<>>, Error>
-    {
+    ) -> Result<LinearHamiltonian<impl Fn(f64, &mut AlgebraMatrix) + use<>>, Error> {
         let Hill { a, q, period, .. } = self.clone();
         hill(a.nrows(), move |t, i, j| {
             tally(|| Ops::muls(3) + Ops::adds(1) + Ops::divs(1) + Ops::trigs(1));
@@ -143,55 +97,43 @@ impl Hill {
     /// The multipliers of a period from t = 0, and the trace of its monodromy.
     fn multipliers(&self) -> Option<(Floquet, f64)> {
         let g = monodromy(&self.equation().ok()?, &Magnus6, [0.0, self.period], STEPS).ok()?;
-        let trace = (0..g.nrows()).map(|i| g[(i, i)]).sum();
-        Some((floquet(&g).ok()?, trace))
+        Some((floquet(&g).ok()?, trace(&g)))
     }
 }
 
 impl System for Hill {
-    type Problem = OnMatrices;
+    type Problem<N: Number> = OnMatrices;
+
+    const STATE: &'static [&'static str] = &["map"];
+    const QUANTITIES: &'static [Q] = &[
+        Q::numbers(
+            "map",
+            &["g11", "…", "g(2m)(2m)"],
+            "the fundamental solution, row by row; the monodromy after a period",
+            |_, _, g, row| row.extend(rows(g)),
+        )
+        .with_columns(|hill| row_columns("g", 2 * hill.a.nrows(), 2 * hill.a.nrows())),
+        Q::numbers(
+            "solution",
+            &["x1", "…", "xm"],
+            "the solution that starts with the first displacement 1, at rest",
+            |_, _, g, row| row.extend(&g.col_as_slice(0)[..g.nrows() / 2]),
+        )
+        .with_columns(|hill| numbered("x", hill.a.nrows())),
+        Q::number("trace", "trace of the map", |_, _, g| trace(g)),
+        symplectic_defect(),
+    ];
 
     fn kind(&self) -> &'static Kind {
         self.kind
     }
-    fn layer(&self) -> Layer {
-        Layer::General
-    }
-    fn problem(&self) -> Result<(Self::Problem, Mat<f64>), Error> {
+    fn problem<N: Number>(&self) -> Result<Start<OnMatrices>, Error> {
         let one = Mat::identity(2 * self.a.nrows(), 2 * self.a.nrows());
         let action = MatrixAction::Translation;
         Ok((OnMatrices::linear(self.equation()?.by(action), action), one))
     }
     fn modelled(&self) -> String {
         format!("fundamental solution in Sp({})", 2 * self.a.nrows())
-    }
-    fn state(&self) -> &'static [&'static str] {
-        &["map"]
-    }
-    fn laws(&self) -> Vec<Law> {
-        vec![Law::of_the_action("symplectic_defect", 2).on_scale(Scale::Terms)]
-    }
-    fn columns(&self, quantity: &QuantityInfo) -> Vec<String> {
-        let m = self.a.nrows();
-        match quantity.name {
-            "map" => {
-                (1..=2 * m).flat_map(|i| (1..=2 * m).map(move |j| format!("g{i}{j}"))).collect()
-            }
-            "solution" => (1..=m).map(|i| format!("x{i}")).collect(),
-            other => vec![other.into()],
-        }
-    }
-    fn show(&self, quantity: &str, _: f64, g: &Mat<f64>, row: &mut Vec<f64>) {
-        let n = g.nrows();
-        match quantity {
-            "map" => row.extend((0..n).flat_map(|i| (0..n).map(move |j| g[(i, j)]))),
-            "solution" => row.extend(&g.col_as_slice(0)[..n / 2]),
-            "trace" => row.push((0..n).map(|i| g[(i, i)]).sum()),
-            _ => row.push(symplectic_defect(g)),
-        }
-    }
-    fn size(&self, _: &str, g: &Mat<f64>) -> f64 {
-        g.squared_norm_l2()
     }
     fn figure(&self) -> Figure {
         Figure::Lines("solution")
@@ -208,10 +150,4 @@ impl System for Hill {
             Fact { name: "stable", value: stable },
         ]
     }
-}
-
-/// ‖gᵀJg − J‖.
-pub(super) fn symplectic_defect(g: &Mat<f64>) -> f64 {
-    let element = GroupMatrix::new_unchecked(g.clone());
-    MatrixGroup::sp(g.nrows()).map_or(f64::NAN, |group| group.defect(&element))
 }

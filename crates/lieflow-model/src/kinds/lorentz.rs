@@ -10,11 +10,11 @@ use nalgebra::Vector3;
 use serde::Deserialize;
 use toml::de::ValueDeserializer;
 
+use super::flow::OnMatrices;
 use super::matrix::MatrixAction;
-use super::old_system::System;
-use super::{Figure, KeyInfo, Kind, Law, ProblemSpec, QuantityInfo, Scale};
-use crate::kinds::flow::OnMatrices;
-use crate::model::Layer;
+use super::quantity::Quantity;
+use super::system::{Number, Start, Stated, System, quantities_of};
+use super::{Figure, Kind, Law, ProblemSpec, keys};
 use crate::scene::values::{Real, Reals};
 use crate::scene::{ReadError, Refusal};
 
@@ -23,47 +23,17 @@ pub(super) const KIND: Kind = Kind {
     name: "lorentz",
     equation: "d(γv)/dτ = (q/m)(γE + γv × B), dγ/dτ = (q/m) E·γv",
     summary: "a charged particle in constant fields, by its four-velocity; t is its proper time",
-    keys: &[
-        KeyInfo { name: "charge_to_mass", meaning: "charge over mass" },
-        KeyInfo { name: "electric", meaning: "the electric field" },
-        KeyInfo { name: "magnetic", meaning: "the magnetic field, times the speed of light" },
-        KeyInfo { name: "velocity", meaning: "initial velocity over the speed of light" },
-    ],
-    quantities: || {
-        vec![
-            QuantityInfo {
-                name: "four_velocity",
-                columns: &["u1", "u2", "u3", "gamma"],
-                meaning: "gamma times the velocity, and gamma",
-            },
-            QuantityInfo {
-                name: "velocity",
-                columns: &["v1", "v2", "v3"],
-                meaning: "the velocity over the speed of light",
-            },
-            QuantityInfo {
-                name: "energy",
-                columns: &["gamma_energy"],
-                meaning: "gamma, the energy over that at rest; kept where there is no electric field",
-            },
-            QuantityInfo {
-                name: "mass_shell",
-                columns: &["mass_shell"],
-                meaning: "square of the four-velocity, -1",
-            },
-        ]
-    },
+    keys: Keys::INFO,
+    quantities: quantities_of::<Particle>,
     read,
 };
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Keys {
-    charge_to_mass: Real,
-    electric: Reals<3>,
-    magnetic: Reals<3>,
-    velocity: Reals<3>,
-}
+keys! { Keys {
+    charge_to_mass: Real = "charge over mass",
+    electric: Reals<3> = "the electric field",
+    magnetic: Reals<3> = "the magnetic field, times the speed of light",
+    velocity: Reals<3> = "initial velocity over the speed of light",
+} }
 
 /// (q/m) F, and the initial four-velocity.
 #[derive(Clone, Debug)]
@@ -71,6 +41,8 @@ struct Particle {
     tensor: AlgebraMatrix,
     start: Mat<f64>,
 }
+
+type Q = Quantity<Particle>;
 
 fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
     let keys = Keys::deserialize(section)?;
@@ -81,19 +53,48 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
         .map_err(|error| Refusal::at("velocity", error.to_string()))?;
     let mut tensor = particle.group().zero();
     particle.f(0.0, &start, &mut tensor, &mut particle.work());
-    Ok(Box::new(Particle { tensor, start }))
+    Ok(Box::new(Stated(Particle { tensor, start })))
 }
 
 impl System for Particle {
-    type Problem = OnMatrices;
+    type Problem<N: Number> = OnMatrices;
+
+    const STATE: &'static [&'static str] = &["four_velocity"];
+    const QUANTITIES: &'static [Q] = &[
+        Q::numbers(
+            "four_velocity",
+            &["u1", "u2", "u3", "gamma"],
+            "gamma times the velocity, and gamma",
+            |_, _, u, row| row.extend(u.col_as_slice(0)),
+        ),
+        Q::numbers(
+            "velocity",
+            &["v1", "v2", "v3"],
+            "the velocity over the speed of light",
+            |_, _, u, row| row.extend((0..3).map(|i| u[(i, 0)] / u[(3, 0)])),
+        ),
+        Q::numbers(
+            "energy",
+            &["gamma_energy"],
+            "gamma, the energy over that at rest; kept where there is no electric field",
+            |_, _, u, row| row.push(u[(3, 0)]),
+        )
+        .kept_where(|particle| {
+            let magnetic = (0..3).all(|i| particle.tensor[(i, 3)] == 0.0);
+            magnetic.then_some(Law::by_the_flow(1))
+        }),
+        Q::number("mass_shell", "square of the four-velocity, -1", |_, _, u| {
+            let u = u.col_as_slice(0);
+            u[0] * u[0] + u[1] * u[1] + u[2] * u[2] - u[3] * u[3]
+        })
+        .kept(Law::by_the_action(2))
+        .in_terms(|_, u| u.squared_norm_l2()),
+    ];
 
     fn kind(&self) -> &'static Kind {
         &KIND
     }
-    fn layer(&self) -> Layer {
-        Layer::General
-    }
-    fn problem(&self) -> Result<(Self::Problem, Mat<f64>), Error> {
+    fn problem<N: Number>(&self) -> Result<Start<OnMatrices>, Error> {
         let tensor = self.tensor.clone();
         let field = move |_: f64, v: &mut AlgebraMatrix| v.copy_from(&*tensor);
         let (group, action) = (MatrixGroup::indefinite(3, 1)?, MatrixAction::Linear);
@@ -101,28 +102,6 @@ impl System for Particle {
     }
     fn modelled(&self) -> String {
         "four-velocity, by SO(3,1)".into()
-    }
-    fn state(&self) -> &'static [&'static str] {
-        &["four_velocity"]
-    }
-    fn laws(&self) -> Vec<Law> {
-        let mut laws = vec![Law::of_the_action("mass_shell", 2).on_scale(Scale::Terms)];
-        if (0..3).all(|i| self.tensor[(i, 3)] == 0.0) {
-            laws.push(Law::of_the_flow("energy", 1));
-        }
-        laws
-    }
-    fn show(&self, quantity: &str, _: f64, u: &Mat<f64>, row: &mut Vec<f64>) {
-        let u = u.col_as_slice(0);
-        match quantity {
-            "four_velocity" => row.extend(u),
-            "velocity" => row.extend(u[..3].iter().map(|x| x / u[3])),
-            "energy" => row.push(u[3]),
-            _ => row.push(u[0] * u[0] + u[1] * u[1] + u[2] * u[2] - u[3] * u[3]),
-        }
-    }
-    fn size(&self, _: &str, u: &Mat<f64>) -> f64 {
-        u.squared_norm_l2()
     }
     fn exact(&self, [t0, t1]: [f64; 2]) -> Option<Result<Mat<f64>, Error>> {
         let turned = MatrixGroup::indefinite(3, 1).and_then(|group| {

@@ -1,82 +1,34 @@
-//! `kind = "lyapunov"`: the Lyapunov exponents of a user's vector field by continuous QR; the field is in
-//! formulas and its Jacobian by their derivatives. See [`Lyapunov`].
+//! `kind = "lyapunov"`: the Lyapunov exponents of a vector field by continuous QR. The field is in formulas, and
+//! their derivatives are its Jacobian. See [`Lyapunov`].
 
 use std::sync::Arc;
 
-use faer::Mat;
-use lieflow::Error;
 use lieflow::actions::LeftTranslation;
-use lieflow::groups::{GroupMatrix, LieGroup, MatrixGroup};
+use lieflow::groups::{LieGroup, MatrixGroup};
 use lieflow::problems::Lyapunov;
-use serde::Deserialize;
-use toml::de::ValueDeserializer;
 
-use super::flow::{Growing, Growth};
-use super::old_system::System;
-use super::{Figure, KeyInfo, Kind, Law, PARAMETERS, ProblemSpec, QuantityInfo, Scale};
-use crate::model::Layer;
+use super::entries::{numbered, row_columns, rows};
+use super::flow::Growing;
+use super::prelude::*;
 use crate::scene::formula::{Formula, Names, Parameters, read_all};
-use crate::scene::values::List;
-use crate::scene::{ReadError, Refusal};
 
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {
     name: "lyapunov",
     equation: "ẋ = F(t, x), Ẏ = DF(t, x)Y = d(QR)/dt, growth ln R_ii",
-    summary: "Lyapunov exponents of a vector field of one's own by continuous QR",
-    keys: &[
-        KeyInfo { name: "x", meaning: "initial point, at most 128 numbers" },
-        KeyInfo {
-            name: "variables",
-            meaning: "names of the coordinates, [\"x\", \"y\", ...]; optional: x1, x2, ...",
-        },
-        KeyInfo {
-            name: "field",
-            meaning: "a formula for the derivative of each coordinate, in the time t and the coordinates",
-        },
-        PARAMETERS,
-    ],
-    quantities: || {
-        vec![
-            QuantityInfo {
-                name: "x",
-                columns: &["…"],
-                meaning: "the point, by the names of its coordinates",
-            },
-            QuantityInfo {
-                name: "growth",
-                columns: &["s1", "…", "sn"],
-                meaning: "logarithms of the growth of perturbations, in falling order",
-            },
-            QuantityInfo {
-                name: "exponents",
-                columns: &["e1", "…", "en"],
-                meaning: "growth over time: the exponents where the time is long; 0 at the start",
-            },
-            QuantityInfo {
-                name: "frame",
-                columns: &["q11", "…", "qnn"],
-                meaning: "directions of the perturbations, row by row",
-            },
-            QuantityInfo {
-                name: "frame_defect",
-                columns: &["frame_defect"],
-                meaning: "distance of Q'Q from the identity",
-            },
-        ]
-    },
+    summary: "Lyapunov exponents of a vector field in formulas, by continuous QR",
+    keys: Keys::INFO,
+    quantities: quantities_of::<Exponents>,
     read,
 };
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Keys {
-    x: List,
-    variables: Option<Vec<String>>,
-    field: Vec<String>,
+keys! { Keys {
+    x: List = "initial point, at most 128 numbers",
+    variables: Option<Vec<String>> = "names of the coordinates, [\"x\", \"y\", ...]; optional: x1, x2, ...",
+    field: Vec<String> = "a formula for the derivative of each coordinate, in the time t and the coordinates",
     #[serde(default)]
-    parameters: Parameters,
-}
+    parameters: Parameters = PARAMETERS.meaning,
+} }
 
 /// The field and its Jacobian, row by row, and the initial point.
 #[derive(Clone, Debug)]
@@ -91,7 +43,8 @@ struct Exponents {
 /// The most coordinates: their values lie on the stack.
 const MAX: usize = 128;
 
-/// The most operations of formulas that are derived, each counted for every coordinate in it.
+/// The most operations in the formulas of the field, each formula counted for every coordinate in it: what its
+/// derivatives take.
 const DERIVED_MAX: usize = 1 << 18;
 
 fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
@@ -101,8 +54,7 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
     if !(1..=MAX).contains(&n) {
         return Err(Refusal::at("x", format!("found {n} numbers, expected 1 to {MAX}")).into());
     }
-    let numbered = || (1..=n).map(|i| format!("x{i}")).collect();
-    let variables = keys.variables.unwrap_or_else(numbered);
+    let variables = keys.variables.unwrap_or_else(|| numbered("x", n));
     let lists = [("variables", "names", variables.len()), ("field", "formulas", keys.field.len())];
     if let Some((key, what, found)) = lists.into_iter().find(|(.., found)| *found != n) {
         let message = format!("found {found} {what}, expected {n} as x has numbers");
@@ -121,7 +73,8 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
         (1..=n).map(|j| f.derivative(&key, j)).collect::<Result<Vec<_>, _>>()
     };
     let jacobian = field.iter().enumerate().map(by).collect::<Result<Vec<_>, _>>()?.concat();
-    Ok(Box::new(Exponents { names, field: field.into(), jacobian: jacobian.into(), x }))
+    let (field, jacobian) = (field.into(), jacobian.into());
+    Ok(Box::new(Stated(Exponents { names, field, jacobian, x })))
 }
 
 /// t and x, for formulas.
@@ -131,18 +84,54 @@ fn values(t: f64, x: &[f64]) -> [f64; 1 + MAX] {
     values
 }
 
-type Point = (GroupMatrix, Growth);
+type Q = Quantity<Exponents>;
 
 impl System for Exponents {
-    type Problem = Growing;
+    type Problem<N: Number> = Growing;
+
+    const STATE: &'static [&'static str] = &["x", "growth", "frame"];
+    const QUANTITIES: &'static [Q] = &[
+        Q::numbers(
+            "x",
+            &["…"],
+            "the point, by the names of its coordinates",
+            |_, _, (_, (_, x)), row| row.extend(x.col_as_slice(0)),
+        )
+        .with_columns(|system| system.names.variables()[1..].to_vec()),
+        Q::numbers(
+            "growth",
+            &["s1", "…", "sn"],
+            "logarithms of the growth of perturbations, in falling order",
+            |_, _, (_, (growth, _)), row| row.extend(growth.col_as_slice(0)),
+        )
+        .with_columns(|system| numbered("s", system.x.len())),
+        Q::numbers(
+            "exponents",
+            &["e1", "…", "en"],
+            "growth over time: the exponents where the time is long; 0 at the start",
+            |_, t, (_, (growth, _)), row| {
+                let time = if t == 0.0 { 1.0 } else { t };
+                row.extend(growth.col_as_slice(0).iter().map(|s| s / time));
+            },
+        )
+        .with_columns(|system| numbered("e", system.x.len())),
+        Q::numbers(
+            "frame",
+            &["q11", "…", "qnn"],
+            "directions of the perturbations, row by row",
+            |_, _, (q, _), row| row.extend(rows(q)),
+        )
+        .with_columns(|system| row_columns("q", system.x.len(), system.x.len())),
+        Q::number("frame_defect", "distance of Q'Q from the identity", |_, _, (q, _)| {
+            MatrixGroup::so(q.nrows()).map_or(f64::NAN, |group| group.defect(q))
+        })
+        .kept(Law::by_the_action(2).on_scale(Scale::One)),
+    ];
 
     fn kind(&self) -> &'static Kind {
         &KIND
     }
-    fn layer(&self) -> Layer {
-        Layer::General
-    }
-    fn problem(&self) -> Result<(Self::Problem, Point), Error> {
+    fn problem<N: Number>(&self) -> Result<Start<Growing>, Error> {
         let (n, field, by) = (self.x.len(), self.field.clone(), self.jacobian.clone());
         let field = move |t: f64, x: &Mat<f64>, dx: &mut Mat<f64>, jacobian: &mut Mat<f64>| {
             let values = values(t, x.col_as_slice(0));
@@ -175,36 +164,6 @@ impl System for Exponents {
     }
     fn modelled(&self) -> String {
         format!("point, frame in SO({0}) and growth in {0} directions", self.x.len())
-    }
-    fn state(&self) -> &'static [&'static str] {
-        &["x", "growth", "frame"]
-    }
-    fn laws(&self) -> Vec<Law> {
-        vec![Law::of_the_action("frame_defect", 2).on_scale(Scale::One)]
-    }
-    fn columns(&self, quantity: &QuantityInfo) -> Vec<String> {
-        let n = self.x.len();
-        let numbered = |name: &str| (1..=n).map(|i| format!("{name}{i}")).collect();
-        match quantity.name {
-            "x" => self.names.variables()[1..].to_vec(),
-            "growth" => numbered("s"),
-            "exponents" => numbered("e"),
-            "frame" => (1..=n).flat_map(|i| (1..=n).map(move |j| format!("q{i}{j}"))).collect(),
-            other => vec![other.into()],
-        }
-    }
-    fn show(&self, quantity: &str, t: f64, (q, (growth, x)): &Point, row: &mut Vec<f64>) {
-        let n = self.x.len();
-        match quantity {
-            "x" => row.extend(x.col_as_slice(0)),
-            "growth" => row.extend(growth.col_as_slice(0)),
-            "exponents" => {
-                let over = if t == 0.0 { 1.0 } else { t };
-                row.extend(growth.col_as_slice(0).iter().map(|s| s / over));
-            }
-            "frame" => row.extend((0..n).flat_map(|i| (0..n).map(move |j| q[(i, j)]))),
-            _ => row.push(MatrixGroup::so(n).map_or(f64::NAN, |group| group.defect(q))),
-        }
     }
     fn figure(&self) -> Figure {
         Figure::Lines("exponents")

@@ -1,5 +1,5 @@
 //! The actions of a matrix group on matrices as one type, so that all problems of matrices are one
-//! [`Flow`](super::flow::Flow). The choice is made once a stage, beside products of matrices.
+//! [`DynFlow`](lieflow::problems::DynFlow). The choice is made once a stage, beside products of matrices.
 //!
 //! | | Λ(g, p) |
 //! |---|---|

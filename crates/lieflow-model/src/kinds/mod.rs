@@ -4,8 +4,10 @@
 
 mod algebra;
 mod beam_line;
+mod body;
 mod composed;
 mod driven_body;
+mod entries;
 mod euler;
 mod flow;
 mod fluid;
@@ -21,6 +23,7 @@ mod matrix_ode;
 mod oja;
 mod old_system;
 mod pendulum;
+mod prelude;
 mod quantity;
 mod riccati;
 mod rigid_bodies;

@@ -3,18 +3,16 @@
 
 use lieflow::Error;
 use lieflow::actions::Coadjoint;
-use lieflow::catalog::MethodSpec;
 use lieflow::problems::SphericalPendulum;
-use lieflow::scalar::Counted;
 use nalgebra::Vector3;
 use serde::Deserialize;
 use toml::de::ValueDeserializer;
 
-use super::old_system::System;
-use super::{Figure, KeyInfo, Kind, Law, ProblemSpec, QuantityInfo, Scale};
-use crate::kinds::flow::OnSe3;
+use super::flow::OnSe3;
+use super::quantity::Quantity;
+use super::system::{Number, Start, Stated, System, quantities_of};
+use super::{Figure, Kind, Law, ProblemSpec, keys};
 use crate::model::Layer;
-use crate::operations::{Pace, operations_by};
 use crate::scene::values::{Real, Reals};
 use crate::scene::{ReadError, Refusal};
 
@@ -23,64 +21,27 @@ pub(super) const KIND: Kind = Kind {
     name: "spherical-pendulum",
     equation: "q̇ = ω × q, ω̇ = −(g/ℓ) q × e₃",
     summary: "the spherical pendulum, by its direction and its angular velocity; e3 points upward",
-    keys: &[
-        KeyInfo { name: "gravity_over_length", meaning: "gravity over the length of the rod" },
-        KeyInfo { name: "direction", meaning: "initial direction of the rod, normalised" },
-        KeyInfo {
-            name: "velocity",
-            meaning: "initial velocity of the direction; its part along the rod is left out",
-        },
-    ],
-    quantities: || {
-        vec![
-            QuantityInfo {
-                name: "direction",
-                columns: &["q1", "q2", "q3"],
-                meaning: "direction of the rod",
-            },
-            QuantityInfo {
-                name: "omega",
-                columns: &["w1", "w2", "w3"],
-                meaning: "angular velocity",
-            },
-            QuantityInfo { name: "energy", columns: &["energy"], meaning: "energy" },
-            QuantityInfo {
-                name: "vertical_momentum",
-                columns: &["vertical_momentum"],
-                meaning: "angular momentum about the vertical",
-            },
-            QuantityInfo {
-                name: "direction_norm2",
-                columns: &["direction_norm2"],
-                meaning: "square of the length of the direction",
-            },
-            QuantityInfo {
-                name: "omega_along",
-                columns: &["omega_along"],
-                meaning: "angular velocity along the rod, 0",
-            },
-        ]
-    },
+    keys: Keys::INFO,
+    quantities: quantities_of::<Pendulum>,
     read,
 };
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Keys {
-    gravity_over_length: Real,
-    direction: Reals<3>,
-    velocity: Reals<3>,
-}
-
-type Point = (Vector3<f64>, Vector3<f64>);
+keys! { Keys {
+    gravity_over_length: Real = "gravity over the length of the rod",
+    direction: Reals<3> = "initial direction of the rod, normalised",
+    velocity: Reals<3> = "initial velocity of the direction; its part along the rod is left out",
+} }
 
 /// The pendulum with its initial state (ω, q).
 #[derive(Clone, Copy, Debug)]
 struct Pendulum {
     pendulum: SphericalPendulum,
+    /// g/ℓ.
     rate2: f64,
-    start: Point,
+    start: (Vector3<f64>, Vector3<f64>),
 }
+
+type Q = Quantity<Pendulum>;
 
 fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
     let keys = Keys::deserialize(section)?;
@@ -89,11 +50,45 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
     let start = pendulum
         .state(keys.direction.0, keys.velocity.0)
         .map_err(|error| Refusal::at("direction", error.to_string()))?;
-    Ok(Box::new(Pendulum { pendulum, rate2, start }))
+    Ok(Box::new(Stated(Pendulum { pendulum, rate2, start })))
 }
 
 impl System for Pendulum {
-    type Problem = OnSe3<f64>;
+    type Problem<N: Number> = OnSe3<N>;
+
+    const STATE: &'static [&'static str] = &["direction", "omega"];
+    const QUANTITIES: &'static [Q] = &[
+        Q::numbers(
+            "direction",
+            &["q1", "q2", "q3"],
+            "direction of the rod",
+            |_, _, (_, q), row| row.extend(q.iter()),
+        ),
+        Q::numbers("omega", &["w1", "w2", "w3"], "angular velocity", |_, _, (omega, _), row| {
+            row.extend(omega.iter())
+        }),
+        Q::number("energy", "energy", |pendulum, _, y| pendulum.pendulum.energy(y))
+            .kept(Law::by_the_flow(2))
+            .in_terms(|pendulum, (omega, q)| {
+                0.5 * omega.norm_squared() + pendulum.rate2.abs() * q.norm()
+            }),
+        Q::number(
+            "vertical_momentum",
+            "angular momentum about the vertical",
+            |_, _, (omega, _)| omega[2],
+        )
+        .kept(Law::by_the_flow(1))
+        .in_terms(|_, (omega, q)| omega.norm() * q.norm()),
+        Q::number("direction_norm2", "square of the length of the direction", |_, _, (_, q)| {
+            q.norm_squared()
+        })
+        .kept(Law::by_the_action(2)),
+        Q::number("omega_along", "angular velocity along the rod, 0", |_, _, (omega, q)| {
+            omega.dot(q)
+        })
+        .kept(Law::by_the_action(2))
+        .in_terms(|_, (omega, q)| omega.norm() * q.norm()),
+    ];
 
     fn kind(&self) -> &'static Kind {
         &KIND
@@ -101,44 +96,12 @@ impl System for Pendulum {
     fn layer(&self) -> Layer {
         Layer::Closed
     }
-    fn problem(&self) -> Result<(Self::Problem, Point), Error> {
-        Ok((OnSe3::lie_poisson(self.pendulum, Coadjoint), self.start))
-    }
-    fn operations(&self, method: &MethodSpec, pace: Pace<'_>) -> Option<f64> {
-        let start = (self.start.0.map(Counted), self.start.1.map(Counted));
-        let (flow, start) = (OnSe3::lie_poisson(self.pendulum.on::<Counted>(), Coadjoint), start);
-        operations_by(method, &flow, start, pace)
+    fn problem<N: Number>(&self) -> Result<Start<OnSe3<N>>, Error> {
+        let start = (self.start.0.map(N::lit), self.start.1.map(N::lit));
+        Ok((OnSe3::lie_poisson(self.pendulum.on::<N>(), Coadjoint), start))
     }
     fn modelled(&self) -> String {
         "angular velocity and direction on an orbit of SE(3)".into()
-    }
-    fn state(&self) -> &'static [&'static str] {
-        &["direction", "omega"]
-    }
-    fn laws(&self) -> Vec<Law> {
-        vec![
-            Law::of_the_flow("energy", 2).on_scale(Scale::Terms),
-            Law::of_the_flow("vertical_momentum", 1).on_scale(Scale::Terms),
-            Law::of_the_action("direction_norm2", 2),
-            Law::of_the_action("omega_along", 2).on_scale(Scale::Terms),
-        ]
-    }
-    fn show(&self, quantity: &str, _: f64, y: &Point, row: &mut Vec<f64>) {
-        let (omega, q) = y;
-        match quantity {
-            "direction" => row.extend(q.iter()),
-            "omega" => row.extend(omega.iter()),
-            "energy" => row.push(self.pendulum.energy(y)),
-            "vertical_momentum" => row.push(omega[2]),
-            "direction_norm2" => row.push(q.norm_squared()),
-            _ => row.push(omega.dot(q)),
-        }
-    }
-    fn size(&self, quantity: &str, (omega, q): &Point) -> f64 {
-        match quantity {
-            "energy" => 0.5 * omega.norm_squared() + self.rate2.abs() * q.norm(),
-            _ => omega.norm() * q.norm(),
-        }
     }
     fn figure(&self) -> Figure {
         Figure::Sphere("direction")

@@ -5,19 +5,17 @@
 
 use lieflow::Error;
 use lieflow::actions::Linear;
-use lieflow::catalog::MethodSpec;
 use lieflow::groups::{Power, So3};
 use lieflow::problems::{Euler, Exact, Kinetic, RigidBody};
-use lieflow::scalar::{Counted, Real};
 use nalgebra::{Matrix3, Vector3};
 use serde::Deserialize;
 use toml::de::ValueDeserializer;
 
-use super::old_system::System;
-use super::{Figure, KeyInfo, Kind, Law, ProblemSpec, QuantityInfo};
-use crate::kinds::flow::OnSpheres;
+use super::flow::OnSpheres;
+use super::quantity::Quantity;
+use super::system::{Number, Start, Stated, System, quantities_of};
+use super::{Figure, Kind, Law, ProblemSpec, keys};
 use crate::model::Layer;
-use crate::operations::{Pace, operations_by};
 use crate::scene::values::Reals;
 use crate::scene::{ReadError, Refusal};
 
@@ -26,37 +24,14 @@ pub(super) const KIND: Kind = Kind {
     name: "rigid-bodies",
     equation: "ṁᵢ = mᵢ × Jᵢ⁻¹mᵢ, each in its body",
     summary: "many free rigid bodies as one system, by their momenta",
-    keys: &[KeyInfo {
-        name: "bodies",
-        meaning: "a list of {inertia = [J1, J2, J3], momentum_body = [m1, m2, m3]}",
-    }],
-    quantities: || {
-        vec![
-            QuantityInfo {
-                name: "momentum_body",
-                columns: &["m1_1", "m1_2", "m1_3", "…", "mN_3"],
-                meaning: "angular momenta in the bodies, one after the other",
-            },
-            QuantityInfo {
-                name: "energy",
-                columns: &["energy1", "…", "energyN"],
-                meaning: "kinetic energy of each",
-            },
-            QuantityInfo {
-                name: "momentum_norm",
-                columns: &["norm1", "…", "normN"],
-                meaning: "length of the angular momentum of each",
-            },
-        ]
-    },
+    keys: Keys::INFO,
+    quantities: quantities_of::<Bodies>,
     read,
 };
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Keys {
-    bodies: Vec<BodyKeys>,
-}
+keys! { Keys {
+    bodies: Vec<BodyKeys> = "a list of {inertia = [J1, J2, J3], momentum_body = [m1, m2, m3]}",
+} }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -65,41 +40,73 @@ struct BodyKeys {
     momentum_body: Reals<3>,
 }
 
-type Momenta<S = f64> = Box<[Vector3<S>]>;
+type Momenta<N = f64> = Box<[Vector3<N>]>;
 
 /// The bodies with their initial momenta.
 #[derive(Clone, Debug)]
 struct Bodies {
-    bodies: Vec<([f64; 3], RigidBody)>,
+    bodies: Vec<RigidBody>,
+    inertia: Vec<[f64; 3]>,
     start: Momenta,
 }
 
+type Q = Quantity<Bodies>;
+
 fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
-    let keys = Keys::deserialize(section)?;
-    if keys.bodies.is_empty() {
+    let keys = Keys::deserialize(section)?.bodies;
+    if keys.is_empty() {
         return Err(Refusal::at("bodies", "no bodies, expected at least one").into());
     }
-    let body = |(i, keys): (usize, &BodyKeys)| match RigidBody::new(keys.inertia.0) {
-        Ok(body) => Ok((keys.inertia.0, body)),
-        Err(error) => Err(Refusal::at(format!("bodies[{i}]"), error.to_string())),
+    let inertia: Vec<_> = keys.iter().map(|keys| keys.inertia.0).collect();
+    let body = |(i, inertia): (usize, &[f64; 3])| {
+        RigidBody::new(*inertia)
+            .map_err(|error| Refusal::at(format!("bodies[{i}]"), error.to_string()))
     };
-    let bodies = keys.bodies.iter().enumerate().map(body).collect::<Result<_, _>>()?;
-    let start = keys.bodies.iter().map(|keys| keys.momentum_body.0.into()).collect();
-    Ok(Box::new(Bodies { bodies, start }))
+    let bodies = inertia.iter().enumerate().map(body).collect::<Result<_, _>>()?;
+    let start = keys.iter().map(|keys| keys.momentum_body.0.into()).collect();
+    Ok(Box::new(Stated(Bodies { bodies, inertia, start })))
 }
 
-fn flow<S: Real>(bodies: Vec<RigidBody<S>>, start: &Momenta<S>) -> Result<OnSpheres<S>, Error> {
-    let group = Power::new(So3::new(), bodies.len())?;
-    let omega = move |m: &Momenta<S>, xi: &mut Momenta<S>| {
-        for ((body, m), xi) in bodies.iter().zip(m).zip(xi) {
-            *xi = body.omega(m);
-        }
-    };
-    Ok((OnSpheres::lie_poisson(Euler::new(group, Kinetic(omega)), Linear), start.clone()).0)
+impl Bodies {
+    /// A column of each body.
+    fn each<T>(&self, column: impl FnMut(usize) -> T) -> impl Iterator<Item = T> {
+        (1..=self.bodies.len()).map(column)
+    }
 }
 
 impl System for Bodies {
-    type Problem = OnSpheres<f64>;
+    type Problem<N: Number> = OnSpheres<N>;
+
+    const STATE: &'static [&'static str] = &["momentum_body"];
+    const QUANTITIES: &'static [Q] = &[
+        Q::numbers(
+            "momentum_body",
+            &["m1_1", "m1_2", "m1_3", "…", "mN_3"],
+            "angular momenta in the bodies, one after the other",
+            |_, _, m, row| row.extend(m.iter().flat_map(|m| m.iter())),
+        )
+        .with_columns(|bodies| {
+            bodies.each(|i| [1, 2, 3].map(|axis| format!("m{i}_{axis}"))).flatten().collect()
+        }),
+        Q::numbers(
+            "energy",
+            &["energy1", "…", "energyN"],
+            "kinetic energy of each",
+            |bodies, _, m, row| {
+                row.extend(bodies.bodies.iter().zip(m).map(|(body, m)| body.energy(m)));
+            },
+        )
+        .with_columns(|bodies| bodies.each(|i| format!("energy{i}")).collect())
+        .kept(Law::by_the_flow(2)),
+        Q::numbers(
+            "momentum_norm",
+            &["norm1", "…", "normN"],
+            "length of the angular momentum of each",
+            |_, _, m, row| row.extend(m.iter().map(Vector3::norm)),
+        )
+        .with_columns(|bodies| bodies.each(|i| format!("norm{i}")).collect())
+        .kept(Law::by_the_action(2)),
+    ];
 
     fn kind(&self) -> &'static Kind {
         &KIND
@@ -107,47 +114,24 @@ impl System for Bodies {
     fn layer(&self) -> Layer {
         Layer::Closed
     }
-    fn problem(&self) -> Result<(Self::Problem, Momenta), Error> {
-        let bodies = self.bodies.iter().map(|(_, body)| *body).collect();
-        Ok((flow(bodies, &self.start)?, self.start.clone()))
-    }
-    fn operations(&self, method: &MethodSpec, pace: Pace<'_>) -> Option<f64> {
-        let body = |(inertia, _): &([f64; 3], RigidBody)| RigidBody::<Counted>::new(*inertia);
-        let bodies = self.bodies.iter().map(body).collect::<Result<_, _>>().ok()?;
-        let start = self.start.iter().map(|m| m.map(Counted)).collect();
-        operations_by(method, &flow(bodies, &start).ok()?, start, pace)
+    fn problem<N: Number>(&self) -> Result<Start<OnSpheres<N>>, Error> {
+        let group = Power::new(So3::new(), self.bodies.len())?;
+        let bodies = self.inertia.iter().map(|inertia| RigidBody::new(*inertia));
+        let bodies = bodies.collect::<Result<Vec<RigidBody<N>>, _>>()?;
+        let omega = move |m: &Momenta<N>, xi: &mut Momenta<N>| {
+            for ((body, m), xi) in bodies.iter().zip(m).zip(xi) {
+                *xi = body.omega(m);
+            }
+        };
+        let start = self.start.iter().map(|m| m.map(N::lit)).collect();
+        Ok((OnSpheres::lie_poisson(Euler::new(group, Kinetic(omega)), Linear), start))
     }
     fn modelled(&self) -> String {
         format!("momenta of {} bodies", self.bodies.len())
     }
-    fn state(&self) -> &'static [&'static str] {
-        &["momentum_body"]
-    }
-    fn laws(&self) -> Vec<Law> {
-        vec![Law::of_the_flow("energy", 2), Law::of_the_action("momentum_norm", 2)]
-    }
-    fn columns(&self, quantity: &QuantityInfo) -> Vec<String> {
-        let each = 1..=self.bodies.len();
-        match quantity.name {
-            "momentum_body" => {
-                each.flat_map(|i| [1, 2, 3].map(|axis| format!("m{i}_{axis}"))).collect()
-            }
-            "energy" => each.map(|i| format!("energy{i}")).collect(),
-            _ => each.map(|i| format!("norm{i}")).collect(),
-        }
-    }
-    fn show(&self, quantity: &str, _: f64, m: &Momenta, row: &mut Vec<f64>) {
-        match quantity {
-            "momentum_body" => row.extend(m.iter().flat_map(|m| m.iter())),
-            "energy" => {
-                row.extend(self.bodies.iter().zip(m).map(|((_, body), m)| body.energy(m)));
-            }
-            _ => row.extend(m.iter().map(Vector3::norm)),
-        }
-    }
     fn exact(&self, [t0, t1]: [f64; 2]) -> Option<Result<Momenta, Error>> {
-        let bodies = self.bodies.iter().zip(&self.start);
-        let moved = bodies.map(|((inertia, _), m)| {
+        let bodies = self.inertia.iter().zip(&self.start);
+        let moved = bodies.map(|(inertia, m)| {
             Exact::new(*inertia, (*m).into(), Matrix3::identity())?.momentum_body(t1 - t0)
         });
         Some(moved.collect())

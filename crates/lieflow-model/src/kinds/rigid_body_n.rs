@@ -9,9 +9,9 @@ use lieflow::problems::{RigidBodyN, manakov_integrals};
 use serde::Deserialize;
 use toml::de::ValueDeserializer;
 
-use super::old_system::System;
-use super::{Figure, KeyInfo, Kind, Law, ProblemSpec, QuantityInfo};
-use crate::model::Layer;
+use super::quantity::Quantity;
+use super::system::{Number, Start, Stated, System, quantities_of};
+use super::{Kind, Law, ProblemSpec, keys};
 use crate::scene::values::List;
 use crate::scene::{Either, ReadError, Refusal, exactly_one};
 
@@ -20,50 +20,16 @@ pub(super) const KIND: Kind = Kind {
     name: "rigid-body-n",
     equation: "ṁ = [m, Ω], Ω_ij = m_ij/J_ij, with J_ij = λ_i + λ_j for Manakov's body",
     summary: "the free rigid body in n dimensions, by its momentum on so(n)*",
-    keys: &[
-        KeyInfo {
-            name: "mass_moments",
-            meaning: "λ_1 … λ_n of Manakov's body, of inertia λ_i + λ_j in the plane ij",
-        },
-        KeyInfo {
-            name: "inertia",
-            meaning: "inertia of each plane 12, 13, …, 1n, 23, …, instead of mass_moments",
-        },
-        KeyInfo {
-            name: "momentum",
-            meaning: "initial angular momentum in the body, m_12, m_13, …, m_1n, m_23, …",
-        },
-    ],
-    quantities: || {
-        vec![
-            QuantityInfo {
-                name: "momentum",
-                columns: &["m12", "…", "m(n-1)n"],
-                meaning: "angular momentum in the body, plane by plane",
-            },
-            QuantityInfo { name: "energy", columns: &["energy"], meaning: "kinetic energy" },
-            QuantityInfo {
-                name: "casimirs",
-                columns: &["trm2", "…", "trmn"],
-                meaning: "traces of the even powers of m, up to the n-th",
-            },
-            QuantityInfo {
-                name: "manakov_integrals",
-                columns: &["integral1", "…", "integralk"],
-                meaning: "the further integrals of Manakov's body; none for another",
-            },
-        ]
-    },
+    keys: Keys::INFO,
+    quantities: quantities_of::<Body>,
     read,
 };
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Keys {
-    mass_moments: Option<List>,
-    inertia: Option<List>,
-    momentum: List,
-}
+keys! { Keys {
+    mass_moments: Option<List> = "λ_1 … λ_n of Manakov's body, of inertia λ_i + λ_j in the plane ij",
+    inertia: Option<List> = "inertia of each plane 12, 13, …, 1n, 23, …, instead of mass_moments",
+    momentum: List = "initial angular momentum in the body, m_12, m_13, …, m_1n, m_23, …",
+} }
 
 /// The body with its initial momentum.
 #[derive(Clone, Debug)]
@@ -74,7 +40,9 @@ struct Body {
     momentum: Mat<f64>,
 }
 
-/// Manakov's integrals of larger bodies are shown where they are asked for and not watched: they take n⁵
+type Q = Quantity<Body>;
+
+/// Of larger bodies Manakov's integrals are output where they are asked for, and not watched: they take n⁵
 /// operations a row.
 const WATCHED: usize = 8;
 
@@ -117,66 +85,78 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
     for ((i, j), x) in planes(n).zip(momentum) {
         (m[(i, j)], m[(j, i)]) = (x, -x);
     }
-    Ok(Box::new(Body { body, lambda, momentum: m }))
+    Ok(Box::new(Stated(Body { body, lambda, momentum: m })))
+}
+
+impl Body {
+    fn n(&self) -> usize {
+        self.momentum.nrows()
+    }
 }
 
 impl System for Body {
-    type Problem = RigidBodyN;
+    type Problem<N: Number> = RigidBodyN;
+
+    const STATE: &'static [&'static str] = &["momentum"];
+    const QUANTITIES: &'static [Q] = &[
+        Q::numbers(
+            "momentum",
+            &["m12", "…", "m(n-1)n"],
+            "angular momentum in the body, plane by plane",
+            |body, _, m, row| {
+                row.extend(planes(body.n()).map(|(i, j)| 0.5 * (m[(i, j)] - m[(j, i)])));
+            },
+        )
+        .with_columns(|body| {
+            planes(body.n()).map(|(i, j)| format!("m{}{}", i + 1, j + 1)).collect()
+        }),
+        Q::number("energy", "kinetic energy", |body, _, m| body.body.energy(m))
+            .kept(Law::by_the_flow(2)),
+        Q::numbers(
+            "casimirs",
+            &["trm2", "…", "trmn"],
+            "traces of the even powers of m, up to the n-th",
+            |body, _, m, row| {
+                let square = m * m;
+                let mut power = square.clone();
+                for k in (2..=body.n()).step_by(2) {
+                    row.push((0..body.n()).map(|i| power[(i, i)]).sum());
+                    if k + 2 <= body.n() {
+                        power = &power * &square;
+                    }
+                }
+            },
+        )
+        .with_columns(|body| (2..=body.n()).step_by(2).map(|k| format!("trm{k}")).collect())
+        .kept(Law::by_the_action(0)),
+        Q::numbers(
+            "manakov_integrals",
+            &["integral1", "…", "integralk"],
+            "the further integrals of Manakov's body; none for another",
+            |body, _, m, row| {
+                row.extend(body.lambda.iter().flat_map(|lambda| manakov_integrals(lambda, m)));
+            },
+        )
+        .with_columns(|body| {
+            // One for each 1 ≤ j ≤ k − 2 with k − j even, 3 ≤ k ≤ n.
+            let count: usize = (3..=body.n()).map(|k| (k - 1) / 2).sum();
+            (1..=count).map(|k| format!("integral{k}")).collect()
+        })
+        .kept_where(|body| (body.n() <= WATCHED).then_some(Law::by_the_flow(0)))
+        .missing_where(|body| match body.lambda {
+            Some(_) if body.n() > 2 => None,
+            Some(_) => Some("a body in two dimensions has none"),
+            None => Some("only Manakov's body, that of mass_moments, has them"),
+        }),
+    ];
 
     fn kind(&self) -> &'static Kind {
         &KIND
     }
-    fn layer(&self) -> Layer {
-        Layer::General
-    }
-    fn problem(&self) -> Result<(RigidBodyN, Mat<f64>), Error> {
+    fn problem<N: Number>(&self) -> Result<Start<RigidBodyN>, Error> {
         Ok((self.body.clone(), self.momentum.clone()))
     }
     fn modelled(&self) -> String {
-        format!("momentum on so(n)*, n = {}", self.momentum.nrows())
-    }
-    fn state(&self) -> &'static [&'static str] {
-        &["momentum"]
-    }
-    fn laws(&self) -> Vec<Law> {
-        let mut laws = vec![Law::of_the_flow("energy", 2), Law::of_the_action("casimirs", 0)];
-        if self.lambda.is_some() && self.momentum.nrows() <= WATCHED {
-            laws.push(Law::of_the_flow("manakov_integrals", 0));
-        }
-        laws
-    }
-    fn columns(&self, quantity: &QuantityInfo) -> Vec<String> {
-        let n = self.momentum.nrows();
-        match quantity.name {
-            "momentum" => planes(n).map(|(i, j)| format!("m{}{}", i + 1, j + 1)).collect(),
-            "casimirs" => (2..=n).step_by(2).map(|k| format!("trm{k}")).collect(),
-            // One for each 1 ≤ j ≤ k − 2 with k − j even, 3 ≤ k ≤ n.
-            "manakov_integrals" => {
-                let of_k = self.lambda.iter().flat_map(|_| 3..=n).map(|k| (k - 1) / 2);
-                let count: usize = of_k.sum();
-                (1..=count).map(|k| format!("integral{k}")).collect()
-            }
-            other => vec![other.into()],
-        }
-    }
-    fn show(&self, quantity: &str, _: f64, m: &Mat<f64>, row: &mut Vec<f64>) {
-        match quantity {
-            "momentum" => row.extend(planes(m.nrows()).map(|p| 0.5 * (m[p] - m[(p.1, p.0)]))),
-            "energy" => row.push(self.body.energy(m)),
-            "casimirs" => {
-                let square = m * m;
-                let mut power = square.clone();
-                for k in (2..=m.nrows()).step_by(2) {
-                    row.push((0..m.nrows()).map(|i| power[(i, i)]).sum());
-                    if k + 2 <= m.nrows() {
-                        power = &power * &square;
-                    }
-                }
-            }
-            _ => row.extend(self.lambda.iter().flat_map(|lambda| manakov_integrals(lambda, m))),
-        }
-    }
-    fn figure(&self) -> Figure {
-        Figure::Lines("momentum")
+        format!("momentum on so(n)*, n = {}", self.n())
     }
 }

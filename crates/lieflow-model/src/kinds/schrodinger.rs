@@ -1,76 +1,34 @@
 //! `kind = "schrodinger"`: n levels under a drive, iψ̇ = (H₀ + a(t) H₁)ψ on the unit sphere of ℂⁿ; see
 //! [`schrodinger`](fn@schrodinger). a(t) = cos(ωt + φ), times exp(−((t − t₁)/w)²) where there is a pulse.
 
-use faer::Mat;
-use lieflow::Error;
 use lieflow::problems::{amplitudes, populations, schrodinger};
 use lieflow::scalar::{Ops, tally};
-use serde::Deserialize;
-use toml::de::ValueDeserializer;
 
+use super::entries::{check_antisymmetric, check_symmetric, numbered, square};
+use super::flow::OnMatrices;
 use super::matrix::MatrixAction;
-use super::old_system::System;
-use super::{Figure, KeyInfo, Kind, Law, ProblemSpec, QuantityInfo};
-use crate::kinds::flow::OnMatrices;
-use crate::model::Layer;
-use crate::scene::values::{List, Real, Reals, Table};
-use crate::scene::{ReadError, Refusal};
+use super::prelude::*;
 
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {
     name: "schrodinger",
     equation: "iψ̇ = (H₀ + a(t)H₁)ψ, a(t) = cos(ωt + φ) exp(−((t − t₁)/w)²), the last factor with a pulse",
     summary: "Schrödinger's equation with n levels under a drive",
-    keys: &[
-        KeyInfo { name: "energies", meaning: "energies of the levels without the drive" },
-        KeyInfo { name: "coupling", meaning: "real part of the drive's matrix, symmetric" },
-        KeyInfo {
-            name: "coupling_imaginary",
-            meaning: "its imaginary part, antisymmetric; optional, 0",
-        },
-        KeyInfo { name: "frequency", meaning: "angular frequency of the drive; optional, 0" },
-        KeyInfo { name: "phase", meaning: "its phase at t = 0; optional, 0" },
-        KeyInfo {
-            name: "pulse",
-            meaning: "[centre, width] of a Gaussian envelope; optional, a drive of constant strength",
-        },
-        KeyInfo { name: "amplitudes", meaning: "initial real parts, normalised" },
-        KeyInfo { name: "amplitudes_imaginary", meaning: "imaginary parts; optional, 0" },
-    ],
-    quantities: || {
-        vec![
-            QuantityInfo {
-                name: "amplitudes",
-                columns: &["re1", "…", "ren", "im1", "…", "imn"],
-                meaning: "real parts, then imaginary parts",
-            },
-            QuantityInfo {
-                name: "populations",
-                columns: &["p1", "…", "pn"],
-                meaning: "probability of each level",
-            },
-            QuantityInfo {
-                name: "probability",
-                columns: &["probability"],
-                meaning: "sum of the populations",
-            },
-        ]
-    },
+    keys: Keys::INFO,
+    quantities: quantities_of::<Levels>,
     read,
 };
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Keys {
-    energies: List,
-    coupling: Table,
-    coupling_imaginary: Option<Table>,
-    frequency: Option<Real>,
-    phase: Option<Real>,
-    pulse: Option<Reals<2>>,
-    amplitudes: List,
-    amplitudes_imaginary: Option<List>,
-}
+keys! { Keys {
+    energies: List = "energies of the levels without the drive",
+    coupling: Table = "real part of the drive's matrix, symmetric",
+    coupling_imaginary: Option<Table> = "its imaginary part, antisymmetric; optional, 0",
+    frequency: Option<Real> = "angular frequency of the drive; optional, 0",
+    phase: Option<Real> = "its phase at t = 0; optional, 0",
+    pulse: Option<Reals<2>> = "[centre, width] of a Gaussian envelope; optional, a drive of constant strength",
+    amplitudes: List = "initial real parts, normalised",
+    amplitudes_imaginary: Option<List> = "imaginary parts; optional, 0",
+} }
 
 /// The levels, the drive and the initial state.
 #[derive(Clone, Debug)]
@@ -84,33 +42,19 @@ struct Levels {
     start: Mat<f64>,
 }
 
-/// An n×n matrix that its transpose is `sign` times.
-fn with_symmetry(key: &str, table: &Table, n: usize, sign: f64) -> Result<Mat<f64>, Refusal> {
-    let m = table.matrix(key, Some(n))?;
-    if m.nrows() != n {
-        let message = format!("found {} rows, expected {n}, one a level", m.nrows());
-        return Err(Refusal::at(key, message));
-    }
-    let entries = (0..n).flat_map(|i| (0..=i).map(move |j| (i, j)));
-    for (i, j) in entries {
-        if m[(i, j)] != sign * m[(j, i)] {
-            let what = if sign > 0.0 { "equal to" } else { "minus" };
-            let message = format!("{} is not {what} {} across from it", m[(i, j)], m[(j, i)]);
-            return Err(Refusal::at(format!("{key}[{i},{j}]"), message));
-        }
-    }
-    Ok(m)
-}
+type Q = Quantity<Levels>;
 
 fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
     let keys = Keys::deserialize(section)?;
     let energies = keys.energies.values();
     let n = energies.len();
-    let real = with_symmetry("coupling", &keys.coupling, n, 1.0)?;
+    let real = square("coupling", &keys.coupling, n)?;
+    check_symmetric("coupling", &real, 0.0)?;
     let imaginary = match &keys.coupling_imaginary {
-        Some(table) => with_symmetry("coupling_imaginary", table, n, -1.0)?,
+        Some(table) => square("coupling_imaginary", table, n)?,
         None => Mat::zeros(n, n),
     };
+    check_antisymmetric("coupling_imaginary", &imaginary)?;
     let parts = [
         ("amplitudes", keys.amplitudes.values()),
         ("amplitudes_imaginary", keys.amplitudes_imaginary.map_or(vec![0.0; n], |x| x.values())),
@@ -126,14 +70,14 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
     }
     let psi: Vec<_> = parts[0].1.iter().zip(&parts[1].1).map(|(re, im)| [*re, *im]).collect();
     let start = amplitudes(&psi).map_err(|error| Refusal::at("amplitudes", error.to_string()))?;
-    Ok(Box::new(Levels {
+    Ok(Box::new(Stated(Levels {
         energies,
         coupling: [real, imaginary],
         frequency: keys.frequency.map_or(0.0, |x| x.0),
         phase: keys.phase.map_or(0.0, |x| x.0),
         pulse: keys.pulse.map(|pulse| pulse.0),
         start,
-    }))
+    })))
 }
 
 impl Levels {
@@ -147,15 +91,34 @@ impl Levels {
 }
 
 impl System for Levels {
-    type Problem = OnMatrices;
+    type Problem<N: Number> = OnMatrices;
+
+    const STATE: &'static [&'static str] = &["amplitudes"];
+    const QUANTITIES: &'static [Q] = &[
+        Q::numbers(
+            "amplitudes",
+            &["re1", "…", "ren", "im1", "…", "imn"],
+            "real parts, then imaginary parts",
+            |_, _, psi, row| row.extend(psi.col_as_slice(0)),
+        )
+        .with_columns(|levels| {
+            ["re", "im"].map(|part| numbered(part, levels.energies.len())).concat()
+        }),
+        Q::numbers(
+            "populations",
+            &["p1", "…", "pn"],
+            "probability of each level",
+            |_, _, psi, row| row.extend(populations(psi)),
+        )
+        .with_columns(|levels| numbered("p", levels.energies.len())),
+        Q::number("probability", "sum of the populations", |_, _, psi| psi.squared_norm_l2())
+            .kept(Law::by_the_action(2)),
+    ];
 
     fn kind(&self) -> &'static Kind {
         &KIND
     }
-    fn layer(&self) -> Layer {
-        Layer::General
-    }
-    fn problem(&self) -> Result<(Self::Problem, Mat<f64>), Error> {
+    fn problem<N: Number>(&self) -> Result<Start<OnMatrices>, Error> {
         let levels = self.clone();
         let hamiltonian = move |t: f64, i: usize, j: usize| {
             let (drive, [re, im]) = (levels.drive(t), &levels.coupling);
@@ -168,28 +131,6 @@ impl System for Levels {
     }
     fn modelled(&self) -> String {
         format!("state of {} levels, real and imaginary parts", self.energies.len())
-    }
-    fn state(&self) -> &'static [&'static str] {
-        &["amplitudes"]
-    }
-    fn laws(&self) -> Vec<Law> {
-        vec![Law::of_the_action("probability", 2)]
-    }
-    fn columns(&self, quantity: &QuantityInfo) -> Vec<String> {
-        let n = self.energies.len();
-        let numbered = |name: &'static str| (1..=n).map(move |i| format!("{name}{i}"));
-        match quantity.name {
-            "amplitudes" => numbered("re").chain(numbered("im")).collect(),
-            "populations" => numbered("p").collect(),
-            other => vec![other.into()],
-        }
-    }
-    fn show(&self, quantity: &str, _: f64, psi: &Mat<f64>, row: &mut Vec<f64>) {
-        match quantity {
-            "amplitudes" => row.extend(psi.col_as_slice(0)),
-            "populations" => row.extend(populations(psi)),
-            _ => row.push(psi.squared_norm_l2()),
-        }
     }
     fn figure(&self) -> Figure {
         Figure::Lines("populations")

@@ -2,18 +2,16 @@
 
 use lieflow::Error;
 use lieflow::actions::Linear;
-use lieflow::catalog::MethodSpec;
 use lieflow::problems::SpinChain;
-use lieflow::scalar::{Counted, Real as Scalar};
 use nalgebra::Vector3;
 use serde::Deserialize;
 use toml::de::ValueDeserializer;
 
-use super::old_system::System;
-use super::{Figure, KeyInfo, Kind, Law, ProblemSpec, QuantityInfo, Scale};
-use crate::kinds::flow::OnSpheres;
+use super::flow::OnSpheres;
+use super::quantity::Quantity;
+use super::system::{Number, Start, Stated, System, quantities_of};
+use super::{Figure, Kind, Law, ProblemSpec, keys};
 use crate::model::Layer;
-use crate::operations::{Pace, operations_by};
 use crate::scene::values::{Real, Reals, Whole};
 use crate::scene::{Either, ReadError, Refusal, exactly_one};
 
@@ -22,56 +20,20 @@ pub(super) const KIND: Kind = Kind {
     name: "spin-chain",
     equation: "ṡᵢ = Hᵢ × sᵢ + α (sᵢ × Hᵢ) × sᵢ, Hᵢ = sᵢ₋₁ + sᵢ₊₁ + K (sᵢ)₃ e₃ + B, α the damping",
     summary: "a chain of spins with exchange, anisotropy, a field and damping, on spheres",
-    keys: &[
-        KeyInfo { name: "spins", meaning: "initial directions, one row a spin, normalised" },
-        KeyInfo {
-            name: "wave",
-            meaning: "{count, turns, cone}, instead of spins: count spins at the angle cone to e3, \
-                      that turn so often around it along the chain",
-        },
-        KeyInfo { name: "ring", meaning: "are the ends joined? optional, true" },
-        KeyInfo { name: "anisotropy", meaning: "K, > 0 for an easy axis e3; optional, 0" },
-        KeyInfo { name: "field", meaning: "the field; optional, 0" },
-        KeyInfo { name: "damping", meaning: "Gilbert's damping, at least 0; optional, 0" },
-    ],
-    quantities: || {
-        vec![
-            QuantityInfo {
-                name: "spins",
-                columns: &["s1x", "s1y", "s1z", "…", "sNz"],
-                meaning: "the spins, one after the other",
-            },
-            QuantityInfo {
-                name: "magnetisation",
-                columns: &["mx", "my", "mz"],
-                meaning: "mean of the spins",
-            },
-            QuantityInfo { name: "energy", columns: &["energy"], meaning: "energy" },
-            QuantityInfo {
-                name: "total_spin3",
-                columns: &["total_spin3"],
-                meaning: "sum of the third components",
-            },
-            QuantityInfo {
-                name: "lengths2",
-                columns: &["lengths2"],
-                meaning: "sum of the squares of the lengths",
-            },
-        ]
-    },
+    keys: Keys::INFO,
+    quantities: quantities_of::<Chain>,
     read,
 };
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Keys {
-    spins: Option<Vec<Reals<3>>>,
-    wave: Option<Wave>,
-    ring: Option<bool>,
-    anisotropy: Option<Real>,
-    field: Option<Reals<3>>,
-    damping: Option<Real>,
-}
+keys! { Keys {
+    spins: Option<Vec<Reals<3>>> = "initial directions, one row a spin, normalised",
+    wave: Option<Wave> = "{count, turns, cone}, instead of spins: count spins at the angle cone to e3, \
+                          that turn so often around it along the chain",
+    ring: Option<bool> = "are the ends joined? optional, true",
+    anisotropy: Option<Real> = "K, > 0 for an easy axis e3; optional, 0",
+    field: Option<Reals<3>> = "the field; optional, 0",
+    damping: Option<Real> = "Gilbert's damping, at least 0; optional, 0",
+} }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -92,6 +54,8 @@ struct Chain {
     field: Vector3<f64>,
     start: Box<[Vector3<f64>]>,
 }
+
+type Q = Quantity<Chain>;
 
 fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
     let keys = Keys::deserialize(section)?;
@@ -123,21 +87,57 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
         (keys.damping.map_or(0.0, |x| x.0), keys.field.map_or([0.0; 3], |x| x.0));
     chain = chain.with_anisotropy(keys.anisotropy.map_or(0.0, |x| x.0))?;
     chain = chain.with_field(field)?.with_damping(damping)?;
-    Ok(Box::new(Chain { chain, damped: damping != 0.0, field: field.into(), start }))
+    Ok(Box::new(Stated(Chain { chain, damped: damping != 0.0, field: field.into(), start })))
 }
 
-type Spins<S> = Box<[Vector3<S>]>;
-
-/// The chain, a Lie–Poisson system where nothing damps it.
-fn flow<S: Scalar>(chain: SpinChain<S>, damped: bool, start: Spins<S>) -> (OnSpheres<S>, Spins<S>) {
-    match damped {
-        true => (OnSpheres::new(chain, Linear), start),
-        false => (OnSpheres::lie_poisson(chain, Linear), start),
+impl Chain {
+    /// A law of the chain without damping.
+    fn undamped(&self, law: Law) -> Option<Law> {
+        (!self.damped).then_some(law)
+    }
+    /// The size of the terms of sums over the chain: each spin has an energy of some units.
+    fn size(&self, s: &[Vector3<f64>]) -> f64 {
+        sum_of_squares(s) * (1.0 + self.field.norm())
     }
 }
 
+fn sum(spins: &[Vector3<f64>]) -> Vector3<f64> {
+    spins.iter().sum()
+}
+fn sum_of_squares(spins: &[Vector3<f64>]) -> f64 {
+    spins.iter().map(Vector3::norm_squared).sum()
+}
+
 impl System for Chain {
-    type Problem = OnSpheres<f64>;
+    type Problem<N: Number> = OnSpheres<N>;
+
+    const STATE: &'static [&'static str] = &["spins"];
+    const QUANTITIES: &'static [Q] = &[
+        Q::numbers(
+            "spins",
+            &["s1x", "s1y", "s1z", "…", "sNz"],
+            "the spins, one after the other",
+            |_, _, s, row| row.extend(s.iter().flat_map(|s| s.iter())),
+        )
+        .with_columns(|chain| {
+            let spin = |i: usize| ["x", "y", "z"].map(|axis| format!("s{i}{axis}"));
+            (1..=chain.start.len()).flat_map(spin).collect()
+        }),
+        Q::numbers("magnetisation", &["mx", "my", "mz"], "mean of the spins", |_, _, s, row| {
+            row.extend((sum(s) / s.len() as f64).iter());
+        }),
+        Q::number("energy", "energy", |chain, _, s| chain.chain.energy(s))
+            .kept_where(|chain| chain.undamped(Law::by_the_flow(2)))
+            .in_terms(|chain, s| chain.size(s)),
+        Q::number("total_spin3", "sum of the third components", |_, _, s| sum(s)[2])
+            .kept_where(|chain| {
+                let along = chain.field[0] == 0.0 && chain.field[1] == 0.0;
+                chain.undamped(Law::by_the_flow(1)).filter(|_| along)
+            })
+            .in_terms(|chain, s| chain.size(s)),
+        Q::number("lengths2", "sum of the squares of the lengths", |_, _, s| sum_of_squares(s))
+            .kept(Law::by_the_action(2)),
+    ];
 
     fn kind(&self) -> &'static Kind {
         &KIND
@@ -145,52 +145,17 @@ impl System for Chain {
     fn layer(&self) -> Layer {
         Layer::Closed
     }
-    fn problem(&self) -> Result<(Self::Problem, Box<[Vector3<f64>]>), Error> {
-        Ok(flow(self.chain, self.damped, self.start.clone()))
-    }
-    fn operations(&self, method: &MethodSpec, pace: Pace<'_>) -> Option<f64> {
-        let start = self.start.iter().map(|s| s.map(Counted)).collect();
-        let (flow, start) = flow(self.chain.on::<Counted>().ok()?, self.damped, start);
-        operations_by(method, &flow, start, pace)
+    /// A Lie–Poisson system where nothing damps it.
+    fn problem<N: Number>(&self) -> Result<Start<OnSpheres<N>>, Error> {
+        let chain = self.chain.on::<N>()?;
+        let flow = match self.damped {
+            true => OnSpheres::new(chain, Linear),
+            false => OnSpheres::lie_poisson(chain, Linear),
+        };
+        Ok((flow, self.start.iter().map(|s| s.map(N::lit)).collect()))
     }
     fn modelled(&self) -> String {
         format!("{} spins on spheres", self.start.len())
-    }
-    fn state(&self) -> &'static [&'static str] {
-        &["spins"]
-    }
-    fn laws(&self) -> Vec<Law> {
-        let mut laws = vec![Law::of_the_action("lengths2", 2)];
-        if !self.damped {
-            laws.push(Law::of_the_flow("energy", 2).on_scale(Scale::Terms));
-            if self.field[0] == 0.0 && self.field[1] == 0.0 {
-                laws.push(Law::of_the_flow("total_spin3", 1).on_scale(Scale::Terms));
-            }
-        }
-        laws
-    }
-    fn columns(&self, quantity: &QuantityInfo) -> Vec<String> {
-        match quantity.name {
-            "spins" => {
-                let spin = |i: usize| ["x", "y", "z"].map(|axis| format!("s{i}{axis}"));
-                (1..=self.start.len()).flat_map(spin).collect()
-            }
-            _ => quantity.columns.iter().map(|&column| column.into()).collect(),
-        }
-    }
-    fn show(&self, quantity: &str, _: f64, s: &Box<[Vector3<f64>]>, row: &mut Vec<f64>) {
-        let sum = || s.iter().sum::<Vector3<f64>>();
-        match quantity {
-            "spins" => row.extend(s.iter().flat_map(|s| s.iter())),
-            "magnetisation" => row.extend((sum() / s.len() as f64).iter()),
-            "energy" => row.push(self.chain.energy(s)),
-            "total_spin3" => row.push(sum()[2]),
-            _ => row.push(s.iter().map(Vector3::norm_squared).sum()),
-        }
-    }
-    /// Each spin has an energy of some units.
-    fn size(&self, _: &str, s: &Box<[Vector3<f64>]>) -> f64 {
-        s.iter().map(Vector3::norm_squared).sum::<f64>() * (1.0 + self.field.norm())
     }
     fn figure(&self) -> Figure {
         Figure::Sphere("spins")

@@ -6,67 +6,30 @@
 //! singular values of V₂ᵀP.
 
 use faer::linalg::solvers::DenseSolveCore;
-use faer::{Mat, MatRef, Side};
-use lieflow::Error;
+use faer::{MatRef, Side};
 use lieflow::problems::SubspaceFlow;
-use serde::Deserialize;
-use toml::de::ValueDeserializer;
 
+use super::entries::{
+    ROUNDING, check_rows, check_symmetric, numbered, trace, upper, upper_columns,
+};
+use super::flow::OnMatrices;
 use super::matrix::MatrixAction;
-use super::old_system::System;
-use super::{Fact, Figure, KeyInfo, Kind, Law, ProblemSpec, QuantityInfo, Scale};
-use crate::kinds::flow::OnMatrices;
-use crate::model::Layer;
-use crate::scene::values::Table;
-use crate::scene::{ReadError, Refusal};
+use super::prelude::*;
 
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {
     name: "subspace",
     equation: "Ṗ = [[A, P], P] for the projector P on the subspace",
     summary: "the flow of subspaces to the leading invariant subspace of a symmetric matrix",
-    keys: &[
-        KeyInfo { name: "a", meaning: "the symmetric matrix A" },
-        KeyInfo { name: "x", meaning: "an n×k matrix; its columns span the initial subspace" },
-    ],
-    quantities: || {
-        vec![
-            QuantityInfo {
-                name: "projector",
-                columns: &["p11", "…", "pnn"],
-                meaning: "the entries of the projector P on and above the diagonal, row by row",
-            },
-            QuantityInfo {
-                name: "angles",
-                columns: &["angle1", "…", "anglek"],
-                meaning: "principal angles to the span of the k leading eigenvectors, the largest first",
-            },
-            QuantityInfo {
-                name: "trace",
-                columns: &["trace"],
-                meaning: "trace of AP, which grows to the sum of the k leading eigenvalues",
-            },
-            QuantityInfo {
-                name: "dimension",
-                columns: &["dimension"],
-                meaning: "trace of P, the dimension of the subspace",
-            },
-            QuantityInfo {
-                name: "projector_defect",
-                columns: &["projector_defect"],
-                meaning: "distance of P² from P",
-            },
-        ]
-    },
+    keys: Keys::INFO,
+    quantities: quantities_of::<Subspace>,
     read,
 };
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Keys {
-    a: Table,
-    x: Table,
-}
+keys! { Keys {
+    a: Table = "the symmetric matrix A",
+    x: Table = "an n×k matrix; its columns span the initial subspace",
+} }
 
 /// The flow with P(t₀).
 #[derive(Clone, Debug)]
@@ -87,15 +50,11 @@ const RIGHT: f64 = 1e-10;
 fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
     let keys = Keys::deserialize(section)?;
     let (a, x) = (keys.a.matrix("a", None)?, keys.x.columns("x")?);
-    if x.nrows() != a.nrows() {
-        let message = format!("found {} rows, expected {} as a has them", x.nrows(), a.nrows());
-        return Err(Refusal::at("x", message).into());
-    }
-    let wrong = |key: &'static str, name: &'static str| {
-        move |error: Error| Refusal::at(key, error.to_string().replace(name, key))
-    };
-    let flow = SubspaceFlow::new(a.clone()).map_err(wrong("a", "A"))?;
-    let start = flow.span(&x).map_err(wrong("x", "X"))?;
+    check_rows("x", &x, a.nrows())?;
+    check_symmetric("a", &a, ROUNDING)?;
+    let flow = SubspaceFlow::new(a.clone())?;
+    let wrong = |error: Error| Refusal::at("x", error.to_string().replace('X', "x"));
+    let start = flow.span(&x).map_err(wrong)?;
     let eigen = a.self_adjoint_eigen(Side::Lower);
     let eigen = eigen.map_err(|_| Refusal::at("a", "its eigenvalues cannot be found"))?;
     let mut subspace = Subspace {
@@ -107,7 +66,7 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
         graph: None,
     };
     subspace.graph = subspace.graph_at(&subspace.start);
-    Ok(Box::new(subspace))
+    Ok(Box::new(Stated(subspace)))
 }
 
 impl Subspace {
@@ -133,53 +92,47 @@ impl Subspace {
     }
 }
 
-/// The places on and above the diagonal, row by row.
-fn above(n: usize) -> impl Iterator<Item = (usize, usize)> {
-    (0..n).flat_map(move |i| (i..n).map(move |j| (i, j)))
-}
+type Q = Quantity<Subspace>;
 
 impl System for Subspace {
-    type Problem = OnMatrices;
+    type Problem<N: Number> = OnMatrices;
+
+    const STATE: &'static [&'static str] = &["projector"];
+    const QUANTITIES: &'static [Q] = &[
+        Q::numbers(
+            "projector",
+            &["p11", "…", "pnn"],
+            "the entries of the projector P on and above the diagonal, row by row",
+            |_, _, p, row| row.extend(upper(p)),
+        )
+        .with_columns(|subspace| upper_columns("p", subspace.start.nrows())),
+        Q::numbers(
+            "angles",
+            &["angle1", "…", "anglek"],
+            "principal angles to the span of the k leading eigenvectors, the largest first",
+            |subspace, _, p, row| row.extend(subspace.angles(p)),
+        )
+        .with_columns(|subspace| numbered("angle", subspace.dimension)),
+        Q::number(
+            "trace",
+            "trace of AP, which grows to the sum of the k leading eigenvalues",
+            |subspace, _, p| subspace.flow.trace(p),
+        ),
+        Q::number("dimension", "trace of P, the dimension of the subspace", |_, _, p| trace(p))
+            .kept(Law::by_the_action(0)),
+        Q::number("projector_defect", "distance of P² from P", |_, _, p| (p * p - p).norm_l2())
+            .kept(Law::by_the_action(0).on_scale(Scale::One)),
+    ];
 
     fn kind(&self) -> &'static Kind {
         &KIND
     }
-    fn layer(&self) -> Layer {
-        Layer::General
-    }
-    fn problem(&self) -> Result<(Self::Problem, Mat<f64>), Error> {
+    fn problem<N: Number>(&self) -> Result<Start<OnMatrices>, Error> {
         Ok((OnMatrices::new(self.flow.clone(), MatrixAction::Conjugation), self.start.clone()))
     }
     fn modelled(&self) -> String {
         let n = self.start.nrows();
         format!("projector onto {} of {n} dimensions, conjugated by SO({n})", self.dimension)
-    }
-    fn state(&self) -> &'static [&'static str] {
-        &["projector"]
-    }
-    fn laws(&self) -> Vec<Law> {
-        vec![
-            Law::of_the_action("projector_defect", 0).on_scale(Scale::One),
-            Law::of_the_action("dimension", 0),
-        ]
-    }
-    fn columns(&self, quantity: &QuantityInfo) -> Vec<String> {
-        match quantity.name {
-            "projector" => {
-                above(self.start.nrows()).map(|(i, j)| format!("p{}{}", i + 1, j + 1)).collect()
-            }
-            "angles" => (1..=self.dimension).map(|k| format!("angle{k}")).collect(),
-            other => vec![other.into()],
-        }
-    }
-    fn show(&self, quantity: &str, _: f64, p: &Mat<f64>, row: &mut Vec<f64>) {
-        match quantity {
-            "projector" => row.extend(above(p.nrows()).map(|place| p[place])),
-            "angles" => row.extend(self.angles(p)),
-            "trace" => row.push(self.flow.trace(p)),
-            "dimension" => row.push((0..p.nrows()).map(|i| p[(i, i)]).sum()),
-            _ => row.push((p * p - p).norm_l2()),
-        }
     }
     /// Z(t)_ij = e^{t(λ_i − λ_j)} Z_ij, which falls where the columns of e^{tA}X become one.
     fn exact(&self, [t0, t1]: [f64; 2]) -> Option<Result<Mat<f64>, Error>> {

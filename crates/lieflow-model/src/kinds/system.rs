@@ -21,7 +21,10 @@ use crate::scene::Refusal;
 
 /// The numbers that a problem of vectors is made of: `f64`, and [`Counted`] where operations are counted.
 /// Matrices count for themselves.
-pub(super) trait Number: Trig + Wide + Into<f64> + LinearSpace<Scalar = Self> {}
+pub(super) trait Number:
+    Trig + Wide + Into<f64> + LinearSpace<Scalar = Self> + Send + Sync
+{
+}
 impl Number for f64 {}
 impl Number for Counted {}
 
@@ -43,7 +46,9 @@ pub(super) trait System: Clone + Debug + Send + Sync + 'static {
     /// The entry in the list of kinds.
     fn kind(&self) -> &'static Kind;
     /// The layer that it is made of.
-    fn layer(&self) -> Layer;
+    fn layer(&self) -> Layer {
+        Layer::General
+    }
     /// The problem, and y(t₀).
     ///
     /// # Errors

@@ -142,6 +142,12 @@ impl Refusal {
         Refusal { key: Some(key.into()), message: message.into(), help: None }
     }
 
+    /// A name that is none of those that are expected.
+    pub fn unknown(key: &str, name: &str, expected: &[&str]) -> Self {
+        let help = Some(help_for(name, expected));
+        Refusal { help, ..Refusal::at(key, format!("unknown {key} `{name}`")) }
+    }
+
     /// Something about a section as a whole.
     pub fn section(message: impl Into<String>) -> Self {
         Refusal { key: None, message: message.into(), help: None }

@@ -26,14 +26,14 @@ fn manakovs_integrals_are_those_of_his_body() {
         let of = scene(problem, RKMK4, FINE, "[\"momentum\"]");
         let laws = of.problem.invariants(&["momentum"]);
         let names: Vec<_> = laws.iter().map(|law| law.quantity).collect();
-        (names, of.problem.columns("manakov_integrals").unwrap().len())
+        (names, of.problem.columns("manakov_integrals").ok().map(|columns| columns.len()))
     };
     let momentum = "momentum = [1.0, -0.4, 0.3, 0.8, 0.2, -0.6]";
     let kind = "kind = \"rigid-body-n\"";
     let his = summary(&format!("{kind}\nmass_moments = [0.4, 1.1, 1.9, 2.5]\n{momentum}"));
-    assert_eq!(his, (vec!["energy", "casimirs", "manakov_integrals"], 2));
+    assert_eq!(his, (vec!["energy", "casimirs", "manakov_integrals"], Some(2)));
     let another = summary(&format!("{kind}\ninertia = [1, 2, 3, 4, 5, 6]\n{momentum}"));
-    assert_eq!(another, (vec!["energy", "casimirs"], 0));
+    assert_eq!(another, (vec!["energy", "casimirs"], None));
 }
 
 /// Lagrange's top that leans by θ and precesses steadily at Ω: see `tests/problems/heavy_top.rs`.

@@ -128,7 +128,7 @@ const BROKEN: &[(&str, &str, &str, &[&str])] = &[
     ("riccati-pole", "c = [[1.0, 0.0],", "c = [[1.0, 0.5],", &["symmetric"]),
     ("riccati-pole", "p = [[0.0, 0.0], [0.0, 0.0]]", "p = []", &["no rows"]),
     ("crossed-fields", "velocity = [0.0, 0.0, 0.3]", "velocity = [0, 0, 1]", &["less than 1"]),
-    ("rabi", "coupling = [[0.0, 0.1],", "coupling = [[0.0, 0.2],", &["equal to"]),
+    ("rabi", "coupling = [[0.0, 0.1],", "coupling = [[0.0, 0.2],", &["a symmetric matrix"]),
     ("rabi", "amplitudes = [1.0, 0.0]", "amplitudes = [0, 0]", &["|ψ|"]),
     ("rabi", "amplitudes = [1.0, 0.0]", "amplitudes = [1]", &["expected 2, one a level"]),
     ("three-level-transfer", "12.533]", "0]", &["width 0"]),

@@ -111,21 +111,21 @@ pub struct Study {
     /// The axis.
     pub over: Over,
     /// One line a contender.
-    pub lines: Vec<Line>,
+    pub lines: Vec<StudyLine>,
 }
 
 /// A contender.
 #[derive(Clone, Debug)]
-pub struct Line {
+pub struct StudyLine {
     /// Its name.
     pub name: &'static str,
     /// Its results along the axis.
-    pub points: Vec<Point>,
+    pub points: Vec<StudyPoint>,
 }
 
 /// The result of a contender at a place of the axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Point {
+pub struct StudyPoint {
     /// The place.
     pub at: f64,
     /// The number of inputs.
@@ -138,9 +138,9 @@ pub struct Point {
     pub seconds: f64,
 }
 
-impl Line {
+impl StudyLine {
     /// The point with the largest error.
-    pub fn worst(&self) -> Option<&Point> {
+    pub fn worst(&self) -> Option<&StudyPoint> {
         let points = self.points.iter().filter(|p| !p.error.is_nan());
         points.max_by(|p, q| p.error.total_cmp(&q.error))
     }
@@ -153,7 +153,7 @@ impl Line {
 
 /// How much is surveyed.
 #[derive(Clone, Copy, Debug)]
-pub struct Effort {
+pub struct StudyExtent {
     /// Random directions at an angle.
     pub directions: usize,
     /// The largest n.
@@ -278,7 +278,7 @@ const SHORTEST: f64 = 1e-5;
 
 /// Survey everything. `tick` gets the share of the work that is done.
 pub fn survey(
-    effort: &Effort,
+    effort: &StudyExtent,
     seed: u64,
     mut tick: impl FnMut(f64),
 ) -> Result<Vec<Study>, CliError> {
@@ -346,7 +346,7 @@ impl Study {
     /// The place of the line of that name, made where there is none.
     fn line(&mut self, name: &'static str) -> usize {
         self.lines.iter().position(|line| line.name == name).unwrap_or_else(|| {
-            self.lines.push(Line { name, points: Vec::new() });
+            self.lines.push(StudyLine { name, points: Vec::new() });
             self.lines.len() - 1
         })
     }
@@ -359,7 +359,7 @@ impl Entry {
     }
 }
 
-fn judged(at: f64, contender: &Contender, exact: &[Option<(Matrix, f64)>]) -> Point {
+fn judged(at: f64, contender: &Contender, exact: &[Option<(Matrix, f64)>]) -> StudyPoint {
     let (mut error, mut refused) = (f64::NAN, 0);
     for (value, exact) in contender.values.iter().zip(exact) {
         match (value, exact) {
@@ -370,5 +370,5 @@ fn judged(at: f64, contender: &Contender, exact: &[Option<(Matrix, f64)>]) -> Po
             (Some(_), None) => {}
         }
     }
-    Point { at, cases: contender.values.len(), refused, error, seconds: f64::NAN }
+    StudyPoint { at, cases: contender.values.len(), refused, error, seconds: f64::NAN }
 }

@@ -5,7 +5,7 @@ use lieflow_figures::{
     Axis, Block, Chart, Column, Marker, Page, Point, Scale, Section, Series, Table,
 };
 
-use super::{Line, Over, Study};
+use super::{Over, Study, StudyLine};
 use crate::measure::machine;
 use crate::output::{fields, in_full};
 use crate::report;
@@ -44,7 +44,7 @@ fn chart(
     what: &str,
     title: String,
     y: Axis,
-    value: fn(&super::Point) -> f64,
+    value: fn(&super::StudyPoint) -> f64,
 ) -> Chart {
     let series = study.lines.iter().map(|line| {
         let points = line.points.iter().filter(|p| !value(p).is_nan()).map(|p| {
@@ -67,7 +67,8 @@ fn chart(
 fn charts(study: &Study) -> Block {
     let name = study.topic.name();
     let over = if angle(study) { "over the angle" } else { "over n" };
-    let largest = study.lines.iter().filter_map(Line::worst).map(|p| p.error).fold(0.0, f64::max);
+    let largest =
+        study.lines.iter().filter_map(StudyLine::worst).map(|p| p.error).fold(0.0, f64::max);
     // Linear as long as that shows something of everybody.
     let scale = if largest < 30.0 { Scale::Linear } else { Scale::SymLog { linear: 1.0 } };
     let units = Axis::new("error [eps·cond]", scale);

@@ -15,22 +15,28 @@ use lieflow_model::scene::Scene;
 use super::energy::EnergyRun;
 use super::experiments::{EXPERIMENTS, Experiment, SEED};
 use super::maps::{self, Study};
-use super::rows::Row;
+use super::methods::PaperMethod;
 use crate::cmd::CliError;
 use crate::measure::{Candidate, Curve, Effort, Plan, checks, speed_against_error};
 use crate::output;
 use crate::report;
 
 /// RKMK4 with each map. Classical Runge–Kutta, on the closed layer alone, comes after them.
-const MAPS: [Row; 5] = [Row::Exp, Row::Cay, Row::Ccsk123, Row::Ccsk321, Row::Ccsk];
+const MAPS: [PaperMethod; 5] = [
+    PaperMethod::Exp,
+    PaperMethod::Cay,
+    PaperMethod::Ccsk123,
+    PaperMethod::Ccsk321,
+    PaperMethod::Ccsk,
+];
 
 /// The attitude is what the paper integrates; the momentum and the energy follow from it.
 const QUANTITIES: [&str; 4] = ["momentum_body", "attitude", "energy", "attitude_defect"];
 
 /// A row on a layer, as the catalog names it.
-fn candidate(row: Row, layer: Layer) -> Candidate {
+fn candidate(row: PaperMethod, layer: Layer) -> Candidate {
     match row {
-        Row::Rk4 => Candidate::rk4(layer),
+        PaperMethod::Rk4 => Candidate::rk4(layer),
         _ => Candidate::rkmk4(row.key(), layer),
     }
 }
@@ -52,12 +58,12 @@ struct Outcome {
     title: String,
     curves: Vec<Curve>,
     /// On the closed layer, by row.
-    runs: Vec<Run>,
+    runs: Vec<LongRun>,
 }
 
 /// A row on the closed layer over the whole span of the energy runs.
 #[derive(Debug)]
-struct Run {
+struct LongRun {
     label: String,
     energy: EnergyRun,
     /// Difference of the final momentum between the layers, relative; not a number for RK4.
@@ -75,7 +81,7 @@ impl Speed {
             let share = |done: f64| tick(0.1 + 0.26 * (i as f64 + done), experiment.scene);
             outcomes.push(Outcome::of(experiment, quick, share)?);
         }
-        let effort = maps::Effort {
+        let effort = maps::StudyExtent {
             directions: if quick { 6 } else { 20 },
             largest: if quick { 12 } else { 32 },
             rounds: if quick { 3 } else { 7 },
@@ -136,17 +142,22 @@ impl Outcome {
         let scene = Scene::bundled(experiment.scene)?;
         share(0.0);
         let run = |energy: EnergyRun| {
-            let layers_differ = match energy.row {
-                Row::Rk4 => f64::NAN,
+            let layers_differ = match energy.method {
+                PaperMethod::Rk4 => f64::NAN,
                 row => layers_differ(&scene, row)?,
             };
-            Ok(Run { label: candidate(energy.row, Layer::Closed).label(), energy, layers_differ })
+            Ok(LongRun {
+                label: candidate(energy.method, Layer::Closed).label(),
+                energy,
+                layers_differ,
+            })
         };
-        let runs = experiment.energy(MAPS.into_iter().chain([Row::Rk4]))?.into_iter().map(run);
+        let runs =
+            experiment.energy(MAPS.into_iter().chain([PaperMethod::Rk4]))?.into_iter().map(run);
         let runs = runs.collect::<Result<Vec<_>, CliError>>()?;
         share(0.2);
         let mut candidates = Layer::ALL.map(|layer| MAPS.map(|row| candidate(row, layer))).concat();
-        candidates.push(candidate(Row::Rk4, Layer::Closed));
+        candidates.push(candidate(PaperMethod::Rk4, Layer::Closed));
         let effort = Effort {
             rounds: rounds(quick),
             longest: Duration::from_millis(if quick { 20 } else { 200 }),
@@ -209,7 +220,7 @@ fn rounds(quick: bool) -> u32 {
 }
 
 /// The relative difference of the momentum at the end of the scene's span between the layers.
-fn layers_differ(scene: &Scene, row: Row) -> Result<f64, CliError> {
+fn layers_differ(scene: &Scene, row: PaperMethod) -> Result<f64, CliError> {
     let mut ends = [[0.0; 3]; 2];
     for (layer, end) in Layer::ALL.into_iter().zip(&mut ends) {
         let model = scene.model_with(layer, &["momentum_body"])?;

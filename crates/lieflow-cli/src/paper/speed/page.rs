@@ -10,14 +10,15 @@ use crate::measure::Curve;
 use crate::paper::energy::energy_chart;
 use crate::paper::experiments::Experiment;
 use crate::paper::maps::MAPS_PAGE;
-use crate::paper::{printed, rows};
+use crate::paper::methods::PaperMethod;
+use crate::paper::printed;
 use crate::report;
 
 impl Speed {
     pub(super) fn page(&self) -> Page {
         let hold = if self.broken() == 0 { "hold" } else { "do NOT all hold" };
         let quick = if self.quick { " (--quick: fewer rounds, less certain)" } else { "" };
-        let [machine, (times, how)] = report::measured(rounds(self.quick));
+        let [machine, (times, how)] = report::conditions(rounds(self.quick));
         let mut facts = vec![
             machine,
             (times, how + quick),
@@ -105,7 +106,7 @@ impl Outcome {
     /// The time of a step with exp on both layers.
     fn cost_of_the_layers(&self) -> Option<(String, String)> {
         let of = |layer| {
-            let exp = candidate(rows::Row::Exp, layer);
+            let exp = candidate(PaperMethod::Exp, layer);
             let curve = self.curves.iter().find(|curve| curve.candidate == exp);
             curve.and_then(Curve::seconds_per_step)
         };
@@ -179,7 +180,7 @@ impl Outcome {
                 run.layers_differ,
             ];
             cells.extend(numbers.map(scientific));
-            cells.extend(printed(run.energy.row).into_iter().flatten().map(String::from));
+            cells.extend(printed(run.energy.method).into_iter().flatten().map(String::from));
             cells
         });
         let mut columns = Column::all(
@@ -193,7 +194,7 @@ impl Outcome {
                 "layers differ",
             ],
         );
-        if printed(rows::Row::Exp).is_some() {
+        if printed(PaperMethod::Exp).is_some() {
             columns.extend(["paper: end", "paper: mean"].map(Column::number));
         }
         let caption = format!(

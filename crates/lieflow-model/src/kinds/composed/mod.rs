@@ -6,19 +6,17 @@ mod system;
 use std::collections::{BTreeMap, BTreeSet};
 
 use lieflow::Error;
-use lieflow::catalog::MethodSpec;
 use lieflow::groups::{LieGroup, MEMBERSHIP, So3};
-use lieflow::scalar::Counted;
 use nalgebra::{Matrix3, Vector3};
 use serde::Deserialize;
 use toml::de::ValueDeserializer;
 
-use self::system::{Coupled, ON_PARTS, Part, Point, Space, counted};
+use self::system::{Coupled, ON_PARTS, Part, Point, Space};
 use super::flow;
-use super::old_system::System;
-use super::{Figure, KeyInfo, Kind, Law, ProblemSpec, QuantityInfo, Scale};
+use super::quantity::Quantity;
+use super::system::{Number, Start, Stated, System, quantities_of};
+use super::{Figure, Kind, Law, ProblemSpec, Scale, keys};
 use crate::model::Layer;
-use crate::operations::{Pace, operations_by};
 use crate::scene::formula::{Formula, Parameters, read_all};
 use crate::scene::values::{Numbers, Table};
 use crate::scene::{ReadError, Refusal, help_for};
@@ -30,60 +28,24 @@ pub(super) const KIND: Kind = Kind {
     name: "composed",
     equation: "ȧ = f × a for vectors, ȧ = f̂ a for rotations, ȧ = f for numbers, f of all parts",
     summary: "a system composed from parts, vectors on spheres, rotations and numbers, by formulas",
-    keys: &[
-        KeyInfo {
-            name: "parts",
-            meaning: "a list of {name, space, start, field}. Space is \"vector\", of the coordinates \
-                      NAME1 to NAME3; \"rotation\", of NAME11 to NAME33 row by row, its start optional, \
-                      the identity; or \"numbers\", of NAME1, NAME2, …, a single one NAME. Field is a \
-                      list of formulas in t, the coordinates of all parts and the parameters: the \
-                      angular velocity, in space, of a vector and of a rotation, the derivatives of \
-                      numbers",
-        },
-        KeyInfo { name: "parameters", meaning: "numbers by name, for the formulas; optional" },
-        KeyInfo {
-            name: "invariants",
-            meaning: "formulas by name, in the coordinates and the parameters, that the motion \
-                      keeps; optional",
-        },
-    ],
-    quantities: || {
-        vec![
-            QuantityInfo {
-                name: "state",
-                columns: &["…"],
-                meaning: "the coordinates of all parts, in the order of the scene",
-            },
-            QuantityInfo {
-                name: "vectors",
-                columns: &["…"],
-                meaning: "the coordinates of the vectors",
-            },
-            QuantityInfo {
-                name: "lengths",
-                columns: &["…"],
-                meaning: "the lengths of the vectors, NAME_length",
-            },
-            QuantityInfo {
-                name: "defects",
-                columns: &["…"],
-                meaning: "distances of g'g from the identity, of the rotations, NAME_defect",
-            },
-            QuantityInfo { name: "invariants", columns: &["…"], meaning: "what the scene names" },
-        ]
-    },
+    keys: Keys::INFO,
+    quantities: quantities_of::<Composed>,
     read,
 };
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Keys {
-    parts: Vec<PartKeys>,
+keys! { Keys {
+    parts: Vec<PartKeys> =
+        "a list of {name, space, start, field}. Space is \"vector\", of the coordinates NAME1 to NAME3; \
+         \"rotation\", of NAME11 to NAME33 row by row, its start optional, the identity; or \"numbers\", \
+         of NAME1, NAME2, …, a single one NAME. Field is a list of formulas in t, the coordinates of all \
+         parts and the parameters: the angular velocity, in space, of a vector and of a rotation, the \
+         derivatives of numbers",
     #[serde(default)]
-    parameters: Parameters,
+    parameters: Parameters = "numbers by name, for the formulas; optional",
     #[serde(default)]
-    invariants: BTreeMap<String, String>,
-}
+    invariants: BTreeMap<String, String> =
+        "formulas by name, in the coordinates and the parameters, that the motion keeps; optional",
+} }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -105,6 +67,8 @@ struct Composed {
     /// In the coordinates of all parts.
     invariants: Vec<(String, Formula)>,
 }
+
+type Q = Quantity<Composed>;
 
 fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
     let Keys { parts: keys, parameters, invariants } = Keys::deserialize(section)?;
@@ -137,7 +101,7 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
         let formula = Formula::read(&key, &text, &names)?;
         kept.push((name, formula));
     }
-    Ok(Box::new(Composed { parts, start, invariants: kept }))
+    Ok(Box::new(Stated(Composed { parts, start, invariants: kept })))
 }
 
 /// The spaces of the parts with their places, and the start.
@@ -234,7 +198,7 @@ fn names_of(
 }
 
 impl Composed {
-    /// Those of this space.
+    /// The parts of this space.
     fn of(&self, which: impl Fn(&Space) -> bool) -> impl Iterator<Item = &Part> {
         self.parts.iter().filter(move |part| which(&part.space))
     }
@@ -244,10 +208,73 @@ impl Composed {
     fn rotations(&self) -> impl Iterator<Item = &Part> {
         self.of(|space| matches!(space, Space::Rotation(_)))
     }
+    fn has_vectors(&self) -> bool {
+        self.vectors().next().is_some()
+    }
+    /// Why there are no vectors.
+    fn without_vectors(&self) -> Option<&'static str> {
+        (!self.has_vectors()).then_some("no part is a vector")
+    }
+}
+
+/// The names of the coordinates of these parts.
+fn coordinates<'a>(parts: impl Iterator<Item = &'a Part>) -> Vec<String> {
+    parts.flat_map(|part| part.space.coordinates(&part.name)).collect()
+}
+/// The names of what the action keeps of these parts.
+fn kept<'a>(parts: impl Iterator<Item = &'a Part>) -> Vec<String> {
+    parts.filter_map(|part| part.space.kept(&part.name)).collect()
 }
 
 impl System for Composed {
-    type Problem = flow::Composed<f64>;
+    type Problem<N: Number> = flow::Composed<N>;
+
+    const STATE: &'static [&'static str] = &["state"];
+    const QUANTITIES: &'static [Q] = &[
+        Q::numbers(
+            "state",
+            &["…"],
+            "the coordinates of all parts, in the order of the scene",
+            |composed, _, y, row| composed.parts.iter().for_each(|part| part.space.show(y, row)),
+        )
+        .with_columns(|composed| coordinates(composed.parts.iter())),
+        Q::numbers("vectors", &["…"], "the coordinates of the vectors", |_, _, y, row| {
+            row.extend(y.0.iter().flat_map(|x| x.iter()));
+        })
+        .with_columns(|composed| coordinates(composed.vectors()))
+        .missing_where(Composed::without_vectors),
+        Q::numbers(
+            "lengths",
+            &["…"],
+            "the lengths of the vectors, NAME_length",
+            |_, _, y, row| row.extend(y.0.iter().map(Vector3::norm)),
+        )
+        .with_columns(|composed| kept(composed.vectors()))
+        .kept(Law::by_the_action(2))
+        .missing_where(Composed::without_vectors),
+        Q::numbers(
+            "defects",
+            &["…"],
+            "distances of g'g from the identity, of the rotations, NAME_defect",
+            |_, _, (_, (rotations, _)), row| {
+                row.extend(rotations.iter().map(|g| So3::new().defect(g)));
+            },
+        )
+        .with_columns(|composed| kept(composed.rotations()))
+        .kept(Law::by_the_action(2).on_scale(Scale::One))
+        .missing_where(|composed| {
+            let without = composed.rotations().next().is_none();
+            without.then_some("no part is a rotation")
+        }),
+        Q::numbers("invariants", &["…"], "what the scene names", |composed, _, y, row| {
+            let mut values = Vec::new();
+            composed.parts.iter().for_each(|part| part.space.show(y, &mut values));
+            row.extend(composed.invariants.iter().map(|(_, formula)| formula.value(&values)));
+        })
+        .with_columns(|composed| composed.invariants.iter().map(|(name, _)| name.clone()).collect())
+        .kept(Law::by_the_flow(0))
+        .missing_where(|composed| composed.invariants.is_empty().then_some("the scene names none")),
+    ];
 
     fn kind(&self) -> &'static Kind {
         &KIND
@@ -255,15 +282,13 @@ impl System for Composed {
     fn layer(&self) -> Layer {
         Layer::Closed
     }
-    fn problem(&self) -> Result<(Self::Problem, Point), Error> {
-        let coupled = Coupled::new(self.parts.clone(), &self.start)?;
-        Ok((flow::Composed::new(coupled, ON_PARTS), self.start.clone()))
-    }
-    fn operations(&self, method: &MethodSpec, pace: Pace<'_>) -> Option<f64> {
-        let start = counted(&self.start);
-        let coupled = Coupled::<Counted>::new(self.parts.clone(), &start).ok()?;
-        let (flow, start) = (flow::Composed::new(coupled, ON_PARTS), start);
-        operations_by(method, &flow, start, pace)
+    fn problem<N: Number>(&self) -> Result<Start<flow::Composed<N>>, Error> {
+        let (vectors, (rotations, numbers)) = &self.start;
+        let vectors = vectors.iter().map(|x| x.map(N::lit)).collect();
+        let rotations = rotations.iter().map(|g| g.map(N::lit)).collect();
+        let start = (vectors, (rotations, numbers.iter().map(|&x| N::lit(x)).collect()));
+        let coupled = Coupled::new(self.parts.clone(), &start)?;
+        Ok((flow::Composed::new(coupled, ON_PARTS), start))
     }
     fn check_start(&self, t0: f64) -> Result<(), Refusal> {
         let mut at = vec![t0];
@@ -282,51 +307,10 @@ impl System for Composed {
             self.parts.iter().map(|part| format!("{} {}", part.space.describe(), part.name));
         parts.collect::<Vec<_>>().join(", ")
     }
-    fn state(&self) -> &'static [&'static str] {
-        &["state"]
-    }
-    fn laws(&self) -> Vec<Law> {
-        let mut laws = Vec::new();
-        if self.vectors().next().is_some() {
-            laws.push(Law::of_the_action("lengths", 2));
-        }
-        if self.rotations().next().is_some() {
-            laws.push(Law::of_the_action("defects", 2).on_scale(Scale::One));
-        }
-        if !self.invariants.is_empty() {
-            laws.push(Law::of_the_flow("invariants", 0));
-        }
-        laws
-    }
-    fn columns(&self, quantity: &QuantityInfo) -> Vec<String> {
-        let coordinates = |part: &Part| part.space.coordinates(&part.name);
-        let kept = |part: &Part| part.space.kept(&part.name);
-        match quantity.name {
-            "state" => self.parts.iter().flat_map(coordinates).collect(),
-            "vectors" => self.vectors().flat_map(coordinates).collect(),
-            "lengths" => self.vectors().filter_map(kept).collect(),
-            "defects" => self.rotations().filter_map(kept).collect(),
-            _ => self.invariants.iter().map(|(name, _)| name.clone()).collect(),
-        }
-    }
-    fn show(&self, quantity: &str, _: f64, y: &Point, row: &mut Vec<f64>) {
-        let (vectors, (rotations, _)) = y;
-        match quantity {
-            "state" => self.parts.iter().for_each(|part| part.space.show(y, row)),
-            "vectors" => row.extend(vectors.iter().flat_map(|x| x.iter())),
-            "lengths" => row.extend(vectors.iter().map(Vector3::norm)),
-            "defects" => row.extend(rotations.iter().map(|g| So3::new().defect(g))),
-            _ => {
-                let mut values = Vec::new();
-                self.parts.iter().for_each(|part| part.space.show(y, &mut values));
-                row.extend(self.invariants.iter().map(|(_, formula)| formula.value(&values)));
-            }
-        }
-    }
     fn figure(&self) -> Figure {
-        match self.vectors().next() {
-            Some(_) => Figure::Sphere("vectors"),
-            None => Figure::Lines("state"),
+        match self.has_vectors() {
+            true => Figure::Sphere("vectors"),
+            false => Figure::Lines("state"),
         }
     }
 }

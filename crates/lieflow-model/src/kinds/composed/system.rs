@@ -14,15 +14,12 @@ use core::ops::Range;
 use lieflow::Error;
 use lieflow::actions::{LeftTranslation, Linear, Pair};
 use lieflow::groups::{LieAlgebra, Power, Product, So3, Translations};
-use lieflow::problems::{LinearSpace, Problem};
-use lieflow::scalar::{Counted, Real};
+use lieflow::problems::Problem;
+use lieflow::scalar::Real;
 use nalgebra::{Matrix3, Vector3};
 
+use crate::kinds::system::Number;
 use crate::scene::formula::Formula;
-
-/// What coordinates and formulas are in.
-pub(super) trait Number: Real + Into<f64> + LinearSpace<Scalar = Self> {}
-impl<S: Real + Into<f64> + LinearSpace<Scalar = S>> Number for S {}
 
 type Powers<S> = Power<So3<S>>;
 /// SO(3)ⁿ × SO(3)ᵐ × T(k).
@@ -166,11 +163,4 @@ impl<S: Number> Problem for Coupled<S> {
             }
         }
     }
-}
-
-/// The same point on numbers that count.
-pub(super) fn counted((vectors, (rotations, numbers)): &Point) -> Point<Counted> {
-    let vectors = vectors.iter().map(|x| x.map(Counted)).collect();
-    let rotations = rotations.iter().map(|g| g.map(Counted)).collect();
-    (vectors, (rotations, numbers.iter().map(|&x| Counted(x)).collect()))
 }

@@ -27,7 +27,7 @@ impl Energy {
         Ok(Energy { value, gradient })
     }
 
-    /// That H and its derivatives are finite at the start.
+    /// Checks that H and its derivatives are finite at the start.
     ///
     /// # Errors
     /// A refusal of `hamiltonian`.

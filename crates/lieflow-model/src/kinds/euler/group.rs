@@ -1,80 +1,68 @@
-//! The same equations with the motion of g: (ġ, ṁ) = (g ∇H, ad*_{∇H} m); see
-//! [`EulerGroup`](lieflow::problems::EulerGroup). The momentum in space, Ad*_{g⁻¹} m, is kept by the action.
+//! Euler's equations on matrices with the motion of g: (ġ, ṁ) = (g ∇H, ad*_{∇H} m); see
+//! [`EulerGroup`](lieflow::problems::EulerGroup). The action keeps the momentum in space, Ad*_{g⁻¹} m.
 
-use faer::Mat;
 use faer::linalg::solvers::DenseSolveCore;
-use lieflow::Error;
 use lieflow::actions::{Action, Coadjoint};
-use lieflow::groups::{GroupMatrix, LieAlgebra, MatrixGroup};
-use lieflow::problems::{DynFlow, FromTheBody};
+use lieflow::groups::{GroupMatrix, LieAlgebra, LieGroup, MatrixGroup};
+use lieflow::problems::{Euler, FromTheBody};
 
-use super::KIND;
-use super::matrices::{EulerEquation, by_rows, names};
-use crate::kinds::old_system::System;
-use crate::kinds::{Figure, Kind, Law, QuantityInfo, Scale};
-use crate::model::Layer;
+use super::matrices::EulerEquation;
+use super::{KIND, OnDual, quantities};
+use crate::kinds::entries::row_columns;
+use crate::kinds::flow::FromBody;
+use crate::kinds::prelude::*;
 
-/// The equation with g.
+/// The equation with g, from g = 𝟙.
 #[derive(Clone, Debug)]
 pub(super) struct WithGroup(pub(super) EulerEquation);
 
+/// (g, m).
 type Point = (GroupMatrix, Mat<f64>);
 
-impl WithGroup {
-    fn in_space(&self, (g, m): &Point) -> Mat<f64> {
+impl OnDual for WithGroup {
+    type Dual = EulerEquation;
+    const WITHOUT_G: Option<&'static str> = None;
+
+    fn dual(&self) -> &EulerEquation {
+        &self.0
+    }
+    fn momentum((_, m): &Point) -> &Mat<f64> {
+        m
+    }
+    fn group_columns(&self) -> [Vec<String>; 2] {
+        let n = self.0.momentum.nrows();
+        ["g", "s"].map(|letter| row_columns(letter, n, n))
+    }
+    fn group((g, _): &Point) -> Option<&GroupMatrix> {
+        Some(g)
+    }
+    fn in_space(&self, (g, m): &Point) -> Option<Mat<f64>> {
         let (group, mut out) = (&self.0.group, m.clone());
         let mut work = Action::<MatrixGroup>::work(&Coadjoint, group);
         Coadjoint.act(group, g, m, &mut out, &mut work);
-        out
+        Some(out)
+    }
+    /// |g| |g⁻¹| |m|.
+    fn in_space_terms((g, m): &Point) -> f64 {
+        g.norm_l2() * g.partial_piv_lu().inverse().norm_l2() * m.norm_l2()
     }
 }
 
 impl System for WithGroup {
-    type Problem = DynFlow<MatrixGroup, FromTheBody>;
+    type Problem<N: Number> = FromBody;
+
+    const STATE: &'static [&'static str] = &["momentum", "group"];
+    const QUANTITIES: &'static [Quantity<Self>] = &quantities();
 
     fn kind(&self) -> &'static Kind {
         &KIND
     }
-    fn layer(&self) -> Layer {
-        Layer::General
-    }
-    fn problem(&self) -> Result<(Self::Problem, Point), Error> {
-        Ok(self.0.flow_with_group())
+    fn problem<N: Number>(&self) -> Result<Start<FromBody>, Error> {
+        let EulerEquation { group, energy, momentum } = &self.0;
+        let system = Euler::new(group.clone(), energy.clone()).with_group();
+        Ok((FromBody::new(system, FromTheBody), (group.identity(), momentum.clone())))
     }
     fn modelled(&self) -> String {
-        format!("{} and g in {}", System::modelled(&self.0), self.0.group.name())
-    }
-    fn state(&self) -> &'static [&'static str] {
-        &["momentum", "group"]
-    }
-    fn laws(&self) -> Vec<Law> {
-        let mut laws = System::laws(&self.0);
-        laws.push(Law::of_the_action("momentum_space", 0).on_scale(Scale::Terms));
-        laws
-    }
-    fn columns(&self, quantity: &QuantityInfo) -> Vec<String> {
-        let n = self.0.momentum.nrows();
-        match quantity.name {
-            "group" => names("g", n),
-            "momentum_space" => names("s", n),
-            _ => System::columns(&self.0, quantity),
-        }
-    }
-    fn show(&self, quantity: &str, t: f64, y: &Point, row: &mut Vec<f64>) {
-        match quantity {
-            "group" => by_rows(&y.0, row),
-            "momentum_space" => by_rows(&self.in_space(y), row),
-            _ => System::show(&self.0, quantity, t, &y.1, row),
-        }
-    }
-    /// |g| |g⁻¹| |m| of the momentum in space.
-    fn size(&self, quantity: &str, (g, m): &Point) -> f64 {
-        match quantity {
-            "momentum_space" => g.norm_l2() * g.partial_piv_lu().inverse().norm_l2() * m.norm_l2(),
-            _ => System::size(&self.0, quantity, m),
-        }
-    }
-    fn figure(&self) -> Figure {
-        Figure::Lines("momentum")
+        format!("{} and g in {}", self.0.modelled(), self.0.group.name())
     }
 }

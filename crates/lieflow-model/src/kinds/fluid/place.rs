@@ -1,4 +1,4 @@
-//! The surface of a fluid as one type, so that both share what is compiled for a problem.
+//! The surfaces of a fluid as one type: they share what is compiled for a problem.
 
 use faer::Mat;
 use lieflow::groups::ComplexMatrix;
@@ -27,7 +27,7 @@ macro_rules! on_each {
 }
 
 impl Place {
-    /// What is drawn below the field.
+    /// The shape that the field is drawn on.
     pub(super) fn ground(&self) -> Ground {
         match self {
             Place::Sphere(_) => Ground::Sphere,
@@ -73,7 +73,7 @@ impl Place {
     }
 }
 
-/// One of every pair m, −m of wave vectors, by m₁ and then by m₂.
+/// One wave vector of each pair m, −m, by m₁ and then by m₂.
 fn half_plane(torus: &Torus) -> impl Iterator<Item = [i32; 2]> {
     let max = torus.wave_number_max() as i32;
     let all = (0..=max).flat_map(move |k| (-max..=max).map(move |l| [k, l]));

@@ -1,40 +1,26 @@
-//! The keys of a fluid: its surface, and the vorticity that a run starts from, which is random or the sum of
-//! jets, modes and vortices.
+//! The vorticity that a run starts from: random, or the sum of jets, modes and vortices.
 
 use core::f64::consts::{FRAC_PI_2, TAU};
 
-use lieflow::Error;
 use lieflow::groups::ComplexMatrix;
 use lieflow::problems::{LinearSpace, Sphere, Torus, Vortex, Zeitlin};
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
-use serde::Deserialize;
 
+use super::Keys;
 use super::place::Place;
-use crate::scene::values::{List, Real, Reals, Whole};
-use crate::scene::{Refusal, help_for};
+use crate::kinds::prelude::*;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Keys {
-    surface: String,
-    n: Whole<2>,
-    random: Option<Random>,
-    jets: Option<Vec<Reals<2>>>,
-    modes: Option<Vec<List>>,
-    vortices: Option<Vec<VortexKeys>>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Random {
+pub(super) struct Random {
     seed: Whole<0>,
     below: Whole<2>,
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct VortexKeys {
+pub(super) struct VortexKeys {
     latitude: Option<Real>,
     longitude: Option<Real>,
     x: Option<Real>,
@@ -51,9 +37,7 @@ impl Keys {
     pub(super) fn resolve(self) -> Result<(Place, ComplexMatrix), Refusal> {
         let surfaces = ["sphere", "torus"];
         if !surfaces.contains(&self.surface.as_str()) {
-            let message = format!("unknown surface `{}`", self.surface);
-            let help = Some(help_for(&self.surface, &surfaces));
-            return Err(Refusal { help, ..Refusal::at("surface", message) });
+            return Err(Refusal::unknown("surface", &self.surface, &surfaces));
         }
         if self.n.0 > N_MAX {
             let message = format!("n = {}, expected at most {N_MAX}", self.n.0);
@@ -111,7 +95,7 @@ impl Keys {
     }
 }
 
-/// What is wrong, at an entry of a list.
+/// A refusal of an entry of a list.
 fn at(key: &str, i: usize) -> impl Fn(String) -> Refusal {
     move |message| Refusal::at(format!("{key}[{i}]"), message)
 }

@@ -1,22 +1,20 @@
-//! The equation: its field at a point, what it keeps, and the problem that it is.
+//! The equation of a scene: its field, its problem and its quantities.
 
 use std::sync::Arc;
 
-use faer::Mat;
-use lieflow::Error;
 use lieflow::actions::Action;
 use lieflow::groups::{AlgebraMatrix, LieAlgebra, LieGroup, MatrixGroup};
 use lieflow::maps::{CoordinateMap, Exp};
-use lieflow::problems::{Flow, Problem};
+use lieflow::problems::Flow;
 
 use super::{ACTIONS, KIND, NAMED_MAX};
 use crate::kinds::algebra::{Algebra, outside};
+use crate::kinds::entries::{
+    numbered, row_columns, rows, size_of_traces, traces, upper, upper_columns,
+};
 use crate::kinds::flow::OnMatrices;
 use crate::kinds::matrix::MatrixAction;
-use crate::kinds::old_system::System;
-use crate::kinds::{Figure, Kind, Law, QuantityInfo, Scale};
-use crate::model::Layer;
-use crate::scene::Refusal;
+use crate::kinds::prelude::*;
 use crate::scene::formula::Formula;
 
 /// The equation with its initial point.
@@ -32,29 +30,25 @@ pub(super) struct Equation {
     pub(super) start: Mat<f64>,
 }
 
-/// What f may have outside of the algebra at the points where it is looked at, relative to its size.
+/// The distance from the algebra that f may have at the points where it is checked, relative to its size.
 const IN_THE_ALGEBRA: f64 = 1e-8;
 
 impl Equation {
-    /// f(t, y) as it is stated.
+    /// v ← f(t, y) by the formulas.
     fn stated(&self, t: f64, y: &Mat<f64>, v: &mut Mat<f64>) {
-        let (rows, k) = (y.nrows(), y.ncols());
-        let mut values = [0.0; 1 + NAMED_MAX * NAMED_MAX];
-        values[0] = t;
-        for (i, j) in (0..rows).flat_map(|i| (0..k).map(move |j| (i, j))) {
-            values[1 + i * k + j] = y[(i, j)];
-        }
+        let mut values = [t; 1 + NAMED_MAX * NAMED_MAX];
+        values[1..].iter_mut().zip(rows(y)).for_each(|(value, y)| *value = y);
         let n = self.group.n();
         for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))) {
             v[(i, j)] = self.field[i * n + j].value(&values);
         }
     }
-    /// Its part in 𝔤.
+    /// v ← the projection of f(t, y) on 𝔤.
     fn projected(&self, t: f64, y: &Mat<f64>, v: &mut Mat<f64>) {
         self.stated(t, y, v);
         self.algebra.project(v);
     }
-    /// A point of M beside the start: exp of an element of 𝔤 that is nothing special, applied to it.
+    /// A point of M beside the start: Λ(exp v, start) for a generic v ∈ 𝔤.
     fn beside_the_start(&self) -> Option<Mat<f64>> {
         let n = self.group.n();
         let mut v = self.group.zero();
@@ -70,63 +64,99 @@ impl Equation {
     fn form(&self, y: &Mat<f64>) -> Option<Mat<f64>> {
         Some(y.transpose() * self.group.m()? * y)
     }
-    fn keeps_a_form(&self) -> bool {
-        !matches!(self.algebra, Algebra::Gl | Algebra::Sl)
-    }
-    /// The invariant that is reported.
+    /// The quantity that the action keeps.
     fn kept(&self) -> Option<&'static str> {
+        let keeps_a_form = !matches!(self.algebra, Algebra::Gl | Algebra::Sl);
         match self.action {
             MatrixAction::Conjugation | MatrixAction::Coadjoint => Some("traces"),
             // Each Lagrangian subspace can be moved to each.
             MatrixAction::Lagrangian => None,
-            _ if !self.keeps_a_form() => None,
-            MatrixAction::Translation => Some("group_defect"),
-            _ => Some("form"),
+            MatrixAction::Translation => keeps_a_form.then_some("group_defect"),
+            MatrixAction::Linear => keeps_a_form.then_some("form"),
         }
     }
-}
-
-impl Problem for Equation {
-    type Group = MatrixGroup;
-    type Action = MatrixAction;
-    type Work = ();
-
-    fn group(&self) -> &MatrixGroup {
-        &self.group
-    }
-    fn action(&self) -> &MatrixAction {
-        &self.action
-    }
-    fn work(&self) {}
-    fn f(&self, t: f64, y: &Mat<f64>, v: &mut AlgebraMatrix, _: &mut ()) {
-        self.projected(t, y, v);
+    fn unless_kept(&self, name: &str, why: &'static str) -> Option<&'static str> {
+        (self.kept() != Some(name)).then_some(why)
     }
 }
+
+type Q = Quantity<Equation>;
 
 impl System for Equation {
-    type Problem = OnMatrices;
+    type Problem<N: Number> = OnMatrices;
+
+    const STATE: &'static [&'static str] = &["point"];
+    const QUANTITIES: &'static [Q] = &[
+        Q::numbers("point", &["y11", "…", "ynk"], "the point, row by row", |_, _, y, row| {
+            row.extend(rows(y));
+        })
+        .with_columns(|equation| row_columns("y", equation.start.nrows(), equation.start.ncols())),
+        Q::numbers(
+            "column",
+            &["y11", "…", "yn1"],
+            "the first column of the point: where the first direction goes",
+            |_, _, y, row| row.extend(y.col_as_slice(0)),
+        )
+        .with_columns(|equation| row_columns("y", equation.start.nrows(), 1)),
+        Q::number(
+            "group_defect",
+            "distance of y'My from M, for translation on so, sp and so(p,q)",
+            |equation, _, y| {
+                let away = equation.form(y).zip(equation.group.m());
+                away.map_or(f64::NAN, |(form, m)| (form - m).norm_l2())
+            },
+        )
+        .kept(Law::by_the_action(2))
+        .in_terms(|_, y| y.squared_norm_l2())
+        .missing_where(|equation| {
+            equation.unless_kept("group_defect", "it is for translation on so, sp and so(p,q)")
+        }),
+        Q::numbers(
+            "form",
+            &["f11", "…", "fkk"],
+            "y'My, on and above the diagonal, for the linear action of so, sp and so(p,q)",
+            |equation, _, y, row| row.extend(equation.form(y).iter().flat_map(upper)),
+        )
+        .with_columns(|equation| upper_columns("f", equation.start.ncols()))
+        .kept(Law::by_the_action(2))
+        .in_terms(|_, y| y.squared_norm_l2())
+        .missing_where(|equation| {
+            equation.unless_kept("form", "it is for the linear action of so, sp and so(p,q)")
+        }),
+        Q::numbers(
+            "traces",
+            &["tr1", "…", "trn"],
+            "traces of the powers of the point, for conjugation and coadjoint",
+            |_, _, y, row| row.extend(traces(y)),
+        )
+        .with_columns(|equation| numbered("tr", equation.start.nrows()))
+        .kept(Law::by_the_action(0))
+        .in_terms(|_, y| size_of_traces(y))
+        .missing_where(|equation| {
+            equation.unless_kept("traces", "it is for conjugation and coadjoint")
+        }),
+    ];
 
     fn kind(&self) -> &'static Kind {
         &KIND
     }
-    fn layer(&self) -> Layer {
-        Layer::General
-    }
-    fn problem(&self) -> Result<(Self::Problem, Mat<f64>), Error> {
-        let (action, start) = (self.action, self.start.clone());
-        if !self.linear {
-            return Ok((OnMatrices::new(self.clone(), action), start));
-        }
-        let (this, like) = (self.clone(), start.clone());
-        let a = move |t: f64, v: &mut AlgebraMatrix| this.projected(t, &like, v);
-        Ok((OnMatrices::linear(Flow::of_time(self.group.clone(), action, a), action), start))
+    fn problem<N: Number>(&self) -> Result<Start<OnMatrices>, Error> {
+        let (this, group, action) = (self.clone(), self.group.clone(), self.action);
+        let problem = if self.linear {
+            let a = move |t: f64, v: &mut AlgebraMatrix| this.projected(t, &this.start, v);
+            OnMatrices::linear(Flow::of_time(group, action, a), action)
+        } else {
+            let f = move |t, y: &Mat<f64>, v: &mut AlgebraMatrix| this.projected(t, y, v);
+            OnMatrices::new(Flow::new(group, action, f), action)
+        };
+        Ok((problem, self.start.clone()))
     }
     fn check_start(&self, t0: f64) -> Result<(), Refusal> {
         let n = self.group.n();
         let mut f = Mat::zeros(n, n);
         let beside = self.beside_the_start();
         let first = (t0, &self.start, "at the start");
-        // Another time too: a field that leaves the algebra is found unless it has no value there.
+        // At another time too. A field that has no value there is not refused.
         let second = beside.iter().map(|y| (t0 + 0.5, y, "beside the start"));
         for (t, y, place) in [first].into_iter().chain(second) {
             self.stated(t, y, &mut f);
@@ -152,56 +182,6 @@ impl System for Equation {
         let action = ACTIONS.iter().find(|(_, action)| *action == self.action);
         let name = action.map_or("", |(name, _)| name);
         format!("{rows}×{columns} matrix, {} by {name}", self.group.name())
-    }
-    fn state(&self) -> &'static [&'static str] {
-        &["point"]
-    }
-    fn laws(&self) -> Vec<Law> {
-        let degree = |kept| if kept == "traces" { 0 } else { 2 };
-        let law = |kept| Law::of_the_action(kept, degree(kept)).on_scale(Scale::Terms);
-        self.kept().map(law).into_iter().collect()
-    }
-    fn columns(&self, quantity: &QuantityInfo) -> Vec<String> {
-        let (n, k) = (self.start.nrows(), self.start.ncols());
-        match quantity.name {
-            "point" => (1..=n).flat_map(|i| (1..=k).map(move |j| format!("y{i}{j}"))).collect(),
-            "column" => (1..=n).map(|i| format!("y{i}1")).collect(),
-            name if self.kept() != Some(name) => Vec::new(),
-            "form" => (1..=k).flat_map(|i| (i..=k).map(move |j| format!("f{i}{j}"))).collect(),
-            "traces" => (1..=n).map(|k| format!("tr{k}")).collect(),
-            other => vec![other.into()],
-        }
-    }
-    fn show(&self, quantity: &str, _: f64, y: &Mat<f64>, row: &mut Vec<f64>) {
-        let (n, k) = (y.nrows(), y.ncols());
-        match quantity {
-            "point" => row.extend((0..n).flat_map(|i| (0..k).map(move |j| y[(i, j)]))),
-            "column" => row.extend((0..n).map(|i| y[(i, 0)])),
-            name if self.kept() != Some(name) => {}
-            "traces" => {
-                let mut power = Mat::<f64>::identity(n, n);
-                for _ in 0..n {
-                    power = &power * y;
-                    row.push((0..n).map(|i| power[(i, i)]).sum());
-                }
-            }
-            "form" => {
-                let form = self.form(y).unwrap_or_else(|| Mat::full(k, k, f64::NAN));
-                row.extend((0..k).flat_map(|i| (i..k).map(move |j| (i, j))).map(|at| form[at]));
-            }
-            _ => {
-                let away = self.form(y).zip(self.group.m()).map(|(form, m)| (form - m).norm_l2());
-                row.push(away.unwrap_or(f64::NAN));
-            }
-        }
-    }
-    /// |y|ⁿ, or |y|²: a bound of all that is summed.
-    fn size(&self, quantity: &str, y: &Mat<f64>) -> f64 {
-        let size = y.norm_l2();
-        match quantity {
-            "traces" => size.max(1.0).powi(y.nrows() as i32),
-            _ => size * size,
-        }
     }
     fn figure(&self) -> Figure {
         match self.action {

@@ -1,4 +1,4 @@
-//! `kind = "matrix-ode"`: a user's own equation, ẏ = λ_*(f(t, y))(y), with f(t, y) ∈ 𝔤 in formulas.
+//! `kind = "matrix-ode"`: an equation ẏ = λ_*(f(t, y))(y) with f(t, y) ∈ 𝔤 in formulas.
 //!
 //! | action | ẏ | kept by the action |
 //! |---|---|---|
@@ -8,92 +8,46 @@
 //! | coadjoint | y fᵀ − fᵀ y | tr yᵏ |
 //! | lagrangian | c + dy − ya − yby, f = \[a b; c d\] in sp(2m), y symmetric | |
 //!
-//! M is that of the group; GL(n) and SL(n) have none. The equation is that of the part of f in 𝔤: a f
-//! that is not in 𝔤 at the start, or at a point of M beside it, is refused, and later the projection
-//! takes rounding away. Where f depends on t alone the equation is of linear type, and Magnus methods fit.
+//! M is that of the group; GL(n) and SL(n) have none. The projection of f on 𝔤 is integrated: it takes rounding
+//! away. An f that is not in 𝔤 at the start, or at a point beside it, is refused. Where f depends on t alone the
+//! equation is of linear type, and Magnus methods fit.
 
 mod equation;
 
-use faer::Mat;
 use lieflow::groups::MatrixGroup;
-use serde::Deserialize;
-use toml::de::ValueDeserializer;
 
 use self::equation::Equation;
 use super::algebra::{ALGEBRAS, Algebra};
+use super::entries::{check_symmetric, row_columns};
 use super::matrix::MatrixAction;
-use super::{KeyInfo, Kind, PARAMETERS, ProblemSpec, QuantityInfo};
+use super::prelude::*;
 use crate::scene::formula::{Parameters, read_all};
-use crate::scene::values::Table;
-use crate::scene::{ReadError, Refusal, help_for};
 
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {
     name: "matrix-ode",
     equation: "ẏ = f y (translation, linear), f y − y f (conjugation), y fᵀ − fᵀ y (coadjoint), c + d y − y a − y b y \
                (lagrangian, f = [a b; c d]), f(t, y) in the algebra",
-    summary: "an equation of one's own on matrices, by the action of a matrix group",
-    keys: &[
-        KeyInfo { name: "group", meaning: "\"so\", \"sl\", \"gl\", \"sp\" or \"so(p,q)\"" },
-        KeyInfo {
-            name: "action",
-            meaning: "\"translation\", \"linear\", \"conjugation\", \"coadjoint\" or, of sp, \"lagrangian\"; optional: \
-                      translation",
-        },
-        KeyInfo {
-            name: "field",
-            meaning: "n rows of n formulas, n at most 9: f in the algebra, by the time t and the entries y11, \
-                      y12, ... of the point",
-        },
-        KeyInfo {
-            name: "start",
-            meaning: "initial point, n rows, of n numbers but for linear; for translation in the group and \
-                      optional, the identity; for lagrangian symmetric, n/2 rows of n/2",
-        },
-        PARAMETERS,
-    ],
-    quantities: || {
-        vec![
-            QuantityInfo {
-                name: "point",
-                columns: &["y11", "…", "ynk"],
-                meaning: "the point, row by row",
-            },
-            QuantityInfo {
-                name: "column",
-                columns: &["y11", "…", "yn1"],
-                meaning: "the first column of the point: where the first direction goes",
-            },
-            QuantityInfo {
-                name: "group_defect",
-                columns: &["group_defect"],
-                meaning: "distance of y'My from M, for translation on so, sp and so(p,q)",
-            },
-            QuantityInfo {
-                name: "form",
-                columns: &["f11", "…", "fkk"],
-                meaning: "y'My, on and above the diagonal, for the linear action of so, sp and so(p,q)",
-            },
-            QuantityInfo {
-                name: "traces",
-                columns: &["tr1", "…", "trn"],
-                meaning: "traces of the powers of the point, for conjugation and coadjoint",
-            },
-        ]
-    },
+    summary: "an equation on matrices in formulas, by the action of a matrix group",
+    keys: Keys::INFO,
+    quantities: quantities_of::<Equation>,
     read,
 };
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Keys {
-    group: String,
-    action: Option<String>,
-    field: Vec<Vec<String>>,
-    start: Option<Table>,
+keys! { Keys {
+    group: String = "\"so\", \"sl\", \"gl\", \"sp\" or \"so(p,q)\"",
+    action: Option<String> =
+        "\"translation\", \"linear\", \"conjugation\", \"coadjoint\" or, of sp, \"lagrangian\"; optional: \
+         translation",
+    field: Vec<Vec<String>> =
+        "n rows of n formulas, n at most 9: f in the algebra, by the time t and the entries y11, y12, ... of the \
+         point",
+    start: Option<Table> =
+        "initial point, n rows, of n numbers but for linear; for translation in the group and optional, the \
+         identity; for lagrangian symmetric, n/2 rows of n/2",
     #[serde(default)]
-    parameters: Parameters,
-}
+    parameters: Parameters = PARAMETERS.meaning,
+} }
 
 const ACTIONS: [(&str, MatrixAction); 5] = [
     ("translation", MatrixAction::Translation),
@@ -109,12 +63,12 @@ const NAMED_MAX: usize = 9;
 fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
     let keys = Keys::deserialize(section)?;
     let algebra = Algebra::named(&keys.group)
-        .ok_or_else(|| Algebra::unknown("group", &keys.group, &ALGEBRAS))?;
+        .ok_or_else(|| Refusal::unknown("group", &keys.group, &ALGEBRAS))?;
     let action = keys.action.as_deref().unwrap_or("translation");
-    let (_, action) = *ACTIONS.iter().find(|(name, _)| *name == action).ok_or_else(|| {
-        let refusal = Refusal::at("action", format!("unknown action `{action}`"));
-        Refusal { help: Some(help_for(action, &ACTIONS.map(|(name, _)| name))), ..refusal }
-    })?;
+    let (_, action) = *ACTIONS
+        .iter()
+        .find(|(name, _)| *name == action)
+        .ok_or_else(|| Refusal::unknown("action", action, &ACTIONS.map(|(name, _)| name)))?;
     let n = keys.field.len();
     if !(1..=NAMED_MAX).contains(&n) {
         let message = format!("found {n} rows, expected 1 to {NAMED_MAX}");
@@ -129,8 +83,8 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
         return Err(Refusal::at("action", "lagrangian is an action of sp").into());
     }
     let start = start(algebra, &group, action, keys.start)?;
-    let entry = |i: usize| (1..=start.ncols()).map(move |j| format!("y{i}{j}"));
-    let variables = ["t".to_owned()].into_iter().chain((1..=start.nrows()).flat_map(entry));
+    let entries = row_columns("y", start.nrows(), start.ncols());
+    let variables = ["t".to_owned()].into_iter().chain(entries);
     let names = keys.parameters.names("field", variables)?;
     let mut field = Vec::new();
     for (i, row) in keys.field.iter().enumerate() {
@@ -138,7 +92,8 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
         field.extend(read.map_err(|refusal| of_row(i, refusal))?);
     }
     let linear = (1..names.variables().len()).all(|y| field.iter().all(|f| !f.uses(y)));
-    Ok(Box::new(Equation { algebra, group, action, field: field.into(), linear, start }))
+    let field = field.into();
+    Ok(Box::new(Stated(Equation { algebra, group, action, field, linear, start })))
 }
 
 /// `field[j]` of row i is `field[i,j]`.
@@ -172,8 +127,8 @@ fn start(
             "found {found} rows of {of} numbers, expected {rows} rows of {columns} as field has them"
         )));
     }
-    if action == MatrixAction::Lagrangian && start != start.transpose() {
-        return Err(refused("it is not symmetric".into()));
+    if action == MatrixAction::Lagrangian {
+        check_symmetric("start", &start, 0.0)?;
     }
     if action == MatrixAction::Translation {
         let on_group = group.element(start.clone());
@@ -186,5 +141,5 @@ fn start(
     Ok(start)
 }
 
-/// How far the determinant of a start in SL(n) may be from 1.
+/// The distance from 1 that the determinant of a start in SL(n) may have.
 const ON_THE_GROUP: f64 = 1e-10;

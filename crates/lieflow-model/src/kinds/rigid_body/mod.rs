@@ -12,9 +12,13 @@ use nalgebra::{Matrix3, UnitQuaternion, Vector3, Vector4};
 use serde::Deserialize;
 use toml::de::ValueDeserializer;
 
-use self::model::RigidBodyModel;
+use self::model::{
+    Attitude, AttitudeMatrix, Body, ByMethod, MomentumMatrix, MomentumOnly, Quaternion, State,
+};
 use self::shape::Shape;
-use super::{Figure, KeyInfo, Kind, Law, ProblemSpec, QuantityInfo, Scale};
+use super::body::{ATTITUDE, attitude, check_each, check_unit, momentum_body};
+use super::system::{Stated, System, quantities_of};
+use super::{Figure, Kind, Law, ProblemSpec, keys};
 use crate::model::{Layer, Model};
 use crate::scene::values::{Diagonal, Reals, Rows};
 use crate::scene::{Either, ReadError, Refusal, exactly_one};
@@ -24,91 +28,28 @@ pub(super) const KIND: Kind = Kind {
     name: "rigid-body",
     equation: "ṁ = m × ω, m = Jω, in the body; ġ = gω̂ takes the body to space",
     summary: "the free rigid body, by its momentum on so(3)*, its attitude on SO(3) or its quaternion",
-    keys: &[
-        KeyInfo {
-            name: "inertia",
-            meaning: "principal moments of inertia [J1, J2, J3], or the tensor of inertia as three rows",
-        },
-        KeyInfo { name: "inverse_inertia", meaning: "their reciprocals, instead of inertia" },
-        KeyInfo {
-            name: "shape",
-            meaning: "instead of inertia: {kind = \"box\", mass, sides = [a, b, c]}, {kind = \
-                      \"ellipsoid\", mass, semi_axes}, {kind = \"cylinder\", mass, radius, height}",
-        },
-        KeyInfo { name: "omega_body", meaning: "initial angular velocity in the body" },
-        KeyInfo {
-            name: "momentum_body",
-            meaning: "initial angular momentum in the body, instead of omega_body",
-        },
-        KeyInfo {
-            name: "attitude",
-            meaning: "initial rotation from body to space, three rows; optional, the identity",
-        },
-        KeyInfo {
-            name: "quaternion",
-            meaning: "the same as a unit quaternion [w, x, y, z], instead of attitude: it is then \
-                      integrated as one",
-        },
-    ],
-    quantities: || QUANTITIES.to_vec(),
+    keys: Keys::INFO,
+    quantities: quantities_of::<Body<Attitude>>,
     read,
 };
 
-const QUANTITIES: &[QuantityInfo] = &[
-    QuantityInfo {
-        name: "momentum_body",
-        columns: &["m1", "m2", "m3"],
-        meaning: "angular momentum in the body",
-    },
-    QuantityInfo {
-        name: "omega_body",
-        columns: &["w1", "w2", "w3"],
-        meaning: "angular velocity in the body",
-    },
-    QuantityInfo {
-        name: "attitude",
-        columns: &["g11", "g12", "g13", "g21", "g22", "g23", "g31", "g32", "g33"],
-        meaning: "rotation from body to space, row by row; integrated only when asked for",
-    },
-    QuantityInfo {
-        name: "quaternion",
-        columns: &["qw", "qx", "qy", "qz"],
-        meaning: "the same as a unit quaternion, real part first, x -> q x q*; with the key quaternion \
-                  it is what is integrated, and without it has w >= 0",
-    },
-    QuantityInfo { name: "energy", columns: &["energy"], meaning: "kinetic energy" },
-    QuantityInfo {
-        name: "momentum_norm",
-        columns: &["momentum_norm"],
-        meaning: "length of the angular momentum",
-    },
-    QuantityInfo {
-        name: "attitude_defect",
-        columns: &["attitude_defect"],
-        meaning: "distance of gᵀg from the identity; needs the attitude, which is then integrated",
-    },
-    QuantityInfo {
-        name: "quaternion_defect",
-        columns: &["quaternion_defect"],
-        meaning: "distance of the quaternion's square from 1",
-    },
-];
+keys! { Keys {
+    inertia: Option<Diagonal> =
+        "principal moments of inertia [J1, J2, J3], or the tensor of inertia as three rows",
+    inverse_inertia: Option<Reals<3>> = "their reciprocals, instead of inertia",
+    shape: Option<Shape> =
+        "instead of inertia: {kind = \"box\", mass, sides = [a, b, c]}, {kind = \"ellipsoid\", mass, \
+         semi_axes}, {kind = \"cylinder\", mass, radius, height}",
+    omega_body: Option<Reals<3>> = "initial angular velocity in the body",
+    momentum_body: Option<Reals<3>> = "initial angular momentum in the body, instead of omega_body",
+    attitude: Option<Rows<3>> = ATTITUDE,
+    quaternion: Option<Reals<4>> =
+        "the same as a unit quaternion [w, x, y, z], instead of attitude: it is then integrated as one",
+} }
 
 /// Do these quantities need the attitude?
 fn needs_attitude(quantities: &[&str]) -> bool {
     quantities.iter().any(|name| name.starts_with("attitude") || name.starts_with("quaternion"))
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Keys {
-    inertia: Option<Diagonal>,
-    inverse_inertia: Option<Reals<3>>,
-    shape: Option<Shape>,
-    omega_body: Option<Reals<3>>,
-    momentum_body: Option<Reals<3>>,
-    attitude: Option<Rows<3>>,
-    quaternion: Option<Reals<4>>,
 }
 
 /// A free rigid body with its initial state.
@@ -139,25 +80,9 @@ impl RigidBodySpec {
         attitude: Matrix3<f64>,
     ) -> Result<Self, Error> {
         RigidBody::<f64>::new(inertia)?;
-        check_each("momentum_body", momentum_body, "a finite number", f64::is_finite)?;
+        check_each("momentum_body", &momentum_body, "a finite number", f64::is_finite)?;
         So3::new().check_element("attitude", &attitude, MEMBERSHIP)?;
         Ok(RigidBodySpec { inertia, momentum_body, attitude, quaternion: None, axes: None })
-    }
-}
-
-fn check_each(
-    arg: &str,
-    values: [f64; 3],
-    expected: &str,
-    good: impl Fn(f64) -> bool,
-) -> Result<(), Error> {
-    match values.iter().position(|&x| !good(x)) {
-        None => Ok(()),
-        Some(i) => Err(Error::OutOfRange {
-            arg: format!("{arg}[{i}]"),
-            value: values[i],
-            expected: expected.into(),
-        }),
     }
 }
 
@@ -186,24 +111,15 @@ fn principal(keys: &Keys) -> Result<Principal, ReadError> {
         }
         Either::Second(inverse) => {
             let range = "a finite number > 0 with a finite reciprocal";
-            check_each("inverse_inertia", inverse.0, range, |x| x > 0.0 && (1.0 / x).is_normal())?;
+            check_each("inverse_inertia", &inverse.0, range, |x| x > 0.0 && (1.0 / x).is_normal())?;
             Ok((inverse.0.map(f64::recip), None))
         }
     }
 }
 
-/// The length of a quaternion may differ from 1 by the digits that it is written with.
-const UNIT: f64 = 1e-6;
-
 fn unit(quaternion: Reals<4>) -> Result<UnitQuaternion<f64>, Refusal> {
-    let q = Vector4::from(quaternion.0);
-    match (q.norm() - 1.0).abs() <= UNIT {
-        true => Ok(quaternion_from_wxyz(quaternion.0)?),
-        false => {
-            let message = format!("its length is {}, expected 1", q.norm());
-            Err(Refusal::at("quaternion", message))
-        }
-    }
+    check_unit("quaternion", Vector4::from(quaternion.0).norm())?;
+    Ok(quaternion_from_wxyz(quaternion.0)?)
 }
 
 /// The rotation of a quaternion.
@@ -214,39 +130,14 @@ fn rotation(q: &UnitQuaternion<f64>) -> Matrix3<f64> {
 fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
     let keys = Keys::deserialize(section)?;
     let (inertia, axes) = principal(&keys)?;
-    let along = |x: [f64; 3]| match &axes {
-        Some(axes) => axes.tr_mul(&Vector3::from(x)).into(),
-        None => x,
-    };
-    let momentum = match exactly_one(
-        ("omega_body", keys.omega_body),
-        ("momentum_body", keys.momentum_body),
-    )? {
-        Either::Second(momentum) => along(momentum.0),
-        Either::First(omega) => {
-            let omega: [f64; 3] = along(omega.0);
-            let momentum: [f64; 3] = core::array::from_fn(|i| inertia[i] * omega[i]);
-            if let Some(i) = momentum.iter().position(|m| !m.is_finite()) {
-                return Err(Refusal::at(
-                    format!("omega_body[{i}]"),
-                    format!("the momentum inertia[{i}] * omega_body[{i}] is not finite"),
-                )
-                .into());
-            }
-            momentum
-        }
-    };
+    let momentum = momentum_body(inertia, axes.as_ref(), keys.omega_body, keys.momentum_body)?;
     if keys.attitude.is_some() && keys.quaternion.is_some() {
         let message = "both `attitude` and `quaternion`, expected at most one of them";
         return Err(Refusal::at("quaternion", message).into());
     }
     let quaternion = keys.quaternion.map(unit).transpose()?;
-    let attitude = match (keys.attitude, &quaternion) {
-        (Some(rows), _) => Matrix3::from_rows(&rows.0.map(|row| Vector3::from(row).transpose())),
-        (None, Some(q)) => rotation(q),
-        (None, None) => Matrix3::identity(),
-    };
-    let mut body = RigidBodySpec::new(inertia, momentum, attitude)?;
+    let attitude = quaternion.as_ref().map_or_else(|| attitude(keys.attitude), rotation);
+    let mut body = RigidBodySpec::new(inertia, momentum.into(), attitude)?;
     body.quaternion = quaternion;
     if let Some(axes) = axes {
         body.attitude *= axes;
@@ -258,17 +149,46 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
     Ok(Box::new(body))
 }
 
+impl RigidBodySpec {
+    /// The system that has these quantities, on a layer.
+    fn system(&self, layer: Layer, quantities: &[&str]) -> Result<Box<dyn ProblemSpec>, Error> {
+        Ok(match (layer, needs_attitude(quantities)) {
+            (Layer::General, _) if self.quaternion.is_some() => {
+                return Err(Error::Unsupported {
+                    what: "layer",
+                    with: "`general` and a quaternion".into(),
+                    why: "quaternions have closed forms only; leave layer out",
+                });
+            }
+            (Layer::Closed, false) => Box::new(Stated(Body::<MomentumOnly>::new(self)?)),
+            (Layer::Closed, true) if self.quaternion.is_some() => {
+                Box::new(Stated(Body::<Quaternion>::new(self)?))
+            }
+            (Layer::Closed, true) => Box::new(Stated(Body::<Attitude>::new(self)?)),
+            (Layer::General, false) => Box::new(Stated(Body::<MomentumMatrix>::new(self)?)),
+            (Layer::General, true) => Box::new(Stated(Body::<AttitudeMatrix>::new(self)?)),
+        })
+    }
+}
+
 impl ProblemSpec for RigidBodySpec {
     fn kind(&self) -> &'static Kind {
         &KIND
     }
     fn model(&self, layer: Layer, quantities: &[&str]) -> Result<Box<dyn Model>, Error> {
-        Ok(Box::new(RigidBodyModel::new(self, layer, quantities)?))
+        let model = self.system(layer, quantities)?.model(layer, quantities)?;
+        let by_method =
+            layer == Layer::Closed && needs_attitude(quantities) && self.quaternion.is_none();
+        if !by_method {
+            return Ok(model);
+        }
+        let state = Stated(Body::<State>::new(self)?).model(layer, quantities)?;
+        Ok(Box::new(ByMethod { attitude: model, state }))
     }
     fn state(&self, quantities: &[&str]) -> &'static [&'static str] {
         match needs_attitude(quantities) {
-            true => &["momentum_body", "attitude"],
-            false => &["momentum_body"],
+            true => Body::<Attitude>::STATE,
+            false => Body::<MomentumOnly>::STATE,
         }
     }
     fn layers(&self) -> &'static [Layer] {
@@ -277,17 +197,10 @@ impl ProblemSpec for RigidBodySpec {
             None => &Layer::ALL,
         }
     }
+    /// None of a body that cannot be set up.
     fn invariants(&self, quantities: &[&str]) -> Vec<Law> {
-        // Of degree 4 in a quaternion.
-        let by_quaternion = self.quaternion.is_some() && needs_attitude(quantities);
-        let degree = if by_quaternion { 0 } else { 2 };
-        let mut laws =
-            vec![Law::of_the_flow("energy", degree), Law::of_the_action("momentum_norm", degree)];
-        if needs_attitude(quantities) {
-            let defect = if by_quaternion { "quaternion_defect" } else { "attitude_defect" };
-            laws.push(Law::of_the_action(defect, 2).on_scale(Scale::One));
-        }
-        laws
+        let system = self.system(Layer::Closed, quantities);
+        system.map_or_else(|_| Vec::new(), |system| system.invariants(quantities))
     }
     fn figure(&self) -> Figure {
         Figure::Sphere("momentum_body")

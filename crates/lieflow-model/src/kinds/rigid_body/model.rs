@@ -1,4 +1,15 @@
-//! The rigid body on either layer, with or without its attitude.
+//! The representations of a free rigid body as systems, with their quantities stated once for all.
+//!
+//! | | layer | point | in methods for |
+//! |---|---|---|---|
+//! | [`MomentumOnly`] | closed | m ∈ so(3)* | the momentum |
+//! | [`Attitude`] | closed | g ∈ SO(3) | the attitude |
+//! | [`State`] | closed | (m, g), 12 numbers | both as one state, classical methods |
+//! | [`Quaternion`] | closed | q ∈ S³ | the attitude as a quaternion |
+//! | [`MomentumMatrix`] | general | m ∈ so(n)*, n = 3 | the momentum |
+//! | [`AttitudeMatrix`] | general | g ∈ SO(n), n = 3 | the attitude |
+
+use core::fmt::Debug;
 
 use faer::Mat;
 use lieflow::adaptive::{AdaptiveError, AdaptiveStats};
@@ -8,240 +19,387 @@ use lieflow::problems::{
     BodyState, Exact, RigidBody, RigidBodyAttitude, RigidBodyN, RigidBodyNAttitude,
     RigidBodyQuaternion, RigidBodyState,
 };
-use lieflow::scalar::Counted;
 use lieflow::so3::{quaternion_from_matrix, quaternion_to_wxyz};
 use lieflow::{Error, RunError, SaveAt, Stats, TimeGrid};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
-use super::{KIND, RigidBodySpec, needs_attitude, rotation};
-use crate::model::{Layer, Model, Sink, Steps, adapt_by, fits_by, integrate_by, order_by};
-use crate::operations::{Pace, operations_by};
+use super::super::body::{ROTATION, by_rows};
+use super::super::quantity::Quantity;
+use super::super::system::{Number, PointOf, Start, System};
+use super::super::{Kind, Law, Scale};
+use super::{KIND, RigidBodySpec, rotation};
+use crate::model::{Layer, Model, Runnable, Sink, Steps};
+use crate::operations::Pace;
 
-#[derive(Debug)]
-enum System {
-    Momentum(RigidBody),
-    Attitude(RigidBodyAttitude),
-    Quaternion(RigidBodyQuaternion),
-    State(RigidBodyState),
-    MomentumN(RigidBodyN),
-    AttitudeN(RigidBodyNAttitude),
+/// Where a body is: its momentum in the body, and its orientation where that is modelled.
+pub(super) struct Pose {
+    m: Vector3<f64>,
+    orientation: Orientation,
 }
 
-#[derive(Debug)]
-pub(super) struct RigidBodyModel {
-    system: System,
-    /// Where `system` is the attitude: both as one state, for the methods that want that.
-    state: Option<System>,
-    inertia: [f64; 3],
-    /// For ω and the energy of a row, on either layer.
-    body: RigidBody,
-    momentum: Vector3<f64>,
-    attitude: Matrix3<f64>,
-    quaternion: UnitQuaternion<f64>,
-    /// The principal axes, where the scene is written in another frame.
-    axes: Option<Matrix3<f64>>,
-    quantities: Vec<&'static str>,
-    exact: Result<Exact, Error>,
+/// A rotation from body to space, as it is integrated.
+enum Orientation {
+    NotModelled,
+    Matrix(Matrix3<f64>),
+    Quaternion(UnitQuaternion<f64>),
 }
+
+impl Orientation {
+    /// The rotation; the identity where none is modelled.
+    fn rotation(&self) -> Matrix3<f64> {
+        match self {
+            Orientation::NotModelled => Matrix3::identity(),
+            Orientation::Matrix(g) => *g,
+            Orientation::Quaternion(q) => rotation(q),
+        }
+    }
+    /// The quaternion; of the two of a matrix that with w ≥ 0, and NaN where the matrix is no rotation.
+    fn quaternion(&self) -> UnitQuaternion<f64> {
+        if let Orientation::Quaternion(q) = self {
+            return *q;
+        }
+        match quaternion_from_matrix(&self.rotation()) {
+            Ok(q) if q.w < 0.0 => UnitQuaternion::new_unchecked(-q.into_inner()),
+            Ok(q) => q,
+            Err(_) => UnitQuaternion::new_unchecked([f64::NAN; 4].into()),
+        }
+    }
+}
+
+/// A way to represent the state of a free rigid body.
+pub(super) trait Representation: Clone + Debug + Send + Sync + 'static {
+    /// The problem of the library.
+    type Problem<N: Number>: Runnable + Clone + Debug + Send + Sync;
+    /// The layer of the problem.
+    const LAYER: Layer;
+    /// What is integrated, in words.
+    const MODELLED: &'static str;
+    /// Is the orientation a part of the point?
+    const TURNS: bool;
+    /// The degree of the energy and of |m|² in the point, where these are polynomials; else 0.
+    const DEGREE: u32 = 2;
+
+    /// The problem with its parameters.
+    ///
+    /// # Errors
+    /// What the library refuses.
+    fn problem<N: Number>(spec: &RigidBodySpec) -> Result<Self::Problem<N>, Error>;
+    /// The point of a pose.
+    ///
+    /// # Errors
+    /// [`Error::NotOnGroup`] for an orientation that is no rotation.
+    fn point<N: Number>(pose: &Pose) -> Result<Point<Self, N>, Error>;
+    /// The pose of a point.
+    fn pose(problem: &Self::Problem<f64>, y: &Point<Self, f64>) -> Pose;
+}
+
+type Point<R, N> = lieflow::problems::PointOf<<R as Representation>::Problem<N>>;
 
 fn to_faer(m: &Matrix3<f64>) -> Mat<f64> {
     Mat::from_fn(3, 3, |i, j| m[(i, j)])
 }
-
 fn to_nalgebra(m: &Mat<f64>) -> Matrix3<f64> {
     Matrix3::from_fn(|i, j| m[(i, j)])
 }
 
-/// Run `$run` on the problem of `$model` with its initial state and a function that shows a point of
-/// it as a row.
-macro_rules! on_system {
-    ($model:expr, $method:expr, $sink:expr, |$problem:ident, $y:ident, $see:ident| $run:expr) => {{
-        let model: &RigidBodyModel = $model;
-        let sink: &mut Sink<'_> = $sink;
-        let mut row = Vec::new();
-        let mut show = |t: f64, m: &Vector3<f64>, g: Option<Attitude<'_>>| {
-            model.fill(m, g, &mut row);
-            sink(t, &row);
-        };
-        match model.system($method) {
-            System::Momentum($problem) => {
-                let $y = model.momentum;
-                let $see = |t: f64, m: &Vector3<f64>| show(t, m, None);
-                $run
-            }
-            System::Attitude($problem) => {
-                let $y = model.attitude;
-                let $see = |t: f64, g: &Matrix3<f64>| {
-                    show(t, &$problem.momentum_body(g), Some(Attitude::Matrix(g)));
-                };
-                $run
-            }
-            System::Quaternion($problem) => {
-                let $y = model.quaternion;
-                let $see = |t: f64, q: &UnitQuaternion<f64>| {
-                    show(t, &$problem.momentum_body(q), Some(Attitude::Quaternion(q)));
-                };
-                $run
-            }
-            System::State($problem) => {
-                let $y = BodyState { m: model.momentum, g: model.attitude };
-                let $see = |t: f64, y: &BodyState| show(t, &y.m, Some(Attitude::Matrix(&y.g)));
-                $run
-            }
-            System::MomentumN($problem) => {
-                let $y = to_faer(&hat(&model.momentum));
-                let $see = |t: f64, m: &Mat<f64>| show(t, &vee(&to_nalgebra(m)), None);
-                $run
-            }
-            System::AttitudeN($problem) => {
-                let $y: GroupMatrix = MatrixGroup::so(3)?.element(to_faer(&model.attitude))?;
-                let $see = |t: f64, g: &GroupMatrix| {
-                    let m = vee(&to_nalgebra(&$problem.momentum_body(g)));
-                    show(t, &m, Some(Attitude::Matrix(&to_nalgebra(g))));
-                };
-                $run
-            }
-        }
-    }};
+/// J and m_s of a problem with an orientation.
+fn with_momentum_space(spec: &RigidBodySpec) -> ([f64; 3], Vector3<f64>) {
+    (spec.inertia, spec.attitude * Vector3::from(spec.momentum_body))
 }
 
-impl RigidBodyModel {
-    pub(super) fn new(
-        spec: &RigidBodySpec,
-        layer: Layer,
-        quantities: &[&str],
-    ) -> Result<Self, Error> {
-        let names = quantities.iter().map(|name| KIND.quantity(name).map(|info| info.name));
-        let momentum = Vector3::from(spec.momentum_body);
-        let in_space = spec.attitude * momentum;
-        let system = match (layer, needs_attitude(quantities)) {
-            (Layer::General, _) if spec.quaternion.is_some() => {
-                return Err(Error::Unsupported {
-                    what: "layer",
-                    with: "`general` and a quaternion".into(),
-                    why: "quaternions have closed forms only; leave layer out",
+/// m alone.
+#[derive(Clone, Debug)]
+pub(super) struct MomentumOnly;
+
+impl Representation for MomentumOnly {
+    type Problem<N: Number> = RigidBody<N>;
+    const LAYER: Layer = Layer::Closed;
+    const MODELLED: &'static str = "momentum on so(3)*";
+    const TURNS: bool = false;
+
+    fn problem<N: Number>(spec: &RigidBodySpec) -> Result<RigidBody<N>, Error> {
+        RigidBody::new(spec.inertia)
+    }
+    fn point<N: Number>(pose: &Pose) -> Result<Vector3<N>, Error> {
+        Ok(pose.m.map(N::lit))
+    }
+    fn pose(_: &RigidBody, m: &Vector3<f64>) -> Pose {
+        Pose { m: *m, orientation: Orientation::NotModelled }
+    }
+}
+
+/// g; the momentum in space is constant.
+#[derive(Clone, Debug)]
+pub(super) struct Attitude;
+
+impl Representation for Attitude {
+    type Problem<N: Number> = RigidBodyAttitude<N>;
+    const LAYER: Layer = Layer::Closed;
+    const MODELLED: &'static str = "attitude on SO(3)";
+    const TURNS: bool = true;
+
+    fn problem<N: Number>(spec: &RigidBodySpec) -> Result<RigidBodyAttitude<N>, Error> {
+        let (inertia, m) = with_momentum_space(spec);
+        RigidBodyAttitude::new(inertia, m.into())
+    }
+    fn point<N: Number>(pose: &Pose) -> Result<Matrix3<N>, Error> {
+        Ok(pose.orientation.rotation().map(N::lit))
+    }
+    fn pose(body: &RigidBodyAttitude, g: &Matrix3<f64>) -> Pose {
+        Pose { m: body.momentum_body(g), orientation: Orientation::Matrix(*g) }
+    }
+}
+
+/// m and g.
+#[derive(Clone, Debug)]
+pub(super) struct State;
+
+impl Representation for State {
+    type Problem<N: Number> = RigidBodyState<N>;
+    const LAYER: Layer = Layer::Closed;
+    const MODELLED: &'static str = "momentum and attitude as one state of 12 numbers";
+    const TURNS: bool = true;
+
+    fn problem<N: Number>(spec: &RigidBodySpec) -> Result<RigidBodyState<N>, Error> {
+        RigidBodyState::new(spec.inertia)
+    }
+    fn point<N: Number>(pose: &Pose) -> Result<BodyState<N>, Error> {
+        Ok(BodyState { m: pose.m.map(N::lit), g: pose.orientation.rotation().map(N::lit) })
+    }
+    fn pose(_: &RigidBodyState, y: &BodyState) -> Pose {
+        Pose { m: y.m, orientation: Orientation::Matrix(y.g) }
+    }
+}
+
+/// q; the momentum in space is constant.
+#[derive(Clone, Debug)]
+pub(super) struct Quaternion;
+
+impl Representation for Quaternion {
+    type Problem<N: Number> = RigidBodyQuaternion;
+    const LAYER: Layer = Layer::Closed;
+    const MODELLED: &'static str = "attitude on S³, a unit quaternion";
+    const TURNS: bool = true;
+    /// Both are of degree 4.
+    const DEGREE: u32 = 0;
+
+    fn problem<N: Number>(spec: &RigidBodySpec) -> Result<RigidBodyQuaternion, Error> {
+        let (inertia, m) = with_momentum_space(spec);
+        RigidBodyQuaternion::new(inertia, m.into())
+    }
+    fn point<N: Number>(pose: &Pose) -> Result<UnitQuaternion<f64>, Error> {
+        Ok(pose.orientation.quaternion())
+    }
+    fn pose(body: &RigidBodyQuaternion, q: &UnitQuaternion<f64>) -> Pose {
+        Pose { m: body.momentum_body(q), orientation: Orientation::Quaternion(*q) }
+    }
+}
+
+/// m alone, as a matrix.
+#[derive(Clone, Debug)]
+pub(super) struct MomentumMatrix;
+
+impl Representation for MomentumMatrix {
+    type Problem<N: Number> = RigidBodyN;
+    const LAYER: Layer = Layer::General;
+    const MODELLED: &'static str = "momentum on so(n)*, n = 3";
+    const TURNS: bool = false;
+
+    fn problem<N: Number>(spec: &RigidBodySpec) -> Result<RigidBodyN, Error> {
+        RigidBodyN::from_principal(spec.inertia)
+    }
+    fn point<N: Number>(pose: &Pose) -> Result<Mat<f64>, Error> {
+        Ok(to_faer(&hat(&pose.m)))
+    }
+    fn pose(_: &RigidBodyN, m: &Mat<f64>) -> Pose {
+        Pose { m: vee(&to_nalgebra(m)), orientation: Orientation::NotModelled }
+    }
+}
+
+/// g as a matrix; the momentum in space is constant.
+#[derive(Clone, Debug)]
+pub(super) struct AttitudeMatrix;
+
+impl Representation for AttitudeMatrix {
+    type Problem<N: Number> = RigidBodyNAttitude;
+    const LAYER: Layer = Layer::General;
+    const MODELLED: &'static str = "attitude on SO(n), n = 3";
+    const TURNS: bool = true;
+
+    fn problem<N: Number>(spec: &RigidBodySpec) -> Result<RigidBodyNAttitude, Error> {
+        let (inertia, m) = with_momentum_space(spec);
+        RigidBodyNAttitude::new(RigidBodyN::from_principal(inertia)?, to_faer(&hat(&m)))
+    }
+    fn point<N: Number>(pose: &Pose) -> Result<GroupMatrix, Error> {
+        MatrixGroup::so(3)?.element(to_faer(&pose.orientation.rotation()))
+    }
+    fn pose(body: &RigidBodyNAttitude, g: &GroupMatrix) -> Pose {
+        Pose {
+            m: vee(&to_nalgebra(&body.momentum_body(g))),
+            orientation: Orientation::Matrix(to_nalgebra(g)),
+        }
+    }
+}
+
+/// A free rigid body in one representation.
+#[derive(Clone, Debug)]
+pub(super) struct Body<R: Representation> {
+    spec: RigidBodySpec,
+    /// ω and the energy, for all representations.
+    body: RigidBody,
+    problem: R::Problem<f64>,
+}
+
+type Q<R> = Quantity<Body<R>>;
+
+impl<R: Representation> Body<R> {
+    /// # Errors
+    /// What the library refuses.
+    pub(super) fn new(spec: &RigidBodySpec) -> Result<Self, Error> {
+        let body = RigidBody::new(spec.inertia)?;
+        Ok(Body { spec: spec.clone(), body, problem: R::problem(spec)? })
+    }
+    fn m(&self, y: &PointOf<Self>) -> Vector3<f64> {
+        R::pose(&self.problem, y).m
+    }
+    fn orientation(&self, y: &PointOf<Self>) -> Orientation {
+        R::pose(&self.problem, y).orientation
+    }
+    /// A vector along the axes of the scene.
+    fn in_scene(&self, x: Vector3<f64>) -> Vector3<f64> {
+        self.spec.axes.map_or(x, |axes| axes * x)
+    }
+    fn turns(&self) -> Option<&'static str> {
+        (!R::TURNS).then_some("the momentum alone is integrated")
+    }
+}
+
+impl<R: Representation> System for Body<R> {
+    type Problem<N: Number> = R::Problem<N>;
+
+    const STATE: &'static [&'static str] =
+        if R::TURNS { &["momentum_body", "attitude"] } else { &["momentum_body"] };
+    const QUANTITIES: &'static [Q<R>] = &[
+        Q::numbers(
+            "momentum_body",
+            &["m1", "m2", "m3"],
+            "angular momentum in the body",
+            |body: &Body<R>, _, y, row| row.extend(body.in_scene(body.m(y)).iter()),
+        ),
+        Q::numbers(
+            "omega_body",
+            &["w1", "w2", "w3"],
+            "angular velocity in the body",
+            |body, _, y, row| row.extend(body.in_scene(body.body.omega(&body.m(y))).iter()),
+        ),
+        Q::numbers(
+            "attitude",
+            ROTATION,
+            "rotation from body to space, row by row; integrated only when asked for",
+            |body, _, y, row| {
+                let g = body.orientation(y).rotation();
+                by_rows(&body.spec.axes.map_or(g, |axes| g * axes.transpose()), row);
+            },
+        )
+        .missing_where(Body::turns),
+        Q::numbers(
+            "quaternion",
+            &["qw", "qx", "qy", "qz"],
+            "the same as a unit quaternion, real part first, x -> q x q*; with the key quaternion it is \
+             what is integrated, and without it has w >= 0",
+            |body, _, y, row| {
+                let axes = body.spec.axes.map_or(Ok(UnitQuaternion::identity()), |axes| {
+                    quaternion_from_matrix(&axes.transpose())
                 });
-            }
-            (Layer::Closed, true) if spec.quaternion.is_some() => {
-                System::Quaternion(RigidBodyQuaternion::new(spec.inertia, in_space.into())?)
-            }
-            (Layer::Closed, false) => System::Momentum(RigidBody::new(spec.inertia)?),
-            (Layer::Closed, true) => {
-                System::Attitude(RigidBodyAttitude::new(spec.inertia, in_space.into())?)
-            }
-            (Layer::General, with_attitude) => {
-                let body = RigidBodyN::from_principal(spec.inertia)?;
-                match with_attitude {
-                    false => System::MomentumN(body),
-                    true => {
-                        System::AttitudeN(RigidBodyNAttitude::new(body, to_faer(&hat(&in_space)))?)
-                    }
-                }
-            }
-        };
-        let state = match &system {
-            System::Attitude(_) => Some(System::State(RigidBodyState::new(spec.inertia)?)),
-            _ => None,
-        };
-        Ok(RigidBodyModel {
-            system,
-            state,
-            inertia: spec.inertia,
-            body: RigidBody::new(spec.inertia)?,
-            momentum,
-            attitude: spec.attitude,
-            quaternion: spec.quaternion.unwrap_or_default(),
-            axes: spec.axes,
-            quantities: names.collect::<Result<_, _>>()?,
-            exact: Exact::new(spec.inertia, spec.momentum_body, spec.attitude),
+                let q = body.orientation(y).quaternion();
+                row.extend(axes.map_or([f64::NAN; 4], |axes| quaternion_to_wxyz(&(q * axes))));
+            },
+        )
+        .missing_where(Body::turns),
+        Q::number("energy", "kinetic energy", |body, _, y| body.body.energy(&body.m(y)))
+            .kept(Law::by_the_flow(R::DEGREE)),
+        Q::number("momentum_norm", "length of the angular momentum", |body, _, y| {
+            body.m(y).norm()
         })
+        .kept(Law::by_the_action(R::DEGREE)),
+        Q::number(
+            "attitude_defect",
+            "distance of gᵀg from the identity; needs the attitude, which is then integrated",
+            |body, _, y| So3::new().defect(&body.orientation(y).rotation()),
+        )
+        .kept_where(|body| {
+            let law = Law::by_the_action(2).on_scale(Scale::One);
+            body.spec.quaternion.is_none().then_some(law)
+        })
+        .missing_where(Body::turns),
+        Q::number(
+            "quaternion_defect",
+            "distance of the quaternion's square from 1",
+            |body, _, y| UnitQuaternions.defect(&body.orientation(y).quaternion()),
+        )
+        .kept_where(|body| {
+            let law = Law::by_the_action(2).on_scale(Scale::One);
+            body.spec.quaternion.map(|_| law)
+        })
+        .missing_where(Body::turns),
+    ];
+
+    fn kind(&self) -> &'static Kind {
+        &KIND
     }
-
-    /// What the method integrates.
-    fn system(&self, method: &MethodSpec) -> &System {
-        let on_state = || method.info().is_ok_and(|info| info.needs == Needs::State);
-        self.state.as_ref().filter(|_| on_state()).unwrap_or(&self.system)
+    fn layer(&self) -> Layer {
+        R::LAYER
     }
-
-    /// row ← the quantities at body momentum m and attitude g.
-    fn fill(&self, m: &Vector3<f64>, g: Option<Attitude<'_>>, row: &mut Vec<f64>) {
-        row.clear();
-        let shown = |x: Vector3<f64>| self.axes.map_or(x, |axes| axes * x);
-        for quantity in &self.quantities {
-            match (*quantity, g) {
-                ("momentum_body", _) => row.extend(shown(*m).iter()),
-                ("omega_body", _) => row.extend(shown(self.body.omega(m)).iter()),
-                ("energy", _) => row.push(self.body.energy(m)),
-                ("momentum_norm", _) => row.push(m.norm()),
-                ("attitude", Some(g)) => {
-                    let g = g.rotation();
-                    let shown = self.axes.map_or(g, |axes| g * axes.transpose());
-                    row.extend(shown.transpose().iter());
-                }
-                ("attitude_defect", Some(g)) => row.push(So3::new().defect(&g.rotation())),
-                ("quaternion", Some(g)) => {
-                    let axes = self.axes.map_or(Ok(UnitQuaternion::identity()), |axes| {
-                        quaternion_from_matrix(&axes.transpose())
-                    });
-                    let shown = axes.map(|axes| quaternion_to_wxyz(&(g.quaternion() * axes)));
-                    row.extend(shown.unwrap_or([f64::NAN; 4]));
-                }
-                ("quaternion_defect", Some(g)) => row.push(UnitQuaternions.defect(&g.quaternion())),
-                // The constructor takes registered names, and models the attitude where one needs it.
-                (name, _) => row.resize(row.len() + width(name), f64::NAN),
-            }
-        }
-    }
-}
-
-/// An attitude, as it was integrated.
-#[derive(Clone, Copy)]
-enum Attitude<'a> {
-    Matrix(&'a Matrix3<f64>),
-    Quaternion(&'a UnitQuaternion<f64>),
-}
-
-impl Attitude<'_> {
-    fn rotation(self) -> Matrix3<f64> {
-        match self {
-            Attitude::Matrix(g) => *g,
-            Attitude::Quaternion(q) => rotation(q),
-        }
-    }
-    /// Of the two of a rotation, that with w ≥ 0; not a number where there is none.
-    fn quaternion(self) -> UnitQuaternion<f64> {
-        match self {
-            Attitude::Matrix(g) => quaternion_from_matrix(g).map_or_else(
-                |_| UnitQuaternion::new_unchecked([f64::NAN; 4].into()),
-                |q| if q.w < 0.0 { UnitQuaternion::new_unchecked(-q.into_inner()) } else { q },
-            ),
-            Attitude::Quaternion(q) => *q,
-        }
-    }
-}
-
-fn width(quantity: &str) -> usize {
-    KIND.quantity(quantity).map_or(0, |info| info.columns.len())
-}
-
-impl Model for RigidBodyModel {
-    fn columns(&self) -> Vec<String> {
-        let infos = self.quantities.iter().flat_map(|name| KIND.quantity(name));
-        infos.flat_map(|info| info.columns).map(|&column| column.into()).collect()
-    }
-
-    fn modelled(&self, method: &MethodSpec) -> Vec<String> {
-        let what = match self.system(method) {
-            System::Momentum(_) => "momentum on so(3)*",
-            System::Attitude(_) => "attitude on SO(3)",
-            System::Quaternion(_) => "attitude on S³, a unit quaternion",
-            System::State(_) => "momentum and attitude as one state of 12 numbers",
-            System::MomentumN(_) => "momentum on so(n)*, n = 3",
-            System::AttitudeN(_) => "attitude on SO(n), n = 3",
+    fn problem<N: Number>(&self) -> Result<Start<R::Problem<N>>, Error> {
+        let orientation = match self.spec.quaternion {
+            Some(q) => Orientation::Quaternion(q),
+            None => Orientation::Matrix(self.spec.attitude),
         };
-        vec![what.into()]
+        let pose = Pose { m: self.spec.momentum_body.into(), orientation };
+        Ok((R::problem(&self.spec)?, R::point::<N>(&pose)?))
     }
+    fn modelled(&self) -> String {
+        R::MODELLED.into()
+    }
+    fn exact(&self, [t0, t1]: [f64; 2]) -> Option<Result<PointOf<Self>, Error>> {
+        let RigidBodySpec { inertia, momentum_body, attitude, .. } = self.spec;
+        let at = |t: f64| {
+            let exact = Exact::new(inertia, momentum_body, attitude)?;
+            let (m, orientation) = match R::TURNS {
+                true => exact.state(t).map(|(m, g)| (m, Orientation::Matrix(g)))?,
+                false => (exact.momentum_body(t)?, Orientation::NotModelled),
+            };
+            R::point::<f64>(&Pose { m, orientation })
+        };
+        Some(at(t1 - t0))
+    }
+}
 
+/// The attitude in two representations: the method says which is integrated.
+#[derive(Debug)]
+pub(super) struct ByMethod {
+    /// On the group.
+    pub(super) attitude: Box<dyn Model>,
+    /// For the classical methods, which need m and g as one state.
+    pub(super) state: Box<dyn Model>,
+}
+
+impl ByMethod {
+    fn of(&self, method: &MethodSpec) -> &dyn Model {
+        match method.info().is_ok_and(|info| info.needs == Needs::State) {
+            true => &*self.state,
+            false => &*self.attitude,
+        }
+    }
+}
+
+impl Model for ByMethod {
+    fn columns(&self) -> Vec<String> {
+        self.attitude.columns()
+    }
+    fn modelled(&self, method: &MethodSpec) -> Vec<String> {
+        self.of(method).modelled(method)
+    }
     fn run(
         &self,
         method: &MethodSpec,
@@ -249,11 +407,8 @@ impl Model for RigidBodyModel {
         save: &SaveAt,
         sink: &mut Sink<'_>,
     ) -> Result<Stats, RunError> {
-        on_system!(self, method, sink, |problem, y, see| {
-            integrate_by(method, problem, y, grid, save, &mut { see })
-        })
+        self.of(method).run(method, grid, save, sink)
     }
-
     fn adapt(
         &self,
         method: &MethodSpec,
@@ -261,68 +416,18 @@ impl Model for RigidBodyModel {
         save: &SaveAt,
         sink: &mut Sink<'_>,
     ) -> Result<AdaptiveStats, AdaptiveError> {
-        on_system!(self, method, sink, |problem, y, see| {
-            adapt_by(method, problem, y, steps, save, &mut { see })
-        })
+        self.of(method).adapt(method, steps, save, sink)
     }
-
     fn order(&self, method: &MethodSpec) -> Result<Option<usize>, Error> {
-        match self.system(method) {
-            System::Momentum(body) => order_by(method, body),
-            System::Attitude(body) => order_by(method, body),
-            System::Quaternion(body) => order_by(method, body),
-            System::State(body) => order_by(method, body),
-            System::MomentumN(body) => order_by(method, body),
-            System::AttitudeN(body) => order_by(method, body),
-        }
+        self.of(method).order(method)
     }
-
     fn fits(&self, method: &MethodSpec) -> Result<(), Error> {
-        let sink: &mut Sink<'_> = &mut |_, _| {};
-        on_system!(self, method, sink, |problem, y, see| {
-            let _ = see;
-            fits_by(method, problem, &y)
-        })
+        self.of(method).fits(method)
     }
-
     fn operations(&self, method: &MethodSpec, pace: Pace<'_>) -> Option<f64> {
-        match self.system(method) {
-            System::Momentum(_) => {
-                let body = RigidBody::<Counted>::new(self.inertia).ok()?;
-                operations_by(method, &body, self.momentum.map(Counted), pace)
-            }
-            System::Attitude(body) => {
-                let m_s = (*body.momentum_space()).into();
-                let body = RigidBodyAttitude::<Counted>::new(self.inertia, m_s).ok()?;
-                operations_by(method, &body, self.attitude.map(Counted), pace)
-            }
-            System::State(_) => {
-                let body = RigidBodyState::<Counted>::new(self.inertia).ok()?;
-                let y = BodyState { m: self.momentum.map(Counted), g: self.attitude.map(Counted) };
-                operations_by(method, &body, y, pace)
-            }
-            System::Quaternion(body) => operations_by(method, body, self.quaternion, pace),
-            System::MomentumN(body) => {
-                operations_by(method, body, to_faer(&hat(&self.momentum)), pace)
-            }
-            System::AttitudeN(body) => {
-                let g = MatrixGroup::so(3).ok()?.element(to_faer(&self.attitude)).ok()?;
-                operations_by(method, body, g, pace)
-            }
-        }
+        self.of(method).operations(method, pace)
     }
-
-    fn exact(&self, [t0, t1]: [f64; 2]) -> Option<Result<Vec<f64>, Error>> {
-        let (mut row, t) = (Vec::new(), t1 - t0);
-        let filled = self.exact.as_ref().map_err(Clone::clone).and_then(|exact| {
-            if needs_attitude(&self.quantities) {
-                let (m, g) = exact.state(t)?;
-                self.fill(&m, Some(Attitude::Matrix(&g)), &mut row);
-            } else {
-                self.fill(&exact.momentum_body(t)?, None, &mut row);
-            }
-            Ok(())
-        });
-        Some(filled.map(|()| row))
+    fn exact(&self, t_span: [f64; 2]) -> Option<Result<Vec<f64>, Error>> {
+        self.attitude.exact(t_span)
     }
 }

@@ -60,9 +60,9 @@ impl Body {
     }
 }
 
-/// A row of the tables.
+/// A method of the tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Row {
+pub enum PaperMethod {
     /// McLachlan and Reich, order 4.
     Mr,
     /// RKMK4 with exp.
@@ -93,8 +93,8 @@ pub enum Row {
     EnergyCasimir,
 }
 
-/// `$call` on the problem, the method and the start of a row, on numbers of a type.
-macro_rules! on_row {
+/// `$call` on the problem, the method and the start of a method, on numbers of a type.
+macro_rules! on_method {
     ($row:expr, $body:expr, $number:ty, |$problem:ident, $method:ident, $start:ident| $call:expr) => {{
         let body: &Body = $body;
         let attitude = body.attitude.map(<$number>::lit);
@@ -107,23 +107,23 @@ macro_rules! on_row {
             }};
         }
         match $row {
-            Row::Mr => arm!(&on_g, &MR4, attitude),
-            Row::Exp => arm!(&on_g, &Rkmk::new(RK4, Exp), attitude),
-            Row::Ccsk => arm!(&on_g, &Rkmk::new(RK4, CCSK), attitude),
-            Row::Ccsk321 => arm!(&on_g, &Rkmk::new(RK4, CCSK321), attitude),
-            Row::Ccsk123 => arm!(&on_g, &Rkmk::new(RK4, CCSK123), attitude),
-            Row::Cay => arm!(&on_g, &Rkmk::new(RK4, Cay), attitude),
-            Row::B4 => arm!(&on_g, &Buss4, attitude),
-            Row::Rk4 => arm!(&on_g, &Rk(RK4), attitude),
-            Row::Mr2 => arm!(&on_g, &MR2, attitude),
-            Row::S => arm!(&on_g, &SimoWong::TAN, attitude),
-            Row::Dmv4 => arm!(&on_g, &DMV4, attitude),
-            Row::Dmv10 => arm!(&on_g, &DMV10, attitude),
-            Row::Rk4mg => {
+            PaperMethod::Mr => arm!(&on_g, &MR4, attitude),
+            PaperMethod::Exp => arm!(&on_g, &Rkmk::new(RK4, Exp), attitude),
+            PaperMethod::Ccsk => arm!(&on_g, &Rkmk::new(RK4, CCSK), attitude),
+            PaperMethod::Ccsk321 => arm!(&on_g, &Rkmk::new(RK4, CCSK321), attitude),
+            PaperMethod::Ccsk123 => arm!(&on_g, &Rkmk::new(RK4, CCSK123), attitude),
+            PaperMethod::Cay => arm!(&on_g, &Rkmk::new(RK4, Cay), attitude),
+            PaperMethod::B4 => arm!(&on_g, &Buss4, attitude),
+            PaperMethod::Rk4 => arm!(&on_g, &Rk(RK4), attitude),
+            PaperMethod::Mr2 => arm!(&on_g, &MR2, attitude),
+            PaperMethod::S => arm!(&on_g, &SimoWong::TAN, attitude),
+            PaperMethod::Dmv4 => arm!(&on_g, &DMV4, attitude),
+            PaperMethod::Dmv10 => arm!(&on_g, &DMV10, attitude),
+            PaperMethod::Rk4mg => {
                 let state = BodyState { m: momentum, g: attitude };
                 arm!(&RigidBodyState::<$number>::new(body.inertia)?, &Rk(RK4), state)
             }
-            Row::EnergyCasimir => {
+            PaperMethod::EnergyCasimir => {
                 let on_m = RigidBody::<$number>::new(body.inertia)?;
                 arm!(&on_m, &EnergyCasimir::new(Exp), momentum)
             }
@@ -131,38 +131,52 @@ macro_rules! on_row {
     }};
 }
 
-impl Row {
-    /// The rows of Table 3, in its order.
-    pub const PRINTED: [Row; 8] =
-        [Row::Mr, Row::Exp, Row::Ccsk, Row::Ccsk321, Row::Ccsk123, Row::Cay, Row::B4, Row::Rk4];
-    /// The rows that the paper does not have.
-    pub const ADDED: [Row; 6] =
-        [Row::Mr2, Row::S, Row::Dmv4, Row::Dmv10, Row::Rk4mg, Row::EnergyCasimir];
+impl PaperMethod {
+    /// The methods of Table 3, in its order.
+    pub const PRINTED: [PaperMethod; 8] = [
+        PaperMethod::Mr,
+        PaperMethod::Exp,
+        PaperMethod::Ccsk,
+        PaperMethod::Ccsk321,
+        PaperMethod::Ccsk123,
+        PaperMethod::Cay,
+        PaperMethod::B4,
+        PaperMethod::Rk4,
+    ];
+    /// The methods that the paper does not have.
+    pub const ADDED: [PaperMethod; 6] = [
+        PaperMethod::Mr2,
+        PaperMethod::S,
+        PaperMethod::Dmv4,
+        PaperMethod::Dmv10,
+        PaperMethod::Rk4mg,
+        PaperMethod::EnergyCasimir,
+    ];
 
-    /// Every row.
-    pub fn all() -> impl Iterator<Item = Row> {
+    /// Every method.
+    pub fn all() -> impl Iterator<Item = PaperMethod> {
         Self::PRINTED.into_iter().chain(Self::ADDED)
     }
 
     /// Its name in files and for people, the paper's where it has one, its colour and its marker in
-    /// figures: rows of one colour have different markers.
+    /// figures: methods of one colour have different markers.
     #[rustfmt::skip]
     const fn look(self) -> (&'static str, &'static str, usize, usize) {
         match self {
-            Row::Mr => ("mr", "MR", 6, 6),
-            Row::Exp => ("exp", "exp", 0, 0),
-            Row::Ccsk => ("ccsk", "ccsk", 4, 4),
-            Row::Ccsk321 => ("ccsk321", "ccskb (321)", 3, 3),
-            Row::Ccsk123 => ("ccsk123", "ccskf (123)", 2, 2),
-            Row::Cay => ("cay", "cay", 1, 1),
-            Row::B4 => ("b4", "B4", 7, 7),
-            Row::Rk4 => ("rk4", "RK4", 5, 5),
-            Row::Mr2 => ("mr2", "MR2", 6, 6),
-            Row::S => ("simo-wong", "S", 7, 3),
-            Row::Dmv4 => ("dmv4", "DMV4", 7, 1),
-            Row::Dmv10 => ("dmv10", "DMV10", 7, 2),
-            Row::Rk4mg => ("rk4-mg", "RK4 on (m, g)", 5, 5),
-            Row::EnergyCasimir => ("energy-casimir", "energy-Casimir", 7, 4),
+            PaperMethod::Mr => ("mr", "MR", 6, 6),
+            PaperMethod::Exp => ("exp", "exp", 0, 0),
+            PaperMethod::Ccsk => ("ccsk", "ccsk", 4, 4),
+            PaperMethod::Ccsk321 => ("ccsk321", "ccskb (321)", 3, 3),
+            PaperMethod::Ccsk123 => ("ccsk123", "ccskf (123)", 2, 2),
+            PaperMethod::Cay => ("cay", "cay", 1, 1),
+            PaperMethod::B4 => ("b4", "B4", 7, 7),
+            PaperMethod::Rk4 => ("rk4", "RK4", 5, 5),
+            PaperMethod::Mr2 => ("mr2", "MR2", 6, 6),
+            PaperMethod::S => ("simo-wong", "S", 7, 3),
+            PaperMethod::Dmv4 => ("dmv4", "DMV4", 7, 1),
+            PaperMethod::Dmv10 => ("dmv10", "DMV10", 7, 2),
+            PaperMethod::Rk4mg => ("rk4-mg", "RK4 on (m, g)", 5, 5),
+            PaperMethod::EnergyCasimir => ("energy-casimir", "energy-Casimir", 7, 4),
         }
     }
 
@@ -198,7 +212,7 @@ impl Row {
         save: SaveAt,
         see: &mut See<'_>,
     ) -> Result<(), RunError> {
-        on_row!(self, body, f64, |problem, method, start| {
+        on_method!(self, body, f64, |problem, method, start| {
             run(problem, method, start, (grid, save), see)
         })
     }
@@ -208,7 +222,7 @@ impl Row {
     /// # Errors
     /// As [`run`](Self::run).
     pub fn seconds(self, body: &Body, grid: &TimeGrid, shortest: f64) -> Result<f64, RunError> {
-        on_row!(self, body, f64, |problem, method, start| {
+        on_method!(self, body, f64, |problem, method, start| {
             seconds(problem, method, &start, grid, shortest)
         })
     }
@@ -218,7 +232,7 @@ impl Row {
     /// # Errors
     /// A body that cannot be.
     pub fn counted(self, body: &Body, h: f64) -> Result<Option<Ops>, Error> {
-        on_row!(self, body, Counted, |problem, method, start| Ok(counted(
+        on_method!(self, body, Counted, |problem, method, start| Ok(counted(
             problem, method, start, h
         )))
     }

@@ -1,0 +1,130 @@
+//! Matrices in scenes: the checks of their entries, the names of the columns that show them, and what several
+//! kinds compute from them.
+
+use faer::Side;
+use lieflow::groups::{GroupMatrix, LieGroup, MatrixGroup};
+
+use super::flow::OnMatrices;
+use super::law::{Law, Scale};
+use super::prelude::*;
+
+/// The asymmetry that the rounding of written entries explains, relative to the largest entry.
+pub(super) const ROUNDING: f64 = 64.0 * f64::EPSILON;
+
+/// The n×n matrix under a key.
+///
+/// # Errors
+/// A refusal of `key` for another shape.
+pub(super) fn square(key: &str, table: &Table, n: usize) -> Result<Mat<f64>, Refusal> {
+    let x = table.matrix(key, Some(n))?;
+    check_rows(key, &x, n)?;
+    Ok(x)
+}
+
+/// Does a matrix have n rows?
+///
+/// # Errors
+/// A refusal of `key`.
+pub(super) fn check_rows(key: &str, x: &Mat<f64>, n: usize) -> Result<(), Refusal> {
+    match x.nrows() == n {
+        true => Ok(()),
+        false => Err(Refusal::at(key, format!("found {} rows, expected {n}", x.nrows()))),
+    }
+}
+
+/// Is xᵀ = x up to this part of the largest entry?
+///
+/// # Errors
+/// A refusal of the entry of `key` where it is not.
+pub(super) fn check_symmetric(key: &str, x: &Mat<f64>, tolerance: f64) -> Result<(), Refusal> {
+    check_symmetry(key, x, 1.0, tolerance)
+}
+
+/// Is xᵀ = −x?
+///
+/// # Errors
+/// As [`check_symmetric`].
+pub(super) fn check_antisymmetric(key: &str, x: &Mat<f64>) -> Result<(), Refusal> {
+    check_symmetry(key, x, -1.0, 0.0)
+}
+
+fn check_symmetry(key: &str, x: &Mat<f64>, sign: f64, tolerance: f64) -> Result<(), Refusal> {
+    let allowed = tolerance * x.norm_max();
+    let mut lower = (0..x.nrows()).flat_map(|i| (0..=i).map(move |j| (i, j)));
+    let Some((i, j)) = lower.find(|&(i, j)| (x[(i, j)] - sign * x[(j, i)]).abs() > allowed) else {
+        return Ok(());
+    };
+    let (what, row, column) =
+        (if sign > 0.0 { "a symmetric" } else { "an antisymmetric" }, j + 1, i + 1);
+    let mut message =
+        format!("expected {what} matrix, but entry ({row},{column}) is {}", x[(j, i)]);
+    if i != j {
+        message += &format!(" and ({column},{row}) is {}", x[(i, j)]);
+    }
+    Err(Refusal::at(format!("{key}[{i},{j}]"), message))
+}
+
+/// The columns x1, …, xn.
+pub(super) fn numbered(letter: &str, n: usize) -> Vec<String> {
+    (1..=n).map(|i| format!("{letter}{i}")).collect()
+}
+
+/// The columns x11, …, xnk, row by row.
+pub(super) fn row_columns(letter: &str, n: usize, k: usize) -> Vec<String> {
+    (1..=n).flat_map(|i| (1..=k).map(move |j| format!("{letter}{i}{j}"))).collect()
+}
+
+/// The columns x11, …, xnn, on and above the diagonal, row by row.
+pub(super) fn upper_columns(letter: &str, n: usize) -> Vec<String> {
+    (1..=n).flat_map(|i| (i..=n).map(move |j| format!("{letter}{i}{j}"))).collect()
+}
+
+/// The entries, row by row.
+pub(super) fn rows(x: &Mat<f64>) -> impl Iterator<Item = f64> {
+    (0..x.nrows()).flat_map(move |i| (0..x.ncols()).map(move |j| x[(i, j)]))
+}
+
+/// The entries on and above the diagonal, row by row.
+pub(super) fn upper(x: &Mat<f64>) -> impl Iterator<Item = f64> {
+    (0..x.nrows()).flat_map(move |i| (i..x.ncols()).map(move |j| x[(i, j)]))
+}
+
+/// The entries on the diagonal.
+pub(super) fn diagonal(x: &Mat<f64>) -> impl Iterator<Item = f64> {
+    (0..x.nrows()).map(|i| x[(i, i)])
+}
+
+/// tr x.
+pub(super) fn trace(x: &Mat<f64>) -> f64 {
+    diagonal(x).sum()
+}
+
+/// tr x, tr x², …, tr xⁿ.
+pub(super) fn traces(x: &Mat<f64>) -> impl Iterator<Item = f64> {
+    let mut power = Mat::<f64>::identity(x.nrows(), x.nrows());
+    (0..x.nrows()).map(move |_| {
+        power = &power * x;
+        trace(&power)
+    })
+}
+
+/// |x|ⁿ, at least 1: a bound of what the traces of the powers of x are summed from.
+pub(super) fn size_of_traces(x: &Mat<f64>) -> f64 {
+    x.norm_l2().max(1.0).powi(x.nrows() as i32)
+}
+
+/// The eigenvalues of a symmetric matrix in ascending order; NaN where their iteration does not converge.
+pub(super) fn eigenvalues(x: &Mat<f64>) -> Vec<f64> {
+    let eigenvalues = x.self_adjoint_eigenvalues(Side::Lower);
+    eigenvalues.unwrap_or_else(|_| vec![f64::NAN; x.nrows()])
+}
+
+/// The distance of gᵀJg from J, of a problem whose point is g.
+pub(super) const fn symplectic_defect<S: System<Problem<f64> = OnMatrices>>() -> Quantity<S> {
+    Quantity::number("symplectic_defect", "distance of g'Jg from J", |_, _, g: &Mat<f64>| {
+        let element = GroupMatrix::new_unchecked(g.clone());
+        MatrixGroup::sp(element.nrows()).map_or(f64::NAN, |group| group.defect(&element))
+    })
+    .kept(Law::by_the_action(2).on_scale(Scale::Terms))
+    .in_terms(|_, g: &Mat<f64>| g.squared_norm_l2())
+}
