@@ -87,7 +87,7 @@ trait Stepper<P: Problem> {
         step: Step<ScalarOf<P>>,
         from: &PointOf<P>,
         to: &mut PointOf<P>,
-    ) -> Option<Result<LocalError<ScalarOf<P>>, StepError>>;
+    ) -> Result<LocalError<ScalarOf<P>>, StepError>;
 }
 
 /// Where the estimate of a method comes from.
@@ -101,7 +101,7 @@ trait Estimate<P: Problem, M: Method<P>>: Copy {
         from: &PointOf<P>,
         work: &mut M::Work,
         to: &mut PointOf<P>,
-    ) -> Option<Result<LocalError<ScalarOf<P>>, StepError>>;
+    ) -> Result<LocalError<ScalarOf<P>>, StepError>;
 }
 
 #[derive(Clone, Copy)]
@@ -120,8 +120,8 @@ impl<P: Problem, M: Method<P>> Estimate<P, M> for NoEstimate {
         _: &PointOf<P>,
         _: &mut M::Work,
         _: &mut PointOf<P>,
-    ) -> Option<Result<LocalError<ScalarOf<P>>, StepError>> {
-        None
+    ) -> Result<LocalError<ScalarOf<P>>, StepError> {
+        Err(StepError::NotFinite { what: "the error estimate" })
     }
 }
 
@@ -142,8 +142,8 @@ impl<P: Problem, M: Embedded<P>> Estimate<P, M> for OwnEstimate {
         from: &PointOf<P>,
         work: &mut M::Work,
         to: &mut PointOf<P>,
-    ) -> Option<Result<LocalError<ScalarOf<P>>, StepError>> {
-        Some(method.step_with_error(problem, step, from, work, to))
+    ) -> Result<LocalError<ScalarOf<P>>, StepError> {
+        method.step_with_error(problem, step, from, work, to)
     }
 }
 
@@ -210,7 +210,7 @@ impl<P: Problem, M: Method<P>, E: Estimate<P, M>> Stepper<P> for Working<P, M, E
         step: Step<ScalarOf<P>>,
         from: &PointOf<P>,
         to: &mut PointOf<P>,
-    ) -> Option<Result<LocalError<ScalarOf<P>>, StepError>> {
+    ) -> Result<LocalError<ScalarOf<P>>, StepError> {
         self.estimate.step(&self.method, problem, step, from, &mut self.work, to)
     }
 }
@@ -219,6 +219,8 @@ impl<P: Problem, M: Method<P>, E: Estimate<P, M>> Stepper<P> for Working<P, M, E
 #[allow(missing_debug_implementations)] // the parts belong to the problem's types
 pub struct AnyWork<'p, P: Problem> {
     stepper: Box<dyn Stepper<P> + 'p>,
+    /// Does the method estimate its own error here? If not, steps are doubled.
+    has_pair: bool,
     /// The point after one long step, where steps are doubled.
     once: PointOf<P>,
 }
@@ -240,7 +242,8 @@ where
         self.inner.stays_on_manifold()
     }
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
-        Ok(AnyWork { stepper: self.inner.stepper(problem, like)?, once: like.clone() })
+        let has_pair = self.has_pair(problem);
+        Ok(AnyWork { stepper: self.inner.stepper(problem, like)?, has_pair, once: like.clone() })
     }
     fn step(
         &self,
@@ -281,12 +284,12 @@ where
         problem: &P,
         step: Step<ScalarOf<P>>,
         from: &PointOf<P>,
-        AnyWork { stepper, once }: &mut Self::Work,
+        AnyWork { stepper, has_pair, once }: &mut Self::Work,
         to: &mut PointOf<P>,
     ) -> Result<LocalError<ScalarOf<P>>, StepError> {
-        match stepper.step_with_error(problem, step, from, to) {
-            Some(local) => local,
-            None => doubled(self.order(problem), step, from, once, to, |step, y| {
+        match has_pair {
+            true => stepper.step_with_error(problem, step, from, to),
+            false => doubled(self.order(problem), step, from, once, to, |step, y| {
                 stepper.step(problem, step, y)
             }),
         }

@@ -88,7 +88,7 @@ impl<S: Real> Problem for SphericalPendulum<S> {
     fn f(&self, _: S, (omega, _): &(V<S>, V<S>), v: &mut (V<S>, V<S>), _: &mut ()) {
         *v = (*omega, V::new(S::lit(0.0), S::lit(0.0), self.rate2));
     }
-    /// (torque, ω × q): f has parts that the action takes nothing from, and λ_* would multiply by them.
+    /// Without ω × ω = 0 and the zeros of e₃ × q, which are half of λ_*.
     fn field(
         &self,
         _: S,

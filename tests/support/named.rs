@@ -6,8 +6,8 @@
 use lieflow::Error;
 use lieflow::actions::Coadjoint;
 use lieflow::catalog::{
-    self, Made, MethodSpec, bodies, classical, energy_casimir, fields, first, fluids, implicit,
-    isospectral, linear_type, projected,
+    self, Made, MethodSpec, Needs, bodies, classical, energy_casimir, fields, first, fluids,
+    implicit, isospectral, linear_type, projected,
 };
 use lieflow::groups::MatrixGroup;
 use lieflow::maps::{Cay, CoordinateMap, Exp, ExpOrCay, MapsByName};
@@ -22,14 +22,21 @@ use lieflow::scalar::{Real, Trig};
 /// A method that the catalog has made.
 pub(crate) type Named<'p, P> = AnyMethod<'p, P>;
 
-fn found<'p, P: Problem>(spec: &MethodSpec, made: Made<'p, P>) -> Result<Named<'p, P>, Error> {
+fn found<'p, P: Problem>(
+    spec: &MethodSpec,
+    offers: &[Needs],
+    made: impl FnOnce() -> Made<'p, P>,
+) -> Result<Named<'p, P>, Error> {
     let info = spec.info()?;
     let misfit = || Error::Unsupported {
         what: info.name,
         with: "this problem".into(),
         why: info.needs.describe(),
     };
-    made?.ok_or_else(misfit)
+    match offers.contains(&info.needs) {
+        true => made()?.ok_or_else(misfit),
+        false => Err(misfit()),
+    }
 }
 
 /// An explicit method that is an embedded pair.
@@ -53,7 +60,7 @@ where
 }
 
 macro_rules! by_name {
-    ($($(#[$doc:meta])* $name:ident: [$($make:path),*], $problem:ty, [$($generic:tt)*],
+    ($($(#[$doc:meta])* $name:ident: $($needs:ident)*: [$($make:path),*], $problem:ty, [$($generic:tt)*],
        [$($bound:tt)*];)*) => {$(
         $(#[$doc])*
         pub(crate) fn $name<'p, R, $($generic)*>(
@@ -65,49 +72,50 @@ macro_rules! by_name {
             $($bound)*
         {
             let choice = spec.choose()?;
-            Ok(then(&found::<$problem>(spec, first([$($make),*], &choice))?))
+            let offers = [$(Needs::$needs),*];
+            Ok(then(&found::<$problem>(spec, &offers, || first([$($make),*], &choice))?))
         }
     )*};
 }
 
 by_name! {
     /// Explicit methods for any field.
-    explicit: [fields], P, [P: Ambient],
+    explicit: Field: [fields], P, [P: Ambient],
         [P::Group: MapsByName, Exp: CoordinateMap<P::Group>];
     /// Explicit and implicit methods for any field.
-    field: [fields, implicit], P, [P: Ambient],
+    field: Field Norm: [fields, implicit], P, [P: Ambient],
         [P::Group: MapsByName, Exp: CoordinateMap<P::Group>,
          ExpOrCay: CoordinateMap<P::Group>];
     /// Methods for fields of linear type.
-    linear: [linear_type], P, [P: LinearField],
+    linear: LinearType: [linear_type], P, [P: LinearField],
         [P::Group: TripleProduct, Exp: CoordinateMap<P::Group>, Cay: CoordinateMap<P::Group>,
          PointOf<P>: Metric<Scalar = ScalarOf<P>>];
     /// Methods for fields with Taylor coefficients.
-    series: [fields, implicit, catalog::series], P, [P: Ambient + TaylorField],
+    series: Field Norm Series: [fields, implicit, catalog::series], P, [P: Ambient + TaylorField],
         [P::Group: SeriesGroup + MapsByName,
          Exp: CoordinateMap<P::Group>, ExpOrCay: CoordinateMap<P::Group>];
     /// Methods for the free rigid body.
-    body: [fields, implicit, bodies], P, [P: Ambient + FreeBody + Split],
+    body: Field Norm Series Body: [fields, implicit, bodies], P, [P: Ambient + FreeBody + Split],
         [P::Group: MapsByName,
          ScalarOf<P>: Trig + Wide + Into<f64>, Exp: CoordinateMap<P::Group>,
          ExpOrCay: CoordinateMap<P::Group>];
     /// Methods for the attitude of the free rigid body.
-    attitude: [fields, implicit, bodies, projected], P, [P: FreeBody + Split + Orthogonal],
+    attitude: Field Norm Series Body Attitude: [fields, implicit, bodies, projected], P, [P: FreeBody + Split + Orthogonal],
         [P::Group: MapsByName,
          ScalarOf<P>: Trig + Wide + Into<f64>, Exp: CoordinateMap<P::Group>,
          ExpOrCay: CoordinateMap<P::Group>];
     /// Methods for the momentum of the free rigid body.
-    momentum: [fields, implicit, bodies, energy_casimir], P, [P: FreeBody + Split + LiePoisson],
+    momentum: Field Norm Series Body LiePoisson: [fields, implicit, bodies, energy_casimir], P, [P: FreeBody + Split + LiePoisson],
         [P::Group: MapsByName,
          ScalarOf<P>: Trig + Wide + Into<f64>, Exp: CoordinateMap<P::Group>,
          ExpOrCay: CoordinateMap<P::Group>];
     /// Methods for momenta as matrices.
-    lie_poisson: [fields, implicit, catalog::series, energy_casimir, isospectral], P,
+    lie_poisson: Field Norm Series LiePoisson Isospectral: [fields, implicit, catalog::series, energy_casimir, isospectral], P,
         [P: LiePoisson + TaylorField + Problem<Group = MatrixGroup, Action = Coadjoint>], [];
     /// Methods for momentum and attitude in one state.
-    state: [classical], RigidBodyState<S>, [S: Real], [];
+    state: State: [classical], RigidBodyState<S>, [S: Real], [];
     /// Methods for the quaternion of the free rigid body.
-    quaternion: [fields, implicit, bodies], RigidBodyQuaternion, [], [];
+    quaternion: Field Norm Series Body: [fields, implicit, bodies], RigidBodyQuaternion, [], [];
     /// Methods for an ideal fluid.
-    fluid: [fluids, fields, implicit, energy_casimir, isospectral], Zeitlin<S>, [S: Surface], [];
+    fluid: Field Norm LiePoisson Isospectral: [fluids, fields, implicit, energy_casimir, isospectral], Zeitlin<S>, [S: Surface], [];
 }

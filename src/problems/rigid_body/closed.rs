@@ -4,8 +4,9 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::{check_finite, check_inertia};
 use crate::actions::{Coadjoint, LeftTranslation};
+use crate::chart::FieldStore;
 use crate::error::Error;
-use crate::groups::{So3, apply3};
+use crate::groups::{So3, apply3, cross};
 use crate::problems::Problem;
 use crate::scalar::Real;
 
@@ -84,6 +85,11 @@ impl<S: Real> Problem for RigidBody<S> {
     #[inline]
     fn f(&self, _: S, m: &Vector3<S>, v: &mut Vector3<S>, _: &mut ()) {
         *v = -self.omega(m);
+    }
+    /// m × ω: the sign of f would be a seventh of a classical step.
+    #[inline]
+    fn field(&self, _: S, m: &Vector3<S>, dm: &mut Vector3<S>, _: &mut FieldStore<Self>) {
+        *dm = cross(m, &self.omega(m));
     }
 }
 

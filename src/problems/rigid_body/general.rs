@@ -4,7 +4,8 @@ use faer::Mat;
 
 use super::{check_finite, check_inertia};
 use crate::actions::{Coadjoint, LeftTranslation};
-use crate::dense::{mul, scaled_sum};
+use crate::chart::FieldStore;
+use crate::dense::{antisymmetrise, mul, scaled_sum};
 use crate::error::Error;
 use crate::groups::{AlgebraMatrix, GroupMatrix, MatrixGroup};
 use crate::problems::{LiePoisson, Problem};
@@ -115,6 +116,18 @@ impl Problem for RigidBodyN {
     fn f(&self, _: f64, m: &Mat<f64>, v: &mut AlgebraMatrix, _: &mut ()) {
         self.omega(-1.0, m, v);
     }
+    /// \[m, Ω\] = P − Pᵀ with P = mΩ: m is skew, which λ_* would have to find out.
+    fn field(
+        &self,
+        _: f64,
+        m: &Mat<f64>,
+        dm: &mut Mat<f64>,
+        FieldStore { v, .. }: &mut FieldStore<Self>,
+    ) {
+        self.omega(1.0, m, v);
+        mul(dm, m.as_ref(), v.as_ref());
+        antisymmetrise(dm);
+    }
 }
 
 /// The free n-dimensional rigid body with its attitude: ġ = f(g)·g on SO(n),
@@ -150,9 +163,8 @@ impl RigidBodyNAttitude {
         g.transpose() * &self.momentum_space * g.as_ref()
     }
 
-    /// w.2 ← ω_s = g Ω(gᵀ m_s g) gᵀ.
-    fn omega_space(&self, g: &GroupMatrix, w: &mut [Mat<f64>; 3]) {
-        let [a, b, out] = w;
+    /// out ← g Ω(gᵀ m_s g) gᵀ.
+    fn omega_space(&self, g: &GroupMatrix, out: &mut Mat<f64>, [a, b]: &mut [Mat<f64>; 2]) {
         mul(a, g.transpose(), self.momentum_space.as_ref());
         mul(b, a.as_ref(), g.as_ref());
         self.body.omega(1.0, b, a);
@@ -164,7 +176,7 @@ impl RigidBodyNAttitude {
 impl Problem for RigidBodyNAttitude {
     type Group = MatrixGroup;
     type Action = LeftTranslation;
-    type Work = [Mat<f64>; 3];
+    type Work = [Mat<f64>; 2];
 
     fn group(&self) -> &MatrixGroup {
         &self.body.group
@@ -172,13 +184,12 @@ impl Problem for RigidBodyNAttitude {
     fn action(&self) -> &LeftTranslation {
         &LeftTranslation
     }
-    fn work(&self) -> [Mat<f64>; 3] {
+    fn work(&self) -> [Mat<f64>; 2] {
         let n = self.body.group.n();
         core::array::from_fn(|_| Mat::zeros(n, n))
     }
-    fn f(&self, _: f64, g: &GroupMatrix, v: &mut AlgebraMatrix, work: &mut [Mat<f64>; 3]) {
-        self.omega_space(g, work);
-        v.copy_from(&work[2]);
+    fn f(&self, _: f64, g: &GroupMatrix, v: &mut AlgebraMatrix, work: &mut [Mat<f64>; 2]) {
+        self.omega_space(g, v, work);
         tally(|| (Ops::adds(1) + Ops::muls(1)) * (v.ncols() * v.ncols().saturating_sub(1) / 2));
         // Two congruences leave rounding in the symmetric part; so(n) has none.
         for j in 0..v.ncols() {
@@ -188,6 +199,17 @@ impl Problem for RigidBodyNAttitude {
                 (v[(i, j)], v[(j, i)]) = (w, -w);
             }
         }
+    }
+    /// Without the skew part of ω_s: on the entries of g its rounding is one among others.
+    fn field(
+        &self,
+        _: f64,
+        g: &GroupMatrix,
+        dg: &mut GroupMatrix,
+        FieldStore { v, work, .. }: &mut FieldStore<Self>,
+    ) {
+        self.omega_space(g, v, work);
+        mul(dg, v.as_ref(), g.as_ref());
     }
 }
 

@@ -11,24 +11,17 @@
 
 use std::sync::Arc;
 
-use lieflow::Error;
 use lieflow::actions::LeftTranslation;
 use lieflow::groups::{LieGroup, So3, vee};
 use lieflow::problems::{BodyTorque, Motion, Torque, TorqueBody};
 use lieflow::scalar::Real;
 use nalgebra::{Matrix3, Vector3};
-use serde::Deserialize;
-use toml::de::ValueDeserializer;
 
 use super::body::{ATTITUDE, ROTATION, attitude, by_rows};
 use super::flow;
-use super::quantity::Quantity;
-use super::system::{Number, Start, Stated, System, quantities_of};
-use super::{Figure, Kind, Law, PARAMETERS, ProblemSpec, Scale, keys};
-use crate::model::Layer;
+use super::prelude::*;
 use crate::scene::formula::{Formula, Parameters, read_all};
-use crate::scene::values::{self, Reals, Rows, Texts};
-use crate::scene::{ReadError, Refusal};
+use crate::scene::values::{self, Rows, Texts};
 
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {

@@ -1,21 +1,13 @@
 //! `kind = "heavy-top"`: a rigid body that turns about a fixed point under gravity, by its momentum μ and
 //! the vertical γ in the body, on se(3)*; see [`HeavyTop`].
 
-use lieflow::Error;
 use lieflow::actions::Coadjoint;
 use lieflow::problems::{HeavyTop, Invariants};
 use nalgebra::Vector3;
-use serde::Deserialize;
-use toml::de::ValueDeserializer;
 
 use super::body::{check_unit, momentum_body};
 use super::flow::OnSe3;
-use super::quantity::Quantity;
-use super::system::{Number, Start, Stated, System, quantities_of};
-use super::{Figure, Kind, Law, ProblemSpec, keys};
-use crate::model::Layer;
-use crate::scene::ReadError;
-use crate::scene::values::Reals;
+use super::prelude::*;
 
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {

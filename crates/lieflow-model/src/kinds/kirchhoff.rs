@@ -4,22 +4,14 @@
 //! v = M⁻¹π. f = −(ω, v); Λ coadjoint. Invariants: H, |π|² and μ·π (the Casimirs).
 //! Source: H. Lamb, Hydrodynamics, chapter 6.
 
-use lieflow::Error;
 use lieflow::actions::Coadjoint;
 use lieflow::groups::Se3;
 use lieflow::problems::{Euler, Kinetic};
 use nalgebra::Vector3;
-use serde::Deserialize;
-use toml::de::ValueDeserializer;
 
 use super::body::check_each;
 use super::flow::OnSe3;
-use super::quantity::Quantity;
-use super::system::{Number, Start, Stated, System, quantities_of};
-use super::{Figure, Kind, Law, ProblemSpec, keys};
-use crate::model::Layer;
-use crate::scene::ReadError;
-use crate::scene::values::Reals;
+use super::prelude::*;
 
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {

@@ -6,13 +6,13 @@ use lieflow::problems::Kept;
 /// A quantity whose columns the exact motion keeps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Law {
-    /// The quantity.
+    /// The quantity; empty until the quantity that states the law names it.
     pub quantity: &'static str,
     /// What keeps it: a method that acts by the group keeps what the action keeps.
     pub kept: Kept,
     /// Its degree as a polynomial of the state; 0 where it is none, or the motion keeps it on M alone.
     pub degree: u32,
-    /// In what its rounding is measured.
+    /// The size that its rounding is relative to.
     pub scale: Scale,
 }
 
@@ -37,24 +37,16 @@ pub const SIZE: &str = ".size";
 const ROUNDINGS: f64 = 64.0;
 
 impl Law {
-    /// The action keeps it.
+    /// A law of the action.
     pub(super) const fn by_the_action(degree: u32) -> Law {
-        Law::of_the_action("", degree)
+        Law { quantity: "", kept: Kept::ByTheAction, degree, scale: Scale::Value }
     }
-    /// This flow keeps it.
+    /// A law of this flow.
     pub(super) const fn by_the_flow(degree: u32) -> Law {
-        Law::of_the_flow("", degree)
+        Law { kept: Kept::ByTheFlow, ..Law::by_the_action(degree) }
     }
-    /// One that the action keeps.
-    pub const fn of_the_action(quantity: &'static str, degree: u32) -> Law {
-        Law { quantity, kept: Kept::ByTheAction, degree, scale: Scale::Value }
-    }
-    /// One that this flow keeps.
-    pub const fn of_the_flow(quantity: &'static str, degree: u32) -> Law {
-        Law { quantity, kept: Kept::ByTheFlow, degree, scale: Scale::Value }
-    }
-    /// The same, its rounding measured otherwise.
-    pub const fn on_scale(self, scale: Scale) -> Law {
+    /// The law with another size that its rounding is relative to.
+    pub(super) const fn on_scale(self, scale: Scale) -> Law {
         Law { scale, ..self }
     }
 

@@ -1,22 +1,15 @@
 //! `kind = "lorentz"`: the four-velocity of a charged particle in constant fields, in SO(3,1); see
 //! [`ChargedParticle`]. u̇ = (q/m) F u in the particle's proper time, an equation of linear type.
 
-use faer::Mat;
 use lieflow::groups::{AlgebraMatrix, LieAlgebra, MatrixGroup};
 use lieflow::maps::Exp;
 use lieflow::problems::{ChargedParticle, Flow};
-use lieflow::{CoordinateMap, Error, Problem};
+use lieflow::{CoordinateMap, Problem};
 use nalgebra::Vector3;
-use serde::Deserialize;
-use toml::de::ValueDeserializer;
 
 use super::flow::OnMatrices;
 use super::matrix::MatrixAction;
-use super::quantity::Quantity;
-use super::system::{Number, Start, Stated, System, quantities_of};
-use super::{Figure, Kind, Law, ProblemSpec, keys};
-use crate::scene::values::{Real, Reals};
-use crate::scene::{ReadError, Refusal};
+use super::prelude::*;
 
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {

@@ -1,6 +1,6 @@
 //! The kinds of problems that scene files can name.
 //!
-//! To add a kind: one file with its keys and its `System`, one line in [`KINDS`].
+//! To add a kind: one file with its keys and its `System`, and its entry in [`KINDS`].
 
 mod algebra;
 mod beam_line;
@@ -21,7 +21,6 @@ mod lyapunov;
 mod matrix;
 mod matrix_ode;
 mod oja;
-mod old_system;
 mod pendulum;
 mod prelude;
 mod quantity;

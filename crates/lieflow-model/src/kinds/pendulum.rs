@@ -1,20 +1,12 @@
 //! `kind = "spherical-pendulum"`: a point mass on a rod that turns in every direction, on TS² as an orbit of
 //! SE(3); see [`SphericalPendulum`].
 
-use lieflow::Error;
 use lieflow::actions::Coadjoint;
 use lieflow::problems::SphericalPendulum;
 use nalgebra::Vector3;
-use serde::Deserialize;
-use toml::de::ValueDeserializer;
 
 use super::flow::OnSe3;
-use super::quantity::Quantity;
-use super::system::{Number, Start, Stated, System, quantities_of};
-use super::{Figure, Kind, Law, ProblemSpec, keys};
-use crate::model::Layer;
-use crate::scene::values::{Real, Reals};
-use crate::scene::{ReadError, Refusal};
+use super::prelude::*;
 
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {

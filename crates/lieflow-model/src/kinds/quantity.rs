@@ -13,10 +13,10 @@ pub(super) enum Value<S: System> {
     Numbers(fn(&S, f64, &PointOf<S>, &mut Vec<f64>)),
 }
 
-/// Whether a problem keeps a quantity.
-enum Kept<S> {
-    No,
-    Always(Law),
+/// Which problems keep a quantity.
+enum Keepers<S> {
+    None,
+    All(Law),
     Where(fn(&S) -> Option<Law>),
 }
 
@@ -26,7 +26,7 @@ pub(super) struct Quantity<S: System> {
     pub(super) value: Value<S>,
     /// The columns where the size of the problem says how many there are.
     pub(super) columns: Option<fn(&S) -> Vec<String>>,
-    law: Kept<S>,
+    law: Keepers<S>,
     /// The size of the terms that the quantity is the sum of.
     pub(super) terms: Option<fn(&S, &PointOf<S>) -> f64>,
     /// Why this problem has no such quantity.
@@ -35,7 +35,7 @@ pub(super) struct Quantity<S: System> {
 
 impl<S: System> Quantity<S> {
     const fn new(info: QuantityInfo, value: Value<S>) -> Self {
-        Quantity { info, value, columns: None, law: Kept::No, terms: None, missing: |_| None }
+        Quantity { info, value, columns: None, law: Keepers::None, terms: None, missing: |_| None }
     }
 
     /// A number; its column has its name.
@@ -65,12 +65,12 @@ impl<S: System> Quantity<S> {
 
     /// Every problem of the kind keeps the quantity.
     pub(super) const fn kept(self, law: Law) -> Self {
-        Quantity { law: Kept::Always(law), ..self }
+        Quantity { law: Keepers::All(law), ..self }
     }
 
     /// Some problems of the kind keep the quantity, or each by a law of its own.
     pub(super) const fn kept_where(self, law: fn(&S) -> Option<Law>) -> Self {
-        Quantity { law: Kept::Where(law), ..self }
+        Quantity { law: Keepers::Where(law), ..self }
     }
 
     /// The quantity is a sum of terms of this size, which may cancel: its rounding is measured in that.
@@ -86,9 +86,9 @@ impl<S: System> Quantity<S> {
     /// The law that the quantity obeys in this problem.
     pub(super) fn law(&self, system: &S) -> Option<Law> {
         let law = match self.law {
-            Kept::No => None,
-            Kept::Always(law) => Some(law),
-            Kept::Where(law) => law(system),
+            Keepers::None => None,
+            Keepers::All(law) => Some(law),
+            Keepers::Where(law) => law(system),
         }?;
         let scale = if self.terms.is_some() { Scale::Terms } else { law.scale };
         Some(Law { quantity: self.info.name, scale, ..law })

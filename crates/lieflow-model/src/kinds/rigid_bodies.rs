@@ -3,21 +3,13 @@
 //! f_i = −J_i⁻¹m_i; Λ = SO(3)ᴺ on vectors, which on so(3)* is the coadjoint action. Invariants: the energy
 //! and |m| of each.
 
-use lieflow::Error;
 use lieflow::actions::Linear;
 use lieflow::groups::{Power, So3};
 use lieflow::problems::{Euler, Exact, Kinetic, RigidBody};
 use nalgebra::{Matrix3, Vector3};
-use serde::Deserialize;
-use toml::de::ValueDeserializer;
 
 use super::flow::OnSpheres;
-use super::quantity::Quantity;
-use super::system::{Number, Start, Stated, System, quantities_of};
-use super::{Figure, Kind, Law, ProblemSpec, keys};
-use crate::model::Layer;
-use crate::scene::values::Reals;
-use crate::scene::{ReadError, Refusal};
+use super::prelude::*;
 
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {

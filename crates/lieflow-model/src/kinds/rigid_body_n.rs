@@ -3,17 +3,8 @@
 //! ṁ = \[m, Ω\], Ω_ij = m_ij/J_ij. f(m) = −Ω; Λ(g, m) = g m gᵀ. Invariants: tr mᵏ for even k (the
 //! action), the energy, and for J_ij = λ_i + λ_j Manakov's further integrals.
 
-use faer::Mat;
-use lieflow::Error;
+use super::prelude::*;
 use lieflow::problems::{RigidBodyN, manakov_integrals};
-use serde::Deserialize;
-use toml::de::ValueDeserializer;
-
-use super::quantity::Quantity;
-use super::system::{Number, Start, Stated, System, quantities_of};
-use super::{Kind, Law, ProblemSpec, keys};
-use crate::scene::values::List;
-use crate::scene::{Either, ReadError, Refusal, exactly_one};
 
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {

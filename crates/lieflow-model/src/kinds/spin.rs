@@ -5,18 +5,11 @@
 use lieflow::actions::Linear;
 use lieflow::groups::So3;
 use lieflow::problems::Flow;
-use lieflow::{Error, so3};
+use lieflow::so3;
 use nalgebra::Vector3;
-use serde::Deserialize;
-use toml::de::ValueDeserializer;
 
 use super::flow::OnSphere;
-use super::quantity::Quantity;
-use super::system::{Number, Start, Stated, System, quantities_of};
-use super::{Figure, Kind, Law, ProblemSpec, keys};
-use crate::model::Layer;
-use crate::scene::ReadError;
-use crate::scene::values::{Real, Reals};
+use super::prelude::*;
 
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {

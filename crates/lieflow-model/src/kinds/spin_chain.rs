@@ -1,19 +1,11 @@
 //! `kind = "spin-chain"`: the Landau–Lifshitz chain on (S²)ᴺ; see [`SpinChain`].
 
-use lieflow::Error;
 use lieflow::actions::Linear;
 use lieflow::problems::SpinChain;
 use nalgebra::Vector3;
-use serde::Deserialize;
-use toml::de::ValueDeserializer;
 
 use super::flow::OnSpheres;
-use super::quantity::Quantity;
-use super::system::{Number, Start, Stated, System, quantities_of};
-use super::{Figure, Kind, Law, ProblemSpec, keys};
-use crate::model::Layer;
-use crate::scene::values::{Real, Reals, Whole};
-use crate::scene::{Either, ReadError, Refusal, exactly_one};
+use super::prelude::*;
 
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {

@@ -77,15 +77,11 @@ impl Scene {
             .resolve(problem.kind(), &grid)
             .map_err(|refusal| document.refusal("output", refusal))?;
         for (i, name) in quantities.iter().enumerate() {
-            let message = match problem.columns(name) {
-                Ok(columns) if columns.is_empty() => format!("this problem has no `{name}`"),
-                Err(Error::Unsupported { why, .. }) => {
-                    format!("this problem has no `{name}`: {why}")
-                }
-                _ => continue,
-            };
-            let refusal = Refusal::at(format!("quantities[{i}]"), message);
-            return Err(document.refusal("output", refusal));
+            if let Err(Error::Unsupported { why, .. }) = problem.columns(name) {
+                let message = format!("this problem has no `{name}`: {why}");
+                let refusal = Refusal::at(format!("quantities[{i}]"), message);
+                return Err(document.refusal("output", refusal));
+            }
         }
         let stem = Path::new(source).file_stem().unwrap_or_default().to_string_lossy();
         let name = if stem.is_empty() { "scene".into() } else { stem.into_owned() };

@@ -282,7 +282,8 @@ fn equations_that_are_none_are_refused_at_their_line() {
     }
     let problem = "kind = \"matrix-ode\"\ngroup = \"gl\"\nfield = [[\"1\"]]";
     let (_, message) = refused(problem, FINE, "group_defect");
-    assert!(message.contains("this problem has no `group_defect`"), "{message}");
+    let why = "this problem has no `group_defect`: it is for translation on so, sp and so(p,q)";
+    assert!(message.contains(why), "{message}");
 }
 
 /// A field of many coordinates, each with a few others, is derived at once; one that would take millions of

@@ -116,7 +116,12 @@ const BROKEN: &[(&str, &str, &str, &[&str])] = &[
     ),
     ("mathieu", "q = 0.3", "", &["missing key `q`"]),
     ("coupled-oscillators", "period = 2.0", "period = 0", &["> 0"]),
-    ("coupled-oscillators", "q = [[0.0, 0.1],", "q = [[0.0, 0.2],", &["symmetric"]),
+    (
+        "coupled-oscillators",
+        "q = [[0.0, 0.1],",
+        "q = [[0.0, 0.2],",
+        &["expected a symmetric matrix, but entry (1,2) is 0.2 and (2,1) is 0.1"],
+    ),
     (
         "fodo-cell",
         "{ kind = \"drift\", length = 0.25 }",
@@ -129,6 +134,12 @@ const BROKEN: &[(&str, &str, &str, &[&str])] = &[
     ("riccati-pole", "p = [[0.0, 0.0], [0.0, 0.0]]", "p = []", &["no rows"]),
     ("crossed-fields", "velocity = [0.0, 0.0, 0.3]", "velocity = [0, 0, 1]", &["less than 1"]),
     ("rabi", "coupling = [[0.0, 0.1],", "coupling = [[0.0, 0.2],", &["a symmetric matrix"]),
+    (
+        "rabi",
+        "amplitudes = [1.0, 0.0]",
+        "coupling_imaginary = [[0, 1], [-1, 2]]\namplitudes = [1.0, 0.0]",
+        &["expected an antisymmetric matrix, but entry (2,2) is 2"],
+    ),
     ("rabi", "amplitudes = [1.0, 0.0]", "amplitudes = [0, 0]", &["|ψ|"]),
     ("rabi", "amplitudes = [1.0, 0.0]", "amplitudes = [1]", &["expected 2, one a level"]),
     ("three-level-transfer", "12.533]", "0]", &["width 0"]),
@@ -212,6 +223,9 @@ const BROKEN: &[(&str, &str, &str, &[&str])] = &[
         "space = \"rotation\"\nstart = [1, 0, 0]",
         &["the start of `g` is to be 3 rows of 3 numbers"],
     ),
+    ("general-top", "[\"vertical\", ", "[\"integral\", ", &["has no `integral`: only Euler's"]),
+    ("spin-pair", "\"lengths\"]", "\"defects\"]", &["has no `defects`: no part is a rotation"]),
+    ("cubic-anisotropy", "quantities = [", "quantities = [\"group\", ", &["has no `group`: "]),
 ];
 
 #[test]

@@ -5,21 +5,14 @@ mod system;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use lieflow::Error;
 use lieflow::groups::{LieGroup, MEMBERSHIP, So3};
 use nalgebra::{Matrix3, Vector3};
-use serde::Deserialize;
-use toml::de::ValueDeserializer;
 
 use self::system::{Coupled, ON_PARTS, Part, Point, Space};
 use super::flow;
-use super::quantity::Quantity;
-use super::system::{Number, Start, Stated, System, quantities_of};
-use super::{Figure, Kind, Law, ProblemSpec, Scale, keys};
-use crate::model::Layer;
+use super::prelude::*;
 use crate::scene::formula::{Formula, Parameters, read_all};
-use crate::scene::values::{Numbers, Table};
-use crate::scene::{ReadError, Refusal, help_for};
+use crate::scene::values::Numbers;
 
 pub(super) use self::system::{OnParts, Parts};
 

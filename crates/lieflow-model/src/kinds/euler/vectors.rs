@@ -1,8 +1,8 @@
 //! Euler's equations on so(3)* ≅ ℝ³ and se(3)* ≅ ℝ⁶, where the action on vectors is the coadjoint one.
 
 use lieflow::actions::{Coadjoint, Linear};
-use lieflow::groups::{Power, Se3, So3};
-use lieflow::problems::{Averaged, Euler};
+use lieflow::groups::{Adjoint, LieGroup, Power, Se3, So3};
+use lieflow::problems::{Averaged, DiscreteGradient, Euler};
 use nalgebra::Vector3;
 
 use super::energy::Energy;
@@ -67,12 +67,10 @@ impl<const N: usize> Vectors<N> {
     }
 
     /// H, and ∇H at a or at a + s(b − a).
-    fn averaged<S: Number, M: Numbers<S, N>>(
-        &self,
-    ) -> Averaged<
-        impl Fn(&M) -> S + use<S, M, N>,
-        impl Fn(&M, Option<(&M, S)>, &mut M) + use<S, M, N>,
-    > {
+    fn averaged<G, S: Number, M: Numbers<S, N>>(&self) -> impl DiscreteGradient<G> + use<G, S, M, N>
+    where
+        G: Adjoint<Dual = M> + LieGroup<Scalar = S, Alg = M>,
+    {
         let (value, gradient) = (self.energy.clone(), self.energy.clone());
         Averaged(
             move |m: &M| value.value(&m.numbers()),

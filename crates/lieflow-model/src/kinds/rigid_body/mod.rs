@@ -3,25 +3,20 @@
 mod model;
 mod shape;
 
-use lieflow::Error;
 use lieflow::groups::{MEMBERSHIP, So3};
 use lieflow::problems::RigidBody;
 use lieflow::problems::inertia::{principal_axes, violates_triangle};
 use lieflow::so3::{quaternion_from_matrix, quaternion_from_wxyz};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3, Vector4};
-use serde::Deserialize;
-use toml::de::ValueDeserializer;
 
 use self::model::{
     Attitude, AttitudeMatrix, Body, ByMethod, MomentumMatrix, MomentumOnly, Quaternion, State,
 };
 use self::shape::Shape;
 use super::body::{ATTITUDE, attitude, check_each, check_unit, momentum_body};
-use super::system::{Stated, System, quantities_of};
-use super::{Figure, Kind, Law, ProblemSpec, keys};
-use crate::model::{Layer, Model};
-use crate::scene::values::{Diagonal, Reals, Rows};
-use crate::scene::{Either, ReadError, Refusal, exactly_one};
+use super::prelude::*;
+use crate::model::Model;
+use crate::scene::values::{Diagonal, Rows};
 
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {

@@ -11,7 +11,6 @@
 
 use core::fmt::Debug;
 
-use faer::Mat;
 use lieflow::adaptive::{AdaptiveError, AdaptiveStats};
 use lieflow::catalog::{MethodSpec, Needs};
 use lieflow::groups::{GroupMatrix, LieGroup, MatrixGroup, So3, UnitQuaternions, hat, vee};
@@ -20,15 +19,14 @@ use lieflow::problems::{
     RigidBodyQuaternion, RigidBodyState,
 };
 use lieflow::so3::{quaternion_from_matrix, quaternion_to_wxyz};
-use lieflow::{Error, RunError, SaveAt, Stats, TimeGrid};
+use lieflow::{RunError, SaveAt, Stats, TimeGrid};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
-use super::super::body::{ROTATION, by_rows};
-use super::super::quantity::Quantity;
-use super::super::system::{Number, PointOf, Start, System};
-use super::super::{Kind, Law, Scale};
 use super::{KIND, RigidBodySpec, rotation};
-use crate::model::{Layer, Model, Runnable, Sink, Steps};
+use crate::kinds::body::{ROTATION, by_rows};
+use crate::kinds::prelude::*;
+use crate::kinds::system::PointOf;
+use crate::model::{Model, Runnable, Sink, Steps};
 use crate::operations::Pace;
 
 /// Where a body is: its momentum in the body, and its orientation where that is modelled.
