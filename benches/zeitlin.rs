@@ -14,7 +14,8 @@ use std::path::Path;
 
 use faer::c64;
 use lieflow::groups::ComplexMatrix;
-use lieflow::problems::{FluidMidpoint, FluidWork, Sphere, Zeitlin};
+use lieflow::methods::FluidMidpoint;
+use lieflow::problems::{Sphere, Zeitlin};
 use lieflow::{Method, Step};
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
@@ -31,7 +32,7 @@ fn thread_seconds() -> f64 {
 struct Run<'a> {
     fluid: &'a Zeitlin<Sphere>,
     method: FluidMidpoint,
-    work: FluidWork,
+    work: <FluidMidpoint as Method<Zeitlin<Sphere>>>::Work,
     w: ComplexMatrix,
     n: u64,
 }

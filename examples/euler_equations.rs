@@ -5,11 +5,10 @@
 //! cargo run --release --example euler_equations
 //! ```
 
-use lieflow::groups::{LieGroup, Product, Se3, So3};
-use lieflow::maps::{Cay, Exp};
-use lieflow::methods::{EnergyCasimir, Rkmk, tableau::RK4};
-use lieflow::problems::{Averaged, Euler, Kinetic};
-use lieflow::{SaveAt, TimeGrid, integrate};
+use lieflow::groups::Product;
+use lieflow::methods::EnergyCasimir;
+use lieflow::prelude::*;
+use lieflow::problems::{Euler, Kinetic, MeanGradient};
 use nalgebra::Vector3;
 
 type V = Vector3<f64>;
@@ -52,7 +51,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let slope = 0.3 * m.0.dot(&m.1).cos();
         *xi = (m.0.component_div(&j) + slope * m.1, m.1.component_div(&j) + slope * m.0);
     };
-    let pair = Euler::new(Product(So3::<f64>::new(), So3::new()), Averaged(energy, gradient));
+    let pair = Euler::new(Product(So3::<f64>::new(), So3::new()), MeanGradient(energy, gradient));
     let start = (V::new(1.0, 0.2, -0.4), V::new(0.3, -0.8, 0.5));
     println!("two coupled bodies: drift of the energy, of the two lengths");
     let drift = |m: &(V, V)| {

@@ -10,7 +10,8 @@ use std::path::Path;
 
 use faer::Mat;
 use lieflow::groups::ComplexMatrix;
-use lieflow::problems::{FluidMidpoint, Invariants, Surface, Vortex, Zeitlin};
+use lieflow::methods::FluidMidpoint;
+use lieflow::problems::{Invariants, Surface, Vortex, Zeitlin};
 use lieflow::{SaveAt, TimeGrid, integrate};
 
 type Anything = Box<dyn std::error::Error>;
@@ -59,7 +60,7 @@ fn report<S: Surface>(
 ) -> Result<(), Anything> {
     let (before, start) = (fluid.values(w), w.clone());
     integrate(fluid, &method, &TimeGrid::new([0.0, t], h)?, &SaveAt::Ends, w, |_, _| {})?;
-    println!("  the midpoint rule that keeps the {:?}:", method.keeps());
+    println!("  the midpoint rule {:?}:", method.rule());
     for ((what, a), b) in fluid.invariants().iter().zip(before).zip(fluid.values(w)) {
         println!("    {:18} {a:12.9}, moved by {:8.1e}", what.name, b - a);
     }

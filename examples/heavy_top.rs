@@ -5,10 +5,9 @@
 //! cargo run --release --example heavy_top
 //! ```
 
-use lieflow::maps::Exp;
-use lieflow::methods::{Rkmk, tableau::DOPRI5};
-use lieflow::problems::{HeavyTop, Invariants, Kept, Motion, SpaceTorque, TorqueBody};
-use lieflow::{SaveAt, TimeGrid, integrate};
+use lieflow::methods::tableau::DOPRI5;
+use lieflow::prelude::*;
+use lieflow::problems::{BodyMotion, HeavyTop, Invariants, Origin, SpaceTorque, TorqueBody};
 use nalgebra::{Matrix3, Vector3};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -26,14 +25,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         integrate(&top, &method, &grid, &SaveAt::Ends, &mut y, |_, _| {})?;
         println!("{name}: the vertical in the body is {:.4?}", y.1.as_slice());
         for ((what, a), b) in top.invariants().iter().zip(before).zip(top.values(&y)) {
-            let by = if what.kept == Kept::ByTheAction { "the action" } else { "the flow" };
+            let by = if what.origin == Origin::Action { "the action" } else { "the flow" };
             println!("  {:24} kept by {by:10} {a:9.6}, drift {:8.1e}", what.name, b - a);
         }
     }
 
     // The general top again, with its attitude, by the torque that gravity has in space.
     let w = Vector3::from(weight);
-    let gravity = SpaceTorque(move |at: &Motion| Vector3::z().cross(&(at.attitude * w)));
+    let gravity = SpaceTorque(move |at: &BodyMotion| Vector3::z().cross(&(at.attitude * w)));
     let body = TorqueBody::new(inertia, gravity)?;
     let top = HeavyTop::new(inertia, weight)?.problem();
     let (mut y, mut seen) = (body.state(Matrix3::identity(), [0.4, -0.1, 0.6])?, Vec::new());

@@ -6,10 +6,8 @@
 //! ```
 
 use faer::{Mat, Side, mat};
-use lieflow::maps::Cay;
-use lieflow::methods::{Rk, Rkmk, tableau::RK4};
+use lieflow::prelude::*;
 use lieflow::problems::{IsospectralFlow, toda_lattice};
-use lieflow::{SaveAt, TimeGrid, integrate};
 
 fn diagonal(l: &Mat<f64>) -> Vec<f64> {
     (0..l.nrows()).map(|i| l[(i, i)]).collect()

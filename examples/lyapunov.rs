@@ -5,10 +5,8 @@
 //! ```
 
 use faer::{Mat, mat};
-use lieflow::maps::Cay;
-use lieflow::methods::{Rkmk, tableau::RK4};
+use lieflow::prelude::*;
 use lieflow::problems::Lyapunov;
-use lieflow::{SaveAt, TimeGrid, integrate};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (sigma, rho, beta) = (10.0, 28.0, 8.0 / 3.0);

@@ -5,9 +5,10 @@
 //! cargo run --release --example periodic
 //! ```
 
+use lieflow::floquet::{Floquet, monodromy};
 use lieflow::methods::magnus::Magnus6;
 use lieflow::problems::beam::{Element, transfer_map, tunes};
-use lieflow::problems::{floquet, mathieu, monodromy};
+use lieflow::problems::mathieu;
 use std::f64::consts::PI;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -18,7 +19,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         for column in 0..=60 {
             let a = -1.0 + 0.1 * f64::from(column) + 0.05;
             let period = monodromy(&mathieu(a, q)?, &Magnus6, [0.0, PI], 40)?;
-            line.push(if floquet(&period)?.spectral_radius() < 1.0 + 1e-9 { '·' } else { '#' });
+            line.push(if Floquet::of(&period)?.spectral_radius() < 1.0 + 1e-9 {
+                '·'
+            } else {
+                '#'
+            });
         }
         println!("  {line}");
     }

@@ -5,12 +5,9 @@
 //! cargo run --release --example products
 //! ```
 
-use lieflow::actions::{LeftTranslation, Linear, Pair};
-use lieflow::groups::{LieGroup, Product, So3, Translations};
-use lieflow::maps::{Cay, Exp};
-use lieflow::methods::{Rkmk, tableau::RK4};
-use lieflow::problems::Flow;
-use lieflow::{SaveAt, TimeGrid, integrate};
+use lieflow::actions::Pair;
+use lieflow::groups::{Product, Translations};
+use lieflow::prelude::*;
 use nalgebra::{Matrix3, Vector3};
 
 /// From (−e₃, (2, 0)): in the frame that turns with the field the angle of the spin from −e₃ is that of a

@@ -7,10 +7,9 @@
 
 use faer::{Mat, mat};
 use lieflow::actions::Lagrangian;
-use lieflow::groups::{AlgebraMatrix, MatrixGroup};
+use lieflow::groups::AlgebraMatrix;
 use lieflow::methods::magnus::Magnus6;
-use lieflow::problems::Flow;
-use lieflow::{SaveAt, TimeGrid, integrate};
+use lieflow::prelude::*;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // Ṗ = 1 + P²: P = tan t, and steps pass its poles at π/2 and 3π/2.

@@ -6,11 +6,10 @@
 //! ```
 
 use faer::Mat;
+use lieflow::CoordinateMap;
 use lieflow::groups::{hat, vee};
-use lieflow::maps::{Cay, Exp};
-use lieflow::methods::{Rkmk, tableau::RK4};
+use lieflow::prelude::*;
 use lieflow::problems::{PointOf, RigidBody, RigidBodyN};
-use lieflow::{CoordinateMap, Problem, SaveAt, TimeGrid, integrate};
 use nalgebra::{Matrix3, Vector3};
 
 type Outcome<T> = Result<T, Box<dyn std::error::Error>>;

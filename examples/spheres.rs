@@ -4,10 +4,8 @@
 //! cargo run --release --example spheres
 //! ```
 
-use lieflow::maps::Cay;
-use lieflow::methods::{Rkmk, tableau::RK4};
+use lieflow::prelude::*;
 use lieflow::problems::{Invariants, SphericalPendulum, SpinChain};
-use lieflow::{SaveAt, TimeGrid, integrate};
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
 

@@ -6,10 +6,8 @@
 //! ```
 
 use faer::{Mat, Side};
-use lieflow::maps::{Cay, Exp};
-use lieflow::methods::{Rk, Rkmk, tableau::RK4};
+use lieflow::prelude::*;
 use lieflow::problems::{ChargedParticle, Invariants, Oja, SubspaceFlow};
-use lieflow::{SaveAt, TimeGrid, integrate};
 use nalgebra::Vector3;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

@@ -5,14 +5,13 @@
 //! cargo run --release --example symplectic
 //! ```
 
+use lieflow::prelude::*;
 use std::f64::consts::TAU;
 
 use faer::Mat;
-use lieflow::actions::LeftTranslation;
-use lieflow::groups::{AlgebraMatrix, LieGroup, MatrixGroup};
-use lieflow::maps::{Cay, Exp};
-use lieflow::methods::{Rkmk, tableau::RK4};
-use lieflow::problems::{Flow, LinearHamiltonian, monodromy};
+use lieflow::floquet::monodromy;
+use lieflow::groups::AlgebraMatrix;
+use lieflow::problems::LinearHamiltonian;
 
 /// ġ = A(t)g, A(t) = [0 𝟙; −K(t) 0] with K(t) = diag(stiffness) + drive·cos t·𝟙 + coupling.
 fn mathieu(

@@ -8,7 +8,7 @@
 use lieflow::groups::{LieGroup, So3, vee};
 use lieflow::maps::Exp;
 use lieflow::methods::{Rkmk, tableau::DOPRI5};
-use lieflow::problems::{BodyTorque, Motion, SpaceTorque, Torque, TorqueBody, inertia};
+use lieflow::problems::{BodyMotion, BodyTorque, SpaceTorque, Torque, TorqueBody, inertia};
 use lieflow::{SaveAt, TimeGrid, integrate};
 use nalgebra::{Matrix3, Vector3};
 
@@ -35,7 +35,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let start: State = (Matrix3::identity(), Vector3::new(0.01, 0.02, moments[2] * 2.0));
 
     // Slosh: a torque in the body that takes energy, and no momentum along m.
-    let slosh = BodyTorque(|at: &Motion| {
+    let slosh = BodyTorque(|at: &BodyMotion| {
         let m = at.attitude.tr_mul(&at.momentum_space);
         let along = at.omega_body.dot(&m) / m.norm_squared();
         -0.05 * (at.omega_body - along * m)
@@ -48,11 +48,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     assert!((end.1.norm() / start.1.norm() - 1.0).abs() < 1e-6);
 
     // A law against the attitude error and the velocity, and the same with a steady wind in space.
-    let law = BodyTorque(|at: &Motion| {
+    let law = BodyTorque(|at: &BodyMotion| {
         let away = vee(&((at.attitude - at.attitude.transpose()) * 0.5));
         -3.0 * away - 2.0 * at.omega_body
     });
-    let wind = SpaceTorque(|_: &Motion| Vector3::new(0.0, 0.3, 0.0));
+    let wind = SpaceTorque(|_: &BodyMotion| Vector3::new(0.0, 0.3, 0.0));
     let away = lieflow::so3::exp(&Vector3::new(0.4, -1.9, 0.7))?;
     let calm = run(&TorqueBody::new(moments, law)?, (away, Vector3::zeros()), 40.0)?;
     let windy = run(&TorqueBody::new(moments, (law, wind))?, (away, Vector3::zeros()), 40.0)?;

@@ -1,42 +1,10 @@
-//! λ_p = Λ_p ∘ Ψ, the pulled-back field f̃, and the field λ_*∘f on M: the one place where the maps of
-//! Figure 2 meet.
+//! λ_p = Λ_p ∘ Ψ and the pulled-back field f̃: the one place where the maps of Figure 2 meet.
 
 use crate::actions::Action;
 use crate::error::{Error, StepError};
-use crate::groups::{LieAlgebra, LieGroup};
-use crate::maps::CoordinateMap;
+use crate::groups::LieGroup;
+use crate::maps::{CoordinateMap, PsiOf};
 use crate::problems::{AlgOf, ElemOf, PointOf, Problem, ScalarOf};
-
-/// Ψ(u), not yet formed: an action on vectors never forms it.
-#[derive(Debug)]
-pub struct PsiOf<'a, G: LieGroup, Psi: CoordinateMap<G>> {
-    group: &'a G,
-    psi: &'a Psi,
-    u: &'a G::Alg,
-    at: &'a mut Psi::At,
-    g: &'a mut G::Elem,
-}
-
-impl<'a, G: LieGroup, Psi: CoordinateMap<G>> PsiOf<'a, G, Psi> {
-    /// The group, and Ψ(u) as an element of it.
-    ///
-    /// # Errors
-    /// As [`CoordinateMap::psi`].
-    #[inline]
-    pub fn form(self) -> Result<(&'a G, &'a G::Elem), StepError> {
-        self.psi.psi(self.group, self.u, self.at, self.g)?;
-        Ok((self.group, self.g))
-    }
-
-    /// y ← Ψ(u)·x.
-    ///
-    /// # Errors
-    /// As [`CoordinateMap::psi_on`].
-    #[inline]
-    pub fn on(self, x: &G::Vector, y: &mut G::Vector) -> Result<(), StepError> {
-        self.psi.psi_on(self.group, self.u, self.at, self.g, x, y)
-    }
-}
 
 /// Storage of a chart; made once.
 #[allow(missing_debug_implementations)] // the parts belong to the problem's types
@@ -80,25 +48,6 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>> ChartStore<P, Psi> {
     }
 }
 
-/// Storage of the field F(t, y) = λ_*(f(t, y))(y) on M; made once.
-#[allow(missing_debug_implementations)] // the parts belong to the problem's types
-pub struct FieldStore<P: Problem + ?Sized> {
-    /// f(t, y).
-    pub v: AlgOf<P>,
-    /// Scratch of the action.
-    pub action: <P::Action as Action<P::Group>>::Work,
-    /// Scratch of f.
-    pub work: P::Work,
-}
-
-impl<P: Problem> FieldStore<P> {
-    /// Storage sized for `problem`.
-    pub fn new(problem: &P) -> Self {
-        let group = problem.group();
-        FieldStore { v: group.zero(), action: problem.action().work(group), work: problem.work() }
-    }
-}
-
 /// The chart λ_p : 𝔤 → M around a point p.
 #[allow(missing_debug_implementations)] // the parts belong to the problem's types
 pub struct Chart<'a, P: Problem, Psi: CoordinateMap<P::Group>> {
@@ -116,7 +65,7 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>> Chart<'_, P, Psi> {
     #[inline]
     pub fn lambda(&mut self, u: &AlgOf<P>, q: &mut PointOf<P>) -> Result<(), StepError> {
         let ChartStore { at, g, act, .. } = &mut *self.store;
-        let psi_u = PsiOf { group: self.problem.group(), psi: self.psi, u, at, g };
+        let psi_u = PsiOf::new(self.problem.group(), self.psi, u, at, g);
         self.problem.action().lambda(psi_u, self.p, q, act)
     }
 
@@ -139,7 +88,7 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>> Chart<'_, P, Psi> {
     ) -> Result<(), StepError> {
         let group = self.problem.group();
         let ChartStore { at, g, y, act, field } = &mut *self.store;
-        let psi_u = PsiOf { group, psi: self.psi, u, at: &mut *at, g };
+        let psi_u = PsiOf::new(group, self.psi, u, &mut *at, g);
         self.problem.action().lambda(psi_u, self.p, y, act)?;
         self.problem.f(t, y, k, field);
         self.psi.dpsi_inv(group, u, at, k)

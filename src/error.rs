@@ -11,9 +11,9 @@ pub enum Error {
     NotSquare {
         /// The argument.
         arg: &'static str,
-        /// Its rows.
+        /// The number of rows.
         rows: usize,
-        /// Its columns.
+        /// The number of columns.
         cols: usize,
     },
     /// A matrix, vector or list has the wrong size.
@@ -21,9 +21,9 @@ pub enum Error {
     Shape {
         /// The argument.
         arg: &'static str,
-        /// Its rows.
+        /// The number of rows.
         rows: usize,
-        /// Its columns.
+        /// The number of columns.
         cols: usize,
         /// The rows it should have.
         expected_rows: usize,
@@ -83,7 +83,7 @@ pub enum Error {
     Singular {
         /// The argument.
         arg: &'static str,
-        /// Its reciprocal condition number in the 1-norm.
+        /// The reciprocal condition number in the 1-norm.
         rcond: f64,
         /// What was required.
         minimum: f64,
@@ -93,7 +93,7 @@ pub enum Error {
     OutOfRange {
         /// The argument, with its index where it has one.
         arg: String,
-        /// Its value.
+        /// The value of the argument.
         value: f64,
         /// What was expected, in words.
         expected: String,
@@ -111,7 +111,7 @@ pub enum Error {
     /// A map could not be evaluated at one element of an array.
     #[error("element {index}: {source}")]
     Element {
-        /// Its number, from 0.
+        /// The number of the element, from 0.
         index: usize,
         /// Why.
         source: StepError,
@@ -138,7 +138,7 @@ pub enum Error {
         group: String,
         /// The eigenvalue, real part.
         re: f64,
-        /// Its imaginary part, zero to rounding.
+        /// The eigenvalue, imaginary part: zero to rounding.
         im: f64,
         /// What is the case there.
         why: NoLogarithm,
@@ -148,14 +148,14 @@ pub enum Error {
 /// Why a negative eigenvalue of g stands in the way of a real logarithm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ThisError)]
 pub enum NoLogarithm {
-    /// Its multiplicity is odd: no real matrix has g as its exponential.
+    /// The multiplicity of the eigenvalue is odd: no real matrix has g as its exponential.
     #[error("its multiplicity is odd: no real matrix has g as its exponential")]
     Odd,
     /// The eigenvalue −1 with a form of odd signature on its eigenspace: g = exp(u) has real solutions u,
     /// and none of them lies in 𝔤.
     #[error("real logarithms exist, but none of them is in the algebra")]
     Outside,
-    /// It is defective, or M is neither symmetric nor skew: a logarithm, if there is one, is not
+    /// The eigenvalue is defective, or M is neither symmetric nor skew: a logarithm, if there is one, is not
     /// principal and not computed.
     #[error(
         "a real logarithm, if there is one, is not principal; it is not computed where the eigenvalue is defective or M neither symmetric nor skew"
@@ -205,9 +205,9 @@ pub enum StepError {
     Shape {
         /// The argument.
         arg: &'static str,
-        /// Its rows.
+        /// The number of rows.
         rows: usize,
-        /// Its columns.
+        /// The number of columns.
         cols: usize,
         /// The rows it should have.
         expected_rows: usize,
@@ -261,7 +261,7 @@ pub enum StepError {
         map: &'static str,
         /// The matrix.
         what: &'static str,
-        /// Its reciprocal condition number in the 1-norm.
+        /// The reciprocal condition number in the 1-norm.
         rcond: f64,
     },
 }
@@ -283,6 +283,7 @@ impl StepError {
 /// A run that stopped early. The state handed to the driver holds the last accepted point.
 #[derive(Clone, Copy, Debug, PartialEq, ThisError)]
 #[error("step {step} from t = {t} with h = {h} failed: {source}")]
+#[non_exhaustive]
 pub struct Failure {
     /// The number of steps that had been accepted.
     pub step: u64,

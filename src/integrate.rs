@@ -76,7 +76,7 @@ impl TimeGrid {
         Ok(grid)
     }
 
-    /// So many steps may be taken from step `n` on without passing `time`: at least one.
+    /// How many steps may be taken from step `n` on without passing `time`: at least one.
     fn last_before(&self, n: u64, time: Option<&f64>) -> Option<u64> {
         let steps = ((*time? - self.t0) / self.h()).floor();
         // One less, for rounding.
@@ -168,6 +168,7 @@ impl SaveAt {
 
 /// What a run did.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Stats {
     /// Steps of the run.
     pub steps: u64,
@@ -176,19 +177,19 @@ pub struct Stats {
     /// How often the state was looked at, and taken back to M where it had left it
     /// ([`Action::restore_to`]).
     pub restored: u64,
-    /// How often it was left where it was, because it was too far off
+    /// How often the state was left where it was, because it was too far off
     /// ([`RESIDUAL_MAX`](crate::groups::RESIDUAL_MAX)).
     pub not_restored: u64,
     /// A power of two above every residual that was seen there, ‖M⁻¹gᵀMg − 𝟙‖ on a group,
-    /// ||x|²/|x₀|² − 1| of a vector under SO(3); 0 when none was. On a compact group it stays near 1e-14. On a non-compact one rounding level is
-    /// ε‖g‖²: compare with that.
+    /// ||x|²/|x₀|² − 1| of a vector under SO(3); 0 when none was. On a compact group it stays near 1e-14. On a
+    /// non-compact one rounding level is ε‖g‖²: compare with that.
     pub residual: f64,
 }
 
 /// The driver calls [`Action::restore_to`] after every so many steps at most: rounding takes g off its
 /// group by some ε a step, and a hundred steps stay below 2e-14 at a hundredth of the cost of one.
 pub const RESTORE_EVERY: u64 = 100;
-/// It begins with this many steps in between, and never has fewer.
+/// The number of steps in between at first, and the least there can be.
 const RESTORE_EVERY_MIN: u64 = 8;
 
 /// When to look at the state again: twice as many steps after a residual below 4e-15, half as many

@@ -12,16 +12,30 @@
 //! An equation is given as f : M → 𝔤, ẏ = λ_*(f(t, y))(y); a step is taken in 𝔤 and carried to M,
 //! so that the result never leaves M.
 //!
-//! | symbol | here |
-//! |---|---|
-//! | 𝔤, G | [`groups`]: [`LieAlgebra`], [`LieGroup`]; [`So3`](groups::So3), [`Se3`](groups::Se3), [`MatrixGroup`](groups::MatrixGroup), [`Product`](groups::Product), [`Power`](groups::Power) |
-//! | Ψ, dΨ⁻¹ | [`maps`]: [`CoordinateMap`]; [`Exp`](maps::Exp), [`Cay`](maps::Cay), [`CCSK123`](maps::CCSK123), [`CCSK321`](maps::CCSK321) |
-//! | Λ, M | [`actions`]: [`Action`]; left translation, coadjoint, linear, conjugation |
-//! | λ_p, f̃ | [`chart`] |
-//! | f : M → 𝔤 | [`problems`]: [`Problem`]; rigid bodies, tops, Lie–Poisson, isospectral and other flows |
-//! | one step | [`methods`]: [`Method`]; [`Rkmk`](methods::Rkmk), [`Rk`](methods::Rk) |
-//! | many steps | [`integrate()`], [`TimeGrid`], [`SaveAt`] |
-//! | many bodies | [`ensemble`] |
+//! # The rooms
+//! A file uses what is in its own room and in those above it in this table.
+//!
+//! | room | symbol | what it has |
+//! |---|---|---|
+//! | [`scalar`] | | numbers: `f64`, double-double, numbers that count operations |
+//! | [`error`] | | [`Error`], [`StepError`] |
+//! | `quadrature` | | nodes and weights |
+//! | `elliptic` | | Carlson's integrals, Jacobi's functions |
+//! | [`dense`] | | kernels for matrices: products, LU, exp |
+//! | [`so3`] | | the closed forms on so(3) ≅ ℝ³ |
+//! | [`space`] | | the linear space around M, and its metric |
+//! | [`groups`] | 𝔤, G | [`LieAlgebra`], [`LieGroup`]; [`So3`](groups::So3), [`Se3`](groups::Se3), [`MatrixGroup`](groups::MatrixGroup), [`Product`](groups::Product), [`Power`](groups::Power) |
+//! | [`maps`] | Ψ, dΨ⁻¹ | [`CoordinateMap`]; [`Exp`](maps::Exp), [`Cay`](maps::Cay), [`CCSK123`](maps::CCSK123), [`CCSK321`](maps::CCSK321) |
+//! | [`actions`] | Λ, M | [`Action`]; left translation, coadjoint, linear, conjugation |
+//! | [`problems`] | f : M → 𝔤 | [`Problem`]; rigid bodies, tops, Lie–Poisson, isospectral and other flows |
+//! | [`chart`] | λ_p, f̃ | the chart around a point |
+//! | [`methods`] | one step | [`Method`]; [`Rkmk`](methods::Rkmk), [`Rk`](methods::Rk) |
+//! | [`integrate`](fn@integrate) | many steps | [`TimeGrid`], [`SaveAt`] |
+//! | [`adaptive`] | | step sizes from a tolerance |
+//! | [`floquet`] | | the monodromy of a linear system with periodic coefficients |
+//! | [`ensemble`] | | many bodies at once |
+//! | [`check`] | | the laws of groups and maps, for groups of other crates |
+//! | [`catalog`] | | methods by name |
 //!
 //! Two layers share every trait: closed forms on so(3) ≅ ℝ³ over nalgebra, and any n over faer. The
 //! same [`Rkmk`](methods::Rkmk) runs on both, and they agree to rounding.
@@ -32,10 +46,8 @@
 //!
 //! # A first run
 //! ```
-//! use lieflow::maps::{Cay, Exp};
-//! use lieflow::methods::{Rkmk, tableau::RK4};
+//! use lieflow::prelude::*;
 //! use lieflow::problems::{Exact, RigidBodyAttitude};
-//! use lieflow::{SaveAt, TimeGrid, integrate};
 //! use nalgebra::Matrix3;
 //!
 //! let (inertia, momentum) = ([1.0, 2.0, 3.0], [0.2, 0.0, 3.0]);
@@ -62,13 +74,17 @@ pub mod catalog;
 pub mod chart;
 pub mod check;
 pub mod dense;
+mod elliptic;
 pub mod ensemble;
 pub mod error;
+pub mod floquet;
 pub mod groups;
 mod integrate;
 pub mod maps;
 pub mod methods;
+pub mod prelude;
 pub mod problems;
+mod quadrature;
 pub mod scalar;
 pub mod so3;
 pub mod space;

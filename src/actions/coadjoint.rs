@@ -11,18 +11,19 @@
 //! | any n | n×n matrices, ⟨m, v⟩ = tr(mᵀv) | g⁻ᵀ m gᵀ: g m gᵀ on SO(n), MgM⁻¹ m gᵀ on G_M | m vᵀ − vᵀ m |
 
 use faer::Mat;
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 use super::Action;
-use crate::chart::PsiOf;
 use crate::dense::{Lu, congruence, mul, mul_add, skew_commutator};
 use crate::error::{Error, StepError};
 use crate::groups::{
     AlgebraMatrix, Form, GroupMatrix, LieAlgebra, LieGroup, MatrixGroup, RESIDUAL_MAX, Se3, So3,
-    add3, cross, dot3, in_range, worse,
+    UnitQuaternions, worse,
 };
 use crate::maps::CoordinateMap;
+use crate::maps::PsiOf;
 use crate::scalar::Real;
+use crate::so3::{add3, cross, dot3, in_range};
 
 /// The coadjoint action Λ(g, m) = Ad*_{g⁻¹} m.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -71,6 +72,40 @@ impl<S: Real> Action<So3<S>> for Coadjoint {
         _: &mut (),
     ) -> Option<S> {
         group.correct_vector(from, p)
+    }
+}
+
+/// Ad*_{q⁻¹} m = q m q̄.
+impl Action<UnitQuaternions> for Coadjoint {
+    type Point = Vector3<f64>;
+    type Work = ();
+
+    fn work(&self, _: &UnitQuaternions) {}
+    #[inline]
+    fn check(&self, group: &UnitQuaternions, m: &Vector3<f64>) -> Result<(), Error> {
+        group.check_vector(m)
+    }
+    #[inline]
+    fn act(
+        &self,
+        group: &UnitQuaternions,
+        q: &UnitQuaternion<f64>,
+        m: &Vector3<f64>,
+        out: &mut Vector3<f64>,
+        _: &mut (),
+    ) {
+        group.apply(q, m, out);
+    }
+    #[inline]
+    fn generate(
+        &self,
+        group: &UnitQuaternions,
+        v: &Vector3<f64>,
+        m: &Vector3<f64>,
+        dm: &mut Vector3<f64>,
+        _: &mut (),
+    ) {
+        group.apply_algebra(v, m, dm);
     }
 }
 

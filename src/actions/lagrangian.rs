@@ -5,11 +5,11 @@
 use faer::{Mat, MatRef};
 
 use super::Action;
-use crate::chart::PsiOf;
 use crate::dense::{Lu, is_finite, mul_add};
 use crate::error::{Error, StepError};
 use crate::groups::{AlgebraMatrix, GroupMatrix, MatrixGroup, check_entries};
 use crate::maps::CoordinateMap;
+use crate::maps::PsiOf;
 use crate::scalar::{Ops, tally};
 
 /// Λ(g, P) = (C + DP)(A + BP)⁻¹ on symmetric m×m matrices. Where A + BP is singular the subspace is

@@ -2,10 +2,10 @@
 //! One `impl` for every group; Ψ(u) is applied, never formed, where the map knows how.
 
 use super::Action;
-use crate::chart::PsiOf;
 use crate::error::{Error, StepError};
 use crate::groups::LieGroup;
 use crate::maps::CoordinateMap;
+use crate::maps::PsiOf;
 
 /// The standard representation: ẋ = f(x)·x.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

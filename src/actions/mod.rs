@@ -8,18 +8,19 @@ mod lagrangian;
 mod linear;
 mod parts;
 mod translation;
+mod unitary;
 
 pub use coadjoint::Coadjoint;
-pub use conjugation::{Conjugation, ConjugationWork};
-pub use lagrangian::{Lagrangian, LagrangianWork};
+pub use conjugation::Conjugation;
+pub use lagrangian::Lagrangian;
 pub use linear::Linear;
 pub use parts::{Each, Pair};
 pub use translation::LeftTranslation;
 
-use crate::chart::PsiOf;
 use crate::error::{Error, StepError};
 use crate::groups::LieGroup;
 use crate::maps::CoordinateMap;
+use crate::maps::PsiOf;
 
 /// A left action Λ of G on M: Λ(𝟙, p) = p and Λ(ab, p) = Λ(a, Λ(b, p)).
 pub trait Action<G: LieGroup> {
@@ -105,8 +106,8 @@ pub trait Action<G: LieGroup> {
         None
     }
 
-    /// The same, and back to the orbit of `from`, which a run that starts there never leaves: |x| of a
-    /// vector under SO(3). What the driver calls; the default is [`restore`](Self::restore).
+    /// Take p back to M, and to the orbit of `from`, which a run that starts there never leaves: |x| of a
+    /// vector under SO(3). The driver calls this; the default is [`restore`](Self::restore).
     #[inline]
     fn restore_to(
         &self,

@@ -25,7 +25,7 @@ use crate::groups::{LieGroup, Power, Product, worse};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Pair<L, R>(pub L, pub R);
 
-/// One action for every copy of a [`Power`], on Mᴺ.
+/// The action of a [`Power`] on Mᴺ by one action on every copy of M.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Each<L>(pub L);
 

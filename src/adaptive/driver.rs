@@ -11,6 +11,7 @@ use crate::scalar::Real;
 
 /// What a run did.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct AdaptiveStats {
     /// Steps accepted.
     pub accepted: u64,
@@ -28,7 +29,7 @@ pub struct AdaptiveStats {
     pub largest_step: f64,
     /// How often the state was taken back to M ([`Stats::restored`]).
     pub restored: u64,
-    /// How often it was too far off for that ([`Stats::not_restored`]).
+    /// How often the state was too far off M for that ([`Stats::not_restored`]).
     pub not_restored: u64,
     /// A power of two above every residual that was seen there ([`Stats::residual`]).
     pub residual: f64,
@@ -85,7 +86,7 @@ fn reason(source: &Option<StepError>) -> String {
     }
 }
 
-/// So many rejections in a row end a run.
+/// The number of rejections in a row that ends a run.
 const REJECTIONS_MAX: u32 = 60;
 
 /// Integrate `problem` over `t_span` from y with steps that meet the tolerances of `control`, showing

@@ -3,15 +3,17 @@
 //! Tableaus with few stages share one type and so do maps, so that a problem has a few dozen methods to compile
 //! whatever is in the lists.
 
-use super::recipe::{Recipe, SizedTableau};
-use super::{Choice, Made};
+use super::recipe::{GaussTableau, Recipe, SizedTableau};
+use super::{Choice, MaybeMethod};
+use crate::error::{Error, StepError};
 use crate::maps::{Cay, CoordinateMap, Exp, ExpOrCay, MapsByName, NamedMap, Serves};
 use crate::methods::{
-    AnyMethod, Buss4, CfMagnus, CommutatorFree, Composition, Conjugates, Conjugating,
-    EnergyCasimir, ExactMotion, GAUSS2, GAUSS4, GAUSS6, Gauss, IsospectralGauss, LieSeries,
-    LowStorage, Metric, OneBracket, Projected, Rk, Rkmk, RkmkGauss, RkmkGaussSymmetric,
-    SeriesGroup, Taylor, Wide, magnus,
+    AnyMethod, Buss4, CfMagnus, CommutatorFree, Composition, ConjugationAction, ConjugationGroup,
+    Embedded, EnergyCasimir, ExactMotion, GAUSS2, GAUSS4, GAUSS6, Gauss, IsospectralGauss,
+    LieSeries, LowStorage, Method, Metric, OneBracket, ProjectionMethod, Rk, Rkmk, RkmkGauss,
+    RkmkGaussSymmetric, SeriesGroup, Taylor, Wide, magnus,
 };
+use crate::methods::{Step, tableau};
 use crate::problems::{
     Ambient, FreeBody, LiePoisson, LinearField, Orthogonal, PointOf, Problem, ScalarOf, Split,
     TaylorField,
@@ -19,20 +21,20 @@ use crate::problems::{
 use crate::scalar::Trig;
 
 /// A method without an estimate of its own.
-fn plain<'p, P: Problem + 'p>(method: impl crate::Method<P> + Clone + 'p) -> Made<'p, P> {
+fn plain<'p, P: Problem + 'p>(method: impl Method<P> + Clone + 'p) -> MaybeMethod<'p, P> {
     Ok(Some(AnyMethod::new(method)))
 }
 
 /// A method with one.
-fn pair<'p, P: Problem + 'p>(method: impl crate::methods::Embedded<P> + Clone + 'p) -> Made<'p, P> {
+fn pair<'p, P: Problem + 'p>(method: impl Embedded<P> + Clone + 'p) -> MaybeMethod<'p, P> {
     Ok(Some(AnyMethod::embedded(method)))
 }
 
 /// Explicit methods for every problem ([`Needs::Field`](super::Needs::Field)), but for those of [`classical`].
 ///
 /// # Errors
-/// [`Error::Unsupported`] for a map that the group does not have.
-pub fn fields<'p, P>(choice: &Choice<'_>) -> Made<'p, P>
+/// [`Error::Unsupported`](crate::Error::Unsupported) for a map that the group does not have.
+pub fn fields<'p, P>(choice: &Choice<'_>) -> MaybeMethod<'p, P>
 where
     P: Ambient<Group: MapsByName> + 'p,
     PointOf<P>: Metric<Scalar = ScalarOf<P>>,
@@ -53,32 +55,36 @@ where
     }
 }
 
-/// RKMK of at most four stages with the map as a type, before [`fields`]: for the closed rigid body, whose steps
-/// are so short that the choice of the map would show.
+/// The lane of the closed rigid body, before [`fields`]: its steps are so short that the choice of the map, and
+/// coefficients that the compiler does not know, would show. RKMK of at most four stages with the map as a type,
+/// and the classical tableau as a constant.
 ///
 /// # Errors
 /// None.
-pub fn closed_rkmk<'p, P>(choice: &Choice<'_>) -> Made<'p, P>
+pub fn closed<'p, P>(choice: &Choice<'_>) -> MaybeMethod<'p, P>
 where
     P: Ambient<Group: crate::maps::AllMaps> + 'p,
     Exp: CoordinateMap<P::Group>,
 {
-    let (Recipe::Rkmk, SizedTableau::Small(table)) = (choice.info.recipe, choice.tableau.table)
-    else {
-        return Ok(None);
-    };
+    let SizedTableau::Small(table) = choice.tableau.table else { return Ok(None) };
+    let is_classical = table.name == tableau::RK4.name;
     macro_rules! with {
-        ($psi:expr) => {
-            pair(Rkmk::new(table, *served::<P::Group, _>(&$psi)))
-        };
+        ($psi:expr) => {{
+            let psi = *served::<P::Group, _>(&$psi);
+            if is_classical { plain(Rkmk4(psi)) } else { pair(Rkmk::new(table, psi)) }
+        }};
     }
-    match choice.map::<P::Group>()? {
-        NamedMap::Exp(psi) => with!(psi),
-        NamedMap::Cay(psi) => with!(psi),
-        NamedMap::Ccsk123(psi) => with!(psi),
-        NamedMap::Ccsk321(psi) => with!(psi),
-        NamedMap::Pade22(psi) => with!(psi),
-        NamedMap::Ccsk(psi) => with!(psi),
+    match choice.info.recipe {
+        Recipe::Rkmk => match choice.map::<P::Group>()? {
+            NamedMap::Exp(psi) => with!(psi),
+            NamedMap::Cay(psi) => with!(psi),
+            NamedMap::Ccsk123(psi) => with!(psi),
+            NamedMap::Ccsk321(psi) => with!(psi),
+            NamedMap::Pade22(psi) => with!(psi),
+            NamedMap::Ccsk(psi) => with!(psi),
+            _ => Ok(None),
+        },
+        Recipe::Rk if is_classical => plain(Rk4),
         _ => Ok(None),
     }
 }
@@ -87,11 +93,61 @@ fn served<G: Serves<Psi>, Psi>(psi: &Psi) -> &G::Map {
     G::map(psi)
 }
 
+/// RKMK in the coordinates Ψ with the classical tableau as a constant.
+#[derive(Clone, Copy)]
+struct Rkmk4<Psi>(Psi);
+
+/// Runge–Kutta on the entries of the state with the classical tableau as a constant.
+#[derive(Clone, Copy)]
+struct Rk4;
+
+macro_rules! classical_method {
+    ([$($psi:ident)?] $name:ty, [$($bound:tt)*], $this:ident => $method:expr, $of:ty) => {
+        impl<P: Ambient, $($psi)?> Method<P> for $name
+        where
+            $($bound)*
+        {
+            type Work = <$of as Method<P>>::Work;
+
+            fn order(&self, problem: &P) -> usize {
+                let $this = self;
+                Method::<P>::order(&$method, problem)
+            }
+            fn evaluations(&self, problem: &P) -> Option<u64> {
+                let $this = self;
+                Method::<P>::evaluations(&$method, problem)
+            }
+            fn stays_on_manifold(&self) -> bool {
+                let $this = self;
+                Method::<P>::stays_on_manifold(&$method)
+            }
+            fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
+                let $this = self;
+                Method::<P>::work(&$method, problem, like)
+            }
+            #[inline(always)]
+            fn step(
+                &self,
+                problem: &P,
+                step: Step<ScalarOf<P>>,
+                y: &mut PointOf<P>,
+                work: &mut Self::Work,
+            ) -> Result<(), StepError> {
+                let $this = self;
+                $method.step(problem, step, y, work)
+            }
+        }
+    };
+}
+classical_method!([Psi] Rkmk4<Psi>, [Psi: CoordinateMap<P::Group> + Copy],
+    this => Rkmk::new(tableau::RK4, this.0), Rkmk<Psi, 4>);
+classical_method!([] Rk4, [], _this => Rk(tableau::RK4), Rk<4>);
+
 /// Classical methods on the entries of the state, explicit and implicit.
 ///
 /// # Errors
 /// None.
-pub fn classical<'p, P: Ambient + 'p>(choice: &Choice<'_>) -> Made<'p, P>
+pub fn classical<'p, P: Ambient + 'p>(choice: &Choice<'_>) -> MaybeMethod<'p, P>
 where
     PointOf<P>: Metric<Scalar = ScalarOf<P>>,
 {
@@ -100,7 +156,9 @@ where
             SizedTableau::Small(table) => pair(Rk(table)),
             SizedTableau::Large(table) => pair(Rk(table)),
         },
-        Recipe::Gauss(table) => plain(Gauss(table)),
+        Recipe::Gauss(GaussTableau::One(table)) => plain(Gauss(table)),
+        Recipe::Gauss(GaussTableau::Two(table)) => plain(Gauss(table)),
+        Recipe::Gauss(GaussTableau::Three(table)) => plain(Gauss(table)),
         _ => Ok(None),
     }
 }
@@ -108,17 +166,29 @@ where
 /// Implicit methods ([`Needs::Norm`](super::Needs::Norm)).
 ///
 /// # Errors
-/// [`Error::Unsupported`] for a map that the group does not have.
-pub fn implicit<'p, P>(choice: &Choice<'_>) -> Made<'p, P>
+/// [`Error::Unsupported`](crate::Error::Unsupported) for a map that the group does not have.
+pub fn implicit<'p, P>(choice: &Choice<'_>) -> MaybeMethod<'p, P>
 where
     P: Ambient<Group: MapsByName> + 'p,
     PointOf<P>: Metric<Scalar = ScalarOf<P>>,
     ExpOrCay: CoordinateMap<P::Group>,
 {
     match choice.info.recipe {
-        Recipe::RkmkGauss(table) => plain(RkmkGauss::new(table, choice.map::<P::Group>()?)),
+        Recipe::RkmkGauss(table) => {
+            let psi = choice.map::<P::Group>()?;
+            match table {
+                GaussTableau::One(table) => plain(RkmkGauss::new(table, psi)),
+                GaussTableau::Two(table) => plain(RkmkGauss::new(table, psi)),
+                GaussTableau::Three(table) => plain(RkmkGauss::new(table, psi)),
+            }
+        }
         Recipe::RkmkGaussSymmetric(table) => {
-            plain(RkmkGaussSymmetric::new(table, choice.odd_map()?))
+            let psi = choice.odd_map()?;
+            match table {
+                GaussTableau::One(table) => plain(RkmkGaussSymmetric::new(table, psi)),
+                GaussTableau::Two(table) => plain(RkmkGaussSymmetric::new(table, psi)),
+                GaussTableau::Three(table) => plain(RkmkGaussSymmetric::new(table, psi)),
+            }
         }
         _ => Ok(None),
     }
@@ -128,7 +198,7 @@ where
 ///
 /// # Errors
 /// None.
-pub fn linear_type<'p, P: LinearField + 'p>(choice: &Choice<'_>) -> Made<'p, P>
+pub fn linear_type<'p, P: LinearField + 'p>(choice: &Choice<'_>) -> MaybeMethod<'p, P>
 where
     P::Group: magnus::TripleProduct,
     Exp: CoordinateMap<P::Group>,
@@ -152,7 +222,9 @@ where
 ///
 /// # Errors
 /// None.
-pub fn series<'p, P: TaylorField<Group: SeriesGroup> + 'p>(choice: &Choice<'_>) -> Made<'p, P> {
+pub fn series<'p, P: TaylorField<Group: SeriesGroup> + 'p>(
+    choice: &Choice<'_>,
+) -> MaybeMethod<'p, P> {
     match choice.info.recipe {
         Recipe::Series(order) => plain(LieSeries::new(order)?),
         _ => Ok(None),
@@ -163,7 +235,7 @@ pub fn series<'p, P: TaylorField<Group: SeriesGroup> + 'p>(choice: &Choice<'_>) 
 ///
 /// # Errors
 /// None.
-pub fn bodies<'p, P: FreeBody + Split + 'p>(choice: &Choice<'_>) -> Made<'p, P>
+pub fn bodies<'p, P: FreeBody + Split + 'p>(choice: &Choice<'_>) -> MaybeMethod<'p, P>
 where
     ScalarOf<P>: Trig + Wide + Into<f64>,
 {
@@ -197,13 +269,17 @@ where
 ///
 /// # Errors
 /// None.
-pub fn projected<'p, P: Orthogonal + 'p>(choice: &Choice<'_>) -> Made<'p, P>
+pub fn projected<'p, P: Orthogonal + 'p>(choice: &Choice<'_>) -> MaybeMethod<'p, P>
 where
     PointOf<P>: Metric<Scalar = ScalarOf<P>>,
 {
     match (choice.info.recipe, choice.tableau.table) {
-        (Recipe::Projected(how), SizedTableau::Small(t)) => pair(Projected::new(Rk(t), how)),
-        (Recipe::Projected(how), SizedTableau::Large(t)) => pair(Projected::new(Rk(t), how)),
+        (Recipe::ProjectionMethod(how), SizedTableau::Small(t)) => {
+            pair(ProjectionMethod::new(Rk(t), how))
+        }
+        (Recipe::ProjectionMethod(how), SizedTableau::Large(t)) => {
+            pair(ProjectionMethod::new(Rk(t), how))
+        }
         _ => Ok(None),
     }
 }
@@ -212,7 +288,7 @@ where
 ///
 /// # Errors
 /// None.
-pub fn energy_casimir<'p, P: LiePoisson + 'p>(choice: &Choice<'_>) -> Made<'p, P>
+pub fn energy_casimir<'p, P: LiePoisson + 'p>(choice: &Choice<'_>) -> MaybeMethod<'p, P>
 where
     PointOf<P>: Metric<Scalar = ScalarOf<P>>,
     ExpOrCay: CoordinateMap<P::Group>,
@@ -230,10 +306,10 @@ where
 ///
 /// # Errors
 /// None.
-pub fn isospectral<'p, P>(choice: &Choice<'_>) -> Made<'p, P>
+pub fn isospectral<'p, P>(choice: &Choice<'_>) -> MaybeMethod<'p, P>
 where
-    P: Ambient<Group: Conjugating> + 'p,
-    P::Action: Conjugates<P::Group>,
+    P: Ambient<Group: ConjugationGroup> + 'p,
+    P::Action: ConjugationAction<P::Group>,
 {
     match choice.info.recipe {
         Recipe::Isospectral2 => plain(IsospectralGauss(GAUSS2)),

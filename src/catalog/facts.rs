@@ -13,23 +13,23 @@ use super::recipe::Recipe;
 pub struct MethodInfo {
     /// The family of the method.
     pub family: Family,
-    /// Its name.
+    /// The name of the method.
     pub name: &'static str,
-    /// What it is, in one line.
+    /// What the method is, in one line.
     pub summary: &'static str,
-    /// Its order.
+    /// The order of the method.
     pub order: Order,
     /// The coordinate maps that it takes.
     pub maps: Maps,
     /// Does it take a tableau?
     pub takes_tableau: bool,
-    /// What it preserves to rounding, or for all time within bounds.
-    pub preserves: &'static [Structure],
+    /// What the method preserves to rounding, or for all time within bounds.
+    pub preserves: &'static [Property],
     /// What a step costs.
     pub cost: Cost,
     /// Where it comes from.
     pub source: &'static str,
-    /// What it needs of a problem.
+    /// What the method needs of a problem.
     pub needs: Needs,
     /// How it is made.
     pub(crate) recipe: Recipe,
@@ -42,25 +42,24 @@ impl MethodInfo {
     }
 
     /// Does the method preserve this?
-    pub fn keeps(&self, structure: Structure) -> bool {
-        self.preserves.iter().any(|kept| [structure, Structure::Everything].contains(kept))
+    pub fn keeps(&self, structure: Property) -> bool {
+        self.preserves.iter().any(|kept| [structure, Property::Everything].contains(kept))
     }
 
     /// Does the method preserve invariants that are polynomials of this degree in the state?
     pub fn keeps_polynomials(&self, degree: u32) -> bool {
         match degree {
             1 => {
-                self.keeps(Structure::LinearInvariants)
-                    || self.keeps(Structure::QuadraticInvariants)
+                self.keeps(Property::LinearInvariants) || self.keeps(Property::QuadraticInvariants)
             }
-            2 => self.keeps(Structure::QuadraticInvariants),
+            2 => self.keeps(Property::QuadraticInvariants),
             _ => false,
         }
     }
 
     /// What the method preserves, in words.
     pub fn preserves_in_words(&self) -> String {
-        self.preserves.iter().map(Structure::to_string).collect::<Vec<_>>().join(", ")
+        self.preserves.iter().map(Property::to_string).collect::<Vec<_>>().join(", ")
     }
 }
 
@@ -121,7 +120,7 @@ named! {
 
 named! {
     /// What a method preserves.
-    Structure:
+    Property:
     /// All of it.
     Everything = "everything",
     /// The energy, to rounding.
@@ -189,7 +188,7 @@ pub enum Maps {
 /// How often something is done in a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Count {
-    /// So many times.
+    /// This number of times.
     Exactly(u32),
     /// A number within these bounds, as an iteration has it.
     Between(u32, u32),
@@ -277,19 +276,20 @@ impl Operation {
 
 /// Something that is done in a step, and how often.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Work {
-    /// How often.
+#[non_exhaustive]
+pub struct WorkItem {
+    /// How often the operation is done.
     pub count: Count,
-    /// What.
+    /// The operation.
     pub operation: Operation,
 }
 
-/// So many of this.
-pub(super) const fn times(count: u32, operation: Operation) -> Work {
-    Work { count: Count::Exactly(count), operation }
+/// `count` times this operation.
+pub(super) const fn times(count: u32, operation: Operation) -> WorkItem {
+    WorkItem { count: Count::Exactly(count), operation }
 }
 
-impl fmt::Display for Work {
+impl fmt::Display for WorkItem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let name = match self.count {
             Count::Exactly(1) => self.operation.name(),
@@ -306,34 +306,34 @@ pub struct Cost {
     /// The iterations of an implicit method; every one does [`work`](Self::work).
     pub iterations: Option<(u32, u32)>,
     /// What is done.
-    pub work: &'static [Work],
+    pub work: &'static [WorkItem],
     /// What is done instead in another case.
-    pub instead: Instead,
+    pub other_case: OtherCase,
 }
 
 /// What a step costs in another case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum Instead {
+pub enum OtherCase {
     /// There is no other case.
     Nothing,
     /// With an estimate of its error.
-    WithError(&'static [Work]),
+    WithError(&'static [WorkItem]),
     /// On matrices of any n.
-    OnMatrices(&'static [Work]),
+    OnMatrices(&'static [WorkItem]),
 }
 
 impl Cost {
     /// A step that does this.
-    pub(super) const fn of(work: &'static [Work]) -> Self {
-        Cost { iterations: None, work, instead: Instead::Nothing }
+    pub(super) const fn of(work: &'static [WorkItem]) -> Self {
+        Cost { iterations: None, work, other_case: OtherCase::Nothing }
     }
     /// A step that does this in each of so many iterations.
-    pub(super) const fn iterated(iterations: (u32, u32), work: &'static [Work]) -> Self {
-        Cost { iterations: Some(iterations), work, instead: Instead::Nothing }
+    pub(super) const fn iterated(iterations: (u32, u32), work: &'static [WorkItem]) -> Self {
+        Cost { iterations: Some(iterations), work, other_case: OtherCase::Nothing }
     }
 
-    /// How often a step of an explicit method does this; 0 where it does not.
+    /// How often a step of an explicit method does an operation; 0 where it does not.
     pub fn count(&self, operation: Operation) -> Count {
         let work = self.work.iter().find(|work| work.operation == operation);
         work.map_or(Count::Exactly(0), |work| work.count)
@@ -353,15 +353,15 @@ impl Cost {
     }
 }
 
-fn join(work: &[Work]) -> String {
-    work.iter().map(Work::to_string).collect::<Vec<_>>().join(", ")
+fn join(work: &[WorkItem]) -> String {
+    work.iter().map(WorkItem::to_string).collect::<Vec<_>>().join(", ")
 }
 
 impl fmt::Display for Cost {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match (self.iterations, self.work) {
             (None, work) => f.write_str(&join(work))?,
-            (Some((a, b)), [Work { count: Count::Exactly(1), operation }]) => {
+            (Some((a, b)), [WorkItem { count: Count::Exactly(1), operation }]) => {
                 write!(f, "{a}–{b} {operation}")?;
             }
             (Some((a, b)), [work]) => write!(f, "{a}–{b} × {work}")?,
@@ -373,10 +373,10 @@ impl fmt::Display for Cost {
                 write!(f, "{a}–{b} × ({})", each.collect::<Vec<_>>().join(", "))?;
             }
         }
-        match self.instead {
-            Instead::Nothing => Ok(()),
-            Instead::WithError(work) => write!(f, "; {} with the error", join(work)),
-            Instead::OnMatrices(work) => write!(f, "; {}", join(work)),
+        match self.other_case {
+            OtherCase::Nothing => Ok(()),
+            OtherCase::WithError(work) => write!(f, "; {} with the error", join(work)),
+            OtherCase::OnMatrices(work) => write!(f, "; {}", join(work)),
         }
     }
 }

@@ -32,11 +32,11 @@ mod problems;
 mod recipe;
 
 pub use build::{
-    bodies, classical, closed_rkmk, energy_casimir, fields, implicit, isospectral, linear_type,
+    bodies, classical, closed, energy_casimir, fields, implicit, isospectral, linear_type,
     projected, series,
 };
 pub use facts::{
-    Cost, Count, Family, Instead, Maps, MethodInfo, Needs, Operation, Order, Structure, Work,
+    Cost, Count, Family, Maps, MethodInfo, Needs, Operation, Order, OtherCase, Property, WorkItem,
 };
 pub use lists::all_methods;
 pub use problems::{Fact, fluids};
@@ -54,13 +54,13 @@ use recipe::SizedTableau;
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct TableauInfo {
-    /// Its name.
+    /// The name of the tableau.
     pub name: &'static str,
-    /// Its order.
+    /// The order of the tableau.
     pub order: usize,
     /// The stages of a step without an error estimate.
     pub stages: usize,
-    /// Is it an embedded pair?
+    /// Is the tableau an embedded pair?
     pub pair: bool,
     pub(crate) table: SizedTableau,
 }
@@ -92,9 +92,9 @@ const EXP: &str = "exp";
 pub struct MethodSpec {
     /// The method.
     pub name: String,
-    /// Its coordinate map, when it takes one; exp when none is given.
+    /// The coordinate map of the method, when it takes one; exp when none is given.
     pub map: Option<String>,
-    /// Its tableau, when it takes one; rk4 when none is given.
+    /// The tableau of the method, when it takes one; rk4 when none is given.
     pub tableau: Option<String>,
     /// Where the Baker series of dexp⁻¹ is cut (exp only); to rounding when none is given.
     pub q: Option<usize>,
@@ -228,7 +228,7 @@ fn unknown(kind: &'static str, name: &str, expected: impl Iterator<Item = &'stat
 pub struct Choice<'a> {
     /// The method.
     pub info: &'static MethodInfo,
-    /// Its tableau; that of rk4 where it takes none.
+    /// The tableau of the method; that of rk4 where it takes none.
     pub tableau: &'static TableauInfo,
     /// The name of its map; exp where it takes none.
     pub map: &'a str,
@@ -251,14 +251,14 @@ impl Choice<'_> {
 }
 
 /// What a function that makes methods answers: none for a method that is not its own.
-pub type Made<'p, P> = Result<Option<AnyMethod<'p, P>>, Error>;
+pub type MaybeMethod<'p, P> = Result<Option<AnyMethod<'p, P>>, Error>;
 
 /// A problem whose methods can be chosen by name.
 ///
 /// For a problem of your own, list what it offers and the functions of this module that make those methods:
 ///
 /// ```
-/// use lieflow::catalog::{Choice, Made, MethodsByName, Needs, fields, first, implicit};
+/// use lieflow::catalog::{Choice, MaybeMethod, MethodsByName, Needs, fields, first, implicit};
 /// # use lieflow::{actions::Linear, groups::So3, problems::Problem};
 /// # use nalgebra::Vector3;
 /// # struct Spin(So3, Linear);
@@ -275,7 +275,7 @@ pub type Made<'p, P> = Result<Option<AnyMethod<'p, P>>, Error>;
 ///     fn offers(&self) -> Vec<Needs> {
 ///         vec![Needs::Field, Needs::Norm]
 ///     }
-///     fn make<'p>(&self, choice: &Choice<'_>) -> Made<'p, Self> where Self: 'p {
+///     fn make<'p>(&self, choice: &Choice<'_>) -> MaybeMethod<'p, Self> where Self: 'p {
 ///         first([fields, implicit], choice)
 ///     }
 /// }
@@ -288,7 +288,7 @@ pub trait MethodsByName: Ambient {
     ///
     /// # Errors
     /// [`Error::Unsupported`] for a map that the group does not have.
-    fn make<'p>(&self, choice: &Choice<'_>) -> Made<'p, Self>
+    fn make<'p>(&self, choice: &Choice<'_>) -> MaybeMethod<'p, Self>
     where
         Self: Sized + 'p;
 
@@ -314,14 +314,14 @@ pub trait MethodsByName: Ambient {
     }
 }
 
-/// The answer of the first of these functions that makes the method.
+/// The method that the first of these functions makes.
 ///
 /// # Errors
 /// Those of the functions.
 pub fn first<'p, P: Problem, const N: usize>(
-    makers: [fn(&Choice<'_>) -> Made<'p, P>; N],
+    makers: [fn(&Choice<'_>) -> MaybeMethod<'p, P>; N],
     choice: &Choice<'_>,
-) -> Made<'p, P> {
+) -> MaybeMethod<'p, P> {
     for make in &makers {
         if let Some(method) = make(choice)? {
             return Ok(Some(method));

@@ -2,17 +2,18 @@
 
 use super::recipe::Recipe;
 use super::{
-    Choice, Made, MethodsByName, Needs, bodies, classical, closed_rkmk, energy_casimir, fields,
+    Choice, MaybeMethod, MethodsByName, Needs, bodies, classical, closed, energy_casimir, fields,
     first, implicit, isospectral, linear_type, projected, series,
 };
 use crate::actions::Action;
 use crate::maps::{Cay, CoordinateMap, Exp, ExpOrCay, MapsByName};
+use crate::methods::FluidMidpoint;
 use crate::methods::magnus::TripleProduct;
 use crate::methods::{AnyMethod, Composition, Wide};
 use crate::problems::{
-    DynFlow, Energy, Facts, Field, Flow, FluidMidpoint, Known, LiePoisson, LinearField, Problem,
-    RigidBody, RigidBodyAttitude, RigidBodyN, RigidBodyNAttitude, RigidBodyQuaternion,
-    RigidBodyState, Surface, TimeAlone, Zeitlin,
+    DynFlow, Energy, Facts, Field, Flow, LiePoisson, LinearField, Problem, RigidBody,
+    RigidBodyAttitude, RigidBodyN, RigidBodyNAttitude, RigidBodyQuaternion, RigidBodyState,
+    Surface, TimeAlone, WithHamiltonian, Zeitlin,
 };
 use crate::scalar::{Real, Trig};
 use crate::space::LinearSpace;
@@ -24,7 +25,7 @@ macro_rules! by_name {
             fn offers(&self) -> Vec<Needs> {
                 vec![$(Needs::$needs),*]
             }
-            fn make<'p>(&self, choice: &Choice<'_>) -> Made<'p, Self>
+            fn make<'p>(&self, choice: &Choice<'_>) -> MaybeMethod<'p, Self>
             where
                 Self: 'p,
             {
@@ -36,9 +37,9 @@ macro_rules! by_name {
 
 by_name! {
     [S: Trig + Wide + Into<f64>] RigidBody<S>,
-        Field Norm Series Body LiePoisson: closed_rkmk fields implicit bodies energy_casimir;
+        Field Norm Series Body LiePoisson: closed fields implicit bodies energy_casimir;
     [S: Trig + Wide + Into<f64>] RigidBodyAttitude<S>,
-        Field Norm Series Body Attitude: closed_rkmk fields implicit bodies projected;
+        Field Norm Series Body Attitude: closed fields implicit bodies projected;
     [] RigidBodyQuaternion, Field Norm Series Body: fields implicit bodies;
     [S: Real] RigidBodyState<S>, State: classical;
     [] RigidBodyN, Field Norm Series LiePoisson Isospectral:
@@ -51,7 +52,7 @@ by_name! {
 /// The midpoint rules that are made for fluids: the general ones with less work.
 /// # Errors
 /// [`Error::Unsupported`](crate::Error::Unsupported) for another map than exp and cay.
-pub fn fluids<'p, S: Surface + 'p>(choice: &Choice<'_>) -> Made<'p, Zeitlin<S>> {
+pub fn fluids<'p, S: Surface + 'p>(choice: &Choice<'_>) -> MaybeMethod<'p, Zeitlin<S>> {
     const ISOSPECTRAL: FluidMidpoint = FluidMidpoint::isospectral();
     const ENERGY: FluidMidpoint = FluidMidpoint::energy();
     Ok(Some(match (choice.info.recipe, choice.odd_map()?) {
@@ -75,14 +76,14 @@ pub trait Fact<P: Problem> {
     ///
     /// # Errors
     /// As [`MethodsByName::make`].
-    fn make<'p>(choice: &Choice<'_>) -> Made<'p, P>
+    fn make<'p>(choice: &Choice<'_>) -> MaybeMethod<'p, P>
     where
         P: 'p;
 }
 
 impl<P: Problem> Fact<P> for () {
     const OFFERS: Option<Needs> = None;
-    fn make<'p>(_: &Choice<'_>) -> Made<'p, P>
+    fn make<'p>(_: &Choice<'_>) -> MaybeMethod<'p, P>
     where
         P: 'p,
     {
@@ -98,7 +99,7 @@ where
     Cay: CoordinateMap<P::Group>,
 {
     const OFFERS: Option<Needs> = Some(Needs::LinearType);
-    fn make<'p>(choice: &Choice<'_>) -> Made<'p, P>
+    fn make<'p>(choice: &Choice<'_>) -> MaybeMethod<'p, P>
     where
         P: 'p,
     {
@@ -113,7 +114,7 @@ macro_rules! hamiltonian {
             ExpOrCay: CoordinateMap<P::Group>,
         {
             const OFFERS: Option<Needs> = Some(Needs::LiePoisson);
-            fn make<'p>(choice: &Choice<'_>) -> Made<'p, P>
+            fn make<'p>(choice: &Choice<'_>) -> MaybeMethod<'p, P>
             where
                 P: 'p,
             {
@@ -124,7 +125,7 @@ macro_rules! hamiltonian {
 }
 hamiltonian! {
     [E] Energy<E>;
-    [] Known;
+    [] WithHamiltonian;
 }
 
 /// What a field offers, with what is known of it besides.
@@ -150,7 +151,7 @@ where
             .flatten()
             .collect()
     }
-    fn make<'p>(&self, choice: &Choice<'_>) -> Made<'p, Self>
+    fn make<'p>(&self, choice: &Choice<'_>) -> MaybeMethod<'p, Self>
     where
         Self: 'p,
     {
@@ -174,7 +175,7 @@ where
             if self.is_lie_poisson() { H::OFFERS } else { None },
         )
     }
-    fn make<'p>(&self, choice: &Choice<'_>) -> Made<'p, Self>
+    fn make<'p>(&self, choice: &Choice<'_>) -> MaybeMethod<'p, Self>
     where
         Self: 'p,
     {

@@ -16,6 +16,25 @@ pub(crate) enum SizedTableau {
     Large(Tableau<12>),
 }
 
+/// The Gauss tableaus by their stages. Their loops are short, and slow where the number of stages is not a
+/// constant.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum GaussTableau {
+    One(ImplicitTableau<1>),
+    Two(ImplicitTableau<2>),
+    Three(ImplicitTableau<3>),
+}
+
+impl GaussTableau {
+    pub(crate) const fn order(&self) -> usize {
+        match self {
+            GaussTableau::One(table) => table.order,
+            GaussTableau::Two(table) => table.order,
+            GaussTableau::Three(table) => table.order,
+        }
+    }
+}
+
 /// What makes a method, before its map and its tableau are chosen.
 #[allow(clippy::large_enum_variant)] // constants, never moved in a step
 #[derive(Clone, Copy, Debug)]
@@ -24,8 +43,8 @@ pub(crate) enum Recipe {
     Rkmk,
     /// Classical Runge–Kutta with the tableau that is chosen.
     Rk,
-    /// The same with a projection.
-    Projected(Projection),
+    /// Classical Runge–Kutta with a projection after each step.
+    ProjectionMethod(Projection),
     OneBracket(OneBracketTableau<6>),
     CommutatorFree(ProductTableau<5>),
     LowStorage(TwoN<13>),
@@ -38,9 +57,9 @@ pub(crate) enum Recipe {
     Cfm811,
     CayleyMagnus4,
     CayleyMagnus6,
-    Gauss(ImplicitTableau<3>),
-    RkmkGauss(ImplicitTableau<3>),
-    RkmkGaussSymmetric(ImplicitTableau<3>),
+    Gauss(GaussTableau),
+    RkmkGauss(GaussTableau),
+    RkmkGaussSymmetric(GaussTableau),
     /// A Lie series of this order.
     Series(usize),
     Splitting(Splitting<3>),

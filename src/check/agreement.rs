@@ -60,13 +60,13 @@ struct Scale {
 }
 
 /// Ψ and dΨ⁻¹ of one map on both layers.
-struct Compared<'a, Psi> {
+struct BothLayers<'a, Psi> {
     psi: Psi,
     closed: So3,
     general: &'a MatrixGroup,
 }
 
-impl<Psi: CoordinateMap<So3> + CoordinateMap<MatrixGroup>> Compared<'_, Psi> {
+impl<Psi: CoordinateMap<So3> + CoordinateMap<MatrixGroup>> BothLayers<'_, Psi> {
     fn at(
         &self,
         (u, v): (&Vector3<f64>, &Vector3<f64>),
@@ -131,10 +131,10 @@ pub fn maps_agree<R: Rng + ?Sized>(rng: &mut R, cases: usize) -> Result<Vec<Find
         let ccsk = Scale { psi_cond: 1.0, inverse_size: secant, inverse_cond: secant };
         let pair = (&u, &v);
         let general = &general;
-        Compared { psi: Exp, closed, general }.at(pair, &mut at_exp, &exp, &mut found[0]);
-        Compared { psi: Cay, closed, general }.at(pair, &mut at_cay, &cay, &mut found[1]);
-        Compared { psi: CCSK123, closed, general }.at(pair, &mut at_123, &ccsk, &mut found[2]);
-        Compared { psi: CCSK321, closed, general }.at(pair, &mut at_321, &ccsk, &mut found[3]);
+        BothLayers { psi: Exp, closed, general }.at(pair, &mut at_exp, &exp, &mut found[0]);
+        BothLayers { psi: Cay, closed, general }.at(pair, &mut at_cay, &cay, &mut found[1]);
+        BothLayers { psi: CCSK123, closed, general }.at(pair, &mut at_123, &ccsk, &mut found[2]);
+        BothLayers { psi: CCSK321, closed, general }.at(pair, &mut at_321, &ccsk, &mut found[3]);
     }
     Ok(found.into_iter().flatten().collect())
 }

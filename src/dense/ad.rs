@@ -35,7 +35,7 @@ const TAYLOR: usize = 18;
 
 /// What the elements of the algebra satisfy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Kind {
+pub(crate) enum AdKind {
     /// Nothing: gl(n).
     General,
     /// Mv is skew: M symmetric.
@@ -47,7 +47,7 @@ pub(crate) enum Kind {
 /// A form M with its inverse; none for gl(n).
 #[derive(Clone, Debug)]
 pub(crate) struct AdForm {
-    pub(crate) kind: Kind,
+    pub(crate) kind: AdKind,
     pub(crate) m: Mat<f64>,
     pub(crate) inverse: Mat<f64>,
 }
@@ -82,8 +82,8 @@ impl AdSchur {
         }
     }
 
-    fn kind(&self) -> Kind {
-        self.form.as_ref().map_or(Kind::General, |form| form.kind)
+    fn kind(&self) -> AdKind {
+        self.form.as_ref().map_or(AdKind::General, |form| form.kind)
     }
 
     /// The Schur form for u: A and B.
@@ -154,10 +154,10 @@ impl AdSchur {
         }
         for j in 0..n {
             for i in 0..n {
-                real[(i, j)] = match form.as_ref().map_or(Kind::General, |form| form.kind) {
-                    Kind::General => f[(i, j)].re,
-                    Kind::Skew => 0.5 * (f[(i, j)].re - f[(j, i)].re),
-                    Kind::Symmetric => 0.5 * (f[(i, j)].re + f[(j, i)].re),
+                real[(i, j)] = match form.as_ref().map_or(AdKind::General, |form| form.kind) {
+                    AdKind::General => f[(i, j)].re,
+                    AdKind::Skew => 0.5 * (f[(i, j)].re - f[(j, i)].re),
+                    AdKind::Symmetric => 0.5 * (f[(i, j)].re + f[(j, i)].re),
                 };
             }
         }
@@ -181,7 +181,7 @@ impl AdSchur {
         let n = v.nrows();
         // gl(n): ad does not see a multiple of 𝟙, and e^A stays in range longer around zero.
         let middle = match self.kind() {
-            Kind::General => 0.5 * (self.a[(0, 0)].re + self.a[(n - 1, n - 1)].re),
+            AdKind::General => 0.5 * (self.a[(0, 0)].re + self.a[(n - 1, n - 1)].re),
             _ => 0.0,
         };
         let scale = 0.5f64.powi(halvings as i32);
@@ -260,9 +260,9 @@ impl AdSchur {
             }
             for i in (0..n).rev() {
                 let value = match kind {
-                    Kind::Skew if i > k => -y[(k, i)],
-                    Kind::Symmetric if i > k => y[(k, i)],
-                    Kind::Skew if i == k => ZERO,
+                    AdKind::Skew if i > k => -y[(k, i)],
+                    AdKind::Symmetric if i > k => y[(k, i)],
+                    AdKind::Skew if i == k => ZERO,
                     _ => {
                         let pivot = ONE + f[(i, i)] * g[(k, k)];
                         if pivot.norm() <= singular {
@@ -301,9 +301,9 @@ impl AdSchur {
         let mut best = f64::INFINITY;
         for i in 0..n {
             let from = match self.kind() {
-                Kind::General => 0,
-                Kind::Skew => i + 1,
-                Kind::Symmetric => i,
+                AdKind::General => 0,
+                AdKind::Skew => i + 1,
+                AdKind::Symmetric => i,
             };
             for k in from..n {
                 let z = self.a[(i, i)] + self.b[(k, k)];

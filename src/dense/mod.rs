@@ -14,14 +14,15 @@ mod product;
 mod schur;
 mod symmetric;
 
-pub(crate) use ad::{AdForm, AdSchur, Direction, Kind as AdKind};
+pub(crate) use ad::{AdForm, AdKind, AdSchur, Direction};
 pub(crate) use eigen::SkewEigen;
 pub(crate) use expm::Expm;
 pub use expm::{
-    ApplyChoice, ComplexExponential, ExpmChoice, Exponential, ExponentialBatch, ExponentialF32,
-    Kind, Structure,
+    ApplyChoice, Approximant, ComplexExponential, ExpmChoice, Exponential, ExponentialBatch,
+    ExponentialF32, Structure,
 };
 pub(crate) use lu::Lu;
+pub use lu::RCOND_MIN;
 pub(crate) use ops::{axpy, is_finite, norm_frobenius, norm1, scaled_sum, wide};
 pub(crate) use product::{
     antisymmetrise, congruence, lower_product, mirror, mul, mul_add, orthogonalise, skew_commutator,

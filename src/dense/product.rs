@@ -94,7 +94,7 @@ impl<const N: usize> NullaryFnOnce for Small<'_, N> {
     }
 }
 
-/// The same for any n up to [`N_MAX`].
+/// out ← alpha·a·b, or out ← out + alpha·a·b, for any n up to [`N_MAX`].
 struct Product<'a> {
     a: MatRef<'a, f64>,
     b: MatRef<'a, f64>,

@@ -130,7 +130,7 @@ impl Ensemble {
         Ok(Ensemble { len, blocks: Blocks::Momentum(blocks), age: 0 })
     }
 
-    /// The same bodies with their attitudes, rotations from body to space.
+    /// These bodies with their attitudes, rotations from body to space.
     ///
     /// # Errors
     /// [`Error::Shape`] for a list of another length; as
@@ -199,7 +199,7 @@ impl Ensemble {
         self.body(i).map(|(inverse, m)| 0.5 * inverse.dot(&m.component_mul(&m)))
     }
 
-    /// So many steps of size h for every body, on this number of threads. Allocates nothing but threads,
+    /// Take `steps` steps of size h for every body, on this number of threads. Allocates nothing but threads,
     /// of which one is the caller's own.
     ///
     /// # Errors
@@ -367,7 +367,7 @@ fn momenta<Rule: OneStep, const FUSED: bool>(
     }
 }
 
-/// The same step of a row of all attitudes.
+/// The step of the momenta, for a row of all attitudes.
 #[inline(always)]
 fn rows<Rule: OneStep, const FUSED: bool>(
     h: f64,

@@ -3,19 +3,19 @@
 use nalgebra::Vector3;
 
 use crate::error::StepError;
-use crate::groups::cross;
 use crate::maps::{Cay, Exp};
 use crate::methods::tableau::RK4;
 use crate::methods::{Method, Rk, Rkmk, Step};
 use crate::problems::{BodyState, RigidBodyState};
 use crate::scalar::{Real, Trig};
+use crate::so3::cross;
 use crate::so3::{Angle, cay_coefficients, rodrigues_on};
 
 /// The numbers that a step leaves for the attitude.
 pub(super) const MOTION: usize = 12;
 
 /// What a step makes of the momentum.
-pub(super) struct Moved<S> {
+pub(super) struct MomentumStep<S> {
     pub(super) m: Vector3<S>,
     pub(super) motion: [S; MOTION],
     /// The largest |u|² of the stages.
@@ -26,8 +26,8 @@ pub(super) struct Moved<S> {
 pub(super) trait OneStep {
     const KEEPS_GROUP: bool;
     /// A step of m, with the reciprocals j of the inertias.
-    fn step<S: Trig>(h: S, j: &Vector3<S>, m: &Vector3<S>) -> Moved<S>;
-    /// What it does to another vector that is fixed in space.
+    fn step<S: Trig>(h: S, j: &Vector3<S>, m: &Vector3<S>) -> MomentumStep<S>;
+    /// What a step does to another vector that is fixed in space.
     fn carry<S: Trig>(h: S, motion: &[S; MOTION], x: &Vector3<S>) -> Vector3<S>;
     fn one(inverse_inertia: [f64; 3], h: f64, y: &mut BodyState) -> Result<(), StepError>;
 }
@@ -69,7 +69,7 @@ fn larger<S: Real>(a: S, b: S) -> S {
 }
 
 /// Ψ at u: Ψ(u) = 𝟙 + a û + b û², dΨ_u⁻¹ = (1 + s)𝟙 − û/2 + c û².
-pub(super) struct Chart<S> {
+pub(super) struct MapAt<S> {
     u: Vector3<S>,
     alpha2: S,
     a: S,
@@ -79,16 +79,16 @@ pub(super) struct Chart<S> {
 }
 
 pub(super) trait InChart {
-    fn at<S: Trig>(u: Vector3<S>) -> Chart<S>;
+    fn at<S: Trig>(u: Vector3<S>) -> MapAt<S>;
     fn one(inverse_inertia: [f64; 3], h: f64, y: &mut BodyState) -> Result<(), StepError>;
 }
 
 pub(super) struct InExp;
 impl InChart for InExp {
     #[inline(always)]
-    fn at<S: Trig>(u: Vector3<S>) -> Chart<S> {
+    fn at<S: Trig>(u: Vector3<S>) -> MapAt<S> {
         let (angle, a, b) = Angle::with_exp(&u);
-        Chart { u, alpha2: angle.alpha2, a, b, c: angle.dexpinv_coefficient(), s: S::lit(0.0) }
+        MapAt { u, alpha2: angle.alpha2, a, b, c: angle.dexpinv_coefficient(), s: S::lit(0.0) }
     }
     fn one(inverse_inertia: [f64; 3], h: f64, y: &mut BodyState) -> Result<(), StepError> {
         scalar(&Rkmk::new(RK4, Exp), inverse_inertia, h, y)
@@ -98,11 +98,11 @@ impl InChart for InExp {
 pub(super) struct InCay;
 impl InChart for InCay {
     #[inline(always)]
-    fn at<S: Trig>(u: Vector3<S>) -> Chart<S> {
+    fn at<S: Trig>(u: Vector3<S>) -> MapAt<S> {
         // In lanes it always has a value; where it is none the body is done again.
         let (a, b) = cay_coefficients(&u).unwrap_or((S::lit(0.0), S::lit(0.0)));
         let alpha2 = u[0] * u[0] + u[1] * u[1] + u[2] * u[2];
-        Chart { u, alpha2, a, b, c: S::lit(0.25), s: S::lit(0.25) * alpha2 }
+        MapAt { u, alpha2, a, b, c: S::lit(0.25), s: S::lit(0.25) * alpha2 }
     }
     fn one(inverse_inertia: [f64; 3], h: f64, y: &mut BodyState) -> Result<(), StepError> {
         scalar(&Rkmk::new(RK4, Cay), inverse_inertia, h, y)
@@ -113,11 +113,11 @@ impl<Psi: InChart> OneStep for Psi {
     const KEEPS_GROUP: bool = true;
 
     #[inline(always)]
-    fn step<S: Trig>(h: S, j: &Vector3<S>, m: &Vector3<S>) -> Moved<S> {
+    fn step<S: Trig>(h: S, j: &Vector3<S>, m: &Vector3<S>) -> MomentumStep<S> {
         // k = dΨ_u⁻¹ f(Ψ(u) m) at u = a·k of the stage before.
         let mut largest = S::lit(0.0);
         let mut stage = |a: S, k: &Vector3<S>| {
-            let Chart { u, alpha2, a, b, c, s } = Psi::at(scaled(a, k));
+            let MapAt { u, alpha2, a, b, c, s } = Psi::at(scaled(a, k));
             largest = larger(largest, alpha2);
             let v = field(j, &rodrigues_on(&u, a, b, m));
             sum(&rodrigues_on(&u, S::lit(-0.5), c, &v), s, &v)
@@ -129,10 +129,10 @@ impl<Psi: InChart> OneStep for Psi {
         let k4 = stage(h, &k3);
         let two = S::lit(2.0);
         let increment = sum(&sum(&sum(&k1, two, &k2), two, &k3), S::lit(1.0), &k4);
-        let Chart { u: v, alpha2, a, b, .. } = Psi::at(scaled(h * S::lit(1.0 / 6.0), &increment));
+        let MapAt { u: v, alpha2, a, b, .. } = Psi::at(scaled(h * S::lit(1.0 / 6.0), &increment));
         let mut motion = [S::lit(0.0); MOTION];
         (motion[0], motion[1], motion[2], motion[3], motion[4]) = (v[0], v[1], v[2], a, b);
-        Moved { m: rodrigues_on(&v, a, b, m), motion, largest: larger(largest, alpha2) }
+        MomentumStep { m: rodrigues_on(&v, a, b, m), motion, largest: larger(largest, alpha2) }
     }
     #[inline(always)]
     fn carry<S: Trig>(_: S, motion: &[S; MOTION], x: &Vector3<S>) -> Vector3<S> {
@@ -166,7 +166,7 @@ impl OneStep for Classical {
     const KEEPS_GROUP: bool = false;
 
     #[inline(always)]
-    fn step<S: Trig>(h: S, j: &Vector3<S>, m: &Vector3<S>) -> Moved<S> {
+    fn step<S: Trig>(h: S, j: &Vector3<S>, m: &Vector3<S>) -> MomentumStep<S> {
         let mut motion = [S::lit(0.0); MOTION];
         let mut stage = 0;
         let m = classical(h, m, |m| {
@@ -177,7 +177,7 @@ impl OneStep for Classical {
             stage += 3;
             omega
         });
-        Moved { m, motion, largest: S::lit(0.0) }
+        MomentumStep { m, motion, largest: S::lit(0.0) }
     }
     #[inline(always)]
     fn carry<S: Trig>(h: S, motion: &[S; MOTION], x: &Vector3<S>) -> Vector3<S> {

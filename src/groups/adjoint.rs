@@ -15,10 +15,11 @@
 use faer::Mat;
 use nalgebra::{Matrix3, Vector3};
 
-use super::{AlgebraMatrix, Form, GroupMatrix, LieGroup, MatrixGroup, So3, apply3, cross};
+use super::{AlgebraMatrix, Form, GroupMatrix, LieGroup, MatrixGroup, So3};
 use crate::dense::{Lu, antisymmetrise, is_finite, mul, mul_add};
 use crate::error::StepError;
 use crate::scalar::{Ops, Real, tally};
+use crate::so3::{apply3, cross};
 use crate::space::LinearSpace;
 
 /// The adjoint and coadjoint representations of a group and of its algebra.

@@ -18,17 +18,18 @@ mod so3;
 mod translations;
 mod unitary;
 
-pub use adjoint::{Adjoint, InvertingWork};
+pub use crate::dense::RCOND_MIN;
+pub use crate::so3::{hat, vee};
+pub use adjoint::Adjoint;
 pub(crate) use matrix::finite as check_entries;
-pub use matrix::{AlgebraMatrix, Form, GroupMatrix, MEMBERSHIP, MatrixGroup, RCOND_MIN};
+pub use matrix::{AlgebraMatrix, Form, GroupMatrix, MEMBERSHIP, MatrixGroup};
 pub use power::Power;
 pub use product::Product;
 pub(crate) use product::worse;
 pub use quaternions::UnitQuaternions;
 pub use se3::Se3;
-pub(crate) use se3::{add3, finite_pair};
-pub use so3::{So3, hat, vee};
-pub(crate) use so3::{apply3, cross, dot3, in_range};
+pub(crate) use se3::finite_pair;
+pub use so3::So3;
 pub use translations::Translations;
 pub use unitary::{ComplexMatrix, Unitary};
 pub(crate) use unitary::{mul_adjoint_skew, mul_complex};
@@ -113,10 +114,10 @@ pub trait LieGroup: LieAlgebra {
     fn check_elem(&self, _g: &Self::Elem) -> Result<(), Error> {
         Ok(())
     }
-    /// As [`check_elem`](Self::check_elem), of vectors.
+    /// Check a vector as [`check_elem`](Self::check_elem) checks an element.
     ///
     /// # Errors
-    /// As there.
+    /// As [`check_elem`](Self::check_elem).
     fn check_vector(&self, _x: &Self::Vector) -> Result<(), Error> {
         Ok(())
     }

@@ -3,12 +3,10 @@
 //! | | |
 //! |---|---|
 //! | u ∈ ℝ³ | the imaginary quaternion u/2, so that \[u, v\] = u × v as on so(3) |
-//! | Ψ(u) | the quaternion of the rotation that Ψ is on SO(3) |
-//! | dΨ_u⁻¹ | that of SO(3): the covering is a local isomorphism |
 //! | q·x | q x q̄ |
 //! | correction | q/\|q\| |
 //!
-//! exp: (cos(α/2), (sin(α/2)/α) u), α = |u|. cay: (1, u/2)/√(1 + α²/4). Quaternions are Hamilton's, real
+//! The maps of S³ are in `maps/quaternions.rs`. Quaternions are Hamilton's, real
 //! part first in words; nalgebra's [`UnitQuaternion`] is the container. Turns by 2π end at −1, not at 1.
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
@@ -17,10 +15,8 @@ use rand_distr::StandardNormal;
 
 use super::so3::check_finite;
 use super::{Adjoint, LieAlgebra, LieGroup, RESIDUAL_MAX, Sample, So3};
-use crate::actions::{Action, Coadjoint};
 use crate::error::{Error, StepError};
-use crate::maps::{Cay, CoordinateMap, Exp};
-use crate::scalar::{Counted, Ops, tally, tally_by};
+use crate::scalar::{Ops, tally};
 use crate::so3;
 
 /// S³, the unit quaternions, over ℝ³ with the cross product.
@@ -152,7 +148,7 @@ impl LieGroup for UnitQuaternions {
     }
 }
 
-/// As on SO(3), by q in place of its rotation.
+/// Ad, ad and their duals as on SO(3), by q in place of its rotation.
 impl Adjoint for UnitQuaternions {
     type Dual = Vector3<f64>;
     type Inverting = ();
@@ -207,39 +203,6 @@ impl Adjoint for UnitQuaternions {
     }
 }
 
-impl Action<UnitQuaternions> for Coadjoint {
-    type Point = Vector3<f64>;
-    type Work = ();
-
-    fn work(&self, _: &UnitQuaternions) {}
-    #[inline]
-    fn check(&self, group: &UnitQuaternions, m: &Vector3<f64>) -> Result<(), Error> {
-        group.check_vector(m)
-    }
-    #[inline]
-    fn act(
-        &self,
-        group: &UnitQuaternions,
-        q: &UnitQuaternion<f64>,
-        m: &Vector3<f64>,
-        out: &mut Vector3<f64>,
-        _: &mut (),
-    ) {
-        group.apply(q, m, out);
-    }
-    #[inline]
-    fn generate(
-        &self,
-        group: &UnitQuaternions,
-        v: &Vector3<f64>,
-        m: &Vector3<f64>,
-        dm: &mut Vector3<f64>,
-        _: &mut (),
-    ) {
-        group.apply_algebra(v, m, dm);
-    }
-}
-
 impl Sample for UnitQuaternions {
     fn sample_algebra<R: Rng + ?Sized>(&self, rng: &mut R, sigma: f64) -> Vector3<f64> {
         SO3.sample_algebra(rng, sigma)
@@ -253,52 +216,3 @@ impl Sample for UnitQuaternions {
         SO3.sample_vector(rng)
     }
 }
-
-/// Both maps: Ψ by its quaternion, the rest by so(3).
-macro_rules! map {
-    ($map:ty, $name:literal, $psi:path, $dpsi_inv:path, |$u:ident| $tally:expr) => {
-        impl CoordinateMap<UnitQuaternions> for $map {
-            type At = ();
-
-            fn name(&self) -> &'static str {
-                $name
-            }
-            fn at(&self, _: &UnitQuaternions) -> Result<(), Error> {
-                Ok(())
-            }
-            #[inline]
-            fn psi(
-                &self,
-                _: &UnitQuaternions,
-                u: &Vector3<f64>,
-                _: &mut (),
-                q: &mut UnitQuaternion<f64>,
-            ) -> Result<(), StepError> {
-                let $u = u;
-                $tally;
-                *q = $psi(u)?;
-                Ok(())
-            }
-            #[inline]
-            fn dpsi_inv(
-                &self,
-                _: &UnitQuaternions,
-                u: &Vector3<f64>,
-                _: &mut (),
-                v: &mut Vector3<f64>,
-            ) -> Result<(), StepError> {
-                tally_by(|| $dpsi_inv(&u.map(Counted), &v.map(Counted)));
-                *v = $dpsi_inv(u, v)?;
-                Ok(())
-            }
-        }
-    };
-}
-map!(Exp, "exp", so3::exp_quaternion, so3::dexpinv, |u| {
-    tally_by(|| so3::half_angle(&u.map(Counted)));
-    tally(|| Ops::muls(3));
-});
-// Scaled: four divisions, the norm, four more.
-map!(Cay, "cay", so3::cay_quaternion, so3::dcayinv, |_u| {
-    tally(|| Ops::divs(8) + Ops::dots(1, 4) + Ops::sqrts(1));
-});

@@ -22,10 +22,10 @@ use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
 
 use super::so3::check_finite;
-use super::{Adjoint, LieAlgebra, LieGroup, Sample, So3, apply3, cross, dot3};
+use super::{Adjoint, LieAlgebra, LieGroup, Sample, So3};
 use crate::error::{Error, StepError};
 use crate::scalar::Real;
-use crate::so3;
+use crate::so3::{self, add3, all_finite, apply3, cross, dot3};
 
 /// SE(3): elements of the algebra are (ω, v), of the group (R, x), of the dual (μ, π).
 ///
@@ -58,20 +58,10 @@ impl<S> Se3<S> {
 /// A pair of vectors: (ω, v), or (μ, π).
 type Pair<S> = (Vector3<S>, Vector3<S>);
 
-/// a + b.
-#[inline(always)]
-pub(crate) fn add3<S: Real>(a: &Vector3<S>, b: &Vector3<S>) -> Vector3<S> {
-    Vector3::new(a[0] + b[0], a[1] + b[1], a[2] + b[2])
-}
-
-fn is_finite3<S: Real>(a: &Vector3<S>) -> bool {
-    a[0].is_finite() && a[1].is_finite() && a[2].is_finite()
-}
-
 /// Both vectors, or that they are not finite.
 #[inline]
 pub(crate) fn finite_pair<S: Real>(u: &Pair<S>, what: &'static str) -> Result<(), StepError> {
-    match is_finite3(&u.0) && is_finite3(&u.1) {
+    match all_finite(&u.0) && all_finite(&u.1) {
         true => Ok(()),
         false => Err(StepError::NotFinite { what }),
     }
@@ -112,7 +102,7 @@ impl<S: Real> LieAlgebra for Se3<S> {
     }
     #[inline]
     fn is_finite(&self, u: &Self::Alg) -> bool {
-        is_finite3(&u.0) && is_finite3(&u.1)
+        all_finite(&u.0) && all_finite(&u.1)
     }
 }
 
@@ -179,7 +169,7 @@ impl<S: Real> Adjoint for Se3<S> {
         out.0 = g.0.transpose();
         let x = apply3(&out.0, &g.1);
         out.1 = Vector3::new(-x[0], -x[1], -x[2]);
-        if is_finite3(&out.1) { Ok(()) } else { Err(StepError::NotFinite { what: "g⁻¹" }) }
+        if all_finite(&out.1) { Ok(()) } else { Err(StepError::NotFinite { what: "g⁻¹" }) }
     }
     /// (Rω̂, Rv).
     #[inline]

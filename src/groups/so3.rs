@@ -9,6 +9,7 @@ use rand_distr::StandardNormal;
 use super::{LieAlgebra, LieGroup, RESIDUAL_MAX, Sample};
 use crate::error::Error;
 use crate::scalar::Real;
+use crate::so3::{apply3, compose3, cross, dot3, in_range};
 
 /// SO(3): algebra elements are 3-vectors (û of the paper), group elements are 3×3 rotations.
 ///
@@ -21,56 +22,6 @@ impl<S> So3<S> {
     /// The group.
     pub const fn new() -> Self {
         So3(PhantomData)
-    }
-}
-
-/// hat(u): the skew-symmetric matrix with hat(u)·x = u × x, equation (2).
-pub fn hat<S: Real>(u: &Vector3<S>) -> Matrix3<S> {
-    let o = S::lit(0.0);
-    Matrix3::new(o, -u[2], u[1], u[2], o, -u[0], -u[1], u[0], o)
-}
-
-/// vee(m): the vector u with hat(u) = m, the inverse of [`hat`]. It reads the lower triangle's
-/// (3,2), (2,1) and the upper's (1,3) and does not check that m is skew.
-pub fn vee<S: Real>(m: &Matrix3<S>) -> Vector3<S> {
-    Vector3::new(m[(2, 1)], m[(0, 2)], m[(1, 0)])
-}
-
-/// u × v.
-#[inline(always)]
-pub(crate) fn cross<S: Real>(u: &Vector3<S>, v: &Vector3<S>) -> Vector3<S> {
-    Vector3::new(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0])
-}
-
-/// u·v.
-#[inline(always)]
-pub(crate) fn dot3<S: Real>(u: &Vector3<S>, v: &Vector3<S>) -> S {
-    u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
-}
-
-/// Is a square neither beyond the range of squares nor below it?
-#[inline(always)]
-pub(crate) fn in_range<S: Real>(square: S) -> bool {
-    square.all_below(S::SQUARE_MAX) && !square.any_below(1.0 / S::SQUARE_MAX)
-}
-
-/// g·x.
-#[inline(always)]
-pub(crate) fn apply3<S: Real>(g: &Matrix3<S>, x: &Vector3<S>) -> Vector3<S> {
-    Vector3::new(
-        g[(0, 0)] * x[0] + g[(0, 1)] * x[1] + g[(0, 2)] * x[2],
-        g[(1, 0)] * x[0] + g[(1, 1)] * x[1] + g[(1, 2)] * x[2],
-        g[(2, 0)] * x[0] + g[(2, 1)] * x[1] + g[(2, 2)] * x[2],
-    )
-}
-
-/// a·b.
-#[inline(always)]
-fn compose3<S: Real>(a: &Matrix3<S>, b: &Matrix3<S>, out: &mut Matrix3<S>) {
-    for j in 0..3 {
-        for i in 0..3 {
-            out[(i, j)] = a[(i, 0)] * b[(0, j)] + a[(i, 1)] * b[(1, j)] + a[(i, 2)] * b[(2, j)];
-        }
     }
 }
 

@@ -1,12 +1,11 @@
-//! The translations of a linear space V: an abelian group, whose maps are all the identity.
+//! The translations of a linear space V: an abelian group.
 //!
-//! u ∈ V, g ∈ V; \[u, v\] = 0; g·g′ = g + g′; g moves x ∈ V to x + g; Ψ(u) = u, dΨ⁻¹ = id. In a product
+//! u ∈ V, g ∈ V; \[u, v\] = 0; g·g′ = g + g′; g moves x ∈ V to x + g. In a product
 //! it carries the part of a system that is not on a group: a momentum under forces, a controller's
 //! memory, a heat bath.
 
 use super::{Adjoint, LieAlgebra, LieGroup};
 use crate::error::{Error, StepError};
-use crate::maps::{Cay, Ccsk, CoordinateMap, Exp, Pade22, TruncatedExp};
 use crate::scalar::Real;
 use crate::space::LinearSpace;
 
@@ -154,38 +153,4 @@ impl<V: LinearSpace> Adjoint for Translations<V> {
     fn pair(&self, m: &V, v: &V) -> V::Scalar {
         m.dot(v)
     }
-}
-
-macro_rules! identity_map {
-    ($($map:ty, $name:expr $(, $index:ident)*;)*) => {$(
-        impl<V: LinearSpace, $(const $index: usize),*> CoordinateMap<Translations<V>> for $map {
-            type At = ();
-
-            fn name(&self) -> &'static str {
-                $name
-            }
-            fn at(&self, _: &Translations<V>) -> Result<(), Error> {
-                Ok(())
-            }
-            #[inline]
-            fn psi(&self, _: &Translations<V>, u: &V, _: &mut (), g: &mut V) -> Result<(), StepError> {
-                g.assign(u);
-                match g.is_finite() {
-                    true => Ok(()),
-                    false => Err(StepError::NotFinite { what: "the translation" }),
-                }
-            }
-            #[inline]
-            fn dpsi_inv(&self, _: &Translations<V>, _: &V, _: &mut (), _: &mut V) -> Result<(), StepError> {
-                Ok(())
-            }
-        }
-    )*};
-}
-identity_map! {
-    Exp, "exp";
-    TruncatedExp, "exp";
-    Cay, "cay";
-    Pade22, "pade22";
-    Ccsk<I, J, K>, "ccsk", I, J, K;
 }

@@ -15,26 +15,24 @@ mod log;
 mod named;
 mod pade22;
 mod parts;
+mod quaternions;
 mod quotient;
 mod se3;
+mod translations;
 mod unitary;
 
-pub use alternating::{Alternating, AlternatingAt, CCSK};
-pub use cay::{Cay, CayleyGroup, cay_inv, dcay};
+pub use alternating::{Alternating, CCSK};
+pub use cay::{Cay, cay_inv, dcay};
 pub use ccsk::{CCSK123, CCSK321, Ccsk};
 pub use exp::{
-    Dexpinv, Exp, ExpAt, Truncated, TruncatedExp, dexp, dexpinv, dexpinv_with_remainder,
+    BakerSum, Dexpinv, Exp, TruncatedExp, dexp, dexpinv, dexpinv_with_remainder,
     distance_to_singular,
 };
-pub(crate) use log::GAUSS_LEGENDRE7;
-pub use named::{
-    AllMaps, ExpOrCay, ExpOrCayAt, FromName, Groups, HasExpAndCay, MAPS, MapInfo, MapsByName,
-    NamedAt, NamedMap, Serves,
-};
-pub use pade22::{Pade22, Pade22At};
+pub(crate) use named::FromName;
+pub(crate) use named::Serves;
+pub use named::{AllMaps, ExpOrCay, Groups, MAPS, MapInfo, MapsByName, NamedMap};
+pub use pade22::Pade22;
 pub use parts::{Each, Pair};
-pub use se3::ScrewAt;
-pub use unitary::{UnitaryCayAt, UnitaryExpAt};
 
 use crate::error::{Error, StepError};
 use crate::groups::LieGroup;
@@ -127,5 +125,48 @@ pub trait CoordinateMap<G: LieGroup> {
         self.psi(group, u, &mut at, &mut g)?;
         self.dpsi_inv(group, u, &mut at, &mut v)?;
         Ok(v)
+    }
+}
+
+/// Ψ(u), not yet formed: an action on vectors never forms it.
+#[derive(Debug)]
+pub struct PsiOf<'a, G: LieGroup, Psi: CoordinateMap<G>> {
+    group: &'a G,
+    psi: &'a Psi,
+    u: &'a G::Alg,
+    at: &'a mut Psi::At,
+    g: &'a mut G::Elem,
+}
+
+impl<'a, G: LieGroup, Psi: CoordinateMap<G>> PsiOf<'a, G, Psi> {
+    /// Ψ(u) with the storage that forming it needs.
+    #[inline(always)]
+    pub(crate) fn new(
+        group: &'a G,
+        psi: &'a Psi,
+        u: &'a G::Alg,
+        at: &'a mut Psi::At,
+        g: &'a mut G::Elem,
+    ) -> Self {
+        PsiOf { group, psi, u, at, g }
+    }
+
+    /// The group, and Ψ(u) as an element of it.
+    ///
+    /// # Errors
+    /// As [`CoordinateMap::psi`].
+    #[inline]
+    pub fn form(self) -> Result<(&'a G, &'a G::Elem), StepError> {
+        self.psi.psi(self.group, self.u, self.at, self.g)?;
+        Ok((self.group, self.g))
+    }
+
+    /// y ← Ψ(u)·x.
+    ///
+    /// # Errors
+    /// As [`CoordinateMap::psi_on`].
+    #[inline]
+    pub fn on(self, x: &G::Vector, y: &mut G::Vector) -> Result<(), StepError> {
+        self.psi.psi_on(self.group, self.u, self.at, self.g, x, y)
     }
 }

@@ -217,7 +217,7 @@ macro_rules! named_map {
 }
 
 named_map! {
-    /// A map of [`MAPS`] by its name ([`NamedMap::named`]).
+    /// A map of [`MAPS`] by its name.
     NamedMap,
     /// The map, with what it keeps at u.
     NamedAt,

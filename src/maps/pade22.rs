@@ -21,8 +21,9 @@ use super::CoordinateMap;
 use super::quotient::{Quotient, finite};
 use crate::dense::{AdSchur, mul, norm_frobenius, scaled_sum};
 use crate::error::{Error, StepError};
-use crate::groups::{AlgebraMatrix, GroupMatrix, LieAlgebra, MatrixGroup, So3, cross};
+use crate::groups::{AlgebraMatrix, GroupMatrix, LieAlgebra, MatrixGroup, So3};
 use crate::scalar::Real;
+use crate::so3::cross;
 use crate::so3::{finite as finite3, rodrigues, rodrigues_on};
 
 /// The diagonal Padé map (2,2): Ψ(u) = (𝟙 − u/2 + u²/12)⁻¹(𝟙 + u/2 + u²/12).

@@ -20,7 +20,7 @@ use crate::groups::{LieAlgebra, LieGroup, Power, Product};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Pair<P, Q>(pub P, pub Q);
 
-/// One map for every copy of a [`Power`].
+/// The map of a [`Power`] by one map for every copy.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Each<Psi>(pub Psi);
 

@@ -2,9 +2,8 @@
 
 use faer::Mat;
 
-use crate::dense::{Lu, is_finite, mul, norm1};
+use crate::dense::{Lu, RCOND_MIN, is_finite, mul, norm1};
 use crate::error::StepError;
-use crate::groups::RCOND_MIN;
 
 /// D(u), D(−u), the LU of D(u), and a product.
 #[derive(Debug)]

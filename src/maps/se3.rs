@@ -13,12 +13,13 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::{Cay, Ccsk, CoordinateMap, Pade22, pade22};
 use crate::error::{Error, StepError};
-use crate::groups::{Se3, So3, add3, cross, finite_pair};
+use crate::groups::{Se3, So3, finite_pair};
 use crate::scalar::{Real, Trig};
 use crate::so3::{Angles, cay_coefficients, rodrigues_on};
+use crate::so3::{add3, cross};
 
 type Twist<S> = (Vector3<S>, Vector3<S>);
-type Motion<S> = (Matrix3<S>, Vector3<S>);
+type BodyMotion<S> = (Matrix3<S>, Vector3<S>);
 
 /// What a map keeps: what ψ does, and x.
 #[derive(Clone, Copy, Debug)]
@@ -58,7 +59,7 @@ macro_rules! on_se3 {
                 _: &Se3<S>,
                 (omega, v): &Twist<S>,
                 at: &mut Self::At,
-                g: &mut Motion<S>,
+                g: &mut BodyMotion<S>,
             ) -> Result<(), StepError> {
                 self.psi(&So3::new(), omega, &mut at.turn, &mut g.0)?;
                 at.x = $translate(omega, v)?;

@@ -37,12 +37,12 @@ impl<P: Problem> fmt::Debug for AnyMethod<'_, P> {
 impl<'p, P: Problem + 'p> AnyMethod<'p, P> {
     /// A method without an estimate of its own.
     pub fn new<M: Method<P> + Clone + 'p>(method: M) -> Self {
-        AnyMethod { inner: Arc::new(Erased { method, estimate: NoEstimate }) }
+        AnyMethod { inner: Arc::new(MethodWithEstimate { method, estimate: NoEstimate }) }
     }
 
     /// A method with its estimate, where it has one.
     pub fn embedded<M: Embedded<P> + Clone + 'p>(method: M) -> Self {
-        AnyMethod { inner: Arc::new(Erased { method, estimate: OwnEstimate }) }
+        AnyMethod { inner: Arc::new(MethodWithEstimate { method, estimate: OwnEstimate }) }
     }
 
     /// Does the method estimate its own error on this problem? Otherwise steps are doubled.
@@ -147,12 +147,12 @@ impl<P: Problem, M: Embedded<P>> Estimate<P, M> for OwnEstimate {
     }
 }
 
-struct Erased<M, E> {
+struct MethodWithEstimate<M, E> {
     method: M,
     estimate: E,
 }
 
-impl<'p, P, M, E> Inner<'p, P> for Erased<M, E>
+impl<'p, P, M, E> Inner<'p, P> for MethodWithEstimate<M, E>
 where
     P: Problem + 'p,
     M: Method<P> + Clone + 'p,
@@ -176,18 +176,18 @@ where
     fn stepper(&self, problem: &P, like: &PointOf<P>) -> Result<Box<dyn Stepper<P> + 'p>, Error> {
         let work = self.method.work(problem, like)?;
         let (method, estimate) = (self.method.clone(), self.estimate);
-        Ok(Box::new(Working { method, work, estimate, problem: PhantomData::<fn(&P)> }))
+        Ok(Box::new(MethodWithWork { method, work, estimate, problem: PhantomData::<fn(&P)> }))
     }
 }
 
-struct Working<P: Problem, M: Method<P>, E> {
+struct MethodWithWork<P: Problem, M: Method<P>, E> {
     method: M,
     work: M::Work,
     estimate: E,
     problem: PhantomData<fn(&P)>,
 }
 
-impl<P: Problem, M: Method<P>, E: Estimate<P, M>> Stepper<P> for Working<P, M, E> {
+impl<P: Problem, M: Method<P>, E: Estimate<P, M>> Stepper<P> for MethodWithWork<P, M, E> {
     fn step(
         &mut self,
         problem: &P,

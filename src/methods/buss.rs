@@ -17,10 +17,11 @@ use nalgebra::Vector3;
 use super::simo_wong::turn_body;
 use super::{Method, Step};
 use crate::error::{Error, StepError};
-use crate::groups::{So3, cross};
+use crate::groups::So3;
 use crate::maps::{CoordinateMap, Exp};
 use crate::problems::{FreeBody, PointOf, ScalarOf};
 use crate::scalar::{Real, Trig};
+use crate::so3::cross;
 
 /// Buss's method of order 4, the B4 of the paper.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

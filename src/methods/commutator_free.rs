@@ -17,7 +17,7 @@
 //! B. Owren, Variable step size commutator free Lie group integrators, Numer. Algorithms 82 (2019).
 
 use super::embedded::{between, without_pair};
-use super::stages::Stages;
+use super::stages::{Stages, copies};
 use super::tableau::pad;
 use super::{Embedded, LocalError, Method, Metric, Step};
 use crate::error::{Error, StepError};
@@ -28,7 +28,7 @@ use crate::scalar::Real;
 
 /// A product of exponentials that acts on a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Product<const S: usize> {
+pub struct ExponentialProduct<const S: usize> {
     /// The stage whose point it starts from; 0 is the start of the step.
     pub from: usize,
     /// The weights of the stages in each factor; the first is applied first.
@@ -38,20 +38,20 @@ pub struct Product<const S: usize> {
 /// The coefficients of a commutator-free method with S stages.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProductTableau<const S: usize> {
-    /// Its name.
+    /// The name of the method.
     pub name: &'static str,
-    /// Its order.
+    /// The order of the method.
     pub order: usize,
     /// Nodes c_i.
     pub c: [f64; S],
     /// Stages; the first is the start of the step, a product without factors.
-    pub stages: [Product<S>; S],
+    pub stages: [ExponentialProduct<S>; S],
     /// The update.
-    pub update: Product<S>,
+    pub update: ExponentialProduct<S>,
     /// How many stages the update needs.
     pub update_stages: usize,
     /// A second result, of the order that is given, from the same stages.
-    pub embedded: Option<(usize, Product<S>)>,
+    pub embedded: Option<(usize, ExponentialProduct<S>)>,
 }
 
 impl<const S: usize> ProductTableau<S> {
@@ -62,14 +62,14 @@ impl<const S: usize> ProductTableau<S> {
 }
 
 /// The start of the step: the first stage of every table.
-pub(super) const fn start<const S: usize>() -> Product<S> {
-    Product { from: 0, factors: &[] }
+pub(super) const fn start<const S: usize>() -> ExponentialProduct<S> {
+    ExponentialProduct { from: 0, factors: &[] }
 }
 
 /// The stages of a table: the start of the step, these, and room for more that are never evaluated.
 pub(super) const fn stages<const S: usize, const N: usize>(
-    later: [Product<S>; N],
-) -> [Product<S>; S] {
+    later: [ExponentialProduct<S>; N],
+) -> [ExponentialProduct<S>; S] {
     let mut stages = [start(); S];
     let mut i = 0;
     while i < N {
@@ -89,10 +89,10 @@ pub(crate) const fn cf3<const S: usize>() -> ProductTableau<S> {
         order: 3,
         c: pad(&[0.0, 1.0 / 3.0, 2.0 / 3.0]),
         stages: stages([
-            Product { from: 0, factors: const { &[pad(&[1.0 / 3.0])] } },
-            Product { from: 0, factors: const { &[pad(&[0.0, 2.0 / 3.0])] } },
+            ExponentialProduct { from: 0, factors: const { &[pad(&[1.0 / 3.0])] } },
+            ExponentialProduct { from: 0, factors: const { &[pad(&[0.0, 2.0 / 3.0])] } },
         ]),
-        update: Product {
+        update: ExponentialProduct {
             from: 0,
             factors: const { &[pad(&[1.0 / 3.0]), pad(&[-1.0 / 12.0, 0.0, 0.75])] },
         },
@@ -113,11 +113,11 @@ pub(crate) const fn cf4<const S: usize>() -> ProductTableau<S> {
         order: 4,
         c: pad(&[0.0, 0.5, 0.5, 1.0]),
         stages: stages([
-            Product { from: 0, factors: const { &[pad(&[0.5])] } },
-            Product { from: 0, factors: const { &[pad(&[0.0, 0.5])] } },
-            Product { from: 1, factors: const { &[pad(&[-0.5, 0.0, 1.0])] } },
+            ExponentialProduct { from: 0, factors: const { &[pad(&[0.5])] } },
+            ExponentialProduct { from: 0, factors: const { &[pad(&[0.0, 0.5])] } },
+            ExponentialProduct { from: 1, factors: const { &[pad(&[-0.5, 0.0, 1.0])] } },
         ]),
-        update: Product {
+        update: ExponentialProduct {
             from: 0,
             factors: const {
                 &[pad(&[3.0 * T, 2.0 * T, 2.0 * T, -T]), pad(&[-T, 2.0 * T, 2.0 * T, 3.0 * T])]
@@ -131,8 +131,9 @@ pub(crate) const fn cf4<const S: usize>() -> ProductTableau<S> {
 /// [`CF4`] with a fifth stage for an embedded result of order 3.
 pub const CF43: ProductTableau<5> = {
     let ProductTableau { mut c, mut stages, update, .. } = cf4::<5>();
-    (c[4], stages[4]) = (0.75, Product { from: 0, factors: &[[0.0, 0.75, 0.0, 0.0, 0.0]] });
-    let embedded = Product {
+    (c[4], stages[4]) =
+        (0.75, ExponentialProduct { from: 0, factors: &[[0.0, 0.75, 0.0, 0.0, 0.0]] });
+    let embedded = ExponentialProduct {
         from: 0,
         factors: &[[1.0 / 3.0, 0.0, 0.0, 0.0, 0.0], [-1.0 / 9.0, 1.0 / 3.0, 0.0, 0.0, 4.0 / 9.0]],
     };
@@ -146,6 +147,7 @@ pub struct CommutatorFree<const S: usize>(pub ProductTableau<S>);
 
 /// Stages, their points, and the chart.
 #[allow(missing_debug_implementations)] // the parts belong to the problem's types
+#[doc(hidden)]
 pub struct CommutatorFreeWork<P: Problem, const S: usize>
 where
     Exp: CoordinateMap<P::Group>,
@@ -174,7 +176,7 @@ where
         problem: &P,
         Step { n, h, .. }: Step<ScalarOf<P>>,
         p: &PointOf<P>,
-        product: &Product<S>,
+        product: &ExponentialProduct<S>,
         to: &mut PointOf<P>,
     ) -> Result<(), StepError> {
         let Inner { stages: Stages { k, u, chart }, points, aside } = self;
@@ -235,7 +237,7 @@ where
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
         let inner = Inner {
             stages: Stages::new(problem, &Exp, like)?,
-            points: core::array::from_fn(|_| like.clone()),
+            points: copies(like.clone()),
             aside: like.clone(),
         };
         Ok(CommutatorFreeWork { inner, y: like.clone() })

@@ -22,7 +22,7 @@ use crate::space::Metric;
 /// The weights of a symmetric composition.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scheme {
-    /// Its name in scene files.
+    /// The name in scene files.
     pub name: &'static str,
     /// The order that it gives a symmetric method of order 2.
     pub order: usize,

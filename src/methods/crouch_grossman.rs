@@ -13,7 +13,7 @@
 //! Preserves: the group, and what the action leaves invariant. Source: P. Crouch, R. Grossman,
 //! Numerical integration of ordinary differential equations on manifolds, J. Nonlinear Sci. 3 (1993).
 
-use super::commutator_free::{Product, ProductTableau, stages, start};
+use super::commutator_free::{ExponentialProduct, ProductTableau, stages, start};
 use super::tableau::pad;
 
 /// The weights of stage j alone.
@@ -43,8 +43,8 @@ pub(crate) const fn cg2<const S: usize>() -> ProductTableau<S> {
         name: "cg2",
         order: 2,
         c: pad(&[0.0, 0.5]),
-        stages: stages([Product { from: 0, factors: const { &factors([0.5]) } }]),
-        update: Product { from: 0, factors: const { &[only(1, 1.0)] } },
+        stages: stages([ExponentialProduct { from: 0, factors: const { &factors([0.5]) } }]),
+        update: ExponentialProduct { from: 0, factors: const { &[only(1, 1.0)] } },
         update_stages: 2,
         embedded: None,
     }
@@ -60,10 +60,13 @@ pub(crate) const fn cg3<const S: usize>() -> ProductTableau<S> {
         order: 3,
         c: pad(&[0.0, 0.75, 17.0 / 24.0]),
         stages: stages([
-            Product { from: 0, factors: const { &factors([0.75]) } },
-            Product { from: 0, factors: const { &factors([119.0 / 216.0, 17.0 / 108.0]) } },
+            ExponentialProduct { from: 0, factors: const { &factors([0.75]) } },
+            ExponentialProduct {
+                from: 0,
+                factors: const { &factors([119.0 / 216.0, 17.0 / 108.0]) },
+            },
         ]),
-        update: Product {
+        update: ExponentialProduct {
             from: 0,
             factors: const { &factors([13.0 / 51.0, -2.0 / 3.0, 24.0 / 17.0]) },
         },
@@ -85,12 +88,12 @@ pub const CG4: ProductTableau<5> = ProductTableau {
     c: [0.0, A2[0], A3[0] + A3[1], A4[0] + A4[1] + A4[2], A5[0] + A5[1] + A5[2] + A5[3]],
     stages: [
         start(),
-        Product { from: 0, factors: &factors(A2) },
-        Product { from: 0, factors: &factors(A3) },
-        Product { from: 0, factors: &factors(A4) },
-        Product { from: 0, factors: &factors(A5) },
+        ExponentialProduct { from: 0, factors: &factors(A2) },
+        ExponentialProduct { from: 0, factors: &factors(A3) },
+        ExponentialProduct { from: 0, factors: &factors(A4) },
+        ExponentialProduct { from: 0, factors: &factors(A5) },
     ],
-    update: Product {
+    update: ExponentialProduct {
         from: 0,
         factors: &factors([
             0.1370831520630755,

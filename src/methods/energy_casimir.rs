@@ -10,7 +10,7 @@
 //! not symplectic in general. The fixed-point iteration for ξ converges while h‖J⁻¹‖|m| stays below
 //! about 1; beyond that the step fails with [`StepError::FixedPointDidNotConverge`]. It serves every
 //! problem that is [`LiePoisson`]: the body in ℝ³ and ℝⁿ, and [`Euler`](crate::problems::Euler)'s equations on any
-//! algebra, of a quadratic H and, with [`Averaged`](crate::problems::Averaged), of any. Cost: one Ψ, one action
+//! algebra, of a quadratic H and, with [`MeanGradient`](crate::problems::MeanGradient), of any. Cost: one Ψ, one action
 //! and one discrete gradient an iteration, 5 to 20 iterations.
 //! Source: after J. C. Simo & K. K. Wong (1991) and D. Lewis & J. C. Simo, J. Nonlinear Sci. 4
 //! (1994); discrete gradients by R. McLachlan, G. Quispel & N. Robidoux (1999).

@@ -12,10 +12,10 @@
 //! Source: Hairer, Lubich, Wanner, Geometric Numerical Integration, II.1.3, IV.2.
 
 use super::newton::Progress;
-use super::tableau::pad;
+use super::stages::copies;
 use super::{Method, Step, Symmetric};
-use crate::chart::FieldStore;
 use crate::error::{Error, StepError};
+use crate::problems::FieldStore;
 use crate::problems::{Ambient, PointOf, ScalarOf};
 use crate::scalar::Real;
 use crate::space::{LinearSpace, Metric};
@@ -25,7 +25,7 @@ use crate::space::{LinearSpace, Metric};
 pub struct ImplicitTableau<const S: usize> {
     /// The name of the method on the linear space.
     pub name: &'static str,
-    /// Its classical order.
+    /// The classical order.
     pub order: usize,
     /// Stage weights a_ij.
     pub a: [[f64; S]; S],
@@ -33,28 +33,6 @@ pub struct ImplicitTableau<const S: usize> {
     pub b: [f64; S],
     /// Nodes c_i.
     pub c: [f64; S],
-}
-
-impl<const S: usize> ImplicitTableau<S> {
-    /// How many stages there are: S, but for a [`padded`](Self::padded) one.
-    pub const fn stages(&self) -> usize {
-        let mut s = S;
-        while s > 1 && self.b[s - 1] == 0.0 {
-            s -= 1;
-        }
-        s
-    }
-
-    /// The same method with room for N ≥ S stages: those that are added are never evaluated.
-    pub const fn padded<const N: usize>(&self) -> ImplicitTableau<N> {
-        let mut a = [[0.0; N]; N];
-        let mut i = 0;
-        while i < S {
-            a[i] = pad(&self.a[i]);
-            i += 1;
-        }
-        ImplicitTableau { name: self.name, order: self.order, a, b: pad(&self.b), c: pad(&self.c) }
-    }
 }
 
 /// √3/6.
@@ -115,7 +93,7 @@ impl<P: Ambient, const S: usize> Method<P> for Gauss<S> {
     }
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
         Ok(GaussWork {
-            k: core::array::from_fn(|_| like.clone()),
+            k: copies(like.clone()),
             old: like.clone(),
             z: like.clone(),
             field: FieldStore::new(problem),
@@ -137,8 +115,7 @@ impl<P: Ambient, const S: usize> Method<P> for Gauss<S> {
             }
         };
         let time = |i: usize| t + h * lit(tab.c[i]);
-        let stages = tab.stages();
-        for i in 0..stages {
+        for i in 0..S {
             problem.field(time(i), y, &mut k[i], field);
             if !k[i].is_finite() {
                 return Err(StepError::NonFiniteRhs { stage: i + 1 });
@@ -149,8 +126,8 @@ impl<P: Ambient, const S: usize> Method<P> for Gauss<S> {
         let mut progress = Progress::new();
         loop {
             let mut change = lit(0.0);
-            for i in 0..stages {
-                sum(z, &tab.a[i][..stages], k);
+            for i in 0..S {
+                sum(z, &tab.a[i], k);
                 old.assign(&k[i]);
                 problem.field(time(i), z, &mut k[i], field);
                 change += k[i].distance(old);
@@ -159,7 +136,7 @@ impl<P: Ambient, const S: usize> Method<P> for Gauss<S> {
                 break;
             }
         }
-        sum(z, &tab.b[..stages], k);
+        sum(z, &tab.b, k);
         if !z.is_finite() {
             return Err(StepError::NotFinite { what: "the state" });
         }

@@ -19,6 +19,7 @@
 
 use super::gauss::ImplicitTableau;
 use super::newton::Progress;
+use super::stages::copies;
 use super::{Method, Step, Symmetric};
 use crate::chart::ChartStore;
 use crate::error::{Error, StepError};
@@ -86,7 +87,7 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> RkmkGaussWork<P, 
     fn new(problem: &P, psi: &Psi, like: &PointOf<P>) -> Result<Self, Error> {
         let alg = problem.group();
         Ok(RkmkGaussWork {
-            k: core::array::from_fn(|_| alg.zero()),
+            k: copies(alg.zero()),
             u: alg.zero(),
             old: alg.zero(),
             middle: alg.zero(),
@@ -107,8 +108,7 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> RkmkGaussWork<P, 
     ) -> Result<(), StepError> {
         let (alg, lit) = (problem.group(), ScalarOf::<P>::lit);
         let RkmkGaussWork { k, u, old, middle, q, y, chart } = self;
-        let stages = tab.stages();
-        for i in 0..stages {
+        for i in 0..S {
             chart.around(problem, psi, n, p).field(t + h * lit(tab.c[i]), &mut k[i]);
             if !alg.is_finite(&k[i]) {
                 return Err(StepError::NonFiniteRhs { stage: i + 1 });
@@ -122,7 +122,7 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> RkmkGaussWork<P, 
             }
             let mut around = chart.around(problem, psi, n, if centred { &*q } else { p });
             let (mut change, mut size) = (lit(0.0), lit(1.0));
-            for i in 0..stages {
+            for i in 0..S {
                 alg.combine(h, &tab.a[i], k, u);
                 if centred {
                     alg.axpy(lit(-1.0), middle, u);

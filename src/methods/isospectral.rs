@@ -42,7 +42,7 @@ pub struct IsospectralGauss<const S: usize>(pub ImplicitTableau<S>);
 impl<const S: usize> Symmetric for IsospectralGauss<S> {}
 
 /// A group of n×n matrices, real or complex, that isospectral methods conjugate by.
-pub trait Conjugating: LieGroup<Scalar = f64> {
+pub trait ConjugationGroup: LieGroup<Scalar = f64> {
     /// A stage Q_i or P_i, an n×n matrix that need not be in G.
     type Stage: LinearSpace<Scalar = f64>;
 
@@ -63,7 +63,9 @@ pub trait Conjugating: LieGroup<Scalar = f64> {
 }
 
 /// An action that conjugates matrices, or their transposes.
-pub trait Conjugates<G: Conjugating>: Action<G, Point: LinearSpace<Scalar = f64>> {
+pub trait ConjugationAction<G: ConjugationGroup>:
+    Action<G, Point: LinearSpace<Scalar = f64>>
+{
     /// out ← q m p, or pᵀ m qᵀ where m is transposed, with p = q† where there is none; `half` is scratch.
     fn conjugate(
         q: &G::Stage,
@@ -74,11 +76,11 @@ pub trait Conjugates<G: Conjugating>: Action<G, Point: LinearSpace<Scalar = f64>
     );
 }
 
-type StageOf<P> = <<P as Problem>::Group as Conjugating>::Stage;
+type StageOf<P> = <<P as Problem>::Group as ConjugationGroup>::Stage;
 
 /// Stages and scratch.
 #[allow(missing_debug_implementations)] // the parts belong to the problem's types
-pub struct IsospectralWork<P: Problem<Group: Conjugating>, const S: usize> {
+pub struct IsospectralWork<P: Problem<Group: ConjugationGroup>, const S: usize> {
     q: Factor<StageOf<P>, S>,
     /// `None` where it is Q†.
     p: Option<Factor<StageOf<P>, S>>,
@@ -95,7 +97,7 @@ struct Factor<X, const S: usize> {
 }
 
 impl<X: LinearSpace<Scalar = f64>, const S: usize> Factor<X, S> {
-    fn new<G: Conjugating<Stage = X>>(group: &G) -> Self {
+    fn new<G: ConjugationGroup<Stage = X>>(group: &G) -> Self {
         let zeros = || core::array::from_fn(|_| group.stage());
         Factor { stages: zeros(), slopes: zeros() }
     }
@@ -103,7 +105,7 @@ impl<X: LinearSpace<Scalar = f64>, const S: usize> Factor<X, S> {
     /// out ← 𝟙 + h Σ c_j slope_j.
     fn sum<G>(group: &G, slopes: &[X; S], h: f64, c: &[f64; S], out: &mut X)
     where
-        G: Conjugating<Stage = X>,
+        G: ConjugationGroup<Stage = X>,
     {
         out.clear();
         for (c, x) in c.iter().zip(slopes) {
@@ -115,7 +117,7 @@ impl<X: LinearSpace<Scalar = f64>, const S: usize> Factor<X, S> {
     /// Every slope is ±b.
     fn start<G>(&mut self, group: &G, sign: f64, b: &G::Alg, h: f64, a: &[[f64; S]; S])
     where
-        G: Conjugating<Stage = X>,
+        G: ConjugationGroup<Stage = X>,
     {
         for slope in &mut self.slopes {
             slope.clear();
@@ -129,7 +131,7 @@ impl<X: LinearSpace<Scalar = f64>, const S: usize> Factor<X, S> {
     /// The slope in `half` becomes that of stage i, and the stage follows. Returns its change.
     fn replace<G>(&mut self, group: &G, i: usize, h: f64, a: &[f64; S], half: &mut X) -> f64
     where
-        G: Conjugating<Stage = X>,
+        G: ConjugationGroup<Stage = X>,
     {
         core::mem::swap(half, &mut self.slopes[i]);
         Self::sum(group, &self.slopes, h, a, half);
@@ -139,7 +141,7 @@ impl<X: LinearSpace<Scalar = f64>, const S: usize> Factor<X, S> {
     }
 }
 
-impl Conjugating for MatrixGroup {
+impl ConjugationGroup for MatrixGroup {
     type Stage = Mat<f64>;
 
     fn rows(&self) -> usize {
@@ -166,7 +168,7 @@ impl Conjugating for MatrixGroup {
     }
 }
 
-impl Conjugating for Unitary {
+impl ConjugationGroup for Unitary {
     type Stage = ComplexMatrix;
 
     fn rows(&self) -> usize {
@@ -200,7 +202,7 @@ fn add_one(x: &mut Mat<f64>) {
     }
 }
 
-impl Conjugates<MatrixGroup> for Conjugation {
+impl ConjugationAction<MatrixGroup> for Conjugation {
     fn conjugate(
         q: &Mat<f64>,
         p: Option<&Mat<f64>>,
@@ -217,7 +219,7 @@ impl Conjugates<MatrixGroup> for Conjugation {
 }
 
 /// The point is Wᵀ.
-impl Conjugates<MatrixGroup> for Coadjoint {
+impl ConjugationAction<MatrixGroup> for Coadjoint {
     fn conjugate(
         q: &Mat<f64>,
         p: Option<&Mat<f64>>,
@@ -236,7 +238,7 @@ impl Conjugates<MatrixGroup> for Coadjoint {
 /// q m q† of a skew-Hermitian m, by one product and a half.
 macro_rules! of_skew_hermitian {
     ($($action:ty),*) => {$(
-        impl Conjugates<Unitary> for $action {
+        impl ConjugationAction<Unitary> for $action {
             fn conjugate(
                 q: &ComplexMatrix,
                 _: Option<&ComplexMatrix>,
@@ -254,8 +256,8 @@ of_skew_hermitian!(Conjugation, Coadjoint);
 
 impl<P, const S: usize> Method<P> for IsospectralGauss<S>
 where
-    P: Problem<Group: Conjugating>,
-    P::Action: Conjugates<P::Group>,
+    P: Problem<Group: ConjugationGroup>,
+    P::Action: ConjugationAction<P::Group>,
 {
     type Work = IsospectralWork<P, S>;
 

@@ -31,9 +31,9 @@ use crate::scalar::Real;
 /// The coefficients of a method in Williamson's 2N form with S stages.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TwoN<const S: usize> {
-    /// Its name.
+    /// The name of the method.
     pub name: &'static str,
-    /// Its order.
+    /// The order of the method.
     pub order: usize,
     /// A_i; the first is 0.
     pub a: [f64; S],
@@ -55,7 +55,7 @@ impl<const S: usize> TwoN<S> {
         s
     }
 
-    /// The same method with room for N ≥ S stages: those that are added are never evaluated.
+    /// This method with room for N ≥ S stages: those that are added are never evaluated.
     pub const fn padded<const N: usize>(&self) -> TwoN<N> {
         let TwoN { name, order, embedded, .. } = *self;
         TwoN { name, order, a: pad(&self.a), b: pad(&self.b), c: pad(&self.c), embedded }
@@ -182,6 +182,7 @@ pub struct LowStorage<const S: usize>(pub TwoN<S>);
 
 /// T and the point, with what their update is written into.
 #[allow(missing_debug_implementations)] // the parts belong to the problem's types
+#[doc(hidden)]
 pub struct LowStorageWork<P: Problem>
 where
     Exp: CoordinateMap<P::Group>,

@@ -13,6 +13,7 @@ mod doubling;
 mod embedded;
 mod energy_casimir;
 mod exact;
+mod fluid_midpoint;
 mod gauss;
 mod implicit_rkmk;
 mod isospectral;
@@ -31,26 +32,29 @@ pub mod tableau;
 mod taylor;
 
 pub use crate::space::Metric;
-pub use any::{AnyMethod, AnyWork};
+pub use any::AnyMethod;
 pub use buss::Buss4;
 pub use commutator_free::CommutatorFree;
 pub use composition::{
-    Composition, CompositionWork, KAHAN_LI6, KAHAN_LI8, SCHEMES, SOFRONIOU_SPALETTA10, STRANG,
-    SUZUKI4, Scheme, YOSHIDA4,
+    Composition, KAHAN_LI6, KAHAN_LI8, SCHEMES, SOFRONIOU_SPALETTA10, STRANG, SUZUKI4, Scheme,
+    YOSHIDA4,
 };
-pub use dmv::{DMV2, DMV4, DMV6, DMV8, DMV10, Dmv, DmvWork};
+pub use dmv::{DMV2, DMV4, DMV6, DMV8, DMV10, Dmv};
 pub use doubling::Doubling;
 pub use embedded::{Embedded, LocalError};
-pub use energy_casimir::{EnergyCasimir, EnergyCasimirWork};
+pub use energy_casimir::EnergyCasimir;
 pub use exact::ExactMotion;
-pub use gauss::{GAUSS2, GAUSS4, GAUSS6, Gauss, GaussWork, ImplicitTableau};
-pub use implicit_rkmk::{OddMap, RkmkGauss, RkmkGaussSymmetric, RkmkGaussWork};
-pub use isospectral::{Conjugates, Conjugating, IsospectralGauss, IsospectralWork};
-pub use lie_series::{LieSeries, LieSeriesWork, SeriesGroup};
+pub use fluid_midpoint::{FluidMidpoint, MidpointRule};
+pub use gauss::{GAUSS2, GAUSS4, GAUSS6, Gauss, ImplicitTableau};
+pub use implicit_rkmk::{OddMap, RkmkGauss, RkmkGaussSymmetric};
+pub(crate) use isospectral::ConjugationAction;
+pub(crate) use isospectral::ConjugationGroup;
+pub use isospectral::IsospectralGauss;
+pub use lie_series::{LieSeries, SeriesGroup};
 pub use low_storage::LowStorage;
 pub use magnus::CfMagnus;
 pub use one_bracket::OneBracket;
-pub use projection::{Projected, ProjectedWork};
+pub use projection::ProjectionMethod;
 pub use rk::Rk;
 pub use rkmk::Rkmk;
 pub use simo_wong::SimoWong;
@@ -103,7 +107,7 @@ pub trait Symmetric {}
 pub trait Method<P: Problem> {
     /// Everything a step needs besides y; made once, reused for every step. It carries nothing from
     /// one step to the next: a step depends on its arguments alone. One exception says so:
-    /// [`FluidMidpoint`](crate::problems::FluidMidpoint) starts its iteration from the steps before.
+    /// [`FluidMidpoint`] starts its iteration from the steps before.
     type Work;
 
     /// The order that tests hold the method to.
@@ -116,7 +120,7 @@ pub trait Method<P: Problem> {
     }
 
     /// Does a step stay on M up to rounding? Then the driver takes the state back to M from time to
-    /// time ([`Action::restore`](crate::Action::restore)); a method that leaves M is shown as it is.
+    /// time ([`Action::restore`]); a method that leaves M is shown as it is.
     fn stays_on_manifold(&self) -> bool {
         true
     }

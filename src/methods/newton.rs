@@ -3,8 +3,8 @@
 use nalgebra::{Matrix3, Vector3};
 
 use crate::error::StepError;
-use crate::groups::cross;
 use crate::scalar::Real;
+use crate::so3::cross;
 
 /// Newton iterations before it is given up. Within the stated limits 3 to 6 are made.
 pub(super) const NEWTON_MAX: u32 = 20;

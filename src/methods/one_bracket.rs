@@ -24,7 +24,7 @@ use crate::maps::{CoordinateMap, Exp};
 use crate::problems::{AlgOf, PointOf, Problem, ScalarOf};
 use crate::scalar::Real;
 
-/// One increment h Σ w_j k_j + h² \[k_1, Σ x_j k_j\].
+/// An increment h Σ w_j k_j + h² \[k_1, Σ x_j k_j\].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Increment<const S: usize> {
     /// w_j.
@@ -34,7 +34,7 @@ pub struct Increment<const S: usize> {
 }
 
 impl<const S: usize> Increment<S> {
-    /// Without a bracket.
+    /// The increment without a bracket.
     const fn plain(w: [f64; S]) -> Self {
         Increment { w, x: [0.0; S] }
     }
@@ -43,9 +43,9 @@ impl<const S: usize> Increment<S> {
 /// The coefficients of a method with S stages.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OneBracketTableau<const S: usize> {
-    /// Its name.
+    /// The name of the method.
     pub name: &'static str,
-    /// Its order.
+    /// The order of the method.
     pub order: usize,
     /// Nodes c_i.
     pub c: [f64; S],
@@ -73,7 +73,7 @@ impl<const S: usize> OneBracketTableau<S> {
         s
     }
 
-    /// The same method with room for N ≥ S stages: those that are added are never evaluated.
+    /// This method with room for N ≥ S stages: those that are added are never evaluated.
     pub const fn padded<const N: usize>(&self) -> OneBracketTableau<N> {
         let mut stages = [Increment::plain([0.0; N]); N];
         let mut i = 0;
@@ -137,6 +137,7 @@ pub struct OneBracket<const S: usize>(pub OneBracketTableau<S>);
 
 /// Stages, increments and the chart.
 #[allow(missing_debug_implementations)] // the parts belong to the problem's types
+#[doc(hidden)]
 pub struct OneBracketWork<P: Problem, const S: usize>
 where
     Exp: CoordinateMap<P::Group>,

@@ -15,40 +15,40 @@ use crate::space::Metric;
 /// A method followed by a projection.
 ///
 /// ```
-/// use lieflow::methods::{Projected, Rk, tableau::RK4};
+/// use lieflow::methods::{ProjectionMethod, Rk, tableau::RK4};
 /// use lieflow::problems::{Projection, RigidBodyAttitude};
 /// use lieflow::{LieGroup, Problem, SaveAt, TimeGrid, integrate};
 /// use nalgebra::Matrix3;
 ///
 /// let body = RigidBodyAttitude::<f64>::new([1.0, 2.0, 3.0], [0.2, 0.5, 3.0])?;
-/// let method = Projected::new(Rk(RK4), Projection::Polar);
+/// let method = ProjectionMethod::new(Rk(RK4), Projection::Polar);
 /// let (grid, mut g) = (TimeGrid::new([0.0, 10.0], 0.1)?, Matrix3::identity());
 /// integrate(&body, &method, &grid, &SaveAt::Ends, &mut g, |_, _| {})?;
 /// assert!(body.group().defect(&g) < 1e-15);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Projected<M> {
+pub struct ProjectionMethod<M> {
     base: M,
     how: Projection,
 }
 
-impl<M> Projected<M> {
+impl<M> ProjectionMethod<M> {
     /// The method.
     pub const fn new(base: M, how: Projection) -> Self {
-        Projected { base, how }
+        ProjectionMethod { base, how }
     }
 }
 
 /// The base method's workspace, and the state in progress.
 #[allow(missing_debug_implementations)] // the parts belong to the problem's types
-pub struct ProjectedWork<P: Orthogonal, M: Method<P>> {
+pub struct ProjectionWork<P: Orthogonal, M: Method<P>> {
     base: M::Work,
     z: PointOf<P>,
 }
 
-impl<P: Orthogonal, M: Method<P>> Method<P> for Projected<M> {
-    type Work = ProjectedWork<P, M>;
+impl<P: Orthogonal, M: Method<P>> Method<P> for ProjectionMethod<M> {
+    type Work = ProjectionWork<P, M>;
 
     fn order(&self, problem: &P) -> usize {
         self.base.order(problem)
@@ -57,7 +57,7 @@ impl<P: Orthogonal, M: Method<P>> Method<P> for Projected<M> {
         self.base.evaluations(problem)
     }
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
-        Ok(ProjectedWork { base: self.base.work(problem, like)?, z: like.clone() })
+        Ok(ProjectionWork { base: self.base.work(problem, like)?, z: like.clone() })
     }
     #[inline]
     fn step(
@@ -65,7 +65,7 @@ impl<P: Orthogonal, M: Method<P>> Method<P> for Projected<M> {
         problem: &P,
         step: Step<ScalarOf<P>>,
         y: &mut PointOf<P>,
-        ProjectedWork { base, z }: &mut Self::Work,
+        ProjectionWork { base, z }: &mut Self::Work,
     ) -> Result<(), StepError> {
         z.assign(y);
         self.base.step(problem, step, z, base)?;
@@ -76,7 +76,7 @@ impl<P: Orthogonal, M: Method<P>> Method<P> for Projected<M> {
 }
 
 /// The estimate is that of the base method, before the projection: what that moves is no larger.
-impl<P: Orthogonal, M: Embedded<P>> Embedded<P> for Projected<M> {
+impl<P: Orthogonal, M: Embedded<P>> Embedded<P> for ProjectionMethod<M> {
     fn error_order(&self, problem: &P) -> Result<usize, Error> {
         self.base.error_order(problem)
     }

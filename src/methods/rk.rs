@@ -5,10 +5,11 @@
 //! Source: Hairer, Nørsett, Wanner I, p. 138.
 
 use super::embedded::{between, without_pair};
+use super::stages::copies;
 use super::tableau::{ErrorEstimate, fold_error};
 use super::{Embedded, LocalError, Method, Step, Tableau};
-use crate::chart::FieldStore;
 use crate::error::{Error, StepError};
+use crate::problems::FieldStore;
 use crate::problems::{Ambient, PointOf, ScalarOf};
 use crate::scalar::Real;
 use crate::space::{LinearSpace, Metric};
@@ -85,11 +86,7 @@ impl<P: Ambient, const S: usize> Method<P> for Rk<S> {
         Some(self.0.update_stages() as u64)
     }
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
-        Ok(RkWork {
-            k: core::array::from_fn(|_| like.clone()),
-            z: like.clone(),
-            field: FieldStore::new(problem),
-        })
+        Ok(RkWork { k: copies(like.clone()), z: like.clone(), field: FieldStore::new(problem) })
     }
     #[inline]
     fn step(

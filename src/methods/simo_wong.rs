@@ -31,10 +31,11 @@ use nalgebra::{Matrix3, Vector3};
 use super::newton::newton3;
 use super::{Method, Step, Symmetric};
 use crate::error::{Error, StepError};
-use crate::groups::{LieAlgebra, LieGroup, So3, cross};
+use crate::groups::{LieAlgebra, LieGroup, So3};
 use crate::maps::{Cay, CoordinateMap};
 use crate::problems::{Frame, FreeBody, PointOf, ScalarOf};
 use crate::scalar::{Real, Trig};
+use crate::so3::cross;
 
 /// The function k of Simo and Wong's method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -6,6 +6,11 @@ use crate::groups::LieAlgebra;
 use crate::maps::CoordinateMap;
 use crate::problems::{AlgOf, PointOf, Problem};
 
+/// S copies. One function for all methods: a closure at each place would be a function at each.
+pub(super) fn copies<T: Clone, const S: usize>(of: T) -> [T; S] {
+    core::array::from_fn(|_| of.clone())
+}
+
 /// The stages k, an increment u and the chart.
 pub(super) struct Stages<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> {
     pub(super) k: [AlgOf<P>; S],
@@ -17,7 +22,7 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> Stages<P, Psi, S>
     pub(super) fn new(problem: &P, psi: &Psi, like: &PointOf<P>) -> Result<Self, Error> {
         let zero = || problem.group().zero();
         let chart = ChartStore::new(problem, psi, like)?;
-        Ok(Stages { k: core::array::from_fn(|_| zero()), u: zero(), chart })
+        Ok(Stages { k: copies(zero()), u: zero(), chart })
     }
 
     /// p ← y where the step was taken; else p stays, and the error is [`blame`](Self::blame)d.
@@ -34,7 +39,7 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> Stages<P, Psi, S>
         Ok(())
     }
 
-    /// The same error, or the stage whose f was not finite: that is where it came from. The stages
+    /// The error of the step: the stage whose f was not finite where there is one, else `error`. The stages
     /// are cleared, so that the next attempt does not see the numbers of this one.
     #[cold]
     pub(super) fn blame(&mut self, problem: &P, error: StepError) -> StepError {

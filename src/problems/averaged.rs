@@ -12,7 +12,7 @@
 
 use super::{DiscreteGradient, Hamiltonian};
 use crate::groups::{Adjoint, LieAlgebra};
-use crate::maps::GAUSS_LEGENDRE7;
+use crate::quadrature::GAUSS_LEGENDRE7;
 use crate::scalar::Real;
 
 /// Any H by two functions: its value H(m), and its gradient at a momentum or on the way from it to another,
@@ -23,7 +23,7 @@ use crate::scalar::Real;
 /// use lieflow::groups::So3;
 /// use lieflow::maps::Cay;
 /// use lieflow::methods::EnergyCasimir;
-/// use lieflow::problems::{Averaged, Euler};
+/// use lieflow::problems::{MeanGradient, Euler};
 /// use lieflow::{SaveAt, TimeGrid, integrate};
 /// use nalgebra::Vector3;
 /// type V = Vector3<f64>;
@@ -35,7 +35,7 @@ use crate::scalar::Real;
 ///     let m = way.map_or(*a, |(b, s)| a + (b - a) * s);
 ///     *xi = k.component_mul(&m.component_mul(&k).map(f64::sinh));
 /// };
-/// let problem = Euler::new(So3::<f64>::new(), Averaged(energy, gradient));
+/// let problem = Euler::new(So3::<f64>::new(), MeanGradient(energy, gradient));
 /// let mut m = V::new(0.3, 0.1, 1.0);
 /// let start = (problem.energy(&m), m.norm());
 /// let grid = TimeGrid::new([0.0, 100.0], 0.1)?;
@@ -44,9 +44,9 @@ use crate::scalar::Real;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug)]
-pub struct Averaged<H, D>(pub H, pub D);
+pub struct MeanGradient<H, D>(pub H, pub D);
 
-impl<G, H, D> Hamiltonian<G> for Averaged<H, D>
+impl<G, H, D> Hamiltonian<G> for MeanGradient<H, D>
 where
     G: Adjoint,
     H: Fn(&G::Dual) -> G::Scalar,
@@ -61,7 +61,7 @@ where
     }
 }
 
-impl<G, H, D> DiscreteGradient<G> for Averaged<H, D>
+impl<G, H, D> DiscreteGradient<G> for MeanGradient<H, D>
 where
     G: Adjoint,
     H: Fn(&G::Dual) -> G::Scalar,

@@ -87,7 +87,7 @@ impl Element {
         }
     }
 
-    /// Its transfer map.
+    /// The transfer map of the element.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] for numbers that are not finite.

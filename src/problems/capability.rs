@@ -7,7 +7,7 @@
 //! | [`LiePoisson`] | ṁ = ad*_{∇H(m)} m with a discrete gradient | [`EnergyCasimir`](crate::methods::EnergyCasimir) |
 //! | [`LinearField`] | f depends on t alone | [`magnus`](crate::methods::magnus) |
 //! | [`TaylorField`](super::TaylorField) | Taylor coefficients of f by recurrence | [`LieSeries`](crate::methods::LieSeries) |
-//! | [`Orthogonal`] | where the orthogonal matrix in y is | [`Projected`](crate::methods::Projected) |
+//! | [`Orthogonal`] | where the orthogonal matrix in y is | [`ProjectionMethod`](crate::methods::ProjectionMethod) |
 //! | [`FreeBody`](super::FreeBody) | a free rigid body in ℝ³ | Simo–Wong, Buss, DMV, exact, Taylor |
 
 use super::{AlgOf, Ambient, PointOf, Problem, ScalarOf};

@@ -11,14 +11,14 @@ use std::sync::Arc;
 use super::flow::TimeAlone;
 use super::{AlgOf, LiePoisson, LinearField, LinearSpace, PointOf, Problem, ScalarOf};
 use crate::actions::Action;
-use crate::chart::FieldStore;
 use crate::groups::{LieAlgebra, LieGroup};
+use crate::problems::FieldStore;
 use crate::scalar::Real;
 
 /// A problem on M by G and Λ, whatever its field; what is known of it beyond f is known at run time.
 ///
-/// The type says what its problems may be: with L = [`TimeAlone`] some are of linear type, with H = [`Known`]
-/// some are Lie–Poisson systems. Each problem says which it is: [`is_linear`](Self::is_linear),
+/// The type says what its problems may be: with L = [`TimeAlone`] some are of linear type, with
+/// H = [`WithHamiltonian`] some are Lie–Poisson systems. Each problem says which it is: [`is_linear`](Self::is_linear),
 /// [`is_lie_poisson`](Self::is_lie_poisson). Methods by name look at that.
 ///
 /// ```
@@ -53,17 +53,17 @@ pub struct DynFlow<G: LieGroup, A: Action<G>, L = (), H = ()> {
 
 /// The mark of a type of problems of which some have a Hamiltonian.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Known;
+pub struct WithHamiltonian;
 
 /// H(m).
 type Energy<M, S> = Box<dyn Fn(&M) -> S>;
 
 /// The problem of a [`DynFlow`] with its scratch.
 #[allow(missing_debug_implementations)] // nothing of it is known
-pub struct DynWork<G: LieGroup, M>(Box<dyn Running<G, M>>);
+pub struct DynWork<G: LieGroup, M>(Box<dyn DynField<G, M>>);
 
 /// A problem with its scratch.
-trait Running<G: LieGroup, M> {
+trait DynField<G: LieGroup, M> {
     fn f(&mut self, t: G::Scalar, y: &M, v: &mut G::Alg);
     fn field(&mut self, t: G::Scalar, y: &M, dy: &mut M);
     fn discrete_gradient(&mut self, a: &M, b: &M, xi: &mut G::Alg, scratch: (&mut M, &mut G::Alg));
@@ -79,13 +79,13 @@ type Gradient<P> = fn(
     &mut <P as Problem>::Work,
 );
 
-struct Run<P: Problem> {
+struct ProblemWithWork<P: Problem> {
     problem: Arc<P>,
     store: FieldStore<P>,
     gradient: Option<Gradient<P>>,
 }
 
-impl<P: Problem> Running<P::Group, PointOf<P>> for Run<P> {
+impl<P: Problem> DynField<P::Group, PointOf<P>> for ProblemWithWork<P> {
     fn f(&mut self, t: ScalarOf<P>, y: &PointOf<P>, v: &mut AlgOf<P>) {
         self.problem.f(t, y, v, &mut self.store.work);
     }
@@ -129,7 +129,8 @@ impl<G: LieGroup + Clone + 'static, A: Action<G> + 'static, L, H> DynFlow<G, A, 
         let group = problem.group().clone();
         let work = Box::new(move || {
             let (problem, store) = (problem.clone(), FieldStore::new(&*problem));
-            DynWork(Box::new(Run { problem, store, gradient }) as Box<dyn Running<G, A::Point>>)
+            DynWork(Box::new(ProblemWithWork { problem, store, gradient })
+                as Box<dyn DynField<G, A::Point>>)
         });
         DynFlow { known: PhantomData, group, action, linear: false, energy: None, work }
     }
@@ -146,7 +147,7 @@ impl<G: LieGroup + Clone + 'static, A: Action<G> + 'static, H> DynFlow<G, A, Tim
     }
 }
 
-impl<G: LieGroup + Clone + 'static, A: Action<G> + 'static, L> DynFlow<G, A, L, Known> {
+impl<G: LieGroup + Clone + 'static, A: Action<G> + 'static, L> DynFlow<G, A, L, WithHamiltonian> {
     /// The Lie–Poisson system.
     pub fn lie_poisson<P>(problem: P, action: A) -> Self
     where
@@ -206,7 +207,7 @@ impl<G: LieGroup, A: Action<G>, L, H> Problem for DynFlow<G, A, L, H> {
 impl<G: LieGroup, A: Action<G>, H> LinearField for DynFlow<G, A, TimeAlone, H> {}
 
 /// Of those that are made by [`DynFlow::lie_poisson`]; of others H and its gradient are not numbers.
-impl<G: LieGroup, A, L> LiePoisson for DynFlow<G, A, L, Known>
+impl<G: LieGroup, A, L> LiePoisson for DynFlow<G, A, L, WithHamiltonian>
 where
     A: Action<G, Point: LinearSpace<Scalar = G::Scalar>>,
 {

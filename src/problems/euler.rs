@@ -26,7 +26,7 @@ pub trait Hamiltonian<G: Adjoint> {
     fn further(&self) -> Vec<Invariant> {
         Vec::new()
     }
-    /// Their values.
+    /// The values of the further invariants at m.
     fn further_values(&self, _m: &G::Dual) -> Vec<G::Scalar> {
         Vec::new()
     }
@@ -34,7 +34,7 @@ pub trait Hamiltonian<G: Adjoint> {
 
 /// H with a discrete gradient, for methods that keep the energy. One of degree at most 2 has it from its
 /// gradient: `impl DiscreteGradient<G> for MyHamiltonian {}`; any other has the mean of its gradients,
-/// [`Averaged`](super::Averaged).
+/// [`MeanGradient`](super::MeanGradient).
 pub trait DiscreteGradient<G: Adjoint>: Hamiltonian<G> {
     /// ξ ← ∇̄H(a, b), symmetric in a and b: ⟨b − a, ξ⟩ = H(b) − H(a), ∇̄H(m, m) = ∇H(m). Unless it is
     /// overridden (∇H(a) + ∇H(b))/2, which is one where ∇H is affine and not elsewhere.
@@ -127,7 +127,7 @@ impl<G: Adjoint, H: Hamiltonian<G>> Euler<G, H> {
     pub fn energy(&self, m: &G::Dual) -> G::Scalar {
         self.hamiltonian.value(&self.group, m)
     }
-    /// The same system with g.
+    /// This system with the group element g.
     pub const fn with_group(self) -> EulerGroup<G, H> {
         EulerGroup { system: self }
     }
@@ -292,7 +292,7 @@ where
     fn restore(&self, group: &G, p: &mut Self::Point, work: &mut Self::Work) -> Option<G::Scalar> {
         Some(group.correct(&mut p.0, work.2.each_mut()))
     }
-    /// And m to its orbit.
+    /// g back to G, and m to its orbit.
     fn restore_to(
         &self,
         group: &G,

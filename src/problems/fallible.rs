@@ -92,11 +92,11 @@ impl<P: TryProblem> Fallible<P> {
     pub const fn new(problem: P) -> Self {
         Fallible { problem, error: OnceLock::new() }
     }
-    /// What its field failed with first; `None` when a run failed for another reason, or did not.
+    /// The first error of the field; `None` when a run failed for another reason, or did not.
     pub fn error(&self) -> Option<&P::Error> {
         self.error.get()
     }
-    /// The same, as a value.
+    /// The first error of the field, as a value.
     pub fn into_error(self) -> Option<P::Error> {
         self.error.into_inner()
     }

@@ -184,13 +184,13 @@ impl<G: LieGroup, A: Action<G>, M, F> Flow<G, A, WithWork<M, F>> {
 }
 
 impl<G: LieGroup, A: Action<G>, F, L, H, I> With<G, A, F, L, H, I> {
-    /// The same problem, known to be of linear type: f depends on t alone. Magnus methods rest on it.
+    /// This problem, known to be of linear type: f depends on t alone. Magnus methods rest on it.
     pub fn linear(self) -> With<G, A, F, TimeAlone, H, I> {
         let Flow { group, action, field, facts: Facts { energy, invariants, .. } } = self;
         Flow { group, action, field, facts: Facts { linear: TimeAlone, energy, invariants } }
     }
 
-    /// The same problem with its Hamiltonian, f(m) = −∇H(m) under the coadjoint action: H is the invariant
+    /// This problem with its Hamiltonian, f(m) = −∇H(m) under the coadjoint action: H is the invariant
     /// `energy`, and methods that keep it have the mean of −f between two points as discrete gradient.
     pub fn hamiltonian<E: Fn(&A::Point) -> G::Scalar>(
         self,
@@ -200,7 +200,7 @@ impl<G: LieGroup, A: Action<G>, F, L, H, I> With<G, A, F, L, H, I> {
         Flow { group, action, field, facts: Facts { linear, energy: Energy(value), invariants } }
     }
 
-    /// The same problem with a further invariant and its value.
+    /// This problem with a further invariant and its value.
     pub fn invariant<Q: Fn(&A::Point) -> G::Scalar>(
         self,
         invariant: Invariant,
@@ -228,7 +228,7 @@ pub struct Quantity<I, Q> {
 pub trait Quantities<M, S> {
     /// Calls `take` with each and its value at y.
     fn each(&self, y: &M, take: &mut dyn FnMut(S));
-    /// Their names.
+    /// The names of all of them.
     fn names(&self) -> Vec<Invariant>;
 }
 

@@ -95,7 +95,7 @@ impl<S: Real> HeavyTop<S> {
         Self::new([2.0 * c, 2.0 * c, c], [w, 0.0, 0.0])
     }
 
-    /// Its equations on se(3)*.
+    /// The equations of the top on se(3)*.
     pub fn problem(self) -> Euler<Se3<S>, Self> {
         Euler::new(Se3::new(), self)
     }

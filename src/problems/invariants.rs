@@ -2,34 +2,35 @@
 
 use super::{PointOf, Problem, ScalarOf};
 
-/// Why a quantity is constant, which says what keeps it.
+/// What makes a quantity constant, and so which methods keep it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kept {
-    /// It is constant on the orbits of the action: a Casimir, an eigenvalue, a length. Every method
+pub enum Origin {
+    /// The quantity is constant on the orbits of the action: a Casimir, an eigenvalue, a length. Every method
     /// that acts by the group keeps it to rounding.
-    ByTheAction,
-    /// It is a first integral of this flow: the energy. A method keeps it to its own accuracy, or to
+    Action,
+    /// The quantity is a first integral of this flow: the energy. A method keeps it to its own accuracy, or to
     /// rounding where it is built to.
-    ByTheFlow,
+    Flow,
 }
 
 /// A quantity that the exact solution keeps.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Invariant {
-    /// Its name, as in reports.
+    /// The name, as in reports.
     pub name: String,
     /// What keeps it.
-    pub kept: Kept,
+    pub origin: Origin,
 }
 
 impl Invariant {
-    /// One that every method that acts by the group keeps.
+    /// An invariant of the action: every method that acts by the group keeps it.
     pub fn of_the_action(name: impl Into<String>) -> Self {
-        Invariant { name: name.into(), kept: Kept::ByTheAction }
+        Invariant { name: name.into(), origin: Origin::Action }
     }
-    /// One of this flow.
+    /// An invariant of this flow.
     pub fn of_the_flow(name: impl Into<String>) -> Self {
-        Invariant { name: name.into(), kept: Kept::ByTheFlow }
+        Invariant { name: name.into(), origin: Origin::Flow }
     }
 }
 
@@ -37,6 +38,6 @@ impl Invariant {
 pub trait Invariants: Problem {
     /// The invariants, in the order of [`values`](Self::values).
     fn invariants(&self) -> Vec<Invariant>;
-    /// Their values at y. Between steps, not within one: it may allocate.
+    /// The values of the invariants at y. Between steps, not within one: it may allocate.
     fn values(&self, y: &PointOf<Self>) -> Vec<ScalarOf<Self>>;
 }

@@ -13,7 +13,7 @@
 //! | subspaces, the Grassmann manifold | SO(n); conjugation of projectors | [`SubspaceFlow`] |
 //! | Lyapunov exponents of a vector field | SO(n) × T(2n); translation | [`Lyapunov`] |
 //! | a closure of (t, y), or of t alone | any | [`Flow`]; [`DynFlow`] behind a pointer |
-//! | Hill, Mathieu, Floquet; beam lines | Sp(2m); translation | [`hill`], [`mathieu`], [`floquet`], [`beam`] |
+//! | Hill, Mathieu; beam lines | Sp(2m); translation | [`hill`], [`mathieu`], [`beam`]; [`floquet`](crate::floquet) |
 //! | Riccati | Sp(2m); [`Lagrangian`](crate::actions::Lagrangian) | [`Flow::of_time`] |
 //! | Schrödinger's equation, n levels | U(n) ⊂ SO(2n); vectors | [`schrodinger`](fn@schrodinger) |
 //! | ideal fluids on a sphere and a torus, Zeitlin's model | U(N); conjugation | [`Zeitlin`] |
@@ -46,35 +46,33 @@ mod torque;
 mod zeitlin;
 
 pub use crate::space::LinearSpace;
-pub use averaged::Averaged;
+pub use averaged::MeanGradient;
 pub use capability::{LiePoisson, LinearField, Orthogonal, Projection, Split};
-pub use dyn_flow::{DynFlow, DynWork, Known};
+pub use dyn_flow::{DynFlow, WithHamiltonian};
 pub use euler::{DiscreteGradient, Euler, EulerGroup, FromTheBody, Hamiltonian, Kinetic};
 pub use fallible::{Fallible, InAlgebra, TryProblem};
 pub use flow::{Energy, Facts, Field, Flow, LinearFlow, TimeAlone};
 pub use grassmann::SubspaceFlow;
 pub use heavy_top::HeavyTop;
-pub use invariants::{Invariant, Invariants, Kept};
-pub use isospectral::{IsospectralFlow, IsospectralFlowWork, toda_lattice};
+pub use invariants::{Invariant, Invariants, Origin};
+pub use isospectral::{IsospectralFlow, toda_lattice};
 pub use lorentz::ChargedParticle;
 pub use lyapunov::Lyapunov;
 pub use oja::Oja;
-pub use periodic::{Floquet, LinearHamiltonian, floquet, hill, mathieu, monodromy};
+pub use periodic::{LinearHamiltonian, hill, mathieu};
 pub use quaternion_body::RigidBodyQuaternion;
 pub use rigid_body::{
     BodyFrame, BodyState, Exact, Frame, FreeBody, RigidBody, RigidBodyAttitude, RigidBodyN,
     RigidBodyNAttitude, RigidBodyState, manakov_integrals,
 };
 pub use schrodinger::{Schrodinger, amplitudes, populations, schrodinger};
-pub use series::{MomentumSeries, TaylorField};
+pub(crate) use series::MomentumSeries;
+pub use series::TaylorField;
 pub use spheres::{SphericalPendulum, SpinChain};
-pub use torque::{BodyTorque, Motion, SpaceTorque, Torque, TorqueBody};
-pub use zeitlin::{
-    FluidMidpoint, FluidWork, Keeps, Sphere, StreamWork, Surface, Torus, Vortex, Zeitlin,
-};
+pub use torque::{BodyMotion, BodyTorque, SpaceTorque, Torque, TorqueBody};
+pub use zeitlin::{Sphere, Surface, Torus, Vortex, Zeitlin};
 
 use crate::actions::Action;
-use crate::chart::FieldStore;
 use crate::groups::{LieAlgebra, LieGroup};
 
 /// 𝔤-element of a problem.
@@ -140,6 +138,25 @@ pub trait Problem {
         let FieldStore { v, action, work } = store;
         self.f(t, y, v, work);
         self.action().generate(self.group(), v, y, dy, action);
+    }
+}
+
+/// The storage of [`Problem::field`]; made once.
+#[allow(missing_debug_implementations)] // the parts belong to the problem's types
+pub struct FieldStore<P: Problem + ?Sized> {
+    /// f(t, y).
+    pub v: AlgOf<P>,
+    /// Scratch of the action.
+    pub action: <P::Action as Action<P::Group>>::Work,
+    /// Scratch of f.
+    pub work: P::Work,
+}
+
+impl<P: Problem> FieldStore<P> {
+    /// Storage sized for `problem`.
+    pub fn new(problem: &P) -> Self {
+        let group = problem.group();
+        FieldStore { v: group.zero(), action: problem.action().work(group), work: problem.work() }
     }
 }
 

@@ -10,10 +10,10 @@ use faer::Mat;
 
 use super::{Invariant, Invariants, Problem};
 use crate::actions::Linear;
-use crate::chart::FieldStore;
 use crate::dense::{antisymmetrise, axpy, mul};
 use crate::error::Error;
 use crate::groups::{AlgebraMatrix, MatrixGroup};
+use crate::problems::FieldStore;
 
 /// Oja's flow for a symmetric A.
 ///

@@ -16,10 +16,11 @@ use nalgebra::Vector3;
 use super::rigid_body::check_finite;
 use super::{Invariant, Invariants, LiePoisson, Problem};
 use crate::actions::{Coadjoint, Linear};
-use crate::chart::FieldStore;
 use crate::error::Error;
-use crate::groups::{Power, Se3, So3, add3, cross};
+use crate::groups::{Power, Se3, So3};
+use crate::problems::FieldStore;
 use crate::scalar::Real;
+use crate::so3::{add3, cross};
 
 type V<S = f64> = Vector3<S>;
 
@@ -59,7 +60,7 @@ impl SphericalPendulum {
         Ok((q.cross(&V::from(velocity)), q))
     }
 
-    /// The same pendulum in other numbers.
+    /// This pendulum in other numbers.
     pub fn on<S: Real>(&self) -> SphericalPendulum<S> {
         SphericalPendulum { rate2: S::lit(self.rate2) }
     }
@@ -88,7 +89,7 @@ impl<S: Real> Problem for SphericalPendulum<S> {
     fn f(&self, _: S, (omega, _): &(V<S>, V<S>), v: &mut (V<S>, V<S>), _: &mut ()) {
         *v = (*omega, V::new(S::lit(0.0), S::lit(0.0), self.rate2));
     }
-    /// Without ω × ω = 0 and the zeros of e₃ × q, which are half of λ_*.
+    /// λ_*(f) without ω × ω = 0 and the zeros of e₃ × q, which are half of λ_*.
     fn field(
         &self,
         _: S,
@@ -217,7 +218,7 @@ impl SpinChain {
         (0..self.group.copies()).map(unit).collect()
     }
 
-    /// The same chain in other numbers.
+    /// This chain in other numbers.
     ///
     /// # Errors
     /// None that [`new`](Self::new) has not found.
@@ -290,7 +291,7 @@ impl<S: Real> Problem for SpinChain<S> {
     }
 }
 
-/// Without damping: f = −∇H for the energy H, of degree 2. With damping there is none, and the discrete
+/// f = −∇H for the energy H, of degree 2, where there is no damping. With damping there is no H, and the discrete
 /// gradient is not a number.
 impl<S: Real> LiePoisson for SpinChain<S> {
     fn hamiltonian(&self, s: &Box<[V<S>]>) -> S {

@@ -11,14 +11,15 @@ use nalgebra::{Matrix3, Vector3};
 use super::Problem;
 use super::rigid_body::{apply_transpose, check_finite, check_inertia};
 use crate::actions::LeftTranslation;
-use crate::chart::FieldStore;
 use crate::error::Error;
-use crate::groups::{Adjoint, Product, So3, Translations, add3, apply3};
+use crate::groups::{Adjoint, Product, So3, Translations};
+use crate::problems::FieldStore;
 use crate::scalar::Real;
+use crate::so3::{add3, apply3};
 
 /// What a torque may depend on.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Motion<S = f64> {
+pub struct BodyMotion<S = f64> {
     /// t.
     pub t: S,
     /// g, from body to space.
@@ -32,16 +33,16 @@ pub struct Motion<S = f64> {
 /// A torque, in the frame where it is simple.
 pub trait Torque<S = f64> {
     /// τ_s, the torque in space.
-    fn in_space(&self, at: &Motion<S>) -> Vector3<S>;
+    fn in_space(&self, at: &BodyMotion<S>) -> Vector3<S>;
 }
 
-/// A torque that is given in space: a function of the [`Motion`].
+/// A torque that is given in space: a function of the [`BodyMotion`].
 #[derive(Clone, Copy, Debug)]
 pub struct SpaceTorque<F>(pub F);
 
-impl<S, F: Fn(&Motion<S>) -> Vector3<S>> Torque<S> for SpaceTorque<F> {
+impl<S, F: Fn(&BodyMotion<S>) -> Vector3<S>> Torque<S> for SpaceTorque<F> {
     #[inline]
-    fn in_space(&self, at: &Motion<S>) -> Vector3<S> {
+    fn in_space(&self, at: &BodyMotion<S>) -> Vector3<S> {
         (self.0)(at)
     }
 }
@@ -50,9 +51,9 @@ impl<S, F: Fn(&Motion<S>) -> Vector3<S>> Torque<S> for SpaceTorque<F> {
 #[derive(Clone, Copy, Debug)]
 pub struct BodyTorque<F>(pub F);
 
-impl<S: Real, F: Fn(&Motion<S>) -> Vector3<S>> Torque<S> for BodyTorque<F> {
+impl<S: Real, F: Fn(&BodyMotion<S>) -> Vector3<S>> Torque<S> for BodyTorque<F> {
     #[inline]
-    fn in_space(&self, at: &Motion<S>) -> Vector3<S> {
+    fn in_space(&self, at: &BodyMotion<S>) -> Vector3<S> {
         apply3(&at.attitude, &(self.0)(at))
     }
 }
@@ -60,7 +61,7 @@ impl<S: Real, F: Fn(&Motion<S>) -> Vector3<S>> Torque<S> for BodyTorque<F> {
 /// The sum of two torques.
 impl<S: Real, A: Torque<S>, B: Torque<S>> Torque<S> for (A, B) {
     #[inline]
-    fn in_space(&self, at: &Motion<S>) -> Vector3<S> {
+    fn in_space(&self, at: &BodyMotion<S>) -> Vector3<S> {
         add3(&self.0.in_space(at), &self.1.in_space(at))
     }
 }
@@ -75,7 +76,7 @@ impl<S: Real, A: Torque<S>, B: Torque<S>> Torque<S> for (A, B) {
 /// use nalgebra::{Matrix3, Vector3};
 /// // Damping brings the body to rest.
 /// let body = TorqueBody::new([1.0, 2.0, 3.0], BodyTorque(|at: &_| damping(at)))?;
-/// # fn damping(at: &lieflow::problems::Motion) -> Vector3<f64> { -2.0 * at.omega_body }
+/// # fn damping(at: &lieflow::problems::BodyMotion) -> Vector3<f64> { -2.0 * at.omega_body }
 /// let mut y = (Matrix3::identity(), Vector3::new(0.2, 0.5, 3.0));
 /// let grid = TimeGrid::new([0.0, 20.0], 0.02)?;
 /// integrate(&body, &Rkmk::new(RK4, Exp), &grid, &SaveAt::Ends, &mut y, |_, _| {})?;
@@ -115,7 +116,7 @@ impl<T: Torque> TorqueBody<T> {
         Ok((attitude, attitude * m))
     }
 
-    /// The same body in other numbers, under a torque in those.
+    /// This body in other numbers, under a torque in those.
     pub fn on<S: Real, U: Torque<S>>(&self, torque: U) -> TorqueBody<U, S> {
         TorqueBody::of(self.inertia, torque)
     }
@@ -137,10 +138,10 @@ impl<S: Real, T: Torque<S>> TorqueBody<T, S> {
 
     /// What a torque sees at (t, y).
     #[inline]
-    pub fn motion(&self, t: S, y: &Point<S>) -> Motion<S> {
+    pub fn motion(&self, t: S, y: &Point<S>) -> BodyMotion<S> {
         let momentum = apply_transpose(&y.0, &y.1);
         let omega_body = Vector3::from_fn(|i, _| self.inverse_inertia[i] * momentum[i]);
-        Motion { t, attitude: y.0, momentum_space: y.1, omega_body }
+        BodyMotion { t, attitude: y.0, momentum_space: y.1, omega_body }
     }
 
     /// ½ ω·Jω.

@@ -57,45 +57,45 @@ pub(crate) fn tally_by<T>(f: impl FnOnce() -> T) {
 }
 
 impl Ops {
-    /// None.
+    /// No operation.
     pub const NONE: Ops = Ops { add: 0, mul: 0, div: 0, sqrt: 0, trig: 0 };
 
-    /// So many additions.
+    /// n additions.
     #[inline(always)]
     pub const fn adds(n: usize) -> Ops {
         Ops { add: n as u64, ..Ops::NONE }
     }
-    /// So many multiplications.
+    /// n multiplications.
     #[inline(always)]
     pub const fn muls(n: usize) -> Ops {
         Ops { mul: n as u64, ..Ops::NONE }
     }
-    /// So many divisions.
+    /// n divisions.
     #[inline(always)]
     pub const fn divs(n: usize) -> Ops {
         Ops { div: n as u64, ..Ops::NONE }
     }
-    /// So many square roots.
+    /// n square roots.
     #[inline(always)]
     pub const fn sqrts(n: usize) -> Ops {
         Ops { sqrt: n as u64, ..Ops::NONE }
     }
-    /// So many sines, cosines, exponentials or logarithms.
+    /// n sines, cosines, exponentials or logarithms.
     #[inline(always)]
     pub const fn trigs(n: usize) -> Ops {
         Ops { trig: n as u64, ..Ops::NONE }
     }
-    /// So many times x ← x + a·b.
+    /// n times x ← x + a·b.
     #[inline(always)]
     pub const fn muladds(n: usize) -> Ops {
         Ops { add: n as u64, mul: n as u64, ..Ops::NONE }
     }
-    /// So many times z ← z + a·b in complex numbers: four products and four sums.
+    /// n times z ← z + a·b in complex numbers: four products and four sums.
     #[inline(always)]
     pub const fn complex_muladds(n: usize) -> Ops {
         Ops::muladds(4 * n)
     }
-    /// So many entries, each a sum of k products.
+    /// The operations of `entries` sums of k products each.
     #[inline(always)]
     pub const fn dots(entries: usize, k: usize) -> Ops {
         let (mul, add) = (entries * k, entries * k.saturating_sub(1));
@@ -117,7 +117,7 @@ impl Add for Ops {
     }
 }
 
-/// So many times the same.
+/// The operations of `times` repetitions.
 impl Mul<usize> for Ops {
     type Output = Ops;
     #[inline(always)]

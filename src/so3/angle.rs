@@ -16,7 +16,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::{dot, rotation};
+use super::{dot3, rotation};
 use crate::scalar::{Real, Trig};
 
 /// α² = |u|² and, where they have been asked for or α² is not below [`SERIES`], cos(α/2) and sin(α/2)/α.
@@ -82,7 +82,7 @@ impl<S: Trig> Angle<S> {
     /// The angle of u with cos(α/2) and sin(α/2)/α. Out of range they mean nothing.
     #[inline(always)]
     pub(super) fn with_half(u: &Vector3<S>) -> Self {
-        let alpha2 = dot(u, u);
+        let alpha2 = dot3(u, u);
         let [cos_half, half_sinc] = half(u, alpha2);
         Angle { alpha2, cos_half, half_sinc }
     }
@@ -108,7 +108,7 @@ impl<S: Trig> Angle<S> {
     /// The angle of u alone.
     #[inline(always)]
     pub(super) fn of(u: &Vector3<S>) -> Self {
-        let alpha2 = dot(u, u);
+        let alpha2 = dot3(u, u);
         let [cos_half, half_sinc] =
             alpha2.branch(SERIES, || [S::lit(1.0), S::lit(0.5)], || half(u, alpha2));
         Angle { alpha2, cos_half, half_sinc }
@@ -237,7 +237,7 @@ fn estrin<S: Real>(x: S, c: &[f64; 8]) -> S {
     even(x, x2, c, pair(x, c[6], c[7]))
 }
 
-/// The same with `last`·x⁸.
+/// Σ c_k x^k + `last`·x⁸ in Estrin's order.
 #[inline(always)]
 fn longer<S: Real>(x: S, c: &[f64; 8], last: f64) -> S {
     let x2 = x * x;

@@ -2,17 +2,17 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::cross;
 use super::log::quaternion_of;
-use super::{dot, finite, finite_matrix, polar, rodrigues};
+use super::{dot3, finite, finite_matrix, polar, rodrigues};
+use crate::dense::RCOND_MIN;
 use crate::error::{Error, StepError};
-use crate::groups::RCOND_MIN;
-use crate::groups::cross;
 use crate::scalar::Real;
 
 /// a and a/2 with a = 1/(1 + α²/4): cay(u) = 𝟙 + a û + (a/2) û². `None` where α² leaves the range.
 #[inline(always)]
 pub(crate) fn cay_coefficients<S: Real>(u: &Vector3<S>) -> Option<(S, S)> {
-    let alpha2 = dot(u, u);
+    let alpha2 = dot3(u, u);
     if !alpha2.all_below(S::SQUARE_MAX) {
         return None;
     }
@@ -60,7 +60,7 @@ pub fn dcay_matrix<S: Real>(u: &Vector3<S>) -> Result<Matrix3<S>, StepError> {
 /// v + ¼(u·v)u − ½ u×v.
 #[inline(always)]
 pub(crate) fn dcayinv_of<S: Real>(u: &Vector3<S>, v: &Vector3<S>) -> Vector3<S> {
-    let (half, c) = (S::lit(0.5), S::lit(0.25) * dot(u, v));
+    let (half, c) = (S::lit(0.5), S::lit(0.25) * dot3(u, v));
     let w = cross(u, v);
     Vector3::new(
         v[0] + c * u[0] - half * w[0],

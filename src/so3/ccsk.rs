@@ -19,7 +19,7 @@ pub struct Angles<S> {
 }
 
 impl<S: Real> Angles<S> {
-    /// Those of u = 0.
+    /// The angles of u = 0.
     pub(crate) fn zero() -> Self {
         let zero = (S::lit(0.0), S::lit(1.0));
         Angles { one: zero, two: zero }

@@ -41,6 +41,7 @@ mod exp;
 mod log;
 mod polar;
 mod quaternion;
+mod vectors;
 
 pub(crate) use angle::{Angle, SERIES};
 pub(crate) use batch::{Lane, SMALL};
@@ -59,10 +60,12 @@ pub use quaternion::{
 
 pub(crate) use polar::{cay_huge_on, dexpinv_huge, exp_huge, exp_huge_on};
 
+pub(crate) use vectors::{add3, all_finite, apply3, compose3, cross, dot3, in_range};
+pub use vectors::{hat, vee};
+
 use nalgebra::{Matrix3, Vector3};
 
 use crate::error::StepError;
-use crate::groups::cross;
 use crate::scalar::Real;
 
 /// 𝟙 + a·û + b·û².
@@ -118,25 +121,13 @@ pub(crate) fn rodrigues_on<S: Real>(u: &Vector3<S>, a: S, b: S, x: &Vector3<S>) 
     )
 }
 
-/// u·v.
-#[inline(always)]
-fn dot<S: Real>(u: &Vector3<S>, v: &Vector3<S>) -> S {
-    u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
-}
-
-/// Are all three finite?
-#[inline(always)]
-fn all_finite<S: Real>(u: &Vector3<S>) -> bool {
-    u[0].is_finite() && u[1].is_finite() && u[2].is_finite()
-}
-
 /// w, or that it is not finite.
 #[inline(always)]
 pub(crate) fn finite<S: Real>(w: Vector3<S>, what: &'static str) -> Result<Vector3<S>, StepError> {
     if all_finite(&w) { Ok(w) } else { Err(StepError::NotFinite { what }) }
 }
 
-/// The same for a matrix.
+/// m, or that it is not finite.
 #[inline(always)]
 fn finite_matrix<S: Real>(m: Matrix3<S>, what: &'static str) -> Result<Matrix3<S>, StepError> {
     if m.iter().all(|x| x.is_finite()) { Ok(m) } else { Err(StepError::NotFinite { what }) }

@@ -10,9 +10,9 @@
 
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
-use super::{all_finite, dot, finite, rodrigues, rodrigues_on, rotation};
+use super::cross;
+use super::{all_finite, dot3, finite, rodrigues, rodrigues_on, rotation};
 use crate::error::StepError;
-use crate::groups::cross;
 use crate::scalar::{Real, Trig};
 
 pub(super) const SINGULAR: StepError =
@@ -29,7 +29,7 @@ fn polar<S: Real>(map: &'static str, u: &Vector3<S>) -> Result<(Vector3<S>, S), 
         });
     }
     let v = u.map(|x| x / size);
-    let norm = dot(&v, &v).sqrt();
+    let norm = dot3(&v, &v).sqrt();
     // 1/√3 ≤ norm ≤ 1, except in a lane that holds 0 beside one that holds a huge u.
     let [x, y, z] = norm.branch(
         0.5,

@@ -9,7 +9,7 @@
 
 use faer::Mat;
 use lieflow::actions::LeftTranslation;
-use lieflow::catalog::{MethodInfo, MethodSpec, Needs, Structure};
+use lieflow::catalog::{MethodInfo, MethodSpec, Needs, Property};
 use lieflow::groups::{AlgebraMatrix, ComplexMatrix, MatrixGroup, Sample, So3};
 use lieflow::methods::Metric;
 use lieflow::problems::{
@@ -27,7 +27,7 @@ use crate::support::named::{self, Named};
 use crate::support::orders::specs;
 
 /// A number of a state, with what it shows.
-type Quantity<P> = (Structure, fn(&P, &PointOf<P>) -> f64);
+type Quantity<P> = (Property, fn(&P, &PointOf<P>) -> f64);
 
 /// A problem with what it offers, as the catalog's documentation says: methods with other needs are refused.
 struct Row<P: Problem> {
@@ -117,9 +117,9 @@ fn bodies(sheet: &mut Sheet) {
         sheet,
         momentum,
         Row::new("the momentum", &[Field, Norm, Series, Body, LiePoisson], body, m).with(&[
-            (Structure::Energy, |body, m| body.energy(m)),
-            (Structure::Casimirs, |_, m| m.norm()),
-            (Structure::QuadraticInvariants, |_, m| m.norm_squared()),
+            (Property::Energy, |body, m| body.energy(m)),
+            (Property::Casimirs, |_, m| m.norm()),
+            (Property::QuadraticInvariants, |_, m| m.norm_squared()),
         ])
     );
     let body = RigidBodyAttitude::<f64>::new(INERTIA, m.into()).expect("a body");
@@ -127,16 +127,16 @@ fn bodies(sheet: &mut Sheet) {
         sheet,
         attitude,
         Row::new("the attitude", WITH_ATTITUDE, body, Matrix3::identity())
-            .with(&[(Structure::Group, |body, g| 1.0 + body.group().defect(g))])
+            .with(&[(Property::Group, |body, g| 1.0 + body.group().defect(g))])
     );
     let body = RigidBodyState::<f64>::new(INERTIA).expect("a body");
     let state = body.state(m.into(), Matrix3::identity()).expect("a state");
     let both = |offers| {
         Row::new("momentum and attitude", offers, body, state).with(&[
-            (Structure::Energy, |body, y| body.energy(y)),
-            (Structure::Casimirs, |_, y| y.m.norm()),
-            (Structure::QuadraticInvariants, |_, y| y.m.norm_squared()),
-            (Structure::Group, |body, y| 1.0 + body.group().defect(&y.g)),
+            (Property::Energy, |body, y| body.energy(y)),
+            (Property::Casimirs, |_, y| y.m.norm()),
+            (Property::QuadraticInvariants, |_, y| y.m.norm_squared()),
+            (Property::Group, |body, y| 1.0 + body.group().defect(&y.g)),
         ])
     };
     row!(sheet, attitude, both(WITH_ATTITUDE));
@@ -148,8 +148,8 @@ fn bodies(sheet: &mut Sheet) {
         quaternion,
         Row::new("the quaternion", &[Field, Norm, Series, Body], body, UnitQuaternion::identity())
             .with(&[
-                (Structure::Group, |_, q| q.coords.norm()),
-                (Structure::QuadraticInvariants, |_, q| q.coords.norm()),
+                (Property::Group, |_, q| q.coords.norm()),
+                (Property::QuadraticInvariants, |_, q| q.coords.norm()),
             ])
     );
 }
@@ -168,8 +168,8 @@ fn bodies_in_n_dimensions(sheet: &mut Sheet) {
         let name = format!("the momentum in ℝ^{n}");
         let offers = &[Field, Norm, Series, LiePoisson, Isospectral];
         let momentum = Row::new(&name, offers, body, m).of(scope).with(&[
-            (Structure::Energy, |body, m| body.energy(m)),
-            (Structure::Casimirs, |_, m| {
+            (Property::Energy, |body, m| body.energy(m)),
+            (Property::Casimirs, |_, m| {
                 let square = m * m;
                 let trace = |x: &Mat<f64>| (0..x.nrows()).map(|i| x[(i, i)]).sum::<f64>();
                 trace(&square) + trace(&(&square * &square))
@@ -180,7 +180,7 @@ fn bodies_in_n_dimensions(sheet: &mut Sheet) {
         let offers: &[_] = if n == 3 { &[Field, Norm] } else { &[Field, Norm, Series] };
         let attitude = Row::new(&name, offers, attitude, identity)
             .of(scope)
-            .with(&[(Structure::Group, |body, g| 1.0 + body.group().defect(g))]);
+            .with(&[(Property::Group, |body, g| 1.0 + body.group().defect(g))]);
         match n {
             3 => row!(sheet, field, attitude),
             _ => row!(sheet, series, attitude),
@@ -348,23 +348,23 @@ impl Sheet {
         })
         .unwrap_or_else(|error| panic!("{place}: {error}"));
         let mut deviations: Vec<_> = quantities.iter().map(|(word, _)| *word).zip(worst).collect();
-        deviations.push((Structure::TimeSymmetry, there_and_back(problem, method, start, 0.2)));
+        deviations.push((Property::TimeSymmetry, there_and_back(problem, method, start, 0.2)));
         let numbers: Vec<_> =
             deviations.iter().map(|(word, d)| format!("{word} {d:.0e}")).collect();
         println!("{place}: {}", numbers.join(", "));
         for (word, deviation) in &deviations {
             let bound = match *word {
-                Structure::TimeSymmetry => UNDONE,
+                Property::TimeSymmetry => UNDONE,
                 // A product of many exponentials, each with its rounding, between two ways back to the group.
-                Structure::Group if place.starts_with("cg4 on the attitude in") => {
+                Property::Group if place.starts_with("cg4 on the attitude in") => {
                     1.5 * ON_THE_GROUP
                 }
-                Structure::Group => ON_THE_GROUP,
+                Property::Group => ON_THE_GROUP,
                 _ => KEPT * updates(info.name),
             };
             // No step of the exact motion undoes another to the last bit.
             let asked = info.preserves.contains(word)
-                || info.keeps(*word) && *word != Structure::TimeSymmetry;
+                || info.keeps(*word) && *word != Property::TimeSymmetry;
             if asked && (deviation.is_nan() || *deviation >= bound) {
                 self.broken.push(format!("{place}: {word} {deviation:e}"));
             }

@@ -10,6 +10,7 @@ mod api;
 mod draw;
 mod laws;
 mod products;
+mod rooms;
 mod scalars;
 mod so3_closed;
 mod tableaus;

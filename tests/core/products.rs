@@ -10,7 +10,7 @@ use lieflow::maps::AllMaps;
 use lieflow::maps::{self, CCSK123, CCSK321, Cay, CoordinateMap, Exp};
 use lieflow::methods::magnus::{CayleyMagnus4, Magnus4, TripleProduct};
 use lieflow::methods::{Rkmk, tableau::RK4};
-use lieflow::problems::{BodyTorque, Flow, Motion, TorqueBody};
+use lieflow::problems::{BodyMotion, BodyTorque, Flow, TorqueBody};
 use lieflow::{Action, Error, LieAlgebra, SaveAt, TimeGrid, integrate};
 use nalgebra::Vector3;
 use rand::SeedableRng;
@@ -46,7 +46,7 @@ fn products_are_catalog_groups() {
 /// Methods by name on a product: a damped body on SO(3) × T(3).
 #[test]
 fn methods_by_name_run_on_products() {
-    let damping = BodyTorque(|at: &Motion| -0.2 * at.omega_body);
+    let damping = BodyTorque(|at: &BodyMotion| -0.2 * at.omega_body);
     let body = TorqueBody::new([1.0, 2.0, 2.5], damping).unwrap();
     let start = body.state(nalgebra::Matrix3::identity(), [0.5, 0.4, -0.8]).unwrap();
     let run = |name: &str, map| {

@@ -339,7 +339,7 @@ fn exponentials_by_the_choice_they_made() {
                 let (choice, ops) = Counted::count(|| exponential.exp(&u, structure, &mut g));
                 let choice = choice.unwrap();
                 // One of which nothing is known, and that is large, may go the careful way.
-                if choice.kind != lieflow::dense::Kind::Taylor || choice.balanced {
+                if choice.kind != lieflow::dense::Approximant::Taylor || choice.balanced {
                     continue;
                 }
                 let (products, added, sums, with_one) = polynomial(choice.degree);

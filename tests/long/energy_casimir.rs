@@ -8,7 +8,7 @@ use lieflow::methods::{
     Composition, EnergyCasimir, KAHAN_LI6, Metric, OddMap, Rkmk, SUZUKI4, tableau::DOP853,
 };
 use lieflow::problems::{
-    Ambient, Averaged, DiscreteGradient, Euler, Hamiltonian, HeavyTop, Kinetic, LiePoisson,
+    Ambient, DiscreteGradient, Euler, Hamiltonian, HeavyTop, Kinetic, LiePoisson, MeanGradient,
     PointOf, Problem, SphericalPendulum, SpinChain,
 };
 use lieflow::{
@@ -234,7 +234,7 @@ fn the_mean_of_gradients_on_the_way_is_a_discrete_gradient() {
             let m = way.map_or(*a, |(b, s)| a + (b - a) * s);
             *xi = V::from_fn(|i, _| RATES[i] * slope(m[i]));
         };
-        let problem = Euler::new(So3::<f64>::new(), Averaged(energy, along));
+        let problem = Euler::new(So3::<f64>::new(), MeanGradient(energy, along));
         let (first, mut worst) = (problem.energy(&start), 0.0f64);
         let see = |m: &V| worst = worst.max((problem.energy(m) - first).abs() / first);
         run(&problem, &EnergyCasimir::new(Cay), &start, 2000.0 * h, 2000, see);
@@ -263,6 +263,6 @@ fn the_mean_of_gradients_on_the_way_is_a_discrete_gradient() {
         let e = (p[0] + 0.3 * p[1]).exp();
         *xi = (m.component_mul(&inverse), V::new(-e, -0.3 * e, 3.0 * p[2] * p[2]));
     };
-    let problem = Euler::new(Se3::<f64>::new(), Averaged(energy, along));
+    let problem = Euler::new(Se3::<f64>::new(), MeanGradient(energy, along));
     check("an unusual top", &problem, (V::new(0.2, 0.5, 0.3), V::new(0.6, 0.0, 0.8)));
 }

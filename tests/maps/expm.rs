@@ -6,8 +6,8 @@ use std::collections::BTreeSet;
 use faer::{Mat, c64};
 use lieflow::StepError;
 use lieflow::dense::{
-    ApplyChoice, ComplexExponential, ExpmChoice, Exponential, ExponentialBatch, ExponentialF32,
-    Kind, Structure,
+    ApplyChoice, Approximant, ComplexExponential, ExpmChoice, Exponential, ExponentialBatch,
+    ExponentialF32, Structure,
 };
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
@@ -30,7 +30,7 @@ fn exp(u: &Mat<f64>, structure: Structure) -> Result<(Mat<f64>, ExpmChoice), Ste
 fn pade(u: &Mat<f64>, structure: Structure) -> Result<(Mat<f64>, ExpmChoice), StepError> {
     let mut out = Mat::from_fn(u.nrows(), u.ncols(), |_, _| f64::NAN);
     let choice = Exponential::new(u.nrows()).insist_on_pade().exp(u, structure, &mut out)?;
-    assert!(choice.kind == Kind::Pade || choice.degree == 1, "{choice:?}");
+    assert!(choice.kind == Approximant::Pade || choice.degree == 1, "{choice:?}");
     Ok((out, choice))
 }
 
@@ -356,7 +356,7 @@ fn every_branch_is_taken_and_keeps_the_laws() {
             }
         }
     }
-    use Kind::{CosSin, Pade, Taylor};
+    use Approximant::{CosSin, Pade, Taylor};
     let all = [
         (Pade, 3),
         (Pade, 5),
@@ -389,7 +389,7 @@ fn careful_branches_are_taken() {
     assert!(choice(&[&[0.5, 1e-200], &[1e200, -0.5]]).balanced);
     // Powers see that nothing has to be squared.
     let nilpotent = choice(&[&[0.0, 1e6, 0.0], &[0.0, 0.0, 1e6], &[0.0, 0.0, 0.0]]);
-    assert_eq!((nilpotent.kind, nilpotent.squarings), (Kind::Pade, 0));
+    assert_eq!((nilpotent.kind, nilpotent.squarings), (Approximant::Pade, 0));
     // The trace is taken out before squaring: as many squarings as the rest needs.
     let shifted = choice(&[&[600.0, 1.0], &[-2.0, 601.0]]);
     assert!(shifted.squarings <= 2, "{shifted:?}");
@@ -398,12 +398,12 @@ fn careful_branches_are_taken() {
     let large = |size: f64, rng: &mut Pcg64| {
         exp(&element(rng, 128, Structure::General, size), Structure::General).expect("exp(u)").1
     };
-    assert_eq!(large(1.0, &mut rng).kind, Kind::Taylor);
-    assert_eq!(large(60.0, &mut rng).kind, Kind::Taylor);
+    assert_eq!(large(1.0, &mut rng).kind, Approximant::Taylor);
+    assert_eq!(large(60.0, &mut rng).kind, Approximant::Taylor);
     let mut stiff = element(&mut rng, 128, Structure::General, 1.0);
     (0..64).for_each(|i| stiff[(i, i)] -= 3e3);
     let stiff = exp(&stiff, Structure::General).expect("exp(u)").1;
-    assert!(stiff.kind == Kind::Pade && stiff.squarings > 5, "{stiff:?}");
+    assert!(stiff.kind == Approximant::Pade && stiff.squarings > 5, "{stiff:?}");
 }
 
 #[test]

@@ -4,7 +4,7 @@
 use std::cell::Cell;
 
 use lieflow::actions::LeftTranslation;
-use lieflow::catalog::{Count, MethodInfo, MethodSpec, Needs, Operation, TABLEAUS, Work};
+use lieflow::catalog::{Count, MethodInfo, MethodSpec, Needs, Operation, TABLEAUS, WorkItem};
 use lieflow::groups::So3;
 use lieflow::maps::{Cay, Ccsk, CoordinateMap, Exp, Pade22, TruncatedExp};
 use lieflow::methods::{Method, Step, magnus::TripleProduct};
@@ -144,7 +144,7 @@ where
 }
 
 /// What the work of a step asks for.
-fn stated(work: &[Work]) -> Asked {
+fn stated(work: &[WorkItem]) -> Asked {
     let count = |operations: &[Operation]| {
         let work = work.iter().find(|work| operations.contains(&work.operation));
         work.map_or(0, |work| match work.count {

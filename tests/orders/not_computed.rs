@@ -7,7 +7,7 @@ use lieflow::groups::{LieGroup, So3};
 use lieflow::maps::{Cay, Exp};
 use lieflow::methods::{Method, Rkmk, Step, tableau::RK4};
 use lieflow::problems::{
-    BodyTorque, Motion, PointOf, Problem, RigidBody, RigidBodyAttitude, TorqueBody,
+    BodyMotion, BodyTorque, PointOf, Problem, RigidBody, RigidBodyAttitude, TorqueBody,
 };
 use lieflow::scalar::{Counted, Ops, Real};
 use lieflow::{CoordinateMap, LieAlgebra};
@@ -90,7 +90,7 @@ fn one_evaluation_a_stage_and_torques_where_there_is_one() {
     assert_eq!(body.1.get(), 40);
 
     let torques = Cell::new(0);
-    let torque = BodyTorque(|at: &Motion| {
+    let torque = BodyTorque(|at: &BodyMotion| {
         torques.set(torques.get() + 1);
         -0.1 * at.omega_body
     });

@@ -6,8 +6,8 @@ use lieflow::groups::LieGroup;
 use lieflow::maps::{CCSK, CCSK123, CCSK321, Cay, Exp};
 use lieflow::methods::{
     Buss4, Composition, DMV2, DMV4, DMV6, DMV8, DMV10, ExactMotion, KAHAN_LI6, KAHAN_LI8, MR2, MR4,
-    Projected, Rk, Rkmk, SCHEMES, SOFRONIOU_SPALETTA10, SUZUKI4, SimoWong, Splitting, Taylor,
-    YOSHIDA4, tableau::RK4,
+    ProjectionMethod, Rk, Rkmk, SCHEMES, SOFRONIOU_SPALETTA10, SUZUKI4, SimoWong, Splitting,
+    Taylor, YOSHIDA4, tableau::RK4,
 };
 use lieflow::problems::{
     BodyState, Exact, FreeBody, PointOf, Projection, RigidBody, RigidBodyAttitude, RigidBodyState,
@@ -97,8 +97,8 @@ fn order_in_m_and_in_g() {
     check_order("taylor4", &Taylor::<4>, 2.0, 32);
     check_order("taylor6", &Taylor::<6>, 4.0, 32);
     check_order("taylor8", &Taylor::<8>, 4.0, 24);
-    check_order("rk4-polar", &Projected::new(Rk(RK4), Projection::Polar), 2.0, 64);
-    check_order("rk4-qr", &Projected::new(Rk(RK4), Projection::Qr), 2.0, 64);
+    check_order("rk4-polar", &ProjectionMethod::new(Rk(RK4), Projection::Polar), 2.0, 64);
+    check_order("rk4-qr", &ProjectionMethod::new(Rk(RK4), Projection::Qr), 2.0, 64);
     check_order("rkmk4 cay, (m, g)", &Rkmk::new(RK4, Cay), 2.0, 64);
     check_order("rk4, 12 components", &Rk(RK4), 2.0, 64);
 }
@@ -204,8 +204,8 @@ fn what_each_method_keeps() {
         "taylor8" Taylor::<8>, [false, true, true, true];
         "taylor16" Taylor::<16>, [true, true, true, true];
         "exact" ExactMotion, [true, true, true, true];
-        "rk4-polar" Projected::new(Rk(RK4), Projection::Polar), [false, false, false, true];
-        "rk4-qr" Projected::new(Rk(RK4), Projection::Qr), [false, false, false, true];
+        "rk4-polar" ProjectionMethod::new(Rk(RK4), Projection::Polar), [false, false, false, true];
+        "rk4-qr" ProjectionMethod::new(Rk(RK4), Projection::Qr), [false, false, false, true];
         "rk4" Rk(RK4), [false, false, false, false];
     }
 }

@@ -3,11 +3,12 @@
 use core::f64::consts::PI;
 
 use faer::{Mat, c64};
-use lieflow::chart::FieldStore;
 use lieflow::groups::{ComplexMatrix, LieAlgebra, Sample, Unitary};
 use lieflow::maps::{Cay, Exp};
+use lieflow::methods::FluidMidpoint;
 use lieflow::methods::{Composition, EnergyCasimir, Metric, Rkmk, SUZUKI4, tableau::DOPRI5};
-use lieflow::problems::{FluidMidpoint, Invariants, LinearSpace, Sphere, Surface, Vortex, Zeitlin};
+use lieflow::problems::FieldStore;
+use lieflow::problems::{Invariants, LinearSpace, Sphere, Surface, Vortex, Zeitlin};
 use lieflow::{Error, Method, Problem, SaveAt, Step, StepError, TimeGrid, integrate};
 use rand::SeedableRng;
 use rand_pcg::Pcg64;

@@ -1,7 +1,7 @@
 //! Every method that the catalog has for a fluid has its order and keeps what it says, on both surfaces.
 
 use lieflow::adaptive::{Adaptive, integrate_adaptive};
-use lieflow::catalog::{MethodInfo, MethodSpec, Structure, all_methods};
+use lieflow::catalog::{MethodInfo, MethodSpec, Property, all_methods};
 use lieflow::groups::ComplexMatrix;
 use lieflow::methods::Metric;
 use lieflow::problems::{Surface, Zeitlin};
@@ -58,12 +58,12 @@ fn check<S: Surface>(fluid: &Zeitlin<S>, start: &ComplexMatrix) {
                 "{label}: {slope:.2}, {coarse:.1e} {fine:.1e}"
             );
             let rounding = 1e-13 * start.size();
-            if info.keeps(Structure::Casimirs) {
+            if info.keeps(Property::Casimirs) {
                 let now = fluid.spectrum(&end).expect("levels");
                 let gap = now.iter().zip(&levels).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
                 assert!(gap < rounding, "{label}: {gap:.1e}");
             }
-            if info.keeps(Structure::Energy) {
+            if info.keeps(Property::Energy) {
                 let gap = (fluid.energy(&end) - energy).abs();
                 assert!(gap < rounding, "{label}: {gap:.1e}");
             }

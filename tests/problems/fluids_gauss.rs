@@ -3,8 +3,9 @@
 
 use lieflow::groups::ComplexMatrix;
 use lieflow::maps::Exp;
+use lieflow::methods::FluidMidpoint;
 use lieflow::methods::{GAUSS2, GAUSS4, GAUSS6, IsospectralGauss, Metric, Rkmk, tableau::DOP853};
-use lieflow::problems::{FluidMidpoint, Invariants, Surface, Zeitlin};
+use lieflow::problems::{Invariants, Surface, Zeitlin};
 use lieflow::{Method, SaveAt, TimeGrid, integrate};
 use rand::SeedableRng;
 use rand_pcg::Pcg64;

@@ -16,7 +16,7 @@ mod torque;
 
 use lieflow::maps::{Cay, CoordinateMap, Exp};
 use lieflow::methods::{Method, Metric, Rk, Rkmk, tableau::DOP853, tableau::RK4};
-use lieflow::problems::{Ambient, Invariants, Kept, PointOf, Problem, ScalarOf};
+use lieflow::problems::{Ambient, Invariants, Origin, PointOf, Problem, ScalarOf};
 use lieflow::{LieAlgebra, SaveAt, TimeGrid, integrate};
 
 const EPS: f64 = f64::EPSILON;
@@ -83,9 +83,9 @@ fn keeps_its_invariants<P: Invariants>(
     let (before, after) = (values(y), values(&flow(problem, t, steps, y)));
     assert_eq!((names.len(), before.len()), (before.len(), after.len()));
     for ((name, a), b) in names.iter().zip(before).zip(after) {
-        let bound = match name.kept {
-            Kept::ByTheAction => 16.0 * EPS * (steps as f64).sqrt() * a.abs().max(1.0),
-            Kept::ByTheFlow => accuracy,
+        let bound = match name.origin {
+            Origin::Action => 16.0 * EPS * (steps as f64).sqrt() * a.abs().max(1.0),
+            Origin::Flow => accuracy,
         };
         assert!((a - b).abs() <= bound, "{}: {a} → {b}", name.name);
     }

@@ -1,7 +1,7 @@
 //! The body by its quaternion: every method that the catalog has for it, against the exact motion.
 
 use lieflow::adaptive::{Adaptive, integrate_adaptive};
-use lieflow::catalog::{MethodInfo, MethodSpec, Needs, Structure, all_methods};
+use lieflow::catalog::{MethodInfo, MethodSpec, Needs, Property, all_methods};
 use lieflow::problems::{Exact, RigidBodyQuaternion};
 use lieflow::{Error, Method, SaveAt, TimeGrid, integrate};
 use nalgebra::{Matrix3, UnitQuaternion};
@@ -62,7 +62,7 @@ fn every_method_has_its_order_and_keeps_the_length() {
                 "{label}: {slope:.2}, {e:.1e} {finer:.1e}"
             );
             let off = (coarse.coords.norm() - 1.0).abs();
-            let keeps = info.keeps(Structure::Group) || info.keeps_polynomials(2);
+            let keeps = info.keeps(Property::Group) || info.keeps_polynomials(2);
             assert!(!keeps || off < 1e-14, "{label}: |q| is off by {off:.1e}");
             // The path on S³ is followed, not only that of rotations.
             assert!((coarse.coords - fine.coords).norm() < 0.2, "{label}");

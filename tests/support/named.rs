@@ -6,7 +6,7 @@
 use lieflow::Error;
 use lieflow::actions::Coadjoint;
 use lieflow::catalog::{
-    self, Made, MethodSpec, Needs, bodies, classical, energy_casimir, fields, first, fluids,
+    self, MaybeMethod, MethodSpec, Needs, bodies, classical, energy_casimir, fields, first, fluids,
     implicit, isospectral, linear_type, projected,
 };
 use lieflow::groups::MatrixGroup;
@@ -25,7 +25,7 @@ pub(crate) type Named<'p, P> = AnyMethod<'p, P>;
 fn found<'p, P: Problem>(
     spec: &MethodSpec,
     offers: &[Needs],
-    made: impl FnOnce() -> Made<'p, P>,
+    made: impl FnOnce() -> MaybeMethod<'p, P>,
 ) -> Result<Named<'p, P>, Error> {
     let info = spec.info()?;
     let misfit = || Error::Unsupported {
@@ -63,6 +63,7 @@ macro_rules! by_name {
     ($($(#[$doc:meta])* $name:ident: $($needs:ident)*: [$($make:path),*], $problem:ty, [$($generic:tt)*],
        [$($bound:tt)*];)*) => {$(
         $(#[$doc])*
+        #[allow(clippy::multiple_bound_locations)] // 'p is added to every problem
         pub(crate) fn $name<'p, R, $($generic)*>(
             spec: &MethodSpec,
             then: impl FnOnce(&Named<'p, $problem>) -> R,

@@ -221,7 +221,7 @@ impl Implementation {
 }
 
 /// A reference of the free rigid body, in numbers.
-pub(crate) struct Motion {
+pub(crate) struct BodyMotion {
     pub(crate) id: String,
     pub(crate) inertia: [f64; 3],
     pub(crate) momentum: [f64; 3],
@@ -234,10 +234,10 @@ pub(crate) struct Motion {
 }
 
 /// The motions whose names begin so.
-pub(crate) fn motions(of: &str) -> Vec<Motion> {
+pub(crate) fn motions(of: &str) -> Vec<BodyMotion> {
     let motion = |case: Case| {
         let [m, g] = ["m", "g"].map(|name| &case.output[name]);
-        Motion {
+        BodyMotion {
             inertia: case.vector("inertia").into(),
             momentum: case.vector("momentum").into(),
             attitude0: case.has("attitude0").then(|| case.matrix3("attitude0")),

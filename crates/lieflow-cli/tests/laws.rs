@@ -7,6 +7,7 @@ use lieflow::catalog::{MethodSpec, all_methods};
 use lieflow_cli::cmd::run::run_scene;
 use lieflow_cli::output::{Drift, Watched};
 use lieflow_model::scene::{BUNDLED, Bundled, Scene};
+use lieflow_model::schema::Row;
 use support::Folder;
 
 fn far(a: &[f64], b: &[f64]) -> f64 {
@@ -43,7 +44,7 @@ fn every_method_that_fits_a_kind_is_right() {
         let span = lieflow::TimeGrid::with_steps([t0, t0 + 0.25 * (t1 - t0)], steps).unwrap();
         let end = |method: &MethodSpec| {
             let mut last = Vec::new();
-            let mut sink = |_: f64, row: &[f64]| last = row.to_vec();
+            let mut sink = |_: f64, row: Row<'_>| last = row.values().to_vec();
             let run = model.run(method, &span, &lieflow::SaveAt::Ends, &mut sink);
             run.map(|_| last)
         };

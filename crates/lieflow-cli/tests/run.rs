@@ -9,6 +9,7 @@ use lieflow::{SaveAt, TimeGrid, integrate};
 use lieflow_model::kinds::RigidBodySpec;
 use lieflow_model::model::Layer;
 use lieflow_model::scene::{BUNDLED, Scene};
+use lieflow_model::schema::Row;
 use nalgebra::Vector3;
 use support::{Folder, SCENE, read_csv};
 
@@ -44,11 +45,11 @@ fn every_bundled_scene_runs_and_reads_back_exactly() {
         let scene = Scene::parse("short.toml", &shortened(name)).unwrap();
         let model = scene.model().unwrap();
         let mut rows = Vec::new();
-        let mut sink = |t: f64, row: &[f64]| rows.push([&[t], row].concat());
+        let mut sink = |t: f64, row: Row<'_>| rows.push([&[t], row.values()].concat());
         model.run(&scene.method, &scene.grid, &scene.save, &mut sink).unwrap();
         let (header, written) = read_csv(&folder.read(&format!("{name}/trajectory.csv")));
         assert_eq!(header[0], "t");
-        assert_eq!(header[1..], model.columns());
+        assert!(model.schema().columns().eq(&header[1..]), "{name}: {header:?}");
         assert_eq!(written, rows, "{name}");
         assert_eq!((rows[0][0], rows[rows.len() - 1][0], rows.len()), (1.0, 1.2, 9));
 
@@ -118,7 +119,7 @@ fn rows_on(scene: &Scene, layer: Layer) -> Vec<Vec<f64>> {
     let quantities: Vec<&str> = scene.quantities.iter().map(String::as_str).collect();
     let model = scene.model_with(layer, &quantities).unwrap();
     let mut rows = Vec::new();
-    let mut sink = |t: f64, row: &[f64]| rows.push([&[t], row].concat());
+    let mut sink = |t: f64, row: Row<'_>| rows.push([&[t], row.values()].concat());
     model.run(&scene.method, &scene.grid, &scene.save, &mut sink).unwrap();
     rows
 }

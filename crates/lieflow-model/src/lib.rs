@@ -8,3 +8,4 @@ pub mod kinds;
 pub mod model;
 pub mod operations;
 pub mod scene;
+pub mod schema;

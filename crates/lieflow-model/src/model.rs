@@ -10,6 +10,7 @@ use lieflow::problems::PointOf;
 use lieflow::{Error, RunError, SaveAt, Stats, TimeGrid, integrate};
 
 use crate::operations::Pace;
+use crate::schema::{Row, Schema};
 
 /// Which code a problem runs on. Methods that stay on the group agree on the two to rounding; the
 /// stages of a classical one leave it, and what it makes of an attitude agrees to its order.
@@ -55,13 +56,13 @@ pub struct Steps {
     pub control: Adaptive,
 }
 
-/// What gets the rows of a run: t and one value per column.
-pub type Sink<'a> = dyn FnMut(f64, &[f64]) + 'a;
+/// What gets the rows of a run, each with its t.
+pub type Sink<'a> = dyn FnMut(f64, Row<'_>) + 'a;
 
 /// A problem with its initial state and the quantities that are asked of it.
 pub trait Model: Debug {
-    /// Names of the columns after `t`.
-    fn columns(&self) -> Vec<String>;
+    /// The observables of its rows.
+    fn schema(&self) -> &Schema;
 
     /// What a method integrates, in words. Nothing else is computed.
     fn modelled(&self, method: &MethodSpec) -> Vec<String>;
@@ -96,7 +97,7 @@ pub trait Model: Debug {
     /// As [`MethodsByName::method`].
     fn order(&self, method: &MethodSpec) -> Result<Option<usize>, Error>;
 
-    /// The same columns at the end of a span by the exact solution; `None` where none is known.
+    /// The values of the schema at the end of a span by the exact solution; `None` where none is known.
     fn exact(&self, t_span: [f64; 2]) -> Option<Result<Vec<f64>, Error>>;
 
     /// The operations of a step (additions, multiplications, divisions, square roots, sines and

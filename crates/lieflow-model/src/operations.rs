@@ -7,7 +7,7 @@ use std::rc::Rc;
 
 use lieflow::adaptive::{AdaptiveError, integrate_adaptive};
 use lieflow::catalog::MethodSpec;
-use lieflow::methods::{AnyMethod, AnyWork, Embedded, LocalError, Method};
+use lieflow::methods::{AnyMethod, Embedded, LocalError, Method};
 use lieflow::problems::{PointOf, ScalarOf};
 use lieflow::scalar::{Counted, Real};
 use lieflow::{Error, SaveAt, Step, StepError, TimeGrid};
@@ -65,7 +65,7 @@ impl<P: Runnable> Clone for CountedMethod<P> {
 }
 
 impl<P: Runnable> Method<P> for CountedMethod<P> {
-    type Work = AnyWork<'static, P>;
+    type Work = <AnyMethod<'static, P> as Method<P>>::Work;
 
     fn order(&self, problem: &P) -> usize {
         self.method.order(problem)

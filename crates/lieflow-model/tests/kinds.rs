@@ -17,6 +17,7 @@ mod refused;
 
 use lieflow_model::kinds::KINDS;
 use lieflow_model::scene::{BUNDLED, Scene};
+use lieflow_model::schema::Row;
 
 /// The text of a bundled scene.
 fn bundled(name: &str) -> String {
@@ -36,7 +37,7 @@ fn scene(problem: &str, method: &str, time: &str, quantities: &str) -> Scene {
 fn rows(scene: &Scene) -> Vec<Vec<f64>> {
     let model = scene.model().unwrap();
     let mut rows = Vec::new();
-    let mut sink = |t: f64, row: &[f64]| rows.push([&[t], row].concat());
+    let mut sink = |t: f64, row: Row<'_>| rows.push([&[t], row.values()].concat());
     model.run(&scene.method, &scene.grid, &scene.save, &mut sink).unwrap();
     rows
 }
@@ -53,8 +54,49 @@ fn far(a: &[f64], b: &[f64]) -> f64 {
 
 #[test]
 fn every_kind_has_a_bundled_scene() {
-    for kind in KINDS {
+    for kind in KINDS.iter() {
         let has = |name| Scene::bundled(name).unwrap().problem.kind().name == kind.name;
         assert!(BUNDLED.iter().any(|bundled| has(bundled.name)), "{}", kind.name);
     }
+}
+
+/// A row gives its values by name and by observable, and the size of each invariant by its scale.
+#[test]
+fn a_row_has_the_names_and_the_sizes_of_its_values() {
+    let pendulum = Scene::bundled("spherical-pendulum").unwrap();
+    let names = ["omega_along", "direction", "energy", "omega", "direction_norm2"];
+    let model = pendulum.model_with(pendulum.layer, &names).unwrap();
+    let schema = model.schema();
+    assert!(schema.iter().map(|observable| observable.name).eq(names));
+    assert!(schema.laws().map(|law| law.name).eq([names[0], names[2], names[4]]));
+    assert_eq!(schema.columns().count(), 9);
+    let [along, direction, energy, omega, norm2] = names.map(|name| schema.get(name).unwrap());
+    let mut rows = 0;
+    let mut sink = |_: f64, row: Row<'_>| {
+        rows += 1;
+        let q = &row[direction];
+        assert_eq!((q, q), (row.of("direction").unwrap(), &row.values()[1..4]));
+        // The size of q · q is its value; that of ω · q, which is 0, is |ω||q|.
+        let length = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
+        assert!((row[norm2][0] - 1.0).abs() < 1e-12 && row[along][0].abs() < 1e-12);
+        assert_eq!(row.size(norm2, 0), row[norm2][0]);
+        assert!((row.size(along, 0) - length(&row[omega]) * length(q)).abs() < 1e-12);
+        assert!(row.size(energy, 0) > row.size(along, 0).powi(2) / 2.0);
+        assert!(schema.row(row.values()).size(along, 0).is_nan());
+    };
+    model.run(&pendulum.method, &pendulum.grid, &pendulum.save, &mut sink).unwrap();
+    assert!(rows > 2);
+    let error = schema.get("momentum").unwrap_err().to_string();
+    assert!(error.contains("`momentum`") && error.contains("omega_along, direction"), "{error}");
+
+    let attitude = scene(
+        "kind = \"rigid-body\"\ninertia = [1, 2, 3]\nomega_body = [0.2, 0.1, 1]",
+        "name = \"rkmk4\"",
+        "t_span = [0, 1]\nsteps = 2",
+        "[\"attitude_defect\"]",
+    );
+    let model = attitude.model().unwrap();
+    let defect = model.schema().get("attitude_defect").unwrap();
+    let mut sink = |_: f64, row: Row<'_>| assert_eq!(row.size(defect, 0), 1.0);
+    model.run(&attitude.method, &attitude.grid, &attitude.save, &mut sink).unwrap();
 }

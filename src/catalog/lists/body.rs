@@ -3,25 +3,28 @@
 
 use super::{Energy, GAUSS, KEEPS_GROUP, KUTTA, LINEAR_ONLY, gauss, of_a_tableau, plain, stages};
 use crate::catalog::facts::{
-    Cost, Count, Family, Instead, MethodInfo, Needs, Operation, Order, Structure, Work, times,
+    Cost, Count, Family, MethodInfo, Needs, Operation, Order, OtherCase, Property, WorkItem, times,
 };
-use crate::catalog::recipe::Recipe;
+use crate::catalog::recipe::{GaussTableau, Recipe};
 use crate::methods::{
-    DMV2, DMV4, DMV6, DMV8, DMV10, Dmv, GAUSS2, GAUSS4, GAUSS6, ImplicitTableau, KAHAN_LI6,
-    KAHAN_LI8, SOFRONIOU_SPALETTA10, STRANG, SUZUKI4, Scheme, SimoWong, Splitting, YOSHIDA4,
+    DMV2, DMV4, DMV6, DMV8, DMV10, Dmv, GAUSS2, GAUSS4, GAUSS6, KAHAN_LI6, KAHAN_LI8,
+    SOFRONIOU_SPALETTA10, STRANG, SUZUKI4, Scheme, SimoWong, Splitting, YOSHIDA4,
 };
 use crate::problems::Projection;
+use GaussTableau::{One, Three, Two};
 use Operation::{
     AmbientField, AxisRotation, CrossProduct, Exp, GramSchmidt, InverseInertia, Microsecond,
     Multiplication, NewtonIteration, NewtonSchulz, Product, Psi, SimoWongStep,
 };
-use Structure::{Casimirs, Everything, Group, QuadraticInvariants, Symplectic, TimeSymmetry};
+use Property::{Casimirs, Everything, Group, QuadraticInvariants, Symplectic, TimeSymmetry};
 
-const SPLIT: &[Structure] = &[Group, Casimirs, Symplectic, TimeSymmetry];
-const ALL_FIRST: &[Structure] = &[Energy, Group, Casimirs, TimeSymmetry];
+const SPLIT: &[Property] = &[Group, Casimirs, Symplectic, TimeSymmetry];
+const ALL_FIRST: &[Property] = &[Energy, Group, Casimirs, TimeSymmetry];
 const MCLACHLAN: &str = "McLachlan 1993; Reich 1996";
-const NEWTON: Cost =
-    Cost::of(&[Work { count: Count::Between(3, 6), operation: NewtonIteration }, times(1, Psi)]);
+const NEWTON: Cost = Cost::of(&[
+    WorkItem { count: Count::Between(3, 6), operation: NewtonIteration },
+    times(1, Psi),
+]);
 
 const fn dmv(name: &'static str, summary: &'static str, method: Dmv) -> MethodInfo {
     const SOURCE: &str = "Moser & Veselov 1991; McLachlan & Zanna 2005; Hairer & Vilmart 2006";
@@ -35,7 +38,7 @@ const fn splitting(
     axes: [usize; 3],
     scheme: Scheme,
     summary: &'static str,
-    rotations: &'static [Work],
+    rotations: &'static [WorkItem],
     source: &'static str,
 ) -> MethodInfo {
     let (family, cost) = ((Family::Splitting, Needs::Body), Cost::of(rotations));
@@ -178,7 +181,7 @@ pub(super) const BODY: &[MethodInfo] = &[
             0,
             "the exact motion by elliptic functions, any step",
             &[Everything],
-            Cost::of(&[Work { count: Count::Between(1, 2), operation: Microsecond }]),
+            Cost::of(&[WorkItem { count: Count::Between(1, 2), operation: Microsecond }]),
             "Jacobi 1850",
             Recipe::Exact,
         )
@@ -186,13 +189,13 @@ pub(super) const BODY: &[MethodInfo] = &[
 ];
 
 /// 15 p (p + 1)/2 multiplications for a vector, p (p + 1) products of matrices.
-const fn taylor_work(p: u32) -> [Work; 2] {
+const fn taylor_work(p: u32) -> [WorkItem; 2] {
     [times(15 * p * (p + 1) / 2, Multiplication), times(p * (p + 1), Product)]
 }
 
 const fn taylor(
     name: &'static str,
-    [vectors, matrices]: &'static [Work; 2],
+    [vectors, matrices]: &'static [WorkItem; 2],
     order: usize,
 ) -> MethodInfo {
     plain(
@@ -202,7 +205,7 @@ const fn taylor(
         "Lie series: derivatives by recurrence, the flow taken to the group",
         KEEPS_GROUP,
         Cost {
-            instead: Instead::OnMatrices(core::slice::from_ref(matrices)),
+            other_case: OtherCase::OnMatrices(core::slice::from_ref(matrices)),
             ..Cost::of(core::slice::from_ref(vectors))
         },
         "Gröbner 1960",
@@ -237,15 +240,15 @@ taylor! {
 const fn projected(
     name: &'static str,
     summary: &'static str,
-    work: &'static [Work],
+    work: &'static [WorkItem],
     how: Projection,
 ) -> MethodInfo {
     const NEAREST: &str = "Hairer, Lubich, Wanner, Geometric Numerical Integration, IV.4";
     let (family, cost) = ((Family::Projection, Needs::Attitude), Cost::of(work));
-    plain(family, name, 4, summary, &[Group], cost, NEAREST, Recipe::Projected(how))
+    plain(family, name, 4, summary, &[Group], cost, NEAREST, Recipe::ProjectionMethod(how))
 }
 
-const SCHULZ: Work = Work { count: Count::Between(2, 3), operation: NewtonSchulz };
+const SCHULZ: WorkItem = WorkItem { count: Count::Between(2, 3), operation: NewtonSchulz };
 
 /// For a state that holds an attitude.
 pub(super) const ATTITUDE: &[MethodInfo] = &[
@@ -279,10 +282,10 @@ pub(super) const ATTITUDE: &[MethodInfo] = &[
 const fn gauss_mg(
     name: &'static str,
     summary: &'static str,
-    work: &'static [Work],
-    table: ImplicitTableau<3>,
+    work: &'static [WorkItem],
+    table: GaussTableau,
 ) -> MethodInfo {
-    const ALL: &[Structure] = &[Energy, Group, Casimirs, QuadraticInvariants, TimeSymmetry];
+    const ALL: &[Property] = &[Energy, Group, Casimirs, QuadraticInvariants, TimeSymmetry];
     let info = gauss(name, summary, work, table);
     MethodInfo { preserves: ALL, needs: Needs::State, source: GAUSS, ..info }
 }
@@ -313,18 +316,18 @@ pub(super) const STATE: &[MethodInfo] = &[
         "midpoint-implicit-mg",
         "the implicit midpoint rule on (m, g), where everything that the body keeps is quadratic",
         &[times(1, AmbientField)],
-        GAUSS2.padded(),
+        One(GAUSS2),
     ),
     gauss_mg(
         "gauss4-mg",
         "Gauss collocation of two stages on (m, g)",
         &[times(2, AmbientField)],
-        GAUSS4.padded(),
+        Two(GAUSS4),
     ),
     gauss_mg(
         "gauss6-mg",
         "Gauss collocation of three stages on (m, g)",
         &[times(3, AmbientField)],
-        GAUSS6,
+        Three(GAUSS6),
     ),
 ];

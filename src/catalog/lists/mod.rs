@@ -3,19 +3,21 @@
 mod body;
 
 use super::facts::{
-    Cost, Count, Family, Instead, Maps, MethodInfo, Needs, Operation, Order, Structure, Work, times,
+    Cost, Count, Family, Maps, MethodInfo, Needs, Operation, Order, OtherCase, Property, WorkItem,
+    times,
 };
-use super::recipe::Recipe;
+use super::recipe::{GaussTableau, Recipe};
 use crate::methods::commutator_free::{CF43, cf3, cf4};
 use crate::methods::crouch_grossman::{CG4, cg2, cg3};
 use crate::methods::low_storage::{EES25, EES27, LS3, LS3_BP, LS4, LS5, LS32};
 use crate::methods::one_bracket::{MAGNUS43, RKMK4_2C};
-use crate::methods::{GAUSS2, GAUSS4, GAUSS6, ImplicitTableau, KAHAN_LI6, SUZUKI4};
+use crate::methods::{GAUSS2, GAUSS4, GAUSS6, KAHAN_LI6, SUZUKI4};
+use GaussTableau::{One, Three, Two};
 use Operation::{
     Act, AmbientField, Bracket, Cay, DpsiInv, EnergyCasimirStep, Exp, Field, Gradient,
     IsospectralStep, LinearField, Product, Psi, TripleProduct,
 };
-use Structure::{
+use Property::{
     Casimirs, Energy, Group, LinearInvariants, QuadraticInvariants, Symplectic, TimeSymmetry,
 };
 
@@ -56,7 +58,7 @@ const fn plain(
     name: &'static str,
     order: usize,
     summary: &'static str,
-    preserves: &'static [Structure],
+    preserves: &'static [Property],
     cost: Cost,
     source: &'static str,
     recipe: Recipe,
@@ -86,14 +88,14 @@ const fn of_a_tableau(info: MethodInfo) -> MethodInfo {
     MethodInfo { takes_tableau: true, order: Order::Tableau, ..info }
 }
 
-/// As often as the tableau has stages.
-const fn stages(operation: Operation) -> Work {
-    Work { count: Count::Stages, operation }
+/// An operation that is done as often as the tableau has stages.
+const fn stages(operation: Operation) -> WorkItem {
+    WorkItem { count: Count::Stages, operation }
 }
 
-const KEEPS_GROUP: &[Structure] = &[Group, Casimirs];
-const GROUP_AND_TIME: &[Structure] = &[Group, Casimirs, TimeSymmetry];
-const LINEAR_ONLY: &[Structure] = &[LinearInvariants];
+const KEEPS_GROUP: &[Property] = &[Group, Casimirs];
+const GROUP_AND_TIME: &[Property] = &[Group, Casimirs, TimeSymmetry];
+const LINEAR_ONLY: &[Property] = &[LinearInvariants];
 const MUNTHE_KAAS: &str = "Munthe-Kaas 1999; Celledoni & Owren, Table 1";
 const KUTTA: &str = "Hairer, Nørsett, Wanner I, p. 138";
 const CMO: &str = "Celledoni, Marthinsen, Owren 2003";
@@ -106,7 +108,7 @@ const fn in_exp(
     name: &'static str,
     order: usize,
     summary: &'static str,
-    work: &'static [Work],
+    work: &'static [WorkItem],
     source: &'static str,
     recipe: Recipe,
 ) -> MethodInfo {
@@ -140,7 +142,7 @@ const FIELD: &[MethodInfo] = &[
             Cost::of(&[
                 stages(Field),
                 stages(Psi),
-                Work { count: Count::StagesLessOne, operation: DpsiInv },
+                WorkItem { count: Count::StagesLessOne, operation: DpsiInv },
             ]),
             MUNTHE_KAAS,
             Recipe::Rkmk,
@@ -210,7 +212,7 @@ const FIELD: &[MethodInfo] = &[
         "commutator-free pair 4(3)",
         KEEPS_GROUP,
         Cost {
-            instead: Instead::WithError(&[times(5, Field), times(8, Exp)]),
+            other_case: OtherCase::WithError(&[times(5, Field), times(8, Exp)]),
             ..Cost::of(&[times(4, Field), times(5, Exp)])
         },
         "Curry, Owren 2019",
@@ -271,7 +273,7 @@ const FIELD: &[MethodInfo] = &[
 ];
 
 /// As many f as exp: 3, 4, 5 or 13.
-const SAME: [[Work; 2]; 4] = [
+const SAME: [[WorkItem; 2]; 4] = [
     [times(3, Field), times(3, Exp)],
     [times(4, Field), times(4, Exp)],
     [times(5, Field), times(5, Exp)],
@@ -282,7 +284,7 @@ const fn low_storage(
     name: &'static str,
     order: usize,
     summary: &'static str,
-    work: &'static [Work],
+    work: &'static [WorkItem],
     table: crate::methods::low_storage::TwoN<13>,
 ) -> MethodInfo {
     in_exp(CF, name, order, summary, work, BAZAVOV, Recipe::LowStorage(table))
@@ -292,7 +294,7 @@ const fn magnus(
     name: &'static str,
     order: usize,
     summary: &'static str,
-    work: &'static [Work],
+    work: &'static [WorkItem],
     source: &'static str,
     recipe: Recipe,
 ) -> MethodInfo {
@@ -379,7 +381,7 @@ const LINEAR_TYPE: &[MethodInfo] = &[
     ),
 ];
 
-const QUADRATIC: &[Structure] = &[QuadraticInvariants, TimeSymmetry];
+const QUADRATIC: &[Property] = &[QuadraticInvariants, TimeSymmetry];
 const ZANNA: &str = "Zanna, Engø & Munthe-Kaas 2001";
 const GAUSS: &str = "Hairer, Lubich, Wanner, Geometric Numerical Integration, II.1.3";
 const ITERATIONS: (u32, u32) = (5, 20);
@@ -390,45 +392,37 @@ const NORM: &[MethodInfo] = &[
         "midpoint-implicit",
         "the implicit midpoint rule on the entries of the state",
         &[times(1, AmbientField)],
-        GAUSS2.padded(),
+        One(GAUSS2),
     ),
     gauss(
         "gauss4",
         "Gauss collocation of two stages on the entries of the state",
         &[times(2, AmbientField)],
-        GAUSS4.padded(),
+        Two(GAUSS4),
     ),
     gauss(
         "gauss6",
         "Gauss collocation of three stages on the entries of the state",
         &[times(3, AmbientField)],
-        GAUSS6,
+        Three(GAUSS6),
     ),
-    rkmk_gauss(
-        "rkmk-gauss2",
-        &[times(1, Field), times(1, Psi), times(1, DpsiInv)],
-        GAUSS2.padded(),
-    ),
-    rkmk_gauss(
-        "rkmk-gauss4",
-        &[times(2, Field), times(2, Psi), times(2, DpsiInv)],
-        GAUSS4.padded(),
-    ),
-    rkmk_gauss("rkmk-gauss6", &[times(3, Field), times(3, Psi), times(3, DpsiInv)], GAUSS6),
+    rkmk_gauss("rkmk-gauss2", &[times(1, Field), times(1, Psi), times(1, DpsiInv)], One(GAUSS2)),
+    rkmk_gauss("rkmk-gauss4", &[times(2, Field), times(2, Psi), times(2, DpsiInv)], Two(GAUSS4)),
+    rkmk_gauss("rkmk-gauss6", &[times(3, Field), times(3, Psi), times(3, DpsiInv)], Three(GAUSS6)),
     rkmk_gauss_symmetric(
         "rkmk-gauss2-symmetric",
         &[times(1, Field), times(2, Psi), times(1, DpsiInv)],
-        GAUSS2.padded(),
+        One(GAUSS2),
     ),
     rkmk_gauss_symmetric(
         "rkmk-gauss4-symmetric",
         &[times(2, Field), times(3, Psi), times(2, DpsiInv)],
-        GAUSS4.padded(),
+        Two(GAUSS4),
     ),
     rkmk_gauss_symmetric(
         "rkmk-gauss6-symmetric",
         &[times(3, Field), times(4, Psi), times(3, DpsiInv)],
-        GAUSS6,
+        Three(GAUSS6),
     ),
 ];
 
@@ -436,31 +430,31 @@ const NORM: &[MethodInfo] = &[
 const fn gauss(
     name: &'static str,
     summary: &'static str,
-    work: &'static [Work],
-    table: ImplicitTableau<3>,
+    work: &'static [WorkItem],
+    table: GaussTableau,
 ) -> MethodInfo {
     let (family, cost) = ((Family::RungeKutta, Needs::Norm), Cost::iterated(ITERATIONS, work));
-    plain(family, name, table.order, summary, QUADRATIC, cost, GAUSS, Recipe::Gauss(table))
+    plain(family, name, table.order(), summary, QUADRATIC, cost, GAUSS, Recipe::Gauss(table))
 }
 
 const fn rkmk_gauss(
     name: &'static str,
-    work: &'static [Work],
-    table: ImplicitTableau<3>,
+    work: &'static [WorkItem],
+    table: GaussTableau,
 ) -> MethodInfo {
     let summary = "implicit Runge–Kutta–Munthe-Kaas on a Gauss tableau";
     let (family, cost) = ((Family::Rkmk, Needs::Norm), Cost::iterated(ITERATIONS, work));
     let recipe = Recipe::RkmkGauss(table);
     in_coordinates(
-        plain(family, name, table.order, summary, KEEPS_GROUP, cost, ZANNA, recipe),
+        plain(family, name, table.order(), summary, KEEPS_GROUP, cost, ZANNA, recipe),
         Maps::All,
     )
 }
 
 const fn rkmk_gauss_symmetric(
     name: &'static str,
-    work: &'static [Work],
-    table: ImplicitTableau<3>,
+    work: &'static [WorkItem],
+    table: GaussTableau,
 ) -> MethodInfo {
     let summary = "the same with its chart in the middle of the step; exp or cay";
     MethodInfo {

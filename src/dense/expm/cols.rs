@@ -13,9 +13,9 @@ pub(in crate::dense) const N_MAX: usize = 16;
 
 /// What is done with matrices in registers.
 pub(in crate::dense) trait Kernel {
-    /// What it gives; the default where there is no kernel for n.
+    /// The result; the default where there is no kernel for n.
     type Output: Default;
-    /// Do it with N×N matrices, N ≥ n, whose columns are K registers. `inline(always)`, please.
+    /// Run with N×N matrices, N ≥ n, whose columns are K registers. `inline(always)`, please.
     fn call<S: Simd, const N: usize, const K: usize>(self, simd: S) -> Self::Output;
 }
 

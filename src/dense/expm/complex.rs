@@ -10,7 +10,7 @@ use super::taylor::{
     B12, B18, T8, THETA_1, THETA_8, THETA_12, THETA_18, THETA_18_6, half_to_the, halvings,
     halvings_18,
 };
-use super::{ExpmChoice, Kind, NORM_MAX_SKEW, Structure};
+use super::{Approximant, ExpmChoice, NORM_MAX_SKEW, Structure};
 use crate::error::StepError;
 use crate::scalar::{Ops, tally};
 
@@ -79,7 +79,7 @@ impl ComplexExponential {
             return Err(StepError::NormTooLarge { map: "exp" });
         }
         let taylor = |degree, squarings| ExpmChoice {
-            kind: Kind::Taylor,
+            kind: Approximant::Taylor,
             degree,
             squarings,
             ..ExpmChoice::default()

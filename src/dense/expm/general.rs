@@ -10,7 +10,7 @@ use faer::Mat;
 
 use super::pade::THETA;
 use super::taylor::{B12, B18, T8, THETA_1, THETA_8, THETA_12, half_to_the, halvings, halvings_18};
-use super::{Expm, ExpmChoice, Kind};
+use super::{Approximant, Expm, ExpmChoice};
 use crate::dense::ops::{abs_mul, abs_sums, axpy, norm1, scaled_sum, scaled_sums};
 use crate::dense::product::{mul, mul_add};
 use crate::scalar::{Ops, tally};
@@ -30,7 +30,7 @@ impl Expm {
         let norm = norm1(x.as_ref());
         if norm <= THETA_1 {
             scaled_sum(out, [1.0], [x], 1.0);
-            self.choice = ExpmChoice { kind: Kind::Taylor, degree: 1, ..Default::default() };
+            self.choice = ExpmChoice { kind: Approximant::Taylor, degree: 1, ..Default::default() };
             return;
         }
         self.a.copy_from(x);
@@ -75,10 +75,10 @@ impl Expm {
             _ => None,
         };
         (choice.kind, choice.degree, choice.squarings) = match taylor {
-            Some((degree, squarings)) => (Kind::Taylor, degree, squarings),
+            Some((degree, squarings)) => (Approximant::Taylor, degree, squarings),
             None => {
                 let (degree, squarings) = self.scaled_pade(norm, out);
-                (Kind::Pade, degree, squarings)
+                (Approximant::Pade, degree, squarings)
             }
         };
         let upper = shape != Shape::Full && choice.squarings > 0;

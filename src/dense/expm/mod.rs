@@ -36,7 +36,7 @@ use crate::error::StepError;
 /// The kind of an approximant.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[non_exhaustive]
-pub enum Kind {
+pub enum Approximant {
     /// The \[m/m\] Padé approximant.
     #[default]
     Pade,
@@ -48,10 +48,11 @@ pub enum Kind {
 
 /// Which approximant was taken. Tests assert it, not only the result.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct ExpmChoice {
     /// Padé or products only.
-    pub kind: Kind,
-    /// Its degree m.
+    pub kind: Approximant,
+    /// The degree m of the approximant.
     pub degree: usize,
     /// Number s of squarings.
     pub squarings: u32,
@@ -201,7 +202,7 @@ impl Expm {
         } else if self.pade_only {
             self.a.copy_from(x);
             let (degree, squarings) = self.scaled_pade(norm, out);
-            self.rotate_back(Kind::Pade, degree, squarings, out);
+            self.rotate_back(Approximant::Pade, degree, squarings, out);
         } else {
             self.exp_skew(x, norm, out);
         }

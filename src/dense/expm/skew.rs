@@ -16,7 +16,7 @@
 use faer::Mat;
 
 use super::taylor::{half_to_the, halvings};
-use super::{Expm, ExpmChoice, Kind};
+use super::{Approximant, Expm, ExpmChoice};
 use crate::dense::ops::{norm1, scaled_sum, scaled_sums};
 use crate::dense::product::{half_mul, half_mul_add, mul, orthogonalise};
 
@@ -118,13 +118,13 @@ impl Expm {
         };
         half_mul(t, u, s.as_ref(), -1.0);
         scaled_sum(out, [1.0, scale], [&*c, &*t], 0.0);
-        self.rotate_back(Kind::CosSin, degree, squarings, out);
+        self.rotate_back(Approximant::CosSin, degree, squarings, out);
     }
 
     /// out ← out^(2^squarings), put back on the group: the choice made is complete.
     pub(super) fn rotate_back(
         &mut self,
-        kind: Kind,
+        kind: Approximant,
         degree: usize,
         squarings: u32,
         out: &mut Mat<f64>,

@@ -8,7 +8,7 @@ use super::taylor::{
     B18, Packed, THETA_1, THETA_2, THETA_4, THETA_8, THETA_12, THETA_18, THETA_18_6, degree_8,
     degree_12, degree_18, half_to_the, halvings, halvings_18,
 };
-use super::{ExpmChoice, Kind, NORM_MAX_SKEW, Structure};
+use super::{Approximant, ExpmChoice, NORM_MAX_SKEW, Structure};
 use crate::scalar::{Ops, tally};
 
 /// Up to this norm a matrix of which nothing is known is scaled by its norm.
@@ -61,7 +61,13 @@ impl Kernel for Exp<'_> {
             4
         };
         tally(|| Cost(x.nrows()).of(degree, norms, [squarings, corrections]));
-        Some(ExpmChoice { kind: Kind::Taylor, degree, squarings, corrections, balanced: false })
+        Some(ExpmChoice {
+            kind: Approximant::Taylor,
+            degree,
+            squarings,
+            corrections,
+            balanced: false,
+        })
     }
 }
 
@@ -75,7 +81,7 @@ impl Cost {
     fn product(self) -> Ops {
         Ops::dots(self.0 * self.0, self.0)
     }
-    /// What it takes to add a product.
+    /// The operations of adding a product.
     #[inline(always)]
     fn added(self) -> Ops {
         Ops::adds(self.0 * self.0)

@@ -3,12 +3,9 @@
 use faer::{Mat, MatRef};
 
 use super::{AlgebraMatrix, Form, GroupMatrix, MatrixGroup};
-use crate::dense::{Lu, is_finite, norm_frobenius};
+use crate::dense::{Lu, RCOND_MIN, is_finite, norm_frobenius};
 use crate::error::{Error, StepError};
 use crate::groups::LieAlgebra;
-
-/// The smallest reciprocal condition number (1-norm) that counts as invertible.
-pub const RCOND_MIN: f64 = 1e-14;
 
 /// The default tolerance of membership: the relative residual that checked constructors allow.
 pub const MEMBERSHIP: f64 = 1e-12;

@@ -10,13 +10,13 @@ use std::sync::OnceLock;
 
 use faer::{Mat, MatRef};
 
+pub use check::MEMBERSHIP;
 pub(crate) use check::finite;
-pub use check::{MEMBERSHIP, RCOND_MIN};
 use correct::Cosquare;
 pub use element::{AlgebraMatrix, GroupMatrix};
 
 use super::{LieAlgebra, LieGroup};
-use crate::dense::{self, Lu, antisymmetrise, mul, mul_add};
+use crate::dense::{self, Lu, RCOND_MIN, antisymmetrise, mul, mul_add};
 use crate::error::Error;
 use crate::scalar::{Ops, tally};
 

@@ -56,7 +56,7 @@ impl ComplexMatrix {
         }
         x
     }
-    /// The same matrix with its parts together.
+    /// This matrix with its real and imaginary parts together.
     pub fn to_complex(&self) -> Mat<c64> {
         Mat::from_fn(self.nrows(), self.ncols(), |i, j| self.get(i, j))
     }

@@ -50,10 +50,11 @@ pub fn dexpinv(
     dexpinv_with_remainder(group, u, v, q).map(|truncated| truncated.value)
 }
 
-/// A truncated series.
+/// The sum of the Baker series of dexp⁻¹, cut after some terms.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Truncated {
-    /// Its sum.
+#[non_exhaustive]
+pub struct BakerSum {
+    /// The sum.
     pub value: AlgebraMatrix,
     /// A bound of ‖what was cut off‖ (Frobenius), rounding apart; infinite where the bound of ad_u
     /// does not show that the series converges.
@@ -73,7 +74,7 @@ pub fn dexpinv_with_remainder(
     u: &AlgebraMatrix,
     v: &AlgebraMatrix,
     q: usize,
-) -> Result<Truncated, Error> {
+) -> Result<BakerSum, Error> {
     check(group, "u", u)?;
     check(group, "v", v)?;
     let (mut at, mut w) = (ExpAt::new(group, false), v.clone());
@@ -92,7 +93,7 @@ pub fn dexpinv_with_remainder(
     } else {
         f64::INFINITY
     };
-    Ok(Truncated { value, remainder })
+    Ok(BakerSum { value, remainder })
 }
 
 /// dexp_u v = Σ ad_u^k v/(k+1)!, right trivialised: d/dε exp(u + εv)|₀ = dexp_u(v)·exp(u).
@@ -126,8 +127,10 @@ pub fn dexp(
     finite(group, w, "dexp(u, v)")
 }
 
-/// The smallest distance of an eigenvalue of ad_u on 𝔤 to the singular set 2πik, k ≠ 0, of dexp_u:
-/// [`ExpAt::distance_to_singular`] with fresh storage.
+/// The smallest distance of an eigenvalue of ad_u on 𝔤 to the singular set 2πik, k ≠ 0, of dexp_u.
+///
+/// It allocates; the storage that exp makes by [`CoordinateMap::at`](crate::CoordinateMap::at) has the same
+/// without.
 ///
 /// # Errors
 /// [`Error::Shape`], [`Error::NotFiniteEntry`], [`Error::Map`].

@@ -11,8 +11,7 @@ mod se3;
 mod series;
 mod so3;
 
-pub use functions::{Truncated, dexp, dexpinv, dexpinv_with_remainder, distance_to_singular};
-pub use general::ExpAt;
+pub use functions::{BakerSum, dexp, dexpinv, dexpinv_with_remainder, distance_to_singular};
 pub use series::Dexpinv;
 pub(super) use series::{EXACT_FROM, Powers, phi, phi1};
 
@@ -27,7 +26,7 @@ pub(super) use series::{EXACT_FROM, Powers, phi, phi1};
 pub struct Exp;
 
 impl Exp {
-    /// The same map with the Baker series cut after the power q of ad_u, as in Table 1: a method of
+    /// This map with the Baker series cut after the power q of ad_u, as in Table 1: a method of
     /// order p needs q = p − 2. On so(3) the brackets are cross products.
     pub const fn truncated(self, q: usize) -> TruncatedExp {
         TruncatedExp { q }

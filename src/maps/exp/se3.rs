@@ -14,13 +14,14 @@ use nalgebra::{Matrix3, Vector3};
 use super::series::baker;
 use super::{Exp, TruncatedExp};
 use crate::error::{Error, StepError};
-use crate::groups::{LieAlgebra, Se3, add3, cross, finite_pair};
+use crate::groups::{LieAlgebra, Se3, finite_pair};
 use crate::maps::CoordinateMap;
 use crate::scalar::Trig;
 use crate::so3::{self, Angle, rodrigues, rodrigues_on};
+use crate::so3::{add3, cross};
 
 type Twist<S> = (Vector3<S>, Vector3<S>);
-type Motion<S> = (Matrix3<S>, Vector3<S>);
+type BodyMotion<S> = (Matrix3<S>, Vector3<S>);
 
 impl<S: Trig> CoordinateMap<Se3<S>> for Exp {
     type At = Angle<S>;
@@ -37,7 +38,7 @@ impl<S: Trig> CoordinateMap<Se3<S>> for Exp {
         _: &Se3<S>,
         (omega, v): &Twist<S>,
         at: &mut Angle<S>,
-        g: &mut Motion<S>,
+        g: &mut BodyMotion<S>,
     ) -> Result<(), StepError> {
         let (angle, a, b) = Angle::with_exp(omega);
         *at = angle;
@@ -91,7 +92,7 @@ impl<S: Trig> CoordinateMap<Se3<S>> for TruncatedExp {
         group: &Se3<S>,
         u: &Twist<S>,
         at: &mut Angle<S>,
-        g: &mut Motion<S>,
+        g: &mut BodyMotion<S>,
     ) -> Result<(), StepError> {
         Exp.psi(group, u, at, g)
     }

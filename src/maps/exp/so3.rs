@@ -5,9 +5,10 @@ use nalgebra::{Matrix3, Vector3};
 use super::series::baker;
 use super::{Exp, TruncatedExp};
 use crate::error::{Error, StepError};
-use crate::groups::{So3, cross};
+use crate::groups::So3;
 use crate::maps::CoordinateMap;
 use crate::scalar::Trig;
+use crate::so3::cross;
 use crate::so3::{self, Angle, rodrigues_on};
 
 impl<S: Trig> CoordinateMap<So3<S>> for Exp {

@@ -22,6 +22,7 @@ use triangular::Negative;
 use crate::dense::{Lu, is_finite, norm1, scaled_sum};
 use crate::error::{Error, NoLogarithm, StepError};
 use crate::groups::{AlgebraMatrix, Form, GroupMatrix, LieAlgebra, MatrixGroup};
+use crate::quadrature::GAUSS_LEGENDRE7;
 use crate::so3::POLAR_MAX;
 
 /// Up to this 1-norm of x the \[7/7\] approximant of log(𝟙 + x) is exact to rounding.
@@ -29,24 +30,6 @@ const THETA: f64 = 0.264;
 
 /// Relative residual of a turn by π in 𝔤: rounding, times the condition of its eigenspace.
 const IN_ALGEBRA: f64 = 1e-8;
-
-/// Gauss–Legendre nodes and weights on \[0, 1\], exact to degree 13: log(𝟙 + x) ≈ Σ w_j x (𝟙 + t_j x)⁻¹.
-pub(crate) const GAUSS_LEGENDRE7: [(f64, f64); 7] = {
-    let half: [(f64, f64); 3] = [
-        (0.405_845_151_377_397_2, 0.381_830_050_505_118_94),
-        (0.741_531_185_599_394_4, 0.279_705_391_489_276_7),
-        (0.949_107_912_342_758_5, 0.129_484_966_168_869_7),
-    ];
-    let mut nodes = [(0.5, 0.5 * 0.417_959_183_673_469_4); 7];
-    let mut i = 0;
-    while i < 3 {
-        let (t, w) = half[i];
-        nodes[2 * i] = (0.5 * (1.0 + t), 0.5 * w);
-        nodes[2 * i + 1] = (0.5 * (1.0 - t), 0.5 * w);
-        i += 1;
-    }
-    nodes
-};
 
 impl MatrixGroup {
     /// log(g): the real u ∈ 𝔤 with exp(u) = g whose eigenvalues have imaginary parts in (−π, π), or

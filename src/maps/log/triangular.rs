@@ -2,9 +2,10 @@
 
 use faer::{Mat, c64};
 
-use super::{GAUSS_LEGENDRE7, THETA};
+use super::THETA;
 use crate::dense::Schur;
 use crate::error::{Error, StepError};
+use crate::quadrature::GAUSS_LEGENDRE7;
 
 /// Square roots halve the logarithm; 1100 halvings take the range of doubles to rounding.
 const ROOTS_MAX: u32 = 1100;
@@ -82,7 +83,7 @@ fn square_root(t: &Mat<c64>) -> Mat<c64> {
     r
 }
 
-/// Σ w_j x (𝟙 + t_j x)⁻¹ for upper triangular x.
+/// log(𝟙 + x) ≈ Σ w_j x (𝟙 + t_j x)⁻¹ for upper triangular x.
 fn pade(x: &Mat<c64>) -> Mat<c64> {
     let n = x.nrows();
     let one = c64::new(1.0, 0.0);

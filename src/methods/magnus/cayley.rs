@@ -9,13 +9,12 @@
 use super::{GAUSS_2, GAUSS_3, MagnusWork, ROOT_15, magnus_method, sum};
 use crate::dense::{antisymmetrise, mul, mul_add};
 use crate::error::{Error, StepError};
-use crate::groups::{
-    AlgebraMatrix, Form, LieAlgebra, MatrixGroup, Power, Product, Se3, So3, cross,
-};
+use crate::groups::{AlgebraMatrix, Form, LieAlgebra, MatrixGroup, Power, Product, Se3, So3};
 use crate::maps::{Cay, CoordinateMap};
 use crate::methods::Step;
 use crate::problems::{PointOf, ScalarOf};
 use crate::scalar::Real;
+use crate::so3::cross;
 
 use nalgebra::Vector3;
 

@@ -35,6 +35,7 @@ pub use expansion::{Magnus4, Magnus6, Magnus8};
 pub use products::{CFM4_2, CFM4_3, CFM6_5, CFM8_11, CfMagnus, CfMagnusTableau};
 
 use super::Step;
+use super::stages::copies;
 use crate::chart::ChartStore;
 use crate::error::{Error, StepError};
 use crate::groups::LieAlgebra;
@@ -56,6 +57,7 @@ const W: [f64; 2] = [0.17392742256872692869, 0.32607257743127307131];
 
 /// Values of A, scratch in 𝔤 (the first holds the increment), and the chart.
 #[allow(missing_debug_implementations)] // the parts belong to the problem's types
+#[doc(hidden)]
 pub struct MagnusWork<P: LinearField, Psi: CoordinateMap<P::Group>, const S: usize, const K: usize>
 {
     a: [AlgOf<P>; S],
@@ -71,8 +73,8 @@ impl<P: LinearField, Psi: CoordinateMap<P::Group>, const S: usize, const K: usiz
     fn new(problem: &P, psi: &Psi, like: &PointOf<P>) -> Result<Self, Error> {
         let alg = problem.group();
         Ok(MagnusWork {
-            a: core::array::from_fn(|_| alg.zero()),
-            scratch: core::array::from_fn(|_| alg.zero()),
+            a: copies(alg.zero()),
+            scratch: copies(alg.zero()),
             y: like.clone(),
             field: problem.work(),
             chart: ChartStore::new(problem, psi, like)?,

@@ -15,9 +15,9 @@ use crate::problems::{LinearField, PointOf, ScalarOf};
 /// The coefficients of a commutator-free Magnus method: S nodes, F factors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CfMagnusTableau<const S: usize, const F: usize> {
-    /// Its name.
+    /// The name of the method.
     pub name: &'static str,
-    /// Its order.
+    /// The order of the method.
     pub order: usize,
     /// The nodes of A.
     pub nodes: [f64; S],

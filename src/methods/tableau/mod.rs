@@ -12,9 +12,9 @@ use crate::scalar::Real;
 /// An explicit Runge–Kutta tableau with S stages; `a[i]` is used for j < i only.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tableau<const S: usize> {
-    /// Its name in scene files.
+    /// The name in scene files.
     pub name: &'static str,
-    /// Its classical order.
+    /// The classical order.
     pub order: usize,
     /// Stage weights a_ij.
     pub a: [[f64; S]; S],
@@ -51,7 +51,7 @@ impl<const S: usize> Tableau<S> {
         s
     }
 
-    /// The same method with room for N ≥ S stages. The stages that are added have the weight 0 and are never
+    /// This method with room for N ≥ S stages. The stages that are added have the weight 0 and are never
     /// evaluated: methods chosen by name share one type this way.
     pub const fn padded<const N: usize>(&self) -> Tableau<N> {
         let mut a = [[0.0; N]; N];
@@ -85,7 +85,7 @@ pub(super) const fn pad<const S: usize, const N: usize>(x: &[f64; S]) -> [f64; N
     padded
 }
 
-/// One error from ‖h Σ e_j k_j‖ and, where there is one, the size of the damping row:
+/// The error from ‖h Σ e_j k_j‖ and, where there is one, the size of the damping row:
 /// E²/√(E² + D²/100), and 0 when both vanish.
 #[inline]
 pub(super) fn fold_error<R: Real>(e: R, damp: Option<R>) -> R {

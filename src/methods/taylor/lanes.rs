@@ -98,7 +98,7 @@ impl<S: Real> Lanes<S> for Plain {
     }
 }
 
-/// The same instructions on four numbers, and on pairs those that the machine has.
+/// The instructions on four numbers as above, and on pairs those that the machine has.
 #[cfg(target_arch = "x86_64")]
 macro_rules! x86_lanes {
     ($machine:ty, $pair:ty, {$($pairs:tt)*}) => {
@@ -197,13 +197,13 @@ x86_lanes!(pulp::x86::V4, __m512d, {
 
 /// Work for lanes.
 pub trait Kernel<S> {
-    /// Its result.
+    /// The result.
     type Out;
-    /// Do it. Inline, so that it is compiled for the instructions that it is given.
+    /// Run the kernel. Inline, so that it is compiled for the instructions that it is given.
     fn run<L: Lanes<S>>(self, lanes: L) -> Self::Out;
 }
 
-/// One copy for each kernel and number, and not one for each problem.
+/// Run a kernel on arrays: one copy for each kernel and number, and not one for each problem.
 #[inline(never)]
 fn on_arrays<S: Real, K: Kernel<S>>(kernel: K) -> K::Out {
     kernel.run(Plain)

@@ -88,7 +88,7 @@ fn square<S: Real, L: Lanes<S>>(l: L, v: L::V) -> S {
     (x + y) + (z + w)
 }
 
-/// One step: the quaternion at h, not yet of length 1, and the squares of its last two terms.
+/// A step: the quaternion at h, not yet of length 1, and the squares of its last two terms.
 pub(super) struct OneStep<'a, S, const N: usize> {
     pub(super) body: &'a Body<S>,
     pub(super) h: S,
@@ -140,7 +140,7 @@ pub(super) struct Advance<'a, const N: usize> {
 }
 
 /// Where a run came to.
-pub(super) struct Reached {
+pub(super) struct EndPoint {
     pub(super) steps: u64,
     /// The last step.
     pub(super) h: f64,
@@ -179,10 +179,10 @@ pub(super) fn reach<const N: usize>(squares: [f64; 2], tolerance: f64) -> f64 {
 }
 
 impl<const N: usize> Kernel<f64> for Advance<'_, N> {
-    type Out = Reached;
+    type Out = EndPoint;
 
     #[inline(always)]
-    fn run<L: Lanes<f64>>(self, l: L) -> Reached {
+    fn run<L: Lanes<f64>>(self, l: L) -> EndPoint {
         let Advance { body, span, tolerance, mut guess, m } = self;
         let unit = l.load(unit());
         let mut m = l.load([m[0], m[1], m[2], 0.0]);
@@ -230,7 +230,7 @@ impl<const N: usize> Kernel<f64> for Advance<'_, N> {
             steps += 1;
         }
         let [x, y, z, _] = l.store(m);
-        Reached { steps, h: guess, m: Vector3::new(x, y, z), q: l.store(whole), failed }
+        EndPoint { steps, h: guess, m: Vector3::new(x, y, z), q: l.store(whole), failed }
     }
 }
 

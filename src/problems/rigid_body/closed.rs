@@ -4,11 +4,12 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::{check_finite, check_inertia};
 use crate::actions::{Coadjoint, LeftTranslation};
-use crate::chart::FieldStore;
 use crate::error::Error;
-use crate::groups::{So3, apply3, cross};
+use crate::groups::So3;
+use crate::problems::FieldStore;
 use crate::problems::Problem;
 use crate::scalar::Real;
+use crate::so3::{apply3, cross};
 
 /// J⁻¹·m for diagonal J.
 #[inline(always)]

@@ -19,16 +19,16 @@
 //!
 //! Source: notes on E. T. Whittaker, Analytical Dynamics, § 69; B. C. Carlson's integrals.
 
-use ellip::{elliprc, elliprf, elliprj};
 use nalgebra::{Matrix3, Vector3};
 
-use super::ladder::Ladder;
 use super::theta::Theta;
 use super::{check_finite, check_inertia};
-use crate::error::{Error, StepError};
-use crate::groups::{So3, cross};
+use crate::elliptic::{Ladder, rc, rf, rj};
+use crate::error::Error;
+use crate::groups::So3;
 use crate::maps::{CoordinateMap, Exp};
 use crate::scalar::Trig;
+use crate::so3::cross;
 
 /// The exact motion of a free rigid body, at any time at once: m(t) and g(t).
 ///
@@ -49,12 +49,12 @@ pub struct Exact {
     inertia: [f64; 3],
     m0: Vector3<f64>,
     g0: Matrix3<f64>,
-    motion: Motion,
+    motion: Orbit,
 }
 
 #[derive(Clone, Debug)]
 #[allow(clippy::large_enum_variant)] // in a box, every step of the exact method would allocate
-enum Motion {
+enum Orbit {
     /// Rotation about a fixed axis: m does not change.
     Steady,
     /// The general case.
@@ -115,10 +115,6 @@ fn power_of_two(x: f64) -> f64 {
     f64::from_bits(x.to_bits() & (0x7ff << 52)).clamp(LOW, 1.0 / LOW)
 }
 
-pub(super) fn carlson(x: Result<f64, &'static str>) -> Result<f64, Error> {
-    x.map_err(|_| StepError::NotConverged { what: "Carlson's elliptic integral" }.into())
-}
-
 impl Exact {
     /// From the principal moments of inertia, the body momentum and the attitude at t = 0.
     ///
@@ -135,8 +131,8 @@ impl Exact {
         So3::new().check_element("attitude", &attitude, 1e-6)?;
         let m0 = Vector3::from(momentum_body);
         let motion = match Elliptic::new(inertia, m0, &attitude)? {
-            Some(elliptic) => Motion::Elliptic(elliptic),
-            None => Motion::Steady,
+            Some(elliptic) => Orbit::Elliptic(elliptic),
+            None => Orbit::Steady,
         };
         Ok(Exact { inertia, m0, g0: attitude, motion })
     }
@@ -153,7 +149,7 @@ impl Exact {
     pub fn momentum_body(&self, t: f64) -> Result<Vector3<f64>, Error> {
         check_finite("t", &[t])?;
         Ok(match &self.motion {
-            Motion::Elliptic(motion) if t != 0.0 => motion.momentum(t),
+            Orbit::Elliptic(motion) if t != 0.0 => motion.momentum(t),
             _ => self.m0,
         })
     }
@@ -168,8 +164,8 @@ impl Exact {
             return Ok((self.m0, self.g0));
         }
         match &self.motion {
-            Motion::Elliptic(motion) => motion.state(t),
-            Motion::Steady => {
+            Orbit::Elliptic(motion) => motion.state(t),
+            Orbit::Steady => {
                 let angle = Vector3::from_fn(|i, _| self.m0[i] / self.inertia[i] * t);
                 Ok((self.m0, self.g0 * Exp.eval(&So3::new(), &angle)?))
             }
@@ -284,14 +280,14 @@ impl Elliptic {
         if kc2 == 0.0 && cn == 0.0 {
             return Ok(None); // on the middle axis exactly
         }
-        let quarter = if kc2 > 0.0 { carlson(elliprf(0.0, kc2, 1.0))? } else { f64::INFINITY };
+        let quarter = if kc2 > 0.0 { rf(0.0, kc2, 1.0)? } else { f64::INFINITY };
         let tau0 = if kc2 == 0.0 {
             // cn = sech τ > 0 on the separatrix; cn < 0 is the orbit turned by π about z.
             amplitude[0] *= cn.signum();
             amplitude[1] *= cn.signum();
             (sn / cn).asinh()
         } else {
-            let f = sn * carlson(elliprf(cn * cn, cn * cn + kc2 * sn * sn, 1.0))?;
+            let f = sn * rf(cn * cn, cn * cn + kc2 * sn * sn, 1.0)?;
             if cn >= 0.0 { f } else { 2.0 * quarter.copysign(sn) - f }
         };
 
@@ -446,12 +442,12 @@ impl Elliptic {
         let x_part = || -> Result<f64, Error> {
             let q = c2 + kc2 * s2 / n;
             let elementary = match (c > 0.0, far_on_separatrix) {
-                (true, false) => c * carlson(elliprc(d2, p * q))?,
-                (_, true) => carlson(elliprc(1.0, n))?,
+                (true, false) => c * rc(d2, p * q)?,
+                (_, true) => rc(1.0, n)?,
                 _ => 0.0,
             };
             let rest = match kc2 > 0.0 {
-                true => kc2 * s2 / (3.0 * n) * carlson(elliprj(c2, d2, 1.0, q))?,
+                true => kc2 * s2 / (3.0 * n) * rj(c2, d2, 1.0, q)?,
                 false => 0.0,
             };
             Ok(s * (elementary + rest))
@@ -459,7 +455,7 @@ impl Elliptic {
         match (self.weigh_x, far_on_separatrix) {
             (true, _) => x_part(),
             (false, true) => Ok(tau - x_part()?),
-            (false, false) => Ok(n * s * s2 / 3.0 * carlson(elliprj(c2, d2, 1.0, p))?),
+            (false, false) => Ok(n * s * s2 / 3.0 * rj(c2, d2, 1.0, p)?),
         }
     }
 }

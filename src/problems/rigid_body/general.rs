@@ -4,10 +4,10 @@ use faer::Mat;
 
 use super::{check_finite, check_inertia};
 use crate::actions::{Coadjoint, LeftTranslation};
-use crate::chart::FieldStore;
 use crate::dense::{antisymmetrise, mul, scaled_sum};
 use crate::error::Error;
 use crate::groups::{AlgebraMatrix, GroupMatrix, MatrixGroup};
+use crate::problems::FieldStore;
 use crate::problems::{LiePoisson, Problem};
 use crate::scalar::{Ops, tally};
 
@@ -200,7 +200,7 @@ impl Problem for RigidBodyNAttitude {
             }
         }
     }
-    /// Without the skew part of ω_s: on the entries of g its rounding is one among others.
+    /// λ_*(f) without the skew part of ω_s: on the entries of g its rounding is one among others.
     fn field(
         &self,
         _: f64,

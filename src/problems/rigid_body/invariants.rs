@@ -8,7 +8,7 @@ use super::{
 };
 use crate::dense::mul;
 use crate::groups::GroupMatrix;
-use crate::problems::{Invariant, Invariants};
+use crate::problems::{Invariant, Invariants, Problem};
 use crate::scalar::Real;
 
 fn squares<S: Real>(m: &Vector3<S>) -> S {
@@ -40,7 +40,7 @@ impl<S: Real> Invariants for RigidBodyState<S> {
         self.body().invariants().into_iter().chain(space).collect()
     }
     fn values(&self, y: &BodyState<S>) -> Vec<S> {
-        let space = crate::groups::apply3(&y.g, &y.m);
+        let space = crate::so3::apply3(&y.g, &y.m);
         let mut values = self.body().values(&y.m);
         values.extend(space.iter());
         values
@@ -50,7 +50,7 @@ impl<S: Real> Invariants for RigidBodyState<S> {
 /// tr mᵏ for even k ≤ n, the Casimirs of so(n)* but the Pfaffian, and the energy.
 impl Invariants for RigidBodyN {
     fn invariants(&self) -> Vec<Invariant> {
-        let n = crate::Problem::group(self).n();
+        let n = self.group().n();
         let casimirs = (2..=n).step_by(2).map(|k| Invariant::of_the_action(format!("tr m^{k}")));
         casimirs.chain([Invariant::of_the_flow("energy")]).collect()
     }

@@ -6,7 +6,6 @@ mod exact;
 mod free;
 mod general;
 mod invariants;
-mod ladder;
 mod series;
 mod state;
 mod theta;

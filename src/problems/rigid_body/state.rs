@@ -11,9 +11,10 @@ use nalgebra::{Matrix3, Vector3};
 use super::RigidBody;
 use crate::actions::Action;
 use crate::error::Error;
-use crate::groups::{Adjoint, LieGroup, So3, apply3, cross, worse};
+use crate::groups::{Adjoint, LieGroup, So3, worse};
 use crate::problems::Problem;
 use crate::scalar::Real;
+use crate::so3::{apply3, cross};
 use crate::space::{LinearSpace, Metric};
 
 /// The body momentum m and the attitude g.
@@ -111,7 +112,7 @@ impl<S: Real> Action<So3<S>> for BodyFrame {
     fn restore(&self, group: &So3<S>, p: &mut BodyState<S>, work: &mut Self::Work) -> Option<S> {
         Some(group.correct(&mut p.g, work.each_mut()))
     }
-    /// And m to its sphere.
+    /// g back to SO(3), and m to its sphere.
     fn restore_to(
         &self,
         group: &So3<S>,

@@ -15,9 +15,7 @@
 
 use core::f64::consts::FRAC_PI_2;
 
-use ellip::elliprf;
-
-use super::exact::carlson;
+use crate::elliptic::rf;
 use crate::error::Error;
 use crate::scalar::Trig;
 
@@ -79,7 +77,7 @@ impl Theta {
         let frequency = FRAC_PI_2 / quarter;
         let k2 = 1.0 - kc2;
         let q = match k2 > 0.0 {
-            true => (-2.0 * frequency * carlson(elliprf(0.0, k2, 1.0))?).exp(),
+            true => (-2.0 * frequency * rf(0.0, k2, 1.0)?).exp(),
             false => 0.0,
         };
         if q > Q_MAX {
@@ -88,7 +86,7 @@ impl Theta {
         let n = n.max(1.0); // by rounding it may be less
         let cos2 = (n - 1.0) / n;
         let eta = match cos2 > 0.0 {
-            true => frequency * carlson(elliprf(cos2, 1.0 - kc2 / n, 1.0))? / n.sqrt(),
+            true => frequency * rf(cos2, 1.0 - kc2 / n, 1.0)? / n.sqrt(),
             false => f64::INFINITY,
         };
         let nome = (-2.0 * eta).exp();

@@ -15,20 +15,16 @@
 //!
 //! Invariants: the spectrum of W, so every Casimir and the enstrophy (the action), the energy (the
 //! flow), on the sphere the angular momentum (the flow).
-//! [`FluidMidpoint`] is made for these problems; every method for a [`Problem`] with its group
+//! [`FluidMidpoint`](crate::methods::FluidMidpoint) is made for these problems; every method for a [`Problem`] with its group
 //! [`Unitary`] runs on them too.
 //! Source: V. Zeitlin, Physica D 49 (1991) for the torus, Phys. Rev. Lett. 93 (2004) for the sphere.
 
 mod fields;
 mod harmonics;
-mod history;
-mod midpoint;
 mod sphere;
 mod torus;
-mod triangle;
 
 pub use fields::Vortex;
-pub use midpoint::{FluidMidpoint, FluidWork, Keeps};
 pub use sphere::Sphere;
 pub use torus::Torus;
 
@@ -57,7 +53,7 @@ pub trait Surface {
     fn momenta(&self) -> &'static [&'static str] {
         &[]
     }
-    /// Their values at W.
+    /// The values of the linear invariants at W.
     fn momenta_at(&self, _w: &ComplexMatrix) -> Vec<f64> {
         Vec::new()
     }
@@ -66,7 +62,8 @@ pub trait Surface {
 /// The fluid on a surface: Ẇ = \[P, W\]/ħ, ΔP = W.
 ///
 /// ```
-/// use lieflow::problems::{FluidMidpoint, Zeitlin};
+/// use lieflow::methods::FluidMidpoint;
+/// use lieflow::problems::Zeitlin;
 /// use lieflow::{SaveAt, TimeGrid, integrate};
 /// use rand::SeedableRng;
 /// use rand_pcg::Pcg64;

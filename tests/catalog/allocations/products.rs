@@ -8,7 +8,7 @@ use lieflow::groups::{
 use lieflow::maps::{CCSK, Cay, Ccsk, Exp, Pade22};
 use lieflow::methods::{CommutatorFree, Rkmk, commutator_free::CF4, tableau::RK4};
 use lieflow::problems::{
-    BodyTorque, ChargedParticle, Euler, Flow, HeavyTop, IsospectralFlow, Kinetic, Motion, Oja,
+    BodyMotion, BodyTorque, ChargedParticle, Euler, Flow, HeavyTop, IsospectralFlow, Kinetic, Oja,
     SphericalPendulum, SpinChain, TorqueBody, toda_lattice,
 };
 use lieflow::{Action, CoordinateMap};
@@ -106,7 +106,7 @@ fn problems() {
         let start = (group.identity(), m.into_mat());
         none!(Euler::new(group, Kinetic(inverse)).with_group(), start);
     }
-    let damping = BodyTorque(|at: &Motion| -at.omega_body);
+    let damping = BodyTorque(|at: &BodyMotion| -at.omega_body);
     let body = TorqueBody::new([1.0, 2.0, 2.5], damping).expect("a body");
     none!(body, (Matrix3::identity(), v(1.0)));
     none!(SphericalPendulum::new(1.0).expect("a pendulum"), pair);

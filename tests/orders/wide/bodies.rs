@@ -4,7 +4,7 @@ use lieflow::catalog::Needs;
 use lieflow::groups::{LieGroup, So3};
 use lieflow::methods::tableau::DOP853;
 use lieflow::methods::{
-    DMV8, DMV10, KAHAN_LI8, Projected, Rk, SOFRONIOU_SPALETTA10, Splitting, Taylor,
+    DMV8, DMV10, KAHAN_LI8, ProjectionMethod, Rk, SOFRONIOU_SPALETTA10, Splitting, Taylor,
 };
 use lieflow::problems::{Projection, RigidBody, RigidBodyAttitude, RigidBodyState};
 use lieflow::scalar::Real;
@@ -61,8 +61,8 @@ bodies! {
     body:
     attitudes: "a body by its attitude", [Needs::Series, Needs::Body, Needs::Attitude],
         |j| move |i| (RigidBodyAttitude::new(j, momentum(i)).unwrap(), So3::new().identity()), {
-            "rk-qr" => &body, STORED, Projected::new(Rk(DOP853), Projection::Qr);
-            "rk-polar" => &body, STORED, Projected::new(Rk(DOP853), Projection::Polar);
+            "rk-qr" => &body, STORED, ProjectionMethod::new(Rk(DOP853), Projection::Qr);
+            "rk-polar" => &body, STORED, ProjectionMethod::new(Rk(DOP853), Projection::Polar);
         };
     momenta: "a body by its momentum", [Needs::Series, Needs::Body, Needs::LiePoisson],
         |j| move |i| (RigidBody::new(j).unwrap(), Vector3::from(momentum(i)).map(D::lit)), {};

@@ -2,9 +2,9 @@
 
 use faer::Mat;
 use lieflow::catalog::{MethodSpec, Needs};
-use lieflow::chart::FieldStore;
 use lieflow::methods::tableau::DOP853;
 use lieflow::methods::{LieSeries, Method, Step};
+use lieflow::problems::FieldStore;
 use lieflow::problems::{Ambient, BodyState, LinearSpace, PointOf};
 use lieflow::scalar::Real;
 use lieflow::{Error, LieAlgebra};

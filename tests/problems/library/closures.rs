@@ -8,7 +8,8 @@ use lieflow::groups::{MatrixGroup, Product, Sample, So3, Translations};
 use lieflow::methods::magnus::Magnus4;
 use lieflow::methods::{EnergyCasimir, GAUSS4, Gauss};
 use lieflow::problems::{
-    DynFlow, Flow, Invariant, Known, LiePoisson, Oja, RigidBody, RigidBodyN, SphericalPendulum,
+    DynFlow, Flow, Invariant, LiePoisson, Oja, RigidBody, RigidBodyN, SphericalPendulum,
+    WithHamiltonian,
 };
 use nalgebra::Vector3;
 use rand::SeedableRng;
@@ -105,7 +106,7 @@ fn a_hamiltonian_and_invariants() {
 #[test]
 fn behind_a_pointer() {
     let body = RigidBody::<f64>::new(INERTIA).unwrap();
-    let pointed: DynFlow<_, _, (), Known> = DynFlow::lie_poisson(body, Coadjoint);
+    let pointed: DynFlow<_, _, (), WithHamiltonian> = DynFlow::lie_poisson(body, Coadjoint);
     assert_eq!(ends(&pointed, &momentum()), ends(&body, &momentum()));
     assert_eq!(pointed.hamiltonian(&momentum()), body.energy(&momentum()));
     assert!(pointed.is_lie_poisson() && !pointed.is_linear());
@@ -119,7 +120,7 @@ fn behind_a_pointer() {
 
     let pendulum = SphericalPendulum::new(9.81).unwrap();
     let start = (V::new(0.3, 0.1, 0.0), V::new(0.0, 0.6, 0.8));
-    let pointed: DynFlow<_, _, (), Known> = DynFlow::lie_poisson(pendulum, Coadjoint);
+    let pointed: DynFlow<_, _, (), WithHamiltonian> = DynFlow::lie_poisson(pendulum, Coadjoint);
     assert_eq!(ends(&pointed, &start), ends(&pendulum, &start));
 }
 
@@ -127,7 +128,7 @@ fn behind_a_pointer() {
 #[test]
 fn a_pointer_to_a_problem_without_a_hamiltonian() {
     let turn = Flow::new(So3::<f64>::new(), Coadjoint, |_, _, v| *v = V::x());
-    let pointed: DynFlow<_, _, (), Known> = DynFlow::new(turn, Coadjoint);
+    let pointed: DynFlow<_, _, (), WithHamiltonian> = DynFlow::new(turn, Coadjoint);
     assert!(pointed.hamiltonian(&momentum()).is_nan());
     let (mut m, grid) = (momentum(), TimeGrid::with_steps([0.0, 1.0], 2).unwrap());
     let by = EnergyCasimir::new(Cay);

@@ -4,10 +4,11 @@
 use super::*;
 use faer::{Mat, mat};
 use lieflow::actions::Lagrangian;
+use lieflow::floquet::{Floquet, monodromy};
 use lieflow::groups::{AlgebraMatrix, GroupMatrix, LieGroup, MatrixGroup};
 use lieflow::methods::magnus::{Magnus4, Magnus6, Magnus8};
 use lieflow::problems::beam::{Element, transfer_map, tunes};
-use lieflow::problems::{Flow, floquet, hill, mathieu, monodromy};
+use lieflow::problems::{Flow, hill, mathieu};
 use lieflow::{RunError, StepError};
 
 const PI: f64 = core::f64::consts::PI;
@@ -31,7 +32,7 @@ fn mathieus_characteristic_values() {
         // Next to it one side is stable, the other not.
         let radius = |a: f64| {
             let m = monodromy(&mathieu(a, 1.0).unwrap(), &Magnus6, [0.0, PI], 60).unwrap();
-            floquet(&m).unwrap().spectral_radius()
+            Floquet::of(&m).unwrap().spectral_radius()
         };
         let (below, above) = (radius(a - 1e-3), radius(a + 1e-3));
         assert!(below.min(above) < 1.0 + 1e-12 && below.max(above) > 1.01, "{below} {above}");
@@ -42,7 +43,7 @@ fn mathieus_characteristic_values() {
 #[test]
 fn hills_multipliers() {
     let plain = monodromy(&mathieu(2.0, 0.0).unwrap(), &Magnus4, [0.0, PI], 4).unwrap();
-    let [re, im] = floquet(&plain).unwrap().multipliers[0];
+    let [re, im] = Floquet::of(&plain).unwrap().multipliers[0];
     let phase = 2f64.sqrt() * PI;
     assert!((re - phase.cos()).abs() < 1e-13 && (im.abs() - phase.sin().abs()).abs() < 1e-13);
 
@@ -53,7 +54,7 @@ fn hills_multipliers() {
     let m = monodromy(&hill(2, stiffness).unwrap(), &Magnus6, [0.0, PI], 100).unwrap();
     let sp = MatrixGroup::sp(4).unwrap();
     assert!(sp.defect(&m) < 1e-13 * m.norm_l2().powi(2), "{:e}", sp.defect(&m));
-    let multipliers = floquet(&m).unwrap().multipliers;
+    let multipliers = Floquet::of(&m).unwrap().multipliers;
     let product = multipliers
         .iter()
         .fold([1.0, 0.0], |[a, b]: [f64; 2], [c, d]| [a * c - b * d, a * d + b * c]);
@@ -103,7 +104,7 @@ fn beam_lines() {
     let strong = |sign: f64| Element::ThinLens { focal_length: sign * 0.4 };
     let unstable = transfer_map(&[strong(1.0), drift, strong(-1.0), drift]).unwrap();
     assert_eq!(tunes(&unstable), [None, None]);
-    assert!(floquet(&unstable).unwrap().spectral_radius() > 1.5);
+    assert!(Floquet::of(&unstable).unwrap().spectral_radius() > 1.5);
     assert!(Element::ThinLens { focal_length: 0.0 }.map().is_err());
     assert!(Element::Quadrupole { length: f64::NAN, k: 1.0 }.map().is_err());
 }

@@ -5,7 +5,7 @@ use lieflow::groups::So3;
 use lieflow::problems::inertia::{
     check_triangle, cuboid, cylinder, ellipsoid, principal_axes, violates_triangle,
 };
-use lieflow::problems::{BodyTorque, Exact, HeavyTop, Motion, SpaceTorque, TorqueBody};
+use lieflow::problems::{BodyMotion, BodyTorque, Exact, HeavyTop, SpaceTorque, TorqueBody};
 use lieflow::so3;
 use nalgebra::{Matrix3, Vector3};
 
@@ -19,7 +19,7 @@ fn attitude() -> Matrix3<f64> {
 
 #[test]
 fn without_a_torque_it_is_the_free_body() {
-    let body = TorqueBody::new(INERTIA, SpaceTorque(|_: &Motion| V::zeros())).unwrap();
+    let body = TorqueBody::new(INERTIA, SpaceTorque(|_: &BodyMotion| V::zeros())).unwrap();
     let y = body.state(attitude(), [0.5, 0.4, -0.8]).unwrap();
     let m = attitude().tr_mul(&y.1);
     let exact = Exact::new(INERTIA, m.into(), attitude()).unwrap();
@@ -30,7 +30,7 @@ fn without_a_torque_it_is_the_free_body() {
 
 #[test]
 fn a_motor_about_a_principal_axis_spins_it_up() {
-    let motor = BodyTorque(|at: &Motion| V::new(0.0, 0.0, 1.0 + at.t));
+    let motor = BodyTorque(|at: &BodyMotion| V::new(0.0, 0.0, 1.0 + at.t));
     let body = TorqueBody::new(INERTIA, motor).unwrap();
     let y = body.state(attitude(), [0.0, 0.0, 0.3]).unwrap();
     let (g, m) = flow(&body, 2.0, 20, &y);
@@ -45,7 +45,7 @@ fn a_motor_about_a_principal_axis_spins_it_up() {
 #[test]
 fn gravity_makes_the_heavy_top() {
     let weight = V::new(0.2, -0.1, 0.9);
-    let gravity = SpaceTorque(move |at: &Motion| V::z().cross(&(at.attitude * weight)));
+    let gravity = SpaceTorque(move |at: &BodyMotion| V::z().cross(&(at.attitude * weight)));
     let body = TorqueBody::new(INERTIA, gravity).unwrap();
     let y = body.state(attitude(), [0.5, -0.4, 2.0]).unwrap();
     let top = HeavyTop::new(INERTIA, weight.into()).unwrap().problem();
@@ -60,11 +60,11 @@ fn gravity_makes_the_heavy_top() {
 
 #[test]
 fn orders_with_a_torque_of_every_kind() {
-    let law = BodyTorque(|at: &Motion| {
+    let law = BodyTorque(|at: &BodyMotion| {
         V::new(at.t.sin(), 0.3, -0.5) - 0.4 * at.omega_body + 0.1 * at.attitude.tr_mul(&V::x())
     });
     let wind =
-        SpaceTorque(|at: &Motion| V::new(0.1, (2.0 * at.t).cos(), 0.2 * at.momentum_space[0]));
+        SpaceTorque(|at: &BodyMotion| V::new(0.1, (2.0 * at.t).cos(), 0.2 * at.momentum_space[0]));
     let body = TorqueBody::new(INERTIA, (law, wind)).unwrap();
     has_order_4(&body, &body.state(attitude(), [0.5, 0.4, -0.8]).unwrap(), 2.0, 16);
 }
@@ -72,7 +72,7 @@ fn orders_with_a_torque_of_every_kind() {
 /// A control law: −k log(g) − cω brings the attitude to 𝟙 from a turn of 170 degrees.
 #[test]
 fn a_control_law_brings_it_home() {
-    let law = BodyTorque(|at: &Motion| {
+    let law = BodyTorque(|at: &BodyMotion| {
         let away = so3::log(&at.attitude).unwrap_or(V::repeat(f64::NAN));
         -3.0 * away - 4.0 * at.omega_body
     });

@@ -1,6 +1,5 @@
 //! `lieflow run`: one scene, one trajectory.
 
-use core::ops::Range;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -11,12 +10,12 @@ use lieflow::adaptive::AdaptiveError;
 use super::CliError;
 use crate::args::RunArgs;
 use crate::output::{
-    self, Chosen, Drift, Gathered, MethodSummary, Progress, SUMMARY, Shown, Summary, Trajectory,
-    Watched,
+    self, Chosen, Drift, MethodSummary, Progress, RowSample, SUMMARY, Summary, Trajectory, Watched,
 };
-use lieflow_model::kinds::{Figure, Law, SIZE, Scale};
+use lieflow_model::kinds::Figure;
 use lieflow_model::model::{Model, Sink, Steps};
 use lieflow_model::scene::Scene;
+use lieflow_model::schema::{Observable, Row};
 
 /// Run the command.
 ///
@@ -39,89 +38,71 @@ pub fn run(args: &RunArgs) -> Result<(), CliError> {
     }
 }
 
+/// The quantities of a run: those that the scene names first, then the state, the invariants and the one
+/// that is drawn.
+fn quantities(scene: &Scene) -> Vec<&str> {
+    let problem = &scene.problem;
+    let mut all: Vec<&str> = scene.quantities.iter().map(String::as_str).collect();
+    let further = [problem.state(&all), &problem.invariants(&all), &[problem.figure().quantity()]];
+    for name in further.concat() {
+        if !all.contains(&name) {
+            all.push(name);
+        }
+    }
+    all
+}
+
 /// Everything that a run is watched for: what is written, what says how good it is, what is drawn.
 struct Watch<'a> {
     scene: &'a Scene,
-    model: Box<dyn Model>,
-    state: Vec<Shown>,
-    laws: Vec<(Law, Shown)>,
-    drawn: Shown,
-    asked: Vec<Shown>,
-    /// Where quantities are in a row of `model`.
-    places: BTreeMap<String, Range<usize>>,
-    /// The columns that were asked for: the first ones.
-    width: usize,
+    model: &'a dyn Model,
+    written: Vec<&'a Observable>,
+    state: Vec<&'a Observable>,
+    laws: Vec<&'a Observable>,
+    drawn: &'a Observable,
 }
 
 impl<'a> Watch<'a> {
-    fn new(scene: &'a Scene) -> Result<Self, CliError> {
-        let problem = &scene.problem;
-        let asked: Vec<&str> = scene.quantities.iter().map(String::as_str).collect();
-        let (state, laws) = (problem.state(&asked), problem.invariants(&asked));
-        let mut all: Vec<String> = scene.quantities.clone();
-        let further = state.iter().copied().chain(laws.iter().map(|law| law.quantity));
-        for name in further.chain([problem.figure().quantity()]) {
-            if !all.iter().any(|known| known == name) {
-                all.push(name.into());
-            }
-        }
-        let in_terms = laws.iter().filter(|law| law.scale == Scale::Terms);
-        all.extend(in_terms.map(|law| format!("{}{SIZE}", law.quantity)));
-
-        let (mut shown, mut end) = (Vec::new(), 0);
-        for name in &all {
-            let columns = problem.columns(name)?;
-            let place = end..end + columns.len();
-            end = place.end;
-            shown.push(Shown { name: name.clone(), place, columns });
-        }
-        let find = |name: &str| shown.iter().find(|s| s.name == name).cloned();
-        let names: Vec<&str> = all.iter().map(String::as_str).collect();
+    /// `model` has the [`quantities`] of the scene.
+    fn new(scene: &'a Scene, model: &'a dyn Model) -> Result<Self, CliError> {
+        let (problem, schema) = (&scene.problem, model.schema());
+        let written: Vec<&str> = scene.quantities.iter().map(String::as_str).collect();
+        let find = |names: &[&str]| -> Result<Vec<_>, _> {
+            names.iter().map(|name| schema.get(name)).collect()
+        };
         Ok(Watch {
             scene,
-            model: scene.model_with(scene.layer, &names)?,
-            state: state.iter().filter_map(|name| find(name)).collect(),
-            laws: laws.iter().filter_map(|law| Some((*law, find(law.quantity)?))).collect(),
-            drawn: find(problem.figure().quantity()).unwrap_or_else(|| shown[0].clone()),
-            width: shown[asked.len() - 1].place.end,
-            places: shown.iter().map(|s| (s.name.clone(), s.place.clone())).collect(),
-            asked: shown.drain(..asked.len()).collect(),
+            model,
+            state: find(problem.state(&written))?,
+            laws: find(&problem.invariants(&written))?,
+            drawn: schema.get(problem.figure().quantity())?,
+            written: find(&written)?,
         })
     }
 
-    /// The size that the rounding of the column `i` of a law is relative to.
-    fn size(&self, law: &Law, i: usize, row: &[f64]) -> f64 {
-        match law.scale {
-            Scale::One => 1.0,
-            Scale::Value => row[i].abs(),
-            Scale::Terms => {
-                let place = self.places.get(&format!("{}{SIZE}", law.quantity));
-                place.map_or(f64::NAN, |place| row[place.start])
-            }
-        }
+    /// The values that are written of a row go to the end of `line`.
+    fn line(&self, row: Row<'_>, line: &mut Vec<f64>) {
+        self.written.iter().for_each(|observable| line.extend_from_slice(&row[observable]));
     }
 
     /// The invariants of the next row, each in its turn.
-    fn see(&self, t: f64, row: &[f64], watched: &mut Vec<Watched>) {
-        let first = watched.is_empty();
-        let mut next = 0;
-        for (law, shown) in &self.laws {
-            for i in shown.place.clone() {
-                let size = self.size(law, i, row);
-                match first {
-                    true => watched.push(Watched::new(t, row[i], size)),
-                    false => watched[next].see(t, row[i], size),
-                }
-                next += 1;
-            }
+    fn see(&self, t: f64, row: Row<'_>, watched: &mut Vec<Watched>) {
+        let values = self
+            .laws
+            .iter()
+            .flat_map(|law| row[law].iter().enumerate().map(move |(i, x)| (*x, row.size(law, i))));
+        if watched.is_empty() {
+            watched.extend(values.map(|(x, size)| Watched::new(t, x, size)));
+        } else {
+            watched.iter_mut().zip(values).for_each(|(watched, (x, size))| watched.see(t, x, size));
         }
     }
 
     /// The drift of each invariant, by column.
     fn drift(&self, watched: &[Watched], steps: u64) -> Result<BTreeMap<String, Drift>, CliError> {
         let method = self.scene.method.info()?;
-        let columns = self.laws.iter().flat_map(|(law, shown)| {
-            shown.columns.iter().map(|column| (column.clone(), law.promised_by(method)))
+        let columns = self.laws.iter().flat_map(|law| {
+            law.columns.iter().map(|column| (column.clone(), law.promised_by(method)))
         });
         let drifts = columns.zip(watched);
         Ok(drifts.map(|((name, promised), w)| (name, w.drift(promised, steps))).collect())
@@ -170,24 +151,22 @@ impl<'a> Watch<'a> {
     }
 
     /// The field at the end, where the figure is one.
-    fn field(&self, rows: &Gathered) -> Vec<Vec<f64>> {
+    fn field(&self, rows: &RowSample<'_>) -> Vec<Vec<f64>> {
         match (self.scene.problem.figure(), rows.ends()) {
-            (Figure::Map(..), Some([_, (_, row)])) => {
-                self.scene.problem.field(&row[self.drawn.place.clone()])
-            }
+            (Figure::Map(..), Some([_, (_, row)])) => self.scene.problem.field(&row[self.drawn]),
             _ => Vec::new(),
         }
     }
 
     /// The distance from the exact solution at the end of the span.
-    fn errors(&self, last: &[f64]) -> Option<BTreeMap<String, f64>> {
+    fn errors(&self, last: Row<'_>) -> Option<BTreeMap<String, f64>> {
         let exact = self.model.exact(self.scene.grid.t_span())?.ok()?;
-        let distance = |range: &Range<usize>| {
-            let pairs = last.get(range.clone()).into_iter().flatten();
-            let pairs = pairs.zip(exact.get(range.clone()).into_iter().flatten());
+        let exact = self.model.schema().row(&exact);
+        let distance = |part: &Observable| {
+            let pairs = last[part].iter().zip(&exact[part]);
             pairs.map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
         };
-        Some(self.state.iter().map(|s| (s.name.clone(), distance(&s.place))).collect())
+        Some(self.state.iter().map(|part| (part.name.into(), distance(part))).collect())
     }
 }
 
@@ -212,8 +191,9 @@ impl Done {
 /// # Errors
 /// The scene does not run at all, or a file cannot be written.
 pub fn run_scene(scene: &Scene, folder: &Path) -> Result<Summary, CliError> {
-    let watch = Watch::new(scene)?;
-    let columns: Vec<String> = watch.model.columns().drain(..watch.width).collect();
+    let model = scene.model_with(scene.layer, &quantities(scene))?;
+    let watch = Watch::new(scene, &*model)?;
+    let columns: Vec<String> = watch.written.iter().flat_map(|o| o.columns.clone()).collect();
     output::make_folder(folder)?;
     let summary_path: PathBuf = folder.join(SUMMARY);
     output::remove_old(&summary_path)?;
@@ -221,13 +201,15 @@ pub fn run_scene(scene: &Scene, folder: &Path) -> Result<Summary, CliError> {
 
     let [t0, t1] = scene.grid.t_span();
     let bar = Progress::new();
-    let mut rows = Gathered::default();
-    let mut watched = Vec::new();
+    let mut rows = RowSample::new(model.schema());
+    let (mut line, mut watched) = (Vec::new(), Vec::new());
     let mut not_finite = vec![0u64; columns.len()];
     let clock = Instant::now();
     let outcome = watch.run(&mut |t, row| {
-        trajectory.row(t, &row[..watch.width]);
-        for (count, x) in not_finite.iter_mut().zip(row) {
+        line.clear();
+        watch.line(row, &mut line);
+        trajectory.row(t, &line);
+        for (count, x) in not_finite.iter_mut().zip(&line) {
             *count += u64::from(!x.is_finite());
         }
         watch.see(t, row, &mut watched);
@@ -247,9 +229,12 @@ pub fn run_scene(scene: &Scene, folder: &Path) -> Result<Summary, CliError> {
     trajectory.finish(completed)?;
     let wall_time_s = clock.elapsed().as_secs_f64();
 
-    let shown =
-        |(t, row): &(f64, Vec<f64>)| [&[*t], row.get(..watch.width).unwrap_or_default()].concat();
-    let (initial, last) = rows.ends().map_or_else(Default::default, |[a, b]| (shown(a), shown(b)));
+    let with_time = |(t, row)| {
+        let mut line = vec![t];
+        watch.line(row, &mut line);
+        line
+    };
+    let [initial, last] = rows.ends().map_or_else(Default::default, |ends| ends.map(with_time));
     let end = rows.ends().filter(|_| completed);
     let drift = watch.drift(&watched, done.steps)?;
     let mut warnings = scene.problem.warnings();
@@ -272,10 +257,10 @@ pub fn run_scene(scene: &Scene, folder: &Path) -> Result<Summary, CliError> {
             map: method.map.clone(),
             tableau: method.tableau.clone(),
             q: method.q,
-            order: watch.model.order(method)?,
+            order: model.order(method)?,
         },
         layer: scene.layer.name(),
-        modelled: watch.model.modelled(method),
+        modelled: model.modelled(method),
         facts: scene.problem.facts().iter().map(|fact| (fact.name, fact.value)).collect(),
         warnings,
         quantities: scene.quantities.clone(),
@@ -295,9 +280,8 @@ pub fn run_scene(scene: &Scene, folder: &Path) -> Result<Summary, CliError> {
         error_at_end: end.and_then(|[_, (_, row)]| watch.errors(row)),
     };
     output::write_file(&summary_path, &output::to_json(&summary)?)?;
-    let laws: Vec<Shown> = watch.laws.iter().map(|(_, shown)| shown.clone()).collect();
     let figure = (scene.problem.figure(), watch.field(&rows));
-    let page = output::run_page(&summary, &rows, figure, &watch.drawn, &watch.asked, &laws);
+    let page = output::run_page(&summary, &rows, figure, watch.drawn, &watch.written, &watch.laws);
     output::write_page(folder, "index.html", &page)?;
     Ok(summary)
 }

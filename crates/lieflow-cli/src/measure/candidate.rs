@@ -1,6 +1,6 @@
 //! What is compared: methods with their parts, on a layer, in steps of one size or of their own.
 
-use lieflow::catalog::{MethodInfo, MethodSpec, Structure, TABLEAUS, all_methods};
+use lieflow::catalog::{MethodInfo, MethodSpec, Property, TABLEAUS, all_methods};
 use lieflow::maps::MAPS;
 
 use crate::cmd::CliError;
@@ -55,7 +55,7 @@ impl Candidate {
     /// Does the catalog say that it keeps the energy, or keeps it within bounds (symplectic)?
     pub fn keeps_energy(&self) -> bool {
         let keeps =
-            |info: &MethodInfo| info.keeps(Structure::Energy) || info.keeps(Structure::Symplectic);
+            |info: &MethodInfo| info.keeps(Property::Energy) || info.keeps(Property::Symplectic);
         self.method.info().is_ok_and(keeps)
     }
 

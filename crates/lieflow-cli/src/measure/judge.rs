@@ -1,16 +1,15 @@
 //! What a run is judged by: the exact end, or one that two methods agree on; and the invariants.
 
-use core::ops::Range;
-
 use lieflow::adaptive::{Adaptive, AdaptiveError};
 use lieflow::catalog::MethodSpec;
 use lieflow::{SaveAt, TimeGrid};
 
 use super::{Candidate, Size, WorkPoint};
 use crate::cmd::CliError;
-use lieflow_model::model::{Layer, Model, Steps};
+use lieflow_model::model::{Model, Sink, Steps};
 use lieflow_model::operations::Pace;
 use lieflow_model::scene::Scene;
+use lieflow_model::schema::{Observable, Row, Schema};
 
 /// Where the end comes from that errors are measured against.
 #[derive(Clone, Debug, PartialEq)]
@@ -83,11 +82,12 @@ fn reference_methods() -> Vec<MethodSpec> {
     ]
 }
 
-/// The exact end of a run, and where in a row the state and the invariants are.
+/// The exact end of a run, with the quantities that a run is judged by.
 #[derive(Debug)]
 pub struct Judge {
-    state: Vec<(&'static str, Range<usize>)>,
-    invariants: Vec<(&'static str, Range<usize>)>,
+    state: &'static [&'static str],
+    /// The state and the invariants.
+    schema: Schema,
     end: Vec<f64>,
     /// Where the end comes from.
     pub reference: Reference,
@@ -103,8 +103,7 @@ impl Judge {
     /// # Errors
     /// The problem cannot be set up, or no reference can be computed.
     pub fn new(scene: &Scene, quantities: &[&str], t_span: [f64; 2]) -> Result<Self, CliError> {
-        let mut judge = Self::without_end(scene, quantities)?;
-        let model = scene.model_with(reference_layer(scene), &judge.quantities())?;
+        let (mut judge, model) = Self::without_end(scene, quantities)?;
         match model.exact(t_span) {
             Some(Ok(exact)) => {
                 judge.end = exact;
@@ -124,30 +123,20 @@ impl Judge {
         quantities: &[&str],
         t_span: [f64; 2],
     ) -> Result<Self, CliError> {
-        let mut judge = Self::without_end(scene, quantities)?;
-        let model = scene.model_with(reference_layer(scene), &judge.quantities())?;
+        let (mut judge, model) = Self::without_end(scene, quantities)?;
         judge.find_end(&*model, t_span)?;
         Ok(judge)
     }
 
-    fn without_end(scene: &Scene, quantities: &[&str]) -> Result<Self, CliError> {
-        let mut width = 0;
-        let mut place = |name: &'static str| {
-            let columns = scene.problem.columns(name)?.len();
-            width += columns;
-            Ok((name, width - columns..width))
-        };
-        let state = scene.problem.state(quantities).iter().map(|name| place(name));
-        let state = state.collect::<Result<_, CliError>>()?;
-        let invariants = scene.problem.invariants(quantities);
-        let invariants = invariants.iter().map(|law| place(law.quantity));
-        let invariants = invariants.collect::<Result<_, CliError>>()?;
-        Ok(Judge {
-            state,
-            invariants,
-            end: Vec::new(),
-            reference: Reference::Exact { apart: None },
-        })
+    /// A judge that knows no end yet, and the model that a reference is computed with.
+    fn without_end(scene: &Scene, quantities: &[&str]) -> Result<(Self, Box<dyn Model>), CliError> {
+        let state = scene.problem.state(quantities);
+        let judged = [state, &scene.problem.invariants(quantities)].concat();
+        // The first layer of the problem.
+        let layer = scene.problem.layers().first().copied().unwrap_or(scene.layer);
+        let model = scene.model_with(layer, &judged)?;
+        let (schema, reference) = (model.schema().clone(), Reference::Exact { apart: None });
+        Ok((Judge { state, schema, end: Vec::new(), reference }, model))
     }
 
     fn find_end(&mut self, model: &dyn Model, t_span: [f64; 2]) -> Result<(), CliError> {
@@ -157,7 +146,7 @@ impl Judge {
         for method in reference_methods() {
             let mut last = Vec::new();
             let outcome = model.adapt(&method, &steps, &SaveAt::Ends, &mut |_, row| {
-                last = row.to_vec();
+                last = row.values().to_vec();
             });
             match outcome {
                 Ok(_) => ends.push((method.label(), last)),
@@ -183,15 +172,14 @@ impl Judge {
     /// How far from its end the exact motion comes in [`PARTS`] steps.
     fn rounding(&self, model: &dyn Model, t_span: [f64; 2]) -> Option<f64> {
         let mut last = Vec::new();
-        let mut see = |_: f64, row: &[f64]| last = row.to_vec();
+        let mut see = |_: f64, row: Row<'_>| last = row.values().to_vec();
         Size::Steps(PARTS).run(model, &MethodSpec::new("exact", None), t_span, &mut see).ok()?;
         Some(self.error(&last)).filter(|apart| apart.is_finite())
     }
 
     /// What a model must compute for [`point`](Self::point).
     pub fn quantities(&self) -> Vec<&'static str> {
-        let names = self.state.iter().map(|(name, _)| *name);
-        names.chain(self.invariants.iter().map(|(name, _)| *name)).collect()
+        self.schema.iter().map(|observable| observable.name).collect()
     }
 
     /// Run once, and judge.
@@ -203,11 +191,11 @@ impl Judge {
         size: Size,
     ) -> WorkPoint {
         let (mut first, mut last) = (Vec::new(), Vec::new());
-        let mut see = |_: f64, row: &[f64]| {
+        let mut see = |_: f64, row: Row<'_>| {
             if first.is_empty() {
-                first = row.to_vec();
+                first = row.values().to_vec();
             }
-            last = row.to_vec();
+            last = row.values().to_vec();
         };
         let mut point = WorkPoint::new(t_span, size);
         let outcome = size.run(model, &candidate.method, t_span, &mut see);
@@ -220,11 +208,11 @@ impl Judge {
                     .evaluations
                     .or_else(|| candidate.evaluations_per_step().map(|n| n * done.steps));
                 point.error = self.error(&last);
-                for (name, columns) in &self.invariants {
-                    for (&start, &end) in first[columns.clone()].iter().zip(&last[columns.clone()])
-                    {
+                let [first, last] = [&first, &last].map(|values| self.schema.row(values));
+                for law in self.schema.laws() {
+                    for (&start, &end) in first[law].iter().zip(&last[law]) {
                         let moved = relative(end - start, start);
-                        match *name {
+                        match law.name {
                             "energy" => point.energy_error = moved,
                             // A defect is a distance from the group already.
                             name if name.ends_with("defect") => point.group_residual = end,
@@ -239,21 +227,18 @@ impl Judge {
     }
 
     /// The largest relative distance of a part of the state from the reference.
-    fn error(&self, row: &[f64]) -> f64 {
-        let part = |(_, range): &(_, Range<usize>)| {
-            let (x, end) = (&row[range.clone()], &self.end[range.clone()]);
+    fn error(&self, values: &[f64]) -> f64 {
+        let [row, end] = [values, &self.end].map(|values| self.schema.row(values));
+        let part = |part: &Observable| {
+            let (x, end) = (&row[part], &end[part]);
             let gap: Vec<f64> = x.iter().zip(end).map(|(x, e)| x - e).collect();
             relative(norm(&gap), norm(end))
         };
         // A part that is no number has left the solution: `f64::max` would forget it.
         let worst = |a: f64, b: f64| if a >= b || a.is_nan() { a } else { b };
-        self.state.iter().map(part).fold(0.0, worst)
+        let state = self.schema.iter().filter(|part| self.state.contains(&part.name));
+        state.map(part).fold(0.0, worst)
     }
-}
-
-/// The layer that a reference is computed on: the first of the problem's.
-fn reference_layer(scene: &Scene) -> Layer {
-    scene.problem.layers().first().copied().unwrap_or(scene.layer)
 }
 
 fn relative(gap: f64, size: f64) -> f64 {
@@ -300,7 +285,7 @@ impl Size {
         model: &dyn Model,
         method: &MethodSpec,
         t_span: [f64; 2],
-        sink: &mut lieflow_model::model::Sink<'_>,
+        sink: &mut Sink<'_>,
     ) -> Result<Done, String> {
         match self {
             Size::Steps(steps) => {

@@ -31,6 +31,7 @@ use serde::{Deserialize, Serialize};
 use crate::cmd::CliError;
 use lieflow_model::model::Model;
 use lieflow_model::scene::Scene;
+use lieflow_model::schema::Row;
 
 /// How large the steps of a run are.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -266,8 +267,8 @@ impl Job {
     ) -> Result<f64, CliError> {
         let start = cpu_seconds();
         for _ in 0..self.repeats {
-            let mut see = |_: f64, row: &[f64]| {
-                core::hint::black_box(row);
+            let mut see = |_: f64, row: Row<'_>| {
+                core::hint::black_box(row.values());
             };
             self.size.run(model, &candidate.method, t_span, &mut see).map_err(CliError::Message)?;
         }

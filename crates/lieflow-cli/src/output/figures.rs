@@ -1,14 +1,13 @@
 //! A run as a page: the figure of its kind, what was asked for against time, and the drifts.
 
-use core::ops::Range;
-
 use crate::output::Summary;
 use lieflow_figures::number::{scientific, sig};
 use lieflow_figures::{
-    Axis, Block, Chart, Column, Ground, Heat, Marker, Page, Path, Point, Row, Scale, Section,
-    Series, Sphere, Table,
+    self as figures, Axis, Block, Chart, Column, Ground, Heat, Marker, Page, Path, Point, Scale,
+    Section, Series, Sphere, Table,
 };
 use lieflow_model::kinds::{self, Figure};
+use lieflow_model::schema::{Observable, Row, Schema};
 
 /// Rows that are kept for figures: some for each pixel.
 const KEPT: usize = 2048;
@@ -21,22 +20,23 @@ const LINES: usize = 8;
 
 /// The rows of a run, at regular distances, so that a long run needs no more memory than a short one.
 #[derive(Clone, Debug)]
-pub struct Gathered {
+pub struct RowSample<'a> {
+    schema: &'a Schema,
     rows: Vec<(f64, Vec<f64>)>,
     last: Option<(f64, Vec<f64>)>,
     every: usize,
     seen: usize,
 }
 
-impl Default for Gathered {
-    fn default() -> Self {
-        Gathered { rows: Vec::new(), last: None, every: 1, seen: 0 }
+impl<'a> RowSample<'a> {
+    /// No rows yet.
+    pub fn new(schema: &'a Schema) -> Self {
+        RowSample { schema, rows: Vec::new(), last: None, every: 1, seen: 0 }
     }
-}
 
-impl Gathered {
     /// The next row.
-    pub fn see(&mut self, t: f64, row: &[f64]) {
+    pub fn see(&mut self, t: f64, row: Row<'_>) {
+        let row = row.numbers();
         if self.seen.is_multiple_of(self.every) {
             let room = KEPT.min(NUMBERS / row.len().max(1)).max(2);
             if self.rows.len() >= room {
@@ -62,41 +62,35 @@ impl Gathered {
     }
 
     /// The first row, and the last.
-    pub fn ends(&self) -> Option<[&(f64, Vec<f64>); 2]> {
-        self.rows.first().zip(self.last.as_ref()).map(|(a, b)| [a, b])
+    pub fn ends(&self) -> Option<[(f64, Row<'_>); 2]> {
+        Some([self.rows.first()?, self.last.as_ref()?].map(|row| self.named(row)))
     }
 
     /// Those that were kept, and the last.
-    fn rows(&self) -> impl Iterator<Item = &(f64, Vec<f64>)> {
+    fn rows(&self) -> impl Iterator<Item = (f64, Row<'_>)> {
         let kept = self.rows.last().map(|(t, _)| *t);
-        self.rows.iter().chain(self.last.iter().filter(move |(t, _)| kept != Some(*t)))
+        let last = self.last.iter().filter(move |(t, _)| kept != Some(*t));
+        self.rows.iter().chain(last).map(|row| self.named(row))
     }
-}
 
-/// A quantity in a row: its name, its columns and their names.
-#[derive(Clone, Debug)]
-pub struct Shown {
-    /// Its name.
-    pub name: String,
-    /// Where its columns are.
-    pub place: Range<usize>,
-    /// The names of its columns.
-    pub columns: Vec<String>,
+    fn named<'s>(&'s self, (t, numbers): &'s (f64, Vec<f64>)) -> (f64, Row<'s>) {
+        (*t, self.schema.row(numbers))
+    }
 }
 
 /// The page of a run: `asked` are the quantities of the scene, `drawn` the one of its figure, with the
 /// field where it is a map, and `watched` the invariants.
 pub fn run_page(
     summary: &Summary,
-    rows: &Gathered,
+    rows: &RowSample<'_>,
     (figure, field): (Figure, Vec<Vec<f64>>),
-    drawn: &Shown,
-    asked: &[Shown],
-    watched: &[Shown],
+    drawn: &Observable,
+    asked: &[&Observable],
+    watched: &[&Observable],
 ) -> Page {
     let own = own_figure(&summary.title, (figure, field), drawn, rows);
     let drawn_already =
-        |quantity: &Shown| quantity.name == drawn.name && matches!(figure, Figure::Lines(_));
+        |quantity: &Observable| quantity.name == drawn.name && matches!(figure, Figure::Lines(_));
     let over_time = asked.iter().filter(|quantity| !drawn_already(quantity)).map(|quantity| {
         let id = format!("time-{}", quantity.name.replace('_', "-"));
         Block::Chart(lines(id, &quantity.name.replace('_', " "), quantity, rows))
@@ -159,8 +153,8 @@ fn facts(summary: &Summary) -> Block {
 fn own_figure(
     title: &str,
     (figure, field): (Figure, Vec<Vec<f64>>),
-    drawn: &Shown,
-    rows: &Gathered,
+    drawn: &Observable,
+    rows: &RowSample<'_>,
 ) -> Block {
     let id = "figure".to_string();
     match figure {
@@ -187,13 +181,12 @@ fn said(name: &str, drawn: usize, all: usize) -> String {
 }
 
 /// The columns of a quantity against time.
-fn lines(id: String, title: &str, quantity: &Shown, rows: &Gathered) -> Chart {
+fn lines(id: String, title: &str, quantity: &Observable, rows: &RowSample<'_>) -> Chart {
     let name = quantity.name.replace('_', " ");
-    let series = quantity.columns.iter().zip(quantity.place.clone()).take(LINES).enumerate();
-    let series = series.map(|(colour, (column, place))| Series {
+    let series = quantity.columns.iter().enumerate().take(LINES).map(|(i, column)| Series {
         name: column.clone(),
-        colour,
-        points: rows.rows().map(|(t, row)| Point::new(*t, row[place])).collect(),
+        colour: i,
+        points: rows.rows().map(|(t, row)| Point::new(t, row[quantity][i])).collect(),
         marker: Marker::None,
         ..Series::default()
     });
@@ -208,12 +201,20 @@ fn lines(id: String, title: &str, quantity: &Shown, rows: &Gathered) -> Chart {
 }
 
 /// Pairs of columns as paths or points of a plane.
-fn plane(id: String, title: &str, quantity: &Shown, rows: &Gathered, points: bool) -> Chart {
-    let pairs = quantity.place.len() / 2;
+fn plane(
+    id: String,
+    title: &str,
+    quantity: &Observable,
+    rows: &RowSample<'_>,
+    points: bool,
+) -> Chart {
+    let pairs = quantity.columns.len() / 2;
     let every = if points { rows.rows.len().div_ceil(POINTS).max(1) } else { 1 };
     let series = (0..pairs.min(LINES)).map(|k| {
-        let at = quantity.place.start + 2 * k;
-        let of_row = |(_, row): &(f64, Vec<f64>)| Point::new(row[at], row[at + 1]);
+        let of_row = |(_, row): (f64, Row<'_>)| {
+            let values = &row[quantity];
+            Point::new(values[2 * k], values[2 * k + 1])
+        };
         Series {
             name: quantity.columns[2 * k..2 * k + 2].join(", "),
             colour: k,
@@ -231,18 +232,16 @@ fn plane(id: String, title: &str, quantity: &Shown, rows: &Gathered, points: boo
         title: title.into(),
         x: Axis::new(axis(0), Scale::Linear),
         y: Axis::new(axis(1), Scale::Linear),
-        caption: said(&quantity.name, pairs.min(LINES), pairs),
+        caption: said(quantity.name, pairs.min(LINES), pairs),
         series: series.collect(),
     }
 }
 
 /// Triples of columns as paths on a sphere, each in lengths of its own start.
-fn sphere(id: String, title: &str, quantity: &Shown, rows: &Gathered) -> Sphere {
-    let triples = quantity.place.len() / 3;
+fn sphere(id: String, title: &str, quantity: &Observable, rows: &RowSample<'_>) -> Sphere {
+    let triples = quantity.columns.len() / 3;
     let path = |k: usize| {
-        let at = |row: &[f64]| -> [f64; 3] {
-            core::array::from_fn(|i| row[quantity.place.start + 3 * k + i])
-        };
+        let at = |row: Row<'_>| -> [f64; 3] { core::array::from_fn(|i| row[quantity][3 * k + i]) };
         let length = rows
             .ends()
             .map_or(1.0, |[(_, row), _]| at(row).iter().map(|x| x * x).sum::<f64>().sqrt());
@@ -266,7 +265,7 @@ fn sphere(id: String, title: &str, quantity: &Shown, rows: &Gathered) -> Sphere 
         inertia: [f64::NAN; 3],
         energy: f64::NAN,
         paths,
-        caption: said(&quantity.name, triples.min(LINES), triples),
+        caption: said(quantity.name, triples.min(LINES), triples),
         view: (35.0, if height < 0.0 { -25.0 } else { 25.0 }),
     }
 }
@@ -287,7 +286,7 @@ fn drift_table(summary: &Summary) -> Block {
             (true, true) => "promises to keep it, and did not",
             (false, _) => "promises nothing",
         };
-        Row {
+        figures::Row {
             emphasised: drift.breaks_a_promise(),
             cells: vec![
                 name.clone(),
@@ -308,11 +307,13 @@ fn drift_table(summary: &Summary) -> Block {
 }
 
 /// |value − initial| of the invariants against time.
-fn drifts(summary: &Summary, watched: &[Shown], rows: &Gathered) -> Chart {
-    let all = watched.iter().flat_map(|law| law.columns.iter().zip(law.place.clone()));
-    let series = all.take(LINES).enumerate().map(|(colour, (column, place))| {
+fn drifts(summary: &Summary, watched: &[&Observable], rows: &RowSample<'_>) -> Chart {
+    let all = watched
+        .iter()
+        .flat_map(|law| law.columns.iter().enumerate().map(move |(i, column)| (law, i, column)));
+    let series = all.take(LINES).enumerate().map(|(colour, (law, i, column))| {
         let initial = summary.drift.get(column).map_or(f64::NAN, |drift| drift.initial);
-        let gap = |(t, row): &(f64, Vec<f64>)| (*t, (row[place] - initial).abs());
+        let gap = |(t, row): (f64, Row<'_>)| (t, (row[law][i] - initial).abs());
         // A drift of exactly 0, as at the start, has no place on a logarithm.
         let points = rows.rows().map(gap).filter(|(_, gap)| *gap != 0.0);
         Series {

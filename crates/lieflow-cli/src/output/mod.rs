@@ -6,7 +6,7 @@ mod progress;
 mod summary;
 mod trajectory;
 
-pub use figures::{Gathered, Shown, in_digits, run_page};
+pub use figures::{RowSample, in_digits, run_page};
 pub(crate) use files::fields;
 pub use files::{in_full, make_folder, optional, remove_old, write_csv, write_file, write_page};
 pub use progress::Progress;

@@ -18,9 +18,7 @@ pub(super) const KIND: Kind = Kind {
     name: "beam-line",
     equation: "x″ = −k_x x, z″ = −k_z z: (k_x, k_z) = (k, −k) in a quadrupole, (1/radius², 0) in a dipole",
     summary: "a particle through the magnets of a periodic beam line; t is the path along it",
-    keys: Keys::INFO,
-    quantities: quantities_of::<BeamLine>,
-    read,
+    ..Kind::of::<Keys, BeamLine>(read)
 };
 
 keys! { Keys {

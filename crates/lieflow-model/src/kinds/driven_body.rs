@@ -13,7 +13,7 @@ use std::sync::Arc;
 
 use lieflow::actions::LeftTranslation;
 use lieflow::groups::{LieGroup, So3, vee};
-use lieflow::problems::{BodyTorque, Motion, Torque, TorqueBody};
+use lieflow::problems::{BodyMotion, BodyTorque, Torque, TorqueBody};
 use lieflow::scalar::Real;
 use nalgebra::{Matrix3, Vector3};
 
@@ -28,9 +28,7 @@ pub(super) const KIND: Kind = Kind {
     name: "driven-body",
     equation: "m = Jω; ṁ = m × ω + gᵀ(e₃ × g weight) + thruster − damping ω − k (g − gᵀ)ᵛ/2 − c ω + torque + gᵀ torque_space, ġ = gω̂",
     summary: "a rigid body with its attitude under the torques that are named",
-    keys: Keys::INFO,
-    quantities: quantities_of::<Driven>,
-    read,
+    ..Kind::of::<Keys, Driven>(read)
 };
 
 keys! { Keys {
@@ -57,7 +55,7 @@ const VARIABLES: [&str; 16] = [
     "g11", "g12", "g13", "g21", "g22", "g23", "g31", "g32", "g33",
 ];
 
-fn variables<S: Copy>(at: &Motion<S>) -> [S; 16] {
+fn variables<S: Copy>(at: &BodyMotion<S>) -> [S; 16] {
     let (w, m, g) = (&at.omega_body, &at.momentum_space, &at.attitude);
     core::array::from_fn(|i| match i {
         0 => at.t,
@@ -70,7 +68,7 @@ fn variables<S: Copy>(at: &Motion<S>) -> [S; 16] {
 /// A torque in formulas, one for each component.
 type Formulas = Arc<[Formula]>;
 
-fn evaluated<S: Real + Into<f64>>(torque: &Formulas, at: &Motion<S>) -> Vector3<S> {
+fn evaluated<S: Real + Into<f64>>(torque: &Formulas, at: &BodyMotion<S>) -> Vector3<S> {
     let variables = variables(at);
     Vector3::from_fn(|i, _| torque[i].value(&variables))
 }
@@ -89,7 +87,7 @@ struct Torques {
 }
 
 impl<S: Real + Into<f64>> Torque<S> for Torques {
-    fn in_space(&self, at: &Motion<S>) -> Vector3<S> {
+    fn in_space(&self, at: &BodyMotion<S>) -> Vector3<S> {
         let lit = |x: Vector3<f64>| x.map(S::lit);
         let g = &at.attitude;
         let damped = |c: f64| at.omega_body.map(|w| S::lit(-c) * w);
@@ -105,20 +103,20 @@ impl<S: Real + Into<f64>> Torque<S> for Torques {
             add(Vector3::new(-down[1], down[0], S::lit(0.0)));
         }
         if let Some(thruster) = self.thruster {
-            add(BodyTorque(|_: &Motion<S>| lit(thruster)).in_space(at));
+            add(BodyTorque(|_: &BodyMotion<S>| lit(thruster)).in_space(at));
         }
         if let Some(damping) = self.damping {
-            add(BodyTorque(|_: &Motion<S>| damped(damping)).in_space(at));
+            add(BodyTorque(|_: &BodyMotion<S>| damped(damping)).in_space(at));
         }
         if let Some([stiffness, damping]) = self.control {
             let half = |i: usize, j: usize| S::lit(0.5) * (g[(i, j)] - g[(j, i)]);
             let away = Vector3::new(half(2, 1), half(0, 2), half(1, 0));
             let (k, slow) = (S::lit(-stiffness), damped(damping));
-            let law = |_: &Motion<S>| Vector3::from_fn(|i, _| k * away[i] + slow[i]);
+            let law = |_: &BodyMotion<S>| Vector3::from_fn(|i, _| k * away[i] + slow[i]);
             add(BodyTorque(law).in_space(at));
         }
         if let Some(formulas) = &self.in_the_body {
-            add(BodyTorque(|at: &Motion<S>| evaluated(formulas, at)).in_space(at));
+            add(BodyTorque(|at: &BodyMotion<S>| evaluated(formulas, at)).in_space(at));
         }
         if let Some(formulas) = &self.in_space {
             add(evaluated(formulas, at));

@@ -5,7 +5,7 @@
 
 use lieflow::actions::{Coadjoint, LeftTranslation, Linear};
 use lieflow::groups::{MatrixGroup, Power, Product, Se3, So3, Translations};
-use lieflow::problems::{DynFlow, FromTheBody, Known, TimeAlone};
+use lieflow::problems::{DynFlow, FromTheBody, TimeAlone, WithHamiltonian};
 use nalgebra::Vector3;
 
 use super::composed::{OnParts, Parts};
@@ -14,11 +14,11 @@ use super::matrix::MatrixAction;
 /// A vector under SO(3): spins.
 pub(super) type OnSphere<N> = DynFlow<So3<N>, Linear, TimeAlone>;
 /// Vectors under SO(3)ᴺ: spin chains, many bodies, Euler's equations on so(3)*.
-pub(super) type OnSpheres<N> = DynFlow<Power<So3<N>>, Linear, (), Known>;
+pub(super) type OnSpheres<N> = DynFlow<Power<So3<N>>, Linear, (), WithHamiltonian>;
 /// Momenta on se(3)*: heavy tops, the spherical pendulum, Euler's equations.
-pub(super) type OnSe3<N> = DynFlow<Se3<N>, Coadjoint, (), Known>;
+pub(super) type OnSe3<N> = DynFlow<Se3<N>, Coadjoint, (), WithHamiltonian>;
 /// All that is made of matrices.
-pub(super) type OnMatrices = DynFlow<MatrixGroup, MatrixAction, TimeAlone, Known>;
+pub(super) type OnMatrices = DynFlow<MatrixGroup, MatrixAction, TimeAlone, WithHamiltonian>;
 /// The group element of Euler's equations on matrices.
 pub(super) type FromBody = DynFlow<MatrixGroup, FromTheBody>;
 /// A body under torques: attitude and momentum.

@@ -14,9 +14,7 @@ pub(super) const KIND: Kind = Kind {
     name: "heavy-top",
     equation: "μ̇ = μ × ω + γ × w, γ̇ = γ × ω, μ = Jω, γ upward, w the weight, all in the body",
     summary: "the heavy top about a fixed point, by its momentum and the vertical in the body",
-    keys: Keys::INFO,
-    quantities: quantities_of::<Top>,
-    read,
+    ..Kind::of::<Keys, Top>(read)
 };
 
 keys! { Keys {

@@ -3,9 +3,10 @@
 
 use core::f64::consts::{PI, TAU};
 
+use lieflow::floquet::{Floquet, monodromy};
 use lieflow::groups::AlgebraMatrix;
 use lieflow::methods::magnus::Magnus6;
-use lieflow::problems::{Floquet, LinearHamiltonian, floquet, hill, monodromy};
+use lieflow::problems::{LinearHamiltonian, hill};
 use lieflow::scalar::{Ops, tally};
 
 use super::entries::{
@@ -20,9 +21,7 @@ pub(super) const MATHIEU: Kind = Kind {
     name: "mathieu",
     equation: "ġ = [0 1; −(a − 2q cos 2t) 0] g, g = 𝟙 at the start",
     summary: "Mathieu's equation x'' + (a - 2q cos 2t) x = 0, its solutions as a matrix of Sp(2)",
-    keys: MathieuKeys::INFO,
-    quantities: quantities_of::<Hill>,
-    read: read_mathieu,
+    ..Kind::of::<MathieuKeys, Hill>(read_mathieu)
 };
 
 /// The entry of Hill's equation in the list of kinds.
@@ -31,9 +30,7 @@ pub(super) const HILL: Kind = Kind {
     equation: "ġ = [0 𝟙; −(A − 2Q cos 2πt/T) 0] g, g = 𝟙 at the start",
     summary: "m coupled equations x'' + (A - 2Q cos 2πt/T) x = 0, their solutions as a matrix of \
               Sp(2m)",
-    keys: HillKeys::INFO,
-    quantities: quantities_of::<Hill>,
-    read: read_hill,
+    ..Kind::of::<HillKeys, Hill>(read_hill)
 };
 
 keys! { MathieuKeys {
@@ -97,7 +94,7 @@ impl Hill {
     /// The multipliers of a period from t = 0, and the trace of its monodromy.
     fn multipliers(&self) -> Option<(Floquet, f64)> {
         let g = monodromy(&self.equation().ok()?, &Magnus6, [0.0, self.period], STEPS).ok()?;
-        Some((floquet(&g).ok()?, trace(&g)))
+        Some((Floquet::of(&g).ok()?, trace(&g)))
     }
 }
 

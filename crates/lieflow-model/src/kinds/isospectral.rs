@@ -15,9 +15,7 @@ pub(super) const TODA: Kind = Kind {
     name: "toda",
     equation: "L̇ = [L₋ᵀ − L₋, L], L₋ what is below the diagonal",
     summary: "Toda's flow of a symmetric matrix, and the lattice of particles in Flaschka's variables",
-    keys: TodaKeys::INFO,
-    quantities: quantities_of::<Isospectral>,
-    read: read_toda,
+    ..Kind::of::<TodaKeys, Isospectral>(read_toda)
 };
 
 /// The entry of Brockett's flow in the list of kinds.
@@ -25,9 +23,7 @@ pub(super) const DOUBLE_BRACKET: Kind = Kind {
     name: "double-bracket",
     equation: "L̇ = [[N, L], L], N diagonal",
     summary: "Brockett's flow of a symmetric matrix, which diagonalises and sorts",
-    keys: DoubleBracketKeys::INFO,
-    quantities: quantities_of::<Isospectral>,
-    read: read_double_bracket,
+    ..Kind::of::<DoubleBracketKeys, Isospectral>(read_double_bracket)
 };
 
 /// The entry of the QR flow in the list of kinds.
@@ -35,9 +31,7 @@ pub(super) const QR_FLOW: Kind = Kind {
     name: "qr-flow",
     equation: "L̇ = [log(L)₋ᵀ − log(L)₋, L]: L(k) is the k-th iterate",
     summary: "the flow through the iterates of the QR algorithm of a positive definite matrix",
-    keys: QrKeys::INFO,
-    quantities: quantities_of::<Isospectral>,
-    read: read_qr,
+    ..Kind::of::<QrKeys, Isospectral>(read_qr)
 };
 
 keys! { TodaKeys {

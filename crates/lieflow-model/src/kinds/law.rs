@@ -1,15 +1,12 @@
-//! What a motion keeps, what a method promises to keep of it, and what rounding may do to that.
+//! What a motion keeps, and what rounding may do to that.
 
-use lieflow::catalog::{MethodInfo, Structure};
-use lieflow::problems::Kept;
+use lieflow::problems::Origin;
 
-/// A quantity whose columns the exact motion keeps.
+/// How the exact motion keeps the columns of a quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Law {
-    /// The quantity; empty until the quantity that states the law names it.
-    pub quantity: &'static str,
     /// What keeps it: a method that acts by the group keeps what the action keeps.
-    pub kept: Kept,
+    pub origin: Origin,
     /// Its degree as a polynomial of the state; 0 where it is none, or the motion keeps it on M alone.
     pub degree: u32,
     /// The size that its rounding is relative to.
@@ -21,15 +18,11 @@ pub struct Law {
 pub enum Scale {
     /// Its value.
     Value,
-    /// The sizes of the terms that it is the sum of, and that may cancel: the quantity of its name with
-    /// [`SIZE`] after it.
+    /// The sizes of the terms that it is the sum of, and that may cancel.
     Terms,
     /// 1: it is a distance from a group.
     One,
 }
-
-/// What follows the name of a quantity for the sizes of its terms.
-pub const SIZE: &str = ".size";
 
 /// A step rounds an invariant by a few tens of ε: some twenty operations of the action and of the
 /// update, each rounded once. The errors of steps are independent in all that was measured, and add up
@@ -39,26 +32,15 @@ const ROUNDINGS: f64 = 64.0;
 impl Law {
     /// A law of the action.
     pub(super) const fn by_the_action(degree: u32) -> Law {
-        Law { quantity: "", kept: Kept::ByTheAction, degree, scale: Scale::Value }
+        Law { origin: Origin::Action, degree, scale: Scale::Value }
     }
     /// A law of this flow.
     pub(super) const fn by_the_flow(degree: u32) -> Law {
-        Law { kept: Kept::ByTheFlow, ..Law::by_the_action(degree) }
+        Law { origin: Origin::Flow, ..Law::by_the_action(degree) }
     }
     /// The law with another size that its rounding is relative to.
     pub(super) const fn on_scale(self, scale: Scale) -> Law {
         Law { scale, ..self }
-    }
-
-    /// Does the method promise to keep it to rounding? By what the catalog says that it preserves.
-    pub fn promised_by(&self, method: &MethodInfo) -> bool {
-        let by_its_kind = match self.kept {
-            Kept::ByTheAction => {
-                method.keeps(Structure::Group) || method.keeps(Structure::Casimirs)
-            }
-            Kept::ByTheFlow => self.quantity == "energy" && method.keeps(Structure::Energy),
-        };
-        by_its_kind || method.keeps_polynomials(self.degree) || method.keeps(Structure::Everything)
     }
 }
 

@@ -16,9 +16,7 @@ pub(super) const KIND: Kind = Kind {
     name: "lorentz",
     equation: "d(γv)/dτ = (q/m)(γE + γv × B), dγ/dτ = (q/m) E·γv",
     summary: "a charged particle in constant fields, by its four-velocity; t is its proper time",
-    keys: Keys::INFO,
-    quantities: quantities_of::<Particle>,
-    read,
+    ..Kind::of::<Keys, Particle>(read)
 };
 
 keys! { Keys {

@@ -17,9 +17,7 @@ pub(super) const KIND: Kind = Kind {
     name: "lyapunov",
     equation: "ẋ = F(t, x), Ẏ = DF(t, x)Y = d(QR)/dt, growth ln R_ii",
     summary: "Lyapunov exponents of a vector field in formulas, by continuous QR",
-    keys: Keys::INFO,
-    quantities: quantities_of::<Exponents>,
-    read,
+    ..Kind::of::<Keys, Exponents>(read)
 };
 
 keys! { Keys {

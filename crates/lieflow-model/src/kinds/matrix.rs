@@ -11,8 +11,8 @@
 
 use faer::Mat;
 use lieflow::actions::{Action, Coadjoint, Conjugation, Lagrangian, LeftTranslation, Linear};
-use lieflow::chart::PsiOf;
 use lieflow::groups::{AlgebraMatrix, GroupMatrix, LieGroup, MatrixGroup};
+use lieflow::maps::PsiOf;
 use lieflow::{CoordinateMap, Error, StepError};
 
 /// Which action.

@@ -1,6 +1,7 @@
 //! The kinds of problems that scene files can name.
 //!
-//! To add a kind: one file with its keys and its `System`, and its entry in [`KINDS`].
+//! To add a kind: one file with its keys and its `System`, and its entry in [`KINDS`]. A kind that is another one
+//! with formulas is a TOML file in `presets/`, and its entry.
 
 mod algebra;
 mod beam_line;
@@ -14,7 +15,6 @@ mod fluid;
 mod heavy_top;
 mod hill;
 mod isospectral;
-mod kirchhoff;
 mod law;
 mod lorentz;
 mod lyapunov;
@@ -23,6 +23,7 @@ mod matrix_ode;
 mod oja;
 mod pendulum;
 mod prelude;
+mod preset;
 mod quantity;
 mod riccati;
 mod rigid_bodies;
@@ -34,47 +35,55 @@ mod spin_chain;
 mod subspace;
 mod system;
 
-pub use law::{Law, SIZE, Scale, explained_by_rounding};
+pub use law::{Law, Scale, explained_by_rounding};
 pub use rigid_body::RigidBodySpec;
 
 use core::any::Any;
 use core::fmt::Debug;
+use std::sync::LazyLock;
 
 use lieflow::Error;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use toml::de::ValueDeserializer;
 
+use self::preset::preset;
+use self::system::System;
 use crate::model::{Layer, Model};
 use crate::scene::{ReadError, Refusal};
 
 /// Every kind.
-pub const KINDS: &[Kind] = &[
-    rigid_body::KIND,
-    driven_body::KIND,
-    rigid_bodies::KIND,
-    rigid_body_n::KIND,
-    heavy_top::KIND,
-    kirchhoff::KIND,
-    euler::KIND,
-    fluid::KIND,
-    pendulum::KIND,
-    spin::KIND,
-    spin_chain::KIND,
-    isospectral::TODA,
-    isospectral::DOUBLE_BRACKET,
-    isospectral::QR_FLOW,
-    oja::KIND,
-    subspace::KIND,
-    hill::MATHIEU,
-    hill::HILL,
-    beam_line::KIND,
-    riccati::KIND,
-    lorentz::KIND,
-    schrodinger::KIND,
-    matrix_ode::KIND,
-    lyapunov::KIND,
-    composed::KIND,
-];
+pub static KINDS: LazyLock<Vec<Kind>> = LazyLock::new(|| {
+    vec![
+        rigid_body::KIND,
+        driven_body::KIND,
+        rigid_bodies::KIND,
+        rigid_body_n::KIND,
+        heavy_top::KIND,
+        preset!("kirchhoff"),
+        euler::KIND,
+        fluid::KIND,
+        pendulum::KIND,
+        spin::KIND,
+        spin_chain::KIND,
+        isospectral::TODA,
+        isospectral::DOUBLE_BRACKET,
+        isospectral::QR_FLOW,
+        oja::KIND,
+        subspace::KIND,
+        hill::MATHIEU,
+        hill::HILL,
+        beam_line::KIND,
+        riccati::KIND,
+        lorentz::KIND,
+        schrodinger::KIND,
+        matrix_ode::KIND,
+        lyapunov::KIND,
+        composed::KIND,
+    ]
+});
+
+/// What reads the keys of `[problem]`.
+pub type ReadProblem = fn(ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError>;
 
 /// A kind of problem.
 #[derive(Clone, Copy, Debug)]
@@ -90,7 +99,7 @@ pub struct Kind {
     /// What can be asked of it.
     pub quantities: fn() -> Vec<QuantityInfo>,
     /// Reads the keys of `[problem]`, without `kind`.
-    pub read: fn(ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError>,
+    pub read: ReadProblem,
 }
 
 /// A key of `[problem]`.
@@ -117,13 +126,19 @@ macro_rules! keys {
             $($(#[$attribute])* $key: $type,)*
         }
 
-        impl $name {
+        impl $crate::kinds::KeyTable for $name {
             const INFO: &'static [$crate::kinds::KeyInfo] =
                 &[$($crate::kinds::KeyInfo { name: stringify!($key), meaning: $meaning },)*];
         }
     };
 }
 use keys;
+
+/// The keys of a kind, as listings show them.
+trait KeyTable {
+    /// In the order of listings.
+    const INFO: &'static [KeyInfo];
+}
 
 /// A quantity that can be asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -148,6 +163,12 @@ impl QuantityInfo {
 }
 
 impl Kind {
+    /// An entry without its texts: keys, the quantities of a system, and what reads the keys.
+    const fn of<K: KeyTable, S: System>(read: ReadProblem) -> Kind {
+        let quantities = || S::QUANTITIES.iter().map(|quantity| quantity.info).collect();
+        Kind { name: "", equation: "", summary: "", keys: K::INFO, quantities, read }
+    }
+
     /// The kind of that name.
     ///
     /// # Errors
@@ -165,19 +186,20 @@ impl Kind {
     /// # Errors
     /// [`Error::UnknownName`].
     pub fn quantity(&self, name: &str) -> Result<QuantityInfo, Error> {
-        let quantities = (self.quantities)();
-        quantities.iter().copied().find(|quantity| quantity.name == name).ok_or_else(|| {
-            Error::UnknownName {
-                kind: "quantity",
-                name: name.into(),
-                expected: quantities.iter().map(|quantity| quantity.name).collect(),
-            }
-        })
+        let quantity = (self.quantities)().into_iter().find(|quantity| quantity.name == name);
+        quantity.ok_or_else(|| self.unknown_quantity(name))
+    }
+
+    /// The error for a quantity that the kind does not have.
+    fn unknown_quantity(&self, name: &str) -> Error {
+        let expected = (self.quantities)().iter().map(|quantity| quantity.name).collect();
+        Error::UnknownName { kind: "quantity", name: name.into(), expected }
     }
 }
 
 /// What a field lies on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Ground {
     /// A sphere: rows from north to south, columns from west to east.
     Sphere,
@@ -186,7 +208,8 @@ pub enum Ground {
 }
 
 /// The figure of a run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Figure {
     /// The columns of a quantity against time.
     Lines(&'static str),
@@ -259,8 +282,8 @@ pub trait ProblemSpec: Any + Debug + Send + Sync {
     /// solution.
     fn state(&self, quantities: &[&str]) -> &'static [&'static str];
 
-    /// What the exact motion keeps, of what follows from what these quantities model.
-    fn invariants(&self, quantities: &[&str]) -> Vec<Law>;
+    /// The quantities that the exact motion keeps, of those that follow from what these quantities model.
+    fn invariants(&self, quantities: &[&str]) -> Vec<&'static str>;
 
     /// The figure of a run.
     fn figure(&self) -> Figure;

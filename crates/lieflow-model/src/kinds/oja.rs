@@ -13,9 +13,7 @@ pub(super) const KIND: Kind = Kind {
     name: "oja",
     equation: "Ẋ = AX − XXᵀAX",
     summary: "Oja's flow on orthonormal columns, to the leading eigenvectors of a symmetric matrix",
-    keys: Keys::INFO,
-    quantities: quantities_of::<OjaFlow>,
-    read,
+    ..Kind::of::<Keys, OjaFlow>(read)
 };
 
 keys! { Keys {

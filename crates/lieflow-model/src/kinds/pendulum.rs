@@ -13,9 +13,7 @@ pub(super) const KIND: Kind = Kind {
     name: "spherical-pendulum",
     equation: "q̇ = ω × q, ω̇ = −(g/ℓ) q × e₃",
     summary: "the spherical pendulum, by its direction and its angular velocity; e3 points upward",
-    keys: Keys::INFO,
-    quantities: quantities_of::<Pendulum>,
-    read,
+    ..Kind::of::<Keys, Pendulum>(read)
 };
 
 keys! { Keys {

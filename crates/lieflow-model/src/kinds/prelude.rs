@@ -6,7 +6,7 @@ pub(super) use serde::Deserialize;
 pub(super) use toml::de::ValueDeserializer;
 
 pub(super) use super::quantity::Quantity;
-pub(super) use super::system::{Number, Start, Stated, System, quantities_of};
+pub(super) use super::system::{Number, Start, Stated, System};
 pub(super) use super::{Fact, Figure, Kind, Law, PARAMETERS, ProblemSpec, Scale, keys};
 pub(super) use crate::model::Layer;
 pub(super) use crate::scene::values::{List, Real, Reals, Table, Whole};

@@ -91,7 +91,7 @@ impl<S: System> Quantity<S> {
             Keepers::Where(law) => law(system),
         }?;
         let scale = if self.terms.is_some() { Scale::Terms } else { law.scale };
-        Some(Law { quantity: self.info.name, scale, ..law })
+        Some(Law { scale, ..law })
     }
 
     /// The names of the columns.

@@ -16,9 +16,7 @@ pub(super) const KIND: Kind = Kind {
     name: "riccati",
     equation: "Ṗ = C + DP + PDᵀ − PBP",
     summary: "the matrix Riccati equation P' = C + DP + PD' − PBP, on Lagrangian subspaces",
-    keys: Keys::INFO,
-    quantities: quantities_of::<Riccati>,
-    read,
+    ..Kind::of::<Keys, Riccati>(read)
 };
 
 keys! { Keys {

@@ -16,9 +16,7 @@ pub(super) const KIND: Kind = Kind {
     name: "rigid-bodies",
     equation: "ṁᵢ = mᵢ × Jᵢ⁻¹mᵢ, each in its body",
     summary: "many free rigid bodies as one system, by their momenta",
-    keys: Keys::INFO,
-    quantities: quantities_of::<Bodies>,
-    read,
+    ..Kind::of::<Keys, Bodies>(read)
 };
 
 keys! { Keys {

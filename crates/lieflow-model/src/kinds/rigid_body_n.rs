@@ -11,9 +11,7 @@ pub(super) const KIND: Kind = Kind {
     name: "rigid-body-n",
     equation: "ṁ = [m, Ω], Ω_ij = m_ij/J_ij, with J_ij = λ_i + λ_j for Manakov's body",
     summary: "the free rigid body in n dimensions, by its momentum on so(n)*",
-    keys: Keys::INFO,
-    quantities: quantities_of::<Body>,
-    read,
+    ..Kind::of::<Keys, Body>(read)
 };
 
 keys! { Keys {

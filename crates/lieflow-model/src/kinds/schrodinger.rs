@@ -14,9 +14,7 @@ pub(super) const KIND: Kind = Kind {
     name: "schrodinger",
     equation: "iψ̇ = (H₀ + a(t)H₁)ψ, a(t) = cos(ωt + φ) exp(−((t − t₁)/w)²), the last factor with a pulse",
     summary: "Schrödinger's equation with n levels under a drive",
-    keys: Keys::INFO,
-    quantities: quantities_of::<Levels>,
-    read,
+    ..Kind::of::<Keys, Levels>(read)
 };
 
 keys! { Keys {

@@ -16,9 +16,7 @@ pub(super) const KIND: Kind = Kind {
     name: "spin",
     equation: "ẋ = ω(t) × x, ω(t) = the field turned about e₃ by rate·t",
     summary: "a magnetic moment in a field that turns about the third axis, on the sphere",
-    keys: Keys::INFO,
-    quantities: quantities_of::<Spin>,
-    read,
+    ..Kind::of::<Keys, Spin>(read)
 };
 
 keys! { Keys {

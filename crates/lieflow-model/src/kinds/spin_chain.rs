@@ -12,9 +12,7 @@ pub(super) const KIND: Kind = Kind {
     name: "spin-chain",
     equation: "ṡᵢ = Hᵢ × sᵢ + α (sᵢ × Hᵢ) × sᵢ, Hᵢ = sᵢ₋₁ + sᵢ₊₁ + K (sᵢ)₃ e₃ + B, α the damping",
     summary: "a chain of spins with exchange, anisotropy, a field and damping, on spheres",
-    keys: Keys::INFO,
-    quantities: quantities_of::<Chain>,
-    read,
+    ..Kind::of::<Keys, Chain>(read)
 };
 
 keys! { Keys {

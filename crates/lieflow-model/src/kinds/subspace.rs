@@ -21,9 +21,7 @@ pub(super) const KIND: Kind = Kind {
     name: "subspace",
     equation: "Ṗ = [[A, P], P] for the projector P on the subspace",
     summary: "the flow of subspaces to the leading invariant subspace of a symmetric matrix",
-    keys: Keys::INFO,
-    quantities: quantities_of::<Subspace>,
-    read,
+    ..Kind::of::<Keys, Subspace>(read)
 };
 
 keys! { Keys {

@@ -10,14 +10,14 @@ use lieflow::problems::LinearSpace;
 use lieflow::scalar::{Counted, Trig};
 use lieflow::{Error, RunError, SaveAt, Stats, TimeGrid};
 
-use super::law::{Law, SIZE};
 use super::quantity::{Quantity, Value};
-use super::{Fact, Figure, Kind, ProblemSpec, QuantityInfo};
+use super::{Fact, Figure, Kind, ProblemSpec};
 use crate::model::{
     Layer, Model, Runnable, Sink, Steps, adapt_by, fits_by, integrate_by, order_by,
 };
 use crate::operations::{Pace, operations_by};
 use crate::scene::Refusal;
+use crate::schema::Schema;
 
 /// The numbers that a problem of vectors is made of: `f64`, and [`Counted`] where operations are counted.
 /// Matrices count for themselves.
@@ -79,11 +79,6 @@ pub(super) trait System: Clone + Debug + Send + Sync + 'static {
     }
 }
 
-/// What listings say of the quantities of a system.
-pub(super) fn quantities_of<S: System>() -> Vec<QuantityInfo> {
-    S::QUANTITIES.iter().map(|quantity| quantity.info).collect()
-}
-
 /// The problem of a scene from its system.
 #[derive(Clone, Debug)]
 pub(super) struct Stated<S>(pub(super) S);
@@ -91,16 +86,21 @@ pub(super) struct Stated<S>(pub(super) S);
 /// The quantity of that name, where this problem has it.
 fn find<S: System>(system: &S, name: &str) -> Result<&'static Quantity<S>, Error> {
     let known = S::QUANTITIES.iter().find(|quantity| quantity.info.name == name);
-    let quantity = known.ok_or_else(|| Error::UnknownName {
-        kind: "quantity",
-        name: name.into(),
-        expected: S::QUANTITIES.iter().map(|quantity| quantity.info.name).collect(),
-    })?;
+    let quantity = known.ok_or_else(|| system.kind().unknown_quantity(name))?;
     match (quantity.missing)(system) {
         None => Ok(quantity),
         Some(why) => {
             Err(Error::Unsupported { what: quantity.info.name, with: "this problem".into(), why })
         }
+    }
+}
+
+/// The error for a layer that a kind of one layer does not have.
+pub(super) fn no_such_layer(layer: Layer, kind: &Kind) -> Error {
+    Error::Unsupported {
+        what: "layer",
+        with: format!("`{}` and a problem of kind `{}`", layer.name(), kind.name),
+        why: "it has one layer only; leave layer out",
     }
 }
 
@@ -115,27 +115,22 @@ impl<S: System> ProblemSpec for Stated<S> {
         }
     }
     fn columns(&self, quantity: &str) -> Result<Vec<String>, Error> {
-        match quantity.strip_suffix(SIZE) {
-            Some(_) => Ok(vec![quantity.into()]),
-            None => Ok(find(&self.0, quantity)?.column_names(&self.0)),
-        }
+        Ok(find(&self.0, quantity)?.column_names(&self.0))
     }
     fn model(&self, layer: Layer, quantities: &[&str]) -> Result<Box<dyn Model>, Error> {
         let system = &self.0;
         if layer != system.layer() {
-            return Err(Error::Unsupported {
-                what: "layer",
-                with: format!("`{}` and a problem of kind `{}`", layer.name(), system.kind().name),
-                why: "it has one layer only; leave layer out",
-            });
+            return Err(no_such_layer(layer, system.kind()));
         }
         let (problem, start) = system.problem()?;
-        let asked = |name: &&str| match name.strip_suffix(SIZE) {
-            Some(name) => Ok(Asked::Terms(find(system, name)?)),
-            None => Ok(Asked::Value(find(system, name)?)),
-        };
-        let quantities = quantities.iter().map(asked).collect::<Result<_, Error>>()?;
-        Ok(Box::new(SystemModel { system: system.clone(), problem, start, quantities }))
+        let quantities: Vec<_> =
+            quantities.iter().map(|name| find(system, name)).collect::<Result<_, Error>>()?;
+        let mut schema = Schema::default();
+        for quantity in &quantities {
+            let columns = quantity.column_names(system);
+            schema.push(quantity.info.name, columns, quantity.law(system));
+        }
+        Ok(Box::new(SystemModel { system: system.clone(), problem, start, quantities, schema }))
     }
     fn check_start(&self, t0: f64) -> Result<(), Refusal> {
         self.0.check_start(t0)
@@ -143,9 +138,10 @@ impl<S: System> ProblemSpec for Stated<S> {
     fn state(&self, _: &[&str]) -> &'static [&'static str] {
         S::STATE
     }
-    fn invariants(&self, _: &[&str]) -> Vec<Law> {
+    fn invariants(&self, _: &[&str]) -> Vec<&'static str> {
         let present = S::QUANTITIES.iter().filter(|quantity| (quantity.missing)(&self.0).is_none());
-        present.filter_map(|quantity| quantity.law(&self.0)).collect()
+        let kept = present.filter(|quantity| quantity.law(&self.0).is_some());
+        kept.map(|quantity| quantity.info.name).collect()
     }
     fn figure(&self) -> Figure {
         self.0.figure()
@@ -158,60 +154,55 @@ impl<S: System> ProblemSpec for Stated<S> {
     }
 }
 
-/// What a row shows.
-enum Asked<S: System> {
-    Value(&'static Quantity<S>),
-    Terms(&'static Quantity<S>),
-}
-
 /// The model of a [`System`].
 struct SystemModel<S: System> {
     system: S,
     problem: S::Problem<f64>,
     start: PointOf<S>,
-    quantities: Vec<Asked<S>>,
+    /// The quantities of the schema.
+    quantities: Vec<&'static Quantity<S>>,
+    schema: Schema,
 }
 
 impl<S: System> Debug for SystemModel<S> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_tuple("SystemModel").field(&self.system).field(&self.columns()).finish()
+        f.debug_tuple("SystemModel").field(&self.system).field(&self.schema).finish()
     }
 }
 
 impl<S: System> SystemModel<S> {
-    /// row ← the quantities at y, `t` after the start.
-    fn fill(&self, t: f64, y: &PointOf<S>, row: &mut Vec<f64>) {
-        row.clear();
-        for asked in &self.quantities {
-            match asked {
-                Asked::Value(quantity) => match quantity.value {
-                    Value::Number(value) => row.push(value(&self.system, t, y)),
-                    Value::Numbers(values) => values(&self.system, t, y, row),
-                },
-                Asked::Terms(quantity) => {
-                    row.push(quantity.terms.map_or(f64::NAN, |terms| terms(&self.system, y)));
-                }
+    /// numbers ← the values of the quantities at y, `t` after the start.
+    fn values(&self, t: f64, y: &PointOf<S>, numbers: &mut Vec<f64>) {
+        numbers.clear();
+        for quantity in &self.quantities {
+            match quantity.value {
+                Value::Number(value) => numbers.push(value(&self.system, t, y)),
+                Value::Numbers(values) => values(&self.system, t, y, numbers),
             }
         }
     }
 
-    /// What shows a point as a row.
-    fn shown<'a>(&'a self, sink: &'a mut Sink<'_>) -> impl FnMut(f64, &PointOf<S>) + 'a {
-        let (mut row, mut start) = (Vec::new(), None);
+    /// The sizes of terms at y go to the end of `numbers`.
+    fn sizes(&self, y: &PointOf<S>, numbers: &mut Vec<f64>) {
+        let with_size = self.quantities.iter().zip(&self.schema).filter(|(_, o)| o.has_size());
+        let terms = with_size.map(|(quantity, _)| quantity.terms);
+        numbers.extend(terms.map(|of| of.map_or(f64::NAN, |of| of(&self.system, y))));
+    }
+
+    /// An observer of points that gives the sink their rows.
+    fn observer<'a>(&'a self, sink: &'a mut Sink<'_>) -> impl FnMut(f64, &PointOf<S>) + 'a {
+        let (mut numbers, mut start) = (Vec::new(), None);
         move |t, y| {
-            self.fill(t - *start.get_or_insert(t), y, &mut row);
-            sink(t, &row);
+            self.values(t - *start.get_or_insert(t), y, &mut numbers);
+            self.sizes(y, &mut numbers);
+            sink(t, self.schema.row(&numbers));
         }
     }
 }
 
 impl<S: System> Model for SystemModel<S> {
-    fn columns(&self) -> Vec<String> {
-        let of = |asked: &Asked<S>| match asked {
-            Asked::Value(quantity) => quantity.column_names(&self.system),
-            Asked::Terms(quantity) => vec![format!("{}{SIZE}", quantity.info.name)],
-        };
-        self.quantities.iter().flat_map(of).collect()
+    fn schema(&self) -> &Schema {
+        &self.schema
     }
     fn modelled(&self, _: &MethodSpec) -> Vec<String> {
         vec![self.system.modelled()]
@@ -224,7 +215,7 @@ impl<S: System> Model for SystemModel<S> {
         sink: &mut Sink<'_>,
     ) -> Result<Stats, RunError> {
         let start = self.start.clone();
-        integrate_by(method, &self.problem, start, grid, save, &mut self.shown(sink))
+        integrate_by(method, &self.problem, start, grid, save, &mut self.observer(sink))
     }
     fn adapt(
         &self,
@@ -234,7 +225,7 @@ impl<S: System> Model for SystemModel<S> {
         sink: &mut Sink<'_>,
     ) -> Result<AdaptiveStats, AdaptiveError> {
         let start = self.start.clone();
-        adapt_by(method, &self.problem, start, steps, save, &mut self.shown(sink))
+        adapt_by(method, &self.problem, start, steps, save, &mut self.observer(sink))
     }
     fn order(&self, method: &MethodSpec) -> Result<Option<usize>, Error> {
         order_by(method, &self.problem)
@@ -247,9 +238,8 @@ impl<S: System> Model for SystemModel<S> {
         operations_by(method, &problem, start, pace)
     }
     fn exact(&self, t_span: [f64; 2]) -> Option<Result<Vec<f64>, Error>> {
-        let mut row = Vec::new();
-        let exact = self.system.exact(t_span)?;
-        let shown = exact.map(|y| self.fill(t_span[1] - t_span[0], &y, &mut row));
-        Some(shown.map(|()| row))
+        let mut values = Vec::new();
+        let end = self.system.exact(t_span)?;
+        Some(end.map(|y| self.values(t_span[1] - t_span[0], &y, &mut values)).map(|()| values))
     }
 }

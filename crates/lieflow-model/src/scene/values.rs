@@ -4,7 +4,7 @@ use core::fmt;
 
 use faer::Mat;
 use serde::Deserialize;
-use serde::de::{Deserializer, Error, SeqAccess, Visitor};
+use serde::de::{DeserializeSeed, Deserializer, Error, SeqAccess, Visitor};
 
 use super::Refusal;
 
@@ -68,30 +68,59 @@ impl<'de, const MIN: u64> Deserialize<'de> for Whole<MIN> {
     }
 }
 
+/// Reads a list of as many entries as the count says.
+struct ReadList<T> {
+    count: usize,
+    what: &'static str,
+    entries: Vec<T>,
+}
+
+impl<T> ReadList<T> {
+    fn new(count: usize, what: &'static str) -> Self {
+        ReadList { count, what, entries: Vec::new() }
+    }
+}
+
+impl<'de, T: Deserialize<'de>> Visitor<'de> for ReadList<T> {
+    type Value = Vec<T>;
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "a list of {} {}", self.count, self.what)
+    }
+    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Vec<T>, A::Error> {
+        let ReadList { count, what, mut entries } = self;
+        while let Some(entry) = list.next_element()? {
+            entries.push(entry);
+        }
+        match entries.len() {
+            found if found == count => Ok(entries),
+            0 => Err(A::Error::custom(format!("expected {count} {what}, found none"))),
+            found => Err(A::Error::custom(format!("expected {count} {what}, found {found}"))),
+        }
+    }
+}
+
+/// Reads a list of so many numbers.
+#[derive(Clone, Copy, Debug)]
+pub struct NumberList(pub usize);
+
+impl<'de> DeserializeSeed<'de> for NumberList {
+    type Value = Vec<f64>;
+
+    fn deserialize<D: Deserializer<'de>>(self, d: D) -> Result<Vec<f64>, D::Error> {
+        let list = d.deserialize_any(ReadList::<Real>::new(self.0, "numbers"))?;
+        Ok(list.iter().map(|x| x.0).collect())
+    }
+}
+
 /// N entries.
 struct Entries<T, const N: usize>([T; N]);
 
 impl<'de, T: Deserialize<'de>, const N: usize> Entries<T, N> {
     fn read<D: Deserializer<'de>>(d: D, what: &'static str) -> Result<Self, D::Error> {
-        struct AsEntries<T, const N: usize>(&'static str, core::marker::PhantomData<T>);
-        impl<'de, T: Deserialize<'de>, const N: usize> Visitor<'de> for AsEntries<T, N> {
-            type Value = Entries<T, N>;
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                write!(f, "a list of {N} {}", self.0)
-            }
-            fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Entries<T, N>, A::Error> {
-                let mut entries = Vec::new();
-                while let Some(entry) = list.next_element()? {
-                    entries.push(entry);
-                }
-                let found = entries.len();
-                entries.try_into().map(Entries).map_err(|_| {
-                    let found = if found == 0 { "none".into() } else { found.to_string() };
-                    A::Error::custom(format!("expected {N} {}, found {found}", self.0))
-                })
-            }
-        }
-        d.deserialize_any(AsEntries(what, core::marker::PhantomData))
+        let list = d.deserialize_any(ReadList::new(N, what))?;
+        list.try_into()
+            .map(Entries)
+            .map_err(|list: Vec<T>| D::Error::invalid_length(list.len(), &what))
     }
 }
 

@@ -68,7 +68,7 @@ fn a_torque_that_varies_in_time() {
     assert!(far(&last(&of), &[0.0, 0.0, rate(3.0), angle]) < 1e-10);
     assert!(of.model().unwrap().modelled(&of.method)[0].ends_with("torques: formulas in the body"));
     // Nothing keeps the energy.
-    assert!(of.problem.invariants(&[]).iter().all(|law| law.quantity == "attitude_defect"));
+    assert!(of.problem.invariants(&[]).iter().all(|law| *law == "attitude_defect"));
 }
 
 /// A run ends where a formula has no value any more; the rows before are there.
@@ -77,7 +77,7 @@ fn a_run_ends_where_a_formula_has_no_value() {
     let body = format!("{BODY}\ntorque = [\"sqrt(1 - t)\", \"0\", \"0\"]");
     let of = scene(&body, RKMK4, "t_span = [0, 2]\ndt = 0.125", "[\"axis\"]");
     let mut times = Vec::new();
-    let mut sink = |t: f64, _: &[f64]| times.push(t);
+    let mut sink = |t: f64, _: Row<'_>| times.push(t);
     let ended = of.model().unwrap().run(&of.method, &of.grid, &of.save, &mut sink);
     assert!(ended.is_err_and(|error| error.to_string().contains("not finite")));
     assert_eq!(times.last(), Some(&1.0));
@@ -165,7 +165,7 @@ fn kinds_of_flows_as_equations_of_ones_own() {
         let of = scene(&problem, RKMK4, time, "[\"point\"]");
         let rk = MethodSpec { tableau: Some("dop853".into()), ..MethodSpec::new("rk", None) };
         let mut by_rk = Vec::new();
-        let mut sink = |_: f64, row: &[f64]| by_rk = row.to_vec();
+        let mut sink = |_: f64, row: Row<'_>| by_rk = row.values().to_vec();
         of.model().unwrap().run(&rk, &of.grid, &of.save, &mut sink).unwrap();
         let end = last(&of);
         assert!(far(&end, &by_rk) < 1e-6, "{field}: the field and the action disagree");

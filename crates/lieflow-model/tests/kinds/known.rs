@@ -25,8 +25,7 @@ fn manakovs_integrals_are_those_of_his_body() {
     let summary = |problem: &str| {
         let of = scene(problem, RKMK4, FINE, "[\"momentum\"]");
         let laws = of.problem.invariants(&["momentum"]);
-        let names: Vec<_> = laws.iter().map(|law| law.quantity).collect();
-        (names, of.problem.columns("manakov_integrals").ok().map(|columns| columns.len()))
+        (laws, of.problem.columns("manakov_integrals").ok().map(|columns| columns.len()))
     };
     let momentum = "momentum = [1.0, -0.4, 0.3, 0.8, 0.2, -0.6]";
     let kind = "kind = \"rigid-body-n\"";
@@ -59,7 +58,7 @@ fn steady_precession_of_a_top() {
     // μ₃ is its fourth integral; a top that leans has none.
     let laws = |text: &str| {
         let of = scene(text, RKMK4, FINE, "[\"vertical\"]");
-        of.problem.invariants(&[]).iter().any(|law| law.quantity == "integral")
+        of.problem.invariants(&[]).contains(&"integral")
     };
     assert!(laws(&problem));
     assert!(!laws(&problem.replace("weight = [0, 0,", "weight = [0.1, 0,")));
@@ -73,6 +72,24 @@ fn a_body_in_a_fluid_at_rest() {
     let end = last(&scene(problem, RKMK4, FINE, "[\"angular_momentum\"]"));
     let exact = Exact::new([1.0, 2.0, 3.0], [0.2, 0.1, 3.0], Matrix3::identity()).unwrap();
     assert!(far(&end, exact.momentum_body(2.0).unwrap().as_slice()) < 1e-8);
+}
+
+/// H = ½Σ(mᵢ²/Jᵢ + pᵢ²/Mᵢ), |p|², m·p, and |m||p| as the size of its terms.
+#[test]
+fn the_quantities_of_a_body_in_a_fluid() {
+    let problem = "kind = \"kirchhoff\"\ninertia = [1, 2, 4]\nmass = [1, 2, 8]\n\
+                   angular_momentum = [1, 2, 2]\nlinear_momentum = [3, 0, 4]";
+    let of = scene(problem, RKMK4, FINE, "[\"energy\"]");
+    let names = ["energy", "linear_norm2", "momenta_product"];
+    let model = of.model_with(of.layer, &names).unwrap();
+    let product = model.schema().get("momenta_product").unwrap();
+    let mut rows = Vec::new();
+    let mut sink = |_: f64, row: lieflow_model::schema::Row<'_>| {
+        rows.push([row.values(), &[row.size(product, 0)]].concat());
+    };
+    model.run(&of.method, &of.grid, &of.save, &mut sink).unwrap();
+    assert!(far(&rows[0], &[7.5, 25.0, 11.0, 15.0]) < 1e-14);
+    assert_eq!(of.problem.invariants(&[]), names);
 }
 
 /// At the height q₃ = −cos θ the pendulum goes round at Ω² = (g/ℓ)/cos θ.

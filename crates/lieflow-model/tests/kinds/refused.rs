@@ -41,6 +41,16 @@ const BROKEN: &[(&str, &str, &str, &[&str])] = &[
     ("lagrange-top", "vertical = [0.6,", "vertical = [0.7,", &["length", "expected 1"]),
     ("lagrange-top", "omega_body", "omega", &["unknown key `omega`", "omega_body"]),
     ("ellipsoid-in-fluid", "mass = [1.5,", "mass = [0,", &["mass[0] = 0"]),
+    ("ellipsoid-in-fluid", "inertia = ", "inertai = ", &["`inertai`", "did you mean `inertia`?"]),
+    ("ellipsoid-in-fluid", "mass = [1.5, 1.2, 1.0]", "", &["missing key `mass` in [problem]"]),
+    ("ellipsoid-in-fluid", "mass = [1.5,", "mass = [", &["expected 3 numbers, found 2"]),
+    ("ellipsoid-in-fluid", "mass = [1.5,", "mass = [\"a\",", &["found string", "a number"]),
+    (
+        "ellipsoid-in-fluid",
+        "mass = [1.5,",
+        "mass = 1 # [",
+        &["found integer", "a list of 3 numbers"],
+    ),
     ("euler-on-sl3", "algebra = \"sl\"", "algebra = \"su\"", &["unknown algebra `su`", "so"]),
     ("euler-on-sl3", "momentum = [[0.2,", "momentum = [[0.3,", &["not in sl(3)"]),
     ("euler-on-sl3", "inverse_inertia = [[0.4, ", "inverse_inertia = [[", &["row 1 has 2 numbers"]),
@@ -268,7 +278,9 @@ fn a_part_is_named_by_its_line() {
 /// A layer that a kind does not have.
 #[test]
 fn a_kind_of_one_layer() {
-    for (name, layer) in [("rabi", "closed"), ("spin-wave", "general")] {
+    for (name, layer) in
+        [("rabi", "closed"), ("spin-wave", "general"), ("ellipsoid-in-fluid", "general")]
+    {
         let text = bundled(name);
         let asked = format!("[method]\nlayer = {layer:?}");
         let message =

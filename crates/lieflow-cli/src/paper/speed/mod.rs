@@ -226,7 +226,7 @@ fn layers_differ(scene: &Scene, row: PaperMethod) -> Result<f64, CliError> {
         let model = scene.model_with(layer, &["momentum_body"])?;
         let method = candidate(row, layer).method;
         model.run(&method, &scene.grid, &SaveAt::Ends, &mut |_, row| {
-            end.copy_from_slice(row);
+            end.copy_from_slice(row.values());
         })?;
     }
     let [a, b] = ends.map(nalgebra::Vector3::from);

@@ -21,9 +21,7 @@ pub(super) const KIND: Kind = Kind {
     name: "composed",
     equation: "ȧ = f × a for vectors, ȧ = f̂ a for rotations, ȧ = f for numbers, f of all parts",
     summary: "a system composed from parts, vectors on spheres, rotations and numbers, by formulas",
-    keys: Keys::INFO,
-    quantities: quantities_of::<Composed>,
-    read,
+    ..Kind::of::<Keys, Composed>(read)
 };
 
 keys! { Keys {

@@ -1,7 +1,7 @@
 //! Euler's equations on the dual of an algebra of matrices.
 
 use lieflow::groups::{AlgebraMatrix, LieAlgebra, MatrixGroup};
-use lieflow::problems::{Averaged, DiscreteGradient, Euler, Hamiltonian, Kinetic};
+use lieflow::problems::{DiscreteGradient, Euler, Hamiltonian, Kinetic, MeanGradient};
 use lieflow::scalar::{Ops, tally};
 
 use super::energy::Energy;
@@ -91,7 +91,7 @@ impl Projected {
 
     /// H(π(m)) of a formula, with the gradient π(∂H(π(m))).
     fn stated(&self, energy: &Energy) -> impl DiscreteGradient<MatrixGroup> {
-        Averaged(
+        MeanGradient(
             move |m: &Mat<f64>| {
                 let mut inside = m.clone();
                 self.algebra.project(&mut inside);
@@ -185,7 +185,7 @@ impl ProblemSpec for Spec {
     fn state(&self, quantities: &[&str]) -> &'static [&'static str] {
         self.of(quantities).state(quantities)
     }
-    fn invariants(&self, quantities: &[&str]) -> Vec<Law> {
+    fn invariants(&self, quantities: &[&str]) -> Vec<&'static str> {
         self.of(quantities).invariants(quantities)
     }
     fn figure(&self) -> Figure {

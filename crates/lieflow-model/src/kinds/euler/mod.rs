@@ -33,9 +33,7 @@ pub(super) const KIND: Kind = Kind {
     equation: "ṁ = P(ξᵀm − mξᵀ), ξ = P(∂H/∂m) or P(W ∘ m), P the orthogonal projection on the algebra; on so3 \
                ṁ = m × ∂H/∂m, on se3 ṁ = m × ∂H/∂m + p × ∂H/∂p, ṗ = p × ∂H/∂m",
     summary: "Euler's equations of any energy on the dual of so(n), sl(n), gl(n), sp(2m), so(p,q), so3 or se3",
-    keys: Keys::INFO,
-    quantities: quantities_of::<WithGroup>,
-    read,
+    ..Kind::of::<Keys, WithGroup>(read)
 };
 
 keys! { Keys {

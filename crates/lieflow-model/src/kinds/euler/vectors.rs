@@ -2,7 +2,7 @@
 
 use lieflow::actions::{Coadjoint, Linear};
 use lieflow::groups::{Adjoint, LieGroup, Power, Se3, So3};
-use lieflow::problems::{Averaged, DiscreteGradient, Euler};
+use lieflow::problems::{DiscreteGradient, Euler, MeanGradient};
 use nalgebra::Vector3;
 
 use super::energy::Energy;
@@ -72,7 +72,7 @@ impl<const N: usize> Vectors<N> {
         G: Adjoint<Dual = M> + LieGroup<Scalar = S, Alg = M>,
     {
         let (value, gradient) = (self.energy.clone(), self.energy.clone());
-        Averaged(
+        MeanGradient(
             move |m: &M| value.value(&m.numbers()),
             move |a: &M, way: Option<(&M, S)>, xi: &mut M| {
                 let mut m = a.numbers();

@@ -20,9 +20,7 @@ pub(super) const KIND: Kind = Kind {
     name: "fluid",
     equation: "Ẇ = [P, W]/ħ, ΔP = W: vorticity ω carried by the stream function ψ, Δψ = ω",
     summary: "an ideal fluid on the sphere or the torus, Zeitlin's model with N×N matrices",
-    keys: Keys::INFO,
-    quantities: quantities_of::<Fluid>,
-    read,
+    ..Kind::of::<Keys, Fluid>(read)
 };
 
 keys! { Keys {

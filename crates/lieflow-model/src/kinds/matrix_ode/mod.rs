@@ -29,9 +29,7 @@ pub(super) const KIND: Kind = Kind {
     equation: "ẏ = f y (translation, linear), f y − y f (conjugation), y fᵀ − fᵀ y (coadjoint), c + d y − y a − y b y \
                (lagrangian, f = [a b; c d]), f(t, y) in the algebra",
     summary: "an equation on matrices in formulas, by the action of a matrix group",
-    keys: Keys::INFO,
-    quantities: quantities_of::<Equation>,
-    read,
+    ..Kind::of::<Keys, Equation>(read)
 };
 
 keys! { Keys {

@@ -23,9 +23,7 @@ pub(super) const KIND: Kind = Kind {
     name: "rigid-body",
     equation: "ṁ = m × ω, m = Jω, in the body; ġ = gω̂ takes the body to space",
     summary: "the free rigid body, by its momentum on so(3)*, its attitude on SO(3) or its quaternion",
-    keys: Keys::INFO,
-    quantities: quantities_of::<Body<Attitude>>,
-    read,
+    ..Kind::of::<Keys, Body<Attitude>>(read)
 };
 
 keys! { Keys {
@@ -193,7 +191,7 @@ impl ProblemSpec for RigidBodySpec {
         }
     }
     /// None of a body that cannot be set up.
-    fn invariants(&self, quantities: &[&str]) -> Vec<Law> {
+    fn invariants(&self, quantities: &[&str]) -> Vec<&'static str> {
         let system = self.system(Layer::Closed, quantities);
         system.map_or_else(|_| Vec::new(), |system| system.invariants(quantities))
     }

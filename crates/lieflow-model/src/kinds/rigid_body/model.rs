@@ -28,6 +28,7 @@ use crate::kinds::prelude::*;
 use crate::kinds::system::PointOf;
 use crate::model::{Model, Runnable, Sink, Steps};
 use crate::operations::Pace;
+use crate::schema::Schema;
 
 /// Where a body is: its momentum in the body, and its orientation where that is modelled.
 pub(super) struct Pose {
@@ -392,8 +393,8 @@ impl ByMethod {
 }
 
 impl Model for ByMethod {
-    fn columns(&self) -> Vec<String> {
-        self.attitude.columns()
+    fn schema(&self) -> &Schema {
+        self.attitude.schema()
     }
     fn modelled(&self, method: &MethodSpec) -> Vec<String> {
         self.of(method).modelled(method)

@@ -13,7 +13,18 @@ use super::functions::{CALLED, CONSTANTS};
 #[serde(transparent)]
 pub struct Parameters(BTreeMap<String, Real>);
 
+impl FromIterator<(String, Real)> for Parameters {
+    fn from_iter<I: IntoIterator<Item = (String, Real)>>(parameters: I) -> Self {
+        Parameters(parameters.into_iter().collect())
+    }
+}
+
 impl Parameters {
+    /// The names and their values.
+    pub fn iter(&self) -> impl Iterator<Item = (&str, f64)> {
+        self.0.iter().map(|(name, x)| (name.as_str(), x.0))
+    }
+
     /// These variables, in the order of their values, and the parameters.
     ///
     /// # Errors

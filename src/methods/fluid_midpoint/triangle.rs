@@ -20,12 +20,12 @@ pub(super) fn below_mut(x: &mut Mat<f64>, j: usize) -> &mut [f64] {
     &mut x.col_as_slice_mut(j)[j..]
 }
 
-/// Σ x_i².
 /// The numbers on and below the diagonal, of both parts.
 pub(super) fn entries(x: &ComplexMatrix) -> usize {
     x.ncols() * (x.ncols() + 1)
 }
 
+/// Σ x_i².
 #[inline(always)]
 pub(super) fn squares(x: &[f64]) -> f64 {
     let (chunks, rest) = x.as_chunks::<LANES>();

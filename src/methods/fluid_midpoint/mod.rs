@@ -13,29 +13,32 @@
 //!
 //! An iteration is one Poisson solve, three real products for C (Gauss's three for a complex one;
 //! \[P, M\] = PM − (PM)†) and, where it still matters, three half products for the cubic term, which
-//! is skew-Hermitian. The first guess comes from the steps before ([`History`](super::history)).
+//! is skew-Hermitian. The first guess comes from the steps before ([`History`]).
 //! It converges while h/ħ times the bound of \[P, ·\] stays below about 1.
 //! Source: K. Modin & M. Viviani, J. Fluid Mech. 884 (2020), for the first, with the fixed point of
 //! P. Cifani, M. Viviani & K. Modin, J. Comput. Phys. 473 (2023); for the second see
-//! [`EnergyCasimir`](crate::methods::EnergyCasimir), which it is with cay.
+//! [`EnergyCasimir`](super::EnergyCasimir), which it is with cay.
+
+mod history;
+mod triangle;
 
 use faer::{Accum, Mat};
 
-use super::history::{History, Start};
-use super::triangle::{below, below_mut, entries, norm, replace, sum, with_transpose};
-use super::{Surface, Zeitlin};
+use super::{Method, Step, Symmetric};
 use crate::dense::{lower_product, mirror, mul, scaled_sum, wide};
 use crate::error::{Error, StepError};
 use crate::groups::ComplexMatrix;
-use crate::methods::{Method, Step, Symmetric};
+use crate::problems::{Surface, Zeitlin};
 use crate::scalar::{Ops, tally};
 use crate::space::LinearSpace;
+use history::{History, Start};
+use triangle::{below, below_mut, entries, norm, replace, sum, with_transpose};
 
-/// What a midpoint rule keeps besides the spectrum.
+/// One of the two midpoint rules, by what it keeps besides the spectrum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Keeps {
+pub enum MidpointRule {
     /// The Lie–Poisson structure: Modin and Viviani's isospectral midpoint.
-    Structure,
+    Isospectral,
     /// The energy.
     Energy,
 }
@@ -47,7 +50,7 @@ pub enum Keeps {
 /// iteration ends at differs by the tolerance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FluidMidpoint {
-    keeps: Keeps,
+    rule: MidpointRule,
     tolerance: f64,
 }
 
@@ -61,13 +64,13 @@ const ITERATIONS_MAX: u32 = 500;
 impl FluidMidpoint {
     /// The isospectral midpoint rule.
     pub const fn isospectral() -> Self {
-        FluidMidpoint { keeps: Keeps::Structure, tolerance: TOLERANCE }
+        FluidMidpoint { rule: MidpointRule::Isospectral, tolerance: TOLERANCE }
     }
     /// The midpoint rule that keeps the energy.
     pub const fn energy() -> Self {
-        FluidMidpoint { keeps: Keeps::Energy, tolerance: TOLERANCE }
+        FluidMidpoint { rule: MidpointRule::Energy, tolerance: TOLERANCE }
     }
-    /// With this bound of the residual ‖D − D(D)‖/‖W‖ in place of an eighth of the rounding unit.
+    /// The rule with this bound of the residual ‖D − D(D)‖/‖W‖ in place of an eighth of the rounding unit.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] unless it is finite and positive.
@@ -77,9 +80,9 @@ impl FluidMidpoint {
             false => Err(Error::out_of_range("tolerance", tolerance, "a finite number > 0")),
         }
     }
-    /// What it keeps.
-    pub const fn keeps(&self) -> Keeps {
-        self.keeps
+    /// Which of the two it is.
+    pub const fn rule(&self) -> MidpointRule {
+        self.rule
     }
 }
 
@@ -132,7 +135,7 @@ pub struct FluidWork {
     bracket: ComplexMatrix,
     /// P M P or P D P, on and below the diagonal.
     cubic: ComplexMatrix,
-    product: Product,
+    product: SkewProduct,
     scratch: [Mat<f64>; 2],
     history: History,
     /// Of the iteration, and of its cubic term.
@@ -150,7 +153,7 @@ impl FluidWork {
 
 /// P·X for skew-Hermitian P and X by three real products.
 #[derive(Debug)]
-struct Product {
+struct SkewProduct {
     p: ComplexMatrix,
     p_sum: Mat<f64>,
     x: ComplexMatrix,
@@ -161,11 +164,11 @@ struct Product {
     im: Mat<f64>,
 }
 
-impl Product {
+impl SkewProduct {
     fn new(n: usize) -> Self {
         let (zero, part) = (|| ComplexMatrix::zeros(n, n), || Mat::zeros(n, n));
         let (p, x) = (zero(), zero());
-        Product { p, x, p_sum: part(), x_sum: part(), re: part(), both: part(), im: part() }
+        SkewProduct { p, x, p_sum: part(), x_sum: part(), re: part(), both: part(), im: part() }
     }
 
     /// p and its sum from the triangle.
@@ -175,7 +178,7 @@ impl Product {
 
     /// The product, from the triangle of x.
     fn multiply(&mut self) {
-        let Product { p, p_sum, x, x_sum, re, both, im } = self;
+        let SkewProduct { p, p_sum, x, x_sum, re, both, im } = self;
         complete(x, x_sum);
         mul(re, p.re.as_ref(), x.re.as_ref());
         mul(both, p.im.as_ref(), x.im.as_ref());
@@ -202,7 +205,7 @@ impl Product {
 
     /// out ← (PX)P on the triangle; x is overwritten.
     fn sandwich(&mut self, out: &mut ComplexMatrix) {
-        let Product { p, p_sum, x_sum, re, both, im, .. } = self;
+        let SkewProduct { p, p_sum, x_sum, re, both, im, .. } = self;
         lower_product(&mut out.re, re.as_ref(), p.re.as_ref(), 1.0, Accum::Replace);
         lower_product(x_sum, im.as_ref(), p.im.as_ref(), 1.0, Accum::Replace);
         lower_product(&mut out.im, both.as_ref(), p_sum.as_ref(), 1.0, Accum::Replace);
@@ -241,7 +244,7 @@ impl<S: Surface> Method<Zeitlin<S>> for FluidMidpoint {
             d: zero(),
             bracket: zero(),
             cubic: zero(),
-            product: Product::new(n),
+            product: SkewProduct::new(n),
             scratch: fluid.surface().scratch(),
             history: History::new(n),
             rates: [Rate::unknown(); 2],
@@ -267,9 +270,9 @@ impl<S: Surface> Method<Zeitlin<S>> for FluidMidpoint {
         }
         self.iterate(fluid.surface(), h, w, work, &mut rates)?;
         let FluidWork { d, bracket, product, history, .. } = work;
-        let increment = match self.keeps {
-            Keeps::Structure => &*bracket,
-            Keeps::Energy => &*d,
+        let increment = match self.rule {
+            MidpointRule::Isospectral => &*bracket,
+            MidpointRule::Energy => &*d,
         };
         sum(&mut product.x, w, 2.0, increment);
         complete(&mut product.x, &mut product.x_sum);
@@ -313,7 +316,7 @@ impl FluidMidpoint {
             product.bracket(bracket);
             if due {
                 *solves += 1;
-                if self.keeps == Keeps::Energy {
+                if self.rule == MidpointRule::Energy {
                     sum(&mut product.x, d, 0.0, w);
                     product.multiply();
                 }

@@ -1,12 +1,32 @@
-//! Jacobi's elliptic functions sn, cn, dn from the arithmetic-geometric mean.
-//!
-//! Source: R. Bulirsch, Numerical calculation of elliptic integrals and elliptic functions, Numer. Math. 7
-//! (1965): the descending Gauss transformation.
+//! Elliptic functions and integrals: Carlson's R_C, R_F and R_J, and Jacobi's sn, cn and dn.
 
-/// The arithmetic-geometric mean of 1 and k' = √(1 − k²), from which sn, cn and dn follow at any u. 1 − k² is
-/// the argument so that k → 1 keeps its digits.
+use crate::error::{Error, StepError};
+
+fn converged(x: Result<f64, &'static str>) -> Result<f64, Error> {
+    x.map_err(|_| StepError::NotConverged { what: "Carlson's elliptic integral" }.into())
+}
+
+/// Carlson's R_C(x, y).
+pub(crate) fn rc(x: f64, y: f64) -> Result<f64, Error> {
+    converged(ellip::elliprc(x, y))
+}
+
+/// Carlson's R_F(x, y, z), of the first kind.
+pub(crate) fn rf(x: f64, y: f64, z: f64) -> Result<f64, Error> {
+    converged(ellip::elliprf(x, y, z))
+}
+
+/// Carlson's R_J(x, y, z, p), of the third kind.
+pub(crate) fn rj(x: f64, y: f64, z: f64, p: f64) -> Result<f64, Error> {
+    converged(ellip::elliprj(x, y, z, p))
+}
+
+/// The arithmetic-geometric mean of 1 and k' = √(1 − k²), from which sn, cn and dn follow at any u.
+///
+/// The argument is 1 − k², so that k → 1 keeps its digits. Source: R. Bulirsch, Numerical calculation of
+/// elliptic integrals and elliptic functions, Numer. Math. 7 (1965): the descending Gauss transformation.
 #[derive(Clone, Debug)]
-pub(super) struct Ladder {
+pub(crate) struct Ladder {
     /// Both means at each level.
     means: [(f64, f64); LEVELS],
     levels: usize,
@@ -18,8 +38,8 @@ pub(super) struct Ladder {
 const LEVELS: usize = 16;
 
 impl Ladder {
-    /// That of 1 − k².
-    pub(super) fn new(kc2: f64) -> Self {
+    /// The means of k' = √(kc2), kc2 = 1 − k².
+    pub(crate) fn new(kc2: f64) -> Self {
         let mut ladder = Ladder { means: [(0.0, 0.0); LEVELS], levels: 0, last: 1.0 };
         let (mut a, mut b) = (1.0, kc2.sqrt());
         if kc2 == 0.0 {
@@ -39,7 +59,7 @@ impl Ladder {
     }
 
     /// sn, cn, dn of u.
-    pub(super) fn jacobi(&self, u: f64) -> (f64, f64, f64) {
+    pub(crate) fn jacobi(&self, u: f64) -> (f64, f64, f64) {
         if self.levels == 0 {
             let cn = 1.0 / u.cosh();
             return (u.tanh(), cn, cn);

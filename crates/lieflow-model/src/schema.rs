@@ -1,0 +1,155 @@
+//! The rows of a run: values that keep the names of their quantities until they are written.
+
+use core::ops::{Index, Range};
+
+use lieflow::Error;
+use lieflow::catalog::{MethodInfo, Property};
+use lieflow::problems::Origin;
+
+use crate::kinds::{Law, Scale};
+
+/// A quantity of a model, and where its values are in a row.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Observable {
+    /// The name of the quantity.
+    pub name: &'static str,
+    /// The names of its columns.
+    pub columns: Vec<String>,
+    /// The law that the exact motion obeys, where it keeps the columns.
+    pub law: Option<Law>,
+    place: Range<usize>,
+    /// The place of the size of its terms, where its rounding is relative to that.
+    size: Option<usize>,
+}
+
+impl Observable {
+    /// Does the method promise to keep the columns to rounding? By what the catalog says that it preserves.
+    pub fn promised_by(&self, method: &MethodInfo) -> bool {
+        self.law.is_some_and(|law| {
+            let by_its_kind = match law.origin {
+                Origin::Action => method.keeps(Property::Group) || method.keeps(Property::Casimirs),
+                Origin::Flow => self.name == "energy" && method.keeps(Property::Energy),
+            };
+            by_its_kind
+                || method.keeps_polynomials(law.degree)
+                || method.keeps(Property::Everything)
+        })
+    }
+
+    /// Does a row have the size of its terms?
+    pub(crate) fn has_size(&self) -> bool {
+        self.size.is_some()
+    }
+}
+
+/// The observables of a model, in the order of its rows.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Schema {
+    observables: Vec<Observable>,
+    /// The number of values in a row; the sizes of terms are after them.
+    width: usize,
+    sizes: usize,
+}
+
+impl Schema {
+    /// Add an observable at the end.
+    pub(crate) fn push(&mut self, name: &'static str, columns: Vec<String>, law: Option<Law>) {
+        let in_terms = law.is_some_and(|law| law.scale == Scale::Terms);
+        let size = in_terms.then_some(self.sizes);
+        let place = self.width..self.width + columns.len();
+        self.width = place.end;
+        self.sizes += usize::from(in_terms);
+        self.observables.push(Observable { name, columns, law, place, size });
+    }
+
+    /// The observable of that name.
+    ///
+    /// # Errors
+    /// [`Error::UnknownName`].
+    pub fn get(&self, name: &str) -> Result<&Observable, Error> {
+        self.iter().find(|observable| observable.name == name).ok_or_else(|| Error::UnknownName {
+            kind: "quantity",
+            name: name.into(),
+            expected: self.iter().map(|observable| observable.name).collect(),
+        })
+    }
+
+    /// Every observable.
+    pub fn iter(&self) -> core::slice::Iter<'_, Observable> {
+        self.observables.iter()
+    }
+
+    /// The observables that the exact motion keeps.
+    pub fn laws(&self) -> impl Iterator<Item = &Observable> {
+        self.iter().filter(|observable| observable.law.is_some())
+    }
+
+    /// The names of all columns.
+    pub fn columns(&self) -> impl Iterator<Item = &str> {
+        self.iter().flat_map(|observable| &observable.columns).map(String::as_str)
+    }
+
+    /// The row of these numbers: [`Row::numbers`] of a row, or the values alone.
+    pub fn row<'a>(&'a self, numbers: &'a [f64]) -> Row<'a> {
+        Row { schema: self, numbers }
+    }
+}
+
+impl<'a> IntoIterator for &'a Schema {
+    type Item = &'a Observable;
+    type IntoIter = core::slice::Iter<'a, Observable>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.iter()
+    }
+}
+
+/// The values at one time, with the schema that names them.
+///
+/// `row[observable]` is the values of an observable of the schema. It panics where the row has no such place.
+#[derive(Clone, Copy, Debug)]
+pub struct Row<'a> {
+    schema: &'a Schema,
+    numbers: &'a [f64],
+}
+
+impl<'a> Row<'a> {
+    /// The values of all observables.
+    pub fn values(self) -> &'a [f64] {
+        &self.numbers[..self.schema.width]
+    }
+
+    /// The values of the quantity of that name.
+    ///
+    /// # Errors
+    /// As [`Schema::get`].
+    pub fn of(self, name: &str) -> Result<&'a [f64], Error> {
+        Ok(&self.numbers[self.schema.get(name)?.place.clone()])
+    }
+
+    /// The size that the rounding of the column `i` is relative to, by the scale of the law; NaN for
+    /// a sum of terms in a row without their sizes.
+    pub fn size(self, observable: &Observable, i: usize) -> f64 {
+        match observable.law.map(|law| law.scale) {
+            Some(Scale::One) => 1.0,
+            Some(Scale::Terms) => {
+                let place = observable.size.map(|size| self.schema.width + size);
+                place.and_then(|place| self.numbers.get(place)).copied().unwrap_or(f64::NAN)
+            }
+            Some(Scale::Value) | None => self[observable][i].abs(),
+        }
+    }
+
+    /// The values, and the sizes of terms after them: what [`Schema::row`] makes a row of.
+    pub fn numbers(self) -> &'a [f64] {
+        self.numbers
+    }
+}
+
+impl Index<&Observable> for Row<'_> {
+    type Output = [f64];
+
+    fn index(&self, observable: &Observable) -> &[f64] {
+        &self.numbers[observable.place.clone()]
+    }
+}

@@ -1,0 +1,90 @@
+//! Λ(g, p) = g p g† of U(n): conjugation and the coadjoint action at once, since u(n)* is u(n) by
+//! ⟨m, v⟩ = Re tr(m†v).
+
+use super::{Action, Coadjoint, Conjugation};
+use crate::error::Error;
+use crate::groups::{ComplexMatrix, LieAlgebra, Unitary, mul_adjoint_skew, mul_complex};
+use crate::space::Metric;
+
+/// Λ(g, p) = g p g† on the skew-Hermitian matrices. The eigenvalues of p are kept.
+impl Action<Unitary> for Conjugation {
+    type Point = ComplexMatrix;
+    /// g p.
+    type Work = ComplexMatrix;
+
+    fn work(&self, group: &Unitary) -> ComplexMatrix {
+        group.zero()
+    }
+    fn check(&self, group: &Unitary, p: &ComplexMatrix) -> Result<(), Error> {
+        group.check("p", p)
+    }
+    #[inline]
+    fn is_finite(&self, group: &Unitary, p: &ComplexMatrix) -> bool {
+        group.is_finite(p)
+    }
+    fn assign(&self, _: &Unitary, p: &ComplexMatrix, q: &mut ComplexMatrix) {
+        q.assign(p);
+    }
+    fn act(
+        &self,
+        _: &Unitary,
+        g: &ComplexMatrix,
+        p: &ComplexMatrix,
+        q: &mut ComplexMatrix,
+        product: &mut ComplexMatrix,
+    ) {
+        mul_complex(product, g, p);
+        mul_adjoint_skew(q, product, g);
+    }
+    /// \[v, p\].
+    fn generate(
+        &self,
+        group: &Unitary,
+        v: &ComplexMatrix,
+        p: &ComplexMatrix,
+        dp: &mut ComplexMatrix,
+        _: &mut ComplexMatrix,
+    ) {
+        group.bracket(v, p, dp);
+    }
+}
+
+/// Ad*_{g⁻¹} m = g m g†: conjugation.
+impl Action<Unitary> for Coadjoint {
+    type Point = ComplexMatrix;
+    type Work = ComplexMatrix;
+
+    fn work(&self, group: &Unitary) -> ComplexMatrix {
+        group.zero()
+    }
+    fn check(&self, group: &Unitary, m: &ComplexMatrix) -> Result<(), Error> {
+        Conjugation.check(group, m)
+    }
+    #[inline]
+    fn is_finite(&self, group: &Unitary, m: &ComplexMatrix) -> bool {
+        group.is_finite(m)
+    }
+    fn assign(&self, group: &Unitary, m: &ComplexMatrix, q: &mut ComplexMatrix) {
+        Conjugation.assign(group, m, q);
+    }
+    fn act(
+        &self,
+        group: &Unitary,
+        g: &ComplexMatrix,
+        m: &ComplexMatrix,
+        q: &mut ComplexMatrix,
+        product: &mut ComplexMatrix,
+    ) {
+        Conjugation.act(group, g, m, q, product);
+    }
+    fn generate(
+        &self,
+        group: &Unitary,
+        v: &ComplexMatrix,
+        m: &ComplexMatrix,
+        dm: &mut ComplexMatrix,
+        work: &mut ComplexMatrix,
+    ) {
+        Conjugation.generate(group, v, m, dm, work);
+    }
+}
