@@ -4,9 +4,8 @@
 //! G_M); elements are plain data. Every operation takes the group first, then inputs, then the
 //! output, and allocates nothing except where it returns fresh storage.
 //!
-//! To add a group: one file with these traits (and with the maps that have a closed form on it),
-//! one line here, one line in the law tests. A matrix group needs no file: it is a constructor of
-//! [`MatrixGroup`].
+//! To add a group: one file with these traits, one for its maps in `maps/`, one line in each room, one
+//! line in the law tests. A matrix group needs no file: it is a constructor of [`MatrixGroup`].
 
 mod adjoint;
 mod matrix;

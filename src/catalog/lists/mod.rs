@@ -1,6 +1,7 @@
 //! The methods, list by list: what each is, promises, costs and where it comes from.
 
 mod body;
+mod magnus;
 
 use super::facts::{
     Cost, Count, Family, Maps, MethodInfo, Needs, Operation, Order, OtherCase, Property, WorkItem,
@@ -14,8 +15,8 @@ use crate::methods::one_bracket::{MAGNUS43, RKMK4_2C};
 use crate::methods::{GAUSS2, GAUSS4, GAUSS6, KAHAN_LI6, SUZUKI4};
 use GaussTableau::{One, Three, Two};
 use Operation::{
-    Act, AmbientField, Bracket, Cay, DpsiInv, EnergyCasimirStep, Exp, Field, Gradient,
-    IsospectralStep, LinearField, Product, Psi, TripleProduct,
+    Act, AmbientField, Bracket, DpsiInv, EnergyCasimirStep, Exp, Field, Gradient, IsospectralStep,
+    Product, Psi,
 };
 use Property::{
     Casimirs, Energy, Group, LinearInvariants, QuadraticInvariants, Symplectic, TimeSymmetry,
@@ -26,7 +27,7 @@ impl Needs {
     pub const fn methods(self) -> &'static [MethodInfo] {
         match self {
             Needs::Field => FIELD,
-            Needs::LinearType => LINEAR_TYPE,
+            Needs::LinearType => magnus::LINEAR_TYPE,
             Needs::Norm => NORM,
             Needs::Series => body::SERIES,
             Needs::Body => body::BODY,
@@ -289,97 +290,6 @@ const fn low_storage(
 ) -> MethodInfo {
     in_exp(CF, name, order, summary, work, BAZAVOV, Recipe::LowStorage(table))
 }
-
-const fn magnus(
-    name: &'static str,
-    order: usize,
-    summary: &'static str,
-    work: &'static [WorkItem],
-    source: &'static str,
-    recipe: Recipe,
-) -> MethodInfo {
-    let family = (Family::Magnus, Needs::LinearType);
-    plain(family, name, order, summary, GROUP_AND_TIME, Cost::of(work), source, recipe)
-}
-
-const BLANES: &str = "Blanes, Casas, Ros 2000";
-const ALVERMANN: &str = "Alvermann, Fehske 2011";
-
-/// For equations of linear type, ẏ = λ_*(A(t))(y).
-const LINEAR_TYPE: &[MethodInfo] = &[
-    magnus(
-        "magnus4",
-        4,
-        "Magnus, order 4",
-        &[times(2, LinearField), times(1, Exp), times(1, Bracket)],
-        "Iserles, Nørsett 1999",
-        Recipe::Magnus4,
-    ),
-    magnus(
-        "magnus6",
-        6,
-        "Magnus, order 6",
-        &[times(3, LinearField), times(1, Exp), times(3, Bracket)],
-        BLANES,
-        Recipe::Magnus6,
-    ),
-    magnus(
-        "magnus8",
-        8,
-        "Magnus, order 8",
-        &[times(4, LinearField), times(1, Exp), times(10, Bracket)],
-        BLANES,
-        Recipe::Magnus8,
-    ),
-    magnus(
-        "cfm4-2",
-        4,
-        "commutator-free Magnus, order 4",
-        &[times(2, LinearField), times(2, Exp)],
-        "Blanes, Moan 2006",
-        Recipe::Cfm42,
-    ),
-    magnus(
-        "cfm4-3",
-        4,
-        "commutator-free Magnus, order 4, optimised",
-        &[times(3, LinearField), times(3, Exp)],
-        ALVERMANN,
-        Recipe::Cfm43,
-    ),
-    magnus(
-        "cfm6-5",
-        6,
-        "commutator-free Magnus, order 6",
-        &[times(3, LinearField), times(5, Exp)],
-        ALVERMANN,
-        Recipe::Cfm65,
-    ),
-    magnus(
-        "cfm8-11",
-        8,
-        "commutator-free Magnus, order 8",
-        &[times(4, LinearField), times(11, Exp)],
-        ALVERMANN,
-        Recipe::Cfm811,
-    ),
-    magnus(
-        "cayley-magnus4",
-        4,
-        "Magnus in Cayley coordinates, order 4",
-        &[times(2, LinearField), times(1, Cay), times(1, Bracket), times(1, TripleProduct)],
-        "Iserles 2001",
-        Recipe::CayleyMagnus4,
-    ),
-    magnus(
-        "cayley-magnus6",
-        6,
-        "Magnus in Cayley coordinates, order 6",
-        &[times(3, LinearField), times(1, Cay), times(5, Bracket), times(5, TripleProduct)],
-        "Iserles 2001",
-        Recipe::CayleyMagnus6,
-    ),
-];
 
 const QUADRATIC: &[Property] = &[QuadraticInvariants, TimeSymmetry];
 const ZANNA: &str = "Zanna, Engø & Munthe-Kaas 2001";
