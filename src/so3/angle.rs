@@ -35,7 +35,7 @@ pub(super) const TURN: f64 = 10.0;
 pub(super) const REFINE: f64 = 0.1;
 
 // Polynomials in α² that interpolate in the Chebyshev nodes of [0, 1] or [0, 10]: the error is below
-// 5e-17, where a Taylor polynomial would need two terms more. `make_so3.py --series` prints them.
+// 5e-17, where a Taylor polynomial would need two terms more. `tests/references/make/so3.py` has them (`series`).
 /// cos(α/2) for α² < 10.
 #[rustfmt::skip]
 const HALF_COS: [f64; 9] = [

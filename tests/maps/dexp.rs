@@ -232,4 +232,10 @@ fn remainder_of_the_cut_series() {
         let v = group.sample_algebra(&mut rng, 1.0);
         assert!(dexpinv_with_remainder(&group, &u, &v, 4).expect("a sum").remainder.is_infinite());
     }
+    let gl3 = MatrixGroup::gl(3).expect("a group");
+    let all = |x: f64| gl3.algebra(Mat::full(3, 3, x)).expect("an element");
+    for q in [0, 1, 30] {
+        let cut = dexpinv_with_remainder(&gl3, &all(5e-324), &all(1e308), q).expect("a sum");
+        assert!(cut.remainder >= 0.0, "q = {q}: {}", cut.remainder);
+    }
 }

@@ -57,7 +57,7 @@ pub struct BakerSum {
     /// The sum.
     pub value: AlgebraMatrix,
     /// A bound of ‖what was cut off‖ (Frobenius), rounding apart; infinite where the bound of ad_u
-    /// does not show that the series converges.
+    /// does not show that the series converges, and where ‖v‖ leaves the range of `f64`.
     pub remainder: f64,
 }
 
@@ -89,7 +89,9 @@ pub fn dexpinv_with_remainder(
         // B_1 = −1/2 is left out as well at q = 0. ζ(k) ≤ π²/6.
         let linear = if q == 0 { 0.5 * radius * last } else { 0.0 };
         let growth = radius.powi((first - q) as i32) * TAU.powi(-(first as i32));
-        linear + 2.0 * 1.645 * growth / (1.0 - ratio * ratio) * last
+        let bound = linear + 2.0 * 1.645 * growth / (1.0 - ratio * ratio) * last;
+        // 0·∞ where u is tiny and ‖ad_u^q v‖ leaves the range: nothing is known.
+        if bound.is_nan() { f64::INFINITY } else { bound }
     } else {
         f64::INFINITY
     };

@@ -30,6 +30,8 @@ pub(super) const LENGTH_MAX: usize = 4096;
 pub(super) struct Tape {
     ops: Vec<Op>,
     cost: Ops,
+    /// Variable and number where the formula is x/c, as in the derivative of x²/(2c): no list to run.
+    quotient: Option<(usize, f64)>,
 }
 
 impl Tape {
@@ -39,6 +41,9 @@ impl Tape {
 
     pub(super) fn value<S: Real + Into<f64>>(&self, values: &[S]) -> f64 {
         tally(|| self.cost);
+        if let Some((at, divisor)) = self.quotient {
+            return values.get(at).map_or(f64::NAN, |&x| x.into() / divisor);
+        }
         match self.ops.len() {
             0..=16 => self.run(values, &mut [0.0; 16]),
             17..=128 => self.run(values, &mut [0.0; 128]),
@@ -105,7 +110,7 @@ impl Builder {
         }
     }
     /// Numbers are combined at once; 1·x, x·1, x/1, x + 0, 0 + x and x − 0 are x. 0·x is not 0: x may have
-    /// no value.
+    /// no value. (2x)/c is x/(c/2), with the same bits.
     pub(super) fn combine(&mut self, operator: Operator, x: usize, y: usize) -> usize {
         match (operator, self.known(x), self.known(y)) {
             (Operator::Pow, _, Some(n)) if n.fract() == 0.0 && n.abs() <= POWER_MAX => {
@@ -115,7 +120,21 @@ impl Builder {
             (Operator::Mul | Operator::Div, _, Some(1.0)) => x,
             (Operator::Add | Operator::Sub, _, Some(0.0)) => x,
             (Operator::Mul, Some(1.0), _) | (Operator::Add, Some(0.0), _) => y,
+            (Operator::Div, None, Some(divisor)) => match self.half_of(x) {
+                Some(half) if (divisor / 2.0).is_normal() => {
+                    let divisor = self.number(divisor / 2.0);
+                    self.combine(operator, half, divisor)
+                }
+                _ => self.push(Op::Combine(operator, x, y)),
+            },
             _ => self.push(Op::Combine(operator, x, y)),
+        }
+    }
+    /// The x of an operation 2x.
+    fn half_of(&self, double: usize) -> Option<usize> {
+        match self.ops[double] {
+            Op::Combine(Operator::Mul, two, x) if self.known(two) == Some(2.0) => Some(x),
+            _ => None,
         }
     }
     /// xⁿ.
@@ -148,7 +167,17 @@ impl Builder {
             });
         }
         let cost = ops.iter().fold(Ops::NONE, |sum, &op| sum + cost(op));
-        (ops.len() <= LENGTH_MAX).then_some(Tape { ops, cost })
+        let quotient = quotient(&ops);
+        (ops.len() <= LENGTH_MAX).then_some(Tape { ops, cost, quotient })
+    }
+}
+
+/// The variable and the number of a formula x/c.
+fn quotient(ops: &[Op]) -> Option<(usize, f64)> {
+    let [first, second, Op::Combine(Operator::Div, above, below)] = *ops else { return None };
+    match ([first, second].get(above)?, [first, second].get(below)?) {
+        (&Op::Variable(at), &Op::Number(bits)) => Some((at, f64::from_bits(bits))),
+        _ => None,
     }
 }
 

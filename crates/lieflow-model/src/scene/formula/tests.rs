@@ -236,6 +236,23 @@ fn absurd_formulas_are_refused() {
     );
 }
 
+/// The derivative of x²/(2c) is one division, with the bits of 2x/(2c); so in whichever order it is written.
+#[test]
+fn the_derivative_of_a_square_over_a_number_is_one_division() {
+    for (text, operations) in
+        [("x^2/(2*0.3)", 3), ("x^2/0.3", 3), ("x^2/2", 1), ("3*x^2/0.7", 7), ("x^2/(2*y)", 6)]
+    {
+        let slope = read(text).unwrap().derivative("f", 0).unwrap();
+        assert!(slope.operations() <= operations, "{text}: {}", slope.operations());
+    }
+    let slope = read("x^2/(2*0.3)").unwrap().derivative("f", 0).unwrap();
+    for x in [0.1_f64, -7.3, 1e300, 3e-310, 0.0, f64::INFINITY] {
+        assert_eq!(slope.value(&[x, 0.0, 0.0]).to_bits(), (x / 0.3).to_bits(), "{x}");
+    }
+    assert_eq!(read("2*x/6").unwrap().value(&[0.7_f64, 0.0, 0.0]), 2.0 * 0.7 / 6.0);
+    assert_eq!(read("6/x").unwrap().value(&[0.7_f64, 0.0, 0.0]), 6.0 / 0.7);
+}
+
 /// Random texts from the pieces of formulas: read or refused, evaluated, derived, and never a panic.
 #[test]
 fn random_texts_are_read_or_refused() {
