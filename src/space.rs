@@ -44,6 +44,16 @@ pub trait LinearSpace: Metric + Clone {
     fn dot(&self, x: &Self) -> Self::Scalar;
     /// Is every number finite?
     fn is_finite(&self) -> bool;
+    /// self ← y + h Σ_j w_j k_j, without the terms whose weight is 0.
+    #[inline(always)]
+    fn set_sum(&mut self, y: &Self, h: Self::Scalar, weights: &[f64], k: &[Self]) {
+        self.assign(y);
+        for (&w, k) in weights.iter().zip(k) {
+            if w != 0.0 {
+                self.add(h * Self::Scalar::lit(w), k);
+            }
+        }
+    }
 }
 
 macro_rules! number {
@@ -129,6 +139,18 @@ macro_rules! small {
             #[inline]
             fn is_finite(&self) -> bool {
                 self.as_slice().iter().all(|x| x.is_finite())
+            }
+            /// In a local sum, which stays in registers: three numbers that are stored as two and one and loaded
+            /// as one and two wait for the store.
+            #[inline(always)]
+            fn set_sum(&mut self, y: &Self, h: S, weights: &[f64], k: &[Self]) {
+                let mut sum = *y;
+                for (&w, k) in weights.iter().zip(k) {
+                    if w != 0.0 {
+                        sum.add(h * S::lit(w), k);
+                    }
+                }
+                self.assign(&sum);
             }
         }
     )*};

@@ -108,12 +108,6 @@ impl<P: Ambient, const S: usize> Method<P> for Gauss<S> {
         GaussWork { k, old, z, field }: &mut Self::Work,
     ) -> Result<(), StepError> {
         let (tab, lit) = (&self.0, ScalarOf::<P>::lit);
-        let sum = |z: &mut PointOf<P>, weights: &[f64], k: &[PointOf<P>]| {
-            z.assign(y);
-            for (&w, k) in weights.iter().zip(k) {
-                z.add(h * lit(w), k);
-            }
-        };
         let time = |i: usize| t + h * lit(tab.c[i]);
         for i in 0..S {
             problem.field(time(i), y, &mut k[i], field);
@@ -127,7 +121,7 @@ impl<P: Ambient, const S: usize> Method<P> for Gauss<S> {
         loop {
             let mut change = lit(0.0);
             for i in 0..S {
-                sum(z, &tab.a[i], k);
+                z.set_sum(y, h, &tab.a[i], k);
                 old.assign(&k[i]);
                 problem.field(time(i), z, &mut k[i], field);
                 change += k[i].distance(old);
@@ -136,7 +130,7 @@ impl<P: Ambient, const S: usize> Method<P> for Gauss<S> {
                 break;
             }
         }
-        sum(z, &tab.b, k);
+        z.set_sum(y, h, &tab.b, k);
         if !z.is_finite() {
             return Err(StepError::NotFinite { what: "the state" });
         }

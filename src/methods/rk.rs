@@ -27,23 +27,6 @@ pub struct RkWork<P: Ambient, const S: usize> {
 }
 
 impl<const S: usize> Rk<S> {
-    /// z ← y + h Σ_j w_j k_j.
-    #[inline(always)]
-    fn sum<P: Ambient>(
-        h: ScalarOf<P>,
-        y: &PointOf<P>,
-        weights: &[f64],
-        k: &[PointOf<P>],
-        z: &mut PointOf<P>,
-    ) {
-        z.assign(y);
-        for (&w, k) in weights.iter().zip(k) {
-            if w != 0.0 {
-                z.add(h * ScalarOf::<P>::lit(w), k);
-            }
-        }
-    }
-
     /// z ← the step from y, with the first `count` stages.
     #[inline(always)]
     fn advance<P: Ambient>(
@@ -59,10 +42,10 @@ impl<const S: usize> Rk<S> {
             if i >= count {
                 break;
             }
-            Self::sum::<P>(h, y, &tab.a[i][..i], k, z);
+            z.set_sum(y, h, &tab.a[i][..i], k);
             problem.field(t + h * ScalarOf::<P>::lit(tab.c[i]), z, &mut k[i], field);
         }
-        Self::sum::<P>(h, y, &tab.b[..count], k, z);
+        z.set_sum(y, h, &tab.b[..count], k);
         if !z.is_finite() {
             return Err(match k[..count].iter().position(|k| !k.is_finite()) {
                 Some(stage) => StepError::NonFiniteRhs { stage: stage + 1 },
