@@ -359,9 +359,10 @@ fn a_spin_precesses_about_the_field_in_the_frame_that_turns() {
     }
 }
 
-/// A quantity may overflow where the state does not: the warning names its column, and no other.
+/// A particle that leaves the range of numbers ends the run: exit code 2, the column by its name, and the rows
+/// before it.
 #[test]
-fn a_column_that_is_not_finite_is_warned_of_by_its_name() {
+fn a_particle_that_is_not_finite_ends_the_run() {
     let folder = Folder::new();
     for quantity in ["phase_space", "particle"] {
         folder.write(
@@ -373,12 +374,14 @@ fn a_column_that_is_not_finite_is_warned_of_by_its_name() {
                  [time]\nt_span = [0.0, 12.0]\ndt = 1.0\n[output]\nquantities = [\"{quantity}\"]\n"
             ),
         );
-        folder.lieflow(&["run", "far.toml", "--out", "out"]).ok();
-        let warnings = folder.json("out/summary.json")["warnings"].clone();
-        assert_eq!(
-            warnings,
-            serde_json::json!(["x is not a finite number in 11 of 13 rows"]),
-            "{quantity}"
-        );
+        let message = "the state is out of the range of numbers at t = 2: x is inf";
+        let error = folder.lieflow(&["run", "far.toml", "--out", "out"]).refused();
+        assert!(error.contains(message), "{quantity}: {error}");
+        let summary = folder.json("out/summary.json");
+        assert_eq!(summary["failure"], message, "{quantity}");
+        assert_eq!(summary["warnings"], serde_json::json!([]), "{quantity}");
+        let rows = folder.read("out/trajectory.partial.csv");
+        assert_eq!(rows.lines().count(), 3, "{quantity}: {rows}");
+        assert!(!rows.contains("inf"), "{quantity}: {rows}");
     }
 }

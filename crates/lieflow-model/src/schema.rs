@@ -17,6 +17,8 @@ pub struct Observable {
     pub columns: Vec<String>,
     /// The law that the exact motion obeys, where it keeps the columns.
     pub law: Option<Law>,
+    /// Is it a state, so that a value that is not finite ends the run?
+    pub is_state: bool,
     place: Range<usize>,
     /// The place of the size of its terms, where its rounding is relative to that.
     size: Option<usize>,
@@ -53,13 +55,19 @@ pub struct Schema {
 
 impl Schema {
     /// Add an observable at the end.
-    pub(crate) fn push(&mut self, name: &'static str, columns: Vec<String>, law: Option<Law>) {
+    pub(crate) fn push(
+        &mut self,
+        name: &'static str,
+        columns: Vec<String>,
+        law: Option<Law>,
+        is_state: bool,
+    ) {
         let in_terms = law.is_some_and(|law| law.scale == Scale::Terms);
         let size = in_terms.then_some(self.sizes);
         let place = self.width..self.width + columns.len();
         self.width = place.end;
         self.sizes += usize::from(in_terms);
-        self.observables.push(Observable { name, columns, law, place, size });
+        self.observables.push(Observable { name, columns, law, is_state, place, size });
     }
 
     /// The observable of that name.

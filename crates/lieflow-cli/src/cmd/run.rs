@@ -98,6 +98,14 @@ impl<'a> Watch<'a> {
         }
     }
 
+    /// What ends the run here: a state of the row that is not finite.
+    fn overflow(&self, t: f64, row: Row<'_>) -> Option<String> {
+        let states = self.written.iter().filter(|part| part.is_state);
+        let mut numbers = states.flat_map(|part| part.columns.iter().zip(&row[*part]));
+        let (column, x) = numbers.find(|(_, x)| !x.is_finite())?;
+        Some(format!("the state is out of the range of numbers at t = {t}: {column} is {x}"))
+    }
+
     /// The drift of each invariant, by column.
     fn drift(&self, watched: &[Watched], steps: u64) -> Result<BTreeMap<String, Drift>, CliError> {
         let method = self.scene.method.info()?;
@@ -205,7 +213,12 @@ pub fn run_scene(scene: &Scene, folder: &Path) -> Result<Summary, CliError> {
     let (mut line, mut watched) = (Vec::new(), Vec::new());
     let mut not_finite = vec![0u64; columns.len()];
     let clock = Instant::now();
+    let mut overflow = None;
     let outcome = watch.run(&mut |t, row| {
+        overflow = overflow.take().or_else(|| watch.overflow(t, row));
+        if overflow.is_some() {
+            return;
+        }
         line.clear();
         watch.line(row, &mut line);
         trajectory.row(t, &line);
@@ -218,13 +231,14 @@ pub fn run_scene(scene: &Scene, folder: &Path) -> Result<Summary, CliError> {
     });
     drop(bar);
     let written = trajectory.rows();
-    let done = match outcome {
+    let mut done = match outcome {
         Ok(done) => done,
         Err(error) => {
             trajectory.discard();
             return Err(error);
         }
     };
+    done.failure = overflow.or(done.failure);
     let completed = done.failure.is_none();
     trajectory.finish(completed)?;
     let wall_time_s = clock.elapsed().as_secs_f64();

@@ -161,13 +161,15 @@ impl System for BeamLine {
             &["x", "z", "x_slope", "z_slope"],
             "the particle",
             |line, _, g, row| row.extend(line.particle(g, [0, 1, 2, 3])),
-        ),
+        )
+        .of_state(),
         Q::numbers(
             "phase_space",
             &["x", "x_slope", "z", "z_slope"],
             "the particle, plane by plane",
             |line, _, g, row| row.extend(line.particle(g, [0, 2, 1, 3])),
-        ),
+        )
+        .of_state(),
         symplectic_defect(),
     ];
 

@@ -335,7 +335,7 @@ impl ProblemSpec for Problem {
             let all = self.preset.quantities.iter().zip(&self.formulas);
             let known = all.into_iter().find(|(quantity, _)| quantity.name == *name);
             let (quantity, formulas) = known.ok_or_else(|| self.kind.unknown_quantity(name))?;
-            schema.push(quantity.name, self.columns(name)?, quantity.law());
+            schema.push(quantity.name, self.columns(name)?, quantity.law(), false);
             values.extend_from_slice(&formulas.values);
             sizes.extend(formulas.terms.clone());
         }

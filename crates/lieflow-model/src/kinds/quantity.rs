@@ -29,13 +29,23 @@ pub(super) struct Quantity<S: System> {
     law: Keepers<S>,
     /// The size of the terms that the quantity is the sum of.
     pub(super) terms: Option<fn(&S, &PointOf<S>) -> f64>,
+    /// Does a value that is not finite end the run?
+    pub(super) is_state: bool,
     /// Why this problem has no such quantity.
     pub(super) missing: fn(&S) -> Option<&'static str>,
 }
 
 impl<S: System> Quantity<S> {
     const fn new(info: QuantityInfo, value: Value<S>) -> Self {
-        Quantity { info, value, columns: None, law: Keepers::None, terms: None, missing: |_| None }
+        Quantity {
+            info,
+            value,
+            columns: None,
+            law: Keepers::None,
+            terms: None,
+            is_state: false,
+            missing: |_| None,
+        }
     }
 
     /// A number; its column has its name.
@@ -76,6 +86,11 @@ impl<S: System> Quantity<S> {
     /// The quantity is a sum of terms of this size, which may cancel: its rounding is measured in that.
     pub(super) const fn in_terms(self, terms: fn(&S, &PointOf<S>) -> f64) -> Self {
         Quantity { terms: Some(terms), ..self }
+    }
+
+    /// The quantity is a state that the user started: a value that is not finite ends the run.
+    pub(super) const fn of_state(self) -> Self {
+        Quantity { is_state: true, ..self }
     }
 
     /// Some problems have no such quantity: this says why.

@@ -128,7 +128,7 @@ impl<S: System> ProblemSpec for Stated<S> {
         let mut schema = Schema::default();
         for quantity in &quantities {
             let columns = quantity.column_names(system);
-            schema.push(quantity.info.name, columns, quantity.law(system));
+            schema.push(quantity.info.name, columns, quantity.law(system), quantity.is_state);
         }
         Ok(Box::new(SystemModel { system: system.clone(), problem, start, quantities, schema }))
     }
