@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use lieflow::scalar::Real;
+use lieflow::scalar::{Ops, Real, tally};
 
 use crate::scene::Refusal;
 use crate::scene::formula::{Formula, Names};
@@ -15,6 +15,8 @@ const KEY: &str = "hamiltonian";
 pub(super) struct Energy {
     value: Formula,
     gradient: Arc<[Formula]>,
+    /// The c_i of a sum of squares Σ m_i²/(2c_i), whose gradient m_i/c_i takes no formulas.
+    divisors: Option<Arc<[f64]>>,
 }
 
 impl Energy {
@@ -23,8 +25,12 @@ impl Energy {
     pub(super) fn read(text: &str, names: &Names) -> Result<Self, Refusal> {
         let value = Formula::read(KEY, text, names)?;
         let by = |i| value.derivative(KEY, i);
-        let gradient = (0..names.variables().len()).map(by).collect::<Result<_, _>>()?;
-        Ok(Energy { value, gradient })
+        let gradient: Arc<[Formula]> =
+            (0..names.variables().len()).map(by).collect::<Result<_, _>>()?;
+        let divisor =
+            |(i, by): (usize, &Formula)| Some(by.quotient().filter(|(at, _)| *at == i)?.1);
+        let divisors = gradient.iter().enumerate().map(divisor).collect();
+        Ok(Energy { value, gradient, divisors })
     }
 
     /// Checks that H and its derivatives are finite at the start.
@@ -50,5 +56,16 @@ impl Energy {
     /// ∂H/∂m_i.
     pub(super) fn by<S: Real + Into<f64>>(&self, i: usize, m: &[S]) -> S {
         self.gradient[i].value(m)
+    }
+
+    /// ∇H, for momenta of N numbers.
+    pub(super) fn slope<S: Real + Into<f64>, const N: usize>(&self, m: &[S; N]) -> [S; N] {
+        match self.divisors.as_deref() {
+            Some(divisors) if divisors.len() == N => {
+                tally(|| Ops::divs(N));
+                core::array::from_fn(|i| S::lit(m[i].into() / divisors[i]))
+            }
+            _ => core::array::from_fn(|i| self.by(i, m)),
+        }
     }
 }

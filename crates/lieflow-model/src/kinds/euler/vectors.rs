@@ -80,7 +80,8 @@ impl<const N: usize> Vectors<N> {
                     let b = b.numbers();
                     m = core::array::from_fn(|i| m[i] + s * (b[i] - m[i]));
                 }
-                xi.set(|i| gradient.by(i, &m));
+                let slope = gradient.slope(&m);
+                xi.set(|i| slope[i]);
             },
         )
     }
@@ -115,8 +116,7 @@ where
     fn energy_terms(&self, m: &Self::Momentum) -> f64 {
         let m = m.numbers();
         let norm = |x: [f64; N]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
-        let slope = core::array::from_fn(|i| self.energy.by(i, &m));
-        self.energy.value(&m).abs() + norm(m) * norm(slope)
+        self.energy.value(&m).abs() + norm(m) * norm(self.energy.slope(&m))
     }
     fn casimirs(m: &Self::Momentum, row: &mut Vec<f64>) {
         if N == 3 {

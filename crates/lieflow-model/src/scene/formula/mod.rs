@@ -63,6 +63,11 @@ impl Formula {
         Ok(Formula { tape: calculus::derivative(&self.tape, variable).ok_or_else(too_long)? })
     }
 
+    /// The variable and the number, where the formula is a variable divided by a number; a variable is divided by 1.
+    pub fn quotient(&self) -> Option<(usize, f64)> {
+        self.tape.quotient()
+    }
+
     /// Does the value depend on this variable?
     pub fn uses(&self, variable: usize) -> bool {
         self.tape.ops().contains(&tape::Op::Variable(variable))

@@ -30,8 +30,6 @@ pub(super) const LENGTH_MAX: usize = 4096;
 pub(super) struct Tape {
     ops: Vec<Op>,
     cost: Ops,
-    /// Variable and number where the formula is x/c, as in the derivative of x²/(2c): no list to run.
-    quotient: Option<(usize, f64)>,
 }
 
 impl Tape {
@@ -39,11 +37,22 @@ impl Tape {
         &self.ops
     }
 
+    /// The variable and the number of a formula x/c; of x, with 1.
+    pub(super) fn quotient(&self) -> Option<(usize, f64)> {
+        if let [Op::Variable(at)] = *self.ops {
+            return Some((at, 1.0));
+        }
+        let [first, second, Op::Combine(Operator::Div, above, below)] = *self.ops else {
+            return None;
+        };
+        match ([first, second].get(above)?, [first, second].get(below)?) {
+            (&Op::Variable(at), &Op::Number(bits)) => Some((at, f64::from_bits(bits))),
+            _ => None,
+        }
+    }
+
     pub(super) fn value<S: Real + Into<f64>>(&self, values: &[S]) -> f64 {
         tally(|| self.cost);
-        if let Some((at, divisor)) = self.quotient {
-            return values.get(at).map_or(f64::NAN, |&x| x.into() / divisor);
-        }
         match self.ops.len() {
             0..=16 => self.run(values, &mut [0.0; 16]),
             17..=128 => self.run(values, &mut [0.0; 128]),
@@ -167,17 +176,7 @@ impl Builder {
             });
         }
         let cost = ops.iter().fold(Ops::NONE, |sum, &op| sum + cost(op));
-        let quotient = quotient(&ops);
-        (ops.len() <= LENGTH_MAX).then_some(Tape { ops, cost, quotient })
-    }
-}
-
-/// The variable and the number of a formula x/c.
-fn quotient(ops: &[Op]) -> Option<(usize, f64)> {
-    let [first, second, Op::Combine(Operator::Div, above, below)] = *ops else { return None };
-    match ([first, second].get(above)?, [first, second].get(below)?) {
-        (&Op::Variable(at), &Op::Number(bits)) => Some((at, f64::from_bits(bits))),
-        _ => None,
+        (ops.len() <= LENGTH_MAX).then_some(Tape { ops, cost })
     }
 }
 

@@ -249,6 +249,10 @@ fn the_derivative_of_a_square_over_a_number_is_one_division() {
     for x in [0.1_f64, -7.3, 1e300, 3e-310, 0.0, f64::INFINITY] {
         assert_eq!(slope.value(&[x, 0.0, 0.0]).to_bits(), (x / 0.3).to_bits(), "{x}");
     }
+    assert_eq!(slope.quotient(), Some((0, 0.3)));
+    assert_eq!(read("y").unwrap().quotient(), Some((1, 1.0)));
+    assert_eq!(read("0.3/x").unwrap().quotient(), None);
+    assert_eq!(read("x/y").unwrap().quotient(), None);
     assert_eq!(read("2*x/6").unwrap().value(&[0.7_f64, 0.0, 0.0]), 2.0 * 0.7 / 6.0);
     assert_eq!(read("6/x").unwrap().value(&[0.7_f64, 0.0, 0.0]), 6.0 / 0.7);
 }
