@@ -22,7 +22,7 @@ mod members;
 mod square;
 
 use crate::support::orders::{Report, slopes};
-use fields::{Flow, Kind, Wide};
+use fields::{CoupledField, Kind, Wide};
 use group::Matrices;
 use lieflow::catalog::Needs;
 use lieflow::groups::{Power, Product, Se3, So3, Translations};
@@ -53,7 +53,7 @@ where
     Ccsk<0, 1, 2>: CoordinateMap<G>,
     Ccsk<2, 1, 0>: CoordinateMap<G>,
 {
-    let all = members(MEMBERS, UNIT, |i| Flow::new(group, Kind::Wave, strength, 71 + i));
+    let all = members(MEMBERS, UNIT, |i| CoupledField::new(group, Kind::Wave, strength, 71 + i));
     high_orders("fields", &group.name(), &[Needs::Field, Needs::Norm], |spec| {
         by_name!(spec, {
             "rk" => &all, STORED, Rk(DOP853);
@@ -73,7 +73,7 @@ fn linear_on<G: Wide>(group: &G, strength: f64)
 where
     Exp: CoordinateMap<G>,
 {
-    let all = members(MEMBERS, UNIT, |i| Flow::new(group, Kind::Clock, strength, 21 + i));
+    let all = members(MEMBERS, UNIT, |i| CoupledField::new(group, Kind::Clock, strength, 21 + i));
     high_orders("fields of linear type", &group.name(), &[Needs::LinearType], |spec| {
         by_name!(spec, {
             "magnus8" => &all, STORED, Magnus8;
@@ -88,7 +88,7 @@ fn composition_on<G: Wide>(group: &G, strength: f64)
 where
     Exp: CoordinateMap<G>,
 {
-    let all = members(MEMBERS, UNIT, |i| Flow::new(group, Kind::Clock, strength, 21 + i));
+    let all = members(MEMBERS, UNIT, |i| CoupledField::new(group, Kind::Clock, strength, 21 + i));
     let mut report = Report::new(&format!("a composition on {}", group.name()));
     let composed = Composition::new(RkmkGaussSymmetric::new(GAUSS2, Exp), KAHAN_LI8);
     report.add(KAHAN_LI8.name, true, order(&all, STORED, &composed));
@@ -97,12 +97,14 @@ where
 
 /// The Lie series, on polynomial fields.
 fn series_on<G: Wide + SeriesGroup>(group: &G, strength: f64) {
-    let all = members(MEMBERS, UNIT_FINE, |i| Flow::new(group, Kind::Polynomial, strength, 31 + i));
+    let all = members(MEMBERS, UNIT_FINE, |i| {
+        CoupledField::new(group, Kind::Polynomial, strength, 31 + i)
+    });
     let of = |order| LieSeries::new(order).unwrap();
     high_orders("polynomial fields", &group.name(), &[Needs::Series], |spec| {
         lie_series(spec, &all)
     });
-    let flow = |i| Flow::new(group, Kind::Polynomial, strength, 31 + i);
+    let flow = |i| CoupledField::new(group, Kind::Polynomial, strength, 31 + i);
     let flows: Vec<_> = (0..MEMBERS).map(flow).collect();
     for order in 8..=16 {
         check_estimate(&flows, &of(order), order);
@@ -140,7 +142,7 @@ where
     Exp: CoordinateMap<G>,
 {
     let flows: Vec<_> =
-        (0..MEMBERS).map(|i| Flow::new(group, Kind::Wave, strength, 71 + i)).collect();
+        (0..MEMBERS).map(|i| CoupledField::new(group, Kind::Wave, strength, 71 + i)).collect();
     check_estimate(&flows, &Rkmk::new(DOP853, Exp), 8);
     check_estimate(&flows, &Rk(DOP853), 8);
 }

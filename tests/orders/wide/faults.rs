@@ -7,14 +7,14 @@ use lieflow::methods::tableau::DOP853;
 use lieflow::methods::{CfMagnus, Method, Rkmk, Tableau};
 
 use super::D;
-use super::fields::{Flow, Kind};
+use super::fields::{CoupledField, Kind};
 use super::members::{Member, STORED, UNIT, members, order};
 use crate::support::orders::{Estimate, Outcome};
 
-type OnSo3 = Flow<So3<D>>;
+type OnSo3 = CoupledField<So3<D>>;
 
 fn on_so3(kind: Kind, strength: f64) -> Vec<Member<OnSo3>> {
-    members(8, UNIT, |i| Flow::new(&So3::new(), kind, strength, 71 + i))
+    members(8, UNIT, |i| CoupledField::new(&So3::new(), kind, strength, 71 + i))
 }
 
 fn measured<M: Method<OnSo3>>(members: &[Member<OnSo3>], method: &M) -> Estimate {

@@ -70,7 +70,7 @@ pub(crate) enum Kind {
 }
 
 /// ġ = f(t, g) g.
-pub(crate) struct Flow<G: Wide> {
+pub(crate) struct CoupledField<G: Wide> {
     group: G,
     kind: Kind,
     strength: D,
@@ -80,7 +80,7 @@ pub(crate) struct Flow<G: Wide> {
     c: Vec<D>,
 }
 
-impl<G: Wide> Flow<G> {
+impl<G: Wide> CoupledField<G> {
     /// The field of this kind and seed, and where it starts: 𝟙.
     pub(crate) fn new(group: &G, kind: Kind, strength: f64, seed: u64) -> (Self, G::Elem) {
         let mut rng = Pcg64::seed_from_u64(seed);
@@ -89,7 +89,7 @@ impl<G: Wide> Flow<G> {
         let (start, dim) = (group.identity(), group.dim());
         let (a, b) = (numbers(dim), numbers(dim));
         let c = numbers(dim * start.numbers().len());
-        (Flow { group: group.clone(), kind, strength: D::lit(strength), a, b, c }, start)
+        (CoupledField { group: group.clone(), kind, strength: D::lit(strength), a, b, c }, start)
     }
 
     fn f(&self, weights: [D; 3], x: &[D]) -> G::Alg {
@@ -120,7 +120,7 @@ impl<G: Wide> Flow<G> {
     }
 }
 
-impl<G: Wide> Problem for Flow<G> {
+impl<G: Wide> Problem for CoupledField<G> {
     type Group = G;
     type Action = LeftTranslation;
     type Work = ();
@@ -137,11 +137,11 @@ impl<G: Wide> Problem for Flow<G> {
 }
 
 /// For [`Kind::Clock`], which does not look at g.
-impl<G: Wide> LinearField for Flow<G> {}
+impl<G: Wide> LinearField for CoupledField<G> {}
 
 /// For [`Kind::Polynomial`]: k g_k = h Σ_{i+j=k−1} f_i g_j, and f_k from g_k and the coefficients of θᵏ in
 /// t + θh and 1.
-impl<G: Wide> TaylorField for Flow<G> {
+impl<G: Wide> TaylorField for CoupledField<G> {
     type Series = Vec<G::Elem>;
 
     fn series(&self, order: usize) -> Vec<G::Elem> {
