@@ -66,12 +66,12 @@ pub fn write_csv<N: AsRef<str>>(
     write_file(path, text.map_err(CliError::io("write", path))?)
 }
 
-/// A number in a file, with all its digits; nothing where there is none.
+/// The digits of a number, for a file. A number that is not finite gives an empty field.
 pub fn in_full(x: f64) -> String {
     if x.is_finite() { format!("{x:e}") } else { String::new() }
 }
 
-/// A value in a file; nothing where there is none.
+/// The text of a value, for a file. A value that is missing gives an empty field.
 pub fn optional<T: ToString>(x: Option<T>) -> String {
     x.map_or_else(String::new, |x| x.to_string())
 }
