@@ -196,10 +196,16 @@ fn linear_ticks(lo: f64, hi: f64, labels: f64) -> Vec<Found> {
     };
     let first = (lo / step - 1e-9).ceil();
     let count = (hi / step + 1e-9).floor() - first;
-    (0..=count.clamp(-1.0, 100.0) as i64)
-        .map(|i| (first + i as f64) * step)
-        .map(|value| (value, Some(text(value)), true))
-        .collect()
+    let values: Vec<f64> =
+        (0..=count.clamp(-1.0, 100.0) as i64).map(|i| (first + i as f64) * step).collect();
+    let mut labels: Vec<String> = values.iter().map(|&value| text(value)).collect();
+    // Values that differ after more digits than a label has: the lowest one, and what is added to it.
+    if labels.windows(2).any(|pair| pair[0] == pair[1]) {
+        for (i, label) in labels.iter_mut().enumerate().skip(1) {
+            *label = format!("+{}", sig(i as f64 * step, 3));
+        }
+    }
+    values.into_iter().zip(labels).map(|(value, label)| (value, Some(label), true)).collect()
 }
 
 /// The smallest of 1, 2, 5 times a power of ten that is at least `step`.
@@ -295,6 +301,15 @@ mod tests {
             labels(&map(Scale::Linear, (-10.0, 10.0), (0.0, 300.0)), 60.0),
             ["−10", "−5", "0", "5", "10"]
         );
+    }
+
+    /// An energy that moves in its tenth digit: the labels differ.
+    #[test]
+    fn labels_of_a_narrow_range_are_relative() {
+        let m = map(Scale::Linear, (1.03 - 1e-9, 1.03 + 1e-9), (0.0, 500.0));
+        let found = labels(&m, 60.0);
+        assert!(found.len() > 2 && found[1].starts_with('+'), "{found:?}");
+        assert!(found.windows(2).all(|pair| pair[0] != pair[1]), "{found:?}");
     }
 
     #[test]
