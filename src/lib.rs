@@ -23,6 +23,7 @@
 //! | `elliptic` | | Carlson's integrals, Jacobi's functions |
 //! | [`dense`] | | kernels for matrices: products, LU, exp |
 //! | [`so3`] | | the closed forms on so(3) ≅ ℝ³ |
+//! | [`tolerance`] | | what the error of a step is compared with |
 //! | [`space`] | | the linear space around M, and its metric |
 //! | [`groups`] | 𝔤, G | [`LieAlgebra`], [`LieGroup`]; [`So3`](groups::So3), [`Se3`](groups::Se3), [`MatrixGroup`](groups::MatrixGroup), [`Product`](groups::Product), [`Power`](groups::Power) |
 //! | [`maps`] | Ψ, dΨ⁻¹ | [`CoordinateMap`]; [`Exp`](maps::Exp), [`Cay`](maps::Cay), [`CCSK123`](maps::CCSK123), [`CCSK321`](maps::CCSK321) |
@@ -88,6 +89,7 @@ mod quadrature;
 pub mod scalar;
 pub mod so3;
 pub mod space;
+pub mod tolerance;
 
 pub use actions::Action;
 pub use error::{Error, Failure, NoLogarithm, StepError};

@@ -7,7 +7,8 @@ use faer::Mat;
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
 use crate::dense;
-use crate::scalar::{Counted, DoubleDouble, Ops, Real, tally};
+use crate::scalar::{Counted, DoubleDouble, Ops, Real, larger, tally};
+use crate::tolerance::{Scales, ratio};
 
 /// Points that can be compared: those of a linear space with a norm.
 ///
@@ -22,6 +23,29 @@ pub trait Metric {
     fn size(&self) -> Self::Scalar;
     /// ‖self − x‖.
     fn distance(&self, x: &Self) -> Self::Scalar;
+    /// An error at this point in units of the tolerance: ‖error‖/(atol + rtol·‖self‖), the largest of the ratios
+    /// of the parts.
+    #[inline]
+    fn error_ratio(&self, gap: Gap<'_, Self>, scales: &mut Scales<'_>) -> Self::Scalar {
+        let size = self.size();
+        let error = match gap {
+            Gap::To(x) => self.distance(x),
+            Gap::Of(e) => e.size(),
+            Gap::Relative(e) => e * size,
+        };
+        ratio(error, scales.part().scale(size))
+    }
+}
+
+/// An error at a point.
+#[derive(Clone, Copy, Debug)]
+pub enum Gap<'a, M: Metric + ?Sized> {
+    /// The distance from another point.
+    To(&'a M),
+    /// The error itself.
+    Of(&'a M),
+    /// A multiple of the size of each part.
+    Relative(M::Scalar),
 }
 
 /// A point of a linear space with a norm. Allocates nothing.
@@ -118,6 +142,16 @@ macro_rules! small {
                 });
                 squares.sqrt()
             }
+            #[inline]
+            fn error_ratio(&self, gap: Gap<'_, Self>, scales: &mut Scales<'_>) -> S {
+                let (part, entries) = (scales.part(), || self.as_slice().iter().copied());
+                let (error, each) = match gap {
+                    Gap::To(x) => (self.distance(x), part.largest((self - x).iter().copied(), entries())),
+                    Gap::Of(e) => (e.size(), part.largest(e.as_slice().iter().copied(), entries())),
+                    Gap::Relative(e) => (e * self.size(), part.largest(entries().map(|x| e * x), entries())),
+                };
+                each.unwrap_or_else(|| ratio(error, part.scale(self.size())))
+            }
         }
 
         impl<S: Real> LinearSpace for $t<S> {
@@ -174,6 +208,19 @@ impl Metric for Mat<f64> {
             }
         }
         s.sqrt()
+    }
+    fn error_ratio(&self, gap: Gap<'_, Self>, scales: &mut Scales<'_>) -> f64 {
+        let (part, size) = (scales.part(), self.size());
+        let every = |of: &dyn Fn(usize, usize) -> f64| {
+            let places = || (0..self.ncols()).flat_map(|j| (0..self.nrows()).map(move |i| (i, j)));
+            part.largest(places().map(|(i, j)| of(i, j)), places().map(|(i, j)| self[(i, j)]))
+        };
+        let (error, each) = match gap {
+            Gap::To(x) => (self.distance(x), every(&|i, j| self[(i, j)] - x[(i, j)])),
+            Gap::Of(e) => (e.size(), every(&|i, j| e[(i, j)])),
+            Gap::Relative(e) => (e * size, every(&|i, j| e * self[(i, j)])),
+        };
+        each.unwrap_or_else(|| ratio(error, part.scale(size)))
     }
 }
 
@@ -251,6 +298,16 @@ impl<A: Metric, B: Metric<Scalar = A::Scalar>> Metric for (A, B) {
         let (a, b) = (self.0.distance(&x.0), self.1.distance(&x.1));
         (a * a + b * b).sqrt()
     }
+    #[inline]
+    fn error_ratio(&self, gap: Gap<'_, Self>, scales: &mut Scales<'_>) -> A::Scalar {
+        let (first, second) = match gap {
+            Gap::To(x) => (Gap::To(&x.0), Gap::To(&x.1)),
+            Gap::Of(e) => (Gap::Of(&e.0), Gap::Of(&e.1)),
+            Gap::Relative(e) => (Gap::Relative(e), Gap::Relative(e)),
+        };
+        let first = self.0.error_ratio(first, scales);
+        larger(first, self.1.error_ratio(second, scales))
+    }
 }
 
 impl<A: LinearSpace, B: LinearSpace<Scalar = A::Scalar>> LinearSpace for (A, B) {
@@ -274,6 +331,51 @@ impl<A: LinearSpace, B: LinearSpace<Scalar = A::Scalar>> LinearSpace for (A, B) 
     }
 }
 
+impl<M: Metric, const N: usize> Metric for [M; N] {
+    type Scalar = M::Scalar;
+    #[inline]
+    fn assign(&mut self, x: &Self) {
+        for (y, x) in self.iter_mut().zip(x) {
+            y.assign(x);
+        }
+    }
+    #[inline]
+    fn size(&self) -> M::Scalar {
+        norm(self.iter().map(M::size))
+    }
+    #[inline]
+    fn distance(&self, x: &Self) -> M::Scalar {
+        norm(self.iter().zip(x).map(|(a, b)| a.distance(b)))
+    }
+}
+
+impl<M: LinearSpace, const N: usize> LinearSpace for [M; N] {
+    #[inline]
+    fn clear(&mut self) {
+        self.iter_mut().for_each(M::clear);
+    }
+    #[inline]
+    fn add(&mut self, a: M::Scalar, x: &Self) {
+        for (y, x) in self.iter_mut().zip(x) {
+            y.add(a, x);
+        }
+    }
+    #[inline]
+    fn dot(&self, x: &Self) -> M::Scalar {
+        self.iter().zip(x).fold(M::Scalar::lit(0.0), |sum, (y, x)| sum + y.dot(x))
+    }
+    #[inline]
+    fn is_finite(&self) -> bool {
+        self.iter().all(M::is_finite)
+    }
+}
+
+/// √Σx².
+#[inline]
+fn norm<S: Real>(sizes: impl Iterator<Item = S>) -> S {
+    sizes.fold(S::lit(0.0), |sum, x| sum + x * x).sqrt()
+}
+
 impl<M: Metric> Metric for Box<[M]> {
     type Scalar = M::Scalar;
     #[inline]
@@ -283,12 +385,21 @@ impl<M: Metric> Metric for Box<[M]> {
         }
     }
     fn size(&self) -> M::Scalar {
-        let squares = self.iter().map(|a| a.size()).fold(M::Scalar::lit(0.0), |s, a| s + a * a);
-        squares.sqrt()
+        norm(self.iter().map(M::size))
     }
     fn distance(&self, x: &Self) -> M::Scalar {
-        let gaps = self.iter().zip(x).map(|(a, b)| a.distance(b));
-        gaps.fold(M::Scalar::lit(0.0), |s, d| s + d * d).sqrt()
+        norm(self.iter().zip(x).map(|(a, b)| a.distance(b)))
+    }
+    /// Every copy by the same tolerances.
+    fn error_ratio(&self, gap: Gap<'_, Self>, scales: &mut Scales<'_>) -> M::Scalar {
+        scales.for_each_copy(self.len(), |i, scales| {
+            let gap = match gap {
+                Gap::To(x) => Gap::To(&x[i]),
+                Gap::Of(e) => Gap::Of(&e[i]),
+                Gap::Relative(e) => Gap::Relative(e),
+            };
+            self[i].error_ratio(gap, scales)
+        })
     }
 }
 

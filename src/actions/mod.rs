@@ -21,11 +21,13 @@ use crate::error::{Error, StepError};
 use crate::groups::LieGroup;
 use crate::maps::CoordinateMap;
 use crate::maps::PsiOf;
+use crate::space::{Gap, Metric};
+use crate::tolerance::Scales;
 
 /// A left action Λ of G on M: Λ(𝟙, p) = p and Λ(ab, p) = Λ(a, Λ(b, p)).
 pub trait Action<G: LieGroup> {
     /// A point y ∈ M.
-    type Point: Clone;
+    type Point: Metric<Scalar = G::Scalar> + Clone;
     /// Scratch.
     type Work;
 
@@ -74,6 +76,19 @@ pub trait Action<G: LieGroup> {
         dy: &mut Self::Point,
         work: &mut Self::Work,
     );
+
+    /// An error e ∈ 𝔤 at y in units of the tolerance, the largest of the ratios of the parts. The default takes
+    /// ‖e‖ for relative: ‖e‖‖y‖/(atol + rtol·‖y‖).
+    #[inline]
+    fn error_ratio(
+        &self,
+        group: &G,
+        e: &G::Alg,
+        y: &Self::Point,
+        scales: &mut Scales<'_>,
+    ) -> G::Scalar {
+        y.error_ratio(Gap::Relative(group.norm(e)), scales)
+    }
 
     /// q ← λ_p(u) = Λ(Ψ(u), p), equation (6). Ψ(u) arrives not yet formed: an action on vectors
     /// answers with [`PsiOf::on`], and then no group element is formed.

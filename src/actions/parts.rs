@@ -7,6 +7,8 @@
 use super::{Action, Coadjoint};
 use crate::error::Error;
 use crate::groups::{LieGroup, Power, Product, worse};
+use crate::scalar::larger;
+use crate::tolerance::Scales;
 
 /// An action for each part of a [`Product`], on M₁ × M₂.
 ///
@@ -83,6 +85,17 @@ where
         let first = self.0.restore(&group.0, &mut p.0, &mut work.0);
         worse(first, self.1.restore(&group.1, &mut p.1, &mut work.1))
     }
+    #[inline]
+    fn error_ratio(
+        &self,
+        group: &Product<A, B>,
+        e: &(A::Alg, B::Alg),
+        y: &Self::Point,
+        scales: &mut Scales<'_>,
+    ) -> A::Scalar {
+        let first = self.0.error_ratio(&group.0, &e.0, &y.0, scales);
+        larger(first, self.1.error_ratio(&group.1, &e.1, &y.1, scales))
+    }
     fn restore_to(
         &self,
         group: &Product<A, B>,
@@ -144,6 +157,17 @@ impl<G: LieGroup, L: Action<G>> Action<Power<G>> for Each<L> {
     ) -> Option<G::Scalar> {
         p.iter_mut().fold(None, |all, p| worse(all, self.0.restore(group.group(), p, work)))
     }
+    fn error_ratio(
+        &self,
+        group: &Power<G>,
+        e: &Box<[G::Alg]>,
+        y: &Self::Point,
+        scales: &mut Scales<'_>,
+    ) -> G::Scalar {
+        scales.for_each_copy(group.copies(), |i, scales| {
+            self.0.error_ratio(group.group(), &e[i], &y[i], scales)
+        })
+    }
     fn restore_to(
         &self,
         group: &Power<G>,
@@ -199,6 +223,16 @@ where
     ) {
         Pair(Coadjoint, Coadjoint).generate(group, v, y, dy, work);
     }
+    #[inline]
+    fn error_ratio(
+        &self,
+        group: &Product<A, B>,
+        e: &(A::Alg, B::Alg),
+        y: &Self::Point,
+        scales: &mut Scales<'_>,
+    ) -> A::Scalar {
+        Pair(Coadjoint, Coadjoint).error_ratio(group, e, y, scales)
+    }
     fn restore_to(
         &self,
         group: &Product<A, B>,
@@ -248,6 +282,15 @@ where
         work: &mut Self::Work,
     ) {
         Each(Coadjoint).generate(group, v, y, dy, work);
+    }
+    fn error_ratio(
+        &self,
+        group: &Power<G>,
+        e: &Box<[G::Alg]>,
+        y: &Self::Point,
+        scales: &mut Scales<'_>,
+    ) -> G::Scalar {
+        Each(Coadjoint).error_ratio(group, e, y, scales)
     }
     fn restore_to(
         &self,

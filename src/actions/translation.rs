@@ -3,6 +3,7 @@
 use super::Action;
 use crate::error::Error;
 use crate::groups::LieGroup;
+use crate::tolerance::Scales;
 
 /// G acting on itself from the left: ġ = f(g)·g, equation (12).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -29,6 +30,16 @@ impl<G: LieGroup> Action<G> for LeftTranslation {
     #[inline]
     fn generate(&self, group: &G, v: &G::Alg, g: &G::Elem, dg: &mut G::Elem, _: &mut Self::Work) {
         group.tangent(v, g, dg);
+    }
+    #[inline]
+    fn error_ratio(
+        &self,
+        group: &G,
+        e: &G::Alg,
+        g: &G::Elem,
+        scales: &mut Scales<'_>,
+    ) -> G::Scalar {
+        group.error_ratio(e, g, scales)
     }
     fn restore(&self, group: &G, p: &mut G::Elem, work: &mut Self::Work) -> Option<G::Scalar> {
         Some(group.correct(p, work.each_mut()))

@@ -282,17 +282,23 @@ where
     fn attempt(&mut self, end: f64, y: &PointOf<P>) -> Result<f64, StepError> {
         let step = self.step(end);
         self.evaluated(self.method.evaluations_with_error(self.problem));
-        let local =
-            self.method.step_with_error(self.problem, step, y, &mut self.work, &mut self.next)?;
-        let (error, length): (f64, f64) = (local.error.into(), local.length.into());
-        let tolerance = self.control.atol + self.control.rtol * length;
+        let tolerance = &self.control.tolerance;
+        let ratio = self.method.step_with_error(
+            self.problem,
+            step,
+            tolerance,
+            y,
+            &mut self.work,
+            &mut self.next,
+        )?;
+        let ratio: f64 = ratio.into();
         if !self.problem.action().is_finite(self.problem.group(), &self.next) {
             return Err(StepError::NotFinite { what: "the state" });
         }
-        if !(error.is_finite() && tolerance.is_finite()) {
+        if !ratio.is_finite() {
             return Err(StepError::NotFinite { what: "the error estimate" });
         }
-        Ok(if error == 0.0 { 0.0 } else { error / tolerance })
+        Ok(ratio)
     }
 
     /// aside ← the state at `time`, by a step from y.
@@ -304,7 +310,14 @@ where
     ) -> Result<(), StepError> {
         let step = self.step(time);
         self.evaluated(self.method.evaluations_with_error(self.problem));
-        self.method.step_with_error(self.problem, step, y, &mut self.work, aside)?;
+        self.method.step_with_error(
+            self.problem,
+            step,
+            &self.control.tolerance,
+            y,
+            &mut self.work,
+            aside,
+        )?;
         self.stats.side_steps += 1;
         Ok(())
     }
@@ -347,7 +360,7 @@ where
         // Rates: f itself, and the root of its derivative.
         let change: f64 = group.norm(&f1).into();
         let rate = d1.max((change / h0).sqrt());
-        let tolerance = self.control.atol + self.control.rtol * 0.01;
+        let tolerance = self.control.tolerance.of_unit_size();
         let h1 = (0.01 * tolerance).powf(1.0 / controller.k) / rate;
         match h1.is_finite() {
             true => h1.min(100.0 * h0),

@@ -20,12 +20,12 @@ mod driver;
 pub use driver::{AdaptiveError, AdaptiveStats, integrate_adaptive};
 
 use crate::error::Error;
+use crate::tolerance::Tolerance;
 
 /// Tolerances and limits of a run that chooses its steps.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Adaptive {
-    rtol: f64,
-    atol: f64,
+    tolerance: Tolerance,
     first_step: Option<f64>,
     min_step: f64,
     max_step: f64,
@@ -46,17 +46,14 @@ impl Adaptive {
     /// # Errors
     /// [`Error::OutOfRange`] for a tolerance that is negative or not finite, and when both are 0.
     pub fn new(rtol: f64, atol: f64) -> Result<Self, Error> {
-        for (arg, x) in [("rtol", rtol), ("atol", atol)] {
-            if !(x >= 0.0 && x.is_finite()) {
-                return Err(Error::out_of_range(arg, x, "a finite number ≥ 0"));
-            }
-        }
-        if rtol == 0.0 && atol == 0.0 {
-            return Err(Error::out_of_range("rtol", rtol, "> 0 when atol is 0"));
-        }
+        Ok(Adaptive::with(Tolerance::new(rtol, atol)?))
+    }
+
+    /// With these tolerances.
+    pub fn with(tolerance: Tolerance) -> Self {
         let max_steps = 1_000_000;
         let (min_step, max_step) = (0.0, f64::INFINITY);
-        Ok(Adaptive { rtol, atol, first_step: None, min_step, max_step, max_steps })
+        Adaptive { tolerance, first_step: None, min_step, max_step, max_steps }
     }
 
     /// Try this size first, in either direction of time.

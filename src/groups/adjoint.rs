@@ -20,12 +20,12 @@ use crate::dense::{Lu, antisymmetrise, is_finite, mul, mul_add};
 use crate::error::StepError;
 use crate::scalar::{Ops, Real, tally};
 use crate::so3::{apply3, cross};
-use crate::space::LinearSpace;
+use crate::space::{LinearSpace, Metric};
 
 /// The adjoint and coadjoint representations of a group and of its algebra.
 pub trait Adjoint: LieGroup {
     /// m ∈ 𝔤*.
-    type Dual: Clone;
+    type Dual: Metric<Scalar = Self::Scalar> + Clone;
     /// Scratch of [`invert`](Self::invert); `()` where it needs none.
     type Inverting;
 

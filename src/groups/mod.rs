@@ -37,6 +37,8 @@ use rand::Rng;
 
 use crate::error::Error;
 use crate::scalar::Real;
+use crate::space::{Gap, Metric};
+use crate::tolerance::{Scales, ratio};
 
 /// A Lie algebra 𝔤: a linear space with a bracket.
 pub trait LieAlgebra {
@@ -86,9 +88,9 @@ pub trait LieAlgebra {
 /// A Lie group G over its algebra.
 pub trait LieGroup: LieAlgebra {
     /// An element g ∈ G.
-    type Elem: Clone;
+    type Elem: Metric<Scalar = Self::Scalar> + Clone;
     /// A vector of the standard representation (or several, as columns).
-    type Vector: Clone;
+    type Vector: Metric<Scalar = Self::Scalar> + Clone;
 
     /// Fresh storage holding 𝟙 ∈ G.
     fn identity(&self) -> Self::Elem;
@@ -100,6 +102,22 @@ pub trait LieGroup: LieAlgebra {
     fn tangent(&self, v: &Self::Alg, g: &Self::Elem, out: &mut Self::Elem);
     /// y ← v·x = d/dε Ψ(εv)·x at ε = 0.
     fn apply_algebra(&self, v: &Self::Alg, x: &Self::Vector, y: &mut Self::Vector);
+    /// An error e ∈ 𝔤 at g in units of the tolerance: ‖e‖/(atol + rtol), e being an angle. A part that is a linear
+    /// space is compared with its size, and a product gives the largest ratio of its parts.
+    #[inline]
+    fn error_ratio(&self, e: &Self::Alg, _g: &Self::Elem, scales: &mut Scales<'_>) -> Self::Scalar {
+        ratio(self.norm(e), scales.part().scale(Self::Scalar::lit(1.0)))
+    }
+    /// An error e ∈ 𝔤 at a vector in units of the tolerance: ‖e‖‖x‖/(atol + rtol·‖x‖).
+    #[inline]
+    fn vector_error_ratio(
+        &self,
+        e: &Self::Alg,
+        x: &Self::Vector,
+        scales: &mut Scales<'_>,
+    ) -> Self::Scalar {
+        x.error_ratio(Gap::Relative(self.norm(e)), scales)
+    }
     /// ‖a − b‖ (Frobenius).
     fn distance(&self, a: &Self::Elem, b: &Self::Elem) -> Self::Scalar;
     /// How far g is from G: ‖gᵀMg − M‖ (Frobenius), zero for GL(n).

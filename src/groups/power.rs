@@ -2,10 +2,11 @@
 
 use rand::Rng;
 
-use super::product::{larger, worse};
+use super::product::worse;
 use super::{Adjoint, LieAlgebra, LieGroup, Sample};
 use crate::error::{Error, StepError};
-use crate::scalar::Real;
+use crate::scalar::{Real, larger};
+use crate::tolerance::Scales;
 
 /// Gᴺ = G × … × G: many bodies, a chain of spins. Elements are boxed slices, made once; what is done
 /// with one copy is resolved at compile time, as for one copy alone.
@@ -149,6 +150,19 @@ impl<G: LieGroup> LieGroup for Power<G> {
         for ((v, x), y) in v.iter().zip(x).zip(y) {
             self.group.apply_algebra(v, x, y);
         }
+    }
+    fn error_ratio(&self, e: &Self::Alg, g: &Self::Elem, scales: &mut Scales<'_>) -> G::Scalar {
+        scales.for_each_copy(self.copies, |i, scales| self.group.error_ratio(&e[i], &g[i], scales))
+    }
+    fn vector_error_ratio(
+        &self,
+        e: &Self::Alg,
+        x: &Self::Vector,
+        scales: &mut Scales<'_>,
+    ) -> G::Scalar {
+        let each =
+            |i: usize, scales: &mut Scales<'_>| self.group.vector_error_ratio(&e[i], &x[i], scales);
+        scales.for_each_copy(self.copies, each)
     }
     fn distance(&self, a: &Self::Elem, b: &Self::Elem) -> G::Scalar {
         norm2(a.iter().zip(b).map(|(a, b)| self.group.distance(a, b)))

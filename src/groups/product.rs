@@ -11,7 +11,8 @@ use rand::Rng;
 
 use super::{Adjoint, LieAlgebra, LieGroup, Sample};
 use crate::error::{Error, StepError};
-use crate::scalar::Real;
+use crate::scalar::{Real, larger};
+use crate::tolerance::Scales;
 
 /// The product A × B of two groups, for systems that are made of two parts. Products nest, and every
 /// coordinate map of the library that serves A and B serves A × B; [`maps::Pair`](crate::maps::Pair)
@@ -41,12 +42,6 @@ pub(crate) fn worse<S: Real>(a: Option<S>, b: Option<S>) -> Option<S> {
         (Some(a), Some(b)) => Some(larger(a, b)),
         (a, b) => a.or(b),
     }
-}
-
-/// max(a, b); not a number where b is not.
-pub(crate) fn larger<S: Real>(a: S, b: S) -> S {
-    let [c] = (b - a).branch(0.0, || [a], || [b]);
-    c
 }
 
 impl<A: LieAlgebra, B: LieAlgebra<Scalar = A::Scalar>> LieAlgebra for Product<A, B> {
@@ -117,6 +112,21 @@ impl<A: LieGroup, B: LieGroup<Scalar = A::Scalar>> LieGroup for Product<A, B> {
     fn apply_algebra(&self, v: &Self::Alg, x: &Self::Vector, y: &mut Self::Vector) {
         self.0.apply_algebra(&v.0, &x.0, &mut y.0);
         self.1.apply_algebra(&v.1, &x.1, &mut y.1);
+    }
+    #[inline]
+    fn error_ratio(&self, e: &Self::Alg, g: &Self::Elem, scales: &mut Scales<'_>) -> A::Scalar {
+        let first = self.0.error_ratio(&e.0, &g.0, scales);
+        larger(first, self.1.error_ratio(&e.1, &g.1, scales))
+    }
+    #[inline]
+    fn vector_error_ratio(
+        &self,
+        e: &Self::Alg,
+        x: &Self::Vector,
+        scales: &mut Scales<'_>,
+    ) -> A::Scalar {
+        let first = self.0.vector_error_ratio(&e.0, &x.0, scales);
+        larger(first, self.1.vector_error_ratio(&e.1, &x.1, scales))
     }
     fn distance(&self, a: &Self::Elem, b: &Self::Elem) -> A::Scalar {
         norm2(self.0.distance(&a.0, &b.0), self.1.distance(&a.1, &b.1))

@@ -24,8 +24,10 @@ use rand_distr::StandardNormal;
 use super::so3::check_finite;
 use super::{Adjoint, LieAlgebra, LieGroup, Sample, So3};
 use crate::error::{Error, StepError};
-use crate::scalar::Real;
+use crate::scalar::{Real, larger};
 use crate::so3::{self, add3, all_finite, apply3, cross, dot3};
+use crate::space::{Gap, Metric};
+use crate::tolerance::{Scales, ratio};
 
 /// SE(3): elements of the algebra are (ω, v), of the group (R, x), of the dual (μ, π).
 ///
@@ -140,6 +142,18 @@ impl<S: Real> LieGroup for Se3<S> {
     }
     fn check_vector(&self, x: &Vector3<S>) -> Result<(), Error> {
         check_finite(x.as_slice())
+    }
+    /// Two parts: the rotation, and the place that it moves.
+    #[inline]
+    fn error_ratio(&self, e: &Self::Alg, g: &Self::Elem, scales: &mut Scales<'_>) -> S {
+        let turned = ratio(e.0.size(), scales.part().scale(S::lit(1.0)));
+        // d/dε of exp(εe) g moves the place p by ω × p + v.
+        let moved = e.1 + cross(&e.0, &g.1);
+        larger(turned, g.1.error_ratio(Gap::Of(&moved), scales))
+    }
+    #[inline]
+    fn vector_error_ratio(&self, e: &Self::Alg, x: &Vector3<S>, scales: &mut Scales<'_>) -> S {
+        x.error_ratio(Gap::Of(&(e.1 + cross(&e.0, x))), scales)
     }
     fn distance(&self, a: &Self::Elem, b: &Self::Elem) -> S {
         let turned = So3::new().distance(&a.0, &b.0);

@@ -7,7 +7,8 @@
 use super::{Adjoint, LieAlgebra, LieGroup};
 use crate::error::{Error, StepError};
 use crate::scalar::Real;
-use crate::space::LinearSpace;
+use crate::space::{Gap, LinearSpace};
+use crate::tolerance::Scales;
 
 /// The translations of the linear space that `zero` is the origin of.
 ///
@@ -110,6 +111,14 @@ impl<V: LinearSpace> LieGroup for Translations<V> {
     #[inline]
     fn check_vector(&self, x: &V) -> Result<(), Error> {
         self.check_elem(x)
+    }
+    #[inline]
+    fn error_ratio(&self, e: &V, g: &V, scales: &mut Scales<'_>) -> V::Scalar {
+        g.error_ratio(Gap::Of(e), scales)
+    }
+    #[inline]
+    fn vector_error_ratio(&self, e: &V, x: &V, scales: &mut Scales<'_>) -> V::Scalar {
+        x.error_ratio(Gap::Of(e), scales)
     }
     fn distance(&self, a: &V, b: &V) -> V::Scalar {
         a.distance(b)

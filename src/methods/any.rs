@@ -9,10 +9,11 @@ use core::fmt;
 use core::marker::PhantomData;
 use std::sync::Arc;
 
-use super::doubling::doubled;
-use super::{Embedded, EqualSteps, LocalError, Method, Metric, Step};
+use super::doubling::{doubled as step_doubled, within_halves};
+use super::{Embedded, EqualSteps, Method, Metric, Step};
 use crate::error::{Error, StepError};
 use crate::problems::{PointOf, Problem, ScalarOf};
+use crate::tolerance::Tolerance;
 
 /// A method for problems of type `P`, behind a pointer. Cloning copies the pointer.
 ///
@@ -61,6 +62,7 @@ struct Pair {
 trait Inner<'p, P: Problem> {
     fn name(&self) -> &'static str;
     fn order(&self, problem: &P) -> usize;
+    fn dense_order(&self, problem: &P) -> usize;
     fn evaluations(&self, problem: &P) -> Option<u64>;
     fn stays_on_manifold(&self) -> bool;
     fn pair(&self, problem: &P) -> Option<Pair>;
@@ -85,9 +87,25 @@ trait Stepper<P: Problem> {
         &mut self,
         problem: &P,
         step: Step<ScalarOf<P>>,
+        tolerance: &Tolerance,
         from: &PointOf<P>,
         to: &mut PointOf<P>,
-    ) -> Result<LocalError<ScalarOf<P>>, StepError>;
+    ) -> Result<ScalarOf<P>, StepError>;
+    fn prepare(
+        &mut self,
+        problem: &P,
+        step: Step<ScalarOf<P>>,
+        from: &PointOf<P>,
+        to: &PointOf<P>,
+    ) -> Result<(), StepError>;
+    fn interpolate(
+        &mut self,
+        problem: &P,
+        step: Step<ScalarOf<P>>,
+        theta: f64,
+        from: &PointOf<P>,
+        at: &mut PointOf<P>,
+    ) -> Result<(), StepError>;
 }
 
 /// Where the estimate of a method comes from.
@@ -98,10 +116,11 @@ trait Estimate<P: Problem, M: Method<P>>: Copy {
         method: &M,
         problem: &P,
         step: Step<ScalarOf<P>>,
+        tolerance: &Tolerance,
         from: &PointOf<P>,
         work: &mut M::Work,
         to: &mut PointOf<P>,
-    ) -> Result<LocalError<ScalarOf<P>>, StepError>;
+    ) -> Result<ScalarOf<P>, StepError>;
 }
 
 #[derive(Clone, Copy)]
@@ -117,10 +136,11 @@ impl<P: Problem, M: Method<P>> Estimate<P, M> for NoEstimate {
         _: &M,
         _: &P,
         _: Step<ScalarOf<P>>,
+        _: &Tolerance,
         _: &PointOf<P>,
         _: &mut M::Work,
         _: &mut PointOf<P>,
-    ) -> Result<LocalError<ScalarOf<P>>, StepError> {
+    ) -> Result<ScalarOf<P>, StepError> {
         Err(StepError::NotFinite { what: "the error estimate" })
     }
 }
@@ -139,11 +159,12 @@ impl<P: Problem, M: Embedded<P>> Estimate<P, M> for OwnEstimate {
         method: &M,
         problem: &P,
         step: Step<ScalarOf<P>>,
+        tolerance: &Tolerance,
         from: &PointOf<P>,
         work: &mut M::Work,
         to: &mut PointOf<P>,
-    ) -> Result<LocalError<ScalarOf<P>>, StepError> {
-        method.step_with_error(problem, step, from, work, to)
+    ) -> Result<ScalarOf<P>, StepError> {
+        method.step_with_error(problem, step, tolerance, from, work, to)
     }
 }
 
@@ -163,6 +184,9 @@ where
     }
     fn order(&self, problem: &P) -> usize {
         self.method.order(problem)
+    }
+    fn dense_order(&self, problem: &P) -> usize {
+        self.method.dense_order(problem)
     }
     fn evaluations(&self, problem: &P) -> Option<u64> {
         self.method.evaluations(problem)
@@ -208,10 +232,30 @@ impl<P: Problem, M: Method<P>, E: Estimate<P, M>> Stepper<P> for MethodWithWork<
         &mut self,
         problem: &P,
         step: Step<ScalarOf<P>>,
+        tolerance: &Tolerance,
         from: &PointOf<P>,
         to: &mut PointOf<P>,
-    ) -> Result<LocalError<ScalarOf<P>>, StepError> {
-        self.estimate.step(&self.method, problem, step, from, &mut self.work, to)
+    ) -> Result<ScalarOf<P>, StepError> {
+        self.estimate.step(&self.method, problem, step, tolerance, from, &mut self.work, to)
+    }
+    fn prepare(
+        &mut self,
+        problem: &P,
+        step: Step<ScalarOf<P>>,
+        from: &PointOf<P>,
+        to: &PointOf<P>,
+    ) -> Result<(), StepError> {
+        self.method.prepare(problem, step, from, to, &mut self.work)
+    }
+    fn interpolate(
+        &mut self,
+        problem: &P,
+        step: Step<ScalarOf<P>>,
+        theta: f64,
+        from: &PointOf<P>,
+        at: &mut PointOf<P>,
+    ) -> Result<(), StepError> {
+        self.method.interpolate(problem, step, theta, from, &mut self.work, at)
     }
 }
 
@@ -223,6 +267,10 @@ pub struct AnyWork<'p, P: Problem> {
     has_pair: bool,
     /// The point after one long step, where steps are doubled.
     once: PointOf<P>,
+    /// The point after the first half of a doubled step.
+    half: PointOf<P>,
+    /// Was the last step a doubled one?
+    doubled: bool,
 }
 
 impl<'p, P> Method<P> for AnyMethod<'p, P>
@@ -235,6 +283,9 @@ where
     fn order(&self, problem: &P) -> usize {
         self.inner.order(problem)
     }
+    fn dense_order(&self, problem: &P) -> usize {
+        self.inner.dense_order(problem)
+    }
     fn evaluations(&self, problem: &P) -> Option<u64> {
         self.inner.evaluations(problem)
     }
@@ -243,7 +294,13 @@ where
     }
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
         let has_pair = self.has_pair(problem);
-        Ok(AnyWork { stepper: self.inner.stepper(problem, like)?, has_pair, once: like.clone() })
+        Ok(AnyWork {
+            stepper: self.inner.stepper(problem, like)?,
+            has_pair,
+            once: like.clone(),
+            half: like.clone(),
+            doubled: false,
+        })
     }
     fn step(
         &self,
@@ -252,7 +309,34 @@ where
         y: &mut PointOf<P>,
         work: &mut Self::Work,
     ) -> Result<(), StepError> {
+        work.doubled = false;
         work.stepper.step(problem, step, y)
+    }
+    fn prepare(
+        &self,
+        problem: &P,
+        step: Step<ScalarOf<P>>,
+        from: &PointOf<P>,
+        to: &PointOf<P>,
+        work: &mut Self::Work,
+    ) -> Result<(), StepError> {
+        if work.doubled { Ok(()) } else { work.stepper.prepare(problem, step, from, to) }
+    }
+    fn interpolate(
+        &self,
+        problem: &P,
+        step: Step<ScalarOf<P>>,
+        theta: f64,
+        from: &PointOf<P>,
+        AnyWork { stepper, half, doubled, .. }: &mut Self::Work,
+        at: &mut PointOf<P>,
+    ) -> Result<(), StepError> {
+        match doubled {
+            false => stepper.interpolate(problem, step, theta, from, at),
+            true => within_halves(step, theta, [from, half], at, |step, y| {
+                stepper.step(problem, step, y)
+            }),
+        }
     }
     fn steps(
         &self,
@@ -261,6 +345,7 @@ where
         y: &mut PointOf<P>,
         work: &mut Self::Work,
     ) -> Result<(), (u64, StepError)> {
+        work.doubled = false;
         work.stepper.steps(problem, steps, y)
     }
 }
@@ -283,15 +368,23 @@ where
         &self,
         problem: &P,
         step: Step<ScalarOf<P>>,
+        tolerance: &Tolerance,
         from: &PointOf<P>,
-        AnyWork { stepper, has_pair, once }: &mut Self::Work,
+        AnyWork { stepper, has_pair, once, half, doubled }: &mut Self::Work,
         to: &mut PointOf<P>,
-    ) -> Result<LocalError<ScalarOf<P>>, StepError> {
+    ) -> Result<ScalarOf<P>, StepError> {
+        *doubled = !*has_pair;
         match has_pair {
-            true => stepper.step_with_error(problem, step, from, to),
-            false => doubled(self.order(problem), step, from, once, to, |step, y| {
-                stepper.step(problem, step, y)
-            }),
+            true => stepper.step_with_error(problem, step, tolerance, from, to),
+            false => step_doubled(
+                self.order(problem),
+                step,
+                tolerance,
+                from,
+                [once, half],
+                to,
+                |step, y| stepper.step(problem, step, y),
+            ),
         }
     }
 }

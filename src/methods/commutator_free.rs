@@ -16,15 +16,16 @@
 //! Celledoni, A. Marthinsen, B. Owren, Commutator-free Lie group methods, FGCS 19 (2003); C. Curry,
 //! B. Owren, Variable step size commutator free Lie group integrators, Numer. Algorithms 82 (2019).
 
-use super::embedded::{between, without_pair};
+use super::embedded::{ratio_between, without_pair};
 use super::stages::{Stages, copies};
 use super::tableau::pad;
-use super::{Embedded, LocalError, Method, Metric, Step};
+use super::{Embedded, Method, Metric, Step};
 use crate::error::{Error, StepError};
 use crate::groups::LieAlgebra;
 use crate::maps::{CoordinateMap, Exp};
 use crate::problems::{PointOf, Problem, ScalarOf};
 use crate::scalar::Real;
+use crate::tolerance::Tolerance;
 
 /// A product of exponentials that acts on a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -270,19 +271,20 @@ where
         &self,
         problem: &P,
         step: Step<ScalarOf<P>>,
+        tolerance: &Tolerance,
         from: &PointOf<P>,
         CommutatorFreeWork { inner, y }: &mut Self::Work,
         to: &mut PointOf<P>,
-    ) -> Result<LocalError<ScalarOf<P>>, StepError> {
+    ) -> Result<ScalarOf<P>, StepError> {
         let done = inner.advance(&self.0, self.0.all_stages(), problem, step, from, to);
         done.map_err(|error| inner.stages.blame(problem, error))?;
         let error = match &self.0.embedded {
             Some((_, product)) => {
                 inner.product(problem, step, from, product, y)?;
-                y.distance(to)
+                ratio_between(tolerance, y, 1.0, from, to)
             }
             None => ScalarOf::<P>::lit(f64::INFINITY),
         };
-        Ok(between(error, from, to))
+        Ok(error)
     }
 }

@@ -6,51 +6,78 @@
 //! Order: the method's. Preserves: what the method preserves. Cost: three steps of the method, and
 //! two of them when no error is asked for. Source: Hairer, Nørsett, Wanner I, II.4.
 
-use super::embedded::between;
-use super::{Embedded, LocalError, Method, Metric, Step};
+use super::embedded::ratio_between;
+use super::{Embedded, Method, Metric, Step};
 use crate::error::{Error, StepError};
 use crate::problems::{PointOf, Problem, ScalarOf};
 use crate::scalar::Real;
+use crate::tolerance::Tolerance;
 
 /// A method with steps of half the size, and with an error estimate.
 #[derive(Clone, Copy, Debug)]
 pub struct Doubling<Me>(pub Me);
 
-/// The method's workspace, and the point after one long step.
+/// The method's workspace, and two points.
 #[allow(missing_debug_implementations)] // the parts belong to the problem's types
 pub struct DoublingWork<P: Problem, Me: Method<P>> {
     inner: Me::Work,
+    /// The point after one long step.
     once: PointOf<P>,
+    /// The point after the first half.
+    half: PointOf<P>,
 }
 
-/// y ← two steps of h/2, each by `take`. On an error y may be half way.
-fn halves<S: Real, Y>(
-    Step { n, t, h }: Step<S>,
+/// The two halves of a step.
+fn halves<S: Real>(Step { n, t, h }: Step<S>) -> [Step<S>; 2] {
+    let half = S::lit(0.5) * h;
+    [Step { n: 2 * n, t, h: half }, Step { n: 2 * n + 1, t: t + half, h: half }]
+}
+
+/// y ← two steps of h/2, each by `take`, and `half` ← the point between them. On an error y may be half way.
+fn take_halves<S: Real, Y: Metric<Scalar = S>>(
+    step: Step<S>,
     y: &mut Y,
+    half: &mut Y,
     mut take: impl FnMut(Step<S>, &mut Y) -> Result<(), StepError>,
 ) -> Result<(), StepError> {
-    let half = S::lit(0.5) * h;
-    take(Step { n: 2 * n, t, h: half }, y)?;
-    take(Step { n: 2 * n + 1, t: t + half, h: half }, y)
+    let [first, second] = halves(step);
+    take(first, y)?;
+    half.assign(y);
+    take(second, y)
+}
+
+/// `at` ← the point at t + θh of a step in two halves: a shorter step from the start of the half that it lies in.
+pub(super) fn within_halves<S: Real, Y: Metric<Scalar = S>>(
+    step: Step<S>,
+    theta: f64,
+    [from, half]: [&Y; 2],
+    at: &mut Y,
+    mut take: impl FnMut(Step<S>, &mut Y) -> Result<(), StepError>,
+) -> Result<(), StepError> {
+    let [first, second] = halves(step);
+    let (start, part, theta) =
+        if theta < 0.5 { (from, first, 2.0 * theta) } else { (half, second, 2.0 * theta - 1.0) };
+    at.assign(start);
+    if theta > 0.0 { take(part.part(theta), at) } else { Ok(()) }
 }
 
 /// `to` ← two steps of h/2 of a method of this order from `from`, with the error by one step of h, which
-/// `once` is for.
+/// `once` is for; `half` ← the point between the two.
 pub(super) fn doubled<S: Real, Y: Metric<Scalar = S>>(
     order: usize,
     step: Step<S>,
+    tolerance: &Tolerance,
     from: &Y,
-    once: &mut Y,
+    [once, half]: [&mut Y; 2],
     to: &mut Y,
     mut take: impl FnMut(Step<S>, &mut Y) -> Result<(), StepError>,
-) -> Result<LocalError<S>, StepError> {
+) -> Result<S, StepError> {
     once.assign(from);
     take(step, once)?;
     to.assign(from);
-    halves(step, to, take)?;
+    take_halves(step, to, half, take)?;
     let weight = 0.5f64.powi(order.min(60) as i32);
-    let error = once.distance(to) * S::lit(weight / (1.0 - weight));
-    Ok(between(error, from, to))
+    Ok(ratio_between(tolerance, once, weight / (1.0 - weight), from, to))
 }
 
 impl<P: Problem, Me: Method<P>> Method<P> for Doubling<Me>
@@ -69,19 +96,34 @@ where
         Some(2 * self.0.evaluations(problem)?)
     }
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
-        Ok(DoublingWork { inner: self.0.work(problem, like)?, once: like.clone() })
+        Ok(DoublingWork {
+            inner: self.0.work(problem, like)?,
+            once: like.clone(),
+            half: like.clone(),
+        })
     }
     fn step(
         &self,
         problem: &P,
         step: Step<ScalarOf<P>>,
         y: &mut PointOf<P>,
-        DoublingWork { inner, once }: &mut Self::Work,
+        DoublingWork { inner, once, half }: &mut Self::Work,
     ) -> Result<(), StepError> {
         once.assign(y);
-        halves(step, once, |step, y| self.0.step(problem, step, y, inner))?;
+        take_halves(step, once, half, |step, y| self.0.step(problem, step, y, inner))?;
         core::mem::swap(y, once);
         Ok(())
+    }
+    fn interpolate(
+        &self,
+        problem: &P,
+        step: Step<ScalarOf<P>>,
+        theta: f64,
+        from: &PointOf<P>,
+        DoublingWork { inner, half, .. }: &mut Self::Work,
+        at: &mut PointOf<P>,
+    ) -> Result<(), StepError> {
+        within_halves(step, theta, [from, half], at, |step, y| self.0.step(problem, step, y, inner))
     }
 }
 
@@ -99,11 +141,12 @@ where
         &self,
         problem: &P,
         step: Step<ScalarOf<P>>,
+        tolerance: &Tolerance,
         from: &PointOf<P>,
-        DoublingWork { inner, once }: &mut Self::Work,
+        DoublingWork { inner, once, half }: &mut Self::Work,
         to: &mut PointOf<P>,
-    ) -> Result<LocalError<ScalarOf<P>>, StepError> {
-        doubled(self.0.order(problem), step, from, once, to, |step, y| {
+    ) -> Result<ScalarOf<P>, StepError> {
+        doubled(self.0.order(problem), step, tolerance, from, [once, half], to, |step, y| {
             self.0.step(problem, step, y, inner)
         })
     }

@@ -1,6 +1,6 @@
 //! Methods that estimate their own error.
 //!
-//! | method | error | length |
+//! | method | error | length, for [`Rule::PerLength`] |
 //! |---|---|---|
 //! | [`Rkmk`](super::Rkmk) with a pair | ‖h Σ (b_j − b̂_j) k_j‖ in 𝔤 | ‖v‖ in 𝔤 |
 //! | low storage, Magnus 4(3) | the difference of the last two increments in 𝔤 | Σ ‖u_i‖ in 𝔤 |
@@ -10,19 +10,13 @@
 //! In 𝔤 an error is relative to the point by nature: λ_p(v + e) ≈ Λ(Ψ(e), λ_p(v)).
 
 use super::{Method, Step};
+use crate::actions::Action;
 use crate::error::{Error, StepError};
-use crate::problems::{PointOf, Problem, ScalarOf};
+use crate::groups::LieAlgebra;
+use crate::problems::{AlgOf, PointOf, Problem, ScalarOf};
 use crate::scalar::Real;
-use crate::space::Metric;
-
-/// What a step says of its own error.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LocalError<S> {
-    /// The estimated error of the step.
-    pub error: S,
-    /// How far the step went, in the same norm: what a relative tolerance is relative to.
-    pub length: S,
-}
+use crate::space::{Gap, Metric};
+use crate::tolerance::{Rule, Tolerance, ratio};
 
 /// A method whose steps estimate their own error.
 pub trait Embedded<P: Problem>: Method<P> {
@@ -35,8 +29,9 @@ pub trait Embedded<P: Problem>: Method<P> {
     /// [`evaluations`](Method::evaluations) of a [`step_with_error`](Self::step_with_error).
     fn evaluations_with_error(&self, problem: &P) -> Option<u64>;
 
-    /// `to` ← the approximation at t + h from the point `from` at t, with its estimated error, which
-    /// is infinite when there is no estimate. On an error of the step, `to` holds nothing of use.
+    /// `to` ← the approximation at t + h from the point `from` at t. Returns its estimated error in units of
+    /// the tolerance, which is infinite when there is no estimate. On an error of the step, `to` holds nothing
+    /// of use.
     ///
     /// # Errors
     /// Why the step could not be taken; a smaller one may.
@@ -44,19 +39,62 @@ pub trait Embedded<P: Problem>: Method<P> {
         &self,
         problem: &P,
         step: Step<ScalarOf<P>>,
+        tolerance: &Tolerance,
         from: &PointOf<P>,
         work: &mut Self::Work,
         to: &mut PointOf<P>,
-    ) -> Result<LocalError<ScalarOf<P>>, StepError>;
+    ) -> Result<ScalarOf<P>, StepError>;
 }
 
-/// The error between two results in M, and the way from the start to the second of them. What
-/// rounding alone may do to the difference is no error of the step: it counts as 0.
+/// The ratio of an error e ∈ 𝔤 of a step from y; the step goes along an increment of this length.
 #[inline]
-pub(super) fn between<S: Real, M: Metric<Scalar = S>>(error: S, from: &M, to: &M) -> LocalError<S> {
-    let noise = S::lit(8.0 * S::EPSILON) * to.size();
-    let error = if (error - noise).all_below(0.0) { S::lit(0.0) } else { error };
-    LocalError { error, length: to.distance(from) }
+pub(super) fn ratio_in_algebra<P: Problem>(
+    problem: &P,
+    tolerance: &Tolerance,
+    e: &AlgOf<P>,
+    y: &PointOf<P>,
+    length: ScalarOf<P>,
+) -> ScalarOf<P> {
+    let group = problem.group();
+    match tolerance.rule() {
+        Rule::PerLength => ratio(group.norm(e), tolerance.per_length(length)),
+        Rule::PerStep => problem.action().error_ratio(group, e, y, &mut tolerance.scales()),
+    }
+}
+
+/// The ratio of an error that is known as a number, relative to the point.
+#[inline]
+pub(super) fn ratio_of_relative<S: Real, M: Metric<Scalar = S>>(
+    tolerance: &Tolerance,
+    e: S,
+    y: &M,
+    length: S,
+) -> S {
+    match tolerance.rule() {
+        Rule::PerLength => ratio(e, tolerance.per_length(length)),
+        Rule::PerStep => y.error_ratio(Gap::Relative(e), &mut tolerance.scales()),
+    }
+}
+
+/// The ratio of `weight` times the distance of `other` from the result `to` of a step. What rounding alone may
+/// do to the difference is no error of the step: it counts as 0.
+#[inline]
+pub(super) fn ratio_between<S: Real, M: Metric<Scalar = S>>(
+    tolerance: &Tolerance,
+    other: &M,
+    weight: f64,
+    from: &M,
+    to: &M,
+) -> S {
+    let weight = S::lit(weight);
+    let error = weight * to.distance(other);
+    if (error - S::lit(8.0 * S::EPSILON) * to.size()).all_below(0.0) {
+        return S::lit(0.0);
+    }
+    match tolerance.rule() {
+        Rule::PerLength => ratio(error, tolerance.per_length(to.distance(from))),
+        Rule::PerStep => weight * to.error_ratio(Gap::To(other), &mut tolerance.scales()),
+    }
 }
 
 /// What [`Embedded::error_order`] says of a tableau without an embedded row.

@@ -18,7 +18,8 @@
 use faer::Mat;
 use nalgebra::Matrix3;
 
-use super::{Embedded, LocalError, Method, Metric, Step};
+use super::embedded::ratio_of_relative;
+use super::{Embedded, Method, Metric, Step};
 use crate::actions::Action;
 use crate::dense::{axpy, mul_add};
 use crate::error::{Error, StepError};
@@ -27,6 +28,7 @@ use crate::groups::{
 };
 use crate::problems::{AlgOf, ElemOf, PointOf, ScalarOf, TaylorField};
 use crate::scalar::Real;
+use crate::tolerance::Tolerance;
 
 /// A group whose elements lie in a linear space, where the product with an element of 𝔤 is known.
 pub trait SeriesGroup: LieGroup {
@@ -239,10 +241,11 @@ where
         &self,
         problem: &P,
         step: Step<ScalarOf<P>>,
+        tolerance: &Tolerance,
         from: &PointOf<P>,
         w: &mut Self::Work,
         to: &mut PointOf<P>,
-    ) -> Result<LocalError<ScalarOf<P>>, StepError> {
+    ) -> Result<ScalarOf<P>, StepError> {
         self.flow(problem, step, from, w)?;
         let group = problem.group();
         problem.action().act(group, &w.g, from, to, &mut w.act);
@@ -251,6 +254,7 @@ where
         let n = self.order as f64;
         // One of the last two may vanish where the solution is even or odd.
         let error = Real::lit(last.max(before.powf(n / (n - 1.0))));
-        Ok(LocalError { error, length: step.h.abs() * group.norm(&w.f[0]) })
+        let length = step.h.abs() * group.norm(&w.f[0]);
+        Ok(ratio_of_relative(tolerance, error, from, length))
     }
 }

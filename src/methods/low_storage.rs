@@ -18,15 +18,16 @@
 //! back to O(h^{m+1}). The map is exp. Preserves: the group, and what the action leaves invariant.
 //! Cost: s f, s exponentials.
 
-use super::embedded::without_pair;
+use super::embedded::{ratio_in_algebra, without_pair};
 use super::tableau::pad;
-use super::{Embedded, LocalError, Method, Step};
+use super::{Embedded, Method, Step};
 use crate::chart::ChartStore;
 use crate::error::{Error, StepError};
 use crate::groups::LieAlgebra;
 use crate::maps::{CoordinateMap, Exp};
 use crate::problems::{AlgOf, PointOf, Problem, ScalarOf};
 use crate::scalar::Real;
+use crate::tolerance::Tolerance;
 
 /// The coefficients of a method in Williamson's 2N form with S stages.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -206,7 +207,7 @@ impl<P: Problem> Inner<P>
 where
     Exp: CoordinateMap<P::Group>,
 {
-    /// `to` ← the step from p; the last increment and the length of the way.
+    /// `to` ← the step from p, and u ← the last increment; returns the length of the way where it is asked for.
     #[inline(always)]
     fn advance<const S: usize>(
         &mut self,
@@ -216,10 +217,10 @@ where
         p: &PointOf<P>,
         to: &mut PointOf<P>,
         with_length: bool,
-    ) -> Result<LocalError<ScalarOf<P>>, StepError> {
+    ) -> Result<ScalarOf<P>, StepError> {
         let (alg, lit) = (problem.group(), ScalarOf::<P>::lit);
         let Inner { sum, k, u, aside, chart } = self;
-        let mut local = LocalError { error: lit(0.0), length: lit(0.0) };
+        let mut length = lit(0.0);
         for i in 0..table.stages() {
             let from = match i {
                 0 => p,
@@ -242,12 +243,11 @@ where
             alg.set_zero(u);
             alg.axpy(lit(table.b[i]), sum, u);
             if with_length {
-                local.error = alg.norm(u);
-                local.length += local.error;
+                length += alg.norm(u);
             }
             chart.lambda(u, to)?;
         }
-        Ok(local)
+        Ok(length)
     }
 }
 
@@ -303,14 +303,15 @@ where
         &self,
         problem: &P,
         step: Step<ScalarOf<P>>,
+        tolerance: &Tolerance,
         from: &PointOf<P>,
         LowStorageWork { inner, .. }: &mut Self::Work,
         to: &mut PointOf<P>,
-    ) -> Result<LocalError<ScalarOf<P>>, StepError> {
-        let local = inner.advance(&self.0, problem, step, from, to, true)?;
-        match self.0.embedded {
-            Some(_) => Ok(local),
-            None => Ok(LocalError { error: ScalarOf::<P>::lit(f64::INFINITY), ..local }),
-        }
+    ) -> Result<ScalarOf<P>, StepError> {
+        let length = inner.advance(&self.0, problem, step, from, to, true)?;
+        Ok(match self.0.embedded {
+            Some(_) => ratio_in_algebra(problem, tolerance, &inner.u, from, length),
+            None => ScalarOf::<P>::lit(f64::INFINITY),
+        })
     }
 }

@@ -41,7 +41,7 @@ pub use composition::{
 };
 pub use dmv::{DMV2, DMV4, DMV6, DMV8, DMV10, Dmv};
 pub use doubling::Doubling;
-pub use embedded::{Embedded, LocalError};
+pub use embedded::Embedded;
 pub use energy_casimir::EnergyCasimir;
 pub use exact::ExactMotion;
 pub use fluid_midpoint::{FluidMidpoint, MidpointRule};
@@ -76,6 +76,14 @@ pub struct Step<S> {
     pub t: S,
     /// The size; negative when time runs backward.
     pub h: S,
+}
+
+impl<S: Real> Step<S> {
+    /// The step from the same start to t + θh.
+    #[inline]
+    pub fn part(self, theta: f64) -> Self {
+        Step { h: S::lit(theta) * self.h, ..self }
+    }
 }
 
 /// Steps of one size, one after the other.
@@ -142,6 +150,47 @@ pub trait Method<P: Problem> {
         y: &mut PointOf<P>,
         work: &mut Self::Work,
     ) -> Result<(), StepError>;
+
+    /// The order of [`interpolate`](Self::interpolate): its error at a θ that is held is O(h^(order + 1)).
+    fn dense_order(&self, problem: &P) -> usize {
+        self.order(problem)
+    }
+
+    /// Prepare [`interpolate`](Self::interpolate) for `step`, which went from `from` to `to`, and which was the
+    /// last that `work` was used for. What a continuous extension needs beyond the step is evaluated here, once
+    /// a step, and only where output or an event asks for it. The default has nothing to prepare.
+    ///
+    /// # Errors
+    /// Why a stage could not be evaluated.
+    fn prepare(
+        &self,
+        _problem: &P,
+        _step: Step<ScalarOf<P>>,
+        _from: &PointOf<P>,
+        _to: &PointOf<P>,
+        _work: &mut Self::Work,
+    ) -> Result<(), StepError> {
+        Ok(())
+    }
+
+    /// `at` ← the approximation at t + θh, 0 < θ < 1, on M: the continuous extension of the step that
+    /// [`prepare`](Self::prepare) was called for. The default is a step of size θh from `from`: the order is that
+    /// of the method, the cost a whole step.
+    ///
+    /// # Errors
+    /// Why the point could not be computed.
+    fn interpolate(
+        &self,
+        problem: &P,
+        step: Step<ScalarOf<P>>,
+        theta: f64,
+        from: &PointOf<P>,
+        work: &mut Self::Work,
+        at: &mut PointOf<P>,
+    ) -> Result<(), StepError> {
+        problem.action().assign(problem.group(), from, at);
+        self.step(problem, step.part(theta), at, work)
+    }
 
     /// Take these steps. After each the numbers of y must be finite ([`Action::is_finite`]).
     ///

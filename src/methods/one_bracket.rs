@@ -14,15 +14,16 @@
 //! Phil. Trans. R. Soc. A 357 (1999); F. Casas, A. Iserles, Explicit Magnus expansions for nonlinear
 //! equations, J. Phys. A 39 (2006).
 
-use super::embedded::without_pair;
+use super::embedded::{ratio_in_algebra, without_pair};
 use super::stages::Stages;
 use super::tableau::pad;
-use super::{Embedded, LocalError, Method, Step};
+use super::{Embedded, Method, Step};
 use crate::error::{Error, StepError};
 use crate::groups::LieAlgebra;
 use crate::maps::{CoordinateMap, Exp};
 use crate::problems::{AlgOf, PointOf, Problem, ScalarOf};
 use crate::scalar::Real;
+use crate::tolerance::Tolerance;
 
 /// An increment h Σ w_j k_j + h² \[k_1, Σ x_j k_j\].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -253,10 +254,11 @@ where
         &self,
         problem: &P,
         step: Step<ScalarOf<P>>,
+        tolerance: &Tolerance,
         from: &PointOf<P>,
         OneBracketWork { inner, .. }: &mut Self::Work,
         to: &mut PointOf<P>,
-    ) -> Result<LocalError<ScalarOf<P>>, StepError> {
+    ) -> Result<ScalarOf<P>, StepError> {
         let alg = problem.group();
         let done = inner.advance(&self.0, problem, step, from, to);
         done.map_err(|error| inner.stages.blame(problem, error))?;
@@ -264,9 +266,9 @@ where
         let length = alg.norm(u);
         alg.axpy(ScalarOf::<P>::lit(-1.0), u, v);
         let error = match self.0.embedded {
-            Some(_) => alg.norm(v),
+            Some(_) => ratio_in_algebra(problem, tolerance, v, from, length),
             None => ScalarOf::<P>::lit(f64::INFINITY),
         };
-        Ok(LocalError { error, length })
+        Ok(error)
     }
 }

@@ -7,10 +7,11 @@
 //! steps of two products; QR: Gram–Schmidt twice).
 //! Source: Hairer, Lubich, Wanner, Geometric Numerical Integration, IV.4; Celledoni & Owren, 1.
 
-use super::{Embedded, LocalError, Method, Step};
+use super::{Embedded, Method, Step};
 use crate::error::{Error, StepError};
 use crate::problems::{Orthogonal, PointOf, Projection, ScalarOf};
 use crate::space::Metric;
+use crate::tolerance::Tolerance;
 
 /// A method followed by a projection.
 ///
@@ -87,12 +88,14 @@ impl<P: Orthogonal, M: Embedded<P>> Embedded<P> for ProjectionMethod<M> {
         &self,
         problem: &P,
         step: Step<ScalarOf<P>>,
+        tolerance: &Tolerance,
         from: &PointOf<P>,
         work: &mut Self::Work,
         to: &mut PointOf<P>,
-    ) -> Result<LocalError<ScalarOf<P>>, StepError> {
-        let local = self.base.step_with_error(problem, step, from, &mut work.base, to)?;
+    ) -> Result<ScalarOf<P>, StepError> {
+        let ratio =
+            self.base.step_with_error(problem, step, tolerance, from, &mut work.base, to)?;
         problem.project(self.how, to)?;
-        Ok(local)
+        Ok(ratio)
     }
 }

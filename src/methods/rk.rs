@@ -4,15 +4,16 @@
 //! Preserves: linear invariants only. Cost: S evaluations of F.
 //! Source: Hairer, Nørsett, Wanner I, p. 138.
 
-use super::embedded::{between, without_pair};
+use super::embedded::without_pair;
 use super::stages::copies;
 use super::tableau::{ErrorEstimate, fold_error};
-use super::{Embedded, LocalError, Method, Step, Tableau};
+use super::{Embedded, Method, Step, Tableau};
 use crate::error::{Error, StepError};
 use crate::problems::FieldStore;
 use crate::problems::{Ambient, PointOf, ScalarOf};
 use crate::scalar::Real;
-use crate::space::{LinearSpace, Metric};
+use crate::space::{Gap, LinearSpace, Metric};
+use crate::tolerance::{Rule, Tolerance, ratio};
 
 /// An explicit Runge–Kutta method on the entries of y.
 #[derive(Clone, Copy, Debug)]
@@ -96,22 +97,25 @@ impl<P: Ambient, const S: usize> Embedded<P> for Rk<S> {
         &self,
         problem: &P,
         step: Step<ScalarOf<P>>,
+        tolerance: &Tolerance,
         from: &PointOf<P>,
         work: &mut Self::Work,
         to: &mut PointOf<P>,
-    ) -> Result<LocalError<ScalarOf<P>>, StepError> {
+    ) -> Result<ScalarOf<P>, StepError> {
         let stages = self.0.all_stages();
         self.advance(stages, problem, step, from, work)?;
         let RkWork { k, z, .. } = work;
         to.assign(z);
-        let minus = ScalarOf::<P>::lit(-1.0);
+        let length = to.distance(from);
         let mut size = |weights: &[f64; S]| {
-            z.assign(&k[0]);
-            z.add(minus, &k[0]); // 0
+            z.clear();
             for (&w, k) in weights[..stages].iter().zip(k.iter()) {
                 z.add(step.h * ScalarOf::<P>::lit(w), k);
             }
-            z.size()
+            match tolerance.rule() {
+                Rule::PerLength => ratio(z.size(), tolerance.per_length(length)),
+                Rule::PerStep => to.error_ratio(Gap::Of(z), &mut tolerance.scales()),
+            }
         };
         let error = match self.0.error {
             Some(ErrorEstimate { e, damp, .. }) => fold_error(size(&e), damp.map(|d| size(&d))),
@@ -120,6 +124,6 @@ impl<P: Ambient, const S: usize> Embedded<P> for Rk<S> {
         if !error.is_finite() && self.0.error.is_some() {
             return Err(StepError::NotFinite { what: "the error estimate" });
         }
-        Ok(between(error, from, to))
+        Ok(error)
     }
 }

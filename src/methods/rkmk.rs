@@ -10,15 +10,16 @@
 //! error estimate looks at is left out when none is asked for.
 //! Source: H. Munthe-Kaas, High order Runge–Kutta methods on manifolds, Appl. Numer. Math. 29 (1999).
 
-use super::embedded::without_pair;
+use super::embedded::{ratio_in_algebra, without_pair};
 use super::stages::Stages;
 use super::tableau::{ErrorEstimate, fold_error};
-use super::{Embedded, LocalError, Method, Step, Tableau};
+use super::{Embedded, Method, Step, Tableau};
 use crate::error::{Error, StepError};
 use crate::groups::LieAlgebra;
 use crate::maps::CoordinateMap;
 use crate::problems::{PointOf, Problem, ScalarOf};
 use crate::scalar::Real;
+use crate::tolerance::Tolerance;
 
 /// RKMK with S stages in the coordinates Ψ.
 ///
@@ -118,10 +119,11 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> Embedded<P> for R
         &self,
         problem: &P,
         step: Step<ScalarOf<P>>,
+        tolerance: &Tolerance,
         from: &PointOf<P>,
         RkmkWork { stages, .. }: &mut Self::Work,
         to: &mut PointOf<P>,
-    ) -> Result<LocalError<ScalarOf<P>>, StepError> {
+    ) -> Result<ScalarOf<P>, StepError> {
         let alg = problem.group();
         let done = self.advance(self.tableau.all_stages(), problem, step, from, stages, to);
         done.map_err(|error| stages.blame(problem, error))?;
@@ -129,7 +131,7 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> Embedded<P> for R
         let length = alg.norm(u);
         let mut size = |weights: &[f64; S]| {
             alg.combine(step.h, weights, k, u);
-            alg.norm(u)
+            ratio_in_algebra(problem, tolerance, u, from, length)
         };
         let error = match self.tableau.error {
             Some(ErrorEstimate { e, damp, .. }) => fold_error(size(&e), damp.map(|d| size(&d))),
@@ -139,6 +141,6 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> Embedded<P> for R
             let error = StepError::NotFinite { what: "the error estimate" };
             return Err(stages.blame(problem, error));
         }
-        Ok(LocalError { error, length })
+        Ok(error)
     }
 }

@@ -154,3 +154,10 @@ impl Trig for f64 {
         }
     }
 }
+
+/// max(a, b); not a number where b is not.
+#[inline]
+pub(crate) fn larger<S: Real>(a: S, b: S) -> S {
+    let [c] = (b - a).branch(0.0, || [a], || [b]);
+    c
+}

@@ -130,13 +130,13 @@ fn spans_and_arguments() {
     for bad in [f64::NAN, f64::INFINITY, -1.0] {
         assert!(Adaptive::new(bad, 1.0).expect_err("rtol").to_string().starts_with("rtol"));
         assert!(Adaptive::new(1.0, bad).expect_err("atol").to_string().starts_with("atol"));
-        assert!(tols.min_step(bad).expect_err("h").to_string().starts_with("min_step"));
-        assert!(tols.max_step(bad).expect_err("h").to_string().starts_with("max_step"));
-        assert!(tols.first_step(bad).expect_err("h").to_string().starts_with("first_step"));
+        assert!(tols.clone().min_step(bad).expect_err("h").to_string().starts_with("min_step"));
+        assert!(tols.clone().max_step(bad).expect_err("h").to_string().starts_with("max_step"));
+        assert!(tols.clone().first_step(bad).expect_err("h").to_string().starts_with("first_step"));
     }
-    assert!(Adaptive::new(0.0, 0.0).is_err() && tols.max_steps(0).is_err());
-    assert!(tols.first_step(0.0).is_err());
-    assert!(tols.max_step(0.1).and_then(|c| c.min_step(0.2)).is_err());
+    assert!(Adaptive::new(0.0, 0.0).is_err() && tols.clone().max_steps(0).is_err());
+    assert!(tols.clone().first_step(0.0).is_err());
+    assert!(tols.clone().max_step(0.1).and_then(|c| c.min_step(0.2)).is_err());
     // No pair, no adaptive run; step doubling is the way.
     let error = go(&body, &Rkmk::new(RK4, Exp), [0.0, 1.0], &tols, &start).expect_err("no pair");
     assert!(error.to_string().contains("`rk4`"), "{error}");
@@ -318,7 +318,7 @@ fn blow_up_and_discontinuities() {
     let exact = turn(&(axis * (0.5 + 25.0))) * start;
     assert!((y - exact).norm() < 1e-5, "{} {stats:?}", (y - exact).norm());
     let problem = spin(|t| if t < 0.5 { 1.0 } else { 1e30 });
-    let tols = tols.max_steps(20_000).expect("limits");
+    let tols = tols.clone().max_steps(20_000).expect("limits");
     let error = go(&problem, &method, [0.0, 1.0], &tols, &start).expect_err("too fast");
     assert!(matches!(
         error,

@@ -3,7 +3,7 @@
 
 use crate::support::gap;
 use crate::support::orders::{
-    MEMBERS, clock, measure_over, reference, reference_after, slopes, wave,
+    MEMBERS, clock, in_units_of_one, measure_over, reference, reference_after, slopes, wave,
 };
 use crate::support::points::Points;
 use lieflow::maps::{Cay, Exp};
@@ -90,8 +90,8 @@ fn estimates_have_their_orders() {
                     let logs: f64 = flows.iter().map(|(flow, start)| {
                         let mut work = method.work(flow, start).unwrap();
                         let (step, mut to) = (Step { n: 0, t: 0.3, h }, start.clone());
-                        method.step_with_error(flow, step, start, &mut work, &mut to)
-                            .unwrap().error.ln()
+                        method.step_with_error(flow, step, &in_units_of_one(), start, &mut work, &mut to)
+                            .unwrap().ln()
                     }).sum();
                     (logs / flows.len() as f64).exp()
                 });

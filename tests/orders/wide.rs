@@ -21,7 +21,7 @@ mod maps;
 mod members;
 mod square;
 
-use crate::support::orders::{Report, slopes};
+use crate::support::orders::{Report, in_units_of_one, slopes};
 use fields::{CoupledField, Kind, Wide};
 use group::Matrices;
 use lieflow::catalog::Needs;
@@ -122,8 +122,9 @@ where
         let logs = flows.iter().map(|(flow, start)| {
             let (mut work, mut to) = (method.work(flow, start).unwrap(), start.clone());
             let step = Step { n: 0, t: D::lit(0.25), h: D::lit(h) };
-            let found = method.step_with_error(flow, step, start, &mut work, &mut to).unwrap();
-            found.error.value().ln()
+            let found =
+                method.step_with_error(flow, step, &in_units_of_one(), start, &mut work, &mut to);
+            found.unwrap().value().ln()
         });
         (logs.sum::<f64>() / flows.len() as f64).exp()
     });

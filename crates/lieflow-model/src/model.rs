@@ -48,7 +48,7 @@ impl Layer {
 }
 
 /// Steps that are chosen by their error.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Steps {
     /// From when to when.
     pub t_span: [f64; 2],

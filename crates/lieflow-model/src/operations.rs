@@ -7,7 +7,7 @@ use std::rc::Rc;
 
 use lieflow::adaptive::{AdaptiveError, integrate_adaptive};
 use lieflow::catalog::MethodSpec;
-use lieflow::methods::{AnyMethod, Embedded, LocalError, Method};
+use lieflow::methods::{AnyMethod, Embedded, Method};
 use lieflow::problems::{PointOf, ScalarOf};
 use lieflow::scalar::{Counted, Real};
 use lieflow::{Error, SaveAt, Step, StepError, TimeGrid};
@@ -101,11 +101,12 @@ impl<P: Runnable> Embedded<P> for CountedMethod<P> {
         &self,
         problem: &P,
         step: Step<ScalarOf<P>>,
+        tolerance: &lieflow::tolerance::Tolerance,
         from: &PointOf<P>,
         work: &mut Self::Work,
         to: &mut PointOf<P>,
-    ) -> Result<LocalError<ScalarOf<P>>, StepError> {
-        self.tally.count(|| self.method.step_with_error(problem, step, from, work, to))
+    ) -> Result<ScalarOf<P>, StepError> {
+        self.tally.count(|| self.method.step_with_error(problem, step, tolerance, from, work, to))
     }
 }
 
@@ -156,7 +157,7 @@ fn operations_chosen<P: Runnable>(
         // Behind a pointer again: the driver is compiled for one type of method.
         let counted = CountedMethod { method: method.clone(), tally: tally.clone() };
         let counted = AnyMethod::embedded(counted);
-        let (mut y, control) = (y.clone(), control.max_steps(steps).ok()?);
+        let (mut y, control) = (y.clone(), control.clone().max_steps(steps).ok()?);
         let see: &mut Observer<'_, P> = &mut |_, _| {};
         match integrate_adaptive(problem, &counted, *t_span, &control, &SaveAt::Ends, &mut y, see) {
             Ok(_) | Err(AdaptiveError::TooManySteps { .. }) => tally.mean(),

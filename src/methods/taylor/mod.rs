@@ -26,12 +26,14 @@ use nalgebra::Vector3;
 pub use lanes::Wide;
 use series::{Advance, Body, OneStep, reach, rotation};
 
+use super::embedded::ratio_of_relative;
 use super::simo_wong::turn_by;
-use super::{Embedded, LocalError, Method, Step};
+use super::{Embedded, Method, Step};
 use crate::error::{Error, StepError};
 use crate::groups::{LieAlgebra, So3};
 use crate::problems::{Frame, FreeBody, PointOf, ScalarOf};
 use crate::scalar::Real;
+use crate::tolerance::Tolerance;
 
 /// The Taylor method of order N, 4 ≤ N ≤ 16: another N does not compile.
 ///
@@ -149,10 +151,11 @@ where
         &self,
         problem: &P,
         Step { h, .. }: Step<ScalarOf<P>>,
+        tolerance: &Tolerance,
         from: &PointOf<P>,
         (): &mut (),
         to: &mut PointOf<P>,
-    ) -> Result<LocalError<ScalarOf<P>>, StepError> {
+    ) -> Result<ScalarOf<P>, StepError> {
         let (m, mut frame) = problem.load(from);
         let j = problem.inverse_inertia();
         let body = Body::new(j);
@@ -164,6 +167,6 @@ where
         let error = 2.0 * last.sqrt().max(before.powf(0.5 * n / (n - 1.0)));
         let omega = Vector3::new(j[0] * m[0], j[1] * m[1], j[2] * m[2]);
         let length = h.abs() * So3::new().norm(&omega);
-        Ok(LocalError { error: Real::lit(error), length })
+        Ok(ratio_of_relative(tolerance, Real::lit(error), from, length))
     }
 }

@@ -4,6 +4,7 @@ use lieflow::Step;
 use lieflow::catalog::{MAPS, MethodSpec, Needs, TABLEAUS, all_methods};
 use lieflow::methods::{Embedded, Method};
 use lieflow::problems::RigidBody;
+use lieflow::tolerance::{Rule, Tolerance};
 use nalgebra::Vector3;
 
 use super::says;
@@ -63,8 +64,9 @@ fn estimate(spec: &MethodSpec) -> Result<(usize, f64), lieflow::Error> {
         let (start, mut to) = (Vector3::new(1.0, 0.8, -1.2), Vector3::zeros());
         let mut work = method.work(&body(), &start).unwrap();
         let step = Step { n: 0, t: 0.0, h: 0.4 };
-        let local = method.step_with_error(&body(), step, &start, &mut work, &mut to).unwrap();
-        (method.error_order(&body()).unwrap(), local.error)
+        let one = Tolerance::new(0.0, 1.0).unwrap().by(Rule::PerLength);
+        let found = method.step_with_error(&body(), step, &one, &start, &mut work, &mut to);
+        (method.error_order(&body()).unwrap(), found.unwrap())
     })
 }
 

@@ -1,5 +1,7 @@
 //! Order from errors on a grid fixed in advance.
 
+use lieflow::tolerance::{Rule, Tolerance};
+
 /// Each slope may differ from the order by so much.
 const TOLERANCE: f64 = 0.15;
 
@@ -81,4 +83,9 @@ pub(super) fn pairwise(points: &[(f64, f64)]) -> Vec<f64> {
 /// The pairwise slopes of errors at these numbers of steps.
 pub(crate) fn slopes(steps: &[f64], errors: &[f64]) -> Vec<f64> {
     pairwise(&steps.iter().copied().zip(errors.iter().copied()).collect::<Vec<_>>())
+}
+
+/// Tolerances by which the ratio that a step returns is the norm of its error.
+pub(crate) fn in_units_of_one() -> Tolerance {
+    Tolerance::new(0.0, 1.0).expect("tolerances").by(Rule::PerLength)
 }

@@ -12,7 +12,7 @@ pub(crate) use by_name::{
     clocks, every_explicit_method_on, every_linear_method_on, every_method_on, waves,
 };
 pub(crate) use ensemble::{MEMBERS, Run, measure_over, order_over};
-pub(crate) use estimate::{Estimate, estimate, grid, slopes};
+pub(crate) use estimate::{Estimate, estimate, grid, in_units_of_one, slopes};
 pub(crate) use flow::{
     Field, Flow, Reference, clock, family, flow, inertia, measure, measure_as, reference,
     reference_after, start, wave,

@@ -119,7 +119,7 @@ impl<'a> Watch<'a> {
     /// Run the scene. A step that fails is an end, not an error.
     fn run(&self, sink: &mut Sink<'_>) -> Result<Done, CliError> {
         let Scene { method, grid, save, .. } = self.scene;
-        match self.scene.adaptive {
+        match self.scene.adaptive.clone() {
             None => match self.model.run(method, grid, save, sink) {
                 Ok(stats) => Ok(Done {
                     steps: stats.steps,

@@ -1,0 +1,212 @@
+//! Tolerances: what the error of a step is compared with.
+//!
+//! A step is accepted when the largest of the ratios of its parts is at most 1:
+//!
+//! | part | error | compared with |
+//! |---|---|---|
+//! | of a linear space: a vector, a momentum | ‖error‖ | atol + rtol·‖y‖ |
+//! | the same, with an atol for each component | \|error_i\| | atol_i + rtol·\|y_i\| |
+//! | of a group: a rotation, a quaternion, a matrix | the angle, in radian (‖e‖ in 𝔤) | atol + rtol |
+//! | any, by [`Rule::PerLength`] | ‖error‖ of all parts together | atol + rtol·(the length of the step) |
+//!
+//! A product has a part for each factor, SE(3) has two (rotation, translation), a power Gᴺ shares the parts
+//! of G.
+
+use crate::error::Error;
+use crate::scalar::{Real, larger};
+
+/// What rtol is relative to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Rule {
+    /// The size of the point: the rule of SciPy, DifferentialEquations.jl and diffrax.
+    #[default]
+    PerStep,
+    /// The length of the step: the error of a run is about rtol times the way that it goes.
+    PerLength,
+}
+
+/// The tolerance of a part.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PartTolerance {
+    rtol: f64,
+    atol: f64,
+    components: Vec<f64>,
+}
+
+/// Is this a tolerance?
+fn tolerance(arg: &'static str, x: f64) -> Result<f64, Error> {
+    match x >= 0.0 && x.is_finite() {
+        true => Ok(x),
+        false => Err(Error::out_of_range(arg, x, "a finite number ≥ 0")),
+    }
+}
+
+impl PartTolerance {
+    /// One rtol and one atol.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for a tolerance that is negative or not finite, and when both are 0.
+    pub fn new(rtol: f64, atol: f64) -> Result<Self, Error> {
+        let (rtol, atol) = (tolerance("rtol", rtol)?, tolerance("atol", atol)?);
+        if rtol == 0.0 && atol == 0.0 {
+            return Err(Error::out_of_range("rtol", rtol, "> 0 when atol is 0"));
+        }
+        Ok(PartTolerance { rtol, atol, components: Vec::new() })
+    }
+
+    /// One rtol, and an atol for each component of a vector.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for a tolerance that is negative or not finite, and when rtol and an atol are 0.
+    pub fn per_component(rtol: f64, atol: impl Into<Vec<f64>>) -> Result<Self, Error> {
+        let components = atol.into();
+        let mut least = f64::INFINITY;
+        for &x in &components {
+            least = least.min(tolerance("atol", x)?);
+        }
+        let least = if components.is_empty() { 0.0 } else { least };
+        Ok(PartTolerance { components, ..PartTolerance::new(rtol, least)? })
+    }
+
+    /// What an error of a part of this size is compared with.
+    #[inline]
+    pub fn scale<S: Real>(&self, size: S) -> S {
+        S::lit(self.atol) + S::lit(self.rtol) * size
+    }
+
+    /// The largest ratio of the entries of an error and their scales, where there is an atol for each.
+    #[inline]
+    pub(crate) fn largest<S: Real>(
+        &self,
+        errors: impl Iterator<Item = S>,
+        entries: impl Iterator<Item = S>,
+    ) -> Option<S> {
+        if self.components.is_empty() {
+            return None;
+        }
+        let mut most = S::lit(0.0);
+        for ((error, x), &atol) in errors.zip(entries).zip(&self.components) {
+            most = larger(most, ratio(error.abs(), S::lit(atol) + S::lit(self.rtol) * x.abs()));
+        }
+        Some(most)
+    }
+}
+
+/// error/scale, 0 for no error.
+#[inline]
+pub(crate) fn ratio<S: Real>(error: S, scale: S) -> S {
+    if error == S::lit(0.0) { error } else { error / scale }
+}
+
+/// The tolerances of a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tolerance {
+    /// One for all parts, or one for each.
+    parts: Vec<PartTolerance>,
+    rule: Rule,
+}
+
+impl Tolerance {
+    /// One rtol and one atol for all parts.
+    ///
+    /// # Errors
+    /// As [`PartTolerance::new`].
+    pub fn new(rtol: f64, atol: f64) -> Result<Self, Error> {
+        Ok(PartTolerance::new(rtol, atol)?.into())
+    }
+
+    /// One tolerance for each part of the points, in their order.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] without a part.
+    pub fn of_parts(parts: impl Into<Vec<PartTolerance>>) -> Result<Self, Error> {
+        let parts = parts.into();
+        match parts.len() {
+            0 => Err(Error::out_of_range("tolerances", 0.0, "at least one")),
+            _ => Ok(Tolerance { parts, rule: Rule::default() }),
+        }
+    }
+
+    /// These tolerances by another rule. [`Rule::PerLength`] knows no parts: it takes the first.
+    pub fn by(self, rule: Rule) -> Self {
+        Tolerance { rule, ..self }
+    }
+
+    /// The rule.
+    pub fn rule(&self) -> Rule {
+        self.rule
+    }
+
+    /// The scale of a part of size 1: what the first step is chosen by.
+    pub(crate) fn of_unit_size(&self) -> f64 {
+        self.parts.iter().map(|part| part.scale(1.0)).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The tolerance of all parts together, by [`Rule::PerLength`].
+    #[inline]
+    pub(crate) fn per_length<S: Real>(&self, length: S) -> S {
+        self.parts[0].scale(length)
+    }
+
+    /// The tolerances of the parts, in their order.
+    #[inline]
+    pub fn scales(&self) -> Scales<'_> {
+        Scales { parts: &self.parts, next: 0 }
+    }
+
+    /// Check that a point with this many parts has a tolerance for each.
+    pub(crate) fn check(&self, parts: usize) -> Result<(), Error> {
+        let given = self.parts.len();
+        match given == 1 || given == parts {
+            true => Ok(()),
+            false => Err(Error::out_of_range(
+                "tolerances",
+                given as f64,
+                format!("1 for all parts, or {parts}, one for each part of a point"),
+            )),
+        }
+    }
+}
+
+impl From<PartTolerance> for Tolerance {
+    fn from(part: PartTolerance) -> Self {
+        Tolerance { parts: vec![part], rule: Rule::default() }
+    }
+}
+
+/// The tolerances of the parts of a point, one after the other.
+#[derive(Clone, Debug)]
+pub struct Scales<'a> {
+    parts: &'a [PartTolerance],
+    next: usize,
+}
+
+impl<'a> Scales<'a> {
+    /// The tolerance of the next part.
+    #[inline]
+    pub fn part(&mut self) -> &'a PartTolerance {
+        let part = self.parts.get(self.next).unwrap_or(&self.parts[0]);
+        self.next += 1;
+        part
+    }
+    /// The largest of the ratios of copies that share their tolerances.
+    #[inline]
+    pub fn for_each_copy<S: Real>(
+        &mut self,
+        copies: usize,
+        mut ratio: impl FnMut(usize, &mut Self) -> S,
+    ) -> S {
+        let start = self.clone();
+        let mut most = S::lit(0.0);
+        for i in 0..copies {
+            *self = start.clone();
+            most = larger(most, ratio(i, self));
+        }
+        most
+    }
+    /// How many parts were asked for.
+    pub(crate) fn asked(&self) -> usize {
+        self.next
+    }
+}
