@@ -11,11 +11,11 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use lieflow::adaptive::{Adaptive, integrate_adaptive};
 use lieflow::maps::Exp;
 use lieflow::methods::{DMV2, MR2, MR4, Method, Rk, Rkmk, Taylor, tableau::DOP853, tableau::RK4};
 use lieflow::problems::{Exact, RigidBody, RigidBodyAttitude, RigidBodyState};
 use lieflow::{SaveAt, Step};
+use lieflow::{StepControl, integrate_adaptive};
 use nalgebra::{Matrix3, Vector3};
 
 type Run<'a> = (String, Box<dyn FnMut() + 'a>);
@@ -254,7 +254,7 @@ fn dop853<'a>(exact: &'a Matrix3<f64>, tol: f64, on_group: bool) -> Integration<
     let body = RigidBodyAttitude::<f64>::new(TOP, SPIN).expect("a body");
     Box::new(move || {
         let mut g = Matrix3::identity();
-        let control = Adaptive::new(0.0, black_box(tol)).expect("a tolerance");
+        let control = StepControl::new(0.0, black_box(tol)).expect("a tolerance");
         let save = SaveAt::Ends;
         let done = match on_group {
             true => integrate_adaptive(

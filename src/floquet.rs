@@ -11,9 +11,9 @@ use faer::Mat;
 use crate::actions::LeftTranslation;
 use crate::error::{Error, StepError};
 use crate::groups::{GroupMatrix, LieGroup, MatrixGroup};
-use crate::integrate::{RunError, SaveAt, TimeGrid, integrate};
 use crate::methods::Method;
 use crate::problems::{PointOf, Problem};
+use crate::solve::{RunError, SaveAt, TimeGrid, integrate};
 
 /// g at the end of `span` with g = 𝟙 at its start, by `steps` steps: over a period, the monodromy.
 ///

@@ -31,8 +31,7 @@
 //! | [`problems`] | f : M → 𝔤 | [`Problem`]; rigid bodies, tops, Lie–Poisson, isospectral and other flows |
 //! | [`chart`] | λ_p, f̃ | the chart around a point |
 //! | [`methods`] | one step | [`Method`]; [`Rkmk`](methods::Rkmk), [`Rk`](methods::Rk) |
-//! | [`integrate`](fn@integrate) | many steps | [`TimeGrid`], [`SaveAt`] |
-//! | [`adaptive`] | | step sizes from a tolerance |
+//! | [`solve`] | many steps | [`Solve`], [`Solution`], [`Event`], [`Integrator`] |
 //! | [`floquet`] | | the monodromy of a linear system with periodic coefficients |
 //! | [`ensemble`] | | many bodies at once |
 //! | [`check`] | | the laws of groups and maps, for groups of other crates |
@@ -70,7 +69,6 @@
 struct Readme;
 
 pub mod actions;
-pub mod adaptive;
 pub mod catalog;
 pub mod chart;
 pub mod check;
@@ -80,7 +78,6 @@ pub mod ensemble;
 pub mod error;
 pub mod floquet;
 pub mod groups;
-mod integrate;
 pub mod maps;
 pub mod methods;
 pub mod prelude;
@@ -88,13 +85,17 @@ pub mod problems;
 mod quadrature;
 pub mod scalar;
 pub mod so3;
+pub mod solve;
 pub mod space;
 pub mod tolerance;
 
 pub use actions::Action;
 pub use error::{Error, Failure, NoLogarithm, StepError};
 pub use groups::{LieAlgebra, LieGroup};
-pub use integrate::{RESTORE_EVERY, RunError, SaveAt, Stats, TimeGrid, integrate};
 pub use maps::CoordinateMap;
 pub use methods::{Method, Step};
 pub use problems::Problem;
+pub use solve::{
+    Direction, Event, Integrator, RESTORE_EVERY, RunError, SaveAt, Solution, Solve, Stats,
+    StepControl, TimeGrid, integrate, integrate_adaptive,
+};

@@ -3,7 +3,10 @@
 pub use crate::actions::{Coadjoint, LeftTranslation, Linear};
 pub use crate::catalog::MethodsByName;
 pub use crate::groups::{LieAlgebra, LieGroup, MatrixGroup, Se3, So3};
-pub use crate::integrate::{SaveAt, TimeGrid, integrate};
 pub use crate::maps::{Cay, Exp};
-pub use crate::methods::{AnyMethod, Rk, Rkmk, tableau::RK4};
+pub use crate::methods::{
+    AnyMethod, Rk, Rkmk,
+    tableau::{DOPRI5, RK4},
+};
 pub use crate::problems::{Flow, Problem};
+pub use crate::solve::{Event, SaveAt, Solve, TimeGrid, integrate};

@@ -4,7 +4,6 @@
 
 use crate::draw::Draw;
 use faer::{Mat, c64};
-use lieflow::adaptive::{Adaptive, integrate_adaptive};
 use lieflow::groups::{
     Adjoint, AlgebraMatrix, ComplexMatrix, GroupMatrix, MatrixGroup, So3, UnitQuaternions, Unitary,
 };
@@ -15,6 +14,7 @@ use lieflow::maps::{
 use lieflow::methods::{Rkmk, tableau};
 use lieflow::problems::RigidBody;
 use lieflow::{Error, LieAlgebra, LieGroup, SaveAt, StepError, TimeGrid, integrate, so3};
+use lieflow::{StepControl, integrate_adaptive};
 use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::PI;
 
@@ -429,7 +429,7 @@ fn fixed_steps(data: &[u8]) {
 fn chosen_steps(data: &[u8]) {
     let mut draw = Draw(data);
     let span = [draw.number(), draw.number()];
-    let control = Adaptive::new(draw.number(), draw.number()).and_then(|c| c.max_steps(200));
+    let control = StepControl::new(draw.number(), draw.number()).and_then(|c| c.max_steps(200));
     let Ok(control) = control else { return };
     let Some((body, mut m)) = body(&mut draw) else { return };
     let finite = m.iter().all(|x| x.is_finite());

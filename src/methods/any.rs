@@ -10,7 +10,7 @@ use core::marker::PhantomData;
 use std::sync::Arc;
 
 use super::doubling::{doubled as step_doubled, within_halves};
-use super::{Embedded, EqualSteps, Method, Metric, Step};
+use super::{Embedded, EqualSteps, MapCounts, Method, Metric, Step};
 use crate::error::{Error, StepError};
 use crate::problems::{PointOf, Problem, ScalarOf};
 use crate::tolerance::Tolerance;
@@ -64,6 +64,8 @@ trait Inner<'p, P: Problem> {
     fn order(&self, problem: &P) -> usize;
     fn dense_order(&self, problem: &P) -> usize;
     fn evaluations(&self, problem: &P) -> Option<u64>;
+    fn map_counts(&self, problem: &P) -> Option<MapCounts>;
+    fn dense_evaluations(&self, problem: &P) -> [Option<u64>; 2];
     fn stays_on_manifold(&self) -> bool;
     fn pair(&self, problem: &P) -> Option<Pair>;
     fn stepper(&self, problem: &P, like: &PointOf<P>) -> Result<Box<dyn Stepper<P> + 'p>, Error>;
@@ -91,6 +93,8 @@ trait Stepper<P: Problem> {
         from: &PointOf<P>,
         to: &mut PointOf<P>,
     ) -> Result<ScalarOf<P>, StepError>;
+    fn iterations(&self) -> u64;
+    fn each_memory(&mut self, each: &mut dyn FnMut(&mut f64));
     fn prepare(
         &mut self,
         problem: &P,
@@ -191,6 +195,12 @@ where
     fn evaluations(&self, problem: &P) -> Option<u64> {
         self.method.evaluations(problem)
     }
+    fn map_counts(&self, problem: &P) -> Option<MapCounts> {
+        self.method.map_counts(problem)
+    }
+    fn dense_evaluations(&self, problem: &P) -> [Option<u64>; 2] {
+        self.method.dense_evaluations(problem)
+    }
     fn stays_on_manifold(&self) -> bool {
         self.method.stays_on_manifold()
     }
@@ -237,6 +247,12 @@ impl<P: Problem, M: Method<P>, E: Estimate<P, M>> Stepper<P> for MethodWithWork<
         to: &mut PointOf<P>,
     ) -> Result<ScalarOf<P>, StepError> {
         self.estimate.step(&self.method, problem, step, tolerance, from, &mut self.work, to)
+    }
+    fn iterations(&self) -> u64 {
+        self.method.iterations(&self.work)
+    }
+    fn each_memory(&mut self, each: &mut dyn FnMut(&mut f64)) {
+        self.method.each_memory(&mut self.work, each);
     }
     fn prepare(
         &mut self,
@@ -288,6 +304,18 @@ where
     }
     fn evaluations(&self, problem: &P) -> Option<u64> {
         self.inner.evaluations(problem)
+    }
+    fn map_counts(&self, problem: &P) -> Option<MapCounts> {
+        self.inner.map_counts(problem)
+    }
+    fn iterations(&self, work: &Self::Work) -> u64 {
+        work.stepper.iterations()
+    }
+    fn each_memory(&self, work: &mut Self::Work, each: &mut dyn FnMut(&mut f64)) {
+        work.stepper.each_memory(each);
+    }
+    fn dense_evaluations(&self, problem: &P) -> [Option<u64>; 2] {
+        self.inner.dense_evaluations(problem)
     }
     fn stays_on_manifold(&self) -> bool {
         self.inner.stays_on_manifold()

@@ -99,7 +99,7 @@ impl SeriesGroup for MatrixGroup {
 /// The Lie series method of a chosen order.
 ///
 /// ```
-/// use lieflow::adaptive::{Adaptive, integrate_adaptive};
+/// use lieflow::{StepControl, integrate_adaptive};
 /// use lieflow::groups::Sample;
 /// use lieflow::methods::LieSeries;
 /// use lieflow::problems::{LiePoisson, Problem, RigidBodyN};
@@ -110,7 +110,7 @@ impl SeriesGroup for MatrixGroup {
 /// let mut rng = rand_pcg::Pcg64::seed_from_u64(1);
 /// let mut m = body.group().sample_algebra(&mut rng, 1.0).into_mat();
 /// let before = body.hamiltonian(&m);
-/// let (method, control) = (LieSeries::new(12)?, Adaptive::new(0.0, 1e-12)?);
+/// let (method, control) = (LieSeries::new(12)?, StepControl::new(0.0, 1e-12)?);
 /// integrate_adaptive(&body, &method, [0.0, 10.0], &control, &SaveAt::Ends, &mut m, |_, _| {})?;
 /// assert!((body.hamiltonian(&m) - before).abs() < 1e-9);
 /// # Ok::<(), Box<dyn std::error::Error>>(())

@@ -107,6 +107,25 @@ impl EqualSteps {
     }
 }
 
+/// How often a step asks for the maps of 𝔤.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct MapCounts {
+    /// Ψ, formed or applied.
+    pub psi: u64,
+    /// dΨ⁻¹.
+    pub dpsi_inv: u64,
+    /// Brackets outside dΨ⁻¹.
+    pub brackets: u64,
+}
+
+impl MapCounts {
+    /// The counts of so many steps.
+    pub fn times(self, n: u64) -> Self {
+        let MapCounts { psi, dpsi_inv, brackets } = self;
+        MapCounts { psi: n * psi, dpsi_inv: n * dpsi_inv, brackets: n * brackets }
+    }
+}
+
 /// A method whose step is undone by the step back: Φ_{−h} ∘ Φ_h = id, to rounding. Its order is even,
 /// and a [`Composition`] raises it.
 pub trait Symmetric {}
@@ -125,6 +144,16 @@ pub trait Method<P: Problem> {
     /// step has as many; of its coefficients for a Taylor method.
     fn evaluations(&self, _problem: &P) -> Option<u64> {
         None
+    }
+
+    /// How often a step asks for Ψ, dΨ⁻¹ and brackets, where every step asks as often.
+    fn map_counts(&self, _problem: &P) -> Option<MapCounts> {
+        None
+    }
+
+    /// The iterations that implicit steps with this workspace took so far.
+    fn iterations(&self, _work: &Self::Work) -> u64 {
+        0
     }
 
     /// Does a step stay on M up to rounding? Then the driver takes the state back to M from time to
@@ -150,6 +179,10 @@ pub trait Method<P: Problem> {
         y: &mut PointOf<P>,
         work: &mut Self::Work,
     ) -> Result<(), StepError>;
+
+    /// Call `each` with every number that the workspace carries from one step to the next; most methods carry none.
+    /// It is saved with the state of a run.
+    fn each_memory(&self, _work: &mut Self::Work, _each: &mut dyn FnMut(&mut f64)) {}
 
     /// The order of [`interpolate`](Self::interpolate): its error at a θ that is held is O(h^(order + 1)).
     fn dense_order(&self, problem: &P) -> usize {
@@ -190,6 +223,11 @@ pub trait Method<P: Problem> {
     ) -> Result<(), StepError> {
         problem.action().assign(problem.group(), from, at);
         self.step(problem, step.part(theta), at, work)
+    }
+
+    /// Evaluations of f in [`prepare`](Self::prepare) and in [`interpolate`](Self::interpolate).
+    fn dense_evaluations(&self, problem: &P) -> [Option<u64>; 2] {
+        [Some(0), self.evaluations(problem)]
     }
 
     /// Take these steps. After each the numbers of y must be finite ([`Action::is_finite`]).

@@ -2,7 +2,6 @@
 //!
 //! `cargo test --test core scalars -- --nocapture` prints the counts next to Table 2 of the paper.
 
-use lieflow::adaptive::{Adaptive, integrate_adaptive};
 use lieflow::catalog::{MethodSpec, Needs};
 use lieflow::groups::{LieGroup, So3};
 use lieflow::maps::{CCSK, CCSK123, CCSK321, Cay, CoordinateMap, Exp};
@@ -10,6 +9,7 @@ use lieflow::methods::{Method, Rkmk, Step, tableau::DOPRI5, tableau::RK4};
 use lieflow::problems::{PointOf, RigidBody, RigidBodyAttitude};
 use lieflow::scalar::{Counted, Ops, Real};
 use lieflow::{Problem, SaveAt, TimeGrid, integrate};
+use lieflow::{StepControl, integrate_adaptive};
 use nalgebra::Vector3;
 
 use crate::support::named;
@@ -91,7 +91,8 @@ fn the_methods_of_the_body_run_on_numbers_that_count() {
 fn adaptive_runs_go_on_any_number_that_has_a_value() {
     fn run<S: Real + Into<f64>>(rtol: f64) -> (Vector3<f64>, u64) {
         let body = RigidBody::<S>::new(INERTIA).expect("a body");
-        let (method, control) = (Rkmk::new(DOPRI5, Cay), Adaptive::new(rtol, 0.0).expect("rtol"));
+        let (method, control) =
+            (Rkmk::new(DOPRI5, Cay), StepControl::new(rtol, 0.0).expect("rtol"));
         let mut m = Vector3::from(MOMENTUM.map(S::lit));
         let (span, save) = ([0.0, 10.0], SaveAt::Ends);
         let stats = integrate_adaptive(&body, &method, span, &control, &save, &mut m, |_, _| {});

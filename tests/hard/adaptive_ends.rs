@@ -6,13 +6,13 @@ use core::cell::Cell;
 
 use lieflow::SaveAt;
 use lieflow::actions::{LeftTranslation, Linear};
-use lieflow::adaptive::{Adaptive, AdaptiveError, integrate_adaptive};
 use lieflow::groups::{So3, Translations};
 use lieflow::maps::{CCSK, CCSK123, CCSK321, Cay, Exp};
 use lieflow::methods::commutator_free::CF43;
 use lieflow::methods::tableau::{BS3, DOP853, DOPRI5, RK4};
 use lieflow::methods::{CommutatorFree, Doubling, Embedded, LowStorage, Rkmk, low_storage::LS32};
 use lieflow::problems::{Flow, Problem};
+use lieflow::{RunError, StepControl, integrate_adaptive};
 use nalgebra::Vector3;
 
 /// Attempts that each run is given.
@@ -64,7 +64,7 @@ fn ends<M: Embedded<P>, P>(
     problem: &P,
     method: &M,
     span: [f64; 2],
-    control: &Adaptive,
+    control: &StepControl,
     evaluations: &Cell<u64>,
 ) -> Option<Vector3<f64>>
 where
@@ -86,14 +86,11 @@ where
             assert!(stats.accepted + stats.rejected <= ATTEMPTS, "{what}: {stats:?}");
             Some(y)
         }
-        Err(AdaptiveError::Setup(_)) => {
+        Err(RunError::Setup(_)) => {
             assert!(last.is_nan(), "{what}: begun, and then refused");
             None
         }
-        Err(
-            AdaptiveError::StepSizeUnderflow { t, h, .. }
-            | AdaptiveError::TooManySteps { t, h, .. },
-        ) => {
+        Err(RunError::StepSizeUnderflow { t, h, .. } | RunError::TooManySteps { t, h, .. }) => {
             assert!(t == last && h.is_finite(), "{what}: {t} {h}");
             let towards_the_end = (span[1] - span[0]) * h >= 0.0 || h == 0.0;
             assert!(t != span[1] && towards_the_end, "{what}: {t} {h}");
@@ -113,7 +110,7 @@ fn every_run_ends() {
         });
         for span in SPANS {
             for [rtol, atol] in TOLERANCES {
-                let control = Adaptive::new(rtol, atol).and_then(|c| c.max_steps(ATTEMPTS));
+                let control = StepControl::new(rtol, atol).and_then(|c| c.max_steps(ATTEMPTS));
                 let control = control.expect("tolerances");
                 macro_rules! check {
                     ($($method:expr),*) => {$({
@@ -156,9 +153,9 @@ fn limits_that_leave_no_step() {
         *v = Vector3::new(t.cos(), t.sin(), 0.5);
     });
     let plain =
-        || Adaptive::new(1e-8, 1e-8).and_then(|c| c.max_steps(ATTEMPTS)).expect("tolerances");
+        || StepControl::new(1e-8, 1e-8).and_then(|c| c.max_steps(ATTEMPTS)).expect("tolerances");
     let method = Rkmk::new(BS3, Exp);
-    let run = |what, control: Result<Adaptive, lieflow::Error>, span| {
+    let run = |what, control: Result<StepControl, lieflow::Error>, span| {
         ends(what, &problem, &method, span, &control.expect("limits"), &evaluations)
     };
     assert_eq!(run("steps of 1e-300", plain().max_step(1e-300), [0.0, 1.0]), None);
@@ -181,14 +178,14 @@ fn what_blows_up_ends_before_it_does() {
     macro_rules! check {
         ($($method:expr),*) => {$(
             for (start, at) in [(1.0, 1.0), (1e-100, 1e100), (1e100, 1e-100)] {
-                let control = Adaptive::new(1e-9, 0.0).expect("tolerances");
+                let control = StepControl::new(1e-9, 0.0).expect("tolerances");
                 let (mut y, span) = (Vector3::new(start, 0.0, 0.0), [0.0, 10.0 * at]);
                 let run = integrate_adaptive(
                     &problem, &$method, span, &control, &SaveAt::Ends, &mut y, |_, _| {},
                 );
                 let name = stringify!($method);
                 match run {
-                    Err(AdaptiveError::StepSizeUnderflow { t, .. }) => {
+                    Err(RunError::StepSizeUnderflow { t, .. }) => {
                         assert!((t / at - 1.0).abs() < 1e-5, "{name}: {t}");
                         assert!(y[0].is_finite() && y[0] > 1e4 * start, "{name}: {y}");
                     }
@@ -208,20 +205,20 @@ fn no_chart_gives_a_wrong_result() {
     let problem = Flow::of_time(So3::new(), Linear, |t: f64, v: &mut Vector3<f64>| {
         *v = direction(t);
     });
-    let at = |control: &Adaptive, end: f64| {
+    let at = |control: &StepControl, end: f64| {
         let (mut y, method) = (Vector3::new(0.0, 0.6, 0.8), Rkmk::new(DOP853, Exp));
         let save = SaveAt::Ends;
         integrate_adaptive(&problem, &method, [0.0, end], control, &save, &mut y, |_, _| {})
             .expect("a reference");
         y
     };
-    let exact = at(&Adaptive::new(0.0, 1e-13).expect("tolerances"), 20.0);
+    let exact = at(&StepControl::new(0.0, 1e-13).expect("tolerances"), 20.0);
     macro_rules! check {
         ($($psi:expr),*) => {$(
             for atol in [1e-1, 1e-2, 1e-3, 1e-5] {
                 // The first step goes to where u₂ = π/2, |u| = 2π and beyond.
                 for first in [1.57, 1.6, 3.1, 6.2, 6.3, 20.0] {
-                    let control = Adaptive::new(0.0, atol).and_then(|c| c.first_step(first));
+                    let control = StepControl::new(0.0, atol).and_then(|c| c.first_step(first));
                     let mut y = Vector3::new(0.0, 0.6, 0.8);
                     let stats = integrate_adaptive(
                         &problem, &Rkmk::new(DOPRI5, $psi), [0.0, 20.0],

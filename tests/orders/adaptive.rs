@@ -5,7 +5,6 @@ use crate::support::gap;
 use crate::support::orders::{reference_after, wave};
 use crate::support::points::Points;
 use lieflow::actions::{LeftTranslation, Linear};
-use lieflow::adaptive::{Adaptive, AdaptiveError, AdaptiveStats, integrate_adaptive};
 use lieflow::groups::{MatrixGroup, So3};
 use lieflow::maps::{CCSK, CCSK123, Cay, Exp};
 use lieflow::methods::commutator_free::{CF4, CF43};
@@ -16,10 +15,11 @@ use lieflow::methods::tableau::{BS3, DOP853, DOPRI5, RK4, RKF45, VERNER6};
 use lieflow::methods::{CommutatorFree, Doubling, Embedded, LowStorage, OneBracket, Rk, Rkmk};
 use lieflow::problems::{Exact, Flow, LinearFlow, PointOf, Problem, RigidBody, RigidBodyAttitude};
 use lieflow::{Error, LieAlgebra, LieGroup, SaveAt, StepError};
+use lieflow::{RunError, Stats, StepControl, integrate_adaptive};
 use nalgebra::{Matrix3, Vector3};
 
-fn control(rtol: f64, atol: f64) -> Adaptive {
-    Adaptive::new(rtol, atol).expect("tolerances")
+fn control(rtol: f64, atol: f64) -> StepControl {
+    StepControl::new(rtol, atol).expect("tolerances")
 }
 
 /// The state at the end and the statistics, or why there are none.
@@ -27,9 +27,9 @@ fn go<P: Problem, M: Embedded<P>>(
     problem: &P,
     method: &M,
     span: [f64; 2],
-    control: &Adaptive,
+    control: &StepControl,
     start: &PointOf<P>,
-) -> Result<(PointOf<P>, AdaptiveStats), AdaptiveError>
+) -> Result<(PointOf<P>, Stats), RunError>
 where
     P::Group: LieAlgebra<Scalar = f64>,
 {
@@ -118,7 +118,7 @@ fn spans_and_arguments() {
     match go(&body, &method, [1.0, next], &tols, &start) {
         Ok((_, stats)) => assert_eq!(stats.accepted, 1),
         Err(error) => {
-            assert!(matches!(error, AdaptiveError::Setup(Error::OutOfRange { .. })), "{error}");
+            assert!(matches!(error, RunError::Setup(Error::OutOfRange { .. })), "{error}");
         }
     }
     for bad in [f64::NAN, f64::INFINITY, -f64::INFINITY] {
@@ -128,13 +128,13 @@ fn spans_and_arguments() {
         }
     }
     for bad in [f64::NAN, f64::INFINITY, -1.0] {
-        assert!(Adaptive::new(bad, 1.0).expect_err("rtol").to_string().starts_with("rtol"));
-        assert!(Adaptive::new(1.0, bad).expect_err("atol").to_string().starts_with("atol"));
+        assert!(StepControl::new(bad, 1.0).expect_err("rtol").to_string().starts_with("rtol"));
+        assert!(StepControl::new(1.0, bad).expect_err("atol").to_string().starts_with("atol"));
         assert!(tols.clone().min_step(bad).expect_err("h").to_string().starts_with("min_step"));
         assert!(tols.clone().max_step(bad).expect_err("h").to_string().starts_with("max_step"));
         assert!(tols.clone().first_step(bad).expect_err("h").to_string().starts_with("first_step"));
     }
-    assert!(Adaptive::new(0.0, 0.0).is_err() && tols.clone().max_steps(0).is_err());
+    assert!(StepControl::new(0.0, 0.0).is_err() && tols.clone().max_steps(0).is_err());
     assert!(tols.clone().first_step(0.0).is_err());
     assert!(tols.clone().max_step(0.1).and_then(|c| c.min_step(0.2)).is_err());
     // No pair, no adaptive run; step doubling is the way.
@@ -179,7 +179,7 @@ fn output_times() {
             let save = SaveAt::Times(bad);
             let mut y = start;
             let run = integrate_adaptive(&body, &method, span, &tols, &save, &mut y, |_, _| {});
-            assert!(matches!(run, Err(AdaptiveError::Setup(_))));
+            assert!(matches!(run, Err(RunError::Setup(_))));
         }
     }
 }
@@ -194,10 +194,10 @@ fn limits_on_the_step() {
     assert!(stats.largest_step <= 0.05 + 1e-15 && stats.accepted >= 100, "{stats:?}");
     let tols = control(1e-12, 1e-12).min_step(0.5).expect("limits");
     let error = go(&body, &method, [0.0, 5.0], &tols, &start).expect_err("too small a tolerance");
-    assert!(matches!(error, AdaptiveError::StepSizeUnderflow { source: None, .. }), "{error}");
+    assert!(matches!(error, RunError::StepSizeUnderflow { source: None, .. }), "{error}");
     let tols = control(1e-9, 1e-9).max_steps(10).expect("limits");
     match go(&body, &method, [0.0, 50.0], &tols, &start).expect_err("10 steps do not do") {
-        AdaptiveError::TooManySteps { t, h, accepted, rejected, max_steps: 10 } => {
+        RunError::TooManySteps { t, h, accepted, rejected, max_steps: 10 } => {
             assert!(t > 0.0 && h > 0.0 && accepted + rejected == 10);
         }
         other => panic!("{other}"),
@@ -227,7 +227,7 @@ fn not_a_number() {
                         },
                     );
                     match run {
-                        Err(AdaptiveError::StepSizeUnderflow { t, h, rejected, source, accepted }) => {
+                        Err(RunError::StepSizeUnderflow { t, h, rejected, source, accepted }) => {
                             assert!((t - from).abs() < 1e-9, "{t}");
                             assert!((0.0..1e-9).contains(&h), "{h}");
                             assert!(rejected <= 60, "{}: {rejected} after {accepted}, from {from}, t = {t:e}, h = {h:e}", stringify!($method));
@@ -304,7 +304,7 @@ fn blow_up_and_discontinuities() {
     let run =
         integrate_adaptive(&problem, &method, [0.0, 1.0], &tols, &SaveAt::Ends, &mut y, |_, _| {});
     match run {
-        Err(AdaptiveError::StepSizeUnderflow { t, .. }) => {
+        Err(RunError::StepSizeUnderflow { t, .. }) => {
             assert!((t - 0.5).abs() < 1e-6, "{t}");
             assert!(y[(0, 0)].is_finite() && y[(0, 0)] > 100.0);
         }
@@ -320,15 +320,12 @@ fn blow_up_and_discontinuities() {
     let problem = spin(|t| if t < 0.5 { 1.0 } else { 1e30 });
     let tols = tols.clone().max_steps(20_000).expect("limits");
     let error = go(&problem, &method, [0.0, 1.0], &tols, &start).expect_err("too fast");
-    assert!(matches!(
-        error,
-        AdaptiveError::StepSizeUnderflow { .. } | AdaptiveError::TooManySteps { .. }
-    ));
+    assert!(matches!(error, RunError::StepSizeUnderflow { .. } | RunError::TooManySteps { .. }));
     // T10: next to |t| = 1e9 a step of 1e-7 is lost.
     let problem = spin(|_| 1e12);
     let span = [1e9, 1e9 + 1.0];
     let error = go(&problem, &method, span, &tols, &start).expect_err("too fast for this clock");
-    assert!(matches!(error, AdaptiveError::StepSizeUnderflow { .. }), "{error}");
+    assert!(matches!(error, RunError::StepSizeUnderflow { .. }), "{error}");
 }
 
 fn turn(u: &Vector3<f64>) -> Matrix3<f64> {

@@ -4,7 +4,6 @@
 use crate::support::systems::{assert_order, casimirs, quadratic, systems};
 use faer::Mat;
 use lieflow::actions::LeftTranslation;
-use lieflow::adaptive::{Adaptive, integrate_adaptive};
 use lieflow::groups::{LieGroup, MatrixGroup, Sample, So3};
 use lieflow::maps::Exp;
 use lieflow::methods::{GAUSS6, LieSeries, RkmkGaussSymmetric, SeriesGroup, Taylor};
@@ -12,6 +11,7 @@ use lieflow::problems::{
     PointOf, Problem, RigidBodyN, RigidBodyNAttitude, RigidBodyState, TaylorField,
 };
 use lieflow::{Error, LieAlgebra, Method, SaveAt, Step, StepError, TimeGrid, integrate};
+use lieflow::{StepControl, integrate_adaptive};
 use nalgebra::{Matrix3, Vector3};
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
@@ -201,7 +201,7 @@ fn adaptive_steps() {
     let energy = system.energy(&start);
     let mut last = f64::INFINITY;
     for tolerance in [1e-4, 1e-7, 1e-10, 1e-13] {
-        let control = Adaptive::new(0.0, tolerance).expect("a tolerance");
+        let control = StepControl::new(0.0, tolerance).expect("a tolerance");
         let mut m = start.clone();
         let stats = integrate_adaptive(
             &system,
@@ -226,7 +226,7 @@ fn adaptive_steps() {
     let exact = lieflow::problems::Exact::new([1.0, 4.0, 18.0], [0.0, 2.75, 2.75], y.g)
         .and_then(|e| e.state(20.0))
         .expect("the exact motion");
-    let control = Adaptive::new(0.0, 1e-11).expect("a tolerance");
+    let control = StepControl::new(0.0, 1e-11).expect("a tolerance");
     let stats = integrate_adaptive(
         &body,
         &Taylor::<12>,

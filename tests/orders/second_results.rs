@@ -140,7 +140,7 @@ fn output_between_the_steps_has_the_order_of_the_method() {
                         }
                     })
                     .unwrap();
-                    assert_eq!(stats.side_steps, 1);
+                    assert_eq!(stats.points_within, 1);
                     gap(&middle.unwrap(), exact.end())
                 });
                 let found = slopes(&STEPS.map(|n| n as f64), &errors);

@@ -1,11 +1,11 @@
 //! Every method that the catalog has for a fluid has its order and keeps what it says, on both surfaces.
 
-use lieflow::adaptive::{Adaptive, integrate_adaptive};
 use lieflow::catalog::{MethodInfo, MethodSpec, Property, all_methods};
 use lieflow::groups::ComplexMatrix;
 use lieflow::methods::Metric;
 use lieflow::problems::{Surface, Zeitlin};
 use lieflow::{Error, SaveAt, TimeGrid, integrate};
+use lieflow::{StepControl, integrate_adaptive};
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
 
@@ -86,7 +86,7 @@ fn check<S: Surface>(fluid: &Zeitlin<S>, start: &ComplexMatrix) {
         for tableau in ["bs3", "dopri5", "dop853"] {
             let pair = MethodSpec { tableau: Some(tableau.into()), ..MethodSpec::new("rkmk", map) };
             let mut w = start.clone();
-            let control = Adaptive::new(1e-9, 1e-9).expect("tolerances");
+            let control = StepControl::new(1e-9, 1e-9).expect("tolerances");
             named::pair(&pair, |method| {
                 integrate_adaptive(
                     fluid,

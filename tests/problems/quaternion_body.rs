@@ -1,9 +1,9 @@
 //! The body by its quaternion: every method that the catalog has for it, against the exact motion.
 
-use lieflow::adaptive::{Adaptive, integrate_adaptive};
 use lieflow::catalog::{MethodInfo, MethodSpec, Needs, Property, all_methods};
 use lieflow::problems::{Exact, RigidBodyQuaternion};
 use lieflow::{Error, Method, SaveAt, TimeGrid, integrate};
+use lieflow::{StepControl, integrate_adaptive};
 use nalgebra::{Matrix3, UnitQuaternion};
 
 use crate::support::named;
@@ -83,7 +83,7 @@ fn steps_of_its_own_choice() {
         for name in ["rkmk", "rk"] {
             let spec = MethodSpec { tableau: Some(tableau.into()), ..MethodSpec::new(name, None) };
             let mut q = UnitQuaternion::identity();
-            let control = Adaptive::new(1e-10, 1e-10).expect("tolerances");
+            let control = StepControl::new(1e-10, 1e-10).expect("tolerances");
             named::pair(&spec, |method| {
                 integrate_adaptive(
                     &body,

@@ -1,15 +1,20 @@
 //! A problem ready to run, whatever its types: one dynamic dispatch a run.
 
-use core::fmt::Debug;
+use core::cell::RefCell;
+use core::fmt::{self, Debug};
+use std::sync::atomic::AtomicBool;
+use std::time::Duration;
 
-use lieflow::adaptive::{Adaptive, AdaptiveError, AdaptiveStats, integrate_adaptive};
 use lieflow::catalog::{MethodSpec, MethodsByName};
 use lieflow::groups::LieAlgebra;
 use lieflow::methods::Method;
 use lieflow::problems::PointOf;
-use lieflow::{Error, RunError, SaveAt, Stats, TimeGrid, integrate};
+use lieflow::solve::{Next, Status};
+use lieflow::space::Numbers;
+use lieflow::{
+    Action, Direction, Error, Event, RunError, SaveAt, Solve, Stats, StepControl, TimeGrid,
+};
 
-use crate::operations::Pace;
 use crate::schema::{Row, Schema};
 
 /// Which code a problem runs on. Methods that stay on the group agree on the two to rounding; the
@@ -47,17 +52,121 @@ impl Layer {
     }
 }
 
-/// Steps that are chosen by their error.
+/// How the steps of a run are chosen.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Steps {
+pub enum Steps {
+    /// One size.
+    Equal(TimeGrid),
+    /// By their error.
+    ByError {
+        /// From when to when.
+        t_span: [f64; 2],
+        /// Tolerances and limits.
+        control: StepControl,
+    },
+}
+
+impl Steps {
     /// From when to when.
-    pub t_span: [f64; 2],
-    /// Tolerances and limits.
-    pub control: Adaptive,
+    pub fn t_span(&self) -> [f64; 2] {
+        match self {
+            Steps::Equal(grid) => grid.t_span(),
+            Steps::ByError { t_span, .. } => *t_span,
+        }
+    }
+}
+
+/// An event: where a function of the rows passes zero.
+pub struct EventPlan<'a> {
+    /// Its name.
+    pub name: String,
+    /// The function of t and the row.
+    pub value: Box<dyn Fn(f64, Row<'_>) -> f64 + 'a>,
+    /// Which zeros count.
+    pub direction: Direction,
+    /// The zero that ends the run, from 1.
+    pub stop_after: Option<u64>,
+}
+
+impl Debug for EventPlan<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("EventPlan").field("name", &self.name).finish_non_exhaustive()
+    }
+}
+
+/// Everything that a run is asked for besides the problem and the method.
+#[derive(Debug)]
+pub struct Plan<'a> {
+    /// The steps.
+    pub steps: Steps,
+    /// Where rows are shown.
+    pub save: SaveAt,
+    /// Are output times reached by shorter steps, and not by the continuous extension?
+    pub times_by_steps: bool,
+    /// Times at which a step ends.
+    pub stops: Vec<f64>,
+    /// The events.
+    pub events: Vec<EventPlan<'a>>,
+    /// What cancels the run.
+    pub cancel: Option<&'a AtomicBool>,
+    /// How often the state is saved.
+    pub checkpoints: Option<Duration>,
+    /// The state to go on from.
+    pub resume: Option<Vec<u8>>,
+}
+
+impl Plan<'_> {
+    /// These steps and rows, and nothing else.
+    pub fn new(steps: Steps, save: SaveAt) -> Self {
+        Plan {
+            steps,
+            save,
+            times_by_steps: false,
+            stops: Vec::new(),
+            events: Vec::new(),
+            cancel: None,
+            checkpoints: None,
+            resume: None,
+        }
+    }
 }
 
 /// What gets the rows of a run, each with its t.
 pub type Sink<'a> = dyn FnMut(f64, Row<'_>) + 'a;
+
+/// What sees a run.
+pub trait Watcher {
+    /// A row of the output.
+    fn row(&mut self, t: f64, row: Row<'_>) -> Next;
+    /// A zero of the event of this number.
+    fn event(&mut self, _event: usize, _t: f64, _rising: bool, _row: Row<'_>) {}
+    /// The time that the run has reached; told now and then.
+    fn progress(&mut self, _t: f64) {}
+    /// The state, to go on from.
+    fn state(&mut self, _bytes: &[u8]) {}
+}
+
+/// A sink as a watcher.
+#[allow(missing_debug_implementations)] // a closure
+pub struct Rows<'a, 'b>(pub &'a mut Sink<'b>);
+
+impl Watcher for Rows<'_, '_> {
+    fn row(&mut self, t: f64, row: Row<'_>) -> Next {
+        (self.0)(t, row);
+        Next::Continue
+    }
+}
+
+/// What a run did, and why it ended.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outcome {
+    /// The time at the end.
+    pub t: f64,
+    /// Why the run ended.
+    pub status: Status,
+    /// What it did.
+    pub stats: Stats,
+}
 
 /// A problem with its initial state and the quantities that are asked of it.
 pub trait Model: Debug {
@@ -67,29 +176,47 @@ pub trait Model: Debug {
     /// What a method integrates, in words. Nothing else is computed.
     fn modelled(&self, method: &MethodSpec) -> Vec<String>;
 
-    /// Integrate from the initial state; `sink` gets a row where `save` says.
+    /// Integrate from the initial state by a plan; `watcher` sees the rows and the events.
     ///
     /// # Errors
-    /// As [`integrate`].
+    /// As [`Solve::run`].
+    fn drive(
+        &self,
+        method: &MethodSpec,
+        plan: Plan<'_>,
+        watcher: &mut dyn Watcher,
+    ) -> Result<Outcome, RunError>;
+
+    /// Integrate from the initial state in steps of one size; `sink` gets a row where `save` says.
+    ///
+    /// # Errors
+    /// As [`Solve::run`].
     fn run(
         &self,
         method: &MethodSpec,
         grid: &TimeGrid,
         save: &SaveAt,
         sink: &mut Sink<'_>,
-    ) -> Result<Stats, RunError>;
+    ) -> Result<Stats, RunError> {
+        let plan = Plan::new(Steps::Equal(*grid), save.clone());
+        self.drive(method, plan, &mut Rows(sink)).map(|outcome| outcome.stats)
+    }
 
     /// The same with steps that are chosen by their error.
     ///
     /// # Errors
-    /// As [`integrate_adaptive`].
+    /// As [`Solve::run`].
     fn adapt(
         &self,
         method: &MethodSpec,
-        steps: &Steps,
-        save: &SaveAt,
+        t_span: [f64; 2],
+        control: &StepControl,
         sink: &mut Sink<'_>,
-    ) -> Result<AdaptiveStats, AdaptiveError>;
+    ) -> Result<Stats, RunError> {
+        let steps = Steps::ByError { t_span, control: control.clone() };
+        let plan = Plan::new(steps, SaveAt::Ends);
+        self.drive(method, plan, &mut Rows(sink)).map(|outcome| outcome.stats)
+    }
 
     /// The order of a method on this problem; none where it is exact.
     ///
@@ -105,7 +232,7 @@ pub trait Model: Debug {
     /// none to count, as the exact motion.
     ///
     /// [`COUNTED_STEPS`]: crate::operations::COUNTED_STEPS
-    fn operations(&self, method: &MethodSpec, pace: Pace<'_>) -> Option<f64>;
+    fn operations(&self, method: &MethodSpec, steps: &Steps) -> Option<f64>;
 
     /// Can this method run on this problem? Nothing is integrated.
     ///
@@ -115,41 +242,83 @@ pub trait Model: Debug {
 }
 
 /// A problem that runs are made of: its methods by name, on numbers that a file can hold.
-pub trait Runnable: MethodsByName<Group: LieAlgebra<Scalar: Into<f64>>> + 'static {}
-impl<P: MethodsByName<Group: LieAlgebra<Scalar: Into<f64>>> + 'static> Runnable for P {}
-
-/// What sees the points of a run. Behind a pointer, so that every kind with a type of problem shares
-/// what is compiled for it.
-pub type Observer<'a, P> = dyn FnMut(f64, &PointOf<P>) + 'a;
-
-/// Integrate `problem` from `y` by the method that `spec` names: what a [`Model::run`] calls.
-///
-/// # Errors
-/// As [`MethodsByName::method`] and [`integrate`].
-pub fn integrate_by<P: Runnable>(
-    spec: &MethodSpec,
-    problem: &P,
-    mut y: PointOf<P>,
-    grid: &TimeGrid,
-    save: &SaveAt,
-    observe: &mut Observer<'_, P>,
-) -> Result<Stats, RunError> {
-    integrate(problem, &problem.method(spec)?, grid, save, &mut y, observe)
+pub trait Runnable:
+    MethodsByName<Group: LieAlgebra<Scalar: Into<f64>>, Action: Action<Self::Group, Point: Numbers>>
+    + 'static
+{
+}
+impl<P> Runnable for P where
+    P: MethodsByName<
+            Group: LieAlgebra<Scalar: Into<f64>>,
+            Action: Action<<P as lieflow::Problem>::Group, Point: Numbers>,
+        > + 'static
+{
 }
 
-/// The same with steps chosen by their error: what a [`Model::adapt`] calls.
+/// The numbers of the row at (t, y). Behind a pointer, so that every kind with a type of problem shares
+/// what is compiled for it.
+pub type RowOf<'a, P> = dyn Fn(f64, &PointOf<P>, &mut Vec<f64>) + 'a;
+
+/// Integrate `problem` from `y` by the method that `spec` names: what a [`Model::drive`] calls.
 ///
 /// # Errors
-/// As [`MethodsByName::method`] and [`integrate_adaptive`].
-pub fn adapt_by<P: Runnable>(
+/// As [`MethodsByName::method`] and [`Solve::run`].
+pub fn drive_by<P: Runnable>(
     spec: &MethodSpec,
     problem: &P,
-    mut y: PointOf<P>,
-    Steps { t_span, control }: &Steps,
-    save: &SaveAt,
-    observe: &mut Observer<'_, P>,
-) -> Result<AdaptiveStats, AdaptiveError> {
-    integrate_adaptive(problem, &problem.method(spec)?, *t_span, control, save, &mut y, observe)
+    y: PointOf<P>,
+    plan: Plan<'_>,
+    (schema, row_of): (&Schema, &RowOf<'_, P>),
+    watcher: &mut dyn Watcher,
+) -> Result<Outcome, RunError> {
+    let method = problem.method(spec)?;
+    let Plan { steps, save, times_by_steps, stops, events, cancel, checkpoints, resume } = plan;
+    let (watcher, numbers) = (RefCell::new(watcher), RefCell::new(Vec::new()));
+    let fill = |t: f64, y: &PointOf<P>| {
+        let mut numbers = numbers.borrow_mut();
+        row_of(t, y, &mut numbers);
+    };
+    let mut solve = Solve::new(problem, &method, steps.t_span()).save(save).stops(stops);
+    solve = match steps {
+        Steps::Equal(grid) => solve.grid(grid),
+        Steps::ByError { control, .. } => solve.control(control),
+    };
+    if times_by_steps {
+        solve = solve.times_by_steps();
+    }
+    if let Some(flag) = cancel {
+        solve = solve.cancel(flag);
+    }
+    if let Some(bytes) = resume {
+        solve = solve.resume(bytes);
+    }
+    if let Some(every) = checkpoints {
+        solve = solve.checkpoints(every, |bytes| watcher.borrow_mut().state(bytes));
+    }
+    let (fill, numbers) = (&fill, &numbers);
+    for (index, EventPlan { name, value, direction, stop_after }) in events.into_iter().enumerate()
+    {
+        let watcher = &watcher;
+        let mut event = Event::new(name, move |t, y: &PointOf<P>| {
+            fill(t, y);
+            value(t, schema.row(&numbers.borrow()))
+        })
+        .direction(direction)
+        .tell(move |t, y, rising| {
+            fill(t, y);
+            watcher.borrow_mut().event(index, t, rising, schema.row(&numbers.borrow()));
+        });
+        if let Some(count) = stop_after {
+            event = event.stop_after(count);
+        }
+        solve = solve.event(event);
+    }
+    let solve = solve.progress(|t| watcher.borrow_mut().progress(t));
+    let done = solve.run_with(y, |t, y: &mut PointOf<P>| {
+        fill(t, y);
+        watcher.borrow_mut().row(t, schema.row(&numbers.borrow()))
+    })?;
+    Ok(Outcome { t: done.t, status: done.status, stats: done.stats })
 }
 
 /// The order of the method that `spec` names: what a [`Model::order`] calls.

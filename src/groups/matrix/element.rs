@@ -5,7 +5,7 @@ use core::ops::{Deref, DerefMut};
 use approx::{AbsDiffEq, RelativeEq};
 use faer::Mat;
 
-use crate::space::{LinearSpace, Metric};
+use crate::space::{LinearSpace, Metric, Numbers};
 
 macro_rules! matrix_element {
     ($(#[$doc:meta])* $name:ident) => {
@@ -39,6 +39,11 @@ macro_rules! matrix_element {
             }
         }
 
+        impl Numbers for $name {
+            fn each_number(&mut self, each: &mut dyn FnMut(&mut f64)) {
+                self.0.each_number(each);
+            }
+        }
         impl Metric for $name {
             type Scalar = f64;
             fn assign(&mut self, x: &Self) {

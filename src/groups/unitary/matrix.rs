@@ -11,7 +11,7 @@ use faer::{Accum, Mat, MatRef, c64};
 use crate::dense::{is_finite, lower_product, mirror, mul, mul_add, norm_frobenius};
 use crate::error::Error;
 use crate::scalar::{Ops, tally};
-use crate::space::{LinearSpace, Metric};
+use crate::space::{LinearSpace, Metric, Numbers};
 
 /// A complex matrix re + i·im.
 ///
@@ -161,6 +161,13 @@ pub(crate) fn minus_adjoint(x: &mut ComplexMatrix) {
             (x.re[(i, j)], x.re[(j, i)]) = (re, -re);
             (x.im[(i, j)], x.im[(j, i)]) = (im, im);
         }
+    }
+}
+
+impl Numbers for ComplexMatrix {
+    fn each_number(&mut self, each: &mut dyn FnMut(&mut f64)) {
+        self.re.each_number(each);
+        self.im.each_number(each);
     }
 }
 

@@ -8,7 +8,7 @@ use super::triangle::{below, below_mut, entries, squares};
 use crate::dense::wide;
 use crate::groups::ComplexMatrix;
 use crate::scalar::{Ops, tally};
-use crate::space::Metric;
+use crate::space::{Metric, Numbers};
 
 /// Differences that are kept.
 const DEPTH: usize = 8;
@@ -45,6 +45,17 @@ impl History {
             last: ComplexMatrix::zeros(n, n),
             column: vec![0.0; n],
         }
+    }
+
+    /// Call `each` with every number.
+    pub(super) fn each_number(&mut self, each: &mut dyn FnMut(&mut f64)) {
+        self.differences.each_number(each);
+        self.norms.each_number(each);
+        let mut steps = self.steps as f64;
+        each(&mut steps);
+        self.steps = steps as usize;
+        each(&mut self.h);
+        self.last.each_number(each);
     }
 
     /// How a step of size h from y starts.

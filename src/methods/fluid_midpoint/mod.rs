@@ -252,6 +252,16 @@ impl<S: Surface> Method<Zeitlin<S>> for FluidMidpoint {
             solves: 0,
         })
     }
+    fn iterations(&self, work: &FluidWork) -> u64 {
+        work.iterations
+    }
+    fn each_memory(&self, work: &mut FluidWork, each: &mut dyn FnMut(&mut f64)) {
+        work.history.each_number(each);
+        for rate in &mut work.rates {
+            each(&mut rate.seen);
+            each(&mut rate.of_run);
+        }
+    }
     fn step(
         &self,
         fluid: &Zeitlin<S>,

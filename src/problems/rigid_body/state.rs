@@ -15,7 +15,7 @@ use crate::groups::{Adjoint, LieGroup, So3, worse};
 use crate::problems::Problem;
 use crate::scalar::Real;
 use crate::so3::{apply3, cross};
-use crate::space::{LinearSpace, Metric};
+use crate::space::{LinearSpace, Metric, Numbers};
 
 /// The body momentum m and the attitude g.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,6 +24,13 @@ pub struct BodyState<S = f64> {
     pub m: Vector3<S>,
     /// g, from body to space.
     pub g: Matrix3<S>,
+}
+
+impl<S: Real + Numbers> Numbers for BodyState<S> {
+    fn each_number(&mut self, each: &mut dyn FnMut(&mut f64)) {
+        self.m.each_number(each);
+        self.g.each_number(each);
+    }
 }
 
 /// (|m|² + ‖g‖²)^½.

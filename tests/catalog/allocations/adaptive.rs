@@ -1,7 +1,6 @@
 //! Error estimates, step doubling and the adaptive driver allocate nothing in a step.
 
 use lieflow::SaveAt;
-use lieflow::adaptive::{Adaptive, integrate_adaptive};
 use lieflow::groups::{LieGroup, Sample};
 use lieflow::maps::{Cay, Exp};
 use lieflow::methods::commutator_free::CF43;
@@ -10,6 +9,7 @@ use lieflow::methods::one_bracket::MAGNUS43;
 use lieflow::methods::tableau::{DOP853, DOPRI5};
 use lieflow::methods::{CommutatorFree, Doubling, LowStorage, OneBracket, Rk, Rkmk};
 use lieflow::problems::{Problem, RigidBodyN, RigidBodyNAttitude};
+use lieflow::{StepControl, integrate_adaptive};
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
 
@@ -29,7 +29,7 @@ fn adaptive_runs() {
                 let method = $method;
                 let run = |end: f64| {
                     let mut y = $start.clone();
-                    let control = Adaptive::new(1e-6, 1e-6).expect("tolerances");
+                    let control = StepControl::new(1e-6, 1e-6).expect("tolerances");
                     let before = counting::total();
                     let stats = integrate_adaptive(
                         &$problem, &method, [0.0, end], &control, &SaveAt::Every(2), &mut y, |_, _| {},

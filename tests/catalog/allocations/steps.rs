@@ -65,7 +65,7 @@ where
     let before = counting::total();
     let stats = integrate(problem, &method, &grid, &save, &mut y, |_, _| {}).expect("a run");
     let count = counting::total() - before;
-    assert_eq!(stats.side_steps, times as u64);
+    assert_eq!(stats.points_within, times as u64);
     count
 }
 

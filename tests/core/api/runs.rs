@@ -3,7 +3,7 @@
 use lieflow::maps::{CCSK, Cay, Exp};
 use lieflow::methods::{Method, Rk, Rkmk, tableau::RK4};
 use lieflow::problems::{Exact, RigidBody};
-use lieflow::{RunError, SaveAt, Stats, TimeGrid, integrate};
+use lieflow::{RunError, SaveAt, Solve, Stats, TimeGrid, integrate};
 use nalgebra::{Matrix3, Vector3};
 
 use super::says;
@@ -38,19 +38,20 @@ fn the_ends_are_observed_once_each() {
     assert_eq!(seen(SaveAt::Every(1), forward), [0.0, 0.25, 0.5, 0.75, 1.0]);
     assert_eq!(seen(SaveAt::Every(3), forward), [0.0, 0.75, 1.0]);
     assert_eq!(seen(SaveAt::Every(9), forward), [0.0, 1.0]);
-    assert_eq!(seen(SaveAt::Times(vec![]), forward), [0.0, 1.0]);
+    assert_eq!(seen(SaveAt::End, forward), [1.0]);
+    assert_eq!(seen(SaveAt::Times(vec![]), forward), [0.0; 0], "given times and no others");
     assert_eq!(seen(SaveAt::Times(vec![0.0, 0.3, 0.5, 1.0]), forward), [0.0, 0.3, 0.5, 1.0]);
-    assert_eq!(seen(SaveAt::Times(vec![0.26, 0.27, 0.9]), forward), [0.0, 0.26, 0.27, 0.9, 1.0]);
-    assert_eq!(seen(SaveAt::Times(vec![1.0, 0.9, 0.5, 0.1]), backward), [1.0, 0.9, 0.5, 0.1, 0.0]);
+    assert_eq!(seen(SaveAt::Times(vec![0.26, 0.27, 0.9]), forward), [0.26, 0.27, 0.9]);
+    assert_eq!(seen(SaveAt::Times(vec![1.0, 0.9, 0.5, 0.1]), backward), [1.0, 0.9, 0.5, 0.1]);
     assert_eq!(seen(SaveAt::Every(2), backward), [1.0, 0.5, 0.0]);
 }
 
 #[test]
 fn an_empty_span_returns_the_start() {
     let grid = TimeGrid::new([3.0, 3.0], 0.1).unwrap();
-    for save in [SaveAt::Ends, SaveAt::Every(1), SaveAt::Times(vec![]), SaveAt::Times(vec![3.0])] {
+    for save in [SaveAt::End, SaveAt::Ends, SaveAt::Every(1), SaveAt::Times(vec![3.0])] {
         let done = run(&Rkmk::new(RK4, Exp), grid, save, START.into());
-        assert_eq!((done.0, done.2), (Stats::default(), START.into()));
+        assert_eq!((done.0.accepted, done.0.evaluations, done.2), (0, Some(0), START.into()));
         assert_eq!(times_of(&done), [3.0], "the start is the end");
     }
 }
@@ -62,7 +63,7 @@ fn the_last_step_lands_exactly() {
         let done = run(&Rkmk::new(RK4, Exp), grid, SaveAt::Every(100), START.into());
         assert_eq!(done.1.last().map(|(t, _)| *t), Some(span[1]));
         assert_eq!(done.1.last().map(|(_, m)| *m), Some(done.2));
-        assert_eq!((done.0.steps, done.0.side_steps), (777, 0));
+        assert_eq!((done.0.accepted, done.0.points_within), (777, 0));
     }
 }
 
@@ -93,13 +94,18 @@ fn round_trip<M: Method<RigidBody>>(method: &M, there: TimeGrid, back: TimeGrid)
 #[test]
 fn side_steps_do_not_change_the_run() {
     fn check<M: Method<RigidBody>>(method: &M) {
+        let body = body();
         let grid = TimeGrid::new([0.0, 3.0], 0.05).unwrap();
         let off_grid: Vec<f64> = (0..47).map(|k| 0.013 + 0.0631 * k as f64).collect();
         let plain = run(method, grid, SaveAt::Every(1), START.into());
-        let dense = run(method, grid, SaveAt::Times(off_grid.clone()), START.into());
+        let mut dense = (Stats::default(), Vec::new(), Vector3::zeros());
+        let solve = Solve::new(&body, method, [0.0; 2]).grid(grid).times(off_grid.clone());
+        let done = solve.times_by_steps().run_with(START.into(), |t, m| dense.1.push((t, *m)));
+        let done = done.unwrap();
+        (dense.0, dense.2) = (done.stats, done.y);
         let bits = |m: &Vector3<f64>| m.map(f64::to_bits);
         assert_eq!(bits(&plain.2), bits(&dense.2), "the run itself");
-        assert_eq!((dense.0.steps, dense.0.side_steps), (60, 47));
+        assert_eq!((dense.0.accepted, dense.0.points_within), (60, 47));
 
         let exact = Exact::new(INERTIA, START, Matrix3::identity()).unwrap();
         let worst = |run: &Run| -> f64 {
@@ -118,7 +124,7 @@ fn side_steps_do_not_change_the_run() {
         let on_grid: Vec<f64> = (0..=60).map(|n| grid.time(n)).collect();
         let again = run(method, grid, SaveAt::Times(on_grid), START.into());
         assert_eq!(again.1, plain.1);
-        assert_eq!(again.0.side_steps, 0);
+        assert_eq!(again.0.points_within, 0);
     }
     check(&Rkmk::new(RK4, Exp));
     check(&Rkmk::new(RK4, Cay));

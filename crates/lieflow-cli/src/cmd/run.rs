@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use lieflow::RunError;
-use lieflow::adaptive::AdaptiveError;
 
 use super::CliError;
 use crate::args::RunArgs;
@@ -13,7 +12,7 @@ use crate::output::{
     self, Chosen, Drift, MethodSummary, Progress, RowSample, SUMMARY, Summary, Trajectory, Watched,
 };
 use lieflow_model::kinds::Figure;
-use lieflow_model::model::{Model, Sink, Steps};
+use lieflow_model::model::{Model, Outcome, Plan, Rows, Watcher};
 use lieflow_model::scene::Scene;
 use lieflow_model::schema::{Observable, Row};
 
@@ -117,44 +116,24 @@ impl<'a> Watch<'a> {
     }
 
     /// Run the scene. A step that fails is an end, not an error.
-    fn run(&self, sink: &mut Sink<'_>) -> Result<Done, CliError> {
-        let Scene { method, grid, save, .. } = self.scene;
-        match self.scene.adaptive.clone() {
-            None => match self.model.run(method, grid, save, sink) {
-                Ok(stats) => Ok(Done {
-                    steps: stats.steps,
-                    side_steps: Some(stats.side_steps),
-                    ..Done::default()
+    fn run(&self, watcher: &mut dyn Watcher) -> Result<Done, CliError> {
+        let scene = self.scene;
+        let plan = Plan::new(scene.steps(), scene.save.clone());
+        match self.model.drive(&scene.method, plan, watcher) {
+            Ok(Outcome { stats, .. }) => Ok(Done {
+                steps: stats.accepted,
+                points_within: Some(stats.points_within),
+                chosen: scene.adaptive.is_some().then_some(Chosen {
+                    accepted: stats.accepted,
+                    rejected: stats.rejected,
+                    evaluations: stats.evaluations,
+                    smallest_step: stats.smallest_step,
+                    largest_step: stats.largest_step,
                 }),
-                Err(RunError::Step(failure)) => Ok(Done::stopped(&failure, failure.step)),
-                Err(error) => Err(error.into()),
-            },
-            Some(control) => {
-                let steps = Steps { t_span: grid.t_span(), control };
-                match self.model.adapt(method, &steps, save, sink) {
-                    Ok(stats) => Ok(Done {
-                        steps: stats.accepted,
-                        side_steps: Some(stats.side_steps),
-                        chosen: Some(Chosen {
-                            accepted: stats.accepted,
-                            rejected: stats.rejected,
-                            evaluations: stats.evaluations,
-                            smallest_step: stats.smallest_step,
-                            largest_step: stats.largest_step,
-                        }),
-                        failure: None,
-                    }),
-                    Err(AdaptiveError::Setup(error)) => Err(error.into()),
-                    Err(error) => {
-                        let steps = match &error {
-                            AdaptiveError::StepSizeUnderflow { accepted, .. }
-                            | AdaptiveError::TooManySteps { accepted, .. } => *accepted,
-                            _ => 0,
-                        };
-                        Ok(Done::stopped(&error, steps))
-                    }
-                }
-            }
+                failure: None,
+            }),
+            Err(RunError::Setup(error)) => Err(error.into()),
+            Err(error) => Ok(Done::stopped(&error, error.accepted().unwrap_or(0))),
         }
     }
 
@@ -183,7 +162,7 @@ impl<'a> Watch<'a> {
 struct Done {
     failure: Option<String>,
     steps: u64,
-    side_steps: Option<u64>,
+    points_within: Option<u64>,
     chosen: Option<Chosen>,
 }
 
@@ -214,7 +193,7 @@ pub fn run_scene(scene: &Scene, folder: &Path) -> Result<Summary, CliError> {
     let mut not_finite = vec![0u64; columns.len()];
     let clock = Instant::now();
     let mut overflow = None;
-    let outcome = watch.run(&mut |t, row| {
+    let outcome = watch.run(&mut Rows(&mut |t, row| {
         overflow = overflow.take().or_else(|| watch.overflow(t, row));
         if overflow.is_some() {
             return;
@@ -228,7 +207,7 @@ pub fn run_scene(scene: &Scene, folder: &Path) -> Result<Summary, CliError> {
         watch.see(t, row, &mut watched);
         rows.see(t, row);
         bar.at((t - t0) / (t1 - t0));
-    });
+    }));
     drop(bar);
     let written = trajectory.rows();
     let mut done = match outcome {
@@ -284,7 +263,7 @@ pub fn run_scene(scene: &Scene, folder: &Path) -> Result<Summary, CliError> {
         dt: scene.adaptive.is_none().then(|| scene.grid.h().abs()),
         steps: done.steps,
         adaptive: done.chosen,
-        side_steps: done.side_steps,
+        side_steps: done.points_within,
         rows: written,
         wall_time_s,
         initial,

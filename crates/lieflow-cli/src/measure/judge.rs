@@ -1,13 +1,13 @@
 //! What a run is judged by: the exact end, or one that two methods agree on; and the invariants.
 
-use lieflow::adaptive::{Adaptive, AdaptiveError};
 use lieflow::catalog::MethodSpec;
+use lieflow::tolerance::Rule;
+use lieflow::{RunError, StepControl};
 use lieflow::{SaveAt, TimeGrid};
 
 use super::{Candidate, Size, WorkPoint};
 use crate::cmd::CliError;
 use lieflow_model::model::{Model, Sink, Steps};
-use lieflow_model::operations::Pace;
 use lieflow_model::scene::Scene;
 use lieflow_model::schema::{Observable, Row, Schema};
 
@@ -140,17 +140,16 @@ impl Judge {
     }
 
     fn find_end(&mut self, model: &dyn Model, t_span: [f64; 2]) -> Result<(), CliError> {
-        let control = Adaptive::new(TIGHT, TIGHT)?.max_steps(10_000_000)?;
-        let steps = Steps { t_span, control };
+        let control = per_length(TIGHT, TIGHT)?.max_steps(10_000_000)?;
         let mut ends: Vec<(String, Vec<f64>)> = Vec::new();
         for method in reference_methods() {
             let mut last = Vec::new();
-            let outcome = model.adapt(&method, &steps, &SaveAt::Ends, &mut |_, row| {
+            let outcome = model.adapt(&method, t_span, &control, &mut |_, row| {
                 last = row.values().to_vec();
             });
             match outcome {
                 Ok(_) => ends.push((method.label(), last)),
-                Err(AdaptiveError::Setup(_)) => continue,
+                Err(RunError::Setup(_)) => continue,
                 Err(error) => {
                     return Err(CliError::Message(format!(
                         "no reference solution: {} stopped: {error}",
@@ -241,6 +240,11 @@ impl Judge {
     }
 }
 
+/// Tolerances for each unit of the way: the error of a run then follows rtol for every order of method.
+fn per_length(rtol: f64, atol: f64) -> Result<StepControl, lieflow::Error> {
+    Ok(StepControl::new(rtol, atol)?.rule(Rule::PerLength))
+}
+
 fn relative(gap: f64, size: f64) -> f64 {
     if size == 0.0 { gap.abs() } else { (gap / size).abs() }
 }
@@ -266,11 +270,11 @@ impl Size {
         let a_step = match self {
             Size::Steps(steps) => {
                 let grid = TimeGrid::with_steps(t_span, steps).ok()?;
-                model.operations(method, Pace::Fixed(&grid))?
+                model.operations(method, &Steps::Equal(grid))?
             }
             Size::Tolerance(rtol) => {
-                let control = Adaptive::new(rtol, 0.0).ok()?;
-                model.operations(method, Pace::Chosen(&Steps { t_span, control }))?
+                let control = per_length(rtol, 0.0).ok()?;
+                model.operations(method, &Steps::ByError { t_span, control })?
             }
         };
         Some((a_step * steps as f64).round() as u64)
@@ -292,12 +296,11 @@ impl Size {
                 let grid = TimeGrid::with_steps(t_span, steps).map_err(|e| e.to_string())?;
                 let stats = model.run(method, &grid, &SaveAt::Ends, sink);
                 let stats = stats.map_err(|error| error.to_string())?;
-                Ok(Done { steps: stats.steps, rejected: 0, evaluations: None })
+                Ok(Done { steps: stats.accepted, rejected: 0, evaluations: None })
             }
             Size::Tolerance(rtol) => {
-                let control = Adaptive::new(rtol, 0.0).map_err(|error| error.to_string())?;
-                let steps = Steps { t_span, control };
-                let stats = model.adapt(method, &steps, &SaveAt::Ends, sink);
+                let control = per_length(rtol, 0.0).map_err(|error| error.to_string())?;
+                let stats = model.adapt(method, t_span, &control, sink);
                 let stats = stats.map_err(|error| error.to_string())?;
                 Ok(Done {
                     steps: stats.accepted,

@@ -12,20 +12,20 @@
 //!
 //! A key `x` that is a list of numbers is `x1`, `x2`, ... in formulas.
 
+use core::cell::RefCell;
 use core::fmt;
 
-use lieflow::adaptive::{AdaptiveError, AdaptiveStats};
+use lieflow::RunError;
 use lieflow::catalog::MethodSpec;
 use lieflow::problems::Origin;
-use lieflow::{RunError, SaveAt, Stats, TimeGrid};
+use lieflow::solve::Next;
 use serde::de::{DeserializeSeed, Deserializer, Error as _, MapAccess, Visitor};
 use toml::{Table, Value};
 
 use super::prelude::{Deserialize, Error, Law, PARAMETERS, Scale, ValueDeserializer};
 use super::system::no_such_layer;
 use super::{Figure, KeyInfo, Kind, ProblemSpec, QuantityInfo, ReadProblem};
-use crate::model::{Layer, Model, Sink, Steps};
-use crate::operations::Pace;
+use crate::model::{EventPlan, Layer, Model, Outcome, Plan, Steps, Watcher};
 use crate::scene::formula::{Formula, Names, Parameters, read_all};
 use crate::scene::values::{NumberList, Real};
 use crate::scene::{ReadError, Refusal};
@@ -370,14 +370,29 @@ impl PresetModel {
         row.clear();
         row.extend(self.formulas.iter().map(|formula| formula.value(of_base)));
     }
+}
 
-    /// What gets the rows of the base.
-    fn rows<'a>(&'a self, sink: &'a mut Sink<'_>) -> impl FnMut(f64, Row<'_>) + 'a {
-        let mut numbers = Vec::new();
-        move |t, of_base| {
-            self.fill(of_base.values(), &mut numbers);
-            sink(t, self.schema.row(&numbers));
-        }
+/// A watcher of the base that gives its own watcher the rows of the preset.
+struct OfPreset<'a> {
+    model: &'a PresetModel,
+    watcher: &'a mut dyn Watcher,
+    numbers: Vec<f64>,
+}
+
+impl Watcher for OfPreset<'_> {
+    fn row(&mut self, t: f64, of_base: Row<'_>) -> Next {
+        self.model.fill(of_base.values(), &mut self.numbers);
+        self.watcher.row(t, self.model.schema.row(&self.numbers))
+    }
+    fn event(&mut self, event: usize, t: f64, rising: bool, of_base: Row<'_>) {
+        self.model.fill(of_base.values(), &mut self.numbers);
+        self.watcher.event(event, t, rising, self.model.schema.row(&self.numbers));
+    }
+    fn progress(&mut self, t: f64) {
+        self.watcher.progress(t);
+    }
+    fn state(&mut self, bytes: &[u8]) {
+        self.watcher.state(bytes);
     }
 }
 
@@ -388,23 +403,24 @@ impl Model for PresetModel {
     fn modelled(&self, _: &MethodSpec) -> Vec<String> {
         vec![self.modelled.into()]
     }
-    fn run(
+    fn drive(
         &self,
         method: &MethodSpec,
-        grid: &TimeGrid,
-        save: &SaveAt,
-        sink: &mut Sink<'_>,
-    ) -> Result<Stats, RunError> {
-        self.base.run(method, grid, save, &mut self.rows(sink))
-    }
-    fn adapt(
-        &self,
-        method: &MethodSpec,
-        steps: &Steps,
-        save: &SaveAt,
-        sink: &mut Sink<'_>,
-    ) -> Result<AdaptiveStats, AdaptiveError> {
-        self.base.adapt(method, steps, save, &mut self.rows(sink))
+        mut plan: Plan<'_>,
+        watcher: &mut dyn Watcher,
+    ) -> Result<Outcome, RunError> {
+        let events = core::mem::take(&mut plan.events).into_iter().map(|event| {
+            let (value, numbers) = (event.value, RefCell::new(Vec::new()));
+            let value = move |t: f64, of_base: Row<'_>| {
+                let mut numbers = numbers.borrow_mut();
+                self.fill(of_base.values(), &mut numbers);
+                value(t, self.schema.row(&numbers))
+            };
+            EventPlan { value: Box::new(value), ..event }
+        });
+        let plan = Plan { events: events.collect(), ..plan };
+        let mut of_preset = OfPreset { model: self, watcher, numbers: Vec::new() };
+        self.base.drive(method, plan, &mut of_preset)
     }
     fn order(&self, method: &MethodSpec) -> Result<Option<usize>, Error> {
         self.base.order(method)
@@ -415,8 +431,8 @@ impl Model for PresetModel {
         row.truncate(self.schema.columns().count());
         Some(exact.map(|()| row))
     }
-    fn operations(&self, method: &MethodSpec, pace: Pace<'_>) -> Option<f64> {
-        self.base.operations(method, pace)
+    fn operations(&self, method: &MethodSpec, steps: &Steps) -> Option<f64> {
+        self.base.operations(method, steps)
     }
     fn fits(&self, method: &MethodSpec) -> Result<(), Error> {
         self.base.fits(method)

@@ -3,26 +3,26 @@
 
 use core::fmt::{self, Debug};
 
-use lieflow::adaptive::{AdaptiveError, AdaptiveStats};
 use lieflow::catalog::MethodSpec;
 use lieflow::methods::Wide;
 use lieflow::problems::LinearSpace;
 use lieflow::scalar::{Counted, Trig};
-use lieflow::{Error, RunError, SaveAt, Stats, TimeGrid};
+use lieflow::space::Numbers;
+use lieflow::{Error, RunError};
 
 use super::quantity::{Quantity, Value};
 use super::{Fact, Figure, Kind, ProblemSpec};
 use crate::model::{
-    Layer, Model, Runnable, Sink, Steps, adapt_by, fits_by, integrate_by, order_by,
+    Layer, Model, Outcome, Plan, Runnable, Steps, Watcher, drive_by, fits_by, order_by,
 };
-use crate::operations::{Pace, operations_by};
+use crate::operations::operations_by;
 use crate::scene::Refusal;
 use crate::schema::Schema;
 
 /// The numbers that a problem of vectors is made of: `f64`, and [`Counted`] where operations are counted.
 /// Matrices count for themselves.
 pub(super) trait Number:
-    Trig + Wide + Into<f64> + LinearSpace<Scalar = Self> + Send + Sync
+    Trig + Wide + Into<f64> + LinearSpace<Scalar = Self> + Numbers + Send + Sync
 {
 }
 impl Number for f64 {}
@@ -188,16 +188,6 @@ impl<S: System> SystemModel<S> {
         let terms = with_size.map(|(quantity, _)| quantity.terms);
         numbers.extend(terms.map(|of| of.map_or(f64::NAN, |of| of(&self.system, y))));
     }
-
-    /// An observer of points that gives the sink their rows.
-    fn observer<'a>(&'a self, sink: &'a mut Sink<'_>) -> impl FnMut(f64, &PointOf<S>) + 'a {
-        let (mut numbers, mut start) = (Vec::new(), None);
-        move |t, y| {
-            self.values(t - *start.get_or_insert(t), y, &mut numbers);
-            self.sizes(y, &mut numbers);
-            sink(t, self.schema.row(&numbers));
-        }
-    }
 }
 
 impl<S: System> Model for SystemModel<S> {
@@ -207,25 +197,18 @@ impl<S: System> Model for SystemModel<S> {
     fn modelled(&self, _: &MethodSpec) -> Vec<String> {
         vec![self.system.modelled()]
     }
-    fn run(
+    fn drive(
         &self,
         method: &MethodSpec,
-        grid: &TimeGrid,
-        save: &SaveAt,
-        sink: &mut Sink<'_>,
-    ) -> Result<Stats, RunError> {
-        let start = self.start.clone();
-        integrate_by(method, &self.problem, start, grid, save, &mut self.observer(sink))
-    }
-    fn adapt(
-        &self,
-        method: &MethodSpec,
-        steps: &Steps,
-        save: &SaveAt,
-        sink: &mut Sink<'_>,
-    ) -> Result<AdaptiveStats, AdaptiveError> {
-        let start = self.start.clone();
-        adapt_by(method, &self.problem, start, steps, save, &mut self.observer(sink))
+        plan: Plan<'_>,
+        watcher: &mut dyn Watcher,
+    ) -> Result<Outcome, RunError> {
+        let [t0, _] = plan.steps.t_span();
+        let row_of = |t: f64, y: &PointOf<S>, numbers: &mut Vec<f64>| {
+            self.values(t - t0, y, numbers);
+            self.sizes(y, numbers);
+        };
+        drive_by(method, &self.problem, self.start.clone(), plan, (&self.schema, &row_of), watcher)
     }
     fn order(&self, method: &MethodSpec) -> Result<Option<usize>, Error> {
         order_by(method, &self.problem)
@@ -233,9 +216,9 @@ impl<S: System> Model for SystemModel<S> {
     fn fits(&self, method: &MethodSpec) -> Result<(), Error> {
         fits_by(method, &self.problem, &self.start)
     }
-    fn operations(&self, method: &MethodSpec, pace: Pace<'_>) -> Option<f64> {
+    fn operations(&self, method: &MethodSpec, steps: &Steps) -> Option<f64> {
         let (problem, start) = self.system.problem::<Counted>().ok()?;
-        operations_by(method, &problem, start, pace)
+        operations_by(method, &problem, start, steps)
     }
     fn exact(&self, t_span: [f64; 2]) -> Option<Result<Vec<f64>, Error>> {
         let mut values = Vec::new();

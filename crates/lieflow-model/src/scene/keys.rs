@@ -1,7 +1,8 @@
 //! The keys of the sections that every scene has.
 
-use lieflow::adaptive::Adaptive;
+use lieflow::StepControl;
 use lieflow::catalog::MethodSpec;
+use lieflow::tolerance::Rule;
 use lieflow::{SaveAt, TimeGrid};
 use serde::Deserialize;
 
@@ -59,6 +60,7 @@ pub(super) struct TimeKeys {
     h_min: Option<Real>,
     h_max: Option<Real>,
     max_steps: Option<Whole<1>>,
+    tolerance: Option<String>,
 }
 
 /// The steps that `compare` starts from where a scene leaves them to the error.
@@ -66,7 +68,7 @@ const STEPS: u64 = 1000;
 
 impl TimeKeys {
     /// The steps of one size, and those that are chosen by their error where tolerances are given.
-    pub(super) fn resolve(self) -> Result<(TimeGrid, Option<Adaptive>), Refusal> {
+    pub(super) fn resolve(self) -> Result<(TimeGrid, Option<StepControl>), Refusal> {
         let [t0, t1] = self.t_span.0;
         if t0 == t1 {
             let message = format!("t_span is empty: it starts and ends at t = {t0}");
@@ -92,13 +94,14 @@ impl TimeKeys {
     }
 
     /// Tolerances and limits; none where no tolerance is given.
-    fn adaptive(&self) -> Result<Option<Adaptive>, Refusal> {
+    fn adaptive(&self) -> Result<Option<StepControl>, Refusal> {
         if self.rtol.is_none() && self.atol.is_none() {
             let limits = [
                 ("h_init", self.h_init.is_some()),
                 ("h_min", self.h_min.is_some()),
                 ("h_max", self.h_max.is_some()),
                 ("max_steps", self.max_steps.is_some()),
+                ("tolerance", self.tolerance.is_some()),
             ];
             return match limits.into_iter().find(|(_, given)| *given) {
                 None => Ok(None),
@@ -110,8 +113,18 @@ impl TimeKeys {
             };
         }
         let tolerance = |x: Option<Real>| x.map_or(0.0, |x| x.0);
+        let rule = match self.tolerance.as_deref() {
+            None | Some("per-step") => Rule::PerStep,
+            Some("per-length") => Rule::PerLength,
+            Some(other) => {
+                let message =
+                    format!("unknown rule `{other}`, expected \"per-step\" or \"per-length\"");
+                return Err(Refusal::at("tolerance", message));
+            }
+        };
         let control = || {
-            let mut control = Adaptive::new(tolerance(self.rtol), tolerance(self.atol))?;
+            let mut control =
+                StepControl::new(tolerance(self.rtol), tolerance(self.atol))?.rule(rule);
             if let Some(h) = self.h_init {
                 control = control.first_step(h.0)?;
             }
@@ -154,9 +167,21 @@ impl OutputKeys {
                 Either::Second(times) => SaveAt::Times(times.iter().map(|t| t.0).collect()),
             },
         };
-        save.check(grid)?;
-        Ok((self.quantities, save))
+        save.check(grid.t_span())?;
+        Ok((self.quantities, with_ends(save, grid.t_span())))
     }
+}
+
+/// The start and the end of a run are rows, whatever the times.
+fn with_ends(save: SaveAt, [t0, t1]: [f64; 2]) -> SaveAt {
+    let SaveAt::Times(mut times) = save else { return save };
+    if times.first() != Some(&t0) {
+        times.insert(0, t0);
+    }
+    if times.last() != Some(&t1) {
+        times.push(t1);
+    }
+    SaveAt::Times(times)
 }
 
 fn check_quantities(quantities: &[String], kind: &Kind) -> Result<(), Refusal> {

@@ -16,14 +16,14 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-use lieflow::adaptive::Adaptive;
+use lieflow::StepControl;
 use lieflow::catalog::{MethodSpec, all_methods};
 use lieflow::{Error, SaveAt, TimeGrid};
 
 use self::document::{Document, deserializer};
 use self::keys::{MethodKeys, OutputKeys, TimeKeys};
 use crate::kinds::{Kind, ProblemSpec};
-use crate::model::{Layer, Model};
+use crate::model::{Layer, Model, Steps};
 
 /// A run, stated in full and checked.
 #[derive(Debug)]
@@ -41,7 +41,7 @@ pub struct Scene {
     /// The steps of one size; where `adaptive` chooses, those that `compare` starts from.
     pub grid: TimeGrid,
     /// Tolerances and limits of steps that are chosen by their error, where the scene has them.
-    pub adaptive: Option<Adaptive>,
+    pub adaptive: Option<StepControl>,
     /// Where rows are written.
     pub save: SaveAt,
     /// What is written, in this order.
@@ -96,6 +96,16 @@ impl Scene {
             document.refusal("method", refusal)
         })?;
         Ok(scene)
+    }
+
+    /// The steps of the run.
+    pub fn steps(&self) -> Steps {
+        match &self.adaptive {
+            None => Steps::Equal(self.grid),
+            Some(control) => {
+                Steps::ByError { t_span: self.grid.t_span(), control: control.clone() }
+            }
+        }
     }
 
     /// Read a scene file.

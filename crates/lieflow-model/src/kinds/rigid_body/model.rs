@@ -11,7 +11,7 @@
 
 use core::fmt::Debug;
 
-use lieflow::adaptive::{AdaptiveError, AdaptiveStats};
+use lieflow::RunError;
 use lieflow::catalog::{MethodSpec, Needs};
 use lieflow::groups::{GroupMatrix, LieGroup, MatrixGroup, So3, UnitQuaternions, hat, vee};
 use lieflow::problems::{
@@ -19,15 +19,13 @@ use lieflow::problems::{
     RigidBodyQuaternion, RigidBodyState,
 };
 use lieflow::so3::{quaternion_from_matrix, quaternion_to_wxyz};
-use lieflow::{RunError, SaveAt, Stats, TimeGrid};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 use super::{KIND, RigidBodySpec, rotation};
 use crate::kinds::body::{ROTATION, by_rows};
 use crate::kinds::prelude::*;
 use crate::kinds::system::PointOf;
-use crate::model::{Model, Runnable, Sink, Steps};
-use crate::operations::Pace;
+use crate::model::{Model, Outcome, Plan, Runnable, Steps, Watcher};
 use crate::schema::Schema;
 
 /// Where a body is: its momentum in the body, and its orientation where that is modelled.
@@ -399,23 +397,13 @@ impl Model for ByMethod {
     fn modelled(&self, method: &MethodSpec) -> Vec<String> {
         self.of(method).modelled(method)
     }
-    fn run(
+    fn drive(
         &self,
         method: &MethodSpec,
-        grid: &TimeGrid,
-        save: &SaveAt,
-        sink: &mut Sink<'_>,
-    ) -> Result<Stats, RunError> {
-        self.of(method).run(method, grid, save, sink)
-    }
-    fn adapt(
-        &self,
-        method: &MethodSpec,
-        steps: &Steps,
-        save: &SaveAt,
-        sink: &mut Sink<'_>,
-    ) -> Result<AdaptiveStats, AdaptiveError> {
-        self.of(method).adapt(method, steps, save, sink)
+        plan: Plan<'_>,
+        watcher: &mut dyn Watcher,
+    ) -> Result<Outcome, RunError> {
+        self.of(method).drive(method, plan, watcher)
     }
     fn order(&self, method: &MethodSpec) -> Result<Option<usize>, Error> {
         self.of(method).order(method)
@@ -423,8 +411,8 @@ impl Model for ByMethod {
     fn fits(&self, method: &MethodSpec) -> Result<(), Error> {
         self.of(method).fits(method)
     }
-    fn operations(&self, method: &MethodSpec, pace: Pace<'_>) -> Option<f64> {
-        self.of(method).operations(method, pace)
+    fn operations(&self, method: &MethodSpec, steps: &Steps) -> Option<f64> {
+        self.of(method).operations(method, steps)
     }
     fn exact(&self, t_span: [f64; 2]) -> Option<Result<Vec<f64>, Error>> {
         self.attitude.exact(t_span)

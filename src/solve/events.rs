@@ -1,0 +1,329 @@
+//! Events: where a function g(t, y) of the solution passes zero.
+//!
+//! After each step g is evaluated at its end, and at points within it where two zeros could lie between the
+//! ends ([`Event::points`]). Between two neighbours of opposite sign the zero is found on the continuous
+//! extension of the method, to rounding of t (the method of Chandrupatla, Adv. Eng. Software 28 (1997)).
+//!
+//! | g | what is found |
+//! |---|---|
+//! | from < 0 to ≥ 0 | a rising zero |
+//! | from > 0 to ≤ 0 | a falling zero |
+//! | 0 at the start of the run | a zero at the start, rising where g > 0 follows, falling where g < 0 follows |
+//! | touches 0 and turns back | nothing, unless a point that is looked at hits 0 exactly |
+//! | not finite | [`RunError::Event`] with the name of the event |
+//!
+//! After a state was changed, the sign of g is taken anew a little later, so that the same zero is not found twice.
+
+use core::fmt;
+
+use super::integrator::Integrator;
+use super::stats::RunError;
+use crate::methods::Method;
+use crate::problems::{PointOf, Problem};
+
+/// Which zeros of g count.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Direction {
+    /// From negative to positive, in the direction of the run.
+    Rising,
+    /// From positive to negative.
+    Falling,
+    /// Both.
+    #[default]
+    Both,
+}
+
+impl Direction {
+    fn has(self, rising: bool) -> bool {
+        match self {
+            Direction::Rising => rising,
+            Direction::Falling => !rising,
+            Direction::Both => true,
+        }
+    }
+}
+
+type Function<'a, Y> = Box<dyn FnMut(f64, &Y) -> f64 + 'a>;
+type Told<'a, Y> = Box<dyn FnMut(f64, &Y, bool) + 'a>;
+type Change<'a, Y> = Box<dyn FnMut(f64, &mut Y) + 'a>;
+
+/// An event: the zeros of g(t, y), and what happens there.
+///
+/// ```
+/// use lieflow::prelude::*;
+/// use lieflow::problems::RigidBody;
+/// use nalgebra::Vector3;
+///
+/// // Each flip of a free body that turns about its middle axis, until the third.
+/// let body = RigidBody::<f64>::new([1.0, 2.0, 3.0])?;
+/// let method = Rkmk::new(DOPRI5, Exp);
+/// let flips = Event::new("flip", |_, m: &Vector3<f64>| m.y).stop_after(3);
+/// let run = Solve::new(&body, &method, [0.0, f64::INFINITY])
+///     .tolerances(1e-10, 1e-12)
+///     .event(flips)
+///     .run(Vector3::new(0.01, 3.0, 0.01))?;
+/// assert_eq!(run.events.len(), 3);
+/// assert_eq!(run.t, run.events[2].t);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct Event<'a, Y> {
+    pub(super) name: String,
+    g: Function<'a, Y>,
+    direction: Direction,
+    pub(super) stop_after: Option<u64>,
+    pub(super) change: Option<Change<'a, Y>>,
+    pub(super) told: Option<Told<'a, Y>>,
+    points: Option<u32>,
+    pub(super) seen: Seen,
+    /// How often it was found.
+    pub(super) count: u64,
+}
+
+impl<Y> fmt::Debug for Event<'_, Y> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Event").field("name", &self.name).finish_non_exhaustive()
+    }
+}
+
+/// What is known of g up to the last point.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Seen {
+    /// g at the last point.
+    pub(super) value: f64,
+    /// g at the start of the step before, and its size; none at the start and after a change.
+    pub(super) before: Option<[f64; 2]>,
+    /// Is the sign of g to be taken anew, a little later?
+    pub(super) anew: bool,
+}
+
+/// The points within a step where g is evaluated when two zeros could lie between its ends.
+const POINTS: u32 = 8;
+/// Where in a step the sign of g is taken anew.
+const A_LITTLE_LATER: f64 = 1.0 / 64.0;
+
+impl<'a, Y> Event<'a, Y> {
+    /// The zeros of `g(t, y)`, rising and falling; the run goes on.
+    pub fn new(name: impl Into<String>, g: impl FnMut(f64, &Y) -> f64 + 'a) -> Self {
+        Event {
+            name: name.into(),
+            g: Box::new(g),
+            direction: Direction::Both,
+            stop_after: None,
+            change: None,
+            told: None,
+            points: None,
+            seen: Seen::default(),
+            count: 0,
+        }
+    }
+    /// Zeros of this direction only.
+    pub fn direction(self, direction: Direction) -> Self {
+        Event { direction, ..self }
+    }
+    /// Rising zeros only.
+    pub fn rising(self) -> Self {
+        self.direction(Direction::Rising)
+    }
+    /// Falling zeros only.
+    pub fn falling(self) -> Self {
+        self.direction(Direction::Falling)
+    }
+    /// Stop the run at the zero of this number, from 1. The default is to go on.
+    pub fn stop_after(self, count: u64) -> Self {
+        Event { stop_after: Some(count.max(1)), ..self }
+    }
+    /// Change the state at each zero: an impulse, a reset. The new state must be on M.
+    pub fn change(self, change: impl FnMut(f64, &mut Y) + 'a) -> Self {
+        Event { change: Some(Box::new(change)), ..self }
+    }
+    /// Call `told(t, y, rising)` at each zero, as it is found, and store none.
+    pub fn tell(self, told: impl FnMut(f64, &Y, bool) + 'a) -> Self {
+        Event { told: Some(Box::new(told)), ..self }
+    }
+    /// Evaluate g at this many points within every step. The default evaluates it at 8 points of those steps
+    /// where the values at the ends of this step and of the one before leave room for two zeros: |g| at both ends
+    /// is smaller than the change of slope of g over the two steps.
+    pub fn points(self, points: u32) -> Self {
+        Event { points: Some(points), ..self }
+    }
+    /// The name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn value(&mut self, t: f64, y: &Y) -> Result<f64, RunError> {
+        let value = (self.g)(t, y);
+        match value.is_finite() {
+            true => Ok(value),
+            false => Err(RunError::Event { name: self.name.clone(), t, value }),
+        }
+    }
+
+    /// Is the run to stop at this zero?
+    pub(super) fn stops(&self) -> bool {
+        self.stop_after.is_some_and(|count| self.count >= count)
+    }
+}
+
+/// A zero that was found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Zero {
+    pub(super) t: f64,
+    pub(super) event: usize,
+    pub(super) rising: bool,
+}
+
+/// The sign from one value to the next: does g rise or fall through zero?
+fn passes(before: f64, after: f64) -> Option<bool> {
+    if before < 0.0 && after >= 0.0 {
+        Some(true)
+    } else if before > 0.0 && after <= 0.0 {
+        Some(false)
+    } else {
+        None
+    }
+}
+
+/// The events of a run.
+pub(super) struct Events<'a, P: Problem> {
+    pub(super) all: Vec<Event<'a, PointOf<P>>>,
+    /// The zeros of the last step, in the order of time.
+    pub(super) found: Vec<Zero>,
+    /// A point within a step.
+    at: PointOf<P>,
+}
+
+impl<'a, P: Problem> Events<'a, P> {
+    pub(super) fn new(all: Vec<Event<'a, PointOf<P>>>, like: &PointOf<P>) -> Self {
+        let found = Vec::with_capacity(2 * all.len() * (POINTS as usize + 2));
+        Events { all, found, at: like.clone() }
+    }
+
+    /// At the start of a run.
+    pub(super) fn start(&mut self, t: f64, y: &PointOf<P>) -> Result<(), RunError> {
+        for event in &mut self.all {
+            event.count = 0;
+            let value = event.value(t, y)?;
+            event.seen = Seen { value, before: None, anew: value == 0.0 };
+        }
+        Ok(())
+    }
+
+    /// After the state was changed at t.
+    pub(super) fn restart(&mut self, t: f64, y: &PointOf<P>) -> Result<(), RunError> {
+        for event in &mut self.all {
+            let value = event.value(t, y)?;
+            event.seen = Seen { value, before: None, anew: true };
+        }
+        Ok(())
+    }
+
+    /// Find the zeros in the last step of the run, up to its time.
+    pub(super) fn search<M: Method<P>>(
+        &mut self,
+        run: &mut Integrator<'_, P, M>,
+        first_step: bool,
+    ) -> Result<(), RunError> {
+        self.found.clear();
+        let (start, end) = (run.last.t, run.t);
+        let size = (end - start).abs();
+        for (index, event) in self.all.iter_mut().enumerate() {
+            let at = &mut self.at;
+            let last = event.value(end, run.y())?;
+            let mut left = (start, event.seen.value);
+            if event.seen.anew {
+                let t = start + A_LITTLE_LATER * (end - start);
+                run.at(t, at)?;
+                let value = event.value(t, at)?;
+                // A zero at the very start of the run, and its direction.
+                if first_step && left.1 == 0.0 && value != 0.0 && event.direction.has(value > 0.0) {
+                    self.found.push(Zero { t: start, event: index, rising: value > 0.0 });
+                }
+                left = (t, value);
+            }
+            let points = match (event.points, event.seen.before) {
+                (Some(points), _) => points,
+                (None, None) => POINTS,
+                (None, Some([before, length])) => {
+                    let slope = (event.seen.value - before) / length;
+                    let bend = ((last - event.seen.value) / size - slope).abs() * size;
+                    let near = left.1.abs().min(last.abs());
+                    if near <= 2.0 * bend { POINTS } else { 0 }
+                }
+            };
+            let whole = end - left.0;
+            let begin = left.0;
+            for i in 1..=points + 1 {
+                let right = if i > points {
+                    (end, last)
+                } else {
+                    let t = begin + whole * f64::from(i) / f64::from(points + 1);
+                    if t == left.0 || t == end {
+                        continue;
+                    }
+                    run.at(t, at)?;
+                    (t, event.value(t, at)?)
+                };
+                if let Some(rising) = passes(left.1, right.1)
+                    && event.direction.has(rising)
+                {
+                    let t = zero(left, right, |t| {
+                        run.at(t, at)?;
+                        event.value(t, at)
+                    })?;
+                    self.found.push(Zero { t, event: index, rising });
+                }
+                left = right;
+            }
+            event.seen = Seen { value: last, before: Some([event.seen.value, size]), anew: false };
+        }
+        let forward = if end >= start { 1.0 } else { -1.0 };
+        self.found.sort_unstable_by(|a, b| {
+            (forward * a.t).total_cmp(&(forward * b.t)).then(a.event.cmp(&b.event))
+        });
+        Ok(())
+    }
+}
+
+/// The zero between two points of opposite sign, to rounding of t: the end of the last bracket where g has the sign
+/// of `b`, or 0.
+fn zero(
+    a: (f64, f64),
+    b: (f64, f64),
+    mut g: impl FnMut(f64) -> Result<f64, RunError>,
+) -> Result<f64, RunError> {
+    // The bracket is (near, far); `old` is the point before.
+    let ((mut near, mut far), mut s) = ((b, a), 0.5);
+    for _ in 0..200 {
+        if near.1 == 0.0 {
+            break;
+        }
+        let middle = 0.5 * (near.0 + far.0);
+        if middle == near.0 || middle == far.0 {
+            break;
+        }
+        let t = near.0 + s * (far.0 - near.0);
+        let new = (t, g(t)?);
+        let old = if (new.1 > 0.0) == (near.1 > 0.0) && new.1 != 0.0 {
+            near
+        } else {
+            core::mem::replace(&mut far, near)
+        };
+        near = new;
+        // Inverse quadratic interpolation where it is known to be safe, else bisection.
+        let ([x1, x2, x3], [f1, f2, f3]) = ([near.0, far.0, old.0], [near.1, far.1, old.1]);
+        let (xi, phi) = ((x1 - x2) / (x3 - x2), (f1 - f2) / (f3 - f2));
+        s = if phi * phi < xi && (1.0 - phi) * (1.0 - phi) < 1.0 - xi {
+            f1 / (f2 - f1) * f3 / (f2 - f3)
+                + (x3 - x1) / (x2 - x1) * f1 / (f3 - f1) * f2 / (f3 - f2)
+        } else {
+            0.5
+        };
+        // Never closer to an end than rounding of t.
+        let least = f64::EPSILON * near.0.abs().max(far.0.abs()) / (far.0 - near.0).abs();
+        s = if least < 0.5 { s.clamp(least, 1.0 - least) } else { 0.5 };
+    }
+    // The side of b, so that the sign after the zero is that of g at b.
+    let of_b = |x: (f64, f64)| x.1 == 0.0 || (x.1 > 0.0) == (b.1 > 0.0) && b.1 != 0.0;
+    Ok(if of_b(near) { near.0 } else { far.0 })
+}

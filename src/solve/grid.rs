@@ -1,0 +1,211 @@
+//! Times: equal steps over a span, and where a run is looked at.
+
+use crate::error::Error;
+use crate::methods::{EqualSteps, Step};
+use crate::scalar::Real;
+
+/// Steps of one size from t₀ to t₁, forward or backward.
+///
+/// Times are computed from the number of the step, so that no error accumulates in t, and the last
+/// step ends at t₁ exactly. Every step has the same h, to the last bit: where f does not ask for t, a
+/// run is the same whenever it starts. The last step alone is shorter where h does not divide the span.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TimeGrid {
+    t0: f64,
+    t1: f64,
+    h: f64,
+    steps: u64,
+}
+
+/// More steps than this count as a mistake in the input.
+const STEPS_MAX: f64 = 1e15;
+
+/// The length of a span whose ends are numbers; the end may be infinite.
+pub(super) fn length_of([t0, t1]: [f64; 2]) -> Result<f64, Error> {
+    if !t0.is_finite() {
+        return Err(Error::out_of_range("t_span[0]", t0, "a finite number"));
+    }
+    if t1.is_nan() {
+        return Err(Error::out_of_range("t_span[1]", t1, "a number"));
+    }
+    let length = (t1 - t0).abs();
+    match length.is_finite() || t1.is_infinite() {
+        true => Ok(length),
+        false => Err(Error::out_of_range("t_span", length, "a finite length")),
+    }
+}
+
+impl TimeGrid {
+    /// Steps of size `dt` > 0 over the span; backward when t₁ < t₀. An empty span has no steps. Where `dt` does
+    /// not divide the span, to a relative 1e-9, the last step is shorter. The end may be infinite.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for a time that is not a number, and for a `dt` that is not finite and positive, is
+    /// lost in rounding next to t, or makes more than 1e15 steps.
+    pub fn new(t_span: [f64; 2], dt: f64) -> Result<Self, Error> {
+        let length = length_of(t_span)?;
+        if !(dt.is_finite() && dt > 0.0) {
+            return Err(Error::out_of_range("dt", dt, "a finite number > 0"));
+        }
+        let [t0, t1] = t_span;
+        let h = dt.copysign(t1 - t0);
+        if length.is_infinite() {
+            return TimeGrid { t0, t1, h, steps: u64::MAX }.check();
+        }
+        let steps = (length / dt).round();
+        if steps > STEPS_MAX {
+            return Err(Error::out_of_range("dt", dt, "at most 1e15 steps over t_span"));
+        }
+        if length == 0.0 || (steps >= 1.0 && (length / dt - steps).abs() <= 1e-9 * steps) {
+            return Self::with_steps(t_span, steps as u64);
+        }
+        TimeGrid { t0, t1, h, steps: (length / dt).ceil() as u64 }.check()
+    }
+
+    /// The span in this number of steps.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for a time that is not finite, no steps over a span that is not empty,
+    /// or so many that t + h = t.
+    pub fn with_steps(t_span: [f64; 2], steps: u64) -> Result<Self, Error> {
+        let [t0, t1] = t_span;
+        let length = length_of(t_span)?;
+        if length == 0.0 {
+            return Ok(TimeGrid { t0, t1, h: 0.0, steps: 0 });
+        }
+        if length.is_infinite() {
+            return Err(Error::out_of_range("t_span[1]", t1, "a finite number"));
+        }
+        if steps == 0 {
+            return Err(Error::out_of_range("steps", 0.0, "at least 1"));
+        }
+        TimeGrid { t0, t1, h: (t1 - t0) / steps as f64, steps }.check()
+    }
+
+    fn check(self) -> Result<Self, Error> {
+        let far = if self.t1.is_finite() { self.t1.abs() } else { 0.0 };
+        let largest = self.t0.abs().max(far);
+        if self.h.abs() < largest - largest.next_down() {
+            let expected = format!("a step that changes t = {largest}");
+            return Err(Error::out_of_range("dt", self.h.abs(), expected));
+        }
+        Ok(self)
+    }
+
+    /// t₀ and t₁.
+    pub fn t_span(&self) -> [f64; 2] {
+        [self.t0, self.t1]
+    }
+    /// The number of steps; `u64::MAX` over a span without end.
+    pub fn steps(&self) -> u64 {
+        self.steps
+    }
+    /// The step, with its sign; 0 when there are no steps.
+    pub fn h(&self) -> f64 {
+        self.h
+    }
+    /// The time after n steps.
+    pub fn time(&self, n: u64) -> f64 {
+        if n >= self.steps { self.t1 } else { self.t0 + n as f64 * self.h }
+    }
+    /// The size of step number n: h, but for a shorter last one.
+    pub(super) fn size(&self, n: u64) -> f64 {
+        let whole = self.t1 - (self.t0 + n as f64 * self.h);
+        match n + 1 >= self.steps && whole.abs() < 0.999_999 * self.h.abs() {
+            true => whole,
+            false => self.h,
+        }
+    }
+    /// The steps `first..end`, of which all have the same size.
+    pub(super) fn equal(&self, first: u64, end: u64) -> EqualSteps {
+        EqualSteps { first, end, t0: self.t0, h: self.h }
+    }
+    /// Call `each` with every number: what is saved of a run.
+    pub(super) fn each_part(&mut self, each: &mut dyn FnMut(&mut f64)) {
+        each(&mut self.t0);
+        each(&mut self.t1);
+        each(&mut self.h);
+        let mut steps = f64::from_bits(self.steps);
+        each(&mut steps);
+        self.steps = steps.to_bits();
+    }
+    /// Step number n.
+    pub(super) fn step<S: Real>(&self, n: u64) -> Step<S> {
+        Step { h: S::lit(self.size(n)), ..self.equal(n, n + 1).step(n) }
+    }
+    /// How many steps may be taken from step `n` on without passing `time`: at least one.
+    pub(super) fn last_before(&self, n: u64, time: f64) -> u64 {
+        let steps = ((time - self.t0) / self.h).floor();
+        // One less, for rounding.
+        (steps as u64).saturating_sub(1).max(n + 1)
+    }
+}
+
+/// Where a run is looked at: the points that are shown to an observer, or stored.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub enum SaveAt {
+    /// At the end only.
+    #[default]
+    End,
+    /// At the start and at the end.
+    Ends,
+    /// At the start, after every so many steps, and at the end.
+    Every(u64),
+    /// At these times and no others, in the order of the run. They need not be ends of steps.
+    Times(Vec<f64>),
+}
+
+impl SaveAt {
+    /// Is the start shown?
+    pub(super) fn start(&self, t0: f64) -> bool {
+        match self {
+            SaveAt::End => false,
+            SaveAt::Ends | SaveAt::Every(_) => true,
+            SaveAt::Times(times) => times.first() == Some(&t0),
+        }
+    }
+
+    /// The times after t₀.
+    pub(super) fn times_after(&self, t0: f64) -> &[f64] {
+        match self {
+            SaveAt::Times(times) => times.strip_prefix(&[t0]).unwrap_or(times),
+            _ => &[],
+        }
+    }
+
+    /// The number of the next step after `n` that is shown whatever the time.
+    pub(super) fn next_after(&self, n: u64) -> u64 {
+        match self {
+            SaveAt::Every(every) => (n - n % every).saturating_add(*every),
+            _ => u64::MAX,
+        }
+    }
+
+    /// Check against the span.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for `every = 0`, and for times that are not finite, outside the span,
+    /// or not in strict order.
+    pub fn check(&self, [t0, t1]: [f64; 2]) -> Result<(), Error> {
+        match self {
+            SaveAt::Every(0) => Err(Error::out_of_range("every", 0.0, "at least 1")),
+            SaveAt::End | SaveAt::Ends | SaveAt::Every(_) => Ok(()),
+            SaveAt::Times(times) => {
+                let forward = if t1 >= t0 { 1.0 } else { -1.0 };
+                let mut last = f64::NEG_INFINITY;
+                for (i, &t) in times.iter().enumerate() {
+                    let arg = || format!("times[{i}]");
+                    if !(t0.min(t1) <= t && t <= t0.max(t1) && t.is_finite()) {
+                        return Err(Error::out_of_range(arg(), t, format!("within [{t0}, {t1}]")));
+                    }
+                    if forward * t <= last {
+                        return Err(Error::out_of_range(arg(), t, "times in order, each once"));
+                    }
+                    last = forward * t;
+                }
+                Ok(())
+            }
+        }
+    }
+}

@@ -1,0 +1,692 @@
+//! A run in one's hands: step by step, with the state to read and to set.
+
+use super::control::{Controller, StepControl};
+use super::grid::TimeGrid;
+use super::stats::{Mender, RunError, Stats};
+use crate::actions::Action;
+use crate::error::{Error, Failure, StepError};
+use crate::groups::LieAlgebra;
+use crate::methods::{Embedded, EqualSteps, Method, Step};
+use crate::problems::{AlgOf, PointOf, Problem, ScalarOf};
+use crate::scalar::Real;
+use crate::tolerance::Tolerance;
+
+/// A step with its error in units of the tolerance, as a number.
+type Attempt<P, M> = fn(
+    &M,
+    &P,
+    Step<ScalarOf<P>>,
+    &Tolerance,
+    &PointOf<P>,
+    &mut <M as Method<P>>::Work,
+    &mut PointOf<P>,
+) -> Result<f64, StepError>;
+
+/// What a run that chooses its steps needs of its method.
+pub(super) struct Estimator<P: Problem, M: Method<P>> {
+    attempt: Attempt<P, M>,
+    error_order: fn(&M, &P) -> Result<usize, Error>,
+    evaluations: fn(&M, &P) -> Option<u64>,
+    norm: fn(&P, &AlgOf<P>) -> f64,
+}
+
+impl<P: Problem, M: Method<P>> Clone for Estimator<P, M> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+impl<P: Problem, M: Method<P>> Copy for Estimator<P, M> {}
+
+impl<P: Problem, M: Embedded<P>> Estimator<P, M>
+where
+    ScalarOf<P>: Into<f64>,
+{
+    pub(super) fn of_method() -> Self {
+        Estimator {
+            attempt: |method, problem, step, tolerance, from, work, to| {
+                method.step_with_error(problem, step, tolerance, from, work, to).map(Into::into)
+            },
+            error_order: |method, problem| method.error_order(problem),
+            evaluations: |method, problem| method.evaluations_with_error(problem),
+            norm: |problem, v| problem.group().norm(v).into(),
+        }
+    }
+}
+
+/// How the steps of a run are chosen.
+pub(super) enum Pace<P: Problem, M: Method<P>> {
+    /// One size.
+    Equal(TimeGrid),
+    /// By their error.
+    ByError(StepControl, Estimator<P, M>),
+}
+
+impl<P: Problem, M: Method<P>> Clone for Pace<P, M> {
+    fn clone(&self) -> Self {
+        match self {
+            Pace::Equal(grid) => Pace::Equal(*grid),
+            Pace::ByError(control, estimator) => Pace::ByError(control.clone(), *estimator),
+        }
+    }
+}
+
+/// The state of the choice of steps.
+pub(super) enum Pacer<P: Problem, M: Method<P>> {
+    /// Equal steps: the grid, and how many of its steps are done. A run that was taken off its grid gets a new one.
+    Equal { grid: TimeGrid, done: u64 },
+    /// Steps by their error.
+    ByError(Box<Chooser<P, M>>),
+}
+
+/// The state of the choice of steps by their error.
+pub(super) struct Chooser<P: Problem, M: Method<P>> {
+    pub(super) control: StepControl,
+    estimator: Estimator<P, M>,
+    evaluations: Option<u64>,
+    pub(super) controller: Controller,
+    /// The size of the next attempt, without its sign; `None` before the first step.
+    pub(super) h: Option<f64>,
+    /// The end of the last step that failed, until it is passed.
+    pub(super) wall: Option<f64>,
+}
+
+/// What the workspace knows of the last step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Looked {
+    /// There was no step, or the state was changed since.
+    Nothing,
+    /// The workspace was last used for the step.
+    Fresh,
+    /// The workspace was used for something else since.
+    Stale,
+    /// The continuous extension is ready.
+    Prepared,
+}
+
+/// A run that is taken step by step.
+///
+/// The state is at time t, after n accepted steps. Between calls the last step can be looked into
+/// ([`interpolate`](Self::interpolate)), and the state can be changed ([`set_state`](Self::set_state)).
+/// [`Solve::integrator`](super::Solve::integrator) makes one. Memory is allocated there, and in no step.
+///
+/// ```
+/// use lieflow::prelude::*;
+/// use lieflow::problems::RigidBody;
+/// use nalgebra::Vector3;
+///
+/// let body = RigidBody::<f64>::new([1.0, 2.0, 3.0])?;
+/// let method = Rkmk::new(DOPRI5, Exp);
+/// let solve = Solve::new(&body, &method, [0.0, f64::INFINITY]).tolerances(1e-9, 1e-12);
+/// let mut run = solve.integrator(Vector3::new(0.2, 0.0, 3.0))?;
+/// for k in 1..=10 {
+///     run.advance_to(f64::from(k))?; // a controller may read the state here, and change it
+/// }
+/// assert_eq!(run.t(), 10.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[allow(missing_debug_implementations)] // the parts belong to the problem's types
+pub struct Integrator<'a, P: Problem, M: Method<P>> {
+    pub(super) problem: &'a P,
+    pub(super) method: &'a M,
+    pub(super) t: f64,
+    pub(super) y: PointOf<P>,
+    /// The start of the last step.
+    pub(super) from: PointOf<P>,
+    /// The last step.
+    pub(super) last: Step<f64>,
+    /// The end of an attempt, or of the step that was taken again.
+    to: PointOf<P>,
+    /// Another point.
+    spare: PointOf<P>,
+    pub(super) looked_at: Looked,
+    pub(super) work: M::Work,
+    pub(super) pacer: Pacer<P, M>,
+    pub(super) t1: f64,
+    pub(super) mender: Mender<P>,
+    pub(super) stats: Stats,
+}
+
+/// The number of rejections in a row that ends a run.
+const REJECTIONS_MAX: u32 = 60;
+
+/// Is f(t, y) in 𝔤? Asked once, before the first step.
+fn check_field<P: Problem>(problem: &P, t: f64, y: &PointOf<P>) -> Result<(), Error> {
+    let mut v = problem.group().zero();
+    problem.f(ScalarOf::<P>::lit(t), y, &mut v, &mut problem.work());
+    problem.group().check("f", &v)
+}
+
+fn lit<P: Problem>(Step { n, t, h }: Step<f64>) -> Step<ScalarOf<P>> {
+    Step { n, t: ScalarOf::<P>::lit(t), h: ScalarOf::<P>::lit(h) }
+}
+
+impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
+    pub(super) fn new(
+        problem: &'a P,
+        method: &'a M,
+        [t0, t1]: [f64; 2],
+        pace: Pace<P, M>,
+        y: PointOf<P>,
+    ) -> Result<Self, Error> {
+        problem.action().check(problem.group(), &y)?;
+        let pacer = match pace {
+            Pace::Equal(grid) => Pacer::Equal { grid, done: 0 },
+            Pace::ByError(control, estimator) => {
+                let mut parts = control.tolerance.scales();
+                let at = problem.group().zero();
+                problem.action().error_ratio(problem.group(), &at, &y, &mut parts);
+                control.tolerance.check(parts.asked())?;
+                Pacer::ByError(Box::new(Chooser {
+                    control,
+                    estimator,
+                    evaluations: (estimator.evaluations)(method, problem),
+                    controller: Controller::new((estimator.error_order)(method, problem)?),
+                    h: None,
+                    wall: None,
+                }))
+            }
+        };
+        let work = method.work(problem, &y)?;
+        if t0 != t1 {
+            check_field(problem, t0, &y)?;
+        }
+        let mender = Mender::new(problem, &y, method.stays_on_manifold());
+        let stats = Stats {
+            evaluations: Some(0),
+            maps: method.map_counts(problem).map(|_| Default::default()),
+            smallest_step: f64::INFINITY,
+            ..Stats::default()
+        };
+        Ok(Integrator {
+            problem,
+            method,
+            t: t0,
+            from: y.clone(),
+            to: y.clone(),
+            spare: y.clone(),
+            y,
+            last: Step { n: 0, t: t0, h: 0.0 },
+            looked_at: Looked::Nothing,
+            work,
+            pacer,
+            t1,
+            mender,
+            stats,
+        })
+    }
+
+    /// The time.
+    pub fn t(&self) -> f64 {
+        self.t
+    }
+    /// The state.
+    pub fn y(&self) -> &PointOf<P> {
+        &self.y
+    }
+    /// The end of the span.
+    pub fn t_end(&self) -> f64 {
+        self.t1
+    }
+    /// Is the end of the span reached?
+    pub fn is_done(&self) -> bool {
+        self.t == self.t1
+    }
+    /// What the run did so far.
+    pub fn stats(&self) -> Stats {
+        let mut stats = self.stats;
+        stats.iterations = stats.iterations.wrapping_add(self.method.iterations(&self.work));
+        if stats.accepted == 0 {
+            stats.smallest_step = 0.0;
+        }
+        if let Some(counts) = stats.maps.and(self.method.map_counts(self.problem)) {
+            stats.maps = Some(counts.times(stats.accepted + stats.rejected));
+        }
+        if let (Pacer::Equal { .. }, Some(more)) = (&self.pacer, stats.evaluations) {
+            let each = self.method.evaluations(self.problem);
+            stats.evaluations = each.map(|each| more + each * stats.accepted);
+        }
+        stats
+    }
+    /// The last step, from t − h to t; its size is 0 before the first.
+    pub fn last_step(&self) -> Step<f64> {
+        self.last
+    }
+    pub(super) fn forward(&self) -> bool {
+        self.t1 >= self.t
+    }
+
+    /// Take one step, which does not pass the end of the span. Returns the time.
+    ///
+    /// # Errors
+    /// [`RunError`]: the state is the last accepted one. A run that is done stays where it is.
+    pub fn step(&mut self) -> Result<f64, RunError> {
+        self.step_before(self.t1)?;
+        Ok(self.t)
+    }
+
+    /// Take steps until the time is t exactly: the last of them is shortened to end there. What lies behind t is
+    /// not evaluated, so that the state may be changed there.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for a t behind the state or after the end of the span; else as [`step`](Self::step).
+    pub fn advance_to(&mut self, t: f64) -> Result<&PointOf<P>, RunError> {
+        let ahead =
+            if self.forward() { self.t <= t && t <= self.t1 } else { self.t >= t && t >= self.t1 };
+        if !(ahead && t.is_finite()) {
+            let expected = format!("a time from {} to {}", self.t, self.t1);
+            return Err(Error::out_of_range("t", t, expected).into());
+        }
+        while self.t != t {
+            self.step_before(t)?;
+        }
+        Ok(&self.y)
+    }
+
+    /// `at` ← the state at a time within the last step, by the continuous extension of the method.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for a time outside the last step, [`RunError::Within`] where the point cannot be
+    /// computed.
+    pub fn interpolate(&mut self, t: f64, at: &mut PointOf<P>) -> Result<(), RunError> {
+        let start = self.last.t;
+        let inside =
+            self.looked_at != Looked::Nothing && start.min(self.t) <= t && t <= start.max(self.t);
+        match inside || t == self.t {
+            true => self.at(t, at),
+            false => {
+                let expected = format!("a time of the last step, from {start} to {}", self.t);
+                Err(Error::out_of_range("t", t, expected).into())
+            }
+        }
+    }
+
+    /// Go on from another state, at the same time. It must be on M; its orbit is the new one, and a run that
+    /// chooses its steps chooses a first one again.
+    ///
+    /// # Errors
+    /// [`RunError::Changed`] for a state that is not on M: then the state is as it was.
+    pub fn set_state(&mut self, y: &PointOf<P>) -> Result<(), RunError> {
+        let (action, group) = (self.problem.action(), self.problem.group());
+        self.change("the caller", |z| action.assign(group, y, z))
+    }
+
+    /// y ← y changed by `change`, where that is on M.
+    pub(super) fn change(
+        &mut self,
+        by: &str,
+        change: impl FnOnce(&mut PointOf<P>),
+    ) -> Result<(), RunError> {
+        let (action, group) = (self.problem.action(), self.problem.group());
+        action.assign(group, &self.y, &mut self.to);
+        change(&mut self.to);
+        let moved = self.mender.move_to(self.problem, &mut self.to);
+        moved.map_err(|source| RunError::Changed { by: by.into(), t: self.t, source })?;
+        action.assign(group, &self.to, &mut self.y);
+        self.looked_at = Looked::Nothing;
+        if let Pacer::ByError(chooser) = &mut self.pacer {
+            chooser.h = None;
+            chooser.wall = None;
+            chooser.controller = Controller { last: 1.0, hold: false, ..chooser.controller };
+        }
+        Ok(())
+    }
+
+    /// The last step is cut at t: the state is the point there, and the run goes on from it.
+    pub(super) fn cut(&mut self, t: f64) -> Result<(), RunError> {
+        if t != self.t {
+            let mut at = core::mem::replace(&mut self.spare, self.from.clone());
+            let found = self.at(t, &mut at);
+            self.spare = at;
+            found?;
+            self.problem.action().assign(self.problem.group(), &self.spare, &mut self.y);
+            self.t = t;
+        }
+        Ok(())
+    }
+
+    /// One accepted step that does not pass `stop`.
+    pub(super) fn step_before(&mut self, stop: f64) -> Result<(), RunError> {
+        if self.t == stop {
+            return Ok(());
+        }
+        match &mut self.pacer {
+            Pacer::Equal { .. } => self.equal_step(stop),
+            Pacer::ByError(_) => self.chosen_step(stop),
+        }
+    }
+
+    fn equal_step(&mut self, stop: f64) -> Result<(), RunError> {
+        let Pacer::Equal { grid, done } = &mut self.pacer else { return Ok(()) };
+        if self.t != grid.time(*done) {
+            // The run was taken off its grid: equal steps from here, of the same size.
+            *grid = TimeGrid::new([self.t, self.t1], grid.h().abs())?;
+            *done = 0;
+        }
+        let end = grid.time(*done + 1);
+        let before = if self.t1 >= self.t { stop < end } else { stop > end };
+        let n = self.stats.accepted;
+        let (step, end) = match before {
+            true => (Step { n, t: self.t, h: stop - self.t }, stop),
+            false => (Step { n, ..grid.step(*done) }, end),
+        };
+        *done += u64::from(!before);
+        let (action, group) = (self.problem.action(), self.problem.group());
+        action.assign(group, &self.y, &mut self.from);
+        let taken = self.method.step(self.problem, lit::<P>(step), &mut self.y, &mut self.work);
+        let taken = taken.and_then(|()| match action.is_finite(group, &self.y) {
+            true => Ok(()),
+            false => Err(StepError::NotFinite { what: "the state" }),
+        });
+        if let Err(source) = taken {
+            self.looked_at = Looked::Nothing;
+            action.assign(group, &self.from, &mut self.y);
+            return Err(Failure { step: n, t: self.t, h: step.h, source }.into());
+        }
+        self.accepted(step, end);
+        Ok(())
+    }
+
+    /// y is the state after `step`, at `end`.
+    #[inline]
+    fn accepted(&mut self, step: Step<f64>, end: f64) {
+        self.last = step;
+        self.looked_at = Looked::Fresh;
+        self.t = end;
+        self.stats.accepted += 1;
+        self.stats.smallest_step = self.stats.smallest_step.min(step.h.abs());
+        self.stats.largest_step = self.stats.largest_step.max(step.h.abs());
+        self.mender.after(self.stats.accepted, self.problem, &mut self.y, &mut self.stats);
+    }
+
+    /// Equal steps up to number `end` of the run, or fewer, in one call of the method: nothing within them can be
+    /// looked at but the last. Returns false where there is no such call.
+    pub(super) fn quietly(&mut self, end: u64, time: Option<f64>) -> Result<bool, RunError> {
+        let Pacer::Equal { grid, done } = &mut self.pacer else { return Ok(false) };
+        let (grid, first) = (*grid, *done);
+        if self.stats.accepted != first || self.t != grid.time(first) {
+            return Ok(false);
+        }
+        let mut end = end.min(self.mender.next()).min(grid.steps());
+        if let Some(time) = time {
+            end = end.min(grid.last_before(first, time));
+        }
+        // The last step of the run may be a short one.
+        end -= u64::from(end == grid.steps() && grid.size(end - 1) != grid.h());
+        // The last step of the call is taken alone, so that its start is known.
+        let before = end.saturating_sub(1);
+        if before <= first {
+            return Ok(false);
+        }
+        self.problem.action().assign(self.problem.group(), &self.y, &mut self.from);
+        let equal = grid.equal(first, before);
+        let done = self.method.steps(self.problem, equal, &mut self.y, &mut self.work);
+        if let Err((step, source)) = done {
+            // The state of an error is the last accepted one.
+            self.problem.action().assign(self.problem.group(), &self.from, &mut self.y);
+            let again = EqualSteps { end: step, ..equal };
+            let _ = self.method.steps(self.problem, again, &mut self.y, &mut self.work);
+            self.looked_at = Looked::Nothing;
+            self.t = grid.time(step);
+            self.stats.accepted = step;
+            return Err(Failure { step, t: self.t, h: grid.h(), source }.into());
+        }
+        if let Pacer::Equal { done, .. } = &mut self.pacer {
+            *done = before;
+        }
+        self.t = grid.time(before);
+        self.stats.accepted = before;
+        self.looked_at = Looked::Nothing;
+        self.stats.smallest_step = self.stats.smallest_step.min(grid.h().abs());
+        self.stats.largest_step = self.stats.largest_step.max(grid.h().abs());
+        Ok(true)
+    }
+
+    fn chosen_step(&mut self, stop: f64) -> Result<(), RunError> {
+        let Pacer::ByError(chooser) = &self.pacer else { return Ok(()) };
+        let (min_step, max_steps) = (chooser.control.min_step, chooser.control.max_steps);
+        let mut h = match (chooser.h, chooser.control.first_step) {
+            (Some(h), _) | (None, Some(h)) => h,
+            (None, None) => self.first_step(stop),
+        };
+        let mut in_a_row = 0;
+        loop {
+            h = h.max(min_step);
+            let (end, size) = self.propose(h, stop);
+            if self.stats.accepted + self.stats.rejected >= max_steps {
+                return Err(self.too_many(size, max_steps));
+            }
+            if end == self.t {
+                return Err(self.underflow(h, None));
+            }
+            let step = Step { n: self.stats.accepted, t: self.t, h: end - self.t };
+            match self.attempt(step) {
+                Ok(ratio) if ratio <= 1.0 => {
+                    let forward = self.t1 > self.t;
+                    core::mem::swap(&mut self.from, &mut self.y);
+                    core::mem::swap(&mut self.y, &mut self.to);
+                    self.accepted(step, end);
+                    let Pacer::ByError(chooser) = &mut self.pacer else { return Ok(()) };
+                    let passed = |wall: &f64| if forward { end >= *wall } else { end <= *wall };
+                    chooser.wall = chooser.wall.filter(|wall| !passed(wall));
+                    chooser.controller.hold |= chooser.wall.is_some();
+                    let next = size * chooser.controller.accept(ratio);
+                    // A step that was shortened to end at `stop` says nothing against the size before.
+                    chooser.h = Some(if size < 0.5 * h { next.max(h) } else { next });
+                    return Ok(());
+                }
+                rejected => {
+                    self.stats.rejected += 1;
+                    in_a_row += 1;
+                    let Pacer::ByError(chooser) = &mut self.pacer else { return Ok(()) };
+                    if rejected.is_err() {
+                        chooser.wall = Some(end);
+                    }
+                    h = size * chooser.controller.reject(rejected.ok());
+                    chooser.h = Some(h);
+                    // Next to t two steps of different sizes may be one after rounding.
+                    let smaller = self.propose(h, stop).0;
+                    let stuck = smaller == self.t || smaller == end;
+                    if in_a_row >= REJECTIONS_MAX || h < min_step || stuck {
+                        return Err(self.underflow(h, rejected.err()));
+                    }
+                }
+            }
+        }
+    }
+
+    /// Where a step of about this size ends, and its size. It is `stop` when that is near, and half way when two
+    /// steps would be needed of which one is short.
+    fn propose(&self, h: f64, stop: f64) -> (f64, f64) {
+        let Pacer::ByError(chooser) = &self.pacer else { return (self.t, 0.0) };
+        let max_step = chooser.control.max_step;
+        let left = (stop - self.t).abs();
+        let h = h.min(max_step);
+        if left <= h || (left <= 1.01 * h && left <= max_step) {
+            return (stop, left);
+        }
+        let h = if left < 2.0 * h { 0.5 * left } else { h };
+        let end = self.t + h.copysign(stop - self.t);
+        (end, (end - self.t).abs())
+    }
+
+    /// `to` ← the step from y; its error in units of the tolerance.
+    fn attempt(&mut self, step: Step<f64>) -> Result<f64, StepError> {
+        let Pacer::ByError(chooser) = &self.pacer else {
+            return Err(StepError::NotFinite { what: "the error estimate" });
+        };
+        let Chooser { control, estimator, evaluations, .. } = &**chooser;
+        self.stats.evaluations = self.stats.evaluations.zip(*evaluations).map(|(n, more)| n + more);
+        self.looked_at = Looked::Nothing;
+        let (tolerance, work) = (&control.tolerance, &mut self.work);
+        let ratio = (estimator.attempt)(
+            self.method,
+            self.problem,
+            lit::<P>(step),
+            tolerance,
+            &self.y,
+            work,
+            &mut self.to,
+        )?;
+        if !self.problem.action().is_finite(self.problem.group(), &self.to) {
+            return Err(StepError::NotFinite { what: "the state" });
+        }
+        match ratio.is_finite() {
+            true => Ok(ratio),
+            false => Err(StepError::NotFinite { what: "the error estimate" }),
+        }
+    }
+
+    /// Hairer, Nørsett, Wanner I, II.4, with the norm of 𝔤, where 1 is the natural unit: a step that
+    /// moves by 1/100, looked at for how much f changes over it.
+    fn first_step(&mut self, stop: f64) -> f64 {
+        let Pacer::ByError(chooser) = &self.pacer else { return 0.0 };
+        let (k, tolerance) = (chooser.controller.k, chooser.control.tolerance.of_unit_size());
+        let (group, one) = (self.problem.group(), ScalarOf::<P>::lit);
+        let (mut f0, mut f1, mut work) = (group.zero(), group.zero(), self.problem.work());
+        let norm = chooser.estimator.norm;
+        let span = (stop - self.t).abs();
+        self.problem.f(one(self.t), &self.y, &mut f0, &mut work);
+        self.stats.evaluations = self.stats.evaluations.map(|n| n + 1);
+        let d1 = norm(self.problem, &f0);
+        if !d1.is_finite() {
+            return 1e-3 * span.min(1.0); // the first attempt will say what is wrong
+        }
+        let still = d1 * span <= 1e-5;
+        let h0 = if still { 1e-6 * span } else { (0.01 / d1).min(span) };
+        let end = self.t + h0.copysign(stop - self.t);
+        if end == self.t {
+            return if still { span } else { h0 };
+        }
+        if self.attempt(Step { n: self.stats.accepted, t: self.t, h: end - self.t }).is_err() {
+            return h0;
+        }
+        self.problem.f(one(end), &self.to, &mut f1, &mut work);
+        self.stats.evaluations = self.stats.evaluations.map(|n| n + 1);
+        group.axpy(one(-1.0), &f0, &mut f1);
+        // Rates: f itself, and the root of its derivative.
+        let rate = d1.max((norm(self.problem, &f1) / h0).sqrt());
+        let h1 = (0.01 * tolerance).powf(1.0 / k) / rate;
+        match h1.is_finite() {
+            true => h1.min(100.0 * h0),
+            false => h0,
+        }
+    }
+
+    #[cold]
+    fn underflow(&self, h: f64, source: Option<StepError>) -> RunError {
+        let Stats { accepted, rejected, .. } = self.stats;
+        let h = h.copysign(self.t1 - self.t);
+        RunError::StepSizeUnderflow { t: self.t, h, accepted, rejected, source }
+    }
+
+    #[cold]
+    fn too_many(&self, h: f64, max_steps: u64) -> RunError {
+        let Stats { accepted, rejected, .. } = self.stats;
+        let h = h.copysign(self.t1 - self.t);
+        RunError::TooManySteps { t: self.t, h, accepted, rejected, max_steps }
+    }
+
+    /// `at` ← the state at t in the last step.
+    pub(super) fn at(&mut self, t: f64, at: &mut PointOf<P>) -> Result<(), RunError> {
+        let (action, group) = (self.problem.action(), self.problem.group());
+        if t == self.t {
+            action.assign(group, &self.y, at);
+            return Ok(());
+        }
+        self.within(t, at)
+    }
+
+    /// `at` ← the continuous extension of the last step at t, strictly within it.
+    pub(super) fn within(&mut self, t: f64, at: &mut PointOf<P>) -> Result<(), RunError> {
+        let (action, group) = (self.problem.action(), self.problem.group());
+        let Step { t: start, h, .. } = self.last;
+        if t == start {
+            action.assign(group, &self.from, at);
+            return Ok(());
+        }
+        let within = |source| RunError::Within { t: start, h, source };
+        self.prepare().map_err(within)?;
+        let (step, theta) = (lit::<P>(self.last), ((t - start) / h).clamp(0.0, 1.0));
+        let [_, each] = self.method.dense_evaluations(self.problem);
+        self.stats.points_within += 1;
+        self.stats.evaluations = self.stats.evaluations.zip(each).map(|(n, more)| n + more);
+        self.method
+            .interpolate(self.problem, step, theta, &self.from, &mut self.work, at)
+            .map_err(within)?;
+        match action.is_finite(group, at) {
+            true => Ok(()),
+            false => Err(within(StepError::NotFinite { what: "the state" })),
+        }
+    }
+
+    /// `at` ← the state at t in the last step, by a shorter step from its start.
+    pub(super) fn at_by_a_step(&mut self, t: f64, at: &mut PointOf<P>) -> Result<(), RunError> {
+        if t == self.t || t == self.last.t {
+            return self.at(t, at);
+        }
+        let Step { n, t: start, h } = self.last;
+        self.problem.action().assign(self.problem.group(), &self.from, at);
+        let step = lit::<P>(Step { n, t: start, h: t - start });
+        self.looked_at = Looked::Stale;
+        self.stats.points_within += 1;
+        let each = self.method.evaluations(self.problem);
+        self.stats.evaluations = self.stats.evaluations.zip(each).map(|(n, more)| n + more);
+        self.method
+            .step(self.problem, step, at, &mut self.work)
+            .map_err(|source| RunError::Within { t: start, h, source })
+    }
+
+    /// Make the continuous extension of the last step ready.
+    fn prepare(&mut self) -> Result<(), StepError> {
+        if self.looked_at == Looked::Prepared {
+            return Ok(());
+        }
+        if self.looked_at == Looked::Stale {
+            self.repeat()?;
+        }
+        let [once, _] = self.method.dense_evaluations(self.problem);
+        self.stats.evaluations = self.stats.evaluations.zip(once).map(|(n, more)| n + more);
+        let step = lit::<P>(self.last);
+        // A step that was cut is prepared, or was taken again.
+        let to = if self.looked_at == Looked::Fresh { &self.y } else { &self.to };
+        self.method.prepare(self.problem, step, &self.from, to, &mut self.work)?;
+        self.looked_at = Looked::Prepared;
+        Ok(())
+    }
+
+    /// The workspace does not know the last step.
+    pub(super) fn forget_workspace(&mut self) {
+        if self.looked_at != Looked::Nothing {
+            self.looked_at = Looked::Stale;
+        }
+    }
+
+    /// Take the last step again, so that the workspace knows it.
+    fn repeat(&mut self) -> Result<(), StepError> {
+        let step = lit::<P>(self.last);
+        match &self.pacer {
+            Pacer::Equal { .. } => {
+                let (action, group) = (self.problem.action(), self.problem.group());
+                action.assign(group, &self.from, &mut self.to);
+                self.method.step(self.problem, step, &mut self.to, &mut self.work)
+            }
+            Pacer::ByError(chooser) => (chooser.estimator.attempt)(
+                self.method,
+                self.problem,
+                step,
+                &chooser.control.tolerance,
+                &self.from,
+                &mut self.work,
+                &mut self.to,
+            )
+            .map(drop),
+        }
+    }
+
+    /// Go to another step, which was taken before: what a continuous solution does.
+    pub(super) fn look_at(&mut self, step: Step<f64>, from: &PointOf<P>) {
+        self.problem.action().assign(self.problem.group(), from, &mut self.from);
+        self.last = step;
+        self.looked_at = Looked::Stale;
+    }
+}

@@ -1,0 +1,247 @@
+//! The state of a run as bytes, and back, to the same bits.
+//!
+//! | bytes | |
+//! |---|---|
+//! | 8 | `lieflow` and the version of the format |
+//! | 8 | what the run is of: the group, the method's order, the choice of steps |
+//! | 8 each | the numbers of the state, little endian |
+//! | 8 | a check sum of all before it |
+
+use core::hash::Hasher;
+
+use super::drive::Drive;
+use super::integrator::{Integrator, Looked, Pacer};
+use crate::error::Error;
+use crate::groups::LieAlgebra;
+use crate::methods::{MapCounts, Method};
+use crate::problems::{PointOf, Problem};
+use crate::space::Numbers;
+
+/// The name of the format, and its version.
+const HEADER: [u8; 8] = *b"lieflow\x01";
+
+/// FNV-1a: the same on every machine.
+struct Fnv(u64);
+
+impl Hasher for Fnv {
+    fn write(&mut self, bytes: &[u8]) {
+        for byte in bytes {
+            self.0 = (self.0 ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
+        }
+    }
+    fn finish(&self) -> u64 {
+        self.0
+    }
+}
+
+fn hash(bytes: &[u8]) -> u64 {
+    let mut hasher = Fnv(0xcbf2_9ce4_8422_2325);
+    hasher.write(bytes);
+    hasher.finish()
+}
+
+/// What gets each word of a state, to read it or to write it.
+type Each<'a> = dyn FnMut(&mut u64) + 'a;
+
+/// How the numbers of a point are listed.
+pub(super) type Listing<P> = fn(&mut PointOf<P>, &mut dyn FnMut(&mut f64));
+
+fn number(each: &mut Each<'_>, x: &mut f64) {
+    let mut word = x.to_bits();
+    each(&mut word);
+    *x = f64::from_bits(word);
+}
+
+fn flag(each: &mut Each<'_>, x: &mut bool) {
+    let mut word = u64::from(*x);
+    each(&mut word);
+    *x = word != 0;
+}
+
+/// An optional value: a flag and the value.
+fn option<T: Default>(
+    each: &mut Each<'_>,
+    x: &mut Option<T>,
+    value: impl FnOnce(&mut Each<'_>, &mut T),
+) {
+    let mut there = x.is_some();
+    flag(each, &mut there);
+    let mut inner = x.take().unwrap_or_default();
+    value(each, &mut inner);
+    *x = there.then_some(inner);
+}
+
+/// The bytes of a state that belongs to `owner`; `words` calls its argument with every word.
+fn write(owner: &str, words: impl FnOnce(&mut Each<'_>)) -> Vec<u8> {
+    let mut bytes = HEADER.to_vec();
+    bytes.extend(hash(owner.as_bytes()).to_le_bytes());
+    words(&mut |word| bytes.extend(word.to_le_bytes()));
+    let sum = hash(&bytes);
+    bytes.extend(sum.to_le_bytes());
+    bytes
+}
+
+/// The state of these bytes, as `words` lists it.
+fn read(owner: &str, bytes: &[u8], mut words: impl FnMut(&mut Each<'_>)) -> Result<(), Error> {
+    let refuse = |why: &str| {
+        let expected = format!("the saved state of such a run, {why}");
+        Err(Error::out_of_range("bytes", bytes.len() as f64, expected))
+    };
+    let mut saved = bytes.chunks_exact(8).map(|word| word.try_into().unwrap_or_default());
+    if !bytes.len().is_multiple_of(8) || bytes.len() < 24 {
+        return refuse("but its length is no such length");
+    }
+    if saved.next() != Some(HEADER) {
+        return refuse("but it does not begin with `lieflow` and this version of the format");
+    }
+    let (body, sum) = bytes.split_at(bytes.len() - 8);
+    if hash(body).to_le_bytes() != sum {
+        return refuse("but it is damaged: its check sum differs");
+    }
+    if saved.next() != Some(hash(owner.as_bytes()).to_le_bytes()) {
+        return refuse("but it is of another problem, method or choice of steps");
+    }
+    let mut there = 0;
+    words(&mut |_| there += 1);
+    if bytes.len() != 8 * (there + 3) {
+        return refuse("but it has another number of values");
+    }
+    words(&mut |word| {
+        if let Some(next) = saved.next() {
+            *word = u64::from_le_bytes(next);
+        }
+    });
+    Ok(())
+}
+
+impl<P: Problem, M: Method<P>> Integrator<'_, P, M> {
+    fn each_word(&mut self, list: Listing<P>, each: &mut Each<'_>) {
+        let point = |each: &mut Each<'_>, y: &mut PointOf<P>| list(y, &mut |x| number(each, x));
+        number(each, &mut self.t);
+        number(each, &mut self.t1);
+        point(each, &mut self.y);
+        point(each, &mut self.from);
+        each(&mut self.last.n);
+        number(each, &mut self.last.t);
+        number(each, &mut self.last.h);
+        let before = self.looked_at != Looked::Nothing;
+        let mut known = before;
+        flag(each, &mut known);
+        if known != before {
+            self.looked_at = if known { Looked::Stale } else { Looked::Nothing };
+        }
+        point(each, &mut self.mender.from);
+        each(&mut self.mender.cadence.every);
+        each(&mut self.mender.cadence.next);
+        let stats = &mut self.stats;
+        for count in [
+            &mut stats.accepted,
+            &mut stats.rejected,
+            &mut stats.points_within,
+            &mut stats.restored,
+            &mut stats.not_restored,
+        ] {
+            each(count);
+        }
+        // The workspace counts from its own start.
+        let counted = self.method.iterations(&self.work);
+        let mut iterations = stats.iterations.wrapping_add(counted);
+        each(&mut iterations);
+        stats.iterations = iterations.wrapping_sub(counted);
+        for x in [&mut stats.smallest_step, &mut stats.largest_step, &mut stats.residual] {
+            number(each, x);
+        }
+        option(each, &mut stats.evaluations, |each, n| each(n));
+        option(each, &mut stats.maps, |each, MapCounts { psi, dpsi_inv, brackets }| {
+            [psi, dpsi_inv, brackets].into_iter().for_each(each);
+        });
+        match &mut self.pacer {
+            Pacer::Equal { grid, done } => {
+                grid.each_part(&mut |x| number(each, x));
+                each(done);
+            }
+            Pacer::ByError(chooser) => {
+                number(each, &mut chooser.controller.last);
+                flag(each, &mut chooser.controller.hold);
+                option(each, &mut chooser.h, number);
+                option(each, &mut chooser.wall, number);
+            }
+        }
+        self.method.each_memory(&mut self.work, &mut |x| number(each, x));
+    }
+    fn owner(&self) -> String {
+        let (problem, method) = (self.problem, self.method);
+        let pace = match &self.pacer {
+            Pacer::Equal { .. } => "equal".into(),
+            Pacer::ByError(chooser) => format!("{:?}", chooser.control),
+        };
+        let order = method.order(problem);
+        let costs = (method.evaluations(problem), method.map_counts(problem));
+        format!("{} {order} {costs:?} {pace}", problem.group().name())
+    }
+}
+
+impl<P: Problem, M: Method<P>> Integrator<'_, P, M>
+where
+    PointOf<P>: Numbers,
+{
+    /// The state as bytes, from which [`restore`](Self::restore) goes on to the same bits. What belongs to the
+    /// problem and the method is not among them.
+    pub fn save(&mut self) -> Vec<u8> {
+        let owner = self.owner();
+        write(&owner, |each| self.each_word(Numbers::each_number, each))
+    }
+
+    /// Go on from a state that [`save`](Self::save) gave, of a run of the same problem, method and choice of steps.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for bytes that are damaged, of another version of the format or of another run: then
+    /// the state is as it was.
+    pub fn restore(&mut self, bytes: &[u8]) -> Result<(), Error> {
+        let owner = self.owner();
+        read(&owner, bytes, |each| self.each_word(Numbers::each_number, each))?;
+        self.forget_workspace();
+        Ok(())
+    }
+}
+
+impl<P: Problem, M: Method<P>, O> Drive<'_, '_, P, M, O> {
+    fn each_word(&mut self, list: Listing<P>, each: &mut Each<'_>) {
+        self.run.each_word(list, each);
+        let mut done = self.times_done as u64;
+        each(&mut done);
+        self.times_done = done as usize;
+        option(each, &mut self.shown_at, number);
+        for event in &mut self.events.all {
+            each(&mut event.count);
+            number(each, &mut event.seen.value);
+            flag(each, &mut event.seen.anew);
+            option(each, &mut event.seen.before, |each, before: &mut [f64; 2]| {
+                before.iter_mut().for_each(|x| number(each, x));
+            });
+        }
+        for drift in &mut self.solution.drift {
+            number(each, &mut drift.start);
+            number(each, &mut drift.largest);
+        }
+    }
+
+    fn owner(&self) -> String {
+        let events: Vec<&str> = self.events.all.iter().map(|event| event.name()).collect();
+        format!("{} {events:?} {:?}", self.run.owner(), self.save)
+    }
+
+    /// The state of the whole run as bytes.
+    pub(super) fn write(&mut self, list: Listing<P>) -> Vec<u8> {
+        let owner = self.owner();
+        write(&owner, |each| self.each_word(list, each))
+    }
+
+    /// Go on from such bytes.
+    pub(super) fn read(&mut self, list: Listing<P>, bytes: &[u8]) -> Result<(), Error> {
+        let owner = self.owner();
+        read(&owner, bytes, |each| self.each_word(list, each))?;
+        self.run.forget_workspace();
+        Ok(())
+    }
+}

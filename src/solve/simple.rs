@@ -1,0 +1,107 @@
+//! The driver in one call, on a state in place.
+
+use super::grid::{SaveAt, TimeGrid};
+use super::solution::Interrupted;
+use super::stats::{RunError, Stats};
+use super::{Solve, StepControl};
+use crate::methods::{Embedded, Method};
+use crate::problems::{PointOf, Problem, ScalarOf};
+
+/// Integrate `problem` from y at the start of `grid` to its end, showing (t, y) to `observe` where
+/// `save` says. On return y is the state at the end, or the last accepted one. It is [`Solve`] in one call.
+///
+/// Every [`RESTORE_EVERY`](super::RESTORE_EVERY) steps, or sooner where it drifts faster, a method that stays on M
+/// has its state taken back to M and to the orbit that it started on
+/// ([`Action::restore_to`](crate::Action::restore_to)): without it rounding carries g off its group, and a vector
+/// off its sphere, by some ε a step.
+///
+/// Memory is allocated before the first step only.
+///
+/// ```
+/// use lieflow::maps::Exp;
+/// use lieflow::methods::{Rkmk, tableau::RK4};
+/// use lieflow::problems::RigidBody;
+/// use lieflow::{SaveAt, TimeGrid, integrate};
+/// use nalgebra::Vector3;
+///
+/// let body = RigidBody::<f64>::new([1.0, 2.0, 3.0])?;
+/// let mut m = Vector3::new(0.2, 0.0, 3.0);
+/// let start = body.energy(&m);
+/// let grid = TimeGrid::new([0.0, 10.0], 0.05)?;
+/// integrate(&body, &Rkmk::new(RK4, Exp), &grid, &SaveAt::Ends, &mut m, |_, _| {})?;
+/// assert!((body.energy(&m) - start).abs() < 1e-7);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// [`RunError::Setup`] before anything is observed, [`RunError::Step`] for a step that failed.
+pub fn integrate<P: Problem, M: Method<P>>(
+    problem: &P,
+    method: &M,
+    grid: &TimeGrid,
+    save: &SaveAt,
+    y: &mut PointOf<P>,
+    observe: impl FnMut(f64, &PointOf<P>),
+) -> Result<Stats, RunError> {
+    in_place(Solve::new(problem, method, grid.t_span()).grid(*grid).save(save.clone()), y, observe)
+}
+
+/// Integrate `problem` over `t_span` from y with steps that meet the tolerances of `control`, showing
+/// (t, y) to `observe` where `save` says. On return y is the state at the end, or the last accepted one. It is
+/// [`Solve`] in one call.
+///
+/// ```
+/// use lieflow::maps::Exp;
+/// use lieflow::methods::{Rkmk, tableau::DOPRI5};
+/// use lieflow::problems::RigidBody;
+/// use lieflow::{SaveAt, StepControl, integrate_adaptive};
+/// use nalgebra::Vector3;
+///
+/// let body = RigidBody::<f64>::new([1.0, 2.0, 3.0])?;
+/// let mut m = Vector3::new(0.2, 0.0, 3.0);
+/// let start = body.energy(&m);
+/// let (method, control) = (Rkmk::new(DOPRI5, Exp), StepControl::new(1e-9, 1e-12)?);
+/// let stats =
+///     integrate_adaptive(&body, &method, [0.0, 10.0], &control, &SaveAt::Ends, &mut m, |_, _| {})?;
+/// assert!((body.energy(&m) - start).abs() < 1e-7);
+/// assert!(stats.rejected <= stats.accepted / 10);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// [`RunError::Setup`] before anything is observed for what is wrong with the arguments, later when
+/// no step succeeds within 60 attempts or above the smallest step, or attempts run out.
+pub fn integrate_adaptive<P: Problem, M: Embedded<P>>(
+    problem: &P,
+    method: &M,
+    t_span: [f64; 2],
+    control: &StepControl,
+    save: &SaveAt,
+    y: &mut PointOf<P>,
+    observe: impl FnMut(f64, &PointOf<P>),
+) -> Result<Stats, RunError>
+where
+    ScalarOf<P>: Into<f64>,
+{
+    let solve = Solve::new(problem, method, t_span).control(control.clone()).save(save.clone());
+    in_place(solve, y, observe)
+}
+
+fn in_place<P: Problem, M: Method<P>>(
+    solve: Solve<'_, P, M>,
+    y: &mut PointOf<P>,
+    mut observe: impl FnMut(f64, &PointOf<P>),
+) -> Result<Stats, RunError> {
+    match solve.run_with(y.clone(), |t, y| observe(t, y)) {
+        Ok(solution) => {
+            *y = solution.y;
+            Ok(solution.stats)
+        }
+        Err(Interrupted { error, solution }) => {
+            if let Some(solution) = solution {
+                *y = solution.y;
+            }
+            Err(error)
+        }
+    }
+}

@@ -1,0 +1,148 @@
+//! What a run gives.
+
+use core::fmt;
+
+use super::stats::{RunError, Stats};
+use crate::error::Error;
+
+/// Why a run ended.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Status {
+    /// The end of the span was reached.
+    Finished,
+    /// An event stopped the run: its name.
+    Event(String),
+    /// The observer stopped the run.
+    Observer,
+    /// The run was cancelled.
+    Cancelled,
+}
+
+/// What an observer answers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Next {
+    /// Go on.
+    #[default]
+    Continue,
+    /// Stop here.
+    Stop,
+    /// The state was changed: go on from it. It must be on M.
+    Changed,
+}
+
+impl From<()> for Next {
+    fn from((): ()) -> Self {
+        Next::Continue
+    }
+}
+
+/// A zero of an event.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Occurrence<Y> {
+    /// The number of the event, in the order in which the events were given.
+    pub event: usize,
+    /// The time.
+    pub t: f64,
+    /// The state, before the event changed it.
+    pub y: Y,
+    /// Did g rise?
+    pub rising: bool,
+}
+
+/// How far an invariant moved.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Drift {
+    /// The name of the invariant.
+    pub name: String,
+    /// The value at the start.
+    pub start: f64,
+    /// The largest |value − start| at the points of the output and at the end.
+    pub largest: f64,
+    /// value − start at the end.
+    pub at_end: f64,
+}
+
+/// The result of a run.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Solution<Y> {
+    /// The times of the output.
+    pub times: Vec<f64>,
+    /// The points at these times.
+    pub points: Vec<Y>,
+    /// The zeros of the events, in the order of time.
+    pub events: Vec<Occurrence<Y>>,
+    /// The time at the end.
+    pub t: f64,
+    /// The state at the end.
+    pub y: Y,
+    /// Why the run ended.
+    pub status: Status,
+    /// What the run did.
+    pub stats: Stats,
+    /// How far the invariants moved, where they were watched.
+    pub drift: Vec<Drift>,
+}
+
+impl<Y> Solution<Y> {
+    pub(super) fn new(t: f64, y: Y) -> Self {
+        Solution {
+            times: Vec::new(),
+            points: Vec::new(),
+            events: Vec::new(),
+            t,
+            y,
+            status: Status::Finished,
+            stats: Stats::default(),
+            drift: Vec::new(),
+        }
+    }
+
+    /// The times of an event, by its number.
+    pub fn times_of(&self, event: usize) -> impl Iterator<Item = f64> {
+        self.events.iter().filter(move |found| found.event == event).map(|found| found.t)
+    }
+}
+
+/// A run that failed, with what it gave up to there.
+pub struct Interrupted<Y> {
+    /// Why.
+    pub error: RunError,
+    /// The output and the events up to there, and the last accepted point; none where the run did not begin.
+    pub solution: Option<Box<Solution<Y>>>,
+}
+
+impl<Y> fmt::Debug for Interrupted<Y> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Interrupted").field("error", &self.error).finish_non_exhaustive()
+    }
+}
+
+impl<Y> fmt::Display for Interrupted<Y> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.error.fmt(f)
+    }
+}
+
+impl<Y> std::error::Error for Interrupted<Y> {}
+
+impl<Y> From<RunError> for Interrupted<Y> {
+    fn from(error: RunError) -> Self {
+        Interrupted { error, solution: None }
+    }
+}
+
+impl<Y> From<Error> for Interrupted<Y> {
+    fn from(error: Error) -> Self {
+        RunError::from(error).into()
+    }
+}
+
+impl<Y> From<Interrupted<Y>> for RunError {
+    fn from(interrupted: Interrupted<Y>) -> Self {
+        interrupted.error
+    }
+}
