@@ -21,6 +21,7 @@
 //! | [`error`] | | [`Error`], [`StepError`] |
 //! | `quadrature` | | nodes and weights |
 //! | `elliptic` | | Carlson's integrals, Jacobi's functions |
+//! | [`samples`] | | tables of times and values as functions of time |
 //! | [`dense`] | | kernels for matrices: products, LU, exp |
 //! | [`so3`] | | the closed forms on so(3) ≅ ℝ³ |
 //! | [`tolerance`] | | what the error of a step is compared with |
@@ -83,6 +84,7 @@ pub mod methods;
 pub mod prelude;
 pub mod problems;
 mod quadrature;
+pub mod samples;
 pub mod scalar;
 pub mod so3;
 pub mod solve;

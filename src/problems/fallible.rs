@@ -6,6 +6,7 @@
 //! field that failed for good, because a file could not be read or an argument was out of range, is a
 //! [`TryProblem`]; [`Fallible`] makes a [`Problem`] of it and keeps its error.
 
+use core::fmt;
 use std::sync::OnceLock;
 
 use super::Problem;
@@ -134,6 +135,80 @@ impl<P: TryProblem> Problem for Fallible<P> {
         let zero = group.zero();
         *v = group.zero();
         group.axpy(<P::Group as LieAlgebra>::Scalar::lit(f64::NAN), &zero, v);
+    }
+}
+
+/// A [`TryProblem`] from a group, an action and a closure: `field(t, y, v)` writes f(t, y) into v, all of it, or
+/// fails. `Fallible::new(TryFlow::new(…))` is the problem to run.
+///
+/// ```
+/// use lieflow::actions::LeftTranslation;
+/// use lieflow::groups::{LieGroup, So3};
+/// use lieflow::maps::Exp;
+/// use lieflow::methods::{Rkmk, tableau::RK4};
+/// use lieflow::problems::{Fallible, TryFlow};
+/// use lieflow::samples::{Interpolation, Samples};
+/// use lieflow::{SaveAt, TimeGrid, integrate};
+/// use nalgebra::Vector3;
+///
+/// let rates = Samples::new(&[0.0, 1.0], &[[0.1, 0.2], [0.0, 0.0], [0.5, 0.4]], Interpolation::Linear)?;
+/// let attitude = TryFlow::new(So3::<f64>::new(), LeftTranslation, |t, _, v: &mut Vector3<f64>| {
+///     rates.value(t, v.as_mut_slice())
+/// });
+/// let problem = Fallible::new(attitude);
+/// let mut g = So3::new().identity();
+/// let grid = TimeGrid::new([0.0, 3.0], 0.25)?;
+/// let run = integrate(&problem, &Rkmk::new(RK4, Exp), &grid, &SaveAt::Ends, &mut g, |_, _| {});
+/// assert!(run.is_err());
+/// let error = problem.error().expect("the samples end at 1").to_string();
+/// assert_eq!(error, "t = 1.125 lies outside of the samples, which span 0 to 1");
+/// # Ok::<(), lieflow::Error>(())
+/// ```
+#[derive(Clone, Copy)]
+pub struct TryFlow<G, A, F> {
+    group: G,
+    action: A,
+    field: F,
+}
+
+impl<G, A, F, E> TryFlow<G, A, F>
+where
+    G: LieGroup,
+    A: Action<G>,
+    F: Fn(G::Scalar, &A::Point, &mut G::Alg) -> Result<(), E>,
+{
+    /// The problem of the closure.
+    pub const fn new(group: G, action: A, field: F) -> Self {
+        TryFlow { group, action, field }
+    }
+}
+
+impl<G: LieAlgebra, A, F> fmt::Debug for TryFlow<G, A, F> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("TryFlow").field("group", &self.group.name()).finish_non_exhaustive()
+    }
+}
+
+impl<G, A, F, E> TryProblem for TryFlow<G, A, F>
+where
+    G: LieGroup,
+    A: Action<G>,
+    F: Fn(G::Scalar, &A::Point, &mut G::Alg) -> Result<(), E>,
+{
+    type Group = G;
+    type Action = A;
+    type Work = ();
+    type Error = E;
+
+    fn group(&self) -> &G {
+        &self.group
+    }
+    fn action(&self) -> &A {
+        &self.action
+    }
+    fn work(&self) {}
+    fn try_f(&self, t: G::Scalar, y: &A::Point, v: &mut G::Alg, _: &mut ()) -> Result<(), E> {
+        (self.field)(t, y, v)
     }
 }
 

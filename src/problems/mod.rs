@@ -12,7 +12,7 @@
 //! | Oja's flow | SO(n); n×k matrices | [`Oja`] |
 //! | subspaces, the Grassmann manifold | SO(n); conjugation of projectors | [`SubspaceFlow`] |
 //! | Lyapunov exponents of a vector field | SO(n) × T(2n); translation | [`Lyapunov`] |
-//! | a closure of (t, y), or of t alone | any | [`Flow`]; [`DynFlow`] behind a pointer |
+//! | a closure of (t, y), or of t alone | any | [`Flow`]; [`DynFlow`] behind a pointer; [`TryFlow`] that may fail |
 //! | Hill, Mathieu; beam lines | Sp(2m); translation | [`hill`], [`mathieu`], [`beam`]; [`floquet`](crate::floquet) |
 //! | Riccati | Sp(2m); [`Lagrangian`](crate::actions::Lagrangian) | [`Flow::of_time`] |
 //! | Schrödinger's equation, n levels | U(n) ⊂ SO(2n); vectors | [`schrodinger`](fn@schrodinger) |
@@ -50,7 +50,7 @@ pub use averaged::MeanGradient;
 pub use capability::{LiePoisson, LinearField, Orthogonal, Projection, Split};
 pub use dyn_flow::{DynFlow, WithHamiltonian};
 pub use euler::{DiscreteGradient, Euler, EulerGroup, FromTheBody, Hamiltonian, Kinetic};
-pub use fallible::{Fallible, InAlgebra, TryProblem};
+pub use fallible::{Fallible, InAlgebra, TryFlow, TryProblem};
 pub use flow::{Energy, Facts, Field, Flow, LinearFlow, TimeAlone};
 pub use grassmann::SubspaceFlow;
 pub use heavy_top::HeavyTop;

@@ -12,4 +12,5 @@ mod fluids_limits;
 mod grassmann;
 mod library;
 mod quaternion_body;
+mod samples;
 mod unitary;

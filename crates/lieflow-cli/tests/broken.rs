@@ -2,7 +2,7 @@
 
 mod support;
 
-use support::{Folder, SCENE};
+use support::{Folder, SCENE, read_csv};
 
 /// Replace a line of the scene, and expect the message to be about this line and to say this.
 const BROKEN: &[(&str, &str, usize, &[&str])] = &[
@@ -224,6 +224,37 @@ fn files_that_are_no_scenes_are_refused() {
             assert!(message.contains(words), "{message}");
         }
     }
+}
+
+/// A file of samples stands beside its scene, wherever the program is run; a run beyond its ends is refused.
+#[test]
+fn samples_beside_a_scene() {
+    let folder = Folder::new();
+    std::fs::create_dir(folder.path().join("data")).unwrap();
+    let problem = "kind = \"matrix-ode\"\ngroup = \"so\"\nsamples = \"rate.csv\"\n\
+                   field = [[\"0\", \"-w\"], [\"w\", \"0\"]]";
+    let rest = "[method]\nname = \"magnus4\"\n[time]\nt_span = [0, 2]\ndt = 0.5\n[output]\n\
+                quantities = [\"point\"]";
+    folder.write("data/scene.toml", &format!("title = \"Test\"\n[problem]\n{problem}\n{rest}\n"));
+    let run = || folder.lieflow(&["run", "data/scene.toml", "--out", "out"]);
+    let message = run().refused();
+    let place = "data/scene.toml:5:11: there is no file `rate.csv` beside the scene";
+    assert!(message.contains(place), "{message}");
+    for (samples, place, what) in [
+        ("t,w\n0,1\n1.5,2\n", 10, "t_span = [0, 2], and the samples span 0 to 1.5"),
+        ("t,w\n0,1\n2,x\n", 5, "rate.csv, line 3: column w: found `x`, expected a finite number"),
+    ] {
+        folder.write("data/rate.csv", samples);
+        let message = run().refused();
+        assert!(message.contains(&format!("data/scene.toml:{place}:")), "{message}");
+        assert!(message.contains(what), "{message}");
+        assert_eq!(folder.names("."), ["data"]);
+    }
+    // The angle is the integral of the lines, 1.
+    folder.write("data/rate.csv", "t,w\n0,1\n1,0\n2,1\n");
+    run().ok();
+    let (_, rows) = read_csv(&folder.read("out/trajectory.csv"));
+    assert!((rows[4][1] - 1f64.cos()).abs() < 1e-14, "{:?}", rows[4]);
 }
 
 #[test]

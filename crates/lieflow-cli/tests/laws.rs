@@ -111,10 +111,13 @@ fn promises_are_kept_and_only_those_are_made() {
     ];
     let mut moved = Vec::new();
     for bundled in BUNDLED {
-        let model = Scene::bundled(bundled.name).unwrap().model().unwrap();
+        let scene = Scene::bundled(bundled.name).unwrap();
+        let model = scene.model().unwrap();
         for method in methods.iter().filter(|method| model.fits(method).is_ok()) {
             let fluid = of_kind(bundled.name, "fluid");
-            let steps = if fluid { 20 } else { 500 };
+            // No further than samples.
+            let most = scene.problem.samples().map_or(500, |_| scene.grid.steps());
+            let steps = if fluid { 20 } else { most };
             let of = short(bundled.name, method, steps);
             let summary = run_scene(&of, folder.path()).unwrap();
             if !summary.completed {

@@ -14,6 +14,8 @@ mod matrices;
 mod mutants;
 #[path = "kinds/refused.rs"]
 mod refused;
+#[path = "kinds/samples.rs"]
+mod samples;
 
 use lieflow_model::kinds::KINDS;
 use lieflow_model::scene::{BUNDLED, Scene};

@@ -201,8 +201,10 @@ fn linear_ticks(lo: f64, hi: f64, labels: f64) -> Vec<Found> {
     let mut labels: Vec<String> = values.iter().map(|&value| text(value)).collect();
     // Values that differ after more digits than a label has: the lowest one, and what is added to it.
     if labels.windows(2).any(|pair| pair[0] == pair[1]) {
+        let power = step.log10().floor() as i32;
+        let factor = (step / 10f64.powi(power)).round();
         for (i, label) in labels.iter_mut().enumerate().skip(1) {
-            *label = format!("+{}", sig(i as f64 * step, 3));
+            *label = format!("+{}e{power}", i as f64 * factor);
         }
     }
     values.into_iter().zip(labels).map(|(value, label)| (value, Some(label), true)).collect()

@@ -20,7 +20,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::body::{ATTITUDE, ROTATION, attitude, by_rows};
 use super::flow;
 use super::prelude::*;
-use crate::scene::formula::{Formula, Parameters, read_all};
+use crate::scene::formula::{Formula, Parameters, SamplesFile, read_all};
 use crate::scene::values::{self, Rows, Texts};
 
 /// The entry in the list of kinds.
@@ -44,6 +44,8 @@ keys! { Keys {
         "a torque in the body, three formulas in t, the angular velocity in the body w1, w2, w3, the \
          momentum in space m1, m2, m3 and the attitude g11, ..., g33; optional",
     torque_space: Option<Texts<3>> = "a torque in space, three formulas in the same variables; optional",
+    samples: Option<SamplesFile> = SAMPLES.meaning,
+    interpolation: Option<String> = INTERPOLATION.meaning,
     #[serde(default)]
     parameters: Parameters = PARAMETERS.meaning,
 } }
@@ -138,6 +140,7 @@ type Q = Quantity<Driven>;
 fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
     let keys = Keys::deserialize(section)?;
     let names = keys.parameters.names("torque", VARIABLES)?;
+    let names = names.with_samples(keys.samples, keys.interpolation.as_deref())?;
     let formulas = |key: &str, texts: Option<Texts<3>>| match texts {
         Some(Texts(texts)) => read_all(key, &texts, &names).map(|formulas| Some(formulas.into())),
         None => Ok(None),
@@ -237,6 +240,10 @@ impl System for Driven {
             }
         }
         Ok(())
+    }
+    fn samples(&self) -> Option<&Samples> {
+        let Torques { in_the_body, in_space, .. } = &self.torques;
+        in_the_body.as_ref().or(in_space.as_ref())?[0].samples()
     }
     fn modelled(&self) -> String {
         let Torques { weight, thruster, damping, control, in_the_body, in_space } = &self.torques;

@@ -10,7 +10,7 @@ use lieflow::problems::Lyapunov;
 use super::entries::{numbered, row_columns, rows};
 use super::flow::Growing;
 use super::prelude::*;
-use crate::scene::formula::{Formula, Names, Parameters, read_all};
+use crate::scene::formula::{Formula, Names, Parameters, SamplesFile, read_all};
 
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {
@@ -24,6 +24,8 @@ keys! { Keys {
     x: List = "initial point, at most 128 numbers",
     variables: Option<Vec<String>> = "names of the coordinates, [\"x\", \"y\", ...]; optional: x1, x2, ...",
     field: Vec<String> = "a formula for the derivative of each coordinate, in the time t and the coordinates",
+    samples: Option<SamplesFile> = SAMPLES.meaning,
+    interpolation: Option<String> = INTERPOLATION.meaning,
     #[serde(default)]
     parameters: Parameters = PARAMETERS.meaning,
 } }
@@ -60,6 +62,7 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
     }
     let names = ["t".into()].into_iter().chain(variables);
     let names = keys.parameters.names("variables", names)?;
+    let names = names.with_samples(keys.samples, keys.interpolation.as_deref())?;
     let field = read_all("field", &keys.field, &names)?;
     let derived = |f: &Formula| f.operations() * (1..=n).filter(|&j| f.uses(j)).count();
     if field.iter().map(derived).sum::<usize>() > DERIVED_MAX {
@@ -159,6 +162,9 @@ impl System for Exponents {
             }
         }
         Ok(())
+    }
+    fn samples(&self) -> Option<&Samples> {
+        self.field.first()?.samples()
     }
     fn modelled(&self) -> String {
         format!("point, frame in SO({0}) and growth in {0} directions", self.x.len())

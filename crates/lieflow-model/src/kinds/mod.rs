@@ -43,6 +43,7 @@ use core::fmt::Debug;
 use std::sync::LazyLock;
 
 use lieflow::Error;
+use lieflow::samples::Samples;
 use serde::{Deserialize, Serialize};
 use toml::de::ValueDeserializer;
 
@@ -115,6 +116,20 @@ pub struct KeyInfo {
 const PARAMETERS: KeyInfo = KeyInfo {
     name: "parameters",
     meaning: "constants for the formulas: a table [problem.parameters] of names and numbers; optional",
+};
+
+/// The key of a file of samples, for every kind with formulas in t.
+pub(crate) const SAMPLES: KeyInfo = KeyInfo {
+    name: "samples",
+    meaning: "the name of a CSV file of samples, beside the scene: a line of names, t first, and rows of numbers; \
+              the other columns are variables of the formulas, functions of t; optional",
+};
+
+/// The key of what lies between the samples.
+const INTERPOLATION: KeyInfo = KeyInfo {
+    name: "interpolation",
+    meaning: "what lies between samples: \"linear\", \"cubic\" or, of increments over the interval before each \
+              time, \"mean-rate\"; optional, linear",
 };
 
 /// The keys of a kind, once: the table that `serde` reads, and what listings say of each key.
@@ -276,6 +291,11 @@ pub trait ProblemSpec: Any + Debug + Send + Sync {
     /// A refusal of the first key that has none.
     fn check_start(&self, _t0: f64) -> Result<(), Refusal> {
         Ok(())
+    }
+
+    /// The samples that its formulas name: a run stays in their span.
+    fn samples(&self) -> Option<&Samples> {
+        None
     }
 
     /// The quantities that make up what these quantities model: those to compare with the exact

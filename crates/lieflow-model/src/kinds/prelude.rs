@@ -2,12 +2,15 @@
 
 pub(super) use faer::Mat;
 pub(super) use lieflow::Error;
+pub(super) use lieflow::samples::Samples;
 pub(super) use serde::Deserialize;
 pub(super) use toml::de::ValueDeserializer;
 
 pub(super) use super::quantity::Quantity;
 pub(super) use super::system::{Number, Start, Stated, System};
-pub(super) use super::{Fact, Figure, Kind, Law, PARAMETERS, ProblemSpec, Scale, keys};
+pub(super) use super::{
+    Fact, Figure, INTERPOLATION, Kind, Law, PARAMETERS, ProblemSpec, SAMPLES, Scale, keys,
+};
 pub(super) use crate::model::Layer;
 pub(super) use crate::scene::values::{List, Real, Reals, Table, Whole};
 pub(super) use crate::scene::{Either, ReadError, Refusal, exactly_one, help_for};

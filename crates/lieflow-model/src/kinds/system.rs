@@ -6,6 +6,7 @@ use core::fmt::{self, Debug};
 use lieflow::catalog::MethodSpec;
 use lieflow::methods::Wide;
 use lieflow::problems::LinearSpace;
+use lieflow::samples::Samples;
 use lieflow::scalar::{Counted, Trig};
 use lieflow::space::Numbers;
 use lieflow::{Error, RunError};
@@ -59,6 +60,10 @@ pub(super) trait System: Clone + Debug + Send + Sync + 'static {
     /// See [`ProblemSpec::check_start`].
     fn check_start(&self, _t0: f64) -> Result<(), Refusal> {
         Ok(())
+    }
+    /// See [`ProblemSpec::samples`].
+    fn samples(&self) -> Option<&Samples> {
+        None
     }
     /// y at the end of a span, where it is known.
     fn exact(&self, _t_span: [f64; 2]) -> Option<Result<PointOf<Self>, Error>> {
@@ -134,6 +139,9 @@ impl<S: System> ProblemSpec for Stated<S> {
     }
     fn check_start(&self, t0: f64) -> Result<(), Refusal> {
         self.0.check_start(t0)
+    }
+    fn samples(&self) -> Option<&Samples> {
+        self.0.samples()
     }
     fn state(&self, _: &[&str]) -> &'static [&'static str] {
         S::STATE

@@ -60,9 +60,18 @@ pub const BUNDLED: &[Bundled] = bundled![
     "rotating-drive",
     "lorenz",
     "spin-and-oscillator",
+    "gyro-record",
     "gyrostat",
     "spin-pair",
 ];
+
+/// The files that these scenes name.
+const FILES: &[(&str, &str)] = &[("gyro.csv", include_str!("../../scenes/gyro.csv"))];
+
+/// The text of a file that comes with the program.
+pub(super) fn file(name: &str) -> Option<&'static str> {
+    FILES.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
+}
 
 impl Bundled {
     /// The scene of that name.

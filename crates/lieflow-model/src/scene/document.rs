@@ -4,7 +4,7 @@ use core::ops::Range;
 
 use serde::Deserialize;
 use toml::Spanned;
-use toml::de::{DeTable, DeValue, ValueDeserializer};
+use toml::de::{DeArray, DeTable, DeValue, ValueDeserializer};
 
 use super::error::{ReadError, Refusal, SceneError};
 use super::suggest::help_for;
@@ -119,6 +119,26 @@ impl<'a> Document<'a> {
         }
         Some(place.span())
     }
+}
+
+/// Put a file's text behind its name, where a key names a file: \[name, text\] in the place of the name.
+pub(super) fn read_beside(
+    section: &mut Spanned<DeTable<'_>>,
+    key: &str,
+    read: impl Fn(&str) -> Result<String, String>,
+) -> Result<(), Refusal> {
+    let Some(value) = section.get_mut().get_mut(key) else { return Ok(()) };
+    let DeValue::String(name) = value.get_ref() else {
+        let found = value.get_ref().type_str();
+        return Err(Refusal::at(key, format!("found {found}, expected the name of a file")));
+    };
+    let text = read(name).map_err(|why| Refusal::at(key, why))?;
+    let mut file = DeArray::new();
+    for part in [name.clone(), text.into()] {
+        file.push(Spanned::new(value.span(), DeValue::String(part)));
+    }
+    *value.get_mut() = DeValue::Array(file);
+    Ok(())
 }
 
 /// Ready to be read into keys.

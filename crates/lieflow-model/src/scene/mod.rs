@@ -18,11 +18,12 @@ use std::path::Path;
 
 use lieflow::StepControl;
 use lieflow::catalog::{MethodSpec, all_methods};
+use lieflow::samples::Outside;
 use lieflow::{Error, SaveAt, TimeGrid};
 
-use self::document::{Document, deserializer};
+use self::document::{Document, deserializer, read_beside};
 use self::keys::{MethodKeys, OutputKeys, TimeKeys};
-use crate::kinds::{Kind, ProblemSpec};
+use crate::kinds::{Kind, ProblemSpec, SAMPLES};
 use crate::model::{Layer, Model, Steps};
 
 /// A run, stated in full and checked.
@@ -48,19 +49,25 @@ pub struct Scene {
     pub quantities: Vec<String>,
 }
 
-/// Larger files are not scenes.
+/// Larger files are neither scenes nor samples.
 const SIZE_MAX: u64 = 64 << 20;
 
 impl Scene {
-    /// Read a scene. `source` is what messages call it, and its file stem is the scene's name.
+    /// Read a scene. `source` is what messages call it, and its file stem is the scene's name. Files that the scene
+    /// names stand beside it.
     ///
     /// # Errors
     /// [`SceneError`] at the first thing that is wrong. A scene that is returned can be run.
     pub fn parse(source: &str, text: &str) -> Result<Scene, SceneError> {
+        Self::read(source, text, Path::new(source).parent())
+    }
+
+    /// Read a scene whose files stand in `folder`, or else come with the program.
+    fn read(source: &str, text: &str, folder: Option<&Path>) -> Result<Scene, SceneError> {
         let document = Document::parse(source, text)?;
         document.check_top()?;
         let title: String = document.top("title")?;
-        let problem = read_problem(&document)?;
+        let problem = read_problem(&document, folder)?;
         let (method, layer) = document
             .keys::<MethodKeys>("method")?
             .resolve(problem.layers())
@@ -69,6 +76,13 @@ impl Scene {
             .keys::<TimeKeys>("time")?
             .resolve()
             .map_err(|refusal| document.refusal("time", refusal))?;
+        if let Some(samples) = problem.samples() {
+            let [t0, t1] = grid.t_span();
+            samples.covers([t0, t1]).map_err(|Outside { span: [first, last], .. }| {
+                let spans = format!("[{t0}, {t1}], and the samples span {first} to {last}");
+                document.refusal("time", Refusal::at("t_span", format!("t_span = {spans}")))
+            })?;
+        }
         problem
             .check_start(grid.t_span()[0])
             .map_err(|refusal| document.refusal("problem", refusal))?;
@@ -118,20 +132,8 @@ impl Scene {
         if path.is_dir() {
             return Err(unreadable("this is a folder, expected a scene file".into()));
         }
-        let mut bytes = Vec::new();
-        File::open(path)
-            .and_then(|file| file.take(SIZE_MAX + 1).read_to_end(&mut bytes))
-            .map_err(|error| unreadable(format!("cannot read the scene: {error}")))?;
-        if bytes.len() as u64 > SIZE_MAX {
-            let limit = SIZE_MAX >> 20;
-            return Err(unreadable(format!("larger than {limit} MiB, expected a scene file")));
-        }
-        let text = String::from_utf8(bytes).map_err(|error| {
-            let valid = error.utf8_error().valid_up_to();
-            let line = error.as_bytes()[..valid].iter().filter(|byte| **byte == b'\n').count() + 1;
-            unreadable(format!("line {line} is not UTF-8 text"))
-        })?;
-        Self::parse(&source, &text)
+        let text = read_text(path, "scene").map_err(unreadable)?;
+        Self::read(&source, &text, path.parent())
     }
 
     /// The bundled scene of that name.
@@ -140,7 +142,7 @@ impl Scene {
     /// [`SceneError`] for an unknown name.
     pub fn bundled(name: &str) -> Result<Scene, SceneError> {
         match Bundled::named(name) {
-            Some(scene) => Self::parse(&format!("{name}.toml"), scene.text),
+            Some(scene) => Self::read(&format!("{name}.toml"), scene.text, None),
             None => Err(unknown_scene(name)),
         }
     }
@@ -196,7 +198,36 @@ pub fn unknown_scene(name: &str) -> SceneError {
         .with_help(Some(help_for(name, &names)))
 }
 
-fn read_problem(document: &Document<'_>) -> Result<Box<dyn ProblemSpec>, SceneError> {
+/// The text of a file; `what` it should be.
+fn read_text(path: &Path, what: &str) -> Result<String, String> {
+    let mut bytes = Vec::new();
+    File::open(path)
+        .and_then(|file| file.take(SIZE_MAX + 1).read_to_end(&mut bytes))
+        .map_err(|error| format!("cannot read the {what}: {error}"))?;
+    if bytes.len() as u64 > SIZE_MAX {
+        return Err(format!("larger than {} MiB, expected a {what} file", SIZE_MAX >> 20));
+    }
+    String::from_utf8(bytes).map_err(|error| {
+        let valid = error.utf8_error().valid_up_to();
+        let line = error.as_bytes()[..valid].iter().filter(|byte| **byte == b'\n').count() + 1;
+        format!("line {line} is not UTF-8 text")
+    })
+}
+
+/// The text of a file of samples: in the folder, or else of those that come with the program.
+fn read_samples(folder: Option<&Path>, name: &str) -> Result<String, String> {
+    let path = folder.map(|folder| folder.join(name)).filter(|path| path.is_file());
+    match (path, bundled::file(name)) {
+        (Some(path), _) => read_text(&path, "samples").map_err(|why| format!("{name}: {why}")),
+        (None, Some(text)) => Ok(text.into()),
+        (None, None) => Err(format!("there is no file `{name}` beside the scene")),
+    }
+}
+
+fn read_problem(
+    document: &Document<'_>,
+    folder: Option<&Path>,
+) -> Result<Box<dyn ProblemSpec>, SceneError> {
     let mut section = document.section("problem")?;
     let refuse = |error: ReadError| document.read_error("problem", error);
     let Some((_, kind)) = section.get_mut().remove_entry("kind") else {
@@ -211,5 +242,9 @@ fn read_problem(document: &Document<'_>) -> Result<Box<dyn ProblemSpec>, SceneEr
     };
     let kind = Kind::named(name)
         .map_err(|error| refuse(Refusal { key: Some("kind".into()), ..error.into() }.into()))?;
+    if kind.keys.contains(&SAMPLES) {
+        read_beside(&mut section, SAMPLES.name, |name| read_samples(folder, name))
+            .map_err(|refusal| refuse(refusal.into()))?;
+    }
     (kind.read)(deserializer(section)).map_err(refuse)
 }

@@ -11,7 +11,7 @@ use nalgebra::{Matrix3, Vector3};
 use self::system::{Coupled, ON_PARTS, Part, Point, Space};
 use super::flow;
 use super::prelude::*;
-use crate::scene::formula::{Formula, Parameters, read_all};
+use crate::scene::formula::{Formula, Parameters, SamplesFile, read_all};
 use crate::scene::values::Numbers;
 
 pub(super) use self::system::{OnParts, Parts};
@@ -31,6 +31,8 @@ keys! { Keys {
          of NAME1, NAME2, …, a single one NAME. Field is a list of formulas in t, the coordinates of all \
          parts and the parameters: the angular velocity, in space, of a vector and of a rotation, the \
          derivatives of numbers",
+    samples: Option<SamplesFile> = SAMPLES.meaning,
+    interpolation: Option<String> = INTERPOLATION.meaning,
     #[serde(default)]
     parameters: Parameters = "numbers by name, for the formulas; optional",
     #[serde(default)]
@@ -62,7 +64,8 @@ struct Composed {
 type Q = Quantity<Composed>;
 
 fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
-    let Keys { parts: keys, parameters, invariants } = Keys::deserialize(section)?;
+    let Keys { parts: keys, samples, interpolation, parameters, invariants } =
+        Keys::deserialize(section)?;
     if keys.is_empty() {
         return Err(Refusal::at("parts", "no parts, expected at least one").into());
     }
@@ -70,6 +73,7 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
     let (coordinates, mut taken) = names_of(&keys, &spaces, &parameters)?;
     let all = core::iter::once(TIME).chain(coordinates.iter().map(String::as_str));
     let names = parameters.names("parts", all)?;
+    let names = names.with_samples(samples, interpolation.as_deref())?;
     let mut parts = Vec::new();
     for (i, (keys, space)) in keys.into_iter().zip(spaces).enumerate() {
         let (key, expected) = (format!("parts[{i}].field"), space.dim());
@@ -292,6 +296,9 @@ impl System for Composed {
         let mut invariants = self.invariants.iter();
         invariants
             .try_for_each(|(name, formula)| formula.check(&format!("invariants.{name}"), &at[1..]))
+    }
+    fn samples(&self) -> Option<&Samples> {
+        self.parts.first()?.field.first()?.samples()
     }
     fn modelled(&self) -> String {
         let parts =

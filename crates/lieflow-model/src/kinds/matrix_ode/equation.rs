@@ -177,6 +177,9 @@ impl System for Equation {
         }
         Ok(())
     }
+    fn samples(&self) -> Option<&Samples> {
+        self.field.first()?.samples()
+    }
     fn modelled(&self) -> String {
         let (rows, columns) = (self.start.nrows(), self.start.ncols());
         let action = ACTIONS.iter().find(|(_, action)| *action == self.action);

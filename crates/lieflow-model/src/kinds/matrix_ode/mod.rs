@@ -21,7 +21,7 @@ use super::algebra::{ALGEBRAS, Algebra};
 use super::entries::{check_symmetric, row_columns};
 use super::matrix::MatrixAction;
 use super::prelude::*;
-use crate::scene::formula::{Parameters, read_all};
+use crate::scene::formula::{Parameters, SamplesFile, read_all};
 
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {
@@ -43,6 +43,8 @@ keys! { Keys {
     start: Option<Table> =
         "initial point, n rows, of n numbers but for linear; for translation in the group and optional, the \
          identity; for lagrangian symmetric, n/2 rows of n/2",
+    samples: Option<SamplesFile> = SAMPLES.meaning,
+    interpolation: Option<String> = INTERPOLATION.meaning,
     #[serde(default)]
     parameters: Parameters = PARAMETERS.meaning,
 } }
@@ -84,6 +86,7 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
     let entries = row_columns("y", start.nrows(), start.ncols());
     let variables = ["t".to_owned()].into_iter().chain(entries);
     let names = keys.parameters.names("field", variables)?;
+    let names = names.with_samples(keys.samples, keys.interpolation.as_deref())?;
     let mut field = Vec::new();
     for (i, row) in keys.field.iter().enumerate() {
         let read = read_all("field", row, &names);

@@ -11,14 +11,15 @@
 //! | exp, ln, log10, sqrt | exp u u′, u′/u, u′/(u ln 10), ½u′/√u |
 //! | abs, sign | sign u u′, 0 |
 //! | atan2(u, v) | (v u′ − u v′)/(u² + v²) |
+//! | samples | the polynomial's derivative; at a knot that of the one after it |
 //! | min, max | ½(u′ + v′) ∓ ½ sign(u − v)(u′ − v′) |
 
 use super::functions::{Function, Operator};
-use super::tape::{Builder, Op, Tape};
+use super::tape::{Builder, Op, TIME, Tape};
 
 /// The derivative; none where it is too long.
 pub(super) fn derivative(tape: &Tape, variable: usize) -> Option<Tape> {
-    if !tape.ops().contains(&Op::Variable(variable)) {
+    if !tape.uses(variable) {
         let mut build = Builder::default();
         let zero = build.number(0.0);
         return build.finish(zero);
@@ -30,6 +31,9 @@ pub(super) fn derivative(tape: &Tape, variable: usize) -> Option<Tape> {
         let slope = match op {
             Op::Number(_) => None,
             Op::Variable(index) => (index == variable).then(|| build.number(1.0)),
+            Op::Sample(column, order) => {
+                (variable == TIME).then(|| build.sample(column, order + 1))
+            }
             Op::Apply(Function::Neg, x) => slopes[x].map(|du| build.apply(Function::Neg, du)),
             Op::Apply(function, x) => match (slopes[x], build.of_function(function, x, at)) {
                 (Some(du), Some(outer)) => Some(build.times(outer, du)),

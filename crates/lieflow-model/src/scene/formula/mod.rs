@@ -3,7 +3,7 @@
 //! | | |
 //! |---|---|
 //! | numbers | `2`, `0.5`, `1e-3`, `pi`, `e`, the names of `[problem.parameters]` |
-//! | variables | those that the key says, such as `t`, `w1`, `g33` |
+//! | variables | those that the key says, such as `t`, `w1`, `g33`; the columns of a file of samples |
 //! | operators | `+` `-` `*` `/` `^` and parentheses; −2^2 = −4, 2^−1 = ½, 2^3^2 = 2^9; whole powers are products |
 //! | functions | sin cos tan asin acos atan sinh cosh tanh exp ln log10 sqrt abs sign, atan2(y, x) min(x, y) max(x, y) |
 //!
@@ -17,14 +17,20 @@ mod calculus;
 mod functions;
 mod names;
 mod parse;
+mod samples;
 mod tape;
 #[cfg(test)]
 mod tests;
 
 pub use names::{Names, Parameters};
+pub use samples::SamplesFile;
 
+use std::sync::Arc;
+
+use lieflow::samples::Samples;
 use lieflow::scalar::Real;
 
+use self::samples::Table;
 use self::tape::{LENGTH_MAX, Tape};
 use super::Refusal;
 
@@ -32,6 +38,8 @@ use super::Refusal;
 #[derive(Clone, Debug)]
 pub struct Formula {
     tape: Tape,
+    /// Of its names, whether it uses them or not.
+    table: Option<Arc<Table>>,
 }
 
 impl Formula {
@@ -44,13 +52,14 @@ impl Formula {
             help,
             ..Refusal::at(key, format!("{key}: {message}"))
         };
-        Ok(Formula { tape: parse::parse(text, names).map_err(refused)? })
+        let tape = parse::parse(text, names).map_err(refused)?;
+        Ok(Formula { tape, table: names.table().cloned() })
     }
 
     /// Its value where the variables have these values, in the order of their names. On numbers that count
     /// operations, or where somebody counts them, its own are counted too.
     pub fn value<S: Real + Into<f64>>(&self, values: &[S]) -> S {
-        S::lit(self.tape.value(values))
+        S::lit(self.tape.value(values, self.samples()))
     }
 
     /// Its derivative by a variable, as a formula.
@@ -60,7 +69,8 @@ impl Formula {
     pub fn derivative(&self, key: &str, variable: usize) -> Result<Self, Refusal> {
         let too_long =
             || Refusal::at(key, format!("a derivative of more than {LENGTH_MAX} operations"));
-        Ok(Formula { tape: calculus::derivative(&self.tape, variable).ok_or_else(too_long)? })
+        let tape = calculus::derivative(&self.tape, variable).ok_or_else(too_long)?;
+        Ok(Formula { tape, table: self.table.clone() })
     }
 
     /// The variable and the number, where the formula is a variable divided by a number; a variable is divided by 1.
@@ -70,7 +80,12 @@ impl Formula {
 
     /// Does the value depend on this variable?
     pub fn uses(&self, variable: usize) -> bool {
-        self.tape.ops().contains(&tape::Op::Variable(variable))
+        self.tape.uses(variable)
+    }
+
+    /// The samples whose columns it may name.
+    pub fn samples(&self) -> Option<&Samples> {
+        self.table.as_ref().map(|table| &table.samples)
     }
 
     /// The length of its list of operations.

@@ -1,12 +1,14 @@
 //! The names that a formula may use: the variables of its kind, and the constants of the scene.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use serde::Deserialize;
 
 use super::super::Refusal;
 use super::super::values::Real;
 use super::functions::{CALLED, CONSTANTS};
+use super::samples::{SamplesFile, Table};
 
 /// `[problem.parameters]`: constants that the formulas of a scene share, `k = 3.0`.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
@@ -35,7 +37,7 @@ impl Parameters {
         key: &str,
         variables: impl IntoIterator<Item = N>,
     ) -> Result<Names, Refusal> {
-        let mut names = Names { variables: Vec::new(), constants: Vec::new() };
+        let mut names = Names { variables: Vec::new(), constants: Vec::new(), table: None };
         for variable in variables {
             let variable = variable.into();
             names.check(key, &variable)?;
@@ -54,12 +56,14 @@ impl Parameters {
 pub struct Names {
     variables: Vec<String>,
     constants: Vec<(String, f64)>,
+    table: Option<Arc<Table>>,
 }
 
 /// What a name stands for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Meaning {
     Variable(usize),
+    Sample(usize),
     Number(f64),
 }
 
@@ -67,6 +71,46 @@ impl Names {
     /// The variables, in the order of their values.
     pub fn variables(&self) -> &[String] {
         &self.variables
+    }
+
+    /// These names, the first of them `t`, and the columns of a file of samples, functions of t.
+    ///
+    /// # Errors
+    /// A refusal of `samples` for a file that is no table, and a column with the name of something else; of
+    /// `interpolation` where it is unknown, or there are no samples.
+    pub fn with_samples(
+        mut self,
+        file: Option<SamplesFile>,
+        interpolation: Option<&str>,
+    ) -> Result<Names, Refusal> {
+        let Some(file) = file else {
+            let alone =
+                || Refusal::at("interpolation", "`interpolation` is of `samples`: add them");
+            return interpolation.map_or(Ok(self), |_| Err(alone()));
+        };
+        let table = Table::read(file, interpolation)?;
+        for (i, column) in table.columns.iter().enumerate() {
+            let mut checked = self.check("samples", column);
+            if table.columns[..i].contains(column) {
+                let message = format!("`{column}` is the name of a column already");
+                checked = Err(Refusal::at("samples", message));
+            }
+            checked.map_err(|refusal| Refusal {
+                message: format!("{}: {}", table.file, refusal.message),
+                help: Some("give the column another name in the first line of the file".into()),
+                ..refusal
+            })?;
+        }
+        self.table = Some(table.into());
+        Ok(self)
+    }
+
+    /// The samples.
+    pub(super) fn table(&self) -> Option<&Arc<Table>> {
+        self.table.as_ref()
+    }
+    fn columns(&self) -> &[String] {
+        self.table.as_ref().map_or(&[], |table| &table.columns)
     }
 
     fn check(&self, key: &str, name: &str) -> Result<(), Refusal> {
@@ -90,12 +134,14 @@ impl Names {
         let own = self.constants.iter().map(|(name, x)| (name.as_str(), *x));
         let number =
             || own.chain(CONSTANTS.iter().copied()).find(|(constant, _)| *constant == name);
-        variable.map(Meaning::Variable).or_else(|| number().map(|(_, x)| Meaning::Number(x)))
+        let column = self.columns().iter().position(|column| column == name);
+        let varies = variable.map(Meaning::Variable).or(column.map(Meaning::Sample));
+        varies.or_else(|| number().map(|(_, x)| Meaning::Number(x)))
     }
 
     /// Every name that stands for a number.
     pub(super) fn all(&self) -> Vec<&str> {
-        let variables = self.variables.iter().map(String::as_str);
+        let variables = self.variables.iter().chain(self.columns()).map(String::as_str);
         let own = self.constants.iter().map(|(name, _)| name.as_str());
         variables.chain(own).chain(CONSTANTS.iter().map(|(name, _)| *name)).collect()
     }

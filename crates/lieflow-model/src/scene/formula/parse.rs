@@ -184,6 +184,7 @@ impl Parser<'_> {
         }
         match self.names.meaning(&name) {
             Some(Meaning::Variable(index)) => Ok(self.build.variable(index)),
+            Some(Meaning::Sample(column)) => Ok(self.build.sample(column, 0)),
             Some(Meaning::Number(x)) => Ok(self.build.number(x)),
             None if CALLED.iter().any(|(called, _)| *called == name) => {
                 Err(self.expected(&format!("`(` after {name}")))

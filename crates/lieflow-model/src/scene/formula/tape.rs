@@ -3,6 +3,7 @@
 
 use std::collections::HashMap;
 
+use lieflow::samples::Samples;
 use lieflow::scalar::{Ops, Real, tally};
 
 use super::functions::{Function, Operator};
@@ -13,11 +14,16 @@ pub(super) enum Op {
     /// A number by its bits, so that equal operations are found.
     Number(u64),
     Variable(usize),
+    /// The derivative of this order of a column of the samples at t, the first variable; the values for 0.
+    Sample(usize, usize),
     Apply(Function, usize),
     Combine(Operator, usize, usize),
     /// xⁿ by products.
     Power(usize, i32),
 }
+
+/// The variable that samples are functions of.
+pub(super) const TIME: usize = 0;
 
 /// Powers by products up to this; others by exp and ln.
 const POWER_MAX: f64 = 64.0;
@@ -37,6 +43,15 @@ impl Tape {
         &self.ops
     }
 
+    /// Does an operation depend on this variable by itself?
+    pub(super) fn uses(&self, variable: usize) -> bool {
+        self.ops.iter().any(|op| match op {
+            Op::Variable(at) => *at == variable,
+            Op::Sample(..) => variable == TIME,
+            _ => false,
+        })
+    }
+
     /// The variable and the number of a formula x/c; of x, with 1.
     pub(super) fn quotient(&self) -> Option<(usize, f64)> {
         if let [Op::Variable(at)] = *self.ops {
@@ -51,22 +66,37 @@ impl Tape {
         }
     }
 
-    pub(super) fn value<S: Real + Into<f64>>(&self, values: &[S]) -> f64 {
+    pub(super) fn value<S: Real + Into<f64>>(
+        &self,
+        values: &[S],
+        samples: Option<&Samples>,
+    ) -> f64 {
         tally(|| self.cost);
         match self.ops.len() {
-            0..=16 => self.run(values, &mut [0.0; 16]),
-            17..=128 => self.run(values, &mut [0.0; 128]),
-            129..=1024 => self.run(values, &mut [0.0; 1024]),
-            _ => self.run(values, &mut [0.0; LENGTH_MAX]),
+            0..=16 => self.run(values, samples, &mut [0.0; 16]),
+            17..=128 => self.run(values, samples, &mut [0.0; 128]),
+            129..=1024 => self.run(values, samples, &mut [0.0; 1024]),
+            _ => self.run(values, samples, &mut [0.0; LENGTH_MAX]),
         }
     }
 
-    fn run<S: Real + Into<f64>>(&self, values: &[S], done: &mut [f64]) -> f64 {
+    fn run<S: Real + Into<f64>>(
+        &self,
+        values: &[S],
+        samples: Option<&Samples>,
+        done: &mut [f64],
+    ) -> f64 {
         let mut last = f64::NAN;
         for (i, op) in self.ops.iter().enumerate() {
             last = match *op {
                 Op::Number(bits) => f64::from_bits(bits),
                 Op::Variable(at) => values.get(at).map_or(f64::NAN, |&x| x.into()),
+                Op::Sample(column, order) => match (samples, values.get(TIME)) {
+                    (Some(samples), Some(&t)) => {
+                        samples.derivative(column, order, t.into()).unwrap_or(f64::NAN)
+                    }
+                    _ => f64::NAN,
+                },
                 Op::Apply(function, x) => function.value(done[x]),
                 Op::Combine(operator, x, y) => operator.value(done[x], done[y]),
                 Op::Power(x, 2) => done[x] * done[x],
@@ -111,6 +141,9 @@ impl Builder {
     }
     pub(super) fn variable(&mut self, index: usize) -> usize {
         self.push(Op::Variable(index))
+    }
+    pub(super) fn sample(&mut self, column: usize, order: usize) -> usize {
+        self.push(Op::Sample(column, order))
     }
     pub(super) fn apply(&mut self, function: Function, x: usize) -> usize {
         match self.known(x) {
@@ -182,7 +215,7 @@ impl Builder {
 
 fn operands(op: Op) -> impl Iterator<Item = usize> {
     let (first, second) = match op {
-        Op::Number(_) | Op::Variable(_) => (None, None),
+        Op::Number(_) | Op::Variable(_) | Op::Sample(..) => (None, None),
         Op::Apply(_, x) | Op::Power(x, _) => (Some(x), None),
         Op::Combine(_, x, y) => (Some(x), Some(y)),
     };
@@ -192,6 +225,8 @@ fn operands(op: Op) -> impl Iterator<Item = usize> {
 fn cost(op: Op) -> Ops {
     match op {
         Op::Number(_) | Op::Variable(_) => Ops::NONE,
+        // A cubic in t less the time of a row.
+        Op::Sample(..) => Ops::adds(1) + Ops::muladds(3),
         Op::Apply(function, _) => function.cost(),
         Op::Combine(operator, ..) => operator.cost(),
         Op::Power(_, n) => {

@@ -3,7 +3,7 @@
 use lieflow::scalar::{Counted, Ops};
 
 use super::super::Refusal;
-use super::{Formula, Names, Parameters, read_all};
+use super::{Formula, Names, Parameters, SamplesFile, read_all};
 
 fn names() -> Names {
     Parameters::default().names("variables", ["x", "y", "w_1"]).expect("three names")
@@ -281,4 +281,33 @@ fn random_texts_are_read_or_refused() {
         }
     }
     assert!(read_ones > 500, "{read_ones}");
+}
+
+/// The derivative of samples by t is that of their spline, here x³ of a cubic; by another variable there is none of
+/// them. The operations are those of a cubic.
+#[test]
+fn samples_have_derivatives_by_the_time() {
+    let rows = ["t,u", "0,0", "1,1", "2,8", "4,64"].join("\n");
+    let file = SamplesFile("u.csv".into(), rows);
+    let names = Parameters::default().names("variables", ["t", "x"]).expect("two names");
+    let names = names.with_samples(Some(file), Some("cubic")).expect("a table");
+    let of = |text: &str| Formula::read("f", text, &names).expect("a formula");
+    let (t, x) = (1.7f64, 0.3);
+    for (text, by_t, by_x) in [
+        ("u", 3.0 * t * t, 0.0),
+        ("x*u + t", x * 3.0 * t * t + 1.0, t * t * t),
+        ("u^2", 6.0 * t.powi(5), 0.0),
+        ("x", 0.0, 1.0),
+    ] {
+        let slopes = [0, 1].map(|variable| of(text).derivative("f", variable).expect("a formula"));
+        let [found_t, found_x] = slopes.map(|slope| slope.value(&[t, x]));
+        assert!((found_t - by_t).abs() < 1e-12 && (found_x - by_x).abs() < 1e-12, "{text}");
+    }
+    let second = of("u").derivative("f", 0).and_then(|slope| slope.derivative("f", 0));
+    assert!((second.expect("a formula").value(&[t, x]) - 6.0 * t).abs() < 1e-12);
+    assert!(of("u").value(&[4.1, x]).is_nan());
+    let u = of("u");
+    let (_, counted) = Counted::count(|| u.value(&[t, x].map(Counted)));
+    assert_eq!(counted, Ops::adds(1) + Ops::muladds(3));
+    assert!(of("x*u").uses(0) && of("u").uses(0) && !of("u").uses(1) && !of("x").uses(0));
 }

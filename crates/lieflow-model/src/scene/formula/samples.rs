@@ -1,0 +1,77 @@
+//! A file of samples as variables of formulas: CSV with a line of names, `t` first, and rows of numbers.
+
+use std::hash::{DefaultHasher, Hash, Hasher};
+
+use lieflow::samples::{Interpolation, Samples};
+use serde::Deserialize;
+
+use super::super::Refusal;
+
+/// The key of the file.
+const KEY: &str = "samples";
+
+/// The name of a file and its text, which stands in the place of the name once the scene has read it.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+pub struct SamplesFile(pub(super) String, pub(super) String);
+
+/// The samples of a file with the names of their columns.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Table {
+    pub(super) file: String,
+    /// A hash of the text: two files with other numbers are not shown as the same.
+    text: u64,
+    pub(super) columns: Vec<String>,
+    pub(super) samples: Samples,
+}
+
+impl Table {
+    /// # Errors
+    /// A refusal of `samples` that says at which line of the file; one of `interpolation`.
+    pub(super) fn read(
+        SamplesFile(file, text): SamplesFile,
+        interpolation: Option<&str>,
+    ) -> Result<Table, Refusal> {
+        let interpolation =
+            interpolation.map_or(Ok(Interpolation::Linear), Interpolation::named)?;
+        let refused = |line: usize, message: String| {
+            Refusal::at(KEY, format!("{file}, line {line}: {message}"))
+        };
+        let lines = text.trim_start_matches('\u{feff}').lines().map(str::trim).zip(1..);
+        let mut lines = lines.filter(|(line, _)| !line.is_empty() && !line.starts_with('#'));
+        let (header, first) = lines.next().unwrap_or(("", 1));
+        let columns: Vec<String> = header.split(',').map(|name| name.trim().into()).collect();
+        if columns[0] != "t" || columns.len() < 2 {
+            let message = format!("found `{header}`, expected the names of columns, `t` first");
+            return Err(refused(first, message));
+        }
+        let mut values = vec![Vec::new(); columns.len()];
+        for (line, place) in lines {
+            let found = line.split(',').count();
+            if found != columns.len() {
+                let message = format!("found {found} columns, expected {}", columns.len());
+                return Err(refused(place, message));
+            }
+            for ((field, name), values) in line.split(',').zip(&columns).zip(&mut values) {
+                let x = field.trim().parse().ok().filter(|x: &f64| x.is_finite());
+                let expected = |what: String| {
+                    let found = format!("column {name}: found `{}`", field.trim());
+                    refused(place, format!("{found}, expected {what}"))
+                };
+                let x = x.ok_or_else(|| expected("a finite number".into()))?;
+                if let (Some(&last), "t") = (values.last(), name.as_str())
+                    && x <= last
+                {
+                    return Err(expected(format!("more than {last} of the row before")));
+                }
+                values.push(x);
+            }
+        }
+        let samples = Samples::new(&values[0], &values[1..], interpolation).map_err(|error| {
+            let refusal = Refusal::from(error).renamed(&[("times.len()", "rows")]);
+            Refusal::at(KEY, format!("{file}: {}", refusal.message))
+        })?;
+        let mut hasher = DefaultHasher::new();
+        text.hash(&mut hasher);
+        Ok(Table { file, text: hasher.finish(), columns: columns[1..].into(), samples })
+    }
+}

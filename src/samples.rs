@@ -1,0 +1,357 @@
+//! Sampled data as functions of time: a table of times and values, and what lies between its rows.
+//!
+//! | interpolation | what it is between the times | where it is smooth |
+//! |---|---|---|
+//! | [`Linear`](Interpolation::Linear) | the straight line through the two values | continuous |
+//! | [`Cubic`](Interpolation::Cubic) | the cubic spline through all values | two derivatives are continuous |
+//! | [`MeanRate`](Interpolation::MeanRate) | the rate whose integrals over the intervals are the values | one derivative is continuous |
+//!
+//! The rate is Θ′, with Θ the cubic spline through the sums of the increments. Splines are *not-a-knot*: the
+//! first two pieces are one cubic, and so are the last two. They are exact for cubics; through three points they
+//! are the parabola, through two the line.
+//!
+//! Source: C. de Boor, A Practical Guide to Splines, ch. IV.
+
+use core::fmt;
+
+use thiserror::Error as ThisError;
+
+use crate::error::Error;
+
+/// What lies between the rows of [`Samples`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Interpolation {
+    /// Straight lines.
+    Linear,
+    /// The cubic spline, not-a-knot at its ends.
+    Cubic,
+    /// The rate of increments: the value at t_k is the integral over \[t_{k−1}, t_k\], as a strapdown sensor
+    /// gives it. The values at the first time belong to an interval before the table and are not used.
+    MeanRate,
+}
+
+impl Interpolation {
+    /// Every interpolation.
+    pub const ALL: [Interpolation; 3] =
+        [Interpolation::Linear, Interpolation::Cubic, Interpolation::MeanRate];
+
+    /// Its name: `linear`, `cubic`, `mean-rate`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Interpolation::Linear => "linear",
+            Interpolation::Cubic => "cubic",
+            Interpolation::MeanRate => "mean-rate",
+        }
+    }
+
+    /// The interpolation of that name.
+    ///
+    /// # Errors
+    /// [`Error::UnknownName`].
+    pub fn named(name: &str) -> Result<Self, Error> {
+        Self::ALL.into_iter().find(|known| known.name() == name).ok_or_else(|| Error::UnknownName {
+            kind: "interpolation",
+            name: name.into(),
+            expected: Self::ALL.map(Interpolation::name).to_vec(),
+        })
+    }
+}
+
+/// A time before the first row of [`Samples`], or after the last one.
+#[derive(Clone, Copy, Debug, PartialEq, ThisError)]
+#[error("t = {t} lies outside of the samples, which span {} to {}", .span[0], .span[1])]
+pub struct Outside {
+    /// The time.
+    pub t: f64,
+    /// The first and the last time of the samples.
+    pub span: [f64; 2],
+}
+
+impl From<Outside> for Error {
+    fn from(Outside { t, span: [first, last] }: Outside) -> Self {
+        Error::out_of_range("t", t, format!("a time in the span of the samples, {first} to {last}"))
+    }
+}
+
+/// Columns of values at increasing times, as functions of time.
+///
+/// The attitude of a body from the increments of its gyros: ġ = gω̂ with g from body to space, which is
+/// ẏ = −ω̂y for y = gᵀ, an equation of linear type.
+/// ```
+/// use lieflow::actions::LeftTranslation;
+/// use lieflow::groups::{LieGroup, So3};
+/// use lieflow::methods::magnus::Magnus4;
+/// use lieflow::problems::Flow;
+/// use lieflow::samples::{Interpolation, Samples};
+/// use lieflow::{SaveAt, TimeGrid, integrate};
+/// use nalgebra::Vector3;
+///
+/// // Each row: the integral of the angular velocity in the body since the row before.
+/// let times = [0.0, 0.1, 0.2, 0.3, 0.4];
+/// let x = [0.0, 0.010, 0.012, 0.013, 0.012];
+/// let y = [0.0, 0.050, 0.049, 0.047, 0.044];
+/// let z = [0.0, 0.001, 0.004, 0.006, 0.009];
+/// let gyros = Samples::new(&times, &[x, y, z], Interpolation::MeanRate)?;
+/// let span = [0.0, 0.4];
+/// gyros.covers(span)?;
+/// let attitude = Flow::of_time(So3::<f64>::new(), LeftTranslation, |t, v: &mut Vector3<f64>| {
+///     // Not a number outside of the samples: the run would end there.
+///     let _ = gyros.value(t, v.as_mut_slice());
+///     *v = -*v;
+/// });
+/// let mut g_transposed = So3::new().identity();
+/// let grid = TimeGrid::with_steps(span, 4)?;
+/// integrate(&attitude, &Magnus4, &grid, &SaveAt::Ends, &mut g_transposed, |_, _| {})?;
+/// assert!((g_transposed.transpose()[(0, 2)] - 0.19).abs() < 0.01);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+/// A run that says at which time it left the samples is one of a
+/// [`TryFlow`](crate::problems::TryFlow).
+#[derive(Clone, PartialEq)]
+pub struct Samples {
+    times: Vec<f64>,
+    columns: usize,
+    interpolation: Interpolation,
+    /// The polynomials in t − t_k, lowest power first: all columns of an interval, then the next interval.
+    pieces: Vec<[f64; 4]>,
+    /// Rows a unit of time, where the times are so even that this finds an interval or one beside it.
+    pace: Option<f64>,
+}
+
+impl Samples {
+    /// The samples `columns[j][k]` at `times[k]`.
+    ///
+    /// The cost is O(n) for each column of n values, and four numbers of storage for each value.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] that names the entry: for fewer than 2 times, times that do not increase, a column of
+    /// another length than the times, a number that is not finite, and values so far apart that their slope
+    /// is not finite.
+    pub fn new<C: AsRef<[f64]>>(
+        times: &[f64],
+        columns: &[C],
+        interpolation: Interpolation,
+    ) -> Result<Self, Error> {
+        let n = times.len();
+        if n < 2 {
+            return Err(Error::out_of_range("times.len()", n as f64, "at least 2"));
+        }
+        for (k, &t) in times.iter().enumerate() {
+            if !t.is_finite() {
+                return Err(Error::out_of_range(format!("times[{k}]"), t, "a finite number"));
+            }
+            if k > 0 && t <= times[k - 1] {
+                let expected = format!("more than times[{}] = {}", k - 1, times[k - 1]);
+                return Err(Error::out_of_range(format!("times[{k}]"), t, expected));
+            }
+        }
+        let length = times[n - 1] - times[0];
+        if !length.is_finite() {
+            return Err(Error::out_of_range("times", length, "times that span a finite length"));
+        }
+        let steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        let mut pieces = vec![[0.0; 4]; steps.len() * columns.len()];
+        for (j, column) in columns.iter().enumerate() {
+            let values = column.as_ref();
+            if values.len() != n {
+                let arg = format!("columns[{j}].len()");
+                let expected = format!("{n} as there are times");
+                return Err(Error::out_of_range(arg, values.len() as f64, expected));
+            }
+            if let Some(k) = values.iter().position(|x| !x.is_finite()) {
+                let arg = format!("columns[{j}][{k}]");
+                return Err(Error::out_of_range(arg, values[k], "a finite number"));
+            }
+            for (k, piece) in fit(&steps, values, interpolation).into_iter().enumerate() {
+                if !piece.iter().all(|x| x.is_finite()) {
+                    let arg = format!("columns[{j}][{}]", k + 1);
+                    let expected = "a value whose slope from the one before is finite";
+                    return Err(Error::out_of_range(arg, values[k + 1], expected));
+                }
+                pieces[k * columns.len() + j] = piece;
+            }
+        }
+        let pace = (n - 1) as f64 / length;
+        let even = |(k, t): (usize, &f64)| ((t - times[0]) * pace - k as f64).abs() < 1.0;
+        let pace = times.iter().enumerate().all(even).then_some(pace);
+        Ok(Samples { times: times.into(), columns: columns.len(), interpolation, pieces, pace })
+    }
+
+    /// The first and the last time.
+    pub fn span(&self) -> [f64; 2] {
+        [self.times[0], self.times[self.times.len() - 1]]
+    }
+    /// The number of columns.
+    pub fn columns(&self) -> usize {
+        self.columns
+    }
+    /// What lies between the rows.
+    pub fn interpolation(&self) -> Interpolation {
+        self.interpolation
+    }
+
+    /// That both times lie in the span of the samples: what to ask before a run.
+    ///
+    /// # Errors
+    /// The first one that does not.
+    pub fn covers(&self, times: [f64; 2]) -> Result<(), Outside> {
+        times.into_iter().try_for_each(|t| self.find(t).map(drop))
+    }
+
+    /// out ← the values of all columns at t.
+    ///
+    /// The cost is a search, O(log n) where the times are uneven and O(1) where they are even, and a cubic for
+    /// each column.
+    ///
+    /// # Errors
+    /// [`Outside`], and out is not a number: for a t beyond the span by more than rounding, 4 ulp of the larger
+    /// of its ends.
+    ///
+    /// # Panics
+    /// Where `out` is longer than there are columns; a shorter one gets the first of them.
+    pub fn value(&self, t: f64, out: &mut [f64]) -> Result<(), Outside> {
+        let found = self.find(t);
+        for (j, out) in out.iter_mut().enumerate() {
+            *out = found.map_or(f64::NAN, |(k, s)| polynomial(self.piece(k, j), s));
+        }
+        found.map(drop)
+    }
+
+    /// The value of column j at t.
+    ///
+    /// # Errors
+    /// As [`value`](Self::value).
+    ///
+    /// # Panics
+    /// Where there is no column j.
+    pub fn column(&self, j: usize, t: f64) -> Result<f64, Outside> {
+        self.derivative(j, 0, t)
+    }
+
+    /// The derivative of some order of column j at t; that of the piece after t where it jumps.
+    ///
+    /// # Errors
+    /// As [`value`](Self::value).
+    ///
+    /// # Panics
+    /// Where there is no column j.
+    pub fn derivative(&self, j: usize, order: usize, t: f64) -> Result<f64, Outside> {
+        let (k, s) = self.find(t)?;
+        let mut piece = self.piece(k, j);
+        for _ in 0..order.min(4) {
+            piece = [piece[1], 2.0 * piece[2], 3.0 * piece[3], 0.0];
+        }
+        Ok(polynomial(piece, s))
+    }
+
+    /// The times inside a span where the pieces do not join to one polynomial, in rising order.
+    ///
+    /// A step that ends there keeps the order of its method. They are all inner times for [`Interpolation::Linear`],
+    /// and all but the first and the last of these for splines.
+    pub fn knots(&self, [from, to]: [f64; 2]) -> impl DoubleEndedIterator<Item = f64> {
+        let one_polynomial = match self.interpolation {
+            Interpolation::Linear => 1,
+            Interpolation::Cubic | Interpolation::MeanRate => 2,
+        };
+        let knots = self.times.get(one_polynomial..self.times.len() - one_polynomial);
+        let inside = move |t: &f64| from.min(to) < *t && *t < from.max(to);
+        knots.unwrap_or_default().iter().copied().filter(inside)
+    }
+
+    fn piece(&self, k: usize, j: usize) -> [f64; 4] {
+        self.pieces[k * self.columns..][..self.columns][j]
+    }
+
+    /// The interval of t, and t less the time where it starts.
+    fn find(&self, t: f64) -> Result<(usize, f64), Outside> {
+        let span @ [first, last] = self.span();
+        let inside = t.clamp(first, last);
+        let rounding = 4.0 * f64::EPSILON * first.abs().max(last.abs());
+        if t.is_nan() || (t - inside).abs() > rounding {
+            return Err(Outside { t, span });
+        }
+        let inner = &self.times[1..self.times.len() - 1];
+        let mut k = match self.pace {
+            Some(pace) => (((inside - first) * pace) as usize).min(inner.len()),
+            None => inner.partition_point(|knot| *knot <= inside),
+        };
+        while k > 0 && inside < self.times[k] {
+            k -= 1;
+        }
+        while k < inner.len() && inside >= inner[k] {
+            k += 1;
+        }
+        Ok((k, inside - self.times[k]))
+    }
+}
+
+/// Shows its size, and not its numbers.
+impl fmt::Debug for Samples {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (rows, columns) = (self.times.len(), self.columns);
+        write!(f, "Samples({rows}×{columns} over {:?}, {:?})", self.span(), self.interpolation)
+    }
+}
+
+fn polynomial([a, b, c, d]: [f64; 4], s: f64) -> f64 {
+    a + s * (b + s * (c + s * d))
+}
+
+/// The polynomials of a column in the time since the start of their interval.
+fn fit(steps: &[f64], values: &[f64], interpolation: Interpolation) -> Vec<[f64; 4]> {
+    let mean = |(k, h): (usize, &f64)| match interpolation {
+        Interpolation::MeanRate => values[k + 1] / h,
+        _ => (values[k + 1] - values[k]) / h,
+    };
+    let means: Vec<f64> = steps.iter().enumerate().map(mean).collect();
+    let slopes = spline(steps, &means);
+    let piece = |(k, h): (usize, &f64)| {
+        let [before, after] = [slopes[k], slopes[k + 1]];
+        let second = (3.0 * means[k] - 2.0 * before - after) / h;
+        let third = (before + after - 2.0 * means[k]) / h / h;
+        match interpolation {
+            Interpolation::Linear => [values[k], means[k], 0.0, 0.0],
+            Interpolation::Cubic => [values[k], before, second, third],
+            Interpolation::MeanRate => [before, 2.0 * second, 3.0 * third, 0.0],
+        }
+    };
+    steps.iter().enumerate().map(piece).collect()
+}
+
+/// The slopes at the ends of intervals of the not-a-knot spline with these mean slopes over them: the second
+/// derivative is continuous at every inner end, and the third at the first and the last of them.
+fn spline(steps: &[f64], means: &[f64]) -> Vec<f64> {
+    let n = means.len();
+    if n < 3 {
+        // A line, or a parabola: its slope is linear in t.
+        let (first, last) = (means[0], means[n - 1]);
+        let bend = (last - first) / (steps[0] + steps[n - 1]);
+        return match n {
+            1 => vec![first; 2],
+            _ => vec![first - bend * steps[0], first + bend * steps[0], last + bend * steps[1]],
+        };
+    }
+    // The parts of the interval before and of the one after in the two around the end k.
+    let parts = |k: usize| {
+        let both = steps[k - 1] + steps[k];
+        (steps[k - 1] / both, steps[k] / both)
+    };
+    // Elimination of a tridiagonal matrix: s_k + above_k s_{k+1} = slopes_k.
+    let (mut above, mut slopes) = (vec![0.0; n], vec![0.0; n + 1]);
+    let (p, q) = parts(1);
+    above[0] = 1.0 / q;
+    slopes[0] = (2.0 + p) * means[0] + p * p * means[1] / q;
+    for k in 1..n {
+        let (p, q) = parts(k);
+        let pivot = 2.0 - q * above[k - 1];
+        above[k] = p / pivot;
+        slopes[k] = (3.0 * (q * means[k - 1] + p * means[k]) - q * slopes[k - 1]) / pivot;
+    }
+    let (p, q) = parts(n - 1);
+    let right = (2.0 + q) * p * means[n - 1] + q * q * means[n - 2];
+    slopes[n] = (right - slopes[n - 1]) / (p - above[n - 1]);
+    for k in (0..n).rev() {
+        slopes[k] -= above[k] * slopes[k + 1];
+    }
+    slopes
+}
