@@ -136,6 +136,37 @@ macro_rules! classical_method {
                 let $this = self;
                 $method.step(problem, step, y, work)
             }
+            fn dense_order(&self, problem: &P) -> usize {
+                let $this = self;
+                Method::<P>::dense_order(&$method, problem)
+            }
+            fn dense_evaluations(&self, problem: &P) -> [Option<u64>; 2] {
+                let $this = self;
+                Method::<P>::dense_evaluations(&$method, problem)
+            }
+            fn prepare(
+                &self,
+                problem: &P,
+                step: Step<ScalarOf<P>>,
+                from: &PointOf<P>,
+                to: &PointOf<P>,
+                work: &mut Self::Work,
+            ) -> Result<(), StepError> {
+                let $this = self;
+                $method.prepare(problem, step, from, to, work)
+            }
+            fn interpolate(
+                &self,
+                problem: &P,
+                step: Step<ScalarOf<P>>,
+                theta: f64,
+                from: &PointOf<P>,
+                work: &mut Self::Work,
+                at: &mut PointOf<P>,
+            ) -> Result<(), StepError> {
+                let $this = self;
+                $method.interpolate(problem, step, theta, from, work, at)
+            }
         }
     };
 }

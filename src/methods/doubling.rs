@@ -95,6 +95,9 @@ where
     fn evaluations(&self, problem: &P) -> Option<u64> {
         Some(2 * self.0.evaluations(problem)?)
     }
+    fn dense_evaluations(&self, problem: &P) -> [Option<u64>; 2] {
+        [Some(0), self.0.evaluations(problem)]
+    }
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
         Ok(DoublingWork {
             inner: self.0.work(problem, like)?,

@@ -10,7 +10,7 @@
 //! symmetry to the terms left out. A series whose sum is far from the group (0.1 in gᵀMg − M) is refused
 //! with [`StepError::OutsideChart`]. Cost: N(N+1)/2
 //! products for Ψ and as many for the coefficients of a quadratic field, one action, one or two steps
-//! of Newton–Schulz. The last two terms are the error estimate: the step of an adaptive run follows
+//! of Newton–Schulz; a point within a step has the last two costs alone. The last two terms are the error estimate: the step of an adaptive run follows
 //! them. For the free rigid body in ℝ³ [`Taylor`](super::Taylor) is the same on quaternions.
 //! Source: W. Gröbner, Die Lie-Reihen und ihre Anwendungen (1960); À. Jorba & M. Zou, Experiment.
 //! Math. 14 (2005), for the step.
@@ -34,6 +34,8 @@ use crate::tolerance::Tolerance;
 pub trait SeriesGroup: LieGroup {
     /// x ← 0.
     fn clear(&self, x: &mut Self::Elem);
+    /// x ← a·x.
+    fn scale(&self, a: Self::Scalar, x: &mut Self::Elem);
     /// y ← y + x.
     fn add(&self, x: &Self::Elem, y: &mut Self::Elem);
     /// out ← out + a·u·x, or a·x·u from the right.
@@ -52,6 +54,9 @@ pub trait SeriesGroup: LieGroup {
 impl SeriesGroup for So3 {
     fn clear(&self, x: &mut Matrix3<f64>) {
         *x = Matrix3::zeros();
+    }
+    fn scale(&self, a: f64, x: &mut Matrix3<f64>) {
+        *x *= a;
     }
     fn add(&self, x: &Matrix3<f64>, y: &mut Matrix3<f64>) {
         *y += x;
@@ -75,6 +80,10 @@ impl SeriesGroup for So3 {
 impl SeriesGroup for MatrixGroup {
     fn clear(&self, x: &mut GroupMatrix) {
         x.fill(0.0);
+    }
+    fn scale(&self, a: f64, x: &mut GroupMatrix) {
+        let x: &mut Mat<f64> = x;
+        x.col_iter_mut().for_each(|column| column.iter_mut().for_each(|x| *x *= a));
     }
     fn add(&self, x: &GroupMatrix, y: &mut GroupMatrix) {
         axpy(1.0, x, y);
@@ -138,11 +147,12 @@ impl LieSeries {
         problem: &P,
         Step { t, h, .. }: Step<ScalarOf<P>>,
         y: &PointOf<P>,
-        LieSeriesWork { f, psi, g, scratch, series, .. }: &mut LieSeriesWork<P>,
+        w: &mut LieSeriesWork<P>,
     ) -> Result<(), StepError>
     where
         P::Group: SeriesGroup,
     {
+        let LieSeriesWork { f, psi, g, series, .. } = w;
         let group = problem.group();
         for k in 0..self.order {
             problem.coefficient([t, h], y, k, f, series);
@@ -161,6 +171,17 @@ impl LieSeries {
         }
         group.clear(g);
         psi.iter().rev().for_each(|term| group.add(term, g)); // small terms first
+        w.onto_group(group)
+    }
+}
+
+impl<P: TaylorField> LieSeriesWork<P>
+where
+    P::Group: SeriesGroup,
+{
+    /// g ← the element of the group next to the sum g of the series.
+    fn onto_group(&mut self, group: &P::Group) -> Result<(), StepError> {
+        let LieSeriesWork { g, scratch, .. } = self;
         let residual = group.correct(g, scratch.each_mut());
         if !group.size(g).is_finite() {
             return Err(StepError::NotFinite { what: "the Taylor series" });
@@ -221,6 +242,29 @@ where
         self.flow(problem, step, p, w)?;
         problem.action().act(problem.group(), &w.g, p, &mut w.y, &mut w.act);
         core::mem::swap(p, &mut w.y);
+        Ok(())
+    }
+    fn dense_evaluations(&self, _: &P) -> [Option<u64>; 2] {
+        [Some(0); 2]
+    }
+    /// The series at θh, from the coefficients of the step.
+    fn interpolate(
+        &self,
+        problem: &P,
+        _: Step<ScalarOf<P>>,
+        theta: f64,
+        from: &PointOf<P>,
+        w: &mut Self::Work,
+        at: &mut PointOf<P>,
+    ) -> Result<(), StepError> {
+        let (group, LieSeriesWork { psi, g, .. }) = (problem.group(), &mut *w);
+        group.clear(g);
+        for term in psi.iter().rev() {
+            group.scale(ScalarOf::<P>::lit(theta), g);
+            group.add(term, g);
+        }
+        w.onto_group(group)?;
+        problem.action().act(group, &w.g, from, at, &mut w.act);
         Ok(())
     }
 }

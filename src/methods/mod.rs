@@ -13,6 +13,7 @@ mod doubling;
 mod embedded;
 mod energy_casimir;
 mod exact;
+mod extension;
 mod fluid_midpoint;
 mod gauss;
 mod implicit_rkmk;
@@ -225,7 +226,9 @@ pub trait Method<P: Problem> {
         self.step(problem, step.part(theta), at, work)
     }
 
-    /// Evaluations of f in [`prepare`](Self::prepare) and in [`interpolate`](Self::interpolate).
+    /// What the continuous extension costs: the evaluations of f in [`prepare`](Self::prepare) and in each
+    /// [`interpolate`](Self::interpolate), counted as those of a step in [`evaluations`](Self::evaluations). The
+    /// default is that of a shorter step.
     fn dense_evaluations(&self, problem: &P) -> [Option<u64>; 2] {
         [Some(0), self.evaluations(problem)]
     }

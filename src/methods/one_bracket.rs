@@ -9,12 +9,13 @@
 //! | [`MAGNUS43`] | 4(3) | 6 | 6 | 3 | Casas, Iserles 2006 |
 //!
 //! The second is the Magnus method of nonlinear equations: its last stage lies at the result of order
-//! 3. The map is exp, which the brackets belong to. Cost: the table. Preserves: the group, and what
+//! 3. The map is exp, which the brackets belong to. Cost: the table; one more f for points within a step, of order 3. Preserves: the group, and what
 //! the action leaves invariant. Source: H. Munthe-Kaas, B. Owren, Computations in a free Lie algebra,
 //! Phil. Trans. R. Soc. A 357 (1999); F. Casas, A. Iserles, Explicit Magnus expansions for nonlinear
 //! equations, J. Phys. A 39 (2006).
 
 use super::embedded::{ratio_in_algebra, without_pair};
+use super::extension::{Extension, OneIncrement, of_increment};
 use super::stages::Stages;
 use super::tableau::pad;
 use super::{Embedded, Method, Step};
@@ -136,6 +137,12 @@ pub const MAGNUS43: OneBracketTableau<6> = OneBracketTableau {
 #[derive(Clone, Copy, Debug)]
 pub struct OneBracket<const S: usize>(pub OneBracketTableau<S>);
 
+impl<const S: usize> OneBracket<S> {
+    fn extension(&self) -> Extension<'static, 2> {
+        of_increment(self.0.order, 0.0)
+    }
+}
+
 /// Stages, increments and the chart.
 #[allow(missing_debug_implementations)] // the parts belong to the problem's types
 #[doc(hidden)]
@@ -145,6 +152,7 @@ where
 {
     inner: Inner<P, S>,
     y: PointOf<P>,
+    dense: OneIncrement<P>,
 }
 
 struct Inner<P: Problem, const S: usize>
@@ -225,7 +233,7 @@ where
             bracket: alg.zero(),
             at: like.clone(),
         };
-        Ok(OneBracketWork { inner, y: like.clone() })
+        Ok(OneBracketWork { inner, y: like.clone(), dense: OneIncrement::new(alg) })
     }
     #[inline]
     fn step(
@@ -233,10 +241,46 @@ where
         problem: &P,
         step: Step<ScalarOf<P>>,
         p: &mut PointOf<P>,
-        OneBracketWork { inner, y }: &mut Self::Work,
+        OneBracketWork { inner, y, .. }: &mut Self::Work,
     ) -> Result<(), StepError> {
         let done = inner.advance(&self.0, problem, step, p, y);
         inner.stages.conclude(problem, done, p, y)
+    }
+    fn dense_order(&self, _: &P) -> usize {
+        self.extension().order()
+    }
+    fn dense_evaluations(&self, _: &P) -> [Option<u64>; 2] {
+        [Some(self.extension().evaluations() as u64), Some(0)]
+    }
+    fn prepare(
+        &self,
+        problem: &P,
+        step: Step<ScalarOf<P>>,
+        from: &PointOf<P>,
+        _: &PointOf<P>,
+        OneBracketWork { inner, dense, .. }: &mut Self::Work,
+    ) -> Result<(), StepError> {
+        let (alg, Stages { k, u, chart }) = (problem.group(), &mut inner.stages);
+        alg.combine(
+            ScalarOf::<P>::lit(1.0) / step.h,
+            &[1.0],
+            core::slice::from_ref(u),
+            &mut dense.k[0],
+        );
+        alg.combine(ScalarOf::<P>::lit(1.0), &[1.0], &k[..1], &mut dense.k[1]);
+        dense.prepare(&self.extension(), alg, &mut chart.around(problem, &Exp, step.n, from), step)
+    }
+    fn interpolate(
+        &self,
+        problem: &P,
+        Step { n, h, .. }: Step<ScalarOf<P>>,
+        theta: f64,
+        from: &PointOf<P>,
+        OneBracketWork { inner, dense, .. }: &mut Self::Work,
+        at: &mut PointOf<P>,
+    ) -> Result<(), StepError> {
+        let mut chart = inner.stages.chart.around(problem, &Exp, n, from);
+        dense.point(&self.extension(), problem.group(), &mut chart, (theta, h), at)
     }
 }
 

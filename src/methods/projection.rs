@@ -74,6 +74,34 @@ impl<P: Orthogonal, M: Method<P>> Method<P> for ProjectionMethod<M> {
         core::mem::swap(y, z);
         Ok(())
     }
+    fn dense_order(&self, problem: &P) -> usize {
+        self.base.dense_order(problem)
+    }
+    fn dense_evaluations(&self, problem: &P) -> [Option<u64>; 2] {
+        self.base.dense_evaluations(problem)
+    }
+    fn prepare(
+        &self,
+        problem: &P,
+        step: Step<ScalarOf<P>>,
+        from: &PointOf<P>,
+        to: &PointOf<P>,
+        work: &mut Self::Work,
+    ) -> Result<(), StepError> {
+        self.base.prepare(problem, step, from, to, &mut work.base)
+    }
+    fn interpolate(
+        &self,
+        problem: &P,
+        step: Step<ScalarOf<P>>,
+        theta: f64,
+        from: &PointOf<P>,
+        work: &mut Self::Work,
+        at: &mut PointOf<P>,
+    ) -> Result<(), StepError> {
+        self.base.interpolate(problem, step, theta, from, &mut work.base, at)?;
+        problem.project(self.how, at)
+    }
 }
 
 /// The estimate is that of the base method, before the projection: what that moves is no larger.

@@ -2,9 +2,11 @@
 //!
 //! It leaves the group: gᵀg − 𝟙 and |m| drift with the order of the method. Order: the tableau's.
 //! Preserves: linear invariants only. Cost: S evaluations of F.
+//! Points within a step: [`Dense`](super::tableau::Dense).
 //! Source: Hairer, Nørsett, Wanner I, p. 138.
 
 use super::embedded::without_pair;
+use super::extension::{EXTRA, Extension};
 use super::stages::copies;
 use super::tableau::{ErrorEstimate, fold_error};
 use super::{Embedded, Method, Step, Tableau};
@@ -19,11 +21,12 @@ use crate::tolerance::{Rule, Tolerance, ratio};
 #[derive(Clone, Copy, Debug)]
 pub struct Rk<const S: usize>(pub Tableau<S>);
 
-/// Stages, a point, and the field's scratch.
+/// Stages, a point, the extra stages of the continuous extension, and the field's scratch.
 #[allow(missing_debug_implementations)] // the parts belong to the problem's types
 pub struct RkWork<P: Ambient, const S: usize> {
     k: [PointOf<P>; S],
     z: PointOf<P>,
+    extra: [PointOf<P>; EXTRA],
     field: FieldStore<P>,
 }
 
@@ -36,7 +39,7 @@ impl<const S: usize> Rk<S> {
         problem: &P,
         Step { t, h, .. }: Step<ScalarOf<P>>,
         y: &PointOf<P>,
-        RkWork { k, z, field }: &mut RkWork<P, S>,
+        RkWork { k, z, field, .. }: &mut RkWork<P, S>,
     ) -> Result<(), StepError> {
         let tab = &self.0;
         for i in 0..S {
@@ -70,7 +73,12 @@ impl<P: Ambient, const S: usize> Method<P> for Rk<S> {
         Some(self.0.update_stages() as u64)
     }
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
-        Ok(RkWork { k: copies(like.clone()), z: like.clone(), field: FieldStore::new(problem) })
+        Ok(RkWork {
+            k: copies(like.clone()),
+            z: like.clone(),
+            extra: copies(like.clone()),
+            field: FieldStore::new(problem),
+        })
     }
     #[inline]
     fn step(
@@ -83,6 +91,33 @@ impl<P: Ambient, const S: usize> Method<P> for Rk<S> {
         self.advance(self.0.update_stages(), problem, step, y, work)?;
         y.assign(&work.z);
         Ok(())
+    }
+    fn dense_order(&self, _: &P) -> usize {
+        Extension::of(&self.0).order()
+    }
+    fn dense_evaluations(&self, _: &P) -> [Option<u64>; 2] {
+        [Some(Extension::of(&self.0).evaluations() as u64), Some(0)]
+    }
+    fn prepare(
+        &self,
+        problem: &P,
+        step: Step<ScalarOf<P>>,
+        from: &PointOf<P>,
+        _: &PointOf<P>,
+        RkWork { k, z, extra, field }: &mut Self::Work,
+    ) -> Result<(), StepError> {
+        Extension::of(&self.0).prepare_in_space(problem, step, from, k, extra, z, field)
+    }
+    fn interpolate(
+        &self,
+        _: &P,
+        Step { h, .. }: Step<ScalarOf<P>>,
+        theta: f64,
+        from: &PointOf<P>,
+        RkWork { k, extra, .. }: &mut Self::Work,
+        at: &mut PointOf<P>,
+    ) -> Result<(), StepError> {
+        Extension::of(&self.0).point_in_space((theta, h), from, k, extra, at)
     }
 }
 

@@ -8,16 +8,18 @@
 //! not symmetric in time. Cost of a step with S stages: S times f,
 //! S times Ψ (applied, not formed, where the action allows), S − 1 times dΨ⁻¹; a stage that only the
 //! error estimate looks at is left out when none is asked for.
+//! Points within a step: [`Dense`](super::tableau::Dense) in the chart of the step.
 //! Source: H. Munthe-Kaas, High order Runge–Kutta methods on manifolds, Appl. Numer. Math. 29 (1999).
 
 use super::embedded::{ratio_in_algebra, without_pair};
-use super::stages::Stages;
+use super::extension::{EXTRA, Extension};
+use super::stages::{Stages, copies};
 use super::tableau::{ErrorEstimate, fold_error};
 use super::{Embedded, Method, Step, Tableau};
 use crate::error::{Error, StepError};
 use crate::groups::LieAlgebra;
 use crate::maps::CoordinateMap;
-use crate::problems::{PointOf, Problem, ScalarOf};
+use crate::problems::{AlgOf, PointOf, Problem, ScalarOf};
 use crate::scalar::Real;
 use crate::tolerance::Tolerance;
 
@@ -39,11 +41,12 @@ impl<Psi, const S: usize> Rkmk<Psi, S> {
     }
 }
 
-/// Stages and the chart.
+/// Stages, the chart, and the extra stages of the continuous extension.
 #[allow(missing_debug_implementations)] // the parts belong to the problem's types
 pub struct RkmkWork<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> {
     stages: Stages<P, Psi, S>,
     y: PointOf<P>,
+    extra: [AlgOf<P>; EXTRA],
 }
 
 impl<Psi, const S: usize> Rkmk<Psi, S> {
@@ -89,7 +92,11 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> Method<P> for Rkm
         Some(self.stages as u64)
     }
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
-        Ok(RkmkWork { stages: Stages::new(problem, &self.psi, like)?, y: like.clone() })
+        Ok(RkmkWork {
+            stages: Stages::new(problem, &self.psi, like)?,
+            y: like.clone(),
+            extra: copies(problem.group().zero()),
+        })
     }
     #[inline]
     fn step(
@@ -97,10 +104,41 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> Method<P> for Rkm
         problem: &P,
         step: Step<ScalarOf<P>>,
         p: &mut PointOf<P>,
-        RkmkWork { stages, y }: &mut Self::Work,
+        RkmkWork { stages, y, .. }: &mut Self::Work,
     ) -> Result<(), StepError> {
         let done = self.advance(self.stages, problem, step, p, stages, y);
         stages.conclude(problem, done, p, y)
+    }
+    fn dense_order(&self, problem: &P) -> usize {
+        Extension::of(&self.tableau).order().min(self.psi.order(problem.group()))
+    }
+    fn dense_evaluations(&self, _: &P) -> [Option<u64>; 2] {
+        [Some(Extension::of(&self.tableau).evaluations() as u64), Some(0)]
+    }
+    fn prepare(
+        &self,
+        problem: &P,
+        step: Step<ScalarOf<P>>,
+        from: &PointOf<P>,
+        _: &PointOf<P>,
+        RkmkWork { stages: Stages { k, u, chart }, extra, .. }: &mut Self::Work,
+    ) -> Result<(), StepError> {
+        let mut chart = chart.around(problem, &self.psi, step.n, from);
+        let extension = Extension::of(&self.tableau);
+        extension.prepare_in_chart(problem.group(), &mut chart, step, k, extra, u)
+    }
+    fn interpolate(
+        &self,
+        problem: &P,
+        Step { n, h, .. }: Step<ScalarOf<P>>,
+        theta: f64,
+        from: &PointOf<P>,
+        RkmkWork { stages: Stages { k, u, chart }, extra, .. }: &mut Self::Work,
+        at: &mut PointOf<P>,
+    ) -> Result<(), StepError> {
+        let mut chart = chart.around(problem, &self.psi, n, from);
+        let extension = Extension::of(&self.tableau);
+        extension.point_in_chart(problem.group(), &mut chart, (theta, h), k, extra, u, at)
     }
 }
 

@@ -139,8 +139,17 @@ where
     let mut work = method.work(problem, &y).expect("it fits");
     ASKED.set(Asked::default());
     let step = Step { n: 0, t: 0.2, h: 0.1 };
+    let from = y;
     method.step(problem, step, &mut y, &mut work).expect("a step");
-    (ASKED.get(), method.evaluations(problem))
+    let asked = ASKED.replace(Asked::default());
+    // A point within the step costs what the method says.
+    method.prepare(problem, step, &from, &y, &mut work).expect("the stages of the extension");
+    let prepared = ASKED.replace(Asked::default()).field;
+    method.interpolate(problem, step, 0.4, &from, &mut work, &mut y).expect("a point");
+    let stated = method.dense_evaluations(problem);
+    assert_eq!(stated[0], Some(prepared));
+    assert!(stated[1].is_none_or(|n| n == ASKED.get().field), "{stated:?} {:?}", ASKED.get());
+    (asked, method.evaluations(problem))
 }
 
 /// What the work of a step asks for.

@@ -6,6 +6,7 @@ mod support;
 
 mod adaptive;
 mod costs;
+mod dense;
 mod fields;
 mod implicit;
 mod lie_series;

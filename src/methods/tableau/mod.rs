@@ -1,9 +1,11 @@
 //! Explicit Butcher tableaus as constants, with the pairs that estimate their own error. Tests run
 //! the order conditions over every one, and over every embedded row.
 
+mod dense;
 mod dop853;
 mod pairs;
 
+pub use dense::{Dense, Row};
 pub use dop853::DOP853;
 pub use pairs::{BS3, DOPRI5, RKF45, VERNER6};
 
@@ -24,6 +26,8 @@ pub struct Tableau<const S: usize> {
     pub c: [f64; S],
     /// The error estimate of an embedded pair.
     pub error: Option<ErrorEstimate<S>>,
+    /// The continuous extension: the points within a step.
+    pub dense: Dense,
 }
 
 impl<const S: usize> Tableau<S> {
@@ -70,7 +74,8 @@ impl<const S: usize> Tableau<S> {
                 Some(ErrorEstimate { order: *order, e: pad(e), damp })
             }
         };
-        Tableau { name: self.name, order: self.order, a, b: pad(&self.b), c: pad(&self.c), error }
+        let Tableau { name, order, dense, .. } = *self;
+        Tableau { name, order, a, b: pad(&self.b), c: pad(&self.c), error, dense }
     }
 }
 
@@ -146,8 +151,15 @@ pub(crate) const fn lower<const S: usize>(rows: [&[f64]; S]) -> [[f64; S]; S] {
 }
 
 /// Euler's method, order 1.
-pub const EULER: Tableau<1> =
-    Tableau { name: "euler", order: 1, a: [[0.0]], b: [1.0], c: [0.0], error: None };
+pub const EULER: Tableau<1> = Tableau {
+    name: "euler",
+    order: 1,
+    a: [[0.0]],
+    b: [1.0],
+    c: [0.0],
+    error: None,
+    dense: Dense::Cubic { order: 1, end: &[1.0] },
+};
 
 /// The explicit midpoint rule (Runge), order 2.
 pub const MIDPOINT: Tableau<2> = Tableau {
@@ -157,6 +169,7 @@ pub const MIDPOINT: Tableau<2> = Tableau {
     b: [0.0, 1.0],
     c: [0.0, 0.5],
     error: None,
+    dense: Dense::Cubic { order: 2, end: &[-1.0, 2.0] },
 };
 
 /// Heun's method (the explicit trapezoidal rule), order 2.
@@ -167,6 +180,7 @@ pub const HEUN: Tableau<2> = Tableau {
     b: [0.5, 0.5],
     c: [0.0, 1.0],
     error: None,
+    dense: Dense::Cubic { order: 2, end: &[0.0, 1.0] },
 };
 
 /// The classical method of order 4 (Hairer, Nørsett, Wanner I, p. 138).
@@ -177,6 +191,7 @@ pub const RK4: Tableau<4> = Tableau {
     b: [1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0],
     c: [0.0, 0.5, 0.5, 1.0],
     error: None,
+    dense: Dense::Cubic { order: 3, end: &[0.0, 0.0, 0.0, 1.0] },
 };
 
 /// Kutta's 3/8 rule, order 4 (Hairer, Nørsett, Wanner I, p. 138).
@@ -187,4 +202,5 @@ pub const THREE_EIGHTHS: Tableau<4> = Tableau {
     b: [1.0 / 8.0, 3.0 / 8.0, 3.0 / 8.0, 1.0 / 8.0],
     c: [0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0],
     error: None,
+    dense: Dense::Cubic { order: 3, end: &[0.25, -0.75, 0.75, 0.75] },
 };

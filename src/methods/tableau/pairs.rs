@@ -11,7 +11,7 @@
 //! error looks at it. On a manifold the next step's chart is another one and no stage is carried
 //! over: a step depends on its arguments alone.
 
-use super::{ErrorEstimate, Tableau, lower};
+use super::{Dense, ErrorEstimate, Row, Tableau, lower};
 
 const BS3_B: [f64; 4] = [2.0 / 9.0, 1.0 / 3.0, 4.0 / 9.0, 0.0];
 
@@ -23,6 +23,7 @@ pub const BS3: Tableau<4> = Tableau {
     b: BS3_B,
     c: [0.0, 0.5, 0.75, 1.0],
     error: Some(ErrorEstimate::of_pair(2, BS3_B, [7.0 / 24.0, 0.25, 1.0 / 3.0, 0.125])),
+    dense: Dense::General,
 };
 
 const RKF45_B: [f64; 6] =
@@ -47,10 +48,28 @@ pub const RKF45: Tableau<6> = Tableau {
         RKF45_B,
         [25.0 / 216.0, 0.0, 1408.0 / 2565.0, 2197.0 / 4104.0, -0.2, 0.0],
     )),
+    dense: Dense::General,
 };
 
 const DOPRI5_B: [f64; 7] =
     [35.0 / 384.0, 0.0, 500.0 / 1113.0, 125.0 / 192.0, -2187.0 / 6784.0, 11.0 / 84.0, 0.0];
+
+/// Shampine's extension (Hairer, Nørsett, Wanner I, II.6, and their code DOPRI5).
+const DOPRI5_DENSE: Dense = Dense::Raised {
+    order: 4,
+    stages: &[],
+    rows: &[Row {
+        stages: &[
+            -12715105075.0 / 11282082432.0,
+            0.0,
+            87487479700.0 / 32700410799.0,
+            -10690763975.0 / 1880347072.0,
+            701980252875.0 / 199316789632.0,
+            -1453857185.0 / 822651844.0,
+        ],
+        extra: &[69997945.0 / 29380423.0],
+    }],
+};
 
 /// Dormand–Prince 5(4).
 pub const DOPRI5: Tableau<7> = Tableau {
@@ -80,6 +99,7 @@ pub const DOPRI5: Tableau<7> = Tableau {
             1.0 / 40.0,
         ],
     )),
+    dense: DOPRI5_DENSE,
 };
 
 const VERNER6_B: [f64; 8] = [
@@ -118,4 +138,5 @@ pub const VERNER6: Tableau<8> = Tableau {
         VERNER6_B,
         [13.0 / 160.0, 0.0, 2375.0 / 5984.0, 5.0 / 16.0, 12.0 / 85.0, 3.0 / 44.0, 0.0, 0.0],
     )),
+    dense: Dense::General,
 };

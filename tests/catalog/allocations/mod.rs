@@ -11,7 +11,7 @@ use lieflow::{Action, LieAlgebra, Method, Step};
 
 use crate::counting;
 
-/// The allocations of ten steps, each with its way back to M, after the workspace is made. A step goes
+/// The allocations of ten steps, each with a point within it and its way back to M, after the workspace is made. A step goes
 /// before: the product library makes its packing buffer at the first large product of a thread.
 pub(crate) fn of_steps<P: Problem, M: Method<P>>(
     problem: &P,
@@ -21,12 +21,15 @@ pub(crate) fn of_steps<P: Problem, M: Method<P>>(
 where
     P::Group: LieAlgebra<Scalar = f64>,
 {
-    let mut y = start.clone();
+    let (mut y, mut from, mut at) = (start.clone(), start.clone(), start.clone());
     let mut work = method.work(problem, &y).expect("the method fits");
     let mut back = problem.action().work(problem.group());
     let mut step = |n| {
         let step = Step { n, t: 0.1, h: 0.02 };
+        problem.action().assign(problem.group(), &y, &mut from);
         method.step(problem, step, &mut y, &mut work).expect("a step");
+        method.prepare(problem, step, &from, &y, &mut work).expect("the stages of the extension");
+        method.interpolate(problem, step, 0.4, &from, &mut work, &mut at).expect("a point");
         problem.action().restore_to(problem.group(), start, &mut y, &mut back);
     };
     step(0);

@@ -193,6 +193,9 @@ impl SeriesGroup for Matrices {
     fn clear(&self, x: &mut Square) {
         LinearSpace::clear(x);
     }
+    fn scale(&self, a: D, x: &mut Square) {
+        *x = *x * a;
+    }
     fn add(&self, x: &Square, y: &mut Square) {
         *y = *y + *x;
     }
