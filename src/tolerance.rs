@@ -85,11 +85,13 @@ impl PartTolerance {
         if self.components.is_empty() {
             return None;
         }
-        let mut most = S::lit(0.0);
-        for ((error, x), &atol) in errors.zip(entries).zip(&self.components) {
+        let (mut most, mut atols) = (S::lit(0.0), self.components.iter());
+        for (error, x) in errors.zip(entries) {
+            let Some(&atol) = atols.next() else { return Some(S::lit(f64::INFINITY)) };
             most = larger(most, ratio(error.abs(), S::lit(atol) + S::lit(self.rtol) * x.abs()));
         }
-        Some(most)
+        // As many tolerances as components, or no step is good enough: the driver says so before the first.
+        if atols.next().is_some() { Some(S::lit(f64::INFINITY)) } else { Some(most) }
     }
 }
 
@@ -155,8 +157,13 @@ impl Tolerance {
         Scales { parts: &self.parts, next: 0 }
     }
 
-    /// Check that a point with this many parts has a tolerance for each.
-    pub(crate) fn check(&self, parts: usize) -> Result<(), Error> {
+    /// Check that a point with this many parts has a tolerance for each, and each component an atol.
+    pub(crate) fn check(&self, parts: usize, components_fit: bool) -> Result<(), Error> {
+        if !components_fit {
+            let given = self.parts.iter().map(|part| part.components.len()).max().unwrap_or(0);
+            let expected = "as many as the part of the point has components";
+            return Err(Error::out_of_range("the number of atol", given as f64, expected));
+        }
         let given = self.parts.len();
         match given == 1 || given == parts {
             true => Ok(()),

@@ -121,7 +121,8 @@ impl Controller {
     /// The factor of the next step after an accepted one.
     pub(super) fn accept(&mut self, ratio: f64) -> f64 {
         let r = ratio.max(1e-10); // an error of 0 says "grow"
-        let factor = SAFETY * r.powf(-0.7 / self.k) * self.last.powf(0.4 / self.k);
+        // One exponential for both powers.
+        let factor = SAFETY * ((0.4 * self.last.ln() - 0.7 * r.ln()) / self.k).exp();
         let cap = if self.hold { 1.0 } else { GROWTH_MAX };
         self.last = r.max(1e-4);
         self.hold = false;

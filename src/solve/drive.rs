@@ -159,11 +159,6 @@ where
         if let Some((list, bytes)) = self.resume.take() {
             self.read(list, &bytes)?;
             first = None;
-            while let Some(stop) = self.next_stop
-                && !self.is_before(self.run.t(), stop)
-            {
-                self.next_stop = self.stops.next();
-            }
         } else {
             self.events.start(t0, self.run.y())?;
             if self.save.start(t0)
@@ -180,14 +175,12 @@ where
                 progress(self.run.t());
             }
             self.check_count()?;
+            self.pass_stops();
             self.skip()?;
             let stop = self.next_stop.unwrap_or(t1);
-            self.run.step_before(stop)?;
+            self.run.step_before(stop, self.next_stop.is_some())?;
             if let Some(kept) = self.kept.as_deref_mut() {
                 kept.push((self.run.t(), self.run.last, self.run.from.clone()));
-            }
-            if self.next_stop == Some(self.run.t()) {
-                self.next_stop = self.stops.next();
             }
             if !self.events.all.is_empty() {
                 let first_step = first.is_some_and(|first| self.run.stats.accepted == first + 1);
@@ -215,6 +208,13 @@ where
         let bytes = self.write(list);
         if let Some(Checkpoints { take, .. }) = &mut self.checkpoints {
             take(&bytes);
+        }
+    }
+
+    /// The next stop is the first one ahead: a step that an event cut has not reached its own.
+    fn pass_stops(&mut self) {
+        while self.next_stop.is_some_and(|stop| !self.is_before(self.run.t(), stop)) {
+            self.next_stop = self.stops.next();
         }
     }
 
@@ -295,28 +295,33 @@ where
 
     /// Show the point at a time within the last step.
     fn show(&mut self, time: f64) -> Ended {
-        match self.times_by_steps {
-            true => self.run.at_by_a_step(time, &mut self.shown)?,
-            false => self.run.at(time, &mut self.shown)?,
-        }
+        self.look_at(time)?;
         self.shown_at = Some(time);
         self.see(false);
         match (self.observe)(time, &mut self.shown) {
             Next::Continue => Ok(None),
             Next::Stop => {
-                self.run.cut(time)?;
+                self.look_at(time)?; // whatever the observer wrote there
+                self.run.cut(time, &self.shown);
                 Ok(Some(Status::Observer))
             }
             Next::Changed => {
-                self.run.cut(time)?;
                 let Self { run, shown, events, .. } = self;
                 let (action, group) = (run.problem.action(), run.problem.group());
+                run.cut(time, shown);
                 run.change("the observer", |y| action.assign(group, shown, y))?;
-                events.found.clear();
-                events.restart(time, run.y())?;
+                events.restart(time, run.y(), 0..0)?;
                 self.end_of_kept();
                 Ok(None)
             }
+        }
+    }
+
+    /// `shown` ← the point at a time within the last step.
+    fn look_at(&mut self, time: f64) -> Result<(), RunError> {
+        match self.times_by_steps {
+            true => self.run.at_by_a_step(time, &mut self.shown),
+            false => self.run.at(time, &mut self.shown),
         }
     }
 
@@ -362,7 +367,8 @@ where
         if !acts {
             return Ok(None);
         }
-        self.run.cut(t)?;
+        self.run.at(t, &mut self.shown)?;
+        self.run.cut(t, &self.shown);
         for zero in &self.events.found[at..*zeros] {
             let Event { name, change, .. } = &mut self.events.all[zero.event];
             if let Some(change) = change {
@@ -376,8 +382,7 @@ where
             }
             return Ok(Some(Status::Event(name)));
         }
-        self.events.found.clear();
-        self.events.restart(t, self.run.y())?;
+        self.events.restart(t, self.run.y(), at..*zeros)?;
         Ok(None)
     }
 }

@@ -12,9 +12,11 @@
 //! | touches 0 and turns back | nothing, unless a point that is looked at hits 0 exactly |
 //! | not finite | [`RunError::Event`] with the name of the event |
 //!
-//! After a state was changed, the sign of g is taken anew a little later, so that the same zero is not found twice.
+//! After a zero that changed the state the sign of g is taken anew a little later (2⁻¹⁶ of a step), so that the same
+//! zero is not found twice.
 
 use core::fmt;
+use core::ops::Range;
 
 use super::integrator::Integrator;
 use super::stats::RunError;
@@ -99,7 +101,7 @@ pub(super) struct Seen {
 /// The points within a step where g is evaluated when two zeros could lie between its ends.
 const POINTS: u32 = 8;
 /// Where in a step the sign of g is taken anew.
-const A_LITTLE_LATER: f64 = 1.0 / 64.0;
+const A_LITTLE_LATER: f64 = 1.0 / 65536.0;
 
 impl<'a, Y> Event<'a, Y> {
     /// The zeros of `g(t, y)`, rising and falling; the run goes on.
@@ -141,8 +143,8 @@ impl<'a, Y> Event<'a, Y> {
         Event { told: Some(Box::new(told)), ..self }
     }
     /// Evaluate g at this many points within every step. The default evaluates it at 8 points of those steps
-    /// where the values at the ends of this step and of the one before leave room for two zeros: |g| at both ends
-    /// is smaller than the change of slope of g over the two steps.
+    /// where the values at the ends of this step and of the one before leave room for two zeros: |g| at one end is
+    /// at most twice the change of slope of g over the two steps, times the size of the step.
     pub fn points(self, points: u32) -> Self {
         Event { points: Some(points), ..self }
     }
@@ -209,12 +211,23 @@ impl<'a, P: Problem> Events<'a, P> {
         Ok(())
     }
 
-    /// After the state was changed at t.
-    pub(super) fn restart(&mut self, t: f64, y: &PointOf<P>) -> Result<(), RunError> {
-        for event in &mut self.all {
+    /// After the state was changed at t, at the zeros `at` of the last step. The other zeros of it are forgotten.
+    pub(super) fn restart(
+        &mut self,
+        t: f64,
+        y: &PointOf<P>,
+        at: Range<usize>,
+    ) -> Result<(), RunError> {
+        for (index, event) in self.all.iter_mut().enumerate() {
             let value = event.value(t, y)?;
-            event.seen = Seen { value, before: None, anew: true };
+            let Seen { value: last, before, .. } = event.seen;
+            let size = before.map_or(0.0, |[start, _]| last.abs().max(start.abs()));
+            // Its zero was just passed, or may have been, up to rounding.
+            let anew = value.abs() <= 64.0 * f64::EPSILON * size
+                || self.found[at.clone()].iter().any(|zero| zero.event == index);
+            event.seen = Seen { value, before: None, anew };
         }
+        self.found.clear();
         Ok(())
     }
 

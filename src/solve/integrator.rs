@@ -136,8 +136,6 @@ pub struct Integrator<'a, P: Problem, M: Method<P>> {
     pub(super) last: Step<f64>,
     /// The end of an attempt, or of the step that was taken again.
     to: PointOf<P>,
-    /// Another point.
-    spare: PointOf<P>,
     pub(super) looked_at: Looked,
     pub(super) work: M::Work,
     pub(super) pacer: Pacer<P, M>,
@@ -154,6 +152,13 @@ fn check_field<P: Problem>(problem: &P, t: f64, y: &PointOf<P>) -> Result<(), Er
     let mut v = problem.group().zero();
     problem.f(ScalarOf::<P>::lit(t), y, &mut v, &mut problem.work());
     problem.group().check("f", &v)
+}
+
+/// The size of a step from t to `end`, or to a few rounding units before it.
+fn size_to(t: f64, end: f64, before: bool) -> f64 {
+    let unit = f64::EPSILON * t.abs().max(end.abs());
+    let size = end - t;
+    if before && size.abs() > 100.0 * unit { size - (4.0 * unit).copysign(size) } else { size }
 }
 
 fn lit<P: Problem>(Step { n, t, h }: Step<f64>) -> Step<ScalarOf<P>> {
@@ -174,8 +179,8 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
             Pace::ByError(control, estimator) => {
                 let mut parts = control.tolerance.scales();
                 let at = problem.group().zero();
-                problem.action().error_ratio(problem.group(), &at, &y, &mut parts);
-                control.tolerance.check(parts.asked())?;
+                let none = problem.action().error_ratio(problem.group(), &at, &y, &mut parts);
+                control.tolerance.check(parts.asked(), none.any_below(f64::INFINITY))?;
                 Pacer::ByError(Box::new(Chooser {
                     control,
                     estimator,
@@ -203,7 +208,6 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
             t: t0,
             from: y.clone(),
             to: y.clone(),
-            spare: y.clone(),
             y,
             last: Step { n: 0, t: t0, h: 0.0 },
             looked_at: Looked::Nothing,
@@ -260,7 +264,7 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
     /// # Errors
     /// [`RunError`]: the state is the last accepted one. A run that is done stays where it is.
     pub fn step(&mut self) -> Result<f64, RunError> {
-        self.step_before(self.t1)?;
+        self.step_before(self.t1, false)?;
         Ok(self.t)
     }
 
@@ -277,7 +281,7 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
             return Err(Error::out_of_range("t", t, expected).into());
         }
         while self.t != t {
-            self.step_before(t)?;
+            self.step_before(t, false)?;
         }
         Ok(&self.y)
     }
@@ -331,31 +335,26 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
         Ok(())
     }
 
-    /// The last step is cut at t: the state is the point there, and the run goes on from it.
-    pub(super) fn cut(&mut self, t: f64) -> Result<(), RunError> {
+    /// The last step is cut at t: the run goes on from the point `at` there.
+    pub(super) fn cut(&mut self, t: f64, at: &PointOf<P>) {
         if t != self.t {
-            let mut at = core::mem::replace(&mut self.spare, self.from.clone());
-            let found = self.at(t, &mut at);
-            self.spare = at;
-            found?;
-            self.problem.action().assign(self.problem.group(), &self.spare, &mut self.y);
+            self.problem.action().assign(self.problem.group(), at, &mut self.y);
             self.t = t;
         }
-        Ok(())
     }
 
-    /// One accepted step that does not pass `stop`.
-    pub(super) fn step_before(&mut self, stop: f64) -> Result<(), RunError> {
+    /// One accepted step that does not pass `stop`. Where f jumps there no stage of it is evaluated at `stop`.
+    pub(super) fn step_before(&mut self, stop: f64, jumps: bool) -> Result<(), RunError> {
         if self.t == stop {
             return Ok(());
         }
         match &mut self.pacer {
-            Pacer::Equal { .. } => self.equal_step(stop),
-            Pacer::ByError(_) => self.chosen_step(stop),
+            Pacer::Equal { .. } => self.equal_step(stop, jumps),
+            Pacer::ByError(_) => self.chosen_step(stop, jumps),
         }
     }
 
-    fn equal_step(&mut self, stop: f64) -> Result<(), RunError> {
+    fn equal_step(&mut self, stop: f64, jumps: bool) -> Result<(), RunError> {
         let Pacer::Equal { grid, done } = &mut self.pacer else { return Ok(()) };
         if self.t != grid.time(*done) {
             // The run was taken off its grid: equal steps from here, of the same size.
@@ -365,8 +364,8 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
         let end = grid.time(*done + 1);
         let before = if self.t1 >= self.t { stop < end } else { stop > end };
         let n = self.stats.accepted;
-        let (step, end) = match before {
-            true => (Step { n, t: self.t, h: stop - self.t }, stop),
+        let (step, end) = match before || (jumps && stop == end) {
+            true => (Step { n, t: self.t, h: size_to(self.t, stop, jumps) }, stop),
             false => (Step { n, ..grid.step(*done) }, end),
         };
         *done += u64::from(!before);
@@ -420,6 +419,11 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
         self.problem.action().assign(self.problem.group(), &self.y, &mut self.from);
         let equal = grid.equal(first, before);
         let done = self.method.steps(self.problem, equal, &mut self.y, &mut self.work);
+        let taken = done.map_or_else(|(step, _)| step, |()| before);
+        if taken > first {
+            self.stats.smallest_step = self.stats.smallest_step.min(grid.h().abs());
+            self.stats.largest_step = self.stats.largest_step.max(grid.h().abs());
+        }
         if let Err((step, source)) = done {
             // The state of an error is the last accepted one.
             self.problem.action().assign(self.problem.group(), &self.from, &mut self.y);
@@ -436,12 +440,10 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
         self.t = grid.time(before);
         self.stats.accepted = before;
         self.looked_at = Looked::Nothing;
-        self.stats.smallest_step = self.stats.smallest_step.min(grid.h().abs());
-        self.stats.largest_step = self.stats.largest_step.max(grid.h().abs());
         Ok(true)
     }
 
-    fn chosen_step(&mut self, stop: f64) -> Result<(), RunError> {
+    fn chosen_step(&mut self, stop: f64, jumps: bool) -> Result<(), RunError> {
         let Pacer::ByError(chooser) = &self.pacer else { return Ok(()) };
         let (min_step, max_steps) = (chooser.control.min_step, chooser.control.max_steps);
         let mut h = match (chooser.h, chooser.control.first_step) {
@@ -458,7 +460,8 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
             if end == self.t {
                 return Err(self.underflow(h, None));
             }
-            let step = Step { n: self.stats.accepted, t: self.t, h: end - self.t };
+            let h_to_end = size_to(self.t, end, jumps && end == stop);
+            let step = Step { n: self.stats.accepted, t: self.t, h: h_to_end };
             match self.attempt(step) {
                 Ok(ratio) if ratio <= 1.0 => {
                     let forward = self.t1 > self.t;
@@ -553,6 +556,9 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
         }
         let still = d1 * span <= 1e-5;
         let h0 = if still { 1e-6 * span } else { (0.01 / d1).min(span) };
+        if h0.is_infinite() {
+            return 1.0; // nothing moves, and nothing ends
+        }
         let end = self.t + h0.copysign(stop - self.t);
         if end == self.t {
             return if still { span } else { h0 };

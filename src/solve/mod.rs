@@ -183,7 +183,8 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
     }
 
     /// Let a step end at each of these times: where f or one of its derivatives jumps, as at the knots of sampled
-    /// data. They may lie outside the span, in any order.
+    /// data. The step that ends there does not ask for f at that time, but a few rounding units before; the next one
+    /// does: f(t) is the value after the jump. The times may lie outside the span, in any order.
     pub fn stops(mut self, times: impl Into<Vec<f64>>) -> Self {
         self.stops = times.into();
         self
@@ -286,19 +287,12 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
     /// [`Interrupted`]: why, and the solution up to there.
     pub fn run(self, y0: PointOf<P>) -> Result<Solution<PointOf<P>>, Interrupted<PointOf<P>>> {
         let (mut times, mut points) = (Vec::new(), Vec::new());
-        let mut done = self.run_with(y0, |t, y| {
+        let done = self.run_with(y0, |t, y| {
             times.push(t);
             points.push(y.clone());
             Next::Continue
         });
-        let solution = match &mut done {
-            Ok(solution) => Some(solution),
-            Err(Interrupted { solution, .. }) => solution.as_deref_mut(),
-        };
-        if let Some(solution) = solution {
-            (solution.times, solution.points) = (times, points);
-        }
-        done
+        stored(done, times, points)
     }
 
     /// Run from y₀, and show (t, y) to an observer at the points of the output. It says whether to go on, to stop,
@@ -335,10 +329,25 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
             Next::Continue
         });
         drive.keep(&mut steps);
-        let mut solution = drive.run()?;
-        (solution.times, solution.points) = (times, points);
+        let solution = stored(drive.run(), times, points)?;
         Ok(Continuous::new(solution, steps, again))
     }
+}
+
+/// The result of a run with its output.
+fn stored<Y>(
+    mut done: Result<Solution<Y>, Interrupted<Y>>,
+    times: Vec<f64>,
+    points: Vec<Y>,
+) -> Result<Solution<Y>, Interrupted<Y>> {
+    let solution = match &mut done {
+        Ok(solution) => Some(solution),
+        Err(Interrupted { solution, .. }) => solution.as_deref_mut(),
+    };
+    if let Some(solution) = solution {
+        (solution.times, solution.points) = (times, points);
+    }
+    done
 }
 
 /// The tolerances of a run when none are given.
