@@ -155,10 +155,8 @@ where
             SaveAt::Times(times) => times.len() - self.save.times_after(t0).len(),
             _ => 0,
         };
-        let mut first = Some(self.run.stats.accepted);
         if let Some((list, bytes)) = self.resume.take() {
             self.read(list, &bytes)?;
-            first = None;
         } else {
             self.events.start(t0, self.run.y())?;
             if self.save.start(t0)
@@ -169,6 +167,7 @@ where
         }
         while self.run.t() != t1 {
             if self.cancel.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
+                self.save_state(true);
                 return Ok(Status::Cancelled);
             }
             if let Some(progress) = &mut self.progress {
@@ -183,13 +182,13 @@ where
                 kept.push((self.run.t(), self.run.last, self.run.from.clone()));
             }
             if !self.events.all.is_empty() {
-                let first_step = first.is_some_and(|first| self.run.stats.accepted == first + 1);
+                let first_step = self.run.stats.accepted == 1;
                 self.events.search(&mut self.run, first_step)?;
             }
             if let Some(status) = self.look_within()? {
                 return Ok(status);
             }
-            self.save_state();
+            self.save_state(false);
         }
         if self.shown_at != Some(t1) && !matches!(self.save, SaveAt::Times(_)) {
             self.show_end_of_step()?;
@@ -197,10 +196,10 @@ where
         Ok(Status::Finished)
     }
 
-    /// Save the state where it is time to.
-    fn save_state(&mut self) {
+    /// Save the state where it is time to, or `now`.
+    fn save_state(&mut self, now: bool) {
         let Some(Checkpoints { list, every, last, .. }) = &mut self.checkpoints else { return };
-        if !every.is_zero() && last.elapsed() < *every {
+        if !now && !every.is_zero() && last.elapsed() < *every {
             return;
         }
         *last = Instant::now();

@@ -213,7 +213,7 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
     }
 
     /// Give the state of the run to `take` as bytes from time to time, between steps; after every step for a zero
-    /// duration. [`resume`](Self::resume) goes on from them.
+    /// duration. A run that is cancelled gives it at its end, too. [`resume`](Self::resume) goes on from them.
     pub fn checkpoints(mut self, every: Duration, take: impl FnMut(&[u8]) + 'a) -> Self
     where
         PointOf<P>: Numbers,

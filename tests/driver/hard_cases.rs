@@ -327,7 +327,8 @@ fn t9_jumps_and_noise() {
                 Err(RunError::Step(_)) => assert!(index == 0, "{index} {}", ran.mode),
                 // A shorter step may leave the chart that the whole one stays in, and 1e30 the range of numbers.
                 Err(RunError::Within { source: StepError::OutsideChart { .. }, .. }) => {}
-                Err(RunError::Within { source: StepError::NotFinite { .. }, .. }) if index == 0 => {}
+                Err(RunError::Within { source: StepError::NotFinite { .. }, .. }) if index == 0 => {
+                }
                 Err(other) => panic!("{}: {other}", ran.mode),
             });
         }

@@ -73,6 +73,9 @@ pub struct RunArgs {
     /// Folder for what is written [default: lieflow-out/SCENE].
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    /// Go on with a run that was interrupted or killed, to the same bits.
+    #[arg(long)]
+    pub resume: bool,
 }
 
 /// Options of `compare`.
@@ -201,6 +204,8 @@ pub struct CompletionsArgs {
 const SCENE_HELP: &str = "Examples:
   lieflow run asymmetric-top
   lieflow run my.toml --out results
+  lieflow run my.toml --out results --resume
+                                        go on after Ctrl-C, a kill or a full disk
 
 A scene file, with everything that it can say about a rigid body:
   title = \"Asymmetric top\"
@@ -218,16 +223,24 @@ A scene file, with everything that it can say about a rigid body:
   q = 2                             # optional: cut of the Baker series; for exp only
   layer = \"closed\"                  # optional: closed, or general
   [time]
-  t_span = [0.0, 400.0]             # may run backward
+  t_span = [0.0, 400.0]             # may run backward; may end at inf where an event stops it
   dt = 0.05                         # or steps = 8000, or steps chosen by their error:
-  rtol = 1e-9                       # instead of dt; error for each unit of the way; optional: 0
-  atol = 1e-12                      # error of each step; optional: 0; one of the two is needed
+  rtol = 1e-9                       # instead of dt; the error of a step is at most
+  atol = 1e-12                      # atol + rtol times the size; optional: 0; one is needed
+  tolerance = \"per-step\"            # optional; per-length: rtol for each unit of the way
   h_init = 0.01                     # optional, as are h_min, h_max, max_steps
+  [[events]]                        # optional; any number of them
+  name = \"flip\"
+  when = \"m2\"                       # a column, or a formula of columns, t and parameters
+  direction = \"rising\"              # optional: both; or falling
+  stop_after = 3                    # optional: the zero that ends the run
   [output]
   quantities = [\"momentum_body\"]    # lieflow scenes lists what there is
   every = 10                        # or times = [1.5, 20]; optional: 1
+  times_by = \"dense\"                # optional, with times; or steps
 
 Written: trajectory.csv, a column t and the columns of each quantity, 17 significant digits, the
-start first and the end last; summary.json, what was modelled and run, the drift of each invariant, and
-a warning where a method did not keep what it promises; index.html with figures, and each as an SVG file.
-When a step fails, the rows up to it are in trajectory.partial.csv and the exit code is 2.";
+start first and the end last; events.csv, a line for each event; summary.json, what was modelled and run,
+the drift of each invariant, and a warning where a method did not keep what it promises; index.html with
+figures, and each as an SVG file. When a step fails, the rows up to it are in trajectory.partial.csv and the
+exit code is 2. It is 130 after Ctrl-C, and 1 where a file cannot be written; --resume goes on from there.";

@@ -10,4 +10,6 @@ mod page;
 mod plot;
 
 pub use page::{Block, Column, Page, Row, Section, Table};
-pub use plot::{Axis, Chart, Ground, Heat, Marker, Path, Point, Scale, Series, Sphere, tell_apart};
+pub use plot::{
+    Axis, Chart, Ground, Heat, Marker, Marks, Path, Point, Scale, Series, Sphere, tell_apart,
+};

@@ -107,6 +107,8 @@ pub struct Plan<'a> {
     pub stops: Vec<f64>,
     /// The events.
     pub events: Vec<EventPlan<'a>>,
+    /// The limit of the attempts, where it is not that of the library.
+    pub max_steps: Option<u64>,
     /// What cancels the run.
     pub cancel: Option<&'a AtomicBool>,
     /// How often the state is saved.
@@ -124,6 +126,7 @@ impl Plan<'_> {
             times_by_steps: false,
             stops: Vec::new(),
             events: Vec::new(),
+            max_steps: None,
             cancel: None,
             checkpoints: None,
             resume: None,
@@ -272,7 +275,8 @@ pub fn drive_by<P: Runnable>(
     watcher: &mut dyn Watcher,
 ) -> Result<Outcome, RunError> {
     let method = problem.method(spec)?;
-    let Plan { steps, save, times_by_steps, stops, events, cancel, checkpoints, resume } = plan;
+    let Plan { steps, save, times_by_steps, stops, .. } = plan;
+    let Plan { events, max_steps, cancel, checkpoints, resume, .. } = plan;
     let (watcher, numbers) = (RefCell::new(watcher), RefCell::new(Vec::new()));
     let fill = |t: f64, y: &PointOf<P>| {
         let mut numbers = numbers.borrow_mut();
@@ -285,6 +289,9 @@ pub fn drive_by<P: Runnable>(
     };
     if times_by_steps {
         solve = solve.times_by_steps();
+    }
+    if let Some(attempts) = max_steps {
+        solve = solve.max_steps(attempts);
     }
     if let Some(flag) = cancel {
         solve = solve.cancel(flag);

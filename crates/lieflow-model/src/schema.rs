@@ -38,6 +38,11 @@ impl Observable {
         })
     }
 
+    /// The place of a column in the numbers of a row.
+    pub(crate) fn place(&self, column: usize) -> usize {
+        self.place.start + column
+    }
+
     /// Does a row have the size of its terms?
     pub(crate) fn has_size(&self) -> bool {
         self.size.is_some()

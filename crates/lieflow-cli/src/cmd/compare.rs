@@ -101,6 +101,10 @@ pub fn run(args: &CompareArgs) -> Result<(), CliError> {
     if !args.methods.is_empty() {
         candidates = Candidate::chosen(&candidates, &args.methods)?;
     }
+    if !scene.grid.t_span()[1].is_finite() {
+        let message = "a comparison needs a span with an end: t_span of the scene has none";
+        return Err(CliError::Message(message.into()));
+    }
     output::make_folder(&folder)?;
     let steps = numbers_of_steps(&scene);
     let mut tolerances = match args.tolerances.is_empty() {

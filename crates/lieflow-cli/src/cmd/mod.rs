@@ -8,6 +8,7 @@ pub mod methods;
 pub mod paper;
 pub mod run;
 pub mod scenes;
+mod watch;
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -40,6 +41,17 @@ pub enum CliError {
     /// Standard output cannot be written.
     #[error("cannot write to standard output: {0}")]
     Stdout(io::Error),
+    /// The program cannot listen to signals.
+    #[error("cannot listen to signals: {0}")]
+    Signals(io::Error),
+    /// A run stopped, and can go on.
+    #[error("{message}")]
+    Stopped {
+        /// Why, what is kept, and how to go on.
+        message: String,
+        /// The exit code.
+        code: u8,
+    },
     /// Anything else, in words.
     #[error("{0}")]
     Message(String),
@@ -54,10 +66,12 @@ impl CliError {
         move |source| CliError::Io { doing, path: path.into(), source }
     }
 
-    /// The exit code: 1 for a check that does not hold, 2 for everything else.
+    /// The exit code: 1 for a check that does not hold and for what cannot be written, 130 for a run that was
+    /// interrupted, 2 for everything else.
     pub fn exit_code(&self) -> u8 {
         match self {
-            CliError::Failed(_) => 1,
+            CliError::Failed(_) | CliError::Io { .. } | CliError::Stdout(_) => 1,
+            CliError::Stopped { code, .. } => *code,
             _ => 2,
         }
     }

@@ -1,227 +1,143 @@
 //! `lieflow run`: one scene, one trajectory.
 
-use std::collections::BTreeMap;
+use std::fs;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use std::time::{Duration, Instant};
 
-use lieflow::RunError;
+use signal_hook::consts::{SIGINT, SIGTERM};
+use signal_hook::flag;
 
 use super::CliError;
+use super::watch::{Recorder, Watch, quantities};
 use crate::args::RunArgs;
-use crate::output::{
-    self, Chosen, Drift, MethodSummary, Progress, RowSample, SUMMARY, Summary, Trajectory, Watched,
-};
-use lieflow_model::kinds::Figure;
-use lieflow_model::model::{Model, Outcome, Plan, Rows, Watcher};
+use crate::output::{self, Drift, MethodSummary, RunState, SUMMARY, Summary};
+use lieflow_model::model::Plan;
 use lieflow_model::scene::Scene;
-use lieflow_model::schema::{Observable, Row};
+
+/// The exit code of a run that was interrupted.
+const INTERRUPTED: u8 = 130;
+/// How often the state of a run is saved.
+const SAVED_EVERY: Duration = Duration::from_secs(1);
 
 /// Run the command.
 ///
 /// # Errors
-/// The scene cannot be used, a file cannot be written, or a step failed.
+/// The scene cannot be used, a file cannot be written, a step failed, or the run was interrupted.
 pub fn run(args: &RunArgs) -> Result<(), CliError> {
     let scene = Scene::open(&args.scene)?;
     let folder = match &args.out {
         Some(folder) => folder.clone(),
         None => Path::new("lieflow-out").join(&scene.name),
     };
-    let summary = run_scene(&scene, &folder)?;
-    match summary.failure {
-        None => output::print(&in_words(&summary, &folder)),
-        Some(failure) => Err(CliError::Message(format!(
-            "{failure}\nThe rows up to there ({}) are in {}",
-            summary.rows,
-            folder.join(summary.trajectory).display()
-        ))),
+    if args.resume && !RunState::is_in(&folder) {
+        return nothing_to_do(&scene, &folder);
     }
-}
-
-/// The quantities of a run: those that the scene names first, then the state, the invariants and the one
-/// that is drawn.
-fn quantities(scene: &Scene) -> Vec<&str> {
-    let problem = &scene.problem;
-    let mut all: Vec<&str> = scene.quantities.iter().map(String::as_str).collect();
-    let further = [problem.state(&all), &problem.invariants(&all), &[problem.figure().quantity()]];
-    for name in further.concat() {
-        if !all.contains(&name) {
-            all.push(name);
+    let stop = Arc::new(AtomicBool::new(false));
+    for signal in [SIGINT, SIGTERM] {
+        // The second signal ends the program at once: it finds that the first was there.
+        flag::register_conditional_shutdown(signal, INTERRUPTED.into(), Arc::clone(&stop))
+            .and_then(|_| flag::register(signal, Arc::clone(&stop)))
+            .map_err(CliError::Signals)?;
+    }
+    let how = || {
+        let out = args.out.as_ref().map(|out| format!(" --out {}", out.display()));
+        let (scene, out) = (args.scene.display(), out.unwrap_or_default());
+        format!("`lieflow run {scene}{out} --resume` goes on from there")
+    };
+    let summary = match run_scene(&scene, &folder, args.resume, &stop) {
+        Err(error @ CliError::Io { .. }) if RunState::is_in(&folder) => {
+            let message = format!("{error}\nWhat was written is kept; {}", how());
+            return Err(CliError::Stopped { message, code: error.exit_code() });
         }
-    }
-    all
-}
-
-/// Everything that a run is watched for: what is written, what says how good it is, what is drawn.
-struct Watch<'a> {
-    scene: &'a Scene,
-    model: &'a dyn Model,
-    written: Vec<&'a Observable>,
-    state: Vec<&'a Observable>,
-    laws: Vec<&'a Observable>,
-    drawn: &'a Observable,
-}
-
-impl<'a> Watch<'a> {
-    /// `model` has the [`quantities`] of the scene.
-    fn new(scene: &'a Scene, model: &'a dyn Model) -> Result<Self, CliError> {
-        let (problem, schema) = (&scene.problem, model.schema());
-        let written: Vec<&str> = scene.quantities.iter().map(String::as_str).collect();
-        let find = |names: &[&str]| -> Result<Vec<_>, _> {
-            names.iter().map(|name| schema.get(name)).collect()
-        };
-        Ok(Watch {
-            scene,
-            model,
-            state: find(problem.state(&written))?,
-            laws: find(&problem.invariants(&written))?,
-            drawn: schema.get(problem.figure().quantity())?,
-            written: find(&written)?,
-        })
-    }
-
-    /// The values that are written of a row go to the end of `line`.
-    fn line(&self, row: Row<'_>, line: &mut Vec<f64>) {
-        self.written.iter().for_each(|observable| line.extend_from_slice(&row[observable]));
-    }
-
-    /// The invariants of the next row, each in its turn.
-    fn see(&self, t: f64, row: Row<'_>, watched: &mut Vec<Watched>) {
-        let values = self
-            .laws
-            .iter()
-            .flat_map(|law| row[law].iter().enumerate().map(move |(i, x)| (*x, row.size(law, i))));
-        if watched.is_empty() {
-            watched.extend(values.map(|(x, size)| Watched::new(t, x, size)));
-        } else {
-            watched.iter_mut().zip(values).for_each(|(watched, (x, size))| watched.see(t, x, size));
+        done => done?,
+    };
+    let Some(failure) = &summary.failure else {
+        return output::print(&in_words(&summary, &folder));
+    };
+    let place = folder.join(summary.trajectory);
+    let kept = format!("The rows up to there ({}) are in {}", summary.rows, place.display());
+    Err(match summary.interrupted {
+        true => {
+            let message = format!("{failure}\n{kept}; {}", how());
+            CliError::Stopped { message, code: INTERRUPTED }
         }
-    }
-
-    /// What ends the run here: a state of the row that is not finite.
-    fn overflow(&self, t: f64, row: Row<'_>) -> Option<String> {
-        let states = self.written.iter().filter(|part| part.is_state);
-        let mut numbers = states.flat_map(|part| part.columns.iter().zip(&row[*part]));
-        let (column, x) = numbers.find(|(_, x)| !x.is_finite())?;
-        Some(format!("the state is out of the range of numbers at t = {t}: {column} is {x}"))
-    }
-
-    /// The drift of each invariant, by column.
-    fn drift(&self, watched: &[Watched], steps: u64) -> Result<BTreeMap<String, Drift>, CliError> {
-        let method = self.scene.method.info()?;
-        let columns = self.laws.iter().flat_map(|law| {
-            law.columns.iter().map(|column| (column.clone(), law.promised_by(method)))
-        });
-        let drifts = columns.zip(watched);
-        Ok(drifts.map(|((name, promised), w)| (name, w.drift(promised, steps))).collect())
-    }
-
-    /// Run the scene. A step that fails is an end, not an error.
-    fn run(&self, watcher: &mut dyn Watcher) -> Result<Done, CliError> {
-        let scene = self.scene;
-        let plan = Plan::new(scene.steps(), scene.save.clone());
-        match self.model.drive(&scene.method, plan, watcher) {
-            Ok(Outcome { stats, .. }) => Ok(Done {
-                steps: stats.accepted,
-                points_within: Some(stats.points_within),
-                chosen: scene.adaptive.is_some().then_some(Chosen {
-                    accepted: stats.accepted,
-                    rejected: stats.rejected,
-                    evaluations: stats.evaluations,
-                    smallest_step: stats.smallest_step,
-                    largest_step: stats.largest_step,
-                }),
-                failure: None,
-            }),
-            Err(RunError::Setup(error)) => Err(error.into()),
-            Err(error) => Ok(Done::stopped(&error, error.accepted().unwrap_or(0))),
-        }
-    }
-
-    /// The field at the end, where the figure is one.
-    fn field(&self, rows: &RowSample<'_>) -> Vec<Vec<f64>> {
-        match (self.scene.problem.figure(), rows.ends()) {
-            (Figure::Map(..), Some([_, (_, row)])) => self.scene.problem.field(&row[self.drawn]),
-            _ => Vec::new(),
-        }
-    }
-
-    /// The distance from the exact solution at the end of the span.
-    fn errors(&self, last: Row<'_>) -> Option<BTreeMap<String, f64>> {
-        let exact = self.model.exact(self.scene.grid.t_span())?.ok()?;
-        let exact = self.model.schema().row(&exact);
-        let distance = |part: &Observable| {
-            let pairs = last[part].iter().zip(&exact[part]);
-            pairs.map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
-        };
-        Some(self.state.iter().map(|part| (part.name.into(), distance(part))).collect())
-    }
+        false => CliError::Message(format!("{failure}\n{kept}")),
+    })
 }
 
-/// What a run did.
-#[derive(Default)]
-struct Done {
-    failure: Option<String>,
-    steps: u64,
-    points_within: Option<u64>,
-    chosen: Option<Chosen>,
-}
-
-impl Done {
-    fn stopped(failure: &impl ToString, steps: u64) -> Self {
-        Done { failure: Some(failure.to_string()), steps, ..Done::default() }
+/// There is no run to go on with: is it complete?
+fn nothing_to_do(scene: &Scene, folder: &Path) -> Result<(), CliError> {
+    let text = fs::read_to_string(folder.join(SUMMARY)).unwrap_or_default();
+    let summary: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
+    let (name, place) = (&scene.name, folder.display());
+    if summary["completed"] == true && summary["fingerprint"] == fingerprint(scene) {
+        return output::print(&format!("the run of {name} in `{place}` is complete\n"));
     }
+    Err(CliError::Message(format!(
+        "there is no interrupted run of {name} in `{place}` to go on with: start it without --resume"
+    )))
 }
 
-/// Run a scene and write its trajectory and summary into a folder. A step that fails is no error
-/// here: the summary says so, and the rows up to there are kept.
+fn fingerprint(scene: &Scene) -> String {
+    format!("{:016x}", scene.fingerprint)
+}
+
+/// Run a scene and write its trajectory, its events and its summary into a folder; or `resume` a run there that
+/// was interrupted, to the same bits. A step that fails is no error here, nor is a run that `stop` ended: the
+/// summary says so, and the rows up to there are kept.
 ///
 /// # Errors
-/// The scene does not run at all, or a file cannot be written.
-pub fn run_scene(scene: &Scene, folder: &Path) -> Result<Summary, CliError> {
+/// The scene does not run at all, there is no run of it to go on with, or a file cannot be written.
+pub fn run_scene(
+    scene: &Scene,
+    folder: &Path,
+    resume: bool,
+    stop: &AtomicBool,
+) -> Result<Summary, CliError> {
     let model = scene.model_with(scene.layer, &quantities(scene))?;
     let watch = Watch::new(scene, &*model)?;
     let columns: Vec<String> = watch.written.iter().flat_map(|o| o.columns.clone()).collect();
     output::make_folder(folder)?;
+    let (mut state, driver) = match resume {
+        true => RunState::open(folder, scene.fingerprint)?,
+        false => (RunState::begin(folder, scene.fingerprint)?, None),
+    };
     let summary_path: PathBuf = folder.join(SUMMARY);
     output::remove_old(&summary_path)?;
-    let mut trajectory = Trajectory::create(folder, &columns)?;
-
-    let [t0, t1] = scene.grid.t_span();
-    let bar = Progress::new();
-    let mut rows = RowSample::new(model.schema());
-    let (mut line, mut watched) = (Vec::new(), Vec::new());
-    let mut not_finite = vec![0u64; columns.len()];
     let clock = Instant::now();
-    let mut overflow = None;
-    let outcome = watch.run(&mut Rows(&mut |t, row| {
-        overflow = overflow.take().or_else(|| watch.overflow(t, row));
-        if overflow.is_some() {
-            return;
-        }
-        line.clear();
-        watch.line(row, &mut line);
-        trajectory.row(t, &line);
-        for (count, x) in not_finite.iter_mut().zip(&line) {
-            *count += u64::from(!x.is_finite());
-        }
-        watch.see(t, row, &mut watched);
-        rows.see(t, row);
-        bar.at((t - t0) / (t1 - t0));
-    }));
-    drop(bar);
-    let written = trajectory.rows();
+    let mut kept = Recorder::new(&watch, folder, &columns, stop)?;
+    if resume {
+        let schema = model.schema();
+        state.replay(|kind, t, numbers| kept.see(kind, t, schema.row(numbers)))?;
+    }
+    kept.state = Some(state);
+    let plan = Plan {
+        cancel: Some(stop),
+        checkpoints: Some(SAVED_EVERY),
+        resume: driver,
+        ..scene.plan(model.schema())?
+    };
+    let outcome = watch.run(plan, &mut kept);
+    let written = kept.trajectory.rows();
     let mut done = match outcome {
         Ok(done) => done,
         Err(error) => {
-            trajectory.discard();
+            kept.discard();
             return Err(error);
         }
     };
-    done.failure = overflow.or(done.failure);
+    if let Some(error) = kept.failure.take() {
+        // What can be written of the lines so far.
+        let _ = kept.finish(false);
+        return Err(error);
+    }
+    done.failure = kept.overflow.take().or(done.failure);
     let completed = done.failure.is_none();
-    trajectory.finish(completed)?;
     let wall_time_s = clock.elapsed().as_secs_f64();
 
+    let rows = &kept.rows;
     let with_time = |(t, row)| {
         let mut line = vec![t];
         watch.line(row, &mut line);
@@ -229,10 +145,10 @@ pub fn run_scene(scene: &Scene, folder: &Path) -> Result<Summary, CliError> {
     };
     let [initial, last] = rows.ends().map_or_else(Default::default, |ends| ends.map(with_time));
     let end = rows.ends().filter(|_| completed);
-    let drift = watch.drift(&watched, done.steps)?;
+    let drift = watch.drift(&kept.watched, done.steps)?;
     let mut warnings = scene.problem.warnings();
     warnings.extend(drift.iter().filter(|(_, drift)| drift.breaks_a_promise()).map(broken_promise));
-    let out_of_range = columns.iter().zip(&not_finite).filter(|(_, count)| **count > 0);
+    let out_of_range = columns.iter().zip(&kept.not_finite).filter(|(_, count)| **count > 0);
     warnings.extend(out_of_range.map(|(column, count)| {
         format!("{column} is not a finite number in {count} of {written} rows")
     }));
@@ -242,7 +158,9 @@ pub fn run_scene(scene: &Scene, folder: &Path) -> Result<Summary, CliError> {
         title: scene.title.clone(),
         scene: scene.name.clone(),
         problem: scene.problem.kind().name,
+        fingerprint: fingerprint(scene),
         completed,
+        interrupted: done.interrupted,
         failure: done.failure,
         method: MethodSummary {
             name: method.name.clone(),
@@ -258,8 +176,11 @@ pub fn run_scene(scene: &Scene, folder: &Path) -> Result<Summary, CliError> {
         warnings,
         quantities: scene.quantities.clone(),
         columns: core::iter::once("t".into()).chain(columns).collect(),
-        trajectory: if completed { output::COMPLETE } else { output::PARTIAL },
-        t_span: [t0, t1],
+        trajectory: output::TRAJECTORY[usize::from(!completed)],
+        t_span: scene.grid.t_span(),
+        t_end: done.t,
+        ended_by: done.ended_by,
+        events: core::mem::take(&mut kept.seen),
         dt: scene.adaptive.is_none().then(|| scene.grid.h().abs()),
         steps: done.steps,
         adaptive: done.chosen,
@@ -270,12 +191,16 @@ pub fn run_scene(scene: &Scene, folder: &Path) -> Result<Summary, CliError> {
         last,
         drift_computed_at: "written rows",
         drift,
-        error_at_end: end.and_then(|[_, (_, row)]| watch.errors(row)),
+        error_at_end: end.and_then(|[_, (t, row)]| watch.errors(t, row)),
     };
+    let figure = (scene.problem.figure(), watch.field(rows));
+    let page = output::run_page(&summary, rows, figure, watch.drawn, &watch.written, &watch.laws);
+    let state = kept.finish(completed)?;
     output::write_file(&summary_path, &output::to_json(&summary)?)?;
-    let figure = (scene.problem.figure(), watch.field(&rows));
-    let page = output::run_page(&summary, &rows, figure, watch.drawn, &watch.written, &watch.laws);
     output::write_page(folder, "index.html", &page)?;
+    if !summary.interrupted {
+        state.map_or(Ok(()), RunState::finish)?;
+    }
     Ok(summary)
 }
 
@@ -291,6 +216,7 @@ const DRIFTS: usize = 10;
 
 fn in_words(summary: &Summary, folder: &Path) -> String {
     let Summary { title, steps, rows, wall_time_s, t_span: [t0, t1], .. } = summary;
+    let t1 = summary.t_end.unwrap_or(*t1);
     let sizes = match (summary.dt, &summary.adaptive) {
         (Some(dt), _) => format!(" of {dt}"),
         (None, Some(chosen)) => format!(
@@ -306,6 +232,16 @@ fn in_words(summary: &Summary, folder: &Path) -> String {
         summary.method.label,
         summary.layer,
     );
+    if let Some(name) = &summary.ended_by {
+        text += &format!("  ended by event {name}\n");
+    }
+    for event in &summary.events {
+        text += &format!("  event {}: {} times", event.name, event.count);
+        if let (Some(first), Some(last)) = (event.first, event.last) {
+            text += &format!(", first at t = {first}, last at t = {last}");
+        }
+        text += "\n";
+    }
     let mut drifts: Vec<_> = summary.drift.iter().collect();
     if drifts.len() > DRIFTS {
         drifts.sort_by(|(_, a), (_, b)| b.max.total_cmp(&a.max));
@@ -330,6 +266,9 @@ fn in_words(summary: &Summary, folder: &Path) -> String {
         text += &format!("  warning: {warning}\n");
     }
     text += &format!("  {}\n", folder.join(summary.trajectory).display());
+    if !summary.events.is_empty() {
+        text += &format!("  {}\n", folder.join(output::EVENTS[0]).display());
+    }
     text += &format!("  {}\n", folder.join(SUMMARY).display());
     text += &format!("  {}\n", folder.join("index.html").display());
     text

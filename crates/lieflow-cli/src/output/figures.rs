@@ -1,10 +1,10 @@
 //! A run as a page: the figure of its kind, what was asked for against time, and the drifts.
 
-use crate::output::Summary;
+use crate::output::{EventSummary, Summary};
 use lieflow_figures::number::{scientific, sig};
 use lieflow_figures::{
-    self as figures, Axis, Block, Chart, Column, Ground, Heat, Marker, Page, Path, Point, Scale,
-    Section, Series, Sphere, Table,
+    self as figures, Axis, Block, Chart, Column, Ground, Heat, Marker, Marks, Page, Path, Point,
+    Scale, Section, Series, Sphere, Table,
 };
 use lieflow_model::kinds::{self, Figure};
 use lieflow_model::schema::{Observable, Row, Schema};
@@ -88,12 +88,12 @@ pub fn run_page(
     asked: &[&Observable],
     watched: &[&Observable],
 ) -> Page {
-    let own = own_figure(&summary.title, (figure, field), drawn, rows);
+    let own = own_figure(summary, (figure, field), drawn, rows);
     let drawn_already =
         |quantity: &Observable| quantity.name == drawn.name && matches!(figure, Figure::Lines(_));
     let over_time = asked.iter().filter(|quantity| !drawn_already(quantity)).map(|quantity| {
         let id = format!("time-{}", quantity.name.replace('_', "-"));
-        Block::Chart(lines(id, &quantity.name.replace('_', " "), quantity, rows))
+        Block::Chart(lines(id, &quantity.name.replace('_', " "), quantity, rows, summary))
     });
     let mut sections = vec![
         Section::new("In short", vec![facts(summary)]),
@@ -108,6 +108,7 @@ pub fn run_page(
     }
     sections.retain(|section| !section.blocks.is_empty());
     let [t0, t1] = summary.t_span;
+    let t1 = summary.t_end.unwrap_or(t1);
     Page {
         title: summary.title.clone(),
         subtitle: format!(
@@ -136,6 +137,16 @@ fn facts(summary: &Summary) -> Block {
     facts.extend(
         summary.facts.iter().map(|(name, value)| (name.replace('_', " "), in_digits(*value))),
     );
+    facts.extend(summary.events.iter().map(|event| {
+        let mut text = format!("{} times", event.count);
+        if let (Some(first), Some(last)) = (event.first, event.last) {
+            text += &format!(", from t = {} to {}", in_digits(first), in_digits(last));
+        }
+        (format!("Event {}", event.name), text)
+    }));
+    if let Some(name) = &summary.ended_by {
+        facts.push(("Ended by".into(), format!("event {name}")));
+    }
     if let Some(failure) = &summary.failure {
         facts.push(("Stopped".into(), failure.clone()));
     }
@@ -150,15 +161,32 @@ fn facts(summary: &Summary) -> Block {
     Block::Facts(facts)
 }
 
+/// The chart with the events of the run.
+fn marked(chart: Chart, summary: &Summary) -> Chart {
+    let events = summary.events.iter().filter(|event| event.count > 0);
+    let marks = |event: &EventSummary| Marks { name: event.name.clone(), at: event.marks.clone() };
+    let told = |event: &EventSummary| match event.marks.len() as u64 {
+        drawn if drawn < event.count => format!("{}, the first {drawn} of them", event.name),
+        _ => event.name.clone(),
+    };
+    let names: Vec<String> = events.clone().map(told).collect();
+    let mut caption = chart.caption.clone();
+    if !names.is_empty() {
+        caption += &format!(" The vertical lines are events: {}.", names.join("; "));
+    }
+    let marks: Vec<Marks> = events.map(marks).collect();
+    chart.with_marks(marks).with_caption(caption.trim())
+}
+
 fn own_figure(
-    title: &str,
+    summary: &Summary,
     (figure, field): (Figure, Vec<Vec<f64>>),
     drawn: &Observable,
     rows: &RowSample<'_>,
 ) -> Block {
-    let id = "figure".to_string();
+    let (id, title) = ("figure".to_string(), summary.title.as_str());
     match figure {
-        Figure::Lines(_) => Block::Chart(lines(id, title, drawn, rows)),
+        Figure::Lines(_) => Block::Chart(lines(id, title, drawn, rows, summary)),
         Figure::Sphere(_) => Block::Sphere(sphere(id, title, drawn, rows)),
         Figure::Curve(_) => Block::Chart(plane(id, title, drawn, rows, false)),
         Figure::Points(_) => Block::Chart(plane(id, title, drawn, rows, true)),
@@ -181,7 +209,13 @@ fn said(name: &str, drawn: usize, all: usize) -> String {
 }
 
 /// The columns of a quantity against time.
-fn lines(id: String, title: &str, quantity: &Observable, rows: &RowSample<'_>) -> Chart {
+fn lines(
+    id: String,
+    title: &str,
+    quantity: &Observable,
+    rows: &RowSample<'_>,
+    summary: &Summary,
+) -> Chart {
     let name = quantity.name.replace('_', " ");
     let series = quantity.columns.iter().enumerate().take(LINES).map(|(i, column)| Series {
         name: column.clone(),
@@ -190,14 +224,9 @@ fn lines(id: String, title: &str, quantity: &Observable, rows: &RowSample<'_>) -
         marker: Marker::None,
         ..Series::default()
     });
-    Chart {
-        id,
-        title: title.into(),
-        x: Axis::new("time t", Scale::Linear),
-        y: Axis::new(name.clone(), Scale::Linear),
-        caption: said(&name, quantity.columns.len().min(LINES), quantity.columns.len()),
-        series: series.collect(),
-    }
+    let axes = [Axis::new("time t", Scale::Linear), Axis::new(name.clone(), Scale::Linear)];
+    let caption = said(&name, quantity.columns.len().min(LINES), quantity.columns.len());
+    marked(Chart::new(id, title, axes, series).with_caption(caption), summary)
 }
 
 /// Pairs of columns as paths or points of a plane.
@@ -227,14 +256,9 @@ fn plane(
         let names = quantity.columns.iter().skip(i).step_by(2).take(LINES);
         names.cloned().collect::<Vec<_>>().join(", ")
     };
-    Chart {
-        id,
-        title: title.into(),
-        x: Axis::new(axis(0), Scale::Linear),
-        y: Axis::new(axis(1), Scale::Linear),
-        caption: said(quantity.name, pairs.min(LINES), pairs),
-        series: series.collect(),
-    }
+    let axes = [axis(0), axis(1)].map(|name| Axis::new(name, Scale::Linear));
+    let caption = said(quantity.name, pairs.min(LINES), pairs);
+    Chart::new(id, title, axes, series).with_caption(caption)
 }
 
 /// Triples of columns as paths on a sphere, each in lengths of its own start.
@@ -324,12 +348,8 @@ fn drifts(summary: &Summary, watched: &[&Observable], rows: &RowSample<'_>) -> C
             ..Series::default()
         }
     });
-    Chart {
-        id: "drift".into(),
-        title: "Drifts of the invariants".into(),
-        x: Axis::new("time t", Scale::Linear),
-        y: Axis::new("|value − value at the start|", Scale::Log10),
-        series: series.collect(),
-        caption: "A drift of exactly 0 has no place on the axis.".into(),
-    }
+    let y = Axis::new("|value − value at the start|", Scale::Log10);
+    let axes = [Axis::new("time t", Scale::Linear), y];
+    let chart = Chart::new("drift", "Drifts of the invariants", axes, series);
+    marked(chart.with_caption("A drift of exactly 0 has no place on the axis."), summary)
 }

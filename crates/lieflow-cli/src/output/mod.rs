@@ -3,15 +3,17 @@
 mod figures;
 mod files;
 mod progress;
+mod rows;
+mod state;
 mod summary;
-mod trajectory;
 
 pub use figures::{RowSample, in_digits, run_page};
 pub(crate) use files::fields;
 pub use files::{in_full, make_folder, optional, remove_old, write_csv, write_file, write_page};
 pub use progress::Progress;
-pub use summary::{Chosen, Drift, MethodSummary, SUMMARY, Summary, Watched};
-pub use trajectory::{COMPLETE, PARTIAL, Trajectory};
+pub use rows::{EVENTS, RowFile, TRAJECTORY};
+pub use state::{Kind, RunState};
+pub use summary::{Chosen, Drift, EventSummary, MethodSummary, SUMMARY, Summary, Watched};
 
 use std::io::{self, Write};
 

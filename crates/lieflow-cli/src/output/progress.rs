@@ -1,33 +1,75 @@
 //! The bar of a command that takes its time.
 
+use std::time::{Duration, Instant};
+
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-/// A bar on standard error with the time that is left; it goes away with its value.
+/// A bar on standard error with the time that is left, where that is a terminal; it goes away with its value.
 #[derive(Debug)]
-pub struct Progress(ProgressBar);
+pub struct Progress {
+    bar: ProgressBar,
+    start: Instant,
+    /// When the bar was last told something by [`often`](Progress::often).
+    told: Option<Instant>,
+    hidden: bool,
+}
 
 /// The parts of a bar.
 const PARTS: f64 = 1000.0;
+/// What a bar is told sooner after what it was told before is passed over.
+const PAUSE: Duration = Duration::from_millis(50);
+/// A bar that waits is not shown before.
+const WAIT: Duration = Duration::from_secs(1);
 
 impl Progress {
     /// An empty bar.
     pub fn new() -> Self {
-        let bar = ProgressBar::with_draw_target(Some(PARTS as u64), ProgressDrawTarget::stderr());
-        Progress(match ProgressStyle::with_template("{bar:40} {percent:>3}% {eta} left {msg}") {
+        Self::on(ProgressDrawTarget::stderr())
+    }
+
+    /// An empty bar that is shown after a second.
+    pub fn after_a_second() -> Self {
+        let mut progress = Self::on(ProgressDrawTarget::hidden());
+        progress.hidden = true;
+        progress
+    }
+
+    fn on(target: ProgressDrawTarget) -> Self {
+        let bar = ProgressBar::with_draw_target(Some(PARTS as u64), target);
+        let bar = match ProgressStyle::with_template("{bar:40} {percent:>3}% {eta} left {msg}") {
             Ok(style) => bar.with_style(style),
             Err(_) => bar,
-        })
+        };
+        Progress { bar, start: Instant::now(), told: None, hidden: false }
     }
 
     /// This share of the work is done.
     pub fn at(&self, share: f64) {
-        self.0.set_position((PARTS * share) as u64);
+        self.bar.set_position((PARTS * share) as u64);
     }
 
     /// This share of the work is done, and this is under way.
     pub fn now(&self, share: f64, what: &str) {
         self.at(share);
-        self.0.set_message(what.to_owned());
+        self.bar.set_message(what.to_owned());
+    }
+
+    /// As [`now`](Self::now), told more often than anybody reads.
+    pub fn often(&mut self, share: f64, what: impl FnOnce() -> String) {
+        let now = Instant::now();
+        if self.told.is_some_and(|told| now - told < PAUSE) {
+            return;
+        }
+        self.now(share, &what());
+        if self.told.is_none() {
+            // What was done before, as of a run that goes on, says nothing of the time that is left.
+            self.bar.reset_eta();
+        }
+        self.told = Some(now);
+        if self.hidden && now - self.start >= WAIT {
+            self.hidden = false;
+            self.bar.set_draw_target(ProgressDrawTarget::stderr());
+        }
     }
 }
 
@@ -39,6 +81,6 @@ impl Default for Progress {
 
 impl Drop for Progress {
     fn drop(&mut self) {
-        self.0.finish_and_clear();
+        self.bar.finish_and_clear();
     }
 }

@@ -21,8 +21,13 @@ pub struct Summary {
     pub scene: String,
     /// The kind of problem.
     pub problem: &'static str,
-    /// Did the run reach its end?
+    /// A number of what the scene states.
+    pub fingerprint: String,
+    /// Did the run reach its end, or the event that ends it?
     pub completed: bool,
+    /// Was it stopped from outside?
+    #[serde(skip)]
+    pub interrupted: bool,
     /// Why not.
     pub failure: Option<String>,
     /// The method.
@@ -41,15 +46,22 @@ pub struct Summary {
     pub columns: Vec<String>,
     /// The file of the trajectory, next to this one.
     pub trajectory: &'static str,
-    /// From when to when.
+    /// From when to when; null where there is no end.
     pub t_span: [f64; 2],
+    /// The time that was reached; none when a step failed.
+    pub t_end: Option<f64>,
+    /// The event that ended the run.
+    pub ended_by: Option<String>,
+    /// The zeros of each event; none in a scene without events.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub events: Vec<EventSummary>,
     /// The size of a step; none where each has its own.
     pub dt: Option<f64>,
     /// The steps that were taken.
     pub steps: u64,
     /// How steps were chosen, where they were.
     pub adaptive: Option<Chosen>,
-    /// Shorter steps to output times between them; not known when a step failed.
+    /// Points within steps, for output times and events; not known when a step failed.
     pub side_steps: Option<u64>,
     /// The rows that were written.
     pub rows: u64,
@@ -98,6 +110,40 @@ pub struct MethodSummary {
     pub q: Option<usize>,
     /// Its order; none where it is exact.
     pub order: Option<usize>,
+}
+
+/// The zeros of an event.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct EventSummary {
+    /// Its name.
+    pub name: String,
+    /// How many there were.
+    pub count: u64,
+    /// When the first was.
+    pub first: Option<f64>,
+    /// When the last was.
+    pub last: Option<f64>,
+    /// Those that are drawn.
+    #[serde(skip)]
+    pub marks: Vec<f64>,
+}
+
+impl EventSummary {
+    /// None yet.
+    pub fn new(name: &str) -> Self {
+        let (name, marks) = (name.into(), Vec::new());
+        EventSummary { name, count: 0, first: None, last: None, marks }
+    }
+
+    /// The next zero; so many are drawn.
+    pub fn see(&mut self, t: f64, marks: usize) {
+        self.count += 1;
+        self.first = self.first.or(Some(t));
+        self.last = Some(t);
+        if self.marks.len() < marks {
+            self.marks.push(t);
+        }
+    }
 }
 
 /// How far an invariant moved from its value at the start.

@@ -44,12 +44,13 @@ impl Folder {
     }
     /// Run `lieflow` here.
     pub fn lieflow(&self, args: &[&str]) -> Run {
-        let output = Command::new(env!("CARGO_BIN_EXE_lieflow"))
-            .args(args)
-            .current_dir(&self.0)
-            .output()
-            .unwrap();
-        Run::from(output)
+        Run::from(self.command(args).output().unwrap())
+    }
+    /// `lieflow`, to be run here.
+    pub fn command(&self, args: &[&str]) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_lieflow"));
+        command.args(args).current_dir(&self.0);
+        command
     }
 }
 
@@ -85,7 +86,11 @@ impl Run {
     }
     /// The message of a run that was refused.
     pub fn refused(self) -> String {
-        assert_eq!(self.code, Some(2), "{self:?}");
+        self.failed(2)
+    }
+    /// The message of a run that ended with this exit code.
+    pub fn failed(self, code: i32) -> String {
+        assert_eq!(self.code, Some(code), "{self:?}");
         assert_eq!(self.out, "", "{self:?}");
         assert!(self.err.starts_with("error: "), "{}", self.err);
         for noise in ["panicked", "backtrace", "Error {", "Some("] {

@@ -17,6 +17,15 @@ const BOTTOM: f64 = 412.0;
 const FOOT: f64 = 52.0;
 const GAP: f64 = 24.0;
 
+/// Places on the horizontal axis that have a name: each is a thin vertical line.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Marks {
+    /// What they are.
+    pub name: String,
+    /// Where they are.
+    pub at: Vec<f64>,
+}
+
 /// A chart of lines over two axes.
 #[derive(Clone, Debug)]
 pub struct Chart {
@@ -32,6 +41,8 @@ pub struct Chart {
     pub series: Vec<Series>,
     /// The text below the chart.
     pub caption: String,
+    /// Thin vertical lines, below the others.
+    pub marks: Vec<Marks>,
 }
 
 impl Chart {
@@ -43,12 +54,18 @@ impl Chart {
         series: impl IntoIterator<Item = Series>,
     ) -> Self {
         let series = series.into_iter().collect();
-        Chart { id: id.into(), title: title.into(), x, y, series, caption: String::new() }
+        let (caption, marks) = (String::new(), Vec::new());
+        Chart { id: id.into(), title: title.into(), x, y, series, caption, marks }
     }
 
     /// The chart with a text below it.
     pub fn with_caption(self, caption: impl Into<String>) -> Self {
         Chart { caption: caption.into(), ..self }
+    }
+
+    /// The chart with these marks.
+    pub fn with_marks(self, marks: impl Into<Vec<Marks>>) -> Self {
+        Chart { marks: marks.into(), ..self }
     }
 
     /// The chart as a complete `<svg>` element.
@@ -77,6 +94,7 @@ impl Chart {
         };
         let mut out = opening.svg();
         self.draw_axes(&mut out, &x, &y, height);
+        self.draw_marks(&mut out, &x);
         for index in self.drawing_order() {
             self.draw_line(&mut out, index, &traces[index], &x, &y);
         }
@@ -174,6 +192,22 @@ impl Chart {
         let notes = self.notes();
         if !notes.is_empty() {
             out.push_str(&text("lf-note", (LEFT, height - 5.0), "start", &notes));
+        }
+    }
+
+    fn draw_marks(&self, out: &mut String, x: &Map) {
+        for marks in &self.marks {
+            for at in &marks.at {
+                let within = |at: &f64| (LEFT..=RIGHT).contains(at);
+                let Some(pixel) = x.pixel(*at).filter(within) else { continue };
+                let title =
+                    format!("{}\n{}: {}", marks.name, self.x.quantity(), self.x.value_text(*at));
+                out.push_str(&format!(
+                    "<path class=\"lf-mark\" d=\"M{} {TOP}V{BOTTOM}\"><title>{}</title></path>",
+                    px(pixel),
+                    escape(&title)
+                ));
+            }
         }
     }
 
@@ -307,6 +341,15 @@ mod tests {
             let data = format!("data-x=\"{:e}\" data-y=\"{:e}\"", p.x, p.y);
             assert_eq!(svg.matches(&data).count(), 1);
         }
+    }
+
+    #[test]
+    fn marks_within_the_axes_are_drawn_with_their_names() {
+        let points = vec![Point::new(1.0, 1.0), Point::new(10.0, 2.0)];
+        let marks = Marks { name: "a < b".into(), at: vec![2.0, 5.0, 100.0] };
+        let svg = chart(points, Marker::None).with_marks([marks]).svg();
+        assert_eq!(svg.matches("class=\"lf-mark\"").count(), 2);
+        assert_eq!(svg.matches("<title>a &lt; b\nCPU time: ").count(), 2);
     }
 
     #[test]

@@ -14,7 +14,7 @@ pub(crate) mod theme;
 mod thin;
 mod trace;
 
-pub use chart::Chart;
+pub use chart::{Chart, Marks};
 pub use heat::{Ground, Heat};
 pub use scale::{Axis, Scale};
 pub use series::{Marker, Point, Series, tell_apart};

@@ -26,6 +26,7 @@ pub const BUNDLED: &[Bundled] = bundled![
     "adaptive-top",
     "tumbling-attitude",
     "wing-nut",
+    "flips",
     "general-layer",
     "flipping-book",
     "damped-satellite",

@@ -10,7 +10,7 @@ use super::error::{ReadError, Refusal, SceneError};
 use super::suggest::help_for;
 
 /// The keys at the top.
-pub(super) const TOP: &[&str] = &["title", "problem", "method", "time", "output"];
+pub(super) const TOP: &[&str] = &["title", "problem", "method", "time", "events", "output"];
 
 /// A parsed scene file.
 pub(super) struct Document<'a> {
@@ -48,6 +48,24 @@ impl<'a> Document<'a> {
         })?;
         T::deserialize(ValueDeserializer::from(value.clone()))
             .map_err(|error| self.read_error(key, error.into()))
+    }
+
+    /// The value of a key at the top that may be missing, as T.
+    pub(super) fn optional<T: for<'de> Deserialize<'de>>(
+        &self,
+        key: &str,
+    ) -> Result<Option<T>, SceneError> {
+        self.root.contains_key(key).then(|| self.top(key)).transpose()
+    }
+
+    /// The value of a key of a section, where it is there and reads as T.
+    pub(super) fn within<T: for<'de> Deserialize<'de>>(
+        &self,
+        section: &str,
+        key: &str,
+    ) -> Option<T> {
+        let DeValue::Table(table) = self.root.get(section)?.get_ref() else { return None };
+        T::deserialize(ValueDeserializer::from(table.get(key)?.clone())).ok()
     }
 
     /// A section, as a table.
@@ -95,17 +113,18 @@ impl<'a> Document<'a> {
     }
 
     /// Where `key`, `key[i]`, `key[i,j]` or `key[i].name[j]` stands, first in this section, then in the
-    /// others.
+    /// others, then at the top.
     fn locate(&self, section: &str, key: &str) -> Option<Range<usize>> {
         let mut path =
             key.split(['[', ']', ',', '.']).map(str::trim).filter(|step| !step.is_empty());
         let name = path.next()?;
-        let mut place = [section].iter().chain(TOP).find_map(|section| {
+        let within = [section].iter().chain(TOP).find_map(|section| {
             match self.root.get(*section)?.get_ref() {
                 DeValue::Table(table) => table.get(name),
                 _ => None,
             }
-        })?;
+        });
+        let mut place = within.or_else(|| self.root.get(name))?;
         for step in path {
             let next = match (step.parse::<usize>(), place.get_ref()) {
                 (Ok(i), DeValue::Array(list)) => list.get(i),

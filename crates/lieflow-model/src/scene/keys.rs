@@ -7,7 +7,7 @@ use lieflow::{SaveAt, TimeGrid};
 use serde::Deserialize;
 
 use super::error::{Either, Refusal, exactly_one};
-use super::values::{Real, Reals, Whole};
+use super::values::{Real, Span, Whole};
 use crate::kinds::Kind;
 use crate::model::Layer;
 
@@ -51,7 +51,7 @@ impl MethodKeys {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct TimeKeys {
-    t_span: Reals<2>,
+    t_span: Span,
     dt: Option<Real>,
     steps: Option<Whole<1>>,
     rtol: Option<Real>,
@@ -61,14 +61,27 @@ pub(super) struct TimeKeys {
     h_max: Option<Real>,
     max_steps: Option<Whole<1>>,
     tolerance: Option<String>,
+    at_knots: Option<bool>,
 }
 
 /// The steps that `compare` starts from where a scene leaves them to the error.
 const STEPS: u64 = 1000;
 
 impl TimeKeys {
-    /// The steps of one size, and those that are chosen by their error where tolerances are given.
-    pub(super) fn resolve(self) -> Result<(TimeGrid, Option<StepControl>), Refusal> {
+    /// Does a step end at each knot of the samples? By default where steps are chosen by their error.
+    pub(super) fn at_knots(&self, has_samples: bool) -> Result<bool, Refusal> {
+        match self.at_knots {
+            Some(_) if !has_samples => {
+                Err(Refusal::at("at_knots", "`at_knots` is of `samples`: the problem has none"))
+            }
+            given => Ok(has_samples && given.unwrap_or(self.rtol.is_some() || self.atol.is_some())),
+        }
+    }
+
+    /// The steps of one size, those that are chosen by their error where tolerances are given, and the limit of
+    /// their number.
+    pub(super) fn resolve(self) -> Result<(TimeGrid, Option<StepControl>, Option<u64>), Refusal> {
+        let max_steps = self.max_steps.map(|n| n.0);
         let [t0, t1] = self.t_span.0;
         if t0 == t1 {
             let message = format!("t_span is empty: it starts and ends at t = {t0}");
@@ -83,14 +96,18 @@ impl TimeKeys {
                 );
                 return Err(Refusal::at(key, message));
             }
-            return Ok((TimeGrid::with_steps([t0, t1], STEPS)?, Some(control)));
+            let grid = match t1.is_finite() {
+                true => TimeGrid::with_steps([t0, t1], STEPS)?,
+                false => TimeGrid::new([t0, t1], 1.0)?,
+            };
+            return Ok((grid, Some(control), max_steps));
         }
         let grid = match exactly_one(("dt", self.dt), ("steps", self.steps))? {
             Either::First(dt) => TimeGrid::new([t0, t1], dt.0)?,
             Either::Second(steps) => TimeGrid::with_steps([t0, t1], steps.0)
                 .map_err(|error| Refusal::from(error).renamed(&[("dt", "steps")]))?,
         };
-        Ok((grid, None))
+        Ok((grid, None, max_steps))
     }
 
     /// Tolerances and limits; none where no tolerance is given.
@@ -100,7 +117,6 @@ impl TimeKeys {
                 ("h_init", self.h_init.is_some()),
                 ("h_min", self.h_min.is_some()),
                 ("h_max", self.h_max.is_some()),
-                ("max_steps", self.max_steps.is_some()),
                 ("tolerance", self.tolerance.is_some()),
             ];
             return match limits.into_iter().find(|(_, given)| *given) {
@@ -151,15 +167,33 @@ pub(super) struct OutputKeys {
     quantities: Vec<String>,
     every: Option<Whole<1>>,
     times: Option<Vec<Real>>,
+    times_by: Option<String>,
+}
+
+/// What `[output]` asks for.
+pub(super) struct Output {
+    pub(super) quantities: Vec<String>,
+    pub(super) save: SaveAt,
+    pub(super) times_by_steps: bool,
 }
 
 impl OutputKeys {
-    pub(super) fn resolve(
-        self,
-        kind: &Kind,
-        grid: &TimeGrid,
-    ) -> Result<(Vec<String>, SaveAt), Refusal> {
+    pub(super) fn resolve(self, kind: &Kind, grid: &TimeGrid) -> Result<Output, Refusal> {
         check_quantities(&self.quantities, kind)?;
+        let times_by_steps = match self.times_by.as_deref() {
+            None | Some("dense") => false,
+            Some("steps") => true,
+            Some(other) => {
+                let refusal = Refusal::unknown("way", other, &["dense", "steps"]);
+                return Err(Refusal { key: Some("times_by".into()), ..refusal });
+            }
+        };
+        if self.times_by.is_some() && self.times.is_none() {
+            return Err(Refusal::at(
+                "times_by",
+                "`times_by` is for `times`: add it, or leave this",
+            ));
+        }
         let save = match (self.every, self.times) {
             (None, None) => SaveAt::Every(1),
             (every, times) => match exactly_one(("every", every), ("times", times))? {
@@ -168,17 +202,18 @@ impl OutputKeys {
             },
         };
         save.check(grid.t_span())?;
-        Ok((self.quantities, with_ends(save, grid.t_span())))
+        let save = with_ends(save, grid.t_span());
+        Ok(Output { quantities: self.quantities, save, times_by_steps })
     }
 }
 
-/// The start and the end of a run are rows, whatever the times.
+/// The start of a run is a row whatever the times, and the end, where it is known.
 fn with_ends(save: SaveAt, [t0, t1]: [f64; 2]) -> SaveAt {
     let SaveAt::Times(mut times) = save else { return save };
     if times.first() != Some(&t0) {
         times.insert(0, t0);
     }
-    if times.last() != Some(&t1) {
+    if times.last() != Some(&t1) && t1.is_finite() {
         times.push(t1);
     }
     SaveAt::Times(times)

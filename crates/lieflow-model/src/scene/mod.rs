@@ -3,6 +3,7 @@
 mod bundled;
 mod document;
 mod error;
+mod events;
 pub mod formula;
 mod keys;
 mod suggest;
@@ -10,6 +11,7 @@ pub mod values;
 
 pub use bundled::{BUNDLED, Bundled};
 pub use error::{Either, ReadError, Refusal, SceneError, exactly_one};
+pub use events::SceneEvent;
 pub use suggest::{help_for, suggest};
 
 use std::fs::File;
@@ -22,9 +24,10 @@ use lieflow::samples::Outside;
 use lieflow::{Error, SaveAt, TimeGrid};
 
 use self::document::{Document, deserializer, read_beside};
-use self::keys::{MethodKeys, OutputKeys, TimeKeys};
+use self::keys::{MethodKeys, Output, OutputKeys, TimeKeys};
 use crate::kinds::{Kind, ProblemSpec, SAMPLES};
-use crate::model::{Layer, Model, Steps};
+use crate::model::{Layer, Model, Plan, Steps};
+use crate::schema::Schema;
 
 /// A run, stated in full and checked.
 #[derive(Debug)]
@@ -43,10 +46,20 @@ pub struct Scene {
     pub grid: TimeGrid,
     /// Tolerances and limits of steps that are chosen by their error, where the scene has them.
     pub adaptive: Option<StepControl>,
+    /// The limit of the attempts, where the scene has one.
+    pub max_steps: Option<u64>,
+    /// Does a step end at each knot of the samples?
+    pub at_knots: bool,
     /// Where rows are written.
     pub save: SaveAt,
+    /// Are output times reached by shorter steps, and not by the continuous extension?
+    pub times_by_steps: bool,
+    /// The events.
+    pub events: Vec<SceneEvent>,
     /// What is written, in this order.
     pub quantities: Vec<String>,
+    /// A number of what the scene states: another one for another scene. Comments and spaces do not count.
+    pub fingerprint: u64,
 }
 
 /// Larger files are neither scenes nor samples.
@@ -72,10 +85,12 @@ impl Scene {
             .keys::<MethodKeys>("method")?
             .resolve(problem.layers())
             .map_err(|refusal| document.refusal("method", refusal))?;
-        let (grid, adaptive) = document
-            .keys::<TimeKeys>("time")?
-            .resolve()
+        let time = document.keys::<TimeKeys>("time")?;
+        let at_knots = time
+            .at_knots(problem.samples().is_some())
             .map_err(|refusal| document.refusal("time", refusal))?;
+        let (grid, adaptive, max_steps) =
+            time.resolve().map_err(|refusal| document.refusal("time", refusal))?;
         if let Some(samples) = problem.samples() {
             let [t0, t1] = grid.t_span();
             samples.covers([t0, t1]).map_err(|Outside { span: [first, last], .. }| {
@@ -86,7 +101,7 @@ impl Scene {
         problem
             .check_start(grid.t_span()[0])
             .map_err(|refusal| document.refusal("problem", refusal))?;
-        let (quantities, save) = document
+        let Output { quantities, save, times_by_steps } = document
             .keys::<OutputKeys>("output")?
             .resolve(problem.kind(), &grid)
             .map_err(|refusal| document.refusal("output", refusal))?;
@@ -97,10 +112,35 @@ impl Scene {
                 return Err(document.refusal("output", refusal));
             }
         }
+        let parameters = document.within("problem", "parameters").unwrap_or_default();
+        let events = document.optional("events")?.unwrap_or_default();
+        let events = events::resolve(events, &*problem, &quantities, &parameters)
+            .map_err(|refusal| document.refusal("events", refusal))?;
+        if !grid.t_span()[1].is_finite() && events.iter().all(|event| event.stop_after.is_none()) {
+            let message =
+                "t_span has no end, expected an event with `stop_after` that ends the run";
+            return Err(document.refusal("time", Refusal::at("t_span[1]", message)));
+        }
         let stem = Path::new(source).file_stem().unwrap_or_default().to_string_lossy();
         let name = if stem.is_empty() { "scene".into() } else { stem.into_owned() };
-        let scene = Scene { title, name, problem, method, layer, grid, adaptive, save, quantities };
-        let model = scene.model().map_err(|error| document.refusal("problem", error.into()))?;
+        let scene = Scene {
+            title,
+            name,
+            problem,
+            method,
+            layer,
+            grid,
+            adaptive,
+            max_steps,
+            at_knots,
+            save,
+            times_by_steps,
+            events,
+            quantities,
+            fingerprint: fingerprint(text),
+        };
+        let model = scene.model_with(scene.layer, &scene.computed());
+        let model = model.map_err(|error| document.refusal("problem", error.into()))?;
         model.fits(&scene.method).map_err(|error| {
             let mut refusal = Refusal::from(error);
             if refusal.help.is_none() && scene.fits_in_no_way(&*model) {
@@ -120,6 +160,37 @@ impl Scene {
                 Steps::ByError { t_span: self.grid.t_span(), control: control.clone() }
             }
         }
+    }
+
+    /// What a run is asked for, on rows of this schema.
+    ///
+    /// # Errors
+    /// [`Error::UnknownName`] for a schema without a quantity of an event.
+    pub fn plan(&self, schema: &Schema) -> Result<Plan<'_>, Error> {
+        Ok(Plan {
+            times_by_steps: self.times_by_steps,
+            events: self.events.iter().map(|event| event.plan(schema)).collect::<Result<_, _>>()?,
+            max_steps: self.max_steps,
+            stops: self.knots(),
+            ..Plan::new(self.steps(), self.save.clone())
+        })
+    }
+
+    /// The times at which a step ends: the knots of the samples, where they are asked for.
+    fn knots(&self) -> Vec<f64> {
+        let samples = self.problem.samples().filter(|_| self.at_knots);
+        samples.map_or_else(Vec::new, |samples| samples.knots(self.grid.t_span()).collect())
+    }
+
+    /// The quantities that a run computes: those that are written, then those of the events.
+    pub fn computed(&self) -> Vec<&str> {
+        let mut all: Vec<&str> = self.quantities.iter().map(String::as_str).collect();
+        for name in self.events.iter().flat_map(SceneEvent::quantities) {
+            if !all.contains(&name) {
+                all.push(name);
+            }
+        }
+        all
     }
 
     /// Read a scene file.
@@ -183,6 +254,15 @@ impl Scene {
     pub fn model_with(&self, layer: Layer, quantities: &[&str]) -> Result<Box<dyn Model>, Error> {
         self.problem.model(layer, quantities)
     }
+}
+
+/// FNV-1a of what the text states.
+fn fingerprint(text: &str) -> u64 {
+    let stated = toml::from_str::<toml::Table>(text);
+    let stated = stated.map_or_else(|_| text.to_owned(), |table| format!("{table:?}"));
+    stated.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+    })
 }
 
 /// The names of the methods that run on a problem, with their default parts.

@@ -18,11 +18,17 @@ pub fn suggest<'a>(given: &str, names: &[&'a str]) -> Option<&'a str> {
     (closest.0 <= allowed).then_some(closest.1)
 }
 
+/// More names than this are not listed.
+const LISTED: usize = 200;
+
 /// What was expected instead of `given`, and which of it was meant.
 pub fn help_for(given: &str, names: &[&str]) -> String {
     let expected = match names {
         [] => "nothing is expected here".into(),
         [name] => format!("expected {name}"),
+        [first @ .., _] if first.len() >= LISTED => {
+            format!("expected one of {}, …", first[..LISTED].join(", "))
+        }
         names => format!("expected one of {}", names.join(", ")),
     };
     match suggest(given, names) {

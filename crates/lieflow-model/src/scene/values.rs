@@ -12,34 +12,39 @@ use super::Refusal;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Real(pub f64);
 
+/// Reads a number; where that is allowed, an infinite one.
+struct AsNumber {
+    infinite: bool,
+}
+
+impl Visitor<'_> for AsNumber {
+    type Value = f64;
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a number")
+    }
+    fn visit_f64<E: Error>(self, x: f64) -> Result<f64, E> {
+        match x.is_finite() || (self.infinite && !x.is_nan()) {
+            true => Ok(x),
+            false => Err(E::custom(format!("found {x}, expected a finite number"))),
+        }
+    }
+    fn visit_i64<E: Error>(self, x: i64) -> Result<f64, E> {
+        Ok(x as f64)
+    }
+    fn visit_u64<E: Error>(self, x: u64) -> Result<f64, E> {
+        Ok(x as f64)
+    }
+    fn visit_i128<E: Error>(self, x: i128) -> Result<f64, E> {
+        Ok(x as f64)
+    }
+    fn visit_u128<E: Error>(self, x: u128) -> Result<f64, E> {
+        Ok(x as f64)
+    }
+}
+
 impl<'de> Deserialize<'de> for Real {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct AsReal;
-        impl Visitor<'_> for AsReal {
-            type Value = Real;
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a number")
-            }
-            fn visit_f64<E: Error>(self, x: f64) -> Result<Real, E> {
-                match x.is_finite() {
-                    true => Ok(Real(x)),
-                    false => Err(E::custom(format!("found {x}, expected a finite number"))),
-                }
-            }
-            fn visit_i64<E: Error>(self, x: i64) -> Result<Real, E> {
-                Ok(Real(x as f64))
-            }
-            fn visit_u64<E: Error>(self, x: u64) -> Result<Real, E> {
-                Ok(Real(x as f64))
-            }
-            fn visit_i128<E: Error>(self, x: i128) -> Result<Real, E> {
-                Ok(Real(x as f64))
-            }
-            fn visit_u128<E: Error>(self, x: u128) -> Result<Real, E> {
-                Ok(Real(x as f64))
-            }
-        }
-        deserializer.deserialize_any(AsReal)
+        deserializer.deserialize_any(AsNumber { infinite: false }).map(Real)
     }
 }
 
@@ -132,6 +137,26 @@ impl<'de, const N: usize> Deserialize<'de> for Reals<N> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let entries: Entries<Real, N> = Entries::read(deserializer, "numbers")?;
         Ok(Reals(entries.0.map(|x| x.0)))
+    }
+}
+
+/// A span of time: two numbers, of which the second may be infinite.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Span(pub [f64; 2]);
+
+impl<'de> Deserialize<'de> for Span {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct End(f64);
+        impl<'de> Deserialize<'de> for End {
+            fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                deserializer.deserialize_any(AsNumber { infinite: true }).map(End)
+            }
+        }
+        let [start, end] = Entries::<End, 2>::read(deserializer, "numbers")?.0;
+        match start.0.is_finite() {
+            true => Ok(Span([start.0, end.0])),
+            false => Err(D::Error::custom(format!("found {}, expected a finite number", start.0))),
+        }
     }
 }
 

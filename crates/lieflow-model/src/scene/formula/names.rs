@@ -113,6 +113,15 @@ impl Names {
         self.table.as_ref().map_or(&[], |table| &table.columns)
     }
 
+    /// Another variable, where its name is free and a formula can use it; else nothing, and false.
+    pub fn add(&mut self, variable: &str) -> bool {
+        let usable = self.check("", variable).is_ok();
+        if usable {
+            self.variables.push(variable.into());
+        }
+        usable
+    }
+
     fn check(&self, key: &str, name: &str) -> Result<(), Refusal> {
         let first = name.chars().next();
         let why = if !first.is_some_and(starts_name) || !name.chars().all(continues_name) {

@@ -1,0 +1,310 @@
+//! What a run is watched for: what is written, what says how good it is, what is drawn.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use lieflow::RunError;
+use lieflow::solve::{Next, Status};
+
+use super::CliError;
+use crate::output::{
+    self, Chosen, Drift, EventSummary, Kind, Progress, RowFile, RowSample, RunState, Watched,
+};
+use lieflow_model::kinds::Figure;
+use lieflow_model::model::{Model, Outcome, Plan, Watcher};
+use lieflow_model::scene::Scene;
+use lieflow_model::schema::{Observable, Row};
+
+/// The quantities of a run: those that the scene names first, then those of its events, the state, the invariants
+/// and the one that is drawn.
+pub(super) fn quantities(scene: &Scene) -> Vec<&str> {
+    let problem = &scene.problem;
+    let mut all = scene.computed();
+    let further = [problem.state(&all), &problem.invariants(&all), &[problem.figure().quantity()]];
+    for name in further.concat() {
+        if !all.contains(&name) {
+            all.push(name);
+        }
+    }
+    all
+}
+
+/// Everything that a run is watched for.
+pub(super) struct Watch<'a> {
+    scene: &'a Scene,
+    pub(super) model: &'a dyn Model,
+    pub(super) written: Vec<&'a Observable>,
+    state: Vec<&'a Observable>,
+    pub(super) laws: Vec<&'a Observable>,
+    pub(super) drawn: &'a Observable,
+}
+
+impl<'a> Watch<'a> {
+    /// `model` has the [`quantities`] of the scene.
+    pub(super) fn new(scene: &'a Scene, model: &'a dyn Model) -> Result<Self, CliError> {
+        let (problem, schema) = (&scene.problem, model.schema());
+        let computed = scene.computed();
+        let find = |names: &[&str]| -> Result<Vec<_>, _> {
+            names.iter().map(|name| schema.get(name)).collect()
+        };
+        Ok(Watch {
+            scene,
+            model,
+            state: find(problem.state(&computed))?,
+            laws: find(&problem.invariants(&computed))?,
+            drawn: schema.get(problem.figure().quantity())?,
+            written: find(&computed[..scene.quantities.len()])?,
+        })
+    }
+
+    /// The values that are written of a row go to the end of `line`.
+    pub(super) fn line(&self, row: Row<'_>, line: &mut Vec<f64>) {
+        self.written.iter().for_each(|observable| line.extend_from_slice(&row[observable]));
+    }
+
+    /// The invariants of the next row, each in its turn.
+    fn see(&self, t: f64, row: Row<'_>, watched: &mut Vec<Watched>) {
+        let values = self
+            .laws
+            .iter()
+            .flat_map(|law| row[law].iter().enumerate().map(move |(i, x)| (*x, row.size(law, i))));
+        if watched.is_empty() {
+            watched.extend(values.map(|(x, size)| Watched::new(t, x, size)));
+        } else {
+            watched.iter_mut().zip(values).for_each(|(watched, (x, size))| watched.see(t, x, size));
+        }
+    }
+
+    /// What ends the run here: a state of the row that is not finite.
+    fn overflow(&self, t: f64, row: Row<'_>) -> Option<String> {
+        let states = self.written.iter().filter(|part| part.is_state);
+        let mut numbers = states.flat_map(|part| part.columns.iter().zip(&row[*part]));
+        let (column, x) = numbers.find(|(_, x)| !x.is_finite())?;
+        Some(format!("the state is out of the range of numbers at t = {t}: {column} is {x}"))
+    }
+
+    /// The drift of each invariant, by column.
+    pub(super) fn drift(
+        &self,
+        watched: &[Watched],
+        steps: u64,
+    ) -> Result<BTreeMap<String, Drift>, CliError> {
+        let method = self.scene.method.info()?;
+        let columns = self.laws.iter().flat_map(|law| {
+            law.columns.iter().map(|column| (column.clone(), law.promised_by(method)))
+        });
+        let drifts = columns.zip(watched);
+        Ok(drifts.map(|((name, promised), w)| (name, w.drift(promised, steps))).collect())
+    }
+
+    /// Run the scene by this plan. A step that fails is an end, not an error.
+    pub(super) fn run(&self, plan: Plan<'_>, watcher: &mut dyn Watcher) -> Result<Done, CliError> {
+        let scene = self.scene;
+        match self.model.drive(&scene.method, plan, watcher) {
+            Ok(Outcome { t, status, stats }) => Ok(Done {
+                steps: stats.accepted,
+                points_within: Some(stats.points_within),
+                chosen: scene.adaptive.is_some().then_some(Chosen {
+                    accepted: stats.accepted,
+                    rejected: stats.rejected,
+                    evaluations: stats.evaluations,
+                    smallest_step: stats.smallest_step,
+                    largest_step: stats.largest_step,
+                }),
+                failure: (status == Status::Cancelled).then(|| format!("interrupted at t = {t}")),
+                interrupted: status == Status::Cancelled,
+                ended_by: match status {
+                    Status::Event(name) => Some(name),
+                    _ => None,
+                },
+                t: Some(t),
+            }),
+            Err(RunError::Setup(error)) => Err(error.into()),
+            Err(error) => Ok(Done {
+                failure: Some(error.to_string()),
+                steps: error.accepted().unwrap_or(0),
+                ..Done::default()
+            }),
+        }
+    }
+
+    /// The field at the end, where the figure is one.
+    pub(super) fn field(&self, rows: &RowSample<'_>) -> Vec<Vec<f64>> {
+        match (self.scene.problem.figure(), rows.ends()) {
+            (Figure::Map(..), Some([_, (_, row)])) => self.scene.problem.field(&row[self.drawn]),
+            _ => Vec::new(),
+        }
+    }
+
+    /// The distance of the row at t from the exact solution.
+    pub(super) fn errors(&self, t: f64, row: Row<'_>) -> Option<BTreeMap<String, f64>> {
+        let exact = self.model.exact([self.scene.grid.t_span()[0], t])?.ok()?;
+        let exact = self.model.schema().row(&exact);
+        let distance = |part: &Observable| {
+            let pairs = row[part].iter().zip(&exact[part]);
+            pairs.map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
+        };
+        Some(self.state.iter().map(|part| (part.name.into(), distance(part))).collect())
+    }
+}
+
+/// What a run did.
+#[derive(Default)]
+pub(super) struct Done {
+    pub(super) failure: Option<String>,
+    pub(super) interrupted: bool,
+    pub(super) steps: u64,
+    pub(super) points_within: Option<u64>,
+    pub(super) chosen: Option<Chosen>,
+    /// The event that ended the run.
+    pub(super) ended_by: Option<String>,
+    /// The time at the end, where no step failed.
+    pub(super) t: Option<f64>,
+}
+
+/// Zeros of an event that are drawn.
+const MARKS: usize = 200;
+
+/// What is kept of a run as it goes, in memory and on disk.
+pub(super) struct Recorder<'a> {
+    watch: &'a Watch<'a>,
+    pub(super) trajectory: RowFile,
+    pub(super) events: Option<RowFile>,
+    /// None while an earlier part of the run is shown again.
+    pub(super) state: Option<RunState>,
+    pub(super) rows: RowSample<'a>,
+    pub(super) watched: Vec<Watched>,
+    /// The rows where a column is not finite.
+    pub(super) not_finite: Vec<u64>,
+    pub(super) seen: Vec<EventSummary>,
+    line: Vec<f64>,
+    pub(super) overflow: Option<String>,
+    /// What could not be written: it ends the run.
+    pub(super) failure: Option<CliError>,
+    stop: &'a AtomicBool,
+    bar: Progress,
+}
+
+impl<'a> Recorder<'a> {
+    /// Files in `folder`, in place of those of earlier runs; what can set `stop` ends the run.
+    pub(super) fn new(
+        watch: &'a Watch<'a>,
+        folder: &Path,
+        columns: &[String],
+        stop: &'a AtomicBool,
+    ) -> Result<Self, CliError> {
+        let events = &watch.scene.events;
+        let columns = || core::iter::once("t").chain(columns.iter().map(String::as_str));
+        RowFile::clear(folder, output::EVENTS)?;
+        let with_events = (!events.is_empty()).then(|| {
+            RowFile::create(folder, output::EVENTS, core::iter::once("name").chain(columns()))
+        });
+        Ok(Recorder {
+            trajectory: RowFile::create(folder, output::TRAJECTORY, columns())?,
+            events: with_events.transpose()?,
+            state: None,
+            rows: RowSample::new(watch.model.schema()),
+            watched: Vec::new(),
+            not_finite: vec![0; columns().count() - 1],
+            seen: events.iter().map(|event| EventSummary::new(&event.name)).collect(),
+            line: Vec::new(),
+            overflow: None,
+            failure: None,
+            bar: Progress::after_a_second(),
+            watch,
+            stop,
+        })
+    }
+
+    /// What is shown now, or was shown by an earlier part of the run.
+    pub(super) fn see(&mut self, kind: Kind, t: f64, row: Row<'_>) -> Result<(), CliError> {
+        self.line.clear();
+        self.watch.line(row, &mut self.line);
+        match kind {
+            Kind::Row => {
+                for (count, x) in self.not_finite.iter_mut().zip(&self.line) {
+                    *count += u64::from(!x.is_finite());
+                }
+                self.watch.see(t, row, &mut self.watched);
+                self.rows.see(t, row);
+                self.trajectory.row(None, t, &self.line)?;
+            }
+            Kind::Event(event) => {
+                if let (Some(seen), Some(file)) = (self.seen.get_mut(event), &mut self.events) {
+                    seen.see(t, MARKS);
+                    file.row(Some(&seen.name), t, &self.line)?;
+                }
+            }
+        }
+        match &mut self.state {
+            Some(state) => state.record(kind, t, row.numbers()),
+            None => Ok(()),
+        }
+    }
+
+    /// Write the lines so far.
+    fn flush(&mut self) -> Result<(), CliError> {
+        self.trajectory.flush()?;
+        self.events.as_mut().map_or(Ok(()), RowFile::flush)
+    }
+
+    fn has_ended(&self) -> bool {
+        self.overflow.is_some() || self.failure.is_some()
+    }
+
+    fn keep(&mut self, done: Result<(), CliError>) {
+        if let Err(error) = done {
+            self.failure.get_or_insert(error);
+            self.stop.store(true, Ordering::Relaxed);
+        }
+    }
+
+    /// Name the files; what is left is the state of the run.
+    pub(super) fn finish(self, complete: bool) -> Result<Option<RunState>, CliError> {
+        self.trajectory.finish(complete)?;
+        self.events.map_or(Ok(()), |file| file.finish(complete))?;
+        Ok(self.state)
+    }
+
+    /// Leave nothing of a run that cannot begin.
+    pub(super) fn discard(self) {
+        self.trajectory.discard();
+        self.events.map(RowFile::discard).unwrap_or_default();
+        let _ = self.state.map(RunState::finish);
+    }
+}
+
+impl Watcher for Recorder<'_> {
+    fn row(&mut self, t: f64, row: Row<'_>) -> Next {
+        self.overflow = self.overflow.take().or_else(|| self.watch.overflow(t, row));
+        if !self.has_ended() {
+            let done = self.see(Kind::Row, t, row);
+            self.keep(done);
+        }
+        if self.has_ended() { Next::Stop } else { Next::Continue }
+    }
+
+    fn event(&mut self, event: usize, t: f64, _rising: bool, row: Row<'_>) {
+        if !self.has_ended() {
+            let done = self.see(Kind::Event(event), t, row);
+            self.keep(done);
+        }
+    }
+
+    fn progress(&mut self, t: f64) {
+        let [t0, t1] = self.watch.scene.grid.t_span();
+        self.bar.often((t - t0) / (t1 - t0), || format!("t = {t:.6}"));
+    }
+
+    fn state(&mut self, bytes: &[u8]) {
+        if !self.has_ended() {
+            let done = self.flush();
+            let done = done.and_then(|()| match &mut self.state {
+                Some(state) => state.save(bytes),
+                None => Ok(()),
+            });
+            self.keep(done);
+        }
+    }
+}

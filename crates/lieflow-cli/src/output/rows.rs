@@ -1,0 +1,125 @@
+//! trajectory.csv and events.csv: rows as they come, every value with 17 significant digits.
+
+use core::fmt::Write as _;
+use std::fs::{self, File, OpenOptions};
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+use super::files::remove_old;
+use crate::cmd::CliError;
+
+/// The names of a file of rows: when its run is complete, and until then.
+pub(crate) type Names = [&'static str; 2];
+/// The rows of a run.
+pub const TRAJECTORY: Names = ["trajectory.csv", "trajectory.partial.csv"];
+/// The zeros of its events.
+pub const EVENTS: Names = ["events.csv", "events.partial.csv"];
+
+/// Lines are written when there are so many bytes of them, and when the state of the run is saved.
+const BYTES: usize = 1 << 16;
+
+/// A file of rows that is being written, in whole lines. Only [`finish`](RowFile::finish) gives it its name.
+#[derive(Debug)]
+pub struct RowFile {
+    folder: PathBuf,
+    names: Names,
+    file: File,
+    /// Lines that are not written yet.
+    lines: String,
+    /// The bytes that are.
+    written: u64,
+    rows: u64,
+}
+
+/// A text as a field.
+fn field(text: &str) -> String {
+    match text.contains([',', '"', '\n', '\r']) {
+        true => format!("\"{}\"", text.replace('"', "\"\"")),
+        false => text.into(),
+    }
+}
+
+impl RowFile {
+    /// Remove what earlier runs left.
+    ///
+    /// # Errors
+    /// A file is there and stays.
+    pub fn clear(folder: &Path, names: Names) -> Result<(), CliError> {
+        names.iter().try_for_each(|old| remove_old(&folder.join(old)))
+    }
+
+    /// Start a file of these columns in a folder, in place of what earlier runs left there.
+    ///
+    /// # Errors
+    /// The file cannot be made, or old ones cannot be removed.
+    pub fn create<'c>(
+        folder: &Path,
+        names: Names,
+        columns: impl IntoIterator<Item = &'c str>,
+    ) -> Result<Self, CliError> {
+        Self::clear(folder, names)?;
+        let path = folder.join(names[1]);
+        let file = OpenOptions::new().create(true).append(true).open(&path);
+        let file = file.map_err(CliError::io("write", &path))?;
+        let header: Vec<String> = columns.into_iter().map(field).collect();
+        let lines = header.join(",") + "\n";
+        Ok(RowFile { folder: folder.into(), names, file, lines, written: 0, rows: 0 })
+    }
+
+    /// Write a row, after a name where it has one.
+    ///
+    /// # Errors
+    /// Lines cannot be written; the file has those before them.
+    pub fn row(&mut self, name: Option<&str>, t: f64, values: &[f64]) -> Result<(), CliError> {
+        if let Some(name) = name {
+            self.lines += &field(name);
+            self.lines.push(',');
+        }
+        // Writing to a string cannot fail.
+        let _ = write!(self.lines, "{t:.16e}");
+        for x in values {
+            let _ = write!(self.lines, ",{x:.16e}");
+        }
+        self.lines.push('\n');
+        self.rows += 1;
+        if self.lines.len() >= BYTES { self.flush() } else { Ok(()) }
+    }
+
+    /// Write what is not written yet.
+    ///
+    /// # Errors
+    /// As [`row`](Self::row).
+    pub fn flush(&mut self) -> Result<(), CliError> {
+        let written = self.file.write_all(self.lines.as_bytes());
+        match written {
+            Ok(()) => self.written += self.lines.len() as u64,
+            // No part of a line stays.
+            Err(_) => self.file.set_len(self.written).unwrap_or_default(),
+        }
+        self.lines.clear();
+        written.map_err(CliError::io("write", &self.folder.join(self.names[1])))
+    }
+
+    /// The rows so far.
+    pub fn rows(&self) -> u64 {
+        self.rows
+    }
+
+    /// Leave nothing.
+    pub fn discard(self) {
+        let _ = fs::remove_file(self.folder.join(self.names[1]));
+    }
+
+    /// Name the file: by the first name, or by the second when the run stopped early.
+    ///
+    /// # Errors
+    /// Lines cannot be written, or the file cannot be named; what was written stays.
+    pub fn finish(mut self, complete: bool) -> Result<(), CliError> {
+        self.flush()?;
+        let [place, from] = self.names.map(|name| self.folder.join(name));
+        match complete {
+            true => fs::rename(from, &place).map_err(CliError::io("write", &place)),
+            false => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,241 @@
+//! The state of a run on disk, from which it goes on to the same bits after an interruption, even a kill.
+//!
+//! `run.state` is one state, replaced as a whole. Its words have 8 bytes each, little endian:
+//!
+//! | words | |
+//! |---|---|
+//! | 1 | the name of the format and its version |
+//! | 2 | what the run is of: the version of the program, and the scene |
+//! | 3 | of `run.rows` at that time: the words of a record, the records, their check sum |
+//! | 1 | a check sum of the other words, the driver's too |
+//! | the rest | the state of the driver; nothing at the start of a run |
+//!
+//! `run.rows` is what the run showed, in records of one length: what it is ([`Kind`]), t, the numbers of the row.
+//! What follows the records of the state is of no use, and is dropped. Both go away when the run is complete.
+
+use std::fs::{self, File, OpenOptions};
+use std::io::{BufReader, Read, Write};
+use std::path::{Path, PathBuf};
+
+use super::files::{remove_old, write_file};
+use crate::cmd::CliError;
+
+const STATE: &str = "run.state";
+const ROWS: &str = "run.rows";
+
+/// The name of the format, and its version.
+const FORMAT: u64 = u64::from_le_bytes(*b"lf-run\x00\x01");
+
+/// Records are written when there are so many bytes of them.
+const BYTES: usize = 1 << 16;
+
+/// What a record is of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// A row of the trajectory.
+    Row,
+    /// A zero of the event of this number.
+    Event(usize),
+}
+
+/// The check sum of words, one after the other.
+fn sum(sum: u64, word: u64) -> u64 {
+    (sum ^ word).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29)
+}
+
+fn words(bytes: &[u8]) -> impl Iterator<Item = u64> {
+    bytes.chunks(8).map(|chunk| {
+        let mut word = [0; 8];
+        word[..chunk.len()].copy_from_slice(chunk);
+        u64::from_le_bytes(word)
+    })
+}
+
+/// What was shown of a run up to some time.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Shown {
+    /// The words of a record; 0 before the first.
+    length: u64,
+    records: u64,
+    sum: u64,
+}
+
+/// The state of a run on disk.
+#[derive(Debug)]
+pub struct RunState {
+    folder: PathBuf,
+    owner: [u64; 2],
+    shown: Shown,
+    file: Option<File>,
+    /// Records that are not written yet.
+    buffer: Vec<u8>,
+}
+
+impl RunState {
+    /// Is there a run to go on with?
+    pub fn is_in(folder: &Path) -> bool {
+        folder.join(STATE).is_file()
+    }
+
+    fn new(folder: &Path, scene: u64) -> Self {
+        let version = env!("CARGO_PKG_VERSION").bytes().fold(0, |a, b| sum(a, u64::from(b)));
+        let (shown, owner) = (Shown::default(), [version, scene]);
+        RunState { folder: folder.into(), owner, shown, file: None, buffer: Vec::new() }
+    }
+
+    /// Begin a run of the scene with this fingerprint.
+    ///
+    /// # Errors
+    /// A file cannot be written, or an old one cannot be removed.
+    pub fn begin(folder: &Path, scene: u64) -> Result<Self, CliError> {
+        let mut state = Self::new(folder, scene);
+        state.save(&[])?;
+        remove_old(&folder.join(ROWS))?;
+        Ok(state)
+    }
+
+    /// The state of a run of the scene with this fingerprint, and that of its driver; none at its start.
+    ///
+    /// # Errors
+    /// There is none, it is damaged, or it is of another scene or of another version of the program.
+    pub fn open(folder: &Path, scene: u64) -> Result<(Self, Option<Vec<u8>>), CliError> {
+        let path = folder.join(STATE);
+        let bytes = fs::read(&path).map_err(CliError::io("read", &path))?;
+        let mut state = Self::new(folder, scene);
+        let (head, driver) = bytes.split_at(bytes.len().min(56));
+        let head: Vec<u64> = words(head).collect();
+        let &[FORMAT, version, of, length, records, rows, check] = &head[..] else {
+            return Err(state.damaged());
+        };
+        if check != sum_of(&head[..6], driver) {
+            return Err(state.damaged());
+        }
+        if version != state.owner[0] {
+            let message = "the run was begun by another version of the program: start it again \
+                           without --resume";
+            return Err(CliError::Message(message.into()));
+        }
+        if of != scene {
+            let message = "the scene has changed since the run was begun: start it again without \
+                           --resume, or go on with the scene as it was";
+            return Err(CliError::Message(message.into()));
+        }
+        state.shown = Shown { length, records, sum: rows };
+        Ok((state, (!driver.is_empty()).then(|| driver.to_vec())))
+    }
+
+    fn damaged(&self) -> CliError {
+        let folder = self.folder.display();
+        CliError::Message(format!(
+            "the saved run in `{folder}` is damaged: start it again without --resume"
+        ))
+    }
+
+    /// Show what the run showed before the state was saved, and go on from there.
+    ///
+    /// # Errors
+    /// The records are damaged, or cannot be read, or `show` fails.
+    pub fn replay(
+        &mut self,
+        mut show: impl FnMut(Kind, f64, &[f64]) -> Result<(), CliError>,
+    ) -> Result<(), CliError> {
+        let path = self.folder.join(ROWS);
+        let Shown { length, records, sum: expected } = self.shown;
+        if records == 0 {
+            return remove_old(&path);
+        }
+        let file = OpenOptions::new().read(true).append(true).open(&path);
+        let file = file.map_err(CliError::io("read", &path))?;
+        let bytes = length.checked_mul(8).and_then(|bytes| bytes.checked_mul(records));
+        let there = file.metadata().map_err(CliError::io("read", &path))?.len();
+        let Some(bytes) = bytes.filter(|bytes| length >= 2 && *bytes <= there) else {
+            return Err(self.damaged());
+        };
+        let mut reader = BufReader::with_capacity(BYTES, &file);
+        let mut record = vec![0; 8 * length as usize];
+        let (mut numbers, mut found) = (Vec::new(), 0);
+        for _ in 0..records {
+            reader.read_exact(&mut record).map_err(CliError::io("read", &path))?;
+            found = words(&record).fold(found, sum);
+            numbers.clear();
+            numbers.extend(words(&record[8..]).map(f64::from_bits));
+            let kind = match words(&record).next() {
+                None | Some(0) => Kind::Row,
+                Some(event) => Kind::Event(event as usize - 1),
+            };
+            show(kind, numbers[0], &numbers[1..])?;
+        }
+        if found != expected {
+            return Err(self.damaged());
+        }
+        file.set_len(bytes).map_err(CliError::io("write", &path))?;
+        self.file = Some(file);
+        Ok(())
+    }
+
+    /// Keep what the run shows.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn record(&mut self, kind: Kind, t: f64, numbers: &[f64]) -> Result<(), CliError> {
+        let kind = match kind {
+            Kind::Row => 0,
+            Kind::Event(event) => event as u64 + 1,
+        };
+        let numbers = core::iter::once(&t).chain(numbers).map(|x| x.to_bits());
+        for word in core::iter::once(kind).chain(numbers) {
+            self.shown.sum = sum(self.shown.sum, word);
+            self.buffer.extend(word.to_le_bytes());
+        }
+        if self.shown.records == 0 {
+            self.shown.length = self.buffer.len() as u64 / 8;
+        }
+        self.shown.records += 1;
+        if self.buffer.len() >= BYTES { self.flush() } else { Ok(()) }
+    }
+
+    fn flush(&mut self) -> Result<(), CliError> {
+        if self.buffer.is_empty() {
+            return Ok(());
+        }
+        let path = self.folder.join(ROWS);
+        let file = match &mut self.file {
+            Some(file) => file,
+            none => {
+                let new = OpenOptions::new().create(true).append(true).open(&path);
+                none.insert(new.map_err(CliError::io("write", &path))?)
+            }
+        };
+        file.write_all(&self.buffer).map_err(CliError::io("write", &path))?;
+        self.buffer.clear();
+        Ok(())
+    }
+
+    /// The run is in this state of its driver after what it showed so far.
+    ///
+    /// # Errors
+    /// A file cannot be written: then the state before is there.
+    pub fn save(&mut self, driver: &[u8]) -> Result<(), CliError> {
+        self.flush()?;
+        let Shown { length, records, sum } = self.shown;
+        let head = [FORMAT, self.owner[0], self.owner[1], length, records, sum];
+        let head = head.into_iter().chain([sum_of(&head, driver)]);
+        let mut bytes: Vec<u8> = head.flat_map(u64::to_le_bytes).collect();
+        bytes.extend_from_slice(driver);
+        write_file(&self.folder.join(STATE), &bytes)
+    }
+
+    /// The run is complete.
+    ///
+    /// # Errors
+    /// A file cannot be removed.
+    pub fn finish(self) -> Result<(), CliError> {
+        drop(self.file);
+        [STATE, ROWS].iter().try_for_each(|name| remove_old(&self.folder.join(name)))
+    }
+}
+
+/// The check sum of a state.
+fn sum_of(head: &[u64], driver: &[u8]) -> u64 {
+    words(driver).fold(head.iter().copied().fold(0, sum), sum)
+}

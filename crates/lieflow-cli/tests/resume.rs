@@ -1,0 +1,206 @@
+//! Runs that are killed, interrupted or cannot write: what they leave is whole, and they go on to the same bits.
+#![cfg(unix)]
+
+mod support;
+
+use std::fs;
+use std::process::{Command, Stdio};
+use std::sync::LazyLock;
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+use serde_json::Value;
+use support::{Folder, Run};
+
+/// A run of some seconds; `{}` is its end.
+const SCENE: &str = r#"title = "Long"
+[problem]
+kind = "rigid-body"
+inertia = [1.0, 2.0, 3.0]
+omega_body = [0.01, 1.5, 0.01]
+[method]
+name = "rkmk4"
+layer = "general"
+[time]
+t_span = [0.0, {}]
+dt = 0.01
+[[events]]
+name = "flip"
+when = "w2"
+[output]
+quantities = ["momentum_body", "energy"]
+every = 5
+"#;
+
+fn scene(end: &str) -> String {
+    SCENE.replace("{}", end)
+}
+
+/// What a run writes, without the times that it took.
+fn results(folder: &Folder, out: &str) -> (String, String, Value) {
+    let mut summary = folder.json(&format!("{out}/summary.json"));
+    summary["wall_time_s"] = Value::Null;
+    let [rows, events] = ["trajectory", "events"].map(|f| folder.read(&format!("{out}/{f}.csv")));
+    (rows, events, summary)
+}
+
+struct Reference {
+    results: (String, String, Value),
+    took: Duration,
+}
+
+/// The run without a pause.
+static REFERENCE: LazyLock<Reference> = LazyLock::new(|| {
+    let folder = Folder::new();
+    folder.write("scene.toml", &scene("2500.0"));
+    let start = Instant::now();
+    folder.lieflow(&["run", "scene.toml", "--out", "out"]).ok();
+    Reference { took: start.elapsed(), results: results(&folder, "out") }
+});
+
+/// The lines of a file that is there are whole, and those of the run.
+fn check_lines(folder: &Folder, name: &str, reference: &str) {
+    for file in [format!("{name}.partial.csv"), format!("{name}.csv")] {
+        let path = folder.path().join("out").join(&file);
+        let Ok(text) = fs::read_to_string(path) else { continue };
+        assert!(reference.starts_with(&text), "{file}");
+        assert!(text.is_empty() || text.ends_with('\n'), "{file}: {}", text.len());
+    }
+}
+
+/// Kill a run at some moment, see what it left, go on with it, kill that now and then, and go on to the end.
+fn kill_and_go_on(random: &mut Pcg64) {
+    let Reference { results: expected, took } = &*REFERENCE;
+    let folder = Folder::new();
+    folder.write("scene.toml", &scene("2500.0"));
+    let args = ["run", "scene.toml", "--out", "out", "--resume"];
+    for round in 0..3 {
+        // Without a state the run was killed before it began, or after its end.
+        let resumable = folder.path().join("out/run.state").exists();
+        let args = if resumable { &args[..] } else { &args[..4] };
+        let (out, err) = (Stdio::null(), Stdio::null());
+        let mut child = folder.command(args).stdout(out).stderr(err).spawn().unwrap();
+        sleep(took.mul_f64(random.random_range(0.0..0.8)));
+        child.kill().unwrap();
+        child.wait().unwrap();
+        check_lines(&folder, "trajectory", &expected.0);
+        check_lines(&folder, "events", &expected.1);
+        if round > 0 || random.random_range(0.0..1.0) < 0.5 {
+            break;
+        }
+    }
+    if folder.path().join("out/run.state").exists() {
+        folder.lieflow(&args).ok();
+    } else {
+        folder.lieflow(&args[..4]).ok();
+    }
+    assert_eq!(results(&folder, "out"), *expected);
+    assert_eq!(folder.data("out"), ["events.csv", "summary.json", "trajectory.csv"]);
+}
+
+#[test]
+fn a_run_that_is_killed_goes_on_to_the_same_bits() {
+    let mut random = Pcg64::seed_from_u64(14);
+    (0..5).for_each(|_| kill_and_go_on(&mut random));
+}
+
+#[test]
+#[ignore = "minutes"]
+fn a_run_that_is_killed_at_fifty_moments_goes_on_to_the_same_bits() {
+    let mut random = Pcg64::seed_from_u64(50);
+    (0..50).for_each(|_| kill_and_go_on(&mut random));
+}
+
+#[test]
+fn an_interrupted_run_says_how_to_go_on() {
+    let expected = &REFERENCE.results;
+    let folder = Folder::new();
+    folder.write("scene.toml", &scene("2500.0"));
+    let args = ["run", "scene.toml", "--out", "out"];
+    let run = folder.command(&args).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    while !folder.path().join("out/trajectory.partial.csv").exists() {
+        sleep(Duration::from_millis(1));
+    }
+    sleep(REFERENCE.took.mul_f64(0.1));
+    let kill = Command::new("kill").args(["-INT", &run.id().to_string()]).status().unwrap();
+    assert!(kill.success());
+    let message = Run::from(run.wait_with_output().unwrap()).failed(130);
+    assert!(message.contains("error: interrupted at t = "), "{message}");
+    assert!(message.contains("`lieflow run scene.toml --out out --resume`"), "{message}");
+    let summary = folder.json("out/summary.json");
+    assert_eq!(summary["completed"], false);
+    let written = folder.read("out/trajectory.partial.csv");
+    assert_eq!(summary["rows"].as_u64().unwrap() as usize + 1, written.lines().count());
+    check_lines(&folder, "trajectory", &expected.0);
+    check_lines(&folder, "events", &expected.1);
+
+    // Another scene does not go on with it, and changes nothing.
+    folder.write("other.toml", &scene("2500.5"));
+    let message = folder.lieflow(&["run", "other.toml", "--out", "out", "--resume"]).refused();
+    assert!(message.contains("the scene has changed"), "{message}");
+    assert_eq!(folder.read("out/trajectory.partial.csv"), written);
+    // The same scene in other words does.
+    folder.write("scene.toml", &format!("# In other words.\n{}", scene("2500.00")));
+    folder.lieflow(&["run", "scene.toml", "--out", "out", "--resume"]).ok();
+    assert_eq!(results(&folder, "out"), *expected);
+
+    // Then it is complete, and --resume says so.
+    let told = folder.lieflow(&["run", "scene.toml", "--out", "out", "--resume"]).ok();
+    assert!(told.contains("is complete"), "{told}");
+    assert_eq!(results(&folder, "out"), *expected);
+    let message = folder.lieflow(&["run", "other.toml", "--out", "out", "--resume"]).refused();
+    assert!(message.contains("no interrupted run"), "{message}");
+}
+
+#[test]
+fn a_damaged_state_is_refused() {
+    let folder = Folder::new();
+    folder.write("scene.toml", &scene("2500.0"));
+    let expected = &REFERENCE.results;
+    let args = ["run", "scene.toml", "--out", "out", "--resume"];
+    let mut child = folder.command(&args[..4]).stdout(Stdio::null()).spawn().unwrap();
+    while folder.names("out").iter().all(|name| name != "run.rows") {
+        sleep(Duration::from_millis(1));
+    }
+    // Until a state with rows is there.
+    while fs::read(folder.path().join("out/run.state")).unwrap().len() <= 56 {
+        sleep(Duration::from_millis(1));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    for (file, at) in [("run.state", 3), ("run.state", 100), ("run.rows", 100)] {
+        let path = folder.path().join("out").join(file);
+        let whole = fs::read(&path).unwrap();
+        let mut bytes = whole.clone();
+        bytes[at] ^= 1;
+        for damaged in [&bytes[..], &whole[..at]] {
+            fs::write(&path, damaged).unwrap();
+            let message = folder.lieflow(&args).refused();
+            assert!(message.contains("is damaged"), "{file}: {message}");
+        }
+        fs::write(&path, whole).unwrap();
+    }
+    folder.lieflow(&args).ok();
+    assert_eq!(results(&folder, "out"), *expected);
+}
+
+/// With a limit of the size of a file, as on a full disk: the error names the file, what was written stays, and the
+/// run goes on when there is room.
+#[test]
+fn a_run_that_cannot_write_keeps_what_it_has() {
+    let folder = Folder::new();
+    folder.write("scene.toml", &scene("400.0"));
+    let lieflow = env!("CARGO_BIN_EXE_lieflow");
+    let limited = format!("trap '' XFSZ; ulimit -f 300; {lieflow} run scene.toml --out out");
+    let output = Command::new("sh").args(["-c", &limited]).current_dir(folder.path()).output();
+    let message = Run::from(output.unwrap()).failed(1);
+    assert!(message.contains("cannot write `out/trajectory.partial.csv`: "), "{message}");
+    assert!(message.contains("`lieflow run scene.toml --out out --resume`"), "{message}");
+    let written = folder.read("out/trajectory.partial.csv");
+    assert!(written.lines().count() > 500, "{}", written.len());
+    check_lines(&folder, "trajectory", &REFERENCE.results.0);
+    folder.lieflow(&["run", "scene.toml", "--out", "out", "--resume"]).ok();
+    assert!(REFERENCE.results.0.starts_with(&folder.read("out/trajectory.csv")));
+}
