@@ -10,8 +10,8 @@ use crate::maps::{Cay, CoordinateMap, Exp, ExpOrCay, MapsByName, NamedMap, Serve
 use crate::methods::{
     AnyMethod, Buss4, CfMagnus, CommutatorFree, Composition, ConjugationAction, ConjugationGroup,
     Embedded, EnergyCasimir, ExactMotion, GAUSS2, GAUSS4, GAUSS6, Gauss, IsospectralGauss,
-    LieSeries, LowStorage, Method, Metric, OneBracket, ProjectionMethod, Rk, Rkmk, RkmkGauss,
-    RkmkGaussSymmetric, SeriesGroup, Taylor, Wide, magnus,
+    LieSeries, LowStorage, MapCounts, Method, Metric, OneBracket, ProjectionMethod, Rk, Rkmk,
+    RkmkGauss, RkmkGaussSymmetric, SeriesGroup, Taylor, Wide, magnus,
 };
 use crate::methods::{Step, tableau};
 use crate::problems::{
@@ -116,6 +116,10 @@ macro_rules! classical_method {
             fn evaluations(&self, problem: &P) -> Option<u64> {
                 let $this = self;
                 Method::<P>::evaluations(&$method, problem)
+            }
+            fn map_counts(&self, problem: &P, with_error: bool) -> Option<MapCounts> {
+                let $this = self;
+                Method::<P>::map_counts(&$method, problem, with_error)
             }
             fn stays_on_manifold(&self) -> bool {
                 let $this = self;

@@ -64,7 +64,7 @@ trait Inner<'p, P: Problem> {
     fn order(&self, problem: &P) -> usize;
     fn dense_order(&self, problem: &P) -> usize;
     fn evaluations(&self, problem: &P) -> Option<u64>;
-    fn map_counts(&self, problem: &P) -> Option<MapCounts>;
+    fn map_counts(&self, problem: &P, with_error: bool) -> Option<MapCounts>;
     fn dense_evaluations(&self, problem: &P) -> [Option<u64>; 2];
     fn stays_on_manifold(&self) -> bool;
     fn pair(&self, problem: &P) -> Option<Pair>;
@@ -195,8 +195,8 @@ where
     fn evaluations(&self, problem: &P) -> Option<u64> {
         self.method.evaluations(problem)
     }
-    fn map_counts(&self, problem: &P) -> Option<MapCounts> {
-        self.method.map_counts(problem)
+    fn map_counts(&self, problem: &P, with_error: bool) -> Option<MapCounts> {
+        self.method.map_counts(problem, with_error)
     }
     fn dense_evaluations(&self, problem: &P) -> [Option<u64>; 2] {
         self.method.dense_evaluations(problem)
@@ -305,8 +305,11 @@ where
     fn evaluations(&self, problem: &P) -> Option<u64> {
         self.inner.evaluations(problem)
     }
-    fn map_counts(&self, problem: &P) -> Option<MapCounts> {
-        self.inner.map_counts(problem)
+    fn map_counts(&self, problem: &P, with_error: bool) -> Option<MapCounts> {
+        match with_error && !self.has_pair(problem) {
+            true => Some(self.inner.map_counts(problem, false)?.times(3)),
+            false => self.inner.map_counts(problem, with_error),
+        }
     }
     fn iterations(&self, work: &Self::Work) -> u64 {
         work.stepper.iterations()

@@ -15,7 +15,7 @@
 use nalgebra::Vector3;
 
 use super::simo_wong::turn_body;
-use super::{Method, Step};
+use super::{MapCounts, Method, Step};
 use crate::error::{Error, StepError};
 use crate::groups::So3;
 use crate::maps::{CoordinateMap, Exp};
@@ -69,6 +69,9 @@ where
 
     fn order(&self, _: &P) -> usize {
         4
+    }
+    fn map_counts(&self, _: &P, _: bool) -> Option<MapCounts> {
+        Some(MapCounts { psi: 1, ..MapCounts::default() })
     }
     fn work(&self, _: &P, _: &PointOf<P>) -> Result<Self::Work, Error> {
         Exp.at(&So3::new())

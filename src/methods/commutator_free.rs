@@ -19,7 +19,7 @@
 use super::embedded::{ratio_between, without_pair};
 use super::stages::{Stages, copies};
 use super::tableau::pad;
-use super::{Embedded, Method, Metric, Step};
+use super::{Embedded, MapCounts, Method, Metric, Step};
 use crate::error::{Error, StepError};
 use crate::groups::LieAlgebra;
 use crate::maps::{CoordinateMap, Exp};
@@ -59,6 +59,14 @@ impl<const S: usize> ProductTableau<S> {
     /// How many stages the update and the second result need.
     const fn all_stages(&self) -> usize {
         if self.embedded.is_some() { S } else { self.update_stages }
+    }
+
+    /// How many exponentials the update needs, or the update and the second result.
+    fn exponentials(&self, with_error: bool) -> usize {
+        let second = self.embedded.as_ref().filter(|_| with_error).map(|(_, product)| product);
+        let count = if with_error { self.all_stages() } else { self.update_stages };
+        let products = self.stages[..count].iter().chain([&self.update]).chain(second);
+        products.map(|product| product.factors.len()).sum()
     }
 }
 
@@ -234,6 +242,10 @@ where
     }
     fn evaluations(&self, _: &P) -> Option<u64> {
         Some(self.0.update_stages as u64)
+    }
+    fn map_counts(&self, _: &P, with_error: bool) -> Option<MapCounts> {
+        let psi = self.0.exponentials(with_error) as u64;
+        Some(MapCounts { psi, ..MapCounts::default() })
     }
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
         let inner = Inner {

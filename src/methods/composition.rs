@@ -13,7 +13,7 @@
 //! The result keeps whatever the base method keeps, and is symmetric. Above order 2 some w_i are
 //! negative: steps go back. Cost: S steps of the base method.
 
-use super::{Method, Step, Symmetric};
+use super::{MapCounts, Method, Step, Symmetric};
 use crate::error::{Error, StepError};
 use crate::problems::{Ambient, PointOf, ScalarOf};
 use crate::scalar::Real;
@@ -150,6 +150,15 @@ impl<P: Ambient, M: Method<P> + Symmetric> Method<P> for Composition<M> {
     }
     fn evaluations(&self, problem: &P) -> Option<u64> {
         Some(self.scheme.weights.len() as u64 * self.base.evaluations(problem)?)
+    }
+    fn map_counts(&self, problem: &P, _: bool) -> Option<MapCounts> {
+        Some(self.base.map_counts(problem, false)?.times(self.scheme.weights.len() as u64))
+    }
+    fn iterations(&self, work: &Self::Work) -> u64 {
+        self.base.iterations(&work.base)
+    }
+    fn each_memory(&self, work: &mut Self::Work, each: &mut dyn FnMut(&mut f64)) {
+        self.base.each_memory(&mut work.base, each);
     }
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
         Ok(CompositionWork { base: self.base.work(problem, like)?, start: like.clone() })

@@ -21,7 +21,7 @@ use nalgebra::Vector3;
 
 use super::newton::newton3;
 use super::simo_wong::turn_body;
-use super::{Method, Step, Symmetric};
+use super::{MapCounts, Method, Step, Symmetric};
 use crate::error::{Error, StepError};
 use crate::groups::{LieAlgebra, LieGroup, So3};
 use crate::maps::Cay;
@@ -54,12 +54,13 @@ impl Dmv {
     }
 }
 
-/// The coefficients of σ and δ in κᵃηᵇ, degree by degree: degree d has a = d, …, 0.
+/// The coefficients of σ and δ in κᵃηᵇ, degree by degree: degree d has a = d, …, 0. Also the iterations so far.
 #[derive(Clone, Copy, Debug)]
 pub struct DmvWork {
     inertia: [f64; 3],
     sigma: [[f64; 5]; 4],
     delta: [[f64; 5]; 4],
+    iterations: u64,
 }
 
 impl DmvWork {
@@ -123,7 +124,7 @@ impl DmvWork {
                 (165.0 * s1 - d * m13 - 9.0 * m21 - 145.0 * d * x2) / (45360.0 * d2),
             ],
         ];
-        DmvWork { inertia: i, sigma, delta }
+        DmvWork { inertia: i, sigma, delta, iterations: 0 }
     }
 
     /// Σ over the degrees below order/2 of c_ab κᵃηᵇ.
@@ -148,7 +149,7 @@ impl Dmv {
     #[inline(always)]
     fn solve<S: Real>(
         &self,
-        w: &DmvWork,
+        w: &mut DmvWork,
         inverse: &Vector3<S>,
         h: S,
         m: &Vector3<S>,
@@ -173,7 +174,7 @@ impl Dmv {
         };
         let d =
             [(i[1] - i[2]) * modified[0], (i[2] - i[0]) * modified[1], (i[0] - i[1]) * modified[2]];
-        newton3("dmv", a, l(1.0) + So3::new().norm(&a), |c| {
+        newton3("dmv", a, l(1.0) + So3::new().norm(&a), &mut w.iterations, |c| {
             let grown = l(1.0) + (c[0] * c[0] + c[1] * c[1] + c[2] * c[2]);
             let mut residual = *c;
             let mut jacobian = So3::new().identity();
@@ -199,6 +200,12 @@ where
 
     fn order(&self, _: &P) -> usize {
         self.order
+    }
+    fn map_counts(&self, _: &P, _: bool) -> Option<MapCounts> {
+        Some(MapCounts { psi: 1, ..MapCounts::default() })
+    }
+    fn iterations(&self, work: &DmvWork) -> u64 {
+        work.iterations
     }
     fn work(&self, problem: &P, _: &PointOf<P>) -> Result<DmvWork, Error> {
         Ok(DmvWork::new(problem.inverse_inertia().map(Into::into)))

@@ -7,7 +7,7 @@
 //! two of them when no error is asked for. Source: Hairer, Nørsett, Wanner I, II.4.
 
 use super::embedded::ratio_between;
-use super::{Embedded, Method, Metric, Step};
+use super::{Embedded, MapCounts, Method, Metric, Step};
 use crate::error::{Error, StepError};
 use crate::problems::{PointOf, Problem, ScalarOf};
 use crate::scalar::Real;
@@ -97,6 +97,15 @@ where
     }
     fn dense_evaluations(&self, problem: &P) -> [Option<u64>; 2] {
         [Some(0), self.0.evaluations(problem)]
+    }
+    fn map_counts(&self, problem: &P, with_error: bool) -> Option<MapCounts> {
+        Some(self.0.map_counts(problem, false)?.times(2 + u64::from(with_error)))
+    }
+    fn iterations(&self, work: &Self::Work) -> u64 {
+        self.0.iterations(&work.inner)
+    }
+    fn each_memory(&self, work: &mut Self::Work, each: &mut dyn FnMut(&mut f64)) {
+        self.0.each_memory(&mut work.inner, each);
     }
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
         Ok(DoublingWork {

@@ -54,6 +54,7 @@ pub struct EnergyCasimirWork<P: LiePoisson, Psi: CoordinateMap<P::Group>> {
     chart: ChartStore<P, Psi>,
     field: P::Work,
     dense: OneIncrement<P>,
+    iterations: u64,
 }
 
 /// In the chart at the start.
@@ -76,7 +77,11 @@ impl<P: LiePoisson, Psi: CoordinateMap<P::Group> + OddMap> Method<P> for EnergyC
             chart: ChartStore::new(problem, &self.psi, like)?,
             field: problem.work(),
             dense: OneIncrement::new(alg),
+            iterations: 0,
         })
+    }
+    fn iterations(&self, work: &Self::Work) -> u64 {
+        work.iterations
     }
     #[inline]
     fn step(
@@ -87,12 +92,12 @@ impl<P: LiePoisson, Psi: CoordinateMap<P::Group> + OddMap> Method<P> for EnergyC
         w: &mut Self::Work,
     ) -> Result<(), StepError> {
         let (alg, lit) = (problem.group(), ScalarOf::<P>::lit);
-        let EnergyCasimirWork { xi, old, u, y, scratch: (m, v), chart, field, .. } = w;
+        let EnergyCasimirWork { xi, old, u, y, scratch: (m, v), chart, field, iterations, .. } = w;
         problem.discrete_gradient(p, p, xi, (m, v), field);
         if !alg.is_finite(xi) {
             return Err(StepError::NonFiniteRhs { stage: 1 });
         }
-        let mut progress = Progress::new();
+        let mut progress = Progress::new(iterations);
         loop {
             alg.set_zero(u);
             alg.axpy(-h, xi, u);

@@ -8,7 +8,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::{Method, Step, Symmetric};
+use super::{MapCounts, Method, Step, Symmetric};
 use crate::error::{Error, StepError};
 use crate::groups::{LieAlgebra, So3};
 use crate::problems::{Exact, Frame, FreeBody, PointOf, ScalarOf};
@@ -29,6 +29,9 @@ where
 
     fn order(&self, _: &P) -> usize {
         usize::MAX
+    }
+    fn map_counts(&self, _: &P, _: bool) -> Option<MapCounts> {
+        Some(MapCounts::default())
     }
     fn work(&self, problem: &P, _: &PointOf<P>) -> Result<[f64; 3], Error> {
         Ok([0, 1, 2].map(|k| 1.0 / problem.inverse_inertia()[k].into()))

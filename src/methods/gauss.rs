@@ -15,7 +15,7 @@
 use super::extension::{EXTRA, Extension, of_increment};
 use super::newton::Progress;
 use super::stages::copies;
-use super::{Method, Step, Symmetric};
+use super::{MapCounts, Method, Step, Symmetric};
 use crate::error::{Error, StepError};
 use crate::problems::FieldStore;
 use crate::problems::{Ambient, PointOf, ScalarOf};
@@ -84,6 +84,7 @@ pub struct GaussWork<P: Ambient, const S: usize> {
     ends: [PointOf<P>; 2],
     extra: [PointOf<P>; EXTRA],
     field: FieldStore<P>,
+    iterations: u64,
 }
 
 impl<const S: usize> Gauss<S> {
@@ -98,6 +99,12 @@ impl<P: Ambient, const S: usize> Method<P> for Gauss<S> {
     fn order(&self, _: &P) -> usize {
         self.0.order
     }
+    fn map_counts(&self, _: &P, _: bool) -> Option<MapCounts> {
+        Some(MapCounts::default())
+    }
+    fn iterations(&self, work: &Self::Work) -> u64 {
+        work.iterations
+    }
     /// Quadratic groups are kept to the rounding of the iteration, others are left.
     fn stays_on_manifold(&self) -> bool {
         false
@@ -110,6 +117,7 @@ impl<P: Ambient, const S: usize> Method<P> for Gauss<S> {
             ends: copies(like.clone()),
             extra: copies(like.clone()),
             field: FieldStore::new(problem),
+            iterations: 0,
         })
     }
     #[inline]
@@ -118,7 +126,7 @@ impl<P: Ambient, const S: usize> Method<P> for Gauss<S> {
         problem: &P,
         Step { t, h, .. }: Step<ScalarOf<P>>,
         y: &mut PointOf<P>,
-        GaussWork { k, old, z, field, .. }: &mut Self::Work,
+        GaussWork { k, old, z, field, iterations, .. }: &mut Self::Work,
     ) -> Result<(), StepError> {
         let (tab, lit) = (&self.0, ScalarOf::<P>::lit);
         let time = |i: usize| t + h * lit(tab.c[i]);
@@ -130,7 +138,7 @@ impl<P: Ambient, const S: usize> Method<P> for Gauss<S> {
         }
         let norm = y.size();
         let scale = if norm == lit(0.0) { lit(1.0) } else { norm };
-        let mut progress = Progress::new();
+        let mut progress = Progress::new(iterations);
         loop {
             let mut change = lit(0.0);
             for i in 0..S {

@@ -83,6 +83,7 @@ pub struct RkmkGaussWork<P: Problem, Psi: CoordinateMap<P::Group>, const S: usiz
     y: PointOf<P>,
     chart: ChartStore<P, Psi>,
     dense: OneIncrement<P>,
+    iterations: u64,
 }
 
 impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> RkmkGaussWork<P, Psi, S> {
@@ -97,6 +98,7 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> RkmkGaussWork<P, 
             y: like.clone(),
             chart: ChartStore::new(problem, psi, like)?,
             dense: OneIncrement::new(alg),
+            iterations: 0,
         })
     }
 
@@ -110,14 +112,14 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> RkmkGaussWork<P, 
         p: &PointOf<P>,
     ) -> Result<(), StepError> {
         let (alg, lit) = (problem.group(), ScalarOf::<P>::lit);
-        let RkmkGaussWork { k, u, old, middle, q, y, chart, .. } = self;
+        let RkmkGaussWork { k, u, old, middle, q, y, chart, iterations, .. } = self;
         for i in 0..S {
             chart.around(problem, psi, n, p).field(t + h * lit(tab.c[i]), &mut k[i]);
             if !alg.is_finite(&k[i]) {
                 return Err(StepError::NonFiniteRhs { stage: i + 1 });
             }
         }
-        let mut progress = Progress::new();
+        let mut progress = Progress::new(iterations);
         loop {
             if centred {
                 alg.combine(h * lit(0.5), &tab.b, k, middle); // −θ
@@ -171,6 +173,9 @@ macro_rules! method {
             }
             fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
                 RkmkGaussWork::new(problem, &self.psi, like)
+            }
+            fn iterations(&self, work: &Self::Work) -> u64 {
+                work.iterations
             }
             #[inline]
             fn step(

@@ -25,7 +25,7 @@ use faer::Mat;
 
 use super::gauss::ImplicitTableau;
 use super::newton::Progress;
-use super::{Method, Step, Symmetric};
+use super::{MapCounts, Method, Step, Symmetric};
 use crate::actions::{Action, Coadjoint, Conjugation};
 use crate::dense::mul;
 use crate::error::{Error, StepError};
@@ -88,6 +88,7 @@ pub struct IsospectralWork<P: Problem<Group: ConjugationGroup>, const S: usize> 
     half: StageOf<P>,
     m: PointOf<P>,
     field: P::Work,
+    iterations: u64,
 }
 
 /// The stages Q_i (or P_i) and their slopes B_i Q_i (or −P_i B_i).
@@ -273,14 +274,21 @@ where
             half: group.stage(),
             m: like.clone(),
             field: problem.work(),
+            iterations: 0,
         })
+    }
+    fn map_counts(&self, _: &P, _: bool) -> Option<MapCounts> {
+        Some(MapCounts::default())
+    }
+    fn iterations(&self, work: &Self::Work) -> u64 {
+        work.iterations
     }
     fn step(
         &self,
         problem: &P,
         Step { t, h, .. }: Step<f64>,
         y: &mut PointOf<P>,
-        IsospectralWork { q, p, b, half, m, field }: &mut Self::Work,
+        IsospectralWork { q, p, b, half, m, field, iterations }: &mut Self::Work,
     ) -> Result<(), StepError> {
         let (tab, group) = (&self.0, problem.group());
         problem.f(t, y, b, field);
@@ -292,7 +300,7 @@ where
             p.start(group, -1.0, b, h, &tab.a);
         }
         let scale = (group.rows() as f64).sqrt(); // ‖𝟙‖
-        let mut progress = Progress::new();
+        let mut progress = Progress::new(iterations);
         loop {
             let mut change = 0.0;
             for i in 0..S {

@@ -19,7 +19,7 @@ use faer::Mat;
 use nalgebra::Matrix3;
 
 use super::embedded::ratio_of_relative;
-use super::{Embedded, Method, Metric, Step};
+use super::{Embedded, MapCounts, Method, Metric, Step};
 use crate::actions::Action;
 use crate::dense::{axpy, mul_add};
 use crate::error::{Error, StepError};
@@ -219,6 +219,9 @@ where
     }
     fn evaluations(&self, _: &P) -> Option<u64> {
         Some(self.order as u64)
+    }
+    fn map_counts(&self, _: &P, _: bool) -> Option<MapCounts> {
+        Some(MapCounts::default())
     }
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
         let group = problem.group();

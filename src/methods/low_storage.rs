@@ -20,7 +20,7 @@
 
 use super::embedded::{ratio_in_algebra, without_pair};
 use super::tableau::pad;
-use super::{Embedded, Method, Step};
+use super::{Embedded, MapCounts, Method, Step};
 use crate::chart::ChartStore;
 use crate::error::{Error, StepError};
 use crate::groups::LieAlgebra;
@@ -262,6 +262,9 @@ where
     }
     fn evaluations(&self, _: &P) -> Option<u64> {
         Some(self.0.stages() as u64)
+    }
+    fn map_counts(&self, _: &P, _: bool) -> Option<MapCounts> {
+        Some(MapCounts { psi: self.0.stages() as u64, ..MapCounts::default() })
     }
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
         let alg = problem.group();

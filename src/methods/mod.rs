@@ -127,6 +127,18 @@ impl MapCounts {
     }
 }
 
+impl core::ops::Add for MapCounts {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        MapCounts {
+            psi: self.psi + other.psi,
+            dpsi_inv: self.dpsi_inv + other.dpsi_inv,
+            brackets: self.brackets + other.brackets,
+        }
+    }
+}
+
 /// A method whose step is undone by the step back: Φ_{−h} ∘ Φ_h = id, to rounding. Its order is even,
 /// and a [`Composition`] raises it.
 pub trait Symmetric {}
@@ -147,12 +159,13 @@ pub trait Method<P: Problem> {
         None
     }
 
-    /// How often a step asks for Ψ, dΨ⁻¹ and brackets, where every step asks as often.
-    fn map_counts(&self, _problem: &P) -> Option<MapCounts> {
+    /// How often a step asks for Ψ, dΨ⁻¹ and brackets, where every step asks as often. `with_error` is for a step
+    /// that estimates its error too ([`Embedded::step_with_error`]).
+    fn map_counts(&self, _problem: &P, _with_error: bool) -> Option<MapCounts> {
         None
     }
 
-    /// The iterations that implicit steps with this workspace took so far.
+    /// The iterations that implicit steps with this workspace took so far, those of failed steps too.
     fn iterations(&self, _work: &Self::Work) -> u64 {
         0
     }

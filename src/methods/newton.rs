@@ -27,7 +27,7 @@ fn solve3<S: Real>(a: &Matrix3<S>, b: &Vector3<S>) -> Vector3<S> {
 
 /// Newton's iteration for F(x) = 0 from `x`; `f` returns F and F'. It ends with the correction that
 /// is below the root of the rounding next to `scale`, the size of what is sought, which leaves an error
-/// at rounding.
+/// at rounding. Its iterations are added to `total`.
 ///
 /// # Errors
 /// [`StepError::NewtonDidNotConverge`] after [`NEWTON_MAX`] iterations or when it leaves the range.
@@ -36,6 +36,7 @@ pub(super) fn newton3<S: Real>(
     method: &'static str,
     mut x: Vector3<S>,
     scale: S,
+    total: &mut u64,
     mut f: impl FnMut(&Vector3<S>) -> (Vector3<S>, Matrix3<S>),
 ) -> Result<Vector3<S>, StepError> {
     let near = S::EPSILON.sqrt() / 64.0;
@@ -43,6 +44,7 @@ pub(super) fn newton3<S: Real>(
     let mut iterations = 0;
     while iterations < NEWTON_MAX {
         iterations += 1;
+        *total += 1;
         let (residual, jacobian) = f(&x);
         let d = solve3(&jacobian, &residual);
         x = Vector3::new(x[0] - d[0], x[1] - d[1], x[2] - d[2]);
@@ -67,15 +69,17 @@ fn log10_above<S: Real>(x: S) -> i32 {
 
 /// Watches a fixed-point iteration: it has converged when a change falls to rounding, or when near
 /// rounding the changes no longer shrink.
-pub(super) struct Progress<S> {
+pub(super) struct Progress<'a, S> {
     last: S,
     iterations: u32,
+    total: &'a mut u64,
 }
 
-impl<S: Real> Progress<S> {
+impl<'a, S: Real> Progress<'a, S> {
+    /// An iteration that begins; its iterations are added to `total`.
     #[inline]
-    pub(super) fn new() -> Self {
-        Progress { last: S::lit(f64::INFINITY), iterations: 0 }
+    pub(super) fn new(total: &'a mut u64) -> Self {
+        Progress { last: S::lit(f64::INFINITY), iterations: 0, total }
     }
 
     /// Is it done after a change of this size, relative to the size of what is sought?
@@ -86,6 +90,7 @@ impl<S: Real> Progress<S> {
     #[inline]
     pub(super) fn done(&mut self, method: &'static str, change: S) -> Result<bool, StepError> {
         self.iterations += 1;
+        *self.total += 1;
         let tiny = 0.25 * S::EPSILON;
         let stalled = change.all_below(STALL * S::EPSILON) && !(change / self.last).all_below(0.9);
         if change.all_below(tiny) || stalled {

@@ -18,7 +18,7 @@ use super::embedded::{ratio_in_algebra, without_pair};
 use super::extension::{Extension, OneIncrement, of_increment};
 use super::stages::Stages;
 use super::tableau::pad;
-use super::{Embedded, Method, Step};
+use super::{Embedded, MapCounts, Method, Step};
 use crate::error::{Error, StepError};
 use crate::groups::LieAlgebra;
 use crate::maps::{CoordinateMap, Exp};
@@ -62,6 +62,9 @@ pub struct OneBracketTableau<const S: usize> {
 impl<const S: usize> Increment<S> {
     const fn padded<const N: usize>(&self) -> Increment<N> {
         Increment { w: pad(&self.w), x: pad(&self.x) }
+    }
+    fn has_bracket(&self) -> bool {
+        self.x.iter().any(|x| *x != 0.0)
     }
 }
 
@@ -175,7 +178,7 @@ where
     fn increment(&mut self, alg: &P::Group, h: ScalarOf<P>, increment: &Increment<S>) {
         let Inner { stages: Stages { k, u, .. }, x, bracket, .. } = self;
         alg.combine(h, &increment.w, k, u);
-        if increment.x.iter().any(|x| *x != 0.0) {
+        if increment.has_bracket() {
             alg.combine(h, &increment.x, k, x);
             alg.bracket(&k[0], x, bracket);
             alg.axpy(h, bracket, u);
@@ -223,6 +226,11 @@ where
     }
     fn evaluations(&self, _: &P) -> Option<u64> {
         Some(self.0.stages() as u64)
+    }
+    fn map_counts(&self, _: &P, _: bool) -> Option<MapCounts> {
+        let OneBracketTableau { stages, update, .. } = &self.0;
+        let brackets = stages.iter().chain([update]).filter(|u| u.has_bracket()).count();
+        Some(MapCounts { psi: self.0.stages() as u64, dpsi_inv: 0, brackets: brackets as u64 })
     }
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
         let alg = problem.group();

@@ -7,7 +7,7 @@
 //! steps of two products; QR: Gram–Schmidt twice).
 //! Source: Hairer, Lubich, Wanner, Geometric Numerical Integration, IV.4; Celledoni & Owren, 1.
 
-use super::{Embedded, Method, Step};
+use super::{Embedded, MapCounts, Method, Step};
 use crate::error::{Error, StepError};
 use crate::problems::{Orthogonal, PointOf, Projection, ScalarOf};
 use crate::space::Metric;
@@ -56,6 +56,12 @@ impl<P: Orthogonal, M: Method<P>> Method<P> for ProjectionMethod<M> {
     }
     fn evaluations(&self, problem: &P) -> Option<u64> {
         self.base.evaluations(problem)
+    }
+    fn map_counts(&self, problem: &P, with_error: bool) -> Option<MapCounts> {
+        self.base.map_counts(problem, with_error)
+    }
+    fn iterations(&self, work: &Self::Work) -> u64 {
+        self.base.iterations(&work.base)
     }
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
         Ok(ProjectionWork { base: self.base.work(problem, like)?, z: like.clone() })

@@ -9,7 +9,7 @@ use super::embedded::without_pair;
 use super::extension::{EXTRA, Extension};
 use super::stages::copies;
 use super::tableau::{ErrorEstimate, fold_error};
-use super::{Embedded, Method, Step, Tableau};
+use super::{Embedded, MapCounts, Method, Step, Tableau};
 use crate::error::{Error, StepError};
 use crate::problems::FieldStore;
 use crate::problems::{Ambient, PointOf, ScalarOf};
@@ -71,6 +71,9 @@ impl<P: Ambient, const S: usize> Method<P> for Rk<S> {
     }
     fn evaluations(&self, _: &P) -> Option<u64> {
         Some(self.0.update_stages() as u64)
+    }
+    fn map_counts(&self, _: &P, _: bool) -> Option<MapCounts> {
+        Some(MapCounts::default())
     }
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
         Ok(RkWork {

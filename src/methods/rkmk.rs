@@ -15,7 +15,7 @@ use super::embedded::{ratio_in_algebra, without_pair};
 use super::extension::{EXTRA, Extension};
 use super::stages::{Stages, copies};
 use super::tableau::{ErrorEstimate, fold_error};
-use super::{Embedded, Method, Step, Tableau};
+use super::{Embedded, MapCounts, Method, Step, Tableau};
 use crate::error::{Error, StepError};
 use crate::groups::LieAlgebra;
 use crate::maps::CoordinateMap;
@@ -90,6 +90,10 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> Method<P> for Rkm
     }
     fn evaluations(&self, _: &P) -> Option<u64> {
         Some(self.stages as u64)
+    }
+    fn map_counts(&self, _: &P, with_error: bool) -> Option<MapCounts> {
+        let stages = if with_error { self.tableau.all_stages() } else { self.stages } as u64;
+        Some(MapCounts { psi: stages, dpsi_inv: stages - 1, brackets: 0 })
     }
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
         Ok(RkmkWork {

@@ -29,7 +29,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::newton::newton3;
-use super::{Method, Step, Symmetric};
+use super::{MapCounts, Method, Step, Symmetric};
 use crate::error::{Error, StepError};
 use crate::groups::{LieAlgebra, LieGroup, So3};
 use crate::maps::{Cay, CoordinateMap};
@@ -110,9 +110,15 @@ fn scaled<S: Real>(a: S, j: &Vector3<S>, x: &Vector3<S>) -> Vector3<S> {
 }
 
 impl SimoWong {
-    /// ζ of the step from m.
+    /// ζ of the step from m; Newton's iterations are added to `iterations`.
     #[inline(always)]
-    fn zeta<S: Trig>(self, j: &Vector3<S>, h: S, m: &Vector3<S>) -> Result<Vector3<S>, StepError> {
+    fn zeta<S: Trig>(
+        self,
+        j: &Vector3<S>,
+        h: S,
+        m: &Vector3<S>,
+        iterations: &mut u64,
+    ) -> Result<Vector3<S>, StepError> {
         let half = S::lit(0.5);
         // Without squares, which leave the range where |m| does not.
         let size = m[0].abs() + m[1].abs() + m[2].abs();
@@ -121,7 +127,7 @@ impl SimoWong {
             let sum = Vector3::new(x[0] + m[0], x[1] + m[1], x[2] + m[2]);
             (sum, scaled(half * h, j, &sum))
         };
-        let x = newton3(self.0.name(), *m, scale, |x| {
+        let x = newton3(self.0.name(), *m, scale, iterations, |x| {
             let (sum, z) = zeta_bar(x);
             let (k, slope) = self.0.k(j, h, &sum, &z);
             let turn = cross(&z, &sum);
@@ -153,13 +159,20 @@ impl<P: FreeBody> Method<P> for SimoWong
 where
     ScalarOf<P>: Trig,
 {
-    type Work = ();
+    /// The iterations so far.
+    type Work = u64;
 
     fn order(&self, _: &P) -> usize {
         if self.0 == Factor::LewisSimo && !P::Frame::TURNS { 4 } else { 2 }
     }
-    fn work(&self, _: &P, _: &PointOf<P>) -> Result<(), Error> {
-        Ok(())
+    fn map_counts(&self, _: &P, _: bool) -> Option<MapCounts> {
+        Some(MapCounts { psi: 1, ..MapCounts::default() })
+    }
+    fn iterations(&self, work: &u64) -> u64 {
+        *work
+    }
+    fn work(&self, _: &P, _: &PointOf<P>) -> Result<u64, Error> {
+        Ok(0)
     }
     #[inline]
     fn step(
@@ -167,10 +180,10 @@ where
         problem: &P,
         Step { h, .. }: Step<ScalarOf<P>>,
         y: &mut PointOf<P>,
-        (): &mut (),
+        iterations: &mut u64,
     ) -> Result<(), StepError> {
         let (m, frame) = problem.load(y);
-        let zeta = self.zeta(problem.inverse_inertia(), h, &m)?;
+        let zeta = self.zeta(problem.inverse_inertia(), h, &m, iterations)?;
         turn_body(problem, &Cay, &mut (), &zeta, m, frame, y)
     }
 }

@@ -21,11 +21,14 @@ pub(super) struct Watch<P: Problem> {
     pub(super) values: fn(&P, &PointOf<P>) -> Vec<f64>,
 }
 
+/// What gets the bytes of a state.
+type TakeBytes<'a> = Box<dyn FnMut(&[u8]) + 'a>;
+
 /// When the state is saved, and who gets it.
 pub(super) struct Checkpoints<'a, P: Problem> {
     pub(super) list: Listing<P>,
     pub(super) every: Duration,
-    pub(super) take: Box<dyn FnMut(&[u8]) + 'a>,
+    pub(super) take: TakeBytes<'a>,
     pub(super) last: Instant,
 }
 

@@ -6,7 +6,7 @@ use super::stats::{Mender, RunError, Stats};
 use crate::actions::Action;
 use crate::error::{Error, Failure, StepError};
 use crate::groups::LieAlgebra;
-use crate::methods::{Embedded, EqualSteps, Method, Step};
+use crate::methods::{Embedded, EqualSteps, MapCounts, Method, Step};
 use crate::problems::{AlgOf, PointOf, Problem, ScalarOf};
 use crate::scalar::Real;
 use crate::tolerance::Tolerance;
@@ -83,6 +83,7 @@ pub(super) struct Chooser<P: Problem, M: Method<P>> {
     pub(super) control: StepControl,
     estimator: Estimator<P, M>,
     evaluations: Option<u64>,
+    maps: Option<MapCounts>,
     pub(super) controller: Controller,
     /// The size of the next attempt, without its sign; `None` before the first step.
     pub(super) h: Option<f64>,
@@ -185,6 +186,7 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
                     control,
                     estimator,
                     evaluations: (estimator.evaluations)(method, problem),
+                    maps: method.map_counts(problem, true),
                     controller: Controller::new((estimator.error_order)(method, problem)?),
                     h: None,
                     wall: None,
@@ -198,7 +200,7 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
         let mender = Mender::new(problem, &y, method.stays_on_manifold());
         let stats = Stats {
             evaluations: Some(0),
-            maps: method.map_counts(problem).map(|_| Default::default()),
+            maps: Some(MapCounts::default()),
             smallest_step: f64::INFINITY,
             ..Stats::default()
         };
@@ -242,12 +244,12 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
         if stats.accepted == 0 {
             stats.smallest_step = 0.0;
         }
-        if let Some(counts) = stats.maps.and(self.method.map_counts(self.problem)) {
-            stats.maps = Some(counts.times(stats.accepted + stats.rejected));
-        }
-        if let (Pacer::Equal { .. }, Some(more)) = (&self.pacer, stats.evaluations) {
+        if let Pacer::Equal { .. } = &self.pacer {
             let each = self.method.evaluations(self.problem);
-            stats.evaluations = each.map(|each| more + each * stats.accepted);
+            stats.evaluations =
+                stats.evaluations.zip(each).map(|(more, each)| more + each * stats.accepted);
+            let each = self.method.map_counts(self.problem, false);
+            stats.maps = each.map(|each| each.times(stats.accepted));
         }
         stats
     }
@@ -517,8 +519,9 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
         let Pacer::ByError(chooser) = &self.pacer else {
             return Err(StepError::NotFinite { what: "the error estimate" });
         };
-        let Chooser { control, estimator, evaluations, .. } = &**chooser;
+        let Chooser { control, estimator, evaluations, maps, .. } = &**chooser;
         self.stats.evaluations = self.stats.evaluations.zip(*evaluations).map(|(n, more)| n + more);
+        self.stats.maps = self.stats.maps.zip(*maps).map(|(n, more)| n + more);
         self.looked_at = Looked::Nothing;
         let (tolerance, work) = (&control.tolerance, &mut self.work);
         let ratio = (estimator.attempt)(
@@ -667,10 +670,11 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
         }
     }
 
-    /// Take the last step again, so that the workspace knows it.
+    /// Take the last step again, so that the workspace knows it. Its iterations were counted before.
     fn repeat(&mut self) -> Result<(), StepError> {
         let step = lit::<P>(self.last);
-        match &self.pacer {
+        let counted = self.method.iterations(&self.work);
+        let repeated = match &self.pacer {
             Pacer::Equal { .. } => {
                 let (action, group) = (self.problem.action(), self.problem.group());
                 action.assign(group, &self.from, &mut self.to);
@@ -686,7 +690,10 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
                 &mut self.to,
             )
             .map(drop),
-        }
+        };
+        let again = self.method.iterations(&self.work).wrapping_sub(counted);
+        self.stats.iterations = self.stats.iterations.wrapping_sub(again);
+        repeated
     }
 
     /// Go to another step, which was taken before: what a continuous solution does.

@@ -176,7 +176,7 @@ impl<P: Problem, M: Method<P>> Integrator<'_, P, M> {
             Pacer::ByError(chooser) => format!("{:?}", chooser.control),
         };
         let order = method.order(problem);
-        let costs = (method.evaluations(problem), method.map_counts(problem));
+        let costs = (method.evaluations(problem), method.map_counts(problem, false));
         format!("{} {order} {costs:?} {pace}", problem.group().name())
     }
 }

@@ -19,9 +19,11 @@ pub struct Stats {
     pub points_within: u64,
     /// Evaluations of f, in rejected attempts and within steps too; `None` where the method does not know them.
     pub evaluations: Option<u64>,
-    /// Applications of Ψ, dΨ⁻¹ and brackets in the attempts; `None` where the method does not know them.
+    /// Ψ, dΨ⁻¹ and brackets in the attempts, not in points within a step; `None` where the method does not know
+    /// them.
     pub maps: Option<MapCounts>,
-    /// Iterations of implicit steps, by Newton's method or by a fixed point; 0 for explicit ones.
+    /// Iterations of implicit steps, by Newton's method or by a fixed point, in rejected attempts and within steps
+    /// too; 0 for explicit methods.
     pub iterations: u64,
     /// The smallest accepted step, without its sign.
     pub smallest_step: f64,

@@ -128,8 +128,8 @@ pub struct CayleyMagnus4;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct CayleyMagnus6;
 
-magnus_method!(CayleyMagnus4, 4, GAUSS_2, Cay, 2, 4, [TripleProduct], order_4);
-magnus_method!(CayleyMagnus6, 6, GAUSS_3, Cay, 3, 9, [TripleProduct], order_6);
+magnus_method!(CayleyMagnus4, 4, GAUSS_2, Cay, 2, 4, [TripleProduct], order_4, 1);
+magnus_method!(CayleyMagnus6, 6, GAUSS_3, Cay, 3, 9, [TripleProduct], order_6, 5);
 
 fn order_4<G: TripleProduct>(g: &G, h: G::Scalar, a: &[G::Alg; 2], work: &mut [G::Alg; 4]) {
     let lit = G::Scalar::lit;

@@ -22,9 +22,9 @@ pub struct Magnus6;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Magnus8;
 
-magnus_method!(Magnus4, 4, GAUSS_2, Exp, 2, 2, [], order_4);
-magnus_method!(Magnus6, 6, GAUSS_3, Exp, 3, 7, [], order_6);
-magnus_method!(Magnus8, 8, GAUSS_4, Exp, 4, 14, [], order_8);
+magnus_method!(Magnus4, 4, GAUSS_2, Exp, 2, 2, [], order_4, 1);
+magnus_method!(Magnus6, 6, GAUSS_3, Exp, 3, 7, [], order_6, 3);
+magnus_method!(Magnus8, 8, GAUSS_4, Exp, 4, 14, [], order_8, 10);
 
 fn order_4<G: LieAlgebra>(g: &G, h: G::Scalar, a: &[G::Alg; 2], [omega, x]: &mut [G::Alg; 2]) {
     g.combine(h, &[0.5, 0.5], a, omega);

@@ -131,9 +131,10 @@ fn sum<G: LieAlgebra, const N: usize>(
     }
 }
 
-/// A Magnus method: S nodes, K elements of scratch, one map.
+/// A Magnus method: S nodes, K elements of scratch, one map, so many brackets.
 macro_rules! magnus_method {
-    ($method:ident, $order:expr, $nodes:expr, $psi:ident, $s:literal, $k:literal, [$($bound:path)?], $omega:path) => {
+    ($method:ident, $order:expr, $nodes:expr, $psi:ident, $s:literal, $k:literal, [$($bound:path)?],
+     $omega:path, $brackets:literal) => {
         impl<P: crate::problems::LinearField> crate::methods::Method<P> for $method
         where
             $psi: CoordinateMap<P::Group>,
@@ -146,6 +147,9 @@ macro_rules! magnus_method {
             }
             fn evaluations(&self, _: &P) -> Option<u64> {
                 Some($s)
+            }
+            fn map_counts(&self, _: &P, _: bool) -> Option<crate::methods::MapCounts> {
+                Some(crate::methods::MapCounts { psi: 1, dpsi_inv: 0, brackets: $brackets })
             }
             fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
                 MagnusWork::new(problem, &$psi, like)

@@ -9,7 +9,7 @@ use super::{GAUSS_2, GAUSS_3, GAUSS_4, MagnusWork, ROOT_3, ROOT_15, V, W};
 use crate::error::{Error, StepError};
 use crate::groups::LieAlgebra;
 use crate::maps::{CoordinateMap, Exp};
-use crate::methods::{Method, Step};
+use crate::methods::{MapCounts, Method, Step};
 use crate::problems::{LinearField, PointOf, ScalarOf};
 
 /// The coefficients of a commutator-free Magnus method: S nodes, F factors.
@@ -154,6 +154,9 @@ where
     }
     fn evaluations(&self, _: &P) -> Option<u64> {
         Some(S as u64)
+    }
+    fn map_counts(&self, _: &P, _: bool) -> Option<MapCounts> {
+        Some(MapCounts { psi: F as u64, ..MapCounts::default() })
     }
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
         Ok((MagnusWork::new(problem, &Exp, like)?, like.clone()))

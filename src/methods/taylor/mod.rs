@@ -28,7 +28,7 @@ use series::{Advance, Body, OneStep, reach, rotation};
 
 use super::embedded::ratio_of_relative;
 use super::simo_wong::turn_by;
-use super::{Embedded, Method, Step};
+use super::{Embedded, MapCounts, Method, Step};
 use crate::error::{Error, StepError};
 use crate::groups::{LieAlgebra, So3};
 use crate::problems::{Frame, FreeBody, PointOf, ScalarOf};
@@ -116,6 +116,9 @@ where
     }
     fn evaluations(&self, _: &P) -> Option<u64> {
         Some(N as u64)
+    }
+    fn map_counts(&self, _: &P, _: bool) -> Option<MapCounts> {
+        Some(MapCounts::default())
     }
     fn work(&self, _: &P, _: &PointOf<P>) -> Result<(), Error> {
         Ok(())
