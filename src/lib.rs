@@ -69,6 +69,11 @@
 #[doc = include_str!("../README.md")]
 struct Readme;
 
+/// The programs of docs/driver.md, as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../docs/driver.md")]
+struct DriverPage;
+
 pub mod actions;
 pub mod catalog;
 pub mod chart;

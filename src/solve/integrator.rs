@@ -89,6 +89,8 @@ pub(super) struct Chooser<P: Problem, M: Method<P>> {
     pub(super) h: Option<f64>,
     /// The end of the last step that failed, until it is passed.
     pub(super) wall: Option<f64>,
+    /// Two values of f and its scratch, for the choice of a first step.
+    first: Option<(AlgOf<P>, AlgOf<P>, P::Work)>,
 }
 
 /// What the workspace knows of the last step.
@@ -190,6 +192,7 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
                     controller: Controller::new((estimator.error_order)(method, problem)?),
                     h: None,
                     wall: None,
+                    first: Some((problem.group().zero(), problem.group().zero(), problem.work())),
                 }))
             }
         };
@@ -475,8 +478,13 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
                     chooser.wall = chooser.wall.filter(|wall| !passed(wall));
                     chooser.controller.hold |= chooser.wall.is_some();
                     let next = size * chooser.controller.accept(ratio);
-                    // A step that was shortened to end at `stop` says nothing against the size before.
-                    chooser.h = Some(if size < 0.5 * h { next.max(h) } else { next });
+                    // A step that was shortened to end at `stop` says nothing against the size before, and one that
+                    // goes half the way nothing against the other half.
+                    chooser.h = Some(match size / h {
+                        part if part < 0.5 => next.max(h),
+                        part if part < 0.99 => next.max(size),
+                        _ => next,
+                    });
                     return Ok(());
                 }
                 rejected => {
@@ -545,15 +553,28 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
     /// Hairer, Nørsett, Wanner I, II.4, with the norm of 𝔤, where 1 is the natural unit: a step that
     /// moves by 1/100, looked at for how much f changes over it.
     fn first_step(&mut self, stop: f64) -> f64 {
+        let Pacer::ByError(chooser) = &mut self.pacer else { return 0.0 };
+        let Some(mut store) = chooser.first.take() else { return 0.0 };
+        let h = self.first_step_with(stop, &mut store);
+        if let Pacer::ByError(chooser) = &mut self.pacer {
+            chooser.first = Some(store);
+        }
+        h
+    }
+
+    fn first_step_with(
+        &mut self,
+        stop: f64,
+        (f0, f1, work): &mut (AlgOf<P>, AlgOf<P>, P::Work),
+    ) -> f64 {
         let Pacer::ByError(chooser) = &self.pacer else { return 0.0 };
         let (k, tolerance) = (chooser.controller.k, chooser.control.tolerance.of_unit_size());
         let (group, one) = (self.problem.group(), ScalarOf::<P>::lit);
-        let (mut f0, mut f1, mut work) = (group.zero(), group.zero(), self.problem.work());
         let norm = chooser.estimator.norm;
         let span = (stop - self.t).abs();
-        self.problem.f(one(self.t), &self.y, &mut f0, &mut work);
+        self.problem.f(one(self.t), &self.y, f0, work);
         self.stats.evaluations = self.stats.evaluations.map(|n| n + 1);
-        let d1 = norm(self.problem, &f0);
+        let d1 = norm(self.problem, f0);
         if !d1.is_finite() {
             return 1e-3 * span.min(1.0); // the first attempt will say what is wrong
         }
@@ -569,11 +590,11 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
         if self.attempt(Step { n: self.stats.accepted, t: self.t, h: end - self.t }).is_err() {
             return h0;
         }
-        self.problem.f(one(end), &self.to, &mut f1, &mut work);
+        self.problem.f(one(end), &self.to, f1, work);
         self.stats.evaluations = self.stats.evaluations.map(|n| n + 1);
-        group.axpy(one(-1.0), &f0, &mut f1);
+        group.axpy(one(-1.0), f0, f1);
         // Rates: f itself, and the root of its derivative.
-        let rate = d1.max((norm(self.problem, &f1) / h0).sqrt());
+        let rate = d1.max((norm(self.problem, f1) / h0).sqrt());
         let h1 = (0.01 * tolerance).powf(1.0 / k) / rate;
         match h1.is_finite() {
             true => h1.min(100.0 * h0),

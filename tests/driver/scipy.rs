@@ -633,6 +633,20 @@ fn an_observer_sees_every_step() {
     assert!(run.times.is_empty() && run.points.is_empty(), "nothing is stored");
     assert_eq!(seen.len() as u64, run.stats.accepted + 1);
     assert_eq!((seen[0], seen[seen.len() - 1]), ((5.0, rational_at(5.0)), (9.0, run.y)));
+    // Every third, and the end.
+    for equal in [false, true] {
+        let solve = || match equal {
+            true => Solve::new(&problem, &method, SPANS[0]).steps(20),
+            false => Solve::new(&problem, &method, SPANS[0]).tolerances(1e-6, 1e-9),
+        };
+        let all = solve().every(1).run(rational_at(5.0)).expect("a run").times;
+        let third = solve().every(3).run(rational_at(5.0)).expect("a run").times;
+        let mut expected: Vec<f64> = all.iter().copied().step_by(3).collect();
+        if (all.len() - 1) % 3 != 0 {
+            expected.push(9.0);
+        }
+        assert_eq!(third, expected);
+    }
 }
 
 #[test]

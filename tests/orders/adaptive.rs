@@ -121,12 +121,15 @@ fn spans_and_arguments() {
             assert!(matches!(error, RunError::Setup(Error::OutOfRange { .. })), "{error}");
         }
     }
-    for bad in [f64::NAN, f64::INFINITY, -f64::INFINITY] {
-        for span in [[bad, 1.0], [0.0, bad]] {
-            let error = go(&body, &method, span, &tols, &start).expect_err("a bad time");
-            assert!(error.to_string().starts_with("t_span["), "{error}");
-        }
+    let bad_starts = [f64::NAN, f64::INFINITY, -f64::INFINITY].map(|bad| [bad, 1.0]);
+    for span in bad_starts.into_iter().chain([[0.0, f64::NAN]]) {
+        let error = go(&body, &method, span, &tols, &start).expect_err("a bad time");
+        assert!(error.to_string().starts_with("t_span["), "{error}");
     }
+    // A span without end is gone through until the attempts are used up.
+    let few = tols.clone().max_steps(20).expect("a limit");
+    let error = go(&body, &method, [0.0, f64::INFINITY], &few, &start).expect_err("no end");
+    assert!(matches!(error, RunError::TooManySteps { accepted: 20, .. }), "{error}");
     for bad in [f64::NAN, f64::INFINITY, -1.0] {
         assert!(StepControl::new(bad, 1.0).expect_err("rtol").to_string().starts_with("rtol"));
         assert!(StepControl::new(1.0, bad).expect_err("atol").to_string().starts_with("atol"));

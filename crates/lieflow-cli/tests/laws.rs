@@ -3,6 +3,8 @@
 
 mod support;
 
+use std::sync::atomic::AtomicBool;
+
 use lieflow::catalog::{MethodSpec, all_methods};
 use lieflow_cli::cmd::run::run_scene;
 use lieflow_cli::output::{Drift, Watched};
@@ -119,7 +121,7 @@ fn promises_are_kept_and_only_those_are_made() {
             let most = scene.problem.samples().map_or(500, |_| scene.grid.steps());
             let steps = if fluid { 20 } else { most };
             let of = short(bundled.name, method, steps);
-            let summary = run_scene(&of, folder.path()).unwrap();
+            let summary = run_scene(&of, folder.path(), false, &AtomicBool::new(false)).unwrap();
             if !summary.completed {
                 // A classical method cannot pass a pole.
                 assert_eq!((bundled.name, method.map.is_none()), ("riccati-pole", true));

@@ -136,6 +136,11 @@ fn an_interrupted_run_says_how_to_go_on() {
     check_lines(&folder, "trajectory", &expected.0);
     check_lines(&folder, "events", &expected.1);
 
+    // The state is that of the end: every row and every event is among its records.
+    let state = fs::read(folder.path().join("out/run.state")).unwrap();
+    let records = u64::from_le_bytes(state[32..40].try_into().unwrap()) as usize;
+    let events = folder.read("out/events.partial.csv");
+    assert_eq!(records, written.lines().count() - 1 + events.lines().count() - 1);
     // Another scene does not go on with it, and changes nothing.
     folder.write("other.toml", &scene("2500.5"));
     let message = folder.lieflow(&["run", "other.toml", "--out", "out", "--resume"]).refused();

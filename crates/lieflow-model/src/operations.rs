@@ -3,10 +3,10 @@
 //! is made of those.
 
 use lieflow::catalog::MethodSpec;
-use lieflow::methods::Method;
-use lieflow::problems::PointOf;
-use lieflow::scalar::Counted;
-use lieflow::{Solve, Stats};
+use lieflow::methods::{AnyMethod, Method};
+use lieflow::problems::{PointOf, ScalarOf};
+use lieflow::scalar::{Counted, Real};
+use lieflow::{Integrator, Solve, Stats, Step, TimeGrid};
 
 use crate::model::{Runnable, Steps};
 
@@ -28,23 +28,53 @@ pub fn operations_by<P: Runnable>(
     steps: &Steps,
 ) -> Option<f64> {
     let method = problem.method(spec).ok()?;
-    let solve = Solve::new(problem, &method, steps.t_span());
-    let solve = match steps {
-        Steps::Equal(_) if method.order(problem) == usize::MAX => return None,
-        Steps::Equal(grid) => solve.grid(*grid),
-        Steps::ByError { control, .. } => solve.control(control.clone()),
-    };
-    let mut run = solve.integrator(y).ok()?;
+    match steps {
+        Steps::Equal(_) if method.order(problem) == usize::MAX => None,
+        Steps::Equal(grid) => of_equal_steps(problem, &method, y, grid),
+        Steps::ByError { t_span, control } => {
+            let solve = Solve::new(problem, &method, *t_span).control(control.clone());
+            of_a_run(solve.integrator(y).ok()?)
+        }
+    }
+}
+
+/// Are so many steps with so many operations enough?
+fn enough(steps: u64, operations: u64) -> bool {
+    steps >= COUNTED_STEPS || (steps >= COUNTED_AT_LEAST && operations > COUNTED_OPERATIONS)
+}
+
+/// Operations of a step; none where nothing was counted.
+fn mean(steps: u64, operations: u64) -> Option<f64> {
+    (steps > 0 && operations > 0).then(|| operations as f64 / steps as f64)
+}
+
+/// Of the method alone: what the driver does now and then is not counted.
+fn of_equal_steps<P: Runnable>(
+    problem: &P,
+    method: &AnyMethod<'static, P>,
+    mut y: PointOf<P>,
+    grid: &TimeGrid,
+) -> Option<f64> {
+    let mut work = method.work(problem, &y).ok()?;
+    let lit = ScalarOf::<P>::lit;
+    let (mut n, mut operations) = (0, 0);
+    while n < grid.steps() && !enough(n, operations) {
+        let step = Step { n, t: lit(grid.time(n)), h: lit(grid.h()) };
+        let (done, counted) = Counted::count(|| method.step(problem, step, &mut y, &mut work));
+        done.ok()?;
+        (n, operations) = (n + 1, operations + counted.total());
+    }
+    mean(n, operations)
+}
+
+/// Of the attempts of a run.
+fn of_a_run<P: Runnable>(mut run: Integrator<'_, P, AnyMethod<'static, P>>) -> Option<f64> {
     let attempts = |stats: Stats| stats.accepted + stats.rejected;
     let mut operations = 0;
-    while !run.is_done() && attempts(run.stats()) < COUNTED_STEPS {
-        if attempts(run.stats()) >= COUNTED_AT_LEAST && operations > COUNTED_OPERATIONS {
-            break;
-        }
+    while !run.is_done() && !enough(attempts(run.stats()), operations) {
         let (done, counted) = Counted::count(|| run.step().map(drop));
         done.ok()?;
         operations += counted.total();
     }
-    let steps = attempts(run.stats());
-    (steps > 0 && operations > 0).then(|| operations as f64 / steps as f64)
+    mean(attempts(run.stats()), operations)
 }

@@ -1,6 +1,7 @@
 //! What allocates once, when it is made, and not in a step.
 
 mod adaptive;
+mod driver;
 mod exponentials;
 mod maps;
 mod products;

@@ -124,7 +124,10 @@ pub fn run_scene(
     let mut done = match outcome {
         Ok(done) => done,
         Err(error) => {
-            kept.discard();
+            // A saved run stays where it was.
+            if !resume {
+                kept.discard();
+            }
             return Err(error);
         }
     };

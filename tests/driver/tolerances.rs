@@ -1,0 +1,260 @@
+//! What the error of a step is compared with, and that a run keeps to it.
+
+use lieflow::actions::{LeftTranslation, Linear};
+use lieflow::groups::{Product, Se3, So3, Translations};
+use lieflow::maps::Exp;
+use lieflow::methods::tableau::{BS3, DOPRI5};
+use lieflow::methods::{Embedded, Rk, Rkmk};
+use lieflow::problems::{Flow, PointOf, Problem, RigidBody};
+use lieflow::tolerance::{PartTolerance, Rule, Tolerance};
+use lieflow::{LieAlgebra, RunError, Solve, Step};
+use nalgebra::{Matrix3, Vector3};
+
+use crate::modes::V;
+use crate::scipy::free;
+
+/// The ratio of one step with a tolerance.
+fn ratio<P: Problem<Group: LieAlgebra<Scalar = f64>>, M: Embedded<P>>(
+    problem: &P,
+    method: &M,
+    tolerance: Tolerance,
+    y: &PointOf<P>,
+) -> f64 {
+    let mut work = method.work(problem, y).expect("the method fits");
+    let step = Step { n: 0, t: 0.2, h: 0.3 };
+    let mut to = y.clone();
+    method.step_with_error(problem, step, &tolerance, y, &mut work, &mut to).expect("a step")
+}
+
+fn both(rtol: f64, atol: f64) -> Tolerance {
+    Tolerance::new(rtol, atol).expect("tolerances")
+}
+
+fn near(found: f64, expected: f64) {
+    assert!((found / expected - 1.0).abs() < 1e-9, "{found:e}, expected {expected:e}");
+}
+
+/// A vector: ‖e‖ against atol + rtol·‖y‖, or |eᵢ| against atolᵢ + rtol·|yᵢ|.
+#[test]
+fn of_a_vector() {
+    let field = |t: f64| V::new((9.0 * t).cos(), (8.0 * t).sin(), 1e-3 * (7.0 * t).cos());
+    let problem = Flow::of_time(free(), LeftTranslation, move |t: f64, v: &mut V| *v = field(t));
+    let (method, y) = (Rk(BS3), V::new(300.0, -40.0, 0.0));
+    // The error itself, from the rows of the pair: 5/72, −1/12, −1/9, 1/8.
+    let e = 0.3
+        * (5.0 / 72.0 * field(0.2) - field(0.35) / 12.0 - field(0.425) / 9.0 + field(0.5) / 8.0);
+    let of = |tolerance| ratio(&problem, &method, tolerance, &y);
+    near(of(both(0.0, 1.0)), e.norm());
+    // In M the error is that of the end of the step, to rounding of the difference of two points.
+    let way = 0.3 * (2.0 / 9.0 * field(0.2) + field(0.35) / 3.0 + 4.0 / 9.0 * field(0.425));
+    let close = |found: f64, expected: f64| {
+        assert!((found / expected - 1.0).abs() < 1e-7, "{found:e}, expected {expected:e}")
+    };
+    let exact = Rkmk::new(BS3, Exp);
+    let of_algebra = |tolerance| ratio(&problem, &exact, tolerance, &y);
+    near(of_algebra(both(0.0, 1e-5)), e.norm() / 1e-5);
+    near(of_algebra(both(1e-3, 0.0)), e.norm() / (1e-3 * y.norm()));
+    near(of_algebra(both(1e-3, 0.5)), e.norm() / (0.5 + 1e-3 * y.norm()));
+    let each = |rtol, atol: [f64; 3]| -> Tolerance {
+        PartTolerance::per_component(rtol, atol).expect("tolerances").into()
+    };
+    let scaled = |rtol: f64, atol: [f64; 3], at: V| {
+        (0..3).map(|i| e[i].abs() / (atol[i] + rtol * at[i].abs())).fold(0.0, f64::max)
+    };
+    for atol in [[1.0, 1.0, 1.0], [1.0, 1.0, 1e-6], [1e-6, 1.0, 1.0], [1.0, 1e-6, 1.0]] {
+        for rtol in [0.0, 1e-4] {
+            near(of_algebra(each(rtol, atol)), scaled(rtol, atol, y));
+            close(of(each(rtol, atol)), scaled(rtol, atol, y + way));
+        }
+    }
+    // By the length of the step: ‖e‖ against atol + rtol·(the way that it goes).
+    near(of_algebra(both(1e-3, 0.0).by(Rule::PerLength)), e.norm() / (1e-3 * way.norm()));
+    near(of_algebra(both(1e-3, 0.5).by(Rule::PerLength)), e.norm() / (0.5 + 1e-3 * way.norm()));
+}
+
+/// A rotation: the angle of the error against atol + rtol. A vector that turns: the angle times its size.
+#[test]
+fn of_a_rotation() {
+    let field = |t: f64, v: &mut V| *v = V::new((9.0 * t).cos(), (8.0 * t).sin(), 0.3);
+    let (method, so3) = (Rkmk::new(BS3, Exp), So3::<f64>::new());
+    let attitude = Flow::of_time(so3, LeftTranslation, field);
+    let of = |tolerance| ratio(&attitude, &method, tolerance, &Matrix3::identity());
+    let angle = of(both(0.0, 1.0));
+    assert!(angle > 1e-4);
+    near(of(both(1e-6, 0.0)), angle / 1e-6);
+    near(of(both(1e-6, 3e-6)), angle / 4e-6);
+    let vector = Flow::of_time(so3, Linear, field);
+    let y = V::new(0.0, 30.0, 40.0);
+    near(ratio(&vector, &method, both(0.0, 1e-6), &y), 50.0 * angle / 1e-6);
+    near(ratio(&vector, &method, both(1e-6, 0.0), &y), angle / 1e-6);
+    near(ratio(&vector, &method, both(1e-6, 1e-5), &y), 50.0 * angle / (1e-5 + 50e-6));
+}
+
+type Both = (Matrix3<f64>, V);
+
+/// An attitude that turns, and a vector that moves on its own.
+fn beside() -> impl Problem<Group = Product<So3, Translations<V>>, Action = LeftTranslation> {
+    let group = Product(So3::new(), free());
+    Flow::new(group, LeftTranslation, |t: f64, y: &Both, v: &mut (V, V)| {
+        *v = (
+            V::new((2.0 * t).cos(), 0.4, t.sin()),
+            V::new(-2.0 * t * y.1.x * y.1.x, y.1.x * y.1.y, -0.5 * y.1.z),
+        );
+    })
+}
+
+const START: Both =
+    (Matrix3::new(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0), Vector3::new(1.0, 1.0, 1.0));
+
+fn parts<const N: usize>(atol: [f64; N]) -> Tolerance {
+    let parts = atol.map(|atol| PartTolerance::new(0.0, atol).expect("a tolerance"));
+    Tolerance::of_parts(parts).expect("parts")
+}
+
+/// The largest of the ratios of the parts, each with its own tolerance.
+#[test]
+fn of_a_product() {
+    let (problem, method) = (beside(), Rkmk::new(BS3, Exp));
+    let of = |a, b| ratio(&problem, &method, parts([a, b]), &START);
+    let (turned, moved) = (of(1e-9, 1e9) * 1e-9, of(1e9, 1e-9) * 1e-9);
+    assert!(turned > 1e-6 && moved > 1e-6);
+    near(of(1e-5, 1e-7), f64::max(turned / 1e-5, moved / 1e-7));
+    near(of(1e-7, 1e-5), f64::max(turned / 1e-7, moved / 1e-5));
+    near(ratio(&problem, &method, both(0.0, 1e-6), &START), turned.max(moved) / 1e-6);
+}
+
+/// The part with the loose tolerance gets fewer digits than with a tight one, and the run fewer steps.
+#[test]
+fn each_part_has_its_own() {
+    let (problem, method) = (beside(), Rkmk::new(DOPRI5, Exp));
+    let run = |tolerance: Tolerance| {
+        let run = Solve::new(&problem, &method, [0.0, 6.0])
+            .tolerance(tolerance)
+            .run(START)
+            .expect("a run");
+        (run.y, run.stats.accepted)
+    };
+    let exact = run(parts([1e-13, 1e-13])).0;
+    let error = |y: &Both| ((y.0 - exact.0).norm(), (y.1 - exact.1).norm());
+    let (tight, steps) = run(parts([1e-9, 1e-9]));
+    let (loose_vector, fewer) = run(parts([1e-9, 1e-3]));
+    let (loose_rotation, _) = run(parts([1e-3, 1e-9]));
+    let (loose, fewest) = run(parts([1e-3, 1e-3]));
+    assert!(error(&tight).0 < 1e-7 && error(&tight).1 < 1e-7);
+    assert!(error(&loose_vector).0 < 1e-7 && error(&loose_rotation).1 < 1e-7);
+    assert!(error(&loose).0 > 1e-5 && error(&loose).1 > 1e-5, "{:?}", error(&loose));
+    assert!(fewest < fewer && fewer <= steps);
+}
+
+#[test]
+fn each_component_has_its_own() {
+    // x and y are independent of one another: cos and sin at 3, and a slow z.
+    let problem = Flow::new(free(), LeftTranslation, |_: f64, y: &V, v: &mut V| {
+        *v = V::new(-3.0 * y.y, 3.0 * y.x, -y.z)
+    });
+    let method = Rk(DOPRI5);
+    let run = |atol: [f64; 3]| {
+        let tolerance = PartTolerance::per_component(0.0, atol).expect("tolerances");
+        let run = Solve::new(&problem, &method, [0.0, 4.0])
+            .tolerance(tolerance.into())
+            .run(V::new(1.0, 0.0, 1.0));
+        let run = run.expect("a run");
+        let exact = V::new(12.0f64.cos(), 12.0f64.sin(), (-4.0f64).exp());
+        ((run.y - exact).abs(), run.stats.accepted)
+    };
+    let (tight, steps) = run([1e-10, 1e-10, 1e-10]);
+    let (loose, fewer) = run([1e-3, 1e-3, 1e-10]);
+    let (also_loose, fewest) = run([1e-3, 1e-3, 1e-3]);
+    assert!(tight.x < 1e-7 && tight.z < 1e-8 && loose.z < 1e-8, "{tight} {loose}");
+    assert!(
+        fewest < fewer
+            && fewer < steps
+            && loose.x > 10.0 * tight.x
+            && also_loose.z > 10.0 * loose.z
+    );
+}
+
+#[test]
+fn a_wrong_number_of_them_is_told() {
+    let method = Rkmk::new(DOPRI5, Exp);
+    let problem = beside();
+    for (given, tolerance) in [(3, parts([1e-6; 3])), (5, parts([1e-6; 5]))] {
+        let failed = Solve::new(&problem, &method, [0.0, 1.0])
+            .tolerance(tolerance)
+            .run(START)
+            .expect_err("parts");
+        assert!(matches!(failed.error, RunError::Setup(_)), "{failed}");
+        let said = failed.to_string();
+        assert!(
+            said.contains("tolerances") && said.contains(&given.to_string()) && said.contains('2'),
+            "{said}"
+        );
+    }
+    assert!(Tolerance::of_parts([]).is_err());
+    for fits in [1, 2] {
+        let tolerance = if fits == 1 { parts([1e-6; 1]) } else { parts([1e-6; 2]) };
+        Solve::new(&problem, &method, [0.0, 1.0]).tolerance(tolerance).run(START).expect("a run");
+    }
+    // SE(3) has two parts.
+    let se3 = Flow::of_time(Se3::<f64>::new(), LeftTranslation, |t: f64, v: &mut (V, V)| {
+        *v = (V::z() * t, V::x())
+    });
+    let at = (Matrix3::identity(), V::zeros());
+    for (count, fits) in [(1, true), (2, true), (3, false)] {
+        let tolerance =
+            Tolerance::of_parts(vec![PartTolerance::new(0.0, 1e-6).expect("one"); count])
+                .expect("parts");
+        let run = Solve::new(&se3, &method, [0.0, 1.0]).tolerance(tolerance).run(at);
+        assert_eq!(run.is_ok(), fits, "{count}");
+    }
+    // As many as components.
+    let body = RigidBody::new([1.0, 2.0, 3.0]).expect("a body");
+    for (count, fits) in [(2, false), (3, true), (4, false)] {
+        let tolerance = PartTolerance::per_component(1e-6, vec![1e-6; count]).expect("tolerances");
+        let run = Solve::new(&body, &method, [0.0, 1.0]).tolerance(tolerance.into()).run(V::x());
+        assert_eq!(run.is_ok(), fits, "{count}");
+        if let Err(failed) = run {
+            let said = failed.to_string();
+            assert!(said.contains("atol") && said.contains(&count.to_string()), "{said}");
+        }
+    }
+    for bad in [-1.0, f64::NAN, f64::INFINITY] {
+        assert!(
+            PartTolerance::per_component(1e-6, [1e-6, bad]).is_err()
+                && PartTolerance::new(bad, 1.0).is_err()
+        );
+    }
+    assert!(
+        PartTolerance::per_component(0.0, [1e-6, 0.0]).is_err(),
+        "nothing to compare the second with"
+    );
+}
+
+/// By the step the size of the point counts, by the length it does not: the error of a run is rtol of its way.
+#[test]
+fn by_the_step_and_by_the_length() {
+    let problem =
+        Flow::of_time(free(), LeftTranslation, |t: f64, v: &mut V| *v = V::new(t.cos(), 0.0, 0.0));
+    let method = Rkmk::new(DOPRI5, Exp);
+    let run = |rule: Rule, offset: f64, rtol: f64| {
+        let start = V::new(0.0, offset, 0.0);
+        let run = Solve::new(&problem, &method, [0.0, 40.0])
+            .tolerances(rtol, 0.0)
+            .rule(rule)
+            .run(start)
+            .expect("a run");
+        ((run.y.x - 40.0f64.sin()).abs(), run.stats.accepted)
+    };
+    let (near_0, far) = (run(Rule::PerStep, 1.0, 1e-8), run(Rule::PerStep, 1e6, 1e-8));
+    assert!(far.1 * 3 < near_0.1, "{far:?} {near_0:?}");
+    let (near_0, far) = (run(Rule::PerLength, 1.0, 1e-8), run(Rule::PerLength, 1e6, 1e-8));
+    assert_eq!(near_0.1, far.1);
+    // The way is 4/π·20 long: |cos| over 40.
+    for rtol in [1e-5, 1e-7, 1e-9] {
+        let (error, _) = run(Rule::PerLength, 1.0, rtol);
+        assert!(error < rtol * 26.0, "{rtol}: {error}");
+    }
+    // A smaller tolerance pays, by about its own factor.
+    let errors = [1e-5, 1e-7, 1e-9].map(|rtol| run(Rule::PerStep, 1.0, rtol).0);
+    assert!(errors[1] < 0.1 * errors[0] && errors[2] < 0.1 * errors[1], "{errors:?}");
+}
