@@ -24,10 +24,10 @@ type Attempt<P, M> = fn(
 
 /// What a run that chooses its steps needs of its method.
 pub(super) struct Estimator<P: Problem, M: Method<P>> {
-    attempt: Attempt<P, M>,
-    error_order: fn(&M, &P) -> Result<usize, Error>,
-    evaluations: fn(&M, &P) -> Option<u64>,
-    norm: fn(&P, &AlgOf<P>) -> f64,
+    pub(super) attempt: Attempt<P, M>,
+    pub(super) error_order: fn(&M, &P) -> Result<usize, Error>,
+    pub(super) evaluations: fn(&M, &P) -> Option<u64>,
+    pub(super) norm: fn(&P, &AlgOf<P>) -> f64,
 }
 
 impl<P: Problem, M: Method<P>> Clone for Estimator<P, M> {
@@ -81,16 +81,16 @@ pub(super) enum Pacer<P: Problem, M: Method<P>> {
 /// The state of the choice of steps by their error.
 pub(super) struct Chooser<P: Problem, M: Method<P>> {
     pub(super) control: StepControl,
-    estimator: Estimator<P, M>,
-    evaluations: Option<u64>,
-    maps: Option<MapCounts>,
+    pub(super) estimator: Estimator<P, M>,
+    pub(super) evaluations: Option<u64>,
+    pub(super) maps: Option<MapCounts>,
     pub(super) controller: Controller,
     /// The size of the next attempt, without its sign; `None` before the first step.
     pub(super) h: Option<f64>,
     /// The end of the last step that failed, until it is passed.
     pub(super) wall: Option<f64>,
     /// Two values of f and its scratch, for the choice of a first step.
-    first: Option<(AlgOf<P>, AlgOf<P>, P::Work)>,
+    pub(super) first: Option<(AlgOf<P>, AlgOf<P>, P::Work)>,
 }
 
 /// What the workspace knows of the last step.
@@ -138,7 +138,7 @@ pub struct Integrator<'a, P: Problem, M: Method<P>> {
     /// The last step.
     pub(super) last: Step<f64>,
     /// The end of an attempt, or of the step that was taken again.
-    to: PointOf<P>,
+    pub(super) to: PointOf<P>,
     pub(super) looked_at: Looked,
     pub(super) work: M::Work,
     pub(super) pacer: Pacer<P, M>,
@@ -146,9 +146,6 @@ pub struct Integrator<'a, P: Problem, M: Method<P>> {
     pub(super) mender: Mender<P>,
     pub(super) stats: Stats,
 }
-
-/// The number of rejections in a row that ends a run.
-const REJECTIONS_MAX: u32 = 60;
 
 /// Is f(t, y) in 𝔤? Asked once, before the first step.
 fn check_field<P: Problem>(problem: &P, t: f64, y: &PointOf<P>) -> Result<(), Error> {
@@ -158,13 +155,13 @@ fn check_field<P: Problem>(problem: &P, t: f64, y: &PointOf<P>) -> Result<(), Er
 }
 
 /// The size of a step from t to `end`, or to a few rounding units before it.
-fn size_to(t: f64, end: f64, before: bool) -> f64 {
+pub(super) fn size_to(t: f64, end: f64, before: bool) -> f64 {
     let unit = f64::EPSILON * t.abs().max(end.abs());
     let size = end - t;
     if before && size.abs() > 100.0 * unit { size - (4.0 * unit).copysign(size) } else { size }
 }
 
-fn lit<P: Problem>(Step { n, t, h }: Step<f64>) -> Step<ScalarOf<P>> {
+pub(super) fn lit<P: Problem>(Step { n, t, h }: Step<f64>) -> Step<ScalarOf<P>> {
     Step { n, t: ScalarOf::<P>::lit(t), h: ScalarOf::<P>::lit(h) }
 }
 
@@ -392,7 +389,7 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
 
     /// y is the state after `step`, at `end`.
     #[inline]
-    fn accepted(&mut self, step: Step<f64>, end: f64) {
+    pub(super) fn accepted(&mut self, step: Step<f64>, end: f64) {
         self.last = step;
         self.looked_at = Looked::Fresh;
         self.t = end;
@@ -446,281 +443,5 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
         self.stats.accepted = before;
         self.looked_at = Looked::Nothing;
         Ok(true)
-    }
-
-    fn chosen_step(&mut self, stop: f64, jumps: bool) -> Result<(), RunError> {
-        let Pacer::ByError(chooser) = &self.pacer else { return Ok(()) };
-        let (min_step, max_steps) = (chooser.control.min_step, chooser.control.max_steps);
-        let mut h = match (chooser.h, chooser.control.first_step) {
-            (Some(h), _) | (None, Some(h)) => h,
-            (None, None) => self.first_step(stop),
-        };
-        let mut in_a_row = 0;
-        loop {
-            h = h.max(min_step);
-            let (end, size) = self.propose(h, stop);
-            if self.stats.accepted + self.stats.rejected >= max_steps {
-                return Err(self.too_many(size, max_steps));
-            }
-            if end == self.t {
-                return Err(self.underflow(h, None));
-            }
-            let h_to_end = size_to(self.t, end, jumps && end == stop);
-            let step = Step { n: self.stats.accepted, t: self.t, h: h_to_end };
-            match self.attempt(step) {
-                Ok(ratio) if ratio <= 1.0 => {
-                    let forward = self.t1 > self.t;
-                    core::mem::swap(&mut self.from, &mut self.y);
-                    core::mem::swap(&mut self.y, &mut self.to);
-                    self.accepted(step, end);
-                    let Pacer::ByError(chooser) = &mut self.pacer else { return Ok(()) };
-                    let passed = |wall: &f64| if forward { end >= *wall } else { end <= *wall };
-                    chooser.wall = chooser.wall.filter(|wall| !passed(wall));
-                    chooser.controller.hold |= chooser.wall.is_some();
-                    let next = size * chooser.controller.accept(ratio);
-                    // A step that was shortened to end at `stop` says nothing against the size before, and one that
-                    // goes half the way nothing against the other half.
-                    chooser.h = Some(match size / h {
-                        part if part < 0.5 => next.max(h),
-                        part if part < 0.99 => next.max(size),
-                        _ => next,
-                    });
-                    return Ok(());
-                }
-                rejected => {
-                    self.stats.rejected += 1;
-                    in_a_row += 1;
-                    let Pacer::ByError(chooser) = &mut self.pacer else { return Ok(()) };
-                    if rejected.is_err() {
-                        chooser.wall = Some(end);
-                    }
-                    h = size * chooser.controller.reject(rejected.ok());
-                    chooser.h = Some(h);
-                    // Next to t two steps of different sizes may be one after rounding.
-                    let smaller = self.propose(h, stop).0;
-                    let stuck = smaller == self.t || smaller == end;
-                    if in_a_row >= REJECTIONS_MAX || h < min_step || stuck {
-                        return Err(self.underflow(h, rejected.err()));
-                    }
-                }
-            }
-        }
-    }
-
-    /// Where a step of about this size ends, and its size. It is `stop` when that is near, and half way when two
-    /// steps would be needed of which one is short.
-    fn propose(&self, h: f64, stop: f64) -> (f64, f64) {
-        let Pacer::ByError(chooser) = &self.pacer else { return (self.t, 0.0) };
-        let max_step = chooser.control.max_step;
-        let left = (stop - self.t).abs();
-        let h = h.min(max_step);
-        if left <= h || (left <= 1.01 * h && left <= max_step) {
-            return (stop, left);
-        }
-        let h = if left < 2.0 * h { 0.5 * left } else { h };
-        let end = self.t + h.copysign(stop - self.t);
-        (end, (end - self.t).abs())
-    }
-
-    /// `to` ← the step from y; its error in units of the tolerance.
-    fn attempt(&mut self, step: Step<f64>) -> Result<f64, StepError> {
-        let Pacer::ByError(chooser) = &self.pacer else {
-            return Err(StepError::NotFinite { what: "the error estimate" });
-        };
-        let Chooser { control, estimator, evaluations, maps, .. } = &**chooser;
-        self.stats.evaluations = self.stats.evaluations.zip(*evaluations).map(|(n, more)| n + more);
-        self.stats.maps = self.stats.maps.zip(*maps).map(|(n, more)| n + more);
-        self.looked_at = Looked::Nothing;
-        let (tolerance, work) = (&control.tolerance, &mut self.work);
-        let ratio = (estimator.attempt)(
-            self.method,
-            self.problem,
-            lit::<P>(step),
-            tolerance,
-            &self.y,
-            work,
-            &mut self.to,
-        )?;
-        if !self.problem.action().is_finite(self.problem.group(), &self.to) {
-            return Err(StepError::NotFinite { what: "the state" });
-        }
-        match ratio.is_finite() {
-            true => Ok(ratio),
-            false => Err(StepError::NotFinite { what: "the error estimate" }),
-        }
-    }
-
-    /// Hairer, Nørsett, Wanner I, II.4, with the norm of 𝔤, where 1 is the natural unit: a step that
-    /// moves by 1/100, looked at for how much f changes over it.
-    fn first_step(&mut self, stop: f64) -> f64 {
-        let Pacer::ByError(chooser) = &mut self.pacer else { return 0.0 };
-        let Some(mut store) = chooser.first.take() else { return 0.0 };
-        let h = self.first_step_with(stop, &mut store);
-        if let Pacer::ByError(chooser) = &mut self.pacer {
-            chooser.first = Some(store);
-        }
-        h
-    }
-
-    fn first_step_with(
-        &mut self,
-        stop: f64,
-        (f0, f1, work): &mut (AlgOf<P>, AlgOf<P>, P::Work),
-    ) -> f64 {
-        let Pacer::ByError(chooser) = &self.pacer else { return 0.0 };
-        let (k, tolerance) = (chooser.controller.k, chooser.control.tolerance.of_unit_size());
-        let (group, one) = (self.problem.group(), ScalarOf::<P>::lit);
-        let norm = chooser.estimator.norm;
-        let span = (stop - self.t).abs();
-        self.problem.f(one(self.t), &self.y, f0, work);
-        self.stats.evaluations = self.stats.evaluations.map(|n| n + 1);
-        let d1 = norm(self.problem, f0);
-        if !d1.is_finite() {
-            return 1e-3 * span.min(1.0); // the first attempt will say what is wrong
-        }
-        let still = d1 * span <= 1e-5;
-        let h0 = if still { 1e-6 * span } else { (0.01 / d1).min(span) };
-        if h0.is_infinite() {
-            return 1.0; // nothing moves, and nothing ends
-        }
-        let end = self.t + h0.copysign(stop - self.t);
-        if end == self.t {
-            return if still { span } else { h0 };
-        }
-        if self.attempt(Step { n: self.stats.accepted, t: self.t, h: end - self.t }).is_err() {
-            return h0;
-        }
-        self.problem.f(one(end), &self.to, f1, work);
-        self.stats.evaluations = self.stats.evaluations.map(|n| n + 1);
-        group.axpy(one(-1.0), f0, f1);
-        // Rates: f itself, and the root of its derivative.
-        let rate = d1.max((norm(self.problem, f1) / h0).sqrt());
-        let h1 = (0.01 * tolerance).powf(1.0 / k) / rate;
-        match h1.is_finite() {
-            true => h1.min(100.0 * h0),
-            false => h0,
-        }
-    }
-
-    #[cold]
-    fn underflow(&self, h: f64, source: Option<StepError>) -> RunError {
-        let Stats { accepted, rejected, .. } = self.stats;
-        let h = h.copysign(self.t1 - self.t);
-        RunError::StepSizeUnderflow { t: self.t, h, accepted, rejected, source }
-    }
-
-    #[cold]
-    fn too_many(&self, h: f64, max_steps: u64) -> RunError {
-        let Stats { accepted, rejected, .. } = self.stats;
-        let h = h.copysign(self.t1 - self.t);
-        RunError::TooManySteps { t: self.t, h, accepted, rejected, max_steps }
-    }
-
-    /// `at` ← the state at t in the last step.
-    pub(super) fn at(&mut self, t: f64, at: &mut PointOf<P>) -> Result<(), RunError> {
-        let (action, group) = (self.problem.action(), self.problem.group());
-        if t == self.t {
-            action.assign(group, &self.y, at);
-            return Ok(());
-        }
-        self.within(t, at)
-    }
-
-    /// `at` ← the continuous extension of the last step at t, strictly within it.
-    pub(super) fn within(&mut self, t: f64, at: &mut PointOf<P>) -> Result<(), RunError> {
-        let (action, group) = (self.problem.action(), self.problem.group());
-        let Step { t: start, h, .. } = self.last;
-        if t == start {
-            action.assign(group, &self.from, at);
-            return Ok(());
-        }
-        let within = |source| RunError::Within { t: start, h, source };
-        self.prepare().map_err(within)?;
-        let (step, theta) = (lit::<P>(self.last), ((t - start) / h).clamp(0.0, 1.0));
-        let [_, each] = self.method.dense_evaluations(self.problem);
-        self.stats.points_within += 1;
-        self.stats.evaluations = self.stats.evaluations.zip(each).map(|(n, more)| n + more);
-        self.method
-            .interpolate(self.problem, step, theta, &self.from, &mut self.work, at)
-            .map_err(within)?;
-        match action.is_finite(group, at) {
-            true => Ok(()),
-            false => Err(within(StepError::NotFinite { what: "the state" })),
-        }
-    }
-
-    /// `at` ← the state at t in the last step, by a shorter step from its start.
-    pub(super) fn at_by_a_step(&mut self, t: f64, at: &mut PointOf<P>) -> Result<(), RunError> {
-        if t == self.t || t == self.last.t {
-            return self.at(t, at);
-        }
-        let Step { n, t: start, h } = self.last;
-        self.problem.action().assign(self.problem.group(), &self.from, at);
-        let step = lit::<P>(Step { n, t: start, h: t - start });
-        self.looked_at = Looked::Stale;
-        self.stats.points_within += 1;
-        let each = self.method.evaluations(self.problem);
-        self.stats.evaluations = self.stats.evaluations.zip(each).map(|(n, more)| n + more);
-        self.method
-            .step(self.problem, step, at, &mut self.work)
-            .map_err(|source| RunError::Within { t: start, h, source })
-    }
-
-    /// Make the continuous extension of the last step ready.
-    fn prepare(&mut self) -> Result<(), StepError> {
-        if self.looked_at == Looked::Prepared {
-            return Ok(());
-        }
-        if self.looked_at == Looked::Stale {
-            self.repeat()?;
-        }
-        let [once, _] = self.method.dense_evaluations(self.problem);
-        self.stats.evaluations = self.stats.evaluations.zip(once).map(|(n, more)| n + more);
-        let step = lit::<P>(self.last);
-        // A step that was cut is prepared, or was taken again.
-        let to = if self.looked_at == Looked::Fresh { &self.y } else { &self.to };
-        self.method.prepare(self.problem, step, &self.from, to, &mut self.work)?;
-        self.looked_at = Looked::Prepared;
-        Ok(())
-    }
-
-    /// The workspace does not know the last step.
-    pub(super) fn forget_workspace(&mut self) {
-        if self.looked_at != Looked::Nothing {
-            self.looked_at = Looked::Stale;
-        }
-    }
-
-    /// Take the last step again, so that the workspace knows it. Its iterations were counted before.
-    fn repeat(&mut self) -> Result<(), StepError> {
-        let step = lit::<P>(self.last);
-        let counted = self.method.iterations(&self.work);
-        let repeated = match &self.pacer {
-            Pacer::Equal { .. } => {
-                let (action, group) = (self.problem.action(), self.problem.group());
-                action.assign(group, &self.from, &mut self.to);
-                self.method.step(self.problem, step, &mut self.to, &mut self.work)
-            }
-            Pacer::ByError(chooser) => (chooser.estimator.attempt)(
-                self.method,
-                self.problem,
-                step,
-                &chooser.control.tolerance,
-                &self.from,
-                &mut self.work,
-                &mut self.to,
-            )
-            .map(drop),
-        };
-        let again = self.method.iterations(&self.work).wrapping_sub(counted);
-        self.stats.iterations = self.stats.iterations.wrapping_sub(again);
-        repeated
-    }
-
-    /// Go to another step, which was taken before: what a continuous solution does.
-    pub(super) fn look_at(&mut self, step: Step<f64>, from: &PointOf<P>) {
-        self.problem.action().assign(self.problem.group(), from, &mut self.from);
-        self.last = step;
-        self.looked_at = Looked::Stale;
     }
 }

@@ -9,6 +9,7 @@
 //! Until time has passed its end no step grows, so that a wall that cannot be passed is closed in on with one
 //! rejection for each halving. With steps of one size a step that fails ends the run.
 
+mod by_error;
 mod continuous;
 mod control;
 mod drive;
@@ -19,6 +20,7 @@ mod save;
 mod simple;
 mod solution;
 mod stats;
+mod within;
 
 pub use continuous::Continuous;
 pub use control::StepControl;
