@@ -6,13 +6,12 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use lieflow::LieAlgebra;
 use lieflow::maps::{Cay, Exp};
 use lieflow::methods::tableau::{DOPRI5, RK4};
 use lieflow::methods::{Method, Rkmk};
-use lieflow::problems::{RigidBody, RigidBodyN};
+use lieflow::problems::{PointOf, RigidBody, RigidBodyN};
 use lieflow::solve::Next;
-use lieflow::{Event, Problem, SaveAt, Solve, Step, TimeGrid, integrate};
+use lieflow::{Event, LieAlgebra, Problem, SaveAt, Solve, Step, TimeGrid, integrate};
 use nalgebra::Vector3;
 
 type V = Vector3<f64>;
@@ -46,6 +45,23 @@ fn ratio(name: &str, goal: &str, mut beside: impl FnMut(), mut run: impl FnMut()
     println!("{name:58} {median:6.3} (of the fastest rounds {fastest:6.3}), goal {goal}");
 }
 
+/// The steps of a grid and nothing else. The problem and the method are not known to the compiler as numbers, as they
+/// are not in a program that reads them.
+fn loop_of_steps<P: Problem<Group: LieAlgebra<Scalar = f64>>, M: Method<P>>(
+    problem: &P,
+    method: &M,
+    grid: &TimeGrid,
+    mut y: PointOf<P>,
+) {
+    let (problem, method) = (black_box(problem), black_box(method));
+    let mut work = method.work(problem, &y).expect("the method fits");
+    for n in 0..grid.steps() {
+        let step = Step { n, t: n as f64 * grid.h(), h: grid.h() };
+        method.step(problem, step, &mut y, &mut work).expect("a step");
+    }
+    black_box(&y);
+}
+
 fn main() {
     let body = RigidBody::new([1.0, 2.0, 3.0]).expect("a body");
     let rkmk4 = Rkmk::new(RK4, Cay);
@@ -54,15 +70,7 @@ fn main() {
     // A bare loop of steps.
     let steps = 200_000u64;
     let grid = TimeGrid::with_steps([0.0, 2000.0], steps).expect("a grid");
-    let bare = || {
-        let mut y = START;
-        let mut work = rkmk4.work(&body, &y).expect("the method fits");
-        for n in 0..steps {
-            let step = Step { n, t: n as f64 * grid.h(), h: black_box(grid.h()) };
-            rkmk4.step(&body, step, &mut y, &mut work).expect("a step");
-        }
-        black_box(y);
-    };
+    let bare = || loop_of_steps(&body, &rkmk4, &grid, START);
     ratio("integrate without output, RKMK4 with cay, m alone", "1.03", bare, || {
         let mut y = START;
         integrate(&body, &rkmk4, &grid, &SaveAt::End, &mut y, |_, _| {}).expect("a run");
@@ -90,15 +98,7 @@ fn main() {
     ratio(
         "integrate without output, RKMK4 with cay, n = 6",
         "1.03",
-        || {
-            let mut y = start.clone();
-            let mut work = rkmk4.work(&large, &y).expect("the method fits");
-            for n in 0..steps {
-                let step = Step { n, t: n as f64 * grid.h(), h: black_box(grid.h()) };
-                rkmk4.step(&large, step, &mut y, &mut work).expect("a step");
-            }
-            black_box(&y);
-        },
+        || loop_of_steps(&large, &rkmk4, &grid, start.clone()),
         || {
             let mut y = start.clone();
             integrate(&large, &rkmk4, &grid, &SaveAt::End, &mut y, |_, _| {}).expect("a run");
