@@ -1,10 +1,12 @@
 //! The driver: output, events, stops, tolerances, and whatever may go wrong in a run.
 
 mod controller;
+mod events;
 mod hard_cases;
 mod modes;
 mod physics;
 mod scipy;
+mod scipy_events;
 #[path = "../support/mod.rs"]
 mod support;
 mod tolerances;

@@ -1,0 +1,322 @@
+//! Hard cases of events (T13), of stops, of states that are changed within a run, and of what is left of one that failed (T14).
+
+use core::cell::Cell;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use lieflow::actions::LeftTranslation;
+use lieflow::maps::Exp;
+use lieflow::methods::tableau::DOPRI5;
+use lieflow::methods::{Rk, Rkmk};
+use lieflow::problems::Flow;
+use lieflow::solve::{Next, Status};
+use lieflow::{Error, Event, RunError, SaveAt, Solve};
+
+use crate::hard_cases::{START, body, spin};
+use crate::modes::V;
+use crate::scipy::{free, rational, rational_at};
+
+/// T13: what is found where.
+#[test]
+fn t13_events_in_odd_places() {
+    // x = t on T(3), with steps of one size: a zero at any place of a step.
+    let problem = Flow::of_time(free(), LeftTranslation, |_: f64, v: &mut V| *v = V::x());
+    let method = Rk(DOPRI5);
+    let find = |g: Box<dyn Fn(f64) -> f64>, points: Option<u32>, change: bool| {
+        let event = Event::new("g", move |t, _: &V| g(t));
+        let event = if change { event.change(|_, _| {}) } else { event };
+        let event = if let Some(points) = points { event.points(points) } else { event };
+        let run = Solve::new(&problem, &method, [0.0, 4.0]).dt(0.5).event(event).run(V::zeros());
+        run.expect("a run").events.iter().map(|found| (found.t, found.rising)).collect::<Vec<_>>()
+    };
+    let near = |found: &[(f64, bool)], expected: &[(f64, bool)]| {
+        let same = found.len() == expected.len()
+            && found.iter().zip(expected).all(|(a, b)| (a.0 - b.0).abs() < 1e-12 && a.1 == b.1);
+        assert!(same, "{found:?}, expected {expected:?}");
+    };
+    for change in [false, true] {
+        // At the start, at the ends of steps, at the end, in the middle.
+        near(&find(Box::new(|x| x), None, change), &[(0.0, true)]);
+        near(&find(Box::new(|x| -x), None, change), &[(0.0, false)]);
+        near(&find(Box::new(|x| x - 1.5), None, change), &[(1.5, true)]);
+        near(&find(Box::new(|x| 4.0 - x), None, change), &[(4.0, false)]);
+        near(&find(Box::new(|x| x - 1.7), None, change), &[(1.7, true)]);
+        // Two and three in one step.
+        near(
+            &find(Box::new(|x| (x - 1.6) * (x - 1.8)), None, change),
+            &[(1.6, false), (1.8, true)],
+        );
+        near(
+            &find(Box::new(|x| (x - 1.6) * (x - 1.7) * (x - 1.85)), None, change),
+            &[(1.6, true), (1.7, false), (1.85, true)],
+        );
+        // In the first step, where nothing is known of the one before.
+        near(
+            &find(Box::new(|x| (x - 0.1) * (x - 0.4)), None, change),
+            &[(0.1, false), (0.4, true)],
+        );
+        // At the start and soon after.
+        near(&find(Box::new(|x| x * (x - 0.05)), None, change), &[(0.0, false), (0.05, true)]);
+        // A jump of g is found like a zero.
+        near(&find(Box::new(|x| if x < 1.7 { -1.0 } else { 1.0 }), None, change), &[(1.7, true)]);
+        // Two that lie between the points that are looked at are found with more points.
+        let close = || Box::new(|x: f64| (x - 1.6).powi(2) - 1e-6);
+        near(&find(close(), None, change), &[]);
+        near(&find(close(), Some(1000), change), &[(1.599, false), (1.601, true)]);
+        // A zero that turns back is none, and one that is hit exactly is one.
+        near(&find(Box::new(|x| (x - 1.6).powi(2)), None, change), &[]);
+        near(&find(Box::new(|x| (x - 1.5).powi(2)), None, change), &[(1.5, false)]);
+        // Always 0: never.
+        near(&find(Box::new(|_| 0.0), None, change), &[]);
+    }
+}
+
+/// Zeros at one time: all are told, in their order, and one that stops does not hide another that changes.
+#[test]
+fn t13_events_at_one_time() {
+    let problem = Flow::of_time(free(), LeftTranslation, |_: f64, v: &mut V| *v = V::x());
+    let method = Rk(DOPRI5);
+    let calls = Cell::new(0);
+    let run = Solve::new(&problem, &method, [0.0, 4.0])
+        .tolerances(1e-6, 1e-6)
+        .event(Event::new("first", |_, y: &V| y.x - 1.0).stop_after(1))
+        .event(Event::new("second", |_, y: &V| 2.0 - 2.0 * y.x).change(|_, y: &mut V| {
+            calls.set(calls.get() + 1);
+            y.y = 7.0;
+        }))
+        .event(Event::new("third", |t, _: &V| t - 1.0))
+        .every(1)
+        .run(V::zeros())
+        .expect("a run");
+    let found: Vec<usize> = run.events.iter().map(|found| found.event).collect();
+    assert_eq!((found, calls.get()), (vec![0, 1, 2], 1));
+    assert_eq!(run.status, Status::Event("first".into()));
+    assert!(
+        (run.t - 1.0).abs() < 1e-14
+            && run.y.y == 7.0
+            && run.events.iter().all(|found| found.y.y == 0.0)
+    );
+    assert_eq!(run.points.last(), Some(&run.y));
+    // One that changes the state hides no zero a little later.
+    for later in [1e-3, 1e-6, 1e-9, 1e-12] {
+        let run = Solve::new(&problem, &method, [0.0, 4.0])
+            .dt(0.5)
+            .event(Event::new("first", |_, y: &V| y.x - 1.25).change(|_, _| {}))
+            .event(Event::new("second", move |_, y: &V| y.x - 1.25 - later).stop_after(1))
+            .run(V::zeros())
+            .expect("a run");
+        let found: Vec<usize> = run.events.iter().map(|found| found.event).collect();
+        assert_eq!(found, [0, 1], "{later}");
+        assert!((run.t - 1.25 - later).abs() < 1e-15);
+    }
+    // The other direction of a zero that was passed is not found at the same time.
+    let run = Solve::new(&problem, &method, [0.0, 4.0])
+        .dt(0.5)
+        .event(
+            Event::new("falls", |_, y: &V| 1.3 - y.x).falling().change(|_, y: &mut V| y.z += 1.0),
+        )
+        .event(Event::new("rises", |_, y: &V| 1.3 - y.x).rising())
+        .run(V::zeros())
+        .expect("a run");
+    assert_eq!(run.events.len(), 1, "{:?}", run.events);
+}
+
+#[test]
+fn t13_an_event_that_is_not_a_number_is_named() {
+    let (body, method) = (body(), Rkmk::new(DOPRI5, Exp));
+    for bad in [f64::NAN, f64::INFINITY] {
+        for from in [0.0, 1.7] {
+            let run = Solve::new(&body, &method, [0.0, 4.0])
+                .dt(0.5)
+                .every(1)
+                .event(Event::new("fine", |_, m: &V| m.x))
+                .event(Event::new(
+                    "log of what is not there",
+                    move |t, _: &V| if t < from { 1.0 } else { bad },
+                ))
+                .run(START)
+                .expect_err("no number");
+            match &run.error {
+                RunError::Event { name, t, value } => {
+                    assert_eq!(name, "log of what is not there");
+                    assert!((from..from + 0.5).contains(t) && !value.is_finite());
+                }
+                other => panic!("{other}"),
+            }
+            let known = run.solution.expect("what was known");
+            assert_eq!(known.times.is_empty(), from == 0.0);
+            assert!(known.t <= 2.0);
+        }
+    }
+}
+
+/// Stops: whatever cuts a step before one, it is still there, and one that is given twice changes nothing.
+#[test]
+fn stops_are_kept() {
+    let ends = Cell::new(Vec::new());
+    let problem = Flow::of_time(free(), LeftTranslation, |_: f64, v: &mut V| *v = V::x());
+    let method = Rk(DOPRI5);
+    for (span, forward) in [([0.0, 4.0], true), ([4.0, 0.0], false)] {
+        for adaptive in [false, true] {
+            let solve = Solve::new(&problem, &method, span)
+                .every(1)
+                .stops([3.3, 1.2, 1.2, 9.0, -1.0, 0.0, 4.0, 2.6]);
+            let solve = if adaptive { solve.tolerances(1e-6, 1e-6) } else { solve.dt(0.7) };
+            let run = solve
+                .event(Event::new("cut", |t, _: &V| t - 2.3).change(|_, _| {}))
+                .event(Event::new("count", |t, _: &V| t - 1.2))
+                .event(Event::new("count", |t, _: &V| t - 1.1))
+                .run(V::zeros())
+                .expect("a run");
+            assert!([1.2, 2.6, 3.3].iter().all(|stop| run.times.contains(stop)), "{:?}", run.times);
+            assert!(run.times.windows(2).all(|t| if forward { t[0] < t[1] } else { t[0] > t[1] }));
+            assert_eq!(run.events.len(), 3, "{:?}", run.events);
+            assert!((run.y.x - (span[1] - span[0])).abs() < 1e-14);
+            ends.set(run.times);
+        }
+    }
+    // A jump of f at a stop is met by no step: one step on each side is exact.
+    let jump = |t: f64| if t < 1.3 { 1.0 } else { -5.0 };
+    let problem =
+        Flow::of_time(free(), LeftTranslation, move |t: f64, v: &mut V| *v = V::x() * jump(t));
+    let run = |stops: Vec<f64>| {
+        let solve = Solve::new(&problem, &method, [0.0, 2.0]).tolerances(1e-10, 1e-10).stops(stops);
+        solve.run(V::zeros()).expect("a run")
+    };
+    let (with, without) = (run(vec![1.3]), run(vec![]));
+    assert!((with.y.x - (1.3 - 3.5)).abs() < 1e-9, "{}", with.y.x);
+    assert!(
+        2 * with.stats.rejected < without.stats.rejected,
+        "{:?} {:?}",
+        with.stats,
+        without.stats
+    );
+}
+
+#[test]
+fn a_run_is_cancelled() {
+    let (body, method) = (body(), Rk(DOPRI5));
+    for (adaptive, every) in [(true, 1), (false, 1), (true, u64::MAX), (false, u64::MAX)] {
+        let flag = AtomicBool::new(false);
+        // The flag is set from within f, at t > 3: nothing is observed, and nothing is taken back to M.
+        let problem = Flow::of_time(free(), LeftTranslation, |t: f64, v: &mut V| {
+            if t > 3.0 {
+                flag.store(true, Ordering::Relaxed);
+            }
+            *v = V::x() * (9.0 * t).cos();
+        });
+        // An end that is not reached, or none.
+        let end = if every == 1 { f64::INFINITY } else { 1e3 };
+        let solve = Solve::new(&problem, &method, [0.0, end]).cancel(&flag).every(every);
+        let solve = if adaptive { solve.tolerances(1e-9, 1e-9) } else { solve.dt(0.001) };
+        let run = solve.run(START).expect("a run");
+        assert_eq!(run.status, Status::Cancelled);
+        // Within a thousand steps.
+        assert!(run.t >= 3.0 - 1.0 && run.t < 4.1, "{}", run.t);
+        if every == 1 {
+            assert_eq!(run.times.last(), Some(&run.t));
+        }
+    }
+    let flag = AtomicBool::new(true);
+    let run =
+        Solve::new(&body, &method, [0.0, 1.0]).dt(0.1).cancel(&flag).run(START).expect("a run");
+    assert_eq!((run.status, run.stats.accepted, run.y), (Status::Cancelled, 0, START));
+}
+
+/// A problem on the sphere and one on vectors, both by hand: what a controller does.
+#[test]
+fn a_state_that_is_set() {
+    let problem = rational();
+    let method = Rk(DOPRI5);
+    for adaptive in [true, false] {
+        let solve = Solve::new(&problem, &method, [5.0, 9.0]);
+        let solve = if adaptive { solve.tolerances(1e-10, 1e-10) } else { solve.dt(0.013) };
+        let mut run = solve.integrator(V::zeros()).expect("a run");
+        run.advance_to(5.5).expect("a state");
+        run.set_state(&rational_at(5.5)).expect("a state");
+        let mut at = V::zeros();
+        assert!(run.interpolate(5.4999, &mut at).is_err(), "what was before is forgotten");
+        run.interpolate(5.5, &mut at).expect("the state");
+        assert_eq!(at, rational_at(5.5));
+        for t in [6.0, 6.01, 7.7, 9.0] {
+            let y = run.advance_to(t).expect("a state");
+            assert!((y - rational_at(t)).norm() < 1e-8, "{t}");
+        }
+        assert!(run.is_done());
+        let bad = V::repeat(f64::NAN);
+        match run.set_state(&bad) {
+            Err(RunError::Changed { by, t, source: Error::OutOfRange { .. } }) => {
+                assert_eq!((by.as_str(), t), ("the caller", 9.0));
+            }
+            other => panic!("{other:?}"),
+        }
+        assert!((run.y() - rational_at(9.0)).norm() < 1e-8, "it is as it was");
+    }
+}
+
+/// What an observer changes is gone on from, and it is asked whether it is on M.
+#[test]
+fn an_observer_changes_the_state() {
+    let (body, method) = (body(), Rkmk::new(DOPRI5, Exp));
+    for save in [SaveAt::Every(1), SaveAt::Times(vec![0.0, 0.77, 1.5])] {
+        let run = Solve::new(&body, &method, [0.0, 2.0])
+            .tolerances(1e-9, 1e-9)
+            .save(save)
+            .run_with(START, |t, m| {
+                *m *= if t == 0.0 { 2.0 } else { 1.0 };
+                if t == 0.0 { Next::Changed } else { Next::Continue }
+            });
+        let run = run.expect("a run");
+        let twice = Solve::new(&body, &method, [0.0, 2.0])
+            .tolerances(1e-9, 1e-9)
+            .run(2.0 * START)
+            .expect("a run");
+        assert!((run.y - twice.y).norm() < 1e-7);
+    }
+    let run =
+        Solve::new(&body, &method, [0.0, 2.0]).dt(0.1).times([0.77]).run_with(START, |_, m| {
+            m.x = f64::NAN;
+            Next::Changed
+        });
+    let failed = run.expect_err("not on M");
+    assert!(failed.to_string().contains("the observer"), "{failed}");
+    assert_eq!(failed.solution.expect("what was known").t, 0.77);
+}
+
+#[test]
+fn t14_what_a_failed_run_leaves() {
+    let problem = spin(|t| if t < 0.5 { 1.0 } else { f64::NAN });
+    let method = Rkmk::new(DOPRI5, Exp);
+    let exact = |t: f64| *nalgebra::Rotation3::new(V::new(0.6, 0.0, 0.8) * t).matrix() * V::y();
+    for adaptive in [false, true] {
+        for continuous in [false, true] {
+            let solve = Solve::new(&problem, &method, [0.0, 1.0])
+                .every(1)
+                .event(Event::new("y", |_, x: &V| x.y - 0.9));
+            let solve = if adaptive { solve.tolerances(1e-8, 1e-8) } else { solve.dt(0.06) };
+            let failed = match continuous {
+                false => solve.run(V::y()).map(drop),
+                true => solve.run_continuous(V::y()).map(drop),
+            };
+            let failed = failed.expect_err("no field");
+            let known = failed.solution.expect("what was known");
+            let accepted = failed.error.accepted().expect("the number of steps");
+            assert_eq!((known.stats.accepted, known.times.len() as u64), (accepted, accepted + 1));
+            assert_eq!((known.times.last(), known.points.last()), (Some(&known.t), Some(&known.y)));
+            assert_eq!(known.events.len(), 1);
+            assert!(known.t < 0.5 && known.t > 0.4 && (known.y - exact(known.t)).norm() < 1e-6);
+            let said = match &failed.error {
+                RunError::Step(failure) => (failure.t, failure.h),
+                RunError::StepSizeUnderflow { t, h, .. } => (*t, *h),
+                other => panic!("{other}"),
+            };
+            assert!(said.0 == known.t && said.1 > 0.0);
+        }
+    }
+    // In one call of the method, too.
+    let failed =
+        Solve::new(&problem, &method, [0.0, 1.0]).dt(0.001).run(V::y()).expect_err("no field");
+    let known = failed.solution.expect("what was known");
+    assert_eq!(known.stats.smallest_step, 0.001);
+    assert_eq!(known.stats.accepted, 499);
+    assert!((known.t - 0.499).abs() < 1e-12 && (known.y - exact(known.t)).norm() < 1e-10);
+}
