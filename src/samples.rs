@@ -13,13 +13,14 @@
 //! Source: C. de Boor, A Practical Guide to Splines, ch. IV.
 
 use core::fmt;
+use core::hash::{Hash, Hasher};
 
 use thiserror::Error as ThisError;
 
 use crate::error::Error;
 
 /// What lies between the rows of [`Samples`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Interpolation {
     /// Straight lines.
     Linear,
@@ -116,6 +117,15 @@ pub struct Samples {
     pieces: Vec<[f64; 4]>,
     /// Rows a unit of time, where the times are so even that this finds an interval or one beside it.
     pace: Option<f64>,
+}
+
+/// Of the times and of the pieces between them, by their bits.
+impl Hash for Samples {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        self.interpolation.hash(state);
+        let numbers = self.times.iter().chain(self.pieces.iter().flatten());
+        numbers.for_each(|x| x.to_bits().hash(state));
+    }
 }
 
 impl Samples {

@@ -9,6 +9,8 @@
 
 use core::hash::Hasher;
 
+use fnv::FnvHasher;
+
 use super::drive::Drive;
 use super::integrator::{Integrator, Looked, Pacer};
 use crate::error::Error;
@@ -20,22 +22,9 @@ use crate::space::Numbers;
 /// The name of the format, and its version.
 const HEADER: [u8; 8] = *b"lieflow\x01";
 
-/// FNV-1a: the same on every machine.
-struct Fnv(u64);
-
-impl Hasher for Fnv {
-    fn write(&mut self, bytes: &[u8]) {
-        for byte in bytes {
-            self.0 = (self.0 ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
-        }
-    }
-    fn finish(&self) -> u64 {
-        self.0
-    }
-}
-
+/// The same on every machine.
 fn hash(bytes: &[u8]) -> u64 {
-    let mut hasher = Fnv(0xcbf2_9ce4_8422_2325);
+    let mut hasher = FnvHasher::default();
     hasher.write(bytes);
     hasher.finish()
 }
@@ -156,7 +145,7 @@ impl<P: Problem, M: Method<P>> Integrator<'_, P, M> {
             [psi, dpsi_inv, brackets].into_iter().for_each(each);
         });
         match &mut self.pacer {
-            Pacer::Equal { grid, done } => {
+            Pacer::Equal { grid, done, .. } => {
                 grid.each_part(&mut |x| number(each, x));
                 each(done);
             }

@@ -15,12 +15,14 @@ pub use events::SceneEvent;
 pub use suggest::{help_for, suggest};
 
 use std::fs::File;
+use std::hash::{Hash, Hasher};
 use std::io::Read;
 use std::path::Path;
 
+use fnv::FnvHasher;
 use lieflow::StepControl;
 use lieflow::catalog::{MethodSpec, all_methods};
-use lieflow::samples::Outside;
+use lieflow::samples::{Outside, Samples};
 use lieflow::{Error, SaveAt, TimeGrid};
 
 use self::document::{Document, deserializer, read_beside};
@@ -58,7 +60,8 @@ pub struct Scene {
     pub events: Vec<SceneEvent>,
     /// What is written, in this order.
     pub quantities: Vec<String>,
-    /// A number of what the scene states: another one for another scene. Comments and spaces do not count.
+    /// A number of what the scene states, with its samples: another one for another scene. Comments and spaces do not
+    /// count.
     pub fingerprint: u64,
 }
 
@@ -123,6 +126,7 @@ impl Scene {
         }
         let stem = Path::new(source).file_stem().unwrap_or_default().to_string_lossy();
         let name = if stem.is_empty() { "scene".into() } else { stem.into_owned() };
+        let fingerprint = fingerprint(text, problem.samples());
         let scene = Scene {
             title,
             name,
@@ -137,7 +141,7 @@ impl Scene {
             times_by_steps,
             events,
             quantities,
-            fingerprint: fingerprint(text),
+            fingerprint,
         };
         let model = scene.model_with(scene.layer, &scene.computed());
         let model = model.map_err(|error| document.refusal("problem", error.into()))?;
@@ -256,13 +260,16 @@ impl Scene {
     }
 }
 
-/// FNV-1a of what the text states.
-fn fingerprint(text: &str) -> u64 {
+/// A hash of what the text states and of its samples: the same on every machine.
+fn fingerprint(text: &str, samples: Option<&Samples>) -> u64 {
     let stated = toml::from_str::<toml::Table>(text);
     let stated = stated.map_or_else(|_| text.to_owned(), |table| format!("{table:?}"));
-    stated.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
-        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
-    })
+    let mut hasher = FnvHasher::default();
+    hasher.write(stated.as_bytes());
+    if let Some(samples) = samples {
+        samples.hash(&mut hasher);
+    }
+    hasher.finish()
 }
 
 /// The names of the methods that run on a problem, with their default parts.
