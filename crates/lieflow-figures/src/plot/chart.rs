@@ -3,7 +3,7 @@
 use super::labels::{self, ROW};
 use super::scale::{Axis, Map, Scale};
 use super::series::{Marker, Point, Series};
-use super::svg::{Opening, escape, polyline, px, slug, text};
+use super::svg::{Opening, escape, polyline, px, slug, text, text_width};
 use super::theme;
 use super::trace::{Trace, omission};
 
@@ -12,6 +12,9 @@ const LEFT: f64 = 76.0;
 const RIGHT: f64 = 576.0;
 const TOP: f64 = 42.0;
 const BOTTOM: f64 = 412.0;
+
+/// The size of the labels of ticks, as in common.css.
+const TICK_SIZE: f64 = 12.0;
 
 /// The room below the data, and between the data and the names of the lines.
 const FOOT: f64 = 52.0;
@@ -180,12 +183,17 @@ impl Chart {
         for (at, label) in rows.iter().filter_map(|t| Some((t.at, t.label.as_ref()?))) {
             out.push_str(&text("lf-tick", (LEFT - 8.0, at + 4.2), "end", label));
         }
+        // The title of the axis is beside the widest label, within the picture.
+        let labels = rows.iter().filter_map(|t| t.label.as_ref());
+        let widest = labels.map(|label| text_width(label, TICK_SIZE)).fold(0.0, f64::max);
+        let upward = (LEFT - 14.0 - widest).clamp(12.0, 18.0);
         let middle = (LEFT + RIGHT) / 2.0;
         out.push_str(&text("lf-title", (LEFT, 24.0), "start", &self.title));
         out.push_str(&text("lf-label", (middle, BOTTOM + 41.0), "middle", &self.x.title));
         out.push_str(&format!(
             "<g class=\"lf-upward\"><text class=\"lf-label\" \
-             transform=\"translate(18 {}) rotate(-90)\" text-anchor=\"middle\">{}</text></g>",
+             transform=\"translate({} {}) rotate(-90)\" text-anchor=\"middle\">{}</text></g>",
+            px(upward),
             (TOP + BOTTOM) / 2.0,
             escape(&self.y.title)
         ));
