@@ -227,7 +227,7 @@ A scene file, with everything that it can say about a rigid body:
   dt = 0.05                         # or steps = 8000, or steps chosen by their error:
   rtol = 1e-9                       # instead of dt; the error of a step is at most
   atol = 1e-12                      # atol + rtol times the size; optional: 0; one is needed
-  tolerance = \"per-step\"            # optional; per-length: rtol for each unit of the way
+  tolerance = \"per-step\"            # optional; \"per-length\": rtol is relative to the length of the step
   h_init = 0.01                     # optional, as are h_min, h_max, max_steps
   [[events]]                        # optional; any number of them
   name = \"flip\"

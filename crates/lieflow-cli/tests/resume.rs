@@ -107,7 +107,7 @@ fn a_run_that_is_killed_goes_on_to_the_same_bits() {
 }
 
 #[test]
-#[ignore = "minutes"]
+#[ignore = "eight minutes; .ci/long runs it: cargo test --release -p lieflow-cli --test resume -- --ignored"]
 fn a_run_that_is_killed_at_fifty_moments_goes_on_to_the_same_bits() {
     let mut random = Pcg64::seed_from_u64(50);
     (0..50).for_each(|_| kill_and_go_on(&mut random));

@@ -240,7 +240,8 @@ impl Judge {
     }
 }
 
-/// Tolerances for each unit of the way: the error of a run then follows rtol for every order of method.
+/// Tolerances relative to the length of the step. The error of a run then follows rtol, whatever the order of the
+/// method.
 fn per_length(rtol: f64, atol: f64) -> Result<StepControl, lieflow::Error> {
     Ok(StepControl::new(rtol, atol)?.rule(Rule::PerLength))
 }

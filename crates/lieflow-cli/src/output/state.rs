@@ -97,7 +97,8 @@ impl RunState {
     /// The state of a run of the scene with this fingerprint, and that of its driver; none at its start.
     ///
     /// # Errors
-    /// There is none, it is damaged, or it is of another scene or of another version of the program.
+    /// There is no saved run. The saved run is damaged. It belongs to another scene or to another version of the
+    /// program.
     pub fn open(folder: &Path, scene: u64) -> Result<(Self, Option<Vec<u8>>), CliError> {
         let path = folder.join(STATE);
         let bytes = fs::read(&path).map_err(CliError::io("read", &path))?;
