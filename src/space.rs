@@ -8,7 +8,7 @@ use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
 use crate::dense;
 use crate::scalar::{Counted, DoubleDouble, Ops, Real, larger, tally};
-use crate::tolerance::{Scales, ratio};
+use crate::tolerance::Scales;
 
 /// Points that can be compared: those of a linear space with a norm.
 ///
@@ -33,7 +33,7 @@ pub trait Metric {
             Gap::Of(e) => e.size(),
             Gap::Relative(e) => e * size,
         };
-        ratio(error, scales.part().scale(size))
+        scales.part().ratio(error, size)
     }
 }
 
@@ -213,7 +213,7 @@ macro_rules! small {
                     Gap::Of(e) => (e.size(), part.largest(e.as_slice().iter().copied(), entries())),
                     Gap::Relative(e) => (e * self.size(), part.largest(entries().map(|x| e * x), entries())),
                 };
-                each.unwrap_or_else(|| ratio(error, part.scale(self.size())))
+                each.unwrap_or_else(|| part.ratio(error, self.size()))
             }
         }
 
@@ -274,17 +274,23 @@ impl Metric for Mat<f64> {
     }
     fn error_ratio(&self, gap: Gap<'_, Self>, scales: &mut Scales<'_>) -> f64 {
         let (part, size) = (scales.part(), self.size());
-        let every = |of: &dyn Fn(usize, usize) -> f64| {
-            let places = || (0..self.ncols()).flat_map(|j| (0..self.nrows()).map(move |i| (i, j)));
-            part.largest(places().map(|(i, j)| of(i, j)), places().map(|(i, j)| self[(i, j)]))
-        };
         let (error, each) = match gap {
-            Gap::To(x) => (self.distance(x), every(&|i, j| self[(i, j)] - x[(i, j)])),
-            Gap::Of(e) => (e.size(), every(&|i, j| e[(i, j)])),
-            Gap::Relative(e) => (e * size, every(&|i, j| e * self[(i, j)])),
+            Gap::To(x) => {
+                let errors = entries(self).zip(entries(x)).map(|(a, b)| a - b);
+                (self.distance(x), part.largest(errors, entries(self)))
+            }
+            Gap::Of(e) => (e.size(), part.largest(entries(e), entries(self))),
+            Gap::Relative(e) => {
+                (e * size, part.largest(entries(self).map(|x| e * x), entries(self)))
+            }
         };
-        each.unwrap_or_else(|| ratio(error, part.scale(size)))
+        each.unwrap_or_else(|| part.ratio(error, size))
     }
+}
+
+/// The entries of a matrix, column by column.
+fn entries(m: &Mat<f64>) -> impl Iterator<Item = f64> {
+    (0..m.ncols()).flat_map(|j| m.col_as_slice(j)).copied()
 }
 
 impl LinearSpace for Mat<f64> {
@@ -409,6 +415,18 @@ impl<M: Metric, const N: usize> Metric for [M; N] {
     #[inline]
     fn distance(&self, x: &Self) -> M::Scalar {
         norm(self.iter().zip(x).map(|(a, b)| a.distance(b)))
+    }
+    /// One part, of N components.
+    #[inline]
+    fn error_ratio(&self, gap: Gap<'_, Self>, scales: &mut Scales<'_>) -> M::Scalar {
+        let part = scales.part();
+        let error = |i: usize| match gap {
+            Gap::To(x) => self[i].distance(&x[i]),
+            Gap::Of(e) => e[i].size(),
+            Gap::Relative(e) => e * self[i].size(),
+        };
+        let each = part.largest((0..N).map(error), self.iter().map(M::size));
+        each.unwrap_or_else(|| part.ratio(norm((0..N).map(error)), self.size()))
     }
 }
 

@@ -75,6 +75,17 @@ impl PartTolerance {
         S::lit(self.atol) + S::lit(self.rtol) * size
     }
 
+    /// The ratio of an error of a whole part of this size. A part that has no components is refused an atol for each:
+    /// the ratio is infinite then, and the driver says so before the first step.
+    #[inline]
+    pub fn ratio<S: Real>(&self, error: S, size: S) -> S {
+        if self.components.len() > 1 {
+            S::lit(f64::INFINITY)
+        } else {
+            ratio(error, self.scale(size))
+        }
+    }
+
     /// The largest ratio of the entries of an error and their scales, where there is an atol for each.
     #[inline]
     pub(crate) fn largest<S: Real>(
@@ -130,7 +141,7 @@ impl Tolerance {
         }
     }
 
-    /// These tolerances by another rule. [`Rule::PerLength`] knows no parts: it takes the first.
+    /// These tolerances by another rule. [`Rule::PerLength`] takes one rtol and one atol for all parts.
     pub fn by(self, rule: Rule) -> Self {
         Tolerance { rule, ..self }
     }
@@ -165,6 +176,11 @@ impl Tolerance {
             return Err(Error::out_of_range("the number of atol", given as f64, expected));
         }
         let given = self.parts.len();
+        if self.rule == Rule::PerLength && (given > 1 || !self.parts[0].components.is_empty()) {
+            let expected =
+                "one rtol and one atol, where the rule is relative to the length of the step";
+            return Err(Error::out_of_range("tolerances", given as f64, expected));
+        }
         match given == 1 || given == parts {
             true => Ok(()),
             false => Err(Error::out_of_range(

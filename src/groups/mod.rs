@@ -38,7 +38,7 @@ use rand::Rng;
 use crate::error::Error;
 use crate::scalar::Real;
 use crate::space::{Gap, Metric};
-use crate::tolerance::{Scales, ratio};
+use crate::tolerance::Scales;
 
 /// A Lie algebra 𝔤: a linear space with a bracket.
 pub trait LieAlgebra {
@@ -106,7 +106,7 @@ pub trait LieGroup: LieAlgebra {
     /// space is compared with its size, and a product gives the largest ratio of its parts.
     #[inline]
     fn error_ratio(&self, e: &Self::Alg, _g: &Self::Elem, scales: &mut Scales<'_>) -> Self::Scalar {
-        ratio(self.norm(e), scales.part().scale(Self::Scalar::lit(1.0)))
+        scales.part().ratio(self.norm(e), Self::Scalar::lit(1.0))
     }
     /// An error e ∈ 𝔤 at a vector in units of the tolerance: ‖e‖‖x‖/(atol + rtol·‖x‖).
     #[inline]

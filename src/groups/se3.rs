@@ -27,7 +27,7 @@ use crate::error::{Error, StepError};
 use crate::scalar::{Real, larger};
 use crate::so3::{self, add3, all_finite, apply3, cross, dot3};
 use crate::space::{Gap, Metric};
-use crate::tolerance::{Scales, ratio};
+use crate::tolerance::Scales;
 
 /// SE(3): elements of the algebra are (ω, v), of the group (R, x), of the dual (μ, π).
 ///
@@ -146,7 +146,7 @@ impl<S: Real> LieGroup for Se3<S> {
     /// Two parts: the rotation, and the place that it moves.
     #[inline]
     fn error_ratio(&self, e: &Self::Alg, g: &Self::Elem, scales: &mut Scales<'_>) -> S {
-        let turned = ratio(e.0.size(), scales.part().scale(S::lit(1.0)));
+        let turned = scales.part().ratio(e.0.size(), S::lit(1.0));
         // d/dε of exp(εe) g moves the place p by ω × p + v.
         let moved = e.1 + cross(&e.0, &g.1);
         larger(turned, g.1.error_ratio(Gap::Of(&moved), scales))

@@ -175,7 +175,7 @@ impl<P: Problem, M: Method<P>> Integrator<'_, P, M> {
     }
 
     #[cold]
-    fn too_many(&self, h: f64, max_steps: u64) -> RunError {
+    pub(super) fn too_many(&self, h: f64, max_steps: u64) -> RunError {
         let Stats { accepted, rejected, .. } = self.stats;
         let h = h.copysign(self.t1 - self.t);
         RunError::TooManySteps { t: self.t, h, accepted, rejected, max_steps }

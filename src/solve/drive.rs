@@ -3,10 +3,9 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use super::control::MAX_STEPS;
 use super::events::Events;
 use super::grid::SaveAt;
-use super::integrator::{Integrator, Pacer};
+use super::integrator::Integrator;
 use super::save::Listing;
 use super::solution::{Drift, Interrupted, Next, Occurrence, Solution, Status};
 use super::stats::RunError;
@@ -47,7 +46,6 @@ pub(super) struct Drive<'a, 'k, P: Problem, M: Method<P>, O> {
     /// Times at which a step ends, those to come first.
     stops: std::vec::IntoIter<f64>,
     next_stop: Option<f64>,
-    max_steps: Option<u64>,
     cancel: Option<&'a AtomicBool>,
     progress: Option<Box<dyn FnMut(f64) + 'a>>,
     checkpoints: Option<Checkpoints<'a, P>>,
@@ -76,7 +74,6 @@ where
             times_by_steps,
             events,
             stops,
-            max_steps,
             cancel,
             watch,
             checkpoints,
@@ -96,7 +93,6 @@ where
             times_by_steps,
             next_stop: stops.next(),
             stops,
-            max_steps,
             cancel,
             progress,
             checkpoints,
@@ -176,7 +172,6 @@ where
             if let Some(progress) = &mut self.progress {
                 progress(self.run.t());
             }
-            self.check_count()?;
             self.pass_stops();
             self.skip()?;
             let stop = self.next_stop.unwrap_or(t1);
@@ -220,33 +215,14 @@ where
         }
     }
 
-    /// Steps of one size over an infinite span end, too.
-    fn check_count(&self) -> Result<(), RunError> {
-        let Pacer::Equal { grid, .. } = &self.run.pacer else { return Ok(()) };
-        let limit = match self.max_steps {
-            None if self.run.t1.is_finite() => return Ok(()),
-            limit => limit.unwrap_or(MAX_STEPS),
-        };
-        match self.run.stats.accepted >= limit {
-            true => Err(RunError::TooManySteps {
-                t: self.run.t(),
-                h: grid.h(),
-                accepted: self.run.stats.accepted,
-                rejected: 0,
-                max_steps: limit,
-            }),
-            false => Ok(()),
-        }
-    }
-
     /// Take the steps that nobody looks at in one call.
     fn skip(&mut self) -> Result<(), RunError> {
         if !self.events.all.is_empty() || self.kept.is_some() {
             return Ok(());
         }
         let steps = self.run.stats.accepted;
-        let mut end = self.save.next_after(steps).min(self.max_steps.unwrap_or(u64::MAX));
-        if self.cancel.is_some() || self.progress.is_some() || self.run.t1.is_infinite() {
+        let mut end = self.save.next_after(steps);
+        if self.cancel.is_some() || self.progress.is_some() {
             end = end.min(steps.saturating_add(1000));
         }
         let time = [self.next_time(), self.next_stop].into_iter().flatten();

@@ -130,9 +130,10 @@ impl<'a, Y> Event<'a, Y> {
     pub fn falling(self) -> Self {
         self.direction(Direction::Falling)
     }
-    /// Stop the run at the zero of this number, from 1. The default is to go on.
+    /// Stop the run at the zero of this number, from 1; 0 is told by [`Solve::run`](super::Solve::run). The default is
+    /// to go on.
     pub fn stop_after(self, count: u64) -> Self {
-        Event { stop_after: Some(count.max(1)), ..self }
+        Event { stop_after: Some(count), ..self }
     }
     /// Change the state at each zero: an impulse, a reset. The new state must be on M.
     pub fn change(self, change: impl FnMut(f64, &mut Y) + 'a) -> Self {

@@ -108,13 +108,10 @@ impl TimeGrid {
     pub fn time(&self, n: u64) -> f64 {
         if n >= self.steps { self.t1 } else { self.t0 + n as f64 * self.h }
     }
-    /// The size of step number n: h, but for a shorter last one.
+    /// The size of step number n: h, or what is left where h does not divide the span.
     pub(super) fn size(&self, n: u64) -> f64 {
-        let whole = self.t1 - (self.t0 + n as f64 * self.h);
-        match n + 1 >= self.steps && whole.abs() < 0.999_999 * self.h.abs() {
-            true => whole,
-            false => self.h,
-        }
+        let divides = self.h == (self.t1 - self.t0) / self.steps as f64;
+        if n + 1 < self.steps || divides { self.h } else { self.t1 - (self.t0 + n as f64 * self.h) }
     }
     /// The steps `first..end`, of which all have the same size.
     pub(super) fn equal(&self, first: u64, end: u64) -> EqualSteps {

@@ -55,8 +55,8 @@ where
 
 /// How the steps of a run are chosen.
 pub(super) enum Pace<P: Problem, M: Method<P>> {
-    /// One size.
-    Equal(TimeGrid),
+    /// One size, and no more than so many.
+    Equal { grid: TimeGrid, max_steps: u64 },
     /// By their error.
     ByError(StepControl, Estimator<P, M>),
 }
@@ -64,7 +64,7 @@ pub(super) enum Pace<P: Problem, M: Method<P>> {
 impl<P: Problem, M: Method<P>> Clone for Pace<P, M> {
     fn clone(&self) -> Self {
         match self {
-            Pace::Equal(grid) => Pace::Equal(*grid),
+            Pace::Equal { grid, max_steps } => Pace::Equal { grid: *grid, max_steps: *max_steps },
             Pace::ByError(control, estimator) => Pace::ByError(control.clone(), *estimator),
         }
     }
@@ -73,7 +73,7 @@ impl<P: Problem, M: Method<P>> Clone for Pace<P, M> {
 /// The state of the choice of steps.
 pub(super) enum Pacer<P: Problem, M: Method<P>> {
     /// Equal steps: the grid, and how many of its steps are done. A run that was taken off its grid gets a new one.
-    Equal { grid: TimeGrid, done: u64 },
+    Equal { grid: TimeGrid, done: u64, max_steps: u64 },
     /// Steps by their error.
     ByError(Box<Chooser<P, M>>),
 }
@@ -175,7 +175,7 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
     ) -> Result<Self, Error> {
         problem.action().check(problem.group(), &y)?;
         let pacer = match pace {
-            Pace::Equal(grid) => Pacer::Equal { grid, done: 0 },
+            Pace::Equal { grid, max_steps } => Pacer::Equal { grid, done: 0, max_steps },
             Pace::ByError(control, estimator) => {
                 let mut parts = control.tolerance.scales();
                 let at = problem.group().zero();
@@ -357,7 +357,12 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
     }
 
     fn equal_step(&mut self, stop: f64, jumps: bool) -> Result<(), RunError> {
-        let Pacer::Equal { grid, done } = &mut self.pacer else { return Ok(()) };
+        let Pacer::Equal { grid, done, max_steps } = &mut self.pacer else { return Ok(()) };
+        let max_steps = *max_steps;
+        if self.stats.accepted >= max_steps {
+            let h = grid.h().abs();
+            return Err(self.too_many(h, max_steps));
+        }
         if self.t != grid.time(*done) {
             // The run was taken off its grid: equal steps from here, of the same size.
             *grid = TimeGrid::new([self.t, self.t1], grid.h().abs())?;
@@ -402,12 +407,12 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
     /// Equal steps up to number `end` of the run, or fewer, in one call of the method: nothing within them can be
     /// looked at but the last. Returns false where there is no such call.
     pub(super) fn quietly(&mut self, end: u64, time: Option<f64>) -> Result<bool, RunError> {
-        let Pacer::Equal { grid, done } = &mut self.pacer else { return Ok(false) };
-        let (grid, first) = (*grid, *done);
+        let Pacer::Equal { grid, done, max_steps } = &self.pacer else { return Ok(false) };
+        let (grid, first, max_steps) = (*grid, *done, *max_steps);
         if self.stats.accepted != first || self.t != grid.time(first) {
             return Ok(false);
         }
-        let mut end = end.min(self.mender.next()).min(grid.steps());
+        let mut end = end.min(self.mender.next()).min(grid.steps()).min(max_steps);
         if let Some(time) = time {
             end = end.min(grid.last_before(first, time));
         }

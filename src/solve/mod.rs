@@ -132,7 +132,7 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
                     "the size of the steps was chosen already: give one of dt, steps, tolerances";
                 self.wrong.get_or_insert(Error::out_of_range("dt", grid.h().abs(), why));
             }
-            self.pace = Some(Pace::Equal(grid));
+            self.pace = Some(Pace::Equal { grid, max_steps: u64::MAX });
         }
         self
     }
@@ -180,6 +180,10 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
 
     /// Look for the zeros of an event. Events are numbered in the order in which they are given.
     pub fn event(mut self, event: Event<'a, PointOf<P>>) -> Self {
+        if event.stop_after == Some(0) {
+            let arg = format!("stop_after of event `{}`", event.name);
+            self.wrong.get_or_insert(Error::out_of_range(arg, 0.0, "at least 1"));
+        }
         self.events.push(event);
         self
     }
@@ -264,8 +268,15 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
             let expected = "one of dt, steps, or tolerances";
             return Err(Error::out_of_range("steps", f64::NAN, expected));
         };
-        if let (Pace::ByError(control, _), Some(n)) = (&mut pace, self.max_steps) {
-            control.max_steps = n;
+        match &mut pace {
+            Pace::Equal { max_steps, .. } => {
+                let unbounded =
+                    if self.t_span[1].is_finite() { u64::MAX } else { control::MAX_STEPS };
+                *max_steps = self.max_steps.unwrap_or(unbounded);
+            }
+            Pace::ByError(control, _) => {
+                control.max_steps = self.max_steps.unwrap_or(control.max_steps);
+            }
         }
         let [t0, t1] = self.t_span;
         let forward = t1 >= t0;
@@ -361,7 +372,7 @@ where
 {
     /// Steps by their error, with these tolerances and limits.
     pub fn control(mut self, control: StepControl) -> Self {
-        if let Some(Pace::Equal(grid)) = &self.pace {
+        if let Some(Pace::Equal { grid, .. }) = &self.pace {
             let why = "the size of the steps was chosen already: give one of dt, steps, tolerances";
             let error = Error::out_of_range("dt", grid.h().abs(), why);
             self.wrong.get_or_insert(error);

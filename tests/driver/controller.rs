@@ -5,7 +5,8 @@ use std::cell::{Cell, RefCell};
 
 use lieflow::actions::LeftTranslation;
 use lieflow::groups::Translations;
-use lieflow::methods::{Embedded, Method};
+use lieflow::methods::tableau::RK4;
+use lieflow::methods::{Embedded, Method, Rk};
 use lieflow::problems::{Flow, Problem};
 use lieflow::solve::Next;
 use lieflow::tolerance::Tolerance;
@@ -349,7 +350,7 @@ fn limits() {
         seen.iter().all(|attempt| attempt.1 <= 0.7 + 1e-12)
             && seen.iter().any(|attempt| attempt.1 > 0.7 - 1e-12)
     );
-    // Too large an error at the smallest step is an error; a small last step is none.
+    // An error that is too large at the smallest step ends the run. The last step may be smaller than that.
     let (seen, end) = run(None, Some(0.3), |t, _| Some(if t < 5.0 { 1e-3 } else { 1.1 }));
     assert!(matches!(end, Err(RunError::StepSizeUnderflow { .. })), "{end:?}");
     assert!(seen.iter().all(|attempt| attempt.1 >= 0.3 - 1e-12), "{seen:?}");
@@ -366,6 +367,12 @@ fn limits() {
         }
         other => panic!("{other:?}"),
     }
+    // By hand too, and with steps of one size.
+    let rk = Rk(RK4);
+    let solve = Solve::new(&problem, &rk, [0.0, 1.0]).dt(0.1).max_steps(3);
+    let mut by_hand = solve.integrator(V::zeros()).expect("a run");
+    let end = by_hand.advance_to(1.0).map(|_| ());
+    assert!(matches!(end, Err(RunError::TooManySteps { accepted: 3, .. })), "{end:?}");
 }
 
 /// After a state was set the first step is chosen again, and nothing is remembered of the steps before.

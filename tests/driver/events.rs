@@ -15,6 +15,18 @@ use crate::hard_cases::{START, body, spin};
 use crate::modes::V;
 use crate::scipy::{free, rational, rational_at};
 
+#[test]
+fn an_event_that_stops_before_its_first_zero_is_refused() {
+    let event = Event::new("never", |_, m: &V| m.y).stop_after(0);
+    let failed = Solve::new(&body(), &Rkmk::new(DOPRI5, Exp), [0.0, 1.0])
+        .tolerances(1e-6, 1e-6)
+        .event(event)
+        .run(START)
+        .expect_err("a count");
+    assert!(matches!(failed.error, RunError::Setup(_)), "{failed}");
+    assert!(failed.to_string().contains("`never` = 0.0, expected at least 1"), "{failed}");
+}
+
 /// T13: what is found where.
 #[test]
 fn t13_events_in_odd_places() {

@@ -5,6 +5,7 @@ mod events;
 mod hard_cases;
 mod modes;
 mod physics;
+mod restore;
 mod scipy;
 mod scipy_events;
 #[path = "../support/mod.rs"]

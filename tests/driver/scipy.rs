@@ -10,7 +10,7 @@
 //! | `test_integration_const_jac` | [`integration`], without a Jacobian |
 //! | `test_integration_stiff` | none: every adaptive method is explicit |
 //! | `test_events` | [`events_in_both_directions`] |
-//! | `test_event_terminal_integer`, `_terminal_iv` | [`the_third_zero_stops`]; a count is a `u64`, and 0 counts as 1 |
+//! | `test_event_terminal_integer`, `_terminal_iv` | [`the_third_zero_stops`]; a count is a `u64`, and 0 is refused |
 //! | `test_max_step`, `test_inital_maxstep` | [`the_largest_step`] |
 //! | `test_first_step` | [`the_first_step`]; one beyond the end is shortened, not refused |
 //! | `test_t_eval` | [`output_times`] |

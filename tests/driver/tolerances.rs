@@ -218,6 +218,24 @@ fn a_wrong_number_of_them_is_told() {
             assert!(said.contains("atol") && said.contains(&count.to_string()), "{said}");
         }
     }
+    let array = Flow::of_time(
+        Translations::new([0.0; 2], 2),
+        LeftTranslation,
+        |t: f64, v: &mut [f64; 2]| *v = [t, 1.0],
+    );
+    // A rotation has no components, and the rule by the length has one tolerance.
+    let turn =
+        Flow::of_time(So3::<f64>::new(), LeftTranslation, |t: f64, v: &mut V| *v = V::z() * t);
+    let two = || PartTolerance::per_component(1e-6, [1e-6, 1e-3]).expect("tolerances");
+    Solve::new(&array, &method, [0.0, 1.0]).tolerance(two().into()).run([0.0; 2]).expect("a run");
+    let failed =
+        Solve::new(&turn, &method, [0.0, 1.0]).tolerance(two().into()).run(Matrix3::identity());
+    assert!(failed.expect_err("components").to_string().contains("atol"));
+    for tolerance in [Tolerance::from(two()), parts([1e-6; 2])] {
+        let tolerance = tolerance.by(Rule::PerLength);
+        let failed = Solve::new(&problem, &method, [0.0, 1.0]).tolerance(tolerance).run(START);
+        assert!(matches!(failed.expect_err("parts").error, RunError::Setup(_)));
+    }
     for bad in [-1.0, f64::NAN, f64::INFINITY] {
         assert!(
             PartTolerance::per_component(1e-6, [1e-6, bad]).is_err()

@@ -1,8 +1,10 @@
 //! The driver: where it observes, where it lands, and what output between steps costs.
 
+use lieflow::actions::Linear;
+use lieflow::groups::So3;
 use lieflow::maps::{CCSK, Cay, Exp};
 use lieflow::methods::{Method, Rk, Rkmk, tableau::RK4};
-use lieflow::problems::{Exact, RigidBody};
+use lieflow::problems::{Exact, Flow, RigidBody};
 use lieflow::{RunError, SaveAt, Solve, Stats, TimeGrid, integrate};
 use nalgebra::{Matrix3, Vector3};
 
@@ -64,6 +66,23 @@ fn the_last_step_lands_exactly() {
         assert_eq!(done.1.last().map(|(t, _)| *t), Some(span[1]));
         assert_eq!(done.1.last().map(|(_, m)| *m), Some(done.2));
         assert_eq!((done.0.accepted, done.0.points_within), (777, 0));
+    }
+}
+
+/// A step of the right size to the end, also where it is nearly a whole one: a turn at the rate 1 is exact.
+#[test]
+fn a_shorter_last_step_goes_to_the_end() {
+    let turn =
+        Flow::of_time(So3::<f64>::new(), Linear, |_, v: &mut Vector3<f64>| *v = Vector3::z());
+    for parts in [9.999_999_5, 10.000_000_5, 3.2, 0.4, 1.0 + 1e-7] {
+        for span in [[0.0, 2.0], [2.0, 0.0]] {
+            let grid = TimeGrid::new(span, 2.0 / parts).unwrap();
+            let mut x = Vector3::x();
+            integrate(&turn, &Rkmk::new(RK4, Exp), &grid, &SaveAt::End, &mut x, |_, _| {}).unwrap();
+            let angle = span[1] - span[0];
+            let gap = (x - Vector3::new(angle.cos(), angle.sin(), 0.0)).norm();
+            assert!(gap < 1e-14, "{parts} steps over {span:?}: {gap:e}");
+        }
     }
 }
 

@@ -1,0 +1,191 @@
+//! A run that is saved and restored goes on to the same bits, whatever its state was.
+
+use std::cell::RefCell;
+use std::time::Duration;
+
+use lieflow::actions::LeftTranslation;
+use lieflow::groups::{So3, Unitary};
+use lieflow::maps::{CCSK, Exp};
+use lieflow::methods::tableau::{DOPRI5, RK4};
+use lieflow::methods::{AnyMethod, FluidMidpoint, Method, Rk, Rkmk};
+use lieflow::problems::{Flow, PointOf, Problem, Zeitlin};
+use lieflow::space::Numbers;
+use lieflow::{Event, Integrator, Solve};
+use nalgebra::Matrix3;
+use rand::SeedableRng;
+
+use crate::hard_cases::{START, body, spin};
+use crate::modes::V;
+use crate::scipy::free;
+
+/// The bits of a point.
+fn bits<Y: Numbers + Clone>(y: &Y) -> Vec<u64> {
+    let mut all = Vec::new();
+    y.clone().each_number(&mut |x| all.push(x.to_bits()));
+    all
+}
+
+/// Save after every step, restore into a run that is new, and go on to the end: the same bits, the same statistics,
+/// the same points within the last step.
+fn goes_on<'a, P: Problem + 'a, M: Method<P> + 'a>(new: impl Fn() -> Integrator<'a, P, M>)
+where
+    PointOf<P>: Numbers,
+{
+    let mut whole = new();
+    let (mut saved, mut ends) = (vec![whole.save()], Vec::new());
+    while !whole.is_done() {
+        whole.step().expect("a step");
+        ends.push((whole.t().to_bits(), bits(whole.y())));
+        saved.push(whole.save());
+    }
+    assert!(saved.len() > 8, "{} states", saved.len());
+    for (n, bytes) in saved.iter().enumerate() {
+        let mut later = new();
+        later.restore(bytes).expect("a state");
+        assert_eq!(&later.save(), bytes, "state {n}");
+        if n > 0 {
+            let Some((t, y)) = ends.get(n - 1) else { panic!("an end") };
+            assert_eq!((later.t().to_bits(), &bits(later.y())), (*t, y), "state {n}");
+        }
+        for end in &ends[n..] {
+            later.step().expect("a step");
+            assert_eq!(&(later.t().to_bits(), bits(later.y())), end, "from state {n}");
+        }
+        assert_eq!(later.stats(), whole.stats(), "from state {n}");
+        let (mut here, mut there) = (whole.y().clone(), whole.y().clone());
+        let t = whole.t() - 0.4 * whole.last_step().h;
+        later.interpolate(t, &mut here).expect("a point");
+        // Asked of a copy of the run, so that its statistics stay.
+        let mut copy = new();
+        copy.restore(&saved[saved.len() - 1]).expect("a state");
+        copy.interpolate(t, &mut there).expect("a point");
+        assert_eq!(bits(&here), bits(&there), "from state {n}");
+    }
+}
+
+#[test]
+fn steps_of_one_size() {
+    let (body, turn) = (body(), spin(|t| t.cos()));
+    let (ccsk, exp, rk) = (Rkmk::new(RK4, CCSK), Rkmk::new(RK4, Exp), Rk(RK4));
+    goes_on(|| Solve::new(&body, &ccsk, [0.1, 2.0]).dt(0.11).integrator(START).unwrap());
+    // The orbit that the state is taken back to, and when: a hundred steps, and steps off the grid.
+    goes_on(|| Solve::new(&turn, &exp, [1.0, 0.0]).steps(120).integrator(V::x()).unwrap());
+    let off_the_grid = || {
+        let mut run = Solve::new(&body, &rk, [0.0, 3.0]).dt(0.25).integrator(START).unwrap();
+        run.advance_to(0.3).unwrap();
+        run
+    };
+    goes_on(off_the_grid);
+}
+
+#[test]
+fn steps_by_their_error() {
+    let body = body();
+    let method = Rkmk::new(DOPRI5, Exp);
+    goes_on(|| {
+        Solve::new(&body, &method, [0.0, 20.0]).tolerances(1e-8, 1e-8).integrator(START).unwrap()
+    });
+    // Rejected steps, and a wall: f has no value for a while.
+    let jumps = spin(|t| if (1.0..1.05).contains(&(t % 2.0)) { 60.0 } else { 1.0 });
+    goes_on(|| {
+        Solve::new(&jumps, &method, [0.0, 5.0]).tolerances(1e-7, 0.0).integrator(V::x()).unwrap()
+    });
+    let group = So3::<f64>::new();
+    let turning = Flow::of_time(group, LeftTranslation, |t: f64, v: &mut V| {
+        *v = V::new(9.0 * t.sin(), t, 3.0)
+    });
+    let doubled = AnyMethod::new(Rkmk::new(RK4, CCSK));
+    goes_on(|| {
+        let solve = Solve::new(&turning, &doubled, [0.0, 3.0]).tolerances(1e-6, 1e-6);
+        solve.integrator(Matrix3::identity()).unwrap()
+    });
+}
+
+/// Its iteration begins with what the steps before were.
+#[test]
+fn a_method_with_a_memory() {
+    let fluid = Zeitlin::sphere(6).expect("a sphere");
+    let mut rng = rand_pcg::Pcg64::seed_from_u64(5);
+    let start = {
+        use lieflow::groups::Sample;
+        Unitary::new(6).expect("U(6)").sample_algebra(&mut rng, 0.3)
+    };
+    let method = FluidMidpoint::isospectral();
+    goes_on(|| {
+        Solve::new(&fluid, &method, [0.0, 1.0]).steps(20).integrator(start.clone()).unwrap()
+    });
+}
+
+/// A whole run with events, output, stops and drift: from the state after any step the rest is the same.
+#[test]
+fn whole_runs() {
+    let problem =
+        Flow::new(free(), LeftTranslation, |_: f64, y: &V, v: &mut V| *v = V::new(y.y, -1.0, 0.3));
+    let method = Rk(DOPRI5);
+    type Shown = Vec<(u64, Vec<u64>)>;
+    let run = |resume: Option<&Vec<u8>>, states: &RefCell<Vec<Vec<u8>>>, shown: &RefCell<Shown>| {
+        let see = |t: f64, y: &V| shown.borrow_mut().push((t.to_bits(), bits(y)));
+        // A ball that bounces, a third event that ends the run, and one that is told.
+        let mut solve = Solve::new(&problem, &method, [0.0, 50.0])
+            .tolerances(1e-9, 1e-9)
+            .max_step(0.2)
+            .times((0..500).map(|k| 0.1 * f64::from(k)).collect::<Vec<_>>())
+            .stops([0.55, 1.55, 4.5])
+            .event(
+                Event::new("floor", |_, y: &V| y.x)
+                    .falling()
+                    .change(|_, y| y.y *= -0.9)
+                    .tell(|t, y, _| see(t, y)),
+            )
+            .event(
+                Event::new("top", |_, y: &V| y.y).falling().stop_after(4).tell(|t, y, _| see(t, y)),
+            )
+            .checkpoints(Duration::ZERO, |bytes| states.borrow_mut().push(bytes.to_vec()));
+        if let Some(bytes) = resume {
+            solve = solve.resume(bytes.clone());
+        }
+        let done = solve.run_with(V::new(1.0, 0.0, 0.0), |t, y: &mut V| see(t, y)).expect("a run");
+        (bits(&done.y), done.t.to_bits(), done.status, done.stats)
+    };
+    let (states, shown) = (RefCell::default(), RefCell::default());
+    let whole = run(None, &states, &shown);
+    let (states, shown): (Vec<Vec<u8>>, Shown) = (states.into_inner(), shown.into_inner());
+    assert!(
+        states.len() > 20 && shown.len() > 40,
+        "{} states, {} points",
+        states.len(),
+        shown.len()
+    );
+    for bytes in &states {
+        let rest = RefCell::default();
+        assert_eq!(run(Some(bytes), &RefCell::default(), &rest), whole);
+        let rest: Shown = rest.into_inner();
+        assert_eq!(rest, shown[shown.len() - rest.len()..]);
+    }
+}
+
+#[test]
+fn bytes_that_are_not_of_this_run_are_refused() {
+    let body = body();
+    let method = Rkmk::new(DOPRI5, Exp);
+    let solve = |rtol| Solve::new(&body, &method, [0.0, 10.0]).tolerances(rtol, 1e-8);
+    let mut run = solve(1e-8).integrator(START).unwrap();
+    run.advance_to(3.0).unwrap();
+    let (bytes, before) = (run.save(), bits(run.y()));
+    for at in 0..bytes.len() {
+        let mut damaged = bytes.clone();
+        damaged[at] ^= 1 << (at % 8);
+        assert!(run.restore(&damaged).is_err(), "byte {at}");
+    }
+    for length in [0, 7, 8, 24, bytes.len() - 8, bytes.len() - 1] {
+        assert!(run.restore(&bytes[..length]).is_err(), "{length} bytes");
+    }
+    assert!(run.restore(&[&bytes[..], &[0; 8]].concat()).is_err(), "more bytes");
+    let mut others = [
+        solve(1e-7).integrator(START).unwrap().save(),
+        Solve::new(&body, &method, [0.0, 10.0]).dt(0.1).integrator(START).unwrap().save(),
+    ];
+    others.iter_mut().for_each(|other| assert!(run.restore(other).is_err()));
+    assert_eq!(bits(run.y()), before, "a refused state changes nothing");
+    run.restore(&bytes).expect("its own state");
+}
