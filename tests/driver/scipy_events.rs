@@ -122,7 +122,8 @@ fn the_third_zero_stops() {
         .expect("a run");
     assert_eq!((all.events.len(), all.t), (32, 100.0));
     let never = Event::new("x", |_, x: &V| x.x).stop_after(0);
-    let refused = Solve::new(&problem, &method, span).tolerances(1e-9, 1e-9).event(never).run(V::x());
+    let refused =
+        Solve::new(&problem, &method, span).tolerances(1e-9, 1e-9).event(never).run(V::x());
     assert!(refused.is_err_and(|e| e.to_string().contains("expected at least 1")), "a count of 0");
 }
 

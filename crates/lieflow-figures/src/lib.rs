@@ -9,7 +9,7 @@ pub mod number;
 mod page;
 mod plot;
 
-pub use page::{Block, Column, Page, Row, Section, Table};
+pub use page::{Block, Cell, Column, Page, Row, Section, Table};
 pub use plot::{
     Axis, Chart, Ground, Heat, Marker, Marks, Path, Point, Scale, Series, Sphere, tell_apart,
 };

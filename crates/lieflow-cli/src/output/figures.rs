@@ -3,8 +3,8 @@
 use crate::output::{EventSummary, Summary};
 use lieflow_figures::number::{scientific, sig};
 use lieflow_figures::{
-    self as figures, Axis, Block, Chart, Column, Ground, Heat, Marker, Marks, Page, Path, Point,
-    Scale, Section, Series, Sphere, Table,
+    self as figures, Axis, Block, Cell, Chart, Column, Ground, Heat, Marker, Marks, Page, Path,
+    Point, Scale, Section, Series, Sphere, Table,
 };
 use lieflow_model::kinds::{self, Figure};
 use lieflow_model::schema::{Observable, Row, Schema};
@@ -310,18 +310,16 @@ fn drift_table(summary: &Summary) -> Block {
             (true, true) => "promises to keep it, and did not",
             (false, _) => "promises nothing",
         };
-        figures::Row {
-            emphasised: drift.breaks_a_promise(),
-            cells: vec![
-                name.clone(),
-                format!("{:.6e}", drift.initial),
-                scientific(drift.max),
-                scientific(drift.at_end),
-                scientific(drift.slope),
-                promise.into(),
-                scientific(drift.rounding),
-            ],
-        }
+        let cells = [
+            name.as_str().into(),
+            Cell::number(drift.initial, |x| format!("{x:.6e}")),
+            Cell::number(drift.max, scientific),
+            Cell::number(drift.at_end, scientific),
+            Cell::number(drift.slope, scientific),
+            promise.into(),
+            Cell::number(drift.rounding, scientific),
+        ];
+        figures::Row::new(cells).with_emphasis(drift.breaks_a_promise())
     });
     Block::Table(Table {
         caption: format!("Drifts, at the {}.", summary.drift_computed_at),

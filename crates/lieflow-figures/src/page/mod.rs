@@ -68,12 +68,24 @@ pub enum Block {
     Heat(Heat),
     /// Blocks next to each other where there is room.
     Row(Vec<Block>),
+    /// Blocks that a reader opens.
+    Fold {
+        /// What is inside.
+        title: String,
+        /// The blocks.
+        blocks: Vec<Block>,
+    },
 }
 
 impl Block {
     /// A paragraph of plain text.
     pub fn text(text: impl Into<String>) -> Self {
         Block::Paragraph(text.into())
+    }
+
+    /// Blocks that stay closed until a reader opens them.
+    pub fn fold(title: impl Into<String>, blocks: Vec<Block>) -> Self {
+        Block::Fold { title: title.into(), blocks }
     }
 
     /// Names with their values.
@@ -90,7 +102,9 @@ impl Block {
             Block::Chart(chart) => file(&chart.id, chart.svg()),
             Block::Sphere(sphere) => file(&sphere.id, sphere.svg()),
             Block::Heat(heat) => file(&heat.id, heat.svg()),
-            Block::Row(blocks) => blocks.iter().flat_map(Block::figures).collect(),
+            Block::Row(blocks) | Block::Fold { blocks, .. } => {
+                blocks.iter().flat_map(Block::figures).collect()
+            }
             _ => Vec::new(),
         }
     }
@@ -138,22 +152,63 @@ impl Column {
     }
 }
 
+/// A cell of a table.
+#[derive(Clone, Debug, Default)]
+pub struct Cell {
+    /// What it shows.
+    pub text: String,
+    /// The number that the text stands for. A reader sorts by it.
+    pub value: Option<f64>,
+}
+
+impl Cell {
+    /// A number, shown in this format.
+    pub fn number<T: Into<String>>(value: f64, format: impl FnOnce(f64) -> T) -> Self {
+        Cell { text: format(value).into(), value: Some(value) }
+    }
+}
+
+impl<T: Into<String>> From<T> for Cell {
+    fn from(text: T) -> Self {
+        Cell { text: text.into(), value: None }
+    }
+}
+
 /// A row of a table; its first cell is the heading of the row.
 #[derive(Clone, Debug, Default)]
 pub struct Row {
     /// The cells in the order of the columns.
-    pub cells: Vec<String>,
+    pub cells: Vec<Cell>,
     /// Whether the row stands out.
     pub emphasised: bool,
 }
 
-impl<C: Into<Vec<String>>> From<C> for Row {
-    fn from(cells: C) -> Self {
-        Row { cells: cells.into(), emphasised: false }
+impl Row {
+    /// A row of these cells.
+    pub fn new<C: Into<Cell>>(cells: impl IntoIterator<Item = C>) -> Self {
+        Row { cells: cells.into_iter().map(Into::into).collect(), emphasised: false }
+    }
+
+    /// The row, standing out from the others if `emphasised`.
+    pub fn with_emphasis(self, emphasised: bool) -> Self {
+        Row { emphasised, ..self }
     }
 }
 
-/// A table.
+impl<C: Into<Cell>> From<Vec<C>> for Row {
+    fn from(cells: Vec<C>) -> Self {
+        Row::new(cells)
+    }
+}
+
+impl<C: Into<Cell>, const N: usize> From<[C; N]> for Row {
+    fn from(cells: [C; N]) -> Self {
+        Row::new(cells)
+    }
+}
+
+/// A table. A reader sorts it by a click on the heading of a column: by text in a column of text, by
+/// [`Cell::value`] in a column of numbers.
 #[derive(Clone, Debug, Default)]
 pub struct Table {
     /// The text above the table.

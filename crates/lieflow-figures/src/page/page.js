@@ -27,6 +27,47 @@
   system.addEventListener("change", nameTheme);
   nameTheme();
 
+  // A click on a heading sorts the table by that column, a second click the other way round.
+  const collator = new Intl.Collator("en", { numeric: true });
+  for (const heading of all("th[data-sorts]")) {
+    const table = heading.closest("table"), body = table.tBodies[0], column = heading.cellIndex;
+    const button = document.createElement("button");
+    button.append(...heading.childNodes);
+    heading.append(button);
+    button.addEventListener("click", () => {
+      const down = heading.getAttribute("aria-sort") === "ascending", sign = down ? -1 : 1;
+      all("th", table.tHead).forEach((other) => other.removeAttribute("aria-sort"));
+      heading.setAttribute("aria-sort", down ? "descending" : "ascending");
+      const number = heading.classList.contains("number");
+      const key = ({ cells }) => {
+        const cell = cells[column];
+        return number ? parseFloat(cell?.dataset.value) : cell?.textContent.trim() ?? "";
+      };
+      // What has no number comes last in both directions.
+      const order = (a, b) => {
+        if (!number) return sign * collator.compare(a, b);
+        return isNaN(a) || isNaN(b) ? isNaN(a) - isNaN(b) : sign * (a - b);
+      };
+      const rows = [...body.rows].map((row) => [key(row), row]);
+      body.append(...rows.sort(([a], [b]) => order(a, b)).map(([, row]) => row));
+    });
+  }
+
+  // A table that is wider than the page says so, and fades where it goes on.
+  for (const box of all(".scroll")) {
+    const hint = document.createElement("p");
+    hint.className = "hint";
+    hint.textContent = "Scroll sideways for more columns →";
+    box.after(hint);
+    const look = () => {
+      hint.hidden = box.scrollWidth <= box.clientWidth + 1;
+      const rest = box.scrollWidth - box.clientWidth - box.scrollLeft;
+      box.classList.toggle("more", !hint.hidden && rest > 1);
+    };
+    box.addEventListener("scroll", look, { passive: true });
+    new ResizeObserver(look).observe(box);
+  }
+
   // One tooltip for all charts. Its first line is the name of the line.
   const tip = create("div", document.body);
   tip.id = "tip";

@@ -101,6 +101,11 @@ fn block(block: &Block) -> String {
             format!("<figure>\n{}\n{caption}</figure>\n", heat.svg())
         }
         Block::Row(row) => format!("<div class=\"row\">\n{}</div>\n", blocks(row)),
+        Block::Fold { title, blocks: inner } => format!(
+            "<details>\n<summary>{}</summary>\n{}</details>\n",
+            escape(title),
+            blocks(inner)
+        ),
     }
 }
 
@@ -133,7 +138,7 @@ fn html_table(table: &Table) -> String {
     );
     let long = |column: usize| {
         let mut cells = table.rows.iter().filter_map(|row| row.cells.get(column));
-        cells.any(|cell| cell.chars().count() > LONG)
+        cells.any(|cell| cell.text.chars().count() > LONG)
     };
     let classes: Vec<&str> = (0..table.columns.len())
         .map(|column| match table.columns[column].numeric {
@@ -143,16 +148,25 @@ fn html_table(table: &Table) -> String {
         })
         .collect();
     let class = |column: usize| classes.get(column).copied().unwrap_or_default();
+    // The script makes a heading a button. One row, or numbers without values, have no order.
+    let sorts = |column: usize| {
+        let mut cells = table.rows.iter().filter_map(|row| row.cells.get(column));
+        table.rows.len() > 1
+            && (!table.columns[column].numeric || cells.any(|cell| cell.value.is_some()))
+    };
     out.push_str("<thead><tr>");
     for (i, column) in table.columns.iter().enumerate() {
-        out.push_str(&format!("<th scope=\"col\"{}>{}</th>", class(i), escape(&column.title)));
+        let sorts = if sorts(i) { " data-sorts" } else { "" };
+        let title = escape(&column.title);
+        out.push_str(&format!("<th scope=\"col\"{}{sorts}>{title}</th>", class(i)));
     }
     out.push_str("</tr></thead>\n<tbody>\n");
     for row in &table.rows {
         out.push_str(if row.emphasised { "<tr class=\"strong\">" } else { "<tr>" });
         for (i, cell) in row.cells.iter().enumerate() {
             let (open, close) = if i == 0 { ("th scope=\"row\"", "th") } else { ("td", "td") };
-            out.push_str(&format!("<{open}{}>{}</{close}>", class(i), escape(cell)));
+            let value = cell.value.map_or_else(String::new, |x| format!(" data-value=\"{x:e}\""));
+            out.push_str(&format!("<{open}{}{value}>{}</{close}>", class(i), escape(&cell.text)));
         }
         out.push_str("</tr>\n");
     }
@@ -162,8 +176,9 @@ fn html_table(table: &Table) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Column, Row, Section};
+    use super::super::{Cell, Column, Row, Section};
     use super::*;
+    use crate::Axis;
 
     fn page(content: Vec<Block>) -> Page {
         let section = Section::new("Results & <more>", content);
@@ -211,7 +226,7 @@ mod tests {
 
     #[test]
     fn tables_have_headings_and_alignment() {
-        let row = Row { cells: vec!["RKMK4".into(), "1.0".into()], emphasised: true };
+        let row = Row::new(["RKMK4", "1.0"]).with_emphasis(true);
         let columns = Column::all(["method"], ["error"]);
         let html = html_table(&Table::new("", columns, [row]));
         assert!(html.contains("<th scope=\"col\" class=\"number\">error</th>"));
@@ -221,9 +236,34 @@ mod tests {
     }
 
     #[test]
+    fn columns_of_text_and_of_values_sort() {
+        let rows =
+            [2e-9, 10.0].map(|x| ["a".into(), Cell::number(x, |x| format!("{x} ns")), "1".into()]);
+        let columns = Column::all(["name"], ["time", "without a value"]);
+        let html = html_table(&Table::new("", columns, rows.clone()));
+        assert!(html.contains("<td class=\"number\" data-value=\"2e-9\">0.000000002 ns</td>"));
+        assert!(html.contains("<th scope=\"col\" data-sorts>name</th>"));
+        assert!(html.contains("<th scope=\"col\" class=\"number\" data-sorts>time</th>"));
+        assert_eq!(html.matches("data-sorts").count(), 2);
+        let one = Table::new("", Column::all(["name"], []), rows.into_iter().take(1));
+        assert!(!html_table(&one).contains("data-sorts"));
+    }
+
+    #[test]
+    fn folds_hold_their_blocks_and_figures() {
+        let chart = Chart::new("inner", "A chart", [Axis::linear("x"), Axis::linear("y")], []);
+        let fold = Block::fold("More & more", vec![Block::text("inside"), chart.into()]);
+        let page = page(vec![fold]);
+        assert!(
+            page.html().contains("<details>\n<summary>More &amp; more</summary>\n<p>inside</p>")
+        );
+        assert_eq!(page.figures()[0].0, "inner.svg");
+    }
+
+    #[test]
     fn the_caption_of_a_table_does_not_scroll_away() {
         let columns = vec![Column::text("method")];
-        let html = html_table(&Table::new("All of it", columns, [[]]));
+        let html = html_table(&Table::new("All of it", columns, [Row::default()]));
         let caption = html.find("<p class=\"caption\">All of it</p>");
         assert!(caption < html.find("class=\"scroll\"") && caption.is_some(), "{html}");
     }

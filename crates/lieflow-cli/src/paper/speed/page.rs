@@ -2,7 +2,7 @@
 
 use lieflow::groups::{LieGroup, So3};
 use lieflow_figures::number::{scientific, seconds};
-use lieflow_figures::{Block, Column, Page, Path, Row, Section, Sphere, Table};
+use lieflow_figures::{Block, Cell, Column, Page, Path, Row, Section, Sphere, Table};
 use lieflow_model::model::Layer;
 
 use super::{Outcome, Speed, candidate, rounds};
@@ -75,15 +75,15 @@ impl Speed {
 
     /// The section of the cross-checks.
     fn agreement(&self) -> Section {
-        let rows = self.findings.iter().map(|f| Row {
-            cells: vec![
-                f.name.clone(),
-                f.cases.to_string(),
-                format!("{:.2}", f.worst),
-                f.bound.to_string(),
-                if f.holds() { "holds".into() } else { "out of bounds".into() },
-            ],
-            emphasised: !f.holds(),
+        let rows = self.findings.iter().map(|f| {
+            let cells = [
+                f.name.as_str().into(),
+                Cell::number(f.cases as f64, |cases| cases.to_string()),
+                Cell::number(f.worst, |worst| format!("{worst:.2}")),
+                Cell::number(f.bound, |bound| bound.to_string()),
+                if f.holds() { "holds" } else { "out of bounds" }.into(),
+            ];
+            Row::new(cells).with_emphasis(!f.holds())
         });
         let mut columns = Column::all(["Check"], ["Cases", "Worst [eps·cond]", "Bound"]);
         columns.push(Column::text(""));
