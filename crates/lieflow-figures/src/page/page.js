@@ -94,10 +94,10 @@
   };
 
   const superscript = (n) => String(n).replace(/./g, (c) => "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"["-0123456789".indexOf(c)]);
-  const number = (x) => {
-    const [mantissa, exponent] = x.toExponential(2).replace("-", x < 0 ? "−" : "-").split("e");
+  const number = (x, digits = 3) => {
+    const [mantissa, exponent] = x.toExponential(digits - 1).replace("-", x < 0 ? "−" : "-").split("e");
     const plain = Math.abs(x) >= 1e-3 && Math.abs(x) < 1e6;
-    if (x === 0 || plain) return String(Number(x.toPrecision(3))).replace("-", "−");
+    if (x === 0 || plain) return String(Number(x.toPrecision(digits))).replace("-", "−");
     return `${mantissa}×10${superscript(Number(exponent))}`;
   };
 
@@ -111,9 +111,12 @@
       symlog: (t) => Math.sign(t) * linear * (10 ** Math.abs(t) - 1),
     }[kind];
     const { [`${name}Title`]: title, [`${name}Unit`]: unit } = svg.dataset;
+    // As many digits as tell two pixels of a narrow range apart.
+    const size = Math.max(Math.abs(lo), Math.abs(hi)) / (hi - lo);
+    const digits = kind === "linear" ? Math.min(15, 3 + Math.max(0, Math.ceil(Math.log10(size)))) : 3;
     return (pixel) => {
       const value = unwarp(lo + ((pixel - from) / (to - from)) * (hi - lo));
-      return `${title}: ${number(value)} ${unit}`.trim();
+      return `${title}: ${number(value, digits)} ${unit}`.trim();
     };
   };
 
@@ -146,8 +149,7 @@
   };
 
   // Numbers along the axis that would touch are left out, those between the decades first.
-  const thinOut = (svg) => {
-    const labels = all(".lf-tick[text-anchor=middle]", svg);
+  const thinOut = (labels) => {
     labels.forEach((label) => label.classList.remove("lf-off"));
     const kept = [];
     const between = (label) => label.textContent.includes("×");
@@ -159,33 +161,53 @@
     }
   };
 
-  // On a narrow screen the names of the lines move below the data.
-  const reflow = (svg) => {
-    const [, , wide, high] = svg.getAttribute("viewBox").split(" ");
-    const query = matchMedia("(max-width: 40rem)");
-    const keys = all(".lf-key", svg);
-    const apply = (narrow) => {
+  // Draws a chart as wide as its place: lines are stretched, text and markers keep their size. On a narrow
+  // screen the names of the lines move below the data.
+  const stretch = (svg) => {
+    const [, , wide, high] = svg.getAttribute("viewBox").split(" ").map(Number);
+    const [left, right, bottom] = svg.dataset.plot.split(" ").map(Number);
+    const keys = all(".lf-key", svg), paths = all(".lf-grid,.lf-minor,.lf-frame,.lf-mark,.lf-line", svg);
+    const ticks = all(".lf-tick[text-anchor=middle]", svg), title = svg.querySelector(".lf-label");
+    const texts = ticks.map((tick) => [tick, Number(tick.getAttribute("x"))]);
+    const markers = all(".lf-p", svg).map((p) => [p, ...p.getAttribute("transform").match(/-?[\d.]+/g).map(Number)]);
+    const paper = svg.querySelector(".lf-paper");
+    const place = { factor: 1, at: (x) => left + (x - left) * place.factor };
+    const apply = () => {
+      const width = svg.parentElement.clientWidth;
+      if (!width) return; // Within a closed fold.
+      const narrow = width < 620, end = narrow ? width - 14 : right + width - wide;
+      place.factor = (end - left) / (right - left);
       svg.classList.toggle("lf-narrow", narrow);
-      keys.forEach((key, i) => {
-        const box = key.querySelector("rect");
-        const dx = 71 - box.getAttribute("x"), dy = 470 + 24 * i - box.getAttribute("y");
-        key.setAttribute("transform", narrow ? `translate(${dx} ${dy})` : "");
+      paths.forEach((p) => p.setAttribute("transform", `matrix(${place.factor} 0 0 1 ${left - left * place.factor} 0)`));
+      texts.forEach(([tick, x]) => tick.setAttribute("x", place.at(x)));
+      markers.forEach(([p, x, y]) => p.setAttribute("transform", `translate(${place.at(x)} ${y})`));
+      title.setAttribute("x", (left + end) / 2);
+      let x = left, y = bottom + 52;
+      keys.forEach((key) => {
+        if (!narrow) return key.setAttribute("transform", `translate(${end - right} 0)`);
+        const box = key.querySelector("rect"), sample = key.querySelector("text");
+        const length = Number(sample.getAttribute("x")) - Number(box.getAttribute("x")) + sample.getComputedTextLength();
+        if (x > left && x + length > width) [x, y] = [left, y + 24];
+        key.setAttribute("transform", `translate(${x - box.getAttribute("x")} ${y - box.getAttribute("y")})`);
+        x += length + 14;
       });
-      // The letters are larger there, and the title of the upward axis moves away from its numbers.
-      const [left, width, height] =
-        narrow ? [-34, 622, 478 + 24 * keys.length] : [0, wide, high];
-      Object.entries({ viewBox: `${left} 0 ${width} ${height}`, width, height })
+      const height = narrow ? y + 24 : high;
+      Object.entries({ viewBox: `0 0 ${width} ${height}`, width, height })
         .forEach(([name, value]) => svg.setAttribute(name, value));
-      thinOut(svg);
-      const title = svg.querySelector(".lf-title");
-      title.style.fontSize = "";
-      const excess = title.getComputedTextLength() / (left + width - title.getAttribute("x") - 4);
-      if (narrow && excess > 1) title.style.fontSize = `${19 / excess}px`;
+      Object.entries({ width, height }).forEach(([name, value]) => paper.setAttribute(name, value));
+      thinOut(ticks);
     };
-    query.addEventListener("change", () => apply(query.matches));
-    addEventListener("beforeprint", () => apply(false));
-    addEventListener("afterprint", () => apply(query.matches));
-    apply(query.matches);
+    new ResizeObserver(apply).observe(svg.parentElement);
+    apply();
+    return place;
+  };
+
+  // The text of other figures, which are scaled as a whole, keeps its size.
+  const keepText = (svg) => {
+    const natural = Number(svg.getAttribute("width"));
+    const apply = () => svg.style.setProperty("--lf-text", Math.max(1, natural / (svg.clientWidth || natural)));
+    new ResizeObserver(apply).observe(svg);
+    apply();
   };
 
   const chart = (svg) => {
@@ -195,44 +217,57 @@
     const cursor = svg.appendChild(document.createElementNS(svg.namespaceURI, "circle"));
     cursor.setAttribute("class", "lf-cursor");
     cursor.setAttribute("r", "0");
-    // Every place a reader can point at: markers, and the corners of dense lines.
-    const places = [];
-    const stops = [];
+    // What a reader can point at: markers, and dense lines, of which the corners are kept.
+    const marks = [], runs = [], stops = [];
     for (const element of all(".lf-p,.lf-dense", svg)) {
       const lines = titleToLabel(element), group = element.closest(".lf-s");
-      const dense = element.classList.contains("lf-dense");
-      const source = element.getAttribute(dense ? "d" : "transform").match(/-?[\d.]+/g) || [];
       element.setAttribute("role", "img");
-      for (let i = 0; i + 1 < source.length; i += 2) {
-        places.push({ element, group, dense, lines, x: Number(source[i]), y: Number(source[i + 1]) });
+      if (element.classList.contains("lf-dense")) {
+        for (const piece of (element.getAttribute("d") || "").split("M")) {
+          const numbers = (piece.match(/-?[\d.]+/g) || []).map(Number), points = [];
+          for (let i = 0; i + 1 < numbers.length; i += 2) points.push([numbers[i], numbers[i + 1]]);
+          if (points.length) runs.push({ points, group, name: lines[0] });
+        }
+        if (element.getAttribute("d")) stops.push({ element, group, lines });
+      } else {
+        const [x, y] = element.getAttribute("transform").match(/-?[\d.]+/g).map(Number);
+        marks.push({ element, group, lines, x, y });
+        stops.push({ element, group, lines });
       }
-      if (source.length > 1) stops.push({ element, group, lines });
     }
+    const place = stretch(svg);
     const clear = () => {
       tip.hidden = true;
       cursor.setAttribute("r", "0");
       all(".lf-on", svg).forEach((element) => element.classList.remove("lf-on"));
     };
+    // The nearest point of a line, in pixels of the screen.
+    const onSegment = (at, [x0, y0], [x1, y1]) => {
+      const [a, b] = [place.at(x0), place.at(x1)];
+      const length = (b - a) ** 2 + (y1 - y0) ** 2;
+      const along = length ? ((at.x - a) * (b - a) + (at.y - y0) * (y1 - y0)) / length : 0;
+      const t = Math.max(0, Math.min(1, along));
+      return { x: x0 + t * (x1 - x0), y: y0 + t * (y1 - y0), far: Math.hypot(a + t * (b - a) - at.x, y0 + t * (y1 - y0) - at.y) };
+    };
     svg.addEventListener("pointermove", (event) => {
       const matrix = svg.getScreenCTM();
       const at = new DOMPoint(event.clientX, event.clientY).matrixTransform(matrix.inverse());
-      let best = null, least = 16;
-      for (const place of places) {
-        const distance = Math.hypot(place.x - at.x, place.y - at.y);
-        if (distance < least && !place.group.classList.contains("lf-off")) {
-          [best, least] = [place, distance];
-        }
+      let best = { far: 16 };
+      const look = (candidate) => { if (candidate.far < best.far) best = candidate; };
+      const shown = ({ group }) => !group.classList.contains("lf-off");
+      marks.filter(shown).forEach((mark) =>
+        look({ mark, far: Math.hypot(place.at(mark.x) - at.x, mark.y - at.y) }));
+      for (const { points, name } of runs.filter(shown)) {
+        points.forEach((point, i) => look({ name, ...onSegment(at, points[Math.max(0, i - 1)], point) }));
       }
       clear();
-      if (!best) return;
-      let lines = best.lines;
-      if (best.dense) {
-        lines = [best.lines[0], valueX(best.x), valueY(best.y)];
-        Object.entries({ cx: best.x, cy: best.y, r: 4 }).forEach(([k, v]) => cursor.setAttribute(k, v));
-      } else {
-        best.element.classList.add("lf-on");
+      if (best.mark) {
+        best.mark.element.classList.add("lf-on");
+        showTip(best.mark.lines, event.clientX, event.clientY);
+      } else if (best.name) {
+        Object.entries({ cx: place.at(best.x), cy: best.y, r: 4 }).forEach(([k, v]) => cursor.setAttribute(k, v));
+        showTip([best.name, valueX(best.x), valueY(best.y)], event.clientX, event.clientY);
       }
-      showTip(lines, event.clientX, event.clientY);
     });
     svg.addEventListener("pointerleave", clear);
 
@@ -267,12 +302,12 @@
       });
     });
     legend(svg);
-    reflow(svg);
   };
 
   all("svg.lf-chart").forEach(chart);
-  all("svg.lf-sphere").forEach((svg) => {
+  all("svg.lf:not(.lf-chart)").forEach((svg) => {
     titleToLabel(svg);
     legend(svg);
+    keepText(svg);
   });
 })();

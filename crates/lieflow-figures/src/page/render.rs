@@ -1,7 +1,7 @@
 //! From a page to HTML text.
 
 use super::{Block, Page, Table};
-use crate::plot::{Chart, Sphere, escape, slug, theme};
+use crate::plot::{Sphere, escape, slug, theme};
 
 const STYLE: &str = include_str!("page.css");
 const SCRIPT: &str = concat!(include_str!("page.js"), include_str!("sphere.js"));
@@ -94,12 +94,9 @@ fn block(block: &Block) -> String {
             format!("<dl class=\"facts\">\n{}</dl>\n", facts.collect::<String>())
         }
         Block::Table(table) => html_table(table),
-        Block::Chart(chart) => html_chart(chart),
+        Block::Chart(chart) => figure(&chart.title, &chart.svg(), &chart.full_caption()),
         Block::Sphere(sphere) => html_sphere(sphere),
-        Block::Heat(heat) => {
-            let caption = optional("figcaption", "caption", &heat.caption);
-            format!("<figure>\n{}\n{caption}</figure>\n", heat.svg())
-        }
+        Block::Heat(heat) => figure(&heat.title, &heat.svg(), &heat.caption),
         Block::Row(row) => format!("<div class=\"row\">\n{}</div>\n", blocks(row)),
         Block::Fold { title, blocks: inner } => format!(
             "<details>\n<summary>{}</summary>\n{}</details>\n",
@@ -109,19 +106,17 @@ fn block(block: &Block) -> String {
     }
 }
 
-fn html_chart(chart: &Chart) -> String {
-    let caption = optional("figcaption", "caption", &chart.full_caption());
-    format!("<figure>\n{}\n{caption}</figure>\n", chart.svg())
+/// A drawing under its title, which breaks its lines as the drawing could not.
+fn figure(title: &str, drawing: &str, caption: &str) -> String {
+    let (title, caption) =
+        (optional("p", "title", title), optional("figcaption", "caption", caption));
+    format!("<figure>\n{title}{drawing}\n{caption}</figure>\n")
 }
 
 fn html_sphere(sphere: &Sphere) -> String {
-    format!(
-        "<figure>\n{}\n<script type=\"application/json\" class=\"scene\">{}</script>\n{}\
-         </figure>\n",
-        sphere.svg(),
-        sphere.json(),
-        optional("figcaption", "caption", &sphere.caption)
-    )
+    let scene =
+        format!("<script type=\"application/json\" class=\"scene\">{}</script>", sphere.json());
+    figure(&sphere.title, &format!("{}\n{scene}", sphere.svg()), &sphere.caption)
 }
 
 /// A column with a longer cell than this breaks its lines.
@@ -178,7 +173,7 @@ fn html_table(table: &Table) -> String {
 mod tests {
     use super::super::{Cell, Column, Row, Section};
     use super::*;
-    use crate::Axis;
+    use crate::{Axis, Chart};
 
     fn page(content: Vec<Block>) -> Page {
         let section = Section::new("Results & <more>", content);

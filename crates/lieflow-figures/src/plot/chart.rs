@@ -1,24 +1,30 @@
 //! Line charts.
 
 use super::labels::{self, ROW};
-use super::scale::{Axis, Map, Scale};
+use super::scale::{Axis, Map, Scale, Tick};
 use super::series::{Marker, Point, Series};
 use super::svg::{Opening, escape, polyline, px, slug, text, text_width};
 use super::theme;
 use super::trace::{Trace, omission};
 
-/// The area of the data within the picture.
-const LEFT: f64 = 76.0;
-const RIGHT: f64 = 576.0;
+/// The size of the picture. The names of the lines may need more height.
+const WIDTH: f64 = 760.0;
 const TOP: f64 = 42.0;
 const BOTTOM: f64 = 412.0;
+/// The least width of the data.
+const LEAST: f64 = 320.0;
 
 /// The size of the labels of ticks, as in common.css.
 const TICK_SIZE: f64 = 12.0;
 
-/// The room below the data, and between the data and the names of the lines.
+/// The room of the title of the upward axis, and the room between an axis and its labels.
+const UPWARD: f64 = 24.0;
+const BESIDE: f64 = 8.0;
+
+/// The room below the data, between the data and the names of the lines, and at the right edge.
 const FOOT: f64 = 52.0;
 const GAP: f64 = 24.0;
+const EDGE: f64 = 12.0;
 
 /// Places on the horizontal axis that have a name: each is a thin vertical line.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -77,42 +83,44 @@ impl Chart {
     /// the others; [`Chart::notes`] counts the others. Each point of a line with markers is an
     /// element of its own. A line without markers is thinned to the resolution of the picture.
     pub fn svg(&self) -> String {
-        let (x, y) = self.maps();
-        let traces: Vec<Trace> = self.series.iter().map(|s| Trace::new(s, &x, &y)).collect();
-        let column = labels::column_width(&self.series);
+        let layout = Layout::new(self);
+        let traces: Vec<Trace> =
+            self.series.iter().map(|s| Trace::new(s, &layout.x, &layout.y)).collect();
         let rows = self.series.len() as f64 * ROW;
-        let width = (RIGHT + GAP + column + 12.0).ceil();
         let note = if self.notes().is_empty() { 0.0 } else { 16.0 };
         let height = (BOTTOM + FOOT + note).max(TOP + rows + 10.0).ceil();
         let id = slug(&self.id);
+        let place = format!(" data-plot=\"{} {} {BOTTOM}\"", layout.x.from, layout.x.to);
+        let attributes =
+            [map_attribute("x", &layout.x, &self.x), map_attribute("y", &layout.y, &self.y), place];
         let opening = Opening {
             class: "lf-chart",
             id: &id,
-            size: (width, height),
+            size: (layout.width, height),
             title: &self.title,
             description: &self.description(),
             css: theme::chart_css(),
-            attributes: [map_attribute("x", &x, &self.x), map_attribute("y", &y, &self.y)].concat(),
+            attributes: attributes.concat(),
             defs: String::new(),
         };
         let mut out = opening.svg();
-        self.draw_axes(&mut out, &x, &y, height);
-        self.draw_marks(&mut out, &x);
+        self.draw_axes(&mut out, &layout, height);
+        self.draw_marks(&mut out, &layout.x);
         for index in self.drawing_order() {
-            self.draw_line(&mut out, index, &traces[index], &x, &y);
+            self.draw_line(&mut out, index, &traces[index], &layout.x, &layout.y);
         }
         if traces.iter().all(|t| t.points.is_empty()) {
-            let middle = ((LEFT + RIGHT) / 2.0, (TOP + BOTTOM) / 2.0);
+            let middle = (0.5 * (layout.x.from + layout.x.to), 0.5 * (TOP + BOTTOM));
             out.push_str(&text("lf-note", middle, "middle", "There is no data to draw."));
         }
-        self.draw_names(&mut out, &traces, column);
+        self.draw_names(&mut out, &traces, &layout);
         out.push_str("</svg>");
         out
     }
 
     /// Sentences that count the points which are not drawn, for each cause; empty if all are.
     pub fn notes(&self) -> String {
-        let (x, y) = self.maps();
+        let Layout { x, y, .. } = Layout::new(self);
         let mut counts: Vec<(String, usize)> = Vec::new();
         for point in self.series.iter().flat_map(|s| &s.points) {
             let horizontal = omission(&self.x, &x, point.x);
@@ -148,65 +156,56 @@ impl Chart {
         )
     }
 
-    fn maps(&self) -> (Map, Map) {
-        let points = || self.series.iter().flat_map(|s| &s.points);
-        // Dense lines begin and end at the frame, markers stay clear of it.
-        let marked = self.series.iter().any(|s| s.marker != Marker::None);
-        let padding = if marked { 0.04 } else { 0.0 };
-        (
-            self.x.map(points().map(|p| p.x), (LEFT, RIGHT), padding),
-            self.y.map(points().map(|p| p.y), (BOTTOM, TOP), 0.04),
-        )
-    }
-
     fn drawing_order(&self) -> Vec<usize> {
         let mut order: Vec<usize> = (0..self.series.len()).collect();
         order.sort_by_key(|i| self.series[*i].emphasised);
         order
     }
 
-    fn draw_axes(&self, out: &mut String, x: &Map, y: &Map, height: f64) {
+    fn draw_axes(&self, out: &mut String, Layout { x, y, .. }: &Layout, height: f64) {
         let (columns, rows) = (x.ticks(46.0), y.ticks(34.0));
+        // Labels that are wide need more room.
+        let columns = match widest(&columns) + 14.0 {
+            room if room > 46.0 => x.ticks(room),
+            _ => columns,
+        };
+        let (left, right) = (px(x.from), px(x.to));
         for major in [false, true] {
             let vertical = columns.iter().filter(|t| t.major == major);
             let horizontal = rows.iter().filter(|t| t.major == major);
             let vertical = vertical.map(|t| format!("M{} {TOP}V{BOTTOM}", px(t.at)));
-            let horizontal = horizontal.map(|t| format!("M{LEFT} {}H{RIGHT}", px(t.at)));
+            let horizontal = horizontal.map(|t| format!("M{left} {}H{right}", px(t.at)));
             let class = if major { "lf-grid" } else { "lf-minor" };
             let d: String = vertical.chain(horizontal).collect();
             out.push_str(&format!("<path class=\"{class}\" d=\"{d}\"/>"));
         }
-        out.push_str(&format!("<path class=\"lf-frame\" d=\"M{LEFT} {TOP}V{BOTTOM}H{RIGHT}\"/>"));
+        out.push_str(&format!("<path class=\"lf-frame\" d=\"M{left} {TOP}V{BOTTOM}H{right}\"/>"));
         for (at, label) in columns.iter().filter_map(|t| Some((t.at, t.label.as_ref()?))) {
             out.push_str(&text("lf-tick", (at, BOTTOM + 18.0), "middle", label));
         }
         for (at, label) in rows.iter().filter_map(|t| Some((t.at, t.label.as_ref()?))) {
-            out.push_str(&text("lf-tick", (LEFT - 8.0, at + 4.2), "end", label));
+            out.push_str(&text("lf-tick", (x.from - BESIDE, at + 4.2), "end", label));
         }
-        // The title of the axis is beside the widest label, within the picture.
-        let labels = rows.iter().filter_map(|t| t.label.as_ref());
-        let widest = labels.map(|label| text_width(label, TICK_SIZE)).fold(0.0, f64::max);
-        let upward = (LEFT - 14.0 - widest).clamp(12.0, 18.0);
-        let middle = (LEFT + RIGHT) / 2.0;
-        out.push_str(&text("lf-title", (LEFT, 24.0), "start", &self.title));
-        out.push_str(&text("lf-label", (middle, BOTTOM + 41.0), "middle", &self.x.title));
+        let title = |axis: &Axis, map: &Map| axis.title_beside(map.offset, map.hi - map.lo);
+        let middle = 0.5 * (x.from + x.to);
+        out.push_str(&text("lf-title", (16.0, 24.0), "start", &self.title));
+        out.push_str(&text("lf-label", (middle, BOTTOM + 41.0), "middle", &title(&self.x, x)));
         out.push_str(&format!(
             "<g class=\"lf-upward\"><text class=\"lf-label\" \
-             transform=\"translate({} {}) rotate(-90)\" text-anchor=\"middle\">{}</text></g>",
-            px(upward),
-            (TOP + BOTTOM) / 2.0,
-            escape(&self.y.title)
+             transform=\"translate(16 {}) rotate(-90)\" text-anchor=\"middle\">{}</text></g>",
+            px(0.5 * (TOP + BOTTOM)),
+            escape(&title(&self.y, y))
         ));
         let notes = self.notes();
         if !notes.is_empty() {
-            out.push_str(&text("lf-note", (LEFT, height - 5.0), "start", &notes));
+            out.push_str(&text("lf-note", (x.from, height - 5.0), "start", &notes));
         }
     }
 
     fn draw_marks(&self, out: &mut String, x: &Map) {
         for marks in &self.marks {
             for at in &marks.at {
-                let within = |at: &f64| (LEFT..=RIGHT).contains(at);
+                let within = |at: &f64| x.contains(*at);
                 let Some(pixel) = x.pixel(*at).filter(within) else { continue };
                 let title =
                     format!("{}\n{}: {}", marks.name, self.x.quantity(), self.x.value_text(*at));
@@ -290,8 +289,9 @@ impl Chart {
 
     /// The names of the lines: next to their ends if all lines end at the right edge, in their
     /// given order from the top otherwise.
-    fn draw_names(&self, out: &mut String, traces: &[Trace], column: f64) {
-        let at_edge = |end: &(f64, f64)| end.0 > RIGHT - 4.0;
+    fn draw_names(&self, out: &mut String, traces: &[Trace], layout: &Layout) {
+        let right = layout.x.to;
+        let at_edge = |end: &(f64, f64)| end.0 > right - 4.0;
         let end = |t: &Trace| t.runs.last().and_then(|run| run.last()).copied().filter(at_edge);
         let ends: Option<Vec<(f64, f64)>> = traces.iter().map(end).collect();
         let heights = match &ends {
@@ -306,11 +306,42 @@ impl Chart {
         out.push_str("<g class=\"lf-legend\">");
         for i in order {
             let from = ends.as_ref().map(|ends| ends[i]);
-            let at = (RIGHT + GAP, heights[i]);
-            out.push_str(&labels::entry(&self.series[i], i, at, from, column));
+            let at = (right + GAP, heights[i]);
+            out.push_str(&labels::entry(&self.series[i], i, at, from, layout.names));
         }
         out.push_str("</g>");
     }
+}
+
+/// Where the data are in the picture.
+struct Layout {
+    x: Map,
+    y: Map,
+    /// The width of the names of the lines.
+    names: f64,
+    width: f64,
+}
+
+impl Layout {
+    /// The upward axis first: its labels decide where the data begin.
+    fn new(chart: &Chart) -> Self {
+        let points = || chart.series.iter().flat_map(|s| &s.points);
+        let y = chart.y.map(points().map(|p| p.y), (BOTTOM, TOP), 0.04);
+        let left = (UPWARD + widest(&y.ticks(34.0)) + BESIDE).ceil();
+        let names = labels::column_width(&chart.series);
+        let right = (WIDTH - EDGE - names - GAP).max(left + LEAST).floor();
+        // Dense lines begin and end at the frame, markers stay clear of it.
+        let marked = chart.series.iter().any(|s| s.marker != Marker::None);
+        let padding = if marked { 0.04 } else { 0.0 };
+        let x = chart.x.map(points().map(|p| p.x), (left, right), padding);
+        Layout { x, y, names, width: (right + GAP + names + EDGE).ceil() }
+    }
+}
+
+/// The width of the widest label.
+fn widest(ticks: &[Tick]) -> f64 {
+    let labels = ticks.iter().filter_map(|tick| tick.label.as_ref());
+    labels.map(|label| text_width(label, TICK_SIZE)).fold(0.0, f64::max)
 }
 
 /// The attribute from which the page script finds the value of a pixel.

@@ -78,6 +78,20 @@ impl Axis {
         }
     }
 
+    /// The title; where the labels are differences from `offset`, with that: "energy − 0.00515 [J]".
+    pub(crate) fn title_beside(&self, offset: f64, range: f64) -> String {
+        if offset == 0.0 {
+            return self.title.clone();
+        }
+        let digits = offset.abs().log10().floor() - range.log10().ceil() + 1.0;
+        let value = sig(offset.abs(), digits as usize);
+        let value = if value.contains('×') { &value } else { value.trim_end_matches('0') };
+        let sign = if offset < 0.0 { '+' } else { '−' };
+        let (quantity, unit) = self.split_title();
+        let unit = if unit.is_empty() { String::new() } else { format!(" [{unit}]") };
+        format!("{quantity} {sign} {}{unit}", value.trim_end_matches('.'))
+    }
+
     /// `value` of this axis for people, with its unit.
     pub(crate) fn value_text(&self, value: f64) -> String {
         match self.unit() {
@@ -98,7 +112,8 @@ impl Axis {
         let scale = self.scale;
         let placed = data.filter(|v| scale.accepts(*v)).map(|v| scale.warp(v));
         let (lo, hi) = padded(placed, padding);
-        Map { scale, lo, hi, from: pixels.0, to: pixels.1 }
+        let offset = if scale == Scale::Linear { offset(lo, hi) } else { 0.0 };
+        Map { scale, lo, hi, offset, from: pixels.0, to: pixels.1 }
     }
 }
 
@@ -110,10 +125,20 @@ fn padded(values: impl Iterator<Item = f64>, padding: f64) -> (f64, f64) {
     }
     let extent = hi - lo;
     if extent <= 1e-12 * lo.abs().max(hi.abs()) || extent == 0.0 {
-        let half = 0.5 * lo.abs().max(1.0);
+        let half = if lo == 0.0 { 1.0 } else { 0.5 * lo.abs() };
         return (lo - half, hi + half);
     }
     (lo - padding * extent, hi + padding * extent)
+}
+
+/// What labels leave out where they would be long: a value in the range, in few digits.
+fn offset(lo: f64, hi: f64) -> f64 {
+    let extent = hi - lo;
+    if extent > 1e-4 * lo.abs().max(hi.abs()) {
+        return 0.0;
+    }
+    let unit = 10f64.powf(extent.log10().ceil());
+    (0.5 * (lo + hi) / unit).round() * unit
 }
 
 /// An axis with its range, laid out over pixels.
@@ -123,6 +148,8 @@ pub(crate) struct Map {
     /// The ends of the range in the warped coordinate.
     pub(crate) lo: f64,
     pub(crate) hi: f64,
+    /// What is left out of the labels; 0 on most axes.
+    pub(crate) offset: f64,
     /// The pixels of these ends.
     pub(crate) from: f64,
     pub(crate) to: f64,
@@ -156,7 +183,10 @@ impl Map {
     pub(crate) fn ticks(&self, spacing: f64) -> Vec<Tick> {
         let labels = ((self.to - self.from).abs() / spacing).max(1.0);
         let found = match self.scale {
-            Scale::Linear => linear_ticks(self.lo, self.hi, labels),
+            Scale::Linear => {
+                let ticks = linear_ticks(self.lo - self.offset, self.hi - self.offset, labels);
+                ticks.into_iter().map(|(x, label, major)| (x + self.offset, label, major)).collect()
+            }
             Scale::Log10 => log_ticks(self.lo, self.hi, labels),
             Scale::SymLog { linear } => self.symlog_ticks(linear.max(f64::MIN_POSITIVE), labels),
         };
@@ -189,25 +219,22 @@ type Found = (f64, Option<String>, bool);
 /// Ticks at multiples of 1, 2 or 5 times a power of ten.
 fn linear_ticks(lo: f64, hi: f64, labels: f64) -> Vec<Found> {
     let step = nice_step((hi - lo) / labels);
-    let decimals = (-step.log10().floor()).max(0.0) as usize;
-    let text = |value: f64| match decimals {
-        0..=5 if value.abs() < 1e6 => fixed(value, decimals),
-        _ => sig(value, 3),
-    };
     let first = (lo / step - 1e-9).ceil();
     let count = (hi / step + 1e-9).floor() - first;
     let values: Vec<f64> =
         (0..=count.clamp(-1.0, 100.0) as i64).map(|i| (first + i as f64) * step).collect();
-    let mut labels: Vec<String> = values.iter().map(|&value| text(value)).collect();
-    // Values that differ after more digits than a label has: the lowest one, and what is added to it.
-    if labels.windows(2).any(|pair| pair[0] == pair[1]) {
-        let power = step.log10().floor() as i32;
-        let factor = (step / 10f64.powi(power)).round();
-        for (i, label) in labels.iter_mut().enumerate().skip(1) {
-            *label = format!("+{}e{power}", i as f64 * factor);
+    let size = lo.abs().max(hi.abs());
+    let (power, fine) = (size.log10().floor() as i32, (step.log10() + 1e-9).floor() as i32);
+    let text = |value: f64| match (-5..5).contains(&fine) && (1e-3..1e5).contains(&size) {
+        _ if value == 0.0 => "0".into(),
+        true => fixed(value, (-fine).max(0) as usize),
+        // One power of ten for all labels.
+        false => {
+            let mantissa = fixed(value / 10f64.powi(power), (power - fine).max(0) as usize);
+            format!("{mantissa}×{}", power_of_ten(power))
         }
-    }
-    values.into_iter().zip(labels).map(|(value, label)| (value, Some(label), true)).collect()
+    };
+    values.into_iter().map(|value| (value, Some(text(value)), true)).collect()
 }
 
 /// The smallest of 1, 2, 5 times a power of ten that is at least `step`.
@@ -297,7 +324,7 @@ mod tests {
     fn linear_labels() {
         assert_eq!(
             labels(&map(Scale::Linear, (0.0, 1.0), (0.0, 500.0)), 100.0),
-            ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]
+            ["0", "0.2", "0.4", "0.6", "0.8", "1.0"]
         );
         assert_eq!(
             labels(&map(Scale::Linear, (-10.0, 10.0), (0.0, 300.0)), 60.0),
@@ -305,13 +332,23 @@ mod tests {
         );
     }
 
-    /// An energy that moves in its tenth digit: the labels differ.
+    /// Two labels are never the same: what they share is in the title.
     #[test]
-    fn labels_of_a_narrow_range_are_relative() {
-        let m = map(Scale::Linear, (1.03 - 1e-9, 1.03 + 1e-9), (0.0, 500.0));
-        let found = labels(&m, 60.0);
-        assert!(found.len() > 2 && found[1].starts_with('+'), "{found:?}");
-        assert!(found.windows(2).all(|pair| pair[0] != pair[1]), "{found:?}");
+    fn labels_of_a_narrow_range_leave_out_what_they_share() {
+        let axis = Axis::linear("energy [J]");
+        for (lo, hi, title) in [
+            (1.03 - 1e-9, 1.03 + 1e-9, "energy − 1.03 [J]"),
+            (0.005151, 0.00515100004, "energy − 0.005151 [J]"),
+            (-2.0 - 3e-7, -2.0, "energy + 2 [J]"),
+            (0.00515, 0.0052, "energy [J]"),
+            (4e-7, 9e-7, "energy [J]"),
+        ] {
+            let m = axis.map([lo, hi].into_iter(), (0.0, 500.0), 0.04);
+            let found = labels(&m, 60.0);
+            assert!(found.len() > 2 && found.iter().all(|l| l.chars().count() < 11), "{found:?}");
+            assert!(found.windows(2).all(|pair| pair[0] != pair[1]), "{found:?}");
+            assert_eq!(axis.title_beside(m.offset, m.hi - m.lo), title);
+        }
     }
 
     #[test]

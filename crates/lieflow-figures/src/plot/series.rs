@@ -144,6 +144,8 @@ pub struct Series {
     pub dash: bool,
     /// The points in their order along the line.
     pub points: Vec<Point>,
+    /// Filled, as the band between two lines: the points go around it.
+    pub filled: bool,
     /// A heavier line, drawn above the others.
     pub emphasised: bool,
 }
@@ -169,11 +171,19 @@ impl Series {
         Series { dash, ..self }
     }
 
+    /// The points as the edge of a filled band.
+    pub fn with_fill(self) -> Self {
+        Series { filled: true, ..self }
+    }
+
     /// The CSS classes of this line and of its legend entry.
     pub(crate) fn classes(&self) -> String {
         let mut classes = format!("lf-c{}", self.colour % LINE_COLOURS);
         if self.dash {
             classes.push_str(" lf-dash");
+        }
+        if self.filled {
+            classes.push_str(" lf-filled");
         }
         if self.emphasised {
             classes.push_str(" lf-strong");

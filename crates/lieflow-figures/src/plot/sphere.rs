@@ -246,7 +246,7 @@ fn draw_arrows(out: &mut String, scene: &Scene, camera: &Camera, scale: f64) {
         out.push_str(&format!(
             "<path class=\"lf-head{far}\" data-head=\"{i}\" d=\"M{} {}L{} {} {} {}z\"/>\
              <text class=\"lf-name{far}\" data-name=\"{i}\" x=\"{}\" y=\"{}\">e<tspan \
-             font-size=\"10.5\" font-style=\"normal\" dy=\"4\">{}</tspan></text>",
+             font-size=\".7em\" font-style=\"normal\" dy=\"4\">{}</tspan></text>",
             px(x + 9.0 * dx),
             px(y - 9.0 * dy),
             px(x + 3.6 * uy),

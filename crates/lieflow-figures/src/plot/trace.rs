@@ -2,7 +2,7 @@
 
 use super::scale::{Axis, Map, Scale};
 use super::series::{Marker, Series};
-use super::thin::thin_time_series;
+use super::thin::{thin_path, thin_time_series};
 
 /// A line as it is drawn: runs of pixels without gaps, and the indices of the drawn points.
 pub(crate) struct Trace {
@@ -32,7 +32,9 @@ impl Trace {
                 // A run backward in time, or a path in a plane, need not begin at the left.
                 let left = run.iter().map(|p| p.0).fold(f64::INFINITY, f64::min);
                 let right = run.iter().map(|p| p.0).fold(f64::NEG_INFINITY, f64::max);
-                *run = thin_time_series(run, (right - left).ceil() as usize);
+                let pairs = thin_time_series(run, 2 * (right - left).ceil() as usize);
+                let pairs: Vec<[f64; 2]> = pairs.into_iter().map(|(x, y)| [x, y]).collect();
+                *run = thin_path(&pairs, 0.1).into_iter().map(|[x, y]| (x, y)).collect();
             }
         }
         result
