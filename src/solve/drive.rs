@@ -40,6 +40,8 @@ pub(super) struct Drive<'a, 'k, P: Problem, M: Method<P>, O> {
     observe: O,
     pub(super) events: Events<'a, P>,
     pub(super) save: SaveAt,
+    /// The start of the run.
+    t0: f64,
     /// How many of the output times are done.
     pub(super) times_done: usize,
     times_by_steps: bool,
@@ -89,6 +91,7 @@ where
             shown_at: None,
             solution: Solution::new(run.t(), y.clone()),
             save,
+            t0: run.t(),
             times_done: 0,
             times_by_steps,
             next_stop: stops.next(),
@@ -232,8 +235,15 @@ where
     }
 
     fn next_time(&self) -> Option<f64> {
-        match &self.save {
-            SaveAt::Times(times) => times.get(self.times_done).copied(),
+        match self.save {
+            SaveAt::Times(ref times) => times.get(self.times_done).copied(),
+            SaveAt::Interval(length) => {
+                let (t0, t1) = (self.t0, self.run.t1);
+                let time = t0 + (length * (self.times_done + 1) as f64).copysign(t1 - t0);
+                // The end is shown as such, also where rounding puts the last time beside it.
+                let last = self.is_before(t1, time) || (t1 - time).abs() < 1e-9 * length;
+                (!last).then_some(time)
+            }
             _ => None,
         }
     }

@@ -151,6 +151,8 @@ pub enum SaveAt {
     Every(u64),
     /// At these times and no others, in the order of the run. They need not be ends of steps.
     Times(Vec<f64>),
+    /// At the start, at equal intervals of this length from there on, and at the end.
+    Interval(f64),
 }
 
 impl SaveAt {
@@ -158,7 +160,7 @@ impl SaveAt {
     pub(super) fn start(&self, t0: f64) -> bool {
         match self {
             SaveAt::End => false,
-            SaveAt::Ends | SaveAt::Every(_) => true,
+            SaveAt::Ends | SaveAt::Every(_) | SaveAt::Interval(_) => true,
             SaveAt::Times(times) => times.first() == Some(&t0),
         }
     }
@@ -187,7 +189,10 @@ impl SaveAt {
     pub fn check(&self, [t0, t1]: [f64; 2]) -> Result<(), Error> {
         match self {
             SaveAt::Every(0) => Err(Error::out_of_range("every", 0.0, "at least 1")),
-            SaveAt::End | SaveAt::Ends | SaveAt::Every(_) => Ok(()),
+            SaveAt::Interval(length) if !(*length > 0.0 && length.is_finite()) => {
+                Err(Error::out_of_range("interval", *length, "a finite number > 0"))
+            }
+            SaveAt::End | SaveAt::Ends | SaveAt::Every(_) | SaveAt::Interval(_) => Ok(()),
             SaveAt::Times(times) => {
                 let forward = if t1 >= t0 { 1.0 } else { -1.0 };
                 let mut last = f64::NEG_INFINITY;

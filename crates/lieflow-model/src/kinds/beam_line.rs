@@ -148,6 +148,8 @@ impl System for BeamLine {
     type Problem<N: Number> = OnMatrices;
 
     const STATE: &'static [&'static str] = &["map"];
+    // Its points lie within a step, never on the jumps at its ends.
+    const DEFAULT_METHOD: Option<&'static str> = Some("magnus6");
     const QUANTITIES: &'static [Q] = &[
         Q::numbers(
             "map",
@@ -189,6 +191,20 @@ impl System for BeamLine {
     }
     fn modelled(&self) -> String {
         "transfer map in Sp(4)".into()
+    }
+    /// Where elements end; none over a span without an end.
+    fn knots(&self, [s0, s1]: [f64; 2]) -> Option<Vec<f64>> {
+        let (from, to, length) = (s0.min(s1), s0.max(s1), self.cell_length());
+        let cells = if to - from < f64::INFINITY {
+            (from / length).floor()..(to / length)
+        } else {
+            0.0..0.0
+        };
+        let starts =
+            (0_u32..).map(|i| cells.start + f64::from(i)).take_while(|cell| *cell < cells.end);
+        let ends =
+            starts.flat_map(|cell| self.strengths.iter().map(move |(end, _)| cell * length + end));
+        Some(ends.filter(|s| from < *s && *s < to).collect())
     }
     fn exact(&self, [s0, s1]: [f64; 2]) -> Option<Result<Mat<f64>, Error>> {
         let both = self.map_to(s0).and_then(|to_start| Ok((to_start, self.map_to(s1)?)));

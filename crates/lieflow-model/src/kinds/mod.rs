@@ -43,6 +43,7 @@ use core::fmt::Debug;
 use std::sync::LazyLock;
 
 use lieflow::Error;
+use lieflow::catalog::MethodSpec;
 use lieflow::samples::Samples;
 use serde::{Deserialize, Serialize};
 use toml::de::ValueDeserializer;
@@ -251,6 +252,11 @@ impl Figure {
     }
 }
 
+/// The method for any problem that names none: of order 8, with a pair, and on the group.
+fn high_order() -> MethodSpec {
+    MethodSpec { tableau: Some("dop853".into()), ..MethodSpec::new("rkmk", None) }
+}
+
 /// Something that is known of a problem before any run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Fact {
@@ -298,9 +304,25 @@ pub trait ProblemSpec: Any + Debug + Send + Sync {
         None
     }
 
+    /// The times within a span at which the right-hand side is not smooth: a step across one loses its order. None
+    /// where the kind has no such times.
+    fn knots(&self, t_span: [f64; 2]) -> Option<Vec<f64>> {
+        self.samples().map(|samples| samples.knots(t_span).collect())
+    }
+
     /// The quantities that make up what these quantities model: those to compare with the exact
     /// solution.
     fn state(&self, quantities: &[&str]) -> &'static [&'static str];
+
+    /// The method of a scene that names none: of high order, with an estimate of its error, and on the group.
+    fn default_method(&self) -> MethodSpec {
+        high_order()
+    }
+
+    /// The state that is written where a scene asks for no quantities.
+    fn default_state(&self) -> &'static [&'static str] {
+        self.state(&[])
+    }
 
     /// The quantities that the exact motion keeps, of those that follow from what these quantities model.
     fn invariants(&self, quantities: &[&str]) -> Vec<&'static str>;

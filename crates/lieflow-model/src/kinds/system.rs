@@ -12,7 +12,7 @@ use lieflow::space::Numbers;
 use lieflow::{Error, RunError};
 
 use super::quantity::{Quantity, Value};
-use super::{Fact, Figure, Kind, ProblemSpec};
+use super::{Fact, Figure, Kind, ProblemSpec, high_order};
 use crate::model::{
     Layer, Model, Outcome, Plan, Runnable, Steps, Watcher, drive_by, fits_by, order_by,
 };
@@ -43,6 +43,8 @@ pub(super) trait System: Clone + Debug + Send + Sync + 'static {
     const QUANTITIES: &'static [Quantity<Self>];
     /// The quantities that make up the state.
     const STATE: &'static [&'static str];
+    /// The method where a scene names none, of a kind that needs another one than the rest.
+    const DEFAULT_METHOD: Option<&'static str> = None;
 
     /// The entry in the list of kinds.
     fn kind(&self) -> &'static Kind;
@@ -64,6 +66,10 @@ pub(super) trait System: Clone + Debug + Send + Sync + 'static {
     /// See [`ProblemSpec::samples`].
     fn samples(&self) -> Option<&Samples> {
         None
+    }
+    /// See [`ProblemSpec::knots`].
+    fn knots(&self, t_span: [f64; 2]) -> Option<Vec<f64>> {
+        self.samples().map(|samples| samples.knots(t_span).collect())
     }
     /// y at the end of a span, where it is known.
     fn exact(&self, _t_span: [f64; 2]) -> Option<Result<PointOf<Self>, Error>> {
@@ -142,6 +148,12 @@ impl<S: System> ProblemSpec for Stated<S> {
     }
     fn samples(&self) -> Option<&Samples> {
         self.0.samples()
+    }
+    fn knots(&self, t_span: [f64; 2]) -> Option<Vec<f64>> {
+        self.0.knots(t_span)
+    }
+    fn default_method(&self) -> MethodSpec {
+        S::DEFAULT_METHOD.map_or_else(high_order, |name| MethodSpec::new(name, None))
     }
     fn state(&self, _: &[&str]) -> &'static [&'static str] {
         S::STATE

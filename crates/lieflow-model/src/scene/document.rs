@@ -40,22 +40,15 @@ impl<'a> Document<'a> {
         }
     }
 
-    /// The value of a key at the top, as T.
-    pub(super) fn top<T: for<'de> Deserialize<'de>>(&self, key: &str) -> Result<T, SceneError> {
-        let value = self.root.get(key).ok_or_else(|| {
-            self.error(format!("missing key `{key}`"), None)
-                .with_help(Some(format!("add a line such as {key} = \"My scene\" at the top")))
-        })?;
-        T::deserialize(ValueDeserializer::from(value.clone()))
-            .map_err(|error| self.read_error(key, error.into()))
-    }
-
     /// The value of a key at the top that may be missing, as T.
     pub(super) fn optional<T: for<'de> Deserialize<'de>>(
         &self,
         key: &str,
     ) -> Result<Option<T>, SceneError> {
-        self.root.contains_key(key).then(|| self.top(key)).transpose()
+        let Some(value) = self.root.get(key) else { return Ok(None) };
+        T::deserialize(ValueDeserializer::from(value.clone()))
+            .map(Some)
+            .map_err(|error| self.read_error(key, error.into()))
     }
 
     /// The value of a key of a section, where it is there and reads as T.
@@ -87,6 +80,14 @@ impl<'a> Document<'a> {
     pub(super) fn keys<T: for<'de> Deserialize<'de>>(&self, name: &str) -> Result<T, SceneError> {
         T::deserialize(deserializer(self.section(name)?))
             .map_err(|error| self.read_error(name, error.into()))
+    }
+
+    /// The keys of a section, as T; the default where there is no such section.
+    pub(super) fn keys_if_any<T>(&self, name: &str) -> Result<T, SceneError>
+    where
+        T: Default + for<'de> Deserialize<'de>,
+    {
+        if self.root.contains_key(name) { self.keys(name) } else { Ok(T::default()) }
     }
 
     fn error(&self, message: String, span: Option<Range<usize>>) -> SceneError {

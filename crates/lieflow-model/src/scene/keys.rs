@@ -6,16 +6,17 @@ use lieflow::tolerance::Rule;
 use lieflow::{SaveAt, TimeGrid};
 use serde::Deserialize;
 
+use super::defaults;
 use super::error::{Either, Refusal, exactly_one};
 use super::values::{Real, Span, Whole};
-use crate::kinds::Kind;
+use crate::kinds::{Kind, ProblemSpec};
 use crate::model::Layer;
 
 /// `[method]`.
-#[derive(Deserialize)]
+#[derive(Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct MethodKeys {
-    name: String,
+    name: Option<String>,
     map: Option<String>,
     tableau: Option<String>,
     q: Option<Whole<0>>,
@@ -23,17 +24,24 @@ pub(super) struct MethodKeys {
 }
 
 impl MethodKeys {
+    /// Is the method left to the program?
+    pub(super) fn is_left(&self) -> bool {
+        self.name.is_none()
+    }
+
     /// The method with what it takes by default spelt out, and the layer: the first of those of the
     /// problem where none is named.
-    pub(super) fn resolve(self, layers: &[Layer]) -> Result<(MethodSpec, Layer), Refusal> {
+    pub(super) fn resolve(self, problem: &dyn ProblemSpec) -> Result<(MethodSpec, Layer), Refusal> {
         let layer = match self.layer {
             Some(name) => Layer::named(&name)?,
-            None => layers.first().copied().unwrap_or_default(),
+            None => problem.layers().first().copied().unwrap_or_default(),
         };
+        let default = || problem.default_method();
+        let base = self.name.map_or_else(default, |name| MethodSpec::new(&name, None));
         let mut method = MethodSpec {
-            name: self.name,
-            map: self.map,
-            tableau: self.tableau,
+            name: base.name,
+            map: self.map.or(base.map),
+            tableau: self.tableau.or(base.tableau),
             q: self.q.map(|q| usize::try_from(q.0).unwrap_or(usize::MAX)),
         };
         let info = method.info()?;
@@ -68,13 +76,24 @@ pub(super) struct TimeKeys {
 const STEPS: u64 = 1000;
 
 impl TimeKeys {
-    /// Does a step end at each knot of the samples? By default where steps are chosen by their error.
-    pub(super) fn at_knots(&self, has_samples: bool) -> Result<bool, Refusal> {
+    /// Are the steps left to the program?
+    pub(super) fn is_left(&self) -> bool {
+        self.dt.is_none() && self.steps.is_none() && self.rtol.is_none() && self.atol.is_none()
+    }
+
+    /// Are the steps of one size?
+    fn is_fixed(&self) -> bool {
+        self.dt.is_some() || self.steps.is_some()
+    }
+
+    /// Does a step end at each knot? By default where steps are chosen by their error.
+    pub(super) fn at_knots(&self, has_knots: bool) -> Result<bool, Refusal> {
         match self.at_knots {
-            Some(_) if !has_samples => {
-                Err(Refusal::at("at_knots", "`at_knots` is of `samples`: the problem has none"))
+            Some(_) if !has_knots => {
+                let message = "`at_knots` is of `samples` and of magnets: the problem has neither";
+                Err(Refusal::at("at_knots", message))
             }
-            given => Ok(has_samples && given.unwrap_or(self.rtol.is_some() || self.atol.is_some())),
+            given => Ok(has_knots && given.unwrap_or(!self.is_fixed())),
         }
     }
 
@@ -110,9 +129,9 @@ impl TimeKeys {
         Ok((grid, None, max_steps))
     }
 
-    /// Tolerances and limits; none where no tolerance is given.
+    /// Tolerances and limits; none where the steps are of one size. Those of the program where none are given.
     fn adaptive(&self) -> Result<Option<StepControl>, Refusal> {
-        if self.rtol.is_none() && self.atol.is_none() {
+        if self.is_fixed() && self.rtol.is_none() && self.atol.is_none() {
             let limits = [
                 ("h_init", self.h_init.is_some()),
                 ("h_min", self.h_min.is_some()),
@@ -128,7 +147,8 @@ impl TimeKeys {
                 }
             };
         }
-        let tolerance = |x: Option<Real>| x.map_or(0.0, |x| x.0);
+        let left = if self.is_left() { defaults::TOLERANCE } else { 0.0 };
+        let tolerance = |x: Option<Real>| x.map_or(left, |x| x.0);
         let rule = match self.tolerance.as_deref() {
             None | Some("per-step") => Rule::PerStep,
             Some("per-length") => Rule::PerLength,
@@ -161,13 +181,16 @@ impl TimeKeys {
 }
 
 /// `[output]`.
-#[derive(Deserialize)]
+#[derive(Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct OutputKeys {
-    quantities: Vec<String>,
+    quantities: Option<Vec<String>>,
     every: Option<Whole<1>>,
     times: Option<Vec<Real>>,
+    count: Option<Whole<1>>,
+    interval: Option<Real>,
     times_by: Option<String>,
+    error_check: Option<bool>,
 }
 
 /// What `[output]` asks for.
@@ -175,11 +198,38 @@ pub(super) struct Output {
     pub(super) quantities: Vec<String>,
     pub(super) save: SaveAt,
     pub(super) times_by_steps: bool,
+    pub(super) error_check: bool,
 }
 
 impl OutputKeys {
-    pub(super) fn resolve(self, kind: &Kind, grid: &TimeGrid) -> Result<Output, Refusal> {
-        check_quantities(&self.quantities, kind)?;
+    /// Are the quantities left to the program?
+    pub(super) fn leaves_quantities(&self) -> bool {
+        self.quantities.is_none()
+    }
+
+    /// Are the times of the rows left to the program?
+    pub(super) fn leaves_rows(&self) -> bool {
+        !self.has_times() && self.every.is_none()
+    }
+
+    /// Are there times that need not be ends of steps?
+    fn has_times(&self) -> bool {
+        self.times.is_some() || self.count.is_some() || self.interval.is_some()
+    }
+
+    /// What is asked for; `steps_left` says that the program chooses the steps.
+    pub(super) fn resolve(
+        self,
+        problem: &dyn ProblemSpec,
+        grid: &TimeGrid,
+        steps_left: bool,
+    ) -> Result<Output, Refusal> {
+        let save = self.save(grid.t_span(), steps_left)?;
+        let quantities = match self.quantities {
+            Some(quantities) => quantities,
+            None => defaults::quantities(problem),
+        };
+        check_quantities(&quantities, problem.kind())?;
         let times_by_steps = match self.times_by.as_deref() {
             None | Some("dense") => false,
             Some("steps") => true,
@@ -188,22 +238,44 @@ impl OutputKeys {
                 return Err(Refusal { key: Some("times_by".into()), ..refusal });
             }
         };
-        if self.times_by.is_some() && self.times.is_none() {
-            return Err(Refusal::at(
-                "times_by",
-                "`times_by` is for `times`: add it, or leave this",
-            ));
+        let error_check = self.error_check.unwrap_or(true);
+        Ok(Output { quantities, save, times_by_steps, error_check })
+    }
+
+    /// Where rows are written.
+    fn save(&self, [t0, t1]: [f64; 2], steps_left: bool) -> Result<SaveAt, Refusal> {
+        if self.times_by.is_some() && !self.has_times() {
+            let message =
+                "`times_by` is for `times`, `count` and `interval`: add one, or leave this";
+            return Err(Refusal::at("times_by", message));
         }
-        let save = match (self.every, self.times) {
-            (None, None) => SaveAt::Every(1),
-            (every, times) => match exactly_one(("every", every), ("times", times))? {
-                Either::First(every) => SaveAt::Every(every.0),
-                Either::Second(times) => SaveAt::Times(times.iter().map(|t| t.0).collect()),
-            },
+        let given = [
+            ("every", self.every.is_some()),
+            ("times", self.times.is_some()),
+            ("count", self.count.is_some()),
+            ("interval", self.interval.is_some()),
+        ];
+        let mut given = given.iter().filter(|(_, given)| *given).map(|(key, _)| *key);
+        if let (Some(first), Some(second)) = (given.next(), given.next()) {
+            let message = format!("both `{first}` and `{second}`, expected exactly one of them");
+            return Err(Refusal::at(second, message));
+        }
+        let intervals = |count: u64| SaveAt::Interval((t1 - t0).abs() / count as f64);
+        let save = match (self.every, &self.times, self.count, self.interval) {
+            (Some(every), ..) => SaveAt::Every(every.0),
+            (_, Some(times), ..) => SaveAt::Times(times.iter().map(|t| t.0).collect()),
+            (_, _, Some(_), _) if !t1.is_finite() => {
+                let message = "`count` divides a span with an end: expected `interval`, such as \
+                               interval = 0.1";
+                return Err(Refusal::at("count", message));
+            }
+            (_, _, Some(count), _) => intervals(count.0),
+            (_, _, _, Some(interval)) => SaveAt::Interval(interval.0),
+            _ if steps_left && t1.is_finite() => intervals(defaults::INTERVALS),
+            _ => SaveAt::Every(1),
         };
-        save.check(grid.t_span())?;
-        let save = with_ends(save, grid.t_span());
-        Ok(Output { quantities: self.quantities, save, times_by_steps })
+        save.check([t0, t1])?;
+        Ok(with_ends(save, [t0, t1]))
     }
 }
 

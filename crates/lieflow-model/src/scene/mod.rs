@@ -1,23 +1,26 @@
 //! Scenes: a problem, a method, a time span and what to write, as a TOML file.
 
 mod bundled;
+mod defaults;
 mod document;
 mod error;
 mod events;
 pub mod formula;
 mod keys;
+mod set;
 mod suggest;
 pub mod values;
 
 pub use bundled::{BUNDLED, Bundled};
+pub use defaults::Defaults;
 pub use error::{Either, ReadError, Refusal, SceneError, exactly_one};
 pub use events::SceneEvent;
 pub use suggest::{help_for, suggest};
 
 use std::fs::File;
 use std::hash::{Hash, Hasher};
-use std::io::Read;
-use std::path::Path;
+use std::io::{self, Read};
+use std::path::{Path, PathBuf};
 
 use fnv::FnvHasher;
 use lieflow::StepControl;
@@ -60,6 +63,12 @@ pub struct Scene {
     pub events: Vec<SceneEvent>,
     /// What is written, in this order.
     pub quantities: Vec<String>,
+    /// Does a run say how large its error is, where that costs a second run?
+    pub error_check: bool,
+    /// What the scene left to the program.
+    pub by_default: Defaults,
+    /// The text of the scene.
+    pub text: String,
     /// A number of what the scene states, with its samples: another one for another scene. Comments and spaces do not
     /// count.
     pub fingerprint: u64,
@@ -82,15 +91,15 @@ impl Scene {
     fn read(source: &str, text: &str, folder: Option<&Path>) -> Result<Scene, SceneError> {
         let document = Document::parse(source, text)?;
         document.check_top()?;
-        let title: String = document.top("title")?;
         let problem = read_problem(&document, folder)?;
-        let (method, layer) = document
-            .keys::<MethodKeys>("method")?
-            .resolve(problem.layers())
-            .map_err(|refusal| document.refusal("method", refusal))?;
+        let method = document.keys_if_any::<MethodKeys>("method")?;
+        let method_left = method.is_left();
+        let (method, layer) =
+            method.resolve(&*problem).map_err(|refusal| document.refusal("method", refusal))?;
         let time = document.keys::<TimeKeys>("time")?;
+        let steps_left = time.is_left();
         let at_knots = time
-            .at_knots(problem.samples().is_some())
+            .at_knots(problem.knots([0.0, 0.0]).is_some())
             .map_err(|refusal| document.refusal("time", refusal))?;
         let (grid, adaptive, max_steps) =
             time.resolve().map_err(|refusal| document.refusal("time", refusal))?;
@@ -104,9 +113,15 @@ impl Scene {
         problem
             .check_start(grid.t_span()[0])
             .map_err(|refusal| document.refusal("problem", refusal))?;
-        let Output { quantities, save, times_by_steps } = document
-            .keys::<OutputKeys>("output")?
-            .resolve(problem.kind(), &grid)
+        let output = document.keys_if_any::<OutputKeys>("output")?;
+        let by_default = Defaults {
+            method: method_left,
+            steps: steps_left,
+            quantities: output.leaves_quantities(),
+            rows: output.leaves_rows(),
+        };
+        let Output { quantities, save, times_by_steps, error_check } = output
+            .resolve(&*problem, &grid, steps_left)
             .map_err(|refusal| document.refusal("output", refusal))?;
         for (i, name) in quantities.iter().enumerate() {
             if let Err(Error::Unsupported { why, .. }) = problem.columns(name) {
@@ -126,6 +141,7 @@ impl Scene {
         }
         let stem = Path::new(source).file_stem().unwrap_or_default().to_string_lossy();
         let name = if stem.is_empty() { "scene".into() } else { stem.into_owned() };
+        let title = document.optional("title")?.unwrap_or_else(|| name.clone());
         let fingerprint = fingerprint(text, problem.samples());
         let scene = Scene {
             title,
@@ -141,6 +157,9 @@ impl Scene {
             times_by_steps,
             events,
             quantities,
+            error_check,
+            by_default,
+            text: text.into(),
             fingerprint,
         };
         let model = scene.model_with(scene.layer, &scene.computed());
@@ -175,15 +194,21 @@ impl Scene {
             times_by_steps: self.times_by_steps,
             events: self.events.iter().map(|event| event.plan(schema)).collect::<Result<_, _>>()?,
             max_steps: self.max_steps,
-            stops: self.knots(),
+            stops: self.knots(self.grid.t_span()),
             ..Plan::new(self.steps(), self.save.clone())
         })
     }
 
-    /// The times at which a step ends: the knots of the samples, where they are asked for.
-    fn knots(&self) -> Vec<f64> {
-        let samples = self.problem.samples().filter(|_| self.at_knots);
-        samples.map_or_else(Vec::new, |samples| samples.knots(self.grid.t_span()).collect())
+    /// The times at which a step ends: the knots of the problem, where they are asked for.
+    fn knots(&self, t_span: [f64; 2]) -> Vec<f64> {
+        let knots = self.at_knots.then(|| self.problem.knots(t_span)).flatten();
+        knots.unwrap_or_default()
+    }
+
+    /// A run to time t in these steps that shows its ends, and sees no events.
+    pub fn plan_to(&self, t: f64, steps: Steps) -> Plan<'static> {
+        let stops = self.knots([self.grid.t_span()[0], t]);
+        Plan { max_steps: self.max_steps, stops, ..Plan::new(steps, SaveAt::Ends) }
     }
 
     /// The quantities that a run computes: those that are written, then those of the events.
@@ -202,13 +227,7 @@ impl Scene {
     /// # Errors
     /// [`SceneError`], also for a file that cannot be read.
     pub fn load(path: &Path) -> Result<Scene, SceneError> {
-        let source = path.display().to_string();
-        let unreadable = |why: String| SceneError::new(&source, why);
-        if path.is_dir() {
-            return Err(unreadable("this is a folder, expected a scene file".into()));
-        }
-        let text = read_text(path, "scene").map_err(unreadable)?;
-        Self::read(&source, &text, path.parent())
+        Found::file(path)?.read(&[])
     }
 
     /// The bundled scene of that name.
@@ -216,25 +235,24 @@ impl Scene {
     /// # Errors
     /// [`SceneError`] for an unknown name.
     pub fn bundled(name: &str) -> Result<Scene, SceneError> {
-        match Bundled::named(name) {
-            Some(scene) => Self::read(&format!("{name}.toml"), scene.text, None),
-            None => Err(unknown_scene(name)),
-        }
+        Found::bundled(name)?.read(&[])
     }
 
-    /// A scene by the path of its file or, where there is no such file, by its bundled name.
+    /// A scene by the path of its file or, where there is no such file, by its bundled name; `-` is standard input.
     ///
     /// # Errors
     /// [`SceneError`].
     pub fn open(scene: &Path) -> Result<Scene, SceneError> {
-        let name = scene.to_string_lossy();
-        let bundled = Bundled::named(&name).is_some();
-        if scene.is_file() || (scene.exists() && !bundled) {
-            return Self::load(scene);
-        }
-        let stem = name.strip_suffix(".toml").unwrap_or(&name);
-        let a_path = name.contains(['/', '\\', '.']) && Bundled::named(stem).is_none();
-        if a_path { Self::load(scene) } else { Self::bundled(&name) }
+        Self::open_with(scene, &[])
+    }
+
+    /// The same with settings: texts such as `time.dt=0.01`, `problem.inertia=[1, 2, 3]` or `problem.inertia[2]=2.5`.
+    /// A place in a list counts from 1. Nothing after the `=` takes the key away.
+    ///
+    /// # Errors
+    /// [`SceneError`], also for a setting that cannot be used.
+    pub fn open_with(scene: &Path, settings: &[String]) -> Result<Scene, SceneError> {
+        Found::open(scene)?.read(settings)
     }
 
     /// The problem on the layer of the scene, with the quantities of the scene.
@@ -257,6 +275,60 @@ impl Scene {
     /// [`Error::UnknownName`] for a quantity that the problem does not have.
     pub fn model_with(&self, layer: Layer, quantities: &[&str]) -> Result<Box<dyn Model>, Error> {
         self.problem.model(layer, quantities)
+    }
+}
+
+/// The text of a scene, and where it was found.
+struct Found {
+    /// What messages call it; its file stem is the scene's name.
+    source: String,
+    text: String,
+    /// The folder of the files that it names, where it is not bundled.
+    folder: Option<PathBuf>,
+}
+
+impl Found {
+    fn read(self, settings: &[String]) -> Result<Scene, SceneError> {
+        let text = set::with_settings(&self.source, &self.text, settings)?;
+        Scene::read(&self.source, &text, self.folder.as_deref())
+    }
+
+    fn file(path: &Path) -> Result<Self, SceneError> {
+        let source = path.display().to_string();
+        let unreadable = |why: String| SceneError::new(&source, why);
+        if path.is_dir() {
+            return Err(unreadable("this is a folder, expected a scene file".into()));
+        }
+        let file = File::open(path);
+        let file = file.map_err(|error| unreadable(format!("cannot read the scene: {error}")))?;
+        let text = text_of(file, "scene").map_err(unreadable)?;
+        Ok(Found { source, text, folder: path.parent().map(Into::into) })
+    }
+
+    fn standard_input() -> Result<Self, SceneError> {
+        let source = "stdin";
+        let text = text_of(io::stdin().lock(), "scene");
+        let text = text.map_err(|why| SceneError::new(source, why))?;
+        Ok(Found { source: source.into(), text, folder: Some(PathBuf::new()) })
+    }
+
+    fn bundled(name: &str) -> Result<Self, SceneError> {
+        let Bundled { name, text } = Bundled::named(name).ok_or_else(|| unknown_scene(name))?;
+        Ok(Found { source: format!("{name}.toml"), text: (*text).into(), folder: None })
+    }
+
+    fn open(scene: &Path) -> Result<Self, SceneError> {
+        let name = scene.to_string_lossy();
+        if name == "-" {
+            return Self::standard_input();
+        }
+        let bundled = Bundled::named(&name).is_some();
+        if scene.is_file() || (scene.exists() && !bundled) {
+            return Self::file(scene);
+        }
+        let stem = name.strip_suffix(".toml").unwrap_or(&name);
+        let a_path = name.contains(['/', '\\', '.']) && Bundled::named(stem).is_none();
+        if a_path { Self::file(scene) } else { Self::bundled(&name) }
     }
 }
 
@@ -285,12 +357,11 @@ pub fn unknown_scene(name: &str) -> SceneError {
         .with_help(Some(help_for(name, &names)))
 }
 
-/// The text of a file; `what` it should be.
-fn read_text(path: &Path, what: &str) -> Result<String, String> {
+/// All the text that a reader has; `what` it should be.
+fn text_of(reader: impl Read, what: &str) -> Result<String, String> {
     let mut bytes = Vec::new();
-    File::open(path)
-        .and_then(|file| file.take(SIZE_MAX + 1).read_to_end(&mut bytes))
-        .map_err(|error| format!("cannot read the {what}: {error}"))?;
+    let read = reader.take(SIZE_MAX + 1).read_to_end(&mut bytes);
+    read.map_err(|error| format!("cannot read the {what}: {error}"))?;
     if bytes.len() as u64 > SIZE_MAX {
         return Err(format!("larger than {} MiB, expected a {what} file", SIZE_MAX >> 20));
     }
@@ -305,7 +376,11 @@ fn read_text(path: &Path, what: &str) -> Result<String, String> {
 fn read_samples(folder: Option<&Path>, name: &str) -> Result<String, String> {
     let path = folder.map(|folder| folder.join(name)).filter(|path| path.is_file());
     match (path, bundled::file(name)) {
-        (Some(path), _) => read_text(&path, "samples").map_err(|why| format!("{name}: {why}")),
+        (Some(path), _) => {
+            let file =
+                File::open(&path).map_err(|error| format!("cannot read the samples: {error}"));
+            file.and_then(|file| text_of(file, "samples")).map_err(|why| format!("{name}: {why}"))
+        }
         (None, Some(text)) => Ok(text.into()),
         (None, None) => Err(format!("there is no file `{name}` beside the scene")),
     }

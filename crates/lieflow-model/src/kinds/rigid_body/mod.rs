@@ -184,6 +184,13 @@ impl ProblemSpec for RigidBodySpec {
             false => Body::<MomentumOnly>::STATE,
         }
     }
+    /// With the attitude, as the scene states it.
+    fn default_state(&self) -> &'static [&'static str] {
+        match self.quaternion {
+            Some(_) => &["momentum_body", "quaternion"],
+            None => &["momentum_body", "attitude"],
+        }
+    }
     fn layers(&self) -> &'static [Layer] {
         match self.quaternion {
             Some(_) => &[Layer::Closed],

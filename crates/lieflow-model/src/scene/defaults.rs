@@ -1,0 +1,62 @@
+//! What a run takes where its scene says nothing.
+
+use serde::Serialize;
+
+use super::Scene;
+use crate::kinds::ProblemSpec;
+
+/// The error of each step, relative and absolute: over some thousand steps nine digits or more stay right.
+pub(super) const TOLERANCE: f64 = 1e-14;
+/// The equal intervals of the output, where the steps are left out too.
+pub(super) const INTERVALS: u64 = 1000;
+/// A quantity with more columns is written only when it is asked for.
+const COLUMNS: usize = 64;
+
+/// What a scene left to the program.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Defaults {
+    /// The method.
+    pub method: bool,
+    /// The steps: they are chosen by their error.
+    pub steps: bool,
+    /// The quantities that are written.
+    pub quantities: bool,
+    /// The times of the rows.
+    pub rows: bool,
+}
+
+impl Defaults {
+    /// What was chosen, in words; none where the scene says everything.
+    pub fn in_words(self, scene: &Scene) -> Option<String> {
+        let mut chosen = Vec::new();
+        if self.method {
+            chosen.push(format!("method {}", scene.method.label()));
+        }
+        if self.steps {
+            chosen.push(format!("adaptive steps with rtol = atol = {TOLERANCE:e}"));
+        }
+        if self.quantities {
+            chosen.push(format!("quantities {}", scene.quantities.join(", ")));
+        }
+        if self.rows && self.steps && scene.grid.t_span()[1].is_finite() {
+            chosen.push(format!("rows at {INTERVALS} equal intervals"));
+        }
+        (!chosen.is_empty()).then(|| chosen.join("; "))
+    }
+}
+
+/// The quantities that a user of the problem wants: the state, what is drawn, and what the exact motion keeps. One
+/// with very many columns is left out.
+pub(super) fn quantities(problem: &dyn ProblemSpec) -> Vec<String> {
+    let state = problem.default_state();
+    let all = [state, &[problem.figure().quantity()], &problem.invariants(state)].concat();
+    let mut wanted: Vec<String> = Vec::new();
+    for name in all {
+        let fits = problem.columns(name).is_ok_and(|columns| columns.len() <= COLUMNS);
+        if fits && !wanted.iter().any(|other| other == name) {
+            wanted.push(name.into());
+        }
+    }
+    // A problem of large quantities alone.
+    if wanted.is_empty() { state.iter().map(|&name| name.into()).collect() } else { wanted }
+}

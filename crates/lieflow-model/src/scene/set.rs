@@ -1,0 +1,142 @@
+//! Settings that change a scene before it is read: `time.dt=0.01`, `problem.inertia[2]=2.5`.
+
+use toml_edit::{DocumentMut, Item, TableLike, Value};
+
+use super::error::SceneError;
+use super::suggest::help_for;
+
+/// A step on the way to a value: a key, or the place in a list, from 1.
+enum Step<'a> {
+    Key(&'a str),
+    Place(usize),
+}
+
+/// The text of a scene with these settings, in their order. A setting is `key=value`: the key with its section, as in
+/// `time.dt`, and a place in a list in brackets, from 1; the value in TOML. Nothing after the `=` takes the key away.
+///
+/// # Errors
+/// A setting that is no such text, or that goes into what the scene does not have.
+pub(super) fn with_settings(
+    source: &str,
+    text: &str,
+    settings: &[String],
+) -> Result<String, SceneError> {
+    if settings.is_empty() {
+        return Ok(text.into());
+    }
+    let Ok(mut document) = text.parse::<DocumentMut>() else {
+        // What is wrong with the text is said where it is read.
+        return Ok(text.into());
+    };
+    for setting in settings {
+        set(document.as_item_mut(), setting)
+            .map_err(|why| SceneError::new(source, format!("--set {setting}: {why}")))?;
+    }
+    Ok(document.to_string())
+}
+
+fn set(root: &mut Item, setting: &str) -> Result<(), String> {
+    let Some((path, text)) = setting.split_once('=') else {
+        return Err("expected key=value, such as time.dt=0.01".into());
+    };
+    let steps = steps(path.trim())?;
+    let Some((last, before)) = steps.split_last() else {
+        return Err("expected a key before the `=`, such as time.dt".into());
+    };
+    let mut item = root;
+    let mut done = String::new();
+    for step in before {
+        item = enter(item, step, &done)?;
+        done += &step.in_words(&done);
+    }
+    match (last, value(text.trim())?) {
+        (Step::Key(key), None) => {
+            let table = table(item, &done)?;
+            if table.remove(key).is_none() {
+                return Err(format!("there is no `{key}`: {}", keys(table, key)));
+            }
+        }
+        (Step::Key(key), Some(value)) => match table(item, &done)?.get_mut(key) {
+            Some(old @ Item::Value(_)) => *old = Item::Value(value),
+            Some(_) => return Err(format!("`{key}` is a section, expected a key in it")),
+            None => {
+                table(item, &done)?.insert(key, Item::Value(value));
+            }
+        },
+        (Step::Place(_), None) => return Err("expected a value after the `=`".into()),
+        (place @ Step::Place(_), Some(value)) => *enter(item, place, &done)? = Item::Value(value),
+    }
+    Ok(())
+}
+
+impl Step<'_> {
+    fn in_words(&self, done: &str) -> String {
+        match self {
+            Step::Key(key) if done.is_empty() => (*key).into(),
+            Step::Key(key) => format!(".{key}"),
+            Step::Place(place) => format!("[{place}]"),
+        }
+    }
+}
+
+/// The steps of a path such as `problem.parts[1].start[2]`.
+fn steps(path: &str) -> Result<Vec<Step<'_>>, String> {
+    let mut steps = Vec::new();
+    for part in path.split('.') {
+        let (key, places) = part.split_at(part.find('[').unwrap_or(part.len()));
+        if key.trim().is_empty() {
+            return Err("expected a key before the `=`, such as time.dt".into());
+        }
+        steps.push(Step::Key(key.trim()));
+        for place in places.split_inclusive(']') {
+            let number = place.strip_prefix('[').and_then(|place| place.strip_suffix(']'));
+            match number.and_then(|number| number.trim().parse().ok()) {
+                Some(place) if place >= 1 => steps.push(Step::Place(place)),
+                _ => return Err(format!("found `{place}`, expected a place from 1, such as [1]")),
+            }
+        }
+    }
+    Ok(steps)
+}
+
+/// A value; none for nothing. One word is a text, with or without quotes.
+fn value(text: &str) -> Result<Option<Value>, String> {
+    let is_word = text.starts_with(|c: char| c.is_ascii_alphabetic())
+        && text.chars().all(|c| c.is_ascii_alphanumeric() || "-_".contains(c));
+    match text.parse() {
+        _ if text.is_empty() => Ok(None),
+        Ok(value) => Ok(Some(value)),
+        Err(_) if is_word => Ok(Some(text.into())),
+        Err(_) => Err(format!(
+            "`{text}` is no value of TOML, expected a number, a list such as [1, 2, 3] or a text in quotes"
+        )),
+    }
+}
+
+/// What is at a step. A section that is missing is made.
+fn enter<'i>(item: &'i mut Item, step: &Step<'_>, done: &str) -> Result<&'i mut Item, String> {
+    match step {
+        Step::Key(key) => Ok(table(item, done)?.entry(key).or_insert_with(toml_edit::table)),
+        Step::Place(place) => {
+            let length = match &*item {
+                Item::Value(Value::Array(list)) => list.len(),
+                Item::ArrayOfTables(list) => list.len(),
+                _ => return Err(format!("`{done}` is no list")),
+            };
+            if *place > length {
+                return Err(format!("`{done}` has {length} entries"));
+            }
+            Ok(&mut item[place - 1])
+        }
+    }
+}
+
+/// An item as a table.
+fn table<'i>(item: &'i mut Item, done: &str) -> Result<&'i mut dyn TableLike, String> {
+    item.as_table_like_mut().ok_or_else(|| format!("`{done}` has no keys"))
+}
+
+/// The keys of a table, and which was meant.
+fn keys(table: &dyn TableLike, given: &str) -> String {
+    help_for(given, &table.iter().map(|(key, _)| key).collect::<Vec<_>>())
+}
