@@ -2,7 +2,8 @@
 //!
 //! A figure ([`Chart`], [`Sphere`], [`Heat`]) is a plain value; `svg()` turns it into one complete `<svg>`
 //! element, which serves as a file and inline in a [`Page`]. Colours are CSS variables with light
-//! fallbacks, so that an inline figure follows the theme of its page and a file is light.
+//! fallbacks, so that an inline figure follows the theme of its page. A file that a page writes follows
+//! the theme of who looks at it.
 #![forbid(unsafe_code)]
 
 pub mod number;
@@ -11,5 +12,6 @@ mod plot;
 
 pub use page::{Block, Cell, Column, Page, Row, Section, Table};
 pub use plot::{
-    Axis, Chart, Ground, Heat, Marker, Marks, Path, Point, Scale, Series, Sphere, tell_apart,
+    Axis, Body, Chart, Ground, Heat, Marker, Marks, Path, Point, Pose, Scale, Series, Sphere,
+    tell_apart,
 };

@@ -12,7 +12,7 @@ use signal_hook::flag;
 use super::CliError;
 use super::watch::{Recorder, Watch, quantities};
 use crate::args::RunArgs;
-use crate::output::{self, Drift, MethodSummary, RunState, SUMMARY, Summary};
+use crate::output::{self, Drawn, Drift, MethodSummary, RunState, SUMMARY, Summary};
 use lieflow_model::model::Plan;
 use lieflow_model::scene::Scene;
 
@@ -196,8 +196,16 @@ pub fn run_scene(
         drift,
         error_at_end: end.and_then(|[_, (t, row)]| watch.errors(t, row)),
     };
-    let figure = (scene.problem.figure(), watch.field(rows));
-    let page = output::run_page(&summary, rows, figure, watch.drawn, &watch.written, &watch.laws);
+    let field = watch.field(rows);
+    let drawn = Drawn {
+        scene,
+        rows,
+        figure: watch.drawn,
+        field: &field,
+        asked: &watch.written,
+        watched: &watch.laws,
+    };
+    let page = output::run_page(&summary, &drawn);
     let state = kept.finish(completed)?;
     output::write_file(&summary_path, &output::to_json(&summary)?)?;
     output::write_page(folder, "index.html", &page)?;

@@ -32,5 +32,5 @@ pub fn conditions(rounds: u32) -> [(String, String); 2] {
 /// A page with the version of the program at its foot.
 pub fn page(title: impl Into<String>, subtitle: impl Into<String>, sections: Vec<Section>) -> Page {
     let footer = format!("lieflow {}", env!("CARGO_PKG_VERSION"));
-    Page { title: title.into(), subtitle: subtitle.into(), sections, footer }
+    Page { title: title.into(), subtitle: subtitle.into(), links: Vec::new(), sections, footer }
 }

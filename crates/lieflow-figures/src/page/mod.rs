@@ -1,9 +1,10 @@
 //! Self-contained HTML pages: headings, text, tables, facts and figures in one file, without
 //! anything from the network.
 
+mod glossary;
 mod render;
 
-use crate::plot::{Chart, Heat, Sphere, slug};
+use crate::plot::{Body, Chart, Heat, Sphere, for_file, slug};
 
 /// A page.
 #[derive(Clone, Debug, Default)]
@@ -12,6 +13,8 @@ pub struct Page {
     pub title: String,
     /// A sentence below the title; may be empty.
     pub subtitle: String,
+    /// Other pages and files: what they are called, and where they are, relative to this page.
+    pub links: Vec<(String, String)>,
     /// The sections in their order.
     pub sections: Vec<Section>,
     /// A line at the foot of the page, for instance the version of the program; may be empty.
@@ -54,16 +57,22 @@ pub enum Block {
         /// Where it leads, relative to this page.
         href: String,
     },
+    /// A sentence that a reader must not miss.
+    Notice(String),
     /// Preformatted text such as a command.
     Code(String),
     /// Names with their values.
     Facts(Vec<(String, String)>),
+    /// Words with what they mean.
+    Glossary(&'static [(&'static str, &'static str)]),
     /// A table.
     Table(Table),
     /// A line chart.
     Chart(Chart),
     /// A momentum sphere, which a reader can turn.
     Sphere(Sphere),
+    /// A body that turns, which a reader plays.
+    Body(Body),
     /// A field on a sphere.
     Heat(Heat),
     /// Blocks next to each other where there is room.
@@ -97,10 +106,11 @@ impl Block {
 
     /// The figures of this block: the name of a file, and what it holds.
     fn figures(&self) -> Vec<(String, String)> {
-        let file = |id: &str, svg: String| vec![(format!("{}.svg", slug(id)), svg)];
+        let file = |id: &str, svg: String| vec![(format!("{}.svg", slug(id)), for_file(&svg))];
         match self {
             Block::Chart(chart) => file(&chart.id, chart.svg()),
             Block::Sphere(sphere) => file(&sphere.id, sphere.svg()),
+            Block::Body(body) => file(&body.id, body.svg()),
             Block::Heat(heat) => file(&heat.id, heat.svg()),
             Block::Row(blocks) | Block::Fold { blocks, .. } => {
                 blocks.iter().flat_map(Block::figures).collect()
@@ -118,6 +128,11 @@ impl From<Table> for Block {
 impl From<Chart> for Block {
     fn from(chart: Chart) -> Self {
         Block::Chart(chart)
+    }
+}
+impl From<Body> for Block {
+    fn from(body: Body) -> Self {
+        Block::Body(body)
     }
 }
 impl From<Sphere> for Block {

@@ -1,10 +1,16 @@
 //! From a page to HTML text.
 
+use super::glossary::glossary;
 use super::{Block, Page, Table};
-use crate::plot::{Sphere, escape, slug, theme};
+use crate::plot::{escape, slug, theme};
 
 const STYLE: &str = include_str!("page.css");
-const SCRIPT: &str = concat!(include_str!("page.js"), include_str!("sphere.js"));
+const SCRIPT: &str = concat!(
+    include_str!("turn.js"),
+    include_str!("page.js"),
+    include_str!("sphere.js"),
+    include_str!("body.js")
+);
 
 impl Page {
     /// The page as one HTML file that needs nothing else.
@@ -21,6 +27,14 @@ impl Page {
             theme_css(),
             optional("p", "subtitle", &self.subtitle)
         );
+        if !self.links.is_empty() {
+            let links = self
+                .links
+                .iter()
+                .map(|(text, href)| format!("<a href=\"{}\">{}</a>\n", escape(href), escape(text)));
+            let links: String = links.collect();
+            out.push_str(&format!("<nav class=\"links\" aria-label=\"Files\">\n{links}</nav>\n"));
+        }
         let anchors = self.anchors();
         if anchors.len() > 1 {
             out.push_str(&self.contents(&anchors));
@@ -34,6 +48,7 @@ impl Page {
             out.push_str(&blocks(&section.blocks));
             out.push_str("</section>\n");
         }
+        out.push_str(&block(&glossary()));
         out.push_str("</main>\n");
         out.push_str(&optional("footer", "foot", &self.footer));
         out.push_str(&format!("<script>\n{SCRIPT}</script>\n</body>\n</html>\n"));
@@ -84,6 +99,9 @@ fn block(block: &Block) -> String {
         Block::Link { text, href } => {
             format!("<p><a href=\"{}\">{}</a></p>\n", escape(href), escape(text))
         }
+        Block::Notice(text) => {
+            format!("<p class=\"notice\" role=\"note\">{}</p>\n", escape(text))
+        }
         Block::Code(text) => {
             format!("<pre tabindex=\"0\"><code>{}</code></pre>\n", escape(text))
         }
@@ -93,9 +111,22 @@ fn block(block: &Block) -> String {
             });
             format!("<dl class=\"facts\">\n{}</dl>\n", facts.collect::<String>())
         }
+        Block::Glossary(words) => {
+            let words = words.iter().map(|(word, meaning)| {
+                format!("<dt>{}</dt><dd>{}</dd>\n", escape(word), escape(meaning))
+            });
+            format!("<dl class=\"words\">\n{}</dl>\n", words.collect::<String>())
+        }
         Block::Table(table) => html_table(table),
         Block::Chart(chart) => figure(&chart.title, &chart.svg(), &chart.full_caption()),
-        Block::Sphere(sphere) => html_sphere(sphere),
+        Block::Sphere(sphere) => {
+            let drawing = with_data(&sphere.svg(), "scene", &sphere.json());
+            figure(&sphere.title, &drawing, &sphere.caption)
+        }
+        Block::Body(body) => {
+            let drawing = with_data(&body.svg(), "motion", &body.json());
+            figure(&body.title, &drawing, &body.caption)
+        }
         Block::Heat(heat) => figure(&heat.title, &heat.svg(), &heat.caption),
         Block::Row(row) => format!("<div class=\"row\">\n{}</div>\n", blocks(row)),
         Block::Fold { title, blocks: inner } => format!(
@@ -113,10 +144,9 @@ fn figure(title: &str, drawing: &str, caption: &str) -> String {
     format!("<figure>\n{title}{drawing}\n{caption}</figure>\n")
 }
 
-fn html_sphere(sphere: &Sphere) -> String {
-    let scene =
-        format!("<script type=\"application/json\" class=\"scene\">{}</script>", sphere.json());
-    figure(&sphere.title, &format!("{}\n{scene}", sphere.svg()), &sphere.caption)
+/// A drawing with the data of a script, which `class` finds.
+fn with_data(drawing: &str, class: &str, json: &str) -> String {
+    format!("{drawing}\n<script type=\"application/json\" class=\"{class}\">{json}</script>")
 }
 
 /// A column with a longer cell than this breaks its lines.
@@ -180,6 +210,7 @@ mod tests {
         Page {
             title: "A <page>".into(),
             subtitle: "\"quoted\"".into(),
+            links: vec![("data <1>".into(), "a&b.csv".into())],
             sections: vec![section.clone(), section],
             footer: "lieflow".into(),
         }
@@ -192,11 +223,13 @@ mod tests {
         let html = page(vec![
             Block::text(evil),
             Block::Code(evil.into()),
+            Block::Notice(evil.into()),
             Block::Facts(vec![(evil.into(), evil.into())]),
             Block::Table(table),
         ])
         .html();
         assert!(!html.contains(evil));
+        assert!(html.contains("<a href=\"a&amp;b.csv\">data &lt;1&gt;</a>"));
         assert!(html.contains("A &lt;page&gt;") && html.contains("&quot;quoted&quot;"));
     }
 

@@ -1,9 +1,6 @@
-"use strict";
 // Turns the momentum spheres: projects the scene again with the same rules as the static picture.
 (() => {
-  const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
   const between = (a, b, t) => [0, 1, 2].map((i) => a[i] + t * (b[i] - a[i]));
-  const px = (x) => String(Math.round(x * 10) / 10);
 
   // Where the condition `inside` changes between a and b, by bisection.
   const crossing = (a, b, inside) => {
@@ -48,19 +45,15 @@
     return polygons;
   };
 
-  const turn = (svg, scene) => {
+  const sphere = (svg, scene) => {
     const { centre, scale, semi, shades, tips } = scene;
     const surfaces = [hiddenBy([1, 1, 1])].concat(semi ? [hiddenBy(semi)] : []);
     const lines = scene.lines.map((line) => line.map((piece) => piece.map((p) => p.map((x) => x / 1000))));
     const mesh = semi ? meshOutside(semi) : [];
     const find = (name, k) => svg.querySelector(`[data-${name}="${k}"]`);
-    let [azimuth, elevation] = scene.view;
 
-    const draw = () => {
-      const [a, e] = [azimuth, elevation].map((degrees) => (degrees * Math.PI) / 180);
-      const right = [-Math.sin(a), Math.cos(a), 0];
-      const up = [-Math.sin(e) * Math.cos(a), -Math.sin(e) * Math.sin(a), Math.cos(e)];
-      const toward = [Math.cos(e) * Math.cos(a), Math.cos(e) * Math.sin(a), Math.sin(e)];
+    const draw = (azimuth, elevation) => {
+      const { right, up, toward } = camera(azimuth, elevation);
       const screen = (p) => [centre[0] + scale * dot(p, right), centre[1] - scale * dot(p, up)];
       const path = (points) => "M" + points.map((p) => screen(p).map(px).join(" ")).join("L");
       const hidden = (p) => surfaces.some((hides) => hides(p, toward));
@@ -112,39 +105,10 @@
       });
     };
 
-    let waiting = false;
-    const rotate = (byAzimuth, byElevation) => {
-      azimuth = (azimuth + byAzimuth) % 360;
-      elevation = Math.max(-90, Math.min(90, elevation + byElevation));
-      if (waiting) return;
-      waiting = true;
-      requestAnimationFrame(() => {
-        waiting = false;
-        draw();
-      });
-    };
-    svg.addEventListener("pointerdown", (event) => {
-      if (!event.target.closest(".lf-key")) svg.setPointerCapture(event.pointerId);
-    });
-    svg.addEventListener("pointermove", (event) => {
-      if (svg.hasPointerCapture(event.pointerId)) rotate(-event.movementX / 2, event.movementY / 2);
-    });
-    svg.addEventListener("keydown", (event) => {
-      const by = { ArrowLeft: [5, 0], ArrowRight: [-5, 0], ArrowUp: [0, -5], ArrowDown: [0, 5] }[event.key];
-      if (event.key === "Home") rotate(scene.view[0] - azimuth, scene.view[1] - elevation);
-      if (!by && event.key !== "Home") return;
-      event.preventDefault();
-      if (by) rotate(...by);
-    });
-    svg.setAttribute("role", "group");
-    svg.setAttribute("tabindex", "0");
-    svg.setAttribute("aria-roledescription", "figure to turn with the arrow keys");
-    const hint = svg.parentElement.appendChild(document.createElement("p"));
-    hint.className = "hint";
-    hint.textContent = "Drag, or use the arrow keys, to turn the sphere; Home restores the view.";
+    turnable(svg, scene.view, draw, "sphere");
   };
 
   for (const data of document.querySelectorAll("script.scene")) {
-    turn(data.parentElement.querySelector("svg"), JSON.parse(data.textContent));
+    sphere(data.parentElement.querySelector("svg"), JSON.parse(data.textContent));
   }
 })();

@@ -86,7 +86,7 @@ impl Chart {
         let layout = Layout::new(self);
         let traces: Vec<Trace> =
             self.series.iter().map(|s| Trace::new(s, &layout.x, &layout.y)).collect();
-        let rows = self.series.len() as f64 * ROW;
+        let rows = self.named().count() as f64 * ROW;
         let note = if self.notes().is_empty() { 0.0 } else { 16.0 };
         let height = (BOTTOM + FOOT + note).max(TOP + rows + 10.0).ceil();
         let id = slug(&self.id);
@@ -154,6 +154,13 @@ impl Chart {
             names.join(", "),
             self.full_caption()
         )
+    }
+
+    /// The lines that are named beside the data: not a single one whose name is on the axis.
+    fn named(&self) -> impl Iterator<Item = &Series> {
+        let told = |s: &Series| self.y.title.contains(s.name.as_str());
+        let all = self.series.len() > 1 || !self.series.iter().any(told);
+        self.series.iter().filter(move |_| all)
     }
 
     fn drawing_order(&self) -> Vec<usize> {
@@ -304,7 +311,7 @@ impl Chart {
         let mut order: Vec<usize> = (0..traces.len()).collect();
         order.sort_by(|a, b| heights[*a].total_cmp(&heights[*b]));
         out.push_str("<g class=\"lf-legend\">");
-        for i in order {
+        for i in order.into_iter().take(self.named().count()) {
             let from = ends.as_ref().map(|ends| ends[i]);
             let at = (right + GAP, heights[i]);
             out.push_str(&labels::entry(&self.series[i], i, at, from, layout.names));
@@ -328,13 +335,16 @@ impl Layout {
         let points = || chart.series.iter().flat_map(|s| &s.points);
         let y = chart.y.map(points().map(|p| p.y), (BOTTOM, TOP), 0.04);
         let left = (UPWARD + widest(&y.ticks(34.0)) + BESIDE).ceil();
-        let names = labels::column_width(&chart.series);
-        let right = (WIDTH - EDGE - names - GAP).max(left + LEAST).floor();
+        let (names, beside) = match chart.named().count() {
+            0 => (0.0, 0.0),
+            _ => (labels::column_width(&chart.series), GAP),
+        };
+        let right = (WIDTH - EDGE - names - beside).max(left + LEAST).floor();
         // Dense lines begin and end at the frame, markers stay clear of it.
         let marked = chart.series.iter().any(|s| s.marker != Marker::None);
         let padding = if marked { 0.04 } else { 0.0 };
         let x = chart.x.map(points().map(|p| p.x), (left, right), padding);
-        Layout { x, y, names, width: (right + GAP + names + EDGE).ceil() }
+        Layout { x, y, names, width: (right + beside + names + EDGE).ceil() }
     }
 }
 
@@ -380,6 +390,15 @@ mod tests {
             let data = format!("data-x=\"{:e}\" data-y=\"{:e}\"", p.x, p.y);
             assert_eq!(svg.matches(&data).count(), 1);
         }
+    }
+
+    #[test]
+    fn a_single_line_is_named_once() {
+        let points = vec![Point::new(1.0, 1.0)];
+        assert_eq!(chart(points.clone(), Marker::Circle).svg().matches("lf-key ").count(), 1);
+        let axes = [Axis::linear("t"), Axis::linear("energy − 2 [J]")];
+        let energy = Chart::new("e", "Energy", axes, [Series::line("energy", 0, points)]);
+        assert_eq!(energy.svg().matches("lf-key ").count(), 0);
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! Figures as standalone SVG text.
 
+mod body;
 mod camera;
 mod chart;
 mod ellipsoid;
@@ -14,9 +15,11 @@ pub(crate) mod theme;
 mod thin;
 mod trace;
 
+pub use body::{Body, Pose};
 pub use chart::{Chart, Marks};
 pub use heat::{Ground, Heat};
 pub use scale::{Axis, Scale};
 pub use series::{Marker, Point, Series, tell_apart};
 pub use sphere::{Path, Sphere};
 pub(crate) use svg::{escape, slug};
+pub(crate) use theme::for_file;

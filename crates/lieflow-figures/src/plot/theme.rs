@@ -57,6 +57,17 @@ pub(crate) fn variables(dark: bool) -> String {
     named.chain(shades).collect()
 }
 
+/// A figure as a file of its own, which is dark on a dark page. Inline it follows its page.
+pub(crate) fn for_file(svg: &str) -> String {
+    let dark = variables(true);
+    let used = dark.split_inclusive(';').filter(|declaration| {
+        declaration.split_once(':').is_some_and(|(name, _)| svg.contains(&format!("({name},")))
+    });
+    let used: String = used.collect();
+    let style = format!("<style>@media screen and (prefers-color-scheme:dark){{:root{{{used}}}}}");
+    svg.replacen("<style>", &style, 1)
+}
+
 /// The colour of the ellipsoid at brightness level `k`.
 fn shade(k: usize, dark: bool) -> String {
     let hex = |name: &str| {
@@ -99,6 +110,11 @@ pub(crate) fn chart_css() -> String {
     style(concat!(include_str!("common.css"), include_str!("chart.css")))
 }
 
+/// The style sheet of a body that turns.
+pub(crate) fn body_css() -> String {
+    style(concat!(include_str!("common.css"), include_str!("body.css")))
+}
+
 /// The style sheet of a momentum sphere.
 pub(crate) fn sphere_css() -> String {
     let shade = |k| {
@@ -115,13 +131,20 @@ mod tests {
 
     #[test]
     fn every_colour_has_a_light_fallback() {
-        for css in [chart_css(), sphere_css()] {
+        for css in [chart_css(), body_css(), sphere_css()] {
             assert!(css.contains("var(--lf-"));
             assert!(!css.contains(":;") && !css.contains(",)"));
         }
         for c in &COLOURS {
             assert!(c.light.len() == 7 && c.dark.len() == 7, "{}", c.name);
         }
+    }
+
+    #[test]
+    fn a_file_follows_a_dark_page() {
+        let svg = for_file("<svg><style>.a{fill:#fff;fill:var(--lf-paper,#fff)}</style></svg>");
+        let dark = ":root{--lf-paper:#14171c;}}.a{";
+        assert!(svg.starts_with("<svg><style>@media") && svg.contains(dark), "{svg}");
     }
 
     #[test]

@@ -262,6 +262,9 @@ impl System for Driven {
             false => format!("attitude and momentum in space; torques: {}", torques.join(", ")),
         }
     }
+    fn inertia(&self) -> Option<PrincipalInertia> {
+        Some(PrincipalInertia::diagonal(self.body.inertia()))
+    }
     fn figure(&self) -> Figure {
         match (&self.torques.control, &self.torques.in_the_body) {
             (None, None) => Figure::Sphere("axis"),

@@ -257,6 +257,22 @@ fn high_order() -> MethodSpec {
     MethodSpec { tableau: Some("dop853".into()), ..MethodSpec::new("rkmk", None) }
 }
 
+/// The inertia of a rigid body along its principal axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PrincipalInertia {
+    /// The moments of inertia.
+    pub moments: [f64; 3],
+    /// The axes, one after the other, in the frame of the body.
+    pub axes: [[f64; 3]; 3],
+}
+
+impl PrincipalInertia {
+    /// Moments about the axes of the body.
+    pub fn diagonal(moments: [f64; 3]) -> Self {
+        PrincipalInertia { moments, axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] }
+    }
+}
+
 /// Something that is known of a problem before any run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Fact {
@@ -329,6 +345,11 @@ pub trait ProblemSpec: Any + Debug + Send + Sync {
 
     /// The figure of a run.
     fn figure(&self) -> Figure;
+
+    /// The inertia of the body whose attitude or quaternion is a quantity.
+    fn inertia(&self) -> Option<PrincipalInertia> {
+        None
+    }
 
     /// The field that [`Figure::Map`] draws, from the values of its quantity: rows from north to south,
     /// columns from west to east.

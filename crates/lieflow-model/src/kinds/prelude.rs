@@ -9,7 +9,8 @@ pub(super) use toml::de::ValueDeserializer;
 pub(super) use super::quantity::Quantity;
 pub(super) use super::system::{Number, Start, Stated, System};
 pub(super) use super::{
-    Fact, Figure, INTERPOLATION, Kind, Law, PARAMETERS, ProblemSpec, SAMPLES, Scale, keys,
+    Fact, Figure, INTERPOLATION, Kind, Law, PARAMETERS, PrincipalInertia, ProblemSpec, SAMPLES,
+    Scale, keys,
 };
 pub(super) use crate::model::Layer;
 pub(super) use crate::scene::values::{List, Real, Reals, Table, Whole};

@@ -12,7 +12,7 @@ use lieflow::space::Numbers;
 use lieflow::{Error, RunError};
 
 use super::quantity::{Quantity, Value};
-use super::{Fact, Figure, Kind, ProblemSpec, high_order};
+use super::{Fact, Figure, Kind, PrincipalInertia, ProblemSpec, high_order};
 use crate::model::{
     Layer, Model, Outcome, Plan, Runnable, Steps, Watcher, drive_by, fits_by, order_by,
 };
@@ -78,6 +78,10 @@ pub(super) trait System: Clone + Debug + Send + Sync + 'static {
     /// The figure of a run.
     fn figure(&self) -> Figure {
         Figure::Lines(Self::STATE[0])
+    }
+    /// See [`ProblemSpec::inertia`].
+    fn inertia(&self) -> Option<PrincipalInertia> {
+        None
     }
     /// The field that [`Figure::Map`] draws, from its quantity: rows from north to south, columns from
     /// west to east.
@@ -165,6 +169,9 @@ impl<S: System> ProblemSpec for Stated<S> {
     }
     fn figure(&self) -> Figure {
         self.0.figure()
+    }
+    fn inertia(&self) -> Option<PrincipalInertia> {
+        self.0.inertia()
     }
     fn field(&self, values: &[f64]) -> Vec<Vec<f64>> {
         self.0.field(values)

@@ -202,6 +202,13 @@ impl ProblemSpec for RigidBodySpec {
         let system = self.system(Layer::Closed, quantities);
         system.map_or_else(|_| Vec::new(), |system| system.invariants(quantities))
     }
+    fn inertia(&self) -> Option<PrincipalInertia> {
+        let diagonal = PrincipalInertia::diagonal(self.inertia);
+        let axes =
+            |axes: Matrix3<f64>| core::array::from_fn(|i| axes.column(i).into_owned().into());
+        let axes = self.axes.map_or(diagonal.axes, axes);
+        Some(PrincipalInertia { axes, ..diagonal })
+    }
     fn figure(&self) -> Figure {
         Figure::Sphere("momentum_body")
     }

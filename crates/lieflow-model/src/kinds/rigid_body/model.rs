@@ -302,7 +302,7 @@ impl<R: Representation> System for Body<R> {
         Q::numbers(
             "quaternion",
             &["qw", "qx", "qy", "qz"],
-            "the same as a unit quaternion, real part first, x -> q x q*; with the key quaternion it is \
+            "attitude as a unit quaternion, real part first, x -> q x q*; with the key quaternion it is \
              what is integrated, and without it has w >= 0",
             |body, _, y, row| {
                 let axes = body.spec.axes.map_or(Ok(UnitQuaternion::identity()), |axes| {
