@@ -46,7 +46,8 @@
       // What has no number comes last in both directions.
       const order = (a, b) => {
         if (!number) return sign * collator.compare(a, b);
-        return isNaN(a) || isNaN(b) ? isNaN(a) - isNaN(b) : sign * (a - b);
+        const has = Number.isFinite;
+        return has(a) && has(b) ? sign * (a - b) : has(b) - has(a);
       };
       const rows = [...body.rows].map((row) => [key(row), row]);
       body.append(...rows.sort(([a], [b]) => order(a, b)).map(([, row]) => row));
