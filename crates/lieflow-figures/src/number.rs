@@ -23,6 +23,16 @@ pub fn sig(x: f64, digits: usize) -> String {
     }
 }
 
+/// `x` to at most `digits` significant digits, without zeros at the end: `0.5`, `240`, `1.2×10⁻⁸`.
+pub fn short(x: f64, digits: usize) -> String {
+    let text = sig(x, digits);
+    let (mantissa, power) = text.split_at(text.find('×').unwrap_or(text.len()));
+    match mantissa.contains('.') {
+        true => mantissa.trim_end_matches('0').trim_end_matches('.').to_string() + power,
+        false => text,
+    }
+}
+
 /// A number in scientific notation with two digits after the point, as `1.23e-4`; a dash for none.
 pub fn scientific(x: f64) -> String {
     if x.is_nan() { DASH.into() } else { format!("{x:.2e}") }
@@ -112,6 +122,12 @@ mod tests {
         assert_eq!(sig(0.0, 3), "0");
         assert_eq!(sig(f64::NAN, 3), "n/a");
         assert_eq!(sig(f64::NEG_INFINITY, 3), "−∞");
+    }
+
+    #[test]
+    fn short_numbers_have_no_zeros_at_the_end() {
+        let short: Vec<String> = [0.5, 240.0, 1.2e-8, -2e9, 0.0].map(|x| short(x, 6)).into();
+        assert_eq!(short, ["0.5", "240", "1.2×10⁻⁸", "−2×10⁹", "0"]);
     }
 
     #[test]

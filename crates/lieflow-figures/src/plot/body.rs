@@ -87,19 +87,12 @@ impl Body {
         };
         let mut out = opening.svg();
         out += &text("lf-title", (16.0, 24.0), "start", &self.title);
+        let tip = |i: usize, length: f64| -> Vec3 {
+            core::array::from_fn(|j| if i == j { length } else { 0.0 })
+        };
         for i in 0..3 {
-            let tip: Vec3 = core::array::from_fn(|j| if i == j { AXIS } else { 0.0 });
-            let name: Vec3 = tip.map(|x| 1.08 * x);
-            let (x, y) = screen(&name);
-            out += &format!(
-                "<path class=\"lf-axis\" data-axis=\"{i}\" d=\"{}\"/><text class=\"lf-name\" \
-                 data-name=\"{i}\" x=\"{}\" y=\"{}\">e<tspan font-size=\".7em\" font-style=\"normal\" \
-                 dy=\"4\">{}</tspan></text>",
-                polyline(&[screen(&[0.0; 3]), screen(&tip)]),
-                px(x),
-                px(y + 4.0),
-                i + 1
-            );
+            let d = polyline(&[screen(&[0.0; 3]), screen(&tip(i, AXIS))]);
+            out += &format!("<path class=\"lf-axis\" data-axis=\"{i}\" d=\"{d}\"/>");
         }
         let way: Vec<Vec3> = self.seen().map(|pose| self.tip(pose)).collect();
         let way: Vec<_> = thin_path(&way, 2e-3).iter().map(screen).collect();
@@ -120,6 +113,16 @@ impl Body {
                 false => String::new(),
             };
             out += &format!("<path class=\"lf-face lf-c{axis}\" data-face=\"{face}\" d=\"{d}\"/>");
+        }
+        for i in 0..3 {
+            let (x, y) = screen(&tip(i, 1.08 * AXIS));
+            out += &format!(
+                "<text class=\"lf-name\" data-name=\"{i}\" x=\"{}\" y=\"{}\">e<tspan \
+                 font-size=\".7em\" font-style=\"normal\" dy=\"4\">{}</tspan></text>",
+                px(x),
+                px(y + 4.0),
+                i + 1
+            );
         }
         out.push_str("</svg>");
         out

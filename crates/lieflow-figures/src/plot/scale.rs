@@ -1,6 +1,6 @@
 //! Axes: from data to pixels, and where the ticks are.
 
-use crate::number::{fixed, power_of_ten, seconds, sig};
+use crate::number::{fixed, power_of_ten, seconds, short, sig};
 
 /// How the values of an axis are spread over its length.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -84,12 +84,11 @@ impl Axis {
             return self.title.clone();
         }
         let digits = offset.abs().log10().floor() - range.log10().ceil() + 1.0;
-        let value = sig(offset.abs(), digits as usize);
-        let value = if value.contains('×') { &value } else { value.trim_end_matches('0') };
+        let value = short(offset.abs(), digits as usize);
         let sign = if offset < 0.0 { '+' } else { '−' };
         let (quantity, unit) = self.split_title();
         let unit = if unit.is_empty() { String::new() } else { format!(" [{unit}]") };
-        format!("{quantity} {sign} {}{unit}", value.trim_end_matches('.'))
+        format!("{quantity} {sign} {value}{unit}")
     }
 
     /// `value` of this axis for people, with its unit.

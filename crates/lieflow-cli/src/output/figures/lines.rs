@@ -2,7 +2,7 @@
 
 use core::ops::Range;
 
-use lieflow_figures::number::sig;
+use lieflow_figures::number::short;
 use lieflow_figures::{Axis, Block, Chart, Marks, Point, Series};
 use lieflow_model::schema::{Observable, Row};
 
@@ -46,7 +46,7 @@ fn extent(quantity: &Observable, rows: &RowSample<'_>) -> [f64; 2] {
 pub(super) fn constant(quantity: &Observable, rows: &RowSample<'_>) -> Option<String> {
     let [size, change] = extent(quantity, rows);
     let [(_, start), _] = rows.ends()?;
-    let value = || start[quantity].iter().map(|x| sig(*x, 6)).collect::<Vec<_>>().join(", ");
+    let value = || start[quantity].iter().map(|x| short(*x, 6)).collect::<Vec<_>>().join(", ");
     (change <= CONSTANT * size && size.is_finite()).then(value)
 }
 
@@ -81,7 +81,7 @@ pub(super) fn against_time(
         };
         let (title, axis) = match (from_start, start) {
             (true, Some(start)) if part.len() == 1 => {
-                let value = sig(of(part.start, start), 6);
+                let value = short(of(part.start, start), 6);
                 (format!("{title}: how far it is from its start"), format!("{axis} − {value}"))
             }
             (true, _) => {
@@ -105,7 +105,7 @@ pub(super) fn against_time(
     }
     let closed = charts.split_off(charts.len().min(OPEN));
     if !closed.is_empty() {
-        let names = format!("{} more charts of {}", closed.len(), words::on_axis(quantity));
+        let names = format!("More of {} ({})", words::on_axis(quantity), closed.len());
         charts.push(Block::fold(names, closed));
     }
     charts

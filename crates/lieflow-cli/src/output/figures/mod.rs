@@ -7,7 +7,7 @@ mod words;
 
 pub use sample::RowSample;
 
-use lieflow_figures::number::{seconds, sig};
+use lieflow_figures::number::{seconds, short, sig};
 use lieflow_figures::{
     self as figures, Axis, Block, Cell, Chart, Column, Ground, Heat, Marker, Page, Path, Point,
     Scale, Section, Series, Sphere, Table,
@@ -19,6 +19,8 @@ use lieflow_model::schema::{Observable, Row};
 use self::lines::{LINES, against_time, constant, marked};
 use crate::output::{EVENTS, SUMMARY, Summary};
 
+/// Rows of a table that is open.
+const MANY: usize = 10;
 /// Points of a figure of points.
 const POINTS: usize = 128;
 
@@ -104,7 +106,7 @@ pub fn run_page(summary: &Summary, run: &Drawn<'_>) -> Page {
 
 /// A number with as many digits as a reader looks at.
 pub fn in_digits(x: f64) -> String {
-    sig(x, 8)
+    short(x, 8)
 }
 
 /// The number of steps and their size.
@@ -159,14 +161,13 @@ fn own_figure(summary: &Summary, run: &Drawn<'_>) -> Vec<Block> {
         Figure::Curve(_) => vec![plane(id, &title, run.figure, run.rows, false).into()],
         Figure::Points(_) => vec![plane(id, &title, run.figure, run.rows, true).into()],
         Figure::Map(_, ground) => {
-            let t = summary.t_end.unwrap_or(summary.t_span[1]);
-            let caption = format!("At the end, t = {t}.");
+            let title = format!("The field at t = {}", summary.t_end.unwrap_or(summary.t_span[1]));
             let ground = match ground {
                 kinds::Ground::Sphere => Ground::Sphere,
                 kinds::Ground::Torus => Ground::Torus,
             };
-            let title = summary.title.clone();
-            vec![Block::Heat(Heat { id, title, ground, values: run.field.to_vec(), caption })]
+            let (values, caption) = (run.field.to_vec(), String::new());
+            vec![Block::Heat(Heat { id, title, ground, values, caption })]
         }
     }
 }
@@ -281,7 +282,7 @@ fn drift_table(summary: &Summary) -> Block {
         let small = |x: f64| sig(x, 2);
         let cells = [
             name.replace('_', " ").into(),
-            Cell::number(drift.initial, |x| sig(x, 6)),
+            Cell::number(drift.initial, |x| short(x, 6)),
             Cell::number(drift.max, small),
             Cell::number(drift.at_end, small),
             Cell::number(drift.slope, small),
@@ -292,7 +293,11 @@ fn drift_table(summary: &Summary) -> Block {
     });
     let caption =
         "How far the computed values are from the start. The exact motion keeps each of them.";
-    Block::Table(Table { caption: caption.into(), columns, rows: rows.collect() })
+    let table = Block::Table(Table { caption: caption.into(), columns, rows: rows.collect() });
+    match summary.drift.len() {
+        ..=MANY => table,
+        all => Block::fold(format!("All {all} quantities as a table"), vec![table]),
+    }
 }
 
 /// |value − initial| of the invariants against time.
