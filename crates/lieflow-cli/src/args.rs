@@ -41,6 +41,8 @@ pub enum Command {
     Run(RunArgs),
     /// Run a scene with every method, map and layer that fits, and write a report.
     Compare(CompareArgs),
+    /// Show what Lie group methods are good for, on three bodies that turn: a page with figures. The same as no command.
+    Demo(DemoArgs),
     /// Compute the paper's tables and figures again: paper.html, CSV and SVG files.
     Paper(PaperArgs),
     /// Check the layers against each other, the laws of groups and maps, and the exact motion.
@@ -138,7 +140,7 @@ Written: paper.html, self-contained; table1.csv to table4.csv, figure3.csv to fi
 frames.csv, drift.csv, separatrix.csv; every figure as an SVG file.")]
 pub struct PaperArgs {
     /// Folder for the page and the data.
-    #[arg(long, value_name = "DIR", default_value = "lieflow-report")]
+    #[arg(long, value_name = "DIR", default_value = "lieflow-paper")]
     pub out: PathBuf,
     /// Fewer space frames and fewer rounds of timing; the tables are the same.
     #[arg(long)]

@@ -11,6 +11,7 @@ use lieflow_cli::cmd::{self, CliError};
 fn dispatch(cli: &Cli) -> Result<(), CliError> {
     match &cli.command {
         None => cmd::demo::run(&cli.demo),
+        Some(Command::Demo(args)) => cmd::demo::run(args),
         Some(Command::Compare(args)) => cmd::compare::run(args),
         Some(Command::Check(args)) => cmd::check::run(args),
         Some(Command::Paper(args)) => cmd::paper::run(args),

@@ -187,7 +187,7 @@ fn the_page_and_its_files_are_complete() {
     let folder = Folder::new();
     PAPER.write(folder.path()).unwrap();
     let page = folder.read("paper.html");
-    assert!(page.contains("16 of 16 numbers as printed"), "Table 3 differs");
+    assert!(page.contains("16 of the 16 numbers of Table 3"), "Table 3 differs");
     assert!(!page.contains("NaN") && !page.contains("inf "));
     assert!(page.matches("<figure>").count() >= 13);
     for heading in ["Table 1", "Table 2", "Table 3", "Table 4", "Errata", "What is new"] {

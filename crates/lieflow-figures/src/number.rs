@@ -53,8 +53,18 @@ pub(crate) fn power_of_ten(exponent: i32) -> String {
 
 /// A duration of `t` seconds in engineering units with three significant digits: `1.32 ms`.
 pub fn seconds(t: f64) -> String {
-    let size = t.abs();
-    let (factor, unit) = if size == 0.0 || size >= 1.0 || !size.is_finite() {
+    in_units_of_time(t, |t| sig(t, 3))
+}
+
+/// The same without zeros at the end: `500 ns`, `1.5 ms`.
+pub(crate) fn seconds_short(t: f64) -> String {
+    in_units_of_time(t, |t| short(t, 3))
+}
+
+fn in_units_of_time(t: f64, format: impl FnOnce(f64) -> String) -> String {
+    // A power of ten that is computed may be less than it by rounding.
+    let size = t.abs() * (1.0 + 1e-12);
+    let (factor, unit) = if t == 0.0 || size >= 1.0 || !size.is_finite() {
         (1.0, "s")
     } else if size >= 1e-3 {
         (1e3, "ms")
@@ -63,7 +73,7 @@ pub fn seconds(t: f64) -> String {
     } else {
         (1e9, "ns")
     };
-    format!("{}\u{a0}{unit}", sig(t * factor, 3))
+    format!("{}\u{a0}{unit}", format(t * factor))
 }
 
 /// `value` with exactly `decimals` digits after the point and a true minus sign.
@@ -138,6 +148,7 @@ mod tests {
         assert_eq!(seconds(2.5e-9), "2.50\u{a0}ns");
         assert_eq!(seconds(42e-6), "42.0\u{a0}µs");
         assert_eq!(seconds(0.0), "0\u{a0}s");
+        assert_eq!(["500\u{a0}ns", "1\u{a0}µs"], [5e-7, 10f64.powi(-6)].map(seconds_short));
         assert_eq!(fixed(-0.001, 2), "0.00");
         assert_eq!(fixed(-1.25, 1), "−1.2");
     }

@@ -17,7 +17,7 @@ pub fn run(args: &DemoArgs) -> Result<(), CliError> {
     // A folder that cannot be written is better known before the work than after it.
     output::make_folder(&args.out)?;
     output::print(&format!(
-        "lieflow {}: the rigid body of Celledoni & Owren on {}\n",
+        "lieflow {}: three bodies that turn freely, on {}\n",
         env!("CARGO_PKG_VERSION"),
         machine()
     ))?;
@@ -26,7 +26,11 @@ pub fn run(args: &DemoArgs) -> Result<(), CliError> {
     drop(bar);
     let [page, maps] = speed.write(&args.out)?;
     output::print(&format!(
-        "{}The report with its figures: {}\nAccuracy and time of every map: {}\n({:.1} s)\n",
+        "{}\nThe page with its figures: {}\nHow accurate and fast each map is: {}\n({:.1} s)\n\n\
+         What next?\n  \
+         simulate a body         lieflow run wing-nut\n  \
+         state your own equation lieflow scenes rotating-drive > mine.toml\n  \
+         which method?           lieflow compare wing-nut --quick\n",
         speed.in_words(),
         page.display(),
         maps.display(),

@@ -7,7 +7,7 @@ mod rows;
 mod state;
 mod summary;
 
-pub use figures::{Drawn, RowSample, in_digits, run_page};
+pub use figures::{Drawn, RowSample, in_digits, moving_body, run_page};
 pub(crate) use files::fields;
 pub use files::{in_full, make_folder, optional, remove_old, write_csv, write_file, write_page};
 pub use progress::Progress;

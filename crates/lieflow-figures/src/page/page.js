@@ -102,6 +102,9 @@
     return `${mantissa}×10${superscript(Number(exponent))}`;
   };
 
+  const inTime = (t) => [[1, "s"], [1e3, "ms"], [1e6, "µs"], [1e9, "ns"]]
+    .find(([factor]) => Math.abs(t * factor) >= 1) || [1e9, "ns"];
+
   // The value at a pixel of an axis.
   const axisOf = (svg, name) => {
     const [kind, ...numbers] = svg.dataset[name].split(" ");
@@ -117,7 +120,8 @@
     const digits = kind === "linear" ? Math.min(15, 3 + Math.max(0, Math.ceil(Math.log10(size)))) : 3;
     return (pixel) => {
       const value = unwarp(lo + ((pixel - from) / (to - from)) * (hi - lo));
-      return `${title}: ${number(value, digits)} ${unit}`.trim();
+      const [factor, name] = unit === "s" ? inTime(value) : [1, unit];
+      return `${title}: ${number(value * factor, digits)} ${name}`.trim();
     };
   };
 

@@ -193,15 +193,14 @@ impl Chart {
         for (at, label) in rows.iter().filter_map(|t| Some((t.at, t.label.as_ref()?))) {
             out.push_str(&text("lf-tick", (x.from - BESIDE, at + 4.2), "end", label));
         }
-        let title = |axis: &Axis, map: &Map| axis.title_beside(map.offset, map.hi - map.lo);
         let middle = 0.5 * (x.from + x.to);
         out.push_str(&text("lf-title", (16.0, 24.0), "start", &self.title));
-        out.push_str(&text("lf-label", (middle, BOTTOM + 41.0), "middle", &title(&self.x, x)));
+        out.push_str(&text("lf-label", (middle, BOTTOM + 41.0), "middle", &self.x.title_beside(x)));
         out.push_str(&format!(
             "<g class=\"lf-upward\"><text class=\"lf-label\" \
              transform=\"translate(16 {}) rotate(-90)\" text-anchor=\"middle\">{}</text></g>",
             px(0.5 * (TOP + BOTTOM)),
-            escape(&title(&self.y, y))
+            escape(&self.y.title_beside(y))
         ));
         let notes = self.notes();
         if !notes.is_empty() {

@@ -1,6 +1,6 @@
 //! Axes: from data to pixels, and where the ticks are.
 
-use crate::number::{fixed, power_of_ten, seconds, short, sig};
+use crate::number::{fixed, power_of_ten, seconds, seconds_short, short, sig};
 
 /// How the values of an axis are spread over its length.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -78,11 +78,16 @@ impl Axis {
         }
     }
 
-    /// The title; where the labels are differences from `offset`, with that: "energy − 0.00515 [J]".
-    pub(crate) fn title_beside(&self, offset: f64, range: f64) -> String {
+    /// The title beside the labels of a map: without the unit that they have, and with the offset that they leave
+    /// out, as in "energy − 0.00515 [J]".
+    pub(crate) fn title_beside(&self, &Map { offset, lo, hi, in_seconds, .. }: &Map) -> String {
+        if in_seconds {
+            return self.quantity().to_string();
+        }
         if offset == 0.0 {
             return self.title.clone();
         }
+        let range = hi - lo;
         let digits = offset.abs().log10().floor() - range.log10().ceil() + 1.0;
         let value = short(offset.abs(), digits as usize);
         let sign = if offset < 0.0 { '+' } else { '−' };
@@ -112,7 +117,8 @@ impl Axis {
         let placed = data.filter(|v| scale.accepts(*v)).map(|v| scale.warp(v));
         let (lo, hi) = padded(placed, padding);
         let offset = if scale == Scale::Linear { offset(lo, hi) } else { 0.0 };
-        Map { scale, lo, hi, offset, from: pixels.0, to: pixels.1 }
+        let in_seconds = self.unit() == "s" && scale == Scale::Log10;
+        Map { scale, lo, hi, offset, in_seconds, from: pixels.0, to: pixels.1 }
     }
 }
 
@@ -149,6 +155,8 @@ pub(crate) struct Map {
     pub(crate) hi: f64,
     /// What is left out of the labels; 0 on most axes.
     pub(crate) offset: f64,
+    /// Do the labels have units of time?
+    pub(crate) in_seconds: bool,
     /// The pixels of these ends.
     pub(crate) from: f64,
     pub(crate) to: f64,
@@ -186,7 +194,14 @@ impl Map {
                 let ticks = linear_ticks(self.lo - self.offset, self.hi - self.offset, labels);
                 ticks.into_iter().map(|(x, label, major)| (x + self.offset, label, major)).collect()
             }
-            Scale::Log10 => log_ticks(self.lo, self.hi, labels),
+            Scale::Log10 => {
+                let mut ticks = log_ticks(self.lo, self.hi, labels);
+                let labelled = ticks.iter_mut().filter(|_| self.in_seconds);
+                for (t, label, _) in labelled {
+                    *label = label.take().map(|_| seconds_short(*t));
+                }
+                ticks
+            }
             Scale::SymLog { linear } => self.symlog_ticks(linear.max(f64::MIN_POSITIVE), labels),
         };
         let placed = found.into_iter().filter_map(|(value, label, major)| {
@@ -346,7 +361,7 @@ mod tests {
             let found = labels(&m, 60.0);
             assert!(found.len() > 2 && found.iter().all(|l| l.chars().count() < 11), "{found:?}");
             assert!(found.windows(2).all(|pair| pair[0] != pair[1]), "{found:?}");
-            assert_eq!(axis.title_beside(m.offset, m.hi - m.lo), title);
+            assert_eq!(axis.title_beside(&m), title);
         }
     }
 
@@ -358,6 +373,14 @@ mod tests {
         let every_second = labels(&m, 50.0);
         assert_eq!(every_second, ["10⁻¹⁴", "10⁻¹²", "10⁻¹⁰", "10⁻⁸", "10⁻⁶", "10⁻⁴", "10⁻²"]);
         assert_eq!(m.ticks(50.0).len(), 14);
+    }
+
+    #[test]
+    fn times_have_units() {
+        let axis = Axis::log("CPU time [s]");
+        let m = axis.map([1e-8, 1e-3].into_iter(), (0.0, 500.0), 0.0);
+        assert_eq!(labels(&m, 80.0).concat().replace('\u{a0}', ""), "10ns100ns1µs10µs100µs1ms");
+        assert_eq!(axis.title_beside(&m), "CPU time");
     }
 
     #[test]

@@ -9,14 +9,15 @@ pub use sample::RowSample;
 
 use lieflow_figures::number::{seconds, short, sig};
 use lieflow_figures::{
-    self as figures, Axis, Block, Cell, Chart, Column, Ground, Heat, Marker, Page, Path, Point,
-    Scale, Section, Series, Sphere, Table,
+    self as figures, Axis, Block, Body, Cell, Chart, Column, Ground, Heat, Marker, Page, Path,
+    Point, Scale, Section, Series, Sphere, Table,
 };
 use lieflow_model::kinds::{self, Figure, PrincipalInertia};
 use lieflow_model::scene::Scene;
 use lieflow_model::schema::{Observable, Row};
 
 use self::lines::{LINES, against_time, constant, marked};
+use crate::cmd::CliError;
 use crate::output::{EVENTS, SUMMARY, Summary};
 
 /// Rows of a table that is open.
@@ -102,6 +103,17 @@ pub fn run_page(summary: &Summary, run: &Drawn<'_>) -> Page {
         sections,
         footer: format!("lieflow {}", summary.lieflow),
     }
+}
+
+/// The body of a scene as it turns, by a run of that scene.
+///
+/// # Errors
+/// The scene does not run.
+pub fn moving_body(scene: &Scene) -> Result<Option<Body>, CliError> {
+    let model = scene.model()?;
+    let mut rows = RowSample::new(model.schema());
+    model.run(&scene.method, &scene.grid, &scene.save, &mut |t, row| rows.see(t, row))?;
+    Ok(scene.problem.inertia().and_then(|inertia| motion::body(&inertia, &rows)))
 }
 
 /// A number with as many digits as a reader looks at.

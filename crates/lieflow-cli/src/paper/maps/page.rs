@@ -29,6 +29,24 @@ fn angle(study: &Study) -> bool {
     study.over == Over::Angle
 }
 
+/// Angles below are not drawn: nothing changes there.
+const SMALL: f64 = 0.01;
+
+/// The largest error at angles that are not drawn.
+fn at_small_angles(study: &Study) -> String {
+    let points = study.lines.iter().flat_map(|line| &line.points);
+    let small = points.filter(|p| p.at < SMALL && !p.error.is_nan());
+    match small.map(|p| p.error).reduce(f64::max) {
+        Some(largest) if angle(study) => {
+            format!(
+                "Angles from 1e-16 to {SMALL} are not drawn: the errors there are at most {}.",
+                sig(largest, 2)
+            )
+        }
+        _ => String::new(),
+    }
+}
+
 /// The colour of a contender: the same in every figure.
 fn colour(name: &str) -> usize {
     match name {
@@ -46,8 +64,9 @@ fn chart(
     y: Axis,
     value: fn(&super::StudyPoint) -> f64,
 ) -> Chart {
+    let drawn = |p: &&super::StudyPoint| !value(p).is_nan() && (!angle(study) || p.at >= SMALL);
     let series = study.lines.iter().map(|line| {
-        let points = line.points.iter().filter(|p| !value(p).is_nan()).map(|p| {
+        let points = line.points.iter().filter(drawn).map(|p| {
             let inputs = format!("{} inputs, {} refused", p.cases, p.refused);
             Point::new(p.at, value(p)).with_note(inputs)
         });
@@ -56,11 +75,11 @@ fn chart(
             .with_dash(line.name.starts_with("nalgebra"))
     });
     let (x, over) = match study.over {
-        Over::Angle => ("angle |u| [rad]", "angle"),
-        Over::Size => ("n", "n"),
+        Over::Angle => (Axis::linear("angle |u| [rad]"), "angle"),
+        Over::Size => (Axis::log("n"), "n"),
     };
     let id = format!("{}-{what}-{over}", study.topic.key());
-    Chart::new(id, title, [Axis::log(x), y], series)
+    Chart::new(id, title, [x, y], series)
 }
 
 /// Error beside time.
@@ -78,7 +97,9 @@ fn charts(study: &Study) -> Block {
         false => format!("Time of {name} {over}"),
     };
     Block::Row(vec![
-        chart(study, "error", format!("Error of {name} {over}"), units, |p| p.error).into(),
+        chart(study, "error", format!("Error of {name} {over}"), units, |p| p.error)
+            .with_caption(at_small_angles(study))
+            .into(),
         chart(study, "time", timed, time, |p| p.seconds).into(),
     ])
 }
@@ -107,22 +128,21 @@ pub(super) fn page(studies: &[Study]) -> Page {
     let drawn = |studies: &[&Study]| studies.iter().map(|s| charts(s)).collect::<Vec<_>>();
     let mut angle_blocks = vec![
         Block::text(
-            "u on so(3), in random directions, from |u| = 1e-16 to 2π and close to π and 2π; g is \
-             exp(u) rounded. log is asked up to π, where exp stops being one to one. dexp⁻¹ has no \
-             value at 2π: there it refuses.",
+            "The vector u has random directions and lengths from 1e-16 to 2π. log is asked up to π, where two \
+             vectors begin to have one rotation. dexp⁻¹ has no value at 2π: there it refuses.",
         ),
         table(&over_angle, "On so(3), over all angles.", "at |u|").into(),
     ];
     angle_blocks.extend(drawn(&over_angle));
     let mut n_blocks = vec![
         Block::text(
-            "u on so(n), random, of spectral norm about 1. What is not drawn at n = 3 is in the \
+            "The matrix u is random and skew, of spectral norm about 1. What is not drawn at n = 3 is in the \
              figures over the angle.",
         ),
         table(&over_n, "On so(n), over all n.", "at n").into(),
     ];
     n_blocks.extend(drawn(&over_n));
-    report::page(
+    let page = report::page(
         "The maps: accuracy and time",
         "Closed forms on so(3) and the general layer for any n, beside nalgebra",
         vec![
@@ -130,13 +150,12 @@ pub(super) fn page(studies: &[Study]) -> Page {
                 "What is measured",
                 vec![
                     Block::text(
-                        "Errors are distances (Frobenius) from values of 30 digits, which this \
-                         program computes in twice the working precision by other formulas: Taylor \
-                         series, elimination, and iterative refinement of the forward differential. \
-                         The unit ε·cond is ε times the size of the value plus what the value \
-                         changes by when each number of the input moves by ε of itself; it is the \
-                         same for everybody. 1 is what rounding already costs; the promise is 4 on \
-                         so(3).",
+                        "A map makes a rotation from a vector u, or takes its differential. Here each is compared with \
+                         values of 30 digits, which this program computes by other formulas.",
+                    ),
+                    Block::text(
+                        "The unit of an error (eps·cond) is the error that rounding the input alone would cause. So 1 \
+                         is as good as it gets. The promise is 4 on rotations in three dimensions.",
                     ),
                     Block::facts([
                         ("Machine", machine().as_str()),
@@ -145,11 +164,12 @@ pub(super) fn page(studies: &[Study]) -> Page {
                             "CPU time of one thread, medians of rounds that visit everybody in turn",
                         ),
                     ]),
-                    Block::Link { text: "Back to the report".into(), href: "index.html".into() },
                 ],
             ),
             Section::new("Over the angle", angle_blocks),
             Section::new("Over n", n_blocks),
         ],
-    )
+    );
+    let links = [("Back to the demonstration", "index.html"), ("Every point (CSV)", "maps.csv")];
+    Page { links: links.map(|(text, href)| (text.into(), href.into())).into(), ..page }
 }

@@ -1,8 +1,8 @@
 //! The page of the main job.
 
 use lieflow::groups::{LieGroup, So3};
-use lieflow_figures::number::{scientific, seconds};
-use lieflow_figures::{Block, Cell, Column, Page, Path, Row, Section, Sphere, Table};
+use lieflow_figures::number::{or_dash, seconds, sig};
+use lieflow_figures::{Axis, Block, Cell, Chart, Column, Page, Row, Section, Series, Table};
 use lieflow_model::model::Layer;
 
 use super::{Outcome, Speed, candidate, rounds};
@@ -16,6 +16,49 @@ use crate::report;
 
 impl Speed {
     pub(super) fn page(&self) -> Page {
+        let mut sections = vec![self.rotations(), go_on()];
+        let mut outcomes = self.outcomes.iter();
+        sections.extend(outcomes.next().map(|outcome| {
+            let title = format!("Speed against error: {}", outcome.title.to_lowercase());
+            Section::new(title, outcome.blocks())
+        }));
+        let others: Vec<Block> =
+            outcomes.map(|outcome| Block::fold(outcome.title.clone(), outcome.blocks())).collect();
+        sections.push(Section::new("The same for two more bodies", others));
+        sections.push(self.agreement());
+        let page = report::page(
+            "Rotations that stay rotations",
+            "Three bodies that turn freely, by Lie group methods and by classical Runge–Kutta",
+            sections,
+        );
+        let links =
+            [("How accurate and fast each map is", MAPS_PAGE), ("Every run (CSV)", "speed.csv")];
+        Page { links: links.map(|(text, href)| (text.into(), href.into())).into(), ..page }
+    }
+
+    /// The first result: who stays on the group.
+    fn rotations(&self) -> Section {
+        let mut blocks = vec![Block::text(self.result())];
+        blocks.extend(self.body.clone().map(Block::from));
+        if let Some(outcome) = self.outcomes.first() {
+            let lines = outcome.runs.iter().map(|run| {
+                let defect = run.energy.defect.iter().filter(|(_, defect)| *defect != 0.0);
+                Series { name: run.label.clone(), ..run.energy.method.line(defect.copied()) }
+            });
+            let axes = [Axis::linear("t"), Axis::log("‖gᵀg − 𝟙‖")];
+            let chart = Chart::new(
+                "defect",
+                "How far the computed attitude is from a rotation",
+                axes,
+                lines,
+            );
+            blocks.push(chart.into());
+        }
+        Section::new("In short", blocks)
+    }
+
+    /// The section of the cross-checks.
+    fn agreement(&self) -> Section {
         let hold = if self.broken() == 0 { "hold" } else { "do NOT all hold" };
         let quick = if self.quick { " (--quick: fewer rounds, less certain)" } else { "" };
         let [machine, (times, how)] = report::conditions(rounds(self.quick));
@@ -23,58 +66,12 @@ impl Speed {
             machine,
             (times, how + quick),
             (
-                "General against closed".into(),
-                format!(
-                    "{} checks {hold}, worst {:.1} eps·cond",
-                    self.findings.len(),
-                    self.worst()
-                ),
+                "General against closed formulas".into(),
+                format!("{} checks {hold}, worst {:.1} units", self.findings.len(), self.worst()),
             ),
             ("Took".into(), format!("{:.1} s", self.took.as_secs_f64())),
         ];
         facts.extend(self.outcomes.iter().filter_map(Outcome::cost_of_the_layers));
-        let mut sections = vec![Section::new(
-            "In short",
-            vec![
-                Block::text(
-                    "The free rigid body of the paper, integrated by Runge–Kutta–Munthe-Kaas of order 4 \
-                     with each coordinate map — through the closed formulas on so(3) and through the \
-                     general matrix layer for any n — and by classical Runge–Kutta, each compared with \
-                     the exact solution in Jacobi's elliptic functions.",
-                ),
-                Block::Facts(facts),
-            ],
-        )];
-        sections.extend(self.outcomes.iter().map(Outcome::section));
-        sections.push(self.agreement());
-        sections.push(Section::new(
-            "Go on",
-            vec![
-                Block::Link {
-                    text: "The maps one by one: accuracy and time over the angle and over n".into(),
-                    href: MAPS_PAGE.into(),
-                },
-                Block::text(
-                    "Every figure lies beside this page as an SVG file; speed.csv has every run.",
-                ),
-                Block::Code(
-                    "lieflow scenes asymmetric-top > my.toml   # a scene to start from\n\
-                     lieflow run my.toml --out results         # trajectory.csv and summary.json\n\
-                     lieflow compare my.toml --out results     # speed against error for it\n\
-                     lieflow methods                           # what there is to choose from"
-                        .into(),
-                ),
-            ],
-        ));
-        report::page(
-            "Lie group integrators: speed against error",
-            "The rigid body experiments of Celledoni & Owren, section 5.2",
-            sections,
-        )
-    }
-
-    /// The section of the cross-checks.
-    fn agreement(&self) -> Section {
         let rows = self.findings.iter().map(|f| {
             let cells = [
                 f.name.as_str().into(),
@@ -85,21 +82,34 @@ impl Speed {
             ];
             Row::new(cells).with_emphasis(!f.holds())
         });
-        let mut columns = Column::all(["Check"], ["Cases", "Worst [eps·cond]", "Bound"]);
+        let mut columns = Column::all(["Check"], ["Cases", "Worst [units]", "Bound"]);
         columns.push(Column::text(""));
-        Section::new(
-            "General against specialised",
-            vec![
-                Block::text(
-                    "Every map and inverse differential of the general layer at n = 3 against the closed \
-                     forms, at random u from 1e-320 to 3e14; whole steps; and the laws of each group \
-                     with each map. Differences are in units of ε·cond·size: 1 is what one rounding of \
-                     the input already changes.",
-                ),
-                Table::new("Largest differences found on this machine.", columns, rows).into(),
-            ],
-        )
+        let caption = "Each map and inverse differential of the general code at n = 3 against the closed formulas, \
+                       at random u from 1e-320 to 3e14; whole steps; and the laws of each group with each \
+                       map. One unit is the error that rounding the input alone causes.";
+        let table = Table::new(caption, columns, rows).into();
+        let name = format!("All {} checks", self.findings.len());
+        let title = "Two codes that agree, and how this was measured";
+        Section::new(title, vec![Block::Facts(facts), Block::fold(name, vec![table])])
     }
+}
+
+/// What to do next.
+fn go_on() -> Section {
+    let code = |text: &str| Block::Code(text.into());
+    Section::new(
+        "Go on",
+        vec![
+            Block::text("Simulate a body: print a scene, change its numbers, and run it."),
+            code("lieflow scenes wing-nut > my.toml\nlieflow run my.toml --out results"),
+            Block::text("State your own equation: its field is a list of formulas."),
+            code("lieflow scenes rotating-drive > mine.toml\nlieflow run mine.toml"),
+            Block::text(
+                "Find the method for your problem: the fastest for the error that you need.",
+            ),
+            code("lieflow compare my.toml --out comparison"),
+        ],
+    )
 }
 
 impl Outcome {
@@ -118,49 +128,22 @@ impl Outcome {
         ))
     }
 
-    fn section(&self) -> Section {
+    /// Speed against error, and the energy over a long time.
+    fn blocks(&self) -> Vec<Block> {
         let Experiment { scene, dt, window: [from, to], .. } = self.experiment;
         let speed = report::speed_chart(&format!("speed-{scene}"), "Speed against error", &self.curves)
             .with_caption(format!(
-                "Attitude and momentum integrated over t = {from} … {to}; the error is the larger relative \
-                 distance of the two from the exact solution. Solid: closed forms on so(3); dashed: \
-                 the general matrix layer.",
+                "Attitude and momentum from t = {from} to {to}. The error is the larger relative distance of the \
+                 two from the exact solution. Solid: closed formulas for rotations. Dashed: the general code for \
+                 matrices of any size.",
             ));
-        let lines = self.runs.iter().map(|run| {
-            let line = run.energy.line(1.0);
-            lieflow_figures::Series { name: run.label.clone(), ..line }
-        });
+        let lines =
+            self.runs.iter().map(|run| Series { name: run.label.clone(), ..run.energy.line(1.0) });
         let energy =
-            energy_chart(&format!("energy-{scene}"), "Energy error over time", "time t", lines)
-                .with_caption(format!("Closed layer, t = 0 … {}, dt = {dt}.", Experiment::END));
-        let mut blocks = vec![
-            speed.into(),
-            report::speed_table(&self.curves).into(),
-            energy.into(),
-            self.energy_table().into(),
-        ];
-        blocks.extend(self.sphere().map(Block::from));
-        Section::new(self.title.clone(), blocks)
-    }
-
-    /// The path of the momentum on its sphere, with the energy ellipsoid.
-    fn sphere(&self) -> Option<Sphere> {
-        let Experiment { scene, body, .. } = self.experiment;
-        let m = body.momentum_body();
-        let points = self.runs.first()?.energy.momentum.clone();
-        Some(Sphere {
-            id: format!("sphere-{scene}"),
-            title: "The momentum on its sphere".into(),
-            radius: m.norm(),
-            inertia: body.inertia,
-            energy: (0..3).map(|i| m[i].powi(2) / (2.0 * body.inertia[i])).sum(),
-            paths: vec![Path { name: "body momentum m(t)".into(), colour: 0, points }],
-            caption:
-                "The momentum stays on the sphere |m| = const and on the ellipsoid of constant \
-                      energy: it runs along their intersection."
-                    .into(),
-            view: (35.0, 25.0),
-        })
+            energy_chart(&format!("energy-{scene}"), "How far the energy has moved", "t", lines)
+                .with_caption(format!("Closed formulas, steps of {dt}."));
+        let tables = vec![report::speed_table(&self.curves).into(), self.energy_table().into()];
+        vec![speed.into(), energy.into(), Block::fold("The numbers", tables)]
     }
 
     fn energy_table(&self) -> Table {
@@ -170,7 +153,7 @@ impl Outcome {
         let rows = self.runs.iter().map(|run| {
             let end = run.energy.end;
             let error = end.zip(exact.as_ref().ok()).map(|(g, (_, exact))| (g - exact).norm());
-            let mut cells = vec![run.label.clone()];
+            let mut cells = vec![Cell::from(run.label.as_str())];
             let numbers = [
                 run.energy.last(),
                 run.energy.max(),
@@ -179,8 +162,9 @@ impl Outcome {
                 end.map_or(f64::NAN, |g| So3::new().defect(&g)),
                 run.layers_differ,
             ];
-            cells.extend(numbers.map(scientific));
-            cells.extend(printed(run.energy.method).into_iter().flatten().map(String::from));
+            let shown = |x: f64| or_dash(Some(x).filter(|x| !x.is_nan()), |x| sig(x, 3));
+            cells.extend(numbers.map(|x| Cell::number(x, shown)));
+            cells.extend(printed(run.energy.method).into_iter().flatten().map(Cell::from));
             cells
         });
         let mut columns = Column::all(
@@ -191,15 +175,15 @@ impl Outcome {
                 "mean |E − E(0)|",
                 "attitude error",
                 "‖gᵀg − 𝟙‖",
-                "layers differ",
+                "closed − general",
             ],
         );
         if printed(PaperMethod::Exp).is_some() {
             columns.extend(["paper: end", "paper: mean"].map(Column::number));
         }
         let caption = format!(
-            "At t = {} from t = 0, dt = {dt}. “Layers differ”: relative difference of the final momentum, \
-             momentum-only model, between closed forms and general layer.",
+            "At t = {} in steps of {dt}. The last column of ours: relative difference of the momentum between \
+             closed formulas and the general code.",
             Experiment::END
         );
         Table::new(caption, columns, rows)
