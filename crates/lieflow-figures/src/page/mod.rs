@@ -177,9 +177,9 @@ pub struct Cell {
 }
 
 impl Cell {
-    /// A number, shown in this format.
+    /// A number, shown in this format. One that is not finite has no place in an order.
     pub fn number<T: Into<String>>(value: f64, format: impl FnOnce(f64) -> T) -> Self {
-        Cell { text: format(value).into(), value: Some(value) }
+        Cell { text: format(value).into(), value: Some(value).filter(|x| x.is_finite()) }
     }
 }
 

@@ -273,6 +273,7 @@ mod tests {
         assert!(html.contains("<th scope=\"col\" data-sorts>name</th>"));
         assert!(html.contains("<th scope=\"col\" class=\"number\" data-sorts>time</th>"));
         assert_eq!(html.matches("data-sorts").count(), 2);
+        assert_eq!(Cell::number(f64::NAN, |_| "–").value, None);
         let one = Table::new("", Column::all(["name"], []), rows.into_iter().take(1));
         assert!(!html_table(&one).contains("data-sorts"));
     }

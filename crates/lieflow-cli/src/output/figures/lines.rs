@@ -4,6 +4,7 @@ use core::ops::Range;
 
 use lieflow_figures::number::short;
 use lieflow_figures::{Axis, Block, Chart, Marks, Point, Series};
+use lieflow_model::kinds::Scale;
 use lieflow_model::schema::{Observable, Row};
 
 use super::sample::RowSample;
@@ -22,6 +23,8 @@ const NEARLY: f64 = 1e-2;
 /// Swings that a chart of the whole run can show, and swings in the chart of the first of them.
 const CARPET: usize = 80;
 const FIRST: usize = 16;
+/// Ranges of a chart that a reader can tell apart.
+const BANDS: usize = 4;
 /// Parts of the run in a chart of ranges.
 const RANGES: usize = 160;
 
@@ -45,6 +48,9 @@ fn extent(quantity: &Observable, rows: &RowSample<'_>) -> [f64; 2] {
 /// The value of a quantity that stays as it is, to rounding.
 pub(super) fn constant(quantity: &Observable, rows: &RowSample<'_>) -> Option<String> {
     let [size, change] = extent(quantity, rows);
+    // A distance from the group is compared with the entries of a rotation.
+    let of_group = quantity.law.is_some_and(|law| law.scale == Scale::One);
+    let size = if of_group { size.max(1.0) } else { size };
     let [(_, start), _] = rows.ends()?;
     let value = || start[quantity].iter().map(|x| short(*x, 6)).collect::<Vec<_>>().join(", ");
     (change <= CONSTANT * size && size.is_finite()).then(value)
@@ -68,7 +74,12 @@ pub(super) fn against_time(
         let columns = &quantity.columns[part.clone()];
         let (title, axis) = match several {
             true => {
-                let name = words::path(quantity, columns, number);
+                let name = match columns {
+                    [first, .., last] if columns.len() > 4 => {
+                        format!("{} to {}", words::column(first), words::column(last))
+                    }
+                    _ => words::path(quantity, columns, number),
+                };
                 (format!("{title}: {name}"), name)
             }
             false => (title.to_string(), words::on_axis(quantity)),
@@ -112,21 +123,23 @@ pub(super) fn against_time(
 }
 
 /// The columns that belong together: all of a few, or those of one name. Each part has its number, and the
-/// shortest parts are the first.
+/// shortest names are the first.
 fn parts(columns: &[String]) -> Vec<(usize, Range<usize>)> {
     if columns.len() <= LINES {
         return vec![(1, 0..columns.len())];
     }
-    let mut parts = Vec::new();
+    let mut named = Vec::new();
     let mut start = 0;
-    for named in columns.chunk_by(|a, b| words::stem(a) == words::stem(b)) {
-        let end = start + named.len();
-        parts.extend((start..end).step_by(LINES).map(|from| from..end.min(from + LINES)));
-        start = end;
+    for columns in columns.chunk_by(|a, b| words::stem(a) == words::stem(b)) {
+        named.push((named.len() + 1, start..start + columns.len()));
+        start += columns.len();
     }
-    let mut parts: Vec<_> = (1..).zip(parts).collect();
-    parts.sort_by_key(|(_, part)| part.len());
-    parts
+    named.sort_by_key(|(_, part)| part.len());
+    let pieces = |(number, part): (usize, Range<usize>)| {
+        let starts = part.clone().step_by(LINES);
+        starts.map(move |from| (number, from..part.end.min(from + LINES)))
+    };
+    named.into_iter().flat_map(pieces).collect()
 }
 
 /// One chart, or two of a run with many swings: the first of them, and the ranges of all.
@@ -160,20 +173,20 @@ fn chart(
     }
     let beginning = format!("{title}, at the beginning");
     let first = Chart::new(id, beginning, axes(), first.into_iter().enumerate().map(series));
-    let ranges = whole
-        .into_iter()
-        .enumerate()
-        .map(|(i, line)| series((i, Line { points: range(&line.points), ..line })).with_fill());
-    let ranges = Chart::new(
-        format!("{id}-whole"),
-        format!("{title}, the whole run"),
-        axes(),
-        ranges,
-    )
-    .with_caption(
-        "Too many swings to draw: each band is filled from the lowest to the highest values.",
-    );
-    vec![marked(first, summary).into(), ranges.into()]
+    let first = first.with_caption("The first swings of many. The file of the rows has them all.");
+    let mut charts = vec![Block::from(marked(first, summary))];
+    if whole.len() <= BANDS {
+        let ranges = whole
+            .into_iter()
+            .enumerate()
+            .map(|(i, line)| series((i, Line { points: range(&line.points), ..line })).with_fill());
+        let title = format!("{title}, the whole run");
+        let ranges = Chart::new(format!("{id}-whole"), title, axes(), ranges).with_caption(
+            "Too many swings to draw: each band is filled from the lowest to the highest values.",
+        );
+        charts.push(ranges.into());
+    }
+    charts
 }
 
 /// Where a line turns back, by more than a tenth of its height.
@@ -250,6 +263,6 @@ mod tests {
         assert_eq!(parts(&names("a", 9)), [(1, 0..9)]);
         let columns = [names("g", 9), names("b", 3)].concat();
         assert_eq!(parts(&columns), [(2, 9..12), (1, 0..9)]);
-        assert_eq!(parts(&names("x", 20)), [(3, 18..20), (1, 0..9), (2, 9..18)]);
+        assert_eq!(parts(&names("x", 20)), [(1, 0..9), (1, 9..18), (1, 18..20)]);
     }
 }

@@ -1,6 +1,7 @@
 //! The motion of a body as a figure that a reader plays.
 
 use lieflow::so3::{quaternion_from_matrix, quaternion_to_wxyz};
+use lieflow_figures::number::short;
 use lieflow_figures::{Body, Pose};
 use lieflow_model::kinds::PrincipalInertia;
 use lieflow_model::schema::{Observable, Row};
@@ -23,7 +24,11 @@ pub(super) fn body(inertia: &PrincipalInertia, rows: &RowSample<'_>) -> Option<B
     let poses = whole.or_else(|| poses(rows.first().map_while(pose)))?;
     let (start, end) = (poses.first()?.t, poses.last()?.t);
     let whole = rows.ends().is_some_and(|[_, (t, _)]| t == end);
-    let part = if whole { String::new() } else { format!(" Shown is t = {start} to {end:.4}.") };
+    let part = if whole {
+        String::new()
+    } else {
+        format!(" Shown is t = {} to {}.", short(start, 4), short(end, 4))
+    };
     Some(Body {
         id: "body".into(),
         title: "The body as it turns in space".into(),

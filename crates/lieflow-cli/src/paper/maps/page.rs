@@ -1,8 +1,8 @@
 //! The page of the maps: how accurate each is and what it costs.
 
-use lieflow_figures::number::{or_dash, seconds, sig};
+use lieflow_figures::number::{DASH, seconds, short, sig};
 use lieflow_figures::{
-    Axis, Block, Chart, Column, Marker, Page, Point, Scale, Section, Series, Table,
+    Axis, Block, Cell, Chart, Column, Marker, Page, Point, Scale, Section, Series, Table,
 };
 
 use super::{Over, Study, StudyLine};
@@ -109,13 +109,15 @@ fn table(studies: &[&Study], caption: &str, place: &str) -> Table {
     let rows = lines.map(|(topic, line)| {
         let refused: usize = line.points.iter().map(|p| p.refused).sum();
         let cases: usize = line.points.iter().map(|p| p.cases).sum();
+        let (error, at) = line.worst().map_or((f64::NAN, f64::NAN), |p| (p.error, p.at));
+        let shown = |x: f64| if x.is_nan() { DASH.into() } else { short(x, 3) };
         [
-            topic.name().into(),
+            Cell::from(topic.name()),
             line.name.into(),
-            or_dash(line.worst(), |p| sig(p.error, 2)),
-            or_dash(line.worst(), |p| sig(p.at, 3)),
-            format!("{refused} of {cases}"),
-            seconds(line.seconds()),
+            Cell::number(error, shown),
+            Cell::number(at, shown),
+            Cell::number(refused as f64, |_| format!("{refused} of {cases}")),
+            Cell::number(line.seconds(), seconds),
         ]
     });
     let numbers = ["Largest error [eps·cond]", place, "Refused", "Median time"];
