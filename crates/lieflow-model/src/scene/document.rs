@@ -1,13 +1,14 @@
 //! A scene as text: its sections, and where each key and entry of it stands.
 
+use core::iter;
 use core::ops::Range;
 
 use serde::Deserialize;
 use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue, ValueDeserializer};
 
-use super::error::{ReadError, Refusal, SceneError};
-use super::suggest::help_for;
+use super::error::{Mistakes, ReadError, Refusal, SceneError};
+use super::suggest::{help_for, suggest};
 
 /// The keys at the top.
 pub(super) const TOP: &[&str] = &["title", "problem", "method", "time", "events", "output"];
@@ -30,14 +31,17 @@ impl<'a> Document<'a> {
         }
     }
 
-    /// Refuse keys at the top that no scene has.
-    pub(super) fn check_top(&self) -> Result<(), SceneError> {
-        match self.root.keys().find(|key| !TOP.contains(&key.get_ref().as_ref())) {
-            None => Ok(()),
-            Some(key) => Err(self
-                .error(format!("unknown key `{}`", key.get_ref()), Some(key.span()))
-                .with_help(Some(help_for(key.get_ref(), TOP)))),
+    /// Refuse keys at the top that no scene has. What is close to a key of a scene is read as that key.
+    pub(super) fn check_top(&mut self) -> Result<(), SceneError> {
+        let mut mistakes = Mistakes::default();
+        let unknown = |key: &&Spanned<_>| !TOP.contains(&AsRef::<str>::as_ref(key.get_ref()));
+        let unknown: Vec<_> = self.root.keys().filter(unknown).cloned().collect();
+        for key in unknown {
+            let error = self.error(format!("unknown key `{}`", key.get_ref()), Some(key.span()));
+            mistakes.keep::<()>(Err(error.with_help(Some(help_for(key.get_ref(), TOP)))));
+            rename(&mut self.root, key.get_ref(), TOP);
         }
+        mistakes.or(Some(()))
     }
 
     /// The value of a key at the top that may be missing, as T.
@@ -46,9 +50,7 @@ impl<'a> Document<'a> {
         key: &str,
     ) -> Result<Option<T>, SceneError> {
         let Some(value) = self.root.get(key) else { return Ok(None) };
-        T::deserialize(ValueDeserializer::from(value.clone()))
-            .map(Some)
-            .map_err(|error| self.read_error(key, error.into()))
+        self.read(key, value.clone(), |value| Ok(Some(T::deserialize(value)?)))
     }
 
     /// The value of a key of a section, where it is there and reads as T.
@@ -78,8 +80,66 @@ impl<'a> Document<'a> {
 
     /// The keys of a section, as T.
     pub(super) fn keys<T: for<'de> Deserialize<'de>>(&self, name: &str) -> Result<T, SceneError> {
-        T::deserialize(deserializer(self.section(name)?))
-            .map_err(|error| self.read_error(name, error.into()))
+        self.read(name, table(self.section(name)?), |value| Ok(T::deserialize(value)?))
+    }
+
+    /// Read a value at the top, and find all its mistakes. A mistake is mended in a copy, and the copy is read for
+    /// the next one: until none is left, or until it may come from the mending.
+    pub(super) fn read<T>(
+        &self,
+        name: &str,
+        mut value: Spanned<DeValue<'a>>,
+        read: impl Fn(ValueDeserializer<'_>) -> Result<T, ReadError>,
+    ) -> Result<T, SceneError> {
+        let mut mistakes = Mistakes::default();
+        let (mut left_out, mut replaced) = (Vec::<String>::new(), Vec::new());
+        loop {
+            let error = match read(value.clone().into()) {
+                Ok(read) => return mistakes.or(Some(read)),
+                Err(error) => error,
+            };
+            let place = self.place(name, &value, &error);
+            let mended = match &error {
+                ReadError::Toml(_) if !replaced.is_empty() => break,
+                ReadError::Refused(_) if !left_out.is_empty() => break,
+                ReadError::Toml(error) => {
+                    let wrong = Wrong::of(error.message());
+                    if let Wrong::MissingKey(key) = wrong
+                        && suggest(key, &left_out.iter().map(String::as_str).collect::<Vec<_>>())
+                            .is_some()
+                    {
+                        break;
+                    }
+                    place.is_some_and(|place| {
+                        at_entry(value.get_mut(), &place, &mut |table, key| match &wrong {
+                            Wrong::UnknownKey(_, names) if rename(table, &key, names) => {}
+                            _ => {
+                                table.remove(key.as_str());
+                                left_out.push(key);
+                            }
+                        })
+                    })
+                }
+                ReadError::Refused(_) => {
+                    let mended = place.is_some_and(|place| {
+                        let is_new = !replaced.contains(&place);
+                        is_new && write_over(value.get_mut(), &place) && {
+                            replaced.push(place);
+                            true
+                        }
+                    });
+                    if !mended && !replaced.is_empty() {
+                        break;
+                    }
+                    mended
+                }
+            };
+            mistakes.keep::<()>(Err(self.read_error(name, &value, error)));
+            if !mended {
+                break;
+            }
+        }
+        mistakes.or(None)
     }
 
     /// The keys of a section, as T; the default where there is no such section.
@@ -94,36 +154,75 @@ impl<'a> Document<'a> {
         SceneError::new(self.source, message).at(self.text, span)
     }
 
-    /// Find the place that an error in a section is about.
-    pub(super) fn read_error(&self, section: &str, error: ReadError) -> SceneError {
+    /// What was checked of a section; a refusal with its place.
+    pub(super) fn check<T>(
+        &self,
+        section: &str,
+        checked: Result<T, Refusal>,
+    ) -> Result<T, SceneError> {
+        checked.map_err(|refusal| self.refusal(section, refusal))
+    }
+
+    /// The place that an error in a value at the top is about.
+    fn place(
+        &self,
+        section: &str,
+        value: &Spanned<DeValue<'a>>,
+        error: &ReadError,
+    ) -> Option<Range<usize>> {
         match error {
-            ReadError::Toml(error) => {
-                let (message, help) = in_words(error.message(), section);
-                self.error(message, error.span()).with_help(help)
-            }
-            ReadError::Refused(refusal) => self.refusal(section, refusal),
+            ReadError::Toml(error) => error.span(),
+            ReadError::Refused(refusal) => self.place_of(section, Some(value), refusal),
         }
     }
 
-    /// Find the place that a refusal is about: its key, wherever it stands, or else the section.
-    pub(super) fn refusal(&self, section: &str, refusal: Refusal) -> SceneError {
-        let Refusal { key, message, help } = refusal;
-        let place = key.and_then(|key| self.locate(section, &key));
-        let place = place.or_else(|| self.root.get(section).map(Spanned::span));
+    /// An error in a value at the top, with its place.
+    fn read_error(
+        &self,
+        section: &str,
+        value: &Spanned<DeValue<'a>>,
+        error: ReadError,
+    ) -> SceneError {
+        let place = self.place(section, value, &error);
+        let (message, help) = match error {
+            ReadError::Toml(error) => Wrong::of(error.message()).in_words(section),
+            ReadError::Refused(Refusal { message, help, .. }) => (message, help),
+        };
         self.error(message, place).with_help(help)
     }
 
-    /// Where `key`, `key[i]`, `key[i,j]` or `key[i].name[j]` stands, first in this section, then in the
-    /// others, then at the top.
-    fn locate(&self, section: &str, key: &str) -> Option<Range<usize>> {
+    /// A refusal with its place.
+    pub(super) fn refusal(&self, section: &str, refusal: Refusal) -> SceneError {
+        let place = self.place_of(section, None, &refusal);
+        self.error(refusal.message, place).with_help(refusal.help)
+    }
+
+    /// The place that a refusal is about: its key, wherever it stands, or else the section.
+    fn place_of(
+        &self,
+        section: &str,
+        value: Option<&Spanned<DeValue<'a>>>,
+        refusal: &Refusal,
+    ) -> Option<Range<usize>> {
+        let place = refusal.key.as_ref().and_then(|key| self.locate(section, value, key));
+        place.or_else(|| self.root.get(section).map(Spanned::span))
+    }
+
+    /// Where `key`, `key[i]`, `key[i,j]` or `key[i].name[j]` stands, first in this value, then in this section, then
+    /// in the others, then at the top.
+    fn locate(
+        &self,
+        section: &str,
+        value: Option<&Spanned<DeValue<'a>>>,
+        key: &str,
+    ) -> Option<Range<usize>> {
         let mut path =
             key.split(['[', ']', ',', '.']).map(str::trim).filter(|step| !step.is_empty());
         let name = path.next()?;
-        let within = [section].iter().chain(TOP).find_map(|section| {
-            match self.root.get(*section)?.get_ref() {
-                DeValue::Table(table) => table.get(name),
-                _ => None,
-            }
+        let others = iter::once(&section).chain(TOP).filter_map(|section| self.root.get(*section));
+        let within = value.into_iter().chain(others).find_map(|value| match value.get_ref() {
+            DeValue::Table(table) => table.get(name),
+            _ => None,
         });
         let mut place = within.or_else(|| self.root.get(name))?;
         for step in path {
@@ -161,32 +260,105 @@ pub(super) fn read_beside(
     Ok(())
 }
 
-/// Ready to be read into keys.
-pub(super) fn deserializer(section: Spanned<DeTable<'_>>) -> ValueDeserializer<'_> {
-    let span = section.span();
-    Spanned::new(span, DeValue::Table(section.into_inner())).into()
+/// A section as a value.
+pub(super) fn table(section: Spanned<DeTable<'_>>) -> Spanned<DeValue<'_>> {
+    Spanned::new(section.span(), DeValue::Table(section.into_inner()))
 }
 
-/// A message of the deserializer in the words of this program, with what may have been meant.
-fn in_words(message: &str, section: &str) -> (String, Option<String>) {
-    let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
-    if let ["unknown", "field", ..] = message.split(' ').collect::<Vec<_>>()[..]
-        && let [given, names @ ..] = &quoted[..]
-    {
-        return (format!("unknown key `{given}` in [{section}]"), Some(help_for(given, names)));
+/// Act on the innermost entry of a table that a place lies in; false where there is none.
+fn at_entry<'a>(
+    value: &mut DeValue<'a>,
+    place: &Range<usize>,
+    act: &mut dyn FnMut(&mut DeTable<'a>, String),
+) -> bool {
+    let found = match value {
+        DeValue::Table(table) => {
+            table.iter_mut().any(|(_, value)| at_entry(value.get_mut(), place, act))
+        }
+        DeValue::Array(list) => list.iter_mut().any(|entry| at_entry(entry.get_mut(), place, act)),
+        _ => false,
+    };
+    let DeValue::Table(table) = value else { return found };
+    let holds = |span: Range<usize>| span.start <= place.start && place.end <= span.end;
+    let mut entries = table.iter();
+    let entry = entries.find(|(key, value)| holds(key.span()) || holds(value.span()));
+    match entry.map(|(key, _)| key.get_ref().to_string()) {
+        Some(key) if !found => {
+            act(table, key);
+            true
+        }
+        _ => found,
     }
-    if message.starts_with("missing field")
-        && let [name] = quoted[..]
-    {
-        return (format!("missing key `{name}` in [{section}]"), None);
+}
+
+/// Give an entry the name that was meant, where that is clear and free.
+fn rename(table: &mut DeTable<'_>, given: &str, names: &[&str]) -> bool {
+    let Some(meant) = suggest(given, names).filter(|meant| !table.contains_key(*meant)) else {
+        return false;
+    };
+    table.remove_entry(given).is_some_and(|(key, value)| {
+        table.insert(Spanned::new(key.span(), meant.to_owned().into()), value);
+        true
+    })
+}
+
+/// Write a formula over the text at a place; false where there is no text.
+fn write_over(value: &mut DeValue<'_>, place: &Range<usize>) -> bool {
+    let within = |value: &mut Spanned<DeValue<'_>>| match value.get_ref() {
+        DeValue::String(_) if value.span() == *place => {
+            *value.get_mut() = DeValue::String("0".into());
+            true
+        }
+        _ => write_over(value.get_mut(), place),
+    };
+    match value {
+        DeValue::Table(table) => table.iter_mut().any(|(_, value)| within(value)),
+        DeValue::Array(list) => list.iter_mut().any(within),
+        _ => false,
     }
-    if message.ends_with("number overflowed") {
-        return ("the number is out of range".into(), None);
+}
+
+/// What the deserializer found wrong.
+enum Wrong<'m> {
+    /// A key, and those that there are.
+    UnknownKey(&'m str, Vec<&'m str>),
+    MissingKey(&'m str),
+    Value(&'m str),
+}
+
+impl<'m> Wrong<'m> {
+    /// From its message: it says it in no other way.
+    fn of(message: &'m str) -> Self {
+        let mut quoted = message.split('`').skip(1).step_by(2);
+        match quoted.next() {
+            Some(given) if message.starts_with("unknown field") => {
+                Wrong::UnknownKey(given, quoted.collect())
+            }
+            Some(name) if message.starts_with("missing field") => Wrong::MissingKey(name),
+            _ => Wrong::Value(message),
+        }
     }
-    let plain = ["invalid type: ", "invalid value: "]
-        .iter()
-        .find_map(|jargon| message.strip_prefix(jargon))
-        .map_or_else(|| message.to_owned(), |rest| format!("found {rest}"));
-    let words = [("floating point", "number"), ("sequence", "list"), ("map,", "table,")];
-    (words.iter().fold(plain, |text, (from, to)| text.replace(from, to)), None)
+
+    /// In the words of this program, with what may have been meant.
+    fn in_words(&self, section: &str) -> (String, Option<String>) {
+        let message = match self {
+            Wrong::UnknownKey(given, names) => {
+                let message = format!("unknown key `{given}` in [{section}]");
+                return (message, Some(help_for(given, names)));
+            }
+            Wrong::MissingKey(name) => {
+                return (format!("missing key `{name}` in [{section}]"), None);
+            }
+            Wrong::Value(message) => message,
+        };
+        if message.ends_with("number overflowed") {
+            return ("the number is out of range".into(), None);
+        }
+        let plain = ["invalid type: ", "invalid value: "]
+            .iter()
+            .find_map(|jargon| message.strip_prefix(jargon))
+            .map_or_else(|| message.to_string(), |rest| format!("found {rest}"));
+        let words = [("floating point", "number"), ("sequence", "list"), ("map,", "table,")];
+        (words.iter().fold(plain, |text, (from, to)| text.replace(from, to)), None)
+    }
 }

@@ -1,4 +1,4 @@
-//! What is wrong with a scene, and where: one message with the line that it is about.
+//! What is wrong with a scene, and where: for each mistake a message with the line that it is about.
 
 use core::fmt;
 use core::ops::Range;
@@ -7,17 +7,24 @@ use lieflow::Error;
 
 use super::suggest::help_for;
 
-/// Why a scene cannot be used: the file, the line with a caret, and what was expected.
+/// Why a scene cannot be used: its mistakes, in the order of the file.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct SceneError(Box<Report>);
+pub struct SceneError {
+    /// At least one.
+    mistakes: Vec<Mistake>,
+}
 
+/// A mistake: the file, the line with a caret, and what was expected.
 #[derive(Clone, Debug, PartialEq, Eq)]
-struct Report {
+struct Mistake {
     source: String,
     place: Option<Place>,
     message: String,
     help: Option<String>,
 }
+
+/// More mistakes than this are counted and not shown.
+const MISTAKES: usize = 10;
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Place {
@@ -70,33 +77,49 @@ impl Place {
 
 impl SceneError {
     pub(super) fn new(source: &str, message: String) -> Self {
-        SceneError(Box::new(Report { source: source.into(), place: None, message, help: None }))
+        let mistake = Mistake { source: source.into(), place: None, message, help: None };
+        SceneError { mistakes: vec![mistake] }
     }
 
     pub(super) fn at(mut self, text: &str, span: Option<Range<usize>>) -> Self {
-        self.0.place = span.map(|span| Place::of(text, &span));
+        self.mistakes[0].place = span.map(|span| Place::of(text, &span));
         self
     }
 
     pub(super) fn with_help(mut self, help: Option<String>) -> Self {
-        self.0.help = help;
+        self.mistakes[0].help = help;
         self
     }
 
-    /// The line, from 1, where it is about one.
+    /// The line of the first mistake, from 1, where it is about one.
     pub fn line(&self) -> Option<usize> {
-        self.0.place.as_ref().map(|place| place.line)
+        self.mistakes[0].place.as_ref().map(|place| place.line)
     }
 
-    /// What is wrong, without the place.
+    /// What the first mistake is, without its place.
     pub fn message(&self) -> &str {
-        &self.0.message
+        &self.mistakes[0].message
     }
 }
 
 impl fmt::Display for SceneError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Report { source, place, message, help } = &*self.0;
+        let [first, others @ ..] = &self.mistakes[..] else { return Ok(()) };
+        if others.is_empty() {
+            return first.fmt(f);
+        }
+        write!(f, "{}: {} mistakes", first.source, self.mistakes.len())?;
+        self.mistakes.iter().take(MISTAKES).try_for_each(|mistake| write!(f, "\n\n{mistake}"))?;
+        match self.mistakes.len().saturating_sub(MISTAKES) {
+            0 => Ok(()),
+            more => write!(f, "\n\nand {more} more"),
+        }
+    }
+}
+
+impl fmt::Display for Mistake {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Mistake { source, place, message, help } = self;
         let Some(Place { line, column, shown, caret }) = place else {
             write!(f, "{source}: {message}")?;
             return help.iter().try_for_each(|help| write!(f, "\n  = {help}"));
@@ -109,6 +132,37 @@ impl fmt::Display for SceneError {
         write!(f, "{source}:{line}:{column}: {message}\n{margin} |\n{number} | {shown}")?;
         write!(f, "\n{margin} | {indent}{marks}")?;
         help.iter().try_for_each(|help| write!(f, "\n{margin} = {help}"))
+    }
+}
+
+/// The mistakes that have been found so far.
+#[derive(Debug, Default)]
+pub(super) struct Mistakes(Vec<Mistake>);
+
+impl Mistakes {
+    /// The value; where there is none, its mistakes are kept.
+    pub(super) fn keep<T>(&mut self, read: Result<T, SceneError>) -> Option<T> {
+        read.map_err(|error| self.0.extend(error.mistakes)).ok()
+    }
+
+    /// Is nothing wrong so far?
+    pub(super) fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// The value where nothing is wrong; else all mistakes in the order of the file, and those without a place last.
+    pub(super) fn or<T>(mut self, value: Option<T>) -> Result<T, SceneError> {
+        match value {
+            Some(value) if self.is_empty() => Ok(value),
+            _ => {
+                let place = |mistake: &Mistake| {
+                    let place = mistake.place.as_ref();
+                    place.map_or((usize::MAX, 0), |place| (place.line, place.column))
+                };
+                self.0.sort_by_key(place);
+                Err(SceneError { mistakes: self.0 })
+            }
+        }
     }
 }
 

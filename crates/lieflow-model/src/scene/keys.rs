@@ -3,13 +3,13 @@
 use lieflow::StepControl;
 use lieflow::catalog::MethodSpec;
 use lieflow::tolerance::Rule;
-use lieflow::{SaveAt, TimeGrid};
+use lieflow::{Error, SaveAt, TimeGrid};
 use serde::Deserialize;
 
 use super::defaults;
 use super::error::{Either, Refusal, exactly_one};
 use super::values::{Real, Span, Whole};
-use crate::kinds::{Kind, ProblemSpec};
+use crate::kinds::{Kind, ProblemSpec, high_order};
 use crate::model::Layer;
 
 /// `[method]`.
@@ -31,12 +31,15 @@ impl MethodKeys {
 
     /// The method with what it takes by default spelt out, and the layer: the first of those of the
     /// problem where none is named.
-    pub(super) fn resolve(self, problem: &dyn ProblemSpec) -> Result<(MethodSpec, Layer), Refusal> {
+    pub(super) fn resolve(
+        self,
+        problem: Option<&dyn ProblemSpec>,
+    ) -> Result<(MethodSpec, Layer), Refusal> {
         let layer = match self.layer {
             Some(name) => Layer::named(&name)?,
-            None => problem.layers().first().copied().unwrap_or_default(),
+            None => problem.and_then(|p| p.layers().first()).copied().unwrap_or_default(),
         };
-        let default = || problem.default_method();
+        let default = || problem.map_or_else(high_order, ProblemSpec::default_method);
         let base = self.name.map_or_else(default, |name| MethodSpec::new(&name, None));
         let mut method = MethodSpec {
             name: base.name,
@@ -56,7 +59,7 @@ impl MethodKeys {
 }
 
 /// `[time]`.
-#[derive(Deserialize)]
+#[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct TimeKeys {
     t_span: Span,
@@ -74,6 +77,10 @@ pub(super) struct TimeKeys {
 
 /// The steps that `compare` starts from where a scene leaves them to the error.
 const STEPS: u64 = 1000;
+
+/// The rules of tolerances.
+const PER_STEP: &str = "per-step";
+const PER_LENGTH: &str = "per-length";
 
 impl TimeKeys {
     /// Are the steps left to the program?
@@ -99,7 +106,7 @@ impl TimeKeys {
 
     /// The steps of one size, those that are chosen by their error where tolerances are given, and the limit of
     /// their number.
-    pub(super) fn resolve(self) -> Result<(TimeGrid, Option<StepControl>, Option<u64>), Refusal> {
+    pub(super) fn resolve(&self) -> Result<(TimeGrid, Option<StepControl>, Option<u64>), Refusal> {
         let max_steps = self.max_steps.map(|n| n.0);
         let [t0, t1] = self.t_span.0;
         if t0 == t1 {
@@ -141,42 +148,50 @@ impl TimeKeys {
             return match limits.into_iter().find(|(_, given)| *given) {
                 None => Ok(None),
                 Some((key, _)) => {
-                    let message =
-                        format!("`{key}` is for steps chosen by error: add `rtol` or `atol`");
+                    let fixed = if self.dt.is_some() { "dt" } else { "steps" };
+                    let message = format!(
+                        "`{key}` is for steps chosen by error: give `rtol` or `atol` instead of `{fixed}`"
+                    );
                     Err(Refusal::at(key, message))
                 }
             };
         }
-        let left = if self.is_left() { defaults::TOLERANCE } else { 0.0 };
-        let tolerance = |x: Option<Real>| x.map_or(left, |x| x.0);
-        let rule = match self.tolerance.as_deref() {
-            None | Some("per-step") => Rule::PerStep,
-            Some("per-length") => Rule::PerLength,
-            Some(other) => {
-                let message =
-                    format!("unknown rule `{other}`, expected \"per-step\" or \"per-length\"");
-                return Err(Refusal::at("tolerance", message));
-            }
-        };
-        let control = || {
-            let mut control =
-                StepControl::new(tolerance(self.rtol), tolerance(self.atol))?.rule(rule);
-            if let Some(h) = self.h_init {
-                control = control.first_step(h.0)?;
-            }
-            if let Some(h) = self.h_max {
-                control = control.max_step(h.0)?;
-            }
-            if let Some(h) = self.h_min {
-                control = control.min_step(h.0)?;
-            }
-            if let Some(n) = self.max_steps {
-                control = control.max_steps(n.0)?;
-            }
-            Ok(control)
-        };
+        if let Some(other) = self.tolerance.as_deref()
+            && ![PER_STEP, PER_LENGTH].contains(&other)
+        {
+            let message =
+                format!("unknown rule `{other}`, expected \"{PER_STEP}\" or \"{PER_LENGTH}\"");
+            return Err(Refusal::at("tolerance", message));
+        }
         let names = [("first_step", "h_init"), ("min_step", "h_min"), ("max_step", "h_max")];
-        control().map(Some).map_err(|error: lieflow::Error| Refusal::from(error).renamed(&names))
+        self.control(1.0).map(Some).map_err(|error| Refusal::from(error).renamed(&names))
+    }
+
+    /// rtol and atol.
+    pub(super) fn tolerances(&self) -> [f64; 2] {
+        let left = if self.is_left() { defaults::TOLERANCE } else { 0.0 };
+        [&self.rtol, &self.atol].map(|x| x.as_ref().map_or(left, |x| x.0))
+    }
+
+    /// Limits of steps, and the tolerances times a factor.
+    pub(super) fn control(&self, factor: f64) -> Result<StepControl, Error> {
+        let [rtol, atol] = self.tolerances().map(|tolerance| factor * tolerance);
+        let per_length = self.tolerance.as_deref() == Some(PER_LENGTH);
+        let rule = if per_length { Rule::PerLength } else { Rule::PerStep };
+        let mut control = StepControl::new(rtol, atol)?.rule(rule);
+        if let Some(h) = self.h_init {
+            control = control.first_step(h.0)?;
+        }
+        if let Some(h) = self.h_max {
+            control = control.max_step(h.0)?;
+        }
+        if let Some(h) = self.h_min {
+            control = control.min_step(h.0)?;
+        }
+        if let Some(n) = self.max_steps {
+            control = control.max_steps(n.0)?;
+        }
+        Ok(control)
     }
 }
 
@@ -184,7 +199,7 @@ impl TimeKeys {
 #[derive(Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct OutputKeys {
-    quantities: Option<Vec<String>>,
+    pub(super) quantities: Option<Vec<String>>,
     every: Option<Whole<1>>,
     times: Option<Vec<Real>>,
     count: Option<Whole<1>>,
@@ -202,11 +217,6 @@ pub(super) struct Output {
 }
 
 impl OutputKeys {
-    /// Are the quantities left to the program?
-    pub(super) fn leaves_quantities(&self) -> bool {
-        self.quantities.is_none()
-    }
-
     /// Are the times of the rows left to the program?
     pub(super) fn leaves_rows(&self) -> bool {
         !self.has_times() && self.every.is_none()
@@ -217,19 +227,46 @@ impl OutputKeys {
         self.times.is_some() || self.count.is_some() || self.interval.is_some()
     }
 
-    /// What is asked for; `steps_left` says that the program chooses the steps.
+    /// What is wrong with the quantities.
+    pub(super) fn wrong_quantities(
+        &self,
+        kind: &Kind,
+        problem: Option<&dyn ProblemSpec>,
+    ) -> Vec<Refusal> {
+        let Some(asked) = &self.quantities else { return Vec::new() };
+        if asked.is_empty() {
+            let names: Vec<_> = (kind.quantities)().iter().map(|quantity| quantity.name).collect();
+            let mut refusal = Refusal::at("quantities", "no quantities, expected at least one");
+            refusal.help = Some(format!("choose from {}", names.join(", ")));
+            return vec![refusal];
+        }
+        let wrong = |(i, name): (usize, &String)| {
+            let key = Some(format!("quantities[{i}]"));
+            if let Err(error) = kind.quantity(name) {
+                return Some(Refusal { key, ..error.into() });
+            }
+            let message = match problem.map(|problem| problem.columns(name)) {
+                _ if asked[..i].contains(name) => {
+                    format!("quantity `{name}` is asked for twice")
+                }
+                Some(Err(Error::Unsupported { why, .. })) => {
+                    format!("this problem has no `{name}`: {why}")
+                }
+                _ => return None,
+            };
+            Some(Refusal { key, ..Refusal::section(message) })
+        };
+        asked.iter().enumerate().filter_map(wrong).collect()
+    }
+
+    /// What is asked for, with these quantities; `steps_left` says that the program chooses the steps.
     pub(super) fn resolve(
         self,
-        problem: &dyn ProblemSpec,
+        quantities: Vec<String>,
         grid: &TimeGrid,
         steps_left: bool,
     ) -> Result<Output, Refusal> {
         let save = self.save(grid.t_span(), steps_left)?;
-        let quantities = match self.quantities {
-            Some(quantities) => quantities,
-            None => defaults::quantities(problem),
-        };
-        check_quantities(&quantities, problem.kind())?;
         let times_by_steps = match self.times_by.as_deref() {
             None | Some("dense") => false,
             Some("steps") => true,
@@ -289,23 +326,4 @@ fn with_ends(save: SaveAt, [t0, t1]: [f64; 2]) -> SaveAt {
         times.push(t1);
     }
     SaveAt::Times(times)
-}
-
-fn check_quantities(quantities: &[String], kind: &Kind) -> Result<(), Refusal> {
-    if quantities.is_empty() {
-        let names: Vec<_> = (kind.quantities)().iter().map(|quantity| quantity.name).collect();
-        let mut refusal = Refusal::at("quantities", "no quantities, expected at least one");
-        refusal.help = Some(format!("choose from {}", names.join(", ")));
-        return Err(refusal);
-    }
-    for (i, name) in quantities.iter().enumerate() {
-        let key = format!("quantities[{i}]");
-        if let Err(error) = kind.quantity(name) {
-            return Err(Refusal { key: Some(key), ..error.into() });
-        }
-        if quantities[..i].contains(name) {
-            return Err(Refusal::at(key, format!("quantity `{name}` is asked for twice")));
-        }
-    }
-    Ok(())
 }

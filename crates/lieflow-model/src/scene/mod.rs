@@ -27,8 +27,10 @@ use lieflow::StepControl;
 use lieflow::catalog::{MethodSpec, all_methods};
 use lieflow::samples::{Outside, Samples};
 use lieflow::{Error, SaveAt, TimeGrid};
+use toml::de::DeValue;
 
-use self::document::{Document, deserializer, read_beside};
+use self::document::{Document, read_beside, table};
+use self::error::Mistakes;
 use self::keys::{MethodKeys, Output, OutputKeys, TimeKeys};
 use crate::kinds::{Kind, ProblemSpec, SAMPLES};
 use crate::model::{Layer, Model, Plan, Steps};
@@ -41,6 +43,8 @@ pub struct Scene {
     pub title: String,
     /// Its name: that of the file, without `.toml`.
     pub name: String,
+    /// What messages call it.
+    source: String,
     /// The problem.
     pub problem: Box<dyn ProblemSpec>,
     /// The method, with the parts that it takes by default spelt out.
@@ -49,6 +53,8 @@ pub struct Scene {
     pub layer: Layer,
     /// The steps of one size; where `adaptive` chooses, those that `compare` starts from.
     pub grid: TimeGrid,
+    /// The keys of its times.
+    time: TimeKeys,
     /// Tolerances and limits of steps that are chosen by their error, where the scene has them.
     pub adaptive: Option<StepControl>,
     /// The limit of the attempts, where the scene has one.
@@ -82,74 +88,98 @@ impl Scene {
     /// names stand beside it.
     ///
     /// # Errors
-    /// [`SceneError`] at the first thing that is wrong. A scene that is returned can be run.
+    /// [`SceneError`] with all mistakes that can be told. A scene that is returned can be run.
     pub fn parse(source: &str, text: &str) -> Result<Scene, SceneError> {
         Self::read(source, text, Path::new(source).parent())
     }
 
     /// Read a scene whose files stand in `folder`, or else come with the program.
     fn read(source: &str, text: &str, folder: Option<&Path>) -> Result<Scene, SceneError> {
-        let document = Document::parse(source, text)?;
-        document.check_top()?;
-        let problem = read_problem(&document, folder)?;
-        let method = document.keys_if_any::<MethodKeys>("method")?;
-        let method_left = method.is_left();
-        let (method, layer) =
-            method.resolve(&*problem).map_err(|refusal| document.refusal("method", refusal))?;
-        let time = document.keys::<TimeKeys>("time")?;
-        let steps_left = time.is_left();
-        let at_knots = time
-            .at_knots(problem.knots([0.0, 0.0]).is_some())
-            .map_err(|refusal| document.refusal("time", refusal))?;
-        let (grid, adaptive, max_steps) =
-            time.resolve().map_err(|refusal| document.refusal("time", refusal))?;
-        if let Some(samples) = problem.samples() {
-            let [t0, t1] = grid.t_span();
-            samples.covers([t0, t1]).map_err(|Outside { span: [first, last], .. }| {
-                let spans = format!("[{t0}, {t1}], and the samples span {first} to {last}");
-                document.refusal("time", Refusal::at("t_span", format!("t_span = {spans}")))
-            })?;
+        let mut document = Document::parse(source, text)?;
+        let mut mistakes = Mistakes::default();
+        mistakes.keep(document.check_top());
+        let document = document;
+        let title = mistakes.keep(document.optional::<String>("title"));
+
+        let kind = mistakes.keep(read_kind(&document));
+        let problem = kind.and_then(|kind| mistakes.keep(read_problem(&document, kind, folder)));
+        let spec = problem.as_deref();
+
+        let method = mistakes.keep(document.keys_if_any::<MethodKeys>("method"));
+        let method_left = method.as_ref().is_some_and(MethodKeys::is_left);
+        let method =
+            method.and_then(|method| mistakes.keep(document.check("method", method.resolve(spec))));
+
+        let time = mistakes.keep(document.keys::<TimeKeys>("time"));
+        let steps_left = time.as_ref().is_some_and(TimeKeys::is_left);
+        let at_knots = time.as_ref().zip(spec).and_then(|(time, problem)| {
+            let at_knots = time.at_knots(problem.knots([0.0, 0.0]).is_some());
+            mistakes.keep(document.check("time", at_knots))
+        });
+        let steps = time.as_ref();
+        let steps = steps.and_then(|time| mistakes.keep(document.check("time", time.resolve())));
+        let grid = steps.as_ref().map(|(grid, ..)| *grid);
+        if let (Some(grid), Some(problem)) = (grid, spec) {
+            // Beyond its samples a formula has no value.
+            let covered = mistakes.keep(document.check("time", covered(problem, grid.t_span())));
+            let started = covered.map(|()| problem.check_start(grid.t_span()[0]));
+            mistakes.keep(document.check("problem", started.unwrap_or(Ok(()))));
         }
-        problem
-            .check_start(grid.t_span()[0])
-            .map_err(|refusal| document.refusal("problem", refusal))?;
-        let output = document.keys_if_any::<OutputKeys>("output")?;
+
+        let output = mistakes.keep(document.keys_if_any::<OutputKeys>("output"));
+        let asked = output.as_ref().and_then(|output| output.quantities.clone());
+        let quantities_left = asked.is_none();
+        let asked = asked.or_else(|| spec.map(defaults::quantities)).unwrap_or_default();
         let by_default = Defaults {
             method: method_left,
             steps: steps_left,
-            quantities: output.leaves_quantities(),
-            rows: output.leaves_rows(),
+            quantities: quantities_left,
+            rows: output.as_ref().is_some_and(OutputKeys::leaves_rows),
         };
-        let Output { quantities, save, times_by_steps, error_check } = output
-            .resolve(&*problem, &grid, steps_left)
-            .map_err(|refusal| document.refusal("output", refusal))?;
-        for (i, name) in quantities.iter().enumerate() {
-            if let Err(Error::Unsupported { why, .. }) = problem.columns(name) {
-                let message = format!("this problem has no `{name}`: {why}");
-                let refusal = Refusal::at(format!("quantities[{i}]"), message);
-                return Err(document.refusal("output", refusal));
+        if let (Some(output), Some(kind)) = (&output, kind) {
+            for refusal in output.wrong_quantities(kind, spec) {
+                mistakes.keep::<()>(Err(document.refusal("output", refusal)));
             }
         }
-        let parameters = document.within("problem", "parameters").unwrap_or_default();
-        let events = document.optional("events")?.unwrap_or_default();
-        let events = events::resolve(events, &*problem, &quantities, &parameters)
-            .map_err(|refusal| document.refusal("events", refusal))?;
-        if !grid.t_span()[1].is_finite() && events.iter().all(|event| event.stop_after.is_none()) {
+        let output = output.zip(grid).and_then(|(output, grid)| {
+            mistakes
+                .keep(document.check("output", output.resolve(asked.clone(), &grid, steps_left)))
+        });
+
+        let events = mistakes.keep(document.optional("events"));
+        let events = events.zip(spec).and_then(|(events, problem)| {
+            let parameters = document.within("problem", "parameters").unwrap_or_default();
+            let events = events.unwrap_or_default();
+            let events = events::resolve(events, problem, &asked, &parameters);
+            mistakes.keep(document.check("events", events))
+        });
+        if let (Some(grid), Some(events)) = (grid, &events)
+            && !grid.t_span()[1].is_finite()
+            && events.iter().all(|event| event.stop_after.is_none())
+        {
             let message =
                 "t_span has no end, expected an event with `stop_after` that ends the run";
-            return Err(document.refusal("time", Refusal::at("t_span[1]", message)));
+            let refusal = Refusal::at("t_span[1]", message);
+            mistakes.keep::<()>(Err(document.refusal("time", refusal)));
         }
+
+        let all = || Some((title?, problem?, method?, at_knots?, time?, steps?, output?, events?));
+        let (title, problem, (method, layer), at_knots, time, steps, output, events) =
+            mistakes.or(all())?;
+        let (grid, adaptive, max_steps) = steps;
+        let Output { quantities, save, times_by_steps, error_check } = output;
         let stem = Path::new(source).file_stem().unwrap_or_default().to_string_lossy();
         let name = if stem.is_empty() { "scene".into() } else { stem.into_owned() };
-        let title = document.optional("title")?.unwrap_or_else(|| name.clone());
         let fingerprint = fingerprint(text, problem.samples());
         let scene = Scene {
-            title,
+            title: title.unwrap_or_else(|| name.clone()),
             name,
+            source: source.into(),
             problem,
             method,
             layer,
             grid,
+            time,
             adaptive,
             max_steps,
             at_knots,
@@ -182,6 +212,31 @@ impl Scene {
             Some(control) => {
                 Steps::ByError { t_span: self.grid.t_span(), control: control.clone() }
             }
+        }
+    }
+
+    /// rtol and atol, where steps are chosen by their error.
+    pub fn tolerances(&self) -> Option<[f64; 2]> {
+        self.adaptive.as_ref().map(|_| self.time.tolerances())
+    }
+
+    /// The same steps with tolerances times a factor, or a step size times it.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for a factor that makes a step or a tolerance too small.
+    pub fn steps_times(&self, factor: f64) -> Result<Steps, Error> {
+        let t_span = self.grid.t_span();
+        Ok(match self.adaptive {
+            None => Steps::Equal(TimeGrid::new(t_span, factor * self.grid.h().abs())?),
+            Some(_) => Steps::ByError { t_span, control: self.time.control(factor)? },
+        })
+    }
+
+    /// A refusal of a value of the scene, with its place.
+    pub fn refuse(&self, section: &str, refusal: Refusal) -> SceneError {
+        match Document::parse(&self.source, &self.text) {
+            Ok(document) => document.refusal(section, refusal),
+            Err(error) => error,
         }
     }
 
@@ -386,27 +441,41 @@ fn read_samples(folder: Option<&Path>, name: &str) -> Result<String, String> {
     }
 }
 
+/// The kind of problem that a scene names.
+fn read_kind(document: &Document<'_>) -> Result<&'static Kind, SceneError> {
+    let section = document.section("problem")?;
+    let named = match section.get_ref().get("kind").map(|kind| kind.get_ref()) {
+        None => Err(Refusal::section("missing key `kind` in [problem]")),
+        Some(DeValue::String(name)) => {
+            Kind::named(name).map_err(|error| Refusal { key: Some("kind".into()), ..error.into() })
+        }
+        Some(other) => {
+            let message = format!("found {}, expected the name of a problem", other.type_str());
+            Err(Refusal::at("kind", message))
+        }
+    };
+    document.check("problem", named)
+}
+
 fn read_problem(
     document: &Document<'_>,
+    kind: &Kind,
     folder: Option<&Path>,
 ) -> Result<Box<dyn ProblemSpec>, SceneError> {
     let mut section = document.section("problem")?;
-    let refuse = |error: ReadError| document.read_error("problem", error);
-    let Some((_, kind)) = section.get_mut().remove_entry("kind") else {
-        return Err(refuse(Refusal::section("missing key `kind` in [problem]").into()));
-    };
-    let name = match kind.get_ref() {
-        toml::de::DeValue::String(name) => name,
-        other => {
-            let message = format!("found {}, expected the name of a problem", other.type_str());
-            return Err(refuse(Refusal::at("kind", message).into()));
-        }
-    };
-    let kind = Kind::named(name)
-        .map_err(|error| refuse(Refusal { key: Some("kind".into()), ..error.into() }.into()))?;
+    section.get_mut().remove("kind");
     if kind.keys.contains(&SAMPLES) {
-        read_beside(&mut section, SAMPLES.name, |name| read_samples(folder, name))
-            .map_err(|refusal| refuse(refusal.into()))?;
+        let beside = read_beside(&mut section, SAMPLES.name, |name| read_samples(folder, name));
+        document.check("problem", beside)?;
     }
-    (kind.read)(deserializer(section)).map_err(refuse)
+    document.read("problem", table(section), kind.read)
+}
+
+/// A run stays in the span of the samples.
+fn covered(problem: &dyn ProblemSpec, [t0, t1]: [f64; 2]) -> Result<(), Refusal> {
+    let Some(samples) = problem.samples() else { return Ok(()) };
+    samples.covers([t0, t1]).map_err(|Outside { span: [first, last], .. }| {
+        let spans = format!("[{t0}, {t1}], and the samples span {first} to {last}");
+        Refusal::at("t_span", format!("t_span = {spans}"))
+    })
 }
