@@ -1,11 +1,12 @@
 //! The options of the command line.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 
 use lieflow_model::model::Layer;
+use lieflow_model::scene::{Scene, SceneError};
 
 /// Integrate ordinary differential equations on Lie groups.
 ///
@@ -70,14 +71,61 @@ pub struct DemoArgs {
 #[derive(Args, Clone, Debug)]
 #[command(after_help = SCENE_HELP)]
 pub struct RunArgs {
-    /// A scene file, or the name of a bundled scene.
-    pub scene: PathBuf,
-    /// Folder for what is written [default: lieflow-out/SCENE].
+    /// Scene files, or names of bundled scenes; - reads a scene from standard input.
+    #[arg(required = true, value_name = "SCENE")]
+    pub scenes: Vec<PathBuf>,
+    /// Folder for what is written; with several scenes, a folder in it for each [default: lieflow-out/SCENE].
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    /// What is changed in the scenes.
+    #[command(flatten)]
+    pub settings: Settings,
+    /// Write no page and no figures.
+    #[arg(long)]
+    pub no_page: bool,
+    /// When a second run may be made to estimate the error: where it takes seconds, always, or never.
+    #[arg(long, value_name = "WHEN", value_enum, default_value_t = ErrorCheck::Auto)]
+    pub error_check: ErrorCheck,
     /// Go on with a run that was interrupted or killed, to the same bits.
     #[arg(long)]
     pub resume: bool,
+}
+
+/// What is changed in a scene.
+#[derive(Args, Clone, Debug, Default)]
+pub struct Settings {
+    /// Change a key of the scene: time.dt=0.01, problem.inertia=[1,2,3], problem.inertia[2]=2.5. Places in lists count
+    /// from 1. Nothing after the = takes the key away. May be given several times.
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+}
+
+impl Settings {
+    /// A scene file or a bundled scene, with the changes; `-` is standard input.
+    ///
+    /// # Errors
+    /// As [`Scene::open_with`].
+    pub fn open(&self, scene: &Path) -> Result<Scene, SceneError> {
+        Scene::open_with(scene, &self.set)
+    }
+
+    /// The options again, as they are typed in a shell.
+    pub fn typed(&self) -> String {
+        let quoted = |setting: &String| format!(" --set '{}'", setting.replace('\'', r"'\''"));
+        self.set.iter().map(quoted).collect()
+    }
+}
+
+/// When the error of a run is estimated by a second run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum ErrorCheck {
+    /// Where it takes seconds.
+    #[default]
+    Auto,
+    /// Always.
+    Always,
+    /// Never; where an exact solution is known, the error is told all the same.
+    Never,
 }
 
 /// Options of `compare`.
@@ -208,9 +256,20 @@ const SCENE_HELP: &str = "Examples:
   lieflow run my.toml --out results
   lieflow run my.toml --out results --resume
                                         go on after Ctrl-C, a kill or a full disk
+  lieflow run my.toml --set time.dt=0.01 --set 'problem.inertia=[1,2,3]'
+  lieflow run a.toml b.toml --no-page   several scenes, without pages
+  lieflow scenes flips | lieflow run -  a scene from standard input
 
-A scene file, with everything that it can say about a rigid body:
-  title = \"Asymmetric top\"
+The shortest scene file: lieflow chooses the method, the steps and what is written.
+  [problem]
+  kind = \"rigid-body\"
+  inertia = [1.0, 2.0, 3.0]
+  omega_body = [0.2, 0.0, 1.0]
+  [time]
+  t_span = [0.0, 400.0]
+
+A scene file with everything that it can say about a rigid body:
+  title = \"Asymmetric top\"           # optional
   [problem]
   kind = \"rigid-body\"
   inertia = [1.0, 2.0, 3.0]         # or the tensor as three rows, inverse_inertia, or
@@ -218,7 +277,7 @@ A scene file, with everything that it can say about a rigid body:
   omega_body = [0.2, 0.0, 1.0]      # or momentum_body
   attitude = [[1,0,0],[0,1,0],[0,0,1]]
                                     # body to space; optional
-  [method]
+  [method]                          # optional: adaptive, of order 8
   name = \"rkmk4\"                    # lieflow methods lists the names
   map = \"exp\"                       # optional: exp
   tableau = \"heun\"                  # optional: rk4; for rkmk and rk only
@@ -226,7 +285,7 @@ A scene file, with everything that it can say about a rigid body:
   layer = \"closed\"                  # optional: closed, or general
   [time]
   t_span = [0.0, 400.0]             # may run backward; may end at inf where an event stops it
-  dt = 0.05                         # or steps = 8000, or steps chosen by their error:
+  dt = 0.05                         # or steps = 8000; optional: steps chosen by their error
   rtol = 1e-9                       # instead of dt; the error of a step is at most
   atol = 1e-12                      # atol + rtol times the size; optional: 0; one is needed
   tolerance = \"per-step\"            # optional; \"per-length\": rtol is relative to the length of the step
@@ -236,10 +295,11 @@ A scene file, with everything that it can say about a rigid body:
   when = \"m2\"                       # a column, or a formula of columns, t and parameters
   direction = \"rising\"              # optional: both; or falling
   stop_after = 3                    # optional: the zero that ends the run
-  [output]
-  quantities = [\"momentum_body\"]    # lieflow scenes lists what there is
-  every = 10                        # or times = [1.5, 20]; optional: 1
+  [output]                          # optional
+  quantities = [\"momentum_body\"]    # optional; lieflow scenes lists what there is
+  every = 10                        # or count = 100, interval = 4.0, times = [1.5, 20]
   times_by = \"dense\"                # optional, with times; or steps
+  error_check = true                # optional: false makes no second run to estimate the error
 
 Written: trajectory.csv, a column t and the columns of each quantity, 17 significant digits, the
 start first and the end last; events.csv, a line for each event; summary.json, what was modelled and run,

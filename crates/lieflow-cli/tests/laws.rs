@@ -6,7 +6,8 @@ mod support;
 use std::sync::atomic::AtomicBool;
 
 use lieflow::catalog::{MethodSpec, all_methods};
-use lieflow_cli::cmd::run::run_scene;
+use lieflow_cli::args::ErrorCheck;
+use lieflow_cli::cmd::run::{Options, run_scene};
 use lieflow_cli::output::{Drift, Watched};
 use lieflow_model::scene::{BUNDLED, Bundled, Scene};
 use lieflow_model::schema::Row;
@@ -121,7 +122,8 @@ fn promises_are_kept_and_only_those_are_made() {
             let most = scene.problem.samples().map_or(500, |_| scene.grid.steps());
             let steps = if fluid { 20 } else { most };
             let of = short(bundled.name, method, steps);
-            let summary = run_scene(&of, folder.path(), false, &AtomicBool::new(false)).unwrap();
+            let options = Options { error_check: ErrorCheck::Never, ..Options::default() };
+            let summary = run_scene(&of, folder.path(), options, &AtomicBool::new(false)).unwrap();
             if !summary.completed {
                 // A classical method cannot pass a pole.
                 assert_eq!((bundled.name, method.map.is_none()), ("riccati-pole", true));
@@ -138,9 +140,11 @@ fn promises_are_kept_and_only_those_are_made() {
                     moved.push((bundled.name, name.clone()));
                 }
             }
-            // The paper's body of high energy is none that there is.
-            let warned = summary.warnings.iter().all(|warning| warning.contains("no body has"));
-            assert!(warned, "{}: {:?}", bundled.name, summary.warnings);
+            // The paper's body of high energy is none that there is; and some of these runs are coarse.
+            let known = |warning: &String| {
+                warning.contains("no body has") || warning.contains("` is wrong by ")
+            };
+            assert!(summary.warnings.iter().all(known), "{}: {:?}", bundled.name, summary.warnings);
         }
     }
     // Heun's method promises linear invariants alone, and the others do move.
@@ -184,7 +188,10 @@ fn promises_are_kept_and_only_those_are_made() {
 fn a_run_states_what_was_modelled_and_draws_it() {
     let folder = Folder::new();
     let told = folder.lieflow(&["run", "mathieu", "--out", "out"]).ok();
-    assert!(told.contains("stable: 0") && told.contains("drift of symplectic_defect"), "{told}");
+    assert!(
+        told.contains("stable: 0") && told.contains("kept to rounding: symplectic_defect"),
+        "{told}"
+    );
     let summary = folder.json("out/summary.json");
     assert_eq!(summary["modelled"][0], "fundamental solution in Sp(2)");
     assert_eq!(summary["layer"], "general");

@@ -8,6 +8,50 @@ use lieflow::problems::Origin;
 
 use crate::kinds::{Law, Scale};
 
+/// How far two values of columns are from each other.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Measure {
+    /// The length of their difference.
+    #[default]
+    Length,
+    /// The angle between two rotations, given by their nine entries.
+    Rotation,
+    /// The angle between two rotations, given by quaternions.
+    Quaternion,
+}
+
+impl Measure {
+    /// Is the distance an angle, in radians?
+    pub fn is_angle(self) -> bool {
+        self != Measure::Length
+    }
+
+    /// The distance.
+    pub fn distance(self, a: &[f64], b: &[f64]) -> f64 {
+        let length = |sign: f64| {
+            let squares = a.iter().zip(b).map(|(a, b)| (a - sign * b).powi(2));
+            squares.sum::<f64>().sqrt()
+        };
+        match self {
+            Measure::Length => length(1.0),
+            // ‖A − B‖ = √8 sin(angle/2), and |p − q| = 2 sin(angle/4).
+            Measure::Rotation => 2.0 * (length(1.0) / 8.0_f64.sqrt()).min(1.0).asin(),
+            Measure::Quaternion => 4.0 * (length(1.0).min(length(-1.0)) / 2.0).min(1.0).asin(),
+        }
+    }
+}
+
+/// Columns of a quantity that belong together.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Part {
+    /// Its name; none of a quantity that is one part.
+    pub name: String,
+    /// Its columns, from 0.
+    pub columns: Range<usize>,
+    /// How errors of it are measured.
+    pub measure: Measure,
+}
+
 /// A quantity of a model, and where its values are in a row.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Observable {
@@ -19,6 +63,8 @@ pub struct Observable {
     pub law: Option<Law>,
     /// Is it a state, so that a value that is not finite ends the run?
     pub is_state: bool,
+    /// Its parts: all of its columns, in order.
+    pub parts: Vec<Part>,
     place: Range<usize>,
     /// The place of the size of its terms, where its rounding is relative to that.
     size: Option<usize>,
@@ -72,7 +118,16 @@ impl Schema {
         let place = self.width..self.width + columns.len();
         self.width = place.end;
         self.sizes += usize::from(in_terms);
-        self.observables.push(Observable { name, columns, law, is_state, place, size });
+        let measure = Measure::Length;
+        let parts = vec![Part { name: String::new(), columns: 0..columns.len(), measure }];
+        self.observables.push(Observable { name, columns, law, is_state, parts, place, size });
+    }
+
+    /// Give the last observable these parts.
+    pub(crate) fn set_parts(&mut self, parts: Vec<Part>) {
+        if let Some(observable) = self.observables.last_mut() {
+            observable.parts = parts;
+        }
     }
 
     /// The observable of that name.

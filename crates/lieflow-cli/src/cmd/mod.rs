@@ -1,13 +1,16 @@
 //! The commands, one file each, and what they fail with.
 
+mod accuracy;
 pub mod check;
 pub mod compare;
 pub mod completions;
 pub mod demo;
+mod foresee;
 pub mod methods;
 pub mod paper;
 pub mod run;
 pub mod scenes;
+mod told;
 mod watch;
 
 use std::io;

@@ -10,30 +10,40 @@ use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
 
 use super::CliError;
+use super::accuracy::{Check, LONG};
+use super::foresee::foresee;
+use super::told::in_words;
 use super::watch::{Recorder, Watch, quantities};
-use crate::args::RunArgs;
-use crate::output::{self, Drawn, Drift, MethodSummary, RunState, SUMMARY, Summary};
+use crate::args::{ErrorCheck, RunArgs};
+use crate::output::{self, Accuracy, Drawn, Drift, MethodSummary, RunState, SUMMARY, Summary};
 use lieflow_model::model::Plan;
 use lieflow_model::scene::Scene;
+use lieflow_model::schema::Row;
 
 /// The exit code of a run that was interrupted.
 const INTERRUPTED: u8 = 130;
 /// How often the state of a run is saved.
 const SAVED_EVERY: Duration = Duration::from_secs(1);
 
+/// The page of a run.
+const PAGE: &str = "index.html";
+
+/// How a scene is run.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Options {
+    /// Go on with a run that was interrupted.
+    pub resume: bool,
+    /// Write no page.
+    pub no_page: bool,
+    /// When a second run is made to estimate the error.
+    pub error_check: ErrorCheck,
+}
+
 /// Run the command.
 ///
 /// # Errors
-/// The scene cannot be used, a file cannot be written, a step failed, or the run was interrupted.
+/// A scene cannot be used, a file cannot be written, a step failed, or the run was interrupted.
 pub fn run(args: &RunArgs) -> Result<(), CliError> {
-    let scene = Scene::open(&args.scene)?;
-    let folder = match &args.out {
-        Some(folder) => folder.clone(),
-        None => Path::new("lieflow-out").join(&scene.name),
-    };
-    if args.resume && !RunState::is_in(&folder) {
-        return nothing_to_do(&scene, &folder);
-    }
     let stop = Arc::new(AtomicBool::new(false));
     for signal in [SIGINT, SIGTERM] {
         // The second signal ends the program at once: it finds that the first was there.
@@ -41,12 +51,56 @@ pub fn run(args: &RunArgs) -> Result<(), CliError> {
             .and_then(|_| flag::register(signal, Arc::clone(&stop)))
             .map_err(CliError::Signals)?;
     }
+    if let [scene] = &args.scenes[..] {
+        return run_one(args, scene, &mut Vec::new(), &stop);
+    }
+    let (mut folders, mut failed) = (Vec::new(), 0);
+    for scene in &args.scenes {
+        match run_one(args, scene, &mut folders, &stop) {
+            Err(error) if error.exit_code() == INTERRUPTED => return Err(error),
+            // The other scenes run all the same.
+            Err(error) => {
+                failed += 1;
+                eprintln!("error: {error}");
+            }
+            Ok(()) => {}
+        }
+    }
+    match failed {
+        0 => Ok(()),
+        _ => Err(CliError::Message(format!("{failed} of {} scenes failed", args.scenes.len()))),
+    }
+}
+
+/// Run one of the scenes, in a folder that none of the others has.
+fn run_one(
+    args: &RunArgs,
+    path: &Path,
+    folders: &mut Vec<PathBuf>,
+    stop: &AtomicBool,
+) -> Result<(), CliError> {
+    let scene = args.settings.open(path)?;
+    let folder = match &args.out {
+        Some(folder) if args.scenes.len() == 1 => folder.clone(),
+        folder => folder.as_deref().unwrap_or(Path::new("lieflow-out")).join(&scene.name),
+    };
+    if folders.contains(&folder) {
+        let (path, folder) = (path.display(), folder.display());
+        let message = format!("{path}: another scene of this call was written into `{folder}`");
+        return Err(CliError::Message(message));
+    }
+    folders.push(folder.clone());
+    if args.resume && !RunState::is_in(&folder) {
+        return nothing_to_do(&scene, &folder);
+    }
+    let options =
+        Options { resume: args.resume, no_page: args.no_page, error_check: args.error_check };
     let how = || {
         let out = args.out.as_ref().map(|out| format!(" --out {}", out.display()));
-        let (scene, out) = (args.scene.display(), out.unwrap_or_default());
-        format!("`lieflow run {scene}{out} --resume` goes on from there")
+        let (set, out) = (args.settings.typed(), out.unwrap_or_default());
+        format!("`lieflow run {}{set}{out} --resume` goes on from there", path.display())
     };
-    let summary = match run_scene(&scene, &folder, args.resume, &stop) {
+    let summary = match run_scene(&scene, &folder, options, stop) {
         Err(error @ CliError::Io { .. }) if RunState::is_in(&folder) => {
             let message = format!("{error}\nWhat was written is kept; {}", how());
             return Err(CliError::Stopped { message, code: error.exit_code() });
@@ -54,7 +108,8 @@ pub fn run(args: &RunArgs) -> Result<(), CliError> {
         done => done?,
     };
     let Some(failure) = &summary.failure else {
-        return output::print(&in_words(&summary, &folder));
+        let page = (!args.no_page).then_some(PAGE);
+        return output::print(&in_words(&summary, &folder, page));
     };
     let place = folder.join(summary.trajectory);
     let kept = format!("The rows up to there ({}) are in {}", summary.rows, place.display());
@@ -93,10 +148,13 @@ fn fingerprint(scene: &Scene) -> String {
 pub fn run_scene(
     scene: &Scene,
     folder: &Path,
-    resume: bool,
+    Options { resume, no_page, error_check }: Options,
     stop: &AtomicBool,
 ) -> Result<Summary, CliError> {
     let model = scene.model_with(scene.layer, &quantities(scene))?;
+    if let Some(known) = foresee(scene, &*model)? {
+        eprintln!("note: {}: {known}", scene.name);
+    }
     let watch = Watch::new(scene, &*model)?;
     let columns: Vec<String> = watch.written.iter().flat_map(|o| o.columns.clone()).collect();
     output::make_folder(folder)?;
@@ -112,6 +170,7 @@ pub fn run_scene(
         let schema = model.schema();
         state.replay(|kind, t, numbers| kept.see(kind, t, schema.row(numbers)))?;
     }
+    let begun_at = kept.rows.ends().map_or(scene.grid.t_span()[0], |[_, (t, _)]| t);
     kept.state = Some(state);
     let plan = Plan {
         cancel: Some(stop),
@@ -141,13 +200,21 @@ pub fn run_scene(
     let wall_time_s = clock.elapsed().as_secs_f64();
 
     let rows = &kept.rows;
+    let mut accuracy = Ok(None);
+    let end = rows.ends().filter(|_| completed).map(|[_, end]| end);
+    if let Some((t, row)) = end {
+        // Of a run that goes on only a part was timed.
+        let share = ((t - begun_at) / (t - scene.grid.t_span()[0])).max(1e-3);
+        let check = Check::new(&watch, rows, (t, done.steps), stop);
+        kept.bar.now(1.0, "a second run, to estimate the error");
+        accuracy = check_error(&check, scene, error_check, row, wall_time_s / share);
+    }
     let with_time = |(t, row)| {
         let mut line = vec![t];
         watch.line(row, &mut line);
         line
     };
     let [initial, last] = rows.ends().map_or_else(Default::default, |ends| ends.map(with_time));
-    let end = rows.ends().filter(|_| completed);
     let drift = watch.drift(&kept.watched, done.steps)?;
     let mut warnings = scene.problem.warnings();
     warnings.extend(drift.iter().filter(|(_, drift)| drift.breaks_a_promise()).map(broken_promise));
@@ -155,7 +222,19 @@ pub fn run_scene(
     warnings.extend(out_of_range.map(|(column, count)| {
         format!("{column} is not a finite number in {count} of {written} rows")
     }));
+    let (accuracy, accuracy_unknown) = match accuracy {
+        Ok(Some((accuracy, warning))) => {
+            warnings.extend(warning);
+            (Some(accuracy), None)
+        }
+        Ok(None) => (None, None),
+        Err(why) => (None, Some(why)),
+    };
     let method = &scene.method;
+    let [rtol, atol] = match scene.tolerances() {
+        Some(both) => both.map(Some),
+        None => [None; 2],
+    };
     let summary = Summary {
         lieflow: env!("CARGO_PKG_VERSION"),
         title: scene.title.clone(),
@@ -194,7 +273,14 @@ pub fn run_scene(
         last,
         drift_computed_at: "written rows",
         drift,
-        error_at_end: end.and_then(|[_, (t, row)]| watch.errors(t, row)),
+        error_at_end: end.and_then(|(t, row)| watch.errors(t, row)),
+        accuracy,
+        accuracy_unknown,
+        chosen_by_default: scene.by_default,
+        defaults_in_words: scene.by_default.in_words(scene),
+        rtol,
+        atol,
+        scene_text: scene.text.clone(),
     };
     let field = watch.field(rows);
     let drawn = Drawn {
@@ -205,82 +291,54 @@ pub fn run_scene(
         asked: &watch.written,
         watched: &watch.laws,
     };
-    let page = output::run_page(&summary, &drawn);
+    let page = (!no_page).then(|| output::run_page(&summary, &drawn));
     let state = kept.finish(completed)?;
     output::write_file(&summary_path, &output::to_json(&summary)?)?;
-    output::write_page(folder, "index.html", &page)?;
+    match page {
+        Some(page) => drop(output::write_page(folder, PAGE, &page)?),
+        // That of an earlier run shows other rows.
+        None => output::remove_old(&folder.join(PAGE))?,
+    }
     if !summary.interrupted {
         state.map_or(Ok(()), RunState::finish)?;
     }
     Ok(summary)
 }
 
-fn broken_promise((name, drift): (&String, &Drift)) -> String {
-    format!(
-        "{name} moved by {:.2e}, though the method promises to keep it: rounding explains {:.2e}",
-        drift.max, drift.rounding
-    )
+/// The error of the last row of a run that took so many seconds, and a warning where it is poor; nothing where no
+/// error is asked for, and a sentence where it is not known.
+fn check_error(
+    check: &Check<'_>,
+    scene: &Scene,
+    when: ErrorCheck,
+    end: Row<'_>,
+    seconds: f64,
+) -> Result<Option<(Accuracy, Option<String>)>, String> {
+    if !check.is_exact() {
+        let never = when == ErrorCheck::Never || !scene.error_check;
+        if never && when != ErrorCheck::Always {
+            return Ok(None);
+        }
+        if when != ErrorCheck::Always && seconds > LONG.as_secs_f64() {
+            return Err(format!(
+                "not known. No exact solution is known, and a second run would take {} or more; \
+                 --error-check always makes it",
+                output::duration(seconds)
+            ));
+        }
+    }
+    let accuracy = check.error(end.numbers());
+    let accuracy =
+        accuracy.ok_or("not known. The second run, by which it is estimated, did not end")?;
+    let advise = when != ErrorCheck::Never && scene.error_check;
+    let warning = check.warning(&accuracy, advise.then_some(seconds));
+    Ok(Some((accuracy, warning)))
 }
 
-/// Drifts that are told; summary.json has all.
-const DRIFTS: usize = 10;
-
-fn in_words(summary: &Summary, folder: &Path) -> String {
-    let Summary { title, steps, rows, wall_time_s, t_span: [t0, t1], .. } = summary;
-    let t1 = summary.t_end.unwrap_or(*t1);
-    let sizes = match (summary.dt, &summary.adaptive) {
-        (Some(dt), _) => format!(" of {dt}"),
-        (None, Some(chosen)) => format!(
-            " of {:.2e} to {:.2e} ({} rejected)",
-            chosen.smallest_step, chosen.largest_step, chosen.rejected
-        ),
-        (None, None) => String::new(),
-    };
-    let mut text = format!(
-        "{title}: {}, {}, {} layer\n  t = {t0} to {t1}, {steps} steps{sizes}, {rows} rows, \
-         {wall_time_s:.3} s\n",
-        summary.modelled.join(", "),
-        summary.method.label,
-        summary.layer,
-    );
-    if let Some(name) = &summary.ended_by {
-        text += &format!("  ended by event {name}\n");
-    }
-    for event in &summary.events {
-        text += &format!("  event {}: {} times", event.name, event.count);
-        if let (Some(first), Some(last)) = (event.first, event.last) {
-            text += &format!(", first at t = {first}, last at t = {last}");
-        }
-        text += "\n";
-    }
-    let mut drifts: Vec<_> = summary.drift.iter().collect();
-    if drifts.len() > DRIFTS {
-        drifts.sort_by(|(_, a), (_, b)| b.max.total_cmp(&a.max));
-    }
-    for (name, drift) in drifts.iter().take(DRIFTS) {
-        text += &format!(
-            "  drift of {name}: {:.2e} at most, {:.2e} at the end, {:.2e} a unit of time, on the \
-             written rows\n",
-            drift.max, drift.at_end, drift.slope
-        );
-    }
-    if drifts.len() > DRIFTS {
-        text += &format!("  {} further drifts are smaller\n", drifts.len() - DRIFTS);
-    }
-    for (name, error) in summary.error_at_end.iter().flatten() {
-        text += &format!("  error of {name} at the end: {error:.2e}\n");
-    }
-    for (name, value) in &summary.facts {
-        text += &format!("  {}: {}\n", name.replace('_', " "), output::in_digits(*value));
-    }
-    for warning in &summary.warnings {
-        text += &format!("  warning: {warning}\n");
-    }
-    text += &format!("  {}\n", folder.join(summary.trajectory).display());
-    if !summary.events.is_empty() {
-        text += &format!("  {}\n", folder.join(output::EVENTS[0]).display());
-    }
-    text += &format!("  {}\n", folder.join(SUMMARY).display());
-    text += &format!("  {}\n", folder.join("index.html").display());
-    text
+fn broken_promise((name, drift): (&String, &Drift)) -> String {
+    format!(
+        "`{name}` drifted by {}, though the method promises to keep it: rounding explains {}",
+        output::short(drift.max),
+        output::short(drift.rounding)
+    )
 }

@@ -32,10 +32,10 @@ pub(super) fn quantities(scene: &Scene) -> Vec<&str> {
 
 /// Everything that a run is watched for.
 pub(super) struct Watch<'a> {
-    scene: &'a Scene,
+    pub(super) scene: &'a Scene,
     pub(super) model: &'a dyn Model,
     pub(super) written: Vec<&'a Observable>,
-    state: Vec<&'a Observable>,
+    pub(super) state: Vec<&'a Observable>,
     pub(super) laws: Vec<&'a Observable>,
     pub(super) drawn: &'a Observable,
 }
@@ -137,9 +137,14 @@ impl<'a> Watch<'a> {
         }
     }
 
+    /// The row at t by the exact solution, where it is known.
+    pub(super) fn exact(&self, t: f64) -> Option<Vec<f64>> {
+        self.model.exact([self.scene.grid.t_span()[0], t])?.ok()
+    }
+
     /// The distance of the row at t from the exact solution.
     pub(super) fn errors(&self, t: f64, row: Row<'_>) -> Option<BTreeMap<String, f64>> {
-        let exact = self.model.exact([self.scene.grid.t_span()[0], t])?.ok()?;
+        let exact = self.exact(t)?;
         let exact = self.model.schema().row(&exact);
         let distance = |part: &Observable| {
             let pairs = row[part].iter().zip(&exact[part]);
@@ -183,7 +188,7 @@ pub(super) struct Recorder<'a> {
     /// What could not be written: it ends the run.
     pub(super) failure: Option<CliError>,
     stop: &'a AtomicBool,
-    bar: Progress,
+    pub(super) bar: Progress,
 }
 
 impl<'a> Recorder<'a> {

@@ -13,7 +13,10 @@ pub use files::{in_full, make_folder, optional, remove_old, write_csv, write_fil
 pub use progress::Progress;
 pub use rows::{EVENTS, RowFile, TRAJECTORY};
 pub use state::{Kind, RunState};
-pub use summary::{Chosen, Drift, EventSummary, MethodSummary, SUMMARY, Summary, Watched};
+pub use summary::{
+    Accuracy, Chosen, Drift, EventSummary, FoundBy, MethodSummary, PartError, SUMMARY, Summary,
+    Watched,
+};
 
 use std::io::{self, Write};
 
@@ -51,6 +54,32 @@ pub fn to_json<T: Serialize>(value: &T) -> Result<String, CliError> {
     json.map(|json| json + "\n").map_err(|error| CliError::Message(format!("JSON: {error}")))
 }
 
+/// A number as people write it, with six digits at most: `0.05`, `77.6073`, `1.2e-6`.
+pub fn number(x: f64) -> String {
+    with_digits(x, 6)
+}
+
+/// A number of which the size matters: `144`, `2.7`, `0.0021`, `1.2e-6`.
+pub fn short(x: f64) -> String {
+    if (100.0..1e6).contains(&x.abs()) { format!("{x:.0}") } else { with_digits(x, 2) }
+}
+
+fn with_digits(x: f64, digits: usize) -> String {
+    let rounded: f64 = format!("{x:.*e}", digits - 1).parse().unwrap_or(x);
+    let plain = rounded == 0.0 || (1e-3..1e6).contains(&rounded.abs()) || !x.is_finite();
+    if plain { format!("{}", rounded + 0.0) } else { format!("{rounded:e}") }
+}
+
+/// A duration as people say it: `0.02 s`, `12 minutes`, `5 years`.
+pub fn duration(seconds: f64) -> String {
+    const UNITS: [(f64, &str); 4] =
+        [(365.25 * 86400.0, "years"), (86400.0, "days"), (3600.0, "hours"), (60.0, "minutes")];
+    match UNITS.iter().find(|(unit, _)| seconds >= 2.0 * unit) {
+        Some((unit, name)) => format!("{} {name}", short((seconds / unit).round())),
+        None => format!("{} s", short(seconds)),
+    }
+}
+
 /// A table without lines.
 pub fn table<const N: usize>(
     header: [&str; N],
@@ -80,4 +109,20 @@ pub fn wrap(text: &str, indent: &str) -> String {
         line += word;
     }
     if line.is_empty() { lines } else { lines + indent + &line + "\n" }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_written_as_people_write_them() {
+        let numbers = [0.05, 600.0, 77.607_325_78, 1.0 / 33.0, 1.2e-6, 3e9, 0.0, -0.0];
+        let told = numbers.map(number);
+        assert_eq!(told, ["0.05", "600", "77.6073", "0.030303", "1.2e-6", "3e9", "0", "0"]);
+        let told = [143.7, 2.69, 0.002_14, 9.96e-9, 0.0].map(short);
+        assert_eq!(told, ["144", "2.7", "0.0021", "1e-8", "0"]);
+        let told = [0.021, 90.0, 700.0, 1e5, 1.6e8].map(duration);
+        assert_eq!(told, ["0.021 s", "90 s", "12 minutes", "28 hours", "5 years"]);
+    }
 }

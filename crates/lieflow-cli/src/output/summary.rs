@@ -6,6 +6,9 @@ use serde::Serialize;
 
 use crate::measure::Fit;
 use lieflow_model::kinds::explained_by_rounding;
+use lieflow_model::scene::Defaults;
+
+use super::short;
 
 /// The name of the file.
 pub const SUMMARY: &str = "summary.json";
@@ -78,6 +81,112 @@ pub struct Summary {
     pub drift: BTreeMap<String, Drift>,
     /// The distance from the exact solution at the end, by quantity; none where none is known.
     pub error_at_end: Option<BTreeMap<String, f64>>,
+    /// How right the end is; none where that was not found out.
+    pub accuracy: Option<Accuracy>,
+    /// Why it was not.
+    pub accuracy_unknown: Option<String>,
+    /// What the scene left to the program.
+    pub chosen_by_default: Defaults,
+    /// The same in words.
+    #[serde(skip)]
+    pub defaults_in_words: Option<String>,
+    /// The tolerances, where steps were chosen by their error.
+    pub rtol: Option<f64>,
+    /// As `rtol`.
+    pub atol: Option<f64>,
+    /// The text of the scene.
+    #[serde(skip)]
+    pub scene_text: String,
+}
+
+/// How right the end of a run is.
+#[derive(Clone, Debug, Serialize)]
+pub struct Accuracy {
+    /// How that was found.
+    pub found_by: FoundBy,
+    /// Seconds that it took.
+    pub seconds: f64,
+    /// The decimal digits that are right, of the part that is worst.
+    pub digits: u32,
+    /// The parts of the state.
+    pub parts: Vec<PartError>,
+}
+
+/// What a run is compared with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum FoundBy {
+    /// The exact motion.
+    Exact,
+    /// A second run in steps of half the size.
+    HalfStep,
+    /// A second run at a tenth of the tolerance.
+    TenthTolerance,
+    /// A second run at ten times the tolerance.
+    TenfoldTolerance,
+}
+
+/// The error of a part of the state at the end.
+#[derive(Clone, Debug, Serialize)]
+pub struct PartError {
+    /// The quantity, or the part of a composed system.
+    pub name: String,
+    /// The distance; an angle in radians where the part is a rotation.
+    pub absolute: f64,
+    /// The distance in sizes of the part; an angle in radians where it is a rotation.
+    pub relative: f64,
+    /// The angle, where the part is a rotation.
+    pub degrees: Option<f64>,
+}
+
+impl Accuracy {
+    /// Of these parts; errors below `unseen` are rounding that nobody saw.
+    pub fn new(found_by: FoundBy, parts: Vec<PartError>, unseen: f64, seconds: f64) -> Self {
+        let mut accuracy = Accuracy { found_by, seconds, digits: 0, parts };
+        let worst = accuracy.worst().map_or(f64::NAN, |worst| worst.relative);
+        // An error that is no number has no digits.
+        let digits = if worst.is_nan() { 0.0 } else { -worst.max(unseen).log10() };
+        accuracy.digits = digits.floor().max(0.0) as u32;
+        accuracy
+    }
+
+    /// The part with the largest relative error.
+    pub fn worst(&self) -> Option<&PartError> {
+        let rank =
+            |part: &PartError| if part.relative.is_nan() { f64::INFINITY } else { part.relative };
+        self.parts.iter().max_by(|a, b| rank(a).total_cmp(&rank(b)))
+    }
+
+    /// As "about 8 digits".
+    pub fn digits_in_words(&self) -> String {
+        match self.digits {
+            0 => "no right digit".into(),
+            1 => "about 1 digit".into(),
+            digits => format!("about {digits} digits"),
+        }
+    }
+
+    /// How it was found, in words.
+    pub fn found_in_words(&self) -> String {
+        let by =
+            |what: &str| format!("estimated by a second run {what}, {} s", short(self.seconds));
+        match self.found_by {
+            FoundBy::Exact => "against the exact motion".into(),
+            FoundBy::HalfStep => by("with half the step"),
+            FoundBy::TenthTolerance => by("at a tenth of the tolerance"),
+            FoundBy::TenfoldTolerance => by("at ten times the tolerance"),
+        }
+    }
+}
+
+impl PartError {
+    /// As "attitude 0.002 degrees" or "momentum_body 1.2e-9 of its size".
+    pub fn in_words(&self) -> String {
+        match self.degrees {
+            Some(degrees) => format!("{} {} degrees", self.name, short(degrees)),
+            None => format!("{} {} of its size", self.name, short(self.relative)),
+        }
+    }
 }
 
 /// Steps that were chosen by their error.

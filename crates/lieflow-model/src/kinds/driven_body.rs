@@ -179,7 +179,8 @@ impl System for Driven {
             ROTATION,
             "rotation from body to space, row by row",
             |_, _, (g, _), row| by_rows(g, row),
-        ),
+        )
+        .of_rotation(),
         Q::numbers(
             "momentum_space",
             &["l1", "l2", "l3"],

@@ -4,6 +4,7 @@
 use super::QuantityInfo;
 use super::law::{Law, Scale};
 use super::system::{PointOf, System};
+use crate::schema::{Measure, Part};
 
 /// The value of a quantity at y, a time `t` after the start.
 pub(super) enum Value<S: System> {
@@ -11,6 +12,11 @@ pub(super) enum Value<S: System> {
     Number(fn(&S, f64, &PointOf<S>) -> f64),
     /// Numbers, which go to the end of the row.
     Numbers(fn(&S, f64, &PointOf<S>, &mut Vec<f64>)),
+}
+
+/// So many columns from one on, as a part.
+pub(super) fn part(name: &str, first: usize, columns: usize, measure: Measure) -> Part {
+    Part { name: name.into(), columns: first..first + columns, measure }
 }
 
 /// Which problems keep a quantity.
@@ -26,6 +32,8 @@ pub(super) struct Quantity<S: System> {
     pub(super) value: Value<S>,
     /// The columns where the size of the problem says how many there are.
     pub(super) columns: Option<fn(&S) -> Vec<String>>,
+    /// Its parts, where it is not one of a length.
+    pub(super) parts: Option<fn(&S) -> Vec<Part>>,
     law: Keepers<S>,
     /// The size of the terms that the quantity is the sum of.
     pub(super) terms: Option<fn(&S, &PointOf<S>) -> f64>,
@@ -41,6 +49,7 @@ impl<S: System> Quantity<S> {
             info,
             value,
             columns: None,
+            parts: None,
             law: Keepers::None,
             terms: None,
             is_state: false,
@@ -71,6 +80,21 @@ impl<S: System> Quantity<S> {
     /// With columns that depend on the problem.
     pub(super) const fn with_columns(self, columns: fn(&S) -> Vec<String>) -> Self {
         Quantity { columns: Some(columns), ..self }
+    }
+
+    /// The columns are the entries of a rotation: its error is an angle.
+    pub(super) const fn of_rotation(self) -> Self {
+        self.in_parts(|_| vec![part("", 0, 9, Measure::Rotation)])
+    }
+
+    /// The columns are a unit quaternion: its error is an angle.
+    pub(super) const fn of_quaternion(self) -> Self {
+        self.in_parts(|_| vec![part("", 0, 4, Measure::Quaternion)])
+    }
+
+    /// The error of each of these parts is told.
+    pub(super) const fn in_parts(self, parts: fn(&S) -> Vec<Part>) -> Self {
+        Quantity { parts: Some(parts), ..self }
     }
 
     /// Every problem of the kind keeps the quantity.

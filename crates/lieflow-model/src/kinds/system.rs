@@ -144,6 +144,9 @@ impl<S: System> ProblemSpec for Stated<S> {
         for quantity in &quantities {
             let columns = quantity.column_names(system);
             schema.push(quantity.info.name, columns, quantity.law(system), quantity.is_state);
+            if let Some(parts) = quantity.parts {
+                schema.set_parts(parts(system));
+            }
         }
         Ok(Box::new(SystemModel { system: system.clone(), problem, start, quantities, schema }))
     }

@@ -5,8 +5,14 @@ use serde::Serialize;
 use super::Scene;
 use crate::kinds::ProblemSpec;
 
-/// The error of each step, relative and absolute: over some thousand steps nine digits or more stay right.
-pub(super) const TOLERANCE: f64 = 1e-14;
+/// The error of each step, relative and absolute, of a method of this order: of order 8 the least that rounding
+/// allows, by which eight digits and more are right after many thousand steps; of a lower order one that it can meet.
+pub(super) fn tolerance(order: Option<usize>) -> f64 {
+    match order {
+        Some(order @ ..8) => 0.1_f64.powi(order as i32 + 5),
+        _ => 1e-14,
+    }
+}
 /// The equal intervals of the output, where the steps are left out too.
 pub(super) const INTERVALS: u64 = 1000;
 /// A quantity with more columns is written only when it is asked for.
@@ -33,7 +39,8 @@ impl Defaults {
             chosen.push(format!("method {}", scene.method.label()));
         }
         if self.steps {
-            chosen.push(format!("adaptive steps with rtol = atol = {TOLERANCE:e}"));
+            let tolerance = scene.time.tolerances()[0];
+            chosen.push(format!("adaptive steps with rtol = atol = {tolerance:e}"));
         }
         if self.quantities {
             chosen.push(format!("quantities {}", scene.quantities.join(", ")));

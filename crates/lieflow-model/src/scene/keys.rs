@@ -41,21 +41,28 @@ impl MethodKeys {
         };
         let default = || problem.map_or_else(high_order, ProblemSpec::default_method);
         let base = self.name.map_or_else(default, |name| MethodSpec::new(&name, None));
-        let mut method = MethodSpec {
+        let method = MethodSpec {
             name: base.name,
             map: self.map.or(base.map),
             tableau: self.tableau.or(base.tableau),
             q: self.q.map(|q| usize::try_from(q.0).unwrap_or(usize::MAX)),
         };
-        let info = method.info()?;
+        method.info()?;
+        Ok((with_defaults(method), layer))
+    }
+}
+
+/// The method with what it takes by default spelt out.
+pub(super) fn with_defaults(mut method: MethodSpec) -> MethodSpec {
+    if let Ok(info) = method.info() {
         if info.takes_map() && method.map.is_none() {
             method.map = Some("exp".into());
         }
         if info.takes_tableau && method.tableau.is_none() {
             method.tableau = Some("rk4".into());
         }
-        Ok((method, layer))
     }
+    method
 }
 
 /// `[time]`.
@@ -73,6 +80,9 @@ pub(super) struct TimeKeys {
     max_steps: Option<Whole<1>>,
     tolerance: Option<String>,
     at_knots: Option<bool>,
+    /// rtol and atol where none is given.
+    #[serde(skip)]
+    left: Option<f64>,
 }
 
 /// The steps that `compare` starts from where a scene leaves them to the error.
@@ -167,9 +177,14 @@ impl TimeKeys {
         self.control(1.0).map(Some).map_err(|error| Refusal::from(error).renamed(&names))
     }
 
+    /// Take the tolerances for a method of this order, where none are given.
+    pub(super) fn for_order(&mut self, order: Option<usize>) {
+        self.left = self.is_left().then(|| defaults::tolerance(order));
+    }
+
     /// rtol and atol.
     pub(super) fn tolerances(&self) -> [f64; 2] {
-        let left = if self.is_left() { defaults::TOLERANCE } else { 0.0 };
+        let left = self.left.unwrap_or(if self.is_left() { 1.0 } else { 0.0 });
         [&self.rtol, &self.atol].map(|x| x.as_ref().map_or(left, |x| x.0))
     }
 

@@ -31,7 +31,7 @@ use toml::de::DeValue;
 
 use self::document::{Document, read_beside, table};
 use self::error::Mistakes;
-use self::keys::{MethodKeys, Output, OutputKeys, TimeKeys};
+use self::keys::{MethodKeys, Output, OutputKeys, TimeKeys, with_defaults};
 use crate::kinds::{Kind, ProblemSpec, SAMPLES};
 use crate::model::{Layer, Model, Plan, Steps};
 use crate::schema::Schema;
@@ -171,7 +171,7 @@ impl Scene {
         let stem = Path::new(source).file_stem().unwrap_or_default().to_string_lossy();
         let name = if stem.is_empty() { "scene".into() } else { stem.into_owned() };
         let fingerprint = fingerprint(text, problem.samples());
-        let scene = Scene {
+        let mut scene = Scene {
             title: title.unwrap_or_else(|| name.clone()),
             name,
             source: source.into(),
@@ -202,6 +202,10 @@ impl Scene {
             }
             document.refusal("method", refusal)
         })?;
+        if scene.by_default.steps {
+            scene.time.for_order(model.order(&scene.method).unwrap_or(None));
+            scene.adaptive = scene.time.control(1.0).ok();
+        }
         Ok(scene)
     }
 
@@ -220,16 +224,40 @@ impl Scene {
         self.adaptive.as_ref().map(|_| self.time.tolerances())
     }
 
-    /// The same steps with tolerances times a factor, or a step size times it.
+    /// A run to time t that shows its ends and sees no events, with the step size or the tolerances times a factor.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] for a factor that makes a step or a tolerance too small.
-    pub fn steps_times(&self, factor: f64) -> Result<Steps, Error> {
-        let t_span = self.grid.t_span();
-        Ok(match self.adaptive {
+    pub fn plan_to(&self, t: f64, factor: f64) -> Result<Plan<'static>, Error> {
+        let t_span = [self.grid.t_span()[0], t];
+        let steps = match self.adaptive {
             None => Steps::Equal(TimeGrid::new(t_span, factor * self.grid.h().abs())?),
             Some(_) => Steps::ByError { t_span, control: self.time.control(factor)? },
-        })
+        };
+        Ok(Plan { stops: self.knots(t_span), ..Plan::new(steps, SaveAt::Ends) })
+    }
+
+    /// The method of a scene of this problem that names none.
+    pub fn default_method(&self) -> MethodSpec {
+        with_defaults(self.problem.default_method())
+    }
+
+    /// The same run as [`plan_to`](Self::plan_to) with the steps of a scene that names none, for a method of this
+    /// order.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn default_plan_to(
+        &self,
+        t: f64,
+        factor: f64,
+        order: Option<usize>,
+    ) -> Result<Plan<'static>, Error> {
+        let t_span = [self.grid.t_span()[0], t];
+        let tolerance = factor * defaults::tolerance(order);
+        let control = StepControl::new(tolerance, tolerance)?;
+        let stops = self.problem.knots(t_span).unwrap_or_default();
+        Ok(Plan { stops, ..Plan::new(Steps::ByError { t_span, control }, SaveAt::Ends) })
     }
 
     /// A refusal of a value of the scene, with its place.
@@ -258,12 +286,6 @@ impl Scene {
     fn knots(&self, t_span: [f64; 2]) -> Vec<f64> {
         let knots = self.at_knots.then(|| self.problem.knots(t_span)).flatten();
         knots.unwrap_or_default()
-    }
-
-    /// A run to time t in these steps that shows its ends, and sees no events.
-    pub fn plan_to(&self, t: f64, steps: Steps) -> Plan<'static> {
-        let stops = self.knots([self.grid.t_span()[0], t]);
-        Plan { max_steps: self.max_steps, stops, ..Plan::new(steps, SaveAt::Ends) }
     }
 
     /// The quantities that a run computes: those that are written, then those of the events.

@@ -67,7 +67,7 @@ impl<'a> RowSample<'a> {
     }
 
     /// Those that were kept, and the last.
-    pub(super) fn rows(&self) -> impl Iterator<Item = (f64, Row<'_>)> {
+    pub(crate) fn rows(&self) -> impl Iterator<Item = (f64, Row<'_>)> {
         let kept = self.rows.last().map(|(t, _)| *t);
         let last = self.last.iter().filter(move |(t, _)| kept != Some(*t));
         self.rows.iter().chain(last).map(|row| self.named(row))

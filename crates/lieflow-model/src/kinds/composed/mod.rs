@@ -11,8 +11,10 @@ use nalgebra::{Matrix3, Vector3};
 use self::system::{Coupled, ON_PARTS, Part, Point, Space};
 use super::flow;
 use super::prelude::*;
+use super::quantity::part;
 use crate::scene::formula::{Formula, Parameters, SamplesFile, read_all};
 use crate::scene::values::Numbers;
+use crate::schema::{self, Measure};
 
 pub(super) use self::system::{OnParts, Parts};
 
@@ -206,6 +208,20 @@ impl Composed {
     fn has_vectors(&self) -> bool {
         self.vectors().next().is_some()
     }
+    /// The parts of the state.
+    fn state_parts(&self) -> Vec<schema::Part> {
+        let mut first = 0;
+        let each = self.parts.iter().map(|Part { name, space, .. }| {
+            let measure = match space {
+                Space::Rotation(_) => Measure::Rotation,
+                _ => Measure::Length,
+            };
+            let columns = space.coordinates(name).len();
+            first += columns;
+            part(name, first - columns, columns, measure)
+        });
+        each.collect()
+    }
     /// Why there are no vectors.
     fn without_vectors(&self) -> Option<&'static str> {
         (!self.has_vectors()).then_some("no part is a vector")
@@ -232,7 +248,8 @@ impl System for Composed {
             "the coordinates of all parts, in the order of the scene",
             |composed, _, y, row| composed.parts.iter().for_each(|part| part.space.show(y, row)),
         )
-        .with_columns(|composed| coordinates(composed.parts.iter())),
+        .with_columns(|composed| coordinates(composed.parts.iter()))
+        .in_parts(Composed::state_parts),
         Q::numbers("vectors", &["…"], "the coordinates of the vectors", |_, _, y, row| {
             row.extend(y.0.iter().flat_map(|x| x.iter()));
         })

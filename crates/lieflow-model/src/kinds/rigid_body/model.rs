@@ -298,6 +298,7 @@ impl<R: Representation> System for Body<R> {
                 by_rows(&body.spec.axes.map_or(g, |axes| g * axes.transpose()), row);
             },
         )
+        .of_rotation()
         .missing_where(Body::turns),
         Q::numbers(
             "quaternion",
@@ -312,6 +313,7 @@ impl<R: Representation> System for Body<R> {
                 row.extend(axes.map_or([f64::NAN; 4], |axes| quaternion_to_wxyz(&(q * axes))));
             },
         )
+        .of_quaternion()
         .missing_where(Body::turns),
         Q::number("energy", "kinetic energy", |body, _, y| body.body.energy(&body.m(y)))
             .kept(Law::by_the_flow(R::DEGREE)),

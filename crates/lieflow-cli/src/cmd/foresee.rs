@@ -1,0 +1,88 @@
+//! Runs that would take too long, seen before they begin.
+
+use std::time::{Duration, Instant};
+
+use lieflow::{RunError, SaveAt, TimeGrid};
+use lieflow_model::model::{Model, Plan, Rows};
+use lieflow_model::scene::{Refusal, Scene};
+
+use super::CliError;
+use crate::output::{duration, number};
+
+/// A run of more steps of one size is timed before it begins.
+const MANY: u64 = 10_000_000;
+/// Steps are timed for this long.
+const TRIAL: Duration = Duration::from_millis(20);
+/// A longer run is refused, in seconds.
+const LONGEST: f64 = 30.0 * 86400.0;
+/// A longer run is announced, in seconds.
+const LONG: f64 = 60.0;
+/// Attempts that are made to see how many a run needs whose steps are chosen by their error.
+const ATTEMPTS: u64 = 1000;
+/// The attempts after which such a run gives up, where the scene does not say it.
+const LIMIT: u64 = 1_000_000;
+/// A method of this order or a higher one has no need of that.
+const HIGH_ORDER: usize = 4;
+
+/// What a user should know before the run begins.
+///
+/// # Errors
+/// A run that would take a month and more.
+pub(super) fn foresee(scene: &Scene, model: &dyn Model) -> Result<Option<String>, CliError> {
+    match scene.adaptive {
+        None => steps_of_one_size(scene, model),
+        Some(_) => Ok(chosen_steps(scene, model)),
+    }
+}
+
+fn steps_of_one_size(scene: &Scene, model: &dyn Model) -> Result<Option<String>, CliError> {
+    let (steps, h, [t0, t1]) = (scene.grid.steps(), scene.grid.h(), scene.grid.t_span());
+    let may_end_early = scene.events.iter().any(|event| event.stop_after.is_some());
+    if steps < MANY || !t1.is_finite() || may_end_early {
+        return Ok(None);
+    }
+    let mut trial = 100;
+    let seconds = loop {
+        let Ok(grid) = TimeGrid::new([t0, t0 + trial as f64 * h], h.abs()) else { return Ok(None) };
+        let clock = Instant::now();
+        if model.run(&scene.method, &grid, &SaveAt::End, &mut |_, _| {}).is_err() {
+            return Ok(None);
+        }
+        let took = clock.elapsed();
+        if took > TRIAL || trial >= MANY / 8 {
+            break took.as_secs_f64() / trial as f64 * steps as f64;
+        }
+        trial *= 8;
+    };
+    let would = format!("{} steps would take about {}", number(steps as f64), duration(seconds));
+    if seconds > LONGEST {
+        let message = format!("dt = {}: {would}", number(h.abs()));
+        let help =
+            Some("take a larger step, or leave it out: lieflow then chooses the steps".into());
+        let refusal = Refusal { help, ..Refusal::at("dt", message) };
+        return Err(scene.refuse("time", refusal).into());
+    }
+    Ok((seconds > LONG).then_some(would))
+}
+
+fn chosen_steps(scene: &Scene, model: &dyn Model) -> Option<String> {
+    let [t0, t1] = scene.grid.t_span();
+    let order = model.order(&scene.method).ok()??;
+    if order >= HIGH_ORDER || !t1.is_finite() {
+        return None;
+    }
+    let plan = Plan { max_steps: Some(ATTEMPTS), ..scene.plan_to(t1, 1.0).ok()? };
+    let tried = model.drive(&scene.method, plan, &mut Rows(&mut |_, _| {}));
+    let Err(RunError::TooManySteps { t, .. }) = tried else { return None };
+    let limit = scene.max_steps.unwrap_or(LIMIT);
+    let needed = ATTEMPTS as f64 * (t1 - t0) / (t - t0);
+    (needed > limit as f64).then(|| {
+        format!(
+            "about {} steps are needed, and the run ends after {} (max_steps): {} has order {order}. \
+             Take a method of a higher order or a larger tolerance, or leave [method] out",
+            number(format!("{needed:.0e}").parse().unwrap_or(needed)),
+            number(limit as f64),
+            scene.method.label()
+        )
+    })
+}

@@ -1,0 +1,118 @@
+//! What a run prints at its end.
+
+use std::path::Path;
+
+use lieflow_model::kinds::explained_by_rounding;
+
+use crate::output::{self, Accuracy, Drift, SUMMARY, Summary, number, short};
+
+/// Drifts that are told; summary.json has all.
+const DRIFTS: usize = 10;
+/// Errors of parts that are told.
+const PARTS: usize = 4;
+
+/// The result of a run, in lines; `page` is the name of its page, where it has one.
+pub(super) fn in_words(summary: &Summary, folder: &Path, page: Option<&str>) -> String {
+    let Summary { title, steps, rows, wall_time_s, t_span: [t0, t1], .. } = summary;
+    let t1 = summary.t_end.unwrap_or(*t1);
+    let sizes = match (summary.dt, &summary.adaptive) {
+        (Some(dt), _) => format!(" of {}", number(dt)),
+        (None, Some(chosen)) => format!(
+            " of {} to {} ({} rejected)",
+            short(chosen.smallest_step),
+            short(chosen.largest_step),
+            chosen.rejected
+        ),
+        (None, None) => String::new(),
+    };
+    let mut text = format!(
+        "{title}: {}, {}, {} layer\n  t = {} to {}, {steps} steps{sizes}, {rows} rows, {} s\n",
+        summary.modelled.join(", "),
+        summary.method.label,
+        summary.layer,
+        number(*t0),
+        number(t1),
+        short(*wall_time_s),
+    );
+    let mut line = |told: String| text += &format!("  {told}\n");
+    summary
+        .defaults_in_words
+        .iter()
+        .for_each(|chosen| line(format!("chosen by default: {chosen}")));
+    summary.ended_by.iter().for_each(|name| line(format!("ended by event {name}")));
+    for event in &summary.events {
+        let mut told = format!("event {}: {} times", event.name, event.count);
+        if let (Some(first), Some(last)) = (event.first, event.last) {
+            told += &format!(", first at t = {first}, last at t = {last}");
+        }
+        line(told);
+    }
+    let (kept, mut drifts): (Vec<_>, Vec<_>) =
+        summary.drift.iter().partition(|(_, drift)| drift.max <= drift.rounding);
+    let more = |names: usize| names.saturating_sub(DRIFTS);
+    if !kept.is_empty() {
+        let names: Vec<&str> = kept.iter().take(DRIFTS).map(|(name, _)| name.as_str()).collect();
+        let further = match more(kept.len()) {
+            0 => String::new(),
+            further => format!(" and {further} more"),
+        };
+        line(format!("kept to rounding: {}{further}", names.join(", ")));
+    }
+    drifts.sort_by(|(_, a), (_, b)| b.max.total_cmp(&a.max));
+    for (name, drift) in drifts.iter().take(DRIFTS) {
+        line(format!("{name}: {}", drifted(drift, summary.steps)));
+    }
+    if more(drifts.len()) > 0 {
+        line(format!("{} further drifts are smaller", more(drifts.len())));
+    }
+    for (name, value) in &summary.facts {
+        line(format!("{}: {}", name.replace('_', " "), number(*value)));
+    }
+    if let Some(accuracy) = &summary.accuracy {
+        line(format!("error at the end, {}: {}", accuracy.found_in_words(), errors(accuracy)));
+        let why = if summary.method.order.is_none() {
+            ": the method is exact, the rest is rounding"
+        } else {
+            ""
+        };
+        let are = if accuracy.digits == 1 { "is" } else { "are" };
+        line(match accuracy.digits {
+            0 => "no digit is right".into(),
+            _ => format!("{} {are} right{why}", accuracy.digits_in_words()),
+        });
+    }
+    summary.accuracy_unknown.iter().for_each(|why| line(format!("error at the end: {why}")));
+    summary.warnings.iter().for_each(|warning| line(format!("WARNING: {warning}")));
+    let mut file = |name: &str| line(folder.join(name).display().to_string());
+    file(summary.trajectory);
+    if !summary.events.is_empty() {
+        file(output::EVENTS[0]);
+    }
+    file(SUMMARY);
+    page.into_iter().for_each(file);
+    text
+}
+
+/// How far an invariant drifted: in parts of its value, where that is no small difference of large terms.
+fn drifted(drift: &Drift, steps: u64) -> String {
+    let size = drift.rounding / explained_by_rounding(steps, 1.0);
+    let (value, of) = match drift.initial.abs() > 1e-3 * size {
+        true => (drift.initial.abs(), " of its value"),
+        false => (1.0, ""),
+    };
+    let [at_end, largest] = [drift.at_end, drift.max].map(|moved| short(moved / value));
+    format!("drifted by {at_end}{of} (largest {largest})")
+}
+
+fn errors(accuracy: &Accuracy) -> String {
+    let mut parts: Vec<_> = accuracy.parts.iter().collect();
+    let further = parts.len().saturating_sub(PARTS);
+    if further > 0 {
+        parts.sort_by(|a, b| b.relative.total_cmp(&a.relative));
+    }
+    let mut told: Vec<_> = parts.iter().take(PARTS).map(|part| part.in_words()).collect();
+    if further > 0 {
+        told.push(format!("{further} further parts less"));
+    }
+    told.join(", ")
+}

@@ -1,0 +1,364 @@
+//! `lieflow run`: right by default, and every run says how right it is.
+
+mod support;
+
+use std::io::Write;
+use std::process::Stdio;
+
+use lieflow_model::scene::BUNDLED;
+use serde_json::{Value, json};
+use support::{Folder, Run, SCENE, read_csv};
+
+/// A book thrown about its middle axis, by a step that is too large.
+const CUBESAT: &str = "\
+[problem]
+kind = \"rigid-body\"
+inertia = [0.0026, 0.0103, 0.0108]
+omega_body = [0.001, 1.0, 0.001]
+quaternion = [1, 0, 0, 0]
+[method]
+name = \"rkmk4\"
+[time]
+t_span = [0, 600]
+dt = 0.1
+[output]
+quantities = [\"quaternion\"]
+every = 100
+";
+
+/// A scene without its method, its steps and its output.
+fn stripped(text: &str) -> String {
+    let mut section = "";
+    let mut kept = String::new();
+    for line in text.lines() {
+        if line.starts_with('[') {
+            section = line;
+        }
+        let steps = ["dt ", "steps ", "rtol ", "atol ", "tolerance "];
+        let is_left = match section {
+            "[method]" | "[output]" => true,
+            "[time]" => steps.iter().any(|key| line.starts_with(key)),
+            _ => line.starts_with("title"),
+        };
+        if !is_left {
+            kept += &format!("{line}\n");
+        }
+    }
+    kept
+}
+
+fn relative(summary: &Value) -> f64 {
+    let parts = summary["accuracy"]["parts"].as_array().unwrap();
+    parts.iter().map(|part| part["relative"].as_f64().unwrap()).fold(0.0, f64::max)
+}
+
+/// Scenes with fewer digits: a chaotic one, where no method has any; and a body that turns six thousand times, in
+/// which the errors of 200000 steps add up.
+const FEWER: &[(&str, f64)] = &[("lorenz", f64::INFINITY), ("high-energy", 3e-8)];
+
+#[test]
+fn eight_digits_are_right_where_a_scene_names_no_method_and_no_steps() {
+    let folder = Folder::new();
+    let mut wrong = Vec::new();
+    for bundled in BUNDLED {
+        let name = bundled.name;
+        folder.write(&format!("{name}.toml"), &stripped(bundled.text));
+        let file = format!("{name}.toml");
+        folder.lieflow(&["run", &file, "--no-page", "--error-check", "always", "--out", name]).ok();
+        let summary = folder.json(&format!("{name}/summary.json"));
+        assert_eq!(summary["title"], name);
+        assert_eq!(
+            summary["chosen_by_default"],
+            json!({ "method": true, "steps": true, "quantities": true, "rows": true }),
+            "{name}"
+        );
+        let (_, rows) = read_csv(&folder.read(&format!("{name}/trajectory.csv")));
+        if summary["t_span"][1].is_number() {
+            assert_eq!(rows.len(), 1001, "{name}");
+        }
+        let fewer = FEWER.iter().find(|(other, _)| *other == name);
+        let bound = fewer.map_or(1e-8, |(_, bound)| *bound);
+        if relative(&summary) > bound {
+            wrong.push(format!("{name}: {}", summary["accuracy"]));
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+#[test]
+fn an_estimated_error_is_that_against_the_exact_motion() {
+    let folder = Folder::new();
+    // The same body twice: as a free body its motion is known, under a torque of zero it is estimated.
+    let free = "kind = \"rigid-body\"\ninertia = [1, 2, 3]\nomega_body = [0.2, 0.1, 1]";
+    let driven = free.replace("rigid-body", "driven-body") + "\nthruster = [0, 0, 0]";
+    for (method, time) in [
+        ("name = \"rkmk4\"", "dt = 0.05"),
+        ("name = \"cf4\"", "steps = 100"),
+        ("name = \"rkmk\"\ntableau = \"heun\"", "dt = 0.01"),
+        ("name = \"rkmk\"\ntableau = \"dopri5\"", "rtol = 1e-8"),
+        ("name = \"rkmk\"\ntableau = \"dop853\"", "rtol = 1e-9"),
+        ("", ""),
+    ] {
+        let error = |problem: &str, name: &str| {
+            let text = format!(
+                "[problem]\n{problem}\n[method]\n{method}\n[time]\nt_span = [0, 10]\n{time}\n"
+            );
+            folder.write("scene.toml", &text);
+            folder.lieflow(&["run", "scene.toml", "--no-page", "--out", name]).ok();
+            let summary = folder.json(&format!("{name}/summary.json"));
+            let mut parts = summary["accuracy"]["parts"].as_array().unwrap().iter();
+            let attitude = parts.find(|part| part["name"] == "attitude").unwrap();
+            let [degrees, radians] =
+                ["degrees", "relative"].map(|key| attitude[key].as_f64().unwrap());
+            assert!((degrees.to_radians() - radians).abs() <= 1e-12 * radians);
+            (summary["accuracy"]["found_by"].clone(), radians)
+        };
+        let (by, exact) = error(free, "free");
+        let (estimated_by, estimate) = error(&driven, "driven");
+        assert_eq!(by, "exact");
+        let expected = match time {
+            "" => "tenfold-tolerance",
+            tolerance if tolerance.starts_with("rtol") => "tenth-tolerance",
+            _ => "half-step",
+        };
+        assert_eq!(estimated_by, expected, "{method} {time}");
+        let rounding = 1e-12;
+        let close = estimate < 3.0 * exact + rounding && exact < 3.0 * estimate + rounding;
+        assert!(close, "{method} {time}: {estimate:e}, exact {exact:e}");
+    }
+}
+
+#[test]
+fn a_run_that_is_wrong_warns_and_what_it_advises_does() {
+    let folder = Folder::new();
+    folder.write("cubesat.toml", CUBESAT);
+    let told = folder.lieflow(&["run", "cubesat.toml", "--out", "out"]).ok();
+    assert!(told.contains("\n  no digit is right\n"), "{told}");
+    let warning = "WARNING: `attitude` is wrong by 144 degrees at the end: this run is not usable. \
+                   dt = 0.01 would give about 4 digits. Leave [method] and the steps out, and lieflow gives";
+    assert!(told.contains(warning), "{told}");
+    let summary = folder.json("out/summary.json");
+    assert_eq!(summary["accuracy"]["digits"], 0);
+    assert!(
+        warning
+            .starts_with(&format!("WARNING: {}", &summary["warnings"][0].as_str().unwrap()[..60]))
+    );
+
+    // What it advises.
+    let smaller = ["run", "cubesat.toml", "--out", "out", "--set", "time.dt=0.01"];
+    let told = folder.lieflow(&smaller).ok();
+    assert!(!told.contains("WARNING"), "{told}");
+    assert_eq!(folder.json("out/summary.json")["accuracy"]["digits"], 4);
+    let left = ["run", "cubesat.toml", "--out", "out", "--set", "time.dt=", "--set", "method="];
+    assert!(!folder.lieflow(&left).ok().contains("WARNING"));
+
+    // Under a torque, where no exact motion is known.
+    for scene in ["damped-satellite", "gyrostat"] {
+        let large = ["run", scene, "--out", "out", "--no-page", "--set", "time.dt=3"];
+        let told = folder.lieflow(&large).ok();
+        assert!(
+            told.contains("WARNING: ") && told.contains(" would give about 4 digits"),
+            "{told}"
+        );
+    }
+    // A tolerance that is too large.
+    let set = ["--set", "method.tableau=dopri5", "--set", "method.name=rkmk", "--set", "time.dt="];
+    let loose = ["run", "cubesat.toml", "--out", "out", "--set", "time.rtol=1e-4"];
+    let told = folder.lieflow(&[&loose[..], &set[..]].concat()).ok();
+    assert!(told.contains("WARNING: `") && told.contains(". rtol = 1e-"), "{told}");
+}
+
+#[test]
+fn the_error_check_can_be_switched_off() {
+    let folder = Folder::new();
+    let run = |args: &[&str]| {
+        let told = folder.lieflow(&[&["run", "--out", "out", "--no-page"], args].concat()).ok();
+        (told, folder.json("out/summary.json"))
+    };
+    let (told, summary) = run(&["damped-satellite"]);
+    assert!(told.contains("estimated by a second run with half the step"), "{told}");
+    assert_eq!(summary["accuracy"]["digits"], 8);
+    assert_eq!(summary["error_at_end"], Value::Null);
+    for off in [["--error-check", "never"], ["--set", "output.error_check=false"]] {
+        let (told, summary) = run(&[&["damped-satellite"][..], &off].concat());
+        assert!(!told.contains("second run") && !told.contains("right"), "{told}");
+        assert_eq!(summary["accuracy"], Value::Null);
+    }
+    // The exact motion costs nothing.
+    let (told, summary) = run(&["asymmetric-top", "--error-check", "never"]);
+    assert!(
+        told.contains("error at the end, against the exact motion: momentum_body 2e-5"),
+        "{told}"
+    );
+    assert_eq!(summary["accuracy"]["digits"], 4);
+    // An event ends both runs at the same time.
+    let (_, summary) = run(&["flips"]);
+    assert!(summary["accuracy"]["digits"].as_u64().unwrap() >= 5, "{}", summary["accuracy"]);
+    // The exact motion by its own method: what is left is rounding.
+    let (told, _) = run(&["asymmetric-top", "--set", "method.name=exact", "--set", "method.map="]);
+    assert!(told.contains("right: the method is exact, the rest is rounding"), "{told}");
+}
+
+#[test]
+fn rows_at_equal_times_are_asked_for_by_their_number_or_their_distance() {
+    let folder = Folder::new();
+    let times = |output: &str| {
+        folder.write("scene.toml", &SCENE.replace("every = 10", output));
+        folder.lieflow(&["run", "scene.toml", "--no-page", "--out", "out"]).ok();
+        let (_, rows) = read_csv(&folder.read("out/trajectory.csv"));
+        rows.iter().map(|row| row[0]).collect::<Vec<_>>()
+    };
+    assert_eq!(times("count = 4"), [0.0, 0.5, 1.0, 1.5, 2.0]);
+    let hundred = times("count = 100");
+    assert_eq!((hundred.len(), hundred[100]), (101, 2.0));
+    assert_eq!(times("interval = 0.75"), [0.0, 0.75, 1.5, 2.0]);
+    assert_eq!(times("interval = 0.1").len(), 21);
+    assert_eq!(times("interval = 5.0"), [0.0, 2.0]);
+    // Backward, and over a span without an end.
+    let set = |name: &str, set: &[&str]| {
+        let set: Vec<&str> = set.iter().flat_map(|set| ["--set", set]).collect();
+        let run = ["run", name, "--no-page", "--out", "out"];
+        folder.lieflow(&[&run[..], &set].concat())
+    };
+    set("scene.toml", &["time.t_span=[2, 0]", "output.interval=0.75"]).ok();
+    let (_, rows) = read_csv(&folder.read("out/trajectory.csv"));
+    assert_eq!(rows.iter().map(|row| row[0]).collect::<Vec<_>>(), [2.0, 1.25, 0.5, 0.0]);
+    set("flips", &["output.interval=10"]).ok();
+    let (_, rows) = read_csv(&folder.read("out/trajectory.csv"));
+    assert_eq!((rows.len(), rows[7][0]), (9, 70.0));
+    let message = set("flips", &["output.count=10"]).refused();
+    assert!(
+        message.contains("`count` divides a span with an end: expected `interval`"),
+        "{message}"
+    );
+}
+
+#[test]
+fn settings_change_a_scene() {
+    let folder = Folder::new();
+    folder.write("scene.toml", SCENE);
+    let run = |set: &[&str]| {
+        let set: Vec<&str> = set.iter().flat_map(|set| ["--set", set]).collect();
+        let run = ["run", "scene.toml", "--no-page", "--out", "out"];
+        folder.lieflow(&[&run[..], &set].concat())
+    };
+    run(&[
+        "problem.inertia=[3, 2.0, 1]",
+        "problem.inertia[2]=2.5",
+        "time.dt=0.1",
+        "method.map=cay",
+    ])
+    .ok();
+    let summary = folder.json("out/summary.json");
+    assert_eq!((&summary["dt"], &summary["method"]["map"]), (&json!(0.1), &json!("cay")));
+    let (_, rows) = read_csv(&folder.read("out/trajectory.csv"));
+    assert_eq!(rows[0][1..4], [0.6000000000000001, 0.0, 1.0]);
+    run(&["method=", "time.dt=", "time.rtol=1e-9"]).ok();
+    let summary = folder.json("out/summary.json");
+    assert_eq!(summary["method"]["tableau"], "dop853");
+    assert_eq!(
+        (&summary["rtol"], &summary["chosen_by_default"]["steps"]),
+        (&json!(1e-9), &json!(false))
+    );
+    for (set, what) in [
+        ("time.dt", "expected key=value, such as time.dt=0.01"),
+        ("=3", "expected a key before the `=`"),
+        ("time.dtt=1", "unknown key `dtt` in [time]"),
+        ("tmie.dt=1", "unknown key `tmie`"),
+        ("time.dtt=", "there is no `dtt`: expected one of t_span, dt; did you mean `dt`?"),
+        ("problem.inertia[4]=1", "`problem.inertia` has 3 entries"),
+        ("problem.inertia[0]=1", "expected a place from 1"),
+        ("problem.kind[1]=1", "`problem.kind` is no list"),
+        ("problem=1", "`problem` is a section, expected a key in it"),
+        ("time.dt=0,1", "`0,1` is no value of TOML"),
+        ("time.dt=fast", "expected a number"),
+    ] {
+        let message = run(&[set]).refused();
+        assert!(message.contains(what), "{set}: {message}");
+    }
+}
+
+#[test]
+fn several_scenes_run_in_one_call() {
+    let folder = Folder::new();
+    folder.write("a.toml", SCENE);
+    folder.write("b.toml", &SCENE.replace("Test", "Second"));
+    let told = folder.lieflow(&["run", "a.toml", "b.toml", "--out", "both", "--no-page"]).ok();
+    assert!(told.contains("Test: ") && told.contains("Second: "), "{told}");
+    for name in ["both/a", "both/b"] {
+        assert_eq!(folder.names(name), ["summary.json", "trajectory.csv"]);
+    }
+    // One that is wrong does not keep the others back.
+    folder.write("bad.toml", "[problem]\n");
+    let run = folder.lieflow(&["run", "bad.toml", "a.toml", "a.toml"]);
+    assert_eq!(run.code, Some(2), "{run:?}");
+    assert!(run.out.starts_with("Test: "), "{run:?}");
+    for what in ["error: bad.toml:", "a.toml: another scene of this call", "2 of 3 scenes failed"] {
+        assert!(run.err.contains(what), "{run:?}");
+    }
+    assert_eq!(folder.data("lieflow-out/a"), ["summary.json", "trajectory.csv"]);
+}
+
+#[test]
+fn a_scene_is_read_from_standard_input() {
+    let folder = Folder::new();
+    let mut command = folder.command(&["run", "-", "--set", "title=Piped"]);
+    command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = command.spawn().unwrap();
+    child.stdin.take().unwrap().write_all(SCENE.as_bytes()).unwrap();
+    let told = Run::from(child.wait_with_output().unwrap()).ok();
+    assert!(told.starts_with("Piped: "), "{told}");
+    assert!(folder.names("lieflow-out/stdin").contains(&"index.html".to_string()));
+}
+
+#[test]
+fn a_run_of_years_is_refused_with_the_time_that_it_would_take() {
+    let folder = Folder::new();
+    folder.write(
+        "scene.toml",
+        &SCENE.replace("dt = 0.05", "dt = 1e-14").replace("2.0]\n", "10.0]\n"),
+    );
+    let message = folder.lieflow(&["run", "scene.toml"]).refused();
+    assert!(
+        message.contains("scene.toml:12:6: dt = 1e-14: 1e15 steps would take about "),
+        "{message}"
+    );
+    assert!(message.contains(" years\n") && message.contains("take a larger step"), "{message}");
+    assert_eq!(folder.names("."), ["scene.toml"]);
+    // Steps that are chosen by their error are foreseen, too.
+    let slow =
+        ["method.name=rk", "method.map=", "method.tableau=euler", "time.dt=", "time.rtol=1e-13"];
+    let slow: Vec<&str> = slow.iter().flat_map(|set| ["--set", set]).collect();
+    let limit = ["--set", "time.max_steps=5000", "--set", "time.t_span=[0, 10]"];
+    let run = folder.lieflow(&[&["run", "scene.toml"][..], &slow, &limit].concat());
+    assert_eq!(run.code, Some(2));
+    for what in [
+        "note: scene: about ",
+        "steps are needed, and the run ends after 5000 (max_steps)",
+        "order 1",
+    ] {
+        assert!(run.err.contains(what), "{}", run.err);
+    }
+}
+
+#[test]
+fn the_help_names_the_files_that_a_run_writes() {
+    let folder = Folder::new();
+    let help = folder.lieflow(&["run", "--help"]).ok();
+    let [complete, partial] = lieflow_cli::output::TRAJECTORY;
+    assert!(
+        help.contains(&format!(" {complete}")) && help.contains(&format!(" {partial}")),
+        "{help}"
+    );
+    assert!(!help.contains(&format!("{complete}.partial")), "{help}");
+}
+
+#[test]
+fn without_a_page_none_is_left() {
+    let folder = Folder::new();
+    folder.lieflow(&["run", "asymmetric-top", "--out", "out"]).ok();
+    assert!(folder.names("out").contains(&"index.html".to_string()));
+    let told = folder.lieflow(&["run", "asymmetric-top", "--out", "out", "--no-page"]).ok();
+    assert!(!told.contains("index.html"), "{told}");
+    assert!(!folder.names("out").contains(&"index.html".to_string()));
+}
