@@ -116,11 +116,6 @@ impl<T: Torque> TorqueBody<T> {
         Ok((attitude, attitude * m))
     }
 
-    /// The principal moments of inertia.
-    pub fn inertia(&self) -> [f64; 3] {
-        self.inertia.into()
-    }
-
     /// This body in other numbers, under a torque in those.
     pub fn on<S: Real, U: Torque<S>>(&self, torque: U) -> TorqueBody<U, S> {
         TorqueBody::of(self.inertia, torque)

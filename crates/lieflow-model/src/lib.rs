@@ -5,6 +5,7 @@
 #![forbid(unsafe_code)]
 
 pub mod kinds;
+mod mapped;
 pub mod model;
 pub mod operations;
 pub mod scene;

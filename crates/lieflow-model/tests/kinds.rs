@@ -1,5 +1,9 @@
 //! The kinds of problems as scenes state them: known values, invariants, and what is refused.
 
+#[path = "kinds/bodies.rs"]
+mod bodies;
+#[path = "kinds/columns.rs"]
+mod columns;
 #[path = "kinds/composed.rs"]
 mod composed;
 #[path = "kinds/energies.rs"]

@@ -12,5 +12,5 @@ mod suggest;
 #[path = "../src/scene/values.rs"]
 mod values;
 
-use error::Refusal;
+use error::{KeyPath, Refusal};
 use suggest::help_for;

@@ -256,6 +256,7 @@ pub fn run_scene(
         modelled: model.modelled(method),
         facts: scene.problem.facts().iter().map(|fact| (fact.name, fact.value)).collect(),
         warnings,
+        notes: scene.problem.notes(),
         quantities: scene.quantities.clone(),
         columns: core::iter::once("t".into()).chain(columns).collect(),
         trajectory: output::TRAJECTORY[usize::from(!completed)],

@@ -82,6 +82,7 @@ pub(super) fn in_words(summary: &Summary, folder: &Path, page: Option<&str>) -> 
         });
     }
     summary.accuracy_unknown.iter().for_each(|why| line(format!("error at the end: {why}")));
+    summary.notes.iter().for_each(|note| line(format!("note: {note}")));
     summary.warnings.iter().for_each(|warning| line(format!("WARNING: {warning}")));
     let mut file = |name: &str| line(folder.join(name).display().to_string());
     file(summary.trajectory);

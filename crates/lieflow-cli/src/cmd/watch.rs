@@ -21,7 +21,8 @@ use lieflow_model::schema::{Observable, Row};
 pub(super) fn quantities(scene: &Scene) -> Vec<&str> {
     let problem = &scene.problem;
     let mut all = scene.computed();
-    let further = [problem.state(&all), &problem.invariants(&all), &[problem.figure().quantity()]];
+    let further =
+        [problem.state(&all), &problem.invariants(&all), &[problem.figure(&all).quantity()]];
     for name in further.concat() {
         if !all.contains(&name) {
             all.push(name);
@@ -53,7 +54,7 @@ impl<'a> Watch<'a> {
             model,
             state: find(problem.state(&computed))?,
             laws: find(&problem.invariants(&computed))?,
-            drawn: schema.get(problem.figure().quantity())?,
+            drawn: schema.get(problem.figure(&computed).quantity())?,
             written: find(&computed[..scene.quantities.len()])?,
         })
     }
@@ -131,7 +132,7 @@ impl<'a> Watch<'a> {
 
     /// The field at the end, where the figure is one.
     pub(super) fn field(&self, rows: &RowSample<'_>) -> Vec<Vec<f64>> {
-        match (self.scene.problem.figure(), rows.ends()) {
+        match (self.scene.problem.figure(&self.scene.computed()), rows.ends()) {
             (Figure::Map(..), Some([_, (_, row)])) => self.scene.problem.field(&row[self.drawn]),
             _ => Vec::new(),
         }

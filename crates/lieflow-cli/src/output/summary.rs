@@ -43,6 +43,8 @@ pub struct Summary {
     pub facts: BTreeMap<&'static str, f64>,
     /// What a reader should know: a body that cannot be, an invariant that moved.
     pub warnings: Vec<String>,
+    /// What was changed of the numbers in the scene.
+    pub notes: Vec<String>,
     /// What was written.
     pub quantities: Vec<String>,
     /// The columns of the trajectory.

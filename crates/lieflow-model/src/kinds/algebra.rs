@@ -12,7 +12,7 @@ use lieflow::Error;
 use lieflow::groups::MatrixGroup;
 use lieflow::scalar::{Ops, tally};
 
-use crate::scene::Refusal;
+use crate::scene::{KeyPath, Refusal};
 
 /// An algebra of n×n matrices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,7 +71,7 @@ impl Algebra {
             }
             Algebra::Sp => MatrixGroup::sp(n),
         };
-        group.map_err(|error: Error| Refusal::at(key, error.to_string()))
+        group.map_err(|error: Error| Refusal::from(error).about(key))
     }
 
     /// x ← its projection on the algebra.
@@ -114,12 +114,81 @@ fn skew(x: &mut Mat<f64>, p: usize) {
     }
 }
 
-/// The entry of x that is farthest from the algebra, where that is more than `tolerance` times its size.
-pub(super) fn outside(algebra: Algebra, x: &Mat<f64>, tolerance: f64) -> Option<(usize, usize)> {
+/// How a matrix that is not in an algebra misses it.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Miss {
+    /// The first of the entries that do not go together.
+    pub(super) at: (usize, usize),
+    /// What is wrong with them.
+    pub(super) why: String,
+    /// What the algebra is.
+    pub(super) form: String,
+}
+
+/// How x, the value of `key`, misses the algebra by more than `tolerance` times its size, at the entry where it does
+/// most.
+pub(super) fn miss(algebra: Algebra, key: &str, x: &Mat<f64>, tolerance: f64) -> Option<Miss> {
+    let n = x.nrows();
     let mut inside = x.clone();
     algebra.project(&mut inside);
-    let entries = (0..x.nrows()).flat_map(|i| (0..x.ncols()).map(move |j| (i, j)));
+    let entries = (0..n).flat_map(|i| (0..n).map(move |j| (i, j)));
     let away = |&(i, j): &(usize, usize)| (x[(i, j)] - inside[(i, j)]).abs();
     let farthest = entries.max_by(|a, b| away(a).total_cmp(&away(b)))?;
-    (away(&farthest) > tolerance * x.norm_max()).then_some(farthest)
+    if away(&farthest) <= tolerance * x.norm_max() {
+        return None;
+    }
+    let (i, j) = farthest;
+    // The entry that follows from this one, and its factor.
+    let (partner, factor) = match algebra {
+        Algebra::Gl | Algebra::Sl => ((i, j), 1.0),
+        Algebra::So => ((j, i), -1.0),
+        Algebra::Indefinite(p, _) => ((j, i), if (i < p) == (j < p) { -1.0 } else { 1.0 }),
+        Algebra::Sp => {
+            let other = |i: usize| (i + n / 2) % n;
+            let same_half = (i < n / 2) == (j < n / 2);
+            ((other(j), other(i)), if same_half { -1.0 } else { 1.0 })
+        }
+    };
+    let [first, second] = [farthest.min(partner), farthest.max(partner)];
+    let name = |(i, j): (usize, usize)| key.cell(i, j);
+    let why = match algebra {
+        Algebra::Gl | Algebra::Sl => {
+            let trace: f64 = (0..n).map(|i| x[(i, i)]).sum();
+            format!("the sum of its diagonal is {trace}, expected 0")
+        }
+        _ if first == second => format!("{} is {}, expected 0", name(first), x[first]),
+        _ => {
+            let sign = if factor < 0.0 { "-" } else { "" };
+            format!(
+                "{} is {} and {} is {}, expected {} = {sign}{}",
+                name(first),
+                x[first],
+                name(second),
+                x[second],
+                name(second),
+                name(first)
+            )
+        }
+    };
+    let of = algebra.name(n);
+    let form = match algebra {
+        Algebra::Gl | Algebra::Sl => format!("{of}: the sum of the diagonal is 0"),
+        Algebra::So => format!("{of}: each entry below the diagonal is minus that above it"),
+        Algebra::Indefinite(p, _) => format!(
+            "{of}: each entry below the diagonal is minus that above it; where one of its row and column is up to {p} \
+             and the other is not, it is the same"
+        ),
+        Algebra::Sp => {
+            let m = n / 2;
+            let names = |letter: &str| {
+                (1..=m).map(|i| format!("{letter}{i}")).collect::<Vec<_>>().join(", ")
+            };
+            format!(
+                "{of} here is [A B; C -Aᵀ] of {m}×{m} blocks, B and C symmetric; the coordinates are ({}, {})",
+                names("q"),
+                names("p")
+            )
+        }
+    };
+    Some(Miss { at: first, why, form })
 }

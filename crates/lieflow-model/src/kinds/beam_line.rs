@@ -73,7 +73,7 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
     let keys = Keys::deserialize(section)?;
     let (mut elements, mut strengths, mut end) = (Vec::new(), Vec::new(), 0.0);
     for (i, keys) in keys.elements.iter().enumerate() {
-        let refused = |message| Refusal::at(format!("elements[{i}]"), message);
+        let refused = |message| Refusal::at("elements".index(i), message);
         let (element, strength) = element(keys).map_err(refused)?;
         end += keys.length.0;
         elements.push(element);
@@ -82,7 +82,7 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
     if elements.is_empty() {
         return Err(Refusal::at("elements", "no elements, expected at least one").into());
     }
-    transfer_map(&elements).map_err(|error| Refusal::at("elements", error.to_string()))?;
+    transfer_map(&elements).map_err(|error| Refusal::from(error).about("elements"))?;
     Ok(Box::new(Stated(BeamLine { elements, strengths, particle: keys.particle.0 })))
 }
 

@@ -8,20 +8,23 @@
 //! | `damping` | −cω | body |
 //! | `control` = \[k, c\] | −k ½(g − gᵀ)^∨ − cω, toward g = 𝟙 | body |
 //! | `torque`, `torque_space` | formulas in t, ω, m_s and g | body, space |
+//!
+//! The body moves in the frame of its principal axes; torques are stated in the axes of the scene.
 
 use std::sync::Arc;
 
 use lieflow::actions::LeftTranslation;
-use lieflow::groups::{LieGroup, So3, vee};
-use lieflow::problems::{BodyMotion, BodyTorque, Torque, TorqueBody};
+use lieflow::groups::{LieGroup, So3};
+use lieflow::problems::{BodyMotion, BodyTorque, Exact, Torque, TorqueBody};
 use lieflow::scalar::Real;
 use nalgebra::{Matrix3, Vector3};
 
-use super::body::{ATTITUDE, ROTATION, attitude, by_rows};
+use super::body::*;
 use super::flow;
 use super::prelude::*;
-use crate::scene::formula::{Formula, Parameters, SamplesFile, read_all};
-use crate::scene::values::{self, Rows, Texts};
+use super::system::PointOf;
+use crate::scene::formula::{Formula, Texts};
+use crate::scene::values;
 
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {
@@ -31,39 +34,34 @@ pub(super) const KIND: Kind = Kind {
     ..Kind::of::<Keys, Driven>(read)
 };
 
-keys! { Keys {
-    inertia: Reals<3> = "principal moments of inertia [J1, J2, J3]",
-    omega_body: Reals<3> = "initial angular velocity in the body",
-    attitude: Option<Rows<3>> = ATTITUDE,
+keys! { Keys [sample_keys formula_keys body_keys] {
     weight: Option<Reals<3>> =
         "gravity: weight times the vector from the fixed point to the centre of mass, in the body; optional",
     thruster: Option<Reals<3>> = "a constant torque in the body; optional",
     damping: Option<values::Real> = "c of a torque -c omega in the body; optional",
     control: Option<Reals<2>> = "[k, c] of a law that brings the attitude to the identity; optional",
-    torque: Option<Texts<3>> =
-        "a torque in the body, three formulas in t, the angular velocity in the body w1, w2, w3, the \
-         momentum in space m1, m2, m3 and the attitude g11, ..., g33; optional",
-    torque_space: Option<Texts<3>> = "a torque in space, three formulas in the same variables; optional",
-    samples: Option<SamplesFile> = SAMPLES.meaning,
-    interpolation: Option<String> = INTERPOLATION.meaning,
-    #[serde(default)]
-    parameters: Parameters = PARAMETERS.meaning,
+    torque: Option<Texts> =
+        "a torque in the body, three formulas, or one whose value is a vector, in t, the angular velocity in the body \
+         w1, w2, w3, the momentum in space m1, m2, m3 (also l1, l2, l3) and the attitude g11, ..., g33; optional",
+    torque_space: Option<Texts> = "a torque in space, by formulas in the same variables; optional",
 } }
 
 /// What a torque may depend on, in the order of [`variables`].
 #[rustfmt::skip]
-const VARIABLES: [&str; 16] = [
+const VARIABLES: [&str; 19] = [
     "t", "w1", "w2", "w3", "m1", "m2", "m3",
     "g11", "g12", "g13", "g21", "g22", "g23", "g31", "g32", "g33",
+    "l1", "l2", "l3",
 ];
 
-fn variables<S: Copy>(at: &BodyMotion<S>) -> [S; 16] {
+fn variables<S: Copy>(at: &BodyMotion<S>) -> [S; 19] {
     let (w, m, g) = (&at.omega_body, &at.momentum_space, &at.attitude);
     core::array::from_fn(|i| match i {
         0 => at.t,
         1..=3 => w[i - 1],
         4..=6 => m[i - 4],
-        _ => g[((i - 7) / 3, (i - 7) % 3)],
+        7..=15 => g[((i - 7) / 3, (i - 7) % 3)],
+        _ => m[i - 16],
     })
 }
 
@@ -79,7 +77,9 @@ type Point = (Matrix3<f64>, Vector3<f64>);
 
 /// The torques that were named.
 #[derive(Clone, Debug, Default)]
-struct Torques {
+pub(super) struct Torques {
+    /// The principal axes in the frame of the scene, where that is another.
+    axes: Option<Matrix3<f64>>,
     weight: Option<Vector3<f64>>,
     thruster: Option<Vector3<f64>>,
     damping: Option<f64>,
@@ -88,8 +88,35 @@ struct Torques {
     in_space: Option<Formulas>,
 }
 
+impl Torques {
+    /// Gravity alone, along the axes of the body.
+    pub(super) fn of_weight(weight: Vector3<f64>) -> Self {
+        Torques { weight: Some(weight), ..Torques::default() }
+    }
+
+    /// The motion along the axes of the scene.
+    fn in_scene<S: Real>(&self, at: &BodyMotion<S>) -> BodyMotion<S> {
+        let Some(axes) = self.axes else { return *at };
+        let sum = |of: &dyn Fn(usize) -> S| of(0) + of(1) + of(2);
+        let (g, w) = (&at.attitude, &at.omega_body);
+        let attitude = Matrix3::from_fn(|i, j| sum(&|k| g[(i, k)] * S::lit(axes[(j, k)])));
+        let omega_body = Vector3::from_fn(|i, _| sum(&|k| S::lit(axes[(i, k)]) * w[k]));
+        BodyMotion { attitude, omega_body, ..*at }
+    }
+
+    /// Is there none, or only one that is 0 at all times?
+    fn are_none(&self) -> bool {
+        let Torques { axes: _, weight, thruster, damping, control, in_the_body, in_space } = self;
+        let vectors = weight.iter().chain(thruster).flat_map(|x| x.iter());
+        let numbers = vectors.chain(damping).chain(control.iter().flatten());
+        let formulas = in_the_body.iter().chain(in_space).flat_map(|formulas| formulas.iter());
+        numbers.copied().all(|x| x == 0.0) && formulas.into_iter().all(Formula::is_zero)
+    }
+}
+
 impl<S: Real + Into<f64>> Torque<S> for Torques {
     fn in_space(&self, at: &BodyMotion<S>) -> Vector3<S> {
+        let at = &self.in_scene(at);
         let lit = |x: Vector3<f64>| x.map(S::lit);
         let g = &at.attitude;
         let damped = |c: f64| at.omega_body.map(|w| S::lit(-c) * w);
@@ -130,6 +157,7 @@ impl<S: Real + Into<f64>> Torque<S> for Torques {
 /// The body with its initial state (g, m_s).
 #[derive(Clone, Debug)]
 struct Driven {
+    spec: RigidBodySpec,
     body: TorqueBody<Torques>,
     torques: Torques,
     start: Point,
@@ -138,14 +166,15 @@ struct Driven {
 type Q = Quantity<Driven>;
 
 fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
-    let keys = Keys::deserialize(section)?;
-    let names = keys.parameters.names("torque", VARIABLES)?;
-    let names = names.with_samples(keys.samples, keys.interpolation.as_deref())?;
-    let formulas = |key: &str, texts: Option<Texts<3>>| match texts {
-        Some(Texts(texts)) => read_all(key, &texts, &names).map(|formulas| Some(formulas.into())),
+    let mut keys = Keys::deserialize(section)?;
+    let spec = keys.body_keys().start(Matrix3::identity())?;
+    let names = keys.formula_keys().names("torque", VARIABLES, keys.sample_keys())?;
+    let formulas = |key: &str, texts: Option<Texts>| match texts {
+        Some(texts) => texts.read(key, 3, &names).map(|formulas| Some(formulas.into())),
         None => Ok(None),
     };
     let torques = Torques {
+        axes: spec.axes,
         weight: keys.weight.map(|x| x.0.into()),
         thruster: keys.thruster.map(|x| x.0.into()),
         damping: keys.damping.map(|x| x.0),
@@ -153,15 +182,33 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
         in_the_body: formulas("torque", keys.torque)?,
         in_space: formulas("torque_space", keys.torque_space)?,
     };
-    let body = TorqueBody::new(keys.inertia.0, torques.clone())?;
-    let start = body.state(attitude(keys.attitude), keys.omega_body.0)?;
-    Ok(Box::new(Stated(Driven { body, torques, start })))
+    let body = TorqueBody::new(spec.inertia, torques.clone())?;
+    let start = (spec.attitude, spec.momentum_space());
+    Ok(Box::new(Stated(Driven { spec, body, torques, start })))
+}
+
+impl AsBody for Driven {
+    fn spec(&self) -> &RigidBodySpec {
+        &self.spec
+    }
+    fn momentum(&self, (g, m): &Point) -> Vector3<f64> {
+        g.tr_mul(m)
+    }
+    fn omega(&self, y: &Point) -> Vector3<f64> {
+        self.body.motion(0.0, y).omega_body
+    }
+    fn orientation(&self, (g, _): &Point) -> Orientation {
+        Orientation::Matrix(*g)
+    }
+    fn momentum_in_space(&self, (_, m): &Point) -> Vector3<f64> {
+        *m
+    }
 }
 
 impl Driven {
     /// A law of the motion under gravity alone, or under no torque.
     fn undriven(&self, law: Law) -> Option<Law> {
-        let Torques { weight: _, thruster, damping, control, in_the_body, in_space } =
+        let Torques { axes: _, weight: _, thruster, damping, control, in_the_body, in_space } =
             &self.torques;
         let formulas = in_the_body.is_some() || in_space.is_some();
         let driven = thruster.is_some() || damping.is_some() || control.is_some() || formulas;
@@ -174,51 +221,29 @@ impl System for Driven {
 
     const STATE: &'static [&'static str] = &["attitude", "momentum_space"];
     const QUANTITIES: &'static [Q] = &[
-        Q::numbers(
-            "attitude",
-            ROTATION,
-            "rotation from body to space, row by row",
-            |_, _, (g, _), row| by_rows(g, row),
-        )
-        .of_rotation(),
-        Q::numbers(
-            "momentum_space",
-            &["l1", "l2", "l3"],
-            "angular momentum in space",
-            |_, _, (_, m), row| row.extend(m.iter()),
-        ),
-        Q::numbers(
-            "omega_body",
-            &["w1", "w2", "w3"],
-            "angular velocity in the body",
-            |driven, t, y, row| row.extend(driven.body.motion(t, y).omega_body.iter()),
-        ),
-        Q::numbers(
-            "axis",
-            &["a1", "a2", "a3"],
-            "the third axis of the body, in space",
-            |_, _, (g, _), row| row.extend(g.column(2).iter()),
-        ),
+        attitude(),
+        quaternion(),
+        momentum_space(),
+        // m1, m2, m3 of formulas are the momentum in space.
+        momentum_body(&["mb1", "mb2", "mb3"]),
+        omega_body(),
+        omega_space(),
+        axis(),
+        nutation(),
         Q::number("energy", "kinetic energy, and that of the weight", |driven, _, y| {
-            let height = driven.torques.weight.map_or(0.0, |weight| (y.0 * weight)[2]);
+            let height = driven.torques.weight.map_or(0.0, |w| (driven.attitude(y) * w)[2]);
             driven.body.kinetic_energy(y) + height
         })
         .kept_where(|driven| driven.undriven(Law::by_the_flow(0)))
         .in_terms(|driven, y| {
             driven.body.kinetic_energy(y) + driven.torques.weight.map_or(0.0, |w| w.norm())
         }),
-        // Exact near 0 and near π: the sine and the cosine.
-        Q::number("angle", "angle of the attitude from the identity", |_, _, (g, _)| {
-            let sine = vee(&((g - g.transpose()) * 0.5)).norm();
-            sine.atan2(0.5 * (g.trace() - 1.0))
-        }),
+        angle(),
+        momentum_norm(),
         Q::number("vertical_momentum", "angular momentum about e3 in space", |_, _, (_, m)| m[2])
             .kept_where(|driven| driven.undriven(Law::by_the_flow(1)))
             .in_terms(|_, (_, m)| m.norm()),
-        Q::number("attitude_defect", "distance of g'g from the identity", |_, _, (g, _)| {
-            So3::new().defect(g)
-        })
-        .kept(Law::by_the_action(2).on_scale(Scale::One)),
+        attitude_defect(),
     ];
 
     fn kind(&self) -> &'static Kind {
@@ -233,11 +258,11 @@ impl System for Driven {
         Ok((flow::Driven::new(body, LeftTranslation), start))
     }
     fn check_start(&self, t0: f64) -> Result<(), Refusal> {
-        let at = variables(&self.body.motion(t0, &self.start));
+        let at = variables(&self.torques.in_scene(&self.body.motion(t0, &self.start)));
         let Torques { in_the_body, in_space, .. } = &self.torques;
         for (key, torque) in [("torque", in_the_body), ("torque_space", in_space)] {
             for (i, formula) in torque.iter().flat_map(|formulas| formulas.iter()).enumerate() {
-                formula.check(&format!("{key}[{i}]"), &at)?;
+                formula.check(&key.index(i), &at)?;
             }
         }
         Ok(())
@@ -246,8 +271,22 @@ impl System for Driven {
         let Torques { in_the_body, in_space, .. } = &self.torques;
         in_the_body.as_ref().or(in_space.as_ref())?[0].samples()
     }
+    /// Without a torque: that of the free body.
+    fn exact(&self, [t0, t1]: [f64; 2]) -> Option<Result<PointOf<Self>, Error>> {
+        let RigidBodySpec { inertia, momentum_body, attitude, .. } = self.spec;
+        let at =
+            |t: f64| Ok((Exact::new(inertia, momentum_body, attitude)?.state(t)?.1, self.start.1));
+        self.torques.are_none().then(|| at(t1 - t0))
+    }
+    fn warnings(&self) -> Vec<String> {
+        self.spec.impossible()
+    }
+    fn notes(&self) -> Vec<String> {
+        self.spec.notes.clone()
+    }
     fn modelled(&self) -> String {
-        let Torques { weight, thruster, damping, control, in_the_body, in_space } = &self.torques;
+        let Torques { axes: _, weight, thruster, damping, control, in_the_body, in_space } =
+            &self.torques;
         let named = [
             ("gravity", weight.is_some()),
             ("thruster", thruster.is_some()),
@@ -264,7 +303,7 @@ impl System for Driven {
         }
     }
     fn inertia(&self) -> Option<PrincipalInertia> {
-        Some(PrincipalInertia::diagonal(self.body.inertia()))
+        Some(self.spec.principal_inertia())
     }
     fn figure(&self) -> Figure {
         match (&self.torques.control, &self.torques.in_the_body) {

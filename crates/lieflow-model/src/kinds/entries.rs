@@ -32,6 +32,26 @@ pub(super) fn check_rows(key: &str, x: &Mat<f64>, n: usize) -> Result<(), Refusa
     }
 }
 
+/// The n of n×n matrices that have so many entries above the diagonal, n(n − 1)/2.
+pub(super) fn side_of(count: usize) -> Option<usize> {
+    (2..).take_while(|n| n * (n - 1) / 2 <= count).find(|n| n * (n - 1) / 2 == count)
+}
+
+/// The places above the diagonal of n×n matrices, row by row.
+pub(super) fn above_diagonal(n: usize) -> impl Iterator<Item = (usize, usize)> {
+    (0..n).flat_map(move |i| (i + 1..n).map(move |j| (i, j)))
+}
+
+/// The antisymmetric matrix with these entries above the diagonal, row by row; none for another number of them.
+pub(super) fn antisymmetric(above: &[f64]) -> Option<Mat<f64>> {
+    let n = side_of(above.len())?;
+    let mut x = Mat::zeros(n, n);
+    for ((i, j), &entry) in above_diagonal(n).zip(above) {
+        (x[(i, j)], x[(j, i)]) = (entry, -entry);
+    }
+    Some(x)
+}
+
 /// Is xᵀ = x up to this part of the largest entry?
 ///
 /// # Errors
@@ -54,14 +74,12 @@ fn check_symmetry(key: &str, x: &Mat<f64>, sign: f64, tolerance: f64) -> Result<
     let Some((i, j)) = lower.find(|&(i, j)| (x[(i, j)] - sign * x[(j, i)]).abs() > allowed) else {
         return Ok(());
     };
-    let (what, row, column) =
-        (if sign > 0.0 { "a symmetric" } else { "an antisymmetric" }, j + 1, i + 1);
-    let mut message =
-        format!("expected {what} matrix, but entry ({row},{column}) is {}", x[(j, i)]);
+    let what = if sign > 0.0 { "a symmetric" } else { "an antisymmetric" };
+    let mut message = format!("expected {what} matrix, but {} is {}", key.cell(j, i), x[(j, i)]);
     if i != j {
-        message += &format!(" and ({column},{row}) is {}", x[(i, j)]);
+        message += &format!(" and {} is {}", key.cell(i, j), x[(i, j)]);
     }
-    Err(Refusal::at(format!("{key}[{i},{j}]"), message))
+    Err(Refusal::at(key.cell(i, j), message))
 }
 
 /// The columns x1, …, xn.

@@ -1,113 +1,257 @@
-//! `kind = "heavy-top"`: a rigid body that turns about a fixed point under gravity, by its momentum μ and
-//! the vertical γ in the body, on se(3)*; see [`HeavyTop`].
+//! `kind = "heavy-top"`: a rigid body that turns about a fixed point under gravity; see [`HeavyTop`].
+//!
+//! | asked for | M | point |
+//! |---|---|---|
+//! | neither its attitude nor what follows from it | se(3)* | the momentum μ and the vertical γ in the body |
+//! | its attitude | SO(3) × ℝ³ | the attitude g and the momentum in space, a [`TorqueBody`] |
 
-use lieflow::actions::Coadjoint;
-use lieflow::problems::{HeavyTop, Invariants};
-use nalgebra::Vector3;
+use core::fmt::Debug;
+use core::marker::PhantomData;
 
-use super::body::{check_unit, momentum_body};
-use super::flow::OnSe3;
+use lieflow::actions::{Coadjoint, LeftTranslation};
+use lieflow::problems::{Exact, HeavyTop, Invariants, TorqueBody};
+use nalgebra::{Matrix3, Rotation3, Vector3};
+
+use super::body::*;
+use super::driven_body::Torques;
+use super::flow::{Driven, OnSe3};
 use super::prelude::*;
+use super::system::PointOf;
+use crate::model::{Model, Runnable};
 
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {
     name: "heavy-top",
-    equation: "μ̇ = μ × ω + γ × w, γ̇ = γ × ω, μ = Jω, γ upward, w the weight, all in the body",
-    summary: "the heavy top about a fixed point, by its momentum and the vertical in the body",
-    ..Kind::of::<Keys, Top>(read)
+    equation: "μ̇ = μ × ω + γ × w, γ̇ = γ × ω, μ = Jω, γ upward, w the weight, all in the body; ġ = gω̂, gγ = e3",
+    summary: "the heavy top about a fixed point, by its momentum and the vertical in the body, or by its attitude",
+    ..Kind::of::<Keys, Top<WithAttitude>>(read)
 };
 
-keys! { Keys {
-    inertia: Reals<3> = "principal moments of inertia about the fixed point [J1, J2, J3]",
+keys! { Keys [body_keys] {
     weight: Reals<3> = "weight times the vector from the fixed point to the centre of mass, in the body",
-    omega_body: Option<Reals<3>> = "initial angular velocity in the body",
-    momentum_body: Option<Reals<3>> = "initial angular momentum in the body, instead of omega_body",
-    vertical: Reals<3> = "initial direction upward in the body, of length 1",
+    vertical: Option<Reals<3>> =
+        "initial direction upward in the body, of length 1, instead of attitude: the attitude is then the least turn \
+         that brings it to e3",
 } }
 
-/// The top with its initial state (μ, γ).
-#[derive(Clone, Copy, Debug)]
-struct Top {
+/// The top with its initial state; vectors along its principal axes.
+#[derive(Clone, Debug)]
+struct TopSpec {
+    body: RigidBodySpec,
     top: HeavyTop,
-    inertia: [f64; 3],
     weight: Vector3<f64>,
-    start: Point,
+    vertical: Vector3<f64>,
 }
 
-type Point = (Vector3<f64>, Vector3<f64>);
-
-type Q = Quantity<Top>;
+/// The distance that `vertical` and `attitude` may have from each other.
+const AGREED: f64 = 1e-6;
 
 fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
-    let keys = Keys::deserialize(section)?;
-    let top = HeavyTop::new(keys.inertia.0, keys.weight.0)?;
-    let inertia = keys.inertia.0;
-    let momentum = momentum_body(inertia, None, keys.omega_body, keys.momentum_body)?;
-    let vertical = Vector3::from(keys.vertical.0);
-    let length = vertical.norm();
-    check_unit("vertical", length)?;
-    let start = (momentum, vertical / length);
-    Ok(Box::new(Stated(Top { top, inertia, weight: keys.weight.0.into(), start })))
+    let mut keys = Keys::deserialize(section)?;
+    let (body, mut notes) = (keys.body_keys(), Vec::new());
+    let stated = match keys.vertical {
+        None => None,
+        Some(vertical) => {
+            check_unit("vertical", &vertical.0, &mut notes)?;
+            let vertical = Vector3::from(vertical.0);
+            Some(vertical / vertical.norm())
+        }
+    };
+    if stated.is_none() && !body.has_attitude() {
+        let message = "expected `vertical`, `attitude` or `quaternion`, found none of them";
+        return Err(Refusal::section(message).into());
+    }
+    let mut body = body.start(stated.map_or_else(Matrix3::identity, upright))?;
+    let of_attitude = || body.attitude.row(2).transpose();
+    let vertical = stated.map_or_else(of_attitude, |vertical| body.along_axes(vertical));
+    let apart = (vertical - of_attitude()).norm();
+    if apart > AGREED {
+        let message = format!("vertical is {apart:.1e} from the third row of the attitude");
+        let help = Some("leave one of the two out".into());
+        return Err(Refusal { help, ..Refusal::at("vertical", message) }.into());
+    }
+    let weight = body.along_axes(keys.weight.0.into());
+    body.notes.extend(notes);
+    let top = HeavyTop::new(body.inertia, weight.into())?;
+    Ok(Box::new(TopSpec { body, top, weight, vertical }))
 }
 
-impl Top {
-    fn invariant(&self, y: &Point, i: usize) -> f64 {
-        self.top.problem().values(y)[i]
-    }
-    /// Is there a fourth integral?
-    fn is_integrable(&self) -> bool {
-        self.top.problem().invariants().len() > 3
-    }
+/// The least turn that brings a direction to e₃.
+fn upright(vertical: Vector3<f64>) -> Matrix3<f64> {
+    let turn = Rotation3::rotation_between(&vertical, &Vector3::z());
+    turn.map_or_else(|| Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0)), |g| g.into_inner())
 }
 
-impl System for Top {
+/// What a top is at a point.
+struct Pose {
+    mu: Vector3<f64>,
+    gamma: Vector3<f64>,
+    orientation: Orientation,
+}
+
+/// A way to represent the state of a top.
+trait Representation: Clone + Debug + Send + Sync + 'static {
+    /// The problem of the library.
+    type Problem<N: Number>: Runnable;
+    /// What is integrated, in words.
+    const MODELLED: &'static str;
+    /// The quantities that make up the state.
+    const STATE: &'static [&'static str];
+    /// Is the attitude a part of the point?
+    const TURNS: bool;
+    /// The laws of the energy, of |γ|² and of μ·γ.
+    const LAWS: [Law; 3];
+
+    /// The problem with its parameters.
+    ///
+    /// # Errors
+    /// What the library refuses.
+    fn problem<N: Number>(spec: &TopSpec) -> Result<Self::Problem<N>, Error>;
+    /// The point at this attitude, momentum and vertical, the latter two in the body.
+    fn point<N: Number>(g: Matrix3<f64>, mu: Vector3<f64>, gamma: Vector3<f64>) -> Point<Self, N>;
+    /// The pose of a point.
+    fn pose(y: &Point<Self, f64>) -> Pose;
+}
+
+type Point<R, N> = lieflow::problems::PointOf<<R as Representation>::Problem<N>>;
+
+/// μ and γ.
+#[derive(Clone, Debug)]
+struct MomentumAndVertical;
+
+impl Representation for MomentumAndVertical {
     type Problem<N: Number> = OnSe3<N>;
-
+    const MODELLED: &'static str = "momentum and vertical on se(3)*";
     const STATE: &'static [&'static str] = &["momentum_body", "vertical"];
-    const QUANTITIES: &'static [Quantity<Self>] = &[
-        Q::numbers(
-            "momentum_body",
-            &["m1", "m2", "m3"],
-            "angular momentum in the body",
-            |_, _, (mu, _), row| row.extend(mu.iter()),
-        ),
-        Q::numbers(
-            "omega_body",
-            &["w1", "w2", "w3"],
-            "angular velocity in the body",
-            |top, _, (mu, _), row| row.extend(top.top.omega(mu).iter()),
-        ),
+    const TURNS: bool = false;
+    const LAWS: [Law; 3] = [Law::by_the_flow(2), Law::by_the_action(2), Law::by_the_action(2)];
+
+    fn problem<N: Number>(spec: &TopSpec) -> Result<OnSe3<N>, Error> {
+        let top = HeavyTop::<N>::new(spec.body.inertia, spec.weight.into())?;
+        Ok(OnSe3::lie_poisson(top.problem(), Coadjoint))
+    }
+    fn point<N: Number>(_: Matrix3<f64>, mu: Vector3<f64>, gamma: Vector3<f64>) -> Point<Self, N> {
+        (mu.map(N::lit), gamma.map(N::lit))
+    }
+    fn pose(&(mu, gamma): &Point<Self, f64>) -> Pose {
+        Pose { mu, gamma, orientation: Orientation::NotModelled }
+    }
+}
+
+/// g and the momentum in space.
+#[derive(Clone, Debug)]
+struct WithAttitude;
+
+impl Representation for WithAttitude {
+    type Problem<N: Number> = Driven<N>;
+    const MODELLED: &'static str = "attitude and momentum in space; torques: gravity";
+    const STATE: &'static [&'static str] = &["attitude", "momentum_space"];
+    const TURNS: bool = true;
+    const LAWS: [Law; 3] = [Law::by_the_flow(0), Law::by_the_action(2), Law::by_the_flow(1)];
+
+    fn problem<N: Number>(spec: &TopSpec) -> Result<Driven<N>, Error> {
+        let torques = Torques::of_weight(spec.weight);
+        let body = TorqueBody::new(spec.body.inertia, torques.clone())?.on::<N, _>(torques);
+        Ok(Driven::new(body, LeftTranslation))
+    }
+    fn point<N: Number>(g: Matrix3<f64>, mu: Vector3<f64>, _: Vector3<f64>) -> Point<Self, N> {
+        (g.map(N::lit), (g * mu).map(N::lit))
+    }
+    fn pose((g, m): &Point<Self, f64>) -> Pose {
+        let gamma = g.row(2).transpose();
+        Pose { mu: g.tr_mul(m), gamma, orientation: Orientation::Matrix(*g) }
+    }
+}
+
+/// A top in one representation.
+#[derive(Clone, Debug)]
+struct Top<R> {
+    spec: TopSpec,
+    representation: PhantomData<R>,
+}
+
+type Q<R> = Quantity<Top<R>>;
+
+impl<R: Representation> Top<R> {
+    fn invariant(&self, y: &PointOf<Self>, i: usize) -> f64 {
+        let Pose { mu, gamma, .. } = R::pose(y);
+        self.spec.top.problem().values(&(mu, gamma))[i]
+    }
+    /// Why there is no fourth integral.
+    fn without_integral(&self) -> Option<&'static str> {
+        const NONE: &str = "only Euler's, Lagrange's and Kovalevskaya's top have a fourth integral";
+        (self.spec.top.problem().invariants().len() <= 3).then_some(NONE)
+    }
+}
+
+impl<R: Representation> AsBody for Top<R> {
+    fn spec(&self) -> &RigidBodySpec {
+        &self.spec.body
+    }
+    fn momentum(&self, y: &PointOf<Self>) -> Vector3<f64> {
+        R::pose(y).mu
+    }
+    fn omega(&self, y: &PointOf<Self>) -> Vector3<f64> {
+        self.spec.top.omega(&R::pose(y).mu)
+    }
+    fn orientation(&self, y: &PointOf<Self>) -> Orientation {
+        R::pose(y).orientation
+    }
+    fn without_orientation(&self) -> Option<&'static str> {
+        (!R::TURNS).then_some("the momentum and the vertical alone are integrated")
+    }
+    fn vertical(&self, y: &PointOf<Self>) -> Vector3<f64> {
+        R::pose(y).gamma
+    }
+}
+
+impl<R: Representation> System for Top<R> {
+    type Problem<N: Number> = R::Problem<N>;
+
+    const STATE: &'static [&'static str] = R::STATE;
+    const QUANTITIES: &'static [Q<R>] = &[
+        momentum_body(&["m1", "m2", "m3"]),
+        omega_body(),
         Q::numbers(
             "vertical",
             &["v1", "v2", "v3"],
             "the direction upward in the body",
-            |_, _, (_, gamma), row| row.extend(gamma.iter()),
+            |top, _, y, row| row.extend(top.in_scene(top.vertical(y)).iter()),
         ),
+        nutation(),
+        attitude(),
+        quaternion(),
+        axis(),
+        momentum_space(),
+        omega_space(),
         Q::number("energy", "kinetic and potential energy", |top, _, y| top.invariant(y, 0))
-            .kept(Law::by_the_flow(2))
-            .in_terms(|top, (mu, gamma)| {
-                mu.dot(&top.top.omega(mu)) + top.weight.norm() * gamma.norm()
+            .kept(R::LAWS[0])
+            .in_terms(|top, y| {
+                let Pose { mu, gamma, .. } = R::pose(y);
+                mu.dot(&top.spec.top.omega(&mu)) + top.spec.weight.norm() * gamma.norm()
             }),
         Q::number("vertical_norm2", "square of the length of the vertical", |top, _, y| {
             top.invariant(y, 1)
         })
-        .kept(Law::by_the_action(2)),
+        .kept(R::LAWS[1]),
         Q::number("momentum_vertical", "angular momentum about the vertical", |top, _, y| {
             top.invariant(y, 2)
         })
-        .kept(Law::by_the_action(2))
-        .in_terms(|_, (mu, gamma)| mu.norm() * gamma.norm()),
+        .kept(R::LAWS[2])
+        .in_terms(|_, y| {
+            let Pose { mu, gamma, .. } = R::pose(y);
+            mu.norm() * gamma.norm()
+        }),
         Q::number(
             "integral",
             "the fourth integral of Euler's, Lagrange's and Kovalevskaya's top; others have none",
             |top, _, y| top.invariant(y, 3),
         )
         .kept(Law::by_the_flow(0))
-        .missing_where(|top| {
-            const NONE: &str =
-                "only Euler's, Lagrange's and Kovalevskaya's top have a fourth integral";
-            (!top.is_integrable()).then_some(NONE)
-        }),
+        .missing_where(Self::without_integral),
+        angle(),
+        momentum_norm(),
+        attitude_defect(),
     ];
 
     fn kind(&self) -> &'static Kind {
@@ -117,14 +261,85 @@ impl System for Top {
         Layer::Closed
     }
     fn problem<N: Number>(&self) -> Result<Start<Self::Problem<N>>, Error> {
-        let top = HeavyTop::<N>::new(self.inertia, self.weight.into())?;
-        let start = (self.start.0.map(N::lit), self.start.1.map(N::lit));
-        Ok((OnSe3::lie_poisson(top.problem(), Coadjoint), start))
+        let TopSpec { body, vertical, .. } = &self.spec;
+        let start = R::point::<N>(body.attitude, body.momentum_body.into(), *vertical);
+        Ok((R::problem(&self.spec)?, start))
     }
     fn modelled(&self) -> String {
-        "momentum and vertical on se(3)*".into()
+        R::MODELLED.into()
+    }
+    /// Without a weight: that of the free body.
+    fn exact(&self, [t0, t1]: [f64; 2]) -> Option<Result<PointOf<Self>, Error>> {
+        let TopSpec { body, weight, vertical, .. } = &self.spec;
+        let up = body.attitude * vertical;
+        let at = |t: f64| {
+            let exact = Exact::new(body.inertia, body.momentum_body, body.attitude)?;
+            let (mu, g) = exact.state(t)?;
+            Ok(R::point::<f64>(g, mu, g.tr_mul(&up)))
+        };
+        (weight.norm() == 0.0).then(|| at(t1 - t0))
+    }
+    fn warnings(&self) -> Vec<String> {
+        self.spec.body.impossible()
+    }
+    fn notes(&self) -> Vec<String> {
+        self.spec.body.notes.clone()
+    }
+    fn inertia(&self) -> Option<PrincipalInertia> {
+        Some(self.spec.body.principal_inertia())
     }
     fn figure(&self) -> Figure {
-        Figure::Sphere("vertical")
+        Figure::Sphere(if R::TURNS { "axis" } else { "vertical" })
+    }
+}
+
+impl TopSpec {
+    fn on<R>(&self) -> Stated<Top<R>> {
+        Stated(Top { spec: self.clone(), representation: PhantomData })
+    }
+    /// The system that has these quantities.
+    fn system(&self, quantities: &[&str]) -> Box<dyn ProblemSpec> {
+        let momentum = self.on::<MomentumAndVertical>();
+        match lacks_any(&momentum, quantities) {
+            true => Box::new(self.on::<WithAttitude>()),
+            false => Box::new(momentum),
+        }
+    }
+}
+
+impl ProblemSpec for TopSpec {
+    fn kind(&self) -> &'static Kind {
+        &KIND
+    }
+    fn columns(&self, quantity: &str) -> Result<Vec<String>, Error> {
+        self.on::<WithAttitude>().columns(quantity)
+    }
+    fn model(&self, layer: Layer, quantities: &[&str]) -> Result<Box<dyn Model>, Error> {
+        self.system(quantities).model(layer, quantities)
+    }
+    fn state(&self, quantities: &[&str]) -> &'static [&'static str] {
+        self.system(quantities).state(quantities)
+    }
+    /// With the attitude, which the figure is drawn by.
+    fn default_state(&self) -> &'static [&'static str] {
+        self.state(&["attitude"])
+    }
+    fn layers(&self) -> &'static [Layer] {
+        &[Layer::Closed]
+    }
+    fn invariants(&self, quantities: &[&str]) -> Vec<&'static str> {
+        self.system(quantities).invariants(quantities)
+    }
+    fn inertia(&self) -> Option<PrincipalInertia> {
+        Some(self.body.principal_inertia())
+    }
+    fn figure(&self, quantities: &[&str]) -> Figure {
+        self.system(quantities).figure(quantities)
+    }
+    fn warnings(&self) -> Vec<String> {
+        self.system(&[]).warnings()
+    }
+    fn notes(&self) -> Vec<String> {
+        self.system(&[]).notes()
     }
 }

@@ -41,7 +41,7 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
     let particle = ChargedParticle::new(keys.charge_to_mass.0, move |_: f64, _: &Mat<f64>| (e, b))?;
     let start = particle
         .four_velocity(keys.velocity.0)
-        .map_err(|error| Refusal::at("velocity", error.to_string()))?;
+        .map_err(|error| Refusal::from(error).about("velocity"))?;
     let mut tensor = particle.group().zero();
     particle.f(0.0, &start, &mut tensor, &mut particle.work());
     Ok(Box::new(Stated(Particle { tensor, start })))

@@ -10,7 +10,7 @@ use lieflow::problems::Lyapunov;
 use super::entries::{numbered, row_columns, rows};
 use super::flow::Growing;
 use super::prelude::*;
-use crate::scene::formula::{Formula, Names, Parameters, SamplesFile, read_all};
+use crate::scene::formula::{Formula, Names, Texts};
 
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {
@@ -20,14 +20,10 @@ pub(super) const KIND: Kind = Kind {
     ..Kind::of::<Keys, Exponents>(read)
 };
 
-keys! { Keys {
+keys! { Keys [formula_keys sample_keys] {
     x: List = "initial point, at most 128 numbers",
     variables: Option<Vec<String>> = "names of the coordinates, [\"x\", \"y\", ...]; optional: x1, x2, ...",
-    field: Vec<String> = "a formula for the derivative of each coordinate, in the time t and the coordinates",
-    samples: Option<SamplesFile> = SAMPLES.meaning,
-    interpolation: Option<String> = INTERPOLATION.meaning,
-    #[serde(default)]
-    parameters: Parameters = PARAMETERS.meaning,
+    field: Texts = "a formula for the derivative of each coordinate, in the time t and the coordinates",
 } }
 
 /// The field and its Jacobian, row by row, and the initial point.
@@ -48,29 +44,28 @@ const MAX: usize = 128;
 const DERIVED_MAX: usize = 1 << 18;
 
 fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
-    let keys = Keys::deserialize(section)?;
+    let mut keys = Keys::deserialize(section)?;
+    let (formulas, samples) = (keys.formula_keys(), keys.sample_keys());
     let x = keys.x.values();
     let n = x.len();
     if !(1..=MAX).contains(&n) {
         return Err(Refusal::at("x", format!("found {n} numbers, expected 1 to {MAX}")).into());
     }
     let variables = keys.variables.unwrap_or_else(|| numbered("x", n));
-    let lists = [("variables", "names", variables.len()), ("field", "formulas", keys.field.len())];
-    if let Some((key, what, found)) = lists.into_iter().find(|(.., found)| *found != n) {
-        let message = format!("found {found} {what}, expected {n} as x has numbers");
-        return Err(Refusal::at(key, message).into());
+    if variables.len() != n {
+        let message = format!("found {} names, expected {n} as x has numbers", variables.len());
+        return Err(Refusal::at("variables", message).into());
     }
     let names = ["t".into()].into_iter().chain(variables);
-    let names = keys.parameters.names("variables", names)?;
-    let names = names.with_samples(keys.samples, keys.interpolation.as_deref())?;
-    let field = read_all("field", &keys.field, &names)?;
+    let names = formulas.names("variables", names, samples)?;
+    let field = keys.field.read("field", n, &names)?;
     let derived = |f: &Formula| f.operations() * (1..=n).filter(|&j| f.uses(j)).count();
     if field.iter().map(derived).sum::<usize>() > DERIVED_MAX {
         let message = format!("its derivatives take more than {DERIVED_MAX} operations");
         return Err(Refusal::at("field", message).into());
     }
     let by = |(i, f): (usize, &Formula)| {
-        let key = format!("field[{i}]");
+        let key = "field".index(i);
         (1..=n).map(|j| f.derivative(&key, j)).collect::<Result<Vec<_>, _>>()
     };
     let jacobian = field.iter().enumerate().map(by).collect::<Result<Vec<_>, _>>()?.concat();
@@ -150,7 +145,7 @@ impl System for Exponents {
     fn check_start(&self, t0: f64) -> Result<(), Refusal> {
         let (n, values) = (self.x.len(), values(t0, &self.x));
         for i in 0..n {
-            let key = format!("field[{i}]");
+            let key = "field".index(i);
             self.field[i].check(&key, &values)?;
             for (j, name) in self.names.variables()[1..].iter().enumerate() {
                 let slope = self.jacobian[i * n + j].value::<f64>(&values);

@@ -15,6 +15,7 @@ mod fluid;
 mod heavy_top;
 mod hill;
 mod isospectral;
+mod keys;
 mod law;
 mod lorentz;
 mod lyapunov;
@@ -35,8 +36,9 @@ mod spin_chain;
 mod subspace;
 mod system;
 
+pub use body::RigidBodySpec;
+pub(crate) use keys::{FormulaKeys, SAMPLES};
 pub use law::{Law, Scale, explained_by_rounding};
-pub use rigid_body::RigidBodySpec;
 
 use core::any::Any;
 use core::fmt::Debug;
@@ -48,6 +50,7 @@ use lieflow::samples::Samples;
 use serde::{Deserialize, Serialize};
 use toml::de::ValueDeserializer;
 
+use self::keys::{KeyTable, body_keys, formula_keys, keys, sample_keys};
 use self::preset::preset;
 use self::system::System;
 use crate::model::{Layer, Model};
@@ -111,49 +114,6 @@ pub struct KeyInfo {
     pub name: &'static str,
     /// What it means, and what it holds.
     pub meaning: &'static str,
-}
-
-/// The key of the constants, for every kind that reads formulas.
-const PARAMETERS: KeyInfo = KeyInfo {
-    name: "parameters",
-    meaning: "constants for the formulas: a table [problem.parameters] of names and numbers; optional",
-};
-
-/// The key of a file of samples, for every kind with formulas in t.
-pub(crate) const SAMPLES: KeyInfo = KeyInfo {
-    name: "samples",
-    meaning: "the name of a CSV file of samples, beside the scene: a line of names, t first, and rows of numbers; \
-              the other columns are variables of the formulas, functions of t; optional",
-};
-
-/// The key of what lies between the samples.
-const INTERPOLATION: KeyInfo = KeyInfo {
-    name: "interpolation",
-    meaning: "what lies between samples: \"linear\", \"cubic\" or, of increments over the interval before each \
-              time, \"mean-rate\"; optional, linear",
-};
-
-/// The keys of a kind, once: the table that `serde` reads, and what listings say of each key.
-macro_rules! keys {
-    ($name:ident { $($(#[$attribute:meta])* $key:ident: $type:ty = $meaning:expr,)* }) => {
-        #[derive(serde::Deserialize)]
-        #[serde(deny_unknown_fields)]
-        struct $name {
-            $($(#[$attribute])* $key: $type,)*
-        }
-
-        impl $crate::kinds::KeyTable for $name {
-            const INFO: &'static [$crate::kinds::KeyInfo] =
-                &[$($crate::kinds::KeyInfo { name: stringify!($key), meaning: $meaning },)*];
-        }
-    };
-}
-use keys;
-
-/// The keys of a kind, as listings show them.
-trait KeyTable {
-    /// In the order of listings.
-    const INFO: &'static [KeyInfo];
 }
 
 /// A quantity that can be asked for.
@@ -343,8 +303,8 @@ pub trait ProblemSpec: Any + Debug + Send + Sync {
     /// The quantities that the exact motion keeps, of those that follow from what these quantities model.
     fn invariants(&self, quantities: &[&str]) -> Vec<&'static str>;
 
-    /// The figure of a run.
-    fn figure(&self) -> Figure;
+    /// The figure of a run that computes these quantities.
+    fn figure(&self, quantities: &[&str]) -> Figure;
 
     /// The inertia of the body whose attitude or quaternion is a quantity.
     fn inertia(&self) -> Option<PrincipalInertia> {
@@ -364,6 +324,11 @@ pub trait ProblemSpec: Any + Debug + Send + Sync {
 
     /// What a reader of the scene should know, though it can be run.
     fn warnings(&self) -> Vec<String> {
+        Vec::new()
+    }
+
+    /// What was changed of the numbers in the scene: a quaternion that was made to have length 1.
+    fn notes(&self) -> Vec<String> {
         Vec::new()
     }
 }

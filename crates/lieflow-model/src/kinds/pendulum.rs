@@ -39,7 +39,7 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
     let pendulum = SphericalPendulum::new(rate2)?;
     let start = pendulum
         .state(keys.direction.0, keys.velocity.0)
-        .map_err(|error| Refusal::at("direction", error.to_string()))?;
+        .map_err(|error| Refusal::from(error).about("direction"))?;
     Ok(Box::new(Stated(Pendulum { pendulum, rate2, start })))
 }
 

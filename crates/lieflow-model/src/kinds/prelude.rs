@@ -7,11 +7,11 @@ pub(super) use serde::Deserialize;
 pub(super) use toml::de::ValueDeserializer;
 
 pub(super) use super::quantity::Quantity;
-pub(super) use super::system::{Number, Start, Stated, System};
+pub(super) use super::system::{Number, Start, Stated, System, lacks_any};
 pub(super) use super::{
-    Fact, Figure, INTERPOLATION, Kind, Law, PARAMETERS, PrincipalInertia, ProblemSpec, SAMPLES,
-    Scale, keys,
+    Fact, Figure, KeyInfo, Kind, Law, PrincipalInertia, ProblemSpec, Scale, body_keys,
+    formula_keys, keys, sample_keys,
 };
 pub(super) use crate::model::Layer;
 pub(super) use crate::scene::values::{List, Real, Reals, Table, Whole};
-pub(super) use crate::scene::{Either, ReadError, Refusal, exactly_one, help_for};
+pub(super) use crate::scene::{Either, KeyPath, ReadError, Refusal, exactly_one, help_for};

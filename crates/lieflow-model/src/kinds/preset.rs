@@ -12,21 +12,19 @@
 //!
 //! A key `x` that is a list of numbers is `x1`, `x2`, ... in formulas.
 
-use core::cell::RefCell;
 use core::fmt;
 
-use lieflow::RunError;
-use lieflow::catalog::MethodSpec;
 use lieflow::problems::Origin;
-use lieflow::solve::Next;
 use serde::de::{DeserializeSeed, Deserializer, Error as _, MapAccess, Visitor};
 use toml::{Table, Value};
 
-use super::prelude::{Deserialize, Error, Law, PARAMETERS, Scale, ValueDeserializer};
+use super::keys::PARAMETERS;
+use super::prelude::{Deserialize, Error, KeyPath, Law, Scale, ValueDeserializer};
 use super::system::no_such_layer;
 use super::{Figure, KeyInfo, Kind, ProblemSpec, QuantityInfo, ReadProblem};
-use crate::model::{EventPlan, Layer, Model, Outcome, Plan, Steps, Watcher};
-use crate::scene::formula::{Formula, Names, Parameters, read_all};
+use crate::mapped::Mapped;
+use crate::model::{Layer, Model};
+use crate::scene::formula::{Formula, Names, Parameters, Texts};
 use crate::scene::values::{NumberList, Real};
 use crate::scene::{ReadError, Refusal};
 use crate::schema::{Row, Schema};
@@ -91,7 +89,7 @@ enum Condition {
 }
 
 impl Condition {
-    fn check(self, arg: String, value: f64) -> Result<(), Error> {
+    fn check(self, key: &str, value: f64) -> Result<(), Refusal> {
         let (good, expected) = match self {
             Condition::Positive => {
                 (value > 0.0 && value.recip().is_finite(), "a finite number > 0")
@@ -99,7 +97,7 @@ impl Condition {
         };
         match good {
             true => Ok(()),
-            false => Err(Error::OutOfRange { arg, value, expected: expected.into() }),
+            false => Err(Refusal::at(key, format!("{key} = {value}, expected {expected}"))),
         }
     }
 }
@@ -113,7 +111,7 @@ struct QuantityText {
     columns: Vec<&'static str>,
     meaning: &'static str,
     /// One for each column.
-    formulas: Vec<String>,
+    formulas: Texts,
     kept: Option<LawText>,
 }
 
@@ -139,9 +137,6 @@ impl Preset {
     pub(super) fn parse(text: &'static str) -> Preset {
         let read = toml::de::Deserializer::parse(text).and_then(Preset::deserialize);
         let mut preset = read.unwrap_or_else(|error| panic!("a preset: {error}"));
-        for QuantityText { name, columns, formulas, .. } in &preset.quantities {
-            assert_eq!(formulas.len(), columns.len().max(1), "formulas of the preset's {name}");
-        }
         let info = |key: &Key| KeyInfo { name: key.name, meaning: key.meaning };
         preset.key_infos = preset.keys.iter().map(info).collect();
         preset.key_names = preset.keys.iter().map(|key| key.name).collect();
@@ -175,10 +170,10 @@ impl Preset {
             for (i, &x) in list.iter().enumerate() {
                 let (parameter, place) = match numbers {
                     None => ((*name).into(), (*name).into()),
-                    Some(_) => (format!("{name}{}", i + 1), format!("{name}[{i}]")),
+                    Some(_) => (format!("{name}{}", i + 1), name.index(i)),
                 };
                 if let Some(condition) = condition {
-                    condition.check(place, x)?;
+                    condition.check(&place, x)?;
                 }
                 parameters.push((parameter, Real(x)));
             }
@@ -235,7 +230,8 @@ impl QuantityText {
     fn read(&self, names: &Names) -> Result<QuantityFormulas, Refusal> {
         let terms = self.kept.as_ref().and_then(|law| law.terms.as_ref());
         let terms = terms.map(|text| Formula::read(self.name, text, names)).transpose()?;
-        Ok(QuantityFormulas { values: read_all(self.name, &self.formulas, names)?, terms })
+        let values = self.formulas.read(self.name, self.columns.len().max(1), names)?;
+        Ok(QuantityFormulas { values, terms })
     }
 
     fn law(&self) -> Option<Law> {
@@ -340,7 +336,12 @@ impl ProblemSpec for Problem {
             sizes.extend(formulas.terms.clone());
         }
         let formulas = [values, sizes].concat();
-        Ok(Box::new(PresetModel { modelled: self.preset.modelled, base, schema, formulas }))
+        let fill = move |_: f64, of_base: Row<'_>, row: &mut Vec<f64>| {
+            row.clear();
+            row.extend(formulas.iter().map(|formula| formula.value(of_base.values())));
+        };
+        let modelled = Some(self.preset.modelled);
+        Ok(Box::new(Mapped { base, schema, modelled, fill: Box::new(fill) }))
     }
     fn state(&self, _: &[&str]) -> &'static [&'static str] {
         &self.preset.state
@@ -349,92 +350,7 @@ impl ProblemSpec for Problem {
         let kept = self.preset.quantities.iter().filter(|quantity| quantity.law().is_some());
         kept.map(|quantity| quantity.name).collect()
     }
-    fn figure(&self) -> Figure {
+    fn figure(&self, _: &[&str]) -> Figure {
         self.preset.figure
-    }
-}
-
-/// The model of the base, with its rows as those of the preset.
-#[derive(Debug)]
-struct PresetModel {
-    modelled: &'static str,
-    base: Box<dyn Model>,
-    schema: Schema,
-    /// One for each column, then one for each size of terms.
-    formulas: Vec<Formula>,
-}
-
-impl PresetModel {
-    /// row ← the formulas of the row of the base.
-    fn fill(&self, of_base: &[f64], row: &mut Vec<f64>) {
-        row.clear();
-        row.extend(self.formulas.iter().map(|formula| formula.value(of_base)));
-    }
-}
-
-/// A watcher of the base that gives its own watcher the rows of the preset.
-struct OfPreset<'a> {
-    model: &'a PresetModel,
-    watcher: &'a mut dyn Watcher,
-    numbers: Vec<f64>,
-}
-
-impl Watcher for OfPreset<'_> {
-    fn row(&mut self, t: f64, of_base: Row<'_>) -> Next {
-        self.model.fill(of_base.values(), &mut self.numbers);
-        self.watcher.row(t, self.model.schema.row(&self.numbers))
-    }
-    fn event(&mut self, event: usize, t: f64, rising: bool, of_base: Row<'_>) {
-        self.model.fill(of_base.values(), &mut self.numbers);
-        self.watcher.event(event, t, rising, self.model.schema.row(&self.numbers));
-    }
-    fn progress(&mut self, t: f64) {
-        self.watcher.progress(t);
-    }
-    fn state(&mut self, bytes: &[u8]) {
-        self.watcher.state(bytes);
-    }
-}
-
-impl Model for PresetModel {
-    fn schema(&self) -> &Schema {
-        &self.schema
-    }
-    fn modelled(&self, _: &MethodSpec) -> Vec<String> {
-        vec![self.modelled.into()]
-    }
-    fn drive(
-        &self,
-        method: &MethodSpec,
-        mut plan: Plan<'_>,
-        watcher: &mut dyn Watcher,
-    ) -> Result<Outcome, RunError> {
-        let events = core::mem::take(&mut plan.events).into_iter().map(|event| {
-            let (value, numbers) = (event.value, RefCell::new(Vec::new()));
-            let value = move |t: f64, of_base: Row<'_>| {
-                let mut numbers = numbers.borrow_mut();
-                self.fill(of_base.values(), &mut numbers);
-                value(t, self.schema.row(&numbers))
-            };
-            EventPlan { value: Box::new(value), ..event }
-        });
-        let plan = Plan { events: events.collect(), ..plan };
-        let mut of_preset = OfPreset { model: self, watcher, numbers: Vec::new() };
-        self.base.drive(method, plan, &mut of_preset)
-    }
-    fn order(&self, method: &MethodSpec) -> Result<Option<usize>, Error> {
-        self.base.order(method)
-    }
-    fn exact(&self, t_span: [f64; 2]) -> Option<Result<Vec<f64>, Error>> {
-        let mut row = Vec::new();
-        let exact = self.base.exact(t_span)?.map(|of_base| self.fill(&of_base, &mut row));
-        row.truncate(self.schema.columns().count());
-        Some(exact.map(|()| row))
-    }
-    fn operations(&self, method: &MethodSpec, steps: &Steps) -> Option<f64> {
-        self.base.operations(method, steps)
-    }
-    fn fits(&self, method: &MethodSpec) -> Result<(), Error> {
-        self.base.fits(method)
     }
 }

@@ -49,8 +49,7 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
     }
     let inertia: Vec<_> = keys.iter().map(|keys| keys.inertia.0).collect();
     let body = |(i, inertia): (usize, &[f64; 3])| {
-        RigidBody::new(*inertia)
-            .map_err(|error| Refusal::at(format!("bodies[{i}]"), error.to_string()))
+        RigidBody::new(*inertia).map_err(|error| Refusal::from(error).about("bodies".index(i)))
     };
     let bodies = inertia.iter().enumerate().map(body).collect::<Result<_, _>>()?;
     let start = keys.iter().map(|keys| keys.momentum_body.0.into()).collect();

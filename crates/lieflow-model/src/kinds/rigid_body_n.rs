@@ -3,6 +3,7 @@
 //! ṁ = \[m, Ω\], Ω_ij = m_ij/J_ij. f(m) = −Ω; Λ(g, m) = g m gᵀ. Invariants: tr mᵏ for even k (the
 //! action), the energy, and for J_ij = λ_i + λ_j Manakov's further integrals.
 
+use super::entries::{above_diagonal, antisymmetric};
 use super::prelude::*;
 use lieflow::problems::{RigidBodyN, manakov_integrals};
 
@@ -35,19 +36,14 @@ type Q = Quantity<Body>;
 /// operations a row.
 const WATCHED: usize = 8;
 
-/// The planes i < j in the order of lists.
-fn planes(n: usize) -> impl Iterator<Item = (usize, usize)> {
-    (0..n).flat_map(move |i| (i + 1..n).map(move |j| (i, j)))
-}
-
 fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
     let keys = Keys::deserialize(section)?;
     let momentum = keys.momentum.values();
-    let n = (1..).find(|n| n * (n - 1) / 2 >= momentum.len()).unwrap_or(1);
-    if n < 2 || n * (n - 1) / 2 != momentum.len() {
+    let Some(start) = antisymmetric(&momentum) else {
         let message = format!("found {} numbers, expected n(n-1)/2", momentum.len());
         return Err(Refusal::at("momentum", message).into());
-    }
+    };
+    let n = start.nrows();
     let which = exactly_one(("mass_moments", keys.mass_moments), ("inertia", keys.inertia))?;
     let (body, lambda) = match which {
         Either::First(lambda) => {
@@ -59,22 +55,17 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
                 );
                 return Err(Refusal::at("mass_moments", message).into());
             }
-            if let Some((i, j)) = planes(n).find(|&(i, j)| lambda[i] + lambda[j] <= 0.0) {
-                let message = format!(
-                    "mass_moments[{i}] + mass_moments[{j}] = {}, expected a number > 0",
-                    lambda[i] + lambda[j]
-                );
-                return Err(Refusal::at(format!("mass_moments[{j}]"), message).into());
+            if let Some((i, j)) = above_diagonal(n).find(|&(i, j)| lambda[i] + lambda[j] <= 0.0) {
+                let [first, second] = [i, j].map(|i| "mass_moments".index(i));
+                let sum = lambda[i] + lambda[j];
+                let message = format!("{first} + {second} = {sum}, expected a number > 0");
+                return Err(Refusal::at(second, message).into());
             }
             (RigidBodyN::manakov(&lambda)?, Some(lambda))
         }
         Either::Second(inertia) => (RigidBodyN::from_pairs(n, &inertia.values())?, None),
     };
-    let mut m = Mat::zeros(n, n);
-    for ((i, j), x) in planes(n).zip(momentum) {
-        (m[(i, j)], m[(j, i)]) = (x, -x);
-    }
-    Ok(Box::new(Stated(Body { body, lambda, momentum: m })))
+    Ok(Box::new(Stated(Body { body, lambda, momentum: start })))
 }
 
 impl Body {
@@ -93,11 +84,11 @@ impl System for Body {
             &["m12", "…", "m(n-1)n"],
             "angular momentum in the body, plane by plane",
             |body, _, m, row| {
-                row.extend(planes(body.n()).map(|(i, j)| 0.5 * (m[(i, j)] - m[(j, i)])));
+                row.extend(above_diagonal(body.n()).map(|(i, j)| 0.5 * (m[(i, j)] - m[(j, i)])));
             },
         )
         .with_columns(|body| {
-            planes(body.n()).map(|(i, j)| format!("m{}{}", i + 1, j + 1)).collect()
+            above_diagonal(body.n()).map(|(i, j)| format!("m{}{}", i + 1, j + 1)).collect()
         }),
         Q::number("energy", "kinetic energy", |body, _, m| body.body.energy(m))
             .kept(Law::by_the_flow(2)),

@@ -64,10 +64,10 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
     if let Some([_, width]) = keys.pulse.map(|pulse| pulse.0)
         && width <= 0.0
     {
-        return Err(Refusal::at("pulse[1]", format!("width {width}, expected > 0")).into());
+        return Err(Refusal::at("pulse".index(1), format!("width {width}, expected > 0")).into());
     }
     let psi: Vec<_> = parts[0].1.iter().zip(&parts[1].1).map(|(re, im)| [*re, *im]).collect();
-    let start = amplitudes(&psi).map_err(|error| Refusal::at("amplitudes", error.to_string()))?;
+    let start = amplitudes(&psi).map_err(|error| Refusal::from(error).about("amplitudes"))?;
     Ok(Box::new(Stated(Levels {
         energies,
         coupling: [real, imaginary],

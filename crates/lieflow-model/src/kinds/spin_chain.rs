@@ -67,7 +67,7 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
             ("wave", (0..count.0).map(spin).collect())
         }
     };
-    let refused = |error: Error| Refusal::at(key, error.to_string());
+    let refused = |error: Error| Refusal::from(error).about(key);
     let mut chain = SpinChain::new(spins.len()).map_err(refused)?;
     let start = chain.spins(|i| spins[i]).map_err(refused)?;
     if keys.ring == Some(false) {

@@ -92,6 +92,14 @@ pub(super) trait System: Clone + Debug + Send + Sync + 'static {
     fn facts(&self) -> Vec<Fact> {
         Vec::new()
     }
+    /// See [`ProblemSpec::warnings`].
+    fn warnings(&self) -> Vec<String> {
+        Vec::new()
+    }
+    /// See [`ProblemSpec::notes`].
+    fn notes(&self) -> Vec<String> {
+        Vec::new()
+    }
 }
 
 /// The problem of a scene from its system.
@@ -108,6 +116,12 @@ fn find<S: System>(system: &S, name: &str) -> Result<&'static Quantity<S>, Error
             Err(Error::Unsupported { what: quantity.info.name, with: "this problem".into(), why })
         }
     }
+}
+
+/// Does a problem lack one of these quantities, which others of its kind have?
+pub(super) fn lacks_any(problem: &impl ProblemSpec, quantities: &[&str]) -> bool {
+    let lacks = |name| matches!(problem.columns(name), Err(Error::Unsupported { .. }));
+    quantities.iter().any(|name| lacks(name))
 }
 
 /// The error for a layer that a kind of one layer does not have.
@@ -170,7 +184,7 @@ impl<S: System> ProblemSpec for Stated<S> {
         let kept = present.filter(|quantity| quantity.law(&self.0).is_some());
         kept.map(|quantity| quantity.info.name).collect()
     }
-    fn figure(&self) -> Figure {
+    fn figure(&self, _: &[&str]) -> Figure {
         self.0.figure()
     }
     fn inertia(&self) -> Option<PrincipalInertia> {
@@ -181,6 +195,12 @@ impl<S: System> ProblemSpec for Stated<S> {
     }
     fn facts(&self) -> Vec<Fact> {
         self.0.facts()
+    }
+    fn warnings(&self) -> Vec<String> {
+        self.0.warnings()
+    }
+    fn notes(&self) -> Vec<String> {
+        self.0.notes()
     }
 }
 

@@ -56,7 +56,7 @@ impl Defaults {
 /// with very many columns is left out.
 pub(super) fn quantities(problem: &dyn ProblemSpec) -> Vec<String> {
     let state = problem.default_state();
-    let all = [state, &[problem.figure().quantity()], &problem.invariants(state)].concat();
+    let all = [state, &[problem.figure(state).quantity()], &problem.invariants(state)].concat();
     let mut wanted: Vec<String> = Vec::new();
     for name in all {
         let fits = problem.columns(name).is_ok_and(|columns| columns.len() <= COLUMNS);

@@ -208,8 +208,8 @@ impl<'a> Document<'a> {
         place.or_else(|| self.root.get(section).map(Spanned::span))
     }
 
-    /// Where `key`, `key[i]`, `key[i,j]` or `key[i].name[j]` stands, first in this value, then in this section, then
-    /// in the others, then at the top.
+    /// Where `key`, `key[i]`, `key[i,j]` or `key[i].name[j]` ([`KeyPath`](super::KeyPath)) stands, first in this
+    /// value, then in this section, then in the others, then at the top.
     fn locate(
         &self,
         section: &str,
@@ -227,7 +227,7 @@ impl<'a> Document<'a> {
         let mut place = within.or_else(|| self.root.get(name))?;
         for step in path {
             let next = match (step.parse::<usize>(), place.get_ref()) {
-                (Ok(i), DeValue::Array(list)) => list.get(i),
+                (Ok(i), DeValue::Array(list)) => list.get(i.wrapping_sub(1)),
                 (_, DeValue::Table(table)) => table.get(step),
                 _ => None,
             };

@@ -171,7 +171,7 @@ impl core::error::Error for SceneError {}
 /// A value that a scene cannot have; the place is found by its key.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Refusal {
-    /// The key, with the index of the entry where it has one: `inertia[1]`, `attitude[0,2]`.
+    /// The key, with the index of the entry where it has one, by [`KeyPath`]: `inertia[2]`, `attitude[1,3]`.
     pub key: Option<String>,
     /// What is wrong.
     pub message: String,
@@ -202,14 +202,63 @@ impl Refusal {
         Refusal { help, ..Refusal::at(key, format!("unknown {key} `{name}`")) }
     }
 
+    /// The same about another key.
+    pub fn about(self, key: impl Into<String>) -> Self {
+        Refusal { key: Some(key.into()), ..self }
+    }
+
     /// Something about a section as a whole.
     pub fn section(message: impl Into<String>) -> Self {
         Refusal { key: None, message: message.into(), help: None }
     }
 }
 
+/// Places in a scene by the path of their keys. Scenes count from 1: all paths and messages are made here.
+pub trait KeyPath {
+    /// The entry `i`, from 0, of a list: `inertia[2]` for 1.
+    fn index(&self, i: usize) -> String;
+    /// The entry in row `i` and column `j`, from 0: `field[3,1]` for 2 and 0.
+    fn cell(&self, i: usize, j: usize) -> String;
+    /// The entry of a table: `let.b`.
+    fn entry(&self, name: &str) -> String;
+}
+
+impl KeyPath for str {
+    fn index(&self, i: usize) -> String {
+        format!("{self}[{}]", i + 1)
+    }
+    fn cell(&self, i: usize, j: usize) -> String {
+        format!("{self}[{},{}]", i + 1, j + 1)
+    }
+    fn entry(&self, name: &str) -> String {
+        format!("{self}.{name}")
+    }
+}
+
+/// An argument of the library, whose lists count from 0, as a path.
+fn path_of(arg: &str) -> String {
+    let mut parts = arg.split('[');
+    let key = parts.next().unwrap_or_default().to_owned();
+    parts.fold(key, |path, part| {
+        let (index, rest) = part.split_once(']').unwrap_or((part, ""));
+        match index.parse() {
+            Ok(i) => path.index(i) + rest,
+            Err(_) => format!("{path}[{part}"),
+        }
+    })
+}
+
 impl From<Error> for Refusal {
     fn from(error: Error) -> Self {
+        let error = match error {
+            Error::OutOfRange { arg, value, expected } => {
+                Error::OutOfRange { arg: path_of(&arg), value, expected }
+            }
+            Error::NotFiniteEntry { arg, row, col, value } => {
+                Error::NotFiniteEntry { arg, row: row + 1, col: col + 1, value }
+            }
+            other => other,
+        };
         let message = error.to_string();
         let key = match error {
             Error::UnknownName { kind, name, expected } => {

@@ -7,7 +7,8 @@ use lieflow::{Error, SaveAt, TimeGrid};
 use serde::Deserialize;
 
 use super::defaults;
-use super::error::{Either, Refusal, exactly_one};
+use super::error::{Either, KeyPath, Refusal, exactly_one};
+use super::formula::Lets;
 use super::values::{Real, Span, Whole};
 use crate::kinds::{Kind, ProblemSpec, high_order};
 use crate::model::Layer;
@@ -215,6 +216,10 @@ impl TimeKeys {
 #[serde(deny_unknown_fields)]
 pub(super) struct OutputKeys {
     pub(super) quantities: Option<Vec<String>>,
+    #[serde(default)]
+    formulas: Lets,
+    #[serde(default)]
+    plot: Vec<String>,
     every: Option<Whole<1>>,
     times: Option<Vec<Real>>,
     count: Option<Whole<1>>,
@@ -226,6 +231,8 @@ pub(super) struct OutputKeys {
 /// What `[output]` asks for.
 pub(super) struct Output {
     pub(super) quantities: Vec<String>,
+    pub(super) formulas: Lets,
+    pub(super) plot: Vec<String>,
     pub(super) save: SaveAt,
     pub(super) times_by_steps: bool,
     pub(super) error_check: bool,
@@ -256,7 +263,7 @@ impl OutputKeys {
             return vec![refusal];
         }
         let wrong = |(i, name): (usize, &String)| {
-            let key = Some(format!("quantities[{i}]"));
+            let key = Some("quantities".index(i));
             if let Err(error) = kind.quantity(name) {
                 return Some(Refusal { key, ..error.into() });
             }
@@ -291,7 +298,8 @@ impl OutputKeys {
             }
         };
         let error_check = self.error_check.unwrap_or(true);
-        Ok(Output { quantities, save, times_by_steps, error_check })
+        let OutputKeys { formulas, plot, .. } = self;
+        Ok(Output { quantities, formulas, plot, save, times_by_steps, error_check })
     }
 
     /// Where rows are written.

@@ -1,6 +1,7 @@
 //! Scenes: a problem, a method, a time span and what to write, as a TOML file.
 
 mod bundled;
+mod columns;
 mod defaults;
 mod document;
 mod error;
@@ -13,7 +14,7 @@ pub mod values;
 
 pub use bundled::{BUNDLED, Bundled};
 pub use defaults::Defaults;
-pub use error::{Either, ReadError, Refusal, SceneError, exactly_one};
+pub use error::{Either, KeyPath, ReadError, Refusal, SceneError, exactly_one};
 pub use events::SceneEvent;
 pub use suggest::{help_for, suggest};
 
@@ -29,10 +30,11 @@ use lieflow::samples::{Outside, Samples};
 use lieflow::{Error, SaveAt, TimeGrid};
 use toml::de::DeValue;
 
+use self::columns::{Columns, FORMULAS, RowFormula, check_plot, with_formulas};
 use self::document::{Document, read_beside, table};
 use self::error::Mistakes;
 use self::keys::{MethodKeys, Output, OutputKeys, TimeKeys, with_defaults};
-use crate::kinds::{Kind, ProblemSpec, SAMPLES};
+use crate::kinds::{FormulaKeys, Kind, ProblemSpec, SAMPLES};
 use crate::model::{Layer, Model, Plan, Steps};
 use crate::schema::Schema;
 
@@ -67,7 +69,7 @@ pub struct Scene {
     pub times_by_steps: bool,
     /// The events.
     pub events: Vec<SceneEvent>,
-    /// What is written, in this order.
+    /// What is written, in this order; `formulas` is that of `[output.formulas]`.
     pub quantities: Vec<String>,
     /// Does a run say how large its error is, where that costs a second run?
     pub error_check: bool,
@@ -75,6 +77,10 @@ pub struct Scene {
     pub by_default: Defaults,
     /// The text of the scene.
     pub text: String,
+    /// The columns of `[output.formulas]`.
+    formulas: Vec<(String, RowFormula)>,
+    /// The columns and quantities to draw; none where the kind chooses.
+    pub plot: Vec<String>,
     /// A number of what the scene states, with its samples: another one for another scene. Comments and spaces do not
     /// count.
     pub fingerprint: u64,
@@ -146,11 +152,29 @@ impl Scene {
                 .keep(document.check("output", output.resolve(asked.clone(), &grid, steps_left)))
         });
 
+        let columns = spec.and_then(|problem| {
+            let named = FormulaKeys {
+                parameters: document.within("problem", "parameters").unwrap_or_default(),
+                r#let: document.within("problem", "let").unwrap_or_default(),
+            };
+            let columns = Columns::of(problem, &asked, &named);
+            mistakes.keep(document.check("problem", columns))
+        });
+        let (mut output, mut columns) = (output, columns);
+        let formulas = output.as_ref().zip(columns.as_mut()).and_then(|(output, columns)| {
+            mistakes.keep(document.check("output", columns.define(&output.formulas)))
+        });
+        if let (Some(output), Some(problem), Some(formulas)) = (&mut output, spec, &formulas) {
+            let drawn = check_plot(&output.plot, problem, &output.quantities, formulas);
+            mistakes.keep(document.check("output", drawn));
+            if !formulas.is_empty() {
+                output.quantities.push(FORMULAS.into());
+            }
+        }
+
         let events = mistakes.keep(document.optional("events"));
-        let events = events.zip(spec).and_then(|(events, problem)| {
-            let parameters = document.within("problem", "parameters").unwrap_or_default();
-            let events = events.unwrap_or_default();
-            let events = events::resolve(events, problem, &asked, &parameters);
+        let events = events.zip(columns).and_then(|(events, columns)| {
+            let events = events::resolve(events.unwrap_or_default(), &columns);
             mistakes.keep(document.check("events", events))
         });
         if let (Some(grid), Some(events)) = (grid, &events)
@@ -159,15 +183,16 @@ impl Scene {
         {
             let message =
                 "t_span has no end, expected an event with `stop_after` that ends the run";
-            let refusal = Refusal::at("t_span[1]", message);
+            let refusal = Refusal::at("t_span".index(1), message);
             mistakes.keep::<()>(Err(document.refusal("time", refusal)));
         }
 
-        let all = || Some((title?, problem?, method?, at_knots?, time?, steps?, output?, events?));
-        let (title, problem, (method, layer), at_knots, time, steps, output, events) =
+        let written = output.zip(formulas);
+        let all = || Some((title?, problem?, method?, at_knots?, time?, steps?, written?, events?));
+        let (title, problem, (method, layer), at_knots, time, steps, (output, formulas), events) =
             mistakes.or(all())?;
         let (grid, adaptive, max_steps) = steps;
-        let Output { quantities, save, times_by_steps, error_check } = output;
+        let Output { quantities, plot, save, times_by_steps, error_check, .. } = output;
         let stem = Path::new(source).file_stem().unwrap_or_default().to_string_lossy();
         let name = if stem.is_empty() { "scene".into() } else { stem.into_owned() };
         let fingerprint = fingerprint(text, problem.samples());
@@ -190,6 +215,8 @@ impl Scene {
             error_check,
             by_default,
             text: text.into(),
+            formulas,
+            plot,
             fingerprint,
         };
         let model = scene.model_with(scene.layer, &scene.computed());
@@ -288,15 +315,16 @@ impl Scene {
         knots.unwrap_or_default()
     }
 
-    /// The quantities that a run computes: those that are written, then those of the events.
+    /// The quantities that a run computes: those that are written, then those of formulas and events.
     pub fn computed(&self) -> Vec<&str> {
-        let mut all: Vec<&str> = self.quantities.iter().map(String::as_str).collect();
-        for name in self.events.iter().flat_map(SceneEvent::quantities) {
-            if !all.contains(&name) {
-                all.push(name);
-            }
-        }
-        all
+        let of_events = self.events.iter().flat_map(SceneEvent::quantities);
+        let written = self.quantities.iter().map(String::as_str);
+        each_once(written.chain(self.of_formulas()).chain(of_events))
+    }
+
+    /// The quantities that `[output.formulas]` is made of.
+    fn of_formulas(&self) -> impl Iterator<Item = &str> {
+        self.formulas.iter().flat_map(|(_, formula)| formula.quantities())
     }
 
     /// Read a scene file.
@@ -351,7 +379,12 @@ impl Scene {
     /// # Errors
     /// [`Error::UnknownName`] for a quantity that the problem does not have.
     pub fn model_with(&self, layer: Layer, quantities: &[&str]) -> Result<Box<dyn Model>, Error> {
-        self.problem.model(layer, quantities)
+        if !quantities.contains(&FORMULAS) {
+            return self.problem.model(layer, quantities);
+        }
+        let of_problem = quantities.iter().copied().filter(|name| *name != FORMULAS);
+        let of_problem = each_once(of_problem.chain(self.of_formulas()));
+        with_formulas(self.problem.model(layer, &of_problem)?, &self.formulas)
     }
 }
 
@@ -407,6 +440,17 @@ impl Found {
         let a_path = name.contains(['/', '\\', '.']) && Bundled::named(stem).is_none();
         if a_path { Self::file(scene) } else { Self::bundled(&name) }
     }
+}
+
+/// The names without those that were there before.
+fn each_once<'a>(names: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
+    let mut all = Vec::new();
+    for name in names {
+        if !all.contains(&name) {
+            all.push(name);
+        }
+    }
+    all
 }
 
 /// A hash of what the text states and of its samples: the same on every machine.

@@ -6,7 +6,7 @@ use faer::Mat;
 use serde::Deserialize;
 use serde::de::{DeserializeSeed, Deserializer, Error, SeqAccess, Visitor};
 
-use super::Refusal;
+use super::{KeyPath, Refusal};
 
 /// A finite number; an integer is one too.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -171,16 +171,6 @@ impl<'de, const N: usize> Deserialize<'de> for Rows<N> {
     }
 }
 
-/// N formulas.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Texts<const N: usize>(pub [String; N]);
-
-impl<'de, const N: usize> Deserialize<'de> for Texts<N> {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        Entries::read(deserializer, "formulas").map(|entries| Texts(entries.0))
-    }
-}
-
 /// Three numbers, or three rows of three.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Diagonal {
@@ -328,7 +318,7 @@ impl Table {
         if let Some(i) = self.0.iter().position(|row| row.0.len() != columns) {
             let found = self.0[i].0.len();
             let message = format!("row {} has {found} numbers, expected {columns}", i + 1);
-            return Err(Refusal::at(format!("{key}[{i}]"), message));
+            return Err(Refusal::at(key.index(i), message));
         }
         Ok(Mat::from_fn(self.0.len(), columns, |i, j| self.0[i].0[j].0))
     }

@@ -217,7 +217,11 @@ fn hamiltonians_are_refused_at_their_line() {
             6,
             &["rows of numbers, expected 6"],
         ),
-        ("hamiltonian = \"m11^2\"\nalgebra = \"so\"\nmomentum = [1, 0]", 6, &["expected rows"]),
+        (
+            "hamiltonian = \"m11^2\"\nalgebra = \"so\"\nmomentum = [1, 0]",
+            6,
+            &["found 2 numbers", "n(n-1)/2"],
+        ),
         (
             "hamiltonian = \"m11^2\"\nalgebra = \"so\"\nmomentum = [[1, 0], 0]",
             6,

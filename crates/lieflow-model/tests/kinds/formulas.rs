@@ -90,12 +90,16 @@ fn formulas_are_refused_at_their_line() {
         (
             "[\"w1\", \"w4\", \"0\"]",
             FINE,
-            &["torque[1]: unknown name `w4` at character 1", "`w"][..],
+            &["torque[2]: unknown name `w4` at character 1", "`w", "[problem.parameters]"][..],
         ),
-        ("[\"w1\", \"0\", \"2 w1\"]", FINE, &["torque[2]: found `w`", "2*x"]),
-        ("[\"w1\", \"0\"]", FINE, &["expected 3 formulas, found 2"]),
-        ("[\"w1\", \"0\", 1]", FINE, &["integer `1`, expected a string"]),
-        ("[\"0\", \"1/t\", \"0\"]", FINE, &["torque[1] is inf at the start"]),
+        ("[\"w1\", \"0\", \"2 w1\"]", FINE, &["torque[3]: found `w`", "2*x"]),
+        ("[\"w1\", \"0\"]", FINE, &["found 2 formulas, expected 3"]),
+        (
+            "[\"w1\", \"0\", true]",
+            FINE,
+            &["boolean `true`, expected a formula: a text or a number"],
+        ),
+        ("[\"0\", \"1/t\", \"0\"]", FINE, &["torque[2] is inf at the start"]),
         ("[\"k\", \"0\", \"0\"]\nparameters = { c = 1 }", FINE, &["unknown name `k`", "c, pi, e"]),
     ] {
         let (line, message) = refused(&torque(texts), time, "axis");
@@ -233,23 +237,23 @@ fn equations_that_are_none_are_refused_at_their_line() {
         (
             "group = \"so\"\nfield = [[\"0\", \"y12\"], [\"-y12\", \"y12\"]]",
             5,
-            &["field[1,1]", "beside the start"],
+            &["field[2,2]", "beside the start"],
         ),
         (
             "group = \"so\"\nfield = [[\"t\", \"1\"], [\"-1\", \"0\"]]",
             5,
-            &["field[0,0] is 0.5 beside"],
+            &["beside the start field[1,1] is 0.5, expected 0"],
         ),
         ("group = \"sl\"\nfield = [[\"1\", \"1\"], [\"1\", \"0\"]]", 5, &["is not in sl(2)"]),
         (
             "group = \"so\"\nfield = [[\"0\", \"1/t\"], [\"-1/t\", \"0\"]]",
             5,
-            &["field[0,1] is inf at the start"],
+            &["field[1,2] is inf at the start"],
         ),
         (
             "group = \"so\"\nfield = [[\"0\", \"x\"], [\"-1\", \"0\"]]",
             5,
-            &["field[0,1]: unknown name `x`", "y11"],
+            &["field[1,2]: unknown name `x`", "y11"],
         ),
         (
             "group = \"so\"\nfield = [[\"0\", \"1\"], [\"-1\"]]",
@@ -266,7 +270,7 @@ fn equations_that_are_none_are_refused_at_their_line() {
             &["unknown action", "translation"],
         ),
         ("field = [[\"0\"]]\ngroup = \"so\"\nstart = [[2]]", 6, &["start"]),
-        ("field = [[\"0\"]]\ngroup = \"so\"\nstart = [[1, 2]]", 6, &["expected 1 rows of 1"]),
+        ("field = [[\"0\"]]\ngroup = \"sl\"\nstart = [[1, 2]]", 6, &["expected 1 rows of 1"]),
         ("field = [[\"0\"]]\ngroup = \"so\"\naction = \"lagrangian\"", 6, &["an action of sp"]),
         (
             "field = [[\"0\", \"1\"], [\"1\", \"0\"]]\ngroup = \"sp\"\naction = \"lagrangian\"\nstart = [[0, 1], [0, 0]]",

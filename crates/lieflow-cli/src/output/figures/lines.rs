@@ -1,7 +1,5 @@
 //! The columns of a quantity against time.
 
-use core::ops::Range;
-
 use lieflow_figures::number::short;
 use lieflow_figures::{Axis, Block, Chart, Marks, Point, Series};
 use lieflow_model::kinds::Scale;
@@ -56,32 +54,24 @@ pub(super) fn constant(quantity: &Observable, rows: &RowSample<'_>) -> Option<St
     (change <= CONSTANT * size && size.is_finite()).then(value)
 }
 
-/// The charts of a quantity.
+/// The charts of a quantity: of the columns that the scene wants drawn, or of all.
 pub(super) fn against_time(
     id: &str,
     title: &str,
     quantity: &Observable,
     rows: &RowSample<'_>,
+    wanted: &[String],
     summary: &Summary,
 ) -> Vec<Block> {
     let [size, change] = extent(quantity, rows);
     let from_start = change < NEARLY * size;
-    let parts = parts(&quantity.columns);
+    let parts = parts(quantity, wanted);
     let several = parts.len() > 1;
     let mut charts = Vec::new();
-    for (place, (number, part)) in parts.into_iter().take(CHARTS).enumerate() {
+    for (place, Shown { name, columns: part }) in parts.into_iter().take(CHARTS).enumerate() {
         let id = if place == 0 { id.into() } else { format!("{id}-{}", place + 1) };
-        let columns = &quantity.columns[part.clone()];
         let (title, axis) = match several {
-            true => {
-                let name = match columns {
-                    [first, .., last] if columns.len() > 4 => {
-                        format!("{} to {}", words::column(first), words::column(last))
-                    }
-                    _ => words::path(quantity, columns, number),
-                };
-                (format!("{title}: {name}"), name)
-            }
+            true => (format!("{title}: {name}"), name),
             false => (title.to_string(), words::on_axis(quantity)),
         };
         let of = |i: usize, row: Row<'_>| row[quantity][i];
@@ -92,7 +82,7 @@ pub(super) fn against_time(
         };
         let (title, axis) = match (from_start, start) {
             (true, Some(start)) if part.len() == 1 => {
-                let value = short(of(part.start, start), 6);
+                let value = short(of(part[0], start), 6);
                 (format!("{title}: how far it is from its start"), format!("{axis} − {value}"))
             }
             (true, _) => {
@@ -110,7 +100,7 @@ pub(super) fn against_time(
                 };
                 Line { name, points }
             };
-            part.clone().map(line).collect()
+            part.iter().copied().map(line).collect()
         };
         charts.extend(chart(&id, &title, &axis, lines, summary));
     }
@@ -122,24 +112,48 @@ pub(super) fn against_time(
     charts
 }
 
-/// The columns that belong together: all of a few, or those of one name. Each part has its number, and the
-/// shortest names are the first.
-fn parts(columns: &[String]) -> Vec<(usize, Range<usize>)> {
-    if columns.len() <= LINES {
-        return vec![(1, 0..columns.len())];
-    }
-    let mut named = Vec::new();
-    let mut start = 0;
-    for columns in columns.chunk_by(|a, b| words::stem(a) == words::stem(b)) {
-        named.push((named.len() + 1, start..start + columns.len()));
-        start += columns.len();
-    }
-    named.sort_by_key(|(_, part)| part.len());
-    let pieces = |(number, part): (usize, Range<usize>)| {
-        let starts = part.clone().step_by(LINES);
-        starts.map(move |from| (number, from..part.end.min(from + LINES)))
+/// Columns of one chart.
+#[derive(Debug, PartialEq)]
+struct Shown {
+    name: String,
+    columns: Vec<usize>,
+}
+
+/// The columns that belong together: all of a few, the parts of a composed system, or those of one name; those with
+/// the fewest columns first.
+fn parts(quantity: &Observable, wanted: &[String]) -> Vec<Shown> {
+    let names = &quantity.columns;
+    let is_wanted = |i: &usize| {
+        wanted.is_empty() || wanted.iter().any(|name| *name == names[*i] || name == quantity.name)
     };
-    named.into_iter().flat_map(pieces).collect()
+    let all: Vec<usize> = (0..names.len()).filter(is_wanted).collect();
+    let parts: Vec<Vec<usize>> = match quantity.parts.len() {
+        _ if all.len() <= LINES => vec![all],
+        1 => {
+            let same = |a: &usize, b: &usize| words::stem(&names[*a]) == words::stem(&names[*b]);
+            all.chunk_by(same).map(<[usize]>::to_vec).collect()
+        }
+        _ => {
+            let parts = quantity.parts.iter().map(|part| part.columns.clone().filter(is_wanted));
+            parts.map(Iterator::collect).filter(|part: &Vec<usize>| !part.is_empty()).collect()
+        }
+    };
+    let named = |(number, columns): (usize, Vec<usize>)| -> Vec<Shown> {
+        let pieces = columns.chunks(LINES).map(|columns| {
+            let columns_named: Vec<String> = columns.iter().map(|i| names[*i].clone()).collect();
+            let name = match &columns_named[..] {
+                [first, .., last] if columns.len() > 4 => {
+                    format!("{} to {}", words::column(first), words::column(last))
+                }
+                few => words::path(quantity, few, number),
+            };
+            Shown { name, columns: columns.to_vec() }
+        });
+        pieces.collect()
+    };
+    let mut numbered: Vec<_> = (1..).zip(parts).collect();
+    numbered.sort_by_key(|(_, part)| part.len());
+    numbered.into_iter().flat_map(named).collect()
 }
 
 /// One chart, or two of a run with many swings: the first of them, and the ranges of all.
@@ -241,6 +255,8 @@ pub(super) fn marked(chart: Chart, summary: &Summary) -> Chart {
 
 #[cfg(test)]
 mod tests {
+    use lieflow_model::scene::Scene;
+
     use super::*;
 
     #[test]
@@ -256,13 +272,22 @@ mod tests {
         assert!(range(&[(0.0, f64::NAN)]).is_empty());
     }
 
+    /// A scene of several kinds of parts, and one of a matrix: what is drawn in which chart.
     #[test]
     fn columns_of_one_name_are_a_part() {
-        let names =
-            |stem: &str, n: usize| (1..=n).map(move |i| format!("{stem}{i}")).collect::<Vec<_>>();
-        assert_eq!(parts(&names("a", 9)), [(1, 0..9)]);
-        let columns = [names("g", 9), names("b", 3)].concat();
-        assert_eq!(parts(&columns), [(2, 9..12), (1, 0..9)]);
-        assert_eq!(parts(&names("x", 20)), [(1, 0..9), (1, 9..18), (1, 18..20)]);
+        let shown = |scene: &str, quantity: &str, wanted: &[&str]| -> Vec<(String, usize)> {
+            let scene = Scene::bundled(scene).unwrap();
+            let model = scene.model_with(scene.layer, &[quantity]).unwrap();
+            let wanted: Vec<String> = wanted.iter().map(|name| name.to_string()).collect();
+            let parts = parts(model.schema().get(quantity).unwrap(), &wanted);
+            parts.into_iter().map(|part| (part.name, part.columns.len())).collect()
+        };
+        let bodies = (1..=4).map(|i| (format!("body {i}"), 3)).collect::<Vec<_>>();
+        assert_eq!(shown("many-bodies", "momentum_body", &[]), bodies);
+        let matrix = [("y₁₁ to y₂₄", 9), ("y₂₅ to y₄₃", 9), ("y₄₄ to y₅₅", 7)];
+        let matrix = matrix.map(|(name, count)| (name.to_string(), count));
+        assert_eq!(shown("rotating-drive", "point", &[]), matrix);
+        assert_eq!(shown("rotating-drive", "point", &["y11", "y55"])[0].1, 2);
+        assert_eq!(shown("wing-nut", "quaternion", &[]).len(), 1);
     }
 }

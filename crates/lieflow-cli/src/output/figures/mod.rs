@@ -18,7 +18,7 @@ use lieflow_model::schema::{Observable, Row};
 
 use self::lines::{LINES, against_time, constant, marked};
 use crate::cmd::CliError;
-use crate::output::{EVENTS, SUMMARY, Summary};
+use crate::output::{Accuracy, EVENTS, SUMMARY, Summary};
 
 /// Rows of a table that is open.
 const MANY: usize = 10;
@@ -45,22 +45,29 @@ pub struct Drawn<'a> {
 /// The page of a run.
 pub fn run_page(summary: &Summary, run: &Drawn<'_>) -> Page {
     let kind = run.scene.problem.kind();
-    let mut motion = own_figure(summary, run);
+    let figure = run.scene.problem.figure(&run.scene.computed());
+    let wanted = &run.scene.plot[..];
+    let mut motion = own_figure(summary, run, figure);
     let mut constants = Vec::new();
     let mut charts = Vec::new();
-    let is_line = matches!(run.scene.problem.figure(), Figure::Lines(_));
+    let is_line = matches!(figure, Figure::Lines(_));
     if is_line {
         let title = words::title(kind, run.figure);
-        charts.extend(against_time("figure", &title, run.figure, run.rows, summary));
+        charts.extend(against_time("figure", &title, run.figure, run.rows, &[], summary));
     }
-    for quantity in run.asked.iter().filter(|asked| !(is_line && asked.name == run.figure.name)) {
+    let drawn = |asked: &&&Observable| {
+        let among = |name: &String| *name == asked.name || asked.columns.contains(name);
+        let again = is_line && asked.name == run.figure.name && wanted.is_empty();
+        !again && (wanted.is_empty() || wanted.iter().any(among))
+    };
+    for quantity in run.asked.iter().filter(drawn) {
         let title = words::title(kind, quantity);
         if let Some(value) = constant(quantity, run.rows) {
             constants.push((title, value));
             continue;
         }
         let id = format!("time-{}", quantity.name.replace('_', "-"));
-        charts.extend(against_time(&id, &title, quantity, run.rows, summary));
+        charts.extend(against_time(&id, &title, quantity, run.rows, wanted, summary));
     }
     let inertia = run.scene.problem.inertia();
     if let Some(body) = inertia.and_then(|inertia| motion::body(&inertia, run.rows)) {
@@ -74,6 +81,10 @@ pub fn run_page(summary: &Summary, run: &Drawn<'_>) -> Page {
     let mut result: Vec<Block> = summary.warnings.iter().cloned().map(Block::Notice).collect();
     result
         .extend(summary.failure.iter().map(|why| Block::Notice(format!("The run stopped: {why}"))));
+    result.extend(summary.accuracy.as_ref().map(|accuracy| Block::text(rightness(accuracy))));
+    let told = |why: &String| Block::text(format!("The error at the end is not known: {why}."));
+    result.extend(summary.accuracy_unknown.iter().map(told));
+    result.extend(summary.notes.iter().map(|note| Block::text(format!("Note: {note}."))));
     result.push(facts(summary));
     let mut sections = vec![
         Section::new("How it went", result),
@@ -121,6 +132,22 @@ pub fn in_digits(x: f64) -> String {
     short(x, 8)
 }
 
+/// Errors of parts that are told; summary.json has all.
+const PARTS: usize = 4;
+
+/// How right the end is.
+fn rightness(accuracy: &Accuracy) -> String {
+    let right = match accuracy.digits {
+        0 => "No digit is right at the end".into(),
+        _ => format!("At the end {} are right", accuracy.digits_in_words()),
+    };
+    let mut parts: Vec<_> = accuracy.parts.iter().collect();
+    parts.sort_by(|a, b| b.relative.total_cmp(&a.relative));
+    let parts: Vec<String> =
+        parts.iter().take(PARTS).map(|part| part.in_words().replace('_', " ")).collect();
+    format!("{right}. The error, {}: {}.", accuracy.found_in_words(), parts.join(", "))
+}
+
 /// The number of steps and their size.
 fn steps(summary: &Summary) -> String {
     let count = summary.steps;
@@ -143,10 +170,15 @@ fn facts(summary: &Summary) -> Block {
         ("Time to compute".into(), seconds(summary.wall_time_s)),
         ("Rows".into(), summary.rows.to_string()),
     ];
-    facts.extend(summary.error_at_end.iter().flatten().map(|(name, error)| {
-        let name = name.replace('_', " ");
-        (format!("Distance from the exact {name} at the end"), sig(*error, 2))
-    }));
+    if let (Some(rtol), Some(atol)) = (summary.rtol, summary.atol) {
+        facts.push((
+            "Tolerance".into(),
+            format!("relative {}, absolute {}", short(rtol, 2), short(atol, 2)),
+        ));
+    }
+    facts.extend(
+        summary.defaults_in_words.iter().map(|chosen| ("Chosen by default".into(), chosen.clone())),
+    );
     facts.extend(
         summary.facts.iter().map(|(name, value)| (name.replace('_', " "), in_digits(*value))),
     );
@@ -164,10 +196,10 @@ fn facts(summary: &Summary) -> Block {
 }
 
 /// The figure of the kind, where it is not of lines against time.
-fn own_figure(summary: &Summary, run: &Drawn<'_>) -> Vec<Block> {
+fn own_figure(summary: &Summary, run: &Drawn<'_>, figure: Figure) -> Vec<Block> {
     let id = "figure".to_string();
     let title = words::title(run.scene.problem.kind(), run.figure);
-    match run.scene.problem.figure() {
+    match figure {
         Figure::Lines(_) => Vec::new(),
         Figure::Sphere(_) => vec![sphere(id, title, run).into()],
         Figure::Curve(_) => vec![plane(id, &title, run.figure, run.rows, false).into()],

@@ -17,7 +17,8 @@ const MOST: f64 = 1.2;
 
 /// The body of a run whose rows have the attitude or the quaternion often enough.
 pub(super) fn body(inertia: &PrincipalInertia, rows: &RowSample<'_>) -> Option<Body> {
-    let of_attitude = |quantity: &&Observable| matches!(quantity.name, "attitude" | "quaternion");
+    let of_attitude =
+        |quantity: &&Observable| quantity.parts.len() == 1 && quantity.parts[0].measure.is_angle();
     let turned = rows.schema().iter().find(of_attitude)?;
     let pose = |(t, row): (f64, Row<'_>)| Some(Pose { t, quaternion: quaternion(&row[turned])? });
     let whole = poses(rows.rows().map_while(pose));

@@ -3,11 +3,10 @@
 use lieflow_model::kinds::Kind;
 use lieflow_model::schema::Observable;
 
-/// What a quantity is, as a title: the first clause of its meaning.
+/// What a quantity is, as a title: the first clause of its meaning, or its columns where the scene makes them.
 pub(super) fn title(kind: &Kind, quantity: &Observable) -> String {
-    let meaning = kind.quantity(quantity.name).map(|info| info.meaning);
-    let clause = meaning
-        .map_or(quantity.name, |meaning| meaning.split([';', ',', ':']).next().unwrap_or(meaning));
+    let Ok(info) = kind.quantity(quantity.name) else { return quantity.columns.join(", ") };
+    let clause = info.meaning.split([';', ',', ':']).next().unwrap_or(info.meaning);
     let clause = clause.replace('_', " ");
     let mut letters = clause.chars();
     letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())

@@ -5,14 +5,16 @@ mod system;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use lieflow::groups::{LieGroup, MEMBERSHIP, So3};
+use lieflow::groups::{LieGroup, So3};
 use nalgebra::{Matrix3, Vector3};
 
 use self::system::{Coupled, ON_PARTS, Part, Point, Space};
+use super::body::check_rotation;
+use super::entries::check_rows;
 use super::flow;
 use super::prelude::*;
 use super::quantity::part;
-use crate::scene::formula::{Formula, Parameters, SamplesFile, read_all};
+use crate::scene::formula::{Formula, Parameters, Text, Texts};
 use crate::scene::values::Numbers;
 use crate::schema::{self, Measure};
 
@@ -26,19 +28,15 @@ pub(super) const KIND: Kind = Kind {
     ..Kind::of::<Keys, Composed>(read)
 };
 
-keys! { Keys {
+keys! { Keys [sample_keys formula_keys] {
     parts: Vec<PartKeys> =
         "a list of {name, space, start, field}. Space is \"vector\", of the coordinates NAME1 to NAME3; \
          \"rotation\", of NAME11 to NAME33 row by row, its start optional, the identity; or \"numbers\", \
-         of NAME1, NAME2, …, a single one NAME. Field is a list of formulas in t, the coordinates of all \
-         parts and the parameters: the angular velocity, in space, of a vector and of a rotation, the \
+         of NAME1, NAME2, …, a single one NAME. Field is a list of formulas, or one whose value is a vector, in t, \
+         the coordinates of all parts and the parameters: the angular velocity, in space, of a vector and of a rotation, the \
          derivatives of numbers",
-    samples: Option<SamplesFile> = SAMPLES.meaning,
-    interpolation: Option<String> = INTERPOLATION.meaning,
     #[serde(default)]
-    parameters: Parameters = "numbers by name, for the formulas; optional",
-    #[serde(default)]
-    invariants: BTreeMap<String, String> =
+    invariants: BTreeMap<String, Text> =
         "formulas by name, in the coordinates and the parameters, that the motion keeps; optional",
 } }
 
@@ -48,7 +46,7 @@ struct PartKeys {
     name: String,
     space: String,
     start: Option<Numbers>,
-    field: Vec<String>,
+    field: Texts,
 }
 
 /// What fields call the time.
@@ -61,36 +59,34 @@ struct Composed {
     start: Point,
     /// In the coordinates of all parts.
     invariants: Vec<(String, Formula)>,
+    /// What was changed of the numbers in the scene.
+    notes: Vec<String>,
 }
 
 type Q = Quantity<Composed>;
 
 fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
-    let Keys { parts: keys, samples, interpolation, parameters, invariants } =
-        Keys::deserialize(section)?;
+    let mut keys = Keys::deserialize(section)?;
+    let (formulas, samples) = (keys.formula_keys(), keys.sample_keys());
+    let Keys { parts: keys, invariants, .. } = keys;
     if keys.is_empty() {
         return Err(Refusal::at("parts", "no parts, expected at least one").into());
     }
-    let (spaces, start) = places(&keys)?;
-    let (coordinates, mut taken) = names_of(&keys, &spaces, &parameters)?;
+    let mut notes = Vec::new();
+    let (spaces, start) = places(&keys, &mut notes)?;
+    let (coordinates, mut taken) = names_of(&keys, &spaces, &formulas.parameters)?;
     let all = core::iter::once(TIME).chain(coordinates.iter().map(String::as_str));
-    let names = parameters.names("parts", all)?;
-    let names = names.with_samples(samples, interpolation.as_deref())?;
+    let names = formulas.names("parts", all, samples)?;
     let mut parts = Vec::new();
     for (i, (keys, space)) in keys.into_iter().zip(spaces).enumerate() {
-        let (key, expected) = (format!("parts[{i}].field"), space.dim());
-        if keys.field.len() != expected {
-            let found = keys.field.len();
-            let message = format!("found {found} formulas of `{}`, expected {expected}", keys.name);
-            return Err(Refusal::at(key, message).into());
-        }
-        let field = read_all(&key, &keys.field, &names)?;
+        let field = keys.field.read(&of_part(i, "field"), space.dim(), &names)?;
         parts.push(Part { name: keys.name, space, field });
     }
-    let names = parameters.names("parts", &coordinates)?;
+    let names = formulas.parameters.names("parts", &coordinates)?;
+    let names = names.with_usable_lets("let", &formulas.r#let);
     let mut kept = Vec::new();
-    for (name, text) in invariants {
-        let key = format!("invariants.{name}");
+    for (name, Text(text)) in invariants {
+        let key = "invariants".entry(&name);
         if !taken.insert(name.clone()) {
             let message = format!("the invariant `{name}` has the name of something else");
             return Err(Refusal::at(key, message).into());
@@ -98,16 +94,20 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
         let formula = Formula::read(&key, &text, &names)?;
         kept.push((name, formula));
     }
-    Ok(Box::new(Stated(Composed { parts, start, invariants: kept })))
+    Ok(Box::new(Stated(Composed { parts, start, invariants: kept, notes })))
+}
+
+/// The path of a key of part `i`, from 0.
+fn of_part(i: usize, key: &str) -> String {
+    "parts".index(i).entry(key)
 }
 
 /// The spaces of the parts with their places, and the start.
-fn places(keys: &[PartKeys]) -> Result<(Vec<Space>, Point), Refusal> {
+fn places(keys: &[PartKeys], notes: &mut Vec<String>) -> Result<(Vec<Space>, Point), Refusal> {
     let (mut vectors, mut rotations, mut numbers) = (Vec::new(), Vec::new(), Vec::new());
     let mut spaces = Vec::new();
     for (i, part) in keys.iter().enumerate() {
-        let refused =
-            |key: &str, message: String| Refusal::at(format!("parts[{i}].{key}"), message);
+        let refused = |key: &str, message: String| Refusal::at(of_part(i, key), message);
         spaces.push(match (part.space.as_str(), &part.start) {
             ("vector", Some(Numbers::List(x))) => {
                 vectors.push(vector(x).map_err(|message| refused("start", message))?);
@@ -118,7 +118,7 @@ fn places(keys: &[PartKeys]) -> Result<(Vec<Space>, Point), Refusal> {
                 Space::Rotation(rotations.len() - 1)
             }
             ("rotation", Some(Numbers::Rows(rows))) => {
-                rotations.push(rotation(&format!("parts[{i}].start"), rows)?);
+                rotations.push(rotation(&of_part(i, "start"), rows, notes)?);
                 Space::Rotation(rotations.len() - 1)
             }
             ("numbers", Some(Numbers::List(x))) if !x.is_empty() => {
@@ -145,16 +145,10 @@ fn places(keys: &[PartKeys]) -> Result<(Vec<Space>, Point), Refusal> {
 }
 
 /// A matrix of SO(3).
-fn rotation(key: &str, rows: &Table) -> Result<Matrix3<f64>, Refusal> {
+fn rotation(key: &str, rows: &Table, notes: &mut Vec<String>) -> Result<Matrix3<f64>, Refusal> {
     let rows = rows.matrix(key, Some(3))?;
-    if rows.nrows() != 3 {
-        return Err(Refusal::at(key, format!("found {} rows, expected 3", rows.nrows())));
-    }
-    let g = Matrix3::from_fn(|i, j| rows[(i, j)]);
-    match So3::new().check_element("start", &g, MEMBERSHIP) {
-        Ok(()) => Ok(g),
-        Err(error) => Err(Refusal::at(key, error.to_string())),
-    }
+    check_rows(key, &rows, 3)?;
+    check_rotation(key, Matrix3::from_fn(|i, j| rows[(i, j)]), notes)
 }
 
 /// A vector on a sphere.
@@ -180,7 +174,7 @@ fn names_of(
 ) -> Result<(Vec<String>, BTreeSet<String>), Refusal> {
     let (mut coordinates, mut taken) = (Vec::new(), BTreeSet::new());
     for (i, (PartKeys { name, .. }, space)) in keys.iter().zip(spaces).enumerate() {
-        let (own, key) = (space.coordinates(name), format!("parts[{i}].name"));
+        let (own, key) = (space.coordinates(name), of_part(i, "name"));
         parameters.names(&key, core::iter::once(&TIME.to_string()).chain(&own))?;
         for column in own.iter().cloned().chain(space.kept(name)) {
             if taken.contains(&column) {
@@ -307,15 +301,18 @@ impl System for Composed {
         self.parts.iter().for_each(|part| part.space.show(&self.start, &mut at));
         for (i, part) in self.parts.iter().enumerate() {
             for (j, formula) in part.field.iter().enumerate() {
-                formula.check(&format!("parts[{i}].field[{j}]"), &at)?;
+                formula.check(&of_part(i, "field").index(j), &at)?;
             }
         }
         let mut invariants = self.invariants.iter();
         invariants
-            .try_for_each(|(name, formula)| formula.check(&format!("invariants.{name}"), &at[1..]))
+            .try_for_each(|(name, formula)| formula.check(&"invariants".entry(name), &at[1..]))
     }
     fn samples(&self) -> Option<&Samples> {
         self.parts.first()?.field.first()?.samples()
+    }
+    fn notes(&self) -> Vec<String> {
+        self.notes.clone()
     }
     fn modelled(&self) -> String {
         let parts =

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use lieflow::scalar::{Ops, Real, tally};
 
 use crate::scene::Refusal;
-use crate::scene::formula::{Formula, Names};
+use crate::scene::formula::{Formula, Names, Text};
 
 /// The key.
 const KEY: &str = "hamiltonian";
@@ -22,7 +22,7 @@ pub(super) struct Energy {
 impl Energy {
     /// # Errors
     /// A refusal of `hamiltonian`.
-    pub(super) fn read(text: &str, names: &Names) -> Result<Self, Refusal> {
+    pub(super) fn read(Text(text): &Text, names: &Names) -> Result<Self, Refusal> {
         let value = Formula::read(KEY, text, names)?;
         let by = |i| value.derivative(KEY, i);
         let gradient: Arc<[Formula]> =

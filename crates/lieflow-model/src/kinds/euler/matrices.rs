@@ -7,12 +7,16 @@ use lieflow::scalar::{Ops, tally};
 use super::energy::Energy;
 use super::group::WithGroup;
 use super::{Dual, KIND, Keys, OnDual, quantities};
-use crate::kinds::algebra::{Algebra, outside};
-use crate::kinds::entries::{numbered, row_columns, rows, size_of_traces, square, traces};
+use crate::kinds::algebra::{Algebra, Miss, miss};
+use crate::kinds::entries::{
+    antisymmetric, numbered, row_columns, rows, size_of_traces, square, traces,
+};
 use crate::kinds::flow::OnMatrices;
+use crate::kinds::keys::SampleKeys;
 use crate::kinds::matrix::MatrixAction;
 use crate::kinds::prelude::*;
 use crate::model::Model;
+use crate::scene::values::Numbers;
 
 /// How H is stated.
 #[derive(Clone, Debug)]
@@ -43,8 +47,18 @@ const ROUNDING: f64 = 1e-12;
 /// Formulas name entries by one digit for the row and one for the column.
 const NAMED_MAX: usize = 9;
 
-pub(super) fn on(algebra: Algebra, keys: Keys) -> Result<Box<dyn ProblemSpec>, Refusal> {
-    let momentum = keys.momentum.square("momentum")?;
+pub(super) fn on(algebra: Algebra, mut keys: Keys) -> Result<Box<dyn ProblemSpec>, Refusal> {
+    let names = keys.formula_keys();
+    let momentum = match (algebra, keys.momentum) {
+        (Algebra::So, Numbers::List(above)) => antisymmetric(&above).ok_or_else(|| {
+            let message = format!(
+                "found {} numbers, expected the n(n-1)/2 entries above the diagonal, or n rows of n",
+                above.len()
+            );
+            Refusal::at("momentum", message)
+        })?,
+        (_, momentum) => momentum.square("momentum")?,
+    };
     let n = momentum.nrows();
     let stated = ("inverse_inertia", keys.inverse_inertia);
     let form = match exactly_one(stated, ("hamiltonian", keys.hamiltonian))? {
@@ -54,13 +68,16 @@ pub(super) fn on(algebra: Algebra, keys: Keys) -> Result<Box<dyn ProblemSpec>, R
             return Err(Refusal::at("hamiltonian", message));
         }
         Either::Second(text) => {
-            let names = keys.parameters.names("hamiltonian", row_columns("m", n, n))?;
+            let variables = row_columns("m", n, n);
+            let names = names.names("hamiltonian", variables, SampleKeys::default())?;
             Form::Formula(Energy::read(&text, &names)?)
         }
     };
     let group = algebra.group(n, "momentum")?;
-    if outside(algebra, &momentum, ROUNDING).is_some() {
-        return Err(Refusal::at("momentum", format!("it is not in {}", algebra.name(n))));
+    if let Some(Miss { at: (i, j), why, form }) = miss(algebra, "momentum", &momentum, ROUNDING) {
+        let message = format!("it is not in {}: {why}", algebra.name(n));
+        let refusal = Refusal::at("momentum".cell(i, j), message);
+        return Err(Refusal { help: Some(form), ..refusal });
     }
     let energy = Projected { algebra, form };
     let alone = EulerEquation { group, energy, momentum };
@@ -188,8 +205,8 @@ impl ProblemSpec for Spec {
     fn invariants(&self, quantities: &[&str]) -> Vec<&'static str> {
         self.of(quantities).invariants(quantities)
     }
-    fn figure(&self) -> Figure {
-        self.alone.figure()
+    fn figure(&self, quantities: &[&str]) -> Figure {
+        self.alone.figure(quantities)
     }
 }
 

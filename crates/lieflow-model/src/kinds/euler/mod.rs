@@ -24,7 +24,7 @@ use super::algebra::{ALGEBRAS, Algebra};
 use super::entries::rows;
 use super::prelude::*;
 use super::system::PointOf;
-use crate::scene::formula::Parameters;
+use crate::scene::formula::Text;
 use crate::scene::values::Numbers;
 
 /// The entry in the list of kinds.
@@ -36,18 +36,17 @@ pub(super) const KIND: Kind = Kind {
     ..Kind::of::<Keys, WithGroup>(read)
 };
 
-keys! { Keys {
+keys! { Keys [formula_keys] {
     algebra: String =
         "\"so\", \"sl\", \"gl\", \"sp\" or \"so(p,q)\" of matrices; \"so3\" or \"se3\" of vectors",
-    hamiltonian: Option<String> =
+    hamiltonian: Option<Text> =
         "the energy as a formula in the momentum: m11, m12, ..., mnn, n at most 9; m1, m2, m3 on so3; m1, m2, m3, \
          p1, p2, p3 on se3; or inverse_inertia",
     inverse_inertia: Option<Table> =
         "a quadratic energy, for matrices: n×n weights, symmetric for so; the gradient of the energy is the part in \
          the algebra of the momentum times them, entry by entry",
-    momentum: Numbers = "initial momentum, n×n in the algebra; 3 numbers on so3, 6 on se3",
-    #[serde(default)]
-    parameters: Parameters = PARAMETERS.meaning,
+    momentum: Numbers = "initial momentum, n×n in the algebra, of so also the n(n-1)/2 entries above the diagonal, row by \
+         row; 3 numbers on so3, 6 on se3",
 } }
 
 fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {

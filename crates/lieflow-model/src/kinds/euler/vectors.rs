@@ -8,6 +8,7 @@ use nalgebra::Vector3;
 use super::energy::Energy;
 use super::{Dual, KIND, Keys, OnDual, quantities};
 use crate::kinds::flow::{OnSe3, OnSpheres};
+use crate::kinds::keys::SampleKeys;
 use crate::kinds::prelude::*;
 use crate::kinds::system::PointOf;
 
@@ -53,15 +54,17 @@ impl<S: Number> Numbers<S, 6> for Pair<S> {
 }
 
 impl<const N: usize> Vectors<N> {
-    pub(super) fn read(keys: Keys) -> Result<Self, Refusal> {
+    pub(super) fn read(mut keys: Keys) -> Result<Self, Refusal> {
         if keys.inverse_inertia.is_some() {
             let message =
                 format!("`inverse_inertia` is for matrices; {} has a hamiltonian", keys.algebra);
             return Err(Refusal::at("inverse_inertia", message));
         }
         let missing = || Refusal::section("missing key `hamiltonian` in [problem]");
+        let formulas = keys.formula_keys();
         let text = keys.hamiltonian.ok_or_else(missing)?;
-        let names = keys.parameters.names("hamiltonian", NAMES[..N].iter().copied())?;
+        let variables = NAMES[..N].iter().copied();
+        let names = formulas.names("hamiltonian", variables, SampleKeys::default())?;
         let energy = Energy::read(&text, &names)?;
         Ok(Vectors { energy, momentum: keys.momentum.list("momentum")? })
     }

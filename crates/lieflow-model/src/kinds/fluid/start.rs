@@ -72,7 +72,7 @@ impl Keys {
         if let Some(Random { seed, below }) = &self.random {
             let mut rng = Pcg64::seed_from_u64(seed.0);
             let random = fluid.random_below(&mut rng, below.0 as usize);
-            return random.map_err(|error| Refusal::at("random", error.to_string()));
+            return random.map_err(|error| Refusal::from(error).about("random"));
         }
         let jets = self.jets.iter().flatten().enumerate();
         let jets = jets.map(|(i, jet)| fluid.jet(jet.0).map_err(at("jets", i)));
@@ -97,7 +97,7 @@ impl Keys {
 
 /// A refusal of an entry of a list.
 fn at(key: &str, i: usize) -> impl Fn(String) -> Refusal {
-    move |message| Refusal::at(format!("{key}[{i}]"), message)
+    move |message| Refusal::at(key.index(i), message)
 }
 
 fn in_words(error: Error) -> String {

@@ -8,7 +8,7 @@ use lieflow::maps::{CoordinateMap, Exp};
 use lieflow::problems::Flow;
 
 use super::{ACTIONS, KIND, NAMED_MAX};
-use crate::kinds::algebra::{Algebra, outside};
+use crate::kinds::algebra::{Algebra, Miss, miss};
 use crate::kinds::entries::{
     numbered, row_columns, rows, size_of_traces, traces, upper, upper_columns,
 };
@@ -162,18 +162,20 @@ impl System for Equation {
             self.stated(t, y, &mut f);
             let entries = (0..n).flat_map(|i| (0..n).map(move |j| (i, j)));
             let infinite = entries.map(|at| (at, f[at])).find(|(_, x)| !x.is_finite());
-            let (i, j, why) = match (infinite, outside(self.algebra, &f, IN_THE_ALGEBRA)) {
+            match (infinite, miss(self.algebra, "field", &f, IN_THE_ALGEBRA)) {
                 (Some(((i, j), x)), _) if t == t0 => {
-                    (i, j, format!("is {x} {place}, expected a number"))
+                    let key = "field".cell(i, j);
+                    let message = format!("{key} is {x} {place}, expected a number");
+                    return Err(Refusal::at(key, message));
                 }
-                (None, Some((i, j))) => {
+                (None, Some(Miss { at: (i, j), why, form })) => {
                     let algebra = self.algebra.name(n);
-                    (i, j, format!("is {} {place}: the field is not in {algebra}", f[(i, j)]))
+                    let message = format!("the field is not in {algebra}: {place} {why}");
+                    let refusal = Refusal::at("field".cell(i, j), message);
+                    return Err(Refusal { help: Some(form), ..refusal });
                 }
-                _ => continue,
-            };
-            let key = format!("field[{i},{j}]");
-            return Err(Refusal::at(key.clone(), format!("{key} {why}")));
+                _ => {}
+            }
         }
         Ok(())
     }

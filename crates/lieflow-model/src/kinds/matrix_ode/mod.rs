@@ -18,10 +18,10 @@ use lieflow::groups::MatrixGroup;
 
 use self::equation::Equation;
 use super::algebra::{ALGEBRAS, Algebra};
-use super::entries::{check_symmetric, row_columns};
+use super::entries::{above_diagonal, check_symmetric, row_columns, side_of};
 use super::matrix::MatrixAction;
 use super::prelude::*;
-use crate::scene::formula::{Parameters, SamplesFile, read_all};
+use crate::scene::formula::{Formula, Text, Texts};
 
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {
@@ -32,21 +32,17 @@ pub(super) const KIND: Kind = Kind {
     ..Kind::of::<Keys, Equation>(read)
 };
 
-keys! { Keys {
+keys! { Keys [sample_keys formula_keys] {
     group: String = "\"so\", \"sl\", \"gl\", \"sp\" or \"so(p,q)\"",
     action: Option<String> =
         "\"translation\", \"linear\", \"conjugation\", \"coadjoint\" or, of sp, \"lagrangian\"; optional: \
          translation",
-    field: Vec<Vec<String>> =
+    field: Vec<Texts> =
         "n rows of n formulas, n at most 9: f in the algebra, by the time t and the entries y11, y12, ... of the \
-         point",
+         point; of so also a list of the n(n-1)/2 formulas above the diagonal, row by row",
     start: Option<Table> =
         "initial point, n rows, of n numbers but for linear; for translation in the group and optional, the \
          identity; for lagrangian symmetric, n/2 rows of n/2",
-    samples: Option<SamplesFile> = SAMPLES.meaning,
-    interpolation: Option<String> = INTERPOLATION.meaning,
-    #[serde(default)]
-    parameters: Parameters = PARAMETERS.meaning,
 } }
 
 const ACTIONS: [(&str, MatrixAction); 5] = [
@@ -61,7 +57,8 @@ const ACTIONS: [(&str, MatrixAction); 5] = [
 const NAMED_MAX: usize = 9;
 
 fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
-    let keys = Keys::deserialize(section)?;
+    let mut keys = Keys::deserialize(section)?;
+    let (formulas, samples) = (keys.formula_keys(), keys.sample_keys());
     let algebra = Algebra::named(&keys.group)
         .ok_or_else(|| Refusal::unknown("group", &keys.group, &ALGEBRAS))?;
     let action = keys.action.as_deref().unwrap_or("translation");
@@ -69,14 +66,11 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
         .iter()
         .find(|(name, _)| *name == action)
         .ok_or_else(|| Refusal::unknown("action", action, &ACTIONS.map(|(name, _)| name)))?;
-    let n = keys.field.len();
+    let field = rows_of(algebra, keys.field)?;
+    let n = field.len();
     if !(1..=NAMED_MAX).contains(&n) {
         let message = format!("found {n} rows, expected 1 to {NAMED_MAX}");
         return Err(Refusal::at("field", message).into());
-    }
-    if let Some(i) = keys.field.iter().position(|row| row.len() != n) {
-        let message = format!("row {} has {} formulas, expected {n}", i + 1, keys.field[i].len());
-        return Err(Refusal::at(format!("field[{i}]"), message).into());
     }
     let group = algebra.group(n, "field")?;
     if action == MatrixAction::Lagrangian && algebra != Algebra::Sp {
@@ -85,22 +79,53 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
     let start = start(algebra, &group, action, keys.start)?;
     let entries = row_columns("y", start.nrows(), start.ncols());
     let variables = ["t".to_owned()].into_iter().chain(entries);
-    let names = keys.parameters.names("field", variables)?;
-    let names = names.with_samples(keys.samples, keys.interpolation.as_deref())?;
-    let mut field = Vec::new();
-    for (i, row) in keys.field.iter().enumerate() {
-        let read = read_all("field", row, &names);
-        field.extend(read.map_err(|refusal| of_row(i, refusal))?);
-    }
+    let names = formulas.names("field", variables, samples)?;
+    let field = field.iter().flatten().map(|(key, text)| Formula::read(key, text, &names));
+    let field = field.collect::<Result<Vec<_>, _>>()?;
     let linear = (1..names.variables().len()).all(|y| field.iter().all(|f| !f.uses(y)));
     let field = field.into();
     Ok(Box::new(Stated(Equation { algebra, group, action, field, linear, start })))
 }
 
-/// `field[j]` of row i is `field[i,j]`.
-fn of_row(i: usize, Refusal { key, message, help }: Refusal) -> Refusal {
-    let with_row = |text: String| text.replacen("field[", &format!("field[{i},"), 1);
-    Refusal { key: key.map(with_row), message: with_row(message), help }
+/// The formulas of a field by rows, each with its place; of so also those above the diagonal alone.
+fn rows_of(algebra: Algebra, field: Vec<Texts>) -> Result<Vec<Vec<(String, String)>>, Refusal> {
+    let (mut rows, mut above) = (Vec::new(), Vec::new());
+    for entry in field {
+        match entry {
+            Texts::List(row) => rows.push(row),
+            Texts::One(Text(text)) => above.push(text),
+        }
+    }
+    let n = rows.len();
+    if above.is_empty() {
+        if let Some(i) = rows.iter().position(|row| row.len() != n) {
+            let message = format!("row {} has {} formulas, expected {n}", i + 1, rows[i].len());
+            return Err(Refusal::at("field".index(i), message));
+        }
+        let with_place = |i: usize, row: Vec<Text>| {
+            let texts = row.into_iter().enumerate();
+            texts.map(|(j, Text(text))| ("field".cell(i, j), text)).collect()
+        };
+        return Ok(rows.into_iter().enumerate().map(|(i, row)| with_place(i, row)).collect());
+    }
+    let n = match (algebra, side_of(above.len())) {
+        (Algebra::So, Some(n)) if rows.is_empty() => n,
+        _ => {
+            let message = format!(
+                "found {} formulas that are in no row, expected n rows of n formulas or, of so, the n(n-1)/2 formulas \
+                 above the diagonal",
+                above.len()
+            );
+            return Err(Refusal::at("field", message));
+        }
+    };
+    let mut field = vec![vec![("field".to_owned(), "0".to_owned()); n]; n];
+    for ((k, (i, j)), text) in above_diagonal(n).enumerate().zip(above) {
+        // Formulas are read row by row: a mistake is found where it is written.
+        field[j][i] = ("field".index(k), format!("-({text})"));
+        field[i][j] = ("field".index(k), text);
+    }
+    Ok(field)
 }
 
 /// The initial point, where the action takes it.

@@ -13,16 +13,15 @@ use core::fmt::Debug;
 
 use lieflow::RunError;
 use lieflow::catalog::{MethodSpec, Needs};
-use lieflow::groups::{GroupMatrix, LieGroup, MatrixGroup, So3, UnitQuaternions, hat, vee};
+use lieflow::groups::{GroupMatrix, LieGroup, MatrixGroup, UnitQuaternions, hat, vee};
 use lieflow::problems::{
     BodyState, Exact, RigidBody, RigidBodyAttitude, RigidBodyN, RigidBodyNAttitude,
     RigidBodyQuaternion, RigidBodyState,
 };
-use lieflow::so3::{quaternion_from_matrix, quaternion_to_wxyz};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
-use super::{KIND, RigidBodySpec, rotation};
-use crate::kinds::body::{ROTATION, by_rows};
+use super::{KIND, RigidBodySpec};
+use crate::kinds::body::*;
 use crate::kinds::prelude::*;
 use crate::kinds::system::PointOf;
 use crate::model::{Model, Outcome, Plan, Runnable, Steps, Watcher};
@@ -32,35 +31,6 @@ use crate::schema::Schema;
 pub(super) struct Pose {
     m: Vector3<f64>,
     orientation: Orientation,
-}
-
-/// A rotation from body to space, as it is integrated.
-enum Orientation {
-    NotModelled,
-    Matrix(Matrix3<f64>),
-    Quaternion(UnitQuaternion<f64>),
-}
-
-impl Orientation {
-    /// The rotation; the identity where none is modelled.
-    fn rotation(&self) -> Matrix3<f64> {
-        match self {
-            Orientation::NotModelled => Matrix3::identity(),
-            Orientation::Matrix(g) => *g,
-            Orientation::Quaternion(q) => rotation(q),
-        }
-    }
-    /// The quaternion; of the two of a matrix that with w ≥ 0, and NaN where the matrix is no rotation.
-    fn quaternion(&self) -> UnitQuaternion<f64> {
-        if let Orientation::Quaternion(q) = self {
-            return *q;
-        }
-        match quaternion_from_matrix(&self.rotation()) {
-            Ok(q) if q.w < 0.0 => UnitQuaternion::new_unchecked(-q.into_inner()),
-            Ok(q) => q,
-            Err(_) => UnitQuaternion::new_unchecked([f64::NAN; 4].into()),
-        }
-    }
 }
 
 /// A way to represent the state of a free rigid body.
@@ -99,11 +69,6 @@ fn to_nalgebra(m: &Mat<f64>) -> Matrix3<f64> {
     Matrix3::from_fn(|i, j| m[(i, j)])
 }
 
-/// J and m_s of a problem with an orientation.
-fn with_momentum_space(spec: &RigidBodySpec) -> ([f64; 3], Vector3<f64>) {
-    (spec.inertia, spec.attitude * Vector3::from(spec.momentum_body))
-}
-
 /// m alone.
 #[derive(Clone, Debug)]
 pub(super) struct MomentumOnly;
@@ -136,7 +101,7 @@ impl Representation for Attitude {
     const TURNS: bool = true;
 
     fn problem<N: Number>(spec: &RigidBodySpec) -> Result<RigidBodyAttitude<N>, Error> {
-        let (inertia, m) = with_momentum_space(spec);
+        let (inertia, m) = (spec.inertia, spec.momentum_space());
         RigidBodyAttitude::new(inertia, m.into())
     }
     fn point<N: Number>(pose: &Pose) -> Result<Matrix3<N>, Error> {
@@ -181,7 +146,7 @@ impl Representation for Quaternion {
     const DEGREE: u32 = 0;
 
     fn problem<N: Number>(spec: &RigidBodySpec) -> Result<RigidBodyQuaternion, Error> {
-        let (inertia, m) = with_momentum_space(spec);
+        let (inertia, m) = (spec.inertia, spec.momentum_space());
         RigidBodyQuaternion::new(inertia, m.into())
     }
     fn point<N: Number>(pose: &Pose) -> Result<UnitQuaternion<f64>, Error> {
@@ -224,7 +189,7 @@ impl Representation for AttitudeMatrix {
     const TURNS: bool = true;
 
     fn problem<N: Number>(spec: &RigidBodySpec) -> Result<RigidBodyNAttitude, Error> {
-        let (inertia, m) = with_momentum_space(spec);
+        let (inertia, m) = (spec.inertia, spec.momentum_space());
         RigidBodyNAttitude::new(RigidBodyN::from_principal(inertia)?, to_faer(&hat(&m)))
     }
     fn point<N: Number>(pose: &Pose) -> Result<GroupMatrix, Error> {
@@ -256,17 +221,22 @@ impl<R: Representation> Body<R> {
         let body = RigidBody::new(spec.inertia)?;
         Ok(Body { spec: spec.clone(), body, problem: R::problem(spec)? })
     }
-    fn m(&self, y: &PointOf<Self>) -> Vector3<f64> {
+}
+
+impl<R: Representation> AsBody for Body<R> {
+    fn spec(&self) -> &RigidBodySpec {
+        &self.spec
+    }
+    fn momentum(&self, y: &PointOf<Self>) -> Vector3<f64> {
         R::pose(&self.problem, y).m
+    }
+    fn omega(&self, y: &PointOf<Self>) -> Vector3<f64> {
+        self.body.omega(&self.momentum(y))
     }
     fn orientation(&self, y: &PointOf<Self>) -> Orientation {
         R::pose(&self.problem, y).orientation
     }
-    /// A vector along the axes of the scene.
-    fn in_scene(&self, x: Vector3<f64>) -> Vector3<f64> {
-        self.spec.axes.map_or(x, |axes| axes * x)
-    }
-    fn turns(&self) -> Option<&'static str> {
+    fn without_orientation(&self) -> Option<&'static str> {
         (!R::TURNS).then_some("the momentum alone is integrated")
     }
 }
@@ -277,60 +247,22 @@ impl<R: Representation> System for Body<R> {
     const STATE: &'static [&'static str] =
         if R::TURNS { &["momentum_body", "attitude"] } else { &["momentum_body"] };
     const QUANTITIES: &'static [Q<R>] = &[
-        Q::numbers(
-            "momentum_body",
-            &["m1", "m2", "m3"],
-            "angular momentum in the body",
-            |body: &Body<R>, _, y, row| row.extend(body.in_scene(body.m(y)).iter()),
-        ),
-        Q::numbers(
-            "omega_body",
-            &["w1", "w2", "w3"],
-            "angular velocity in the body",
-            |body, _, y, row| row.extend(body.in_scene(body.body.omega(&body.m(y))).iter()),
-        ),
-        Q::numbers(
-            "attitude",
-            ROTATION,
-            "rotation from body to space, row by row; integrated only when asked for",
-            |body, _, y, row| {
-                let g = body.orientation(y).rotation();
-                by_rows(&body.spec.axes.map_or(g, |axes| g * axes.transpose()), row);
-            },
-        )
-        .of_rotation()
-        .missing_where(Body::turns),
-        Q::numbers(
-            "quaternion",
-            &["qw", "qx", "qy", "qz"],
-            "attitude as a unit quaternion, real part first, x -> q x q*; with the key quaternion it is \
-             what is integrated, and without it has w >= 0",
-            |body, _, y, row| {
-                let axes = body.spec.axes.map_or(Ok(UnitQuaternion::identity()), |axes| {
-                    quaternion_from_matrix(&axes.transpose())
-                });
-                let q = body.orientation(y).quaternion();
-                row.extend(axes.map_or([f64::NAN; 4], |axes| quaternion_to_wxyz(&(q * axes))));
-            },
-        )
-        .of_quaternion()
-        .missing_where(Body::turns),
-        Q::number("energy", "kinetic energy", |body, _, y| body.body.energy(&body.m(y)))
+        momentum_body(&["m1", "m2", "m3"]),
+        omega_body(),
+        attitude(),
+        quaternion(),
+        axis(),
+        nutation().missing_where(Self::without_orientation),
+        momentum_space(),
+        omega_space(),
+        Q::number("energy", "kinetic energy", |body, _, y| body.body.energy(&body.momentum(y)))
             .kept(Law::by_the_flow(R::DEGREE)),
-        Q::number("momentum_norm", "length of the angular momentum", |body, _, y| {
-            body.m(y).norm()
-        })
-        .kept(Law::by_the_action(R::DEGREE)),
-        Q::number(
-            "attitude_defect",
-            "distance of gᵀg from the identity; needs the attitude, which is then integrated",
-            |body, _, y| So3::new().defect(&body.orientation(y).rotation()),
-        )
-        .kept_where(|body| {
+        momentum_norm().kept(Law::by_the_action(R::DEGREE)),
+        angle(),
+        attitude_defect().kept_where(|body| {
             let law = Law::by_the_action(2).on_scale(Scale::One);
             body.spec.quaternion.is_none().then_some(law)
-        })
-        .missing_where(Body::turns),
+        }),
         Q::number(
             "quaternion_defect",
             "distance of the quaternion's square from 1",
@@ -340,7 +272,7 @@ impl<R: Representation> System for Body<R> {
             let law = Law::by_the_action(2).on_scale(Scale::One);
             body.spec.quaternion.map(|_| law)
         })
-        .missing_where(Body::turns),
+        .missing_where(Self::without_orientation),
     ];
 
     fn kind(&self) -> &'static Kind {
@@ -360,8 +292,14 @@ impl<R: Representation> System for Body<R> {
     fn modelled(&self) -> String {
         R::MODELLED.into()
     }
+    fn warnings(&self) -> Vec<String> {
+        self.spec.impossible()
+    }
+    fn notes(&self) -> Vec<String> {
+        self.spec.notes.clone()
+    }
     fn exact(&self, [t0, t1]: [f64; 2]) -> Option<Result<PointOf<Self>, Error>> {
-        let RigidBodySpec { inertia, momentum_body, attitude, .. } = self.spec;
+        let &RigidBodySpec { inertia, momentum_body, attitude, .. } = &self.spec;
         let at = |t: f64| {
             let exact = Exact::new(inertia, momentum_body, attitude)?;
             let (m, orientation) = match R::TURNS {

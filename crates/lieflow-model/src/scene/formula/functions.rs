@@ -36,14 +36,24 @@ pub(super) enum Operator {
     Max,
 }
 
+/// A function of vectors and matrices.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum OfVectors {
+    Dot,
+    Cross,
+    Norm,
+    Transpose,
+}
+
 /// What a name followed by a parenthesis calls.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Called {
     One(Function),
     Two(Operator),
+    OfVectors(OfVectors),
 }
 
-/// Every name that can be called.
+/// The functions of numbers. Nothing else may have these names.
 pub(super) const CALLED: &[(&str, Called)] = &[
     ("sin", Called::One(Function::Sin)),
     ("cos", Called::One(Function::Cos)),
@@ -64,6 +74,47 @@ pub(super) const CALLED: &[(&str, Called)] = &[
     ("min", Called::Two(Operator::Min)),
     ("max", Called::Two(Operator::Max)),
 ];
+
+/// The functions of vectors. Only in front of a parenthesis do these names mean them.
+const CALLED_OF_VECTORS: &[(&str, OfVectors)] = &[
+    ("dot", OfVectors::Dot),
+    ("cross", OfVectors::Cross),
+    ("norm", OfVectors::Norm),
+    ("transpose", OfVectors::Transpose),
+];
+
+impl Called {
+    /// The function of that name.
+    pub(super) fn named(name: &str) -> Option<Called> {
+        let of_numbers = CALLED.iter().find(|(known, _)| *known == name).map(|(_, called)| *called);
+        let of_vectors = CALLED_OF_VECTORS.iter().find(|(known, _)| *known == name);
+        of_numbers.or(of_vectors.map(|(_, function)| Called::OfVectors(*function)))
+    }
+
+    /// The names of all.
+    pub(super) fn names() -> impl Iterator<Item = &'static str> {
+        CALLED.iter().map(|(name, _)| *name).chain(CALLED_OF_VECTORS.iter().map(|(name, _)| *name))
+    }
+
+    /// What it takes, in words.
+    pub(super) fn takes(self) -> &'static str {
+        match self {
+            Called::One(_) => "a number",
+            Called::Two(_) => "two numbers",
+            Called::OfVectors(OfVectors::Dot) => "two vectors of one length",
+            Called::OfVectors(OfVectors::Cross) => "two vectors of 3",
+            Called::OfVectors(OfVectors::Norm) => "a vector",
+            Called::OfVectors(OfVectors::Transpose) => "a matrix",
+        }
+    }
+
+    /// The same, of a function that takes a second value.
+    pub(super) fn second(self) -> Option<&'static str> {
+        let of_two =
+            matches!(self, Called::Two(_) | Called::OfVectors(OfVectors::Dot | OfVectors::Cross));
+        of_two.then(|| self.takes())
+    }
+}
 
 /// Numbers that have a name.
 pub(super) const CONSTANTS: &[(&str, f64)] =

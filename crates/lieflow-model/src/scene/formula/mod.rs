@@ -4,8 +4,11 @@
 //! |---|---|
 //! | numbers | `2`, `0.5`, `1e-3`, `pi`, `e`, the names of `[problem.parameters]` |
 //! | variables | those that the key says, such as `t`, `w1`, `g33`; the columns of a file of samples |
+//! | named formulas | the names of `[problem.let]` |
 //! | operators | `+` `-` `*` `/` `^` and parentheses; −2^2 = −4, 2^−1 = ½, 2^3^2 = 2^9; whole powers are products |
 //! | functions | sin cos tan asin acos atan sinh cosh tanh exp ln log10 sqrt abs sign, atan2(y, x) min(x, y) max(x, y) |
+//! | vectors | `[a, b, c]`; `w` where `w1`, `w2`, … have a meaning; `g` where `g11`, `g12`, … have one, a matrix |
+//! | of vectors | `+` `-`, products with numbers and matrices, dot cross norm transpose |
 //!
 //! A formula is read once, to a list of operations; its derivative is another one. Evaluating it allocates
 //! nothing and cannot fail: where it has no value, the value is NaN.
@@ -21,9 +24,12 @@ mod samples;
 mod tape;
 #[cfg(test)]
 mod tests;
+mod text;
+mod value;
 
-pub use names::{Names, Parameters};
+pub use names::{Lets, Names, Parameters};
 pub use samples::SamplesFile;
+pub use text::{Text, Texts};
 
 use std::sync::Arc;
 
@@ -32,7 +38,7 @@ use lieflow::scalar::Real;
 
 use self::samples::Table;
 use self::tape::{LENGTH_MAX, Tape};
-use super::Refusal;
+use super::{KeyPath, Refusal};
 
 /// An expression of a scene in named variables.
 #[derive(Clone, Debug)]
@@ -48,12 +54,22 @@ impl Formula {
     /// # Errors
     /// A refusal of `key` that says what is wrong, and at which character.
     pub fn read(key: &str, text: &str, names: &Names) -> Result<Self, Refusal> {
-        let refused = |parse::Mistake { message, help }| Refusal {
-            help,
-            ..Refusal::at(key, format!("{key}: {message}"))
-        };
-        let tape = parse::parse(text, names).map_err(refused)?;
-        Ok(Formula { tape, table: names.table().cloned() })
+        let (rows, tapes) = read_value(key, text, names)?;
+        let count = tapes.len();
+        match <[Tape; 1]>::try_from(tapes) {
+            Ok([tape]) => Ok(Formula::of(tape, names)),
+            Err(_) => {
+                let value = if rows == count { "a vector" } else { "a matrix" };
+                let message =
+                    format!("{key}: the value is {value} of {count} numbers, expected one");
+                let help = "x1 is the first component of a vector x, norm(x) its length".into();
+                Err(Refusal { help: Some(help), ..Refusal::at(key, message) })
+            }
+        }
+    }
+
+    fn of(tape: Tape, names: &Names) -> Self {
+        Formula { tape, table: names.table().cloned() }
     }
 
     /// Its value where the variables have these values, in the order of their names. On numbers that count
@@ -76,6 +92,11 @@ impl Formula {
     /// The variable and the number, where the formula is a variable divided by a number; a variable is divided by 1.
     pub fn quotient(&self) -> Option<(usize, f64)> {
         self.tape.quotient()
+    }
+
+    /// Is it the number 0?
+    pub fn is_zero(&self) -> bool {
+        self.tape.ops().len() == 1 && self.tape.value::<f64>(&[], None) == 0.0
     }
 
     /// Does the value depend on this variable?
@@ -105,11 +126,12 @@ impl Formula {
     }
 }
 
-/// A list of formulas; the one that is refused has its index in the key.
-///
-/// # Errors
-/// As [`Formula::read`].
-pub fn read_all(key: &str, texts: &[String], names: &Names) -> Result<Vec<Formula>, Refusal> {
-    let read = |(i, text): (usize, &String)| Formula::read(&format!("{key}[{i}]"), text, names);
-    texts.iter().enumerate().map(read).collect()
+/// The entries of the value of a formula, row by row, and the number of its rows.
+fn read_value(key: &str, text: &str, names: &Names) -> Result<(usize, Vec<Tape>), Refusal> {
+    let refused = |parse::Mistake { message, help }| Refusal {
+        help,
+        ..Refusal::at(key, format!("{key}: {message}"))
+    };
+    let value = parse::parse(text, names).map_err(refused)?;
+    Ok((value.rows, value.entries))
 }

@@ -1,6 +1,6 @@
-//! The names that a formula may use: the variables of its kind, and the constants of the scene.
+//! The names that a formula may use: the variables of its kind, the constants and the named formulas of the scene.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use serde::Deserialize;
@@ -9,6 +9,8 @@ use super::super::Refusal;
 use super::super::values::Real;
 use super::functions::{CALLED, CONSTANTS};
 use super::samples::{SamplesFile, Table};
+use super::tape::Tape;
+use super::{Formula, KeyPath, Texts};
 
 /// `[problem.parameters]`: constants that the formulas of a scene share, `k = 3.0`.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
@@ -37,7 +39,7 @@ impl Parameters {
         key: &str,
         variables: impl IntoIterator<Item = N>,
     ) -> Result<Names, Refusal> {
-        let mut names = Names { variables: Vec::new(), constants: Vec::new(), table: None };
+        let mut names = Names::default();
         for variable in variables {
             let variable = variable.into();
             names.check(key, &variable)?;
@@ -51,20 +53,57 @@ impl Parameters {
     }
 }
 
+/// `[problem.let]`: formulas with names, which other formulas may use, `b = "3*t"`.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(transparent)]
+pub struct Lets(BTreeMap<String, Texts>);
+
+/// More named formulas than this are refused.
+const LETS_MAX: usize = 256;
+
+impl Lets {
+    /// Are there none?
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// The names, in alphabetical order.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.0.keys().map(String::as_str)
+    }
+
+    /// The formula that a name in a text belongs to: that of the name, or of the vector or matrix x by x1 or x12.
+    fn of<'a>(&'a self, word: &str) -> Option<&'a str> {
+        let whole = word.trim_end_matches(|c: char| c.is_ascii_digit());
+        let found = self.0.get_key_value(word).or_else(|| self.0.get_key_value(whole))?;
+        Some(found.0)
+    }
+
+    /// Does a name belong to one of these?
+    pub fn have(&self, word: &str) -> bool {
+        self.of(word).is_some()
+    }
+}
+
 /// The names that a formula may use.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Names {
     variables: Vec<String>,
     constants: Vec<(String, f64)>,
     table: Option<Arc<Table>>,
+    /// The named formulas; of vectors and matrices each entry by its name.
+    formulas: Vec<(String, Tape)>,
+    /// Named formulas that have no meaning here, and why.
+    unusable: Vec<(String, String)>,
 }
 
 /// What a name stands for.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Meaning {
+pub(super) enum Meaning<'a> {
     Variable(usize),
     Sample(usize),
     Number(f64),
+    Formula(&'a Tape),
 }
 
 impl Names {
@@ -105,6 +144,98 @@ impl Names {
         Ok(self)
     }
 
+    /// These names and named formulas, which may use each other in any order. `key` is their table in the scene.
+    ///
+    /// # Errors
+    /// A refusal of the formula that cannot be read, has a name that is taken, or needs itself.
+    pub fn with_lets(mut self, key: &str, lets: &Lets) -> Result<Names, Refusal> {
+        if lets.0.len() > LETS_MAX {
+            let message = format!("found {} formulas, expected at most {LETS_MAX}", lets.0.len());
+            return Err(Refusal::at(key, message));
+        }
+        let mut done = BTreeSet::new();
+        for name in lets.names() {
+            self.define(key, lets, name, &mut Vec::new(), &mut done)?;
+        }
+        Ok(self)
+    }
+
+    /// The same, without those that have no meaning with these names.
+    pub fn with_usable_lets(mut self, key: &str, lets: &Lets) -> Names {
+        let mut done = BTreeSet::new();
+        for name in lets.names().take(LETS_MAX) {
+            if let Err(refusal) = self.define(key, lets, name, &mut Vec::new(), &mut done) {
+                self.unusable.push((name.into(), refusal.message));
+            }
+        }
+        self
+    }
+
+    /// Read a named formula, and before it those that it needs; `path` are those that need it.
+    fn define<'a>(
+        &mut self,
+        key: &str,
+        lets: &'a Lets,
+        name: &'a str,
+        path: &mut Vec<&'a str>,
+        done: &mut BTreeSet<&'a str>,
+    ) -> Result<(), Refusal> {
+        let place = key.entry(name);
+        if let Some(start) = path.iter().position(|above| *above == name) {
+            let circle = [&path[start..], &[name]].concat().join(" needs ");
+            let message = format!("{place}: a formula cannot need itself: {circle}");
+            return Err(Refusal::at(place, message));
+        }
+        let Some(texts) = lets.0.get(name).filter(|_| !done.contains(name)) else { return Ok(()) };
+        path.push(name);
+        for word in texts.texts().flat_map(|text| text.split(|c| !continues_name(c))) {
+            if let Some(needed) = lets.of(word) {
+                self.define(key, lets, needed, path, done)?;
+            }
+        }
+        path.pop();
+        done.insert(name);
+        self.check(&place, name)?;
+        let (rows, tapes) = texts.read_any(&place, self)?;
+        let columns = tapes.len() / rows;
+        for (i, tape) in tapes.into_iter().enumerate() {
+            let entry = match (rows, columns) {
+                (1, 1) => name.into(),
+                (_, 1) => format!("{name}{}", i + 1),
+                _ => format!("{name}{}{}", i / columns + 1, i % columns + 1),
+            };
+            self.check(&place, &entry)?;
+            self.formulas.push((entry, tape));
+        }
+        Ok(())
+    }
+
+    /// The named formulas of a table, by the name of each entry.
+    pub fn entries_of<'a>(
+        &'a self,
+        lets: &'a Lets,
+    ) -> impl Iterator<Item = (String, Formula)> + 'a {
+        lets.names().flat_map(move |name| {
+            let of_this = move |entry: &&(String, Tape)| lets.of(&entry.0) == Some(name);
+            let entries = self.formulas.iter().filter(of_this);
+            entries.map(|(entry, tape)| (entry.clone(), Formula::of(tape.clone(), self)))
+        })
+    }
+
+    /// Why a named formula has no meaning here, by its name or that of an entry.
+    pub(super) fn unusable(&self, word: &str) -> Option<&str> {
+        let whole = word.trim_end_matches(|c: char| c.is_ascii_digit());
+        let of = |wanted: &str| self.unusable.iter().find(|(name, _)| name == wanted);
+        of(word).or_else(|| of(whole)).map(|(_, why)| why.as_str())
+    }
+
+    /// Where a scene gives a name its meaning.
+    pub(super) fn where_to_state(&self, name: &str) -> String {
+        format!(
+            "a constant is a line `{name} = 0.5` in [problem.parameters], a formula one in [problem.let]"
+        )
+    }
+
     /// The samples.
     pub(super) fn table(&self) -> Option<&Arc<Table>> {
         self.table.as_ref()
@@ -138,21 +269,25 @@ impl Names {
         Err(Refusal::at(key, format!("`{name}` {why}")))
     }
 
-    pub(super) fn meaning(&self, name: &str) -> Option<Meaning> {
+    pub(super) fn meaning(&self, name: &str) -> Option<Meaning<'_>> {
         let variable = self.variables.iter().position(|variable| variable == name);
         let own = self.constants.iter().map(|(name, x)| (name.as_str(), *x));
         let number =
             || own.chain(CONSTANTS.iter().copied()).find(|(constant, _)| *constant == name);
         let column = self.columns().iter().position(|column| column == name);
         let varies = variable.map(Meaning::Variable).or(column.map(Meaning::Sample));
+        let formula = || self.formulas.iter().find(|(formula, _)| formula == name);
+        let varies = varies.or_else(|| formula().map(|(_, tape)| Meaning::Formula(tape)));
         varies.or_else(|| number().map(|(_, x)| Meaning::Number(x)))
     }
 
     /// Every name that stands for a number.
     pub(super) fn all(&self) -> Vec<&str> {
         let variables = self.variables.iter().chain(self.columns()).map(String::as_str);
+        let formulas = self.formulas.iter().map(|(name, _)| name.as_str());
         let own = self.constants.iter().map(|(name, _)| name.as_str());
-        variables.chain(own).chain(CONSTANTS.iter().map(|(name, _)| *name)).collect()
+        let own = variables.chain(formulas).chain(own);
+        own.chain(CONSTANTS.iter().map(|(name, _)| *name)).collect()
     }
 }
 

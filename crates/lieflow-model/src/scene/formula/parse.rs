@@ -6,14 +6,16 @@
 //! | product | signed (`*` signed, `/` signed)* |
 //! | signed | `-` signed, `+` signed, power |
 //! | power | atom, atom `^` signed |
-//! | atom | number, name, name `(` sum (`,` sum) `)`, `(` sum `)` |
+//! | atom | number, name, name `(` sum (`,` sum) `)`, `(` sum `)`, `[` sum (`,` sum)* `]` |
 //!
-//! So −2^2 = −(2²), 2^−1 = ½ and 2^3^2 = 2^(3²).
+//! So −2^2 = −(2²), 2^−1 = ½ and 2^3^2 = 2^(3²). Each part is a [`Value`]: a number, a vector or a matrix. Vectors
+//! and matrices are there while a formula is read; what becomes of it are operations on numbers.
 
 use super::super::help_for;
 use super::functions::{CALLED, Called, Function, Operator};
 use super::names::{Meaning, Names, continues_name, starts_name};
 use super::tape::{Builder, LENGTH_MAX, Tape};
+use super::value::Value;
 
 /// What is wrong with a formula.
 #[derive(Debug)]
@@ -28,7 +30,13 @@ const NESTING_MAX: usize = 64;
 /// Longer texts are not formulas.
 const TEXT_MAX: usize = 1 << 16;
 
-pub(super) fn parse(text: &str, names: &Names) -> Result<Tape, Mistake> {
+/// The entries of a formula, row by row, and the number of its rows: of a number, one and 1.
+pub(super) struct Parsed {
+    pub(super) rows: usize,
+    pub(super) entries: Vec<Tape>,
+}
+
+pub(super) fn parse(text: &str, names: &Names) -> Result<Parsed, Mistake> {
     let plain = |message: String| Mistake { message, help: None };
     if text.len() > TEXT_MAX {
         return Err(plain(format!(
@@ -42,8 +50,9 @@ pub(super) fn parse(text: &str, names: &Names) -> Result<Tape, Mistake> {
     if parser.peek().is_some() {
         return Err(parser.expected("an operator or the end"));
     }
+    let entries = root.entries.iter().map(|&entry| parser.build.finish(entry)).collect();
     let too_long = || plain(format!("a formula of more than {LENGTH_MAX} operations"));
-    parser.build.finish(root).ok_or_else(too_long)
+    Ok(Parsed { rows: root.rows, entries: Option::ok_or_else(entries, too_long)? })
 }
 
 struct Parser<'a> {
@@ -95,51 +104,65 @@ impl Parser<'_> {
         mistake
     }
 
-    fn sum(&mut self) -> Result<usize, Mistake> {
+    fn sum(&mut self) -> Result<Value, Mistake> {
         let mut sum = self.product()?;
-        while let Some(sign) = self.take(&['+', '-']) {
+        while let Some((at, sign)) = self.operator(&['+', '-']) {
             let next = self.product()?;
             let operator = if sign == '+' { Operator::Add } else { Operator::Sub };
-            sum = self.build.combine(operator, sum, next);
+            sum = self.combine(operator, sum, next, at)?;
         }
         Ok(sum)
     }
-    fn product(&mut self) -> Result<usize, Mistake> {
+    fn product(&mut self) -> Result<Value, Mistake> {
         let mut product = self.signed()?;
-        while let Some(sign) = self.take(&['*', '/']) {
+        while let Some((at, sign)) = self.operator(&['*', '/']) {
             let next = self.signed()?;
             let operator = if sign == '*' { Operator::Mul } else { Operator::Div };
-            product = self.build.combine(operator, product, next);
+            product = self.combine(operator, product, next, at)?;
         }
         Ok(product)
     }
+    /// One of these signs with its place; it is passed.
+    fn operator(&mut self, wanted: &[char]) -> Option<(usize, char)> {
+        self.take(wanted).map(|sign| (self.at - 1, sign))
+    }
+    fn combine(
+        &mut self,
+        operator: Operator,
+        x: Value,
+        y: Value,
+        at: usize,
+    ) -> Result<Value, Mistake> {
+        x.combine(operator, &y, &mut self.build)
+            .map_err(|(message, help)| Mistake { help, ..self.mistake(&message, at) })
+    }
     /// All that lies within something else passes here.
-    fn signed(&mut self) -> Result<usize, Mistake> {
+    fn signed(&mut self) -> Result<Value, Mistake> {
         if self.depth == NESTING_MAX {
             return Err(self.mistake(&format!("more than {NESTING_MAX} levels"), self.at));
         }
         self.depth += 1;
         let signed = match self.take(&['-', '+']) {
-            Some('-') => self.signed().map(|x| self.build.apply(Function::Neg, x)),
+            Some('-') => self.signed().map(|x| x.map(|x| self.build.apply(Function::Neg, x))),
             Some(_) => self.signed(),
             None => self.power(),
         };
         self.depth -= 1;
         signed
     }
-    fn power(&mut self) -> Result<usize, Mistake> {
+    fn power(&mut self) -> Result<Value, Mistake> {
         let base = self.atom()?;
-        match self.take(&['^']) {
+        match self.operator(&['^']) {
             None => Ok(base),
-            Some(_) => {
+            Some((at, _)) => {
                 let exponent = self.signed()?;
-                Ok(self.build.combine(Operator::Pow, base, exponent))
+                self.combine(Operator::Pow, base, exponent, at)
             }
         }
     }
-    fn atom(&mut self) -> Result<usize, Mistake> {
+    fn atom(&mut self) -> Result<Value, Mistake> {
         match self.peek() {
-            Some(c) if c.is_ascii_digit() || c == '.' => self.number(),
+            Some(c) if c.is_ascii_digit() || c == '.' => self.number().map(Value::number),
             Some(c) if starts_name(c) => self.name(),
             Some('(') => {
                 self.at += 1;
@@ -147,8 +170,25 @@ impl Parser<'_> {
                 self.close()?;
                 Ok(inside)
             }
+            Some('[') => {
+                self.at += 1;
+                let mut entries = vec![self.entry()?];
+                while self.take(&[',']).is_some() {
+                    entries.push(self.entry()?);
+                }
+                match self.take(&[']']) {
+                    Some(_) => Ok(Value { rows: entries.len(), entries }),
+                    None => Err(self.expected("`,` or `]`")),
+                }
+            }
             _ => Err(self.expected("a number, a name or a parenthesis")),
         }
+    }
+    /// A component of a vector that is written out.
+    fn entry(&mut self) -> Result<usize, Mistake> {
+        let (at, value) = (self.at, self.sum()?);
+        let not_one = || self.mistake(&format!("found {value}, expected a number"), at);
+        value.as_number().ok_or_else(not_one)
     }
     fn close(&mut self) -> Result<(), Mistake> {
         match self.take(&[')']) {
@@ -176,49 +216,71 @@ impl Parser<'_> {
         }
     }
 
-    fn name(&mut self) -> Result<usize, Mistake> {
+    fn name(&mut self) -> Result<Value, Mistake> {
         let start = self.at;
         let name = self.take_while(continues_name);
         if self.peek() == Some('(') {
             return self.call(&name, start);
         }
-        match self.names.meaning(&name) {
-            Some(Meaning::Variable(index)) => Ok(self.build.variable(index)),
-            Some(Meaning::Sample(column)) => Ok(self.build.sample(column, 0)),
-            Some(Meaning::Number(x)) => Ok(self.build.number(x)),
-            None if CALLED.iter().any(|(called, _)| *called == name) => {
-                Err(self.expected(&format!("`(` after {name}")))
-            }
-            None => Err(Mistake {
-                help: Some(help_for(&name, &self.names.all())),
-                ..self.mistake(&format!("unknown name `{name}`"), start)
-            }),
+        if let Some(value) = self.value_of(&name) {
+            return Ok(value);
         }
+        if CALLED.iter().any(|(called, _)| *called == name) {
+            return Err(self.expected(&format!("`(` after {name}")));
+        }
+        if let Some(why) = self.names.unusable(&name) {
+            let message = format!("`{name}` of [problem.let] has no meaning here ({why})");
+            return Err(self.mistake(&message, start));
+        }
+        let help = help_for(&name, &self.names.all());
+        let help = format!("{help}; {}", self.names.where_to_state(&name));
+        Err(Mistake { help: Some(help), ..self.mistake(&format!("unknown name `{name}`"), start) })
     }
-    fn call(&mut self, name: &str, start: usize) -> Result<usize, Mistake> {
-        let Some((_, called)) = CALLED.iter().find(|(called, _)| *called == name) else {
+    /// A number of that name; the vector of x1, x2, … by the name x; the matrix of x11, x12, … by the name x.
+    fn value_of(&mut self, name: &str) -> Option<Value> {
+        if let Some(number) = self.number_of(name) {
+            return Some(Value::number(number));
+        }
+        let mut line = |first: &str| -> Vec<usize> {
+            (1..).map_while(|i| self.number_of(&format!("{first}{i}"))).collect()
+        };
+        let vector = line(name);
+        if vector.len() > 1 {
+            return Some(Value { rows: vector.len(), entries: vector });
+        }
+        let rows = (1..10).map(|i| line(&format!("{name}{i}"))).take_while(|row| row.len() > 1);
+        let rows: Vec<_> = rows.collect();
+        let is_matrix = rows.len() > 1 && rows.iter().all(|row| row.len() == rows[0].len());
+        is_matrix.then(|| Value { rows: rows.len(), entries: rows.concat() })
+    }
+    fn number_of(&mut self, name: &str) -> Option<usize> {
+        Some(match self.names.meaning(name)? {
+            Meaning::Variable(index) => self.build.variable(index),
+            Meaning::Sample(column) => self.build.sample(column, 0),
+            Meaning::Number(x) => self.build.number(x),
+            Meaning::Formula(tape) => self.build.include(tape),
+        })
+    }
+    fn call(&mut self, name: &str, start: usize) -> Result<Value, Mistake> {
+        let Some(called) = Called::named(name) else {
             if self.names.meaning(name).is_some() {
                 return Err(self.expected("an operator or the end"));
             }
-            let names: Vec<&str> = CALLED.iter().map(|(name, _)| *name).collect();
+            let names: Vec<&str> = Called::names().collect();
             let mistake = self.mistake(&format!("unknown function `{name}`"), start);
             return Err(Mistake { help: Some(help_for(name, &names)), ..mistake });
         };
         self.at += 1;
         let first = self.sum()?;
-        match called {
-            Called::One(function) => {
-                self.close()?;
-                Ok(self.build.apply(*function, first))
-            }
-            Called::Two(operator) => {
-                if self.take(&[',']).is_none() {
-                    return Err(self.expected(&format!("`,`: {name} takes two numbers")));
-                }
-                let second = self.sum()?;
-                self.close()?;
-                Ok(self.build.combine(*operator, first, second))
-            }
-        }
+        let second = match called.second() {
+            None => None,
+            Some(_) if self.take(&[',']).is_some() => Some(self.sum()?),
+            Some(takes) => return Err(self.expected(&format!("`,`: {name} takes {takes}"))),
+        };
+        self.close()?;
+        first.call(called, second.as_ref(), &mut self.build).map_err(|found| {
+            let message = format!("{name} of {found}, expected {}", called.takes());
+            self.mistake(&message, start)
+        })
     }
 }

@@ -32,7 +32,7 @@ const POWER_MAX: f64 = 64.0;
 pub(super) const LENGTH_MAX: usize = 4096;
 
 /// The operations; the last one is the value.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Tape {
     ops: Vec<Op>,
     cost: Ops,
@@ -121,6 +121,15 @@ impl Builder {
         Builder { ops: ops.to_vec(), found }
     }
 
+    /// The operations of another formula; its value.
+    pub(super) fn include(&mut self, tape: &Tape) -> usize {
+        let mut place = Vec::with_capacity(tape.ops.len());
+        for &op in &tape.ops {
+            place.push(self.push(moved(op, &place)));
+        }
+        place.last().copied().unwrap_or_else(|| self.number(f64::NAN))
+    }
+
     fn push(&mut self, op: Op) -> usize {
         let next = self.ops.len();
         let at = *self.found.entry(op).or_insert(next);
@@ -190,7 +199,7 @@ impl Builder {
     }
 
     /// What `root` needs, and no more; none where it is too long.
-    pub(super) fn finish(self, root: usize) -> Option<Tape> {
+    pub(super) fn finish(&self, root: usize) -> Option<Tape> {
         let mut needed = vec![false; root + 1];
         needed[root] = true;
         for i in (0..=root).rev() {
@@ -201,15 +210,20 @@ impl Builder {
         let (mut ops, mut place) = (Vec::new(), vec![0; root + 1]);
         for i in (0..=root).filter(|&i| needed[i]) {
             place[i] = ops.len();
-            ops.push(match self.ops[i] {
-                Op::Apply(function, x) => Op::Apply(function, place[x]),
-                Op::Combine(operator, x, y) => Op::Combine(operator, place[x], place[y]),
-                Op::Power(x, n) => Op::Power(place[x], n),
-                op => op,
-            });
+            ops.push(moved(self.ops[i], &place));
         }
         let cost = ops.iter().fold(Ops::NONE, |sum, &op| sum + cost(op));
         (ops.len() <= LENGTH_MAX).then_some(Tape { ops, cost })
+    }
+}
+
+/// The operation with its operands at new places.
+fn moved(op: Op, place: &[usize]) -> Op {
+    match op {
+        Op::Apply(function, x) => Op::Apply(function, place[x]),
+        Op::Combine(operator, x, y) => Op::Combine(operator, place[x], place[y]),
+        Op::Power(x, n) => Op::Power(place[x], n),
+        op => op,
     }
 }
 

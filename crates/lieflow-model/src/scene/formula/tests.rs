@@ -3,7 +3,7 @@
 use lieflow::scalar::{Counted, Ops};
 
 use super::super::Refusal;
-use super::{Formula, Names, Parameters, SamplesFile, read_all};
+use super::{Formula, Names, Parameters, SamplesFile, Text, Texts};
 
 fn names() -> Names {
     Parameters::default().names("variables", ["x", "y", "w_1"]).expect("three names")
@@ -209,8 +209,9 @@ fn what_is_wrong_is_said_with_its_place() {
             Some(help) => assert!(refusal.help.is_some_and(|said| said.contains(help)), "{text}"),
         }
     }
-    let texts = ["x".into(), "y +".into()];
-    assert_eq!(read_all("torque", &texts, &names()).unwrap_err().key.as_deref(), Some("torque[1]"));
+    let texts = Texts::List(["x", "y +"].map(|text| Text(text.into())).into());
+    let refusal = texts.read("torque", 2, &names()).unwrap_err();
+    assert_eq!(refusal.key.as_deref(), Some("torque[2]"));
 }
 
 #[test]

@@ -10,7 +10,7 @@ use crate::scene::{Refusal, help_for};
 /// The key, as it is written: which measures belong to which kind is checked after.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Shape {
+pub(crate) struct Shape {
     kind: String,
     mass: Real,
     sides: Option<Reals<3>>,

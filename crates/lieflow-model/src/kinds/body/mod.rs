@@ -1,0 +1,290 @@
+//! What all kinds of bodies share: their keys ([`BodyKeys`]), the start that these state, and their quantities.
+
+mod quantities;
+mod shape;
+
+use lieflow::Error;
+use lieflow::groups::{LieGroup, MEMBERSHIP, So3};
+use lieflow::problems::RigidBody;
+use lieflow::problems::inertia::{principal_axes, violates_triangle};
+use lieflow::so3::{quaternion_from_matrix, quaternion_from_wxyz};
+use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+
+pub(super) use self::quantities::*;
+pub(crate) use self::shape::Shape;
+use super::keys::BodyKeys;
+use super::prelude::*;
+use crate::scene::values::Diagonal;
+
+/// A rigid body with its initial state.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RigidBodySpec {
+    /// Principal moments of inertia.
+    pub inertia: [f64; 3],
+    /// Initial angular momentum in the body, along the principal axes.
+    pub momentum_body: [f64; 3],
+    /// Initial rotation to space, from the frame of the principal axes.
+    pub attitude: Matrix3<f64>,
+    /// The same as a quaternion, where the scene has it as one.
+    pub quaternion: Option<UnitQuaternion<f64>>,
+    /// The principal axes, as columns, in the frame that the scene is written in, where that is
+    /// another.
+    pub axes: Option<Matrix3<f64>>,
+    /// What was changed of the numbers in the scene.
+    pub notes: Vec<String>,
+}
+
+impl RigidBodySpec {
+    /// The inertia along the principal axes, in the frame that the scene is written in.
+    pub fn principal_inertia(&self) -> PrincipalInertia {
+        let diagonal = PrincipalInertia::diagonal(self.inertia);
+        let columns =
+            |axes: Matrix3<f64>| core::array::from_fn(|i| axes.column(i).into_owned().into());
+        PrincipalInertia { axes: self.axes.map_or(diagonal.axes, columns), ..diagonal }
+    }
+
+    /// Check the parts and put them together.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for a moment of inertia that is not finite and positive or a momentum
+    /// that is not finite, [`So3::check_element`]'s errors for the attitude.
+    pub fn new(
+        inertia: [f64; 3],
+        momentum_body: [f64; 3],
+        attitude: Matrix3<f64>,
+    ) -> Result<Self, Error> {
+        RigidBody::<f64>::new(inertia)?;
+        check_each("momentum_body", &momentum_body, "a finite number", f64::is_finite)?;
+        So3::new().check_element("attitude", &attitude, MEMBERSHIP)?;
+        let (quaternion, axes, notes) = (None, None, Vec::new());
+        Ok(RigidBodySpec { inertia, momentum_body, attitude, quaternion, axes, notes })
+    }
+
+    /// The momentum in space.
+    pub(super) fn momentum_space(&self) -> Vector3<f64> {
+        self.attitude * Vector3::from(self.momentum_body)
+    }
+
+    /// A vector of the scene's frame along the principal axes.
+    pub(super) fn along_axes(&self, x: Vector3<f64>) -> Vector3<f64> {
+        self.axes.map_or(x, |axes| axes.tr_mul(&x))
+    }
+
+    /// What a reader should know of moments that no body has.
+    pub(super) fn impossible(&self) -> Vec<String> {
+        let mut order = [0, 1, 2];
+        order.sort_by(|&i, &j| self.inertia[j].total_cmp(&self.inertia[i]));
+        let [a, b, c] = order.map(|i| (i + 1, self.inertia[i]));
+        let warning = |_| {
+            format!(
+                "inertia: J{} > J{} + J{} ({} > {} + {}): impossible for a real body",
+                a.0, b.0, c.0, a.1, b.1, c.1
+            )
+        };
+        violates_triangle(self.inertia).map(warning).into_iter().collect()
+    }
+}
+
+/// Numbers that are typed with a few digits are as far as this from what they stand for.
+const TYPED: f64 = 1e-3;
+
+/// That a vector has length 1, to the digits that it is written with; a note where these are few.
+///
+/// # Errors
+/// A refusal of `key`.
+pub(super) fn check_unit(key: &str, x: &[f64], notes: &mut Vec<String>) -> Result<(), Refusal> {
+    let length = x.iter().map(|x| x * x).sum::<f64>().sqrt();
+    match (length - 1.0).abs() {
+        away if away <= MEMBERSHIP => Ok(()),
+        away if away <= TYPED => {
+            notes.push(format!("{key}: its length is {length:.7}; it is divided by that"));
+            Ok(())
+        }
+        _ => {
+            let unit: Vec<f64> = x.iter().map(|x| (1e7 * x / length).round() / 1e7).collect();
+            let help = format!("the same direction of length 1 is {unit:?}");
+            let help = (length > 0.0 && length.is_finite()).then_some(help);
+            Err(Refusal { help, ..Refusal::at(key, format!("its length is {length}, expected 1")) })
+        }
+    }
+}
+
+/// The rotation that a matrix is, to the digits that it is written with: the nearest one, with a note, where these
+/// are few.
+///
+/// # Errors
+/// A refusal of `key` for a matrix that is no rotation.
+pub(super) fn check_rotation(
+    key: &str,
+    g: Matrix3<f64>,
+    notes: &mut Vec<String>,
+) -> Result<Matrix3<f64>, Refusal> {
+    let Err(error) = So3::new().check_element("attitude", &g, MEMBERSHIP) else { return Ok(g) };
+    let refused = || {
+        let away = So3::new().defect(&g);
+        let message = match error {
+            Error::Reflection { .. } => {
+                "its determinant is -1, expected a rotation of SO(3)".into()
+            }
+            _ => format!(
+                "not in SO(3): its rows are no unit vectors at right angles (they miss it by {away:.1e}, expected \
+                 at most {TYPED:.0e})"
+            ),
+        };
+        Refusal::at(key, format!("{key}: {message}"))
+    };
+    let turned = g.svd(true, true);
+    let (Some(u), Some(v)) = (turned.u, turned.v_t) else { return Err(refused()) };
+    let nearest = u * v;
+    let moved = (nearest - g).amax();
+    // A number that is not finite is not near.
+    if !(moved <= TYPED && nearest.determinant() > 0.0) {
+        return Err(refused());
+    }
+    notes.push(format!(
+        "{key}: it is replaced by the nearest rotation, which moves its entries by up to {moved:.1e}"
+    ));
+    Ok(nearest)
+}
+
+/// The rotation of a quaternion.
+pub(super) fn rotation(q: &UnitQuaternion<f64>) -> Matrix3<f64> {
+    q.to_rotation_matrix().into_inner()
+}
+
+/// Principal moments of inertia, and the principal axes where the scene's are others.
+type Principal = ([f64; 3], Option<Matrix3<f64>>);
+
+impl BodyKeys {
+    /// Does the scene say how the body stands?
+    pub(super) fn has_attitude(&self) -> bool {
+        self.attitude.is_some() || self.quaternion.is_some()
+    }
+
+    /// The body with its start; the attitude where the scene does not say it.
+    ///
+    /// # Errors
+    /// A refusal of the first key that cannot be used.
+    pub(super) fn start(self, otherwise: Matrix3<f64>) -> Result<RigidBodySpec, ReadError> {
+        let (inertia, axes) = self.principal()?;
+        RigidBody::<f64>::new(inertia)?;
+        let mut notes = Vec::new();
+        let (mut attitude, mut quaternion) = (otherwise, None);
+        match (self.attitude, self.quaternion) {
+            (Some(_), Some(_)) => {
+                let message = "both `attitude` and `quaternion`, expected at most one of them";
+                return Err(Refusal::at("quaternion", message).into());
+            }
+            (Some(rows), None) => {
+                let g = Matrix3::from_fn(|i, j| rows.0[i][j]);
+                attitude = check_rotation("attitude", g, &mut notes)?;
+            }
+            (None, Some(wxyz)) => {
+                check_unit("quaternion", &wxyz.0, &mut notes)?;
+                let q = quaternion_from_wxyz(wxyz.0)?;
+                (attitude, quaternion) = (rotation(&q), Some(q));
+            }
+            (None, None) => {}
+        }
+        let momentum = self.momentum(inertia, axes.as_ref(), &attitude)?;
+        if let Some(axes) = axes {
+            attitude *= axes;
+            if let Some(q) = &mut quaternion {
+                *q *= quaternion_from_matrix(&axes)?;
+            }
+        }
+        let body = RigidBodySpec::new(inertia, momentum.into(), attitude)?;
+        Ok(RigidBodySpec { quaternion, axes, notes, ..body })
+    }
+
+    /// The initial momentum in the body along the principal axes; g as the scene has it.
+    fn momentum(
+        &self,
+        inertia: [f64; 3],
+        axes: Option<&Matrix3<f64>>,
+        g: &Matrix3<f64>,
+    ) -> Result<Vector3<f64>, Refusal> {
+        let starts = [
+            ("omega_body", self.omega_body),
+            ("momentum_body", self.momentum_body),
+            ("omega_space", self.omega_space),
+            ("momentum_space", self.momentum_space),
+        ];
+        let mut given = starts.iter().filter_map(|(key, x)| Some((*key, (*x)?.0)));
+        let (key, x) = match (given.next(), given.next()) {
+            (Some(first), None) => first,
+            (Some((a, _)), Some((b, _))) => {
+                let message = format!("both `{a}` and `{b}`, expected exactly one of them");
+                return Err(Refusal::at(b, message));
+            }
+            (None, _) => {
+                let message = "expected `omega_body` or `momentum_body`, found neither";
+                return Err(Refusal::section(message));
+            }
+        };
+        let x = if key.ends_with("space") { g.tr_mul(&x.into()) } else { x.into() };
+        let x = axes.map_or(x, |axes| axes.tr_mul(&x));
+        if key.starts_with("momentum") {
+            return Ok(x);
+        }
+        let momentum = Vector3::from(inertia).component_mul(&x);
+        match momentum.iter().position(|m| !m.is_finite()) {
+            None => Ok(momentum),
+            Some(i) => {
+                let (at, of) = (key.index(i), "inertia".index(i));
+                let message = format!("the momentum {of} * {at} is not finite");
+                Err(Refusal::at(at, message))
+            }
+        }
+    }
+
+    fn principal(&self) -> Result<Principal, ReadError> {
+        if let Some(shape) = &self.shape {
+            let others = [
+                ("inertia", self.inertia.is_some()),
+                ("inverse_inertia", self.inverse_inertia.is_some()),
+            ];
+            if let Some((other, _)) = others.iter().find(|(_, given)| *given) {
+                let message = format!("both `{other}` and `shape`, expected exactly one of them");
+                return Err(Refusal::at("shape", message).into());
+            }
+            return Ok((shape.moments()?, None));
+        }
+        match exactly_one(("inertia", self.inertia), ("inverse_inertia", self.inverse_inertia))? {
+            Either::First(Diagonal::List(inertia)) => Ok((inertia, None)),
+            Either::First(Diagonal::Rows(rows)) => {
+                let tensor = Matrix3::from_rows(&rows.map(|row| Vector3::from(row).transpose()));
+                let refused = |error: Error| Refusal::from(error).about("inertia");
+                let (inertia, axes) = principal_axes(&tensor).map_err(refused)?;
+                Ok((inertia, Some(axes)))
+            }
+            Either::Second(inverse) => {
+                let range = "a finite number > 0 with a finite reciprocal";
+                let good = |x: f64| x > 0.0 && (1.0 / x).is_normal();
+                check_each("inverse_inertia", &inverse.0, range, good)?;
+                Ok((inverse.0.map(f64::recip), None))
+            }
+        }
+    }
+}
+
+/// That every entry of a list is in range.
+///
+/// # Errors
+/// [`Error::OutOfRange`] for the first entry that is not.
+pub(super) fn check_each(
+    arg: &str,
+    values: &[f64],
+    expected: &str,
+    good: impl Fn(f64) -> bool,
+) -> Result<(), Error> {
+    match values.iter().position(|&x| !good(x)) {
+        None => Ok(()),
+        // The library counts from 0.
+        Some(i) => Err(Error::OutOfRange {
+            arg: format!("{arg}[{i}]"),
+            value: values[i],
+            expected: expected.into(),
+        }),
+    }
+}

@@ -1,0 +1,206 @@
+//! The quantities of bodies, each once: `momentum_body`, `attitude`, `axis`, … of every [`AsBody`].
+
+use lieflow::groups::{LieGroup, So3, vee};
+use lieflow::so3::{quaternion_from_matrix, quaternion_to_wxyz};
+use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+
+use super::{RigidBodySpec, rotation};
+use crate::kinds::prelude::*;
+use crate::kinds::system::PointOf;
+
+/// A rotation from body to space, as it is integrated.
+pub(in crate::kinds) enum Orientation {
+    NotModelled,
+    Matrix(Matrix3<f64>),
+    Quaternion(UnitQuaternion<f64>),
+}
+
+impl Orientation {
+    /// The rotation; the identity where none is modelled.
+    pub(in crate::kinds) fn rotation(&self) -> Matrix3<f64> {
+        match self {
+            Orientation::NotModelled => Matrix3::identity(),
+            Orientation::Matrix(g) => *g,
+            Orientation::Quaternion(q) => rotation(q),
+        }
+    }
+    /// The quaternion; one of the two of a matrix, and NaN where the matrix is no rotation.
+    pub(in crate::kinds) fn quaternion(&self) -> UnitQuaternion<f64> {
+        if let Orientation::Quaternion(q) = self {
+            return *q;
+        }
+        let nan = UnitQuaternion::new_unchecked([f64::NAN; 4].into());
+        quaternion_from_matrix(&self.rotation()).unwrap_or(nan)
+    }
+}
+
+/// A system that is a body: what its quantities are made of, along its principal axes.
+pub(in crate::kinds) trait AsBody: System {
+    /// The body, as its scene states it.
+    fn spec(&self) -> &RigidBodySpec;
+    /// The momentum in the body.
+    fn momentum(&self, y: &PointOf<Self>) -> Vector3<f64>;
+    /// The angular velocity in the body.
+    fn omega(&self, y: &PointOf<Self>) -> Vector3<f64>;
+    /// The rotation to space.
+    fn orientation(&self, y: &PointOf<Self>) -> Orientation;
+    /// Why there is none.
+    fn without_orientation(&self) -> Option<&'static str> {
+        None
+    }
+    /// The momentum in space.
+    fn momentum_in_space(&self, y: &PointOf<Self>) -> Vector3<f64> {
+        self.orientation(y).rotation() * self.momentum(y)
+    }
+    /// The third direction of space, seen from the body.
+    fn vertical(&self, y: &PointOf<Self>) -> Vector3<f64> {
+        self.orientation(y).rotation().row(2).transpose()
+    }
+
+    /// A vector along the axes of the scene.
+    fn in_scene(&self, x: Vector3<f64>) -> Vector3<f64> {
+        self.spec().axes.map_or(x, |axes| axes * x)
+    }
+    /// The rotation from the axes of the scene to space.
+    fn attitude(&self, y: &PointOf<Self>) -> Matrix3<f64> {
+        let g = self.orientation(y).rotation();
+        self.spec().axes.map_or(g, |axes| g * axes.transpose())
+    }
+}
+
+/// The angular momentum in the body under these columns.
+pub(in crate::kinds) const fn momentum_body<S: AsBody>(
+    columns: &'static [&'static str],
+) -> Quantity<S> {
+    Quantity::numbers(
+        "momentum_body",
+        columns,
+        "angular momentum in the body",
+        |body: &S, _, y, row| row.extend(body.in_scene(body.momentum(y)).iter()),
+    )
+}
+
+/// The angular velocity in the body.
+pub(in crate::kinds) const fn omega_body<S: AsBody>() -> Quantity<S> {
+    Quantity::numbers(
+        "omega_body",
+        &["w1", "w2", "w3"],
+        "angular velocity in the body",
+        |body: &S, _, y, row| row.extend(body.in_scene(body.omega(y)).iter()),
+    )
+}
+
+/// The angular momentum in space.
+pub(in crate::kinds) const fn momentum_space<S: AsBody>() -> Quantity<S> {
+    Quantity::numbers(
+        "momentum_space",
+        &["l1", "l2", "l3"],
+        "angular momentum in space",
+        |body: &S, _, y, row| row.extend(body.momentum_in_space(y).iter()),
+    )
+    .missing_where(S::without_orientation)
+}
+
+/// The angular velocity in space.
+pub(in crate::kinds) const fn omega_space<S: AsBody>() -> Quantity<S> {
+    Quantity::numbers(
+        "omega_space",
+        &["ws1", "ws2", "ws3"],
+        "angular velocity in space",
+        |body: &S, _, y, row| {
+            row.extend((body.orientation(y).rotation() * body.omega(y)).iter());
+        },
+    )
+    .missing_where(S::without_orientation)
+}
+
+/// The attitude as a matrix.
+pub(in crate::kinds) const fn attitude<S: AsBody>() -> Quantity<S> {
+    Quantity::numbers(
+        "attitude",
+        &["g11", "g12", "g13", "g21", "g22", "g23", "g31", "g32", "g33"],
+        "rotation from body to space, row by row; rigid-body and heavy-top integrate it only when asked for",
+        |body: &S, _, y, row| row.extend(body.attitude(y).transpose().iter()),
+    )
+    .of_rotation()
+    .missing_where(S::without_orientation)
+}
+
+/// The attitude as a quaternion.
+pub(in crate::kinds) const fn quaternion<S: AsBody>() -> Quantity<S> {
+    Quantity::numbers(
+        "quaternion",
+        &["qw", "qx", "qy", "qz"],
+        "the attitude as a unit quaternion, real part first, x -> q x q*; w >= 0, but for a rigid-body with the key \
+         quaternion, which is integrated by it",
+        |body: &S, _, y, row| {
+            let orientation = body.orientation(y);
+            let axes = body.spec().axes.map_or(Ok(UnitQuaternion::identity()), |axes| {
+                quaternion_from_matrix(&axes.transpose())
+            });
+            let q = axes.map(|axes| quaternion_to_wxyz(&(orientation.quaternion() * axes)));
+            let q = q.unwrap_or([f64::NAN; 4]);
+            let is_given = matches!(orientation, Orientation::Quaternion(_));
+            row.extend(if q[0] < 0.0 && !is_given { q.map(|x| -x) } else { q });
+        },
+    )
+    .of_quaternion()
+    .missing_where(S::without_orientation)
+}
+
+/// The third axis of the body, in space.
+pub(in crate::kinds) const fn axis<S: AsBody>() -> Quantity<S> {
+    Quantity::numbers(
+        "axis",
+        &["a1", "a2", "a3"],
+        "the third axis of the body, in space",
+        |body: &S, _, y, row| row.extend(body.attitude(y).column(2).iter()),
+    )
+    .missing_where(S::without_orientation)
+}
+
+/// The angle between the third axis of the body and the third direction of space.
+pub(in crate::kinds) const fn nutation<S: AsBody>() -> Quantity<S> {
+    Quantity::number(
+        "nutation",
+        "angle between the third axis of the body and e3 in space, the vertical of a top; in radians, 0 to pi",
+        |body: &S, _, y| {
+            let up = body.in_scene(body.vertical(y));
+            // Exact near 0 and near π.
+            up[0].hypot(up[1]).atan2(up[2])
+        },
+    )
+}
+
+/// The angle of the attitude.
+pub(in crate::kinds) const fn angle<S: AsBody>() -> Quantity<S> {
+    // Exact near 0 and near π: the sine and the cosine.
+    Quantity::number(
+        "angle",
+        "angle of the attitude from the identity, in radians",
+        |body: &S, _, y| {
+            let g = body.attitude(y);
+            let sine = vee(&((g - g.transpose()) * 0.5)).norm();
+            sine.atan2(0.5 * (g.trace() - 1.0))
+        },
+    )
+    .missing_where(S::without_orientation)
+}
+
+/// The length of the angular momentum.
+pub(in crate::kinds) const fn momentum_norm<S: AsBody>() -> Quantity<S> {
+    Quantity::number("momentum_norm", "length of the angular momentum", |body: &S, _, y| {
+        body.momentum(y).norm()
+    })
+}
+
+/// The distance of the attitude from SO(3).
+pub(in crate::kinds) const fn attitude_defect<S: AsBody>() -> Quantity<S> {
+    Quantity::number(
+        "attitude_defect",
+        "distance of gᵀg from the identity, for g the attitude",
+        |body: &S, _, y| So3::new().defect(&body.orientation(y).rotation()),
+    )
+    .kept(Law::by_the_action(2).on_scale(Scale::One))
+    .missing_where(S::without_orientation)
+}

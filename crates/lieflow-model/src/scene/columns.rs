@@ -1,0 +1,207 @@
+//! Formulas of the columns of a run: the functions of events, and the columns of `[output.formulas]`.
+
+use core::cell::RefCell;
+
+use lieflow::Error;
+
+use super::error::{KeyPath, Refusal};
+use super::formula::{Formula, Lets, Names, Parameters};
+use crate::kinds::{FormulaKeys, ProblemSpec};
+use crate::mapped::Mapped;
+use crate::model::Model;
+use crate::schema::{Row, Schema};
+
+/// The name of the quantity that `[output.formulas]` is.
+pub(super) const FORMULAS: &str = "formulas";
+
+/// A column of a quantity.
+#[derive(Clone, Debug)]
+struct Column {
+    name: String,
+    quantity: &'static str,
+    /// The number of the column in its quantity.
+    index: usize,
+}
+
+/// A formula of t and columns.
+#[derive(Clone, Debug)]
+pub(super) struct RowFormula {
+    formula: Formula,
+    /// The columns that it uses, each with its variable.
+    columns: Vec<(usize, Column)>,
+    /// The number of variables; the first is t.
+    variables: usize,
+}
+
+/// A formula of the rows of a schema.
+#[derive(Clone, Debug)]
+pub(super) struct OnRows {
+    formula: Formula,
+    /// The variable and the place in a row of each column.
+    places: Vec<(usize, usize)>,
+    variables: RefCell<Vec<f64>>,
+}
+
+impl RowFormula {
+    /// The quantities that it is made of.
+    pub(super) fn quantities(&self) -> impl Iterator<Item = &str> {
+        self.columns.iter().map(|(_, column)| -> &str { column.quantity })
+    }
+
+    /// Is it the same at all times?
+    pub(super) fn is_constant(&self) -> bool {
+        !(0..self.variables).any(|variable| self.formula.uses(variable))
+    }
+
+    /// The formula on rows of this schema.
+    ///
+    /// # Errors
+    /// [`Error::UnknownName`] for a schema without a quantity of the formula.
+    pub(super) fn on(&self, schema: &Schema) -> Result<OnRows, Error> {
+        let place = |(variable, column): &(usize, Column)| {
+            let observable = schema.get(column.quantity)?;
+            Ok((*variable, observable.place(column.index)))
+        };
+        let places = self.columns.iter().map(place).collect::<Result<_, Error>>()?;
+        let variables = RefCell::new(vec![0.0; self.variables]);
+        Ok(OnRows { formula: self.formula.clone(), places, variables })
+    }
+}
+
+impl OnRows {
+    /// The value at t in a row.
+    pub(super) fn value(&self, t: f64, row: Row<'_>) -> f64 {
+        let mut variables = self.variables.borrow_mut();
+        variables[0] = t;
+        for &(variable, place) in &self.places {
+            variables[variable] = row.numbers()[place];
+        }
+        self.formula.value(&variables)
+    }
+}
+
+/// The columns of a problem, and the names that formulas of them may use: t, the columns, the constants and the
+/// named formulas of the problem.
+pub(super) struct Columns {
+    columns: Vec<Column>,
+    names: Names,
+    /// The column of each variable; none of t.
+    variables: Vec<Option<usize>>,
+}
+
+impl Columns {
+    /// `asked` are the quantities that the scene writes: a column that several quantities have is taken from them
+    /// first.
+    ///
+    /// # Errors
+    /// As [`Parameters::names`].
+    pub(super) fn of(
+        problem: &dyn ProblemSpec,
+        asked: &[String],
+        FormulaKeys { parameters, r#let: lets }: &FormulaKeys,
+    ) -> Result<Self, Refusal> {
+        let mut quantities: Vec<&'static str> =
+            (problem.kind().quantities)().iter().map(|quantity| quantity.name).collect();
+        quantities.sort_by_key(|name| !asked.iter().any(|asked| asked == name));
+        // What this problem does not have has no columns.
+        let columns = quantities.iter().flat_map(|&quantity| {
+            let names = problem.columns(quantity).unwrap_or_default();
+            let numbered = names.into_iter().enumerate();
+            numbered.map(move |(index, name)| Column { name, quantity, index })
+        });
+        let columns: Vec<Column> = columns.collect();
+        let mut names = parameters.names("t", ["t"])?;
+        let mut variables = vec![None];
+        for (place, Column { name, .. }) in columns.iter().enumerate() {
+            // A name means in all formulas of a scene what it means in its problem.
+            if !lets.have(name) && names.add(name) {
+                variables.push(Some(place));
+            }
+        }
+        let names = names.with_usable_lets("let", lets);
+        Ok(Columns { columns, names, variables })
+    }
+
+    /// The columns of `[output.formulas]`; their names may be used after that.
+    ///
+    /// # Errors
+    /// As [`Names::with_lets`].
+    pub(super) fn define(&mut self, lets: &Lets) -> Result<Vec<(String, RowFormula)>, Refusal> {
+        self.names = core::mem::take(&mut self.names).with_lets(FORMULAS, lets)?;
+        let entries = self.names.entries_of(lets);
+        Ok(entries.map(|(name, formula)| (name, self.of_rows(formula))).collect())
+    }
+
+    /// A formula, or the name of a column alone.
+    ///
+    /// # Errors
+    /// As [`Formula::read`], and a refusal of `key` for the name of a quantity of several columns.
+    pub(super) fn read(&self, key: &str, text: &str) -> Result<RowFormula, Refusal> {
+        // The name of a column may be one that no formula can use.
+        if let Some(column) = self.columns.iter().find(|column| column.name == text) {
+            let names = Parameters::default().names(key, ["t", "x"])?;
+            let formula = Formula::read(key, "x", &names)?;
+            return Ok(RowFormula { formula, columns: vec![(1, column.clone())], variables: 2 });
+        }
+        let of_quantity = || self.columns.iter().filter(|column| column.quantity == text);
+        if of_quantity().next().is_some() {
+            let names: Vec<&str> = of_quantity().map(|c| c.name.as_str()).take(20).collect();
+            let message = format!("`{text}` has more than one column");
+            let help = Some(format!("choose from {}", names.join(", ")));
+            return Err(Refusal { help, ..Refusal::at(key, message) });
+        }
+        Ok(self.of_rows(Formula::read(key, text, &self.names)?))
+    }
+
+    fn of_rows(&self, formula: Formula) -> RowFormula {
+        let used =
+            self.variables.iter().enumerate().filter(|(variable, _)| formula.uses(*variable));
+        let columns = used
+            .filter_map(|(variable, column)| Some((variable, self.columns[(*column)?].clone())));
+        RowFormula { columns: columns.collect(), variables: self.variables.len(), formula }
+    }
+}
+
+/// A model with formulas of its columns: one more quantity, `formulas`.
+pub(super) fn with_formulas(
+    base: Box<dyn Model>,
+    formulas: &[(String, RowFormula)],
+) -> Result<Box<dyn Model>, Error> {
+    let mut schema = base.schema().clone();
+    schema.push(FORMULAS, formulas.iter().map(|(name, _)| name.clone()).collect(), None, false);
+    let formulas = formulas.iter().map(|(_, formula)| formula.on(base.schema()));
+    let formulas = formulas.collect::<Result<Vec<_>, _>>()?;
+    let fill = move |t: f64, row: Row<'_>, numbers: &mut Vec<f64>| {
+        let (values, sizes) = row.numbers().split_at(row.values().len());
+        numbers.clear();
+        numbers.extend_from_slice(values);
+        numbers.extend(formulas.iter().map(|formula| formula.value(t, row)));
+        numbers.extend_from_slice(sizes);
+    };
+    Ok(Box::new(Mapped { base, schema, modelled: None, fill: Box::new(fill) }))
+}
+
+/// That these are columns or quantities that a scene writes.
+///
+/// # Errors
+/// A refusal of `plot` for another name.
+pub(super) fn check_plot(
+    plot: &[String],
+    problem: &dyn ProblemSpec,
+    quantities: &[String],
+    formulas: &[(String, RowFormula)],
+) -> Result<(), Refusal> {
+    let columns = quantities.iter().flat_map(|name| problem.columns(name).unwrap_or_default());
+    let derived = formulas.iter().map(|(name, _)| name.clone());
+    let mut names: Vec<String> = quantities.iter().cloned().chain(columns).chain(derived).collect();
+    names.dedup();
+    match plot.iter().position(|name| !names.contains(name)) {
+        None => Ok(()),
+        Some(i) => {
+            let names: Vec<&str> = names.iter().map(String::as_str).collect();
+            let unknown = Refusal::unknown("column", &plot[i], &names).about("plot".index(i));
+            let message = format!("{}: it is not among what the scene writes", unknown.message);
+            Err(Refusal { message, ..unknown })
+        }
+    }
+}

@@ -1,0 +1,267 @@
+//! What all kinds of bodies share: their keys, their quantities, and what they say of numbers that were typed.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::formulas::{FINE, RKMK4, refused};
+use super::*;
+
+const SHARED: &str = "[\"attitude\", \"momentum_space\", \"omega_body\", \"omega_space\", \"axis\", \
+                      \"nutation\", \"quaternion\", \"energy\", \"momentum_body\"]";
+const TENSOR: &str = "inertia = [[1.5, 0.2, -0.1], [0.2, 2.0, 0.3], [-0.1, 0.3, 2.5]]";
+
+/// Without a torque a driven body and a top are the free body, whatever its keys, and their exact motion is known.
+#[test]
+fn a_body_without_a_torque_is_the_free_one() {
+    let shape = "shape = { kind = \"box\", mass = 12, sides = [1, 2, 3] }";
+    let turned = "quaternion = [0.6, 0, 0.8, 0]";
+    for inertia in ["inertia = [1, 2, 2.5]", "inverse_inertia = [1, 0.5, 0.4]", TENSOR, shape] {
+        for start in [
+            "omega_body = [0.3, 0.5, 1]",
+            "momentum_space = [1, 2, 3]",
+            "omega_space = [0, 1, 0.2]",
+        ] {
+            let of = |kind: &str, more: &str| {
+                let body = format!("kind = {kind:?}\n{inertia}\n{start}\n{turned}\n{more}");
+                let of = scene(&body, RKMK4, "t_span = [1, 3]\ndt = 0.005", SHARED);
+                let exact = of.model().unwrap().exact([1.0, 3.0]).unwrap().unwrap();
+                (last(&of), exact)
+            };
+            // By a quaternion as by a matrix with w ≥ 0.
+            let upright = |mut row: Vec<f64>| {
+                if row[22] < 0.0 {
+                    row[22..26].iter_mut().for_each(|q| *q = -*q);
+                }
+                row
+            };
+            let free = upright(of("rigid-body", "").1);
+            for more in ["", "torque = [0, 0.0, \"1 - 1\"]", "weight = [0, 0, 0]"] {
+                let (end, exact) = of("driven-body", more);
+                let names = format!("{inertia} {start} {more}");
+                assert!(far(&exact, &free) < 1e-12, "{names}: {exact:?} {free:?}");
+                assert!(far(&end, &exact) < 1e-7, "{names}");
+            }
+            let (end, exact) = of("heavy-top", "weight = [0, 0, 0]");
+            assert!(far(&exact, &free) < 1e-12 && far(&end, &exact) < 1e-7, "{inertia} {start}");
+        }
+    }
+    let driven = format!("kind = \"driven-body\"\n{TENSOR}\nomega_body = [1, 0, 0]\ndamping = 0.1");
+    let of = scene(&driven, RKMK4, FINE, "[\"energy\"]");
+    assert!(of.model().unwrap().exact([0.0, 2.0]).is_none());
+}
+
+/// A torque is stated along the axes of the scene, whatever the principal ones are: l̇ = gτ.
+#[test]
+fn torques_are_along_the_axes_of_the_scene() {
+    let g = Matrix3::new(0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0);
+    let (omega, tau) = (Vector3::new(0.3, -0.2, 0.9), Vector3::new(0.1, 0.2, -1.0));
+    let attitude = "attitude = [[0, -1, 0], [1, 0, 0], [0, 0, 1]]\nomega_body = [0.3, -0.2, 0.9]";
+    let up = g.row(2).transpose();
+    for (keys, torque) in [
+        ("thruster = [0.1, 0.2, -1]", tau),
+        ("torque = [0.1, \"0.2\", -1]", tau),
+        ("torque = \"[0.1, 0.2, -1]\"", tau),
+        ("torque_space = \"g*[0.1, 0.2, -1]\"", tau),
+        ("damping = 0.5", -0.5 * omega),
+        ("torque = \"-w/2\"", -0.5 * omega),
+        ("weight = [0.1, 0.2, -1]", up.cross(&tau)),
+    ] {
+        let at = |t: f64| {
+            let body = format!("kind = \"driven-body\"\n{TENSOR}\n{attitude}\n{keys}");
+            let time = format!("t_span = [0, {t}]\nsteps = 1");
+            last(&scene(&body, RKMK4, &time, "[\"momentum_space\"]"))
+        };
+        let h = 1e-4;
+        let (ahead, behind) = (at(h), at(-h));
+        let expected = g * torque;
+        for i in 0..3 {
+            let rate = (ahead[i] - behind[i]) / (2.0 * h);
+            assert!((rate - expected[i]).abs() < 1e-6, "{keys}: {rate} {}", expected[i]);
+        }
+    }
+}
+
+/// A top moves the same by its attitude as by its momentum, and shows where its axis points.
+#[test]
+fn a_top_has_an_attitude_where_it_is_asked_for() {
+    for inertia in ["inertia = [1, 1, 0.5]", TENSOR] {
+        let top = format!(
+            "kind = \"heavy-top\"\n{inertia}\nweight = [0, 0.1, 1]\nomega_body = [0.1, 0, 6]\n\
+             vertical = [0.6, 0, 0.8]"
+        );
+        let of = |more: &str| {
+            let quantities = format!(
+                "[\"momentum_body\", \"vertical\", \"energy\", \"nutation\", \"momentum_vertical\"{more}]"
+            );
+            let of = scene(&top, RKMK4, "t_span = [0, 2]\ndt = 0.002", &quantities);
+            let model = of.model().unwrap();
+            (model.modelled(&of.method)[0].clone(), rows(&of))
+        };
+        let (modelled, momentum) = of("");
+        assert_eq!(modelled, "momentum and vertical on se(3)*");
+        let (modelled, attitude) = of(", \"axis\", \"attitude_defect\", \"momentum_space\"");
+        assert!(modelled.starts_with("attitude"), "{modelled}");
+        let first = &attitude[0];
+        assert!(far(&first[4..7], &[0.6, 0.0, 0.8]) < 1e-15 && first[13] < 1e-15, "{first:?}");
+        for (a, b) in momentum.iter().zip(&attitude) {
+            assert!(far(a, &b[..a.len()]) < 1e-8, "{a:?} {b:?}");
+            // Nutation, by the vertical and by the axis; l3 is the momentum about the vertical.
+            assert!((b[8] - b[6].acos()).abs() < 1e-7 && (b[8] - b[12].acos()).abs() < 1e-7);
+            assert!((b[9] - b[16]).abs() < 1e-12, "{b:?}");
+        }
+    }
+    // By its attitude alone; the two agree, or are refused.
+    let top = "kind = \"heavy-top\"\ninertia = [1, 1, 0.5]\nweight = [0, 0, 1]\nomega_body = [0, 0, 6]\n\
+               quaternion = [0.6, 0.8, 0, 0]";
+    let by_quaternion = last(&scene(top, RKMK4, FINE, "[\"vertical\"]"));
+    let both = format!("{top}\nvertical = [0, 0.96, -0.28]");
+    assert!(far(&last(&scene(&both, RKMK4, FINE, "[\"vertical\"]")), &by_quaternion) < 1e-13);
+    let (line, message) = refused(&format!("{top}\nvertical = [0, 0, 1]"), FINE, "axis");
+    assert!(line == 8 && message.contains("from the third row of the attitude"), "{message}");
+    let (_, message) = refused(&top.replace("quaternion", "#"), FINE, "axis");
+    assert!(message.contains("expected `vertical`, `attitude` or `quaternion`"), "{message}");
+    // Upside down is a half turn.
+    let down = top.replace("quaternion = [0.6, 0.8, 0, 0]", "vertical = [0, 0, -1]");
+    assert!(far(&rows(&scene(&down, RKMK4, FINE, "[\"axis\"]"))[0], &[0.0, 0.0, 0.0, -1.0]) == 0.0);
+}
+
+/// Numbers that are typed with few digits are normalised, and the run says so; others are refused with what is meant.
+#[test]
+fn numbers_of_few_digits_are_normalised() {
+    let of = |kind: &str, more: &str| {
+        let keys = "inertia = [1, 2, 3]\nomega_body = [0.3, 0.5, 1]";
+        format!("kind = {kind:?}\n{keys}\n{more}")
+    };
+    let (c, s) = (0.8, 0.6);
+    let exact = format!("attitude = [[{c}, {}, 0], [{s}, {c}, 0], [0, 0, 1]]", -s);
+    let rough = "attitude = [[0.8001, -0.6, 0], [0.6, 0.7998, 0], [0, 0, 1]]";
+    for (kind, more) in
+        [("rigid-body", ""), ("driven-body", "damping = 0.1"), ("heavy-top", "weight = [0, 0, 1]")]
+    {
+        let quantities = "[\"attitude\", \"quaternion\", \"attitude_defect\"]";
+        let run = |attitude: &str| {
+            let body = of(kind, &format!("{more}\n{attitude}"));
+            let of = scene(&body, RKMK4, "t_span = [0, 1]\nsteps = 100", quantities);
+            (rows(&of)[0].clone(), of.problem.notes())
+        };
+        let (start, notes) = run(&exact);
+        assert_eq!(notes, [""; 0], "{kind}");
+        let (near, notes) = run(rough);
+        assert!(far(&near, &start) < 2e-4 && near[14] < 1e-14, "{kind}");
+        assert!(
+            notes[0].starts_with("attitude: it is replaced by the nearest rotation"),
+            "{notes:?}"
+        );
+        let (turned, notes) = run("quaternion = [0.7071, 0.7071, 0, 0]");
+        assert!(notes[0].starts_with("quaternion: its length is 0.99999"), "{notes:?}");
+        assert!(far(&turned[1..10], &[1.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 1.0, 0.0]) < 1e-15);
+        assert!((turned[10] - 0.5f64.sqrt()).abs() < 1e-15);
+        for (wrong, parts) in [
+            ("quaternion = [1, 1, 0, 0]", ["expected 1", "[0.7071068, 0.7071068, 0.0, 0.0]"]),
+            ("quaternion = [0, 0, 0, 0]", ["its length is 0", "expected 1"]),
+            (
+                "attitude = [[0.9, -0.6, 0], [0.6, 0.8, 0], [0, 0, 1]]",
+                ["not in SO(3)", "right angles"],
+            ),
+            ("attitude = [[1, 0, 0], [0, 1, 0], [0, 0, -1]]", ["determinant is -1", "rotation"]),
+        ] {
+            let (_, message) = refused(&of(kind, &format!("{more}\n{wrong}")), FINE, "energy");
+            parts.iter().for_each(|part| assert!(message.contains(part), "{kind}: {message}"));
+        }
+    }
+    let vertical = of("heavy-top", "weight = [0, 0, 1]\nvertical = [0.7071, 0, 0.7071]");
+    let of_vertical = scene(&vertical, RKMK4, FINE, "[\"vertical\"]");
+    assert!(of_vertical.problem.notes()[0].starts_with("vertical: its length"));
+    let part = "kind = \"composed\"\n[[problem.parts]]\nname = \"g\"\nspace = \"rotation\"\nfield = [0, 0, 1]\n\
+                start = [[0.8001, -0.6, 0], [0.6, 0.7998, 0], [0, 0, 1]]";
+    let notes = scene(part, RKMK4, FINE, "[\"state\"]").problem.notes();
+    assert!(notes[0].starts_with("parts[1].start: "), "{notes:?}");
+}
+
+/// What misses an algebra is said by both entries that do not go together, and with the form of the algebra.
+#[test]
+fn an_algebra_is_refused_with_its_form() {
+    for (group, field, parts) in [
+        (
+            "sp",
+            "[[1, 0, 0, 0], [0, 0, 0, 0], [0, 0, -1, 0], [0, -2, 0, 0]]",
+            // Symmetric about the wrong block is fine: C = [0 0; 0 -2].
+            None,
+        ),
+        (
+            "sp",
+            "[[2, 0, 0, 0], [0, 0, 0, 0], [0, 0, 0, 0], [0, 0, 0, 0]]",
+            Some([
+                "field[1,1] is 2 and field[3,3] is 0, expected field[3,3] = -field[1,1]",
+                "(q1, q2, p1, p2)",
+            ]),
+        ),
+        (
+            "sp",
+            "[[0, 0, 0, 1], [0, 0, 3, 0], [0, 0, 0, 0], [0, 0, 0, 0]]",
+            Some([
+                "field[1,4] is 1 and field[2,3] is 3, expected field[2,3] = field[1,4]",
+                "B and C symmetric",
+            ]),
+        ),
+        (
+            "sp",
+            "[[0, 2, 0, 0], [0, 0, 0, 0], [0, 0, 0, 0], [0, 0, 2, 0]]",
+            Some([
+                "field[1,2] is 2 and field[4,3] is 2, expected field[4,3] = -field[1,2]",
+                "[A B; C -Aᵀ]",
+            ]),
+        ),
+        (
+            "so",
+            "[[0, 0.5], [0.3, 0]]",
+            Some([
+                "field[1,2] is 0.5 and field[2,1] is 0.3, expected field[2,1] = -field[1,2]",
+                "so(2): ",
+            ]),
+        ),
+        (
+            "so(1,1)",
+            "[[0, 0.5], [0.3, 0]]",
+            Some([
+                "field[1,2] is 0.5 and field[2,1] is 0.3, expected field[2,1] = field[1,2]",
+                "so(1,1): ",
+            ]),
+        ),
+        ("sl", "[[1, 0.5], [0.3, 1]]", Some(["sum of its diagonal is 2, expected 0", "sl(2): "])),
+    ] {
+        let problem = format!("kind = \"matrix-ode\"\ngroup = {group:?}\nfield = {field}");
+        match parts {
+            None => drop(scene(&problem, RKMK4, FINE, "[\"point\"]")),
+            Some(parts) => {
+                let (_, message) = refused(&problem, FINE, "point");
+                parts.iter().for_each(|part| assert!(message.contains(part), "{message}"));
+            }
+        }
+    }
+}
+
+/// so(n) by the entries above the diagonal is so(n) by all of them.
+#[test]
+fn entries_above_the_diagonal_are_enough() {
+    let run = |field: &str| {
+        let problem = format!("kind = \"matrix-ode\"\ngroup = \"so\"\nfield = {field}");
+        last(&scene(&problem, RKMK4, FINE, "[\"point\"]"))
+    };
+    let all = "[[0, \"t\", 0.3], [\"-t\", 0, \"y12 - 1\"], [-0.3, \"1 - y12\", 0]]";
+    assert!(far(&run("[\"t\", 0.3, \"y12 - 1\"]"), &run(all)) < 1e-13);
+    let euler = |momentum: &str| {
+        let energy = "hamiltonian = \"m12^2/2 + m13^2 + m23^2/4\"\nalgebra = \"so\"";
+        let problem = format!("kind = \"euler\"\n{energy}\nmomentum = {momentum}");
+        last(&scene(&problem, RKMK4, FINE, "[\"momentum\"]"))
+    };
+    let all = "[[0, 0.3, -0.2], [-0.3, 0, 1], [0.2, -1, 0]]";
+    assert_eq!(euler("[0.3, -0.2, 1]"), euler(all));
+    for (keys, part) in [
+        ("group = \"so\"\nfield = [\"t\", 1]", "found 2 formulas that are in no row"),
+        ("group = \"sl\"\nfield = [\"t\", 1, 1]", "found 3 formulas that are in no row"),
+        ("group = \"so\"\nfield = [\"t\", 1, \"y15\"]", "field[3]: unknown name `y15`"),
+    ] {
+        let (_, message) = refused(&format!("kind = \"matrix-ode\"\n{keys}"), FINE, "point");
+        assert!(message.contains(part), "{message}");
+    }
+}

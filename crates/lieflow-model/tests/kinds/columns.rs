@@ -1,0 +1,179 @@
+//! Named formulas, vectors, and formulas of the columns of a run.
+
+use super::formulas::{FINE, RKMK4, refused};
+use super::*;
+
+const BODY: &str = "kind = \"driven-body\"\ninertia = [1, 2, 2.5]\nomega_body = [0.5, 0.4, -0.8]\n\
+                    attitude = [[0, -1, 0], [1, 0, 0], [0, 0, 1]]";
+
+/// A torque in named formulas and vectors is the same written out; one needs the other in whatever order.
+#[test]
+fn named_formulas_are_what_they_stand_for() {
+    let run = |more: &str| {
+        let quantities = "[\"attitude\", \"momentum_space\"]";
+        last(&scene(&format!("{BODY}\n{more}"), RKMK4, FINE, quantities))
+    };
+    // A dipole −k(w × b) in a field that turns in space, b in the body.
+    let plain = {
+        let b = |i: usize| format!("(g1{i}*cos(n*t) + g3{i}*sin(n*t))");
+        let mu = |i: usize, j: usize| format!("(-k*(w{i}*{} - w{j}*{}))", b(j), b(i));
+        let mu = [mu(2, 3), mu(3, 1), mu(1, 2)];
+        let torque =
+            |i: usize, j: usize| format!("\"{}*{} - {}*{}\"", mu[i], b(j + 1), mu[j], b(i + 1));
+        format!(
+            "torque = [{}, {}, {}]\nparameters = {{ k = 0.3, n = 0.7 }}",
+            torque(1, 2),
+            torque(2, 0),
+            torque(0, 1)
+        )
+    };
+    let expected = run(&plain);
+    for named in [
+        "torque = \"cross(mu, b)\"\nparameters = { k = 0.3, n = 0.7 }\n[problem.let]\n\
+         mu = \"-k*cross(w, b)\"\nb = \"transpose(g)*[cos(n*t), 0, sin(n*t)]\"",
+        "torque = [\"mu2*b3 - mu3*b2\", \"mu3*b1 - mu1*b3\", \"mu1*b2 - mu2*b1\"]\n\
+         parameters = { k = 0.3, n = 0.7 }\n[problem.let]\nmu = \"-k*cross(w, b)\"\n\
+         b1 = \"g11*c + g31*s\"\nb2 = \"g12*c + g32*s\"\nb3 = \"g13*c + g33*s\"\n\
+         c = \"cos(n*t)\"\ns = \"sin(n*t)\"",
+        "torque = [\"mu2*b3 - mu3*b2\", \"mu3*b1 - mu1*b3\", \"dot(mu, [b2, -b1, 0])\"]\n\
+         parameters = { k = 0.3, n = 0.7 }\n[problem.let]\nmu = \"-k*cross(w, b)\"\n\
+         b = [\"dot(up, [g11, g21, g31])\", \"dot(up, [g12, g22, g32])\", \"dot([g13, g23, g33], up)\"]\n\
+         up = [\"cos(n*t)\", 0, \"sin(n*t)\"]",
+    ] {
+        assert!(far(&run(named), &expected) < 1e-12, "{named}");
+    }
+}
+
+/// An energy in named formulas has the gradient of what they stand for.
+#[test]
+fn named_formulas_are_derived() {
+    let run = |energy: &str| {
+        let problem =
+            format!("kind = \"euler\"\nalgebra = \"so3\"\nmomentum = [0.3, -0.2, 1]\n{energy}");
+        last(&scene(&problem, RKMK4, FINE, "[\"momentum\", \"energy\"]"))
+    };
+    let plain = run("hamiltonian = \"m1^2/2 + m2^2 + sqrt(m1^2 + m2^2 + m3^2)*m3^3\"");
+    let named =
+        run("hamiltonian = \"dot(m, [m1/2, m2, 0]) + cubic\"\nlet.cubic = \"norm(m)*m3^3\"");
+    assert!(far(&plain, &named) < 1e-13);
+}
+
+/// `[output.formulas]` are columns of any quantity, and of each other; events see them, and named formulas.
+#[test]
+fn formulas_of_columns() {
+    let text = |output: &str, events: &str| {
+        format!(
+            "title = \"Test\"\n[problem]\n{BODY}\ntorque = \"drag\"\n[problem.let]\ndrag = \"-c*w\"\n\
+             tilt = \"acos(g33)\"\nin_space = \"m1 + 1\"\n[problem.parameters]\nc = 0.3\n[method]\nname = \"rkmk4\"\n\
+             [time]\nt_span = [0, 2]\ndt = 0.01\n{events}\n[output]\nquantities = [\"energy\"]\n{output}"
+        )
+    };
+    let output = "plot = [\"theta\", \"energy\"]\n[output.formulas]\ntheta = \"acos(g33)\"\n\
+                  power = \"dot(drag, w)\"\ntwice = \"2*energy + 0*theta + t\"\np = \"c*[g31, g32]\"";
+    let event = "[[events]]\nname = \"tilted\"\nwhen = \"theta - 0.5\"\n[[events]]\nname = \"same\"\nwhen = \"tilt - 0.5\"";
+    let of = Scene::parse("scene", &text(output, event)).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(of.plot, ["theta", "energy"]);
+    assert_eq!(of.quantities, ["energy", "formulas"]);
+    let model = of.model().unwrap();
+    let schema = model.schema();
+    assert_eq!(schema.get("formulas").unwrap().columns, ["p1", "p2", "power", "theta", "twice"]);
+    let (attitude, omega) = (schema.get("attitude").unwrap(), schema.get("omega_body").unwrap());
+    let energy = schema.get("energy").unwrap();
+    let mut seen = 0;
+    let mut sink = |t: f64, row: Row<'_>| {
+        let (g, w) = (&row[attitude], &row[omega]);
+        let power = -0.3 * w.iter().map(|w| w * w).sum::<f64>();
+        let expected = [0.3 * g[6], 0.3 * g[7], power, g[8].acos(), 2.0 * row[energy][0] + t];
+        assert!(far(row.of("formulas").unwrap(), &expected) < 1e-15, "{t}");
+        // The sizes of the terms are where they were.
+        let size = row.size(energy, 0);
+        assert!((size - row[energy][0]).abs() < 1e-15, "{size}");
+        seen += 1;
+    };
+    model.run(&of.method, &of.grid, &of.save, &mut sink).unwrap();
+    assert_eq!(seen, 201);
+    // Both events are the same function.
+    struct Zeros(Vec<(usize, f64)>);
+    impl lieflow_model::model::Watcher for Zeros {
+        fn row(&mut self, _: f64, _: Row<'_>) -> lieflow::solve::Next {
+            lieflow::solve::Next::Continue
+        }
+        fn event(&mut self, event: usize, t: f64, _: bool, _: Row<'_>) {
+            self.0.push((event, t));
+        }
+    }
+    let model = of.model_with(of.layer, &of.computed()).unwrap();
+    let mut zeros = Zeros(Vec::new());
+    model.drive(&of.method, of.plan(model.schema()).unwrap(), &mut zeros).unwrap();
+    let of_event = |event: usize| -> Vec<f64> {
+        zeros.0.iter().filter(|zero| zero.0 == event).map(|zero| zero.1).collect()
+    };
+    assert!(!of_event(0).is_empty() && of_event(0) == of_event(1), "{:?}", zeros.0);
+
+    for (output, events, parts) in [
+        (
+            "[output.formulas]\ntheta = \"acos(g34)\"",
+            "",
+            ["formulas.theta: unknown name `g34`", "g33"],
+        ),
+        (
+            "[output.formulas]\nw1 = \"acos(g33)\"",
+            "",
+            ["`w1` is the name of a variable already", "w1 ="],
+        ),
+        (
+            "[output.formulas]\na = \"b\"\nb = \"a\"",
+            "",
+            ["cannot need itself", "a needs b needs a"],
+        ),
+        ("plot = [\"theta\"]", "", ["unknown column `theta`", "energy"]),
+        ("plot = [\"g33\"]", "", ["unknown column `g33`", "not among what the scene writes"]),
+        (
+            "",
+            "[[events]]\nname = \"x\"\nwhen = \"in_space\"",
+            ["`in_space` of [problem.let]", "`m1`"],
+        ),
+    ] {
+        let error = Scene::parse("scene", &text(output, events)).unwrap_err().to_string();
+        parts.iter().for_each(|part| assert!(error.contains(part), "{error}"));
+    }
+}
+
+/// Where a named formula is wrong it is refused at its line.
+#[test]
+fn named_formulas_are_refused_at_their_line() {
+    for (formulas, expected) in [
+        ("b = \"w4\"", &["let.b: unknown name `w4` at character 1"][..]),
+        (
+            "b = [\"w1\", \"q\", 0]",
+            &["let.b[2]: unknown name `q`", "[problem.parameters]", "[problem.let]"],
+        ),
+        (
+            "b = \"cross(w, [1, 2])\"",
+            &["let.b: cross of a vector of 3 and a vector of 2, expected two vectors of 3"],
+        ),
+        ("b = \"w*m\"", &["let.b: a vector of 3 times a vector of 3 at character 2", "dot(a, b)"]),
+        ("b = \"w + 1\"", &["a vector of 3 and a number added"]),
+        ("b = \"sin(w)\"", &["sin of a vector of 3, expected a number"]),
+        ("b = \"w^2\"", &["a vector of 3 to the power of a number", "dot(a, a)"]),
+        ("b = []", &["no formulas"]),
+        ("b = \"b1 + 1\"", &["cannot need itself: b needs b"]),
+        ("w1 = \"t\"", &["`w1` is the name of a variable already"]),
+        ("w = \"[t, t, t]\"", &["`w1` is the name of a variable already"]),
+        ("cos = \"t\"", &["`cos` is the name of a function"]),
+        ("b = true", &["a formula, or a list of formulas"]),
+    ] {
+        let problem = format!("{BODY}\ntorque = [0, 0, 0]\n[problem.let]\n{formulas}");
+        let (line, message) = refused(&problem, FINE, "axis");
+        assert_eq!(line, 9, "{message}");
+        expected.iter().for_each(|part| assert!(message.contains(part), "{message}"));
+    }
+    for (torque, part) in [
+        ("\"w1\"", "torque: the value of this formula is a number, expected a vector of 3"),
+        ("[\"w\", 0, 0]", "torque[1]: the value is a vector of 3 numbers, expected one"),
+        ("[\"c*w1\", 0, 0]", "a constant is a line `c = 0.5` in [problem.parameters]"),
+    ] {
+        let (_, message) = refused(&format!("{BODY}\ntorque = {torque}"), FINE, "axis");
+        assert!(message.contains(part), "{message}");
+    }
+}
