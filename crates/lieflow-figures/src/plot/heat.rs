@@ -4,7 +4,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 
 use super::scale::Axis;
-use super::svg::{Opening, px, slug, text};
+use super::svg::{Opening, escape, px, slug, text};
 use super::theme;
 
 /// Where the flat picture begins, and its height.
@@ -90,7 +90,7 @@ impl Heat {
             let longitude = 360.0 * east - 180.0;
             let side = if longitude < 0.0 { 'W' } else { 'E' };
             let seen = format!("The globe is seen from above {:.0}° {side}.", longitude.abs());
-            out.push_str(&text("lf-tick", (LEFT, BAR + THICK + 37.0), "start", &seen));
+            out.push_str(&below(LEFT, 2.6, "start", &seen));
         }
         out.push_str(&format!(
             "<rect class=\"lf-frame\" x=\"{LEFT}\" y=\"{BAR}\" width=\"{flat}\" height=\"{THICK}\" \
@@ -98,8 +98,8 @@ impl Heat {
         ));
         let bar = Axis::linear("").map([-largest, largest].into_iter(), (LEFT, LEFT + flat), 0.0);
         for tick in bar.ticks(0.2 * flat) {
-            let at = (tick.at.clamp(LEFT + 8.0, LEFT + flat - 8.0), BAR + THICK + 16.0);
-            out.push_str(&text("lf-tick", at, "middle", &tick.label.unwrap_or_default()));
+            let at = tick.at.clamp(LEFT + 8.0, LEFT + flat - 8.0);
+            out.push_str(&below(at, 1.2, "middle", &tick.label.unwrap_or_default()));
         }
         out.push_str("</svg>");
         out
@@ -170,6 +170,14 @@ impl Heat {
             "{globe}<circle cx=\"{x}\" cy=\"{y}\" r=\"{RADIUS}\" fill=\"none\" class=\"lf-frame\"/>"
         )
     }
+}
+
+/// A text so many of its own lines below the bar: on a narrow page it is larger than the picture.
+fn below(x: f64, lines: f64, anchor: &str, content: &str) -> String {
+    let (x, y, content) = (px(x), BAR + THICK, escape(content));
+    format!(
+        "<text class=\"lf-tick\" x=\"{x}\" y=\"{y}\" dy=\"{lines}em\" text-anchor=\"{anchor}\">{content}</text>"
+    )
 }
 
 /// The first of the four cells around a part of `count` cells, and their weights (Catmull and Rom).
