@@ -211,6 +211,8 @@ fn rows_at_equal_times_are_asked_for_by_their_number_or_their_distance() {
     assert_eq!(times("count = 4"), [0.0, 0.5, 1.0, 1.5, 2.0]);
     let hundred = times("count = 100");
     assert_eq!((hundred.len(), hundred[100]), (101, 2.0));
+    // 49 times a 49th of 2 is less than 2, by rounding.
+    assert_eq!(times("count = 49").len(), 50);
     assert_eq!(times("interval = 0.75"), [0.0, 0.75, 1.5, 2.0]);
     assert_eq!(times("interval = 0.1").len(), 21);
     assert_eq!(times("interval = 5.0"), [0.0, 2.0]);

@@ -25,22 +25,52 @@ pub(super) enum Algebra {
     Sp,
 }
 
+/// An algebra as a scene names it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Named {
+    pub(super) algebra: Algebra,
+    /// The size, where the name says it.
+    n: Option<usize>,
+}
+
+impl Named {
+    /// That the size is that of the value of `key`, which has n rows.
+    ///
+    /// # Errors
+    /// A refusal of `key`.
+    pub(super) fn check_size(self, n: usize, key: &str) -> Result<(), Refusal> {
+        match self.n {
+            Some(stated) if stated != n => {
+                let name = self.algebra.name(stated);
+                Err(Refusal::at(key, format!("found {n} rows, expected {stated} for {name}")))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
 /// The names in scenes; `so(p,q)` with numbers for p and q.
 pub(super) const ALGEBRAS: [&str; 5] = ["so", "sl", "gl", "sp", "so(p,q)"];
 
 impl Algebra {
-    /// The algebra of that name; none for other names.
-    pub(super) fn named(name: &str) -> Option<Algebra> {
-        match name {
-            "gl" => Some(Algebra::Gl),
-            "sl" => Some(Algebra::Sl),
-            "so" => Some(Algebra::So),
-            "sp" => Some(Algebra::Sp),
-            _ => {
-                let (p, q) = name.strip_prefix("so(")?.strip_suffix(')')?.split_once(',')?;
-                Some(Algebra::Indefinite(p.trim().parse().ok()?, q.trim().parse().ok()?))
-            }
-        }
+    /// The algebra of that name, `so`, `so(4)`, `SO(4)` or `so(3,1)`; none for other names.
+    pub(super) fn named(name: &str) -> Option<Named> {
+        let name = name.to_lowercase();
+        let (letters, sizes) = match name.split_once('(') {
+            Some((letters, sizes)) => (letters, sizes.strip_suffix(')')?),
+            None => (name.as_str(), ""),
+        };
+        let sizes = sizes.split(',').map(str::trim).filter(|size| !size.is_empty());
+        let sizes: Vec<usize> = sizes.map(|size| size.parse().ok()).collect::<Option<_>>()?;
+        let algebra = match (letters, &sizes[..]) {
+            ("so", &[p, q]) => Algebra::Indefinite(p, q),
+            ("gl", [] | [_]) => Algebra::Gl,
+            ("sl", [] | [_]) => Algebra::Sl,
+            ("so", [] | [_]) => Algebra::So,
+            ("sp", [] | [_]) => Algebra::Sp,
+            _ => return None,
+        };
+        Some(Named { algebra, n: if sizes.len() == 1 { Some(sizes[0]) } else { None } })
     }
 
     /// Its name with n.

@@ -86,7 +86,7 @@ impl RigidBodySpec {
 }
 
 /// Numbers that are typed with a few digits are as far as this from what they stand for.
-const TYPED: f64 = 1e-3;
+pub(super) const TYPED: f64 = 1e-3;
 
 /// That a vector has length 1, to the digits that it is written with; a note where these are few.
 ///

@@ -7,7 +7,7 @@ use lieflow::scalar::{Ops, tally};
 use super::energy::Energy;
 use super::group::WithGroup;
 use super::{Dual, KIND, Keys, OnDual, quantities};
-use crate::kinds::algebra::{Algebra, Miss, miss};
+use crate::kinds::algebra::{Algebra, Miss, Named, miss};
 use crate::kinds::entries::{
     antisymmetric, numbered, row_columns, rows, size_of_traces, square, traces,
 };
@@ -47,7 +47,8 @@ const ROUNDING: f64 = 1e-12;
 /// Formulas name entries by one digit for the row and one for the column.
 const NAMED_MAX: usize = 9;
 
-pub(super) fn on(algebra: Algebra, mut keys: Keys) -> Result<Box<dyn ProblemSpec>, Refusal> {
+pub(super) fn on(named: Named, mut keys: Keys) -> Result<Box<dyn ProblemSpec>, Refusal> {
+    let algebra = named.algebra;
     let names = keys.formula_keys();
     let momentum = match (algebra, keys.momentum) {
         (Algebra::So, Numbers::List(above)) => antisymmetric(&above).ok_or_else(|| {
@@ -60,6 +61,7 @@ pub(super) fn on(algebra: Algebra, mut keys: Keys) -> Result<Box<dyn ProblemSpec
         (_, momentum) => momentum.square("momentum")?,
     };
     let n = momentum.nrows();
+    named.check_size(n, "momentum")?;
     let stated = ("inverse_inertia", keys.inverse_inertia);
     let form = match exactly_one(stated, ("hamiltonian", keys.hamiltonian))? {
         Either::First(table) => Form::Weights(square("inverse_inertia", &table, n)?),

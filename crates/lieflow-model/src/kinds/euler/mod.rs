@@ -54,7 +54,7 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
     match (keys.algebra.as_str(), Algebra::named(&keys.algebra)) {
         ("so3", _) => Ok(Box::new(Stated(Vectors::<3>::read(keys)?))),
         ("se3", _) => Ok(Box::new(Stated(Vectors::<6>::read(keys)?))),
-        (_, Some(algebra)) => Ok(matrices::on(algebra, keys)?),
+        (_, Some(named)) => Ok(matrices::on(named, keys)?),
         (name, None) => {
             let names = [&ALGEBRAS[..], &["so3", "se3"]].concat();
             Err(Refusal::unknown("algebra", name, &names).into())

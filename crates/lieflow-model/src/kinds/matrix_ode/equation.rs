@@ -28,6 +28,8 @@ pub(super) struct Equation {
     /// Is f a function of t alone?
     pub(super) linear: bool,
     pub(super) start: Mat<f64>,
+    /// What was changed of the numbers in the scene.
+    pub(super) notes: Vec<String>,
 }
 
 /// The distance from the algebra that f may have at the points where it is checked, relative to its size.
@@ -181,6 +183,9 @@ impl System for Equation {
     }
     fn samples(&self) -> Option<&Samples> {
         self.field.first()?.samples()
+    }
+    fn notes(&self) -> Vec<String> {
+        self.notes.clone()
     }
     fn modelled(&self) -> String {
         let (rows, columns) = (self.start.nrows(), self.start.ncols());

@@ -14,10 +14,11 @@
 
 mod equation;
 
-use lieflow::groups::MatrixGroup;
+use lieflow::groups::{GroupMatrix, LieAlgebra, LieGroup, MatrixGroup};
 
 use self::equation::Equation;
 use super::algebra::{ALGEBRAS, Algebra};
+use super::body::TYPED;
 use super::entries::{above_diagonal, check_symmetric, row_columns, side_of};
 use super::matrix::MatrixAction;
 use super::prelude::*;
@@ -59,8 +60,9 @@ const NAMED_MAX: usize = 9;
 fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
     let mut keys = Keys::deserialize(section)?;
     let (formulas, samples) = (keys.formula_keys(), keys.sample_keys());
-    let algebra = Algebra::named(&keys.group)
+    let named = Algebra::named(&keys.group)
         .ok_or_else(|| Refusal::unknown("group", &keys.group, &ALGEBRAS))?;
+    let algebra = named.algebra;
     let action = keys.action.as_deref().unwrap_or("translation");
     let (_, action) = *ACTIONS
         .iter()
@@ -72,11 +74,13 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
         let message = format!("found {n} rows, expected 1 to {NAMED_MAX}");
         return Err(Refusal::at("field", message).into());
     }
+    named.check_size(n, "field")?;
     let group = algebra.group(n, "field")?;
     if action == MatrixAction::Lagrangian && algebra != Algebra::Sp {
         return Err(Refusal::at("action", "lagrangian is an action of sp").into());
     }
-    let start = start(algebra, &group, action, keys.start)?;
+    let mut notes = Vec::new();
+    let start = start(algebra, &group, action, keys.start, &mut notes)?;
     let entries = row_columns("y", start.nrows(), start.ncols());
     let variables = ["t".to_owned()].into_iter().chain(entries);
     let names = formulas.names("field", variables, samples)?;
@@ -84,7 +88,7 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
     let field = field.collect::<Result<Vec<_>, _>>()?;
     let linear = (1..names.variables().len()).all(|y| field.iter().all(|f| !f.uses(y)));
     let field = field.into();
-    Ok(Box::new(Stated(Equation { algebra, group, action, field, linear, start })))
+    Ok(Box::new(Stated(Equation { algebra, group, action, field, linear, start, notes })))
 }
 
 /// The formulas of a field by rows, each with its place; of so also those above the diagonal alone.
@@ -134,10 +138,11 @@ fn start(
     group: &MatrixGroup,
     action: MatrixAction,
     stated: Option<Table>,
+    notes: &mut Vec<String>,
 ) -> Result<Mat<f64>, Refusal> {
     let n = group.n();
     let refused = |message: String| Refusal::at("start", message);
-    let start = match (stated, action) {
+    let mut start = match (stated, action) {
         (Some(table), _) => table.columns("start")?,
         (None, MatrixAction::Translation) => Mat::identity(n, n),
         (None, _) => return Err(Refusal::section("missing key `start` in [problem]")),
@@ -157,14 +162,30 @@ fn start(
         check_symmetric("start", &start, 0.0)?;
     }
     if action == MatrixAction::Translation {
-        let on_group = group.element(start.clone());
-        on_group.map_err(|error| refused(format!("start: {error}")))?;
+        if let Err(error) = group.element(start.clone()) {
+            let near = nearby(group, &start).ok_or_else(|| refused(format!("start: {error}")))?;
+            let moved = (&near - &start).norm_max();
+            notes.push(format!(
+                "start: it is replaced by an element of {} nearby, which moves its entries by up to {moved:.1e}",
+                group.name()
+            ));
+            start = near;
+        }
         let det = start.determinant();
         if algebra == Algebra::Sl && (det - 1.0).abs() > ON_THE_GROUP {
             return Err(refused(format!("its determinant is {det}, expected 1")));
         }
     }
     Ok(start)
+}
+
+/// The element of the group that a matrix of few digits stands for.
+fn nearby(group: &MatrixGroup, x: &Mat<f64>) -> Option<Mat<f64>> {
+    let mut g = GroupMatrix::new_unchecked(x.clone());
+    let [mut a, mut b] = [group.identity(), group.identity()];
+    group.correct(&mut g, [&mut a, &mut b]);
+    let near = (&*g - x).norm_max() <= TYPED && group.element((*g).clone()).is_ok();
+    near.then(|| (*g).clone())
 }
 
 /// The distance from 1 that the determinant of a start in SL(n) may have.

@@ -96,6 +96,11 @@ impl Parser<'_> {
         let before = self.at.checked_sub(1).and_then(|at| self.text.get(at)).copied();
         mistake.help = match (before, next) {
             (Some('*'), Some('*')) => Some("a power is written x^2".into()),
+            (Some('0'..='9'), Some(','))
+                if self.text.get(self.at + 1).is_some_and(char::is_ascii_digit) =>
+            {
+                Some("a number has a decimal point: 0.5".into())
+            }
             (Some(_), Some(c)) if what.contains("operator") && (starts_name(c) || c == '(') => {
                 Some("a product is written 2*x".into())
             }

@@ -3,7 +3,7 @@
 use lieflow::scalar::{Counted, Ops};
 
 use super::super::Refusal;
-use super::{Formula, Names, Parameters, SamplesFile, Text, Texts};
+use super::{Formula, Lets, Names, Parameters, SamplesFile, Text, Texts};
 
 fn names() -> Names {
     Parameters::default().names("variables", ["x", "y", "w_1"]).expect("three names")
@@ -175,6 +175,41 @@ fn parameters_are_numbers_with_names() {
     assert!(toml::from_str::<Parameters>("k = inf").is_err());
 }
 
+/// Vectors and matrices by their names and written out, against the same by components.
+#[test]
+fn vectors_and_matrices_are_their_components() {
+    let variables = ["t", "a1", "a2", "a3", "g11", "g12", "g21", "g22", "b1", "b2", "norm"];
+    let names = Parameters::default().names("variables", variables).expect("names");
+    let lets: Lets = toml::from_str("c = \"2*g*b\"\nup = [0, \"t\", 1]").expect("formulas");
+    let names = names.with_lets("let", &lets).expect("formulas");
+    let of =
+        |text: &str| Formula::read("f", text, &names).unwrap_or_else(|e| panic!("{text}: {e:?}"));
+    let at = [0.3, 1.1, -0.7, 0.4, 2.0, -1.5, 0.25, 3.0, 0.9, -0.2, 7.0];
+    for (text, plain) in [
+        ("dot(a, a)", "a1^2 + a2^2 + a3^2"),
+        ("norm(a)*norm", "sqrt(a1^2 + a2^2 + a3^2)*norm"),
+        ("dot(g*b, [1, 10])", "g11*b1 + g12*b2 + 10*(g21*b1 + g22*b2)"),
+        ("dot(transpose(g)*b, [1, 10])", "g11*b1 + g21*b2 + 10*(g12*b1 + g22*b2)"),
+        ("dot(g*g*b, b)", "dot(g*(g*b), b)"),
+        ("dot(b, 3*b/2 - [b2, -b1])", "3*(b1^2 + b2^2)/2 - b1*b2 + b2*b1"),
+        ("dot(cross(a, up), [1, 2, 3])", "a2 - a3*t - 2*a1 + 3*a1*t"),
+        ("c1 + 10*c2", "2*(g11*b1 + g12*b2) + 20*(g21*b1 + g22*b2)"),
+        ("dot(g1, g2)", "g11*g21 + g12*g22"),
+        ("-dot(-c, b)", "c1*b1 + c2*b2"),
+        ("dot([1, 2], (g + g)*b)", "2*(g11*b1 + g12*b2) + 4*(g21*b1 + g22*b2)"),
+    ] {
+        let (got, expected): (f64, f64) = (of(text).value(&at), of(plain).value(&at));
+        assert!(
+            (got - expected).abs() < 1e-14 * (1.0 + expected.abs()),
+            "{text}: {got} {expected}"
+        );
+        for i in 0..at.len() {
+            let slopes = [text, plain].map(|f| of(f).derivative("f", i).unwrap().value(&at));
+            assert!((slopes[0] - slopes[1]).abs() < 1e-13, "{text} by {i}: {slopes:?}");
+        }
+    }
+}
+
 #[test]
 fn what_is_wrong_is_said_with_its_place() {
     for (text, message, help) in [
@@ -200,6 +235,16 @@ fn what_is_wrong_is_said_with_its_place() {
         ("sin(x, y)", "found `,`, expected an operator or `)` at character 6", None),
         ("1e999", "the number 1e999 is out of range at character 1", None),
         ("1.2.3", "`1.2.3` is no number at character 1", None),
+        (
+            "-0,1*x",
+            "found `,`, expected an operator or the end at character 3",
+            Some("a decimal point: 0.5"),
+        ),
+        (
+            "sin(0,5)",
+            "found `,`, expected an operator or `)` at character 6",
+            Some("decimal point"),
+        ),
         ("x $ y", "found `$`, expected an operator or the end at character 3", None),
     ] {
         let refusal = read(text).unwrap_err();
@@ -262,9 +307,41 @@ fn the_derivative_of_a_square_over_a_number_is_one_division() {
 #[test]
 fn random_texts_are_read_or_refused() {
     let pieces = [
-        "x", "y", "w_1", "2", "1e", "e-3", ".", "+", "-", "*", "/", "^", "(", ")", ",", " ",
-        "sin(", "min(", "atan2", "pi", "µ", "\u{301}", "\0", "{", "\"", "9e99", "(x)", "^2",
-        "sqrt(x", "😀",
+        "x",
+        "y",
+        "w_1",
+        "2",
+        "1e",
+        "e-3",
+        ".",
+        "+",
+        "-",
+        "*",
+        "/",
+        "^",
+        "(",
+        ")",
+        ",",
+        " ",
+        "sin(",
+        "min(",
+        "atan2",
+        "pi",
+        "µ",
+        "\u{301}",
+        "\0",
+        "{",
+        "\"",
+        "9e99",
+        "(x)",
+        "^2",
+        "sqrt(x",
+        "😀",
+        "[",
+        "]",
+        "dot(",
+        "transpose(",
+        "[x,",
     ];
     let mut seed = 1_u64;
     let mut draw = |n: usize| {
