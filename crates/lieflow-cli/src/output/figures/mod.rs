@@ -259,12 +259,15 @@ fn plane(
 fn sphere(id: String, title: String, run: &Drawn<'_>) -> Sphere {
     let (quantity, rows) = (run.figure, run.rows);
     let triples = quantity.columns.len() / 3;
+    let at =
+        |k: usize, row: Row<'_>| -> [f64; 3] { core::array::from_fn(|i| row[quantity][3 * k + i]) };
+    let length = |k: usize| {
+        let squares = |row| at(k, row).iter().map(|x| x * x).sum::<f64>();
+        rows.ends().map_or(1.0, |[(_, row), _]| squares(row).sqrt())
+    };
     let path = |k: usize| {
-        let at = |row: Row<'_>| -> [f64; 3] { core::array::from_fn(|i| row[quantity][3 * k + i]) };
-        let length = rows
-            .ends()
-            .map_or(1.0, |[(_, row), _]| at(row).iter().map(|x| x * x).sum::<f64>().sqrt());
-        let points = rows.rows().map(|(_, row)| at(row).map(|x| x / length));
+        let length = length(k);
+        let points = rows.rows().map(|(_, row)| at(k, row).map(|x| x / length));
         points.collect::<Vec<_>>()
     };
     let name = |k: usize| match triples {
@@ -294,10 +297,15 @@ fn sphere(id: String, title: String, run: &Drawn<'_>) -> Sphere {
         }
         false => "",
     };
-    let caption = format!("{} {surfaces}", said(quantity.name, triples.min(LINES), triples));
+    let scaled = match (0..triples).all(|k| (length(k) - 1.0).abs() < 1e-9) {
+        true => "",
+        false => "Each vector is divided by its length at the start.",
+    };
+    let caption =
+        format!("{} {scaled} {surfaces}", said(quantity.name, triples.min(LINES), triples));
     Sphere {
         id,
-        title: format!("{title}, divided by the length at the start"),
+        title,
         radius: 1.0,
         inertia,
         energy,
