@@ -40,7 +40,7 @@ pub struct Cli {
 pub enum Command {
     /// Run a scene: trajectory.csv, summary.json, and a page with figures.
     Run(RunArgs),
-    /// Run a scene with every method, map and layer that fits, and write a report.
+    /// Find the fastest method to an error on a scene: run all that fit, and write a report.
     Compare(CompareArgs),
     /// Show what Lie group methods are good for, on three bodies that turn: a page with figures. The same as no command.
     Demo(DemoArgs),
@@ -50,7 +50,7 @@ pub enum Command {
     Check(CheckArgs),
     /// List the scenes that come with the program, or print one to start from.
     Scenes(ScenesArgs),
-    /// List the methods, coordinate maps and tableaus.
+    /// Tell which method to take; list the methods, coordinate maps and tableaus.
     Methods(MethodsArgs),
     /// Print completions for a shell.
     Completions(CompletionsArgs),
@@ -131,17 +131,30 @@ pub enum ErrorCheck {
 /// Options of `compare`.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = "Examples:
-  lieflow compare asymmetric-top
+  lieflow compare asymmetric-top --error 1e-8
+                                        which method is the fastest to this error, and why
   lieflow compare my.toml --out results --repeat 15
   lieflow compare my.toml --methods rkmk4,mr4,taylor12,exact
   lieflow compare my.toml --methods \"rkmk dopri5\" --tolerances 1e-4,1e-8,1e-12
   lieflow compare my.toml --layers closed,general --methods rkmk4,rk4
 
-Written: index.html, speed.csv and speed.json with every run, the figures as SVG files. A comparison
-that is interrupted goes on where it was when it is started again with the same scene and options.")]
+Written: index.html, speed.csv and speed.json with every run, the figures as SVG files, and points.jsonl
+with everything that was measured. A comparison that is stopped goes on from there when the command is given
+again. One with other options adds to it, as --repeat 9 after --repeat 5. Events of the scene are left out;
+its rows of output are part of what is timed.")]
 pub struct CompareArgs {
-    /// A scene file, or the name of a bundled scene.
+    /// A scene file, the name of a bundled scene, or - for standard input.
     pub scene: PathBuf,
+    /// What is changed in the scene.
+    #[command(flatten)]
+    pub settings: Settings,
+    /// The error at the end that you want, or a list of them [default: 1e-6,1e-9].
+    #[arg(long = "error", value_name = "LIST", value_delimiter = ',', value_parser = tolerance)]
+    #[arg(allow_negative_numbers = true)]
+    pub errors: Vec<f64>,
+    /// Show all methods, and not the ten best.
+    #[arg(long)]
+    pub all: bool,
     /// Folder for the report [default: lieflow-compare/SCENE].
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
@@ -162,6 +175,9 @@ pub struct CompareArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     #[arg(allow_negative_numbers = true)]
     pub repeat: Option<u32>,
+    /// Measure everything again, and forget what was measured before.
+    #[arg(long)]
+    pub again: bool,
     /// The seed of the order in which runs take their turns.
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
@@ -228,13 +244,20 @@ pub struct ScenesArgs {
 /// Options of `methods`.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = "Examples:
-  lieflow methods
-  lieflow methods --json
-  lieflow methods --for my.toml")]
+  lieflow methods                       which one to take, and all there are
+  lieflow methods --for my.toml         the same for a scene
+  lieflow methods taylor13              what it is
+  lieflow methods --json")]
 pub struct MethodsArgs {
+    /// Tell everything about this method.
+    #[arg(conflicts_with = "scene")]
+    pub name: Option<String>,
     /// Only what fits this scene: a scene file, or the name of a bundled scene.
     #[arg(long = "for", value_name = "SCENE")]
     pub scene: Option<PathBuf>,
+    /// What is changed in the scene.
+    #[command(flatten)]
+    pub settings: Settings,
     /// Print JSON.
     #[arg(long)]
     pub json: bool,

@@ -5,8 +5,9 @@ use lieflow_model::model::Layer;
 
 /// error = h⁴, time per unit = 1/h.
 fn ideal(hs: &[f64]) -> Curve {
-    let mut curve =
-        Curve { candidate: Candidate::rk4(Layer::Closed), order: Some(4), points: Vec::new() };
+    let candidate = Candidate::rk4(Layer::Closed);
+    let label = candidate.name();
+    let mut curve = Curve { candidate, label, order: Some(4), floor: 1e-17, points: Vec::new() };
     curve.points = hs
         .iter()
         .map(|&h| WorkPoint {
@@ -24,6 +25,36 @@ fn the_order_of_an_ideal_method() {
     let order = ideal(&[0.2, 0.13, 0.07, 0.05]).measured_order();
     assert!((order.expect("enough points") - 4.0).abs() < 1e-12);
     assert_eq!(ideal(&[0.2, 0.1]).measured_order(), None);
+}
+
+/// Rounding has no order: runs near the floor do not count, and two runs above it are too few.
+#[test]
+fn no_order_is_fitted_into_the_floor() {
+    let mut curve = ideal(&[0.1, 0.05, 0.025, 0.0125, 0.006]);
+    for (point, error) in curve.points.iter_mut().zip([1.6e-4, 1e-5, 6.25e-7, 2e-7, 3e-7]) {
+        point.error = error;
+    }
+    // Three runs are clean, and the others round, whether the floor is known or not.
+    let order = |curve: &Curve| curve.measured_order().map(|p| (p * 1e9).round() / 1e9);
+    assert_eq!(order(&curve), Some(4.0));
+    curve.floor = 5e-8;
+    assert_eq!(order(&curve), Some(4.0));
+    curve.floor = 1e-7;
+    assert_eq!(order(&curve), None);
+}
+
+#[test]
+fn no_error_below_the_floor_is_reached() {
+    let mut curve = ideal(&[0.1, 0.01, 0.001]);
+    curve.floor = 1e-9;
+    assert_eq!(curve.reached(1e-10), None);
+    assert!(curve.reached(1e-9).is_some());
+    // A run that hits the floor by luck is no better than it.
+    curve.points[2].error = 1e-14;
+    assert_eq!(curve.error(&curve.points[2]), 1e-9);
+    curve.points[1].error = 1e-9;
+    let front = pareto(&[curve], |_, p| Some(p.seconds_per_unit));
+    assert_eq!(front, [(0, 0), (0, 1)]);
 }
 
 #[test]

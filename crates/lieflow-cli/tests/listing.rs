@@ -57,14 +57,72 @@ fn methods_are_listed_from_the_catalog() {
     assert_eq!(names(&json["maps"]), MAPS.iter().map(|m| m.name).collect::<Vec<_>>());
     assert_eq!(names(&json["tableaus"]), TABLEAUS.iter().map(|t| t.name).collect::<Vec<_>>());
     assert_eq!(json["tableaus"][0]["order"], 1);
-    for name in names(&json["methods"]).iter().chain(&names(&json["maps"])) {
-        assert!(listed.contains(name), "{listed}");
+    // Those that differ in a number or in the order of axes are one line.
+    for name in ["rkmk4", "taylor4 … taylor16 (13)", "mr2 … mr2-321 (6)", "gauss6-mg", "exp", "cay"]
+    {
+        assert!(listed.contains(&format!("\n  {name} ")), "{name}: {listed}");
     }
+    assert!(!listed.contains("mr4-213"), "{listed}");
     for entry in json["methods"].as_array().unwrap() {
         for what in ["summary", "preserves", "cost", "source"] {
             assert!(!entry[what].as_str().unwrap().is_empty(), "{entry}");
         }
     }
+}
+
+#[test]
+fn methods_are_recommended_before_they_are_listed() {
+    let folder = Folder::new();
+    let told = folder.lieflow(&["methods"]).ok();
+    assert!(told.starts_with("Take this one\n"), "{told}");
+    // The table ends with an empty line. Its methods are names, each with the problems that it is for.
+    let table = |told: &str| -> Vec<String> {
+        let start = told.find("Take this one\n").unwrap();
+        let lines = told[start..].lines().skip(2).take_while(|line| !line.is_empty());
+        lines.map(String::from).collect()
+    };
+    let all = table(&told);
+    assert!(all[0].contains("rkmk dop853 (the default)"), "{all:?}");
+    for (scene, with, without) in [
+        ("asymmetric-top", &["taylor13", "dmv8", "mr4", "exact"][..], &["magnus"][..]),
+        ("rabi", &["magnus8", "magnus6", "rkmk-gauss4-symmetric"], &["taylor", "dmv8", "exact"]),
+        ("lagrange-top", &["rkmk dop853 cay", "energy-casimir4"], &["magnus", "taylor", "dmv8"]),
+    ] {
+        let told = folder.lieflow(&["methods", "--for", scene]).ok();
+        let rows = table(&told);
+        assert!(rows.len() <= 8, "{rows:?}");
+        let rows = rows.join("\n");
+        for name in with {
+            assert!(rows.contains(&format!(" {name} ")), "{scene}, {name}: {rows}");
+        }
+        assert!(without.iter().all(|name| !rows.contains(name)), "{scene}: {rows}");
+        let scene = Scene::bundled(scene).unwrap();
+        assert!(rows.contains(&scene.problem.default_method().label()), "{rows}");
+        assert!(told.contains(&format!("lieflow compare {} --error", scene.name)), "{told}");
+    }
+    // A column that says nothing is left out: none of these methods takes a map.
+    let linear = told.split("an equation of linear type").nth(1).unwrap();
+    assert!(
+        linear
+            .lines()
+            .nth(1)
+            .unwrap()
+            .split_whitespace()
+            .eq("name order it keeps a step costs".split(' '))
+    );
+}
+
+#[test]
+fn one_method_is_told_in_full() {
+    let folder = Folder::new();
+    let told = folder.lieflow(&["methods", "lewis-simo"]).ok();
+    assert!(told.contains("order: 4 or 2") && told.contains("Simo 1994"), "{told}");
+    let told = folder.lieflow(&["methods", "rkmk"]).ok();
+    assert!(told.contains("tableaus: euler") && told.contains("maps: exp, cay"), "{told}");
+    let json = folder.lieflow(&["methods", "mr4", "--json"]).ok();
+    assert_eq!(serde_json::from_str::<Value>(&json).unwrap()["order"], 4);
+    let refused = folder.lieflow(&["methods", "tailor13"]).refused();
+    assert!(refused.contains("did you mean `taylor13`?"), "{refused}");
 }
 
 /// What fits the momentum, the attitude and the momentum as a matrix, and what does not.

@@ -136,7 +136,7 @@ pub(super) const BODY: &[MethodInfo] = &[
         ..simo_wong(
             "lewis-simo",
             0,
-            "the same with the k that makes the momentum of order 4 (the attitude stays at 2)",
+            "Simo and Wong's implicit method with the k that makes the momentum of order 4 (the attitude stays at 2)",
             NEWTON,
             "Lewis & Simo 1994",
             Recipe::SimoWong(SimoWong::LEWIS_SIMO),

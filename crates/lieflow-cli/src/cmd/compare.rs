@@ -1,31 +1,38 @@
-//! `lieflow compare`: speed against error for one scene, over all methods that fit it, ending in
-//! advice.
+//! `lieflow compare`: which method is the fastest to an error on a scene, and why; speed against error of all
+//! methods that fit it.
 
-use std::collections::hash_map::DefaultHasher;
-use std::hash::{Hash, Hasher};
+use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use serde::Serialize;
 
 use super::CliError;
+use super::stop::{INTERRUPTED, listen};
 use crate::args::CompareArgs;
 use crate::measure::{
-    Candidate, Curve, Effort, Journal, Plan, Reached, Reference, WorkPoint, machine,
-    speed_against_error,
+    Candidate, Curve, Effort, Journal, MOST_ROWS, Plan, Reached, Reference, Rows, WorkPoint,
+    machine, speed_against_error,
 };
 use crate::output::{self, Progress};
-use crate::report::{self, CHOICE_HEADER, Choice, Cost, KEPT, choices};
-use lieflow_figures::{Block, Page, Section};
+use crate::report::{self, ADVICE, Answer, Best, Choice, Cost, Found, KEPT, choices};
+use lieflow_figures::{Block, Chart, Page, Section};
 use lieflow_model::model::Layer;
 use lieflow_model::operations::COUNTED_STEPS;
 use lieflow_model::scene::Scene;
 
+/// The errors that are answered for where none is asked.
+const ASKED: [f64; 2] = [1e-6, 1e-9];
+
 /// Step sizes are that of the scene times powers of two, from the whole span to this power below it.
-const HALVINGS: i32 = 5;
+const HALVINGS: i32 = 10;
 
 /// Tolerances of the methods that choose their steps.
 const TOLERANCES: [f64; 7] = [1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-13];
+
+/// How often a line tells where a comparison is, where no bar can.
+const TOLD_EVERY: Duration = Duration::from_secs(10);
 
 /// Everything as JSON.
 #[derive(Serialize)]
@@ -35,6 +42,7 @@ struct Json<'a> {
     reference: String,
     machine: String,
     reference_error: Option<f64>,
+    answers: Vec<AnswerJson>,
     advice: Vec<AdviceJson>,
     advice_energy_kept: Vec<AdviceJson>,
     /// Without the exact motion, which goes in no steps.
@@ -58,6 +66,26 @@ struct CurveJson<'a> {
     points: &'a [WorkPoint],
 }
 
+/// An answer as JSON.
+#[derive(Serialize)]
+struct AnswerJson {
+    error: f64,
+    in_words: String,
+    best: Option<FoundJson>,
+    /// The fastest method of another kind.
+    next: Option<FoundJson>,
+}
+
+/// A method where it reaches an error.
+#[derive(Serialize)]
+struct FoundJson {
+    method: String,
+    h: f64,
+    steps: u64,
+    rtol: Option<f64>,
+    seconds_per_unit: f64,
+}
+
 /// The fastest method to an error.
 #[derive(Serialize)]
 struct AdviceJson {
@@ -73,16 +101,20 @@ struct Comparison<'a> {
     scene: &'a Scene,
     curves: Vec<Curve>,
     reference: Reference,
-    effort: Effort,
+    effort: Effort<'a>,
+    /// The errors that are answered for, from the largest to the smallest.
+    asked: &'a [f64],
+    /// Are all methods shown?
+    all: bool,
 }
 
 /// Run the command.
 ///
 /// # Errors
-/// A scene that cannot be used, or a report that cannot be written.
+/// A scene that cannot be used, a report that cannot be written, or an interruption.
 pub fn run(args: &CompareArgs) -> Result<(), CliError> {
     let clock = Instant::now();
-    let scene = Scene::open(&args.scene)?;
+    let scene = args.settings.open(&args.scene)?;
     let folder: PathBuf = match &args.out {
         Some(folder) => folder.clone(),
         None => Path::new("lieflow-compare").join(&scene.name),
@@ -107,18 +139,18 @@ pub fn run(args: &CompareArgs) -> Result<(), CliError> {
     }
     output::make_folder(&folder)?;
     let steps = numbers_of_steps(&scene);
-    let mut tolerances = match args.tolerances.is_empty() {
-        true => TOLERANCES.to_vec(),
-        false => args.tolerances.clone(),
+    let (asked, tolerances) =
+        (falling(&args.errors, &ASKED), falling(&args.tolerances, &TOLERANCES));
+    let wanted = match args.errors.is_empty() {
+        true => ADVICE.to_vec(),
+        false => asked.clone(),
     };
-    tolerances.sort_by(|a, b| b.total_cmp(a));
-    tolerances.dedup();
     let effort = Effort {
         rounds: args.repeat.unwrap_or(if args.quick { 3 } else { 5 }),
         longest: Duration::from_millis(if args.quick { 5 } else { 30 }),
         shortest: Duration::from_micros(if args.quick { 50 } else { 300 }),
         seed: args.seed,
-        wanted: &report::ADVICE,
+        wanted: &wanted,
         patience: Duration::from_millis(if args.quick { 100 } else { 1000 }),
     };
     let plan = Plan {
@@ -127,19 +159,30 @@ pub fn run(args: &CompareArgs) -> Result<(), CliError> {
         t_span: scene.grid.t_span(),
         steps: &steps,
         tolerances: &tolerances,
+        rows: &Rows::of(&scene),
     };
-    let mut journal = Journal::open(&folder, &identity(&scene, &plan, &effort))?;
-    if journal.known() > 0 {
-        output::print(&format!("going on with {} runs from before\n", journal.known()))?;
+    let stop = listen()?;
+    if args.again {
+        Journal::remove(&folder)?;
     }
-    let bar = Progress::new();
-    let (curves, reference) =
-        speed_against_error(&scene, &plan, effort, Some(&mut journal), |done| bar.at(done))?;
-    drop(bar);
+    let mut journal = Journal::open(&folder, &identity(&scene))?;
+    if journal.known() > 0 {
+        output::print(&format!(
+            "{} runs are known from before; --again measures them again.\n",
+            journal.known()
+        ))?;
+    }
+    let mut told = Told::new();
+    let measured = speed_against_error(&scene, &plan, effort, Some(&mut journal), |share| {
+        told.at(share)?;
+        stopped(&stop, &folder)
+    });
+    drop(told);
+    let (curves, reference) = measured?;
 
-    let comparison = Comparison { scene: &scene, curves, reference, effort };
+    let comparison =
+        Comparison { scene: &scene, curves, reference, effort, asked: &asked, all: args.all };
     let path = comparison.write(&folder)?;
-    journal.finish()?;
     output::print(&comparison.in_words())?;
     output::print(&format!(
         "\nThe report: {}\n({:.1} s)\n",
@@ -148,11 +191,57 @@ pub fn run(args: &CompareArgs) -> Result<(), CliError> {
     ))
 }
 
-/// What a comparison is about: another scene, other options or another program is another one.
-fn identity(scene: &Scene, plan: &Plan<'_>, effort: &Effort) -> String {
-    let mut hasher = DefaultHasher::new();
-    format!("{scene:?} {plan:?} {effort:?} {}", machine()).hash(&mut hasher);
-    format!("{} {} {:016x}", env!("CARGO_PKG_VERSION"), scene.name, hasher.finish())
+/// The numbers that were given, or else the default, from the largest to the smallest.
+fn falling(given: &[f64], default: &[f64]) -> Vec<f64> {
+    let mut numbers = if given.is_empty() { default.to_vec() } else { given.to_vec() };
+    numbers.sort_by(|a, b| b.total_cmp(a));
+    numbers.dedup();
+    numbers
+}
+
+/// What a run depends on besides its method and its step: another scene, program or machine has runs of its own.
+fn identity(scene: &Scene) -> String {
+    let (version, machine) = (env!("CARGO_PKG_VERSION"), machine());
+    format!("{} {:016x}, lieflow {version}, {machine}", scene.name, scene.fingerprint)
+}
+
+/// The end of a comparison that was interrupted.
+fn stopped(stop: &AtomicBool, folder: &Path) -> Result<(), CliError> {
+    if !stop.load(Ordering::Relaxed) {
+        return Ok(());
+    }
+    let message = format!(
+        "the comparison was interrupted\nWhat was measured is kept in {}; the same command goes on from there",
+        folder.join(crate::measure::JOURNAL).display()
+    );
+    Err(CliError::Stopped { message, code: INTERRUPTED })
+}
+
+/// What tells where a comparison is: a bar, or a line now and then where standard error is no terminal.
+struct Told {
+    bar: Progress,
+    start: Instant,
+    last: Instant,
+    lines: bool,
+}
+
+impl Told {
+    fn new() -> Self {
+        let now = Instant::now();
+        Told { bar: Progress::new(), start: now, last: now, lines: !io::stderr().is_terminal() }
+    }
+
+    /// This share of the work is done, after a run that was measured.
+    fn at(&mut self, share: f64) -> Result<(), CliError> {
+        self.bar.often(share, String::new);
+        if self.lines && self.last.elapsed() >= TOLD_EVERY {
+            self.last = Instant::now();
+            let seconds = self.start.elapsed().as_secs();
+            // A reader that went away is no reason to stop.
+            let _ = writeln!(io::stderr(), "{:.0} % after {seconds} s", 100.0 * share);
+        }
+        Ok(())
+    }
 }
 
 fn numbers_of_steps(scene: &Scene) -> Vec<u64> {
@@ -179,11 +268,53 @@ impl From<&Choice<'_>> for AdviceJson {
     }
 }
 
+impl From<Found<'_>> for FoundJson {
+    fn from((curve, reached): Found<'_>) -> Self {
+        FoundJson {
+            method: curve.candidate.label(),
+            h: reached.h,
+            steps: reached.steps,
+            rtol: reached.tolerance,
+            seconds_per_unit: reached.seconds,
+        }
+    }
+}
+
+impl From<&Answer<'_>> for AnswerJson {
+    fn from(answer: &Answer<'_>) -> Self {
+        AnswerJson {
+            error: answer.error,
+            in_words: answer.in_words(),
+            best: answer.best().map(Into::into),
+            next: answer.next().map(Into::into),
+        }
+    }
+}
+
 impl Comparison<'_> {
+    /// The answers to the errors that were asked for.
+    fn answers(&self) -> Vec<Answer<'_>> {
+        let answer = |&error: &f64| Answer::new(&self.curves, &self.reference, error);
+        self.asked.iter().map(answer).collect()
+    }
+
+    /// The best methods.
+    fn best(&self) -> Best<'_> {
+        Best::new(&self.curves, self.asked, self.all)
+    }
+
+    /// The errors of the tables, from the largest to the smallest.
+    fn errors(&self) -> Vec<f64> {
+        falling(&[&ADVICE, self.asked].concat(), &[])
+    }
+
     /// The fastest to each error: of all, and of those whose energy does not drift; then the same of
     /// the methods that go in steps.
     fn advice(&self) -> [Vec<Choice<'_>>; 4] {
-        let of = |pass: fn(&Curve, &Reached) -> bool| choices(&self.curves, &self.reference, pass);
+        let errors = self.errors();
+        let of = |pass: fn(&Curve, &Reached) -> bool| {
+            choices(&self.curves, &self.reference, &errors, pass)
+        };
         [
             of(|_, _| true),
             of(report::keeps_energy),
@@ -196,21 +327,23 @@ impl Comparison<'_> {
     fn advice_in_words(&self) -> Vec<(String, Vec<Choice<'_>>)> {
         let [all, kept, stepping, stepping_kept] = self.advice();
         let energy = format!(
-            "The same where the energy must not drift: methods that keep it or keep it in bounds by \
-             construction, and those that kept it within {KEPT:.0e} here."
+            "The same among methods that conserve energy, or keep it within bounds, or kept it within {KEPT:e} \
+             here."
         );
         let mut told = vec![(
-            "The fastest method for each error; times are CPU time per unit of simulated time."
+            "The fastest method for each error. Times are CPU times for each unit of simulated time."
                 .to_string(),
             all,
         )];
         if self.has_energy() {
             told.push((energy.clone(), kept));
         }
-        let exact = self.curves.iter().filter(|curve| !report::steps(curve)).count();
-        if (1..self.curves.len()).contains(&exact) {
-            let apart = "The fastest without the exact motion, which is there in one step but serves \
-                         no other problem.";
+        let exact_is_best = |choices: &[Choice<'_>]| {
+            choices.iter().any(|choice| choice.best.is_some_and(|(curve, _)| !report::steps(curve)))
+        };
+        let [first, second] = [&told[0].1, &told[told.len() - 1].1];
+        if exact_is_best(first) || exact_is_best(second) {
+            let apart = "The fastest without the exact motion, which serves no other problem.";
             told.push((apart.into(), stepping));
             if self.has_energy() {
                 told.push((energy, stepping_kept));
@@ -235,6 +368,7 @@ impl Comparison<'_> {
             reference: self.reference.in_words(),
             machine: machine(),
             reference_error: self.reference.error(),
+            answers: self.answers().iter().map(AnswerJson::from).collect(),
             advice,
             advice_energy_kept,
             advice_steps,
@@ -246,157 +380,163 @@ impl Comparison<'_> {
     }
 
     fn in_words(&self) -> String {
-        let mut text = format!(
-            "{}: global error at t = {}, {} methods\n",
-            self.scene.title,
-            self.scene.grid.t_span()[1],
-            self.curves.len(),
-        );
-        for (caption, choices) in self.advice_in_words() {
-            let table = output::table(CHOICE_HEADER, choices.iter().map(report::choice_cells));
-            text += &format!("\n{caption}\n{table}");
+        let best = self.best();
+        let mut text: String = self
+            .answers()
+            .iter()
+            .map(|answer| output::wrap(&answer.in_words(), "") + "\n")
+            .collect();
+        text += &output::wrap(&best.caption(self.curves.len()), "");
+        let columns = best.columns().into_iter().map(|column| column.title);
+        let rows = best.rows().into_iter().map(|row| row.into_iter().map(|cell| cell.text));
+        text += &output::table(columns, rows);
+        text += &format!("\n{}", output::wrap(&self.about_times(), ""));
+        if !self.all && best.shown.len() < self.curves.len() {
+            text += "--all shows every method that reaches it. The page has all runs.\n";
         }
-        text + &format!("\nErrors are distances from {}.\n", self.reference.in_words())
+        text
     }
 
-    /// What the figures of the front say of the exact motion.
-    fn left_out(&self) -> &'static str {
-        match self.curves.iter().all(report::steps) {
-            true => "",
-            false => {
-                " The front is that of the methods with steps; the exact motion stands beside it."
-            }
-        }
+    /// What times and errors are.
+    fn about_times(&self) -> String {
+        let energy = match self.has_energy() {
+            true => " The energy error is relative, at the end of the same run.",
+            false => "",
+        };
+        let reference = self.reference.in_words();
+        format!("Times are CPU times of a whole run with its rows of output.{energy} {reference}")
+    }
+
+    /// A figure of speed against error, or of what is counted, for some of the methods.
+    fn chart(
+        &self,
+        id: &str,
+        title: &str,
+        cost: Cost,
+        shown: impl Fn(&Curve) -> bool,
+    ) -> Option<Chart> {
+        report::front_chart(id, title, &self.curves, cost, &self.best().looks, shown)
     }
 
     /// The figures of what is counted.
     fn counts(&self) -> Vec<Block> {
-        let evaluations = "Evaluations of f, of F or of A(t): the catalog's number for a step times the \
-                           steps, and what was counted where steps were chosen, rejected attempts \
-                           among them. Implicit methods and those without a field are left out.";
+        let evaluations = "Evaluations of f, F or A(t). Steps of one size: the number for a step in the catalog, \
+                           times the steps. Steps chosen by their error: counted, with rejected attempts. \
+                           Implicit methods and those without a field are left out.";
         let layers = |layer: Layer| self.curves.iter().any(|c| c.candidate.layer == layer);
         let mut operations =
-            "Additions, multiplications, divisions, square roots, sines and cosines, \
-                              each as one, counted while the steps run: "
+            "Additions, multiplications, divisions, square roots, sines and cosines, each \
+                              as one. They are counted while the steps run: "
                 .to_string();
         operations += match (layers(Layer::Closed), layers(Layer::General)) {
-            (_, false) => "the closed formulas on numbers that count what is done to them",
-            (false, _) => {
-                "every product, solve, sum and rotation of matrices says what it has done"
-            }
+            (_, false) => "the closed formulas run on numbers that count",
+            (false, _) => "every product, solve, sum and rotation of matrices is counted",
             (true, true) => {
-                "on the closed layer by numbers that count what is done to them, on the general one by \
-                 every product, solve, sum and rotation of matrices, which says what it has done"
+                "on the closed layer by numbers that count, on the general layer by every product, solve, \
+                 sum and rotation of matrices"
             }
         };
         operations += &format!(
-            ". A run of more than {COUNTED_STEPS} steps is charged the mean of the first \
-             {COUNTED_STEPS} for each, or of fewer where these take millions of operations; rejected \
-             attempts are among them."
+            ". Long runs are extrapolated from their first {COUNTED_STEPS} steps. Rejected attempts count."
         );
         if layers(Layer::General) {
-            operations += " Signs, copies and the arithmetic of single numbers beside a matrix are free; \
-                           eigenvectors count as 9n³.";
+            operations += " Signs, copies and the arithmetic of single numbers beside a matrix are free. \
+                           Eigenvectors count as 9n³.";
         }
         if self.curves.iter().any(|curve| !report::steps(curve)) {
-            operations += " The exact motion, which is made of elliptic functions, has no count.";
+            operations += " The exact motion has no count: it is made of elliptic functions.";
         }
-        let chart = |id, title, caption: &str, cost| {
-            report::front_chart(id, title, &self.curves, cost).with_caption(caption).into()
-        };
-        let counted = self.curves.iter().flat_map(|curve| &curve.points);
-        let by_operations = match counted.into_iter().any(|p| p.operations.is_some()) {
-            true => chart(
-                "operations",
-                "Runs that no other beats in both error and operations",
-                &operations,
-                Cost::Operations,
-            ),
-            false => Block::text(
-                "There is no figure of operations: none of these runs has operations to count. The exact \
-                 motion is made of elliptic functions.",
-            ),
+        let figure = |id, title, caption: &str, cost| {
+            let on_front = report::on_front(&self.curves, cost);
+            let on_front = |curve: &Curve| {
+                self.curves.iter().zip(&on_front).any(|(c, on)| *on && core::ptr::eq(c, curve))
+            };
+            match self.chart(id, title, cost, on_front) {
+                Some(chart) => chart.with_caption(caption).into(),
+                None => Block::text(format!("{title}: nothing was counted in these runs.")),
+            }
         };
         vec![
-            by_operations,
-            chart(
-                "evaluations",
-                "Runs that no other beats in both error and evaluations of f",
-                evaluations,
-                Cost::Evaluations,
-            ),
+            figure("operations", "Operations to an error", &operations, Cost::Operations),
+            figure("evaluations", "Evaluations of f to an error", evaluations, Cost::Evaluations),
         ]
+    }
+
+    /// A figure for each kind of method.
+    fn kinds(&self, best: &Best<'_>) -> Vec<Block> {
+        let mut kinds: Vec<&str> = Vec::new();
+        for curve in &self.curves {
+            if !kinds.contains(&curve.candidate.figure()) {
+                kinds.push(curve.candidate.figure());
+            }
+        }
+        let chart = |kind: &&str| {
+            let (id, title) = (format!("speed-{kind}"), format!("Time to an error: {kind}"));
+            let of_kind = |curve: &Curve| curve.candidate.figure() == *kind;
+            report::speed_chart(&id, &title, &self.curves, &best.looks, of_kind)
+        };
+        kinds.iter().filter_map(chart).map(Block::from).collect()
+    }
+
+    /// How it was measured.
+    fn conditions(&self) -> Vec<(String, String)> {
+        let Effort { rounds, longest, patience, .. } = self.effort;
+        let mut facts = report::conditions(rounds).to_vec();
+        let runs = format!(
+            "steps get smaller until a run takes {longest:?}; where no method has reached an error that is asked \
+             for, the most promising ones go on to {patience:?}"
+        );
+        let rows = format!(
+            "each timed run gives the rows of the scene, {MOST_ROWS} at most; events are left out"
+        );
+        facts.extend([
+            ("Runs".into(), runs),
+            ("Output".into(), rows),
+            ("Modelled".into(), self.scene.quantities.join(", ")),
+            ("Errors".into(), self.reference.in_words()),
+        ]);
+        facts
     }
 
     fn page(&self) -> Page {
         let [t0, t1] = self.scene.grid.t_span();
-        let curves = &self.curves;
-        let mut families: Vec<&str> = Vec::new();
-        for curve in curves {
-            if !families.contains(&curve.candidate.family()) {
-                families.push(curve.candidate.family());
-            }
-        }
-        let what = "The error is the largest relative distance of a part of the state from the \
-                    reference at the end; runs with an error above 1 are not drawn.";
-        let mut charts: Vec<Block> = families
-            .iter()
-            .map(|family| {
-                let of_family = curves.iter().filter(|c| c.candidate.family() == *family);
-                let title = format!("Speed against error: {family}");
-                let chart = report::speed_chart(&format!("speed-{family}"), &title, of_family);
-                chart.with_caption(what).into()
-            })
-            .collect();
-        charts.splice(0..0, self.counts());
-        let advice = self.advice_in_words();
+        let (curves, best) = (&self.curves, self.best());
+        let mut answer: Vec<Block> =
+            self.answers().iter().map(|answer| Block::text(answer.in_words())).collect();
+        let shown = |curve: &Curve| best.shown.iter().any(|(c, _)| core::ptr::eq(*c, curve));
+        let what = "The error is the largest relative distance of a part of the state from the reference at the \
+                    end. Runs with an error above 1 are not drawn. Lines end where rounding begins. The dashed \
+                    line joins the best runs of all methods that take steps.";
+        let title = "Time that a run takes to reach an error";
+        let figure = self.chart("pareto", title, Cost::Run, shown);
+        answer.extend(figure.map(|chart| chart.with_caption(what).into()));
+        let caption = format!("{} {}", best.caption(curves.len()), self.about_times());
+        answer.push(best.table(caption).into());
         let table = |(caption, choices): &(String, Vec<Choice<'_>>)| {
             report::choice_table(caption, choices).into()
         };
-        let mut facts = report::conditions(self.effort.rounds).to_vec();
-        facts.extend([
-            (
-                "Runs".into(),
-                format!(
-                    "steps get smaller until a run takes {:?}; up to {:?} for the methods that promise \
-                     most where none has reached an error of the tables",
-                    self.effort.longest, self.effort.patience
-                ),
+        let mut every = vec![
+            report::speed_table(curves, &self.errors()).into(),
+            report::kept_table(curves).into(),
+        ];
+        every.extend(
+            ["speed.csv", "speed.json"]
+                .map(|file| Block::Link { text: format!("{file}: every run"), href: file.into() }),
+        );
+        let more = vec![
+            Block::fold(format!("All {} methods", curves.len()), every),
+            Block::fold(
+                "The fastest for large and small errors, and where the energy must not drift",
+                self.advice_in_words().iter().map(table).collect(),
             ),
-            ("Modelled".into(), self.scene.quantities.join(", ")),
-            ("Errors are distances from".into(), self.reference.in_words()),
-        ]);
-        // One below the other: two side by side hide their last columns.
-        let mut short: Vec<Block> = advice.iter().map(table).collect();
-        short.extend([
-            report::front_chart(
-                "pareto",
-                "Runs that no other beats in both error and time",
-                curves,
-                Cost::Time,
-            )
-            .with_caption(format!("{what}{}", self.left_out()))
-            .into(),
-            Block::Facts(facts),
-        ]);
+            Block::fold("A figure for each kind of method", self.kinds(&best)),
+            Block::fold("Operations and evaluations of f", self.counts()),
+            Block::fold("How it was measured", vec![Block::Facts(self.conditions())]),
+        ];
         report::page(
             format!("{}: which method?", self.scene.title),
-            format!("t = {t0} … {t1}, {} methods on this machine", curves.len()),
-            vec![
-                Section::new("In short", short),
-                Section::new("Figures", charts),
-                Section::new(
-                    "All methods",
-                    vec![
-                        Block::text(
-                            "speed.csv and speed.json beside this page have every run; every figure is \
-                             there as an SVG file.",
-                        ),
-                        report::speed_table(curves).into(),
-                        report::kept_table(curves).into(),
-                    ],
-                ),
-            ],
+            format!("t = {t0} to {t1}, {} methods on this machine", curves.len()),
+            vec![Section::new("In short", answer), Section::new("More", more)],
         )
     }
 }

@@ -1,13 +1,14 @@
-//! `lieflow methods`: methods, coordinate maps and tableaus.
+//! `lieflow methods`: which method to take; methods, coordinate maps and tableaus.
 
-use lieflow::catalog::{MethodInfo, MethodSpec, Order, TABLEAUS, all_methods};
+use lieflow::catalog::{MethodInfo, MethodSpec, Needs, Order, TABLEAUS, all_methods};
 use lieflow::maps::MAPS;
 use serde::Serialize;
 
 use super::CliError;
 use crate::args::MethodsArgs;
 use crate::output::{print, print_json, table, wrap};
-use lieflow_model::scene::Scene;
+use lieflow_model::kinds::high_order;
+use lieflow_model::scene::{Scene, suggest};
 
 #[derive(Serialize)]
 struct Listing {
@@ -19,10 +20,12 @@ struct Listing {
     tableaus: Vec<TableauEntry>,
 }
 
-#[derive(Serialize)]
+#[derive(Clone, Serialize)]
 struct MethodEntry {
     name: &'static str,
     summary: &'static str,
+    #[serde(skip)]
+    needs: Needs,
     /// None where it is the tableau's, or the method exact.
     order: Option<usize>,
     /// The order in words.
@@ -55,6 +58,7 @@ fn method_entry(info: &MethodInfo, fits: impl Fn(&MethodSpec) -> bool) -> Option
     let mut entry = MethodEntry {
         name: info.name,
         summary: info.summary,
+        needs: info.needs,
         order: info.order.number(),
         says_order: info.order,
         maps: Vec::new(),
@@ -98,40 +102,165 @@ fn listing(scene: Option<&Scene>) -> Result<Listing, CliError> {
     })
 }
 
+/// What somebody may want of a method, and who gives it.
+struct Advice {
+    want: &'static str,
+    because: &'static str,
+    /// Methods with the problems that they are for; a scene is told the first that fits it.
+    take: &'static [(&'static str, &'static str)],
+}
+
+/// The usual wants.
+const ADVICE: &[Advice] = &[
+    Advice {
+        want: "small errors",
+        because: "a high order needs few steps",
+        take: &[
+            ("taylor13", "free bodies"),
+            ("magnus8", "y' = A(t) y"),
+            ("rkmk dop853 cay", "all others"),
+        ],
+    },
+    Advice {
+        want: "rough answers, soon",
+        because: "a step costs little",
+        take: &[("mr4", "free bodies"), ("magnus4", "y' = A(t) y"), ("rkmk4 cay", "all others")],
+    },
+    Advice {
+        want: "energy that stays",
+        because: "it conserves the energy to rounding; each step iterates",
+        take: &[("dmv8", "free bodies"), ("energy-casimir4", "Lie–Poisson systems")],
+    },
+    Advice {
+        want: "long runs, large steps",
+        because: "it is symplectic: the energy error stays within bounds",
+        take: &[("mr4", "free bodies"), ("isospectral4", "momenta as matrices")],
+    },
+    Advice {
+        want: "y' = A(t) y",
+        because: "f depends on t alone: one exponential is a step of order 6",
+        take: &[("magnus6", "")],
+    },
+    Advice {
+        want: "symmetry in time",
+        because: "a step back undoes a step; each step iterates",
+        take: &[("rkmk-gauss4-symmetric", "")],
+    },
+    Advice {
+        want: "the exact motion",
+        because: "any time at once, at one evaluation for each row of output",
+        take: &[("exact", "free bodies")],
+    },
+];
+
+/// What to take: for a scene, or for all.
+fn advice(scene: Option<&Scene>) -> Result<String, CliError> {
+    let model = scene.map(Scene::model).transpose()?;
+    let default = scene.map_or_else(high_order, |scene| scene.problem.default_method());
+    let mut rows = vec![[
+        "nothing special".into(),
+        format!("{} (the default)", default.label()),
+        "it stays on the group, and chooses its steps by rtol".into(),
+    ]];
+    for Advice { want, because, take } in ADVICE {
+        let mut first = true;
+        for (name, problems) in *take {
+            let take = match &model {
+                None if problems.is_empty() => (*name).to_string(),
+                None => format!("{name} ({problems})"),
+                Some(model) if first && model.fits(&name.parse()?).is_ok() => (*name).to_string(),
+                Some(_) => continue,
+            };
+            let [want, because] = [want, because].map(|text| if first { *text } else { "" });
+            rows.push([want.into(), take, because.into()]);
+            first = false;
+        }
+    }
+    let name = scene.map_or("SCENE", |scene| &scene.name);
+    let more = format!(
+        "`lieflow compare {name} --error 1e-8` measures which method is the fastest. No method here is made for \
+         stiff problems: the implicit ones need short steps there too."
+    );
+    let table = table(["you want", "take", "because"], rows);
+    Ok(format!("Take this one\n{table}\n{}", wrap(&more, "")))
+}
+
+/// Methods that are one but for a number or the order of axes: they follow each other, and the catalog says the
+/// same of them.
+fn folded(methods: &[MethodEntry]) -> impl Iterator<Item = &[MethodEntry]> {
+    methods
+        .chunk_by(|a, b| (a.needs, a.summary, &a.preserves) == (b.needs, b.summary, &b.preserves))
+}
+
+/// The first and the last, where they differ.
+fn from_to(fold: &[MethodEntry], of: impl Fn(&MethodEntry) -> String) -> String {
+    let ends = [fold.first(), fold.last()].map(|entry| entry.map(&of).unwrap_or_default());
+    match ends {
+        [first, last] if first == last => first,
+        [first, last] => format!("{first} … {last}"),
+    }
+}
+
 fn in_words(listing: &Listing) -> String {
-    let mut text = match &listing.scene {
-        Some(scene) => format!("Methods that fit the scene {scene}\n"),
-        None => "Methods\n".into(),
-    };
+    let mut text = String::new();
     let takes = |method: &MethodEntry| match (&method.maps[..], &method.tableaus[..]) {
         ([], []) => "",
         (_, []) => "map, q",
         ([], _) => "tableau",
         _ => "map, q, tableau",
     };
-    let rows = listing.methods.iter().map(|m| {
-        let order = m.says_order.to_string();
-        [m.name.into(), order, takes(m).into(), m.preserves.clone(), m.cost.clone()]
-    });
-    text += &table(["name", "order", "takes", "preserves", "cost of a step"], rows);
-    text += "\n";
-    for method in &listing.methods {
-        let source = method.source.trim_end_matches('.');
-        text += &wrap(&format!("{}: {}. {source}.", method.name, method.summary), " ");
+    for needs in Needs::ALL {
+        let of_need = |entry: &&MethodEntry| entry.needs == needs;
+        let entries: Vec<MethodEntry> = listing.methods.iter().filter(of_need).cloned().collect();
+        if entries.is_empty() {
+            continue;
+        }
+        text += &match needs {
+            Needs::Field => "\nMethods for every problem\n".to_string(),
+            Needs::Norm => "\nImplicit methods for every problem with a norm\n".to_string(),
+            needs => format!("\nMethods that need {}\n", needs.describe()),
+        };
+        let rows = folded(&entries).map(|fold| {
+            let (order, cost) =
+                (|m: &MethodEntry| m.says_order.to_string(), |m: &MethodEntry| m.cost.clone());
+            let name = from_to(fold, |m| m.name.into());
+            let name = if fold.len() > 2 { format!("{name} ({})", fold.len()) } else { name };
+            let [takes, keeps] = [takes(&fold[0]).to_string(), fold[0].preserves.clone()];
+            [name, from_to(fold, order), takes, keeps, from_to(fold, cost)]
+        });
+        text += &table(["name", "order", "takes", "it keeps", "a step costs"], rows);
     }
     if !listing.maps.is_empty() {
         text += "\nCoordinate maps\n";
         let rows = listing.maps.iter().map(|m| [m.name.into(), m.groups.clone(), m.summary.into()]);
         text += &table(["name", "groups", "what it is"], rows);
     }
-    text += "\nTableaus\n";
-    let rows = listing.tableaus.iter().map(|t| [t.name.into(), t.order.to_string()]);
-    text += &table(["name", "order"], rows);
+    let tableaus = listing.tableaus.iter().map(|t| format!("{} ({})", t.name, t.order));
+    let tableaus = tableaus.collect::<Vec<_>>().join(", ");
+    text += &format!("\nTableaus, with their orders\n{}", wrap(&tableaus, " "));
     if listing.scene.is_some() {
         let differ = listing.methods.iter().filter(|method| !method.maps.is_empty());
         for method in differ.filter(|method| method.maps.len() < listing.maps.len()) {
             text += &format!("\n{} takes the maps {} only.\n", method.name, method.maps.join(", "));
         }
+    }
+    text + "\n`lieflow methods NAME` tells what a method is, and where it comes from.\n"
+}
+
+/// Everything about one method.
+fn one_in_words(method: &MethodEntry) -> String {
+    let mut text = format!("{}\n", method.name);
+    text += &wrap(&format!("{}. {}.", method.summary, method.source.trim_end_matches('.')), " ");
+    let rows = [
+        ("needs", method.needs.describe().to_string()),
+        ("order", method.says_order.to_string()),
+        ("keeps", method.preserves.clone()),
+        ("a step costs", method.cost.clone()),
+        ("maps", method.maps.join(", ")),
+        ("tableaus", method.tableaus.join(", ")),
+    ];
+    for (what, is) in rows.into_iter().filter(|(_, is)| !is.is_empty()) {
+        text += &wrap(&format!("{what}: {is}"), " ");
     }
     text
 }
@@ -139,12 +268,29 @@ fn in_words(listing: &Listing) -> String {
 /// Run the command.
 ///
 /// # Errors
-/// The scene cannot be used; standard output cannot be written.
+/// There is no such method; the scene cannot be used; standard output cannot be written.
 pub fn run(args: &MethodsArgs) -> Result<(), CliError> {
-    let scene = args.scene.as_deref().map(Scene::open).transpose()?;
-    let listing = listing(scene.as_ref())?;
-    match args.json {
-        true => print_json(&listing),
-        false => print(&in_words(&listing)),
+    if let Some(name) = &args.name {
+        let Some(info) = all_methods().find(|info| info.name == name) else {
+            let names: Vec<&str> = all_methods().map(|info| info.name).collect();
+            let near = suggest(name, &names).map(|near| format!("; did you mean `{near}`?"));
+            let near = near.unwrap_or_else(|| ": `lieflow methods` lists them".into());
+            return Err(CliError::Message(format!("there is no method `{name}`{near}")));
+        };
+        return match (method_entry(info, |_| true), args.json) {
+            (Some(entry), true) => print_json(&entry),
+            (Some(entry), false) => print(&one_in_words(&entry)),
+            (None, _) => Ok(()),
+        };
     }
+    let scene = args.scene.as_deref().map(|scene| args.settings.open(scene)).transpose()?;
+    let listing = listing(scene.as_ref())?;
+    if args.json {
+        return print_json(&listing);
+    }
+    let about = match &scene {
+        Some(scene) => format!("Methods for the scene {}\n\n", scene.name),
+        None => String::new(),
+    };
+    print(&(about + &advice(scene.as_ref())? + &in_words(&listing)))
 }

@@ -10,6 +10,7 @@ pub mod methods;
 pub mod paper;
 pub mod run;
 pub mod scenes;
+mod stop;
 mod told;
 mod watch;
 

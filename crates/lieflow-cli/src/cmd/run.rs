@@ -2,16 +2,13 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
-
-use signal_hook::consts::{SIGINT, SIGTERM};
-use signal_hook::flag;
 
 use super::CliError;
 use super::accuracy::{Check, LONG};
 use super::foresee::foresee;
+use super::stop::{INTERRUPTED, listen};
 use super::told::in_words;
 use super::watch::{Recorder, Watch, quantities};
 use crate::args::{ErrorCheck, RunArgs};
@@ -20,8 +17,6 @@ use lieflow_model::model::Plan;
 use lieflow_model::scene::Scene;
 use lieflow_model::schema::Row;
 
-/// The exit code of a run that was interrupted.
-const INTERRUPTED: u8 = 130;
 /// How often the state of a run is saved.
 const SAVED_EVERY: Duration = Duration::from_secs(1);
 
@@ -44,13 +39,7 @@ pub struct Options {
 /// # Errors
 /// A scene cannot be used, a file cannot be written, a step failed, or the run was interrupted.
 pub fn run(args: &RunArgs) -> Result<(), CliError> {
-    let stop = Arc::new(AtomicBool::new(false));
-    for signal in [SIGINT, SIGTERM] {
-        // The second signal ends the program at once: it finds that the first was there.
-        flag::register_conditional_shutdown(signal, INTERRUPTED.into(), Arc::clone(&stop))
-            .and_then(|_| flag::register(signal, Arc::clone(&stop)))
-            .map_err(CliError::Signals)?;
-    }
+    let stop = listen()?;
     if let [scene] = &args.scenes[..] {
         return run_one(args, scene, &mut Vec::new(), &stop);
     }

@@ -1,6 +1,6 @@
 //! What is compared: methods with their parts, on a layer, in steps of one size or of their own.
 
-use lieflow::catalog::{MethodInfo, MethodSpec, Property, TABLEAUS, all_methods};
+use lieflow::catalog::{Family, MethodInfo, MethodSpec, Property, TABLEAUS, all_methods};
 use lieflow::maps::MAPS;
 
 use crate::cmd::CliError;
@@ -29,34 +29,49 @@ impl Candidate {
         Candidate { method: MethodSpec::new("rk4", None), layer, adaptive: false }
     }
 
-    /// Its name in tables and legends.
-    pub fn label(&self) -> String {
-        let mut label = self.method.label();
-        if self.adaptive {
-            label += ", adaptive";
-        }
-        if self.layer == Layer::General {
-            label += ", general";
-        }
-        label
+    /// Its name in tables and legends where there is one layer.
+    pub fn name(&self) -> String {
+        let steps = if self.adaptive { ", adaptive" } else { "" };
+        self.method.label() + steps
     }
 
-    /// The figure that it belongs to: its tableau, or the family of a method that has none.
-    pub fn family(&self) -> &str {
+    /// Its name in tables and legends where there are two layers.
+    pub fn label(&self) -> String {
+        let layer = if self.layer == Layer::General { ", general" } else { "" };
+        self.name() + layer
+    }
+
+    /// What the catalog knows of the method.
+    fn info(&self) -> Option<&'static MethodInfo> {
+        self.method.info().ok()
+    }
+
+    /// The kind of method that it is.
+    pub fn kind(&self) -> Option<Family> {
+        self.info().map(|info| info.family)
+    }
+
+    /// The figure that it belongs to: its tableau, or the kind of a method that has none.
+    pub fn figure(&self) -> &str {
         match self.method.name.as_str() {
             "rkmk4" | "rk4" => "rk4",
             _ => match &self.method.tableau {
                 Some(tableau) => tableau,
-                None => self.method.info().map_or("", |info| info.family.name()),
+                None => self.kind().map_or("", Family::name),
             },
         }
+    }
+
+    /// What the catalog says that it preserves, in words; nothing where it says nothing.
+    pub fn keeps(&self) -> String {
+        self.info().map_or_else(String::new, MethodInfo::preserves_in_words)
     }
 
     /// Does the catalog say that it keeps the energy, or keeps it within bounds (symplectic)?
     pub fn keeps_energy(&self) -> bool {
         let keeps =
             |info: &MethodInfo| info.keeps(Property::Energy) || info.keeps(Property::Symplectic);
-        self.method.info().is_ok_and(keeps)
+        self.info().is_some_and(keeps)
     }
 
     /// Evaluations of f, of F or of A in a step of one size, as the catalog states its cost; none for

@@ -36,9 +36,12 @@ pub struct WorkPoint {
     /// CPU time per unit of simulated time.
     #[serde(with = "number")]
     pub seconds_per_unit: f64,
-    /// CPU time of the first run, or the second of a short one.
+    /// CPU time of the first run without output, or the second of a short one.
     #[serde(with = "number")]
     pub first_seconds: f64,
+    /// CPU time of the output of a run, which is part of its time.
+    #[serde(with = "number")]
+    pub output_seconds: f64,
     /// Why the run stopped early, when it did.
     pub failure: Option<String>,
 }
@@ -63,8 +66,19 @@ impl WorkPoint {
             group_residual: f64::NAN,
             seconds_per_unit: f64::NAN,
             first_seconds: f64::NAN,
+            output_seconds: 0.0,
             failure: None,
         }
+    }
+
+    /// CPU time of the output per unit of simulated time.
+    fn output_per_unit(&self) -> f64 {
+        self.output_seconds / self.length()
+    }
+
+    /// The simulated time.
+    pub fn length(&self) -> f64 {
+        self.h * self.steps as f64
     }
 }
 
@@ -73,12 +87,25 @@ impl WorkPoint {
 pub struct Reached {
     /// CPU time per unit of simulated time.
     pub seconds: f64,
+    /// The part of it that is output.
+    pub output: f64,
+    /// The simulated time of the run.
+    pub length: f64,
     /// The step.
     pub h: f64,
+    /// The number of steps.
+    pub steps: u64,
     /// The tolerance, of a method that chooses its steps.
     pub tolerance: Option<f64>,
-    /// The larger energy error of the runs on either side.
+    /// The energy error.
     pub energy_error: f64,
+}
+
+impl Reached {
+    /// CPU time of the whole run.
+    pub fn run_seconds(&self) -> f64 {
+        self.seconds * self.length
+    }
 }
 
 /// A run with a larger error has lost the solution.
@@ -92,7 +119,7 @@ pub fn pareto(
 ) -> Vec<(usize, usize)> {
     let both = |(i, j): (usize, usize)| {
         let point: &WorkPoint = &curves[i].points[j];
-        (point.error, cost(&curves[i], point).unwrap_or(f64::INFINITY))
+        (curves[i].error(point), cost(&curves[i], point).unwrap_or(f64::INFINITY))
     };
     let places = |(i, curve): (usize, &Curve)| (0..curve.points.len()).map(move |j| (i, j));
     let mut all: Vec<(usize, usize)> = curves.iter().enumerate().flat_map(places).collect();
@@ -117,8 +144,12 @@ pub fn pareto(
 pub struct Curve {
     /// The method.
     pub candidate: Candidate,
+    /// Its name in tables and figures.
+    pub label: String,
     /// The order it should have; none where it is exact.
     pub order: Option<usize>,
+    /// Smaller errors are rounding.
+    pub floor: f64,
     /// The runs.
     pub points: Vec<WorkPoint>,
 }
@@ -126,17 +157,30 @@ pub struct Curve {
 /// Errors outside of this range say nothing of the order: larger ones are not yet asymptotic,
 /// smaller ones are rounding.
 const ASYMPTOTIC: core::ops::Range<f64> = 1e-10..1e-2;
+/// So many times the floor is clear of it.
+const CLEAR: f64 = 10.0;
+/// From one pair of runs to the next the slope keeps this part of itself, or rounding has begun.
+const STEADY: f64 = 0.7;
 
 impl Curve {
-    pub(super) fn new(candidate: Candidate, order: Option<usize>) -> Self {
-        Curve { candidate, order, points: Vec::new() }
+    /// The error of a run, as far as it can be told: no smaller than the floor.
+    pub fn error(&self, point: &WorkPoint) -> f64 {
+        if point.error < self.floor { self.floor } else { point.error }
     }
 
-    /// The measured order: the slope of the least-squares line through log h, log error.
+    /// The measured order: the slope of the least-squares line through log h, log error, over the runs that are clear
+    /// of the floor and before the error falls more slowly. None where these are fewer than three.
     pub fn measured_order(&self) -> Option<f64> {
-        let used = || self.points.iter().filter(|p| ASYMPTOTIC.contains(&p.error));
-        let fit: Fit = used().map(|p| (p.h.ln(), p.error.ln())).collect();
-        fit.slope().filter(|_| used().count() >= 3)
+        let clear = |error: f64| ASYMPTOTIC.contains(&error) && error > CLEAR * self.floor;
+        let used: Vec<&WorkPoint> = self.points.iter().filter(|p| clear(p.error)).collect();
+        let slope = |pair: &[&WorkPoint]| {
+            (pair[0].error / pair[1].error).ln() / (pair[0].h / pair[1].h).ln()
+        };
+        let slopes: Vec<f64> = used.windows(2).map(slope).collect();
+        let falls = |i: usize| slopes[i] > 0.0 && (i == 0 || slopes[i] >= STEADY * slopes[i - 1]);
+        let clean = (0..slopes.len()).take_while(|i| falls(*i)).count();
+        let fit: Fit = used.iter().take(clean + 1).map(|p| (p.h.ln(), p.error.ln())).collect();
+        fit.slope().filter(|_| clean >= 2)
     }
 
     /// Where this error is reached soonest, by a run or between two by the line through them in the
@@ -148,10 +192,13 @@ impl Curve {
     /// Where this error is reached soonest among what passes. A run that is more accurate may pass where the
     /// soonest does not.
     pub fn reached_where(&self, error: f64, pass: impl Fn(&Reached) -> bool) -> Option<Reached> {
-        // No error is smaller than rounding, though a run may hit zero.
+        // Nobody can tell who reaches an error below the floor.
+        if error < self.floor {
+            return None;
+        }
         let runs: Vec<&WorkPoint> =
             self.points.iter().filter(|p| p.error >= 0.0 && p.seconds_per_unit > 0.0).collect();
-        let log_error = |p: &WorkPoint| p.error.max(1e-17).ln();
+        let log_error = |p: &WorkPoint| self.error(p).ln();
         let after = runs.iter().position(|p| p.error <= error)?;
         let b = runs[after];
         // The coarsest run may do, and one that is far off says nothing of what lies behind it.
@@ -161,7 +208,7 @@ impl Curve {
         let explained = |a: &WorkPoint| match (b.size, self.order) {
             (Size::Steps(_), Some(order)) => {
                 // Near rounding a run may be more accurate than it should.
-                let slope = (a.error / b.error.max(1e-12)).ln() / (a.h / b.h).ln();
+                let slope = (a.error / self.error(b).max(1e-12)).ln() / (a.h / b.h).ln();
                 slope <= 2.0 * order as f64 + 2.0
             }
             _ => true,
@@ -178,14 +225,25 @@ impl Curve {
         };
         let between = Reached {
             seconds: between(a.seconds_per_unit, b.seconds_per_unit),
+            output: b.output_per_unit(),
             h: between(a.h, b.h),
+            // Rounding makes no step of its own.
+            steps: (between(a.steps as f64, b.steps as f64) * (1.0 - 1e-9)).ceil() as u64,
+            length: b.length(),
             tolerance,
-            energy_error: a.energy_error.max(b.energy_error),
+            // Where it is exactly 0 there is no line in the logarithms.
+            energy_error: match a.energy_error.min(b.energy_error) > 0.0 {
+                true => between(a.energy_error, b.energy_error),
+                false => a.energy_error.max(b.energy_error),
+            },
         };
         // Where a run costs little more than its beginning, a more accurate one may be as fast.
         let measured = runs[after..].iter().filter(|p| p.error <= error).map(|p| Reached {
             seconds: p.seconds_per_unit,
+            output: p.output_per_unit(),
             h: p.h,
+            steps: p.steps,
+            length: p.length(),
             tolerance: match p.size {
                 Size::Tolerance(rtol) => Some(rtol),
                 Size::Steps(_) => None,
@@ -201,9 +259,9 @@ impl Curve {
         self.reached(error).map(|reached| reached.seconds)
     }
 
-    /// CPU time of one step, at the smallest step.
+    /// CPU time of one step without output, at the smallest step.
     pub fn seconds_per_step(&self) -> Option<f64> {
         let last = self.points.iter().rev().find(|p| p.seconds_per_unit > 0.0)?;
-        Some(last.seconds_per_unit * last.h)
+        Some((last.seconds_per_unit - last.output_per_unit()) * last.h)
     }
 }

@@ -1,8 +1,9 @@
-//! Points on disk as they are measured, so that a comparison which is interrupted goes on.
+//! Points on disk as they are measured. A comparison that is interrupted goes on from them, and one with other
+//! options adds to them.
 
 use std::collections::HashMap;
 use std::fs::{self, File, OpenOptions};
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
@@ -10,13 +11,13 @@ use serde::{Deserialize, Serialize};
 use super::WorkPoint;
 use crate::cmd::CliError;
 
-/// The file, while there is something to go on with.
+/// The file.
 pub const JOURNAL: &str = "points.jsonl";
 
 /// A line of the file.
 #[derive(Serialize, Deserialize)]
 enum Entry {
-    /// What is measured; first.
+    /// What the entries after it are about.
     Of(String),
     /// A run that was judged.
     Point(String, WorkPoint),
@@ -34,34 +35,47 @@ pub struct Journal {
 }
 
 impl Journal {
-    /// Go on with the file in `folder` if it is about the same thing, or begin a new one.
+    /// Go on with the file in `folder`: what it has of this is known, and what it has of anything else stays.
     ///
     /// # Errors
     /// The file cannot be read or written.
     pub fn open(folder: &Path, of: &str) -> Result<Self, CliError> {
         let path = folder.join(JOURNAL);
-        let old = fs::read_to_string(&path).unwrap_or_default();
-        // A line that was cut off by the interruption is no entry.
-        let entry = |line| Some((line, serde_json::from_str::<Entry>(line).ok()?));
-        let mut entries = old.lines().map_while(entry);
-        let same = matches!(entries.next(), Some((_, Entry::Of(what))) if what == of);
+        let mut text = match fs::read_to_string(&path) {
+            Err(error) if error.kind() == ErrorKind::NotFound => String::new(),
+            read => read.map_err(CliError::io("read", &path))?,
+        };
         let (mut points, mut times) = (HashMap::new(), HashMap::<String, Vec<f64>>::new());
-        let mut text = line_of(&Entry::Of(of.into()))?;
-        for (line, entry) in entries.take_while(|_| same) {
-            match entry {
-                Entry::Of(_) => {}
-                Entry::Point(key, point) => {
+        let mut ours = false;
+        for line in text.lines() {
+            // A line that was cut off by an interruption is no entry.
+            match serde_json::from_str(line) {
+                Ok(Entry::Of(what)) => ours = what == of,
+                Ok(Entry::Point(key, point)) if ours => {
                     points.insert(key, point);
                 }
-                Entry::Time(key, seconds) => times.entry(key).or_default().push(seconds),
+                Ok(Entry::Time(key, seconds)) if ours => {
+                    times.entry(key).or_default().push(seconds);
+                }
+                _ => {}
             }
-            text += line;
+        }
+        if !text.is_empty() && !text.ends_with('\n') {
             text.push('\n');
         }
+        text += &line_of(&Entry::Of(of.into()))?;
         crate::output::write_file(&path, &text)?;
         let file = OpenOptions::new().append(true).open(&path);
         let file = file.map_err(CliError::io("write", &path))?;
         Ok(Journal { path, file, points, times })
+    }
+
+    /// Forget everything that was measured.
+    ///
+    /// # Errors
+    /// The file cannot be removed.
+    pub fn remove(folder: &Path) -> Result<(), CliError> {
+        crate::output::remove_old(&folder.join(JOURNAL))
     }
 
     /// How many points it knows.
@@ -88,15 +102,6 @@ impl Journal {
     fn append(&mut self, entry: &Entry) -> Result<(), CliError> {
         let line = line_of(entry)?;
         self.file.write_all(line.as_bytes()).map_err(CliError::io("write", &self.path))
-    }
-
-    /// Everything is measured: the next comparison begins anew.
-    ///
-    /// # Errors
-    /// The file cannot be removed.
-    pub fn finish(self) -> Result<(), CliError> {
-        drop(self.file);
-        crate::output::remove_old(&self.path)
     }
 }
 

@@ -2,12 +2,13 @@
 
 use lieflow::catalog::MethodSpec;
 use lieflow::tolerance::Rule;
-use lieflow::{RunError, StepControl};
-use lieflow::{SaveAt, TimeGrid};
+use std::time::Duration;
 
-use super::{Candidate, Size, WorkPoint};
+use lieflow::{RunError, SaveAt, StepControl, TimeGrid};
+
+use super::{Candidate, Size, WorkPoint, cpu_seconds};
 use crate::cmd::CliError;
-use lieflow_model::model::{Model, Sink, Steps};
+use lieflow_model::model::{Model, Plan, Rows as Watched, Sink, Steps};
 use lieflow_model::scene::Scene;
 use lieflow_model::schema::{Observable, Row, Schema};
 
@@ -16,9 +17,8 @@ use lieflow_model::schema::{Observable, Row, Schema};
 pub enum Reference {
     /// The exact solution.
     Exact {
-        /// How far it ends from itself in seven steps, relative: an estimate of its rounding; none
-        /// where it is no method too.
-        apart: Option<f64>,
+        /// How far rounding moves its end; none where it is no method too.
+        rounding: Option<Rounding>,
     },
     /// A run at the finest tolerance.
     Own {
@@ -31,28 +31,47 @@ pub enum Reference {
     },
 }
 
+/// How far rounding moves the end of the exact solution when it is taken in many steps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rounding {
+    /// The largest relative distance from the end in one step.
+    pub apart: f64,
+    /// The largest number of steps that was tried.
+    pub steps: u64,
+}
+
 impl Reference {
     /// An estimate of the relative error of the reference.
     pub fn error(&self) -> Option<f64> {
         match self {
-            Reference::Exact { apart } => *apart,
+            Reference::Exact { rounding } => rounding.map(|rounding| rounding.apart),
             Reference::Own { apart, .. } => Some(*apart),
         }
     }
 
-    /// A sentence that says what the reference is.
+    /// The floor: nothing can be said of smaller relative errors.
+    pub fn floor(&self) -> f64 {
+        self.error().unwrap_or_default().max(f64::EPSILON)
+    }
+
+    /// What errors are measured against, in sentences.
     pub fn in_words(&self) -> String {
         match self {
-            Reference::Exact { apart: None } => "the exact solution".into(),
-            Reference::Exact { apart: Some(apart) } => format!(
-                "the exact solution, which ends {apart:.0e} away, relative, when it goes in seven \
-                 steps: errors below that are rounding"
+            Reference::Exact { rounding: None } => {
+                "Errors are measured against the exact solution.".into()
+            }
+            Reference::Exact { rounding: Some(Rounding { apart, steps }) } => format!(
+                "Errors are measured against the exact solution. Taken in 2 to {steps} steps, the exact \
+                 solution itself moves by up to {apart:.0e}: smaller errors are rounding."
             ),
             Reference::Own { by, beside, apart } => {
-                let verdict = if *apart <= AGREE { "they agree" } else { "they do NOT agree" };
+                let verdict = match *apart <= AGREE {
+                    true => "The two agree",
+                    false => "The two do NOT agree",
+                };
                 format!(
-                    "{by} at a tolerance of {TIGHT:e}; {beside} ends {apart:.1e} away, relative \
-                     ({verdict}): errors below some {apart:.0e} say nothing"
+                    "Errors are measured against a run of {by} at a tolerance of {TIGHT:e}. A run of \
+                     {beside} ends {apart:.0e} away from it. {verdict}: nothing can be said of smaller errors."
                 )
             }
         }
@@ -61,8 +80,8 @@ impl Reference {
 
 /// The tolerance of a reference run.
 const TIGHT: f64 = 1e-13;
-/// The steps of the exact motion that say how much it rounds.
-const PARTS: u64 = 7;
+/// Numbers of steps in which the exact motion is always taken, to see how much it rounds.
+const PARTS: [u64; 5] = [2, 3, 5, 7, 11];
 /// Two reference runs that are closer than this agree.
 const AGREE: f64 = 1e-9;
 
@@ -98,16 +117,24 @@ fn norm(x: &[f64]) -> f64 {
 }
 
 impl Judge {
-    /// For runs of the problem of `scene` over a span.
+    /// For runs of the problem of `scene` over a span, in up to these numbers of steps. A single run for the
+    /// rounding of the exact solution takes about so long at most.
     ///
     /// # Errors
     /// The problem cannot be set up, or no reference can be computed.
-    pub fn new(scene: &Scene, quantities: &[&str], t_span: [f64; 2]) -> Result<Self, CliError> {
+    pub fn new(
+        scene: &Scene,
+        quantities: &[&str],
+        t_span: [f64; 2],
+        steps: &[u64],
+        longest: Duration,
+    ) -> Result<Self, CliError> {
         let (mut judge, model) = Self::without_end(scene, quantities)?;
         match model.exact(t_span) {
             Some(Ok(exact)) => {
                 judge.end = exact;
-                judge.reference = Reference::Exact { apart: judge.rounding(&*model, t_span) };
+                let rounding = judge.rounding(&*model, t_span, steps, longest);
+                judge.reference = Reference::Exact { rounding };
             }
             _ => judge.find_end(&*model, t_span)?,
         }
@@ -135,7 +162,7 @@ impl Judge {
         // The first layer of the problem.
         let layer = scene.problem.layers().first().copied().unwrap_or(scene.layer);
         let model = scene.model_with(layer, &judged)?;
-        let (schema, reference) = (model.schema().clone(), Reference::Exact { apart: None });
+        let (schema, reference) = (model.schema().clone(), Reference::Exact { rounding: None });
         Ok((Judge { state, schema, end: Vec::new(), reference }, model))
     }
 
@@ -168,12 +195,32 @@ impl Judge {
         Err(CliError::Message("no two methods for a reference solution fit this problem".into()))
     }
 
-    /// How far from its end the exact motion comes in [`PARTS`] steps.
-    fn rounding(&self, model: &dyn Model, t_span: [f64; 2]) -> Option<f64> {
-        let mut last = Vec::new();
-        let mut see = |_: f64, row: Row<'_>| last = row.values().to_vec();
-        Size::Steps(PARTS).run(model, &MethodSpec::new("exact", None), t_span, &mut see).ok()?;
-        Some(self.error(&last)).filter(|apart| apart.is_finite())
+    /// How far from its end the exact motion comes in several steps, and in as many as other methods take. One
+    /// number of steps may meet calm moments only.
+    fn rounding(
+        &self,
+        model: &dyn Model,
+        t_span: [f64; 2],
+        steps: &[u64],
+        longest: Duration,
+    ) -> Option<Rounding> {
+        let mut numbers = [&PARTS, steps].concat();
+        numbers.retain(|steps| *steps > 1);
+        numbers.sort_unstable();
+        let mut worst = None;
+        for steps in numbers {
+            let (start, mut last) = (cpu_seconds(), Vec::new());
+            let mut see = |_: f64, row: Row<'_>| last = row.values().to_vec();
+            let exact = MethodSpec::new("exact", None);
+            Size::Steps(steps).run(model, &exact, t_span, &Rows::ENDS, &mut see).ok()?;
+            let before = worst.map_or(0.0, |worst: Rounding| worst.apart);
+            let apart = Some(self.error(&last)).filter(|apart| apart.is_finite())?;
+            worst = Some(Rounding { apart: before.max(apart), steps });
+            if cpu_seconds() - start > longest.as_secs_f64() {
+                break;
+            }
+        }
+        worst
     }
 
     /// What a model must compute for [`point`](Self::point).
@@ -197,7 +244,7 @@ impl Judge {
             last = row.values().to_vec();
         };
         let mut point = WorkPoint::new(t_span, size);
-        let outcome = size.run(model, &candidate.method, t_span, &mut see);
+        let outcome = size.run(model, &candidate.method, t_span, &Rows::ENDS, &mut see);
         match outcome {
             Ok(done) => {
                 let length = (t_span[1] - t_span[0]).abs();
@@ -250,6 +297,41 @@ fn relative(gap: f64, size: f64) -> f64 {
     if size == 0.0 { gap.abs() } else { (gap / size).abs() }
 }
 
+/// The rows that a run gives while it is timed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rows {
+    /// When.
+    pub save: SaveAt,
+    /// Are these times reached by shorter steps?
+    pub by_steps: bool,
+}
+
+/// More rows than this are thinned out.
+pub const MOST_ROWS: u64 = 10_000;
+
+impl Rows {
+    /// The start and the end.
+    pub const ENDS: Rows = Rows { save: SaveAt::Ends, by_steps: false };
+
+    /// Those of a scene, at the same times whatever the step.
+    pub fn of(scene: &Scene) -> Self {
+        let save = match (&scene.save, &scene.adaptive) {
+            (SaveAt::Every(every), None) => {
+                let thin = (scene.grid.steps() / every).div_ceil(MOST_ROWS).max(1);
+                let steps = (0..scene.grid.steps()).step_by((every * thin) as usize);
+                let times = steps.map(|n| scene.grid.time(n)).chain([scene.grid.t_span()[1]]);
+                SaveAt::Times(times.collect())
+            }
+            (SaveAt::Times(times), _) => {
+                let thin = times.len().div_ceil(MOST_ROWS as usize).max(1);
+                SaveAt::Times(times.iter().step_by(thin).copied().collect())
+            }
+            (save, _) => save.clone(),
+        };
+        Rows { save, by_steps: scene.times_by_steps }
+    }
+}
+
 /// What a run did.
 #[derive(Clone, Copy, Debug)]
 pub struct Done {
@@ -281,7 +363,7 @@ impl Size {
         Some((a_step * steps as f64).round() as u64)
     }
 
-    /// Run a method over a span in steps of this size; why not, in words.
+    /// Run a method over a span in steps of this size, with these rows; why not, in words.
     ///
     /// # Errors
     /// The run did not reach its end.
@@ -290,25 +372,29 @@ impl Size {
         model: &dyn Model,
         method: &MethodSpec,
         t_span: [f64; 2],
+        rows: &Rows,
         sink: &mut Sink<'_>,
     ) -> Result<Done, String> {
-        match self {
+        let in_words = |error: lieflow::Error| error.to_string();
+        let steps = match self {
             Size::Steps(steps) => {
-                let grid = TimeGrid::with_steps(t_span, steps).map_err(|e| e.to_string())?;
-                let stats = model.run(method, &grid, &SaveAt::Ends, sink);
-                let stats = stats.map_err(|error| error.to_string())?;
-                Ok(Done { steps: stats.accepted, rejected: 0, evaluations: None })
+                Steps::Equal(TimeGrid::with_steps(t_span, steps).map_err(in_words)?)
             }
             Size::Tolerance(rtol) => {
-                let control = per_length(rtol, 0.0).map_err(|error| error.to_string())?;
-                let stats = model.adapt(method, t_span, &control, sink);
-                let stats = stats.map_err(|error| error.to_string())?;
-                Ok(Done {
-                    steps: stats.accepted,
-                    rejected: stats.rejected,
-                    evaluations: stats.evaluations,
-                })
+                let control = per_length(rtol, 0.0).map_err(in_words)?;
+                Steps::ByError { t_span, control }
             }
-        }
+        };
+        let plan = Plan { times_by_steps: rows.by_steps, ..Plan::new(steps, rows.save.clone()) };
+        let done = model.drive(method, plan, &mut Watched(sink));
+        let stats = done.map_err(|error| error.to_string())?.stats;
+        Ok(match self {
+            Size::Steps(_) => Done { steps: stats.accepted, rejected: 0, evaluations: None },
+            Size::Tolerance(_) => Done {
+                steps: stats.accepted,
+                rejected: stats.rejected,
+                evaluations: stats.evaluations,
+            },
+        })
     }
 }

@@ -18,7 +18,7 @@ pub use clock::{cpu_seconds, machine, seconds_of};
 pub use curve::{Curve, Reached, WorkPoint, pareto};
 pub use fit::Fit;
 pub use journal::{JOURNAL, Journal};
-pub use judge::{Judge, Reference};
+pub use judge::{Judge, MOST_ROWS, Reference, Rounding, Rows};
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -29,7 +29,8 @@ use rand_pcg::Pcg64;
 use serde::{Deserialize, Serialize};
 
 use crate::cmd::CliError;
-use lieflow_model::model::Model;
+use lieflow::catalog::MethodSpec;
+use lieflow_model::model::{Layer, Model};
 use lieflow_model::scene::Scene;
 use lieflow_model::schema::Row;
 
@@ -44,7 +45,7 @@ pub enum Size {
 
 /// How much is measured.
 #[derive(Clone, Copy, Debug)]
-pub struct Effort {
+pub struct Effort<'a> {
     /// Rounds of timing.
     pub rounds: u32,
     /// A step size whose single run takes longer is left out, with all smaller ones.
@@ -55,7 +56,7 @@ pub struct Effort {
     pub seed: u64,
     /// Errors that some method in steps should reach: where none does, those that promise most go on to
     /// smaller steps.
-    pub wanted: &'static [f64],
+    pub wanted: &'a [f64],
     /// For these a single run may take so long.
     pub patience: Duration,
 }
@@ -73,42 +74,71 @@ pub struct Plan<'a> {
     pub steps: &'a [u64],
     /// Tolerances for those that choose their steps, from loose to tight.
     pub tolerances: &'a [f64],
+    /// The rows that are part of what is timed.
+    pub rows: &'a Rows,
 }
 
 /// Measure every candidate on `scene` in each size of steps. `tick` is called after every run with the
-/// share of the work that is done. What `journal` knows is not measured again.
+/// share of the work that is done; an error of it ends the measurement. What `journal` knows is not measured
+/// again.
 ///
 /// # Errors
-/// The problem cannot be set up or has no reference; the journal cannot be written.
+/// The problem cannot be set up or has no reference; the journal cannot be written; those of `tick`.
 pub fn speed_against_error(
     scene: &Scene,
     plan: &Plan<'_>,
-    effort: Effort,
+    effort: Effort<'_>,
     journal: Option<&mut Journal>,
-    mut tick: impl FnMut(f64),
+    mut tick: impl FnMut(f64) -> Result<(), CliError>,
 ) -> Result<(Vec<Curve>, Reference), CliError> {
-    let Plan { candidates, t_span, .. } = *plan;
-    let judge = Judge::new(scene, plan.quantities, t_span)?;
-    let mut bench = Bench { judge: &judge, effort, t_span, journal, jobs: Vec::new() };
+    let Plan { candidates, t_span, quantities, .. } = *plan;
+    let judge = Judge::new(scene, quantities, t_span, plan.steps, effort.longest)?;
+    let floor = judge.reference.floor();
+    let mut layers: Vec<Layer> = candidates.iter().map(|candidate| candidate.layer).collect();
+    layers.sort_unstable();
+    layers.dedup();
+    let models = layers.iter().map(|&layer| {
+        let judged = scene.model_with(layer, &judge.quantities())?;
+        Ok(Models { layer, judged, timed: scene.model_with(layer, quantities)? })
+    });
+    let models: Vec<Models> = models.collect::<Result<_, CliError>>()?;
+    let mut bench = Bench {
+        judge: &judge,
+        effort,
+        t_span,
+        rows: plan.rows,
+        journal,
+        jobs: Vec::new(),
+        share: 0.0,
+        tick: &mut tick,
+    };
     let mut lines = Vec::new();
     for (i, candidate) in candidates.iter().enumerate() {
-        let model = scene.model_with(candidate.layer, &judge.quantities())?;
-        let curve = Curve::new(candidate.clone(), model.order(&candidate.method)?);
+        let Some(models) = models.iter().find(|models| models.layer == candidate.layer) else {
+            continue;
+        };
+        let curve = Curve {
+            candidate: candidate.clone(),
+            label: if layers.len() > 1 { candidate.label() } else { candidate.name() },
+            order: models.judged.order(&candidate.method)?,
+            floor,
+            points: Vec::new(),
+        };
         let left = match candidate.adaptive {
             false => plan.steps.iter().map(|n| Size::Steps(*n)).collect(),
             true => plan.tolerances.iter().map(|tol| Size::Tolerance(*tol)).collect(),
         };
-        let mut line = Line { curve, model, left };
+        let mut line = Line { curve, models, left };
         while let Some(took) = bench.next(i, &mut line)? {
             if took > effort.longest.as_secs_f64() {
                 break;
             }
         }
         lines.push(line);
-        tick(0.2 * (i + 1) as f64 / candidates.len() as f64);
+        bench.share = 0.2 * (i + 1) as f64 / candidates.len() as f64;
     }
     bench.go_on(&mut lines)?;
-    let Bench { mut journal, mut jobs, .. } = bench;
+    let Bench { mut journal, mut jobs, tick, .. } = bench;
     let mut rng = Pcg64::seed_from_u64(effort.seed);
     for round in 0..effort.rounds {
         jobs.shuffle(&mut rng);
@@ -119,31 +149,44 @@ pub fn speed_against_error(
         let shares: Vec<f64> = (1..=jobs.len()).map(share).collect();
         for (job, share) in jobs.iter_mut().zip(shares) {
             if job.times.len() <= round as usize {
-                let Line { curve, model, .. } = &lines[job.curve];
-                let seconds = job.time(&**model, &curve.candidate, t_span)?;
+                let Line { curve, models, .. } = &lines[job.curve];
+                let (method, shortest) = (&curve.candidate.method, effort.shortest.as_secs_f64());
+                let seconds =
+                    job.size.seconds(&*models.timed, method, t_span, &Rows::ENDS, shortest);
+                let seconds = seconds.map_err(CliError::Message)?;
+                job.times.push(seconds);
                 if let Some(journal) = &mut journal {
                     journal.saw_time(&job.key, seconds)?;
                 }
+                tick(share)?;
             }
-            tick(share);
         }
     }
     let length = (t_span[1] - t_span[0]).abs();
     for mut job in jobs {
         let point = &mut lines[job.curve].curve.points[job.point];
-        point.seconds_per_unit = median(&mut job.times) / length;
+        point.seconds_per_unit = (median(&mut job.times) + point.output_seconds) / length;
     }
     Ok((lines.into_iter().map(|line| line.curve).collect(), judge.reference))
 }
 
+/// The problem on a layer.
+struct Models {
+    layer: Layer,
+    /// With what a run is judged by.
+    judged: Box<dyn Model>,
+    /// With what a run is asked for.
+    timed: Box<dyn Model>,
+}
+
 /// A method on its way from large steps to small ones.
-struct Line {
+struct Line<'a> {
     curve: Curve,
-    model: Box<dyn Model>,
+    models: &'a Models,
     left: VecDeque<Size>,
 }
 
-impl Line {
+impl Line<'_> {
     /// How long a run to this error should take, by the last run and the order; none where that says
     /// nothing, or no smaller steps are planned.
     fn promise(&self, error: f64) -> Option<f64> {
@@ -160,27 +203,31 @@ const PROMISING: usize = 6;
 /// Where runs are made and judged.
 struct Bench<'a> {
     judge: &'a Judge,
-    effort: Effort,
+    effort: Effort<'a>,
     t_span: [f64; 2],
+    rows: &'a Rows,
     journal: Option<&'a mut Journal>,
     jobs: Vec<Job>,
+    /// The share of the work that is done.
+    share: f64,
+    tick: &'a mut dyn FnMut(f64) -> Result<(), CliError>,
 }
 
 impl Bench<'_> {
     /// The next run of line i, and how long it took; none where no more are planned.
-    fn next(&mut self, i: usize, line: &mut Line) -> Result<Option<f64>, CliError> {
-        let Line { curve, model, left } = line;
+    fn next(&mut self, i: usize, line: &mut Line<'_>) -> Result<Option<f64>, CliError> {
+        let Line { curve, models: Models { judged, timed, .. }, left } = line;
         let Some(size) = left.pop_front() else { return Ok(None) };
         let (candidate, t_span, shortest) =
             (&curve.candidate, self.t_span, self.effort.shortest.as_secs_f64());
-        let key = format!("{} {size:?}", candidate.label());
+        let key = format!("{} {:?} {size:?}", candidate.name(), candidate.layer);
         let known = self.journal.as_ref().and_then(|journal| journal.point(&key)).cloned();
         let point = match known {
             Some(point) => point,
             None => {
                 let run = || {
                     let start = cpu_seconds();
-                    let point = self.judge.point(&**model, candidate, t_span, size);
+                    let point = self.judge.point(&**judged, candidate, t_span, size);
                     (point, cpu_seconds() - start)
                 };
                 let (mut point, mut took) = run();
@@ -189,14 +236,22 @@ impl Bench<'_> {
                     took = took.min(run().1);
                 }
                 point.first_seconds = took;
+                if point.failure.is_none() && *self.rows != Rows::ENDS {
+                    match size.seconds(&**timed, &candidate.method, t_span, self.rows, shortest) {
+                        Ok(seconds) => point.output_seconds = (seconds - took).max(0.0),
+                        // Steps that reach the end may have no rows between them.
+                        Err(failure) => point.failure = Some(failure),
+                    }
+                }
                 if point.failure.is_none() {
                     let attempts = point.steps + point.rejected;
                     point.operations =
-                        size.operations(&**model, &candidate.method, t_span, attempts);
+                        size.operations(&**judged, &candidate.method, t_span, attempts);
                 }
                 if let Some(journal) = &mut self.journal {
                     journal.saw_point(&key, &point)?;
                 }
+                (self.tick)(self.share)?;
                 point
             }
         };
@@ -207,7 +262,6 @@ impl Bench<'_> {
                 curve: i,
                 point: curve.points.len(),
                 size,
-                repeats: (shortest / took.max(1e-9)).ceil().max(1.0) as u32,
                 times: times.to_vec(),
                 key,
             });
@@ -217,15 +271,14 @@ impl Bench<'_> {
     }
 
     /// On to the wanted errors that no method in steps has reached, as far as the reference can tell.
-    fn go_on(&mut self, lines: &mut [Line]) -> Result<(), CliError> {
-        let (floor, patience) =
-            (self.judge.reference.error().unwrap_or(0.0), self.effort.patience.as_secs_f64());
+    fn go_on(&mut self, lines: &mut [Line<'_>]) -> Result<(), CliError> {
+        let (floor, patience) = (self.judge.reference.floor(), self.effort.patience.as_secs_f64());
         for &error in self.effort.wanted.iter().filter(|error| **error >= floor) {
-            let reaches = |line: &Line| {
+            let reaches = |line: &Line<'_>| {
                 line.curve.order.is_some() && line.curve.points.iter().any(|p| p.error <= error)
             };
             while !lines.iter().any(reaches) {
-                let promise = |(i, line): (usize, &Line)| Some((line.promise(error)?, i));
+                let promise = |(i, line): (usize, &Line<'_>)| Some((line.promise(error)?, i));
                 let mut promising: Vec<_> = lines.iter().enumerate().filter_map(promise).collect();
                 promising.retain(|(seconds, _)| *seconds <= patience);
                 promising.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -253,27 +306,36 @@ struct Job {
     curve: usize,
     point: usize,
     size: Size,
-    repeats: u32,
     times: Vec<f64>,
     key: String,
 }
 
-impl Job {
-    fn time(
-        &mut self,
+impl Size {
+    /// The CPU time of a run with these rows, which is repeated until `shortest` is over; why there is none, in
+    /// words.
+    fn seconds(
+        self,
         model: &dyn Model,
-        candidate: &Candidate,
+        method: &MethodSpec,
         t_span: [f64; 2],
-    ) -> Result<f64, CliError> {
-        let start = cpu_seconds();
-        for _ in 0..self.repeats {
-            let mut see = |_: f64, row: Row<'_>| {
-                core::hint::black_box(row.values());
-            };
-            self.size.run(model, &candidate.method, t_span, &mut see).map_err(CliError::Message)?;
+        rows: &Rows,
+        shortest: f64,
+    ) -> Result<f64, String> {
+        let mut see = |_: f64, row: Row<'_>| {
+            core::hint::black_box(row.values());
+        };
+        let mut seconds = |repeats: u32| {
+            let start = cpu_seconds();
+            for _ in 0..repeats {
+                self.run(model, method, t_span, rows, &mut see)?;
+            }
+            Ok::<_, String>((cpu_seconds() - start) / f64::from(repeats))
+        };
+        // The first time finds cold caches, which a short run cannot repay.
+        let took = seconds(1)?;
+        match took < shortest {
+            true => seconds((shortest / took.max(1e-9)).ceil() as u32),
+            false => Ok(took),
         }
-        let seconds = (cpu_seconds() - start) / f64::from(self.repeats);
-        self.times.push(seconds);
-        Ok(seconds)
     }
 }

@@ -21,6 +21,7 @@ pub use summary::{
 use std::io::{self, Write};
 
 use comfy_table::{Table, presets};
+use lieflow_figures::number::DASH;
 use serde::Serialize;
 
 use crate::cmd::CliError;
@@ -64,7 +65,8 @@ pub fn short(x: f64) -> String {
     if (100.0..1e6).contains(&x.abs()) { format!("{x:.0}") } else { with_digits(x, 2) }
 }
 
-fn with_digits(x: f64, digits: usize) -> String {
+/// A number as people write it, with so many digits at most.
+pub fn with_digits(x: f64, digits: usize) -> String {
     let rounded: f64 = format!("{x:.*e}", digits - 1).parse().unwrap_or(x);
     let plain = rounded == 0.0 || (1e-3..1e6).contains(&rounded.abs()) || !x.is_finite();
     if plain { format!("{}", rounded + 0.0) } else { format!("{rounded:e}") }
@@ -80,13 +82,22 @@ pub fn duration(seconds: f64) -> String {
     }
 }
 
-/// A table without lines.
-pub fn table<const N: usize>(
-    header: [&str; N],
-    rows: impl IntoIterator<Item = [String; N]>,
+/// A table without lines. Columns without a value are left out.
+pub fn table<R: IntoIterator<Item = String>>(
+    header: impl IntoIterator<Item: Into<String>>,
+    rows: impl IntoIterator<Item = R>,
 ) -> String {
+    let header: Vec<String> = header.into_iter().map(Into::into).collect();
+    let rows: Vec<Vec<String>> = rows.into_iter().map(|row| row.into_iter().collect()).collect();
+    let is_value = |cell: &String| !cell.is_empty() && cell != DASH;
+    let used = |column: usize| rows.iter().filter_map(|row| row.get(column)).any(is_value);
+    let used: Vec<usize> = (0..header.len()).filter(|&column| used(column)).collect();
+    let cells = |row: &[String]| -> Vec<String> {
+        used.iter().map(|&column| row.get(column).cloned().unwrap_or_default()).collect()
+    };
     let mut table = Table::new();
-    table.load_style(presets::NOTHING).set_header(header).add_rows(rows);
+    table.load_style(presets::NOTHING).set_header(cells(&header));
+    table.add_rows(rows.iter().map(|row| cells(row)));
     let lines = table.to_string();
     lines.lines().map(|line| format!(" {}\n", line.trim_end())).collect()
 }

@@ -1,10 +1,11 @@
 //! Which method to take: the fastest for each error, and the runs that nothing beats.
 
-use crate::measure::{Curve, Reached, Reference, Size, WorkPoint, pareto};
+use super::{Looks, number, size_of, step_of};
+use crate::measure::{Curve, Reached, Reference, WorkPoint, pareto};
 use lieflow_figures::number::{DASH, scientific, seconds};
-use lieflow_figures::{Axis, Chart, Column, Marker, Point, Series, Table, tell_apart};
+use lieflow_figures::{Axis, Cell, Chart, Column, Marker, Point, Series, Table};
 
-/// The errors that advice is given for.
+/// The errors that advice is always given for.
 pub const ADVICE: [f64; 4] = [1e-3, 1e-6, 1e-9, 1e-12];
 
 /// A relative change of the energy that counts as rounding.
@@ -25,10 +26,11 @@ pub struct Choice<'a> {
 pub fn choices<'a>(
     curves: &'a [Curve],
     reference: &Reference,
+    errors: &[f64],
     pass: impl Fn(&Curve, &Reached) -> bool,
 ) -> Vec<Choice<'a>> {
-    let choice = |error: f64| {
-        let judged = reference.error().is_none_or(|of_reference| of_reference <= error);
+    let choice = |&error: &f64| {
+        let judged = reference.floor() <= error;
         let reached = |curve: &'a Curve| {
             let reached = curve.reached_where(error, |reached| judged && pass(curve, reached))?;
             Some((curve, reached))
@@ -36,7 +38,7 @@ pub fn choices<'a>(
         let passing = curves.iter().filter_map(reached);
         Choice { error, judged, best: passing.min_by(|a, b| a.1.seconds.total_cmp(&b.1.seconds)) }
     };
-    ADVICE.into_iter().map(choice).collect()
+    errors.iter().map(choice).collect()
 }
 
 /// Does the energy stay where it is? Either the catalog says that the method keeps it, or keeps it in
@@ -51,36 +53,29 @@ pub fn steps(curve: &Curve) -> bool {
 }
 
 /// Method, step and time for each error.
-pub fn choice_cells(choice: &Choice<'_>) -> [String; 5] {
-    let error = format!("{:.0e}", choice.error);
+fn choice_cells(choice: &Choice<'_>) -> [Cell; 5] {
+    let error = Cell::number(choice.error, |error| format!("{error:e}"));
     match &choice.best {
         None => {
-            let why = match choice.judged {
-                true => "none reaches it",
-                false => "below the error of the reference",
-            };
+            let why = if choice.judged { "no method reaches it" } else { "cannot be seen" };
             [error, why.into(), DASH.into(), DASH.into(), DASH.into()]
         }
         Some((curve, reached)) => [
             error,
-            curve.candidate.label(),
-            match reached.tolerance {
-                None => format!("h = {}", scientific(reached.h)),
-                Some(rtol) => format!("rtol = {}", scientific(rtol)),
+            curve.label.as_str().into(),
+            match curve.order {
+                Some(_) => step_of(reached).into(),
+                None => DASH.into(),
             },
-            seconds(reached.seconds),
-            scientific(reached.energy_error),
+            Cell::number(reached.seconds, seconds),
+            number(reached.energy_error, scientific),
         ],
     }
 }
 
-/// The headings of [`choice_cells`].
-pub const CHOICE_HEADER: [&str; 5] = ["error", "fastest", "its step", "its time", "energy error"];
-
 /// The advice as a table.
 pub fn choice_table(caption: &str, choices: &[Choice<'_>]) -> Table {
-    let [error, fastest, step, time, energy] = CHOICE_HEADER;
-    let columns = Column::all([error, fastest], [step, time, energy]);
+    let columns = Column::all(["Error", "Fastest", "Its step"], ["Time per unit", "Energy error"]);
     Table::new(caption, columns, choices.iter().map(choice_cells))
 }
 
@@ -89,6 +84,8 @@ pub fn choice_table(caption: &str, choices: &[Choice<'_>]) -> Table {
 pub enum Cost {
     /// CPU time per unit of simulated time.
     Time,
+    /// CPU time of the whole run.
+    Run,
     /// Evaluations of f.
     Evaluations,
     /// Operations on numbers.
@@ -96,9 +93,10 @@ pub enum Cost {
 }
 
 impl Cost {
-    fn of(self, point: &WorkPoint) -> Option<f64> {
+    pub(super) fn of(self, point: &WorkPoint) -> Option<f64> {
         match self {
             Cost::Time => Some(point.seconds_per_unit).filter(|t| *t > 0.0),
+            Cost::Run => Cost::Time.of(point).map(|t| t * point.length()),
             Cost::Evaluations => point.evaluations.map(|n| n as f64),
             Cost::Operations => point.operations.map(|n| n as f64),
         }
@@ -106,13 +104,30 @@ impl Cost {
     fn axis(self) -> Axis {
         match self {
             Cost::Time => Axis::log("CPU time per unit of simulated time [s]"),
+            Cost::Run => Axis::log("CPU time of the run [s]"),
             Cost::Evaluations => Axis::log("evaluations of f"),
             Cost::Operations => Axis::log("operations"),
         }
     }
-    /// A chart of error and cost.
-    pub(super) fn chart(self, id: &str, title: &str, series: Vec<Series>) -> Chart {
-        Chart::new(id, title, [Axis::log("global error at the end"), self.axis()], series)
+    /// A chart of error and cost: lines that end at the floor, which is a line of its own. None where there is
+    /// nothing to draw.
+    pub(super) fn chart(
+        self,
+        id: &str,
+        title: &str,
+        mut series: Vec<Series>,
+        floor: f64,
+    ) -> Option<Chart> {
+        series.retain(|line| !line.points.is_empty());
+        let points = || series.iter().flat_map(|line| &line.points);
+        let lowest = points().map(|p| p.y).reduce(f64::min)?;
+        let highest = points().map(|p| p.y).fold(lowest, f64::max);
+        if points().any(|p| p.x <= floor) {
+            let ends = [(floor, lowest), (floor, highest)];
+            series.push(Series::line("rounding: nothing to see beyond", 6, ends).with_dash(true));
+        }
+        let axes = [Axis::log("error at the end"), self.axis()];
+        Some(Chart::new(id, title, axes, series))
     }
 }
 
@@ -134,47 +149,48 @@ pub fn fronts(curves: &[Curve]) -> Vec<Vec<usize>> {
 /// A run with a larger error has nothing to do with the solution, and is not drawn.
 const DRAWN: f64 = 1.0;
 
-/// A run as a point of error and cost; none where it failed, has no such cost or is too far off.
-pub(super) fn drawn(point: &WorkPoint, cost: Cost, note: impl FnOnce() -> String) -> Option<Point> {
-    let fit = point.failure.is_none() && point.error <= DRAWN;
-    let cost = cost.of(point).filter(|_| fit)?;
-    Some(Point::new(point.error, cost).with_note(note()))
-}
-
-/// The runs that no other method with steps beats in both error and cost: the front, and the whole
-/// lines of the methods on it, beside that of the exact motion.
-pub fn front_chart(id: &str, title: &str, curves: &[Curve], cost: Cost) -> Chart {
-    let front = front(curves, cost);
-    let exact = (0..curves.len()).filter(|&i| !steps(&curves[i]));
-    let mut shown: Vec<usize> = front.iter().map(|(curve, _)| *curve).chain(exact).collect();
-    shown.sort_unstable();
-    shown.dedup();
-    let place = |(i, j): (usize, usize)| {
-        let point = &curves[i].points[j];
-        drawn(point, cost, || format!("{}, {}", curves[i].candidate.label(), size_of(point)))
-    };
-    let of_curve = |i: usize| (0..curves[i].points.len()).filter_map(move |j| place((i, j)));
-    let lines = shown.iter().map(|&i| (i, of_curve(i).collect::<Vec<_>>()));
-    let lines = lines.filter(|(_, points)| !points.is_empty()).enumerate();
-    let mut series: Vec<Series> = lines
-        .map(|(rank, (i, points))| {
-            Series::line(curves[i].candidate.label(), rank, points).with_marker(Marker::cycle(rank))
-        })
-        .collect();
-    tell_apart(&mut series);
-    let front = Series::line("Pareto front", 6, front.iter().filter_map(|at| place(*at)));
-    series.push(Series { emphasised: true, ..front.with_marker(Marker::Circle).with_dash(true) });
-    cost.chart(id, title, series)
-}
-
-/// The size of a run's steps, for a reader.
-pub(super) fn size_of(point: &WorkPoint) -> String {
-    match point.size {
-        Size::Steps(steps) => {
-            format!("h = {}, {steps} steps", scientific(point.h))
-        }
-        Size::Tolerance(rtol) => {
-            format!("rtol = {rtol:e}, {} steps, {} rejected", point.steps, point.rejected)
+/// The runs of a curve that are drawn: those that ended and have a cost, down to the first at the floor.
+pub(super) fn drawn(curve: &Curve, cost: Cost) -> Vec<Point> {
+    let fit = |p: &&WorkPoint| p.failure.is_none() && p.error <= DRAWN && cost.of(p).is_some();
+    let mut points = Vec::new();
+    for run in curve.points.iter().filter(fit) {
+        points.extend(point(curve, run, cost));
+        if run.error <= curve.floor {
+            break;
         }
     }
+    points
+}
+
+/// A run as a point of error and cost.
+fn point(curve: &Curve, run: &WorkPoint, cost: Cost) -> Option<Point> {
+    let note = format!("{}, {}", curve.label, size_of(run));
+    Some(Point::new(curve.error(run), cost.of(run)?).with_note(note))
+}
+
+/// The lines of some curves, and through the runs that no other method with steps beats in both error and
+/// cost. None where there is nothing to draw.
+pub fn front_chart(
+    id: &str,
+    title: &str,
+    curves: &[Curve],
+    cost: Cost,
+    looks: &Looks,
+    shown: impl Fn(&Curve) -> bool,
+) -> Option<Chart> {
+    let mut shown: Vec<usize> = (0..curves.len()).filter(|&i| shown(&curves[i])).collect();
+    shown.sort_by_key(|&i| looks.rank(i));
+    let line = |i: usize| looks.line(curves, i, drawn(&curves[i], cost));
+    let mut series: Vec<Series> = shown.into_iter().map(line).collect();
+    let front = front(curves, cost).into_iter();
+    let front = front.filter_map(|(i, j)| point(&curves[i], &curves[i].points[j], cost));
+    let front = Series::line("the best of all methods", 6, front).with_marker(Marker::Circle);
+    series.push(Series { emphasised: true, ..front.with_dash(true) });
+    cost.chart(id, title, series, curves.iter().map(|curve| curve.floor).fold(0.0, f64::max))
+}
+
+/// Which curves have a run on the front of a cost?
+pub fn on_front(curves: &[Curve], cost: Cost) -> Vec<bool> {
+    let front = front(curves, cost);
+    (0..curves.len()).map(|i| front.iter().any(|(curve, _)| *curve == i)).collect()
 }

@@ -1,9 +1,9 @@
 //! What each method keeps, at about the same error of the state.
 
-use super::choice::size_of;
+use super::{number, size_of};
 use crate::measure::{Curve, WorkPoint};
 use lieflow_figures::number::scientific;
-use lieflow_figures::{Column, Table};
+use lieflow_figures::{Cell, Column, Table};
 
 /// The error of the state at which methods are compared.
 const AT: f64 = 1e-6;
@@ -15,22 +15,30 @@ fn nearest(curve: &Curve) -> Option<&WorkPoint> {
     ended.min_by(|a, b| off(a).total_cmp(&off(b)))
 }
 
-/// The errors of the invariants beside that of the state, method by method; a dash where the problem
-/// has none.
+/// The errors of the invariants beside that of the state, method by method. Only what the problem has is there.
 pub fn kept_table(curves: &[Curve]) -> Table {
-    let rows = curves.iter().filter_map(|curve| {
-        let run = nearest(curve)?;
-        let errors = [run.error, run.energy_error, run.casimir_error, run.group_residual];
-        let texts = [curve.candidate.label(), size_of(run)];
-        Some(texts.into_iter().chain(errors.map(scientific)).collect::<Vec<_>>())
+    let runs: Vec<(&Curve, &WorkPoint)> =
+        curves.iter().filter_map(|curve| Some((curve, nearest(curve)?))).collect();
+    let errors: [(&str, fn(&WorkPoint) -> f64); 4] = [
+        ("State", |run| run.error),
+        ("Energy", |run| run.energy_error),
+        ("Casimir", |run| run.casimir_error),
+        ("Group", |run| run.group_residual),
+    ];
+    let known: Vec<_> = errors
+        .into_iter()
+        .filter(|(_, of)| runs.iter().any(|(_, run)| !of(run).is_nan()))
+        .collect();
+    let rows = runs.iter().map(|(curve, run)| {
+        let texts = [Cell::from(curve.label.as_str()), size_of(run).into()];
+        let numbers = known.iter().map(|(_, of)| number(of(run), scientific));
+        texts.into_iter().chain(numbers).collect::<Vec<_>>()
     });
     let caption = format!(
-        "The run of each method whose error is nearest to {AT:.0e}: the relative error of its state, \
-         energy and Casimir at the end, and its distance from the group."
+        "The run of each method whose error is nearest to {AT:e}: the relative error of its state and of \
+         what it should keep, at the end."
     );
-    Table::new(
-        caption,
-        Column::all(["Method", "Run"], ["State", "Energy", "Casimir", "Group"]),
-        rows,
-    )
+    let mut columns = Column::all(["Method", "Run"], []);
+    columns.extend(known.iter().map(|(name, _)| Column::number(*name)));
+    Table::new(caption, columns, rows)
 }

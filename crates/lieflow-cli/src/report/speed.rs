@@ -2,16 +2,14 @@
 
 use std::path::Path;
 
-use super::choice::{Cost, drawn, fronts, size_of};
+use super::choice::{Cost, drawn, fronts};
+use super::{Looks, number};
 use crate::cmd::CliError;
 use crate::measure::{Candidate, Curve, Size};
 use crate::output::{fields, in_full, optional, write_csv};
-use lieflow_figures::number::{or_dash, seconds};
-use lieflow_figures::{Chart, Column, Marker, Series, Table, tell_apart};
+use lieflow_figures::number::seconds;
+use lieflow_figures::{Cell, Chart, Column, Marker, Series, Table, tell_apart};
 use lieflow_model::model::Layer;
-
-/// The errors for which tables give the time.
-const ERRORS: [f64; 4] = super::ADVICE;
 
 /// The colour and marker of a method: by its map, the same in every figure; `None` for a method
 /// that has no map, whose place in the figure decides.
@@ -24,36 +22,41 @@ fn look(candidate: &Candidate) -> Option<usize> {
     }
 }
 
-/// The plot of time against error: one line a method, dashed on the general layer and where steps are
-/// chosen by their error.
-pub fn speed_chart<'a>(
-    id: &str,
-    title: &str,
-    curves: impl IntoIterator<Item = &'a Curve>,
-) -> Chart {
-    let series = curves.into_iter().enumerate().map(|(place, curve)| {
-        let candidate = &curve.candidate;
-        let look = look(candidate).unwrap_or(place);
-        let points =
-            curve.points.iter().filter_map(|point| drawn(point, Cost::Time, || size_of(point)));
-        Series::line(candidate.label(), look, points)
+/// Speed against error of RKMK4 by its maps: one line a method, dashed on the general layer.
+pub fn maps_chart(id: &str, title: &str, curves: &[Curve]) -> Option<Chart> {
+    let series = curves.iter().enumerate().map(|(place, curve)| {
+        let look = look(&curve.candidate).unwrap_or(place);
+        Series::line(curve.label.clone(), look, drawn(curve, Cost::Time))
             .with_marker(Marker::cycle(look))
-            .with_dash(candidate.layer == Layer::General || candidate.adaptive)
+            .with_dash(curve.candidate.layer == Layer::General)
     });
-    let mut series: Vec<Series> = series.filter(|line| !line.points.is_empty()).collect();
+    let mut series: Vec<Series> = series.collect();
     tell_apart(&mut series);
-    Cost::Time.chart(id, title, series)
+    Cost::Time.chart(id, title, series, curves.first()?.floor)
 }
 
-/// The table of times to given errors, with the fastest method for each error said in its caption.
-pub fn speed_table(curves: &[Curve]) -> Table {
-    let fastest = ERRORS.map(|error| {
+/// Speed against error of some of the curves, each as it looks everywhere. None where there is nothing to draw.
+pub fn speed_chart(
+    id: &str,
+    title: &str,
+    curves: &[Curve],
+    looks: &Looks,
+    shown: impl Fn(&Curve) -> bool,
+) -> Option<Chart> {
+    let shown = (0..curves.len()).filter(|&i| shown(&curves[i]));
+    let series = shown.map(|i| looks.line(curves, i, drawn(&curves[i], Cost::Run)));
+    Cost::Run.chart(id, title, series.collect(), curves.first()?.floor)
+}
+
+/// The table of times to these errors, with the fastest method for each error said in its caption.
+pub fn speed_table(curves: &[Curve], errors: &[f64]) -> Table {
+    let fastest = errors.iter().map(|&error| {
         let timed = curves.iter().filter_map(|c| Some((c.seconds_to(error)?, c)));
         match timed.min_by(|a, b| a.0.total_cmp(&b.0)) {
             Some((time, curve)) => {
-                format!("to {error:.0e} {} ({})", curve.candidate.label(), seconds(time))
+                format!("to {error:e} {} ({})", curve.label, seconds(time))
             }
-            None => format!("to {error:.0e} none"),
+            None => format!("to {error:e} none"),
         }
     });
     let above = |c: &Curve| match (c.measured_order(), c.order) {
@@ -62,26 +65,29 @@ pub fn speed_table(curves: &[Curve]) -> Table {
     };
     let remark = match curves.iter().any(above) {
         true => {
-            " A measured order one above the stated: over a long time the phase follows the drift of \
-             the energy, which for exp, cay and RK4 has that order."
+            " Over long times some methods look one order better than they are: their phase error comes from \
+             the energy error, which has that order."
         }
         false => "",
     };
     let mut columns = Column::all(["Method"], ["Order", "Measured", "Time a step"]);
-    columns.extend(ERRORS.map(|error| Column::number(format!("Time to {error:.0e}"))));
+    columns.extend(errors.iter().map(|error| Column::number(format!("Time to {error:e}"))));
+    let or_none = |x: Option<f64>, show: fn(f64) -> String| number(x.unwrap_or(f64::NAN), show);
     let rows = curves.iter().map(|curve| {
-        let mut cells = vec![
-            curve.candidate.label(),
-            curve.order.map_or_else(|| "exact".into(), |p| p.to_string()),
-            or_dash(curve.measured_order(), |p| format!("{p:.2}")),
-            or_dash(curve.seconds_per_step(), seconds),
+        let order = curve.order.map_or_else(|| "exact".into(), |p| p.to_string());
+        let mut cells: Vec<Cell> = vec![
+            curve.label.as_str().into(),
+            number(curve.order.map_or(f64::INFINITY, |p| p as f64), |_| order),
+            or_none(curve.measured_order(), |p| format!("{p:.2}")),
+            or_none(curve.seconds_per_step(), seconds),
         ];
-        cells.extend(ERRORS.map(|error| or_dash(curve.seconds_to(error), seconds)));
+        cells.extend(errors.iter().map(|&error| or_none(curve.seconds_to(error), seconds)));
         cells
     });
-    let fastest = fastest.join(", ");
+    let fastest = fastest.collect::<Vec<_>>().join(", ");
     let caption = format!(
-        "CPU time per unit of simulated time. Fastest: {fastest}. A dash: not reached.{remark}"
+        "CPU time per unit of simulated time. Fastest: {fastest}. A dash: not \
+         reached, or no clean range to measure an order in.{remark}"
     );
     Table::new(caption, columns, rows)
 }

@@ -213,7 +213,7 @@ impl Figure {
 }
 
 /// The method for any problem that names none: of order 8, with a pair, and on the group.
-pub(crate) fn high_order() -> MethodSpec {
+pub fn high_order() -> MethodSpec {
     MethodSpec { tableau: Some("dop853".into()), ..MethodSpec::new("rkmk", None) }
 }
 

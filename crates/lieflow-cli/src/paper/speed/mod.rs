@@ -19,7 +19,7 @@ use super::experiments::{EXPERIMENTS, Experiment, SEED};
 use super::maps::{self, Study};
 use super::methods::PaperMethod;
 use crate::cmd::CliError;
-use crate::measure::{Candidate, Curve, Effort, Plan, checks, speed_against_error};
+use crate::measure::{Candidate, Curve, Effort, Plan, Rows, checks, speed_against_error};
 use crate::output;
 use crate::report;
 
@@ -199,8 +199,12 @@ impl Outcome {
             t_span: experiment.window,
             steps: if quick { &experiment.steps[..6] } else { experiment.steps },
             tolerances: &[],
+            rows: &Rows::ENDS,
         };
-        let done = |done| share(0.2 + 0.8 * done);
+        let done = |done| {
+            share(0.2 + 0.8 * done);
+            Ok(())
+        };
         let (curves, _) = speed_against_error(&scene, &plan, effort, None, done)?;
         Ok(Outcome { experiment, title: scene.title, curves, runs })
     }

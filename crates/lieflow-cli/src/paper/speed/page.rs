@@ -131,19 +131,24 @@ impl Outcome {
     /// Speed against error, and the energy over a long time.
     fn blocks(&self) -> Vec<Block> {
         let Experiment { scene, dt, window: [from, to], .. } = self.experiment;
-        let speed = report::speed_chart(&format!("speed-{scene}"), "Speed against error", &self.curves)
-            .with_caption(format!(
+        let speed =
+            report::maps_chart(&format!("speed-{scene}"), "Speed against error", &self.curves);
+        let speed = speed.map(|chart| {
+            chart.with_caption(format!(
                 "Attitude and momentum from t = {from} to {to}. The error is the larger relative distance of the \
                  two from the exact solution. Solid: closed formulas for rotations. Dashed: the general code for \
                  matrices of any size.",
-            ));
+            ))
+        });
         let lines =
             self.runs.iter().map(|run| Series { name: run.label.clone(), ..run.energy.line(1.0) });
         let energy =
             energy_chart(&format!("energy-{scene}"), "How far the energy has moved", "t", lines)
                 .with_caption(format!("Closed formulas, steps of {dt}."));
-        let tables = vec![report::speed_table(&self.curves).into(), self.energy_table().into()];
-        vec![speed.into(), energy.into(), Block::fold("The numbers", tables)]
+        let table = report::speed_table(&self.curves, &report::ADVICE);
+        let tables = vec![table.into(), self.energy_table().into()];
+        let charts = speed.into_iter().chain([energy]).map(Block::from);
+        charts.chain([Block::fold("The numbers", tables)]).collect()
     }
 
     fn energy_table(&self) -> Table {

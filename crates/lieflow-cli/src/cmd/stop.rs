@@ -1,0 +1,27 @@
+//! Ctrl-C and SIGTERM: the first asks a command to stop, the second ends the program at once.
+
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use signal_hook::consts::{SIGINT, SIGTERM};
+use signal_hook::flag;
+
+use super::CliError;
+
+/// The exit code of a command that was interrupted.
+pub(super) const INTERRUPTED: u8 = 130;
+
+/// A flag that is raised by the first signal.
+///
+/// # Errors
+/// The program cannot listen to signals.
+pub(super) fn listen() -> Result<Arc<AtomicBool>, CliError> {
+    let stop = Arc::new(AtomicBool::new(false));
+    for signal in [SIGINT, SIGTERM] {
+        // The second signal ends the program at once: it finds that the first was there.
+        flag::register_conditional_shutdown(signal, INTERRUPTED.into(), Arc::clone(&stop))
+            .and_then(|_| flag::register(signal, Arc::clone(&stop)))
+            .map_err(CliError::Signals)?;
+    }
+    Ok(stop)
+}

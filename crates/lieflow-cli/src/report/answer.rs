@@ -1,0 +1,214 @@
+//! The answer to the question of a comparison: which method is the fastest to an error, and why.
+
+use super::step_of;
+use crate::measure::{Curve, Reached, Reference, WorkPoint};
+use lieflow_figures::number::{seconds, sig};
+
+/// A method, and where it reaches an error.
+pub type Found<'a> = (&'a Curve, Reached);
+
+/// The answer for one error.
+#[derive(Clone, Debug)]
+pub struct Answer<'a> {
+    /// The error.
+    pub error: f64,
+    verdict: Verdict<'a>,
+}
+
+/// What was found.
+#[derive(Clone, Debug)]
+enum Verdict<'a> {
+    /// The fastest method, and the fastest of another kind.
+    Fastest(Found<'a>, Option<Found<'a>>),
+    /// Such an error is below the floor.
+    BelowFloor(&'a Reference),
+    /// No method reaches it. The closest run.
+    NotReached(Option<(&'a Curve, &'a WorkPoint)>),
+}
+
+/// The methods that reach an error, from the fastest on.
+pub fn ranking(curves: &[Curve], error: f64) -> Vec<Found<'_>> {
+    let mut found: Vec<Found<'_>> =
+        curves.iter().filter_map(|curve| Some((curve, curve.reached(error)?))).collect();
+    found.sort_by(|a, b| a.1.seconds.total_cmp(&b.1.seconds));
+    found
+}
+
+/// Ratios below this are no difference.
+const SAME: f64 = 1.3;
+
+impl<'a> Answer<'a> {
+    /// The answer for `error` that these runs give.
+    pub fn new(curves: &'a [Curve], reference: &'a Reference, error: f64) -> Self {
+        let found = ranking(curves, error);
+        let verdict = match found.first() {
+            Some(best) => {
+                let kind = best.0.candidate.kind();
+                let next = found.iter().find(|(curve, _)| curve.candidate.kind() != kind);
+                Verdict::Fastest(*best, next.copied())
+            }
+            None if error < reference.floor() => Verdict::BelowFloor(reference),
+            None => Verdict::NotReached(closest(curves)),
+        };
+        Answer { error, verdict }
+    }
+
+    /// The fastest method; none where no method reaches the error.
+    pub fn best(&self) -> Option<Found<'a>> {
+        match self.verdict {
+            Verdict::Fastest(best, _) => Some(best),
+            _ => None,
+        }
+    }
+
+    /// The fastest method of another kind than the best.
+    pub fn next(&self) -> Option<Found<'a>> {
+        match self.verdict {
+            Verdict::Fastest(_, next) => next,
+            _ => None,
+        }
+    }
+
+    /// One to three sentences.
+    pub fn in_words(&self) -> String {
+        let error = self.error;
+        match &self.verdict {
+            Verdict::Fastest(best, next) => {
+                let (curve, reached) = best;
+                let take = match (curve.order, reached.tolerance) {
+                    (None, _) => "at the times of the output".into(),
+                    (_, None) => format!("in {} steps ({})", reached.steps, step_of(reached)),
+                    (_, Some(_)) => format!(
+                        "with {} and tolerance = \"per-length\" (some {} steps)",
+                        step_of(reached),
+                        reached.steps
+                    ),
+                };
+                let name = name(curve);
+                let time = seconds(reached.run_seconds());
+                let mut text =
+                    format!("For an error of {error:e}, take {name} {take}: the run takes {time}");
+                if reached.output > 0.5 * reached.seconds {
+                    text += ", most of it for the rows of output";
+                }
+                text += ".";
+                if let Some(next) = next {
+                    text += &format!(" {}", faster(best, next));
+                }
+                text + &kept(best)
+            }
+            Verdict::BelowFloor(reference) => format!(
+                "An error of {error:e} cannot be seen here. {} Ask for an error of {:.0e} or more.",
+                reference.in_words(),
+                10f64.powf(reference.floor().log10().ceil())
+            ),
+            Verdict::NotReached(None) => {
+                format!("No method reaches an error of {error:e}: no run came to its end.")
+            }
+            Verdict::NotReached(Some((curve, point))) => format!(
+                "No method reaches an error of {error:e} in the runs that were made. The closest is {} \
+                 with {} steps: an error of {:.0e} in {}. {}",
+                name(curve),
+                point.steps,
+                point.error,
+                seconds(point.seconds_per_unit * point.length()),
+                why_not(curve, point)
+            ),
+        }
+    }
+}
+
+/// The run with the smallest error, and its method.
+fn closest(curves: &[Curve]) -> Option<(&Curve, &WorkPoint)> {
+    let runs = curves.iter().flat_map(|curve| curve.points.iter().map(move |p| (curve, p)));
+    let ended = runs.filter(|(_, p)| p.error.is_finite() && p.seconds_per_unit > 0.0);
+    ended.min_by(|a, b| a.1.error.total_cmp(&b.1.error))
+}
+
+/// Why no smaller step of the closest method was better.
+fn why_not(curve: &Curve, point: &WorkPoint) -> &'static str {
+    match curve.points.iter().any(|p| p.steps > point.steps && p.error > point.error) {
+        true => "Smaller steps do not help: rounding stops them.",
+        false => "It needs smaller steps. Such runs take longer than a comparison lets them.",
+    }
+}
+
+/// The name of a method in a sentence.
+fn name(curve: &Curve) -> String {
+    format!("“{}”", curve.label)
+}
+
+/// How much faster the best method is than the next, and why.
+fn faster((best, here): &Found<'_>, (next, there): &Found<'_>) -> String {
+    let [a, b] = [best, next].map(|curve| name(curve));
+    let times = |ratio: f64| format!("{} times", sig(ratio, 2));
+    let ratio = there.seconds / here.seconds;
+    if ratio < SAME {
+        return format!("{b}, the best method of another kind, is about as fast.");
+    }
+    let mut text =
+        format!("It is {} as fast as {b}, the best method of another kind", times(ratio));
+    let (Some(order), Some(other)) = (best.order, next.order) else {
+        text += match best.order {
+            None => ": the exact motion needs no steps between the rows of the output.",
+            Some(_) => ": the exact motion computes elliptic functions for each row of the output.",
+        };
+        return text;
+    };
+    let steps = there.steps as f64 / here.steps as f64;
+    let [mine, others] = [here, there].map(|at| (at.seconds - at.output) * at.h);
+    let cost = others / mine;
+    let more_steps = |who: &str, ratio: f64| format!("{who} needs {} as many steps", times(ratio));
+    let dearer = |who: &str, ratio: f64| format!("a step of {who} costs {} as much", times(ratio));
+    let mut reasons = Vec::new();
+    if steps >= SAME {
+        let orders = match order > other {
+            true => format!(" (its order is {other}, that of {a} is {order})"),
+            false => String::new(),
+        };
+        reasons.push(more_steps(&b, steps) + &orders);
+    }
+    if cost >= SAME {
+        let counts = [best, next].map(|curve| curve.candidate.evaluations_per_step());
+        let evaluations = match counts {
+            [Some(few), Some(many)] if few < many => {
+                format!(" ({many} evaluations of f, not {few})")
+            }
+            _ => String::new(),
+        };
+        reasons.push(dearer(&b, cost) + &evaluations);
+    }
+    let but = match (steps * SAME <= 1.0, cost * SAME <= 1.0) {
+        (true, _) => Some(more_steps(&a, 1.0 / steps)),
+        (_, true) => Some(dearer(&a, 1.0 / cost)),
+        _ => None,
+    };
+    if !reasons.is_empty() {
+        text += &format!(": {}", reasons.join(", and "));
+        if let Some(but) = but {
+            text += &format!(", though {but}");
+        }
+    }
+    text + "."
+}
+
+/// What the method keeps, and how far it is off in energy.
+fn kept((curve, reached): &Found<'_>) -> String {
+    let keeps = curve.candidate.keeps();
+    let energy = match reached.energy_error.is_nan() || curve.candidate.keeps_energy() {
+        true => String::new(),
+        false => {
+            format!(
+                "the energy at the end is off by {} of its value",
+                format_args!("{:.0e}", reached.energy_error)
+            )
+        }
+    };
+    let name = name(curve);
+    match (keeps.is_empty(), energy.is_empty()) {
+        (true, true) => String::new(),
+        (true, false) => format!(" With {name}, {energy}."),
+        (false, true) => format!(" {name} keeps: {keeps}."),
+        (false, false) => format!(" {name} keeps: {keeps}; {energy}."),
+    }
+}

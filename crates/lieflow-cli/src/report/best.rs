@@ -1,0 +1,145 @@
+//! The best methods of a comparison: their table, and what each looks like in every figure.
+
+use super::{Found, number, ranking, step_of};
+use crate::measure::Curve;
+use lieflow_figures::number::{DASH, seconds};
+use lieflow_figures::{Cell, Column, Marker, Point, Row, Series, Table};
+
+/// So many methods are shown where nobody asks for all.
+const BEST: usize = 10;
+/// So many of them are of one kind at most.
+const OF_A_KIND: usize = 3;
+
+/// The methods of a comparison, the best first.
+#[derive(Clone, Debug)]
+pub struct Best<'a> {
+    /// The errors that were asked for.
+    errors: &'a [f64],
+    /// The error by which they are ranked: the smallest of them that a method reaches.
+    pub by: f64,
+    /// Those that are shown.
+    pub shown: Vec<Found<'a>>,
+    /// Does the problem have an energy?
+    energy: bool,
+    /// What each curve looks like.
+    pub looks: Looks,
+}
+
+impl<'a> Best<'a> {
+    /// The best to the smallest of `errors` that is reached, or `all` that reach it.
+    pub fn new(curves: &'a [Curve], errors: &'a [f64], all: bool) -> Self {
+        let rankings = errors.iter().map(|&error| (error, ranking(curves, error)));
+        let reached = rankings.filter(|(_, found)| !found.is_empty());
+        let by = reached.min_by(|a, b| a.0.total_cmp(&b.0));
+        let (by, ranked) = by.unwrap_or_else(|| (f64::NAN, Vec::new()));
+        let looks = Looks::new(curves, &ranked);
+        let mut shown: Vec<Found<'a>> = Vec::new();
+        for found in ranked {
+            let kind = found.0.candidate.kind();
+            let alike = shown.iter().filter(|(curve, _)| curve.candidate.kind() == kind).count();
+            if all || (alike < OF_A_KIND && shown.len() < BEST) {
+                shown.push(found);
+            }
+        }
+        let energy = curves.iter().flat_map(|c| &c.points).any(|p| !p.energy_error.is_nan());
+        Best { errors, by, shown, energy, looks }
+    }
+
+    /// The headings of [`rows`](Self::rows), and which of them are of numbers.
+    pub fn columns(&self) -> Vec<Column> {
+        let mut columns = Column::all(["Method", "Kind"], ["Order"]);
+        for error in self.errors {
+            columns.push(Column::text(format!("Step to {error:e}")));
+            columns.push(Column::number(format!("Time to {error:e}")));
+        }
+        if self.energy {
+            columns.push(Column::number("Energy error"));
+        }
+        columns
+    }
+
+    /// A row for each method that is shown.
+    pub fn rows(&self) -> Vec<Vec<Cell>> {
+        let about = |error: f64| if error == 0.0 { "0".into() } else { format!("{error:.0e}") };
+        let rows = self.shown.iter().map(|(curve, by)| {
+            let kind = curve.candidate.kind().map_or("", lieflow::catalog::Family::name);
+            let order = match curve.order {
+                Some(order) => number(order as f64, |_| order.to_string()),
+                None => number(f64::INFINITY, |_| "exact".into()),
+            };
+            let mut cells: Vec<Cell> = vec![curve.label.as_str().into(), kind.into(), order];
+            for &error in self.errors {
+                match curve.reached(error) {
+                    None => cells.extend([DASH, DASH].map(Cell::from)),
+                    Some(reached) => {
+                        let step = match curve.order {
+                            Some(_) => step_of(&reached),
+                            None => DASH.into(),
+                        };
+                        cells.extend([step.into(), number(reached.run_seconds(), seconds)]);
+                    }
+                }
+            }
+            if self.energy {
+                cells.push(number(by.energy_error, about));
+            }
+            cells
+        });
+        rows.collect()
+    }
+
+    /// What the table is, in a sentence.
+    pub fn caption(&self, curves: usize) -> String {
+        let which = match self.shown.len() {
+            0 => return format!("None of {curves} methods reaches such an error."),
+            n if n == curves => "All methods".to_string(),
+            n if n > BEST => format!("The {n} methods of {curves} that reach it"),
+            n => format!("The best {n} of {curves} methods, at most {OF_A_KIND} of a kind"),
+        };
+        format!("{which}, the fastest to an error of {:e} first.", self.by)
+    }
+
+    /// The table for a page.
+    pub fn table(&self, caption: String) -> Table {
+        let rows = self.rows().into_iter().enumerate();
+        Table::new(
+            caption,
+            self.columns(),
+            rows.map(|(i, row)| Row::new(row).with_emphasis(i == 0)),
+        )
+    }
+}
+
+/// The colours of lines, and their markers.
+const COLOURS: usize = 8;
+
+/// What each curve looks like, the same in all figures of a page: its place in the ranking decides.
+#[derive(Clone, Debug)]
+pub struct Looks(Vec<usize>);
+
+impl Looks {
+    fn new(curves: &[Curve], ranked: &[Found<'_>]) -> Self {
+        let mut order: Vec<&Curve> = ranked.iter().map(|(curve, _)| *curve).collect();
+        for curve in curves {
+            if !order.iter().any(|ranked| core::ptr::eq(*ranked, curve)) {
+                order.push(curve);
+            }
+        }
+        let rank = |curve| order.iter().position(|ranked| core::ptr::eq(*ranked, curve));
+        Looks(curves.iter().map(|curve| rank(curve).unwrap_or_default()).collect())
+    }
+
+    /// The place of curve i in the ranking.
+    pub fn rank(&self, i: usize) -> usize {
+        self.0[i]
+    }
+
+    /// The line of curve i through these points, with its colour and its mark, dashed where it chooses its steps.
+    pub fn line(&self, curves: &[Curve], i: usize, points: Vec<Point>) -> Series {
+        let (curve, rank) = (&curves[i], self.0[i]);
+        // The second eight have the same colours and other marks.
+        Series::line(curve.label.clone(), rank % COLOURS, points)
+            .with_marker(Marker::cycle(rank + rank / COLOURS))
+            .with_dash(curve.candidate.adaptive)
+    }
+}
