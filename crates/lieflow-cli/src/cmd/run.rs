@@ -270,7 +270,6 @@ pub fn run_scene(
         defaults_in_words: scene.by_default.in_words(scene),
         rtol,
         atol,
-        scene_text: scene.text.clone(),
     };
     let field = watch.field(rows);
     let drawn = Drawn {

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use lieflow_model::kinds::explained_by_rounding;
 
-use crate::output::{self, Accuracy, Drift, SUMMARY, Summary, number, short};
+use crate::output::{self, Accuracy, Drift, SUMMARY, Summary, duration, number, short};
 
 /// Drifts that are told; summary.json has all.
 const DRIFTS: usize = 10;
@@ -26,13 +26,13 @@ pub(super) fn in_words(summary: &Summary, folder: &Path, page: Option<&str>) -> 
         (None, None) => String::new(),
     };
     let mut text = format!(
-        "{title}: {}, {}, {} layer\n  t = {} to {}, {steps} steps{sizes}, {rows} rows, {} s\n",
+        "{title}: {}, {}, {} layer\n  t = {} to {}, {steps} steps{sizes}, {rows} rows, {}\n",
         summary.modelled.join(", "),
         summary.method.label,
         summary.layer,
         number(*t0),
         number(t1),
-        short(*wall_time_s),
+        duration(*wall_time_s),
     );
     let mut line = |told: String| text += &format!("  {told}\n");
     summary

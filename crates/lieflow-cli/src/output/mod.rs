@@ -72,14 +72,16 @@ pub fn with_digits(x: f64, digits: usize) -> String {
     if plain { format!("{}", rounded + 0.0) } else { format!("{rounded:e}") }
 }
 
-/// A duration as people say it: `0.02 s`, `12 minutes`, `5 years`.
+/// A duration as people say it: `20 ms`, `1.5 s`, `12 minutes`, `5 years`.
 pub fn duration(seconds: f64) -> String {
-    const UNITS: [(f64, &str); 4] =
+    const LONG: [(f64, &str); 4] =
         [(365.25 * 86400.0, "years"), (86400.0, "days"), (3600.0, "hours"), (60.0, "minutes")];
-    match UNITS.iter().find(|(unit, _)| seconds >= 2.0 * unit) {
-        Some((unit, name)) => format!("{} {name}", short((seconds / unit).round())),
-        None => format!("{} s", short(seconds)),
+    const SHORT: [(f64, &str); 3] = [(1.0, "s"), (1e-3, "ms"), (1e-6, "µs")];
+    if let Some((unit, name)) = LONG.iter().find(|(unit, _)| seconds >= 2.0 * unit) {
+        return format!("{} {name}", short((seconds / unit).round()));
     }
+    let (unit, name) = SHORT.iter().find(|(unit, _)| seconds >= *unit).unwrap_or(&SHORT[2]);
+    format!("{} {name}", short(seconds / unit))
 }
 
 /// A table without lines. Columns without a value are left out.
@@ -133,7 +135,7 @@ mod tests {
         assert_eq!(told, ["0.05", "600", "77.6073", "0.030303", "1.2e-6", "3e9", "0", "0"]);
         let told = [143.7, 2.69, 0.002_14, 9.96e-9, 0.0].map(short);
         assert_eq!(told, ["144", "2.7", "0.0021", "1e-8", "0"]);
-        let told = [0.021, 90.0, 700.0, 1e5, 1.6e8].map(duration);
-        assert_eq!(told, ["0.021 s", "90 s", "12 minutes", "28 hours", "5 years"]);
+        let told = [9.8e-4, 0.021, 90.0, 700.0, 1e5, 1.6e8].map(duration);
+        assert_eq!(told, ["980 µs", "21 ms", "90 s", "12 minutes", "28 hours", "5 years"]);
     }
 }

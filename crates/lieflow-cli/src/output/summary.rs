@@ -8,7 +8,7 @@ use crate::measure::Fit;
 use lieflow_model::kinds::explained_by_rounding;
 use lieflow_model::scene::Defaults;
 
-use super::short;
+use super::{duration, short};
 
 /// The name of the file.
 pub const SUMMARY: &str = "summary.json";
@@ -96,9 +96,6 @@ pub struct Summary {
     pub rtol: Option<f64>,
     /// As `rtol`.
     pub atol: Option<f64>,
-    /// The text of the scene.
-    #[serde(skip)]
-    pub scene_text: String,
 }
 
 /// How right the end of a run is.
@@ -171,7 +168,7 @@ impl Accuracy {
     /// How it was found, in words.
     pub fn found_in_words(&self) -> String {
         let by =
-            |what: &str| format!("estimated by a second run {what}, {} s", short(self.seconds));
+            |what: &str| format!("estimated by a second run {what}, {}", duration(self.seconds));
         match self.found_by {
             FoundBy::Exact => "against the exact motion".into(),
             FoundBy::HalfStep => by("with half the step"),

@@ -42,26 +42,24 @@ keys! { Keys [sample_keys formula_keys body_keys] {
     control: Option<Reals<2>> = "[k, c] of a law that brings the attitude to the identity; optional",
     torque: Option<Texts> =
         "a torque in the body, three formulas, or one whose value is a vector, in t, the angular velocity in the body \
-         w1, w2, w3, the momentum in space m1, m2, m3 (also l1, l2, l3) and the attitude g11, ..., g33; optional",
+         w1, w2, w3, the momentum in space m1, m2, m3 and the attitude g11, ..., g33; optional",
     torque_space: Option<Texts> = "a torque in space, by formulas in the same variables; optional",
 } }
 
 /// What a torque may depend on, in the order of [`variables`].
 #[rustfmt::skip]
-const VARIABLES: [&str; 19] = [
+const VARIABLES: [&str; 16] = [
     "t", "w1", "w2", "w3", "m1", "m2", "m3",
     "g11", "g12", "g13", "g21", "g22", "g23", "g31", "g32", "g33",
-    "l1", "l2", "l3",
 ];
 
-fn variables<S: Copy>(at: &BodyMotion<S>) -> [S; 19] {
+fn variables<S: Copy>(at: &BodyMotion<S>) -> [S; 16] {
     let (w, m, g) = (&at.omega_body, &at.momentum_space, &at.attitude);
     core::array::from_fn(|i| match i {
         0 => at.t,
         1..=3 => w[i - 1],
         4..=6 => m[i - 4],
-        7..=15 => g[((i - 7) / 3, (i - 7) % 3)],
-        _ => m[i - 16],
+        _ => g[((i - 7) / 3, (i - 7) % 3)],
     })
 }
 

@@ -113,11 +113,11 @@ impl Columns {
         let mut names = parameters.names("t", ["t"])?;
         let mut variables = vec![None];
         for (place, Column { name, .. }) in columns.iter().enumerate() {
-            // A name means in all formulas of a scene what it means in its problem.
-            if !lets.have(name) && names.add(name) {
+            if names.add(name) {
                 variables.push(Some(place));
             }
         }
+        // A name means in all formulas of a scene what it means in its problem.
         let names = names.with_usable_lets("let", lets);
         Ok(Columns { columns, names, variables })
     }
@@ -138,7 +138,8 @@ impl Columns {
     /// As [`Formula::read`], and a refusal of `key` for the name of a quantity of several columns.
     pub(super) fn read(&self, key: &str, text: &str) -> Result<RowFormula, Refusal> {
         // The name of a column may be one that no formula can use.
-        if let Some(column) = self.columns.iter().find(|column| column.name == text) {
+        let column = self.columns.iter().find(|column| column.name == text);
+        if let Some(column) = column.filter(|_| !self.names.is_formula(text)) {
             let names = Parameters::default().names(key, ["t", "x"])?;
             let formula = Formula::read(key, "x", &names)?;
             return Ok(RowFormula { formula, columns: vec![(1, column.clone())], variables: 2 });

@@ -78,11 +78,6 @@ impl Lets {
         let found = self.0.get_key_value(word).or_else(|| self.0.get_key_value(whole))?;
         Some(found.0)
     }
-
-    /// Does a name belong to one of these?
-    pub fn have(&self, word: &str) -> bool {
-        self.of(word).is_some()
-    }
 }
 
 /// The names that a formula may use.
@@ -153,61 +148,26 @@ impl Names {
             let message = format!("found {} formulas, expected at most {LETS_MAX}", lets.0.len());
             return Err(Refusal::at(key, message));
         }
-        let mut done = BTreeSet::new();
-        for name in lets.names() {
-            self.define(key, lets, name, &mut Vec::new(), &mut done)?;
-        }
+        let mut reader = LetReader::new(key, lets, true);
+        lets.names().try_for_each(|name| reader.define(name, &mut self))?;
         Ok(self)
     }
 
-    /// The same, without those that have no meaning with these names.
+    /// The same, without those that have no meaning with these names. A name means the formula and not the variable.
     pub fn with_usable_lets(mut self, key: &str, lets: &Lets) -> Names {
-        let mut done = BTreeSet::new();
+        let mut reader = LetReader::new(key, lets, false);
         for name in lets.names().take(LETS_MAX) {
-            if let Err(refusal) = self.define(key, lets, name, &mut Vec::new(), &mut done) {
+            reader.path.clear();
+            if let Err(refusal) = reader.define(name, &mut self) {
                 self.unusable.push((name.into(), refusal.message));
             }
         }
         self
     }
 
-    /// Read a named formula, and before it those that it needs; `path` are those that need it.
-    fn define<'a>(
-        &mut self,
-        key: &str,
-        lets: &'a Lets,
-        name: &'a str,
-        path: &mut Vec<&'a str>,
-        done: &mut BTreeSet<&'a str>,
-    ) -> Result<(), Refusal> {
-        let place = key.entry(name);
-        if let Some(start) = path.iter().position(|above| *above == name) {
-            let circle = [&path[start..], &[name]].concat().join(" needs ");
-            let message = format!("{place}: a formula cannot need itself: {circle}");
-            return Err(Refusal::at(place, message));
-        }
-        let Some(texts) = lets.0.get(name).filter(|_| !done.contains(name)) else { return Ok(()) };
-        path.push(name);
-        for word in texts.texts().flat_map(|text| text.split(|c| !continues_name(c))) {
-            if let Some(needed) = lets.of(word) {
-                self.define(key, lets, needed, path, done)?;
-            }
-        }
-        path.pop();
-        done.insert(name);
-        self.check(&place, name)?;
-        let (rows, tapes) = texts.read_any(&place, self)?;
-        let columns = tapes.len() / rows;
-        for (i, tape) in tapes.into_iter().enumerate() {
-            let entry = match (rows, columns) {
-                (1, 1) => name.into(),
-                (_, 1) => format!("{name}{}", i + 1),
-                _ => format!("{name}{}{}", i / columns + 1, i % columns + 1),
-            };
-            self.check(&place, &entry)?;
-            self.formulas.push((entry, tape));
-        }
-        Ok(())
+    /// Is it the name of a named formula, or of an entry of one?
+    pub fn is_formula(&self, name: &str) -> bool {
+        matches!(self.meaning(name), Some(Meaning::Formula(_)))
     }
 
     /// The named formulas of a table, by the name of each entry.
@@ -270,14 +230,15 @@ impl Names {
     }
 
     pub(super) fn meaning(&self, name: &str) -> Option<Meaning<'_>> {
+        if let Some((_, tape)) = self.formulas.iter().find(|(formula, _)| formula == name) {
+            return Some(Meaning::Formula(tape));
+        }
         let variable = self.variables.iter().position(|variable| variable == name);
         let own = self.constants.iter().map(|(name, x)| (name.as_str(), *x));
         let number =
             || own.chain(CONSTANTS.iter().copied()).find(|(constant, _)| *constant == name);
         let column = self.columns().iter().position(|column| column == name);
         let varies = variable.map(Meaning::Variable).or(column.map(Meaning::Sample));
-        let formula = || self.formulas.iter().find(|(formula, _)| formula == name);
-        let varies = varies.or_else(|| formula().map(|(_, tape)| Meaning::Formula(tape)));
         varies.or_else(|| number().map(|(_, x)| Meaning::Number(x)))
     }
 
@@ -288,6 +249,60 @@ impl Names {
         let own = self.constants.iter().map(|(name, _)| name.as_str());
         let own = variables.chain(formulas).chain(own);
         own.chain(CONSTANTS.iter().map(|(name, _)| *name)).collect()
+    }
+}
+
+/// Reads named formulas.
+struct LetReader<'a> {
+    key: &'a str,
+    lets: &'a Lets,
+    /// Is a name refused that has a meaning already?
+    refuses_taken: bool,
+    /// Those that need the one that is read.
+    path: Vec<&'a str>,
+    done: BTreeSet<&'a str>,
+}
+
+impl<'a> LetReader<'a> {
+    fn new(key: &'a str, lets: &'a Lets, refuses_taken: bool) -> Self {
+        LetReader { key, lets, refuses_taken, path: Vec::new(), done: BTreeSet::new() }
+    }
+
+    /// Read a named formula, and before it those that it needs.
+    fn define(&mut self, name: &'a str, names: &mut Names) -> Result<(), Refusal> {
+        let place = self.key.entry(name);
+        if let Some(start) = self.path.iter().position(|above| *above == name) {
+            let circle = [&self.path[start..], &[name]].concat().join(" needs ");
+            let message = format!("{place}: a formula cannot need itself: {circle}");
+            return Err(Refusal::at(place, message));
+        }
+        let lets = self.lets;
+        let texts = lets.0.get(name).filter(|_| self.done.insert(name));
+        let Some(texts) = texts else { return Ok(()) };
+        self.path.push(name);
+        for word in texts.texts().flat_map(|text| text.split(|c| !continues_name(c))) {
+            if let Some(needed) = lets.of(word) {
+                self.define(needed, names)?;
+            }
+        }
+        self.path.pop();
+        let check = |names: &Names, name: &str| match self.refuses_taken {
+            true => names.check(&place, name),
+            false => Ok(()),
+        };
+        check(names, name)?;
+        let (rows, tapes) = texts.read_any(&place, names)?;
+        let columns = tapes.len() / rows;
+        for (i, tape) in tapes.into_iter().enumerate() {
+            let entry = match (rows, columns) {
+                (1, 1) => name.into(),
+                (_, 1) => format!("{name}{}", i + 1),
+                _ => format!("{name}{}{}", i / columns + 1, i % columns + 1),
+            };
+            check(names, &entry)?;
+            names.formulas.push((entry, tape));
+        }
+        Ok(())
     }
 }
 
