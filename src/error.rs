@@ -1,9 +1,15 @@
 //! What can go wrong: [`Error`] while a run is set up, [`StepError`] within a step, [`Failure`] of a run.
+//!
+//! `Debug` prints the message too: it is what a `main` that ends by `?` shows.
+
+use core::fmt;
 
 use thiserror::Error as ThisError;
 
+use crate::names;
+
 /// An argument that cannot be used. Each message names the argument, its value and what was expected.
-#[derive(Clone, Debug, PartialEq, ThisError)]
+#[derive(Clone, PartialEq, ThisError)]
 #[non_exhaustive]
 pub enum Error {
     /// A matrix is not square.
@@ -114,13 +120,13 @@ pub enum Error {
         /// The number of the element, from 0.
         index: usize,
         /// Why.
-        source: StepError,
+        source: Box<Error>,
     },
     /// A map could not be evaluated.
     #[error(transparent)]
     Map(#[from] StepError),
     /// A name that is not registered.
-    #[error("unknown {kind} `{name}`, expected one of {}", expected.join(", "))]
+    #[error("unknown {kind} `{name}`: {}", names::help(name, expected))]
     UnknownName {
         /// What was looked up.
         kind: &'static str,
@@ -146,7 +152,7 @@ pub enum Error {
 }
 
 /// Why a negative eigenvalue of g stands in the way of a real logarithm.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ThisError)]
+#[derive(Clone, Copy, PartialEq, Eq, ThisError)]
 pub enum NoLogarithm {
     /// The multiplicity of the eigenvalue is odd: no real matrix has g as its exponential.
     #[error("its multiplicity is odd: no real matrix has g as its exponential")]
@@ -175,7 +181,7 @@ impl Error {
 }
 
 /// Why a step could not be taken. Small and `Copy`: it travels out of the hot loop.
-#[derive(Clone, Copy, Debug, PartialEq, ThisError)]
+#[derive(Clone, Copy, PartialEq, ThisError)]
 #[non_exhaustive]
 pub enum StepError {
     /// u left the domain on which Ψ or dΨ⁻¹ is defined or well conditioned.
@@ -281,7 +287,7 @@ impl StepError {
 }
 
 /// A run that stopped early. The state handed to the driver holds the last accepted point.
-#[derive(Clone, Copy, Debug, PartialEq, ThisError)]
+#[derive(Clone, Copy, PartialEq, ThisError)]
 #[error("step {step} from t = {t} with h = {h} failed: {source}")]
 #[non_exhaustive]
 pub struct Failure {
@@ -294,3 +300,16 @@ pub struct Failure {
     /// Why.
     pub source: StepError,
 }
+
+/// `Debug` of an error is its message.
+macro_rules! debug_is_display {
+    ($($error:ty),*) => {$(
+        impl fmt::Debug for $error {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                fmt::Display::fmt(self, f)
+            }
+        }
+    )*};
+}
+pub(crate) use debug_is_display;
+debug_is_display!(Error, NoLogarithm, StepError, Failure);

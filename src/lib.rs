@@ -18,6 +18,7 @@
 //! | room | symbol | what it has |
 //! |---|---|---|
 //! | [`scalar`] | | numbers: `f64`, double-double, numbers that count operations |
+//! | [`names`] | | other spellings and other names of methods, maps, tableaus |
 //! | [`error`] | | [`Error`], [`StepError`] |
 //! | `quadrature` | | nodes and weights |
 //! | `elliptic` | | Carlson's integrals, Jacobi's functions |
@@ -86,6 +87,7 @@ pub mod floquet;
 pub mod groups;
 pub mod maps;
 pub mod methods;
+pub mod names;
 pub mod prelude;
 pub mod problems;
 mod quadrature;
@@ -95,6 +97,11 @@ pub mod so3;
 pub mod solve;
 pub mod space;
 pub mod tolerance;
+
+/// The matrices of n rows and n columns that this library takes and gives.
+pub use faer;
+/// The vectors and matrices of three dimensions that this library takes and gives.
+pub use nalgebra;
 
 pub use actions::Action;
 pub use error::{Error, Failure, NoLogarithm, StepError};

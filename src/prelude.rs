@@ -6,7 +6,7 @@ pub use crate::groups::{LieAlgebra, LieGroup, MatrixGroup, Se3, So3};
 pub use crate::maps::{Cay, Exp};
 pub use crate::methods::{
     AnyMethod, Rk, Rkmk,
-    tableau::{DOPRI5, RK4},
+    tableau::{DOP853, DOPRI5, RK4},
 };
-pub use crate::problems::{Flow, Problem};
+pub use crate::problems::{Flow, Problem, RigidBody, RigidBodyAttitude};
 pub use crate::solve::{Event, SaveAt, Solve, TimeGrid, integrate};

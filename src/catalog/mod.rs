@@ -47,6 +47,7 @@ use crate::error::Error;
 use crate::maps::{ExpOrCay, FromName, MapsByName, NamedMap};
 pub use crate::maps::{MAPS, MapInfo};
 use crate::methods::{AnyMethod, tableau};
+use crate::names::same;
 use crate::problems::{Ambient, Problem};
 use recipe::SizedTableau;
 
@@ -111,7 +112,7 @@ impl MethodSpec {
     /// # Errors
     /// [`Error::UnknownName`], and [`Error::Unsupported`] for a part that the method does not take.
     pub fn info(&self) -> Result<&'static MethodInfo, Error> {
-        let info = all_methods().find(|m| m.name == self.name);
+        let info = all_methods().find(|m| same(m.name, &self.name));
         let names = || all_methods().map(|m| m.name);
         let info = info.ok_or_else(|| unknown("method", &self.name, names()))?;
         let refuse = |what, why| Error::Unsupported { what, with: format!("`{}`", info.name), why };
@@ -140,14 +141,18 @@ impl MethodSpec {
         let tableau = self.tableau.as_deref().unwrap_or(RK4);
         let tableau = TABLEAUS
             .iter()
-            .find(|t| t.name == tableau)
+            .find(|t| same(t.name, tableau))
             .ok_or_else(|| unknown("tableau", tableau, TABLEAUS.iter().map(|t| t.name)))?;
-        let choice = Choice { info, tableau, map: self.map.as_deref().unwrap_or(EXP), q: self.q };
+        let map = self.map.as_deref().unwrap_or(EXP);
+        let map = MAPS
+            .iter()
+            .find(|info| same(info.name, map))
+            .ok_or_else(|| unknown("map", map, MAPS.iter().map(|info| info.name)))?;
+        let choice = Choice { info, tableau, map: map.name, q: self.q };
         if info.takes_map() {
-            NamedMap::named(choice.map, choice.q)?;
+            NamedMap::named(map.name, choice.q)?;
         }
-        let is_odd = |name| MAPS.iter().any(|map| map.name == name && map.odd);
-        if info.maps == Maps::Odd && (choice.q.is_some() || !is_odd(choice.map)) {
+        if info.maps == Maps::Odd && (choice.q.is_some() || !map.odd) {
             return Err(Error::Unsupported {
                 what: if choice.q.is_some() { "q" } else { "map" },
                 with: format!("`{}` with map `{}`", self.name, choice.map),
@@ -155,6 +160,21 @@ impl MethodSpec {
             });
         }
         Ok(choice)
+    }
+
+    /// The same method, with each name as the listings spell it.
+    ///
+    /// # Errors
+    /// As [`choose`](Self::choose).
+    pub fn spelt(&self) -> Result<MethodSpec, Error> {
+        let choice = self.choose()?;
+        let spelt = |part: &Option<String>, name: &str| part.as_ref().map(|_| name.into());
+        Ok(MethodSpec {
+            name: choice.info.name.into(),
+            map: spelt(&self.map, choice.map),
+            tableau: spelt(&self.tableau, choice.tableau.name),
+            q: self.q,
+        })
     }
 
     /// Has the method an error estimate of its own? If not, an adaptive run doubles its steps.
@@ -204,17 +224,16 @@ impl FromStr for MethodSpec {
                     expected: "a whole number".into(),
                 })?;
                 spec.q = Some(q);
-            } else if TABLEAUS.iter().any(|t| t.name == word) {
-                spec.tableau = Some(word.into());
-            } else if MAPS.iter().any(|map| map.name == word) {
-                spec.map = Some(word.into());
+            } else if let Some(tableau) = TABLEAUS.iter().find(|t| same(t.name, word)) {
+                spec.tableau = Some(tableau.name.into());
+            } else if let Some(map) = MAPS.iter().find(|map| same(map.name, word)) {
+                spec.map = Some(map.name.into());
             } else {
                 let parts = MAPS.iter().map(|m| m.name).chain(TABLEAUS.iter().map(|t| t.name));
                 return Err(unknown("map or tableau", word, parts));
             }
         }
-        spec.choose()?;
-        Ok(spec)
+        spec.spelt()
     }
 }
 

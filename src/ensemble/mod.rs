@@ -413,7 +413,7 @@ fn again<Rule: OneStep, const ROWS: usize>(
             y.g.set_row(r, &vector(row, i).transpose());
         }
         Rule::one(inverse, h, &mut y)
-            .map_err(|source| Error::Element { index: first + i, source })?;
+            .map_err(|error| Error::Element { index: first + i, source: Box::new(error.into()) })?;
         for k in 0..3 {
             to.m[k][i] = y.m[k];
             for r in 0..ROWS {

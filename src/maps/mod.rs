@@ -3,6 +3,23 @@
 //! The differential is right trivialised, as in the paper (8):
 //! d/dε Ψ(u + εv)|₀ = dΨ_u(v)·Ψ(u). In robotics' words dexp is the *left* Jacobian.
 //!
+//! As functions, on a value of any group that has them:
+//!
+//! | formula | call | on |
+//! |---|---|---|
+//! | exp(u) | [`exp(&group, &u)`](exp()) | every group |
+//! | log(g) | [`log(&group, &g)`](log()) | `So3`, `UnitQuaternions`, `Se3`, `MatrixGroup` |
+//! | dexp_u(v) | [`dexp(&group, &u, &v)`](dexp()) | `So3`, `UnitQuaternions`, `MatrixGroup`, `Unitary` |
+//! | dexp_u⁻¹(v) | [`dexpinv(&group, &u, &v)`](dexpinv()) | every group |
+//! | dexp_u⁻¹(v), cut after q brackets | [`dexpinv_truncated(&group, &u, &v, q)`](dexpinv_truncated()) | `MatrixGroup` |
+//! | cay(u) | [`cay(&group, &u)`](cay()) | every group |
+//! | cay⁻¹(g) | [`cay_inv(&group, &g)`](cay_inv()) | `So3`, `MatrixGroup` |
+//! | dcay_u(v) | [`dcay(&group, &u, &v)`](dcay()) | `So3`, `MatrixGroup` |
+//! | dcay_u⁻¹(v) | [`dcayinv(&group, &u, &v)`](dcayinv()) | every group |
+//!
+//! On rotations in space [`so3`](crate::so3) has the same functions without the group, `so3::exp(&u)`, and
+//! [`so3::batch`](crate::so3::batch) has them on arrays. In a loop, [`CoordinateMap`] keeps its storage.
+//!
 //! To add a map: one file with an `impl` of [`CoordinateMap`] per layer (the general one over any
 //! n, and the closed form), one line here, its registration in the catalog, one line in the law
 //! tests.
@@ -11,6 +28,7 @@ mod alternating;
 mod cay;
 mod ccsk;
 mod exp;
+mod functions;
 mod log;
 mod named;
 mod pade22;
@@ -25,9 +43,10 @@ pub use alternating::{Alternating, CCSK};
 pub use cay::{Cay, cay_inv, dcay};
 pub use ccsk::{CCSK123, CCSK321, Ccsk};
 pub use exp::{
-    BakerSum, Dexpinv, Exp, TruncatedExp, dexp, dexpinv, dexpinv_with_remainder,
+    BakerSum, Dexpinv, Exp, TruncatedExp, dexpinv_truncated, dexpinv_with_remainder,
     distance_to_singular,
 };
+pub use functions::{cay, dcayinv, dexp, dexpinv, exp, log};
 pub(crate) use named::FromName;
 pub(crate) use named::Serves;
 pub use named::{AllMaps, ExpOrCay, Groups, MAPS, MapInfo, MapsByName, NamedMap};

@@ -13,6 +13,7 @@ use super::{
 };
 use crate::error::{Error, StepError};
 use crate::groups::{LieGroup, UnitQuaternions, Unitary};
+use crate::names::same;
 
 /// A coordinate map that scene files can name.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -265,7 +266,7 @@ pub trait FromName: Copy + Send + Sync + 'static {
 impl FromName for NamedMap {
     fn named(name: &str, q: Option<usize>) -> Result<Self, Error> {
         let info =
-            MAPS.iter().find(|info| info.name == name).ok_or_else(|| Error::UnknownName {
+            MAPS.iter().find(|info| same(info.name, name)).ok_or_else(|| Error::UnknownName {
                 kind: "map",
                 name: name.into(),
                 expected: MAPS.iter().map(|info| info.name).collect(),

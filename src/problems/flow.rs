@@ -133,6 +133,9 @@ const UNKNOWN: Facts = Facts { linear: (), energy: (), invariants: () };
 
 impl<G: LieGroup, A: Action<G>, F: Fn(G::Scalar, &A::Point, &mut G::Alg)> Flow<G, A, F> {
     /// The problem; `field(t, y, v)` writes f(t, y) into v, all of it.
+    ///
+    /// A closure of t alone is for [`of_time`](Self::of_time): methods for linear equations need it.
+    #[doc(alias = "from_fn")]
     pub const fn new(group: G, action: A, field: F) -> Self {
         Flow { group, action, field, facts: UNKNOWN }
     }

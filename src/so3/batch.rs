@@ -72,6 +72,67 @@ pub fn cay(u: [&[f64]; 3], r: [&mut [f64]; 9]) -> Result<(), Error> {
     run::<CayOf, 3, 9>(u, r)
 }
 
+/// u ← log(R), [`so3::log`](super::log()): one by one, without lanes.
+///
+/// # Errors
+/// As [`exp`].
+pub fn log(r: [&[f64]; 9], u: [&mut [f64]; 3]) -> Result<(), Error> {
+    one_by_one(r, u, |r| Ok(super::log(&Matrix3::from_row_slice(r))?.into()))
+}
+
+/// u ← cay⁻¹(R), [`so3::cay_inv`](super::cay_inv): one by one, without lanes.
+///
+/// # Errors
+/// As [`exp`].
+pub fn cay_inv(r: [&[f64]; 9], u: [&mut [f64]; 3]) -> Result<(), Error> {
+    one_by_one(r, u, |r| Ok(super::cay_inv(&Matrix3::from_row_slice(r))?.into()))
+}
+
+/// w ← dcay_u(v), [`so3::dcay`](super::dcay): one by one, without lanes.
+///
+/// # Errors
+/// As [`exp`].
+pub fn dcay(u: [&[f64]; 3], v: [&[f64]; 3], w: [&mut [f64]; 3]) -> Result<(), Error> {
+    one_by_one(both(u, v), w, |x| Ok(super::dcay(&u_of(x), &u_of(&x[3..]))?.into()))
+}
+
+/// w ← dcay_u⁻¹(v), [`so3::dcayinv`](super::dcayinv): one by one, without lanes.
+///
+/// # Errors
+/// As [`exp`].
+pub fn dcayinv(u: [&[f64]; 3], v: [&[f64]; 3], w: [&mut [f64]; 3]) -> Result<(), Error> {
+    one_by_one(both(u, v), w, |x| Ok(super::dcayinv(&u_of(x), &u_of(&x[3..]))?.into()))
+}
+
+/// A function on each element of the arrays.
+fn one_by_one<const IN: usize, const OUT: usize>(
+    input: [&[f64]; IN],
+    mut output: [&mut [f64]; OUT],
+    value: impl Fn(&[f64; IN]) -> Result<[f64; OUT], Error>,
+) -> Result<(), Error> {
+    for index in 0..length(&input, &output)? {
+        let value = value(&input.map(|x| x[index]))
+            .map_err(|error| Error::Element { index, source: Box::new(error) })?;
+        for (output, value) in output.iter_mut().zip(value) {
+            output[index] = value;
+        }
+    }
+    Ok(())
+}
+
+/// The length that all arrays have.
+fn length(input: &[&[f64]], output: &[&mut [f64]]) -> Result<usize, Error> {
+    let n = input[0].len();
+    let mut lengths = input.iter().map(|x| x.len()).chain(output.iter().map(|x| x.len()));
+    match lengths.find(|rows| *rows != n) {
+        None => Ok(n),
+        Some(rows) => {
+            let arg = "an array of the batch";
+            Err(Error::Shape { arg, rows, cols: 1, expected_rows: n, expected_cols: 1 })
+        }
+    }
+}
+
 fn both<'a>([a, b, c]: [&'a [f64]; 3], [d, e, f]: [&'a [f64]; 3]) -> [&'a [f64]; 6] {
     [a, b, c, d, e, f]
 }
@@ -177,14 +238,7 @@ fn run<K: Kernel<IN, OUT>, const IN: usize, const OUT: usize>(
     input: [&[f64]; IN],
     output: [&mut [f64]; OUT],
 ) -> Result<(), Error> {
-    let n = input[0].len();
-    let lengths = input.iter().map(|x| x.len()).chain(output.iter().map(|x| x.len()));
-    for rows in lengths {
-        if rows != n {
-            let arg = "an array of the batch";
-            return Err(Error::Shape { arg, rows, cols: 1, expected_rows: n, expected_cols: 1 });
-        }
-    }
+    length(&input, &output)?;
     Arch::new().dispatch(Run::<K, IN, OUT> { input, output, kernel: core::marker::PhantomData })
 }
 
@@ -287,7 +341,7 @@ fn again<K: Kernel<IN, OUT>, const IN: usize, const OUT: usize>(
         }
         let index = start + i;
         let value = K::one(&core::array::from_fn(|k| x[k][i]))
-            .map_err(|source| Error::Element { index, source })?;
+            .map_err(|error| Error::Element { index, source: Box::new(error.into()) })?;
         for (output, value) in output.iter_mut().zip(value) {
             output[index] = value;
         }

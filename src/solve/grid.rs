@@ -67,6 +67,7 @@ impl TimeGrid {
     /// # Errors
     /// [`Error::OutOfRange`] for a time that is not finite, no steps over a span that is not empty,
     /// or so many that t + h = t.
+    #[doc(alias = "linspace")]
     pub fn with_steps(t_span: [f64; 2], steps: u64) -> Result<Self, Error> {
         let [t0, t1] = t_span;
         let length = length_of(t_span)?;

@@ -63,6 +63,7 @@ use save::Listing;
 /// assert!(run.drift.iter().all(|drift| drift.largest < 1e-8));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+#[doc(alias = "solve_ivp")]
 pub struct Solve<'a, P: Problem, M: Method<P>> {
     problem: &'a P,
     method: &'a M,
@@ -169,6 +170,34 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
     /// Output at the start, after every so many steps, and at the end.
     pub fn every(self, steps: u64) -> Self {
         self.save(SaveAt::Every(steps))
+    }
+
+    /// Output at the start, at equal intervals of this length from there on, and at the end.
+    pub fn interval(self, length: f64) -> Self {
+        self.save(SaveAt::Interval(length))
+    }
+
+    /// Output at both ends of so many equal intervals: 100 intervals have 101 times.
+    ///
+    /// ```
+    /// use lieflow::prelude::*;
+    /// use nalgebra::Matrix3;
+    /// let turn = Flow::of_time(So3::new(), LeftTranslation, |t: f64, v| v.z = t);
+    /// let method = Rkmk::new(DOPRI5, Exp);
+    /// let solve = Solve::new(&turn, &method, [0.0, 2.0]).tolerances(1e-9, 1e-12);
+    /// let run = solve.count(4).run(Matrix3::identity())?;
+    /// assert_eq!(run.times, [0.0, 0.5, 1.0, 1.5, 2.0]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[doc(alias = "linspace")]
+    #[doc(alias = "t_eval")]
+    pub fn count(mut self, intervals: u64) -> Self {
+        let [t0, t1] = self.t_span;
+        if intervals == 0 {
+            self.wrong.get_or_insert(Error::out_of_range("count", 0.0, "at least 1"));
+            return self;
+        }
+        self.interval((t1 - t0).abs() / intervals as f64)
     }
 
     /// Reach output times within a step by a shorter step of the method from its start, and not by the continuous

@@ -117,7 +117,7 @@ pub struct Interrupted<Y> {
 
 impl<Y> fmt::Debug for Interrupted<Y> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Interrupted").field("error", &self.error).finish_non_exhaustive()
+        fmt::Display::fmt(self, f)
     }
 }
 

@@ -1,7 +1,9 @@
 //! What a run did, why it ended, and what takes its state back to M.
 
+use core::fmt;
+
 use crate::actions::Action;
-use crate::error::{Error, Failure, StepError};
+use crate::error::{Error, Failure, StepError, debug_is_display};
 use crate::groups::RESIDUAL_MAX;
 use crate::methods::MapCounts;
 use crate::problems::{PointOf, Problem};
@@ -140,7 +142,7 @@ impl<P: Problem> Mender<P> {
 }
 
 /// Why a run ended before its time.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RunError {
     /// The method does not fit the problem, the times or tolerances are not usable, or the first value
@@ -214,6 +216,7 @@ pub enum RunError {
         source: StepError,
     },
 }
+debug_is_display!(RunError);
 
 fn reason(source: &Option<StepError>) -> String {
     match source {

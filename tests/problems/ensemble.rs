@@ -238,7 +238,9 @@ fn what_is_refused() {
     let all_with_g = bodies_of(100);
     let mut bodies = Ensemble::new(&[good; 100], &momenta).expect("bodies");
     match bodies.advance(EnsembleMethod::Rk4, PI, 5, 2) {
-        Err(Error::Element { index: 77, source: StepError::NonFiniteRhs { .. } }) => {}
+        Err(Error::Element { index: 77, source }) => {
+            assert!(matches!(*source, Error::Map(StepError::NonFiniteRhs { .. })), "{source}");
+        }
         other => panic!("{other:?}"),
     }
     assert_eq!(bodies.momentum(77), Some(Vector3::from(fast)));

@@ -230,12 +230,20 @@ pub struct CheckArgs {
 /// Options of `scenes`.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = "Examples:
-  lieflow scenes
-  lieflow scenes --json
-  lieflow scenes tumbling-attitude > my.toml")]
+  lieflow scenes                        a line for each kind of problem and for each scene
+  lieflow scenes rigid-body             the keys and the quantities of a kind, and an example
+  lieflow scenes tumbling-attitude > my.toml
+                                        a scene to start from
+  lieflow scenes --all                  everything in full")]
 pub struct ScenesArgs {
-    /// Print this scene.
+    /// Print this scene, or what a scene of this kind can say.
     pub name: Option<String>,
+    /// The name is that of a kind, where a scene has the same name.
+    #[arg(long, requires = "name")]
+    pub kind: bool,
+    /// Print everything: the description of each scene, the keys and quantities of each kind.
+    #[arg(long, conflicts_with = "name")]
+    pub all: bool,
     /// Print JSON.
     #[arg(long)]
     pub json: bool,

@@ -33,6 +33,43 @@ fn scenes_are_listed_and_printed() {
 }
 
 #[test]
+fn a_kind_is_printed_with_all_that_a_scene_of_it_can_say() {
+    let folder = Folder::new();
+    let overview = folder.lieflow(&["scenes"]).ok();
+    assert!(overview.lines().count() < 3 * KINDS.len() + BUNDLED.len() + 10, "{overview}");
+    let all = folder.lieflow(&["scenes", "--all"]).ok();
+    for kind in KINDS.iter() {
+        assert!(overview.contains(&format!("\n{}: {}\n", kind.name, kind.summary)), "{overview}");
+        // Some kinds have the name of a scene.
+        let shown = folder.lieflow(&["scenes", "--kind", kind.name]).ok();
+        let keys = kind.keys.iter().map(|key| key.name);
+        let quantities = (kind.quantities)().into_iter().map(|quantity| quantity.name);
+        for name in keys.chain(quantities) {
+            for text in [&shown, &all] {
+                assert!(text.contains(&format!("\n  {name} ")), "{}: {name}\n{text}", kind.name);
+            }
+        }
+        for words in ["SI units", "Scenes of this kind:", "    [problem]\n"] {
+            assert!(shown.contains(words), "{shown}");
+        }
+        let json = folder.lieflow(&["scenes", "--kind", kind.name, "--json"]).ok();
+        let json: Value = serde_json::from_str(&json).unwrap();
+        assert_eq!(json["summary"], kind.summary);
+    }
+    let kind = folder.lieflow(&["scenes", "--kind", "rigid-body"]).ok();
+    assert_eq!(folder.lieflow(&["scenes", "Rigid_Body"]).ok(), kind);
+    for (name, words) in [
+        ("satellite", "`driven-body` is a kind of problem: lieflow scenes driven-body"),
+        ("wingnut2", "= did you mean `wing-nut`?\n"),
+    ] {
+        let message = folder.lieflow(&["scenes", name]).refused();
+        assert!(message.contains(words), "{message}");
+    }
+    let message = folder.lieflow(&["run", "rigid-body"]).refused();
+    assert!(message.contains("is a kind of problem"), "{message}");
+}
+
+#[test]
 fn a_printed_scene_runs() {
     let folder = Folder::new();
     for scene in BUNDLED {

@@ -8,6 +8,7 @@ use std::time::Duration;
 use lieflow::catalog::{MethodSpec, MethodsByName};
 use lieflow::groups::LieAlgebra;
 use lieflow::methods::Method;
+use lieflow::names::same;
 use lieflow::problems::PointOf;
 use lieflow::solve::{Next, Status};
 use lieflow::space::Numbers;
@@ -45,7 +46,7 @@ impl Layer {
     /// # Errors
     /// [`Error::UnknownName`].
     pub fn named(name: &str) -> Result<Self, Error> {
-        Self::ALL.into_iter().find(|layer| layer.name() == name).ok_or_else(|| {
+        Self::ALL.into_iter().find(|layer| same(layer.name(), name)).ok_or_else(|| {
             let expected = Self::ALL.map(Layer::name).to_vec();
             Error::UnknownName { kind: "layer", name: name.into(), expected }
         })

@@ -37,11 +37,11 @@ fn finite(
 ///
 /// `u` and `v` are elements of the algebra of `group`; q brackets. q = 0 returns v. The series
 /// converges where the eigenvalues of ad_u are smaller than 2π in modulus;
-/// [`dexpinv_with_remainder`] says how far it got, and [`Exp`](super::Exp) is exact at any u.
+/// [`dexpinv_with_remainder`] says how far it got, and [`dexpinv`](crate::maps::dexpinv) is exact at any u.
 ///
 /// # Errors
 /// [`Error::Shape`], [`Error::NotFiniteEntry`], [`Error::Map`] when the result is not finite.
-pub fn dexpinv(
+pub fn dexpinv_truncated(
     group: &MatrixGroup,
     u: &AlgebraMatrix,
     v: &AlgebraMatrix,
@@ -61,14 +61,14 @@ pub struct BakerSum {
     pub remainder: f64,
 }
 
-/// [`dexpinv`] with a bound of what was cut off.
+/// [`dexpinv_truncated`] with a bound of what was cut off.
 ///
 /// With r ≥ ‖ad_u‖ (r = 2‖u‖, and ‖u‖ on so(n)) and k the first even number above q ≥ 1:
 /// ‖Σ_{j ≥ k} B_j/j! ad_u^j v‖ ≤ 2ζ(k) (r/2π)^k / (1 − (r/2π)²) · ‖ad_u^q v‖/r^q, since
 /// |B_j|/j! = 2ζ(j)/(2π)^j for even j.
 ///
 /// # Errors
-/// As [`dexpinv`].
+/// As [`dexpinv_truncated`].
 pub fn dexpinv_with_remainder(
     group: &MatrixGroup,
     u: &AlgebraMatrix,
@@ -98,26 +98,9 @@ pub fn dexpinv_with_remainder(
     Ok(BakerSum { value, remainder })
 }
 
-/// dexp_u v = Σ ad_u^k v/(k+1)!, right trivialised: d/dε exp(u + εv)|₀ = dexp_u(v)·exp(u).
-///
-/// To rounding at any ‖u‖: the series, and beyond it the eigen form on so(n) or halvings in Schur
-/// coordinates. O(n³).
-///
-/// # Errors
-/// [`Error::Shape`], [`Error::NotFiniteEntry`], [`Error::Map`] when numbers leave the range.
-///
-/// ```
-/// use faer::mat;
-/// use lieflow::groups::MatrixGroup;
-/// use lieflow::maps::dexp;
-/// let sp2 = MatrixGroup::sp(2)?;
-/// let u = sp2.algebra(mat![[1.0, 0.0], [0.0, -1.0]])?;
-/// let v = sp2.algebra(mat![[0.0, 1.0], [0.0, 0.0]])?; // [u, v] = 2v
-/// let w = dexp(&sp2, &u, &v)?;
-/// assert!((w[(0, 1)] - (2f64.exp() - 1.0) / 2.0).abs() < 1e-14);
-/// # Ok::<(), lieflow::Error>(())
-/// ```
-pub fn dexp(
+/// dexp_u v on n×n matrices, to rounding at any ‖u‖: the series, and beyond it the eigen form on so(n) or
+/// halvings in Schur coordinates. O(n³).
+pub(in crate::maps) fn dexp(
     group: &MatrixGroup,
     u: &AlgebraMatrix,
     v: &AlgebraMatrix,

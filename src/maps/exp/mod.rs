@@ -11,7 +11,8 @@ mod se3;
 mod series;
 mod so3;
 
-pub use functions::{BakerSum, dexp, dexpinv, dexpinv_with_remainder, distance_to_singular};
+pub(super) use functions::dexp;
+pub use functions::{BakerSum, dexpinv_truncated, dexpinv_with_remainder, distance_to_singular};
 pub use series::Dexpinv;
 pub(super) use series::{EXACT_FROM, Powers, phi, phi1};
 

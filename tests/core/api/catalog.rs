@@ -3,6 +3,7 @@
 use lieflow::Step;
 use lieflow::catalog::{MAPS, MethodSpec, Needs, TABLEAUS, all_methods};
 use lieflow::methods::{Embedded, Method};
+use lieflow::names::{Meant, Part, find, meant, other_names, same};
 use lieflow::problems::RigidBody;
 use lieflow::tolerance::{Rule, Tolerance};
 use nalgebra::Vector3;
@@ -95,12 +96,16 @@ fn every_listed_method_has_an_estimate() {
 #[test]
 fn unknown_names_are_answered_with_the_list() {
     let names: Vec<_> = Needs::Field.methods().iter().map(|m| m.name).collect();
-    let refused = order_of(&MethodSpec::new("leapfrog", None)).unwrap_err();
-    says(&refused, &["method", "`leapfrog`"]);
+    let refused = order_of(&MethodSpec::new("no such method", None)).unwrap_err();
+    says(&refused, &["method", "`no such method`"]);
     says(&refused, &names);
+    let refused = order_of(&MethodSpec::new("leapfrog", None)).unwrap_err();
+    assert_eq!(refused.to_string(), "unknown method `leapfrog`: did you mean `mr2`?");
+    let refused = "rk45".parse::<MethodSpec>().unwrap_err();
+    assert_eq!(refused.to_string(), "unknown method `rk45`: did you mean `rkmk dopri5`?");
     let names: Vec<_> = MAPS.iter().map(|m| m.name).collect();
-    let refused = order_of(&MethodSpec::new("rkmk4", Some("Exp"))).unwrap_err();
-    says(&refused, &["map", "`Exp`"]);
+    let refused = order_of(&MethodSpec::new("rkmk4", Some("Cayley"))).unwrap_err();
+    says(&refused, &["map", "`Cayley`", "did you mean `cay`?"]);
     says(&refused, &names);
     for method in ["rkmk", "rk"] {
         let tableau = Some("rk5".to_string());
@@ -110,6 +115,45 @@ fn unknown_names_are_answered_with_the_list() {
         says(&refused, &TABLEAUS.iter().map(|t| t.name).collect::<Vec<_>>());
     }
     assert!(order_of(&MethodSpec::new("", None)).is_err());
+}
+
+/// Case and hyphens do not count, and what comes back is spelt as in the listings.
+#[test]
+fn names_in_other_spellings() {
+    let spec: MethodSpec = "RKMK Dopri5 CAY".parse().unwrap();
+    assert_eq!(spec.label(), "rkmk dopri5 cay");
+    let spec: MethodSpec = "rkmk Three_Eighths".parse().unwrap();
+    assert_eq!(spec.label(), "rkmk three-eighths");
+    let spec =
+        MethodSpec { tableau: Some("DOP853".into()), ..MethodSpec::new("Rkmk", Some("EXP")) };
+    assert_eq!(spec.has_pair(), Ok(true));
+    assert_eq!(spec.spelt().unwrap().label(), "rkmk dop853 exp");
+
+    let methods: Vec<_> = all_methods().map(|m| m.name).collect();
+    for list in [
+        &methods,
+        &MAPS.iter().map(|m| m.name).collect(),
+        &TABLEAUS.iter().map(|t| t.name).collect(),
+    ] {
+        for (i, a) in list.iter().enumerate() {
+            assert!(list[..i].iter().all(|b| !same(a, b)), "{a}");
+        }
+    }
+    // What is no method says what it is, and each name of another program is something here.
+    let parts = MAPS.iter().map(|m| m.name).chain(TABLEAUS.iter().map(|t| t.name));
+    for part in parts.filter(|part| !methods.contains(part)) {
+        let Some(Meant { name, part: Some(Part::Tableau(meant) | Part::Map(meant)) }) =
+            meant(part, &methods)
+        else {
+            panic!("{part}")
+        };
+        assert_eq!((name.starts_with("rkmk"), meant), (true, part));
+    }
+    for (other, meant) in other_names() {
+        let spec: MethodSpec = meant.to_string().parse().unwrap();
+        assert_eq!(spec.label(), meant.to_string(), "{other}");
+        assert!(find(other, methods.iter().copied()).is_none(), "{other} is a method");
+    }
 }
 
 #[test]

@@ -1,10 +1,12 @@
 //! `lieflow scenes`: the bundled scenes, and what a scene can say about its problem.
 
+use std::io::{self, Write};
+
 use serde::Serialize;
 
 use super::CliError;
 use crate::args::ScenesArgs;
-use crate::output::{print, print_json, table, wrap};
+use crate::output::{print, print_json, wrap};
 use lieflow_model::kinds::{KINDS, Kind};
 use lieflow_model::scene::{BUNDLED, Bundled, Scene, unknown_scene};
 
@@ -71,21 +73,109 @@ fn kind_entry(kind: &Kind) -> KindEntry {
     }
 }
 
-fn in_words(listing: &Listing) -> String {
+/// What holds for all numbers of a scene.
+const UNITS: &str =
+    "Numbers are in SI units, or in any other units that go together. Angles are in radians.";
+
+/// A line for each kind, and below it a line for each of its scenes.
+fn overview(listing: &Listing) -> String {
+    let mut text = String::from("Kinds of problems, and the scenes that come with the program:\n");
+    for kind in &listing.kinds {
+        text += &format!("\n{}: {}\n", kind.name, kind.summary);
+        text += &scenes_of(kind, &listing.scenes);
+    }
+    text += "\nlieflow scenes rigid-body           keys, quantities and an example of a kind\n";
+    text += "lieflow scenes wing-nut > my.toml   a scene to start from\n";
+    text += "lieflow run wing-nut                run it\n";
+    text + "lieflow scenes --all                all of this in full\n"
+}
+
+/// A line for each scene of a kind.
+fn scenes_of(kind: &KindEntry, scenes: &[SceneEntry]) -> String {
+    let scenes = scenes.iter().filter(|scene| scene.problem == kind.name);
+    scenes.map(|scene| format!("    {:<22}{}\n", scene.name, scene.title)).collect()
+}
+
+/// The keys and the quantities of a kind.
+fn meanings(kind: &KindEntry) -> String {
+    let mut text = format!("\n[problem] kind = {:?}: {}\n", kind.name, kind.summary);
+    text += &wrap(kind.equation, "  ");
+    let keys = kind.keys.iter().map(|key| [key.name.into(), key.meaning.into()]);
+    text += &format!("\n{}", entries(["key", "meaning"], keys));
+    let quantity = |q: &Meaning| [q.name.into(), shown_columns(&q.columns), q.meaning.into()];
+    let quantities = kind.quantities.iter().map(quantity);
+    text + "\n" + &entries(["quantity", "columns", "meaning"], quantities)
+}
+
+/// A table whose last column is text of any length.
+fn entries<const N: usize>(header: [&str; N], rows: impl Iterator<Item = [String; N]>) -> String {
+    let rows: Vec<_> = [header.map(Into::into)].into_iter().chain(rows).collect();
+    let width = |i: usize| rows.iter().map(|row| row[i].chars().count()).max().unwrap_or(0) + 2;
+    let widths: Vec<usize> = (0..N - 1).map(width).collect();
+    let indent = " ".repeat(2 + widths.iter().sum::<usize>());
+    let entry = |row: &[String; N]| {
+        let cells = row.iter().zip(&widths).map(|(cell, &width)| format!("{cell:width$}"));
+        format!("  {}{}", cells.collect::<String>(), wrap(&row[N - 1], &indent).trim_start())
+    };
+    rows.iter().map(entry).collect()
+}
+
+/// The names of columns, in one cell of a table.
+fn shown_columns(columns: &[String]) -> String {
+    match columns {
+        [first, .., last] if columns.len() > 4 => format!("{first} … {last}"),
+        columns => columns.join(" "),
+    }
+}
+
+/// All that is known of a kind, with a scene to start from.
+fn kind_in_full(kind: &KindEntry, scenes: &[SceneEntry]) -> String {
+    let mut text = format!("{}\n{UNITS}\n", meanings(kind).trim_start());
+    text += &format!("\nScenes of this kind:\n{}", scenes_of(kind, scenes));
+    if let Some(scene) = scenes.iter().find(|scene| scene.problem == kind.name) {
+        text += &format!("\nAn example, from lieflow scenes {} > my.toml:\n\n", scene.name);
+        text += &scene.text.lines().map(|line| format!("    {line}\n")).collect::<String>();
+    }
+    text
+}
+
+/// Everything of every scene and kind.
+fn in_full(listing: &Listing) -> String {
     let mut text = String::new();
     for scene in &listing.scenes {
         text += &format!("{}: {}\n", scene.name, scene.title);
         text += &wrap(&scene.description, "    ");
     }
     for kind in &listing.kinds {
-        text += &format!("\n[problem] kind = {:?}: {}\n", kind.name, kind.summary);
-        text += &wrap(kind.equation, "  ");
-        for (heading, list) in [("key", &kind.keys), ("quantity", &kind.quantities)] {
-            let rows = list.iter().map(|m| [m.name.into(), m.meaning.into()]);
-            text += &table([heading, "meaning"], rows);
-        }
+        text += &meanings(kind);
     }
-    text + "\nRun one: lieflow run NAME. Start from one: lieflow scenes NAME > my.toml\n"
+    format!(
+        "{text}\n{UNITS}\nRun one: lieflow run NAME. Start from one: lieflow scenes NAME > my.toml\n"
+    )
+}
+
+fn all_scenes() -> Result<Vec<SceneEntry>, CliError> {
+    BUNDLED.iter().map(scene_entry).collect()
+}
+
+fn one(name: &str, args: &ScenesArgs) -> Result<(), CliError> {
+    let stem = name.strip_suffix(".toml").unwrap_or(name);
+    let (scene, kind) = (Bundled::named(stem), Kind::named(name).ok());
+    match (scene.filter(|_| !args.kind), kind) {
+        (Some(scene), _) if args.json => print_json(&scene_entry(scene)?),
+        (Some(scene), kind) => {
+            if let Some(kind) = kind {
+                let name = kind.name;
+                // A reader of the scene alone does not miss it.
+                let note = format!("note: {name} is a kind too: lieflow scenes --kind {name}");
+                let _ = writeln!(io::stderr(), "{note}");
+            }
+            print(scene.text)
+        }
+        (None, Some(kind)) if args.json => print_json(&kind_entry(kind)),
+        (None, Some(kind)) => print(&kind_in_full(&kind_entry(kind), &all_scenes()?)),
+        (None, None) => Err(unknown_scene(name).into()),
+    }
 }
 
 /// Run the command.
@@ -94,17 +184,12 @@ fn in_words(listing: &Listing) -> String {
 /// An unknown name; standard output cannot be written.
 pub fn run(args: &ScenesArgs) -> Result<(), CliError> {
     if let Some(name) = &args.name {
-        let stem = name.strip_suffix(".toml").unwrap_or(name);
-        let scene = Bundled::named(stem).ok_or_else(|| unknown_scene(name))?;
-        return match args.json {
-            true => print_json(&scene_entry(scene)?),
-            false => print(scene.text),
-        };
+        return one(name, args);
     }
-    let scenes = BUNDLED.iter().map(scene_entry).collect::<Result<_, _>>()?;
-    let listing = Listing { scenes, kinds: KINDS.iter().map(kind_entry).collect() };
-    match args.json {
-        true => print_json(&listing),
-        false => print(&in_words(&listing)),
+    let listing = Listing { scenes: all_scenes()?, kinds: KINDS.iter().map(kind_entry).collect() };
+    match (args.json, args.all) {
+        (true, _) => print_json(&listing),
+        (false, true) => print(&in_full(&listing)),
+        (false, false) => print(&overview(&listing)),
     }
 }

@@ -49,28 +49,35 @@ impl Named {
     }
 }
 
+/// A name without what does not count: `SO(4)` is so4.
+pub(super) fn bare(name: &str) -> String {
+    let counts = |c: &char| !matches!(c, '(' | ')' | '_') && !c.is_whitespace();
+    name.chars().filter(counts).flat_map(char::to_lowercase).collect()
+}
+
 /// The names in scenes; `so(p,q)` with numbers for p and q.
 pub(super) const ALGEBRAS: [&str; 5] = ["so", "sl", "gl", "sp", "so(p,q)"];
 
 impl Algebra {
-    /// The algebra of that name, `so`, `so(4)`, `SO(4)` or `so(3,1)`; none for other names.
+    /// The algebra of that name or of its group, and n where the name has it: `so`, `so4`, `SO(4)`, `so(3,1)`; none for
+    /// other names.
     pub(super) fn named(name: &str) -> Option<Named> {
-        let name = name.to_lowercase();
-        let (letters, sizes) = match name.split_once('(') {
-            Some((letters, sizes)) => (letters, sizes.strip_suffix(')')?),
-            None => (name.as_str(), ""),
-        };
-        let sizes = sizes.split(',').map(str::trim).filter(|size| !size.is_empty());
-        let sizes: Vec<usize> = sizes.map(|size| size.parse().ok()).collect::<Option<_>>()?;
-        let algebra = match (letters, &sizes[..]) {
-            ("so", &[p, q]) => Algebra::Indefinite(p, q),
-            ("gl", [] | [_]) => Algebra::Gl,
-            ("sl", [] | [_]) => Algebra::Sl,
-            ("so", [] | [_]) => Algebra::So,
-            ("sp", [] | [_]) => Algebra::Sp,
+        let name = bare(name);
+        let digits = name.find(|c: char| c.is_ascii_digit()).unwrap_or(name.len());
+        let (family, size) = name.split_at(digits);
+        if let Some((p, q)) = size.split_once(',').filter(|_| family == "so") {
+            let algebra = Algebra::Indefinite(p.parse().ok()?, q.parse().ok()?);
+            return Some(Named { algebra, n: None });
+        }
+        let algebra = match family {
+            "gl" => Algebra::Gl,
+            "sl" => Algebra::Sl,
+            "so" => Algebra::So,
+            "sp" => Algebra::Sp,
             _ => return None,
         };
-        Some(Named { algebra, n: if sizes.len() == 1 { Some(sizes[0]) } else { None } })
+        let n = if size.is_empty() { None } else { Some(size.parse().ok()?) };
+        Some(Named { algebra, n })
     }
 
     /// Its name with n.

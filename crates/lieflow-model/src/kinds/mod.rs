@@ -46,6 +46,7 @@ use std::sync::LazyLock;
 
 use lieflow::Error;
 use lieflow::catalog::MethodSpec;
+use lieflow::names::same;
 use lieflow::samples::Samples;
 use serde::{Deserialize, Serialize};
 use toml::de::ValueDeserializer;
@@ -150,7 +151,7 @@ impl Kind {
     /// # Errors
     /// [`Error::UnknownName`].
     pub fn named(name: &str) -> Result<&'static Kind, Error> {
-        KINDS.iter().find(|kind| kind.name == name).ok_or_else(|| Error::UnknownName {
+        KINDS.iter().find(|kind| same(kind.name, name)).ok_or_else(|| Error::UnknownName {
             kind: "kind of problem",
             name: name.into(),
             expected: KINDS.iter().map(|kind| kind.name).collect(),
@@ -162,7 +163,7 @@ impl Kind {
     /// # Errors
     /// [`Error::UnknownName`].
     pub fn quantity(&self, name: &str) -> Result<QuantityInfo, Error> {
-        let quantity = (self.quantities)().into_iter().find(|quantity| quantity.name == name);
+        let quantity = (self.quantities)().into_iter().find(|quantity| same(quantity.name, name));
         quantity.ok_or_else(|| self.unknown_quantity(name))
     }
 

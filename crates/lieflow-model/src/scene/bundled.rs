@@ -1,5 +1,7 @@
 //! The scenes that come with the program.
 
+use lieflow::names::same;
+
 /// A scene that comes with the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Bundled {
@@ -79,7 +81,7 @@ pub(super) fn file(name: &str) -> Option<&'static str> {
 impl Bundled {
     /// The scene of that name.
     pub fn named(name: &str) -> Option<&'static Bundled> {
-        BUNDLED.iter().find(|scene| scene.name == name)
+        BUNDLED.iter().find(|scene| same(scene.name, name))
     }
 
     /// The first paragraph of the comment that the scene starts with.

@@ -9,9 +9,16 @@ use toml::de::{DeArray, DeTable, DeValue, ValueDeserializer};
 
 use super::error::{Mistakes, ReadError, Refusal, SceneError};
 use super::suggest::{help_for, suggest};
+use lieflow::names::near;
 
 /// The keys at the top.
 pub(super) const TOP: &[&str] = &["title", "problem", "method", "time", "events", "output"];
+
+/// The sections that a scene must have, with lines that may stand there.
+const EXAMPLES: [(&str, &str); 2] = [
+    ("problem", "kind = \"rigid-body\"\ninertia = [1, 2, 3]\nomega_body = [0.2, 0, 1]"),
+    ("time", "t_span = [0, 10]"),
+];
 
 /// A parsed scene file.
 pub(super) struct Document<'a> {
@@ -66,7 +73,12 @@ impl<'a> Document<'a> {
     /// A section, as a table.
     pub(super) fn section(&self, name: &str) -> Result<Spanned<DeTable<'a>>, SceneError> {
         match self.root.get(name) {
-            None => Err(self.error(format!("missing section [{name}]"), None)),
+            None => {
+                let example = EXAMPLES.iter().find(|(section, _)| *section == name);
+                let help =
+                    example.map(|(_, lines)| format!("write such lines:\n[{name}]\n{lines}"));
+                Err(self.error(format!("missing section [{name}]"), None).with_help(help))
+            }
             Some(value) => match value.get_ref() {
                 DeValue::Table(table) => Ok(Spanned::new(value.span(), table.clone())),
                 other => {
@@ -105,8 +117,7 @@ impl<'a> Document<'a> {
                 ReadError::Toml(error) => {
                     let wrong = Wrong::of(error.message());
                     if let Wrong::MissingKey(key) = wrong
-                        && suggest(key, &left_out.iter().map(String::as_str).collect::<Vec<_>>())
-                            .is_some()
+                        && left_out.iter().any(|given| suggest(given, &[key]).is_some())
                     {
                         break;
                     }
@@ -161,6 +172,19 @@ impl<'a> Document<'a> {
         checked: Result<T, Refusal>,
     ) -> Result<T, SceneError> {
         checked.map_err(|refusal| self.refusal(section, refusal))
+    }
+
+    /// That nothing of a section was refused; else all refusals with their places.
+    pub(super) fn check_all(
+        &self,
+        section: &str,
+        refusals: Vec<Refusal>,
+    ) -> Result<(), SceneError> {
+        let mut mistakes = Mistakes::default();
+        for refusal in refusals {
+            mistakes.keep::<()>(Err(self.refusal(section, refusal)));
+        }
+        mistakes.or(Some(()))
     }
 
     /// The place that an error in a value at the top is about.
@@ -291,9 +315,9 @@ fn at_entry<'a>(
     }
 }
 
-/// Give an entry the name that was meant, where that is clear and free.
+/// Give an entry the name that is spelt like its own, where that is free.
 fn rename(table: &mut DeTable<'_>, given: &str, names: &[&str]) -> bool {
-    let Some(meant) = suggest(given, names).filter(|meant| !table.contains_key(*meant)) else {
+    let Some(meant) = near(given, names).filter(|meant| !table.contains_key(*meant)) else {
         return false;
     };
     table.remove_entry(given).is_some_and(|(key, value)| {

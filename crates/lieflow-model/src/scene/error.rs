@@ -122,7 +122,7 @@ impl fmt::Display for Mistake {
         let Mistake { source, place, message, help } = self;
         let Some(Place { line, column, shown, caret }) = place else {
             write!(f, "{source}: {message}")?;
-            return help.iter().try_for_each(|help| write!(f, "\n  = {help}"));
+            return write_help(f, "", help.as_deref());
         };
         let number = line.to_string();
         let margin = " ".repeat(number.len());
@@ -131,8 +131,15 @@ impl fmt::Display for Mistake {
         let marks = "^".repeat(caret.len().max(1));
         write!(f, "{source}:{line}:{column}: {message}\n{margin} |\n{number} | {shown}")?;
         write!(f, "\n{margin} | {indent}{marks}")?;
-        help.iter().try_for_each(|help| write!(f, "\n{margin} = {help}"))
+        write_help(f, &margin, help.as_deref())
     }
+}
+
+/// What to do; lines after the first are to be written in the scene.
+fn write_help(f: &mut fmt::Formatter<'_>, margin: &str, help: Option<&str>) -> fmt::Result {
+    let mut lines = help.unwrap_or_default().lines();
+    lines.next().map_or(Ok(()), |first| write!(f, "\n{margin} = {first}"))?;
+    lines.try_for_each(|line| write!(f, "\n{margin}       {line}"))
 }
 
 /// The mistakes that have been found so far.

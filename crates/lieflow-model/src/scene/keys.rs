@@ -1,7 +1,8 @@
 //! The keys of the sections that every scene has.
 
 use lieflow::StepControl;
-use lieflow::catalog::MethodSpec;
+use lieflow::catalog::{MAPS, MethodSpec, TABLEAUS, all_methods};
+use lieflow::names::find;
 use lieflow::tolerance::Rule;
 use lieflow::{Error, SaveAt, TimeGrid};
 use serde::Deserialize;
@@ -30,6 +31,23 @@ impl MethodKeys {
         self.name.is_none()
     }
 
+    /// The names of a method and of its parts that there are not.
+    pub(super) fn unknown_names(&self) -> Vec<Refusal> {
+        let tableaus = || TABLEAUS.iter().map(|info| info.name);
+        let parts: [(&str, &str, &Option<String>, Vec<&str>); 3] = [
+            ("name", "method", &self.name, all_methods().map(|info| info.name).collect()),
+            ("map", "map", &self.map, MAPS.iter().map(|info| info.name).collect()),
+            ("tableau", "tableau", &self.tableau, tableaus().collect()),
+        ];
+        let unknown = parts.into_iter().filter_map(|(key, what, given, names)| {
+            let given = given.as_deref()?;
+            let key = Some(key.to_owned());
+            let known = find(given, names.iter().copied()).is_some();
+            (!known).then(|| Refusal { key, ..Refusal::unknown(what, given, &names) })
+        });
+        unknown.collect()
+    }
+
     /// The method with what it takes by default spelt out, and the layer: the first of those of the
     /// problem where none is named.
     pub(super) fn resolve(
@@ -49,7 +67,7 @@ impl MethodKeys {
             q: self.q.map(|q| usize::try_from(q.0).unwrap_or(usize::MAX)),
         };
         method.info()?;
-        Ok((with_defaults(method), layer))
+        Ok((with_defaults(method.spelt()?), layer))
     }
 }
 
@@ -247,6 +265,15 @@ impl OutputKeys {
     /// Are there times that need not be ends of steps?
     fn has_times(&self) -> bool {
         self.times.is_some() || self.count.is_some() || self.interval.is_some()
+    }
+
+    /// Spell the quantities as the kind does.
+    pub(super) fn spell(&mut self, kind: &Kind) {
+        for name in self.quantities.iter_mut().flatten() {
+            if let Ok(known) = kind.quantity(name) {
+                *name = known.name.into();
+            }
+        }
     }
 
     /// What is wrong with the quantities.

@@ -34,7 +34,7 @@ use self::columns::{Columns, FORMULAS, RowFormula, check_plot, with_formulas};
 use self::document::{Document, read_beside, table};
 use self::error::Mistakes;
 use self::keys::{MethodKeys, Output, OutputKeys, TimeKeys, with_defaults};
-use crate::kinds::{FormulaKeys, Kind, ProblemSpec, SAMPLES};
+use crate::kinds::{FormulaKeys, KINDS, Kind, ProblemSpec, SAMPLES};
 use crate::model::{Layer, Model, Plan, Steps};
 use crate::schema::Schema;
 
@@ -113,6 +113,9 @@ impl Scene {
 
         let method = mistakes.keep(document.keys_if_any::<MethodKeys>("method"));
         let method_left = method.as_ref().is_some_and(MethodKeys::is_left);
+        let unknown = method.as_ref().map_or_else(Vec::new, MethodKeys::unknown_names);
+        let method = method.filter(|_| unknown.is_empty());
+        mistakes.keep(document.check_all("method", unknown));
         let method =
             method.and_then(|method| mistakes.keep(document.check("method", method.resolve(spec))));
 
@@ -132,7 +135,10 @@ impl Scene {
             mistakes.keep(document.check("problem", started.unwrap_or(Ok(()))));
         }
 
-        let output = mistakes.keep(document.keys_if_any::<OutputKeys>("output"));
+        let mut output = mistakes.keep(document.keys_if_any::<OutputKeys>("output"));
+        if let (Some(output), Some(kind)) = (&mut output, kind) {
+            output.spell(kind);
+        }
         let asked = output.as_ref().and_then(|output| output.quantities.clone());
         let quantities_left = asked.is_none();
         let asked = asked.or_else(|| spec.map(defaults::quantities)).unwrap_or_default();
@@ -143,9 +149,7 @@ impl Scene {
             rows: output.as_ref().is_some_and(OutputKeys::leaves_rows),
         };
         if let (Some(output), Some(kind)) = (&output, kind) {
-            for refusal in output.wrong_quantities(kind, spec) {
-                mistakes.keep::<()>(Err(document.refusal("output", refusal)));
-            }
+            mistakes.keep(document.check_all("output", output.wrong_quantities(kind, spec)));
         }
         let output = output.zip(grid).and_then(|(output, grid)| {
             mistakes
@@ -184,7 +188,7 @@ impl Scene {
             let message =
                 "t_span has no end, expected an event with `stop_after` that ends the run";
             let refusal = Refusal::at("t_span".index(1), message);
-            mistakes.keep::<()>(Err(document.refusal("time", refusal)));
+            mistakes.keep(document.check_all("time", vec![refusal]));
         }
 
         let written = output.zip(formulas);
@@ -474,8 +478,14 @@ fn fitting(model: &dyn Model) -> Vec<&'static str> {
 /// No scene has this name.
 pub fn unknown_scene(name: &str) -> SceneError {
     let names: Vec<&str> = BUNDLED.iter().map(|scene| scene.name).collect();
-    SceneError::new(name, "neither a file nor a bundled scene".into())
-        .with_help(Some(help_for(name, &names)))
+    let kinds: Vec<&str> = KINDS.iter().map(|kind| kind.name).collect();
+    let help = match suggest(name, &kinds).filter(|_| suggest(name, &names).is_none()) {
+        Some(kind) => {
+            format!("`{kind}` is a kind of problem: lieflow scenes {kind} lists its scenes")
+        }
+        None => help_for(name, &names),
+    };
+    SceneError::new(name, "neither a file nor a bundled scene".into()).with_help(Some(help))
 }
 
 /// All the text that a reader has; `what` it should be.

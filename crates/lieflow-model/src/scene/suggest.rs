@@ -1,40 +1,172 @@
-//! Names that were meant.
+//! Names that were meant: of keys, kinds and quantities, and those of the library.
 
-/// The name that is closest to what was given, when it is close.
-pub fn suggest<'a>(given: &str, names: &[&'a str]) -> Option<&'a str> {
-    let given = given.to_lowercase().replace('_', "-");
-    let distance = |name: &str| {
-        let name = name.replace('_', "-");
-        // A name that was cut short is close whatever is missing.
-        let cut = given.chars().count() >= 3 && name.starts_with(&given);
-        if cut { 0 } else { strsim::damerau_levenshtein(&given, &name) }
-    };
-    let closest = names.iter().map(|&name| (distance(name), name)).min_by_key(|(d, _)| *d)?;
-    let allowed = match given.chars().count() {
-        0..=2 => 1,
-        3..=5 => 2,
-        n => n / 3,
-    };
-    (closest.0 <= allowed).then_some(closest.1)
+use lieflow::names::{self, Meant, Part};
+
+/// Names of other programs, and what they are in a scene.
+const OTHER_NAMES: &[(&str, &str)] = &[
+    // Sections, and keys at the top.
+    ("name", "title"),
+    ("model", "problem"),
+    ("system", "problem"),
+    ("equation", "problem"),
+    ("integrator", "method"),
+    ("solver", "method"),
+    ("event", "events"),
+    ("save", "output"),
+    // [method]
+    ("method", "name"),
+    ("integrator", "name"),
+    ("solver", "name"),
+    ("scheme", "name"),
+    ("coordinates", "map"),
+    ("butcher", "tableau"),
+    // [time]
+    ("span", "t_span"),
+    ("t_end", "t_span"),
+    ("t_final", "t_span"),
+    ("t_max", "t_span"),
+    ("t1", "t_span"),
+    ("duration", "t_span"),
+    ("h", "dt"),
+    ("step", "dt"),
+    ("step_size", "dt"),
+    ("time_step", "dt"),
+    ("n", "steps"),
+    ("n_steps", "steps"),
+    ("num_steps", "steps"),
+    ("tol", "rtol"),
+    ("rel_tol", "rtol"),
+    ("abs_tol", "atol"),
+    ("first_step", "h_init"),
+    ("max_step", "h_max"),
+    ("min_step", "h_min"),
+    // [[events]]
+    ("terminal", "stop_after"),
+    ("stop", "stop_after"),
+    ("function", "when"),
+    // [output]
+    ("t_eval", "times"),
+    ("save_at", "times"),
+    ("variables", "quantities"),
+    ("columns", "quantities"),
+    ("save_every", "every"),
+    ("stride", "every"),
+    ("points", "count"),
+    ("rows", "count"),
+    // [problem]
+    ("type", "kind"),
+    ("j", "inertia"),
+    ("moments", "inertia"),
+    ("moments_of_inertia", "inertia"),
+    ("tensor", "inertia"),
+    ("gravity", "weight"),
+    ("mgl", "weight"),
+    ("constants", "parameters"),
+    ("params", "parameters"),
+    ("initial", "start"),
+    ("x0", "start"),
+    ("y0", "start"),
+    ("rhs", "field"),
+    ("f", "field"),
+    // Quantities, and keys of the same names.
+    ("omega", "omega_body"),
+    ("omega0", "omega_body"),
+    ("w", "omega_body"),
+    ("w0", "omega_body"),
+    ("angular_velocity", "omega_body"),
+    ("l", "momentum_body"),
+    ("m", "momentum_body"),
+    ("angular_momentum", "momentum_body"),
+    ("angular_momentum", "momentum"),
+    ("orientation", "attitude"),
+    ("rotation", "attitude"),
+    ("rotation_matrix", "attitude"),
+    ("dcm", "attitude"),
+    ("r", "attitude"),
+    ("quat", "quaternion"),
+    ("q", "quaternion"),
+    ("hamiltonian", "energy"),
+    ("kinetic_energy", "energy"),
+    ("nutation_angle", "nutation"),
+    ("theta", "nutation"),
+    // Kinds.
+    ("free_body", "rigid-body"),
+    ("body", "rigid-body"),
+    ("euler_top", "rigid-body"),
+    ("satellite", "driven-body"),
+    ("spacecraft", "driven-body"),
+    ("cubesat", "driven-body"),
+    ("forced_body", "driven-body"),
+    ("torque", "driven-body"),
+    ("top", "heavy-top"),
+    ("lagrange_top", "heavy-top"),
+    ("kovalevskaya_top", "heavy-top"),
+    ("gyroscope", "heavy-top"),
+    ("manakov", "rigid-body-n"),
+    ("ellipsoid", "kirchhoff"),
+    ("underwater_vehicle", "kirchhoff"),
+    ("lie_poisson", "euler"),
+    ("vortices", "fluid"),
+    ("vorticity", "fluid"),
+    ("pendulum", "spherical-pendulum"),
+    ("bloch", "spin"),
+    ("heisenberg", "spin-chain"),
+    ("landau_lifshitz", "spin-chain"),
+    ("spins", "spin-chain"),
+    ("toda_lattice", "toda"),
+    ("brockett", "double-bracket"),
+    ("qr", "qr-flow"),
+    ("pca", "oja"),
+    ("grassmann", "subspace"),
+    ("floquet", "hill"),
+    ("accelerator", "beam-line"),
+    ("fodo", "beam-line"),
+    ("lattice", "beam-line"),
+    ("electron", "lorentz"),
+    ("particle", "lorentz"),
+    ("quantum", "schrodinger"),
+    ("schroedinger", "schrodinger"),
+    ("ode", "matrix-ode"),
+    ("matrix", "matrix-ode"),
+    ("lie_group", "matrix-ode"),
+    ("custom", "matrix-ode"),
+    ("lyapunov_exponents", "lyapunov"),
+    ("coupled", "composed"),
+    ("system", "composed"),
+    ("product", "composed"),
+];
+
+/// The name that was meant, when that is clear.
+fn meant<'a>(given: &str, names: &[&'a str]) -> Option<Meant<'a>> {
+    let spelt = || names::find(given, names.iter().copied());
+    let mut other = OTHER_NAMES.iter().filter(|(other, _)| names::same(other, given));
+    let mut other = || other.find_map(|(_, name)| names.iter().find(|listed| *listed == name));
+    let name = spelt().or_else(|| other().copied());
+    name.map(|name| Meant { name, part: None }).or_else(|| names::meant(given, names))
 }
 
-/// More names than this are not listed.
-const LISTED: usize = 200;
+/// The name that was meant, when that is clear.
+pub fn suggest<'a>(given: &str, names: &[&'a str]) -> Option<&'a str> {
+    meant(given, names).map(|meant| meant.name)
+}
 
-/// What was expected instead of `given`, and which of it was meant.
+/// What was expected instead of `given`, and which of it was meant: first, and with the lines to write.
 pub fn help_for(given: &str, names: &[&str]) -> String {
-    let expected = match names {
-        [] => "nothing is expected here".into(),
-        [name] => format!("expected {name}"),
-        [first @ .., _] if first.len() >= LISTED => {
-            format!("expected one of {}, …", first[..LISTED].join(", "))
+    let meant = meant(given, names).map(|Meant { name, part }| match part {
+        None => format!("did you mean `{name}`?"),
+        Some(part) => {
+            let (what, part) = match part {
+                Part::Tableau(part) => ("tableau", part),
+                Part::Map(part) => ("map", part),
+            };
+            let is = match names::same(given, part) {
+                true => format!("a {what}"),
+                false => format!("method `{name}` with {what} `{part}`"),
+            };
+            format!("`{given}` is {is}:\nname = \"{name}\"\n{what} = \"{part}\"")
         }
-        names => format!("expected one of {}", names.join(", ")),
-    };
-    match suggest(given, names) {
-        Some(name) => format!("{expected}; did you mean `{name}`?"),
-        None => expected,
-    }
+    });
+    names::expected(meant.as_deref(), names)
 }
 
 #[cfg(test)]
@@ -44,19 +176,39 @@ mod tests {
     #[test]
     fn close_names_are_suggested_and_others_are_not() {
         let names = ["inertia", "inverse_inertia", "omega_body"];
-        assert_eq!(suggest("inertai", &names), Some("inertia"));
-        assert_eq!(suggest("omega-body", &names), Some("omega_body"));
-        assert_eq!(suggest("Inertia", &names), Some("inertia"));
-        assert_eq!(suggest("omega", &names), Some("omega_body"));
+        for (given, meant) in [
+            ("inertai", "inertia"),
+            ("Inertia", "inertia"),
+            ("J", "inertia"),
+            ("omega-body", "omega_body"),
+            ("omega", "omega_body"),
+            ("angular velocity", "omega_body"),
+        ] {
+            assert_eq!(suggest(given, &names), Some(meant), "{given}");
+        }
         assert_eq!(suggest("colour", &names), None);
         assert_eq!(suggest("x", &[]), None);
+        // One letter is close to every other.
+        assert_eq!(suggest("c", &["t", "x"]), None);
     }
 
     #[test]
-    fn the_help_lists_the_names() {
+    fn the_help_begins_with_what_was_meant() {
         assert_eq!(
             help_for("exq", &["exp", "cay"]),
-            "expected one of exp, cay; did you mean `exp`?"
+            "did you mean `exp`? (expected one of exp, cay)"
+        );
+        assert_eq!(help_for("none", &["exp", "cay"]), "expected one of exp, cay");
+        // Of a long list only that.
+        let many: Vec<String> = (0..40).map(|i| format!("method{i}")).collect();
+        let many: Vec<&str> = many.iter().map(String::as_str).collect();
+        assert_eq!(help_for("methot7", &many), "did you mean `method7`?");
+        assert!(help_for("xxxx", &many).starts_with("expected one of method0, method1"));
+        // A part of a method comes with the lines to write.
+        let methods = ["rkmk4", "rkmk"];
+        assert_eq!(
+            help_for("dopri5", &methods),
+            "`dopri5` is a tableau:\nname = \"rkmk\"\ntableau = \"dopri5\""
         );
     }
 }

@@ -20,7 +20,7 @@ use lieflow::groups::GroupMatrix;
 
 use self::group::WithGroup;
 use self::vectors::Vectors;
-use super::algebra::{ALGEBRAS, Algebra};
+use super::algebra::{ALGEBRAS, Algebra, bare};
 use super::entries::rows;
 use super::prelude::*;
 use super::system::PointOf;
@@ -51,13 +51,13 @@ keys! { Keys [formula_keys] {
 
 fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
     let keys = Keys::deserialize(section)?;
-    match (keys.algebra.as_str(), Algebra::named(&keys.algebra)) {
+    match (bare(&keys.algebra).as_str(), Algebra::named(&keys.algebra)) {
         ("so3", _) => Ok(Box::new(Stated(Vectors::<3>::read(keys)?))),
         ("se3", _) => Ok(Box::new(Stated(Vectors::<6>::read(keys)?))),
         (_, Some(named)) => Ok(matrices::on(named, keys)?),
-        (name, None) => {
+        (_, None) => {
             let names = [&ALGEBRAS[..], &["so3", "se3"]].concat();
-            Err(Refusal::unknown("algebra", name, &names).into())
+            Err(Refusal::unknown("algebra", &keys.algebra, &names).into())
         }
     }
 }

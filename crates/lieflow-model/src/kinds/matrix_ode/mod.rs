@@ -34,7 +34,7 @@ pub(super) const KIND: Kind = Kind {
 };
 
 keys! { Keys [sample_keys formula_keys] {
-    group: String = "\"so\", \"sl\", \"gl\", \"sp\" or \"so(p,q)\"",
+    group: String = "\"so\", \"sl\", \"gl\", \"sp\" or \"so(p,q)\"; also with n, as \"SO(4)\"",
     action: Option<String> =
         "\"translation\", \"linear\", \"conjugation\", \"coadjoint\" or, of sp, \"lagrangian\"; optional: \
          translation",
