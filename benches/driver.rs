@@ -1,7 +1,7 @@
-//! What the driver costs beside its steps: `cargo bench --bench driver`.
+//! The cost of the driver in addition to its steps: `cargo bench --bench driver`.
 //!
-//! Each run is measured beside the one that it is compared with, in turns; what is printed is the median of the ratios
-//! of the rounds.
+//! Each run takes turns with the run that it is compared with. The number printed is the median of the ratios of the
+//! rounds.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -29,7 +29,7 @@ fn ratio(name: &str, goal: &str, mut beside: impl FnMut(), mut run: impl FnMut()
     let mut ratios = Vec::new();
     let mut least = [f64::INFINITY; 2];
     for round in 0..ROUNDS {
-        // The one that goes first changes with each round.
+        // The first one changes with each round.
         let [a, b] = match round % 2 {
             0 => [time(&mut beside), time(&mut run)],
             _ => {
@@ -45,8 +45,8 @@ fn ratio(name: &str, goal: &str, mut beside: impl FnMut(), mut run: impl FnMut()
     println!("{name:58} {median:6.3} (of the fastest rounds {fastest:6.3}), goal {goal}");
 }
 
-/// The steps of a grid and nothing else. The problem and the method are not known to the compiler as numbers, as they
-/// are not in a program that reads them.
+/// The steps of a grid and nothing else. The compiler does not know the numbers of the problem and the method, as in a
+/// program that reads them.
 fn loop_of_steps<P: Problem<Group: LieAlgebra<Scalar = f64>>, M: Method<P>>(
     problem: &P,
     method: &M,
@@ -106,12 +106,12 @@ fn main() {
         },
     );
 
-    // Steps by their error.
+    // Adaptive step size.
     let solve = || Solve::new(&body, &dopri5, [0.0, 2000.0]).tolerances(1e-9, 1e-12);
     let plain = || {
         black_box(solve().run(START).expect("a run").y);
     };
-    println!("{} steps by their error", solve().run(START).expect("a run").stats.accepted);
+    println!("{} adaptive steps", solve().run(START).expect("a run").stats.accepted);
     let times: Vec<f64> = (1..=1000).map(|i| 2.0 * f64::from(i)).collect();
     ratio("a thousand output times in an adaptive run", "1.10", plain, || {
         let run = solve().times(&*times).run_with(START, |_, y| {

@@ -1,5 +1,6 @@
-//! Many free rigid bodies in lanes beside a loop over the same bodies, one after the other, by the same
-//! methods: nanoseconds for a body and a step, minimum over rounds that take turns.
+//! Many free rigid bodies in SIMD lanes, compared with a loop over the same bodies by the same methods.
+//!
+//! Prints nanoseconds for a body and a step, the minimum over rounds that take turns.
 //!
 //! `cargo bench --bench ensemble`
 
@@ -16,7 +17,7 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
 const ROUNDS: usize = 15;
-/// Every contestant is given this many body-steps a round.
+/// The number of body-steps in a round of each contestant.
 const WORK: usize = 1 << 18;
 const H: f64 = 0.02;
 

@@ -1,7 +1,7 @@
-//! The dense matrix exponential beside nalgebra's: interleaved rounds, the minimum of each.
+//! The dense matrix exponential compared with nalgebra's: interleaved rounds, the minimum of each.
 //!
 //! `cargo bench --bench expm` prints one row for each n and norm: nanoseconds, the ratio, and the
-//! cost in products of the same size. Arguments: a list of n to restrict to, and of kinds (so, sp,
+//! cost in products of the same size. Arguments select sizes n and kinds (so, sp,
 //! gl).
 
 use std::hint::black_box;
@@ -76,7 +76,7 @@ where
     })
 }
 
-/// nalgebra on a matrix of fixed size where it has one here, else of dynamic size.
+/// nalgebra's exp, on a matrix of fixed size for small n, else of dynamic size.
 fn peer(u: &Mat<f64>) -> Box<dyn FnMut()> {
     match u.nrows() {
         3 => fixed::<3>(u),

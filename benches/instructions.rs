@@ -1,6 +1,6 @@
-//! What `instructions.sh` counts: one function, called again and again.
+//! The program for `instructions.sh`: it calls one function again and again.
 //!
-//! `instructions NAME CALLS` evaluates NAME that often; without arguments it lists the names.
+//! `instructions NAME CALLS` calls the function NAME that many times. Without arguments it lists the names.
 
 use std::hint::black_box;
 

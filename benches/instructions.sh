@@ -1,6 +1,6 @@
 #!/bin/sh
-# Instructions a call of the maps, counted by callgrind: compared with benches/instructions.toml, and an
-# error where one differs by more than 2 %. `--record` writes the file anew. Needs valgrind.
+# Counts the instructions of a call of each map with callgrind, and compares them with benches/instructions.toml.
+# It fails if one differs by more than 2 %. `--record` writes the file again. Needs valgrind.
 set -eu
 cd "$(dirname "$0")/.."
 file=benches/instructions.toml
@@ -10,7 +10,7 @@ counted() { # NAME CALLS
         sed -n 's/.*Collected : *//p'
 }
 found=$(for name in $("$bench"); do
-    # The difference of two runs: what starts the process is in both.
+    # The difference of two runs, because both contain the start of the process.
     few=$(counted "$name" 200)
     many=$(counted "$name" 600)
     echo "$name = $(((many - few) / 400))"

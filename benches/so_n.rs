@@ -1,11 +1,9 @@
-//! Steps of order 4 on so(n) beside the same step written plainly over nalgebra: `cargo bench --bench
-//! so_n`.
+//! Steps of order 4 on so(n) compared with the same step by hand over nalgebra: `cargo bench --bench so_n`.
 //!
-//! The n-dimensional body ṁ = [m, Ω] with J_ij = λ_i + λ_j, λ_i = 1 + i/n, |m|₂ = 1, h = 1/2. By
-//! hand: RKMK4 with exp, nalgebra's `exp`, products in full, [u, v] = uv − vu, dexp⁻¹ to the second
-//! bracket. Times are the minimum over rounds in which all take turns; errors are those at t = 4, and
-//! `equal` is the time of one step that has the error of the step by hand, t·(e/e₀)^(1/4), relative to
-//! it.
+//! The n-dimensional body ṁ = [m, Ω] with J_ij = λ_i + λ_j, λ_i = 1 + i/n, |m|₂ = 1, h = 1/2. The
+//! step by hand is RKMK4 with nalgebra's `exp`, full products, [u, v] = uv − vu, and dexp⁻¹ to the second bracket.
+//! Times are the minimum over rounds in which all take turns. Errors are those at t = 4. `equal` compares the times of
+//! steps with equal error: t·(e/e₀)^(1/4) is the time of a step that has the error of the step by hand.
 
 use std::hint::black_box;
 use std::time::Instant;

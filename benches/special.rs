@@ -1,12 +1,12 @@
-//! The special methods against loops by hand and against what is general: `cargo bench --bench special`.
+//! The special methods compared with loops by hand and with general methods: `cargo bench --bench special`.
 //!
-//! 1. A step on so(3) beside the same step written out on arrays.
+//! 1. A step on so(3), compared with the same step written out on arrays.
 //! 2. The attitude of the free body at T = 100 (J = 1, 4, 18, m = (0, 2.75, 2.75)): the time to reach
-//!    an error, the best over tolerances or steps, beside DOP853 on the group and on
+//!    an error, the best over tolerances or steps, compared with DOP853 on the group and on
 //!    the nine entries.
 //! 3. The exact motion at one time.
 //!
-//! Minimum over rounds in which all take turns.
+//! Times are the minimum over rounds in which all take turns.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -39,7 +39,7 @@ const H: f64 = 0.01;
 /// Steps in one call.
 const STEPS: usize = 1000;
 
-/// Steps of a method that is known where the loop is compiled, as the coefficients by hand are.
+/// Steps of a method whose coefficients the compiler knows, as in the loop by hand.
 macro_rules! library {
     ($name:literal, $method:expr) => {{
         let body = RigidBody::new(INERTIA).expect("a body");

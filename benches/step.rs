@@ -1,7 +1,6 @@
 //! One step of each method on the rigid body: `cargo bench --bench step`.
 //!
-//! Beside RKMK4 on so(3) stands the same step written out by hand on arrays, so that what the
-//! abstraction costs is seen.
+//! RKMK4 on so(3) is compared with the same step written by hand on arrays, which shows the cost of the abstraction.
 
 use std::hint::black_box;
 

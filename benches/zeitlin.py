@@ -1,15 +1,14 @@
-"""The fluid on the sphere beside quflow: the same flow, the same N, the same start, in turns.
+"""Compares the fluid on the sphere with quflow: the same flow, the same N, the same start, in turns.
 
-    cargo bench --bench zeitlin --no-run       # says where the executable is
+    cargo bench --bench zeitlin --no-run       # prints the path of the executable
     OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 NUMBA_NUM_THREADS=1 \\
         python benches/zeitlin.py EXECUTABLE [N ...]
 
-needs quflow (github.com/klasmodin/quflow) and what it imports. h = ħ/4, a random field of l < 10.
-Ours with its own tolerance, which is rounding, and with 1e-10; quflow with its own tolerance, and
-iterated to rounding (tol = 1e-16·‖W‖, compensated, as many iterations as it takes). Rows of about
-the same `spectrum` and `error` are to be compared: `error` is the distance to the state of ours,
-relative; `spectrum` the largest change of an eigenvalue. Times are thread CPU time, the minimum over
-rounds.
+It needs quflow (github.com/klasmodin/quflow) and its dependencies. h = ħ/4, a random field of l < 10.
+lieflow runs with its default tolerance, which is rounding, and with 1e-10. quflow runs with its default
+tolerance, and to rounding (tol = 1e-16·‖W‖, compensated, any number of iterations). Compare rows of about
+the same `spectrum` and `error`: `error` is the relative distance to the state of lieflow, `spectrum` the
+largest change of an eigenvalue. Times are CPU times of the thread, the minimum over rounds.
 """
 import subprocess
 import sys

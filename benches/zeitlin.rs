@@ -1,12 +1,12 @@
-//! Fluids on the sphere: `cargo bench --bench zeitlin [N …]`, 32 to 512 where none is given.
+//! Fluids on the sphere: `cargo bench --bench zeitlin [N …]`, by default N = 32 to 512.
 //!
-//! A random field of l < 10 with the root mean square 1, h = ħ/4. Times are those of the thread, the
-//! minimum over rounds in which both midpoint rules take turns; iterations are those of a step, with
-//! those in which the cubic term was computed.
+//! A random field of l < 10 with the root mean square 1, h = ħ/4. Times are CPU times of the thread, the
+//! minimum over rounds in which both midpoint rules take turns. The columns `it.` and `cubic` are the iterations of a
+//! step, and those in which the cubic term was computed.
 //!
-//! With `--exchange DIR N STEPS TOLERANCE` one run of each rule starts from DIR/start, which is made
-//! where it does not exist, ends in DIR/isospectral and DIR/energy, and prints ms a step: for
-//! `benches/zeitlin.py`, which sets quflow beside it. The files are N×N complex numbers, row by row.
+//! With `--exchange DIR N STEPS TOLERANCE` one run of each rule starts from DIR/start, which is made if it does not
+//! exist. The results are in DIR/isospectral and DIR/energy, and ms a step are printed. `benches/zeitlin.py` uses this
+//! to compare with quflow. The files are N×N complex numbers, row by row.
 
 use std::fs;
 use std::io::Read;
@@ -20,7 +20,7 @@ use lieflow::{Method, Step};
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
 
-/// Seconds that this thread has run.
+/// The CPU time of this thread in seconds.
 fn thread_seconds() -> f64 {
     let mut text = String::new();
     let read =

@@ -1,7 +1,7 @@
-//! A controller that owns the loop: it reads the state twenty times a second, and sets the torque until the next time.
+//! A controller in its own loop: it reads the state twenty times a second and sets the torque for the next interval.
 //!
-//! The satellite is on SO(3) × T(3), its attitude and its momentum in space. Between two calls of the controller the torque
-//! is constant, so that no step sees a jump; the driver chooses the steps between them.
+//! The state of the satellite is on SO(3) × T(3): its attitude and its momentum in space. The torque is constant between
+//! two calls of the controller, so it does not jump within a step. The driver chooses the steps.
 //!
 //! ```sh
 //! cargo run --release --example control_loop
@@ -15,7 +15,7 @@ use nalgebra::{Matrix3, Vector3};
 
 type V = Vector3<f64>;
 
-/// Where g would turn, times its sine: half of the skew part of g.
+/// The axis of the rotation g, times the sine of its angle: half of the skew part of g.
 fn turned_away(g: &Matrix3<f64>) -> V {
     0.5 * V::new(g[(2, 1)] - g[(1, 2)], g[(0, 2)] - g[(2, 0)], g[(1, 0)] - g[(0, 1)])
 }
@@ -25,7 +25,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let torque = Cell::new(V::zeros());
     let satellite = TorqueBody::new(inertia.into(), BodyTorque(|_: &BodyMotion| torque.get()))?;
     let method = Rkmk::new(DOPRI5, Exp);
-    // Turned by 2 about an oblique axis, and tumbling.
+    // The satellite is turned by 2 radian about an oblique axis, and tumbles.
     let attitude = *nalgebra::Rotation3::new(V::new(1.2, -1.2, 1.0)).matrix();
     let start = (attitude, attitude * V::new(0.3, 0.8, -0.5));
     let mut run = Solve::new(&satellite, &method, [0.0, f64::INFINITY])
@@ -43,7 +43,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 omega.norm()
             );
         }
-        // What a reaction wheel can do, at most 0.5 on each axis.
+        // A reaction wheel gives at most 0.5 about each axis.
         let wanted = -turned_away(g) - 2.0 * omega;
         torque.set(wanted.map(|x| x.clamp(-0.5, 0.5)));
         run.advance_to(0.05 * f64::from(call + 1))?;

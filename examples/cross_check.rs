@@ -1,5 +1,6 @@
-//! General against specialised: the matrix layer at n = 3 and the closed formulas on so(3) are the
-//! same maps, and every group keeps its laws. This is `lieflow::check`, which any group can join.
+//! Compares the matrix code at n = 3 with the closed formulas on so(3), and checks the laws of several groups.
+//!
+//! It uses `lieflow::check`, which takes any group, also your own.
 //!
 //! ```sh
 //! cargo run --release --example cross_check
@@ -21,7 +22,7 @@ fn table(title: &str, findings: &[Finding]) {
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let rng = &mut Pcg64::seed_from_u64(1);
-    println!("Differences in units of ε·cond·size: 1 is what one rounding of the input changes.\n");
+    println!("Differences in units of ε·cond·size. 1 is the change by rounding the input once.\n");
     table("Maps on both layers, |u| from 1e-320 to 3e14", &maps_agree(rng, 5000)?);
     table("One step of RKMK4 on both layers", &steps_agree(rng, 200)?);
 

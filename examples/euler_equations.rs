@@ -1,5 +1,5 @@
-//! Euler's equations from a Hamiltonian and nothing else: an ellipsoid in an ideal fluid on se(3)*,
-//! and two bodies that feel each other on so(3)* × so(3)*.
+//! Euler's equations from a Hamiltonian: an ellipsoid in an ideal fluid on se(3)*, and two coupled bodies on
+//! so(3)* × so(3)*.
 //!
 //! ```sh
 //! cargo run --release --example euler_equations
@@ -33,14 +33,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("  energy and Casimir   {:8.1e} {:8.1e}", drift(&m).0, drift(&m).1);
     assert!(drift(&m).0.abs() < 1e-11 && drift(&m).1.abs() < 1e-11);
 
-    // Where it went: with g the same equations move the body through space.
+    // With g in the state the same equations give the place of the body in space.
     let both = body.with_group();
     let mut y = (Se3::<f64>::new().identity(), start);
     integrate(&both, &Rkmk::new(RK4, Exp), &grid, &SaveAt::Ends, &mut y, |_, _| {})?;
     println!("  it drifted to {:.2?}", y.0.1.as_slice());
 
-    // Any H with its gradient, on any group: here the coupling is not quadratic. With the gradient on the
-    // way between two momenta too, methods that keep the energy run.
+    // H may be any function with a gradient, on any group; here the coupling is not quadratic. Methods that conserve
+    // the energy also need a discrete gradient: here the mean of the gradients between two momenta.
     let j = V::new(1.0, 2.0, 3.5);
     let energy = move |m: &(V, V)| {
         0.5 * (m.0.dot(&m.0.component_div(&j)) + m.1.dot(&m.1.component_div(&j)))

@@ -13,7 +13,7 @@ type V = Vector3<f64>;
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let method = Rkmk::new(DOPRI5, Exp);
 
-    // A body that turns about its middle axis turns over, again and again (Dzhanibekov). The third flip ends the run.
+    // A body that rotates about its middle axis flips again and again (Dzhanibekov). The third flip ends the run.
     let body = RigidBody::<f64>::new([1.0, 2.0, 3.0])?;
     let start = V::new(0.01, 3.0, 0.01);
     let run = Solve::new(&body, &method, [0.0, f64::INFINITY])
@@ -29,7 +29,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         println!("  {} moved by {:.1e}", drift.name, drift.largest);
     }
 
-    // The same, but at each flip a thruster takes a tenth of the momentum.
+    // The same body, but at each flip a thruster removes a tenth of the momentum.
     let brake = Event::new("brake", |_, m: &V| m.y).change(|_, m| *m *= 0.9);
     let braked =
         Solve::new(&body, &method, [0.0, 90.0]).tolerances(1e-11, 1e-13).event(brake).run(start)?;
@@ -38,7 +38,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         println!("  {:9.6} later, |m| = {:.6}", pair[1].t - pair[0].t, pair[1].y.norm());
     }
 
-    // A pendulum that is let go at a right angle: from one lowest point to the next but one.
+    // A pendulum starts at a right angle. Its period is the time from one lowest point to the second after it.
     let pendulum = SphericalPendulum::new(1.0)?;
     let run = Solve::new(&pendulum, &method, [0.0, f64::INFINITY])
         .tolerances(1e-12, 1e-12)

@@ -1,8 +1,8 @@
-//! Ideal fluids: vortices on a sphere and a shear layer on a torus, with what each run keeps.
+//! Ideal fluids: vortices on a sphere and a shear layer on a torus, with the invariants of each run.
 //!
 //! ```sh
 //! cargo run --release --example fluid           # invariants
-//! cargo run --release --example fluid -- DIR    # and the vorticity as pictures in DIR
+//! cargo run --release --example fluid -- DIR    # also writes pictures of the vorticity to DIR
 //! ```
 
 use std::f64::consts::PI;
@@ -23,7 +23,7 @@ fn main() -> Result<(), Anything> {
         None => Ok(()),
     };
 
-    // Five vortices; one turns the other way.
+    // Five vortices. One of them rotates in the other direction.
     let sphere = Zeitlin::sphere(48)?;
     let vortices = [(0.6, -2.0), (0.7, -1.3), (-0.4, 0.5), (0.1, 1.2), (-0.8, 2.4)];
     let vortices = vortices.map(|(latitude, longitude)| Vortex {
@@ -39,7 +39,7 @@ fn main() -> Result<(), Anything> {
     report(&sphere, FluidMidpoint::energy(), &mut w, 40.0, 0.02)?;
     picture("sphere.ppm", sphere.on_grid(&w, 180, 360))?;
 
-    // A jet along x with a disturbance, which it amplifies: Kelvin and Helmholtz's instability.
+    // A jet along x amplifies a small disturbance: the instability of Kelvin and Helmholtz.
     let torus = Zeitlin::torus(49)?;
     let jet = |k: i32| ([0, k], [0.0, 0.6 * (-0.02 * f64::from(k * k)).exp()]);
     let mut modes: Vec<_> = (1..8).map(jet).collect();
@@ -50,7 +50,7 @@ fn main() -> Result<(), Anything> {
     picture("torus.ppm", torus.on_grid(&w, 200, 200))
 }
 
-/// Run, and say how far each invariant has moved.
+/// Run, and print how far each invariant has moved.
 fn report<S: Surface>(
     fluid: &Zeitlin<S>,
     method: FluidMidpoint,

@@ -1,5 +1,6 @@
-//! Heavy tops: Lagrange's, Kovalevskaya's and a general one, with what each keeps; and the same top as
-//! a rigid body under the torque of gravity.
+//! Heavy tops: Lagrange's, Kovalevskaya's and a general one, with the invariants of each.
+//!
+//! Then the general top again, as a rigid body under the torque of gravity.
 //!
 //! ```sh
 //! cargo run --release --example heavy_top
@@ -25,12 +26,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         integrate(&top, &method, &grid, &SaveAt::Ends, &mut y, |_, _| {})?;
         println!("{name}: the vertical in the body is {:.4?}", y.1.as_slice());
         for ((what, a), b) in top.invariants().iter().zip(before).zip(top.values(&y)) {
-            let by = if what.origin == Origin::Action { "the action" } else { "the flow" };
-            println!("  {:24} kept by {by:10} {a:9.6}, drift {:8.1e}", what.name, b - a);
+            let by = if what.origin == Origin::Action { "Lie group methods" } else { "the motion" };
+            println!("  {:24} conserved by {by:17} {a:9.6}, drift {:8.1e}", what.name, b - a);
         }
     }
 
-    // The general top again, with its attitude, by the torque that gravity has in space.
+    // The general top again, with its attitude and the torque of gravity in space.
     let w = Vector3::from(weight);
     let gravity = SpaceTorque(move |at: &BodyMotion| Vector3::z().cross(&(at.attitude * w)));
     let body = TorqueBody::new(inertia, gravity)?;

@@ -1,5 +1,7 @@
-//! Flows that keep eigenvalues: Toda's lattice sorts its momenta, Brockett's double bracket a list of
-//! numbers, and the QR flow passes through the iterates of the QR algorithm.
+//! Flows that conserve eigenvalues: Toda's lattice, Brockett's double bracket and the QR flow.
+//!
+//! Toda's lattice sorts its momenta, and the double bracket sorts a list of numbers. The QR flow passes through the
+//! iterates of the QR algorithm.
 //!
 //! ```sh
 //! cargo run --release --example isospectral
@@ -31,8 +33,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     integrate(&toda, &Rk(RK4), &grid, &SaveAt::Ends, &mut by_entries, |_, _| {})?;
     let momenta: Vec<_> = diagonal(&on_group).iter().map(|x| -2.0 * x).collect();
     println!("Toda: momenta after the last collision {momenta:.4?}");
-    println!("  eigenvalues moved by {:.0e} on the group", moved(&on_group, &start)?);
-    println!("  and by {:.0e} with Runge–Kutta on the entries", moved(&by_entries, &start)?);
+    println!("  eigenvalues moved by {:.0e} with a Lie group method", moved(&on_group, &start)?);
+    println!(
+        "  eigenvalues moved by {:.0e} with Runge–Kutta on the entries",
+        moved(&by_entries, &start)?
+    );
     assert!(moved(&on_group, &start)? < 1e-13);
 
     let list = [3.0, 1.0, 4.0, 1.5, 2.0];

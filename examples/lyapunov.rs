@@ -1,4 +1,4 @@
-//! Lyapunov exponents of a vector field of one's own by continuous QR on SO(n): Lorenz's attractor.
+//! Lyapunov exponents of your own vector field, by continuous QR on SO(n): Lorenz's attractor.
 //!
 //! ```sh
 //! cargo run --release --example lyapunov

@@ -1,5 +1,6 @@
-//! A cloud of rigid bodies that tumble, each with its own inertia, in SIMD lanes on two threads: its
-//! energy, its momenta in space, and where the third axes point in the end.
+//! Many tumbling rigid bodies, each with its own inertia, in SIMD lanes on two threads.
+//!
+//! Prints the energy, the momenta in space, and the mean direction of the third axes.
 
 use lieflow::ensemble::{Ensemble, EnsembleMethod};
 use nalgebra::{Matrix3, Vector3};
@@ -25,7 +26,7 @@ fn main() -> Result<(), lieflow::Error> {
         let drift = energy(&cloud) / start - 1.0;
         println!("t = {:2}: energy {drift:+.1e}, mean third axis {:.3}", 5 * k, mean.norm());
     }
-    // At the start g = 𝟙: the momentum in space is that in the body.
+    // At the start g = 𝟙: the momentum in space equals that in the body.
     let moved = |i: usize| {
         let in_space = cloud.attitude(i).zip(cloud.momentum(i)).map(|(g, m)| g * m);
         in_space.map_or(f64::NAN, |m| (m - Vector3::from(momentum[i])).norm())

@@ -1,6 +1,7 @@
-//! A group of one's own, from outside the crate: the unit quaternions SU(2) ≅ S³ as four plain
-//! numbers. The library's Cayley map is taught the group, its laws are checked, and a rigid body
-//! turns by quaternions exactly as it does by rotation matrices.
+//! Your own group, outside the crate: the unit quaternions SU(2) ≅ S³ as four plain numbers.
+//!
+//! The example implements the library's Cayley map for the group and checks its laws. Then a rigid body turns by
+//! quaternions, and the result is compared with that by rotation matrices.
 //!
 //! ```sh
 //! cargo run --release --example own_group
@@ -85,7 +86,7 @@ impl LieGroup for Su2 {
     }
 }
 
-/// cay(u) = (1 + u/2)/|1 + u/2|. dcay⁻¹ is that of so(3): it depends on the algebra alone.
+/// cay(u) = (1 + u/2)/|1 + u/2|. dcay⁻¹ is that of so(3), because it depends only on the algebra.
 impl CoordinateMap<Su2> for Cay {
     type At = ();
 

@@ -1,5 +1,4 @@
-//! Linear Hamiltonian systems with periodic coefficients: the stability chart of Mathieu's equation,
-//! and a FODO cell of a beam line with its tunes.
+//! Linear Hamiltonian systems with periodic coefficients: Mathieu's stability chart, and the tunes of a FODO cell.
 //!
 //! ```sh
 //! cargo run --release --example periodic

@@ -1,5 +1,6 @@
-//! Systems composed from unlike parts, on products of groups: a spin coupled to an oscillator, against its
-//! closed form; and a satellite, its attitude and a wheel, whose angular momentum in space stands still.
+//! Systems of unlike parts, on products of groups: a spin with an oscillator, and a satellite with a wheel.
+//!
+//! The first has a solution in closed form. The total angular momentum in space of the second is constant.
 //!
 //! ```sh
 //! cargo run --release --example products
@@ -10,8 +11,10 @@ use lieflow::groups::{Product, Translations};
 use lieflow::prelude::*;
 use nalgebra::{Matrix3, Vector3};
 
-/// From (−e₃, (2, 0)): in the frame that turns with the field the angle of the spin from −e₃ is that of a
-/// pendulum that comes to rest at the top, sin(a/2) = tanh kt.
+/// The exact solution from (−e₃, (2, 0)).
+///
+/// In the frame that turns with the field, the angle a of the spin from −e₃ is that of a pendulum which comes to rest at
+/// the top: sin(a/2) = tanh kt.
 fn exact(w: f64, k: f64, t: f64) -> (Vector3<f64>, (f64, f64)) {
     let (half, (sine, cosine)) = ((k * t).tanh(), (w * t).sin_cos());
     let rest = 1.0 / (k * t).cosh();
@@ -21,8 +24,8 @@ fn exact(w: f64, k: f64, t: f64) -> (Vector3<f64>, (f64, f64)) {
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    // H = w s₃ + w (q² + p²)/2 + k (q s₁ − p s₂): ṡ = ∇_s H × s, q̇ = ∂H/∂p, ṗ = −∂H/∂q. The action is linear
-    // on each part: a rotation turns s, a translation moves (q, p).
+    // H = w s₃ + w (q² + p²)/2 + k (q s₁ − p s₂): ṡ = ∇_s H × s, q̇ = ∂H/∂p, ṗ = −∂H/∂q. A rotation
+    // turns s, and a translation moves (q, p).
     let (w, k) = (3.0, 0.5);
     let pair = Product(So3::<f64>::new(), Translations::new((0.0, 0.0), 2));
     let system = Flow::new(pair, Linear, |_, (s, (q, p)), v| {
@@ -38,9 +41,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         println!("  {steps:4} steps: {error:.1e}, |s| − 1 = {:8.1e}", y.0.norm() - 1.0);
     }
 
-    // m in the body, g from body to space, and the wheel's momentum h about the first axis, which a motor
-    // turns with the torque u: ṁ = m × ω, ġ = gω̂, ḣ = u, with ω = J⁻¹(m − h e₁). m is turned; g and h are
-    // multiplied.
+    // The state is m in the body, g from body to space, and the momentum h of the wheel about the first axis. A motor
+    // turns the wheel with the torque u: ṁ = m × ω, ġ = gω̂, ḣ = u, with ω = J⁻¹(m − h e₁). The group turns m, and
+    // multiplies g and h.
     let (inertia, torque) = (Vector3::new(2.0, 2.5, 3.0), 0.002);
     let parts = Product(So3::<f64>::new(), Product(So3::new(), Translations::new(0.0, 1)));
     let satellite = Flow::new(parts, Pair(Linear, LeftTranslation), |_, (m, (g, h)), v| {
@@ -50,11 +53,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let start = Vector3::new(0.1, 0.0, 1.0);
     let mut y = (start, (Matrix3::identity(), 0.0));
     let grid = TimeGrid::new([0.0, 450.0], 0.1)?;
-    println!("a satellite whose wheel takes its angular momentum:");
+    println!("a satellite whose wheel takes up its angular momentum:");
     let report = |t: f64, (m, (g, h)): &(Vector3<f64>, (Matrix3<f64>, f64))| {
         let (kept, off) = ((g * m - start).norm(), So3::new().defect(g));
         println!(
-            "  t = {t:3}: m = {m:5.2?}, wheel {h:.2}, in space off by {kept:.0e}, g by {off:.0e}",
+            "  t = {t:3}: m = {m:5.2?}, wheel {h:.2}, error in space {kept:.0e}, of g {off:.0e}",
             m = m.as_slice()
         );
     };

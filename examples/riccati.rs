@@ -1,5 +1,4 @@
-//! Riccati equations by Sp(2m) on Lagrangian subspaces: through a pole, and back in time to the cost of a
-//! regulator.
+//! Riccati equations by Sp(2m) on Lagrangian subspaces: past poles, and the regulator of a cart with a pendulum.
 //!
 //! ```sh
 //! cargo run --release --example riccati
@@ -21,8 +20,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("P' = 1 + P² at t = 6, past two poles: {:.12}, tan 6 = {:.12}", p[(0, 0)], 6f64.tan());
     assert!((p[(0, 0)] - 6f64.tan()).abs() < 1e-12);
 
-    // The regulator of ẋ = Ax + Bu with the cost ∫ xᵀQx + uᵀu: −Ṗ = AᵀP + PA − PBBᵀP + Q back from
-    // P(T) = 0 goes to the solution of the algebraic equation. A cart with a pendulum on it, upright.
+    // The regulator of ẋ = Ax + Bu with the cost ∫ xᵀQx + uᵀu. Solve −Ṗ = AᵀP + PA − PBBᵀP + Q backward from P(T) = 0:
+    // P tends to the solution of the algebraic equation. Here: a cart with an upright pendulum.
     let a = mat![
         [0.0, 1.0, 0.0, 0.0],
         [0.0, 0.0, -1.0, 0.0],
@@ -32,7 +31,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let b = mat![[0.0], [1.0], [0.0], [-1.0]];
     let q = Mat::<f64>::identity(4, 4);
     let bb = &b * b.transpose();
-    // Ṗ = c − aᵀP − Pa − PbP for v = [a b; c −aᵀ], in the time back from the end.
+    // Ṗ = c − aᵀP − Pa − PbP for v = [a b; c −aᵀ]; t is the time before the end.
     let field = {
         let (a, bb, q) = (a.clone(), bb.clone(), q.clone());
         move |_: f64, v: &mut AlgebraMatrix| {
@@ -53,8 +52,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let closed = &a - &b * &gain;
     let slowest = closed.eigenvalues().map_err(|e| format!("{e:?}"))?;
     let slowest = slowest.iter().map(|z| z.re).fold(f64::NEG_INFINITY, f64::max);
-    println!("a regulator: the algebraic equation to {:.0e},", residual.norm_max());
-    println!("  the closed loop decays at {:.4} or faster", -slowest);
+    println!("a regulator: residual of the algebraic equation {:.0e}", residual.norm_max());
+    println!("  the closed loop decays with the rate {:.4} or faster", -slowest);
     assert!(residual.norm_max() < 1e-9 * p.norm_max() && slowest < 0.0);
     let skew = (&p - p.transpose()).norm_max();
     assert!(skew == 0.0, "P is symmetric, bit for bit");

@@ -1,5 +1,6 @@
-//! The free rigid body, modelled twice: by its momentum alone on so(3)*, and by its attitude on
-//! SO(3); and a third time by the quaternion of its attitude. Every coordinate map is held against the exact solution, and the cost of a step is counted.
+//! The free rigid body in three models: by its momentum on so(3)*, its attitude on SO(3), and its quaternion.
+//!
+//! Compares every coordinate map with the exact solution, and counts the operations of a step.
 //!
 //! ```sh
 //! cargo run --release --example rigid_body
@@ -15,7 +16,7 @@ use lieflow::{
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 const INERTIA: [f64; 3] = [1.0, 2.0, 3.0];
-/// At the start body and space axes coincide: the momentum is the same in both.
+/// The momentum in the body and in space: at the start the axes of both coincide.
 const MOMENTUM: [f64; 3] = [0.2, 0.0, 3.0];
 
 /// The state at the end of `grid`, by RKMK4 in the coordinates `psi`.
@@ -29,7 +30,7 @@ fn run<P: Problem>(
     Ok(y)
 }
 
-/// Arithmetic operations in one step of the momentum, and of the attitude.
+/// Counts the arithmetic operations in one step of the momentum, and of the attitude.
 fn operations(psi: impl CoordinateMap<So3<Counted>> + Copy) -> Result<[u64; 2], lieflow::Error> {
     let one_step = TimeGrid::new([0.0, 0.05], 0.05)?;
     let momentum = RigidBody::<Counted>::new(INERTIA)?;
@@ -65,7 +66,7 @@ where
 
     assert!(error_m < 1e-5 && error_g < 1e-5, "the error of order 4 at this step");
     assert!(energy.abs() < 1e-6, "the energy drifts slowly");
-    assert!(length.abs() < 1e-12, "|m| is a Casimir: kept to rounding");
+    assert!(length.abs() < 1e-12, "|m| is a Casimir: conserved to rounding");
     assert!(defect < 1e-12, "the attitude stays on SO(3) to rounding");
     assert!(of_m < of_g, "the momentum alone does not pay for the attitude");
     Ok(())
@@ -81,7 +82,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     row(CCSK321)?;
     row(CCSK)?;
 
-    // Four numbers in place of nine, with the maps exp and cay.
+    // Four numbers instead of nine. The maps exp and cay are available.
     let grid = TimeGrid::new([0.0, 20.0], 0.02)?;
     let body = RigidBodyQuaternion::new(INERTIA, MOMENTUM)?;
     let q = run(&body, Cay, &grid, UnitQuaternion::identity())?;

@@ -1,5 +1,6 @@
-//! Manakov's rigid body in ℝ⁵: the momentum on so(5)*, whose eigenvalues every step keeps. At n = 3
-//! the same code moves as the closed formulas on so(3) do.
+//! Manakov's rigid body in ℝ⁵: the momentum on so(5)*, whose eigenvalues every step conserves.
+//!
+//! At n = 3 the results are compared with the closed formulas on so(3).
 //!
 //! ```sh
 //! cargo run --release --example so_n
@@ -26,7 +27,7 @@ fn at_two<P: Problem>(
     Ok(m)
 }
 
-/// tr m² and tr m⁴: with m skew they fix the eigenvalues of m ∈ so(5).
+/// tr m² and tr m⁴, which determine the eigenvalues of m ∈ so(5).
 fn casimirs(m: &Mat<f64>) -> [f64; 2] {
     let m2 = m * m;
     let trace = |x: &Mat<f64>| x.diagonal().column_vector().iter().sum::<f64>();
@@ -51,7 +52,7 @@ fn five<Psi: CoordinateMap<lieflow::groups::MatrixGroup> + Copy>(psi: Psi) -> Ou
             "{steps:6} {error:10.2e} {order:6.2} {:10.1e} {:9.1e} {energy:10.1e}",
             change[0], change[1]
         );
-        assert!(change[0].max(change[1]) < 1e-13, "the eigenvalues are kept to rounding");
+        assert!(change[0].max(change[1]) < 1e-13, "the eigenvalues are conserved to rounding");
         assert!(coarser.is_none() || (order - 4.0).abs() < 0.3, "order 4");
         coarser = Some(error);
     }
@@ -66,7 +67,7 @@ fn three() -> Outcome<()> {
     let start = Mat::from_fn(3, 3, |i, j| as_matrix[(i, j)]);
     let general = at_two(&RigidBodyN::from_principal(inertia)?, Exp, 40, start)?;
     let gap = (closed - vee(&Matrix3::from_fn(|i, j| general[(i, j)]))).norm();
-    println!("n = 3: general against closed formulas after 40 steps: {gap:.1e}");
+    println!("n = 3: the general code and the closed formulas differ by {gap:.1e} after 40 steps");
     assert!(gap < 1e-13);
     Ok(())
 }

@@ -1,4 +1,4 @@
-//! Spheres: a chain of spins whose wave travels and, damped, falls into line; the spherical pendulum.
+//! Products of spheres: a wave in a chain of spins, a damped chain, and the spherical pendulum.
 //!
 //! ```sh
 //! cargo run --release --example spheres
@@ -28,12 +28,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("a wave on {n} spins: off by {far:.0e} at t = 100");
     assert!(far < 1e-5);
 
-    // Damped, in a field: the energy falls to that of all spins along it.
+    // With damping and a field the energy falls to that of all spins along the field.
     let damped = SpinChain::new(n)?.with_damping(0.3)?.with_field([0.0, 0.0, 0.5])?;
     let mut spins = damped.spins(|i| Vector3::new((i as f64).sin(), (i as f64).cos(), 0.2))?;
     let grid = TimeGrid::new([0.0, 40.0], 0.1)?;
     integrate(&damped, &method, &grid, &SaveAt::Every(100), &mut spins, |t, s| {
-        println!("  damped, t = {t:4}: the energy a spin is {:9.6}", damped.energy(s) / n as f64);
+        println!("  damped, t = {t:4}: energy per spin {:9.6}", damped.energy(s) / n as f64);
     })?;
     assert!((damped.energy(&spins) / n as f64 + 1.5).abs() < 1e-6);
 

@@ -1,5 +1,7 @@
-//! Stiefel, Grassmann, Lorentz: Oja's flow finds leading eigenvectors, its flow of subspaces their span, and
-//! the Lorentz group keeps a charged particle on its mass shell.
+//! Stiefel and Grassmann manifolds, and the Lorentz group.
+//!
+//! Oja's flow finds the leading eigenvectors, a flow of subspaces finds their span. A charged particle in SO(3,1) stays
+//! on its mass shell.
 //!
 //! ```sh
 //! cargo run --release --example stiefel_and_lorentz
@@ -11,7 +13,7 @@ use lieflow::problems::{ChargedParticle, Invariants, Oja, SubspaceFlow};
 use nalgebra::Vector3;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    // The leading two of six eigenvectors of a covariance.
+    // Two of six eigenvectors of a covariance matrix: those of the largest eigenvalues.
     let spread = |i: usize, j: usize| (1.0 + (i as f64 - j as f64).abs()).recip();
     let a = Mat::from_fn(6, 6, spread);
     let (oja, mut x) = (Oja::new(a.clone(), 2)?, Mat::zeros(6, 2));
@@ -24,7 +26,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("  ‖XᵀX − 𝟙‖ = {off:.0e}");
     assert!((oja.trace(&x) - values[4] - values[5]).abs() < 1e-10 && off < 1e-13);
 
-    // The span of the same vectors, as a projector: where the frame goes within it is left out.
+    // The span of the same vectors, as a projector.
     let subspaces = SubspaceFlow::new(a)?;
     let mut p = subspaces.span(&Mat::from_fn(6, 2, |i, j| f64::from(u8::from(i == j))))?;
     integrate(&subspaces, &Rkmk::new(RK4, Cay), &grid, &SaveAt::Ends, &mut p, |_, _| {})?;
@@ -42,7 +44,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (mut u, mut w) = (start.clone(), start);
     integrate(&particle, &Rkmk::new(RK4, Exp), &grid, &SaveAt::Ends, &mut u, |_, _| {})?;
     integrate(&particle, &Rk(RK4), &grid, &SaveAt::Ends, &mut w, |_, _| {})?;
-    // Rounding level is εγ²: the group is not compact.
+    // The group is not compact: rounding errors are of size εγ².
     let off = |u: &Mat<f64>| (particle.values(u)[0] + 1.0) / u[(3, 0)].powi(2);
     println!("a charged particle at τ = 50: γ = {:.6}", u[(3, 0)]);
     println!("  (u·Mu + 1)/γ² = {:.0e} on the group, {:.0e} by the entries", off(&u), off(&w));

@@ -1,5 +1,6 @@
-//! Two coupled Mathieu oscillators ẍ = −K(t)x: a linear Hamiltonian system ġ = A(t)g on Sp(4). Its
-//! solution after one period, the monodromy matrix, decides whether small motions stay small.
+//! Two coupled Mathieu oscillators ẍ = −K(t)x: a linear Hamiltonian system ġ = A(t)g on Sp(4).
+//!
+//! The monodromy matrix, the solution after one period, decides whether small motions stay small.
 //!
 //! ```sh
 //! cargo run --release --example symplectic

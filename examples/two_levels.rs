@@ -1,5 +1,7 @@
-//! A two-level atom in a light field, by a Magnus method: Rabi's oscillations, and a chirped pulse
-//! that carries the population over whatever its strength. Then five levels: a spin 2 that turns.
+//! A two-level atom in a light field, by a Magnus method: Rabi's oscillations and a chirped pulse.
+//!
+//! A strong chirped pulse moves the population to the excited level. The last example has five levels: a spin 2 that
+//! turns.
 //!
 //! ```sh
 //! cargo run --release --example two_levels
@@ -26,10 +28,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     integrate(&driven, &Magnus6, &grid, &SaveAt::Every(1), &mut psi, |t, psi| {
         worst = worst.max((populations(psi)[1] - rabi(t)).abs());
     })?;
-    println!("off Rabi's formula by {worst:.0e}, |ψ| − 1 = {:.0e}", psi.norm_l2() - 1.0);
+    println!("difference from Rabi's formula {worst:.0e}, |ψ| − 1 = {:.0e}", psi.norm_l2() - 1.0);
     assert!(worst < 1e-8 && (psi.norm_l2() - 1.0).abs() < 1e-11);
 
-    println!("a chirped pulse of strength s leaves in the excited level:");
+    println!("population of the excited level after a chirped pulse of strength s:");
     for strength in [0.5, 1.0, 2.0, 3.0] {
         let pulse = schrodinger(2, move |t: f64, i, j| match (i, j) {
             (0, 0) => [0.5 * t, 0.0],
@@ -43,7 +45,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         println!("  s = {strength}: {:.4}, Landau–Zener {expected:.4}", populations(&psi)[1]);
     }
 
-    // A spin 2 in a transverse field, H = J_x: as four spins ½, so that its populations are binomial.
+    // A spin 2 in a transverse field, H = J_x, is like four spins ½. So its populations are binomial.
     let turning = schrodinger(5, |_: f64, i, j| match i.abs_diff(j) {
         1 => [0.5 * f64::sqrt(((i.min(j) + 1) * (4 - i.min(j))) as f64), 0.0],
         _ => [0.0, 0.0],

@@ -6,7 +6,7 @@ use crate::groups::LieGroup;
 use crate::maps::{CoordinateMap, PsiOf};
 use crate::problems::{AlgOf, ElemOf, PointOf, Problem, ScalarOf};
 
-/// Storage of a chart; made once.
+/// The storage of a chart, made once.
 #[allow(missing_debug_implementations)] // the parts belong to the problem's types
 pub struct ChartStore<P: Problem, Psi: CoordinateMap<P::Group>> {
     at: Psi::At,
@@ -17,11 +17,11 @@ pub struct ChartStore<P: Problem, Psi: CoordinateMap<P::Group>> {
 }
 
 impl<P: Problem, Psi: CoordinateMap<P::Group>> ChartStore<P, Psi> {
-    /// Storage sized for `problem`; `like` is any point of M.
+    /// Makes storage for `problem`. `like` is any point of M, which gives the size.
     ///
     /// # Errors
     /// [`Error::Unsupported`] when Ψ has no formula on the problem's group, [`Error::Shape`] when
-    /// `like` has not the size that the group acts on.
+    /// `like` has another size than the group acts on.
     pub fn new(problem: &P, psi: &Psi, like: &PointOf<P>) -> Result<Self, Error> {
         let group = problem.group();
         problem.action().check(group, like)?;

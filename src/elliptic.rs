@@ -21,7 +21,7 @@ pub(crate) fn rj(x: f64, y: f64, z: f64, p: f64) -> Result<f64, Error> {
     converged(ellip::elliprj(x, y, z, p))
 }
 
-/// The arithmetic-geometric mean of 1 and k' = √(1 − k²), from which sn, cn and dn follow at any u.
+/// The arithmetic-geometric mean of 1 and k' = √(1 − k²). It gives sn, cn and dn at any u.
 ///
 /// The argument is 1 − k², so that k → 1 keeps its digits. Source: R. Bulirsch, Numerical calculation of
 /// elliptic integrals and elliptic functions, Numer. Math. 7 (1965): the descending Gauss transformation.

@@ -1,4 +1,4 @@
-//! What can go wrong: [`Error`] while a run is set up, [`StepError`] within a step, [`Failure`] of a run.
+//! Errors: [`Error`] while a run is set up, [`StepError`] within a step, [`Failure`] of a run.
 //!
 //! `Debug` prints the message too: it is what a `main` that ends by `?` shows.
 
@@ -76,7 +76,7 @@ pub enum Error {
         /// What was allowed.
         tolerance: f64,
     },
-    /// An orthogonal matrix reflects.
+    /// An orthogonal matrix is a reflection (determinant −1).
     #[error("{arg}: its determinant is −1, expected a rotation (determinant +1)")]
     Reflection {
         /// The argument.
@@ -104,7 +104,7 @@ pub enum Error {
         /// What was expected, in words.
         expected: String,
     },
-    /// Two parts do not go together, such as a map that a group has no formula for.
+    /// Two parts do not fit together, such as a map and a group for which the map has no formula.
     #[error("{what} cannot be used with {with}: {why}")]
     Unsupported {
         /// The part.
@@ -135,7 +135,7 @@ pub enum Error {
         /// The names that are registered.
         expected: Vec<&'static str>,
     },
-    /// A group element has no real logarithm in the algebra, or none that can be told from rounding.
+    /// A group element has no real logarithm in the algebra, or none that can be distinguished from rounding.
     #[error(
         "g: no logarithm in the algebra of {group}: the eigenvalue {re:.3e} {im:+.1e}i lies on the negative real axis, and {why}"
     )]
@@ -146,12 +146,12 @@ pub enum Error {
         re: f64,
         /// The eigenvalue, imaginary part: zero to rounding.
         im: f64,
-        /// What is the case there.
+        /// Why there is none.
         why: NoLogarithm,
     },
 }
 
-/// Why a negative eigenvalue of g stands in the way of a real logarithm.
+/// Why g with a negative eigenvalue has no real logarithm.
 #[derive(Clone, Copy, PartialEq, Eq, ThisError)]
 pub enum NoLogarithm {
     /// The multiplicity of the eigenvalue is odd: no real matrix has g as its exponential.
@@ -161,8 +161,8 @@ pub enum NoLogarithm {
     /// and none of them lies in 𝔤.
     #[error("real logarithms exist, but none of them is in the algebra")]
     Outside,
-    /// The eigenvalue is defective, or M is neither symmetric nor skew: a logarithm, if there is one, is not
-    /// principal and not computed.
+    /// The eigenvalue is defective, or M is neither symmetric nor skew. A logarithm, if there is one, is not
+    /// principal, and is not computed.
     #[error(
         "a real logarithm, if there is one, is not principal; it is not computed where the eigenvalue is defective or M neither symmetric nor skew"
     )]
@@ -180,7 +180,7 @@ impl Error {
     }
 }
 
-/// Why a step could not be taken. Small and `Copy`: it travels out of the hot loop.
+/// Why a step could not be taken. It is small and `Copy`, because it is returned from the inner loop.
 #[derive(Clone, Copy, PartialEq, ThisError)]
 #[non_exhaustive]
 pub enum StepError {
@@ -286,7 +286,7 @@ impl StepError {
     }
 }
 
-/// A run that stopped early. The state handed to the driver holds the last accepted point.
+/// A run that stopped early. The state that the caller gave to the driver holds the last accepted point.
 #[derive(Clone, Copy, PartialEq, ThisError)]
 #[error("step {step} from t = {t} with h = {h} failed: {source}")]
 #[non_exhaustive]

@@ -1,8 +1,7 @@
-//! The monodromy M = g(T) of a linear system with periodic coefficients, its Floquet multipliers, and whether
-//! they let solutions stay bounded.
+//! The monodromy M = g(T) of a linear system with periodic coefficients, its Floquet multipliers and its stability.
 //!
-//! On Sp(2m) the multipliers come in pairs λ, 1/λ; all on the unit circle and apart is stability. At a
-//! characteristic value of Mathieu's equation they meet: tr M = ±2.
+//! On Sp(2m) the multipliers come in pairs λ, 1/λ. The system is stable if all of them are distinct and on the unit
+//! circle. At a characteristic value of Mathieu's equation two of them meet: tr M = ±2.
 //! Source: V. A. Yakubovich, V. M. Starzhinskii, Linear Differential Equations with Periodic
 //! Coefficients, 1975.
 
@@ -15,7 +14,7 @@ use crate::methods::Method;
 use crate::problems::{PointOf, Problem};
 use crate::solve::{RunError, SaveAt, TimeGrid, integrate};
 
-/// g at the end of `span` with g = 𝟙 at its start, by `steps` steps: over a period, the monodromy.
+/// g at the end of `span`, with g = 𝟙 at its start, by `steps` steps. Over a period this is the monodromy.
 ///
 /// # Errors
 /// As [`integrate()`](crate::integrate()).
@@ -38,7 +37,7 @@ where
 /// The Floquet multipliers of a monodromy: its eigenvalues.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Floquet {
-    /// (re, im) of each, by falling modulus.
+    /// (re, im) of each, the largest modulus first.
     pub multipliers: Vec<[f64; 2]>,
 }
 
@@ -57,9 +56,9 @@ impl Floquet {
         Ok(Floquet { multipliers })
     }
 
-    /// max |λ|: 1 to rounding where solutions stay bounded, more where some grow.
+    /// max |λ|: 1 to rounding if solutions stay bounded, more if some grow.
     ///
-    /// Where two multipliers meet on the circle, rounding in M moves them apart by its root.
+    /// Where two multipliers meet on the circle, a rounding error in M moves them apart by its square root.
     pub fn spectral_radius(&self) -> f64 {
         self.multipliers.first().map_or(0.0, |[re, im]| re.hypot(*im))
     }

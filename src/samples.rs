@@ -1,14 +1,14 @@
-//! Sampled data as functions of time: a table of times and values, and what lies between its rows.
+//! Sampled data as functions of time: a table of times and values, with interpolation between its rows.
 //!
-//! | interpolation | what it is between the times | where it is smooth |
+//! | interpolation | between the times | smoothness |
 //! |---|---|---|
-//! | [`Linear`](Interpolation::Linear) | the straight line through the two values | continuous |
+//! | [`Linear`](Interpolation::Linear) | the straight line between the two values | continuous |
 //! | [`Cubic`](Interpolation::Cubic) | the cubic spline through all values | two derivatives are continuous |
 //! | [`MeanRate`](Interpolation::MeanRate) | the rate whose integrals over the intervals are the values | one derivative is continuous |
 //!
-//! The rate is Θ′, with Θ the cubic spline through the sums of the increments. Splines are *not-a-knot*: the
-//! first two pieces are one cubic, and so are the last two. They are exact for cubics; through three points they
-//! are the parabola, through two the line.
+//! The rate is Θ′. Θ is the cubic spline through the sums of the increments. Splines are *not-a-knot*: the first two
+//! pieces are one cubic, and so are the last two. They are exact for cubics. A spline through three points is the
+//! parabola, through two points the line.
 //!
 //! Source: C. de Boor, A Practical Guide to Splines, ch. IV.
 
@@ -19,15 +19,15 @@ use thiserror::Error as ThisError;
 
 use crate::error::Error;
 
-/// What lies between the rows of [`Samples`].
+/// The interpolation between the rows of [`Samples`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Interpolation {
     /// Straight lines.
     Linear,
     /// The cubic spline, not-a-knot at its ends.
     Cubic,
-    /// The rate of increments: the value at t_k is the integral over \[t_{k−1}, t_k\], as a strapdown sensor
-    /// gives it. The values at the first time belong to an interval before the table and are not used.
+    /// The rate of increments: the value at t_k is the integral over \[t_{k−1}, t_k\], as a gyro gives it. The values at
+    /// the first time belong to an interval before the table and are not used.
     MeanRate,
 }
 
@@ -96,7 +96,7 @@ impl From<Outside> for Error {
 /// let span = [0.0, 0.4];
 /// gyros.covers(span)?;
 /// let attitude = Flow::of_time(So3::<f64>::new(), LeftTranslation, |t, v: &mut Vector3<f64>| {
-///     // Not a number outside of the samples: the run would end there.
+///     // Outside of the samples v is not a number, and the run ends there.
 ///     let _ = gyros.value(t, v.as_mut_slice());
 ///     *v = -*v;
 /// });
@@ -106,8 +106,7 @@ impl From<Outside> for Error {
 /// assert!((g_transposed.transpose()[(0, 2)] - 0.19).abs() < 0.01);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-/// A run that says at which time it left the samples is one of a
-/// [`TryFlow`](crate::problems::TryFlow).
+/// With a [`TryFlow`](crate::problems::TryFlow) the error of the run has the time at which it left the samples.
 #[derive(Clone, PartialEq)]
 pub struct Samples {
     times: Vec<f64>,
@@ -115,7 +114,7 @@ pub struct Samples {
     interpolation: Interpolation,
     /// The polynomials in t − t_k, lowest power first: all columns of an interval, then the next interval.
     pieces: Vec<[f64; 4]>,
-    /// Rows a unit of time, where the times are so even that this finds an interval or one beside it.
+    /// Rows per time, if the times are even enough that this finds an interval or one next to it.
     pace: Option<f64>,
 }
 
@@ -131,12 +130,11 @@ impl Hash for Samples {
 impl Samples {
     /// The samples `columns[j][k]` at `times[k]`.
     ///
-    /// The cost is O(n) for each column of n values, and four numbers of storage for each value.
+    /// The cost is O(n) for a column of n values. The storage is four numbers for each value.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] that names the entry: for fewer than 2 times, times that do not increase, a column of
-    /// another length than the times, a number that is not finite, and values so far apart that their slope
-    /// is not finite.
+    /// [`Error::OutOfRange`], which names the entry, for: fewer than 2 times; times that do not increase; a column of
+    /// another length than the times; a number that is not finite; values so far apart that their slope is not finite.
     pub fn new<C: AsRef<[f64]>>(
         times: &[f64],
         columns: &[C],
@@ -195,30 +193,29 @@ impl Samples {
     pub fn columns(&self) -> usize {
         self.columns
     }
-    /// What lies between the rows.
+    /// The interpolation between the rows.
     pub fn interpolation(&self) -> Interpolation {
         self.interpolation
     }
 
-    /// That both times lie in the span of the samples: what to ask before a run.
+    /// Checks that both times of a span lie in the samples. Call it before a run.
     ///
     /// # Errors
-    /// The first one that does not.
+    /// The first time that does not.
     pub fn covers(&self, times: [f64; 2]) -> Result<(), Outside> {
         times.into_iter().try_for_each(|t| self.find(t).map(drop))
     }
 
     /// out ← the values of all columns at t.
     ///
-    /// The cost is a search, O(log n) where the times are uneven and O(1) where they are even, and a cubic for
-    /// each column.
+    /// The cost is a search and a cubic for each column. The search is O(1) for even times, O(log n) for others.
     ///
     /// # Errors
-    /// [`Outside`], and out is not a number: for a t beyond the span by more than rounding, 4 ulp of the larger
-    /// of its ends.
+    /// [`Outside`] for a t that is outside the span by more than rounding, 4 ulp of the larger of its ends. Then out is
+    /// NaN.
     ///
     /// # Panics
-    /// Where `out` is longer than there are columns; a shorter one gets the first of them.
+    /// If `out` is longer than the number of columns. A shorter `out` gets the first columns.
     pub fn value(&self, t: f64, out: &mut [f64]) -> Result<(), Outside> {
         let found = self.find(t);
         for (j, out) in out.iter_mut().enumerate() {
@@ -238,7 +235,7 @@ impl Samples {
         self.derivative(j, 0, t)
     }
 
-    /// The derivative of some order of column j at t; that of the piece after t where it jumps.
+    /// The derivative of some order of column j at t. Where it jumps, this is the derivative after t.
     ///
     /// # Errors
     /// As [`value`](Self::value).
@@ -256,8 +253,8 @@ impl Samples {
 
     /// The times inside a span where the pieces do not join to one polynomial, in rising order.
     ///
-    /// A step that ends there keeps the order of its method. They are all inner times for [`Interpolation::Linear`],
-    /// and all but the first and the last of these for splines.
+    /// A step that ends at such a time has the full order of its method. For [`Interpolation::Linear`] these are all
+    /// inner times, for splines all inner times but the first and the last.
     pub fn knots(&self, [from, to]: [f64; 2]) -> impl DoubleEndedIterator<Item = f64> {
         let one_polynomial = match self.interpolation {
             Interpolation::Linear => 1,
@@ -272,7 +269,7 @@ impl Samples {
         self.pieces[k * self.columns..][..self.columns][j]
     }
 
-    /// The interval of t, and t less the time where it starts.
+    /// The interval of t, and t minus the start of the interval.
     fn find(&self, t: f64) -> Result<(usize, f64), Outside> {
         let span @ [first, last] = self.span();
         let inside = t.clamp(first, last);
@@ -295,7 +292,7 @@ impl Samples {
     }
 }
 
-/// Shows its size, and not its numbers.
+/// Shows the size, not the numbers.
 impl fmt::Debug for Samples {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (rows, columns) = (self.times.len(), self.columns);

@@ -1,7 +1,7 @@
-//! Linear spaces with a norm: what the points of M, the elements of 𝔤 and those of G are kept in.
+//! Linear spaces with a norm, in which the points of M and the elements of 𝔤 and G are stored.
 //!
-//! A manifold of your own implements [`Metric`] and [`LinearSpace`] for the storage of its points, and
-//! every method of the library runs on it: classical ones too.
+//! For your own manifold implement [`Metric`] and [`LinearSpace`] for the storage of its points. Then every method of the
+//! library runs on it, also the classical ones.
 
 use faer::Mat;
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
@@ -17,14 +17,14 @@ use crate::tolerance::Scales;
 pub trait Metric {
     /// The reals of the norm.
     type Scalar: Real;
-    /// self ← x, into the storage that there is.
+    /// self ← x, into the existing storage.
     fn assign(&mut self, x: &Self);
     /// ‖self‖.
     fn size(&self) -> Self::Scalar;
     /// ‖self − x‖.
     fn distance(&self, x: &Self) -> Self::Scalar;
-    /// An error at this point in units of the tolerance: ‖error‖/(atol + rtol·‖self‖), the largest of the ratios
-    /// of the parts.
+    /// An error at this point in units of the tolerance: the largest of the ratios ‖error‖/(atol + rtol·‖self‖) of the
+    /// parts.
     #[inline]
     fn error_ratio(&self, gap: Gap<'_, Self>, scales: &mut Scales<'_>) -> Self::Scalar {
         let size = self.size();
@@ -37,7 +37,7 @@ pub trait Metric {
     }
 }
 
-/// A point whose numbers can be listed: what is saved of a state.
+/// A point whose numbers can be listed, so that a state can be saved.
 pub trait Numbers {
     /// Call `each` with every number, always in the same order.
     fn each_number(&mut self, each: &mut dyn FnMut(&mut f64));
@@ -187,7 +187,7 @@ macro_rules! small {
     ($($t:ident),*) => {$(
         impl<S: Real> Metric for $t<S> {
             type Scalar = S;
-            /// Entry by entry: a vector that is copied whole goes through memory.
+            /// Entry by entry, because a vector that is copied whole goes through memory.
             #[inline]
             fn assign(&mut self, x: &Self) {
                 self.as_mut_slice().iter_mut().zip(x.as_slice()).for_each(|(y, x)| *y = *x);
@@ -237,8 +237,8 @@ macro_rules! small {
             fn is_finite(&self) -> bool {
                 self.as_slice().iter().all(|x| x.is_finite())
             }
-            /// In a local sum, which stays in registers: three numbers that are stored as two and one and loaded
-            /// as one and two wait for the store.
+            /// In a local sum, which stays in registers. Three numbers that are stored as two and one, and loaded as one
+            /// and two, would wait for the store.
             #[inline(always)]
             fn set_sum(&mut self, y: &Self, h: S, weights: &[f64], k: &[Self]) {
                 let mut sum = *y;
@@ -471,7 +471,7 @@ impl<M: Metric> Metric for Box<[M]> {
     fn distance(&self, x: &Self) -> M::Scalar {
         norm(self.iter().zip(x).map(|(a, b)| a.distance(b)))
     }
-    /// Every copy by the same tolerances.
+    /// All copies have the same tolerances.
     fn error_ratio(&self, gap: Gap<'_, Self>, scales: &mut Scales<'_>) -> M::Scalar {
         scales.for_each_copy(self.len(), |i, scales| {
             let gap = match gap {

@@ -1,6 +1,7 @@
-//! Tolerances: what the error of a step is compared with.
+//! Tolerances: the allowed error of a step.
 //!
-//! A step is accepted when the largest of the ratios of its parts is at most 1:
+//! Each part of a point has a ratio, its error divided by the number in the last column. A step is accepted if the
+//! largest ratio is at most 1:
 //!
 //! | part | error | compared with |
 //! |---|---|---|
@@ -9,24 +10,24 @@
 //! | of a group: a rotation, a quaternion, a matrix | the angle, in radian (‖e‖ in 𝔤) | atol + rtol |
 //! | any, by [`Rule::PerLength`] | ‖error‖ of all parts together | atol + rtol·(the length of the step) |
 //!
-//! A product has a part for each factor, SE(3) has two (rotation, translation), a power Gᴺ shares the parts
-//! of G.
+//! A product has a part for each factor. SE(3) has two parts, rotation and translation. A power Gᴺ has the parts of G,
+//! shared by all copies.
 
 use crate::error::Error;
 use crate::scalar::{Real, larger};
 
-/// What rtol is relative to.
+/// The quantity that rtol is relative to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Rule {
     /// The size of the point: the rule of SciPy, DifferentialEquations.jl and diffrax.
     #[default]
     PerStep,
-    /// The length of the step: the error of a run is about rtol times the way that it goes.
+    /// The length of the step: the error of a run is about rtol times the length of its time span.
     PerLength,
 }
 
-/// The tolerance of a part.
+/// The tolerance of a part of a point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PartTolerance {
     rtol: f64,
@@ -69,14 +70,14 @@ impl PartTolerance {
         Ok(PartTolerance { components, ..PartTolerance::new(rtol, least)? })
     }
 
-    /// What an error of a part of this size is compared with.
+    /// The allowed error of a part of this size.
     #[inline]
     pub fn scale<S: Real>(&self, size: S) -> S {
         S::lit(self.atol) + S::lit(self.rtol) * size
     }
 
-    /// The ratio of an error of a whole part of this size. A part that has no components is refused an atol for each:
-    /// the ratio is infinite then, and the driver says so before the first step.
+    /// The ratio of an error of a whole part of this size. A part without components cannot have an atol for each: then
+    /// the ratio is infinite, and the driver returns an error before the first step.
     #[inline]
     pub fn ratio<S: Real>(&self, error: S, size: S) -> S {
         if self.components.len() > 1 {
@@ -86,7 +87,7 @@ impl PartTolerance {
         }
     }
 
-    /// The largest ratio of the entries of an error and their scales, where there is an atol for each.
+    /// The largest ratio of the entries of an error, if there is an atol for each.
     #[inline]
     pub(crate) fn largest<S: Real>(
         &self,
@@ -141,7 +142,7 @@ impl Tolerance {
         }
     }
 
-    /// These tolerances by another rule. [`Rule::PerLength`] takes one rtol and one atol for all parts.
+    /// The same tolerances with another rule. [`Rule::PerLength`] takes one rtol and one atol for all parts.
     pub fn by(self, rule: Rule) -> Self {
         Tolerance { rule, ..self }
     }
@@ -151,7 +152,7 @@ impl Tolerance {
         self.rule
     }
 
-    /// The scale of a part of size 1: what the first step is chosen by.
+    /// The allowed error of a part of size 1. The first step is chosen by it.
     pub(crate) fn of_unit_size(&self) -> f64 {
         self.parts.iter().map(|part| part.scale(1.0)).fold(f64::INFINITY, f64::min)
     }
@@ -168,7 +169,7 @@ impl Tolerance {
         Scales { parts: &self.parts, next: 0 }
     }
 
-    /// Check that a point with this many parts has a tolerance for each, and each component an atol.
+    /// Checks that each of so many parts has a tolerance, and each component an atol.
     pub(crate) fn check(&self, parts: usize, components_fit: bool) -> Result<(), Error> {
         if !components_fit {
             let given = self.parts.iter().map(|part| part.components.len()).max().unwrap_or(0);
@@ -228,7 +229,7 @@ impl<'a> Scales<'a> {
         }
         most
     }
-    /// How many parts were asked for.
+    /// The number of parts that were requested.
     pub(crate) fn asked(&self) -> usize {
         self.next
     }

@@ -1,5 +1,7 @@
-//! Conjugation on n×n matrices: Λ(g, p) = g p g⁻¹, which keeps the eigenvalues of p. M is the set of
-//! matrices similar to one; with G = SO(n) and p symmetric, Λ(g, p) = g p gᵀ, symmetric again.
+//! Conjugation on n×n matrices: Λ(g, p) = g p g⁻¹, which conserves the eigenvalues of p.
+//!
+//! M is the set of all matrices that are similar to one matrix. With G = SO(n) and p symmetric, Λ(g, p) = g p gᵀ is
+//! symmetric, too.
 
 use faer::Mat;
 

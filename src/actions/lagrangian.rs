@@ -1,6 +1,7 @@
-//! Sp(2m) on Lagrangian subspaces: {(x, Px)} with symmetric P goes to {(x, QPx)} with
-//! Λ(g, P) = (C + DP)(A + BP)⁻¹, g = \[A B; C D\]. With ẏ = \[a b; c −aᵀ\] y below it, P satisfies the
-//! Riccati equation Ṗ = c − aᵀP − Pa − PbP, and a step may pass a pole of P.
+//! Sp(2m) acting on Lagrangian subspaces, for matrix Riccati equations.
+//!
+//! A symmetric P stands for the subspace {(x, Px)}. g = \[A B; C D\] moves it by Λ(g, P) = (C + DP)(A + BP)⁻¹. The linear
+//! equation ẏ = \[a b; c −aᵀ\] y moves P by the Riccati equation Ṗ = c − aᵀP − Pa − PbP. A step may pass a pole of P.
 
 use faer::{Mat, MatRef};
 
@@ -12,8 +13,9 @@ use crate::maps::CoordinateMap;
 use crate::maps::PsiOf;
 use crate::scalar::{Ops, tally};
 
-/// Λ(g, P) = (C + DP)(A + BP)⁻¹ on symmetric m×m matrices. Where A + BP is singular the subspace is
-/// no graph: a step that ends there fails with [`StepError::NotFinite`].
+/// Λ(g, P) = (C + DP)(A + BP)⁻¹ on symmetric m×m matrices.
+///
+/// Where A + BP is singular P has a pole. A step that ends there fails with [`StepError::NotFinite`].
 ///
 /// ```
 /// use lieflow::actions::Lagrangian;
@@ -21,7 +23,7 @@ use crate::scalar::{Ops, tally};
 /// use lieflow::methods::magnus::Magnus4;
 /// use lieflow::problems::Flow;
 /// use lieflow::{SaveAt, TimeGrid, integrate};
-/// // Ṗ = 1 + P² from 0: P = tan t, with a pole at π/2 that the steps pass.
+/// // Ṗ = 1 + P² from 0: P = tan t. The steps pass its pole at π/2.
 /// let riccati = Flow::of_time(MatrixGroup::sp(2)?, Lagrangian, |_, v| {
 ///     (v[(1, 0)], v[(0, 1)]) = (1.0, -1.0);
 /// });

@@ -1,5 +1,6 @@
 //! The linear action on vectors: M = ℝⁿ (or k vectors as columns), Λ(g, x) = g·x.
-//! One `impl` for every group; Ψ(u) is applied, never formed, where the map knows how.
+//!
+//! There is one `impl` for all groups. Ψ(u) is applied without forming it, if the map has a formula for that.
 
 use super::Action;
 use crate::error::{Error, StepError};

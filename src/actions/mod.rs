@@ -1,4 +1,4 @@
-//! Λ : G × M → M, the group actions.
+//! Group actions Λ : G × M → M.
 //!
 //! To add an action: one file with an `impl` of [`Action`], one line here, one in the law tests.
 
@@ -31,10 +31,10 @@ pub trait Action<G: LieGroup> {
     /// Scratch.
     type Work;
 
-    /// Scratch for [`act`](Self::act); the only call that allocates.
+    /// Makes the scratch for [`act`](Self::act). Only this call allocates.
     fn work(&self, group: &G) -> Self::Work;
 
-    /// Has p the size that `group` acts on, and are its numbers finite? Asked before a run.
+    /// Checks before a run that p has the size that `group` acts on, and finite numbers.
     ///
     /// # Errors
     /// [`Error::Shape`] with both sizes, [`Error::NotFiniteEntry`].
@@ -42,15 +42,15 @@ pub trait Action<G: LieGroup> {
         Ok(())
     }
 
-    /// Are the numbers of p finite? Asked after every step of a run, so that a state that leaves the range of
-    /// the arithmetic ends it. The default is [`check`](Self::check).
+    /// Checks after every step that the numbers of p are finite. A state that overflows ends the run. The default is
+    /// [`check`](Self::check).
     #[inline]
     fn is_finite(&self, group: &G, p: &Self::Point) -> bool {
         self.check(group, p).is_ok()
     }
 
-    /// q ← p, into the storage that there is. The default is `clone_from`, which allocates for storage
-    /// that does not know better; the driver copies where it takes a step aside.
+    /// q ← p, into the existing storage. The default is `clone_from`, which allocates for some storage. The driver calls
+    /// it for points within a step.
     #[inline]
     fn assign(&self, _group: &G, p: &Self::Point, q: &mut Self::Point) {
         q.clone_from(p);
@@ -66,7 +66,7 @@ pub trait Action<G: LieGroup> {
         work: &mut Self::Work,
     );
 
-    /// dy ← λ_*(v)(y) = d/dε Λ(Ψ(εv), y) at ε = 0, equation (13): the velocity that v gives to y, a
+    /// dy ← λ_*(v)(y) = d/dε Λ(Ψ(εv), y) at ε = 0, equation (13): the velocity of y by v, a
     /// tangent of M in the storage of a point.
     fn generate(
         &self,
@@ -77,8 +77,8 @@ pub trait Action<G: LieGroup> {
         work: &mut Self::Work,
     );
 
-    /// An error e ∈ 𝔤 at y in units of the tolerance, the largest of the ratios of the parts. The default takes
-    /// ‖e‖ for relative: ‖e‖‖y‖/(atol + rtol·‖y‖).
+    /// An error e ∈ 𝔤 at y in units of the tolerance: the largest of the ratios of the parts. By default ‖e‖ is a
+    /// relative error: ‖e‖‖y‖/(atol + rtol·‖y‖).
     #[inline]
     fn error_ratio(
         &self,
@@ -90,8 +90,10 @@ pub trait Action<G: LieGroup> {
         y.error_ratio(Gap::Relative(group.norm(e)), scales)
     }
 
-    /// q ← λ_p(u) = Λ(Ψ(u), p), equation (6). Ψ(u) arrives not yet formed: an action on vectors
-    /// answers with [`PsiOf::on`], and then no group element is formed.
+    /// q ← λ_p(u) = Λ(Ψ(u), p), equation (6).
+    ///
+    /// The argument `psi` has u, and Ψ(u) is not yet computed. An action on vectors calls [`PsiOf::on`], which needs no
+    /// group element.
     ///
     /// # Errors
     /// As [`CoordinateMap::psi`].
@@ -108,9 +110,10 @@ pub trait Action<G: LieGroup> {
         Ok(())
     }
 
-    /// Take p back to M, where rounding carried it off over many steps; the driver does so every
-    /// [`RESTORE_EVERY`](crate::RESTORE_EVERY) steps or sooner. Returns how far p was, `None` where nothing is
-    /// done, which is the default. Left translation corrects by [`LieGroup::correct`].
+    /// Moves p back to M, from where rounding errors moved it over many steps.
+    ///
+    /// The driver calls it every [`RESTORE_EVERY`](crate::RESTORE_EVERY) steps or more often. Returns the distance that p
+    /// had. The default does nothing and returns `None`. Left translation corrects by [`LieGroup::correct`].
     #[inline]
     fn restore(
         &self,
@@ -121,8 +124,10 @@ pub trait Action<G: LieGroup> {
         None
     }
 
-    /// Take p back to M, and to the orbit of `from`, which a run that starts there never leaves: |x| of a
-    /// vector under SO(3). The driver calls this; the default is [`restore`](Self::restore).
+    /// Moves p back to M and to the orbit of `from`, the start of the run.
+    ///
+    /// Example: |x| of a vector under SO(3) is constant. The driver calls this; the default is
+    /// [`restore`](Self::restore).
     #[inline]
     fn restore_to(
         &self,

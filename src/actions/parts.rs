@@ -1,8 +1,9 @@
-//! Actions of products, part by part: Λ((a, b), (p, q)) = (Λ₁(a, p), Λ₂(b, q)) on A × B, and Λ on
-//! each of the copies of Gᴺ.
+//! Actions of products, part by part.
 //!
-//! [`Linear`](super::Linear) and [`LeftTranslation`](super::LeftTranslation) serve products as they
-//! are, and `Linear` forms no group elements: spins on spheres are `Linear` on SO(3)ᴺ.
+//! Λ((a, b), (p, q)) = (Λ₁(a, p), Λ₂(b, q)) on A × B, and Λ on each of the copies of Gᴺ.
+//!
+//! [`Linear`](super::Linear) and [`LeftTranslation`](super::LeftTranslation) also work on products directly. `Linear`
+//! forms no group elements; example: spins on spheres are `Linear` on SO(3)ᴺ.
 
 use super::{Action, Coadjoint};
 use crate::error::Error;
@@ -10,7 +11,7 @@ use crate::groups::{LieGroup, Power, Product, worse};
 use crate::scalar::larger;
 use crate::tolerance::Scales;
 
-/// An action for each part of a [`Product`], on M₁ × M₂.
+/// An action on M₁ × M₂ with one action for each part of a [`Product`].
 ///
 /// ```
 /// use lieflow::Action;
@@ -110,7 +111,7 @@ where
 
 impl<G: LieGroup, L: Action<G>> Action<Power<G>> for Each<L> {
     type Point = Box<[L::Point]>;
-    /// The copies are served one after the other.
+    /// One copy after the other.
     type Work = L::Work;
 
     fn work(&self, group: &Power<G>) -> L::Work {

@@ -1,12 +1,13 @@
-//! Λ(g, p) = g p g† of U(n): conjugation and the coadjoint action at once, since u(n)* is u(n) by
-//! ⟨m, v⟩ = Re tr(m†v).
+//! Conjugation Λ(g, p) = g p g† of U(n), which is also the coadjoint action.
+//!
+//! The reason is that u(n)* is u(n) by ⟨m, v⟩ = Re tr(m†v).
 
 use super::{Action, Coadjoint, Conjugation};
 use crate::error::Error;
 use crate::groups::{ComplexMatrix, LieAlgebra, Unitary, mul_adjoint_skew, mul_complex};
 use crate::space::Metric;
 
-/// Λ(g, p) = g p g† on the skew-Hermitian matrices. The eigenvalues of p are kept.
+/// Λ(g, p) = g p g† on the skew-Hermitian matrices. It conserves the eigenvalues of p.
 impl Action<Unitary> for Conjugation {
     type Point = ComplexMatrix;
     /// g p.

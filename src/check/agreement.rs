@@ -1,5 +1,4 @@
-//! General against specialised at n = 3: the dense layer and the closed forms on so(3) are the same
-//! maps at every magnitude.
+//! Compares the matrix code at n = 3 with the closed forms on so(3), for u of every magnitude.
 
 use core::f64::consts::{FRAC_PI_2, TAU};
 
@@ -29,8 +28,8 @@ fn fixed(x: &Mat<f64>) -> Matrix3<f64> {
     Matrix3::from_fn(|i, j| x[(i, j)])
 }
 
-/// A random direction (an axis every eighth time) at a magnitude that is log-uniform over all that
-/// have a meaning, with every tenth near a multiple of π/2.
+/// A random u. Every eighth is along an axis. The magnitude is log-uniform over all that have a meaning, and every
+/// tenth is near a multiple of π/2.
 fn random_vector<R: Rng + ?Sized>(rng: &mut R) -> Vector3<f64> {
     let direction = match rng.random_range(0..8) {
         0 => Vector3::ith(rng.random_range(0..3), 1.0),
@@ -156,7 +155,7 @@ where
 }
 
 /// One step of RKMK4 on both layers, with every map, from `cases` random states of random bodies:
-/// of the momentum alone, and of the attitude.
+/// by the momentum, and by the attitude.
 ///
 /// # Errors
 /// None that a rigid body can raise.

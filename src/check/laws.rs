@@ -7,10 +7,10 @@ use crate::error::Error;
 use crate::groups::Sample;
 use crate::maps::CoordinateMap;
 
-/// What the laws allow, in units of ε·size. The size of each is stated where it is measured.
+/// The allowed error of a law, in units of ε·size. The size is stated where it is measured.
 pub const LAW_BOUND: f64 = 4.0;
 
-/// δ of the law of dΨ⁻¹: δ² = ε. A dΨ⁻¹ that is wrong by a relative 1e-7 is seen.
+/// δ of the law of dΨ⁻¹: δ² = ε. A relative error of 1e-7 in dΨ⁻¹ is found.
 const DELTA: f64 = 1.4901161193847656e-8;
 
 /// δ of the law of commutators: δ³ = 2ε, and the δ²\[u, v\] that a missing bracket leaves is 3e5 ε.
@@ -21,8 +21,8 @@ const SMALL: f64 = 1.0 / 131072.0;
 ///
 /// - bracket: \[u, v\] = −\[v, u\] and Jacobi's identity;
 /// - Ψ(0) = 𝟙, Ψ(u) ∈ G;
-/// - commutators: Ψ(δu)Ψ(δv) = Ψ(δ²\[u, v\])Ψ(δv)Ψ(δu) to second order in δ, so that the bracket is the
-///   group's, in each part of it;
+/// - commutators: Ψ(δu)Ψ(δv) = Ψ(δ²\[u, v\])Ψ(δv)Ψ(δu) to second order in δ. So the bracket is that
+///   of the group, in each part of it;
 /// - dΨ⁻¹: Ψ(u + δ dΨ_u⁻¹v) = Ψ(δv)Ψ(u) to first order in δ, the definition of dΨ (8).
 ///
 /// # Errors

@@ -1,8 +1,8 @@
-//! Checks that users can run: the general layer against the closed forms, and the laws of a group
-//! with its coordinate maps.
+//! Checks that users can run: the laws of a group with its coordinate maps, and the general code against the closed
+//! forms.
 //!
-//! Differences are in units of ε·cond·size: 1 is what one rounding of the input already changes.
-//! A group or a map from outside the crate is checked by the same [`laws`].
+//! Differences are in units of ε·cond·size: 1 is the change by rounding the input once. [`laws`] also checks groups and
+//! maps of other crates.
 
 mod agreement;
 mod laws;
@@ -10,7 +10,7 @@ mod laws;
 pub use agreement::{AGREEMENT_BOUND, maps_agree, steps_agree};
 pub use laws::{LAW_BOUND, laws};
 
-/// What a check found.
+/// The result of a check.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finding {
     /// What was checked.
@@ -46,7 +46,7 @@ impl Finding {
         (self.worst, self.at) = (f64::INFINITY, at());
     }
 
-    /// Was something checked, and nothing out of bounds?
+    /// True if there was at least one case, and all are within the bound.
     pub fn holds(&self) -> bool {
         self.cases > 0 && self.worst <= self.bound
     }

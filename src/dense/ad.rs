@@ -7,14 +7,12 @@
 //! | uᵀM + Mu = 0, Mᵀ = M | Y = Q*MvQ̄ skew, −uᵀ = QTQ* | TY + YTᵀ | λ_j + λ_k, j < k |
 //! | uᵀM + Mu = 0, Mᵀ = −M | Y = Q*MvQ̄ symmetric | TY + YTᵀ | λ_j + λ_k, j ≤ k |
 //!
-//! With a form the eigenvalues are those on 𝔤 alone: what gl(n) sees as singular at 2λ_j = 2πik
-//! is not touched on SO(p,q). A and B are upper triangular with the real parts of the diagonals in
-//! descending order; then e^A and e^B are graded by rows, each substitution below divides by the
-//! largest coefficient of its row, and no digit is lost to a large spread of real parts.
+//! With a form M the eigenvalues are only those on 𝔤. Example: 2λ_j = 2πik is singular on gl(n), but not on SO(p,q). A
+//! and B are upper triangular, and the real parts of their diagonals descend. So e^A and e^B are graded by rows, and
+//! each substitution below divides by the largest coefficient of its row. No digit is lost if the real parts differ much.
 //!
-//! dexp_u = dexp_{u/2} ∘ ½(1 + exp(ad_{u/2})): from u/2^s, where a short series holds, to u by s
-//! steps, each Y ← ½(Y + FYGᵀ), or the solution of ½(Y + FYGᵀ) = Y for the inverse, F = e^{A/2^j},
-//! G = e^{B/2^j}, j = s … 1.
+//! dexp_u = dexp_{u/2} ∘ ½(1 + exp(ad_{u/2})). A short series gives the result at u/2^s. Then s steps lead to u. Each is
+//! Y ← ½(Y + FYGᵀ) or, for the inverse, the solution of ½(Y + FYGᵀ) = Y, with F = e^{A/2^j}, G = e^{B/2^j}, j = s … 1.
 
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, Par, c64};
@@ -24,19 +22,19 @@ use super::schur::Schur;
 use crate::error::StepError;
 use crate::scalar::{Ops, tally};
 
-/// A coefficient of the substitution is zero to within the bound that was given.
+/// The error that a coefficient of the substitution is zero within the given bound.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct NearlySingular;
 
 const ZERO: c64 = c64::new(0.0, 0.0);
 const ONE: c64 = c64::new(1.0, 0.0);
-/// The Taylor polynomial of exp on norm ≤ 1: 1/19! is below rounding.
+/// The degree of the Taylor polynomial of exp for norm ≤ 1: 1/19! is below rounding.
 const TAYLOR: usize = 18;
 
-/// What the elements of the algebra satisfy.
+/// The condition on the elements of the algebra.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum AdKind {
-    /// Nothing: gl(n).
+    /// None: gl(n).
     General,
     /// Mv is skew: M symmetric.
     Skew,
@@ -169,7 +167,7 @@ impl AdSchur {
 
     /// v ← ∏_{j ≤ halvings} [½(1 + exp(ad_u/2^j))]^(∓1) v; with −1 dexp_u⁻¹ is this times its value
     /// at u/2^halvings, and with +1 dexp_u. `singular` is the size of 1 + e^z, relative to the size
-    /// of u, at which it counts as zero. [`factor`](Self::factor) goes before.
+    /// of u, at which it counts as zero. Call [`factor`](Self::factor) first.
     pub(crate) fn halvings(
         &mut self,
         halvings: u32,
@@ -211,7 +209,7 @@ impl AdSchur {
         Ok(())
     }
 
-    /// v ← the solution x of x − uxu/12 = v. [`factor`](Self::factor) goes before.
+    /// v ← the solution x of x − uxu/12 = v. Call [`factor`](Self::factor) first.
     pub(crate) fn solve_pade22(
         &mut self,
         singular: f64,
@@ -316,7 +314,7 @@ impl AdSchur {
     }
 }
 
-/// Which of the two.
+/// dexp or its inverse.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Direction {
     /// dexp.

@@ -1,4 +1,4 @@
-//! Eigendecomposition of a skew-symmetric or skew-Hermitian matrix, and functions of ad_u built on it.
+//! Eigendecomposition of a skew-symmetric or skew-Hermitian matrix, and functions of ad_u from it.
 
 use core::f64::consts::TAU;
 
@@ -45,8 +45,8 @@ impl SkewEigen {
     /// v ← φ(ad_u) v for u, v skew. `phi(θ)` is (Re, Im) of φ at the eigenvalue −iθ of ad_u.
     ///
     /// With iu = QΛQ*, (Q*vQ)_jk is the component of v at the eigenvalue −i(λ_j − λ_k) of ad_u. The
-    /// component of a conjugate pair (q_k = q̄_j) is q_j* v q̄_j = 0 because v is skew; it is set to
-    /// zero exactly, for φ may be singular there although no element of so(n) sees it.
+    /// component of a conjugate pair (q_k = q̄_j) is q_j* v q̄_j = 0 because v is skew. The code sets it
+    /// to zero exactly, because φ may be singular there, which does not matter for so(n).
     pub(crate) fn function_of_ad(
         &mut self,
         u: &Mat<f64>,
@@ -72,8 +72,8 @@ impl SkewEigen {
         Ok(())
     }
 
-    /// v ← φ(ad_u) v for u, v skew-Hermitian, as [`function_of_ad`](Self::function_of_ad): u(n) sees
-    /// every eigenvalue.
+    /// v ← φ(ad_u) v for u, v skew-Hermitian, as [`function_of_ad`](Self::function_of_ad). On u(n)
+    /// every eigenvalue counts.
     pub(crate) fn function_of_complex_ad(
         &mut self,
         u: &Mat<c64>,
@@ -185,7 +185,7 @@ fn fill(x: &mut Mat<c64>, entry: impl Fn(usize, usize) -> c64) {
     }
 }
 
-/// Is eigenvalue j far enough from its neighbours for its eigenvector to be its own?
+/// True if eigenvalue j is far enough from its neighbours for an accurate eigenvector.
 fn isolated(lambda: &Col<c64>, j: usize) -> bool {
     let n = lambda.nrows();
     let gap = 1e-6 * lambda[n - 1].re.abs().max(lambda[0].re.abs());

@@ -12,7 +12,7 @@ use crate::scalar::{Ops, tally};
 /// The smallest reciprocal condition number (1-norm) that counts as invertible.
 pub const RCOND_MIN: f64 = 1e-14;
 
-/// An LU factorisation that can be redone in place.
+/// An LU factorisation that can be repeated in place.
 pub(crate) struct Lu {
     /// Write the matrix here, then call [`factor`](Self::factor).
     pub(crate) a: Mat<f64>,
@@ -48,8 +48,8 @@ impl Lu {
         Lu { a: Mat::zeros(n, n), perm: vec![0; n], perm_inv: vec![0; n], mem: MemBuffer::new(req) }
     }
 
-    /// Factor `a` in place. Returns min|u_ii|/max|u_ii|, a cheap sign of singularity: 0 for a
-    /// singular matrix, and never NaN.
+    /// Factors `a` in place. Returns min|u_ii|/max|u_ii|, a cheap measure of singularity: 0 for a singular matrix, and
+    /// never NaN.
     pub(crate) fn factor(&mut self) -> f64 {
         tally(|| factor_ops(self.a.nrows()));
         match self.a.nrows() {

@@ -1,9 +1,8 @@
-//! Dense kernels over faer: everything that knows faer's low-level interface is here.
+//! Dense matrix kernels over faer. All code that calls faer's low-level interface is here.
 //!
-//! Workspaces are made once; after that nothing allocates. Every product runs on one core
-//! (`Par::Seq`): below n = 128 faer's parallel mode is slower, and ensembles parallelise outside.
-//! Products and solves of 8×8 and smaller run in const-size kernels, chosen once per call, because
-//! a library call costs more there than the arithmetic.
+//! Workspaces are made once; after that nothing allocates. Every product runs on one core (`Par::Seq`), because below n
+//! = 128 faer's parallel mode is slower, and ensembles use threads outside. Products and solves up to 8×8 run in
+//! const-size kernels, chosen once for each call, because a library call costs more than the arithmetic there.
 
 mod ad;
 mod eigen;

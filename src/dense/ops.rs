@@ -5,7 +5,7 @@ use pulp::{Arch, NullaryFnOnce};
 
 use crate::scalar::{Ops, tally};
 
-/// The largest n with a const-size LU, and the largest for which wide instructions are not looked for.
+/// The largest n with a const-size LU, and without a choice of wide instructions.
 pub(crate) const SMALL: usize = 8;
 
 /// y ← y + a·x.
@@ -35,8 +35,7 @@ pub(crate) fn add_scaled_sum<const K: usize>(
     wide(out.nrows(), Sums { out: [out], c: [c], x, d: [d], add: true });
 }
 
-/// out_m ← Σ c_mi·x_i + d_m·𝟙 for every m, in one pass: from n = 128 on what a sum costs is the way
-/// of its matrices through the caches.
+/// out_m ← Σ c_mi·x_i + d_m·𝟙 for every m, in one pass. From n = 128 on memory decides the cost of a sum.
 pub(crate) fn scaled_sums<const K: usize, const M: usize>(
     out: [&mut Mat<f64>; M],
     c: [[f64; K]; M],
@@ -56,12 +55,12 @@ fn tally_sum(k: usize, like: &Mat<f64>, d: f64, add: bool) {
     tally(|| Ops::dots(entries, k) + Ops::adds(diagonal + if add { entries } else { 0 }));
 }
 
-/// `op` with the widest instructions there are, where n is worth the choice.
+/// Runs `op` with the widest instructions of the machine, if n is large enough for the choice.
 pub(crate) fn wide<Op: NullaryFnOnce>(n: usize, op: Op) -> Op::Output {
     if n <= SMALL { op.call() } else { Arch::new().dispatch(op) }
 }
 
-/// Entries that are treated at once.
+/// The number of entries processed at once.
 const CHUNK: usize = 8;
 
 /// M sums of the same K matrices, compiled for every instruction set.
@@ -122,7 +121,7 @@ impl<const K: usize, const M: usize> NullaryFnOnce for Sums<'_, K, M> {
     }
 }
 
-/// Σ f(x_i), in eight sums side by side.
+/// Σ f(x_i), in eight sums at once.
 #[inline(always)]
 fn sum(x: &[f64], f: impl Fn(f64) -> f64) -> f64 {
     let mut sums = [0.0; CHUNK];
@@ -225,7 +224,7 @@ pub(crate) fn norm_frobenius(x: &Mat<f64>) -> f64 {
     }
 }
 
-/// Is every entry finite? Not by sums of moduli: they overflow where no entry does.
+/// True if every entry is finite. It does not use sums of moduli, which may overflow although no entry does.
 pub(crate) fn is_finite(x: &Mat<f64>) -> bool {
     (0..x.ncols()).all(|j| sum(x.col_as_slice(j), |x| 0.0 * x) == 0.0)
 }

@@ -1,10 +1,10 @@
-//! Products, whole and of one triangle.
+//! Matrix products, full or of one triangle.
 //!
 //! | n | product |
 //! |---|---|
 //! | up to 6 | const size, in line |
-//! | 7, 8 | const size, the widest instructions there are |
-//! | 9 … 16 | faer's, and a kernel of ours where the left matrix lies by rows |
+//! | 7, 8 | const size, the widest instructions of the machine |
+//! | 9 … 16 | faer's; our own kernel if the left matrix is stored by rows |
 //! | larger | faer's |
 
 use faer::linalg::matmul::matmul;
@@ -17,7 +17,7 @@ use super::expm::taylor::Packed;
 use super::ops::{SMALL, axpy, norm1, scaled_sum, wide};
 use crate::scalar::{Ops, tally};
 
-/// From this n on one triangle is cheaper than the whole product.
+/// From this n on one triangle is cheaper than the full product.
 pub(crate) const HALF_FROM: usize = 48;
 /// From this n on faer's own triangle is faster than panels of [`PANEL`] columns.
 const TRIANGLE_FROM: usize = 224;
@@ -134,7 +134,7 @@ pub(crate) fn half_mul_add(out: &mut Mat<f64>, a: MatRef<'_, f64>, b: MatRef<'_,
     half_product(out, a, b, Accum::Add, 1.0);
 }
 
-/// out ← g·p·gᵀ, where from [`HALF_FROM`] on one triangle is enough if p is symmetric or skew, exactly.
+/// out ← g·p·gᵀ. From [`HALF_FROM`] on one triangle is enough, if p is exactly symmetric or skew.
 pub(crate) fn congruence(out: &mut Mat<f64>, g: &Mat<f64>, p: &Mat<f64>, product: &mut Mat<f64>) {
     mul(product, g.as_ref(), p.as_ref());
     let n = p.nrows();
@@ -145,7 +145,7 @@ pub(crate) fn congruence(out: &mut Mat<f64>, g: &Mat<f64>, p: &Mat<f64>, product
     }
 }
 
-/// out ← v·p − p·v for a skew v: one product where p is symmetric or skew, exactly.
+/// out ← v·p − p·v for a skew v. It takes one product if p is exactly symmetric or skew.
 pub(crate) fn skew_commutator(out: &mut Mat<f64>, v: &Mat<f64>, p: &Mat<f64>) {
     mul(out, v.as_ref(), p.as_ref());
     match wide(p.nrows(), Symmetry(p)) {
@@ -222,7 +222,7 @@ fn half_product(
     }
 }
 
-/// The lower triangle of out ← a·b (or out + alpha·a·b); the upper one holds nothing of use.
+/// The lower triangle of out ← a·b (or out + alpha·a·b); the upper one is undefined.
 pub(crate) fn lower_product(
     out: &mut Mat<f64>,
     a: MatRef<'_, f64>,
@@ -370,8 +370,9 @@ pub(crate) fn antisymmetrise(p: &mut Mat<f64>) {
     }
 }
 
-/// g ← g + g(𝟙 − gᵀg)/2 until ‖𝟙 − gᵀg‖ is at rounding level. What a solve or squarings have
-/// amplified to κε, Newton–Schulz in residual form takes back to ε. Returns the number of steps.
+/// g ← g + g(𝟙 − gᵀg)/2 until ‖𝟙 − gᵀg‖ is at rounding level. Returns the number of steps.
+///
+/// A solve or squarings amplify the error to κε. Newton–Schulz in residual form reduces it to ε.
 pub(crate) fn orthogonalise(g: &mut Mat<f64>, [gap, product]: [&mut Mat<f64>; 2]) -> u32 {
     let mut last = f64::INFINITY;
     for step in 0..6 {

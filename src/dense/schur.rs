@@ -11,9 +11,9 @@ use crate::scalar::{Ops, tally};
 
 const ZERO: c64 = c64::new(0.0, 0.0);
 const ONE: c64 = c64::new(1.0, 0.0);
-/// Iterations without deflation before an eigenvalue counts as lost; two or three are usual.
+/// The largest number of iterations without deflation; two or three are usual.
 const SWEEPS_MAX: usize = 60;
-/// What lies below this share of the largest entry is no matter of its rounding.
+/// Entries below this fraction of the largest entry are set to zero.
 pub(crate) const NEGLIGIBLE: f64 = 1e-60;
 
 /// Workspace for u = Q T Q*.
@@ -34,7 +34,7 @@ struct Rotation {
 }
 
 impl Rotation {
-    /// Of a pair of numbers: each times c, plus the other times s.
+    /// Rotates a pair of numbers: each times c, plus the other times s.
     const OPS: Ops = Ops { add: 8, mul: 12, ..Ops::NONE };
 
     fn new(a: c64, b: c64) -> Self {
@@ -71,7 +71,7 @@ impl Rotation {
     }
 }
 
-/// 2ᵉx. In two factors, for the power itself may be out of the range.
+/// 2ᵉx, by two factors, because 2ᵉ itself may overflow.
 fn scaled(x: c64, e: i32) -> c64 {
     x * 2f64.powi(e / 2) * 2f64.powi(e - e / 2)
 }
@@ -98,8 +98,8 @@ impl Schur {
         Ok(())
     }
 
-    /// t ← 2⁻ᵉt with its largest entry near 1, without what lies below [`NEGLIGIBLE`]; returns e. The
-    /// iteration multiplies entries by each other, and sees no end where such a product underflows.
+    /// t ← 2⁻ᵉt with its largest entry near 1 and entries below [`NEGLIGIBLE`] set to zero. Returns e. The iteration
+    /// multiplies entries by each other, and would not end if such a product underflowed.
     fn normalise(&mut self) -> i32 {
         let entries = self.t.col_iter().flat_map(|col| col.iter());
         let largest = entries.fold(0.0, |most: f64, x| most.max(x.re.abs()).max(x.im.abs()));
@@ -209,7 +209,7 @@ impl Schur {
         Ok(())
     }
 
-    /// Exchange neighbours until the real parts descend.
+    /// Exchanges neighbours until the real parts descend.
     fn sort(&mut self) {
         let Schur { t, q, .. } = self;
         let n = t.nrows();

@@ -33,7 +33,7 @@ impl SymmetricEigen {
     /// out ← φ(a) = Q φ(Λ) Qᵀ, from the lower triangle of a.
     ///
     /// # Errors
-    /// [`StepError::NotConverged`], and [`StepError::NotFinite`] where φ has no finite value.
+    /// [`StepError::NotConverged`], and [`StepError::NotFinite`] if a value of φ is not finite.
     pub(crate) fn function(
         &mut self,
         a: &Mat<f64>,

@@ -1,20 +1,19 @@
-//! Many free rigid bodies side by side, in the widest SIMD lanes of the machine, chosen at run time.
+//! Many free rigid bodies at once, in the widest SIMD lanes of the machine, chosen at run time.
 //!
-//! Each has its own inertia, momentum m and, where it is asked for, attitude g from body to space:
-//! ṁ = m × J⁻¹m, ġ = g ω̂, so that m and the rows x of g move alike, ẋ = x × ω. With f = −ω a step is
+//! Each body has its own inertia, momentum m and, if you ask for it, attitude g from body to space. From ṁ = m × J⁻¹m and
+//! ġ = g ω̂ follows ẋ = x × ω for m and for the rows x of g. With f = −ω a step is
 //!
 //! | | m⁺ | rows of g⁺ |
 //! |---|---|---|
 //! | [`EnsembleMethod::Rkmk4Exp`], [`Rkmk4Cay`](EnsembleMethod::Rkmk4Cay) | Ψ(v) m, v of Table 1 in Celledoni & Owren | Ψ(v) x |
 //! | [`EnsembleMethod::Rk4`] | classical Runge–Kutta on (m, g) | the same |
 //!
-//! These are the methods `rkmk4` and `rk4-mg` of the catalog, with their results to rounding. Bodies lie
-//! in blocks of 64, and a block takes all its steps before the next one takes its first, so that a
-//! million bodies cost what a hundred do, each. In a block the formulas run without a branch; where a
-//! stage turns by more than one radian, or is not finite, the body is done again by the scalar method, which
-//! takes its own time and also says what is wrong.
+//! These are the methods `rkmk4` and `rk4-mg` of the catalog, with the same results to rounding. Blocks have 64 bodies. A
+//! block takes all its steps before the next block starts, so the cost per body does not grow with their number. The
+//! formulas of a block have no branch. If a stage turns by more than one radian, or is not finite, the step of this
+//! body is repeated by the scalar method. It is slower, and it returns the error.
 //!
-//! Blocks do not know of each other: on any number of threads the results are the same bits.
+//! Blocks are independent: the results are the same to the bit on any number of threads.
 //!
 //! ```
 //! use lieflow::ensemble::{Ensemble, EnsembleMethod};
@@ -42,19 +41,19 @@ use crate::so3::{Lane, SERIES, SMALL};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum EnsembleMethod {
-    /// RKMK4 in coordinates of exp. Order 4; keeps |m|, g m and gᵀg = 𝟙.
+    /// RKMK4 with the map exp. Order 4; conserves |m|, g m and gᵀg = 𝟙.
     Rkmk4Exp,
-    /// RKMK4 in coordinates of cay. Order 4; keeps |m|, g m and gᵀg = 𝟙.
+    /// RKMK4 with the map cay. Order 4; conserves |m|, g m and gᵀg = 𝟙.
     Rkmk4Cay,
-    /// Classical Runge–Kutta on m and the entries of g. Order 4; keeps nothing.
+    /// Classical Runge–Kutta on m and the entries of g. Order 4; conserves nothing.
     Rk4,
 }
 
-/// Bodies in a block: their numbers stay in the first cache.
+/// The number of bodies in a block. Their data fit into the first cache.
 const BLOCK: usize = 64;
-/// After so many steps of a method that keeps the group, g is taken back to it, and |m| to what it was.
+/// After so many steps g is corrected to the group, and |m| to its first value, if the method conserves them.
 const RESTORE_EVERY: u64 = 64;
-/// An attitude is a rotation to within this.
+/// The allowed distance of an attitude from the rotations.
 const ROTATION: f64 = 1e-6;
 
 /// A number of each body of a block.
@@ -91,21 +90,21 @@ enum Blocks {
     Attitude(Vec<Block<3>>),
 }
 
-/// Many free rigid bodies. Without attitudes none is stored or integrated.
+/// Many free rigid bodies, with or without attitudes. Without them no attitude is stored or integrated.
 #[derive(Clone, Debug)]
 pub struct Ensemble {
     len: usize,
     blocks: Blocks,
-    /// Steps since g and m were last taken back to their orbits.
+    /// Steps since g and m were last corrected.
     age: u64,
 }
 
 impl Ensemble {
-    /// Bodies by their principal moments of inertia and their momenta in the body.
+    /// Makes bodies from their principal moments of inertia and their momenta in the body.
     ///
     /// # Errors
     /// [`Error::Shape`] for lists of different lengths; [`Error::OutOfRange`] for a moment of inertia that
-    /// is not positive and finite, or a momentum that is not finite, with its place.
+    /// is not positive and finite, or a momentum that is not finite, with its index.
     pub fn new(inertia: &[[f64; 3]], momentum: &[[f64; 3]]) -> Result<Self, Error> {
         let len = inertia.len();
         check_length("momentum", momentum.len(), len)?;
@@ -130,11 +129,11 @@ impl Ensemble {
         Ok(Ensemble { len, blocks: Blocks::Momentum(blocks), age: 0 })
     }
 
-    /// These bodies with their attitudes, rotations from body to space.
+    /// Adds the attitudes of the bodies, rotations from body to space.
     ///
     /// # Errors
     /// [`Error::Shape`] for a list of another length; as
-    /// [`So3::check_element`](crate::groups::So3::check_element) for what is no rotation.
+    /// [`So3::check_element`](crate::groups::So3::check_element) for a matrix that is not a rotation.
     pub fn with_attitudes(self, attitudes: &[Matrix3<f64>]) -> Result<Self, Error> {
         check_length("attitudes", attitudes.len(), self.len)?;
         let mut blocks = vec![Block::EMPTY; self.len.div_ceil(BLOCK)];
@@ -153,11 +152,11 @@ impl Ensemble {
         Ok(Ensemble { blocks: Blocks::Attitude(blocks), ..self })
     }
 
-    /// How many bodies.
+    /// The number of bodies.
     pub fn len(&self) -> usize {
         self.len
     }
-    /// Is there none?
+    /// True if there is no body.
     pub fn is_empty(&self) -> bool {
         self.len == 0
     }
@@ -180,11 +179,11 @@ impl Ensemble {
             (vector(inverse, i % BLOCK), vector(m, i % BLOCK))
         })
     }
-    /// m of body i; none from [`len`](Self::len) on.
+    /// m of body i; `None` for i ≥ [`len`](Self::len).
     pub fn momentum(&self, i: usize) -> Option<Vector3<f64>> {
         self.body(i).map(|(_, m)| m)
     }
-    /// g of body i; none from [`len`](Self::len) on, or where no attitudes are integrated.
+    /// g of body i; `None` for i ≥ [`len`](Self::len), or without attitudes.
     pub fn attitude(&self, i: usize) -> Option<Matrix3<f64>> {
         match &self.blocks {
             Blocks::Attitude(blocks) if i < self.len => {
@@ -194,18 +193,18 @@ impl Ensemble {
             _ => None,
         }
     }
-    /// ½ m·J⁻¹m of body i; none from [`len`](Self::len) on.
+    /// ½ m·J⁻¹m of body i; `None` for i ≥ [`len`](Self::len).
     pub fn energy(&self, i: usize) -> Option<f64> {
         self.body(i).map(|(inverse, m)| 0.5 * inverse.dot(&m.component_mul(&m)))
     }
 
-    /// Take `steps` steps of size h for every body, on this number of threads. Allocates nothing but threads,
-    /// of which one is the caller's own.
+    /// Takes `steps` steps of size h for every body, on this number of threads. The caller's thread is one of them. Only
+    /// the other threads allocate.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] for an h that is not finite, or no threads; [`Error::Element`] with the number
-    /// of the first body for which a step failed, and why. That body stands where it was before the step,
-    /// and so do those of its block; of the others some are at the end.
+    /// of the first body for which a step failed, and the reason. The bodies of its block have their state before the
+    /// step. Some of the others are at the end.
     pub fn advance(
         &mut self,
         method: EnsembleMethod,
@@ -342,8 +341,8 @@ fn steps<Rule: OneStep, const FUSED: bool, const ROWS: usize>(
     done
 }
 
-/// A step of all momenta, what it leaves for the attitudes, and the largest |u|² of its stages; NaN where
-/// m is not finite. What is read and what is written are arguments, so that the compiler sees them apart.
+/// A step of all momenta, the numbers for the attitudes, and the largest |u|² of its stages; NaN if m is not finite.
+/// Inputs and outputs are separate arguments, so that the compiler knows that they do not overlap.
 #[inline(always)]
 fn momenta<Rule: OneStep, const FUSED: bool>(
     h: f64,
@@ -390,7 +389,7 @@ fn vector(x: &Vectors, i: usize) -> Vector3<f64> {
     Vector3::new(x[0][i], x[1][i], x[2][i])
 }
 
-/// The bodies whose guard is too large, by the scalar method.
+/// Repeats the bodies with a large guard by the scalar method.
 #[cold]
 #[inline(never)]
 fn again<Rule: OneStep, const ROWS: usize>(

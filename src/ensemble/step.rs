@@ -1,4 +1,4 @@
-//! A step of one body, generic in the number: in lanes, and the scalar method that it is.
+//! A step of one body, generic in the number type: SIMD lanes or a scalar.
 
 use nalgebra::Vector3;
 
@@ -22,7 +22,7 @@ pub(super) struct MomentumStep<S> {
     pub(super) largest: S,
 }
 
-/// A method in lanes, and the scalar method that it is.
+/// A method in SIMD lanes, and the same method on scalars.
 pub(super) trait OneStep {
     const KEEPS_GROUP: bool;
     /// A step of m, with the reciprocals j of the inertias.

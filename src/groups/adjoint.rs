@@ -7,10 +7,9 @@
 //! | [`coad_group`](Adjoint::coad_group) | ⟨Ad*_g m, v⟩ = ⟨m, Ad_g v⟩ (3) | gᵀ m | gᵀ m g⁻ᵀ |
 //! | [`coad`](Adjoint::coad) | ⟨ad*_u m, v⟩ = ⟨m, \[u, v\]⟩ | m × u | uᵀm − m uᵀ |
 //!
-//! Ad is a representation, Ad_{ab} = Ad_a Ad_b; Ad* runs the other way, Ad*_a Ad*_b = Ad*_{ba}, and
-//! the left action on 𝔤* is [`Coadjoint`](crate::actions::Coadjoint), Λ(g, m) = Ad*_{g⁻¹} m.
-//! In G_M an n×n matrix m stands for the functional v ↦ tr(mᵀv) on 𝔤; matrices that differ by one
-//! that vanishes on 𝔤 stand for the same.
+//! Ad is a representation: Ad_{ab} = Ad_a Ad_b. Ad* reverses the order: Ad*_a Ad*_b = Ad*_{ba}. So the left action on
+//! 𝔤* is [`Coadjoint`](crate::actions::Coadjoint), Λ(g, m) = Ad*_{g⁻¹} m. On G_M an n×n matrix m stands for the
+//! functional v ↦ tr(mᵀv) on 𝔤. Several matrices may stand for the same functional.
 
 use faer::Mat;
 use nalgebra::{Matrix3, Vector3};
@@ -32,7 +31,7 @@ pub trait Adjoint: LieGroup {
     /// Scratch for [`invert`](Self::invert).
     fn inverting(&self) -> Self::Inverting;
 
-    /// out ← g⁻¹, without an allocation.
+    /// out ← g⁻¹. Allocates nothing.
     ///
     /// # Errors
     /// [`StepError::NotFinite`] for a singular g on GL(n).
@@ -43,7 +42,7 @@ pub trait Adjoint: LieGroup {
         out: &mut Self::Elem,
     ) -> Result<(), StepError>;
 
-    /// out ← g⁻¹, with scratch made for it.
+    /// out ← g⁻¹. Allocates scratch.
     ///
     /// # Errors
     /// As [`invert`](Self::invert).
@@ -135,15 +134,15 @@ fn finite(is: bool) -> Result<(), StepError> {
     if is { Ok(()) } else { Err(StepError::NotFinite { what: "Ad" }) }
 }
 
-/// Scratch of the inverse: M⁻¹gᵀ on G_M, the factors of g on GL(n).
+/// Scratch for the inverse: M⁻¹gᵀ on G_M, the factors of g on GL(n).
 #[derive(Debug)]
 pub struct InvertingWork {
     product: Mat<f64>,
     lu: Option<Lu>,
 }
 
-/// [`big_ad`](Adjoint::big_ad) and [`coad_group`](Adjoint::coad_group) allocate. Cost: two products and the inverse, which is free on SO(n) and Sp(2m),
-/// two products on G_M, and an LU on GL(n).
+/// [`big_ad`](Adjoint::big_ad) and [`coad_group`](Adjoint::coad_group) allocate. Cost: two products and the inverse,
+/// which is free on SO(n) and Sp(2m), two products on G_M, and an LU on GL(n).
 impl Adjoint for MatrixGroup {
     type Dual = Mat<f64>;
     type Inverting = InvertingWork;

@@ -1,4 +1,4 @@
-//! Gᴺ: N copies of one group, each operation copy by copy over one slice.
+//! The group Gᴺ: N copies of one group. Each operation goes copy by copy over one slice.
 
 use rand::Rng;
 
@@ -8,11 +8,12 @@ use crate::error::{Error, StepError};
 use crate::scalar::{Real, larger};
 use crate::tolerance::Scales;
 
-/// Gᴺ = G × … × G: many bodies, a chain of spins. Elements are boxed slices, made once; what is done
-/// with one copy is resolved at compile time, as for one copy alone.
+/// The group Gᴺ = G × … × G, for many bodies or a chain of spins.
 ///
-/// Every coordinate map of the library that serves G serves Gᴺ; [`maps::Each`](crate::maps::Each)
-/// makes a map of one's own do so.
+/// Elements are boxed slices, made once. Operations on a copy are resolved at compile time, as for a single group.
+///
+/// Every coordinate map of the library for G is also one for Gᴺ. [`maps::Each`](crate::maps::Each) does the same for
+/// your own map.
 ///
 /// ```
 /// use lieflow::LieAlgebra;
@@ -39,7 +40,7 @@ impl<G> Power<G> {
         }
     }
 
-    /// G⁰ = {𝟙}: no copy, for the part of a product that a system may not have.
+    /// G⁰ = {𝟙}, no copy: for an optional part of a product.
     pub const fn none(group: G) -> Self {
         Power { group, copies: 0 }
     }
@@ -54,7 +55,7 @@ impl<G> Power<G> {
         self.copies
     }
 
-    /// Are there N parts?
+    /// True if there are N parts.
     pub(crate) fn check_copies<T>(&self, arg: &'static str, parts: &[T]) -> Result<(), Error> {
         match parts.len() == self.copies {
             true => Ok(()),
@@ -184,7 +185,7 @@ impl<G: LieGroup> LieGroup for Power<G> {
     fn assign_vector(&self, x: &Self::Vector, y: &mut Self::Vector) {
         x.iter().zip(y).for_each(|(x, y)| self.group.assign_vector(x, y));
     }
-    /// Each copy by itself; returns the largest residual.
+    /// Corrects each copy. Returns the largest residual.
     fn correct(&self, g: &mut Self::Elem, [s, t]: [&mut Self::Elem; 2]) -> G::Scalar {
         let mut residual = G::Scalar::lit(0.0);
         for ((g, s), t) in g.iter_mut().zip(s).zip(t) {
@@ -192,7 +193,7 @@ impl<G: LieGroup> LieGroup for Power<G> {
         }
         residual
     }
-    /// Each copy by itself; returns the largest of what was found.
+    /// Corrects each copy. Returns the largest residual.
     fn correct_vector(&self, from: &Self::Vector, x: &mut Self::Vector) -> Option<G::Scalar> {
         let each = from.iter().zip(x);
         each.fold(None, |all, (from, x)| worse(all, self.group.correct_vector(from, x)))

@@ -1,4 +1,4 @@
-//! A × B: pairs, each operation part by part.
+//! The group A × B of pairs. Each operation goes part by part.
 //!
 //! | | |
 //! |---|---|
@@ -14,9 +14,11 @@ use crate::error::{Error, StepError};
 use crate::scalar::{Real, larger};
 use crate::tolerance::Scales;
 
-/// The product A × B of two groups, for systems that are made of two parts. Products nest, and every
-/// coordinate map of the library that serves A and B serves A × B; [`maps::Pair`](crate::maps::Pair)
-/// has a map of its own for each part. [`Power`](super::Power) is many copies of one group.
+/// The product A × B of two groups, for systems of two parts.
+///
+/// Products may be nested. Every coordinate map of the library for A and B is also one for A × B.
+/// [`maps::Pair`](crate::maps::Pair) takes a different map for each part. [`Power`](super::Power) is many copies of one
+/// group.
 ///
 /// ```
 /// use lieflow::groups::{MatrixGroup, Product, So3};
@@ -36,7 +38,7 @@ fn norm2<S: Real>(a: S, b: S) -> S {
     (a * a + b * b).sqrt()
 }
 
-/// The larger of what was found in two parts.
+/// The larger residual of two parts.
 pub(crate) fn worse<S: Real>(a: Option<S>, b: Option<S>) -> Option<S> {
     match (a, b) {
         (Some(a), Some(b)) => Some(larger(a, b)),
@@ -152,12 +154,12 @@ impl<A: LieGroup, B: LieGroup<Scalar = A::Scalar>> LieGroup for Product<A, B> {
         self.0.assign_vector(&x.0, &mut y.0);
         self.1.assign_vector(&x.1, &mut y.1);
     }
-    /// Each part by itself; returns the larger residual.
+    /// Corrects each part. Returns the larger residual.
     fn correct(&self, g: &mut Self::Elem, [s, t]: [&mut Self::Elem; 2]) -> A::Scalar {
         let first = self.0.correct(&mut g.0, [&mut s.0, &mut t.0]);
         larger(first, self.1.correct(&mut g.1, [&mut s.1, &mut t.1]))
     }
-    /// Each part by itself; returns the larger of what was found.
+    /// Corrects each part. Returns the larger residual.
     fn correct_vector(&self, from: &Self::Vector, x: &mut Self::Vector) -> Option<A::Scalar> {
         let first = self.0.correct_vector(&from.0, &mut x.0);
         worse(first, self.1.correct_vector(&from.1, &mut x.1))

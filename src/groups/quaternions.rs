@@ -1,4 +1,4 @@
-//! The unit quaternions S³ ≅ SU(2), which turn vectors as SO(3) does, twice over.
+//! The unit quaternions S³ ≅ SU(2). q and −q are the same rotation.
 //!
 //! | | |
 //! |---|---|
@@ -6,8 +6,8 @@
 //! | q·x | q x q̄ |
 //! | correction | q/\|q\| |
 //!
-//! The maps of S³ are in `maps/quaternions.rs`. Quaternions are Hamilton's, real
-//! part first in words; nalgebra's [`UnitQuaternion`] is the container. Turns by 2π end at −1, not at 1.
+//! The maps of S³ are in `maps/quaternions.rs`. Quaternions are Hamilton's; text and files have the real part first.
+//! nalgebra's [`UnitQuaternion`] is the container. A rotation by 2π is q = −1.
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use rand::{Rng, RngExt};
@@ -19,14 +19,14 @@ use crate::error::{Error, StepError};
 use crate::scalar::{Ops, tally};
 use crate::so3;
 
-/// S³, the unit quaternions, over ℝ³ with the cross product.
+/// The unit quaternions S³. Their algebra is ℝ³ with the cross product.
 ///
 /// ```
 /// use lieflow::CoordinateMap;
 /// use lieflow::groups::{LieGroup, UnitQuaternions};
 /// use lieflow::maps::Exp;
 /// use nalgebra::Vector3;
-/// // A quarter of a turn about e₃.
+/// // A rotation by a quarter turn about e₃.
 /// let q = Exp.eval(&UnitQuaternions, &Vector3::new(0.0, 0.0, std::f64::consts::FRAC_PI_2))?;
 /// let mut y = Vector3::zeros();
 /// UnitQuaternions.apply(&q, &Vector3::x(), &mut y);
@@ -148,7 +148,7 @@ impl LieGroup for UnitQuaternions {
     }
 }
 
-/// Ad, ad and their duals as on SO(3), by q in place of its rotation.
+/// Ad, ad and their duals as on SO(3), with q instead of its rotation.
 impl Adjoint for UnitQuaternions {
     type Dual = Vector3<f64>;
     type Inverting = ();

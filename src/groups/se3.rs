@@ -1,4 +1,4 @@
-//! SE(3), the motions of space: g = (R, x) moves a point p to Rp + x. Rotation first, everywhere.
+//! The group SE(3) of rigid motions of space: g = (R, x) moves a point p to Rp + x. The rotation always comes first.
 //!
 //! | | |
 //! |---|---|
@@ -29,17 +29,17 @@ use crate::so3::{self, add3, all_finite, apply3, cross, dot3};
 use crate::space::{Gap, Metric};
 use crate::tolerance::Scales;
 
-/// SE(3): elements of the algebra are (ω, v), of the group (R, x), of the dual (μ, π).
+/// The group SE(3). Elements of the algebra are (ω, v), of the group (R, x), of the dual (μ, π).
 ///
-/// A twist's ω turns and its v moves; a momentum's μ is angular, its π linear (or, for a heavy top,
-/// the direction of gravity). [`LieGroup::apply`] moves a point of ℝ³.
+/// ω is an angular velocity and v a linear one. μ is an angular momentum and π a linear one; for a heavy top π is the
+/// direction of gravity. [`LieGroup::apply`] moves a point of ℝ³.
 ///
 /// ```
 /// use lieflow::CoordinateMap;
 /// use lieflow::groups::Se3;
 /// use lieflow::maps::Exp;
 /// use nalgebra::Vector3;
-/// // A quarter of a turn about e₃ that climbs by 1: a screw.
+/// // A screw: a quarter turn about e₃ and a move by 1 along it.
 /// let screw = (Vector3::new(0.0, 0.0, std::f64::consts::FRAC_PI_2), Vector3::new(0.0, 0.0, 1.0));
 /// let g = Exp.eval(&Se3::new(), &screw)?;
 /// assert!((g.0 * Vector3::x() + g.1 - Vector3::new(0.0, 1.0, 1.0)).norm() < 1e-15);
@@ -60,7 +60,7 @@ impl<S> Se3<S> {
 /// A pair of vectors: (ω, v), or (μ, π).
 type Pair<S> = (Vector3<S>, Vector3<S>);
 
-/// Both vectors, or that they are not finite.
+/// Both vectors, or an error if they are not finite.
 #[inline]
 pub(crate) fn finite_pair<S: Real>(u: &Pair<S>, what: &'static str) -> Result<(), StepError> {
     match all_finite(&u.0) && all_finite(&u.1) {
@@ -97,7 +97,7 @@ impl<S: Real> LieAlgebra for Se3<S> {
     fn bracket(&self, u: &Self::Alg, v: &Self::Alg, out: &mut Self::Alg) {
         *out = (cross(&u.0, &v.0), add3(&cross(&u.0, &v.1), &cross(&u.1, &v.0)));
     }
-    /// (|ω|² + |v|²)^½: a radian counts as a unit of length.
+    /// (|ω|² + |v|²)^½. A radian counts like a length of 1.
     #[inline]
     fn norm(&self, u: &Self::Alg) -> S {
         (dot3(&u.0, &u.0) + dot3(&u.1, &u.1)).sqrt()
@@ -110,7 +110,7 @@ impl<S: Real> LieAlgebra for Se3<S> {
 
 impl<S: Real> LieGroup for Se3<S> {
     type Elem = (Matrix3<S>, Vector3<S>);
-    /// A point p of space, the vector (p, 1) of the 4×4 matrices.
+    /// A point p of space. For the 4×4 matrices it is the vector (p, 1).
     type Vector = Vector3<S>;
 
     fn identity(&self) -> Self::Elem {
@@ -143,7 +143,7 @@ impl<S: Real> LieGroup for Se3<S> {
     fn check_vector(&self, x: &Vector3<S>) -> Result<(), Error> {
         check_finite(x.as_slice())
     }
-    /// Two parts: the rotation, and the place that it moves.
+    /// Two parts: the rotation and the translation.
     #[inline]
     fn error_ratio(&self, e: &Self::Alg, g: &Self::Elem, scales: &mut Scales<'_>) -> S {
         let turned = scales.part().ratio(e.0.size(), S::lit(1.0));
@@ -165,7 +165,7 @@ impl<S: Real> LieGroup for Se3<S> {
     fn defect(&self, g: &Self::Elem) -> S {
         So3::new().defect(&g.0)
     }
-    /// R alone can leave the group.
+    /// Only R can leave the group.
     #[inline]
     fn correct(&self, g: &mut Self::Elem, [a, b]: [&mut Self::Elem; 2]) -> S {
         So3::new().correct(&mut g.0, [&mut a.0, &mut b.0])

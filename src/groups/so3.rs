@@ -1,4 +1,4 @@
-//! SO(3) with so(3) ≅ ℝ³ by the hat map (2): fixed size, generic in the number.
+//! The group SO(3) with so(3) ≅ ℝ³ by the hat map (2): fixed size, generic in the number type.
 
 use core::marker::PhantomData;
 
@@ -11,10 +11,9 @@ use crate::error::Error;
 use crate::scalar::Real;
 use crate::so3::{apply3, compose3, cross, dot3, in_range};
 
-/// SO(3): algebra elements are 3-vectors (û of the paper), group elements are 3×3 rotations.
+/// The group SO(3). Elements of the algebra are 3-vectors (û of the paper), elements of the group are 3×3 rotations.
 ///
-/// nalgebra is the container; the formulas are written out, so that an op-counting number sees
-/// them and nothing else.
+/// nalgebra is only the container. The formulas are written out, so that the operation count is that of the formulas.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct So3<S = f64>(PhantomData<S>);
 
@@ -76,7 +75,7 @@ impl<S: Real> LieAlgebra for So3<S> {
     fn is_finite(&self, u: &Vector3<S>) -> bool {
         u[0].is_finite() && u[1].is_finite() && u[2].is_finite()
     }
-    /// Starts from the first term instead of from zero: three additions fewer.
+    /// Starts from the first term instead of zero, which saves three additions.
     #[inline]
     fn combine(&self, h: S, weights: &[f64], terms: &[Vector3<S>], u: &mut Vector3<S>) {
         let mut first = true;
@@ -176,7 +175,7 @@ impl<S: Real> LieGroup for So3<S> {
 }
 
 impl So3<f64> {
-    /// Check that `g` is a rotation: finite, ‖gᵀg − 𝟙‖ ≤ `tolerance`·max(1, ‖g‖²), determinant +1.
+    /// Checks that `g` is a rotation: finite, ‖gᵀg − 𝟙‖ ≤ `tolerance`·max(1, ‖g‖²), determinant +1.
     ///
     /// # Errors
     /// [`Error::NotFiniteEntry`], [`Error::NotOnGroup`] with the residual, [`Error::Reflection`].

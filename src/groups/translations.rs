@@ -1,8 +1,7 @@
 //! The translations of a linear space V: an abelian group.
 //!
-//! u ∈ V, g ∈ V; \[u, v\] = 0; g·g′ = g + g′; g moves x ∈ V to x + g. In a product
-//! it carries the part of a system that is not on a group: a momentum under forces, a controller's
-//! memory, a heat bath.
+//! u ∈ V, g ∈ V; \[u, v\] = 0; g·g′ = g + g′; g moves x ∈ V to x + g. In a product it holds the part of a system that
+//! is on no other group. Examples: a momentum under forces, the memory of a controller, a temperature.
 
 use super::{Adjoint, LieAlgebra, LieGroup};
 use crate::error::{Error, StepError};
@@ -10,7 +9,7 @@ use crate::scalar::Real;
 use crate::space::{Gap, LinearSpace};
 use crate::tolerance::Scales;
 
-/// The translations of the linear space that `zero` is the origin of.
+/// The translations of a linear space with the origin `zero`.
 ///
 /// ```
 /// use lieflow::groups::{LieGroup, Translations};

@@ -1,9 +1,8 @@
-//! A method whose type is known at run time only: what a method chosen by name is.
+//! A method whose type is known only at run time, such as a method chosen by name.
 //!
-//! [`AnyMethod`] is a [`Method`] and an [`Embedded`] for one type of problem, whatever is inside. Drivers, step
-//! doubling and counting are compiled once for a problem with it, and not once for each method. A run of equal
-//! steps is one call through a pointer for many steps ([`Method::steps`]), so that the loop over the steps is
-//! compiled with the method inside.
+//! [`AnyMethod`] is a [`Method`] and an [`Embedded`] for one type of problem. With it drivers, step doubling and
+//! counting are compiled once for each problem type, not once for each method. Many equal steps are one call through a
+//! pointer ([`Method::steps`]), and the loop over them is compiled with the method inside.
 
 use core::fmt;
 use core::marker::PhantomData;
@@ -17,8 +16,8 @@ use crate::tolerance::Tolerance;
 
 /// A method for problems of type `P`, behind a pointer. Cloning copies the pointer.
 ///
-/// A method without an estimate of its own error gets one by step doubling
-/// ([`Doubling`](super::Doubling)): [`has_pair`](Self::has_pair) tells which it is.
+/// A method without an embedded error estimate gets one by step doubling ([`Doubling`](super::Doubling)).
+/// [`has_pair`](Self::has_pair) is true for an embedded estimate.
 pub struct AnyMethod<'p, P: Problem> {
     inner: Arc<dyn Inner<'p, P> + 'p>,
 }
@@ -36,17 +35,17 @@ impl<P: Problem> fmt::Debug for AnyMethod<'_, P> {
 }
 
 impl<'p, P: Problem + 'p> AnyMethod<'p, P> {
-    /// A method without an estimate of its own.
+    /// Wraps a method without an embedded error estimate.
     pub fn new<M: Method<P> + Clone + 'p>(method: M) -> Self {
         AnyMethod { inner: Arc::new(MethodWithEstimate { method, estimate: NoEstimate }) }
     }
 
-    /// A method with its estimate, where it has one.
+    /// Wraps a method with its embedded error estimate, if it has one.
     pub fn embedded<M: Embedded<P> + Clone + 'p>(method: M) -> Self {
         AnyMethod { inner: Arc::new(MethodWithEstimate { method, estimate: OwnEstimate }) }
     }
 
-    /// Does the method estimate its own error on this problem? Otherwise steps are doubled.
+    /// True if the method has an embedded error estimate on this problem. Otherwise steps are doubled.
     pub fn has_pair(&self, problem: &P) -> bool {
         self.inner.pair(problem).is_some()
     }
@@ -112,7 +111,7 @@ trait Stepper<P: Problem> {
     ) -> Result<(), StepError>;
 }
 
-/// Where the estimate of a method comes from.
+/// The source of the error estimate of a method.
 trait Estimate<P: Problem, M: Method<P>>: Copy {
     fn pair(self, method: &M, problem: &P) -> Option<Pair>;
     fn step(
@@ -279,13 +278,13 @@ impl<P: Problem, M: Method<P>, E: Estimate<P, M>> Stepper<P> for MethodWithWork<
 #[allow(missing_debug_implementations)] // the parts belong to the problem's types
 pub struct AnyWork<'p, P: Problem> {
     stepper: Box<dyn Stepper<P> + 'p>,
-    /// Does the method estimate its own error here? If not, steps are doubled.
+    /// True if the method has an embedded error estimate here. If not, steps are doubled.
     has_pair: bool,
-    /// The point after one long step, where steps are doubled.
+    /// The point after one long step, for step doubling.
     once: PointOf<P>,
     /// The point after the first half of a doubled step.
     half: PointOf<P>,
-    /// Was the last step a doubled one?
+    /// True if the last step was a doubled one.
     doubled: bool,
 }
 

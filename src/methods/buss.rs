@@ -7,9 +7,9 @@
 //! with a = ω×m: ω = Km, ω' = −Ka, a' = ω'×m, b = ω×a − a', ω'' = ω×ω' + Kb,
 //! b' = ω'×a + ω×a' − ω''×m, ω''' = ω×ω'' + ω×Kb + K(b' − ω×b).
 //!
-//! The derivatives are those of the angular velocity in space, written in body axes. The two
-//! products ω×ω'' cancel, so that 9 cross products are enough (Buss has 10). Order 4. Preserves:
-//! |m|, gm and the group; not the energy, no symplectic structure, not symmetric. Cost: 9 cross products, 4 applications of K, one exp.
+//! The derivatives are those of the angular velocity in space, in body axes. The two products ω×ω'' cancel, so 9 cross
+//! products are enough (Buss has 10). Order 4. Preserves: |m|, gm and the group, but not the energy, the symplectic
+//! structure or time symmetry. Cost: 9 cross products, 4 applications of K, one exp.
 //! Source: S. R. Buss, J. Comput. Phys. 164 (2000); Celledoni & Owren 5.1, with the factor h restored.
 
 use nalgebra::Vector3;

@@ -10,11 +10,11 @@
 //! | [`CF43`] | 4(3) | 4, and 1 for the error | 5, and 3 | Curry, Owren 2019 |
 //!
 //! Crouch–Grossman methods are such tables with one stage in each exponential
-//! ([`crouch_grossman`](super::crouch_grossman)). The map is exp: its one-parameter subgroups are
-//! what the order conditions rest on, so no other Ψ keeps the order. Cost: f once a stage, exp once a
-//! factor, applied to a point. Preserves: the group, and what the action leaves invariant. Source: E.
-//! Celledoni, A. Marthinsen, B. Owren, Commutator-free Lie group methods, FGCS 19 (2003); C. Curry,
-//! B. Owren, Variable step size commutator free Lie group integrators, Numer. Algorithms 82 (2019).
+//! ([`crouch_grossman`](super::crouch_grossman)). The map is exp. The order conditions need its one-parameter
+//! subgroups; with another Ψ the order is lower. Cost: one f for each stage and one exp, applied to a point, for each
+//! factor. Preserves: the group, and the invariants of the action. Source: E. Celledoni, A. Marthinsen, B. Owren,
+//! Commutator-free Lie group methods, FGCS 19 (2003); C. Curry, B. Owren, Variable step size commutator free Lie group
+//! integrators, Numer. Algorithms 82 (2019).
 
 use super::embedded::{ratio_between, without_pair};
 use super::stages::{Stages, copies};
@@ -49,19 +49,19 @@ pub struct ProductTableau<const S: usize> {
     pub stages: [ExponentialProduct<S>; S],
     /// The update.
     pub update: ExponentialProduct<S>,
-    /// How many stages the update needs.
+    /// The number of stages of the update.
     pub update_stages: usize,
-    /// A second result, of the order that is given, from the same stages.
+    /// A second result and its order, from the same stages.
     pub embedded: Option<(usize, ExponentialProduct<S>)>,
 }
 
 impl<const S: usize> ProductTableau<S> {
-    /// How many stages the update and the second result need.
+    /// The number of stages of the update and the second result.
     const fn all_stages(&self) -> usize {
         if self.embedded.is_some() { S } else { self.update_stages }
     }
 
-    /// How many exponentials the update needs, or the update and the second result.
+    /// The number of exponentials of the update, or of the update and the second result.
     fn exponentials(&self, with_error: bool) -> usize {
         let second = self.embedded.as_ref().filter(|_| with_error).map(|(_, product)| product);
         let count = if with_error { self.all_stages() } else { self.update_stages };
@@ -91,7 +91,7 @@ pub(super) const fn stages<const S: usize, const N: usize>(
 /// Order 3 with 3 stages.
 pub const CF3: ProductTableau<3> = cf3();
 
-/// [`CF3`] with room for S stages: methods chosen by name share one type this way.
+/// [`CF3`] with room for S stages, so that methods chosen by name share one type.
 pub(crate) const fn cf3<const S: usize>() -> ProductTableau<S> {
     ProductTableau {
         name: "cf3",
@@ -178,7 +178,7 @@ impl<P: Problem, const S: usize> Inner<P, S>
 where
     Exp: CoordinateMap<P::Group>,
 {
-    /// `to` ← the product, acting on the point that it starts from. A product has factors.
+    /// `to` ← the product, acting on its starting point. It must have at least one factor.
     #[inline(always)]
     fn product(
         &mut self,

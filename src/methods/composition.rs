@@ -1,4 +1,5 @@
-//! Composition of a symmetric method of order 2 with itself, to order 4, 6, 8 or 10:
+//! Composition: raises a symmetric method of order 2 to order 4, 6, 8 or 10.
+//!
 //! Φ_h = φ_{w_S h} ∘ … ∘ φ_{w_1 h}, with w_i = w_{S+1−i} and Σ w_i = 1.
 //!
 //! | scheme | order | stages | source |
@@ -10,8 +11,8 @@
 //! | [`KAHAN_LI8`] | 8 | 17 | W. Kahan & R.-C. Li, Math. Comp. 66 (1997) |
 //! | [`SOFRONIOU_SPALETTA10`] | 10 | 35 | M. Sofroniou & G. Spaletta, Optim. Methods Softw. 20 (2005) |
 //!
-//! The result keeps whatever the base method keeps, and is symmetric. Above order 2 some w_i are
-//! negative: steps go back. Cost: S steps of the base method.
+//! A composition conserves what the base method conserves, and is symmetric. Above order 2 some w_i are negative, and
+//! these steps go backward. Cost: S steps of the base method.
 
 use super::{MapCounts, Method, Step, Symmetric};
 use crate::error::{Error, StepError};
@@ -24,13 +25,13 @@ use crate::space::Metric;
 pub struct Scheme {
     /// The name in scene files.
     pub name: &'static str,
-    /// The order that it gives a symmetric method of order 2.
+    /// The order of the composition of a symmetric method of order 2.
     pub order: usize,
     /// w₁, …, w_S.
     pub weights: &'static [f64],
 }
 
-/// The base method as it is.
+/// The base method alone.
 pub const STRANG: Scheme = Scheme { name: "strang", order: 2, weights: &[1.0] };
 
 /// Yoshida's triple jump: 1/(2 − 2^⅓) at both ends.
@@ -100,7 +101,7 @@ const THIRTY_FIVE: [f64; 18] = [
 pub const SCHEMES: [Scheme; 6] =
     [STRANG, YOSHIDA4, SUZUKI4, KAHAN_LI6, KAHAN_LI8, SOFRONIOU_SPALETTA10];
 
-/// w₁, …, w_H and back again: N = 2H − 1.
+/// w₁, …, w_H, and then the same backward: N = 2H − 1.
 const fn mirror<const H: usize, const N: usize>(half: [f64; H]) -> [f64; N] {
     let mut all = [0.0; N];
     let mut i = 0;
@@ -113,7 +114,7 @@ const fn mirror<const H: usize, const N: usize>(half: [f64; H]) -> [f64; N] {
 
 /// The composition of a symmetric method by a scheme.
 ///
-/// A base method that is not symmetric does not compile: the schemes would lose their order.
+/// A base method that is not symmetric does not compile, because the schemes would lose their order.
 ///
 /// ```compile_fail
 /// use lieflow::methods::{Composition, KAHAN_LI6, Rkmk, tableau::RK4};
@@ -127,7 +128,7 @@ pub struct Composition<M> {
 }
 
 impl<M: Symmetric> Composition<M> {
-    /// The method.
+    /// Makes the method.
     pub const fn new(base: M, scheme: Scheme) -> Self {
         Composition { base, scheme }
     }

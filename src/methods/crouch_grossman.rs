@@ -1,7 +1,7 @@
 //! Crouch–Grossman methods: products of exponentials of one stage each.
 //!
 //! Y_i = exp(h a_i,i−1 k_{i−1}) ⋯ exp(h a_i1 k_1) y, y⁺ = exp(h b_s k_s) ⋯ exp(h b_1 k_1) y: the
-//! first stage acts first. In the other order the methods of order 3 and 4 fall to order 2.
+//! first stage acts first. With the reverse sequence the methods of order 3 and 4 would have order 2.
 //!
 //! | table | order | stages | exponentials | source |
 //! |---|---|---|---|---|
@@ -9,14 +9,14 @@
 //! | [`CG3`] | 3 | 3 | 6 | Crouch, Grossman 1993; Owren, Marthinsen 1999 |
 //! | [`CG4`] | 4 | 5 | 15 | Jackiewicz, Marthinsen, Owren 2000 (CG4a) |
 //!
-//! They run as [`CommutatorFree`](super::CommutatorFree) tables. The map is exp. Cost: the table.
-//! Preserves: the group, and what the action leaves invariant. Source: P. Crouch, R. Grossman,
+//! They are tables of [`CommutatorFree`](super::CommutatorFree). The map is exp. Cost: see the table.
+//! Preserves: the group, and the invariants of the action. Source: P. Crouch, R. Grossman,
 //! Numerical integration of ordinary differential equations on manifolds, J. Nonlinear Sci. 3 (1993).
 
 use super::commutator_free::{ExponentialProduct, ProductTableau, stages, start};
 use super::tableau::pad;
 
-/// The weights of stage j alone.
+/// The weights that select stage j.
 const fn only<const S: usize>(j: usize, weight: f64) -> [f64; S] {
     let mut w = [0.0; S];
     w[j] = weight;

@@ -4,16 +4,15 @@
 //!
 //! c_i = (1 + |c|²) a_i + ((Ĩ_j − Ĩ_k)/Ĩ_i) c_j c_k, a_i = h m_i/(2Ĩ_i),
 //!
-//! by Newton's iteration, and turns the body by the rotation of the quaternion (1, c), cay(2c):
-//! g⁺ = g cay(2c), m⁺ = cay(−2c) m. The true inertia (1/Ĩ = 1/J) gives order 2; the modified
-//! one, 1/Ĩ_i = σ/J_i + δ, gives more. σ and δ are polynomials in η = ½h² Σ m_i²/J_i and
-//! κ = ½h²|m|², which do not change along the motion: what depends on J is computed once.
+//! by Newton's iteration. Then it rotates the body by the quaternion (1, c), which is cay(2c):
+//! g⁺ = g cay(2c), m⁺ = cay(−2c) m. The true inertia (1/Ĩ = 1/J) gives order 2, the
+//! modified one, 1/Ĩ_i = σ/J_i + δ, a higher order. σ and δ are polynomials in η = ½h² Σ m_i²/J_i and κ = ½h²|m|². η
+//! and κ are constant along the motion. The coefficients depend on J and are computed once.
 //!
-//! Preserves: energy, |m|, gm and the group to rounding at every order, the Poisson structure, time
-//! symmetry: it is the exact motion in another time. Converges for h|m|/min J ≤ 1; beyond that
-//! not for every m, and then fails with [`StepError::NewtonDidNotConverge`]. Cost: 3 to 5
-//! Newton iterations of one 3×3 solve each, one cay, and at most 30 multiplications for σ and δ;
-//! no trigonometric function.
+//! Preserves: energy, |m|, gm and the group to rounding at every order, the Poisson structure, time symmetry. It is the
+//! exact motion with a changed time. Newton's iteration converges for h|m|/min J ≤ 1. Beyond that it may fail for some
+//! m with [`StepError::NewtonDidNotConverge`]. Cost: 3 to 5 Newton iterations of one 3×3 solve each, one cay, and at
+//! most 30 multiplications for σ and δ; no trigonometric function.
 //! Source: J. Moser & A. P. Veselov, Comm. Math. Phys. 139 (1991); R. McLachlan & A. Zanna, Found.
 //! Comput. Math. 5 (2005); E. Hairer & G. Vilmart, J. Phys. A 39 (2006).
 

@@ -1,10 +1,10 @@
 //! Step doubling: an error estimate for a method that has none.
 //!
-//! One step of h against two of h/2, compared in M: ‖y₂ − y₁‖/(2^p − 1) estimates the error of y₂,
-//! which is what the step returns. There is no extrapolation: it would leave the manifold.
+//! y₁ is the result of one step of size h, y₂ that of two steps of size h/2. ‖y₂ − y₁‖/(2^p − 1), taken in M, estimates
+//! the error of y₂, and the step returns y₂. There is no extrapolation, because it would leave the manifold.
 //!
-//! Order: the method's. Preserves: what the method preserves. Cost: three steps of the method, and
-//! two of them when no error is asked for. Source: Hairer, Nørsett, Wanner I, II.4.
+//! Order: that of the method. Preserves: the same as the method. Cost: three steps of the method, or two without an error
+//! estimate. Source: Hairer, Nørsett, Wanner I, II.4.
 
 use super::embedded::ratio_between;
 use super::{Embedded, MapCounts, Method, Metric, Step};
@@ -13,7 +13,7 @@ use crate::problems::{PointOf, Problem, ScalarOf};
 use crate::scalar::Real;
 use crate::tolerance::Tolerance;
 
-/// A method with steps of half the size, and with an error estimate.
+/// A method that takes each step in two halves, with an error estimate.
 #[derive(Clone, Copy, Debug)]
 pub struct Doubling<Me>(pub Me);
 
@@ -33,7 +33,7 @@ fn halves<S: Real>(Step { n, t, h }: Step<S>) -> [Step<S>; 2] {
     [Step { n: 2 * n, t, h: half }, Step { n: 2 * n + 1, t: t + half, h: half }]
 }
 
-/// y ← two steps of h/2, each by `take`, and `half` ← the point between them. On an error y may be half way.
+/// y ← two steps of h/2, each by `take`, and `half` ← the point between them. If the second step fails, y is half way.
 fn take_halves<S: Real, Y: Metric<Scalar = S>>(
     step: Step<S>,
     y: &mut Y,
@@ -46,7 +46,7 @@ fn take_halves<S: Real, Y: Metric<Scalar = S>>(
     take(second, y)
 }
 
-/// `at` ← the point at t + θh of a step in two halves: a shorter step from the start of the half that it lies in.
+/// `at` ← the point at t + θh of a step in two halves, by a shorter step from the start of its half.
 pub(super) fn within_halves<S: Real, Y: Metric<Scalar = S>>(
     step: Step<S>,
     theta: f64,
@@ -61,8 +61,8 @@ pub(super) fn within_halves<S: Real, Y: Metric<Scalar = S>>(
     if theta > 0.0 { take(part.part(theta), at) } else { Ok(()) }
 }
 
-/// `to` ← two steps of h/2 of a method of this order from `from`, with the error by one step of h, which
-/// `once` is for; `half` ← the point between the two.
+/// `to` ← two steps of h/2 of a method of this order from `from`. `once` is the storage of the one step of h that
+/// estimates the error. `half` ← the point between the two.
 pub(super) fn doubled<S: Real, Y: Metric<Scalar = S>>(
     order: usize,
     step: Step<S>,

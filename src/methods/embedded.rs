@@ -1,13 +1,13 @@
-//! Methods that estimate their own error.
+//! Methods with an error estimate.
 //!
 //! | method | error | length, for [`Rule::PerLength`] |
 //! |---|---|---|
 //! | [`Rkmk`](super::Rkmk) with a pair | ‖h Σ (b_j − b̂_j) k_j‖ in 𝔤 | ‖v‖ in 𝔤 |
 //! | low storage, Magnus 4(3) | the difference of the last two increments in 𝔤 | Σ ‖u_i‖ in 𝔤 |
-//! | commutator-free, [`Rk`](super::Rk) | the distance of both results in M | the distance gone in M |
+//! | commutator-free, [`Rk`](super::Rk) | the distance of both results in M | the length of the step in M |
 //! | any other, by [`Doubling`](super::Doubling) | one step against two halves, in M | the same |
 //!
-//! In 𝔤 an error is relative to the point by nature: λ_p(v + e) ≈ Λ(Ψ(e), λ_p(v)).
+//! An error e in 𝔤 is always relative to the point: λ_p(v + e) ≈ Λ(Ψ(e), λ_p(v)).
 
 use super::{Method, Step};
 use crate::actions::Action;
@@ -18,9 +18,9 @@ use crate::scalar::Real;
 use crate::space::{Gap, Metric};
 use crate::tolerance::{Rule, Tolerance, ratio};
 
-/// A method whose steps estimate their own error.
+/// A method whose steps have an error estimate.
 pub trait Embedded<P: Problem>: Method<P> {
-    /// The estimate behaves like h to the power `error_order + 1`.
+    /// The order of the estimate: it behaves like h to the power `error_order + 1`.
     ///
     /// # Errors
     /// [`Error::Unsupported`] when the tableau has no embedded row.
@@ -29,12 +29,11 @@ pub trait Embedded<P: Problem>: Method<P> {
     /// [`evaluations`](Method::evaluations) of a [`step_with_error`](Self::step_with_error).
     fn evaluations_with_error(&self, problem: &P) -> Option<u64>;
 
-    /// `to` ← the approximation at t + h from the point `from` at t. Returns its estimated error in units of
-    /// the tolerance, which is infinite when there is no estimate. On an error of the step, `to` holds nothing
-    /// of use.
+    /// `to` ← the approximation at t + h from the point `from` at t. Returns its estimated error in units of the
+    /// tolerance, or infinity without an estimate. If the step fails, `to` is undefined.
     ///
     /// # Errors
-    /// Why the step could not be taken; a smaller one may.
+    /// The reason why the step failed. A smaller step may succeed.
     fn step_with_error(
         &self,
         problem: &P,
@@ -46,7 +45,7 @@ pub trait Embedded<P: Problem>: Method<P> {
     ) -> Result<ScalarOf<P>, StepError>;
 }
 
-/// The ratio of an error e ∈ 𝔤 of a step from y; the step goes along an increment of this length.
+/// The ratio of an error e ∈ 𝔤 of a step from y, whose increment has this length.
 #[inline]
 pub(super) fn ratio_in_algebra<P: Problem>(
     problem: &P,
@@ -62,7 +61,7 @@ pub(super) fn ratio_in_algebra<P: Problem>(
     }
 }
 
-/// The ratio of an error that is known as a number, relative to the point.
+/// The ratio of an error given as a number, relative to the point.
 #[inline]
 pub(super) fn ratio_of_relative<S: Real, M: Metric<Scalar = S>>(
     tolerance: &Tolerance,
@@ -76,8 +75,8 @@ pub(super) fn ratio_of_relative<S: Real, M: Metric<Scalar = S>>(
     }
 }
 
-/// The ratio of `weight` times the distance of `other` from the result `to` of a step. What rounding alone may
-/// do to the difference is no error of the step: it counts as 0.
+/// The ratio of `weight` times the distance of `other` from the result `to` of a step. A distance that may be rounding
+/// counts as 0.
 #[inline]
 pub(super) fn ratio_between<S: Real, M: Metric<Scalar = S>>(
     tolerance: &Tolerance,

@@ -1,18 +1,18 @@
-//! The energy and Casimir preserving method for Lie–Poisson systems on any Lie algebra.
+//! A method that conserves energy and Casimirs of Lie–Poisson systems on any Lie algebra.
 //!
 //! m⁺ = Λ(Ψ(−hξ), m) = Ad*_{Ψ(hξ)} m in the paper's notation, with ξ = ∇̄H(m, m⁺) a discrete
 //! gradient of H (for quadratic H, ∇H((m + m⁺)/2)). For so(3) and Ψ = cay it is Simo and Wong's
 //! method with k = 1.
 //!
-//! Order 2, symmetric: a [`Composition`](super::Composition) raises it. Preserves: every Casimir,
-//! because it acts by the group, and the energy, because Ψ(hξ) leaves ξ itself fixed:
-//! H(m⁺) − H(m) = ⟨m⁺ − m, ξ⟩ = ⟨m, Ad_Ψ ξ − ξ⟩ = 0; both to the rounding of the iteration. It is
-//! not symplectic in general. The fixed-point iteration for ξ converges while h‖J⁻¹‖|m| stays below
-//! about 1; beyond that the step fails with [`StepError::FixedPointDidNotConverge`]. It serves every
-//! problem that is [`LiePoisson`]: the body in ℝ³ and ℝⁿ, and [`Euler`](crate::problems::Euler)'s equations on any
-//! algebra, of a quadratic H and, with [`MeanGradient`](crate::problems::MeanGradient), of any. Cost: one Ψ, one action
-//! and one discrete gradient an iteration, 5 to 20 iterations; two f more for points within a step, of order 2, which
-//! keep the Casimirs and not the energy.
+//! Order 2, symmetric; a [`Composition`](super::Composition) raises the order. Preserves: every Casimir, because it
+//! acts by the group, and the energy, because Ψ(hξ) leaves ξ fixed: H(m⁺) − H(m) = ⟨m⁺ − m, ξ⟩ = ⟨m, Ad_Ψ ξ − ξ⟩ = 0.
+//! Both hold to the rounding of the iteration. It is not symplectic in general. The fixed-point iteration for ξ
+//! converges while h‖J⁻¹‖|m| is below about 1. Beyond that the step fails with [`StepError::FixedPointDidNotConverge`].
+//!
+//! It takes every problem that is [`LiePoisson`]: the body in ℝ³ and ℝⁿ, and Euler's equations
+//! ([`Euler`](crate::problems::Euler)) on any algebra. H is quadratic, or any function with a
+//! [`MeanGradient`](crate::problems::MeanGradient). Cost: 5 to 20 iterations of one Ψ, one action and one discrete
+//! gradient. Dense output of order 2 takes two f more; it conserves the Casimirs, but not the energy.
 //! Source: after J. C. Simo & K. K. Wong (1991) and D. Lewis & J. C. Simo, J. Nonlinear Sci. 4
 //! (1994); discrete gradients by R. McLachlan, G. Quispel & N. Robidoux (1999).
 
@@ -28,14 +28,14 @@ use crate::problems::{AlgOf, LiePoisson, PointOf, ScalarOf};
 use crate::scalar::Real;
 use crate::space::LinearSpace;
 
-/// The method, in the coordinates Ψ: exp or cay, or any map with Ψ(u) a function of u alone.
+/// The energy–Casimir method with the map Ψ: exp, cay, or another map with Ψ(−u) = Ψ(u)⁻¹.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct EnergyCasimir<Psi> {
     psi: Psi,
 }
 
 impl<Psi: OddMap> EnergyCasimir<Psi> {
-    /// The method.
+    /// Makes the method.
     pub const fn new(psi: Psi) -> Self {
         EnergyCasimir { psi }
     }

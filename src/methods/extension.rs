@@ -1,10 +1,10 @@
 //! Continuous extensions: the points within a step, from its stages and a few more.
 //!
 //! u(θ) = h Σ_j w_j(θ) k_j + h Σ_e x_e(θ) d_e, y(t + θh) ≈ λ_p(u(θ)), with u(0) = 0 and u(1) = v exactly. So the
-//! point lies on M, and meets the step at its end. The weights are those of [`Dense`]; the extra stages d_e are
-//! values of f̃ at such combinations. On the linear space around M all is the same with y + u(θ).
+//! point lies on M, and θ = 1 gives the end of the step. The weights are those of [`Dense`]. The extra stages d_e are
+//! values of f̃ at such combinations. On the linear space around M the point is y + u(θ).
 //!
-//! The general one interpolates v, the slopes h k₁ and h f̃(v) at both ends, and slopes within the step:
+//! The general extension interpolates v, the slopes h k₁ and h f̃(v) at both ends, and slopes within the step:
 //!
 //! | order | slopes within | taken on |
 //! |---|---|---|
@@ -12,9 +12,9 @@
 //! | 4 | at 1/4 | the cubic |
 //! | 5 | at 1/2 and 1/5 | the one of order 4 |
 //!
-//! A slope from a point with an error O(h⁴) has the error O(h⁵), which is what the next order needs.
+//! A slope from a point with an error O(h⁴) has the error O(h⁵). The next order needs this.
 //!
-//! Cost: [`Extension::evaluations`] of f̃ a step, one λ_p a point.
+//! Cost: [`Extension::evaluations`] of f̃ for each step, one λ_p for each point.
 //! Source: L. F. Shampine, Interpolation for Runge–Kutta methods, SIAM J. Numer. Anal. 22 (1985); W. H. Enright,
 //! K. R. Jackson, S. P. Nørsett, P. G. Thomsen, Interpolants for Runge–Kutta formulas, ACM Trans. Math. Softw. 12
 //! (1986); Hairer, Nørsett, Wanner I, II.6.
@@ -30,10 +30,10 @@ use crate::problems::{AlgOf, Ambient, FieldStore, PointOf, Problem, ScalarOf};
 use crate::scalar::Real;
 use crate::space::LinearSpace;
 
-/// The most extra stages.
+/// The largest number of extra stages.
 pub(super) const EXTRA: usize = 4;
 
-/// The degree of the interpolant that an extra stage of the general extension is taken on, and where.
+/// For each extra stage of the general extension: the degree of its interpolant, and its θ.
 const SAMPLES: [(usize, f64); EXTRA] = [(3, 1.0), (3, 0.25), (4, 0.5), (4, 0.2)];
 
 /// The weights of S stages and of the extra ones.
@@ -102,7 +102,7 @@ fn bump(theta: f64) -> f64 {
 pub(super) struct Extension<'a, const S: usize> {
     /// v = h Σ b_j k_j.
     b: &'a [f64; S],
-    /// The place of k₁.
+    /// The index of k₁.
     first: usize,
     /// u(0) = start·v.
     start: f64,
@@ -111,20 +111,20 @@ pub(super) struct Extension<'a, const S: usize> {
     dense: Dense,
 }
 
-/// The general extension of a step of this order that is one increment v in one chart, or in the linear space. Its
-/// "stages" are v/h and k₁; u(0) = start·v.
+/// The general extension of a step of this order with one increment v, in one chart or in the linear space. Its "stages"
+/// are v/h and k₁; u(0) = start·v.
 pub(super) const fn of_increment(order: usize, start: f64) -> Extension<'static, 2> {
     Extension { b: &[1.0, 0.0], first: 1, start, order, dense: Dense::General }
 }
 
 impl<'a, const S: usize> Extension<'a, S> {
-    /// Of a tableau, whose first stage is k₁.
+    /// The extension of a tableau, whose first stage is k₁.
     pub(super) fn of(tableau: &'a Tableau<S>) -> Self {
         let Tableau { b, order, dense, .. } = tableau;
         Extension { b, first: 0, start: 0.0, order: *order, dense: *dense }
     }
 
-    /// The order at a θ that is held.
+    /// The order at a fixed θ.
     pub(super) fn order(&self) -> usize {
         match self.dense {
             Dense::Cubic { order, .. } | Dense::Raised { order, .. } => order,
@@ -132,12 +132,12 @@ impl<'a, const S: usize> Extension<'a, S> {
         }
     }
 
-    /// The degree of the general one.
+    /// The degree of the general extension.
     fn degree(&self) -> usize {
         self.order.saturating_sub(1).clamp(3, 5)
     }
 
-    /// How many extra stages there are.
+    /// The number of extra stages.
     pub(super) fn evaluations(&self) -> usize {
         match self.dense {
             Dense::Cubic { .. } => 0,
@@ -160,9 +160,9 @@ impl<'a, const S: usize> Extension<'a, S> {
         }
     }
 
-    /// The weights of the general one of this degree.
+    /// The weights of the general extension of this degree.
     ///
-    /// θ²(1 − θ)² and, of degree 5, its product with θ take away what the slopes within lack in the cubic.
+    /// θ²(1 − θ)² and, for degree 5, its product with θ correct the cubic to the slopes within.
     fn general(&self, degree: usize, theta: f64) -> Weights<S> {
         let (mut ends, mut extra) = (cubic(theta), [0.0; EXTRA]);
         ends[0] += self.start;
@@ -195,8 +195,8 @@ impl<'a, const S: usize> Extension<'a, S> {
         }
     }
 
-    /// The extra stages one after the other: `field` has the node c, the weights of u, the stages before, and the
-    /// place of the new one.
+    /// Computes the extra stages one after the other. `field` gets the node c, the weights of u, the earlier stages,
+    /// and the storage of the new one.
     fn stages<T>(
         &self,
         d: &mut [T; EXTRA],
@@ -289,7 +289,7 @@ fn finite(is: bool) -> Result<(), StepError> {
     }
 }
 
-/// The general extension of a step that is one increment in one chart: its v/h and k₁, and the extra stages.
+/// The general extension of a step with one increment in one chart: its v/h and k₁, and the extra stages.
 pub(super) struct OneIncrement<P: Problem> {
     /// v/h and k₁.
     pub(super) k: [AlgOf<P>; 2],
@@ -302,7 +302,7 @@ impl<P: Problem> OneIncrement<P> {
         OneIncrement { k: copies(alg.zero()), d: copies(alg.zero()), u: alg.zero() }
     }
 
-    /// k₁ ← f̃ at the start, for a method that has no such stage.
+    /// k₁ ← f̃ at the start, for a method without this stage.
     pub(super) fn first<Psi: CoordinateMap<P::Group>>(
         &mut self,
         extension: &Extension<2>,

@@ -5,11 +5,10 @@
 //!
 //! Order 2S. Preserves: every quadratic invariant to the rounding of the iteration (|m|², gᵀg, gm,
 //! the energy of a rigid body by its momentum), time symmetry, the symplectic structure of linear
-//! symplectic spaces; not the group at large. The stages are found by fixed-point iteration, which
-//! converges while h times the Lipschitz constant of F stays below about 1; beyond that the step fails
-//! with [`StepError::FixedPointDidNotConverge`], which names the last change, and a run that stops says
-//! t and h with it. Cost: S evaluations of F an iteration, 5 to 20 iterations; 2, 2 and 5 more for points within a
-//! step, of order 2, 3 and 5.
+//! symplectic spaces; not other groups. Fixed-point iteration finds the
+//! stages. It converges while h times the Lipschitz constant of F is below about 1. Beyond that the step fails with
+//! [`StepError::FixedPointDidNotConverge`], which has the last change; the error of the run also has t and h. Cost: 5
+//! to 20 iterations of S evaluations of F. Dense output of order 2, 3 and 5 takes 2, 2 and 5 more.
 //! Source: Hairer, Lubich, Wanner, Geometric Numerical Integration, II.1.3, IV.2.
 
 use super::extension::{EXTRA, Extension, of_increment};
@@ -74,7 +73,7 @@ pub struct Gauss<const S: usize>(pub ImplicitTableau<S>);
 
 impl<const S: usize> Symmetric for Gauss<S> {}
 
-/// Stages, points, those of the continuous extension, and the field's scratch.
+/// Stages, points, the dense output, and the scratch of the field.
 #[allow(missing_debug_implementations)] // the parts belong to the problem's types
 pub struct GaussWork<P: Ambient, const S: usize> {
     k: [PointOf<P>; S],
@@ -105,7 +104,7 @@ impl<P: Ambient, const S: usize> Method<P> for Gauss<S> {
     fn iterations(&self, work: &Self::Work) -> u64 {
         work.iterations
     }
-    /// Quadratic groups are kept to the rounding of the iteration, others are left.
+    /// True for groups of a quadratic form, which the method conserves to the rounding of the iteration.
     fn stays_on_manifold(&self) -> bool {
         false
     }

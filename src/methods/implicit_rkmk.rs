@@ -5,15 +5,13 @@
 //! | [`RkmkGauss`] | u_i = h Σ a_ij K_j, K_i = dΨ⁻¹_{u_i} f(t + c_i h, λ_p(u_i)) | λ_p(h Σ b_i K_i) |
 //! | [`RkmkGaussSymmetric`] | q = λ_p(−θ), θ = −½h Σ b_j K_j, u_i = θ + h Σ a_ij K_j, K_i = dΨ⁻¹_{u_i} f(t + c_i h, λ_q(u_i)) | λ_q(−θ) |
 //!
-//! The first has its chart at the start of the step; with two stages or more it is not symmetric,
-//! because the step back has it at the other end. The second has it in the middle, and is symmetric
-//! for maps with Ψ(−u) = Ψ(u)⁻¹.
+//! The first has its chart at the start of the step. With two stages or more it is not symmetric, because a step back
+//! has its chart at the other end. The second has its chart in the middle. It is symmetric for maps with Ψ(−u) = Ψ(u)⁻¹.
 //!
-//! Order 2S. Preserves: the group, and what the action leaves invariant; not the energy, and no
-//! symplectic structure. The stages are found by fixed-point iteration, which converges while h times
-//! the Lipschitz constant of f stays below about 1; beyond that the step fails with
-//! [`StepError::FixedPointDidNotConverge`]. Cost: an iteration has S times f, Ψ and dΨ⁻¹ (and one Ψ more in the middle), 5 to 20
-//! iterations; 2, 2 and 5 times f more for points within a step, of order 2, 3 and 5.
+//! Order 2S. Preserves: the group, and the invariants of the action, but not the energy or the symplectic structure.
+//! Fixed-point iteration finds the stages. It converges while h times the Lipschitz constant of f is below about 1.
+//! Beyond that the step fails with [`StepError::FixedPointDidNotConverge`]. Cost: 5 to 20 iterations, each with S times
+//! f, Ψ and dΨ⁻¹; the second method has one Ψ more. Dense output of order 2, 3 and 5 takes 2, 2 and 5 times f more.
 //! Source: A. Zanna, K. Engø & H. Munthe-Kaas, Adjoint and selfadjoint Lie-group methods, BIT 41
 //! (2001).
 
@@ -37,7 +35,7 @@ pub struct RkmkGauss<Psi, const S: usize> {
 }
 
 impl<Psi, const S: usize> RkmkGauss<Psi, S> {
-    /// The method.
+    /// Makes the method.
     pub const fn new(tableau: ImplicitTableau<S>, psi: Psi) -> Self {
         RkmkGauss { tableau, psi }
     }
@@ -49,8 +47,9 @@ impl OddMap for Exp {}
 impl OddMap for Cay {}
 impl OddMap for ExpOrCay {}
 
-/// Implicit RKMK with its chart in the middle of the step. The coordinates of the second kind do
-/// not serve, since Ψ(−u) is not Ψ(u)⁻¹ there:
+/// Implicit RKMK with its chart in the middle of the step.
+///
+/// Coordinates of the second kind do not compile, because there Ψ(−u) is not Ψ(u)⁻¹:
 ///
 /// ```compile_fail
 /// use lieflow::methods::{GAUSS4, RkmkGaussSymmetric};
@@ -64,7 +63,7 @@ pub struct RkmkGaussSymmetric<Psi, const S: usize> {
 }
 
 impl<Psi: OddMap, const S: usize> RkmkGaussSymmetric<Psi, S> {
-    /// The method.
+    /// Makes the method.
     pub const fn new(tableau: ImplicitTableau<S>, psi: Psi) -> Self {
         RkmkGaussSymmetric { tableau, psi }
     }
@@ -157,7 +156,7 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> RkmkGaussWork<P, 
 macro_rules! method {
     ($name:ident, $label:literal, $centred:literal, $($bound:tt)*) => {
         impl<Psi, const S: usize> $name<Psi, S> {
-            /// In the chart of the step, where that in the middle begins at −v/2.
+            /// In the chart of the step. The step with the chart in the middle begins at −v/2.
             fn extension(&self) -> Extension<'static, 2> {
                 of_increment(self.tableau.order, if $centred { -0.5 } else { 0.0 })
             }

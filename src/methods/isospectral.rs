@@ -1,5 +1,4 @@
-//! Isospectral symplectic Runge–Kutta methods: Lie–Poisson systems on any matrix algebra, and every
-//! other flow by conjugation.
+//! Isospectral symplectic Runge–Kutta methods, for Lie–Poisson systems on matrix algebras and other flows by conjugation.
 //!
 //! Ẇ = \[B, W\] with B = f(t, W) ∈ 𝔤, by the action of conjugation Λ(g, W) = g W g⁻¹, or by the
 //! coadjoint action Λ(g, m) = g⁻ᵀ m gᵀ for W = mᵀ. With a Gauss tableau (a, b, c)
@@ -7,17 +6,16 @@
 //! Q_i = 𝟙 + h Σ_j a_ij B_j Q_j, P_i = 𝟙 − h Σ_j a_ij P_j B_j, B_j = f(t + c_j h, Q_j W P_j);
 //! Q⁺ = 𝟙 + h Σ_i b_i B_i Q_i, P⁺ = 𝟙 − h Σ_i b_i P_i B_i, W⁺ = Q⁺ W P⁺.
 //!
-//! On 𝔲(n), of complex matrices, ᵀ is † throughout.
+//! On 𝔲(n), of complex matrices, ᵀ is †.
 //!
-//! The Gauss methods keep quadratic invariants: P⁺Q⁺ = 𝟙, so that the spectrum of m (every Casimir
-//! of GL(n)) is kept to rounding, and Q⁺ ∈ G_M where G keeps a form. P_i is M⁻¹Q_iᵀM there; where
-//! every u ∈ 𝔤 is skew, as on SO(n), it is Q_iᵀ and is not computed.
+//! The Gauss methods conserve quadratic invariants. So P⁺Q⁺ = 𝟙, and the spectrum of m (every Casimir of GL(n)) is
+//! conserved to rounding. If G conserves a form, Q⁺ ∈ G_M and P_i = M⁻¹Q_iᵀM. If every u ∈ 𝔤 is skew, as on SO(n), P_i
+//! is Q_iᵀ and is not computed.
 //!
-//! Order 2S. Preserves: Casimirs and group to rounding, time symmetry, the Lie–Poisson structure, so
-//! that the energy error stays bounded. The stages are found by fixed-point iteration, which converges while h‖B‖ and h times the Lipschitz constant of
-//! m ↦ f(m) stay below about 1; else [`StepError::FixedPointDidNotConverge`]. Cost of an iteration:
-//! S f and 3S products (4S where P is computed), 8 to 25 iterations. S = 1 is the isospectral
-//! midpoint rule.
+//! Order 2S. Preserves: Casimirs and group to rounding, time symmetry, and the Lie–Poisson structure, so the energy
+//! error stays bounded. Fixed-point iteration finds the stages. It converges while h‖B‖ and h times the Lipschitz
+//! constant of m ↦ f(m) are below about 1; else it returns [`StepError::FixedPointDidNotConverge`]. Cost: 8 to 25
+//! iterations, each with S f and 3S products (4S if P is computed). S = 1 is the isospectral midpoint rule.
 //! Source: K. Modin & M. Viviani, Lie–Poisson methods for isospectral flows, Found. Comput. Math. 20
 //! (2020).
 
@@ -41,16 +39,16 @@ pub struct IsospectralGauss<const S: usize>(pub ImplicitTableau<S>);
 
 impl<const S: usize> Symmetric for IsospectralGauss<S> {}
 
-/// A group of n×n matrices, real or complex, that isospectral methods conjugate by.
+/// A group of n×n matrices, real or complex, for isospectral methods.
 pub trait ConjugationGroup: LieGroup<Scalar = f64> {
     /// A stage Q_i or P_i, an n×n matrix that need not be in G.
     type Stage: LinearSpace<Scalar = f64>;
 
     /// n.
     fn rows(&self) -> usize;
-    /// Fresh storage.
+    /// Makes new storage.
     fn stage(&self) -> Self::Stage;
-    /// Is u† = −u for every u ∈ 𝔤? Then P_i = Q_i†.
+    /// True if u† = −u for every u ∈ 𝔤. Then P_i = Q_i†.
     fn is_skew(&self) -> bool;
     /// x ← x + 𝟙.
     fn add_identity(&self, x: &mut Self::Stage);
@@ -66,7 +64,7 @@ pub trait ConjugationGroup: LieGroup<Scalar = f64> {
 pub trait ConjugationAction<G: ConjugationGroup>:
     Action<G, Point: LinearSpace<Scalar = f64>>
 {
-    /// out ← q m p, or pᵀ m qᵀ where m is transposed, with p = q† where there is none; `half` is scratch.
+    /// out ← q m p, or pᵀ m qᵀ if m is transposed. Without p, p = q†. `half` is scratch.
     fn conjugate(
         q: &G::Stage,
         p: Option<&G::Stage>,
@@ -82,7 +80,7 @@ type StageOf<P> = <<P as Problem>::Group as ConjugationGroup>::Stage;
 #[allow(missing_debug_implementations)] // the parts belong to the problem's types
 pub struct IsospectralWork<P: Problem<Group: ConjugationGroup>, const S: usize> {
     q: Factor<StageOf<P>, S>,
-    /// `None` where it is Q†.
+    /// `None` if it is Q†.
     p: Option<Factor<StageOf<P>, S>>,
     b: AlgOf<P>,
     half: StageOf<P>,
@@ -129,7 +127,7 @@ impl<X: LinearSpace<Scalar = f64>, const S: usize> Factor<X, S> {
         }
     }
 
-    /// The slope in `half` becomes that of stage i, and the stage follows. Returns its change.
+    /// Makes the slope in `half` that of stage i, and updates the stage. Returns its change.
     fn replace<G>(&mut self, group: &G, i: usize, h: f64, a: &[f64; S], half: &mut X) -> f64
     where
         G: ConjugationGroup<Stage = X>,

@@ -1,18 +1,15 @@
-//! Lie series (Taylor) methods of order 4 to 16 on any group, for fields whose Taylor coefficients
-//! follow by recurrence ([`TaylorField`]).
+//! Lie series (Taylor) methods of order 4 to 16 on any group, for fields with Taylor coefficients ([`TaylorField`]).
 //!
 //! y(t + θh) = Λ(Ψ(θ), y), Ψ' = h f Ψ, Ψ(0) = 𝟙: (k+1) Ψ_{k+1} = h Σ_{i+j=k} f_i Ψ_j
-//! (Ψ_j f_i where the problem gives f in the frame that moves). Σ_{k≤N} Ψ_k lies off the group by no
-//! more than the terms left out; Newton–Schulz ([`LieGroup::correct`]) takes it there, and
-//! y⁺ = Λ(Ψ, y).
+//! (Ψ_j f_i if the problem gives f in the moving frame). The distance of Σ_{k≤N} Ψ_k from the group is at most of the
+//! size of the terms left out. Newton–Schulz ([`LieGroup::correct`]) moves the sum to the group, and y⁺ = Λ(Ψ, y).
 //!
-//! Order N. Preserves: the group and what the action leaves invariant, to rounding; energy and
-//! symmetry to the terms left out. A series whose sum is far from the group (0.1 in gᵀMg − M) is refused
-//! with [`StepError::OutsideChart`]. Cost: N(N+1)/2
-//! products for Ψ and as many for the coefficients of a quadratic field, one action, one or two steps
-//! of Newton–Schulz; a point within a step has the last two costs alone. The last two terms are the error estimate: the step of an adaptive run follows
-//! them. For the free rigid body in ℝ³ [`Taylor`](super::Taylor) is the same on quaternions.
-//! Source: W. Gröbner, Die Lie-Reihen und ihre Anwendungen (1960); À. Jorba & M. Zou, Experiment.
+//! Order N. Preserves: the group and the invariants of the action, to rounding; energy and symmetry to the size of the
+//! terms left out. A sum that is far from the group (0.1 in gᵀMg − M) is refused with [`StepError::OutsideChart`].
+//! Cost: N(N+1)/2 products for Ψ, as many for the coefficients of a quadratic field, one action, and one or two steps
+//! of Newton–Schulz. A point within a step costs only the action and Newton–Schulz. The last two terms are the error
+//! estimate of an adaptive run. For the free rigid body in ℝ³ [`Taylor`](super::Taylor) is the same method on
+//! quaternions. Source: W. Gröbner, Die Lie-Reihen und ihre Anwendungen (1960); À. Jorba & M. Zou, Experiment.
 //! Math. 14 (2005), for the step.
 
 use faer::Mat;
@@ -30,7 +27,7 @@ use crate::problems::{AlgOf, ElemOf, PointOf, ScalarOf, TaylorField};
 use crate::scalar::Real;
 use crate::tolerance::Tolerance;
 
-/// A group whose elements lie in a linear space, where the product with an element of 𝔤 is known.
+/// A group whose elements lie in a linear space with products by elements of 𝔤.
 pub trait SeriesGroup: LieGroup {
     /// x ← 0.
     fn clear(&self, x: &mut Self::Elem);
@@ -105,7 +102,7 @@ impl SeriesGroup for MatrixGroup {
     }
 }
 
-/// The Lie series method of a chosen order.
+/// The Lie series method of an order that you choose.
 ///
 /// ```
 /// use lieflow::{StepControl, integrate_adaptive};
@@ -130,7 +127,7 @@ pub struct LieSeries {
 }
 
 impl LieSeries {
-    /// The method of this order.
+    /// Makes the method of this order.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] unless 4 ≤ order ≤ 16.
@@ -179,7 +176,7 @@ impl<P: TaylorField> LieSeriesWork<P>
 where
     P::Group: SeriesGroup,
 {
-    /// g ← the element of the group next to the sum g of the series.
+    /// g ← the element of the group that is next to the sum g of the series.
     fn onto_group(&mut self, group: &P::Group) -> Result<(), StepError> {
         let LieSeriesWork { g, scratch, .. } = self;
         let residual = group.correct(g, scratch.each_mut());

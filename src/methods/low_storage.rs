@@ -1,7 +1,7 @@
-//! Commutator-free methods in low storage: one element of 𝔤 and one point, whatever the stages.
+//! Commutator-free methods in low storage: one element of 𝔤 and one point for any number of stages.
 //!
 //! For i = 1, …, s: T ← A_i T + h f(t + C_i h, Y); Y ← exp(B_i T) Y. Every Runge–Kutta method of
-//! Williamson's 2N form keeps its order this way (A. Bazavov, Commutator-free Lie group methods with
+//! Williamson's 2N form has its full order in this way (A. Bazavov, Commutator-free Lie group methods with
 //! minimum storage requirements and reuse of exponentials, BIT 62 (2022)).
 //!
 //! | table | order | stages | source |
@@ -14,9 +14,8 @@
 //! | [`EES25`] | 2, reversible to 5 | 3 | Shmelev, Thompson, Salvi 2025 (x = 1/10) |
 //! | [`EES27`] | 2, reversible to 7 | 4 | the same |
 //!
-//! An EES(2,m) method is of order 2 and effectively symmetric: a step of h undone by one of −h comes
-//! back to O(h^{m+1}). The map is exp. Preserves: the group, and what the action leaves invariant.
-//! Cost: s f, s exponentials.
+//! An EES(2,m) method has order 2 and is nearly symmetric: a step of −h undoes a step of h up to O(h^{m+1}). The map is
+//! exp. Preserves: the group, and the invariants of the action. Cost: s f, s exponentials.
 
 use super::embedded::{ratio_in_algebra, without_pair};
 use super::tableau::pad;
@@ -42,12 +41,12 @@ pub struct TwoN<const S: usize> {
     pub b: [f64; S],
     /// C_i.
     pub c: [f64; S],
-    /// The order at t + h of the point before the last exponential, where it serves as an estimate.
+    /// The order of the point before the last exponential as a result at t + h, if it is used for the error estimate.
     pub embedded: Option<usize>,
 }
 
 impl<const S: usize> TwoN<S> {
-    /// How many stages there are: S, but for a [`padded`](Self::padded) one.
+    /// The number of stages: S, or fewer for a [`padded`](Self::padded) method.
     pub const fn stages(&self) -> usize {
         let mut s = S;
         while s > 1 && self.b[s - 1] == 0.0 {
@@ -56,7 +55,7 @@ impl<const S: usize> TwoN<S> {
         s
     }
 
-    /// This method with room for N ≥ S stages: those that are added are never evaluated.
+    /// This method with room for N ≥ S stages. The added stages are never evaluated.
     pub const fn padded<const N: usize>(&self) -> TwoN<N> {
         let TwoN { name, order, embedded, .. } = *self;
         TwoN { name, order, a: pad(&self.a), b: pad(&self.b), c: pad(&self.c), embedded }
@@ -73,7 +72,7 @@ pub const LS3: TwoN<3> = TwoN {
     embedded: None,
 };
 
-/// Bernardini and Pirozzoli's, order 3, with the smallest error of the three-stage ones.
+/// Bernardini and Pirozzoli's, order 3, with the smallest error of those with three stages.
 pub const LS3_BP: TwoN<3> = TwoN {
     name: "cf-ls3-bp",
     order: 3,
@@ -155,7 +154,7 @@ pub const LS5: TwoN<13> = TwoN {
     embedded: None,
 };
 
-/// CF-EES(2,5;1/10): order 2, a step undone to O(h⁶).
+/// CF-EES(2,5;1/10): order 2; a step back undoes a step to O(h⁶).
 pub const EES25: TwoN<3> = TwoN {
     name: "cf-ees25",
     order: 2,
@@ -167,7 +166,7 @@ pub const EES25: TwoN<3> = TwoN {
 
 const R: f64 = core::f64::consts::SQRT_2;
 
-/// CF-EES(2,7): order 2, a step undone to O(h⁸).
+/// CF-EES(2,7): order 2; a step back undoes a step to O(h⁸).
 pub const EES27: TwoN<4> = TwoN {
     name: "cf-ees27",
     order: 2,
@@ -181,7 +180,7 @@ pub const EES27: TwoN<4> = TwoN {
 #[derive(Clone, Copy, Debug)]
 pub struct LowStorage<const S: usize>(pub TwoN<S>);
 
-/// T and the point, with what their update is written into.
+/// T and the point, with storage for their updates.
 #[allow(missing_debug_implementations)] // the parts belong to the problem's types
 #[doc(hidden)]
 pub struct LowStorageWork<P: Problem>
@@ -207,7 +206,7 @@ impl<P: Problem> Inner<P>
 where
     Exp: CoordinateMap<P::Group>,
 {
-    /// `to` ← the step from p, and u ← the last increment; returns the length of the way where it is asked for.
+    /// `to` ← the step from p, and u ← the last increment. Returns Σ ‖u_i‖ if requested.
     #[inline(always)]
     fn advance<const S: usize>(
         &mut self,
@@ -291,7 +290,7 @@ where
     }
 }
 
-/// The last exponential carries the point of lower order to the result: its argument is the error.
+/// The last exponential moves the point of lower order to the result, so its argument is the error.
 impl<P: Problem, const S: usize> Embedded<P> for LowStorage<S>
 where
     Exp: CoordinateMap<P::Group>,

@@ -1,7 +1,7 @@
-//! One step of a method, and the methods: one file each.
+//! Methods, one file each: they take one step.
 //!
-//! To add a method: one file with an `impl` of [`Method`], one line here, one in the catalog, which
-//! puts it into the order tests and the command line at once.
+//! To add a method: one file with an `impl` of [`Method`], one line here, one in the catalog. The order tests and the
+//! command line use the catalog.
 
 mod any;
 mod buss;
@@ -68,10 +68,10 @@ use crate::error::{Error, StepError};
 use crate::problems::{PointOf, Problem, ScalarOf};
 use crate::scalar::Real;
 
-/// Which step is taken: number n of the run, from t to t + h.
+/// A step: number n of the run, from t to t + h.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Step<S> {
-    /// The number of the step in its run, from 0. Maps that alternate look at its parity.
+    /// The number of the step in its run, from 0. Maps that alternate use its parity.
     pub n: u64,
     /// The time at the start.
     pub t: S,
@@ -92,7 +92,7 @@ impl<S: Real> Step<S> {
 pub struct EqualSteps {
     /// The number of the first step.
     pub first: u64,
-    /// The number after that of the last step.
+    /// The number of the last step + 1.
     pub end: u64,
     /// The time of step number 0.
     pub t0: f64,
@@ -101,14 +101,14 @@ pub struct EqualSteps {
 }
 
 impl EqualSteps {
-    /// The step of this number: it starts at t₀ + nh, so that no error accumulates in t.
+    /// The step with this number. It starts at t₀ + nh, so that no error accumulates in t.
     #[inline]
     pub fn step<S: Real>(&self, n: u64) -> Step<S> {
         Step { n, t: S::lit(self.t0 + n as f64 * self.h), h: S::lit(self.h) }
     }
 }
 
-/// How often a step asks for the maps of 𝔤.
+/// The numbers of maps and brackets in a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MapCounts {
     /// Ψ, formed or applied.
@@ -139,50 +139,51 @@ impl core::ops::Add for MapCounts {
     }
 }
 
-/// A method whose step is undone by the step back: Φ_{−h} ∘ Φ_h = id, to rounding. Its order is even,
-/// and a [`Composition`] raises it.
+/// A symmetric method: a step back undoes a step, Φ_{−h} ∘ Φ_h = id, to rounding. Its order is even, and a
+/// [`Composition`] raises it.
 pub trait Symmetric {}
 
 /// A one-step method for problems of type `P`.
 pub trait Method<P: Problem> {
-    /// Everything a step needs besides y; made once, reused for every step. It carries nothing from
-    /// one step to the next: a step depends on its arguments alone. One exception says so:
-    /// [`FluidMidpoint`] starts its iteration from the steps before.
+    /// The workspace of a step, made once and used for every step.
+    ///
+    /// It carries nothing from one step to the next, so a step depends only on its arguments. The one exception is
+    /// [`FluidMidpoint`], which starts its iteration from the steps before.
     type Work;
 
-    /// The order that tests hold the method to.
+    /// The order of the method. Tests measure it.
     fn order(&self, problem: &P) -> usize;
 
-    /// Evaluations of f in a step (of F, or of A, where that is what the method asks for), where every
-    /// step has as many; of its coefficients for a Taylor method.
+    /// Evaluations of f in a step, if all steps have the same number. A method that needs F, A or Taylor coefficients
+    /// counts these.
     fn evaluations(&self, _problem: &P) -> Option<u64> {
         None
     }
 
-    /// How often a step asks for Ψ, dΨ⁻¹ and brackets, where every step asks as often. `with_error` is for a step
-    /// that estimates its error too ([`Embedded::step_with_error`]).
+    /// Evaluations of Ψ, dΨ⁻¹ and brackets in a step, if all steps have the same numbers. `with_error` is for a step
+    /// with an error estimate ([`Embedded::step_with_error`]).
     fn map_counts(&self, _problem: &P, _with_error: bool) -> Option<MapCounts> {
         None
     }
 
-    /// The iterations that implicit steps with this workspace took so far, those of failed steps too.
+    /// The iterations of all implicit steps with this workspace so far, failed steps included.
     fn iterations(&self, _work: &Self::Work) -> u64 {
         0
     }
 
-    /// Does a step stay on M up to rounding? Then the driver takes the state back to M from time to
-    /// time ([`Action::restore`]); a method that leaves M is shown as it is.
+    /// True if a step stays on M up to rounding. Then the driver corrects the state to M from time to time
+    /// ([`Action::restore`]). The state of other methods is not corrected.
     fn stays_on_manifold(&self) -> bool {
         true
     }
 
-    /// Make the workspace; `like` is any point of M.
+    /// Makes the workspace. `like` is any point of M.
     ///
     /// # Errors
-    /// [`Error::Unsupported`] when the parts of the method do not go together with the problem.
+    /// [`Error::Unsupported`] if the method does not fit the problem.
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error>;
 
-    /// y ← the approximation at t + h. On an error y is as it was.
+    /// y ← the approximation at t + h. On an error y is unchanged.
     ///
     /// # Errors
     /// Why the step could not be taken.
@@ -194,18 +195,19 @@ pub trait Method<P: Problem> {
         work: &mut Self::Work,
     ) -> Result<(), StepError>;
 
-    /// Call `each` with every number that the workspace carries from one step to the next; most methods carry none.
-    /// It is saved with the state of a run.
+    /// Calls `each` with every number that the workspace carries from one step to the next. Most methods have none.
+    /// They are saved with the state of a run.
     fn each_memory(&self, _work: &mut Self::Work, _each: &mut dyn FnMut(&mut f64)) {}
 
-    /// The order of [`interpolate`](Self::interpolate): its error at a θ that is held is O(h^(order + 1)).
+    /// The order of [`interpolate`](Self::interpolate): its error at a fixed θ is O(h^(order + 1)).
     fn dense_order(&self, problem: &P) -> usize {
         self.order(problem)
     }
 
-    /// Prepare [`interpolate`](Self::interpolate) for `step`, which went from `from` to `to`, and which was the
-    /// last that `work` was used for. What a continuous extension needs beyond the step is evaluated here, once
-    /// a step, and only where output or an event asks for it. The default has nothing to prepare.
+    /// Prepares [`interpolate`](Self::interpolate) for `step` from `from` to `to`, the last step with this `work`.
+    ///
+    /// It evaluates the additional stages of dense output. It is called once for a step, and only if output or an event
+    /// needs a point within it. The default does nothing.
     ///
     /// # Errors
     /// Why a stage could not be evaluated.
@@ -220,9 +222,9 @@ pub trait Method<P: Problem> {
         Ok(())
     }
 
-    /// `at` ← the approximation at t + θh, 0 < θ < 1, on M: the continuous extension of the step that
-    /// [`prepare`](Self::prepare) was called for. The default is a step of size θh from `from`: the order is that
-    /// of the method, the cost a whole step.
+    /// `at` ← the approximation at t + θh, 0 < θ < 1, on M, for the step of the last [`prepare`](Self::prepare).
+    ///
+    /// The default is a step of size θh from `from`. It has the order of the method, and costs a whole step.
     ///
     /// # Errors
     /// Why the point could not be computed.
@@ -239,18 +241,17 @@ pub trait Method<P: Problem> {
         self.step(problem, step.part(theta), at, work)
     }
 
-    /// What the continuous extension costs: the evaluations of f in [`prepare`](Self::prepare) and in each
-    /// [`interpolate`](Self::interpolate), counted as those of a step in [`evaluations`](Self::evaluations). The
-    /// default is that of a shorter step.
+    /// The evaluations of f in [`prepare`](Self::prepare) and in each [`interpolate`](Self::interpolate), counted like
+    /// [`evaluations`](Self::evaluations). The default is that of a shorter step.
     fn dense_evaluations(&self, problem: &P) -> [Option<u64>; 2] {
         [Some(0), self.evaluations(problem)]
     }
 
-    /// Take these steps. After each the numbers of y must be finite ([`Action::is_finite`]).
+    /// Takes these steps. The numbers of y must be finite after each ([`Action::is_finite`]).
     ///
     /// # Errors
-    /// The number of the step that failed, with its reason. Where [`step`](Self::step) failed y is the last
-    /// point before; where the numbers of y left the range they are still in y.
+    /// The number of the failed step, with the reason. If [`step`](Self::step) failed, y is the point before it. If
+    /// numbers of y are not finite, they are still in y.
     #[inline(never)] // in a larger function the step is compiled worse: up to 1.45 times its time
     fn steps(
         &self,

@@ -6,16 +6,16 @@ use crate::error::StepError;
 use crate::scalar::Real;
 use crate::so3::cross;
 
-/// Newton iterations before it is given up. Within the stated limits 3 to 6 are made.
+/// The largest number of Newton iterations. Within the stated limits 3 to 6 are needed.
 pub(super) const NEWTON_MAX: u32 = 20;
-/// Fixed-point iterations before it is given up: a contraction by 0.8 reaches rounding.
+/// The largest number of fixed-point iterations. It is enough for a contraction by 0.8 to reach rounding.
 pub(super) const FIXED_POINT_MAX: u32 = 200;
 
 fn dot<S: Real>(a: &Vector3<S>, b: &Vector3<S>) -> S {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// x with A x = b by Cramer's rule; the columns of A are `a`. Not finite for a singular A.
+/// Solves A x = b by Cramer's rule; the columns of A are `a`. x is not finite for a singular A.
 #[inline(always)]
 fn solve3<S: Real>(a: &Matrix3<S>, b: &Vector3<S>) -> Vector3<S> {
     let col = |j| Vector3::new(a[(0, j)], a[(1, j)], a[(2, j)]);
@@ -25,12 +25,13 @@ fn solve3<S: Real>(a: &Matrix3<S>, b: &Vector3<S>) -> Vector3<S> {
     Vector3::new(s * dot(b, &qr), s * dot(b, &cross(&r, &p)), s * dot(b, &cross(&p, &q)))
 }
 
-/// Newton's iteration for F(x) = 0 from `x`; `f` returns F and F'. It ends with the correction that
-/// is below the root of the rounding next to `scale`, the size of what is sought, which leaves an error
-/// at rounding. Its iterations are added to `total`.
+/// Newton's iteration for F(x) = 0 from `x`; `f` returns F and F'.
+///
+/// It stops after a correction below √ε times `scale`, the size of the solution. Then the error is at rounding. Its
+/// iterations are added to `total`.
 ///
 /// # Errors
-/// [`StepError::NewtonDidNotConverge`] after [`NEWTON_MAX`] iterations or when it leaves the range.
+/// [`StepError::NewtonDidNotConverge`] after [`NEWTON_MAX`] iterations, or if a number is not finite.
 #[inline(always)]
 pub(super) fn newton3<S: Real>(
     method: &'static str,
@@ -67,8 +68,9 @@ fn log10_above<S: Real>(x: S) -> i32 {
     (-17..308).find(|&d| x.all_below(10f64.powi(d))).unwrap_or(308)
 }
 
-/// Watches a fixed-point iteration: it has converged when a change falls to rounding, or when near
-/// rounding the changes no longer shrink.
+/// The stopping rule of a fixed-point iteration.
+///
+/// It has converged when a change is at rounding, or when the changes near rounding no longer shrink.
 pub(super) struct Progress<'a, S> {
     last: S,
     iterations: u32,
@@ -76,13 +78,13 @@ pub(super) struct Progress<'a, S> {
 }
 
 impl<'a, S: Real> Progress<'a, S> {
-    /// An iteration that begins; its iterations are added to `total`.
+    /// Begins an iteration. Its iterations are added to `total`.
     #[inline]
     pub(super) fn new(total: &'a mut u64) -> Self {
         Progress { last: S::lit(f64::INFINITY), iterations: 0, total }
     }
 
-    /// Is it done after a change of this size, relative to the size of what is sought?
+    /// True if the iteration is done after a change of this size, relative to the size of the solution.
     ///
     /// # Errors
     /// [`StepError::FixedPointDidNotConverge`] after [`FIXED_POINT_MAX`] iterations, or for a
@@ -108,5 +110,5 @@ impl<'a, S: Real> Progress<'a, S> {
     }
 }
 
-/// Changes below this many units of rounding may count as stalled.
+/// Changes below this many rounding units may count as stalled.
 const STALL: f64 = 64.0;

@@ -1,4 +1,4 @@
-//! Methods whose dexp⁻¹ is written out: at most one bracket in each stage and in the update.
+//! Methods with explicit brackets instead of dexp⁻¹: at most one in each stage and in the update.
 //!
 //! k_i = f(t + c_i h, exp(u_i) y), u_i = h Σ_j w_ij k_j + h² \[k_1, Σ_j x_ij k_j\], and the same for v;
 //! y⁺ = exp(v) y.
@@ -8,9 +8,9 @@
 //! | [`RKMK4_2C`] | 4 | 4 | 4 | 2 | Munthe-Kaas, Owren 1999 |
 //! | [`MAGNUS43`] | 4(3) | 6 | 6 | 3 | Casas, Iserles 2006 |
 //!
-//! The second is the Magnus method of nonlinear equations: its last stage lies at the result of order
-//! 3. The map is exp, which the brackets belong to. Cost: the table; one more f for points within a step, of order 3. Preserves: the group, and what
-//! the action leaves invariant. Source: H. Munthe-Kaas, B. Owren, Computations in a free Lie algebra,
+//! The second is the Magnus method for nonlinear equations. Its last stage is the result of order 3. The map is exp,
+//! because the brackets are those of exp. Cost: see the table; one f more for dense output, of order 3. Preserves: the
+//! group, and the invariants of the action. Source: H. Munthe-Kaas, B. Owren, Computations in a free Lie algebra,
 //! Phil. Trans. R. Soc. A 357 (1999); F. Casas, A. Iserles, Explicit Magnus expansions for nonlinear
 //! equations, J. Phys. A 39 (2006).
 
@@ -55,7 +55,7 @@ pub struct OneBracketTableau<const S: usize> {
     pub stages: [Increment<S>; S],
     /// v.
     pub update: Increment<S>,
-    /// The order of the last stage as a result at t + h, where it serves as an estimate.
+    /// The order of the last stage as a result at t + h, if it is used for the error estimate.
     pub embedded: Option<usize>,
 }
 
@@ -69,7 +69,7 @@ impl<const S: usize> Increment<S> {
 }
 
 impl<const S: usize> OneBracketTableau<S> {
-    /// How many stages there are: S, but for a [`padded`](Self::padded) one.
+    /// The number of stages: S, or fewer for a [`padded`](Self::padded) method.
     pub const fn stages(&self) -> usize {
         let mut s = S;
         while s > 1 && self.update.w[s - 1] == 0.0 && self.update.x[s - 1] == 0.0 {
@@ -78,7 +78,7 @@ impl<const S: usize> OneBracketTableau<S> {
         s
     }
 
-    /// This method with room for N ≥ S stages: those that are added are never evaluated.
+    /// This method with room for N ≥ S stages. The added stages are never evaluated.
     pub const fn padded<const N: usize>(&self) -> OneBracketTableau<N> {
         let mut stages = [Increment::plain([0.0; N]); N];
         let mut i = 0;

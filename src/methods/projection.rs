@@ -1,9 +1,9 @@
 //! Projection onto the group after each step of any method on the entries of the matrix.
 //!
 //! y ← π(Φ_h(y)) with π the factor Q of g = QR, or the orthogonal polar factor, the nearest
-//! orthogonal matrix ([`Projection`]). Order: that of Φ, since π moves the point by no more than a
-//! constant times its distance from the group. Preserves: the group to rounding; nothing else: the
-//! momentum gm of a body drifts. Cost: that of Φ and the projection (polar: 2 to 3 Newton–Schulz
+//! orthogonal matrix ([`Projection`]). Order: that of Φ, because π moves the point by at most a
+//! constant times its distance from the group. Preserves: only the group, to rounding. Example: the momentum gm of a body
+//! drifts. Cost: that of Φ and the projection (polar: 2 to 3 Newton–Schulz
 //! steps of two products; QR: Gram–Schmidt twice).
 //! Source: Hairer, Lubich, Wanner, Geometric Numerical Integration, IV.4; Celledoni & Owren, 1.
 
@@ -35,13 +35,13 @@ pub struct ProjectionMethod<M> {
 }
 
 impl<M> ProjectionMethod<M> {
-    /// The method.
+    /// Makes the method.
     pub const fn new(base: M, how: Projection) -> Self {
         ProjectionMethod { base, how }
     }
 }
 
-/// The base method's workspace, and the state in progress.
+/// The workspace of the base method, and the state.
 #[allow(missing_debug_implementations)] // the parts belong to the problem's types
 pub struct ProjectionWork<P: Orthogonal, M: Method<P>> {
     base: M::Work,
@@ -110,7 +110,7 @@ impl<P: Orthogonal, M: Method<P>> Method<P> for ProjectionMethod<M> {
     }
 }
 
-/// The estimate is that of the base method, before the projection: what that moves is no larger.
+/// The estimate is that of the base method before the projection. The projection moves the point by no more than that.
 impl<P: Orthogonal, M: Embedded<P>> Embedded<P> for ProjectionMethod<M> {
     fn error_order(&self, problem: &P) -> Result<usize, Error> {
         self.base.error_order(problem)

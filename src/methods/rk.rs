@@ -1,6 +1,6 @@
 //! Classical explicit Runge–Kutta on the linear space around M: the comparison method of the paper.
 //!
-//! It leaves the group: gᵀg − 𝟙 and |m| drift with the order of the method. Order: the tableau's.
+//! It leaves the group: gᵀg − 𝟙 and |m| drift with the order of the method. Order: that of the tableau.
 //! Preserves: linear invariants only. Cost: S evaluations of F.
 //! Points within a step: [`Dense`](super::tableau::Dense).
 //! Source: Hairer, Nørsett, Wanner I, p. 138.
@@ -21,7 +21,7 @@ use crate::tolerance::{Rule, Tolerance, ratio};
 #[derive(Clone, Copy, Debug)]
 pub struct Rk<const S: usize>(pub Tableau<S>);
 
-/// Stages, a point, the extra stages of the continuous extension, and the field's scratch.
+/// Stages, a point, the extra stages of dense output, and the scratch of the field.
 #[allow(missing_debug_implementations)] // the parts belong to the problem's types
 pub struct RkWork<P: Ambient, const S: usize> {
     k: [PointOf<P>; S],

@@ -3,11 +3,10 @@
 //! k₁ = f(t, p); u_i = h Σ_j a_ij k_j; k_i = dΨ_{u_i}⁻¹ f(t + c_i h, λ_p(u_i)); v = h Σ_j b_j k_j;
 //! y = λ_p(v).
 //!
-//! Order: the tableau's, as long as the map's dΨ⁻¹ keeps it. Preserves: the group, and what the
-//! action leaves invariant (Casimirs on a coadjoint orbit); not the energy, no symplectic structure,
-//! not symmetric in time. Cost of a step with S stages: S times f,
-//! S times Ψ (applied, not formed, where the action allows), S − 1 times dΨ⁻¹; a stage that only the
-//! error estimate looks at is left out when none is asked for.
+//! Order: that of the tableau, if dΨ⁻¹ is accurate enough. Preserves: the group, and the invariants of the action
+//! (Casimirs on a coadjoint orbit), but not the energy, the symplectic structure or time symmetry. Cost of a step with
+//! S stages: S times f, S times Ψ (applied without forming it, if the action allows), S − 1 times dΨ⁻¹. A stage that
+//! only the error estimate needs is left out without an estimate.
 //! Points within a step: [`Dense`](super::tableau::Dense) in the chart of the step.
 //! Source: H. Munthe-Kaas, High order Runge–Kutta methods on manifolds, Appl. Numer. Math. 29 (1999).
 
@@ -23,25 +22,25 @@ use crate::problems::{AlgOf, PointOf, Problem, ScalarOf};
 use crate::scalar::Real;
 use crate::tolerance::Tolerance;
 
-/// RKMK with S stages in the coordinates Ψ.
+/// RKMK with S stages and the map Ψ.
 ///
 /// Table 1 of the paper is `Rkmk::new(RK4, Exp)`.
 #[derive(Clone, Copy, Debug)]
 pub struct Rkmk<Psi, const S: usize> {
     tableau: Tableau<S>,
-    /// The stages that the update needs.
+    /// The number of stages of the update.
     stages: usize,
     psi: Psi,
 }
 
 impl<Psi, const S: usize> Rkmk<Psi, S> {
-    /// The method.
+    /// Makes the method.
     pub const fn new(tableau: Tableau<S>, psi: Psi) -> Self {
         Rkmk { tableau, stages: tableau.update_stages(), psi }
     }
 }
 
-/// Stages, the chart, and the extra stages of the continuous extension.
+/// Stages, the chart, and the extra stages of dense output.
 #[allow(missing_debug_implementations)] // the parts belong to the problem's types
 pub struct RkmkWork<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> {
     stages: Stages<P, Psi, S>,

@@ -8,23 +8,20 @@
 //! | [`ONE`](SimoWong::ONE) | 1, the midpoint rule | 2 | ≤ 4.7 |
 //! | [`LEWIS_SIMO`](SimoWong::LEWIS_SIMO) | 1 − (h²/48) Σ_i c_j c_k s_i², c_i = 1/J_k − 1/J_j | 4 in m, 2 in g | ≤ 1.6 |
 //!
-//! Implicit in m⁺: F(x) = x − m + ½ k ζ̄ × (x + m) = 0 by Newton's iteration from x = m, which
-//! converges within the limits above whatever the direction of m; beyond them not for every m, and
-//! then fails with [`StepError::NewtonDidNotConverge`].
+//! The method is implicit in m⁺. Newton's iteration from x = m solves F(x) = x − m + ½ k ζ̄ × (x + m) = 0. Within the
+//! limits above it converges for every direction of m. Beyond them it may fail for some m with
+//! [`StepError::NewtonDidNotConverge`].
 //!
-//! Any k that is symmetric in m and m⁺ keeps energy and |m|: on the orbit it only changes the time,
-//! h to kh. The modified equation of the midpoint rule, up to h⁴, is
-//! m' = (1 + (h²/12) Σ_i c_j c_k m_i²) m × J⁻¹m: a change of time as well, and the third k takes it
-//! back. It is the choice of k by which
-//! Lewis and Simo gain accuracy, derived here for a body with principal axes; the attitude turns
-//! about the momentum by an angle that a scalar does not reach.
+//! Any k that is symmetric in m and m⁺ conserves energy and |m|. On the orbit it only changes the time, h to kh. The
+//! modified equation of the midpoint rule, up to h⁴, is m' = (1 + (h²/12) Σ_i c_j c_k m_i²) m × J⁻¹m. This is a change
+//! of time, too, and the third k undoes it. Lewis and Simo gain accuracy by this k; here it is derived for a body with
+//! principal axes. The attitude also turns about the momentum, by an angle that a scalar k cannot correct.
 //!
-//! Symmetric. Preserves: energy and momentum to rounding, for any k, and the group; with k = 1 also
-//! the symplectic structure. Cost: 3 to 6 Newton iterations of one 3×3 solve each (with one
-//! sine-cosine pair for the first k), one cay.
+//! Symmetric. Preserves: the group, and energy and momentum to rounding, for any k; with k = 1 also the symplectic
+//! structure. Cost: 3 to 6 Newton iterations of one 3×3 solve each (with one sine-cosine pair for the first k), one cay.
 //! Source: J. C. Simo & K. K. Wong, Int. J. Numer. Methods Eng. 31 (1991); k = 1 is the midpoint
 //! rule of M. A. Austin, P. S. Krishnaprasad & L.-S. Wang, J. Comput. Phys. 107 (1993); D. Lewis &
-//! J. C. Simo, J. Nonlinear Sci. 4 (1994). In the paper (5.1) the norms in k are lost in print.
+//! J. C. Simo, J. Nonlinear Sci. 4 (1994). In the paper (5.1) the norms in k are missing in print.
 
 use nalgebra::{Matrix3, Vector3};
 

@@ -1,11 +1,11 @@
 //! Splitting into exact flows, after McLachlan and Reich.
 //!
 //! F = F₁ + … + F_K with exact flows φᵏ. The symmetric step of order 2 is
-//! S_h = φ¹_{h/2} ∘ … ∘ φᴷ⁻¹_{h/2} ∘ φᴷ_h ∘ φᴷ⁻¹_{h/2} ∘ … ∘ φ¹_{h/2}, in any order of the parts; a
-//! [`Scheme`] composes it to higher order. Neighbouring flows of one part are done as one.
+//! S_h = φ¹_{h/2} ∘ … ∘ φᴷ⁻¹_{h/2} ∘ φᴷ_h ∘ φᴷ⁻¹_{h/2} ∘ … ∘ φ¹_{h/2}, in any order of the parts. A
+//! [`Scheme`] composes it to higher order. Neighbouring flows of one part are joined.
 //!
-//! For the free rigid body the parts turn about the principal axes, θ = t m_k/J_k,
-//! m ← R_k(θ)ᵀm, g ← g R_k(θ). Order: the scheme's. Preserves: |m| and g to rounding, the symplectic
+//! For the free rigid body the parts are rotations about the principal axes, θ = t m_k/J_k,
+//! m ← R_k(θ)ᵀm, g ← g R_k(θ). Order: that of the scheme. Preserves: |m| and the group to rounding, the symplectic
 //! structure, time symmetry; the energy error stays bounded at the order of h. Cost with S stages:
 //! 4S + 1 flows, each one sine-cosine pair and one plane rotation (mr2: 5, mr4: 13).
 //! Source: R. McLachlan, Phys. Rev. Lett. 71 (1993); S. Reich, Fields Inst. Commun. 10 (1996).
@@ -29,7 +29,7 @@ pub const MR2: Splitting<3> = Splitting::new([0, 1, 2], STRANG);
 pub const MR4: Splitting<3> = Splitting::new([0, 1, 2], YOSHIDA4);
 
 impl<const K: usize> Splitting<K> {
-    /// With the parts, numbered from 0, in this order: the first is outermost and is halved.
+    /// Sets the order of the parts, which are numbered from 0. The first is outermost and is halved.
     pub const fn new(parts: [usize; K], scheme: Scheme) -> Self {
         Splitting { parts, scheme }
     }

@@ -1,4 +1,4 @@
-//! What every method with stages in 𝔤 has, and how its step ends.
+//! The parts that all methods with stages in 𝔤 share, and the end of their steps.
 
 use crate::chart::ChartStore;
 use crate::error::{Error, StepError};
@@ -6,7 +6,7 @@ use crate::groups::LieAlgebra;
 use crate::maps::CoordinateMap;
 use crate::problems::{AlgOf, PointOf, Problem};
 
-/// S copies. One function for all methods: a closure at each place would be a function at each.
+/// Makes S copies. One function serves all methods, because each closure would compile to another function.
 pub(super) fn copies<T: Clone, const S: usize>(of: T) -> [T; S] {
     core::array::from_fn(|_| of.clone())
 }
@@ -25,7 +25,7 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> Stages<P, Psi, S>
         Ok(Stages { k: copies(zero()), u: zero(), chart })
     }
 
-    /// p ← y where the step was taken; else p stays, and the error is [`blame`](Self::blame)d.
+    /// p ← y if the step was taken. Otherwise p is unchanged, and [`blame`](Self::blame) gives the error.
     #[inline(always)]
     pub(super) fn conclude(
         &mut self,
@@ -39,8 +39,8 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> Stages<P, Psi, S>
         Ok(())
     }
 
-    /// The error of the step: the stage whose f was not finite where there is one, else `error`. The stages
-    /// are cleared, so that the next attempt does not see the numbers of this one.
+    /// The error of the step: the stage whose f is not finite, if there is one, else `error`. Clears the stages, so
+    /// that the next attempt does not see their numbers.
     #[cold]
     pub(super) fn blame(&mut self, problem: &P, error: StepError) -> StepError {
         let alg = problem.group();

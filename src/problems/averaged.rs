@@ -1,11 +1,12 @@
-//! Any H with a discrete gradient: the mean of ∇H on the way from a to b.
+//! A discrete gradient of any H: the mean of ∇H between a and b.
 //!
-//! ∇̄H(a, b) = ∫₀¹ ∇H((1 − s)a + sb) ds, so that ⟨b − a, ∇̄H(a, b)⟩ = H(b) − H(a) by the fundamental theorem;
-//! symmetric, and ∇̄H(m, m) = ∇H(m). The integral is that of Gauss and Legendre with seven nodes: exact where
-//! H is a polynomial of degree at most 14, and elsewhere with the error 6.5·10⁻²⁰ H⁽¹⁵⁾|b − a|¹⁵ of the
-//! energy, which is below rounding where H is smooth on the scale of a step. No quotient by |b − a|, as
-//! Gonzalez's discrete gradient has: near an equilibrium that is rounding over rounding, and an iteration
-//! does not settle on it.
+//! ∇̄H(a, b) = ∫₀¹ ∇H((1 − s)a + sb) ds. So ⟨b − a, ∇̄H(a, b)⟩ = H(b) − H(a) by the fundamental theorem. It is
+//! symmetric, and ∇̄H(m, m) = ∇H(m). The integral is computed by Gauss–Legendre quadrature with seven nodes. It is
+//! exact if H is a polynomial of degree at most 14. Otherwise the error of the energy is 6.5·10⁻²⁰ H⁽¹⁵⁾|b − a|¹⁵,
+//! which is below rounding if H is smooth on the scale of a step.
+//!
+//! Gonzalez's discrete gradient divides by |b − a|. Near an equilibrium this is rounding over rounding, and an
+//! iteration does not converge. The mean needs no division.
 //!
 //! Source: A. Harten, P. Lax & B. van Leer (1983); R. McLachlan, G. Quispel & N. Robidoux, Geometric
 //! integration using discrete gradients (1999); G. Quispel & D. McLaren (2008).
@@ -15,9 +16,10 @@ use crate::groups::{Adjoint, LieAlgebra};
 use crate::quadrature::GAUSS_LEGENDRE7;
 use crate::scalar::Real;
 
-/// Any H by two functions: its value H(m), and its gradient at a momentum or on the way from it to another,
-/// ξ ← ∇H(a) ∈ 𝔤 or, where (b, s) is given, ξ ← ∇H((1 − s)a + sb). Methods that keep the energy keep it; a
-/// discrete gradient takes seven gradients.
+/// A Hamiltonian from two functions, its value and its gradient, for methods that conserve the energy.
+///
+/// The first is H(m). The second writes ξ ← ∇H(a) ∈ 𝔤 or, with (b, s), ξ ← ∇H((1 − s)a + sb). A discrete gradient takes
+/// seven gradients.
 ///
 /// ```
 /// use lieflow::groups::So3;

@@ -1,8 +1,9 @@
-//! Transfer maps of a beam line in Sp(4): y = (x, z, x′, z′) of a particle next to the design orbit,
-//! as it goes through drifts, quadrupoles and dipoles.
+//! Transfer maps of a beam line in Sp(4): drifts, quadrupoles and dipoles.
 //!
-//! Hard-edged, paraxial: x″ = −k_x x, z″ = −k_z z along an element of length L, so that its map is one
-//! exponential; in each plane
+//! y = (x, z, x′, z′) is the deviation of a particle from the design orbit.
+//!
+//! In the paraxial model with hard edges x″ = −k_x x, z″ = −k_z z along an element of length L. So its map is one
+//! exponential. In each plane
 //!
 //! ```text
 //!     k > 0, ω = √k:  ⎡ cos ωL      sin ωL/ω ⎤    k < 0: cosh and sinh    k = 0: ⎡ 1  L ⎤
@@ -27,7 +28,7 @@ use crate::groups::GroupMatrix;
 /// An element of a beam line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Element {
-    /// Nothing, over a length.
+    /// A drift: no field over a length.
     Drift {
         /// L.
         length: f64,
@@ -39,7 +40,7 @@ pub enum Element {
         /// k.
         k: f64,
     },
-    /// A quadrupole of no length: x′ changes by −x/f, z′ by z/f.
+    /// A quadrupole of length zero: x′ changes by −x/f, z′ by z/f.
     ThinLens {
         /// f.
         focal_length: f64,
@@ -96,7 +97,7 @@ impl Element {
     }
 }
 
-/// The transfer map of elements in the order in which the beam meets them.
+/// The transfer map of elements, in the order of the beam.
 ///
 /// ```
 /// use lieflow::problems::beam::{Element, transfer_map, tunes};
@@ -135,8 +136,8 @@ pub fn transfer_map(elements: &[Element]) -> Result<GroupMatrix, Error> {
     Ok(GroupMatrix::new_unchecked(Mat::from_fn(4, 4, entry)))
 }
 
-/// The tunes μ/2π ∈ (0, 1) of a cell without coupling, in x and in z; `None` where |tr| ≥ 2: the cell
-/// is unstable in that plane, or on the edge.
+/// The tunes μ/2π ∈ (0, 1) of a cell without coupling, in x and in z. `None` if |tr| ≥ 2: the cell is
+/// unstable in that plane, or at the limit of stability.
 pub fn tunes(cell: &GroupMatrix) -> [Option<f64>; 2] {
     [0, 1].map(|i| {
         let (half_trace, upper) = (0.5 * (cell[(i, i)] + cell[(i + 2, i + 2)]), cell[(i, i + 2)]);

@@ -1,19 +1,20 @@
-//! What a problem may know about itself beyond f: each capability is a trait, and a method that
-//! needs one does not compile for a problem without it.
+//! Capabilities: facts about a problem in addition to f.
 //!
-//! | capability | what is known | methods |
+//! Each capability is a trait. A method that needs one does not compile for a problem without it.
+//!
+//! | capability | fact | methods |
 //! |---|---|---|
 //! | [`Split`] | F = Σ F_k with exact flows | [`Splitting`](crate::methods::Splitting) |
 //! | [`LiePoisson`] | ṁ = ad*_{∇H(m)} m with a discrete gradient | [`EnergyCasimir`](crate::methods::EnergyCasimir) |
-//! | [`LinearField`] | f depends on t alone | [`magnus`](crate::methods::magnus) |
+//! | [`LinearField`] | f depends only on t | [`magnus`](crate::methods::magnus) |
 //! | [`TaylorField`](super::TaylorField) | Taylor coefficients of f by recurrence | [`LieSeries`](crate::methods::LieSeries) |
-//! | [`Orthogonal`] | where the orthogonal matrix in y is | [`ProjectionMethod`](crate::methods::ProjectionMethod) |
+//! | [`Orthogonal`] | the place of the orthogonal matrix in y | [`ProjectionMethod`](crate::methods::ProjectionMethod) |
 //! | [`FreeBody`](super::FreeBody) | a free rigid body in ℝ³ | Simo–Wong, Buss, DMV, exact, Taylor |
 
 use super::{AlgOf, Ambient, PointOf, Problem, ScalarOf};
 use crate::error::StepError;
 
-/// F = F₁ + … + F_K, where the flow of each F_k is known exactly.
+/// A sum F = F₁ + … + F_K in which each F_k has an exact flow.
 pub trait Split: Ambient {
     /// K.
     const PARTS: usize;
@@ -38,10 +39,10 @@ pub trait LiePoisson: Ambient {
     );
 }
 
-/// A capability: f(t, y) does not depend on y, f(t, y) = A(t). What a Magnus method asks for.
+/// A linear equation: f(t, y) = A(t) does not depend on y. Magnus methods need it.
 pub trait LinearField: Problem {}
 
-/// How a matrix near SO(n) is brought back to it.
+/// The projection of a matrix near SO(n) onto it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Projection {
     /// The factor Q of g = QR with positive diagonal R, by Gram–Schmidt twice.
@@ -52,7 +53,7 @@ pub enum Projection {
 
 /// A problem whose point holds an orthogonal matrix in a linear space.
 pub trait Orthogonal: Ambient {
-    /// Bring the matrix in y back to the group; the rest of y stays.
+    /// Projects the matrix in y onto the group. The rest of y is unchanged.
     ///
     /// # Errors
     /// [`StepError::OutsideChart`] when it is too far from every rotation.

@@ -1,8 +1,8 @@
-//! All problems on one group and action as one type: f is behind a pointer.
+//! One type for all problems on a group and an action: f is behind a pointer.
 //!
-//! A type of problem costs the compiler every method that is used with it. A program that offers many
-//! problems by many methods shares the type where they share a group and an action, and pays one call
-//! for each evaluation of f.
+//! The compiler compiles every method again for each type of problem. A program with many problems and many methods
+//! compiles faster if problems with the same group and action share one type. The cost is one call for each evaluation
+//! of f.
 
 use core::fmt;
 use core::marker::PhantomData;
@@ -15,11 +15,11 @@ use crate::groups::{LieAlgebra, LieGroup};
 use crate::problems::FieldStore;
 use crate::scalar::Real;
 
-/// A problem on M by G and Λ, whatever its field; what is known of it beyond f is known at run time.
+/// A problem on M with any field. Its further facts are known at run time.
 ///
-/// The type says what its problems may be: with L = [`TimeAlone`] some are of linear type, with
-/// H = [`WithHamiltonian`] some are Lie–Poisson systems. Each problem says which it is: [`is_linear`](Self::is_linear),
-/// [`is_lie_poisson`](Self::is_lie_poisson). Methods by name look at that.
+/// With L = [`TimeAlone`] some problems of the type may be linear. With H = [`WithHamiltonian`] some may be Lie–Poisson
+/// systems. [`is_linear`](Self::is_linear) and [`is_lie_poisson`](Self::is_lie_poisson) are facts of each problem.
+/// Methods by name use them.
 ///
 /// ```
 /// use lieflow::actions::Linear;
@@ -51,7 +51,7 @@ pub struct DynFlow<G: LieGroup, A: Action<G>, L = (), H = ()> {
     work: Box<dyn Fn() -> DynWork<G, A::Point>>,
 }
 
-/// The mark of a type of problems of which some have a Hamiltonian.
+/// Marks a type of problems of which some have a Hamiltonian.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct WithHamiltonian;
 
@@ -112,7 +112,7 @@ impl<P: Problem> DynField<P::Group, PointOf<P>> for ProblemWithWork<P> {
 }
 
 impl<G: LieGroup + Clone + 'static, A: Action<G> + 'static, L, H> DynFlow<G, A, L, H> {
-    /// The problem; `action` is its action, or another one with the same values.
+    /// Makes it from a problem. `action` is its action, or another one with the same values.
     pub fn new<P>(problem: P, action: A) -> Self
     where
         P: Problem<Group = G> + 'static,
@@ -137,7 +137,7 @@ impl<G: LieGroup + Clone + 'static, A: Action<G> + 'static, L, H> DynFlow<G, A, 
 }
 
 impl<G: LieGroup + Clone + 'static, A: Action<G> + 'static, H> DynFlow<G, A, TimeAlone, H> {
-    /// The equation of linear type.
+    /// Makes it from a linear equation.
     pub fn linear<P>(problem: P, action: A) -> Self
     where
         P: LinearField<Group = G> + 'static,
@@ -148,7 +148,7 @@ impl<G: LieGroup + Clone + 'static, A: Action<G> + 'static, H> DynFlow<G, A, Tim
 }
 
 impl<G: LieGroup + Clone + 'static, A: Action<G> + 'static, L> DynFlow<G, A, L, WithHamiltonian> {
-    /// The Lie–Poisson system.
+    /// Makes it from a Lie–Poisson system.
     pub fn lie_poisson<P>(problem: P, action: A) -> Self
     where
         P: LiePoisson + Problem<Group = G> + 'static,
@@ -164,12 +164,12 @@ impl<G: LieGroup + Clone + 'static, A: Action<G> + 'static, L> DynFlow<G, A, L, 
 }
 
 impl<G: LieGroup, A: Action<G>, L, H> DynFlow<G, A, L, H> {
-    /// Does f depend on t alone?
+    /// True if f depends only on t.
     pub fn is_linear(&self) -> bool {
         self.linear
     }
 
-    /// Is it a Lie–Poisson system?
+    /// True for a Lie–Poisson system.
     pub fn is_lie_poisson(&self) -> bool {
         self.energy.is_some()
     }
@@ -203,10 +203,10 @@ impl<G: LieGroup, A: Action<G>, L, H> Problem for DynFlow<G, A, L, H> {
     }
 }
 
-/// Of those that are made by [`DynFlow::linear`].
+/// For problems from [`DynFlow::linear`].
 impl<G: LieGroup, A: Action<G>, H> LinearField for DynFlow<G, A, TimeAlone, H> {}
 
-/// Of those that are made by [`DynFlow::lie_poisson`]; of others H and its gradient are not numbers.
+/// For problems from [`DynFlow::lie_poisson`]. For others H and its gradient are NaN.
 impl<G: LieGroup, A, L> LiePoisson for DynFlow<G, A, L, WithHamiltonian>
 where
     A: Action<G, Point: LinearSpace<Scalar = G::Scalar>>,

@@ -1,10 +1,10 @@
 //! Euler's equations on the dual of any Lie algebra: ṁ = ad*_{∇H(m)} m, where ∇H(m) ∈ 𝔤.
 //!
-//! f(m) = −∇H(m); Λ = Ad*_{g⁻¹} (coadjoint): the motion stays on its coadjoint orbit, and every
-//! Casimir is kept. Invariants: H and the Casimirs.
+//! f(m) = −∇H(m); Λ = Ad*_{g⁻¹} (coadjoint). The motion stays on its coadjoint orbit, which conserves every Casimir.
+//! Invariants: H and the Casimirs.
 //!
-//! With g: (ġ, ṁ) = (g ∇H(m), ad*_{∇H(m)} m) on G × 𝔤*, Λ(a, (g, m)) = (g a⁻¹, Ad*_{a⁻¹} m), f as
-//! above; Ad*_{g⁻¹} m, the momentum in space, is kept by every method that acts by the group.
+//! With g in the state: (ġ, ṁ) = (g ∇H(m), ad*_{∇H(m)} m) on G × 𝔤*, Λ(a, (g, m)) = (g a⁻¹, Ad*_{a⁻¹} m), and the same
+//! f. Every method that acts by the group conserves Ad*_{g⁻¹} m, the momentum in space.
 
 use faer::Mat;
 
@@ -16,7 +16,7 @@ use crate::error::Error;
 use crate::groups::{Adjoint, AlgebraMatrix, MatrixGroup, worse};
 use crate::scalar::Real;
 
-/// H : 𝔤* → ℝ. A new Euler equation is an implementation of this, and nothing else.
+/// A Hamiltonian H : 𝔤* → ℝ. A new Euler equation needs only an implementation of this trait.
 pub trait Hamiltonian<G: Adjoint> {
     /// H(m).
     fn value(&self, group: &G, m: &G::Dual) -> G::Scalar;
@@ -32,12 +32,13 @@ pub trait Hamiltonian<G: Adjoint> {
     }
 }
 
-/// H with a discrete gradient, for methods that keep the energy. One of degree at most 2 has it from its
-/// gradient: `impl DiscreteGradient<G> for MyHamiltonian {}`; any other has the mean of its gradients,
+/// A Hamiltonian with a discrete gradient, for methods that conserve the energy.
+///
+/// For H of degree at most 2 the default is one: `impl DiscreteGradient<G> for MyHamiltonian {}`. For any other H use
 /// [`MeanGradient`](super::MeanGradient).
 pub trait DiscreteGradient<G: Adjoint>: Hamiltonian<G> {
-    /// ξ ← ∇̄H(a, b), symmetric in a and b: ⟨b − a, ξ⟩ = H(b) − H(a), ∇̄H(m, m) = ∇H(m). Unless it is
-    /// overridden (∇H(a) + ∇H(b))/2, which is one where ∇H is affine and not elsewhere.
+    /// ξ ← ∇̄H(a, b), symmetric in a and b: ⟨b − a, ξ⟩ = H(b) − H(a), ∇̄H(m, m) = ∇H(m). The default is
+    /// (∇H(a) + ∇H(b))/2, which has these properties only if ∇H is affine.
     fn between(&self, group: &G, a: &G::Dual, b: &G::Dual, xi: &mut G::Alg, scratch: &mut G::Alg) {
         group.set_zero(xi);
         for m in [a, b] {
@@ -47,9 +48,10 @@ pub trait DiscreteGradient<G: Adjoint>: Hamiltonian<G> {
     }
 }
 
-/// H = ½⟨m, J⁻¹m⟩ from the inverse inertia J⁻¹ : 𝔤* → 𝔤, as a function that writes J⁻¹m. It is linear
-/// and symmetric, ⟨m, J⁻¹n⟩ = ⟨n, J⁻¹m⟩, and takes its values in 𝔤. An n×n matrix m stands for the
-/// functional v ↦ tr(mᵀv): J⁻¹m must be the same for two that differ by one that vanishes on 𝔤.
+/// The kinetic energy H = ½⟨m, J⁻¹m⟩ of an inertia J, from a function that writes J⁻¹m.
+///
+/// J⁻¹ : 𝔤* → 𝔤 must be linear and symmetric: ⟨m, J⁻¹n⟩ = ⟨n, J⁻¹m⟩. An n×n matrix m stands for the functional v ↦
+/// tr(mᵀv) on 𝔤. J⁻¹m must be the same for all matrices that stand for the same functional.
 #[derive(Clone, Copy, Debug)]
 pub struct Kinetic<F>(pub F);
 
@@ -67,7 +69,7 @@ impl<G: Adjoint, F: Fn(&G::Dual, &mut G::Alg)> Hamiltonian<G> for Kinetic<F> {
 
 impl<G: Adjoint, F: Fn(&G::Dual, &mut G::Alg)> DiscreteGradient<G> for Kinetic<F> {}
 
-/// Any H with its gradient, as two functions.
+/// A Hamiltonian from two functions, its value and its gradient.
 impl<G, H, D> Hamiltonian<G> for (H, D)
 where
     G: Adjoint,
@@ -83,7 +85,7 @@ where
     }
 }
 
-/// ṁ = ad*_{∇H(m)} m from a group and a Hamiltonian.
+/// Euler's equation ṁ = ad*_{∇H(m)} m, from a group and a Hamiltonian.
 ///
 /// ```
 /// use lieflow::groups::Se3;
@@ -127,7 +129,7 @@ impl<G: Adjoint, H: Hamiltonian<G>> Euler<G, H> {
     pub fn energy(&self, m: &G::Dual) -> G::Scalar {
         self.hamiltonian.value(&self.group, m)
     }
-    /// This system with the group element g.
+    /// The same system with the group element g in the state.
     pub const fn with_group(self) -> EulerGroup<G, H> {
         EulerGroup { system: self }
     }
@@ -227,13 +229,13 @@ pub struct EulerGroup<G, H> {
 }
 
 impl<G, H> EulerGroup<G, H> {
-    /// The system of m alone.
+    /// The system without g.
     pub fn system(&self) -> &Euler<G, H> {
         &self.system
     }
 }
 
-/// Λ(a, (g, m)) = (g a⁻¹, Ad*_{a⁻¹} m): the group acts from the body's side.
+/// The action Λ(a, (g, m)) = (g a⁻¹, Ad*_{a⁻¹} m) of G from the side of the body.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FromTheBody;
 
@@ -242,8 +244,7 @@ where
     Coadjoint: Action<G, Point = G::Dual>,
 {
     type Point = (G::Elem, G::Dual);
-    /// a⁻¹ and what forming it takes, that of the coadjoint action, that of
-    /// [`restore`](Action::restore), and −v.
+    /// a⁻¹ and its scratch, the scratch of the coadjoint action, that of [`restore`](Action::restore), and −v.
     type Work = ((G::Elem, G::Inverting), <Coadjoint as Action<G>>::Work, [G::Elem; 2], G::Alg);
 
     fn work(&self, group: &G) -> Self::Work {
@@ -288,11 +289,11 @@ where
         group.tangent_in_body(g, minus, dg);
         Coadjoint.generate(group, v, m, dm, coadjoint);
     }
-    /// g back to G.
+    /// Corrects g to G.
     fn restore(&self, group: &G, p: &mut Self::Point, work: &mut Self::Work) -> Option<G::Scalar> {
         Some(group.correct(&mut p.0, work.2.each_mut()))
     }
-    /// g back to G, and m to its orbit.
+    /// Corrects g to G, and m to its orbit.
     fn restore_to(
         &self,
         group: &G,
@@ -340,7 +341,7 @@ where
     }
 }
 
-/// f is that of m alone: g follows.
+/// f is that of the system without g.
 impl<F: Fn(&Mat<f64>, &mut AlgebraMatrix)> TaylorField for EulerGroup<MatrixGroup, Kinetic<F>> {
     type Series = MomentumSeries;
 

@@ -1,10 +1,11 @@
-//! Fields that can fail, with an error of their own.
+//! Fields that can fail with your own type of error.
 //!
-//! [`Problem::f`] returns numbers. A field that has no value at some (t, y), and would have one after
-//! a smaller step, says so by a number that is not finite: a fixed run stops there with
-//! [`StepError::NonFiniteRhs`](crate::StepError::NonFiniteRhs), an adaptive one shrinks the step. A
-//! field that failed for good, because a file could not be read or an argument was out of range, is a
-//! [`TryProblem`]; [`Fallible`] makes a [`Problem`] of it and keeps its error.
+//! [`Problem::f`] returns numbers. There are two kinds of failure:
+//!
+//! - The field has no value at (t, y), but may have one after a smaller step. Then f returns NaN. A run with a fixed step size
+//!   ends with [`StepError::NonFiniteRhs`](crate::StepError::NonFiniteRhs); an adaptive run takes a smaller step.
+//! - The field failed finally. Examples: a file could not be read, or an argument is out of range. Then implement
+//!   [`TryProblem`]. [`Fallible`] makes a [`Problem`] of it and stores its error.
 
 use core::fmt;
 use std::sync::OnceLock;
@@ -23,7 +24,7 @@ pub trait TryProblem {
     type Action: Action<Self::Group>;
     /// Scratch of f; `()` when it needs none.
     type Work;
-    /// What f fails with.
+    /// The error of f.
     type Error;
 
     /// G as a value.
@@ -35,7 +36,7 @@ pub trait TryProblem {
     /// v ← f(t, y) ∈ 𝔤.
     ///
     /// # Errors
-    /// The user's own.
+    /// Your own error.
     fn try_f(
         &self,
         t: <Self::Group as LieAlgebra>::Scalar,
@@ -45,8 +46,9 @@ pub trait TryProblem {
     ) -> Result<(), Self::Error>;
 }
 
-/// The [`Problem`] of a [`TryProblem`]. The first error of its field is kept; from then on the field
-/// is not asked again and has no finite value, so that the run ends.
+/// The [`Problem`] of a [`TryProblem`], which stores the first error of the field.
+///
+/// After the error the field is not evaluated again, and f is NaN. So the run ends.
 ///
 /// ```
 /// use lieflow::actions::Linear;
@@ -89,11 +91,11 @@ pub struct Fallible<P: TryProblem> {
 }
 
 impl<P: TryProblem> Fallible<P> {
-    /// The problem, without an error so far.
+    /// Makes the problem, without an error so far.
     pub const fn new(problem: P) -> Self {
         Fallible { problem, error: OnceLock::new() }
     }
-    /// The first error of the field; `None` when a run failed for another reason, or did not.
+    /// The first error of the field; `None` if the field did not fail.
     pub fn error(&self) -> Option<&P::Error> {
         self.error.get()
     }
@@ -138,8 +140,9 @@ impl<P: TryProblem> Problem for Fallible<P> {
     }
 }
 
-/// A [`TryProblem`] from a group, an action and a closure: `field(t, y, v)` writes f(t, y) into v, all of it, or
-/// fails. `Fallible::new(TryFlow::new(…))` is the problem to run.
+/// A [`TryProblem`] from a group, an action and a closure that may fail.
+///
+/// `field(t, y, v)` writes all of f(t, y) into v, or returns an error. Run `Fallible::new(TryFlow::new(…))`.
 ///
 /// ```
 /// use lieflow::actions::LeftTranslation;
@@ -177,7 +180,7 @@ where
     A: Action<G>,
     F: Fn(G::Scalar, &A::Point, &mut G::Alg) -> Result<(), E>,
 {
-    /// The problem of the closure.
+    /// Makes the problem of a closure.
     pub const fn new(group: G, action: A, field: F) -> Self {
         TryFlow { group, action, field }
     }
@@ -212,10 +215,10 @@ where
     }
 }
 
-/// A problem whose every value of f is looked at: is it in 𝔤 ([`LieAlgebra::check`])? It costs a check
-/// and storage for each evaluation; [`integrate`](crate::integrate()) looks at the first value only.
+/// A problem that checks for every value of f that it is in 𝔤 ([`LieAlgebra::check`]).
 ///
-/// `Fallible::new(InAlgebra(problem))` is the problem to run, and its error names the residual.
+/// Run `Fallible::new(InAlgebra(problem))`; its error has the residual. The check and its storage cost time in each
+/// evaluation. Without it [`integrate`](crate::integrate()) checks only the first value.
 #[derive(Clone, Copy, Debug)]
 pub struct InAlgebra<P>(pub P);
 

@@ -1,8 +1,8 @@
-//! A problem from a closure: a group, an action and f(t, y), with what else is known of it.
+//! A problem from a closure: a group, an action and f(t, y), with further facts.
 //!
-//! | known | by | capability |
+//! | fact | added by | capability |
 //! |---|---|---|
-//! | f depends on t alone, f(t, y) = A(t) | [`Flow::of_time`], [`Flow::linear`] | [`LinearField`] |
+//! | f depends only on t, f(t, y) = A(t) | [`Flow::of_time`], [`Flow::linear`] | [`LinearField`] |
 //! | f(m) = −∇H(m) | [`Flow::hamiltonian`] | [`LiePoisson`], [`Invariants`] |
 //! | a quantity that is constant | [`Flow::invariant`] | [`Invariants`] |
 
@@ -15,9 +15,9 @@ use crate::groups::{LieAlgebra, LieGroup};
 use crate::scalar::Real;
 use crate::space::Metric;
 
-/// ẏ = λ_*(f(t, y))(y) from a group, an action and a closure that writes f(t, y) ∈ 𝔤.
+/// A problem ẏ = λ_*(f(t, y))(y) from a group, an action and a closure that writes f(t, y) ∈ 𝔤.
 ///
-/// It is compiled for its closure: a step costs what it costs with a hand-written [`Problem`].
+/// It is compiled for its closure, so a step is as fast as with your own `impl` of [`Problem`].
 ///
 /// ```
 /// use lieflow::actions::Coadjoint;
@@ -39,7 +39,7 @@ use crate::space::Metric;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
-/// A method that needs more than is known does not compile:
+/// A method that needs a missing fact does not compile:
 /// ```compile_fail
 /// # use lieflow::{actions::Coadjoint, groups::So3, maps::Cay, methods::EnergyCasimir, problems::Flow};
 /// let body = Flow::new(So3::<f64>::new(), Coadjoint, |_, m, v| *v = -m);
@@ -56,7 +56,7 @@ pub struct Flow<G, A, F, K = Facts> {
 /// A [`Flow`] whose closure writes A(t), f(t, y) = A(t).
 pub type LinearFlow<G, A, F> = Flow<G, A, OfTime<F>, Facts<TimeAlone>>;
 
-/// What is known of a [`Flow`] beyond f: whether it depends on t alone, H, and further invariants.
+/// The facts about a [`Flow`]: whether f depends only on t, H, and further invariants.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Facts<L = (), H = (), I = ()> {
     linear: L,
@@ -64,7 +64,7 @@ pub struct Facts<L = (), H = (), I = ()> {
     invariants: I,
 }
 
-/// The fact that f depends on t alone.
+/// The fact that f depends only on t.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct TimeAlone;
 
@@ -90,7 +90,7 @@ impl<G: LieGroup, A: Action<G>, F: Fn(G::Scalar, &A::Point, &mut G::Alg)> Field<
     }
 }
 
-/// A closure of t alone.
+/// A closure of t only.
 #[derive(Clone, Copy, Debug)]
 pub struct OfTime<F>(F);
 
@@ -104,7 +104,7 @@ impl<G: LieGroup, A: Action<G>, F: Fn(G::Scalar, &mut G::Alg)> Field<G, A> for O
     }
 }
 
-/// A closure with scratch, and the closure that makes the scratch.
+/// A closure with scratch, and a closure that makes the scratch.
 #[derive(Clone, Copy, Debug)]
 pub struct WithWork<M, F> {
     make: M,
@@ -132,7 +132,7 @@ where
 const UNKNOWN: Facts = Facts { linear: (), energy: (), invariants: () };
 
 impl<G: LieGroup, A: Action<G>, F: Fn(G::Scalar, &A::Point, &mut G::Alg)> Flow<G, A, F> {
-    /// The problem; `field(t, y, v)` writes f(t, y) into v, all of it.
+    /// Makes the problem. `field(t, y, v)` writes all of f(t, y) into v.
     ///
     /// A closure of t alone is for [`of_time`](Self::of_time): methods for linear equations need it.
     #[doc(alias = "from_fn")]
@@ -142,8 +142,8 @@ impl<G: LieGroup, A: Action<G>, F: Fn(G::Scalar, &A::Point, &mut G::Alg)> Flow<G
 }
 
 impl<G: LieGroup, A: Action<G>, F: Fn(G::Scalar, &mut G::Alg)> LinearFlow<G, A, F> {
-    /// The equation of linear type ẏ = λ_*(A(t))(y), Ẏ = A(t)Y on a matrix group; `field(t, v)` writes A(t)
-    /// into v, all of it.
+    /// Makes a linear equation ẏ = λ_*(A(t))(y); on a matrix group this is Ẏ = A(t)Y. `field(t, v)` writes all of A(t)
+    /// into v.
     ///
     /// ```
     /// use lieflow::actions::Linear;
@@ -153,7 +153,7 @@ impl<G: LieGroup, A: Action<G>, F: Fn(G::Scalar, &mut G::Alg)> LinearFlow<G, A, 
     /// use lieflow::{SaveAt, TimeGrid, integrate};
     /// use nalgebra::Vector3;
     ///
-    /// // A spin in a field that turns.
+    /// // A spin in a rotating field.
     /// let spin = Flow::of_time(So3::<f64>::new(), Linear, |t, v| {
     ///     *v = Vector3::new(t.cos(), t.sin(), 2.0);
     /// });
@@ -168,15 +168,15 @@ impl<G: LieGroup, A: Action<G>, F: Fn(G::Scalar, &mut G::Alg)> LinearFlow<G, A, 
         Flow { group, action, field: OfTime(field), facts }
     }
 
-    /// The equation with the same A(t), on the points of another action.
+    /// The equation with the same A(t) and another action.
     pub fn by<B: Action<G>>(self, action: B) -> LinearFlow<G, B, F> {
         Flow { group: self.group, action, field: self.field, facts: self.facts }
     }
 }
 
 impl<G: LieGroup, A: Action<G>, M, F> Flow<G, A, WithWork<M, F>> {
-    /// The problem of a field with scratch: `make()` makes the scratch, once a run, and
-    /// `field(t, y, v, scratch)` writes f(t, y) into v, all of it.
+    /// Makes the problem of a field with scratch. `make()` makes the scratch once for a run. `field(t, y, v, scratch)`
+    /// writes all of f(t, y) into v.
     pub const fn with_work<W>(group: G, action: A, make: M, field: F) -> Self
     where
         M: Fn() -> W,
@@ -187,14 +187,16 @@ impl<G: LieGroup, A: Action<G>, M, F> Flow<G, A, WithWork<M, F>> {
 }
 
 impl<G: LieGroup, A: Action<G>, F, L, H, I> With<G, A, F, L, H, I> {
-    /// This problem, known to be of linear type: f depends on t alone. Magnus methods rest on it.
+    /// Adds the fact that f depends only on t. Magnus methods then apply, and are wrong if it is not true.
     pub fn linear(self) -> With<G, A, F, TimeAlone, H, I> {
         let Flow { group, action, field, facts: Facts { energy, invariants, .. } } = self;
         Flow { group, action, field, facts: Facts { linear: TimeAlone, energy, invariants } }
     }
 
-    /// This problem with its Hamiltonian, f(m) = −∇H(m) under the coadjoint action: H is the invariant
-    /// `energy`, and methods that keep it have the mean of −f between two points as discrete gradient.
+    /// Adds the Hamiltonian of f(m) = −∇H(m) under the coadjoint action.
+    ///
+    /// H becomes the invariant `energy`. Methods that conserve it take the mean of −f between two points as discrete
+    /// gradient.
     pub fn hamiltonian<E: Fn(&A::Point) -> G::Scalar>(
         self,
         value: E,
@@ -203,7 +205,7 @@ impl<G: LieGroup, A: Action<G>, F, L, H, I> With<G, A, F, L, H, I> {
         Flow { group, action, field, facts: Facts { linear, energy: Energy(value), invariants } }
     }
 
-    /// This problem with a further invariant and its value.
+    /// Adds an invariant: its name and its value.
     pub fn invariant<Q: Fn(&A::Point) -> G::Scalar>(
         self,
         invariant: Invariant,
@@ -219,7 +221,7 @@ impl<G: LieGroup, A: Action<G>, F, L, H, I> With<G, A, F, L, H, I> {
 #[derive(Clone, Copy, Debug)]
 pub struct Energy<E>(E);
 
-/// An invariant of a [`Flow`], after those that were named before it.
+/// An invariant of a [`Flow`], after the earlier ones.
 #[derive(Clone, Debug)]
 pub struct Quantity<I, Q> {
     before: I,
@@ -307,7 +309,7 @@ where
     fn hamiltonian(&self, m: &A::Point) -> G::Scalar {
         (self.facts.energy.0)(m)
     }
-    /// At t = 0: a Hamiltonian system has no other time.
+    /// At t = 0, because a Hamiltonian system does not depend on t.
     fn discrete_gradient(
         &self,
         a: &A::Point,

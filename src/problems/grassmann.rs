@@ -1,12 +1,11 @@
-//! A flow of subspaces: the k-dimensional subspaces of ℝⁿ as orthogonal projectors P = Pᵀ = P²,
-//! tr P = k, the Grassmann manifold. Ṗ = \[f(P), P\], f(P) = AP − PA ∈ so(n); Λ(g, P) = g P gᵀ.
+//! A flow of k-dimensional subspaces of ℝⁿ, on the Grassmann manifold.
 //!
-//! The gradient flow of tr AP for a symmetric A: P converges to the projector onto the k leading
-//! eigenvectors, whatever frame spans it: it is [`Oja`](super::Oja)'s flow, P = XXᵀ, without the turns
-//! of the frame within its span. The subspace also solves a Riccati equation: with P the span of
-//! \[𝟙; Z\], Ż = A₂₁ + A₂₂Z − ZA₁₁ − ZA₁₂Z.
+//! A subspace is an orthogonal projector P = Pᵀ = P², tr P = k. Ṗ = \[f(P), P\], f(P) = AP − PA ∈ so(n); Λ(g, P) = g P
+//! gᵀ. This is the gradient flow of tr AP for a symmetric A. P converges to the projector onto the k leading
+//! eigenvectors. The flow is that of [`Oja`](super::Oja) for P = XXᵀ, without the rotation of the frame X within its
+//! span. The subspace also satisfies a Riccati equation: with P the span of \[𝟙; Z\], Ż = A₂₁ + A₂₂Z − ZA₁₁ − ZA₁₂Z.
 //!
-//! Invariants: the eigenvalues 1 and 0 of P (the action).
+//! Invariants: the eigenvalues 1 and 0 of P (by the action).
 //! Source: U. Helmke & J. B. Moore, Optimization and Dynamical Systems (1994), chapter 1.
 
 use faer::Mat;
@@ -40,7 +39,7 @@ pub struct SubspaceFlow {
 }
 
 impl SubspaceFlow {
-    /// The flow for A.
+    /// Makes the flow for A.
     ///
     /// # Errors
     /// As [`Oja::new`].
@@ -49,7 +48,7 @@ impl SubspaceFlow {
         Ok(SubspaceFlow { group: MatrixGroup::so(a.nrows())?, a })
     }
 
-    /// The projector XXᵀ onto the span of the columns of X, which need not be orthonormal. Allocates.
+    /// The projector onto the span of the columns of X. X need not be orthonormal. Allocates.
     ///
     /// # Errors
     /// [`Error::Shape`], [`Error::NotFiniteEntry`]; [`Error::Singular`] for columns that are dependent

@@ -1,7 +1,7 @@
-//! The heavy top on se(3)*: a rigid body that turns about a fixed point under gravity.
+//! The heavy top on se(3)*: a rigid body that rotates about a fixed point under gravity.
 //!
-//! With the momentum μ and the upward vertical γ, both in the body, and w = (weight)·(vector from
-//! the fixed point to the centre of mass):
+//! μ is the momentum and γ the upward vertical, both in the body frame. w = (weight)·(vector from the fixed point to
+//! the centre of mass):
 //!
 //! H(μ, γ) = ½ μ·J⁻¹μ + w·γ,    μ̇ = μ × ω + γ × w,    γ̇ = γ × ω,    ω = J⁻¹μ
 //!
@@ -45,7 +45,7 @@ pub struct HeavyTop<S = f64> {
     integral: Integral<S>,
 }
 
-/// The fourth integral, where there is one.
+/// The fourth integral, if there is one.
 #[derive(Clone, Copy, Debug)]
 enum Integral<S> {
     None,
@@ -56,8 +56,8 @@ enum Integral<S> {
 }
 
 impl<S: Real> HeavyTop<S> {
-    /// From the principal moments of inertia about the fixed point, and w. The integrable cases are
-    /// recognised by their numbers: μ₃ or |μ|² is then among the invariants.
+    /// Makes a top from the principal moments of inertia about the fixed point, and w. Integrable cases are recognised
+    /// by these numbers, and then μ₃ or |μ|² is one of the invariants.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] for a moment that is not finite and positive, and a w that is not finite.

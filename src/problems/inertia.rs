@@ -1,4 +1,4 @@
-//! Tensors of inertia: of simple bodies, and of any body to its principal axes.
+//! Moments of inertia of simple bodies, and the principal axes of any tensor of inertia.
 //!
 //! | body, of mass M about its centre | J₁, J₂, J₃ |
 //! |---|---|
@@ -6,14 +6,14 @@
 //! | box of edges a, b, c | M/12 (b² + c², a² + c², a² + b²) |
 //! | cylinder of radius r and height h about e₃ | M/12 (3r² + h², 3r² + h², 6r²) |
 //!
-//! Moments of a body satisfy the triangle inequality J_i ≤ J_j + J_k, with equality for a flat one.
+//! Moments of a body satisfy the triangle inequality J_i ≤ J_j + J_k, with equality for a flat body.
 
 use nalgebra::{Matrix3, Vector3};
 
 use super::rigid_body::check_inertia;
 use crate::error::Error;
 
-/// Rounding that the triangle inequality may be missed by, relative to the largest moment.
+/// The rounding error allowed in the triangle inequality, relative to the largest moment.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 fn positive(arg: &str, x: f64) -> Result<f64, Error> {
@@ -61,8 +61,9 @@ pub fn cylinder(mass: f64, radius: f64, height: f64) -> Result<[f64; 3], Error> 
     check_inertia(&moments).map(|()| moments)
 }
 
-/// By how much principal moments miss the triangle inequality, relative to the largest: `Some` when
-/// no rigid body has them. Euler's equations are as well defined; it is for the caller to warn.
+/// The amount by which principal moments violate the triangle inequality, relative to the largest moment.
+///
+/// `Some` means that no rigid body has these moments. Euler's equations are defined even then; the caller should warn.
 ///
 /// ```
 /// use lieflow::problems::inertia::violates_triangle;
@@ -88,8 +89,9 @@ pub fn check_triangle(inertia: [f64; 3]) -> Result<(), Error> {
     Err(Error::out_of_range(format!("inertia[{largest}]"), inertia[largest], expected))
 }
 
-/// Principal moments in ascending order, and the rotation Q whose columns are the principal axes:
-/// tensor = Q diag(J) Qᵀ. In their frame the body momentum is Qᵀm and the attitude gQ.
+/// The principal moments of a tensor in ascending order, and the rotation Q whose columns are the principal axes.
+///
+/// tensor = Q diag(J) Qᵀ. In the frame of the principal axes the body momentum is Qᵀm and the attitude gQ.
 ///
 /// # Errors
 /// [`Error::NotFiniteEntry`]; [`Error::OutOfRange`] for a tensor that is not symmetric to rounding,

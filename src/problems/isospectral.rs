@@ -6,8 +6,8 @@
 //! | [`IsospectralFlow::qr`] | log(L)₋ᵀ − log(L)₋, L > 0 | the same; L(k) are the iterates of the QR algorithm |
 //! | [`IsospectralFlow::double_bracket`] | \[N, L\], N diagonal | diagonal, sorted as N is |
 //!
-//! Invariants: the eigenvalues, kept to rounding by every method that acts by the group; reported as
-//! tr L, tr L², tr L³.
+//! Invariants: the eigenvalues. Every method that acts by the group conserves them to rounding. They are reported as tr
+//! L, tr L², tr L³.
 //! Sources: W. W. Symes, Physica D 4 (1982), for the QR algorithm as a Toda flow at integer times;
 //! R. W. Brockett, Linear Algebra Appl. 146 (1991). Numbers: M. P. Calvo, A. Iserles, A. Zanna,
 //! Math. Comp. 66 (1997).
@@ -20,7 +20,7 @@ use crate::dense::{SymmetricEigen, antisymmetrise, mul};
 use crate::error::Error;
 use crate::groups::{AlgebraMatrix, MatrixGroup};
 
-/// Which B.
+/// The choice of B.
 #[derive(Clone, Debug)]
 enum Kind {
     Toda,
@@ -28,7 +28,7 @@ enum Kind {
     DoubleBracket(Mat<f64>),
 }
 
-/// L̇ = \[B(L), L\].
+/// An isospectral flow L̇ = \[B(L), L\].
 ///
 /// ```
 /// use faer::mat;
@@ -36,7 +36,7 @@ enum Kind {
 /// use lieflow::methods::{Rkmk, tableau::RK4};
 /// use lieflow::problems::IsospectralFlow;
 /// use lieflow::{SaveAt, TimeGrid, integrate};
-/// // Brockett: a flow that sorts 3, 1, 2, from a matrix that is not quite diagonal.
+/// // Brockett's flow sorts 3, 1, 2. It starts from a matrix that is nearly diagonal.
 /// let flow = IsospectralFlow::double_bracket(&[1.0, 2.0, 3.0])?;
 /// let mut l = mat![[3.0, 0.1, 0.1], [0.1, 1.0, 0.1], [0.1, 0.1, 2.0]];
 /// let grid = TimeGrid::new([0.0, 20.0], 0.05)?;
@@ -60,10 +60,11 @@ impl IsospectralFlow {
         Ok(IsospectralFlow { group: MatrixGroup::so(n)?, kind: Kind::Toda })
     }
 
-    /// The QR flow: B(L) = log(L)₋ᵀ − log(L)₋ for positive definite L. Between the times k and k + 1
-    /// it does one step of the QR algorithm. Where L is not positive definite f has no value, and
-    /// the step ends with [`StepError::NonFiniteRhs`](crate::StepError::NonFiniteRhs). f solves an
-    /// eigenvalue problem.
+    /// The QR flow: B(L) = log(L)₋ᵀ − log(L)₋ for positive definite L.
+    ///
+    /// From time k to k + 1 it makes one step of the QR algorithm. If L is not positive definite, f has no value, and
+    /// the step fails with [`StepError::NonFiniteRhs`](crate::StepError::NonFiniteRhs). Each f solves an eigenvalue
+    /// problem.
     ///
     /// # Errors
     /// As [`MatrixGroup::so`].
@@ -71,8 +72,8 @@ impl IsospectralFlow {
         Ok(IsospectralFlow { group: MatrixGroup::so(n)?, kind: Kind::Qr })
     }
 
-    /// Brockett's flow L̇ = \[L, \[L, N\]\] with N = diag(`diagonal`), as B(L) = \[N, L\]: ‖L − N‖
-    /// falls, and the eigenvalues end on the diagonal in the order of N's.
+    /// Brockett's flow L̇ = \[L, \[L, N\]\] with N = diag(`diagonal`), as B(L) = \[N, L\]. ‖L − N‖
+    /// falls, and the eigenvalues end on the diagonal in the order of those of N.
     ///
     /// # Errors
     /// As [`MatrixGroup::so`], and [`Error::OutOfRange`] for an entry that is not finite.
@@ -158,10 +159,11 @@ impl Invariants for IsospectralFlow {
     }
 }
 
-/// The Toda lattice in Flaschka's variables: n particles on a line with positions q and momenta p,
-/// H = ½Σp² + Σ e^{q_i − q_{i+1}}, as the tridiagonal L with L_ii = −p_i/2 and
-/// L_{i,i+1} = ½ e^{(q_i − q_{i+1})/2}, which moves by [`IsospectralFlow::toda`]. Its eigenvalues are −½
-/// times the momenta after the last collision.
+/// The matrix L of the Toda lattice in Flaschka's variables.
+///
+/// The lattice is n particles on a line with positions q and momenta p, H = ½Σp² + Σ e^{q_i − q_{i+1}}. L is
+/// tridiagonal with L_ii = −p_i/2 and L_{i,i+1} = ½ e^{(q_i − q_{i+1})/2}. It moves by [`IsospectralFlow::toda`]. Its
+/// eigenvalues are −½ times the momenta after the last collision.
 ///
 /// # Errors
 /// [`Error::Shape`] for lists of different lengths, [`Error::OutOfRange`] for numbers that are not

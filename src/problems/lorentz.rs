@@ -1,14 +1,14 @@
-//! The four-velocity of a charged particle in SO(3,1): u̇ = (q/m) F(τ, u) u, in the particle's proper
-//! time τ. f = (q/m) F ∈ so(3,1); Λ(g, u) = g u.
+//! A charged particle by its four-velocity u, with the group SO(3,1).
 //!
-//! u = (γv, γ) in units of c: space first, as M = diag(1, 1, 1, −1) has it, and
+//! u̇ = (q/m) F(τ, u) u in the proper time τ of the particle. f = (q/m) F ∈ so(3,1); Λ(g, u) = g u. u = (γv, γ) in
+//! units of c, with space first, as in M = diag(1, 1, 1, −1), and
 //!
 //! ```text
 //!     F = ⎡ −B̂  E ⎤      d(γv)/dτ = (q/m) (γE + γv × B),   dγ/dτ = (q/m) E·γv
 //!         ⎣ Eᵀ  0 ⎦
 //! ```
 //!
-//! Invariant: u·Mu = −1 (the action); a constant F is integrated exactly by every exponential method.
+//! Invariant: u·Mu = −1 (by the action). Every exponential method is exact for a constant F.
 //! Source: J. D. Jackson, Classical Electrodynamics, section 12.1.
 
 use faer::Mat;
@@ -29,7 +29,7 @@ use crate::scalar::{Ops, tally};
 /// use lieflow::problems::ChargedParticle;
 /// use lieflow::{SaveAt, TimeGrid, integrate};
 /// use nalgebra::Vector3;
-/// // A constant E: the particle's rapidity grows by E a unit of proper time.
+/// // A constant E: the rapidity of the particle grows at the rate E in proper time.
 /// let field = |_: f64, _: &_| (Vector3::new(1.0, 0.0, 0.0), Vector3::zeros());
 /// let particle = ChargedParticle::new(1.0, field)?;
 /// let mut u = mat![[0.0], [0.0], [0.0], [1.0]];
@@ -46,7 +46,7 @@ pub struct ChargedParticle<F> {
 }
 
 impl<F: Fn(f64, &Mat<f64>) -> (Vector3<f64>, Vector3<f64>)> ChargedParticle<F> {
-    /// The particle.
+    /// Makes the particle.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] for a ratio that is not finite.

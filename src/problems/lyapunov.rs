@@ -1,11 +1,12 @@
-//! Lyapunov exponents of ẋ = F(t, x) by continuous QR: perturbations Ẏ = DF(t, x)Y are kept as Y = QR,
-//! and only Q ∈ SO(n) and the growth σ_i = ln R_ii are integrated, beside x.
+//! Lyapunov exponents of ẋ = F(t, x) by continuous QR.
+//!
+//! Perturbations Ẏ = DF(t, x)Y are written as Y = QR. Only x, Q ∈ SO(n) and the growth σ_i = ln R_ii are integrated.
 //!
 //! With B = Qᵀ DF Q and L its strictly lower triangle: Q̇ = Q(L − Lᵀ), σ̇_i = B_ii. The group is
 //! SO(n) × T(ℝⁿ × ℝⁿ), acting by left translation and addition: f = (Q(L − Lᵀ)Qᵀ, (diag B, F)).
-//! The exponents are lim σ_i(t)/t; their sum is the mean of tr DF.
+//! The exponents are lim σ_i(t)/t. Their sum is the mean of tr DF.
 //!
-//! Cost: four products of n×n matrices beside F and DF. Sources: G. Benettin, L. Galgani, A. Giorgilli,
+//! Cost: four products of n×n matrices, and F and DF. Sources: G. Benettin, L. Galgani, A. Giorgilli,
 //! J.-M. Strelcyn, Meccanica 15 (1980); L. Dieci, R. D. Russell, E. S. Van Vleck, SIAM J. Numer. Anal.
 //! 34 (1997).
 
@@ -75,7 +76,7 @@ impl<F: Fn(f64, &Mat<f64>, &mut Mat<f64>, &mut Mat<f64>)> Lyapunov<F> {
         Ok((self.group.0.identity(), (Mat::zeros(n, 1), x)))
     }
 
-    /// σ_i/t, the mean growth over the time t since Q = 𝟙, σ = 0; by falling size when t is long.
+    /// σ_i/t, the mean growth over the time t since Q = 𝟙, σ = 0. After long times the largest is first.
     pub fn exponents(&self, t: f64, (_, (sigma, _)): &(GroupMatrix, Growth)) -> Vec<f64> {
         sigma.col_as_slice(0).iter().map(|s| s / t).collect()
     }

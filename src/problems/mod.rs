@@ -1,6 +1,6 @@
-//! f : M → 𝔤, the differential equations, and what else is known of each.
+//! Problems: differential equations given by f : M → 𝔤, with further facts.
 //!
-//! | problem | group, action | |
+//! | problem | group, action | types |
 //! |---|---|---|
 //! | free rigid body in ℝ³ and ℝⁿ | SO(3), SO(n); coadjoint or translation | [`RigidBody`], [`RigidBodyAttitude`], [`RigidBodyState`], [`RigidBodyN`] |
 //! | and its attitude as a quaternion | S³; translation | [`RigidBodyQuaternion`] |
@@ -12,7 +12,7 @@
 //! | Oja's flow | SO(n); n×k matrices | [`Oja`] |
 //! | subspaces, the Grassmann manifold | SO(n); conjugation of projectors | [`SubspaceFlow`] |
 //! | Lyapunov exponents of a vector field | SO(n) × T(2n); translation | [`Lyapunov`] |
-//! | a closure of (t, y), or of t alone | any | [`Flow`]; [`DynFlow`] behind a pointer; [`TryFlow`] that may fail |
+//! | a closure of (t, y) or of t | any | [`Flow`]; [`DynFlow`] behind a pointer; [`TryFlow`] that may fail |
 //! | Hill, Mathieu; beam lines | Sp(2m); translation | [`hill`], [`mathieu`], [`beam`]; [`floquet`](crate::floquet) |
 //! | Riccati | Sp(2m); [`Lagrangian`](crate::actions::Lagrangian) | [`Flow::of_time`] |
 //! | Schrödinger's equation, n levels | U(n) ⊂ SO(2n); vectors | [`schrodinger`](fn@schrodinger) |
@@ -75,16 +75,16 @@ pub use zeitlin::{Sphere, Surface, Torus, Vortex, Zeitlin};
 use crate::actions::Action;
 use crate::groups::{LieAlgebra, LieGroup};
 
-/// 𝔤-element of a problem.
+/// The type of the elements of 𝔤 of a problem.
 pub type AlgOf<P> = <<P as Problem>::Group as LieAlgebra>::Alg;
-/// G-element of a problem.
+/// The type of the elements of G of a problem.
 pub type ElemOf<P> = <<P as Problem>::Group as LieGroup>::Elem;
-/// Scalar of a problem.
+/// The scalar type of a problem.
 pub type ScalarOf<P> = <<P as Problem>::Group as LieAlgebra>::Scalar;
-/// Point of M of a problem.
+/// The type of the points of M of a problem.
 pub type PointOf<P> = <<P as Problem>::Action as Action<<P as Problem>::Group>>::Point;
 
-/// An ODE on M presented through a group action: ẏ = F(t, y) = λ_*(f(t, y))(y), equation (13).
+/// A differential equation on M by a group action: ẏ = F(t, y) = λ_*(f(t, y))(y), equation (13).
 ///
 /// ```
 /// use lieflow::actions::Linear;
@@ -118,15 +118,16 @@ pub trait Problem {
     fn group(&self) -> &Self::Group;
     /// Λ as a value.
     fn action(&self) -> &Self::Action;
-    /// Scratch for [`f`](Self::f); the only call that allocates.
+    /// Makes the scratch for [`f`](Self::f). Only this call allocates.
     fn work(&self) -> Self::Work;
-    /// v ← f(t, y) ∈ 𝔤. A field that has no value at (t, y) returns a number that is not finite;
-    /// the step then fails with [`StepError::NonFiniteRhs`](crate::StepError::NonFiniteRhs). One with
-    /// errors of its own is a [`TryProblem`].
+    /// v ← f(t, y) ∈ 𝔤.
+    ///
+    /// If f has no value at (t, y), write NaN: the step then fails with
+    /// [`StepError::NonFiniteRhs`](crate::StepError::NonFiniteRhs). For your own type of error use a [`TryProblem`].
     fn f(&self, t: ScalarOf<Self>, y: &PointOf<Self>, v: &mut AlgOf<Self>, work: &mut Self::Work);
 
     /// dy ← F(t, y) = λ_*(f(t, y))(y), equation (13), a tangent of M in the storage of a point. Override
-    /// it where F is cheaper than f and λ_*.
+    /// it if F is cheaper than f and λ_*.
     #[inline]
     fn field(
         &self,
@@ -141,7 +142,7 @@ pub trait Problem {
     }
 }
 
-/// The storage of [`Problem::field`]; made once.
+/// The storage of [`Problem::field`], made once.
 #[allow(missing_debug_implementations)] // the parts belong to the problem's types
 pub struct FieldStore<P: Problem + ?Sized> {
     /// f(t, y).
@@ -153,15 +154,16 @@ pub struct FieldStore<P: Problem + ?Sized> {
 }
 
 impl<P: Problem> FieldStore<P> {
-    /// Storage sized for `problem`.
+    /// Makes storage for `problem`.
     pub fn new(problem: &P) -> Self {
         let group = problem.group();
         FieldStore { v: group.zero(), action: problem.action().work(group), work: problem.work() }
     }
 }
 
-/// A capability: M lies in a linear space, so that classical methods apply too. Every problem has it
-/// whose points are a [`LinearSpace`].
+/// A problem on an M in a linear space, so that classical methods apply, too.
+///
+/// Every problem whose points are a [`LinearSpace`] has this trait.
 pub trait Ambient:
     Problem<Action: Action<Self::Group, Point: LinearSpace<Scalar = ScalarOf<Self>>>>
 {

@@ -1,8 +1,7 @@
-//! Oja's flow on the Stiefel manifold {X ∈ ℝⁿˣᵏ : XᵀX = 𝟙}: Ẋ = AX − X XᵀAX, the gradient flow of
-//! ½ tr XᵀAX. f(X) = AXXᵀ − XXᵀA ∈ so(n); Λ(g, X) = gX.
+//! Oja's flow on the Stiefel manifold {X ∈ ℝⁿˣᵏ : XᵀX = 𝟙}: Ẋ = AX − X XᵀAX.
 //!
-//! XᵀX is kept by the action. The span of X converges to that of the k leading eigenvectors of A, and
-//! tr XᵀAX grows to the sum of their eigenvalues.
+//! f(X) = AXXᵀ − XXᵀA ∈ so(n); Λ(g, X) = gX. It is the gradient flow of ½ tr XᵀAX. The action conserves XᵀX. The span
+//! of X converges to that of the k leading eigenvectors of A, and tr XᵀAX grows to the sum of their eigenvalues.
 //! Source: E. Oja, J. Math. Biol. 15 (1982); W.-Y. Yan, U. Helmke, J. B. Moore, Math. Control Signals
 //! Systems 7 (1994).
 
@@ -38,7 +37,7 @@ pub struct Oja {
 }
 
 impl Oja {
-    /// The flow on n×k matrices.
+    /// Makes the flow on n×k matrices.
     ///
     /// # Errors
     /// [`Error::NotSquare`], [`Error::NotFiniteEntry`]; [`Error::OutOfRange`] for an A that is not
@@ -89,7 +88,7 @@ impl Problem for Oja {
         mul(v, ax.as_ref(), x.transpose());
         antisymmetrise(v);
     }
-    /// AX − X(XᵀAX): without the n×n matrix f, which for few columns is most of the work.
+    /// AX − X(XᵀAX). It does not form the n×n matrix f, which is most of the work if X has few columns.
     fn field(
         &self,
         _: f64,

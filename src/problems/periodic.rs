@@ -1,5 +1,6 @@
-//! Linear Hamiltonian systems ẏ = A(t)y, A(t) ∈ sp(2m), with periodic coefficients. Whether y stays bounded is
-//! the question of [`floquet`](crate::floquet).
+//! Linear Hamiltonian systems ẏ = A(t)y, A(t) ∈ sp(2m), with periodic coefficients.
+//!
+//! [`floquet`](crate::floquet) decides whether y stays bounded.
 //!
 //! Hill: ẍ + Q(t)x = 0 is A = \[0 𝟙; −Q 0\] with y = (x, ẋ); Mathieu: Q = a − 2q cos 2t, of period π.
 //! f(t, g) = A(t); Λ(a, g) = ag. Source: NIST DLMF, chapter 28.
@@ -10,10 +11,10 @@ use crate::actions::LeftTranslation;
 use crate::error::Error;
 use crate::groups::{AlgebraMatrix, MatrixGroup};
 
-/// ġ = A(t)g on Sp(2m); the function writes A(t).
+/// A linear Hamiltonian system ġ = A(t)g on Sp(2m). The function writes A(t).
 pub type LinearHamiltonian<F> = LinearFlow<MatrixGroup, LeftTranslation, F>;
 
-/// ẍ + Q(t)x = 0 for x ∈ ℝᵐ on Sp(2m): `stiffness(t, i, j)` is Q_ij(t), of a symmetric Q.
+/// Hill's equation ẍ + Q(t)x = 0 for x ∈ ℝᵐ on Sp(2m). `stiffness(t, i, j)` is Q_ij(t) of a symmetric Q.
 ///
 /// # Errors
 /// [`Error::OutOfRange`] as [`MatrixGroup::sp`].

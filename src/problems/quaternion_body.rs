@@ -1,10 +1,10 @@
-//! The free rigid body with its attitude as a unit quaternion: q̇ = f(q)·q on S³,
-//! f(q) = ω_s = q J⁻¹(q̄ m_s q) q̄, equation (11) on the double cover; Λ is left translation.
+//! The free rigid body with its attitude as a unit quaternion q, on S³.
 //!
-//! In ℝ⁴ q̇ = ½ (0, ω_s) q, so that |q| is kept by every method that keeps quadratic invariants. The flow
-//! about the axis e_k is q ← q (cos θ/2, sin θ/2 e_k), θ = t m_k/J_k.
+//! q̇ = f(q)·q, f(q) = ω_s = q J⁻¹(q̄ m_s q) q̄, equation (11) for quaternions; Λ is left translation. In ℝ⁴ q̇ = ½ (0,
+//! ω_s) q. So every method that conserves quadratic invariants conserves |q|. The flow about the axis e_k is
+//! q ← q (cos θ/2, sin θ/2 e_k), θ = t m_k/J_k.
 //!
-//! Invariants: |q| (the action), the energy (the flow). The body momentum is q̄ m_s q.
+//! Invariants: |q| (by the action), the energy (by the flow). The body momentum is q̄ m_s q.
 
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
@@ -40,7 +40,7 @@ pub struct RigidBodyQuaternion {
 }
 
 impl RigidBodyQuaternion {
-    /// From the principal moments of inertia, and the angular momentum in space.
+    /// Makes a body from the principal moments of inertia and the angular momentum in space.
     ///
     /// # Errors
     /// As [`RigidBodyAttitude::new`](super::RigidBodyAttitude::new).
@@ -50,7 +50,7 @@ impl RigidBodyQuaternion {
         Ok(RigidBodyQuaternion { body, momentum_space: momentum_space.into() })
     }
 
-    /// The body alone.
+    /// The body by its momentum only.
     pub fn body(&self) -> &RigidBody {
         &self.body
     }
@@ -85,7 +85,7 @@ impl Problem for RigidBodyQuaternion {
 
 impl Frame<f64> for UnitQuaternion<f64> {
     const TURNS: bool = true;
-    /// By the quaternion of Ψ that is nearer to 1, and not a number where Ψ is no rotation.
+    /// By the quaternion of Ψ that is nearer to 1. NaN if Ψ is not a rotation.
     #[inline]
     fn turn(&mut self, psi: &Matrix3<f64>) {
         let turned = match so3::quaternion_from_matrix(psi) {

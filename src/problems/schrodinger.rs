@@ -1,5 +1,7 @@
-//! Schrödinger's equation with n levels, iψ̇ = H(t)ψ, in real form: U(n) is the part of SO(2n) that
-//! commutes with the multiplication by i. With ψ = a + ib and H = R + iI (R symmetric, I skew):
+//! Schrödinger's equation with n levels, iψ̇ = H(t)ψ, in real numbers.
+//!
+//! U(n) is the part of SO(2n) that commutes with the multiplication by i. With ψ = a + ib and H = R + iI (R symmetric,
+//! I skew):
 //!
 //! ```text
 //!     d ⎡ a ⎤   ⎡  I  R ⎤ ⎡ a ⎤
@@ -7,8 +9,8 @@
 //!     dt⎣ b ⎦   ⎣ −R  I ⎦ ⎣ b ⎦
 //! ```
 //!
-//! Invariant: |ψ|² (the action). Brackets and exponentials of elements of u(n) stay in it: Magnus
-//! methods and all others keep the complex structure to rounding.
+//! Invariant: |ψ|² (by the action). Brackets and exponentials of elements of u(n) stay complex-linear, so all methods
+//! conserve the complex structure to rounding.
 
 use faer::Mat;
 
@@ -17,11 +19,12 @@ use crate::actions::Linear;
 use crate::error::Error;
 use crate::groups::{AlgebraMatrix, MatrixGroup};
 
-/// iψ̇ = H(t)ψ on SO(2n); the function writes the element of u(n).
+/// Schrödinger's equation iψ̇ = H(t)ψ on SO(2n). The function writes the element of u(n).
 pub type Schrodinger<F> = LinearFlow<MatrixGroup, Linear, F>;
 
-/// iψ̇ = H(t)ψ with n levels: `hamiltonian(t, i, j)` is (Re, Im) of H_ij, asked for i ≤ j alone; the
-/// imaginary part of the diagonal is not looked at.
+/// Schrödinger's equation iψ̇ = H(t)ψ with n levels. `hamiltonian(t, i, j)` is (Re, Im) of H_ij.
+///
+/// It is called only for i ≤ j. The imaginary part of the diagonal is ignored.
 ///
 /// ```
 /// use lieflow::methods::magnus::Magnus4;
@@ -58,7 +61,7 @@ pub fn schrodinger<H: Fn(f64, usize, usize) -> [f64; 2]>(
     Ok(Flow::of_time(group, Linear, field))
 }
 
-/// The state with these complex amplitudes (re, im), of length 1: they are normalised.
+/// The state with these complex amplitudes (re, im), normalised to length 1.
 ///
 /// # Errors
 /// [`Error::OutOfRange`] for numbers that are not finite, and for ψ = 0.

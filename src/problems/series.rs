@@ -1,5 +1,4 @@
-//! Fields whose Taylor coefficients along a solution follow from one another, as those of polynomial
-//! fields do. It is what the Lie series methods ask for.
+//! Fields with Taylor coefficients by recurrence, such as polynomial fields. Lie series methods need them.
 
 use faer::Mat;
 
@@ -8,21 +7,21 @@ use crate::dense::{antisymmetrise, mul_add};
 use crate::groups::AlgebraMatrix;
 use crate::scalar::{Ops, tally};
 
-/// A capability: the Taylor coefficients of the field along the solution through a point.
+/// A field with Taylor coefficients along the solution through a point.
 ///
 /// With ẏ = λ_*(f(t, y))(y) the solution from y is Λ(Ψ, y) with Ψ' = f Ψ, Ψ(0) = 𝟙. The
-/// coefficients are in θ with time t + θh, so that they carry the powers of h.
+/// coefficients are in θ with time t + θh, so they contain the powers of h.
 pub trait TaylorField: Problem {
-    /// Are the coefficients those of ω with Ψ' = Ψ ω, in the frame that moves, instead of f?
+    /// True if the coefficients are those of ω with Ψ' = Ψ ω, in the moving frame, instead of f.
     const MOVING: bool = false;
-    /// The coefficients of what f is made of.
+    /// The coefficients of the quantities in f.
     type Series;
 
-    /// Storage for coefficients up to θ^order; the only call that allocates.
+    /// Makes storage for coefficients up to θ^order. Only this call allocates.
     fn series(&self, order: usize) -> Self::Series;
 
-    /// f\[k\] ← the coefficient of θᵏ in f(t + θh, y(t + θh)), where y = y(t). Called with k = 0, 1, … in
-    /// turn, when f\[..k\] is known.
+    /// f\[k\] ← the coefficient of θᵏ in f(t + θh, y(t + θh)), where y = y(t). Called for k = 0, 1, … in
+    /// turn, after f\[..k\] is known.
     fn coefficient(
         &self,
         time: [ScalarOf<Self>; 2],
@@ -37,7 +36,7 @@ pub trait TaylorField: Problem {
 #[derive(Clone, Debug)]
 pub struct MomentumSeries {
     m: Vec<Mat<f64>>,
-    /// Are all u ∈ 𝔤 skew, and with them the momenta?
+    /// True if all u ∈ 𝔤 are skew, and so the momenta.
     skew: bool,
 }
 
@@ -47,7 +46,7 @@ impl MomentumSeries {
         MomentumSeries { m: vec![Mat::zeros(n, n); order + 1], skew }
     }
 
-    /// m₀, to be written before the first [`next`](Self::next).
+    /// m₀. Write it before the first [`next`](Self::next).
     pub(crate) fn start(&mut self) -> &mut Mat<f64> {
         &mut self.m[0]
     }

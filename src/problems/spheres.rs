@@ -1,12 +1,12 @@
-//! Systems on spheres.
+//! Systems on spheres: the spherical pendulum, and chains of spins.
 //!
 //! **The spherical pendulum** on TS²: q̇ = ω × q, ω̇ = −(g/ℓ) q × e₃. The points (ω, q) with |q| = 1 and
 //! ω·q = 0 are a coadjoint orbit of SE(3): f = (ω, (g/ℓ) e₃), Λ((R, x), (ω, q)) = (Rω + x × Rq, Rq).
-//! Invariants: |q| and ω·q (the action), the energy ½|ω|² + (g/ℓ) q₃, and ω₃.
+//! Invariants: |q| and ω·q (by the action), the energy ½|ω|² + (g/ℓ) q₃, and ω₃.
 //!
 //! **The Landau–Lifshitz chain** on (S²)ᴺ: ṡ_i = H_i × s_i + α (s_i × H_i) × s_i, with
-//! H_i = s_{i−1} + s_{i+1} + K (s_i)₃ e₃ + B. f_i = H_i + α s_i × H_i; Λ = SO(3)ᴺ on vectors, so that no
-//! rotation is ever formed. Invariants: |s_i| (the action); for α = 0 the energy
+//! H_i = s_{i−1} + s_{i+1} + K (s_i)₃ e₃ + B. f_i = H_i + α s_i × H_i; Λ = SO(3)ᴺ on vectors, so no
+//! rotation matrix is formed. Invariants: |s_i| (by the action); for α = 0 the energy
 //! −Σ s_i·s_{i+1} − ½K Σ (s_i)₃² − Σ B·s_i, and with B along e₃ the total (s_i)₃.
 //! Source: M. Lakshmanan, Phil. Trans. R. Soc. A 369 (2011); for TS² as an orbit of SE(3),
 //! E. Celledoni, E. Çokaj, A. Leone, D. Murari, B. Owren, Int. J. Comput. Math. 99 (2022).
@@ -28,7 +28,7 @@ fn dot<S: Real>(a: &V<S>, b: &V<S>) -> S {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// A point mass on a rod that turns in every direction; e₃ points up. Points are (ω, q).
+/// The spherical pendulum: a point mass on a rod that swings in every direction. Points are (ω, q), and e₃ is up.
 #[derive(Clone, Copy, Debug)]
 pub struct SphericalPendulum<S = f64> {
     /// g/ℓ.
@@ -36,7 +36,7 @@ pub struct SphericalPendulum<S = f64> {
 }
 
 impl SphericalPendulum {
-    /// From gravity over length, g/ℓ.
+    /// Makes a pendulum with g/ℓ, gravity over length.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] for a number that is not finite.
@@ -45,7 +45,7 @@ impl SphericalPendulum {
         Ok(SphericalPendulum { rate2: gravity_over_length })
     }
 
-    /// The state at the direction q (normalised) with the velocity q̇ (its part along q is left out).
+    /// The state with the direction q, which is normalised, and the velocity q̇. The part of q̇ along q is removed.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] for numbers that are not finite, and for q = 0.
@@ -60,7 +60,7 @@ impl SphericalPendulum {
         Ok((q.cross(&V::from(velocity)), q))
     }
 
-    /// This pendulum in other numbers.
+    /// The same pendulum with another number type.
     pub fn on<S: Real>(&self) -> SphericalPendulum<S> {
         SphericalPendulum { rate2: S::lit(self.rate2) }
     }
@@ -89,7 +89,7 @@ impl<S: Real> Problem for SphericalPendulum<S> {
     fn f(&self, _: S, (omega, _): &(V<S>, V<S>), v: &mut (V<S>, V<S>), _: &mut ()) {
         *v = (*omega, V::new(S::lit(0.0), S::lit(0.0), self.rate2));
     }
-    /// λ_*(f) without ω × ω = 0 and the zeros of e₃ × q, which are half of λ_*.
+    /// λ_*(f) without ω × ω = 0 and the zeros of e₃ × q. This saves half of λ_*.
     fn field(
         &self,
         _: S,
@@ -102,7 +102,7 @@ impl<S: Real> Problem for SphericalPendulum<S> {
     }
 }
 
-/// On the dual of se(3) by −H: f = (ω, (g/ℓ) e₃) is the gradient of the energy H, affine in (ω, q).
+/// The Hamiltonian on the dual of se(3) is −H: f = (ω, (g/ℓ) e₃) is the gradient of the energy H, affine in (ω, q).
 impl<S: Real> LiePoisson for SphericalPendulum<S> {
     fn hamiltonian(&self, y: &(V<S>, V<S>)) -> S {
         -self.energy(y)
@@ -132,7 +132,7 @@ impl<S: Real> Invariants for SphericalPendulum<S> {
     }
 }
 
-/// Spins with exchange, anisotropy, a field and damping; the ends are joined or free.
+/// A chain of spins with exchange, anisotropy, a field and damping. Its ends are joined or free.
 ///
 /// ```
 /// use lieflow::maps::Cay;
@@ -159,7 +159,7 @@ pub struct SpinChain<S = f64> {
 }
 
 impl SpinChain {
-    /// N spins in a ring, with exchange alone.
+    /// Makes a ring of N spins with exchange only.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] for N < 2.
@@ -170,12 +170,12 @@ impl SpinChain {
         let group = Power::new(So3::new(), spins)?;
         Ok(SpinChain { group, periodic: true, anisotropy: 0.0, damping: 0.0, field: V::zeros() })
     }
-    /// The ends are free.
+    /// Makes the ends free.
     #[must_use]
     pub fn open(self) -> Self {
         SpinChain { periodic: false, ..self }
     }
-    /// K: positive for an easy axis e₃, negative for an easy plane.
+    /// Sets K: positive for an easy axis e₃, negative for an easy plane.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] for a number that is not finite.
@@ -183,7 +183,7 @@ impl SpinChain {
         check_finite("anisotropy", &[anisotropy])?;
         Ok(SpinChain { anisotropy, ..self })
     }
-    /// Gilbert's α ≥ 0: with it the energy falls.
+    /// Sets Gilbert's damping α ≥ 0. With α > 0 the energy falls.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] for a number that is not finite or negative.
@@ -193,7 +193,7 @@ impl SpinChain {
             false => Err(Error::out_of_range("damping", damping, "a finite number ≥ 0")),
         }
     }
-    /// B.
+    /// Sets the field B.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] for numbers that are not finite.
@@ -202,7 +202,7 @@ impl SpinChain {
         Ok(SpinChain { field: field.into(), ..self })
     }
 
-    /// A state: the directions of these vectors.
+    /// A state from vectors, which are normalised.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] for a vector that is 0 or not finite.
@@ -218,10 +218,10 @@ impl SpinChain {
         (0..self.group.copies()).map(unit).collect()
     }
 
-    /// This chain in other numbers.
+    /// The same chain with another number type.
     ///
     /// # Errors
-    /// None that [`new`](Self::new) has not found.
+    /// None, because [`new`](Self::new) has checked the numbers.
     pub fn on<S: Real>(&self) -> Result<SpinChain<S>, Error> {
         Ok(SpinChain {
             group: Power::new(So3::new(), self.group.copies())?,
@@ -234,7 +234,7 @@ impl SpinChain {
 }
 
 impl<S: Real> SpinChain<S> {
-    /// The neighbours' sum s_{i−1} + s_{i+1}.
+    /// The sum of the neighbours, s_{i−1} + s_{i+1}.
     #[inline]
     fn neighbours(&self, s: &[V<S>], i: usize) -> V<S> {
         let last = s.len() - 1;
@@ -291,8 +291,8 @@ impl<S: Real> Problem for SpinChain<S> {
     }
 }
 
-/// f = −∇H for the energy H, of degree 2, where there is no damping. With damping there is no H, and the discrete
-/// gradient is not a number.
+/// f = −∇H for the energy H of degree 2, if there is no damping. With damping there is no H, and the discrete gradient
+/// is NaN.
 impl<S: Real> LiePoisson for SpinChain<S> {
     fn hamiltonian(&self, s: &Box<[V<S>]>) -> S {
         self.energy(s)

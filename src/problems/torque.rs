@@ -1,10 +1,10 @@
-//! The rigid body under torques: gravity, thrusters, damping, control laws; y = (g, m_s).
+//! The rigid body under torques, such as gravity, thrusters, damping or control laws. y = (g, m_s).
 //!
 //! ġ = ω̂_s g, ṁ_s = τ_s(t, g, m_s), with the attitude g from body to space, the momentum m_s in space
 //! and ω_s = g J⁻¹ gᵀ m_s. The group is SO(3) × T(3), acting by left translation of g and addition to
-//! m_s: f = (ω_s, τ_s). Without a torque m_s is constant, bit for bit.
+//! m_s: f = (ω_s, τ_s). Without a torque m_s is constant to the bit.
 //!
-//! Invariants: none in general; ‖gᵀg − 𝟙‖ = 0 by the action.
+//! Invariants: only ‖gᵀg − 𝟙‖ = 0, by the action.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -17,7 +17,7 @@ use crate::problems::FieldStore;
 use crate::scalar::Real;
 use crate::so3::{add3, apply3};
 
-/// What a torque may depend on.
+/// The motion that a torque may depend on: t, attitude, momentum, angular velocity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyMotion<S = f64> {
     /// t.
@@ -30,13 +30,13 @@ pub struct BodyMotion<S = f64> {
     pub omega_body: Vector3<S>,
 }
 
-/// A torque, in the frame where it is simple.
+/// A torque in space or in the body.
 pub trait Torque<S = f64> {
     /// τ_s, the torque in space.
     fn in_space(&self, at: &BodyMotion<S>) -> Vector3<S>;
 }
 
-/// A torque that is given in space: a function of the [`BodyMotion`].
+/// A torque in the space frame, from a function of the [`BodyMotion`].
 #[derive(Clone, Copy, Debug)]
 pub struct SpaceTorque<F>(pub F);
 
@@ -47,7 +47,7 @@ impl<S, F: Fn(&BodyMotion<S>) -> Vector3<S>> Torque<S> for SpaceTorque<F> {
     }
 }
 
-/// A torque that is given in the body, τ_s = gτ_b: thrusters, damping −cω_b, control laws.
+/// A torque in the body frame, τ_s = gτ_b. Examples: thrusters, damping −cω_b, control laws.
 #[derive(Clone, Copy, Debug)]
 pub struct BodyTorque<F>(pub F);
 
@@ -92,7 +92,7 @@ pub struct TorqueBody<T, S = f64> {
 }
 
 impl<T: Torque> TorqueBody<T> {
-    /// From the principal moments of inertia and the torque.
+    /// Makes a body from the principal moments of inertia and the torque.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] for a moment that is not finite and positive.
@@ -136,7 +136,7 @@ impl<S: Real, T: Torque<S>> TorqueBody<T, S> {
         }
     }
 
-    /// What a torque sees at (t, y).
+    /// The motion at (t, y), for a torque.
     #[inline]
     pub fn motion(&self, t: S, y: &Point<S>) -> BodyMotion<S> {
         let momentum = apply_transpose(&y.0, &y.1);
@@ -169,7 +169,7 @@ impl<S: Real, T: Torque<S>> Problem for TorqueBody<T, S> {
         let at = self.motion(t, y);
         *v = (apply3(&y.0, &at.omega_body), self.torque.in_space(&at));
     }
-    /// (gω̂, τ_s): ω stays in the body, which saves a product with g.
+    /// (gω̂, τ_s), with ω in the body. This saves a product with g.
     #[inline]
     fn field(&self, t: S, y: &Point<S>, dy: &mut Point<S>, _: &mut FieldStore<Self>) {
         let at = self.motion(t, y);

@@ -1,11 +1,11 @@
-//! A number that counts the operations done on it: Table 2 of the paper by running the formulas.
+//! A number type that counts operations. It gives Table 2 of the paper by running the formulas.
 
 use core::cell::Cell;
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 use super::{Real, Select, Trig};
 
-/// How many operations were done. A change of sign, |x| and a comparison are free, as in the paper.
+/// Numbers of operations. A change of sign, |x| and a comparison do not count, as in the paper.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Ops {
     /// Additions and subtractions.
@@ -16,12 +16,12 @@ pub struct Ops {
     pub div: u64,
     /// Square roots.
     pub sqrt: u64,
-    /// Sines and cosines, each counted; on machine numbers exponentials and logarithms too.
+    /// Sines and cosines, each counted; on machine numbers also exponentials and logarithms.
     pub trig: u64,
 }
 
 impl Ops {
-    /// All of them, each counted as one.
+    /// The sum of all operations.
     pub fn total(&self) -> u64 {
         self.add + self.mul + self.div + self.sqrt + self.trig
     }
@@ -37,20 +37,20 @@ thread_local! {
     static COUNTING: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Does anybody count?
+/// True while a count runs.
 #[cfg(feature = "tally")]
 #[inline(always)]
 pub(super) fn is_counting() -> bool {
     COUNTING.get()
 }
 
-/// What a kernel on machine numbers says that it has done.
+/// Adds the operations that a kernel on machine numbers reports.
 #[cfg(feature = "tally")]
 pub(super) fn add(ops: Ops) {
     OPS.set(OPS.get() + ops);
 }
 
-/// An `f64` that counts, per thread.
+/// An `f64` that counts its operations, for each thread.
 ///
 /// ```
 /// use lieflow::scalar::{Counted, Real};
@@ -61,8 +61,8 @@ pub(super) fn add(ops: Ops) {
 pub struct Counted(pub f64);
 
 impl Counted {
-    /// Run `f`, and say which operations it did: on such numbers, and with the feature `tally` in the
-    /// matrices of the library too; see [`tally`](super::tally()).
+    /// Runs `f`, and returns its operations on such numbers. With the feature `tally` it also counts those of the
+    /// library's matrices; see [`tally`](super::tally()).
     pub fn count<R>(f: impl FnOnce() -> R) -> (R, Ops) {
         let before = OPS.replace(Ops::default());
         #[cfg(feature = "tally")]
@@ -73,7 +73,7 @@ impl Counted {
         (out, OPS.replace(before))
     }
 
-    /// Count `n` more operations of a kind.
+    /// Adds `n` operations of a kind.
     fn bump(n: u64, kind: impl FnOnce(&mut Ops) -> &mut u64) {
         let mut ops = OPS.get();
         *kind(&mut ops) += n;

@@ -1,9 +1,8 @@
-//! A number as the sum of two doubles: 32 digits, for references and for orders that `f64` has no room
-//! to show.
+//! A number type of 32 digits, the sum of two doubles, for references and for tests of high orders.
 //!
 //! Sums by Knuth, products by Dekker (T. J. Dekker, A floating-point technique for extending the
-//! available precision, Numer. Math. 18, 1971), without fused operations, so that every machine gives
-//! the same. Relative errors of +, −, ·, /, √ are a few units of 2⁻¹⁰⁴; sin and cos by π/2 to 48 digits
+//! available precision, Numer. Math. 18, 1971), without fused operations, so all machines give
+//! the same results. Relative errors of +, −, ·, /, √ are a few units of 2⁻¹⁰⁴; sin and cos by π/2 to 48 digits
 //! and Taylor series, for |x| up to 1e9. Cost: 20 to 70 operations of `f64` each.
 
 use core::f64::consts::{FRAC_2_PI, FRAC_PI_2};
@@ -13,7 +12,7 @@ use super::{Real, Select, Trig};
 
 /// hi + lo, with |lo| at most half an ulp of hi.
 ///
-/// The library's closed forms run on it, and so do all methods that are generic in the number:
+/// The closed forms of the library run on it, and all methods that are generic in the number type:
 ///
 /// ```
 /// use lieflow::scalar::{DoubleDouble, Real};
@@ -54,7 +53,7 @@ const fn split(a: f64) -> (f64, f64) {
     (upper, a - upper)
 }
 
-/// a·b without error, where nothing over- or underflows.
+/// a·b without error, if nothing over- or underflows.
 #[inline]
 const fn two_prod(a: f64, b: f64) -> DoubleDouble {
     let hi = a * b;
@@ -62,7 +61,7 @@ const fn two_prod(a: f64, b: f64) -> DoubleDouble {
     DoubleDouble { hi, lo: ((a1 * b1 - hi) + a1 * b2 + a2 * b1) + a2 * b2 }
 }
 
-/// The operators, as functions that constants can be made with.
+/// The operators as `const` functions.
 impl DoubleDouble {
     #[inline]
     const fn new(x: f64) -> Self {
@@ -156,21 +155,22 @@ impl SubAssign for DoubleDouble {
     }
 }
 
-/// A series that stands for a closed form near 0 ends at the rounding of `f64`, at the bound where it is
-/// used. So much nearer to 0 it ends at ours, and what cancels in the closed form until then is small
-/// next to the terms before it.
+/// The bound of a branch, which is smaller than for `f64`.
+///
+/// A series that replaces a closed form near 0 is exact to the rounding of `f64` up to its bound. It is exact to the
+/// rounding of double doubles up to a smaller bound. Above that the cancellation in the closed form is small.
 const NEARER: f64 = 1e-14;
 
 impl Real for DoubleDouble {
     const EPSILON: f64 = 4.930380657631324e-32; // 2⁻¹⁰⁴
-    /// The products of Dekker need room.
+    /// Dekker's products need room below the overflow.
     const SQUARE_MAX: f64 = 1e290;
 
     #[inline]
     fn lit(x: f64) -> Self {
         Self::new(x)
     }
-    /// The root of the upper part, and one step of Newton without a division (A. H. Karp, P. Markstein,
+    /// The root of the upper part, and one Newton step without a division (A. H. Karp, P. Markstein,
     /// 1997).
     fn sqrt(self) -> Self {
         if self.hi == 0.0 {

@@ -1,7 +1,7 @@
-//! The numbers that the closed forms run on.
+//! Number types for the closed forms.
 //!
-//! A formula is written once, generic in [`Real`], and runs in `f64`, in `f32`, on [`Counted`], which
-//! counts the operations it is put through, and on [`DoubleDouble`], which has 32 digits.
+//! A formula is written once, generic in [`Real`]. It runs in `f64`, in `f32`, on [`Counted`], which counts operations,
+//! and on [`DoubleDouble`], which has 32 digits.
 
 mod counted;
 mod double_double;
@@ -18,9 +18,9 @@ pub use double_double::DoubleDouble;
 pub use tally::tally;
 pub(crate) use tally::tally_by;
 
-/// A real number, or several side by side (SIMD lanes), or one that counts its own operations.
+/// A real number, several at once (SIMD lanes), or one that counts its operations.
 ///
-/// Small on purpose: an op-counting scalar implements it in one screen.
+/// The trait is small, so that a new number type needs little code.
 pub trait Real:
     Copy
     + Debug
@@ -34,14 +34,14 @@ pub trait Real:
     + AddAssign
     + SubAssign
 {
-    /// The relative rounding of a sum or a product: what iterations stop at.
+    /// The relative rounding error of a sum or a product, at which iterations stop.
     const EPSILON: f64 = f64::EPSILON;
-    /// A sum of squares up to this leaves room for products with ordinary numbers.
+    /// The largest sum of squares whose products with ordinary numbers do not overflow.
     const SQUARE_MAX: f64 = 1e300;
 
     /// A constant of the formula (Butcher coefficients, Bernoulli numbers, ½).
     fn lit(x: f64) -> Self;
-    /// self·a + b, in one rounding where that costs nothing.
+    /// self·a + b, with one rounding if the machine has a fast instruction for it.
     #[inline(always)]
     fn mul_add(self, a: Self, b: Self) -> Self {
         self * a + b
@@ -50,14 +50,13 @@ pub trait Real:
     fn sqrt(self) -> Self;
     /// |x|.
     fn abs(self) -> Self;
-    /// Is x < `bound` in every lane? False where x is not a number.
+    /// True if x < `bound` in every lane; false if x is NaN.
     fn all_below(self, bound: f64) -> bool;
-    /// Is x < `bound` in some lane?
+    /// True if x < `bound` in some lane.
     fn any_below(self, bound: f64) -> bool;
     /// `if self < bound { small() } else { large() }`, lane by lane.
     ///
-    /// A scalar runs one branch; lanes run both and blend. The branch belongs to the number,
-    /// so that one formula serves both.
+    /// A scalar runs one branch; lanes run both and blend. The number type decides, so one formula serves both.
     fn branch<R: Select<Self>>(
         self,
         bound: f64,
@@ -65,20 +64,20 @@ pub trait Real:
         large: impl FnOnce() -> R,
     ) -> R;
 
-    /// Is x finite (in every lane)?
+    /// True if x is finite, in every lane.
     #[inline]
     fn is_finite(self) -> bool {
         self.abs().all_below(f64::INFINITY)
     }
 }
 
-/// A real that knows sine and cosine. exp and ccsk ask for it; cay does not.
+/// A real number with sine and cosine. exp and ccsk need it; cay does not.
 pub trait Trig: Real {
     /// (sin x, cos x).
     fn sin_cos(self) -> (Self, Self);
 }
 
-/// What [`Real::branch`] can blend: several numbers.
+/// Several numbers that [`Real::branch`] can blend.
 pub trait Select<S>: Sized {
     /// Blend lane by lane with `pick`.
     fn select(pick: &mut impl FnMut(S, S) -> S, a: Self, b: Self) -> Self;
@@ -142,9 +141,9 @@ impl Trig for f32 {
 }
 
 impl Trig for f64 {
-    /// In line up to 1e6: a call of the library costs as much as the polynomials. Up to π/4, where the
-    /// angles of most steps are, without their reduction, which is half of the way. The compiler finds it
-    /// too long on its own, and around a call exp takes half as long again.
+    /// Polynomials in line up to 1e6, because a library call costs as much as they do. Most angles are below π/4; there
+    /// the reduction, which is half of the work, is left out. Without the attribute the compiler does not inline this,
+    /// and then exp takes half as long again.
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
         match self.abs() {
@@ -155,7 +154,7 @@ impl Trig for f64 {
     }
 }
 
-/// max(a, b); not a number where b is not.
+/// max(a, b); NaN if b is NaN.
 #[inline]
 pub(crate) fn larger<S: Real>(a: S, b: S) -> S {
     let [c] = (b - a).branch(0.0, || [a], || [b]);

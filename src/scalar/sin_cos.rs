@@ -1,16 +1,16 @@
-//! (sin x, cos x) without a branch, so that a loop over many x runs in lanes.
+//! (sin x, cos x) without a branch, so that a loop over many x runs in SIMD lanes.
 //!
-//! x = kπ/2 + r, |r| ≤ π/4: π/2 in three parts of 33, 33 and 53 bits (W. J. Cody, W. Waite), of which
-//! the first two times k are exact, so that r keeps its relative accuracy next to multiples of π/2.
+//! x = kπ/2 + r, |r| ≤ π/4: π/2 in three parts of 33, 33 and 53 bits (W. J. Cody, W. Waite), The
+//! products of k with the first two are exact, so r is accurate relative to itself near multiples of π/2.
 //! sin r = r − r³/6 + … and cos r = 1 − r²/2 + … by polynomials in r² that interpolate in Chebyshev
-//! nodes: relative error 1.3e-17 of sin, 5e-19 of cos. Together below 1 ε.
+//! nodes, with relative errors of 1.3e-17 for sin and 5e-19 for cos. The total error is below 1 ε.
 
 use core::f64::consts::FRAC_2_PI;
 
 /// Up to this |x| the products with k are exact.
 pub(crate) const SIN_COS_MAX: f64 = 1e6;
 
-/// 1.5·2⁵²: adding it rounds to an integer, which then stands in the last bits.
+/// 1.5·2⁵². Adding it rounds to an integer, which is then in the last bits.
 const ROUND: f64 = 6755399441055744.0;
 /// π/2.
 const HALF_PI: [f64; 3] = [1.5707963267341256, 6.077100506303966e-11, 2.0222662487959506e-21];
@@ -27,7 +27,7 @@ const COS: [f64; 6] = [
     -2.7557317260008837e-07, 2.0876143827993133e-09, -1.1382456778061306e-11,
 ];
 
-/// a·b + c; fused where the instruction set has it, which the caller knows.
+/// a·b + c; fused if the caller has an instruction for it.
 #[inline(always)]
 pub(crate) fn muladd<const FUSED: bool>(a: f64, b: f64, c: f64) -> f64 {
     if FUSED { a.mul_add(b, c) } else { a * b + c }
@@ -56,7 +56,7 @@ pub(crate) fn sin_cos_near_zero(x: f64) -> (f64, f64) {
     (x + sin * (x * z), lead + (((1.0 - lead) - half) + cos))
 }
 
-/// (sin x, cos x) for |x| ≤ [`SIN_COS_MAX`]; finite nonsense beyond.
+/// (sin x, cos x) for |x| ≤ [`SIN_COS_MAX`]. Beyond, the result is finite but wrong.
 #[inline(always)]
 pub(crate) fn sin_cos<const FUSED: bool>(x: f64) -> (f64, f64) {
     let shifted = x * FRAC_2_PI + ROUND;
@@ -84,7 +84,7 @@ mod tests {
     use super::*;
     use core::f64::consts::FRAC_PI_4;
 
-    /// Within 1 ε of the platform's, itself within ½ ε; next to multiples of π/2 as well.
+    /// Within 1 ε of the results of the platform, also near multiples of π/2. Those are within ½ ε.
     #[test]
     fn agrees_with_the_platform() {
         let mut x = 0.37f64;

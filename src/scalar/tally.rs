@@ -1,25 +1,23 @@
-//! The operations of kernels on machine numbers: each says what it has just done, and
-//! [`Counted::count`](super::Counted::count) hears it.
+//! Counts the operations of matrix kernels on machine numbers, for [`Counted::count`](super::Counted::count).
 //!
-//! An `f64` cannot count itself, and a kernel of the dense layer that did would be no kernel. So a
-//! product, a solve, a sum of matrices states its operations beside its loop, from the sizes and the
-//! choices of that very call: how many squarings, sweeps, corrections there were is counted, not known
-//! beforehand. `tests/tally.rs` runs the same mathematics entry by entry on
-//! [`Counted`](super::Counted) and compares.
+//! An `f64` cannot count its operations, and counting numbers would make a kernel slow. So each product, solve and sum of
+//! matrices reports its operations next to its loop, from the sizes and choices of this call. Example: the number of
+//! squarings of exp. `tests/core/tally.rs` runs the same formulas entry by entry on [`Counted`](super::Counted) and
+//! compares.
 //!
 //! | counted | not counted |
 //! |---|---|
 //! | products, solves, sums, norms, brackets, rotations of matrices | copies, signs, comparisons, \|x\|, "is it finite?", powers of two to balance |
-//! | functions of one number (exp, ln, sin, cos): each as one | what is done to single numbers beside a matrix: h·a_ij, a bound, a ratio of norms |
-//! | the eigenvectors of a symmetric matrix: 9n³, the usual estimate; that routine is not ours | |
+//! | functions of one number (exp, ln, sin, cos): each as one | operations on single numbers: h·a_ij, a bound, a ratio of norms |
+//! | the eigenvectors of a symmetric matrix: 9n³, the usual estimate, because the routine is faer's | |
 
 use core::ops::{Add, Mul};
 
 use super::Ops;
 
-/// Say that these operations have been done on machine numbers. Without the feature `tally` this is
-/// nothing at all; with it, it is a question while nobody counts, and `ops` is asked only where somebody
-/// does.
+/// Reports operations on machine numbers.
+///
+/// Without the feature `tally` this does nothing. With it, `ops` is called only while a count runs.
 ///
 /// ```
 /// use lieflow::scalar::{Counted, Ops, tally};
@@ -36,7 +34,7 @@ pub fn tally(ops: impl FnOnce() -> Ops) {
     let _ = ops;
 }
 
-/// Out of the way of the kernels.
+/// Not inlined, to keep the kernels small.
 #[cfg(feature = "tally")]
 #[cold]
 #[inline(never)]
@@ -44,8 +42,9 @@ fn aside<T>(f: impl FnOnce() -> T) -> T {
     f()
 }
 
-/// Run `f`, a formula on numbers that count, for its operations alone, and only while somebody counts:
-/// beside the same formula on machine numbers, where it has branches and nothing fixed could be said.
+/// Runs `f`, a formula on numbers that count, only for its operations, and only while a count runs.
+///
+/// It is called next to the same formula on machine numbers, if its number of operations depends on branches.
 #[inline(always)]
 pub(crate) fn tally_by<T>(f: impl FnOnce() -> T) {
     #[cfg(feature = "tally")]

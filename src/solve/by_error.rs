@@ -1,4 +1,4 @@
-//! Steps that are chosen by their error.
+//! Adaptive step size: one accepted step, and the choice of the first step.
 
 use super::integrator::{Chooser, Integrator, Looked, Pacer, lit, size_to};
 use super::stats::{RunError, Stats};
@@ -72,8 +72,8 @@ impl<P: Problem, M: Method<P>> Integrator<'_, P, M> {
         }
     }
 
-    /// Where a step of about this size ends, and its size. It is `stop` when that is near, and half way when two
-    /// steps would be needed of which one is short.
+    /// The end and the size of a step of about this size. A step ends at `stop` if that is near. It ends half way to
+    /// `stop` if otherwise the next step would be short.
     fn propose(&self, h: f64, stop: f64) -> (f64, f64) {
         let Pacer::ByError(chooser) = &self.pacer else { return (self.t, 0.0) };
         let max_step = chooser.control.max_step;
@@ -87,7 +87,7 @@ impl<P: Problem, M: Method<P>> Integrator<'_, P, M> {
         (end, (end - self.t).abs())
     }
 
-    /// `to` ← the step from y; its error in units of the tolerance.
+    /// `to` ← the step from y. Returns its error in units of the tolerance.
     fn attempt(&mut self, step: Step<f64>) -> Result<f64, StepError> {
         let Pacer::ByError(chooser) = &self.pacer else {
             return Err(StepError::NotFinite { what: "the error estimate" });
@@ -115,8 +115,8 @@ impl<P: Problem, M: Method<P>> Integrator<'_, P, M> {
         }
     }
 
-    /// Hairer, Nørsett, Wanner I, II.4, with the norm of 𝔤, where 1 is the natural unit: a step that
-    /// moves by 1/100, looked at for how much f changes over it.
+    /// The first step, by Hairer, Nørsett, Wanner I, II.4, in the norm of 𝔤. A trial step moves by 1/100 and shows how
+    /// much f changes.
     fn first_step(&mut self, stop: f64) -> f64 {
         let Pacer::ByError(chooser) = &mut self.pacer else { return 0.0 };
         let Some(mut store) = chooser.first.take() else { return 0.0 };

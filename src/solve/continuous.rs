@@ -1,4 +1,4 @@
-//! A solution that can be asked for any time.
+//! The continuous solution of a run.
 
 use super::drive::Kept;
 use super::integrator::Integrator;
@@ -10,8 +10,8 @@ use crate::problems::{PointOf, Problem};
 
 /// The continuous solution of a run: a point on M for every time of its span.
 ///
-/// It keeps the start of each step. A time in another step than the last one asked for costs that step again; times
-/// in one step cost what the continuous extension of the method costs, so ask in order.
+/// It stores the start of each step. Ask for times in order: a time within another step than the time before costs this
+/// step once more. Times within one step cost only the dense output of the method.
 ///
 /// ```
 /// use lieflow::prelude::*;
@@ -33,7 +33,7 @@ pub struct Continuous<'a, P: Problem, M: Method<P>> {
     pub solution: Solution<PointOf<P>>,
     steps: Vec<Kept<PointOf<P>>>,
     run: Integrator<'a, P, M>,
-    /// The step that the workspace knows.
+    /// The step that is in the workspace.
     current: Option<usize>,
     at: PointOf<P>,
 }
@@ -48,7 +48,7 @@ impl<'a, P: Problem, M: Method<P>> Continuous<'a, P, M> {
         Continuous { solution, steps, run, current: None, at }
     }
 
-    /// The times between which the solution is known.
+    /// The first and the last time of the solution.
     pub fn t_span(&self) -> [f64; 2] {
         let start = self.steps.first().map_or(self.solution.t, |(_, step, _)| step.t);
         [start, self.solution.t]

@@ -1,13 +1,13 @@
-//! Steps of their own size: tolerances, limits, and a PI controller.
+//! Adaptive step size: tolerances, limits, and a PI controller.
 //!
-//! The next step is h·min(5, max(1/5, 0.9·r^(−0.7/k)·r₋^(0.4/k))), with the ratio r of the error to the tolerance,
-//! k = the order of the estimate + 1, and r₋ the r of the step before (Hairer, Nørsett, Wanner II, IV.2;
-//! Gustafsson's PI controller). It never grows right after a rejection.
+//! The next step is h·min(5, max(1/5, 0.9·r^(−0.7/k)·r₋^(0.4/k))), where r is the ratio of the error to
+//! the tolerance, k the order of the estimate + 1, and r₋ the r of the step before (Hairer, Nørsett, Wanner II, IV.2;
+//! Gustafsson's PI controller). The step after a rejected one does not grow.
 
 use crate::error::Error;
 use crate::tolerance::{Rule, Tolerance};
 
-/// Tolerances and limits of a run that chooses its steps.
+/// Tolerances and limits of a run with adaptive step size.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StepControl {
     pub(super) tolerance: Tolerance,
@@ -28,8 +28,8 @@ fn positive(arg: &'static str, x: f64) -> Result<f64, Error> {
 pub(super) const MAX_STEPS: u64 = 1_000_000;
 
 impl StepControl {
-    /// One rtol and one atol for all parts, the first step by Hairer's rule, no limits on the size of steps but
-    /// the rounding of t, and at most a million attempts.
+    /// One rtol and one atol for all parts. The first step is by Hairer's rule. Step sizes have no limit except the
+    /// rounding of t. A run has at most a million attempts.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] for a tolerance that is negative or not finite, and when both are 0.
@@ -37,12 +37,12 @@ impl StepControl {
         Ok(Tolerance::new(rtol, atol)?.into())
     }
 
-    /// The tolerances by this rule.
+    /// Sets the rule of the tolerances.
     pub fn rule(self, rule: Rule) -> Self {
         StepControl { tolerance: self.tolerance.by(rule), ..self }
     }
 
-    /// Try this size first, in either direction of time.
+    /// Sets the size of the first step, in either direction of time.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] unless it is finite and positive.
@@ -50,7 +50,8 @@ impl StepControl {
         Ok(StepControl { first_step: Some(positive("first_step", h)?), ..self })
     }
 
-    /// Give up below this size, though not at the end of the span or before an output.
+    /// Ends the run with an error below this size. Steps that are cut at the end of the span or at an output may be
+    /// smaller.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] unless it is finite and positive, and at most the largest step.
@@ -58,7 +59,7 @@ impl StepControl {
         StepControl { min_step: positive("min_step", h)?, ..self }.limits("min_step", h)
     }
 
-    /// Never take a step larger than this.
+    /// Sets the largest step size.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] unless it is finite and positive, and at least the smallest step.
@@ -74,7 +75,7 @@ impl StepControl {
         Ok(self)
     }
 
-    /// Give up after this many attempts, accepted or not.
+    /// Ends the run with an error after this many attempts, accepted or not.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] for 0.
@@ -98,18 +99,18 @@ impl From<Tolerance> for StepControl {
     }
 }
 
-/// The PI controller: what a step's r = error/tolerance says of the size of the next.
+/// The PI controller: the next step size from r = error/tolerance of a step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Controller {
     /// The order of the estimate + 1.
     pub(super) k: f64,
     /// r of the last accepted step.
     pub(super) last: f64,
-    /// May the next step not be larger than this one?
+    /// True if the next step must not be larger than this one.
     pub(super) hold: bool,
 }
 
-/// The most that a step grows, and the inverse of the most that it shrinks.
+/// The largest factor by which a step grows; 1 over it is the smallest factor by which it shrinks.
 const GROWTH_MAX: f64 = 5.0;
 const SAFETY: f64 = 0.9;
 
@@ -129,7 +130,7 @@ impl Controller {
         factor.clamp(1.0 / GROWTH_MAX, cap)
     }
 
-    /// The factor of the next attempt; `None` is a step that failed.
+    /// The factor of the next attempt; `None` for a step that failed.
     pub(super) fn reject(&mut self, ratio: Option<f64>) -> f64 {
         self.hold = true;
         match ratio {

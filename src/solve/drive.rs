@@ -14,16 +14,16 @@ use crate::actions::Action;
 use crate::methods::{Method, Step};
 use crate::problems::{PointOf, Problem};
 
-/// How the invariants of a problem are asked for.
+/// The function that gives the invariants of a problem.
 pub(super) struct Watch<P: Problem> {
     pub(super) names: fn(&P) -> Vec<String>,
     pub(super) values: fn(&P, &PointOf<P>) -> Vec<f64>,
 }
 
-/// What gets the bytes of a state.
+/// The function that takes the bytes of a state.
 type TakeBytes<'a> = Box<dyn FnMut(&[u8]) + 'a>;
 
-/// When the state is saved, and who gets it.
+/// When the state is saved, and the function that takes it.
 pub(super) struct Checkpoints<'a, P: Problem> {
     pub(super) list: Listing<P>,
     pub(super) every: Duration,
@@ -31,7 +31,7 @@ pub(super) struct Checkpoints<'a, P: Problem> {
     pub(super) last: Instant,
 }
 
-/// A step that is kept: where its validity ends, the step, and its start.
+/// A stored step: the time up to which it is valid, the step, and its start.
 pub(super) type Kept<Y> = (f64, Step<f64>, Y);
 
 /// A run under way.
@@ -45,7 +45,7 @@ pub(super) struct Drive<'a, 'k, P: Problem, M: Method<P>, O> {
     /// How many of the output times are done.
     pub(super) times_done: usize,
     times_by_steps: bool,
-    /// Times at which a step ends, those to come first.
+    /// The stops that are still ahead.
     stops: std::vec::IntoIter<f64>,
     next_stop: Option<f64>,
     cancel: Option<&'a AtomicBool>,
@@ -61,7 +61,7 @@ pub(super) struct Drive<'a, 'k, P: Problem, M: Method<P>, O> {
     pub(super) solution: Solution<PointOf<P>>,
 }
 
-/// What ends a run, or goes on.
+/// Whether and why a run ends.
 type Ended = Result<Option<Status>, RunError>;
 
 impl<'a, 'k, P, M, O> Drive<'a, 'k, P, M, O>
@@ -107,7 +107,7 @@ where
         }
     }
 
-    /// Keep the steps here.
+    /// The stored steps.
     pub(super) fn keep(&mut self, kept: &'k mut Vec<Kept<PointOf<P>>>) {
         self.kept = Some(kept);
     }
@@ -211,14 +211,14 @@ where
         }
     }
 
-    /// The next stop is the first one ahead: a step that an event cut has not reached its own.
+    /// Sets the next stop to the first one ahead. A step that an event cut has not reached its stop.
     fn pass_stops(&mut self) {
         while self.next_stop.is_some_and(|stop| !self.is_before(self.run.t(), stop)) {
             self.next_stop = self.stops.next();
         }
     }
 
-    /// Take the steps that nobody looks at in one call.
+    /// Takes steps without output or events in one call.
     fn skip(&mut self) -> Result<(), RunError> {
         if !self.events.all.is_empty() || self.kept.is_some() {
             return Ok(());
@@ -248,7 +248,7 @@ where
         }
     }
 
-    /// The output times and the zeros of the last step, in the order of time, and its end.
+    /// Handles the output times and the zeros of the last step in the order of time, and then its end.
     fn look_within(&mut self) -> Ended {
         let mut zeros = 0;
         loop {
@@ -281,7 +281,7 @@ where
         }
     }
 
-    /// Show the point at a time within the last step.
+    /// Shows the point at a time within the last step.
     fn show(&mut self, time: f64) -> Ended {
         self.look_at(time)?;
         self.shown_at = Some(time);
@@ -317,14 +317,14 @@ where
         self.show(self.run.t())
     }
 
-    /// The last step that is kept ends where the run was cut.
+    /// Lets the last stored step end where the run was cut.
     fn end_of_kept(&mut self) {
         if let Some(last) = self.kept.as_deref_mut().and_then(|kept| kept.last_mut()) {
             last.0 = self.run.t();
         }
     }
 
-    /// A zero of an event, and the others at the same time.
+    /// Handles a zero of an event, and all others at the same time.
     fn occur(&mut self, event: usize, t: f64, rising: bool, zeros: &mut usize) -> Ended {
         let mut next = Some((event, rising));
         let mut stopped = None;

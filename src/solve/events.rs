@@ -1,19 +1,19 @@
 //! Events: where a function g(t, y) of the solution passes zero.
 //!
-//! After each step g is evaluated at its end, and at points within it where two zeros could lie between the
-//! ends ([`Event::points`]). Between two neighbours of opposite sign the zero is found on the continuous
-//! extension of the method, to rounding of t (the method of Chandrupatla, Adv. Eng. Software 28 (1997)).
+//! After each step g is evaluated at the end of the step. If the step may have two zeros, g is also evaluated at points
+//! within it ([`Event::points`]). Between two neighbours of opposite sign the zero is found by dense output, to
+//! rounding of t (the method of Chandrupatla, Adv. Eng. Software 28 (1997)).
 //!
 //! | g | what is found |
 //! |---|---|
 //! | from < 0 to ≥ 0 | a rising zero |
 //! | from > 0 to ≤ 0 | a falling zero |
-//! | 0 at the start of the run | a zero at the start, rising where g > 0 follows, falling where g < 0 follows |
-//! | touches 0 and turns back | nothing, unless a point that is looked at hits 0 exactly |
+//! | 0 at the start of the run | a zero at the start: rising if g > 0 follows, falling if g < 0 follows |
+//! | touches 0 and turns back | nothing, unless g is exactly 0 at a point that is evaluated |
 //! | not finite | [`RunError::Event`] with the name of the event |
 //!
-//! After a zero that changed the state the sign of g is taken anew a little later (2⁻¹⁶ of a step), so that the same
-//! zero is not found twice.
+//! After a zero that changed the state, the sign of g is taken again 2⁻¹⁶ of a step later. So the same zero is not found
+//! twice.
 
 use core::fmt;
 use core::ops::Range;
@@ -23,7 +23,7 @@ use super::stats::RunError;
 use crate::methods::Method;
 use crate::problems::{PointOf, Problem};
 
-/// Which zeros of g count.
+/// The direction of the zeros that count.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Direction {
     /// From negative to positive, in the direction of the run.
@@ -49,14 +49,14 @@ type Function<'a, Y> = Box<dyn FnMut(f64, &Y) -> f64 + 'a>;
 type Told<'a, Y> = Box<dyn FnMut(f64, &Y, bool) + 'a>;
 type Change<'a, Y> = Box<dyn FnMut(f64, &mut Y) + 'a>;
 
-/// An event: the zeros of g(t, y), and what happens there.
+/// An event: the zeros of g(t, y), and the action there.
 ///
 /// ```
 /// use lieflow::prelude::*;
 /// use lieflow::problems::RigidBody;
 /// use nalgebra::Vector3;
 ///
-/// // Each flip of a free body that turns about its middle axis, until the third.
+/// // The flips of a free body that rotates about its middle axis, until the third.
 /// let body = RigidBody::<f64>::new([1.0, 2.0, 3.0])?;
 /// let method = Rkmk::new(DOPRI5, Exp);
 /// let flips = Event::new("flip", |_, m: &Vector3<f64>| m.y).stop_after(3);
@@ -77,7 +77,7 @@ pub struct Event<'a, Y> {
     pub(super) told: Option<Told<'a, Y>>,
     points: Option<u32>,
     pub(super) seen: Seen,
-    /// How often it was found.
+    /// The number of zeros found so far.
     pub(super) count: u64,
 }
 
@@ -87,24 +87,24 @@ impl<Y> fmt::Debug for Event<'_, Y> {
     }
 }
 
-/// What is known of g up to the last point.
+/// The values of g up to the last point.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Seen {
     /// g at the last point.
     pub(super) value: f64,
     /// g at the start of the step before, and its size; none at the start and after a change.
     pub(super) before: Option<[f64; 2]>,
-    /// Is the sign of g to be taken anew, a little later?
+    /// True if the sign of g has to be taken again, a little later.
     pub(super) anew: bool,
 }
 
-/// The points within a step where g is evaluated when two zeros could lie between its ends.
+/// The number of points within a step where g is evaluated, if the step may have two zeros.
 const POINTS: u32 = 8;
-/// Where in a step the sign of g is taken anew.
+/// The part of a step after which the sign of g is taken again.
 const A_LITTLE_LATER: f64 = 1.0 / 65536.0;
 
 impl<'a, Y> Event<'a, Y> {
-    /// The zeros of `g(t, y)`, rising and falling; the run goes on.
+    /// Finds all zeros of `g(t, y)`, rising and falling. The run continues after them.
     pub fn new(name: impl Into<String>, g: impl FnMut(f64, &Y) -> f64 + 'a) -> Self {
         Event {
             name: name.into(),
@@ -118,34 +118,35 @@ impl<'a, Y> Event<'a, Y> {
             count: 0,
         }
     }
-    /// Zeros of this direction only.
+    /// Finds only zeros of this direction.
     pub fn direction(self, direction: Direction) -> Self {
         Event { direction, ..self }
     }
-    /// Rising zeros only.
+    /// Finds only rising zeros.
     pub fn rising(self) -> Self {
         self.direction(Direction::Rising)
     }
-    /// Falling zeros only.
+    /// Finds only falling zeros.
     pub fn falling(self) -> Self {
         self.direction(Direction::Falling)
     }
-    /// Stop the run at the zero of this number, from 1; 0 is told by [`Solve::run`](super::Solve::run). The default is
-    /// to go on.
+    /// Stops the run at the zero with this number, from 1. [`Solve::run`](super::Solve::run) refuses 0. By default the
+    /// run goes on.
     pub fn stop_after(self, count: u64) -> Self {
         Event { stop_after: Some(count), ..self }
     }
-    /// Change the state at each zero: an impulse, a reset. The new state must be on M.
+    /// Changes the state at each zero. Examples: an impulse, a reset. The new state must be on M.
     pub fn change(self, change: impl FnMut(f64, &mut Y) + 'a) -> Self {
         Event { change: Some(Box::new(change)), ..self }
     }
-    /// Call `told(t, y, rising)` at each zero, as it is found, and store none.
+    /// Calls `told(t, y, rising)` at each zero when it is found, and stores no zeros.
     pub fn tell(self, told: impl FnMut(f64, &Y, bool) + 'a) -> Self {
         Event { told: Some(Box::new(told)), ..self }
     }
-    /// Evaluate g at this many points within every step. The default evaluates it at 8 points of those steps
-    /// where the values at the ends of this step and of the one before leave room for two zeros: |g| at one end is
-    /// at most twice the change of slope of g over the two steps, times the size of the step.
+    /// Evaluates g at this many points within every step.
+    ///
+    /// The default is 8 points in steps that may have two zeros, and none in others. A step may have two zeros if |g|
+    /// at one end is at most twice the change of the slope of g over this step and the one before, times the step size.
     pub fn points(self, points: u32) -> Self {
         Event { points: Some(points), ..self }
     }
@@ -162,7 +163,7 @@ impl<'a, Y> Event<'a, Y> {
         }
     }
 
-    /// Is the run to stop at this zero?
+    /// True if the run stops at this zero.
     pub(super) fn stops(&self) -> bool {
         self.stop_after.is_some_and(|count| self.count >= count)
     }
@@ -176,7 +177,7 @@ pub(super) struct Zero {
     pub(super) rising: bool,
 }
 
-/// The sign from one value to the next: does g rise or fall through zero?
+/// Whether g rises or falls through zero from one value to the next.
 fn passes(before: f64, after: f64) -> Option<bool> {
     if before < 0.0 && after >= 0.0 {
         Some(true)
@@ -212,7 +213,7 @@ impl<'a, P: Problem> Events<'a, P> {
         Ok(())
     }
 
-    /// After the state was changed at t, at the zeros `at` of the last step. The other zeros of it are forgotten.
+    /// Called after the state was changed at t, at the zeros `at` of the last step. Drops the other zeros of the step.
     pub(super) fn restart(
         &mut self,
         t: f64,
@@ -232,7 +233,7 @@ impl<'a, P: Problem> Events<'a, P> {
         Ok(())
     }
 
-    /// Find the zeros in the last step of the run, up to its time.
+    /// Finds the zeros in the last step of the run, up to its time.
     pub(super) fn search<M: Method<P>>(
         &mut self,
         run: &mut Integrator<'_, P, M>,

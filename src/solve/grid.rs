@@ -1,4 +1,4 @@
-//! Times: equal steps over a span, and where a run is looked at.
+//! Times: equal steps over a span, and the times of output.
 
 use crate::error::Error;
 use crate::methods::{EqualSteps, Step};
@@ -6,9 +6,9 @@ use crate::scalar::Real;
 
 /// Steps of one size from t₀ to t₁, forward or backward.
 ///
-/// Times are computed from the number of the step, so that no error accumulates in t, and the last
-/// step ends at t₁ exactly. Every step has the same h, to the last bit: where f does not ask for t, a
-/// run is the same whenever it starts. The last step alone is shorter where h does not divide the span.
+/// Times are computed from the number of the step. So no error accumulates in t, and the last step ends exactly at t₁.
+/// All steps have the same h, to the last bit. Only the last step is shorter, if h does not divide the span. A run
+/// whose f does not depend on t gives the same results at any start time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimeGrid {
     t0: f64,
@@ -17,10 +17,10 @@ pub struct TimeGrid {
     steps: u64,
 }
 
-/// More steps than this count as a mistake in the input.
+/// The largest number of steps; more are a mistake in the input.
 const STEPS_MAX: f64 = 1e15;
 
-/// The length of a span whose ends are numbers; the end may be infinite.
+/// The length of a span. Its ends must not be NaN; the end may be infinite.
 pub(super) fn length_of([t0, t1]: [f64; 2]) -> Result<f64, Error> {
     if !t0.is_finite() {
         return Err(Error::out_of_range("t_span[0]", t0, "a finite number"));
@@ -36,12 +36,14 @@ pub(super) fn length_of([t0, t1]: [f64; 2]) -> Result<f64, Error> {
 }
 
 impl TimeGrid {
-    /// Steps of size `dt` > 0 over the span; backward when t₁ < t₀. An empty span has no steps. Where `dt` does
-    /// not divide the span, to a relative 1e-9, the last step is shorter. The end may be infinite.
+    /// Steps of size `dt` > 0 over the span, backward if t₁ < t₀.
+    ///
+    /// An empty span has no steps. If `dt` does not divide the span, within a relative 1e-9, the last step is shorter.
+    /// The end may be infinite.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] for a time that is not a number, and for a `dt` that is not finite and positive, is
-    /// lost in rounding next to t, or makes more than 1e15 steps.
+    /// [`Error::OutOfRange`] for a time that is not a number, and for a `dt` that is not finite and positive, that is
+    /// so small that t + dt = t, or that makes more than 1e15 steps.
     pub fn new(t_span: [f64; 2], dt: f64) -> Result<Self, Error> {
         let length = length_of(t_span)?;
         if !(dt.is_finite() && dt > 0.0) {
@@ -62,7 +64,7 @@ impl TimeGrid {
         TimeGrid { t0, t1, h, steps: (length / dt).ceil() as u64 }.check()
     }
 
-    /// The span in this number of steps.
+    /// Divides the span into this number of steps.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] for a time that is not finite, no steps over a span that is not empty,
@@ -97,7 +99,7 @@ impl TimeGrid {
     pub fn t_span(&self) -> [f64; 2] {
         [self.t0, self.t1]
     }
-    /// The number of steps; `u64::MAX` over a span without end.
+    /// The number of steps; `u64::MAX` for a span with infinite end.
     pub fn steps(&self) -> u64 {
         self.steps
     }
@@ -109,7 +111,7 @@ impl TimeGrid {
     pub fn time(&self, n: u64) -> f64 {
         if n >= self.steps { self.t1 } else { self.t0 + n as f64 * self.h }
     }
-    /// The size of step number n: h, or what is left where h does not divide the span.
+    /// The size of step number n: h, or the rest of the span for the last step.
     pub(super) fn size(&self, n: u64) -> f64 {
         let divides = self.h == (self.t1 - self.t0) / self.steps as f64;
         if n + 1 < self.steps || divides { self.h } else { self.t1 - (self.t0 + n as f64 * self.h) }
@@ -118,7 +120,7 @@ impl TimeGrid {
     pub(super) fn equal(&self, first: u64, end: u64) -> EqualSteps {
         EqualSteps { first, end, t0: self.t0, h: self.h }
     }
-    /// Call `each` with every number: what is saved of a run.
+    /// Calls `each` with every number of the grid, to save it.
     pub(super) fn each_part(&mut self, each: &mut dyn FnMut(&mut f64)) {
         each(&mut self.t0);
         each(&mut self.t1);
@@ -139,7 +141,7 @@ impl TimeGrid {
     }
 }
 
-/// Where a run is looked at: the points that are shown to an observer, or stored.
+/// The points of a run that are shown to an observer, or stored.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub enum SaveAt {
@@ -157,7 +159,7 @@ pub enum SaveAt {
 }
 
 impl SaveAt {
-    /// Is the start shown?
+    /// True if the start is shown.
     pub(super) fn start(&self, t0: f64) -> bool {
         match self {
             SaveAt::End => false,
@@ -174,7 +176,7 @@ impl SaveAt {
         }
     }
 
-    /// The number of the next step after `n` that is shown whatever the time.
+    /// The number of the next step after `n` that is shown.
     pub(super) fn next_after(&self, n: u64) -> u64 {
         match self {
             SaveAt::Every(every) => (n - n % every).saturating_add(*every),
@@ -182,7 +184,7 @@ impl SaveAt {
         }
     }
 
-    /// Check against the span.
+    /// Checks the points against the span.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] for `every = 0`, and for times that are not finite, outside the span,

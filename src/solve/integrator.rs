@@ -1,4 +1,4 @@
-//! A run in one's hands: step by step, with the state to read and to set.
+//! A run that the caller takes step by step, and whose state can be read and set.
 
 use super::control::{Controller, StepControl};
 use super::grid::TimeGrid;
@@ -22,7 +22,7 @@ type Attempt<P, M> = fn(
     &mut PointOf<P>,
 ) -> Result<f64, StepError>;
 
-/// What a run that chooses its steps needs of its method.
+/// What an adaptive run needs from its method.
 pub(super) struct Estimator<P: Problem, M: Method<P>> {
     pub(super) attempt: Attempt<P, M>,
     pub(super) error_order: fn(&M, &P) -> Result<usize, Error>,
@@ -53,11 +53,11 @@ where
     }
 }
 
-/// How the steps of a run are chosen.
+/// The choice of the steps of a run.
 pub(super) enum Pace<P: Problem, M: Method<P>> {
-    /// One size, and no more than so many.
+    /// One size, with a largest number of steps.
     Equal { grid: TimeGrid, max_steps: u64 },
-    /// By their error.
+    /// By their error (adaptive).
     ByError(StepControl, Estimator<P, M>),
 }
 
@@ -72,7 +72,7 @@ impl<P: Problem, M: Method<P>> Clone for Pace<P, M> {
 
 /// The state of the choice of steps.
 pub(super) enum Pacer<P: Problem, M: Method<P>> {
-    /// Equal steps: the grid, and how many of its steps are done. A run that was taken off its grid gets a new one.
+    /// Equal steps: the grid, and the number of its steps that are done. A run that left its grid gets a new one.
     Equal { grid: TimeGrid, done: u64, max_steps: u64 },
     /// Steps by their error.
     ByError(Box<Chooser<P, M>>),
@@ -87,30 +87,30 @@ pub(super) struct Chooser<P: Problem, M: Method<P>> {
     pub(super) controller: Controller,
     /// The size of the next attempt, without its sign; `None` before the first step.
     pub(super) h: Option<f64>,
-    /// The end of the last step that failed, until it is passed.
+    /// The end of the last step that failed, until the run has passed it.
     pub(super) wall: Option<f64>,
     /// Two values of f and its scratch, for the choice of a first step.
     pub(super) first: Option<(AlgOf<P>, AlgOf<P>, P::Work)>,
 }
 
-/// What the workspace knows of the last step.
+/// What the workspace holds of the last step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Looked {
-    /// There was no step, or the state was changed since.
+    /// Nothing: there was no step, or the state was changed since.
     Nothing,
-    /// The workspace was last used for the step.
+    /// The step: the workspace was last used for it.
     Fresh,
-    /// The workspace was used for something else since.
+    /// Something else: the workspace was used since.
     Stale,
-    /// The continuous extension is ready.
+    /// The step with its dense output.
     Prepared,
 }
 
 /// A run that is taken step by step.
 ///
-/// The state is at time t, after n accepted steps. Between calls the last step can be looked into
-/// ([`interpolate`](Self::interpolate)), and the state can be changed ([`set_state`](Self::set_state)).
-/// [`Solve::integrator`](super::Solve::integrator) makes one. Memory is allocated there, and in no step.
+/// [`Solve::integrator`](super::Solve::integrator) makes one, and allocates all its memory; steps allocate nothing. The
+/// state is at time t, after n accepted steps. Between steps you can compute points within the last step
+/// ([`interpolate`](Self::interpolate)) and change the state ([`set_state`](Self::set_state)).
 ///
 /// ```
 /// use lieflow::prelude::*;
@@ -137,7 +137,7 @@ pub struct Integrator<'a, P: Problem, M: Method<P>> {
     pub(super) from: PointOf<P>,
     /// The last step.
     pub(super) last: Step<f64>,
-    /// The end of an attempt, or of the step that was taken again.
+    /// The end of an attempt, or of a repeated step.
     pub(super) to: PointOf<P>,
     pub(super) looked_at: Looked,
     pub(super) work: M::Work,
@@ -147,7 +147,7 @@ pub struct Integrator<'a, P: Problem, M: Method<P>> {
     pub(super) stats: Stats,
 }
 
-/// Is f(t, y) in 𝔤? Asked once, before the first step.
+/// Checks once, before the first step, that f(t, y) is in 𝔤.
 fn check_field<P: Problem>(problem: &P, t: f64, y: &PointOf<P>) -> Result<(), Error> {
     let mut v = problem.group().zero();
     problem.f(ScalarOf::<P>::lit(t), y, &mut v, &mut problem.work());
@@ -233,11 +233,11 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
     pub fn t_end(&self) -> f64 {
         self.t1
     }
-    /// Is the end of the span reached?
+    /// True if the end of the span is reached.
     pub fn is_done(&self) -> bool {
         self.t == self.t1
     }
-    /// What the run did so far.
+    /// The statistics of the run so far.
     pub fn stats(&self) -> Stats {
         let mut stats = self.stats;
         stats.iterations = stats.iterations.wrapping_add(self.method.iterations(&self.work));
@@ -261,20 +261,20 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
         self.t1 >= self.t
     }
 
-    /// Take one step, which does not pass the end of the span. Returns the time.
+    /// Takes one step, at most to the end of the span. Returns the time.
     ///
     /// # Errors
-    /// [`RunError`]: the state is the last accepted one. A run that is done stays where it is.
+    /// [`RunError`]; the state is then the last accepted one. At the end of the span a step does nothing.
     pub fn step(&mut self) -> Result<f64, RunError> {
         self.step_before(self.t1, false)?;
         Ok(self.t)
     }
 
-    /// Take steps until the time is t exactly: the last of them is shortened to end there. What lies behind t is
-    /// not evaluated, so that the state may be changed there.
+    /// Takes steps until the time is exactly t. The last step is shortened to end there. f is never evaluated after t, so
+    /// the state or f may be changed there.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] for a t behind the state or after the end of the span; else as [`step`](Self::step).
+    /// [`Error::OutOfRange`] for a t before the current time or after the end of the span; else as [`step`](Self::step).
     pub fn advance_to(&mut self, t: f64) -> Result<&PointOf<P>, RunError> {
         let ahead =
             if self.forward() { self.t <= t && t <= self.t1 } else { self.t >= t && t >= self.t1 };
@@ -288,7 +288,7 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
         Ok(&self.y)
     }
 
-    /// `at` ← the state at a time within the last step, by the continuous extension of the method.
+    /// `at` ← the state at a time within the last step, by dense output.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] for a time outside the last step, [`RunError::Within`] where the point cannot be
@@ -306,17 +306,17 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
         }
     }
 
-    /// Go on from another state, at the same time. It must be on M; its orbit is the new one, and a run that
-    /// chooses its steps chooses a first one again.
+    /// Sets the state, at the same time. The run continues from it, on its orbit. It must be on M. An adaptive run
+    /// chooses a first step again.
     ///
     /// # Errors
-    /// [`RunError::Changed`] for a state that is not on M: then the state is as it was.
+    /// [`RunError::Changed`] for a state that is not on M; then the state is unchanged.
     pub fn set_state(&mut self, y: &PointOf<P>) -> Result<(), RunError> {
         let (action, group) = (self.problem.action(), self.problem.group());
         self.change("the caller", |z| action.assign(group, y, z))
     }
 
-    /// y ← y changed by `change`, where that is on M.
+    /// y ← y changed by `change`, if the result is on M.
     pub(super) fn change(
         &mut self,
         by: &str,
@@ -337,7 +337,7 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
         Ok(())
     }
 
-    /// The last step is cut at t: the run goes on from the point `at` there.
+    /// Cuts the last step at t. The run continues from the point `at` there.
     pub(super) fn cut(&mut self, t: f64, at: &PointOf<P>) {
         if t != self.t {
             self.problem.action().assign(self.problem.group(), at, &mut self.y);
@@ -345,7 +345,7 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
         }
     }
 
-    /// One accepted step that does not pass `stop`. Where f jumps there no stage of it is evaluated at `stop`.
+    /// Takes one accepted step, at most to `stop`. No stage evaluates f exactly at `stop`, where f may jump.
     pub(super) fn step_before(&mut self, stop: f64, jumps: bool) -> Result<(), RunError> {
         if self.t == stop {
             return Ok(());
@@ -392,7 +392,7 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
         Ok(())
     }
 
-    /// y is the state after `step`, at `end`.
+    /// Records that y is the state after `step`, at `end`.
     #[inline]
     pub(super) fn accepted(&mut self, step: Step<f64>, end: f64) {
         self.last = step;
@@ -404,8 +404,8 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
         self.mender.after(self.stats.accepted, self.problem, &mut self.y, &mut self.stats);
     }
 
-    /// Equal steps up to number `end` of the run, or fewer, in one call of the method: nothing within them can be
-    /// looked at but the last. Returns false where there is no such call.
+    /// Takes equal steps up to number `end` of the run, or fewer, in one call of the method. Afterwards only the last
+    /// step has dense output. Returns false if there is no such call.
     pub(super) fn quietly(&mut self, end: u64, time: Option<f64>) -> Result<bool, RunError> {
         let Pacer::Equal { grid, done, max_steps } = &self.pacer else { return Ok(false) };
         let (grid, first, max_steps) = (*grid, *done, *max_steps);

@@ -1,13 +1,17 @@
-//! The driver: many steps, of one size or by their error, with output, events and stops.
+//! The driver: takes many steps, of one size or adaptive, with output, events and stops.
 //!
-//! [`Solve`] says what to do, [`Solution`] what came out, [`Integrator`] is a run in one's hands,
-//! [`Continuous`] a solution that can be asked for any time. [`integrate`] and [`integrate_adaptive`] are the same
-//! driver in one call, on a state in place.
+//! | type or function | use |
+//! |---|---|
+//! | [`Solve`] | set up a run: problem, method, span, tolerances, output |
+//! | [`Solution`] | the result |
+//! | [`Integrator`] | take a run step by step |
+//! | [`Continuous`] | a solution at any time |
+//! | [`integrate`], [`integrate_adaptive`] | the same driver in one call, on a state in place |
 //!
-//! A step is accepted when its error is at most its tolerance ([`tolerance`](crate::tolerance)). A step that fails
-//! (outside a chart, not finite) is rejected like one with too large an error, and halved: no result of it is used.
-//! Until time has passed its end no step grows, so that a wall that cannot be passed is closed in on with one
-//! rejection for each halving. With steps of one size a step that fails ends the run.
+//! A step is accepted if its error is at most its tolerance ([`tolerance`](crate::tolerance)). A step that fails
+//! (outside a chart, not finite) is rejected like one with too large an error, and halved; none of its results is used.
+//! Steps do not grow until time has passed the end of the failed step. So at a point that cannot be passed each halving
+//! costs one rejection. With a fixed step size a step that fails ends the run.
 
 mod by_error;
 mod continuous;
@@ -43,10 +47,10 @@ use drive::{Checkpoints, Drive, Watch};
 use integrator::{Estimator, Pace};
 use save::Listing;
 
-/// A run that is to be made: a problem, a method, a span, and what is asked for.
+/// The settings of a run: a problem, a method, a span, steps, output and events.
 ///
-/// Steps are of one size ([`dt`](Self::dt), [`steps`](Self::steps)), or chosen by their error
-/// ([`tolerances`](Self::tolerances) and the limits beside it). A wrong value is told by [`run`](Self::run).
+/// The step size is fixed ([`dt`](Self::dt), [`steps`](Self::steps)) or adaptive ([`tolerances`](Self::tolerances) and
+/// the limits, such as [`max_step`](Self::max_step)). [`run`](Self::run) returns an error for a wrong value.
 ///
 /// ```
 /// use lieflow::prelude::*;
@@ -79,7 +83,7 @@ pub struct Solve<'a, P: Problem, M: Method<P>> {
     checkpoints: Option<Checkpoints<'a, P>>,
     resume: Option<(Listing<P>, Vec<u8>)>,
     watch: Option<Watch<P>>,
-    /// The first value that was wrong.
+    /// The error of the first wrong value.
     wrong: Option<Error>,
 }
 
@@ -94,8 +98,8 @@ impl<P: Problem, M: Method<P>> core::fmt::Debug for Solve<'_, P, M> {
 }
 
 impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
-    /// Solve `problem` by `method` from t₀ to t₁, forward or backward. The span may be empty, and t₁ may be
-    /// infinite where an event or an observer stops the run.
+    /// Solves `problem` by `method` from t₀ to t₁, forward or backward. The span may be empty. t₁ may be infinite if an
+    /// event or an observer stops the run.
     pub fn new(problem: &'a P, method: &'a M, t_span: [f64; 2]) -> Self {
         Solve {
             problem,
@@ -138,46 +142,46 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
         self
     }
 
-    /// Steps of this size. Where it does not divide the span the last step is shorter.
+    /// Sets a fixed step size. If it does not divide the span, the last step is shorter.
     pub fn dt(self, dt: f64) -> Self {
         let grid = TimeGrid::new(self.t_span, dt);
         self.equal(grid)
     }
 
-    /// So many steps of one size.
+    /// Sets the number of steps, all of one size.
     pub fn steps(self, steps: u64) -> Self {
         let grid = TimeGrid::with_steps(self.t_span, steps);
         self.equal(grid)
     }
 
-    /// The steps of this grid, and its span.
+    /// Takes the steps and the span of a grid.
     pub fn grid(mut self, grid: TimeGrid) -> Self {
         self.t_span = grid.t_span();
         self.equal(Ok(grid))
     }
 
-    /// Where points are shown or stored. The default is the end.
+    /// Sets the points that are shown or stored. The default is the end only.
     pub fn save(mut self, save: SaveAt) -> Self {
         self.save = save;
         self
     }
 
-    /// Output at these times and no others, by the continuous extension of the method.
+    /// Sets the times of output. Times within a step come from dense output.
     pub fn times(self, times: impl Into<Vec<f64>>) -> Self {
         self.save(SaveAt::Times(times.into()))
     }
 
-    /// Output at the start, after every so many steps, and at the end.
+    /// Sets output at the start, after every so many steps, and at the end.
     pub fn every(self, steps: u64) -> Self {
         self.save(SaveAt::Every(steps))
     }
 
-    /// Output at the start, at equal intervals of this length from there on, and at the end.
+    /// Writes output at the start, at equal intervals of this length from there on, and at the end.
     pub fn interval(self, length: f64) -> Self {
         self.save(SaveAt::Interval(length))
     }
 
-    /// Output at both ends of so many equal intervals: 100 intervals have 101 times.
+    /// Writes output at both ends of so many equal intervals: 100 intervals have 101 times.
     ///
     /// ```
     /// use lieflow::prelude::*;
@@ -200,14 +204,14 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
         self.interval((t1 - t0).abs() / intervals as f64)
     }
 
-    /// Reach output times within a step by a shorter step of the method from its start, and not by the continuous
-    /// extension. It costs a whole step for each time, and has the order of the method.
+    /// Computes output times within a step by a shorter step of the method, not by dense output. Each time costs a whole
+    /// step, and has the order of the method.
     pub fn times_by_steps(mut self) -> Self {
         self.times_by_steps = true;
         self
     }
 
-    /// Look for the zeros of an event. Events are numbered in the order in which they are given.
+    /// Adds an event. Events are numbered in the order in which they are added.
     pub fn event(mut self, event: Event<'a, PointOf<P>>) -> Self {
         if event.stop_after == Some(0) {
             let arg = format!("stop_after of event `{}`", event.name);
@@ -217,16 +221,17 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
         self
     }
 
-    /// Let a step end at each of these times: where f or one of its derivatives jumps, as at the knots of sampled
-    /// data. The step that ends there does not ask for f at that time, but a few rounding units before; the next one
-    /// does: f(t) is the value after the jump. The times may lie outside the span, in any order.
+    /// Lets a step end at each of these times, where f or one of its derivatives jumps.
+    ///
+    /// Example: the knots of sampled data. f(t) is the value after the jump. The step that ends there evaluates f a few
+    /// rounding units before t, the next step at t. The times may be in any order, and also outside the span.
     pub fn stops(mut self, times: impl Into<Vec<f64>>) -> Self {
         self.stops = times.into();
         self
     }
 
-    /// End with an error after this many attempts. The default is a million, and no limit for steps of one size
-    /// over a finite span.
+    /// Ends the run with an error after this many attempts. The default is a million. A fixed step size over a finite
+    /// span has no limit.
     pub fn max_steps(mut self, attempts: u64) -> Self {
         if attempts == 0 {
             self.wrong.get_or_insert(Error::out_of_range("max_steps", 0.0, "at least 1"));
@@ -235,20 +240,22 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
         self
     }
 
-    /// End when this is set, from another thread or a signal: the status is [`Status::Cancelled`].
+    /// Ends the run when the flag is set, from another thread or a signal. The status is [`Status::Cancelled`].
     pub fn cancel(mut self, flag: &'a AtomicBool) -> Self {
         self.cancel = Some(flag);
         self
     }
 
-    /// Tell the time to `progress` now and then: at least every thousand steps.
+    /// Calls `progress` with the time, at least every thousand steps.
     pub fn progress(mut self, progress: impl FnMut(f64) + 'a) -> Self {
         self.progress = Some(Box::new(progress));
         self
     }
 
-    /// Give the state of the run to `take` as bytes from time to time, between steps; after every step for a zero
-    /// duration. A run that is cancelled gives it at its end, too. [`resume`](Self::resume) goes on from them.
+    /// Calls `take` with the state of the run as bytes, between steps, at intervals of this duration.
+    ///
+    /// Zero means after every step. A cancelled run also calls it at its end. [`resume`](Self::resume) continues from the
+    /// bytes.
     pub fn checkpoints(mut self, every: Duration, take: impl FnMut(&[u8]) + 'a) -> Self
     where
         PointOf<P>: Numbers,
@@ -258,9 +265,10 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
         self
     }
 
-    /// Go on from a state that [`checkpoints`](Self::checkpoints) gave of the same run, to the same bits. What the
-    /// run showed before is not shown again. Bytes that are damaged or of another run are refused by
-    /// [`run`](Self::run).
+    /// Continues from a state of the same run that [`checkpoints`](Self::checkpoints) saved, with the same results to
+    /// the bit.
+    ///
+    /// Earlier output is not shown again. [`run`](Self::run) refuses bytes that are damaged or of another run.
     pub fn resume(mut self, bytes: impl Into<Vec<u8>>) -> Self
     where
         PointOf<P>: Numbers,
@@ -269,7 +277,7 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
         self
     }
 
-    /// Report how far the invariants of the problem move, at the points of the output and at the end.
+    /// Reports the drift of the invariants of the problem, at the points of the output and at the end.
     pub fn watch_invariants(mut self) -> Self
     where
         P: Invariants,
@@ -314,16 +322,16 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
         Ok(pace)
     }
 
-    /// The run, in one's hands, from y₀. Output, events, stops and cancellation do not belong to it.
+    /// Starts a run from y₀ that you take step by step. It has no output, events, stops or cancellation.
     ///
     /// # Errors
-    /// [`RunError::Setup`] for what is wrong with the arguments.
+    /// [`RunError::Setup`] for wrong arguments.
     pub fn integrator(mut self, y0: PointOf<P>) -> Result<Integrator<'a, P, M>, RunError> {
         let pace = self.check()?;
         Ok(Integrator::new(self.problem, self.method, self.t_span, pace, y0)?)
     }
 
-    /// Run from y₀, and store the points of the output.
+    /// Runs from y₀ and stores the points of the output.
     ///
     /// # Errors
     /// [`Interrupted`]: why, and the solution up to there.
@@ -337,8 +345,9 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
         stored(done, times, points)
     }
 
-    /// Run from y₀, and show (t, y) to an observer at the points of the output. It says whether to go on, to stop,
-    /// or that it changed the state. No point is stored.
+    /// Runs from y₀ and calls an observer with (t, y) at the points of the output. Stores no points.
+    ///
+    /// The observer returns whether the run goes on or stops, or that it changed the state.
     ///
     /// # Errors
     /// [`Interrupted`]: why, and the solution up to there.
@@ -352,7 +361,7 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
         Drive::new(self, run, |t, y| observe(t, y).into()).run()
     }
 
-    /// Run from y₀, and keep what a continuous solution needs: a point for each step.
+    /// Runs from y₀ and returns a continuous solution, which stores a point for each step.
     ///
     /// # Errors
     /// As [`run`](Self::run).
@@ -376,7 +385,7 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
     }
 }
 
-/// The result of a run with its output.
+/// The result of a run, or an error with the results so far.
 fn stored<Y>(
     mut done: Result<Solution<Y>, Interrupted<Y>>,
     times: Vec<f64>,
@@ -392,14 +401,14 @@ fn stored<Y>(
     done
 }
 
-/// The tolerances of a run when none are given.
+/// The default rtol and atol.
 const DEFAULT: (f64, f64) = (1e-6, 1e-9);
 
 impl<P: Problem, M: Embedded<P>> Solve<'_, P, M>
 where
     ScalarOf<P>: Into<f64>,
 {
-    /// Steps by their error, with these tolerances and limits.
+    /// Sets an adaptive step size with these tolerances and limits.
     pub fn control(mut self, control: StepControl) -> Self {
         if let Some(Pace::Equal { grid, .. }) = &self.pace {
             let why = "the size of the steps was chosen already: give one of dt, steps, tolerances";
@@ -421,34 +430,34 @@ where
         }
     }
 
-    /// Steps by their error: rtol and atol for all parts of a point.
+    /// Sets an adaptive step size, with rtol and atol for all parts of a point.
     pub fn tolerances(self, rtol: f64, atol: f64) -> Self {
         self.with(|control| {
             Ok(StepControl { tolerance: StepControl::new(rtol, atol)?.tolerance, ..control })
         })
     }
 
-    /// Steps by their error: tolerances by part, by component, or by another rule.
+    /// Sets an adaptive step size, with tolerances by part, by component, or by another rule.
     pub fn tolerance(self, tolerance: crate::tolerance::Tolerance) -> Self {
         self.with(|control| Ok(StepControl { tolerance, ..control }))
     }
 
-    /// What rtol is relative to.
+    /// Sets what rtol is relative to.
     pub fn rule(self, rule: Rule) -> Self {
         self.with(|control| Ok(control.rule(rule)))
     }
 
-    /// Try this size first.
+    /// Sets the size of the first step.
     pub fn first_step(self, h: f64) -> Self {
         self.with(|control| control.first_step(h))
     }
 
-    /// Give up below this size, though not at the end of the span.
+    /// Ends the run with an error below this step size. Only the step at the end of the span may be smaller.
     pub fn min_step(self, h: f64) -> Self {
         self.with(|control| control.min_step(h))
     }
 
-    /// Never take a step larger than this.
+    /// Sets the largest step size.
     pub fn max_step(self, h: f64) -> Self {
         self.with(|control| control.max_step(h))
     }

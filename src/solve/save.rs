@@ -1,11 +1,11 @@
-//! The state of a run as bytes, and back, to the same bits.
+//! Saves the state of a run as bytes, and restores it to the same bits.
 //!
-//! | bytes | |
+//! | bytes | content |
 //! |---|---|
 //! | 8 | `lieflow` and the version of the format |
-//! | 8 | what the run is of: the group, the method's order, the choice of steps |
+//! | 8 | a hash of the group, the order of the method and the choice of steps |
 //! | 8 each | the numbers of the state, little endian |
-//! | 8 | a check sum of all before it |
+//! | 8 | a check sum of all bytes before |
 
 use core::hash::Hasher;
 
@@ -22,17 +22,17 @@ use crate::space::Numbers;
 /// The name of the format, and its version.
 const HEADER: [u8; 8] = *b"lieflow\x01";
 
-/// The same on every machine.
+/// A hash that is the same on every machine.
 fn hash(bytes: &[u8]) -> u64 {
     let mut hasher = FnvHasher::default();
     hasher.write(bytes);
     hasher.finish()
 }
 
-/// What gets each word of a state, to read it or to write it.
+/// The function that reads or writes each word of a state.
 type Each<'a> = dyn FnMut(&mut u64) + 'a;
 
-/// How the numbers of a point are listed.
+/// The function that lists the numbers of a point.
 pub(super) type Listing<P> = fn(&mut PointOf<P>, &mut dyn FnMut(&mut f64));
 
 fn number(each: &mut Each<'_>, x: &mut f64) {
@@ -70,7 +70,7 @@ fn write(owner: &str, words: impl FnOnce(&mut Each<'_>)) -> Vec<u8> {
     bytes
 }
 
-/// The state of these bytes, as `words` lists it.
+/// Reads a state from bytes; `words` lists its words.
 fn read(owner: &str, bytes: &[u8], mut words: impl FnMut(&mut Each<'_>)) -> Result<(), Error> {
     let refuse = |why: &str| {
         let expected = format!("the saved state of such a run, {why}");
@@ -174,18 +174,18 @@ impl<P: Problem, M: Method<P>> Integrator<'_, P, M>
 where
     PointOf<P>: Numbers,
 {
-    /// The state as bytes, from which [`restore`](Self::restore) goes on to the same bits. What belongs to the
-    /// problem and the method is not among them.
+    /// The state as bytes. [`restore`](Self::restore) continues from them with the same results, to the bit. They do not
+    /// contain the problem or the method.
     pub fn save(&mut self) -> Vec<u8> {
         let owner = self.owner();
         write(&owner, |each| self.each_word(Numbers::each_number, each))
     }
 
-    /// Go on from a state that [`save`](Self::save) gave, of a run of the same problem, method and choice of steps.
+    /// Continues from a state of [`save`](Self::save), of a run with the same problem, method and choice of steps.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] for bytes that are damaged, of another version of the format or of another run: then
-    /// the state is as it was.
+    /// [`Error::OutOfRange`] for bytes that are damaged, of another version of the format or of another run. Then the
+    /// state is unchanged.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), Error> {
         let owner = self.owner();
         read(&owner, bytes, |each| self.each_word(Numbers::each_number, each))?;
@@ -226,7 +226,7 @@ impl<P: Problem, M: Method<P>, O> Drive<'_, '_, P, M, O> {
         write(&owner, |each| self.each_word(list, each))
     }
 
-    /// Go on from such bytes.
+    /// Continues from such bytes.
     pub(super) fn read(&mut self, list: Listing<P>, bytes: &[u8]) -> Result<(), Error> {
         let owner = self.owner();
         read(&owner, bytes, |each| self.each_word(list, each))?;

@@ -1,4 +1,4 @@
-//! The driver in one call, on a state in place.
+//! The driver in one call, which changes a state in place.
 
 use super::grid::{SaveAt, TimeGrid};
 use super::solution::Interrupted;
@@ -7,15 +7,16 @@ use super::{Solve, StepControl};
 use crate::methods::{Embedded, Method};
 use crate::problems::{PointOf, Problem, ScalarOf};
 
-/// Integrate `problem` from y at the start of `grid` to its end, showing (t, y) to `observe` where
-/// `save` says. On return y is the state at the end, or the last accepted one. It is [`Solve`] in one call.
+/// Integrates `problem` from y over `grid` with a fixed step size. It is [`Solve`] in one call.
 ///
-/// Every [`RESTORE_EVERY`](super::RESTORE_EVERY) steps, or sooner where it drifts faster, a method that stays on M
-/// has its state taken back to M and to the orbit that it started on
-/// ([`Action::restore_to`](crate::Action::restore_to)): without it rounding carries g off its group, and a vector
-/// off its sphere, by some ε a step.
+/// `observe` is called with (t, y) at the points of `save`. On return y is the state at the end, or the last accepted
+/// one.
 ///
-/// Memory is allocated before the first step only.
+/// Rounding errors move g off its group, and a vector off its sphere, by some ε a step. For methods that stay on M the
+/// driver corrects this every [`RESTORE_EVERY`](super::RESTORE_EVERY) steps, or more often if the state drifts faster
+/// ([`Action::restore_to`](crate::Action::restore_to)).
+///
+/// Memory is allocated only before the first step.
 ///
 /// ```
 /// use lieflow::maps::Exp;
@@ -34,7 +35,7 @@ use crate::problems::{PointOf, Problem, ScalarOf};
 /// ```
 ///
 /// # Errors
-/// [`RunError::Setup`] before anything is observed, [`RunError::Step`] for a step that failed.
+/// [`RunError::Setup`] before anything is observed; [`RunError::Step`] for a step that failed.
 pub fn integrate<P: Problem, M: Method<P>>(
     problem: &P,
     method: &M,
@@ -46,9 +47,10 @@ pub fn integrate<P: Problem, M: Method<P>>(
     in_place(Solve::new(problem, method, grid.t_span()).grid(*grid).save(save.clone()), y, observe)
 }
 
-/// Integrate `problem` over `t_span` from y with steps that meet the tolerances of `control`, showing
-/// (t, y) to `observe` where `save` says. On return y is the state at the end, or the last accepted one. It is
-/// [`Solve`] in one call.
+/// Integrates `problem` from y over `t_span` with an adaptive step size. It is [`Solve`] in one call.
+///
+/// `control` has the tolerances. `observe` is called with (t, y) at the points of `save`. On return y is the state at the
+/// end, or the last accepted one.
 ///
 /// ```
 /// use lieflow::maps::Exp;
@@ -69,8 +71,8 @@ pub fn integrate<P: Problem, M: Method<P>>(
 /// ```
 ///
 /// # Errors
-/// [`RunError::Setup`] before anything is observed for what is wrong with the arguments, later when
-/// no step succeeds within 60 attempts or above the smallest step, or attempts run out.
+/// [`RunError::Setup`] for wrong arguments, before anything is observed. Other errors if no step succeeds within 60
+/// attempts or above the smallest step, or if the attempts run out.
 pub fn integrate_adaptive<P: Problem, M: Embedded<P>>(
     problem: &P,
     method: &M,

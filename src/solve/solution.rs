@@ -1,4 +1,4 @@
-//! What a run gives.
+//! The result of a run.
 
 use core::fmt;
 
@@ -11,7 +11,7 @@ use crate::error::Error;
 pub enum Status {
     /// The end of the span was reached.
     Finished,
-    /// An event stopped the run: its name.
+    /// An event with this name stopped the run.
     Event(String),
     /// The observer stopped the run.
     Observer,
@@ -19,7 +19,7 @@ pub enum Status {
     Cancelled,
 }
 
-/// What an observer answers.
+/// The answer of an observer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Next {
     /// Go on.
@@ -27,7 +27,7 @@ pub enum Next {
     Continue,
     /// Stop here.
     Stop,
-    /// The state was changed: go on from it. It must be on M.
+    /// The observer changed the state, and the run continues from it. It must be on M.
     Changed,
 }
 
@@ -47,11 +47,11 @@ pub struct Occurrence<Y> {
     pub t: f64,
     /// The state, before the event changed it.
     pub y: Y,
-    /// Did g rise?
+    /// True if g rises through zero.
     pub rising: bool,
 }
 
-/// How far an invariant moved.
+/// The drift of an invariant.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Drift {
@@ -81,9 +81,9 @@ pub struct Solution<Y> {
     pub y: Y,
     /// Why the run ended.
     pub status: Status,
-    /// What the run did.
+    /// The statistics of the run.
     pub stats: Stats,
-    /// How far the invariants moved, where they were watched.
+    /// The drifts of the invariants, if they were watched.
     pub drift: Vec<Drift>,
 }
 
@@ -101,17 +101,17 @@ impl<Y> Solution<Y> {
         }
     }
 
-    /// The times of an event, by its number.
+    /// The times of the event with this number.
     pub fn times_of(&self, event: usize) -> impl Iterator<Item = f64> {
         self.events.iter().filter(move |found| found.event == event).map(|found| found.t)
     }
 }
 
-/// A run that failed, with what it gave up to there.
+/// The error of a run that failed, with its results so far.
 pub struct Interrupted<Y> {
     /// Why.
     pub error: RunError,
-    /// The output and the events up to there, and the last accepted point; none where the run did not begin.
+    /// The output and the events so far, and the last accepted point; `None` if the run did not begin.
     pub solution: Option<Box<Solution<Y>>>,
 }
 

@@ -1,4 +1,4 @@
-//! What a run did, why it ended, and what takes its state back to M.
+//! The statistics of a run, its errors, and the correction of its state to M.
 
 use core::fmt;
 
@@ -9,37 +9,36 @@ use crate::methods::MapCounts;
 use crate::problems::{PointOf, Problem};
 use crate::scalar::Real;
 
-/// What a run did.
+/// The statistics of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Stats {
-    /// Steps of the run: those that were accepted.
+    /// Accepted steps.
     pub accepted: u64,
-    /// Attempts rejected, for their error or because the step failed; 0 with steps of one size.
+    /// Rejected attempts: the error was too large, or the step failed. 0 with a fixed step size.
     pub rejected: u64,
     /// Points computed within a step, for output and events.
     pub points_within: u64,
-    /// Evaluations of f, in rejected attempts and within steps too; `None` where the method does not know them.
+    /// Evaluations of f, also in rejected attempts and within steps; `None` if the method does not count them.
     pub evaluations: Option<u64>,
-    /// Ψ, dΨ⁻¹ and brackets in the attempts, not in points within a step; `None` where the method does not know
-    /// them.
+    /// Evaluations of Ψ, dΨ⁻¹ and brackets in the attempts, but not in points within a step; `None` if the method does
+    /// not count them.
     pub maps: Option<MapCounts>,
-    /// Iterations of implicit steps, by Newton's method or by a fixed point, in rejected attempts and within steps
-    /// too; 0 for explicit methods.
+    /// Iterations of implicit steps, Newton's or fixed-point, also in rejected attempts and within steps; 0 for explicit
+    /// methods.
     pub iterations: u64,
     /// The smallest accepted step, without its sign.
     pub smallest_step: f64,
     /// The largest accepted step, without its sign.
     pub largest_step: f64,
-    /// How often the state was looked at, and taken back to M where it had left it
-    /// ([`Action::restore_to`]).
+    /// How often the state was checked, and corrected to M if it had left it ([`Action::restore_to`]).
     pub restored: u64,
-    /// How often the state was left where it was, because it was too far off
-    /// ([`RESIDUAL_MAX`](crate::groups::RESIDUAL_MAX)).
+    /// How often the state was too far from M to be corrected ([`RESIDUAL_MAX`](crate::groups::RESIDUAL_MAX)).
     pub not_restored: u64,
-    /// A power of two above every residual that was seen there, ‖M⁻¹gᵀMg − 𝟙‖ on a group,
-    /// ||x|²/|x₀|² − 1| of a vector under SO(3); 0 when none was. On a compact group it stays near 1e-14. On a
-    /// non-compact one rounding level is ε‖g‖²: compare with that.
+    /// A power of two above all residuals found in these checks; 0 if there was none.
+    ///
+    /// The residual is ‖M⁻¹gᵀMg − 𝟙‖ on a group, and ||x|²/|x₀|² − 1| for a vector under SO(3). On a compact group it
+    /// stays near 1e-14. On a non-compact group compare it with the rounding level ε‖g‖².
     pub residual: f64,
 }
 
@@ -58,14 +57,18 @@ impl Stats {
     }
 }
 
-/// The driver calls [`Action::restore_to`] after every so many steps at most: rounding takes g off its
-/// group by some ε a step, and a hundred steps stay below 2e-14 at a hundredth of the cost of one.
+/// The largest number of steps between two calls of [`Action::restore_to`].
+///
+/// Rounding moves g off its group by some ε a step. After a hundred steps this is still below 2e-14, and the correction
+/// costs a hundredth of a step.
 pub const RESTORE_EVERY: u64 = 100;
-/// The number of steps in between at first, and the least there can be.
+/// The first number of steps between two corrections, and the smallest one.
 const RESTORE_EVERY_MIN: u64 = 8;
 
-/// When to look at the state again: twice as many steps after a residual below 4e-15, half as many
-/// after one above 1e-14. What drifts at an even rate stays below the second of them.
+/// The number of steps between two checks of the state.
+///
+/// It is doubled after a residual below 4e-15, and halved after one above 1e-14. A state that drifts evenly stays below
+/// 1e-14.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cadence {
     pub(super) every: u64,
@@ -86,17 +89,17 @@ impl Cadence {
     }
 }
 
-/// What takes the state of a run back to M.
+/// Corrects the state of a run to M.
 #[allow(missing_debug_implementations)] // the parts belong to the problem's types
 pub(super) struct Mender<P: Problem> {
     work: <P::Action as Action<P::Group>>::Work,
-    /// The start of the run: its orbit is where the state is taken back to.
+    /// The start of the run. The state is corrected to its orbit.
     pub(super) from: PointOf<P>,
     pub(super) cadence: Cadence,
 }
 
 impl<P: Problem> Mender<P> {
-    /// For a method that stays on M, or does not: that one is left as it is.
+    /// Makes it for a method that stays on M. For other methods it does nothing.
     pub(super) fn new(problem: &P, from: &PointOf<P>, stays_on_manifold: bool) -> Self {
         let mut cadence = Cadence::new();
         if !stays_on_manifold {
@@ -104,12 +107,12 @@ impl<P: Problem> Mender<P> {
         }
         Mender { work: problem.action().work(problem.group()), from: from.clone(), cadence }
     }
-    /// The number of steps after which y is looked at again.
+    /// The number of the step after which y is checked again.
     #[inline]
     pub(super) fn next(&self) -> u64 {
         self.cadence.next
     }
-    /// After so many steps: is it time to look at y?
+    /// True if y has to be checked after so many steps.
     #[inline]
     pub(super) fn after(&mut self, steps: u64, problem: &P, y: &mut PointOf<P>, stats: &mut Stats) {
         if steps == self.cadence.next {
@@ -123,7 +126,7 @@ impl<P: Problem> Mender<P> {
             }
         }
     }
-    /// Go on from another point: it must be on M, to 1e-6, and is taken there; its orbit is the new one.
+    /// Starts from another point. It must be on M within 1e-6, and is corrected to M. Its orbit is the new one.
     pub(super) fn move_to(&mut self, problem: &P, y: &mut PointOf<P>) -> Result<(), Error> {
         let (action, group) = (problem.action(), problem.group());
         action.check(group, y)?;
@@ -141,7 +144,7 @@ impl<P: Problem> Mender<P> {
     }
 }
 
-/// Why a run ended before its time.
+/// Why a run failed.
 #[derive(Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RunError {
@@ -149,7 +152,7 @@ pub enum RunError {
     /// of f is not in 𝔤 ([`LieAlgebra::check`](crate::LieAlgebra::check)).
     #[error(transparent)]
     Setup(#[from] Error),
-    /// A step of a given size failed. The state is the last accepted one; what was observed stands.
+    /// A step of a fixed size failed. The state is the last accepted one, and earlier output is valid.
     #[error(transparent)]
     Step(#[from] Failure),
     /// No step from t was small enough.
@@ -160,13 +163,13 @@ pub enum RunError {
     StepSizeUnderflow {
         /// The time of the last accepted point.
         t: f64,
-        /// The last step that was tried, or would have been.
+        /// The last step size that was tried, or the next one.
         h: f64,
         /// Steps accepted.
         accepted: u64,
         /// Attempts rejected.
         rejected: u64,
-        /// What the last attempt failed with; `None` when its error was too large.
+        /// The failure of the last attempt; `None` if its error was too large.
         source: Option<StepError>,
     },
     /// The attempts were used up.
@@ -226,7 +229,7 @@ fn reason(source: &Option<StepError>) -> String {
 }
 
 impl RunError {
-    /// The steps that were accepted, where the error knows them.
+    /// The number of accepted steps, if the error has it.
     pub fn accepted(&self) -> Option<u64> {
         match self {
             RunError::Step(failure) => Some(failure.step),

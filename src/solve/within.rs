@@ -1,4 +1,4 @@
-//! Points within the last step, by the continuous extension of the method.
+//! Points within the last step, by dense output.
 
 use super::integrator::{Integrator, Looked, Pacer, lit};
 use super::stats::RunError;
@@ -18,7 +18,7 @@ impl<P: Problem, M: Method<P>> Integrator<'_, P, M> {
         self.within(t, at)
     }
 
-    /// `at` ← the continuous extension of the last step at t, strictly within it.
+    /// `at` ← the dense output of the last step at t, strictly within it.
     pub(super) fn within(&mut self, t: f64, at: &mut PointOf<P>) -> Result<(), RunError> {
         let (action, group) = (self.problem.action(), self.problem.group());
         let Step { t: start, h, .. } = self.last;
@@ -58,7 +58,7 @@ impl<P: Problem, M: Method<P>> Integrator<'_, P, M> {
             .map_err(|source| RunError::Within { t: start, h, source })
     }
 
-    /// Make the continuous extension of the last step ready.
+    /// Prepares the dense output of the last step.
     fn prepare(&mut self) -> Result<(), StepError> {
         if self.looked_at == Looked::Prepared {
             return Ok(());
@@ -76,14 +76,14 @@ impl<P: Problem, M: Method<P>> Integrator<'_, P, M> {
         Ok(())
     }
 
-    /// The workspace does not know the last step.
+    /// Records that the workspace no longer holds the last step.
     pub(super) fn forget_workspace(&mut self) {
         if self.looked_at != Looked::Nothing {
             self.looked_at = Looked::Stale;
         }
     }
 
-    /// Take the last step again, so that the workspace knows it. Its iterations were counted before.
+    /// Repeats the last step, so that the workspace holds it. Its iterations are not counted again.
     fn repeat(&mut self) -> Result<(), StepError> {
         let step = lit::<P>(self.last);
         let counted = self.method.iterations(&self.work);
@@ -109,7 +109,7 @@ impl<P: Problem, M: Method<P>> Integrator<'_, P, M> {
         repeated
     }
 
-    /// Go to another step, which was taken before: what a continuous solution does.
+    /// Goes to another earlier step, for a continuous solution.
     pub(super) fn look_at(&mut self, step: Step<f64>, from: &PointOf<P>) {
         self.problem.action().assign(self.problem.group(), from, &mut self.from);
         self.last = step;

@@ -1,4 +1,4 @@
-//! A problem ready to run, whatever its types: one dynamic dispatch a run.
+//! A problem of any type, ready to run. A run makes one dynamic call.
 
 use core::cell::RefCell;
 use core::fmt::{self, Debug};

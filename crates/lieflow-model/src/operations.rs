@@ -1,6 +1,6 @@
-//! The operations of a run, by running it: on numbers that count what is done to them, where a problem is
-//! made of vectors, and by what matrices say that they have computed ([`lieflow::scalar::tally`]), where it
-//! is made of those.
+//! Counts the operations of a run, by running it.
+//!
+//! Problems on vectors run with numbers that count. Matrices report their operations ([`lieflow::scalar::tally`]).
 
 use lieflow::catalog::MethodSpec;
 use lieflow::methods::{AnyMethod, Method};

@@ -1,4 +1,4 @@
-//! The rows of a run: values that keep the names of their quantities until they are written.
+//! The rows of a run: values with the names of their quantities.
 
 use core::ops::{Index, Range};
 

@@ -1,18 +1,18 @@
-//! lieflow's matrix exponential from C, Python or any language that loads a shared library:
+//! lieflow's matrix exponential for C, Python or any language that loads a shared library.
 //!
 //! ```c
-//! // CPU seconds of `reps` evaluations; NaN for a name or n that there is not. Column-major.
+//! // Returns the CPU seconds of `reps` evaluations; NaN for an unknown name or n. Matrices by columns.
 //! double lieflow_run(const char* name, size_t n, const double* a, double* out, size_t reps);
 //! ```
 //!
 //! | name | computes |
 //! |---|---|
-//! | `exp` | exp(a); as a rotation where a is exactly skew |
-//! | `exp_pade` | the same by Padé approximants alone |
-//! | `exp_batch` | 1000 copies of a side by side, n ≤ 16; the time of one |
+//! | `exp` | exp(a); a rotation if a is exactly skew |
+//! | `exp_pade` | the same by Padé approximants only |
+//! | `exp_batch` | 1000 copies of a at once, n ≤ 16; returns the time of one |
 //! | `rodrigues` | the closed form on so(3), n = 3 |
 //!
-//! The loop runs on this side, so that no call from an interpreter is timed. `cargo build --release -p
+//! The loop runs inside the library, so the time has no calls from an interpreter. `cargo build --release -p
 //! lieflow-c-abi` makes `liblieflow_c.so`.
 
 use core::ffi::{CStr, c_char};
@@ -24,7 +24,7 @@ use lieflow::groups::So3;
 use lieflow::maps::{CoordinateMap, Exp};
 use nalgebra::Vector3;
 
-/// No power of two: entries of one matrix would meet in one set of the cache.
+/// Copies in a batch. Not a power of two, because then entries of one matrix would share one set of the cache.
 const COPIES: usize = 1000;
 
 /// CPU time of this thread in seconds.
@@ -79,7 +79,7 @@ fn run(name: &str, n: usize, a: &[f64], out: &mut [f64], reps: usize) -> f64 {
         "exp_batch" if n <= 16 => {
             let many: Vec<f64> = a.iter().flat_map(|x| [*x; COPIES]).collect();
             let (mut batch, mut result) = (ExponentialBatch::new(n), many.clone());
-            // As many batches as there are COPIES evaluations asked for.
+            // One batch for each COPIES evaluations.
             let rounds = reps.div_ceil(COPIES);
             let time =
                 timed(rounds, || batch.exp(black_box(&many), structure, &mut result).is_ok());
@@ -107,7 +107,7 @@ fn run(name: &str, n: usize, a: &[f64], out: &mut [f64], reps: usize) -> f64 {
     time
 }
 
-/// See the crate's documentation.
+/// Runs and times one function; the documentation of the crate has the arguments.
 ///
 /// # Safety
 /// `name` is a C string; `a` and `out` are n² doubles, by columns.
@@ -122,7 +122,7 @@ pub unsafe extern "C" fn lieflow_run(
     if name.is_null() || a.is_null() || out.is_null() {
         return f64::NAN;
     }
-    // SAFETY: the caller's promise.
+    // SAFETY: the caller guarantees it, see above.
     let (name, a, out) = unsafe {
         let a = core::slice::from_raw_parts(a, n * n);
         (CStr::from_ptr(name), a, core::slice::from_raw_parts_mut(out, n * n))

@@ -1,4 +1,4 @@
-//! exp of many small matrices, as many side by side as there are lanes.
+//! exp of many small matrices at once, one in each SIMD lane.
 
 use core::ops::Range;
 
@@ -14,13 +14,12 @@ use super::taylor::{
 use super::{Exponential, NORM_MAX_SKEW, Structure};
 use crate::error::StepError;
 
-/// exp of many n×n matrices that lie entry by entry: entry (i, j) of matrix m of `count` stands at
-/// `(j·n + i)·count + m`.
+/// exp of many n×n matrices. Entry (i, j) of matrix m of `count` is at `(j·n + i)·count + m`.
 ///
-/// The fast way is n ≤ 8, where a register holds one entry of 8, 4 or 2 matrices (AVX-512, AVX2, the
-/// baseline; chosen at run time): the Taylor polynomials of [`Exponential`] with a number of
-/// squarings for each matrix, and the same accuracy. Matrices that need more care, triangular or with
-/// a norm beyond 16 where nothing is known of them, and larger n go through [`Exponential`] one by one.
+/// For n ≤ 8 a register holds one entry of 8, 4 or 2 matrices (AVX-512, AVX2, the baseline; chosen at run time). The code
+/// evaluates the Taylor polynomials of [`Exponential`], with a number of squarings for each matrix, and has the same
+/// accuracy. Larger n go through [`Exponential`] one by one. So do difficult matrices: triangular ones, and general
+/// ones with a norm above 16.
 ///
 /// ```
 /// use lieflow::dense::{ExponentialBatch, Structure};
@@ -42,7 +41,7 @@ pub struct ExponentialBatch {
 }
 
 impl ExponentialBatch {
-    /// For n×n matrices. Nothing allocates after this.
+    /// Makes the workspace for n×n matrices. Nothing allocates after this.
     pub fn new(n: usize) -> Self {
         ExponentialBatch {
             n,
@@ -56,8 +55,8 @@ impl ExponentialBatch {
     /// out ← exp of every matrix of u.
     ///
     /// # Errors
-    /// As [`Exponential::exp`], for the first matrix that fails: what `out` holds then is not to be
-    /// used. [`StepError::Shape`] where u has not k·n² numbers or `out` not as many as u.
+    /// As [`Exponential::exp`], for the first matrix that fails; `out` is then undefined.
+    /// [`StepError::Shape`] if the length of u is not k·n², or `out` has another length than u.
     pub fn exp(
         &mut self,
         u: &[f64],
@@ -100,8 +99,7 @@ impl ExponentialBatch {
     }
 }
 
-/// The matrices from `first` on. Returns the first group of lanes that needs more care, and empty at
-/// the end where there is none.
+/// Processes the matrices from `first` on. Returns the first group of lanes with a difficult matrix, or an empty range.
 struct Batch<'a, const N: usize> {
     u: &'a [f64],
     skew: bool,
@@ -129,7 +127,7 @@ impl<const N: usize> WithSimd for Batch<'_, N> {
     }
 }
 
-/// exp of each matrix; `None` where one of them needs more care.
+/// exp of each matrix; `None` if one of them is difficult.
 #[inline(always)]
 fn kernel<S: Simd, const N: usize>(simd: S, mut a: Lanes<S, N>, skew: bool) -> Option<Lanes<S, N>> {
     let norms = a.norms(simd);
@@ -191,7 +189,7 @@ fn halvings_skew(norms: &PerLane, n6: &PerLane) -> [u32; 8] {
     s
 }
 
-/// By the norms of the powers. A triangle is squared in a way of its own: `None`.
+/// By the norms of the powers. `None` for a triangle, which needs special squarings.
 #[inline(always)]
 fn halvings_general<S: Simd, const N: usize>(
     simd: S,

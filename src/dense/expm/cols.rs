@@ -1,7 +1,7 @@
 //! N×N matrices in registers: const-size columns padded to whole SIMD lanes.
 //!
-//! Everything is `inline(always)`, so that it is compiled with the instruction set of the caller;
-//! the products alone stand out of line behind [`Simd::vectorize`].
+//! Everything is `inline(always)`, so that it is compiled with the instruction set of the caller. Only the products are
+//! separate functions, behind [`Simd::vectorize`].
 
 use faer::{Mat, MatRef};
 use pulp::{Arch, NullaryFnOnce, Simd, WithSimd, bytemuck};
@@ -11,15 +11,15 @@ use super::taylor::Packed;
 /// The largest n with a kernel.
 pub(in crate::dense) const N_MAX: usize = 16;
 
-/// What is done with matrices in registers.
+/// An operation on matrices in registers.
 pub(in crate::dense) trait Kernel {
-    /// The result; the default where there is no kernel for n.
+    /// The result; the default if there is no kernel for n.
     type Output: Default;
-    /// Run with N×N matrices, N ≥ n, whose columns are K registers. `inline(always)`, please.
+    /// Runs with N×N matrices, N ≥ n, whose columns are K registers. Implement it `inline(always)`.
     fn call<S: Simd, const N: usize, const K: usize>(self, simd: S) -> Self::Output;
 }
 
-/// `op` for n×n matrices, 0 < n ≤ [`N_MAX`], with the widest registers there are.
+/// Runs `op` for n×n matrices, 0 < n ≤ [`N_MAX`], with the widest registers of the machine.
 #[inline]
 pub(in crate::dense) fn dispatch<Op: Kernel>(arch: Arch, n: usize, op: Op) -> Op::Output {
     macro_rules! kernels {
@@ -100,7 +100,7 @@ impl<S: Simd, const N: usize, const K: usize> Cols<S, N, K> {
         Cols([[simd.splat_f64s(0.0); K]; N])
     }
 
-    /// From an n×n matrix with n ≤ N, padded with zeros. Its columns or its rows lie in one piece.
+    /// From an n×n matrix with n ≤ N, padded with zeros. Its columns or its rows are contiguous.
     #[inline(always)]
     pub(in crate::dense) fn load(simd: S, a: MatRef<'_, f64>) -> Self {
         match a.row_stride() {
@@ -258,7 +258,7 @@ impl<S: Simd, const N: usize, const K: usize> NullaryFnOnce for Mul<'_, S, N, K>
 }
 
 impl<S: Simd, const N: usize, const K: usize> Mul<'_, S, N, K> {
-    /// In line where a call costs as much as the product.
+    /// Inlined, because a call costs as much as the product.
     #[inline(always)]
     fn run(self) {
         if N <= 4 { self.call() } else { self.simd.vectorize(self) }

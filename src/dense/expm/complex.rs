@@ -1,5 +1,6 @@
-//! exp of complex matrices: the Taylor polynomials of [`taylor`](super::taylor), scaled by the norms of
-//! the powers; cost 3 to 5 products and one for each squaring.
+//! exp of complex matrices, by the Taylor polynomials of [`taylor`](super::taylor).
+//!
+//! They are scaled by the norms of the powers. Cost: 3 to 5 products, and one for each squaring.
 //!
 //! On u(n) u is normal, so ‖u⁶‖₁^(1/6) bounds ‖u‖₂, and Newton–Schulz puts squared results back on U(n).
 
@@ -15,10 +16,10 @@ use crate::error::StepError;
 use crate::scalar::{Ops, tally};
 
 const ONE: c64 = c64::new(1.0, 0.0);
-/// e^mean must neither vanish nor overflow where the result does not.
+/// The bound of the mean: e^mean must not underflow or overflow if the result does not.
 const MEAN_MAX: f64 = 650.0;
 
-/// exp of complex n×n matrices, with the workspace that it needs: eight matrices.
+/// exp of complex n×n matrices, with a workspace of eight matrices.
 ///
 /// [`Structure::Skew`] says that u is skew-Hermitian, u ∈ u(n), so that exp(u) is unitary; the traceless
 /// ones are su(n).
@@ -36,29 +37,28 @@ const MEAN_MAX: f64 = 650.0;
 /// ```
 #[derive(Debug)]
 pub struct ComplexExponential {
-    /// a, a², a³, a⁶, with a = u or what the trace leaves of it, scaled.
+    /// a, a², a³, a⁶, where a is u, scaled, with or without its trace.
     powers: [Mat<c64>; 4],
     work: [Mat<c64>; 4],
     choice: ExpmChoice,
 }
 
 impl ComplexExponential {
-    /// Workspace for n×n matrices. Nothing allocates after this.
+    /// Makes the workspace for n×n matrices. Nothing allocates after this.
     pub fn new(n: usize) -> Self {
         let four = || core::array::from_fn(|_| Mat::zeros(n, n));
         ComplexExponential { powers: four(), work: four(), choice: ExpmChoice::default() }
     }
 
-    /// What the last call chose.
+    /// The choice of the last call.
     pub fn choice(&self) -> ExpmChoice {
         self.choice
     }
 
     /// out ← exp(u), and which approximant was taken.
     ///
-    /// The relative error is a small multiple of ε·max(1, ‖u‖) on u(n), where ‖out*out − 𝟙‖_F ≤ 8√n ε at
-    /// every norm; elsewhere of ε times the condition number of exp at u, but for matrices far from
-    /// normal.
+    /// On u(n) the relative error is a small multiple of ε·max(1, ‖u‖), and ‖out*out − 𝟙‖_F ≤ 8√n ε at every norm.
+    /// Elsewhere it is a small multiple of ε times the condition number of exp at u, except for matrices far from normal.
     ///
     /// # Errors
     /// As [`Exponential::exp`](super::Exponential::exp).
@@ -111,7 +111,7 @@ impl ComplexExponential {
         }
     }
 
-    /// a ← a − mean·𝟙 where that halves the norm; returns the mean and the norm.
+    /// a ← a − mean·𝟙 if that halves the norm. Returns the mean and the norm.
     fn without_trace(&mut self, norm: f64) -> (c64, f64) {
         let (n, zero) = (self.powers[0].nrows(), c64::new(0.0, 0.0));
         let a = &mut self.powers[0];
@@ -211,7 +211,7 @@ impl ComplexExponential {
     }
 }
 
-/// A complex product is four real ones; that is how it is counted too.
+/// A complex product is four real ones, and is counted so.
 fn tally_product(n: usize, accum: Accum) {
     let more = if matches!(accum, Accum::Add) { 2 * n * n } else { 0 };
     tally(|| Ops::dots(2 * n * n, 2 * n) + Ops::adds(more));

@@ -1,4 +1,4 @@
-//! What can be asked for beside exp(u): its condition, and exp(u)·x without exp(u).
+//! The condition number of exp(u), and exp(u)·x without exp(u).
 
 use faer::{Mat, MatRef};
 
@@ -13,20 +13,20 @@ use crate::error::StepError;
 pub enum ApplyChoice {
     /// exp(u) was formed.
     Formed(ExpmChoice),
-    /// Taylor series of exp(u/s)·x, s times over.
+    /// The Taylor series of exp(u/s)·x, s times.
     Series {
         /// s.
         steps: u32,
-        /// Products u·x taken in all.
+        /// The number of products u·x.
         products: u32,
     },
 }
 
 impl Exponential {
-    /// An estimate from below of the relative condition number of exp at u,
-    /// ‖L‖_F ‖u‖_F/‖exp(u)‖_F with L the Fréchet derivative: the power method on L*L, at most five
-    /// rounds. The error to expect of exp(u) is ε times this. Allocates; the cost is that of ten
-    /// exponentials of size 2n.
+    /// Estimates the relative condition number of exp at u from below.
+    ///
+    /// It is ‖L‖_F ‖u‖_F/‖exp(u)‖_F with the Fréchet derivative L, by at most five rounds of the power method on L*L. The
+    /// expected error of exp(u) is ε times this number. Allocates; the cost is that of ten exponentials of size 2n.
     ///
     /// # Errors
     /// As [`exp`](Self::exp).
@@ -77,13 +77,13 @@ impl Exponential {
         Ok(best.max(value) * size)
     }
 
-    /// x ← exp(u)·x for the columns of x, by the cheaper of two ways: the series of exp(u/s)x, or
-    /// exp(u) itself. The first takes some 11‖u‖₁ products u·x.
+    /// x ← exp(u)·x for the columns of x, by the cheaper of two ways.
     ///
-    /// Allocates three matrices of the size of x, and one n×n where exp(u) is formed.
+    /// The first is the series of exp(u/s)x, with about 11‖u‖₁ products u·x. The second forms exp(u). Allocates three
+    /// matrices of the size of x, and one n×n if exp(u) is formed.
     ///
     /// # Errors
-    /// As [`exp`](Self::exp); [`StepError::Shape`] also where x has not n rows.
+    /// As [`exp`](Self::exp); [`StepError::Shape`] also if x does not have n rows.
     pub fn apply(
         &mut self,
         u: &Mat<f64>,
@@ -140,7 +140,7 @@ fn finite(x: &Mat<f64>, choice: ApplyChoice) -> Result<ApplyChoice, StepError> {
     }
 }
 
-/// max|x_ij| and ‖x‖_F over it: their product may leave the range where no entry does.
+/// max|x_ij| and ‖x‖_F/max|x_ij|. Their product may overflow although no entry does.
 fn scaled_norm(x: MatRef<'_, f64>) -> (f64, f64) {
     let top = x.norm_max();
     let mut sum = 0.0;

@@ -1,5 +1,4 @@
-//! exp of a matrix of which nothing is known: balancing, trace reduction, power norms, triangular
-//! squaring.
+//! exp of a general matrix, with balancing, trace reduction, norms of powers, and triangular squaring.
 //!
 //! Sources: A. H. Al-Mohy, N. J. Higham, A new scaling and squaring algorithm for the matrix
 //! exponential, SIAM J. Matrix Anal. Appl. 31 (2009) 970–989 (scaling by ‖aᵏ‖^(1/k) with the safeguard
@@ -47,7 +46,7 @@ impl Expm {
         self.exp_of_a(norm, pade_only, out);
     }
 
-    /// out ← exp(a), with ‖a‖₁; a is lost.
+    /// out ← exp(a), with ‖a‖₁. a is overwritten.
     fn exp_of_a(&mut self, mut norm: f64, pade_only: bool, out: &mut Mat<f64>) {
         let n = self.a.nrows();
         let shape = shape(&self.a);
@@ -105,15 +104,15 @@ impl Expm {
         self.choice = choice;
     }
 
-    /// Would balancing leave every row and column as it is?
+    /// True if balancing would change no row and no column.
     fn is_balanced(&mut self) -> bool {
         let [rows, cols] = &mut self.vectors;
         abs_sums(&self.a, rows, cols);
         rows.iter().zip(cols.iter()).all(|(r, c)| imbalance(*c, *r).is_none())
     }
 
-    /// a ← D⁻¹aD with powers of two in D, until rows and columns are of one size. True if that made
-    /// the norm four times smaller; else a is of no use.
+    /// a ← D⁻¹aD with powers of two in D, until rows and columns have about the same size. True if the norm is then
+    /// four times smaller; otherwise a is undefined.
     fn balance(&mut self, norm: f64) -> bool {
         let n = self.a.nrows();
         self.exponents.fill(0);
@@ -145,10 +144,11 @@ impl Expm {
         norm1(self.a.as_ref()) <= 0.25 * norm
     }
 
-    /// out ← D·out·D⁻¹. False if that may have cost more digits than the smaller norm has saved: rounding
-    /// is ε‖out‖ in every entry before, and where D is steep and the result is not (a triangle in
-    /// disguise, D. S. Watkins, A case where balancing is harmful, ETNA 23 (2006)) some of it outgrows
-    /// what the norm of x, which is ‖x‖ = `norm`, explains.
+    /// out ← D·out·D⁻¹. False if this may cost more digits than the smaller norm has saved.
+    ///
+    /// Before it the rounding error is ε‖out‖ in every entry. If the entries of D differ much and those of the result
+    /// do not (a permuted triangle, D. S. Watkins, A case where balancing is harmful, ETNA 23 (2006)), some errors
+    /// become larger than expected from ‖x‖ = `norm`.
     fn unbalance(&mut self, norm: f64, out: &mut Mat<f64>) -> bool {
         let before = norm1(out.as_ref()).log2();
         let mut steepest = 0;
@@ -168,8 +168,8 @@ impl Expm {
         before + f64::from(steepest) <= norm1(out.as_ref()).log2() + norm.log2() + 3.0
     }
 
-    /// out ← a Taylor polynomial at 2⁻ˢa, where that is as good as Padé: its degree, s. A solve
-    /// with n right-hand sides costs more than the two or three squarings that it saves.
+    /// out ← a Taylor polynomial at 2⁻ˢa, if it is as good as Padé. Returns its degree and s. The solve of Padé, with n
+    /// right-hand sides, costs more than the two or three squarings that it saves.
     fn taylor(&mut self, norm: f64, out: &mut Mat<f64>) -> Option<(usize, u32)> {
         if norm > 1e3 {
             return None;
@@ -274,8 +274,7 @@ impl Expm {
     }
 }
 
-/// The power of two that makes a column of size c and a row of size r one size, where that makes
-/// their sum smaller.
+/// The power of two that makes a column of size c and a row of size r equally large, if this makes their sum smaller.
 fn imbalance(c: f64, r: f64) -> Option<i32> {
     // Most pairs are within a factor of two; no logarithm is needed to see it.
     if c == 0.0 || r == 0.0 || !f64::is_finite(c + r) || (c < 2.0 * r && r < 2.0 * c) {
@@ -297,7 +296,7 @@ fn shape(a: &Mat<f64>) -> Shape {
     }
 }
 
-/// The diagonal and the one above it of exp(c·a) for upper triangular a, from their formulas.
+/// The diagonal and the first superdiagonal of exp(c·a) for upper triangular a, from their formulas.
 fn exact_bands(a: &Mat<f64>, c: f64, out: &mut Mat<f64>) {
     // A product and an exponential on the diagonal; three and two of a quotient beside it.
     tally(|| (Ops::muls(4) + Ops::adds(2) + Ops::divs(1) + Ops::trigs(3)) * a.ncols());

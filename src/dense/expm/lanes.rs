@@ -1,4 +1,4 @@
-//! As many N×N matrices as there are lanes, side by side: every entry is a register.
+//! One N×N matrix in each SIMD lane: every entry is a register.
 
 use pulp::{NullaryFnOnce, Simd, bytemuck};
 
@@ -8,7 +8,7 @@ use super::taylor::Packed;
 #[repr(align(64))]
 pub(super) struct Lanes<S: Simd, const N: usize>(pub(super) [[S::f64s; N]; N]);
 
-/// One number for each lane; those beyond are zero.
+/// One number for each lane; unused lanes are zero.
 pub(super) type PerLane = [f64; 8];
 
 impl<S: Simd, const N: usize> Clone for Lanes<S, N> {
@@ -111,7 +111,7 @@ impl<S: Simd, const N: usize> Lanes<S, N> {
         simd.reduce_sum_f64s(sum) == 0.0
     }
 
-    /// Each matrix times its own factor.
+    /// Multiplies each matrix by its own factor.
     #[inline(always)]
     pub(super) fn scale(&mut self, simd: S, factors: &PerLane) {
         let f = spread::<S>(factors);

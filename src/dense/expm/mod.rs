@@ -3,12 +3,12 @@
 //! | | n ≤ 16 | larger n |
 //! |---|---|---|
 //! | so(n) | Taylor with few products, one kernel ([`taylor`], [`small`]) | cos/sin split, half products ([`skew`]) |
-//! | any matrix | the same; in doubt as for larger n | Taylor or Padé by cost, balancing, power norms ([`general`]) |
-//! | Padé asked for | Padé 3, 5, 7, 9, 13 ([`pade`]) | the same |
+//! | any matrix | the same; difficult ones as for larger n | Taylor or Padé by cost, balancing, power norms ([`general`]) |
+//! | Padé by request | Padé 3, 5, 7, 9, 13 ([`pade`]) | the same |
 //! | many matrices | n ≤ 8: one matrix a lane ([`batch`], [`lanes`]) | one by one |
 //! | complex | Taylor by the norms of powers ([`complex`]) | the same |
 //!
-//! The result of squarings on so(n) is put back on the group by a residual-form Newton–Schulz step.
+//! After squarings on so(n) a Newton–Schulz step in residual form puts the result back on the group.
 
 mod batch;
 pub(super) mod cols;
@@ -40,13 +40,13 @@ pub enum Approximant {
     /// The \[m/m\] Padé approximant.
     #[default]
     Pade,
-    /// The Taylor polynomial of degree m, by products alone.
+    /// The Taylor polynomial of degree m, by products only.
     Taylor,
-    /// C(u²) + u·S(u²) of degree m on so(n), by products alone.
+    /// C(u²) + u·S(u²) of degree m on so(n), by products only.
     CosSin,
 }
 
-/// Which approximant was taken. Tests assert it, not only the result.
+/// The approximant that was taken. Tests check it and the result.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct ExpmChoice {
@@ -62,10 +62,10 @@ pub struct ExpmChoice {
     pub balanced: bool,
 }
 
-/// What is known of the argument.
+/// The structure of the argument.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Structure {
-    /// Nothing.
+    /// A general matrix.
     General,
     /// u is skew-symmetric, so that exp(u) is a rotation.
     Skew,
@@ -74,7 +74,7 @@ pub enum Structure {
 /// Above this norm no digit of a rotation's angle has a meaning.
 const NORM_MAX_SKEW: f64 = 1e15;
 
-/// exp of n×n matrices, with the workspace that it needs: nine matrices.
+/// exp of n×n matrices, with a workspace of nine matrices.
 ///
 /// ```
 /// use faer::mat;
@@ -90,12 +90,12 @@ const NORM_MAX_SKEW: f64 = 1e15;
 pub struct Exponential(Expm);
 
 impl Exponential {
-    /// Workspace for n×n matrices. Nothing allocates after this but where it is said.
+    /// Makes the workspace for n×n matrices. Nothing allocates after this, except functions that say so.
     pub fn new(n: usize) -> Self {
         Exponential(Expm::new(n))
     }
 
-    /// Take Padé approximants only, at every n and norm.
+    /// Takes only Padé approximants, at every n and norm.
     pub fn insist_on_pade(mut self) -> Self {
         self.0.pade_only = true;
         self
@@ -108,8 +108,8 @@ impl Exponential {
     ///
     /// # Errors
     /// [`StepError::Shape`] when one of the two matrices is not n×n, [`StepError::NotFinite`] when u or
-    /// exp(u) is not finite, [`StepError::NormTooLarge`] for a skew u beyond 1e15, where no digit of an
-    /// angle is left.
+    /// exp(u) is not finite, [`StepError::NormTooLarge`] for a skew u with a norm above 1e15, where no digit
+    /// of an angle is left.
     pub fn exp(
         &mut self,
         u: &Mat<f64>,

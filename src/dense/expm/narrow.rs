@@ -7,9 +7,9 @@ use crate::error::StepError;
 
 /// exp of n×n matrices of `f32`.
 ///
-/// It computes in `f64`: the result is exp(u) rounded to `f32` wherever the condition
-/// number of exp at u is below 1e8, which arithmetic in `f32` would not give at any norm. Up to n = 16 that
-/// costs nothing to speak of; for large n a product in `f64` takes twice the time of one in `f32`.
+/// It computes in `f64`. So the result is exp(u) rounded to `f32`, if the condition number of exp at u is below 1e8.
+/// Arithmetic in `f32` would never be so accurate. Up to n = 16 this costs almost nothing; for large n a product in
+/// `f64` takes twice as long as in `f32`.
 #[derive(Debug)]
 pub struct ExponentialF32 {
     wide: Exponential,
@@ -18,7 +18,7 @@ pub struct ExponentialF32 {
 }
 
 impl ExponentialF32 {
-    /// Workspace for n×n matrices. Nothing allocates after this.
+    /// Makes the workspace for n×n matrices. Nothing allocates after this.
     pub fn new(n: usize) -> Self {
         let z = || Mat::zeros(n, n);
         ExponentialF32 { wide: Exponential::new(n), u: z(), g: z() }
@@ -27,7 +27,7 @@ impl ExponentialF32 {
     /// out ← exp(u), and which approximant was taken.
     ///
     /// # Errors
-    /// As [`Exponential::exp`]; [`StepError::NotFinite`] also where exp(u) leaves the range of `f32`.
+    /// As [`Exponential::exp`]; [`StepError::NotFinite`] also if exp(u) overflows `f32`.
     pub fn exp(
         &mut self,
         u: &Mat<f32>,

@@ -34,7 +34,7 @@ pub(super) const THETA: [(usize, f64); 5] = [
 ];
 
 impl Expm {
-    /// The even powers of a that a degree needs, but for a⁸.
+    /// The even powers of a for a degree, except a⁸.
     pub(super) fn even_powers(&mut self, degree: usize) {
         let Expm { a, a2, a4, a6, .. } = self;
         mul(a2, a.as_ref(), a.as_ref());
@@ -46,7 +46,7 @@ impl Expm {
         }
     }
 
-    /// out ← the \[m/m\] approximant at a, whose even powers are there.
+    /// out ← the \[m/m\] approximant at a. Its even powers must be computed before.
     pub(super) fn pade(&mut self, degree: usize, out: &mut Mat<f64>) {
         let Expm { a, a2, a4, a6, u, v, t, lu, .. } = self;
         match degree {

@@ -1,8 +1,8 @@
-//! exp on so(n) by products of which every one is symmetric or skew: exp(u) = C(u²) + u·S(u²).
+//! exp on so(n) by symmetric and skew products: exp(u) = C(u²) + u·S(u²).
 //!
-//! C(−z) ≈ cos √z and S(−z) ≈ sin √z/√z are polynomials of degree m in b = u², symmetric, found by
-//! interpolation in the Chebyshev nodes of \[0, θ²\]; u is normal, so a bound of the scalar error on
-//! \[0, θ\] bounds that of the matrix: 2.8e-17 for every row.
+//! C(−z) ≈ cos √z and S(−z) ≈ sin √z/√z are polynomials of degree m in the symmetric matrix b = u², by
+//! interpolation at the Chebyshev nodes of \[0, θ²\]. u is normal, so the bound of the scalar error on \[0, θ\] also
+//! bounds the error of the matrix: 2.8e-17 for every row.
 //!
 //! | degree 2m+1 | θ | half products |
 //! |---|---|---|
@@ -121,7 +121,7 @@ impl Expm {
         self.rotate_back(Approximant::CosSin, degree, squarings, out);
     }
 
-    /// out ← out^(2^squarings), put back on the group: the choice made is complete.
+    /// out ← out^(2^squarings), put back on the group. Completes the choice.
     pub(super) fn rotate_back(
         &mut self,
         kind: Approximant,

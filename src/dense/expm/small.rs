@@ -11,12 +11,12 @@ use super::taylor::{
 use super::{Approximant, ExpmChoice, NORM_MAX_SKEW, Structure};
 use crate::scalar::{Ops, tally};
 
-/// Up to this norm a matrix of which nothing is known is scaled by its norm.
+/// Up to this norm a general matrix is scaled by its norm.
 pub(super) const PLAIN: f64 = 16.0;
-/// Beyond this norm the kernel leaves a matrix of which nothing is known to the careful path.
+/// Above this norm the kernel leaves a general matrix to [`general`](super::general).
 const NORM_MAX: f64 = 1e3;
 
-/// out ← exp(x) for n ≤ 16; `None` where the matrix needs more care than this gives, or is not finite.
+/// out ← exp(x) for n ≤ 16; `None` if the matrix is difficult or not finite.
 pub(super) fn exp(
     arch: Arch,
     x: &Mat<f64>,
@@ -71,7 +71,7 @@ impl Kernel for Exp<'_> {
     }
 }
 
-/// The operations on n×n matrices, whatever the padding of the kernel.
+/// The operations on n×n matrices. They do not depend on the padding of the kernel.
 #[derive(Clone, Copy)]
 struct Cost(usize);
 
@@ -100,8 +100,8 @@ impl Cost {
     fn norm(self) -> Ops {
         Ops::adds(self.0 * (self.0 - 1))
     }
-    /// exp by the polynomial of a degree, with so many norms, squarings and corrections. Said once, for a
-    /// kernel of a hundred instructions notices each time.
+    /// exp by the polynomial of a degree, with so many norms, squarings and corrections. Reported once, because each
+    /// report costs time in a kernel of a hundred instructions.
     #[inline(always)]
     fn of(self, degree: usize, norms: usize, [squarings, corrections]: [u32; 2]) -> Ops {
         let (product, added) = (self.product(), self.added());
@@ -207,7 +207,7 @@ fn pow6(x: f64) -> f64 {
     x3 * x3
 }
 
-/// Is one triangle zero? For a full matrix the first entry looked at says no.
+/// True if one triangle is zero. For a full matrix the first entry decides.
 #[inline(always)]
 fn triangular<S: Simd, const N: usize, const K: usize>(a: &Cols<S, N, K>) -> bool {
     let flat = a.flat();

@@ -2,19 +2,18 @@
 //!
 //! | degree | products | θ | form |
 //! |---|---|---|---|
-//! | 1, 2 | 0, 1 | 2.2e-16, 2.6e-8 | as it stands |
+//! | 1, 2 | 0, 1 | 2.2e-16, 2.6e-8 | the sum |
 //! | 4 | 2 | 3.4e-4 | 𝟙 + a + a²(½ + a/6 + a²/24) |
 //! | 8 | 3 | 5.0e-2 | a⁴ = a²(x₁a + x₂a²), a⁸ = (x₃a² + a⁴)(x₄ + x₅a + x₆a² + x₇a⁴), 𝟙 + a + y₂a² + a⁸ |
 //! | 12 | 4 | 0.30 | s = b₂ + b₃², b₀ + (b₁ + s)s, the b over 𝟙, a, a², a³ |
 //! | 18 | 5 | 1.09 | s = b₃ + b₀b₄, b₁ + (b₂ + s)s, the b over 𝟙, a, a², a³, a⁶ |
 //!
 //! Source: P. Bader, S. Blanes, F. Casas, Computing the matrix exponential with an optimized Taylor
-//! polynomial approximation, Mathematics 7 (2019) 1174. There s has a constant term σ, and 𝟙 comes out
-//! as a sum of products of constants, rounded alike at every call: a bias of ε/2 in every step of a
-//! long run. Here s goes without it, so that 𝟙 is exact; the coefficients are those of the source put
-//! together in 40 digits. Expanded, the forms agree with 1/k! to 1e-40 (8), 1e-19 (12), 5e-17 (18).
-//! θ bounds the norm for which the relative backward error is at most 2⁻⁵³; recomputed from the series
-//! of log(e⁻ˣT(x)).
+//! polynomial approximation, Mathematics 7 (2019) 1174. There s has a constant term σ, and 𝟙 is a
+//! sum of products of constants, with the same rounding error at every call. This is a bias of ε/2 in every step of a
+//! long run. Here s has no constant term, and 𝟙 is exact. The coefficients are those of the source, combined in 40
+//! digits. Expanded, the forms agree with 1/k! to 1e-40 (8), 1e-19 (12), 5e-17 (18). For norms up to θ the relative
+//! backward error is at most 2⁻⁵³. θ was recomputed from the series of log(e⁻ˣT(x)).
 
 use pulp::Simd;
 
@@ -77,7 +76,7 @@ const TAIL: [f64; 5] = [
 /// The halvings that degree 18 needs, by ‖a‖, ‖a²‖, ‖a³‖, ‖a⁶‖ ≤ 1e50.
 ///
 /// The error is a series of aᵏ, k ≥ 19, and ‖a^(18+r)‖ ≤ ‖a⁶‖³·‖aʳ‖; so the norms of the powers
-/// decide, but for two halvings: the norm itself has to stay small for the sake of rounding.
+/// decide. At most two halvings fewer than by the norm itself are taken, to limit rounding errors.
 #[inline(always)]
 pub(super) fn halvings_18(n1: f64, n2: f64, n3: f64, n6: f64) -> u32 {
     let by_norm = halvings(n1, THETA_18, 1);
@@ -109,7 +108,7 @@ pub(super) fn half_to_the(s: u32) -> f64 {
     f64::from_bits((1023 - u64::from(s.min(1022))) << 52)
 }
 
-/// Matrices in registers: what the polynomials ask of them.
+/// The operations that the polynomials need, for matrices in registers.
 pub(in crate::dense) trait Packed<S: Simd>: Copy {
     /// a·b.
     fn mul(simd: S, a: &Self, b: &Self) -> Self;
@@ -143,7 +142,7 @@ pub(super) fn degree_12<S: Simd, M: Packed<S>>(simd: S, a: &M, a2: &M, a3: &M) -
     g
 }
 
-/// With coefficients `c`, which are [`B18`] with the powers of a scale in them.
+/// Degree 18 with the coefficients `c`, which are [`B18`] times powers of a scale.
 #[inline(always)]
 pub(super) fn degree_18<S: Simd, M: Packed<S>>(
     simd: S,

@@ -1,4 +1,4 @@
-//! How 𝔤_M is seen by the exact functions of ad_u.
+//! The form of 𝔤_M for the exact functions of ad_u.
 
 use faer::{Mat, Scale};
 
@@ -6,14 +6,13 @@ use super::sample::{Symmetry, symmetry};
 use super::{Form, MatrixGroup};
 use crate::dense::{AdForm, AdKind, Lu, norm_frobenius};
 
-/// A symmetric or skew part of M stands for M only where it is as well conditioned as this.
+/// The symmetric or skew part of M replaces M only if its reciprocal condition number is at least this.
 const PART_RCOND: f64 = 1e-6;
 
 impl MatrixGroup {
-    /// A symmetric or skew form that 𝔤 keeps; none on GL(n).
+    /// A symmetric or skew form that 𝔤 conserves; none on GL(n).
     ///
-    /// uᵀM + Mu = 0 holds for the symmetric and the skew part of M each, so that one of the two
-    /// serves where M is neither.
+    /// uᵀM + Mu = 0 holds for the symmetric and for the skew part of M. So one of the parts is used if M is neither.
     pub(crate) fn ad_form(&self) -> Option<AdForm> {
         let n = self.n();
         let m = self.m()?;
@@ -51,8 +50,8 @@ impl MatrixGroup {
         }
     }
 
-    /// Is every u ∈ 𝔤 skew-symmetric, as on SO(n) and on U(m) = G_{𝟙+J}? True where the symmetric
-    /// part of M is a multiple of 𝟙, exactly.
+    /// True if every u ∈ 𝔤 is skew-symmetric, as on SO(n) and on U(m) = G_{𝟙+J}. This is so if the symmetric part of M is
+    /// exactly a multiple of 𝟙.
     pub(crate) fn is_skew(&self) -> bool {
         match &self.form {
             Form::Free | Form::Symplectic => false,
@@ -62,7 +61,7 @@ impl MatrixGroup {
     }
 }
 
-/// Is the symmetric part of M a multiple of 𝟙, exactly?
+/// True if the symmetric part of M is exactly a multiple of 𝟙.
 pub(super) fn has_scalar_part(m: &Mat<f64>) -> bool {
     let (n, part) = (m.nrows(), (m + m.transpose()) * Scale(0.5));
     let c = part[(0, 0)];

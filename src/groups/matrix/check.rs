@@ -1,4 +1,4 @@
-//! Checked constructors: what comes from users is in the algebra, or on the group, or refused.
+//! Checked constructors: a matrix of a user is in the algebra or on the group, or it is refused.
 
 use faer::{Mat, MatRef};
 
@@ -90,13 +90,13 @@ impl MatrixGroup {
         Ok(())
     }
 
-    /// [`LieAlgebra::check`], to [`MEMBERSHIP`].
+    /// [`LieAlgebra::check`] with the tolerance [`MEMBERSHIP`].
     pub(super) fn check_algebra(&self, arg: &'static str, u: &Mat<f64>) -> Result<(), Error> {
         self.size(arg, u.as_ref())?;
         self.belongs(arg, u, MEMBERSHIP)
     }
 
-    /// u as an element of the algebra, when it is one to [`MEMBERSHIP`].
+    /// Makes u an element of the algebra, if it is one within [`MEMBERSHIP`].
     ///
     /// ```
     /// use faer::mat;
@@ -115,7 +115,7 @@ impl MatrixGroup {
         self.algebra_within(u, MEMBERSHIP)
     }
 
-    /// [`algebra`](Self::algebra) with a tolerance of one's own.
+    /// Like [`algebra`](Self::algebra), with a tolerance that you choose.
     ///
     /// # Errors
     /// As [`algebra`](Self::algebra).
@@ -125,7 +125,7 @@ impl MatrixGroup {
         Ok(AlgebraMatrix::new_unchecked(u))
     }
 
-    /// g as an element of the group, when it is one to [`MEMBERSHIP`].
+    /// Makes g an element of the group, if it is one within [`MEMBERSHIP`].
     ///
     /// # Errors
     /// [`Error::NotSquare`], [`Error::Shape`], [`Error::NotFiniteEntry`], [`Error::Singular`] on
@@ -135,7 +135,7 @@ impl MatrixGroup {
         self.element_within(g, MEMBERSHIP)
     }
 
-    /// [`element`](Self::element) with a tolerance of one's own.
+    /// Like [`element`](Self::element), with a tolerance that you choose.
     ///
     /// # Errors
     /// As [`element`](Self::element).

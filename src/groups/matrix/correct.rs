@@ -1,19 +1,18 @@
-//! g back to G_M: Newton–Schulz in residual form.
+//! Corrects g to G_M: Newton–Schulz in residual form.
 //!
-//! With X♯ = M⁻¹XᵀM and D = 𝟙 − g♯g, the step g ← g(𝟙 + X) has to solve X + X♯ = D. It adds a small
-//! correction to g instead of forming g·(𝟙 + X): rounding is that of the correction, not of g. By
-//! P = M⁻ᵀM, with which X♯♯ = P⁻¹XP:
+//! With X♯ = M⁻¹XᵀM and D = 𝟙 − g♯g, the step g ← g(𝟙 + X) has to solve X + X♯ = D. It adds a small correction to g and
+//! does not form g·(𝟙 + X), so its rounding error is that of the correction. X depends on P = M⁻ᵀM, with X♯♯ = P⁻¹XP:
 //!
 //! | P | X | residual after it |
 //! |---|---|---|
 //! | ±𝟙: M symmetric or skew | D/2 | O(D²) |
 //! | P² = −𝟙 | (3D − 2D♯ + D♯♯)/4 | O(D²) |
-//! | any other, 𝔤 skew: products of such | the same | \|1 + μ\|/2 of what was, X♯♯ = μX |
-//! | any other | 0 | nothing is known to converge |
+//! | any other, 𝔤 skew: products of such | the same | \|1 + μ\|/2 of the one before, X♯♯ = μX |
+//! | any other | 0 | no step is known to converge |
 //!
-//! On U(m), with M = c𝟙 + K and P = K/c, an element is orthogonal and commutes with P. There the part that
-//! does not commute, A = (g + PgP)/2, is taken off, and D is 𝟙 − gᵀg of the rest: four products in place of
-//! nine. ‖A‖ and ‖D‖ make up the residual, ‖𝟙 − g♯g‖² = ‖D‖² + 2‖A‖² but for second order.
+//! On U(m), with M = c𝟙 + K and P = K/c, an element is orthogonal and commutes with P. There the code subtracts the
+//! part that does not commute, A = (g + PgP)/2. D is 𝟙 − gᵀg of the rest. This takes four products instead of nine. The
+//! residual is ‖𝟙 − g♯g‖² = ‖D‖² + 2‖A‖², up to terms of higher order.
 
 use faer::Mat;
 
@@ -22,12 +21,12 @@ use super::{Form, GroupMatrix, MatrixGroup};
 use crate::dense::{axpy, mul, mul_add, norm_frobenius, scaled_sum};
 use crate::groups::RESIDUAL_MAX;
 
-/// No more steps than these.
+/// The largest number of steps.
 const STEPS_MAX: usize = 6;
 /// One quadratic step takes a residual below this to rounding.
 const ONE_STEP: f64 = 1e-8;
 
-/// What is known of P.
+/// The kind of P.
 #[derive(Clone, Debug)]
 pub(super) enum Cosquare {
     /// P = ±𝟙.

@@ -1,4 +1,4 @@
-//! Elements of matrix groups and their algebras: faer matrices that know which of the two they are.
+//! Elements of matrix groups and of their algebras: a type for each, over a faer matrix.
 
 use core::ops::{Deref, DerefMut};
 
@@ -14,8 +14,8 @@ macro_rules! matrix_element {
         pub struct $name(Mat<f64>);
 
         impl $name {
-            /// Take the matrix as it is. The caller vouches for it: what a matrix outside leads to
-            /// is a wrong number, never undefined behaviour.
+            /// Takes the matrix without a check. A matrix outside of the set gives wrong numbers, but never undefined
+            /// behaviour.
             pub fn new_unchecked(matrix: Mat<f64>) -> Self {
                 Self(matrix)
             }
@@ -25,14 +25,14 @@ macro_rules! matrix_element {
             }
         }
 
-        /// Read it as the faer matrix that it is.
+        /// Gives read access to the faer matrix.
         impl Deref for $name {
             type Target = Mat<f64>;
             fn deref(&self) -> &Mat<f64> {
                 &self.0
             }
         }
-        /// Write it in place; to stay in the set is the writer's duty.
+        /// Gives write access to the entries. Nothing checks that they stay in the set.
         impl DerefMut for $name {
             fn deref_mut(&mut self) -> &mut Mat<f64> {
                 &mut self.0

@@ -20,7 +20,7 @@ use crate::dense::{self, Lu, RCOND_MIN, antisymmetrise, mul, mul_add};
 use crate::error::Error;
 use crate::scalar::{Ops, tally};
 
-/// Which bilinear form the group keeps: gᵀMg = M (paper 4.3).
+/// The bilinear form M that the group conserves: gᵀMg = M (paper 4.3).
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub enum Form {
@@ -39,7 +39,7 @@ pub enum Form {
     },
 }
 
-/// A matricial Lie group as a value: it knows n and M.
+/// A group of n×n matrices: GL(n), SO(n), Sp(2m), SO(p,q) or G_M.
 ///
 /// | constructor | group | algebra |
 /// |---|---|---|
@@ -53,9 +53,9 @@ pub struct MatrixGroup {
     n: usize,
     form: Form,
     name: String,
-    /// An orthonormal basis of 𝔤_M, one vectorised element a column; only where M needs one.
+    /// An orthonormal basis of 𝔤_M, one vectorised element in each column; only if M needs one.
     basis: OnceLock<Mat<f64>>,
-    /// M⁻ᵀM: how elements are taken back to the group.
+    /// M⁻ᵀM, which decides how elements are corrected.
     cosquare: Cosquare,
 }
 
@@ -141,7 +141,7 @@ impl MatrixGroup {
         self.n
     }
 
-    /// The form that the group keeps.
+    /// The form that the group conserves.
     pub fn form(&self) -> &Form {
         &self.form
     }

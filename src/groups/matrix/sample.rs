@@ -1,4 +1,4 @@
-//! Random elements, and the projection onto the algebra that they need.
+//! Random elements, and the projection onto the algebra.
 
 use faer::{Mat, MatRef};
 use rand::{Rng, RngExt};

@@ -16,8 +16,8 @@ fn finite(x: &ComplexMatrix) -> Result<(), StepError> {
     if x.is_finite() { Ok(()) } else { Err(StepError::NotFinite { what: "Ad" }) }
 }
 
-/// [`big_ad`](Adjoint::big_ad) and [`coad_group`](Adjoint::coad_group) allocate. Cost: two products,
-/// one of them by halves.
+/// [`big_ad`](Adjoint::big_ad) and [`coad_group`](Adjoint::coad_group) allocate. Cost: a full product
+/// and a half one.
 impl Adjoint for Unitary {
     /// m ∈ u(n)*, skew-Hermitian.
     type Dual = ComplexMatrix;

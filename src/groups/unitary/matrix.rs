@@ -1,10 +1,11 @@
-//! Complex matrices with their parts apart: x = re + i·im, so that every product is a few real ones,
-//! which dense kernels do at a higher rate than complex ones.
+//! Complex matrices x = re + i·im with separate real and imaginary parts.
+//!
+//! Every product is a few real ones. Dense kernels compute these faster than complex ones.
 //!
 //! | | real products |
 //! |---|---|
 //! | a·b | 4 |
-//! | a·b of which the lower triangle says all | 4 halves |
+//! | a·b, if it is skew-Hermitian | 4 halves |
 
 use faer::{Accum, Mat, MatRef, c64};
 
@@ -89,7 +90,7 @@ impl ComplexMatrix {
         [&mut self.re, &mut self.im]
     }
 
-    /// Is it rows×cols, and finite?
+    /// Checks that the matrix is rows×cols and finite.
     pub(crate) fn check(&self, arg: &'static str, rows: usize, cols: usize) -> Result<(), Error> {
         for part in self.parts() {
             let shape = (part.nrows(), part.ncols());

@@ -1,4 +1,4 @@
-//! U(n), the unitary matrices: complex n×n with their parts apart ([`ComplexMatrix`]).
+//! The group U(n) of unitary matrices: complex n×n matrices with separate parts ([`ComplexMatrix`]).
 //!
 //! | | |
 //! |---|---|
@@ -26,7 +26,7 @@ use crate::error::Error;
 use crate::scalar::{Ops, tally};
 use crate::space::{LinearSpace, Metric};
 
-/// U(n) over its algebra u(n) of skew-Hermitian matrices.
+/// The group U(n). Its algebra u(n) has the skew-Hermitian matrices.
 ///
 /// ```
 /// use lieflow::CoordinateMap;
@@ -189,7 +189,7 @@ impl Sample for Unitary {
         }
         u
     }
-    /// Haar's measure: Gaussian columns, made orthonormal one after the other, twice.
+    /// Haar's measure: Gaussian columns, orthonormalised one after the other, twice.
     fn sample_element<R: Rng + ?Sized>(&self, rng: &mut R) -> ComplexMatrix {
         let n = self.n;
         let mut g = self.sample_square(rng);

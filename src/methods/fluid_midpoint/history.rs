@@ -1,8 +1,8 @@
 //! The first guess of an implicit step from the steps before it.
 //!
 //! Steps of equal size have increments D_n that change slowly: D_n = Σ_{q ≤ Q} ∇^q D_{n−1} + ∇^{Q+1}D_n,
-//! with backward differences ∇. They are kept up to [`DEPTH`]; Q is the one whose error ∇^{Q+1} was
-//! least at the last step.
+//! with backward differences ∇. They are stored up to [`DEPTH`]. Q is the degree whose error ∇^{Q+1} was
+//! smallest at the last step.
 
 use super::triangle::{below, below_mut, entries, squares};
 use crate::dense::wide;
@@ -10,10 +10,10 @@ use crate::groups::ComplexMatrix;
 use crate::scalar::{Ops, tally};
 use crate::space::{Metric, Numbers};
 
-/// Differences that are kept.
+/// The number of stored differences.
 const DEPTH: usize = 8;
 
-/// The differences of the last steps, and where they ended.
+/// The differences of the last steps, and the end of the last one.
 #[derive(Debug)]
 pub(super) struct History {
     differences: [ComplexMatrix; DEPTH],
@@ -24,12 +24,12 @@ pub(super) struct History {
     column: Vec<f64>,
 }
 
-/// What a step does with the history.
+/// The relation of a step to the history.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Start {
-    /// The step goes on from the last one.
+    /// The step continues from the last one.
     Warm,
-    /// A step of another size from the same point, as to an output between steps: the history waits.
+    /// A step of another size from the same point, such as to an output within a step. The history is not changed.
     Aside,
     /// A new run.
     Cold,
@@ -58,7 +58,7 @@ impl History {
         self.last.each_number(each);
     }
 
-    /// How a step of size h from y starts.
+    /// The relation of a step of size h from y to the history.
     pub(super) fn start(&self, h: f64, y: &ComplexMatrix) -> Start {
         let same = |j| {
             y.re.col_as_slice(j) == self.last.re.col_as_slice(j)
@@ -92,7 +92,7 @@ impl History {
         });
     }
 
-    /// The step of size h ended at y with the increment d.
+    /// Records that the step of size h ended at y with the increment d.
     pub(super) fn record(&mut self, start: Start, h: f64, d: &ComplexMatrix, y: &ComplexMatrix) {
         match start {
             Start::Aside => return,

@@ -7,17 +7,17 @@
 //! | isospectral | C + P M P | W + 2C | (𝟙 − P)M(𝟙 + P) = W, W⁺ = (𝟙 + P)M(𝟙 − P) |
 //! | energy | C + P D P | W + 2D | W⁺ = cay(2P) W cay(2P)†, M = (W + W⁺)/2 |
 //!
-//! Order 2, symmetric. Preserves: the spectrum of W both; the first the Lie–Poisson structure and
-//! the invariants that are linear in W (angular momentum on the sphere), so that the energy error
-//! stays bounded; the second the energy, since tr(P W⁺) = tr(P W). All of it to the tolerance.
+//! Order 2, symmetric. Both preserve the spectrum of W, to the tolerance. The first also preserves the Lie–Poisson
+//! structure and the invariants that are linear in W (angular momentum on the sphere), so its energy error stays
+//! bounded. The second also preserves the energy, because tr(P W⁺) = tr(P W).
 //!
-//! An iteration is one Poisson solve, three real products for C (Gauss's three for a complex one;
-//! \[P, M\] = PM − (PM)†) and, where it still matters, three half products for the cubic term, which
-//! is skew-Hermitian. The first guess comes from the steps before ([`History`]).
-//! It converges while h/ħ times the bound of \[P, ·\] stays below about 1.
-//! Source: K. Modin & M. Viviani, J. Fluid Mech. 884 (2020), for the first, with the fixed point of
-//! P. Cifani, M. Viviani & K. Modin, J. Comput. Phys. 473 (2023); for the second see
-//! [`EnergyCasimir`](super::EnergyCasimir), which it is with cay.
+//! An iteration has one Poisson solve, and three real products for C (Gauss's three for a complex one; \[P, M\] = PM −
+//! (PM)†). While the cubic term still changes, it has three half products more; this term is skew-Hermitian. The first
+//! guess comes from the steps before ([`History`]). The iteration converges while h/ħ times the bound of \[P, ·\] is
+//! below about 1.
+//!
+//! Source of the first: K. Modin & M. Viviani, J. Fluid Mech. 884 (2020), with the fixed point of P. Cifani, M. Viviani &
+//! K. Modin, J. Comput. Phys. 473 (2023). The second is [`EnergyCasimir`](super::EnergyCasimir) with cay.
 
 mod history;
 mod triangle;
@@ -34,7 +34,7 @@ use crate::space::LinearSpace;
 use history::{History, Start};
 use triangle::{below, below_mut, entries, norm, replace, sum, with_transpose};
 
-/// One of the two midpoint rules, by what it keeps besides the spectrum.
+/// One of the two midpoint rules. Both conserve the spectrum; the name is what else is conserved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MidpointRule {
     /// The Lie–Poisson structure: Modin and Viviani's isospectral midpoint.
@@ -45,20 +45,19 @@ pub enum MidpointRule {
 
 /// A midpoint rule for [`Zeitlin`]'s fluids.
 ///
-/// The steps of a run help each other: the first guess of an iteration is extrapolated from the
-/// increments of the steps before, where a step goes on from the last one with the same h. What the
-/// iteration ends at differs by the tolerance.
+/// If a step continues from the last one with the same h, the first guess of its iteration is extrapolated from the
+/// increments of the steps before. So the result depends on the steps before, within the tolerance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FluidMidpoint {
     rule: MidpointRule,
     tolerance: f64,
 }
 
-/// The residual that is iterated to, relative to ‖W‖.
+/// The residual at which the iteration stops, relative to ‖W‖.
 const TOLERANCE: f64 = 0.125 * f64::EPSILON;
 /// Below this residual an iteration that no longer contracts has reached rounding.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
-/// Iterations before it is given up: a contraction by 0.93 reaches rounding.
+/// The largest number of iterations. It is enough for a contraction by 0.93 to reach rounding.
 const ITERATIONS_MAX: u32 = 500;
 
 impl FluidMidpoint {
@@ -66,11 +65,11 @@ impl FluidMidpoint {
     pub const fn isospectral() -> Self {
         FluidMidpoint { rule: MidpointRule::Isospectral, tolerance: TOLERANCE }
     }
-    /// The midpoint rule that keeps the energy.
+    /// The midpoint rule that conserves the energy.
     pub const fn energy() -> Self {
         FluidMidpoint { rule: MidpointRule::Energy, tolerance: TOLERANCE }
     }
-    /// The rule with this bound of the residual ‖D − D(D)‖/‖W‖ in place of an eighth of the rounding unit.
+    /// Sets the bound of the residual ‖D − D(D)‖/‖W‖. The default is an eighth of the rounding unit.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] unless it is finite and positive.
@@ -80,7 +79,7 @@ impl FluidMidpoint {
             false => Err(Error::out_of_range("tolerance", tolerance, "a finite number > 0")),
         }
     }
-    /// Which of the two it is.
+    /// The rule: one of the two.
     pub const fn rule(&self) -> MidpointRule {
         self.rule
     }
@@ -88,8 +87,8 @@ impl FluidMidpoint {
 
 impl Symmetric for FluidMidpoint {}
 
-/// How much of an error an iteration leaves, as far as it has been seen: the largest ratio of a step,
-/// which fades from step to step, and grows by at most [`CAUTION`] while it is not looked at.
+/// An estimate of the contraction of an iteration: the largest observed ratio of a step. It fades from step to step,
+/// and grows by at most [`CAUTION`] while it is not measured.
 #[derive(Clone, Copy, Debug)]
 struct Rate {
     seen: f64,
@@ -97,7 +96,7 @@ struct Rate {
     of_step: Option<f64>,
 }
 
-/// No estimate is below this: an error may point where none has pointed before.
+/// The smallest estimate, because an error may have a new direction.
 const LEAST: f64 = 1e-3;
 const CAUTION: f64 = 8.0;
 
@@ -126,7 +125,7 @@ impl Rate {
     }
 }
 
-/// Everything a step needs, and the steps before.
+/// The workspace of a step, and the steps before.
 #[derive(Debug)]
 pub struct FluidWork {
     /// D, on and below the diagonal.
@@ -138,14 +137,14 @@ pub struct FluidWork {
     product: SkewProduct,
     scratch: [Mat<f64>; 2],
     history: History,
-    /// Of the iteration, and of its cubic term.
+    /// The estimates of the iteration and of its cubic term.
     rates: [Rate; 2],
     iterations: u64,
     solves: u64,
 }
 
 impl FluidWork {
-    /// Iterations of all steps, and how many of them computed the cubic term too.
+    /// The iterations of all steps, and those that computed the cubic term, too.
     pub fn iterations(&self) -> [u64; 2] {
         [self.iterations, self.solves]
     }
@@ -223,7 +222,7 @@ impl SkewProduct {
     }
 }
 
-/// All of x from its triangle, and the sum of its parts. The diagonal is imaginary.
+/// Completes x from its triangle, with the sum of its parts. The diagonal is imaginary.
 fn complete(x: &mut ComplexMatrix, both: &mut Mat<f64>) {
     (0..x.nrows()).for_each(|i| x.re[(i, i)] = 0.0);
     mirror(&mut x.re, -1.0);

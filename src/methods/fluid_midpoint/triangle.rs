@@ -1,4 +1,4 @@
-//! Passes over what lies on and below the diagonal of a matrix, which says all of a skew-Hermitian one.
+//! Passes over the lower triangle of a skew-Hermitian matrix, with its diagonal.
 
 use faer::Mat;
 
@@ -6,7 +6,7 @@ use crate::dense::wide;
 use crate::groups::ComplexMatrix;
 use crate::scalar::{Ops, tally};
 
-/// Entries that are treated at once.
+/// The number of entries processed at once.
 const LANES: usize = 8;
 
 /// Column j of x on and below the diagonal.

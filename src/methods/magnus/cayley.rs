@@ -1,8 +1,8 @@
-//! Magnus methods in Cayley coordinates: y⁺ = cay(u) y, with no exponential.
+//! Magnus methods with the Cayley map: y⁺ = cay(u) y, without an exponential.
 //!
 //! With u = Ω − Ω³/12 + Ω⁵/120 − …, cay(u) = exp(Ω). Order 4:
-//! u = h/2 (A₁ + A₂) − h²√3/12 \[A₁, A₂\] − h³/96 (A₁ + A₂)³. Odd products of elements of 𝔤_M that
-//! read the same backward lie in 𝔤_M again; they come from [`TripleProduct`].
+//! u = h/2 (A₁ + A₂) − h²√3/12 \[A₁, A₂\] − h³/96 (A₁ + A₂)³. Symmetric odd products of elements of
+//! 𝔤_M, such as uvu, lie in 𝔤_M. [`TripleProduct`] computes them.
 //! Source: A. Iserles, On Cayley-transform methods for the discretization of Lie-group equations,
 //! Found. Comput. Math. 1 (2001).
 
@@ -121,10 +121,10 @@ impl<G: TripleProduct> TripleProduct for Power<G> {
     }
 }
 
-/// Order 4 in Cayley coordinates.
+/// The Magnus method of order 4 with the Cayley map.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct CayleyMagnus4;
-/// Order 6 in Cayley coordinates.
+/// The Magnus method of order 6 with the Cayley map.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct CayleyMagnus6;
 

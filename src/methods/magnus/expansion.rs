@@ -1,7 +1,7 @@
-//! The Magnus expansion itself: Ω by nested brackets of A at Gauss–Legendre nodes.
+//! The Magnus expansion: Ω by nested brackets of A at Gauss–Legendre nodes.
 //!
 //! Order 4: Ω = h/2 (A₁ + A₂) − h²√3/12 \[A₁, A₂\].
-//! Orders 6 and 8 in as few brackets as are known to do: S. Blanes, F. Casas, J. Ros, Improved high
+//! Orders 6 and 8 have the smallest known number of brackets: S. Blanes, F. Casas, J. Ros, Improved high
 //! order integrators based on the Magnus expansion, BIT 40 (2000).
 
 use super::{GAUSS_2, GAUSS_3, GAUSS_4, MagnusWork, ROOT_3, ROOT_15, V, W, magnus_method, sum};
@@ -12,13 +12,13 @@ use crate::methods::Step;
 use crate::problems::{PointOf, ScalarOf};
 use crate::scalar::Real;
 
-/// Order 4 with one bracket.
+/// The Magnus method of order 4 with one bracket.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Magnus4;
-/// Order 6 with three brackets.
+/// The Magnus method of order 6 with three brackets.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Magnus6;
-/// Order 8 with ten brackets.
+/// The Magnus method of order 8 with ten brackets.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Magnus8;
 

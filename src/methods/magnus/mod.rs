@@ -1,7 +1,7 @@
-//! Magnus methods for equations of linear type, Ẏ = A(t) Y.
+//! Magnus methods for linear equations y' = A(t) y.
 //!
-//! y⁺ = exp(Ω) y with Ω from A at Gauss–Legendre nodes; they ask for the capability [`LinearField`],
-//! so that a field that depends on y does not compile.
+//! y⁺ = exp(Ω) y with Ω from A at Gauss–Legendre nodes. They need the trait [`LinearField`], so a field that depends on
+//! y does not compile.
 //!
 //! | method | order | A | brackets | exp | source |
 //! |---|---|---|---|---|---|
@@ -13,8 +13,7 @@
 //! | [`CFM8_11`] | 8 | 4 | 0 | 11 | the same |
 //! | [`CayleyMagnus4`], [`CayleyMagnus6`] | 4, 6 | 2, 3 | 1, 5 and as many triple products | 1 cay | Iserles 2001 |
 //!
-//! Preserves: the group, and what the action leaves invariant. Symmetric in time, all of them. Cost: the
-//! table.
+//! Preserves: the group, the invariants of the action, and time symmetry. Cost: see the table.
 //! Source: S. Blanes, F. Casas, J. A. Oteo, J. Ros, The Magnus expansion and some of its
 //! applications, Phys. Rep. 470 (2009).
 //!
@@ -22,7 +21,7 @@
 //! use lieflow::methods::magnus::Magnus4;
 //! use lieflow::problems::RigidBody;
 //! let body = RigidBody::<f64>::new([1.0, 2.0, 3.0]).unwrap();
-//! // f depends on the momentum: Magnus4 is no method for it.
+//! // f depends on the momentum, so Magnus4 does not compile.
 //! lieflow::Method::order(&Magnus4, &body);
 //! ```
 
@@ -131,7 +130,7 @@ fn sum<G: LieAlgebra, const N: usize>(
     }
 }
 
-/// A Magnus method: S nodes, K elements of scratch, one map, so many brackets.
+/// A Magnus method with S nodes, K elements of scratch, one map and so many brackets.
 macro_rules! magnus_method {
     ($method:ident, $order:expr, $nodes:expr, $psi:ident, $s:literal, $k:literal, [$($bound:path)?],
      $omega:path, $brackets:literal) => {

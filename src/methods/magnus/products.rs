@@ -1,9 +1,8 @@
 //! Commutator-free Magnus methods: y⁺ = exp(h Σ_j r_fj A_j) ⋯ exp(h Σ_j r_1j A_j) y.
 //!
-//! Above order 4 some sums of r_f are negative: no real scheme of these orders steps forward in
-//! every factor (Hofstätter, Koch 2017). Source: S. Blanes, P. C. Moan, Appl. Numer. Math. 56 (2006);
-//! A. Alvermann, H. Fehske, High-order commutator-free exponential time-propagation of driven quantum
-//! systems, J. Comput. Phys. 230 (2011).
+//! Above order 4 some sums of r_f are negative. This cannot be avoided with real coefficients (Hofstätter, Koch 2017).
+//! Source: S. Blanes, P. C. Moan, Appl. Numer. Math. 56 (2006); A. Alvermann, H. Fehske, High-order commutator-free
+//! exponential time-propagation of driven quantum systems, J. Comput. Phys. 230 (2011).
 
 use super::{GAUSS_2, GAUSS_3, GAUSS_4, MagnusWork, ROOT_3, ROOT_15, V, W};
 use crate::error::{Error, StepError};
@@ -33,7 +32,7 @@ pub const CFM4_2: CfMagnusTableau<2, 2> = CfMagnusTableau {
     factors: mirrored([[0.25 + ROOT_3 / 6.0, 0.25 - ROOT_3 / 6.0]]),
 };
 
-/// Order 4 with three exponentials, of a smaller error.
+/// Order 4 with three exponentials and a smaller error.
 pub const CFM4_3: CfMagnusTableau<3, 3> = {
     const D: f64 = 10.0 * ROOT_15 / 261.0;
     const M: f64 = 37.0 / 240.0;
@@ -100,8 +99,8 @@ pub const CFM8_11: CfMagnusTableau<4, 11> = CfMagnusTableau {
     ]),
 };
 
-/// The factors from the first to the middle one, and then the same reversed in both directions: the
-/// method is symmetric in time.
+/// Completes the factors: the first half is given, and the second half is its mirror image, so the method is symmetric
+/// in time.
 const fn mirrored<const S: usize, const HALF: usize, const F: usize>(
     first: [[f64; S]; HALF],
 ) -> [[f64; S]; F] {

@@ -1,4 +1,4 @@
-//! DOP853: order 8 in 12 stages, with an error estimate made of one of order 5 and one of order 3.
+//! DOP853: order 8 with 12 stages. Its error estimate combines one of order 5 and one of order 3.
 //!
 //! Source: Hairer, Nørsett, Wanner I, II.5 and II.10 (the coefficients of their code DOP853).
 

@@ -1,5 +1,6 @@
-//! Explicit Butcher tableaus as constants, with the pairs that estimate their own error. Tests run
-//! the order conditions over every one, and over every embedded row.
+//! Explicit Butcher tableaus and embedded pairs, as constants.
+//!
+//! Tests check the order conditions of each tableau and of each embedded row.
 
 mod dense;
 mod dop853;
@@ -26,12 +27,12 @@ pub struct Tableau<const S: usize> {
     pub c: [f64; S],
     /// The error estimate of an embedded pair.
     pub error: Option<ErrorEstimate<S>>,
-    /// The continuous extension: the points within a step.
+    /// The dense output: points within a step.
     pub dense: Dense,
 }
 
 impl<const S: usize> Tableau<S> {
-    /// How many stages the update needs: a last stage that only the error looks at is not one.
+    /// The number of stages of the update. A last stage that only the error estimate uses does not count.
     pub const fn update_stages(&self) -> usize {
         let mut s = S;
         while s > 1 && self.b[s - 1] == 0.0 {
@@ -40,7 +41,7 @@ impl<const S: usize> Tableau<S> {
         s
     }
 
-    /// How many stages the update and the error estimate need: S, but for a [`padded`](Self::padded) one.
+    /// The number of stages of the update and the error estimate: S, or fewer for a [`padded`](Self::padded) tableau.
     pub const fn all_stages(&self) -> usize {
         let Some(ErrorEstimate { e, damp, .. }) = self.error else { return self.update_stages() };
         let mut s = S;
@@ -55,8 +56,8 @@ impl<const S: usize> Tableau<S> {
         s
     }
 
-    /// This method with room for N ≥ S stages. The stages that are added have the weight 0 and are never
-    /// evaluated: methods chosen by name share one type this way.
+    /// This tableau with room for N ≥ S stages, so that methods chosen by name share one type. The added stages have
+    /// the weight 0 and are never evaluated.
     pub const fn padded<const N: usize>(&self) -> Tableau<N> {
         let mut a = [[0.0; N]; N];
         let mut i = 0;
@@ -105,20 +106,20 @@ pub(super) fn fold_error<R: Real>(e: R, damp: Option<R>) -> R {
     }
 }
 
-/// How a pair measures its error: ‖h Σ e_j k_j‖ with e = b − b̂.
+/// The error estimate of a pair: ‖h Σ e_j k_j‖ with e = b − b̂.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ErrorEstimate<const S: usize> {
     /// The error behaves like h to the power `order + 1`; the order of b̂, where there is one b̂.
     pub order: usize,
     /// e_j = b_j − b̂_j.
     pub e: [f64; S],
-    /// A second row d, of a lower order: the error is then E²/√(E² + D²/100) for E = ‖h Σ e_j k_j‖,
-    /// D = ‖h Σ d_j k_j‖ (DOP853).
+    /// A second row d of a lower order (DOP853). With it the error is E²/√(E² + D²/100), where E = ‖h Σ e_j k_j‖ and
+    /// D = ‖h Σ d_j k_j‖.
     pub damp: Option<[f64; S]>,
 }
 
 impl<const S: usize> ErrorEstimate<S> {
-    /// From both rows of weights, b̂ of order `order`.
+    /// Makes the estimate from both rows of weights; b̂ has the order `order`.
     pub const fn of_pair(order: usize, b: [f64; S], b_hat: [f64; S]) -> Self {
         ErrorEstimate { order, e: difference(b, b_hat), damp: None }
     }

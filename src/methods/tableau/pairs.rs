@@ -7,9 +7,8 @@
 //! | [`DOPRI5`] | 5(4) | 6 | 7 | Dormand, Prince 1980; the same, p. 178 |
 //! | [`VERNER6`] | 6(5) | 8 | 8 | Verner 1978; the same, p. 181 |
 //!
-//! The last stage of BS3 and DOPRI5 is f at the end of the step ("first same as last"); only the
-//! error looks at it. On a manifold the next step's chart is another one and no stage is carried
-//! over: a step depends on its arguments alone.
+//! The last stage of BS3 and DOPRI5 is f at the end of the step ("first same as last"). Only the error estimate uses
+//! it. On a manifold the next step has another chart, so no stage is reused: a step depends only on its arguments.
 
 use super::{Dense, ErrorEstimate, Row, Tableau, lower};
 

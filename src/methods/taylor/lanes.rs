@@ -1,16 +1,15 @@
-//! Four numbers (x, y, z, w) at once: doubles with the instructions that the machine has, others as
-//! arrays.
+//! Operations on four numbers (x, y, z, w) at once, by the instructions of the machine for doubles, else on arrays.
 
 #[cfg(target_arch = "x86_64")]
 use core::arch::x86_64::{__m256d, __m512d};
 
 use crate::scalar::{Counted, DoubleDouble, Real};
 
-/// The operations of the recurrences: a quaternion, its vector part first, or a vector with w = 0.
+/// The operations of the recurrences, on a quaternion with the vector part first, or on a vector with w = 0.
 pub trait Lanes<S>: Copy {
     /// Four numbers.
     type V: Copy;
-    /// Two of those, one instruction on which does two where the machine can.
+    /// A pair of those. Some machines have one instruction for both.
     type W: Copy;
 
     fn load(self, x: [S; 4]) -> Self::V;
@@ -98,7 +97,7 @@ impl<S: Real> Lanes<S> for Plain {
     }
 }
 
-/// The instructions on four numbers as above, and on pairs those that the machine has.
+/// The instructions of the machine on four numbers and on pairs.
 #[cfg(target_arch = "x86_64")]
 macro_rules! x86_lanes {
     ($machine:ty, $pair:ty, {$($pairs:tt)*}) => {
@@ -203,7 +202,7 @@ pub trait Kernel<S> {
     fn run<L: Lanes<S>>(self, lanes: L) -> Self::Out;
 }
 
-/// Run a kernel on arrays: one copy for each kernel and number, and not one for each problem.
+/// Runs a kernel on arrays. It is compiled once for each kernel and number type, not for each problem.
 #[inline(never)]
 fn on_arrays<S: Real, K: Kernel<S>>(kernel: K) -> K::Out {
     kernel.run(Plain)
@@ -228,7 +227,7 @@ pub trait Wide: Real {
     fn inverse(k: usize) -> Self {
         Self::lit(INVERSE[k])
     }
-    /// Run a kernel with the best that there is for this number.
+    /// Runs a kernel with the fastest lanes for this number type.
     #[doc(hidden)]
     #[inline(always)]
     fn dispatch<K: Kernel<Self>>(kernel: K) -> K::Out {

@@ -1,22 +1,20 @@
 //! The Lie-series (Taylor) method of order 4 to 16 for the free rigid body.
 //!
-//! The body frame turns by Ψ(t), Ψ' = Ψ ω̂, Ψ(0) = 𝟙. With Ψ the rotation of the quaternion q, both
-//! fields are quadratic and their Taylor coefficients follow by recurrence:
+//! The body frame turns by Ψ(t), Ψ' = Ψ ω̂, Ψ(0) = 𝟙. With Ψ as the rotation of a quaternion q both fields are
+//! quadratic. Their Taylor coefficients follow by recurrence:
 //!
 //! (k+1) m_{k+1} = Σ_j m_j × ω_{k−j}, ω_k = J⁻¹m_k, 2(k+1) q_{k+1} = Σ_j q_j ∘ ω_{k−j}.
 //!
-//! q(h) is cut after the power N and taken to the unit sphere, which changes it by less than the
-//! terms left out: Ψ(h) is a rotation, m⁺ = Ψᵀm, g⁺ = gΨ. Order N. Preserves: |m|, gm and the group
-//! to rounding; the energy, symplectic structure and symmetry to the terms left out. Cost: some 15N²/2
-//! multiplications, eight at once where the machine can, one division; no root, no trigonometric
-//! function; one step replaces N evaluations of f of other methods of this order.
+//! q(h) is cut after the power N and normalised, which changes it by less than the terms left out. So Ψ(h) is a rotation,
+//! m⁺ = Ψᵀm, g⁺ = gΨ. Order N. Preserves: |m|, gm and the group to rounding; the energy, symplectic structure and
+//! symmetry to the size of the terms left out. Cost: about 15N²/2 multiplications, eight at once on some machines, and
+//! one division; no root and no trigonometric function.
 //!
-//! The last two coefficients tell the step: θ = min((tol/|q_{N−1}|)^{1/(N−1)}, (tol/|q_N|)^{1/N}).
-//! [`Taylor::advance`] takes the largest step within the tolerance, from coefficients that it needs
-//! anyway: no step is ever rejected. As an [`Embedded`] method it serves the adaptive driver.
-//! For other groups and fields see [`LieSeries`](super::LieSeries).
-//! Source: W. Gröbner, Die Lie-Reihen und ihre Anwendungen (1960); À. Jorba & M. Zou, Experiment.
-//! Math. 14 (2005), for the step.
+//! The last two coefficients give the step size: θ = min((tol/|q_{N−1}|)^{1/(N−1)}, (tol/|q_N|)^{1/N}).
+//! [`Taylor::advance`] takes the largest step within the tolerance. It computes the step size from coefficients that it
+//! needs in any case, so no step is rejected. The method is also [`Embedded`], for adaptive runs. For other groups and
+//! fields see [`LieSeries`](super::LieSeries). Source: W. Gröbner, Die Lie-Reihen und ihre Anwendungen (1960); À. Jorba
+//! & M. Zou, Experiment. Math. 14 (2005), for the step.
 
 mod lanes;
 mod series;
@@ -35,7 +33,7 @@ use crate::problems::{Frame, FreeBody, PointOf, ScalarOf};
 use crate::scalar::Real;
 use crate::tolerance::Tolerance;
 
-/// The Taylor method of order N, 4 ≤ N ≤ 16: another N does not compile.
+/// The Taylor method of order N, 4 ≤ N ≤ 16. Another N does not compile.
 ///
 /// ```compile_fail,E0080
 /// use lieflow::methods::{Method, Taylor};
@@ -49,8 +47,9 @@ use crate::tolerance::Tolerance;
 pub struct Taylor<const N: usize>;
 
 impl<const N: usize> Taylor<N> {
-    /// The largest step from y whose local error in the attitude is about `tolerance`, by the last
-    /// two terms at the step `h` (any guess of it); infinite for a body at rest.
+    /// The largest step from y whose local error in the attitude is about `tolerance`; infinite for a body at rest.
+    ///
+    /// It is computed from the last two terms at the step `h`, which may be any guess.
     pub fn largest_step<P: FreeBody>(
         &self,
         problem: &P,
@@ -65,13 +64,15 @@ impl<const N: usize> Taylor<N> {
         h * reach::<N>(f64::dispatch(OneStep::<_, N> { body: &body, h, m }).1, tolerance)
     }
 
-    /// Advance y over the time `span`, each step as long as the tolerance for its local error in the
-    /// attitude allows; `h` is a first guess and becomes the last step. Returns the number of steps.
+    /// Advances y over the time `span`. Returns the number of steps.
+    ///
+    /// Each step is as long as the tolerance for its local error in the attitude allows. `h` is a first guess, and
+    /// becomes the last step.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] for a span or a guess that is not finite, a guess of 0 or a tolerance
-    /// that is not positive; [`Error::Map`] with [`StepError::NotFinite`] when the state leaves the
-    /// range, [`StepError::NotConverged`] when the step shrinks to nothing or 10⁹ are not enough. y
+    /// that is not positive; [`Error::Map`] with [`StepError::NotFinite`] when the state is not
+    /// finite; [`StepError::NotConverged`] when the step shrinks to zero or 10⁹ steps are not enough. y
     /// is then the last good state.
     pub fn advance<P: FreeBody>(
         &self,

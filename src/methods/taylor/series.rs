@@ -1,4 +1,4 @@
-//! The Taylor coefficients of the rotation of a free body, and what is made of them.
+//! The Taylor coefficients of the rotation of a free body, and the steps from them.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -6,7 +6,7 @@ use super::lanes::{INVERSE, Kernel, Lanes, Wide};
 use crate::error::StepError;
 use crate::scalar::Real;
 
-/// What the recurrences need of a body.
+/// The constants of a body in the recurrences.
 #[derive(Clone, Copy)]
 pub(super) struct Body<S> {
     /// ṁ_i = rate_i m_j m_k.
@@ -129,17 +129,17 @@ pub(super) fn rotation<S: Real>([x, y, z, w]: [S; 4]) -> Matrix3<S> {
     g
 }
 
-/// Many steps, each as long as the tolerance allows.
+/// A run of many steps, each as long as the tolerance allows.
 pub(super) struct Advance<'a, const N: usize> {
     pub(super) body: &'a Body<f64>,
     pub(super) span: f64,
     pub(super) tolerance: f64,
-    /// A guess of the first step, of the sign of the span.
+    /// A guess of the first step, with the sign of the span.
     pub(super) guess: f64,
     pub(super) m: Vector3<f64>,
 }
 
-/// Where a run came to.
+/// The end of a run.
 pub(super) struct EndPoint {
     pub(super) steps: u64,
     /// The last step.
@@ -151,15 +151,15 @@ pub(super) struct EndPoint {
     pub(super) failed: Option<StepError>,
 }
 
-/// More steps than this count as a mistake in the input.
+/// The largest number of steps; more are a mistake in the input.
 const STEPS_MAX: u64 = 1_000_000_000;
-/// The most that one step grows against the one before.
+/// The largest factor from one step size to the next.
 const GROWTH: f64 = 4.0;
-/// Attempts at the size of one step.
+/// The largest number of attempts to find the size of a step.
 const TRIES: u32 = 200;
 
-/// (x/y)^(1/k) for x, y > 0, by their exponents and a straight line through the mantissas: within 6 %, and
-/// better next to 1. It chooses steps, and is a tenth of the time of `powf`.
+/// (x/y)^(1/k) for x, y > 0, within 6 %, and better near 1. It uses the exponents, and a straight line through the
+/// mantissas. It chooses step sizes, and takes a tenth of the time of `powf`.
 #[inline(always)]
 fn coarse_root(x: f64, y: f64, k: usize) -> f64 {
     const ONE: i64 = 1.0f64.to_bits() as i64;
@@ -169,8 +169,8 @@ fn coarse_root(x: f64, y: f64, k: usize) -> f64 {
     }
 }
 
-/// The θ at which the last two terms fall to the tolerance, by their squares; infinite when they
-/// vanish, NaN when they are not finite.
+/// The θ at which the last two terms equal the tolerance, from their squares; infinite if they vanish, NaN if they are
+/// not finite.
 #[inline(always)]
 pub(super) fn reach<const N: usize>(squares: [f64; 2], tolerance: f64) -> f64 {
     let one = |square: f64, k: usize| coarse_root(tolerance * tolerance, square, 2 * k);

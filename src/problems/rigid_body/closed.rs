@@ -31,10 +31,11 @@ fn kinetic_energy<S: Real>(inverse_inertia: &Vector3<S>, m: &Vector3<S>) -> S {
     S::lit(0.5) * (m[0] * w[0] + m[1] * w[1] + m[2] * w[2])
 }
 
-/// The free rigid body by its body momentum alone: ṁ = m × J⁻¹m, equation (5), a flow on the
-/// coadjoint orbit |m| = const. f(m) = −J⁻¹m; Λ(g, m) = g m.
+/// The free rigid body by its momentum in the body: ṁ = m × J⁻¹m, equation (5).
 ///
-/// Invariants: |m|² (the Casimir, kept by every method that acts by the group) and the energy.
+/// f(m) = −J⁻¹m; Λ(g, m) = g m. The motion stays on the sphere |m| = const, a coadjoint orbit.
+///
+/// Invariants: the energy, and |m|², a Casimir that every method that acts by the group conserves.
 #[derive(Clone, Copy, Debug)]
 pub struct RigidBody<S = f64> {
     group: So3<S>,
@@ -42,7 +43,7 @@ pub struct RigidBody<S = f64> {
 }
 
 impl<S: Real> RigidBody<S> {
-    /// From the principal moments of inertia J₁, J₂, J₃.
+    /// Makes a body from the principal moments of inertia J₁, J₂, J₃.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] for a moment that is not finite and positive.
@@ -64,8 +65,8 @@ impl<S: Real> RigidBody<S> {
         scale(&self.inverse_inertia, m)
     }
 
-    /// E = ½ m·J⁻¹m: infinite where that is beyond the largest number, as for |m| = 1e200 with J = 1,
-    /// and 0 below the least. The motion itself has no such limits.
+    /// E = ½ m·J⁻¹m. It may overflow to infinity, as for |m| = 1e200 with J = 1, or underflow to 0. The motion has no
+    /// such limits.
     pub fn energy(&self, m: &Vector3<S>) -> S {
         kinetic_energy(&self.inverse_inertia, m)
     }
@@ -87,15 +88,16 @@ impl<S: Real> Problem for RigidBody<S> {
     fn f(&self, _: S, m: &Vector3<S>, v: &mut Vector3<S>, _: &mut ()) {
         *v = -self.omega(m);
     }
-    /// m × ω: the sign of f would be a seventh of a classical step.
+    /// m × ω. To change the sign of f instead would cost a seventh of a classical step.
     #[inline]
     fn field(&self, _: S, m: &Vector3<S>, dm: &mut Vector3<S>, _: &mut FieldStore<Self>) {
         *dm = cross(m, &self.omega(m));
     }
 }
 
-/// The free rigid body with its attitude, as the paper integrates it: ġ = f(g)·g on SO(3),
-/// f(g) = ω_s = g J⁻¹ gᵀ m_s, equation (11); m_s is constant, the body momentum is gᵀm_s.
+/// The free rigid body by its attitude, as in the paper: ġ = f(g)·g on SO(3).
+///
+/// f(g) = ω_s = g J⁻¹ gᵀ m_s, equation (11). m_s is constant, and the body momentum is gᵀm_s.
 #[derive(Clone, Copy, Debug)]
 pub struct RigidBodyAttitude<S = f64> {
     body: RigidBody<S>,
@@ -103,7 +105,7 @@ pub struct RigidBodyAttitude<S = f64> {
 }
 
 impl<S: Real> RigidBodyAttitude<S> {
-    /// From the principal moments of inertia, and the angular momentum in space.
+    /// Makes a body from the principal moments of inertia and the angular momentum in space.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] for a moment that is not finite and positive, or a momentum that is
@@ -117,7 +119,7 @@ impl<S: Real> RigidBodyAttitude<S> {
         })
     }
 
-    /// The body alone.
+    /// The body by its momentum only.
     pub fn body(&self) -> &RigidBody<S> {
         &self.body
     }

@@ -1,7 +1,7 @@
 //! The exact motion of the free rigid body, by Jacobi's elliptic functions.
 //!
 //! Name the principal axes x, y, z so that y is the middle one and the momentum circles z. With
-//! d_i = Σ_j m_j²(J_j − J_i)/J_j (no cancellation for the axes that matter) and τ = λt + τ₀
+//! d_i = Σ_j m_j²(J_j − J_i)/J_j, in which no large terms cancel, and τ = λt + τ₀
 //!
 //! m_x = A cn τ, m_y = ±B sn τ, m_z = ±C dn τ,
 //! A² = J_x d_z/(J_x − J_z), B² = J_y d_z/(J_y − J_z), C² = J_z d_x/(J_z − J_x),
@@ -11,11 +11,11 @@
 //! φ̇ = L(m_x²/J_x + m_y²/J_y)/(m_x² + m_y²): a positive combination of L/J_x and L/J_y. It is
 //! integrated as L·min(1/J_x, 1/J_y)·t plus a positive elliptic integral of the third kind, so that
 //! nothing cancels at any ratio of the inertias (the textbook forms start from L/J_z or 2E/L and
-//! lose as many digits as that ratio has). The modulus enters by 1 − k² alone: near the separatrix
-//! k itself has no digits left.
+//! lose as many digits as that ratio has). Of the modulus only 1 − k² is used, because near the separatrix
+//! k loses all its digits.
 //!
-//! That is how an orbit is set up, and how one near the separatrix is evaluated (1 − k² < 0.013).
-//! Anywhere else sn, cn, dn and the periodic part of φ come from [`Theta`], five times as fast.
+//! These formulas set up an orbit, and evaluate it near the separatrix (1 − k² < 0.013). Elsewhere sn, cn, dn and the
+//! periodic part of φ come from [`Theta`], which is five times as fast.
 //!
 //! Source: notes on E. T. Whittaker, Analytical Dynamics, § 69; B. C. Carlson's integrals.
 
@@ -30,10 +30,10 @@ use crate::maps::{CoordinateMap, Exp};
 use crate::scalar::Trig;
 use crate::so3::cross;
 
-/// The exact motion of a free rigid body, at any time at once: m(t) and g(t).
+/// The exact motion of a free rigid body: m(t) and g(t) at any time t, without steps.
 ///
-/// Errors in f64: within a few units of what one ulp of the input changes, plus 3e-14 in g
-/// (references of 36 digits in `tests/references`).
+/// The error in f64 is at most a few times the change by one ulp of the input, plus 3e-14 in g (references of 36 digits
+/// in `tests/references`).
 ///
 /// ```
 /// use lieflow::problems::Exact;
@@ -55,7 +55,7 @@ pub struct Exact {
 #[derive(Clone, Debug)]
 #[allow(clippy::large_enum_variant)] // in a box, every step of the exact method would allocate
 enum Orbit {
-    /// Rotation about a fixed axis: m does not change.
+    /// A rotation about a fixed axis: m is constant.
     Steady,
     /// The general case.
     Elliptic(Elliptic),
@@ -105,8 +105,8 @@ struct Fast {
     inverse: f64,
 }
 
-/// Below this 1 − k² the orbit is taken as the separatrix: it would come back to the middle axis
-/// after more than 300 of its time constants 1/λ only.
+/// Below this 1 − k² the orbit is treated as the separatrix. It would return to the middle axis only after more than
+/// 300 of its time constants 1/λ.
 const SEPARATRIX: f64 = 1e-280;
 
 /// The power of two at or below x ≥ 0, within 2^±1000.
@@ -116,11 +116,11 @@ fn power_of_two(x: f64) -> f64 {
 }
 
 impl Exact {
-    /// From the principal moments of inertia, the body momentum and the attitude at t = 0.
+    /// Makes a motion from the principal moments of inertia, the body momentum and the attitude at t = 0.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] for a moment that is not finite and positive or a momentum that is not
-    /// finite; [`So3::check_element`]'s errors for an attitude that is no rotation to 1e-6.
+    /// finite; [`So3::check_element`]'s errors for an attitude that is not a rotation within 1e-6.
     pub fn new(
         inertia: [f64; 3],
         momentum_body: [f64; 3],
@@ -202,7 +202,7 @@ impl Fast {
     }
 }
 
-/// Where on the elliptic orbit a time is: τ = 2Kj + r with |r| ≤ K, and sn, cn, dn at r.
+/// The place on the elliptic orbit at a time: τ = 2Kj + r with |r| ≤ K, and sn, cn, dn at r.
 struct Phase {
     tau: f64,
     half_turns: f64,
@@ -430,7 +430,7 @@ impl Elliptic {
     /// D for |τ| ≤ K. With s, c, d = sn, cn, dn, n = B²/A² and p = c² + n s²:
     /// ∫ n s²/p = n s³/3 R_J(c², d², 1, p), and
     /// ∫ c²/p = s·(c·R_C(d², pq) + (1−k²)s²/(3n)·R_J(c², d², 1, q)), q = c² + (1−k²)s²/n,
-    /// which is the difference from ∫ 1 freed of its cancellation (DLMF 19.21.12).
+    /// which is τ − ∫ n s²/p without its cancellation (DLMF 19.21.12).
     fn third_kind(&self, tau: f64, s: f64, c: f64, d: f64) -> Result<f64, Error> {
         let (n, kc2) = (self.ratio, self.kc2);
         let (c2, d2, s2) = (c * c, d * d, s * s);

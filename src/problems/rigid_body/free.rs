@@ -1,5 +1,6 @@
-//! What the special methods ask of a free rigid body: a step is a rotation Ψ of the body frame,
-//! m⁺ = Ψᵀm, g⁺ = gΨ, and one formula serves every model of the body.
+//! The interface of a free rigid body for the special methods.
+//!
+//! A step is a rotation Ψ of the body frame: m⁺ = Ψᵀm, g⁺ = gΨ. So one formula serves all models of the body.
 //!
 //! | model | y | m | frame |
 //! |---|---|---|---|
@@ -15,9 +16,9 @@ use crate::groups::{LieGroup, So3};
 use crate::problems::{LiePoisson, Orthogonal, PointOf, Problem, Projection, ScalarOf, Split};
 use crate::scalar::{Real, Trig};
 
-/// A frame fixed in the body: g, or nothing where only the momentum is wanted.
+/// A frame fixed in the body: g, or nothing for a model of the momentum only.
 pub trait Frame<S>: Copy {
-    /// Is there a frame that turns?
+    /// True if there is a frame.
     const TURNS: bool;
     /// g ← g·Ψ.
     fn turn(&mut self, psi: &Matrix3<S>);
@@ -100,8 +101,8 @@ impl<S: Real> FreeBody for RigidBodyState<S> {
     }
 }
 
-/// The flow of axis k: θ = t·m_k/J_k, m ← R_k(θ)ᵀ m, g ← g R_k(θ). The two components i, j of m and
-/// the two columns i, j of g turn alike: x_i ← x_i cos θ + x_j sin θ, x_j ← x_j cos θ − x_i sin θ.
+/// The flow of axis k: θ = t·m_k/J_k, m ← R_k(θ)ᵀ m, g ← g R_k(θ). The components i, j of m and the
+/// columns i, j of g change in the same way: x_i ← x_i cos θ + x_j sin θ, x_j ← x_j cos θ − x_i sin θ.
 #[inline(always)]
 fn turn_pair<S: Real>((c, s): (S, S), x: &mut S, y: &mut S) {
     (*x, *y) = (c * *x + s * *y, c * *y - s * *x);
@@ -132,8 +133,8 @@ fn angle<S: Trig>(inverse_inertia: S, t: S, m_k: S) -> (S, S) {
     (c, s)
 }
 
-/// A body whose flow about an axis is known with the axis as a constant: an index that is not known
-/// when the step is compiled costs more than the arithmetic.
+/// A body whose flow about an axis has the axis as a constant. An index that the compiler does not know costs more than
+/// the arithmetic.
 trait TurnsAbout<S>: FreeBody {
     fn turn_about<const K: usize>(&self, t: S, y: &mut PointOf<Self>);
 }
@@ -147,7 +148,7 @@ impl<S: Trig> TurnsAbout<S> for RigidBody<S> {
 }
 
 impl<S: Trig> TurnsAbout<S> for RigidBodyAttitude<S> {
-    /// m_k is the product of column k of g with m_s: the momentum itself need not be turned.
+    /// m_k is the product of column k of g with m_s, so the whole momentum is not needed.
     #[inline(always)]
     fn turn_about<const K: usize>(&self, t: S, g: &mut Matrix3<S>) {
         let m_s = self.momentum_space();
@@ -223,8 +224,8 @@ const SCHULZ_STEPS: usize = 8;
 
 /// g ← its orthogonal factor.
 ///
-/// Newton–Schulz g ← g − ½ g(gᵀg − 𝟙) in residual form, so that the last step leaves no more than
-/// the rounding of one product; Gram–Schmidt on the columns, twice.
+/// Newton–Schulz g ← g − ½ g(gᵀg − 𝟙) in residual form, whose last step leaves at most the rounding of one product; or
+/// Gram–Schmidt on the columns, twice.
 fn orthogonalise<S: Real>(how: Projection, g: &mut Matrix3<S>) -> Result<(), StepError> {
     let group = So3::<S>::new();
     let far =

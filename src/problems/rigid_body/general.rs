@@ -1,4 +1,4 @@
-//! The free rigid body in ℝⁿ, over dense matrices: m ∈ so(n)*, Ω = J⁻¹(m) pair by pair.
+//! The free rigid body in ℝⁿ on dense matrices: m ∈ so(n)*, and Ω = J⁻¹(m) entry by entry.
 
 use faer::Mat;
 
@@ -11,11 +11,11 @@ use crate::problems::FieldStore;
 use crate::problems::{LiePoisson, Problem};
 use crate::scalar::{Ops, tally};
 
-/// The free n-dimensional rigid body by its body momentum: ṁ = \[m, Ω\], Ω_ij = m_ij/J_ij, on a
-/// coadjoint orbit of SO(n). f(m) = −Ω; Λ(g, m) = g m gᵀ.
+/// The free n-dimensional rigid body by its body momentum: ṁ = \[m, Ω\], Ω_ij = m_ij/J_ij.
 ///
-/// At n = 3, with m the hat of the momentum vector, it is Euler's equation (5). Invariants: the
-/// eigenvalues of m (the Casimirs, kept by every method that acts by the group) and the energy.
+/// f(m) = −Ω; Λ(g, m) = g m gᵀ. The motion stays on a coadjoint orbit of SO(n). At n = 3, with m the hat of the
+/// momentum vector, it is Euler's equation (5). Invariants: the energy, and the eigenvalues of m, which are Casimirs:
+/// every method that acts by the group conserves them.
 #[derive(Clone, Debug)]
 pub struct RigidBodyN {
     group: MatrixGroup,
@@ -24,7 +24,7 @@ pub struct RigidBodyN {
 }
 
 impl RigidBodyN {
-    /// From the inertia J_ij of each plane i < j, in the order 12, 13, …, 1n, 23, …
+    /// Makes a body from the inertia J_ij of each plane i < j, in the order 12, 13, …, 1n, 23, …
     ///
     /// # Errors
     /// [`Error::OutOfRange`] for n = 0 or an inertia that is not finite and positive,
@@ -85,9 +85,10 @@ impl RigidBodyN {
         0.5 * twice
     }
 
-    /// out ← sign·Ω(m), by the skew part of m: a momentum in so(n)* is nothing else. The coadjoint
-    /// action g m gᵀ leaves rounding in the symmetric part; an Ω with some of it would not be in
-    /// so(n), and |m| would drift quadratically with the number of steps.
+    /// out ← sign·Ω(m), by the skew part of m.
+    ///
+    /// A momentum in so(n)* is skew, but the coadjoint action g m gᵀ leaves rounding errors in the symmetric part. With
+    /// them Ω would not be in so(n), and |m| would drift quadratically with the number of steps.
     pub(super) fn omega(&self, sign: f64, m: &Mat<f64>, out: &mut Mat<f64>) {
         let half = 0.5 * sign;
         tally(|| (Ops::adds(1) + Ops::muls(2)) * (m.ncols() * m.ncols().saturating_sub(1) / 2));
@@ -116,7 +117,7 @@ impl Problem for RigidBodyN {
     fn f(&self, _: f64, m: &Mat<f64>, v: &mut AlgebraMatrix, _: &mut ()) {
         self.omega(-1.0, m, v);
     }
-    /// \[m, Ω\] = P − Pᵀ with P = mΩ: m is skew, which λ_* would have to find out.
+    /// \[m, Ω\] = P − Pᵀ with P = mΩ, because m is skew. λ_* does not know that.
     fn field(
         &self,
         _: f64,
@@ -130,8 +131,9 @@ impl Problem for RigidBodyN {
     }
 }
 
-/// The free n-dimensional rigid body with its attitude: ġ = f(g)·g on SO(n),
-/// f(g) = g Ω(gᵀ m_s g) gᵀ with constant m_s; the body momentum is gᵀ m_s g.
+/// The free n-dimensional rigid body by its attitude: ġ = f(g)·g on SO(n).
+///
+/// f(g) = g Ω(gᵀ m_s g) gᵀ with constant m_s. The body momentum is gᵀ m_s g.
 #[derive(Clone, Debug)]
 pub struct RigidBodyNAttitude {
     body: RigidBodyN,
@@ -139,7 +141,7 @@ pub struct RigidBodyNAttitude {
 }
 
 impl RigidBodyNAttitude {
-    /// From the body, and the angular momentum in space as a skew-symmetric matrix.
+    /// Makes it from a body, and from the angular momentum in space as a skew-symmetric matrix.
     ///
     /// # Errors
     /// As [`MatrixGroup::algebra`] for a momentum that is not skew-symmetric and finite.
@@ -148,7 +150,7 @@ impl RigidBodyNAttitude {
         Ok(RigidBodyNAttitude { body, momentum_space })
     }
 
-    /// The body alone.
+    /// The body by its momentum only.
     pub fn body(&self) -> &RigidBodyN {
         &self.body
     }
@@ -200,7 +202,7 @@ impl Problem for RigidBodyNAttitude {
             }
         }
     }
-    /// λ_*(f) without the skew part of ω_s: on the entries of g its rounding is one among others.
+    /// λ_*(f) without taking the skew part of ω_s, because here its rounding error does not matter.
     fn field(
         &self,
         _: f64,

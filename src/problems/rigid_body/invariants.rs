@@ -24,7 +24,7 @@ impl<S: Real> Invariants for RigidBody<S> {
     }
 }
 
-/// |m|² is that of m = gᵀm_s: constant as long as g is orthogonal.
+/// |m|² of m = gᵀm_s, which is constant while g is orthogonal.
 impl<S: Real> Invariants for RigidBodyAttitude<S> {
     fn invariants(&self) -> Vec<Invariant> {
         self.body().invariants()
@@ -47,7 +47,7 @@ impl<S: Real> Invariants for RigidBodyState<S> {
     }
 }
 
-/// tr mᵏ for even k ≤ n, the Casimirs of so(n)* but the Pfaffian, and the energy.
+/// tr mᵏ for even k ≤ n, which are the Casimirs of so(n)* except the Pfaffian, and the energy.
 impl Invariants for RigidBodyN {
     fn invariants(&self) -> Vec<Invariant> {
         let n = self.group().n();
@@ -76,8 +76,8 @@ impl Invariants for RigidBodyNAttitude {
 }
 
 /// The integrals of [`RigidBodyN::manakov`] besides the Casimirs: the coefficients of zʲ in
-/// tr(m + zΛ²)ᵏ for 3 ≤ k ≤ n and 1 ≤ j ≤ k − 2 with k − j even, Λ = diag(λ). With the Casimirs they
-/// make the body integrable. A λ that is too short gives NaN.
+/// tr(m + zΛ²)ᵏ for 3 ≤ k ≤ n and 1 ≤ j ≤ k − 2 with k − j even, Λ = diag(λ). They and the Casimirs
+/// make the body integrable. If λ is too short, they are NaN.
 ///
 /// Source: S. V. Manakov, Funct. Anal. Appl. 10 (1976).
 pub fn manakov_integrals(lambda: &[f64], m: &Mat<f64>) -> Vec<f64> {

@@ -1,5 +1,4 @@
-//! The free rigid body (paper 2): Euler's equations on so(3)*, with attitude on SO(3), the same
-//! body as an n-dimensional one on so(n), and its exact solution.
+//! The free rigid body (paper 2): by its momentum on so(3)*, by its attitude on SO(3), in n dimensions, and exactly.
 
 mod closed;
 mod exact;
@@ -20,7 +19,7 @@ pub use state::{BodyFrame, BodyState, RigidBodyState};
 
 use crate::error::Error;
 
-/// Check principal moments of inertia: each finite and positive, with a finite reciprocal.
+/// Checks that principal moments of inertia are finite and positive, with finite reciprocals.
 pub(crate) fn check_inertia(inertia: &[f64]) -> Result<(), Error> {
     for (i, &j) in inertia.iter().enumerate() {
         if !(j.is_finite() && j > 0.0 && (1.0 / j).is_finite()) {
@@ -30,7 +29,7 @@ pub(crate) fn check_inertia(inertia: &[f64]) -> Result<(), Error> {
     Ok(())
 }
 
-/// Check that every component is finite.
+/// Checks that every component is finite.
 pub(crate) fn check_finite(arg: &str, x: &[f64]) -> Result<(), Error> {
     match x.iter().position(|x| !x.is_finite()) {
         Some(i) => Err(Error::out_of_range(format!("{arg}[{i}]"), x[i], "a finite number")),

@@ -38,8 +38,7 @@ pub struct AttitudeSeries {
     half: Mat<f64>,
 }
 
-/// g(t + θh) = Ψ g with Ψ' = Ψ·gΩgᵀ: Ω in the frame of the body, carried to space by the g of the
-/// start.
+/// g(t + θh) = Ψ g with Ψ' = Ψ·gΩgᵀ. Ω is in the frame of the body; g at the start turns it to space.
 impl TaylorField for RigidBodyNAttitude {
     const MOVING: bool = true;
     type Series = AttitudeSeries;

@@ -2,9 +2,9 @@
 //!
 //! The group acts from the body's side, Λ(a, (m, g)) = (a m, g aᵀ), a left action; with
 //! f(m, g) = −J⁻¹m it gives ṁ = m × ω, ġ = g ω̂, and the left version of the paper's methods,
-//! g⁺ = g Ψ(v), m⁺ = Ad*_{Ψ(v)} m = Ψ(v)⁻¹m. gm = m_s is kept to rounding by every method that acts
-//! by the group, and m is a state of its own: near the separatrix that matters, since a momentum
-//! recomputed from g crosses it.
+//! g⁺ = g Ψ(v), m⁺ = Ad*_{Ψ(v)} m = Ψ(v)⁻¹m. Every method that acts by the group conserves gm = m_s to rounding. m is
+//! stored and not recomputed from g. This matters near the separatrix, where a momentum that is recomputed from g
+//! crosses it.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -115,11 +115,11 @@ impl<S: Real> Action<So3<S>> for BodyFrame {
         dy.m = cross(v, &y.m);
         group.tangent_in_body(&y.g, &-v, &mut dy.g);
     }
-    /// g back to SO(3); m has no constraint.
+    /// Corrects g to SO(3). m has no constraint.
     fn restore(&self, group: &So3<S>, p: &mut BodyState<S>, work: &mut Self::Work) -> Option<S> {
         Some(group.correct(&mut p.g, work.each_mut()))
     }
-    /// g back to SO(3), and m to its sphere.
+    /// Corrects g to SO(3), and m to its sphere.
     fn restore_to(
         &self,
         group: &So3<S>,
@@ -156,7 +156,7 @@ pub struct RigidBodyState<S = f64> {
 }
 
 impl<S: Real> RigidBodyState<S> {
-    /// From the principal moments of inertia J₁, J₂, J₃.
+    /// Makes a body from the principal moments of inertia J₁, J₂, J₃.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] for a moment that is not finite and positive.
@@ -164,7 +164,7 @@ impl<S: Real> RigidBodyState<S> {
         Ok(RigidBodyState { body: RigidBody::new(inertia)? })
     }
 
-    /// The body alone.
+    /// The body by its momentum only.
     pub fn body(&self) -> &RigidBody<S> {
         &self.body
     }
@@ -181,11 +181,11 @@ impl<S: Real> RigidBodyState<S> {
 }
 
 impl RigidBodyState<f64> {
-    /// A state from a body momentum and an attitude.
+    /// Makes a state from a body momentum and an attitude.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] for a momentum that is not finite, and [`So3::check_element`]'s errors
-    /// for an attitude that is no rotation to 1e-6.
+    /// for an attitude that is not a rotation within 1e-6.
     pub fn state(
         &self,
         momentum_body: [f64; 3],

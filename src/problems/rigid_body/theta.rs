@@ -4,12 +4,12 @@
 //! η = πα/(2K) with sn(α, k') = n^{−½}, n = B²/A² ≥ 1.
 //!
 //! sn τ = ϑ₃ϑ₁(v)/(ϑ₂ϑ₄(v)), cn τ = ϑ₄ϑ₂(v)/(ϑ₂ϑ₄(v)), dn τ = ϑ₄ϑ₃(v)/(ϑ₃ϑ₄(v)), constants ϑ_i at 0;
-//! the precession is its mean rate and ±arg(iϑ₁(v − iη) e^{−iv}), of period 2K.
+//! the precession angle is the mean rate times t, and ±arg(iϑ₁(v − iη) e^{−iv}), of period 2K.
 //!
-//! Every series is a polynomial in x = sin²v, times 1, sin v or cos v, with coefficients of the orbit:
-//! with q ≤ [`Q_MAX`] six terms are enough, |c_6| < 1e-19. E = e^{−2η} and ρ = q/E are at most 1, and
-//! the coefficients of the last one are q^{n²}ρⁿ(1 ± E^{2n+1}), so that nothing overflows where the
-//! body is nearly symmetric (q → 0, η → ∞) and nothing cancels where η → 0.
+//! Every series is a polynomial in x = sin²v, times 1, sin v or cos v. Its coefficients depend on the orbit. For q ≤
+//! [`Q_MAX`] six terms are enough, |c_6| < 1e-19. E = e^{−2η} and ρ = q/E are at most 1, and the coefficients of the
+//! last series are q^{n²}ρⁿ(1 ± E^{2n+1}). So nothing overflows if the body is nearly symmetric (q → 0, η → ∞), and
+//! nothing cancels for η → 0.
 //!
 //! Source: notes on E. T. Whittaker & G. N. Watson, A Course of Modern Analysis, ch. XXI, XXII.
 
@@ -72,7 +72,7 @@ pub(super) struct Theta {
 }
 
 impl Theta {
-    /// From 1 − k², K and n; `None` where the nome is above [`Q_MAX`].
+    /// From 1 − k², K and n; `None` if the nome is above [`Q_MAX`].
     pub(super) fn new(kc2: f64, quarter: f64, n: f64) -> Result<Option<Self>, Error> {
         let frequency = FRAC_PI_2 / quarter;
         let k2 = 1.0 - kc2;

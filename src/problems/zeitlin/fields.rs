@@ -1,4 +1,4 @@
-//! Vorticities to start from.
+//! Initial vorticities.
 
 use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
@@ -8,22 +8,24 @@ use super::{Sphere, Zeitlin};
 use crate::error::Error;
 use crate::groups::ComplexMatrix;
 
-/// A vortex on the sphere: a point vortex that has diffused to a width,
-/// ω = (Γ/4π) Σ_{l ≥ 1} e^{−l(l+1)σ²/2} Σ_m Y_lm(x₀) Y_lm; the mean is taken out.
+/// A vortex on the sphere: a point vortex that has diffused to a width.
+///
+/// ω = (Γ/4π) Σ_{l ≥ 1} e^{−l(l+1)σ²/2} Σ_m Y_lm(x₀) Y_lm, without the mean.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Vortex {
-    /// In radians, north positive.
+    /// The latitude in radians, north positive.
     pub latitude: f64,
-    /// In radians, east positive.
+    /// The longitude in radians, east positive.
     pub longitude: f64,
-    /// Γ, positive for a flow counterclockwise as seen from outside.
+    /// The circulation Γ, positive for a counterclockwise flow seen from outside.
     pub circulation: f64,
-    /// σ in radians.
+    /// The width σ in radians.
     pub width: f64,
 }
 
 impl Zeitlin<Sphere> {
-    /// Gaussian coefficients ω_lm of equal variance for 1 ≤ l < `below`, with the root mean square 1.
+    /// A random field: Gaussian coefficients ω_lm of equal variance for 1 ≤ l < `below`, scaled to the root mean square
+    /// 1.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] unless 2 ≤ `below` ≤ N.

@@ -1,7 +1,7 @@
 //! Spherical harmonics as matrices T_lm, and as functions on the sphere.
 //!
 //! Harmonics are real, without the Condon–Shortley phase, and of mean square 1: Y_11 = √3 x,
-//! Y_1,−1 = √3 y, Y_10 = √3 z. Coefficients ω_lm stand at l² + l + m, so that l < L takes L² of them.
+//! Y_1,−1 = √3 y, Y_10 = √3 z. Coefficient ω_lm has the index l² + l + m, so l < L takes L² of them.
 //!
 //! | m | T_lm |
 //! |---|---|
@@ -12,8 +12,8 @@
 //! with v = v^{l,\|m\|} the eigenvector of −Δ on the diagonal \|m\| to l(l + 1), Σv² = N, and its first
 //! entry, the one nearest to the north pole, positive: ⟨T_lm, T_l′m′⟩ = δδ.
 //!
-//! v is found by a twisted factorisation of −Δ − l(l + 1), in the form that [`Sphere`] is solved in:
-//! from above s_i, from below t_i, joined where s + t − (m² − λ) is least.
+//! v is computed by a twisted factorisation of −Δ − l(l + 1), in the form of the solve of [`Sphere`]: s_i from above,
+//! t_i from below, joined where s + t − (m² − λ) is smallest.
 //! Source: for the twist, I. S. Dhillon & B. N. Parlett, Linear Algebra Appl. 387 (2004).
 
 use core::f64::consts::{FRAC_1_SQRT_2, PI, SQRT_2};
@@ -93,7 +93,7 @@ impl Zeitlin<Sphere> {
     /// W = Σ ω_lm T_lm, from L² coefficients ω_lm at l² + l + m; L ≤ N.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] where their number is not a square L² ≤ N², or one is not finite.
+    /// [`Error::OutOfRange`] if their number is not a square L² ≤ N², or one is not finite.
     pub fn from_coefficients(&self, coefficients: &[f64]) -> Result<ComplexMatrix, Error> {
         let (n, count) = (self.n(), coefficients.len());
         let below = count.isqrt();

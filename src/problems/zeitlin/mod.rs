@@ -1,7 +1,7 @@
-//! Ideal fluids on a sphere and on a torus, discretised: Zeitlin's model.
+//! Ideal fluids on a sphere and on a torus, by Zeitlin's model.
 //!
-//! Euler's equation in two dimensions, ω̇ = {ψ, ω} with Δψ = ω, for functions that are quantised: ω is a
-//! skew-Hermitian N×N matrix W, the Poisson bracket a commutator,
+//! Euler's equation in two dimensions is ω̇ = {ψ, ω} with Δψ = ω. In the model the vorticity ω is a skew-Hermitian N×N
+//! matrix W, and the Poisson bracket is a commutator:
 //!
 //! Ẇ = \[P, W\]/ħ, ΔP = W: an isospectral flow. f(W) = P/ħ ∈ u(N); Λ(g, W) = g W g†.
 //!
@@ -13,10 +13,9 @@
 //! | mean(ω^k) | tr((−iW)^k)/N, the Casimirs |
 //! | the values that ω takes | the eigenvalues of −iW |
 //!
-//! Invariants: the spectrum of W, so every Casimir and the enstrophy (the action), the energy (the
-//! flow), on the sphere the angular momentum (the flow).
-//! [`FluidMidpoint`](crate::methods::FluidMidpoint) is made for these problems; every method for a [`Problem`] with its group
-//! [`Unitary`] runs on them too.
+//! Invariants: by the action the spectrum of W, and so every Casimir and the enstrophy; by the flow the energy, and on
+//! the sphere the angular momentum. [`FluidMidpoint`](crate::methods::FluidMidpoint) is made for these problems. Every
+//! method for a [`Problem`] with the group [`Unitary`] runs on them, too.
 //! Source: V. Zeitlin, Physica D 49 (1991) for the torus, Phys. Rev. Lett. 93 (2004) for the sphere.
 
 mod fields;
@@ -38,16 +37,16 @@ use crate::groups::{ComplexMatrix, LieAlgebra, Unitary};
 use crate::scalar::{Ops, tally};
 use crate::space::Metric;
 
-/// A quantised surface: what Zeitlin's model needs to know of it.
+/// A quantised surface for Zeitlin's model.
 pub trait Surface {
     /// N.
     fn n(&self) -> usize;
     /// 1/ħ, the rate of Ẇ = \[P, W\]/ħ.
     fn rate(&self) -> f64;
-    /// x ← Δ⁻¹x with trace 0, from and to what lies on and below the diagonal of a skew-Hermitian x;
-    /// what lies above holds nothing of use afterwards.
+    /// x ← Δ⁻¹x with trace 0. It reads and writes the lower triangle and the diagonal of a skew-Hermitian x. The upper
+    /// triangle is undefined afterwards.
     fn solve(&self, x: &mut ComplexMatrix, scratch: &mut [Mat<f64>; 2]);
-    /// Scratch of [`solve`](Self::solve); the only call that allocates.
+    /// Makes the scratch of [`solve`](Self::solve). Only this call allocates.
     fn scratch(&self) -> [Mat<f64>; 2];
     /// Linear invariants of the flow, by name.
     fn momenta(&self) -> &'static [&'static str] {
@@ -115,7 +114,7 @@ impl<S: Surface> Zeitlin<S> {
         &self.surface
     }
 
-    /// W, when it is a vorticity: N×N, finite and skew-Hermitian to
+    /// Checks that W is a vorticity, and returns it: N×N, finite and skew-Hermitian within
     /// [`MEMBERSHIP`](crate::groups::MEMBERSHIP).
     ///
     /// # Errors
@@ -163,7 +162,7 @@ impl<S: Surface> Zeitlin<S> {
     /// The eigenvalues of −iW in ascending order: the values that the vorticity takes. Allocates.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] where they are not found.
+    /// [`Error::OutOfRange`] if they are not found.
     pub fn spectrum(&self, w: &ComplexMatrix) -> Result<Vec<f64>, Error> {
         let hermitian = Mat::from_fn(w.nrows(), w.ncols(), |i, j| {
             let z = w.get(i, j);
@@ -182,7 +181,7 @@ impl<S: Surface> Zeitlin<S> {
     }
 }
 
-/// What f of a fluid needs: P, and scratch of its solve.
+/// The scratch of f of a fluid: P, and the scratch of its solve.
 #[derive(Debug)]
 pub struct StreamWork {
     p: ComplexMatrix,

@@ -11,8 +11,8 @@
 //!
 //! Its pivots are p_i = q_{i+1} + s_i, with s_0 = m² + q_0 and
 //! s_i = m² + ((q_i² − o_i²) + q_i s_{i−1})/(q_i + s_{i−1}), q_i² − o_i² = ((i(N−i) − r(N−r))/2)²:
-//! sums and products of positive numbers, so that every pivot has its full accuracy. On the diagonal
-//! m = 0 Δ is a divergence of fluxes, and singular on the multiples of 𝟙: there tr P = 0.
+//! these are sums and products of positive numbers, so every pivot has full accuracy. On the diagonal m = 0 Δ is a
+//! divergence of fluxes. It is singular on the multiples of 𝟙, so tr P = 0 is chosen.
 //! Source: J. Hoppe & S.-T. Yau, Comm. Math. Phys. 195 (1998).
 
 use faer::Mat;
@@ -127,7 +127,7 @@ impl Sphere {
 }
 
 /// Column j of a matrix whose columns are contiguous.
-/// The entries below the diagonal.
+/// Its entries below the diagonal.
 fn triangle(n: usize) -> usize {
     n * n.saturating_sub(1) / 2
 }

@@ -1,4 +1,4 @@
-//! The torus \[0, 2π)², N odd: the sine–Euler equations.
+//! The torus \[0, 2π)² with odd N: the sine–Euler equations.
 //!
 //! A function ω(x, y) = Σ ω_m e^{i m·x}, |m₁|, |m₂| ≤ (N − 1)/2, is the matrix W = i Σ ω_m T_m,
 //!
@@ -7,8 +7,8 @@
 //! with the clock g = diag(ζ^r), ζ = e^{2πi/N}, and the shift h. \[T_m, T_n\] = −2i sin(π(m×n)/N) T_{m+n}, so
 //! that with 1/ħ = N/2π commutators become Poisson brackets, ω̇ = −u·∇ω, u = (−∂_yψ, ∂_xψ).
 //!
-//! Δ T_m = −|m|² T_m. It maps every cyclic diagonal c = r + m₂ to itself by a symmetric circulant, which
-//! the real Fourier basis makes diagonal: two real products a solve.
+//! Δ T_m = −|m|² T_m. It maps every cyclic diagonal c = r + m₂ to itself by a symmetric circulant, which is diagonal in
+//! the real Fourier basis. So a solve takes two real products.
 //! Source: V. Zeitlin, Physica D 49 (1991); D. B. Fairlie & C. K. Zachos, Phys. Lett. B 224 (1989).
 
 use core::f64::consts::{PI, TAU};
@@ -77,8 +77,8 @@ impl Torus {
     }
 }
 
-/// Where entry r of the cyclic diagonal d > 0 stands on or below the diagonal, and whether conjugated
-/// with a minus.
+/// The place of entry r of the cyclic diagonal d > 0 on or below the diagonal, and whether it is conjugated with a
+/// minus sign.
 fn place(n: usize, d: usize, r: usize) -> (usize, usize, bool) {
     if r + d < n { (r + d, r, true) } else { (r, r + d - n, false) }
 }
@@ -143,7 +143,7 @@ impl Zeitlin<Torus> {
         Zeitlin::new(Torus::new(n)?)
     }
 
-    /// ω = Σ a cos(m·x) + b sin(m·x), from (\[m₁, m₂\], \[a, b\]). m = 0 is left out: the mean is 0.
+    /// ω = Σ a cos(m·x) + b sin(m·x), from (\[m₁, m₂\], \[a, b\]). The mean is 0, so m = 0 is ignored.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] for wave numbers beyond (N − 1)/2 and amplitudes that are not finite.
@@ -209,7 +209,7 @@ impl Zeitlin<Torus> {
         grid
     }
 
-    /// Gaussian amplitudes of equal variance for 0 < |m| < `below`, with the root mean square 1.
+    /// A random field: Gaussian amplitudes of equal variance for 0 < |m| < `below`, scaled to the root mean square 1.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] unless 2 ≤ `below` ≤ (N + 1)/2.
@@ -269,7 +269,7 @@ fn half_plane(k: i32) -> impl Iterator<Item = [i32; 2]> {
     (0..=k).flat_map(move |a| (-k..=k).map(move |b| [a, b])).filter(|m| m[0] > 0 || m[1] > 0)
 }
 
-/// (w − w†)/2: what rounding adds is taken out.
+/// (w − w†)/2, which removes rounding errors.
 fn skew_hermitian(w: ComplexMatrix) -> ComplexMatrix {
     ComplexMatrix::from_fn(w.nrows(), w.ncols(), |i, j| (w.get(i, j) - w.get(j, i).conj()) * 0.5)
 }
