@@ -17,8 +17,8 @@
 //! of time, too, and the third k undoes it. Lewis and Simo gain accuracy by this k; here it is derived for a body with
 //! principal axes. The attitude also turns about the momentum, by an angle that a scalar k cannot correct.
 //!
-//! Symmetric. Preserves: the group, and energy and momentum to rounding, for any k; with k = 1 also the symplectic
-//! structure. Cost: 3 to 6 Newton iterations of one 3×3 solve each (with one sine-cosine pair for the first k), one cay.
+//! Symmetric. Preserves: the group, and energy and momentum to rounding, for any k. It does not preserve the symplectic
+//! structure, since the change of time varies along the orbit. Cost: 3 to 6 Newton iterations of one 3×3 solve each (with one sine-cosine pair for the first k), one cay.
 //! Source: J. C. Simo & K. K. Wong, Int. J. Numer. Methods Eng. 31 (1991); k = 1 is the midpoint
 //! rule of M. A. Austin, P. S. Krishnaprasad & L.-S. Wang, J. Comput. Phys. 107 (1993); D. Lewis &
 //! J. C. Simo, J. Nonlinear Sci. 4 (1994). In the paper (5.1) the norms in k are missing in print.

@@ -7,4 +7,5 @@ mod counting;
 #[path = "../support/mod.rs"]
 mod support;
 mod symmetry;
+mod symplectic;
 mod table;
