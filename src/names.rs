@@ -189,21 +189,25 @@ pub fn meant<'a>(given: &str, names: &[&'a str]) -> Option<Meant<'a>> {
 pub fn near<'a>(given: &str, names: &[&'a str]) -> Option<&'a str> {
     let given = plain(given);
     let length = given.chars().count();
-    let distance = |name: &str| {
-        let name = plain(name);
-        // A name that was cut short is close whatever is missing.
-        let cut = length >= 3 && name.starts_with(&given);
-        if cut { 0 } else { strsim::damerau_levenshtein(&given, &name) }
-    };
-    let (distance, name) =
-        names.iter().map(|&name| (distance(name), name)).min_by_key(|(d, _)| *d)?;
     let allowed = match length {
         0..=1 => 0,
         2..=3 => 1,
         4..=5 => 2,
         n => n / 3,
     };
-    (distance <= allowed).then_some(name)
+    let distance = |name: &str| {
+        let name = plain(name);
+        // A name that was cut short is close whatever is missing, also with a slip in a long one.
+        let cut = |k| name.chars().take(k).collect::<String>();
+        let slips = |k| strsim::damerau_levenshtein(&given, &cut(k));
+        let slips = (length.max(3)..=length + 1).map(slips).min().unwrap_or(usize::MAX);
+        match slips <= length / 6 {
+            true => Some(slips),
+            false => Some(strsim::damerau_levenshtein(&given, &name)).filter(|d| *d <= allowed),
+        }
+    };
+    let close = names.iter().filter_map(|&name| Some((distance(name)?, name)));
+    close.min_by_key(|(distance, _)| *distance).map(|(_, name)| name)
 }
 
 /// Longer lists are left out where a name of them was meant.

@@ -123,8 +123,8 @@ pub trait LieGroup: LieAlgebra {
     /// The distance of g from G: ‖gᵀMg − M‖ (Frobenius), zero for GL(n).
     fn defect(&self, g: &Self::Elem) -> Self::Scalar;
 
-    /// Has g the size of this group's elements, and are its numbers finite? Asked once a run, of what a
-    /// user hands in.
+    /// Checks the size of g, and that its numbers are finite. The driver calls this for the start of a run and, by
+    /// default, after every step.
     ///
     /// # Errors
     /// [`Error::Shape`] with both sizes, [`Error::NotFiniteEntry`].

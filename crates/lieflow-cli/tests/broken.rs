@@ -342,6 +342,12 @@ fn other_names_are_understood() {
         let message = folder.lieflow(&["run", "broken.toml"]).refused();
         assert!(message.contains(words), "{bad}: expected {words}\n{message}");
     }
+    // A decimal comma.
+    let torque = "torque = [\"-0,1*w1\", \"0\", \"0\"]\n[method]";
+    let text = SCENE.replace("rigid-body", "driven-body").replace("[method]", torque);
+    folder.write("broken.toml", &text.replace("layer = \"closed\"\n", ""));
+    let message = folder.lieflow(&["run", "broken.toml"]).refused();
+    assert!(message.contains("= a number has a decimal point"), "{message}");
     // The names of both parts and of a quantity are wrong: three mistakes.
     let text =
         SCENE.replace("rkmk4", "rk45").replace("\"exp\"", "\"expp\"").replace("energy", "enrgy");

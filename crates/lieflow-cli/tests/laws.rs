@@ -223,7 +223,7 @@ fn a_run_states_what_was_modelled_and_draws_it() {
             .replace("inertia = [1.0, 2.0, 3.0]", "inertia = [1.0, 2.0, 4.0]"),
     );
     let told = folder.lieflow(&["run", "flat.toml", "--out", "out"]).ok();
-    assert!(told.contains("WARNING: inertia: J3 > J2 + J1 (4 > 2 + 1): "), "{told}");
+    assert!(told.contains("WARNING: inertia: J3 > J1 + J2 (4 > 1 + 2): "), "{told}");
     assert_eq!(folder.json("out/summary.json")["warnings"].as_array().unwrap().len(), 1);
 }
 

@@ -60,7 +60,9 @@ fn a_kind_is_printed_with_all_that_a_scene_of_it_can_say() {
     assert_eq!(folder.lieflow(&["scenes", "Rigid_Body"]).ok(), kind);
     for (name, words) in [
         ("satellite", "`driven-body` is a kind of problem: lieflow scenes driven-body"),
+        ("sattelite", "`driven-body` is a kind of problem: lieflow scenes driven-body"),
         ("wingnut2", "= did you mean `wing-nut`?\n"),
+        ("asymetric", "= did you mean `asymmetric-top`?\n"),
     ] {
         let message = folder.lieflow(&["scenes", name]).refused();
         assert!(message.contains(words), "{message}");

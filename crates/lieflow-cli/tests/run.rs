@@ -21,7 +21,7 @@ fn shortened(name: &str) -> String {
         Some("dt" | "steps" | "rtol") => "steps = 50".into(),
         Some("atol") => String::new(),
         Some("quantities") => format!("{line}\nevery = 7"),
-        Some("every" | "times") => String::new(),
+        Some("every" | "times" | "count" | "interval") => String::new(),
         _ => line.to_owned(),
     };
     text.lines().map(|text| line(text) + "\n").collect()

@@ -130,6 +130,14 @@ impl Schema {
         }
     }
 
+    /// The first so many observables alone.
+    pub(crate) fn first(&self, count: usize) -> Schema {
+        let observables = self.observables[..count].to_vec();
+        let width = observables.last().map_or(0, |last| last.place.end);
+        let sizes = observables.iter().filter(|observable| observable.has_size()).count();
+        Schema { observables, width, sizes }
+    }
+
     /// The observable of that name.
     ///
     /// # Errors

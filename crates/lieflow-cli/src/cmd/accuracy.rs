@@ -22,8 +22,8 @@ const POOR: f64 = 1e-2;
 const USELESS: f64 = 0.1;
 /// The relative error that an advice should lead to.
 const GOOD: f64 = 1e-4;
-/// How long an advice is looked for.
-const PATIENCE: Duration = Duration::from_secs(5);
+/// How long an advice is looked for, in seconds, and in times that the run took where that is longer.
+const PATIENCE: [f64; 2] = [3.0, 5.0];
 /// A tolerance this small is compared with a larger one: a smaller one is rounding.
 const SMALLEST: f64 = 1e-13;
 
@@ -183,10 +183,17 @@ impl<'a> Check<'a> {
         let wrong =
             format!("`{}` is wrong by {off} at the end: this run is {verdict}.", worst.name);
         let Some(seconds) = seconds else { return Some(wrong) };
-        let until = Instant::now() + PATIENCE;
+        let patience = PATIENCE[0].max(PATIENCE[1] * seconds.min(LONG.as_secs_f64()));
+        let until = Instant::now() + Duration::from_secs_f64(patience);
         self.deadline.set(Some(until));
-        let smaller = self.smaller_steps(until, seconds);
-        let default = self.default_way();
+        let way = Way { default: true, factor: 1.0 };
+        let default = self.end(way).and_then(|end| self.error_of(way, &end));
+        let is_tried = default.is_some();
+        let default = default.filter(|accuracy| accuracy.relative() <= POOR);
+        let default = default.map(|accuracy| accuracy.digits_in_words());
+        // Where high order and the least tolerance do not do, no step does.
+        let is_hopeless = is_tried && default.is_none();
+        let smaller = if is_hopeless { None } else { self.smaller_steps(until, seconds) };
         self.deadline.set(None);
         let advice = match (smaller, default) {
             (Some(steps), Some(digits)) => {
@@ -196,9 +203,14 @@ impl<'a> Check<'a> {
             (None, Some(digits)) => {
                 format!("Leave [method] and the steps out, and lieflow gives {digits}")
             }
+            (None, None) if !is_hopeless => {
+                "Take a smaller step, or leave [method] and the steps out; lieflow did not try \
+                 what takes longer than a few seconds"
+                    .into()
+            }
             (None, None) => {
-                "No smaller step that was tried is enough: small errors grow fast here. \
-                             Take a shorter t_span, or trust averages only"
+                "No method and no step that was tried is enough: small errors grow fast here. \
+                 Take a shorter t_span, or trust averages only"
                     .into()
             }
         };
@@ -216,14 +228,15 @@ impl<'a> Check<'a> {
         let mut best = None;
         for factor in factors {
             let left = until.saturating_duration_since(Instant::now()).as_secs_f64();
-            if tolerances.is_none() && seconds / factor > left {
+            let longer = if tolerances.is_none() { factor.recip() } else { 1.0 };
+            if longer * seconds > left {
                 break;
             }
             let way = Way { factor, ..OWN };
             let Some(accuracy) = self.end(way).and_then(|end| self.error_of(way, &end)) else {
                 break;
             };
-            let relative = accuracy.worst().map_or(f64::NAN, |worst| worst.relative);
+            let relative = accuracy.relative();
             if relative <= POOR {
                 let steps = match tolerances {
                     None => format!("dt = {}", number(factor * h)),
@@ -242,14 +255,6 @@ impl<'a> Check<'a> {
             }
         }
         best
-    }
-
-    /// The digits that the method and steps of scenes without them give, where they do.
-    fn default_way(&self) -> Option<String> {
-        let way = Way { default: true, factor: 1.0 };
-        let accuracy = self.end(way).and_then(|end| self.error_of(way, &end))?;
-        let does = accuracy.worst().is_some_and(|worst| worst.relative <= POOR);
-        does.then(|| accuracy.digits_in_words())
     }
 }
 

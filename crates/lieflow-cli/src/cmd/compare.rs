@@ -391,7 +391,7 @@ impl Comparison<'_> {
         let rows = best.rows().into_iter().map(|row| row.into_iter().map(|cell| cell.text));
         text += &output::table(columns, rows);
         text += &format!("\n{}", output::wrap(&self.about_times(), ""));
-        if !self.all && best.shown.len() < self.curves.len() {
+        if best.is_cut() {
             text += "--all shows every method that reaches it. The page has all runs.\n";
         }
         text

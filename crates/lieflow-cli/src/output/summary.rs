@@ -142,7 +142,7 @@ impl Accuracy {
     /// Of these parts; errors below `unseen` are rounding that nobody saw.
     pub fn new(found_by: FoundBy, parts: Vec<PartError>, unseen: f64, seconds: f64) -> Self {
         let mut accuracy = Accuracy { found_by, seconds, digits: 0, parts };
-        let worst = accuracy.worst().map_or(f64::NAN, |worst| worst.relative);
+        let worst = accuracy.relative();
         // An error that is no number has no digits.
         let digits = if worst.is_nan() { 0.0 } else { -worst.max(unseen).log10() };
         accuracy.digits = digits.floor().max(0.0) as u32;
@@ -154,6 +154,11 @@ impl Accuracy {
         let rank =
             |part: &PartError| if part.relative.is_nan() { f64::INFINITY } else { part.relative };
         self.parts.iter().max_by(|a, b| rank(a).total_cmp(&rank(b)))
+    }
+
+    /// The relative error of the part that is worst.
+    pub fn relative(&self) -> f64 {
+        self.worst().map_or(f64::NAN, |worst| worst.relative)
     }
 
     /// As "about 8 digits".

@@ -92,9 +92,12 @@ impl<'a> Answer<'a> {
                     text += ", most of it for the rows of output";
                 }
                 text += ".";
-                if let Some(next) = next {
-                    text += &format!(" {}", faster(best, next));
-                }
+                text += &match next {
+                    Some(next) => format!(" {}", faster(best, next)),
+                    None => {
+                        " No method of another kind reaches it in the runs that were made.".into()
+                    }
+                };
                 text + &kept(best)
             }
             Verdict::BelowFloor(reference) => format!(
@@ -144,7 +147,14 @@ fn faster((best, here): &Found<'_>, (next, there): &Found<'_>) -> String {
     let times = |ratio: f64| format!("{} times", sig(ratio, 2));
     let ratio = there.seconds / here.seconds;
     if ratio < SAME {
-        return format!("{b}, the best method of another kind, is about as fast.");
+        let steps = match (best.order, next.order) {
+            (Some(order), Some(other)) => format!(
+                ": it takes {} steps of order {other}, and {a} takes {} of order {order}",
+                there.steps, here.steps
+            ),
+            _ => String::new(),
+        };
+        return format!("{b}, the best method of another kind, is about as fast{steps}.");
     }
     let mut text =
         format!("It is {} as fast as {b}, the best method of another kind", times(ratio));

@@ -19,6 +19,8 @@ pub struct Best<'a> {
     pub by: f64,
     /// Those that are shown.
     pub shown: Vec<Found<'a>>,
+    /// How many methods reach the error.
+    reaching: usize,
     /// Does the problem have an energy?
     energy: bool,
     /// What each curve looks like.
@@ -33,7 +35,7 @@ impl<'a> Best<'a> {
         let by = reached.min_by(|a, b| a.0.total_cmp(&b.0));
         let (by, ranked) = by.unwrap_or_else(|| (f64::NAN, Vec::new()));
         let looks = Looks::new(curves, &ranked);
-        let mut shown: Vec<Found<'a>> = Vec::new();
+        let (mut shown, reaching): (Vec<Found<'a>>, usize) = (Vec::new(), ranked.len());
         for found in ranked {
             let kind = found.0.candidate.kind();
             let alike = shown.iter().filter(|(curve, _)| curve.candidate.kind() == kind).count();
@@ -42,7 +44,7 @@ impl<'a> Best<'a> {
             }
         }
         let energy = curves.iter().flat_map(|c| &c.points).any(|p| !p.energy_error.is_nan());
-        Best { errors, by, shown, energy, looks }
+        Best { errors, by, shown, reaching, energy, looks }
     }
 
     /// The headings of [`rows`](Self::rows), and which of them are of numbers.
@@ -88,15 +90,25 @@ impl<'a> Best<'a> {
         rows.collect()
     }
 
+    /// Are there methods that reach the error and are not shown?
+    pub fn is_cut(&self) -> bool {
+        self.shown.len() < self.reaching
+    }
+
     /// What the table is, in a sentence.
     pub fn caption(&self, curves: usize) -> String {
-        let which = match self.shown.len() {
-            0 => return format!("None of {curves} methods reaches such an error."),
-            n if n == curves => "All methods".to_string(),
-            n if n > BEST => format!("The {n} methods of {curves} that reach it"),
-            n => format!("The best {n} of {curves} methods, at most {OF_A_KIND} of a kind"),
-        };
-        format!("{which}, the fastest to an error of {:e} first.", self.by)
+        let (error, shown) = (self.by, self.shown.len());
+        match self.reaching {
+            0 => format!("None of {curves} methods reaches such an error."),
+            1 => format!("One method of {curves} reaches an error of {error:e}."),
+            n if n == shown => {
+                format!("{n} of {curves} methods reach an error of {error:e}, the fastest first.")
+            }
+            n => format!(
+                "The best {shown} of {n} methods that reach an error of {error:e}, at most {OF_A_KIND} of a kind, \
+                 the fastest first."
+            ),
+        }
     }
 
     /// The table for a page.

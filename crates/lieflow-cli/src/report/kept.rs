@@ -15,11 +15,14 @@ fn nearest(curve: &Curve) -> Option<&WorkPoint> {
     ended.min_by(|a, b| off(a).total_cmp(&off(b)))
 }
 
+/// An error of a run.
+type ErrorOf = fn(&WorkPoint) -> f64;
+
 /// The errors of the invariants beside that of the state, method by method. Only what the problem has is there.
 pub fn kept_table(curves: &[Curve]) -> Table {
     let runs: Vec<(&Curve, &WorkPoint)> =
         curves.iter().filter_map(|curve| Some((curve, nearest(curve)?))).collect();
-    let errors: [(&str, fn(&WorkPoint) -> f64); 4] = [
+    let errors: [(&str, ErrorOf); 4] = [
         ("State", |run| run.error),
         ("Energy", |run| run.energy_error),
         ("Casimir", |run| run.casimir_error),

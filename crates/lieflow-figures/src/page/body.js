@@ -74,7 +74,7 @@
     };
     const frame = (now) => {
       if (!playing) return;
-      time += ((t[last] - t[0]) * Math.min(100, now - before)) / (1000 * seconds);
+      time += ((t[last] - t[0]) * Math.max(0, Math.min(100, now - before))) / (1000 * seconds);
       if ((time - t[last]) * (t[last] - t[0]) > 0) time = t[0];
       before = now;
       draw();

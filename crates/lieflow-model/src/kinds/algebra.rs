@@ -111,6 +111,24 @@ impl Algebra {
         group.map_err(|error: Error| Refusal::from(error).about(key))
     }
 
+    /// What an element g of the group of n×n matrices is.
+    pub(super) fn form_of_group(self, n: usize) -> String {
+        match self {
+            Algebra::Gl => "its determinant is not 0".into(),
+            Algebra::Sl => "its determinant is 1".into(),
+            Algebra::So => {
+                "its rows are unit vectors at right angles, and its determinant is 1".into()
+            }
+            Algebra::Indefinite(p, q) => {
+                format!("gᵀMg = M, M diagonal with {p} entries 1 and {q} entries -1")
+            }
+            Algebra::Sp => {
+                let m = n / 2;
+                format!("gᵀJg = J with J = [0 1; -1 0] of {m}×{m} blocks; {}", coordinates(m))
+            }
+        }
+    }
+
     /// x ← its projection on the algebra.
     pub(super) fn project(self, x: &mut Mat<f64>) {
         let n = x.nrows();
@@ -217,15 +235,18 @@ pub(super) fn miss(algebra: Algebra, key: &str, x: &Mat<f64>, tolerance: f64) ->
         ),
         Algebra::Sp => {
             let m = n / 2;
-            let names = |letter: &str| {
-                (1..=m).map(|i| format!("{letter}{i}")).collect::<Vec<_>>().join(", ")
-            };
             format!(
-                "{of} here is [A B; C -Aᵀ] of {m}×{m} blocks, B and C symmetric; the coordinates are ({}, {})",
-                names("q"),
-                names("p")
+                "{of} here is [A B; C -Aᵀ] of {m}×{m} blocks, B and C symmetric; {}",
+                coordinates(m)
             )
         }
     };
     Some(Miss { at: first, why, form })
+}
+
+/// The order of the coordinates of sp(2m).
+fn coordinates(m: usize) -> String {
+    let names =
+        |letter: &str| (1..=m).map(|i| format!("{letter}{i}")).collect::<Vec<_>>().join(", ");
+    format!("the coordinates are ({}, {})", names("q"), names("p"))
 }

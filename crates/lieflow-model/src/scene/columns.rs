@@ -163,21 +163,28 @@ impl Columns {
     }
 }
 
-/// A model with formulas of its columns: one more quantity, `formulas`.
+/// The first so many quantities of a model, and formulas of its columns as one more, `formulas`.
+///
+/// # Errors
+/// As [`RowFormula::on`].
 pub(super) fn with_formulas(
     base: Box<dyn Model>,
+    count: usize,
     formulas: &[(String, RowFormula)],
 ) -> Result<Box<dyn Model>, Error> {
-    let mut schema = base.schema().clone();
+    let mut schema = base.schema().first(count);
+    let width = schema.columns().count();
+    let with_size = schema.iter().filter(|observable| observable.has_size()).count();
     schema.push(FORMULAS, formulas.iter().map(|(name, _)| name.clone()).collect(), None, false);
     let formulas = formulas.iter().map(|(_, formula)| formula.on(base.schema()));
     let formulas = formulas.collect::<Result<Vec<_>, _>>()?;
     let fill = move |t: f64, row: Row<'_>, numbers: &mut Vec<f64>| {
-        let (values, sizes) = row.numbers().split_at(row.values().len());
+        // An exact solution has no sizes.
+        let sizes = row.numbers().iter().skip(row.values().len()).take(with_size);
         numbers.clear();
-        numbers.extend_from_slice(values);
+        numbers.extend_from_slice(&row.values()[..width]);
         numbers.extend(formulas.iter().map(|formula| formula.value(t, row)));
-        numbers.extend_from_slice(sizes);
+        numbers.extend(sizes);
     };
     Ok(Box::new(Mapped { base, schema, modelled: None, fill: Box::new(fill) }))
 }

@@ -66,7 +66,6 @@ impl MethodKeys {
             tableau: self.tableau.or(base.tableau),
             q: self.q.map(|q| usize::try_from(q.0).unwrap_or(usize::MAX)),
         };
-        method.info()?;
         Ok((with_defaults(method.spelt()?), layer))
     }
 }

@@ -386,9 +386,9 @@ impl Scene {
         if !quantities.contains(&FORMULAS) {
             return self.problem.model(layer, quantities);
         }
-        let of_problem = quantities.iter().copied().filter(|name| *name != FORMULAS);
-        let of_problem = each_once(of_problem.chain(self.of_formulas()));
-        with_formulas(self.problem.model(layer, &of_problem)?, &self.formulas)
+        let asked = each_once(quantities.iter().copied().filter(|name| *name != FORMULAS));
+        let of_problem = each_once(asked.iter().copied().chain(self.of_formulas()));
+        with_formulas(self.problem.model(layer, &of_problem)?, asked.len(), &self.formulas)
     }
 }
 

@@ -138,11 +138,20 @@ const OTHER_NAMES: &[(&str, &str)] = &[
 
 /// The name that was meant, when that is clear.
 fn meant<'a>(given: &str, names: &[&'a str]) -> Option<Meant<'a>> {
-    let spelt = || names::find(given, names.iter().copied());
-    let mut other = OTHER_NAMES.iter().filter(|(other, _)| names::same(other, given));
-    let mut other = || other.find_map(|(_, name)| names.iter().find(|listed| *listed == name));
-    let name = spelt().or_else(|| other().copied());
-    name.map(|name| Meant { name, part: None }).or_else(|| names::meant(given, names))
+    let alone = |name| Meant { name, part: None };
+    let others = || {
+        let listed = |name| names.iter().find(|listed| *listed == name).copied();
+        OTHER_NAMES.iter().filter_map(move |(other, name)| Some((*other, listed(name)?)))
+    };
+    let other = |given: &str| {
+        others().find(|(other, _)| names::same(other, given)).map(|(_, name)| alone(name))
+    };
+    let nearly = || {
+        let near = names::near(given, &others().map(|(other, _)| other).collect::<Vec<_>>())?;
+        other(near)
+    };
+    let spelt = names::find(given, names.iter().copied()).map(alone);
+    spelt.or_else(|| other(given)).or_else(|| names::meant(given, names)).or_else(nearly)
 }
 
 /// The name that was meant, when that is clear.
@@ -152,21 +161,20 @@ pub fn suggest<'a>(given: &str, names: &[&'a str]) -> Option<&'a str> {
 
 /// What was expected instead of `given`, and which of it was meant: first, and with the lines to write.
 pub fn help_for(given: &str, names: &[&str]) -> String {
-    let meant = meant(given, names).map(|Meant { name, part }| match part {
-        None => format!("did you mean `{name}`?"),
-        Some(part) => {
-            let (what, part) = match part {
-                Part::Tableau(part) => ("tableau", part),
-                Part::Map(part) => ("map", part),
-            };
-            let is = match names::same(given, part) {
-                true => format!("a {what}"),
-                false => format!("method `{name}` with {what} `{part}`"),
-            };
-            format!("`{given}` is {is}:\nname = \"{name}\"\n{what} = \"{part}\"")
+    let meant = meant(given, names);
+    let (name, what, part) = match meant {
+        Some(Meant { name, part: Some(Part::Tableau(part)) }) => (name, "tableau", part),
+        Some(Meant { name, part: Some(Part::Map(part)) }) => (name, "map", part),
+        _ => {
+            let meant = meant.map(|meant| format!("did you mean `{}`?", meant.name));
+            return names::expected(meant.as_deref(), names);
         }
-    });
-    names::expected(meant.as_deref(), names)
+    };
+    let is = match names::same(given, part) {
+        true => format!("a {what}"),
+        false => format!("method `{name}` with {what} `{part}`"),
+    };
+    format!("`{given}` is {is}:\nname = \"{name}\"\n{what} = \"{part}\"")
 }
 
 #[cfg(test)]

@@ -240,6 +240,29 @@ fn an_algebra_is_refused_with_its_form() {
     }
 }
 
+/// A start in a group that is typed with few digits is one of the group; another one is refused with its form.
+#[test]
+fn a_start_of_few_digits_is_one_of_its_group() {
+    let of = |group: &str, start: &str| {
+        let field = "field = [[0, 1], [-1, 0]]";
+        format!("kind = \"matrix-ode\"\ngroup = {group:?}\n{field}\nstart = {start}")
+    };
+    for group in ["so", "SO(2)", "sp"] {
+        let rough = of(group, "[[0.8001, -0.6], [0.6, 0.8]]");
+        let rough = scene(&rough, RKMK4, FINE, "[\"point\", \"group_defect\"]");
+        assert!(rough.problem.notes()[0].starts_with("start: it is replaced"), "{group}");
+        let start = &rows(&rough)[0];
+        assert!(far(&start[1..5], &[0.8, -0.6, 0.6, 0.8]) < 2e-4 && start[5] < 1e-14, "{start:?}");
+        let exact = scene(&of(group, "[[0.8, -0.6], [0.6, 0.8]]"), RKMK4, FINE, "[\"point\"]");
+        assert_eq!(exact.problem.notes(), [""; 0]);
+        let (_, message) = refused(&of(group, "[[0.9, -0.6], [0.6, 0.8]]"), FINE, "point");
+        let form = if group == "sp" { "J = [0 1; -1 0]" } else { "unit vectors at right angles" };
+        assert!(message.contains(form), "{message}");
+    }
+    let (line, message) = refused(&of("SO(3)", "[[1, 0], [0, 1]]"), FINE, "point");
+    assert!(line == 5 && message.contains("found 2 rows, expected 3 for so(3)"), "{message}");
+}
+
 /// so(n) by the entries above the diagonal is so(n) by all of them.
 #[test]
 fn entries_above_the_diagonal_are_enough() {

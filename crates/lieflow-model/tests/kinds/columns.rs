@@ -74,7 +74,15 @@ fn formulas_of_columns() {
     let of = Scene::parse("scene", &text(output, event)).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(of.plot, ["theta", "energy"]);
     assert_eq!(of.quantities, ["energy", "formulas"]);
-    let model = of.model().unwrap();
+    // What formulas need is computed, and is no column.
+    assert!(
+        of.model()
+            .unwrap()
+            .schema()
+            .columns()
+            .eq(["energy", "p1", "p2", "power", "theta", "twice"])
+    );
+    let model = of.model_with(of.layer, &of.computed()).unwrap();
     let schema = model.schema();
     assert_eq!(schema.get("formulas").unwrap().columns, ["p1", "p2", "power", "theta", "twice"]);
     let (attitude, omega) = (schema.get("attitude").unwrap(), schema.get("omega_body").unwrap());
@@ -113,7 +121,7 @@ fn formulas_of_columns() {
         (
             "[output.formulas]\ntheta = \"acos(g34)\"",
             "",
-            ["formulas.theta: unknown name `g34`", "g33"],
+            ["formulas.theta: unknown name `g34`", "did you mean `g3"],
         ),
         (
             "[output.formulas]\nw1 = \"acos(g33)\"",

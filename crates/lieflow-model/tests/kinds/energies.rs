@@ -253,9 +253,9 @@ fn hamiltonians_are_refused_at_their_line() {
             &["expected p + q = 1"],
         ),
         (
-            "hamiltonian = \"1\"\nalgebra = \"so4\"\nmomentum = [[0]]",
+            "hamiltonian = \"1\"\nalgebra = \"su4\"\nmomentum = [[0]]",
             5,
-            &["unknown algebra `so4`", "se3"],
+            &["unknown algebra `su4`", "se3"],
         ),
     ] {
         let (at, message) = refused(&format!("kind = \"euler\"\n{keys}"), FINE, "momentum");

@@ -72,8 +72,8 @@ impl RigidBodySpec {
 
     /// What a reader should know of moments that no body has.
     pub(super) fn impossible(&self) -> Vec<String> {
-        let mut order = [0, 1, 2];
-        order.sort_by(|&i, &j| self.inertia[j].total_cmp(&self.inertia[i]));
+        let largest = (0..3).fold(0, |k, i| if self.inertia[i] > self.inertia[k] { i } else { k });
+        let order = [[0, 1, 2], [1, 0, 2], [2, 0, 1]][largest];
         let [a, b, c] = order.map(|i| (i + 1, self.inertia[i]));
         let warning = |_| {
             format!(

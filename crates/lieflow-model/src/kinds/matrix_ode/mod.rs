@@ -163,7 +163,9 @@ fn start(
     }
     if action == MatrixAction::Translation {
         if let Err(error) = group.element(start.clone()) {
-            let near = nearby(group, &start).ok_or_else(|| refused(format!("start: {error}")))?;
+            let help = Some(algebra.form_of_group(n));
+            let not_on = || Refusal { help, ..refused(format!("start: {error}")) };
+            let near = nearby(group, &start).ok_or_else(not_on)?;
             let moved = (&near - &start).norm_max();
             notes.push(format!(
                 "start: it is replaced by an element of {} nearby, which moves its entries by up to {moved:.1e}",

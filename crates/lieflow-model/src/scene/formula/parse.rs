@@ -99,7 +99,7 @@ impl Parser<'_> {
             (Some('0'..='9'), Some(','))
                 if self.text.get(self.at + 1).is_some_and(char::is_ascii_digit) =>
             {
-                Some("a number has a decimal point: 0.5".into())
+                Some("a number is written with a decimal point, not a comma: 0.5".into())
             }
             (Some(_), Some(c)) if what.contains("operator") && (starts_name(c) || c == '(') => {
                 Some("a product is written 2*x".into())

@@ -238,7 +238,7 @@ fn what_is_wrong_is_said_with_its_place() {
         (
             "-0,1*x",
             "found `,`, expected an operator or the end at character 3",
-            Some("a decimal point: 0.5"),
+            Some("a decimal point, not a comma: 0.5"),
         ),
         (
             "sin(0,5)",
