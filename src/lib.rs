@@ -75,6 +75,11 @@ struct Readme;
 #[doc = include_str!("../docs/driver.md")]
 struct DriverPage;
 
+/// The program of docs/tutorial.md, as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../docs/tutorial.md")]
+struct Tutorial;
+
 pub mod actions;
 pub mod catalog;
 pub mod chart;

@@ -40,12 +40,12 @@ const WORDS: [(&str, &str); 14] = [
     ),
     (
         "Invariant, drift",
-        "An invariant is a quantity that the exact motion keeps, such as the energy. Its drift is how far the \
+        "An invariant is a quantity that the exact motion conserves, such as the energy. Its drift is how far the \
          computed value has moved from the start.",
     ),
     (
         "Casimir",
-        "An invariant that every energy function keeps, such as the length of the angular momentum of a free body.",
+        "An invariant whatever the energy is, such as the length of the angular momentum in a free body.",
     ),
     (
         "Closed and general formulas",
@@ -58,7 +58,20 @@ const WORDS: [(&str, &str); 14] = [
     ),
 ];
 
-/// The words in a fold, for the foot of every page.
+/// The words in a fold, for the foot of every page. The page docs/glossary.md has them too, and more.
 pub(super) fn glossary() -> Block {
     Block::fold("What do these words mean?", vec![Block::Glossary(&WORDS)])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::WORDS;
+
+    #[test]
+    fn the_page_of_words_says_the_same() {
+        let page = include_str!("../../../../docs/glossary.md");
+        for (word, meaning) in WORDS {
+            assert!(page.contains(&format!("\n| {word} | {meaning} |\n")), "{word}");
+        }
+    }
 }
