@@ -1,11 +1,9 @@
 //! The page of the maps: the errors that it shows are those that are promised, and it is complete.
 
-mod support;
-
 use core::f64::consts::{PI, TAU};
 
+use crate::support::Folder;
 use lieflow_cli::paper::maps::{MAPS_PAGE, Over, StudyExtent, Topic, survey, write};
-use support::Folder;
 
 /// What the closed forms on so(3) promise, in units of ε·cond.
 const CLOSED: f64 = 4.0;

@@ -1,10 +1,9 @@
 //! `lieflow compare`: every point is written, the advice follows from them, and a comparison that was
 //! interrupted goes on.
 
-mod support;
-
 use std::time::Duration;
 
+use crate::support::{Folder, SCENE};
 use lieflow_cli::measure::{
     Candidate, Curve, Effort, JOURNAL, Journal, Judge, Plan, Reference, Rounding, Rows, Size,
     WorkPoint, speed_against_error,
@@ -12,7 +11,6 @@ use lieflow_cli::measure::{
 use lieflow_cli::report::{ADVICE, Answer, choices};
 use lieflow_model::model::Layer;
 use lieflow_model::scene::Scene;
-use support::{Folder, SCENE};
 
 fn judge_of(scene: &Scene, quantities: &[&str], t_span: [f64; 2], steps: &[u64]) -> Judge {
     Judge::new(scene, quantities, t_span, steps, Duration::from_secs(1)).unwrap()
@@ -540,7 +538,7 @@ fn an_interrupted_comparison_goes_on() {
     }
     let kill = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status();
     assert!(kill.unwrap().success());
-    let run = support::Run::from(child.wait_with_output().unwrap());
+    let run = crate::support::Run::from(child.wait_with_output().unwrap());
     let message = run.failed(130);
     assert!(message.contains(JOURNAL) && message.contains("the same command goes on"), "{message}");
     let known = points();

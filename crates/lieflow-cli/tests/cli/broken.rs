@@ -1,8 +1,6 @@
 //! Scenes that cannot be used: one clear message with the line, exit code 2, nothing written.
 
-mod support;
-
-use support::{Folder, SCENE, read_csv};
+use crate::support::{Folder, SCENE, read_csv};
 
 /// Replace a line of the scene, and expect the message to be about this line and to say this.
 const BROKEN: &[(&str, &str, usize, &[&str])] = &[

@@ -1,13 +1,11 @@
 //! `lieflow run`: right by default, and every run says how right it is.
 
-mod support;
-
 use std::io::Write;
 use std::process::Stdio;
 
+use crate::support::{Folder, Run, SCENE, read_csv};
 use lieflow_model::scene::BUNDLED;
 use serde_json::{Value, json};
-use support::{Folder, Run, SCENE, read_csv};
 
 /// A book thrown about its middle axis, by a step that is too large.
 const CUBESAT: &str = "\

@@ -1,7 +1,6 @@
 //! `lieflow run`: what is written is what the library computes.
 
-mod support;
-
+use crate::support::{Folder, SCENE, read_csv};
 use lieflow::maps::{Cay, Exp};
 use lieflow::methods::{Rkmk, tableau::RK4};
 use lieflow::problems::{RigidBody, RigidBodyAttitude};
@@ -11,7 +10,6 @@ use lieflow_model::model::Layer;
 use lieflow_model::scene::{BUNDLED, Scene};
 use lieflow_model::schema::Row;
 use nalgebra::Vector3;
-use support::{Folder, SCENE, read_csv};
 
 /// A bundled scene with few steps.
 fn shortened(name: &str) -> String {

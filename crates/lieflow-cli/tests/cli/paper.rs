@@ -1,13 +1,11 @@
 //! `lieflow paper`: the paper's numbers, computed again, are regression values.
 
-mod support;
-
+use crate::support::{Folder, read_csv};
 use lieflow_cli::paper::accuracy::EPSILONS;
 use lieflow_cli::paper::methods::PaperMethod;
 use lieflow_cli::paper::printed::{TABLE2, TABLE4};
 use lieflow_cli::paper::{Paper, PaperExtent, compute, findings};
 use std::sync::LazyLock;
-use support::{Folder, read_csv};
 
 /// All of it, once, with few frames: the runs are seconds. `findings_hold` goes beside it.
 static PAPER: LazyLock<Paper> = LazyLock::new(|| {

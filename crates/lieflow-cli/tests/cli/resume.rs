@@ -1,7 +1,4 @@
 //! Runs that are killed, interrupted or cannot write: what they leave is whole, and they go on to the same bits.
-#![cfg(unix)]
-
-mod support;
 
 use std::fs;
 use std::process::{Command, Stdio};
@@ -9,10 +6,10 @@ use std::sync::LazyLock;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
+use crate::support::{Folder, Run};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use serde_json::Value;
-use support::{Folder, Run};
 
 /// A run of some seconds; `{}` is its end.
 const SCENE: &str = r#"title = "Long"
@@ -107,7 +104,7 @@ fn a_run_that_is_killed_goes_on_to_the_same_bits() {
 }
 
 #[test]
-#[ignore = "eight minutes; .ci/long runs it: cargo test --release -p lieflow-cli --test resume -- --ignored"]
+#[ignore = "eight minutes; .ci/long runs it: cargo test --release -p lieflow-cli --test cli resume -- --ignored"]
 fn a_run_that_is_killed_at_fifty_moments_goes_on_to_the_same_bits() {
     let mut random = Pcg64::seed_from_u64(50);
     (0..50).for_each(|_| kill_and_go_on(&mut random));

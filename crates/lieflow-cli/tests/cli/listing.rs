@@ -1,14 +1,12 @@
 //! `lieflow scenes`, `methods`, `completions` and the help texts.
 
-mod support;
-
 use std::process::{Command, Stdio};
 
+use crate::support::Folder;
 use lieflow::catalog::{MAPS, TABLEAUS, all_methods};
 use lieflow_model::kinds::KINDS;
 use lieflow_model::scene::{BUNDLED, Scene};
 use serde_json::Value;
-use support::Folder;
 
 fn names(list: &Value) -> Vec<&str> {
     list.as_array().unwrap().iter().map(|entry| entry["name"].as_str().unwrap()).collect()

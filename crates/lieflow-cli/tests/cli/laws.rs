@@ -1,17 +1,15 @@
 //! Every method that fits a kind runs on it and is right; what it promises to keep it keeps, and what is
 //! not promised may move.
 
-mod support;
-
 use std::sync::atomic::AtomicBool;
 
+use crate::support::Folder;
 use lieflow::catalog::{MethodSpec, all_methods};
 use lieflow_cli::args::ErrorCheck;
 use lieflow_cli::cmd::run::{Options, run_scene};
 use lieflow_cli::output::{Drift, Watched};
 use lieflow_model::scene::{BUNDLED, Bundled, Scene};
 use lieflow_model::schema::Row;
-use support::Folder;
 
 fn far(a: &[f64], b: &[f64]) -> f64 {
     assert_eq!(a.len(), b.len());

@@ -1,11 +1,9 @@
 //! The scenes on the pages of the documentation, run by the program.
 
-mod support;
-
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use support::Folder;
+use crate::support::Folder;
 
 /// README.md and the pages of docs.
 fn pages() -> Vec<PathBuf> {

@@ -1,9 +1,7 @@
 //! Events in scenes, and output between steps: what is found, what is written, what ends a run.
 
-mod support;
-
+use crate::support::{Folder, SCENE, read_csv};
 use lieflow_model::scene::{BUNDLED, Scene};
-use support::{Folder, SCENE, read_csv};
 
 /// The names of the events of a run, and the rows beside them.
 fn read_events(text: &str) -> (Vec<String>, Vec<Vec<f64>>) {

@@ -1,0 +1,17 @@
+//! The program `lieflow`: its commands, its files, and every mistake in a scene.
+
+mod broken;
+mod compare;
+mod curves;
+mod docs;
+mod events;
+mod laws;
+mod listing;
+mod operations;
+mod paper;
+#[cfg(unix)]
+mod resume;
+mod right;
+mod run;
+mod support;
+mod survey;
