@@ -174,7 +174,7 @@ fn a_table_that_is_none_is_refused() {
     let error = Interpolation::named("quadratic").unwrap_err().to_string();
     assert_eq!(
         error,
-        "unknown interpolation `quadratic`, expected one of linear, cubic, mean-rate"
+        "unknown interpolation `quadratic`: expected one of linear, cubic, mean-rate"
     );
     assert!(Interpolation::ALL.iter().all(|x| Interpolation::named(x.name()) == Ok(*x)));
 }

@@ -94,7 +94,7 @@ pub struct RunArgs {
 /// What is changed in a scene.
 #[derive(Args, Clone, Debug, Default)]
 pub struct Settings {
-    /// Change a key of the scene: time.dt=0.01, problem.inertia=[1,2,3], problem.inertia[2]=2.5. Places in lists count
+    /// Change a key of the scene: `time.dt=0.01`, `problem.inertia=[1,2,3]`, `problem.inertia[2]=2.5`. Places in lists count
     /// from 1. Nothing after the = takes the key away. May be given several times.
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub set: Vec<String>,

@@ -56,7 +56,7 @@ pub(super) fn in_words(summary: &Summary, folder: &Path, page: Option<&str>) -> 
             0 => String::new(),
             further => format!(" and {further} more"),
         };
-        line(format!("kept to rounding: {}{further}", names.join(", ")));
+        line(format!("conserved to rounding: {}{further}", names.join(", ")));
     }
     drifts.sort_by(|(_, a), (_, b)| b.max.total_cmp(&a.max));
     for (name, drift) in drifts.iter().take(DRIFTS) {
@@ -75,11 +75,7 @@ pub(super) fn in_words(summary: &Summary, folder: &Path, page: Option<&str>) -> 
         } else {
             ""
         };
-        let are = if accuracy.digits == 1 { "is" } else { "are" };
-        line(match accuracy.digits {
-            0 => "no digit is right".into(),
-            _ => format!("{} {are} right{why}", accuracy.digits_in_words()),
-        });
+        line(accuracy.rightness_in_words() + why);
     }
     summary.accuracy_unknown.iter().for_each(|why| line(format!("error at the end: {why}")));
     summary.notes.iter().for_each(|note| line(format!("note: {note}")));

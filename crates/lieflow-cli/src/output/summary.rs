@@ -170,6 +170,15 @@ impl Accuracy {
         }
     }
 
+    /// As "about 8 digits are right".
+    pub fn rightness_in_words(&self) -> String {
+        match self.digits {
+            0 => "no digit is right".into(),
+            1 => self.digits_in_words() + " is right",
+            _ => self.digits_in_words() + " are right",
+        }
+    }
+
     /// How it was found, in words.
     pub fn found_in_words(&self) -> String {
         let by =

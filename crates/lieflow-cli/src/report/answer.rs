@@ -218,7 +218,7 @@ fn kept((curve, reached): &Found<'_>) -> String {
     match (keeps.is_empty(), energy.is_empty()) {
         (true, true) => String::new(),
         (true, false) => format!(" With {name}, {energy}."),
-        (false, true) => format!(" {name} keeps: {keeps}."),
-        (false, false) => format!(" {name} keeps: {keeps}; {energy}."),
+        (false, true) => format!(" {name} conserves: {keeps}."),
+        (false, false) => format!(" {name} conserves: {keeps}; {energy}."),
     }
 }

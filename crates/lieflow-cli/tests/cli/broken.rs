@@ -345,7 +345,10 @@ fn other_names_are_understood() {
     let text = SCENE.replace("rigid-body", "driven-body").replace("[method]", torque);
     folder.write("broken.toml", &text.replace("layer = \"closed\"\n", ""));
     let message = folder.lieflow(&["run", "broken.toml"]).refused();
-    assert!(message.contains("= a number has a decimal point"), "{message}");
+    assert!(
+        message.contains("= a number is written with a decimal point, not a comma"),
+        "{message}"
+    );
     // The names of both parts and of a quantity are wrong: three mistakes.
     let text =
         SCENE.replace("rkmk4", "rk45").replace("\"exp\"", "\"expp\"").replace("energy", "enrgy");

@@ -504,7 +504,7 @@ fn an_answer_follows_from_the_runs() {
         "It is 5.0 times as fast as “rk4”, the best method of another kind: ",
         "“rk4” needs 10 times as many steps (its order is 4, that of “taylor8” is 8), though a step of \
          “taylor8” costs 2.0 times as much.",
-        "“taylor8” keeps: group, Casimirs.",
+        "“taylor8” conserves: group, Casimirs.",
     ] {
         assert!(told.contains(part), "{told}");
     }

@@ -9,7 +9,7 @@ use crate::kinds::ProblemSpec;
 /// allows, by which eight digits and more are right after many thousand steps; of a lower order one that it can meet.
 pub(super) fn tolerance(order: Option<usize>) -> f64 {
     match order {
-        Some(order @ ..8) => 0.1_f64.powi(order as i32 + 5),
+        Some(order @ ..8) => 1.0 / 10_f64.powi(order as i32 + 5),
         _ => 1e-14,
     }
 }
@@ -52,7 +52,7 @@ impl Defaults {
     }
 }
 
-/// The quantities that a user of the problem wants: the state, what is drawn, and what the exact motion keeps. One
+/// The quantities that a user of the problem wants: the state, what is drawn, and what the exact motion conserves. One
 /// with very many columns is left out.
 pub(super) fn quantities(problem: &dyn ProblemSpec) -> Vec<String> {
     let state = problem.default_state();

@@ -94,7 +94,7 @@ pub fn run_page(summary: &Summary, run: &Drawn<'_>) -> Page {
     if !run.watched.is_empty() {
         let invariants =
             vec![drift_table(summary), Block::Chart(drifts(summary, run.watched, run.rows))];
-        sections.push(Section::new("What the exact motion keeps", invariants));
+        sections.push(Section::new("What the exact motion conserves", invariants));
     }
     let text = vec![Block::Code(run.scene.text.clone())];
     let scene = vec![Block::fold("The scene, to run it again or to change it", text)];
@@ -137,15 +137,12 @@ const PARTS: usize = 4;
 
 /// How right the end is.
 fn rightness(accuracy: &Accuracy) -> String {
-    let right = match accuracy.digits {
-        0 => "No digit is right at the end".into(),
-        _ => format!("At the end {} are right", accuracy.digits_in_words()),
-    };
+    let right = accuracy.rightness_in_words();
     let mut parts: Vec<_> = accuracy.parts.iter().collect();
     parts.sort_by(|a, b| b.relative.total_cmp(&a.relative));
     let parts: Vec<String> =
         parts.iter().take(PARTS).map(|part| part.in_words().replace('_', " ")).collect();
-    format!("{right}. The error, {}: {}.", accuracy.found_in_words(), parts.join(", "))
+    format!("At the end {right}. The error, {}: {}.", accuracy.found_in_words(), parts.join(", "))
 }
 
 /// The number of steps and their size.
@@ -344,7 +341,7 @@ fn drift_table(summary: &Summary) -> Block {
         figures::Row::new(cells).with_emphasis(drift.breaks_a_promise())
     });
     let caption =
-        "How far the computed values are from the start. The exact motion keeps each of them.";
+        "How far the computed values are from the start. The exact motion conserves each of them.";
     let table = Block::Table(Table { caption: caption.into(), columns, rows: rows.collect() });
     match summary.drift.len() {
         ..=MANY => table,

@@ -1,4 +1,4 @@
-//! Runs of the program in folders of their own.
+//! Runs of the program, each in its own folder.
 #![allow(dead_code, unreachable_pub)] // each test file uses its part
 
 use std::path::{Path, PathBuf};
