@@ -17,6 +17,7 @@ impl<G: LieGroup> Action<G> for Linear {
     type Work = ();
 
     fn work(&self, _: &G) {}
+    #[inline]
     fn check(&self, group: &G, p: &G::Vector) -> Result<(), Error> {
         group.check_vector(p)
     }

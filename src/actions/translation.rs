@@ -17,6 +17,7 @@ impl<G: LieGroup> Action<G> for LeftTranslation {
     fn work(&self, group: &G) -> Self::Work {
         [group.identity(), group.identity()]
     }
+    #[inline]
     fn check(&self, group: &G, p: &G::Elem) -> Result<(), Error> {
         group.check_elem(p)
     }

@@ -25,6 +25,7 @@ impl<S> So3<S> {
 }
 
 /// Are the numbers of a state finite?
+#[inline] // asked after every step of a run
 pub(super) fn check_finite<S: Real>(y: &[S]) -> Result<(), Error> {
     match y.iter().all(|x| x.is_finite()) {
         true => Ok(()),
@@ -136,9 +137,11 @@ impl<S: Real> LieGroup for So3<S> {
         compose3(&g.transpose(), g, &mut gram);
         self.distance(&gram, &self.identity())
     }
+    #[inline]
     fn check_elem(&self, g: &Matrix3<S>) -> Result<(), Error> {
         check_finite(g.as_slice())
     }
+    #[inline]
     fn check_vector(&self, x: &Vector3<S>) -> Result<(), Error> {
         check_finite(x.as_slice())
     }
@@ -151,7 +154,12 @@ impl<S: Real> LieGroup for So3<S> {
                 half[(i, j)] = one - S::lit(0.5) * step[(i, j)];
             }
         }
-        let residual = S::lit(2.0) * norm_of(half.as_slice());
+        let mut residual = S::lit(2.0) * norm_of(half.as_slice());
+        let [a, b, c] = [0, 1, 2].map(|j| Vector3::new(g[(0, j)], g[(1, j)], g[(2, j)]));
+        if dot3(&cross(&a, &b), &c).all_below(0.0) {
+            // A reflection is 2 away from the rotations, although gᵀg = 𝟙.
+            residual = S::lit(2.0);
+        }
         if residual.all_below(RESIDUAL_MAX) {
             compose3(g, half, step);
             for (g, s) in g.iter_mut().zip(step.iter()) {

@@ -4,6 +4,7 @@ use core::cell::Cell;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use lieflow::actions::LeftTranslation;
+use lieflow::groups::So3;
 use lieflow::maps::Exp;
 use lieflow::methods::tableau::DOPRI5;
 use lieflow::methods::{Rk, Rkmk};
@@ -292,6 +293,18 @@ fn an_observer_changes_the_state() {
     let failed = run.expect_err("not on M");
     assert!(failed.to_string().contains("the observer"), "{failed}");
     assert_eq!(failed.solution.expect("what was known").t, 0.77);
+}
+
+/// A reflection has orthonormal columns, and is no rotation.
+#[test]
+fn a_change_to_a_reflection_is_refused() {
+    let at = nalgebra::Matrix3::from_diagonal(&V::new(1.0, 1.0, -1.0));
+    let problem = Flow::of_time(So3::<f64>::new(), LeftTranslation, |_, v: &mut V| *v = V::x());
+    let method = Rkmk::new(DOPRI5, Exp);
+    let solve = Solve::new(&problem, &method, [0.0, 1.0]).tolerances(1e-8, 1e-8);
+    let mut run = solve.integrator(nalgebra::Matrix3::identity()).expect("a run");
+    assert!(matches!(run.set_state(&at), Err(RunError::Changed { .. })));
+    assert_eq!(*run.y(), nalgebra::Matrix3::identity());
 }
 
 #[test]
