@@ -146,7 +146,7 @@ pub enum Error {
         re: f64,
         /// The eigenvalue, imaginary part: zero to rounding.
         im: f64,
-        /// Why there is none.
+        /// Why g has no logarithm.
         why: NoLogarithm,
     },
 }

@@ -319,7 +319,7 @@ where
     }
 }
 
-/// Methods that keep energy and Casimirs ([`Needs::LiePoisson`](super::Needs::LiePoisson)).
+/// Methods that conserve energy and Casimirs ([`Needs::LiePoisson`](super::Needs::LiePoisson)).
 ///
 /// # Errors
 /// None.

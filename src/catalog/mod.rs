@@ -300,7 +300,7 @@ pub type MaybeMethod<'p, P> = Result<Option<AnyMethod<'p, P>>, Error>;
 /// }
 /// ```
 pub trait MethodsByName: Ambient {
-    /// What the problem offers: the methods that need no more fit it.
+    /// The properties of the problem. A method fits if it needs no others.
     fn offers(&self) -> Vec<Needs>;
 
     /// The method that is chosen, one that needs what the problem offers.

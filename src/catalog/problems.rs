@@ -128,13 +128,13 @@ hamiltonian! {
     [] WithHamiltonian;
 }
 
-/// What a field offers, with what is known of it besides.
+/// The properties that a field has, and those that are added by name.
 fn offered(linear: Option<Needs>, energy: Option<Needs>) -> Vec<Needs> {
     let all = [Some(Needs::Field), Some(Needs::Norm), linear, energy];
     all.into_iter().flatten().collect()
 }
 
-/// A closure: what is known of it decides what it offers.
+/// A closure. Its facts decide which properties it has.
 impl<G, A, F, L, H, I> MethodsByName for Flow<G, A, F, Facts<L, H, I>>
 where
     G: MapsByName,
@@ -159,7 +159,7 @@ where
     }
 }
 
-/// Of what its type may be, each problem offers what it is.
+/// Each problem lists its own properties, of those that its type may have.
 impl<G, A, L, H> MethodsByName for DynFlow<G, A, L, H>
 where
     G: MapsByName,

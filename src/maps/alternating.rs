@@ -25,7 +25,7 @@ impl<A, B> Alternating<A, B> {
     }
 }
 
-/// What the two maps keep, and whose turn it is.
+/// The values that the two maps store, and whose turn it is.
 #[derive(Clone, Copy, Debug)]
 pub struct AlternatingAt<A, B> {
     even: A,

@@ -72,7 +72,7 @@ impl<S: Real> CoordinateMap<So3<S>> for Cay {
     }
 }
 
-/// What cay keeps at u ∈ 𝔤 ⊂ gl(n): 𝟙 ± u/2, and the LU of 𝟙 − u/2.
+/// The values that cay stores at u ∈ 𝔤 ⊂ gl(n): 𝟙 ± u/2, and the LU of 𝟙 − u/2.
 #[derive(Debug)]
 pub struct CayAt {
     quotient: Quotient,

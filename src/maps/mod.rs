@@ -58,7 +58,7 @@ use crate::groups::LieGroup;
 
 /// A coordinate map Ψ with Ψ(0) = 𝟙 and Ψ'(0) = id, together with dΨ⁻¹ (right trivialised).
 pub trait CoordinateMap<G: LieGroup> {
-    /// What Ψ keeps at u so that dΨ_u⁻¹ costs little more ("Both" in Table 2), and the workspace.
+    /// The values that Ψ stores at u, so that dΨ_u⁻¹ costs little more ("Both" in Table 2), and the workspace.
     type At;
 
     /// The name of the map, as in scene files.
@@ -120,7 +120,7 @@ pub trait CoordinateMap<G: LieGroup> {
         v: &mut G::Alg,
     ) -> Result<(), StepError>;
 
-    /// The highest order of a method that this map's dΨ⁻¹ keeps; `usize::MAX` when it is exact.
+    /// The highest order that a method can have with the dΨ⁻¹ of this map. It is `usize::MAX` if dΨ⁻¹ is exact.
     fn order(&self, _group: &G) -> usize {
         usize::MAX
     }

@@ -23,14 +23,14 @@ pub struct MapInfo {
     pub name: &'static str,
     /// Ψ and dΨ⁻¹ in one line.
     pub summary: &'static str,
-    /// The groups that the map serves; a product where it serves the parts.
+    /// The groups that the map works on. It works on a product if it works on the parts.
     pub groups: Groups,
     /// Is Ψ(−u) = Ψ(u)⁻¹, with dΨ⁻¹ to rounding ([`OddMap`](crate::methods::OddMap))?
     pub odd: bool,
     map: NamedMap,
 }
 
-/// The groups that a map serves.
+/// The groups that a map works on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Groups {
     /// Every group.
@@ -40,7 +40,7 @@ pub enum Groups {
 }
 
 impl Groups {
-    /// Does the map serve the group of this name, as [`LieAlgebra::name`](crate::LieAlgebra::name) gives it?
+    /// Does the map work on the group of this name, as [`LieAlgebra::name`](crate::LieAlgebra::name) gives it?
     pub fn contain(self, group: &str) -> bool {
         let is_listed = |part: &str| {
             let family = part.split('(').next().unwrap_or_default();
@@ -125,7 +125,7 @@ impl<G: LieGroup, Psi: CoordinateMap<G> + Copy + 'static> Serves<Psi> for G {
 /// The storage of a map on a group.
 type At<G, Psi> = <<G as Serves<Psi>>::Map as CoordinateMap<G>>::At;
 
-/// One type of map from several, for the groups that all of them serve.
+/// One type of map from several, for the groups that all of them work on.
 macro_rules! named_map {
     (
         $(#[$doc:meta])* $name:ident,
@@ -220,7 +220,7 @@ macro_rules! named_map {
 named_map! {
     /// A map of [`MAPS`] by its name.
     NamedMap,
-    /// The map, with what it keeps at u.
+    /// The map, with the values that it stores at u.
     NamedAt,
     /// A group that every map of [`MAPS`] has a type for; as a value it may still be refused.
     AllMaps:
@@ -243,7 +243,7 @@ named_map! {
 named_map! {
     /// exp or cay by name: what methods with an [`OddMap`](crate::methods::OddMap) take.
     ExpOrCay,
-    /// The map, with what it keeps at u.
+    /// The map, with the values that it stores at u.
     ExpOrCayAt,
     /// A group with exp and cay.
     HasExpAndCay:
@@ -295,7 +295,7 @@ impl FromName for ExpOrCay {
     }
 }
 
-/// A group whose maps can be chosen by name. Groups that serve every map of [`MAPS`] are such groups; a group
+/// A group whose maps can be chosen by name. Groups with every map of [`MAPS`] are such groups; a group
 /// with exp and cay alone says `type Map = ExpOrCay`.
 pub trait MapsByName: LieGroup + Sized {
     /// [`NamedMap`] or [`ExpOrCay`].

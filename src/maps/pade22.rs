@@ -108,7 +108,7 @@ impl<S: Real> CoordinateMap<So3<S>> for Pade22 {
     }
 }
 
-/// What the Padé map keeps at u ∈ 𝔤 ⊂ gl(n): u²/12, D(±u), the LU of D(u), and workspace.
+/// The values that the Padé map stores at u ∈ 𝔤 ⊂ gl(n): u²/12, D(±u), the LU of D(u), and workspace.
 #[derive(Debug)]
 pub struct Pade22At {
     quotient: Quotient,

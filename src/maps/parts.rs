@@ -1,6 +1,6 @@
 //! Maps of products: Ψ(u, v) = (Ψ₁(u), Ψ₂(v)) on A × B, and Ψ on each of the copies of Gᴺ.
 //!
-//! dΨ⁻¹ is that of each part. The library's maps serve products by these two, under their own names.
+//! dΨ⁻¹ is that of each part. The library's maps work on products through these two, under their own names.
 
 use super::{Cay, Ccsk, CoordinateMap, Exp, Pade22, TruncatedExp};
 use crate::error::{Error, StepError};
@@ -197,7 +197,7 @@ macro_rules! serves_as {
     };
 }
 
-/// These maps serve products and powers of the groups that they serve.
+/// These maps work on products and powers of the groups that they work on.
 macro_rules! serve_products {
     ($($map:ty $(: $($index:ident)*)?;)*) => {$(
         serves_as!(

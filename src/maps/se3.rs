@@ -21,7 +21,7 @@ use crate::so3::{add3, cross};
 type Twist<S> = (Vector3<S>, Vector3<S>);
 type BodyMotion<S> = (Matrix3<S>, Vector3<S>);
 
-/// What a map keeps: what ψ does, and x.
+/// The values that a map stores: those of ψ, and x.
 #[derive(Clone, Copy, Debug)]
 pub struct ScrewAt<T, S> {
     turn: T,

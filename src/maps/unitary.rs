@@ -31,7 +31,7 @@ const ONE_STEP: f64 = 1e-8;
 /// From a residual of 0.1 on four are needed.
 const CORRECTIONS_MAX: usize = 6;
 
-/// What exp keeps on U(n): workspaces, and how the last dexp⁻¹ was computed.
+/// The values that exp stores on U(n): workspaces, and how the last dexp⁻¹ was computed.
 #[derive(Debug)]
 pub struct UnitaryExpAt {
     exponential: ComplexExponential,
@@ -151,7 +151,7 @@ impl CoordinateMap<Unitary> for Exp {
     }
 }
 
-/// What cay keeps on U(n): 𝟙 ± u/2 and the factors of 𝟙 − u/2.
+/// The values that cay stores on U(n): 𝟙 ± u/2 and the factors of 𝟙 − u/2.
 #[derive(Debug)]
 pub struct UnitaryCayAt {
     minus: ComplexMatrix,

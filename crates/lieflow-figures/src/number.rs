@@ -56,7 +56,7 @@ pub fn seconds(t: f64) -> String {
     in_units_of_time(t, |t| sig(t, 3))
 }
 
-/// The same without zeros at the end: `500 ns`, `1.5 ms`.
+/// A time in a fitting unit, without zeros at the end: `500 ns`, `1.5 ms`.
 pub(crate) fn seconds_short(t: f64) -> String {
     in_units_of_time(t, |t| short(t, 3))
 }

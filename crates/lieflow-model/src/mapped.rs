@@ -17,7 +17,7 @@ pub(crate) type Fill = dyn Fn(f64, Row<'_>, &mut Vec<f64>);
 pub(crate) struct Mapped {
     pub(crate) base: Box<dyn Model>,
     pub(crate) schema: Schema,
-    /// What is integrated, where that has other words.
+    /// What is integrated in words, if the words differ from those of the base.
     pub(crate) modelled: Option<&'static str>,
     pub(crate) fill: Box<Fill>,
 }

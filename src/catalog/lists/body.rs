@@ -278,7 +278,7 @@ pub(super) const ATTITUDE: &[MethodInfo] = &[
     )),
 ];
 
-/// Everything that a body keeps is quadratic in (m, g).
+/// Every invariant of a body is quadratic in (m, g).
 const fn gauss_mg(
     name: &'static str,
     summary: &'static str,

@@ -57,7 +57,7 @@ impl<const I: usize, const J: usize, const K: usize> Ccsk<I, J, K> {
         Ccsk { min_cos: 1e-4 }
     }
 
-    /// The map with a bound of one's own on |cos|; 0 gives the raw formula up to its singularity.
+    /// The map with another bound on |cos|. The bound 0 gives the raw formula up to its singularity.
     pub const fn with_min_cos(min_cos: f64) -> Self {
         Ccsk { min_cos }
     }
@@ -72,7 +72,7 @@ impl<const I: usize, const J: usize, const K: usize> Default for Ccsk<I, J, K> {
 const GIMBAL: StepError =
     StepError::OutsideChart { map: "ccsk", what: "the cosine of a middle angle is nearly zero" };
 
-/// What ccsk keeps at u ∈ 𝔤 ⊂ gl(n): the factors, and workspace.
+/// The values that ccsk stores at u ∈ 𝔤 ⊂ gl(n): the factors, and workspace.
 #[derive(Debug)]
 pub struct CcskAt {
     product: Product,

@@ -12,7 +12,7 @@ use crate::maps::CoordinateMap;
 /// The bound of ad_{u/2^s} from which the halvings start.
 const HALVED: f64 = 2.0;
 
-/// What exp keeps at u ∈ 𝔤 ⊂ gl(n): workspaces, and the choices made.
+/// The values that exp stores at u ∈ 𝔤 ⊂ gl(n): workspaces, and the choices made.
 #[derive(Debug)]
 pub struct ExpAt {
     expm: Expm,

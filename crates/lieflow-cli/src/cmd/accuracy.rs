@@ -27,7 +27,7 @@ const PATIENCE: [f64; 2] = [3.0, 5.0];
 /// A tolerance this small is compared with a larger one: a smaller one is rounding.
 const SMALLEST: f64 = 1e-13;
 
-/// What the end of a run is judged by.
+/// The check of the end of a run.
 pub(super) struct Check<'a> {
     watch: &'a Watch<'a>,
     /// The time of the end.
@@ -37,7 +37,7 @@ pub(super) struct Check<'a> {
     sizes: Vec<f64>,
     /// The numbers of the exact row, where it is known.
     exact: Option<Vec<f64>>,
-    /// What ends the check.
+    /// The flag that ends the check.
     stop: &'a AtomicBool,
     deadline: Cell<Option<Instant>>,
 }
@@ -53,7 +53,7 @@ struct Way {
 const OWN: Way = Way { default: false, factor: 1.0 };
 
 impl<'a> Check<'a> {
-    /// Of a run that ended at t after so many steps, and showed these rows.
+    /// The check of a run that ended at t after so many steps, and showed these rows.
     pub(super) fn new(
         watch: &'a Watch<'a>,
         rows: &RowSample<'_>,
@@ -168,8 +168,8 @@ impl<'a> Check<'a> {
         Accuracy::new(found_by, parts, unseen, clock.elapsed().as_secs_f64())
     }
 
-    /// What to change where the error is poor; none where it is not. Further runs that find it out are made where
-    /// the seconds that the run took are given.
+    /// The warning about a poor error, with a change that would help. If the seconds of the run are given, further runs
+    /// look for that change.
     pub(super) fn warning(&self, accuracy: &Accuracy, seconds: Option<f64>) -> Option<String> {
         let worst = accuracy.worst()?;
         if worst.relative <= POOR {
@@ -294,7 +294,7 @@ fn size(
     ends[0].max(ends[1]).max(middle)
 }
 
-/// What keeps the last row of a run, and stops it when its time is up.
+/// Keeps the last row of a run, and stops the run when its time is up.
 struct Last<'a> {
     numbers: Vec<f64>,
     cancel: &'a AtomicBool,

@@ -199,7 +199,7 @@ fn falling(given: &[f64], default: &[f64]) -> Vec<f64> {
     numbers
 }
 
-/// What a run depends on besides its method and its step: another scene, program or machine has runs of its own.
+/// Everything that a measurement depends on besides method and step: the scene, the program and the machine.
 fn identity(scene: &Scene) -> String {
     let (version, machine) = (env!("CARGO_PKG_VERSION"), machine());
     format!("{} {:016x}, lieflow {version}, {machine}", scene.name, scene.fingerprint)
@@ -217,7 +217,7 @@ fn stopped(stop: &AtomicBool, folder: &Path) -> Result<(), CliError> {
     Err(CliError::Stopped { message, code: INTERRUPTED })
 }
 
-/// What tells where a comparison is: a bar, or a line now and then where standard error is no terminal.
+/// The progress of a comparison: a bar on a terminal, and otherwise a line now and then.
 struct Told {
     bar: Progress,
     start: Instant,

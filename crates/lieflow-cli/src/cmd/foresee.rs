@@ -24,7 +24,7 @@ const LIMIT: u64 = 1_000_000;
 /// A method of this order or a higher one has no need of that.
 const HIGH_ORDER: usize = 4;
 
-/// What a user should know before the run begins.
+/// The warning about a run that will take long.
 ///
 /// # Errors
 /// A run that would take a month and more.

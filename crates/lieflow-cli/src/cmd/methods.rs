@@ -102,7 +102,7 @@ fn listing(scene: Option<&Scene>) -> Result<Listing, CliError> {
     })
 }
 
-/// What somebody may want of a method, and who gives it.
+/// A need, and the methods that serve it.
 struct Advice {
     want: &'static str,
     because: &'static str,
@@ -153,7 +153,7 @@ const ADVICE: &[Advice] = &[
     },
 ];
 
-/// What to take: for a scene, or for all.
+/// The recommendations: for a scene, or for all.
 fn advice(scene: Option<&Scene>) -> Result<String, CliError> {
     let model = scene.map(Scene::model).transpose()?;
     let default = scene.map_or_else(high_order, |scene| scene.problem.default_method());

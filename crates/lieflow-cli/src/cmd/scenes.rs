@@ -73,7 +73,7 @@ fn kind_entry(kind: &Kind) -> KindEntry {
     }
 }
 
-/// What holds for all numbers of a scene.
+/// The units of the numbers of a scene.
 const UNITS: &str =
     "Numbers are in SI units, or in any other units that go together. Angles are in radians.";
 

@@ -62,7 +62,7 @@ impl Candidate {
         }
     }
 
-    /// What the catalog says that it preserves, in words; nothing where it says nothing.
+    /// The invariants that the catalog promises, in words.
     pub fn keeps(&self) -> String {
         self.info().map_or_else(String::new, MethodInfo::preserves_in_words)
     }

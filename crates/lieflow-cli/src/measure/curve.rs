@@ -157,9 +157,9 @@ pub struct Curve {
 /// Errors outside of this range say nothing of the order: larger ones are not yet asymptotic,
 /// smaller ones are rounding.
 const ASYMPTOTIC: core::ops::Range<f64> = 1e-10..1e-2;
-/// So many times the floor is clear of it.
+/// An error is clear of the floor if it is so many times larger.
 const CLEAR: f64 = 10.0;
-/// From one pair of runs to the next the slope keeps this part of itself, or rounding has begun.
+/// Rounding has begun where the slope falls below this part of the slope of the pair of runs before.
 const STEADY: f64 = 0.7;
 
 impl Curve {

@@ -17,7 +17,7 @@ pub const JOURNAL: &str = "points.jsonl";
 /// A line of the file.
 #[derive(Serialize, Deserialize)]
 enum Entry {
-    /// What the entries after it are about.
+    /// The comparison that the next entries belong to.
     Of(String),
     /// A run that was judged.
     Point(String, WorkPoint),
@@ -25,7 +25,7 @@ enum Entry {
     Time(String, f64),
 }
 
-/// What is known already, and where more of it goes.
+/// The measurements that are known, and the file for more of them.
 #[derive(Debug)]
 pub struct Journal {
     path: PathBuf,

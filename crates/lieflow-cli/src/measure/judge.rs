@@ -54,7 +54,7 @@ impl Reference {
         self.error().unwrap_or_default().max(f64::EPSILON)
     }
 
-    /// What errors are measured against, in sentences.
+    /// The reference of the errors, in sentences.
     pub fn in_words(&self) -> String {
         match self {
             Reference::Exact { rounding: None } => {

@@ -43,7 +43,7 @@ pub struct Summary {
     pub facts: BTreeMap<&'static str, f64>,
     /// What a reader should know: a body that cannot be, an invariant that moved.
     pub warnings: Vec<String>,
-    /// What was changed of the numbers in the scene.
+    /// Changes that were made to numbers of the scene.
     pub notes: Vec<String>,
     /// What was written.
     pub quantities: Vec<String>,
@@ -83,13 +83,13 @@ pub struct Summary {
     pub drift: BTreeMap<String, Drift>,
     /// The distance from the exact solution at the end, by quantity; none where none is known.
     pub error_at_end: Option<BTreeMap<String, f64>>,
-    /// How right the end is; none where that was not found out.
+    /// How accurate the end is, if that is known.
     pub accuracy: Option<Accuracy>,
-    /// Why it was not.
+    /// Why the accuracy is not known.
     pub accuracy_unknown: Option<String>,
-    /// What the scene left to the program.
+    /// The choices that the scene left to the program.
     pub chosen_by_default: Defaults,
-    /// The same in words.
+    /// These choices in words.
     #[serde(skip)]
     pub defaults_in_words: Option<String>,
     /// The tolerances, where steps were chosen by their error.
@@ -111,7 +111,7 @@ pub struct Accuracy {
     pub parts: Vec<PartError>,
 }
 
-/// What a run is compared with.
+/// The result that a run is compared with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum FoundBy {
@@ -139,7 +139,7 @@ pub struct PartError {
 }
 
 impl Accuracy {
-    /// Of these parts; errors below `unseen` are rounding that nobody saw.
+    /// The accuracy from the errors of the parts. An error below `unseen` is taken as `unseen`, because it is rounding.
     pub fn new(found_by: FoundBy, parts: Vec<PartError>, unseen: f64, seconds: f64) -> Self {
         let mut accuracy = Accuracy { found_by, seconds, digits: 0, parts };
         let worst = accuracy.relative();

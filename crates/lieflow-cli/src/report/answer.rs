@@ -202,7 +202,7 @@ fn faster((best, here): &Found<'_>, (next, there): &Found<'_>) -> String {
     text + "."
 }
 
-/// What the method keeps, and how far it is off in energy.
+/// The invariants that the method conserves, and its error in energy.
 fn kept((curve, reached): &Found<'_>) -> String {
     let keeps = curve.candidate.keeps();
     let energy = match reached.energy_error.is_nan() || curve.candidate.keeps_energy() {

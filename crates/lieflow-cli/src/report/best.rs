@@ -23,7 +23,7 @@ pub struct Best<'a> {
     reaching: usize,
     /// Does the problem have an energy?
     energy: bool,
-    /// What each curve looks like.
+    /// The look of each curve.
     pub looks: Looks,
 }
 
@@ -95,7 +95,7 @@ impl<'a> Best<'a> {
         self.shown.len() < self.reaching
     }
 
-    /// What the table is, in a sentence.
+    /// The caption of the table.
     pub fn caption(&self, curves: usize) -> String {
         let (error, shown) = (self.by, self.shown.len());
         match self.reaching {
@@ -125,7 +125,7 @@ impl<'a> Best<'a> {
 /// The colours of lines, and their markers.
 const COLOURS: usize = 8;
 
-/// What each curve looks like, the same in all figures of a page: its place in the ranking decides.
+/// The look of each curve, by its place in the ranking. It is the same in all figures of a page.
 #[derive(Clone, Debug)]
 pub struct Looks(Vec<usize>);
 

@@ -479,7 +479,7 @@ fn the_output_of_the_scene_is_timed() {
     assert!(with_rows > 100.0 * bare, "one evaluation {bare:e}, 2001 of them {with_rows:e}");
 }
 
-/// An answer says what, how much faster, why, and what is kept; or why there is none.
+/// An answer names the method, how much faster it is, why, and what it conserves. Without a method it says why.
 #[test]
 fn an_answer_follows_from_the_runs() {
     let scene = Scene::parse("scene", SCENE).unwrap();

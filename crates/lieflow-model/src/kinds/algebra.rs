@@ -34,7 +34,7 @@ pub(super) struct Named {
 }
 
 impl Named {
-    /// That the size is that of the value of `key`, which has n rows.
+    /// Checks that the stated size is that of the value of `key`, which has n rows.
     ///
     /// # Errors
     /// A refusal of `key`.
@@ -111,7 +111,7 @@ impl Algebra {
         group.map_err(|error: Error| Refusal::from(error).about(key))
     }
 
-    /// What an element g of the group of n×n matrices is.
+    /// The form of an element g of the group of n×n matrices.
     pub(super) fn form_of_group(self, n: usize) -> String {
         match self {
             Algebra::Gl => "its determinant is not 0".into(),
@@ -174,9 +174,9 @@ fn skew(x: &mut Mat<f64>, p: usize) {
 pub(super) struct Miss {
     /// The first of the entries that do not go together.
     pub(super) at: (usize, usize),
-    /// What is wrong with them.
+    /// The mistake in these entries.
     pub(super) why: String,
-    /// What the algebra is.
+    /// The form of the algebra.
     pub(super) form: String,
 }
 

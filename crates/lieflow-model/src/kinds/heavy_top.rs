@@ -82,7 +82,7 @@ fn upright(vertical: Vector3<f64>) -> Matrix3<f64> {
     turn.map_or_else(|| Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0)), |g| g.into_inner())
 }
 
-/// What a top is at a point.
+/// A top at a point.
 struct Pose {
     mu: Vector3<f64>,
     gamma: Vector3<f64>,
@@ -329,7 +329,7 @@ impl ProblemSpec for TopSpec {
     fn state(&self, quantities: &[&str]) -> &'static [&'static str] {
         self.system(quantities).state(quantities)
     }
-    /// With the attitude, which the figure is drawn by.
+    /// The state with the attitude, because the figure needs it.
     fn default_state(&self) -> &'static [&'static str] {
         self.state(&["attitude"])
     }

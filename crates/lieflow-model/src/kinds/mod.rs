@@ -268,7 +268,7 @@ pub trait ProblemSpec: Any + Debug + Send + Sync {
     /// [`Error::UnknownName`] for a quantity that the kind does not have.
     fn model(&self, layer: Layer, quantities: &[&str]) -> Result<Box<dyn Model>, Error>;
 
-    /// That what the scene states in formulas has a value at the start.
+    /// Checks that the formulas of the scene have values at the start.
     ///
     /// # Errors
     /// A refusal of the first key that has none.
@@ -328,7 +328,7 @@ pub trait ProblemSpec: Any + Debug + Send + Sync {
         Vec::new()
     }
 
-    /// What was changed of the numbers in the scene: a quaternion that was made to have length 1.
+    /// Changes that were made to numbers of the scene, such as a quaternion that was normalised.
     fn notes(&self) -> Vec<String> {
         Vec::new()
     }

@@ -189,7 +189,7 @@ pub(super) fn with_formulas(
     Ok(Box::new(Mapped { base, schema, modelled: None, fill: Box::new(fill) }))
 }
 
-/// That these are columns or quantities that a scene writes.
+/// Checks that the scene writes these columns or quantities.
 ///
 /// # Errors
 /// A refusal of `plot` for another name.

@@ -18,7 +18,7 @@ pub(super) const INTERVALS: u64 = 1000;
 /// A quantity with more columns is written only when it is asked for.
 const COLUMNS: usize = 64;
 
-/// What a scene left to the program.
+/// The choices that a scene left to the program.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Defaults {
     /// The method.
@@ -32,7 +32,7 @@ pub struct Defaults {
 }
 
 impl Defaults {
-    /// What was chosen, in words; none where the scene says everything.
+    /// The choices in words, or none if the scene says everything.
     pub fn in_words(self, scene: &Scene) -> Option<String> {
         let mut chosen = Vec::new();
         if self.method {

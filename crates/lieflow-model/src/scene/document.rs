@@ -165,7 +165,7 @@ impl<'a> Document<'a> {
         SceneError::new(self.source, message).at(self.text, span)
     }
 
-    /// What was checked of a section; a refusal with its place.
+    /// Gives a refusal of a section the place that it is about.
     pub(super) fn check<T>(
         &self,
         section: &str,
@@ -174,7 +174,7 @@ impl<'a> Document<'a> {
         checked.map_err(|refusal| self.refusal(section, refusal))
     }
 
-    /// That nothing of a section was refused; else all refusals with their places.
+    /// Gives all refusals of a section their places. No refusal is no error.
     pub(super) fn check_all(
         &self,
         section: &str,
@@ -289,7 +289,7 @@ pub(super) fn table(section: Spanned<DeTable<'_>>) -> Spanned<DeValue<'_>> {
     Spanned::new(section.span(), DeValue::Table(section.into_inner()))
 }
 
-/// Act on the innermost entry of a table that a place lies in; false where there is none.
+/// Calls `act` on the innermost table entry that contains a place. Returns false if no entry contains it.
 fn at_entry<'a>(
     value: &mut DeValue<'a>,
     place: &Range<usize>,
@@ -342,7 +342,7 @@ fn write_over(value: &mut DeValue<'_>, place: &Range<usize>) -> bool {
     }
 }
 
-/// What the deserializer found wrong.
+/// A mistake that the deserializer found.
 enum Wrong<'m> {
     /// A key, and those that there are.
     UnknownKey(&'m str, Vec<&'m str>),
@@ -351,7 +351,7 @@ enum Wrong<'m> {
 }
 
 impl<'m> Wrong<'m> {
-    /// From its message: it says it in no other way.
+    /// Reads the kind of mistake from the message of the deserializer, which gives nothing else.
     fn of(message: &'m str) -> Self {
         let mut quoted = message.split('`').skip(1).step_by(2);
         match quoted.next() {
@@ -363,7 +363,7 @@ impl<'m> Wrong<'m> {
         }
     }
 
-    /// In the words of this program, with what may have been meant.
+    /// The message in the words of this program, and a suggestion.
     fn in_words(&self, section: &str) -> (String, Option<String>) {
         let message = match self {
             Wrong::UnknownKey(given, names) => {

@@ -96,7 +96,7 @@ impl SceneError {
         self.mistakes[0].place.as_ref().map(|place| place.line)
     }
 
-    /// What the first mistake is, without its place.
+    /// The message of the first mistake, without its place.
     pub fn message(&self) -> &str {
         &self.mistakes[0].message
     }
@@ -135,7 +135,7 @@ impl fmt::Display for Mistake {
     }
 }
 
-/// What to do; lines after the first are to be written in the scene.
+/// Writes the suggestion. Lines after the first are lines for the scene, and are indented.
 fn write_help(f: &mut fmt::Formatter<'_>, margin: &str, help: Option<&str>) -> fmt::Result {
     let mut lines = help.unwrap_or_default().lines();
     lines.next().map_or(Ok(()), |first| write!(f, "\n{margin} = {first}"))?;
@@ -147,17 +147,18 @@ fn write_help(f: &mut fmt::Formatter<'_>, margin: &str, help: Option<&str>) -> f
 pub(super) struct Mistakes(Vec<Mistake>);
 
 impl Mistakes {
-    /// The value; where there is none, its mistakes are kept.
+    /// Returns the value, or keeps its mistakes.
     pub(super) fn keep<T>(&mut self, read: Result<T, SceneError>) -> Option<T> {
         read.map_err(|error| self.0.extend(error.mistakes)).ok()
     }
 
-    /// Is nothing wrong so far?
+    /// True if no mistake was found so far.
     pub(super) fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
-    /// The value where nothing is wrong; else all mistakes in the order of the file, and those without a place last.
+    /// Returns the value if there is no mistake. Otherwise returns all mistakes in the order of the file, and those without
+    /// a place last.
     pub(super) fn or<T>(mut self, value: Option<T>) -> Result<T, SceneError> {
         match value {
             Some(value) if self.is_empty() => Ok(value),
@@ -187,7 +188,7 @@ pub struct Refusal {
 }
 
 impl Refusal {
-    /// The same with the names of the library in the words of scene files.
+    /// Replaces the names of the library by those of scene files.
     pub fn renamed(mut self, names: &[(&str, &str)]) -> Self {
         for (from, to) in names {
             if self.key.as_deref() == Some(from) {
@@ -209,7 +210,7 @@ impl Refusal {
         Refusal { help, ..Refusal::at(key, format!("unknown {key} `{name}`")) }
     }
 
-    /// The same about another key.
+    /// Makes the refusal about another key.
     pub fn about(self, key: impl Into<String>) -> Self {
         Refusal { key: Some(key.into()), ..self }
     }

@@ -275,7 +275,7 @@ impl OutputKeys {
         }
     }
 
-    /// What is wrong with the quantities.
+    /// The mistakes in the list of quantities.
     pub(super) fn wrong_quantities(
         &self,
         kind: &Kind,
@@ -307,7 +307,7 @@ impl OutputKeys {
         asked.iter().enumerate().filter_map(wrong).collect()
     }
 
-    /// What is asked for, with these quantities; `steps_left` says that the program chooses the steps.
+    /// Resolves the keys, with these quantities. `steps_left` says that the program chooses the steps.
     pub(super) fn resolve(
         self,
         quantities: Vec<String>,

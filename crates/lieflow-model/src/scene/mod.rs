@@ -73,7 +73,7 @@ pub struct Scene {
     pub quantities: Vec<String>,
     /// Does a run say how large its error is, where that costs a second run?
     pub error_check: bool,
-    /// What the scene left to the program.
+    /// The choices that the scene left to the program.
     pub by_default: Defaults,
     /// The text of the scene.
     pub text: String,
@@ -277,7 +277,7 @@ impl Scene {
     /// order.
     ///
     /// # Errors
-    /// As there.
+    /// Those of [`plan_to`](Self::plan_to).
     pub fn default_plan_to(
         &self,
         t: f64,
@@ -347,7 +347,7 @@ impl Scene {
         Found::bundled(name)?.read(&[])
     }
 
-    /// A scene by the path of its file or, where there is no such file, by its bundled name; `-` is standard input.
+    /// Opens a scene by the path of its file or by its bundled name. `-` is standard input.
     ///
     /// # Errors
     /// [`SceneError`].
@@ -355,7 +355,7 @@ impl Scene {
         Self::open_with(scene, &[])
     }
 
-    /// The same with settings: texts such as `time.dt=0.01`, `problem.inertia=[1, 2, 3]` or `problem.inertia[2]=2.5`.
+    /// Opens a scene and changes it by settings, which are texts such as `time.dt=0.01`, `problem.inertia=[1, 2, 3]` or `problem.inertia[2]=2.5`.
     /// A place in a list counts from 1. Nothing after the `=` takes the key away.
     ///
     /// # Errors

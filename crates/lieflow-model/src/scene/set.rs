@@ -113,7 +113,7 @@ fn value(text: &str) -> Result<Option<Value>, String> {
     }
 }
 
-/// What is at a step. A section that is missing is made.
+/// The item at one step of a key. A missing section is created.
 fn enter<'i>(item: &'i mut Item, step: &Step<'_>, done: &str) -> Result<&'i mut Item, String> {
     match step {
         Step::Key(key) => Ok(table(item, done)?.entry(key).or_insert_with(toml_edit::table)),

@@ -159,7 +159,8 @@ pub fn suggest<'a>(given: &str, names: &[&'a str]) -> Option<&'a str> {
     meant(given, names).map(|meant| meant.name)
 }
 
-/// What was expected instead of `given`, and which of it was meant: first, and with the lines to write.
+/// The suggestion for the unknown name `given`: first what was probably meant, then the lines to write or the names that
+/// are expected.
 pub fn help_for(given: &str, names: &[&str]) -> String {
     let meant = meant(given, names);
     let (name, what, part) = match meant {

@@ -25,7 +25,7 @@ const MANY: usize = 10;
 /// Points of a figure of points.
 const POINTS: usize = 128;
 
-/// What is drawn of a run.
+/// The parts of a run that are drawn.
 #[derive(Clone, Copy, Debug)]
 pub struct Drawn<'a> {
     /// The scene.

@@ -56,7 +56,7 @@ fn quaternion(numbers: &[f64]) -> Option<[f64; 4]> {
     }
 }
 
-/// As many poses as show the first turns; none where they are too far apart.
+/// The poses of the first turns, or none if they are too far apart.
 fn poses(all: impl Iterator<Item = Pose>) -> Option<Vec<Pose>> {
     let mut kept: Vec<Pose> = Vec::new();
     let (mut turned, mut waiting) = (0.0, None);

@@ -73,7 +73,7 @@ impl<'a> RowSample<'a> {
         self.rows.iter().chain(last).map(|row| self.named(row))
     }
 
-    /// What is in a row.
+    /// The schema of a row.
     pub(super) fn schema(&self) -> &'a Schema {
         self.schema
     }

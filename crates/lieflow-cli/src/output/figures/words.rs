@@ -3,7 +3,7 @@
 use lieflow_model::kinds::Kind;
 use lieflow_model::schema::Observable;
 
-/// What a quantity is, as a title: the first clause of its meaning, or its columns where the scene makes them.
+/// The title of a quantity: the first clause of its meaning, or its columns if the scene makes them.
 pub(super) fn title(kind: &Kind, quantity: &Observable) -> String {
     let Ok(info) = kind.quantity(quantity.name) else { return quantity.columns.join(", ") };
     let clause = info.meaning.split([';', ',', ':']).next().unwrap_or(info.meaning);
@@ -41,7 +41,7 @@ pub(super) fn column(name: &str) -> String {
 
 const SUBSCRIPTS: [char; 10] = ['₀', '₁', '₂', '₃', '₄', '₅', '₆', '₇', '₈', '₉'];
 
-/// What the columns of one part begin with: the name without the number or the axis at its end.
+/// The common start of the columns of one part: the name without the number or the axis at its end.
 pub(super) fn stem(column: &str) -> &str {
     let axis = column.trim_end_matches(['x', 'y', 'z']);
     if axis.ends_with(|c: char| c.is_ascii_digit()) && axis != column {
@@ -67,7 +67,7 @@ pub(super) fn path(quantity: &Observable, columns: &[String], number: usize) -> 
     format!("{one} {number}")
 }
 
-/// What names begin with, before the numbers that tell them apart.
+/// The common start of names that end in different numbers.
 pub(super) fn shared(columns: &[String]) -> &str {
     let first = columns.first().map_or("", String::as_str);
     let begins = |n: &usize| {

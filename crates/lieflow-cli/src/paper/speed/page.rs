@@ -94,7 +94,7 @@ impl Speed {
     }
 }
 
-/// What to do next.
+/// The next commands for a newcomer.
 fn go_on() -> Section {
     let code = |text: &str| Block::Code(text.into());
     Section::new(

@@ -25,12 +25,12 @@ pub struct RigidBodySpec {
     pub momentum_body: [f64; 3],
     /// Initial rotation to space, from the frame of the principal axes.
     pub attitude: Matrix3<f64>,
-    /// The same as a quaternion, where the scene has it as one.
+    /// The initial rotation as a quaternion, if the scene gives a quaternion.
     pub quaternion: Option<UnitQuaternion<f64>>,
     /// The principal axes, as columns, in the frame that the scene is written in, where that is
     /// another.
     pub axes: Option<Matrix3<f64>>,
-    /// What was changed of the numbers in the scene.
+    /// Changes that were made to numbers of the scene.
     pub notes: Vec<String>,
 }
 
@@ -70,7 +70,7 @@ impl RigidBodySpec {
         self.axes.map_or(x, |axes| axes.tr_mul(&x))
     }
 
-    /// What a reader should know of moments that no body has.
+    /// The warning about moments of inertia that no body has.
     pub(super) fn impossible(&self) -> Vec<String> {
         let largest = (0..3).fold(0, |k, i| if self.inertia[i] > self.inertia[k] { i } else { k });
         let order = [[0, 1, 2], [1, 0, 2], [2, 0, 1]][largest];
@@ -88,7 +88,7 @@ impl RigidBodySpec {
 /// Numbers that are typed with a few digits are as far as this from what they stand for.
 pub(super) const TYPED: f64 = 1e-3;
 
-/// That a vector has length 1, to the digits that it is written with; a note where these are few.
+/// Checks that a vector has length 1 to the digits that it is written with. Few digits give a note.
 ///
 /// # Errors
 /// A refusal of `key`.
@@ -268,7 +268,7 @@ impl BodyKeys {
     }
 }
 
-/// That every entry of a list is in range.
+/// Checks that every entry of a list is in range.
 ///
 /// # Errors
 /// [`Error::OutOfRange`] for the first entry that is not.

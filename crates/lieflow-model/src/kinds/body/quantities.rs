@@ -44,7 +44,7 @@ pub(in crate::kinds) trait AsBody: System {
     fn omega(&self, y: &PointOf<Self>) -> Vector3<f64>;
     /// The rotation to space.
     fn orientation(&self, y: &PointOf<Self>) -> Orientation;
-    /// Why there is none.
+    /// Why the problem has no orientation, if it has none.
     fn without_orientation(&self) -> Option<&'static str> {
         None
     }

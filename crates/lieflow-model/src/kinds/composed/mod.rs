@@ -59,7 +59,7 @@ struct Composed {
     start: Point,
     /// In the coordinates of all parts.
     invariants: Vec<(String, Formula)>,
-    /// What was changed of the numbers in the scene.
+    /// Changes that were made to numbers of the scene.
     notes: Vec<String>,
 }
 

@@ -28,7 +28,7 @@ pub(super) struct Equation {
     /// Is f a function of t alone?
     pub(super) linear: bool,
     pub(super) start: Mat<f64>,
-    /// What was changed of the numbers in the scene.
+    /// Changes that were made to numbers of the scene.
     pub(super) notes: Vec<String>,
 }
 

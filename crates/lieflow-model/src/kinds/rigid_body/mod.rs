@@ -73,7 +73,7 @@ impl ProblemSpec for RigidBodySpec {
             false => Body::<MomentumOnly>::STATE,
         }
     }
-    /// With the attitude, as the scene states it.
+    /// The momentum and the attitude, in the form of the scene.
     fn default_state(&self) -> &'static [&'static str] {
         match self.quaternion {
             Some(_) => &["momentum_body", "quaternion"],

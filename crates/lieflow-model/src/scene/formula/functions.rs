@@ -45,7 +45,7 @@ pub(super) enum OfVectors {
     Transpose,
 }
 
-/// What a name followed by a parenthesis calls.
+/// The function that a name followed by a parenthesis calls.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Called {
     One(Function),
@@ -96,7 +96,7 @@ impl Called {
         CALLED.iter().map(|(name, _)| *name).chain(CALLED_OF_VECTORS.iter().map(|(name, _)| *name))
     }
 
-    /// What it takes, in words.
+    /// The arguments of the function, in words.
     pub(super) fn takes(self) -> &'static str {
         match self {
             Called::One(_) => "a number",
@@ -108,7 +108,7 @@ impl Called {
         }
     }
 
-    /// The same, of a function that takes a second value.
+    /// The arguments in words, if the function takes two.
     pub(super) fn second(self) -> Option<&'static str> {
         let of_two =
             matches!(self, Called::Two(_) | Called::OfVectors(OfVectors::Dot | OfVectors::Cross));

@@ -114,7 +114,7 @@ impl Formula {
         self.tape.ops().len()
     }
 
-    /// That it has a value at the start.
+    /// Checks that the formula has a value at the start.
     ///
     /// # Errors
     /// A refusal of `key` where the value is not finite.

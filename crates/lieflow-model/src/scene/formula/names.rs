@@ -92,7 +92,7 @@ pub struct Names {
     unusable: Vec<(String, String)>,
 }
 
-/// What a name stands for.
+/// The meaning of a name.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Meaning<'a> {
     Variable(usize),
@@ -153,7 +153,8 @@ impl Names {
         Ok(self)
     }
 
-    /// The same, without those that have no meaning with these names. A name means the formula and not the variable.
+    /// Adds the formulas of [`with_lets`](Self::with_lets) that can be used with these names, and leaves out the others. A
+    /// formula hides a variable of the same name.
     pub fn with_usable_lets(mut self, key: &str, lets: &Lets) -> Names {
         let mut reader = LetReader::new(key, lets, false);
         for name in lets.names().take(LETS_MAX) {

@@ -19,7 +19,7 @@ pub(super) struct Value {
     pub(super) entries: Vec<usize>,
 }
 
-/// In words: `a vector of 3`.
+/// The shape in words, such as `a vector of 3`.
 impl fmt::Display for Value {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match (self.rows, self.columns()) {
@@ -30,7 +30,7 @@ impl fmt::Display for Value {
     }
 }
 
-/// What is wrong, and what to write.
+/// A mistake, with a suggestion.
 type Wrong = (String, Option<String>);
 
 impl Value {
@@ -111,7 +111,7 @@ impl Value {
     /// The function of self, and of `second` where it takes two.
     ///
     /// # Errors
-    /// What was found, where that is not what the function takes.
+    /// The mistake of an argument that the function does not take.
     pub(super) fn call(
         &self,
         called: Called,
