@@ -187,15 +187,27 @@ impl SaveAt {
     /// Checks the points against the span.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] for `every = 0`, and for times that are not finite, outside the span,
-    /// or not in strict order.
+    /// [`Error::OutOfRange`] for `every = 0`, for an interval that t does not resolve, and for times that are not finite,
+    /// outside the span, or not in strict order.
     pub fn check(&self, [t0, t1]: [f64; 2]) -> Result<(), Error> {
         match self {
             SaveAt::Every(0) => Err(Error::out_of_range("every", 0.0, "at least 1")),
             SaveAt::Interval(length) if !(*length > 0.0 && length.is_finite()) => {
                 Err(Error::out_of_range("interval", *length, "a finite number > 0"))
             }
-            SaveAt::End | SaveAt::Ends | SaveAt::Every(_) | SaveAt::Interval(_) => Ok(()),
+            SaveAt::Interval(length) => {
+                // Two times that are one number would be shown for ever.
+                let differ = |t: f64| !t.is_finite() || t + length != t;
+                let are_few = !t1.is_finite() || (t1 - t0).abs() / length <= STEPS_MAX;
+                match differ(t0) && differ(t1) && are_few {
+                    true => Ok(()),
+                    false => {
+                        let expected = "times that differ, and at most 1e15 of them over t_span";
+                        Err(Error::out_of_range("interval", *length, expected))
+                    }
+                }
+            }
+            SaveAt::End | SaveAt::Ends | SaveAt::Every(_) => Ok(()),
             SaveAt::Times(times) => {
                 let forward = if t1 >= t0 { 1.0 } else { -1.0 };
                 let mut last = f64::NEG_INFINITY;

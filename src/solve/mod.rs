@@ -83,6 +83,8 @@ pub struct Solve<'a, P: Problem, M: Method<P>> {
     checkpoints: Option<Checkpoints<'a, P>>,
     resume: Option<(Listing<P>, Vec<u8>)>,
     watch: Option<Watch<P>>,
+    /// The number of equal intervals of the output, which the span decides.
+    count: Option<u64>,
     /// The error of the first wrong value.
     wrong: Option<Error>,
 }
@@ -116,6 +118,7 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
             checkpoints: None,
             resume: None,
             watch: None,
+            count: None,
             wrong: None,
         }
     }
@@ -162,6 +165,7 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
 
     /// Sets the points that are shown or stored. The default is the end only.
     pub fn save(mut self, save: SaveAt) -> Self {
+        self.count = None;
         self.save = save;
         self
     }
@@ -196,12 +200,8 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
     #[doc(alias = "linspace")]
     #[doc(alias = "t_eval")]
     pub fn count(mut self, intervals: u64) -> Self {
-        let [t0, t1] = self.t_span;
-        if intervals == 0 {
-            self.wrong.get_or_insert(Error::out_of_range("count", 0.0, "at least 1"));
-            return self;
-        }
-        self.interval((t1 - t0).abs() / intervals as f64)
+        self.count = Some(intervals);
+        self
     }
 
     /// Computes output times within a step by a shorter step of the method, not by dense output. Each time costs a whole
@@ -296,6 +296,17 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
         grid::length_of(self.t_span)?;
         if let Some(error) = self.wrong.take() {
             return Err(error);
+        }
+        if let Some(count) = self.count {
+            let [t0, t1] = self.t_span;
+            if count == 0 || !t1.is_finite() {
+                let expected = "at least 1, over a span with an end";
+                return Err(Error::out_of_range("count", count as f64, expected));
+            }
+            self.save = match t0 == t1 {
+                true => SaveAt::Ends,
+                false => SaveAt::Interval((t1 - t0).abs() / count as f64),
+            };
         }
         self.save.check(self.t_span)?;
         if let Some(i) = self.stops.iter().position(|t| t.is_nan()) {

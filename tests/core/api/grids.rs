@@ -92,6 +92,19 @@ fn output_times_are_checked() {
     says(check(forward, &[-0.0, 0.0]).unwrap_err(), &["times[1]", "each once"]);
     says(check([1.0, 0.0], &[0.2, 0.5]).unwrap_err(), &["times[1] = 0.5", "order"]);
     says(SaveAt::Every(0).check(forward).unwrap_err(), &["every = 0", "at least 1"]);
+    let every = |length: f64, span| SaveAt::Interval(length).check(span);
+    assert_eq!(every(1e-3, forward), Ok(()));
+    assert_eq!(every(5.0, [1.0, 0.0]), Ok(()));
+    assert_eq!(every(0.5, [0.0, f64::INFINITY]), Ok(()));
+    for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        says(every(bad, forward).unwrap_err(), &["interval", "a finite number > 0"]);
+    }
+    // Times that are one number, and times without an end.
+    for (length, span) in
+        [(1e-300, forward), (1e-16, forward), (1e-8, [0.0, 1e9]), (1e-8, [1e9, 1e9 + 1.0])]
+    {
+        says(every(length, span).unwrap_err(), &["interval", "times that differ"]);
+    }
 }
 
 /// One ulp is a span of one step; anything finer than the numbers around it is refused.
