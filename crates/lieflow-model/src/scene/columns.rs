@@ -4,6 +4,7 @@ use core::cell::RefCell;
 
 use lieflow::Error;
 
+use super::each_once;
 use super::error::{KeyPath, Refusal};
 use super::formula::{Formula, Lets, Names, Parameters};
 use crate::kinds::{FormulaKeys, ProblemSpec};
@@ -137,9 +138,11 @@ impl Columns {
     /// # Errors
     /// As [`Formula::read`], and a refusal of `key` for the name of a quantity of several columns.
     pub(super) fn read(&self, key: &str, text: &str) -> Result<RowFormula, Refusal> {
+        if self.names.is_formula(text) {
+            return Ok(self.of_rows(Formula::read(key, text, &self.names)?));
+        }
         // The name of a column may be one that no formula can use.
-        let column = self.columns.iter().find(|column| column.name == text);
-        if let Some(column) = column.filter(|_| !self.names.is_formula(text)) {
+        if let Some(column) = self.columns.iter().find(|column| column.name == text) {
             let names = Parameters::default().names(key, ["t", "x"])?;
             let formula = Formula::read(key, "x", &names)?;
             return Ok(RowFormula { formula, columns: vec![(1, column.clone())], variables: 2 });
@@ -201,12 +204,11 @@ pub(super) fn check_plot(
 ) -> Result<(), Refusal> {
     let columns = quantities.iter().flat_map(|name| problem.columns(name).unwrap_or_default());
     let derived = formulas.iter().map(|(name, _)| name.clone());
-    let mut names: Vec<String> = quantities.iter().cloned().chain(columns).chain(derived).collect();
-    names.dedup();
+    let names: Vec<String> = quantities.iter().cloned().chain(columns).chain(derived).collect();
     match plot.iter().position(|name| !names.contains(name)) {
         None => Ok(()),
         Some(i) => {
-            let names: Vec<&str> = names.iter().map(String::as_str).collect();
+            let names = each_once(names.iter().map(String::as_str));
             let unknown = Refusal::unknown("column", &plot[i], &names).about("plot".index(i));
             let message = format!("{}: it is not among what the scene writes", unknown.message);
             Err(Refusal { message, ..unknown })

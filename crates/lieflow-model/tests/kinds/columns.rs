@@ -64,7 +64,7 @@ fn formulas_of_columns() {
     let text = |output: &str, events: &str| {
         format!(
             "title = \"Test\"\n[problem]\n{BODY}\ntorque = \"drag\"\n[problem.let]\ndrag = \"-c*w\"\n\
-             tilt = \"acos(g33)\"\nin_space = \"m1 + 1\"\nangle = \"2*t\"\n[problem.parameters]\nc = 0.3\n[method]\nname = \"rkmk4\"\n\
+             tilt = \"acos(g33)\"\nin_space = \"m1 + 1\"\nmomentum_norm = \"2*in_space\"\nangle = \"2*t\"\n[problem.parameters]\nc = 0.3\n[method]\nname = \"rkmk4\"\n\
              [time]\nt_span = [0, 2]\ndt = 0.01\n{events}\n[output]\nquantities = [\"energy\"]\n{output}"
         )
     };
@@ -140,6 +140,17 @@ fn formulas_of_columns() {
             "[[events]]\nname = \"x\"\nwhen = \"in_space\"",
             ["`in_space` of [problem.let]", "`m1`"],
         ),
+        // Nor does a column with the name of a formula that needs it.
+        (
+            "",
+            "[[events]]\nname = \"x\"\nwhen = \"momentum_norm\"",
+            ["`momentum_norm` of [problem.let]", "`m1`"],
+        ),
+        (
+            "[output.formulas]\ntwice = \"2*momentum_norm\"",
+            "",
+            ["`momentum_norm` of [problem.let]", "`m1`"],
+        ),
     ] {
         let error = Scene::parse("scene", &text(output, events)).unwrap_err().to_string();
         parts.iter().for_each(|part| assert!(error.contains(part), "{error}"));
@@ -166,7 +177,8 @@ fn named_formulas_are_refused_at_their_line() {
         ("b = []", &["no formulas"]),
         ("b = \"b1 + 1\"", &["cannot need itself: b needs b"]),
         ("w1 = \"t\"", &["`w1` is the name of a variable already"]),
-        ("w = \"[t, t, t]\"", &["`w1` is the name of a variable already"]),
+        ("w = \"t\"", &["`w` is the name of a vector or a matrix already"]),
+        ("g = \"[t, t, t]\"", &["`g` is the name of a vector or a matrix already"]),
         ("cos = \"t\"", &["`cos` is the name of a function"]),
         ("b = true", &["a formula, or a list of formulas"]),
     ] {

@@ -46,7 +46,7 @@ impl Parameters {
             names.variables.push(variable);
         }
         for (name, value) in &self.0 {
-            names.check("parameters", name)?;
+            names.check_new("parameters", name)?;
             names.constants.push((name.clone(), value.0));
         }
         Ok(names)
@@ -153,22 +153,26 @@ impl Names {
         Ok(self)
     }
 
-    /// Adds the formulas of [`with_lets`](Self::with_lets) that can be used with these names, and leaves out the others. A
-    /// formula hides a variable of the same name.
+    /// Adds the formulas of [`with_lets`](Self::with_lets) that can be used with these names. A formula hides a variable of
+    /// the same name, also where it cannot be used.
     pub fn with_usable_lets(mut self, key: &str, lets: &Lets) -> Names {
         let mut reader = LetReader::new(key, lets, false);
         for name in lets.names().take(LETS_MAX) {
             reader.path.clear();
-            if let Err(refusal) = reader.define(name, &mut self) {
-                self.unusable.push((name.into(), refusal.message));
-            }
+            // Why it cannot be used is kept in the names.
+            let _ = reader.define(name, &mut self);
         }
         self
     }
 
     /// Is it the name of a named formula, or of an entry of one?
     pub fn is_formula(&self, name: &str) -> bool {
-        matches!(self.meaning(name), Some(Meaning::Formula(_)))
+        matches!(self.meaning(name), Some(Meaning::Formula(_))) || self.is_unusable(name)
+    }
+
+    /// Is it the name of a named formula that has no meaning here?
+    pub(super) fn is_unusable(&self, name: &str) -> bool {
+        self.unusable.iter().any(|(formula, _)| formula == name)
     }
 
     /// The named formulas of a table, by the name of each entry.
@@ -230,7 +234,23 @@ impl Names {
         Err(Refusal::at(key, format!("`{name}` {why}")))
     }
 
+    /// As [`check`](Self::check), and the name must not be that of a vector or a matrix either.
+    fn check_new(&self, key: &str, name: &str) -> Result<(), Refusal> {
+        self.check(key, name)?;
+        let has_entries = |ends: [&str; 2]| {
+            ends.iter().all(|end| self.meaning(&format!("{name}{end}")).is_some())
+        };
+        if has_entries(["1", "2"]) || has_entries(["11", "12"]) {
+            let message = format!("`{name}` is the name of a vector or a matrix already");
+            return Err(Refusal::at(key, message));
+        }
+        Ok(())
+    }
+
     pub(super) fn meaning(&self, name: &str) -> Option<Meaning<'_>> {
+        if self.is_unusable(name) {
+            return None;
+        }
         if let Some((_, tape)) = self.formulas.iter().find(|(formula, _)| formula == name) {
             return Some(Meaning::Formula(tape));
         }
@@ -281,17 +301,24 @@ impl<'a> LetReader<'a> {
         let texts = lets.0.get(name).filter(|_| self.done.insert(name));
         let Some(texts) = texts else { return Ok(()) };
         self.path.push(name);
+        let read = self.read(name, texts, names);
+        self.path.pop();
+        if let (Err(refusal), false) = (&read, self.refuses_taken) {
+            names.unusable.push((name.into(), refusal.message.clone()));
+        }
+        read
+    }
+
+    fn read(&mut self, name: &str, texts: &Texts, names: &mut Names) -> Result<(), Refusal> {
+        let (place, lets) = (self.key.entry(name), self.lets);
         for word in texts.texts().flat_map(|text| text.split(|c| !continues_name(c))) {
             if let Some(needed) = lets.of(word) {
                 self.define(needed, names)?;
             }
         }
-        self.path.pop();
-        let check = |names: &Names, name: &str| match self.refuses_taken {
-            true => names.check(&place, name),
-            false => Ok(()),
-        };
-        check(names, name)?;
+        if self.refuses_taken {
+            names.check_new(&place, name)?;
+        }
         let (rows, tapes) = texts.read_any(&place, names)?;
         let columns = tapes.len() / rows;
         for (i, tape) in tapes.into_iter().enumerate() {
@@ -300,7 +327,9 @@ impl<'a> LetReader<'a> {
                 (_, 1) => format!("{name}{}", i + 1),
                 _ => format!("{name}{}{}", i / columns + 1, i % columns + 1),
             };
-            check(names, &entry)?;
+            if self.refuses_taken {
+                names.check(&place, &entry)?;
+            }
             names.formulas.push((entry, tape));
         }
         Ok(())

@@ -243,6 +243,9 @@ impl Parser<'_> {
     }
     /// A number of that name; the vector of x1, x2, … by the name x; the matrix of x11, x12, … by the name x.
     fn value_of(&mut self, name: &str) -> Option<Value> {
+        if self.names.is_unusable(name) {
+            return None;
+        }
         if let Some(number) = self.number_of(name) {
             return Some(Value::number(number));
         }
