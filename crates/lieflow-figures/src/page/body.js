@@ -7,7 +7,7 @@
   };
 
   const play = (svg, scene) => {
-    const { centre, scale, edges, t, q, way } = scene;
+    const { centre, scale, edges, span, t, q, way } = scene;
     const last = t.length - 1;
     if (last < 1) return;
     const poses = t.map((_, i) => q.slice(4 * i, 4 * i + 4));
@@ -66,16 +66,19 @@
       return sum + 2 * Math.acos(Math.min(1, cosine));
     }, 0);
     const seconds = Math.max(6, Math.min(90, angle / 1.5));
+    // t counts from the start. Digits that tell two times of the span apart.
+    const direction = Math.sign(span[1] - span[0]), largest = Math.max(...span.map(Math.abs));
+    const digits = Math.min(15, 4 + Math.max(0, Math.ceil(Math.log10(largest / t[last]))));
     let playing = false, before = 0;
     const tell = () => {
       button.textContent = playing ? "❚❚ Pause" : "▶ Play";
-      shown.textContent = `t = ${Number(time.toPrecision(4))}`;
+      shown.textContent = `t = ${Number((span[0] + direction * time).toPrecision(digits))}`;
       slider.value = time;
     };
     const frame = (now) => {
       if (!playing) return;
       time += ((t[last] - t[0]) * Math.max(0, Math.min(100, now - before))) / (1000 * seconds);
-      if ((time - t[last]) * (t[last] - t[0]) > 0) time = t[0];
+      if (time > t[last]) time = t[0];
       before = now;
       draw();
       tell();

@@ -128,7 +128,8 @@ impl Body {
         out
     }
 
-    /// The motion as JSON, from which a script plays it. Quaternions are in ten thousandths.
+    /// The motion as JSON, from which a script plays it. Times count from the start, also for a run backward in time.
+    /// Quaternions are in ten thousandths.
     pub fn json(&self) -> String {
         let list = |items: &mut dyn Iterator<Item = String>| {
             format!("[{}]", items.collect::<Vec<_>>().join(","))
@@ -136,12 +137,15 @@ impl Body {
         let edges = self.edges();
         let edges =
             list(&mut edges.iter().map(|edge| list(&mut edge.iter().map(|x| format!("{:.4}", x)))));
-        let times = list(&mut self.seen().map(|pose| format!("{:e}", (pose.t as f32))));
+        let (start, end) = (self.seen().next(), self.seen().last());
+        let [start, end] = [start, end].map(|pose| pose.map_or(0.0, |pose| pose.t));
+        let since = |pose: &Pose| format!("{:.6e}", (pose.t - start).abs());
+        let times = list(&mut self.seen().map(since));
         let turns = self.seen().flat_map(|pose| pose.quaternion);
         let turns = list(&mut turns.map(|x| format!("{:.0}", 1e4 * x)));
         format!(
             "{{\"view\":[{:e},{:e}],\"centre\":[{},{}],\"scale\":{SCALE},\"axis\":{AXIS},\
-             \"edges\":{edges},\"way\":{},\"t\":{times},\"q\":{turns}}}",
+             \"edges\":{edges},\"way\":{},\"span\":[{start:e},{end:e}],\"t\":{times},\"q\":{turns}}}",
             self.view.0,
             self.view.1,
             CENTRE.0,
