@@ -111,8 +111,35 @@ impl Settings {
 
     /// The options again, as they are typed in a shell.
     pub fn typed(&self) -> String {
-        let quoted = |setting: &String| format!(" --set '{}'", setting.replace('\'', r"'\''"));
-        self.set.iter().map(quoted).collect()
+        self.set.iter().map(|setting| format!(" --set {}", quoted(setting))).collect()
+    }
+}
+
+/// A word as it is typed in a shell, in quotes if it needs them.
+pub fn quoted(word: &str) -> String {
+    let is_plain = |c: char| c.is_alphanumeric() || "-_./=:,+@%".contains(c);
+    match !word.is_empty() && word.chars().all(is_plain) {
+        true => word.into(),
+        false => format!("'{}'", word.replace('\'', r"'\''")),
+    }
+}
+
+impl RunArgs {
+    /// The options again, as they are typed in a shell, of a run of one scene into this folder.
+    pub fn options_typed(&self, folder: &Path) -> String {
+        let mut typed = self.settings.typed();
+        if self.out.is_some() {
+            typed += &format!(" --out {}", quoted(&folder.display().to_string()));
+        }
+        if self.no_page {
+            typed += " --no-page";
+        }
+        if let Some(when) =
+            self.error_check.to_possible_value().filter(|_| self.error_check != ErrorCheck::Auto)
+        {
+            typed += &format!(" --error-check {}", when.get_name());
+        }
+        typed
     }
 }
 

@@ -4,6 +4,7 @@ use std::cell::Cell;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+use lieflow::Error;
 use lieflow::catalog::MethodSpec;
 use lieflow::solve::{Next, Status};
 use lieflow_model::kinds::explained_by_rounding;
@@ -32,7 +33,8 @@ pub(super) struct Check<'a> {
     watch: &'a Watch<'a>,
     /// The time of the end.
     t: f64,
-    steps: u64,
+    /// The run itself.
+    own: Taken,
     /// The size of each part of the state.
     sizes: Vec<f64>,
     /// The numbers of the exact row, where it is known.
@@ -48,21 +50,35 @@ pub(super) struct Check<'a> {
 struct Way {
     default: bool,
     factor: f64,
+    /// The limit of steps that are chosen by their error.
+    largest: Option<f64>,
 }
 
-const OWN: Way = Way { default: false, factor: 1.0 };
+const OWN: Way = Way { default: false, factor: 1.0, largest: None };
+
+/// The steps that a run took.
+#[derive(Clone, Copy)]
+pub(super) struct Taken {
+    /// The number of steps.
+    pub(super) steps: u64,
+    /// The largest of them.
+    pub(super) largest: f64,
+}
+
+/// The share of the expected steps that tells that the tolerance chose them, and no limit did.
+const CHOSEN: f64 = 0.9;
 
 impl<'a> Check<'a> {
     /// The check of a run that ended at t after so many steps, and showed these rows.
     pub(super) fn new(
         watch: &'a Watch<'a>,
         rows: &RowSample<'_>,
-        (t, steps): (f64, u64),
+        (t, own): (f64, Taken),
         stop: &'a AtomicBool,
     ) -> Self {
         let sizes = parts_of(watch).map(|part| size(part, rows)).collect();
         let (exact, deadline) = (watch.exact(t), Cell::new(None));
-        Check { watch, t, steps, sizes, exact, stop, deadline }
+        Check { watch, t, own, sizes, exact, stop, deadline }
     }
 
     /// Is the exact end known?
@@ -70,9 +86,9 @@ impl<'a> Check<'a> {
         self.exact.is_some()
     }
 
-    /// The error of the run, whose last row has these numbers; none where a second run is stopped or fails.
-    pub(super) fn error(&self, end: &[f64]) -> Option<Accuracy> {
-        self.error_of(OWN, end)
+    /// The error of the run, whose last row has these numbers. Where a second run is needed and fails, the reason.
+    pub(super) fn error(&self, end: &[f64]) -> Result<Accuracy, String> {
+        self.error_of(OWN, end, self.own)
     }
 
     fn scene(&self) -> &'a Scene {
@@ -87,19 +103,19 @@ impl<'a> Check<'a> {
     }
 
     /// The plan of a run to the end.
-    fn plan(&self, way: Way) -> Option<Plan<'static>> {
-        let plan = match way.default {
+    fn plan(&self, way: Way) -> Result<Plan<'static>, Error> {
+        let Way { default, factor, largest } = way;
+        match default {
             true => {
-                let order = self.watch.model.order(&self.method(way)).ok()?;
-                self.scene().default_plan_to(self.t, way.factor, order)
+                let order = self.watch.model.order(&self.method(way))?;
+                self.scene().default_plan_to(self.t, factor, largest, order)
             }
-            false => self.scene().plan_to(self.t, way.factor),
-        };
-        plan.ok()
+            false => self.scene().plan_to(self.t, factor, largest),
+        }
     }
 
-    /// The last row of a run.
-    fn end(&self, way: Way) -> Option<Vec<f64>> {
+    /// The last row of a run, and its steps; or why the run did not end.
+    fn end(&self, way: Way) -> Result<(Vec<f64>, Taken), String> {
         let cancel = AtomicBool::new(false);
         let mut last = Last {
             numbers: Vec::new(),
@@ -107,34 +123,52 @@ impl<'a> Check<'a> {
             stop: self.stop,
             deadline: self.deadline.get(),
         };
-        let plan = Plan { cancel: Some(&cancel), ..self.plan(way)? };
-        let outcome = self.watch.model.drive(&self.method(way), plan, &mut last).ok()?;
-        (outcome.status == Status::Finished).then_some(last.numbers)
+        let plan = self.plan(way).map_err(|error| error.to_string())?;
+        let plan = Plan { cancel: Some(&cancel), ..plan };
+        let outcome = self.watch.model.drive(&self.method(way), plan, &mut last);
+        let outcome = outcome.map_err(|error| error.to_string())?;
+        match outcome.status {
+            Status::Finished => {
+                let stats = &outcome.stats;
+                let taken = Taken { steps: stats.accepted, largest: stats.largest_step };
+                Ok((last.numbers, taken))
+            }
+            _ => Err("it was stopped".into()),
+        }
     }
 
-    /// The error of a run that ends with these numbers.
-    fn error_of(&self, way: Way, end: &[f64]) -> Option<Accuracy> {
+    /// The error of a run that ends with these numbers, after these steps.
+    fn error_of(&self, way: Way, end: &[f64], taken: Taken) -> Result<Accuracy, String> {
         let clock = Instant::now();
         if let Some(exact) = &self.exact {
-            return Some(self.judge(FoundBy::Exact, end, exact, 1.0, clock));
+            return Ok(self.judge(FoundBy::Exact, end, exact, 1.0, clock));
         }
-        let order = self.watch.model.order(&self.method(way)).ok()?? as f64;
+        let order = self.watch.model.order(&self.method(way)).ok().flatten();
+        let order = order.ok_or("the method has no order")? as f64;
         // The error of steps of one size goes with the power p of the size, that of a tolerance with p/(p + 1) of it.
         // The default is beyond the smallest.
         let tolerances = if way.default { Some([0.0; 2]) } else { self.scene().tolerances() };
         let tolerance = tolerances.map(|both| way.factor * both[0].max(both[1]));
-        let (found_by, factor, share) = match tolerance {
-            None => (FoundBy::HalfStep, 0.5, 1.0 / (1.0 - 0.5_f64.powf(order))),
-            Some(tolerance) => {
-                let ratio = 0.1_f64.powf(order / (order + 1.0));
-                match tolerance < SMALLEST {
-                    false => (FoundBy::TenthTolerance, 0.1, 1.0 / (1.0 - ratio)),
-                    true => (FoundBy::TenfoldTolerance, 10.0, ratio / (1.0 - ratio)),
-                }
+        let halved = 1.0 / (1.0 - 0.5_f64.powf(order));
+        // A step that is a tenth of the tolerance long, in terms of one by the tolerance; the error goes with its power p.
+        let shorter = 0.1_f64.powf(1.0 / (order + 1.0));
+        let ratio = shorter.powf(order);
+        let (found_by, factor, largest, share) = match tolerance {
+            None => (FoundBy::HalfStep, 0.5, None, halved),
+            // The limit shortens the steps also where `h_max` or knots chose them.
+            Some(tolerance) if tolerance >= SMALLEST => {
+                let largest = Some(shorter * taken.largest);
+                (FoundBy::TenthTolerance, 0.1, largest, 1.0 / (1.0 - ratio))
             }
+            Some(_) => (FoundBy::TenfoldTolerance, 10.0, None, ratio / (1.0 - ratio)),
         };
-        let other = self.end(Way { factor: factor * way.factor, ..way })?;
-        Some(self.judge(found_by, end, &other, share, clock))
+        let (other, others) = self.end(Way { factor: factor * way.factor, largest, ..way })?;
+        let is_limited = others.steps as f64 > CHOSEN * taken.steps as f64;
+        if found_by == FoundBy::TenfoldTolerance && is_limited {
+            let (other, _) = self.end(Way { largest: Some(0.5 * taken.largest), ..way })?;
+            return Ok(self.judge(FoundBy::HalfStep, end, &other, halved, clock));
+        }
+        Ok(self.judge(found_by, end, &other, share, clock))
     }
 
     /// The distance of two ends, part by part, times a share.
@@ -163,7 +197,7 @@ impl<'a> Check<'a> {
         // A second run does not see what rounding does to both.
         let unseen = match found_by {
             FoundBy::Exact => f64::EPSILON,
-            _ => explained_by_rounding(self.steps, 1.0),
+            _ => explained_by_rounding(self.own.steps, 1.0),
         };
         Accuracy::new(found_by, parts, unseen, clock.elapsed().as_secs_f64())
     }
@@ -186,8 +220,7 @@ impl<'a> Check<'a> {
         let patience = PATIENCE[0].max(PATIENCE[1] * seconds.min(LONG.as_secs_f64()));
         let until = Instant::now() + Duration::from_secs_f64(patience);
         self.deadline.set(Some(until));
-        let way = Way { default: true, factor: 1.0 };
-        let default = self.end(way).and_then(|end| self.error_of(way, &end));
+        let default = self.tried(Way { default: true, ..OWN });
         let is_tried = default.is_some();
         let default = default.filter(|accuracy| accuracy.relative() <= POOR);
         let default = default.map(|accuracy| accuracy.digits_in_words());
@@ -209,12 +242,18 @@ impl<'a> Check<'a> {
                     .into()
             }
             (None, None) => {
-                "No method and no step that was tried is enough: small errors grow fast here. \
-                 Take a shorter t_span, or trust averages only"
+                "The default method, at its least tolerance, is not enough either: small errors grow \
+                 fast here. Take a shorter t_span, or trust averages only"
                     .into()
             }
         };
         Some(format!("{wrong} {advice}."))
+    }
+
+    /// The error of another run, if it can be found.
+    fn tried(&self, way: Way) -> Option<Accuracy> {
+        let (end, taken) = self.end(way).ok()?;
+        self.error_of(way, &end, taken).ok()
     }
 
     /// Smaller steps of the same method that would do, and the digits that they give.
@@ -232,10 +271,7 @@ impl<'a> Check<'a> {
             if longer * seconds > left {
                 break;
             }
-            let way = Way { factor, ..OWN };
-            let Some(accuracy) = self.end(way).and_then(|end| self.error_of(way, &end)) else {
-                break;
-            };
+            let Some(accuracy) = self.tried(Way { factor, ..OWN }) else { break };
             let relative = accuracy.relative();
             if relative <= POOR {
                 let steps = match tolerances {

@@ -29,6 +29,10 @@ const HIGH_ORDER: usize = 4;
 /// # Errors
 /// A run that would take a month and more.
 pub(super) fn foresee(scene: &Scene, model: &dyn Model) -> Result<Option<String>, CliError> {
+    let may_end_early = scene.events.iter().any(|event| event.stop_after.is_some());
+    if may_end_early || !scene.grid.t_span()[1].is_finite() {
+        return Ok(None);
+    }
     match scene.adaptive {
         None => steps_of_one_size(scene, model),
         Some(_) => Ok(chosen_steps(scene, model)),
@@ -36,9 +40,8 @@ pub(super) fn foresee(scene: &Scene, model: &dyn Model) -> Result<Option<String>
 }
 
 fn steps_of_one_size(scene: &Scene, model: &dyn Model) -> Result<Option<String>, CliError> {
-    let (steps, h, [t0, t1]) = (scene.grid.steps(), scene.grid.h(), scene.grid.t_span());
-    let may_end_early = scene.events.iter().any(|event| event.stop_after.is_some());
-    if steps < MANY || !t1.is_finite() || may_end_early {
+    let (steps, h, [t0, _]) = (scene.grid.steps(), scene.grid.h(), scene.grid.t_span());
+    if steps < MANY {
         return Ok(None);
     }
     let mut trial = 100;
@@ -68,10 +71,10 @@ fn steps_of_one_size(scene: &Scene, model: &dyn Model) -> Result<Option<String>,
 fn chosen_steps(scene: &Scene, model: &dyn Model) -> Option<String> {
     let [t0, t1] = scene.grid.t_span();
     let order = model.order(&scene.method).ok()??;
-    if order >= HIGH_ORDER || !t1.is_finite() {
+    if order >= HIGH_ORDER {
         return None;
     }
-    let plan = Plan { max_steps: Some(ATTEMPTS), ..scene.plan_to(t1, 1.0).ok()? };
+    let plan = Plan { max_steps: Some(ATTEMPTS), ..scene.plan_to(t1, 1.0, None).ok()? };
     let tried = model.drive(&scene.method, plan, &mut Rows(&mut |_, _| {}));
     let Err(RunError::TooManySteps { t, .. }) = tried else { return None };
     let limit = scene.max_steps.unwrap_or(LIMIT);

@@ -5,7 +5,7 @@ use lieflow::maps::MAPS;
 use serde::Serialize;
 
 use super::CliError;
-use crate::args::MethodsArgs;
+use crate::args::{MethodsArgs, quoted};
 use crate::output::{print, print_json, table, wrap};
 use lieflow_model::kinds::high_order;
 use lieflow_model::scene::{Scene, suggest};
@@ -153,8 +153,8 @@ const ADVICE: &[Advice] = &[
     },
 ];
 
-/// The recommendations: for a scene, or for all.
-fn advice(scene: Option<&Scene>) -> Result<String, CliError> {
+/// The recommendations: for a scene, which was typed like this, or for all.
+fn advice(scene: Option<&Scene>, typed: &str) -> Result<String, CliError> {
     let model = scene.map(Scene::model).transpose()?;
     let default = scene.map_or_else(high_order, |scene| scene.problem.default_method());
     let mut rows = vec![[
@@ -176,9 +176,8 @@ fn advice(scene: Option<&Scene>) -> Result<String, CliError> {
             first = false;
         }
     }
-    let name = scene.map_or("SCENE", |scene| &scene.name);
     let more = format!(
-        "`lieflow compare {name} --error 1e-8` measures which method is the fastest. No method here is made for \
+        "`lieflow compare {typed} --error 1e-8` measures which method is the fastest. No method here is made for \
          stiff problems: the implicit ones need short steps there too."
     );
     let table = table(["you want", "take", "because"], rows);
@@ -292,5 +291,8 @@ pub fn run(args: &MethodsArgs) -> Result<(), CliError> {
         Some(scene) => format!("Methods for the scene {}\n\n", scene.name),
         None => String::new(),
     };
-    print(&(about + &advice(scene.as_ref())? + &in_words(&listing)))
+    let typed = args.scene.as_ref().map_or("SCENE".into(), |path| {
+        quoted(&path.display().to_string()) + &args.settings.typed()
+    });
+    print(&(about + &advice(scene.as_ref(), &typed)? + &in_words(&listing)))
 }

@@ -2,16 +2,16 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use super::CliError;
-use super::accuracy::{Check, LONG};
+use super::accuracy::{Check, LONG, Taken};
 use super::foresee::foresee;
 use super::stop::{INTERRUPTED, listen};
 use super::told::in_words;
 use super::watch::{Recorder, Watch, quantities};
-use crate::args::{ErrorCheck, RunArgs};
+use crate::args::{ErrorCheck, RunArgs, quoted};
 use crate::output::{self, Accuracy, Drawn, Drift, MethodSummary, RunState, SUMMARY, Summary};
 use lieflow_model::model::Plan;
 use lieflow_model::scene::Scene;
@@ -45,6 +45,10 @@ pub fn run(args: &RunArgs) -> Result<(), CliError> {
     }
     let (mut folders, mut failed) = (Vec::new(), 0);
     for scene in &args.scenes {
+        if stop.load(Ordering::Relaxed) {
+            let message = format!("interrupted before {}", scene.display());
+            return Err(CliError::Stopped { message, code: INTERRUPTED });
+        }
         match run_one(args, scene, &mut folders, &stop) {
             Err(error) if error.exit_code() == INTERRUPTED => return Err(error),
             // The other scenes run all the same.
@@ -85,9 +89,8 @@ fn run_one(
     let options =
         Options { resume: args.resume, no_page: args.no_page, error_check: args.error_check };
     let how = || {
-        let out = args.out.as_ref().map(|out| format!(" --out {}", out.display()));
-        let (set, out) = (args.settings.typed(), out.unwrap_or_default());
-        format!("`lieflow run {}{set}{out} --resume` goes on from there", path.display())
+        let (path, options) = (quoted(&path.display().to_string()), args.options_typed(&folder));
+        format!("`lieflow run {path}{options} --resume` goes on from there")
     };
     let summary = match run_scene(&scene, &folder, options, stop) {
         Err(error @ CliError::Io { .. }) if RunState::is_in(&folder) => {
@@ -154,7 +157,8 @@ pub fn run_scene(
     let summary_path: PathBuf = folder.join(SUMMARY);
     output::remove_old(&summary_path)?;
     let clock = Instant::now();
-    let mut kept = Recorder::new(&watch, folder, &columns, stop)?;
+    let cancel = AtomicBool::new(false);
+    let mut kept = Recorder::new(&watch, folder, &columns, [stop, &cancel])?;
     if resume {
         let schema = model.schema();
         state.replay(|kind, t, numbers| kept.see(kind, t, schema.row(numbers)))?;
@@ -162,7 +166,7 @@ pub fn run_scene(
     let begun_at = kept.rows.ends().map_or(scene.grid.t_span()[0], |[_, (t, _)]| t);
     kept.state = Some(state);
     let plan = Plan {
-        cancel: Some(stop),
+        cancel: Some(&cancel),
         checkpoints: Some(SAVED_EVERY),
         resume: driver,
         ..scene.plan(model.schema())?
@@ -186,6 +190,8 @@ pub fn run_scene(
     }
     done.failure = kept.overflow.take().or(done.failure);
     let completed = done.failure.is_none();
+    // Whatever happens to the second run, the rows of this one are there.
+    kept.flush()?;
     let wall_time_s = clock.elapsed().as_secs_f64();
 
     let rows = &kept.rows;
@@ -194,7 +200,9 @@ pub fn run_scene(
     if let Some((t, row)) = end {
         // Of a run that goes on only a part was timed.
         let share = ((t - begun_at) / (t - scene.grid.t_span()[0])).max(1e-3);
-        let check = Check::new(&watch, rows, (t, done.steps), stop);
+        let largest = done.chosen.as_ref().map_or(scene.grid.h().abs(), |c| c.largest_step);
+        let taken = Taken { steps: done.steps, largest };
+        let check = Check::new(&watch, rows, (t, taken), stop);
         kept.bar.now(1.0, "a second run, to estimate the error");
         accuracy = check_error(&check, scene, error_check, row, wall_time_s / share);
     }
@@ -316,9 +324,9 @@ fn check_error(
             ));
         }
     }
-    let accuracy = check.error(end.numbers());
-    let accuracy =
-        accuracy.ok_or("not known. The second run, by which it is estimated, did not end")?;
+    let accuracy = check.error(end.numbers()).map_err(|why| {
+        format!("not known. The second run, by which it is estimated, did not end: {why}")
+    })?;
     let advise = when != ErrorCheck::Never && scene.error_check;
     let warning = check.warning(&accuracy, advise.then_some(seconds));
     Ok(Some((accuracy, warning)))

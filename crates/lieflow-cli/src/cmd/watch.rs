@@ -188,17 +188,20 @@ pub(super) struct Recorder<'a> {
     pub(super) overflow: Option<String>,
     /// What could not be written: it ends the run.
     pub(super) failure: Option<CliError>,
+    /// What a signal raises.
     stop: &'a AtomicBool,
+    /// What ends this run, and no other.
+    cancel: &'a AtomicBool,
     pub(super) bar: Progress,
 }
 
 impl<'a> Recorder<'a> {
-    /// Files in `folder`, in place of those of earlier runs; what can set `stop` ends the run.
+    /// Files in `folder`, in place of those of earlier runs. `stop` ends all runs, and `cancel` this one.
     pub(super) fn new(
         watch: &'a Watch<'a>,
         folder: &Path,
         columns: &[String],
-        stop: &'a AtomicBool,
+        [stop, cancel]: [&'a AtomicBool; 2],
     ) -> Result<Self, CliError> {
         let events = &watch.scene.events;
         let columns = || core::iter::once("t").chain(columns.iter().map(String::as_str));
@@ -220,6 +223,7 @@ impl<'a> Recorder<'a> {
             bar: Progress::after_a_second(),
             watch,
             stop,
+            cancel,
         })
     }
 
@@ -249,8 +253,8 @@ impl<'a> Recorder<'a> {
         }
     }
 
-    /// Write the lines so far.
-    fn flush(&mut self) -> Result<(), CliError> {
+    /// Writes the lines so far.
+    pub(super) fn flush(&mut self) -> Result<(), CliError> {
         self.trajectory.flush()?;
         self.events.as_mut().map_or(Ok(()), RowFile::flush)
     }
@@ -262,7 +266,7 @@ impl<'a> Recorder<'a> {
     fn keep(&mut self, done: Result<(), CliError>) {
         if let Err(error) = done {
             self.failure.get_or_insert(error);
-            self.stop.store(true, Ordering::Relaxed);
+            self.cancel.store(true, Ordering::Relaxed);
         }
     }
 
@@ -299,6 +303,9 @@ impl Watcher for Recorder<'_> {
     }
 
     fn progress(&mut self, t: f64) {
+        if self.stop.load(Ordering::Relaxed) {
+            self.cancel.store(true, Ordering::Relaxed);
+        }
         let [t0, t1] = self.watch.scene.grid.t_span();
         self.bar.often((t - t0) / (t1 - t0), || format!("t = {t:.6}"));
     }

@@ -152,6 +152,7 @@ const BROKEN: &[(&str, &str, usize, &[&str])] = &[
     ("every = 10", "count = 10\ninterval = 0.1", 16, &["`count` and `interval`", "exactly one"]),
     ("every = 10", "count = 0", 15, &["found 0", "at least 1"]),
     ("every = 10", "interval = 0", 15, &["interval = 0", "> 0"]),
+    ("every = 10", "interval = 1e-300", 15, &["interval = 1e-300", "times that differ"]),
     ("every = 10", "every = 2\ntimes = [1]", 16, &["`every` and `times`", "exactly one"]),
     ("every = 10", "times = [0.5, 0.5]", 15, &["times[2] = 0.5", "in order"]),
     ("every = 10", "times = [0.5, 2.5]", 15, &["times[2] = 2.5", "within [0, 2]"]),
@@ -380,6 +381,8 @@ fn other_spellings_run() {
     let text = SCENE.replace("rigid-body", "Rigid_Body").replace("rkmk4", "RKMK4");
     let text = text.replace("\"exp\"", "\"Exp\"").replace("\"energy\"", "\"Energy\"");
     assert_eq!(result(&text), expected);
+    let plotted = SCENE.replace("[output]", "[output]\nplot = [\"Energy\"]");
+    assert_eq!(result(&plotted), expected);
 
     let scene = |group: &str| {
         format!(
@@ -395,6 +398,18 @@ fn other_spellings_run() {
     let message = folder.lieflow(&["run", "scene.toml"]).refused();
     assert!(message.contains("scene.toml:4:"), "{message}");
     assert!(message.contains("found 2 rows, expected 4 for so(4)"), "{message}");
+}
+
+/// Steps that end at the elements of a beam line are as many as these.
+#[test]
+fn a_span_with_too_many_knots_is_refused() {
+    let folder = Folder::new();
+    let long = ["run", "fodo-cell", "--out", "out", "--set", "time.t_span=[0, 1e10]", "--set"];
+    for set in ["time.at_knots=true", "time.dt="] {
+        let message = folder.lieflow(&[&long[..], &[set]].concat()).refused();
+        assert!(message.contains("more than 1000000 times in t_span"), "{message}");
+    }
+    folder.lieflow(&[&long[..], &["time.dt=1e6"]].concat()).ok();
 }
 
 #[test]

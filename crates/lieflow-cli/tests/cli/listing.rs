@@ -147,6 +147,14 @@ fn methods_are_recommended_before_they_are_listed() {
             .split_whitespace()
             .eq("name order it keeps a step costs".split(' '))
     );
+    // The hint is the scene as it was typed.
+    let folder = Folder::new();
+    folder.write("my top.toml", BUNDLED[0].text);
+    let told = folder.lieflow(&["methods", "--for", "my top.toml", "--set", "title=Top"]).ok();
+    assert!(
+        told.contains("`lieflow compare 'my top.toml' --set title=Top --error 1e-8`"),
+        "{told}"
+    );
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Runs that are killed, interrupted or cannot write: what they leave is whole, and they go on to the same bits.
 
 use std::fs;
-use std::process::{Command, Stdio};
+use std::process::{Child, Command, Stdio};
 use std::sync::LazyLock;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
@@ -67,6 +67,27 @@ fn check_lines(folder: &Folder, name: &str, reference: &str) {
     }
 }
 
+/// A run in the background.
+fn started(folder: &Folder, args: &[&str]) -> Child {
+    let mut command = folder.command(args);
+    command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
+}
+
+/// Waits until it is so, while the run goes on.
+fn until(run: &mut Child, is_so: impl Fn() -> bool) {
+    while !is_so() {
+        assert!(run.try_wait().unwrap().is_none(), "the run has ended");
+        sleep(Duration::from_millis(1));
+    }
+}
+
+/// Stops the run as Ctrl-C does.
+fn interrupt(run: Child) -> Run {
+    let kill = Command::new("kill").args(["-INT", &run.id().to_string()]).status().unwrap();
+    assert!(kill.success());
+    Run::from(run.wait_with_output().unwrap())
+}
+
 /// Kill a run at some moment, see what it left, go on with it, kill that now and then, and go on to the end.
 fn kill_and_go_on(random: &mut Pcg64) {
     let Reference { results: expected, took } = &*REFERENCE;
@@ -116,14 +137,10 @@ fn an_interrupted_run_says_how_to_go_on() {
     let folder = Folder::new();
     folder.write("scene.toml", &scene("2500.0"));
     let args = ["run", "scene.toml", "--out", "out"];
-    let run = folder.command(&args).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-    while !folder.path().join("out/trajectory.partial.csv").exists() {
-        sleep(Duration::from_millis(1));
-    }
+    let mut run = started(&folder, &args);
+    until(&mut run, || folder.path().join("out/trajectory.partial.csv").exists());
     sleep(REFERENCE.took.mul_f64(0.1));
-    let kill = Command::new("kill").args(["-INT", &run.id().to_string()]).status().unwrap();
-    assert!(kill.success());
-    let message = Run::from(run.wait_with_output().unwrap()).failed(130);
+    let message = interrupt(run).failed(130);
     assert!(message.contains("error: interrupted at t = "), "{message}");
     assert!(message.contains("`lieflow run scene.toml --out out --resume`"), "{message}");
     let summary = folder.json("out/summary.json");
@@ -156,6 +173,52 @@ fn an_interrupted_run_says_how_to_go_on() {
     assert!(message.contains("no interrupted run"), "{message}");
 }
 
+/// What is typed again has the scene, the settings and the options of the call, and the folder of this scene.
+#[test]
+fn the_hint_to_go_on_repeats_the_call() {
+    let took = REFERENCE.took;
+    let folder = Folder::new();
+    folder.write("a first.toml", &scene("0.1"));
+    folder.write("second.toml", &scene("2500.0"));
+    let args = ["run", "a first.toml", "second.toml", "--out", "both", "--no-page"];
+    let more = ["--error-check", "never", "--set", "title=\"It's long\""];
+    let mut run = started(&folder, &[&args[..], &more].concat());
+    until(&mut run, || folder.path().join("both/second/trajectory.partial.csv").exists());
+    sleep(took.mul_f64(0.1));
+    let run = interrupt(run);
+    assert_eq!(run.code, Some(130), "{run:?}");
+    let hint = "lieflow run second.toml --set 'title=\"It'\\''s long\"' --out both/second --no-page \
+                --error-check never --resume";
+    assert!(run.err.contains(&format!("`{hint}`")), "{run:?}");
+    // It is typed in a shell, and does what it says.
+    let typed = hint.replace("lieflow run", &format!("{} run", env!("CARGO_BIN_EXE_lieflow")));
+    let output = Command::new("sh").args(["-c", &typed]).current_dir(folder.path()).output();
+    assert!(Run::from(output.unwrap()).ok().starts_with("It's long: "));
+    assert_eq!(folder.names("both/second"), ["events.csv", "summary.json", "trajectory.csv"]);
+}
+
+/// The run is complete when the second one begins: what is lost is the estimate of its error.
+#[test]
+fn a_second_run_is_interrupted() {
+    let folder = Folder::new();
+    let driven = scene("250.0").replace("rigid-body", "driven-body");
+    let driven =
+        driven.replace("layer = \"general\"", "").replace("[method]", "damping = 1e-6\n[method]");
+    folder.write("scene.toml", &driven);
+    let args = ["run", "scene.toml", "scene.toml", "--out", "out", "--error-check", "always"];
+    let mut run = started(&folder, &args);
+    let rows = folder.path().join("out/scene/trajectory.partial.csv");
+    let written = || fs::read_to_string(&rows).unwrap_or_default().lines().count();
+    until(&mut run, || written() == 5002);
+    let run = interrupt(run);
+    assert_eq!(run.code, Some(130), "{run:?}");
+    assert!(run.out.contains("did not end: it was stopped"), "{run:?}");
+    assert!(run.err.contains("interrupted before scene.toml"), "{run:?}");
+    let summary = folder.json("out/scene/summary.json");
+    assert_eq!((&summary["completed"], &summary["accuracy"]), (&true.into(), &Value::Null));
+    assert_eq!(folder.data("out/scene"), ["events.csv", "summary.json", "trajectory.csv"]);
+}
+
 #[test]
 fn a_damaged_state_is_refused() {
     let folder = Folder::new();
@@ -163,13 +226,9 @@ fn a_damaged_state_is_refused() {
     let expected = &REFERENCE.results;
     let args = ["run", "scene.toml", "--out", "out", "--resume"];
     let mut child = folder.command(&args[..4]).stdout(Stdio::null()).spawn().unwrap();
-    while folder.names("out").iter().all(|name| name != "run.rows") {
-        sleep(Duration::from_millis(1));
-    }
+    until(&mut child, || folder.names("out").iter().any(|name| name == "run.rows"));
     // Until a state with rows is there.
-    while fs::read(folder.path().join("out/run.state")).unwrap().len() <= 56 {
-        sleep(Duration::from_millis(1));
-    }
+    until(&mut child, || fs::read(folder.path().join("out/run.state")).unwrap().len() > 56);
     child.kill().unwrap();
     child.wait().unwrap();
     for (file, at) in [("run.state", 3), ("run.state", 100), ("run.rows", 100)] {

@@ -96,6 +96,11 @@ fn an_estimated_error_is_that_against_the_exact_motion() {
         ("name = \"rkmk\"\ntableau = \"heun\"", "dt = 0.01"),
         ("name = \"rkmk\"\ntableau = \"dopri5\"", "rtol = 1e-8"),
         ("name = \"rkmk\"\ntableau = \"dop853\"", "rtol = 1e-9"),
+        // A limit chose the steps, or the first of them.
+        ("name = \"rkmk\"\ntableau = \"bs3\"", "rtol = 1e-2\nh_init = 0.5\nh_max = 0.5"),
+        ("name = \"rkmk\"\ntableau = \"dopri5\"", "rtol = 1e-3\nh_max = 0.1"),
+        ("name = \"rkmk\"\ntableau = \"dopri5\"", "rtol = 1e-6\nh_init = 1e-3\nmax_steps = 66"),
+        ("name = \"rkmk\"\ntableau = \"dop853\"", "rtol = 5e-14\nh_max = 0.01"),
         ("", ""),
     ] {
         let error = |problem: &str, name: &str| {
@@ -117,6 +122,7 @@ fn an_estimated_error_is_that_against_the_exact_motion() {
         assert_eq!(by, "exact");
         let expected = match time {
             "" => "tenfold-tolerance",
+            smallest if smallest.starts_with("rtol = 5e-14") => "half-step",
             tolerance if tolerance.starts_with("rtol") => "tenth-tolerance",
             _ => "half-step",
         };
@@ -163,7 +169,10 @@ fn a_run_that_is_wrong_warns_and_what_it_advises_does() {
     // A chaotic motion: no step does.
     let lorenz = ["run", "lorenz", "--out", "out", "--no-page", "--set", "time.t_span=[0, 40]"];
     let told = folder.lieflow(&lorenz).ok();
-    assert!(told.contains("No method and no step that was tried is enough"), "{told}");
+    assert!(
+        told.contains("The default method, at its least tolerance, is not enough either"),
+        "{told}"
+    );
     // A tolerance that is too large.
     let set = ["--set", "method.tableau=dopri5", "--set", "method.name=rkmk", "--set", "time.dt="];
     let loose = ["run", "cubesat.toml", "--out", "out", "--set", "time.rtol=1e-4"];
@@ -344,6 +353,14 @@ fn a_run_of_years_is_refused_with_the_time_that_it_would_take() {
     ] {
         assert!(run.err.contains(what), "{}", run.err);
     }
+    // An event may end the run earlier.
+    let stops = SCENE.replace(
+        "[output]",
+        "[[events]]\nname = \"turn\"\nwhen = \"m2\"\nstop_after = 1\n[output]",
+    );
+    folder.write("scene.toml", &stops);
+    let run = folder.lieflow(&[&["run", "scene.toml"][..], &slow, &limit].concat());
+    assert!(!run.err.contains("note: "), "{}", run.err);
 }
 
 #[test]

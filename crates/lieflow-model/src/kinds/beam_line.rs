@@ -8,6 +8,7 @@ use lieflow::groups::{AlgebraMatrix, MatrixGroup};
 use lieflow::problems::Flow;
 use lieflow::problems::beam::{Element, transfer_map, tunes};
 
+use super::KNOTS_MAX;
 use super::entries::{row_columns, rows, symplectic_defect};
 use super::flow::OnMatrices;
 use super::matrix::MatrixAction;
@@ -200,11 +201,13 @@ impl System for BeamLine {
         } else {
             0.0..0.0
         };
-        let starts =
-            (0_u32..).map(|i| cells.start + f64::from(i)).take_while(|cell| *cell < cells.end);
+        let starts = (0..=KNOTS_MAX as u32)
+            .map(|i| cells.start + f64::from(i))
+            .take_while(|cell| *cell < cells.end);
         let ends =
             starts.flat_map(|cell| self.strengths.iter().map(move |(end, _)| cell * length + end));
-        Some(ends.filter(|s| from < *s && *s < to).collect())
+        // One more than a scene may have, which refuses it.
+        Some(ends.filter(|s| from < *s && *s < to).take(KNOTS_MAX + 1).collect())
     }
     fn exact(&self, [s0, s1]: [f64; 2]) -> Option<Result<Mat<f64>, Error>> {
         let both = self.map_to(s0).and_then(|to_start| Ok((to_start, self.map_to(s1)?)));

@@ -213,6 +213,9 @@ impl Figure {
     }
 }
 
+/// A run has at most so many times at which a step must end.
+pub(crate) const KNOTS_MAX: usize = 1_000_000;
+
 /// The method for any problem that names none: of order 8, with a pair, and on the group.
 pub fn high_order() -> MethodSpec {
     MethodSpec { tableau: Some("dop853".into()), ..MethodSpec::new("rkmk", None) }

@@ -206,13 +206,15 @@ impl TimeKeys {
         [&self.rtol, &self.atol].map(|x| x.as_ref().map_or(left, |x| x.0))
     }
 
-    /// Limits of steps, and the tolerances times a factor.
+    /// Limits of steps, and the tolerances times a factor. With another factor than 1 the first step is chosen, and ten
+    /// times as many steps may be taken.
     pub(super) fn control(&self, factor: f64) -> Result<StepControl, Error> {
         let [rtol, atol] = self.tolerances().map(|tolerance| factor * tolerance);
         let per_length = self.tolerance.as_deref() == Some(PER_LENGTH);
         let rule = if per_length { Rule::PerLength } else { Rule::PerStep };
         let mut control = StepControl::new(rtol, atol)?.rule(rule);
-        if let Some(h) = self.h_init {
+        let is_own = factor == 1.0;
+        if let Some(h) = self.h_init.filter(|_| is_own) {
             control = control.first_step(h.0)?;
         }
         if let Some(h) = self.h_max {
@@ -222,7 +224,7 @@ impl TimeKeys {
             control = control.min_step(h.0)?;
         }
         if let Some(n) = self.max_steps {
-            control = control.max_steps(n.0)?;
+            control = control.max_steps(if is_own { n.0 } else { n.0.saturating_mul(10) })?;
         }
         Ok(control)
     }
@@ -266,9 +268,9 @@ impl OutputKeys {
         self.times.is_some() || self.count.is_some() || self.interval.is_some()
     }
 
-    /// Spell the quantities as the kind does.
+    /// Spells the quantities as the kind does.
     pub(super) fn spell(&mut self, kind: &Kind) {
-        for name in self.quantities.iter_mut().flatten() {
+        for name in self.quantities.iter_mut().flatten().chain(&mut self.plot) {
             if let Ok(known) = kind.quantity(name) {
                 *name = known.name.into();
             }

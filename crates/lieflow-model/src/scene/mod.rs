@@ -34,7 +34,7 @@ use self::columns::{Columns, FORMULAS, RowFormula, check_plot, with_formulas};
 use self::document::{Document, read_beside, table};
 use self::error::Mistakes;
 use self::keys::{MethodKeys, Output, OutputKeys, TimeKeys, with_defaults};
-use crate::kinds::{FormulaKeys, KINDS, Kind, ProblemSpec, SAMPLES};
+use crate::kinds::{FormulaKeys, KINDS, KNOTS_MAX, Kind, ProblemSpec, SAMPLES};
 use crate::model::{Layer, Model, Plan, Steps};
 use crate::schema::Schema;
 
@@ -223,6 +223,13 @@ impl Scene {
             plot,
             fingerprint,
         };
+        if scene.knots(scene.grid.t_span()).len() > KNOTS_MAX {
+            let message = format!(
+                "a step has to end at more than {KNOTS_MAX} times in t_span, expected a shorter span \
+                 or `at_knots = false`"
+            );
+            return Err(document.refusal("time", Refusal::at("t_span", message)));
+        }
         let model = scene.model_with(scene.layer, &scene.computed());
         let model = model.map_err(|error| document.refusal("problem", error.into()))?;
         model.fits(&scene.method).map_err(|error| {
@@ -256,14 +263,23 @@ impl Scene {
     }
 
     /// A run to time t that shows its ends and sees no events, with the step size or the tolerances times a factor.
+    /// Steps that are chosen by their error are at most `largest` long.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] for a factor that makes a step or a tolerance too small.
-    pub fn plan_to(&self, t: f64, factor: f64) -> Result<Plan<'static>, Error> {
+    pub fn plan_to(
+        &self,
+        t: f64,
+        factor: f64,
+        largest: Option<f64>,
+    ) -> Result<Plan<'static>, Error> {
         let t_span = [self.grid.t_span()[0], t];
         let steps = match self.adaptive {
             None => Steps::Equal(TimeGrid::new(t_span, factor * self.grid.h().abs())?),
-            Some(_) => Steps::ByError { t_span, control: self.time.control(factor)? },
+            Some(_) => {
+                let control = limited(self.time.control(factor)?, largest)?;
+                Steps::ByError { t_span, control }
+            }
         };
         Ok(Plan { stops: self.knots(t_span), ..Plan::new(steps, SaveAt::Ends) })
     }
@@ -282,11 +298,12 @@ impl Scene {
         &self,
         t: f64,
         factor: f64,
+        largest: Option<f64>,
         order: Option<usize>,
     ) -> Result<Plan<'static>, Error> {
         let t_span = [self.grid.t_span()[0], t];
         let tolerance = factor * defaults::tolerance(order);
-        let control = StepControl::new(tolerance, tolerance)?;
+        let control = limited(StepControl::new(tolerance, tolerance)?, largest)?;
         let stops = self.problem.knots(t_span).unwrap_or_default();
         Ok(Plan { stops, ..Plan::new(Steps::ByError { t_span, control }, SaveAt::Ends) })
     }
@@ -554,4 +571,9 @@ fn covered(problem: &dyn ProblemSpec, [t0, t1]: [f64; 2]) -> Result<(), Refusal>
         let spans = format!("[{t0}, {t1}], and the samples span {first} to {last}");
         Refusal::at("t_span", format!("t_span = {spans}"))
     })
+}
+
+/// The control with a limit of the steps.
+fn limited(control: StepControl, largest: Option<f64>) -> Result<StepControl, Error> {
+    largest.map_or(Ok(control.clone()), |h| control.max_step(h))
 }
