@@ -2,14 +2,15 @@
 //!
 //! [`AnyMethod`] is a [`Method`] and an [`Embedded`] for one type of problem. With it drivers, step doubling and
 //! counting are compiled once for each problem type, not once for each method. Many equal steps are one call through a
-//! pointer ([`Method::steps`]), and the loop over them is compiled with the method inside.
+//! pointer ([`Method::steps`]), and the loop over them is compiled with the method inside. A single step is the same loop,
+//! taken once.
 
 use core::fmt;
 use core::marker::PhantomData;
 use std::sync::Arc;
 
 use super::doubling::{doubled as step_doubled, within_halves};
-use super::{Embedded, EqualSteps, MapCounts, Method, Metric, Step};
+use super::{Embedded, EqualSteps, MapCounts, Method, Metric, Step, take_steps};
 use crate::error::{Error, StepError};
 use crate::problems::{PointOf, Problem, ScalarOf};
 use crate::tolerance::Tolerance;
@@ -70,18 +71,20 @@ trait Inner<'p, P: Problem> {
     fn stepper(&self, problem: &P, like: &PointOf<P>) -> Result<Box<dyn Stepper<P> + 'p>, Error>;
 }
 
+/// One step, or steps of one size.
+#[derive(Clone, Copy)]
+enum Steps<S> {
+    One(Step<S>),
+    Equal(EqualSteps),
+}
+
 /// A method with its workspace behind the pointer.
 trait Stepper<P: Problem> {
-    fn step(
+    /// Takes one step or many. An error has the number of the step that failed.
+    fn take(
         &mut self,
         problem: &P,
-        step: Step<ScalarOf<P>>,
-        y: &mut PointOf<P>,
-    ) -> Result<(), StepError>;
-    fn steps(
-        &mut self,
-        problem: &P,
-        steps: EqualSteps,
+        steps: Steps<ScalarOf<P>>,
         y: &mut PointOf<P>,
     ) -> Result<(), (u64, StepError)>;
     fn step_with_error(
@@ -109,6 +112,17 @@ trait Stepper<P: Problem> {
         from: &PointOf<P>,
         at: &mut PointOf<P>,
     ) -> Result<(), StepError>;
+}
+
+impl<P: Problem> dyn Stepper<P> + '_ {
+    fn step(
+        &mut self,
+        problem: &P,
+        step: Step<ScalarOf<P>>,
+        y: &mut PointOf<P>,
+    ) -> Result<(), StepError> {
+        self.take(problem, Steps::One(step), y).map_err(|(_, error)| error)
+    }
 }
 
 /// The source of the error estimate of a method.
@@ -221,21 +235,21 @@ struct MethodWithWork<P: Problem, M: Method<P>, E> {
 }
 
 impl<P: Problem, M: Method<P>, E: Estimate<P, M>> Stepper<P> for MethodWithWork<P, M, E> {
-    fn step(
+    fn take(
         &mut self,
         problem: &P,
-        step: Step<ScalarOf<P>>,
-        y: &mut PointOf<P>,
-    ) -> Result<(), StepError> {
-        self.method.step(problem, step, y, &mut self.work)
-    }
-    fn steps(
-        &mut self,
-        problem: &P,
-        steps: EqualSteps,
+        steps: Steps<ScalarOf<P>>,
         y: &mut PointOf<P>,
     ) -> Result<(), (u64, StepError)> {
-        self.method.steps(problem, steps, y, &mut self.work)
+        let numbers = match steps {
+            Steps::One(step) => (step.n, 1),
+            Steps::Equal(steps) => steps.numbers(),
+        };
+        let step = |n| match steps {
+            Steps::One(step) => step,
+            Steps::Equal(steps) => steps.step(n),
+        };
+        take_steps(&self.method, problem, numbers, step, y, &mut self.work)
     }
     fn step_with_error(
         &mut self,
@@ -376,7 +390,7 @@ where
         work: &mut Self::Work,
     ) -> Result<(), (u64, StepError)> {
         work.doubled = false;
-        work.stepper.steps(problem, steps, y)
+        work.stepper.take(problem, Steps::Equal(steps), y)
     }
 }
 

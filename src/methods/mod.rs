@@ -106,6 +106,11 @@ impl EqualSteps {
     pub fn step<S: Real>(&self, n: u64) -> Step<S> {
         Step { n, t: S::lit(self.t0 + n as f64 * self.h), h: S::lit(self.h) }
     }
+
+    /// The number of the first step, and how many they are.
+    fn numbers(&self) -> (u64, u64) {
+        (self.first, self.end.saturating_sub(self.first))
+    }
 }
 
 /// The numbers of maps and brackets in a step.
@@ -260,16 +265,28 @@ pub trait Method<P: Problem> {
         y: &mut PointOf<P>,
         work: &mut Self::Work,
     ) -> Result<(), (u64, StepError)> {
-        let mut n = steps.first;
-        while n < steps.end {
-            if let Err(error) = self.step(problem, steps.step(n), y, work) {
-                return Err((n, error));
-            }
-            if !problem.action().is_finite(problem.group(), y) {
-                return Err((n, StepError::NotFinite { what: "the state" }));
-            }
-            n += 1;
-        }
-        Ok(())
+        take_steps(self, problem, steps.numbers(), |n| steps.step(n), y, work)
     }
+}
+
+/// Takes so many steps from this number on, as [`Method::steps`] does.
+#[inline(always)]
+fn take_steps<P: Problem, M: Method<P> + ?Sized>(
+    method: &M,
+    problem: &P,
+    (first, count): (u64, u64),
+    step: impl Fn(u64) -> Step<ScalarOf<P>>,
+    y: &mut PointOf<P>,
+    work: &mut M::Work,
+) -> Result<(), (u64, StepError)> {
+    for i in 0..count {
+        let n = first.wrapping_add(i);
+        if let Err(error) = method.step(problem, step(n), y, work) {
+            return Err((n, error));
+        }
+        if !problem.action().is_finite(problem.group(), y) {
+            return Err((n, StepError::NotFinite { what: "the state" }));
+        }
+    }
+    Ok(())
 }

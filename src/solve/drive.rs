@@ -34,10 +34,16 @@ pub(super) struct Checkpoints<'a, P: Problem> {
 /// A stored step: the time up to which it is valid, the step, and its start.
 pub(super) type Kept<Y> = (f64, Step<f64>, Y);
 
+/// The function that sees the points of the output.
+pub(super) type Observe<'k, Y> = dyn FnMut(f64, &mut Y) -> Next + 'k;
+
 /// A run under way.
-pub(super) struct Drive<'a, 'k, P: Problem, M: Method<P>, O> {
+///
+/// It is compiled once for each problem and method: the observer is behind a reference, and searches and sorts are
+/// functions of numbers.
+pub(super) struct Drive<'a, 'k, P: Problem, M: Method<P>> {
     pub(super) run: Integrator<'a, P, M>,
-    observe: O,
+    observe: &'k mut Observe<'k, PointOf<P>>,
     pub(super) events: Events<'a, P>,
     pub(super) save: SaveAt,
     /// The start of the run.
@@ -64,13 +70,13 @@ pub(super) struct Drive<'a, 'k, P: Problem, M: Method<P>, O> {
 /// Whether and why a run ends.
 type Ended = Result<Option<Status>, RunError>;
 
-impl<'a, 'k, P, M, O> Drive<'a, 'k, P, M, O>
-where
-    P: Problem,
-    M: Method<P>,
-    O: FnMut(f64, &mut PointOf<P>) -> Next,
-{
-    pub(super) fn new(solve: Solve<'a, P, M>, run: Integrator<'a, P, M>, observe: O) -> Self {
+impl<'a, 'k, P: Problem, M: Method<P>> Drive<'a, 'k, P, M> {
+    pub(super) fn new(
+        solve: Solve<'a, P, M>,
+        run: Integrator<'a, P, M>,
+        kept: Option<&'k mut Vec<Kept<PointOf<P>>>>,
+        observe: &'k mut Observe<'k, PointOf<P>>,
+    ) -> Self {
         let Solve {
             save,
             times_by_steps,
@@ -101,15 +107,10 @@ where
             checkpoints,
             resume,
             watch,
-            kept: None,
+            kept,
             observe,
             run,
         }
-    }
-
-    /// The stored steps.
-    pub(super) fn keep(&mut self, kept: &'k mut Vec<Kept<PointOf<P>>>) {
-        self.kept = Some(kept);
     }
 
     pub(super) fn run(mut self) -> Result<Solution<PointOf<P>>, Interrupted<PointOf<P>>> {

@@ -155,6 +155,13 @@ impl<'a, Y> Event<'a, Y> {
         &self.name
     }
 
+    /// The search for zeros in a step at whose end g is `last`.
+    #[inline(always)]
+    fn search(&self, span: [f64; 2], last: f64, first_step: bool) -> Search {
+        let Event { direction, points, seen, .. } = *self;
+        Search { direction, points, seen, first_step, span, last }
+    }
+
     fn value(&mut self, t: f64, y: &Y) -> Result<f64, RunError> {
         let value = (self.g)(t, y);
         match value.is_finite() {
@@ -241,63 +248,119 @@ impl<'a, P: Problem> Events<'a, P> {
     ) -> Result<(), RunError> {
         self.found.clear();
         let (start, end) = (run.last.t, run.t);
-        let size = (end - start).abs();
-        for (index, event) in self.all.iter_mut().enumerate() {
-            let at = &mut self.at;
+        let Events { all, found, at } = self;
+        for (index, event) in all.iter_mut().enumerate() {
             let last = event.value(end, run.y())?;
-            let mut left = (start, event.seen.value);
-            if event.seen.anew {
-                let t = start + A_LITTLE_LATER * (end - start);
+            let search = event.search([start, end], last, first_step);
+            if search.is_idle() {
+                event.seen = search.seen_at_end();
+                continue;
+            }
+            let mut g = |t: f64| {
                 run.at(t, at)?;
-                let value = event.value(t, at)?;
-                // A zero at the very start of the run, and its direction.
-                if first_step && left.1 == 0.0 && value != 0.0 && event.direction.has(value > 0.0) {
-                    self.found.push(Zero { t: start, event: index, rising: value > 0.0 });
-                }
-                left = (t, value);
-            }
-            let points = match (event.points, event.seen.before) {
-                (Some(points), _) => points,
-                (None, None) => POINTS,
-                (None, Some([before, length])) => {
-                    let slope = (event.seen.value - before) / length;
-                    let bend = ((last - event.seen.value) / size - slope).abs() * size;
-                    let near = left.1.abs().min(last.abs());
-                    if near <= 2.0 * bend { POINTS } else { 0 }
-                }
+                event.value(t, at)
             };
-            let whole = end - left.0;
-            let begin = left.0;
-            for i in 1..=points + 1 {
-                let right = if i > points {
-                    (end, last)
-                } else {
-                    let t = begin + whole * f64::from(i) / f64::from(points + 1);
-                    if t == left.0 || t == end {
-                        continue;
-                    }
-                    run.at(t, at)?;
-                    (t, event.value(t, at)?)
-                };
-                if let Some(rising) = passes(left.1, right.1)
-                    && event.direction.has(rising)
-                {
-                    let t = zero(left, right, |t| {
-                        run.at(t, at)?;
-                        event.value(t, at)
-                    })?;
-                    self.found.push(Zero { t, event: index, rising });
-                }
-                left = right;
-            }
-            event.seen = Seen { value: last, before: Some([event.seen.value, size]), anew: false };
+            let zeros = &mut |t, rising| found.push(Zero { t, event: index, rising });
+            event.seen = search.zeros(&mut g, zeros)?;
         }
-        let forward = if end >= start { 1.0 } else { -1.0 };
-        self.found.sort_unstable_by(|a, b| {
-            (forward * a.t).total_cmp(&(forward * b.t)).then(a.event.cmp(&b.event))
-        });
+        sort(found, end >= start);
         Ok(())
     }
+}
+
+/// The search for the zeros of one event in a step. It knows numbers only, so it is compiled once.
+struct Search {
+    direction: Direction,
+    points: Option<u32>,
+    seen: Seen,
+    /// Is it the first step of the run?
+    first_step: bool,
+    /// The start and the end of the step.
+    span: [f64; 2],
+    /// g at the end.
+    last: f64,
+}
+
+impl Search {
+    /// True if the ends of the step tell that there is no zero.
+    #[inline]
+    fn is_idle(&self) -> bool {
+        let Seen { value, anew, .. } = self.seen;
+        !anew && self.points(value) == 0 && passes(value, self.last).is_none()
+    }
+
+    /// The number of points within the step where g is evaluated, if g is `first` at its start.
+    #[inline]
+    fn points(&self, first: f64) -> u32 {
+        let Search { seen, span: [start, end], last, .. } = *self;
+        match (self.points, seen.before) {
+            (Some(points), _) => points,
+            (None, None) => POINTS,
+            (None, Some([before, length])) => {
+                let size = (end - start).abs();
+                let slope = (seen.value - before) / length;
+                let bend = ((last - seen.value) / size - slope).abs() * size;
+                let near = first.abs().min(last.abs());
+                if near <= 2.0 * bend { POINTS } else { 0 }
+            }
+        }
+    }
+
+    /// What is known of g at the end of the step.
+    #[inline]
+    fn seen_at_end(&self) -> Seen {
+        let [start, end] = self.span;
+        let before = Some([self.seen.value, (end - start).abs()]);
+        Seen { value: self.last, before, anew: false }
+    }
+
+    /// Calls `found` with t and the direction of each zero. Returns what is known at the end of the step.
+    #[inline(never)]
+    fn zeros(
+        &self,
+        g: &mut dyn FnMut(f64) -> Result<f64, RunError>,
+        found: &mut dyn FnMut(f64, bool),
+    ) -> Result<Seen, RunError> {
+        let Search { seen, span: [start, end], last, .. } = *self;
+        let mut left = (start, seen.value);
+        if seen.anew {
+            let t = start + A_LITTLE_LATER * (end - start);
+            let value = g(t)?;
+            // A zero at the very start of the run, and its direction.
+            if self.first_step && left.1 == 0.0 && value != 0.0 && self.direction.has(value > 0.0) {
+                found(start, value > 0.0);
+            }
+            left = (t, value);
+        }
+        let points = self.points(left.1);
+        let begin = left.0;
+        let whole = end - begin;
+        for i in 0..=points {
+            let right = if i == points {
+                (end, last)
+            } else {
+                let t = begin + whole * (f64::from(i) + 1.0) / (f64::from(points) + 1.0);
+                if t == left.0 || t == end {
+                    continue;
+                }
+                (t, g(t)?)
+            };
+            if let Some(rising) = passes(left.1, right.1)
+                && self.direction.has(rising)
+            {
+                found(zero(left, right, g)?, rising);
+            }
+            left = right;
+        }
+        Ok(self.seen_at_end())
+    }
+}
+
+/// Sorts zeros by time in the direction of the run; those at one time by the number of their event.
+fn sort(zeros: &mut [Zero], forward: bool) {
+    let sign = if forward { 1.0 } else { -1.0 };
+    zeros
+        .sort_unstable_by(|a, b| (sign * a.t).total_cmp(&(sign * b.t)).then(a.event.cmp(&b.event)));
 }
 
 /// The zero between two points of opposite sign, to rounding of t: the end of the last bracket where g has the sign
@@ -305,7 +368,7 @@ impl<'a, P: Problem> Events<'a, P> {
 fn zero(
     a: (f64, f64),
     b: (f64, f64),
-    mut g: impl FnMut(f64) -> Result<f64, RunError>,
+    g: &mut dyn FnMut(f64) -> Result<f64, RunError>,
 ) -> Result<f64, RunError> {
     // The bracket is (near, far); `old` is the point before.
     let ((mut near, mut far), mut s) = ((b, a), 0.5);

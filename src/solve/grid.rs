@@ -159,6 +159,18 @@ pub enum SaveAt {
 }
 
 impl SaveAt {
+    /// This number of equal intervals over a span.
+    pub(super) fn count(intervals: u64, [t0, t1]: [f64; 2]) -> Result<Self, Error> {
+        if intervals == 0 || !t1.is_finite() {
+            let expected = "at least 1, over a span with an end";
+            return Err(Error::out_of_range("count", intervals as f64, expected));
+        }
+        Ok(match t0 == t1 {
+            true => SaveAt::Ends,
+            false => SaveAt::Interval((t1 - t0).abs() / intervals as f64),
+        })
+    }
+
     /// True if the start is shown.
     pub(super) fn start(&self, t0: f64) -> bool {
         match self {
@@ -225,4 +237,20 @@ impl SaveAt {
             }
         }
     }
+}
+
+/// Keeps the stops within a span, in the order of the run.
+///
+/// # Errors
+/// [`Error::OutOfRange`] for a stop that is not a number.
+pub(super) fn in_order(stops: &mut Vec<f64>, [t0, t1]: [f64; 2]) -> Result<(), Error> {
+    if let Some(i) = stops.iter().position(|t| t.is_nan()) {
+        return Err(Error::out_of_range(format!("stops[{i}]"), f64::NAN, "a number"));
+    }
+    stops.retain(|t| t0.min(t1) < *t && *t < t0.max(t1));
+    stops.sort_by(f64::total_cmp);
+    if t1 < t0 {
+        stops.reverse();
+    }
+    Ok(())
 }

@@ -43,7 +43,7 @@ use crate::methods::{Embedded, Method};
 use crate::problems::{Invariants, PointOf, Problem, ScalarOf};
 use crate::space::Numbers;
 use crate::tolerance::Rule;
-use drive::{Checkpoints, Drive, Watch};
+use drive::{Checkpoints, Drive, Kept, Observe, Watch};
 use integrator::{Estimator, Pace};
 use save::Listing;
 
@@ -298,20 +298,10 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
             return Err(error);
         }
         if let Some(count) = self.count {
-            let [t0, t1] = self.t_span;
-            if count == 0 || !t1.is_finite() {
-                let expected = "at least 1, over a span with an end";
-                return Err(Error::out_of_range("count", count as f64, expected));
-            }
-            self.save = match t0 == t1 {
-                true => SaveAt::Ends,
-                false => SaveAt::Interval((t1 - t0).abs() / count as f64),
-            };
+            self.save = SaveAt::count(count, self.t_span)?;
         }
         self.save.check(self.t_span)?;
-        if let Some(i) = self.stops.iter().position(|t| t.is_nan()) {
-            return Err(Error::out_of_range(format!("stops[{i}]"), f64::NAN, "a number"));
-        }
+        grid::in_order(&mut self.stops, self.t_span)?;
         let Some(mut pace) = self.pace.clone() else {
             let expected = "one of dt, steps, or tolerances";
             return Err(Error::out_of_range("steps", f64::NAN, expected));
@@ -326,10 +316,6 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
                 control.max_steps = self.max_steps.unwrap_or(control.max_steps);
             }
         }
-        let [t0, t1] = self.t_span;
-        let forward = t1 >= t0;
-        self.stops.retain(|t| if forward { t0 < *t && *t < t1 } else { t1 < *t && *t < t0 });
-        self.stops.sort_by(|a, b| if forward { a.total_cmp(b) } else { b.total_cmp(a) });
         Ok(pace)
     }
 
@@ -363,13 +349,23 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
     /// # Errors
     /// [`Interrupted`]: why, and the solution up to there.
     pub fn run_with<N: Into<Next>>(
-        mut self,
+        self,
         y0: PointOf<P>,
         mut observe: impl FnMut(f64, &mut PointOf<P>) -> N,
     ) -> Result<Solution<PointOf<P>>, Interrupted<PointOf<P>>> {
+        self.drive(y0, None, &mut |t, y| observe(t, y).into())
+    }
+
+    /// Runs from y₀, and keeps the steps where there is a list for them.
+    fn drive<'k>(
+        mut self,
+        y0: PointOf<P>,
+        kept: Option<&'k mut Vec<Kept<PointOf<P>>>>,
+        observe: &'k mut Observe<'k, PointOf<P>>,
+    ) -> Result<Solution<PointOf<P>>, Interrupted<PointOf<P>>> {
         let pace = self.check()?;
         let run = Integrator::new(self.problem, self.method, self.t_span, pace, y0)?;
-        Drive::new(self, run, |t, y| observe(t, y).into()).run()
+        Drive::new(self, run, kept, observe).run()
     }
 
     /// Runs from y₀ and returns a continuous solution, which stores a point for each step.
@@ -381,17 +377,14 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
         y0: PointOf<P>,
     ) -> Result<Continuous<'a, P, M>, Interrupted<PointOf<P>>> {
         let pace = self.check()?;
-        let again =
-            Integrator::new(self.problem, self.method, self.t_span, pace.clone(), y0.clone())?;
-        let run = Integrator::new(self.problem, self.method, self.t_span, pace, y0)?;
+        let again = Integrator::new(self.problem, self.method, self.t_span, pace, y0.clone())?;
         let (mut times, mut points, mut steps) = (Vec::new(), Vec::new(), Vec::new());
-        let mut drive = Drive::new(self, run, |t, y| {
+        let done = self.drive(y0, Some(&mut steps), &mut |t, y| {
             times.push(t);
             points.push(y.clone());
             Next::Continue
         });
-        drive.keep(&mut steps);
-        let solution = stored(drive.run(), times, points)?;
+        let solution = stored(done, times, points)?;
         Ok(Continuous::new(solution, steps, again))
     }
 }

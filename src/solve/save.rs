@@ -13,6 +13,7 @@ use fnv::FnvHasher;
 
 use super::drive::Drive;
 use super::integrator::{Integrator, Looked, Pacer};
+use super::stats::Stats;
 use crate::error::Error;
 use crate::groups::LieAlgebra;
 use crate::methods::{MapCounts, Method};
@@ -58,6 +59,27 @@ fn option<T: Default>(
     let mut inner = x.take().unwrap_or_default();
     value(each, &mut inner);
     *x = there.then_some(inner);
+}
+
+/// Lists the words of the statistics.
+fn each_of_stats(each: &mut Each<'_>, stats: &mut Stats) {
+    for count in [
+        &mut stats.accepted,
+        &mut stats.rejected,
+        &mut stats.points_within,
+        &mut stats.restored,
+        &mut stats.not_restored,
+        &mut stats.iterations,
+    ] {
+        each(count);
+    }
+    for x in [&mut stats.smallest_step, &mut stats.largest_step, &mut stats.residual] {
+        number(each, x);
+    }
+    option(each, &mut stats.evaluations, |each, n| each(n));
+    option(each, &mut stats.maps, |each, MapCounts { psi, dpsi_inv, brackets }| {
+        [psi, dpsi_inv, brackets].into_iter().for_each(each);
+    });
 }
 
 /// The bytes of a state that belongs to `owner`; `words` calls its argument with every word.
@@ -122,28 +144,11 @@ impl<P: Problem, M: Method<P>> Integrator<'_, P, M> {
         point(each, &mut self.mender.from);
         each(&mut self.mender.cadence.every);
         each(&mut self.mender.cadence.next);
-        let stats = &mut self.stats;
-        for count in [
-            &mut stats.accepted,
-            &mut stats.rejected,
-            &mut stats.points_within,
-            &mut stats.restored,
-            &mut stats.not_restored,
-        ] {
-            each(count);
-        }
         // The workspace counts from its own start.
         let counted = self.method.iterations(&self.work);
-        let mut iterations = stats.iterations.wrapping_add(counted);
-        each(&mut iterations);
-        stats.iterations = iterations.wrapping_sub(counted);
-        for x in [&mut stats.smallest_step, &mut stats.largest_step, &mut stats.residual] {
-            number(each, x);
-        }
-        option(each, &mut stats.evaluations, |each, n| each(n));
-        option(each, &mut stats.maps, |each, MapCounts { psi, dpsi_inv, brackets }| {
-            [psi, dpsi_inv, brackets].into_iter().for_each(each);
-        });
+        self.stats.iterations = self.stats.iterations.wrapping_add(counted);
+        each_of_stats(each, &mut self.stats);
+        self.stats.iterations = self.stats.iterations.wrapping_sub(counted);
         match &mut self.pacer {
             Pacer::Equal { grid, done, .. } => {
                 grid.each_part(&mut |x| number(each, x));
@@ -194,7 +199,7 @@ where
     }
 }
 
-impl<P: Problem, M: Method<P>, O> Drive<'_, '_, P, M, O> {
+impl<P: Problem, M: Method<P>> Drive<'_, '_, P, M> {
     fn each_word(&mut self, list: Listing<P>, each: &mut Each<'_>) {
         self.run.each_word(list, each);
         let mut done = self.times_done as u64;
