@@ -12,7 +12,9 @@ use lieflow::methods::low_storage::LS32;
 use lieflow::methods::magnus::Magnus6;
 use lieflow::methods::one_bracket::MAGNUS43;
 use lieflow::methods::tableau::{BS3, DOP853, DOPRI5, RK4, RKF45, VERNER6};
-use lieflow::methods::{CommutatorFree, Doubling, Embedded, LowStorage, OneBracket, Rk, Rkmk};
+use lieflow::methods::{
+    AnyMethod, CommutatorFree, Doubling, Embedded, LowStorage, Metric, OneBracket, Rk, Rkmk,
+};
 use lieflow::problems::{Exact, Flow, LinearFlow, PointOf, Problem, RigidBody, RigidBodyAttitude};
 use lieflow::{Error, LieAlgebra, LieGroup, SaveAt, StepError};
 use lieflow::{RunError, Stats, StepControl, integrate_adaptive};
@@ -22,8 +24,8 @@ fn control(rtol: f64, atol: f64) -> StepControl {
     StepControl::new(rtol, atol).expect("tolerances")
 }
 
-/// The state at the end and the statistics, or why there are none.
-fn go<P: Problem, M: Embedded<P>>(
+/// The state at the end and the statistics, or why there are none. The driver is compiled once for each problem.
+fn go<P: Problem, M: Embedded<P> + Clone>(
     problem: &P,
     method: &M,
     span: [f64; 2],
@@ -32,10 +34,12 @@ fn go<P: Problem, M: Embedded<P>>(
 ) -> Result<(PointOf<P>, Stats), RunError>
 where
     P::Group: LieAlgebra<Scalar = f64>,
+    PointOf<P>: Metric<Scalar = f64>,
 {
     let mut y = start.clone();
+    let method = AnyMethod::embedded(method.clone());
     let stats =
-        integrate_adaptive(problem, method, span, control, &SaveAt::Ends, &mut y, |_, _| {})?;
+        integrate_adaptive(problem, &method, span, control, &SaveAt::Ends, &mut y, |_, _| {})?;
     Ok((y, stats))
 }
 
@@ -141,7 +145,9 @@ fn spans_and_arguments() {
     assert!(tols.clone().first_step(0.0).is_err());
     assert!(tols.clone().max_step(0.1).and_then(|c| c.min_step(0.2)).is_err());
     // No pair, no adaptive run; step doubling is the way.
-    let error = go(&body, &Rkmk::new(RK4, Exp), [0.0, 1.0], &tols, &start).expect_err("no pair");
+    let (method, save, mut y) = (Rkmk::new(RK4, Exp), SaveAt::Ends, start);
+    let run = integrate_adaptive(&body, &method, [0.0, 1.0], &tols, &save, &mut y, |_, _| {});
+    let error = run.expect_err("no pair");
     assert!(error.to_string().contains("`rk4`"), "{error}");
     assert!(go(&body, &Doubling(Rkmk::new(RK4, Exp)), [0.0, 1.0], &tols, &start).is_ok());
 }

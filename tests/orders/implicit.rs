@@ -6,7 +6,8 @@ use lieflow::error::StepError;
 use lieflow::groups::{LieGroup, MatrixGroup, Sample, So3};
 use lieflow::maps::{CCSK123, Cay, Exp};
 use lieflow::methods::{
-    Composition, GAUSS2, GAUSS4, GAUSS6, Gauss, KAHAN_LI6, RkmkGauss, RkmkGaussSymmetric,
+    AnyMethod, Composition, GAUSS2, GAUSS4, GAUSS6, Gauss, KAHAN_LI6, Metric, RkmkGauss,
+    RkmkGaussSymmetric,
 };
 use lieflow::problems::{
     Ambient, BodyState, Exact, Flow, PointOf, RigidBody, RigidBodyAttitude, RigidBodyN,
@@ -37,12 +38,17 @@ fn grid(first: u64) -> [u64; 4] {
     [4u64, 6, 9, 13].map(|n| n * first / 4)
 }
 
-fn run<P: Problem, M: Method<P>>(p: &P, method: &M, y: &PointOf<P>, end: f64, n: u64) -> PointOf<P>
+fn run<P, M>(p: &P, method: &M, y: &PointOf<P>, end: f64, n: u64) -> PointOf<P>
 where
+    P: Problem,
+    M: Method<P> + Clone,
     P::Group: LieAlgebra<Scalar = f64>,
+    PointOf<P>: Metric<Scalar = f64>,
 {
+    // The driver is compiled once for each problem.
+    let method = AnyMethod::new(method.clone());
     let (mut y, grid) = (y.clone(), TimeGrid::with_steps([0.0, end], n).expect("a grid"));
-    integrate(p, method, &grid, &SaveAt::Ends, &mut y, |_, _| {}).expect("a run");
+    integrate(p, &method, &grid, &SaveAt::Ends, &mut y, |_, _| {}).expect("a run");
     y
 }
 

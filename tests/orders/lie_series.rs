@@ -6,7 +6,9 @@ use faer::Mat;
 use lieflow::actions::LeftTranslation;
 use lieflow::groups::{LieGroup, MatrixGroup, Sample, So3};
 use lieflow::maps::Exp;
-use lieflow::methods::{GAUSS6, LieSeries, RkmkGaussSymmetric, SeriesGroup, Taylor};
+use lieflow::methods::{
+    AnyMethod, GAUSS6, LieSeries, Metric, RkmkGaussSymmetric, SeriesGroup, Taylor,
+};
 use lieflow::problems::{
     PointOf, Problem, RigidBodyN, RigidBodyNAttitude, RigidBodyState, TaylorField,
 };
@@ -20,12 +22,17 @@ fn series(order: usize) -> LieSeries {
     LieSeries::new(order).expect("an order")
 }
 
-fn run<P: Problem, M: Method<P>>(p: &P, method: &M, y: &PointOf<P>, end: f64, n: u64) -> PointOf<P>
+fn run<P, M>(p: &P, method: &M, y: &PointOf<P>, end: f64, n: u64) -> PointOf<P>
 where
+    P: Problem,
+    M: Method<P> + Clone,
     P::Group: LieAlgebra<Scalar = f64>,
+    PointOf<P>: Metric<Scalar = f64>,
 {
+    // The driver is compiled once for each problem.
+    let method = AnyMethod::new(method.clone());
     let (mut y, grid) = (y.clone(), TimeGrid::with_steps([0.0, end], n).expect("a grid"));
-    integrate(p, method, &grid, &SaveAt::Ends, &mut y, |_, _| {}).expect("a run");
+    integrate(p, &method, &grid, &SaveAt::Ends, &mut y, |_, _| {}).expect("a run");
     y
 }
 

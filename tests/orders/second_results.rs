@@ -13,7 +13,8 @@ use lieflow::methods::magnus::Magnus4;
 use lieflow::methods::one_bracket::{MAGNUS43, OneBracketTableau};
 use lieflow::methods::tableau::{BS3, DOP853, DOPRI5, RK4, RKF45, VERNER6};
 use lieflow::methods::{
-    CommutatorFree, Doubling, Embedded, LowStorage, Method, OneBracket, Rk, Rkmk, Tableau,
+    AnyMethod, CommutatorFree, Doubling, Embedded, LowStorage, Method, OneBracket, Rk, Rkmk,
+    Tableau,
 };
 use lieflow::problems::Problem;
 use lieflow::{SaveAt, Step, TimeGrid, integrate};
@@ -129,7 +130,7 @@ fn output_between_the_steps_has_the_order_of_the_method() {
         let exact = reference_after(0.5, &flow, start);
         macro_rules! check {
             ($($method:expr),*) => {$({
-                let method = $method;
+                let method = AnyMethod::new($method);
                 let errors = STEPS.map(|n| {
                     let (mut y, mut middle) = (exact.start().to_owned(), None);
                     let grid = TimeGrid::with_steps([0.3, 1.3], n).unwrap();
