@@ -12,6 +12,6 @@ mod plot;
 
 pub use page::{Block, Cell, Column, Page, Row, Section, Table};
 pub use plot::{
-    Axis, Body, Chart, Ground, Heat, Marker, Marks, Path, Point, Pose, Scale, Series, Sphere,
-    tell_apart,
+    Axis, Body, Chart, Ground, Heat, LINE_COLOURS, Marker, Marks, Path, Point, Pose, Scale, Series,
+    Sphere, tell_apart,
 };

@@ -25,12 +25,23 @@ pub fn sig(x: f64, digits: usize) -> String {
 
 /// `x` to at most `digits` significant digits, without zeros at the end: `0.5`, `240`, `1.2×10⁻⁸`.
 pub fn short(x: f64, digits: usize) -> String {
-    let text = sig(x, digits);
-    let (mantissa, power) = text.split_at(text.find('×').unwrap_or(text.len()));
-    match mantissa.contains('.') {
-        true => mantissa.trim_end_matches('0').trim_end_matches('.').to_string() + power,
-        false => text,
+    if !x.is_finite() {
+        return sig(x, digits);
     }
+    let text = typed(x, digits).replacen('-', if x < 0.0 { "−" } else { "-" }, 1);
+    match text.split_once('e') {
+        Some((mantissa, exponent)) => {
+            format!("{mantissa}×{}", power_of_ten(exponent.parse().unwrap_or(0)))
+        }
+        None => text,
+    }
+}
+
+/// The number of [`short`] as a reader can type it: `0.5`, `240`, `1.2e-8`, `-2.5`.
+pub fn typed(x: f64, digits: usize) -> String {
+    let rounded: f64 = format!("{x:.*e}", digits.max(1) - 1).parse().unwrap_or(x);
+    let plain = rounded == 0.0 || (1e-3..1e6).contains(&rounded.abs()) || !x.is_finite();
+    if plain { format!("{}", rounded + 0.0) } else { format!("{rounded:e}") }
 }
 
 /// A number in scientific notation with two digits after the point, as `1.23e-4`; a dash for none.
@@ -58,7 +69,7 @@ pub fn seconds(t: f64) -> String {
 
 /// A time in a fitting unit, without zeros at the end: `500 ns`, `1.5 ms`.
 pub(crate) fn seconds_short(t: f64) -> String {
-    in_units_of_time(t, |t| short(t, 3))
+    in_units_of_time(t, |t| short(t, 6))
 }
 
 fn in_units_of_time(t: f64, format: impl FnOnce(f64) -> String) -> String {
@@ -138,6 +149,9 @@ mod tests {
     fn short_numbers_have_no_zeros_at_the_end() {
         let short: Vec<String> = [0.5, 240.0, 1.2e-8, -2e9, 0.0].map(|x| short(x, 6)).into();
         assert_eq!(short, ["0.5", "240", "1.2×10⁻⁸", "−2×10⁹", "0"]);
+        let typed: Vec<String> = [0.5, 240.0, 1.2e-8, -2e9, -0.0].map(|x| typed(x, 6)).into();
+        assert_eq!(typed, ["0.5", "240", "1.2e-8", "-2e9", "0"]);
+        assert_eq!([f64::NAN, -f64::INFINITY].map(|x| super::short(x, 6)), ["n/a", "−∞"]);
     }
 
     #[test]

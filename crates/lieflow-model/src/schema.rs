@@ -46,6 +46,8 @@ impl Measure {
 pub struct Part {
     /// Its name; none of a quantity that is one part.
     pub name: String,
+    /// What it is, as in "vector"; empty for a quantity that is one part.
+    pub what: &'static str,
     /// Its columns, from 0.
     pub columns: Range<usize>,
     /// How errors of it are measured.
@@ -119,7 +121,8 @@ impl Schema {
         self.width = place.end;
         self.sizes += usize::from(in_terms);
         let measure = Measure::Length;
-        let parts = vec![Part { name: String::new(), columns: 0..columns.len(), measure }];
+        let parts =
+            vec![Part { name: String::new(), what: "", columns: 0..columns.len(), measure }];
         self.observables.push(Observable { name, columns, law, is_state, parts, place, size });
     }
 

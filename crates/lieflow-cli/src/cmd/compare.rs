@@ -413,7 +413,7 @@ impl Comparison<'_> {
         id: &str,
         title: &str,
         cost: Cost,
-        shown: impl Fn(&Curve) -> bool,
+        shown: impl Fn(usize) -> bool,
     ) -> Option<Chart> {
         report::front_chart(id, title, &self.curves, cost, &self.best().looks, shown)
     }
@@ -448,10 +448,7 @@ impl Comparison<'_> {
         }
         let figure = |id, title, caption: &str, cost| {
             let on_front = report::on_front(&self.curves, cost);
-            let on_front = |curve: &Curve| {
-                self.curves.iter().zip(&on_front).any(|(c, on)| *on && core::ptr::eq(c, curve))
-            };
-            match self.chart(id, title, cost, on_front) {
+            match self.chart(id, title, cost, |i| on_front[i]) {
                 Some(chart) => chart.with_caption(caption).into(),
                 None => Block::text(format!("{title}: nothing was counted in these runs.")),
             }
@@ -503,26 +500,21 @@ impl Comparison<'_> {
         let (curves, best) = (&self.curves, self.best());
         let mut answer: Vec<Block> =
             self.answers().iter().map(|answer| Block::text(answer.in_words())).collect();
-        let shown = |curve: &Curve| best.shown.iter().any(|(c, _)| core::ptr::eq(*c, curve));
         let what = "The error is the largest relative distance of a part of the state from the reference at the \
                     end. Runs with an error above 1 are not drawn. Lines end where rounding begins. The dashed \
                     line joins the best runs of all methods that take steps.";
         let title = "Time that a run takes to reach an error";
-        let figure = self.chart("pareto", title, Cost::Run, shown);
+        let figure = self.chart("pareto", title, Cost::Run, |i| best.draws(i));
         answer.extend(figure.map(|chart| chart.with_caption(what).into()));
         let caption = format!("{} {}", best.caption(curves.len()), self.about_times());
         answer.push(best.table(caption).into());
         let table = |(caption, choices): &(String, Vec<Choice<'_>>)| {
             report::choice_table(caption, choices).into()
         };
-        let mut every = vec![
+        let every = vec![
             report::speed_table(curves, &self.errors()).into(),
             report::kept_table(curves).into(),
         ];
-        every.extend(
-            ["speed.csv", "speed.json"]
-                .map(|file| Block::Link { text: format!("{file}: every run"), href: file.into() }),
-        );
         let more = vec![
             Block::fold(format!("All {} methods", curves.len()), every),
             Block::fold(
@@ -533,11 +525,17 @@ impl Comparison<'_> {
             Block::fold("Operations and evaluations of f", self.counts()),
             Block::fold("How it was measured", vec![Block::Facts(self.conditions())]),
         ];
-        report::page(
+        let page = report::page(
             format!("{}: which method?", self.scene.title),
-            format!("t = {t0} to {t1}, {} methods on this machine", curves.len()),
+            format!(
+                "t = {} to {}, {} methods on this machine",
+                output::number(t0),
+                output::number(t1),
+                curves.len()
+            ),
             vec![Section::new("In short", answer), Section::new("More", more)],
-        )
+        );
+        page.with_links([("Every run (CSV)", "speed.csv"), ("Every run (JSON)", "speed.json")])
     }
 }
 

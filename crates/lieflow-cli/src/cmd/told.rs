@@ -4,12 +4,10 @@ use std::path::Path;
 
 use lieflow_model::kinds::explained_by_rounding;
 
-use crate::output::{self, Accuracy, Drift, SUMMARY, Summary, duration, number, short};
+use crate::output::{self, Drift, SUMMARY, Summary, duration, number, short};
 
 /// Drifts that are told; summary.json has all.
 const DRIFTS: usize = 10;
-/// Errors of parts that are told.
-const PARTS: usize = 4;
 
 /// The result of a run, in lines; `page` is the name of its page, where it has one.
 pub(super) fn in_words(summary: &Summary, folder: &Path, page: Option<&str>) -> String {
@@ -69,7 +67,11 @@ pub(super) fn in_words(summary: &Summary, folder: &Path, page: Option<&str>) -> 
         line(format!("{}: {}", name.replace('_', " "), number(*value)));
     }
     if let Some(accuracy) = &summary.accuracy {
-        line(format!("error at the end, {}: {}", accuracy.found_in_words(), errors(accuracy)));
+        line(format!(
+            "error at the end, {}: {}",
+            accuracy.found_in_words(),
+            accuracy.errors_in_words()
+        ));
         let why = if summary.method.order.is_none() {
             ": the method is exact, the rest is rounding"
         } else {
@@ -99,17 +101,4 @@ fn drifted(drift: &Drift, steps: u64) -> String {
     };
     let [at_end, largest] = [drift.at_end, drift.max].map(|moved| short(moved / value));
     format!("drifted by {at_end}{of} (largest {largest})")
-}
-
-fn errors(accuracy: &Accuracy) -> String {
-    let mut parts: Vec<_> = accuracy.parts.iter().collect();
-    let further = parts.len().saturating_sub(PARTS);
-    if further > 0 {
-        parts.sort_by(|a, b| b.relative.total_cmp(&a.relative));
-    }
-    let mut told: Vec<_> = parts.iter().take(PARTS).map(|part| part.in_words()).collect();
-    if further > 0 {
-        told.push(format!("{further} further parts less"));
-    }
-    told.join(", ")
 }

@@ -21,7 +21,7 @@ pub use summary::{
 use std::io::{self, Write};
 
 use comfy_table::{Table, presets};
-use lieflow_figures::number::DASH;
+use lieflow_figures::number::{DASH, typed};
 use serde::Serialize;
 
 use crate::cmd::CliError;
@@ -57,19 +57,12 @@ pub fn to_json<T: Serialize>(value: &T) -> Result<String, CliError> {
 
 /// A number as people write it, with six digits at most: `0.05`, `77.6073`, `1.2e-6`.
 pub fn number(x: f64) -> String {
-    with_digits(x, 6)
+    typed(x, 6)
 }
 
 /// A number of which the size matters: `144`, `2.7`, `0.0021`, `1.2e-6`.
 pub fn short(x: f64) -> String {
-    if (100.0..1e6).contains(&x.abs()) { format!("{x:.0}") } else { with_digits(x, 2) }
-}
-
-/// A number as people write it, with so many digits at most.
-pub fn with_digits(x: f64, digits: usize) -> String {
-    let rounded: f64 = format!("{x:.*e}", digits - 1).parse().unwrap_or(x);
-    let plain = rounded == 0.0 || (1e-3..1e6).contains(&rounded.abs()) || !x.is_finite();
-    if plain { format!("{}", rounded + 0.0) } else { format!("{rounded:e}") }
+    if (100.0..1e6).contains(&x.abs()) { format!("{x:.0}") } else { typed(x, 2) }
 }
 
 /// A duration as people say it: `20 ms`, `1.5 s`, `12 minutes`, `5 years`.

@@ -10,6 +10,9 @@ use lieflow_model::scene::Defaults;
 
 use super::{duration, short};
 
+/// Errors of parts that are told; the file has all.
+const PARTS: usize = 4;
+
 /// The name of the file.
 pub const SUMMARY: &str = "summary.json";
 
@@ -177,6 +180,21 @@ impl Accuracy {
             1 => self.digits_in_words() + " is right",
             _ => self.digits_in_words() + " are right",
         }
+    }
+
+    /// The errors of the parts, as in "attitude 0.002 degrees, momentum_body 1.2e-9 of its size": the largest ones
+    /// first, where there are many.
+    pub fn errors_in_words(&self) -> String {
+        let mut parts: Vec<_> = self.parts.iter().collect();
+        let further = parts.len().saturating_sub(PARTS);
+        if further > 0 {
+            parts.sort_by(|a, b| b.relative.total_cmp(&a.relative));
+        }
+        let mut told: Vec<_> = parts.iter().take(PARTS).map(|part| part.in_words()).collect();
+        if further > 0 {
+            told.push(format!("{further} further parts less"));
+        }
+        told.join(", ")
     }
 
     /// How it was found, in words.

@@ -68,10 +68,10 @@ impl EnergyRun {
 pub(super) fn energy_chart(
     id: &str,
     title: &str,
-    time: &str,
+    time: Axis,
     lines: impl IntoIterator<Item = Series>,
 ) -> Chart {
-    Chart::new(id, title, [Axis::linear(time), Axis::log("largest |E − E(0)| so far")], lines)
+    Chart::new(id, title, [time, Axis::log("largest |E − E(0)| so far")], lines)
 }
 
 /// The energy of the body's momentum gᵀm_s along a run. A step that fails ends it.

@@ -172,11 +172,11 @@ impl PaperMethod {
             PaperMethod::B4 => ("b4", "B4", 7, 7),
             PaperMethod::Rk4 => ("rk4", "RK4", 5, 5),
             PaperMethod::Mr2 => ("mr2", "MR2", 6, 6),
-            PaperMethod::S => ("simo-wong", "S", 0, 3),
+            PaperMethod::S => ("simo-wong", "S", 8, 3),
             PaperMethod::Dmv4 => ("dmv4", "DMV4", 1, 1),
             PaperMethod::Dmv10 => ("dmv10", "DMV10", 2, 2),
             PaperMethod::Rk4mg => ("rk4-mg", "RK4 on (m, g)", 5, 5),
-            PaperMethod::EnergyCasimir => ("energy-casimir", "energy-Casimir", 3, 4),
+            PaperMethod::EnergyCasimir => ("energy-casimir", "energy-Casimir", 9, 4),
         }
     }
 

@@ -89,10 +89,12 @@ impl Paper {
     /// # Errors
     /// A file cannot be written.
     pub fn write(&self, folder: &Path) -> Result<PathBuf, CliError> {
+        let mut links = Vec::new();
         for (name, header, rows) in files::all(self) {
             output::write_csv(&folder.join(name), header.split(','), rows)?;
+            links.push((name, name));
         }
-        output::write_page(folder, PAPER_PAGE, &page::page(self))
+        output::write_page(folder, PAPER_PAGE, &page::page(self).with_links(links))
     }
 
     /// What a terminal is told.

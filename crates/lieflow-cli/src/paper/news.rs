@@ -138,7 +138,7 @@ fn separatrix(all: &[Separatrix]) -> Vec<Block> {
                 vec![
                     Column::text("Method"),
                     Column::number("L² − 2EJ₂"),
-                    Column::text(""),
+                    Column::text("Its side"),
                     Column::number("error of g"),
                 ],
                 rows,

@@ -99,7 +99,7 @@ fn table1(paper: &Paper) -> Vec<Block> {
         )),
         Table::new(
             "Stage by stage.",
-            Column::all(["", "closed form"], ["general layer differs by"]),
+            Column::all(["Stage", "closed form"], ["general layer differs by"]),
             rows,
         )
         .into(),
@@ -129,7 +129,7 @@ fn table2(paper: &Paper) -> Vec<Block> {
              time. “Fewest known” counts \
              the matrix, as the paper does.",
         ),
-        Table::new("Operations on so(3).", Column::all([""], columns), rows).into(),
+        Table::new("Operations on so(3).", Column::all(["Formula"], columns), rows).into(),
     ]
 }
 
@@ -140,7 +140,11 @@ fn chart(id: &str, title: &str, runs: &[EnergyRun], rows: &[PaperMethod], measur
         let h = run.error.get(1).map_or(1.0, |(t, _)| *t);
         run.line(if measured { run.seconds_per_step / h } else { 1.0 })
     });
-    energy_chart(id, title, if measured { "CPU time [s]" } else { "time t" }, lines)
+    let time = match measured {
+        true => Axis::linear("CPU time").with_unit("s"),
+        false => Axis::linear("time t"),
+    };
+    energy_chart(id, title, time, lines)
 }
 
 fn figures34(paper: &Paper) -> Vec<Block> {
@@ -208,7 +212,7 @@ fn table3(paper: &Paper) -> Vec<Block> {
 fn cost_chart(
     id: &str,
     title: &str,
-    cost: &str,
+    cost: Axis,
     all: &[Accuracy],
     of: impl Fn(&Accuracy, usize) -> Option<f64>,
 ) -> Block {
@@ -218,7 +222,7 @@ fn cost_chart(
             Some(Point::new(p.error, of(a, i)?).with_note(format!("{} steps", p.steps)))
         }))
     });
-    let axes = [Axis::log("global error at t = 1"), Axis::log(cost)];
+    let axes = [Axis::log("global error at t = 1"), cost];
     Chart::new(id, title, axes, lines.filter(|line| !line.points.is_empty())).into()
 }
 
@@ -257,14 +261,14 @@ fn table4(paper: &Paper) -> Vec<Block> {
             cost_chart(
                 &format!("figure5-{}", test.key),
                 &format!("{figure}: operations, {}", test.name),
-                "operations, as the paper counts",
+                Axis::log("operations, as the paper counts"),
                 all,
                 |a, i| Some(a.printed_step()? * a.points[i].steps as f64),
             ),
             cost_chart(
                 &format!("figure5-{}-time", test.key),
                 &format!("{figure}: measured time, {}", test.name),
-                "CPU time [s]",
+                Axis::log("CPU time").with_unit("s"),
                 all,
                 |a, i| Some(a.points[i].seconds),
             ),

@@ -3,7 +3,7 @@
 use super::{Found, number, ranking, step_of};
 use crate::measure::Curve;
 use lieflow_figures::number::{DASH, seconds};
-use lieflow_figures::{Cell, Column, Marker, Point, Row, Series, Table};
+use lieflow_figures::{Cell, Column, LINE_COLOURS, Marker, Point, Row, Series, Table};
 
 /// So many methods are shown where nobody asks for all.
 const BEST: usize = 10;
@@ -19,6 +19,8 @@ pub struct Best<'a> {
     pub by: f64,
     /// Those that are shown.
     pub shown: Vec<Found<'a>>,
+    /// So many methods are in the figure: the best, whatever is shown in the table.
+    drawn_count: usize,
     /// How many methods reach the error.
     reaching: usize,
     /// Does the problem have an energy?
@@ -34,17 +36,19 @@ impl<'a> Best<'a> {
         let reached = rankings.filter(|(_, found)| !found.is_empty());
         let by = reached.min_by(|a, b| a.0.total_cmp(&b.0));
         let (by, ranked) = by.unwrap_or_else(|| (f64::NAN, Vec::new()));
-        let looks = Looks::new(curves, &ranked);
-        let (mut shown, reaching): (Vec<Found<'a>>, usize) = (Vec::new(), ranked.len());
-        for found in ranked {
+        let mut drawn: Vec<Found<'a>> = Vec::new();
+        for found in &ranked {
             let kind = found.0.candidate.kind();
-            let alike = shown.iter().filter(|(curve, _)| curve.candidate.kind() == kind).count();
-            if all || (alike < OF_A_KIND && shown.len() < BEST) {
-                shown.push(found);
+            let alike = drawn.iter().filter(|(curve, _)| curve.candidate.kind() == kind).count();
+            if alike < OF_A_KIND && drawn.len() < BEST {
+                drawn.push(*found);
             }
         }
+        let looks = Looks::new(curves, drawn.iter().chain(&ranked));
+        let (reaching, drawn_count) = (ranked.len(), drawn.len());
+        let shown = if all { ranked } else { drawn };
         let energy = curves.iter().flat_map(|c| &c.points).any(|p| !p.energy_error.is_nan());
-        Best { errors, by, shown, reaching, energy, looks }
+        Best { errors, by, shown, drawn_count, reaching, energy, looks }
     }
 
     /// The headings of [`rows`](Self::rows), and which of them are of numbers.
@@ -90,6 +94,11 @@ impl<'a> Best<'a> {
         rows.collect()
     }
 
+    /// Is curve i in the figure of the best?
+    pub fn draws(&self, i: usize) -> bool {
+        self.looks.rank(i) < self.drawn_count
+    }
+
     /// Are there methods that reach the error and are not shown?
     pub fn is_cut(&self) -> bool {
         self.shown.len() < self.reaching
@@ -122,17 +131,15 @@ impl<'a> Best<'a> {
     }
 }
 
-/// The colours of lines, and their markers.
-const COLOURS: usize = 8;
-
 /// The look of each curve, by its place in the ranking. It is the same in all figures of a page.
 #[derive(Clone, Debug)]
 pub struct Looks(Vec<usize>);
 
 impl Looks {
-    fn new(curves: &[Curve], ranked: &[Found<'_>]) -> Self {
-        let mut order: Vec<&Curve> = ranked.iter().map(|(curve, _)| *curve).collect();
-        for curve in curves {
+    /// The places: first come these, in their order, then all others.
+    fn new<'a>(curves: &'a [Curve], first: impl Iterator<Item = &'a Found<'a>>) -> Self {
+        let mut order: Vec<&Curve> = Vec::new();
+        for curve in first.map(|(curve, _)| *curve).chain(curves) {
             if !order.iter().any(|ranked| core::ptr::eq(*ranked, curve)) {
                 order.push(curve);
             }
@@ -149,9 +156,9 @@ impl Looks {
     /// The line of curve i through these points, with its colour and its mark, dashed where it chooses its steps.
     pub fn line(&self, curves: &[Curve], i: usize, points: Vec<Point>) -> Series {
         let (curve, rank) = (&curves[i], self.0[i]);
-        // The second eight have the same colours and other marks.
-        Series::line(curve.label.clone(), rank % COLOURS, points)
-            .with_marker(Marker::cycle(rank + rank / COLOURS))
+        // After the last colour the first comes again, with another mark.
+        Series::line(curve.label.clone(), rank, points)
+            .with_marker(Marker::cycle(rank + rank / LINE_COLOURS))
             .with_dash(curve.candidate.adaptive)
     }
 }

@@ -103,8 +103,8 @@ impl Cost {
     }
     fn axis(self) -> Axis {
         match self {
-            Cost::Time => Axis::log("CPU time per unit of simulated time [s]"),
-            Cost::Run => Axis::log("CPU time of the run [s]"),
+            Cost::Time => Axis::log("CPU time per unit of simulated time").with_unit("s"),
+            Cost::Run => Axis::log("CPU time of the run").with_unit("s"),
             Cost::Evaluations => Axis::log("evaluations of f"),
             Cost::Operations => Axis::log("operations"),
         }
@@ -124,7 +124,9 @@ impl Cost {
         let highest = points().map(|p| p.y).fold(lowest, f64::max);
         if points().any(|p| p.x <= floor) {
             let ends = [(floor, lowest), (floor, highest)];
-            series.push(Series::line("rounding: nothing to see beyond", 6, ends).with_dash(true));
+            series.push(
+                Series::line("rounding: nothing to see beyond", 0, ends).in_ink().with_dash(true),
+            );
         }
         let axes = [Axis::log("error at the end"), self.axis()];
         Some(Chart::new(id, title, axes, series))
@@ -176,15 +178,16 @@ pub fn front_chart(
     curves: &[Curve],
     cost: Cost,
     looks: &Looks,
-    shown: impl Fn(&Curve) -> bool,
+    shown: impl Fn(usize) -> bool,
 ) -> Option<Chart> {
-    let mut shown: Vec<usize> = (0..curves.len()).filter(|&i| shown(&curves[i])).collect();
+    let mut shown: Vec<usize> = (0..curves.len()).filter(|&i| shown(i)).collect();
     shown.sort_by_key(|&i| looks.rank(i));
     let line = |i: usize| looks.line(curves, i, drawn(&curves[i], cost));
     let mut series: Vec<Series> = shown.into_iter().map(line).collect();
     let front = front(curves, cost).into_iter();
     let front = front.filter_map(|(i, j)| point(&curves[i], &curves[i].points[j], cost));
-    let front = Series::line("the best of all methods", 6, front).with_marker(Marker::Circle);
+    let front =
+        Series::line("the best of all methods", 0, front).in_ink().with_marker(Marker::Circle);
     series.push(Series { emphasised: true, ..front.with_dash(true) });
     cost.chart(id, title, series, curves.iter().map(|curve| curve.floor).fold(0.0, f64::max))
 }

@@ -15,11 +15,10 @@ pub use choice::{
 pub use kept::kept_table;
 pub use speed::{maps_chart, speed_chart, speed_table, write_speed_csv};
 
-use lieflow_figures::number::{DASH, sig};
+use lieflow_figures::number::{DASH, sig, typed};
 use lieflow_figures::{Cell, Page, Section};
 
 use crate::measure::{Reached, Size, WorkPoint, machine};
-use crate::output::with_digits;
 
 /// How many times faster, as `3.2×`.
 pub fn times(ratio: f64) -> String {
@@ -32,19 +31,19 @@ const DIGITS: usize = 3;
 /// The step or the tolerance, as a scene has it: `dt = 0.8`.
 fn step_of(reached: &Reached) -> String {
     match reached.tolerance {
-        None => format!("dt = {}", with_digits(reached.length / reached.steps as f64, DIGITS)),
-        Some(rtol) => format!("rtol = {}", with_digits(rtol, DIGITS)),
+        None => format!("dt = {}", typed(reached.length / reached.steps as f64, DIGITS)),
+        Some(rtol) => format!("rtol = {}", typed(rtol, DIGITS)),
     }
 }
 
 /// The size of a run's steps, for a reader.
 fn size_of(point: &WorkPoint) -> String {
     match point.size {
-        Size::Steps(steps) => format!("dt = {}, {steps} steps", with_digits(point.h, DIGITS)),
+        Size::Steps(steps) => format!("dt = {}, {steps} steps", typed(point.h, DIGITS)),
         Size::Tolerance(rtol) => {
             format!(
                 "rtol = {}, {} steps, {} rejected",
-                with_digits(rtol, DIGITS),
+                typed(rtol, DIGITS),
                 point.steps,
                 point.rejected
             )

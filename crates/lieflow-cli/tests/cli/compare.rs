@@ -129,6 +129,16 @@ fn the_advice_follows_from_the_points() {
         assert!(folder.read(&format!("out/{figure}")).starts_with("<svg"), "{figure}");
     }
     assert!(json["reference_error"].as_f64().unwrap() < 1e-12);
+
+    // The figure has the ten best, each in a colour of its own, also where the table has all.
+    folder.lieflow(&[&args[..], &["--all"]].concat()).ok();
+    let pareto = folder.read("out/pareto.svg");
+    let colours = pareto.split("class=\"lf-s ").skip(1).map(|line| line.split([' ', '"']).next());
+    let mut colours: Vec<_> = colours.flatten().filter(|name| *name != "lf-ink").collect();
+    let lines = colours.len();
+    colours.sort_unstable();
+    colours.dedup();
+    assert!((5..=10).contains(&lines) && colours.len() == lines, "{colours:?} of {lines}");
 }
 
 #[test]

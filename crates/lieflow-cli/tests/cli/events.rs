@@ -52,7 +52,7 @@ fn the_flips_of_a_body_are_found_told_marked_and_end_the_run() {
     for figure in ["time-momentum-body", "time-energy", "drift"] {
         let svg = folder.read(&format!("out/{figure}.svg"));
         assert_eq!(svg.matches("<title>flip\n").count(), 6, "{figure}");
-        assert!(svg.contains("events: flip; half-way."), "{figure}");
+        assert!(svg.contains("events: flip (dotted); half-way (dashed)."), "{figure}");
     }
     assert_eq!(
         folder.data("out"),

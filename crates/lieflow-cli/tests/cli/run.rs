@@ -25,6 +25,24 @@ fn shortened(name: &str) -> String {
     text.lines().map(|text| line(text) + "\n").collect()
 }
 
+/// Each chart says what it shows: once, with the unit that a quantity has in every scene, and not too much of it.
+#[test]
+fn charts_say_what_they_show() {
+    let folder = Folder::new();
+    folder.write("vortices.toml", &shortened("vortices-on-sphere"));
+    for name in ["attitude-control", "magnetic-damping", "vortices.toml"] {
+        folder.lieflow(&["run", name, "--out", name.trim_end_matches(".toml")]).ok();
+    }
+    let angle = folder.read("attitude-control/time-angle.svg");
+    assert!(angle.contains(">angle (rad)<"), "{angle}");
+    let page = folder.read("magnetic-damping/index.html");
+    assert_eq!(page.matches("\"title\">Angular velocity in the body<").count(), 1);
+    assert!(page.contains("\"title\">By a formula of the scene: speed<"));
+    let drift = folder.read("vortices/drift.svg");
+    assert_eq!(drift.matches("class=\"lf-s ").count(), 6);
+    assert!(drift.contains("The 6 that moved most, of 29."), "{drift}");
+}
+
 #[test]
 fn every_bundled_scene_runs_and_reads_back_exactly() {
     let folder = Folder::new();

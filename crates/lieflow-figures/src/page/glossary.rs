@@ -58,9 +58,12 @@ const WORDS: [(&str, &str); 14] = [
     ),
 ];
 
+/// What the fold with the words, and the link to it, are called.
+pub(super) const GLOSSARY: &str = "What do these words mean?";
+
 /// The words in a fold, for the foot of every page. The page docs/glossary.md has them too, and more.
 pub(super) fn glossary() -> Block {
-    Block::fold("What do these words mean?", vec![Block::Glossary(&WORDS)])
+    Block::fold(GLOSSARY, vec![Block::Glossary(&WORDS)])
 }
 
 #[cfg(test)]

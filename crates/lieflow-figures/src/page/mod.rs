@@ -38,6 +38,12 @@ impl Section {
 }
 
 impl Page {
+    /// The page with links to these pages and files, relative to this page.
+    pub fn with_links<'a>(self, links: impl IntoIterator<Item = (&'a str, &'a str)>) -> Self {
+        let links = links.into_iter().map(|(text, href)| (text.into(), href.into())).collect();
+        Page { links, ..self }
+    }
+
     /// Every figure of the page: the name of a file beside it, and what that holds.
     pub fn figures(&self) -> Vec<(String, String)> {
         let blocks = self.sections.iter().flat_map(|section| &section.blocks);
@@ -50,13 +56,6 @@ impl Page {
 pub enum Block {
     /// A paragraph of plain text.
     Paragraph(String),
-    /// A link to another page on a line of its own.
-    Link {
-        /// What it says.
-        text: String,
-        /// Where it leads, relative to this page.
-        href: String,
-    },
     /// A sentence that a reader must not miss.
     Notice(String),
     /// Preformatted text such as a command.

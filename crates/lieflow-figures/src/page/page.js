@@ -27,6 +27,11 @@
   system.addEventListener("change", nameTheme);
   nameTheme();
 
+  // The link to the words opens their fold.
+  for (const link of all('a[href="#words"]')) {
+    link.addEventListener("click", () => { document.querySelector("#words>details").open = true; });
+  }
+
   // A click on a heading sorts the table by that column, a second click the other way round.
   const collator = new Intl.Collator("en", { numeric: true });
   for (const heading of all("th[data-sorts]")) {
@@ -171,7 +176,7 @@
   const stretch = (svg) => {
     const [, , wide, high] = svg.getAttribute("viewBox").split(" ").map(Number);
     const [left, right, bottom] = svg.dataset.plot.split(" ").map(Number);
-    const keys = all(".lf-key", svg), paths = all(".lf-grid,.lf-minor,.lf-frame,.lf-mark,.lf-line", svg);
+    const keys = all(".lf-key", svg), names = all(".lf-key text", svg), paths = all(".lf-grid,.lf-minor,.lf-frame,.lf-mark,.lf-line", svg);
     const ticks = all(".lf-tick[text-anchor=middle]", svg), title = svg.querySelector(".lf-label");
     const texts = ticks.map((tick) => [tick, Number(tick.getAttribute("x"))]);
     const markers = all(".lf-p", svg).map((p) => [p, ...p.getAttribute("transform").match(/-?[\d.]+/g).map(Number)]);
@@ -180,7 +185,10 @@
     const apply = () => {
       const width = svg.parentElement.clientWidth;
       if (!width) return; // Within a closed fold.
-      const narrow = width < 620, end = narrow ? width - 14 : right + width - wide;
+      const narrow = width < 620;
+      // In a font that is wider than expected the names need more room.
+      const over = Math.max(0, ...names.map((name) => Number(name.getAttribute("x")) + name.getComputedTextLength() - wide));
+      const end = narrow ? width - 14 : right + width - wide - over;
       place.factor = (end - left) / (right - left);
       svg.classList.toggle("lf-narrow", narrow);
       paths.forEach((p) => p.setAttribute("transform", `matrix(${place.factor} 0 0 1 ${left - left * place.factor} 0)`));
@@ -188,7 +196,9 @@
       markers.forEach(([p, x, y]) => p.setAttribute("transform", `translate(${place.at(x)} ${y})`));
       title.setAttribute("x", (left + end) / 2);
       let x = left, y = bottom + 52;
-      keys.forEach((key) => {
+      // Beside the data the names are in the order of the ends of their lines, below in that of the lines.
+      const inOrder = [...keys].sort((a, b) => a.dataset.line - b.dataset.line);
+      (narrow ? inOrder : keys).forEach((key) => {
         if (!narrow) return key.setAttribute("transform", `translate(${end - right} 0)`);
         const box = key.querySelector("rect"), sample = key.querySelector("text");
         const length = Number(sample.getAttribute("x")) - Number(box.getAttribute("x")) + sample.getComputedTextLength();

@@ -1,6 +1,6 @@
 //! From a page to HTML text.
 
-use super::glossary::glossary;
+use super::glossary::{GLOSSARY, glossary};
 use super::{Block, Page, Table};
 use crate::plot::{escape, slug, theme};
 
@@ -27,14 +27,14 @@ impl Page {
             theme_css(),
             optional("p", "subtitle", &self.subtitle)
         );
-        if !self.links.is_empty() {
-            let links = self
-                .links
-                .iter()
-                .map(|(text, href)| format!("<a href=\"{}\">{}</a>\n", escape(href), escape(text)));
-            let links: String = links.collect();
-            out.push_str(&format!("<nav class=\"links\" aria-label=\"Files\">\n{links}</nav>\n"));
-        }
+        let links = self
+            .links
+            .iter()
+            .map(|(text, href)| format!("<a href=\"{}\">{}</a>\n", escape(href), escape(text)));
+        let links: String = links.collect();
+        out.push_str(&format!(
+            "<nav class=\"links\" aria-label=\"Links\">\n{links}<a href=\"#words\">{GLOSSARY}</a>\n</nav>\n"
+        ));
         let anchors = self.anchors();
         if anchors.len() > 1 {
             out.push_str(&self.contents(&anchors));
@@ -48,7 +48,7 @@ impl Page {
             out.push_str(&blocks(&section.blocks));
             out.push_str("</section>\n");
         }
-        out.push_str(&block(&glossary()));
+        out.push_str(&format!("<div id=\"words\">\n{}</div>\n", block(&glossary())));
         out.push_str("</main>\n");
         out.push_str(&optional("footer", "foot", &self.footer));
         out.push_str(&format!("<script>\n{SCRIPT}</script>\n</body>\n</html>\n"));
@@ -96,9 +96,6 @@ fn blocks(blocks: &[Block]) -> String {
 fn block(block: &Block) -> String {
     match block {
         Block::Paragraph(text) => format!("<p>{}</p>\n", escape(text)),
-        Block::Link { text, href } => {
-            format!("<p><a href=\"{}\">{}</a></p>\n", escape(href), escape(text))
-        }
         Block::Notice(text) => {
             format!("<p class=\"notice\" role=\"note\">{}</p>\n", escape(text))
         }
@@ -107,7 +104,8 @@ fn block(block: &Block) -> String {
         }
         Block::Facts(facts) => {
             let facts = facts.iter().map(|(name, value)| {
-                format!("<div><dt>{}</dt><dd>{}</dd></div>\n", escape(name), escape(value))
+                let class = if is_long(value) { " class=\"long\"" } else { "" };
+                format!("<div><dt>{}</dt><dd{class}>{}</dd></div>\n", escape(name), escape(value))
             });
             format!("<dl class=\"facts\">\n{}</dl>\n", facts.collect::<String>())
         }
@@ -149,8 +147,12 @@ fn with_data(drawing: &str, class: &str, json: &str) -> String {
     format!("{drawing}\n<script type=\"application/json\" class=\"{class}\">{json}</script>")
 }
 
-/// A column with a longer cell than this breaks its lines.
+/// A column with a longer cell than this breaks its lines, and a longer fact is no number to stand out.
 const LONG: usize = 44;
+
+fn is_long(text: &str) -> bool {
+    text.chars().count() > LONG
+}
 
 fn html_table(table: &Table) -> String {
     // The caption stands outside of what scrolls, so that all of it is read. A region that scrolls has to
@@ -163,7 +165,7 @@ fn html_table(table: &Table) -> String {
     );
     let long = |column: usize| {
         let mut cells = table.rows.iter().filter_map(|row| row.cells.get(column));
-        cells.any(|cell| cell.text.chars().count() > LONG)
+        cells.any(|cell| is_long(&cell.text))
     };
     let classes: Vec<&str> = (0..table.columns.len())
         .map(|column| match table.columns[column].numeric {
@@ -242,6 +244,20 @@ mod tests {
             let found = html.matches(outside).count();
             assert!(found == 0 || (outside == "http://" && found == allowed), "{outside}");
         }
+    }
+
+    #[test]
+    fn every_page_leads_to_the_words() {
+        let html = Page::default().html();
+        assert_eq!(html.matches("<a href=\"#words\">").count(), 1);
+        assert_eq!(html.matches("<div id=\"words\">").count(), 1);
+    }
+
+    #[test]
+    fn a_fact_that_is_a_sentence_does_not_stand_out() {
+        let facts = [("Steps", "20".to_string()), ("Times", "medians of rounds ".repeat(3))];
+        let html = block(&Block::facts(facts));
+        assert!(html.contains("<dd>20</dd>") && html.contains("<dd class=\"long\">medians"));
     }
 
     #[test]

@@ -35,6 +35,11 @@ pub struct Marks {
     pub at: Vec<f64>,
 }
 
+impl Marks {
+    /// How the lines of the first marks of a chart look, of the second, and so on.
+    pub const LOOKS: [&str; 3] = ["dotted", "dashed", "dash-dotted"];
+}
+
 /// A chart of lines over two axes.
 #[derive(Clone, Debug)]
 pub struct Chart {
@@ -209,14 +214,14 @@ impl Chart {
     }
 
     fn draw_marks(&self, out: &mut String, x: &Map) {
-        for marks in &self.marks {
+        for (i, marks) in self.marks.iter().enumerate() {
+            let look = Marks::LOOKS[i % Marks::LOOKS.len()];
             for at in &marks.at {
                 let within = |at: &f64| x.contains(*at);
                 let Some(pixel) = x.pixel(*at).filter(within) else { continue };
-                let title =
-                    format!("{}\n{}: {}", marks.name, self.x.quantity(), self.x.value_text(*at));
+                let title = format!("{}\n{}: {}", marks.name, self.x.title, self.x.value_text(*at));
                 out.push_str(&format!(
-                    "<path class=\"lf-mark\" d=\"M{} {TOP}V{BOTTOM}\"><title>{}</title></path>",
+                    "<path class=\"lf-mark lf-{look}\" d=\"M{} {TOP}V{BOTTOM}\"><title>{}</title></path>",
                     px(pixel),
                     escape(&title)
                 ));
@@ -265,8 +270,8 @@ impl Chart {
     fn point_text(&self, series: &Series, point: &Point) -> String {
         let mut lines = vec![
             series.name.clone(),
-            format!("{}: {}", self.x.quantity(), self.x.value_text(point.x)),
-            format!("{}: {}", self.y.quantity(), self.y.value_text(point.y)),
+            format!("{}: {}", self.x.title, self.x.value_text(point.x)),
+            format!("{}: {}", self.y.title, self.y.value_text(point.y)),
         ];
         if !point.note.is_empty() {
             lines.push(point.note.clone());
@@ -286,7 +291,7 @@ impl Chart {
             "{}\n{} points\n{}: {} to {}, at the end {}",
             series.name,
             trace.points.len(),
-            self.y.quantity(),
+            self.y.title,
             self.y.value_text(lowest),
             self.y.value_text(highest),
             self.y.value_text(last)
@@ -360,8 +365,8 @@ fn map_attribute(name: &str, map: &Map, axis: &Axis) -> String {
         Scale::Log10 => ("log10", 0.0),
         Scale::SymLog { linear } => ("symlog", linear),
     };
-    let title = escape(axis.quantity());
-    let unit = escape(axis.unit());
+    let title = escape(&axis.title);
+    let unit = escape(axis.unit);
     format!(
         " data-{name}=\"{kind} {:e} {:e} {} {} {linear:e}\" data-{name}-title=\"{title}\" \
          data-{name}-unit=\"{unit}\"",
@@ -374,7 +379,7 @@ mod tests {
     use super::*;
 
     fn chart(points: Vec<Point>, marker: Marker) -> Chart {
-        let axes = [Axis::log("CPU time [s]"), Axis::log("global error")];
+        let axes = [Axis::log("CPU time").with_unit("s"), Axis::log("global error")];
         let series = [Series::line("a <b>", 0, points).with_marker(marker)];
         Chart::new("demo", "Speed & error", axes, series).with_caption("A chart.")
     }
@@ -395,7 +400,7 @@ mod tests {
     fn a_single_line_is_named_once() {
         let points = vec![Point::new(1.0, 1.0)];
         assert_eq!(chart(points.clone(), Marker::Circle).svg().matches("lf-key ").count(), 1);
-        let axes = [Axis::linear("t"), Axis::linear("energy − 2 [J]")];
+        let axes = [Axis::linear("t"), Axis::linear("energy − 2").with_unit("J")];
         let energy = Chart::new("e", "Energy", axes, [Series::line("energy", 0, points)]);
         assert_eq!(energy.svg().matches("lf-key ").count(), 0);
     }
@@ -405,7 +410,7 @@ mod tests {
         let points = vec![Point::new(1.0, 1.0), Point::new(10.0, 2.0)];
         let marks = Marks { name: "a < b".into(), at: vec![2.0, 5.0, 100.0] };
         let svg = chart(points, Marker::None).with_marks([marks]).svg();
-        assert_eq!(svg.matches("class=\"lf-mark\"").count(), 2);
+        assert_eq!(svg.matches("class=\"lf-mark lf-dotted\"").count(), 2);
         assert_eq!(svg.matches("<title>a &lt; b\nCPU time: ").count(), 2);
     }
 

@@ -10,7 +10,7 @@ use super::theme;
 /// Where the flat picture begins, and its height.
 const LEFT: f64 = 16.0;
 const TOP: f64 = 42.0;
-const HEIGHT: f64 = 288.0;
+const HEIGHT: f64 = 384.0;
 /// The globe beside the flat picture of a sphere, which is twice as wide as high.
 const RADIUS: f64 = 0.5 * HEIGHT;
 const GLOBE: (f64, f64) = (LEFT + 2.0 * HEIGHT + 24.0 + RADIUS, TOP + RADIUS);

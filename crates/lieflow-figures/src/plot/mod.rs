@@ -22,4 +22,5 @@ pub use scale::{Axis, Scale};
 pub use series::{Marker, Point, Series, tell_apart};
 pub use sphere::{Path, Sphere};
 pub(crate) use svg::{escape, slug};
+pub use theme::LINE_COLOURS;
 pub(crate) use theme::for_file;

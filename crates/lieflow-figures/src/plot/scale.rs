@@ -39,8 +39,10 @@ impl Scale {
 /// An axis, which follows the range of the data.
 #[derive(Clone, Debug)]
 pub struct Axis {
-    /// The quantity with its unit in brackets: `"CPU time [s]"`.
+    /// The quantity: `"CPU time"`.
     pub title: String,
+    /// The unit; empty where there is none, or where the scene decides.
+    pub unit: &'static str,
     /// The scale.
     pub scale: Scale,
 }
@@ -48,7 +50,12 @@ pub struct Axis {
 impl Axis {
     /// An axis of this title and scale.
     pub fn new(title: impl Into<String>, scale: Scale) -> Self {
-        Axis { title: title.into(), scale }
+        Axis { title: title.into(), unit: "", scale }
+    }
+
+    /// The axis in this unit. The labels of an axis in `"s"` have units of time, as in `20 µs`.
+    pub fn with_unit(self, unit: &'static str) -> Self {
+        Axis { unit, ..self }
     }
 
     /// A linear axis.
@@ -61,44 +68,27 @@ impl Axis {
         Axis::new(title, Scale::Log10)
     }
 
-    /// The title without its unit.
-    pub(crate) fn quantity(&self) -> &str {
-        self.split_title().0
-    }
-
-    /// The unit in brackets at the end of the title, or an empty text.
-    pub(crate) fn unit(&self) -> &str {
-        self.split_title().1
-    }
-
-    fn split_title(&self) -> (&str, &str) {
-        match self.title.trim_end().strip_suffix(']').and_then(|t| t.rsplit_once('[')) {
-            Some((quantity, unit)) => (quantity.trim_end(), unit),
-            None => (&self.title, ""),
-        }
-    }
-
-    /// The title beside the labels of a map: without the unit that they have, and with the offset that they leave
-    /// out, as in "energy − 0.00515 [J]".
+    /// The title beside the labels of a map: with the unit, if they do not have it, and with the offset that they
+    /// leave out, as in "energy − 0.00515 (J)".
     pub(crate) fn title_beside(&self, &Map { offset, lo, hi, in_seconds, .. }: &Map) -> String {
-        if in_seconds {
-            return self.quantity().to_string();
-        }
+        let unit = match self.unit {
+            "" => String::new(),
+            _ if in_seconds => String::new(),
+            unit => format!(" ({unit})"),
+        };
         if offset == 0.0 {
-            return self.title.clone();
+            return format!("{}{unit}", self.title);
         }
         let range = hi - lo;
         let digits = offset.abs().log10().floor() - range.log10().ceil() + 1.0;
         let value = short(offset.abs(), digits as usize);
         let sign = if offset < 0.0 { '+' } else { '−' };
-        let (quantity, unit) = self.split_title();
-        let unit = if unit.is_empty() { String::new() } else { format!(" [{unit}]") };
-        format!("{quantity} {sign} {value}{unit}")
+        format!("{} {sign} {value}{unit}", self.title)
     }
 
     /// `value` of this axis for people, with its unit.
     pub(crate) fn value_text(&self, value: f64) -> String {
-        match self.unit() {
+        match self.unit {
             "s" => seconds(value),
             "" => sig(value, 3),
             unit => format!("{}\u{a0}{unit}", sig(value, 3)),
@@ -117,7 +107,7 @@ impl Axis {
         let placed = data.filter(|v| scale.accepts(*v)).map(|v| scale.warp(v));
         let (lo, hi) = padded(placed, padding);
         let offset = if scale == Scale::Linear { offset(lo, hi) } else { 0.0 };
-        let in_seconds = self.unit() == "s" && scale == Scale::Log10;
+        let in_seconds = self.unit == "s" && offset == 0.0;
         Map { scale, lo, hi, offset, in_seconds, from: pixels.0, to: pixels.1 }
     }
 }
@@ -194,17 +184,14 @@ impl Map {
                 let ticks = linear_ticks(self.lo - self.offset, self.hi - self.offset, labels);
                 ticks.into_iter().map(|(x, label, major)| (x + self.offset, label, major)).collect()
             }
-            Scale::Log10 => {
-                let mut ticks = log_ticks(self.lo, self.hi, labels);
-                let labelled = ticks.iter_mut().filter(|_| self.in_seconds);
-                for (t, label, _) in labelled {
-                    *label = label.take().map(|_| seconds_short(*t));
-                }
-                ticks
-            }
+            Scale::Log10 => log_ticks(self.lo, self.hi, labels),
             Scale::SymLog { linear } => self.symlog_ticks(linear.max(f64::MIN_POSITIVE), labels),
         };
         let placed = found.into_iter().filter_map(|(value, label, major)| {
+            let label = match label {
+                Some(_) if self.in_seconds => Some(seconds_short(value)),
+                label => label,
+            };
             let at = self.pixel(value).filter(|at| self.contains(*at))?;
             Some(Tick { at, label, major })
         });
@@ -349,13 +336,13 @@ mod tests {
     /// Two labels are never the same: what they share is in the title.
     #[test]
     fn labels_of_a_narrow_range_leave_out_what_they_share() {
-        let axis = Axis::linear("energy [J]");
+        let axis = Axis::linear("energy").with_unit("J");
         for (lo, hi, title) in [
-            (1.03 - 1e-9, 1.03 + 1e-9, "energy − 1.03 [J]"),
-            (0.005151, 0.00515100004, "energy − 0.005151 [J]"),
-            (-2.0 - 3e-7, -2.0, "energy + 2 [J]"),
-            (0.00515, 0.0052, "energy [J]"),
-            (4e-7, 9e-7, "energy [J]"),
+            (1.03 - 1e-9, 1.03 + 1e-9, "energy − 1.03 (J)"),
+            (0.005151, 0.00515100004, "energy − 0.005151 (J)"),
+            (-2.0 - 3e-7, -2.0, "energy + 2 (J)"),
+            (0.00515, 0.0052, "energy (J)"),
+            (4e-7, 9e-7, "energy (J)"),
         ] {
             let m = axis.map([lo, hi].into_iter(), (0.0, 500.0), 0.04);
             let found = labels(&m, 60.0);
@@ -377,10 +364,13 @@ mod tests {
 
     #[test]
     fn times_have_units() {
-        let axis = Axis::log("CPU time [s]");
+        let axis = Axis::log("CPU time").with_unit("s");
         let m = axis.map([1e-8, 1e-3].into_iter(), (0.0, 500.0), 0.0);
         assert_eq!(labels(&m, 80.0).concat().replace('\u{a0}', ""), "10ns100ns1µs10µs100µs1ms");
         assert_eq!(axis.title_beside(&m), "CPU time");
+        let axis = Axis::linear("CPU time").with_unit("s");
+        let m = axis.map([0.0, 1.5e-3].into_iter(), (0.0, 500.0), 0.0);
+        assert_eq!(labels(&m, 150.0).concat().replace('\u{a0}', ""), "0s500µs1ms1.5ms");
     }
 
     #[test]
@@ -393,10 +383,9 @@ mod tests {
     }
 
     #[test]
-    fn titles_and_units() {
-        let axis = Axis::log("CPU time [s]");
-        assert_eq!((axis.quantity(), axis.unit()), ("CPU time", "s"));
-        assert_eq!(axis.value_text(0.0125), "12.5\u{a0}ms");
-        assert_eq!(Axis::log("error").unit(), "");
+    fn values_have_units() {
+        assert_eq!(Axis::log("CPU time").with_unit("s").value_text(0.0125), "12.5\u{a0}ms");
+        assert_eq!(Axis::linear("angle").with_unit("rad").value_text(0.5), "0.500\u{a0}rad");
+        assert_eq!(Axis::log("error").value_text(0.5), "0.500");
     }
 }

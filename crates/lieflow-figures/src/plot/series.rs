@@ -135,9 +135,11 @@ impl Marker {
 pub struct Series {
     /// The name in the legend.
     pub name: String,
-    /// The index of the colour; lines that belong together may share it. After eight colours they begin
+    /// The index of the colour; lines that belong together may share it. After [`LINE_COLOURS`] they begin
     /// again.
     pub colour: usize,
+    /// In the colour of text instead, as a line that is none of the data.
+    pub in_ink: bool,
     /// The shape at the points. [`Marker::None`] is for dense lines.
     pub marker: Marker,
     /// A dashed line with hollow markers.
@@ -171,6 +173,11 @@ impl Series {
         Series { dash, ..self }
     }
 
+    /// The line in the colour of text.
+    pub fn in_ink(self) -> Self {
+        Series { in_ink: true, ..self }
+    }
+
     /// The points as the edge of a filled band.
     pub fn with_fill(self) -> Self {
         Series { filled: true, ..self }
@@ -178,7 +185,10 @@ impl Series {
 
     /// The CSS classes of this line and of its legend entry.
     pub(crate) fn classes(&self) -> String {
-        let mut classes = format!("lf-c{}", self.colour % LINE_COLOURS);
+        let mut classes = match self.in_ink {
+            true => "lf-ink".to_string(),
+            false => format!("lf-c{}", self.colour % LINE_COLOURS),
+        };
         if self.dash {
             classes.push_str(" lf-dash");
         }
@@ -235,7 +245,8 @@ mod tests {
 
     #[test]
     fn classes_state_the_style() {
-        let series = Series { colour: 9, dash: true, emphasised: true, ..Series::default() };
+        let series = Series { colour: 11, dash: true, emphasised: true, ..Series::default() };
         assert_eq!(series.classes(), "lf-c1 lf-dash lf-strong");
+        assert_eq!(series.in_ink().classes(), "lf-ink lf-dash lf-strong");
     }
 }

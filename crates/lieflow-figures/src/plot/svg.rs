@@ -88,9 +88,9 @@ pub(crate) fn polyline(points: &[(f64, f64)]) -> String {
     }
 }
 
-/// The estimated width of `text` set in a sans-serif font of `size` pixels.
+/// The estimated width of `text` set in a sans-serif font of `size` pixels; a wide font of digits fits.
 pub(crate) fn text_width(text: &str, size: f64) -> f64 {
-    0.56 * size * text.chars().count() as f64
+    0.6 * size * text.chars().count() as f64
 }
 
 /// A line of text at a point, which `anchor` relates to its start, middle or end.

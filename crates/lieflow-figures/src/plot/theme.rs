@@ -14,13 +14,13 @@ const fn colour(name: &'static str, light: &'static str, dark: &'static str) -> 
     Colour { name, light, dark }
 }
 
-/// The number of different line colours.
-pub(crate) const LINE_COLOURS: usize = 8;
+/// The number of different line colours. After them they begin again.
+pub const LINE_COLOURS: usize = 10;
 
 /// The number of brightness levels of the ellipsoid.
 pub(crate) const SHADES: usize = 16;
 
-/// The line colours follow Okabe and Ito (2008), made darker or lighter to stand out from the
+/// The first line colours follow Okabe and Ito (2008), made darker or lighter to stand out from the
 /// background of each theme.
 const COLOURS: [Colour; 16 + LINE_COLOURS] = [
     colour("paper", "#ffffff", "#14171c"),
@@ -40,13 +40,15 @@ const COLOURS: [Colour; 16 + LINE_COLOURS] = [
     colour("ellipsoid-light", "#fbeecb", "#8a7140"),
     colour("polhode", "#8a6a28", "#e2c078"),
     colour("c0", "#0072b2", "#5aa9f0"),
-    colour("c1", "#cf5200", "#ff8f57"),
+    colour("c1", "#cf4a10", "#ff8f57"),
     colour("c2", "#008a64", "#2fcf9f"),
     colour("c3", "#b4578f", "#ec9ccb"),
-    colour("c4", "#b07700", "#f0b440"),
-    colour("c5", "#2f93cc", "#9bdcff"),
+    colour("c4", "#c08a00", "#f0c040"),
+    colour("c5", "#5b3fc4", "#8f74ff"),
     colour("c6", "#3b424c", "#d3d9e0"),
-    colour("c7", "#857a00", "#efe45a"),
+    colour("c7", "#00a3c4", "#57e6f7"),
+    colour("c8", "#7a2e3a", "#d0606f"),
+    colour("c9", "#6fa000", "#b6e04a"),
 ];
 
 /// The CSS declarations that set all colour variables for the light or the dark theme.

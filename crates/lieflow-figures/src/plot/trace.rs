@@ -43,7 +43,7 @@ impl Trace {
 
 /// Why `value` is not drawn, if it is not.
 pub(crate) fn omission(axis: &Axis, map: &Map, value: f64) -> Option<String> {
-    let quantity = axis.quantity();
+    let quantity = &axis.title;
     match map.pixel(value) {
         Some(_) => None,
         None if value == 0.0 => Some(format!("with {quantity} 0")),

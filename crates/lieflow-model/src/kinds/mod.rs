@@ -127,6 +127,8 @@ pub struct QuantityInfo {
     pub columns: &'static [&'static str],
     /// What it means.
     pub meaning: &'static str,
+    /// Its unit, where every scene has the same; empty where the units of the scene decide.
+    pub unit: &'static str,
 }
 
 impl QuantityInfo {

@@ -154,7 +154,7 @@ impl Preset {
 
     pub(super) fn quantities(&'static self) -> Vec<QuantityInfo> {
         let info = |QuantityText { name, columns, meaning, .. }: &'static QuantityText| {
-            QuantityInfo { name, columns, meaning }
+            QuantityInfo { name, columns, meaning, unit: "" }
         };
         self.quantities.iter().map(info).collect()
     }

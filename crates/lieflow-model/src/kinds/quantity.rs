@@ -16,7 +16,7 @@ pub(super) enum Value<S: System> {
 
 /// So many columns from one on, as a part.
 pub(super) fn part(name: &str, first: usize, columns: usize, measure: Measure) -> Part {
-    Part { name: name.into(), columns: first..first + columns, measure }
+    Part { name: name.into(), what: "", columns: first..first + columns, measure }
 }
 
 /// Which problems keep a quantity.
@@ -63,7 +63,7 @@ impl<S: System> Quantity<S> {
         meaning: &'static str,
         value: fn(&S, f64, &PointOf<S>) -> f64,
     ) -> Self {
-        Self::new(QuantityInfo { name, columns: &[], meaning }, Value::Number(value))
+        Self::new(QuantityInfo { name, columns: &[], meaning, unit: "" }, Value::Number(value))
     }
 
     /// Numbers under these columns; with an `…` between the first and the last where the size of the problem says
@@ -74,7 +74,12 @@ impl<S: System> Quantity<S> {
         meaning: &'static str,
         value: fn(&S, f64, &PointOf<S>, &mut Vec<f64>),
     ) -> Self {
-        Self::new(QuantityInfo { name, columns, meaning }, Value::Numbers(value))
+        Self::new(QuantityInfo { name, columns, meaning, unit: "" }, Value::Numbers(value))
+    }
+
+    /// The values are angles in radians.
+    pub(super) const fn in_radians(self) -> Self {
+        Quantity { info: QuantityInfo { unit: "rad", ..self.info }, ..self }
     }
 
     /// With columns that depend on the problem.

@@ -68,6 +68,7 @@ impl System for Riccati {
             "arctan of the eigenvalues of P in ascending order: they jump at a pole",
             |_, _, p, row| row.extend(eigenvalues(p).iter().map(|x| x.atan())),
         )
+        .in_radians()
         .with_columns(|riccati| numbered("angle", riccati.p.nrows())),
     ];
 

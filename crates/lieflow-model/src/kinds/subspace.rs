@@ -110,6 +110,7 @@ impl System for Subspace {
             "principal angles to the span of the k leading eigenvectors, the largest first",
             |subspace, _, p, row| row.extend(subspace.angles(p)),
         )
+        .in_radians()
         .with_columns(|subspace| numbered("angle", subspace.dimension)),
         Q::number(
             "trace",

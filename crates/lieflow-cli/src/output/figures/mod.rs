@@ -9,16 +9,16 @@ pub use sample::RowSample;
 
 use lieflow_figures::number::{seconds, short, sig};
 use lieflow_figures::{
-    self as figures, Axis, Block, Body, Cell, Chart, Column, Ground, Heat, Marker, Page, Path,
-    Point, Scale, Section, Series, Sphere, Table,
+    self as figures, Axis, Block, Body, Cell, Chart, Column, Ground, Heat, LINE_COLOURS, Marker,
+    Page, Path, Point, Scale, Section, Series, Sphere, Table,
 };
 use lieflow_model::kinds::{self, Figure, PrincipalInertia};
 use lieflow_model::scene::Scene;
 use lieflow_model::schema::{Observable, Row};
 
-use self::lines::{LINES, against_time, constant, marked};
+use self::lines::{LINES, against_time, constant, in_rows, marked};
 use crate::cmd::CliError;
-use crate::output::{Accuracy, EVENTS, SUMMARY, Summary};
+use crate::output::{EVENTS, SUMMARY, Summary};
 
 /// Rows of a table that is open.
 const MANY: usize = 10;
@@ -51,29 +51,38 @@ pub fn run_page(summary: &Summary, run: &Drawn<'_>) -> Page {
     let mut constants = Vec::new();
     let mut charts = Vec::new();
     let is_line = matches!(figure, Figure::Lines(_));
+    let wants = |quantity: &Observable| {
+        wanted.iter().any(|name| *name == quantity.name || quantity.columns.contains(name))
+    };
     if is_line {
-        let title = words::title(kind, run.figure);
-        charts.extend(against_time("figure", &title, run.figure, run.rows, &[], summary));
+        let columns = if wants(run.figure) { wanted } else { &[] };
+        charts.push(against_time("figure", kind, run.figure, run.rows, columns, summary));
     }
     let drawn = |asked: &&&Observable| {
-        let among = |name: &String| *name == asked.name || asked.columns.contains(name);
-        let again = is_line && asked.name == run.figure.name && wanted.is_empty();
-        !again && (wanted.is_empty() || wanted.iter().any(among))
+        let again = is_line && asked.name == run.figure.name;
+        !again && (wanted.is_empty() || wants(asked))
     };
     for quantity in run.asked.iter().filter(drawn) {
-        let title = words::title(kind, quantity);
         if let Some(value) = constant(quantity, run.rows) {
-            constants.push((title, value));
+            constants.push((words::title(kind, quantity), value));
             continue;
         }
         let id = format!("time-{}", quantity.name.replace('_', "-"));
-        charts.extend(against_time(&id, &title, quantity, run.rows, wanted, summary));
+        charts.push(against_time(&id, kind, quantity, run.rows, wanted, summary));
     }
     let inertia = run.scene.problem.inertia();
     if let Some(body) = inertia.and_then(|inertia| motion::body(&inertia, run.rows)) {
         motion.insert(0, body.into());
     }
+    // A single body or sphere has the first chart beside it.
+    if let ([Block::Sphere(_) | Block::Body(_)], Some(first)) = (&motion[..], charts.first_mut())
+        && first.len() <= 2
+        && matches!(first.first(), Some(Block::Chart(_)))
+    {
+        motion.push(first.remove(0));
+    }
     let motion = if motion.len() > 1 { vec![Block::Row(motion)] } else { motion };
+    let mut charts: Vec<Block> = charts.into_iter().flat_map(in_rows).collect();
     if !constants.is_empty() {
         charts.push(Block::text("These quantities stay as they are at the start:"));
         charts.push(Block::Facts(constants));
@@ -81,7 +90,11 @@ pub fn run_page(summary: &Summary, run: &Drawn<'_>) -> Page {
     let mut result: Vec<Block> = summary.warnings.iter().cloned().map(Block::Notice).collect();
     result
         .extend(summary.failure.iter().map(|why| Block::Notice(format!("The run stopped: {why}"))));
-    result.extend(summary.accuracy.as_ref().map(|accuracy| Block::text(rightness(accuracy))));
+    result.extend(summary.accuracy.as_ref().map(|accuracy| {
+        let (right, found) = (accuracy.rightness_in_words(), accuracy.found_in_words());
+        let errors = accuracy.errors_in_words().replace('_', " ");
+        Block::text(format!("At the end {right}. The error, {found}: {errors}."))
+    }));
     let told = |why: &String| Block::text(format!("The error at the end is not known: {why}."));
     result.extend(summary.accuracy_unknown.iter().map(told));
     result.extend(summary.notes.iter().map(|note| Block::text(format!("Note: {note}."))));
@@ -109,7 +122,13 @@ pub fn run_page(summary: &Summary, run: &Drawn<'_>) -> Page {
     }
     Page {
         title: summary.title.clone(),
-        subtitle: format!("{}: {}, t = {t0} … {t1}", summary.problem, summary.modelled.join(", ")),
+        subtitle: format!(
+            "{}: {}, t = {} to {}, in the units of the scene",
+            summary.problem,
+            summary.modelled.join(", "),
+            in_digits(t0),
+            in_digits(t1)
+        ),
         links: links.into_iter().map(|(text, file)| (text.into(), file.into())).collect(),
         sections,
         footer: format!("lieflow {}", summary.lieflow),
@@ -132,24 +151,11 @@ pub fn in_digits(x: f64) -> String {
     short(x, 8)
 }
 
-/// Errors of parts that are told; summary.json has all.
-const PARTS: usize = 4;
-
-/// How right the end is.
-fn rightness(accuracy: &Accuracy) -> String {
-    let right = accuracy.rightness_in_words();
-    let mut parts: Vec<_> = accuracy.parts.iter().collect();
-    parts.sort_by(|a, b| b.relative.total_cmp(&a.relative));
-    let parts: Vec<String> =
-        parts.iter().take(PARTS).map(|part| part.in_words().replace('_', " ")).collect();
-    format!("At the end {right}. The error, {}: {}.", accuracy.found_in_words(), parts.join(", "))
-}
-
 /// The number of steps and their size.
 fn steps(summary: &Summary) -> String {
     let count = summary.steps;
     match (summary.dt, &summary.adaptive) {
-        (Some(dt), _) => format!("{count} of {dt}"),
+        (Some(dt), _) => format!("{count} of {}", in_digits(dt)),
         (None, Some(chosen)) => format!(
             "{count}, from {} to {}; {} tried again",
             sig(chosen.smallest_step, 2),
@@ -202,7 +208,8 @@ fn own_figure(summary: &Summary, run: &Drawn<'_>, figure: Figure) -> Vec<Block> 
         Figure::Curve(_) => vec![plane(id, &title, run.figure, run.rows, false).into()],
         Figure::Points(_) => vec![plane(id, &title, run.figure, run.rows, true).into()],
         Figure::Map(_, ground) => {
-            let title = format!("The field at t = {}", summary.t_end.unwrap_or(summary.t_span[1]));
+            let end = summary.t_end.unwrap_or(summary.t_span[1]);
+            let title = format!("The field at t = {}", in_digits(end));
             let ground = match ground {
                 kinds::Ground::Sphere => Ground::Sphere,
                 kinds::Ground::Torus => Ground::Torus,
@@ -230,7 +237,7 @@ fn plane(
 ) -> Chart {
     let pairs = quantity.columns.len() / 2;
     let every = if points { rows.kept().div_ceil(POINTS).max(1) } else { 1 };
-    let series = (0..pairs.min(LINES)).map(|k| {
+    let series = (0..pairs.min(LINE_COLOURS)).map(|k| {
         let of_row = |(_, row): (f64, Row<'_>)| {
             let values = &row[quantity];
             Point::new(values[2 * k], values[2 * k + 1])
@@ -244,11 +251,11 @@ fn plane(
         }
     });
     let axis = |i: usize| {
-        let names = quantity.columns.iter().skip(i).step_by(2).take(LINES);
+        let names = quantity.columns.iter().skip(i).step_by(2).take(LINE_COLOURS);
         names.map(|name| words::column(name)).collect::<Vec<_>>().join(", ")
     };
     let axes = [axis(0), axis(1)].map(|name| Axis::new(name, Scale::Linear));
-    let caption = said(quantity.name, pairs.min(LINES), pairs);
+    let caption = said(quantity.name, pairs.min(LINE_COLOURS), pairs);
     Chart::new(id, title, axes, series).with_caption(caption)
 }
 
@@ -268,10 +275,13 @@ fn sphere(id: String, title: String, run: &Drawn<'_>) -> Sphere {
         points.collect::<Vec<_>>()
     };
     let name = |k: usize| match triples {
+        _ if quantity.parts.len() == triples && !quantity.parts[k].name.is_empty() => {
+            quantity.parts[k].name.clone()
+        }
         1 => words::on_axis(quantity),
         _ => words::path(quantity, &quantity.columns[3 * k..3 * k + 3], k + 1),
     };
-    let paths: Vec<Path> = (0..triples.min(LINES))
+    let paths: Vec<Path> = (0..triples.min(LINE_COLOURS))
         .map(|k| Path { name: name(k), colour: k, points: path(k) })
         .collect();
     // From the side of the equator that the paths are on.
@@ -299,7 +309,7 @@ fn sphere(id: String, title: String, run: &Drawn<'_>) -> Sphere {
         false => "Each vector is divided by its length at the start.",
     };
     let caption =
-        format!("{} {scaled} {surfaces}", said(quantity.name, triples.min(LINES), triples));
+        format!("{} {scaled} {surfaces}", said(quantity.name, triples.min(LINE_COLOURS), triples));
     Sphere {
         id,
         title,
@@ -330,7 +340,7 @@ fn drift_table(summary: &Summary) -> Block {
         };
         let small = |x: f64| sig(x, 2);
         let cells = [
-            name.replace('_', " ").into(),
+            words::column(name).into(),
             Cell::number(drift.initial, |x| short(x, 6)),
             Cell::number(drift.max, small),
             Cell::number(drift.at_end, small),
@@ -354,14 +364,22 @@ fn drifts(summary: &Summary, watched: &[&Observable], rows: &RowSample<'_>) -> C
     let all = watched
         .iter()
         .flat_map(|law| law.columns.iter().enumerate().map(move |(i, column)| (law, i, column)));
-    let series = all.take(LINES).enumerate().map(|(colour, (law, i, column))| {
+    let mut all: Vec<_> = all.collect();
+    let moved = |column: &str| summary.drift.get(column).map_or(0.0, |drift| drift.max);
+    all.sort_by(|(.., a), (.., b)| moved(b).total_cmp(&moved(a)));
+    let told = match all.len() {
+        ..=LINES => String::new(),
+        count => format!(" The {LINES} that moved most, of {count}."),
+    };
+    let series = all.into_iter().take(LINES).enumerate().map(|(colour, (law, i, column))| {
         let initial = summary.drift.get(column).map_or(f64::NAN, |drift| drift.initial);
         let gap = |(t, row): (f64, Row<'_>)| (t, (row[law][i] - initial).abs());
         // A change of exactly 0, as at the start, has no place on a logarithm.
         let points = rows.rows().map(gap).filter(|(_, gap)| *gap != 0.0);
-        Series::line(words::column(column), colour, points).with_dash(colour >= 8)
+        Series::line(words::column(column), colour, points)
     });
     let axes = [Axis::linear("t"), Axis::log("|value − value at the start|")];
     let chart = Chart::new("drift", "Drifts of the invariants", axes, series);
-    marked(chart.with_caption("A change of exactly 0 cannot be drawn on this axis."), summary)
+    let caption = format!("A change of exactly 0 cannot be drawn on this axis.{told}");
+    marked(chart.with_caption(caption), summary)
 }

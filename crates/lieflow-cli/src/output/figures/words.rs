@@ -1,20 +1,39 @@
 //! What figures and tables call a quantity, its columns and its parts.
 
 use lieflow_model::kinds::Kind;
-use lieflow_model::schema::Observable;
+use lieflow_model::schema::{Observable, Part};
 
 /// The title of a quantity: the first clause of its meaning, or its columns if the scene makes them.
 pub(super) fn title(kind: &Kind, quantity: &Observable) -> String {
-    let Ok(info) = kind.quantity(quantity.name) else { return quantity.columns.join(", ") };
+    let info = match (kind.quantity(quantity.name), &quantity.parts[..]) {
+        (Ok(_), [part]) if !part.what.is_empty() => return of_part(part),
+        (Ok(info), _) => info,
+        (Err(_), _) => return by_formula(&path(quantity, &quantity.columns, 1)),
+    };
     let clause = info.meaning.split([';', ',', ':']).next().unwrap_or(info.meaning);
     let clause = clause.replace('_', " ");
     let mut letters = clause.chars();
     letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }
 
-/// The name of a quantity on an axis.
+/// The title of a part of a composed system.
+pub(super) fn of_part(part: &Part) -> String {
+    format!("The {} {}", part.what, part.name.replace('_', " "))
+}
+
+/// The title of what a formula of the scene computes.
+pub(super) fn by_formula(name: &str) -> String {
+    format!("By a formula of the scene: {name}")
+}
+
+/// The name of a quantity on an axis; its columns, where one of them has that name.
 pub(super) fn on_axis(quantity: &Observable) -> String {
-    quantity.name.replace('_', " ")
+    match &quantity.columns[..] {
+        columns @ [_, _, ..] if columns.iter().any(|column| column == quantity.name) => {
+            columns.iter().map(|name| column(name)).collect::<Vec<_>>().join(", ")
+        }
+        _ => quantity.name.replace('_', " "),
+    }
 }
 
 /// A column in a legend: its numbers become subscripts, as in m₁, g₁₂ and m₁,₂.

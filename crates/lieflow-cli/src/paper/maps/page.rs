@@ -75,7 +75,7 @@ fn chart(
             .with_dash(line.name.starts_with("nalgebra"))
     });
     let (x, over) = match study.over {
-        Over::Angle => (Axis::linear("angle |u| [rad]"), "angle"),
+        Over::Angle => (Axis::linear("angle |u|").with_unit("rad"), "angle"),
         Over::Size => (Axis::log("n"), "n"),
     };
     let id = format!("{}-{what}-{over}", study.topic.key());
@@ -90,8 +90,8 @@ fn charts(study: &Study) -> Block {
         study.lines.iter().filter_map(StudyLine::worst).map(|p| p.error).fold(0.0, f64::max);
     // Linear as long as that shows something of everybody.
     let scale = if largest < 30.0 { Scale::Linear } else { Scale::SymLog { linear: 1.0 } };
-    let units = Axis::new("error [eps·cond]", scale);
-    let time = Axis::log("CPU time of a call [s]");
+    let units = Axis::new("error", scale).with_unit("eps·cond");
+    let time = Axis::log("CPU time of a call").with_unit("s");
     let timed = match study.topic.is_inverse_differential() {
         true => format!("Time of the map and {name} {over}"),
         false => format!("Time of {name} {over}"),
@@ -120,7 +120,7 @@ fn table(studies: &[&Study], caption: &str, place: &str) -> Table {
             Cell::number(line.seconds(), seconds),
         ]
     });
-    let numbers = ["Largest error [eps·cond]", place, "Refused", "Median time"];
+    let numbers = ["Largest error (eps·cond)", place, "Refused", "Median time"];
     Table::new(caption, Column::all(["Map", "By"], numbers), rows)
 }
 
@@ -144,7 +144,7 @@ pub(super) fn page(studies: &[Study]) -> Page {
         table(&over_n, "On so(n), over all n.", "at n").into(),
     ];
     n_blocks.extend(drawn(&over_n));
-    let page = report::page(
+    report::page(
         "The maps: accuracy and time",
         "Closed forms on so(3) and the general layer for any n, beside nalgebra",
         vec![
@@ -171,7 +171,6 @@ pub(super) fn page(studies: &[Study]) -> Page {
             Section::new("Over the angle", angle_blocks),
             Section::new("Over n", n_blocks),
         ],
-    );
-    let links = [("Back to the demonstration", "index.html"), ("Every point (CSV)", "maps.csv")];
-    Page { links: links.map(|(text, href)| (text.into(), href.into())).into(), ..page }
+    )
+    .with_links([("Back to the demonstration", "index.html"), ("Every point (CSV)", "maps.csv")])
 }

@@ -26,20 +26,21 @@ impl Speed {
             outcomes.map(|outcome| Block::fold(outcome.title.clone(), outcome.blocks())).collect();
         sections.push(Section::new("The same for two more bodies", others));
         sections.push(self.agreement());
-        let page = report::page(
+        report::page(
             "Rotations that stay rotations",
             "Three bodies that turn freely, by Lie group methods and by classical Runge–Kutta",
             sections,
-        );
-        let links =
-            [("How accurate and fast each map is", MAPS_PAGE), ("Every run (CSV)", "speed.csv")];
-        Page { links: links.map(|(text, href)| (text.into(), href.into())).into(), ..page }
+        )
+        .with_links([
+            ("How accurate and fast each map is", MAPS_PAGE),
+            ("Every run (CSV)", "speed.csv"),
+        ])
     }
 
     /// The first result: who stays on the group.
     fn rotations(&self) -> Section {
         let mut blocks = vec![Block::text(self.result())];
-        blocks.extend(self.body.clone().map(Block::from));
+        let mut motion: Vec<Block> = self.body.clone().map(Block::from).into_iter().collect();
         if let Some(outcome) = self.outcomes.first() {
             let lines = outcome.runs.iter().map(|run| {
                 let defect = run.energy.defect.iter().filter(|(_, defect)| *defect != 0.0);
@@ -52,8 +53,9 @@ impl Speed {
                 axes,
                 lines,
             );
-            blocks.push(chart.into());
+            motion.push(chart.into());
         }
+        blocks.push(Block::Row(motion));
         Section::new("In short", blocks)
     }
 
@@ -82,8 +84,8 @@ impl Speed {
             ];
             Row::new(cells).with_emphasis(!f.holds())
         });
-        let mut columns = Column::all(["Check"], ["Cases", "Worst [units]", "Bound"]);
-        columns.push(Column::text(""));
+        let mut columns = Column::all(["Check"], ["Cases", "Worst (units)", "Bound"]);
+        columns.push(Column::text("Result"));
         let caption = "Each map and inverse differential of the general code at n = 3 against the closed formulas, \
                        at random u from 1e-320 to 3e14; whole steps; and the laws of each group with each \
                        map. One unit is the error that rounding the input alone causes.";
@@ -142,9 +144,9 @@ impl Outcome {
         });
         let lines =
             self.runs.iter().map(|run| Series { name: run.label.clone(), ..run.energy.line(1.0) });
-        let energy =
-            energy_chart(&format!("energy-{scene}"), "How far the energy has moved", "t", lines)
-                .with_caption(format!("Closed formulas, steps of {dt}."));
+        let (id, time) = (format!("energy-{scene}"), Axis::linear("t"));
+        let energy = energy_chart(&id, "How far the energy has moved", time, lines)
+            .with_caption(format!("Closed formulas, steps of {dt}."));
         let table = report::speed_table(&self.curves, &report::ADVICE);
         let tables = vec![table.into(), self.energy_table().into()];
         let charts = speed.into_iter().chain([energy]).map(Block::from);

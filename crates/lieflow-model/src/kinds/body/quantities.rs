@@ -170,6 +170,7 @@ pub(in crate::kinds) const fn nutation<S: AsBody>() -> Quantity<S> {
             up[0].hypot(up[1]).atan2(up[2])
         },
     )
+    .in_radians()
 }
 
 /// The angle of the attitude.
@@ -184,6 +185,7 @@ pub(in crate::kinds) const fn angle<S: AsBody>() -> Quantity<S> {
             sine.atan2(0.5 * (g.trace() - 1.0))
         },
     )
+    .in_radians()
     .missing_where(S::without_orientation)
 }
 

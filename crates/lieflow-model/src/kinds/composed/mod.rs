@@ -202,17 +202,18 @@ impl Composed {
     fn has_vectors(&self) -> bool {
         self.vectors().next().is_some()
     }
-    /// The parts of the state.
-    fn state_parts(&self) -> Vec<schema::Part> {
+    /// These parts, as a quantity has them one after the other.
+    fn in_a_row<'a>(parts: impl Iterator<Item = &'a Part>) -> Vec<schema::Part> {
         let mut first = 0;
-        let each = self.parts.iter().map(|Part { name, space, .. }| {
+        let each = parts.map(|Part { name, space, .. }| {
             let measure = match space {
                 Space::Rotation(_) => Measure::Rotation,
                 _ => Measure::Length,
             };
             let columns = space.coordinates(name).len();
             first += columns;
-            part(name, first - columns, columns, measure)
+            let what = space.describe();
+            schema::Part { what, ..part(name, first - columns, columns, measure) }
         });
         each.collect()
     }
@@ -243,11 +244,12 @@ impl System for Composed {
             |composed, _, y, row| composed.parts.iter().for_each(|part| part.space.show(y, row)),
         )
         .with_columns(|composed| coordinates(composed.parts.iter()))
-        .in_parts(Composed::state_parts),
+        .in_parts(|composed| Composed::in_a_row(composed.parts.iter())),
         Q::numbers("vectors", &["…"], "the coordinates of the vectors", |_, _, y, row| {
             row.extend(y.0.iter().flat_map(|x| x.iter()));
         })
         .with_columns(|composed| coordinates(composed.vectors()))
+        .in_parts(|composed| Composed::in_a_row(composed.vectors()))
         .missing_where(Composed::without_vectors),
         Q::numbers(
             "lengths",
@@ -272,11 +274,16 @@ impl System for Composed {
             let without = composed.rotations().next().is_none();
             without.then_some("no part is a rotation")
         }),
-        Q::numbers("invariants", &["…"], "what the scene names", |composed, _, y, row| {
-            let mut values = Vec::new();
-            composed.parts.iter().for_each(|part| part.space.show(y, &mut values));
-            row.extend(composed.invariants.iter().map(|(_, formula)| formula.value(&values)));
-        })
+        Q::numbers(
+            "invariants",
+            &["…"],
+            "the invariants that the scene names",
+            |composed, _, y, row| {
+                let mut values = Vec::new();
+                composed.parts.iter().for_each(|part| part.space.show(y, &mut values));
+                row.extend(composed.invariants.iter().map(|(_, formula)| formula.value(&values)));
+            },
+        )
         .with_columns(|composed| composed.invariants.iter().map(|(name, _)| name.clone()).collect())
         .kept(Law::by_the_flow(0))
         .missing_where(|composed| composed.invariants.is_empty().then_some("the scene names none")),
