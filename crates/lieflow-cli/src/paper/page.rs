@@ -140,11 +140,13 @@ fn chart(id: &str, title: &str, runs: &[EnergyRun], rows: &[PaperMethod], measur
         let h = run.error.get(1).map_or(1.0, |(t, _)| *t);
         run.line(if measured { run.seconds_per_step / h } else { 1.0 })
     });
-    let time = match measured {
-        true => Axis::linear("CPU time").with_unit("s"),
-        false => Axis::linear("time t"),
-    };
-    energy_chart(id, title, time, lines)
+    match measured {
+        true => {
+            let time = Axis::linear("CPU time").with_unit("s");
+            energy_chart(id, &format!("{title}, over the CPU time"), time, lines)
+        }
+        false => energy_chart(id, title, Axis::linear("time t"), lines),
+    }
 }
 
 fn figures34(paper: &Paper) -> Vec<Block> {

@@ -123,7 +123,7 @@ fn the_advice_follows_from_the_points() {
     let content = page.split("<script>").next().unwrap();
     assert!(content.contains("the best of all methods") && !content.contains("NaN"));
     assert!(page.contains("until a run takes 5ms"));
-    assert!(page.contains("Casimir") && page.contains("nearest to 1e-6"));
+    assert!(page.contains("Casimir") && page.contains("nearest to 1e-\u{2060}6"));
     assert!(page.contains("conserve energy"));
     for figure in ["pareto.svg", "operations.svg", "evaluations.svg", "speed-lie-series.svg"] {
         assert!(folder.read(&format!("out/{figure}")).starts_with("<svg"), "{figure}");

@@ -86,7 +86,19 @@ fn optional(element: &str, class: &str, text: &str) -> String {
     if text.is_empty() {
         return String::new();
     }
-    format!("<{element} class=\"{class}\">{}</{element}>\n", escape(text))
+    format!("<{element} class=\"{class}\">{}</{element}>\n", prose(text))
+}
+
+/// Text that may break its lines, but not within a number such as 1e-9.
+fn prose(text: &str) -> String {
+    let mut parts = text.split("e-");
+    let first = parts.next().unwrap_or_default().to_string();
+    let joined = parts.fold(first, |before, after| {
+        let number = before.ends_with(|c: char| c.is_ascii_digit())
+            && after.starts_with(|c: char| c.is_ascii_digit());
+        before + if number { "e-\u{2060}" } else { "e-" } + after
+    });
+    escape(&joined)
 }
 
 fn blocks(blocks: &[Block]) -> String {
@@ -95,9 +107,9 @@ fn blocks(blocks: &[Block]) -> String {
 
 fn block(block: &Block) -> String {
     match block {
-        Block::Paragraph(text) => format!("<p>{}</p>\n", escape(text)),
+        Block::Paragraph(text) => format!("<p>{}</p>\n", prose(text)),
         Block::Notice(text) => {
-            format!("<p class=\"notice\" role=\"note\">{}</p>\n", escape(text))
+            format!("<p class=\"notice\" role=\"note\">{}</p>\n", prose(text))
         }
         Block::Code(text) => {
             format!("<pre tabindex=\"0\"><code>{}</code></pre>\n", escape(text))
@@ -244,6 +256,12 @@ mod tests {
             let found = html.matches(outside).count();
             assert!(found == 0 || (outside == "http://" && found == allowed), "{outside}");
         }
+    }
+
+    #[test]
+    fn a_number_is_on_one_line() {
+        let html = block(&Block::text("about 2.5e-9 of a one-2-one"));
+        assert_eq!(html, "<p>about 2.5e-\u{2060}9 of a one-2-one</p>\n");
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! The names of the lines, to the right of the data.
 
-use super::series::Series;
+use super::series::{Marker, Series};
 use super::svg::{escape, px, text_width};
 
 /// The distance of two lines of text.
@@ -80,8 +80,15 @@ pub(crate) fn entry(
             px(y)
         ));
     }
-    out.push_str(&format!("<path class=\"lf-key-line\" d=\"M{} {}h{SAMPLE}\"/>", px(x), px(y)));
-    let outline = series.outline();
+    // Points without a line are small: in the legend each is large enough to see its colour.
+    let outline = match series.marker {
+        Marker::Dot => Marker::Circle.outline(4.0),
+        _ => {
+            let line = format!("<path class=\"lf-key-line\" d=\"M{} {}h{SAMPLE}\"/>", px(x), px(y));
+            out.push_str(&line);
+            series.outline()
+        }
+    };
     if !outline.is_empty() {
         // The class of a drawn point would make the sample count as data.
         let class = series.marker_classes().replace("lf-p", "lf-m");
@@ -114,6 +121,16 @@ mod tests {
         assert!(sorted[0] >= 0.0 && sorted[4] <= 100.0);
         assert_eq!((heights[2], heights[4]), (10.0, 95.0));
         assert!((heights[3] - 51.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn points_without_a_line_have_none_in_the_legend() {
+        let entry = |marker| {
+            let series = Series::line("a", 0, [(0.0, 0.0)]).with_marker(marker);
+            entry(&series, 0, (0.0, 0.0), None, 50.0)
+        };
+        assert!(!entry(Marker::Dot).contains("lf-key-line"));
+        assert!(entry(Marker::Circle).contains("lf-key-line"));
     }
 
     #[test]

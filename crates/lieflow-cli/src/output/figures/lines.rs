@@ -19,7 +19,7 @@ const CHARTS: usize = 12;
 const CONSTANT: f64 = 1e-12;
 const NEARLY: f64 = 1e-2;
 /// Swings that a chart of the whole run can show, and swings in the chart of the first of them.
-const CARPET: usize = 80;
+const CARPET: usize = 50;
 const FIRST: usize = 16;
 /// Ranges of a chart that a reader can tell apart.
 const BANDS: usize = 4;

@@ -56,7 +56,8 @@ pub fn run_page(summary: &Summary, run: &Drawn<'_>) -> Page {
     };
     if is_line {
         let columns = if wants(run.figure) { wanted } else { &[] };
-        charts.push(against_time("figure", kind, run.figure, run.rows, columns, summary));
+        let lines = against_time("figure", kind, run.figure, run.rows, columns, summary);
+        charts.push((run.figure, lines));
     }
     let drawn = |asked: &&&Observable| {
         let again = is_line && asked.name == run.figure.name;
@@ -68,21 +69,23 @@ pub fn run_page(summary: &Summary, run: &Drawn<'_>) -> Page {
             continue;
         }
         let id = format!("time-{}", quantity.name.replace('_', "-"));
-        charts.push(against_time(&id, kind, quantity, run.rows, wanted, summary));
+        let lines = against_time(&id, kind, quantity, run.rows, wanted, summary);
+        charts.push((*quantity, lines));
     }
     let inertia = run.scene.problem.inertia();
     if let Some(body) = inertia.and_then(|inertia| motion::body(&inertia, run.rows)) {
         motion.insert(0, body.into());
     }
-    // A single body or sphere has the first chart beside it.
-    if let ([Block::Sphere(_) | Block::Body(_)], Some(first)) = (&motion[..], charts.first_mut())
-        && first.len() <= 2
-        && matches!(first.first(), Some(Block::Chart(_)))
+    // A single body or sphere has the first chart beside it, unless that is one of many of another quantity.
+    if let ([Block::Sphere(_) | Block::Body(_)], Some((quantity, lines))) =
+        (&motion[..], charts.first_mut())
+        && (lines.len() <= 2 || quantity.name == run.figure.name)
+        && matches!(lines.first(), Some(Block::Chart(_)))
     {
-        motion.push(first.remove(0));
+        motion.push(lines.remove(0));
     }
     let motion = if motion.len() > 1 { vec![Block::Row(motion)] } else { motion };
-    let mut charts: Vec<Block> = charts.into_iter().flat_map(in_rows).collect();
+    let mut charts: Vec<Block> = charts.into_iter().flat_map(|(_, lines)| in_rows(lines)).collect();
     if !constants.is_empty() {
         charts.push(Block::text("These quantities stay as they are at the start:"));
         charts.push(Block::Facts(constants));
