@@ -177,7 +177,7 @@ impl Shown {
         if self.columns.len() <= LINES {
             return vec![self];
         }
-        let entry = |i: &usize| names[*i][words::stem(&names[*i]).len()..].as_bytes();
+        let entry = |i: &usize| &names[*i].as_bytes()[words::stem(&names[*i]).len()..];
         let of_matrix = self.columns.iter().all(|i| entry(i).len() == 2);
         let same_row = |a: &usize, b: &usize| !of_matrix || entry(a)[0] == entry(b)[0];
         let rows = self.columns.chunk_by(same_row).flat_map(|row| {
