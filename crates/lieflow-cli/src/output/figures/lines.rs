@@ -18,13 +18,16 @@ const CHARTS: usize = 12;
 /// Relative changes below the first are rounding, and below the second are drawn as such.
 const CONSTANT: f64 = 1e-12;
 const NEARLY: f64 = 1e-2;
-/// Swings that a chart of the whole run can show, and swings in the chart of the first of them.
+/// Swings that a chart of the whole run can show, and one of several side by side; swings in the chart of the first
+/// of them.
 const CARPET: usize = 50;
+const SMALL_CARPET: usize = 24;
 const FIRST: usize = 16;
 /// Ranges of a chart that a reader can tell apart.
 const BANDS: usize = 4;
-/// Swings in each part of a chart of ranges, and its parts at most.
+/// Swings in each part of a chart of ranges, and its parts: at least, and at most.
 const EACH: usize = 4;
+const LEAST: usize = 12;
 const RANGES: usize = 160;
 
 /// A column as a line.
@@ -68,7 +71,8 @@ pub(super) fn against_time(
     let [size, change] = extent(quantity, rows);
     let from_start = change < NEARLY * size;
     let unit = kind.quantity(quantity.name).map_or("", |info| info.unit);
-    let parts = parts(kind, quantity, wanted);
+    let parts = parts_of(kind, quantity, wanted);
+    let carpet = if parts.len() > 1 { SMALL_CARPET } else { CARPET };
     let mut charts = Vec::new();
     for (place, shown) in parts.into_iter().take(CHARTS).enumerate() {
         let Shown { title, axis, columns: part } = shown;
@@ -102,7 +106,7 @@ pub(super) fn against_time(
             part.iter().copied().map(line).collect()
         };
         let axis = Axis::linear(axis).with_unit(unit);
-        charts.extend(chart(&id, &title, &axis, lines, summary));
+        charts.extend(chart(&id, &title, &axis, lines, carpet, summary));
     }
     let closed = charts.split_off(charts.len().min(OPEN));
     if !closed.is_empty() {
@@ -134,7 +138,7 @@ struct Shown {
 
 /// The columns that belong together: all of a few, the parts of a composed system, or those of one name; those with
 /// the fewest columns first.
-fn parts(kind: &Kind, quantity: &Observable, wanted: &[String]) -> Vec<Shown> {
+fn parts_of(kind: &Kind, quantity: &Observable, wanted: &[String]) -> Vec<Shown> {
     let names = &quantity.columns;
     let is_wanted = |i: &usize| {
         wanted.is_empty() || wanted.iter().any(|name| *name == names[*i] || name == quantity.name)
@@ -197,12 +201,13 @@ impl Shown {
     }
 }
 
-/// One chart, or two of a run with many swings: the first of them, and the ranges of all.
+/// One chart, or two of a run with more swings than `carpet`: the first of them, and the ranges of all.
 fn chart(
     id: &str,
     title: &str,
     axis: &Axis,
     lines: impl Fn(bool) -> Vec<Line>,
+    carpet: usize,
     summary: &Summary,
 ) -> Vec<Block> {
     let axes = || [Axis::linear("t"), axis.clone()];
@@ -211,7 +216,7 @@ fn chart(
     };
     let whole = lines(false);
     let most = whole.iter().map(|line| swings(&line.points).len()).max().unwrap_or(0);
-    if most <= CARPET {
+    if most <= carpet {
         let lines = whole.into_iter().enumerate().map(series);
         return vec![marked(Chart::new(id, title, axes(), lines), summary).into()];
     }
@@ -232,8 +237,11 @@ fn chart(
     let mut charts = vec![Block::from(marked(first, summary))];
     if whole.len() <= BANDS {
         let ranges = whole.into_iter().enumerate().map(|(i, line)| {
-            series((i, Line { points: range(&line.points, (most / EACH).min(RANGES)), ..line }))
-                .with_fill()
+            series((
+                i,
+                Line { points: range(&line.points, (most / EACH).clamp(LEAST, RANGES)), ..line },
+            ))
+            .with_fill()
         });
         let title = format!("{title}, the whole run");
         let ranges = Chart::new(format!("{id}-whole"), title, axes(), ranges).with_caption(
@@ -336,7 +344,7 @@ mod tests {
             let model = scene.model_with(scene.layer, &[quantity]).unwrap();
             let wanted: Vec<String> = wanted.iter().map(|name| name.to_string()).collect();
             let quantity = model.schema().get(quantity).unwrap();
-            let parts = parts(scene.problem.kind(), quantity, &wanted);
+            let parts = parts_of(scene.problem.kind(), quantity, &wanted);
             parts.into_iter().map(|part| (part.title, part.columns.len())).collect()
         };
         let named = |parts: &[(&str, usize)]| -> Vec<(String, usize)> {
@@ -360,5 +368,10 @@ mod tests {
             ("The rotation g: row 3", 3),
         ];
         assert_eq!(shown("gyrostat", "state", &[]), named(&parts));
+        let scene = Scene::bundled("gyro-record").unwrap();
+        let model = scene.model_with(scene.layer, &["state"]).unwrap();
+        let state = model.schema().get("state").unwrap();
+        let of_one_part = parts_of(scene.problem.kind(), state, &[]);
+        assert!(of_one_part.iter().all(|part| part.axis == "g"), "{of_one_part:?}");
     }
 }

@@ -26,8 +26,13 @@ pub(super) fn by_formula(name: &str) -> String {
     format!("By a formula of the scene: {name}")
 }
 
-/// The name of a quantity on an axis; its columns, where one of them has that name.
+/// The name of a quantity on an axis: of its one part, or its columns, where one of them has that name.
 pub(super) fn on_axis(quantity: &Observable) -> String {
+    if let [Part { name, .. }] = &quantity.parts[..]
+        && !name.is_empty()
+    {
+        return name.replace('_', " ");
+    }
     match &quantity.columns[..] {
         columns @ [_, _, ..] if columns.iter().any(|column| column == quantity.name) => {
             columns.iter().map(|name| column(name)).collect::<Vec<_>>().join(", ")
