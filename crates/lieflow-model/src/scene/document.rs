@@ -8,8 +8,8 @@ use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue, ValueDeserializer};
 
 use super::error::{Mistakes, ReadError, Refusal, SceneError};
-use super::suggest::{help_for, suggest};
-use lieflow::names::near;
+use super::mend::{Found, Mending, Wrong, rename};
+use super::suggest::help_for;
 
 /// The keys at the top.
 pub(super) const TOP: &[&str] = &["title", "problem", "method", "time", "events", "output"];
@@ -19,6 +19,9 @@ const EXAMPLES: [(&str, &str); 2] = [
     ("problem", "kind = \"rigid-body\"\ninertia = [1, 2, 3]\nomega_body = [0.2, 0, 1]"),
     ("time", "t_span = [0, 10]"),
 ];
+
+/// More mistakes than this are not looked for in a value at the top.
+const MENDED_MAX: usize = 64;
 
 /// A parsed scene file.
 pub(super) struct Document<'a> {
@@ -70,6 +73,19 @@ impl<'a> Document<'a> {
         T::deserialize(ValueDeserializer::from(table.get(key)?.clone())).ok()
     }
 
+    /// The entries of a list at the top; none where it is missing.
+    pub(super) fn entries(&self, key: &str) -> Result<Vec<Spanned<DeValue<'a>>>, SceneError> {
+        match self.root.get(key).map(|value| (value.get_ref(), value.span())) {
+            None => Ok(Vec::new()),
+            Some((DeValue::Array(list), _)) => Ok(list.iter().cloned().collect()),
+            Some((other, place)) => {
+                let found = other.type_str();
+                let message = format!("{key}: found {found}, expected a list: [[{key}]]");
+                Err(self.error(message, Some(place)))
+            }
+        }
+    }
+
     /// A section, as a table.
     pub(super) fn section(&self, name: &str) -> Result<Spanned<DeTable<'a>>, SceneError> {
         match self.root.get(name) {
@@ -96,61 +112,48 @@ impl<'a> Document<'a> {
     }
 
     /// Read a value at the top, and find all its mistakes. A mistake is mended in a copy, and the copy is read for
-    /// the next one: until none is left, or until it may come from the mending.
+    /// the next one, until nothing can be mended. What may follow from the mending is not told.
     pub(super) fn read<T>(
         &self,
         name: &str,
-        mut value: Spanned<DeValue<'a>>,
+        value: Spanned<DeValue<'a>>,
         read: impl Fn(ValueDeserializer<'_>) -> Result<T, ReadError>,
     ) -> Result<T, SceneError> {
+        let attempt = |value: &Spanned<DeValue<'a>>| {
+            read(value.clone().into()).map_err(|error| (self.place(name, value, &error), error))
+        };
         let mut mistakes = Mistakes::default();
-        let (mut left_out, mut replaced) = (Vec::<String>::new(), Vec::new());
-        loop {
-            let error = match read(value.clone().into()) {
+        let mut result = attempt(&value);
+        let mut mending = Mending::of(self.text, value);
+        for _ in 0..MENDED_MAX {
+            let found = match result {
                 Ok(read) => return mistakes.or(Some(read)),
-                Err(error) => error,
+                Err(found) => found,
             };
-            let place = self.place(name, &value, &error);
-            let mended = match &error {
-                ReadError::Toml(_) if !replaced.is_empty() => break,
-                ReadError::Refused(_) if !left_out.is_empty() => break,
-                ReadError::Toml(error) => {
-                    let wrong = Wrong::of(error.message());
-                    if let Wrong::MissingKey(key) = wrong
-                        && left_out.iter().any(|given| suggest(given, &[key]).is_some())
-                    {
-                        break;
-                    }
-                    place.is_some_and(|place| {
-                        at_entry(value.get_mut(), &place, &mut |table, key| match &wrong {
-                            Wrong::UnknownKey(_, names) if rename(table, &key, names) => {}
-                            _ => {
-                                table.remove(key.as_str());
-                                left_out.push(key);
-                            }
-                        })
-                    })
-                }
-                ReadError::Refused(_) => {
-                    let mended = place.is_some_and(|place| {
-                        let is_new = !replaced.contains(&place);
-                        is_new && write_over(value.get_mut(), &place) && {
-                            replaced.push(place);
-                            true
-                        }
-                    });
-                    if !mended && !replaced.is_empty() {
-                        break;
-                    }
-                    mended
-                }
-            };
-            mistakes.keep::<()>(Err(self.read_error(name, &value, error)));
-            if !mended {
-                break;
+            let follows = mending.explains(&found);
+            let next = mending.mend(&found, attempt);
+            if !follows {
+                mistakes.keep::<()>(Err(self.read_error(name, found)));
+            }
+            match next {
+                Some(next) => result = next,
+                None => break,
             }
         }
         mistakes.or(None)
+    }
+
+    /// The keys of a section, as T, with what is made of them.
+    pub(super) fn checked_keys<T: for<'de> Deserialize<'de>, U>(
+        &self,
+        name: &str,
+        check: impl Fn(&T) -> Result<U, Refusal>,
+    ) -> Result<(T, U), SceneError> {
+        self.read(name, table(self.section(name)?), |value| {
+            let keys = T::deserialize(value)?;
+            let made = check(&keys)?;
+            Ok((keys, made))
+        })
     }
 
     /// The keys of a section, as T; the default where there is no such section.
@@ -201,13 +204,7 @@ impl<'a> Document<'a> {
     }
 
     /// An error in a value at the top, with its place.
-    fn read_error(
-        &self,
-        section: &str,
-        value: &Spanned<DeValue<'a>>,
-        error: ReadError,
-    ) -> SceneError {
-        let place = self.place(section, value, &error);
+    fn read_error(&self, section: &str, (place, error): Found) -> SceneError {
         let (message, help) = match error {
             ReadError::Toml(error) => Wrong::of(error.message()).in_words(section),
             ReadError::Refused(Refusal { message, help, .. }) => (message, help),
@@ -287,102 +284,4 @@ pub(super) fn read_beside(
 /// A section as a value.
 pub(super) fn table(section: Spanned<DeTable<'_>>) -> Spanned<DeValue<'_>> {
     Spanned::new(section.span(), DeValue::Table(section.into_inner()))
-}
-
-/// Calls `act` on the innermost table entry that contains a place. Returns false if no entry contains it.
-fn at_entry<'a>(
-    value: &mut DeValue<'a>,
-    place: &Range<usize>,
-    act: &mut dyn FnMut(&mut DeTable<'a>, String),
-) -> bool {
-    let found = match value {
-        DeValue::Table(table) => {
-            table.iter_mut().any(|(_, value)| at_entry(value.get_mut(), place, act))
-        }
-        DeValue::Array(list) => list.iter_mut().any(|entry| at_entry(entry.get_mut(), place, act)),
-        _ => false,
-    };
-    let DeValue::Table(table) = value else { return found };
-    let holds = |span: Range<usize>| span.start <= place.start && place.end <= span.end;
-    let mut entries = table.iter();
-    let entry = entries.find(|(key, value)| holds(key.span()) || holds(value.span()));
-    match entry.map(|(key, _)| key.get_ref().to_string()) {
-        Some(key) if !found => {
-            act(table, key);
-            true
-        }
-        _ => found,
-    }
-}
-
-/// Give an entry the name that is spelt like its own, where that is free.
-fn rename(table: &mut DeTable<'_>, given: &str, names: &[&str]) -> bool {
-    let Some(meant) = near(given, names).filter(|meant| !table.contains_key(*meant)) else {
-        return false;
-    };
-    table.remove_entry(given).is_some_and(|(key, value)| {
-        table.insert(Spanned::new(key.span(), meant.to_owned().into()), value);
-        true
-    })
-}
-
-/// Write a formula over the text at a place; false where there is no text.
-fn write_over(value: &mut DeValue<'_>, place: &Range<usize>) -> bool {
-    let within = |value: &mut Spanned<DeValue<'_>>| match value.get_ref() {
-        DeValue::String(_) if value.span() == *place => {
-            *value.get_mut() = DeValue::String("0".into());
-            true
-        }
-        _ => write_over(value.get_mut(), place),
-    };
-    match value {
-        DeValue::Table(table) => table.iter_mut().any(|(_, value)| within(value)),
-        DeValue::Array(list) => list.iter_mut().any(within),
-        _ => false,
-    }
-}
-
-/// A mistake that the deserializer found.
-enum Wrong<'m> {
-    /// A key, and those that there are.
-    UnknownKey(&'m str, Vec<&'m str>),
-    MissingKey(&'m str),
-    Value(&'m str),
-}
-
-impl<'m> Wrong<'m> {
-    /// Reads the kind of mistake from the message of the deserializer, which gives nothing else.
-    fn of(message: &'m str) -> Self {
-        let mut quoted = message.split('`').skip(1).step_by(2);
-        match quoted.next() {
-            Some(given) if message.starts_with("unknown field") => {
-                Wrong::UnknownKey(given, quoted.collect())
-            }
-            Some(name) if message.starts_with("missing field") => Wrong::MissingKey(name),
-            _ => Wrong::Value(message),
-        }
-    }
-
-    /// The message in the words of this program, and a suggestion.
-    fn in_words(&self, section: &str) -> (String, Option<String>) {
-        let message = match self {
-            Wrong::UnknownKey(given, names) => {
-                let message = format!("unknown key `{given}` in [{section}]");
-                return (message, Some(help_for(given, names)));
-            }
-            Wrong::MissingKey(name) => {
-                return (format!("missing key `{name}` in [{section}]"), None);
-            }
-            Wrong::Value(message) => message,
-        };
-        if message.ends_with("number overflowed") {
-            return ("the number is out of range".into(), None);
-        }
-        let plain = ["invalid type: ", "invalid value: "]
-            .iter()
-            .find_map(|jargon| message.strip_prefix(jargon))
-            .map_or_else(|| message.to_string(), |rest| format!("found {rest}"));
-        let words = [("floating point", "number"), ("sequence", "list"), ("map,", "table,")];
-        (words.iter().fold(plain, |text, (from, to)| text.replace(from, to)), None)
-    }
 }

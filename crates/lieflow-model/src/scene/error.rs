@@ -201,13 +201,15 @@ impl Refusal {
 
     /// A value that cannot be used.
     pub fn at(key: impl Into<String>, message: impl Into<String>) -> Self {
-        Refusal { key: Some(key.into()), message: message.into(), help: None }
+        Refusal { key: Some(key.into()), ..Refusal::section(message) }
     }
 
     /// A name that is none of those that are expected.
     pub fn unknown(key: &str, name: &str, expected: &[&str]) -> Self {
-        let help = Some(help_for(name, expected));
-        Refusal { help, ..Refusal::at(key, format!("unknown {key} `{name}`")) }
+        Refusal {
+            help: Some(help_for(name, expected)),
+            ..Refusal::at(key, format!("unknown {key} `{name}`"))
+        }
     }
 
     /// Makes the refusal about another key.
@@ -271,11 +273,7 @@ impl From<Error> for Refusal {
         let key = match error {
             Error::UnknownName { kind, name, expected } => {
                 let key = if kind == "method" { "name" } else { kind };
-                return Refusal {
-                    key: Some(key.into()),
-                    message: format!("unknown {kind} `{name}`"),
-                    help: Some(help_for(&name, &expected)),
-                };
+                return Refusal::unknown(kind, &name, &expected).about(key);
             }
             Error::OutOfRange { arg, .. } => Some(arg),
             Error::NotFiniteEntry { arg, row, col, .. } => Some(format!("{arg}[{row},{col}]")),
@@ -288,7 +286,7 @@ impl From<Error> for Refusal {
             Error::Unsupported { what, .. } => Some(what.into()),
             _ => None,
         };
-        Refusal { key, message, help: None }
+        Refusal { key, ..Refusal::section(message) }
     }
 }
 

@@ -64,40 +64,38 @@ impl SceneEvent {
     }
 }
 
-/// The events of a scene, of these columns.
-pub(super) fn resolve(keys: Vec<EventKeys>, columns: &Columns) -> Result<Vec<SceneEvent>, Refusal> {
-    let mut events: Vec<SceneEvent> = Vec::new();
-    for (i, EventKeys { name, when: Text(when), direction, stop_after }) in
-        keys.into_iter().enumerate()
-    {
-        let key = |key: &str| "events".index(i).entry(key);
-        if name.trim().is_empty() {
-            return Err(Refusal::at(key("name"), "an event without a name"));
-        }
-        if events.iter().any(|event| event.name == name) {
-            return Err(Refusal::at(key("name"), format!("event `{name}` is there twice")));
-        }
-        let direction = match direction {
-            None => Direction::Both,
-            Some(given) => {
-                let found = DIRECTIONS.iter().find(|(name, _)| *name == given);
-                let names = DIRECTIONS.map(|(name, _)| name);
-                let unknown = || Refusal::unknown("direction", &given, &names);
-                found.ok_or_else(|| Refusal { key: Some(key("direction")), ..unknown() })?.1
-            }
-        };
-        let formula = columns.read(&key("when"), when.trim())?;
-        if formula.is_constant() {
-            let message =
-                format!("`{when}` is the same at all times, expected a column or t in it");
-            return Err(Refusal::at(key("when"), message));
-        }
-        events.push(SceneEvent {
-            name,
-            direction,
-            stop_after: stop_after.map(|count| count.0),
-            when: formula,
-        });
+/// The event `i` of a scene, from 0, of these columns, after events of these names.
+///
+/// # Errors
+/// A refusal of the first key that cannot be used.
+pub(super) fn resolve(
+    keys: EventKeys,
+    i: usize,
+    names_before: &[&str],
+    columns: &Columns,
+) -> Result<SceneEvent, Refusal> {
+    let EventKeys { name, when: Text(when), direction, stop_after } = keys;
+    let key = |key: &str| "events".index(i).entry(key);
+    if name.trim().is_empty() {
+        return Err(Refusal::at(key("name"), "an event without a name"));
     }
-    Ok(events)
+    if names_before.contains(&&*name) {
+        return Err(Refusal::at(key("name"), format!("event `{name}` is there twice")));
+    }
+    let formula = columns.read(&key("when"), when.trim())?;
+    if formula.is_constant() {
+        let message = format!("`{when}` is the same at all times, expected a column or t in it");
+        return Err(Refusal::at(key("when"), message));
+    }
+    let direction = match direction {
+        None => Direction::Both,
+        Some(given) => {
+            let found = DIRECTIONS.iter().find(|(name, _)| *name == given);
+            let names = DIRECTIONS.map(|(name, _)| name);
+            let unknown = || Refusal::unknown("direction", &given, &names);
+            found.ok_or_else(|| unknown().about(key("direction")))?.1
+        }
+    };
+    let stop_after = stop_after.map(|count| count.0);
+    Ok(SceneEvent { name, direction, stop_after, when: formula })
 }

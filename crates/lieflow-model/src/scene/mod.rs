@@ -8,6 +8,7 @@ mod error;
 mod events;
 pub mod formula;
 mod keys;
+mod mend;
 mod set;
 mod suggest;
 pub mod values;
@@ -28,11 +29,13 @@ use lieflow::StepControl;
 use lieflow::catalog::{MethodSpec, all_methods};
 use lieflow::samples::{Outside, Samples};
 use lieflow::{Error, SaveAt, TimeGrid};
+use serde::Deserialize;
 use toml::de::DeValue;
 
 use self::columns::{Columns, FORMULAS, RowFormula, check_plot, with_formulas};
 use self::document::{Document, read_beside, table};
 use self::error::Mistakes;
+use self::events::EventKeys;
 use self::keys::{MethodKeys, Output, OutputKeys, TimeKeys, with_defaults};
 use crate::kinds::{FormulaKeys, KINDS, KNOTS_MAX, Kind, ProblemSpec, SAMPLES};
 use crate::model::{Layer, Model, Plan, Steps};
@@ -119,14 +122,13 @@ impl Scene {
         let method =
             method.and_then(|method| mistakes.keep(document.check("method", method.resolve(spec))));
 
-        let time = mistakes.keep(document.keys::<TimeKeys>("time"));
-        let steps_left = time.as_ref().is_some_and(TimeKeys::is_left);
-        let at_knots = time.as_ref().zip(spec).and_then(|(time, problem)| {
-            let at_knots = time.at_knots(problem.knots([0.0, 0.0]).is_some());
+        let time = mistakes.keep(document.checked_keys("time", TimeKeys::resolve));
+        let steps_left = time.as_ref().is_some_and(|(keys, _)| keys.is_left());
+        let at_knots = time.as_ref().zip(spec).and_then(|((keys, _), problem)| {
+            let at_knots = keys.at_knots(problem.knots([0.0, 0.0]).is_some());
             mistakes.keep(document.check("time", at_knots))
         });
-        let steps = time.as_ref();
-        let steps = steps.and_then(|time| mistakes.keep(document.check("time", time.resolve())));
+        let (time, steps) = time.unzip();
         let grid = steps.as_ref().map(|(grid, ..)| *grid);
         if let (Some(grid), Some(problem)) = (grid, spec) {
             // Beyond its samples a formula has no value.
@@ -176,11 +178,7 @@ impl Scene {
             }
         }
 
-        let events = mistakes.keep(document.optional("events"));
-        let events = events.zip(columns).and_then(|(events, columns)| {
-            let events = events::resolve(events.unwrap_or_default(), &columns);
-            mistakes.keep(document.check("events", events))
-        });
+        let events = mistakes.keep(read_events(&document, columns.as_ref())).flatten();
         if let (Some(grid), Some(events)) = (grid, &events)
             && !grid.t_span()[1].is_finite()
             && events.iter().all(|event| event.stop_after.is_none())
@@ -562,6 +560,30 @@ fn read_problem(
         document.check("problem", beside)?;
     }
     document.read("problem", table(section), kind.read)
+}
+
+/// The events; none of a problem without columns.
+fn read_events(
+    document: &Document<'_>,
+    columns: Option<&Columns>,
+) -> Result<Option<Vec<SceneEvent>>, SceneError> {
+    let (entries, mut mistakes) = (document.entries("events")?, Mistakes::default());
+    let names = entries.iter().map(|entry| {
+        let name = entry.get_ref().get("name").and_then(|name| name.get_ref().as_str());
+        name.unwrap_or_default()
+    });
+    let names: Vec<&str> = names.collect();
+    let events = entries.iter().enumerate().map(|(i, entry)| {
+        let read = document.read("events", entry.clone(), |entry| {
+            let keys = EventKeys::deserialize(entry)?;
+            let event = |columns| events::resolve(keys, i, &names[..i], columns);
+            Ok(columns.map(event).transpose()?)
+        });
+        mistakes.keep(read).flatten()
+    });
+    // Each is read, also after one that is wrong.
+    let events: Vec<_> = events.collect();
+    mistakes.or(Some(events.into_iter().collect()))
 }
 
 /// A run stays in the span of the samples.

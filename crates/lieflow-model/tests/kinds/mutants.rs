@@ -73,7 +73,7 @@ fn outcome(name: &str, text: &str) -> Option<String> {
 
 #[test]
 fn every_value_may_be_another() {
-    let (mut tried, mut refused, mut wrong) = (0, 0, Vec::new());
+    let (mut tried, mut refused, mut wrong, mut several) = (0, 0, Vec::new(), Vec::new());
     for scene in BUNDLED {
         for place in places(scene.text) {
             let word = scene.text[place.clone()].starts_with('"');
@@ -90,6 +90,12 @@ fn every_value_may_be_another() {
                 match happened {
                     Ok(Some(message)) => {
                         refused += 1;
+                        // One number is one mistake: nothing that follows is told. Of many bodies of a size each does not fit.
+                        let is_number = !word && *instead != "0, 0";
+                        let is_size = message.contains("a whole number, 1 to");
+                        if is_number && !is_size && message.contains(" mistakes") {
+                            several.push(format!("{what}\n{message}\n"));
+                        }
                         println!("{what}\n    {}", message.replace('\n', "\n    "));
                     }
                     Ok(None) => {}
@@ -103,5 +109,6 @@ fn every_value_may_be_another() {
     }
     println!("{tried} tried, {refused} refused");
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    assert!(several.is_empty(), "{} of {refused}\n{}", several.len(), several.join("\n"));
     assert!(refused * 4 > tried, "{refused} of {tried}");
 }

@@ -257,11 +257,95 @@ fn each_names_the_line_and_what_was_expected() {
         for word in *words {
             assert!(message.contains(word), "{name}, {instead}: {message}");
         }
+        assert!(!message.contains(" mistakes"), "{name}, {instead}: {message}");
         // The key may begin above, the entry across may be the one that is named, and what is missing is
         // missed in its section.
         let at = error.line().unwrap_or_else(|| panic!("no line: {message}"));
         assert!(at.abs_diff(number) < 12, "line {at} for {number}: {message}");
     }
+}
+
+/// Of two mistakes in one scene both are told where the second can be found without the first, and never more.
+#[test]
+fn two_mistakes_are_two() {
+    let (mut told, mut wrong) = (0, Vec::new());
+    for (i, (name, line, instead, words)) in BROKEN.iter().enumerate() {
+        for (other_name, other_line, other_instead, other_words) in &BROKEN[i + 1..] {
+            let text = bundled(name);
+            let place = |line: &str| text.find(line).map(|at| at..at + line.len());
+            let (Some(a), Some(b)) = (place(line), place(other_line)) else { continue };
+            if name != other_name || a.start < b.end && b.start < a.end {
+                continue;
+            }
+            let text = text.replacen(line, instead, 1).replacen(other_line, other_instead, 1);
+            let message = Scene::parse(name, &text).unwrap_err().to_string();
+            if message.contains(" mistakes") && !message.contains(": 2 mistakes") {
+                wrong.push(format!("{name}: {instead} and {other_instead}\n{message}\n"));
+            }
+            let mut all = words.iter().chain(*other_words);
+            told += usize::from(all.all(|word| message.contains(word)));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    assert!(told > 90, "only {told}");
+}
+
+/// Wrong values and wrong types of several sections; what would follow from them is not told.
+#[test]
+fn all_values_at_once() {
+    let told = |scene: &str| {
+        let message = Scene::parse("scene", scene).unwrap_err().to_string();
+        let lines = message.lines().filter_map(|line| line.strip_prefix("scene:"));
+        lines.filter(|line| !line.ends_with(" mistakes")).map(str::to_owned).collect::<Vec<_>>()
+    };
+    let rest = "[time]\nt_span = [0, 0]\ndt = -1\n[[events]]\nname = \"a\"\nwhen = \"m1 +\"\n\
+                stop_after = 0\n[[events]]\nname = \"\"\nwhen = \"m9\"\ndirection = \"up\"\n";
+    let body = "[problem]\nkind = \"rigid-body\"\ninertia = [1, -2, 3]\nomega_body = [1, 2]\n\
+                attitude = [[1, 0, 0], [0, 1, 0], [0, 1, 1]]\n";
+    let expected = [
+        "3:15: inertia[2] = -2",
+        "4:14: expected 3 numbers, found 2",
+        "5:12: attitude: not in SO(3)",
+        "7:10: t_span is empty",
+        "8:6: dt = -1",
+        "12:14: found 0",
+    ];
+    let found = told(&format!("{body}{rest}"));
+    let as_expected = |found: &[String], expected: &[&str]| {
+        let mut pairs = found.iter().zip(expected);
+        let each = pairs.all(|(found, expected)| found.starts_with(expected));
+        assert!(each && found.len() == expected.len(), "{found:#?}\n{expected:#?}");
+    };
+    as_expected(&found, &expected);
+    // With a problem the events are read too.
+    let good = "[problem]\nkind = \"rigid-body\"\ninertia = [1, 2, 3]\nomega_body = [1, 2, 0]\n";
+    let expected = [
+        "6:10: t_span is empty",
+        "7:6: dt = -1",
+        "10:8: events[1].when: found nothing more",
+        "11:14: found 0",
+        "13:8: an event without a name",
+        "14:8: events[2].when: unknown name `m9`",
+        "15:13: unknown direction `up`",
+    ];
+    as_expected(&told(&format!("{good}{rest}")), &expected);
+
+    // The size of the levels is not known, and what does not fit it is not told; types are.
+    let rabi = bundled("rabi").replace("energies = [", "energies = 3 # [");
+    let rabi = rabi.replace("frequency = ", "frequency = \"fast\" # ");
+    let message = Scene::parse("scene", &rabi).unwrap_err().to_string();
+    assert!(message.contains(": 2 mistakes") && message.contains("string \"fast\""), "{message}");
+    // What a wrong named formula is needed for is left alone, also where it is needed by another one.
+    let field = "[problem]\nkind = \"driven-body\"\ninertia = [1, 2, 3]\nomega_body = [1, 2, 0]\n\
+                 torque = \"cross(c, w)\"\ntorque_space = [\"c2\", \"u\", 0]\n[problem.let]\n\
+                 b = \"cross(w, v)\"\nc = \"2*b\"\n[time]\nt_span = [0, 1]\n";
+    let expected = ["6:23: torque_space[2]: unknown name `u`", "8:5: let.b: unknown name `v`"];
+    as_expected(&told(field), &expected);
+    // Two keys that do not fit together are one mistake, also where one of them was mended.
+    let top = bundled("lagrange-top")
+        .replace("vertical = [", "attitude = [[1, 0, 0], [0, 1, 0], [0, 1, 1]]\nvertical = [");
+    let message = Scene::parse("scene", &top).unwrap_err().to_string();
+    assert!(message.contains("not in SO(3)") && !message.contains(" mistakes"), "{message}");
 }
 
 /// The line is that of the part, however far below; without parts there is no system.

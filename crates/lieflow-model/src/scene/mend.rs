@@ -1,0 +1,428 @@
+//! What is wrong besides a mistake: the value with the mistake is replaced by a harmless one, and the section is read
+//! again.
+
+use core::ops::Range;
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use super::error::{ReadError, Refusal};
+use super::suggest::{help_for, suggest};
+use lieflow::names::near;
+
+/// An error of a reading, with its place.
+pub(super) type Found = (Option<Range<usize>>, ReadError);
+
+/// A value at the top of a scene, of which each mistake is replaced.
+pub(super) struct Mending<'a> {
+    text: &'a str,
+    pub(super) value: Spanned<DeValue<'a>>,
+    /// Where something was replaced.
+    places: Vec<Range<usize>>,
+    /// The keys of what was replaced or taken away: a formula that says them may follow.
+    names: Vec<String>,
+    /// Those of them whose value was no formula: a message that says them may follow.
+    values: Vec<String>,
+    /// The keys that were taken away.
+    left_out: Vec<String>,
+    /// Do other values perhaps not fit what was replaced or taken away?
+    loose: bool,
+}
+
+/// Values of each type, in the order in which they are tried.
+const LITERALS: [&str; 10] = [
+    "[]",
+    "{}",
+    "1",
+    "2",
+    "true",
+    "\"0\"",
+    "[1, 1]",
+    "[1, 1, 1]",
+    "[1, 0, 0, 0]",
+    "[[1, 0, 0], [0, 1, 0], [0, 0, 1]]",
+];
+/// The places of those that say a size, or have any length.
+const OF_ANY_SIZE: [usize; 3] = [0, 1, 3];
+
+/// Formulas: a number, one that changes, and a vector. None is a name.
+const FORMULAS: [&str; 3] = ["\"0\"", "\"2*t\"", "\"[0, 0, 0]\""];
+
+/// A number for each place in a list: by its row and its column, or its place and 0.
+type Pattern = fn(usize, usize) -> &'static str;
+
+/// All ones; the identity, or a unit vector; all zeros; all twos, for what has a size from 2.
+const PATTERNS: [Pattern; 4] =
+    [|_, _| "1", |i, j| if i == j { "1" } else { "0" }, |_, _| "0", |_, _| "2"];
+
+/// The place of the twos.
+const TWOS: usize = 3;
+
+/// The place of a key that is not there.
+const NOWHERE: Range<usize> = usize::MAX..usize::MAX;
+
+/// A step on the way to a value.
+#[derive(Clone)]
+enum Step {
+    Key(String),
+    Place(usize),
+}
+
+impl<'a> Mending<'a> {
+    pub(super) fn of(text: &'a str, value: Spanned<DeValue<'a>>) -> Self {
+        let (places, names, values, left_out) = Default::default();
+        Mending { text, value, places, names, values, left_out, loose: false }
+    }
+
+    /// May an error follow from what was replaced or taken away?
+    pub(super) fn explains(&self, (place, error): &Found) -> bool {
+        match error {
+            ReadError::Toml(error) => match Wrong::of(error.message()) {
+                Wrong::MissingKey(key) => {
+                    self.left_out.iter().any(|given| suggest(given, &[key]).is_some())
+                }
+                _ => false,
+            },
+            ReadError::Refused(Refusal { key, message, .. }) => {
+                let place = place.clone().unwrap_or(NOWHERE);
+                let message = message.replace(key.as_deref().unwrap_or("\n"), "");
+                let text = self.text.get(place.clone()).unwrap_or_default();
+                let of_the_section = place == self.value.span();
+                self.loose
+                    || of_the_section && !self.left_out.is_empty()
+                    || self.places.iter().any(|mended| !apart(mended, &place))
+                    || says_any(&message, &self.values)
+                    || !of_the_section && says_any(text, &self.with_formulas_of(&self.names))
+            }
+        }
+    }
+
+    /// These names, and those of the named formulas that need one of them.
+    fn with_formulas_of(&self, names: &[String]) -> Vec<String> {
+        let mut names = names.to_vec();
+        let DeValue::Table(table) = self.value.get_ref() else { return names };
+        let lets = table.get("let").and_then(|lets| lets.get_ref().as_table());
+        loop {
+            let needs = |value: &Spanned<DeValue<'_>>| {
+                says_any(self.text.get(value.span()).unwrap_or_default(), &names)
+            };
+            let further: Vec<String> = lets
+                .into_iter()
+                .flat_map(DeTable::iter)
+                .filter(|(name, value)| needs(value) && !names.iter().any(|n| n == name.get_ref()))
+                .map(|(name, _)| name.get_ref().to_string())
+                .collect();
+            if further.is_empty() {
+                return names;
+            }
+            names.extend(further);
+        }
+    }
+
+    /// Puts something harmless in the place of an error, and reads again. Returns nothing where nothing is known to be
+    /// harmless.
+    pub(super) fn mend<T>(
+        &mut self,
+        (place, error): &Found,
+        read: impl Fn(&Spanned<DeValue<'a>>) -> Result<T, Found>,
+    ) -> Option<Result<T, Found>> {
+        let place = place.clone()?;
+        let mut path = Vec::new();
+        let found = path_to(&self.value, &place, &mut path);
+        let error = match error {
+            ReadError::Toml(error) => error,
+            ReadError::Refused(_) if self.loose || !found => return None,
+            ReadError::Refused(_) => {
+                // Not the section as a whole.
+                path.last()?;
+                if is_of_numbers(at(&mut self.value, &path)?.get_ref()) {
+                    path.truncate(of_key(&path));
+                }
+                let wrong = at(&mut self.value, &path)?.get_ref();
+                // Numbers of one list may belong together, formulas do not.
+                let (of_one, candidates) = (!matches!(wrong, DeValue::String(_)), alike(wrong));
+                let (which, next) = self.try_each(&path, candidates, of_one, &read)?;
+                self.loose |= which == TWOS;
+                return Some(next);
+            }
+        };
+        match Wrong::of(error.message()) {
+            Wrong::UnknownKey(_, names) => self.take_away(&place, &names)?,
+            Wrong::MissingKey(key) => {
+                let DeValue::Table(table) = at(&mut self.value, &path)?.get_mut() else {
+                    return None;
+                };
+                let nothing = Spanned::new(NOWHERE, DeValue::Boolean(false));
+                table.insert(Spanned::new(NOWHERE, key.to_owned().into()), nothing);
+                path.push(Step::Key(key.to_owned()));
+                return self.try_literals(&path, &read);
+            }
+            Wrong::Value(_) => {
+                if let Some(next) = found.then(|| self.try_literals(&path, &read)).flatten() {
+                    return Some(next);
+                }
+                self.loose = true;
+                self.take_away(&place, &[])?;
+            }
+        }
+        Some(read(&self.value))
+    }
+
+    /// Takes the entry of a table away, or gives it the one of these names that is spelt like its own.
+    fn take_away(&mut self, place: &Range<usize>, names: &[&str]) -> Option<()> {
+        let mut gone = None;
+        at_entry(self.value.get_mut(), place, &mut |table, key| {
+            if !rename(table, &key, names) {
+                gone = table.remove(key.as_str()).map(|value| (key, value));
+            }
+        })
+        .then_some(())?;
+        if let Some((key, value)) = gone {
+            self.loose |= !is_of_numbers(value.get_ref());
+            for names in [&mut self.left_out, &mut self.names, &mut self.values] {
+                names.push(key.clone());
+            }
+        }
+        Some(())
+    }
+
+    fn try_literals<T>(
+        &mut self,
+        path: &[Step],
+        read: impl Fn(&Spanned<DeValue<'a>>) -> Result<T, Found>,
+    ) -> Option<Result<T, Found>> {
+        let literals = LITERALS.iter().filter_map(|text| literal(text)).collect();
+        let (which, next) = self.try_each(path, literals, true, read)?;
+        self.loose |= OF_ANY_SIZE.contains(&which);
+        Some(next)
+    }
+
+    /// Puts one value after the other in a place, up to the first of which the next error does not tell. `of_one` says
+    /// that nothing else is told of the list in which it is.
+    fn try_each<T>(
+        &mut self,
+        path: &[Step],
+        candidates: Vec<DeValue<'a>>,
+        of_one: bool,
+        read: impl Fn(&Spanned<DeValue<'a>>) -> Result<T, Found>,
+    ) -> Option<(usize, Result<T, Found>)> {
+        let place = at(&mut self.value, path)?.span();
+        let whole = self.value.span();
+        let before = at(&mut self.value, path)?.get_ref().clone();
+        for (which, mut candidate) in candidates.into_iter().enumerate() {
+            move_to(&mut candidate, &place);
+            *at(&mut self.value, path)?.get_mut() = candidate;
+            let next = read(&self.value);
+            let harmless = match &next {
+                Err((Some(other), _)) => *other == whole || apart(other, &place),
+                _ => true,
+            };
+            if harmless {
+                let of_key = &path[..of_key(path)];
+                if let Some(Step::Key(key)) = of_key.last() {
+                    self.names.push(key.clone());
+                    self.values.extend(of_one.then(|| key.clone()));
+                }
+                let all = if of_one { of_key } else { path };
+                self.places.push(at(&mut self.value, all)?.span());
+                return Some((which, next));
+            }
+        }
+        *at(&mut self.value, path)?.get_mut() = before;
+        None
+    }
+}
+
+/// The number of steps to the key that a path ends at, or in whose list it ends.
+fn of_key(path: &[Step]) -> usize {
+    path.iter().rposition(|step| matches!(step, Step::Key(_))).map_or(0, |last| last + 1)
+}
+
+/// Have two places nothing in common?
+fn apart(a: &Range<usize>, b: &Range<usize>) -> bool {
+    a != b && (a.end <= b.start || b.end <= a.start)
+}
+
+/// Does a text say one of these names, or an entry `b1` of a name `b`?
+fn says_any(text: &str, names: &[String]) -> bool {
+    let mut words = text.split(|c: char| !c.is_alphanumeric() && c != '_');
+    words.any(|word| {
+        let whole = word.trim_end_matches(|c: char| c.is_ascii_digit());
+        names.iter().any(|name| name == word || name == whole)
+    })
+}
+
+/// The value of a text of this file.
+fn literal(text: &'static str) -> Option<DeValue<'static>> {
+    DeValue::parse(text).ok().map(Spanned::into_inner)
+}
+
+/// Values of the same shape.
+fn alike<'a>(value: &DeValue<'a>) -> Vec<DeValue<'a>> {
+    match value {
+        DeValue::String(_) => FORMULAS.iter().filter_map(|text| literal(text)).collect(),
+        _ => PATTERNS.iter().map(|pattern| filled(value, &[], *pattern)).collect(),
+    }
+}
+
+/// The value with numbers of a pattern; `at` are the places of the lists that it is in.
+fn filled<'a>(value: &DeValue<'a>, at: &[usize], pattern: Pattern) -> DeValue<'a> {
+    let mut copy = value.clone();
+    match &mut copy {
+        DeValue::Integer(_) | DeValue::Float(_) => {
+            let [.., i, j] = [&[0, 0], at].concat()[..] else { return copy };
+            // In one list the pattern is that of the first row.
+            return literal(pattern(i, j)).unwrap_or(copy);
+        }
+        DeValue::Array(list) => {
+            for (i, entry) in list.iter_mut().enumerate() {
+                *entry.get_mut() = filled(entry.get_ref(), &[at, &[i]].concat(), pattern);
+            }
+        }
+        DeValue::Table(table) => {
+            for (_, entry) in table.iter_mut() {
+                *entry.get_mut() = filled(entry.get_ref(), &[], pattern);
+            }
+        }
+        _ => {}
+    }
+    copy
+}
+
+/// Is it made of numbers alone?
+fn is_of_numbers(value: &DeValue<'_>) -> bool {
+    match value {
+        DeValue::Integer(_) | DeValue::Float(_) => true,
+        DeValue::Array(list) => list.iter().all(|entry| is_of_numbers(entry.get_ref())),
+        _ => false,
+    }
+}
+
+/// Gives all that is in a value this place.
+fn move_to(value: &mut DeValue<'_>, place: &Range<usize>) {
+    if let DeValue::Array(list) = value {
+        for entry in list.iter_mut() {
+            let mut inner = core::mem::replace(entry.get_mut(), DeValue::Boolean(false));
+            move_to(&mut inner, place);
+            *entry = Spanned::new(place.clone(), inner);
+        }
+    }
+}
+
+/// The steps to the outermost value that stands in this place; false where there is none.
+fn path_to(value: &Spanned<DeValue<'_>>, place: &Range<usize>, path: &mut Vec<Step>) -> bool {
+    if value.span() == *place {
+        return true;
+    }
+    let mut into = |step: Step, entry: &Spanned<DeValue<'_>>| {
+        path.push(step);
+        let found = path_to(entry, place, path);
+        if !found {
+            path.pop();
+        }
+        found
+    };
+    match value.get_ref() {
+        DeValue::Table(table) => {
+            table.iter().any(|(key, entry)| into(Step::Key(key.get_ref().to_string()), entry))
+        }
+        DeValue::Array(list) => {
+            list.iter().enumerate().any(|(i, entry)| into(Step::Place(i), entry))
+        }
+        _ => false,
+    }
+}
+
+/// The value at the end of these steps.
+fn at<'v, 'a>(
+    value: &'v mut Spanned<DeValue<'a>>,
+    path: &[Step],
+) -> Option<&'v mut Spanned<DeValue<'a>>> {
+    path.iter().try_fold(value, |value, step| match (value.get_mut(), step) {
+        (DeValue::Table(table), Step::Key(key)) => table.get_mut(key.as_str()),
+        (DeValue::Array(list), Step::Place(i)) => list.get_mut(*i),
+        _ => None,
+    })
+}
+
+/// Calls `act` on the innermost table entry that contains a place. Returns false if no entry contains it.
+fn at_entry<'a>(
+    value: &mut DeValue<'a>,
+    place: &Range<usize>,
+    act: &mut dyn FnMut(&mut DeTable<'a>, String),
+) -> bool {
+    let found = match value {
+        DeValue::Table(table) => {
+            table.iter_mut().any(|(_, value)| at_entry(value.get_mut(), place, act))
+        }
+        DeValue::Array(list) => list.iter_mut().any(|entry| at_entry(entry.get_mut(), place, act)),
+        _ => false,
+    };
+    let DeValue::Table(table) = value else { return found };
+    let holds = |span: Range<usize>| span.start <= place.start && place.end <= span.end;
+    let mut entries = table.iter();
+    let entry = entries.find(|(key, value)| holds(key.span()) || holds(value.span()));
+    match entry.map(|(key, _)| key.get_ref().to_string()) {
+        Some(key) if !found => {
+            act(table, key);
+            true
+        }
+        _ => found,
+    }
+}
+
+/// Give an entry the name that is spelt like its own, where that is free.
+pub(super) fn rename(table: &mut DeTable<'_>, given: &str, names: &[&str]) -> bool {
+    let Some(meant) = near(given, names).filter(|meant| !table.contains_key(*meant)) else {
+        return false;
+    };
+    table.remove_entry(given).is_some_and(|(key, value)| {
+        table.insert(Spanned::new(key.span(), meant.to_owned().into()), value);
+        true
+    })
+}
+
+/// A mistake that the deserializer found.
+pub(super) enum Wrong<'m> {
+    /// A key, and those that there are.
+    UnknownKey(&'m str, Vec<&'m str>),
+    MissingKey(&'m str),
+    Value(&'m str),
+}
+
+impl<'m> Wrong<'m> {
+    /// Reads the kind of mistake from the message of the deserializer, which gives nothing else.
+    pub(super) fn of(message: &'m str) -> Self {
+        let mut quoted = message.split('`').skip(1).step_by(2);
+        match quoted.next() {
+            Some(given) if message.starts_with("unknown field") => {
+                Wrong::UnknownKey(given, quoted.collect())
+            }
+            Some(name) if message.starts_with("missing field") => Wrong::MissingKey(name),
+            _ => Wrong::Value(message),
+        }
+    }
+
+    /// The message in the words of this program, and a suggestion.
+    pub(super) fn in_words(&self, section: &str) -> (String, Option<String>) {
+        let message = match self {
+            Wrong::UnknownKey(given, names) => {
+                let message = format!("unknown key `{given}` in [{section}]");
+                return (message, Some(help_for(given, names)));
+            }
+            Wrong::MissingKey(name) => {
+                return (format!("missing key `{name}` in [{section}]"), None);
+            }
+            Wrong::Value(message) => message,
+        };
+        if message.ends_with("number overflowed") {
+            return ("the number is out of range".into(), None);
+        }
+        let plain = ["invalid type: ", "invalid value: "]
+            .iter()
+            .find_map(|jargon| message.strip_prefix(jargon))
+            .map_or_else(|| message.to_string(), |rest| format!("found {rest}"));
+        let words = [("floating point", "number"), ("sequence", "list"), ("map,", "table,")];
+        (words.iter().fold(plain, |text, (from, to)| text.replace(from, to)), None)
+    }
+}
