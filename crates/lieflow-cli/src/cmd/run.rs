@@ -215,9 +215,11 @@ pub fn run_scene(
     let drift = watch.drift(&kept.watched, done.steps)?;
     let mut warnings = scene.problem.warnings();
     warnings.extend(drift.iter().filter(|(_, drift)| drift.breaks_a_promise()).map(broken_promise));
-    let out_of_range = columns.iter().zip(&kept.not_finite).filter(|(_, count)| **count > 0);
-    warnings.extend(out_of_range.map(|(column, count)| {
-        format!("{column} is not a finite number in {count} of {written} rows")
+    let out_of_range = columns.iter().zip(&kept.not_finite).filter(|(_, (count, _))| *count > 0);
+    warnings.extend(out_of_range.map(|(column, (count, first))| {
+        format!(
+            "{column} is not a finite number in {count} of {written} rows, first at t = {first}"
+        )
     }));
     let (accuracy, accuracy_unknown) = match accuracy {
         Ok(Some((accuracy, warning))) => {

@@ -102,6 +102,7 @@ impl<'a> Watch<'a> {
     /// Run the scene by this plan. A step that fails is an end, not an error.
     pub(super) fn run(&self, plan: Plan<'_>, watcher: &mut dyn Watcher) -> Result<Done, CliError> {
         let scene = self.scene;
+        scene.forget_losses();
         match self.model.drive(&scene.method, plan, watcher) {
             Ok(Outcome { t, status, stats }) => Ok(Done {
                 steps: stats.accepted,
@@ -123,7 +124,10 @@ impl<'a> Watch<'a> {
             }),
             Err(RunError::Setup(error)) => Err(error.into()),
             Err(error) => Ok(Done {
-                failure: Some(error.to_string()),
+                failure: Some(match scene.lost(&error) {
+                    Some(lost) => format!("{error}: {lost}"),
+                    None => error.to_string(),
+                }),
                 steps: error.accepted().unwrap_or(0),
                 ..Done::default()
             }),
@@ -181,8 +185,8 @@ pub(super) struct Recorder<'a> {
     pub(super) state: Option<RunState>,
     pub(super) rows: RowSample<'a>,
     pub(super) watched: Vec<Watched>,
-    /// The rows where a column is not finite.
-    pub(super) not_finite: Vec<u64>,
+    /// The number of the rows where a column is not finite, and the time of the first.
+    pub(super) not_finite: Vec<(u64, f64)>,
     pub(super) seen: Vec<EventSummary>,
     line: Vec<f64>,
     pub(super) overflow: Option<String>,
@@ -215,7 +219,7 @@ impl<'a> Recorder<'a> {
             state: None,
             rows: RowSample::new(watch.model.schema()),
             watched: Vec::new(),
-            not_finite: vec![0; columns().count() - 1],
+            not_finite: vec![(0, 0.0); columns().count() - 1],
             seen: events.iter().map(|event| EventSummary::new(&event.name)).collect(),
             line: Vec::new(),
             overflow: None,
@@ -233,8 +237,11 @@ impl<'a> Recorder<'a> {
         self.watch.line(row, &mut self.line);
         match kind {
             Kind::Row => {
-                for (count, x) in self.not_finite.iter_mut().zip(&self.line) {
-                    *count += u64::from(!x.is_finite());
+                let without_value = |(_, x): &(_, &f64)| !x.is_finite();
+                let columns = self.not_finite.iter_mut().zip(&self.line);
+                for ((count, first), _) in columns.filter(without_value) {
+                    *first = if *count == 0 { t } else { *first };
+                    *count += 1;
                 }
                 self.watch.see(t, row, &mut self.watched);
                 self.rows.see(t, row);

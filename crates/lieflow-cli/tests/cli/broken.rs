@@ -483,6 +483,23 @@ fn samples_beside_a_scene() {
     assert!((rows[4][1] - 1f64.cos()).abs() < 1e-14, "{:?}", rows[4]);
 }
 
+/// A formula that has no value in a run is named where it ends the run, and so is the first time of a column.
+#[test]
+fn a_formula_without_a_value_is_named() {
+    let folder = Folder::new();
+    let text = SCENE.replace("rigid-body", "driven-body").replace("layer = \"closed\"\n", "");
+    let torque = "torque = [\"sqrt(1.01 - t)\", \"0\", \"0\"]\n[method]";
+    folder.write("scene.toml", &text.replace("[method]", torque));
+    let message = folder.lieflow(&["run", "scene.toml", "--out", "out"]).failed(2);
+    let lost = "is not finite at stage 2: torque[1] = sqrt(1.01 - t) is NaN at t = 1.025";
+    assert!(message.contains(lost), "{message}");
+    folder.write("scene.toml", &format!("{text}[output.formulas]\nx = \"sqrt(1.01 - t)\"\n"));
+    folder.lieflow(&["run", "scene.toml", "--out", "out"]).ok();
+    let warnings = folder.json("out/summary.json")["warnings"].to_string();
+    let first = "x is not a finite number in 2 of 5 rows, first at t = 1.5";
+    assert!(warnings.contains(first), "{warnings}");
+}
+
 #[test]
 fn an_output_folder_that_cannot_be_made_is_an_error() {
     let folder = Folder::new();

@@ -23,7 +23,7 @@ use super::body::*;
 use super::flow;
 use super::prelude::*;
 use super::system::PointOf;
-use crate::scene::formula::{Formula, Texts};
+use crate::scene::formula::{Formula, Texts, without_value};
 use crate::scene::values;
 
 /// The entry in the list of kinds.
@@ -104,11 +104,16 @@ impl Torques {
 
     /// Is there none, or only one that is 0 at all times?
     fn are_none(&self) -> bool {
-        let Torques { axes: _, weight, thruster, damping, control, in_the_body, in_space } = self;
+        let Torques { weight, thruster, damping, control, .. } = self;
         let vectors = weight.iter().chain(thruster).flat_map(|x| x.iter());
         let numbers = vectors.chain(damping).chain(control.iter().flatten());
-        let formulas = in_the_body.iter().chain(in_space).flat_map(|formulas| formulas.iter());
-        numbers.copied().all(|x| x == 0.0) && formulas.into_iter().all(Formula::is_zero)
+        numbers.copied().all(|x| x == 0.0) && self.formulas().all(Formula::is_zero)
+    }
+
+    /// All formulas.
+    fn formulas(&self) -> impl Iterator<Item = &Formula> {
+        let of_both = self.in_the_body.iter().chain(&self.in_space);
+        of_both.flat_map(|formulas| formulas.iter())
     }
 }
 
@@ -255,19 +260,12 @@ impl System for Driven {
         let start = (self.start.0.map(N::lit), self.start.1.map(N::lit));
         Ok((flow::Driven::new(body, LeftTranslation), start))
     }
-    fn check_start(&self, t0: f64) -> Result<(), Refusal> {
+    fn check_start(&self, t0: f64) -> Vec<Refusal> {
         let at = variables(&self.torques.in_scene(&self.body.motion(t0, &self.start)));
-        let Torques { in_the_body, in_space, .. } = &self.torques;
-        for (key, torque) in [("torque", in_the_body), ("torque_space", in_space)] {
-            for (i, formula) in torque.iter().flat_map(|formulas| formulas.iter()).enumerate() {
-                formula.check(&key.index(i), &at)?;
-            }
-        }
-        Ok(())
+        without_value(self.torques.formulas(), &at)
     }
-    fn samples(&self) -> Option<&Samples> {
-        let Torques { in_the_body, in_space, .. } = &self.torques;
-        in_the_body.as_ref().or(in_space.as_ref())?[0].samples()
+    fn formula(&self) -> Option<&Formula> {
+        self.torques.formulas().next()
     }
     /// Without a torque: that of the free body.
     fn exact(&self, [t0, t1]: [f64; 2]) -> Option<Result<PointOf<Self>, Error>> {

@@ -10,7 +10,7 @@ use lieflow::problems::Lyapunov;
 use super::entries::{numbered, row_columns, rows};
 use super::flow::Growing;
 use super::prelude::*;
-use crate::scene::formula::{Formula, Names, Texts};
+use crate::scene::formula::{Formula, Names, Texts, without_value};
 
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {
@@ -64,11 +64,8 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
         let message = format!("its derivatives take more than {DERIVED_MAX} operations");
         return Err(Refusal::at("field", message).into());
     }
-    let by = |(i, f): (usize, &Formula)| {
-        let key = "field".index(i);
-        (1..=n).map(|j| f.derivative(&key, j)).collect::<Result<Vec<_>, _>>()
-    };
-    let jacobian = field.iter().enumerate().map(by).collect::<Result<Vec<_>, _>>()?.concat();
+    let by = |f: &Formula| (1..=n).map(|j| f.derivative(j)).collect::<Result<Vec<_>, _>>();
+    let jacobian = field.iter().map(by).collect::<Result<Vec<_>, _>>()?.concat();
     let (field, jacobian) = (field.into(), jacobian.into());
     Ok(Box::new(Stated(Exponents { names, field, jacobian, x })))
 }
@@ -142,24 +139,11 @@ impl System for Exponents {
         let start = system.state(&self.x)?;
         Ok((Growing::new(system, LeftTranslation), start))
     }
-    fn check_start(&self, t0: f64) -> Result<(), Refusal> {
-        let (n, values) = (self.x.len(), values(t0, &self.x));
-        for i in 0..n {
-            let key = "field".index(i);
-            self.field[i].check(&key, &values)?;
-            for (j, name) in self.names.variables()[1..].iter().enumerate() {
-                let slope = self.jacobian[i * n + j].value::<f64>(&values);
-                if !slope.is_finite() {
-                    let message =
-                        format!("{key}: its derivative by {name} is {slope} at the start");
-                    return Err(Refusal::at(key, message));
-                }
-            }
-        }
-        Ok(())
+    fn check_start(&self, t0: f64) -> Vec<Refusal> {
+        without_value(self.field.iter().chain(&*self.jacobian), &values(t0, &self.x))
     }
-    fn samples(&self) -> Option<&Samples> {
-        self.field.first()?.samples()
+    fn formula(&self) -> Option<&Formula> {
+        self.field.first()
     }
     fn modelled(&self) -> String {
         format!("point, frame in SO({0}) and growth in {0} directions", self.x.len())

@@ -55,6 +55,7 @@ use self::keys::{KeyTable, body_keys, formula_keys, keys, sample_keys};
 use self::preset::preset;
 use self::system::System;
 use crate::model::{Layer, Model};
+use crate::scene::formula::Formula;
 use crate::scene::{ReadError, Refusal};
 
 /// Every kind.
@@ -273,17 +274,19 @@ pub trait ProblemSpec: Any + Debug + Send + Sync {
     /// [`Error::UnknownName`] for a quantity that the kind does not have.
     fn model(&self, layer: Layer, quantities: &[&str]) -> Result<Box<dyn Model>, Error>;
 
-    /// Checks that the formulas of the scene have values at the start.
-    ///
-    /// # Errors
-    /// A refusal of the first key that has none.
-    fn check_start(&self, _t0: f64) -> Result<(), Refusal> {
-        Ok(())
+    /// The refusals of the formulas that have no finite value at the start.
+    fn check_start(&self, _t0: f64) -> Vec<Refusal> {
+        Vec::new()
+    }
+
+    /// One of its formulas. All of them have the same samples, and keep together what has no value in a run.
+    fn formula(&self) -> Option<&Formula> {
+        None
     }
 
     /// The samples that its formulas name: a run stays in their span.
     fn samples(&self) -> Option<&Samples> {
-        None
+        self.formula()?.samples()
     }
 
     /// The times within a span at which the right-hand side is not smooth: a step across one loses its order. None

@@ -2,7 +2,6 @@
 
 pub(super) use faer::Mat;
 pub(super) use lieflow::Error;
-pub(super) use lieflow::samples::Samples;
 pub(super) use serde::Deserialize;
 pub(super) use toml::de::ValueDeserializer;
 

@@ -321,6 +321,9 @@ impl ProblemSpec for Problem {
     fn columns(&self, quantity: &str) -> Result<Vec<String>, Error> {
         Ok(self.kind.quantity(quantity)?.column_names())
     }
+    fn formula(&self) -> Option<&Formula> {
+        self.base.formula()
+    }
     fn model(&self, layer: Layer, quantities: &[&str]) -> Result<Box<dyn Model>, Error> {
         if !self.layers().contains(&layer) {
             return Err(no_such_layer(layer, self.kind));

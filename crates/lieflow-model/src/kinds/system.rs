@@ -6,7 +6,6 @@ use core::fmt::{self, Debug};
 use lieflow::catalog::MethodSpec;
 use lieflow::methods::Wide;
 use lieflow::problems::LinearSpace;
-use lieflow::samples::Samples;
 use lieflow::scalar::{Counted, Trig};
 use lieflow::space::Numbers;
 use lieflow::{Error, RunError};
@@ -18,6 +17,7 @@ use crate::model::{
 };
 use crate::operations::operations_by;
 use crate::scene::Refusal;
+use crate::scene::formula::Formula;
 use crate::schema::Schema;
 
 /// The numbers that a problem of vectors is made of: `f64`, and [`Counted`] where operations are counted.
@@ -60,16 +60,16 @@ pub(super) trait System: Clone + Debug + Send + Sync + 'static {
     /// What is integrated, in words.
     fn modelled(&self) -> String;
     /// See [`ProblemSpec::check_start`].
-    fn check_start(&self, _t0: f64) -> Result<(), Refusal> {
-        Ok(())
+    fn check_start(&self, _t0: f64) -> Vec<Refusal> {
+        Vec::new()
     }
-    /// See [`ProblemSpec::samples`].
-    fn samples(&self) -> Option<&Samples> {
+    /// See [`ProblemSpec::formula`].
+    fn formula(&self) -> Option<&Formula> {
         None
     }
     /// See [`ProblemSpec::knots`].
     fn knots(&self, t_span: [f64; 2]) -> Option<Vec<f64>> {
-        self.samples().map(|samples| samples.knots(t_span).collect())
+        self.formula()?.samples().map(|samples| samples.knots(t_span).collect())
     }
     /// y at the end of a span, where it is known.
     fn exact(&self, _t_span: [f64; 2]) -> Option<Result<PointOf<Self>, Error>> {
@@ -164,11 +164,11 @@ impl<S: System> ProblemSpec for Stated<S> {
         }
         Ok(Box::new(SystemModel { system: system.clone(), problem, start, quantities, schema }))
     }
-    fn check_start(&self, t0: f64) -> Result<(), Refusal> {
+    fn check_start(&self, t0: f64) -> Vec<Refusal> {
         self.0.check_start(t0)
     }
-    fn samples(&self) -> Option<&Samples> {
-        self.0.samples()
+    fn formula(&self) -> Option<&Formula> {
+        self.0.formula()
     }
     fn knots(&self, t_span: [f64; 2]) -> Option<Vec<f64>> {
         self.0.knots(t_span)

@@ -49,6 +49,11 @@ impl RowFormula {
         self.columns.iter().map(|(_, column)| -> &str { column.quantity })
     }
 
+    /// The formula.
+    pub(super) fn formula(&self) -> &Formula {
+        &self.formula
+    }
+
     /// Is it the same at all times?
     pub(super) fn is_constant(&self) -> bool {
         !(0..self.variables).any(|variable| self.formula.uses(variable))
@@ -138,8 +143,9 @@ impl Columns {
     /// # Errors
     /// As [`Formula::read`], and a refusal of `key` for the name of a quantity of several columns.
     pub(super) fn read(&self, key: &str, text: &str) -> Result<RowFormula, Refusal> {
+        let formula = || Ok(self.of_rows(Formula::read(key, text, &self.names.apart())?));
         if self.names.is_formula(text) {
-            return Ok(self.of_rows(Formula::read(key, text, &self.names)?));
+            return formula();
         }
         // The name of a column may be one that no formula can use.
         if let Some(column) = self.columns.iter().find(|column| column.name == text) {
@@ -154,7 +160,7 @@ impl Columns {
             let help = Some(format!("choose from {}", names.join(", ")));
             return Err(Refusal { help, ..Refusal::at(key, message) });
         }
-        Ok(self.of_rows(Formula::read(key, text, &self.names)?))
+        formula()
     }
 
     fn of_rows(&self, formula: Formula) -> RowFormula {

@@ -246,6 +246,11 @@ impl<'a> Document<'a> {
             _ => None,
         });
         let mut place = within.or_else(|| self.root.get(name))?;
+        if let Some(entry) = value.filter(|_| name == section) {
+            // The value is one of the list, with the number that is next.
+            place = entry;
+            path.next();
+        }
         for step in path {
             let next = match (step.parse::<usize>(), place.get_ref()) {
                 (Ok(i), DeValue::Array(list)) => list.get(i.wrapping_sub(1)),

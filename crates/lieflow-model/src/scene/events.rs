@@ -12,7 +12,7 @@ use serde::Deserialize;
 
 use super::columns::{Columns, RowFormula};
 use super::error::{KeyPath, Refusal};
-use super::formula::Text;
+use super::formula::{Formula, Text};
 use super::values::Whole;
 use crate::model::EventPlan;
 use crate::schema::{Row, Schema};
@@ -47,6 +47,11 @@ impl SceneEvent {
     /// The quantities that the function of the event is made of.
     pub fn quantities(&self) -> impl Iterator<Item = &str> {
         self.when.quantities()
+    }
+
+    /// Its function.
+    pub(super) fn formula(&self) -> &Formula {
+        self.when.formula()
     }
 
     /// The event on rows of this schema.

@@ -158,7 +158,8 @@ impl<'a> Mending<'a> {
                 return self.try_literals(&path, &read);
             }
             Wrong::Value(_) => {
-                if let Some(next) = found.then(|| self.try_literals(&path, &read)).flatten() {
+                let within = found && !path.is_empty();
+                if let Some(next) = within.then(|| self.try_literals(&path, &read)).flatten() {
                     return Some(next);
                 }
                 self.loose = true;

@@ -28,7 +28,7 @@ use fnv::FnvHasher;
 use lieflow::StepControl;
 use lieflow::catalog::{MethodSpec, all_methods};
 use lieflow::samples::{Outside, Samples};
-use lieflow::{Error, SaveAt, TimeGrid};
+use lieflow::{Error, Failure, RunError, SaveAt, StepError, TimeGrid};
 use serde::Deserialize;
 use toml::de::DeValue;
 
@@ -36,6 +36,7 @@ use self::columns::{Columns, FORMULAS, RowFormula, check_plot, with_formulas};
 use self::document::{Document, read_beside, table};
 use self::error::Mistakes;
 use self::events::EventKeys;
+use self::formula::{Formula, Lost, Which};
 use self::keys::{MethodKeys, Output, OutputKeys, TimeKeys, with_defaults};
 use crate::kinds::{FormulaKeys, KINDS, KNOTS_MAX, Kind, ProblemSpec, SAMPLES};
 use crate::model::{Layer, Model, Plan, Steps};
@@ -133,8 +134,8 @@ impl Scene {
         if let (Some(grid), Some(problem)) = (grid, spec) {
             // Beyond its samples a formula has no value.
             let covered = mistakes.keep(document.check("time", covered(problem, grid.t_span())));
-            let started = covered.map(|()| problem.check_start(grid.t_span()[0]));
-            mistakes.keep(document.check("problem", started.unwrap_or(Ok(()))));
+            let without_value = covered.map(|()| problem.check_start(grid.t_span()[0]));
+            mistakes.keep(document.check_all("problem", without_value.unwrap_or_default()));
         }
 
         let mut output = mistakes.keep(document.keys_if_any::<OutputKeys>("output"));
@@ -306,6 +307,35 @@ impl Scene {
         Ok(Plan { stops, ..Plan::new(Steps::ByError { t_span, control }, SaveAt::Ends) })
     }
 
+    /// Forgets which formulas had no value: what [`lost`](Self::lost) tells is of the run after this.
+    pub fn forget_losses(&self) {
+        let of_rows = self.events.iter().map(SceneEvent::formula);
+        self.problem.formula().into_iter().chain(of_rows).for_each(Formula::forget);
+    }
+
+    /// The formula by which a run ended with this error.
+    pub fn lost(&self, error: &RunError) -> Option<Lost> {
+        let which = match error {
+            RunError::Event { name, .. } => {
+                let event = self.events.iter().find(|event| event.name == *name)?;
+                return event.formula().lost(Which::Last);
+            }
+            RunError::Step(Failure { source, .. }) if is_of_values(source) => Which::First,
+            RunError::StepSizeUnderflow { source: Some(source), .. } if is_of_values(source) => {
+                Which::Last
+            }
+            // The last step was so small that t did not reach beyond what it failed by before.
+            RunError::StepSizeUnderflow { t, .. } => {
+                let lost = self.problem.formula()?.lost(Which::Last);
+                return lost.filter(|lost| {
+                    lost.t().is_some_and(|at| (at - t).abs() <= NEAR * (1.0 + t.abs()))
+                });
+            }
+            _ => return None,
+        };
+        self.problem.formula()?.lost(which)
+    }
+
     /// A refusal of a value of the scene, with its place.
     pub fn refuse(&self, section: &str, refusal: Refusal) -> SceneError {
         match Document::parse(&self.source, &self.text) {
@@ -459,6 +489,14 @@ impl Found {
         let a_path = name.contains(['/', '\\', '.']) && Bundled::named(stem).is_none();
         if a_path { Self::file(scene) } else { Self::bundled(&name) }
     }
+}
+
+/// The distance of the time where a formula has no value from that where steps become too small.
+const NEAR: f64 = 1e-6;
+
+/// Is the reason a value that is not finite?
+fn is_of_values(error: &StepError) -> bool {
+    matches!(error, StepError::NonFiniteRhs { .. } | StepError::NotFinite { .. })
 }
 
 /// The names without those that were there before.

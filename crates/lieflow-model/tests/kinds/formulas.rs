@@ -6,6 +6,8 @@ use lieflow::catalog::MethodSpec;
 use lieflow::groups::{LieGroup, MatrixGroup};
 use lieflow::maps::Exp;
 
+use lieflow_model::model::Rows;
+
 use super::*;
 
 pub(super) const FINE: &str = "t_span = [0, 2]\ndt = 0.005";
@@ -311,4 +313,65 @@ fn fields_of_many_coordinates() {
     let sum = (1..=n).map(|i| format!("x{i}^3")).collect::<Vec<_>>().join(" + ");
     let (line, message) = refused(&text(&vec![sum; n]), FINE, "x");
     assert!(line == 5 && message.contains("derivatives take more than"), "{message}");
+}
+
+/// A run that ends by a formula names it, with its text and the point: of a body, of matrices, of parts, of energies, of
+/// an event, and through named formulas.
+#[test]
+fn a_formula_that_loses_its_value_is_named() {
+    let lost = |problem: &str, rest: &str| {
+        let text = format!("[problem]\n{problem}\n[time]\nt_span = [0, 2]\n{rest}");
+        let scene = Scene::parse("scene", &text).unwrap_or_else(|error| panic!("{error}"));
+        scene.forget_losses();
+        let model = scene.model_with(scene.layer, &scene.computed()).unwrap();
+        let plan = scene.plan(model.schema()).unwrap();
+        let error = model.drive(&scene.method, plan, &mut Rows(&mut |_, _| {})).unwrap_err();
+        let lost = scene.lost(&error).unwrap_or_else(|| panic!("{error}")).to_string();
+        let (what, at) = lost.split_once(" at ").unwrap();
+        let mut numbers = at.split(", ").map(|at| at.split_once(" = ").unwrap());
+        let (name, first) = numbers.next().unwrap();
+        (what.to_owned(), name.to_owned(), first.parse::<f64>().unwrap(), at.to_owned())
+    };
+    let fixed = "dt = 0.1\n[method]\nname = \"rkmk4\"\n";
+    let body = "kind = \"driven-body\"\ninertia = [1, 2, 3]\nomega_body = [1, 0.1, 0]\n";
+    let torque = "torque = [\"0\", \"sqrt(1 - t)\", \"w1*sqrt(1 - t)\"]";
+    let (what, name, t, at) = lost(&format!("{body}{torque}"), fixed);
+    assert_eq!(
+        (&*what, &*name, &*at),
+        ("torque[2] = sqrt(1 - t) is NaN", "t", &*format!("t = {t}"))
+    );
+    assert!((t - 1.05).abs() < 1e-12, "{t}");
+    // By steps of their own size it is found to the digit.
+    let (what, _, t, _) = lost(&format!("{body}{torque}"), "rtol = 1e-8\n");
+    assert!(what.starts_with("torque[2] =") && (1.0..1.0 + 1e-9).contains(&t), "{what} {t}");
+    // The first named formula, also through others, with its own variables.
+    let lets = "torque = \"cross(c, w)\"\n[problem.let]\na = \"t\"\nb = [1, \"ln(1.52 - t)\", \"w2\"]\nc = \"a*b\"";
+    let (what, _, t, at) = lost(&format!("{body}{lets}"), fixed);
+    assert_eq!(what, "let.b[2] = ln(1.52 - t), which torque needs, is NaN");
+    assert!((t - 1.55).abs() < 1e-12 && !at.contains("w2"), "{at}");
+
+    let matrix = "kind = \"matrix-ode\"\ngroup = \"so\"\nfield = [\"1/(1 - t)\", \"0\", \"y11\"]";
+    let (what, _, t, _) = lost(matrix, "dt = 0.25\n[method]\nname = \"rkmk4\"\n");
+    assert_eq!((&*what, t), ("field[1] = 1/(1 - t) is inf", 1.0));
+    let parts = "kind = \"composed\"\n[[problem.parts]]\nname = \"x\"\nspace = \"numbers\"\nstart = [1]\n\
+                 field = [\"-1\"]\n[[problem.parts]]\nname = \"y\"\nspace = \"numbers\"\nstart = [0]\n\
+                 field = [\"sqrt(x)\"]";
+    let (what, name, x, _) = lost(parts, fixed);
+    assert_eq!((&*what, &*name), ("parts[2].field[1] = sqrt(x) is NaN", "x"));
+    assert!(x < 0.0 && x > -0.1, "{x}");
+    let energy = "kind = \"euler\"\nalgebra = \"so3\"\nmomentum = [1, 0, 0]\nhamiltonian = \"m3 + sqrt(m1)\"";
+    let (what, name, m1, _) = lost(energy, fixed);
+    assert_eq!(
+        (&*what, &*name),
+        ("the derivative by m1 of hamiltonian = m3 + sqrt(m1) is NaN", "m1")
+    );
+    assert!(m1 < 0.0, "{m1}");
+    let exponents = "kind = \"lyapunov\"\nx = [1]\nfield = [\"-1 + 0*sqrt(x1)\"]";
+    let (what, ..) = lost(exponents, fixed);
+    assert!(what.contains("field[1] = -1 + 0*sqrt(x1)"), "{what}");
+
+    let event = "[[events]]\nname = \"late\"\nwhen = \"e1 - 2\"\n[output.formulas]\ne1 = \"sqrt(1.5 - t)\"\n";
+    let (what, _, t, _) = lost(body.trim_end(), &format!("{fixed}{event}"));
+    assert_eq!(what, "formulas.e1 = sqrt(1.5 - t), which events[1].when needs, is NaN");
+    assert!(t > 1.5 && t < 1.7, "{t}");
 }

@@ -90,10 +90,11 @@ fn every_value_may_be_another() {
                 match happened {
                     Ok(Some(message)) => {
                         refused += 1;
-                        // One number is one mistake: nothing that follows is told. Of many bodies of a size each does not fit.
+                        // One number is one mistake, but for a size, and a start at which formulas have no value.
                         let is_number = !word && *instead != "0, 0";
-                        let is_size = message.contains("a whole number, 1 to");
-                        if is_number && !is_size && message.contains(" mistakes") {
+                        let of_several = ["a whole number, 1 to", "at the start"];
+                        let is_one = !of_several.iter().any(|words| message.contains(words));
+                        if is_number && is_one && message.contains(" mistakes") {
                             several.push(format!("{what}\n{message}\n"));
                         }
                         println!("{what}\n    {}", message.replace('\n', "\n    "));

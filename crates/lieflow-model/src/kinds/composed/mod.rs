@@ -14,7 +14,7 @@ use super::entries::check_rows;
 use super::flow;
 use super::prelude::*;
 use super::quantity::part;
-use crate::scene::formula::{Formula, Parameters, Text, Texts};
+use crate::scene::formula::{Formula, Parameters, Text, Texts, without_value};
 use crate::scene::values::Numbers;
 use crate::schema::{self, Measure};
 
@@ -303,20 +303,16 @@ impl System for Composed {
         let coupled = Coupled::new(self.parts.clone(), &start)?;
         Ok((flow::Composed::new(coupled, ON_PARTS), start))
     }
-    fn check_start(&self, t0: f64) -> Result<(), Refusal> {
+    fn check_start(&self, t0: f64) -> Vec<Refusal> {
         let mut at = vec![t0];
         self.parts.iter().for_each(|part| part.space.show(&self.start, &mut at));
-        for (i, part) in self.parts.iter().enumerate() {
-            for (j, formula) in part.field.iter().enumerate() {
-                formula.check(&of_part(i, "field").index(j), &at)?;
-            }
-        }
-        let mut invariants = self.invariants.iter();
-        invariants
-            .try_for_each(|(name, formula)| formula.check(&"invariants".entry(name), &at[1..]))
+        let fields = self.parts.iter().flat_map(|part| &part.field);
+        let mut wrong = without_value(fields, &at);
+        wrong.extend(without_value(self.invariants.iter().map(|(_, formula)| formula), &at[1..]));
+        wrong
     }
-    fn samples(&self) -> Option<&Samples> {
-        self.parts.first()?.field.first()?.samples()
+    fn formula(&self) -> Option<&Formula> {
+        self.parts.first()?.field.first()
     }
     fn notes(&self) -> Vec<String> {
         self.notes.clone()

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use lieflow::scalar::{Ops, Real, tally};
 
 use crate::scene::Refusal;
-use crate::scene::formula::{Formula, Names, Text};
+use crate::scene::formula::{Formula, Names, Text, without_value};
 
 /// The key.
 const KEY: &str = "hamiltonian";
@@ -24,7 +24,7 @@ impl Energy {
     /// A refusal of `hamiltonian`.
     pub(super) fn read(Text(text): &Text, names: &Names) -> Result<Self, Refusal> {
         let value = Formula::read(KEY, text, names)?;
-        let by = |i| value.derivative(KEY, i);
+        let by = |i| value.derivative(i);
         let gradient: Arc<[Formula]> =
             (0..names.variables().len()).map(by).collect::<Result<_, _>>()?;
         let divisor =
@@ -33,19 +33,14 @@ impl Energy {
         Ok(Energy { value, gradient, divisors })
     }
 
-    /// Checks that H and its derivatives are finite at the start.
-    ///
-    /// # Errors
-    /// A refusal of `hamiltonian`.
-    pub(super) fn check(&self, m: &[f64]) -> Result<(), Refusal> {
-        self.value.check(KEY, m)?;
-        match self.gradient.iter().position(|by| !by.value::<f64>(m).is_finite()) {
-            None => Ok(()),
-            Some(i) => {
-                let by = format!("its derivative by number {} of the momentum", i + 1);
-                Err(Refusal::at(KEY, format!("{KEY}: {by} is not finite at the start")))
-            }
-        }
+    /// The refusals where H or a derivative has no finite value at the start.
+    pub(super) fn check(&self, m: &[f64]) -> Vec<Refusal> {
+        without_value([&self.value].into_iter().chain(&*self.gradient), m)
+    }
+
+    /// H as a formula.
+    pub(super) fn formula(&self) -> &Formula {
+        &self.value
     }
 
     /// H(m).

@@ -16,6 +16,7 @@ use crate::kinds::keys::SampleKeys;
 use crate::kinds::matrix::MatrixAction;
 use crate::kinds::prelude::*;
 use crate::model::Model;
+use crate::scene::formula::Formula;
 use crate::scene::values::Numbers;
 
 /// How H is stated.
@@ -198,8 +199,11 @@ impl ProblemSpec for Spec {
     fn model(&self, layer: Layer, quantities: &[&str]) -> Result<Box<dyn Model>, Error> {
         self.of(quantities).model(layer, quantities)
     }
-    fn check_start(&self, t0: f64) -> Result<(), Refusal> {
+    fn check_start(&self, t0: f64) -> Vec<Refusal> {
         self.alone.check_start(t0)
+    }
+    fn formula(&self) -> Option<&Formula> {
+        self.alone.formula()
     }
     fn state(&self, quantities: &[&str]) -> &'static [&'static str] {
         self.of(quantities).state(quantities)
@@ -272,10 +276,16 @@ impl System for EulerEquation {
         let system = Euler::new(self.group.clone(), self.energy.clone());
         Ok((OnMatrices::lie_poisson(system, MatrixAction::Coadjoint), self.momentum.clone()))
     }
-    fn check_start(&self, _: f64) -> Result<(), Refusal> {
+    fn check_start(&self, _: f64) -> Vec<Refusal> {
         match &self.energy.form {
-            Form::Weights(_) => Ok(()),
+            Form::Weights(_) => Vec::new(),
             Form::Formula(energy) => energy.check(&entries(&self.momentum)),
+        }
+    }
+    fn formula(&self) -> Option<&Formula> {
+        match &self.energy.form {
+            Form::Weights(_) => None,
+            Form::Formula(energy) => Some(energy.formula()),
         }
     }
     fn modelled(&self) -> String {

@@ -11,6 +11,7 @@ use crate::kinds::flow::{OnSe3, OnSpheres};
 use crate::kinds::keys::SampleKeys;
 use crate::kinds::prelude::*;
 use crate::kinds::system::PointOf;
+use crate::scene::formula::Formula;
 
 /// The energy and the initial momentum, N numbers.
 #[derive(Clone, Debug)]
@@ -166,8 +167,11 @@ impl System for Vectors<3> {
         let start: Momentum<N> = Box::new([Vector3::from(self.momentum.map(N::lit))]);
         Ok((OnSpheres::lie_poisson(system, Linear), start))
     }
-    fn check_start(&self, _: f64) -> Result<(), Refusal> {
+    fn check_start(&self, _: f64) -> Vec<Refusal> {
         self.energy.check(&self.momentum)
+    }
+    fn formula(&self) -> Option<&Formula> {
+        Some(self.energy.formula())
     }
     fn modelled(&self) -> String {
         "momentum on so(3)*".into()
@@ -195,8 +199,11 @@ impl System for Vectors<6> {
         let start: Pair<N> = (Vector3::new(m1, m2, m3), Vector3::new(p1, p2, p3));
         Ok((OnSe3::lie_poisson(system, Coadjoint), start))
     }
-    fn check_start(&self, _: f64) -> Result<(), Refusal> {
+    fn check_start(&self, _: f64) -> Vec<Refusal> {
         self.energy.check(&self.momentum)
+    }
+    fn formula(&self) -> Option<&Formula> {
+        Some(self.energy.formula())
     }
     fn modelled(&self) -> String {
         "momenta m and p on se(3)*".into()

@@ -15,7 +15,7 @@ use crate::kinds::entries::{
 use crate::kinds::flow::OnMatrices;
 use crate::kinds::matrix::MatrixAction;
 use crate::kinds::prelude::*;
-use crate::scene::formula::Formula;
+use crate::scene::formula::{Formula, without_value};
 
 /// The equation with its initial point.
 #[derive(Clone, Debug)]
@@ -35,12 +35,17 @@ pub(super) struct Equation {
 /// The distance from the algebra that f may have at the points where it is checked, relative to its size.
 const IN_THE_ALGEBRA: f64 = 1e-8;
 
+/// t and the entries of y, for formulas.
+fn values(t: f64, y: &Mat<f64>) -> [f64; 1 + NAMED_MAX * NAMED_MAX] {
+    let mut values = [t; 1 + NAMED_MAX * NAMED_MAX];
+    values[1..].iter_mut().zip(rows(y)).for_each(|(value, y)| *value = y);
+    values
+}
+
 impl Equation {
     /// v ← f(t, y) by the formulas.
     fn stated(&self, t: f64, y: &Mat<f64>, v: &mut Mat<f64>) {
-        let mut values = [t; 1 + NAMED_MAX * NAMED_MAX];
-        values[1..].iter_mut().zip(rows(y)).for_each(|(value, y)| *value = y);
-        let n = self.group.n();
+        let (n, values) = (self.group.n(), values(t, y));
         for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))) {
             v[(i, j)] = self.field[i * n + j].value(&values);
         }
@@ -153,8 +158,12 @@ impl System for Equation {
         };
         Ok((problem, self.start.clone()))
     }
-    fn check_start(&self, t0: f64) -> Result<(), Refusal> {
+    fn check_start(&self, t0: f64) -> Vec<Refusal> {
         let n = self.group.n();
+        let wrong = without_value(&*self.field, &values(t0, &self.start));
+        if !wrong.is_empty() {
+            return wrong;
+        }
         let mut f = Mat::zeros(n, n);
         let beside = self.beside_the_start();
         let first = (t0, &self.start, "at the start");
@@ -162,27 +171,18 @@ impl System for Equation {
         let second = beside.iter().map(|y| (t0 + 0.5, y, "beside the start"));
         for (t, y, place) in [first].into_iter().chain(second) {
             self.stated(t, y, &mut f);
-            let entries = (0..n).flat_map(|i| (0..n).map(move |j| (i, j)));
-            let infinite = entries.map(|at| (at, f[at])).find(|(_, x)| !x.is_finite());
-            match (infinite, miss(self.algebra, "field", &f, IN_THE_ALGEBRA)) {
-                (Some(((i, j), x)), _) if t == t0 => {
-                    let key = "field".cell(i, j);
-                    let message = format!("{key} is {x} {place}, expected a number");
-                    return Err(Refusal::at(key, message));
-                }
-                (None, Some(Miss { at: (i, j), why, form })) => {
-                    let algebra = self.algebra.name(n);
-                    let message = format!("the field is not in {algebra}: {place} {why}");
-                    let refusal = Refusal::at("field".cell(i, j), message);
-                    return Err(Refusal { help: Some(form), ..refusal });
-                }
-                _ => {}
+            let missed = miss(self.algebra, "field", &f, IN_THE_ALGEBRA);
+            if let Some(Miss { at: (i, j), why, form }) = missed.filter(|_| f.is_all_finite()) {
+                let algebra = self.algebra.name(n);
+                let message = format!("the field is not in {algebra}: {place} {why}");
+                let refusal = Refusal::at("field".cell(i, j), message);
+                return vec![Refusal { help: Some(form), ..refusal }];
             }
         }
-        Ok(())
+        Vec::new()
     }
-    fn samples(&self) -> Option<&Samples> {
-        self.field.first()?.samples()
+    fn formula(&self) -> Option<&Formula> {
+        self.field.first()
     }
     fn notes(&self) -> Vec<String> {
         self.notes.clone()

@@ -11,13 +11,14 @@
 //! | of vectors | `+` `-`, products with numbers and matrices, dot cross norm transpose |
 //!
 //! A formula is read once, to a list of operations; its derivative is another one. Evaluating it allocates
-//! nothing and cannot fail: where it has no value, the value is NaN.
+//! nothing and cannot fail: where it has no value, the value is NaN, and the formula is kept to be named.
 //!
 //! The crates for expressions have one thing or another of what is needed: powers before signs and to the
 //! right, `1e-3`, mistakes with their place, derivatives, operations that are counted. None has all.
 
 mod calculus;
 mod functions;
+mod lost;
 mod names;
 mod parse;
 mod samples;
@@ -27,6 +28,7 @@ mod tests;
 mod text;
 mod value;
 
+pub use lost::{Lost, Which};
 pub use names::{Lets, Names, Parameters};
 pub use samples::SamplesFile;
 pub use text::{Text, Texts};
@@ -36,6 +38,7 @@ use std::sync::Arc;
 use lieflow::samples::Samples;
 use lieflow::scalar::Real;
 
+use self::lost::Origin;
 use self::samples::Table;
 use self::tape::{LENGTH_MAX, Tape};
 use super::{KeyPath, Refusal};
@@ -46,6 +49,7 @@ pub struct Formula {
     tape: Tape,
     /// Of its names, whether it uses them or not.
     table: Option<Arc<Table>>,
+    origin: Arc<Origin>,
 }
 
 impl Formula {
@@ -57,7 +61,7 @@ impl Formula {
         let (rows, tapes) = read_value(key, text, names)?;
         let count = tapes.len();
         match <[Tape; 1]>::try_from(tapes) {
-            Ok([tape]) => Ok(Formula::of(tape, names)),
+            Ok([tape]) => Ok(Formula::of(tape, key, text, names)),
             Err(_) => {
                 let value = if rows == count { "a vector" } else { "a matrix" };
                 let message =
@@ -68,25 +72,55 @@ impl Formula {
         }
     }
 
-    fn of(tape: Tape, names: &Names) -> Self {
-        Formula { tape, table: names.table().cloned() }
+    /// The formula of a text, or an entry of its value, at `key`.
+    fn of(tape: Tape, key: &str, text: &str, names: &Names) -> Self {
+        let (key, text, table) = (key.into(), text.into(), names.table().cloned());
+        Formula {
+            tape,
+            table,
+            origin: Arc::new(Origin { key, text, by: None, names: names.clone() }),
+        }
     }
 
     /// Its value where the variables have these values, in the order of their names. On numbers that count
     /// operations, or where somebody counts them, its own are counted too.
     pub fn value<S: Real + Into<f64>>(&self, values: &[S]) -> S {
-        S::lit(self.tape.value(values, self.samples()))
+        let value = self.tape.value(values, self.samples());
+        if !value.is_finite() {
+            self.lose(values);
+        }
+        S::lit(value)
+    }
+
+    #[cold]
+    fn lose<S: Real + Into<f64>>(&self, values: &[S]) {
+        let values: Vec<f64> = values.iter().map(|&x| x.into()).collect();
+        self.origin.names.losses().see(&self.origin, &self.tape, &values);
+    }
+
+    /// Forgets what this formula and those of the same names lost.
+    pub fn forget(&self) {
+        self.origin.names.losses().forget();
+    }
+
+    /// Which of this formula and those of the same names had no finite value, and where.
+    pub fn lost(&self, which: Which) -> Option<Lost> {
+        self.origin.names.losses().tell(which)
     }
 
     /// Its derivative by a variable, as a formula.
     ///
     /// # Errors
-    /// A refusal of `key` where that is too long.
-    pub fn derivative(&self, key: &str, variable: usize) -> Result<Self, Refusal> {
-        let too_long =
-            || Refusal::at(key, format!("a derivative of more than {LENGTH_MAX} operations"));
+    /// A refusal of its key where that is too long.
+    pub fn derivative(&self, variable: usize) -> Result<Self, Refusal> {
+        let Origin { key, text, names, .. } = &*self.origin;
+        let too_long = || {
+            Refusal::at(key.as_str(), format!("a derivative of more than {LENGTH_MAX} operations"))
+        };
         let tape = calculus::derivative(&self.tape, variable).ok_or_else(too_long)?;
-        Ok(Formula { tape, table: self.table.clone() })
+        let (key, text, names) = (key.clone(), text.clone(), names.clone());
+        let origin = Arc::new(Origin { key, text, by: Some(variable), names });
+        Ok(Formula { tape, table: self.table.clone(), origin })
     }
 
     /// The variable and the number, where the formula is a variable divided by a number; a variable is divided by 1.
@@ -114,16 +148,31 @@ impl Formula {
         self.tape.ops().len()
     }
 
-    /// Checks that the formula has a value at the start.
-    ///
-    /// # Errors
-    /// A refusal of `key` where the value is not finite.
-    pub fn check(&self, key: &str, start: &[f64]) -> Result<(), Refusal> {
-        match self.value(start) {
-            x if x.is_finite() => Ok(()),
-            x => Err(Refusal::at(key, format!("{key} is {x} at the start, expected a number"))),
+    /// The refusal of its key, or of the named formula that it needs, where it has no finite value at the start.
+    pub fn check(&self, start: &[f64]) -> Option<Refusal> {
+        self.forget();
+        let value = self.value(start);
+        let Lost { key, through, by, value, .. } =
+            (!value.is_finite()).then(|| self.lost(Which::First)).flatten()?;
+        let key = through.unwrap_or(key);
+        let what = by.map_or_else(|| key.clone(), |by| format!("{key}: its derivative by {by}"));
+        let message = format!("{what} is {value} at the start, expected a number");
+        Some(Refusal::at(key, message))
+    }
+}
+
+/// The refusals of the formulas that have no finite value at the start, one for each key.
+pub fn without_value<'a>(
+    formulas: impl IntoIterator<Item = &'a Formula>,
+    start: &[f64],
+) -> Vec<Refusal> {
+    let mut all = Vec::new();
+    for refusal in formulas.into_iter().filter_map(|formula| formula.check(start)) {
+        if all.iter().all(|other: &Refusal| other.key != refusal.key) {
+            all.push(refusal);
         }
     }
+    all
 }
 
 /// The entries of the value of a formula, row by row, and the number of its rows.

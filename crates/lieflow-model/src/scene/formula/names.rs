@@ -3,11 +3,13 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
+use lieflow::samples::Samples;
 use serde::Deserialize;
 
 use super::super::Refusal;
 use super::super::values::Real;
 use super::functions::{CALLED, CONSTANTS};
+use super::lost::Losses;
 use super::samples::{SamplesFile, Table};
 use super::tape::Tape;
 use super::{Formula, KeyPath, Texts};
@@ -43,7 +45,7 @@ impl Parameters {
         for variable in variables {
             let variable = variable.into();
             names.check(key, &variable)?;
-            names.variables.push(variable);
+            Arc::make_mut(&mut names.variables).push(variable);
         }
         for (name, value) in &self.0 {
             names.check_new("parameters", name)?;
@@ -74,26 +76,49 @@ impl Lets {
 
     /// The formula that a name in a text belongs to: that of the name, or of the vector or matrix x by x1 or x12.
     fn of<'a>(&'a self, word: &str) -> Option<&'a str> {
-        let whole = word.trim_end_matches(|c: char| c.is_ascii_digit());
-        let found = self.0.get_key_value(word).or_else(|| self.0.get_key_value(whole))?;
+        let whole = || self.0.get_key_value(without_digits(word));
+        let found = self.0.get_key_value(word).or_else(whole)?;
         Some(found.0)
     }
 }
 
 /// The names that a formula may use.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default)]
 pub struct Names {
-    variables: Vec<String>,
+    variables: Arc<Vec<String>>,
     constants: Vec<(String, f64)>,
     table: Option<Arc<Table>>,
-    /// The named formulas; of vectors and matrices each entry by its name.
-    formulas: Vec<(String, Tape)>,
+    /// The named formulas, after those that they need; of vectors and matrices each entry by its name.
+    formulas: Arc<Vec<Entry>>,
     /// Named formulas that have no meaning here, and why.
     unusable: Vec<(String, String)>,
+    losses: Arc<Losses>,
+}
+
+/// A named formula that is a number, or an entry of one that is a vector or a matrix.
+#[derive(Clone, Debug)]
+pub(super) struct Entry {
+    pub(super) name: String,
+    /// The place of its text in the scene.
+    pub(super) key: String,
+    pub(super) text: String,
+    pub(super) tape: Tape,
+}
+
+impl Entry {
+    /// Does a word of a formula mean this one, or the vector or the matrix that it is in?
+    pub(super) fn belongs_to(&self, word: &str) -> bool {
+        word == self.name || !word.is_empty() && without_digits(word) == without_digits(&self.name)
+    }
+}
+
+/// The name of a vector or a matrix by that of an entry.
+fn without_digits(name: &str) -> &str {
+    name.trim_end_matches(|c: char| c.is_ascii_digit())
 }
 
 /// The meaning of a name.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub(super) enum Meaning<'a> {
     Variable(usize),
     Sample(usize),
@@ -181,17 +206,18 @@ impl Names {
         lets: &'a Lets,
     ) -> impl Iterator<Item = (String, Formula)> + 'a {
         lets.names().flat_map(move |name| {
-            let of_this = move |entry: &&(String, Tape)| lets.of(&entry.0) == Some(name);
+            let of_this = move |entry: &&Entry| lets.of(&entry.name) == Some(name);
             let entries = self.formulas.iter().filter(of_this);
-            entries.map(|(entry, tape)| (entry.clone(), Formula::of(tape.clone(), self)))
+            entries.map(|Entry { name, key, text, tape }| {
+                (name.clone(), Formula::of(tape.clone(), key, text, self))
+            })
         })
     }
 
     /// Why a named formula has no meaning here, by its name or that of an entry.
     pub(super) fn unusable(&self, word: &str) -> Option<&str> {
-        let whole = word.trim_end_matches(|c: char| c.is_ascii_digit());
         let of = |wanted: &str| self.unusable.iter().find(|(name, _)| name == wanted);
-        of(word).or_else(|| of(whole)).map(|(_, why)| why.as_str())
+        of(word).or_else(|| of(without_digits(word))).map(|(_, why)| why.as_str())
     }
 
     /// Where a scene gives a name its meaning.
@@ -205,6 +231,21 @@ impl Names {
     pub(super) fn table(&self) -> Option<&Arc<Table>> {
         self.table.as_ref()
     }
+    pub(super) fn samples(&self) -> Option<&Samples> {
+        self.table.as_ref().map(|table| &table.samples)
+    }
+    /// The named formulas.
+    pub(super) fn formulas(&self) -> &[Entry] {
+        &self.formulas
+    }
+    /// The same names for formulas whose losses are kept apart.
+    pub fn apart(&self) -> Names {
+        Names { losses: Arc::default(), ..self.clone() }
+    }
+    /// What formulas of these names lost.
+    pub(super) fn losses(&self) -> &Losses {
+        &self.losses
+    }
     fn columns(&self) -> &[String] {
         self.table.as_ref().map_or(&[], |table| &table.columns)
     }
@@ -213,7 +254,7 @@ impl Names {
     pub fn add(&mut self, variable: &str) -> bool {
         let usable = self.check("", variable).is_ok();
         if usable {
-            self.variables.push(variable.into());
+            Arc::make_mut(&mut self.variables).push(variable.into());
         }
         usable
     }
@@ -251,8 +292,8 @@ impl Names {
         if self.is_unusable(name) {
             return None;
         }
-        if let Some((_, tape)) = self.formulas.iter().find(|(formula, _)| formula == name) {
-            return Some(Meaning::Formula(tape));
+        if let Some(entry) = self.formulas.iter().find(|entry| entry.name == name) {
+            return Some(Meaning::Formula(&entry.tape));
         }
         let variable = self.variables.iter().position(|variable| variable == name);
         let own = self.constants.iter().map(|(name, x)| (name.as_str(), *x));
@@ -266,7 +307,7 @@ impl Names {
     /// Every name that stands for a number.
     pub(super) fn all(&self) -> Vec<&str> {
         let variables = self.variables.iter().chain(self.columns()).map(String::as_str);
-        let formulas = self.formulas.iter().map(|(name, _)| name.as_str());
+        let formulas = self.formulas.iter().map(|entry| entry.name.as_str());
         let own = self.constants.iter().map(|(name, _)| name.as_str());
         let own = variables.chain(formulas).chain(own);
         own.chain(CONSTANTS.iter().map(|(name, _)| *name)).collect()
@@ -322,15 +363,17 @@ impl<'a> LetReader<'a> {
         let (rows, tapes) = texts.read_any(&place, names)?;
         let columns = tapes.len() / rows;
         for (i, tape) in tapes.into_iter().enumerate() {
-            let entry = match (rows, columns) {
-                (1, 1) => name.into(),
+            let (key, text) = texts.entry(&place, i);
+            let name = match (rows, columns) {
+                (1, 1) => name.to_owned(),
                 (_, 1) => format!("{name}{}", i + 1),
                 _ => format!("{name}{}{}", i / columns + 1, i % columns + 1),
             };
             if self.refuses_taken {
-                names.check(&place, &entry)?;
+                names.check(&place, &name)?;
             }
-            names.formulas.push((entry, tape));
+            let entry = Entry { name, key, text: text.into(), tape };
+            Arc::make_mut(&mut names.formulas).push(entry);
         }
         Ok(())
     }

@@ -43,13 +43,18 @@ impl Tape {
         &self.ops
     }
 
-    /// Does an operation depend on this variable by itself?
-    pub(super) fn uses(&self, variable: usize) -> bool {
-        self.ops.iter().any(|op| match op {
-            Op::Variable(at) => *at == variable,
-            Op::Sample(..) => variable == TIME,
-            _ => false,
+    /// The variables that it depends on; some more than once.
+    pub(super) fn inputs(&self) -> impl Iterator<Item = usize> {
+        self.ops.iter().filter_map(|op| match op {
+            Op::Variable(at) => Some(*at),
+            Op::Sample(..) => Some(TIME),
+            _ => None,
         })
+    }
+
+    /// Does it depend on this variable?
+    pub(super) fn uses(&self, variable: usize) -> bool {
+        self.inputs().any(|at| at == variable)
     }
 
     /// The variable and the number of a formula x/c; of x, with 1.

@@ -32,6 +32,14 @@ impl Texts {
         texts.iter().map(|text| text.0.as_str())
     }
 
+    /// The place and the text of an entry of the value, from 0; `key` is that of all.
+    pub(super) fn entry(&self, key: &str, i: usize) -> (String, &str) {
+        match self {
+            Texts::One(text) => (key.into(), &text.0),
+            Texts::List(list) => (key.index(i), list.get(i).map_or("", |text| &text.0)),
+        }
+    }
+
     /// The formulas of so many components.
     ///
     /// # Errors
@@ -40,7 +48,12 @@ impl Texts {
         let (rows, tapes) = self.read_any(key, names)?;
         let found = tapes.len();
         if found == count && (rows == count || count == 1) {
-            return Ok(tapes.into_iter().map(|tape| Formula::of(tape, names)).collect());
+            let entries = tapes.into_iter().enumerate();
+            let formula = |(i, tape)| {
+                let (key, text) = self.entry(key, i);
+                Formula::of(tape, &key, text, names)
+            };
+            return Ok(entries.map(formula).collect());
         }
         let found = match self {
             Texts::List(_) => format!("found {found} formulas, expected {count}"),

@@ -1,0 +1,152 @@
+//! Formulas that lose their value in a run: the last ones are kept, so that a run that ends by one can name it.
+
+use core::fmt;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use super::names::{Entry, Names, continues_name};
+use super::tape::Tape;
+
+/// Where a formula stands, and what its names mean.
+#[derive(Debug)]
+pub(super) struct Origin {
+    pub(super) key: String,
+    pub(super) text: String,
+    /// The variable by which the formula of the text is derived.
+    pub(super) by: Option<usize>,
+    pub(super) names: Names,
+}
+
+/// A formula that has no finite value at a point where its variables have one.
+#[derive(Clone, Debug)]
+struct Loss {
+    origin: Arc<Origin>,
+    tape: Tape,
+    values: Vec<f64>,
+}
+
+/// What formulas of the same names lost.
+#[derive(Debug, Default)]
+pub(super) struct Losses(Mutex<[Option<Loss>; 2]>);
+
+/// Which of the losses since the last [`Formula::forget`](super::Formula::forget).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Which {
+    /// The first one.
+    First,
+    /// The last one.
+    Last,
+}
+
+impl Losses {
+    /// Keeps a loss; one that only follows from a variable is none.
+    #[cold]
+    pub(super) fn see(&self, origin: &Arc<Origin>, tape: &Tape, values: &[f64]) {
+        if !tape.inputs().all(|at| values.get(at).is_some_and(|x| x.is_finite())) {
+            return;
+        }
+        let loss = || Loss { origin: origin.clone(), tape: tape.clone(), values: values.to_vec() };
+        let mut losses = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let [first, last] = &mut *losses;
+        first.get_or_insert_with(loss);
+        // At one point the first formula counts.
+        if last.as_ref().is_none_or(|last| last.values != values) {
+            *last = Some(loss());
+        }
+    }
+
+    pub(super) fn forget(&self) {
+        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = [None, None];
+    }
+
+    /// The loss in words.
+    pub(super) fn tell(&self, which: Which) -> Option<Lost> {
+        let losses = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        losses[which as usize].as_ref().map(Loss::named)
+    }
+}
+
+/// A formula without a finite value, and the point.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Lost {
+    /// The key of the formula that a run needs.
+    pub key: String,
+    /// The named formula that has no value first, where that is one.
+    pub through: Option<String>,
+    /// The text of the formula, or of the named one.
+    pub text: String,
+    /// The variable of the derivative, where that has no value.
+    pub by: Option<String>,
+    /// The value.
+    pub value: f64,
+    /// The variables of the formula, or of the named one, with their values.
+    pub at: Vec<(String, f64)>,
+}
+
+impl Loss {
+    /// The formula, or the first named one that it needs and that has no value.
+    fn named(&self) -> Lost {
+        let Loss { origin, tape, values } = self;
+        let names = &origin.names;
+        let value = |tape: &Tape| tape.value(values, names.samples());
+        let needed = needed(&origin.text, names);
+        let lost = |entry: &&Entry| !value(&entry.tape).is_finite();
+        let through =
+            names.formulas().iter().filter(|entry| needed.contains(&&*entry.key)).find(lost);
+        let (of, text) = through.map_or((tape, &origin.text), |entry| (&entry.tape, &entry.text));
+        let variable = |at: usize| names.variables().get(at).cloned().unwrap_or_default();
+        let mut inputs: Vec<usize> = of.inputs().collect();
+        inputs.sort_unstable();
+        inputs.dedup();
+        Lost {
+            key: origin.key.clone(),
+            through: through.map(|entry| entry.key.clone()),
+            text: text.clone(),
+            by: origin.by.filter(|_| through.is_none()).map(variable),
+            value: value(of),
+            at: inputs.into_iter().map(|at| (variable(at), values[at])).collect(),
+        }
+    }
+}
+
+impl Lost {
+    /// The time, where the formula depends on it.
+    pub fn t(&self) -> Option<f64> {
+        self.at.iter().find(|(name, _)| name == "t").map(|(_, t)| *t)
+    }
+}
+
+/// The keys of the named formulas that a text needs, also through others.
+fn needed<'a>(text: &str, names: &'a Names) -> Vec<&'a str> {
+    let says = |text: &str, entry: &Entry| {
+        text.split(|c| !continues_name(c)).any(|word| entry.belongs_to(word))
+    };
+    let mut needed: Vec<&Entry> = Vec::new();
+    // An entry needs only those before it.
+    for entry in names.formulas().iter().rev() {
+        if says(text, entry) || needed.iter().any(|above| says(&above.text, entry)) {
+            needed.push(entry);
+        }
+    }
+    needed.into_iter().map(|entry| &*entry.key).collect()
+}
+
+/// Variables that are shown.
+const SHOWN: usize = 9;
+
+impl fmt::Display for Lost {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Lost { key, through, text, by, value, at } = self;
+        if let Some(by) = by {
+            write!(f, "the derivative by {by} of ")?;
+        }
+        write!(f, "{} = {text}", through.as_ref().unwrap_or(key))?;
+        if through.is_some() {
+            write!(f, ", which {key} needs,")?;
+        }
+        write!(f, " is {value}")?;
+        for (i, (name, x)) in at.iter().take(SHOWN).enumerate() {
+            write!(f, "{} {name} = {x}", if i == 0 { " at" } else { "," })?;
+        }
+        f.write_str(if at.len() > SHOWN { ", …" } else { "" })
+    }
+}
