@@ -23,8 +23,10 @@ pub(super) struct Equation {
     pub(super) algebra: Algebra,
     pub(super) group: MatrixGroup,
     pub(super) action: MatrixAction,
-    /// f, row by row.
-    pub(super) field: Arc<[Formula]>,
+    /// f, or its part above the diagonal: each formula with its row and its column.
+    pub(super) field: Arc<[((usize, usize), Formula)]>,
+    /// Is the part below the diagonal minus that above it?
+    pub(super) by_upper: bool,
     /// Is f a function of t alone?
     pub(super) linear: bool,
     pub(super) start: Mat<f64>,
@@ -45,10 +47,19 @@ fn values(t: f64, y: &Mat<f64>) -> [f64; 1 + NAMED_MAX * NAMED_MAX] {
 impl Equation {
     /// v ← f(t, y) by the formulas.
     fn stated(&self, t: f64, y: &Mat<f64>, v: &mut Mat<f64>) {
-        let (n, values) = (self.group.n(), values(t, y));
-        for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))) {
-            v[(i, j)] = self.field[i * n + j].value(&values);
+        let values = values(t, y);
+        if self.by_upper {
+            v.fill(0.0);
         }
+        for &((i, j), ref formula) in &*self.field {
+            v[(i, j)] = formula.value(&values);
+            if self.by_upper {
+                v[(j, i)] = -v[(i, j)];
+            }
+        }
+    }
+    fn formulas(&self) -> impl Iterator<Item = &Formula> {
+        self.field.iter().map(|(_, formula)| formula)
     }
     /// v ← the projection of f(t, y) on 𝔤.
     fn projected(&self, t: f64, y: &Mat<f64>, v: &mut Mat<f64>) {
@@ -160,7 +171,7 @@ impl System for Equation {
     }
     fn check_start(&self, t0: f64) -> Vec<Refusal> {
         let n = self.group.n();
-        let wrong = without_value(&*self.field, &values(t0, &self.start));
+        let wrong = without_value(self.formulas(), &values(t0, &self.start));
         if !wrong.is_empty() {
             return wrong;
         }
@@ -182,7 +193,7 @@ impl System for Equation {
         Vec::new()
     }
     fn formula(&self) -> Option<&Formula> {
-        self.field.first()
+        self.formulas().next()
     }
     fn notes(&self) -> Vec<String> {
         self.notes.clone()

@@ -14,6 +14,8 @@
 
 mod equation;
 
+use std::sync::Arc;
+
 use lieflow::groups::{GroupMatrix, LieAlgebra, LieGroup, MatrixGroup};
 
 use self::equation::Equation;
@@ -68,8 +70,7 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
         .iter()
         .find(|(name, _)| *name == action)
         .ok_or_else(|| Refusal::unknown("action", action, &ACTIONS.map(|(name, _)| name)))?;
-    let field = rows_of(algebra, keys.field)?;
-    let n = field.len();
+    let (n, by_upper, field) = entries_of(algebra, keys.field)?;
     if !(1..=NAMED_MAX).contains(&n) {
         let message = format!("found {n} rows, expected 1 to {NAMED_MAX}");
         return Err(Refusal::at("field", message).into());
@@ -84,20 +85,25 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
     let entries = row_columns("y", start.nrows(), start.ncols());
     let variables = ["t".to_owned()].into_iter().chain(entries);
     let names = formulas.names("field", variables, samples)?;
-    let field = field.iter().flatten().map(|(key, text)| Formula::read(key, text, &names));
-    let field = field.collect::<Result<Vec<_>, _>>()?;
-    let linear = (1..names.variables().len()).all(|y| field.iter().all(|f| !f.uses(y)));
-    let field = field.into();
-    Ok(Box::new(Stated(Equation { algebra, group, action, field, linear, start, notes })))
+    let formula = |((i, j), key, Text(text)): (_, String, Text)| {
+        Ok(((i, j), Formula::read(&key, &text, &names)?))
+    };
+    let field = field.into_iter().map(formula).collect::<Result<Arc<[_]>, Refusal>>()?;
+    let linear = (1..names.variables().len()).all(|y| field.iter().all(|(_, f)| !f.uses(y)));
+    let equation = Equation { algebra, group, action, field, by_upper, linear, start, notes };
+    Ok(Box::new(Stated(equation)))
 }
 
-/// The formulas of a field by rows, each with its place; of so also those above the diagonal alone.
-fn rows_of(algebra: Algebra, field: Vec<Texts>) -> Result<Vec<Vec<(String, String)>>, Refusal> {
+/// Formulas, each with its row and its column and its place in the scene.
+type Entries = Vec<((usize, usize), String, Text)>;
+
+/// The number of rows of a field, and its formulas: all, or of so those above the diagonal alone, which is said.
+fn entries_of(algebra: Algebra, field: Vec<Texts>) -> Result<(usize, bool, Entries), Refusal> {
     let (mut rows, mut above) = (Vec::new(), Vec::new());
     for entry in field {
         match entry {
             Texts::List(row) => rows.push(row),
-            Texts::One(Text(text)) => above.push(text),
+            Texts::One(text) => above.push(text),
         }
     }
     let n = rows.len();
@@ -106,30 +112,26 @@ fn rows_of(algebra: Algebra, field: Vec<Texts>) -> Result<Vec<Vec<(String, Strin
             let message = format!("row {} has {} formulas, expected {n}", i + 1, rows[i].len());
             return Err(Refusal::at("field".index(i), message));
         }
-        let with_place = |i: usize, row: Vec<Text>| {
-            let texts = row.into_iter().enumerate();
-            texts.map(|(j, Text(text))| ("field".cell(i, j), text)).collect()
-        };
-        return Ok(rows.into_iter().enumerate().map(|(i, row)| with_place(i, row)).collect());
+        let places = (0..n).flat_map(|i| (0..n).map(move |j| (i, j)));
+        let entries = places.zip(rows.into_iter().flatten());
+        let with_key = |((i, j), text)| ((i, j), "field".cell(i, j), text);
+        return Ok((n, false, entries.map(with_key).collect()));
     }
-    let n = match (algebra, side_of(above.len())) {
-        (Algebra::So, Some(n)) if rows.is_empty() => n,
+    match (algebra, side_of(above.len())) {
+        (Algebra::So, Some(n)) if rows.is_empty() => {
+            let entries = above_diagonal(n).zip(above).enumerate();
+            let with_key = |(k, (place, text))| (place, "field".index(k), text);
+            Ok((n, true, entries.map(with_key).collect()))
+        }
         _ => {
             let message = format!(
                 "found {} formulas that are in no row, expected n rows of n formulas or, of so, the n(n-1)/2 formulas \
                  above the diagonal",
                 above.len()
             );
-            return Err(Refusal::at("field", message));
+            Err(Refusal::at("field", message))
         }
-    };
-    let mut field = vec![vec![("field".to_owned(), "0".to_owned()); n]; n];
-    for ((k, (i, j)), text) in above_diagonal(n).enumerate().zip(above) {
-        // Formulas are read row by row: a mistake is found where it is written.
-        field[j][i] = ("field".index(k), format!("-({text})"));
-        field[i][j] = ("field".index(k), text);
     }
-    Ok(field)
 }
 
 /// The initial point, where the action takes it.
