@@ -13,4 +13,6 @@ pub(super) use super::{
 };
 pub(super) use crate::model::Layer;
 pub(super) use crate::scene::values::{List, Real, Reals, Table, Whole};
-pub(super) use crate::scene::{Either, KeyPath, ReadError, Refusal, exactly_one, help_for};
+pub(super) use crate::scene::{
+    Either, KeyPath, ReadError, Refusal, at_most_one, exactly_one, help_for,
+};

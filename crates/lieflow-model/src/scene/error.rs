@@ -324,6 +324,22 @@ pub enum Either<A, B> {
     Second(B),
 }
 
+/// The one of these keys that is there, where one is.
+///
+/// # Errors
+/// A refusal of the second one that is there.
+pub fn at_most_one<'a>(
+    keys: impl IntoIterator<Item = (&'a str, bool)>,
+) -> Result<Option<&'a str>, Refusal> {
+    let mut given = keys.into_iter().filter(|(_, given)| *given).map(|(key, _)| key);
+    match (given.next(), given.next()) {
+        (Some(a), Some(b)) => {
+            Err(Refusal::at(b, format!("both `{a}` and `{b}`, expected exactly one of them")))
+        }
+        (first, _) => Ok(first),
+    }
+}
+
 /// The one of two keys that is there.
 ///
 /// # Errors
@@ -332,12 +348,10 @@ pub fn exactly_one<A, B>(
     (a, first): (&str, Option<A>),
     (b, second): (&str, Option<B>),
 ) -> Result<Either<A, B>, Refusal> {
+    at_most_one([(a, first.is_some()), (b, second.is_some())])?;
     match (first, second) {
-        (Some(value), None) => Ok(Either::First(value)),
+        (Some(value), _) => Ok(Either::First(value)),
         (None, Some(value)) => Ok(Either::Second(value)),
-        (Some(_), Some(_)) => {
-            Err(Refusal::at(b, format!("both `{a}` and `{b}`, expected exactly one of them")))
-        }
         (None, None) => Err(Refusal::section(format!("expected `{a}` or `{b}`, found neither"))),
     }
 }

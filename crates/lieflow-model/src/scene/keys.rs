@@ -8,7 +8,7 @@ use lieflow::{Error, SaveAt, TimeGrid};
 use serde::Deserialize;
 
 use super::defaults;
-use super::error::{Either, KeyPath, Refusal, exactly_one};
+use super::error::{Either, KeyPath, Refusal, at_most_one, exactly_one};
 use super::formula::Lets;
 use super::values::{Real, Span, Whole};
 use crate::kinds::{Kind, ProblemSpec, high_order};
@@ -337,17 +337,12 @@ impl OutputKeys {
                 "`times_by` is for `times`, `count` and `interval`: add one, or leave this";
             return Err(Refusal::at("times_by", message));
         }
-        let given = [
+        at_most_one([
             ("every", self.every.is_some()),
             ("times", self.times.is_some()),
             ("count", self.count.is_some()),
             ("interval", self.interval.is_some()),
-        ];
-        let mut given = given.iter().filter(|(_, given)| *given).map(|(key, _)| *key);
-        if let (Some(first), Some(second)) = (given.next(), given.next()) {
-            let message = format!("both `{first}` and `{second}`, expected exactly one of them");
-            return Err(Refusal::at(second, message));
-        }
+        ])?;
         let intervals = |count: u64| SaveAt::Interval((t1 - t0).abs() / count as f64);
         let save = match (self.every, &self.times, self.count, self.interval) {
             (Some(every), ..) => SaveAt::Every(every.0),

@@ -15,7 +15,7 @@ pub mod values;
 
 pub use bundled::{BUNDLED, Bundled};
 pub use defaults::Defaults;
-pub use error::{Either, KeyPath, ReadError, Refusal, SceneError, exactly_one};
+pub use error::{Either, KeyPath, ReadError, Refusal, SceneError, at_most_one, exactly_one};
 pub use events::SceneEvent;
 pub use suggest::{help_for, suggest};
 

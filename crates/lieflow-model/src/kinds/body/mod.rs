@@ -210,18 +210,11 @@ impl BodyKeys {
             ("omega_space", self.omega_space),
             ("momentum_space", self.momentum_space),
         ];
-        let mut given = starts.iter().filter_map(|(key, x)| Some((*key, (*x)?.0)));
-        let (key, x) = match (given.next(), given.next()) {
-            (Some(first), None) => first,
-            (Some((a, _)), Some((b, _))) => {
-                let message = format!("both `{a}` and `{b}`, expected exactly one of them");
-                return Err(Refusal::at(b, message));
-            }
-            (None, _) => {
-                let message = "expected `omega_body` or `momentum_body`, found neither";
-                return Err(Refusal::section(message));
-            }
-        };
+        at_most_one(starts.map(|(key, x)| (key, x.is_some())))?;
+        let given = starts.into_iter().find_map(|(key, x)| Some((key, x?.0)));
+        let (key, x) = given.ok_or_else(|| {
+            Refusal::section("expected `omega_body` or `momentum_body`, found neither")
+        })?;
         let x = if key.ends_with("space") { g.tr_mul(&x.into()) } else { x.into() };
         let x = axes.map_or(x, |axes| axes.tr_mul(&x));
         if key.starts_with("momentum") {
@@ -239,15 +232,12 @@ impl BodyKeys {
     }
 
     fn principal(&self) -> Result<Principal, ReadError> {
+        at_most_one([
+            ("inertia", self.inertia.is_some()),
+            ("inverse_inertia", self.inverse_inertia.is_some()),
+            ("shape", self.shape.is_some()),
+        ])?;
         if let Some(shape) = &self.shape {
-            let others = [
-                ("inertia", self.inertia.is_some()),
-                ("inverse_inertia", self.inverse_inertia.is_some()),
-            ];
-            if let Some((other, _)) = others.iter().find(|(_, given)| *given) {
-                let message = format!("both `{other}` and `shape`, expected exactly one of them");
-                return Err(Refusal::at("shape", message).into());
-            }
             return Ok((shape.moments()?, None));
         }
         match exactly_one(("inertia", self.inertia), ("inverse_inertia", self.inverse_inertia))? {
