@@ -197,7 +197,9 @@ impl Scene {
         let (grid, adaptive, max_steps) = steps;
         let Output { quantities, plot, save, times_by_steps, error_check, .. } = output;
         let stem = Path::new(source).file_stem().unwrap_or_default().to_string_lossy();
-        let name = if stem.is_empty() { "scene".into() } else { stem.into_owned() };
+        // A folder may have this name.
+        let is_name = !stem.trim_matches('.').is_empty();
+        let name = if is_name { stem.into_owned() } else { "scene".into() };
         let fingerprint = fingerprint(text, problem.samples());
         let mut scene = Scene {
             title: title.unwrap_or_else(|| name.clone()),

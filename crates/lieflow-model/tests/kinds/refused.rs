@@ -348,6 +348,14 @@ fn all_values_at_once() {
     assert!(message.contains("not in SO(3)") && !message.contains(" mistakes"), "{message}");
 }
 
+/// The name of a scene is a folder: it is neither empty nor the folder above.
+#[test]
+fn a_scene_has_a_name() {
+    let name = |source: &str| Scene::parse(source, &bundled("oja")).unwrap().name;
+    let sources = ["my.scene.toml", "a/b.toml", "", "...toml", ".toml", "a/...."];
+    assert_eq!(sources.map(name), ["my.scene", "b", "scene", "scene", ".toml", "scene"]);
+}
+
 /// The line is that of the part, however far below; without parts there is no system.
 #[test]
 fn a_part_is_named_by_its_line() {
