@@ -10,8 +10,8 @@ use lieflow::{Error, RunError};
 use crate::model::{EventPlan, Model, Outcome, Plan, Steps, Watcher};
 use crate::schema::{Row, Schema};
 
-/// numbers ← the row at t of the model from that of its base.
-pub(crate) type Fill = dyn Fn(f64, Row<'_>, &mut Vec<f64>);
+/// The number of this place in the row at t of the model, from the row of its base.
+pub(crate) type Number = dyn Fn(usize, f64, Row<'_>) -> f64;
 
 /// The base, with other rows.
 pub(crate) struct Mapped {
@@ -19,7 +19,16 @@ pub(crate) struct Mapped {
     pub(crate) schema: Schema,
     /// What is integrated in words, if the words differ from those of the base.
     pub(crate) modelled: Option<&'static str>,
-    pub(crate) fill: Box<Fill>,
+    pub(crate) number: Box<Number>,
+}
+
+impl Mapped {
+    /// numbers ← the row at t from that of the base.
+    fn fill(&self, t: f64, of_base: Row<'_>, numbers: &mut Vec<f64>) {
+        numbers.clear();
+        let places = 0..self.schema.numbers();
+        numbers.extend(places.map(|place| (self.number)(place, t, of_base)));
+    }
 }
 
 impl fmt::Debug for Mapped {
@@ -37,11 +46,11 @@ struct OfBase<'a> {
 
 impl Watcher for OfBase<'_> {
     fn row(&mut self, t: f64, of_base: Row<'_>) -> Next {
-        (self.model.fill)(t, of_base, &mut self.numbers);
+        self.model.fill(t, of_base, &mut self.numbers);
         self.watcher.row(t, self.model.schema.row(&self.numbers))
     }
     fn event(&mut self, event: usize, t: f64, rising: bool, of_base: Row<'_>) {
-        (self.model.fill)(t, of_base, &mut self.numbers);
+        self.model.fill(t, of_base, &mut self.numbers);
         self.watcher.event(event, t, rising, self.model.schema.row(&self.numbers));
     }
     fn progress(&mut self, t: f64) {
@@ -66,13 +75,16 @@ impl Model for Mapped {
         watcher: &mut dyn Watcher,
     ) -> Result<Outcome, RunError> {
         let events = core::mem::take(&mut plan.events).into_iter().map(|event| {
-            let (value, numbers) = (event.value, RefCell::new(Vec::new()));
+            let EventPlan { value, places, .. } = event;
+            let numbers = RefCell::new(vec![f64::NAN; self.schema.numbers()]);
+            // Nothing else of the row is computed.
             let value = move |t: f64, of_base: Row<'_>| {
                 let mut numbers = numbers.borrow_mut();
-                (self.fill)(t, of_base, &mut numbers);
+                places.iter().for_each(|&place| numbers[place] = (self.number)(place, t, of_base));
                 value(t, self.schema.row(&numbers))
             };
-            EventPlan { value: Box::new(value), ..event }
+            let (value, places) = (Box::new(value), Vec::new());
+            EventPlan { value, places, ..event }
         });
         let plan = Plan { events: events.collect(), ..plan };
         let mut of_base = OfBase { model: self, watcher, numbers: Vec::new() };
@@ -82,11 +94,13 @@ impl Model for Mapped {
         self.base.order(method)
     }
     fn exact(&self, t_span: [f64; 2]) -> Option<Result<Vec<f64>, Error>> {
-        let mut row = Vec::new();
         let end = self.base.exact(t_span)?;
-        let end = end.map(|end| (self.fill)(t_span[1], self.base.schema().row(&end), &mut row));
-        row.truncate(self.schema.columns().count());
-        Some(end.map(|()| row))
+        // An exact solution has no sizes.
+        let values = 0..self.schema.columns().count();
+        Some(end.map(|end| {
+            let of_base = self.base.schema().row(&end);
+            values.map(|place| (self.number)(place, t_span[1], of_base)).collect()
+        }))
     }
     fn operations(&self, method: &MethodSpec, steps: &Steps) -> Option<f64> {
         self.base.operations(method, steps)

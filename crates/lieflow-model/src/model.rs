@@ -81,6 +81,8 @@ impl Steps {
 pub struct EventPlan<'a> {
     /// Its name.
     pub name: String,
+    /// The places in a row of the numbers that the function needs; others may be anything.
+    pub places: Vec<usize>,
     /// The function of t and the row.
     pub value: Box<dyn Fn(f64, Row<'_>) -> f64 + 'a>,
     /// Which zeros count.
@@ -304,7 +306,8 @@ pub fn drive_by<P: Runnable>(
         solve = solve.checkpoints(every, |bytes| watcher.borrow_mut().state(bytes));
     }
     let (fill, numbers) = (&fill, &numbers);
-    for (index, EventPlan { name, value, direction, stop_after }) in events.into_iter().enumerate()
+    for (index, EventPlan { name, value, direction, stop_after, .. }) in
+        events.into_iter().enumerate()
     {
         let watcher = &watcher;
         let mut event = Event::new(name, move |t, y: &PointOf<P>| {

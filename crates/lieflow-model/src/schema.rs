@@ -163,6 +163,11 @@ impl Schema {
         self.iter().filter(|observable| observable.law.is_some())
     }
 
+    /// The number of values and sizes in a row.
+    pub(crate) fn numbers(&self) -> usize {
+        self.width + self.sizes
+    }
+
     /// The names of all columns.
     pub fn columns(&self) -> impl Iterator<Item = &str> {
         self.iter().flat_map(|observable| &observable.columns).map(String::as_str)

@@ -339,12 +339,10 @@ impl ProblemSpec for Problem {
             sizes.extend(formulas.terms.clone());
         }
         let formulas = [values, sizes].concat();
-        let fill = move |_: f64, of_base: Row<'_>, row: &mut Vec<f64>| {
-            row.clear();
-            row.extend(formulas.iter().map(|formula| formula.value(of_base.values())));
-        };
+        let number =
+            move |place: usize, _: f64, of_base: Row<'_>| formulas[place].value(of_base.values());
         let modelled = Some(self.preset.modelled);
-        Ok(Box::new(Mapped { base, schema, modelled, fill: Box::new(fill) }))
+        Ok(Box::new(Mapped { base, schema, modelled, number: Box::new(number) }))
     }
     fn state(&self, _: &[&str]) -> &'static [&'static str] {
         &self.preset.state

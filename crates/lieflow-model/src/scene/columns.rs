@@ -75,6 +75,11 @@ impl RowFormula {
 }
 
 impl OnRows {
+    /// The places in a row of its columns.
+    pub(super) fn places(&self) -> impl Iterator<Item = usize> {
+        self.places.iter().map(|(_, place)| *place)
+    }
+
     /// The value at t in a row.
     pub(super) fn value(&self, t: f64, row: Row<'_>) -> f64 {
         let mut variables = self.variables.borrow_mut();
@@ -183,19 +188,18 @@ pub(super) fn with_formulas(
 ) -> Result<Box<dyn Model>, Error> {
     let mut schema = base.schema().first(count);
     let width = schema.columns().count();
-    let with_size = schema.iter().filter(|observable| observable.has_size()).count();
     schema.push(FORMULAS, formulas.iter().map(|(name, _)| name.clone()).collect(), None, false);
     let formulas = formulas.iter().map(|(_, formula)| formula.on(base.schema()));
     let formulas = formulas.collect::<Result<Vec<_>, _>>()?;
-    let fill = move |t: f64, row: Row<'_>, numbers: &mut Vec<f64>| {
-        // An exact solution has no sizes.
-        let sizes = row.numbers().iter().skip(row.values().len()).take(with_size);
-        numbers.clear();
-        numbers.extend_from_slice(&row.values()[..width]);
-        numbers.extend(formulas.iter().map(|formula| formula.value(t, row)));
-        numbers.extend(sizes);
+    let number = move |place: usize, t: f64, row: Row<'_>| match place.checked_sub(width) {
+        None => row.values()[place],
+        Some(i) => match formulas.get(i) {
+            Some(formula) => formula.value(t, row),
+            // The sizes of terms are those of the base.
+            None => row.numbers()[row.values().len() + i - formulas.len()],
+        },
     };
-    Ok(Box::new(Mapped { base, schema, modelled: None, fill: Box::new(fill) }))
+    Ok(Box::new(Mapped { base, schema, modelled: None, number: Box::new(number) }))
 }
 
 /// Checks that the scene writes these columns or quantities.

@@ -62,6 +62,7 @@ impl SceneEvent {
         let when = self.when.on(schema)?;
         Ok(EventPlan {
             name: self.name.clone(),
+            places: when.places().collect(),
             value: Box::new(move |t: f64, row: Row<'_>| when.value(t, row)),
             direction: self.direction,
             stop_after: self.stop_after,
