@@ -1,5 +1,10 @@
 //! Named formulas, vectors, and formulas of the columns of a run.
 
+use std::cell::Cell;
+use std::time::Instant;
+
+use lieflow_model::model::Rows;
+
 use super::formulas::{FINE, RKMK4, refused};
 use super::*;
 
@@ -212,4 +217,32 @@ fn formulas_leave_the_sizes_where_they_were() {
     let alone = sizes(&["axis", "energy"]);
     assert!(alone.len() > 10 && alone.iter().all(|size| *size > 9.0));
     assert_eq!(sizes(&["axis", "energy", "formulas"]), alone);
+}
+
+/// Where an event looks for its zero, what it does not need of a row is not computed.
+#[test]
+fn an_event_needs_no_other_column() {
+    let rest = "[output]\nquantities = [\"energy\"]\n[output.formulas]\nx = \"2*energy\"\ny = \"w1\"\n\
+                [[events]]\nname = \"zero\"\nwhen = \"x - w3\"\n";
+    let text = format!("[problem]\n{BODY}\n[method]\n{RKMK4}\n[time]\n{FINE}\n{rest}");
+    let scene = Scene::parse("scene", &text).unwrap_or_else(|error| panic!("{error}"));
+    let model = scene.model_with(scene.layer, &scene.computed()).unwrap();
+    let row_of = Cell::new((false, false));
+    let mut plan = scene.plan(model.schema()).unwrap();
+    plan.events[0].value = Box::new(|t, row| {
+        let known = |quantity: &str| row.of(quantity).unwrap().iter().any(|x| x.is_finite());
+        row_of.set((known("energy"), known("formulas")));
+        t - 0.5
+    });
+    model.drive(&scene.method, plan, &mut Rows(&mut |_, _| {})).unwrap();
+    assert_eq!(row_of.get(), (true, false));
+}
+
+/// The names of hundreds of thousands of columns are read at once.
+#[test]
+fn many_columns_are_read() {
+    let text = bundled("spin-wave").replace("count = 8", "count = 65536");
+    let begin = Instant::now();
+    Scene::parse("scene", &text).unwrap_or_else(|error| panic!("{error}"));
+    assert!(begin.elapsed().as_secs_f64() < 10.0, "{:?}", begin.elapsed());
 }

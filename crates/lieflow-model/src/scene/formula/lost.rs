@@ -7,13 +7,19 @@ use super::names::{Entry, Names, continues_name};
 use super::tape::Tape;
 
 /// Where a formula stands, and what its names mean.
-#[derive(Debug)]
 pub(super) struct Origin {
     pub(super) key: String,
     pub(super) text: String,
     /// The variable by which the formula of the text is derived.
     pub(super) by: Option<usize>,
     pub(super) names: Names,
+}
+
+/// What is stated, and not what a run lost.
+impl fmt::Debug for Origin {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Origin").field("key", &self.key).field("text", &self.text).finish()
+    }
 }
 
 /// A formula that has no finite value at a point where its variables have one.

@@ -45,7 +45,7 @@ impl Parameters {
         for variable in variables {
             let variable = variable.into();
             names.check(key, &variable)?;
-            Arc::make_mut(&mut names.variables).push(variable);
+            names.push(variable);
         }
         for (name, value) in &self.0 {
             names.check_new("parameters", name)?;
@@ -85,7 +85,7 @@ impl Lets {
 /// The names that a formula may use.
 #[derive(Clone, Debug, Default)]
 pub struct Names {
-    variables: Arc<Vec<String>>,
+    variables: Arc<Variables>,
     constants: Vec<(String, f64)>,
     table: Option<Arc<Table>>,
     /// The named formulas, after those that they need; of vectors and matrices each entry by its name.
@@ -93,6 +93,13 @@ pub struct Names {
     /// Named formulas that have no meaning here, and why.
     unusable: Vec<(String, String)>,
     losses: Arc<Losses>,
+}
+
+/// The variables, in the order of their values.
+#[derive(Clone, Debug, Default)]
+struct Variables {
+    names: Vec<String>,
+    places: BTreeMap<String, usize>,
 }
 
 /// A named formula that is a number, or an entry of one that is a vector or a matrix.
@@ -129,7 +136,7 @@ pub(super) enum Meaning<'a> {
 impl Names {
     /// The variables, in the order of their values.
     pub fn variables(&self) -> &[String] {
-        &self.variables
+        &self.variables.names
     }
 
     /// These names, the first of them `t`, and the columns of a file of samples, functions of t.
@@ -254,9 +261,15 @@ impl Names {
     pub fn add(&mut self, variable: &str) -> bool {
         let usable = self.check("", variable).is_ok();
         if usable {
-            Arc::make_mut(&mut self.variables).push(variable.into());
+            self.push(variable.into());
         }
         usable
+    }
+
+    fn push(&mut self, variable: String) {
+        let Variables { names, places } = Arc::make_mut(&mut self.variables);
+        places.insert(variable.clone(), names.len());
+        names.push(variable);
     }
 
     fn check(&self, key: &str, name: &str) -> Result<(), Refusal> {
@@ -295,7 +308,7 @@ impl Names {
         if let Some(entry) = self.formulas.iter().find(|entry| entry.name == name) {
             return Some(Meaning::Formula(&entry.tape));
         }
-        let variable = self.variables.iter().position(|variable| variable == name);
+        let variable = self.variables.places.get(name).copied();
         let own = self.constants.iter().map(|(name, x)| (name.as_str(), *x));
         let number =
             || own.chain(CONSTANTS.iter().copied()).find(|(constant, _)| *constant == name);
@@ -306,7 +319,7 @@ impl Names {
 
     /// Every name that stands for a number.
     pub(super) fn all(&self) -> Vec<&str> {
-        let variables = self.variables.iter().chain(self.columns()).map(String::as_str);
+        let variables = self.variables.names.iter().chain(self.columns()).map(String::as_str);
         let formulas = self.formulas.iter().map(|entry| entry.name.as_str());
         let own = self.constants.iter().map(|(name, _)| name.as_str());
         let own = variables.chain(formulas).chain(own);
