@@ -153,13 +153,13 @@ pub fn other_names() -> impl Iterator<Item = (&'static str, Meant<'static>)> {
     OTHER_NAMES.iter().map(|(name, is)| (*name, is.method()))
 }
 
-/// A name without what does not count.
-fn plain(name: &str) -> String {
-    let counts = |c: &char| !matches!(c, '-' | '_' | ' ');
+/// A name without what does not count: case, hyphens, underscores, parentheses and spaces.
+pub fn plain(name: &str) -> String {
+    let counts = |c: &char| !matches!(c, '-' | '_' | '(' | ')') && !c.is_whitespace();
     name.chars().filter(counts).flat_map(char::to_lowercase).collect()
 }
 
-/// Are these two spellings of one name? Case, hyphens, underscores and spaces do not count.
+/// Are these two spellings of one name? What [`plain`] leaves out does not count.
 pub fn same(a: &str, b: &str) -> bool {
     plain(a) == plain(b)
 }

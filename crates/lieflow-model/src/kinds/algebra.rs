@@ -10,6 +10,7 @@
 use faer::Mat;
 use lieflow::Error;
 use lieflow::groups::MatrixGroup;
+use lieflow::names::plain;
 use lieflow::scalar::{Ops, tally};
 
 use crate::scene::{KeyPath, Refusal};
@@ -49,12 +50,6 @@ impl Named {
     }
 }
 
-/// A name without what does not count: `SO(4)` is so4.
-pub(super) fn bare(name: &str) -> String {
-    let counts = |c: &char| !matches!(c, '(' | ')' | '_') && !c.is_whitespace();
-    name.chars().filter(counts).flat_map(char::to_lowercase).collect()
-}
-
 /// The names in scenes; `so(p,q)` with numbers for p and q.
 pub(super) const ALGEBRAS: [&str; 5] = ["so", "sl", "gl", "sp", "so(p,q)"];
 
@@ -62,7 +57,8 @@ impl Algebra {
     /// The algebra of that name or of its group, and n where the name has it: `so`, `so4`, `SO(4)`, `so(3,1)`; none for
     /// other names.
     pub(super) fn named(name: &str) -> Option<Named> {
-        let name = bare(name);
+        // A hyphen in it is a sign.
+        let name = (!name.contains('-')).then(|| plain(name))?;
         let digits = name.find(|c: char| c.is_ascii_digit()).unwrap_or(name.len());
         let (family, size) = name.split_at(digits);
         if let Some((p, q)) = size.split_once(',').filter(|_| family == "so") {

@@ -17,10 +17,11 @@ mod matrices;
 mod vectors;
 
 use lieflow::groups::GroupMatrix;
+use lieflow::names::plain;
 
 use self::group::WithGroup;
 use self::vectors::Vectors;
-use super::algebra::{ALGEBRAS, Algebra, bare};
+use super::algebra::{ALGEBRAS, Algebra};
 use super::entries::rows;
 use super::prelude::*;
 use super::system::PointOf;
@@ -51,7 +52,7 @@ keys! { Keys [formula_keys] {
 
 fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
     let keys = Keys::deserialize(section)?;
-    match (bare(&keys.algebra).as_str(), Algebra::named(&keys.algebra)) {
+    match (plain(&keys.algebra).as_str(), Algebra::named(&keys.algebra)) {
         ("so3", _) => Ok(Box::new(Stated(Vectors::<3>::read(keys)?))),
         ("se3", _) => Ok(Box::new(Stated(Vectors::<6>::read(keys)?))),
         (_, Some(named)) => Ok(matrices::on(named, keys)?),
