@@ -1,5 +1,6 @@
 //! `lieflow run`: one scene, one trajectory.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -40,17 +41,18 @@ pub struct Options {
 /// A scene cannot be used, a file cannot be written, a step failed, or the run was interrupted.
 pub fn run(args: &RunArgs) -> Result<(), CliError> {
     let stop = listen()?;
-    if let [scene] = &args.scenes[..] {
-        return run_one(args, scene, &mut Vec::new(), &stop);
-    }
-    let (mut folders, mut failed) = (Vec::new(), 0);
-    for scene in &args.scenes {
+    let opened: Vec<_> = args.scenes.iter().map(|path| args.settings.open(path)).collect();
+    refuse_one_folder_for_two(args, &opened)?;
+    let mut failed = 0;
+    for (path, scene) in args.scenes.iter().zip(opened) {
         if stop.load(Ordering::Relaxed) {
-            let message = format!("interrupted before {}", scene.display());
+            let message = format!("interrupted before {}", path.display());
             return Err(CliError::Stopped { message, code: INTERRUPTED });
         }
-        match run_one(args, scene, &mut folders, &stop) {
-            Err(error) if error.exit_code() == INTERRUPTED => return Err(error),
+        match scene.map_err(Into::into).and_then(|scene| run_one(args, path, &scene, &stop)) {
+            Err(error) if args.scenes.len() == 1 || error.exit_code() == INTERRUPTED => {
+                return Err(error);
+            }
             // The other scenes run all the same.
             Err(error) => {
                 failed += 1;
@@ -65,26 +67,39 @@ pub fn run(args: &RunArgs) -> Result<(), CliError> {
     }
 }
 
-/// Run one of the scenes, in a folder that none of the others has.
-fn run_one(
-    args: &RunArgs,
-    path: &Path,
-    folders: &mut Vec<PathBuf>,
-    stop: &AtomicBool,
-) -> Result<(), CliError> {
-    let scene = args.settings.open(path)?;
-    let folder = match &args.out {
+/// The folder of a scene.
+fn folder_of(args: &RunArgs, scene: &Scene) -> PathBuf {
+    match &args.out {
         Some(folder) if args.scenes.len() == 1 => folder.clone(),
         folder => folder.as_deref().unwrap_or(Path::new("lieflow-out")).join(&scene.name),
-    };
-    if folders.contains(&folder) {
-        let (path, folder) = (path.display(), folder.display());
-        let message = format!("{path}: another scene of this call was written into `{folder}`");
-        return Err(CliError::Message(message));
     }
-    folders.push(folder.clone());
+}
+
+/// Two scenes cannot be written into one folder.
+fn refuse_one_folder_for_two<E>(
+    args: &RunArgs,
+    opened: &[Result<Scene, E>],
+) -> Result<(), CliError> {
+    let mut taken = BTreeMap::new();
+    for (path, scene) in args.scenes.iter().zip(opened) {
+        let Ok(scene) = scene else { continue };
+        let folder = folder_of(args, scene);
+        if let Some(other) = taken.insert(folder.clone(), path) {
+            let (a, b, folder) = (other.display(), path.display(), folder.display());
+            let message = format!(
+                "{a} and {b} have one folder, `{folder}`: run them in two calls with --out"
+            );
+            return Err(CliError::Message(message));
+        }
+    }
+    Ok(())
+}
+
+/// Run one of the scenes.
+fn run_one(args: &RunArgs, path: &Path, scene: &Scene, stop: &AtomicBool) -> Result<(), CliError> {
+    let folder = folder_of(args, scene);
     if args.resume && !RunState::is_in(&folder) {
-        return nothing_to_do(&scene, &folder);
+        return nothing_to_do(scene, &folder);
     }
     let options =
         Options { resume: args.resume, no_page: args.no_page, error_check: args.error_check };
@@ -92,7 +107,7 @@ fn run_one(
         let (path, options) = (quoted(&path.display().to_string()), args.options_typed(&folder));
         format!("`lieflow run {path}{options} --resume` goes on from there")
     };
-    let summary = match run_scene(&scene, &folder, options, stop) {
+    let summary = match run_scene(scene, &folder, options, stop) {
         Err(error @ CliError::Io { .. }) if RunState::is_in(&folder) => {
             let message = format!("{error}\nWhat was written is kept; {}", how());
             return Err(CliError::Stopped { message, code: error.exit_code() });

@@ -205,7 +205,8 @@ fn a_second_run_is_interrupted() {
     let driven =
         driven.replace("layer = \"general\"", "").replace("[method]", "damping = 1e-6\n[method]");
     folder.write("scene.toml", &driven);
-    let args = ["run", "scene.toml", "scene.toml", "--out", "out", "--error-check", "always"];
+    folder.write("next.toml", &driven);
+    let args = ["run", "scene.toml", "next.toml", "--out", "out", "--error-check", "always"];
     let mut run = started(&folder, &args);
     let rows = folder.path().join("out/scene/trajectory.partial.csv");
     let written = || fs::read_to_string(&rows).unwrap_or_default().lines().count();
@@ -213,7 +214,7 @@ fn a_second_run_is_interrupted() {
     let run = interrupt(run);
     assert_eq!(run.code, Some(130), "{run:?}");
     assert!(run.out.contains("did not end: it was stopped"), "{run:?}");
-    assert!(run.err.contains("interrupted before scene.toml"), "{run:?}");
+    assert!(run.err.contains("interrupted before next.toml"), "{run:?}");
     let summary = folder.json("out/scene/summary.json");
     assert_eq!((&summary["completed"], &summary["accuracy"]), (&true.into(), &Value::Null));
     assert_eq!(folder.data("out/scene"), ["events.csv", "summary.json", "trajectory.csv"]);

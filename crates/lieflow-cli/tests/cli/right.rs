@@ -304,13 +304,20 @@ fn several_scenes_run_in_one_call() {
     }
     // One that is wrong does not keep the others back.
     folder.write("bad.toml", "[problem]\n");
-    let run = folder.lieflow(&["run", "bad.toml", "a.toml", "a.toml"]);
+    let run = folder.lieflow(&["run", "bad.toml", "a.toml"]);
     assert_eq!(run.code, Some(2), "{run:?}");
     assert!(run.out.starts_with("Test: "), "{run:?}");
-    for what in ["error: bad.toml:", "a.toml: another scene of this call", "2 of 3 scenes failed"] {
+    for what in ["error: bad.toml:", "1 of 2 scenes failed"] {
         assert!(run.err.contains(what), "{run:?}");
     }
     assert_eq!(folder.data("lieflow-out/a"), ["summary.json", "trajectory.csv"]);
+    // Two scenes of one folder are refused before any runs.
+    std::fs::create_dir(folder.path().join("other")).unwrap();
+    folder.write("other/b.toml", SCENE);
+    let scenes = ["run", "a.toml", "b.toml", "other/b.toml", "--out", "none"];
+    let message = folder.lieflow(&scenes).refused();
+    assert!(message.contains("b.toml and other/b.toml have one folder, `none/b`"), "{message}");
+    assert!(!folder.path().join("none").exists());
 }
 
 #[test]
