@@ -16,7 +16,7 @@ pub(super) type Found = (Option<Range<usize>>, ReadError);
 /// A value at the top of a scene, of which each mistake is replaced.
 pub(super) struct Mending<'a> {
     text: &'a str,
-    pub(super) value: Spanned<DeValue<'a>>,
+    value: Spanned<DeValue<'a>>,
     /// Where something was replaced.
     places: Vec<Range<usize>>,
     /// The keys of what was replaced or taken away: a formula that says them may follow.
@@ -29,40 +29,42 @@ pub(super) struct Mending<'a> {
     loose: bool,
 }
 
-/// Values of each type, in the order in which they are tried.
-const LITERALS: [&str; 10] = [
-    "[]",
-    "{}",
-    "1",
-    "2",
-    "true",
-    "\"0\"",
-    "[1, 1]",
-    "[1, 1, 1]",
-    "[1, 0, 0, 0]",
-    "[[1, 0, 0], [0, 1, 0], [0, 0, 1]]",
+/// Values of each type, in the order in which they are tried. Does one say a size, or have any length, so that other
+/// values perhaps do not fit?
+const LITERALS: [(&str, bool); 10] = [
+    ("[]", true),
+    ("{}", true),
+    ("1", false),
+    ("2", true),
+    ("true", false),
+    ("\"0\"", false),
+    ("[1, 1]", false),
+    ("[1, 1, 1]", false),
+    ("[1, 0, 0, 0]", false),
+    ("[[1, 0, 0], [0, 1, 0], [0, 0, 1]]", false),
 ];
-/// The places of those that say a size, or have any length.
-const OF_ANY_SIZE: [usize; 3] = [0, 1, 3];
 
 /// Formulas: a number, one that changes, and a vector. None is a name.
 const FORMULAS: [&str; 3] = ["\"0\"", "\"2*t\"", "\"[0, 0, 0]\""];
 
-/// A number for each place in a list: by its row and its column, or its place and 0.
+/// A number for each place of a matrix, from 0; a list is the first row.
 type Pattern = fn(usize, usize) -> &'static str;
 
-/// All ones; the identity, or a unit vector; all zeros; all twos, for what has a size from 2.
-const PATTERNS: [Pattern; 4] =
-    [|_, _| "1", |i, j| if i == j { "1" } else { "0" }, |_, _| "0", |_, _| "2"];
+/// All ones; the identity, or a unit vector; all zeros; all twos, of which the same is asked as of [`LITERALS`].
+const PATTERNS: [(Pattern, bool); 4] = [
+    (|_, _| "1", false),
+    (|i, j| if i == j { "1" } else { "0" }, false),
+    (|_, _| "0", false),
+    (|_, _| "2", true),
+];
 
-/// The place of the twos.
-const TWOS: usize = 3;
+/// A value to try, and whether others perhaps do not fit it.
+type Candidate<'a> = (DeValue<'a>, bool);
 
 /// The place of a key that is not there.
 const NOWHERE: Range<usize> = usize::MAX..usize::MAX;
 
 /// A step on the way to a value.
-#[derive(Clone)]
 enum Step {
     Key(String),
     Place(usize),
@@ -141,9 +143,7 @@ impl<'a> Mending<'a> {
                 let wrong = at(&mut self.value, &path)?.get_ref();
                 // Numbers of one list may belong together, formulas do not.
                 let (of_one, candidates) = (!matches!(wrong, DeValue::String(_)), alike(wrong));
-                let (which, next) = self.try_each(&path, candidates, of_one, &read)?;
-                self.loose |= which == TWOS;
-                return Some(next);
+                return self.try_each(&path, candidates, of_one, &read);
             }
         };
         match Wrong::of(error.message()) {
@@ -192,10 +192,8 @@ impl<'a> Mending<'a> {
         path: &[Step],
         read: impl Fn(&Spanned<DeValue<'a>>) -> Result<T, Found>,
     ) -> Option<Result<T, Found>> {
-        let literals = LITERALS.iter().filter_map(|text| literal(text)).collect();
-        let (which, next) = self.try_each(path, literals, true, read)?;
-        self.loose |= OF_ANY_SIZE.contains(&which);
-        Some(next)
+        let literals = LITERALS.iter().filter_map(|(text, loose)| Some((literal(text)?, *loose)));
+        self.try_each(path, literals.collect(), true, read)
     }
 
     /// Puts one value after the other in a place, up to the first of which the next error does not tell. `of_one` says
@@ -203,14 +201,14 @@ impl<'a> Mending<'a> {
     fn try_each<T>(
         &mut self,
         path: &[Step],
-        candidates: Vec<DeValue<'a>>,
+        candidates: Vec<Candidate<'a>>,
         of_one: bool,
         read: impl Fn(&Spanned<DeValue<'a>>) -> Result<T, Found>,
-    ) -> Option<(usize, Result<T, Found>)> {
+    ) -> Option<Result<T, Found>> {
         let place = at(&mut self.value, path)?.span();
         let whole = self.value.span();
         let before = at(&mut self.value, path)?.get_ref().clone();
-        for (which, mut candidate) in candidates.into_iter().enumerate() {
+        for (mut candidate, loose) in candidates {
             move_to(&mut candidate, &place);
             *at(&mut self.value, path)?.get_mut() = candidate;
             let next = read(&self.value);
@@ -226,7 +224,8 @@ impl<'a> Mending<'a> {
                 }
                 let all = if of_one { of_key } else { path };
                 self.places.push(at(&mut self.value, all)?.span());
-                return Some((which, next));
+                self.loose |= loose;
+                return Some(next);
             }
         }
         *at(&mut self.value, path)?.get_mut() = before;
@@ -259,10 +258,12 @@ fn literal(text: &'static str) -> Option<DeValue<'static>> {
 }
 
 /// Values of the same shape.
-fn alike<'a>(value: &DeValue<'a>) -> Vec<DeValue<'a>> {
+fn alike<'a>(value: &DeValue<'a>) -> Vec<Candidate<'a>> {
     match value {
-        DeValue::String(_) => FORMULAS.iter().filter_map(|text| literal(text)).collect(),
-        _ => PATTERNS.iter().map(|pattern| filled(value, &[], *pattern)).collect(),
+        DeValue::String(_) => {
+            FORMULAS.iter().filter_map(|text| Some((literal(text)?, false))).collect()
+        }
+        _ => PATTERNS.map(|(pattern, loose)| (filled(value, &[], pattern), loose)).into(),
     }
 }
 
@@ -272,7 +273,6 @@ fn filled<'a>(value: &DeValue<'a>, at: &[usize], pattern: Pattern) -> DeValue<'a
     match &mut copy {
         DeValue::Integer(_) | DeValue::Float(_) => {
             let [.., i, j] = [&[0, 0], at].concat()[..] else { return copy };
-            // In one list the pattern is that of the first row.
             return literal(pattern(i, j)).unwrap_or(copy);
         }
         DeValue::Array(list) => {
