@@ -3,7 +3,7 @@
 use lieflow::scalar::{Counted, Ops};
 
 use super::super::Refusal;
-use super::{Formula, Lets, Names, Parameters, SamplesFile, Text, Texts};
+use super::{Formula, Lets, Names, Parameters, SamplesFile, Text, Texts, Which};
 
 fn names() -> Names {
     Parameters::default().names("variables", ["x", "y", "w_1"]).expect("three names")
@@ -66,6 +66,15 @@ fn a_formula_has_no_value_where_it_has_none() {
     assert_eq!(refusal.message, "f is inf at the start, expected a number");
     assert_eq!(pole.check(&[2.0, 0.0, 0.0]), None);
     assert!(pole.value::<f64>(&[]).is_nan(), "a value that is missing is none");
+    // What only follows from a variable is no loss; of others the first and the last are kept.
+    pole.forget();
+    assert!(!pole.value::<f64>(&[f64::NAN, 0.0, 0.0]).is_finite());
+    assert_eq!(pole.lost(Which::First), None);
+    assert!(pole.value::<f64>(&[1.0, f64::NAN, 3.5]).is_infinite());
+    assert!(pole.value::<f64>(&[1.0, 2.0, 3.5]).is_infinite());
+    assert_eq!(pole.lost(Which::First), pole.lost(Which::Last));
+    let lost = pole.lost(Which::Last).map(|lost| lost.to_string());
+    assert_eq!(lost.as_deref(), Some("f = 1/(x - 1) is inf at x = 1"));
 }
 
 /// f′ against (8(f(h) − f(−h)) − (f(2h) − f(−2h)))/12h, whose error is h⁴f⁽⁵⁾/30 and ε|f|/h: with
