@@ -288,7 +288,7 @@ impl StepError {
 
 /// A run that stopped early. The state that the caller gave to the driver holds the last accepted point.
 #[derive(Clone, Copy, PartialEq, ThisError)]
-#[error("step {step} from t = {t} with h = {h} failed: {source}")]
+#[error("step {step} from t = {t} with h = {h:?} failed: {source}")]
 #[non_exhaustive]
 pub struct Failure {
     /// The number of steps that had been accepted.

@@ -157,7 +157,7 @@ pub enum RunError {
     Step(#[from] Failure),
     /// No step from t was small enough.
     #[error(
-        "no step from t = {t} succeeded, down to h = {h} ({accepted} steps accepted, {rejected} rejected): {}",
+        "no step from t = {t} succeeded, down to h = {h:?} ({accepted} steps accepted, {rejected} rejected): {}",
         reason(.source)
     )]
     StepSizeUnderflow {
@@ -174,7 +174,7 @@ pub enum RunError {
     },
     /// The attempts were used up.
     #[error(
-        "{max_steps} attempts did not reach the end: t = {t}, last step h = {h} ({accepted} accepted, {rejected} rejected); raise max_steps or the tolerances"
+        "{max_steps} attempts did not reach the end: t = {t}, last step h = {h:?} ({accepted} accepted, {rejected} rejected); raise max_steps or the tolerances"
     )]
     TooManySteps {
         /// The time of the last accepted point.
@@ -209,7 +209,7 @@ pub enum RunError {
         source: Error,
     },
     /// A point within an accepted step could not be computed.
-    #[error("no point within the step from t = {t} with h = {h}: {source}")]
+    #[error("no point within the step from t = {t} with h = {h:?}: {source}")]
     Within {
         /// The start of the step.
         t: f64,
