@@ -142,7 +142,7 @@ impl<P: TryProblem> Problem for Fallible<P> {
 
 /// A [`TryProblem`] from a group, an action and a closure that may fail.
 ///
-/// `field(t, y, v)` writes all of f(t, y) into v, or returns an error. Run `Fallible::new(TryFlow::new(…))`.
+/// `field(t, y, v)` writes f(t, y) into v, which is 0 before, or returns an error. Run `Fallible::new(TryFlow::new(…))`.
 ///
 /// ```
 /// use lieflow::actions::LeftTranslation;
@@ -211,6 +211,7 @@ where
     }
     fn work(&self) {}
     fn try_f(&self, t: G::Scalar, y: &A::Point, v: &mut G::Alg, _: &mut ()) -> Result<(), E> {
+        self.group.set_zero(v);
         (self.field)(t, y, v)
     }
 }

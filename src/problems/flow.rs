@@ -132,7 +132,8 @@ where
 const UNKNOWN: Facts = Facts { linear: (), energy: (), invariants: () };
 
 impl<G: LieGroup, A: Action<G>, F: Fn(G::Scalar, &A::Point, &mut G::Alg)> Flow<G, A, F> {
-    /// Makes the problem. `field(t, y, v)` writes all of f(t, y) into v.
+    /// Makes the problem. `field(t, y, v)` writes f(t, y) into v, which is 0 before: entries that are 0 may be left
+    /// out.
     ///
     /// A closure of t alone is for [`of_time`](Self::of_time): methods for linear equations need it.
     #[doc(alias = "from_fn")]
@@ -142,8 +143,8 @@ impl<G: LieGroup, A: Action<G>, F: Fn(G::Scalar, &A::Point, &mut G::Alg)> Flow<G
 }
 
 impl<G: LieGroup, A: Action<G>, F: Fn(G::Scalar, &mut G::Alg)> LinearFlow<G, A, F> {
-    /// Makes a linear equation ẏ = λ_*(A(t))(y); on a matrix group this is Ẏ = A(t)Y. `field(t, v)` writes all of A(t)
-    /// into v.
+    /// Makes a linear equation ẏ = λ_*(A(t))(y); on a matrix group this is Ẏ = A(t)Y. `field(t, v)` writes A(t)
+    /// into v, which is 0 before.
     ///
     /// ```
     /// use lieflow::actions::Linear;
@@ -176,7 +177,7 @@ impl<G: LieGroup, A: Action<G>, F: Fn(G::Scalar, &mut G::Alg)> LinearFlow<G, A, 
 
 impl<G: LieGroup, A: Action<G>, M, F> Flow<G, A, WithWork<M, F>> {
     /// Makes the problem of a field with scratch. `make()` makes the scratch once for a run. `field(t, y, v, scratch)`
-    /// writes all of f(t, y) into v.
+    /// writes f(t, y) into v, which is 0 before.
     pub const fn with_work<W>(group: G, action: A, make: M, field: F) -> Self
     where
         M: Fn() -> W,
@@ -287,6 +288,7 @@ impl<G: LieGroup, A: Action<G>, F: Field<G, A>, K> Problem for Flow<G, A, F, K> 
     }
     #[inline]
     fn f(&self, t: G::Scalar, y: &A::Point, v: &mut G::Alg, work: &mut F::Work) {
+        self.group.set_zero(v);
         self.field.f(t, y, v, work);
     }
 }

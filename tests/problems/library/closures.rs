@@ -8,8 +8,8 @@ use lieflow::groups::{MatrixGroup, Product, Sample, So3, Translations};
 use lieflow::methods::magnus::Magnus4;
 use lieflow::methods::{EnergyCasimir, GAUSS4, Gauss};
 use lieflow::problems::{
-    DynFlow, Flow, Invariant, LiePoisson, Oja, RigidBody, RigidBodyN, SphericalPendulum,
-    WithHamiltonian,
+    DynFlow, Fallible, Flow, Invariant, LiePoisson, Oja, RigidBody, RigidBodyN, SphericalPendulum,
+    TryFlow, WithHamiltonian,
 };
 use nalgebra::Vector3;
 use rand::SeedableRng;
@@ -52,6 +52,35 @@ fn a_closure_is_the_problem_written_by_hand() {
         body.f(0.0, scratch, v, &mut ());
     });
     assert_eq!(ends(&closure, &m), ends(&body, &m));
+}
+
+/// The storage of v holds values of other stages: a closure that writes only the entries that are not 0 must not see
+/// them.
+#[test]
+fn a_closure_may_leave_entries_out_that_are_0() {
+    fn entries(t: f64, y: &Mat<f64>, v: &mut Mat<f64>) {
+        for i in 0..4 {
+            v[(i, i + 1)] = (t + i as f64).cos() + y[(i, i + 1)];
+            v[(i + 1, i)] = -(t + i as f64).cos() - y[(i, i + 1)];
+        }
+    }
+    let so5 = || MatrixGroup::so(5).unwrap();
+    let some = Flow::new(so5(), LeftTranslation, |t, y, v| entries(t, y, v));
+    let all = Flow::new(so5(), LeftTranslation, |t, y, v| {
+        so5().set_zero(v);
+        entries(t, y, v);
+    });
+    let start = so5().identity();
+    assert_eq!(ends(&some, &start), ends(&all, &start));
+    let some = TryFlow::new(so5(), LeftTranslation, |t, y, v| {
+        entries(t, y, v);
+        Ok::<(), lieflow::Error>(())
+    });
+    let [some, all] = [
+        run(&Fallible::new(some), &Rkmk::new(RK4, Cay), 1.0, 20, &start),
+        run(&all, &Rkmk::new(RK4, Cay), 1.0, 20, &start),
+    ];
+    assert_eq!(some, all);
 }
 
 #[test]
