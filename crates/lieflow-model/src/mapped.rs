@@ -83,8 +83,9 @@ impl Model for Mapped {
                 places.iter().for_each(|&place| numbers[place] = (self.number)(place, t, of_base));
                 value(t, self.schema.row(&numbers))
             };
-            let (value, places) = (Box::new(value), Vec::new());
-            EventPlan { value, places, ..event }
+            // The numbers here may be made of any of the base, which may be mapped itself.
+            let places = (0..self.base.schema().numbers()).collect();
+            EventPlan { value: Box::new(value), places, ..event }
         });
         let plan = Plan { events: events.collect(), ..plan };
         let mut of_base = OfBase { model: self, watcher, numbers: Vec::new() };

@@ -162,6 +162,32 @@ fn formulas_of_columns() {
     }
 }
 
+/// The columns of a preset are formulas of its base, and those of `[output.formulas]` are formulas of them.
+#[test]
+fn events_of_formulas_of_a_preset() {
+    struct Zeros(Vec<Vec<f64>>);
+    impl lieflow_model::model::Watcher for Zeros {
+        fn row(&mut self, _: f64, _: Row<'_>) -> lieflow::solve::Next {
+            lieflow::solve::Next::Continue
+        }
+        fn event(&mut self, event: usize, t: f64, _: bool, _: Row<'_>) {
+            self.0[event].push(t);
+        }
+    }
+    let functions = ["m1", "twice - 2*energy", "energy - energy + m1", "t - 1"];
+    let events = functions.iter().enumerate();
+    let events = events.map(|(i, f)| format!("[[events]]\nname = \"e{i}\"\nwhen = \"{f}\"\n"));
+    let formulas = "[output.formulas]\ntwice = \"2*energy + m1\"\n".to_string();
+    let text = bundled("ellipsoid-in-fluid") + "\n" + &formulas + &events.collect::<String>();
+    let scene = Scene::parse("scene", &text).unwrap_or_else(|error| panic!("{error}"));
+    let model = scene.model_with(scene.layer, &scene.computed()).unwrap();
+    let mut zeros = Zeros(vec![Vec::new(); functions.len()]);
+    model.drive(&scene.method, scene.plan(model.schema()).unwrap(), &mut zeros).unwrap();
+    let [first, second, third, time] = &zeros.0[..] else { panic!("four events") };
+    assert!(!first.is_empty() && first.len() == second.len(), "{zeros:?}", zeros = zeros.0);
+    assert!(far(first, second) < 1e-9 && first == third && far(time, &[1.0]) < 1e-12);
+}
+
 /// Where a named formula is wrong it is refused at its line.
 #[test]
 fn named_formulas_are_refused_at_their_line() {
