@@ -351,6 +351,11 @@ fn other_names_are_understood() {
         message.contains("= a number is written with a decimal point, not a comma"),
         "{message}"
     );
+    for comma in ["dt = 0,05", "dt = [0,05]"] {
+        folder.write("broken.toml", &SCENE.replace("dt = 0.05", comma));
+        let message = folder.lieflow(&["run", "broken.toml"]).refused();
+        assert!(message.contains("not TOML") && message.contains("= a number is written with"));
+    }
     // The names of both parts and of a quantity are wrong: three mistakes.
     let text =
         SCENE.replace("rkmk4", "rk45").replace("\"exp\"", "\"expp\"").replace("energy", "enrgy");

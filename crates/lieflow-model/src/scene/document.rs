@@ -8,6 +8,7 @@ use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue, ValueDeserializer};
 
 use super::error::{Mistakes, ReadError, Refusal, SceneError};
+use super::formula::DECIMAL_POINT;
 use super::mend::{Found, Mending, Wrong, rename};
 use super::suggest::help_for;
 
@@ -19,6 +20,13 @@ const EXAMPLES: [(&str, &str); 2] = [
     ("problem", "kind = \"rigid-body\"\ninertia = [1, 2, 3]\nomega_body = [0.2, 0, 1]"),
     ("time", "t_span = [0, 10]"),
 ];
+
+/// True if a comma between two digits is at this place, or just before it.
+fn has_decimal_comma(text: &[u8], at: usize) -> bool {
+    let digit = |i: usize| text.get(i).is_some_and(u8::is_ascii_digit);
+    let comma = |i: usize| text.get(i) == Some(&b',') && digit(i.wrapping_sub(1)) && digit(i + 1);
+    comma(at) || comma(at.wrapping_sub(1))
+}
 
 /// More mistakes than this are not looked for in a value at the top.
 const MENDED_MAX: usize = 64;
@@ -36,7 +44,10 @@ impl<'a> Document<'a> {
             Ok(root) => Ok(Document { source, text, root: root.into_inner() }),
             Err(error) => {
                 let message = error.message().lines().collect::<Vec<_>>().join("; ");
-                Err(SceneError::new(source, format!("not TOML: {message}")).at(text, error.span()))
+                let refused = SceneError::new(source, format!("not TOML: {message}"));
+                let at = error.span().map_or(0, |span| span.start);
+                let help = has_decimal_comma(text.as_bytes(), at).then(|| DECIMAL_POINT.into());
+                Err(refused.at(text, error.span()).with_help(help))
             }
         }
     }

@@ -30,6 +30,7 @@ mod value;
 
 pub use lost::{Lost, Which};
 pub use names::{Lets, Names, Parameters};
+pub use parse::DECIMAL_POINT;
 pub use samples::SamplesFile;
 pub use text::{Text, Texts};
 

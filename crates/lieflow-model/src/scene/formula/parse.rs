@@ -17,6 +17,9 @@ use super::names::{Meaning, Names, continues_name, starts_name};
 use super::tape::{Builder, LENGTH_MAX, Tape};
 use super::value::Value;
 
+/// The help for a number with a comma.
+pub const DECIMAL_POINT: &str = "a number is written with a decimal point, not a comma: 0.5";
+
 /// What is wrong with a formula.
 #[derive(Debug)]
 pub(super) struct Mistake {
@@ -99,7 +102,7 @@ impl Parser<'_> {
             (Some('0'..='9'), Some(','))
                 if self.text.get(self.at + 1).is_some_and(char::is_ascii_digit) =>
             {
-                Some("a number is written with a decimal point, not a comma: 0.5".into())
+                Some(DECIMAL_POINT.into())
             }
             (Some(_), Some(c)) if what.contains("operator") && (starts_name(c) || c == '(') => {
                 Some("a product is written 2*x".into())
