@@ -24,10 +24,10 @@ fn positive(arg: &'static str, x: f64) -> Result<f64, Error> {
     }
 }
 
-/// A million attempts.
-pub(super) const MAX_STEPS: u64 = 1_000_000;
-
 impl StepControl {
+    /// The largest number of attempts in a run, unless [`max_steps`](Self::max_steps) sets another.
+    pub const MAX_STEPS: u64 = 1_000_000;
+
     /// One rtol and one atol for all parts. The first step is by Hairer's rule. Step sizes have no limit except the
     /// rounding of t. A run has at most a million attempts.
     ///
@@ -94,7 +94,7 @@ impl From<Tolerance> for StepControl {
             first_step: None,
             min_step: 0.0,
             max_step: f64::INFINITY,
-            max_steps: MAX_STEPS,
+            max_steps: Self::MAX_STEPS,
         }
     }
 }

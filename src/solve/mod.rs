@@ -309,7 +309,7 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
         match &mut pace {
             Pace::Equal { max_steps, .. } => {
                 let unbounded =
-                    if self.t_span[1].is_finite() { u64::MAX } else { control::MAX_STEPS };
+                    if self.t_span[1].is_finite() { u64::MAX } else { StepControl::MAX_STEPS };
                 *max_steps = self.max_steps.unwrap_or(unbounded);
             }
             Pace::ByError(control, _) => {

@@ -166,7 +166,7 @@ fn complex(m: usize) -> impl Problem<Group = Unitary, Action = LeftTranslation> 
 
 /// Ten million steps, and what the correction costs.
 #[test]
-#[ignore = "two minutes, with a timing: cargo test --release --test long drift:: -- --ignored --nocapture"]
+#[ignore = "two minutes, with a timing; .ci/long runs it: cargo test --release --test long drift:: -- --ignored --nocapture"]
 fn ten_million_steps() {
     let so3 = turning(So3::<f64>::new(), Vector3::new(0.6, -0.3, 0.5));
     assert_held("SO(3)", &so3, 10_000_000);
@@ -179,7 +179,7 @@ fn ten_million_steps() {
 
 /// The same of larger matrices, in fewer steps.
 #[test]
-#[ignore = "a timing: cargo test --release --test long drift:: -- --ignored --nocapture"]
+#[ignore = "a timing; .ci/long runs it: cargo test --release --test long drift:: -- --ignored --nocapture"]
 fn larger_matrices() {
     let so20 = constant(MatrixGroup::so(20).expect("SO(20)"));
     assert_held("SO(20)", &so20, 200_000);

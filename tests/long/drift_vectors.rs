@@ -121,7 +121,7 @@ fn a_pendulum_stays_on_its_orbit() {
 
 /// A million steps are as a hundred thousand; the time of a run of a momentum over that of one without.
 #[test]
-#[ignore = "a million steps, with a timing: cargo test --release --test long drift_vectors -- --ignored --nocapture"]
+#[ignore = "a million steps, with a timing; .ci/long runs it: cargo test --release --test long drift_vectors -- --ignored --nocapture"]
 fn a_million_steps() {
     let start = V::new(0.6, 0.0, 0.8);
     for k in 0..12 {

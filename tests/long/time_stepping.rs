@@ -258,7 +258,7 @@ fn steps_are_even_beside_a_large_time() {
 
 /// T12 as a run: the field sees each of 1e8 times within two units in the last place.
 #[test]
-#[ignore = "1e8 steps: cargo test --release --test long time_stepping -- --ignored"]
+#[ignore = "1e8 steps; .ci/long runs it: cargo test --release --test long time_stepping -- --ignored"]
 fn a_hundred_million_steps() {
     let (steps, end, n, worst) = (100_000_000, 1e4, Cell::new(0u64), Cell::new(0.0f64));
     let still = |t: f64, _: &mut Vector3<f64>| {

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use lieflow::{RunError, SaveAt, TimeGrid};
+use lieflow::{RunError, SaveAt, StepControl, TimeGrid};
 use lieflow_model::model::{Model, Plan, Rows};
 use lieflow_model::scene::{Refusal, Scene};
 
@@ -17,11 +17,9 @@ const TRIAL: Duration = Duration::from_millis(20);
 const LONGEST: f64 = 30.0 * 86400.0;
 /// A longer run is announced, in seconds.
 const LONG: f64 = 60.0;
-/// Attempts that are made to see how many a run needs whose steps are chosen by their error.
+/// The number of attempts in a trial run with adaptive steps.
 const ATTEMPTS: u64 = 1000;
-/// The attempts after which such a run gives up, where the scene does not say it.
-const LIMIT: u64 = 1_000_000;
-/// A method of this order or a higher one has no need of that.
+/// Methods of this order and higher ones need no trial run.
 const HIGH_ORDER: usize = 4;
 
 /// The warning about a run that will take long.
@@ -77,7 +75,7 @@ fn chosen_steps(scene: &Scene, model: &dyn Model) -> Option<String> {
     let plan = Plan { max_steps: Some(ATTEMPTS), ..scene.plan_to(t1, 1.0, None).ok()? };
     let tried = model.drive(&scene.method, plan, &mut Rows(&mut |_, _| {}));
     let Err(RunError::TooManySteps { t, .. }) = tried else { return None };
-    let limit = scene.max_steps.unwrap_or(LIMIT);
+    let limit = scene.max_steps.unwrap_or(StepControl::MAX_STEPS);
     let needed = ATTEMPTS as f64 * (t1 - t0) / (t - t0);
     (needed > limit as f64).then(|| {
         format!(

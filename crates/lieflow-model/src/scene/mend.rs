@@ -1,5 +1,4 @@
-//! What is wrong besides a mistake: the value with the mistake is replaced by a harmless one, and the section is read
-//! again.
+//! Finds all mistakes of a section. The value with a mistake is replaced by a harmless one, and the section is read again.
 
 use core::ops::Range;
 
@@ -13,24 +12,24 @@ use lieflow::names::near;
 /// An error of a reading, with its place.
 pub(super) type Found = (Option<Range<usize>>, ReadError);
 
-/// A value at the top of a scene, of which each mistake is replaced.
+/// A section of a scene, in which values with mistakes are replaced.
 pub(super) struct Mending<'a> {
     text: &'a str,
     value: Spanned<DeValue<'a>>,
-    /// Where something was replaced.
+    /// The places of the replaced values.
     places: Vec<Range<usize>>,
-    /// The keys of what was replaced or taken away: a formula that says them may follow.
+    /// The keys of replaced and removed values. A mistake in a formula that uses one of them is not told.
     names: Vec<String>,
-    /// Those of them whose value was no formula: a message that says them may follow.
+    /// Those of these keys whose value was not a formula. A message that contains one of them is not told.
     values: Vec<String>,
-    /// The keys that were taken away.
+    /// The removed keys.
     left_out: Vec<String>,
-    /// Do other values perhaps not fit what was replaced or taken away?
+    /// True if other values may not fit a replacement, for example because it has another size.
     loose: bool,
 }
 
-/// Values of each type, in the order in which they are tried. Does one say a size, or have any length, so that other
-/// values perhaps do not fit?
+/// Replacements of each type, in the order in which they are tried. The flag is true if a replacement has a size that
+/// other values may not fit.
 const LITERALS: [(&str, bool); 10] = [
     ("[]", true),
     ("{}", true),
@@ -44,13 +43,14 @@ const LITERALS: [(&str, bool); 10] = [
     ("[[1, 0, 0], [0, 1, 0], [0, 0, 1]]", false),
 ];
 
-/// Formulas: a number, one that changes, and a vector. None is a name.
+/// Replacements of formulas: a constant, a function of t, and a vector.
 const FORMULAS: [&str; 3] = ["\"0\"", "\"2*t\"", "\"[0, 0, 0]\""];
 
-/// A number for each place of a matrix, from 0; a list is the first row.
+/// The number in a row and a column, from 0. A list is the first row.
 type Pattern = fn(usize, usize) -> &'static str;
 
-/// All ones; the identity, or a unit vector; all zeros; all twos, of which the same is asked as of [`LITERALS`].
+/// Replacements of numbers: all ones; the identity or a unit vector; all zeros; all twos. The flag is that of
+/// [`LITERALS`].
 const PATTERNS: [(Pattern, bool); 4] = [
     (|_, _| "1", false),
     (|i, j| if i == j { "1" } else { "0" }, false),
@@ -58,10 +58,10 @@ const PATTERNS: [(Pattern, bool); 4] = [
     (|_, _| "2", true),
 ];
 
-/// A value to try, and whether others perhaps do not fit it.
+/// A replacement to try, with the flag of [`LITERALS`].
 type Candidate<'a> = (DeValue<'a>, bool);
 
-/// The place of a key that is not there.
+/// The place of a missing key.
 const NOWHERE: Range<usize> = usize::MAX..usize::MAX;
 
 /// A step on the way to a value.
@@ -76,7 +76,7 @@ impl<'a> Mending<'a> {
         Mending { text, value, places, names, values, left_out, loose: false }
     }
 
-    /// May an error follow from what was replaced or taken away?
+    /// True if the error may come from a replacement.
     pub(super) fn explains(&self, (place, error): &Found) -> bool {
         match error {
             ReadError::Toml(error) => match Wrong::of(error.message()) {
@@ -121,8 +121,7 @@ impl<'a> Mending<'a> {
         }
     }
 
-    /// Puts something harmless in the place of an error, and reads again. Returns nothing where nothing is known to be
-    /// harmless.
+    /// Replaces the value with the error and reads again. Returns `None` if no replacement is known to be harmless.
     pub(super) fn mend<T>(
         &mut self,
         (place, error): &Found,
@@ -169,7 +168,7 @@ impl<'a> Mending<'a> {
         Some(read(&self.value))
     }
 
-    /// Takes the entry of a table away, or gives it the one of these names that is spelt like its own.
+    /// Removes the entry of a table, or renames it if one of these names has a similar spelling.
     fn take_away(&mut self, place: &Range<usize>, names: &[&str]) -> Option<()> {
         let mut gone = None;
         at_entry(self.value.get_mut(), place, &mut |table, key| {
@@ -196,8 +195,8 @@ impl<'a> Mending<'a> {
         self.try_each(path, literals.collect(), true, read)
     }
 
-    /// Puts one value after the other in a place, up to the first of which the next error does not tell. `of_one` says
-    /// that nothing else is told of the list in which it is.
+    /// Tries the replacements in turn and keeps the first one that causes no error at this place. With `of_one` no other
+    /// mistake in the same list is told.
     fn try_each<T>(
         &mut self,
         path: &[Step],
@@ -233,17 +232,17 @@ impl<'a> Mending<'a> {
     }
 }
 
-/// The number of steps to the key that a path ends at, or in whose list it ends.
+/// The number of steps of a path up to its last key.
 fn of_key(path: &[Step]) -> usize {
     path.iter().rposition(|step| matches!(step, Step::Key(_))).map_or(0, |last| last + 1)
 }
 
-/// Have two places nothing in common?
+/// True if two places do not overlap.
 fn apart(a: &Range<usize>, b: &Range<usize>) -> bool {
     a != b && (a.end <= b.start || b.end <= a.start)
 }
 
-/// Does a text say one of these names, or an entry `b1` of a name `b`?
+/// True if a text contains one of these names, or an entry `b1` of a name `b`.
 fn says_any(text: &str, names: &[String]) -> bool {
     let mut words = text.split(|c: char| !c.is_alphanumeric() && c != '_');
     words.any(|word| {
@@ -252,12 +251,12 @@ fn says_any(text: &str, names: &[String]) -> bool {
     })
 }
 
-/// The value of a text of this file.
+/// Parses one of the replacements above.
 fn literal(text: &'static str) -> Option<DeValue<'static>> {
     DeValue::parse(text).ok().map(Spanned::into_inner)
 }
 
-/// Values of the same shape.
+/// The replacements with the shape of a value.
 fn alike<'a>(value: &DeValue<'a>) -> Vec<Candidate<'a>> {
     match value {
         DeValue::String(_) => {
@@ -267,7 +266,7 @@ fn alike<'a>(value: &DeValue<'a>) -> Vec<Candidate<'a>> {
     }
 }
 
-/// The value with numbers of a pattern; `at` are the places of the lists that it is in.
+/// The value with its numbers replaced by those of a pattern. `at` has the indices of the lists around it.
 fn filled<'a>(value: &DeValue<'a>, at: &[usize], pattern: Pattern) -> DeValue<'a> {
     let mut copy = value.clone();
     match &mut copy {
@@ -290,7 +289,7 @@ fn filled<'a>(value: &DeValue<'a>, at: &[usize], pattern: Pattern) -> DeValue<'a
     copy
 }
 
-/// Is it made of numbers alone?
+/// True for a number, and for a list of numbers.
 fn is_of_numbers(value: &DeValue<'_>) -> bool {
     match value {
         DeValue::Integer(_) | DeValue::Float(_) => true,
@@ -299,7 +298,7 @@ fn is_of_numbers(value: &DeValue<'_>) -> bool {
     }
 }
 
-/// Gives all that is in a value this place.
+/// Sets the place of all entries of a value.
 fn move_to(value: &mut DeValue<'_>, place: &Range<usize>) {
     if let DeValue::Array(list) = value {
         for entry in list.iter_mut() {
@@ -310,7 +309,7 @@ fn move_to(value: &mut DeValue<'_>, place: &Range<usize>) {
     }
 }
 
-/// The steps to the outermost value that stands in this place; false where there is none.
+/// Writes the steps to the outermost value at this place into `path`. Returns false if there is no such value.
 fn path_to(value: &Spanned<DeValue<'_>>, place: &Range<usize>, path: &mut Vec<Step>) -> bool {
     if value.span() == *place {
         return true;
@@ -334,7 +333,7 @@ fn path_to(value: &Spanned<DeValue<'_>>, place: &Range<usize>, path: &mut Vec<St
     }
 }
 
-/// The value at the end of these steps.
+/// The value at the end of a path.
 fn at<'v, 'a>(
     value: &'v mut Spanned<DeValue<'a>>,
     path: &[Step],
@@ -372,7 +371,7 @@ fn at_entry<'a>(
     }
 }
 
-/// Give an entry the name that is spelt like its own, where that is free.
+/// Renames an entry if one of these names has a similar spelling and is free.
 pub(super) fn rename(table: &mut DeTable<'_>, given: &str, names: &[&str]) -> bool {
     let Some(meant) = near(given, names).filter(|meant| !table.contains_key(*meant)) else {
         return false;

@@ -9,6 +9,7 @@ mod events;
 pub mod formula;
 mod keys;
 mod mend;
+mod open;
 mod set;
 mod suggest;
 pub mod values;
@@ -17,12 +18,11 @@ pub use bundled::{BUNDLED, Bundled};
 pub use defaults::Defaults;
 pub use error::{Either, KeyPath, ReadError, Refusal, SceneError, at_most_one, exactly_one};
 pub use events::SceneEvent;
+pub use open::unknown_scene;
 pub use suggest::{help_for, suggest};
 
-use std::fs::File;
 use std::hash::{Hash, Hasher};
-use std::io::{self, Read};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use fnv::FnvHasher;
 use lieflow::StepControl;
@@ -38,7 +38,8 @@ use self::error::Mistakes;
 use self::events::EventKeys;
 use self::formula::{Formula, Lost, Which};
 use self::keys::{MethodKeys, Output, OutputKeys, TimeKeys, with_defaults};
-use crate::kinds::{FormulaKeys, KINDS, KNOTS_MAX, Kind, ProblemSpec, SAMPLES};
+use self::open::read_samples;
+use crate::kinds::{FormulaKeys, KNOTS_MAX, Kind, ProblemSpec, SAMPLES};
 use crate::model::{Layer, Model, Plan, Steps};
 use crate::schema::Schema;
 
@@ -89,9 +90,6 @@ pub struct Scene {
     /// count.
     pub fingerprint: u64,
 }
-
-/// Larger files are neither scenes nor samples.
-const SIZE_MAX: u64 = 64 << 20;
 
 impl Scene {
     /// Read a scene. `source` is what messages call it, and its file stem is the scene's name. Files that the scene
@@ -378,39 +376,6 @@ impl Scene {
         self.formulas.iter().flat_map(|(_, formula)| formula.quantities())
     }
 
-    /// Read a scene file.
-    ///
-    /// # Errors
-    /// [`SceneError`], also for a file that cannot be read.
-    pub fn load(path: &Path) -> Result<Scene, SceneError> {
-        Found::file(path)?.read(&[])
-    }
-
-    /// The bundled scene of that name.
-    ///
-    /// # Errors
-    /// [`SceneError`] for an unknown name.
-    pub fn bundled(name: &str) -> Result<Scene, SceneError> {
-        Found::bundled(name)?.read(&[])
-    }
-
-    /// Opens a scene by the path of its file or by its bundled name. `-` is standard input.
-    ///
-    /// # Errors
-    /// [`SceneError`].
-    pub fn open(scene: &Path) -> Result<Scene, SceneError> {
-        Self::open_with(scene, &[])
-    }
-
-    /// Opens a scene and changes it by settings, which are texts such as `time.dt=0.01`, `problem.inertia=[1, 2, 3]` or `problem.inertia[2]=2.5`.
-    /// A place in a list counts from 1. Nothing after the `=` takes the key away.
-    ///
-    /// # Errors
-    /// [`SceneError`], also for a setting that cannot be used.
-    pub fn open_with(scene: &Path, settings: &[String]) -> Result<Scene, SceneError> {
-        Found::open(scene)?.read(settings)
-    }
-
     /// The problem on the layer of the scene, with the quantities of the scene.
     ///
     /// # Errors
@@ -436,60 +401,6 @@ impl Scene {
         let asked = each_once(quantities.iter().copied().filter(|name| *name != FORMULAS));
         let of_problem = each_once(asked.iter().copied().chain(self.of_formulas()));
         with_formulas(self.problem.model(layer, &of_problem)?, asked.len(), &self.formulas)
-    }
-}
-
-/// The text of a scene, and where it was found.
-struct Found {
-    /// What messages call it; its file stem is the scene's name.
-    source: String,
-    text: String,
-    /// The folder of the files that it names, where it is not bundled.
-    folder: Option<PathBuf>,
-}
-
-impl Found {
-    fn read(self, settings: &[String]) -> Result<Scene, SceneError> {
-        let text = set::with_settings(&self.source, &self.text, settings)?;
-        Scene::read(&self.source, &text, self.folder.as_deref())
-    }
-
-    fn file(path: &Path) -> Result<Self, SceneError> {
-        let source = path.display().to_string();
-        let unreadable = |why: String| SceneError::new(&source, why);
-        if path.is_dir() {
-            return Err(unreadable("this is a folder, expected a scene file".into()));
-        }
-        let file = File::open(path);
-        let file = file.map_err(|error| unreadable(format!("cannot read the scene: {error}")))?;
-        let text = text_of(file, "scene").map_err(unreadable)?;
-        Ok(Found { source, text, folder: path.parent().map(Into::into) })
-    }
-
-    fn standard_input() -> Result<Self, SceneError> {
-        let source = "stdin";
-        let text = text_of(io::stdin().lock(), "scene");
-        let text = text.map_err(|why| SceneError::new(source, why))?;
-        Ok(Found { source: source.into(), text, folder: Some(PathBuf::new()) })
-    }
-
-    fn bundled(name: &str) -> Result<Self, SceneError> {
-        let Bundled { name, text } = Bundled::named(name).ok_or_else(|| unknown_scene(name))?;
-        Ok(Found { source: format!("{name}.toml"), text: (*text).into(), folder: None })
-    }
-
-    fn open(scene: &Path) -> Result<Self, SceneError> {
-        let name = scene.to_string_lossy();
-        if name == "-" {
-            return Self::standard_input();
-        }
-        let bundled = Bundled::named(&name).is_some();
-        if scene.is_file() || (scene.exists() && !bundled) {
-            return Self::file(scene);
-        }
-        let stem = name.strip_suffix(".toml").unwrap_or(&name);
-        let a_path = name.contains(['/', '\\', '.']) && Bundled::named(stem).is_none();
-        if a_path { Self::file(scene) } else { Self::bundled(&name) }
     }
 }
 
@@ -528,48 +439,6 @@ fn fingerprint(text: &str, samples: Option<&Samples>) -> u64 {
 fn fitting(model: &dyn Model) -> Vec<&'static str> {
     let fits = |name: &str| model.fits(&MethodSpec::new(name, None)).is_ok();
     all_methods().map(|info| info.name).filter(|name| fits(name)).collect()
-}
-
-/// No scene has this name.
-pub fn unknown_scene(name: &str) -> SceneError {
-    let names: Vec<&str> = BUNDLED.iter().map(|scene| scene.name).collect();
-    let kinds: Vec<&str> = KINDS.iter().map(|kind| kind.name).collect();
-    let help = match suggest(name, &kinds).filter(|_| suggest(name, &names).is_none()) {
-        Some(kind) => {
-            format!("`{kind}` is a kind of problem: lieflow scenes {kind} lists its scenes")
-        }
-        None => help_for(name, &names),
-    };
-    SceneError::new(name, "neither a file nor a bundled scene".into()).with_help(Some(help))
-}
-
-/// All the text that a reader has; `what` it should be.
-fn text_of(reader: impl Read, what: &str) -> Result<String, String> {
-    let mut bytes = Vec::new();
-    let read = reader.take(SIZE_MAX + 1).read_to_end(&mut bytes);
-    read.map_err(|error| format!("cannot read the {what}: {error}"))?;
-    if bytes.len() as u64 > SIZE_MAX {
-        return Err(format!("larger than {} MiB, expected a {what} file", SIZE_MAX >> 20));
-    }
-    String::from_utf8(bytes).map_err(|error| {
-        let valid = error.utf8_error().valid_up_to();
-        let line = error.as_bytes()[..valid].iter().filter(|byte| **byte == b'\n').count() + 1;
-        format!("line {line} is not UTF-8 text")
-    })
-}
-
-/// The text of a file of samples: in the folder, or else of those that come with the program.
-fn read_samples(folder: Option<&Path>, name: &str) -> Result<String, String> {
-    let path = folder.map(|folder| folder.join(name)).filter(|path| path.is_file());
-    match (path, bundled::file(name)) {
-        (Some(path), _) => {
-            let file =
-                File::open(&path).map_err(|error| format!("cannot read the samples: {error}"));
-            file.and_then(|file| text_of(file, "samples")).map_err(|why| format!("{name}: {why}"))
-        }
-        (None, Some(text)) => Ok(text.into()),
-        (None, None) => Err(format!("there is no file `{name}` beside the scene")),
-    }
 }
 
 /// The kind of problem that a scene names.

@@ -44,7 +44,8 @@ pub enum Which {
 }
 
 impl Losses {
-    /// Keeps a loss; one that only follows from a variable is none.
+    /// Keeps a formula without a value. A formula is not kept if one of its variables has no value either: then it only
+    /// follows.
     #[cold]
     pub(super) fn see(&self, origin: &Arc<Origin>, tape: &Tape, values: &[f64]) {
         if !tape.inputs().all(|at| values.get(at).is_some_and(|x| x.is_finite())) {
