@@ -7,6 +7,7 @@
 mod ad;
 mod eigen;
 mod expm;
+mod linear_algebra;
 mod lu;
 mod ops;
 mod product;
@@ -19,6 +20,10 @@ pub(crate) use expm::Expm;
 pub use expm::{
     ApplyChoice, Approximant, ComplexExponential, ExpmChoice, Exponential, ExponentialBatch,
     ExponentialF32, Structure,
+};
+pub use linear_algebra::{
+    determinant, hermitian_eigenvalues, inverse, largest_entry, multiply, norm, qr,
+    singular_values, squared_norm, symmetric_eigen, symmetric_eigenvalues,
 };
 pub(crate) use lu::Lu;
 pub use lu::RCOND_MIN;

@@ -27,11 +27,11 @@ pub use fields::Vortex;
 pub use sphere::Sphere;
 pub use torus::Torus;
 
-use faer::{Mat, Side};
+use faer::Mat;
 
 use super::{Invariant, Invariants, LiePoisson, Problem};
 use crate::actions::Conjugation;
-use crate::dense::mirror;
+use crate::dense::{hermitian_eigenvalues, mirror};
 use crate::error::Error;
 use crate::groups::{ComplexMatrix, LieAlgebra, Unitary};
 use crate::scalar::{Ops, tally};
@@ -169,7 +169,7 @@ impl<S: Surface> Zeitlin<S> {
             faer::c64::new(z.im, -z.re)
         });
         let failed = |_| Error::out_of_range("W", f64::NAN, "a matrix with eigenvalues");
-        hermitian.self_adjoint_eigenvalues(Side::Lower).map_err(failed)
+        hermitian_eigenvalues(hermitian.as_ref()).map_err(failed)
     }
     /// tr((−iW)^k)/N, the mean of ω^k. Allocates.
     ///

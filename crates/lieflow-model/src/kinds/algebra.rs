@@ -9,6 +9,7 @@
 
 use faer::Mat;
 use lieflow::Error;
+use lieflow::dense::largest_entry;
 use lieflow::groups::MatrixGroup;
 use lieflow::names::plain;
 use lieflow::scalar::{Ops, tally};
@@ -185,7 +186,7 @@ pub(super) fn miss(algebra: Algebra, key: &str, x: &Mat<f64>, tolerance: f64) ->
     let entries = (0..n).flat_map(|i| (0..n).map(move |j| (i, j)));
     let away = |&(i, j): &(usize, usize)| (x[(i, j)] - inside[(i, j)]).abs();
     let farthest = entries.max_by(|a, b| away(a).total_cmp(&away(b)))?;
-    if away(&farthest) <= tolerance * x.norm_max() {
+    if away(&farthest) <= tolerance * largest_entry(x.as_ref()) {
         return None;
     }
     let (i, j) = farthest;

@@ -4,6 +4,7 @@
 //! ġ = A(s) g with A = \[0 𝟙; −K(s) 0\], K = diag(k_x, k_z) constant along an element: a step that ends
 //! where elements do is exact by every exponential method.
 
+use lieflow::dense::multiply;
 use lieflow::groups::{AlgebraMatrix, MatrixGroup};
 use lieflow::problems::Flow;
 use lieflow::problems::beam::{Element, transfer_map, tunes};
@@ -112,7 +113,8 @@ impl BeamLine {
         }
         let cell = transfer_map(&self.elements)?.into_mat();
         let cell = if cells < 0.0 { inverse(&cell) } else { cell };
-        Ok(transfer_map(&begun)?.into_mat() * power(cell, cells.abs() as u64))
+        let whole = power(cell, cells.abs() as u64);
+        Ok(multiply(transfer_map(&begun)?.as_ref(), whole.as_ref()))
     }
     /// The coordinates of the particle where the map is g.
     fn particle(&self, g: &Mat<f64>, coordinates: [usize; 4]) -> [f64; 4] {
@@ -137,9 +139,9 @@ fn power(mut g: Mat<f64>, mut k: u64) -> Mat<f64> {
     let mut product = Mat::identity(4, 4);
     while k > 0 {
         if k % 2 == 1 {
-            product = &g * &product;
+            product = multiply(g.as_ref(), product.as_ref());
         }
-        g = &g * &g;
+        g = multiply(g.as_ref(), g.as_ref());
         k /= 2;
     }
     product
@@ -211,7 +213,7 @@ impl System for BeamLine {
     }
     fn exact(&self, [s0, s1]: [f64; 2]) -> Option<Result<Mat<f64>, Error>> {
         let both = self.map_to(s0).and_then(|to_start| Ok((to_start, self.map_to(s1)?)));
-        Some(both.map(|(to_start, to_end)| to_end * inverse(&to_start)))
+        Some(both.map(|(to_start, to_end)| multiply(to_end.as_ref(), inverse(&to_start).as_ref())))
     }
     fn figure(&self) -> Figure {
         Figure::Points("phase_space")

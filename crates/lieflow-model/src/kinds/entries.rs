@@ -1,7 +1,7 @@
 //! Matrices in scenes: the checks of their entries, the names of the columns that show them, and what several
 //! kinds compute from them.
 
-use faer::Side;
+use lieflow::dense::{largest_entry, multiply, norm, squared_norm, symmetric_eigenvalues};
 use lieflow::groups::{GroupMatrix, LieGroup, MatrixGroup};
 
 use super::flow::OnMatrices;
@@ -69,7 +69,7 @@ pub(super) fn check_antisymmetric(key: &str, x: &Mat<f64>) -> Result<(), Refusal
 }
 
 fn check_symmetry(key: &str, x: &Mat<f64>, sign: f64, tolerance: f64) -> Result<(), Refusal> {
-    let allowed = tolerance * x.norm_max();
+    let allowed = tolerance * largest_entry(x.as_ref());
     let mut lower = (0..x.nrows()).flat_map(|i| (0..=i).map(move |j| (i, j)));
     let Some((i, j)) = lower.find(|&(i, j)| (x[(i, j)] - sign * x[(j, i)]).abs() > allowed) else {
         return Ok(());
@@ -121,20 +121,19 @@ pub(super) fn trace(x: &Mat<f64>) -> f64 {
 pub(super) fn traces(x: &Mat<f64>) -> impl Iterator<Item = f64> {
     let mut power = Mat::<f64>::identity(x.nrows(), x.nrows());
     (0..x.nrows()).map(move |_| {
-        power = &power * x;
+        power = multiply(power.as_ref(), x.as_ref());
         trace(&power)
     })
 }
 
 /// |x|ⁿ, at least 1: a bound of what the traces of the powers of x are summed from.
 pub(super) fn size_of_traces(x: &Mat<f64>) -> f64 {
-    x.norm_l2().max(1.0).powi(x.nrows() as i32)
+    norm(x.as_ref()).max(1.0).powi(x.nrows() as i32)
 }
 
 /// The eigenvalues of a symmetric matrix in ascending order; NaN where their iteration does not converge.
 pub(super) fn eigenvalues(x: &Mat<f64>) -> Vec<f64> {
-    let eigenvalues = x.self_adjoint_eigenvalues(Side::Lower);
-    eigenvalues.unwrap_or_else(|_| vec![f64::NAN; x.nrows()])
+    symmetric_eigenvalues(x.as_ref()).unwrap_or_else(|_| vec![f64::NAN; x.nrows()])
 }
 
 /// The distance of gᵀJg from J, of a problem whose point is g.
@@ -144,5 +143,5 @@ pub(super) const fn symplectic_defect<S: System<Problem<f64> = OnMatrices>>() ->
         MatrixGroup::sp(element.nrows()).map_or(f64::NAN, |group| group.defect(&element))
     })
     .kept(Law::by_the_action(2).on_scale(Scale::Terms))
-    .in_terms(|_, g: &Mat<f64>| g.squared_norm_l2())
+    .in_terms(|_, g: &Mat<f64>| squared_norm(g.as_ref()))
 }

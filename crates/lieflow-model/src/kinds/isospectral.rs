@@ -1,6 +1,7 @@
 //! `kind = "toda"`, `"double-bracket"` and `"qr-flow"`: flows L̇ = \[B(L), L\] of symmetric matrices that
 //! keep the eigenvalues; see [`IsospectralFlow`].
 
+use lieflow::dense::{largest_entry, norm};
 use lieflow::problems::{IsospectralFlow, toda_lattice};
 
 use super::entries::{
@@ -77,7 +78,7 @@ fn read_toda(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, Rea
                 return Err(Refusal::at("momenta", message).into());
             }
             let matrix = toda_lattice(&q, &p)?;
-            if !matrix.norm_max().is_finite() {
+            if !largest_entry(matrix.as_ref()).is_finite() {
                 let message = "two neighbours overlap so far that their force is not finite";
                 return Err(Refusal::at("positions", message).into());
             }
@@ -132,7 +133,7 @@ impl System for Isospectral {
         .with_columns(|flow| (1..=flow.matrix.nrows()).map(|i| format!("l{i}{i}")).collect()),
         Q::number("off_diagonal", "Frobenius norm of what is off the diagonal", |_, _, l| {
             let off = |i: usize, j: usize| if i == j { 0.0 } else { l[(i, j)] };
-            Mat::from_fn(l.nrows(), l.nrows(), off).norm_l2()
+            norm(Mat::from_fn(l.nrows(), l.nrows(), off).as_ref())
         }),
         Q::numbers(
             "eigenvalues",
@@ -143,7 +144,7 @@ impl System for Isospectral {
         .with_columns(|flow| numbered("e", flow.matrix.nrows()))
         .kept(Law::by_the_action(0).on_scale(Scale::Terms))
         // Rounding moves each by a part of the largest.
-        .in_terms(|_, l| l.norm_l2()),
+        .in_terms(|_, l| norm(l.as_ref())),
     ];
 
     fn kind(&self) -> &'static Kind {

@@ -1,6 +1,7 @@
 //! `kind = "lorentz"`: the four-velocity of a charged particle in constant fields, in SO(3,1); see
 //! [`ChargedParticle`]. u̇ = (q/m) F u in the particle's proper time, an equation of linear type.
 
+use lieflow::dense::{multiply, squared_norm};
 use lieflow::groups::{AlgebraMatrix, LieAlgebra, MatrixGroup};
 use lieflow::maps::Exp;
 use lieflow::problems::{ChargedParticle, Flow};
@@ -79,7 +80,7 @@ impl System for Particle {
             u[0] * u[0] + u[1] * u[1] + u[2] * u[2] - u[3] * u[3]
         })
         .kept(Law::by_the_action(2))
-        .in_terms(|_, u| u.squared_norm_l2()),
+        .in_terms(|_, u| squared_norm(u.as_ref())),
     ];
 
     fn kind(&self) -> &'static Kind {
@@ -100,7 +101,7 @@ impl System for Particle {
             group.axpy(t1 - t0, &self.tensor, &mut tensor);
             Exp.eval(&group, &tensor)
         });
-        Some(turned.map(|g| &*g * &self.start))
+        Some(turned.map(|g| multiply(g.as_ref(), self.start.as_ref())))
     }
     fn figure(&self) -> Figure {
         Figure::Lines("velocity")

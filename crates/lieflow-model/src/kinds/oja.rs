@@ -1,6 +1,7 @@
 //! `kind = "oja"`: Oja's flow on n×k matrices with orthonormal columns, which finds the leading
 //! eigenvectors of a symmetric matrix; see [`Oja`].
 
+use lieflow::dense::{multiply, norm, qr};
 use lieflow::problems::Oja;
 
 use super::entries::{ROUNDING, check_rows, check_symmetric, eigenvalues, row_columns, rows};
@@ -44,14 +45,12 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
         return Err(Refusal::at("x", message).into());
     }
     let flow = Oja::new(a.clone(), x.ncols())?;
-    let qr = x.qr();
-    let r = qr.thin_R();
-    let depends = |j: &usize| r[(*j, *j)].abs() <= DEPENDENT * x.col(*j).norm_l2();
+    let (q, r) = qr(x.as_ref());
+    let depends = |j: &usize| r[(*j, *j)].abs() <= DEPENDENT * norm(x.subcols(*j, 1));
     if let Some(j) = (0..x.ncols()).find(depends) {
         let message = format!("column {} depends on those before it", j + 1);
         return Err(Refusal::at("x", message).into());
     }
-    let q = qr.compute_thin_Q();
     let x = Mat::from_fn(x.nrows(), x.ncols(), |i, j| q[(i, j)] * r[(j, j)].signum());
     Ok(Box::new(Stated(OjaFlow { flow, a, x })))
 }
@@ -71,7 +70,8 @@ impl System for OjaFlow {
             |oja, _, x| oja.flow.trace(x),
         ),
         Q::number("stiefel_defect", "distance of X'X from the identity", |_, _, x| {
-            (x.transpose() * x - Mat::<f64>::identity(x.ncols(), x.ncols())).norm_l2()
+            let one = Mat::<f64>::identity(x.ncols(), x.ncols());
+            norm((multiply(x.transpose(), x.as_ref()) - one).as_ref())
         })
         // Degree 0: the classical form of the equation keeps it on the manifold alone.
         .kept(Law::by_the_action(0).on_scale(Scale::One)),

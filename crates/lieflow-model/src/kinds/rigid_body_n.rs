@@ -5,6 +5,7 @@
 
 use super::entries::{above_diagonal, antisymmetric};
 use super::prelude::*;
+use lieflow::dense::multiply;
 use lieflow::problems::{RigidBodyN, manakov_integrals};
 
 /// The entry in the list of kinds.
@@ -97,12 +98,12 @@ impl System for Body {
             &["trm2", "…", "trmn"],
             "traces of the even powers of m, up to the n-th",
             |body, _, m, row| {
-                let square = m * m;
+                let square = multiply(m.as_ref(), m.as_ref());
                 let mut power = square.clone();
                 for k in (2..=body.n()).step_by(2) {
                     row.push((0..body.n()).map(|i| power[(i, i)]).sum());
                     if k + 2 <= body.n() {
-                        power = &power * &square;
+                        power = multiply(power.as_ref(), square.as_ref());
                     }
                 }
             },

@@ -1,6 +1,7 @@
 //! `kind = "schrodinger"`: n levels under a drive, iψ̇ = (H₀ + a(t) H₁)ψ on the unit sphere of ℂⁿ; see
 //! [`schrodinger`](fn@schrodinger). a(t) = cos(ωt + φ), times exp(−((t − t₁)/w)²) where there is a pulse.
 
+use lieflow::dense::squared_norm;
 use lieflow::problems::{amplitudes, populations, schrodinger};
 use lieflow::scalar::{Ops, tally};
 
@@ -109,7 +110,7 @@ impl System for Levels {
             |_, _, psi, row| row.extend(populations(psi)),
         )
         .with_columns(|levels| numbered("p", levels.energies.len())),
-        Q::number("probability", "sum of the populations", |_, _, psi| psi.squared_norm_l2())
+        Q::number("probability", "sum of the populations", |_, _, psi| squared_norm(psi.as_ref()))
             .kept(Law::by_the_action(2)),
     ];
 

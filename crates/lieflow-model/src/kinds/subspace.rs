@@ -5,8 +5,10 @@
 //! span of V₁ + V₂Z for Z = (V₂ᵀPV₁)(V₁ᵀPV₁)⁻¹, and the sines of its principal angles to that of V₁ are the
 //! singular values of V₂ᵀP.
 
-use faer::linalg::solvers::DenseSolveCore;
-use faer::{MatRef, Side};
+use faer::MatRef;
+use lieflow::dense::{
+    inverse, multiply, norm, singular_values, symmetric_eigen, symmetric_eigenvalues,
+};
 use lieflow::problems::SubspaceFlow;
 
 use super::entries::{
@@ -53,16 +55,10 @@ fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadErro
     let flow = SubspaceFlow::new(a.clone())?;
     let wrong = |error: Error| Refusal::at("x", error.to_string().replace('X', "x"));
     let start = flow.span(&x).map_err(wrong)?;
-    let eigen = a.self_adjoint_eigen(Side::Lower);
-    let eigen = eigen.map_err(|_| Refusal::at("a", "its eigenvalues cannot be found"))?;
-    let mut subspace = Subspace {
-        flow,
-        dimension: x.ncols(),
-        start,
-        eigenvalues: eigen.S().column_vector().iter().copied().collect(),
-        eigenvectors: eigen.U().to_owned(),
-        graph: None,
-    };
+    let (eigenvalues, eigenvectors) = symmetric_eigen(a.as_ref())
+        .map_err(|_| Refusal::at("a", "its eigenvalues cannot be found"))?;
+    let mut subspace =
+        Subspace { flow, dimension: x.ncols(), start, eigenvalues, eigenvectors, graph: None };
     subspace.graph = subspace.graph_at(&subspace.start);
     Ok(Box::new(Stated(subspace)))
 }
@@ -76,13 +72,16 @@ impl Subspace {
     /// Z.
     fn graph_at(&self, p: &Mat<f64>) -> Option<Mat<f64>> {
         let [v2, v1] = self.parts();
-        let cosines2 = v1.transpose() * p * v1;
-        let least = cosines2.self_adjoint_eigenvalues(Side::Lower).ok()?.into_iter().next()?;
-        (least > RIGHT).then(|| v2.transpose() * p * v1 * cosines2.partial_piv_lu().inverse())
+        let times_v1 =
+            |v: MatRef<'_, f64>| multiply(multiply(v.transpose(), p.as_ref()).as_ref(), v1);
+        let cosines2 = times_v1(v1);
+        let least = symmetric_eigenvalues(cosines2.as_ref()).ok()?.into_iter().next()?;
+        (least > RIGHT)
+            .then(|| multiply(times_v1(v2).as_ref(), inverse(cosines2.as_ref()).as_ref()))
     }
     fn angles(&self, p: &Mat<f64>) -> Vec<f64> {
         let v2 = self.parts()[0];
-        let sines = (v2.transpose() * p).singular_values();
+        let sines = singular_values(multiply(v2.transpose(), p.as_ref()).as_ref());
         let sines = sines.unwrap_or_else(|_| vec![f64::NAN; v2.ncols()]);
         let angles = sines.iter().map(|sine| sine.min(1.0).asin());
         // What a subspace shares with the leading one, it shares at the angle 0.
@@ -119,8 +118,10 @@ impl System for Subspace {
         ),
         Q::number("dimension", "trace of P, the dimension of the subspace", |_, _, p| trace(p))
             .kept(Law::by_the_action(0)),
-        Q::number("projector_defect", "distance of P² from P", |_, _, p| (p * p - p).norm_l2())
-            .kept(Law::by_the_action(0).on_scale(Scale::One)),
+        Q::number("projector_defect", "distance of P² from P", |_, _, p| {
+            norm((multiply(p.as_ref(), p.as_ref()) - p).as_ref())
+        })
+        .kept(Law::by_the_action(0).on_scale(Scale::One)),
     ];
 
     fn kind(&self) -> &'static Kind {

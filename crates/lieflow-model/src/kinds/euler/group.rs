@@ -1,8 +1,8 @@
 //! Euler's equations on matrices with the motion of g: (ġ, ṁ) = (g ∇H, ad*_{∇H} m); see
 //! [`EulerGroup`](lieflow::problems::EulerGroup). The action keeps the momentum in space, Ad*_{g⁻¹} m.
 
-use faer::linalg::solvers::DenseSolveCore;
 use lieflow::actions::{Action, Coadjoint};
+use lieflow::dense::{inverse, norm};
 use lieflow::groups::{GroupMatrix, LieAlgebra, LieGroup, MatrixGroup};
 use lieflow::problems::{Euler, FromTheBody};
 
@@ -44,7 +44,7 @@ impl OnDual for WithGroup {
     }
     /// |g| |g⁻¹| |m|.
     fn in_space_terms((g, m): &Point) -> f64 {
-        g.norm_l2() * g.partial_piv_lu().inverse().norm_l2() * m.norm_l2()
+        norm(g.as_ref()) * norm(inverse(g.as_ref()).as_ref()) * norm(m.as_ref())
     }
 }
 

@@ -1,5 +1,6 @@
 //! Euler's equations on the dual of an algebra of matrices.
 
+use lieflow::dense::{largest_entry, norm};
 use lieflow::groups::{AlgebraMatrix, LieAlgebra, MatrixGroup};
 use lieflow::problems::{DiscreteGradient, Euler, Hamiltonian, Kinetic, MeanGradient};
 use lieflow::scalar::{Ops, tally};
@@ -234,13 +235,13 @@ impl Dual for EulerEquation {
     }
     /// |m|² times the largest weight. The rounding of a formula is that of its value, and of m times its slope.
     fn energy_terms(&self, m: &Mat<f64>) -> f64 {
-        let size = m.norm_l2();
+        let size = norm(m.as_ref());
         match &self.energy.form {
-            Form::Weights(weights) => weights.norm_max() * size * size,
+            Form::Weights(weights) => largest_entry(weights.as_ref()) * size * size,
             Form::Formula(_) => {
                 let mut slope = self.group.zero();
                 self.energy.gradient(m, &mut slope);
-                self.energy(m).abs() + size * slope.norm_l2()
+                self.energy(m).abs() + size * norm(slope.as_ref())
             }
         }
     }

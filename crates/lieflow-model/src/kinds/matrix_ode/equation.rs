@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use lieflow::actions::Action;
+use lieflow::dense::{multiply, norm, squared_norm};
 use lieflow::groups::{AlgebraMatrix, LieAlgebra, LieGroup, MatrixGroup};
 use lieflow::maps::{CoordinateMap, Exp};
 use lieflow::problems::Flow;
@@ -80,7 +81,8 @@ impl Equation {
     }
     /// yᵀMy, where the group has an M.
     fn form(&self, y: &Mat<f64>) -> Option<Mat<f64>> {
-        Some(y.transpose() * self.group.m()? * y)
+        let ym = multiply(y.transpose(), self.group.m()?.as_ref());
+        Some(multiply(ym.as_ref(), y.as_ref()))
     }
     /// The quantity that the action keeps.
     fn kept(&self) -> Option<&'static str> {
@@ -121,11 +123,11 @@ impl System for Equation {
             "distance of y'My from M, for translation on so, sp and so(p,q)",
             |equation, _, y| {
                 let away = equation.form(y).zip(equation.group.m());
-                away.map_or(f64::NAN, |(form, m)| (form - m).norm_l2())
+                away.map_or(f64::NAN, |(form, m)| norm((form - m).as_ref()))
             },
         )
         .kept(Law::by_the_action(2))
-        .in_terms(|_, y| y.squared_norm_l2())
+        .in_terms(|_, y| squared_norm(y.as_ref()))
         .missing_where(|equation| {
             equation.unless_kept("group_defect", "it is for translation on so, sp and so(p,q)")
         }),
@@ -137,7 +139,7 @@ impl System for Equation {
         )
         .with_columns(|equation| upper_columns("f", equation.start.ncols()))
         .kept(Law::by_the_action(2))
-        .in_terms(|_, y| y.squared_norm_l2())
+        .in_terms(|_, y| squared_norm(y.as_ref()))
         .missing_where(|equation| {
             equation.unless_kept("form", "it is for the linear action of so, sp and so(p,q)")
         }),

@@ -16,6 +16,7 @@ mod equation;
 
 use std::sync::Arc;
 
+use lieflow::dense::{determinant, largest_entry};
 use lieflow::groups::{GroupMatrix, LieAlgebra, LieGroup, MatrixGroup};
 
 use self::equation::Equation;
@@ -168,14 +169,14 @@ fn start(
             let help = Some(algebra.form_of_group(n));
             let not_on = || Refusal { help, ..refused(format!("start: {error}")) };
             let near = nearby(group, &start).ok_or_else(not_on)?;
-            let moved = (&near - &start).norm_max();
+            let moved = largest_entry((&near - &start).as_ref());
             notes.push(format!(
                 "start: it is replaced by an element of {} nearby, which moves its entries by up to {moved:.1e}",
                 group.name()
             ));
             start = near;
         }
-        let det = start.determinant();
+        let det = determinant(start.as_ref());
         if algebra == Algebra::Sl && (det - 1.0).abs() > ON_THE_GROUP {
             return Err(refused(format!("its determinant is {det}, expected 1")));
         }
@@ -188,7 +189,7 @@ fn nearby(group: &MatrixGroup, x: &Mat<f64>) -> Option<Mat<f64>> {
     let mut g = GroupMatrix::new_unchecked(x.clone());
     let [mut a, mut b] = [group.identity(), group.identity()];
     group.correct(&mut g, [&mut a, &mut b]);
-    let near = (&*g - x).norm_max() <= TYPED && group.element((*g).clone()).is_ok();
+    let near = largest_entry((&*g - x).as_ref()) <= TYPED && group.element((*g).clone()).is_ok();
     near.then(|| (*g).clone())
 }
 
