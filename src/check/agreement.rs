@@ -102,7 +102,7 @@ impl<Psi: CoordinateMap<So3> + CoordinateMap<MatrixGroup>> BothLayers<'_, Psi> {
 ///
 /// # Errors
 /// None that SO(3) can raise.
-pub fn maps_agree<R: Rng + ?Sized>(rng: &mut R, cases: usize) -> Result<Vec<Finding>, Error> {
+pub fn maps_agree(rng: &mut dyn Rng, cases: usize) -> Result<Vec<Finding>, Error> {
     let (closed, general) = (So3::<f64>::new(), MatrixGroup::so(3)?);
     let names = [
         ["exp", "dexp⁻¹"],
@@ -159,7 +159,7 @@ where
 ///
 /// # Errors
 /// None that a rigid body can raise.
-pub fn steps_agree<R: Rng + ?Sized>(rng: &mut R, cases: usize) -> Result<Vec<Finding>, Error> {
+pub fn steps_agree(rng: &mut dyn Rng, cases: usize) -> Result<Vec<Finding>, Error> {
     let so3 = So3::<f64>::new();
     let names = ["exp", "cay", "ccsk123", "ccsk321", "ccsk"];
     let mut found =

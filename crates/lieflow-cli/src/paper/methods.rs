@@ -3,7 +3,7 @@
 use lieflow::maps::{CCSK, CCSK123, CCSK321, Cay, Exp};
 use lieflow::methods::tableau::RK4;
 use lieflow::methods::{
-    Buss4, DMV4, DMV10, EnergyCasimir, MR2, MR4, Method, Rk, Rkmk, SimoWong, Step,
+    AnyMethod, Buss4, DMV4, DMV10, EnergyCasimir, MR2, MR4, Method, Rk, Rkmk, SimoWong, Step,
 };
 use lieflow::problems::{
     Ambient, BodyState, Exact, PointOf, Problem, RigidBody, RigidBodyAttitude, RigidBodyState,
@@ -213,7 +213,7 @@ impl PaperMethod {
         see: &mut See<'_>,
     ) -> Result<(), RunError> {
         on_method!(self, body, f64, |problem, method, start| {
-            run(problem, method, start, (grid, save), see)
+            run(problem, AnyMethod::new(*method), start, (grid, save), see)
         })
     }
 
@@ -223,7 +223,7 @@ impl PaperMethod {
     /// As [`run`](Self::run).
     pub fn seconds(self, body: &Body, grid: &TimeGrid, shortest: f64) -> Result<f64, RunError> {
         on_method!(self, body, f64, |problem, method, start| {
-            seconds(problem, method, &start, grid, shortest)
+            seconds(problem, AnyMethod::new(*method), &start, grid, shortest)
         })
     }
 
@@ -288,20 +288,20 @@ impl Seen for RigidBodyState {
 /// What gets t, m and g.
 pub type See<'a> = dyn FnMut(f64, Vector3<f64>, Option<Matrix3<f64>>) + 'a;
 
-fn run<P: Seen, M: Method<P>>(
+fn run<P: Seen + 'static>(
     problem: &P,
-    method: &M,
+    method: AnyMethod<'static, P>,
     mut y: PointOf<P>,
     (grid, save): (&TimeGrid, SaveAt),
     see: &mut See<'_>,
 ) -> Result<(), RunError> {
     let see = |t, y: &PointOf<P>| see(t, problem.momentum(y), problem.attitude(y));
-    integrate(problem, method, grid, &save, &mut y, see).map(|_| ())
+    integrate(problem, &method, grid, &save, &mut y, see).map(|_| ())
 }
 
-fn seconds<P: Seen, M: Method<P>>(
+fn seconds<P: Seen + 'static>(
     problem: &P,
-    method: &M,
+    method: AnyMethod<'static, P>,
     start: &PointOf<P>,
     grid: &TimeGrid,
     shortest: f64,
@@ -312,7 +312,7 @@ fn seconds<P: Seen, M: Method<P>>(
         let see = |_, y: &PointOf<P>| {
             core::hint::black_box(y);
         };
-        outcome = integrate(problem, method, grid, &SaveAt::Ends, &mut y, see).map(|_| ());
+        outcome = integrate(problem, &method, grid, &SaveAt::Ends, &mut y, see).map(|_| ());
     });
     outcome.map(|()| seconds)
 }
