@@ -3,7 +3,7 @@
 //! Tableaus with few stages share one type and so do maps, so that a problem has a few dozen methods to compile
 //! whatever is in the lists.
 
-use super::recipe::{GaussTableau, Recipe, SizedTableau};
+use super::recipe::{Recipe, SizedTableau};
 use super::{Choice, MaybeMethod};
 use crate::error::{Error, StepError};
 use crate::maps::{Cay, CoordinateMap, Exp, ExpOrCay, MapsByName, NamedMap, Serves};
@@ -18,7 +18,7 @@ use crate::problems::{
     Ambient, FreeBody, LiePoisson, LinearField, Orthogonal, PointOf, Problem, ScalarOf, Split,
     TaylorField,
 };
-use crate::scalar::Trig;
+use crate::scalar::{Real, Trig};
 
 /// A method without an estimate of its own.
 fn plain<'p, P: Problem + 'p>(method: impl Method<P> + Clone + 'p) -> MaybeMethod<'p, P> {
@@ -66,6 +66,17 @@ where
     P: Ambient<Group: crate::maps::AllMaps> + 'p,
     Exp: CoordinateMap<P::Group>,
 {
+    if ScalarOf::<P>::COUNTS {
+        return Ok(None);
+    }
+    if let Recipe::RkmkGauss(table) = choice.info.recipe {
+        let psi = choice.map::<P::Group>()?;
+        return match table.stages() {
+            1 => plain(RkmkGauss::new(table.resized::<1>(), psi)),
+            2 => plain(RkmkGauss::new(table.resized::<2>(), psi)),
+            _ => Ok(None),
+        };
+    }
     let SizedTableau::Small(table) = choice.tableau.table else { return Ok(None) };
     let is_classical = table.name == tableau::RK4.name;
     macro_rules! with {
@@ -191,9 +202,12 @@ where
             SizedTableau::Small(table) => pair(Rk(table)),
             SizedTableau::Large(table) => pair(Rk(table)),
         },
-        Recipe::Gauss(GaussTableau::One(table)) => plain(Gauss(table)),
-        Recipe::Gauss(GaussTableau::Two(table)) => plain(Gauss(table)),
-        Recipe::Gauss(GaussTableau::Three(table)) => plain(Gauss(table)),
+        // These loops are so short that a number of stages that the compiler does not know doubles their time.
+        Recipe::Gauss(table) => match table.stages() {
+            1 => plain(Gauss(table.resized::<1>())),
+            2 => plain(Gauss(table.resized::<2>())),
+            _ => plain(Gauss(table)),
+        },
         _ => Ok(None),
     }
 }
@@ -209,21 +223,9 @@ where
     ExpOrCay: CoordinateMap<P::Group>,
 {
     match choice.info.recipe {
-        Recipe::RkmkGauss(table) => {
-            let psi = choice.map::<P::Group>()?;
-            match table {
-                GaussTableau::One(table) => plain(RkmkGauss::new(table, psi)),
-                GaussTableau::Two(table) => plain(RkmkGauss::new(table, psi)),
-                GaussTableau::Three(table) => plain(RkmkGauss::new(table, psi)),
-            }
-        }
+        Recipe::RkmkGauss(table) => plain(RkmkGauss::new(table, choice.map::<P::Group>()?)),
         Recipe::RkmkGaussSymmetric(table) => {
-            let psi = choice.odd_map()?;
-            match table {
-                GaussTableau::One(table) => plain(RkmkGaussSymmetric::new(table, psi)),
-                GaussTableau::Two(table) => plain(RkmkGaussSymmetric::new(table, psi)),
-                GaussTableau::Three(table) => plain(RkmkGaussSymmetric::new(table, psi)),
-            }
+            plain(RkmkGaussSymmetric::new(table, choice.odd_map()?))
         }
         _ => Ok(None),
     }

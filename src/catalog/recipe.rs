@@ -16,24 +16,8 @@ pub(crate) enum SizedTableau {
     Large(Tableau<12>),
 }
 
-/// The Gauss tableaus by their stages. Their loops are short, and slow where the number of stages is not a
-/// constant.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum GaussTableau {
-    One(ImplicitTableau<1>),
-    Two(ImplicitTableau<2>),
-    Three(ImplicitTableau<3>),
-}
-
-impl GaussTableau {
-    pub(crate) const fn order(&self) -> usize {
-        match self {
-            GaussTableau::One(table) => table.order,
-            GaussTableau::Two(table) => table.order,
-            GaussTableau::Three(table) => table.order,
-        }
-    }
-}
+/// A Gauss tableau with room for three stages: methods by name share one type.
+pub(crate) type GaussTableau = ImplicitTableau<3>;
 
 /// What makes a method, before its map and its tableau are chosen.
 #[allow(clippy::large_enum_variant)] // constants, never moved in a step

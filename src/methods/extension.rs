@@ -195,6 +195,17 @@ impl<'a, const S: usize> Extension<'a, S> {
         }
     }
 
+    /// The node c of an extra stage, and the weights of its u.
+    fn sample(&self, e: usize) -> (f64, Weights<S>) {
+        match self.dense {
+            Dense::Raised { stages, .. } if e > 0 => {
+                let (c, row) = &stages[e - 1];
+                (*c, Weights::ZERO.plus(1.0, row))
+            }
+            _ => (SAMPLES[e].1, self.general(SAMPLES[e].0, SAMPLES[e].1)),
+        }
+    }
+
     /// Computes the extra stages one after the other. `field` gets the node c, the weights of u, the earlier stages,
     /// and the storage of the new one.
     fn stages<T>(
@@ -203,13 +214,7 @@ impl<'a, const S: usize> Extension<'a, S> {
         mut field: impl FnMut(f64, &Weights<S>, &[T], &mut T) -> Result<(), StepError>,
     ) -> Result<(), StepError> {
         for e in 0..self.evaluations() {
-            let (c, weights) = match self.dense {
-                Dense::Raised { stages, .. } if e > 0 => {
-                    let (c, row) = &stages[e - 1];
-                    (*c, Weights::ZERO.plus(1.0, row))
-                }
-                _ => (SAMPLES[e].1, self.general(SAMPLES[e].0, SAMPLES[e].1)),
-            };
+            let (c, weights) = self.sample(e);
             let (known, rest) = d.split_at_mut(e);
             field(c, &weights, known, &mut rest[0])?;
         }

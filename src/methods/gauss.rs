@@ -36,6 +36,40 @@ pub struct ImplicitTableau<const S: usize> {
     pub c: [f64; S],
 }
 
+impl<const S: usize> ImplicitTableau<S> {
+    /// The number of stages: S, or fewer for a tableau with room for more.
+    pub const fn stages(&self) -> usize {
+        let mut s = S;
+        while s > 1 && self.b[s - 1] == 0.0 {
+            s -= 1;
+        }
+        s
+    }
+
+    /// This tableau with room for N stages, at least as many as it has, so that methods chosen by name share one type.
+    /// The added stages have the weight 0. RKMK methods never evaluate them.
+    pub(crate) const fn resized<const N: usize>(&self) -> ImplicitTableau<N> {
+        let mut to = ImplicitTableau {
+            name: self.name,
+            order: self.order,
+            a: [[0.0; N]; N],
+            b: [0.0; N],
+            c: [0.0; N],
+        };
+        let mut i = 0;
+        while i < self.stages() {
+            (to.b[i], to.c[i]) = (self.b[i], self.c[i]);
+            let mut j = 0;
+            while j < self.stages() {
+                to.a[i][j] = self.a[i][j];
+                j += 1;
+            }
+            i += 1;
+        }
+        to
+    }
+}
+
 /// √3/6.
 const R3: f64 = 0.288675134594812882254574390251;
 /// √15.

@@ -112,7 +112,8 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> RkmkGaussWork<P, 
     ) -> Result<(), StepError> {
         let (alg, lit) = (problem.group(), ScalarOf::<P>::lit);
         let RkmkGaussWork { k, u, old, middle, q, y, chart, iterations, .. } = self;
-        for i in 0..S {
+        let stages = tab.stages();
+        for i in (0..S).take(stages) {
             chart.around(problem, psi, n, p).field(t + h * lit(tab.c[i]), &mut k[i]);
             if !alg.is_finite(&k[i]) {
                 return Err(StepError::NonFiniteRhs { stage: i + 1 });
@@ -126,7 +127,7 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> RkmkGaussWork<P, 
             }
             let mut around = chart.around(problem, psi, n, if centred { &*q } else { p });
             let (mut change, mut size) = (lit(0.0), lit(1.0));
-            for i in 0..S {
+            for i in (0..S).take(stages) {
                 alg.combine(h, &tab.a[i], k, u);
                 if centred {
                     alg.axpy(lit(-1.0), middle, u);

@@ -123,6 +123,8 @@ impl SubAssign for Counted {
 }
 
 impl Real for Counted {
+    const COUNTS: bool = true;
+
     fn lit(x: f64) -> Self {
         Counted(x)
     }

@@ -39,6 +39,9 @@ pub trait Real:
     /// The largest sum of squares whose products with ordinary numbers do not overflow.
     const SQUARE_MAX: f64 = 1e300;
 
+    /// True for numbers that count operations. Nobody waits for them, so methods by name are not compiled for speed.
+    const COUNTS: bool = false;
+
     /// A constant of the formula (Butcher coefficients, Bernoulli numbers, ½).
     fn lit(x: f64) -> Self;
     /// self·a + b, with one rounding if the machine has a fast instruction for it.

@@ -11,7 +11,6 @@ use crate::methods::{
     SOFRONIOU_SPALETTA10, STRANG, SUZUKI4, Scheme, SimoWong, Splitting, YOSHIDA4,
 };
 use crate::problems::Projection;
-use GaussTableau::{One, Three, Two};
 use Operation::{
     AmbientField, AxisRotation, CrossProduct, Exp, GramSchmidt, InverseInertia, Microsecond,
     Multiplication, NewtonIteration, NewtonSchulz, Product, Psi, SimoWongStep,
@@ -316,18 +315,18 @@ pub(super) const STATE: &[MethodInfo] = &[
         "midpoint-implicit-mg",
         "the implicit midpoint rule on (m, g), where everything that the body keeps is quadratic",
         &[times(1, AmbientField)],
-        One(GAUSS2),
+        GAUSS2.resized(),
     ),
     gauss_mg(
         "gauss4-mg",
         "Gauss collocation of two stages on (m, g)",
         &[times(2, AmbientField)],
-        Two(GAUSS4),
+        GAUSS4.resized(),
     ),
     gauss_mg(
         "gauss6-mg",
         "Gauss collocation of three stages on (m, g)",
         &[times(3, AmbientField)],
-        Three(GAUSS6),
+        GAUSS6.resized(),
     ),
 ];

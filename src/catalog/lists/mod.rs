@@ -13,7 +13,6 @@ use crate::methods::crouch_grossman::{CG4, cg2, cg3};
 use crate::methods::low_storage::{EES25, EES27, LS3, LS3_BP, LS4, LS5, LS32};
 use crate::methods::one_bracket::{MAGNUS43, RKMK4_2C};
 use crate::methods::{GAUSS2, GAUSS4, GAUSS6, KAHAN_LI6, SUZUKI4};
-use GaussTableau::{One, Three, Two};
 use Operation::{
     Act, AmbientField, Bracket, DpsiInv, EnergyCasimirStep, Exp, Field, Gradient, IsospectralStep,
     Product, Psi,
@@ -302,37 +301,49 @@ const NORM: &[MethodInfo] = &[
         "midpoint-implicit",
         "the implicit midpoint rule on the entries of the state",
         &[times(1, AmbientField)],
-        One(GAUSS2),
+        GAUSS2.resized(),
     ),
     gauss(
         "gauss4",
         "Gauss collocation of two stages on the entries of the state",
         &[times(2, AmbientField)],
-        Two(GAUSS4),
+        GAUSS4.resized(),
     ),
     gauss(
         "gauss6",
         "Gauss collocation of three stages on the entries of the state",
         &[times(3, AmbientField)],
-        Three(GAUSS6),
+        GAUSS6.resized(),
     ),
-    rkmk_gauss("rkmk-gauss2", &[times(1, Field), times(1, Psi), times(1, DpsiInv)], One(GAUSS2)),
-    rkmk_gauss("rkmk-gauss4", &[times(2, Field), times(2, Psi), times(2, DpsiInv)], Two(GAUSS4)),
-    rkmk_gauss("rkmk-gauss6", &[times(3, Field), times(3, Psi), times(3, DpsiInv)], Three(GAUSS6)),
+    rkmk_gauss(
+        "rkmk-gauss2",
+        &[times(1, Field), times(1, Psi), times(1, DpsiInv)],
+        GAUSS2.resized(),
+    ),
+    rkmk_gauss(
+        "rkmk-gauss4",
+        &[times(2, Field), times(2, Psi), times(2, DpsiInv)],
+        GAUSS4.resized(),
+    ),
+    rkmk_gauss(
+        "rkmk-gauss6",
+        &[times(3, Field), times(3, Psi), times(3, DpsiInv)],
+        GAUSS6.resized(),
+    ),
     rkmk_gauss_symmetric(
         "rkmk-gauss2-symmetric",
         &[times(1, Field), times(2, Psi), times(1, DpsiInv)],
-        One(GAUSS2),
+        GAUSS2.resized(),
     ),
     rkmk_gauss_symmetric(
         "rkmk-gauss4-symmetric",
         &[times(2, Field), times(3, Psi), times(2, DpsiInv)],
-        Two(GAUSS4),
+        GAUSS4.resized(),
     ),
     rkmk_gauss_symmetric(
         "rkmk-gauss6-symmetric",
         &[times(3, Field), times(4, Psi), times(3, DpsiInv)],
-        Three(GAUSS6),
+        GAUSS6.resized(),
     ),
 ];
 
@@ -344,7 +355,7 @@ const fn gauss(
     table: GaussTableau,
 ) -> MethodInfo {
     let (family, cost) = ((Family::RungeKutta, Needs::Norm), Cost::iterated(ITERATIONS, work));
-    plain(family, name, table.order(), summary, QUADRATIC, cost, GAUSS, Recipe::Gauss(table))
+    plain(family, name, table.order, summary, QUADRATIC, cost, GAUSS, Recipe::Gauss(table))
 }
 
 const fn rkmk_gauss(
@@ -356,7 +367,7 @@ const fn rkmk_gauss(
     let (family, cost) = ((Family::Rkmk, Needs::Norm), Cost::iterated(ITERATIONS, work));
     let recipe = Recipe::RkmkGauss(table);
     in_coordinates(
-        plain(family, name, table.order(), summary, KEEPS_GROUP, cost, ZANNA, recipe),
+        plain(family, name, table.order, summary, KEEPS_GROUP, cost, ZANNA, recipe),
         Maps::All,
     )
 }
