@@ -18,7 +18,7 @@ const BROKEN: &[(&str, &str, usize, &[&str])] = &[
         "inertia = [1, 2.0, 3.0]",
         "inertia = [1, \"two\", 3]",
         4,
-        &["string \"two\"", "expected a number"],
+        &["the text \"two\"", "expected a number"],
     ),
     ("inertia = [1, 2.0, 3.0]", "inertia = [1, nan, 3]", 4, &["expected a finite number"]),
     ("inertia = [1, 2.0, 3.0]", "inertia = [1, 2, -inf]", 4, &["expected a finite number"]),
@@ -128,7 +128,10 @@ const BROKEN: &[(&str, &str, usize, &[&str])] = &[
     ("dt = 0.05", "rtol = 1e-6\nh_max = 1\nh_min = 2", 14, &["h_min = 2", "h_max = 1"]),
     ("dt = 0.05", "rtol = 1e-6\nmax_steps = 0", 13, &["found 0", "at least 1"]),
     ("map = \"exp\"", "map = \"exp\"\ntableau = \"dopri5\"", 9, &["tableau", "use `rkmk`"]),
-    ("dt = 0.05", "steps = 2.5", 12, &["expected a whole number"]),
+    ("dt = 0.05", "steps = 2.5", 12, &["found 2.5, expected a whole number"]),
+    ("dt = 0.05", "steps = 9223372036854775808", 12, &["the number is out of range"]),
+    ("dt = 0.05", "dt = 1979-05-27", 12, &["found a date, expected a number"]),
+    ("dt = 0.05", "at_knots = 1\ndt = 0.05", 12, &["found 1, expected true or false"]),
     ("dt = 0.05", "steps = 9000000000000000000", 12, &["a step that changes t"]),
     (
         "quantities = [\"momentum_body\", \"energy\"]",
@@ -220,7 +223,7 @@ const BROKEN: &[(&str, &str, usize, &[&str])] = &[
     ),
     ("[output]", "[outptu]", 13, &["unknown key `outptu`", "did you mean `output`?"]),
     ("[method]", "[method", 6, &["not TOML"]),
-    ("title = \"Test\"", "title = 3", 1, &["expected a string"]),
+    ("title = \"Test\"", "title = 3", 1, &["expected a text"]),
     ("title = \"Test\"", "title = \"Test\"\ncolour = \"red\"", 2, &["unknown key `colour`"]),
 ];
 
@@ -274,10 +277,10 @@ fn all_mistakes_are_told_at_once() {
         ":1:1: unknown key `titel`",
         ":4:1: unknown key `inertai`",
         ":5:1: unknown key `shape_`",
-        ":5:10: found integer `3`",
+        ":5:10: found 3, expected a table",
         ":6:1: unknown key `colour`",
         ":9:1: unknown key `nmae`",
-        ":13:14: found string \"two\"",
+        ":13:14: found the text \"two\"",
         ":14:6: dt = -1.0",
         ":15:2: unknown key `outptu`",
         ":16:15: unknown quantity `momentun`",
@@ -297,7 +300,7 @@ fn all_mistakes_are_told_at_once() {
     let keys = "torque = [\"k*w1\", \"0\", \"l\"]\nparameters = { k = \"x\" }\n[method]";
     let text = SCENE.replace("rigid-body", "driven-body").replace("[method]", keys);
     let text = text.replace("layer = \"closed\"\n", "").replace("\"momentum_body\", ", "");
-    let all = ["2 mistakes", ":6:24: torque[3]: unknown name `l`", ":7:20: found string \"x\""];
+    let all = ["2 mistakes", ":6:24: torque[3]: unknown name `l`", ":7:20: found the text \"x\""];
     expect(&text, &all);
     let text = text.replace("\"x\"", "1").replace("k*w1", "k*w9").replace("t_span", "t_spam");
     let all = ["3 mistakes", ":6:11: torque[", ":6:24: torque[", ":12:1: unknown key `t_spam`"];

@@ -29,13 +29,13 @@ keys! { Keys {
     particle: Reals<4> = "initial [x, z, x', z']",
 } }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct ElementKeys {
-    kind: String,
-    length: Real,
-    k: Option<Real>,
-    radius: Option<Real>,
+read_by_keys! {
+    struct ElementKeys {
+        kind: String,
+        length: Real,
+        k: Option<Real>,
+        radius: Option<Real>,
+    }
 }
 
 /// A cell, and the particle.
@@ -71,8 +71,8 @@ fn element(keys: &ElementKeys) -> Result<(Element, [f64; 2]), String> {
     }
 }
 
-fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
-    let keys = Keys::deserialize(section)?;
+fn read(section: &Value<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
+    let keys = Keys::read(section)?;
     let (mut elements, mut strengths, mut end) = (Vec::new(), Vec::new(), 0.0);
     for (i, keys) in keys.elements.iter().enumerate() {
         let refused = |message| Refusal::at("elements".index(i), message);

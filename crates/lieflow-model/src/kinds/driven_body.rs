@@ -168,8 +168,8 @@ struct Driven {
 
 type Q = Quantity<Driven>;
 
-fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
-    let mut keys = Keys::deserialize(section)?;
+fn read(section: &Value<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
+    let mut keys = Keys::read(section)?;
     let spec = keys.body_keys().start(Matrix3::identity())?;
     let names = keys.formula_keys().names("torque", VARIABLES, keys.sample_keys())?;
     let formulas = |key: &str, texts: Option<Texts>| match texts {

@@ -46,8 +46,8 @@ struct TopSpec {
 /// The distance that `vertical` and `attitude` may have from each other.
 const AGREED: f64 = 1e-6;
 
-fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
-    let mut keys = Keys::deserialize(section)?;
+fn read(section: &Value<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
+    let mut keys = Keys::read(section)?;
     let (body, mut notes) = (keys.body_keys(), Vec::new());
     let stated = match keys.vertical {
         None => None,

@@ -55,14 +55,14 @@ struct Hill {
 
 type Q = Quantity<Hill>;
 
-fn read_mathieu(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
-    let MathieuKeys { a, q } = MathieuKeys::deserialize(section)?;
+fn read_mathieu(section: &Value<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
+    let MathieuKeys { a, q } = MathieuKeys::read(section)?;
     let one = |x: Real| Mat::full(1, 1, x.0);
     Ok(Box::new(Stated(Hill { kind: &MATHIEU, a: one(a), q: one(q), period: PI })))
 }
 
-fn read_hill(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
-    let keys = HillKeys::deserialize(section)?;
+fn read_hill(section: &Value<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
+    let keys = HillKeys::read(section)?;
     let a = keys.a.matrix("a", None)?;
     let q = square("q", &keys.q, a.nrows())?;
     check_symmetric("a", &a, 0.0)?;

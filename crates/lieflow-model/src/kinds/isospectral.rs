@@ -67,8 +67,8 @@ fn symmetric(table: &Table) -> Result<Mat<f64>, Refusal> {
     Ok(l)
 }
 
-fn read_toda(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
-    let keys = TodaKeys::deserialize(section)?;
+fn read_toda(section: &Value<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
+    let keys = TodaKeys::read(section)?;
     let matrix = match exactly_one(("positions", keys.positions), ("matrix", keys.matrix))? {
         Either::First(positions) => {
             let (q, p) = (positions.values(), keys.momenta.map_or(Vec::new(), |p| p.values()));
@@ -93,8 +93,8 @@ fn read_toda(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, Rea
     Ok(Box::new(Stated(Isospectral { kind: &TODA, flow, matrix })))
 }
 
-fn read_double_bracket(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
-    let keys = DoubleBracketKeys::deserialize(section)?;
+fn read_double_bracket(section: &Value<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
+    let keys = DoubleBracketKeys::read(section)?;
     let (matrix, order) = (symmetric(&keys.matrix)?, keys.order.values());
     if order.len() != matrix.nrows() {
         let message = format!("found {} numbers, expected {}", order.len(), matrix.nrows());
@@ -104,8 +104,8 @@ fn read_double_bracket(section: ValueDeserializer<'_>) -> Result<Box<dyn Problem
     Ok(Box::new(Stated(Isospectral { kind: &DOUBLE_BRACKET, flow, matrix })))
 }
 
-fn read_qr(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
-    let matrix = symmetric(&QrKeys::deserialize(section)?.matrix)?;
+fn read_qr(section: &Value<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
+    let matrix = symmetric(&QrKeys::read(section)?.matrix)?;
     let smallest = eigenvalues(&matrix).first().copied().unwrap_or(f64::NAN);
     if smallest.is_nan() || smallest <= 0.0 {
         let message = format!("an eigenvalue is {smallest:.3e}, expected all to be > 0");

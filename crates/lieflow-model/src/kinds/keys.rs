@@ -1,4 +1,4 @@
-//! The keys of kinds: what `serde` reads and what listings say, stated once; and those that several kinds share.
+//! The keys of kinds: what is read and what listings say, stated once; and those that several kinds share.
 //!
 //! `keys! { Keys { … } }` states the keys of a kind. `keys! { Keys [formula_keys] { … } }` has those of a group too,
 //! and a method that takes them out, `formula_keys()`.
@@ -12,14 +12,6 @@ pub(super) trait KeyTable {
     const INFO: &'static [KeyInfo];
 }
 
-/// The name of a key by that of its field, `let` by `r#let`.
-pub(super) const fn key_name(field: &'static str) -> &'static str {
-    match field.as_bytes() {
-        [b'r', b'#', ..] => field.split_at(2).1,
-        _ => field,
-    }
-}
-
 /// The keys of a kind, and groups of keys before and after them.
 macro_rules! keys {
     ($name:ident [$group:ident $($more:ident)*] { $($own:tt)* }) => {
@@ -28,16 +20,12 @@ macro_rules! keys {
     ($name:ident [] { $($own:tt)* }) => {
         keys! { $name { $($own)* } }
     };
-    ($name:ident { $($(#[$attribute:meta])* $key:ident: $type:ty = $meaning:expr,)* }) => {
-        #[derive(serde::Deserialize)]
-        #[serde(deny_unknown_fields)]
-        struct $name {
-            $($(#[$attribute])* $key: $type,)*
-        }
+    ($name:ident { $($key:ident: $type:ty = $meaning:expr,)* }) => {
+        $crate::scene::read::read_by_keys! { struct $name { $($key: $type,)* } }
 
         impl $crate::kinds::KeyTable for $name {
             const INFO: &'static [$crate::kinds::KeyInfo] = &[$($crate::kinds::KeyInfo {
-                name: $crate::kinds::keys::key_name(stringify!($key)),
+                name: $crate::scene::read::key_name(stringify!($key)),
                 meaning: $meaning,
             },)*];
         }
@@ -49,8 +37,8 @@ pub(super) use keys;
 macro_rules! group {
     (
         $(#[$doc:meta])* $table:ident = $method:ident $dollar:tt,
-        before { $($(#[$b:meta])* $before:ident: $before_type:ty = $before_meaning:expr,)* }
-        after { $($(#[$a:meta])* $after:ident: $after_type:ty = $after_meaning:expr,)* }
+        before { $($before:ident: $before_type:ty = $before_meaning:expr,)* }
+        after { $($after:ident: $after_type:ty = $after_meaning:expr,)* }
     ) => {
         $(#[$doc])*
         #[derive(Clone, Debug, Default)]
@@ -62,9 +50,9 @@ macro_rules! group {
         macro_rules! $method {
             ($dollar name:ident [$dollar ($dollar more:ident)*] { $dollar ($dollar own:tt)* }) => {
                 keys! { $dollar name [$dollar ($dollar more)*] {
-                    $($(#[$b])* $before: $before_type = $before_meaning,)*
+                    $($before: $before_type = $before_meaning,)*
                     $dollar ($dollar own)*
-                    $($(#[$a])* $after: $after_type = $after_meaning,)*
+                    $($after: $after_type = $after_meaning,)*
                 } }
 
                 impl $dollar name {
@@ -112,9 +100,7 @@ group! {
     FormulaKeys = formula_keys $,
     before {}
     after {
-        #[serde(default)]
         parameters: crate::scene::formula::Parameters = crate::kinds::keys::PARAMETERS.meaning,
-        #[serde(default)]
         r#let: crate::scene::formula::Lets =
             "formulas with names, for other formulas: a table [problem.let] of names and formulas; a list of formulas, \
              or a formula such as \"cross(w, b)\", is a vector; optional",

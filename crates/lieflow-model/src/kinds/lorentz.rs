@@ -36,8 +36,8 @@ struct Particle {
 
 type Q = Quantity<Particle>;
 
-fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
-    let keys = Keys::deserialize(section)?;
+fn read(section: &Value<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
+    let keys = Keys::read(section)?;
     let (e, b) = (Vector3::from(keys.electric.0), Vector3::from(keys.magnetic.0));
     let particle = ChargedParticle::new(keys.charge_to_mass.0, move |_: f64, _: &Mat<f64>| (e, b))?;
     let start = particle

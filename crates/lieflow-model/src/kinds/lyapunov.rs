@@ -43,8 +43,8 @@ const MAX: usize = 128;
 /// derivatives take.
 const DERIVED_MAX: usize = 1 << 18;
 
-fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
-    let mut keys = Keys::deserialize(section)?;
+fn read(section: &Value<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
+    let mut keys = Keys::read(section)?;
     let (formulas, samples) = (keys.formula_keys(), keys.sample_keys());
     let x = keys.x.values();
     let n = x.len();

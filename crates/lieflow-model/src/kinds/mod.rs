@@ -48,15 +48,14 @@ use lieflow::Error;
 use lieflow::catalog::MethodSpec;
 use lieflow::names::same;
 use lieflow::samples::Samples;
-use serde::{Deserialize, Serialize};
-use toml::de::ValueDeserializer;
+use serde::Serialize;
 
 use self::keys::{KeyTable, body_keys, formula_keys, keys, sample_keys};
 use self::preset::preset;
 use self::system::System;
 use crate::model::{Layer, Model};
 use crate::scene::formula::Formula;
-use crate::scene::{ReadError, Refusal};
+use crate::scene::{ReadError, Refusal, Value};
 
 /// Every kind.
 pub static KINDS: LazyLock<Vec<Kind>> = LazyLock::new(|| {
@@ -90,7 +89,7 @@ pub static KINDS: LazyLock<Vec<Kind>> = LazyLock::new(|| {
 });
 
 /// What reads the keys of `[problem]`.
-pub type ReadProblem = fn(ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError>;
+pub type ReadProblem = fn(&Value<'_>) -> Result<Box<dyn ProblemSpec>, ReadError>;
 
 /// A kind of problem.
 #[derive(Clone, Copy, Debug)]
@@ -178,8 +177,7 @@ impl Kind {
 }
 
 /// What a field lies on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ground {
     /// A sphere: rows from north to south, columns from west to east.
     Sphere,
@@ -188,8 +186,7 @@ pub enum Ground {
 }
 
 /// The figure of a run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Figure {
     /// The columns of a quantity against time.
     Lines(&'static str),

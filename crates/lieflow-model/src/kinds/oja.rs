@@ -35,8 +35,8 @@ type Q = Quantity<OjaFlow>;
 /// Columns that depend on each other up to this part of their length span no k-dimensional space.
 const DEPENDENT: f64 = 1e-8;
 
-fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
-    let keys = Keys::deserialize(section)?;
+fn read(section: &Value<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
+    let keys = Keys::read(section)?;
     let (a, x) = (keys.a.matrix("a", None)?, keys.x.columns("x")?);
     check_rows("x", &x, a.nrows())?;
     check_symmetric("a", &a, ROUNDING)?;

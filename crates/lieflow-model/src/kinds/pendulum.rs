@@ -33,8 +33,8 @@ struct Pendulum {
 
 type Q = Quantity<Pendulum>;
 
-fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
-    let keys = Keys::deserialize(section)?;
+fn read(section: &Value<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
+    let keys = Keys::read(section)?;
     let rate2 = keys.gravity_over_length.0;
     let pendulum = SphericalPendulum::new(rate2)?;
     let start = pendulum

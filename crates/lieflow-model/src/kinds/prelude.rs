@@ -2,8 +2,6 @@
 
 pub(super) use faer::Mat;
 pub(super) use lieflow::Error;
-pub(super) use serde::Deserialize;
-pub(super) use toml::de::ValueDeserializer;
 
 pub(super) use super::quantity::Quantity;
 pub(super) use super::system::{Number, Start, Stated, System, lacks_any};
@@ -12,7 +10,6 @@ pub(super) use super::{
     formula_keys, keys, sample_keys,
 };
 pub(super) use crate::model::Layer;
+pub(super) use crate::scene::read::{Read, ReadError, Value, read_by_keys};
 pub(super) use crate::scene::values::{List, Real, Reals, Table, Whole};
-pub(super) use crate::scene::{
-    Either, KeyPath, ReadError, Refusal, at_most_one, exactly_one, help_for,
-};
+pub(super) use crate::scene::{Either, KeyPath, Refusal, at_most_one, exactly_one, help_for};

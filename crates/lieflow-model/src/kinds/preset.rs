@@ -3,7 +3,8 @@
 //! | in the file | |
 //! |---|---|
 //! | `name`, `equation`, `summary` | what listings say |
-//! | `modelled`, `state`, `figure` | what is integrated, in words; the quantities that make up the state; the figure |
+//! | `modelled`, `state` | what is integrated, in words; the quantities that make up the state |
+//! | `figure`, `drawn` | `"lines"`, `"sphere"`, `"curve"` or `"points"`; the quantity that is drawn |
 //! | `[[keys]]` | the keys: `name`, `meaning`, how many `numbers` where it is a list, `condition` |
 //! | `[problem]` | the problem of the base; its formulas may name the keys |
 //! | `[values]` | further keys of that problem: texts are formulas in the keys, and the base gets their values |
@@ -12,21 +13,22 @@
 //!
 //! A key `x` that is a list of numbers is `x1`, `x2`, ... in formulas.
 
-use core::fmt;
-
 use lieflow::problems::Origin;
-use serde::de::{DeserializeSeed, Deserializer, Error as _, MapAccess, Visitor};
-use toml::{Table, Value};
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
 
 use super::keys::PARAMETERS;
-use super::prelude::{Deserialize, Error, KeyPath, Law, Scale, ValueDeserializer};
+use super::prelude::{
+    Error, KeyPath, Law, Read, ReadError, Real, Scale, Value, Whole, read_by_keys,
+};
 use super::system::no_such_layer;
 use super::{Figure, KeyInfo, Kind, ProblemSpec, QuantityInfo, ReadProblem};
 use crate::mapped::Mapped;
 use crate::model::{Layer, Model};
-use crate::scene::formula::{Formula, Names, Parameters, Texts};
-use crate::scene::values::{NumberList, Real};
-use crate::scene::{ReadError, Refusal};
+use crate::scene::Refusal;
+use crate::scene::formula::{Formula, Names, Parameters, Text, Texts};
+use crate::scene::read::KeyReader;
+use crate::scene::values::numbers;
 use crate::schema::{Row, Schema};
 
 /// The entry of a preset in the list of kinds, by the name of its file.
@@ -45,47 +47,121 @@ macro_rules! preset {
 }
 pub(super) use preset;
 
-/// A preset as its file states it.
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
+/// A preset.
+#[derive(Debug)]
 pub(super) struct Preset {
-    name: &'static str,
-    equation: &'static str,
-    summary: &'static str,
-    modelled: &'static str,
-    #[serde(borrow)]
-    state: Vec<&'static str>,
-    figure: Figure,
-    #[serde(borrow)]
-    observed: Vec<&'static str>,
-    keys: Vec<Key>,
-    problem: Table,
-    values: Table,
-    quantities: Vec<QuantityText>,
+    stated: Stated,
+    /// The sections `problem` and `values`.
+    problem: DeTable<'static>,
+    values: DeTable<'static>,
     /// The keys as listings show them.
-    #[serde(skip)]
     key_infos: Vec<KeyInfo>,
-    #[serde(skip)]
     key_names: Vec<&'static str>,
 }
 
-/// A key of a preset.
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Key {
-    name: &'static str,
-    meaning: &'static str,
-    /// The length of the list; none for one number.
-    numbers: Option<usize>,
-    condition: Option<Condition>,
+read_by_keys! {
+    /// What the file of a preset states.
+    #[derive(Debug)]
+    struct Stated {
+        name: &'static str,
+        equation: &'static str,
+        summary: &'static str,
+        modelled: &'static str,
+        state: Vec<&'static str>,
+        figure: Drawing,
+        drawn: &'static str,
+        observed: Vec<&'static str>,
+        keys: Vec<Key>,
+        quantities: Vec<QuantityText>,
+    }
+}
+
+read_by_keys! {
+    /// A key of a preset.
+    #[derive(Debug)]
+    struct Key {
+        name: &'static str,
+        meaning: &'static str,
+        /// The length of the list; none for one number.
+        numbers: Option<Whole<1>>,
+        condition: Option<Condition>,
+    }
+}
+
+read_by_keys! {
+    /// A quantity of a preset.
+    #[derive(Debug)]
+    struct QuantityText {
+        name: &'static str,
+        columns: Option<Vec<&'static str>>,
+        meaning: &'static str,
+        /// One for each column.
+        formulas: Texts,
+        kept: Option<LawText>,
+    }
+}
+
+read_by_keys! {
+    /// The law of a quantity.
+    #[derive(Debug)]
+    struct LawText {
+        by: Keeper,
+        degree: Whole<0>,
+        terms: Option<String>,
+    }
+}
+
+/// A text of a preset. It is kept until the program ends, like the preset.
+impl Read for &'static str {
+    fn read(value: &Value<'_>) -> Result<Self, ReadError> {
+        String::read(value).map(|text| &*text.leak())
+    }
+}
+
+/// What keeps a quantity.
+#[derive(Clone, Copy, Debug)]
+struct Keeper(Origin);
+
+impl Read for Keeper {
+    fn read(value: &Value<'_>) -> Result<Self, ReadError> {
+        word(value, [("flow", Keeper(Origin::Flow)), ("action", Keeper(Origin::Action))])
+    }
+}
+
+/// The figure of a quantity.
+#[derive(Clone, Copy, Debug)]
+struct Drawing(fn(&'static str) -> Figure);
+
+impl Read for Drawing {
+    fn read(value: &Value<'_>) -> Result<Self, ReadError> {
+        let figures = [
+            ("lines", Drawing(Figure::Lines)),
+            ("sphere", Drawing(Figure::Sphere)),
+            ("curve", Drawing(Figure::Curve)),
+            ("points", Drawing(Figure::Points)),
+        ];
+        word(value, figures)
+    }
 }
 
 /// What the numbers of a key fulfil, besides being finite.
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug)]
 enum Condition {
     /// x and 1/x are finite, and x > 0.
     Positive,
+}
+
+impl Read for Condition {
+    fn read(value: &Value<'_>) -> Result<Self, ReadError> {
+        word(value, [("positive", Condition::Positive)])
+    }
+}
+
+/// Reads one of these words.
+fn word<T: Copy, const N: usize>(value: &Value<'_>, words: [(&str, T); N]) -> Result<T, ReadError> {
+    let found = words.iter().find(|(word, _)| value.get_ref().as_str() == Some(word));
+    let expected = || words.map(|(word, _)| word).join(", ");
+    found.map(|(_, meant)| *meant).ok_or_else(|| ReadError::expected(value, expected()))
 }
 
 impl Condition {
@@ -102,45 +178,21 @@ impl Condition {
     }
 }
 
-/// A quantity of a preset.
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct QuantityText {
-    name: &'static str,
-    #[serde(borrow, default)]
-    columns: Vec<&'static str>,
-    meaning: &'static str,
-    /// One for each column.
-    formulas: Texts,
-    kept: Option<LawText>,
-}
-
-/// The law of a quantity.
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct LawText {
-    by: Keeper,
-    degree: u32,
-    terms: Option<String>,
-}
-
-/// What keeps a quantity.
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-enum Keeper {
-    Flow,
-    Action,
-}
-
 impl Preset {
     /// The preset of an embedded file. A file with a mistake is a defect of the program, which every run shows.
     pub(super) fn parse(text: &'static str) -> Preset {
-        let read = toml::de::Deserializer::parse(text).and_then(Preset::deserialize);
-        let mut preset = read.unwrap_or_else(|error| panic!("a preset: {error}"));
+        let mut root = DeTable::parse(text).unwrap_or_else(|error| panic!("a preset: {error}"));
+        let mut section = |name| match root.get_mut().remove(name).map(Spanned::into_inner) {
+            Some(DeValue::Table(section)) => section,
+            _ => panic!("a preset without the section [{name}]"),
+        };
+        let (problem, values) = (section("problem"), section("values"));
+        let root = Spanned::new(root.span(), DeValue::Table(root.into_inner()));
+        let stated = Stated::read(&root).unwrap_or_else(|error| panic!("a preset: {error:?}"));
         let info = |key: &Key| KeyInfo { name: key.name, meaning: key.meaning };
-        preset.key_infos = preset.keys.iter().map(info).collect();
-        preset.key_names = preset.keys.iter().map(|key| key.name).collect();
-        preset
+        let key_infos = stated.keys.iter().map(info).collect();
+        let key_names = stated.keys.iter().map(|key| key.name).collect();
+        Preset { stated, problem, values, key_infos, key_names }
     }
 
     pub(super) fn kind(
@@ -148,26 +200,37 @@ impl Preset {
         quantities: fn() -> Vec<QuantityInfo>,
         read: ReadProblem,
     ) -> Kind {
-        let Preset { name, equation, summary, .. } = self;
+        let Stated { name, equation, summary, .. } = self.stated;
         Kind { name, equation, summary, keys: &self.key_infos, quantities, read }
     }
 
     pub(super) fn quantities(&'static self) -> Vec<QuantityInfo> {
-        let info = |QuantityText { name, columns, meaning, .. }: &'static QuantityText| {
-            QuantityInfo { name, columns, meaning, unit: "" }
+        let info = |quantity: &'static QuantityText| {
+            let QuantityText { name, meaning, .. } = quantity;
+            QuantityInfo { name, columns: quantity.columns(), meaning, unit: "" }
         };
-        self.quantities.iter().map(info).collect()
+        self.stated.quantities.iter().map(info).collect()
     }
 
     pub(super) fn read(
         &'static self,
         kind: &'static Kind,
-        section: ValueDeserializer<'_>,
+        section: &Value<'_>,
     ) -> Result<Box<dyn ProblemSpec>, ReadError> {
-        let lists = section.deserialize_struct("Keys", &self.key_names, ReadKeys(self))?;
+        let keys = &self.stated.keys;
+        let mut section = KeyReader::of(section, &self.key_names)?;
+        let lists = keys.iter().map(|Key { name, numbers: count, .. }| {
+            section.read_with(name, |value| match count {
+                None => Ok(vec![Real::read(value)?.0]),
+                Some(count) => numbers(value, count.0 as usize),
+            })
+        });
+        let lists: Vec<_> = lists.collect();
+        section.check()?;
         let mut parameters = Vec::new();
-        for (Key { name, numbers, condition, .. }, list) in self.keys.iter().zip(&lists) {
-            for (i, &x) in list.iter().enumerate() {
+        for (Key { name, numbers, condition, .. }, list) in keys.iter().zip(lists) {
+            let list = list.ok_or_else(|| section.missing(name))?;
+            for (i, x) in list.into_iter().enumerate() {
                 let (parameter, place) = match numbers {
                     None => ((*name).into(), (*name).into()),
                     Some(_) => (format!("{name}{}", i + 1), name.index(i)),
@@ -181,116 +244,75 @@ impl Preset {
         let parameters: Parameters = parameters.into_iter().collect();
         let base = self.base(&parameters)?;
         let mut variables = Vec::new();
-        for quantity in &self.observed {
+        for quantity in &self.stated.observed {
             variables.extend(base.columns(quantity)?);
         }
         let names = parameters.names("observed", variables)?;
         let formulas = |quantity: &QuantityText| quantity.read(&names);
-        let formulas = self.quantities.iter().map(formulas).collect::<Result<_, _>>()?;
-        Ok(Box::new(Problem { kind, preset: self, base, formulas }))
+        let formulas = self.stated.quantities.iter().map(formulas).collect::<Result<_, _>>()?;
+        Ok(Box::new(Problem { kind, preset: &self.stated, base, formulas }))
     }
 
     /// The problem of the base.
     fn base(&self, parameters: &Parameters) -> Result<Box<dyn ProblemSpec>, ReadError> {
         let mut problem = self.problem.clone();
         let name = problem.remove("kind");
-        let kind = Kind::named(name.as_ref().and_then(Value::as_str).unwrap_or_default())?;
+        let name = name.as_ref().and_then(|name| name.get_ref().as_str());
+        let kind = Kind::named(name.unwrap_or_default())?;
         let names = parameters.names("values", [""; 0])?;
+        let mut text = String::new();
         for (key, value) in &self.values {
-            problem.insert(key.clone(), evaluate(key, value, &names)?);
+            let key = key.get_ref();
+            text += &format!("{key} = {}\n", evaluate(key, value, &names)?);
         }
         if kind.keys.contains(&PARAMETERS) {
-            let table = parameters.iter().map(|(name, x)| (name.into(), Value::Float(x)));
-            problem.insert(PARAMETERS.name.into(), Value::Table(table.collect()));
+            text += &format!("[{}]\n", PARAMETERS.name);
+            text.extend(parameters.iter().map(|(name, x)| format!("{name} = {}\n", as_toml(x))));
         }
-        let text = Value::Table(problem).to_string();
         // What the base refuses stands in no line of the scene but its section.
-        let refusal = |message: &str| Refusal::section(message).into();
-        let section = ValueDeserializer::parse(&text).map_err(|error| refusal(error.message()))?;
-        (kind.read)(section).map_err(|error| match error {
-            ReadError::Toml(error) => refusal(error.message()),
+        let values = DeTable::parse(&text).map_err(|error| Refusal::section(error.message()))?;
+        problem.extend(values.into_inner());
+        (kind.read)(&Spanned::new(0..0, DeValue::Table(problem))).map_err(|error| match error {
+            ReadError::Wrong(..) => Refusal::section(error.in_words("problem").0).into(),
             refused => refused,
         })
     }
 }
 
-/// Texts as the values of their formulas.
-fn evaluate(key: &str, value: &Value, names: &Names) -> Result<Value, Refusal> {
-    match value {
-        Value::String(text) => Ok(Value::Float(Formula::read(key, text, names)?.value::<f64>(&[]))),
-        Value::Array(list) => {
-            let list = list.iter().map(|value| evaluate(key, value, names));
-            Ok(Value::Array(list.collect::<Result<_, _>>()?))
-        }
-        other => Ok(other.clone()),
+/// The values of formulas, as text of TOML.
+fn evaluate(key: &str, value: &Value<'_>, names: &Names) -> Result<String, ReadError> {
+    if let DeValue::Array(list) = value.get_ref() {
+        let list = list.iter().map(|value| evaluate(key, value, names));
+        return Ok(format!("[{}]", list.collect::<Result<Vec<_>, _>>()?.join(", ")));
     }
+    let Text(text) = Text::read(value)?;
+    Ok(as_toml(Formula::read(key, &text, names)?.value(&[])))
+}
+
+/// A number as TOML writes it.
+fn as_toml(x: f64) -> String {
+    format!("{x:?}").to_lowercase()
 }
 
 impl QuantityText {
+    fn columns(&self) -> &[&'static str] {
+        self.columns.as_deref().unwrap_or_default()
+    }
+
     fn read(&self, names: &Names) -> Result<QuantityFormulas, Refusal> {
         let terms = self.kept.as_ref().and_then(|law| law.terms.as_ref());
         let terms = terms.map(|text| Formula::read(self.name, text, names)).transpose()?;
-        let values = self.formulas.read(self.name, self.columns.len().max(1), names)?;
+        let values = self.formulas.read(self.name, self.columns().len().max(1), names)?;
         Ok(QuantityFormulas { values, terms })
     }
 
     fn law(&self) -> Option<Law> {
         let LawText { by, degree, terms } = self.kept.as_ref()?;
         Some(Law {
-            origin: match by {
-                Keeper::Flow => Origin::Flow,
-                Keeper::Action => Origin::Action,
-            },
-            degree: *degree,
+            origin: by.0,
+            degree: degree.0 as u32,
             scale: if terms.is_some() { Scale::Terms } else { Scale::Value },
         })
-    }
-}
-
-/// Reads the numbers of each key, in the order of the preset.
-struct ReadKeys(&'static Preset);
-
-impl<'de> Visitor<'de> for ReadKeys {
-    type Value = Vec<Vec<f64>>;
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("a table of keys")
-    }
-    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
-        let keys = &self.0.keys;
-        let mut lists = vec![None; keys.len()];
-        while let Some(i) = map.next_key_seed(KeyPlace(&self.0.key_names))? {
-            lists[i] = Some(match keys[i].numbers {
-                None => vec![map.next_value::<Real>()?.0],
-                Some(count) => map.next_value_seed(NumberList(count))?,
-            });
-        }
-        let list =
-            |(key, list): (&Key, Option<_>)| list.ok_or_else(|| A::Error::missing_field(key.name));
-        keys.iter().zip(lists).map(list).collect()
-    }
-}
-
-/// The place of a key in the list.
-struct KeyPlace(&'static [&'static str]);
-
-impl<'de> DeserializeSeed<'de> for KeyPlace {
-    type Value = usize;
-
-    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<usize, D::Error> {
-        deserializer.deserialize_identifier(self)
-    }
-}
-
-impl Visitor<'_> for KeyPlace {
-    type Value = usize;
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("a key")
-    }
-    fn visit_str<E: serde::de::Error>(self, name: &str) -> Result<usize, E> {
-        let place = self.0.iter().position(|key| *key == name);
-        place.ok_or_else(|| E::unknown_field(name, self.0))
     }
 }
 
@@ -305,7 +327,7 @@ struct QuantityFormulas {
 #[derive(Debug)]
 struct Problem {
     kind: &'static Kind,
-    preset: &'static Preset,
+    preset: &'static Stated,
     base: Box<dyn ProblemSpec>,
     /// Those of each quantity.
     formulas: Vec<QuantityFormulas>,
@@ -352,6 +374,6 @@ impl ProblemSpec for Problem {
         kept.map(|quantity| quantity.name).collect()
     }
     fn figure(&self, _: &[&str]) -> Figure {
-        self.preset.figure
+        (self.preset.figure.0)(self.preset.drawn)
     }
 }

@@ -37,8 +37,8 @@ struct Riccati {
 
 type Q = Quantity<Riccati>;
 
-fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
-    let keys = Keys::deserialize(section)?;
+fn read(section: &Value<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
+    let keys = Keys::read(section)?;
     let p = keys.p.matrix("p", None)?;
     let m = p.nrows();
     let (c, b) = (square("c", &keys.c, m)?, square("b", &keys.b, m)?);

@@ -23,11 +23,11 @@ keys! { Keys {
     bodies: Vec<BodyKeys> = "a list of {inertia = [J1, J2, J3], momentum_body = [m1, m2, m3]}",
 } }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct BodyKeys {
-    inertia: Reals<3>,
-    momentum_body: Reals<3>,
+read_by_keys! {
+    struct BodyKeys {
+        inertia: Reals<3>,
+        momentum_body: Reals<3>,
+    }
 }
 
 type Momenta<N = f64> = Box<[Vector3<N>]>;
@@ -42,8 +42,8 @@ struct Bodies {
 
 type Q = Quantity<Bodies>;
 
-fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
-    let keys = Keys::deserialize(section)?.bodies;
+fn read(section: &Value<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
+    let keys = Keys::read(section)?.bodies;
     if keys.is_empty() {
         return Err(Refusal::at("bodies", "no bodies, expected at least one").into());
     }

@@ -37,8 +37,8 @@ type Q = Quantity<Body>;
 /// operations a row.
 const WATCHED: usize = 8;
 
-fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
-    let keys = Keys::deserialize(section)?;
+fn read(section: &Value<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
+    let keys = Keys::read(section)?;
     let momentum = keys.momentum.values();
     let Some(start) = antisymmetric(&momentum) else {
         let message = format!("found {} numbers, expected n(n-1)/2", momentum.len());

@@ -43,8 +43,8 @@ struct Levels {
 
 type Q = Quantity<Levels>;
 
-fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
-    let keys = Keys::deserialize(section)?;
+fn read(section: &Value<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
+    let keys = Keys::read(section)?;
     let energies = keys.energies.values();
     let n = energies.len();
     let real = square("coupling", &keys.coupling, n)?;

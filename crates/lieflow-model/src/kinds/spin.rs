@@ -35,8 +35,8 @@ struct Spin {
 
 type Q = Quantity<Spin>;
 
-fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
-    let Keys { field, rate, moment } = Keys::deserialize(section)?;
+fn read(section: &Value<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
+    let Keys { field, rate, moment } = Keys::read(section)?;
     Ok(Box::new(Stated(Spin { field: field.0.into(), rate: rate.0, moment: moment.0.into() })))
 }
 

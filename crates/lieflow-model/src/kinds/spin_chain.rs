@@ -25,12 +25,12 @@ keys! { Keys {
     damping: Option<Real> = "Gilbert's damping, at least 0; optional, 0",
 } }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Wave {
-    count: Whole<2>,
-    turns: Real,
-    cone: Real,
+read_by_keys! {
+    struct Wave {
+        count: Whole<2>,
+        turns: Real,
+        cone: Real,
+    }
 }
 
 /// More spins are not meant.
@@ -47,8 +47,8 @@ struct Chain {
 
 type Q = Quantity<Chain>;
 
-fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
-    let keys = Keys::deserialize(section)?;
+fn read(section: &Value<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
+    let keys = Keys::read(section)?;
     let (key, spins) = match exactly_one(("spins", keys.spins), ("wave", keys.wave))? {
         Either::First(spins) => {
             ("spins", spins.into_iter().map(|s| Vector3::from(s.0)).collect::<Vec<_>>())

@@ -47,8 +47,8 @@ struct Subspace {
 /// Below this cos² of an angle to the leading subspace nothing is left of Z.
 const RIGHT: f64 = 1e-10;
 
-fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
-    let keys = Keys::deserialize(section)?;
+fn read(section: &Value<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
+    let keys = Keys::read(section)?;
     let (a, x) = (keys.a.matrix("a", None)?, keys.x.columns("x")?);
     check_rows("x", &x, a.nrows())?;
     check_symmetric("a", &a, ROUNDING)?;

@@ -3,13 +3,13 @@
 use core::iter;
 use core::ops::Range;
 
-use serde::Deserialize;
 use toml::Spanned;
-use toml::de::{DeArray, DeTable, DeValue, ValueDeserializer};
+use toml::de::{DeTable, DeValue};
 
-use super::error::{Mistakes, ReadError, Refusal, SceneError};
+use super::error::{Mistakes, Refusal, SceneError};
 use super::formula::DECIMAL_POINT;
-use super::mend::{Found, Mending, Wrong, rename};
+use super::mend::{Found, Mending, rename};
+use super::read::{Read, ReadError, Value, in_words};
 use super::suggest::help_for;
 
 /// The keys at the top.
@@ -52,6 +52,11 @@ impl<'a> Document<'a> {
         }
     }
 
+    /// What the scene says, without comments, spaces and the order of keys.
+    pub(super) fn says(&self) -> String {
+        without_places(&self.root)
+    }
+
     /// Refuse keys at the top that no scene has. What is close to a key of a scene is read as that key.
     pub(super) fn check_top(&mut self) -> Result<(), SceneError> {
         let mut mistakes = Mistakes::default();
@@ -66,31 +71,23 @@ impl<'a> Document<'a> {
     }
 
     /// The value of a key at the top that may be missing, as T.
-    pub(super) fn optional<T: for<'de> Deserialize<'de>>(
-        &self,
-        key: &str,
-    ) -> Result<Option<T>, SceneError> {
+    pub(super) fn optional<T: Read>(&self, key: &str) -> Result<Option<T>, SceneError> {
         let Some(value) = self.root.get(key) else { return Ok(None) };
-        self.read(key, value.clone(), |value| Ok(Some(T::deserialize(value)?)))
+        self.read(key, value.clone(), Read::read)
     }
 
     /// The value of a key of a section, where it is there and reads as T.
-    pub(super) fn within<T: for<'de> Deserialize<'de>>(
-        &self,
-        section: &str,
-        key: &str,
-    ) -> Option<T> {
-        let DeValue::Table(table) = self.root.get(section)?.get_ref() else { return None };
-        T::deserialize(ValueDeserializer::from(table.get(key)?.clone())).ok()
+    pub(super) fn within<T: Read>(&self, section: &str, key: &str) -> Option<T> {
+        T::read(self.root.get(section)?.get_ref().get(key)?).ok()
     }
 
     /// The entries of a list at the top; none where it is missing.
-    pub(super) fn entries(&self, key: &str) -> Result<Vec<Spanned<DeValue<'a>>>, SceneError> {
+    pub(super) fn entries(&self, key: &str) -> Result<Vec<Value<'a>>, SceneError> {
         match self.root.get(key).map(|value| (value.get_ref(), value.span())) {
             None => Ok(Vec::new()),
             Some((DeValue::Array(list), _)) => Ok(list.iter().cloned().collect()),
             Some((other, place)) => {
-                let found = other.type_str();
+                let found = in_words(other);
                 let message = format!("{key}: found {found}, expected a list: [[{key}]]");
                 Err(self.error(message, Some(place)))
             }
@@ -109,7 +106,7 @@ impl<'a> Document<'a> {
             Some(value) => match value.get_ref() {
                 DeValue::Table(table) => Ok(Spanned::new(value.span(), table.clone())),
                 other => {
-                    let found = other.type_str();
+                    let found = in_words(other);
                     let message = format!("{name}: found {found}, expected a section [{name}]");
                     Err(self.error(message, Some(value.span())))
                 }
@@ -118,8 +115,8 @@ impl<'a> Document<'a> {
     }
 
     /// The keys of a section, as T.
-    pub(super) fn keys<T: for<'de> Deserialize<'de>>(&self, name: &str) -> Result<T, SceneError> {
-        self.read(name, table(self.section(name)?), |value| Ok(T::deserialize(value)?))
+    pub(super) fn keys<T: Read>(&self, name: &str) -> Result<T, SceneError> {
+        self.read(name, table(self.section(name)?), T::read)
     }
 
     /// Read a value at the top, and find all its mistakes. A mistake is mended in a copy, and the copy is read for
@@ -127,11 +124,11 @@ impl<'a> Document<'a> {
     pub(super) fn read<T>(
         &self,
         name: &str,
-        value: Spanned<DeValue<'a>>,
-        read: impl Fn(ValueDeserializer<'_>) -> Result<T, ReadError>,
+        value: Value<'a>,
+        read: impl Fn(&Value<'_>) -> Result<T, ReadError>,
     ) -> Result<T, SceneError> {
-        let attempt = |value: &Spanned<DeValue<'a>>| {
-            read(value.clone().into()).map_err(|error| (self.place(name, value, &error), error))
+        let attempt = |value: &Value<'a>| {
+            read(value).map_err(|error| (self.place(name, value, &error), error))
         };
         let mut mistakes = Mistakes::default();
         let mut result = attempt(&value);
@@ -155,23 +152,20 @@ impl<'a> Document<'a> {
     }
 
     /// The keys of a section, as T, with what is made of them.
-    pub(super) fn checked_keys<T: for<'de> Deserialize<'de>, U>(
+    pub(super) fn checked_keys<T: Read, U>(
         &self,
         name: &str,
         check: impl Fn(&T) -> Result<U, Refusal>,
     ) -> Result<(T, U), SceneError> {
         self.read(name, table(self.section(name)?), |value| {
-            let keys = T::deserialize(value)?;
+            let keys = T::read(value)?;
             let made = check(&keys)?;
             Ok((keys, made))
         })
     }
 
     /// The keys of a section, as T; the default where there is no such section.
-    pub(super) fn keys_if_any<T>(&self, name: &str) -> Result<T, SceneError>
-    where
-        T: Default + for<'de> Deserialize<'de>,
-    {
+    pub(super) fn keys_if_any<T: Default + Read>(&self, name: &str) -> Result<T, SceneError> {
         if self.root.contains_key(name) { self.keys(name) } else { Ok(T::default()) }
     }
 
@@ -202,24 +196,16 @@ impl<'a> Document<'a> {
     }
 
     /// The place that an error in a value at the top is about.
-    fn place(
-        &self,
-        section: &str,
-        value: &Spanned<DeValue<'a>>,
-        error: &ReadError,
-    ) -> Option<Range<usize>> {
+    fn place(&self, section: &str, value: &Value<'a>, error: &ReadError) -> Option<Range<usize>> {
         match error {
-            ReadError::Toml(error) => error.span(),
+            ReadError::Wrong(place, _) => Some(place.clone()),
             ReadError::Refused(refusal) => self.place_of(section, Some(value), refusal),
         }
     }
 
     /// An error in a value at the top, with its place.
     fn read_error(&self, section: &str, (place, error): Found) -> SceneError {
-        let (message, help) = match error {
-            ReadError::Toml(error) => Wrong::of(error.message()).in_words(section),
-            ReadError::Refused(Refusal { message, help, .. }) => (message, help),
-        };
+        let (message, help) = error.in_words(section);
         self.error(message, place).with_help(help)
     }
 
@@ -233,7 +219,7 @@ impl<'a> Document<'a> {
     fn place_of(
         &self,
         section: &str,
-        value: Option<&Spanned<DeValue<'a>>>,
+        value: Option<&Value<'a>>,
         refusal: &Refusal,
     ) -> Option<Range<usize>> {
         let place = refusal.key.as_ref().and_then(|key| self.locate(section, value, key));
@@ -242,12 +228,7 @@ impl<'a> Document<'a> {
 
     /// Where `key`, `key[i]`, `key[i,j]` or `key[i].name[j]` ([`KeyPath`](super::KeyPath)) stands, first in this
     /// value, then in this section, then in the others, then at the top.
-    fn locate(
-        &self,
-        section: &str,
-        value: Option<&Spanned<DeValue<'a>>>,
-        key: &str,
-    ) -> Option<Range<usize>> {
+    fn locate(&self, section: &str, value: Option<&Value<'a>>, key: &str) -> Option<Range<usize>> {
         let mut path =
             key.split(['[', ']', ',', '.']).map(str::trim).filter(|step| !step.is_empty());
         let name = path.next()?;
@@ -277,27 +258,49 @@ impl<'a> Document<'a> {
     }
 }
 
-/// Put a file's text behind its name, where a key names a file: \[name, text\] in the place of the name.
-pub(super) fn read_beside(
-    section: &mut Spanned<DeTable<'_>>,
+/// A section in which the text of a file stands behind its name, where a key names a file: \[name, text\].
+pub(super) fn with_file<'a>(
+    section: &Value<'a>,
     key: &str,
     read: impl Fn(&str) -> Result<String, String>,
-) -> Result<(), Refusal> {
-    let Some(value) = section.get_mut().get_mut(key) else { return Ok(()) };
+) -> Result<Value<'a>, Refusal> {
+    let mut section = section.clone();
+    let DeValue::Table(table) = section.get_mut() else { return Ok(section) };
+    let Some(value) = table.get_mut(key) else { return Ok(section) };
     let DeValue::String(name) = value.get_ref() else {
-        let found = value.get_ref().type_str();
+        let found = in_words(value.get_ref());
         return Err(Refusal::at(key, format!("found {found}, expected the name of a file")));
     };
     let text = read(name).map_err(|why| Refusal::at(key, why))?;
-    let mut file = DeArray::new();
-    for part in [name.clone(), text.into()] {
-        file.push(Spanned::new(value.span(), DeValue::String(part)));
-    }
+    let parts = [name.clone(), text.into()].map(DeValue::String);
+    let file = parts.map(|part| Spanned::new(value.span(), part)).into_iter().collect();
     *value.get_mut() = DeValue::Array(file);
-    Ok(())
+    Ok(section)
+}
+
+/// A table without the places of its values.
+fn without_places(table: &DeTable<'_>) -> String {
+    let entry = |(key, value): (&Spanned<_>, &Value<'_>)| {
+        format!("{:?}: {}", key.get_ref(), without_place(value.get_ref()))
+    };
+    format!("{{{}}}", table.iter().map(entry).collect::<Vec<_>>().join(", "))
+}
+
+/// A value without its place. Numbers are compared as numbers: 1e-3 is 0.001.
+fn without_place(value: &DeValue<'_>) -> String {
+    match value {
+        DeValue::Integer(n) => format!("Integer({n})"),
+        DeValue::Float(x) => format!("Float({:?})", x.as_str().parse().unwrap_or(f64::NAN)),
+        DeValue::Array(list) => {
+            let list: Vec<_> = list.iter().map(|entry| without_place(entry.get_ref())).collect();
+            format!("Array([{}])", list.join(", "))
+        }
+        DeValue::Table(table) => format!("Table({})", without_places(table)),
+        other => format!("{other:?}"),
+    }
 }
 
 /// A section as a value.
-pub(super) fn table(section: Spanned<DeTable<'_>>) -> Spanned<DeValue<'_>> {
+pub(super) fn table(section: Spanned<DeTable<'_>>) -> Value<'_> {
     Spanned::new(section.span(), DeValue::Table(section.into_inner()))
 }

@@ -290,31 +290,6 @@ impl From<Error> for Refusal {
     }
 }
 
-/// Why the keys of a section cannot be used.
-#[derive(Clone, Debug)]
-pub enum ReadError {
-    /// Unknown and missing keys, wrong types.
-    Toml(toml::de::Error),
-    /// Values that cannot be used.
-    Refused(Refusal),
-}
-
-impl From<toml::de::Error> for ReadError {
-    fn from(error: toml::de::Error) -> Self {
-        ReadError::Toml(error)
-    }
-}
-impl From<Refusal> for ReadError {
-    fn from(refusal: Refusal) -> Self {
-        ReadError::Refused(refusal)
-    }
-}
-impl From<Error> for ReadError {
-    fn from(error: Error) -> Self {
-        ReadError::Refused(error.into())
-    }
-}
-
 /// One of two keys.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Either<A, B> {

@@ -8,23 +8,23 @@
 //! | `stop_after` | the zero that ends the run, from 1; optional |
 
 use lieflow::{Direction, Error};
-use serde::Deserialize;
 
 use super::columns::{Columns, RowFormula};
 use super::error::{KeyPath, Refusal};
 use super::formula::{Formula, Text};
+use super::read::read_by_keys;
 use super::values::Whole;
 use crate::model::EventPlan;
 use crate::schema::{Row, Schema};
 
-/// An entry of `[[events]]`.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct EventKeys {
-    name: String,
-    when: Text,
-    direction: Option<String>,
-    stop_after: Option<Whole<1>>,
+read_by_keys! {
+    /// An entry of `[[events]]`.
+    pub(super) struct EventKeys {
+        name: String,
+        when: Text,
+        direction: Option<String>,
+        stop_after: Option<Whole<1>>,
+    }
 }
 
 /// An event of a scene.

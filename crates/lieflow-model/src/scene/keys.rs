@@ -5,24 +5,25 @@ use lieflow::catalog::{MAPS, MethodSpec, TABLEAUS, all_methods};
 use lieflow::names::find;
 use lieflow::tolerance::Rule;
 use lieflow::{Error, SaveAt, TimeGrid};
-use serde::Deserialize;
 
 use super::defaults;
 use super::error::{Either, KeyPath, Refusal, at_most_one, exactly_one};
 use super::formula::Lets;
+use super::read::read_by_keys;
 use super::values::{Real, Span, Whole};
 use crate::kinds::{Kind, ProblemSpec, high_order};
 use crate::model::Layer;
 
-/// `[method]`.
-#[derive(Default, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct MethodKeys {
-    name: Option<String>,
-    map: Option<String>,
-    tableau: Option<String>,
-    q: Option<Whole<0>>,
-    layer: Option<String>,
+read_by_keys! {
+    /// `[method]`.
+    #[derive(Default)]
+    pub(super) struct MethodKeys {
+        name: Option<String>,
+        map: Option<String>,
+        tableau: Option<String>,
+        q: Option<Whole<0>>,
+        layer: Option<String>,
+    }
 }
 
 impl MethodKeys {
@@ -83,24 +84,22 @@ pub(super) fn with_defaults(mut method: MethodSpec) -> MethodSpec {
     method
 }
 
-/// `[time]`.
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct TimeKeys {
-    t_span: Span,
-    dt: Option<Real>,
-    steps: Option<Whole<1>>,
-    rtol: Option<Real>,
-    atol: Option<Real>,
-    h_init: Option<Real>,
-    h_min: Option<Real>,
-    h_max: Option<Real>,
-    max_steps: Option<Whole<1>>,
-    tolerance: Option<String>,
-    at_knots: Option<bool>,
-    /// rtol and atol where none is given.
-    #[serde(skip)]
-    left: Option<f64>,
+read_by_keys! {
+    /// `[time]`.
+    #[derive(Debug)]
+    pub(super) struct TimeKeys {
+        t_span: Span,
+        dt: Option<Real>,
+        steps: Option<Whole<1>>,
+        rtol: Option<Real>,
+        atol: Option<Real>,
+        h_init: Option<Real>,
+        h_min: Option<Real>,
+        h_max: Option<Real>,
+        max_steps: Option<Whole<1>>,
+        tolerance: Option<String>,
+        at_knots: Option<bool>,
+    }
 }
 
 /// The steps that `compare` starts from where a scene leaves them to the error.
@@ -195,15 +194,16 @@ impl TimeKeys {
         self.control(1.0).map(Some).map_err(|error| Refusal::from(error).renamed(&names))
     }
 
-    /// Take the tolerances for a method of this order, where none are given.
+    /// Take the tolerances for a method of this order.
     pub(super) fn for_order(&mut self, order: Option<usize>) {
-        self.left = self.is_left().then(|| defaults::tolerance(order));
+        let tolerance = Some(Real(defaults::tolerance(order)));
+        (self.rtol, self.atol) = (tolerance, tolerance);
     }
 
-    /// rtol and atol.
+    /// rtol and atol. Both are 1 while the steps are left to the program.
     pub(super) fn tolerances(&self) -> [f64; 2] {
-        let left = self.left.unwrap_or(if self.is_left() { 1.0 } else { 0.0 });
-        [&self.rtol, &self.atol].map(|x| x.as_ref().map_or(left, |x| x.0))
+        let left = if self.is_left() { 1.0 } else { 0.0 };
+        [self.rtol, self.atol].map(|x| x.map_or(left, |x| x.0))
     }
 
     /// Limits of steps, and the tolerances times a factor. With another factor than 1 the first step is chosen, and ten
@@ -230,21 +230,20 @@ impl TimeKeys {
     }
 }
 
-/// `[output]`.
-#[derive(Default, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct OutputKeys {
-    pub(super) quantities: Option<Vec<String>>,
-    #[serde(default)]
-    formulas: Lets,
-    #[serde(default)]
-    plot: Vec<String>,
-    every: Option<Whole<1>>,
-    times: Option<Vec<Real>>,
-    count: Option<Whole<1>>,
-    interval: Option<Real>,
-    times_by: Option<String>,
-    error_check: Option<bool>,
+read_by_keys! {
+    /// `[output]`.
+    #[derive(Default)]
+    pub(super) struct OutputKeys {
+        pub(super) quantities: Option<Vec<String>>,
+        formulas: Lets,
+        plot: Option<Vec<String>>,
+        every: Option<Whole<1>>,
+        times: Option<Vec<Real>>,
+        count: Option<Whole<1>>,
+        interval: Option<Real>,
+        times_by: Option<String>,
+        error_check: Option<bool>,
+    }
 }
 
 /// What `[output]` asks for.
@@ -270,7 +269,8 @@ impl OutputKeys {
 
     /// Spells the quantities as the kind does.
     pub(super) fn spell(&mut self, kind: &Kind) {
-        for name in self.quantities.iter_mut().flatten().chain(&mut self.plot) {
+        let plot = self.plot.iter_mut().flatten();
+        for name in self.quantities.iter_mut().flatten().chain(plot) {
             if let Ok(known) = kind.quantity(name) {
                 *name = known.name.into();
             }
@@ -327,6 +327,7 @@ impl OutputKeys {
         };
         let error_check = self.error_check.unwrap_or(true);
         let OutputKeys { formulas, plot, .. } = self;
+        let plot = plot.unwrap_or_default();
         Ok(Output { quantities, formulas, plot, save, times_by_steps, error_check })
     }
 

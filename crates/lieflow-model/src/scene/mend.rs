@@ -5,8 +5,9 @@ use core::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::error::{ReadError, Refusal};
-use super::suggest::{help_for, suggest};
+use super::error::Refusal;
+use super::read::{ReadError, Value, Wrong};
+use super::suggest::suggest;
 use lieflow::names::near;
 
 /// An error of a reading, with its place.
@@ -15,7 +16,7 @@ pub(super) type Found = (Option<Range<usize>>, ReadError);
 /// A section of a scene, in which values with mistakes are replaced.
 pub(super) struct Mending<'a> {
     text: &'a str,
-    value: Spanned<DeValue<'a>>,
+    value: Value<'a>,
     /// The places of the replaced values.
     places: Vec<Range<usize>>,
     /// The keys of replaced and removed values. A mistake in a formula that uses one of them is not told.
@@ -71,7 +72,7 @@ enum Step {
 }
 
 impl<'a> Mending<'a> {
-    pub(super) fn of(text: &'a str, value: Spanned<DeValue<'a>>) -> Self {
+    pub(super) fn of(text: &'a str, value: Value<'a>) -> Self {
         let (places, names, values, left_out) = Default::default();
         Mending { text, value, places, names, values, left_out, loose: false }
     }
@@ -79,12 +80,10 @@ impl<'a> Mending<'a> {
     /// True if the error may come from a replacement.
     pub(super) fn explains(&self, (place, error): &Found) -> bool {
         match error {
-            ReadError::Toml(error) => match Wrong::of(error.message()) {
-                Wrong::MissingKey(key) => {
-                    self.left_out.iter().any(|given| suggest(given, &[key]).is_some())
-                }
-                _ => false,
-            },
+            ReadError::Wrong(_, Wrong::MissingKey(key)) => {
+                self.left_out.iter().any(|given| suggest(given, &[key]).is_some())
+            }
+            ReadError::Wrong(..) => false,
             ReadError::Refused(Refusal { key, message, .. }) => {
                 let place = place.clone().unwrap_or(NOWHERE);
                 let message = message.replace(key.as_deref().unwrap_or("\n"), "");
@@ -105,7 +104,7 @@ impl<'a> Mending<'a> {
         let DeValue::Table(table) = self.value.get_ref() else { return names };
         let lets = table.get("let").and_then(|lets| lets.get_ref().as_table());
         loop {
-            let needs = |value: &Spanned<DeValue<'_>>| {
+            let needs = |value: &Value<'_>| {
                 says_any(self.text.get(value.span()).unwrap_or_default(), &names)
             };
             let further: Vec<String> = lets
@@ -125,13 +124,13 @@ impl<'a> Mending<'a> {
     pub(super) fn mend<T>(
         &mut self,
         (place, error): &Found,
-        read: impl Fn(&Spanned<DeValue<'a>>) -> Result<T, Found>,
+        read: impl Fn(&Value<'a>) -> Result<T, Found>,
     ) -> Option<Result<T, Found>> {
         let place = place.clone()?;
         let mut path = Vec::new();
         let found = path_to(&self.value, &place, &mut path);
-        let error = match error {
-            ReadError::Toml(error) => error,
+        let wrong = match error {
+            ReadError::Wrong(_, wrong) => wrong,
             ReadError::Refused(_) if self.loose || !found => return None,
             ReadError::Refused(_) => {
                 // Not the section as a whole.
@@ -145,15 +144,15 @@ impl<'a> Mending<'a> {
                 return self.try_each(&path, candidates, of_one, &read);
             }
         };
-        match Wrong::of(error.message()) {
-            Wrong::UnknownKey(_, names) => self.take_away(&place, &names)?,
+        match wrong {
+            Wrong::UnknownKey(_, names) => self.take_away(&place, names)?,
             Wrong::MissingKey(key) => {
                 let DeValue::Table(table) = at(&mut self.value, &path)?.get_mut() else {
                     return None;
                 };
                 let nothing = Spanned::new(NOWHERE, DeValue::Boolean(false));
-                table.insert(Spanned::new(NOWHERE, key.to_owned().into()), nothing);
-                path.push(Step::Key(key.to_owned()));
+                table.insert(Spanned::new(NOWHERE, (*key).into()), nothing);
+                path.push(Step::Key((*key).into()));
                 return self.try_literals(&path, &read);
             }
             Wrong::Value(_) => {
@@ -189,7 +188,7 @@ impl<'a> Mending<'a> {
     fn try_literals<T>(
         &mut self,
         path: &[Step],
-        read: impl Fn(&Spanned<DeValue<'a>>) -> Result<T, Found>,
+        read: impl Fn(&Value<'a>) -> Result<T, Found>,
     ) -> Option<Result<T, Found>> {
         let literals = LITERALS.iter().filter_map(|(text, loose)| Some((literal(text)?, *loose)));
         self.try_each(path, literals.collect(), true, read)
@@ -202,7 +201,7 @@ impl<'a> Mending<'a> {
         path: &[Step],
         candidates: Vec<Candidate<'a>>,
         of_one: bool,
-        read: impl Fn(&Spanned<DeValue<'a>>) -> Result<T, Found>,
+        read: impl Fn(&Value<'a>) -> Result<T, Found>,
     ) -> Option<Result<T, Found>> {
         let place = at(&mut self.value, path)?.span();
         let whole = self.value.span();
@@ -310,11 +309,11 @@ fn move_to(value: &mut DeValue<'_>, place: &Range<usize>) {
 }
 
 /// Writes the steps to the outermost value at this place into `path`. Returns false if there is no such value.
-fn path_to(value: &Spanned<DeValue<'_>>, place: &Range<usize>, path: &mut Vec<Step>) -> bool {
+fn path_to(value: &Value<'_>, place: &Range<usize>, path: &mut Vec<Step>) -> bool {
     if value.span() == *place {
         return true;
     }
-    let mut into = |step: Step, entry: &Spanned<DeValue<'_>>| {
+    let mut into = |step: Step, entry: &Value<'_>| {
         path.push(step);
         let found = path_to(entry, place, path);
         if !found {
@@ -334,10 +333,7 @@ fn path_to(value: &Spanned<DeValue<'_>>, place: &Range<usize>, path: &mut Vec<St
 }
 
 /// The value at the end of a path.
-fn at<'v, 'a>(
-    value: &'v mut Spanned<DeValue<'a>>,
-    path: &[Step],
-) -> Option<&'v mut Spanned<DeValue<'a>>> {
+fn at<'v, 'a>(value: &'v mut Value<'a>, path: &[Step]) -> Option<&'v mut Value<'a>> {
     path.iter().try_fold(value, |value, step| match (value.get_mut(), step) {
         (DeValue::Table(table), Step::Key(key)) => table.get_mut(key.as_str()),
         (DeValue::Array(list), Step::Place(i)) => list.get_mut(*i),
@@ -380,49 +376,4 @@ pub(super) fn rename(table: &mut DeTable<'_>, given: &str, names: &[&str]) -> bo
         table.insert(Spanned::new(key.span(), meant.to_owned().into()), value);
         true
     })
-}
-
-/// A mistake that the deserializer found.
-pub(super) enum Wrong<'m> {
-    /// A key, and those that there are.
-    UnknownKey(&'m str, Vec<&'m str>),
-    MissingKey(&'m str),
-    Value(&'m str),
-}
-
-impl<'m> Wrong<'m> {
-    /// Reads the kind of mistake from the message of the deserializer, which gives nothing else.
-    pub(super) fn of(message: &'m str) -> Self {
-        let mut quoted = message.split('`').skip(1).step_by(2);
-        match quoted.next() {
-            Some(given) if message.starts_with("unknown field") => {
-                Wrong::UnknownKey(given, quoted.collect())
-            }
-            Some(name) if message.starts_with("missing field") => Wrong::MissingKey(name),
-            _ => Wrong::Value(message),
-        }
-    }
-
-    /// The message in the words of this program, and a suggestion.
-    pub(super) fn in_words(&self, section: &str) -> (String, Option<String>) {
-        let message = match self {
-            Wrong::UnknownKey(given, names) => {
-                let message = format!("unknown key `{given}` in [{section}]");
-                return (message, Some(help_for(given, names)));
-            }
-            Wrong::MissingKey(name) => {
-                return (format!("missing key `{name}` in [{section}]"), None);
-            }
-            Wrong::Value(message) => message,
-        };
-        if message.ends_with("number overflowed") {
-            return ("the number is out of range".into(), None);
-        }
-        let plain = ["invalid type: ", "invalid value: "]
-            .iter()
-            .find_map(|jargon| message.strip_prefix(jargon))
-            .map_or_else(|| message.to_string(), |rest| format!("found {rest}"));
-        let words = [("floating point", "number"), ("sequence", "list"), ("map,", "table,")];
-        (words.iter().fold(plain, |text, (from, to)| text.replace(from, to)), None)
-    }
 }

@@ -10,15 +10,17 @@ pub mod formula;
 mod keys;
 mod mend;
 mod open;
+pub(crate) mod read;
 mod set;
 mod suggest;
 pub mod values;
 
 pub use bundled::{BUNDLED, Bundled};
 pub use defaults::Defaults;
-pub use error::{Either, KeyPath, ReadError, Refusal, SceneError, at_most_one, exactly_one};
+pub use error::{Either, KeyPath, Refusal, SceneError, at_most_one, exactly_one};
 pub use events::SceneEvent;
 pub use open::unknown_scene;
+pub use read::{Read, ReadError, Value, Wrong};
 pub use suggest::{help_for, suggest};
 
 use std::hash::{Hash, Hasher};
@@ -29,16 +31,16 @@ use lieflow::StepControl;
 use lieflow::catalog::{MethodSpec, all_methods};
 use lieflow::samples::{Outside, Samples};
 use lieflow::{Error, Failure, RunError, SaveAt, StepError, TimeGrid};
-use serde::Deserialize;
 use toml::de::DeValue;
 
 use self::columns::{Columns, FORMULAS, RowFormula, check_plot, with_formulas};
-use self::document::{Document, read_beside, table};
+use self::document::{Document, table, with_file};
 use self::error::Mistakes;
 use self::events::EventKeys;
 use self::formula::{Formula, Lost, Which};
 use self::keys::{MethodKeys, Output, OutputKeys, TimeKeys, with_defaults};
 use self::open::read_samples;
+use self::read::in_words;
 use crate::kinds::{FormulaKeys, KNOTS_MAX, Kind, ProblemSpec, SAMPLES};
 use crate::model::{Layer, Model, Plan, Steps};
 use crate::schema::Schema;
@@ -198,7 +200,7 @@ impl Scene {
         // A folder may have this name.
         let is_name = !stem.trim_matches('.').is_empty();
         let name = if is_name { stem.into_owned() } else { "scene".into() };
-        let fingerprint = fingerprint(text, problem.samples());
+        let fingerprint = fingerprint(&document.says(), problem.samples());
         let mut scene = Scene {
             title: title.unwrap_or_else(|| name.clone()),
             name,
@@ -423,10 +425,8 @@ fn each_once<'a>(names: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
     all
 }
 
-/// A hash of what the text states and of its samples: the same on every machine.
-fn fingerprint(text: &str, samples: Option<&Samples>) -> u64 {
-    let stated = toml::from_str::<toml::Table>(text);
-    let stated = stated.map_or_else(|_| text.to_owned(), |table| format!("{table:?}"));
+/// A hash of what the scene states and of its samples: the same on every machine.
+fn fingerprint(stated: &str, samples: Option<&Samples>) -> u64 {
     let mut hasher = FnvHasher::default();
     hasher.write(stated.as_bytes());
     if let Some(samples) = samples {
@@ -450,7 +450,8 @@ fn read_kind(document: &Document<'_>) -> Result<&'static Kind, SceneError> {
             Kind::named(name).map_err(|error| Refusal { key: Some("kind".into()), ..error.into() })
         }
         Some(other) => {
-            let message = format!("found {}, expected the name of a problem", other.type_str());
+            let found = in_words(other);
+            let message = format!("found {found}, expected the name of a problem");
             Err(Refusal::at("kind", message))
         }
     };
@@ -464,11 +465,13 @@ fn read_problem(
 ) -> Result<Box<dyn ProblemSpec>, SceneError> {
     let mut section = document.section("problem")?;
     section.get_mut().remove("kind");
-    if kind.keys.contains(&SAMPLES) {
-        let beside = read_beside(&mut section, SAMPLES.name, |name| read_samples(folder, name));
-        document.check("problem", beside)?;
-    }
-    document.read("problem", table(section), kind.read)
+    document.read("problem", table(section), |section| {
+        if !kind.keys.contains(&SAMPLES) {
+            return (kind.read)(section);
+        }
+        let file = |name: &str| read_samples(folder, name);
+        (kind.read)(&with_file(section, SAMPLES.name, file)?)
+    })
 }
 
 /// The events; none of a problem without columns.
@@ -484,7 +487,7 @@ fn read_events(
     let names: Vec<&str> = names.collect();
     let events = entries.iter().enumerate().map(|(i, entry)| {
         let read = document.read("events", entry.clone(), |entry| {
-            let keys = EventKeys::deserialize(entry)?;
+            let keys = EventKeys::read(entry)?;
             let event = |columns| events::resolve(keys, i, &names[..i], columns);
             Ok(columns.map(event).transpose()?)
         });

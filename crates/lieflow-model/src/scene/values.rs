@@ -1,142 +1,94 @@
 //! What keys of a scene hold: numbers that are finite, lists of known length.
 
-use core::fmt;
-
 use faer::Mat;
-use serde::Deserialize;
-use serde::de::{DeserializeSeed, Deserializer, Error, SeqAccess, Visitor};
+use toml::de::DeValue;
 
+use super::read::{Read, ReadError, Value};
 use super::{KeyPath, Refusal};
 
 /// A finite number; an integer is one too.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Real(pub f64);
 
-/// Reads a number; where that is allowed, an infinite one.
-struct AsNumber {
-    infinite: bool,
-}
-
-impl Visitor<'_> for AsNumber {
-    type Value = f64;
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("a number")
-    }
-    fn visit_f64<E: Error>(self, x: f64) -> Result<f64, E> {
-        match x.is_finite() || (self.infinite && !x.is_nan()) {
-            true => Ok(x),
-            false => Err(E::custom(format!("found {x}, expected a finite number"))),
+impl Read for Real {
+    fn read(value: &Value<'_>) -> Result<Self, ReadError> {
+        match number(value)? {
+            x if x.is_finite() => Ok(Real(x)),
+            _ => Err(ReadError::expected(value, "a finite number")),
         }
     }
-    fn visit_i64<E: Error>(self, x: i64) -> Result<f64, E> {
-        Ok(x as f64)
-    }
-    fn visit_u64<E: Error>(self, x: u64) -> Result<f64, E> {
-        Ok(x as f64)
-    }
-    fn visit_i128<E: Error>(self, x: i128) -> Result<f64, E> {
-        Ok(x as f64)
-    }
-    fn visit_u128<E: Error>(self, x: u128) -> Result<f64, E> {
-        Ok(x as f64)
-    }
 }
 
-impl<'de> Deserialize<'de> for Real {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_any(AsNumber { infinite: false }).map(Real)
-    }
+/// A number, also an infinite one and NaN.
+fn number(value: &Value<'_>) -> Result<f64, ReadError> {
+    let number = match value.get_ref() {
+        DeValue::Integer(n) => i128::from_str_radix(n.as_str(), n.radix()).ok().map(|n| n as f64),
+        DeValue::Float(x) => {
+            let is_word = x.as_str().ends_with("inf");
+            x.as_str().parse().ok().filter(|x: &f64| !x.is_infinite() || is_word)
+        }
+        _ => return Err(ReadError::expected(value, "a number")),
+    };
+    number.ok_or_else(|| ReadError::too_large(value))
 }
 
 /// A whole number from `MIN`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Whole<const MIN: u64>(pub u64);
 
-impl<'de, const MIN: u64> Deserialize<'de> for Whole<MIN> {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct AsWhole<const MIN: u64>;
-        impl<const MIN: u64> Visitor<'_> for AsWhole<MIN> {
-            type Value = Whole<MIN>;
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                write!(f, "a whole number, at least {MIN}")
-            }
-            fn visit_i64<E: Error>(self, n: i64) -> Result<Whole<MIN>, E> {
-                match u64::try_from(n) {
-                    Ok(n) if n >= MIN => Ok(Whole(n)),
-                    _ => Err(E::custom(format!(
-                        "found {n}, expected a whole number, at least {MIN}"
-                    ))),
-                }
-            }
-        }
-        deserializer.deserialize_any(AsWhole::<MIN>)
+impl<const MIN: u64> Read for Whole<MIN> {
+    fn read(value: &Value<'_>) -> Result<Self, ReadError> {
+        let expected = || ReadError::expected(value, format!("a whole number, at least {MIN}"));
+        let n = value.get_ref().as_integer().ok_or_else(expected)?;
+        let n = i64::from_str_radix(n.as_str(), n.radix());
+        let n = n.map_err(|_| ReadError::too_large(value))?;
+        let n = u64::try_from(n).ok().filter(|n| *n >= MIN);
+        n.map(Whole).ok_or_else(expected)
     }
 }
 
-/// Reads a list of as many entries as the count says.
-struct ReadList<T> {
-    count: usize,
-    what: &'static str,
-    entries: Vec<T>,
-}
-
-impl<T> ReadList<T> {
-    fn new(count: usize, what: &'static str) -> Self {
-        ReadList { count, what, entries: Vec::new() }
+/// Reads a list that is to have so many entries; another number of them is left to [`wrong_count`].
+fn list<T: Read>(value: &Value<'_>, count: usize, what: &str) -> Result<Vec<T>, ReadError> {
+    match value.get_ref() {
+        DeValue::Array(_) => Vec::read(value),
+        _ => Err(ReadError::expected(value, format!("a list of {count} {what}"))),
     }
 }
 
-impl<'de, T: Deserialize<'de>> Visitor<'de> for ReadList<T> {
-    type Value = Vec<T>;
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "a list of {} {}", self.count, self.what)
-    }
-    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Vec<T>, A::Error> {
-        let ReadList { count, what, mut entries } = self;
-        while let Some(entry) = list.next_element()? {
-            entries.push(entry);
-        }
-        match entries.len() {
-            found if found == count => Ok(entries),
-            0 => Err(A::Error::custom(format!("expected {count} {what}, found none"))),
-            found => Err(A::Error::custom(format!("expected {count} {what}, found {found}"))),
-        }
-    }
+/// The error for a list of another number of entries.
+fn wrong_count(value: &Value<'_>, found: usize, count: usize, what: &str) -> ReadError {
+    let found = if found == 0 { "none".into() } else { found.to_string() };
+    ReadError::of(value, format!("expected {count} {what}, found {found}"))
 }
 
 /// Reads a list of so many numbers.
-#[derive(Clone, Copy, Debug)]
-pub struct NumberList(pub usize);
-
-impl<'de> DeserializeSeed<'de> for NumberList {
-    type Value = Vec<f64>;
-
-    fn deserialize<D: Deserializer<'de>>(self, d: D) -> Result<Vec<f64>, D::Error> {
-        let list = d.deserialize_any(ReadList::<Real>::new(self.0, "numbers"))?;
-        Ok(list.iter().map(|x| x.0).collect())
+///
+/// # Errors
+/// [`ReadError`] for another value.
+pub fn numbers(value: &Value<'_>, count: usize) -> Result<Vec<f64>, ReadError> {
+    let list: Vec<Real> = list(value, count, "numbers")?;
+    match list.len() == count {
+        true => Ok(list.iter().map(|x| x.0).collect()),
+        false => Err(wrong_count(value, list.len(), count, "numbers")),
     }
 }
 
-/// N entries.
-struct Entries<T, const N: usize>([T; N]);
-
-impl<'de, T: Deserialize<'de>, const N: usize> Entries<T, N> {
-    fn read<D: Deserializer<'de>>(d: D, what: &'static str) -> Result<Self, D::Error> {
-        let list = d.deserialize_any(ReadList::new(N, what))?;
-        list.try_into()
-            .map(Entries)
-            .map_err(|list: Vec<T>| D::Error::invalid_length(list.len(), &what))
-    }
+/// Reads a list of N entries.
+pub(crate) fn entries<T: Read, const N: usize>(
+    value: &Value<'_>,
+    what: &str,
+) -> Result<[T; N], ReadError> {
+    let list = list(value, N, what)?;
+    list.try_into().map_err(|list: Vec<T>| wrong_count(value, list.len(), N, what))
 }
 
 /// N numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reals<const N: usize>(pub [f64; N]);
 
-impl<'de, const N: usize> Deserialize<'de> for Reals<N> {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let entries: Entries<Real, N> = Entries::read(deserializer, "numbers")?;
-        Ok(Reals(entries.0.map(|x| x.0)))
+impl<const N: usize> Read for Reals<N> {
+    fn read(value: &Value<'_>) -> Result<Self, ReadError> {
+        Ok(Reals(entries(value, "numbers")?.map(|x: Real| x.0)))
     }
 }
 
@@ -144,18 +96,21 @@ impl<'de, const N: usize> Deserialize<'de> for Reals<N> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Span(pub [f64; 2]);
 
-impl<'de> Deserialize<'de> for Span {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+impl Read for Span {
+    fn read(value: &Value<'_>) -> Result<Self, ReadError> {
         struct End(f64);
-        impl<'de> Deserialize<'de> for End {
-            fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-                deserializer.deserialize_any(AsNumber { infinite: true }).map(End)
+        impl Read for End {
+            fn read(value: &Value<'_>) -> Result<Self, ReadError> {
+                match number(value)? {
+                    x if x.is_nan() => Err(ReadError::expected(value, "a finite number")),
+                    x => Ok(End(x)),
+                }
             }
         }
-        let [start, end] = Entries::<End, 2>::read(deserializer, "numbers")?.0;
-        match start.0.is_finite() {
-            true => Ok(Span([start.0, end.0])),
-            false => Err(D::Error::custom(format!("found {}, expected a finite number", start.0))),
+        let [End(start), End(end)] = entries(value, "numbers")?;
+        match start.is_finite() {
+            true => Ok(Span([start, end])),
+            false => Err(ReadError::of(value, format!("found {start}, expected a finite number"))),
         }
     }
 }
@@ -164,10 +119,9 @@ impl<'de> Deserialize<'de> for Span {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rows<const N: usize>(pub [[f64; N]; N]);
 
-impl<'de, const N: usize> Deserialize<'de> for Rows<N> {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let entries: Entries<Reals<N>, N> = Entries::read(deserializer, "rows of numbers")?;
-        Ok(Rows(entries.0.map(|row| row.0)))
+impl<const N: usize> Read for Rows<N> {
+    fn read(value: &Value<'_>) -> Result<Self, ReadError> {
+        Ok(Rows(entries(value, "rows of numbers")?.map(|row: Reals<N>| row.0)))
     }
 }
 
@@ -186,38 +140,24 @@ enum Entry<R> {
     Row(R),
 }
 
-impl<'de, R: Deserialize<'de>> Deserialize<'de> for Entry<R> {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct AsEntry<R>(core::marker::PhantomData<R>);
-        impl<'de, R: Deserialize<'de>> Visitor<'de> for AsEntry<R> {
-            type Value = Entry<R>;
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a number")
-            }
-            fn visit_f64<E: Error>(self, x: f64) -> Result<Entry<R>, E> {
-                match x.is_finite() {
-                    true => Ok(Entry::Number(x)),
-                    false => Err(E::custom(format!("found {x}, expected a finite number"))),
-                }
-            }
-            fn visit_i64<E: Error>(self, x: i64) -> Result<Entry<R>, E> {
-                Ok(Entry::Number(x as f64))
-            }
-            fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<Entry<R>, A::Error> {
-                let list = serde::de::value::SeqAccessDeserializer::new(list);
-                R::deserialize(list).map(Entry::Row)
-            }
+impl<R: Read> Read for Entry<R> {
+    fn read(value: &Value<'_>) -> Result<Self, ReadError> {
+        match value.get_ref() {
+            DeValue::Array(_) => R::read(value).map(Entry::Row),
+            _ => Real::read(value).map(|x| Entry::Number(x.0)),
         }
-        deserializer.deserialize_any(AsEntry(core::marker::PhantomData))
     }
 }
 
-impl<'de> Deserialize<'de> for Diagonal {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        match Entries::<Entry<Reals<3>>, 3>::read(deserializer, "numbers")?.0 {
+impl Read for Diagonal {
+    fn read(value: &Value<'_>) -> Result<Self, ReadError> {
+        match entries::<Entry<Reals<3>>, 3>(value, "numbers")? {
             [Entry::Number(a), Entry::Number(b), Entry::Number(c)] => Ok(Diagonal::List([a, b, c])),
             [Entry::Row(a), Entry::Row(b), Entry::Row(c)] => Ok(Diagonal::Rows([a.0, b.0, c.0])),
-            _ => Err(D::Error::custom("numbers and rows, expected 3 numbers or 3 rows of them")),
+            _ => {
+                let message = "numbers and rows, expected 3 numbers or 3 rows of them";
+                Err(ReadError::of(value, message))
+            }
         }
     }
 }
@@ -231,10 +171,10 @@ pub enum Numbers {
     Rows(Table),
 }
 
-impl<'de> Deserialize<'de> for Numbers {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+impl Read for Numbers {
+    fn read(value: &Value<'_>) -> Result<Self, ReadError> {
         let (mut numbers, mut rows) = (Vec::new(), Vec::new());
-        for entry in Vec::<Entry<List>>::deserialize(deserializer)? {
+        for entry in Vec::read(value)? {
             match entry {
                 Entry::Number(x) => numbers.push(x),
                 Entry::Row(row) => rows.push(row),
@@ -243,7 +183,9 @@ impl<'de> Deserialize<'de> for Numbers {
         match (numbers.is_empty(), rows.is_empty()) {
             (_, true) => Ok(Numbers::List(numbers)),
             (true, false) => Ok(Numbers::Rows(Table(rows))),
-            (false, false) => Err(D::Error::custom("numbers and rows, expected one of the two")),
+            (false, false) => {
+                Err(ReadError::of(value, "numbers and rows, expected one of the two"))
+            }
         }
     }
 }
@@ -278,9 +220,14 @@ impl Numbers {
 }
 
 /// Any number of numbers.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(transparent)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct List(Vec<Real>);
+
+impl Read for List {
+    fn read(value: &Value<'_>) -> Result<Self, ReadError> {
+        Vec::read(value).map(List)
+    }
+}
 
 impl List {
     /// The numbers.
@@ -290,9 +237,14 @@ impl List {
 }
 
 /// Rows of numbers, of one length.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(transparent)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Table(Vec<List>);
+
+impl Read for Table {
+    fn read(value: &Value<'_>) -> Result<Self, ReadError> {
+        Vec::read(value).map(Table)
+    }
+}
 
 impl Table {
     /// The rows as a matrix, of as many columns as the first row has numbers.

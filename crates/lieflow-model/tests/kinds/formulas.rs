@@ -96,11 +96,7 @@ fn formulas_are_refused_at_their_line() {
         ),
         ("[\"w1\", \"0\", \"2 w1\"]", FINE, &["torque[3]: found `w`", "2*x"]),
         ("[\"w1\", \"0\"]", FINE, &["found 2 formulas, expected 3"]),
-        (
-            "[\"w1\", \"0\", true]",
-            FINE,
-            &["boolean `true`, expected a formula: a text or a number"],
-        ),
+        ("[\"w1\", \"0\", true]", FINE, &["found true, expected a formula: a text or a number"]),
         ("[\"0\", \"1/t\", \"0\"]", FINE, &["torque[2] is inf at the start"]),
         ("[\"k\", \"0\", \"0\"]\nparameters = { c = 1 }", FINE, &["unknown name `k`", "c, pi, e"]),
     ] {

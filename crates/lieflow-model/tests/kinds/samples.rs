@@ -207,7 +207,7 @@ fn what_is_no_file_of_samples_is_refused_at_its_line() {
             "\"data.csv\"",
             "[\"data.csv\", \"t,u\"]",
             7,
-            &["found array, expected the name of a file"],
+            &["found a list, expected the name of a file"],
         ),
         ("\"cubic\"", "\"cubical\"", 8, &["unknown interpolation `cubical`", "`cubic`"]),
         ("samples = \"data.csv\"", "", 8, &["`interpolation` is of `samples`"]),

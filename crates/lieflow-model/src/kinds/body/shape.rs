@@ -2,21 +2,22 @@
 
 use lieflow::Error;
 use lieflow::problems::inertia::{cuboid, cylinder, ellipsoid};
-use serde::Deserialize;
 
+use crate::scene::read::read_by_keys;
 use crate::scene::values::{Real, Reals};
 use crate::scene::{Refusal, help_for};
 
-/// The key, as it is written: which measures belong to which kind is checked after.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct Shape {
-    kind: String,
-    mass: Real,
-    sides: Option<Reals<3>>,
-    semi_axes: Option<Reals<3>>,
-    radius: Option<Real>,
-    height: Option<Real>,
+read_by_keys! {
+    /// The key, as it is written: which measures belong to which kind is checked after.
+    #[derive(Clone, Debug)]
+    pub(crate) struct Shape {
+        kind: String,
+        mass: Real,
+        sides: Option<Reals<3>>,
+        semi_axes: Option<Reals<3>>,
+        radius: Option<Real>,
+        height: Option<Real>,
+    }
 }
 
 impl Shape {

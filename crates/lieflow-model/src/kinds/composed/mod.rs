@@ -35,18 +35,17 @@ keys! { Keys [sample_keys formula_keys] {
          of NAME1, NAME2, …, a single one NAME. Field is a list of formulas, or one whose value is a vector, in t, \
          the coordinates of all parts and the parameters: the angular velocity, in space, of a vector and of a rotation, the \
          derivatives of numbers",
-    #[serde(default)]
     invariants: BTreeMap<String, Text> =
         "formulas by name, in the coordinates and the parameters, that the motion keeps; optional",
 } }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct PartKeys {
-    name: String,
-    space: String,
-    start: Option<Numbers>,
-    field: Texts,
+read_by_keys! {
+    struct PartKeys {
+        name: String,
+        space: String,
+        start: Option<Numbers>,
+        field: Texts,
+    }
 }
 
 /// What fields call the time.
@@ -65,8 +64,8 @@ struct Composed {
 
 type Q = Quantity<Composed>;
 
-fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
-    let mut keys = Keys::deserialize(section)?;
+fn read(section: &Value<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
+    let mut keys = Keys::read(section)?;
     let (formulas, samples) = (keys.formula_keys(), keys.sample_keys());
     let Keys { parts: keys, invariants, .. } = keys;
     if keys.is_empty() {

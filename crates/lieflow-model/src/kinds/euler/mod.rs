@@ -50,8 +50,8 @@ keys! { Keys [formula_keys] {
          row; 3 numbers on so3, 6 on se3",
 } }
 
-fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
-    let keys = Keys::deserialize(section)?;
+fn read(section: &Value<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
+    let keys = Keys::read(section)?;
     match (plain(&keys.algebra).as_str(), Algebra::named(&keys.algebra)) {
         ("so3", _) => Ok(Box::new(Stated(Vectors::<3>::read(keys)?))),
         ("se3", _) => Ok(Box::new(Stated(Vectors::<6>::read(keys)?))),

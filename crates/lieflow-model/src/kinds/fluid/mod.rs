@@ -59,8 +59,8 @@ fn below(n: usize) -> impl Iterator<Item = (usize, usize)> {
     (0..n).flat_map(move |j| (j..n).map(move |i| (i, j)))
 }
 
-fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
-    let (place, start) = Keys::deserialize(section)?.resolve()?;
+fn read(section: &Value<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
+    let (place, start) = Keys::read(section)?.resolve()?;
     Ok(Box::new(Stated(Fluid { fluid: Zeitlin::new(place)?, start })))
 }
 

@@ -11,22 +11,22 @@ use super::Keys;
 use super::place::Place;
 use crate::kinds::prelude::*;
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct Random {
-    seed: Whole<0>,
-    below: Whole<2>,
+read_by_keys! {
+    pub(super) struct Random {
+        seed: Whole<0>,
+        below: Whole<2>,
+    }
 }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct VortexKeys {
-    latitude: Option<Real>,
-    longitude: Option<Real>,
-    x: Option<Real>,
-    y: Option<Real>,
-    circulation: Real,
-    width: Real,
+read_by_keys! {
+    pub(super) struct VortexKeys {
+        latitude: Option<Real>,
+        longitude: Option<Real>,
+        x: Option<Real>,
+        y: Option<Real>,
+        circulation: Real,
+        width: Real,
+    }
 }
 
 /// Larger matrices take longer than a scene should.

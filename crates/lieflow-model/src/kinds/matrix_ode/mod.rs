@@ -60,8 +60,8 @@ const ACTIONS: [(&str, MatrixAction); 5] = [
 /// Formulas name entries by one digit for the row and one for the column.
 const NAMED_MAX: usize = 9;
 
-fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
-    let mut keys = Keys::deserialize(section)?;
+fn read(section: &Value<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
+    let mut keys = Keys::read(section)?;
     let (formulas, samples) = (keys.formula_keys(), keys.sample_keys());
     let named = Algebra::named(&keys.group)
         .ok_or_else(|| Refusal::unknown("group", &keys.group, &ALGEBRAS))?;

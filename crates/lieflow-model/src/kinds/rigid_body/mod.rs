@@ -21,8 +21,8 @@ pub(super) const KIND: Kind = Kind {
 
 keys! { Keys [body_keys] {} }
 
-fn read(section: ValueDeserializer<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
-    Ok(Box::new(Keys::deserialize(section)?.body_keys().start(Matrix3::identity())?))
+fn read(section: &Value<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
+    Ok(Box::new(Keys::read(section)?.body_keys().start(Matrix3::identity())?))
 }
 
 /// Do these quantities need the attitude? Not of a body that cannot be set up.

@@ -4,9 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use lieflow::samples::Samples;
-use serde::Deserialize;
 
 use super::super::Refusal;
+use super::super::read::{Read, ReadError, Value};
 use super::super::values::Real;
 use super::functions::{CALLED, CONSTANTS};
 use super::lost::Losses;
@@ -15,9 +15,17 @@ use super::tape::Tape;
 use super::{Formula, KeyPath, Texts};
 
 /// `[problem.parameters]`: constants that the formulas of a scene share, `k = 3.0`.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
-#[serde(transparent)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Parameters(BTreeMap<String, Real>);
+
+impl Read for Parameters {
+    fn read(value: &Value<'_>) -> Result<Self, ReadError> {
+        Read::read(value).map(Parameters)
+    }
+    fn missing() -> Option<Self> {
+        Some(Parameters::default())
+    }
+}
 
 impl FromIterator<(String, Real)> for Parameters {
     fn from_iter<I: IntoIterator<Item = (String, Real)>>(parameters: I) -> Self {
@@ -56,9 +64,17 @@ impl Parameters {
 }
 
 /// `[problem.let]`: formulas with names, which other formulas may use, `b = "3*t"`.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
-#[serde(transparent)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Lets(BTreeMap<String, Texts>);
+
+impl Read for Lets {
+    fn read(value: &Value<'_>) -> Result<Self, ReadError> {
+        Read::read(value).map(Lets)
+    }
+    fn missing() -> Option<Self> {
+        Some(Lets::default())
+    }
+}
 
 /// More named formulas than this are refused.
 const LETS_MAX: usize = 256;

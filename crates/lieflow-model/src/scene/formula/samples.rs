@@ -3,16 +3,24 @@
 use std::hash::{DefaultHasher, Hash, Hasher};
 
 use lieflow::samples::{Interpolation, Samples};
-use serde::Deserialize;
 
 use super::super::Refusal;
+use super::super::read::{Read, ReadError, Value};
+use super::super::values::entries;
 
 /// The key of the file.
 const KEY: &str = "samples";
 
 /// The name of a file and its text, which stands in the place of the name once the scene has read it.
-#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SamplesFile(pub(super) String, pub(super) String);
+
+impl Read for SamplesFile {
+    fn read(value: &Value<'_>) -> Result<Self, ReadError> {
+        let [name, text] = entries(value, "texts")?;
+        Ok(SamplesFile(name, text))
+    }
+}
 
 /// The samples of a file with the names of their columns.
 #[derive(Clone, Debug, PartialEq)]

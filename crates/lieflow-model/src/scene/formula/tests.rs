@@ -2,7 +2,11 @@
 
 use lieflow::scalar::{Counted, Ops};
 
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
 use super::super::Refusal;
+use super::super::read::{Read, ReadError};
 use super::{Formula, Lets, Names, Parameters, SamplesFile, Text, Texts, Which};
 
 fn names() -> Names {
@@ -13,6 +17,12 @@ fn read(text: &str) -> Result<Formula, Refusal> {
 }
 fn value(text: &str, at: [f64; 3]) -> f64 {
     read(text).unwrap_or_else(|refusal| panic!("{text}: {refusal:?}")).value(&at)
+}
+
+/// The value of a table with these lines.
+fn table<T: Read>(lines: &str) -> Result<T, ReadError> {
+    let table = DeTable::parse(lines).expect("TOML");
+    T::read(&Spanned::new(table.span(), DeValue::Table(table.into_inner())))
 }
 
 #[test]
@@ -164,7 +174,7 @@ fn operations_are_counted() {
 
 #[test]
 fn parameters_are_numbers_with_names() {
-    let parameters: Parameters = toml::from_str("k = 3\nc = 0.5").unwrap();
+    let parameters: Parameters = table("k = 3\nc = 0.5").unwrap();
     let names = parameters.names("variables", ["x"]).unwrap();
     let f = Formula::read("f", "k*x^k + c", &names).unwrap();
     assert_eq!(f.value(&[2.0]), 24.5);
@@ -177,11 +187,11 @@ fn parameters_are_numbers_with_names() {
         ("k = 3", "2x", "`2x` is no name"),
         ("k = 3", "", "`` is no name"),
     ] {
-        let parameters: Parameters = toml::from_str(text).unwrap();
+        let parameters: Parameters = table(text).unwrap();
         let refusal = parameters.names("variables", [variable]).unwrap_err();
         assert!(refusal.message.starts_with(why), "{}", refusal.message);
     }
-    assert!(toml::from_str::<Parameters>("k = inf").is_err());
+    assert!(table::<Parameters>("k = inf").is_err());
 }
 
 /// Vectors and matrices by their names and written out, against the same by components.
@@ -189,7 +199,7 @@ fn parameters_are_numbers_with_names() {
 fn vectors_and_matrices_are_their_components() {
     let variables = ["t", "a1", "a2", "a3", "g11", "g12", "g21", "g22", "b1", "b2", "norm"];
     let names = Parameters::default().names("variables", variables).expect("names");
-    let lets: Lets = toml::from_str("c = \"2*g*b\"\nup = [0, \"t\", 1]").expect("formulas");
+    let lets: Lets = table("c = \"2*g*b\"\nup = [0, \"t\", 1]").expect("formulas");
     let names = names.with_lets("let", &lets).expect("formulas");
     let of =
         |text: &str| Formula::read("f", text, &names).unwrap_or_else(|e| panic!("{text}: {e:?}"));

@@ -1,11 +1,10 @@
 //! Formulas as a scene has them: texts, or numbers.
 
-use core::fmt;
-
-use serde::de::{Deserializer, Error, Visitor};
-use serde::{Deserialize, de};
+use toml::de::DeValue;
 
 use super::super::Refusal;
+use super::super::read::{Read, ReadError, Value};
+use super::super::values::Real;
 use super::tape::Tape;
 use super::{Formula, KeyPath, Names, read_value};
 
@@ -83,56 +82,27 @@ impl Texts {
     }
 }
 
-/// Reads a formula; where that is allowed, a list of them.
-struct AsText;
-struct AsTexts;
-
-impl Visitor<'_> for AsText {
-    type Value = Text;
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("a formula: a text or a number")
-    }
-    fn visit_str<E: Error>(self, text: &str) -> Result<Text, E> {
-        Ok(Text(text.into()))
-    }
-    fn visit_f64<E: Error>(self, x: f64) -> Result<Text, E> {
-        match x.is_finite() {
-            true => Ok(Text(format!("{x:?}"))),
-            false => Err(E::custom(format!("found {x}, expected a finite number"))),
+impl Read for Text {
+    fn read(value: &Value<'_>) -> Result<Self, ReadError> {
+        match value.get_ref() {
+            DeValue::String(text) => Ok(Text(text.to_string())),
+            DeValue::Integer(n) if n.radix() == 10 => Ok(Text(n.as_str().into())),
+            DeValue::Integer(_) | DeValue::Float(_) => {
+                Real::read(value).map(|x| Text(format!("{:?}", x.0)))
+            }
+            _ => Err(ReadError::expected(value, "a formula: a text or a number")),
         }
     }
-    fn visit_i64<E: Error>(self, x: i64) -> Result<Text, E> {
-        Ok(Text(x.to_string()))
-    }
 }
 
-impl<'de> Visitor<'de> for AsTexts {
-    type Value = Texts;
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("a formula, or a list of formulas")
-    }
-    fn visit_str<E: Error>(self, text: &str) -> Result<Texts, E> {
-        AsText.visit_str(text).map(Texts::One)
-    }
-    fn visit_f64<E: Error>(self, x: f64) -> Result<Texts, E> {
-        AsText.visit_f64(x).map(Texts::One)
-    }
-    fn visit_i64<E: Error>(self, x: i64) -> Result<Texts, E> {
-        AsText.visit_i64(x).map(Texts::One)
-    }
-    fn visit_seq<A: de::SeqAccess<'de>>(self, list: A) -> Result<Texts, A::Error> {
-        let list = de::value::SeqAccessDeserializer::new(list);
-        Vec::deserialize(list).map(Texts::List)
-    }
-}
-
-impl<'de> Deserialize<'de> for Text {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_any(AsText)
-    }
-}
-impl<'de> Deserialize<'de> for Texts {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_any(AsTexts)
+impl Read for Texts {
+    fn read(value: &Value<'_>) -> Result<Self, ReadError> {
+        match value.get_ref() {
+            DeValue::Array(_) => Vec::read(value).map(Texts::List),
+            DeValue::String(_) | DeValue::Integer(_) | DeValue::Float(_) => {
+                Text::read(value).map(Texts::One)
+            }
+            _ => Err(ReadError::expected(value, "a formula, or a list of formulas")),
+        }
     }
 }

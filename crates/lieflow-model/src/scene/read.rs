@@ -1,0 +1,256 @@
+//! Reads values of a scene. Each type says what it is read from, and each mistake has its place.
+
+use core::fmt::Display;
+use core::ops::Range;
+use std::collections::BTreeMap;
+
+use lieflow::Error;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use super::error::Refusal;
+use super::suggest::help_for;
+
+/// A value of a scene, with its place in the text.
+pub type Value<'a> = Spanned<DeValue<'a>>;
+
+/// A type that is read from a value of a scene.
+pub trait Read: Sized {
+    /// Reads a value.
+    ///
+    /// # Errors
+    /// [`ReadError`] for a value of another type, and for one that cannot be used.
+    fn read(value: &Value<'_>) -> Result<Self, ReadError>;
+
+    /// What a missing key means. `None` if the key must be there.
+    fn missing() -> Option<Self> {
+        None
+    }
+}
+
+/// Why a value cannot be read.
+#[derive(Clone, Debug)]
+pub enum ReadError {
+    /// A mistake at a place of the text.
+    Wrong(Range<usize>, Wrong),
+    /// A value that cannot be used.
+    Refused(Refusal),
+}
+
+/// A mistake in what is written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Wrong {
+    /// A key that does not exist, and the keys that do.
+    UnknownKey(String, &'static [&'static str]),
+    /// A key that must be there.
+    MissingKey(&'static str),
+    /// A value that is not what is expected: the message.
+    Value(String),
+}
+
+impl From<Refusal> for ReadError {
+    fn from(refusal: Refusal) -> Self {
+        ReadError::Refused(refusal)
+    }
+}
+impl From<Error> for ReadError {
+    fn from(error: Error) -> Self {
+        ReadError::Refused(error.into())
+    }
+}
+
+impl ReadError {
+    /// A mistake in a value.
+    pub fn of(value: &Value<'_>, message: impl Into<String>) -> Self {
+        ReadError::Wrong(value.span(), Wrong::Value(message.into()))
+    }
+
+    /// A value where something else is expected.
+    pub fn expected(value: &Value<'_>, expected: impl Display) -> Self {
+        Self::of(value, format!("found {}, expected {expected}", in_words(value.get_ref())))
+    }
+
+    /// A number that is too large.
+    pub(crate) fn too_large(value: &Value<'_>) -> Self {
+        Self::of(value, "the number is out of range")
+    }
+
+    /// The message of an error in a section, and a suggestion.
+    pub(crate) fn in_words(self, section: &str) -> (String, Option<String>) {
+        match self {
+            ReadError::Wrong(_, Wrong::UnknownKey(given, names)) => {
+                (format!("unknown key `{given}` in [{section}]"), Some(help_for(&given, names)))
+            }
+            ReadError::Wrong(_, Wrong::MissingKey(name)) => {
+                (format!("missing key `{name}` in [{section}]"), None)
+            }
+            ReadError::Wrong(_, Wrong::Value(message)) => (message, None),
+            ReadError::Refused(Refusal { message, help, .. }) => (message, help),
+        }
+    }
+}
+
+/// A value as messages call it.
+pub(crate) fn in_words(value: &DeValue<'_>) -> String {
+    match value {
+        DeValue::String(text) => format!("the text {text:?}"),
+        DeValue::Integer(n) => n.to_string(),
+        DeValue::Float(x) => x.to_string(),
+        DeValue::Boolean(x) => x.to_string(),
+        DeValue::Datetime(_) => "a date".into(),
+        DeValue::Array(_) => "a list".into(),
+        DeValue::Table(_) => "a table".into(),
+    }
+}
+
+impl Read for String {
+    fn read(value: &Value<'_>) -> Result<Self, ReadError> {
+        let text = value.get_ref().as_str();
+        text.map(str::to_owned).ok_or_else(|| ReadError::expected(value, "a text"))
+    }
+}
+
+impl Read for bool {
+    fn read(value: &Value<'_>) -> Result<Self, ReadError> {
+        let known = value.get_ref().as_bool();
+        known.ok_or_else(|| ReadError::expected(value, "true or false"))
+    }
+}
+
+impl<T: Read> Read for Option<T> {
+    fn read(value: &Value<'_>) -> Result<Self, ReadError> {
+        T::read(value).map(Some)
+    }
+    fn missing() -> Option<Self> {
+        Some(None)
+    }
+}
+
+impl<T: Read> Read for Vec<T> {
+    fn read(value: &Value<'_>) -> Result<Self, ReadError> {
+        let list = value.get_ref().as_array();
+        let list = list.ok_or_else(|| ReadError::expected(value, "a list"))?;
+        list.iter().map(T::read).collect()
+    }
+}
+
+/// A table of any keys. A missing one is empty.
+impl<T: Read> Read for BTreeMap<String, T> {
+    fn read(value: &Value<'_>) -> Result<Self, ReadError> {
+        let table = value.get_ref().as_table();
+        let table = table.ok_or_else(|| ReadError::expected(value, "a table"))?;
+        table.iter().map(|(key, value)| Ok((key.get_ref().to_string(), T::read(value)?))).collect()
+    }
+    fn missing() -> Option<Self> {
+        Some(BTreeMap::new())
+    }
+}
+
+/// Reads the values of the keys of a table.
+///
+/// A mistake in a value is kept until all values are read. So the first mistake is the first in the order of the table,
+/// and missing keys come after all others.
+pub(crate) struct KeyReader<'v, 'a> {
+    table: &'v DeTable<'a>,
+    place: Range<usize>,
+    /// The first mistake, with its key.
+    first: Option<(&'v str, ReadError)>,
+}
+
+impl<'v, 'a> KeyReader<'v, 'a> {
+    /// Begins to read a table that has no other keys than these.
+    pub(crate) fn of(
+        value: &'v Value<'a>,
+        names: &'static [&'static str],
+    ) -> Result<Self, ReadError> {
+        let DeValue::Table(table) = value.get_ref() else {
+            let keys = format!("a table with the keys {}", names.join(", "));
+            return Err(ReadError::expected(value, keys));
+        };
+        let unknown = table.keys().find(|key| !names.contains(&key.get_ref().as_ref()));
+        let first = unknown.map(|key| {
+            let given: &str = key.get_ref();
+            (given, ReadError::Wrong(key.span(), Wrong::UnknownKey(given.into(), names)))
+        });
+        Ok(KeyReader { table, place: value.span(), first })
+    }
+
+    /// Reads the value of a key. Returns `None` if the key is missing or its value has a mistake.
+    pub(crate) fn read<T: Read>(&mut self, name: &'static str) -> Option<T> {
+        self.read_with(name, T::read)
+    }
+
+    /// Reads the value of a key by a function.
+    pub(crate) fn read_with<T>(
+        &mut self,
+        name: &'static str,
+        read: impl FnOnce(&Value<'_>) -> Result<T, ReadError>,
+    ) -> Option<T> {
+        let found = read(self.table.get(name)?);
+        found.map_err(|error| self.keep(name, error)).ok()
+    }
+
+    /// Keeps a mistake if it is before the others.
+    fn keep(&mut self, name: &'static str, error: ReadError) {
+        if self.first.as_ref().is_none_or(|(first, _)| name < *first) {
+            self.first = Some((name, error));
+        }
+    }
+
+    /// Returns the first mistake in the values that were read.
+    pub(crate) fn check(&mut self) -> Result<(), ReadError> {
+        self.first.take().map_or(Ok(()), |(_, error)| Err(error))
+    }
+
+    /// The value of a key, or what its type takes if the key is missing.
+    pub(crate) fn or_missing<T: Read>(
+        &self,
+        name: &'static str,
+        value: Option<T>,
+    ) -> Result<T, ReadError> {
+        value.or_else(T::missing).ok_or_else(|| self.missing(name))
+    }
+
+    /// The error for a missing key.
+    pub(crate) fn missing(&self, name: &'static str) -> ReadError {
+        ReadError::Wrong(self.place.clone(), Wrong::MissingKey(name))
+    }
+}
+
+/// The name of a key by that of its field, `let` by `r#let`.
+pub(crate) const fn key_name(field: &'static str) -> &'static str {
+    match field.as_bytes() {
+        [b'r', b'#', ..] => field.split_at(2).1,
+        _ => field,
+    }
+}
+
+/// Declares a struct that is read from a table with the names of its fields as keys.
+macro_rules! read_by_keys {
+    (
+        $(#[$attribute:meta])*
+        $visible:vis struct $name:ident {
+            $($(#[$doc:meta])* $shown:vis $key:ident: $type:ty,)*
+        }
+    ) => {
+        $(#[$attribute])*
+        $visible struct $name {
+            $($(#[$doc])* $shown $key: $type,)*
+        }
+
+        impl $crate::scene::read::Read for $name {
+            fn read(
+                value: &$crate::scene::read::Value<'_>,
+            ) -> Result<Self, $crate::scene::read::ReadError> {
+                use $crate::scene::read::{KeyReader, key_name};
+                let mut keys = KeyReader::of(value, const { &[$(key_name(stringify!($key)),)*] })?;
+                $(let $key = keys.read(const { key_name(stringify!($key)) });)*
+                keys.check()?;
+                Ok($name {
+                    $($key: keys.or_missing(const { key_name(stringify!($key)) }, $key)?,)*
+                })
+            }
+        }
+    };
+}
+pub(crate) use read_by_keys;
