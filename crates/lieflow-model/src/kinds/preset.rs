@@ -5,11 +5,11 @@
 //! | `name`, `equation`, `summary` | what listings say |
 //! | `modelled`, `state` | what is integrated, in words; the quantities that make up the state |
 //! | `figure`, `drawn` | `"lines"`, `"sphere"`, `"curve"` or `"points"`; the quantity that is drawn |
-//! | `[[keys]]` | the keys: `name`, `meaning`, how many `numbers` where it is a list, `condition` |
+//! | `[[keys]]` | the keys: `name`, `meaning`, how many `numbers` where it is a list, `positive` |
 //! | `[problem]` | the problem of the base; its formulas may name the keys |
 //! | `[values]` | further keys of that problem: texts are formulas in the keys, and the base gets their values |
 //! | `observed` | quantities of the base: their columns are the variables of the formulas of quantities |
-//! | `[[quantities]]` | `name`, `columns`, `meaning`, `formulas`; `kept` is its law, with the size of its `terms` |
+//! | `[[quantities]]` | `name`, `columns`, `meaning`, `formulas`; `kept` is its law: the degree by the `flow` or by the `action`, and the size of its `terms` |
 //!
 //! A key `x` that is a list of numbers is `x1`, `x2`, ... in formulas.
 
@@ -84,7 +84,8 @@ read_by_keys! {
         meaning: &'static str,
         /// The length of the list; none for one number.
         numbers: Option<Whole<1>>,
-        condition: Option<Condition>,
+        /// Has x to be > 0, and 1/x finite?
+        positive: Option<bool>,
     }
 }
 
@@ -105,8 +106,9 @@ read_by_keys! {
     /// The law of a quantity.
     #[derive(Debug)]
     struct LawText {
-        by: Keeper,
-        degree: Whole<0>,
+        /// The degree, of a law by the flow and by the action.
+        flow: Option<Whole<0>>,
+        action: Option<Whole<0>>,
         terms: Option<String>,
     }
 }
@@ -115,16 +117,6 @@ read_by_keys! {
 impl Read for &'static str {
     fn read(value: &Value<'_>) -> Result<Self, ReadError> {
         String::read(value).map(|text| &*text.leak())
-    }
-}
-
-/// What keeps a quantity.
-#[derive(Clone, Copy, Debug)]
-struct Keeper(Origin);
-
-impl Read for Keeper {
-    fn read(value: &Value<'_>) -> Result<Self, ReadError> {
-        word(value, [("flow", Keeper(Origin::Flow)), ("action", Keeper(Origin::Action))])
     }
 }
 
@@ -140,41 +132,9 @@ impl Read for Drawing {
             ("curve", Drawing(Figure::Curve)),
             ("points", Drawing(Figure::Points)),
         ];
-        word(value, figures)
-    }
-}
-
-/// What the numbers of a key fulfil, besides being finite.
-#[derive(Clone, Copy, Debug)]
-enum Condition {
-    /// x and 1/x are finite, and x > 0.
-    Positive,
-}
-
-impl Read for Condition {
-    fn read(value: &Value<'_>) -> Result<Self, ReadError> {
-        word(value, [("positive", Condition::Positive)])
-    }
-}
-
-/// Reads one of these words.
-fn word<T: Copy, const N: usize>(value: &Value<'_>, words: [(&str, T); N]) -> Result<T, ReadError> {
-    let found = words.iter().find(|(word, _)| value.get_ref().as_str() == Some(word));
-    let expected = || words.map(|(word, _)| word).join(", ");
-    found.map(|(_, meant)| *meant).ok_or_else(|| ReadError::expected(value, expected()))
-}
-
-impl Condition {
-    fn check(self, key: &str, value: f64) -> Result<(), Refusal> {
-        let (good, expected) = match self {
-            Condition::Positive => {
-                (value > 0.0 && value.recip().is_finite(), "a finite number > 0")
-            }
-        };
-        match good {
-            true => Ok(()),
-            false => Err(Refusal::at(key, format!("{key} = {value}, expected {expected}"))),
-        }
+        let figure = figures.iter().find(|(name, _)| value.get_ref().as_str() == Some(name));
+        let names = || figures.map(|(name, _)| name).join(", ");
+        figure.map(|(_, figure)| *figure).ok_or_else(|| ReadError::expected(value, names()))
     }
 }
 
@@ -228,15 +188,16 @@ impl Preset {
         let lists: Vec<_> = lists.collect();
         section.check()?;
         let mut parameters = Vec::new();
-        for (Key { name, numbers, condition, .. }, list) in keys.iter().zip(lists) {
+        for (Key { name, numbers, positive, .. }, list) in keys.iter().zip(lists) {
             let list = list.ok_or_else(|| section.missing(name))?;
             for (i, x) in list.into_iter().enumerate() {
                 let (parameter, place) = match numbers {
                     None => ((*name).into(), (*name).into()),
                     Some(_) => (format!("{name}{}", i + 1), name.index(i)),
                 };
-                if let Some(condition) = condition {
-                    condition.check(&place, x)?;
+                if *positive == Some(true) && !(x > 0.0 && x.recip().is_finite()) {
+                    let message = format!("{place} = {x}, expected a finite number > 0");
+                    return Err(Refusal::at(place, message).into());
                 }
                 parameters.push((parameter, Real(x)));
             }
@@ -307,10 +268,14 @@ impl QuantityText {
     }
 
     fn law(&self) -> Option<Law> {
-        let LawText { by, degree, terms } = self.kept.as_ref()?;
+        let LawText { flow, action, terms } = self.kept.as_ref()?;
+        let (origin, degree) = match (flow, action) {
+            (Some(degree), _) => (Origin::Flow, degree.0),
+            (_, degree) => (Origin::Action, degree.as_ref()?.0),
+        };
         Some(Law {
-            origin: by.0,
-            degree: degree.0 as u32,
+            origin,
+            degree: degree as u32,
             scale: if terms.is_some() { Scale::Terms } else { Scale::Value },
         })
     }

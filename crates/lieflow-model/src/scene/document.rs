@@ -8,7 +8,7 @@ use toml::de::{DeTable, DeValue};
 
 use super::error::{Mistakes, Refusal, SceneError};
 use super::formula::DECIMAL_POINT;
-use super::mend::{Found, Mending, rename};
+use super::mend::{Found, Mending, Reading, rename};
 use super::read::{Read, ReadError, Value, in_words};
 use super::suggest::help_for;
 
@@ -94,8 +94,8 @@ impl<'a> Document<'a> {
         }
     }
 
-    /// A section, as a table.
-    pub(super) fn section(&self, name: &str) -> Result<Spanned<DeTable<'a>>, SceneError> {
+    /// A section, which is a table.
+    pub(super) fn section(&self, name: &str) -> Result<Value<'a>, SceneError> {
         match self.root.get(name) {
             None => {
                 let example = EXAMPLES.iter().find(|(section, _)| *section == name);
@@ -103,20 +103,13 @@ impl<'a> Document<'a> {
                     example.map(|(_, lines)| format!("write such lines:\n[{name}]\n{lines}"));
                 Err(self.error(format!("missing section [{name}]"), None).with_help(help))
             }
-            Some(value) => match value.get_ref() {
-                DeValue::Table(table) => Ok(Spanned::new(value.span(), table.clone())),
-                other => {
-                    let found = in_words(other);
-                    let message = format!("{name}: found {found}, expected a section [{name}]");
-                    Err(self.error(message, Some(value.span())))
-                }
-            },
+            Some(section) if section.get_ref().is_table() => Ok(section.clone()),
+            Some(other) => {
+                let found = in_words(other.get_ref());
+                let message = format!("{name}: found {found}, expected a section [{name}]");
+                Err(self.error(message, Some(other.span())))
+            }
         }
-    }
-
-    /// The keys of a section, as T.
-    pub(super) fn keys<T: Read>(&self, name: &str) -> Result<T, SceneError> {
-        self.read(name, table(self.section(name)?), T::read)
     }
 
     /// Read a value at the top, and find all its mistakes. A mistake is mended in a copy, and the copy is read for
@@ -130,43 +123,40 @@ impl<'a> Document<'a> {
         let attempt = |value: &Value<'a>| {
             read(value).map_err(|error| (self.place(name, value, &error), error))
         };
-        let mut mistakes = Mistakes::default();
-        let mut result = attempt(&value);
+        let first = match attempt(&value) {
+            Ok(read) => return Ok(read),
+            Err(found) => found,
+        };
+        self.all_mistakes(name, value, first, &|value| attempt(value).err()).or(None)
+    }
+
+    /// The mistakes in a value, from the first one on.
+    fn all_mistakes(
+        &self,
+        name: &str,
+        value: Value<'a>,
+        first: Found,
+        read: Reading<'_, 'a>,
+    ) -> Mistakes {
+        let (mut mistakes, mut next) = (Mistakes::default(), Some(first));
         let mut mending = Mending::of(self.text, value);
         for _ in 0..MENDED_MAX {
-            let found = match result {
-                Ok(read) => return mistakes.or(Some(read)),
-                Err(found) => found,
-            };
+            let Some(found) = next else { break };
             let follows = mending.explains(&found);
-            let next = mending.mend(&found, attempt);
+            next = mending.mend(&found, read).flatten();
             if !follows {
                 mistakes.keep::<()>(Err(self.read_error(name, found)));
             }
-            match next {
-                Some(next) => result = next,
-                None => break,
-            }
         }
-        mistakes.or(None)
-    }
-
-    /// The keys of a section, as T, with what is made of them.
-    pub(super) fn checked_keys<T: Read, U>(
-        &self,
-        name: &str,
-        check: impl Fn(&T) -> Result<U, Refusal>,
-    ) -> Result<(T, U), SceneError> {
-        self.read(name, table(self.section(name)?), |value| {
-            let keys = T::read(value)?;
-            let made = check(&keys)?;
-            Ok((keys, made))
-        })
+        mistakes
     }
 
     /// The keys of a section, as T; the default where there is no such section.
     pub(super) fn keys_if_any<T: Default + Read>(&self, name: &str) -> Result<T, SceneError> {
-        if self.root.contains_key(name) { self.keys(name) } else { Ok(T::default()) }
+        if !self.root.contains_key(name) {
+            return Ok(T::default());
+        }
+        self.read(name, self.section(name)?, T::read)
     }
 
     fn error(&self, message: String, span: Option<Range<usize>>) -> SceneError {
@@ -298,9 +288,4 @@ fn without_place(value: &DeValue<'_>) -> String {
         DeValue::Table(table) => format!("Table({})", without_places(table)),
         other => format!("{other:?}"),
     }
-}
-
-/// A section as a value.
-pub(super) fn table(section: Spanned<DeTable<'_>>) -> Value<'_> {
-    Spanned::new(section.span(), DeValue::Table(section.into_inner()))
 }

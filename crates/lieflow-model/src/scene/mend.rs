@@ -13,6 +13,12 @@ use lieflow::names::near;
 /// An error of a reading, with its place.
 pub(super) type Found = (Option<Range<usize>>, ReadError);
 
+/// What a reading finds: the next error, if there is one.
+pub(super) type Next = Option<Found>;
+
+/// Reads a section.
+pub(super) type Reading<'r, 'a> = &'r dyn Fn(&Value<'a>) -> Next;
+
 /// A section of a scene, in which values with mistakes are replaced.
 pub(super) struct Mending<'a> {
     text: &'a str,
@@ -121,11 +127,7 @@ impl<'a> Mending<'a> {
     }
 
     /// Replaces the value with the error and reads again. Returns `None` if no replacement is known to be harmless.
-    pub(super) fn mend<T>(
-        &mut self,
-        (place, error): &Found,
-        read: impl Fn(&Value<'a>) -> Result<T, Found>,
-    ) -> Option<Result<T, Found>> {
+    pub(super) fn mend(&mut self, (place, error): &Found, read: Reading<'_, 'a>) -> Option<Next> {
         let place = place.clone()?;
         let mut path = Vec::new();
         let found = path_to(&self.value, &place, &mut path);
@@ -141,7 +143,7 @@ impl<'a> Mending<'a> {
                 let wrong = at(&mut self.value, &path)?.get_ref();
                 // Numbers of one list may belong together, formulas do not.
                 let (of_one, candidates) = (!matches!(wrong, DeValue::String(_)), alike(wrong));
-                return self.try_each(&path, candidates, of_one, &read);
+                return self.try_each(&path, candidates, of_one, read);
             }
         };
         match wrong {
@@ -153,11 +155,11 @@ impl<'a> Mending<'a> {
                 let nothing = Spanned::new(NOWHERE, DeValue::Boolean(false));
                 table.insert(Spanned::new(NOWHERE, (*key).into()), nothing);
                 path.push(Step::Key((*key).into()));
-                return self.try_literals(&path, &read);
+                return self.try_literals(&path, read);
             }
             Wrong::Value(_) => {
                 let within = found && !path.is_empty();
-                if let Some(next) = within.then(|| self.try_literals(&path, &read)).flatten() {
+                if let Some(next) = within.then(|| self.try_literals(&path, read)).flatten() {
                     return Some(next);
                 }
                 self.loose = true;
@@ -185,24 +187,20 @@ impl<'a> Mending<'a> {
         Some(())
     }
 
-    fn try_literals<T>(
-        &mut self,
-        path: &[Step],
-        read: impl Fn(&Value<'a>) -> Result<T, Found>,
-    ) -> Option<Result<T, Found>> {
+    fn try_literals(&mut self, path: &[Step], read: Reading<'_, 'a>) -> Option<Next> {
         let literals = LITERALS.iter().filter_map(|(text, loose)| Some((literal(text)?, *loose)));
         self.try_each(path, literals.collect(), true, read)
     }
 
     /// Tries the replacements in turn and keeps the first one that causes no error at this place. With `of_one` no other
     /// mistake in the same list is told.
-    fn try_each<T>(
+    fn try_each(
         &mut self,
         path: &[Step],
         candidates: Vec<Candidate<'a>>,
         of_one: bool,
-        read: impl Fn(&Value<'a>) -> Result<T, Found>,
-    ) -> Option<Result<T, Found>> {
+        read: Reading<'_, 'a>,
+    ) -> Option<Next> {
         let place = at(&mut self.value, path)?.span();
         let whole = self.value.span();
         let before = at(&mut self.value, path)?.get_ref().clone();
@@ -211,7 +209,7 @@ impl<'a> Mending<'a> {
             *at(&mut self.value, path)?.get_mut() = candidate;
             let next = read(&self.value);
             let harmless = match &next {
-                Err((Some(other), _)) => *other == whole || apart(other, &place),
+                Some((Some(other), _)) => *other == whole || apart(other, &place),
                 _ => true,
             };
             if harmless {

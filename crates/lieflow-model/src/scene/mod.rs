@@ -34,7 +34,7 @@ use lieflow::{Error, Failure, RunError, SaveAt, StepError, TimeGrid};
 use toml::de::DeValue;
 
 use self::columns::{Columns, FORMULAS, RowFormula, check_plot, with_formulas};
-use self::document::{Document, table, with_file};
+use self::document::{Document, with_file};
 use self::error::Mistakes;
 use self::events::EventKeys;
 use self::formula::{Formula, Lost, Which};
@@ -123,7 +123,14 @@ impl Scene {
         let method =
             method.and_then(|method| mistakes.keep(document.check("method", method.resolve(spec))));
 
-        let time = mistakes.keep(document.checked_keys("time", TimeKeys::resolve));
+        let time = document.section("time").and_then(|section| {
+            document.read("time", section, |section| {
+                let keys = TimeKeys::read(section)?;
+                let steps = keys.resolve()?;
+                Ok((keys, steps))
+            })
+        });
+        let time = mistakes.keep(time);
         let steps_left = time.as_ref().is_some_and(|(keys, _)| keys.is_left());
         let at_knots = time.as_ref().zip(spec).and_then(|((keys, _), problem)| {
             let at_knots = keys.at_knots(problem.knots([0.0, 0.0]).is_some());
@@ -464,8 +471,10 @@ fn read_problem(
     folder: Option<&Path>,
 ) -> Result<Box<dyn ProblemSpec>, SceneError> {
     let mut section = document.section("problem")?;
-    section.get_mut().remove("kind");
-    document.read("problem", table(section), |section| {
+    if let DeValue::Table(keys) = section.get_mut() {
+        keys.remove("kind");
+    }
+    document.read("problem", section, |section| {
         if !kind.keys.contains(&SAMPLES) {
             return (kind.read)(section);
         }

@@ -70,11 +70,6 @@ impl ReadError {
         Self::of(value, format!("found {}, expected {expected}", in_words(value.get_ref())))
     }
 
-    /// A number that is too large.
-    pub(crate) fn too_large(value: &Value<'_>) -> Self {
-        Self::of(value, "the number is out of range")
-    }
-
     /// The message of an error in a section, and a suggestion.
     pub(crate) fn in_words(self, section: &str) -> (String, Option<String>) {
         match self {
@@ -146,15 +141,12 @@ impl<T: Read> Read for BTreeMap<String, T> {
     }
 }
 
-/// Reads the values of the keys of a table.
-///
-/// A mistake in a value is kept until all values are read. So the first mistake is the first in the order of the table,
-/// and missing keys come after all others.
+/// Reads the values of the keys of a table. All values are read before a missing key is told.
 pub(crate) struct KeyReader<'v, 'a> {
     table: &'v DeTable<'a>,
     place: Range<usize>,
-    /// The first mistake, with its key.
-    first: Option<(&'v str, ReadError)>,
+    /// The mistakes, each with its key.
+    mistakes: Vec<(&'v str, ReadError)>,
 }
 
 impl<'v, 'a> KeyReader<'v, 'a> {
@@ -168,11 +160,11 @@ impl<'v, 'a> KeyReader<'v, 'a> {
             return Err(ReadError::expected(value, keys));
         };
         let unknown = table.keys().find(|key| !names.contains(&key.get_ref().as_ref()));
-        let first = unknown.map(|key| {
+        let mistake = unknown.map(|key| {
             let given: &str = key.get_ref();
             (given, ReadError::Wrong(key.span(), Wrong::UnknownKey(given.into(), names)))
         });
-        Ok(KeyReader { table, place: value.span(), first })
+        Ok(KeyReader { table, place: value.span(), mistakes: mistake.into_iter().collect() })
     }
 
     /// Reads the value of a key. Returns `None` if the key is missing or its value has a mistake.
@@ -187,19 +179,13 @@ impl<'v, 'a> KeyReader<'v, 'a> {
         read: impl FnOnce(&Value<'_>) -> Result<T, ReadError>,
     ) -> Option<T> {
         let found = read(self.table.get(name)?);
-        found.map_err(|error| self.keep(name, error)).ok()
+        found.map_err(|error| self.mistakes.push((name, error))).ok()
     }
 
-    /// Keeps a mistake if it is before the others.
-    fn keep(&mut self, name: &'static str, error: ReadError) {
-        if self.first.as_ref().is_none_or(|(first, _)| name < *first) {
-            self.first = Some((name, error));
-        }
-    }
-
-    /// Returns the first mistake in the values that were read.
+    /// Returns the mistake with the first key in the alphabet.
     pub(crate) fn check(&mut self) -> Result<(), ReadError> {
-        self.first.take().map_or(Ok(()), |(_, error)| Err(error))
+        let first = self.mistakes.drain(..).min_by_key(|(name, _)| *name);
+        first.map_or(Ok(()), |(_, error)| Err(error))
     }
 
     /// The value of a key, or what its type takes if the key is missing.
@@ -224,6 +210,21 @@ pub(crate) const fn key_name(field: &'static str) -> &'static str {
         _ => field,
     }
 }
+
+/// Reads a type as the value that it holds.
+macro_rules! read_as_held {
+    ($($name:ident),*) => {$(
+        impl Read for $name {
+            fn read(value: &Value<'_>) -> Result<Self, ReadError> {
+                Read::read(value).map($name)
+            }
+            fn missing() -> Option<Self> {
+                Read::missing().map($name)
+            }
+        }
+    )*};
+}
+pub(crate) use read_as_held;
 
 /// Declares a struct that is read from a table with the names of its fields as keys.
 macro_rules! read_by_keys {

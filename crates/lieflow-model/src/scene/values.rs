@@ -3,8 +3,10 @@
 use faer::Mat;
 use toml::de::DeValue;
 
-use super::read::{Read, ReadError, Value};
+use super::read::{Read, ReadError, Value, read_as_held};
 use super::{KeyPath, Refusal};
+
+const OUT_OF_RANGE: &str = "the number is out of range";
 
 /// A finite number; an integer is one too.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,7 +31,7 @@ fn number(value: &Value<'_>) -> Result<f64, ReadError> {
         }
         _ => return Err(ReadError::expected(value, "a number")),
     };
-    number.ok_or_else(|| ReadError::too_large(value))
+    number.ok_or_else(|| ReadError::of(value, OUT_OF_RANGE))
 }
 
 /// A whole number from `MIN`.
@@ -41,7 +43,7 @@ impl<const MIN: u64> Read for Whole<MIN> {
         let expected = || ReadError::expected(value, format!("a whole number, at least {MIN}"));
         let n = value.get_ref().as_integer().ok_or_else(expected)?;
         let n = i64::from_str_radix(n.as_str(), n.radix());
-        let n = n.map_err(|_| ReadError::too_large(value))?;
+        let n = n.map_err(|_| ReadError::of(value, OUT_OF_RANGE))?;
         let n = u64::try_from(n).ok().filter(|n| *n >= MIN);
         n.map(Whole).ok_or_else(expected)
     }
@@ -219,15 +221,11 @@ impl Numbers {
     }
 }
 
+read_as_held!(List, Table);
+
 /// Any number of numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct List(Vec<Real>);
-
-impl Read for List {
-    fn read(value: &Value<'_>) -> Result<Self, ReadError> {
-        Vec::read(value).map(List)
-    }
-}
 
 impl List {
     /// The numbers.
@@ -239,12 +237,6 @@ impl List {
 /// Rows of numbers, of one length.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table(Vec<List>);
-
-impl Read for Table {
-    fn read(value: &Value<'_>) -> Result<Self, ReadError> {
-        Vec::read(value).map(Table)
-    }
-}
 
 impl Table {
     /// The rows as a matrix, of as many columns as the first row has numbers.

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use lieflow::samples::Samples;
 
 use super::super::Refusal;
-use super::super::read::{Read, ReadError, Value};
+use super::super::read::{Read, ReadError, Value, read_as_held};
 use super::super::values::Real;
 use super::functions::{CALLED, CONSTANTS};
 use super::lost::Losses;
@@ -14,18 +14,11 @@ use super::samples::{SamplesFile, Table};
 use super::tape::Tape;
 use super::{Formula, KeyPath, Texts};
 
+read_as_held!(Parameters, Lets);
+
 /// `[problem.parameters]`: constants that the formulas of a scene share, `k = 3.0`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Parameters(BTreeMap<String, Real>);
-
-impl Read for Parameters {
-    fn read(value: &Value<'_>) -> Result<Self, ReadError> {
-        Read::read(value).map(Parameters)
-    }
-    fn missing() -> Option<Self> {
-        Some(Parameters::default())
-    }
-}
 
 impl FromIterator<(String, Real)> for Parameters {
     fn from_iter<I: IntoIterator<Item = (String, Real)>>(parameters: I) -> Self {
@@ -66,15 +59,6 @@ impl Parameters {
 /// `[problem.let]`: formulas with names, which other formulas may use, `b = "3*t"`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Lets(BTreeMap<String, Texts>);
-
-impl Read for Lets {
-    fn read(value: &Value<'_>) -> Result<Self, ReadError> {
-        Read::read(value).map(Lets)
-    }
-    fn missing() -> Option<Self> {
-        Some(Lets::default())
-    }
-}
 
 /// More named formulas than this are refused.
 const LETS_MAX: usize = 256;
