@@ -20,7 +20,7 @@ pub(super) const KIND: Kind = Kind {
     name: "beam-line",
     equation: "x″ = −k_x x, z″ = −k_z z: (k_x, k_z) = (k, −k) in a quadrupole, (1/radius², 0) in a dipole",
     summary: "a particle through the magnets of a periodic beam line; t is the path along it",
-    ..Kind::of::<Keys, BeamLine>(read)
+    ..Kind::of::<Keys, BeamLine>(|section| read(Read::read(section)?))
 };
 
 keys! { Keys {
@@ -71,8 +71,7 @@ fn element(keys: &ElementKeys) -> Result<(Element, [f64; 2]), String> {
     }
 }
 
-fn read(section: &Value<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
-    let keys = Keys::read(section)?;
+fn read(keys: Keys) -> Result<Box<dyn ProblemSpec>, ReadError> {
     let (mut elements, mut strengths, mut end) = (Vec::new(), Vec::new(), 0.0);
     for (i, keys) in keys.elements.iter().enumerate() {
         let refused = |message| Refusal::at("elements".index(i), message);

@@ -31,7 +31,7 @@ pub(super) const KIND: Kind = Kind {
     name: "driven-body",
     equation: "m = Jω; ṁ = m × ω + gᵀ(e₃ × g weight) + thruster − damping ω − k (g − gᵀ)ᵛ/2 − c ω + torque + gᵀ torque_space, ġ = gω̂",
     summary: "a rigid body with its attitude under the torques that are named",
-    ..Kind::of::<Keys, Driven>(read)
+    ..Kind::of::<Keys, Driven>(|section| read(Read::read(section)?))
 };
 
 keys! { Keys [sample_keys formula_keys body_keys] {
@@ -168,8 +168,7 @@ struct Driven {
 
 type Q = Quantity<Driven>;
 
-fn read(section: &Value<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
-    let mut keys = Keys::read(section)?;
+fn read(mut keys: Keys) -> Result<Box<dyn ProblemSpec>, ReadError> {
     let spec = keys.body_keys().start(Matrix3::identity())?;
     let names = keys.formula_keys().names("torque", VARIABLES, keys.sample_keys())?;
     let formulas = |key: &str, texts: Option<Texts>| match texts {

@@ -24,7 +24,7 @@ pub(super) const KIND: Kind = Kind {
     name: "heavy-top",
     equation: "μ̇ = μ × ω + γ × w, γ̇ = γ × ω, μ = Jω, γ upward, w the weight, all in the body; ġ = gω̂, gγ = e3",
     summary: "the heavy top about a fixed point, by its momentum and the vertical in the body, or by its attitude",
-    ..Kind::of::<Keys, Top<WithAttitude>>(read)
+    ..Kind::of::<Keys, Top<WithAttitude>>(|section| read(Read::read(section)?))
 };
 
 keys! { Keys [body_keys] {
@@ -46,8 +46,7 @@ struct TopSpec {
 /// The distance that `vertical` and `attitude` may have from each other.
 const AGREED: f64 = 1e-6;
 
-fn read(section: &Value<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
-    let mut keys = Keys::read(section)?;
+fn read(mut keys: Keys) -> Result<Box<dyn ProblemSpec>, ReadError> {
     let (body, mut notes) = (keys.body_keys(), Vec::new());
     let stated = match keys.vertical {
         None => None,

@@ -21,7 +21,7 @@ pub(super) const MATHIEU: Kind = Kind {
     name: "mathieu",
     equation: "ġ = [0 1; −(a − 2q cos 2t) 0] g, g = 𝟙 at the start",
     summary: "Mathieu's equation x'' + (a - 2q cos 2t) x = 0, its solutions as a matrix of Sp(2)",
-    ..Kind::of::<MathieuKeys, Hill>(read_mathieu)
+    ..Kind::of::<MathieuKeys, Hill>(|section| read_mathieu(Read::read(section)?))
 };
 
 /// The entry of Hill's equation in the list of kinds.
@@ -30,7 +30,7 @@ pub(super) const HILL: Kind = Kind {
     equation: "ġ = [0 𝟙; −(A − 2Q cos 2πt/T) 0] g, g = 𝟙 at the start",
     summary: "m coupled equations x'' + (A - 2Q cos 2πt/T) x = 0, their solutions as a matrix of \
               Sp(2m)",
-    ..Kind::of::<HillKeys, Hill>(read_hill)
+    ..Kind::of::<HillKeys, Hill>(|section| read_hill(Read::read(section)?))
 };
 
 keys! { MathieuKeys {
@@ -55,14 +55,12 @@ struct Hill {
 
 type Q = Quantity<Hill>;
 
-fn read_mathieu(section: &Value<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
-    let MathieuKeys { a, q } = MathieuKeys::read(section)?;
+fn read_mathieu(MathieuKeys { a, q }: MathieuKeys) -> Result<Box<dyn ProblemSpec>, ReadError> {
     let one = |x: Real| Mat::full(1, 1, x.0);
     Ok(Box::new(Stated(Hill { kind: &MATHIEU, a: one(a), q: one(q), period: PI })))
 }
 
-fn read_hill(section: &Value<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
-    let keys = HillKeys::read(section)?;
+fn read_hill(keys: HillKeys) -> Result<Box<dyn ProblemSpec>, ReadError> {
     let a = keys.a.matrix("a", None)?;
     let q = square("q", &keys.q, a.nrows())?;
     check_symmetric("a", &a, 0.0)?;

@@ -16,7 +16,7 @@ pub(super) const TODA: Kind = Kind {
     name: "toda",
     equation: "L̇ = [L₋ᵀ − L₋, L], L₋ what is below the diagonal",
     summary: "Toda's flow of a symmetric matrix, and the lattice of particles in Flaschka's variables",
-    ..Kind::of::<TodaKeys, Isospectral>(read_toda)
+    ..Kind::of::<TodaKeys, Isospectral>(|section| read_toda(Read::read(section)?))
 };
 
 /// The entry of Brockett's flow in the list of kinds.
@@ -24,7 +24,9 @@ pub(super) const DOUBLE_BRACKET: Kind = Kind {
     name: "double-bracket",
     equation: "L̇ = [[N, L], L], N diagonal",
     summary: "Brockett's flow of a symmetric matrix, which diagonalises and sorts",
-    ..Kind::of::<DoubleBracketKeys, Isospectral>(read_double_bracket)
+    ..Kind::of::<DoubleBracketKeys, Isospectral>(|section| {
+        read_double_bracket(Read::read(section)?)
+    })
 };
 
 /// The entry of the QR flow in the list of kinds.
@@ -32,7 +34,7 @@ pub(super) const QR_FLOW: Kind = Kind {
     name: "qr-flow",
     equation: "L̇ = [log(L)₋ᵀ − log(L)₋, L]: L(k) is the k-th iterate",
     summary: "the flow through the iterates of the QR algorithm of a positive definite matrix",
-    ..Kind::of::<QrKeys, Isospectral>(read_qr)
+    ..Kind::of::<QrKeys, Isospectral>(|section| read_qr(Read::read(section)?))
 };
 
 keys! { TodaKeys {
@@ -67,8 +69,7 @@ fn symmetric(table: &Table) -> Result<Mat<f64>, Refusal> {
     Ok(l)
 }
 
-fn read_toda(section: &Value<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
-    let keys = TodaKeys::read(section)?;
+fn read_toda(keys: TodaKeys) -> Result<Box<dyn ProblemSpec>, ReadError> {
     let matrix = match exactly_one(("positions", keys.positions), ("matrix", keys.matrix))? {
         Either::First(positions) => {
             let (q, p) = (positions.values(), keys.momenta.map_or(Vec::new(), |p| p.values()));
@@ -93,8 +94,7 @@ fn read_toda(section: &Value<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
     Ok(Box::new(Stated(Isospectral { kind: &TODA, flow, matrix })))
 }
 
-fn read_double_bracket(section: &Value<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
-    let keys = DoubleBracketKeys::read(section)?;
+fn read_double_bracket(keys: DoubleBracketKeys) -> Result<Box<dyn ProblemSpec>, ReadError> {
     let (matrix, order) = (symmetric(&keys.matrix)?, keys.order.values());
     if order.len() != matrix.nrows() {
         let message = format!("found {} numbers, expected {}", order.len(), matrix.nrows());
@@ -104,8 +104,8 @@ fn read_double_bracket(section: &Value<'_>) -> Result<Box<dyn ProblemSpec>, Read
     Ok(Box::new(Stated(Isospectral { kind: &DOUBLE_BRACKET, flow, matrix })))
 }
 
-fn read_qr(section: &Value<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
-    let matrix = symmetric(&QrKeys::read(section)?.matrix)?;
+fn read_qr(keys: QrKeys) -> Result<Box<dyn ProblemSpec>, ReadError> {
+    let matrix = symmetric(&keys.matrix)?;
     let smallest = eigenvalues(&matrix).first().copied().unwrap_or(f64::NAN);
     if smallest.is_nan() || smallest <= 0.0 {
         let message = format!("an eigenvalue is {smallest:.3e}, expected all to be > 0");

@@ -17,7 +17,7 @@ pub(super) const KIND: Kind = Kind {
     name: "lorentz",
     equation: "d(γv)/dτ = (q/m)(γE + γv × B), dγ/dτ = (q/m) E·γv",
     summary: "a charged particle in constant fields, by its four-velocity; t is its proper time",
-    ..Kind::of::<Keys, Particle>(read)
+    ..Kind::of::<Keys, Particle>(|section| read(Read::read(section)?))
 };
 
 keys! { Keys {
@@ -36,8 +36,7 @@ struct Particle {
 
 type Q = Quantity<Particle>;
 
-fn read(section: &Value<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
-    let keys = Keys::read(section)?;
+fn read(keys: Keys) -> Result<Box<dyn ProblemSpec>, ReadError> {
     let (e, b) = (Vector3::from(keys.electric.0), Vector3::from(keys.magnetic.0));
     let particle = ChargedParticle::new(keys.charge_to_mass.0, move |_: f64, _: &Mat<f64>| (e, b))?;
     let start = particle

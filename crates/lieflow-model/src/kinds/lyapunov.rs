@@ -17,7 +17,7 @@ pub(super) const KIND: Kind = Kind {
     name: "lyapunov",
     equation: "ẋ = F(t, x), Ẏ = DF(t, x)Y = d(QR)/dt, growth ln R_ii",
     summary: "Lyapunov exponents of a vector field in formulas, by continuous QR",
-    ..Kind::of::<Keys, Exponents>(read)
+    ..Kind::of::<Keys, Exponents>(|section| read(Read::read(section)?))
 };
 
 keys! { Keys [formula_keys sample_keys] {
@@ -43,8 +43,7 @@ const MAX: usize = 128;
 /// derivatives take.
 const DERIVED_MAX: usize = 1 << 18;
 
-fn read(section: &Value<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
-    let mut keys = Keys::read(section)?;
+fn read(mut keys: Keys) -> Result<Box<dyn ProblemSpec>, ReadError> {
     let (formulas, samples) = (keys.formula_keys(), keys.sample_keys());
     let x = keys.x.values();
     let n = x.len();

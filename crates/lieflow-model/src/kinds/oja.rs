@@ -14,7 +14,7 @@ pub(super) const KIND: Kind = Kind {
     name: "oja",
     equation: "Ẋ = AX − XXᵀAX",
     summary: "Oja's flow on orthonormal columns, to the leading eigenvectors of a symmetric matrix",
-    ..Kind::of::<Keys, OjaFlow>(read)
+    ..Kind::of::<Keys, OjaFlow>(|section| read(Read::read(section)?))
 };
 
 keys! { Keys {
@@ -35,8 +35,7 @@ type Q = Quantity<OjaFlow>;
 /// Columns that depend on each other up to this part of their length span no k-dimensional space.
 const DEPENDENT: f64 = 1e-8;
 
-fn read(section: &Value<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
-    let keys = Keys::read(section)?;
+fn read(keys: Keys) -> Result<Box<dyn ProblemSpec>, ReadError> {
     let (a, x) = (keys.a.matrix("a", None)?, keys.x.columns("x")?);
     check_rows("x", &x, a.nrows())?;
     check_symmetric("a", &a, ROUNDING)?;

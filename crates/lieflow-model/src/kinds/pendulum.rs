@@ -13,7 +13,7 @@ pub(super) const KIND: Kind = Kind {
     name: "spherical-pendulum",
     equation: "q̇ = ω × q, ω̇ = −(g/ℓ) q × e₃",
     summary: "the spherical pendulum, by its direction and its angular velocity; e3 points upward",
-    ..Kind::of::<Keys, Pendulum>(read)
+    ..Kind::of::<Keys, Pendulum>(|section| read(Read::read(section)?))
 };
 
 keys! { Keys {
@@ -33,8 +33,7 @@ struct Pendulum {
 
 type Q = Quantity<Pendulum>;
 
-fn read(section: &Value<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
-    let keys = Keys::read(section)?;
+fn read(keys: Keys) -> Result<Box<dyn ProblemSpec>, ReadError> {
     let rate2 = keys.gravity_over_length.0;
     let pendulum = SphericalPendulum::new(rate2)?;
     let start = pendulum

@@ -10,6 +10,6 @@ pub(super) use super::{
     formula_keys, keys, sample_keys,
 };
 pub(super) use crate::model::Layer;
-pub(super) use crate::scene::read::{Read, ReadError, Value, read_by_keys};
+pub(super) use crate::scene::read::{Read, ReadError, read_by_keys};
 pub(super) use crate::scene::values::{List, Real, Reals, Table, Whole};
 pub(super) use crate::scene::{Either, KeyPath, Refusal, at_most_one, exactly_one, help_for};

@@ -18,17 +18,15 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::keys::PARAMETERS;
-use super::prelude::{
-    Error, KeyPath, Law, Read, ReadError, Real, Scale, Value, Whole, read_by_keys,
-};
+use super::prelude::{Error, KeyPath, Law, Read, ReadError, Real, Scale, Whole, read_by_keys};
 use super::system::no_such_layer;
 use super::{Figure, KeyInfo, Kind, ProblemSpec, QuantityInfo, ReadProblem};
 use crate::mapped::Mapped;
 use crate::model::{Layer, Model};
-use crate::scene::Refusal;
 use crate::scene::formula::{Formula, Names, Parameters, Text, Texts};
 use crate::scene::read::KeyReader;
-use crate::scene::values::numbers;
+use crate::scene::values::counted;
+use crate::scene::{Refusal, Value};
 use crate::schema::{Row, Schema};
 
 /// The entry of a preset in the list of kinds, by the name of its file.
@@ -180,17 +178,16 @@ impl Preset {
         let keys = &self.stated.keys;
         let mut section = KeyReader::of(section, &self.key_names)?;
         let lists = keys.iter().map(|Key { name, numbers: count, .. }| {
-            section.read_with(name, |value| match count {
-                None => Ok(vec![Real::read(value)?.0]),
-                Some(count) => numbers(value, count.0 as usize),
+            section.read(name, |value| match count {
+                None => Ok(vec![Real::read(value)?]),
+                Some(count) => counted(value, count.0 as usize, "numbers"),
             })
         });
         let lists: Vec<_> = lists.collect();
         section.check()?;
         let mut parameters = Vec::new();
         for (Key { name, numbers, positive, .. }, list) in keys.iter().zip(lists) {
-            let list = list.ok_or_else(|| section.missing(name))?;
-            for (i, x) in list.into_iter().enumerate() {
+            for (i, Real(x)) in section.or_missing(name, list)?.into_iter().enumerate() {
                 let (parameter, place) = match numbers {
                     None => ((*name).into(), (*name).into()),
                     Some(_) => (format!("{name}{}", i + 1), name.index(i)),
@@ -234,8 +231,8 @@ impl Preset {
         let values = DeTable::parse(&text).map_err(|error| Refusal::section(error.message()))?;
         problem.extend(values.into_inner());
         (kind.read)(&Spanned::new(0..0, DeValue::Table(problem))).map_err(|error| match error {
-            ReadError::Wrong(..) => Refusal::section(error.in_words("problem").0).into(),
-            refused => refused,
+            ReadError::Refused(_) => error,
+            wrong => Refusal::section(wrong.in_words("problem").0).into(),
         })
     }
 }

@@ -16,7 +16,7 @@ pub(super) const KIND: Kind = Kind {
     name: "riccati",
     equation: "Ṗ = C + DP + PDᵀ − PBP",
     summary: "the matrix Riccati equation P' = C + DP + PD' − PBP, on Lagrangian subspaces",
-    ..Kind::of::<Keys, Riccati>(read)
+    ..Kind::of::<Keys, Riccati>(|section| read(Read::read(section)?))
 };
 
 keys! { Keys {
@@ -37,8 +37,7 @@ struct Riccati {
 
 type Q = Quantity<Riccati>;
 
-fn read(section: &Value<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
-    let keys = Keys::read(section)?;
+fn read(keys: Keys) -> Result<Box<dyn ProblemSpec>, ReadError> {
     let p = keys.p.matrix("p", None)?;
     let m = p.nrows();
     let (c, b) = (square("c", &keys.c, m)?, square("b", &keys.b, m)?);

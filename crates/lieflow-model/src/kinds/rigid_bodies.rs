@@ -16,7 +16,7 @@ pub(super) const KIND: Kind = Kind {
     name: "rigid-bodies",
     equation: "ṁᵢ = mᵢ × Jᵢ⁻¹mᵢ, each in its body",
     summary: "many free rigid bodies as one system, by their momenta",
-    ..Kind::of::<Keys, Bodies>(read)
+    ..Kind::of::<Keys, Bodies>(|section| read(Read::read(section)?))
 };
 
 keys! { Keys {
@@ -42,8 +42,7 @@ struct Bodies {
 
 type Q = Quantity<Bodies>;
 
-fn read(section: &Value<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
-    let keys = Keys::read(section)?.bodies;
+fn read(Keys { bodies: keys }: Keys) -> Result<Box<dyn ProblemSpec>, ReadError> {
     if keys.is_empty() {
         return Err(Refusal::at("bodies", "no bodies, expected at least one").into());
     }

@@ -13,7 +13,7 @@ pub(super) const KIND: Kind = Kind {
     name: "rigid-body-n",
     equation: "ṁ = [m, Ω], Ω_ij = m_ij/J_ij, with J_ij = λ_i + λ_j for Manakov's body",
     summary: "the free rigid body in n dimensions, by its momentum on so(n)*",
-    ..Kind::of::<Keys, Body>(read)
+    ..Kind::of::<Keys, Body>(|section| read(Read::read(section)?))
 };
 
 keys! { Keys {
@@ -37,8 +37,7 @@ type Q = Quantity<Body>;
 /// operations a row.
 const WATCHED: usize = 8;
 
-fn read(section: &Value<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
-    let keys = Keys::read(section)?;
+fn read(keys: Keys) -> Result<Box<dyn ProblemSpec>, ReadError> {
     let momentum = keys.momentum.values();
     let Some(start) = antisymmetric(&momentum) else {
         let message = format!("found {} numbers, expected n(n-1)/2", momentum.len());

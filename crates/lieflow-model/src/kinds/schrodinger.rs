@@ -15,7 +15,7 @@ pub(super) const KIND: Kind = Kind {
     name: "schrodinger",
     equation: "iψ̇ = (H₀ + a(t)H₁)ψ, a(t) = cos(ωt + φ) exp(−((t − t₁)/w)²), the last factor with a pulse",
     summary: "Schrödinger's equation with n levels under a drive",
-    ..Kind::of::<Keys, Levels>(read)
+    ..Kind::of::<Keys, Levels>(|section| read(Read::read(section)?))
 };
 
 keys! { Keys {
@@ -43,8 +43,7 @@ struct Levels {
 
 type Q = Quantity<Levels>;
 
-fn read(section: &Value<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
-    let keys = Keys::read(section)?;
+fn read(keys: Keys) -> Result<Box<dyn ProblemSpec>, ReadError> {
     let energies = keys.energies.values();
     let n = energies.len();
     let real = square("coupling", &keys.coupling, n)?;

@@ -16,7 +16,7 @@ pub(super) const KIND: Kind = Kind {
     name: "spin",
     equation: "ẋ = ω(t) × x, ω(t) = the field turned about e₃ by rate·t",
     summary: "a magnetic moment in a field that turns about the third axis, on the sphere",
-    ..Kind::of::<Keys, Spin>(read)
+    ..Kind::of::<Keys, Spin>(|section| read(Read::read(section)?))
 };
 
 keys! { Keys {
@@ -35,8 +35,7 @@ struct Spin {
 
 type Q = Quantity<Spin>;
 
-fn read(section: &Value<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
-    let Keys { field, rate, moment } = Keys::read(section)?;
+fn read(Keys { field, rate, moment }: Keys) -> Result<Box<dyn ProblemSpec>, ReadError> {
     Ok(Box::new(Stated(Spin { field: field.0.into(), rate: rate.0, moment: moment.0.into() })))
 }
 

@@ -12,7 +12,7 @@ pub(super) const KIND: Kind = Kind {
     name: "spin-chain",
     equation: "ṡᵢ = Hᵢ × sᵢ + α (sᵢ × Hᵢ) × sᵢ, Hᵢ = sᵢ₋₁ + sᵢ₊₁ + K (sᵢ)₃ e₃ + B, α the damping",
     summary: "a chain of spins with exchange, anisotropy, a field and damping, on spheres",
-    ..Kind::of::<Keys, Chain>(read)
+    ..Kind::of::<Keys, Chain>(|section| read(Read::read(section)?))
 };
 
 keys! { Keys {
@@ -47,8 +47,7 @@ struct Chain {
 
 type Q = Quantity<Chain>;
 
-fn read(section: &Value<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
-    let keys = Keys::read(section)?;
+fn read(keys: Keys) -> Result<Box<dyn ProblemSpec>, ReadError> {
     let (key, spins) = match exactly_one(("spins", keys.spins), ("wave", keys.wave))? {
         Either::First(spins) => {
             ("spins", spins.into_iter().map(|s| Vector3::from(s.0)).collect::<Vec<_>>())

@@ -23,7 +23,7 @@ pub(super) const KIND: Kind = Kind {
     name: "subspace",
     equation: "Ṗ = [[A, P], P] for the projector P on the subspace",
     summary: "the flow of subspaces to the leading invariant subspace of a symmetric matrix",
-    ..Kind::of::<Keys, Subspace>(read)
+    ..Kind::of::<Keys, Subspace>(|section| read(Read::read(section)?))
 };
 
 keys! { Keys {
@@ -47,8 +47,7 @@ struct Subspace {
 /// Below this cos² of an angle to the leading subspace nothing is left of Z.
 const RIGHT: f64 = 1e-10;
 
-fn read(section: &Value<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
-    let keys = Keys::read(section)?;
+fn read(keys: Keys) -> Result<Box<dyn ProblemSpec>, ReadError> {
     let (a, x) = (keys.a.matrix("a", None)?, keys.x.columns("x")?);
     check_rows("x", &x, a.nrows())?;
     check_symmetric("a", &a, ROUNDING)?;

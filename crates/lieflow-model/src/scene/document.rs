@@ -9,7 +9,7 @@ use toml::de::{DeTable, DeValue};
 use super::error::{Mistakes, Refusal, SceneError};
 use super::formula::DECIMAL_POINT;
 use super::mend::{Found, Mending, Reading, rename};
-use super::read::{Read, ReadError, Value, in_words};
+use super::read::{Read, ReadError, Value};
 use super::suggest::help_for;
 
 /// The keys at the top.
@@ -83,14 +83,10 @@ impl<'a> Document<'a> {
 
     /// The entries of a list at the top; none where it is missing.
     pub(super) fn entries(&self, key: &str) -> Result<Vec<Value<'a>>, SceneError> {
-        match self.root.get(key).map(|value| (value.get_ref(), value.span())) {
-            None => Ok(Vec::new()),
-            Some((DeValue::Array(list), _)) => Ok(list.iter().cloned().collect()),
-            Some((other, place)) => {
-                let found = in_words(other);
-                let message = format!("{key}: found {found}, expected a list: [[{key}]]");
-                Err(self.error(message, Some(place)))
-            }
+        let Some(value) = self.root.get(key) else { return Ok(Vec::new()) };
+        match value.get_ref().as_array() {
+            Some(list) => Ok(list.iter().cloned().collect()),
+            None => Err(self.expected(value, &format!("a list: [[{key}]]"))),
         }
     }
 
@@ -104,11 +100,7 @@ impl<'a> Document<'a> {
                 Err(self.error(format!("missing section [{name}]"), None).with_help(help))
             }
             Some(section) if section.get_ref().is_table() => Ok(section.clone()),
-            Some(other) => {
-                let found = in_words(other.get_ref());
-                let message = format!("{name}: found {found}, expected a section [{name}]");
-                Err(self.error(message, Some(other.span())))
-            }
+            Some(other) => Err(self.expected(other, &format!("a section [{name}]"))),
         }
     }
 
@@ -159,6 +151,11 @@ impl<'a> Document<'a> {
         self.read(name, self.section(name)?, T::read)
     }
 
+    /// The error for a value where something else is expected.
+    fn expected(&self, value: &Value<'_>, expected: &str) -> SceneError {
+        self.read_error("", (Some(value.span()), ReadError::expected(value, expected)))
+    }
+
     fn error(&self, message: String, span: Option<Range<usize>>) -> SceneError {
         SceneError::new(self.source, message).at(self.text, span)
     }
@@ -188,7 +185,9 @@ impl<'a> Document<'a> {
     /// The place that an error in a value at the top is about.
     fn place(&self, section: &str, value: &Value<'a>, error: &ReadError) -> Option<Range<usize>> {
         match error {
-            ReadError::Wrong(place, _) => Some(place.clone()),
+            ReadError::UnknownKey(place, ..)
+            | ReadError::MissingKey(place, _)
+            | ReadError::Wrong(place, _) => Some(place.clone()),
             ReadError::Refused(refusal) => self.place_of(section, Some(value), refusal),
         }
     }
@@ -253,13 +252,12 @@ pub(super) fn with_file<'a>(
     section: &Value<'a>,
     key: &str,
     read: impl Fn(&str) -> Result<String, String>,
-) -> Result<Value<'a>, Refusal> {
+) -> Result<Value<'a>, ReadError> {
     let mut section = section.clone();
     let DeValue::Table(table) = section.get_mut() else { return Ok(section) };
     let Some(value) = table.get_mut(key) else { return Ok(section) };
     let DeValue::String(name) = value.get_ref() else {
-        let found = in_words(value.get_ref());
-        return Err(Refusal::at(key, format!("found {found}, expected the name of a file")));
+        return Err(ReadError::expected(value, "the name of a file"));
     };
     let text = read(name).map_err(|why| Refusal::at(key, why))?;
     let parts = [name.clone(), text.into()].map(DeValue::String);

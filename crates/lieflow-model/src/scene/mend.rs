@@ -6,7 +6,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::error::Refusal;
-use super::read::{ReadError, Value, Wrong};
+use super::read::{ReadError, Value};
 use super::suggest::suggest;
 use lieflow::names::near;
 
@@ -86,10 +86,10 @@ impl<'a> Mending<'a> {
     /// True if the error may come from a replacement.
     pub(super) fn explains(&self, (place, error): &Found) -> bool {
         match error {
-            ReadError::Wrong(_, Wrong::MissingKey(key)) => {
+            ReadError::MissingKey(_, key) => {
                 self.left_out.iter().any(|given| suggest(given, &[key]).is_some())
             }
-            ReadError::Wrong(..) => false,
+            ReadError::UnknownKey(..) | ReadError::Wrong(..) => false,
             ReadError::Refused(Refusal { key, message, .. }) => {
                 let place = place.clone().unwrap_or(NOWHERE);
                 let message = message.replace(key.as_deref().unwrap_or("\n"), "");
@@ -107,8 +107,7 @@ impl<'a> Mending<'a> {
     /// These names, and those of the named formulas that need one of them.
     fn with_formulas_of(&self, names: &[String]) -> Vec<String> {
         let mut names = names.to_vec();
-        let DeValue::Table(table) = self.value.get_ref() else { return names };
-        let lets = table.get("let").and_then(|lets| lets.get_ref().as_table());
+        let lets = self.value.get_ref().get("let").and_then(|lets| lets.get_ref().as_table());
         loop {
             let needs = |value: &Value<'_>| {
                 says_any(self.text.get(value.span()).unwrap_or_default(), &names)
@@ -131,8 +130,7 @@ impl<'a> Mending<'a> {
         let place = place.clone()?;
         let mut path = Vec::new();
         let found = path_to(&self.value, &place, &mut path);
-        let wrong = match error {
-            ReadError::Wrong(_, wrong) => wrong,
+        match error {
             ReadError::Refused(_) if self.loose || !found => return None,
             ReadError::Refused(_) => {
                 // Not the section as a whole.
@@ -145,10 +143,8 @@ impl<'a> Mending<'a> {
                 let (of_one, candidates) = (!matches!(wrong, DeValue::String(_)), alike(wrong));
                 return self.try_each(&path, candidates, of_one, read);
             }
-        };
-        match wrong {
-            Wrong::UnknownKey(_, names) => self.take_away(&place, names)?,
-            Wrong::MissingKey(key) => {
+            ReadError::UnknownKey(.., names) => self.take_away(&place, names)?,
+            ReadError::MissingKey(_, key) => {
                 let DeValue::Table(table) = at(&mut self.value, &path)?.get_mut() else {
                     return None;
                 };
@@ -157,7 +153,7 @@ impl<'a> Mending<'a> {
                 path.push(Step::Key((*key).into()));
                 return self.try_literals(&path, read);
             }
-            Wrong::Value(_) => {
+            ReadError::Wrong(..) => {
                 let within = found && !path.is_empty();
                 if let Some(next) = within.then(|| self.try_literals(&path, read)).flatten() {
                     return Some(next);

@@ -20,7 +20,7 @@ pub use defaults::Defaults;
 pub use error::{Either, KeyPath, Refusal, SceneError, at_most_one, exactly_one};
 pub use events::SceneEvent;
 pub use open::unknown_scene;
-pub use read::{Read, ReadError, Value, Wrong};
+pub use read::{Read, ReadError, Value};
 pub use suggest::{help_for, suggest};
 
 use std::hash::{Hash, Hasher};
@@ -40,7 +40,6 @@ use self::events::EventKeys;
 use self::formula::{Formula, Lost, Which};
 use self::keys::{MethodKeys, Output, OutputKeys, TimeKeys, with_defaults};
 use self::open::read_samples;
-use self::read::in_words;
 use crate::kinds::{FormulaKeys, KNOTS_MAX, Kind, ProblemSpec, SAMPLES};
 use crate::model::{Layer, Model, Plan, Steps};
 use crate::schema::Schema;
@@ -450,19 +449,13 @@ fn fitting(model: &dyn Model) -> Vec<&'static str> {
 
 /// The kind of problem that a scene names.
 fn read_kind(document: &Document<'_>) -> Result<&'static Kind, SceneError> {
-    let section = document.section("problem")?;
-    let named = match section.get_ref().get("kind").map(|kind| kind.get_ref()) {
-        None => Err(Refusal::section("missing key `kind` in [problem]")),
-        Some(DeValue::String(name)) => {
-            Kind::named(name).map_err(|error| Refusal { key: Some("kind".into()), ..error.into() })
-        }
-        Some(other) => {
-            let found = in_words(other);
-            let message = format!("found {found}, expected the name of a problem");
-            Err(Refusal::at("kind", message))
-        }
-    };
-    document.check("problem", named)
+    document.read("problem", document.section("problem")?, |section| {
+        let kind = section.get_ref().get("kind");
+        let kind = kind.ok_or_else(|| ReadError::MissingKey(section.span(), "kind"))?;
+        let name = kind.get_ref().as_str();
+        let name = name.ok_or_else(|| ReadError::expected(kind, "the name of a problem"))?;
+        Kind::named(name).map_err(|error| Refusal::from(error).about("kind").into())
+    })
 }
 
 fn read_problem(

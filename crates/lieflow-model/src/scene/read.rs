@@ -31,21 +31,14 @@ pub trait Read: Sized {
 /// Why a value cannot be read.
 #[derive(Clone, Debug)]
 pub enum ReadError {
-    /// A mistake at a place of the text.
-    Wrong(Range<usize>, Wrong),
-    /// A value that cannot be used.
-    Refused(Refusal),
-}
-
-/// A mistake in what is written.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Wrong {
     /// A key that does not exist, and the keys that do.
-    UnknownKey(String, &'static [&'static str]),
-    /// A key that must be there.
-    MissingKey(&'static str),
-    /// A value that is not what is expected: the message.
-    Value(String),
+    UnknownKey(Range<usize>, String, &'static [&'static str]),
+    /// A key that must be in the table at this place.
+    MissingKey(Range<usize>, &'static str),
+    /// A value that is not what is expected: its place and the message.
+    Wrong(Range<usize>, String),
+    /// A value that cannot be used. The place is found by its key.
+    Refused(Refusal),
 }
 
 impl From<Refusal> for ReadError {
@@ -62,39 +55,35 @@ impl From<Error> for ReadError {
 impl ReadError {
     /// A mistake in a value.
     pub fn of(value: &Value<'_>, message: impl Into<String>) -> Self {
-        ReadError::Wrong(value.span(), Wrong::Value(message.into()))
+        ReadError::Wrong(value.span(), message.into())
     }
 
     /// A value where something else is expected.
     pub fn expected(value: &Value<'_>, expected: impl Display) -> Self {
-        Self::of(value, format!("found {}, expected {expected}", in_words(value.get_ref())))
+        let found = match value.get_ref() {
+            DeValue::String(text) => format!("the text {text:?}"),
+            DeValue::Integer(n) => n.to_string(),
+            DeValue::Float(x) => x.to_string(),
+            DeValue::Boolean(x) => x.to_string(),
+            DeValue::Datetime(_) => "a date".into(),
+            DeValue::Array(_) => "a list".into(),
+            DeValue::Table(_) => "a table".into(),
+        };
+        Self::of(value, format!("found {found}, expected {expected}"))
     }
 
     /// The message of an error in a section, and a suggestion.
     pub(crate) fn in_words(self, section: &str) -> (String, Option<String>) {
         match self {
-            ReadError::Wrong(_, Wrong::UnknownKey(given, names)) => {
+            ReadError::UnknownKey(_, given, names) => {
                 (format!("unknown key `{given}` in [{section}]"), Some(help_for(&given, names)))
             }
-            ReadError::Wrong(_, Wrong::MissingKey(name)) => {
+            ReadError::MissingKey(_, name) => {
                 (format!("missing key `{name}` in [{section}]"), None)
             }
-            ReadError::Wrong(_, Wrong::Value(message)) => (message, None),
+            ReadError::Wrong(_, message) => (message, None),
             ReadError::Refused(Refusal { message, help, .. }) => (message, help),
         }
-    }
-}
-
-/// A value as messages call it.
-pub(crate) fn in_words(value: &DeValue<'_>) -> String {
-    match value {
-        DeValue::String(text) => format!("the text {text:?}"),
-        DeValue::Integer(n) => n.to_string(),
-        DeValue::Float(x) => x.to_string(),
-        DeValue::Boolean(x) => x.to_string(),
-        DeValue::Datetime(_) => "a date".into(),
-        DeValue::Array(_) => "a list".into(),
-        DeValue::Table(_) => "a table".into(),
     }
 }
 
@@ -162,18 +151,13 @@ impl<'v, 'a> KeyReader<'v, 'a> {
         let unknown = table.keys().find(|key| !names.contains(&key.get_ref().as_ref()));
         let mistake = unknown.map(|key| {
             let given: &str = key.get_ref();
-            (given, ReadError::Wrong(key.span(), Wrong::UnknownKey(given.into(), names)))
+            (given, ReadError::UnknownKey(key.span(), given.into(), names))
         });
         Ok(KeyReader { table, place: value.span(), mistakes: mistake.into_iter().collect() })
     }
 
     /// Reads the value of a key. Returns `None` if the key is missing or its value has a mistake.
-    pub(crate) fn read<T: Read>(&mut self, name: &'static str) -> Option<T> {
-        self.read_with(name, T::read)
-    }
-
-    /// Reads the value of a key by a function.
-    pub(crate) fn read_with<T>(
+    pub(crate) fn read<T>(
         &mut self,
         name: &'static str,
         read: impl FnOnce(&Value<'_>) -> Result<T, ReadError>,
@@ -194,12 +178,8 @@ impl<'v, 'a> KeyReader<'v, 'a> {
         name: &'static str,
         value: Option<T>,
     ) -> Result<T, ReadError> {
-        value.or_else(T::missing).ok_or_else(|| self.missing(name))
-    }
-
-    /// The error for a missing key.
-    pub(crate) fn missing(&self, name: &'static str) -> ReadError {
-        ReadError::Wrong(self.place.clone(), Wrong::MissingKey(name))
+        let missing = || ReadError::MissingKey(self.place.clone(), name);
+        value.or_else(T::missing).ok_or_else(missing)
     }
 }
 
@@ -243,9 +223,9 @@ macro_rules! read_by_keys {
             fn read(
                 value: &$crate::scene::read::Value<'_>,
             ) -> Result<Self, $crate::scene::read::ReadError> {
-                use $crate::scene::read::{KeyReader, key_name};
+                use $crate::scene::read::{KeyReader, Read, key_name};
                 let mut keys = KeyReader::of(value, const { &[$(key_name(stringify!($key)),)*] })?;
-                $(let $key = keys.read(const { key_name(stringify!($key)) });)*
+                $(let $key = keys.read(const { key_name(stringify!($key)) }, Read::read);)*
                 keys.check()?;
                 Ok($name {
                     $($key: keys.or_missing(const { key_name(stringify!($key)) }, $key)?,)*

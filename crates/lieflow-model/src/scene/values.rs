@@ -49,39 +49,19 @@ impl<const MIN: u64> Read for Whole<MIN> {
     }
 }
 
-/// Reads a list that is to have so many entries; another number of them is left to [`wrong_count`].
-fn list<T: Read>(value: &Value<'_>, count: usize, what: &str) -> Result<Vec<T>, ReadError> {
-    match value.get_ref() {
-        DeValue::Array(_) => Vec::read(value),
-        _ => Err(ReadError::expected(value, format!("a list of {count} {what}"))),
-    }
-}
-
-/// The error for a list of another number of entries.
-fn wrong_count(value: &Value<'_>, found: usize, count: usize, what: &str) -> ReadError {
-    let found = if found == 0 { "none".into() } else { found.to_string() };
-    ReadError::of(value, format!("expected {count} {what}, found {found}"))
-}
-
-/// Reads a list of so many numbers.
-///
-/// # Errors
-/// [`ReadError`] for another value.
-pub fn numbers(value: &Value<'_>, count: usize) -> Result<Vec<f64>, ReadError> {
-    let list: Vec<Real> = list(value, count, "numbers")?;
-    match list.len() == count {
-        true => Ok(list.iter().map(|x| x.0).collect()),
-        false => Err(wrong_count(value, list.len(), count, "numbers")),
-    }
-}
-
-/// Reads a list of N entries.
-pub(crate) fn entries<T: Read, const N: usize>(
+/// Reads a list of so many entries.
+pub(crate) fn counted<T: Read, L: TryFrom<Vec<T>>>(
     value: &Value<'_>,
+    count: usize,
     what: &str,
-) -> Result<[T; N], ReadError> {
-    let list = list(value, N, what)?;
-    list.try_into().map_err(|list: Vec<T>| wrong_count(value, list.len(), N, what))
+) -> Result<L, ReadError> {
+    if !value.get_ref().is_array() {
+        return Err(ReadError::expected(value, format!("a list of {count} {what}")));
+    }
+    let list = Vec::<T>::read(value)?;
+    let found = if list.is_empty() { "none".into() } else { list.len().to_string() };
+    let list = if list.len() == count { list.try_into().ok() } else { None };
+    list.ok_or_else(|| ReadError::of(value, format!("expected {count} {what}, found {found}")))
 }
 
 /// N numbers.
@@ -90,7 +70,8 @@ pub struct Reals<const N: usize>(pub [f64; N]);
 
 impl<const N: usize> Read for Reals<N> {
     fn read(value: &Value<'_>) -> Result<Self, ReadError> {
-        Ok(Reals(entries(value, "numbers")?.map(|x: Real| x.0)))
+        let numbers: [Real; N] = counted(value, N, "numbers")?;
+        Ok(Reals(numbers.map(|x| x.0)))
     }
 }
 
@@ -109,7 +90,7 @@ impl Read for Span {
                 }
             }
         }
-        let [End(start), End(end)] = entries(value, "numbers")?;
+        let [End(start), End(end)] = counted(value, 2, "numbers")?;
         match start.is_finite() {
             true => Ok(Span([start, end])),
             false => Err(ReadError::of(value, format!("found {start}, expected a finite number"))),
@@ -123,7 +104,8 @@ pub struct Rows<const N: usize>(pub [[f64; N]; N]);
 
 impl<const N: usize> Read for Rows<N> {
     fn read(value: &Value<'_>) -> Result<Self, ReadError> {
-        Ok(Rows(entries(value, "rows of numbers")?.map(|row: Reals<N>| row.0)))
+        let rows: [Reals<N>; N] = counted(value, N, "rows of numbers")?;
+        Ok(Rows(rows.map(|row| row.0)))
     }
 }
 
@@ -153,7 +135,7 @@ impl<R: Read> Read for Entry<R> {
 
 impl Read for Diagonal {
     fn read(value: &Value<'_>) -> Result<Self, ReadError> {
-        match entries::<Entry<Reals<3>>, 3>(value, "numbers")? {
+        match counted::<Entry<Reals<3>>, [_; 3]>(value, 3, "numbers")? {
             [Entry::Number(a), Entry::Number(b), Entry::Number(c)] => Ok(Diagonal::List([a, b, c])),
             [Entry::Row(a), Entry::Row(b), Entry::Row(c)] => Ok(Diagonal::Rows([a.0, b.0, c.0])),
             _ => {

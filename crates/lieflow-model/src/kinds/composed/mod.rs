@@ -25,7 +25,7 @@ pub(super) const KIND: Kind = Kind {
     name: "composed",
     equation: "ȧ = f × a for vectors, ȧ = f̂ a for rotations, ȧ = f for numbers, f of all parts",
     summary: "a system composed from parts, vectors on spheres, rotations and numbers, by formulas",
-    ..Kind::of::<Keys, Composed>(read)
+    ..Kind::of::<Keys, Composed>(|section| read(Read::read(section)?))
 };
 
 keys! { Keys [sample_keys formula_keys] {
@@ -64,8 +64,7 @@ struct Composed {
 
 type Q = Quantity<Composed>;
 
-fn read(section: &Value<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
-    let mut keys = Keys::read(section)?;
+fn read(mut keys: Keys) -> Result<Box<dyn ProblemSpec>, ReadError> {
     let (formulas, samples) = (keys.formula_keys(), keys.sample_keys());
     let Keys { parts: keys, invariants, .. } = keys;
     if keys.is_empty() {

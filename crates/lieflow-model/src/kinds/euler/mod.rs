@@ -34,7 +34,7 @@ pub(super) const KIND: Kind = Kind {
     equation: "ṁ = P(ξᵀm − mξᵀ), ξ = P(∂H/∂m) or P(W ∘ m), P the orthogonal projection on the algebra; on so3 \
                ṁ = m × ∂H/∂m, on se3 ṁ = m × ∂H/∂m + p × ∂H/∂p, ṗ = p × ∂H/∂m",
     summary: "Euler's equations of any energy on the dual of so(n), sl(n), gl(n), sp(2m), so(p,q), so3 or se3",
-    ..Kind::of::<Keys, WithGroup>(read)
+    ..Kind::of::<Keys, WithGroup>(|section| read(Read::read(section)?))
 };
 
 keys! { Keys [formula_keys] {
@@ -50,8 +50,7 @@ keys! { Keys [formula_keys] {
          row; 3 numbers on so3, 6 on se3",
 } }
 
-fn read(section: &Value<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
-    let keys = Keys::read(section)?;
+fn read(keys: Keys) -> Result<Box<dyn ProblemSpec>, ReadError> {
     match (plain(&keys.algebra).as_str(), Algebra::named(&keys.algebra)) {
         ("so3", _) => Ok(Box::new(Stated(Vectors::<3>::read(keys)?))),
         ("se3", _) => Ok(Box::new(Stated(Vectors::<6>::read(keys)?))),

@@ -20,7 +20,7 @@ pub(super) const KIND: Kind = Kind {
     name: "fluid",
     equation: "Ẇ = [P, W]/ħ, ΔP = W: vorticity ω carried by the stream function ψ, Δψ = ω",
     summary: "an ideal fluid on the sphere or the torus, Zeitlin's model with N×N matrices",
-    ..Kind::of::<Keys, Fluid>(read)
+    ..Kind::of::<Keys, Fluid>(|section| read(Read::read(section)?))
 };
 
 keys! { Keys {
@@ -59,8 +59,8 @@ fn below(n: usize) -> impl Iterator<Item = (usize, usize)> {
     (0..n).flat_map(move |j| (j..n).map(move |i| (i, j)))
 }
 
-fn read(section: &Value<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
-    let (place, start) = Keys::read(section)?.resolve()?;
+fn read(keys: Keys) -> Result<Box<dyn ProblemSpec>, ReadError> {
+    let (place, start) = keys.resolve()?;
     Ok(Box::new(Stated(Fluid { fluid: Zeitlin::new(place)?, start })))
 }
 

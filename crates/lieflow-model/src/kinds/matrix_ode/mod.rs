@@ -33,7 +33,7 @@ pub(super) const KIND: Kind = Kind {
     equation: "ẏ = f y (translation, linear), f y − y f (conjugation), y fᵀ − fᵀ y (coadjoint), c + d y − y a − y b y \
                (lagrangian, f = [a b; c d]), f(t, y) in the algebra",
     summary: "an equation on matrices in formulas, by the action of a matrix group",
-    ..Kind::of::<Keys, Equation>(read)
+    ..Kind::of::<Keys, Equation>(|section| read(Read::read(section)?))
 };
 
 keys! { Keys [sample_keys formula_keys] {
@@ -60,8 +60,7 @@ const ACTIONS: [(&str, MatrixAction); 5] = [
 /// Formulas name entries by one digit for the row and one for the column.
 const NAMED_MAX: usize = 9;
 
-fn read(section: &Value<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
-    let mut keys = Keys::read(section)?;
+fn read(mut keys: Keys) -> Result<Box<dyn ProblemSpec>, ReadError> {
     let (formulas, samples) = (keys.formula_keys(), keys.sample_keys());
     let named = Algebra::named(&keys.group)
         .ok_or_else(|| Refusal::unknown("group", &keys.group, &ALGEBRAS))?;

@@ -16,13 +16,13 @@ pub(super) const KIND: Kind = Kind {
     name: "rigid-body",
     equation: "ṁ = m × ω, m = Jω, in the body; ġ = gω̂ takes the body to space",
     summary: "the free rigid body, by its momentum on so(3)*, its attitude on SO(3) or its quaternion",
-    ..Kind::of::<Keys, Body<Attitude>>(read)
+    ..Kind::of::<Keys, Body<Attitude>>(|section| read(Read::read(section)?))
 };
 
 keys! { Keys [body_keys] {} }
 
-fn read(section: &Value<'_>) -> Result<Box<dyn ProblemSpec>, ReadError> {
-    Ok(Box::new(Keys::read(section)?.body_keys().start(Matrix3::identity())?))
+fn read(mut keys: Keys) -> Result<Box<dyn ProblemSpec>, ReadError> {
+    Ok(Box::new(keys.body_keys().start(Matrix3::identity())?))
 }
 
 /// Do these quantities need the attitude? Not of a body that cannot be set up.

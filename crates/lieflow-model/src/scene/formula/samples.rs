@@ -6,7 +6,7 @@ use lieflow::samples::{Interpolation, Samples};
 
 use super::super::Refusal;
 use super::super::read::{Read, ReadError, Value};
-use super::super::values::entries;
+use super::super::values::counted;
 
 /// The key of the file.
 const KEY: &str = "samples";
@@ -17,7 +17,7 @@ pub struct SamplesFile(pub(super) String, pub(super) String);
 
 impl Read for SamplesFile {
     fn read(value: &Value<'_>) -> Result<Self, ReadError> {
-        let [name, text] = entries(value, "texts")?;
+        let [name, text] = counted(value, 2, "texts")?;
         Ok(SamplesFile(name, text))
     }
 }
