@@ -86,8 +86,9 @@ impl<'a> Mending<'a> {
     /// True if the error may come from a replacement.
     pub(super) fn explains(&self, (place, error): &Found) -> bool {
         match error {
-            ReadError::MissingKey(_, key) => {
-                self.left_out.iter().any(|given| suggest(given, &[key]).is_some())
+            ReadError::MissingKey(table, key) => {
+                let named = |given: &String| suggest(given, &[key]).is_some();
+                self.places.contains(table) || self.left_out.iter().any(named)
             }
             ReadError::UnknownKey(..) | ReadError::Wrong(..) => false,
             ReadError::Refused(Refusal { key, message, .. }) => {
@@ -205,6 +206,8 @@ impl<'a> Mending<'a> {
             *at(&mut self.value, path)?.get_mut() = candidate;
             let next = read(&self.value);
             let harmless = match &next {
+                // The keys of a table are mended next.
+                Some((_, ReadError::MissingKey(..))) => true,
                 Some((Some(other), _)) => *other == whole || apart(other, &place),
                 _ => true,
             };
@@ -215,7 +218,7 @@ impl<'a> Mending<'a> {
                     self.values.extend(of_one.then(|| key.clone()));
                 }
                 let all = if of_one { of_key } else { path };
-                self.places.push(at(&mut self.value, all)?.span());
+                self.places.extend([at(&mut self.value, all)?.span(), place]);
                 self.loose |= loose;
                 return Some(next);
             }

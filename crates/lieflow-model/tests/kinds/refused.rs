@@ -337,6 +337,16 @@ fn all_values_at_once() {
     let rabi = rabi.replace("frequency = ", "frequency = \"fast\" # ");
     let message = Scene::parse("scene", &rabi).unwrap_err().to_string();
     assert!(message.contains(": 2 mistakes") && message.contains("the text \"fast\""), "{message}");
+    // Each entry of a list that is no table is told, and not the keys that it cannot have.
+    let bodies =
+        "[problem]\nkind = \"rigid-bodies\"\nbodies = [1, {}, [2, 3]]\n[time]\nt_span = [0, 1]\n";
+    let expected = [
+        "3:11: found 1, expected a table with the keys inertia, momentum_body",
+        "3:14: missing key `inertia`",
+        "3:14: missing key `momentum_body`",
+        "3:18: found a list, expected a table",
+    ];
+    as_expected(&told(bodies), &expected);
     // What a wrong named formula is needed for is left alone, also where it is needed by another one.
     let field = "[problem]\nkind = \"driven-body\"\ninertia = [1, 2, 3]\nomega_body = [1, 2, 0]\n\
                  torque = \"cross(c, w)\"\ntorque_space = [\"c2\", \"u\", 0]\n[problem.let]\n\
