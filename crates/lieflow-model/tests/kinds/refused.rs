@@ -368,6 +368,19 @@ fn a_scene_has_a_name() {
     assert_eq!(sources.map(name), ["my.scene", "b", "scene", "scene", ".toml", "scene"]);
 }
 
+/// Two scenes with one fingerprint state the same, however they are written.
+#[test]
+fn the_fingerprint_is_of_what_is_stated() {
+    let problem =
+        "[problem]\nkind = \"spin\"\nfield = [0, 0, 1]\nrate = 1e-1\nmoment = [1, 0, 0]\n";
+    let time = "[time]\nt_span = [0, 1]\n";
+    let of = |text: &str| Scene::parse("scene", text).unwrap().fingerprint;
+    let first = of(&format!("{problem}{time}"));
+    let written = problem.replace("rate = 1e-1\nmoment", "  moment").replace(", ", ",");
+    assert_eq!(first, of(&format!("# A spin.\n{time}{written}rate = 0.1 # slow\n")));
+    assert_ne!(first, of(&format!("{problem}{time}").replace("1e-1", "2e-1")));
+}
+
 /// The line is that of the part, however far below; without parts there is no system.
 #[test]
 fn a_part_is_named_by_its_line() {
