@@ -5,11 +5,11 @@
 //! | `name`, `equation`, `summary` | what listings say |
 //! | `modelled`, `state` | what is integrated, in words; the quantities that make up the state |
 //! | `figure`, `drawn` | `"lines"`, `"sphere"`, `"curve"` or `"points"`; the quantity that is drawn |
-//! | `[[keys]]` | the keys: `name`, `meaning`, how many `numbers` where it is a list, `positive` |
+//! | `[[keys]]` | the keys: `name`, `meaning`, how many `numbers` where it is a list, `positive` for numbers > 0 |
 //! | `[problem]` | the problem of the base; its formulas may name the keys |
 //! | `[values]` | further keys of that problem: texts are formulas in the keys, and the base gets their values |
 //! | `observed` | quantities of the base: their columns are the variables of the formulas of quantities |
-//! | `[[quantities]]` | `name`, `columns`, `meaning`, `formulas`; `kept` is its law: the degree by the `flow` or by the `action`, and the size of its `terms` |
+//! | `[[quantities]]` | `name`, `columns`, `meaning`, `formulas`; `kept` is its law, by the `flow` or by the `action`: its degree, and the size of its `terms` |
 //!
 //! A key `x` that is a list of numbers is `x1`, `x2`, ... in formulas.
 
@@ -82,7 +82,7 @@ read_by_keys! {
         meaning: &'static str,
         /// The length of the list; none for one number.
         numbers: Option<Whole<1>>,
-        /// Has x to be > 0, and 1/x finite?
+        /// True if each number has to be > 0 with a finite reciprocal.
         positive: Option<bool>,
     }
 }
@@ -104,7 +104,7 @@ read_by_keys! {
     /// The law of a quantity.
     #[derive(Debug)]
     struct LawText {
-        /// The degree, of a law by the flow and by the action.
+        /// The degree of a law by the flow, or of one by the action.
         flow: Option<Whole<0>>,
         action: Option<Whole<0>>,
         terms: Option<String>,
