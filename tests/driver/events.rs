@@ -50,6 +50,8 @@ fn t13_events_in_odd_places() {
         // At the start, at the ends of steps, at the end, in the middle.
         near(&find(Box::new(|x| x), None, change), &[(0.0, true)]);
         near(&find(Box::new(|x| -x), None, change), &[(0.0, false)]);
+        near(&find(Box::new(|x| x), Some(0), change), &[(0.0, true)]);
+        near(&find(Box::new(|x| -x), Some(0), change), &[(0.0, false)]);
         near(&find(Box::new(|x| x - 1.5), None, change), &[(1.5, true)]);
         near(&find(Box::new(|x| 4.0 - x), None, change), &[(4.0, false)]);
         near(&find(Box::new(|x| x - 1.7), None, change), &[(1.7, true)]);

@@ -1,11 +1,15 @@
 //! One run in every mode of the driver: each way to call it, each kind of output, events, stops, by hand.
 
-use lieflow::methods::Embedded;
-use lieflow::problems::Problem;
+use lieflow::actions::Linear;
+use lieflow::groups::So3;
+use lieflow::maps::CCSK;
+use lieflow::methods::tableau::RK4;
+use lieflow::methods::{AnyMethod, Embedded, Method, Rkmk};
+use lieflow::problems::{Flow, Problem};
 use lieflow::solve::{Interrupted, Next, Status};
 use lieflow::{
-    Action, Event, LieAlgebra, RunError, SaveAt, Solution, Solve, StepControl, TimeGrid, integrate,
-    integrate_adaptive,
+    Action, Event, LieAlgebra, RunError, SaveAt, Solution, Solve, Step, StepControl, TimeGrid,
+    integrate, integrate_adaptive,
 };
 use nalgebra::Vector3;
 
@@ -200,5 +204,26 @@ fn stored(mode: &'static str, run: Result<Solution<V>, Interrupted<V>>) -> Ran {
             });
             Ran { mode, end: Err(failed.error), last }
         }
+    }
+}
+
+#[test]
+fn a_method_behind_a_pointer_takes_the_typed_step() {
+    // The map alternates with the number of the step, and f depends on t.
+    let flow = Flow::new(So3::new(), Linear, |t: f64, x: &V, v: &mut V| {
+        *v = V::new(t, x[0], 1.0 + t * x[1]);
+    });
+    let typed = Rkmk::new(RK4, CCSK);
+    let any = AnyMethod::new(typed);
+    let (mut a, mut b) = (V::new(0.3, 0.4, 1.2), V::new(0.3, 0.4, 1.2));
+    let mut typed_work = typed.work(&flow, &a).expect("the method fits");
+    let mut any_work = any.work(&flow, &b).expect("the method fits");
+    for n in [0u64, 1, 2, 5, 5, 8] {
+        let step = Step { n, t: 0.1 * n as f64, h: 0.1 };
+        let start = a;
+        typed.step(&flow, step, &mut a, &mut typed_work).expect("a step");
+        any.step(&flow, step, &mut b, &mut any_work).expect("a step");
+        assert_eq!(a, b, "step {n}");
+        assert_ne!(a, start, "step {n}");
     }
 }
