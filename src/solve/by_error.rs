@@ -1,24 +1,27 @@
 //! Adaptive step size: one accepted step, and the choice of the first step.
 
-use super::integrator::{Chooser, Integrator, Looked, Pacer, lit, size_to};
+use super::control::StepControl;
+use super::points::AnyPoints;
 use super::stats::{RunError, Stats};
-use crate::actions::Action;
+use super::timeline::{Pacer, Timeline, size_to};
 use crate::error::StepError;
-use crate::groups::LieAlgebra;
-use crate::methods::{Method, Step};
-use crate::problems::{AlgOf, Problem, ScalarOf};
-use crate::scalar::Real;
+use crate::methods::Step;
 
 /// The number of rejections in a row that ends a run.
 const REJECTIONS_MAX: u32 = 60;
 
-impl<P: Problem, M: Method<P>> Integrator<'_, P, M> {
-    pub(super) fn chosen_step(&mut self, stop: f64, jumps: bool) -> Result<(), RunError> {
+impl Timeline {
+    pub(super) fn chosen_step(
+        &mut self,
+        points: &mut dyn AnyPoints,
+        stop: f64,
+        jumps: bool,
+    ) -> Result<(), RunError> {
         let Pacer::ByError(chooser) = &self.pacer else { return Ok(()) };
-        let (min_step, max_steps) = (chooser.control.min_step, chooser.control.max_steps);
-        let mut h = match (chooser.h, chooser.control.first_step) {
-            (Some(h), _) | (None, Some(h)) => h,
-            (None, None) => self.first_step(stop),
+        let StepControl { min_step, max_steps, first_step, .. } = chooser.control;
+        let mut h = match chooser.h.or(first_step) {
+            Some(h) => h,
+            None => self.first_step(points, stop),
         };
         let mut in_a_row = 0;
         loop {
@@ -32,12 +35,11 @@ impl<P: Problem, M: Method<P>> Integrator<'_, P, M> {
             }
             let h_to_end = size_to(self.t, end, jumps && end == stop);
             let step = Step { n: self.stats.accepted, t: self.t, h: h_to_end };
-            match self.attempt(step) {
+            match self.attempt(points, step) {
                 Ok(ratio) if ratio <= 1.0 => {
                     let forward = self.t1 > self.t;
-                    core::mem::swap(&mut self.from, &mut self.y);
-                    core::mem::swap(&mut self.y, &mut self.to);
-                    self.accepted(step, end);
+                    points.accept();
+                    self.accepted(points, step, end);
                     let Pacer::ByError(chooser) = &mut self.pacer else { return Ok(()) };
                     let passed = |wall: &f64| if forward { end >= *wall } else { end <= *wall };
                     chooser.wall = chooser.wall.filter(|wall| !passed(wall));
@@ -88,58 +90,22 @@ impl<P: Problem, M: Method<P>> Integrator<'_, P, M> {
     }
 
     /// `to` ← the step from y. Returns its error in units of the tolerance.
-    fn attempt(&mut self, step: Step<f64>) -> Result<f64, StepError> {
-        let Pacer::ByError(chooser) = &self.pacer else {
-            return Err(StepError::NotFinite { what: "the error estimate" });
-        };
-        let Chooser { control, estimator, evaluations, maps, .. } = &**chooser;
-        self.stats.evaluations = self.stats.evaluations.zip(*evaluations).map(|(n, more)| n + more);
-        self.stats.maps = self.stats.maps.zip(*maps).map(|(n, more)| n + more);
-        self.looked_at = Looked::Nothing;
-        let (tolerance, work) = (&control.tolerance, &mut self.work);
-        let ratio = (estimator.attempt)(
-            self.method,
-            self.problem,
-            lit::<P>(step),
-            tolerance,
-            &self.y,
-            work,
-            &mut self.to,
-        )?;
-        if !self.problem.action().is_finite(self.problem.group(), &self.to) {
-            return Err(StepError::NotFinite { what: "the state" });
-        }
-        match ratio.is_finite() {
-            true => Ok(ratio),
-            false => Err(StepError::NotFinite { what: "the error estimate" }),
+    fn attempt(&mut self, points: &mut dyn AnyPoints, step: Step<f64>) -> Result<f64, StepError> {
+        self.attempted();
+        match &self.pacer {
+            Pacer::ByError(chooser) => points.attempt(step, &chooser.control.tolerance),
+            Pacer::Equal { .. } => Err(StepError::NotFinite { what: "the error estimate" }),
         }
     }
 
     /// The first step, by Hairer, Nørsett, Wanner I, II.4, in the norm of 𝔤. A trial step moves by 1/100 and shows how
     /// much f changes.
-    fn first_step(&mut self, stop: f64) -> f64 {
-        let Pacer::ByError(chooser) = &mut self.pacer else { return 0.0 };
-        let Some(mut store) = chooser.first.take() else { return 0.0 };
-        let h = self.first_step_with(stop, &mut store);
-        if let Pacer::ByError(chooser) = &mut self.pacer {
-            chooser.first = Some(store);
-        }
-        h
-    }
-
-    fn first_step_with(
-        &mut self,
-        stop: f64,
-        (f0, f1, work): &mut (AlgOf<P>, AlgOf<P>, P::Work),
-    ) -> f64 {
+    fn first_step(&mut self, points: &mut dyn AnyPoints, stop: f64) -> f64 {
         let Pacer::ByError(chooser) = &self.pacer else { return 0.0 };
         let (k, tolerance) = (chooser.controller.k, chooser.control.tolerance.of_unit_size());
-        let (group, one) = (self.problem.group(), ScalarOf::<P>::lit);
-        let norm = chooser.estimator.norm;
         let span = (stop - self.t).abs();
-        self.problem.f(one(self.t), &self.y, f0, work);
+        let d1 = points.rate(self.t);
         self.stats.evaluations = self.stats.evaluations.map(|n| n + 1);
-        let d1 = norm(self.problem, f0);
         if !d1.is_finite() {
             return 1e-3 * span.min(1.0); // the first attempt will say what is wrong
         }
@@ -152,14 +118,14 @@ impl<P: Problem, M: Method<P>> Integrator<'_, P, M> {
         if end == self.t {
             return if still { span } else { h0 };
         }
-        if self.attempt(Step { n: self.stats.accepted, t: self.t, h: end - self.t }).is_err() {
+        let trial = Step { n: self.stats.accepted, t: self.t, h: end - self.t };
+        if self.attempt(points, trial).is_err() {
             return h0;
         }
-        self.problem.f(one(end), &self.to, f1, work);
+        let change = points.change_of_rate(end);
         self.stats.evaluations = self.stats.evaluations.map(|n| n + 1);
-        group.axpy(one(-1.0), f0, f1);
         // Rates: f itself, and the root of its derivative.
-        let rate = d1.max((norm(self.problem, f1) / h0).sqrt());
+        let rate = d1.max((change / h0).sqrt());
         let h1 = (0.01 * tolerance).powf(1.0 / k) / rate;
         match h1.is_finite() {
             true => h1.min(100.0 * h0),

@@ -1,7 +1,7 @@
 //! The continuous solution of a run.
 
-use super::drive::Kept;
 use super::integrator::Integrator;
+use super::output::Kept;
 use super::solution::Solution;
 use super::stats::RunError;
 use crate::error::Error;

@@ -1,145 +1,71 @@
-//! The loop over the steps, with output, events, stops and cancellation.
+//! The loop over the steps, with output, events, stops and cancellation. This part of the driver knows numbers only.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use super::events::Events;
 use super::grid::SaveAt;
-use super::integrator::Integrator;
-use super::save::Listing;
-use super::solution::{Drift, Interrupted, Next, Occurrence, Solution, Status};
+use super::output::{AnyOutput, Slot};
+use super::solution::{Drift, Next, Status};
 use super::stats::RunError;
-use super::{Event, Solve};
-use crate::actions::Action;
-use crate::methods::{Method, Step};
-use crate::problems::{PointOf, Problem};
-
-/// The function that gives the invariants of a problem.
-pub(super) struct Watch<P: Problem> {
-    pub(super) names: fn(&P) -> Vec<String>,
-    pub(super) values: fn(&P, &PointOf<P>) -> Vec<f64>,
-}
+use super::timeline::Timeline;
 
 /// The function that takes the bytes of a state.
 type TakeBytes<'a> = Box<dyn FnMut(&[u8]) + 'a>;
 
 /// When the state is saved, and the function that takes it.
-pub(super) struct Checkpoints<'a, P: Problem> {
-    pub(super) list: Listing<P>,
+pub(super) struct Checkpoints<'a> {
     pub(super) every: Duration,
     pub(super) take: TakeBytes<'a>,
     pub(super) last: Instant,
 }
 
-/// A stored step: the time up to which it is valid, the step, and its start.
-pub(super) type Kept<Y> = (f64, Step<f64>, Y);
-
-/// The function that sees the points of the output.
-pub(super) type Observe<'k, Y> = dyn FnMut(f64, &mut Y) -> Next + 'k;
-
 /// A run under way.
-///
-/// It is compiled once for each problem and method: the observer is behind a reference, and searches and sorts are
-/// functions of numbers.
-pub(super) struct Drive<'a, 'k, P: Problem, M: Method<P>> {
-    pub(super) run: Integrator<'a, P, M>,
-    observe: &'k mut Observe<'k, PointOf<P>>,
-    pub(super) events: Events<'a, P>,
+pub(super) struct Drive<'a> {
+    pub(super) times: Timeline,
+    pub(super) events: Events,
     pub(super) save: SaveAt,
     /// The start of the run.
-    t0: f64,
+    pub(super) t0: f64,
     /// How many of the output times are done.
     pub(super) times_done: usize,
-    times_by_steps: bool,
+    pub(super) times_by_steps: bool,
     /// The stops that are still ahead.
-    stops: std::vec::IntoIter<f64>,
-    next_stop: Option<f64>,
-    cancel: Option<&'a AtomicBool>,
-    progress: Option<Box<dyn FnMut(f64) + 'a>>,
-    checkpoints: Option<Checkpoints<'a, P>>,
-    resume: Option<(Listing<P>, Vec<u8>)>,
-    watch: Option<Watch<P>>,
-    kept: Option<&'k mut Vec<Kept<PointOf<P>>>>,
-    /// A point of the output.
-    shown: PointOf<P>,
+    pub(super) stops: std::vec::IntoIter<f64>,
+    pub(super) next_stop: Option<f64>,
+    pub(super) cancel: Option<&'a AtomicBool>,
+    pub(super) progress: Option<Box<dyn FnMut(f64) + 'a>>,
+    pub(super) checkpoints: Option<Checkpoints<'a>>,
+    pub(super) resume: Option<Vec<u8>>,
+    /// True if each step is stored.
+    pub(super) keeps: bool,
     /// The time of the last output.
     pub(super) shown_at: Option<f64>,
-    pub(super) solution: Solution<PointOf<P>>,
+    /// The drifts of the invariants that are watched.
+    pub(super) drift: Vec<Drift>,
 }
 
 /// Whether and why a run ends.
 type Ended = Result<Option<Status>, RunError>;
 
-impl<'a, 'k, P: Problem, M: Method<P>> Drive<'a, 'k, P, M> {
-    pub(super) fn new(
-        solve: Solve<'a, P, M>,
-        run: Integrator<'a, P, M>,
-        kept: Option<&'k mut Vec<Kept<PointOf<P>>>>,
-        observe: &'k mut Observe<'k, PointOf<P>>,
-    ) -> Self {
-        let Solve {
-            save,
-            times_by_steps,
-            events,
-            stops,
-            cancel,
-            watch,
-            checkpoints,
-            resume,
-            progress,
-            ..
-        } = solve;
-        let y = run.y();
-        let mut stops = stops.into_iter();
-        Drive {
-            events: Events::new(events, y),
-            shown: y.clone(),
-            shown_at: None,
-            solution: Solution::new(run.t(), y.clone()),
-            save,
-            t0: run.t(),
-            times_done: 0,
-            times_by_steps,
-            next_stop: stops.next(),
-            stops,
-            cancel,
-            progress,
-            checkpoints,
-            resume,
-            watch,
-            kept,
-            observe,
-            run,
-        }
-    }
-
-    pub(super) fn run(mut self) -> Result<Solution<PointOf<P>>, Interrupted<PointOf<P>>> {
-        if let Some(Watch { names, values }) = &self.watch {
-            let problem = self.run.problem;
-            let starts = values(problem, self.run.y());
-            self.solution.drift = names(problem)
-                .into_iter()
-                .zip(starts)
-                .map(|(name, start)| Drift { name, start, largest: 0.0, at_end: 0.0 })
-                .collect();
-        }
-        let ended = self.steps();
-        self.see(true);
-        let Drive { run, mut solution, .. } = self;
-        solution.t = run.t();
-        solution.stats = run.stats();
-        solution.y = run.y;
-        match ended {
-            Ok(status) => Ok(Solution { status, ..solution }),
-            Err(error) => Err(Interrupted { error, solution: Some(Box::new(solution)) }),
-        }
+impl Drive<'_> {
+    /// Runs to the end, or to an error.
+    pub(super) fn run(&mut self, output: &mut dyn AnyOutput) -> Result<Status, RunError> {
+        let starts = output.invariants().into_iter().zip(output.values(Slot::State));
+        let drift = |(name, start)| Drift { name, start, largest: 0.0, at_end: 0.0 };
+        self.drift = starts.map(drift).collect();
+        let ended = self.steps(output);
+        self.see(output, true);
+        ended
     }
 
     /// The values of the invariants at the point of the output, or at the end.
-    fn see(&mut self, end: bool) {
-        let Some(Watch { values, .. }) = &self.watch else { return };
-        let y = if end { self.run.y() } else { &self.shown };
-        for (drift, value) in self.solution.drift.iter_mut().zip(values(self.run.problem, y)) {
+    fn see(&mut self, output: &dyn AnyOutput, end: bool) {
+        if self.drift.is_empty() {
+            return;
+        }
+        let values = output.values(if end { Slot::State } else { Slot::Shown });
+        for (drift, value) in self.drift.iter_mut().zip(values) {
             let moved = value - drift.start;
             drift.largest = drift.largest.max(moved.abs());
             if end {
@@ -148,65 +74,60 @@ impl<'a, 'k, P: Problem, M: Method<P>> Drive<'a, 'k, P, M> {
         }
     }
 
-    fn is_before(&self, a: f64, b: f64) -> bool {
-        if self.run.t1 >= self.run.last.t { a < b } else { a > b }
-    }
-
-    fn steps(&mut self) -> Result<Status, RunError> {
-        let (t0, t1) = (self.run.t(), self.run.t1);
+    fn steps(&mut self, output: &mut dyn AnyOutput) -> Result<Status, RunError> {
+        let (t0, t1) = (self.times.t, self.times.t1);
         self.times_done = match &self.save {
             SaveAt::Times(times) => times.len() - self.save.times_after(t0).len(),
             _ => 0,
         };
-        if let Some((list, bytes)) = self.resume.take() {
-            self.read(list, &bytes)?;
+        if let Some(bytes) = self.resume.take() {
+            self.read(output.points(), &bytes)?;
         } else {
-            self.events.start(t0, self.run.y())?;
+            self.events.start(t0, output)?;
             if self.save.start(t0)
-                && let Some(status) = self.show_end_of_step()?
+                && let Some(status) = self.show_end_of_step(output)?
             {
                 return Ok(status);
             }
         }
-        while self.run.t() != t1 {
+        while self.times.t != t1 {
             if self.cancel.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
-                self.save_state(true);
+                self.save_state(output, true);
                 return Ok(Status::Cancelled);
             }
             if let Some(progress) = &mut self.progress {
-                progress(self.run.t());
+                progress(self.times.t);
             }
             self.pass_stops();
-            self.skip()?;
+            self.skip(output)?;
             let stop = self.next_stop.unwrap_or(t1);
-            self.run.step_before(stop, self.next_stop.is_some())?;
-            if let Some(kept) = self.kept.as_deref_mut() {
-                kept.push((self.run.t(), self.run.last, self.run.from.clone()));
+            self.times.step_before(output.points(), stop, self.next_stop.is_some())?;
+            if self.keeps {
+                output.keep(self.times.t, self.times.last);
             }
             if !self.events.all.is_empty() {
-                let first_step = self.run.stats.accepted == 1;
-                self.events.search(&mut self.run, first_step)?;
+                let first_step = self.times.stats.accepted == 1;
+                self.events.search(&mut self.times, output, first_step)?;
             }
-            if let Some(status) = self.look_within()? {
+            if let Some(status) = self.look_within(output)? {
                 return Ok(status);
             }
-            self.save_state(false);
+            self.save_state(output, false);
         }
         if self.shown_at != Some(t1) && !matches!(self.save, SaveAt::Times(_)) {
-            self.show_end_of_step()?;
+            self.show_end_of_step(output)?;
         }
         Ok(Status::Finished)
     }
 
     /// Save the state where it is time to, or `now`.
-    fn save_state(&mut self, now: bool) {
-        let Some(Checkpoints { list, every, last, .. }) = &mut self.checkpoints else { return };
+    fn save_state(&mut self, output: &mut dyn AnyOutput, now: bool) {
+        let Some(Checkpoints { every, last, .. }) = &mut self.checkpoints else { return };
         if !now && !every.is_zero() && last.elapsed() < *every {
             return;
         }
         *last = Instant::now();
-        let list = *list;
-        let bytes = self.write(list);
+        let bytes = self.write(output.points());
         if let Some(Checkpoints { take, .. }) = &mut self.checkpoints {
             take(&bytes);
         }
@@ -214,24 +135,24 @@ impl<'a, 'k, P: Problem, M: Method<P>> Drive<'a, 'k, P, M> {
 
     /// Sets the next stop to the first one ahead. A step that an event cut has not reached its stop.
     fn pass_stops(&mut self) {
-        while self.next_stop.is_some_and(|stop| !self.is_before(self.run.t(), stop)) {
+        while self.next_stop.is_some_and(|stop| !self.times.is_before(self.times.t, stop)) {
             self.next_stop = self.stops.next();
         }
     }
 
     /// Takes steps without output or events in one call.
-    fn skip(&mut self) -> Result<(), RunError> {
-        if !self.events.all.is_empty() || self.kept.is_some() {
+    fn skip(&mut self, output: &mut dyn AnyOutput) -> Result<(), RunError> {
+        if !self.events.all.is_empty() || self.keeps {
             return Ok(());
         }
-        let steps = self.run.stats.accepted;
+        let steps = self.times.stats.accepted;
         let mut end = self.save.next_after(steps);
         if self.cancel.is_some() || self.progress.is_some() {
             end = end.min(steps.saturating_add(1000));
         }
         let time = [self.next_time(), self.next_stop].into_iter().flatten();
-        let time = time.reduce(|a, b| if self.is_before(a, b) { a } else { b });
-        self.run.quietly(end, time)?;
+        let time = time.reduce(|a, b| if self.times.is_before(a, b) { a } else { b });
+        self.times.quietly(output.points(), end, time)?;
         Ok(())
     }
 
@@ -239,10 +160,10 @@ impl<'a, 'k, P: Problem, M: Method<P>> Drive<'a, 'k, P, M> {
         match self.save {
             SaveAt::Times(ref times) => times.get(self.times_done).copied(),
             SaveAt::Interval(length) => {
-                let (t0, t1) = (self.t0, self.run.t1);
+                let (t0, t1) = (self.t0, self.times.t1);
                 let time = t0 + (length * (self.times_done + 1) as f64).copysign(t1 - t0);
                 // The end is shown as such, also where rounding puts the last time beside it.
-                let last = self.is_before(t1, time) || (t1 - time).abs() < 1e-9 * length;
+                let last = self.times.is_before(t1, time) || (t1 - time).abs() < 1e-9 * length;
                 (!last).then_some(time)
             }
             _ => None,
@@ -250,99 +171,111 @@ impl<'a, 'k, P: Problem, M: Method<P>> Drive<'a, 'k, P, M> {
     }
 
     /// Handles the output times and the zeros of the last step in the order of time, and then its end.
-    fn look_within(&mut self) -> Ended {
+    fn look_within(&mut self, output: &mut dyn AnyOutput) -> Ended {
         let mut zeros = 0;
         loop {
-            let end = self.run.t();
-            let time = self.next_time().filter(|time| !self.is_before(end, *time));
+            let end = self.times.t;
+            let time = self.next_time().filter(|time| !self.times.is_before(end, *time));
             let zero = self.events.found.get(zeros).copied();
-            let zero = zero.filter(|zero| !self.is_before(end, zero.t));
+            let zero = zero.filter(|zero| !self.times.is_before(end, zero.t));
             match (time, zero) {
                 (None, None) => break,
-                (Some(time), zero) if zero.is_none_or(|zero| !self.is_before(zero.t, time)) => {
+                (Some(time), zero)
+                    if zero.is_none_or(|zero| !self.times.is_before(zero.t, time)) =>
+                {
                     self.times_done += 1;
-                    if let Some(status) = self.show(time)? {
+                    if let Some(status) = self.show(output, time)? {
                         return Ok(Some(status));
                     }
                 }
                 (_, Some(zero)) => {
                     zeros += 1;
-                    if let Some(status) = self.occur(zero.event, zero.t, zero.rising, &mut zeros)? {
+                    if let Some(status) =
+                        self.occur(output, zero.event, zero.t, zero.rising, &mut zeros)?
+                    {
                         return Ok(Some(status));
                     }
                 }
                 (Some(_), None) => break,
             }
         }
-        let shown = matches!(self.save, SaveAt::Every(every) if self.run.stats.accepted.is_multiple_of(every));
-        if shown && self.shown_at != Some(self.run.t()) {
-            self.show_end_of_step()
+        let shown = matches!(self.save, SaveAt::Every(every) if self.times.stats.accepted.is_multiple_of(every));
+        if shown && self.shown_at != Some(self.times.t) {
+            self.show_end_of_step(output)
         } else {
             Ok(None)
         }
     }
 
     /// Shows the point at a time within the last step.
-    fn show(&mut self, time: f64) -> Ended {
-        self.look_at(time)?;
+    fn show(&mut self, output: &mut dyn AnyOutput, time: f64) -> Ended {
+        self.look_at(output, time, self.times_by_steps)?;
         self.shown_at = Some(time);
-        self.see(false);
-        match (self.observe)(time, &mut self.shown) {
+        self.see(output, false);
+        match output.observe(time) {
             Next::Continue => Ok(None),
             Next::Stop => {
-                self.look_at(time)?; // whatever the observer wrote there
-                self.run.cut(time, &self.shown);
+                self.look_at(output, time, self.times_by_steps)?; // whatever the observer wrote there
+                self.cut(output, time);
                 Ok(Some(Status::Observer))
             }
             Next::Changed => {
-                let Self { run, shown, events, .. } = self;
-                let (action, group) = (run.problem.action(), run.problem.group());
-                run.cut(time, shown);
-                run.change("the observer", |y| action.assign(group, shown, y))?;
-                events.restart(time, run.y(), 0..0)?;
-                self.end_of_kept();
+                self.cut(output, time);
+                let changed = output.take_changed();
+                self.times.changed("the observer", changed)?;
+                self.events.restart(time, output, 0..0)?;
+                output.cut_kept(time);
                 Ok(None)
             }
         }
     }
 
-    /// `shown` ← the point at a time within the last step.
-    fn look_at(&mut self, time: f64) -> Result<(), RunError> {
-        match self.times_by_steps {
-            true => self.run.at_by_a_step(time, &mut self.shown),
-            false => self.run.at(time, &mut self.shown),
+    /// The point of the output ← the point at a time within the last step, by a shorter step or by dense output.
+    fn look_at(
+        &mut self,
+        output: &mut dyn AnyOutput,
+        time: f64,
+        by_a_step: bool,
+    ) -> Result<(), RunError> {
+        let place = match by_a_step {
+            true => self.times.by_a_step(output.points(), time)?,
+            false => self.times.place(output.points(), time)?,
+        };
+        let looked = output.look(place, self.times.last, Slot::Shown);
+        looked.map_err(|source| self.times.no_point(source))
+    }
+
+    /// Cuts the last step at t. The run continues from the point of the output.
+    fn cut(&mut self, output: &mut dyn AnyOutput, t: f64) {
+        if t != self.times.t {
+            output.take_shown();
+            self.times.t = t;
         }
     }
 
-    fn show_end_of_step(&mut self) -> Ended {
-        self.show(self.run.t())
-    }
-
-    /// Lets the last stored step end where the run was cut.
-    fn end_of_kept(&mut self) {
-        if let Some(last) = self.kept.as_deref_mut().and_then(|kept| kept.last_mut()) {
-            last.0 = self.run.t();
-        }
+    fn show_end_of_step(&mut self, output: &mut dyn AnyOutput) -> Ended {
+        self.show(output, self.times.t)
     }
 
     /// Handles a zero of an event, and all others at the same time.
-    fn occur(&mut self, event: usize, t: f64, rising: bool, zeros: &mut usize) -> Ended {
+    fn occur(
+        &mut self,
+        output: &mut dyn AnyOutput,
+        event: usize,
+        t: f64,
+        rising: bool,
+        zeros: &mut usize,
+    ) -> Ended {
         let mut next = Some((event, rising));
         let mut stopped = None;
         let mut acts = false;
         let at = *zeros - 1;
         while let Some((event, rising)) = next {
-            self.run.at(t, &mut self.shown)?;
+            self.look_at(output, t, false)?;
+            output.tell(event, t, rising);
             let this = &mut self.events.all[event];
-            match &mut this.told {
-                Some(told) => told(t, &self.shown, rising),
-                None => {
-                    let y = self.shown.clone();
-                    self.solution.events.push(Occurrence { event, t, y, rising });
-                }
-            }
             this.count += 1;
-            acts |= this.change.is_some() || this.stops();
+            acts |= this.changes || this.stops();
             if this.stops() && stopped.is_none() {
                 stopped = Some(this.name.clone());
             }
@@ -356,22 +289,23 @@ impl<'a, 'k, P: Problem, M: Method<P>> Drive<'a, 'k, P, M> {
         if !acts {
             return Ok(None);
         }
-        self.run.at(t, &mut self.shown)?;
-        self.run.cut(t, &self.shown);
+        self.look_at(output, t, false)?;
+        self.cut(output, t);
         for zero in &self.events.found[at..*zeros] {
-            let Event { name, change, .. } = &mut self.events.all[zero.event];
-            if let Some(change) = change {
-                self.run.change(&format!("event `{name}`"), |y| change(t, y))?;
+            let event = &self.events.all[zero.event];
+            if event.changes {
+                let changed = output.change(zero.event, t);
+                self.times.changed(&format!("event `{}`", event.name), changed)?;
             }
         }
-        self.end_of_kept();
+        output.cut_kept(t);
         if let Some(name) = stopped {
             if self.shown_at != Some(t) && !matches!(self.save, SaveAt::Times(_)) {
-                self.show_end_of_step()?;
+                self.show_end_of_step(output)?;
             }
             return Ok(Some(Status::Event(name)));
         }
-        self.events.restart(t, self.run.y(), at..*zeros)?;
+        self.events.restart(t, output, at..*zeros)?;
         Ok(None)
     }
 }

@@ -18,10 +18,9 @@
 use core::fmt;
 use core::ops::Range;
 
-use super::integrator::Integrator;
+use super::output::{AnyOutput, Slot};
 use super::stats::RunError;
-use crate::methods::Method;
-use crate::problems::{PointOf, Problem};
+use super::timeline::Timeline;
 
 /// The direction of the zeros that count.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -45,9 +44,9 @@ impl Direction {
     }
 }
 
-type Function<'a, Y> = Box<dyn FnMut(f64, &Y) -> f64 + 'a>;
-type Told<'a, Y> = Box<dyn FnMut(f64, &Y, bool) + 'a>;
-type Change<'a, Y> = Box<dyn FnMut(f64, &mut Y) + 'a>;
+pub(super) type Function<'a, Y> = Box<dyn FnMut(f64, &Y) -> f64 + 'a>;
+pub(super) type Told<'a, Y> = Box<dyn FnMut(f64, &Y, bool) + 'a>;
+pub(super) type Change<'a, Y> = Box<dyn FnMut(f64, &mut Y) + 'a>;
 
 /// An event: the zeros of g(t, y), and the action there.
 ///
@@ -69,12 +68,24 @@ type Change<'a, Y> = Box<dyn FnMut(f64, &mut Y) + 'a>;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct Event<'a, Y> {
-    pub(super) name: String,
-    g: Function<'a, Y>,
-    direction: Direction,
-    pub(super) stop_after: Option<u64>,
+    pub(super) rule: EventRule,
+    pub(super) functions: EventFunctions<'a, Y>,
+}
+
+/// The functions of an event.
+pub(super) struct EventFunctions<'a, Y> {
+    pub(super) g: Function<'a, Y>,
     pub(super) change: Option<Change<'a, Y>>,
     pub(super) told: Option<Told<'a, Y>>,
+}
+
+/// What an event is besides its functions, and the zeros that it had.
+pub(super) struct EventRule {
+    pub(super) name: String,
+    direction: Direction,
+    pub(super) stop_after: Option<u64>,
+    /// True if the event changes the state.
+    pub(super) changes: bool,
     points: Option<u32>,
     pub(super) seen: Seen,
     /// The number of zeros found so far.
@@ -83,7 +94,7 @@ pub struct Event<'a, Y> {
 
 impl<Y> fmt::Debug for Event<'_, Y> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Event").field("name", &self.name).finish_non_exhaustive()
+        f.debug_struct("Event").field("name", &self.rule.name).finish_non_exhaustive()
     }
 }
 
@@ -106,21 +117,21 @@ const A_LITTLE_LATER: f64 = 1.0 / 65536.0;
 impl<'a, Y> Event<'a, Y> {
     /// Finds all zeros of `g(t, y)`, rising and falling. The run continues after them.
     pub fn new(name: impl Into<String>, g: impl FnMut(f64, &Y) -> f64 + 'a) -> Self {
-        Event {
+        let rule = EventRule {
             name: name.into(),
-            g: Box::new(g),
             direction: Direction::Both,
             stop_after: None,
-            change: None,
-            told: None,
+            changes: false,
             points: None,
             seen: Seen::default(),
             count: 0,
-        }
+        };
+        Event { rule, functions: EventFunctions { g: Box::new(g), change: None, told: None } }
     }
     /// Finds only zeros of this direction.
-    pub fn direction(self, direction: Direction) -> Self {
-        Event { direction, ..self }
+    pub fn direction(mut self, direction: Direction) -> Self {
+        self.rule.direction = direction;
+        self
     }
     /// Finds only rising zeros.
     pub fn rising(self) -> Self {
@@ -132,38 +143,46 @@ impl<'a, Y> Event<'a, Y> {
     }
     /// Stops the run at the zero with this number, from 1. [`Solve::run`](super::Solve::run) refuses 0. By default the
     /// run goes on.
-    pub fn stop_after(self, count: u64) -> Self {
-        Event { stop_after: Some(count), ..self }
+    pub fn stop_after(mut self, count: u64) -> Self {
+        self.rule.stop_after = Some(count);
+        self
     }
     /// Changes the state at each zero. Examples: an impulse, a reset. The new state must be on M.
-    pub fn change(self, change: impl FnMut(f64, &mut Y) + 'a) -> Self {
-        Event { change: Some(Box::new(change)), ..self }
+    pub fn change(mut self, change: impl FnMut(f64, &mut Y) + 'a) -> Self {
+        self.rule.changes = true;
+        self.functions.change = Some(Box::new(change));
+        self
     }
     /// Calls `told(t, y, rising)` at each zero when it is found, and stores no zeros.
-    pub fn tell(self, told: impl FnMut(f64, &Y, bool) + 'a) -> Self {
-        Event { told: Some(Box::new(told)), ..self }
+    pub fn tell(mut self, told: impl FnMut(f64, &Y, bool) + 'a) -> Self {
+        self.functions.told = Some(Box::new(told));
+        self
     }
     /// Evaluates g at this many points within every step.
     ///
     /// The default is 8 points in steps that may have two zeros, and none in others. A step may have two zeros if |g|
     /// at one end is at most twice the change of the slope of g over this step and the one before, times the step size.
-    pub fn points(self, points: u32) -> Self {
-        Event { points: Some(points), ..self }
+    pub fn points(mut self, points: u32) -> Self {
+        self.rule.points = Some(points);
+        self
     }
     /// The name.
     pub fn name(&self) -> &str {
-        &self.name
+        &self.rule.name
     }
+}
 
+impl EventRule {
     /// The search for zeros in a step at whose end g is `last`.
     #[inline(always)]
     fn search(&self, span: [f64; 2], last: f64, first_step: bool) -> Search {
-        let Event { direction, points, seen, .. } = *self;
+        let EventRule { direction, points, seen, .. } = *self;
         Search { direction, points, seen, first_step, span, last }
     }
 
-    fn value(&mut self, t: f64, y: &Y) -> Result<f64, RunError> {
-        let value = (self.g)(t, y);
+    /// The value of g at t, if it is finite.
+    #[inline]
+    fn finite(&self, t: f64, value: f64) -> Result<f64, RunError> {
         match value.is_finite() {
             true => Ok(value),
             false => Err(RunError::Event { name: self.name.clone(), t, value }),
@@ -196,25 +215,23 @@ fn passes(before: f64, after: f64) -> Option<bool> {
 }
 
 /// The events of a run.
-pub(super) struct Events<'a, P: Problem> {
-    pub(super) all: Vec<Event<'a, PointOf<P>>>,
+pub(super) struct Events {
+    pub(super) all: Vec<EventRule>,
     /// The zeros of the last step, in the order of time.
     pub(super) found: Vec<Zero>,
-    /// A point within a step.
-    at: PointOf<P>,
 }
 
-impl<'a, P: Problem> Events<'a, P> {
-    pub(super) fn new(all: Vec<Event<'a, PointOf<P>>>, like: &PointOf<P>) -> Self {
+impl Events {
+    pub(super) fn new(all: Vec<EventRule>) -> Self {
         let found = Vec::with_capacity(2 * all.len() * (POINTS as usize + 2));
-        Events { all, found, at: like.clone() }
+        Events { all, found }
     }
 
     /// At the start of a run.
-    pub(super) fn start(&mut self, t: f64, y: &PointOf<P>) -> Result<(), RunError> {
-        for event in &mut self.all {
+    pub(super) fn start(&mut self, t: f64, output: &mut dyn AnyOutput) -> Result<(), RunError> {
+        for (index, event) in self.all.iter_mut().enumerate() {
             event.count = 0;
-            let value = event.value(t, y)?;
+            let value = event.finite(t, output.event(index, t, Slot::State))?;
             event.seen = Seen { value, before: None, anew: value == 0.0 };
         }
         Ok(())
@@ -224,11 +241,11 @@ impl<'a, P: Problem> Events<'a, P> {
     pub(super) fn restart(
         &mut self,
         t: f64,
-        y: &PointOf<P>,
+        output: &mut dyn AnyOutput,
         at: Range<usize>,
     ) -> Result<(), RunError> {
         for (index, event) in self.all.iter_mut().enumerate() {
-            let value = event.value(t, y)?;
+            let value = event.finite(t, output.event(index, t, Slot::State))?;
             let Seen { value: last, before, .. } = event.seen;
             let size = before.map_or(0.0, |[start, _]| last.abs().max(start.abs()));
             // Its zero was just passed, or may have been, up to rounding.
@@ -241,24 +258,27 @@ impl<'a, P: Problem> Events<'a, P> {
     }
 
     /// Finds the zeros in the last step of the run, up to its time.
-    pub(super) fn search<M: Method<P>>(
+    #[inline]
+    pub(super) fn search(
         &mut self,
-        run: &mut Integrator<'_, P, M>,
+        times: &mut Timeline,
+        output: &mut dyn AnyOutput,
         first_step: bool,
     ) -> Result<(), RunError> {
         self.found.clear();
-        let (start, end) = (run.last.t, run.t);
-        let Events { all, found, at } = self;
+        let (start, end) = (times.last.t, times.t);
+        let Events { all, found } = self;
         for (index, event) in all.iter_mut().enumerate() {
-            let last = event.value(end, run.y())?;
+            let last = event.finite(end, output.event(index, end, Slot::State))?;
             let search = event.search([start, end], last, first_step);
             if search.is_idle() {
                 event.seen = search.seen_at_end();
                 continue;
             }
             let mut g = |t: f64| {
-                run.at(t, at)?;
-                event.value(t, at)
+                let place = times.place(output.points(), t)?;
+                output.look(place, times.last, Slot::Search).map_err(|e| times.no_point(e))?;
+                event.finite(t, output.event(index, t, Slot::Search))
             };
             let zeros = &mut |t, rising| found.push(Zero { t, event: index, rising });
             event.seen = search.zeros(&mut g, zeros)?;

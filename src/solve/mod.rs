@@ -20,11 +20,13 @@ mod drive;
 mod events;
 mod grid;
 mod integrator;
+mod output;
+mod points;
 mod save;
 mod simple;
 mod solution;
 mod stats;
-mod within;
+mod timeline;
 
 pub use continuous::Continuous;
 pub use control::StepControl;
@@ -43,9 +45,12 @@ use crate::methods::{Embedded, Method};
 use crate::problems::{Invariants, PointOf, Problem, ScalarOf};
 use crate::space::Numbers;
 use crate::tolerance::Rule;
-use drive::{Checkpoints, Drive, Kept, Observe, Watch};
-use integrator::{Estimator, Pace};
+use drive::{Checkpoints, Drive};
+use events::Events;
+use output::{Kept, Observe, Output, Watch};
+use points::Estimator;
 use save::Listing;
+use timeline::{Pace, Timeline};
 
 /// The settings of a run: a problem, a method, a span, steps, output and events.
 ///
@@ -71,53 +76,46 @@ use save::Listing;
 pub struct Solve<'a, P: Problem, M: Method<P>> {
     problem: &'a P,
     method: &'a M,
+    settings: Settings<'a>,
+    /// For an adaptive step size.
+    estimator: Option<Estimator<P, M>>,
+    events: Vec<Event<'a, PointOf<P>>>,
+    /// The function that lists the numbers of a point, if the state is saved or restored.
+    list: Option<Listing<P>>,
+    watch: Option<Watch<P>>,
+}
+
+/// The settings of a run that do not depend on the types of its problem and method.
+struct Settings<'a> {
     t_span: [f64; 2],
-    pace: Option<Pace<P, M>>,
+    pace: Option<Pace>,
     save: SaveAt,
     times_by_steps: bool,
-    events: Vec<Event<'a, PointOf<P>>>,
     stops: Vec<f64>,
     max_steps: Option<u64>,
     cancel: Option<&'a AtomicBool>,
     progress: Option<Box<dyn FnMut(f64) + 'a>>,
-    checkpoints: Option<Checkpoints<'a, P>>,
-    resume: Option<(Listing<P>, Vec<u8>)>,
-    watch: Option<Watch<P>>,
+    checkpoints: Option<Checkpoints<'a>>,
+    resume: Option<Vec<u8>>,
     /// The number of equal intervals of the output, which the span decides.
     count: Option<u64>,
     /// The error of the first wrong value.
     wrong: Option<Error>,
 }
 
-impl<P: Problem, M: Method<P>> core::fmt::Debug for Solve<'_, P, M> {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.debug_struct("Solve")
-            .field("t_span", &self.t_span)
-            .field("save", &self.save)
-            .field("events", &self.events)
-            .finish_non_exhaustive()
-    }
-}
-
-impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
-    /// Solves `problem` by `method` from t₀ to t₁, forward or backward. The span may be empty. t₁ may be infinite if an
-    /// event or an observer stops the run.
-    pub fn new(problem: &'a P, method: &'a M, t_span: [f64; 2]) -> Self {
-        Solve {
-            problem,
-            method,
+impl<'a> Settings<'a> {
+    fn new(t_span: [f64; 2]) -> Self {
+        Settings {
             t_span,
             pace: None,
             save: SaveAt::End,
             times_by_steps: false,
-            events: Vec::new(),
             stops: Vec::new(),
             max_steps: None,
             cancel: None,
             progress: None,
             checkpoints: None,
             resume: None,
-            watch: None,
             count: None,
             wrong: None,
         }
@@ -133,7 +131,7 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
         }
     }
 
-    fn equal(mut self, grid: Result<TimeGrid, Error>) -> Self {
+    fn equal(&mut self, grid: Result<TimeGrid, Error>) {
         if let Some(grid) = self.or_wrong(grid) {
             if self.pace.is_some() {
                 let why =
@@ -142,31 +140,129 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
             }
             self.pace = Some(Pace::Equal { grid, max_steps: u64::MAX });
         }
-        self
+    }
+
+    fn control(&mut self, control: StepControl) {
+        if let Some(Pace::Equal { grid, .. }) = &self.pace {
+            let why = "the size of the steps was chosen already: give one of dt, steps, tolerances";
+            let error = Error::out_of_range("dt", grid.h().abs(), why);
+            self.wrong.get_or_insert(error);
+        }
+        self.pace = Some(Pace::ByError(control));
+    }
+
+    /// Changes the tolerances and limits.
+    fn with(&mut self, change: impl FnOnce(StepControl) -> Result<StepControl, Error>) {
+        let control = match &self.pace {
+            Some(Pace::ByError(control)) => Ok(control.clone()),
+            _ => StepControl::new(DEFAULT.0, DEFAULT.1),
+        };
+        if let Some(control) = self.or_wrong(control.and_then(change)) {
+            self.control(control);
+        }
+    }
+
+    fn check(&mut self) -> Result<Pace, Error> {
+        grid::length_of(self.t_span)?;
+        if let Some(error) = self.wrong.take() {
+            return Err(error);
+        }
+        if let Some(count) = self.count {
+            self.save = SaveAt::count(count, self.t_span)?;
+        }
+        self.save.check(self.t_span)?;
+        grid::in_order(&mut self.stops, self.t_span)?;
+        let Some(mut pace) = self.pace.clone() else {
+            let expected = "one of dt, steps, or tolerances";
+            return Err(Error::out_of_range("steps", f64::NAN, expected));
+        };
+        match &mut pace {
+            Pace::Equal { max_steps, .. } => {
+                let unbounded =
+                    if self.t_span[1].is_finite() { u64::MAX } else { StepControl::MAX_STEPS };
+                *max_steps = self.max_steps.unwrap_or(unbounded);
+            }
+            Pace::ByError(control) => {
+                control.max_steps = self.max_steps.unwrap_or(control.max_steps);
+            }
+        }
+        Ok(pace)
+    }
+
+    /// The run with these settings.
+    fn drive(self, times: Timeline, events: Events, keeps: bool) -> Drive<'a> {
+        let Settings { save, times_by_steps, cancel, progress, checkpoints, resume, .. } = self;
+        let mut stops = self.stops.into_iter();
+        let (t0, next_stop) = (times.t, stops.next());
+        Drive {
+            times,
+            events,
+            save,
+            t0,
+            times_done: 0,
+            times_by_steps,
+            stops,
+            next_stop,
+            cancel,
+            progress,
+            checkpoints,
+            resume,
+            keeps,
+            shown_at: None,
+            drift: Vec::new(),
+        }
+    }
+}
+
+impl<P: Problem, M: Method<P>> core::fmt::Debug for Solve<'_, P, M> {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.debug_struct("Solve")
+            .field("t_span", &self.settings.t_span)
+            .field("save", &self.settings.save)
+            .field("events", &self.events)
+            .finish_non_exhaustive()
+    }
+}
+
+impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
+    /// Solves `problem` by `method` from t₀ to t₁, forward or backward. The span may be empty. t₁ may be infinite if an
+    /// event or an observer stops the run.
+    pub fn new(problem: &'a P, method: &'a M, t_span: [f64; 2]) -> Self {
+        let settings = Settings::new(t_span);
+        Solve {
+            problem,
+            method,
+            settings,
+            estimator: None,
+            events: Vec::new(),
+            list: None,
+            watch: None,
+        }
     }
 
     /// Sets a fixed step size. If it does not divide the span, the last step is shorter.
-    pub fn dt(self, dt: f64) -> Self {
-        let grid = TimeGrid::new(self.t_span, dt);
-        self.equal(grid)
+    pub fn dt(mut self, dt: f64) -> Self {
+        self.settings.equal(TimeGrid::new(self.settings.t_span, dt));
+        self
     }
 
     /// Sets the number of steps, all of one size.
-    pub fn steps(self, steps: u64) -> Self {
-        let grid = TimeGrid::with_steps(self.t_span, steps);
-        self.equal(grid)
+    pub fn steps(mut self, steps: u64) -> Self {
+        self.settings.equal(TimeGrid::with_steps(self.settings.t_span, steps));
+        self
     }
 
     /// Takes the steps and the span of a grid.
     pub fn grid(mut self, grid: TimeGrid) -> Self {
-        self.t_span = grid.t_span();
-        self.equal(Ok(grid))
+        self.settings.t_span = grid.t_span();
+        self.settings.equal(Ok(grid));
+        self
     }
 
     /// Sets the points that are shown or stored. The default is the end only.
     pub fn save(mut self, save: SaveAt) -> Self {
-        self.count = None;
-        self.save = save;
+        self.settings.count = None;
+        self.settings.save = save;
         self
     }
 
@@ -200,22 +296,22 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
     #[doc(alias = "linspace")]
     #[doc(alias = "t_eval")]
     pub fn count(mut self, intervals: u64) -> Self {
-        self.count = Some(intervals);
+        self.settings.count = Some(intervals);
         self
     }
 
     /// Computes output times within a step by a shorter step of the method, not by dense output. Each time costs a whole
     /// step, and has the order of the method.
     pub fn times_by_steps(mut self) -> Self {
-        self.times_by_steps = true;
+        self.settings.times_by_steps = true;
         self
     }
 
     /// Adds an event. Events are numbered in the order in which they are added.
     pub fn event(mut self, event: Event<'a, PointOf<P>>) -> Self {
-        if event.stop_after == Some(0) {
-            let arg = format!("stop_after of event `{}`", event.name);
-            self.wrong.get_or_insert(Error::out_of_range(arg, 0.0, "at least 1"));
+        if event.rule.stop_after == Some(0) {
+            let arg = format!("stop_after of event `{}`", event.name());
+            self.settings.wrong.get_or_insert(Error::out_of_range(arg, 0.0, "at least 1"));
         }
         self.events.push(event);
         self
@@ -226,7 +322,7 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
     /// Example: the knots of sampled data. f(t) is the value after the jump. The step that ends there evaluates f a few
     /// rounding units before t, the next step at t. The times may be in any order, and also outside the span.
     pub fn stops(mut self, times: impl Into<Vec<f64>>) -> Self {
-        self.stops = times.into();
+        self.settings.stops = times.into();
         self
     }
 
@@ -234,21 +330,22 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
     /// span has no limit.
     pub fn max_steps(mut self, attempts: u64) -> Self {
         if attempts == 0 {
-            self.wrong.get_or_insert(Error::out_of_range("max_steps", 0.0, "at least 1"));
+            let error = Error::out_of_range("max_steps", 0.0, "at least 1");
+            self.settings.wrong.get_or_insert(error);
         }
-        self.max_steps = Some(attempts);
+        self.settings.max_steps = Some(attempts);
         self
     }
 
     /// Ends the run when the flag is set, from another thread or a signal. The status is [`Status::Cancelled`].
     pub fn cancel(mut self, flag: &'a AtomicBool) -> Self {
-        self.cancel = Some(flag);
+        self.settings.cancel = Some(flag);
         self
     }
 
     /// Calls `progress` with the time, at least every thousand steps.
     pub fn progress(mut self, progress: impl FnMut(f64) + 'a) -> Self {
-        self.progress = Some(Box::new(progress));
+        self.settings.progress = Some(Box::new(progress));
         self
     }
 
@@ -261,7 +358,8 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
         PointOf<P>: Numbers,
     {
         let (take, last) = (Box::new(take), Instant::now());
-        self.checkpoints = Some(Checkpoints { list: Numbers::each_number, every, take, last });
+        self.list = Some(Numbers::each_number);
+        self.settings.checkpoints = Some(Checkpoints { every, take, last });
         self
     }
 
@@ -273,7 +371,8 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
     where
         PointOf<P>: Numbers,
     {
-        self.resume = Some((Numbers::each_number, bytes.into()));
+        self.list = Some(Numbers::each_number);
+        self.settings.resume = Some(bytes.into());
         self
     }
 
@@ -292,31 +391,9 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
         self
     }
 
-    fn check(&mut self) -> Result<Pace<P, M>, Error> {
-        grid::length_of(self.t_span)?;
-        if let Some(error) = self.wrong.take() {
-            return Err(error);
-        }
-        if let Some(count) = self.count {
-            self.save = SaveAt::count(count, self.t_span)?;
-        }
-        self.save.check(self.t_span)?;
-        grid::in_order(&mut self.stops, self.t_span)?;
-        let Some(mut pace) = self.pace.clone() else {
-            let expected = "one of dt, steps, or tolerances";
-            return Err(Error::out_of_range("steps", f64::NAN, expected));
-        };
-        match &mut pace {
-            Pace::Equal { max_steps, .. } => {
-                let unbounded =
-                    if self.t_span[1].is_finite() { u64::MAX } else { StepControl::MAX_STEPS };
-                *max_steps = self.max_steps.unwrap_or(unbounded);
-            }
-            Pace::ByError(control, _) => {
-                control.max_steps = self.max_steps.unwrap_or(control.max_steps);
-            }
-        }
-        Ok(pace)
+    fn start(&mut self, y0: PointOf<P>) -> Result<Integrator<'a, P, M>, Error> {
+        let pace = (self.settings.check()?, self.estimator);
+        Integrator::new(self.problem, self.method, self.settings.t_span, pace, y0)
     }
 
     /// Starts a run from y₀ that you take step by step. It has no output, events, stops or cancellation.
@@ -324,8 +401,7 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
     /// # Errors
     /// [`RunError::Setup`] for wrong arguments.
     pub fn integrator(mut self, y0: PointOf<P>) -> Result<Integrator<'a, P, M>, RunError> {
-        let pace = self.check()?;
-        Ok(Integrator::new(self.problem, self.method, self.t_span, pace, y0)?)
+        Ok(self.start(y0)?)
     }
 
     /// Runs from y₀ and stores the points of the output.
@@ -363,9 +439,24 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
         kept: Option<&'k mut Vec<Kept<PointOf<P>>>>,
         observe: &'k mut Observe<'k, PointOf<P>>,
     ) -> Result<Solution<PointOf<P>>, Interrupted<PointOf<P>>> {
-        let pace = self.check()?;
-        let run = Integrator::new(self.problem, self.method, self.t_span, pace, y0)?;
-        Drive::new(self, run, kept, observe).run()
+        let Integrator { mut points, times } = self.start(y0)?;
+        points.list = self.list;
+        let (rules, functions) =
+            self.events.into_iter().map(|event| (event.rule, event.functions)).unzip();
+        let mut drive = self.settings.drive(times, Events::new(rules), kept.is_some());
+        let mut output = Output::new(points, functions, self.watch, kept, observe);
+        let ended = drive.run(&mut output);
+        let Output { points, occurrences, .. } = output;
+        let solution = Solution {
+            events: occurrences,
+            stats: drive.times.stats(&points),
+            drift: drive.drift,
+            ..Solution::new(drive.times.t, points.y)
+        };
+        match ended {
+            Ok(status) => Ok(Solution { status, ..solution }),
+            Err(error) => Err(Interrupted { error, solution: Some(Box::new(solution)) }),
+        }
     }
 
     /// Runs from y₀ and returns a continuous solution, which stores a point for each step.
@@ -376,8 +467,7 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
         mut self,
         y0: PointOf<P>,
     ) -> Result<Continuous<'a, P, M>, Interrupted<PointOf<P>>> {
-        let pace = self.check()?;
-        let again = Integrator::new(self.problem, self.method, self.t_span, pace, y0.clone())?;
+        let again = self.start(y0.clone())?;
         let (mut times, mut points, mut steps) = (Vec::new(), Vec::new(), Vec::new());
         let done = self.drive(y0, Some(&mut steps), &mut |t, y| {
             times.push(t);
@@ -414,24 +504,17 @@ where
 {
     /// Sets an adaptive step size with these tolerances and limits.
     pub fn control(mut self, control: StepControl) -> Self {
-        if let Some(Pace::Equal { grid, .. }) = &self.pace {
-            let why = "the size of the steps was chosen already: give one of dt, steps, tolerances";
-            let error = Error::out_of_range("dt", grid.h().abs(), why);
-            self.wrong.get_or_insert(error);
-        }
-        self.pace = Some(Pace::ByError(control, Estimator::of_method()));
-        self
+        self.settings.control(control);
+        self.adaptive()
     }
 
     fn with(mut self, change: impl FnOnce(StepControl) -> Result<StepControl, Error>) -> Self {
-        let control = match &self.pace {
-            Some(Pace::ByError(control, _)) => Ok(control.clone()),
-            _ => StepControl::new(DEFAULT.0, DEFAULT.1),
-        };
-        match self.or_wrong(control.and_then(change)) {
-            Some(control) => self.control(control),
-            None => self,
-        }
+        self.settings.with(change);
+        self.adaptive()
+    }
+
+    fn adaptive(self) -> Self {
+        Solve { estimator: Some(Estimator::of_method()), ..self }
     }
 
     /// Sets an adaptive step size, with rtol and atol for all parts of a point.

@@ -12,10 +12,11 @@ use core::hash::Hasher;
 use fnv::FnvHasher;
 
 use super::drive::Drive;
-use super::integrator::{Integrator, Looked, Pacer};
+use super::integrator::Integrator;
+use super::points::{AnyPoints, Saved};
 use super::stats::Stats;
+use super::timeline::{Looked, Pacer, Timeline};
 use crate::error::Error;
-use crate::groups::LieAlgebra;
 use crate::methods::{MapCounts, Method};
 use crate::problems::{PointOf, Problem};
 use crate::space::Numbers;
@@ -83,7 +84,7 @@ fn each_of_stats(each: &mut Each<'_>, stats: &mut Stats) {
 }
 
 /// The bytes of a state that belongs to `owner`; `words` calls its argument with every word.
-fn write(owner: &str, words: impl FnOnce(&mut Each<'_>)) -> Vec<u8> {
+fn write(owner: &str, words: &mut dyn FnMut(&mut Each<'_>)) -> Vec<u8> {
     let mut bytes = HEADER.to_vec();
     bytes.extend(hash(owner.as_bytes()).to_le_bytes());
     words(&mut |word| bytes.extend(word.to_le_bytes()));
@@ -93,7 +94,7 @@ fn write(owner: &str, words: impl FnOnce(&mut Each<'_>)) -> Vec<u8> {
 }
 
 /// Reads a state from bytes; `words` lists its words.
-fn read(owner: &str, bytes: &[u8], mut words: impl FnMut(&mut Each<'_>)) -> Result<(), Error> {
+fn read(owner: &str, bytes: &[u8], words: &mut dyn FnMut(&mut Each<'_>)) -> Result<(), Error> {
     let refuse = |why: &str| {
         let expected = format!("the saved state of such a run, {why}");
         Err(Error::out_of_range("bytes", bytes.len() as f64, expected))
@@ -125,13 +126,12 @@ fn read(owner: &str, bytes: &[u8], mut words: impl FnMut(&mut Each<'_>)) -> Resu
     Ok(())
 }
 
-impl<P: Problem, M: Method<P>> Integrator<'_, P, M> {
-    fn each_word(&mut self, list: Listing<P>, each: &mut Each<'_>) {
-        let point = |each: &mut Each<'_>, y: &mut PointOf<P>| list(y, &mut |x| number(each, x));
+impl Timeline {
+    fn each_word(&mut self, points: &mut dyn AnyPoints, each: &mut Each<'_>) {
         number(each, &mut self.t);
         number(each, &mut self.t1);
-        point(each, &mut self.y);
-        point(each, &mut self.from);
+        points.each_number(Saved::State, &mut |x| number(each, x));
+        points.each_number(Saved::Start, &mut |x| number(each, x));
         each(&mut self.last.n);
         number(each, &mut self.last.t);
         number(each, &mut self.last.h);
@@ -141,11 +141,11 @@ impl<P: Problem, M: Method<P>> Integrator<'_, P, M> {
         if known != before {
             self.looked_at = if known { Looked::Stale } else { Looked::Nothing };
         }
-        point(each, &mut self.mender.from);
-        each(&mut self.mender.cadence.every);
-        each(&mut self.mender.cadence.next);
+        points.each_number(Saved::Orbit, &mut |x| number(each, x));
+        each(&mut self.cadence.every);
+        each(&mut self.cadence.next);
         // The workspace counts from its own start.
-        let counted = self.method.iterations(&self.work);
+        let counted = points.iterations();
         self.stats.iterations = self.stats.iterations.wrapping_add(counted);
         each_of_stats(each, &mut self.stats);
         self.stats.iterations = self.stats.iterations.wrapping_sub(counted);
@@ -161,17 +161,28 @@ impl<P: Problem, M: Method<P>> Integrator<'_, P, M> {
                 option(each, &mut chooser.wall, number);
             }
         }
-        self.method.each_memory(&mut self.work, &mut |x| number(each, x));
+        points.each_number(Saved::Memory, &mut |x| number(each, x));
     }
-    fn owner(&self) -> String {
-        let (problem, method) = (self.problem, self.method);
+
+    fn owner(&self, points: &dyn AnyPoints) -> String {
         let pace = match &self.pacer {
             Pacer::Equal { .. } => "equal".into(),
             Pacer::ByError(chooser) => format!("{:?}", chooser.control),
         };
-        let order = method.order(problem);
-        let costs = (method.evaluations(problem), method.map_counts(problem, false));
-        format!("{} {order} {costs:?} {pace}", problem.group().name())
+        let costs = (self.costs.step, self.costs.maps);
+        format!("{} {} {costs:?} {pace}", points.group_name(), self.costs.order)
+    }
+
+    fn save(&mut self, points: &mut dyn AnyPoints) -> Vec<u8> {
+        let owner = self.owner(points);
+        write(&owner, &mut |each| self.each_word(points, each))
+    }
+
+    fn restore(&mut self, points: &mut dyn AnyPoints, bytes: &[u8]) -> Result<(), Error> {
+        let owner = self.owner(points);
+        read(&owner, bytes, &mut |each| self.each_word(points, each))?;
+        self.forget_workspace();
+        Ok(())
     }
 }
 
@@ -182,8 +193,8 @@ where
     /// The state as bytes. [`restore`](Self::restore) continues from them with the same results, to the bit. They do not
     /// contain the problem or the method.
     pub fn save(&mut self) -> Vec<u8> {
-        let owner = self.owner();
-        write(&owner, |each| self.each_word(Numbers::each_number, each))
+        self.points.list = Some(Numbers::each_number);
+        self.times.save(&mut self.points)
     }
 
     /// Continues from a state of [`save`](Self::save), of a run with the same problem, method and choice of steps.
@@ -192,16 +203,14 @@ where
     /// [`Error::OutOfRange`] for bytes that are damaged, of another version of the format or of another run. Then the
     /// state is unchanged.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), Error> {
-        let owner = self.owner();
-        read(&owner, bytes, |each| self.each_word(Numbers::each_number, each))?;
-        self.forget_workspace();
-        Ok(())
+        self.points.list = Some(Numbers::each_number);
+        self.times.restore(&mut self.points, bytes)
     }
 }
 
-impl<P: Problem, M: Method<P>> Drive<'_, '_, P, M> {
-    fn each_word(&mut self, list: Listing<P>, each: &mut Each<'_>) {
-        self.run.each_word(list, each);
+impl Drive<'_> {
+    fn each_word(&mut self, points: &mut dyn AnyPoints, each: &mut Each<'_>) {
+        self.times.each_word(points, each);
         let mut done = self.times_done as u64;
         each(&mut done);
         self.times_done = done as usize;
@@ -214,28 +223,28 @@ impl<P: Problem, M: Method<P>> Drive<'_, '_, P, M> {
                 before.iter_mut().for_each(|x| number(each, x));
             });
         }
-        for drift in &mut self.solution.drift {
+        for drift in &mut self.drift {
             number(each, &mut drift.start);
             number(each, &mut drift.largest);
         }
     }
 
-    fn owner(&self) -> String {
-        let events: Vec<&str> = self.events.all.iter().map(|event| event.name()).collect();
-        format!("{} {events:?} {:?}", self.run.owner(), self.save)
+    fn owner(&self, points: &dyn AnyPoints) -> String {
+        let events: Vec<&str> = self.events.all.iter().map(|event| event.name.as_str()).collect();
+        format!("{} {events:?} {:?}", self.times.owner(points), self.save)
     }
 
     /// The state of the whole run as bytes.
-    pub(super) fn write(&mut self, list: Listing<P>) -> Vec<u8> {
-        let owner = self.owner();
-        write(&owner, |each| self.each_word(list, each))
+    pub(super) fn write(&mut self, points: &mut dyn AnyPoints) -> Vec<u8> {
+        let owner = self.owner(points);
+        write(&owner, &mut |each| self.each_word(points, each))
     }
 
     /// Continues from such bytes.
-    pub(super) fn read(&mut self, list: Listing<P>, bytes: &[u8]) -> Result<(), Error> {
-        let owner = self.owner();
-        read(&owner, bytes, |each| self.each_word(list, each))?;
-        self.run.forget_workspace();
+    pub(super) fn read(&mut self, points: &mut dyn AnyPoints, bytes: &[u8]) -> Result<(), Error> {
+        let owner = self.owner(points);
+        read(&owner, bytes, &mut |each| self.each_word(points, each))?;
+        self.times.forget_workspace();
         Ok(())
     }
 }

@@ -1,12 +1,10 @@
-//! The statistics of a run, its errors, and the correction of its state to M.
+//! The statistics of a run, and its errors.
 
 use core::fmt;
 
-use crate::actions::Action;
 use crate::error::{Error, Failure, StepError, debug_is_display};
 use crate::groups::RESIDUAL_MAX;
 use crate::methods::MapCounts;
-use crate::problems::{PointOf, Problem};
 use crate::scalar::Real;
 
 /// The statistics of a run.
@@ -31,7 +29,7 @@ pub struct Stats {
     pub smallest_step: f64,
     /// The largest accepted step, without its sign.
     pub largest_step: f64,
-    /// How often the state was checked, and corrected to M if it had left it ([`Action::restore_to`]).
+    /// How often the state was checked, and corrected to M if it had left it ([`Action::restore_to`](crate::Action::restore_to)).
     pub restored: u64,
     /// How often the state was too far from M to be corrected ([`RESIDUAL_MAX`](crate::groups::RESIDUAL_MAX)).
     pub not_restored: u64,
@@ -43,7 +41,7 @@ pub struct Stats {
 }
 
 impl Stats {
-    fn saw<S: Real>(&mut self, residual: S) {
+    pub(super) fn saw<S: Real>(&mut self, residual: S) {
         match residual.all_below(RESIDUAL_MAX) {
             true => self.restored += 1,
             false => self.not_restored += 1,
@@ -57,7 +55,7 @@ impl Stats {
     }
 }
 
-/// The largest number of steps between two calls of [`Action::restore_to`].
+/// The largest number of steps between two calls of [`Action::restore_to`](crate::Action::restore_to).
 ///
 /// Rounding moves g off its group by some ε a step. After a hundred steps this is still below 2e-14, and the correction
 /// costs a hundredth of a step.
@@ -76,71 +74,18 @@ pub(super) struct Cadence {
 }
 
 impl Cadence {
-    fn new() -> Self {
-        Cadence { every: RESTORE_EVERY_MIN, next: RESTORE_EVERY_MIN }
+    /// For methods that do not stay on M there is no check.
+    pub(super) fn new(stays_on_manifold: bool) -> Self {
+        let next = if stays_on_manifold { RESTORE_EVERY_MIN } else { u64::MAX };
+        Cadence { every: RESTORE_EVERY_MIN, next }
     }
-    fn saw<S: Real>(&mut self, residual: S) {
+    pub(super) fn saw<S: Real>(&mut self, residual: S) {
         if residual.all_below(4e-15) {
             self.every = (2 * self.every).min(RESTORE_EVERY);
         } else if !residual.all_below(1e-14) {
             self.every = (self.every / 2).max(RESTORE_EVERY_MIN);
         }
         self.next += self.every;
-    }
-}
-
-/// Corrects the state of a run to M.
-#[allow(missing_debug_implementations)] // the parts belong to the problem's types
-pub(super) struct Mender<P: Problem> {
-    work: <P::Action as Action<P::Group>>::Work,
-    /// The start of the run. The state is corrected to its orbit.
-    pub(super) from: PointOf<P>,
-    pub(super) cadence: Cadence,
-}
-
-impl<P: Problem> Mender<P> {
-    /// Makes it for a method that stays on M. For other methods it does nothing.
-    pub(super) fn new(problem: &P, from: &PointOf<P>, stays_on_manifold: bool) -> Self {
-        let mut cadence = Cadence::new();
-        if !stays_on_manifold {
-            cadence.next = u64::MAX;
-        }
-        Mender { work: problem.action().work(problem.group()), from: from.clone(), cadence }
-    }
-    /// The number of the step after which y is checked again.
-    #[inline]
-    pub(super) fn next(&self) -> u64 {
-        self.cadence.next
-    }
-    /// True if y has to be checked after so many steps.
-    #[inline]
-    pub(super) fn after(&mut self, steps: u64, problem: &P, y: &mut PointOf<P>, stats: &mut Stats) {
-        if steps == self.cadence.next {
-            let (action, group) = (problem.action(), problem.group());
-            match action.restore_to(group, &self.from, y, &mut self.work) {
-                Some(residual) => {
-                    stats.saw(residual);
-                    self.cadence.saw(residual);
-                }
-                None => self.cadence.next = u64::MAX,
-            }
-        }
-    }
-    /// Starts from another point. It must be on M within 1e-6, and is corrected to M. Its orbit is the new one.
-    pub(super) fn move_to(&mut self, problem: &P, y: &mut PointOf<P>) -> Result<(), Error> {
-        let (action, group) = (problem.action(), problem.group());
-        action.check(group, y)?;
-        if let Some(residual) = action.restore(group, y, &mut self.work)
-            && !residual.all_below(1e-6)
-        {
-            return Err(Error::OutOfRange {
-                arg: "y".into(),
-                value: f64::NAN,
-                expected: format!("a point of M; ‖M⁻¹gᵀMg − 𝟙‖ is {residual:?}"),
-            });
-        }
-        action.assign(group, y, &mut self.from);
-        Ok(())
     }
 }
 

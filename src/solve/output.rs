@@ -1,0 +1,156 @@
+//! What a run shows: the points of the output, events and invariants. Like [`Points`], it knows the types of the
+//! problem and method, and the driver calls it through a pointer.
+
+use super::events::EventFunctions;
+use super::points::{AnyPoints, Place, Points};
+use super::solution::{Next, Occurrence};
+use crate::error::{Error, StepError};
+use crate::methods::{Method, Step};
+use crate::problems::{PointOf, Problem};
+
+/// A point that a run keeps for its output.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Slot {
+    /// The state.
+    State,
+    /// The point of the output.
+    Shown,
+    /// The point of the search for zeros.
+    Search,
+}
+
+/// What a run of any problem and method shows.
+pub(super) trait AnyOutput {
+    /// The points of the run.
+    fn points(&mut self) -> &mut dyn AnyPoints;
+    /// The value of the event with this number at a point.
+    fn event(&mut self, event: usize, t: f64, at: Slot) -> f64;
+    /// slot ← the point at a place in the last step.
+    fn look(&mut self, place: Place, last: Step<f64>, slot: Slot) -> Result<(), StepError>;
+    /// Shows the observer the point of the output.
+    fn observe(&mut self, t: f64) -> Next;
+    /// Tells the zero of an event, at the point of the output.
+    fn tell(&mut self, event: usize, t: f64, rising: bool);
+    /// y ← the point of the output.
+    fn take_shown(&mut self);
+    /// y ← the point of the output, which the observer changed. It must be on M.
+    fn take_changed(&mut self) -> Result<(), Error>;
+    /// y ← y changed by the event.
+    fn change(&mut self, event: usize, t: f64) -> Result<(), Error>;
+    /// Stores the last step with the time up to which it is valid, if steps are stored.
+    fn keep(&mut self, t: f64, last: Step<f64>);
+    /// Lets the last stored step end at t.
+    fn cut_kept(&mut self, t: f64);
+    /// The names of the invariants, if they are watched.
+    fn invariants(&self) -> Vec<String>;
+    /// Their values at a point.
+    fn values(&self, at: Slot) -> Vec<f64>;
+}
+
+/// The function that gives the invariants of a problem.
+pub(super) struct Watch<P: Problem> {
+    pub(super) names: fn(&P) -> Vec<String>,
+    pub(super) values: fn(&P, &PointOf<P>) -> Vec<f64>,
+}
+
+/// A stored step: the time up to which it is valid, the step, and its start.
+pub(super) type Kept<Y> = (f64, Step<f64>, Y);
+
+/// The function that sees the points of the output.
+pub(super) type Observe<'k, Y> = dyn FnMut(f64, &mut Y) -> Next + 'k;
+
+/// What a run shows.
+pub(super) struct Output<'a, 'k, P: Problem, M: Method<P>> {
+    pub(super) points: Points<'a, P, M>,
+    /// The point of the output.
+    shown: PointOf<P>,
+    /// The point of the search for zeros.
+    search: PointOf<P>,
+    observe: &'k mut Observe<'k, PointOf<P>>,
+    events: Vec<EventFunctions<'a, PointOf<P>>>,
+    watch: Option<Watch<P>>,
+    kept: Option<&'k mut Vec<Kept<PointOf<P>>>>,
+    /// The zeros of events that have no function for them.
+    pub(super) occurrences: Vec<Occurrence<PointOf<P>>>,
+}
+
+impl<'a, 'k, P: Problem, M: Method<P>> Output<'a, 'k, P, M> {
+    pub(super) fn new(
+        points: Points<'a, P, M>,
+        events: Vec<EventFunctions<'a, PointOf<P>>>,
+        watch: Option<Watch<P>>,
+        kept: Option<&'k mut Vec<Kept<PointOf<P>>>>,
+        observe: &'k mut Observe<'k, PointOf<P>>,
+    ) -> Self {
+        let [shown, search] = [points.y.clone(), points.y.clone()];
+        Output { points, shown, search, observe, events, watch, kept, occurrences: Vec::new() }
+    }
+
+    fn slot(&self, slot: Slot) -> &PointOf<P> {
+        match slot {
+            Slot::State => &self.points.y,
+            Slot::Shown => &self.shown,
+            Slot::Search => &self.search,
+        }
+    }
+}
+
+impl<P: Problem, M: Method<P>> AnyOutput for Output<'_, '_, P, M> {
+    fn points(&mut self) -> &mut dyn AnyPoints {
+        &mut self.points
+    }
+    fn event(&mut self, event: usize, t: f64, at: Slot) -> f64 {
+        let y = match at {
+            Slot::State => &self.points.y,
+            Slot::Shown => &self.shown,
+            Slot::Search => &self.search,
+        };
+        (self.events[event].g)(t, y)
+    }
+    fn look(&mut self, place: Place, last: Step<f64>, slot: Slot) -> Result<(), StepError> {
+        match slot {
+            Slot::Shown => self.points.look(place, last, &mut self.shown),
+            Slot::State | Slot::Search => self.points.look(place, last, &mut self.search),
+        }
+    }
+    fn observe(&mut self, t: f64) -> Next {
+        (self.observe)(t, &mut self.shown)
+    }
+    fn tell(&mut self, event: usize, t: f64, rising: bool) {
+        match &mut self.events[event].told {
+            Some(told) => told(t, &self.shown, rising),
+            None => self.occurrences.push(Occurrence { event, t, y: self.shown.clone(), rising }),
+        }
+    }
+    fn take_shown(&mut self) {
+        let Output { points, shown, .. } = self;
+        points.set(shown);
+    }
+    fn take_changed(&mut self) -> Result<(), Error> {
+        let Output { points, shown, .. } = self;
+        points.change_to(shown)
+    }
+    fn change(&mut self, event: usize, t: f64) -> Result<(), Error> {
+        match &mut self.events[event].change {
+            Some(change) => self.points.change(&mut |y| change(t, y)),
+            None => Ok(()),
+        }
+    }
+    fn keep(&mut self, t: f64, last: Step<f64>) {
+        if let Some(kept) = self.kept.as_deref_mut() {
+            kept.push((t, last, self.points.from.clone()));
+        }
+    }
+    fn cut_kept(&mut self, t: f64) {
+        if let Some(last) = self.kept.as_deref_mut().and_then(|kept| kept.last_mut()) {
+            last.0 = t;
+        }
+    }
+    fn invariants(&self) -> Vec<String> {
+        self.watch.as_ref().map_or_else(Vec::new, |watch| (watch.names)(self.points.problem))
+    }
+    fn values(&self, at: Slot) -> Vec<f64> {
+        let values = |watch: &Watch<P>| (watch.values)(self.points.problem, self.slot(at));
+        self.watch.as_ref().map_or_else(Vec::new, values)
+    }
+}

@@ -1,0 +1,370 @@
+//! The points of a run: the part of the driver that knows the types of its problem and method.
+//!
+//! The rest of the driver knows numbers only ([`Timeline`](super::timeline::Timeline),
+//! [`Drive`](super::drive::Drive)). It calls this part through a pointer, a few times for each step. So the compiler
+//! compiles the driver once, and only this file again for each problem and method. A step itself has no such call.
+
+use super::save::Listing;
+use super::stats::{Cadence, Stats};
+use crate::actions::Action;
+use crate::error::{Error, StepError};
+use crate::groups::LieAlgebra;
+use crate::methods::{Embedded, EqualSteps, MapCounts, Method, Step};
+use crate::problems::{AlgOf, PointOf, Problem, ScalarOf};
+use crate::scalar::Real;
+use crate::tolerance::Tolerance;
+
+/// A place in the last step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Place {
+    /// Its end, or where the run was cut: y.
+    End,
+    /// Its start.
+    Start,
+    /// The part θ of it, by dense output.
+    Within(f64),
+    /// The end of a shorter step of this size.
+    Shorter(f64),
+}
+
+/// A part of the state that is saved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Saved {
+    /// The state.
+    State,
+    /// The start of the last step.
+    Start,
+    /// The point whose orbit contains the run.
+    Orbit,
+    /// The numbers that the method keeps from step to step.
+    Memory,
+}
+
+/// The order of a method and the costs of its steps. `None` if the method does not count them.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Costs {
+    pub(super) order: usize,
+    /// The evaluations of f in a step.
+    pub(super) step: Option<u64>,
+    pub(super) maps: Option<MapCounts>,
+    /// The evaluations of f in a step with its error.
+    pub(super) attempt: Option<u64>,
+    pub(super) attempt_maps: Option<MapCounts>,
+    /// The evaluations of f in [`Method::prepare`], and for each point within a step.
+    pub(super) dense: [Option<u64>; 2],
+}
+
+/// The points of a run of any problem and method.
+pub(super) trait AnyPoints {
+    /// from ← y, y ← the end of the step. On an error y is unchanged.
+    fn step(&mut self, step: Step<f64>) -> Result<(), StepError>;
+    /// from ← y, y ← the end of these steps. On an error y is the start of the step that failed.
+    fn steps(&mut self, steps: EqualSteps) -> Result<(), (u64, StepError)>;
+    /// to ← the end of the step from y. Returns its error in units of the tolerance.
+    fn attempt(&mut self, step: Step<f64>, tolerance: &Tolerance) -> Result<f64, StepError>;
+    /// from ← y, y ← to.
+    fn accept(&mut self);
+    /// ‖f(t, y)‖. Stores f.
+    fn rate(&mut self, t: f64) -> f64;
+    /// ‖f(t, to) − f‖ with the stored f.
+    fn change_of_rate(&mut self, t: f64) -> f64;
+    /// Corrects y to M, and records how far it was.
+    fn correct(&mut self, cadence: &mut Cadence, stats: &mut Stats);
+    /// Takes the last step again, so that the workspace holds it. to ← its end.
+    fn repeat(&mut self, step: Step<f64>, tolerance: Option<&Tolerance>) -> Result<(), StepError>;
+    /// Prepares the dense output of the last step. Its end is y, or else `to`.
+    fn prepare(&mut self, step: Step<f64>, ends_at_y: bool) -> Result<(), StepError>;
+    /// The iterations that the workspace has counted.
+    fn iterations(&self) -> u64;
+    /// The name of the group.
+    fn group_name(&self) -> String;
+    /// Calls `each` with the numbers of this part of the state.
+    fn each_number(&mut self, part: Saved, each: &mut dyn FnMut(&mut f64));
+}
+
+/// A step with its error in units of the tolerance, as a number.
+type Attempt<P, M> = fn(
+    &M,
+    &P,
+    Step<ScalarOf<P>>,
+    &Tolerance,
+    &PointOf<P>,
+    &mut <M as Method<P>>::Work,
+    &mut PointOf<P>,
+) -> Result<f64, StepError>;
+
+/// What an adaptive run needs from its method.
+pub(super) struct Estimator<P: Problem, M: Method<P>> {
+    attempt: Attempt<P, M>,
+    error_order: fn(&M, &P) -> Result<usize, Error>,
+    evaluations: fn(&M, &P) -> Option<u64>,
+    norm: fn(&P, &AlgOf<P>) -> f64,
+}
+
+impl<P: Problem, M: Method<P>> Clone for Estimator<P, M> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+impl<P: Problem, M: Method<P>> Copy for Estimator<P, M> {}
+
+impl<P: Problem, M: Embedded<P>> Estimator<P, M>
+where
+    ScalarOf<P>: Into<f64>,
+{
+    pub(super) fn of_method() -> Self {
+        Estimator {
+            attempt: |method, problem, step, tolerance, from, work, to| {
+                method.step_with_error(problem, step, tolerance, from, work, to).map(Into::into)
+            },
+            error_order: |method, problem| method.error_order(problem),
+            evaluations: |method, problem| method.evaluations_with_error(problem),
+            norm: |problem, v| problem.group().norm(v).into(),
+        }
+    }
+}
+
+/// The estimator with two values of f and its scratch, for the choice of a first step.
+struct Rates<P: Problem, M: Method<P>> {
+    estimator: Estimator<P, M>,
+    f: [AlgOf<P>; 2],
+    work: P::Work,
+}
+
+/// The points of a run.
+pub(super) struct Points<'a, P: Problem, M: Method<P>> {
+    pub(super) problem: &'a P,
+    method: &'a M,
+    /// The state.
+    pub(super) y: PointOf<P>,
+    /// The start of the last step.
+    pub(super) from: PointOf<P>,
+    /// The end of an attempt, or of a repeated step.
+    to: PointOf<P>,
+    work: M::Work,
+    /// For an adaptive step size.
+    rates: Option<Rates<P, M>>,
+    /// The start of the run. The state is corrected to its orbit.
+    orbit: PointOf<P>,
+    restore: <P::Action as Action<P::Group>>::Work,
+    /// The function that lists the numbers of a point, if the state is saved.
+    pub(super) list: Option<Listing<P>>,
+}
+
+fn lit<P: Problem>(Step { n, t, h }: Step<f64>) -> Step<ScalarOf<P>> {
+    Step { n, t: ScalarOf::<P>::lit(t), h: ScalarOf::<P>::lit(h) }
+}
+
+fn finite(is: bool) -> Result<(), StepError> {
+    match is {
+        true => Ok(()),
+        false => Err(StepError::NotFinite { what: "the state" }),
+    }
+}
+
+impl<'a, P: Problem, M: Method<P>> Points<'a, P, M> {
+    /// Makes the points of a run that starts at y. Checks f(t, y) at the time `field_at`. Returns them with the costs of a
+    /// step and, for an adaptive step size, the order of the error.
+    pub(super) fn new(
+        problem: &'a P,
+        method: &'a M,
+        adaptive: Option<(&Tolerance, Estimator<P, M>)>,
+        y: PointOf<P>,
+        field_at: Option<f64>,
+    ) -> Result<(Self, Costs, Option<usize>), Error> {
+        let (group, action) = (problem.group(), problem.action());
+        action.check(group, &y)?;
+        let mut costs = Costs {
+            order: method.order(problem),
+            step: method.evaluations(problem),
+            maps: method.map_counts(problem, false),
+            attempt: None,
+            attempt_maps: None,
+            dense: method.dense_evaluations(problem),
+        };
+        let mut error_order = None;
+        let rates = match adaptive {
+            None => None,
+            Some((tolerance, estimator)) => {
+                let mut parts = tolerance.scales();
+                let none = action.error_ratio(group, &group.zero(), &y, &mut parts);
+                tolerance.check(parts.asked(), none.any_below(f64::INFINITY))?;
+                costs.attempt = (estimator.evaluations)(method, problem);
+                costs.attempt_maps = method.map_counts(problem, true);
+                error_order = Some((estimator.error_order)(method, problem)?);
+                let f = [group.zero(), group.zero()];
+                Some(Rates { estimator, f, work: problem.work() })
+            }
+        };
+        let work = method.work(problem, &y)?;
+        if let Some(t) = field_at {
+            let mut v = group.zero();
+            problem.f(ScalarOf::<P>::lit(t), &y, &mut v, &mut problem.work());
+            group.check("f", &v)?;
+        }
+        let [from, to, orbit] = [y.clone(), y.clone(), y.clone()];
+        let restore = action.work(group);
+        let points =
+            Points { problem, method, y, from, to, work, rates, orbit, restore, list: None };
+        Ok((points, costs, error_order))
+    }
+
+    pub(super) fn stays_on_manifold(&self) -> bool {
+        self.method.stays_on_manifold()
+    }
+
+    /// The start of the last step ← the point.
+    pub(super) fn start_at(&mut self, point: &PointOf<P>) {
+        self.problem.action().assign(self.problem.group(), point, &mut self.from);
+    }
+
+    /// y ← the point.
+    pub(super) fn set(&mut self, point: &PointOf<P>) {
+        self.problem.action().assign(self.problem.group(), point, &mut self.y);
+    }
+
+    /// `at` ← the point at a place in the last step.
+    pub(super) fn look(
+        &mut self,
+        place: Place,
+        last: Step<f64>,
+        at: &mut PointOf<P>,
+    ) -> Result<(), StepError> {
+        let Points { problem, method, y, from, work, .. } = self;
+        let (action, group) = (problem.action(), problem.group());
+        match place {
+            Place::End => action.assign(group, y, at),
+            Place::Start => action.assign(group, from, at),
+            Place::Within(theta) => {
+                method.interpolate(problem, lit::<P>(last), theta, from, work, at)?;
+                finite(action.is_finite(group, at))?;
+            }
+            Place::Shorter(h) => {
+                action.assign(group, from, at);
+                method.step(problem, lit::<P>(Step { h, ..last }), at, work)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// y ← y changed by `change`, and corrected to M. It must be on M within 1e-6, else y is unchanged. The run continues
+    /// on the orbit of the new y.
+    pub(super) fn change(&mut self, change: &mut dyn FnMut(&mut PointOf<P>)) -> Result<(), Error> {
+        let Points { problem, y, to, orbit, restore, .. } = self;
+        let (action, group) = (problem.action(), problem.group());
+        action.assign(group, y, to);
+        change(to);
+        action.check(group, to)?;
+        if let Some(residual) = action.restore(group, to, restore)
+            && !residual.all_below(1e-6)
+        {
+            return Err(Error::OutOfRange {
+                arg: "y".into(),
+                value: f64::NAN,
+                expected: format!("a point of M; ‖M⁻¹gᵀMg − 𝟙‖ is {residual:?}"),
+            });
+        }
+        action.assign(group, to, orbit);
+        action.assign(group, to, y);
+        Ok(())
+    }
+
+    /// y ← the point, like [`change`](Self::change).
+    pub(super) fn change_to(&mut self, point: &PointOf<P>) -> Result<(), Error> {
+        let problem = self.problem;
+        self.change(&mut |y| problem.action().assign(problem.group(), point, y))
+    }
+}
+
+impl<P: Problem, M: Method<P>> AnyPoints for Points<'_, P, M> {
+    fn step(&mut self, step: Step<f64>) -> Result<(), StepError> {
+        let Points { problem, method, y, from, work, .. } = self;
+        let (action, group) = (problem.action(), problem.group());
+        action.assign(group, y, from);
+        let taken = method.step(problem, lit::<P>(step), y, work);
+        let taken = taken.and_then(|()| finite(action.is_finite(group, y)));
+        if taken.is_err() {
+            action.assign(group, from, y);
+        }
+        taken
+    }
+    fn steps(&mut self, steps: EqualSteps) -> Result<(), (u64, StepError)> {
+        let Points { problem, method, y, from, work, .. } = self;
+        let (action, group) = (problem.action(), problem.group());
+        action.assign(group, y, from);
+        method.steps(problem, steps, y, work).inspect_err(|(failed, _)| {
+            action.assign(group, from, y);
+            let _ = method.steps(problem, EqualSteps { end: *failed, ..steps }, y, work);
+        })
+    }
+    fn attempt(&mut self, step: Step<f64>, tolerance: &Tolerance) -> Result<f64, StepError> {
+        let Points { problem, method, y, to, work, rates, .. } = self;
+        let estimate = StepError::NotFinite { what: "the error estimate" };
+        let Some(Rates { estimator, .. }) = rates else { return Err(estimate) };
+        let ratio = (estimator.attempt)(method, problem, lit::<P>(step), tolerance, y, work, to)?;
+        finite(problem.action().is_finite(problem.group(), to))?;
+        if ratio.is_finite() { Ok(ratio) } else { Err(estimate) }
+    }
+    fn accept(&mut self) {
+        core::mem::swap(&mut self.from, &mut self.y);
+        core::mem::swap(&mut self.y, &mut self.to);
+    }
+    fn rate(&mut self, t: f64) -> f64 {
+        let Points { problem, y, rates, .. } = self;
+        rates.as_mut().map_or(0.0, |Rates { estimator, f: [f, _], work }| {
+            problem.f(ScalarOf::<P>::lit(t), y, f, work);
+            (estimator.norm)(problem, f)
+        })
+    }
+    fn change_of_rate(&mut self, t: f64) -> f64 {
+        let Points { problem, to, rates, .. } = self;
+        rates.as_mut().map_or(0.0, |Rates { estimator, f: [f, change], work }| {
+            problem.f(ScalarOf::<P>::lit(t), to, change, work);
+            problem.group().axpy(ScalarOf::<P>::lit(-1.0), f, change);
+            (estimator.norm)(problem, change)
+        })
+    }
+    fn correct(&mut self, cadence: &mut Cadence, stats: &mut Stats) {
+        let Points { problem, y, orbit, restore, .. } = self;
+        match problem.action().restore_to(problem.group(), orbit, y, restore) {
+            Some(residual) => {
+                stats.saw(residual);
+                cadence.saw(residual);
+            }
+            None => cadence.next = u64::MAX,
+        }
+    }
+    fn repeat(&mut self, step: Step<f64>, tolerance: Option<&Tolerance>) -> Result<(), StepError> {
+        let Points { problem, method, from, to, work, rates, .. } = self;
+        let step = lit::<P>(step);
+        match (rates, tolerance) {
+            (Some(Rates { estimator, .. }), Some(tolerance)) => {
+                (estimator.attempt)(method, problem, step, tolerance, from, work, to).map(drop)
+            }
+            _ => {
+                problem.action().assign(problem.group(), from, to);
+                method.step(problem, step, to, work)
+            }
+        }
+    }
+    fn prepare(&mut self, step: Step<f64>, ends_at_y: bool) -> Result<(), StepError> {
+        let Points { problem, method, y, from, to, work, .. } = self;
+        method.prepare(problem, lit::<P>(step), from, if ends_at_y { y } else { to }, work)
+    }
+    fn iterations(&self) -> u64 {
+        self.method.iterations(&self.work)
+    }
+    fn group_name(&self) -> String {
+        self.problem.group().name()
+    }
+    fn each_number(&mut self, part: Saved, each: &mut dyn FnMut(&mut f64)) {
+        let Points { method, y, from, work, orbit, list, .. } = self;
+        let Some(list) = list else { return };
+        match part {
+            Saved::State => list(y, each),
+            Saved::Start => list(from, each),
+            Saved::Orbit => list(orbit, each),
+            Saved::Memory => method.each_memory(work, each),
+        }
+    }
+}

@@ -1,0 +1,349 @@
+//! The times of a run: its steps, and the places within them. This part of the driver knows numbers only.
+
+use super::control::{Controller, StepControl};
+use super::grid::TimeGrid;
+use super::points::{AnyPoints, Costs, Place};
+use super::stats::{Cadence, RunError, Stats};
+use crate::error::{Error, Failure, StepError};
+use crate::methods::{MapCounts, Step};
+
+/// The choice of the steps of a run.
+#[derive(Clone, Debug)]
+pub(super) enum Pace {
+    /// One size, with a largest number of steps.
+    Equal { grid: TimeGrid, max_steps: u64 },
+    /// By their error (adaptive).
+    ByError(StepControl),
+}
+
+/// The state of the choice of steps.
+pub(super) enum Pacer {
+    /// Equal steps: the grid, and the number of its steps that are done. A run that left its grid gets a new one.
+    Equal { grid: TimeGrid, done: u64, max_steps: u64 },
+    /// Steps by their error.
+    ByError(Chooser),
+}
+
+/// The state of the choice of steps by their error.
+pub(super) struct Chooser {
+    pub(super) control: StepControl,
+    pub(super) controller: Controller,
+    /// The size of the next attempt, without its sign; `None` before the first step.
+    pub(super) h: Option<f64>,
+    /// The end of the last step that failed, until the run has passed it.
+    pub(super) wall: Option<f64>,
+}
+
+/// What the workspace holds of the last step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Looked {
+    /// Nothing: there was no step, or the state was changed since.
+    Nothing,
+    /// The step: the workspace was last used for it.
+    Fresh,
+    /// Something else: the workspace was used since.
+    Stale,
+    /// The step with its dense output.
+    Prepared,
+}
+
+/// The times of a run: its time, its last step, the choice of the next step, and its statistics.
+pub(super) struct Timeline {
+    pub(super) t: f64,
+    pub(super) t1: f64,
+    /// The last step.
+    pub(super) last: Step<f64>,
+    pub(super) looked_at: Looked,
+    pub(super) pacer: Pacer,
+    pub(super) cadence: Cadence,
+    pub(super) stats: Stats,
+    pub(super) costs: Costs,
+}
+
+/// The size of a step from t to `end`, or to a few rounding units before it.
+pub(super) fn size_to(t: f64, end: f64, before: bool) -> f64 {
+    let unit = f64::EPSILON * t.abs().max(end.abs());
+    let size = end - t;
+    if before && size.abs() > 100.0 * unit { size - (4.0 * unit).copysign(size) } else { size }
+}
+
+/// n + more, if both are counted.
+fn plus(n: Option<u64>, more: Option<u64>) -> Option<u64> {
+    n.zip(more).map(|(n, more)| n + more)
+}
+
+impl Timeline {
+    pub(super) fn new([t0, t1]: [f64; 2], pacer: Pacer, cadence: Cadence, costs: Costs) -> Self {
+        let stats = Stats {
+            evaluations: Some(0),
+            maps: Some(MapCounts::default()),
+            smallest_step: f64::INFINITY,
+            ..Stats::default()
+        };
+        let last = Step { n: 0, t: t0, h: 0.0 };
+        Timeline { t: t0, t1, last, looked_at: Looked::Nothing, pacer, cadence, stats, costs }
+    }
+
+    /// The statistics of the run so far.
+    pub(super) fn stats(&self, points: &dyn AnyPoints) -> Stats {
+        let mut stats = self.stats;
+        stats.iterations = stats.iterations.wrapping_add(points.iterations());
+        if stats.accepted == 0 {
+            stats.smallest_step = 0.0;
+        }
+        if let Pacer::Equal { .. } = &self.pacer {
+            let steps = self.costs.step.map(|each| each * stats.accepted);
+            stats.evaluations = plus(stats.evaluations, steps);
+            stats.maps = self.costs.maps.map(|each| each.times(stats.accepted));
+        }
+        stats
+    }
+
+    /// True if a is before b in the direction of the last step.
+    pub(super) fn is_before(&self, a: f64, b: f64) -> bool {
+        if self.t1 >= self.last.t { a < b } else { a > b }
+    }
+
+    /// Records that the state was changed. Returns the error if the new state cannot be used.
+    pub(super) fn changed(&mut self, by: &str, done: Result<(), Error>) -> Result<(), RunError> {
+        done.map_err(|source| RunError::Changed { by: by.into(), t: self.t, source })?;
+        self.looked_at = Looked::Nothing;
+        if let Pacer::ByError(chooser) = &mut self.pacer {
+            chooser.h = None;
+            chooser.wall = None;
+            chooser.controller = Controller { last: 1.0, hold: false, ..chooser.controller };
+        }
+        Ok(())
+    }
+
+    /// Takes steps until the time is exactly t.
+    pub(super) fn advance_to(
+        &mut self,
+        points: &mut dyn AnyPoints,
+        t: f64,
+    ) -> Result<(), RunError> {
+        let ahead = match self.t1 >= self.t {
+            true => self.t <= t && t <= self.t1,
+            false => self.t >= t && t >= self.t1,
+        };
+        if !(ahead && t.is_finite()) {
+            let expected = format!("a time from {} to {}", self.t, self.t1);
+            return Err(Error::out_of_range("t", t, expected).into());
+        }
+        while self.t != t {
+            self.step_before(points, t, false)?;
+        }
+        Ok(())
+    }
+
+    /// Takes one accepted step, at most to `stop`. No stage evaluates f exactly at `stop`, where f may jump.
+    pub(super) fn step_before(
+        &mut self,
+        points: &mut dyn AnyPoints,
+        stop: f64,
+        jumps: bool,
+    ) -> Result<(), RunError> {
+        if self.t == stop {
+            return Ok(());
+        }
+        match &mut self.pacer {
+            Pacer::Equal { .. } => self.equal_step(points, stop, jumps),
+            Pacer::ByError(_) => self.chosen_step(points, stop, jumps),
+        }
+    }
+
+    fn equal_step(
+        &mut self,
+        points: &mut dyn AnyPoints,
+        stop: f64,
+        jumps: bool,
+    ) -> Result<(), RunError> {
+        let Pacer::Equal { grid, done, max_steps } = &mut self.pacer else { return Ok(()) };
+        let max_steps = *max_steps;
+        if self.stats.accepted >= max_steps {
+            let h = grid.h().abs();
+            return Err(self.too_many(h, max_steps));
+        }
+        if self.t != grid.time(*done) {
+            // The run was taken off its grid: equal steps from here, of the same size.
+            *grid = TimeGrid::new([self.t, self.t1], grid.h().abs())?;
+            *done = 0;
+        }
+        let end = grid.time(*done + 1);
+        let before = if self.t1 >= self.t { stop < end } else { stop > end };
+        let n = self.stats.accepted;
+        let (step, end) = match before || (jumps && stop == end) {
+            true => (Step { n, t: self.t, h: size_to(self.t, stop, jumps) }, stop),
+            false => (Step { n, ..grid.step(*done) }, end),
+        };
+        *done += u64::from(!before);
+        if let Err(source) = points.step(step) {
+            self.looked_at = Looked::Nothing;
+            return Err(Failure { step: n, t: self.t, h: step.h, source }.into());
+        }
+        self.accepted(points, step, end);
+        Ok(())
+    }
+
+    /// Records that y is the state after `step`, at `end`.
+    pub(super) fn accepted(&mut self, points: &mut dyn AnyPoints, step: Step<f64>, end: f64) {
+        self.last = step;
+        self.looked_at = Looked::Fresh;
+        self.t = end;
+        self.stats.accepted += 1;
+        self.stats.smallest_step = self.stats.smallest_step.min(step.h.abs());
+        self.stats.largest_step = self.stats.largest_step.max(step.h.abs());
+        if self.stats.accepted == self.cadence.next {
+            points.correct(&mut self.cadence, &mut self.stats);
+        }
+    }
+
+    /// Takes equal steps up to number `end` of the run, or fewer, in one call of the method. Afterwards only the last
+    /// step has dense output. Returns false if there is no such call.
+    pub(super) fn quietly(
+        &mut self,
+        points: &mut dyn AnyPoints,
+        end: u64,
+        time: Option<f64>,
+    ) -> Result<bool, RunError> {
+        let Pacer::Equal { grid, done, max_steps } = &mut self.pacer else { return Ok(false) };
+        let (grid, first) = (*grid, *done);
+        if self.stats.accepted != first || self.t != grid.time(first) {
+            return Ok(false);
+        }
+        let mut end = end.min(self.cadence.next).min(grid.steps()).min(*max_steps);
+        if let Some(time) = time {
+            end = end.min(grid.last_before(first, time));
+        }
+        // The last step of the run may be a short one.
+        end -= u64::from(end == grid.steps() && grid.size(end - 1) != grid.h());
+        // The last step of the call is taken alone, so that its start is known.
+        let before = end.saturating_sub(1);
+        if before <= first {
+            return Ok(false);
+        }
+        let taken = points.steps(grid.equal(first, before));
+        let reached = taken.as_ref().map_or_else(|(step, _)| *step, |()| before);
+        if reached > first {
+            self.stats.smallest_step = self.stats.smallest_step.min(grid.h().abs());
+            self.stats.largest_step = self.stats.largest_step.max(grid.h().abs());
+        }
+        self.looked_at = Looked::Nothing;
+        self.t = grid.time(reached);
+        self.stats.accepted = reached;
+        match taken {
+            Ok(()) => {
+                *done = before;
+                Ok(true)
+            }
+            // The state of an error is the last accepted one.
+            Err((step, source)) => Err(Failure { step, t: self.t, h: grid.h(), source }.into()),
+        }
+    }
+
+    /// The place of t in the last step, for [`Points::look`](super::points::Points::look). Prepares the dense output if
+    /// the place needs it.
+    pub(super) fn place(&mut self, points: &mut dyn AnyPoints, t: f64) -> Result<Place, RunError> {
+        match t == self.t {
+            true => Ok(Place::End),
+            false => self.within(points, t),
+        }
+    }
+
+    /// The place of t, which must be in the last step.
+    pub(super) fn known_place(
+        &mut self,
+        points: &mut dyn AnyPoints,
+        t: f64,
+    ) -> Result<Place, RunError> {
+        let start = self.last.t;
+        let inside =
+            self.looked_at != Looked::Nothing && start.min(self.t) <= t && t <= start.max(self.t);
+        match inside || t == self.t {
+            true => self.place(points, t),
+            false => {
+                let expected = format!("a time of the last step, from {start} to {}", self.t);
+                Err(Error::out_of_range("t", t, expected).into())
+            }
+        }
+    }
+
+    /// The place of t before the end of the last step, with dense output.
+    pub(super) fn within(&mut self, points: &mut dyn AnyPoints, t: f64) -> Result<Place, RunError> {
+        let Step { t: start, h, .. } = self.last;
+        if t == start {
+            return Ok(Place::Start);
+        }
+        self.prepare(points).map_err(|source| self.no_point(source))?;
+        self.looked_within(self.costs.dense[1]);
+        Ok(Place::Within(((t - start) / h).clamp(0.0, 1.0)))
+    }
+
+    /// The place of t in the last step, by a shorter step from its start.
+    pub(super) fn by_a_step(
+        &mut self,
+        points: &mut dyn AnyPoints,
+        t: f64,
+    ) -> Result<Place, RunError> {
+        if t == self.t || t == self.last.t {
+            return self.place(points, t);
+        }
+        self.looked_at = Looked::Stale;
+        self.looked_within(self.costs.step);
+        Ok(Place::Shorter(t - self.last.t))
+    }
+
+    /// Counts a point within a step.
+    fn looked_within(&mut self, evaluations: Option<u64>) {
+        self.stats.points_within += 1;
+        self.stats.evaluations = plus(self.stats.evaluations, evaluations);
+    }
+
+    /// The error of a point within the last step.
+    pub(super) fn no_point(&self, source: StepError) -> RunError {
+        RunError::Within { t: self.last.t, h: self.last.h, source }
+    }
+
+    /// Prepares the dense output of the last step.
+    fn prepare(&mut self, points: &mut dyn AnyPoints) -> Result<(), StepError> {
+        if self.looked_at == Looked::Prepared {
+            return Ok(());
+        }
+        if self.looked_at == Looked::Stale {
+            self.repeat(points)?;
+        }
+        self.stats.evaluations = plus(self.stats.evaluations, self.costs.dense[0]);
+        // A step that was cut is prepared, or was taken again.
+        points.prepare(self.last, self.looked_at == Looked::Fresh)?;
+        self.looked_at = Looked::Prepared;
+        Ok(())
+    }
+
+    /// Records that the workspace no longer holds the last step.
+    pub(super) fn forget_workspace(&mut self) {
+        if self.looked_at != Looked::Nothing {
+            self.looked_at = Looked::Stale;
+        }
+    }
+
+    /// Repeats the last step, so that the workspace holds it. Its iterations are not counted again.
+    fn repeat(&mut self, points: &mut dyn AnyPoints) -> Result<(), StepError> {
+        let tolerance = match &self.pacer {
+            Pacer::Equal { .. } => None,
+            Pacer::ByError(chooser) => Some(&chooser.control.tolerance),
+        };
+        let counted = points.iterations();
+        let repeated = points.repeat(self.last, tolerance);
+        let again = points.iterations().wrapping_sub(counted);
+        self.stats.iterations = self.stats.iterations.wrapping_sub(again);
+        repeated
+    }
+
+    /// Counts an attempt.
+    pub(super) fn attempted(&mut self) {
+        self.looked_at = Looked::Nothing;
+        let Costs { attempt, attempt_maps, .. } = self.costs;
+        self.stats.evaluations = plus(self.stats.evaluations, attempt);
+        self.stats.maps = self.stats.maps.zip(attempt_maps).map(|(n, more)| n + more);
+    }
+}
