@@ -10,7 +10,7 @@ use core::marker::PhantomData;
 use std::sync::Arc;
 
 use super::doubling::{doubled as step_doubled, within_halves};
-use super::{Embedded, EqualSteps, MapCounts, Method, Metric, Step, take_steps};
+use super::{Embedded, EqualSteps, MapCounts, Method, Metric, Step, Steps, take_steps};
 use crate::error::{Error, StepError};
 use crate::problems::{PointOf, Problem, ScalarOf};
 use crate::tolerance::Tolerance;
@@ -69,13 +69,6 @@ trait Inner<'p, P: Problem> {
     fn stays_on_manifold(&self) -> bool;
     fn pair(&self, problem: &P) -> Option<Pair>;
     fn stepper(&self, problem: &P, like: &PointOf<P>) -> Result<Box<dyn Stepper<P> + 'p>, Error>;
-}
-
-/// One step, or steps of one size.
-#[derive(Clone, Copy)]
-enum Steps<S> {
-    One(Step<S>),
-    Equal(EqualSteps),
 }
 
 /// A method with its workspace behind the pointer.
@@ -241,15 +234,7 @@ impl<P: Problem, M: Method<P>, E: Estimate<P, M>> Stepper<P> for MethodWithWork<
         steps: Steps<ScalarOf<P>>,
         y: &mut PointOf<P>,
     ) -> Result<(), (u64, StepError)> {
-        let numbers = match steps {
-            Steps::One(step) => (step.n, 1),
-            Steps::Equal(steps) => steps.numbers(),
-        };
-        let step = |n| match steps {
-            Steps::One(step) => step,
-            Steps::Equal(steps) => steps.step(n),
-        };
-        take_steps(&self.method, problem, numbers, step, y, &mut self.work)
+        take_steps(&self.method, problem, steps, y, &mut self.work)
     }
     fn step_with_error(
         &mut self,

@@ -106,10 +106,32 @@ impl EqualSteps {
     pub fn step<S: Real>(&self, n: u64) -> Step<S> {
         Step { n, t: S::lit(self.t0 + n as f64 * self.h), h: S::lit(self.h) }
     }
+}
 
+/// One step, or steps of one size.
+#[derive(Clone, Copy)]
+enum Steps<S> {
+    One(Step<S>),
+    Equal(EqualSteps),
+}
+
+impl<S: Real> Steps<S> {
     /// The number of the first step, and how many they are.
+    #[inline]
     fn numbers(&self) -> (u64, u64) {
-        (self.first, self.end.saturating_sub(self.first))
+        match self {
+            Steps::One(step) => (step.n, 1),
+            Steps::Equal(EqualSteps { first, end, .. }) => (*first, end.saturating_sub(*first)),
+        }
+    }
+
+    /// The step with this number.
+    #[inline]
+    fn step(&self, n: u64) -> Step<S> {
+        match self {
+            Steps::One(step) => *step,
+            Steps::Equal(steps) => steps.step(n),
+        }
     }
 }
 
@@ -265,23 +287,23 @@ pub trait Method<P: Problem> {
         y: &mut PointOf<P>,
         work: &mut Self::Work,
     ) -> Result<(), (u64, StepError)> {
-        take_steps(self, problem, steps.numbers(), |n| steps.step(n), y, work)
+        take_steps(self, problem, Steps::Equal(steps), y, work)
     }
 }
 
-/// Takes so many steps from this number on, as [`Method::steps`] does.
+/// Takes these steps, as [`Method::steps`] does.
 #[inline(always)]
 fn take_steps<P: Problem, M: Method<P> + ?Sized>(
     method: &M,
     problem: &P,
-    (first, count): (u64, u64),
-    step: impl Fn(u64) -> Step<ScalarOf<P>>,
+    steps: Steps<ScalarOf<P>>,
     y: &mut PointOf<P>,
     work: &mut M::Work,
 ) -> Result<(), (u64, StepError)> {
+    let (first, count) = steps.numbers();
     for i in 0..count {
         let n = first.wrapping_add(i);
-        if let Err(error) = method.step(problem, step(n), y, work) {
+        if let Err(error) = method.step(problem, steps.step(n), y, work) {
             return Err((n, error));
         }
         if !problem.action().is_finite(problem.group(), y) {
