@@ -35,7 +35,7 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>> ChartStore<P, Psi> {
     }
 
     /// The chart around `p`, for step number `n` of the run.
-    #[inline]
+    #[inline(always)]
     pub fn around<'a>(
         &'a mut self,
         problem: &'a P,
@@ -62,7 +62,7 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>> Chart<'_, P, Psi> {
     ///
     /// # Errors
     /// As [`CoordinateMap::psi`].
-    #[inline]
+    #[inline(always)]
     pub fn lambda(&mut self, u: &AlgOf<P>, q: &mut PointOf<P>) -> Result<(), StepError> {
         let ChartStore { at, g, act, .. } = &mut *self.store;
         let psi_u = PsiOf::new(self.problem.group(), self.psi, u, at, g);
@@ -70,7 +70,7 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>> Chart<'_, P, Psi> {
     }
 
     /// k ← f(t, p): the pulled-back field at u = 0, where Ψ and dΨ⁻¹ are the identity.
-    #[inline]
+    #[inline(always)]
     pub fn field(&mut self, t: ScalarOf<P>, k: &mut AlgOf<P>) {
         self.problem.f(t, self.p, k, &mut self.store.field);
     }
@@ -79,7 +79,7 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>> Chart<'_, P, Psi> {
     ///
     /// # Errors
     /// As [`CoordinateMap::psi`] and [`CoordinateMap::dpsi_inv`].
-    #[inline]
+    #[inline(always)]
     pub fn pullback(
         &mut self,
         t: ScalarOf<P>,

@@ -53,7 +53,7 @@ impl<S: Real> Action<So3<S>> for Coadjoint {
     ) {
         *dm = cross(v, m);
     }
-    #[inline]
+    #[inline(always)]
     fn lambda<Psi: CoordinateMap<So3<S>>>(
         &self,
         psi_u: PsiOf<'_, So3<S>, Psi>,

@@ -32,7 +32,7 @@ impl<G: LieGroup> Action<G> for Linear {
     fn generate(&self, group: &G, v: &G::Alg, x: &G::Vector, dx: &mut G::Vector, _: &mut ()) {
         group.apply_algebra(v, x, dx);
     }
-    #[inline]
+    #[inline(always)]
     fn lambda<Psi: CoordinateMap<G>>(
         &self,
         psi_u: PsiOf<'_, G, Psi>,

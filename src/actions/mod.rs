@@ -44,7 +44,7 @@ pub trait Action<G: LieGroup> {
 
     /// Checks after every step that the numbers of p are finite. A state that overflows ends the run. The default is
     /// [`check`](Self::check).
-    #[inline]
+    #[inline(always)]
     fn is_finite(&self, group: &G, p: &Self::Point) -> bool {
         self.check(group, p).is_ok()
     }
@@ -97,7 +97,7 @@ pub trait Action<G: LieGroup> {
     ///
     /// # Errors
     /// As [`CoordinateMap::psi`].
-    #[inline]
+    #[inline(always)]
     fn lambda<Psi: CoordinateMap<G>>(
         &self,
         psi_u: PsiOf<'_, G, Psi>,

@@ -33,7 +33,7 @@ impl<S: Trig> CoordinateMap<So3<S>> for Exp {
         *g = if angle.in_range() { exp } else { so3::exp_huge(u)? };
         Ok(())
     }
-    #[inline]
+    #[inline(always)] // the largest part of a short step
     fn psi_on(
         &self,
         _: &So3<S>,
@@ -51,7 +51,7 @@ impl<S: Trig> CoordinateMap<So3<S>> for Exp {
         };
         Ok(())
     }
-    #[inline]
+    #[inline(always)]
     fn dpsi_inv(
         &self,
         _: &So3<S>,
