@@ -57,10 +57,11 @@ where
 
 /// The lane of the closed rigid body, before [`fields`]: its steps are so short that the choice of the map, and
 /// coefficients that the compiler does not know, would show. RKMK of at most four stages with the map as a type,
-/// and the classical tableau as a constant.
+/// the classical tableau as a constant, and RKMK on Gauss tableaus with the number of stages as a type. Numbers that
+/// count operations have no such lane.
 ///
 /// # Errors
-/// None.
+/// [`Error::Unsupported`](crate::Error::Unsupported) for a map that the group does not have.
 pub fn closed<'p, P>(choice: &Choice<'_>) -> MaybeMethod<'p, P>
 where
     P: Ambient<Group: crate::maps::AllMaps> + 'p,

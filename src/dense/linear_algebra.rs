@@ -1,7 +1,8 @@
 //! Linear algebra on single matrices, outside of a step. Each function allocates its result.
 //!
 //! The functions are those of faer. faer's functions are generic, so every crate that calls them compiles them again,
-//! for each instruction set. These are compiled once.
+//! for each instruction set. These are compiled once. They are for the crates of this workspace, and not part of the
+//! interface: matrices whose shapes do not fit are a defect of the caller.
 
 use faer::linalg::solvers::DenseSolveCore;
 use faer::{Mat, MatRef, Side, c64};

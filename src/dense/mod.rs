@@ -21,6 +21,7 @@ pub use expm::{
     ApplyChoice, Approximant, ComplexExponential, ExpmChoice, Exponential, ExponentialBatch,
     ExponentialF32, Structure,
 };
+#[doc(hidden)] // for the crates of this workspace: the shapes are not checked
 pub use linear_algebra::{
     determinant, hermitian_eigenvalues, inverse, largest_entry, multiply, norm, qr,
     singular_values, squared_norm, symmetric_eigen, symmetric_eigenvalues,

@@ -39,7 +39,7 @@ pub trait Real:
     /// The largest sum of squares whose products with ordinary numbers do not overflow.
     const SQUARE_MAX: f64 = 1e300;
 
-    /// True for numbers that count operations. Nobody waits for them, so methods by name are not compiled for speed.
+    /// True for numbers that count operations. Methods by name take their general code for them, which compiles faster.
     const COUNTS: bool = false;
 
     /// A constant of the formula (Butcher coefficients, Bernoulli numbers, ½).

@@ -51,7 +51,7 @@ type Ended = Result<Option<Status>, RunError>;
 impl Drive<'_> {
     /// Runs to the end, or to an error.
     pub(super) fn run(&mut self, output: &mut dyn AnyOutput) -> Result<Status, RunError> {
-        let starts = output.invariants().into_iter().zip(output.values(Slot::State));
+        let starts = output.invariants().into_iter().zip(output.values(None));
         let drift = |(name, start)| Drift { name, start, largest: 0.0, at_end: 0.0 };
         self.drift = starts.map(drift).collect();
         let ended = self.steps(output);
@@ -64,7 +64,7 @@ impl Drive<'_> {
         if self.drift.is_empty() {
             return;
         }
-        let values = output.values(if end { Slot::State } else { Slot::Shown });
+        let values = output.values((!end).then_some(Slot::Shown));
         for (drift, value) in self.drift.iter_mut().zip(values) {
             let moved = value - drift.start;
             drift.largest = drift.largest.max(moved.abs());

@@ -231,7 +231,7 @@ impl Events {
     pub(super) fn start(&mut self, t: f64, output: &mut dyn AnyOutput) -> Result<(), RunError> {
         for (index, event) in self.all.iter_mut().enumerate() {
             event.count = 0;
-            let value = event.finite(t, output.event(index, t, Slot::State))?;
+            let value = event.finite(t, output.event(index, t, None))?;
             event.seen = Seen { value, before: None, anew: value == 0.0 };
         }
         Ok(())
@@ -245,7 +245,7 @@ impl Events {
         at: Range<usize>,
     ) -> Result<(), RunError> {
         for (index, event) in self.all.iter_mut().enumerate() {
-            let value = event.finite(t, output.event(index, t, Slot::State))?;
+            let value = event.finite(t, output.event(index, t, None))?;
             let Seen { value: last, before, .. } = event.seen;
             let size = before.map_or(0.0, |[start, _]| last.abs().max(start.abs()));
             // Its zero was just passed, or may have been, up to rounding.
@@ -269,7 +269,7 @@ impl Events {
         let (start, end) = (times.last.t, times.t);
         let Events { all, found } = self;
         for (index, event) in all.iter_mut().enumerate() {
-            let last = event.finite(end, output.event(index, end, Slot::State))?;
+            let last = event.finite(end, output.event(index, end, None))?;
             let search = event.search([start, end], last, first_step);
             if search.is_idle() {
                 event.seen = search.seen_at_end();
@@ -278,7 +278,7 @@ impl Events {
             let mut g = |t: f64| {
                 let place = times.place(output.points(), t)?;
                 output.look(place, times.last, Slot::Search).map_err(|e| times.no_point(e))?;
-                event.finite(t, output.event(index, t, Slot::Search))
+                event.finite(t, output.event(index, t, Some(Slot::Search)))
             };
             let zeros = &mut |t, rising| found.push(Zero { t, event: index, rising });
             event.seen = search.zeros(&mut g, zeros)?;

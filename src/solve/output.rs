@@ -11,8 +11,6 @@ use crate::problems::{PointOf, Problem};
 /// A point that a run keeps for its output.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Slot {
-    /// The state.
-    State,
     /// The point of the output.
     Shown,
     /// The point of the search for zeros.
@@ -23,8 +21,8 @@ pub(super) enum Slot {
 pub(super) trait AnyOutput {
     /// The points of the run.
     fn points(&mut self) -> &mut dyn AnyPoints;
-    /// The value of the event with this number at a point.
-    fn event(&mut self, event: usize, t: f64, at: Slot) -> f64;
+    /// The value of the event with this number at a point, or at y.
+    fn event(&mut self, event: usize, t: f64, at: Option<Slot>) -> f64;
     /// slot ← the point at a place in the last step.
     fn look(&mut self, place: Place, last: Step<f64>, slot: Slot) -> Result<(), StepError>;
     /// Shows the observer the point of the output.
@@ -43,8 +41,18 @@ pub(super) trait AnyOutput {
     fn cut_kept(&mut self, t: f64);
     /// The names of the invariants, if they are watched.
     fn invariants(&self) -> Vec<String>;
-    /// Their values at a point.
-    fn values(&self, at: Slot) -> Vec<f64>;
+    /// Their values at a point, or at y.
+    fn values(&self, at: Option<Slot>) -> Vec<f64>;
+}
+
+/// The point in a slot, or the state.
+#[inline]
+fn point<Y>(slot: Option<Slot>, [state, shown, search]: [&Y; 3]) -> &Y {
+    match slot {
+        None => state,
+        Some(Slot::Shown) => shown,
+        Some(Slot::Search) => search,
+    }
 }
 
 /// The function that gives the invariants of a problem.
@@ -85,32 +93,20 @@ impl<'a, 'k, P: Problem, M: Method<P>> Output<'a, 'k, P, M> {
         let [shown, search] = [points.y.clone(), points.y.clone()];
         Output { points, shown, search, observe, events, watch, kept, occurrences: Vec::new() }
     }
-
-    fn slot(&self, slot: Slot) -> &PointOf<P> {
-        match slot {
-            Slot::State => &self.points.y,
-            Slot::Shown => &self.shown,
-            Slot::Search => &self.search,
-        }
-    }
 }
 
 impl<P: Problem, M: Method<P>> AnyOutput for Output<'_, '_, P, M> {
     fn points(&mut self) -> &mut dyn AnyPoints {
         &mut self.points
     }
-    fn event(&mut self, event: usize, t: f64, at: Slot) -> f64 {
-        let y = match at {
-            Slot::State => &self.points.y,
-            Slot::Shown => &self.shown,
-            Slot::Search => &self.search,
-        };
-        (self.events[event].g)(t, y)
+    fn event(&mut self, event: usize, t: f64, at: Option<Slot>) -> f64 {
+        let Output { points, shown, search, events, .. } = self;
+        (events[event].g)(t, point(at, [&points.y, shown, search]))
     }
     fn look(&mut self, place: Place, last: Step<f64>, slot: Slot) -> Result<(), StepError> {
         match slot {
             Slot::Shown => self.points.look(place, last, &mut self.shown),
-            Slot::State | Slot::Search => self.points.look(place, last, &mut self.search),
+            Slot::Search => self.points.look(place, last, &mut self.search),
         }
     }
     fn observe(&mut self, t: f64) -> Next {
@@ -149,8 +145,9 @@ impl<P: Problem, M: Method<P>> AnyOutput for Output<'_, '_, P, M> {
     fn invariants(&self) -> Vec<String> {
         self.watch.as_ref().map_or_else(Vec::new, |watch| (watch.names)(self.points.problem))
     }
-    fn values(&self, at: Slot) -> Vec<f64> {
-        let values = |watch: &Watch<P>| (watch.values)(self.points.problem, self.slot(at));
+    fn values(&self, at: Option<Slot>) -> Vec<f64> {
+        let y = point(at, [&self.points.y, &self.shown, &self.search]);
+        let values = |watch: &Watch<P>| (watch.values)(self.points.problem, y);
         self.watch.as_ref().map_or_else(Vec::new, values)
     }
 }
