@@ -5,7 +5,7 @@ use lieflow::groups::So3;
 use lieflow::maps::CCSK;
 use lieflow::methods::tableau::RK4;
 use lieflow::methods::{AnyMethod, Embedded, Method, Rkmk};
-use lieflow::problems::{Flow, Problem};
+use lieflow::problems::{Flow, Invariant, Problem};
 use lieflow::solve::{Interrupted, Next, Status};
 use lieflow::{
     Action, Event, LieAlgebra, RunError, SaveAt, Solution, Solve, Step, StepControl, TimeGrid,
@@ -226,4 +226,32 @@ fn a_method_behind_a_pointer_takes_the_typed_step() {
         assert_eq!(a, b, "step {n}");
         assert_ne!(a, start, "step {n}");
     }
+}
+
+#[test]
+fn a_changed_state_stays_on_its_own_orbit() {
+    // Each step is on a sphere, and the driver corrects the length to that of the last change.
+    let flow = Flow::of_time(So3::new(), Linear, |t: f64, v: &mut V| *v = V::new(1.0, t, 0.5));
+    let method = Rkmk::new(RK4, CCSK);
+    let mut run =
+        Solve::new(&flow, &method, [0.0, 10.0]).dt(0.01).integrator(V::x()).expect("a run");
+    run.advance_to(2.0).expect("steps");
+    run.set_state(&(run.y() * 3.0)).expect("a point of M");
+    let y = run.advance_to(10.0).expect("steps");
+    assert!((y.norm() - 3.0).abs() < 1e-13, "{}", y.norm());
+    assert!(run.stats().restored > 5);
+}
+
+#[test]
+fn the_largest_drift_is_that_of_the_output() {
+    // The invariant that is claimed is x of a turning vector: it is 1 at both ends, and −1 half way.
+    let flow = Flow::of_time(So3::new(), Linear, |_: f64, v: &mut V| *v = V::z())
+        .invariant(Invariant::of_the_flow("x"), |x: &V| x[0]);
+    let span = [0.0, core::f64::consts::TAU];
+    let method = Rkmk::new(RK4, CCSK);
+    let solve = || Solve::new(&flow, &method, span).steps(100).watch_invariants();
+    let largest = |solve: Solve<'_, _, _>| solve.run(V::x()).expect("a run").drift[0].clone();
+    let (ends, shown) = (largest(solve()), largest(solve().every(1)));
+    assert!(ends.largest < 1e-6 && ends.at_end.abs() < 1e-6, "{ends:?}");
+    assert!((shown.largest - 2.0).abs() < 1e-6 && shown.at_end.abs() < 1e-6, "{shown:?}");
 }
