@@ -309,36 +309,68 @@ fn steps<Rule: OneStep, const FUSED: bool, const ROWS: usize>(
     block: &mut Block<ROWS>,
     first: usize,
 ) -> Result<(), Error> {
-    let Block { inverse, square, state } = block;
-    let mut spare = *state;
-    let (mut from, mut to, mut done) = (&mut *state, &mut spare, Ok(()));
-    let mut swapped = false;
-    let (mut guard, mut motion) = ([0.0; BLOCK], [[0.0; BLOCK]; MOTION]);
+    let (mut spare, mut is_spare, mut done) = (block.state, false, Ok(()));
+    let mut work = Scratch { guard: [0.0; BLOCK], motion: [[0.0; BLOCK]; MOTION] };
     for n in 1..=way.steps {
-        momenta::<Rule, FUSED>(way.h, inverse, &from.m, &mut to.m, &mut motion, &mut guard);
+        let Block { inverse, square, state } = block;
+        let step = OneOf { way, n, first, inverse, square };
+        // Each state has one role in each call. With one call for both the compiler was seen to mix up the turns of a
+        // loop (docs/compiler-fault.md).
+        done = match is_spare {
+            false => step.take::<Rule, FUSED, ROWS>(state, &mut spare, &mut work),
+            true => step.take::<Rule, FUSED, ROWS>(&spare, state, &mut work),
+        };
+        if done.is_err() {
+            break;
+        }
+        is_spare = !is_spare;
+    }
+    if is_spare {
+        block.state = spare;
+    }
+    if !Rule::KEEPS_GROUP {
+        block.square = squares(&block.state.m);
+    }
+    done
+}
+
+/// What a step leaves for the attitudes, and the largest |u|² of its stages.
+struct Scratch {
+    motion: [Numbers; MOTION],
+    guard: Numbers,
+}
+
+/// Step number n of a block.
+struct OneOf<'a> {
+    way: Way,
+    n: u64,
+    first: usize,
+    inverse: &'a Vectors,
+    square: &'a Numbers,
+}
+
+impl OneOf<'_> {
+    #[inline(always)]
+    fn take<Rule: OneStep, const FUSED: bool, const ROWS: usize>(
+        self,
+        from: &State<ROWS>,
+        to: &mut State<ROWS>,
+        Scratch { motion, guard }: &mut Scratch,
+    ) -> Result<(), Error> {
+        let OneOf { way, n, first, inverse, square } = self;
+        momenta::<Rule, FUSED>(way.h, inverse, &from.m, &mut to.m, motion, guard);
         for (from, to) in from.g.iter().zip(&mut to.g) {
-            rows::<Rule, FUSED>(way.h, &motion, from, to);
+            rows::<Rule, FUSED>(way.h, motion, from, to);
         }
         if !guard.iter().fold(true, |all, g| all & (*g < SERIES)) {
-            done = again::<Rule, ROWS>(way.h, &guard, inverse, from, to, first);
-            if done.is_err() {
-                break;
-            }
+            again::<Rule, ROWS>(way.h, guard, inverse, from, to, first)?;
         }
         if Rule::KEEPS_GROUP && (way.age + n).is_multiple_of(RESTORE_EVERY) {
             restore(&mut to.g);
             restore_momenta(square, &mut to.m);
         }
-        core::mem::swap(&mut from, &mut to);
-        swapped = !swapped;
+        Ok(())
     }
-    if swapped {
-        *state = spare;
-    }
-    if !Rule::KEEPS_GROUP {
-        *square = squares(&state.m);
-    }
-    done
 }
 
 /// A step of all momenta, the numbers for the attitudes, and the largest |u|² of its stages; NaN if m is not finite.

@@ -109,24 +109,30 @@ impl InChart for InCay {
     }
 }
 
+/// dΨ_u⁻¹ f(Ψ(u) m) at u = a·k, and |u|². A function, because a closure is not always inlined.
+#[inline(always)]
+fn stage<S: Trig, Psi: InChart>(
+    a: S,
+    k: &Vector3<S>,
+    j: &Vector3<S>,
+    m: &Vector3<S>,
+) -> (Vector3<S>, S) {
+    let MapAt { u, alpha2, a, b, c, s } = Psi::at(scaled(a, k));
+    let v = field(j, &rodrigues_on(&u, a, b, m));
+    (sum(&rodrigues_on(&u, S::lit(-0.5), c, &v), s, &v), alpha2)
+}
+
 impl<Psi: InChart> OneStep for Psi {
     const KEEPS_GROUP: bool = true;
 
     #[inline(always)]
     fn step<S: Trig>(h: S, j: &Vector3<S>, m: &Vector3<S>) -> MomentumStep<S> {
-        // k = dΨ_u⁻¹ f(Ψ(u) m) at u = a·k of the stage before.
-        let mut largest = S::lit(0.0);
-        let mut stage = |a: S, k: &Vector3<S>| {
-            let MapAt { u, alpha2, a, b, c, s } = Psi::at(scaled(a, k));
-            largest = larger(largest, alpha2);
-            let v = field(j, &rodrigues_on(&u, a, b, m));
-            sum(&rodrigues_on(&u, S::lit(-0.5), c, &v), s, &v)
-        };
         let half = S::lit(0.5) * h;
         let k1 = field(j, m);
-        let k2 = stage(half, &k1);
-        let k3 = stage(half, &k2);
-        let k4 = stage(h, &k3);
+        let (k2, first) = stage::<S, Psi>(half, &k1, j, m);
+        let (k3, second) = stage::<S, Psi>(half, &k2, j, m);
+        let (k4, third) = stage::<S, Psi>(h, &k3, j, m);
+        let largest = larger(larger(larger(S::lit(0.0), first), second), third);
         let two = S::lit(2.0);
         let increment = sum(&sum(&sum(&k1, two, &k2), two, &k3), S::lit(1.0), &k4);
         let MapAt { u: v, alpha2, a, b, .. } = Psi::at(scaled(h * S::lit(1.0 / 6.0), &increment));

@@ -206,17 +206,17 @@ impl<'a, const S: usize> Extension<'a, S> {
         }
     }
 
-    /// Computes the extra stages one after the other. `field` gets the node c, the weights of u, the earlier stages,
-    /// and the storage of the new one.
-    fn stages<T>(
+    /// Calls `field` for each extra stage, one after the other, with its number e, its node c and the weights of its u.
+    ///
+    /// `field` reads the stages before e and writes stage e of one array. It does not get them as two references:
+    /// docs/compiler-fault.md says why.
+    fn stages(
         &self,
-        d: &mut [T; EXTRA],
-        mut field: impl FnMut(f64, &Weights<S>, &[T], &mut T) -> Result<(), StepError>,
+        mut field: impl FnMut(usize, f64, &Weights<S>) -> Result<(), StepError>,
     ) -> Result<(), StepError> {
         for e in 0..self.evaluations() {
             let (c, weights) = self.sample(e);
-            let (known, rest) = d.split_at_mut(e);
-            field(c, &weights, known, &mut rest[0])?;
+            field(e, c, &weights)?;
         }
         Ok(())
     }
@@ -231,10 +231,10 @@ impl<'a, const S: usize> Extension<'a, S> {
         d: &mut [AlgOf<P>; EXTRA],
         u: &mut AlgOf<P>,
     ) -> Result<(), StepError> {
-        self.stages(d, |c, weights, known, stage| {
-            weights.in_algebra(alg, h, k, known, u);
-            chart.pullback(t + h * ScalarOf::<P>::lit(c), u, stage)?;
-            finite(alg.is_finite(stage))
+        self.stages(|e, c, weights| {
+            weights.in_algebra(alg, h, k, &d[..e], u);
+            chart.pullback(t + h * ScalarOf::<P>::lit(c), u, &mut d[e])?;
+            finite(alg.is_finite(&d[e]))
         })
     }
 
@@ -265,10 +265,10 @@ impl<'a, const S: usize> Extension<'a, S> {
         z: &mut PointOf<P>,
         store: &mut FieldStore<P>,
     ) -> Result<(), StepError> {
-        self.stages(d, |c, weights, known, stage| {
-            weights.in_space(y, h, k, known, z);
-            problem.field(t + h * ScalarOf::<P>::lit(c), z, stage, store);
-            finite(stage.is_finite())
+        self.stages(|e, c, weights| {
+            weights.in_space(y, h, k, &d[..e], z);
+            problem.field(t + h * ScalarOf::<P>::lit(c), z, &mut d[e], store);
+            finite(d[e].is_finite())
         })
     }
 

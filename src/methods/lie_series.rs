@@ -159,16 +159,30 @@ impl LieSeries {
                     _ => StepError::NotFinite { what: "the Taylor coefficients" },
                 });
             }
-            let (known, rest) = psi.split_at_mut(k + 1);
             let scale = h / ScalarOf::<P>::lit((k + 1) as f64);
-            group.clear(&mut rest[0]);
-            for (f, psi) in f[..=k].iter().rev().zip(&*known) {
-                group.add_product(scale, f, psi, P::MOVING, &mut rest[0]);
-            }
+            next_term(group, scale, &f[..=k], P::MOVING, &mut psi[..k + 2]);
         }
         group.clear(g);
         psi.iter().rev().for_each(|term| group.add(term, g)); // small terms first
         w.onto_group(group)
+    }
+}
+
+/// The last of the terms Ψ_j ← scale·Σ_{i+j=k} f_i Ψ_j of the others, or scale·Σ Ψ_j f_i from the right.
+#[inline(never)]
+#[expect(clippy::disallowed_methods, reason = "not inlined, so each reference has one role")]
+fn next_term<G: SeriesGroup>(
+    group: &G,
+    scale: G::Scalar,
+    f: &[G::Alg],
+    from_right: bool,
+    psi: &mut [G::Elem],
+) {
+    if let Some((next, known)) = psi.split_last_mut() {
+        group.clear(next);
+        for (f, psi) in f.iter().rev().zip(known) {
+            group.add_product(scale, f, psi, from_right, next);
+        }
     }
 }
 

@@ -53,6 +53,8 @@ impl MomentumSeries {
 
     /// m_k of ṁ = −ad*_f m, by k m_k = h Σ_{i+j=k−1} (m_i f_jᵀ − f_jᵀ m_i): 2k products, and k where
     /// 𝔤 is skew.
+    #[inline(never)]
+    #[expect(clippy::disallowed_methods, reason = "not inlined, so each reference has one role")]
     pub(crate) fn next(&mut self, h: f64, k: usize, f: &[AlgebraMatrix]) -> &Mat<f64> {
         if k == 0 {
             if self.skew {

@@ -72,6 +72,7 @@ impl Sphere {
     }
 
     /// x ← Δ⁻¹x for one part of a matrix, by its triangle below the diagonal; the diagonal is left.
+    #[expect(clippy::disallowed_methods, reason = "no function gets two columns")]
     fn solve_below(&self, x: &mut Mat<f64>) {
         let n = self.n;
         for j in 1..n - 1 {

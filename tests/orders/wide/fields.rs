@@ -12,7 +12,6 @@
 use lieflow::LieGroup;
 use lieflow::actions::LeftTranslation;
 use lieflow::groups::{Power, Product, Se3, So3, Translations};
-use lieflow::methods::Metric;
 use lieflow::problems::{LinearField, LinearSpace, Problem, TaylorField};
 use lieflow::scalar::{Real, Trig};
 use nalgebra::Vector3;
@@ -155,16 +154,13 @@ impl<G: Wide> TaylorField for CoupledField<G> {
         f: &mut [G::Alg],
         series: &mut Vec<G::Elem>,
     ) {
-        let (known, rest) = series.split_at_mut(k);
-        let next = &mut rest[0];
-        if k == 0 {
-            Metric::assign(next, g);
-        } else {
+        let mut next = g.clone();
+        if k > 0 {
             let mut term = g.clone();
             next.clear();
-            for (f, g) in f[..k].iter().rev().zip(&*known) {
+            for (f, g) in f[..k].iter().rev().zip(&series[..k]) {
                 self.group.tangent(f, g, &mut term);
-                LinearSpace::add(next, h / D::lit(k as f64), &term);
+                LinearSpace::add(&mut next, h / D::lit(k as f64), &term);
             }
         }
         let [time, constant] = match k {
@@ -173,5 +169,6 @@ impl<G: Wide> TaylorField for CoupledField<G> {
             _ => [D::lit(0.0); 2],
         };
         f[k] = self.f([time, constant, D::lit(0.5)], &next.numbers());
+        series[k] = next;
     }
 }

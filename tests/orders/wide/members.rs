@@ -169,10 +169,9 @@ fn extrapolated<P: Measurable>(
             for j in (0..k).rev() {
                 let ratio = D::lit((k + 1) as f64) / D::lit((j + 1) as f64);
                 let weight = D::lit(1.0) / (ratio * ratio - D::lit(1.0));
-                let (coarse, fine) = row.split_at_mut(j + 1);
-                let mut better = fine[0].clone();
-                better.add(weight, &fine[0]);
-                better.add(-weight, &coarse[j]);
+                let mut better = row[j + 1].clone();
+                better.add(weight, &row[j + 1]);
+                better.add(-weight, &row[j]);
                 row[j] = better;
             }
         }

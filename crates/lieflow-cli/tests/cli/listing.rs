@@ -2,7 +2,7 @@
 
 use std::process::{Command, Stdio};
 
-use crate::support::Folder;
+use crate::support::{Folder, program};
 use lieflow::catalog::{MAPS, TABLEAUS, all_methods};
 use lieflow_model::kinds::KINDS;
 use lieflow_model::scene::{BUNDLED, Scene};
@@ -276,7 +276,7 @@ fn completions_are_printed() {
 #[test]
 fn a_reader_that_goes_away_is_no_error() {
     for args in [&["scenes"][..], &["methods"], &["completions", "zsh"], &["--help"]] {
-        let mut child = Command::new(env!("CARGO_BIN_EXE_lieflow"))
+        let mut child = Command::new(program())
             .args(args)
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())

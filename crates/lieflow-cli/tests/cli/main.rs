@@ -13,5 +13,6 @@ mod paper;
 mod resume;
 mod right;
 mod run;
+mod same_bits;
 mod support;
 mod survey;

@@ -6,7 +6,7 @@ use std::sync::LazyLock;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use crate::support::{Folder, Run};
+use crate::support::{Folder, Run, program};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use serde_json::Value;
@@ -191,7 +191,7 @@ fn the_hint_to_go_on_repeats_the_call() {
                 --error-check never --resume";
     assert!(run.err.contains(&format!("`{hint}`")), "{run:?}");
     // It is typed in a shell, and does what it says.
-    let typed = hint.replace("lieflow run", &format!("{} run", env!("CARGO_BIN_EXE_lieflow")));
+    let typed = hint.replace("lieflow run", &format!("{} run", program().display()));
     let output = Command::new("sh").args(["-c", &typed]).current_dir(folder.path()).output();
     assert!(Run::from(output.unwrap()).ok().starts_with("It's long: "));
     assert_eq!(folder.names("both/second"), ["events.csv", "summary.json", "trajectory.csv"]);
@@ -254,8 +254,9 @@ fn a_damaged_state_is_refused() {
 fn a_run_that_cannot_write_keeps_what_it_has() {
     let folder = Folder::new();
     folder.write("scene.toml", &scene("400.0"));
-    let lieflow = env!("CARGO_BIN_EXE_lieflow");
-    let limited = format!("trap '' XFSZ; ulimit -f 300; {lieflow} run scene.toml --out out");
+    let lieflow = program();
+    let limited =
+        format!("trap '' XFSZ; ulimit -f 300; {} run scene.toml --out out", lieflow.display());
     let output = Command::new("sh").args(["-c", &limited]).current_dir(folder.path()).output();
     let message = Run::from(output.unwrap()).failed(1);
     assert!(message.contains("cannot write `out/trajectory.partial.csv`: "), "{message}");

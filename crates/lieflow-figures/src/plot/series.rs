@@ -61,13 +61,10 @@ pub enum Marker {
 /// Give each of several lines with one colour and one dash another marker.
 pub fn tell_apart(series: &mut [Series]) {
     for i in 1..series.len() {
-        let (before, rest) = series.split_at_mut(i);
-        let same = |a: &&Series| {
-            (a.colour % LINE_COLOURS, a.dash) == (rest[0].colour % LINE_COLOURS, rest[0].dash)
-        };
-        let alike = before.iter().filter(same).count();
+        let look = |a: &Series| (a.colour % LINE_COLOURS, a.dash);
+        let alike = series[..i].iter().filter(|a| look(a) == look(&series[i])).count();
         if alike > 0 {
-            rest[0].marker = Marker::cycle(rest[0].colour + alike);
+            series[i].marker = Marker::cycle(series[i].colour + alike);
         }
     }
 }

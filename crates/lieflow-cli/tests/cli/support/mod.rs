@@ -48,10 +48,22 @@ impl Folder {
     }
     /// `lieflow`, to be run here.
     pub fn command(&self, args: &[&str]) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_lieflow"));
+        self.command_of(&program(), args)
+    }
+    /// Another build of `lieflow`, to be run here.
+    pub fn command_of(&self, program: &Path, args: &[&str]) -> Command {
+        let mut command = Command::new(program);
         command.args(args).current_dir(&self.0);
         command
     }
+}
+
+/// The program that is tested: the one that `LIEFLOW_BIN` names, or the one of this profile.
+pub fn program() -> PathBuf {
+    let own = PathBuf::from(env!("CARGO_BIN_EXE_lieflow"));
+    env::var_os("LIEFLOW_BIN").map_or(own, |path| {
+        fs::canonicalize(&path).unwrap_or_else(|error| panic!("LIEFLOW_BIN = {path:?}: {error}"))
+    })
 }
 
 impl Drop for Folder {
