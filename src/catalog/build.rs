@@ -285,7 +285,7 @@ where
         }
         Recipe::Buss => plain(Buss4),
         Recipe::Dmv(method) => plain(method),
-        Recipe::Exact => plain(ExactMotion),
+        Recipe::Exact => pair(ExactMotion),
         Recipe::Series(4) => plain(Taylor::<4>),
         Recipe::Series(5) => plain(Taylor::<5>),
         Recipe::Series(6) => plain(Taylor::<6>),

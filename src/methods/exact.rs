@@ -8,11 +8,13 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::{MapCounts, Method, Step, Symmetric};
+use super::{Embedded, MapCounts, Method, Step, Symmetric};
 use crate::error::{Error, StepError};
 use crate::groups::{LieAlgebra, So3};
 use crate::problems::{Exact, Frame, FreeBody, PointOf, ScalarOf};
 use crate::scalar::Real;
+use crate::space::Metric;
+use crate::tolerance::Tolerance;
 
 /// The exact motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -63,5 +65,31 @@ where
         frame.turn(&turn.map(Real::lit));
         problem.store(&next.map(Real::lit), &frame, y);
         Ok(())
+    }
+}
+
+/// The error is 0 at any step size. So an adaptive run takes one step, or as many as its events need.
+impl<P: FreeBody> Embedded<P> for ExactMotion
+where
+    ScalarOf<P>: Into<f64>,
+{
+    fn error_order(&self, _: &P) -> Result<usize, Error> {
+        Ok(usize::MAX)
+    }
+    fn evaluations_with_error(&self, problem: &P) -> Option<u64> {
+        self.evaluations(problem)
+    }
+    fn step_with_error(
+        &self,
+        problem: &P,
+        step: Step<ScalarOf<P>>,
+        _: &Tolerance,
+        from: &PointOf<P>,
+        inertia: &mut [f64; 3],
+        to: &mut PointOf<P>,
+    ) -> Result<ScalarOf<P>, StepError> {
+        to.assign(from);
+        self.step(problem, step, to, inertia)?;
+        Ok(Real::lit(0.0))
     }
 }

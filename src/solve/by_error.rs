@@ -9,6 +9,8 @@ use crate::methods::Step;
 
 /// The number of rejections in a row that ends a run.
 const REJECTIONS_MAX: u32 = 60;
+/// An exact step with events, or without an end, turns by so many radian.
+const EXACT_TURN: f64 = 1.0;
 
 impl Timeline {
     pub(super) fn chosen_step(
@@ -20,6 +22,7 @@ impl Timeline {
         let Pacer::ByError(chooser) = &self.pacer else { return Ok(()) };
         let StepControl { min_step, max_steps, first_step, .. } = chooser.control;
         let mut h = match chooser.h.or(first_step) {
+            _ if chooser.controller.is_exact() => self.exact_step(points, stop),
             Some(h) => h,
             None => self.first_step(points, stop),
         };
@@ -92,9 +95,21 @@ impl Timeline {
     /// `to` ← the step from y. Returns its error in units of the tolerance.
     fn attempt(&mut self, points: &mut dyn AnyPoints, step: Step<f64>) -> Result<f64, StepError> {
         self.attempted();
-        match &self.pacer {
-            Pacer::ByError(chooser) => points.attempt(step, &chooser.control.tolerance),
-            Pacer::Equal { .. } => Err(StepError::NotFinite { what: "the error estimate" }),
+        points.attempt(step)
+    }
+
+    /// A step of a method that is exact at any size.
+    fn exact_step(&mut self, points: &mut dyn AnyPoints, stop: f64) -> f64 {
+        let Pacer::ByError(chooser) = &self.pacer else { return 0.0 };
+        if stop.is_finite() && !chooser.has_events {
+            return f64::INFINITY;
+        }
+        let rate = points.rate(self.t);
+        self.stats.evaluations = self.stats.evaluations.map(|n| n + 1);
+        match rate > 0.0 {
+            true => EXACT_TURN / rate,
+            false if stop.is_finite() => f64::INFINITY,
+            false => 1.0, // nothing moves, and nothing ends
         }
     }
 

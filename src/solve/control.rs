@@ -119,6 +119,11 @@ impl Controller {
         Controller { k: error_order as f64 + 1.0, last: 1.0, hold: false }
     }
 
+    /// True if steps of any size have no error.
+    pub(super) fn is_exact(&self) -> bool {
+        self.k >= usize::MAX as f64
+    }
+
     /// The factor of the next step after an accepted one.
     pub(super) fn accept(&mut self, ratio: f64) -> f64 {
         let r = ratio.max(1e-10); // an error of 0 says "grow"

@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use super::events::Events;
+use super::events::{Events, Zero};
 use super::grid::SaveAt;
 use super::output::{AnyOutput, Slot};
 use super::solution::{Drift, Next, Status};
@@ -18,6 +18,25 @@ pub(super) struct Checkpoints<'a> {
     pub(super) every: Duration,
     pub(super) take: TakeBytes<'a>,
     pub(super) last: Instant,
+}
+
+/// The number of steps without output or events that are taken in one call. The run can be cancelled between two calls.
+pub(super) struct Patience(u64);
+
+impl Patience {
+    /// The largest number.
+    const MOST: u64 = 1000;
+    /// A call that takes longer has too many steps.
+    const LONG: Duration = Duration::from_millis(20);
+
+    pub(super) fn new() -> Self {
+        Patience(1)
+    }
+
+    /// The number of steps of the next call, after a call that took so long.
+    fn after(&mut self, took: Duration) {
+        self.0 = if took > Self::LONG { self.0 / 4 } else { 2 * self.0 }.clamp(1, Self::MOST);
+    }
 }
 
 /// A run under way.
@@ -41,6 +60,12 @@ pub(super) struct Drive<'a> {
     pub(super) keeps: bool,
     /// The time of the last output.
     pub(super) shown_at: Option<f64>,
+    /// True while output and events of the last step are handled. A state that is saved then continues within the step.
+    pub(super) is_within: bool,
+    /// How many of the zeros of the last step are done.
+    pub(super) zeros_done: usize,
+    /// The number of steps that are taken between two looks at the clock.
+    pub(super) patience: Patience,
     /// The drifts of the invariants that are watched.
     pub(super) drift: Vec<Drift>,
 }
@@ -90,13 +115,15 @@ impl Drive<'_> {
                 return Ok(status);
             }
         }
+        // A state that was saved within a step.
+        if self.is_within
+            && let Some(status) = self.look_within(output)?
+        {
+            return Ok(status);
+        }
         while self.times.t != t1 {
-            if self.cancel.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
-                self.save_state(output, true);
+            if self.is_cancelled(output, self.times.t) {
                 return Ok(Status::Cancelled);
-            }
-            if let Some(progress) = &mut self.progress {
-                progress(self.times.t);
             }
             self.pass_stops();
             self.skip(output)?;
@@ -109,6 +136,7 @@ impl Drive<'_> {
                 let first_step = self.times.stats.accepted == 1;
                 self.events.search(&mut self.times, output, first_step)?;
             }
+            (self.is_within, self.zeros_done) = (true, 0);
             if let Some(status) = self.look_within(output)? {
                 return Ok(status);
             }
@@ -120,10 +148,23 @@ impl Drive<'_> {
         Ok(Status::Finished)
     }
 
+    /// True if the run is cancelled. Then its state is saved. Tells the time that the run has reached.
+    fn is_cancelled(&mut self, output: &mut dyn AnyOutput, t: f64) -> bool {
+        let cancelled = self.cancel.is_some_and(|flag| flag.load(Ordering::Relaxed));
+        if cancelled {
+            self.save_state(output, true);
+        } else if let Some(progress) = &mut self.progress {
+            progress(t);
+        }
+        cancelled
+    }
+
     /// Save the state where it is time to, or `now`.
     fn save_state(&mut self, output: &mut dyn AnyOutput, now: bool) {
         let Some(Checkpoints { every, last, .. }) = &mut self.checkpoints else { return };
-        if !now && !every.is_zero() && last.elapsed() < *every {
+        // Zero means after each step.
+        let due = if every.is_zero() { !self.is_within } else { last.elapsed() >= *every };
+        if !now && !due {
             return;
         }
         *last = Instant::now();
@@ -147,12 +188,17 @@ impl Drive<'_> {
         }
         let steps = self.times.stats.accepted;
         let mut end = self.save.next_after(steps);
-        if self.cancel.is_some() || self.progress.is_some() {
-            end = end.min(steps.saturating_add(1000));
+        let is_watched = self.cancel.is_some() || self.progress.is_some();
+        if is_watched {
+            end = end.min(steps.saturating_add(self.patience.0));
         }
         let time = [self.next_time(), self.next_stop].into_iter().flatten();
         let time = time.reduce(|a, b| if self.times.is_before(a, b) { a } else { b });
+        let clock = is_watched.then(Instant::now);
         self.times.quietly(output.points(), end, time)?;
+        if let Some(clock) = clock {
+            self.patience.after(clock.elapsed());
+        }
         Ok(())
     }
 
@@ -172,12 +218,20 @@ impl Drive<'_> {
 
     /// Handles the output times and the zeros of the last step in the order of time, and then its end.
     fn look_within(&mut self, output: &mut dyn AnyOutput) -> Ended {
-        let mut zeros = 0;
+        let mut is_first = true;
         loop {
             let end = self.times.t;
             let time = self.next_time().filter(|time| !self.times.is_before(end, *time));
-            let zero = self.events.found.get(zeros).copied();
+            let zero = self.events.found.get(self.zeros_done).copied();
             let zero = zero.filter(|zero| !self.times.is_before(end, zero.t));
+            // A step may have many rows.
+            if !is_first && let Some(t) = time.or(zero.map(|zero| zero.t)) {
+                if self.is_cancelled(output, t) {
+                    return Ok(Some(Status::Cancelled));
+                }
+                self.save_state(output, false);
+            }
+            is_first = false;
             match (time, zero) {
                 (None, None) => break,
                 (Some(time), zero)
@@ -189,16 +243,15 @@ impl Drive<'_> {
                     }
                 }
                 (_, Some(zero)) => {
-                    zeros += 1;
-                    if let Some(status) =
-                        self.occur(output, zero.event, zero.t, zero.rising, &mut zeros)?
-                    {
+                    self.zeros_done += 1;
+                    if let Some(status) = self.occur(output, zero)? {
                         return Ok(Some(status));
                     }
                 }
                 (Some(_), None) => break,
             }
         }
+        self.is_within = false;
         let shown = matches!(self.save, SaveAt::Every(every) if self.times.stats.accepted.is_multiple_of(every));
         if shown && self.shown_at != Some(self.times.t) {
             self.show_end_of_step(output)
@@ -258,18 +311,11 @@ impl Drive<'_> {
     }
 
     /// Handles a zero of an event, and all others at the same time.
-    fn occur(
-        &mut self,
-        output: &mut dyn AnyOutput,
-        event: usize,
-        t: f64,
-        rising: bool,
-        zeros: &mut usize,
-    ) -> Ended {
+    fn occur(&mut self, output: &mut dyn AnyOutput, Zero { t, event, rising }: Zero) -> Ended {
         let mut next = Some((event, rising));
         let mut stopped = None;
         let mut acts = false;
-        let at = *zeros - 1;
+        let at = self.zeros_done - 1;
         while let Some((event, rising)) = next {
             self.look_at(output, t, false)?;
             output.tell(event, t, rising);
@@ -281,17 +327,16 @@ impl Drive<'_> {
             }
             // Zeros at one time, up to rounding, belong together.
             let near = |u: f64| (u - t).abs() <= 4.0 * f64::EPSILON * t.abs();
-            next = self.events.found.get(*zeros).filter(|zero| near(zero.t)).map(|zero| {
-                *zeros += 1;
-                (zero.event, zero.rising)
-            });
+            let following = self.events.found.get(self.zeros_done).filter(|zero| near(zero.t));
+            next = following.map(|zero| (zero.event, zero.rising));
+            self.zeros_done += usize::from(next.is_some());
         }
         if !acts {
             return Ok(None);
         }
         self.look_at(output, t, false)?;
         self.cut(output, t);
-        for zero in &self.events.found[at..*zeros] {
+        for zero in &self.events.found[at..self.zeros_done] {
             let event = &self.events.all[zero.event];
             if event.changes {
                 let changed = output.change(zero.event, t);
@@ -305,7 +350,7 @@ impl Drive<'_> {
             }
             return Ok(Some(Status::Event(name)));
         }
-        self.events.restart(t, output, at..*zeros)?;
+        self.events.restart(t, output, at..self.zeros_done)?;
         Ok(None)
     }
 }

@@ -196,7 +196,7 @@ impl EventRule {
 }
 
 /// A zero that was found.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Zero {
     pub(super) t: f64,
     pub(super) event: usize,

@@ -53,7 +53,8 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
             Pace::Equal { grid, max_steps } => Pacer::Equal { grid, done: 0, max_steps },
             Pace::ByError(control) => {
                 let controller = Controller::new(error_order.unwrap_or(costs.order));
-                Pacer::ByError(Chooser { control, controller, h: None, wall: None })
+                let (h, wall, has_events) = (None, None, false);
+                Pacer::ByError(Chooser { control, controller, h, wall, has_events })
             }
         };
         let cadence = Cadence::new(points.stays_on_manifold());

@@ -45,7 +45,7 @@ use crate::methods::{Embedded, Method};
 use crate::problems::{Invariants, PointOf, Problem, ScalarOf};
 use crate::space::Numbers;
 use crate::tolerance::Rule;
-use drive::{Checkpoints, Drive};
+use drive::{Checkpoints, Drive, Patience};
 use events::Events;
 use output::{Kept, Observe, Output, Watch};
 use points::Estimator;
@@ -209,6 +209,9 @@ impl<'a> Settings<'a> {
             resume,
             keeps,
             shown_at: None,
+            is_within: false,
+            zeros_done: 0,
+            patience: Patience::new(),
             drift: Vec::new(),
         }
     }
@@ -338,12 +341,15 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
     }
 
     /// Ends the run when the flag is set, from another thread or a signal. The status is [`Status::Cancelled`].
+    ///
+    /// The flag is read before each step and each row. Steps without rows or events are taken in calls of about 20 ms at
+    /// most, and the flag is read between two calls. A run that is cancelled between two rows of a step has taken the step.
     pub fn cancel(mut self, flag: &'a AtomicBool) -> Self {
         self.settings.cancel = Some(flag);
         self
     }
 
-    /// Calls `progress` with the time, at least every thousand steps.
+    /// Calls `progress` with the time, whenever the flag of [`cancel`](Self::cancel) is read.
     pub fn progress(mut self, progress: impl FnMut(f64) + 'a) -> Self {
         self.settings.progress = Some(Box::new(progress));
         self
@@ -351,7 +357,8 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
 
     /// Calls `take` with the state of the run as bytes, between steps, at intervals of this duration.
     ///
-    /// Zero means after every step. A cancelled run also calls it at its end. [`resume`](Self::resume) continues from the
+    /// Zero means after every step. Otherwise the state is also saved between two rows of a step. A cancelled run also calls
+    /// it at its end. [`resume`](Self::resume) continues from the
     /// bytes.
     pub fn checkpoints(mut self, every: Duration, take: impl FnMut(&[u8]) + 'a) -> Self
     where
@@ -439,7 +446,8 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
         kept: Option<&'k mut Vec<Kept<PointOf<P>>>>,
         observe: &'k mut Observe<'k, PointOf<P>>,
     ) -> Result<Solution<PointOf<P>>, Interrupted<PointOf<P>>> {
-        let Integrator { mut points, times } = self.start(y0)?;
+        let Integrator { mut points, mut times } = self.start(y0)?;
+        times.expect_events(!self.events.is_empty());
         points.list = self.list;
         let (rules, functions) =
             self.events.into_iter().map(|event| (event.rule, event.functions)).unzip();

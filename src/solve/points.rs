@@ -5,13 +5,14 @@
 //! compiles the driver once, and only this file again for each problem and method. A step itself has no such call.
 
 use super::save::Listing;
-use super::stats::{Cadence, Stats};
+use super::stats::{Cadence, Stats, power_of_two_above};
 use crate::actions::Action;
 use crate::error::{Error, StepError};
 use crate::groups::LieAlgebra;
 use crate::methods::{Embedded, EqualSteps, MapCounts, Method, Step};
 use crate::problems::{AlgOf, PointOf, Problem, ScalarOf};
 use crate::scalar::Real;
+use crate::space::Metric;
 use crate::tolerance::Tolerance;
 
 /// A place in the last step.
@@ -60,8 +61,8 @@ pub(super) trait AnyPoints {
     fn step(&mut self, step: Step<f64>) -> Result<(), StepError>;
     /// from ← y, y ← the end of these steps. On an error y is the start of the step that failed.
     fn steps(&mut self, steps: EqualSteps) -> Result<(), (u64, StepError)>;
-    /// to ← the end of the step from y. Returns its error in units of the tolerance.
-    fn attempt(&mut self, step: Step<f64>, tolerance: &Tolerance) -> Result<f64, StepError>;
+    /// to ← the end of the step from y, with adaptive steps. Returns its error in units of the tolerance.
+    fn attempt(&mut self, step: Step<f64>) -> Result<f64, StepError>;
     /// from ← y, y ← to.
     fn accept(&mut self);
     /// ‖f(t, y)‖. Stores f.
@@ -71,7 +72,7 @@ pub(super) trait AnyPoints {
     /// Corrects y to M, and records how far it was.
     fn correct(&mut self, cadence: &mut Cadence, stats: &mut Stats);
     /// Takes the last step again, so that the workspace holds it. to ← its end.
-    fn repeat(&mut self, step: Step<f64>, tolerance: Option<&Tolerance>) -> Result<(), StepError>;
+    fn repeat(&mut self, step: Step<f64>) -> Result<(), StepError>;
     /// Prepares the dense output of the last step. Its end is y, or else `to`.
     fn prepare(&mut self, step: Step<f64>, ends_at_y: bool) -> Result<(), StepError>;
     /// The iterations that the workspace has counted.
@@ -124,9 +125,11 @@ where
     }
 }
 
-/// The estimator with two values of f and its scratch, for the choice of a first step.
+/// What adaptive steps need besides the method: the estimator with its tolerance, and two values of f with their scratch
+/// for the choice of a first step.
 struct Rates<P: Problem, M: Method<P>> {
     estimator: Estimator<P, M>,
+    tolerance: Tolerance,
     f: [AlgOf<P>; 2],
     work: P::Work,
 }
@@ -162,6 +165,30 @@ fn finite(is: bool) -> Result<(), StepError> {
     }
 }
 
+/// The largest relative distance from M of a point that a user gives.
+const OFF_M_MAX: f64 = 1e-6;
+
+/// Corrects y to M. Refuses a y that is farther from M than numbers with seven digits are.
+fn check_on_manifold<P: Problem>(
+    problem: &P,
+    y: &mut PointOf<P>,
+    work: &mut <P::Action as Action<P::Group>>::Work,
+) -> Result<(), Error> {
+    let size = y.size();
+    let Some(residual) = problem.action().restore(problem.group(), y, work) else { return Ok(()) };
+    let (one, square) = (ScalarOf::<P>::lit(1.0), size * size);
+    let relative = residual / if square.all_below(1.0) { one } else { square };
+    match relative.all_below(OFF_M_MAX) {
+        true => Ok(()),
+        false => Err(Error::NotOnGroup {
+            arg: "y",
+            group: problem.group().name(),
+            residual: power_of_two_above(relative),
+            tolerance: OFF_M_MAX,
+        }),
+    }
+}
+
 impl<'a, P: Problem, M: Method<P>> Points<'a, P, M> {
     /// Makes the points of a run that starts at y. Checks f(t, y) at the time `field_at`. Returns them with the costs of a
     /// step and, for an adaptive step size, the order of the error.
@@ -174,6 +201,8 @@ impl<'a, P: Problem, M: Method<P>> Points<'a, P, M> {
     ) -> Result<(Self, Costs, Option<usize>), Error> {
         let (group, action) = (problem.group(), problem.action());
         action.check(group, &y)?;
+        let mut restore = action.work(group);
+        check_on_manifold(problem, &mut y.clone(), &mut restore)?;
         let mut costs = Costs {
             order: method.order(problem),
             step: method.evaluations(problem),
@@ -193,7 +222,8 @@ impl<'a, P: Problem, M: Method<P>> Points<'a, P, M> {
                 costs.attempt_maps = method.map_counts(problem, true);
                 error_order = Some((estimator.error_order)(method, problem)?);
                 let f = [group.zero(), group.zero()];
-                Some(Rates { estimator, f, work: problem.work() })
+                let tolerance = tolerance.clone();
+                Some(Rates { estimator, tolerance, f, work: problem.work() })
             }
         };
         let work = method.work(problem, &y)?;
@@ -203,7 +233,6 @@ impl<'a, P: Problem, M: Method<P>> Points<'a, P, M> {
             group.check("f", &v)?;
         }
         let [from, to, orbit] = [y.clone(), y.clone(), y.clone()];
-        let restore = action.work(group);
         let points =
             Points { problem, method, y, from, to, work, rates, orbit, restore, list: None };
         Ok((points, costs, error_order))
@@ -230,7 +259,7 @@ impl<'a, P: Problem, M: Method<P>> Points<'a, P, M> {
         last: Step<f64>,
         at: &mut PointOf<P>,
     ) -> Result<(), StepError> {
-        let Points { problem, method, y, from, work, .. } = self;
+        let Points { problem, method, y, from, work, rates, .. } = self;
         let (action, group) = (problem.action(), problem.group());
         match place {
             Place::End => action.assign(group, y, at),
@@ -240,30 +269,32 @@ impl<'a, P: Problem, M: Method<P>> Points<'a, P, M> {
                 finite(action.is_finite(group, at))?;
             }
             Place::Shorter(h) => {
-                action.assign(group, from, at);
-                method.step(problem, lit::<P>(Step { h, ..last }), at, work)?;
+                let step = lit::<P>(Step { h, ..last });
+                match rates {
+                    // As the steps of the run are taken: in two halves, if the method has no estimate.
+                    Some(Rates { estimator, tolerance, .. }) => {
+                        (estimator.attempt)(method, problem, step, tolerance, from, work, at)?;
+                    }
+                    None => {
+                        action.assign(group, from, at);
+                        method.step(problem, step, at, work)?;
+                    }
+                }
+                finite(action.is_finite(group, at))?;
             }
         }
         Ok(())
     }
 
-    /// y ← y changed by `change`, and corrected to M. It must be on M within 1e-6, else y is unchanged. The run continues
-    /// on the orbit of the new y.
+    /// y ← y changed by `change`, and corrected to M. It must be on M, else y is unchanged. The run continues on the orbit
+    /// of the new y.
     pub(super) fn change(&mut self, change: &mut dyn FnMut(&mut PointOf<P>)) -> Result<(), Error> {
         let Points { problem, y, to, orbit, restore, .. } = self;
         let (action, group) = (problem.action(), problem.group());
         action.assign(group, y, to);
         change(to);
         action.check(group, to)?;
-        if let Some(residual) = action.restore(group, to, restore)
-            && !residual.all_below(1e-6)
-        {
-            return Err(Error::OutOfRange {
-                arg: "y".into(),
-                value: f64::NAN,
-                expected: format!("a point of M; ‖M⁻¹gᵀMg − 𝟙‖ is {residual:?}"),
-            });
-        }
+        check_on_manifold(*problem, to, restore)?;
         action.assign(group, to, orbit);
         action.assign(group, to, y);
         Ok(())
@@ -297,10 +328,10 @@ impl<P: Problem, M: Method<P>> AnyPoints for Points<'_, P, M> {
             let _ = method.steps(problem, EqualSteps { end: *failed, ..steps }, y, work);
         })
     }
-    fn attempt(&mut self, step: Step<f64>, tolerance: &Tolerance) -> Result<f64, StepError> {
+    fn attempt(&mut self, step: Step<f64>) -> Result<f64, StepError> {
         let Points { problem, method, y, to, work, rates, .. } = self;
         let estimate = StepError::NotFinite { what: "the error estimate" };
-        let Some(Rates { estimator, .. }) = rates else { return Err(estimate) };
+        let Some(Rates { estimator, tolerance, .. }) = rates else { return Err(estimate) };
         let ratio = (estimator.attempt)(method, problem, lit::<P>(step), tolerance, y, work, to)?;
         finite(problem.action().is_finite(problem.group(), to))?;
         if ratio.is_finite() { Ok(ratio) } else { Err(estimate) }
@@ -311,14 +342,14 @@ impl<P: Problem, M: Method<P>> AnyPoints for Points<'_, P, M> {
     }
     fn rate(&mut self, t: f64) -> f64 {
         let Points { problem, y, rates, .. } = self;
-        rates.as_mut().map_or(0.0, |Rates { estimator, f: [f, _], work }| {
+        rates.as_mut().map_or(0.0, |Rates { estimator, f: [f, _], work, .. }| {
             problem.f(ScalarOf::<P>::lit(t), y, f, work);
             (estimator.norm)(problem, f)
         })
     }
     fn change_of_rate(&mut self, t: f64) -> f64 {
         let Points { problem, to, rates, .. } = self;
-        rates.as_mut().map_or(0.0, |Rates { estimator, f: [f, change], work }| {
+        rates.as_mut().map_or(0.0, |Rates { estimator, f: [f, change], work, .. }| {
             problem.f(ScalarOf::<P>::lit(t), to, change, work);
             problem.group().axpy(ScalarOf::<P>::lit(-1.0), f, change);
             (estimator.norm)(problem, change)
@@ -334,14 +365,14 @@ impl<P: Problem, M: Method<P>> AnyPoints for Points<'_, P, M> {
             None => cadence.next = u64::MAX,
         }
     }
-    fn repeat(&mut self, step: Step<f64>, tolerance: Option<&Tolerance>) -> Result<(), StepError> {
+    fn repeat(&mut self, step: Step<f64>) -> Result<(), StepError> {
         let Points { problem, method, from, to, work, rates, .. } = self;
         let step = lit::<P>(step);
-        match (rates, tolerance) {
-            (Some(Rates { estimator, .. }), Some(tolerance)) => {
+        match rates {
+            Some(Rates { estimator, tolerance, .. }) => {
                 (estimator.attempt)(method, problem, step, tolerance, from, work, to).map(drop)
             }
-            _ => {
+            None => {
                 problem.action().assign(problem.group(), from, to);
                 method.step(problem, step, to, work)
             }

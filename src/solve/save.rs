@@ -22,7 +22,10 @@ use crate::problems::{PointOf, Problem};
 use crate::space::Numbers;
 
 /// The name of the format, and its version.
-const HEADER: [u8; 8] = *b"lieflow\x01";
+const HEADER: [u8; 8] = *b"lieflow\x02";
+
+/// The largest number of values of a list.
+const LIST_MAX: u64 = 1 << 24;
 
 /// A hash that is the same on every machine.
 fn hash(bytes: &[u8]) -> u64 {
@@ -113,17 +116,33 @@ fn read(owner: &str, bytes: &[u8], words: &mut dyn FnMut(&mut Each<'_>)) -> Resu
     if saved.next() != Some(hash(owner.as_bytes()).to_le_bytes()) {
         return refuse("but it is of another problem, method or choice of steps");
     }
-    let mut there = 0;
-    words(&mut |_| there += 1);
-    if bytes.len() != 8 * (there + 3) {
-        return refuse("but it has another number of values");
-    }
+    // Lists have a length of their own, so the words are counted as they are read.
+    let there = bytes.len() / 8 - 3;
+    let (mut before, mut asked) = (Vec::new(), 0);
+    words(&mut |word| before.push(*word));
     words(&mut |word| {
-        if let Some(next) = saved.next() {
-            *word = u64::from_le_bytes(next);
-        }
+        *word = saved.next().filter(|_| asked < there).map_or(0, u64::from_le_bytes);
+        asked += 1;
     });
-    Ok(())
+    if asked == there {
+        return Ok(());
+    }
+    let mut before = before.into_iter();
+    words(&mut |word| *word = before.next().unwrap_or(0));
+    refuse("but it has another number of values")
+}
+
+/// The length of a list, and its values. New values are the default.
+fn list<T: Default + Clone>(
+    each: &mut Each<'_>,
+    all: &mut Vec<T>,
+    mut value: impl FnMut(&mut Each<'_>, &mut T),
+) {
+    let mut length = all.len() as u64;
+    each(&mut length);
+    // The zeros of a step are few: a larger number is of another state.
+    all.resize(length.min(LIST_MAX) as usize, T::default());
+    all.iter_mut().for_each(|x| value(each, x));
 }
 
 impl Timeline {
@@ -135,11 +154,19 @@ impl Timeline {
         each(&mut self.last.n);
         number(each, &mut self.last.t);
         number(each, &mut self.last.h);
-        let before = self.looked_at != Looked::Nothing;
+        let before = match self.looked_at {
+            Looked::Nothing => 0,
+            Looked::Fresh | Looked::Stale => 1,
+            Looked::Prepared | Looked::Restored => 2,
+        };
         let mut known = before;
-        flag(each, &mut known);
+        each(&mut known);
         if known != before {
-            self.looked_at = if known { Looked::Stale } else { Looked::Nothing };
+            self.looked_at = match known {
+                0 => Looked::Nothing,
+                1 => Looked::Stale,
+                _ => Looked::Restored,
+            };
         }
         points.each_number(Saved::Orbit, &mut |x| number(each, x));
         each(&mut self.cadence.every);
@@ -215,6 +242,17 @@ impl Drive<'_> {
         each(&mut done);
         self.times_done = done as usize;
         option(each, &mut self.shown_at, number);
+        flag(each, &mut self.is_within);
+        let mut zeros = self.zeros_done as u64;
+        each(&mut zeros);
+        self.zeros_done = zeros as usize;
+        list(each, &mut self.events.found, |each, zero| {
+            number(each, &mut zero.t);
+            let mut event = zero.event as u64;
+            each(&mut event);
+            zero.event = event as usize;
+            flag(each, &mut zero.rising);
+        });
         for event in &mut self.events.all {
             each(&mut event.count);
             number(each, &mut event.seen.value);

@@ -47,12 +47,18 @@ impl Stats {
             false => self.not_restored += 1,
         }
         if !residual.all_below(self.residual) && residual.any_below(f64::INFINITY) {
-            self.residual = self.residual.max(f64::EPSILON / 4.0);
-            while !residual.all_below(self.residual) && self.residual < f64::MAX / 2.0 {
-                self.residual *= 2.0;
-            }
+            self.residual = power_of_two_above(residual);
         }
     }
+}
+
+/// A power of two above a number that is not negative, and at least ε/4. For numbers that are not f64.
+pub(super) fn power_of_two_above<S: Real>(x: S) -> f64 {
+    let mut bound = f64::EPSILON / 4.0;
+    while !x.all_below(bound) && bound < f64::MAX / 2.0 {
+        bound *= 2.0;
+    }
+    bound
 }
 
 /// The largest number of steps between two calls of [`Action::restore_to`](crate::Action::restore_to).

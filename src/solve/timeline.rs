@@ -2,7 +2,7 @@
 
 use super::control::{Controller, StepControl};
 use super::grid::TimeGrid;
-use super::points::{AnyPoints, Costs, Place};
+use super::points::{AnyPoints, Costs, Place, Saved};
 use super::stats::{Cadence, RunError, Stats};
 use crate::error::{Error, Failure, StepError};
 use crate::methods::{MapCounts, Step};
@@ -32,6 +32,8 @@ pub(super) struct Chooser {
     pub(super) h: Option<f64>,
     /// The end of the last step that failed, until the run has passed it.
     pub(super) wall: Option<f64>,
+    /// True if the run has events. Exact steps are then short enough to show them.
+    pub(super) has_events: bool,
 }
 
 /// What the workspace holds of the last step.
@@ -43,6 +45,8 @@ pub(super) enum Looked {
     Fresh,
     /// Something else: the workspace was used since.
     Stale,
+    /// Something else: the state was restored from one with dense output, whose cost is counted.
+    Restored,
     /// The step with its dense output.
     Prepared,
 }
@@ -82,6 +86,13 @@ impl Timeline {
         };
         let last = Step { n: 0, t: t0, h: 0.0 };
         Timeline { t: t0, t1, last, looked_at: Looked::Nothing, pacer, cadence, stats, costs }
+    }
+
+    /// Lets steps be short enough for a search for events.
+    pub(super) fn expect_events(&mut self, has_events: bool) {
+        if let Pacer::ByError(chooser) = &mut self.pacer {
+            chooser.has_events = has_events;
+        }
     }
 
     /// The statistics of the run so far.
@@ -289,7 +300,10 @@ impl Timeline {
             return self.place(points, t);
         }
         self.looked_at = Looked::Stale;
-        self.looked_within(self.costs.step);
+        self.looked_within(match &self.pacer {
+            Pacer::Equal { .. } => self.costs.step,
+            Pacer::ByError(_) => self.costs.attempt,
+        });
         Ok(Place::Shorter(t - self.last.t))
     }
 
@@ -309,10 +323,12 @@ impl Timeline {
         if self.looked_at == Looked::Prepared {
             return Ok(());
         }
-        if self.looked_at == Looked::Stale {
+        if matches!(self.looked_at, Looked::Stale | Looked::Restored) {
             self.repeat(points)?;
         }
-        self.stats.evaluations = plus(self.stats.evaluations, self.costs.dense[0]);
+        if self.looked_at != Looked::Restored {
+            self.stats.evaluations = plus(self.stats.evaluations, self.costs.dense[0]);
+        }
         // A step that was cut is prepared, or was taken again.
         points.prepare(self.last, self.looked_at == Looked::Fresh)?;
         self.looked_at = Looked::Prepared;
@@ -321,19 +337,22 @@ impl Timeline {
 
     /// Records that the workspace no longer holds the last step.
     pub(super) fn forget_workspace(&mut self) {
-        if self.looked_at != Looked::Nothing {
-            self.looked_at = Looked::Stale;
-        }
+        self.looked_at = match self.looked_at {
+            Looked::Nothing => Looked::Nothing,
+            Looked::Prepared | Looked::Restored => Looked::Restored,
+            Looked::Fresh | Looked::Stale => Looked::Stale,
+        };
     }
 
     /// Repeats the last step, so that the workspace holds it. Its iterations are not counted again.
     fn repeat(&mut self, points: &mut dyn AnyPoints) -> Result<(), StepError> {
-        let tolerance = match &self.pacer {
-            Pacer::Equal { .. } => None,
-            Pacer::ByError(chooser) => Some(&chooser.control.tolerance),
-        };
         let counted = points.iterations();
-        let repeated = points.repeat(self.last, tolerance);
+        // What a method remembers is that of the step, not of its repetition.
+        let mut memory = Vec::new();
+        points.each_number(Saved::Memory, &mut |x| memory.push(*x));
+        let repeated = points.repeat(self.last);
+        let mut memory = memory.into_iter();
+        points.each_number(Saved::Memory, &mut |x| *x = memory.next().unwrap_or(*x));
         let again = points.iterations().wrapping_sub(counted);
         self.stats.iterations = self.stats.iterations.wrapping_sub(again);
         repeated

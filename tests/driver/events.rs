@@ -2,15 +2,18 @@
 
 use core::cell::Cell;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
 
+use faer::Mat;
 use lieflow::actions::LeftTranslation;
-use lieflow::groups::So3;
+use lieflow::groups::{GroupMatrix, MatrixGroup, So3};
 use lieflow::maps::Exp;
-use lieflow::methods::tableau::DOPRI5;
-use lieflow::methods::{Rk, Rkmk};
-use lieflow::problems::Flow;
+use lieflow::methods::tableau::{DOP853, DOPRI5, EULER};
+use lieflow::methods::{ExactMotion, Rk, Rkmk};
+use lieflow::problems::{Flow, RigidBodyAttitude};
 use lieflow::solve::{Next, Status};
 use lieflow::{Error, Event, RunError, SaveAt, Solve};
+use nalgebra::Matrix3;
 
 use crate::hard_cases::{START, body, spin};
 use crate::modes::V;
@@ -235,6 +238,89 @@ fn a_run_is_cancelled() {
     let run =
         Solve::new(&body, &method, [0.0, 1.0]).dt(0.1).cancel(&flag).run(START).expect("a run");
     assert_eq!((run.status, run.stats.accepted, run.y), (Status::Cancelled, 0, START));
+}
+
+/// A step of any length may have many rows, and a field may be slow: the flag is read between rows, and by time.
+#[test]
+fn a_run_is_cancelled_between_rows_and_between_slow_steps() {
+    let body = body();
+    let (flag, mut rows) = (AtomicBool::new(false), 0);
+    let run = Solve::new(&body, &ExactMotion, [0.0, 1e4])
+        .tolerances(1e-9, 1e-9)
+        .count(1_000_000)
+        .cancel(&flag)
+        .run_with(START, |_, _| {
+            rows += 1;
+            flag.store(rows == 100, Ordering::Relaxed);
+        })
+        .expect("a run");
+    assert_eq!((run.status, rows, run.stats.accepted), (Status::Cancelled, 100, 1));
+
+    let flag = AtomicBool::new(false);
+    let slow = Flow::of_time(free(), LeftTranslation, |t: f64, v: &mut V| {
+        std::thread::sleep(Duration::from_millis(2));
+        flag.store(t > 2.0, Ordering::Relaxed);
+        *v = V::x();
+    });
+    let run = Solve::new(&slow, &Rk(EULER), [0.0, 1e6]).dt(0.1).cancel(&flag).run(START);
+    let run = run.expect("a run");
+    assert!(run.status == Status::Cancelled && run.t < 6.0, "{:?} at {}", run.status, run.t);
+}
+
+/// Adaptive steps of a method without an error: one step, or steps that turn by a radian where events are looked for.
+#[test]
+fn exact_steps() {
+    let body = body();
+    let start = V::new(0.3, 2.0, 0.3);
+    let solve = |t1: f64| Solve::new(&body, &ExactMotion, [0.0, t1]).tolerances(1e-10, 0.0);
+    let flip = || Event::new("flip", |_, m: &V| m.y);
+    let run = solve(200.0).count(400).run(start).expect("a run");
+    assert_eq!((run.stats.accepted, run.stats.rejected, run.times.len()), (1, 0, 401));
+    let many = Solve::new(&body, &ExactMotion, [0.0, 200.0]).steps(400).every(1);
+    let many = many.run(start).expect("a run");
+    for (a, b) in run.points.iter().zip(&many.points) {
+        assert!((a - b).norm() < 1e-9, "{a} {b}");
+    }
+    let with_events = solve(200.0).event(flip()).run(start).expect("a run");
+    let dopri = Rkmk::new(DOP853, Exp);
+    let expected = Solve::new(&body, &dopri, [0.0, 200.0]).tolerances(1e-13, 1e-13);
+    let expected = expected.event(flip()).run(start).expect("a run");
+    assert_eq!(with_events.events.len(), expected.events.len());
+    for (a, b) in with_events.events.iter().zip(&expected.events) {
+        assert!((a.t - b.t).abs() < 1e-8, "{} {}", a.t, b.t);
+    }
+    let third = solve(f64::INFINITY).event(flip().stop_after(3)).run(start).expect("a run");
+    assert!((third.t - expected.events[2].t).abs() < 1e-8);
+}
+
+#[test]
+fn a_start_that_is_not_on_the_manifold_is_refused() {
+    let body = RigidBodyAttitude::new([1.0, 2.0, 3.0], [0.3, 0.4, 2.0]).expect("a body");
+    let method = Rkmk::new(DOPRI5, Exp);
+    let one = Matrix3::<f64>::identity();
+    let reflection = Matrix3::from_diagonal(&V::new(1.0, 1.0, -1.0));
+    for start in [2.0 * one, reflection, one + Matrix3::repeat(1e-4), Matrix3::zeros()] {
+        for adaptive in [true, false] {
+            let solve = Solve::new(&body, &method, [0.0, 1.0]);
+            let solve = if adaptive { solve.tolerances(1e-6, 1e-6) } else { solve.dt(0.1) };
+            match solve.run(start).expect_err("not a rotation").error {
+                RunError::Setup(Error::NotOnGroup { arg: "y", residual, tolerance, .. }) => {
+                    assert!(residual > 1e-5 && tolerance == 1e-6, "{residual}");
+                }
+                other => panic!("{other}"),
+            }
+        }
+    }
+    // Seven digits are enough.
+    let near = one + Matrix3::repeat(1e-8);
+    Solve::new(&body, &method, [0.0, 1.0]).dt(0.1).run(near).expect("a run");
+    let group = MatrixGroup::so(4).expect("SO(4)");
+    let still = Flow::of_time(group, LeftTranslation, |_: f64, _: &mut _| {});
+    let off =
+        GroupMatrix::new_unchecked(Mat::from_fn(4, 4, |i, j| f64::from(2 * u8::from(i == j))));
+    let refused = Solve::new(&still, &method, [0.0, 1.0]).dt(0.1).run(off).expect_err("2·𝟙");
+    let text = refused.error.to_string();
+    assert!(text.starts_with("y: not in SO(4): relative residual "), "{text}");
 }
 
 /// A problem on the sphere and one on vectors, both by hand: what a controller does.

@@ -226,7 +226,11 @@ fn a_change_that_leaves_the_manifold_is_refused() {
     for change in changes {
         let failed = run(change).expect_err("not a rotation");
         match &failed.error {
-            RunError::Changed { by, t, source: Error::OutOfRange { .. } } => {
+            RunError::Changed {
+                by,
+                t,
+                source: Error::NotOnGroup { arg: "y", .. } | Error::OutOfRange { .. },
+            } => {
                 assert!(by == "event `kick`" && (t - 1.25).abs() < 1e-15, "{by} {t}");
             }
             other => panic!("{other}"),

@@ -116,9 +116,15 @@ fn a_method_with_a_memory() {
     });
 }
 
-/// A whole run with events, output, stops and drift: from the state after any step the rest is the same.
+/// A whole run with events, output, stops and drift: from the state after any step, or any row, the rest is the same.
 #[test]
 fn whole_runs() {
+    for every in [Duration::ZERO, Duration::from_nanos(1)] {
+        goes_on_with_events(every);
+    }
+}
+
+fn goes_on_with_events(every: Duration) {
     let problem =
         Flow::new(free(), LeftTranslation, |_: f64, y: &V, v: &mut V| *v = V::new(y.y, -1.0, 0.3));
     let method = Rk(DOPRI5);
@@ -129,7 +135,7 @@ fn whole_runs() {
         let mut solve = Solve::new(&problem, &method, [0.0, 50.0])
             .tolerances(1e-9, 1e-9)
             .max_step(0.2)
-            .times((0..500).map(|k| 0.1 * f64::from(k)).collect::<Vec<_>>())
+            .times((0..1000).map(|k| 0.05 * f64::from(k)).collect::<Vec<_>>())
             .stops([0.55, 1.55, 4.5])
             .event(
                 Event::new("floor", |_, y: &V| y.x)
@@ -140,7 +146,7 @@ fn whole_runs() {
             .event(
                 Event::new("top", |_, y: &V| y.y).falling().stop_after(4).tell(|t, y, _| see(t, y)),
             )
-            .checkpoints(Duration::ZERO, |bytes| states.borrow_mut().push(bytes.to_vec()));
+            .checkpoints(every, |bytes| states.borrow_mut().push(bytes.to_vec()));
         if let Some(bytes) = resume {
             solve = solve.resume(bytes.clone());
         }
@@ -150,17 +156,45 @@ fn whole_runs() {
     let (states, shown) = (RefCell::default(), RefCell::default());
     let whole = run(None, &states, &shown);
     let (states, shown): (Vec<Vec<u8>>, Shown) = (states.into_inner(), shown.into_inner());
-    assert!(
-        states.len() > 20 && shown.len() > 40,
-        "{} states, {} points",
-        states.len(),
-        shown.len()
-    );
+    // With a duration the state is also saved between two rows of a step.
+    let least = if every.is_zero() { 20 } else { shown.len() * 3 / 4 };
+    let counts = (states.len(), shown.len());
+    assert!(states.len() > least && shown.len() > 80, "{counts:?}: states, points");
     for bytes in &states {
         let rest = RefCell::default();
         assert_eq!(run(Some(bytes), &RefCell::default(), &rest), whole);
         let rest: Shown = rest.into_inner();
         assert_eq!(rest, shown[shown.len() - rest.len()..]);
+    }
+}
+
+/// Rows within a step change what the method remembers, and so does a state that is restored within a step.
+#[test]
+fn rows_within_a_step_of_a_method_with_a_memory() {
+    let fluid = Zeitlin::sphere(6).expect("a sphere");
+    let mut rng = rand_pcg::Pcg64::seed_from_u64(5);
+    let start = {
+        use lieflow::groups::Sample;
+        Unitary::new(6).expect("U(6)").sample_algebra(&mut rng, 0.3)
+    };
+    let method = FluidMidpoint::isospectral();
+    let run = |resume: Option<&Vec<u8>>| {
+        let (mut states, mut shown) = (Vec::new(), Vec::new());
+        let mut solve = Solve::new(&fluid, &method, [0.0, 1.0])
+            .steps(10)
+            .count(33)
+            .checkpoints(Duration::from_nanos(1), |bytes| states.push(bytes.to_vec()));
+        if let Some(bytes) = resume {
+            solve = solve.resume(bytes.clone());
+        }
+        solve.run_with(start.clone(), |t, y| shown.push((t.to_bits(), bits(y)))).expect("a run");
+        (states, shown)
+    };
+    let (states, shown) = run(None);
+    assert!(states.len() > 25 && shown.len() == 34, "{} {}", states.len(), shown.len());
+    for (n, bytes) in states.iter().enumerate() {
+        let (_, rest) = run(Some(bytes));
+        assert_eq!(rest, shown[shown.len() - rest.len()..], "from state {n}");
     }
 }
 
