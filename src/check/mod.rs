@@ -1,14 +1,20 @@
-//! Checks that users can run: the laws of a group with its coordinate maps, and the general code against the closed
-//! forms.
+//! Checks that users can run, in their own build.
 //!
-//! Differences are in units of ε·cond·size: 1 is the change by rounding the input once. [`laws`] also checks groups and
-//! maps of other crates.
+//! | function | what it checks |
+//! |---|---|
+//! | [`laws`] | the laws of a group with its coordinate maps, also of other crates |
+//! | [`maps_agree`], [`steps_agree`] | the general code against the closed forms on so(3) |
+//! | [`runs_agree`] | a method on a problem: orders, points within steps, events, tolerances, saved states |
+//!
+//! Differences of maps and steps are in units of ε·cond·size: 1 is the change by rounding the input once.
 
 mod agreement;
 mod laws;
+mod runs;
 
 pub use agreement::{AGREEMENT_BOUND, maps_agree, steps_agree};
 pub use laws::{LAW_BOUND, laws};
+pub use runs::{MethodOn, Record, Reference, Subject, Trial, TrialSteps, runs_agree};
 
 /// The result of a check.
 #[derive(Clone, Debug, PartialEq)]
