@@ -167,25 +167,28 @@ const ROWS: usize = 32;
 /// The steps of the reference from row to row.
 const STEPS_PER_ROW: u64 = 8;
 /// The numbers of steps that are tried, until the errors are rounding.
-const COUNTS: [u64; 21] =
-    [1, 2, 3, 4, 5, 6, 8, 11, 15, 21, 29, 41, 57, 81, 113, 159, 223, 315, 441, 619, 867];
+const COUNTS: [u64; 24] = [
+    1, 2, 3, 4, 5, 6, 8, 11, 15, 21, 29, 41, 57, 81, 113, 159, 223, 315, 441, 619, 867, 1231, 1747,
+    2473,
+];
 /// A run ends at one of these rows before the last one. The error of a single end may vanish by accident.
 const ENDS: [usize; 3] = [0, 2, 3];
 /// An error above this one is not asymptotic.
 const COARSE: f64 = 1e-2;
 /// The distance of two references is multiplied by this: errors below may be those of the references.
 const MARGIN: f64 = 30.0;
+/// If the errors fall to rounding from one below this, they are too few for an order.
+const FINE: f64 = 1e-7;
 /// Errors below may be rounding.
 const ROUNDING: f64 = 3e-12;
-/// A measured order may be so much below the order that is claimed: by half an order, or by this part of a high order,
-/// whose errors are rounding before they are asymptotic.
-const ORDER_BOUND: [f64; 2] = [0.5, 0.06];
+/// So many errors are enough to show an order up to 6.
+const ENOUGH: usize = 8;
 /// The largest number of errors through which a measured order is a straight line.
 const FITTED: usize = 4;
 /// The error of a run with adaptive steps is at most so many times the tolerance, for each of its steps.
 const PER_STEP: f64 = 30.0;
-/// The distance of points from M.
-const ON_M: f64 = 1e-13;
+/// The distance of points from M. Coarse steps have large u, at which maps amplify rounding.
+const ON_M: f64 = 1e-12;
 
 /// The rows of the reference, the floor of the errors, and the span.
 #[derive(Clone, Debug)]
@@ -216,10 +219,25 @@ impl Reference {
         let steps = STEPS_PER_ROW * ROWS as u64;
         let (rows, others) = (run(subject, steps)?.rows, run(other, steps)?.rows);
         let gap = largest(rows.iter().zip(&others).map(|(a, b)| subject.distance(a, b)));
-        if !(gap < 1e-8) || rows.len() != ROWS {
+        if gap.is_nan() || gap > 1e-8 || rows.len() != ROWS {
             return Err(format!("the two references differ by {gap:e}"));
         }
         Ok(Reference { t_span, times, rows, floor: (MARGIN * gap).max(ROUNDING) })
+    }
+
+    /// The span.
+    pub fn t_span(&self) -> [f64; 2] {
+        self.t_span
+    }
+
+    /// The rows with their times.
+    pub fn rows(&self) -> impl Iterator<Item = (f64, &[f64])> {
+        self.times.iter().copied().zip(self.rows.iter().map(Vec::as_slice))
+    }
+
+    /// The largest error that may be that of the reference.
+    pub fn floor(&self) -> f64 {
+        self.floor
     }
 
     /// The first so many rows.
@@ -266,6 +284,13 @@ fn slope(errors: &[(f64, f64)]) -> Option<f64> {
     (logs.len() > 1).then(|| -top / bottom)
 }
 
+/// A measured order may be so much below the order that is claimed. Errors of a high order are rounding before they are
+/// asymptotic.
+fn order_bound(order: usize) -> f64 {
+    let part = if order <= 8 { 0.15 } else { 0.3 };
+    (part * order as f64).max(0.5)
+}
+
 /// The errors of runs with more and more steps, in the window where they show an order.
 #[derive(Default)]
 struct Errors {
@@ -289,8 +314,7 @@ impl Errors {
 
     /// The finding about the order that is claimed; `None` is for exact steps.
     fn finding(&self, name: &str, claimed: Option<usize>) -> Finding {
-        let part = claimed.map_or(0.0, |order| ORDER_BOUND[1] * order as f64);
-        let mut finding = Finding::new(name, part.max(ORDER_BOUND[0]));
+        let mut finding = Finding::new(name, claimed.map_or(0.0, order_bound));
         finding.cases = 1;
         let window: Vec<String> =
             self.window.iter().map(|(n, e)| format!("{e:.1e} at {n}")).collect();
@@ -300,11 +324,13 @@ impl Errors {
             (None, _) => {
                 (finding.worst, finding.at) = (f64::INFINITY, format!("exact steps, but {errors}"));
             }
+            // From coarse errors to rounding, or almost, by one more step.
+            (Some(_), _) if self.ended && self.window.first().is_none_or(|(_, e)| *e < FINE) => {}
             (Some(order), Some(found)) => {
                 finding.worst = (order as f64 - found).max(0.0);
                 finding.at = format!("order {found:.1}, expected {order}: errors {errors}");
             }
-            // From one number of steps to the next the errors fall from coarse ones to rounding.
+            // One error between coarse ones and rounding.
             (Some(_), None) if self.ended => {}
             (Some(_), None) => {
                 (finding.worst, finding.at) = (f64::INFINITY, format!("no small error: {errors}"));
@@ -355,7 +381,6 @@ pub fn runs_agree(subject: &dyn Subject, reference: &Reference) -> Vec<Finding> 
                 return findings;
             }
         };
-        records.iter().for_each(|record| off.see(record));
         let errors: Vec<_> = records
             .iter()
             .zip(ENDS)
@@ -368,7 +393,12 @@ pub fn runs_agree(subject: &dyn Subject, reference: &Reference) -> Vec<Finding> 
         ends.add(steps, mean(&at_ends), reference.floor);
         within.add(steps, mean(&errors.concat()), reference.floor);
         finest = Some(steps);
-        if ends.ended && within.ended {
+        if !ends.is_coarse() {
+            records.iter().for_each(|record| off.see(record));
+        }
+        let is_high = order.is_none_or(|order| order > 6);
+        let done = |errors: &Errors| errors.ended || !is_high && errors.window.len() >= ENOUGH;
+        if done(&ends) && done(&within) {
             break;
         }
     }
@@ -453,7 +483,7 @@ fn next_to_ends(
         match record {
             Ok(record) if record.rows.len() == 2 => {
                 let other = subject.distance(&record.rows[0], &record.rows[1]);
-                if !(other <= gap) {
+                if other > gap || other.is_nan() {
                     (gap, at) = (other, format!("{other:.1e} from the start of a step, at 1e-7"));
                 }
             }

@@ -46,7 +46,7 @@ pub enum Command {
     Demo(DemoArgs),
     /// Compute the paper's tables and figures again: paper.html, CSV and SVG files.
     Paper(PaperArgs),
-    /// Check the layers against each other, the laws of groups and maps, and the exact motion.
+    /// Check every method on every type of problem, and the maps, in the program at hand.
     Check(CheckArgs),
     /// List the scenes that come with the program, or print one to start from.
     Scenes(ScenesArgs),

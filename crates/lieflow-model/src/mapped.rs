@@ -7,7 +7,7 @@ use lieflow::catalog::MethodSpec;
 use lieflow::solve::Next;
 use lieflow::{Error, RunError};
 
-use crate::model::{EventPlan, Model, Outcome, Plan, Steps, Watcher};
+use crate::model::{EventPlan, Model, Orders, Outcome, Plan, Steps, Watcher};
 use crate::schema::{Row, Schema};
 
 /// The number of this place in the row at t of the model, from the row of its base.
@@ -91,8 +91,11 @@ impl Model for Mapped {
         let mut of_base = OfBase { model: self, watcher, numbers: Vec::new() };
         self.base.drive(method, plan, &mut of_base)
     }
-    fn order(&self, method: &MethodSpec) -> Result<Option<usize>, Error> {
-        self.base.order(method)
+    fn orders(&self, method: &MethodSpec) -> Result<Orders, Error> {
+        self.base.orders(method)
+    }
+    fn problem_type(&self, method: &MethodSpec) -> &'static str {
+        self.base.problem_type(method)
     }
     fn exact(&self, t_span: [f64; 2]) -> Option<Result<Vec<f64>, Error>> {
         let end = self.base.exact(t_span)?;

@@ -174,6 +174,17 @@ pub struct Outcome {
     pub stats: Stats,
 }
 
+/// What is known of a method on a problem.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Orders {
+    /// The order of its steps; none if they are exact.
+    pub step: Option<usize>,
+    /// The order of the points within a step.
+    pub within: usize,
+    /// True if steps, and the points within them, stay on M.
+    pub stays_on_manifold: bool,
+}
+
 /// A problem with its initial state and the quantities that are asked of it.
 pub trait Model: Debug {
     /// The observables of its rows.
@@ -224,11 +235,22 @@ pub trait Model: Debug {
         self.drive(method, plan, &mut Rows(sink)).map(|outcome| outcome.stats)
     }
 
+    /// The orders of a method on this problem.
+    ///
+    /// # Errors
+    /// As [`MethodsByName::method`].
+    fn orders(&self, method: &MethodSpec) -> Result<Orders, Error>;
+
     /// The order of a method on this problem; none where it is exact.
     ///
     /// # Errors
     /// As [`MethodsByName::method`].
-    fn order(&self, method: &MethodSpec) -> Result<Option<usize>, Error>;
+    fn order(&self, method: &MethodSpec) -> Result<Option<usize>, Error> {
+        Ok(self.orders(method)?.step)
+    }
+
+    /// The name of the type of the problem that the method runs on. The methods are compiled once for each type.
+    fn problem_type(&self, method: &MethodSpec) -> &'static str;
 
     /// The values of the schema at the end of a span by the exact solution; `None` where none is known.
     fn exact(&self, t_span: [f64; 2]) -> Option<Result<Vec<f64>, Error>>;
@@ -332,13 +354,16 @@ pub fn drive_by<P: Runnable>(
     Ok(Outcome { t: done.t, status: done.status, stats: done.stats })
 }
 
-/// The order of the method that `spec` names: what a [`Model::order`] calls.
+/// The orders of the method that `spec` names: what a [`Model::orders`] calls.
 ///
 /// # Errors
 /// As [`MethodsByName::method`].
-pub fn order_by<P: Runnable>(spec: &MethodSpec, problem: &P) -> Result<Option<usize>, Error> {
-    let order = problem.method(spec)?.order(problem);
-    Ok((order != usize::MAX).then_some(order))
+pub fn orders_by<P: Runnable>(spec: &MethodSpec, problem: &P) -> Result<Orders, Error> {
+    let method = problem.method(spec)?;
+    let order = method.order(problem);
+    let step = (order != usize::MAX).then_some(order);
+    let (within, stays_on_manifold) = (method.dense_order(problem), method.stays_on_manifold());
+    Ok(Orders { step, within, stays_on_manifold })
 }
 
 /// Can the method that `spec` names run on the problem? What a [`Model::fits`] calls.

@@ -1,23 +1,76 @@
-//! `lieflow check`: the general layer against the closed forms, and the laws of every group with
-//! every map, on this machine.
+//! `lieflow check`: the program at hand proves itself, on this machine and as it was compiled.
+
+use std::time::Instant;
 
 use lieflow::check::Finding;
+use lieflow_model::check::{CheckedScene, check_runs};
 use serde::Serialize;
 
 use super::CliError;
 use crate::args::CheckArgs;
-use crate::measure::checks;
+use crate::measure::checks::{self, checks};
 use crate::output;
 
-/// A check as JSON.
+/// A group of checks.
 #[derive(Serialize)]
-struct Line {
+struct Group {
+    /// What is checked.
+    name: String,
+    /// The number of methods; none for checks without a method.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    methods: Option<usize>,
+    checks: usize,
+    holds: bool,
+    failures: Vec<Failure>,
+}
+
+/// A check that does not hold.
+#[derive(Serialize)]
+struct Failure {
+    /// The method or the law.
+    of: String,
     check: String,
-    cases: usize,
+    /// The largest error, in units of its bound.
     worst: f64,
     bound: f64,
-    holds: bool,
     at: String,
+}
+
+impl Failure {
+    fn new(of: String, finding: &Finding) -> Self {
+        let Finding { name, worst, bound, at, .. } = finding;
+        Failure { of, check: name.clone(), worst: *worst, bound: *bound, at: at.clone() }
+    }
+
+    fn in_words(&self) -> String {
+        let of = if self.of.is_empty() { String::new() } else { format!("{}: ", self.of) };
+        format!(
+            "  {of}{}: {:.3e} where {} is allowed: {}",
+            self.check, self.worst, self.bound, self.at
+        )
+    }
+}
+
+impl From<checks::Group> for Group {
+    fn from((name, findings): checks::Group) -> Self {
+        let broken = findings.iter().filter(|finding| !finding.holds());
+        let failures: Vec<_> = broken.map(|f| Failure::new(String::new(), f)).collect();
+        let (methods, checks, holds) = (None, findings.len(), failures.is_empty());
+        Group { name, methods, checks, holds, failures }
+    }
+}
+
+impl From<CheckedScene> for Group {
+    fn from(scene: CheckedScene) -> Self {
+        let CheckedScene { name, methods, checks, failures, .. } = scene;
+        Group {
+            name: format!("methods on {name}"),
+            methods: Some(methods),
+            checks,
+            holds: failures.is_empty(),
+            failures: failures.iter().map(|(of, f)| Failure::new(of.clone(), f)).collect(),
+        }
+    }
 }
 
 /// Run the command.
@@ -25,33 +78,36 @@ struct Line {
 /// # Errors
 /// [`CliError::Failed`] when a check does not hold.
 pub fn run(args: &CheckArgs) -> Result<(), CliError> {
-    let findings = checks(if args.quick { 2_000 } else { 100_000 })?;
+    let clock = Instant::now();
+    let groups = checks(if args.quick { 2_000 } else { 50_000 })?;
+    let mut groups: Vec<Group> = groups.into_iter().map(Group::from).collect();
+    check_runs(args.quick, |scene| groups.push(scene.into()))?;
     if args.json {
-        let line = |f: &Finding| Line {
-            check: f.name.clone(),
-            cases: f.cases,
-            worst: f.worst,
-            bound: f.bound,
-            holds: f.holds(),
-            at: f.at.clone(),
-        };
-        output::print_json(&findings.iter().map(line).collect::<Vec<_>>())?;
+        output::print_json(&groups)?;
     } else {
-        let rows = findings.iter().map(|f| {
-            let verdict = if f.holds() { "ok" } else { "OUT OF BOUNDS" };
-            let (worst, bound) = (format!("{:.2}", f.worst), f.bound.to_string());
-            [f.name.clone(), f.cases.to_string(), worst, bound, verdict.into()]
+        let rows = groups.iter().map(|group| {
+            let methods = group.methods.map_or_else(String::new, |count| count.to_string());
+            let verdict = match group.failures.len() {
+                0 => "ok".into(),
+                count => format!("{count} FAILED"),
+            };
+            [group.name.clone(), methods, group.checks.to_string(), verdict]
         });
-        let header = ["check", "cases", "worst [eps·cond]", "bound", ""];
-        output::print(&output::table(header, rows))?;
+        output::print(&output::table(["group", "methods", "checks", ""], rows))?;
+        let checks: usize = groups.iter().map(|group| group.checks).sum();
+        let seconds = output::duration(clock.elapsed().as_secs_f64());
+        output::print(&format!("{checks} checks in {seconds}\n"))?;
     }
-    let broken: Vec<String> = findings
+    let broken: Vec<String> = groups
         .iter()
-        .filter(|f| !f.holds())
-        .map(|f| format!("  {}: {:.3e} at {}", f.name, f.worst, f.at))
+        .filter(|group| !group.holds)
+        .flat_map(|group| {
+            let failures = group.failures.iter().map(Failure::in_words);
+            core::iter::once(group.name.clone()).chain(failures)
+        })
         .collect();
     match broken.is_empty() {
         true => Ok(()),
-        false => Err(CliError::Failed(format!("out of bounds:\n{}", broken.join("\n")))),
+        false => Err(CliError::Failed(format!("these checks do not hold:\n{}", broken.join("\n")))),
     }
 }

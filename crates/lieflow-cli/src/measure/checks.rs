@@ -2,8 +2,8 @@
 //! with every map, the exact motion.
 
 use lieflow::check::{Finding, laws, maps_agree, steps_agree};
-use lieflow::groups::{MatrixGroup, So3};
-use lieflow::maps::{CCSK, CCSK123, CCSK321, Cay, Exp, NamedMap};
+use lieflow::groups::{MatrixGroup, Sample, So3};
+use lieflow::maps::{CCSK, CCSK123, CCSK321, Cay, CoordinateMap, Exp, NamedMap};
 use lieflow::problems::Exact;
 use nalgebra::Matrix3;
 use rand::{RngExt, SeedableRng};
@@ -23,32 +23,44 @@ const MAPS: [NamedMap; 5] = [
     NamedMap::Ccsk(CCSK),
 ];
 
+/// Findings about one thing, with its name.
+pub type Group = (String, Vec<Finding>);
+
 /// The checks of layers, laws and the exact motion, with `cases` random vectors for the maps.
 ///
 /// # Errors
 /// A check that cannot be set up.
-pub fn checks(cases: usize) -> Result<Vec<Finding>, CliError> {
+pub fn checks(cases: usize) -> Result<Vec<Group>, CliError> {
     let mut rng = Pcg64::seed_from_u64(SEED);
-    let mut found = maps_agree(&mut rng, cases)?;
-    found.extend(steps_agree(&mut rng, cases / 50)?);
-    for psi in MAPS {
-        found.extend(laws(&So3::new(), &psi, &mut rng, 100, 0.3)?);
-    }
+    let mut agree = maps_agree(&mut rng, cases)?;
+    agree.extend(steps_agree(&mut rng, cases / 50)?);
+    let mut groups = vec![("general code against the closed forms on so(3)".into(), agree)];
+    groups.push(laws_on(&So3::new(), &MAPS, &mut rng)?);
     for n in [3, 5, 10] {
-        for psi in MAPS {
-            found.extend(laws(&MatrixGroup::so(n)?, &psi, &mut rng, 100, 0.3)?);
-        }
+        groups.push(laws_on(&MatrixGroup::so(n)?, &MAPS, &mut rng)?);
     }
     for group in [MatrixGroup::gl(3)?, MatrixGroup::sp(4)?, MatrixGroup::indefinite(3, 1)?] {
-        for psi in &MAPS[..2] {
-            found.extend(laws(&group, psi, &mut rng, 100, 0.3)?);
-        }
+        groups.push(laws_on(&group, &MAPS[..2], &mut rng)?);
     }
-    // The law of the bracket does not know the map: once a group is enough.
-    let mut seen = std::collections::BTreeSet::new();
-    found.retain(|finding| seen.insert(finding.name.clone()));
-    found.push(exact_restarts(&mut rng, cases / 100)?);
-    Ok(found)
+    groups
+        .push(("exact motion of a free body".into(), vec![exact_restarts(&mut rng, cases / 100)?]));
+    Ok(groups)
+}
+
+/// The laws of a group with these maps.
+fn laws_on<G>(group: &G, maps: &[NamedMap], rng: &mut Pcg64) -> Result<Group, CliError>
+where
+    G: Sample<Scalar = f64>,
+    NamedMap: CoordinateMap<G>,
+{
+    let mut found = Vec::<Finding>::new();
+    for psi in maps {
+        // The law of the bracket does not know the map: once a group is enough.
+        let is_new = |law: &Finding| found.iter().all(|known| known.name != law.name);
+        let laws: Vec<_> = laws(group, psi, rng, 100, 0.3)?.into_iter().filter(is_new).collect();
+        found.extend(laws);
+    }
+    Ok((format!("laws on {}", group.name()), found))
 }
 
 /// The exact motion taken at once, and in two parts: m and g at random bodies, in units of the

@@ -5,7 +5,7 @@
 //! in an order of its own, so that a slow moment of the machine meets all of them.
 
 mod candidate;
-mod checks;
+pub mod checks;
 mod clock;
 mod curve;
 mod fit;

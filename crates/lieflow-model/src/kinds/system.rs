@@ -13,7 +13,7 @@ use lieflow::{Error, RunError};
 use super::quantity::{Quantity, Value};
 use super::{Fact, Figure, Kind, PrincipalInertia, ProblemSpec, high_order};
 use crate::model::{
-    Layer, Model, Outcome, Plan, Runnable, Steps, Watcher, drive_by, fits_by, order_by,
+    Layer, Model, Orders, Outcome, Plan, Runnable, Steps, Watcher, drive_by, fits_by, orders_by,
 };
 use crate::operations::operations_by;
 use crate::scene::Refusal;
@@ -260,8 +260,11 @@ impl<S: System> Model for SystemModel<S> {
         };
         drive_by(method, &self.problem, self.start.clone(), plan, (&self.schema, &row_of), watcher)
     }
-    fn order(&self, method: &MethodSpec) -> Result<Option<usize>, Error> {
-        order_by(method, &self.problem)
+    fn orders(&self, method: &MethodSpec) -> Result<Orders, Error> {
+        orders_by(method, &self.problem)
+    }
+    fn problem_type(&self, _: &MethodSpec) -> &'static str {
+        core::any::type_name::<S::Problem<f64>>()
     }
     fn fits(&self, method: &MethodSpec) -> Result<(), Error> {
         fits_by(method, &self.problem, &self.start)

@@ -79,7 +79,8 @@ impl Speed {
     pub fn compute(quick: bool, mut tick: impl FnMut(f64, &str)) -> Result<Self, CliError> {
         let clock = Instant::now();
         tick(0.0, "");
-        let findings = checks(if quick { 2_000 } else { 50_000 })?;
+        let groups = checks(if quick { 2_000 } else { 50_000 })?;
+        let findings = groups.into_iter().flat_map(|(_, findings)| findings).collect();
         let mut outcomes = Vec::new();
         for (i, experiment) in EXPERIMENTS.into_iter().enumerate() {
             let share = |done: f64| tick(0.1 + 0.26 * (i as f64 + done), experiment.scene);

@@ -24,7 +24,7 @@ use super::{KIND, RigidBodySpec};
 use crate::kinds::body::*;
 use crate::kinds::prelude::*;
 use crate::kinds::system::PointOf;
-use crate::model::{Model, Outcome, Plan, Runnable, Steps, Watcher};
+use crate::model::{Model, Orders, Outcome, Plan, Runnable, Steps, Watcher};
 use crate::schema::Schema;
 
 /// Where a body is: its momentum in the body, and its orientation where that is modelled.
@@ -345,8 +345,11 @@ impl Model for ByMethod {
     ) -> Result<Outcome, RunError> {
         self.of(method).drive(method, plan, watcher)
     }
-    fn order(&self, method: &MethodSpec) -> Result<Option<usize>, Error> {
-        self.of(method).order(method)
+    fn orders(&self, method: &MethodSpec) -> Result<Orders, Error> {
+        self.of(method).orders(method)
+    }
+    fn problem_type(&self, method: &MethodSpec) -> &'static str {
+        self.of(method).problem_type(method)
     }
     fn fits(&self, method: &MethodSpec) -> Result<(), Error> {
         self.of(method).fits(method)
