@@ -8,7 +8,7 @@
 //! | order within steps | the points of these runs at equal intervals, most of them within a step | the error falls with the order of dense output |
 //! | ends of steps | points next to both ends of a step, with the ends themselves | they differ by as much as the motion |
 //! | points on M | the distance of all points from M | it is rounding |
-//! | tolerance | the points of a run with adaptive steps | the error is that of its steps |
+//! | tolerance | the points of a run with adaptive steps | the error is at most three tolerances a step |
 //! | points by steps | the same points by shorter steps, with those by dense output | as for the tolerance |
 //! | events | the time at which a component of the state has its reference value | as for the tolerance |
 //! | saved state | the rest of a run that continues from a saved state | it has the same bits |
@@ -186,7 +186,9 @@ const ENOUGH: usize = 8;
 /// The largest number of errors through which a measured order is a straight line.
 const FITTED: usize = 4;
 /// The error of a run with adaptive steps is at most so many times the tolerance, for each of its steps.
-const PER_STEP: f64 = 30.0;
+const PER_STEP: f64 = 3.0;
+/// The same for the distance of points by steps from points by dense output.
+const APART_PER_STEP: f64 = 0.3;
 /// The distance of points from M. Coarse steps have large u, at which maps amplify rounding.
 const ON_M: f64 = 1e-12;
 
@@ -287,8 +289,7 @@ fn slope(errors: &[(f64, f64)]) -> Option<f64> {
 /// A measured order may be so much below the order that is claimed. Errors of a high order are rounding before they are
 /// asymptotic.
 fn order_bound(order: usize) -> f64 {
-    let part = if order <= 8 { 0.15 } else { 0.3 };
-    (part * order as f64).max(0.5)
+    if order <= 8 { (0.15 * order as f64).clamp(0.5, 0.9) } else { 0.3 * order as f64 }
 }
 
 /// The errors of runs with more and more steps, in the window where they show an order.
@@ -502,12 +503,14 @@ fn adaptive(
     off: &mut Off,
 ) -> Result<Vec<Finding>, String> {
     let Reference { t_span, times, rows, floor } = reference;
-    // The number of the state that moves fastest past its value at a row in the middle.
-    let middle = rows.len() * 11 / 16;
-    let slopes = rows[middle + 1].iter().zip(&rows[middle - 1]).map(|(a, b)| (a - b).abs());
-    let fastest = slopes.enumerate().fold((0, 0.0), |a, b| if b.1 > a.1 { b } else { a });
-    let (place, change) = fastest;
-    let event = (change > 0.0).then(|| (place, rows[middle][place]));
+    // A number of the state passes its value at a row, fast and on a curve.
+    let passes = (1..rows.len() - 1).flat_map(|i| {
+        let numbers = rows[i - 1].iter().zip(&rows[i]).zip(&rows[i + 1]).enumerate();
+        numbers.map(move |(place, ((a, b), c))| (i, place, (c - a).abs(), (a - 2.0 * b + c).abs()))
+    });
+    let passes = passes.filter(|(.., change, curve)| change * curve > 0.0);
+    let passed = passes.max_by(|a, b| (a.2 * a.3).total_cmp(&(b.2 * b.3)));
+    let event = passed.map(|(i, place, ..)| (place, rows[i][place]));
     let trial = Trial {
         event,
         save: true,
@@ -523,6 +526,7 @@ fn adaptive(
     };
     let per_step = tolerance.powf((q / p).min(1.0));
     let allowed = PER_STEP * steps * per_step + floor;
+    let apart = APART_PER_STEP * steps * per_step + floor;
     let error = largest(reference.errors(subject, &record.rows).into_iter());
     let told = |error: f64| format!("{error:.1e} at tolerance {tolerance:.0e}, {steps} steps");
     let mut findings = vec![Finding {
@@ -538,14 +542,14 @@ fn adaptive(
     let gap = if landed.rows.len() == record.rows.len() { gap } else { f64::INFINITY };
     findings.push(Finding {
         cases: 1,
-        worst: gap / allowed,
+        worst: gap / apart,
         at: told(gap),
         ..Finding::new("points by steps", 1.0)
     });
 
-    if let Some((place, _)) = event {
-        let speed = change / (times[middle + 1] - times[middle - 1]).abs();
-        let gaps = record.events.iter().map(|t| (t - times[middle]).abs());
+    if let Some((i, place, change, _)) = passed {
+        let speed = change / (times[i + 1] - times[i - 1]).abs();
+        let gaps = record.events.iter().map(|t| (t - times[i]).abs());
         let gap = gaps.fold(f64::INFINITY, f64::min) * speed;
         let size = rows.iter().map(|row| row.iter().map(|x| x * x).sum::<f64>().sqrt());
         let size = size.fold(0.0, f64::max).max(f64::MIN_POSITIVE);

@@ -10,3 +10,4 @@ mod groups;
 mod maps;
 mod methods;
 mod products;
+mod runs;

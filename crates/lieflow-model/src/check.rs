@@ -2,6 +2,7 @@
 //!
 //! The methods are compiled once for each type of problem, so each type is checked by at least one scene.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 use std::time::Duration;
 
@@ -94,8 +95,8 @@ const FEW: [&str; 8] = [
 pub struct CheckedScene {
     /// The name of the scene with its layer.
     pub name: String,
-    /// The type of the problem.
-    pub problem_type: &'static str,
+    /// The types of the problem that its methods run on.
+    pub problem_types: BTreeSet<&'static str>,
     /// The number of methods.
     pub methods: usize,
     /// The number of checks.
@@ -114,8 +115,13 @@ pub fn check_runs(quick: bool, mut each: impl FnMut(CheckedScene)) -> Result<(),
         let scene = Scene::open_with(Path::new(case.scene), &settings)?;
         let name = [&[case.scene], case.settings].concat().join(" ");
         let name = format!("{name} ({})", case.layer.name());
-        let mut result =
-            CheckedScene { name, problem_type: "", methods: 0, checks: 0, failures: Vec::new() };
+        let mut result = CheckedScene {
+            name,
+            methods: 0,
+            checks: 0,
+            problem_types: BTreeSet::new(),
+            failures: Vec::new(),
+        };
         match scene.model_with(case.layer, &quantities(&scene)) {
             Err(error) => result.fail("setup", error.to_string()),
             Ok(model) => {
@@ -124,7 +130,6 @@ pub fn check_runs(quick: bool, mut each: impl FnMut(CheckedScene)) -> Result<(),
                 match classical.zip(lie) {
                     None => result.fail("setup", "the reference methods do not fit".into()),
                     Some(both) => {
-                        result.problem_type = both.1.problem_type();
                         let methods =
                             if quick && !case.every { few_methods() } else { every_method() };
                         result.check(&scene, &*model, case.span, both, methods);
@@ -181,6 +186,7 @@ impl CheckedScene {
             let is_lie = is_lie || spec.name.starts_with("rkmk");
             let Some(method) = Method::new(model, scene, spec) else { continue };
             self.methods += 1;
+            self.problem_types.insert(method.problem_type());
             let reference = if is_lie { &of_classical } else { &of_lie };
             let label = method.spec.label();
             for finding in runs_agree(&method, reference) {

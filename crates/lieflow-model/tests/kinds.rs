@@ -2,6 +2,8 @@
 
 #[path = "kinds/bodies.rs"]
 mod bodies;
+#[path = "kinds/checked.rs"]
+mod checked;
 #[path = "kinds/columns.rs"]
 mod columns;
 #[path = "kinds/composed.rs"]

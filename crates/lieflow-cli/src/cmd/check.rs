@@ -98,6 +98,11 @@ pub fn run(args: &CheckArgs) -> Result<(), CliError> {
         let seconds = output::duration(clock.elapsed().as_secs_f64());
         output::print(&format!("{checks} checks in {seconds}\n"))?;
     }
+    verdict(&groups)
+}
+
+/// An error that lists all checks that do not hold, if there is one.
+fn verdict(groups: &[Group]) -> Result<(), CliError> {
     let broken: Vec<String> = groups
         .iter()
         .filter(|group| !group.holds)
@@ -109,5 +114,44 @@ pub fn run(args: &CheckArgs) -> Result<(), CliError> {
     match broken.is_empty() {
         true => Ok(()),
         false => Err(CliError::Failed(format!("these checks do not hold:\n{}", broken.join("\n")))),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_check_that_does_not_hold_is_listed() {
+        let finding = |name: &str, worst| Finding {
+            name: name.into(),
+            cases: 1,
+            worst,
+            at: "t = 2".into(),
+            bound: 3.0,
+        };
+        let law = ("laws on SO(3)".into(), vec![finding("bracket", 4.0), finding("Ad", 3.0)]);
+        let of = "rkmk dop853 exp".to_string();
+        let rows = (of.clone(), finding("rows within steps", 7e8));
+        let scene = CheckedScene {
+            name: "flips (closed)".into(),
+            problem_types: Default::default(),
+            methods: 2,
+            checks: 15,
+            failures: vec![rows, (of, finding("events", f64::NAN))],
+        };
+        let groups = [law.into(), scene.into()];
+        assert!(verdict(&groups[..0]).is_ok());
+        let error = verdict(&groups).unwrap_err();
+        assert_eq!(error.exit_code(), 1);
+        let expected = [
+            "these checks do not hold:",
+            "laws on SO(3)",
+            "  bracket: 4.000e0 where 3 is allowed: t = 2",
+            "methods on flips (closed)",
+            "  rkmk dop853 exp: rows within steps: 7.000e8 where 3 is allowed: t = 2",
+            "  rkmk dop853 exp: events: NaN where 3 is allowed: t = 2",
+        ];
+        assert_eq!(error.to_string().lines().collect::<Vec<_>>(), expected);
     }
 }

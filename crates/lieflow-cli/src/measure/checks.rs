@@ -35,20 +35,20 @@ pub fn checks(cases: usize) -> Result<Vec<Group>, CliError> {
     let mut agree = maps_agree(&mut rng, cases)?;
     agree.extend(steps_agree(&mut rng, cases / 50)?);
     let mut groups = vec![("general code against the closed forms on so(3)".into(), agree)];
-    groups.push(laws_on(&So3::new(), &MAPS, &mut rng)?);
+    groups.push(laws_on("closed", &So3::new(), &MAPS, &mut rng)?);
     for n in [3, 5, 10] {
-        groups.push(laws_on(&MatrixGroup::so(n)?, &MAPS, &mut rng)?);
+        groups.push(laws_on("general", &MatrixGroup::so(n)?, &MAPS, &mut rng)?);
     }
     for group in [MatrixGroup::gl(3)?, MatrixGroup::sp(4)?, MatrixGroup::indefinite(3, 1)?] {
-        groups.push(laws_on(&group, &MAPS[..2], &mut rng)?);
+        groups.push(laws_on("general", &group, &MAPS[..2], &mut rng)?);
     }
     groups
         .push(("exact motion of a free body".into(), vec![exact_restarts(&mut rng, cases / 100)?]));
     Ok(groups)
 }
 
-/// The laws of a group with these maps.
-fn laws_on<G>(group: &G, maps: &[NamedMap], rng: &mut Pcg64) -> Result<Group, CliError>
+/// The laws of a group on this layer with these maps.
+fn laws_on<G>(layer: &str, group: &G, maps: &[NamedMap], rng: &mut Pcg64) -> Result<Group, CliError>
 where
     G: Sample<Scalar = f64>,
     NamedMap: CoordinateMap<G>,
@@ -60,7 +60,7 @@ where
         let laws: Vec<_> = laws(group, psi, rng, 100, 0.3)?.into_iter().filter(is_new).collect();
         found.extend(laws);
     }
-    Ok((format!("laws on {}", group.name()), found))
+    Ok((format!("laws on {} ({layer})", group.name()), found))
 }
 
 /// The exact motion taken at once, and in two parts: m and g at random bodies, in units of the

@@ -288,3 +288,27 @@ fn a_reader_that_goes_away_is_no_error() {
         assert!(output.status.success(), "{args:?}");
     }
 }
+
+/// The program that ships proves itself: one line for each group.
+#[test]
+fn the_checks_of_the_program_hold() {
+    let folder = Folder::new();
+    let json = folder.lieflow(&["check", "--quick", "--json"]).ok();
+    let groups: Vec<serde_json::Value> = serde_json::from_str(&json).unwrap();
+    let names: Vec<&str> = groups.iter().map(|group| group["name"].as_str().unwrap()).collect();
+    for (n, (group, name)) in groups.iter().zip(&names).enumerate() {
+        assert_eq!(group["holds"], true, "{name}: {}", group["failures"]);
+        assert_eq!(group["failures"], serde_json::json!([]), "{name}");
+        assert!(group["checks"].as_u64().unwrap() > 0, "{name}");
+        assert!(!names[..n].contains(name), "{name} stands twice");
+    }
+    let scenes = names.iter().filter(|name| name.starts_with("methods on ")).count();
+    assert!(scenes > 25, "{names:#?}");
+    let table = folder.lieflow(&["check", "--quick"]).ok();
+    let lines: Vec<&str> = table.lines().collect();
+    assert_eq!(lines.len(), groups.len() + 2, "{table}");
+    for (line, name) in lines[1..].iter().zip(&names) {
+        assert!(line.trim_start().starts_with(name) && line.ends_with(" ok"), "{line}");
+    }
+    assert!(lines.last().unwrap().contains(" checks in "), "{table}");
+}
