@@ -1,6 +1,6 @@
 //! The closed forms on numbers other than `f64`: in `f32`, and on the number that counts operations.
 //!
-//! `cargo test --test core scalars -- --nocapture` prints the counts next to Table 2 of the paper.
+//! `cargo test --release --test core scalars -- --nocapture` prints the counts next to Table 2 of the paper.
 
 use lieflow::catalog::{MethodSpec, Needs};
 use lieflow::groups::{LieGroup, So3};

@@ -2,7 +2,7 @@
 //! problems that do not commute, depend on time and depend on the state. By the same harness: products
 //! and SE(3) in `products.rs`, orders from 8 on in `wide.rs`, methods that ask for
 //! more in `rigid_body.rs`.
-//! `cargo test --test orders -- --nocapture` prints the table.
+//! `cargo test --release --test orders -- --nocapture` prints the table.
 
 use crate::support::orders::{
     clocks, estimate, every_explicit_method_on, every_linear_method_on, every_method_on, grid,
