@@ -23,6 +23,11 @@ pub trait Metric {
     fn size(&self) -> Self::Scalar;
     /// ‖self − x‖.
     fn distance(&self, x: &Self) -> Self::Scalar;
+    /// True only if all numbers are the same. A point that cannot tell says false; then a method takes its last stage
+    /// again as the first one of the next step.
+    fn is_same(&self, _x: &Self) -> bool {
+        false
+    }
     /// An error at this point in units of the tolerance: the largest of the ratios ‖error‖/(atol + rtol·‖self‖) of the
     /// parts.
     #[inline]
@@ -159,6 +164,10 @@ macro_rules! number {
             fn distance(&self, x: &Self) -> $t {
                 Real::abs(*self - *x)
             }
+            #[inline]
+            fn is_same(&self, x: &Self) -> bool {
+                *self == *x
+            }
         }
 
         impl LinearSpace for $t {
@@ -206,14 +215,27 @@ macro_rules! small {
                 squares.sqrt()
             }
             #[inline]
+            fn is_same(&self, x: &Self) -> bool {
+                self == x
+            }
+            #[inline(always)]
             fn error_ratio(&self, gap: Gap<'_, Self>, scales: &mut Scales<'_>) -> S {
-                let (part, entries) = (scales.part(), || self.as_slice().iter().copied());
-                let (error, each) = match gap {
-                    Gap::To(x) => (self.distance(x), part.largest((self - x).iter().copied(), entries())),
-                    Gap::Of(e) => (e.size(), part.largest(e.as_slice().iter().copied(), entries())),
-                    Gap::Relative(e) => (e * self.size(), part.largest(entries().map(|x| e * x), entries())),
+                let part = scales.part();
+                if part.has_components() {
+                    let entries = || self.as_slice().iter().copied();
+                    return match gap {
+                        Gap::To(x) => part.largest((self - x).iter().copied(), entries()),
+                        Gap::Of(e) => part.largest(e.as_slice().iter().copied(), entries()),
+                        Gap::Relative(e) => part.largest(entries().map(|x| e * x), entries()),
+                    };
+                }
+                let size = self.size();
+                let error = match gap {
+                    Gap::To(x) => self.distance(x),
+                    Gap::Of(e) => e.size(),
+                    Gap::Relative(e) => e * size,
                 };
-                each.unwrap_or_else(|| part.ratio(error, self.size()))
+                part.ratio(error, size)
             }
         }
 
@@ -272,19 +294,28 @@ impl Metric for Mat<f64> {
         }
         s.sqrt()
     }
+    fn is_same(&self, x: &Self) -> bool {
+        self == x
+    }
     fn error_ratio(&self, gap: Gap<'_, Self>, scales: &mut Scales<'_>) -> f64 {
-        let (part, size) = (scales.part(), self.size());
-        let (error, each) = match gap {
-            Gap::To(x) => {
-                let errors = entries(self).zip(entries(x)).map(|(a, b)| a - b);
-                (self.distance(x), part.largest(errors, entries(self)))
-            }
-            Gap::Of(e) => (e.size(), part.largest(entries(e), entries(self))),
-            Gap::Relative(e) => {
-                (e * size, part.largest(entries(self).map(|x| e * x), entries(self)))
-            }
+        let part = scales.part();
+        if part.has_components() {
+            return match gap {
+                Gap::To(x) => {
+                    let errors = entries(self).zip(entries(x)).map(|(a, b)| a - b);
+                    part.largest(errors, entries(self))
+                }
+                Gap::Of(e) => part.largest(entries(e), entries(self)),
+                Gap::Relative(e) => part.largest(entries(self).map(|x| e * x), entries(self)),
+            };
+        }
+        let size = self.size();
+        let error = match gap {
+            Gap::To(x) => self.distance(x),
+            Gap::Of(e) => e.size(),
+            Gap::Relative(e) => e * size,
         };
-        each.unwrap_or_else(|| part.ratio(error, size))
+        part.ratio(error, size)
     }
 }
 
@@ -327,6 +358,10 @@ impl Metric for UnitQuaternion<f64> {
         tally(|| Ops::adds(4) + Ops::dots(1, 4) + Ops::sqrts(1));
         (self.coords - x.coords).norm()
     }
+    #[inline]
+    fn is_same(&self, x: &Self) -> bool {
+        self.coords == x.coords
+    }
 }
 
 impl LinearSpace for UnitQuaternion<f64> {
@@ -366,6 +401,10 @@ impl<A: Metric, B: Metric<Scalar = A::Scalar>> Metric for (A, B) {
     fn distance(&self, x: &Self) -> A::Scalar {
         let (a, b) = (self.0.distance(&x.0), self.1.distance(&x.1));
         (a * a + b * b).sqrt()
+    }
+    #[inline]
+    fn is_same(&self, x: &Self) -> bool {
+        self.0.is_same(&x.0) && self.1.is_same(&x.1)
     }
     #[inline]
     fn error_ratio(&self, gap: Gap<'_, Self>, scales: &mut Scales<'_>) -> A::Scalar {
@@ -416,6 +455,10 @@ impl<M: Metric, const N: usize> Metric for [M; N] {
     fn distance(&self, x: &Self) -> M::Scalar {
         norm(self.iter().zip(x).map(|(a, b)| a.distance(b)))
     }
+    #[inline]
+    fn is_same(&self, x: &Self) -> bool {
+        self.iter().zip(x).all(|(a, b)| a.is_same(b))
+    }
     /// One part, of N components.
     #[inline]
     fn error_ratio(&self, gap: Gap<'_, Self>, scales: &mut Scales<'_>) -> M::Scalar {
@@ -425,8 +468,10 @@ impl<M: Metric, const N: usize> Metric for [M; N] {
             Gap::Of(e) => e[i].size(),
             Gap::Relative(e) => e * self[i].size(),
         };
-        let each = part.largest((0..N).map(error), self.iter().map(M::size));
-        each.unwrap_or_else(|| part.ratio(norm((0..N).map(error)), self.size()))
+        match part.has_components() {
+            true => part.largest((0..N).map(error), self.iter().map(M::size)),
+            false => part.ratio(norm((0..N).map(error)), self.size()),
+        }
     }
 }
 
@@ -470,6 +515,9 @@ impl<M: Metric> Metric for Box<[M]> {
     }
     fn distance(&self, x: &Self) -> M::Scalar {
         norm(self.iter().zip(x).map(|(a, b)| a.distance(b)))
+    }
+    fn is_same(&self, x: &Self) -> bool {
+        self.len() == x.len() && self.iter().zip(x).all(|(a, b)| a.is_same(b))
     }
     /// All copies have the same tolerances.
     fn error_ratio(&self, gap: Gap<'_, Self>, scales: &mut Scales<'_>) -> M::Scalar {

@@ -78,7 +78,7 @@ impl PartTolerance {
 
     /// The ratio of an error of a whole part of this size. A part without components cannot have an atol for each: then
     /// the ratio is infinite, and the driver returns an error before the first step.
-    #[inline]
+    #[inline(always)]
     pub fn ratio<S: Real>(&self, error: S, size: S) -> S {
         if self.components.len() > 1 {
             S::lit(f64::INFINITY)
@@ -87,23 +87,26 @@ impl PartTolerance {
         }
     }
 
-    /// The largest ratio of the entries of an error, if there is an atol for each.
+    /// True if there is an atol for each component.
     #[inline]
+    pub(crate) fn has_components(&self) -> bool {
+        !self.components.is_empty()
+    }
+
+    /// The largest ratio of the entries of an error, where there is an atol for each.
+    #[inline(never)]
     pub(crate) fn largest<S: Real>(
         &self,
         errors: impl Iterator<Item = S>,
         entries: impl Iterator<Item = S>,
-    ) -> Option<S> {
-        if self.components.is_empty() {
-            return None;
-        }
+    ) -> S {
         let (mut most, mut atols) = (S::lit(0.0), self.components.iter());
         for (error, x) in errors.zip(entries) {
-            let Some(&atol) = atols.next() else { return Some(S::lit(f64::INFINITY)) };
+            let Some(&atol) = atols.next() else { return S::lit(f64::INFINITY) };
             most = larger(most, ratio(error.abs(), S::lit(atol) + S::lit(self.rtol) * x.abs()));
         }
         // As many tolerances as components, or no step is good enough: the driver says so before the first.
-        if atols.next().is_some() { Some(S::lit(f64::INFINITY)) } else { Some(most) }
+        if atols.next().is_some() { S::lit(f64::INFINITY) } else { most }
     }
 }
 

@@ -89,6 +89,7 @@ trait Stepper<P: Problem> {
         to: &mut PointOf<P>,
     ) -> Result<ScalarOf<P>, StepError>;
     fn iterations(&self) -> u64;
+    fn reused(&self) -> u64;
     fn each_memory(&mut self, each: &mut dyn FnMut(&mut f64));
     fn prepare(
         &mut self,
@@ -249,6 +250,9 @@ impl<P: Problem, M: Method<P>, E: Estimate<P, M>> Stepper<P> for MethodWithWork<
     fn iterations(&self) -> u64 {
         self.method.iterations(&self.work)
     }
+    fn reused(&self) -> u64 {
+        self.method.reused(&self.work)
+    }
     fn each_memory(&mut self, each: &mut dyn FnMut(&mut f64)) {
         self.method.each_memory(&mut self.work, each);
     }
@@ -311,6 +315,9 @@ where
     }
     fn iterations(&self, work: &Self::Work) -> u64 {
         work.stepper.iterations()
+    }
+    fn reused(&self, work: &Self::Work) -> u64 {
+        work.stepper.reused()
     }
     fn each_memory(&self, work: &mut Self::Work, each: &mut dyn FnMut(&mut f64)) {
         work.stepper.each_memory(each);

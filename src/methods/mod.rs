@@ -174,8 +174,8 @@ pub trait Symmetric {}
 pub trait Method<P: Problem> {
     /// The workspace of a step, made once and used for every step.
     ///
-    /// It carries nothing from one step to the next, so a step depends only on its arguments. The one exception is
-    /// [`FluidMidpoint`], which starts its iteration from the steps before.
+    /// It carries no number from one step to the next that the step could not compute again from its arguments, so a step
+    /// depends only on these. The one exception is [`FluidMidpoint`], which starts its iteration from the steps before.
     type Work;
 
     /// The order of the method. Tests measure it.
@@ -195,6 +195,12 @@ pub trait Method<P: Problem> {
 
     /// The iterations of all implicit steps with this workspace so far, failed steps included.
     fn iterations(&self, _work: &Self::Work) -> u64 {
+        0
+    }
+
+    /// The evaluations of f that steps with this workspace did not need so far, because the last stage of the step before
+    /// is the first one of the next.
+    fn reused(&self, _work: &Self::Work) -> u64 {
         0
     }
 

@@ -7,7 +7,7 @@
 
 use super::embedded::without_pair;
 use super::extension::{EXTRA, Extension};
-use super::stages::copies;
+use super::stages::{Known, copies};
 use super::tableau::{ErrorEstimate, fold_error};
 use super::{Embedded, MapCounts, Method, Step, Tableau};
 use crate::error::{Error, StepError};
@@ -28,14 +28,16 @@ pub struct RkWork<P: Ambient, const S: usize> {
     z: PointOf<P>,
     extra: [PointOf<P>; EXTRA],
     field: FieldStore<P>,
+    /// Where the last stage of the last step is the first one.
+    known: Known<PointOf<P>>,
 }
 
 impl<const S: usize> Rk<S> {
-    /// z ← the step from y, with the first `count` stages.
+    /// z ← the step from y, with the first `count` stages. `known` says that the first of them is there.
     #[inline(always)]
     fn advance<P: Ambient>(
         &self,
-        count: usize,
+        (count, known): (usize, bool),
         problem: &P,
         Step { t, h, .. }: Step<ScalarOf<P>>,
         y: &PointOf<P>,
@@ -45,6 +47,9 @@ impl<const S: usize> Rk<S> {
         for i in 0..S {
             if i >= count {
                 break;
+            }
+            if i == 0 && known {
+                continue;
             }
             z.set_sum(y, h, &tab.a[i][..i], k);
             problem.field(t + h * ScalarOf::<P>::lit(tab.c[i]), z, &mut k[i], field);
@@ -81,6 +86,7 @@ impl<P: Ambient, const S: usize> Method<P> for Rk<S> {
             z: like.clone(),
             extra: copies(like.clone()),
             field: FieldStore::new(problem),
+            known: Known::new(like, self.0.ends_with_first_stage()),
         })
     }
     #[inline]
@@ -91,9 +97,12 @@ impl<P: Ambient, const S: usize> Method<P> for Rk<S> {
         y: &mut PointOf<P>,
         work: &mut Self::Work,
     ) -> Result<(), StepError> {
-        self.advance(self.0.update_stages(), problem, step, y, work)?;
+        self.advance((self.0.update_stages(), false), problem, step, y, work)?;
         y.assign(&work.z);
         Ok(())
+    }
+    fn reused(&self, work: &Self::Work) -> u64 {
+        work.known.used
     }
     fn dense_order(&self, _: &P) -> usize {
         Extension::of(&self.0).order()
@@ -107,7 +116,7 @@ impl<P: Ambient, const S: usize> Method<P> for Rk<S> {
         step: Step<ScalarOf<P>>,
         from: &PointOf<P>,
         _: &PointOf<P>,
-        RkWork { k, z, extra, field }: &mut Self::Work,
+        RkWork { k, z, extra, field, .. }: &mut Self::Work,
     ) -> Result<(), StepError> {
         Extension::of(&self.0).prepare_in_space(problem, step, from, k, extra, z, field)
     }
@@ -131,6 +140,7 @@ impl<P: Ambient, const S: usize> Embedded<P> for Rk<S> {
     fn evaluations_with_error(&self, _: &P) -> Option<u64> {
         Some(self.0.all_stages() as u64)
     }
+    #[inline(always)]
     fn step_with_error(
         &self,
         problem: &P,
@@ -141,9 +151,16 @@ impl<P: Ambient, const S: usize> Embedded<P> for Rk<S> {
         to: &mut PointOf<P>,
     ) -> Result<ScalarOf<P>, StepError> {
         let stages = self.0.all_stages();
-        self.advance(stages, problem, step, from, work)?;
-        let RkWork { k, z, .. } = work;
+        let is_known = work.known.take(step.t, from);
+        if is_known {
+            work.k.swap(0, stages - 1);
+        }
+        self.advance((stages, is_known), problem, step, from, work)?;
+        let RkWork { k, z, known, .. } = work;
         to.assign(z);
+        if known.is_offered {
+            known.set(step.t + step.h, to);
+        }
         let length = to.distance(from);
         let mut size = |weights: &[f64; S]| {
             z.clear();

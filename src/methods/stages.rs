@@ -5,6 +5,7 @@ use crate::error::{Error, StepError};
 use crate::groups::LieAlgebra;
 use crate::maps::CoordinateMap;
 use crate::problems::{AlgOf, PointOf, Problem};
+use crate::space::Metric;
 
 /// Makes S copies. One function serves all methods, because each closure would compile to another function.
 pub(super) fn copies<T: Clone, const S: usize>(of: T) -> [T; S] {
@@ -52,5 +53,39 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> Stages<P, Psi, S>
             alg.set_zero(&mut self.k[i]);
         }
         error
+    }
+}
+
+/// The point and the time at which the value of f is known, because the last stage of a step was taken there.
+///
+/// Another step begins there only if both are the same, to the last bit. So it depends on its arguments alone.
+pub(super) struct Known<Y: Metric> {
+    /// The time, if there is a known value.
+    t: Option<Y::Scalar>,
+    y: Y,
+    /// True if steps end with the first stage of the next.
+    pub(super) is_offered: bool,
+    /// How often the value was used.
+    pub(super) used: u64,
+}
+
+impl<Y: Metric + Clone> Known<Y> {
+    pub(super) fn new(like: &Y, is_offered: bool) -> Self {
+        Known { t: None, y: like.clone(), is_offered, used: 0 }
+    }
+
+    /// True if the value is known there. Then it is used, and no longer known.
+    #[inline(always)]
+    pub(super) fn take(&mut self, t: Y::Scalar, y: &Y) -> bool {
+        let is_there = self.is_offered && self.t.take() == Some(t) && self.y.is_same(y);
+        self.used += u64::from(is_there);
+        is_there
+    }
+
+    /// The value is known there.
+    #[inline(always)]
+    pub(super) fn set(&mut self, t: Y::Scalar, y: &Y) {
+        self.t = Some(t);
+        self.y.assign(y);
     }
 }

@@ -3,6 +3,10 @@
 //! The next step is h·min(5, max(1/5, 0.9·r^(−0.7/k)·r₋^(0.4/k))), where r is the ratio of the error to
 //! the tolerance, k the order of the estimate + 1, and r₋ the r of the step before (Hairer, Nørsett, Wanner II, IV.2;
 //! Gustafsson's PI controller). The step after a rejected one does not grow.
+//!
+//! Where r stays at 0.9^(k/0.3), the step size does too. It is kept while both r and r₋ are near there, so that either
+//! would change the step size by 5 % at most. A step of the same size needs no powers, and the processor begins it
+//! before it knows the error of the step before.
 
 use crate::error::Error;
 use crate::tolerance::{Rule, Tolerance};
@@ -108,15 +112,29 @@ pub(super) struct Controller {
     pub(super) last: f64,
     /// True if the next step must not be larger than this one.
     pub(super) hold: bool,
+    /// The least and the largest ratio at which the step size is kept.
+    kept: [f64; 2],
 }
 
 /// The largest factor by which a step grows; 1 over it is the smallest factor by which it shrinks.
 const GROWTH_MAX: f64 = 5.0;
 const SAFETY: f64 = 0.9;
+/// The powers of r and r₋, times k.
+const POWERS: [f64; 2] = [0.7, 0.4];
+/// The step size is kept where a ratio would change it by this factor at most.
+const NEAR_ONE: f64 = 1.05;
 
 impl Controller {
     pub(super) fn new(error_order: usize) -> Self {
-        Controller { k: error_order as f64 + 1.0, last: 1.0, hold: false }
+        let k = error_order as f64 + 1.0;
+        let [power, memory] = POWERS;
+        let kept = |factor: f64| SAFETY.powf(k / (power - memory)) * factor.powf(k / power);
+        Controller { k, last: 1.0, hold: false, kept: [kept(1.0 / NEAR_ONE), kept(NEAR_ONE)] }
+    }
+
+    /// The controller at a start: it knows no step.
+    pub(super) fn anew(self) -> Self {
+        Controller { last: 1.0, hold: false, ..self }
     }
 
     /// True if steps of any size have no error.
@@ -126,9 +144,17 @@ impl Controller {
 
     /// The factor of the next step after an accepted one.
     pub(super) fn accept(&mut self, ratio: f64) -> f64 {
+        let [least, most] = self.kept;
+        let is_near = |r: f64| least <= r && r <= most;
+        if is_near(self.last) && is_near(ratio) {
+            self.last = ratio;
+            self.hold = false;
+            return 1.0;
+        }
         let r = ratio.max(1e-10); // an error of 0 says "grow"
         // One exponential for both powers.
-        let factor = SAFETY * ((0.4 * self.last.ln() - 0.7 * r.ln()) / self.k).exp();
+        let [power, memory] = POWERS;
+        let factor = SAFETY * ((memory * self.last.ln() - power * r.ln()) / self.k).exp();
         let cap = if self.hold { 1.0 } else { GROWTH_MAX };
         self.last = r.max(1e-4);
         self.hold = false;

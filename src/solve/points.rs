@@ -77,6 +77,8 @@ pub(super) trait AnyPoints {
     fn prepare(&mut self, step: Step<f64>, ends_at_y: bool) -> Result<(), StepError>;
     /// The iterations that the workspace has counted.
     fn iterations(&self) -> u64;
+    /// The evaluations of f that the workspace did not need.
+    fn reused(&self) -> u64;
     /// The name of the group.
     fn group_name(&self) -> String;
     /// Calls `each` with the numbers of this part of the state.
@@ -384,6 +386,9 @@ impl<P: Problem, M: Method<P>> AnyPoints for Points<'_, P, M> {
     }
     fn iterations(&self) -> u64 {
         self.method.iterations(&self.work)
+    }
+    fn reused(&self) -> u64 {
+        self.method.reused(&self.work)
     }
     fn group_name(&self) -> String {
         self.problem.group().name()

@@ -172,10 +172,12 @@ impl Timeline {
         each(&mut self.cadence.every);
         each(&mut self.cadence.next);
         // The workspace counts from its own start.
-        let counted = points.iterations();
+        let (counted, reused) = (points.iterations(), points.reused());
         self.stats.iterations = self.stats.iterations.wrapping_add(counted);
+        self.stats.evaluations = self.stats.evaluations.map(|n| n.wrapping_sub(reused));
         each_of_stats(each, &mut self.stats);
         self.stats.iterations = self.stats.iterations.wrapping_sub(counted);
+        self.stats.evaluations = self.stats.evaluations.map(|n| n.wrapping_add(reused));
         match &mut self.pacer {
             Pacer::Equal { grid, done, .. } => {
                 grid.each_part(&mut |x| number(each, x));

@@ -99,6 +99,7 @@ impl Timeline {
     pub(super) fn stats(&self, points: &dyn AnyPoints) -> Stats {
         let mut stats = self.stats;
         stats.iterations = stats.iterations.wrapping_add(points.iterations());
+        stats.evaluations = stats.evaluations.map(|n| n.wrapping_sub(points.reused()));
         if stats.accepted == 0 {
             stats.smallest_step = 0.0;
         }
@@ -122,7 +123,7 @@ impl Timeline {
         if let Pacer::ByError(chooser) = &mut self.pacer {
             chooser.h = None;
             chooser.wall = None;
-            chooser.controller = Controller { last: 1.0, hold: false, ..chooser.controller };
+            chooser.controller = chooser.controller.anew();
         }
         Ok(())
     }
@@ -346,7 +347,7 @@ impl Timeline {
 
     /// Repeats the last step, so that the workspace holds it. Its iterations are not counted again.
     fn repeat(&mut self, points: &mut dyn AnyPoints) -> Result<(), StepError> {
-        let counted = points.iterations();
+        let (counted, reused) = (points.iterations(), points.reused());
         // What a method remembers is that of the step, not of its repetition.
         let mut memory = Vec::new();
         points.each_number(Saved::Memory, &mut |x| memory.push(*x));
@@ -355,6 +356,8 @@ impl Timeline {
         points.each_number(Saved::Memory, &mut |x| *x = memory.next().unwrap_or(*x));
         let again = points.iterations().wrapping_sub(counted);
         self.stats.iterations = self.stats.iterations.wrapping_sub(again);
+        let again = points.reused().wrapping_sub(reused);
+        self.stats.evaluations = self.stats.evaluations.map(|n| n.wrapping_add(again));
         repeated
     }
 

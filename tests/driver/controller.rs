@@ -176,22 +176,32 @@ fn a_ratio_of_one_is_the_limit() {
 fn the_next_step() {
     for order in [2usize, 4, 7] {
         let k = order as f64 + 1.0;
-        let ratios = [0.5, 0.9, 0.2, 1e-3, 0.7, 1.0, 1e-5, 0.3, 0.05, 0.6];
+        let steady = 0.9f64.powf(k / 0.3);
+        let ratios = [0.5, 0.9, 0.2, 1e-3, 1.02 * steady, 0.99 * steady, 1.0, 1e-5, 0.05, 0.6];
         let n = Cell::new(0);
         let (seen, _) = attempts(order, |_, _| {
             n.set(n.get() + 1);
             Some(ratios[(n.get() - 1) % ratios.len()])
         });
-        let mut before: f64 = 1.0;
+        let (mut before, mut kept): (f64, u32) = (1.0, 0);
         for (pair, ratio) in seen.windows(2).zip(ratios) {
-            let factor = 0.9 * ratio.powf(-0.7 / k) * before.powf(0.4 / k);
+            // The step size is kept where both ratios are near that of steps of one size.
+            let is_near = |r: f64| {
+                let factor = 0.9f64.powf(0.7 / 0.3) * r.powf(-0.7 / k);
+                (1.0 / 1.05..=1.05).contains(&factor)
+            };
+            let factor = match is_near(ratio) && is_near(before) {
+                true => 1.0,
+                false => 0.9 * ratio.powf(-0.7 / k) * before.powf(0.4 / k),
+            };
+            kept += u32::from(factor == 1.0);
             if pair[1].0 + 2.0 * pair[1].1 < 100.0 {
                 near(pair[1].1, (pair[1].0 - pair[0].0) * factor.clamp(0.2, 5.0));
             }
             near(pair[1].0, pair[0].0 + pair[0].1);
             before = ratio.max(1e-4);
         }
-        assert!(seen.len() > 5, "{seen:?}");
+        assert!(seen.len() > 5 && kept > 0, "{kept}: {seen:?}");
     }
 }
 

@@ -162,7 +162,13 @@ fn goes_on_with_events(every: Duration) {
     assert!(states.len() > least && shown.len() > 80, "{counts:?}: states, points");
     for bytes in &states {
         let rest = RefCell::default();
-        assert_eq!(run(Some(bytes), &RefCell::default(), &rest), whole);
+        let mut resumed = run(Some(bytes), &RefCell::default(), &rest);
+        // The first step after a restart evaluates f at its start. A run in one go has it from the step before.
+        let evaluations = &mut resumed.3.evaluations;
+        let more = evaluations.zip(whole.3.evaluations).map(|(n, of_whole)| n - of_whole);
+        assert!(more <= Some(1), "{more:?}");
+        *evaluations = whole.3.evaluations;
+        assert_eq!(resumed, whole);
         let rest: Shown = rest.into_inner();
         assert_eq!(rest, shown[shown.len() - rest.len()..]);
     }

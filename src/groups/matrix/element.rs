@@ -55,6 +55,9 @@ macro_rules! matrix_element {
             fn distance(&self, x: &Self) -> f64 {
                 self.0.distance(x)
             }
+            fn is_same(&self, x: &Self) -> bool {
+                self.0.is_same(x)
+            }
         }
         impl LinearSpace for $name {
             fn clear(&mut self) {

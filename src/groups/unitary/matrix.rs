@@ -184,6 +184,9 @@ impl Metric for ComplexMatrix {
     fn distance(&self, x: &Self) -> f64 {
         self.re.distance(&x.re).hypot(self.im.distance(&x.im))
     }
+    fn is_same(&self, x: &Self) -> bool {
+        self.re.is_same(&x.re) && self.im.is_same(&x.im)
+    }
 }
 
 impl LinearSpace for ComplexMatrix {

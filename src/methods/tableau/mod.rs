@@ -56,6 +56,18 @@ impl<const S: usize> Tableau<S> {
         s
     }
 
+    /// True if the last of all stages is taken at the end of the step. Then it is the first stage of the next step.
+    pub const fn ends_with_first_stage(&self) -> bool {
+        let last = self.all_stages() - 1;
+        let mut same = last >= self.update_stages() && self.c[last] == 1.0;
+        let mut j = 0;
+        while j < last {
+            same = same && self.a[last][j] == self.b[j];
+            j += 1;
+        }
+        same
+    }
+
     /// This tableau with room for N ≥ S stages, so that methods chosen by name share one type. The added stages have
     /// the weight 0 and are never evaluated.
     pub const fn padded<const N: usize>(&self) -> Tableau<N> {

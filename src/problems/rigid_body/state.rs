@@ -50,6 +50,10 @@ impl<S: Real> Metric for BodyState<S> {
         let (m, g) = (self.m.distance(&x.m), Metric::distance(&self.g, &x.g));
         (m * m + g * g).sqrt()
     }
+    #[inline]
+    fn is_same(&self, x: &Self) -> bool {
+        self == x
+    }
 }
 
 impl<S: Real> LinearSpace for BodyState<S> {
