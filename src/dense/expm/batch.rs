@@ -19,7 +19,7 @@ use crate::error::StepError;
 /// For n ≤ 8 a register holds one entry of 8, 4 or 2 matrices (AVX-512, AVX2, the baseline; chosen at run time). The code
 /// evaluates the Taylor polynomials of [`Exponential`], with a number of squarings for each matrix, and has the same
 /// accuracy. Larger n go through [`Exponential`] one by one. So do difficult matrices: triangular ones, and general
-/// ones with a norm above 16.
+/// ones with a norm above 16. They are copied in groups of 8, because 8 neighbours share a line of the cache.
 ///
 /// ```
 /// use lieflow::dense::{ExponentialBatch, Structure};
@@ -36,9 +36,13 @@ pub struct ExponentialBatch {
     n: usize,
     arch: Arch,
     single: Exponential,
-    u: Mat<f64>,
-    g: Mat<f64>,
+    /// Matrices that go one by one, and their exponentials.
+    u: [Mat<f64>; GROUP],
+    g: [Mat<f64>; GROUP],
 }
+
+/// The number of matrices that are copied together.
+const GROUP: usize = 8;
 
 impl ExponentialBatch {
     /// Makes the workspace for n×n matrices. Nothing allocates after this.
@@ -47,8 +51,8 @@ impl ExponentialBatch {
             n,
             arch: Arch::new(),
             single: Exponential::new(n),
-            u: Mat::zeros(n, n),
-            g: Mat::zeros(n, n),
+            u: core::array::from_fn(|_| Mat::zeros(n, n)),
+            g: core::array::from_fn(|_| Mat::zeros(n, n)),
         }
     }
 
@@ -80,20 +84,52 @@ impl ExponentialBatch {
                 8 => self.arch.dispatch(Batch::<8> { u, skew, first, count, out }),
                 _ => first..count,
             };
-            for m in careful.clone() {
-                for j in 0..self.n {
-                    for i in 0..self.n {
-                        self.u[(i, j)] = u[(j * self.n + i) * count + m];
+            first = careful.end;
+            for start in careful.clone().step_by(GROUP) {
+                let group = start..careful.end.min(start + GROUP);
+                self.one_by_one(u, structure, count, group, out)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The exponentials of at most [`GROUP`] matrices.
+    fn one_by_one(
+        &mut self,
+        u: &[f64],
+        structure: Structure,
+        count: usize,
+        group: Range<usize>,
+        out: &mut [f64],
+    ) -> Result<(), StepError> {
+        let n = self.n;
+        for j in 0..n {
+            let columns = self.u.each_mut().map(|u| &mut u.col_as_slice_mut(j)[..n]);
+            let entries = u[j * n * count..].chunks_exact(count).take(n);
+            for (i, entries) in entries.enumerate() {
+                match entries.get(group.start..group.start + GROUP) {
+                    Some(entries) if group.len() == GROUP => {
+                        (0..GROUP).for_each(|m| columns[m][i] = entries[m])
                     }
-                }
-                self.single.exp(&self.u, structure, &mut self.g)?;
-                for j in 0..self.n {
-                    for i in 0..self.n {
-                        out[(j * self.n + i) * count + m] = self.g[(i, j)];
-                    }
+                    _ => (0..group.len()).for_each(|m| columns[m][i] = entries[group.start + m]),
                 }
             }
-            first = careful.end;
+        }
+        for (u, g) in self.u.iter().zip(&mut self.g).take(group.len()) {
+            self.single.exp(u, structure, g)?;
+        }
+        for j in 0..n {
+            let columns = self.g.each_ref().map(|g| &g.col_as_slice(j)[..n]);
+            let entries = out[j * n * count..].chunks_exact_mut(count).take(n);
+            for (i, entries) in entries.enumerate() {
+                match group.len() {
+                    GROUP => {
+                        let entries = &mut entries[group.start..group.start + GROUP];
+                        (0..GROUP).for_each(|m| entries[m] = columns[m][i]);
+                    }
+                    _ => (0..group.len()).for_each(|m| entries[group.start + m] = columns[m][i]),
+                }
+            }
         }
         Ok(())
     }
