@@ -112,15 +112,18 @@ impl Axis {
     }
 }
 
-/// The range of `values` with padding; a range of length one if there is but one value.
+/// A shorter range is none: powers of ten and ratios of such numbers would be rounded to 0.
+const SHORTEST: f64 = 1e-290;
+
+/// The range of `values` with padding; a range around the value if there is but one.
 fn padded(values: impl Iterator<Item = f64>, padding: f64) -> (f64, f64) {
     let (lo, hi) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |r, v| (r.0.min(v), r.1.max(v)));
     if lo > hi {
         return (0.0, 1.0);
     }
     let extent = hi - lo;
-    if extent <= 1e-12 * lo.abs().max(hi.abs()) || extent == 0.0 {
-        let half = if lo == 0.0 { 1.0 } else { 0.5 * lo.abs() };
+    if extent <= 1e-12 * lo.abs().max(hi.abs()) || extent < SHORTEST {
+        let half = if lo.abs() < SHORTEST { 1.0 } else { 0.5 * lo.abs() };
         return (lo - half, hi + half);
     }
     (lo - padding * extent, hi + padding * extent)
@@ -248,8 +251,9 @@ pub(crate) fn nice_step(step: f64) -> f64 {
 /// Ticks at the decades and, if there is room, at their multiples. `lo` and `hi` are logarithms.
 fn log_ticks(lo: f64, hi: f64, labels: f64) -> Vec<Found> {
     let decades = hi - lo;
-    if decades < 0.7 {
-        return linear_ticks(10f64.powf(lo), 10f64.powf(hi), labels);
+    let ends = [lo, hi].map(|log| 10f64.powf(log));
+    if decades < 0.7 && ends[1] - ends[0] >= SHORTEST {
+        return linear_ticks(ends[0], ends[1], labels);
     }
     let step = stride(decades, labels);
     let fine = 3.0 * decades <= labels;
@@ -379,6 +383,47 @@ mod tests {
         for data in [vec![], vec![3.0], vec![0.0, 0.0], vec![-1e300, f64::NAN]] {
             let m = axis.map(data.into_iter(), (0.0, 100.0), 0.05);
             assert!(m.lo < m.hi && m.pixel(3.0).unwrap().is_finite());
+        }
+    }
+
+    /// Spans at the ends of the range of numbers have ticks, and none of them is without a label of finite length.
+    #[test]
+    fn extreme_ranges() {
+        let tiny = 5e-324;
+        let spans = [
+            (0.0, tiny),
+            (-tiny, 0.0),
+            (-tiny, tiny),
+            (tiny, 3.0 * tiny),
+            (0.0, 1e-310),
+            (2e-310, 2e-310 + tiny),
+            (0.0, f64::MIN_POSITIVE),
+            (1.0, 1.0 + f64::EPSILON),
+            (1e16, 1e16 + 2.0),
+            (0.0, 1e299),
+            (-9e299, 9e299),
+            (1e299, 1.000_000_000_000_001e299),
+            (tiny, 1e299),
+        ];
+        for (lo, hi) in spans {
+            for unit in ["", "s", "rad"] {
+                let linear = 1e-3 * (hi - lo);
+                for scale in [Scale::Linear, Scale::Log10, Scale::SymLog { linear }] {
+                    let axis = Axis::new("x", scale).with_unit(unit);
+                    let m = axis.map([lo, hi].into_iter(), (0.0, 500.0), 0.04);
+                    let told = format!("{lo:e} to {hi:e}, {scale:?}: {m:?}");
+                    assert!(m.lo < m.hi && m.lo.is_finite() && m.hi.is_finite(), "{told}");
+                    for x in [lo, hi].into_iter().filter(|x| scale.accepts(*x)) {
+                        assert!(m.pixel(x).is_some_and(|at| m.contains(at)), "{told}");
+                    }
+                    let ticks = m.ticks(60.0);
+                    assert!(ticks.iter().all(|tick| tick.at.is_finite()), "{told}");
+                    let labels: Vec<_> = ticks.into_iter().filter_map(|t| t.label).collect();
+                    assert!(labels.iter().all(|l| l.chars().count() < 30), "{told}: {labels:?}");
+                    assert!(axis.title_beside(&m).chars().count() < 40, "{told}");
+                    assert!(axis.value_text(hi).chars().count() < 40, "{told}");
+                }
+            }
         }
     }
 
