@@ -218,7 +218,7 @@ impl Drive<'_> {
 
     /// Handles the output times and the zeros of the last step in the order of time, and then its end.
     fn look_within(&mut self, output: &mut dyn AnyOutput) -> Ended {
-        let mut is_first = true;
+        let (mut is_first, mut has_rows) = (true, false);
         loop {
             let end = self.times.t;
             let time = self.next_time().filter(|time| !self.times.is_before(end, *time));
@@ -238,6 +238,7 @@ impl Drive<'_> {
                     if zero.is_none_or(|zero| !self.times.is_before(zero.t, time)) =>
                 {
                     self.times_done += 1;
+                    has_rows |= time != end;
                     if let Some(status) = self.show(output, time)? {
                         return Ok(Some(status));
                     }
@@ -252,6 +253,9 @@ impl Drive<'_> {
             }
         }
         self.is_within = false;
+        if has_rows {
+            output.see_end(self.times.t);
+        }
         let shown = matches!(self.save, SaveAt::Every(every) if self.times.stats.accepted.is_multiple_of(every));
         if shown && self.shown_at != Some(self.times.t) {
             self.show_end_of_step(output)

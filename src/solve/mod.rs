@@ -47,7 +47,7 @@ use crate::space::Numbers;
 use crate::tolerance::Rule;
 use drive::{Checkpoints, Drive, Patience};
 use events::Events;
-use output::{Kept, Observe, Output, Watch};
+use output::{Kept, Observe, Output, SeeEnd, Watch};
 use points::Estimator;
 use save::Listing;
 use timeline::{Pace, Timeline};
@@ -83,6 +83,7 @@ pub struct Solve<'a, P: Problem, M: Method<P>> {
     /// The function that lists the numbers of a point, if the state is saved or restored.
     list: Option<Listing<P>>,
     watch: Option<Watch<P>>,
+    see_end: Option<SeeEnd<'a, PointOf<P>>>,
 }
 
 /// The settings of a run that do not depend on the types of its problem and method.
@@ -240,6 +241,7 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
             events: Vec::new(),
             list: None,
             watch: None,
+            see_end: None,
         }
     }
 
@@ -355,6 +357,13 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
         self
     }
 
+    /// Calls a function with (t, y) at the end of each step that has rows within it, after these rows. So rows by dense
+    /// output can be compared with ends of steps.
+    pub fn ends_of_steps(mut self, see: impl FnMut(f64, &PointOf<P>) + 'a) -> Self {
+        self.see_end = Some(Box::new(see));
+        self
+    }
+
     /// Calls `take` with the state of the run as bytes, between steps, at intervals of this duration.
     ///
     /// Zero means after every step. Otherwise the state is also saved between two rows of a step. A cancelled run also calls
@@ -452,7 +461,7 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
         let (rules, functions) =
             self.events.into_iter().map(|event| (event.rule, event.functions)).unzip();
         let mut drive = self.settings.drive(times, Events::new(rules), kept.is_some());
-        let mut output = Output::new(points, functions, self.watch, kept, observe);
+        let mut output = Output::new(points, functions, (self.watch, self.see_end), kept, observe);
         let ended = drive.run(&mut output);
         let Output { points, occurrences, .. } = output;
         let solution = Solution {

@@ -35,6 +35,8 @@ pub(super) trait AnyOutput {
     fn take_changed(&mut self) -> Result<(), Error>;
     /// y ← y changed by the event.
     fn change(&mut self, event: usize, t: f64) -> Result<(), Error>;
+    /// Shows the end of a step that had rows within it.
+    fn see_end(&mut self, t: f64);
     /// Stores the last step with the time up to which it is valid, if steps are stored.
     fn keep(&mut self, t: f64, last: Step<f64>);
     /// Lets the last stored step end at t.
@@ -67,6 +69,9 @@ pub(super) type Kept<Y> = (f64, Step<f64>, Y);
 /// The function that sees the points of the output.
 pub(super) type Observe<'k, Y> = dyn FnMut(f64, &mut Y) -> Next + 'k;
 
+/// The function that sees the ends of steps with rows.
+pub(super) type SeeEnd<'a, Y> = Box<dyn FnMut(f64, &Y) + 'a>;
+
 /// What a run shows.
 pub(super) struct Output<'a, 'k, P: Problem, M: Method<P>> {
     pub(super) points: Points<'a, P, M>,
@@ -77,6 +82,7 @@ pub(super) struct Output<'a, 'k, P: Problem, M: Method<P>> {
     observe: &'k mut Observe<'k, PointOf<P>>,
     events: Vec<EventFunctions<'a, PointOf<P>>>,
     watch: Option<Watch<P>>,
+    see_end: Option<SeeEnd<'a, PointOf<P>>>,
     kept: Option<&'k mut Vec<Kept<PointOf<P>>>>,
     /// The zeros of events that have no function for them.
     pub(super) occurrences: Vec<Occurrence<PointOf<P>>>,
@@ -86,12 +92,13 @@ impl<'a, 'k, P: Problem, M: Method<P>> Output<'a, 'k, P, M> {
     pub(super) fn new(
         points: Points<'a, P, M>,
         events: Vec<EventFunctions<'a, PointOf<P>>>,
-        watch: Option<Watch<P>>,
+        (watch, see_end): (Option<Watch<P>>, Option<SeeEnd<'a, PointOf<P>>>),
         kept: Option<&'k mut Vec<Kept<PointOf<P>>>>,
         observe: &'k mut Observe<'k, PointOf<P>>,
     ) -> Self {
         let [shown, search] = [points.y.clone(), points.y.clone()];
-        Output { points, shown, search, observe, events, watch, kept, occurrences: Vec::new() }
+        let occurrences = Vec::new();
+        Output { points, shown, search, observe, events, watch, see_end, kept, occurrences }
     }
 }
 
@@ -130,6 +137,11 @@ impl<P: Problem, M: Method<P>> AnyOutput for Output<'_, '_, P, M> {
         match &mut self.events[event].change {
             Some(change) => self.points.change(&mut |y| change(t, y)),
             None => Ok(()),
+        }
+    }
+    fn see_end(&mut self, t: f64) {
+        if let Some(see) = &mut self.see_end {
+            see(t, &self.points.y);
         }
     }
     fn keep(&mut self, t: f64, last: Step<f64>) {

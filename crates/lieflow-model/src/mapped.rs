@@ -53,6 +53,10 @@ impl Watcher for OfBase<'_> {
         self.model.fill(t, of_base, &mut self.numbers);
         self.watcher.event(event, t, rising, self.model.schema.row(&self.numbers));
     }
+    fn end_of_step(&mut self, t: f64, of_base: Row<'_>) {
+        self.model.fill(t, of_base, &mut self.numbers);
+        self.watcher.end_of_step(t, self.model.schema.row(&self.numbers));
+    }
     fn progress(&mut self, t: f64) {
         self.watcher.progress(t);
     }

@@ -146,6 +146,8 @@ pub trait Watcher {
     fn row(&mut self, t: f64, row: Row<'_>) -> Next;
     /// A zero of the event of this number.
     fn event(&mut self, _event: usize, _t: f64, _rising: bool, _row: Row<'_>) {}
+    /// The end of a step that had rows within it, after these.
+    fn end_of_step(&mut self, _t: f64, _row: Row<'_>) {}
     /// The time that the run has reached; told now and then.
     fn progress(&mut self, _t: f64) {}
     /// The state, to go on from.
@@ -346,7 +348,10 @@ pub fn drive_by<P: Runnable>(
         }
         solve = solve.event(event);
     }
-    let solve = solve.progress(|t| watcher.borrow_mut().progress(t));
+    let solve = solve.progress(|t| watcher.borrow_mut().progress(t)).ends_of_steps(|t, y| {
+        fill(t, y);
+        watcher.borrow_mut().end_of_step(t, schema.row(&numbers.borrow()));
+    });
     let done = solve.run_with(y, |t, y: &mut PointOf<P>| {
         fill(t, y);
         watcher.borrow_mut().row(t, schema.row(&numbers.borrow()))

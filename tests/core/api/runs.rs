@@ -1,10 +1,13 @@
 //! The driver: where it observes, where it lands, and what output between steps costs.
 
+use std::cell::RefCell;
+
 use lieflow::actions::Linear;
 use lieflow::groups::So3;
 use lieflow::maps::{CCSK, Cay, Exp};
 use lieflow::methods::{Method, Rk, Rkmk, tableau::RK4};
 use lieflow::problems::{Exact, Flow, RigidBody};
+use lieflow::solve::Next;
 use lieflow::{RunError, SaveAt, Solve, Stats, TimeGrid, integrate};
 use nalgebra::{Matrix3, Vector3};
 
@@ -161,4 +164,23 @@ fn output_times_off_the_span_fail_before_anything_is_observed() {
     assert!(matches!(refused, Err(RunError::Setup(_))));
     says(refused.unwrap_err(), &["times[1] = 7"]);
     assert_eq!(m, Vector3::from(START));
+}
+
+/// The end of a step is shown if rows stand within the step, once, and after them; forward and backward.
+#[test]
+fn the_ends_of_steps_with_rows() {
+    let body = RigidBody::<f64>::new([1.0, 2.0, 3.0]).unwrap();
+    let start = Vector3::new(0.3, 1.0, -0.5);
+    let method = Rkmk::new(RK4, Exp);
+    for sign in [1.0, -1.0] {
+        let seen = RefCell::new(Vec::new());
+        let times = [0.0, 0.1, 0.2, 0.25, 0.4, 0.8, 0.95].map(|t: f64| sign * t);
+        let solve = Solve::new(&body, &method, [0.0, sign]).dt(0.2).times(times);
+        let solve = solve.ends_of_steps(|t, y| seen.borrow_mut().push((t, *y)));
+        let run = solve.run_with(start, |_, _| Next::Continue).unwrap();
+        let seen = seen.into_inner();
+        let expected = [0.2, 0.4, 1.0].map(|t: f64| sign * t);
+        assert_eq!(seen.iter().map(|(t, _)| *t).collect::<Vec<_>>(), expected);
+        assert_eq!(seen[2].1, run.y);
+    }
 }

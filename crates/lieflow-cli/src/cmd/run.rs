@@ -230,6 +230,7 @@ pub fn run_scene(
     let drift = watch.drift(&kept.watched, done.steps)?;
     let mut warnings = scene.problem.warnings();
     warnings.extend(drift.iter().filter(|(_, drift)| drift.breaks_a_promise()).map(broken_promise));
+    warnings.extend(drift.iter().filter(|(_, drift)| drift.is_of_rows()).map(drift_of_rows));
     let out_of_range = columns.iter().zip(&kept.not_finite).filter(|(_, (count, _))| *count > 0);
     warnings.extend(out_of_range.map(|(column, (count, first))| {
         format!(
@@ -347,6 +348,15 @@ fn check_error(
     let advise = when != ErrorCheck::Never && scene.error_check;
     let warning = check.warning(&accuracy, advise.then_some(seconds));
     Ok(Some((accuracy, warning)))
+}
+
+fn drift_of_rows((name, drift): (&String, &Drift)) -> String {
+    format!(
+        "`{name}` drifted by {} at rows within steps, but by {} at the ends of the steps: the rows are less accurate \
+         than the steps. Take shorter steps, or times_by = \"steps\"",
+        output::short(drift.max),
+        output::short(drift.max_at_ends_of_steps.unwrap_or(0.0))
+    )
 }
 
 fn broken_promise((name, drift): (&String, &Drift)) -> String {

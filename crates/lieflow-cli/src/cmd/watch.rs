@@ -77,6 +77,12 @@ impl<'a> Watch<'a> {
         }
     }
 
+    /// The invariants at the end of a step that had rows within it.
+    fn see_end_of_step(&self, row: Row<'_>, watched: &mut [Watched]) {
+        let values = self.laws.iter().flat_map(|law| &row[*law]);
+        watched.iter_mut().zip(values).for_each(|(watched, x)| watched.see_end_of_step(*x));
+    }
+
     /// What ends the run here: a state of the row that is not finite.
     fn overflow(&self, t: f64, row: Row<'_>) -> Option<String> {
         let states = self.written.iter().filter(|part| part.is_state);
@@ -307,6 +313,10 @@ impl Watcher for Recorder<'_> {
             let done = self.see(Kind::Event(event), t, row);
             self.keep(done);
         }
+    }
+
+    fn end_of_step(&mut self, _t: f64, row: Row<'_>) {
+        self.watch.see_end_of_step(row, &mut self.watched);
     }
 
     fn progress(&mut self, t: f64) {

@@ -295,6 +295,8 @@ pub struct Drift {
     pub at_end: f64,
     /// The largest |value − initial|.
     pub max: f64,
+    /// The largest |value − initial| at the ends of the steps that have rows within them; none without such rows.
+    pub max_at_ends_of_steps: Option<f64>,
     /// What it moves by in a unit of time: the slope of the line with the least squares.
     pub slope: f64,
     /// Does the method promise to keep it to rounding?
@@ -304,11 +306,21 @@ pub struct Drift {
 }
 
 impl Drift {
-    /// Did it move by more than rounding explains, though the method promises to keep it?
+    /// Did it move by far more at rows within steps than at the ends of the steps?
+    pub fn is_of_rows(&self) -> bool {
+        let at_ends = self.max_at_ends_of_steps.map(|at_ends| at_ends.max(self.rounding));
+        at_ends.is_some_and(|at_ends| self.max > OF_ROWS * at_ends)
+    }
+
+    /// Did it move by more than rounding explains, though the method promises to keep it? The promise is about the ends
+    /// of steps.
     pub fn breaks_a_promise(&self) -> bool {
-        self.promised && (self.max.is_nan() || self.max > self.rounding)
+        self.promised && (self.max.is_nan() || self.max > self.rounding) && !self.is_of_rows()
     }
 }
+
+/// A drift at rows that is so many times the one at ends of steps comes from the rows.
+const OF_ROWS: f64 = 100.0;
 
 /// A drift that is being watched.
 #[derive(Clone, Copy, Debug)]
@@ -316,6 +328,7 @@ pub struct Watched {
     start: [f64; 2],
     at_end: f64,
     max: f64,
+    max_at_ends_of_steps: Option<f64>,
     /// The largest size of its terms.
     size: f64,
     /// t and the value, from the start.
@@ -326,7 +339,8 @@ impl Watched {
     /// The value and the size of its terms at the start.
     pub fn new(t: f64, value: f64, size: f64) -> Self {
         let fit = Fit::from_iter([(0.0, 0.0)]);
-        Watched { start: [t, value], at_end: 0.0, max: 0.0, size, fit }
+        let (start, max_at_ends_of_steps) = ([t, value], None);
+        Watched { start, at_end: 0.0, max: 0.0, max_at_ends_of_steps, size, fit }
     }
 
     /// The next row.
@@ -340,12 +354,20 @@ impl Watched {
         self.fit.add((now[0], now[1]));
     }
 
+    /// The end of a step that had rows within it.
+    pub fn see_end_of_step(&mut self, value: f64) {
+        let moved = (value - self.start[1]).abs();
+        let before = self.max_at_ends_of_steps.unwrap_or(0.0);
+        self.max_at_ends_of_steps = Some(if moved > before { moved } else { before });
+    }
+
     /// What was seen, by a method that took so many steps.
     pub fn drift(&self, promised: bool, steps: u64) -> Drift {
         Drift {
             initial: self.start[1],
             at_end: self.at_end,
             max: self.max,
+            max_at_ends_of_steps: self.max_at_ends_of_steps,
             // One row alone has no slope.
             slope: self.fit.slope().unwrap_or(0.0),
             promised,

@@ -248,3 +248,31 @@ fn what_is_not_a_number_is_no_promise_kept() {
     watched.see(2.0, 1.0, 1.0);
     assert!(watched.drift(true, 2).breaks_a_promise());
 }
+
+/// Rows within steps of a Gauss method are of a lower order, and do not keep what its steps keep: the program says so.
+/// Rows at the ends of steps, by shorter steps or not, do.
+#[test]
+fn a_drift_of_rows_within_steps_is_a_warning() {
+    let folder = Folder::new();
+    let run = |output: &str| {
+        let scene = format!(
+            "title = \"Drift\"\n[problem]\nkind = \"rigid-body\"\ninertia = [1, 2, 3]\n\
+             omega_body = [0.1, 1, 0.1]\n[method]\nname = \"gauss4\"\n[time]\nt_span = [0, 20]\ndt = 0.2\n\
+             [output]\nquantities = [\"momentum_body\"]\n{output}"
+        );
+        folder.write("scene.toml", &scene);
+        let told = folder.lieflow(&["run", "scene.toml", "--out", "out", "--no-page"]).ok();
+        let warned = told.matches("WARNING: ").count();
+        assert_eq!(warned, told.matches("at rows within steps, but by").count(), "{told}");
+        (warned, folder.json("out/summary.json")["drift"]["energy"].clone())
+    };
+    let (warned, energy) = run("interval = 0.05");
+    assert_eq!(warned, 2, "energy and momentum_norm");
+    let [at_rows, at_ends] =
+        ["max", "max_at_ends_of_steps"].map(|key| energy[key].as_f64().unwrap());
+    assert!(at_rows > 1e-6 && at_ends < 1e-14, "{energy}");
+    for output in ["interval = 0.05\ntimes_by = \"steps\"", "interval = 0.2", "every = 1"] {
+        let (warned, energy) = run(output);
+        assert!(warned == 0 && energy["max"].as_f64().unwrap() < 1e-14, "{output}: {energy}");
+    }
+}
