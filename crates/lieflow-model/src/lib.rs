@@ -4,6 +4,7 @@
 //! [`Model`](model::Model), which any method of the catalog runs on.
 #![forbid(unsafe_code)]
 
+pub mod branch;
 pub mod check;
 pub mod kinds;
 mod mapped;

@@ -16,6 +16,7 @@ use lieflow::{
     Action, Direction, Error, Event, RunError, SaveAt, Solve, Stats, StepControl, TimeGrid,
 };
 
+use crate::branch::Branches;
 use crate::schema::{Row, Schema};
 
 /// Which code a problem runs on. Methods that stay on the group agree on the two to rounding; the
@@ -305,9 +306,13 @@ pub fn drive_by<P: Runnable>(
     let Plan { steps, save, times_by_steps, stops, .. } = plan;
     let Plan { events, max_steps, cancel, checkpoints, resume, .. } = plan;
     let (watcher, numbers) = (RefCell::new(watcher), RefCell::new(Vec::new()));
+    let mut branches = Branches::new(schema);
+    let resume = resume.map(|bytes| branches.take_from(bytes));
+    let branches = RefCell::new(branches);
     let fill = |t: f64, y: &PointOf<P>| {
         let mut numbers = numbers.borrow_mut();
         row_of(t, y, &mut numbers);
+        branches.borrow_mut().follow(&mut numbers);
     };
     let mut solve = Solve::new(problem, &method, steps.t_span()).save(save).stops(stops);
     solve = match steps {
@@ -327,7 +332,9 @@ pub fn drive_by<P: Runnable>(
         solve = solve.resume(bytes);
     }
     if let Some(every) = checkpoints {
-        solve = solve.checkpoints(every, |bytes| watcher.borrow_mut().state(bytes));
+        solve = solve.checkpoints(every, |bytes| {
+            watcher.borrow_mut().state(&branches.borrow().append_to(bytes));
+        });
     }
     let (fill, numbers) = (&fill, &numbers);
     for (index, EventPlan { name, value, direction, stop_after, .. }) in

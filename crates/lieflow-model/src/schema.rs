@@ -6,6 +6,7 @@ use lieflow::Error;
 use lieflow::catalog::{MethodInfo, Property};
 use lieflow::problems::Origin;
 
+use crate::branch::Branch;
 use crate::kinds::{Law, Scale};
 
 /// How far two values of columns are from each other.
@@ -67,6 +68,8 @@ pub struct Observable {
     pub is_state: bool,
     /// Its parts: all of its columns, in order.
     pub parts: Vec<Part>,
+    /// What a run chooses so that the columns are continuous.
+    pub branch: Branch,
     place: Range<usize>,
     /// The place of the size of its terms, where its rounding is relative to that.
     size: Option<usize>,
@@ -89,6 +92,11 @@ impl Observable {
     /// The place of a column in the numbers of a row.
     pub(crate) fn place(&self, column: usize) -> usize {
         self.place.start + column
+    }
+
+    /// The places of its columns.
+    pub(crate) fn places(&self) -> Range<usize> {
+        self.place.clone()
     }
 
     /// Does a row have the size of its terms?
@@ -123,13 +131,22 @@ impl Schema {
         let measure = Measure::Length;
         let parts =
             vec![Part { name: String::new(), what: "", columns: 0..columns.len(), measure }];
-        self.observables.push(Observable { name, columns, law, is_state, parts, place, size });
+        let branch = Branch::Single;
+        let observable = Observable { name, columns, law, is_state, parts, branch, place, size };
+        self.observables.push(observable);
     }
 
     /// Give the last observable these parts.
     pub(crate) fn set_parts(&mut self, parts: Vec<Part>) {
         if let Some(observable) = self.observables.last_mut() {
             observable.parts = parts;
+        }
+    }
+
+    /// Let a run make this choice for the last observable.
+    pub(crate) fn set_branch(&mut self, branch: Branch) {
+        if let Some(observable) = self.observables.last_mut() {
+            observable.branch = branch;
         }
     }
 

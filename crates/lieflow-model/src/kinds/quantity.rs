@@ -4,6 +4,7 @@
 use super::QuantityInfo;
 use super::law::{Law, Scale};
 use super::system::{PointOf, System};
+use crate::branch::Branch;
 use crate::schema::{Measure, Part};
 
 /// The value of a quantity at y, a time `t` after the start.
@@ -34,6 +35,8 @@ pub(super) struct Quantity<S: System> {
     pub(super) columns: Option<fn(&S) -> Vec<String>>,
     /// Its parts, where it is not one of a length.
     pub(super) parts: Option<fn(&S) -> Vec<Part>>,
+    /// What a run of this problem chooses so that the columns are continuous.
+    pub(super) branch: fn(&S) -> Branch,
     law: Keepers<S>,
     /// The size of the terms that the quantity is the sum of.
     pub(super) terms: Option<fn(&S, &PointOf<S>) -> f64>,
@@ -50,6 +53,7 @@ impl<S: System> Quantity<S> {
             value,
             columns: None,
             parts: None,
+            branch: |_| Branch::Single,
             law: Keepers::None,
             terms: None,
             is_state: false,
@@ -100,6 +104,11 @@ impl<S: System> Quantity<S> {
     /// The error of each of these parts is told.
     pub(super) const fn in_parts(self, parts: fn(&S) -> Vec<Part>) -> Self {
         Quantity { parts: Some(parts), ..self }
+    }
+
+    /// The values are known up to a choice.
+    pub(super) const fn continuous_by(self, branch: fn(&S) -> Branch) -> Self {
+        Quantity { branch, ..self }
     }
 
     /// Every problem of the kind keeps the quantity.

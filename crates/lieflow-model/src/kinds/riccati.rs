@@ -10,6 +10,7 @@ use super::entries::{check_symmetric, eigenvalues, numbered, square, upper, uppe
 use super::flow::OnMatrices;
 use super::matrix::MatrixAction;
 use super::prelude::*;
+use crate::branch::Branch;
 
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {
@@ -64,10 +65,12 @@ impl System for Riccati {
         Q::numbers(
             "angles",
             &["angle1", "…", "anglem"],
-            "arctan of the eigenvalues of P in ascending order: they jump at a pole",
+            "arctan of the eigenvalues of P in ascending order; continuous: at a pole of P they go on over pi/2 or \
+             -pi/2, and the angles less the arctan are pi times the poles that were passed",
             |_, _, p, row| row.extend(eigenvalues(p).iter().map(|x| x.atan())),
         )
         .in_radians()
+        .continuous_by(|_| Branch::HalfTurns)
         .with_columns(|riccati| numbered("angle", riccati.p.nrows())),
     ];
 

@@ -161,6 +161,7 @@ impl<S: System> ProblemSpec for Stated<S> {
             if let Some(parts) = quantity.parts {
                 schema.set_parts(parts(system));
             }
+            schema.set_branch((quantity.branch)(system));
         }
         Ok(Box::new(SystemModel { system: system.clone(), problem, start, quantities, schema }))
     }

@@ -136,6 +136,23 @@ fn riccati_past_a_pole() {
     }
 }
 
+/// P = diag(tan t, tan 0.3t): the angles go on over π/2 at each pole. Where their difference passes π they cross, as
+/// angles up to π, and the order of their columns stays.
+#[test]
+fn riccati_angles_have_no_jump() {
+    let problem = "kind = \"riccati\"\nc = [[1, 0], [0, 0.3]]\nb = [[-1, 0], [0, -0.3]]\n\
+                   p = [[0, 0], [0, 0]]";
+    let of = scene(problem, "name = \"magnus4\"", "t_span = [0, 20]\ndt = 0.1", "[\"angles\"]");
+    let rows = rows(&of);
+    assert_eq!(rows.len(), 201);
+    for pair in rows.windows(2) {
+        assert!(far(&pair[0][1..], &pair[1][1..]) < 0.11, "{pair:?}");
+        let [t, a, b] = pair[1][..] else { panic!("{pair:?}") };
+        assert!((a + b - 1.3 * t).abs() < 1e-9 && a <= b && b - a < PI + 1e-9, "{pair:?}");
+        assert!(t > 4.48 || far(&[a, b], &[0.3 * t, t]) < 1e-9, "{pair:?}");
+    }
+}
+
 /// Without E the velocity turns at the rate qB/m in proper time; with E < B it drifts at E/B.
 #[test]
 fn a_particle_gyrates_and_drifts() {

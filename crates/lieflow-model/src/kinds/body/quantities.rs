@@ -5,6 +5,7 @@ use lieflow::so3::{quaternion_from_matrix, quaternion_to_wxyz};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 use super::{RigidBodySpec, rotation};
+use crate::branch::Branch;
 use crate::kinds::prelude::*;
 use crate::kinds::system::PointOf;
 
@@ -131,8 +132,9 @@ pub(in crate::kinds) const fn quaternion<S: AsBody>() -> Quantity<S> {
     Quantity::numbers(
         "quaternion",
         &["qw", "qx", "qy", "qz"],
-        "the attitude as a unit quaternion, real part first, x -> q x q*; w >= 0, but for a rigid-body with the key \
-         quaternion, which is integrated by it",
+        "the attitude as a unit quaternion, real part first, x -> q x q*; q and -q are the same attitude: each row has \
+         the sign that is nearer to the row before, the first has qw >= 0, or the sign of the key quaternion of a \
+         rigid-body",
         |body: &S, _, y, row| {
             let orientation = body.orientation(y);
             let axes = body.spec().axes.map_or(Ok(UnitQuaternion::identity()), |axes| {
@@ -145,6 +147,7 @@ pub(in crate::kinds) const fn quaternion<S: AsBody>() -> Quantity<S> {
         },
     )
     .of_quaternion()
+    .continuous_by(|_| Branch::Sign)
     .missing_where(S::without_orientation)
 }
 

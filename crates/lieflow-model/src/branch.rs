@@ -1,0 +1,137 @@
+//! Values that the state gives only up to a choice: a run chooses so that they are continuous.
+
+use core::ops::Range;
+
+use crate::schema::Schema;
+
+/// The choices for the columns of a quantity that stand for the same.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Branch {
+    /// There is none.
+    #[default]
+    Single,
+    /// The sign of all columns: q and −q are the same attitude.
+    Sign,
+    /// Angles in ascending order, each known up to π: the first + π may stand at the end, or the last − π at the start.
+    HalfTurns,
+}
+
+impl Branch {
+    /// values ← the choice that is nearest to the values `before`; as they are, where one of these is NaN.
+    fn follow(self, before: &[f64], values: &mut [f64]) {
+        match self {
+            Branch::Single => {}
+            Branch::Sign => {
+                let dot: f64 = before.iter().zip(&*values).map(|(a, b)| a * b).sum();
+                if dot < 0.0 {
+                    values.iter_mut().for_each(|x| *x = -*x);
+                }
+            }
+            Branch::HalfTurns => {
+                // Each angle that goes from one end to the other changes the sum by π.
+                let sum: f64 = before.iter().zip(&*values).map(|(a, b)| a - b).sum();
+                let moved = (sum / core::f64::consts::PI).round();
+                if !moved.is_finite() || values.is_empty() {
+                    return;
+                }
+                let count = values.len() as f64;
+                let around = moved.div_euclid(count);
+                let first = (moved - around * count) as usize;
+                values[..first].iter_mut().for_each(|x| *x += core::f64::consts::PI);
+                values.rotate_left(first);
+                values.iter_mut().for_each(|x| *x += around * core::f64::consts::PI);
+            }
+        }
+    }
+}
+
+/// The columns with choices, and their values at the point that was shown last.
+#[derive(Clone, Debug)]
+pub(crate) struct Branches {
+    columns: Vec<(Branch, Range<usize>)>,
+    /// The values of these columns, one after the other; NaN before the first point.
+    last: Vec<f64>,
+}
+
+impl Branches {
+    /// Those of a model, before its first point.
+    pub(crate) fn new(schema: &Schema) -> Self {
+        let with_choices = schema.iter().filter(|observable| observable.branch != Branch::Single);
+        let columns: Vec<_> = with_choices.map(|o| (o.branch, o.places())).collect();
+        let count = columns.iter().map(|(_, places)| places.len()).sum();
+        Branches { columns, last: vec![f64::NAN; count] }
+    }
+
+    /// numbers ← the row whose choices are nearest to those of the row before.
+    pub(crate) fn follow(&mut self, numbers: &mut [f64]) {
+        let mut rest = &mut self.last[..];
+        for (branch, places) in &self.columns {
+            let (before, others) = rest.split_at_mut(places.len());
+            let values = &mut numbers[places.clone()];
+            branch.follow(before, values);
+            // A point without values is passed over.
+            if values.iter().all(|x| x.is_finite()) {
+                before.copy_from_slice(values);
+            }
+            rest = others;
+        }
+    }
+
+    /// The state of a run: that of its driver, and the last values after it.
+    pub(crate) fn append_to(&self, driver: &[u8]) -> Vec<u8> {
+        let mut bytes = driver.to_vec();
+        self.last.iter().for_each(|x| bytes.extend(x.to_le_bytes()));
+        bytes
+    }
+
+    /// Goes on from [`append_to`](Self::append_to); the state of the driver. Bytes that are too short are left to the
+    /// driver to refuse.
+    pub(crate) fn take_from(&mut self, mut bytes: Vec<u8>) -> Vec<u8> {
+        let Some(of_driver) = bytes.len().checked_sub(8 * self.last.len()) else { return bytes };
+        for (x, bytes) in self.last.iter_mut().zip(bytes[of_driver..].chunks_exact(8)) {
+            *x = f64::from_le_bytes(bytes.try_into().unwrap_or_default());
+        }
+        bytes.truncate(of_driver);
+        bytes
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use core::f64::consts::PI;
+
+    use super::*;
+
+    #[test]
+    fn angles_go_on_over_a_half_turn() {
+        let (slow, fast) = (0.3, 1.1);
+        let mut last = [-0.2, 0.4];
+        for step in 0..400 {
+            let t = 0.05 * f64::from(step);
+            // Both rise and go through ±π/2; they never meet, as they differ by less than π.
+            let exact = [-0.2 + slow * t, 0.4 + slow * t + 0.5 * (fast * t).sin()];
+            let mut values = exact.map(|x| (x + 0.5 * PI).rem_euclid(PI) - 0.5 * PI);
+            values.sort_by(f64::total_cmp);
+            Branch::HalfTurns.follow(&last, &mut values);
+            for (x, exact) in values.iter().zip(exact) {
+                assert!((x - exact).abs() < 1e-12, "t = {t}: {values:?}, expected {exact}");
+            }
+            last = values;
+        }
+        let mut falling = [-1.5, 1.5];
+        Branch::HalfTurns.follow(&[-4.6, -1.7], &mut falling);
+        assert_eq!(falling, [1.5 - 2.0 * PI, -1.5]);
+    }
+
+    #[test]
+    fn a_point_without_values_is_passed_over() {
+        let mut q = [-1.0, 0.0];
+        Branch::Sign.follow(&[f64::NAN; 2], &mut q);
+        assert_eq!(q, [-1.0, 0.0]);
+        Branch::Sign.follow(&[0.6, 0.8], &mut q);
+        assert_eq!(q, [1.0, 0.0]);
+        let mut angles = [f64::NAN, 0.0];
+        Branch::HalfTurns.follow(&[0.0, 0.0], &mut angles);
+        assert!(angles[0].is_nan() && angles[1] == 0.0);
+    }
+}
