@@ -1,19 +1,20 @@
-//! How right a run is at its end, and what would do where it is wrong.
+//! How right the rows of a run are, and what would do where they are wrong.
 
 use std::cell::Cell;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
-use lieflow::Error;
+use lieflow::SaveAt;
 use lieflow::catalog::MethodSpec;
 use lieflow::solve::{Next, Status};
 use lieflow_model::kinds::explained_by_rounding;
-use lieflow_model::model::{Plan, Watcher};
+use lieflow_model::model::{Outcome, Plan, Watcher};
 use lieflow_model::scene::Scene;
-use lieflow_model::schema::{Part, Row};
+use lieflow_model::schema::{Observable, Part, Row};
 
+use super::apart::{Apart, Beside, Choice, Largest, Limits, Shown, ZerosApart, parts_of};
 use super::watch::Watch;
-use crate::output::{Accuracy, FoundBy, PartError, RowSample, number, short};
+use crate::output::{Accuracy, Distance, FoundBy, PartError, RowSample, ShownRows, number, short};
 
 /// A run that took longer is not made a second time, but where that is asked for.
 pub(super) const LONG: Duration = Duration::from_secs(10);
@@ -28,20 +29,36 @@ const PATIENCE: [f64; 2] = [3.0, 5.0];
 /// A tolerance this small is compared with a larger one: a smaller one is rounding.
 const SMALLEST: f64 = 1e-13;
 
-/// The check of the end of a run.
+/// The exact motion is evaluated for so many rows, and for so many zeros, at most.
+const EXACT: u64 = 100_000;
+/// Rows that a second run reaches by a step of their own, at most: so many for each step of the run,
+const OF_A_STEP: u64 = 2;
+/// or so many divided by the square of the numbers in a row, where that is more. The time of a step goes with it.
+const OF_SMALL_ROWS: u64 = 100_000_000;
+
+/// The check of a run.
 pub(super) struct Check<'a> {
     watch: &'a Watch<'a>,
-    /// The time of the end.
-    t: f64,
+    run: Shown<'a>,
     /// The run itself.
     own: Taken,
+    /// True if an event ended the run.
+    ended_by_event: bool,
     /// The size of each part of the state.
     sizes: Vec<f64>,
-    /// The numbers of the exact row, where it is known.
-    exact: Option<Vec<f64>>,
-    /// The flag that ends the check.
-    stop: &'a AtomicBool,
+    /// Is the exact motion known?
+    is_exact: bool,
     deadline: Cell<Option<Instant>>,
+}
+
+/// What is known of the errors of a run.
+pub(super) struct Checked {
+    /// The errors of its rows.
+    pub(super) accuracy: Accuracy,
+    /// The largest error of the times of each event, where it is known.
+    pub(super) time_errors: Vec<Option<f64>>,
+    /// What a reader should know.
+    pub(super) warnings: Vec<String>,
 }
 
 /// A way to run the scene: with its own method or the one of scenes that name none, and steps or tolerances times a
@@ -69,30 +86,75 @@ pub(super) struct Taken {
 const CHOSEN: f64 = 0.9;
 
 impl<'a> Check<'a> {
-    /// The check of a run that ended at t after so many steps, and showed these rows.
+    /// The check of a complete run, which has shown so many rows, some of which are kept in `rows`.
     pub(super) fn new(
         watch: &'a Watch<'a>,
         rows: &RowSample<'_>,
-        (t, own): (f64, Taken),
+        (records, shown): (ShownRows, u64),
+        (t, own, ended_by_event): (f64, Taken, bool),
         stop: &'a AtomicBool,
     ) -> Self {
         let sizes = parts_of(watch).map(|part| size(part, rows)).collect();
-        let (exact, deadline) = (watch.exact(t), Cell::new(None));
-        Check { watch, t, own, sizes, exact, stop, deadline }
+        let is_exact = watch.exact(t).is_some();
+        let width = watch.model.schema().columns().count().max(1) as u64;
+        let most = match is_exact {
+            true => EXACT,
+            false => (OF_A_STEP * own.steps).max(OF_SMALL_ROWS / width.pow(2)),
+        };
+        let run = Shown {
+            zeros: Choice::new(records.count().saturating_sub(shown), EXACT),
+            records,
+            rows: Choice::new(shown, most),
+            t_span: [watch.scene.grid.t_span()[0], t],
+            step: own.largest,
+            stop,
+        };
+        Check { watch, run, own, ended_by_event, sizes, is_exact, deadline: Cell::new(None) }
     }
 
-    /// Is the exact end known?
+    /// Is the exact motion known?
     pub(super) fn is_exact(&self) -> bool {
-        self.exact.is_some()
+        self.is_exact
     }
 
-    /// The error of the run, whose last row has these numbers. Where a second run is needed and fails, the reason.
-    pub(super) fn error(&self, end: &[f64]) -> Result<Accuracy, String> {
-        self.error_of(OWN, end, self.own)
+    /// The errors of the run. Where a second run is needed and fails, the reason.
+    pub(super) fn errors(&self) -> Result<Checked, String> {
+        let clock = Instant::now();
+        let (found_by, share, apart) = match self.is_exact {
+            true => (FoundBy::Exact, 1.0, Apart::from_exact(self.watch, &self.run)?),
+            false => {
+                let times = self.run.times()?;
+                self.by_another(OWN, self.own, |way| self.beside(way, &times))?
+            }
+        };
+        let zeros = || self.scene().events.iter().zip(&apart.events);
+        let warnings = zeros().filter(|(_, zeros)| !zeros.agree()).map(|(event, zeros)| {
+            format!(
+                "event `{}` has {} zeros in this run, and {} in the second run: take smaller steps or a \
+                 smaller tolerance",
+                event.name, zeros.own.possible, zeros.other.possible
+            )
+        });
+        let time_error = |zeros: &ZerosApart| {
+            // A time is no better than its last digit.
+            let rounding = f64::EPSILON * self.run.t_span[0].abs().max(self.run.t_span[1].abs());
+            let error = zeros.distance * share;
+            (zeros.agree() && error.is_finite()).then(|| error.max(rounding))
+        };
+        Ok(Checked {
+            time_errors: apart.events.iter().map(time_error).collect(),
+            warnings: warnings.collect(),
+            accuracy: self.judge(found_by, &apart, share, self.end(), clock),
+        })
     }
 
     fn scene(&self) -> &'a Scene {
         self.watch.scene
+    }
+
+    /// The time of the last row.
+    fn end(&self) -> f64 {
+        self.run.t_span[1]
     }
 
     fn method(&self, way: Way) -> MethodSpec {
@@ -102,47 +164,77 @@ impl<'a> Check<'a> {
         }
     }
 
-    /// The plan of a run to the end.
-    fn plan(&self, way: Way) -> Result<Plan<'static>, Error> {
+    /// The plan of a run to time t.
+    fn plan(&self, way: Way, t: f64) -> Result<Plan<'static>, String> {
         let Way { default, factor, largest } = way;
-        match default {
+        let plan = match default {
             true => {
-                let order = self.watch.model.order(&self.method(way))?;
-                self.scene().default_plan_to(self.t, factor, largest, order)
+                let order = self.watch.model.order(&self.method(way));
+                order.and_then(|order| self.scene().default_plan_to(t, factor, largest, order))
             }
-            false => self.scene().plan_to(self.t, factor, largest),
-        }
+            false => self.scene().plan_to(t, factor, largest),
+        };
+        plan.map_err(|error| error.to_string())
     }
 
-    /// The last row of a run, and its steps; or why the run did not end.
-    fn end(&self, way: Way) -> Result<(Vec<f64>, Taken), String> {
+    fn limits<'c>(&'c self, cancel: &'c AtomicBool) -> Limits<'c> {
+        Limits { cancel, stop: self.run.stop, deadline: self.deadline.get() }
+    }
+
+    /// The row at t of another run, and the steps to there; or why the run did not get there.
+    fn row_at(&self, way: Way, t: f64) -> Result<(Vec<f64>, Taken), String> {
         let cancel = AtomicBool::new(false);
-        let mut last = Last {
-            numbers: Vec::new(),
-            cancel: &cancel,
-            stop: self.stop,
-            deadline: self.deadline.get(),
-        };
-        let plan = self.plan(way).map_err(|error| error.to_string())?;
-        let plan = Plan { cancel: Some(&cancel), ..plan };
+        let mut last = Last { numbers: Vec::new(), limits: self.limits(&cancel) };
+        let plan = Plan { cancel: Some(&cancel), ..self.plan(way, t)? };
         let outcome = self.watch.model.drive(&self.method(way), plan, &mut last);
-        let outcome = outcome.map_err(|error| error.to_string())?;
-        match outcome.status {
+        let Outcome { status, stats, .. } = outcome.map_err(|error| error.to_string())?;
+        match status {
             Status::Finished => {
-                let stats = &outcome.stats;
-                let taken = Taken { steps: stats.accepted, largest: stats.largest_step };
-                Ok((last.numbers, taken))
+                Ok((last.numbers, Taken { steps: stats.accepted, largest: stats.largest_step }))
             }
             _ => Err("it was stopped".into()),
         }
     }
 
-    /// The error of a run that ends with these numbers, after these steps.
-    fn error_of(&self, way: Way, end: &[f64], taken: Taken) -> Result<Accuracy, String> {
-        let clock = Instant::now();
-        if let Some(exact) = &self.exact {
-            return Ok(self.judge(FoundBy::Exact, end, exact, 1.0, clock));
+    /// How far the run is from another one that has rows at the same `times`, and the number of steps of that. It
+    /// reaches each row by a step, so that an error of the continuous extension is seen.
+    fn beside(&self, way: Way, times: &[f64]) -> Result<(Apart, u64), String> {
+        let cancel = AtomicBool::new(false);
+        let mut beside = Beside::new(self.watch, &self.run, self.limits(&cancel))?;
+        let plan = Plan {
+            save: SaveAt::Times(times.to_vec()),
+            times_by_steps: true,
+            events: self.run.events(self.watch)?,
+            cancel: Some(&cancel),
+            ..self.plan(way, self.beyond())?
+        };
+        let outcome = self.watch.model.drive(&self.method(way), plan, &mut beside);
+        let (steps, why) = match outcome {
+            Ok(outcome) => (outcome.stats.accepted, "it was stopped".into()),
+            Err(error) => (error.accepted().unwrap_or(0), error.to_string()),
+        };
+        // What is after the last row does not count.
+        Ok((beside.finish()?.ok_or(why)?, steps))
+    }
+
+    /// The end of a second run. The zero that ended the first may be later there.
+    fn beyond(&self) -> f64 {
+        let ([t0, end], [_, last]) = (self.run.t_span, self.scene().grid.t_span());
+        match (self.ended_by_event, end >= t0) {
+            (false, _) => end,
+            (true, true) => (end + self.own.largest).min(last),
+            (true, false) => (end - self.own.largest).max(last),
         }
+    }
+
+    /// A comparison of a run, which took these steps, with another one: by which run that is, the share of the distance
+    /// that is the error, and what `run` tells beside the number of steps.
+    fn by_another<T>(
+        &self,
+        way: Way,
+        taken: Taken,
+        run: impl Fn(Way) -> Result<(T, u64), String>,
+    ) -> Result<(FoundBy, f64, T), String> {
         let order = self.watch.model.order(&self.method(way)).ok().flatten();
         let order = order.ok_or("the method has no order")? as f64;
         // The error of steps of one size goes with the power p of the size, that of a tolerance with p/(p + 1) of it.
@@ -162,71 +254,74 @@ impl<'a> Check<'a> {
             }
             Some(_) => (FoundBy::TenfoldTolerance, 10.0, None, ratio / (1.0 - ratio)),
         };
-        let (other, others) = self.end(Way { factor: factor * way.factor, largest, ..way })?;
-        let is_limited = others.steps as f64 > CHOSEN * taken.steps as f64;
+        let (other, steps) = run(Way { factor: factor * way.factor, largest, ..way })?;
+        let is_limited = steps as f64 > CHOSEN * taken.steps as f64;
         if found_by == FoundBy::TenfoldTolerance && is_limited {
-            let (other, _) = self.end(Way { largest: Some(0.5 * taken.largest), ..way })?;
-            return Ok(self.judge(FoundBy::HalfStep, end, &other, halved, clock));
+            let (other, _) = run(Way { largest: Some(0.5 * taken.largest), ..way })?;
+            return Ok((FoundBy::HalfStep, halved, other));
         }
-        Ok(self.judge(found_by, end, &other, share, clock))
+        Ok((found_by, share, other))
     }
 
-    /// The distance of two ends, part by part, times a share.
+    /// The errors of a run to time t: a share of the distances.
     fn judge(
         &self,
         found_by: FoundBy,
-        a: &[f64],
-        b: &[f64],
+        apart: &Apart,
         share: f64,
+        t_end: f64,
         clock: Instant,
     ) -> Accuracy {
-        let schema = self.watch.model.schema();
-        let [a, b] = [a, b].map(|numbers| schema.row(numbers));
-        let parts = parts_of(self.watch).zip(&self.sizes).map(|((observable, part), &size)| {
-            let columns = part.columns.clone();
-            let (a, b) = (&a[observable][columns.clone()], &b[observable][columns]);
-            let distance = part.measure.distance(a, b) * share;
-            let degrees = part.measure.is_angle().then(|| distance.to_degrees());
-            let size = if degrees.is_some() { 1.0 } else { size };
-            let relative = if distance == 0.0 { 0.0 } else { distance / size };
+        let all = parts_of(self.watch).zip(&self.sizes).zip(&apart.parts);
+        let parts = all.map(|(((observable, part), &size), &Largest { distance, t, last })| {
+            let error = |distance: f64| {
+                let absolute = distance * share;
+                let degrees = part.measure.is_angle().then(|| absolute.to_degrees());
+                let size = if degrees.is_some() { 1.0 } else { size };
+                let relative = if absolute == 0.0 { 0.0 } else { absolute / size };
+                Distance { absolute, relative, degrees }
+            };
             let name =
                 if part.name.is_empty() { observable.name.into() } else { part.name.clone() };
-            PartError { name, absolute: distance, relative, degrees }
+            PartError { name, largest: error(distance), t, at_end: error(last) }
         });
-        let parts: Vec<PartError> = parts.collect();
         // A second run does not see what rounding does to both.
         let unseen = match found_by {
             FoundBy::Exact => f64::EPSILON,
             _ => explained_by_rounding(self.own.steps, 1.0),
         };
-        Accuracy::new(found_by, parts, unseen, clock.elapsed().as_secs_f64())
+        let (seconds, rows, parts) = (clock.elapsed().as_secs_f64(), apart.rows, parts.collect());
+        Accuracy { found_by, seconds, rows, digits: 0, parts, t_end }.with_digits(unseen)
     }
 
     /// The warning about a poor error, with a change that would help. If the seconds of the run are given, further runs
     /// look for that change.
     pub(super) fn warning(&self, accuracy: &Accuracy, seconds: Option<f64>) -> Option<String> {
         let worst = accuracy.worst()?;
-        if worst.relative <= POOR {
+        let Distance { relative, degrees, .. } = worst.largest;
+        if relative <= POOR {
             return None;
         }
-        let off = match worst.degrees {
+        let off = match degrees {
             Some(degrees) => format!("{} degrees", short(degrees)),
-            None => format!("{} % of its size", short(100.0 * worst.relative)),
+            None => format!("{} % of its size", short(100.0 * relative)),
         };
-        let verdict = if worst.relative <= USELESS { "inaccurate" } else { "not usable" };
-        let wrong =
-            format!("`{}` is wrong by {off} at the end: this run is {verdict}.", worst.name);
+        let verdict = if relative <= USELESS { "inaccurate" } else { "not usable" };
+        let when = accuracy.when(worst.t);
+        let wrong = format!("`{}` is wrong by {off} {when}: this run is {verdict}.", worst.name);
         let Some(seconds) = seconds else { return Some(wrong) };
         let patience = PATIENCE[0].max(PATIENCE[1] * seconds.min(LONG.as_secs_f64()));
         let until = Instant::now() + Duration::from_secs_f64(patience);
         self.deadline.set(Some(until));
-        let default = self.tried(Way { default: true, ..OWN });
+        // Errors grow. Where the end is right all the same, the worst row is what counts.
+        let t = if accuracy.relative_at_end() > POOR { self.end() } else { worst.t };
+        let default = self.tried(Way { default: true, ..OWN }, t);
         let is_tried = default.is_some();
         let default = default.filter(|accuracy| accuracy.relative() <= POOR);
         let default = default.map(|accuracy| accuracy.digits_in_words());
         // Where high order and the least tolerance do not do, no step does.
         let is_hopeless = is_tried && default.is_none();
-        let smaller = if is_hopeless { None } else { self.smaller_steps(until, seconds) };
+        let smaller = if is_hopeless { None } else { self.smaller_steps(until, seconds, t) };
         self.deadline.set(None);
         let advice = match (smaller, default) {
             (Some(steps), Some(digits)) => {
@@ -250,14 +345,24 @@ impl<'a> Check<'a> {
         Some(format!("{wrong} {advice}."))
     }
 
-    /// The error of another run, if it can be found.
-    fn tried(&self, way: Way) -> Option<Accuracy> {
-        let (end, taken) = self.end(way).ok()?;
-        self.error_of(way, &end, taken).ok()
+    /// The error of another run at t, if it can be found.
+    fn tried(&self, way: Way, t: f64) -> Option<Accuracy> {
+        let clock = Instant::now();
+        let (row, taken) = self.row_at(way, t).ok()?;
+        let apart = |other: &[f64]| Apart::of_one_row(self.watch, t, &row, other);
+        let (found_by, share, apart) = match self.watch.exact(t) {
+            Some(exact) => (FoundBy::Exact, 1.0, apart(&exact)),
+            None => {
+                let other =
+                    |way| self.row_at(way, t).map(|(row, taken)| (apart(&row), taken.steps));
+                self.by_another(way, taken, other).ok()?
+            }
+        };
+        Some(self.judge(found_by, &apart, share, t, clock))
     }
 
-    /// Smaller steps of the same method that would do, and the digits that they give.
-    fn smaller_steps(&self, until: Instant, seconds: f64) -> Option<String> {
+    /// Smaller steps of the same method that would do at t, and the digits that they give.
+    fn smaller_steps(&self, until: Instant, seconds: f64, t: f64) -> Option<String> {
         let h = self.scene().grid.h().abs();
         let tolerances = self.scene().tolerances();
         let factors: Vec<f64> = match tolerances {
@@ -271,7 +376,7 @@ impl<'a> Check<'a> {
             if longer * seconds > left {
                 break;
             }
-            let Some(accuracy) = self.tried(Way { factor, ..OWN }) else { break };
+            let Some(accuracy) = self.tried(Way { factor, ..OWN }, t) else { break };
             let relative = accuracy.relative();
             if relative <= POOR {
                 let steps = match tolerances {
@@ -304,21 +409,8 @@ fn nice_below(x: f64) -> impl Iterator<Item = f64> {
     nice.skip_while(move |nice| *nice > 0.6 * x)
 }
 
-/// The parts of the state, with their quantities.
-fn parts_of<'a>(
-    watch: &'a Watch<'_>,
-) -> impl Iterator<Item = (&'a lieflow_model::schema::Observable, &'a Part)> {
-    watch
-        .state
-        .iter()
-        .flat_map(|observable| observable.parts.iter().map(move |part| (*observable, part)))
-}
-
 /// The size that an error is relative to: of the start, of the end and of the middle one of the rows, the largest.
-fn size(
-    (observable, part): (&lieflow_model::schema::Observable, &Part),
-    rows: &RowSample<'_>,
-) -> f64 {
+fn size((observable, part): (&Observable, &Part), rows: &RowSample<'_>) -> f64 {
     let norm = |row: Row<'_>| {
         let values = &row[observable][part.columns.clone()];
         values.iter().map(|x| x * x).sum::<f64>().sqrt()
@@ -333,9 +425,7 @@ fn size(
 /// Keeps the last row of a run, and stops the run when its time is up.
 struct Last<'a> {
     numbers: Vec<f64>,
-    cancel: &'a AtomicBool,
-    stop: &'a AtomicBool,
-    deadline: Option<Instant>,
+    limits: Limits<'a>,
 }
 
 impl Watcher for Last<'_> {
@@ -346,10 +436,7 @@ impl Watcher for Last<'_> {
     }
 
     fn progress(&mut self, _t: f64) {
-        let late = self.deadline.is_some_and(|deadline| Instant::now() > deadline);
-        if late || self.stop.load(Ordering::Relaxed) {
-            self.cancel.store(true, Ordering::Relaxed);
-        }
+        self.limits.look();
     }
 }
 

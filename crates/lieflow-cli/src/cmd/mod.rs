@@ -1,6 +1,7 @@
 //! The commands, one file each, and what they fail with.
 
 mod accuracy;
+mod apart;
 pub mod check;
 pub mod compare;
 pub mod completions;

@@ -7,16 +7,15 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use super::CliError;
-use super::accuracy::{Check, LONG, Taken};
+use super::accuracy::{Check, Checked, LONG, Taken};
 use super::foresee::foresee;
 use super::stop::{INTERRUPTED, listen};
 use super::told::in_words;
 use super::watch::{Recorder, Watch, quantities};
 use crate::args::{ErrorCheck, RunArgs, quoted};
-use crate::output::{self, Accuracy, Drawn, Drift, MethodSummary, RunState, SUMMARY, Summary};
+use crate::output::{self, Drawn, Drift, MethodSummary, RunState, SUMMARY, Summary};
 use lieflow_model::model::Plan;
 use lieflow_model::scene::Scene;
-use lieflow_model::schema::Row;
 
 /// How often the state of a run is saved.
 const SAVED_EVERY: Duration = Duration::from_secs(1);
@@ -210,16 +209,17 @@ pub fn run_scene(
     let wall_time_s = clock.elapsed().as_secs_f64();
 
     let rows = &kept.rows;
-    let mut accuracy = Ok(None);
+    let mut checked = Ok(None);
     let end = rows.ends().filter(|_| completed).map(|[_, end]| end);
-    if let Some((t, row)) = end {
+    if let (Some((t, _)), Some(state)) = (end, &mut kept.state) {
         // Of a run that goes on only a part was timed.
         let share = ((t - begun_at) / (t - scene.grid.t_span()[0])).max(1e-3);
         let largest = done.chosen.as_ref().map_or(scene.grid.h().abs(), |c| c.largest_step);
         let taken = Taken { steps: done.steps, largest };
-        let check = Check::new(&watch, rows, (t, taken), stop);
+        let shown = (state.shown()?, written);
+        let check = Check::new(&watch, rows, shown, (t, taken, done.ended_by.is_some()), stop);
         kept.bar.now(1.0, "a second run, to estimate the error");
-        accuracy = check_error(&check, scene, error_check, row, wall_time_s / share);
+        checked = check_errors(&check, scene, error_check, wall_time_s / share);
     }
     let with_time = |(t, row)| {
         let mut line = vec![t];
@@ -237,10 +237,14 @@ pub fn run_scene(
             "{column} is not a finite number in {count} of {written} rows, first at t = {first}"
         )
     }));
-    let (accuracy, accuracy_unknown) = match accuracy {
-        Ok(Some((accuracy, warning))) => {
-            warnings.extend(warning);
-            (Some(accuracy), None)
+    let mut events = core::mem::take(&mut kept.seen);
+    let (accuracy, accuracy_unknown) = match checked {
+        Ok(Some(checked)) => {
+            warnings.extend(checked.warnings);
+            for (event, error) in events.iter_mut().zip(checked.time_errors) {
+                event.time_error = error.filter(|_| event.count > 0);
+            }
+            (Some(checked.accuracy), None)
         }
         Ok(None) => (None, None),
         Err(why) => (None, Some(why)),
@@ -278,7 +282,7 @@ pub fn run_scene(
         t_span: scene.grid.t_span(),
         t_end: done.t,
         ended_by: done.ended_by,
-        events: core::mem::take(&mut kept.seen),
+        events,
         dt: scene.adaptive.is_none().then(|| scene.grid.h().abs()),
         steps: done.steps,
         adaptive: done.chosen,
@@ -320,15 +324,14 @@ pub fn run_scene(
     Ok(summary)
 }
 
-/// The error of the last row of a run that took so many seconds, and a warning where it is poor; nothing where no
-/// error is asked for, and a sentence where it is not known.
-fn check_error(
+/// The errors of a run that took so many seconds, with a warning where they are poor; nothing where no error is asked
+/// for, and a sentence where it is not known.
+fn check_errors(
     check: &Check<'_>,
     scene: &Scene,
     when: ErrorCheck,
-    end: Row<'_>,
     seconds: f64,
-) -> Result<Option<(Accuracy, Option<String>)>, String> {
+) -> Result<Option<Checked>, String> {
     if !check.is_exact() {
         let never = when == ErrorCheck::Never || !scene.error_check;
         if never && when != ErrorCheck::Always {
@@ -342,12 +345,16 @@ fn check_error(
             ));
         }
     }
-    let accuracy = check.error(end.numbers()).map_err(|why| {
-        format!("not known. The second run, by which it is estimated, did not end: {why}")
+    let mut checked = check.errors().map_err(|why| match check.is_exact() {
+        true => format!("not known. The comparison with the exact motion did not end: {why}"),
+        false => {
+            format!("not known. The second run, by which it is estimated, did not end: {why}")
+        }
     })?;
     let advise = when != ErrorCheck::Never && scene.error_check;
-    let warning = check.warning(&accuracy, advise.then_some(seconds));
-    Ok(Some((accuracy, warning)))
+    let poor = check.warning(&checked.accuracy, advise.then_some(seconds));
+    checked.warnings.splice(0..0, poor);
+    Ok(Some(checked))
 }
 
 fn drift_of_rows((name, drift): (&String, &Drift)) -> String {

@@ -43,6 +43,7 @@ pub(super) fn in_words(summary: &Summary, folder: &Path, page: Option<&str>) -> 
         if let (Some(first), Some(last)) = (event.first, event.last) {
             told += &format!(", first at t = {first}, last at t = {last}");
         }
+        event.time_error_in_words().iter().for_each(|error| told += &format!(", {error}"));
         line(told);
     }
     let (kept, mut drifts): (Vec<_>, Vec<_>) =
@@ -67,11 +68,7 @@ pub(super) fn in_words(summary: &Summary, folder: &Path, page: Option<&str>) -> 
         line(format!("{}: {}", name.replace('_', " "), number(*value)));
     }
     if let Some(accuracy) = &summary.accuracy {
-        line(format!(
-            "error at the end, {}: {}",
-            accuracy.found_in_words(),
-            accuracy.errors_in_words()
-        ));
+        line(format!("error, {}: {}", accuracy.found_in_words(*rows), accuracy.errors_in_words()));
         let why = if summary.method.order.is_none() {
             ": the method is exact, the rest is rounding"
         } else {
@@ -79,7 +76,7 @@ pub(super) fn in_words(summary: &Summary, folder: &Path, page: Option<&str>) -> 
         };
         line(accuracy.rightness_in_words() + why);
     }
-    summary.accuracy_unknown.iter().for_each(|why| line(format!("error at the end: {why}")));
+    summary.accuracy_unknown.iter().for_each(|why| line(format!("error: {why}")));
     summary.notes.iter().for_each(|note| line(format!("note: {note}")));
     summary.warnings.iter().for_each(|warning| line(format!("WARNING: {warning}")));
     let mut file = |name: &str| line(folder.join(name).display().to_string());

@@ -12,10 +12,10 @@ pub(crate) use files::fields;
 pub use files::{in_full, make_folder, optional, remove_old, write_csv, write_file, write_page};
 pub use progress::Progress;
 pub use rows::{EVENTS, RowFile, TRAJECTORY};
-pub use state::{Kind, RunState};
+pub use state::{Kind, Records, RunState, ShownRows};
 pub use summary::{
-    Accuracy, Chosen, Drift, EventSummary, FoundBy, MethodSummary, PartError, SUMMARY, Summary,
-    Watched,
+    Accuracy, Chosen, Distance, Drift, EventSummary, FoundBy, MethodSummary, PartError, SUMMARY,
+    Summary, Watched,
 };
 
 use std::io::{self, Write};

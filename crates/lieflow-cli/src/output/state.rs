@@ -14,7 +14,7 @@
 //! What follows the records of the state is of no use, and is dropped. Both go away when the run is complete.
 
 use std::fs::{self, File, OpenOptions};
-use std::io::{BufReader, Read, Write};
+use std::io::{self, BufReader, Read, Write};
 use std::path::{Path, PathBuf};
 
 use super::files::{remove_old, write_file};
@@ -58,6 +58,71 @@ struct Shown {
     length: u64,
     records: u64,
     sum: u64,
+}
+
+/// The rows and zeros that a run has shown, on disk.
+#[derive(Debug)]
+pub struct ShownRows {
+    path: PathBuf,
+    shown: Shown,
+}
+
+impl ShownRows {
+    /// A reader, from the first record on.
+    ///
+    /// # Errors
+    /// The file cannot be opened.
+    pub fn open(&self) -> io::Result<Records<File>> {
+        Ok(Records::new(File::open(&self.path)?, self.shown))
+    }
+
+    /// The number of the rows and zeros.
+    pub fn count(&self) -> u64 {
+        self.shown.records
+    }
+}
+
+/// A reader of records, one after the other.
+#[derive(Debug)]
+pub struct Records<F> {
+    reader: BufReader<F>,
+    record: Vec<u8>,
+    numbers: Vec<f64>,
+    left: u64,
+}
+
+impl<F: Read> Records<F> {
+    fn new(file: F, Shown { length, records, .. }: Shown) -> Self {
+        let reader = BufReader::with_capacity(BYTES, file);
+        Records { reader, record: vec![0; 8 * length as usize], numbers: Vec::new(), left: records }
+    }
+
+    /// Reads the next record. False: there is none.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn read(&mut self) -> io::Result<bool> {
+        if self.left == 0 {
+            return Ok(false);
+        }
+        self.left -= 1;
+        self.reader.read_exact(&mut self.record)?;
+        self.numbers.clear();
+        self.numbers.extend(words(&self.record).skip(1).map(f64::from_bits));
+        Ok(true)
+    }
+
+    /// The record that was read: its kind, its t and its numbers.
+    pub fn shown(&self) -> (Kind, f64, &[f64]) {
+        let kind = match words(&self.record).next() {
+            None | Some(0) => Kind::Row,
+            Some(event) => Kind::Event(event as usize - 1),
+        };
+        match self.numbers.split_first() {
+            Some((t, numbers)) => (kind, *t, numbers),
+            None => (kind, f64::NAN, &[]),
+        }
+    }
 }
 
 /// The state of a run on disk.
@@ -152,19 +217,11 @@ impl RunState {
         let Some(bytes) = bytes.filter(|bytes| length >= 2 && *bytes <= there) else {
             return Err(self.damaged());
         };
-        let mut reader = BufReader::with_capacity(BYTES, &file);
-        let mut record = vec![0; 8 * length as usize];
-        let (mut numbers, mut found) = (Vec::new(), 0);
-        for _ in 0..records {
-            reader.read_exact(&mut record).map_err(CliError::io("read", &path))?;
-            found = words(&record).fold(found, sum);
-            numbers.clear();
-            numbers.extend(words(&record[8..]).map(f64::from_bits));
-            let kind = match words(&record).next() {
-                None | Some(0) => Kind::Row,
-                Some(event) => Kind::Event(event as usize - 1),
-            };
-            show(kind, numbers[0], &numbers[1..])?;
+        let (mut reader, mut found) = (Records::new(&file, self.shown), 0);
+        while reader.read().map_err(CliError::io("read", &path))? {
+            found = words(&reader.record).fold(found, sum);
+            let (kind, t, numbers) = reader.shown();
+            show(kind, t, numbers)?;
         }
         if found != expected {
             return Err(self.damaged());
@@ -193,6 +250,15 @@ impl RunState {
         }
         self.shown.records += 1;
         if self.buffer.len() >= BYTES { self.flush() } else { Ok(()) }
+    }
+
+    /// What the run has shown so far, to be read again while the run is kept.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn shown(&mut self) -> Result<ShownRows, CliError> {
+        self.flush()?;
+        Ok(ShownRows { path: self.folder.join(ROWS), shown: self.shown })
     }
 
     fn flush(&mut self) -> Result<(), CliError> {

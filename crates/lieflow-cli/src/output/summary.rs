@@ -8,7 +8,7 @@ use crate::measure::Fit;
 use lieflow_model::kinds::explained_by_rounding;
 use lieflow_model::scene::Defaults;
 
-use super::{duration, short};
+use super::{duration, number, short};
 
 /// Errors of parts that are told; the file has all.
 const PARTS: usize = 4;
@@ -86,7 +86,7 @@ pub struct Summary {
     pub drift: BTreeMap<String, Drift>,
     /// The distance from the exact solution at the end, by quantity; none where none is known.
     pub error_at_end: Option<BTreeMap<String, f64>>,
-    /// How accurate the end is, if that is known.
+    /// How accurate the rows are, if that is known.
     pub accuracy: Option<Accuracy>,
     /// Why the accuracy is not known.
     pub accuracy_unknown: Option<String>,
@@ -101,17 +101,22 @@ pub struct Summary {
     pub atol: Option<f64>,
 }
 
-/// How right the end of a run is.
+/// How right the rows of a run are.
 #[derive(Clone, Debug, Serialize)]
 pub struct Accuracy {
     /// How that was found.
     pub found_by: FoundBy,
     /// Seconds that it took.
     pub seconds: f64,
-    /// The decimal digits that are right, of the part that is worst.
+    /// The number of rows that were compared.
+    pub rows: u64,
+    /// The decimal digits that are right in every row that was compared, of the part that is worst.
     pub digits: u32,
     /// The parts of the state.
     pub parts: Vec<PartError>,
+    /// The time of the last row.
+    #[serde(skip)]
+    pub t_end: f64,
 }
 
 /// The result that a run is compared with.
@@ -128,11 +133,23 @@ pub enum FoundBy {
     TenfoldTolerance,
 }
 
-/// The error of a part of the state at the end.
+/// The error of a part of the state: the largest of all rows that were compared, and that of the last row.
 #[derive(Clone, Debug, Serialize)]
 pub struct PartError {
     /// The quantity, or the part of a composed system.
     pub name: String,
+    /// The largest error.
+    #[serde(flatten)]
+    pub largest: Distance,
+    /// The time of the row with the largest error.
+    pub t: f64,
+    /// The error of the last row.
+    pub at_end: Distance,
+}
+
+/// The distance of a part of the state from what it should be.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Distance {
     /// The distance; an angle in radians where the part is a rotation.
     pub absolute: f64,
     /// The distance in sizes of the part; an angle in radians where it is a rotation.
@@ -142,26 +159,33 @@ pub struct PartError {
 }
 
 impl Accuracy {
-    /// The accuracy from the errors of the parts. An error below `unseen` is taken as `unseen`, because it is rounding.
-    pub fn new(found_by: FoundBy, parts: Vec<PartError>, unseen: f64, seconds: f64) -> Self {
-        let mut accuracy = Accuracy { found_by, seconds, digits: 0, parts };
-        let worst = accuracy.relative();
+    /// Sets the digits by the errors of the parts. An error below `unseen` is taken as `unseen`, because it is rounding.
+    pub fn with_digits(mut self, unseen: f64) -> Self {
+        let worst = self.relative();
         // An error that is no number has no digits.
         let digits = if worst.is_nan() { 0.0 } else { -worst.max(unseen).log10() };
-        accuracy.digits = digits.floor().max(0.0) as u32;
-        accuracy
+        self.digits = digits.floor().max(0.0) as u32;
+        self
     }
 
     /// The part with the largest relative error.
     pub fn worst(&self) -> Option<&PartError> {
-        let rank =
-            |part: &PartError| if part.relative.is_nan() { f64::INFINITY } else { part.relative };
-        self.parts.iter().max_by(|a, b| rank(a).total_cmp(&rank(b)))
+        self.parts.iter().max_by(|a, b| a.largest.rank().total_cmp(&b.largest.rank()))
     }
 
     /// The relative error of the part that is worst.
     pub fn relative(&self) -> f64 {
-        self.worst().map_or(f64::NAN, |worst| worst.relative)
+        self.worst().map_or(f64::NAN, |worst| worst.largest.relative)
+    }
+
+    /// The largest relative error of a part in the last row; infinite where one is no number.
+    pub fn relative_at_end(&self) -> f64 {
+        self.parts.iter().map(|part| part.at_end.rank()).fold(0.0, f64::max)
+    }
+
+    /// When a row was, as "at t = 6.9" or "at the end".
+    pub fn when(&self, t: f64) -> String {
+        if t == self.t_end { "at the end".into() } else { format!("at t = {}", number(t)) }
     }
 
     /// As "about 8 digits".
@@ -182,40 +206,59 @@ impl Accuracy {
         }
     }
 
-    /// The errors of the parts, as in "attitude 0.002 degrees, momentum_body 1.2e-9 of its size": the largest ones
-    /// first, where there are many.
+    /// The errors of the parts, as in "attitude 0.002 degrees at t = 6.9, at the end 0.001; momentum_body 1.2e-9 of its
+    /// size at the end": the largest ones first, where there are many.
     pub fn errors_in_words(&self) -> String {
         let mut parts: Vec<_> = self.parts.iter().collect();
         let further = parts.len().saturating_sub(PARTS);
         if further > 0 {
-            parts.sort_by(|a, b| b.relative.total_cmp(&a.relative));
+            parts.sort_by(|a, b| b.largest.rank().total_cmp(&a.largest.rank()));
         }
-        let mut told: Vec<_> = parts.iter().take(PARTS).map(|part| part.in_words()).collect();
+        let in_words = |part: &PartError| {
+            let PartError { name, largest, t, at_end } = part;
+            let (error, unit) = largest.in_words();
+            let told = format!("{name} {error} {unit} {}", self.when(*t));
+            if *t == self.t_end {
+                told
+            } else {
+                format!("{told}, at the end {}", at_end.in_words().0)
+            }
+        };
+        let mut told: Vec<_> = parts.into_iter().take(PARTS).map(in_words).collect();
         if further > 0 {
             told.push(format!("{further} further parts less"));
         }
-        told.join(", ")
+        told.join("; ")
     }
 
-    /// How it was found, in words.
-    pub fn found_in_words(&self) -> String {
+    /// How it was found, in words; the run has so many rows.
+    pub fn found_in_words(&self, rows: u64) -> String {
         let by =
             |what: &str| format!("estimated by a second run {what}, {}", duration(self.seconds));
-        match self.found_by {
+        let found = match self.found_by {
             FoundBy::Exact => "against the exact motion".into(),
             FoundBy::HalfStep => by("with half the step"),
             FoundBy::TenthTolerance => by("at a tenth of the tolerance"),
             FoundBy::TenfoldTolerance => by("at ten times the tolerance"),
+        };
+        match self.rows < rows {
+            true => format!("{found}, in {} of {rows} rows", self.rows),
+            false => found,
         }
     }
 }
 
-impl PartError {
-    /// As "attitude 0.002 degrees" or "momentum_body 1.2e-9 of its size".
-    pub fn in_words(&self) -> String {
+impl Distance {
+    /// The relative distance; infinite where it is no number.
+    fn rank(&self) -> f64 {
+        if self.relative.is_nan() { f64::INFINITY } else { self.relative }
+    }
+
+    /// The number and its unit, as "0.002" and "degrees", or "1.2e-9" and "of its size".
+    fn in_words(&self) -> (String, &'static str) {
         match self.degrees {
-            Some(degrees) => format!("{} {} degrees", self.name, short(degrees)),
-            None => format!("{} {} of its size", self.name, short(self.relative)),
+            Some(degrees) => (short(degrees), "degrees"),
+            None => (short(self.relative), "of its size"),
         }
     }
 }
@@ -263,6 +306,8 @@ pub struct EventSummary {
     pub first: Option<f64>,
     /// When the last was.
     pub last: Option<f64>,
+    /// The largest error of the times, if that is known.
+    pub time_error: Option<f64>,
     /// Those that are drawn.
     #[serde(skip)]
     pub marks: Vec<f64>,
@@ -272,7 +317,12 @@ impl EventSummary {
     /// None yet.
     pub fn new(name: &str) -> Self {
         let (name, marks) = (name.into(), Vec::new());
-        EventSummary { name, count: 0, first: None, last: None, marks }
+        EventSummary { name, count: 0, first: None, last: None, time_error: None, marks }
+    }
+
+    /// The error of the times, as "times right to about 2e-12", if it is known.
+    pub fn time_error_in_words(&self) -> Option<String> {
+        self.time_error.map(|error| format!("times right to about {}", short(error)))
     }
 
     /// The next zero; so many are drawn.

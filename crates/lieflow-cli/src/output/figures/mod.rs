@@ -94,11 +94,12 @@ pub fn run_page(summary: &Summary, run: &Drawn<'_>) -> Page {
     result
         .extend(summary.failure.iter().map(|why| Block::Notice(format!("The run stopped: {why}"))));
     result.extend(summary.accuracy.as_ref().map(|accuracy| {
-        let (right, found) = (accuracy.rightness_in_words(), accuracy.found_in_words());
+        let right = accuracy.rightness_in_words();
+        let found = accuracy.found_in_words(summary.rows);
         let errors = accuracy.errors_in_words().replace('_', " ");
-        Block::text(format!("At the end {right}. The error, {found}: {errors}."))
+        Block::text(format!("In the worst row {right}. The error, {found}: {errors}."))
     }));
-    let told = |why: &String| Block::text(format!("The error at the end is not known: {why}."));
+    let told = |why: &String| Block::text(format!("The error is {why}."));
     result.extend(summary.accuracy_unknown.iter().map(told));
     result.extend(summary.notes.iter().map(|note| Block::text(format!("Note: {note}."))));
     result.push(facts(summary));
@@ -193,6 +194,7 @@ fn facts(summary: &Summary) -> Block {
         if let (Some(first), Some(last)) = (event.first, event.last) {
             text += &format!(", from t = {} to {}", in_digits(first), in_digits(last));
         }
+        event.time_error_in_words().iter().for_each(|error| text += &format!("; {error}"));
         (format!("Event {}", event.name), text)
     }));
     if let Some(name) = &summary.ended_by {
