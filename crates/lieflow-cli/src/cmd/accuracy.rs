@@ -12,7 +12,9 @@ use lieflow_model::model::{Outcome, Plan, Watcher};
 use lieflow_model::scene::Scene;
 use lieflow_model::schema::{Observable, Part, Row};
 
-use super::apart::{Apart, Beside, Choice, Largest, Limits, Shown, ZerosApart, parts_of};
+use super::apart::{
+    Apart, Beside, Choice, Gap, Largest, Limits, Shown, ZerosApart, norm, parts_of,
+};
 use super::watch::Watch;
 use crate::output::{Accuracy, Distance, FoundBy, PartError, RowSample, ShownRows, number, short};
 
@@ -29,12 +31,16 @@ const PATIENCE: [f64; 2] = [3.0, 5.0];
 /// A tolerance this small is compared with a larger one: a smaller one is rounding.
 const SMALLEST: f64 = 1e-13;
 
-/// The exact motion is evaluated for so many rows, and for so many zeros, at most.
-const EXACT: u64 = 100_000;
+/// Rows, and zeros, for which the exact motion is evaluated, at most. A zero takes some twenty evaluations.
+const EXACT: [u64; 2] = [1_000_000, 50_000];
 /// Rows that a second run reaches by a step of their own, at most: so many for each step of the run,
 const OF_A_STEP: u64 = 2;
-/// or so many divided by the square of the numbers in a row, where that is more. The time of a step goes with it.
-const OF_SMALL_ROWS: u64 = 100_000_000;
+/// or so many, where that is more,
+const FEW: u64 = 20_000;
+/// but of long rows so many divided by the square of their numbers. The time of a step goes with it.
+const OF_LONG_ROWS: u64 = 100_000_000;
+/// Their times are kept in memory, so there are never more.
+const IN_MEMORY: u64 = 4_000_000;
 
 /// The check of a run.
 pub(super) struct Check<'a> {
@@ -44,8 +50,6 @@ pub(super) struct Check<'a> {
     own: Taken,
     /// True if an event ended the run.
     ended_by_event: bool,
-    /// The size of each part of the state.
-    sizes: Vec<f64>,
     /// Is the exact motion known?
     is_exact: bool,
     deadline: Cell<Option<Instant>>,
@@ -98,18 +102,22 @@ impl<'a> Check<'a> {
         let is_exact = watch.exact(t).is_some();
         let width = watch.model.schema().columns().count().max(1) as u64;
         let most = match is_exact {
-            true => EXACT,
-            false => (OF_A_STEP * own.steps).max(OF_SMALL_ROWS / width.pow(2)),
+            true => EXACT[0],
+            false => {
+                let few = FEW.min(OF_LONG_ROWS / width.pow(2));
+                OF_A_STEP.saturating_mul(own.steps).max(few).min(IN_MEMORY)
+            }
         };
         let run = Shown {
-            zeros: Choice::new(records.count().saturating_sub(shown), EXACT),
+            zeros: Choice::new(records.count().saturating_sub(shown), EXACT[1]),
             records,
             rows: Choice::new(shown, most),
+            sizes,
             t_span: [watch.scene.grid.t_span()[0], t],
             step: own.largest,
             stop,
         };
-        Check { watch, run, own, ended_by_event, sizes, is_exact, deadline: Cell::new(None) }
+        Check { watch, run, own, ended_by_event, is_exact, deadline: Cell::new(None) }
     }
 
     /// Is the exact motion known?
@@ -272,18 +280,16 @@ impl<'a> Check<'a> {
         t_end: f64,
         clock: Instant,
     ) -> Accuracy {
-        let all = parts_of(self.watch).zip(&self.sizes).zip(&apart.parts);
-        let parts = all.map(|(((observable, part), &size), &Largest { distance, t, last })| {
-            let error = |distance: f64| {
-                let absolute = distance * share;
+        let all = parts_of(self.watch).zip(&apart.parts);
+        let parts = all.map(|((observable, part), &Largest { gap, t, last })| {
+            let error = |Gap { absolute, relative }: Gap| {
+                let [absolute, relative] = [absolute, relative].map(|x| x * share);
                 let degrees = part.measure.is_angle().then(|| absolute.to_degrees());
-                let size = if degrees.is_some() { 1.0 } else { size };
-                let relative = if absolute == 0.0 { 0.0 } else { absolute / size };
                 Distance { absolute, relative, degrees }
             };
             let name =
                 if part.name.is_empty() { observable.name.into() } else { part.name.clone() };
-            PartError { name, largest: error(distance), t, at_end: error(last) }
+            PartError { name, largest: error(gap), t, at_end: error(last) }
         });
         // A second run does not see what rounding does to both.
         let unseen = match found_by {
@@ -349,7 +355,8 @@ impl<'a> Check<'a> {
     fn tried(&self, way: Way, t: f64) -> Option<Accuracy> {
         let clock = Instant::now();
         let (row, taken) = self.row_at(way, t).ok()?;
-        let apart = |other: &[f64]| Apart::of_one_row(self.watch, t, &row, other);
+        let sizes = &self.run.sizes;
+        let apart = |other: &[f64]| Apart::of_one_row(self.watch, sizes, t, [&row, other]);
         let (found_by, share, apart) = match self.watch.exact(t) {
             Some(exact) => (FoundBy::Exact, 1.0, apart(&exact)),
             None => {
@@ -411,10 +418,7 @@ fn nice_below(x: f64) -> impl Iterator<Item = f64> {
 
 /// The size that an error is relative to: of the start, of the end and of the middle one of the rows, the largest.
 fn size((observable, part): (&Observable, &Part), rows: &RowSample<'_>) -> f64 {
-    let norm = |row: Row<'_>| {
-        let values = &row[observable][part.columns.clone()];
-        values.iter().map(|x| x * x).sum::<f64>().sqrt()
-    };
+    let norm = |row: Row<'_>| norm(&row[observable][part.columns.clone()]);
     let mut sizes: Vec<f64> = rows.rows().map(|(_, row)| norm(row)).collect();
     let ends = rows.ends().map_or([0.0; 2], |ends| ends.map(|(_, row)| norm(row)));
     sizes.sort_by(f64::total_cmp);

@@ -17,6 +17,8 @@ use crate::output::{Kind, Records, ShownRows};
 const NEAR: f64 = 1e-3;
 /// The part of a step over which the slope of an event is taken.
 const SLOPE: f64 = 1e-4;
+/// A zero that is known to be in an interval is found by so many halvings of that.
+const HALVINGS: u32 = 8;
 
 /// The parts of the state, with their quantities.
 pub(super) fn parts_of<'a>(
@@ -39,23 +41,32 @@ pub(super) struct Apart {
     pub(super) events: Vec<ZerosApart>,
 }
 
-/// The largest distance over rows, and that of the last row.
+/// How far a part of the state is from what it should be.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Gap {
+    /// The distance.
+    pub(super) absolute: f64,
+    /// The distance in sizes of the part; that itself, where it is an angle.
+    pub(super) relative: f64,
+}
+
+/// The largest distance over rows, in sizes of the part, and that of the last row.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Largest {
     /// The largest one; not a number, if one is not.
-    pub(super) distance: f64,
+    pub(super) gap: Gap,
     /// Its time.
     pub(super) t: f64,
     /// The last one.
-    pub(super) last: f64,
+    pub(super) last: Gap,
 }
 
 impl Largest {
-    fn see(&mut self, t: f64, distance: f64) {
-        self.last = distance;
+    fn see(&mut self, t: f64, gap: Gap) {
+        self.last = gap;
         // A comparison with NaN is false, so a NaN stays.
-        if distance >= self.distance || distance.is_nan() {
-            (self.distance, self.t) = (distance, t);
+        if gap.relative >= self.gap.relative || gap.relative.is_nan() {
+            (self.gap, self.t) = (gap, t);
         }
     }
 }
@@ -90,15 +101,15 @@ impl ZerosApart {
 impl Apart {
     /// No rows yet, and so many events.
     fn new(watch: &Watch<'_>, events: usize) -> Self {
-        let none = Largest { distance: 0.0, t: f64::NAN, last: 0.0 };
+        let none = Largest { gap: Gap::default(), t: f64::NAN, last: Gap::default() };
         let parts = parts_of(watch).map(|_| none).collect();
         Apart { rows: 0, parts, events: vec![ZerosApart::default(); events] }
     }
 
     /// The distances of one row from another.
-    pub(super) fn of_one_row(watch: &Watch<'_>, t: f64, a: &[f64], b: &[f64]) -> Self {
+    pub(super) fn of_one_row(watch: &Watch<'_>, sizes: &[f64], t: f64, rows: [&[f64]; 2]) -> Self {
         let mut apart = Apart::new(watch, 0);
-        apart.see(watch, t, a, b);
+        apart.see(watch, sizes, t, rows);
         apart
     }
 
@@ -114,7 +125,9 @@ impl Apart {
             match kind {
                 Kind::Row => {
                     let exact = run.rows.has(row).then(|| watch.exact(t)).flatten();
-                    exact.iter().for_each(|exact| apart.see(watch, t, numbers, exact));
+                    exact
+                        .iter()
+                        .for_each(|exact| apart.see(watch, &run.sizes, t, [numbers, exact]));
                     row += 1;
                 }
                 Kind::Event(event) if run.zeros.has(zero) => {
@@ -122,10 +135,8 @@ impl Apart {
                         Some(exact) => (events[event].value)(t, schema.row(&exact)),
                         None => f64::NAN,
                     };
-                    let aside = SLOPE * run.step;
-                    let slope = (g(t + aside) - g(t - aside)) / (2.0 * aside);
                     let distance = &mut apart.events[event].distance;
-                    *distance = larger(*distance, (g(t) / slope).abs());
+                    *distance = larger(*distance, nearest_zero(g, t, run));
                     zero += 1;
                 }
                 Kind::Event(_) => zero += 1,
@@ -134,17 +145,60 @@ impl Apart {
         Ok(apart)
     }
 
-    /// The next row of both.
-    fn see(&mut self, watch: &Watch<'_>, t: f64, a: &[f64], b: &[f64]) {
+    /// The next row of both; the parts of the state have these sizes.
+    fn see(&mut self, watch: &Watch<'_>, sizes: &[f64], t: f64, [a, b]: [&[f64]; 2]) {
         let [a, b] = [a, b].map(|numbers| watch.model.schema().row(numbers));
         self.rows += 1;
-        for (largest, (observable, part)) in self.parts.iter_mut().zip(parts_of(watch)) {
-            let columns = || part.columns.clone();
-            let distance =
-                part.measure.distance(&a[observable][columns()], &b[observable][columns()]);
-            largest.see(t, distance);
+        let parts = parts_of(watch).zip(sizes);
+        for (largest, ((observable, part), size)) in self.parts.iter_mut().zip(parts) {
+            let [a, b] = [&a[observable], &b[observable]].map(|row| &row[part.columns.clone()]);
+            let absolute = part.measure.distance(a, b);
+            let relative = match absolute {
+                0.0 => 0.0,
+                angle if part.measure.is_angle() => angle,
+                // Where the part is larger than elsewhere, so may be its error.
+                length => length / size.max(norm(a)),
+            };
+            largest.see(t, Gap { absolute, relative });
         }
     }
+}
+
+/// The length of a vector.
+pub(super) fn norm(values: &[f64]) -> f64 {
+    values.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
+
+/// The distance from t to the nearest zero of g, to two digits; not a number, if there is none in the time of the run.
+fn nearest_zero(g: impl Fn(f64) -> f64, t: f64, run: &Shown<'_>) -> f64 {
+    let at_t = g(t);
+    if at_t == 0.0 || at_t.is_nan() {
+        return at_t;
+    }
+    let aside = SLOPE * run.step;
+    let by_slope = 2.0 * aside * at_t / (g(t + aside) - g(t - aside));
+    // Where the slope changes it tells little, so the sign of g decides.
+    let first = match by_slope.abs() {
+        distance if distance.is_finite() => distance.max(f64::EPSILON * t.abs().max(run.step)),
+        _ => aside,
+    };
+    let on_side = |side: f64| {
+        let passed = |distance: f64| g(t + side * distance) * at_t <= 0.0;
+        let (mut before, mut after) = (0.0, first);
+        while !passed(after) {
+            (before, after) = (after, 2.0 * after);
+            if after > run.length() {
+                return f64::NAN;
+            }
+        }
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (before + after);
+            *(if passed(middle) { &mut after } else { &mut before }) = middle;
+        }
+        after
+    };
+    // The smaller one, or the one that is a number.
+    on_side(1.0).min(on_side(-1.0))
 }
 
 /// The larger of two distances; NaN, if one is.
@@ -182,6 +236,8 @@ pub(super) struct Shown<'a> {
     pub(super) records: ShownRows,
     pub(super) rows: Choice,
     pub(super) zeros: Choice,
+    /// The size of each part of the state.
+    pub(super) sizes: Vec<f64>,
     /// The start and the end of the run.
     pub(super) t_span: [f64; 2],
     /// The largest step of the run.
@@ -223,6 +279,11 @@ impl<'a> Shown<'a> {
         // Without events there is nothing to read.
         let reader = (events > 0).then(|| self.reader()).transpose()?;
         Ok(OwnZeros { reader, ahead: vec![VecDeque::new(); events] })
+    }
+
+    /// The length of the run.
+    fn length(&self) -> f64 {
+        (self.t_span[1] - self.t_span[0]).abs()
     }
 
     /// Counts a zero at t.
@@ -358,7 +419,7 @@ impl<'a> Beside<'a> {
         if let Some((own_t, own)) = self.rows.next_chosen()?
             && own_t == t
         {
-            self.apart.see(self.watch, t, own, row.numbers());
+            self.apart.see(self.watch, &self.run.sizes, t, [own, row.numbers()]);
         }
         Ok(())
     }
@@ -395,5 +456,140 @@ impl Watcher for Beside<'_> {
 
     fn progress(&mut self, _t: f64) {
         self.limits.look();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::{Path, PathBuf};
+    use std::{env, fs, process};
+
+    use lieflow::SaveAt;
+    use lieflow_model::model::Plan;
+    use lieflow_model::scene::Scene;
+
+    use super::*;
+    use crate::cmd::watch::quantities;
+    use crate::output::RunState;
+
+    /// A folder that goes away with its value.
+    struct Folder(PathBuf);
+
+    impl Drop for Folder {
+        fn drop(&mut self) {
+            let _ = fs::remove_dir_all(&self.0);
+        }
+    }
+
+    /// The number of the row, from 0, and of the zero, that are changed.
+    const CHANGED: [usize; 2] = [30, 1];
+
+    /// Records what a run shows. Row `CHANGED` gets a wrong number, and zero `CHANGED` a wrong time, or none at all.
+    struct Wrong {
+        state: RunState,
+        rows: usize,
+        zeros: usize,
+        by: f64,
+        late: Option<f64>,
+    }
+
+    impl Watcher for Wrong {
+        fn row(&mut self, t: f64, row: Row<'_>) -> Next {
+            let mut numbers = row.numbers().to_vec();
+            numbers[0] += if self.rows == CHANGED[0] { self.by } else { 0.0 };
+            self.rows += 1;
+            self.state.record(Kind::Row, t, &numbers).unwrap();
+            Next::Continue
+        }
+        fn event(&mut self, event: usize, t: f64, _rising: bool, row: Row<'_>) {
+            let late = if self.zeros == CHANGED[1] { self.late } else { Some(0.0) };
+            self.zeros += 1;
+            if let Some(late) = late {
+                self.state.record(Kind::Event(event), t + late, row.numbers()).unwrap();
+            }
+        }
+    }
+
+    /// The distances of a run with a wrong row and a wrong zero from the exact motion, and from the run itself.
+    fn apart(name: &str, by: f64, late: Option<f64>) -> [Apart; 2] {
+        let text = "[problem]\nkind = \"rigid-body\"\ninertia = [1, 2, 3]\nomega_body = [0.1, 1, 0.1]\n\
+                    [time]\nt_span = [0, 60]\n\
+                    [output]\nquantities = [\"momentum_body\"]\ninterval = 0.5\n\
+                    [[events]]\nname = \"flip\"\nwhen = \"w2\"\n";
+        let scene = Scene::parse("scene", text).unwrap();
+        let model = scene.model_with(scene.layer, &quantities(&scene)).unwrap();
+        let watch = Watch::new(&scene, &*model).unwrap();
+        let folder = env::temp_dir().join(format!("lieflow-apart-{name}-{}", process::id()));
+        fs::create_dir_all(&folder).unwrap();
+        let folder = Folder(folder);
+        let plan = || scene.plan(model.schema()).unwrap();
+        let state = RunState::begin(Path::new(&folder.0), 0).unwrap();
+        let mut wrong = Wrong { state, rows: 0, zeros: 0, by, late };
+        let stats = model.drive(&scene.method, plan(), &mut wrong).unwrap().stats;
+        let [stop, cancel] = [(); 2].map(|()| AtomicBool::new(false));
+        let run = Shown {
+            records: wrong.state.shown().unwrap(),
+            rows: Choice::new(wrong.rows as u64, 1000),
+            zeros: Choice::new(wrong.zeros as u64, 1000),
+            sizes: vec![1.0],
+            t_span: [0.0, 60.0],
+            step: stats.largest_step,
+            stop: &stop,
+        };
+        let exact = Apart::from_exact(&watch, &run).unwrap();
+        let limits = Limits { cancel: &cancel, stop: &stop, deadline: None };
+        let mut beside = Beside::new(&watch, &run, limits).unwrap();
+        let save = SaveAt::Times(run.times().unwrap());
+        let plan = Plan { save, times_by_steps: true, ..plan() };
+        model.drive(&scene.method, plan, &mut beside).unwrap();
+        [exact, beside.finish().unwrap().unwrap()]
+    }
+
+    #[test]
+    fn a_wrong_row_and_a_wrong_zero_are_found() {
+        for apart in apart("wrong", 1e-3, Some(1e-4)) {
+            let Largest { gap, t, last } = apart.parts[0];
+            assert_eq!((apart.rows, t), (121, 15.0));
+            assert!((gap.absolute - 1e-3).abs() < 1e-9, "{gap:?}");
+            assert!(last.absolute < 1e-9, "{last:?}");
+            // The momentum is twice as long as its size here.
+            assert!((1.9..2.1).contains(&(gap.absolute / gap.relative)), "{gap:?}");
+            let zeros = apart.events[0];
+            assert!((zeros.distance - 1e-4).abs() < 2e-6 && zeros.agree(), "{zeros:?}");
+        }
+    }
+
+    #[test]
+    fn a_right_run_is_right_and_a_missing_zero_is_missed() {
+        for apart in apart("right", 0.0, Some(0.0)) {
+            assert!(apart.parts[0].gap.absolute < 1e-9, "{:?}", apart.parts);
+            assert!(apart.events[0].distance < 1e-9 && apart.events[0].agree());
+        }
+        let [_, apart] = apart("missing", 0.0, None);
+        let ZerosApart { own, other, .. } = apart.events[0];
+        assert_eq!((own.possible, other.possible), (4, 5));
+        assert!(!apart.events[0].agree());
+    }
+
+    #[test]
+    fn a_distance_that_is_no_number_stays() {
+        let gap = |x: f64| Gap { absolute: x, relative: x };
+        let mut largest = Largest { gap: gap(0.0), t: 0.0, last: gap(0.0) };
+        for (t, x) in [(1.0, 2.0), (2.0, f64::NAN), (3.0, 5.0)] {
+            largest.see(t, gap(x));
+        }
+        assert!(largest.gap.relative.is_nan());
+        assert_eq!((largest.t, largest.last), (2.0, gap(5.0)));
+    }
+
+    #[test]
+    fn a_choice_has_the_first_and_the_last() {
+        for (all, most) in [(1, 5), (10, 10), (11, 10), (100, 7), (1000, 1), (5, 0)] {
+            let choice = Choice::new(all, most);
+            let chosen: Vec<u64> = (0..all).filter(|number| choice.has(*number)).collect();
+            assert_eq!((chosen[0], chosen[chosen.len() - 1]), (0, all - 1));
+            assert_eq!(chosen.len() as u64, choice.count());
+            assert!(choice.count() <= most.max(1) + 1);
+        }
     }
 }

@@ -5,6 +5,7 @@ mod compare;
 mod curves;
 mod docs;
 mod events;
+mod every_row;
 mod laws;
 mod listing;
 mod operations;

@@ -139,7 +139,7 @@ fn a_run_that_is_wrong_warns_and_what_it_advises_does() {
     folder.write("cubesat.toml", CUBESAT);
     let told = folder.lieflow(&["run", "cubesat.toml", "--out", "out"]).ok();
     assert!(told.contains("\n  no digit is right\n"), "{told}");
-    let warning = "WARNING: `attitude` is wrong by 144 degrees at the end: this run is not usable. \
+    let warning = "WARNING: `attitude` is wrong by 180 degrees at t = 510: this run is not usable. \
                    dt = 0.01 would give about 4 digits. Leave [method] and the steps out, and lieflow gives";
     assert!(told.contains(warning), "{told}");
     let summary = folder.json("out/summary.json");
@@ -196,10 +196,10 @@ fn the_error_check_can_be_switched_off() {
         assert!(!told.contains("second run") && !told.contains("right"), "{told}");
         assert_eq!(summary["accuracy"], Value::Null);
     }
-    // The exact motion costs nothing.
+    // The exact motion needs no second run.
     let (told, summary) = run(&["asymmetric-top", "--error-check", "never"]);
     assert!(
-        told.contains("error at the end, against the exact motion: momentum_body 2e-5"),
+        told.contains("error, against the exact motion: momentum_body 2.1e-5 of its size at t = 394, at the end 2e-5"),
         "{told}"
     );
     assert_eq!(summary["accuracy"]["digits"], 4);
