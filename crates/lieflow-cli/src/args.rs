@@ -89,6 +89,9 @@ pub struct RunArgs {
     /// Go on with a run that was interrupted or killed, to the same bits.
     #[arg(long)]
     pub resume: bool,
+    /// Write more than 10 GB, where that is meant.
+    #[arg(long)]
+    pub yes: bool,
 }
 
 /// What is changed in a scene.
@@ -138,6 +141,9 @@ impl RunArgs {
             self.error_check.to_possible_value().filter(|_| self.error_check != ErrorCheck::Auto)
         {
             typed += &format!(" --error-check {}", when.get_name());
+        }
+        if self.yes {
+            typed += " --yes";
         }
         typed
     }
@@ -363,4 +369,5 @@ Written: trajectory.csv, a column t and the columns of each quantity, 17 signifi
 start first and the end last; events.csv, a line for each event; summary.json, what was modelled and run,
 the errors of the rows and of the times of events, the drift of each invariant, and a warning where
 a run is wrong or a method did not keep what it promises; index.html with figures, and each as an SVG file. When a step fails, the rows up to it are in trajectory.partial.csv and the
-exit code is 2. It is 130 after Ctrl-C, and 1 where a file cannot be written; --resume goes on from there.";
+exit code is 2. It is 130 after Ctrl-C, and 1 where a file cannot be written, the disk is full or a run wrote 10 GB;
+--resume goes on from there.";

@@ -136,6 +136,28 @@ impl Plan<'_> {
             resume: None,
         }
     }
+
+    /// The number of rows, where it is known before the run. It is not known where an event may end the run, and where
+    /// the rows are those of steps that are chosen by their error.
+    pub fn rows(&self) -> Option<u64> {
+        let [t0, t1] = self.steps.t_span();
+        let may_end_early = self.events.iter().any(|event| event.stop_after.is_some());
+        match (&self.save, &self.steps) {
+            (SaveAt::End, _) => Some(1),
+            (SaveAt::Ends, _) => Some(2),
+            (SaveAt::Times(times), _) => Some(times.len() as u64),
+            _ if may_end_early || !t1.is_finite() => None,
+            // An interval that is left of rounding alone has no row.
+            (SaveAt::Interval(length), _) => {
+                Some(1 + ((t1 - t0).abs() / length - 1e-9).ceil() as u64)
+            }
+            (SaveAt::Every(every), Steps::Equal(grid)) => {
+                let steps = grid.steps() + self.stops.len() as u64;
+                Some(1 + steps.div_ceil(*every))
+            }
+            _ => None,
+        }
+    }
 }
 
 /// What gets the rows of a run, each with its t.

@@ -181,7 +181,7 @@ impl Schema {
     }
 
     /// The number of values and sizes in a row.
-    pub(crate) fn numbers(&self) -> usize {
+    pub fn numbers(&self) -> usize {
         self.width + self.sizes
     }
 

@@ -145,6 +145,7 @@ pub fn run(args: &CompareArgs) -> Result<(), CliError> {
         true => ADVICE.to_vec(),
         false => asked.clone(),
     };
+    let stop = listen()?;
     let effort = Effort {
         rounds: args.repeat.unwrap_or(if args.quick { 3 } else { 5 }),
         longest: Duration::from_millis(if args.quick { 5 } else { 30 }),
@@ -152,6 +153,7 @@ pub fn run(args: &CompareArgs) -> Result<(), CliError> {
         seed: args.seed,
         wanted: &wanted,
         patience: Duration::from_millis(if args.quick { 100 } else { 1000 }),
+        stop: &stop,
     };
     let plan = Plan {
         quantities: &quantities,
@@ -161,7 +163,6 @@ pub fn run(args: &CompareArgs) -> Result<(), CliError> {
         tolerances: &tolerances,
         rows: &Rows::of(&scene),
     };
-    let stop = listen()?;
     if args.again {
         Journal::remove(&folder)?;
     }
@@ -178,7 +179,8 @@ pub fn run(args: &CompareArgs) -> Result<(), CliError> {
         stopped(&stop, &folder)
     });
     drop(told);
-    let (curves, reference) = measured?;
+    let (curves, reference) =
+        measured.map_err(|error| stopped(&stop, &folder).err().unwrap_or(error))?;
 
     let comparison =
         Comparison { scene: &scene, curves, reference, effort, asked: &asked, all: args.all };

@@ -1,9 +1,11 @@
 //! Runs that would take too long, seen before they begin.
 
+use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
+use lieflow::solve::Status;
 use lieflow::{RunError, SaveAt, StepControl, TimeGrid};
-use lieflow_model::model::{Model, Plan, Rows};
+use lieflow_model::model::{Model, Plan, Rows, Steps};
 use lieflow_model::scene::{Refusal, Scene};
 
 use super::CliError;
@@ -22,32 +24,42 @@ const ATTEMPTS: u64 = 1000;
 /// Methods of this order and higher ones need no trial run.
 const HIGH_ORDER: usize = 4;
 
-/// The warning about a run that will take long.
+/// The warning about a run that will take long. `stop` ends the trial of it.
 ///
 /// # Errors
 /// A run that would take a month and more.
-pub(super) fn foresee(scene: &Scene, model: &dyn Model) -> Result<Option<String>, CliError> {
+pub(super) fn foresee(
+    scene: &Scene,
+    model: &dyn Model,
+    stop: &AtomicBool,
+) -> Result<Option<String>, CliError> {
     let may_end_early = scene.events.iter().any(|event| event.stop_after.is_some());
     if may_end_early || !scene.grid.t_span()[1].is_finite() {
         return Ok(None);
     }
     match scene.adaptive {
-        None => steps_of_one_size(scene, model),
-        Some(_) => Ok(chosen_steps(scene, model)),
+        None => steps_of_one_size(scene, model, stop),
+        Some(_) => Ok(chosen_steps(scene, model, stop)),
     }
 }
 
-fn steps_of_one_size(scene: &Scene, model: &dyn Model) -> Result<Option<String>, CliError> {
+fn steps_of_one_size(
+    scene: &Scene,
+    model: &dyn Model,
+    stop: &AtomicBool,
+) -> Result<Option<String>, CliError> {
     let (steps, h, [t0, _]) = (scene.grid.steps(), scene.grid.h(), scene.grid.t_span());
     if steps < MANY {
         return Ok(None);
     }
-    let mut trial = 100;
+    let mut trial = 1;
     let seconds = loop {
         let Ok(grid) = TimeGrid::new([t0, t0 + trial as f64 * h], h.abs()) else { return Ok(None) };
+        let plan = Plan { cancel: Some(stop), ..Plan::new(Steps::Equal(grid), SaveAt::End) };
         let clock = Instant::now();
-        if model.run(&scene.method, &grid, &SaveAt::End, &mut |_, _| {}).is_err() {
-            return Ok(None);
+        match model.drive(&scene.method, plan, &mut Rows(&mut |_, _| {})) {
+            Ok(outcome) if outcome.status == Status::Finished => {}
+            _ => return Ok(None),
         }
         let took = clock.elapsed();
         if took > TRIAL || trial >= MANY / 8 {
@@ -66,13 +78,14 @@ fn steps_of_one_size(scene: &Scene, model: &dyn Model) -> Result<Option<String>,
     Ok((seconds > LONG).then_some(would))
 }
 
-fn chosen_steps(scene: &Scene, model: &dyn Model) -> Option<String> {
+fn chosen_steps(scene: &Scene, model: &dyn Model, stop: &AtomicBool) -> Option<String> {
     let [t0, t1] = scene.grid.t_span();
     let order = model.order(&scene.method).ok()??;
     if order >= HIGH_ORDER {
         return None;
     }
-    let plan = Plan { max_steps: Some(ATTEMPTS), ..scene.plan_to(t1, 1.0, None).ok()? };
+    let plan = scene.plan_to(t1, 1.0, None).ok()?;
+    let plan = Plan { max_steps: Some(ATTEMPTS), cancel: Some(stop), ..plan };
     let tried = model.drive(&scene.method, plan, &mut Rows(&mut |_, _| {}));
     let Err(RunError::TooManySteps { t, .. }) = tried else { return None };
     let limit = scene.max_steps.unwrap_or(StepControl::MAX_STEPS);

@@ -9,6 +9,7 @@ pub mod demo;
 mod foresee;
 pub mod methods;
 pub mod paper;
+mod room;
 pub mod run;
 pub mod scenes;
 mod stop;
@@ -43,6 +44,12 @@ pub enum CliError {
         /// Why.
         source: io::Error,
     },
+    /// The disk has no room for the rest of a run.
+    #[error("{0}")]
+    Full(String),
+    /// A run wrote as much as it may.
+    #[error("{0}")]
+    TooMuch(String),
     /// Standard output cannot be written.
     #[error("cannot write to standard output: {0}")]
     Stdout(io::Error),
@@ -71,11 +78,15 @@ impl CliError {
         move |source| CliError::Io { doing, path: path.into(), source }
     }
 
-    /// The exit code: 1 for a check that does not hold and for what cannot be written, 130 for a run that was
-    /// interrupted, 2 for everything else.
+    /// The exit code: 1 for a check that does not hold and for what cannot be written or may not be, 130 for a run
+    /// that was interrupted, 2 for everything else.
     pub fn exit_code(&self) -> u8 {
         match self {
-            CliError::Failed(_) | CliError::Io { .. } | CliError::Stdout(_) => 1,
+            CliError::Failed(_)
+            | CliError::Io { .. }
+            | CliError::Full(_)
+            | CliError::TooMuch(_)
+            | CliError::Stdout(_) => 1,
             CliError::Stopped { code, .. } => *code,
             _ => 2,
         }

@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 use super::CliError;
 use super::accuracy::{Check, Checked, LONG, Taken};
 use super::foresee::foresee;
+use super::room::{MOST, Room, foresee_room};
 use super::stop::{INTERRUPTED, listen};
 use super::told::in_words;
 use super::watch::{Recorder, Watch, quantities};
@@ -24,7 +25,7 @@ const SAVED_EVERY: Duration = Duration::from_secs(1);
 const PAGE: &str = "index.html";
 
 /// How a scene is run.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub struct Options {
     /// Go on with a run that was interrupted.
     pub resume: bool,
@@ -32,6 +33,15 @@ pub struct Options {
     pub no_page: bool,
     /// When a second run is made to estimate the error.
     pub error_check: ErrorCheck,
+    /// The most bytes that a run may write.
+    pub most: u64,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        let error_check = ErrorCheck::default();
+        Options { resume: false, no_page: false, error_check, most: MOST }
+    }
 }
 
 /// Run the command.
@@ -100,15 +110,26 @@ fn run_one(args: &RunArgs, path: &Path, scene: &Scene, stop: &AtomicBool) -> Res
     if args.resume && !RunState::is_in(&folder) {
         return nothing_to_do(scene, &folder);
     }
-    let options =
-        Options { resume: args.resume, no_page: args.no_page, error_check: args.error_check };
-    let how = || {
-        let (path, options) = (quoted(&path.display().to_string()), args.options_typed(&folder));
+    let options = Options {
+        resume: args.resume,
+        no_page: args.no_page,
+        error_check: args.error_check,
+        most: if args.yes { u64::MAX } else { MOST },
+    };
+    let how = |yes: bool| {
+        let again = RunArgs { yes, ..args.clone() };
+        let (path, options) = (quoted(&path.display().to_string()), again.options_typed(&folder));
         format!("`lieflow run {path}{options} --resume` goes on from there")
     };
     let summary = match run_scene(scene, &folder, options, stop) {
-        Err(error @ CliError::Io { .. }) if RunState::is_in(&folder) => {
-            let message = format!("{error}\nWhat was written is kept; {}", how());
+        Err(
+            error @ (CliError::Io { .. }
+            | CliError::Full(_)
+            | CliError::TooMuch(_)
+            | CliError::Stopped { .. }),
+        ) if RunState::is_in(&folder) => {
+            let yes = args.yes || matches!(error, CliError::TooMuch(_));
+            let message = format!("{error}\nWhat was written is kept; {}", how(yes));
             return Err(CliError::Stopped { message, code: error.exit_code() });
         }
         done => done?,
@@ -121,7 +142,7 @@ fn run_one(args: &RunArgs, path: &Path, scene: &Scene, stop: &AtomicBool) -> Res
     let kept = format!("The rows up to there ({}) are in {}", summary.rows, place.display());
     Err(match summary.interrupted {
         true => {
-            let message = format!("{failure}\n{kept}; {}", how());
+            let message = format!("{failure}\n{kept}; {}", how(args.yes));
             CliError::Stopped { message, code: INTERRUPTED }
         }
         false => CliError::Message(format!("{failure}\n{kept}")),
@@ -150,19 +171,24 @@ fn fingerprint(scene: &Scene) -> String {
 /// summary says so, and the rows up to there are kept.
 ///
 /// # Errors
-/// The scene does not run at all, there is no run of it to go on with, or a file cannot be written.
+/// The scene does not run at all, there is no run of it to go on with, a file cannot be written, or what is written is
+/// more than it may be.
 pub fn run_scene(
     scene: &Scene,
     folder: &Path,
-    Options { resume, no_page, error_check }: Options,
+    Options { resume, no_page, error_check, most }: Options,
     stop: &AtomicBool,
 ) -> Result<Summary, CliError> {
     let model = scene.model_with(scene.layer, &quantities(scene))?;
-    if let Some(known) = foresee(scene, &*model)? {
+    if let Some(known) = foresee(scene, &*model, stop)? {
         eprintln!("note: {}: {known}", scene.name);
     }
     let watch = Watch::new(scene, &*model)?;
     let columns: Vec<String> = watch.written.iter().flat_map(|o| o.columns.clone()).collect();
+    let plan = scene.plan(model.schema())?;
+    if let Some(much) = foresee_room(scene, &plan, (columns.len(), model.schema()), folder, most)? {
+        eprintln!("note: {}: {much}", scene.name);
+    }
     output::make_folder(folder)?;
     let (mut state, driver) = match resume {
         true => RunState::open(folder, scene.fingerprint)?,
@@ -172,19 +198,22 @@ pub fn run_scene(
     output::remove_old(&summary_path)?;
     let clock = Instant::now();
     let cancel = AtomicBool::new(false);
-    let mut kept = Recorder::new(&watch, folder, &columns, [stop, &cancel])?;
+    let mut kept =
+        Recorder::new(&watch, (folder, Room::new(folder, most)), &columns, [stop, &cancel])?;
     if resume {
         let schema = model.schema();
-        state.replay(|kind, t, numbers| kept.see(kind, t, schema.row(numbers)))?;
+        state.replay(|kind, t, numbers| match stop.load(Ordering::Relaxed) {
+            true => {
+                let message = "interrupted before the run went on".into();
+                Err(CliError::Stopped { message, code: INTERRUPTED })
+            }
+            false => kept.see(kind, t, schema.row(numbers)),
+        })?;
     }
     let begun_at = kept.rows.ends().map_or(scene.grid.t_span()[0], |[_, (t, _)]| t);
     kept.state = Some(state);
-    let plan = Plan {
-        cancel: Some(&cancel),
-        checkpoints: Some(SAVED_EVERY),
-        resume: driver,
-        ..scene.plan(model.schema())?
-    };
+    let plan =
+        Plan { cancel: Some(&cancel), checkpoints: Some(SAVED_EVERY), resume: driver, ..plan };
     let outcome = watch.run(plan, &mut kept);
     let written = kept.trajectory.rows();
     let mut done = match outcome {

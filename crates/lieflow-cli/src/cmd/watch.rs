@@ -8,6 +8,7 @@ use lieflow::RunError;
 use lieflow::solve::{Next, Status};
 
 use super::CliError;
+use super::room::Room;
 use crate::output::{
     self, Chosen, Drift, EventSummary, Kind, Progress, RowFile, RowSample, RunState, Watched,
 };
@@ -189,6 +190,7 @@ pub(super) struct Recorder<'a> {
     pub(super) events: Option<RowFile>,
     /// None while an earlier part of the run is shown again.
     pub(super) state: Option<RunState>,
+    room: Room,
     pub(super) rows: RowSample<'a>,
     pub(super) watched: Vec<Watched>,
     /// The number of the rows where a column is not finite, and the time of the first.
@@ -206,10 +208,11 @@ pub(super) struct Recorder<'a> {
 }
 
 impl<'a> Recorder<'a> {
-    /// Files in `folder`, in place of those of earlier runs. `stop` ends all runs, and `cancel` this one.
+    /// Files in `folder`, in place of those of earlier runs, and what they may take. `stop` ends all runs, and
+    /// `cancel` this one.
     pub(super) fn new(
         watch: &'a Watch<'a>,
-        folder: &Path,
+        (folder, room): (&Path, Room),
         columns: &[String],
         [stop, cancel]: [&'a AtomicBool; 2],
     ) -> Result<Self, CliError> {
@@ -223,6 +226,7 @@ impl<'a> Recorder<'a> {
             trajectory: RowFile::create(folder, output::TRAJECTORY, columns())?,
             events: with_events.transpose()?,
             state: None,
+            room,
             rows: RowSample::new(watch.model.schema()),
             watched: Vec::new(),
             not_finite: vec![(0, 0.0); columns().count() - 1],
@@ -260,10 +264,17 @@ impl<'a> Recorder<'a> {
                 }
             }
         }
-        match &mut self.state {
-            Some(state) => state.record(kind, t, row.numbers()),
-            None => Ok(()),
+        if let Some(state) = &mut self.state {
+            state.record(kind, t, row.numbers())?;
         }
+        self.room.check(self.bytes())
+    }
+
+    /// The bytes of all files that grow with the run.
+    fn bytes(&self) -> u64 {
+        let events = self.events.as_ref().map_or(0, RowFile::bytes);
+        let state = self.state.as_ref().map_or(0, RunState::bytes);
+        self.trajectory.bytes() + events + state
     }
 
     /// Writes the lines so far.

@@ -1,7 +1,9 @@
 //! What a run is judged by: the exact end, or one that two methods agree on; and the invariants.
 
 use lieflow::catalog::MethodSpec;
+use lieflow::solve::Status;
 use lieflow::tolerance::Rule;
+use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use lieflow::{RunError, SaveAt, StepControl, TimeGrid};
@@ -103,22 +105,24 @@ fn reference_methods() -> Vec<MethodSpec> {
 
 /// The exact end of a run, with the quantities that a run is judged by.
 #[derive(Debug)]
-pub struct Judge {
+pub struct Judge<'a> {
     state: &'static [&'static str],
     /// The state and the invariants.
     schema: Schema,
     end: Vec<f64>,
     /// Where the end comes from.
     pub reference: Reference,
+    /// The flag that ends each run.
+    stop: &'a AtomicBool,
 }
 
 fn norm(x: &[f64]) -> f64 {
     x.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
-impl Judge {
+impl<'a> Judge<'a> {
     /// For runs of the problem of `scene` over a span, in up to these numbers of steps. A single run for the
-    /// rounding of the exact solution takes about so long at most.
+    /// rounding of the exact solution takes about so long at most. `stop` ends a run.
     ///
     /// # Errors
     /// The problem cannot be set up, or no reference can be computed.
@@ -128,8 +132,9 @@ impl Judge {
         t_span: [f64; 2],
         steps: &[u64],
         longest: Duration,
+        stop: &'a AtomicBool,
     ) -> Result<Self, CliError> {
-        let (mut judge, model) = Self::without_end(scene, quantities)?;
+        let (mut judge, model) = Self::without_end(scene, quantities, stop)?;
         match model.exact(t_span) {
             Some(Ok(exact)) => {
                 judge.end = exact;
@@ -149,21 +154,26 @@ impl Judge {
         scene: &Scene,
         quantities: &[&str],
         t_span: [f64; 2],
+        stop: &'a AtomicBool,
     ) -> Result<Self, CliError> {
-        let (mut judge, model) = Self::without_end(scene, quantities)?;
+        let (mut judge, model) = Self::without_end(scene, quantities, stop)?;
         judge.find_end(&*model, t_span)?;
         Ok(judge)
     }
 
     /// A judge that knows no end yet, and the model that a reference is computed with.
-    fn without_end(scene: &Scene, quantities: &[&str]) -> Result<(Self, Box<dyn Model>), CliError> {
+    fn without_end(
+        scene: &Scene,
+        quantities: &[&str],
+        stop: &'a AtomicBool,
+    ) -> Result<(Self, Box<dyn Model>), CliError> {
         let state = scene.problem.state(quantities);
         let judged = [state, &scene.problem.invariants(quantities)].concat();
         // The first layer of the problem.
         let layer = scene.problem.layers().first().copied().unwrap_or(scene.layer);
         let model = scene.model_with(layer, &judged)?;
         let (schema, reference) = (model.schema().clone(), Reference::Exact { rounding: None });
-        Ok((Judge { state, schema, end: Vec::new(), reference }, model))
+        Ok((Judge { state, schema, end: Vec::new(), reference, stop }, model))
     }
 
     fn find_end(&mut self, model: &dyn Model, t_span: [f64; 2]) -> Result<(), CliError> {
@@ -171,10 +181,13 @@ impl Judge {
         let mut ends: Vec<(String, Vec<f64>)> = Vec::new();
         for method in reference_methods() {
             let mut last = Vec::new();
-            let outcome = model.adapt(&method, t_span, &control, &mut |_, row| {
-                last = row.values().to_vec();
-            });
-            match outcome {
+            let steps = Steps::ByError { t_span, control: control.clone() };
+            let plan = Plan { cancel: Some(self.stop), ..Plan::new(steps, SaveAt::Ends) };
+            let mut see = |_: f64, row: Row<'_>| last = row.values().to_vec();
+            match model.drive(&method, plan, &mut Watched(&mut see)) {
+                Ok(outcome) if outcome.status == Status::Cancelled => {
+                    return Err(CliError::Message("no reference solution: it was stopped".into()));
+                }
                 Ok(_) => ends.push((method.label(), last)),
                 Err(RunError::Setup(_)) => continue,
                 Err(error) => {
@@ -212,7 +225,8 @@ impl Judge {
             let (start, mut last) = (cpu_seconds(), Vec::new());
             let mut see = |_: f64, row: Row<'_>| last = row.values().to_vec();
             let exact = MethodSpec::new("exact", None);
-            Size::Steps(steps).run(model, &exact, t_span, &Rows::ENDS, &mut see).ok()?;
+            let size = Size::Steps(steps);
+            size.run(model, &exact, t_span, &Rows::ENDS, Some(self.stop), &mut see).ok()?;
             let before = worst.map_or(0.0, |worst: Rounding| worst.apart);
             let apart = Some(self.error(&last)).filter(|apart| apart.is_finite())?;
             worst = Some(Rounding { apart: before.max(apart), steps });
@@ -244,7 +258,8 @@ impl Judge {
             last = row.values().to_vec();
         };
         let mut point = WorkPoint::new(t_span, size);
-        let outcome = size.run(model, &candidate.method, t_span, &Rows::ENDS, &mut see);
+        let method = &candidate.method;
+        let outcome = size.run(model, method, t_span, &Rows::ENDS, Some(self.stop), &mut see);
         match outcome {
             Ok(done) => {
                 let length = (t_span[1] - t_span[0]).abs();
@@ -363,7 +378,7 @@ impl Size {
         Some((a_step * steps as f64).round() as u64)
     }
 
-    /// Run a method over a span in steps of this size, with these rows; why not, in words.
+    /// Run a method over a span in steps of this size, with these rows; why not, in words. A flag cancels the run.
     ///
     /// # Errors
     /// The run did not reach its end.
@@ -373,6 +388,7 @@ impl Size {
         method: &MethodSpec,
         t_span: [f64; 2],
         rows: &Rows,
+        cancel: Option<&AtomicBool>,
         sink: &mut Sink<'_>,
     ) -> Result<Done, String> {
         let in_words = |error: lieflow::Error| error.to_string();
@@ -385,9 +401,14 @@ impl Size {
                 Steps::ByError { t_span, control }
             }
         };
-        let plan = Plan { times_by_steps: rows.by_steps, ..Plan::new(steps, rows.save.clone()) };
+        let times_by_steps = rows.by_steps;
+        let plan = Plan { times_by_steps, cancel, ..Plan::new(steps, rows.save.clone()) };
         let done = model.drive(method, plan, &mut Watched(sink));
-        let stats = done.map_err(|error| error.to_string())?.stats;
+        let done = done.map_err(|error| error.to_string())?;
+        if done.status == Status::Cancelled {
+            return Err("it was stopped".into());
+        }
+        let stats = done.stats;
         Ok(match self {
             Size::Steps(_) => Done { steps: stats.accepted, rejected: 0, evaluations: None },
             Size::Tolerance(_) => Done {

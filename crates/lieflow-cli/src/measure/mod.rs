@@ -21,6 +21,7 @@ pub use journal::{JOURNAL, Journal};
 pub use judge::{Judge, MOST_ROWS, Reference, Rounding, Rows};
 
 use std::collections::VecDeque;
+use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use rand::SeedableRng;
@@ -43,6 +44,9 @@ pub enum Size {
     Tolerance(f64),
 }
 
+/// The flag of a measurement that nothing stops.
+pub static NEVER: AtomicBool = AtomicBool::new(false);
+
 /// How much is measured.
 #[derive(Clone, Copy, Debug)]
 pub struct Effort<'a> {
@@ -59,6 +63,8 @@ pub struct Effort<'a> {
     pub wanted: &'a [f64],
     /// For these a single run may take so long.
     pub patience: Duration,
+    /// The flag that ends a run before its end; then the measurement must end too, by its `tick`.
+    pub stop: &'a AtomicBool,
 }
 
 /// What is measured.
@@ -92,7 +98,7 @@ pub fn speed_against_error(
     mut tick: impl FnMut(f64) -> Result<(), CliError>,
 ) -> Result<(Vec<Curve>, Reference), CliError> {
     let Plan { candidates, t_span, quantities, .. } = *plan;
-    let judge = Judge::new(scene, quantities, t_span, plan.steps, effort.longest)?;
+    let judge = Judge::new(scene, quantities, t_span, plan.steps, effort.longest, effort.stop)?;
     let floor = judge.reference.floor();
     let mut layers: Vec<Layer> = candidates.iter().map(|candidate| candidate.layer).collect();
     layers.sort_unstable();
@@ -202,7 +208,7 @@ const PROMISING: usize = 6;
 
 /// Where runs are made and judged.
 struct Bench<'a> {
-    judge: &'a Judge,
+    judge: &'a Judge<'a>,
     effort: Effort<'a>,
     t_span: [f64; 2],
     rows: &'a Rows,
@@ -248,10 +254,11 @@ impl Bench<'_> {
                     point.operations =
                         size.operations(&**judged, &candidate.method, t_span, attempts);
                 }
+                // A run that was stopped is not kept.
+                (self.tick)(self.share)?;
                 if let Some(journal) = &mut self.journal {
                     journal.saw_point(&key, &point)?;
                 }
-                (self.tick)(self.share)?;
                 point
             }
         };
@@ -327,7 +334,7 @@ impl Size {
         let mut seconds = |repeats: u32| {
             let start = cpu_seconds();
             for _ in 0..repeats {
-                self.run(model, method, t_span, rows, &mut see)?;
+                self.run(model, method, t_span, rows, None, &mut see)?;
             }
             Ok::<_, String>((cpu_seconds() - start) / f64::from(repeats))
         };

@@ -12,7 +12,7 @@ pub(crate) use files::fields;
 pub use files::{in_full, make_folder, optional, remove_old, write_csv, write_file, write_page};
 pub use progress::Progress;
 pub use rows::{EVENTS, RowFile, TRAJECTORY};
-pub use state::{Kind, Records, RunState, ShownRows};
+pub use state::{Kind, ROWS, Records, RunState, ShownRows};
 pub use summary::{
     Accuracy, Chosen, Distance, Drift, EventSummary, FoundBy, MethodSummary, PartError, SUMMARY,
     Summary, Watched,
@@ -77,6 +77,15 @@ pub fn duration(seconds: f64) -> String {
     format!("{} {name}", short(seconds / unit))
 }
 
+/// A number of bytes as people say it: `300 bytes`, `2.1 GB`.
+pub fn size(bytes: u64) -> String {
+    const UNITS: [(f64, &str); 5] =
+        [(1e15, "PB"), (1e12, "TB"), (1e9, "GB"), (1e6, "MB"), (1e3, "kB")];
+    let bytes = bytes as f64;
+    let (unit, name) = UNITS.iter().find(|(unit, _)| bytes >= *unit).unwrap_or(&(1.0, "bytes"));
+    format!("{} {name}", short(bytes / unit))
+}
+
 /// A table without lines. Columns without a value are left out.
 pub fn table<R: IntoIterator<Item = String>>(
     header: impl IntoIterator<Item: Into<String>>,
@@ -130,5 +139,7 @@ mod tests {
         assert_eq!(told, ["144", "2.7", "0.0021", "1e-8", "0"]);
         let told = [9.8e-4, 0.021, 90.0, 700.0, 1e5, 1.6e8].map(duration);
         assert_eq!(told, ["980 µs", "21 ms", "90 s", "12 minutes", "28 hours", "5 years"]);
+        let told = [0, 320, 2_110_000_000, 1 << 50].map(size);
+        assert_eq!(told, ["0 bytes", "320 bytes", "2.1 GB", "1.1 PB"]);
     }
 }

@@ -105,6 +105,11 @@ impl RowFile {
         self.rows
     }
 
+    /// The bytes so far, with the lines that are not written yet.
+    pub fn bytes(&self) -> u64 {
+        self.written + self.lines.len() as u64
+    }
+
     /// Leave nothing.
     pub fn discard(self) {
         let _ = fs::remove_file(self.folder.join(self.names[1]));

@@ -21,7 +21,8 @@ use super::files::{remove_old, write_file};
 use crate::cmd::CliError;
 
 const STATE: &str = "run.state";
-const ROWS: &str = "run.rows";
+/// What a run showed, until it is complete.
+pub const ROWS: &str = "run.rows";
 
 /// The name of the format, and its version.
 const FORMAT: u64 = u64::from_le_bytes(*b"lf-run\x00\x01");
@@ -290,6 +291,11 @@ impl RunState {
         let mut bytes: Vec<u8> = head.flat_map(u64::to_le_bytes).collect();
         bytes.extend_from_slice(driver);
         write_file(&self.folder.join(STATE), &bytes)
+    }
+
+    /// The bytes of the records so far.
+    pub fn bytes(&self) -> u64 {
+        8 * self.shown.length * self.shown.records
     }
 
     /// The run is complete.

@@ -5,15 +5,15 @@ use std::time::Duration;
 
 use crate::support::{Folder, SCENE};
 use lieflow_cli::measure::{
-    Candidate, Curve, Effort, JOURNAL, Journal, Judge, Plan, Reference, Rounding, Rows, Size,
-    WorkPoint, speed_against_error,
+    Candidate, Curve, Effort, JOURNAL, Journal, Judge, NEVER, Plan, Reference, Rounding, Rows,
+    Size, WorkPoint, speed_against_error,
 };
 use lieflow_cli::report::{ADVICE, Answer, choices};
 use lieflow_model::model::Layer;
 use lieflow_model::scene::Scene;
 
-fn judge_of(scene: &Scene, quantities: &[&str], t_span: [f64; 2], steps: &[u64]) -> Judge {
-    Judge::new(scene, quantities, t_span, steps, Duration::from_secs(1)).unwrap()
+fn judge_of(scene: &Scene, quantities: &[&str], t_span: [f64; 2], steps: &[u64]) -> Judge<'static> {
+    Judge::new(scene, quantities, t_span, steps, Duration::from_secs(1), &NEVER).unwrap()
 }
 
 const METHODS: &str = "rkmk4 exp,rk4,mr4,taylor8,exact,rkmk dopri5 cay";
@@ -216,6 +216,7 @@ fn no_advice_below_the_error_of_the_reference() {
         seed: 1,
         wanted: &[],
         patience: second,
+        stop: &NEVER,
     };
     let (curves, _) = speed_against_error(&scene, &plan, effort, None, |_| Ok(())).unwrap();
     let own = |apart| Reference::Own { by: "a".into(), beside: "b".into(), apart };
@@ -290,6 +291,7 @@ fn what_was_measured_before_an_interruption_is_not_measured_again() {
         seed: 1,
         wanted: &[],
         patience: Duration::ZERO,
+        stop: &NEVER,
     };
     let measure = |of: &str, rounds| {
         let mut journal = Journal::open(folder.path(), of).unwrap();
@@ -350,7 +352,15 @@ fn long_times_are_gone_through_to_the_wanted_error() {
     let measure = |wanted| {
         // Every run takes too long to go on by itself.
         let (longest, patience) = (Duration::ZERO, Duration::from_secs(60));
-        let effort = Effort { rounds: 1, longest, shortest: longest, seed: 1, wanted, patience };
+        let effort = Effort {
+            rounds: 1,
+            longest,
+            shortest: longest,
+            seed: 1,
+            wanted,
+            patience,
+            stop: &NEVER,
+        };
         speed_against_error(&scene, &plan, effort, None, |_| Ok(())).unwrap().0
     };
     let runs = |curves: &[Curve]| -> Vec<usize> {
@@ -386,7 +396,7 @@ fn a_run_without_numbers_reaches_no_error() {
 #[test]
 fn two_methods_agree_where_the_exact_solution_is_not_asked() {
     let scene = Scene::parse("scene", SCENE).unwrap();
-    let judge = Judge::by_two_runs(&scene, &["attitude"], [0.0, 2.0]).unwrap();
+    let judge = Judge::by_two_runs(&scene, &["attitude"], [0.0, 2.0], &NEVER).unwrap();
     let Reference::Own { by, beside, apart } = &judge.reference else { panic!("not exact") };
     assert_ne!(by, beside);
     assert!(*apart < 1e-11, "{apart:e}");
@@ -480,6 +490,7 @@ fn the_output_of_the_scene_is_timed() {
             seed: 1,
             wanted: &[],
             patience: millisecond,
+            stop: &NEVER,
         };
         let (curves, _) = speed_against_error(&scene, &plan, effort, None, |_| Ok(())).unwrap();
         let exact = curves.iter().find(|c| c.candidate.method.name == "exact").unwrap();

@@ -13,6 +13,7 @@ mod paper;
 #[cfg(unix)]
 mod resume;
 mod right;
+mod room;
 mod run;
 mod same_bits;
 mod support;

@@ -222,6 +222,51 @@ fn a_second_run_is_interrupted() {
     assert_eq!(folder.data("out/scene"), ["events.csv", "summary.json", "trajectory.csv"]);
 }
 
+/// Work that takes long in one piece, with the file that is there when it has begun: a step of a fluid, a step with ten
+/// million rows, the trial of a run, the reference of a comparison.
+const HEAVY: [(&str, &str, &str, &str); 4] = [
+    (
+        "run",
+        "out/run.state",
+        "kind = \"fluid\"\nsurface = \"sphere\"\nn = 160\nmodes = [[2, 1, 0.3]]",
+        "[method]\nname = \"isospectral2\"\n[time]\nt_span = [0.0, 50.0]\ndt = 0.001\n[output]\nevery = 100",
+    ),
+    (
+        "run",
+        "out/run.state",
+        "kind = \"rigid-body\"\ninertia = [1, 2, 3]\nomega_body = [0.2, 0.0, 1.0]",
+        "[method]\nname = \"exact\"\n[time]\nt_span = [0.0, 100.0]\nsteps = 1\n[output]\ninterval = 1e-5",
+    ),
+    (
+        "run",
+        "",
+        "kind = \"fluid\"\nsurface = \"sphere\"\nn = 96\nmodes = [[2, 1, 0.3], [5, 3, 0.4]]",
+        "[method]\nname = \"rkmk\"\ntableau = \"heun\"\n[time]\nt_span = [0.0, 50.0]\nrtol = 1e-11",
+    ),
+    (
+        "compare",
+        "out",
+        "kind = \"spin-chain\"\nwave = { count = 20000, turns = 1, cone = 0.8 }",
+        "[time]\nt_span = [0.0, 1000.0]",
+    ),
+];
+
+#[test]
+fn a_signal_ends_heavy_work_at_once() {
+    for (command, begun, problem, rest) in HEAVY {
+        let folder = Folder::new();
+        folder.write("scene.toml", &format!("[problem]\n{problem}\n{rest}\n"));
+        let mut run = started(&folder, &[command, "scene.toml", "--out", "out"]);
+        until(&mut run, || folder.path().join(begun).exists());
+        sleep(Duration::from_millis(500));
+        let clock = Instant::now();
+        let run = interrupt(run);
+        let took = clock.elapsed();
+        assert_eq!(run.code, Some(130), "{problem}: {run:?}");
+        assert!(took < Duration::from_secs(2), "{problem}: {took:?}");
+    }
+}
+
 #[test]
 fn a_damaged_state_is_refused() {
     let folder = Folder::new();

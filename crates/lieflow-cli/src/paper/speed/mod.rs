@@ -19,7 +19,7 @@ use super::experiments::{EXPERIMENTS, Experiment, SEED};
 use super::maps::{self, Study};
 use super::methods::PaperMethod;
 use crate::cmd::CliError;
-use crate::measure::{Candidate, Curve, Effort, Plan, Rows, checks, speed_against_error};
+use crate::measure::{Candidate, Curve, Effort, NEVER, Plan, Rows, checks, speed_against_error};
 use crate::output;
 use crate::report;
 
@@ -193,6 +193,7 @@ impl Outcome {
             wanted: &[],
             patience: Duration::ZERO,
             seed: SEED,
+            stop: &NEVER,
         };
         let plan = Plan {
             quantities: &QUANTITIES,
