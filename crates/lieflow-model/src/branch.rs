@@ -18,7 +18,7 @@ pub enum Branch {
 
 impl Branch {
     /// values ← the choice that is nearest to the values `before`; as they are, where one of these is NaN.
-    fn follow(self, before: &[f64], values: &mut [f64]) {
+    pub(crate) fn follow(self, before: &[f64], values: &mut [f64]) {
         match self {
             Branch::Single => {}
             Branch::Sign => {

@@ -185,6 +185,13 @@ impl Schema {
         self.width + self.sizes
     }
 
+    /// values ← the values whose choices ([`Branch`]) are nearest to those of the numbers of another row.
+    pub fn follow(&self, before: &[f64], values: &mut [f64]) {
+        for Observable { branch, place, .. } in self {
+            branch.follow(&before[place.clone()], &mut values[place.clone()]);
+        }
+    }
+
     /// The names of all columns.
     pub fn columns(&self) -> impl Iterator<Item = &str> {
         self.iter().flat_map(|observable| &observable.columns).map(String::as_str)

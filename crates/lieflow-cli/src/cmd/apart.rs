@@ -132,7 +132,11 @@ impl Apart {
                 }
                 Kind::Event(event) if run.zeros.has(zero) => {
                     let g = |t: f64| match watch.exact(t) {
-                        Some(exact) => (events[event].value)(t, schema.row(&exact)),
+                        Some(mut exact) => {
+                            // The sign of a quaternion is that of the run.
+                            schema.follow(numbers, &mut exact);
+                            (events[event].value)(t, schema.row(&exact))
+                        }
                         None => f64::NAN,
                     };
                     let distance = &mut apart.events[event].distance;
