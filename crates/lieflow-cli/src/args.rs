@@ -368,6 +368,7 @@ A scene file with everything that it can say about a rigid body:
 Written: trajectory.csv, a column t and the columns of each quantity, 17 significant digits, the
 start first and the end last; events.csv, a line for each event; summary.json, what was modelled and run,
 the errors of the rows and of the times of events, the drift of each invariant, and a warning where
-a run is wrong or a method did not keep what it promises; index.html with figures, and each as an SVG file. When a step fails, the rows up to it are in trajectory.partial.csv and the
-exit code is 2. It is 130 after Ctrl-C, and 1 where a file cannot be written, the disk is full or a run wrote 10 GB;
+a run is wrong or a method did not keep what it promises; index.html with figures, and each as an SVG
+file. When a step fails, the rows up to it are in trajectory.partial.csv and the exit code is 2.
+It is 130 after Ctrl-C, and 1 where a file cannot be written, the disk is full or a run wrote 10 GB;
 --resume goes on from there.";

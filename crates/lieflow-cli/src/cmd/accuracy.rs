@@ -28,6 +28,8 @@ const USELESS: f64 = 0.1;
 const GOOD: f64 = 1e-4;
 /// How long an advice is looked for, in seconds, and in times that the run took where that is longer.
 const PATIENCE: [f64; 2] = [3.0, 5.0];
+/// Rows at which an advice is tried, about.
+const SAMPLE: usize = 100;
 /// A tolerance this small is compared with a larger one: a smaller one is rounding.
 const SMALLEST: f64 = 1e-13;
 
@@ -52,6 +54,8 @@ pub(super) struct Check<'a> {
     ended_by_event: bool,
     /// Is the exact motion known?
     is_exact: bool,
+    /// The times of some rows, and of the last.
+    sample: Vec<f64>,
     deadline: Cell<Option<Instant>>,
 }
 
@@ -117,7 +121,11 @@ impl<'a> Check<'a> {
             step: own.largest,
             stop,
         };
-        Check { watch, run, own, ended_by_event, is_exact, deadline: Cell::new(None) }
+        let kept: Vec<f64> = rows.rows().map(|(t, _)| t).collect();
+        let mut sample: Vec<f64> =
+            kept.iter().copied().step_by(kept.len().div_ceil(SAMPLE).max(1)).collect();
+        sample.extend((sample.last() != Some(&t)).then_some(t));
+        Check { watch, run, own, ended_by_event, is_exact, sample, deadline: Cell::new(None) }
     }
 
     /// Is the exact motion known?
@@ -152,7 +160,7 @@ impl<'a> Check<'a> {
         Ok(Checked {
             time_errors: apart.events.iter().map(time_error).collect(),
             warnings: warnings.collect(),
-            accuracy: self.judge(found_by, &apart, share, self.end(), clock),
+            accuracy: self.judge(found_by, &apart, share, clock),
         })
     }
 
@@ -189,16 +197,18 @@ impl<'a> Check<'a> {
         Limits { cancel, stop: self.run.stop, deadline: self.deadline.get() }
     }
 
-    /// The row at t of another run, and the steps to there; or why the run did not get there.
-    fn row_at(&self, way: Way, t: f64) -> Result<(Vec<f64>, Taken), String> {
+    /// The rows of another run at these times, and its steps; or why it did not get to the end.
+    fn rows_at(&self, way: Way, times: &[f64]) -> Result<(Vec<Vec<f64>>, Taken), String> {
         let cancel = AtomicBool::new(false);
-        let mut last = Last { numbers: Vec::new(), limits: self.limits(&cancel) };
-        let plan = Plan { cancel: Some(&cancel), ..self.plan(way, t)? };
-        let outcome = self.watch.model.drive(&self.method(way), plan, &mut last);
+        let mut kept = Kept { rows: Vec::new(), limits: self.limits(&cancel) };
+        let save = SaveAt::Times(times.to_vec());
+        let plan = self.plan(way, self.end())?;
+        let plan = Plan { save, times_by_steps: true, cancel: Some(&cancel), ..plan };
+        let outcome = self.watch.model.drive(&self.method(way), plan, &mut kept);
         let Outcome { status, stats, .. } = outcome.map_err(|error| error.to_string())?;
         match status {
             Status::Finished => {
-                Ok((last.numbers, Taken { steps: stats.accepted, largest: stats.largest_step }))
+                Ok((kept.rows, Taken { steps: stats.accepted, largest: stats.largest_step }))
             }
             _ => Err("it was stopped".into()),
         }
@@ -271,15 +281,8 @@ impl<'a> Check<'a> {
         Ok((found_by, share, other))
     }
 
-    /// The errors of a run to time t: a share of the distances.
-    fn judge(
-        &self,
-        found_by: FoundBy,
-        apart: &Apart,
-        share: f64,
-        t_end: f64,
-        clock: Instant,
-    ) -> Accuracy {
+    /// The errors of a run: a share of the distances.
+    fn judge(&self, found_by: FoundBy, apart: &Apart, share: f64, clock: Instant) -> Accuracy {
         let all = parts_of(self.watch).zip(&apart.parts);
         let parts = all.map(|((observable, part), &Largest { gap, t, last })| {
             let error = |Gap { absolute, relative }: Gap| {
@@ -297,6 +300,7 @@ impl<'a> Check<'a> {
             _ => explained_by_rounding(self.own.steps, 1.0),
         };
         let (seconds, rows, parts) = (clock.elapsed().as_secs_f64(), apart.rows, parts.collect());
+        let t_end = self.end();
         Accuracy { found_by, seconds, rows, digits: 0, parts, t_end }.with_digits(unseen)
     }
 
@@ -319,15 +323,20 @@ impl<'a> Check<'a> {
         let patience = PATIENCE[0].max(PATIENCE[1] * seconds.min(LONG.as_secs_f64()));
         let until = Instant::now() + Duration::from_secs_f64(patience);
         self.deadline.set(Some(until));
-        // Errors grow. Where the end is right all the same, the worst row is what counts.
-        let t = if accuracy.relative_at_end() > POOR { self.end() } else { worst.t };
-        let default = self.tried(Way { default: true, ..OWN }, t);
+        let mut times = self.sample.clone();
+        // In the direction of the run.
+        let is_before = |t: &f64| (worst.t - t) * (self.end() - self.run.t_span[0]) > 0.0;
+        let place = times.partition_point(is_before);
+        if times.get(place) != Some(&worst.t) {
+            times.insert(place, worst.t);
+        }
+        let default = self.tried(Way { default: true, ..OWN }, &times);
         let is_tried = default.is_some();
         let default = default.filter(|accuracy| accuracy.relative() <= POOR);
         let default = default.map(|accuracy| accuracy.digits_in_words());
         // Where high order and the least tolerance do not do, no step does.
         let is_hopeless = is_tried && default.is_none();
-        let smaller = if is_hopeless { None } else { self.smaller_steps(until, seconds, t) };
+        let smaller = if is_hopeless { None } else { self.smaller_steps(until, seconds, &times) };
         self.deadline.set(None);
         let advice = match (smaller, default) {
             (Some(steps), Some(digits)) => {
@@ -351,25 +360,29 @@ impl<'a> Check<'a> {
         Some(format!("{wrong} {advice}."))
     }
 
-    /// The error of another run at t, if it can be found.
-    fn tried(&self, way: Way, t: f64) -> Option<Accuracy> {
+    /// The errors of another run at these times, if they can be found.
+    fn tried(&self, way: Way, times: &[f64]) -> Option<Accuracy> {
         let clock = Instant::now();
-        let (row, taken) = self.row_at(way, t).ok()?;
-        let sizes = &self.run.sizes;
-        let apart = |other: &[f64]| Apart::of_one_row(self.watch, sizes, t, [&row, other]);
-        let (found_by, share, apart) = match self.watch.exact(t) {
-            Some(exact) => (FoundBy::Exact, 1.0, apart(&exact)),
-            None => {
+        let (rows, taken) = self.rows_at(way, times).ok()?;
+        let apart = |others: &[Vec<f64>]| {
+            let pairs = times.iter().zip(rows.iter().zip(others));
+            let pairs = pairs.map(|(t, (row, other))| (*t, [&row[..], &other[..]]));
+            Apart::of_rows(self.watch, &self.run.sizes, pairs)
+        };
+        let exact = || times.iter().map(|t| self.watch.exact(*t)).collect::<Option<Vec<_>>>();
+        let (found_by, share, apart) = match self.is_exact {
+            true => (FoundBy::Exact, 1.0, apart(&exact()?)),
+            false => {
                 let other =
-                    |way| self.row_at(way, t).map(|(row, taken)| (apart(&row), taken.steps));
+                    |way| self.rows_at(way, times).map(|(rows, taken)| (apart(&rows), taken.steps));
                 self.by_another(way, taken, other).ok()?
             }
         };
-        Some(self.judge(found_by, &apart, share, t, clock))
+        Some(self.judge(found_by, &apart, share, clock))
     }
 
-    /// Smaller steps of the same method that would do at t, and the digits that they give.
-    fn smaller_steps(&self, until: Instant, seconds: f64, t: f64) -> Option<String> {
+    /// Smaller steps of the same method that would do at these times, and the digits that they give.
+    fn smaller_steps(&self, until: Instant, seconds: f64, times: &[f64]) -> Option<String> {
         let h = self.scene().grid.h().abs();
         let tolerances = self.scene().tolerances();
         let factors: Vec<f64> = match tolerances {
@@ -383,7 +396,7 @@ impl<'a> Check<'a> {
             if longer * seconds > left {
                 break;
             }
-            let Some(accuracy) = self.tried(Way { factor, ..OWN }, t) else { break };
+            let Some(accuracy) = self.tried(Way { factor, ..OWN }, times) else { break };
             let relative = accuracy.relative();
             if relative <= POOR {
                 let steps = match tolerances {
@@ -426,16 +439,15 @@ fn size((observable, part): (&Observable, &Part), rows: &RowSample<'_>) -> f64 {
     ends[0].max(ends[1]).max(middle)
 }
 
-/// Keeps the last row of a run, and stops the run when its time is up.
-struct Last<'a> {
-    numbers: Vec<f64>,
+/// Keeps the rows of a run, and stops the run when its time is up.
+struct Kept<'a> {
+    rows: Vec<Vec<f64>>,
     limits: Limits<'a>,
 }
 
-impl Watcher for Last<'_> {
+impl Watcher for Kept<'_> {
     fn row(&mut self, _t: f64, row: Row<'_>) -> Next {
-        self.numbers.clear();
-        self.numbers.extend_from_slice(row.numbers());
+        self.rows.push(row.numbers().into());
         Next::Continue
     }
 

@@ -106,10 +106,14 @@ impl Apart {
         Apart { rows: 0, parts, events: vec![ZerosApart::default(); events] }
     }
 
-    /// The distances of one row from another.
-    pub(super) fn of_one_row(watch: &Watch<'_>, sizes: &[f64], t: f64, rows: [&[f64]; 2]) -> Self {
+    /// The distances of rows from others, each pair with its time.
+    pub(super) fn of_rows<'r>(
+        watch: &Watch<'_>,
+        sizes: &[f64],
+        pairs: impl Iterator<Item = (f64, [&'r [f64]; 2])>,
+    ) -> Self {
         let mut apart = Apart::new(watch, 0);
-        apart.see(watch, sizes, t, rows);
+        pairs.for_each(|(t, pair)| apart.see(watch, sizes, t, pair));
         apart
     }
 

@@ -178,11 +178,6 @@ impl Accuracy {
         self.worst().map_or(f64::NAN, |worst| worst.largest.relative)
     }
 
-    /// The largest relative error of a part in the last row; infinite where one is no number.
-    pub fn relative_at_end(&self) -> f64 {
-        self.parts.iter().map(|part| part.at_end.rank()).fold(0.0, f64::max)
-    }
-
     /// When a row was, as "at t = 6.9" or "at the end".
     pub fn when(&self, t: f64) -> String {
         if t == self.t_end { "at the end".into() } else { format!("at t = {}", number(t)) }

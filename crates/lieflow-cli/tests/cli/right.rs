@@ -140,7 +140,7 @@ fn a_run_that_is_wrong_warns_and_what_it_advises_does() {
     let told = folder.lieflow(&["run", "cubesat.toml", "--out", "out"]).ok();
     assert!(told.contains("\n  no digit is right\n"), "{told}");
     let warning = "WARNING: `attitude` is wrong by 180 degrees at t = 510: this run is not usable. \
-                   dt = 0.01 would give about 4 digits. Leave [method] and the steps out, and lieflow gives";
+                   dt = 0.005 would give about 4 digits. Leave [method] and the steps out, and lieflow gives";
     assert!(told.contains(warning), "{told}");
     let summary = folder.json("out/summary.json");
     assert_eq!(summary["accuracy"]["digits"], 0);
@@ -150,7 +150,7 @@ fn a_run_that_is_wrong_warns_and_what_it_advises_does() {
     );
 
     // What it advises.
-    let smaller = ["run", "cubesat.toml", "--out", "out", "--set", "time.dt=0.01"];
+    let smaller = ["run", "cubesat.toml", "--out", "out", "--set", "time.dt=0.005"];
     let told = folder.lieflow(&smaller).ok();
     assert!(!told.contains("WARNING"), "{told}");
     assert_eq!(folder.json("out/summary.json")["accuracy"]["digits"], 4);
