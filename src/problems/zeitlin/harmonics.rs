@@ -149,6 +149,8 @@ impl Zeitlin<Sphere> {
         let n = self.n();
         let omega = self.coefficients(w, n);
         let longitude = |j: usize| -PI + (j as f64 + 0.5) * 2.0 * PI / cols as f64;
+        // The same for each row.
+        let turns = Mat::from_fn(cols, n, |j, m| (m as f64 * longitude(j)).sin_cos());
         let mut grid = Mat::zeros(rows, cols);
         for i in 0..rows {
             let z = ((i as f64 + 0.5) * PI / rows as f64).cos();
@@ -159,7 +161,7 @@ impl Zeitlin<Sphere> {
                     s += omega[place(l, -(m as isize))] * p;
                 }
                 for j in 0..cols {
-                    let (sin, cos) = (m as f64 * longitude(j)).sin_cos();
+                    let (sin, cos) = turns[(j, m)];
                     grid[(i, j)] += c * cos + if m > 0 { s * sin } else { 0.0 };
                 }
             }

@@ -330,16 +330,17 @@ pub fn run_scene(
         rtol,
         atol,
     };
-    let field = watch.field(rows);
-    let drawn = Drawn {
-        scene,
-        rows,
-        figure: watch.drawn,
-        field: &field,
-        asked: &watch.written,
-        watched: &watch.laws,
-    };
-    let page = (!no_page).then(|| output::run_page(&summary, &drawn));
+    let page = (!no_page).then(|| {
+        let drawn = Drawn {
+            scene,
+            rows,
+            figure: watch.drawn,
+            field: &watch.field(rows),
+            asked: &watch.written,
+            watched: &watch.laws,
+        };
+        output::run_page(&summary, &drawn)
+    });
     let state = kept.finish(completed)?;
     output::write_file(&summary_path, &output::to_json(&summary)?)?;
     match page {
