@@ -64,16 +64,16 @@ impl Branches {
 
     /// numbers ← the row whose choices are nearest to those of the row before.
     pub(crate) fn follow(&mut self, numbers: &mut [f64]) {
-        let mut rest = &mut self.last[..];
+        let mut first = 0;
         for (branch, places) in &self.columns {
-            let (before, others) = rest.split_at_mut(places.len());
+            let before = &mut self.last[first..first + places.len()];
             let values = &mut numbers[places.clone()];
             branch.follow(before, values);
             // A point without values is passed over.
             if values.iter().all(|x| x.is_finite()) {
                 before.copy_from_slice(values);
             }
-            rest = others;
+            first += places.len();
         }
     }
 
