@@ -232,10 +232,11 @@ fn taylor_fixed<'a, const N: usize>(exact: &'a Matrix3<f64>, steps: usize) -> In
     let body = RigidBodyState::new(TOP).expect("a body");
     Box::new(move || {
         let mut y = body.state(SPIN, Matrix3::identity()).expect("a state");
+        let mut work = Taylor::<N>.work(&body, &y).expect("a workspace");
         let h = T / steps as f64;
         for n in 0..steps {
             let step = Step { n: n as u64, t: 0.0, h: black_box(h) };
-            Taylor::<N>.step(&body, step, &mut y, &mut ()).expect("a step");
+            Taylor::<N>.step(&body, step, &mut y, &mut work).expect("a step");
         }
         (y.g - exact).norm() / exact.norm()
     })

@@ -8,7 +8,7 @@ use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
 use crate::dense;
 use crate::scalar::{Counted, DoubleDouble, Ops, Real, larger, tally};
-use crate::tolerance::Scales;
+use crate::tolerance::{PartTolerance, Scales};
 
 /// Points that can be compared: those of a linear space with a norm.
 ///
@@ -28,17 +28,11 @@ pub trait Metric {
     fn is_same(&self, _x: &Self) -> bool {
         false
     }
-    /// An error at this point in units of the tolerance: the largest of the ratios ‖error‖/(atol + rtol·‖self‖) of the
-    /// parts.
+    /// An error at this point in units of the tolerance: the largest of the ratios of the parts
+    /// ([`tolerance`](crate::tolerance)).
     #[inline]
     fn error_ratio(&self, gap: Gap<'_, Self>, scales: &mut Scales<'_>) -> Self::Scalar {
-        let size = self.size();
-        let error = match gap {
-            Gap::To(x) => self.distance(x),
-            Gap::Of(e) => e.size(),
-            Gap::Relative(e) => e * size,
-        };
-        scales.part().ratio(error, size)
+        gap.ratio(self, scales.part())
     }
 }
 
@@ -106,14 +100,91 @@ impl<A: Numbers> Numbers for Box<[A]> {
 }
 
 /// An error at a point.
-#[derive(Clone, Copy, Debug)]
-pub enum Gap<'a, M: Metric + ?Sized> {
+#[derive(Debug)]
+pub struct Gap<'a, M: Metric + ?Sized> {
+    error: GivenBy<'a, M>,
+    /// The point at which the step started, if the error is that of a step.
+    from: Option<&'a M>,
+}
+
+/// The way in which an error is given.
+#[derive(Debug)]
+enum GivenBy<'a, M: Metric + ?Sized> {
     /// The distance from another point.
     To(&'a M),
     /// The error itself.
     Of(&'a M),
     /// A multiple of the size of each part.
     Relative(M::Scalar),
+}
+
+impl<M: Metric + ?Sized> Clone for Gap<'_, M> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+impl<M: Metric + ?Sized> Copy for Gap<'_, M> {}
+impl<M: Metric + ?Sized> Clone for GivenBy<'_, M> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+impl<M: Metric + ?Sized> Copy for GivenBy<'_, M> {}
+
+impl<'a, M: Metric + ?Sized> Gap<'a, M> {
+    /// The distance from another point.
+    #[inline]
+    pub fn to(x: &'a M) -> Self {
+        Gap { error: GivenBy::To(x), from: None }
+    }
+    /// The error itself.
+    #[inline]
+    pub fn of(e: &'a M) -> Self {
+        Gap { error: GivenBy::Of(e), from: None }
+    }
+    /// A multiple of the size of each part.
+    #[inline]
+    pub fn relative(e: M::Scalar) -> Self {
+        Gap { error: GivenBy::Relative(e), from: None }
+    }
+    /// The same error, of a step from this point. A step that moves a part little has a smaller tolerance
+    /// ([`tolerance`](crate::tolerance)).
+    #[inline]
+    pub fn of_step_from(self, from: &'a M) -> Self {
+        Gap { from: Some(from), ..self }
+    }
+    /// The error of a part of the point.
+    #[inline]
+    pub fn part<A: Metric<Scalar = M::Scalar> + ?Sized>(
+        self,
+        part: impl Fn(&'a M) -> &'a A,
+    ) -> Gap<'a, A> {
+        let error = match self.error {
+            GivenBy::To(x) => GivenBy::To(part(x)),
+            GivenBy::Of(e) => GivenBy::Of(part(e)),
+            GivenBy::Relative(e) => GivenBy::Relative(e),
+        };
+        Gap { error, from: self.from.map(part) }
+    }
+    /// The norm of the error at a point of this size.
+    #[inline]
+    fn error(self, at: &M, size: M::Scalar) -> M::Scalar {
+        match self.error {
+            GivenBy::To(x) => at.distance(x),
+            GivenBy::Of(e) => e.size(),
+            GivenBy::Relative(e) => e * size,
+        }
+    }
+    /// The ratio of the error of a whole part.
+    #[inline(always)]
+    fn ratio(self, at: &M, part: &PartTolerance) -> M::Scalar {
+        let size = at.size();
+        let error = self.error(at, size);
+        match self.from {
+            Some(from) => part.ratio_of_step(error, size, at.distance(from)),
+            None => part.ratio(error, size),
+        }
+    }
 }
 
 /// A point of a linear space with a norm. Allocates nothing.
@@ -223,19 +294,13 @@ macro_rules! small {
                 let part = scales.part();
                 if part.has_components() {
                     let entries = || self.as_slice().iter().copied();
-                    return match gap {
-                        Gap::To(x) => part.largest((self - x).iter().copied(), entries()),
-                        Gap::Of(e) => part.largest(e.as_slice().iter().copied(), entries()),
-                        Gap::Relative(e) => part.largest(entries().map(|x| e * x), entries()),
+                    return match gap.error {
+                        GivenBy::To(x) => part.largest((self - x).iter().copied(), entries()),
+                        GivenBy::Of(e) => part.largest(e.as_slice().iter().copied(), entries()),
+                        GivenBy::Relative(e) => part.largest(entries().map(|x| e * x), entries()),
                     };
                 }
-                let size = self.size();
-                let error = match gap {
-                    Gap::To(x) => self.distance(x),
-                    Gap::Of(e) => e.size(),
-                    Gap::Relative(e) => e * size,
-                };
-                part.ratio(error, size)
+                gap.ratio(self, part)
             }
         }
 
@@ -300,22 +365,16 @@ impl Metric for Mat<f64> {
     fn error_ratio(&self, gap: Gap<'_, Self>, scales: &mut Scales<'_>) -> f64 {
         let part = scales.part();
         if part.has_components() {
-            return match gap {
-                Gap::To(x) => {
+            return match gap.error {
+                GivenBy::To(x) => {
                     let errors = entries(self).zip(entries(x)).map(|(a, b)| a - b);
                     part.largest(errors, entries(self))
                 }
-                Gap::Of(e) => part.largest(entries(e), entries(self)),
-                Gap::Relative(e) => part.largest(entries(self).map(|x| e * x), entries(self)),
+                GivenBy::Of(e) => part.largest(entries(e), entries(self)),
+                GivenBy::Relative(e) => part.largest(entries(self).map(|x| e * x), entries(self)),
             };
         }
-        let size = self.size();
-        let error = match gap {
-            Gap::To(x) => self.distance(x),
-            Gap::Of(e) => e.size(),
-            Gap::Relative(e) => e * size,
-        };
-        part.ratio(error, size)
+        gap.ratio(self, part)
     }
 }
 
@@ -408,13 +467,8 @@ impl<A: Metric, B: Metric<Scalar = A::Scalar>> Metric for (A, B) {
     }
     #[inline]
     fn error_ratio(&self, gap: Gap<'_, Self>, scales: &mut Scales<'_>) -> A::Scalar {
-        let (first, second) = match gap {
-            Gap::To(x) => (Gap::To(&x.0), Gap::To(&x.1)),
-            Gap::Of(e) => (Gap::Of(&e.0), Gap::Of(&e.1)),
-            Gap::Relative(e) => (Gap::Relative(e), Gap::Relative(e)),
-        };
-        let first = self.0.error_ratio(first, scales);
-        larger(first, self.1.error_ratio(second, scales))
+        let first = self.0.error_ratio(gap.part(|y| &y.0), scales);
+        larger(first, self.1.error_ratio(gap.part(|y| &y.1), scales))
     }
 }
 
@@ -463,15 +517,11 @@ impl<M: Metric, const N: usize> Metric for [M; N] {
     #[inline]
     fn error_ratio(&self, gap: Gap<'_, Self>, scales: &mut Scales<'_>) -> M::Scalar {
         let part = scales.part();
-        let error = |i: usize| match gap {
-            Gap::To(x) => self[i].distance(&x[i]),
-            Gap::Of(e) => e[i].size(),
-            Gap::Relative(e) => e * self[i].size(),
-        };
-        match part.has_components() {
-            true => part.largest((0..N).map(error), self.iter().map(M::size)),
-            false => part.ratio(norm((0..N).map(error)), self.size()),
+        if part.has_components() {
+            let error = |i: usize| gap.part(|y| &y[i]).error(&self[i], self[i].size());
+            return part.largest((0..N).map(error), self.iter().map(M::size));
         }
+        gap.ratio(self, part)
     }
 }
 
@@ -521,14 +571,8 @@ impl<M: Metric> Metric for Box<[M]> {
     }
     /// All copies have the same tolerances.
     fn error_ratio(&self, gap: Gap<'_, Self>, scales: &mut Scales<'_>) -> M::Scalar {
-        scales.for_each_copy(self.len(), |i, scales| {
-            let gap = match gap {
-                Gap::To(x) => Gap::To(&x[i]),
-                Gap::Of(e) => Gap::Of(&e[i]),
-                Gap::Relative(e) => Gap::Relative(e),
-            };
-            self[i].error_ratio(gap, scales)
-        })
+        scales
+            .for_each_copy(self.len(), |i, scales| self[i].error_ratio(gap.part(|y| &y[i]), scales))
     }
 }
 

@@ -5,16 +5,21 @@
 //!
 //! | part | error | compared with |
 //! |---|---|---|
-//! | of a linear space: a vector, a momentum | ‖error‖ | atol + rtol·‖y‖ |
+//! | of a linear space: a vector, a momentum | ‖error‖ | atol + rtol·‖y‖, in 𝔤; atol + rtol·min(‖y‖, 10 ‖y − y₀‖), in M |
 //! | the same, with an atol for each component | \|error_i\| | atol_i + rtol·\|y_i\| |
 //! | of a group: a rotation, a quaternion, a matrix | the angle, in radian (‖e‖ in 𝔤) | atol + rtol |
 //! | any, by [`Rule::PerLength`] | ‖error‖ of all parts together | atol + rtol·(the length of the step) |
+//!
+//! Methods that estimate the error in M ([`Rk`](crate::methods::Rk), commutator-free methods, step doubling) know how far a
+//! step from y₀ to y moves a part. A part that is near rest, as at a saddle, has a smaller tolerance, because small
+//! components decide there. rtol has a floor of 4 ε·‖y‖, the rounding of y. Lengths do not depend on the axes, so a run
+//! does not either.
 //!
 //! A product has a part for each factor. SE(3) has two parts, rotation and translation. A power Gᴺ has the parts of G,
 //! shared by all copies.
 
 use crate::error::Error;
-use crate::scalar::{Real, larger};
+use crate::scalar::{Real, larger, smaller};
 
 /// The quantity that rtol is relative to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -26,6 +31,9 @@ pub enum Rule {
     /// The length of the step: the error of a run is about rtol times the length of its time span.
     PerLength,
 }
+
+/// A part that a step moves by less than its size over this number has a smaller tolerance.
+const REACH: f64 = 10.0;
 
 /// The tolerance of a part of a point.
 #[derive(Clone, Debug, PartialEq)]
@@ -85,6 +93,18 @@ impl PartTolerance {
         } else {
             ratio(error, self.scale(size))
         }
+    }
+
+    /// The ratio of an error of a whole part of this size, which a step moved by this length.
+    #[inline(always)]
+    pub(crate) fn ratio_of_step<S: Real>(&self, error: S, size: S, moved: S) -> S {
+        if self.components.len() > 1 {
+            return S::lit(f64::INFINITY);
+        }
+        let relative_to = smaller(size, S::lit(REACH) * moved);
+        let rounding = S::lit(self.rtol.min(4.0 * S::EPSILON)) * size;
+        let scale = larger(S::lit(self.rtol) * relative_to, rounding);
+        ratio(error, S::lit(self.atol) + scale)
     }
 
     /// True if there is an atol for each component.

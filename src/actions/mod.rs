@@ -87,7 +87,7 @@ pub trait Action<G: LieGroup> {
         y: &Self::Point,
         scales: &mut Scales<'_>,
     ) -> G::Scalar {
-        y.error_ratio(Gap::Relative(group.norm(e)), scales)
+        y.error_ratio(Gap::relative(group.norm(e)), scales)
     }
 
     /// q ← λ_p(u) = Λ(Ψ(u), p), equation (6).

@@ -19,6 +19,7 @@ use crate::problems::{
     TaylorField,
 };
 use crate::scalar::{Real, Trig};
+use crate::tolerance::Tolerance;
 
 /// A method without an estimate of its own.
 fn plain<'p, P: Problem + 'p>(method: impl Method<P> + Clone + 'p) -> MaybeMethod<'p, P> {
@@ -78,6 +79,17 @@ where
             _ => Ok(None),
         };
     }
+    let is_rkmk = matches!(choice.info.recipe, Recipe::Rkmk);
+    if is_rkmk && let NamedMap::Exp(psi) = choice.map::<P::Group>()? {
+        let psi = *served::<P::Group, _>(&psi);
+        let name = choice.tableau.name;
+        if name == tableau::DOPRI5.name {
+            return pair(RkmkDopri5(psi));
+        }
+        if name == tableau::DOP853.name {
+            return pair(RkmkDop853(psi));
+        }
+    }
     let SizedTableau::Small(table) = choice.tableau.table else { return Ok(None) };
     let is_classical = table.name == tableau::RK4.name;
     macro_rules! with {
@@ -109,11 +121,19 @@ fn served<G: Serves<Psi>, Psi>(psi: &Psi) -> &G::Map {
 #[derive(Clone, Copy)]
 struct Rkmk4<Psi>(Psi);
 
+/// RKMK with the pair of order 5 as a constant.
+#[derive(Clone, Copy)]
+struct RkmkDopri5<Psi>(Psi);
+
+/// RKMK with the pair of order 8 as a constant. It is the method of scenes that name none.
+#[derive(Clone, Copy)]
+struct RkmkDop853<Psi>(Psi);
+
 /// Runge–Kutta on the entries of the state with the classical tableau as a constant.
 #[derive(Clone, Copy)]
 struct Rk4;
 
-macro_rules! classical_method {
+macro_rules! constant_method {
     ([$($psi:ident)?] $name:ty, [$($bound:tt)*], $this:ident => $method:expr, $of:ty) => {
         impl<P: Ambient, $($psi)?> Method<P> for $name
         where
@@ -186,9 +206,47 @@ macro_rules! classical_method {
         }
     };
 }
-classical_method!([Psi] Rkmk4<Psi>, [Psi: CoordinateMap<P::Group> + Copy],
+constant_method!([Psi] Rkmk4<Psi>, [Psi: CoordinateMap<P::Group> + Copy],
     this => Rkmk::new(tableau::RK4, this.0), Rkmk<Psi, 4>);
-classical_method!([] Rk4, [], _this => Rk(tableau::RK4), Rk<4>);
+constant_method!([] Rk4, [], _this => Rk(tableau::RK4), Rk<4>);
+constant_method!([Psi] RkmkDopri5<Psi>, [Psi: CoordinateMap<P::Group> + Copy],
+    this => this.method(), Rkmk<Psi, { tableau::DOPRI5.a.len() }>);
+constant_method!([Psi] RkmkDop853<Psi>, [Psi: CoordinateMap<P::Group> + Copy],
+    this => this.method(), Rkmk<Psi, { tableau::DOP853.a.len() }>);
+
+macro_rules! constant_pair {
+    ($name:ident, $table:expr) => {
+        impl<Psi: Copy> $name<Psi> {
+            #[inline(always)]
+            fn method(&self) -> Rkmk<Psi, { $table.a.len() }> {
+                Rkmk::new($table, self.0)
+            }
+        }
+
+        impl<P: Ambient, Psi: CoordinateMap<P::Group> + Copy> Embedded<P> for $name<Psi> {
+            fn error_order(&self, problem: &P) -> Result<usize, Error> {
+                self.method().error_order(problem)
+            }
+            fn evaluations_with_error(&self, problem: &P) -> Option<u64> {
+                self.method().evaluations_with_error(problem)
+            }
+            #[inline(always)]
+            fn step_with_error(
+                &self,
+                problem: &P,
+                step: Step<ScalarOf<P>>,
+                tolerance: &Tolerance,
+                from: &PointOf<P>,
+                work: &mut Self::Work,
+                to: &mut PointOf<P>,
+            ) -> Result<ScalarOf<P>, StepError> {
+                self.method().step_with_error(problem, step, tolerance, from, work, to)
+            }
+        }
+    };
+}
+constant_pair!(RkmkDopri5, tableau::DOPRI5);
+constant_pair!(RkmkDop853, tableau::DOP853);
 
 /// Classical methods on the entries of the state, explicit and implicit.
 ///
@@ -264,7 +322,7 @@ pub fn series<'p, P: TaylorField<Group: SeriesGroup> + 'p>(
     choice: &Choice<'_>,
 ) -> MaybeMethod<'p, P> {
     match choice.info.recipe {
-        Recipe::Series(order) => plain(LieSeries::new(order)?),
+        Recipe::Series(order) => pair(LieSeries::new(order)?),
         _ => Ok(None),
     }
 }
@@ -286,19 +344,19 @@ where
         Recipe::Buss => plain(Buss4),
         Recipe::Dmv(method) => plain(method),
         Recipe::Exact => pair(ExactMotion),
-        Recipe::Series(4) => plain(Taylor::<4>),
-        Recipe::Series(5) => plain(Taylor::<5>),
-        Recipe::Series(6) => plain(Taylor::<6>),
-        Recipe::Series(7) => plain(Taylor::<7>),
-        Recipe::Series(8) => plain(Taylor::<8>),
-        Recipe::Series(9) => plain(Taylor::<9>),
-        Recipe::Series(10) => plain(Taylor::<10>),
-        Recipe::Series(11) => plain(Taylor::<11>),
-        Recipe::Series(12) => plain(Taylor::<12>),
-        Recipe::Series(13) => plain(Taylor::<13>),
-        Recipe::Series(14) => plain(Taylor::<14>),
-        Recipe::Series(15) => plain(Taylor::<15>),
-        Recipe::Series(16) => plain(Taylor::<16>),
+        Recipe::Series(4) => pair(Taylor::<4>),
+        Recipe::Series(5) => pair(Taylor::<5>),
+        Recipe::Series(6) => pair(Taylor::<6>),
+        Recipe::Series(7) => pair(Taylor::<7>),
+        Recipe::Series(8) => pair(Taylor::<8>),
+        Recipe::Series(9) => pair(Taylor::<9>),
+        Recipe::Series(10) => pair(Taylor::<10>),
+        Recipe::Series(11) => pair(Taylor::<11>),
+        Recipe::Series(12) => pair(Taylor::<12>),
+        Recipe::Series(13) => pair(Taylor::<13>),
+        Recipe::Series(14) => pair(Taylor::<14>),
+        Recipe::Series(15) => pair(Taylor::<15>),
+        Recipe::Series(16) => pair(Taylor::<16>),
         _ => Ok(None),
     }
 }

@@ -116,7 +116,7 @@ pub trait LieGroup: LieAlgebra {
         x: &Self::Vector,
         scales: &mut Scales<'_>,
     ) -> Self::Scalar {
-        x.error_ratio(Gap::Relative(self.norm(e)), scales)
+        x.error_ratio(Gap::relative(self.norm(e)), scales)
     }
     /// ‖a − b‖ (Frobenius).
     fn distance(&self, a: &Self::Elem, b: &Self::Elem) -> Self::Scalar;

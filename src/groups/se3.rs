@@ -149,11 +149,11 @@ impl<S: Real> LieGroup for Se3<S> {
         let turned = scales.part().ratio(e.0.size(), S::lit(1.0));
         // d/dε of exp(εe) g moves the place p by ω × p + v.
         let moved = e.1 + cross(&e.0, &g.1);
-        larger(turned, g.1.error_ratio(Gap::Of(&moved), scales))
+        larger(turned, g.1.error_ratio(Gap::of(&moved), scales))
     }
     #[inline]
     fn vector_error_ratio(&self, e: &Self::Alg, x: &Vector3<S>, scales: &mut Scales<'_>) -> S {
-        x.error_ratio(Gap::Of(&(e.1 + cross(&e.0, x))), scales)
+        x.error_ratio(Gap::of(&(e.1 + cross(&e.0, x))), scales)
     }
     fn distance(&self, a: &Self::Elem, b: &Self::Elem) -> S {
         let turned = So3::new().distance(&a.0, &b.0);

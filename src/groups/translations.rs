@@ -113,11 +113,11 @@ impl<V: LinearSpace> LieGroup for Translations<V> {
     }
     #[inline]
     fn error_ratio(&self, e: &V, g: &V, scales: &mut Scales<'_>) -> V::Scalar {
-        g.error_ratio(Gap::Of(e), scales)
+        g.error_ratio(Gap::of(e), scales)
     }
     #[inline]
     fn vector_error_ratio(&self, e: &V, x: &V, scales: &mut Scales<'_>) -> V::Scalar {
-        x.error_ratio(Gap::Of(e), scales)
+        x.error_ratio(Gap::of(e), scales)
     }
     fn distance(&self, a: &V, b: &V) -> V::Scalar {
         a.distance(b)

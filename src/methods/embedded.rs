@@ -71,7 +71,7 @@ pub(super) fn ratio_of_relative<S: Real, M: Metric<Scalar = S>>(
 ) -> S {
     match tolerance.rule() {
         Rule::PerLength => ratio(e, tolerance.per_length(length)),
-        Rule::PerStep => y.error_ratio(Gap::Relative(e), &mut tolerance.scales()),
+        Rule::PerStep => y.error_ratio(Gap::relative(e), &mut tolerance.scales()),
     }
 }
 
@@ -92,7 +92,9 @@ pub(super) fn ratio_between<S: Real, M: Metric<Scalar = S>>(
     }
     match tolerance.rule() {
         Rule::PerLength => ratio(error, tolerance.per_length(to.distance(from))),
-        Rule::PerStep => weight * to.error_ratio(Gap::To(other), &mut tolerance.scales()),
+        Rule::PerStep => {
+            weight * to.error_ratio(Gap::to(other).of_step_from(from), &mut tolerance.scales())
+        }
     }
 }
 

@@ -28,7 +28,7 @@ use crate::scalar::Real;
 use crate::tolerance::Tolerance;
 
 /// A group whose elements lie in a linear space with products by elements of 𝔤.
-pub trait SeriesGroup: LieGroup {
+pub trait SeriesGroup: LieGroup + LieAlgebra<Scalar: Into<f64>> {
     /// x ← 0.
     fn clear(&self, x: &mut Self::Elem);
     /// x ← a·x.
@@ -287,7 +287,6 @@ where
 impl<P: TaylorField> Embedded<P> for LieSeries
 where
     P::Group: SeriesGroup,
-    ScalarOf<P>: Into<f64>,
 {
     fn error_order(&self, _: &P) -> Result<usize, Error> {
         Ok(self.order - 1)

@@ -161,15 +161,16 @@ impl<P: Ambient, const S: usize> Embedded<P> for Rk<S> {
         if known.is_offered {
             known.set(step.t + step.h, to);
         }
-        let length = to.distance(from);
         let mut size = |weights: &[f64; S]| {
             z.clear();
             for (&w, k) in weights[..stages].iter().zip(k.iter()) {
                 z.add(step.h * ScalarOf::<P>::lit(w), k);
             }
             match tolerance.rule() {
-                Rule::PerLength => ratio(z.size(), tolerance.per_length(length)),
-                Rule::PerStep => to.error_ratio(Gap::Of(z), &mut tolerance.scales()),
+                Rule::PerLength => ratio(z.size(), tolerance.per_length(to.distance(from))),
+                Rule::PerStep => {
+                    to.error_ratio(Gap::of(z).of_step_from(from), &mut tolerance.scales())
+                }
             }
         };
         let error = match self.0.error {

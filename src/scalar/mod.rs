@@ -157,6 +157,13 @@ impl Trig for f64 {
     }
 }
 
+/// min(a, b); NaN if b is NaN.
+#[inline]
+pub(crate) fn smaller<S: Real>(a: S, b: S) -> S {
+    let [c] = (a - b).branch(0.0, || [a], || [b]);
+    c
+}
+
 /// max(a, b); NaN if b is NaN.
 #[inline]
 pub(crate) fn larger<S: Real>(a: S, b: S) -> S {

@@ -12,7 +12,8 @@
 //!
 //! The last two coefficients give the step size: θ = min((tol/|q_{N−1}|)^{1/(N−1)}, (tol/|q_N|)^{1/N}).
 //! [`Taylor::advance`] takes the largest step within the tolerance. It computes the step size from coefficients that it
-//! needs in any case, so no step is rejected. The method is also [`Embedded`], for adaptive runs. For other groups and
+//! needs in any case, so no step is rejected. The method is also [`Embedded`], for adaptive runs. Its series at θh is the
+//! dense output, of order N at all θ. For other groups and
 //! fields see [`LieSeries`](super::LieSeries). Source: W. Gröbner, Die Lie-Reihen und ihre Anwendungen (1960); À. Jorba
 //! & M. Zou, Experiment. Math. 14 (2005), for the step.
 
@@ -22,7 +23,7 @@ mod series;
 use nalgebra::Vector3;
 
 pub use lanes::Wide;
-use series::{Advance, Body, OneStep, reach, rotation};
+use series::{Advance, Body, OneStep, Terms, at, reach, rotation, square_of};
 
 use super::embedded::ratio_of_relative;
 use super::simo_wong::turn_by;
@@ -41,7 +42,8 @@ use crate::tolerance::Tolerance;
 /// use lieflow::Step;
 /// let body = RigidBody::<f64>::new([1.0, 2.0, 3.0]).unwrap();
 /// let mut m = nalgebra::Vector3::x();
-/// let _ = Taylor::<17>.step(&body, Step { n: 0, t: 0.0, h: 0.1 }, &mut m, &mut ());
+/// let mut work = Taylor::<17>.work(&body, &m).unwrap();
+/// let _ = Taylor::<17>.step(&body, Step { n: 0, t: 0.0, h: 0.1 }, &mut m, &mut work);
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Taylor<const N: usize>;
@@ -106,11 +108,28 @@ impl<const N: usize> Taylor<N> {
     }
 }
 
+/// The terms of a step, for the points within it.
+#[derive(Clone, Debug)]
+pub struct TaylorWork<S, const N: usize> {
+    terms: [[S; 4]; N],
+    /// The size of that step, and the momentum at its start.
+    of: Option<(S, Vector3<S>)>,
+}
+
+impl<S: Wide, const N: usize> TaylorWork<S, N> {
+    /// terms ← those of a step of size h from the momentum m.
+    #[inline(always)]
+    fn set(&mut self, j: &Vector3<S>, h: S, m: Vector3<S>) {
+        self.terms = S::dispatch(Terms(OneStep { body: &Body::new(j), h, m }));
+        self.of = Some((h, m));
+    }
+}
+
 impl<P: FreeBody, const N: usize> Method<P> for Taylor<N>
 where
     ScalarOf<P>: Wide,
 {
-    type Work = ();
+    type Work = TaylorWork<ScalarOf<P>, N>;
 
     fn order(&self, _: &P) -> usize {
         N
@@ -121,8 +140,8 @@ where
     fn map_counts(&self, _: &P, _: bool) -> Option<MapCounts> {
         Some(MapCounts::default())
     }
-    fn work(&self, _: &P, _: &PointOf<P>) -> Result<(), Error> {
-        Ok(())
+    fn work(&self, _: &P, _: &PointOf<P>) -> Result<Self::Work, Error> {
+        Ok(TaylorWork { terms: [[Real::lit(0.0); 4]; N], of: None })
     }
     #[inline]
     fn step(
@@ -130,12 +149,43 @@ where
         problem: &P,
         Step { h, .. }: Step<ScalarOf<P>>,
         y: &mut PointOf<P>,
-        (): &mut (),
+        _: &mut Self::Work,
     ) -> Result<(), StepError> {
         let (m, mut frame) = problem.load(y);
         let body = Body::new(problem.inverse_inertia());
         let (q, _) = ScalarOf::<P>::dispatch(OneStep::<_, N> { body: &body, h, m });
         turn_by(problem, &rotation(q), m, &mut frame, y)
+    }
+    /// A step with an error estimate has its terms. Another one needs them again.
+    fn dense_evaluations(&self, _: &P) -> [Option<u64>; 2] {
+        [Some(N as u64), Some(0)]
+    }
+    fn prepare(
+        &self,
+        problem: &P,
+        Step { h, .. }: Step<ScalarOf<P>>,
+        from: &PointOf<P>,
+        _: &PointOf<P>,
+        work: &mut Self::Work,
+    ) -> Result<(), StepError> {
+        let m = problem.load(from).0;
+        if work.of != Some((h, m)) {
+            work.set(problem.inverse_inertia(), h, m);
+        }
+        Ok(())
+    }
+    /// The series at θh.
+    fn interpolate(
+        &self,
+        problem: &P,
+        _: Step<ScalarOf<P>>,
+        theta: f64,
+        from: &PointOf<P>,
+        work: &mut Self::Work,
+        y: &mut PointOf<P>,
+    ) -> Result<(), StepError> {
+        let (m, mut frame) = problem.load(from);
+        turn_by(problem, &rotation(at(&work.terms, Real::lit(theta))), m, &mut frame, y)
     }
 }
 
@@ -157,17 +207,18 @@ where
         Step { h, .. }: Step<ScalarOf<P>>,
         tolerance: &Tolerance,
         from: &PointOf<P>,
-        (): &mut (),
+        work: &mut Self::Work,
         to: &mut PointOf<P>,
     ) -> Result<ScalarOf<P>, StepError> {
         let (m, mut frame) = problem.load(from);
         let j = problem.inverse_inertia();
-        let body = Body::new(j);
-        let (q, squares) = ScalarOf::<P>::dispatch(OneStep::<_, N> { body: &body, h, m });
-        turn_by(problem, &rotation(q), m, &mut frame, to)?;
+        work.set(j, h, m);
+        let terms = &work.terms;
+        turn_by(problem, &rotation(at(terms, Real::lit(1.0))), m, &mut frame, to)?;
         let n = N as f64;
         // One of the last two may vanish where the motion is even or odd.
-        let [before, last] = squares.map(Into::<f64>::into);
+        let [before, last] =
+            [terms[N - 2], terms[N - 1]].map(|term| Into::<f64>::into(square_of(term)));
         let error = 2.0 * last.sqrt().max(before.powf(0.5 * n / (n - 1.0)));
         let omega = Vector3::new(j[0] * m[0], j[1] * m[1], j[2] * m[2]);
         let length = h.abs() * So3::new().norm(&omega);

@@ -111,6 +111,39 @@ impl<S: Wide, const N: usize> Kernel<S> for OneStep<'_, S, N> {
     }
 }
 
+/// The terms of a step: the coefficients of θ, …, θᴺ of the quaternion at θh.
+pub(super) struct Terms<'a, S, const N: usize>(pub(super) OneStep<'a, S, N>);
+
+impl<S: Wide, const N: usize> Kernel<S> for Terms<'_, S, N> {
+    type Out = [[S; 4]; N];
+
+    #[inline(always)]
+    fn run<L: Lanes<S>>(self, l: L) -> Self::Out {
+        let OneStep { body, h, m } = self.0;
+        let m = l.load([m[0], m[1], m[2], S::lit(0.0)]);
+        body.terms::<L, N>(l, h, m).map(|term| l.store(term))
+    }
+}
+
+/// The quaternion at θh, not of length 1, by Horner's rule.
+#[inline(always)]
+pub(super) fn at<S: Real, const N: usize>(terms: &[[S; 4]; N], theta: S) -> [S; 4] {
+    let mut sum = [S::lit(0.0); 4];
+    for term in terms.iter().rev() {
+        for i in 0..4 {
+            sum[i] = (sum[i] + term[i]) * theta;
+        }
+    }
+    sum[3] += S::lit(1.0);
+    sum
+}
+
+/// |term|².
+#[inline(always)]
+pub(super) fn square_of<S: Real>([x, y, z, w]: [S; 4]) -> S {
+    (x * x + y * y) + (z * z + w * w)
+}
+
 /// The rotation of a quaternion of any length.
 #[inline(always)]
 pub(super) fn rotation<S: Real>([x, y, z, w]: [S; 4]) -> Matrix3<S> {
