@@ -8,6 +8,7 @@ mod physics;
 mod restore;
 mod scipy;
 mod scipy_events;
+mod series;
 #[path = "../support/mod.rs"]
 mod support;
 mod tolerances;

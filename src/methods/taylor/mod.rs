@@ -23,7 +23,7 @@ mod series;
 use nalgebra::Vector3;
 
 pub use lanes::Wide;
-use series::{Advance, Body, OneStep, Terms, at, reach, rotation, square_of};
+use series::{Advance, Body, OneStep, Terms, at, at_end, error, reach, rotation};
 
 use super::embedded::ratio_of_relative;
 use super::simo_wong::turn_by;
@@ -214,12 +214,9 @@ where
         let j = problem.inverse_inertia();
         work.set(j, h, m);
         let terms = &work.terms;
-        turn_by(problem, &rotation(at(terms, Real::lit(1.0))), m, &mut frame, to)?;
-        let n = N as f64;
-        // One of the last two may vanish where the motion is even or odd.
-        let [before, last] =
-            [terms[N - 2], terms[N - 1]].map(|term| Into::<f64>::into(square_of(term)));
-        let error = 2.0 * last.sqrt().max(before.powf(0.5 * n / (n - 1.0)));
+        turn_by(problem, &rotation(at_end(terms)), m, &mut frame, to)?;
+        // The angle is twice that of the quaternion.
+        let error = 2.0 * error(terms);
         let omega = Vector3::new(j[0] * m[0], j[1] * m[1], j[2] * m[2]);
         let length = h.abs() * So3::new().norm(&omega);
         Ok(ratio_of_relative(tolerance, Real::lit(error), from, length))

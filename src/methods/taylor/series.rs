@@ -125,22 +125,48 @@ impl<S: Wide, const N: usize> Kernel<S> for Terms<'_, S, N> {
     }
 }
 
-/// The quaternion at θh, not of length 1, by Horner's rule.
+/// The quaternion at θh, not of length 1: odd and even powers each by Horner's rule.
 #[inline(always)]
 pub(super) fn at<S: Real, const N: usize>(terms: &[[S; 4]; N], theta: S) -> [S; 4] {
-    let mut sum = [S::lit(0.0); 4];
-    for term in terms.iter().rev() {
+    let square = theta * theta;
+    let mut sums = [[S::lit(0.0); 4]; 2];
+    for (k, term) in terms.iter().enumerate().rev() {
         for i in 0..4 {
-            sum[i] = (sum[i] + term[i]) * theta;
+            sums[k % 2][i] = sums[k % 2][i] * square + term[i];
         }
     }
-    sum[3] += S::lit(1.0);
-    sum
+    let [odd, even] = sums;
+    let mut q = core::array::from_fn(|i| (even[i] * theta + odd[i]) * theta);
+    q[3] += S::lit(1.0);
+    q
+}
+
+/// The quaternion at the end of the step: [`at`] for θ = 1.
+#[inline(always)]
+pub(super) fn at_end<S: Real, const N: usize>(terms: &[[S; 4]; N]) -> [S; 4] {
+    let mut sums = [[S::lit(0.0); 4]; 2];
+    for (k, term) in terms.iter().enumerate().rev() {
+        for i in 0..4 {
+            sums[k % 2][i] += term[i];
+        }
+    }
+    let mut q = core::array::from_fn(|i| sums[0][i] + sums[1][i]);
+    q[3] += S::lit(1.0);
+    q
+}
+
+/// The error of a step: the last term, or the one before to the power N/(N − 1), because one of both may vanish where the
+/// motion is even or odd.
+#[inline(always)]
+pub(super) fn error<S: Real + Into<f64>, const N: usize>(terms: &[[S; 4]; N]) -> f64 {
+    let [before, last] = [terms[N - 2], terms[N - 1]].map(|term| square_of(term).into());
+    let root = coarse_root(before, 1.0, 2 * (N - 1));
+    last.sqrt().max(before.sqrt() * root)
 }
 
 /// |term|².
 #[inline(always)]
-pub(super) fn square_of<S: Real>([x, y, z, w]: [S; 4]) -> S {
+fn square_of<S: Real>([x, y, z, w]: [S; 4]) -> S {
     (x * x + y * y) + (z * z + w * w)
 }
 

@@ -269,7 +269,7 @@ fn settings_change_a_scene() {
     assert_eq!(rows[0][1..4], [0.6000000000000001, 0.0, 1.0]);
     run(&["method=", "time.dt=", "time.rtol=1e-9"]).ok();
     let summary = folder.json("out/summary.json");
-    assert_eq!(summary["method"]["tableau"], "dop853");
+    assert_eq!(summary["method"]["name"], "taylor16");
     assert_eq!(
         (&summary["rtol"], &summary["chosen_by_default"]["steps"]),
         (&json!(1e-9), &json!(false))

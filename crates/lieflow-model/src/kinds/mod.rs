@@ -221,6 +221,10 @@ pub fn high_order() -> MethodSpec {
     MethodSpec { tableau: Some("dop853".into()), ..MethodSpec::new("rkmk", None) }
 }
 
+/// The method for problems whose Taylor coefficients follow by recurrence and that name none: the Lie series of order
+/// 16. It takes a third of the steps of [`high_order`], and a step costs less.
+pub const SERIES: &str = "taylor16";
+
 /// The inertia of a rigid body along its principal axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PrincipalInertia {

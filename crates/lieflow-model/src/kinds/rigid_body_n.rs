@@ -3,6 +3,7 @@
 //! ṁ = \[m, Ω\], Ω_ij = m_ij/J_ij. f(m) = −Ω; Λ(g, m) = g m gᵀ. Invariants: tr mᵏ for even k (the
 //! action), the energy, and for J_ij = λ_i + λ_j Manakov's further integrals.
 
+use super::SERIES;
 use super::entries::{above_diagonal, antisymmetric};
 use super::prelude::*;
 use lieflow::dense::multiply;
@@ -78,6 +79,7 @@ impl System for Body {
     type Problem<N: Number> = RigidBodyN;
 
     const STATE: &'static [&'static str] = &["momentum"];
+    const DEFAULT_METHOD: Option<&'static str> = Some(SERIES);
     const QUANTITIES: &'static [Q] = &[
         Q::numbers(
             "momentum",

@@ -59,7 +59,10 @@ impl MethodKeys {
             Some(name) => Layer::named(&name)?,
             None => problem.and_then(|p| p.layers().first()).copied().unwrap_or_default(),
         };
-        let default = || problem.map_or_else(high_order, ProblemSpec::default_method);
+        // A map or a tableau alone is one for RKMK.
+        let is_rkmk = self.map.is_some() || self.tableau.is_some() || self.q.is_some();
+        let of_problem = problem.filter(|_| !is_rkmk);
+        let default = || of_problem.map_or_else(high_order, ProblemSpec::default_method);
         let base = self.name.map_or_else(default, |name| MethodSpec::new(&name, None));
         let method = MethodSpec {
             name: base.name,

@@ -2,11 +2,13 @@
 
 mod model;
 
+use lieflow::catalog::MethodSpec;
 use nalgebra::Matrix3;
 
 use self::model::{
     Attitude, AttitudeMatrix, Body, ByMethod, MomentumMatrix, MomentumOnly, Quaternion, State,
 };
+use super::SERIES;
 use super::body::RigidBodySpec;
 use super::prelude::*;
 use crate::model::Model;
@@ -90,6 +92,9 @@ impl ProblemSpec for RigidBodySpec {
     fn invariants(&self, quantities: &[&str]) -> Vec<&'static str> {
         let system = self.system(Layer::Closed, quantities);
         system.map_or_else(|_| Vec::new(), |system| system.invariants(quantities))
+    }
+    fn default_method(&self) -> MethodSpec {
+        MethodSpec::new(SERIES, None)
     }
     fn inertia(&self) -> Option<PrincipalInertia> {
         Some(self.principal_inertia())

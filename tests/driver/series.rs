@@ -1,0 +1,140 @@
+//! Lie series with adaptive steps: their rows and events on hard starts, beside the exact motion and another method.
+
+use lieflow::groups::Sample;
+use lieflow::methods::{Embedded, LieSeries, Rkmk, Taylor};
+use lieflow::prelude::*;
+use lieflow::problems::{Exact, RigidBody, RigidBodyAttitude, RigidBodyN};
+use nalgebra::{Matrix3, Vector3};
+use rand::SeedableRng;
+
+type V = Vector3<f64>;
+
+const INERTIA: [f64; 3] = [1.0, 2.0, 3.0];
+/// A start, the end of its run, and how much the motion enlarges an error until then, with some room.
+const STARTS: [([f64; 3], f64, f64); 5] = [
+    ([0.1, 2.0, 0.3], 20.0, 1e4),
+    // A turn about the middle axis: the separatrix, and 1e-14 beside it.
+    ([0.0, 2.0, 0.0], 20.0, 10.0),
+    ([1e-14, 2.0, 1e-14], 20.0, 1e7),
+    // 1e-14 beside the first axis, and a fast turn.
+    ([3.0, 1e-14, 1e-14], 20.0, 1e3),
+    ([40.0, 30.0, -20.0], 5.0, 1e4),
+];
+
+fn times(end: f64) -> Vec<f64> {
+    (0..=60).map(|k| end * f64::from(k) / 60.0).collect()
+}
+
+/// The largest distance of the rows of a body by its momentum from the exact motion, in parts of |m|.
+fn error_of_rows<M: Embedded<RigidBody>>(method: &M, start: V, end: f64, rtol: f64) -> (f64, u64) {
+    let body = RigidBody::<f64>::new(INERTIA).unwrap();
+    let exact = Exact::new(INERTIA, start.into(), Matrix3::identity()).unwrap();
+    let run =
+        Solve::new(&body, method, [0.0, end]).tolerances(rtol, 0.0).times(times(end)).run(start);
+    let run = run.unwrap();
+    let apart = |(t, m): (&f64, &V)| (m - exact.momentum_body(*t).unwrap()).norm() / start.norm();
+    (run.times.iter().zip(&run.points).map(apart).fold(0.0, f64::max), run.stats.accepted)
+}
+
+#[test]
+fn rows_of_the_free_body() {
+    for (start, end, growth) in STARTS {
+        let start = V::from(start);
+        for rtol in [1e-6, 1e-9, 1e-12] {
+            let errors = [
+                ("8", error_of_rows(&Taylor::<8>, start, end, rtol)),
+                ("11", error_of_rows(&Taylor::<11>, start, end, rtol)),
+                ("16", error_of_rows(&Taylor::<16>, start, end, rtol)),
+            ];
+            for (order, (error, steps)) in errors {
+                let allowed = growth * rtol + 1e-13 * growth;
+                assert!(
+                    error < allowed,
+                    "{start:?} {rtol}: taylor{order} {error:e}, {steps} steps"
+                );
+            }
+            // A high order needs fewer steps.
+            let [low, high] = [errors[0].1.1, errors[2].1.1];
+            assert!(high < low, "{start:?} {rtol}: {low} and {high} steps");
+        }
+        let [rough, fine] =
+            [1e-6, 1e-9].map(|rtol| error_of_rows(&Taylor::<8>, start, end, rtol).0);
+        assert!(fine < 0.02 * rough + 1e-13 * growth, "{start:?}: {rough:e} {fine:e}");
+    }
+}
+
+/// The attitude turns, also where the momentum stays: the tolerance is that of the angle.
+#[test]
+fn rows_of_the_attitude() {
+    for (start, end, growth) in STARTS {
+        let body = RigidBodyAttitude::new(INERTIA, start).unwrap();
+        let exact = Exact::new(INERTIA, start, Matrix3::identity()).unwrap();
+        let run = Solve::new(&body, &Taylor::<14>, [0.0, end]).tolerances(1e-10, 0.0);
+        let run = run.times(times(end)).run(Matrix3::identity()).unwrap();
+        for (t, g) in run.times.iter().zip(&run.points) {
+            let error = (g - exact.state(*t).unwrap().1).norm();
+            assert!(error < growth * 1e-9, "{start:?}, t = {t}: {error:e}");
+            assert!((g.tr_mul(g) - Matrix3::identity()).norm() < 1e-13);
+        }
+    }
+}
+
+/// Steps of about a radian have zeros of several events, and one of them twice: all are at their exact times.
+#[test]
+fn events_within_long_steps() {
+    let start = V::new(0.1, 2.0, 0.3);
+    let body = RigidBody::<f64>::new(INERTIA).unwrap();
+    let exact = Exact::new(INERTIA, start.into(), Matrix3::identity()).unwrap();
+    let m = |t: f64| exact.momentum_body(t).unwrap();
+    let level = |m: &V| m.x - 1.05;
+    let solve = Solve::new(&body, &Taylor::<16>, [0.0, 100.0]).tolerances(1e-10, 0.0);
+    let solve = solve.event(Event::new("flip", |_, m: &V| m.y));
+    let run = solve.event(Event::new("level", move |_, m: &V| level(m))).run(start).unwrap();
+    assert!(run.stats.largest_step > 0.7, "{}", run.stats.largest_step);
+    // The zeros of the exact motion, by a fine search.
+    let zeros = |g: &dyn Fn(f64) -> f64| -> Vec<f64> {
+        let brackets = (0..100_000).map(|k| [k, k + 1].map(|k| 1e-3 * f64::from(k)));
+        let with_zero = brackets.filter(|[a, b]| g(*a) * g(*b) < 0.0);
+        with_zero
+            .map(|[a, b]| {
+                let (mut a, mut b) = (a, b);
+                for _ in 0..50 {
+                    let middle = 0.5 * (a + b);
+                    *(if g(a) * g(middle) <= 0.0 { &mut b } else { &mut a }) = middle;
+                }
+                0.5 * (a + b)
+            })
+            .collect()
+    };
+    for (event, expected) in [zeros(&|t| m(t).y), zeros(&|t| level(&m(t)))].iter().enumerate() {
+        let found: Vec<f64> = run.times_of(event).collect();
+        assert_eq!(found.len(), expected.len(), "{found:?} {expected:?}");
+        for (t, expected) in found.iter().zip(expected) {
+            assert!((t - expected).abs() < 1e-6, "{event}: {t}, expected {expected}");
+        }
+    }
+}
+
+/// On so(5) beside RKMK of order 8.
+#[test]
+fn rows_on_so5() {
+    let body = RigidBodyN::manakov(&[1.0, 2.0, 3.0, 4.0, 5.5]).unwrap();
+    let mut rng = rand_pcg::Pcg64::seed_from_u64(9);
+    let start = body.group().sample_algebra(&mut rng, 3.0).into_mat();
+    let times: Vec<f64> = (0..=40).map(|k| 0.2 * f64::from(k)).collect();
+    let fine = Rkmk::new(DOP853, Exp);
+    let reference = Solve::new(&body, &fine, [0.0, 8.0]).tolerances(1e-14, 0.0);
+    let reference = reference.times(times.clone()).times_by_steps().run(start.clone()).unwrap();
+    let mut steps = Vec::new();
+    for (order, rtol) in [(6, 1e-8), (10, 1e-10), (16, 1e-12)] {
+        let method = LieSeries::new(order).unwrap();
+        let run = Solve::new(&body, &method, [0.0, 8.0]).tolerances(rtol, 0.0);
+        let run = run.times(times.clone()).run(start.clone()).unwrap();
+        for (a, b) in run.points.iter().zip(&reference.points) {
+            let error = (a - b).norm_l2();
+            assert!(error < 1e3 * rtol, "order {order}: {error:e}");
+        }
+        steps.push(run.stats.accepted);
+    }
+    assert!(steps[2] < steps[0], "{steps:?}");
+}
