@@ -116,7 +116,7 @@ const ADVICE: &[Advice] = &[
         want: "small errors",
         because: "a high order needs few steps",
         take: &[
-            ("taylor13", "free bodies"),
+            ("taylor16", "free bodies"),
             ("magnus8", "y' = A(t) y"),
             ("rkmk dop853 cay", "all others"),
         ],
@@ -172,8 +172,11 @@ fn advice(scene: Option<&Scene>, typed: &str) -> Result<String, CliError> {
                 Some(_) => continue,
             };
             let [want, because] = [want, because].map(|text| if first { *text } else { "" });
-            rows.push([want.into(), take, because.into()]);
             first = false;
+            // The default was told.
+            if take != default.label() {
+                rows.push([want.into(), take, because.into()]);
+            }
         }
     }
     let more = format!(

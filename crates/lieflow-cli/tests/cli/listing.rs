@@ -121,7 +121,11 @@ fn methods_are_recommended_before_they_are_listed() {
     let all = table(&told);
     assert!(all[0].contains("rkmk dop853 (the default)"), "{all:?}");
     for (scene, with, without) in [
-        ("asymmetric-top", &["taylor13", "dmv8", "mr4", "exact"][..], &["magnus"][..]),
+        (
+            "asymmetric-top",
+            &["taylor16 (the default)", "dmv8", "mr4", "exact"][..],
+            &["magnus"][..],
+        ),
         ("rabi", &["magnus8", "magnus6", "rkmk-gauss4-symmetric"], &["taylor", "dmv8", "exact"]),
         ("lagrange-top", &["rkmk dop853 cay", "energy-casimir4"], &["magnus", "taylor", "dmv8"]),
     ] {
