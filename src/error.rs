@@ -286,9 +286,21 @@ impl StepError {
     }
 }
 
+/// A number in a message, with an exponent where it would have many zeros.
+pub(crate) struct Plain<'a>(pub(crate) &'a f64);
+
+impl fmt::Display for Plain<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.0.abs() {
+            size if size == 0.0 || (1e-5..1e16).contains(&size) => write!(f, "{}", self.0),
+            _ => write!(f, "{:?}", self.0),
+        }
+    }
+}
+
 /// A run that stopped early. The state that the caller gave to the driver holds the last accepted point.
 #[derive(Clone, Copy, PartialEq, ThisError)]
-#[error("step {step} from t = {t} with h = {h:?} failed: {source}")]
+#[error("step {step} from t = {} with h = {h:?} failed: {source}", Plain(.t))]
 #[non_exhaustive]
 pub struct Failure {
     /// The number of steps that had been accepted.

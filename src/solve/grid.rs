@@ -1,6 +1,6 @@
 //! Times: equal steps over a span, and the times of output.
 
-use crate::error::Error;
+use crate::error::{Error, Plain};
 use crate::methods::{EqualSteps, Step};
 use crate::scalar::Real;
 
@@ -89,7 +89,7 @@ impl TimeGrid {
         let far = if self.t1.is_finite() { self.t1.abs() } else { 0.0 };
         let largest = self.t0.abs().max(far);
         if self.h.abs() < largest - largest.next_down() {
-            let expected = format!("a step that changes t = {largest}");
+            let expected = format!("a step that changes t = {}", Plain(&largest));
             return Err(Error::out_of_range("dt", self.h.abs(), expected));
         }
         Ok(self)

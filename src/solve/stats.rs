@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use crate::error::{Error, Failure, StepError, debug_is_display};
+use crate::error::{Error, Failure, Plain, StepError, debug_is_display};
 use crate::groups::RESIDUAL_MAX;
 use crate::methods::MapCounts;
 use crate::scalar::Real;
@@ -108,7 +108,8 @@ pub enum RunError {
     Step(#[from] Failure),
     /// No step from t was small enough.
     #[error(
-        "no step from t = {t} succeeded, down to h = {h:?} ({accepted} steps accepted, {rejected} rejected): {}",
+        "no step from t = {} succeeded, down to h = {h:?} ({accepted} steps accepted, {rejected} rejected): {}",
+        Plain(.t),
         reason(.source)
     )]
     StepSizeUnderflow {
@@ -125,7 +126,8 @@ pub enum RunError {
     },
     /// The attempts were used up.
     #[error(
-        "{max_steps} attempts did not reach the end: t = {t}, last step h = {h:?} ({accepted} accepted, {rejected} rejected); raise max_steps or the tolerances"
+        "{max_steps} attempts did not reach the end: t = {}, last step h = {h:?} ({accepted} accepted, {rejected} rejected); raise max_steps or the tolerances",
+        Plain(.t)
     )]
     TooManySteps {
         /// The time of the last accepted point.
@@ -140,7 +142,7 @@ pub enum RunError {
         max_steps: u64,
     },
     /// The function of an event is not finite.
-    #[error("event `{name}`: its value at t = {t} is {value}, expected a finite number")]
+    #[error("event `{name}`: its value at t = {} is {value}, expected a finite number", Plain(.t))]
     Event {
         /// The event.
         name: String,
@@ -150,7 +152,7 @@ pub enum RunError {
         value: f64,
     },
     /// An event or an observer left a state that is not on M.
-    #[error("the state that {by} set at t = {t} cannot be used: {source}")]
+    #[error("the state that {by} set at t = {} cannot be used: {source}", Plain(.t))]
     Changed {
         /// Who changed the state.
         by: String,
@@ -160,7 +162,7 @@ pub enum RunError {
         source: Error,
     },
     /// A point within an accepted step could not be computed.
-    #[error("no point within the step from t = {t} with h = {h:?}: {source}")]
+    #[error("no point within the step from t = {} with h = {h:?}: {source}", Plain(.t))]
     Within {
         /// The start of the step.
         t: f64,

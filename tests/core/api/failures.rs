@@ -208,3 +208,16 @@ fn a_state_that_outgrew_the_range_is_no_start() {
         twice(&group, Linear, Mat::from_fn(2, 1, |_, _| 1.0));
     }
 }
+
+/// Times at the ends of the range of numbers are told in few digits.
+#[test]
+fn a_time_is_told_in_few_digits() {
+    let body = lieflow::problems::RigidBody::<f64>::new([1.0, 2.0, 3.0]).unwrap();
+    let method = lieflow::methods::Rk(lieflow::methods::tableau::RK4);
+    let solve = lieflow::Solve::new(&body, &method, [1e300, 1.5e300]).steps(1);
+    let error = solve.run(nalgebra::Vector3::new(1.0, 2.0, 3.0)).unwrap_err();
+    let message = error.to_string();
+    assert!(message.starts_with("step 0 from t = 1e300 with h = 5e299 failed"), "{message}");
+    let error = lieflow::TimeGrid::with_steps([0.0, 5e-324], 3).unwrap_err();
+    assert!(error.to_string().ends_with("a step that changes t = 5e-324"), "{error}");
+}
