@@ -330,7 +330,9 @@ pub fn run_scene(
         rtol,
         atol,
     };
-    let page = (!no_page).then(|| {
+    // The map of a large fluid takes a second, which a run that is interrupted does not have.
+    let is_late = summary.interrupted && watch.draws_a_map();
+    let page = (!no_page && !is_late).then(|| {
         let drawn = Drawn {
             scene,
             rows,

@@ -141,11 +141,16 @@ impl<'a> Watch<'a> {
         }
     }
 
+    /// Is the figure a map?
+    pub(super) fn draws_a_map(&self) -> bool {
+        matches!(self.scene.problem.figure(&self.scene.computed()), Figure::Map(..))
+    }
+
     /// The field at the end, where the figure is one.
     pub(super) fn field(&self, rows: &RowSample<'_>) -> Vec<Vec<f64>> {
-        match (self.scene.problem.figure(&self.scene.computed()), rows.ends()) {
-            (Figure::Map(..), Some([_, (_, row)])) => self.scene.problem.field(&row[self.drawn]),
-            _ => Vec::new(),
+        match rows.ends().filter(|_| self.draws_a_map()) {
+            Some([_, (_, row)]) => self.scene.problem.field(&row[self.drawn]),
+            None => Vec::new(),
         }
     }
 
