@@ -1,7 +1,8 @@
 //! Events: where a function g(t, y) of the solution passes zero.
 //!
 //! After each step g is evaluated at the end of the step. If the step may have two zeros, g is also evaluated at points
-//! within it ([`Event::points`]). Between two neighbours of opposite sign the zero is found by dense output, to
+//! within it ([`Event::points`]). Methods of order 10 and more take long steps: with them g is evaluated in the middle of
+//! each, and again between two points where g bends so much that it may hide two zeros. Between two neighbours of opposite sign the zero is found by dense output, to
 //! rounding of t (the method of Chandrupatla, Adv. Eng. Software 28 (1997)).
 //!
 //! | g | what is found |
@@ -111,6 +112,10 @@ pub(super) struct Seen {
 
 /// The number of points within a step where g is evaluated, if the step may have two zeros.
 const POINTS: u32 = 8;
+/// Methods of this order and more take long steps.
+const LONG: usize = 10;
+/// How often the distance of two points is halved, where g may have two zeros between them.
+const HALVINGS: u32 = 4;
 /// The part of a step after which the sign of g is taken again.
 const A_LITTLE_LATER: f64 = 1.0 / 65536.0;
 
@@ -160,7 +165,8 @@ impl<'a, Y> Event<'a, Y> {
     }
     /// Evaluates g at this many points within every step.
     ///
-    /// The default is 8 points in steps that may have two zeros, and none in others. A step may have two zeros if |g|
+    /// The default is 8 points in steps that may have two zeros, and none in others; methods of order 10 and more, whose
+    /// steps are long, add points where g bends. A step may have two zeros if |g|
     /// at one end is at most twice the change of the slope of g over this step and the one before, times the step size.
     pub fn points(mut self, points: u32) -> Self {
         self.rule.points = Some(points);
@@ -175,9 +181,10 @@ impl<'a, Y> Event<'a, Y> {
 impl EventRule {
     /// The search for zeros in a step at whose end g is `last`.
     #[inline(always)]
-    fn search(&self, span: [f64; 2], last: f64, first_step: bool) -> Search {
+    fn search(&self, times: &Timeline, last: f64, first_step: bool) -> Search {
         let EventRule { direction, points, seen, .. } = *self;
-        Search { direction, points, seen, first_step, span, last }
+        let is_long = times.costs.order >= LONG && points.is_none();
+        Search { direction, points, is_long, seen, first_step, span: [times.last.t, times.t], last }
     }
 
     /// The value of g at t, if it is finite.
@@ -270,7 +277,7 @@ impl Events {
         let Events { all, found } = self;
         for (index, event) in all.iter_mut().enumerate() {
             let last = event.finite(end, output.event(index, end, None))?;
-            let search = event.search([start, end], last, first_step);
+            let search = event.search(times, last, first_step);
             if search.is_idle() {
                 event.seen = search.seen_at_end();
                 continue;
@@ -292,6 +299,8 @@ impl Events {
 struct Search {
     direction: Direction,
     points: Option<u32>,
+    /// Is g looked at more closely, because the step is long?
+    is_long: bool,
     seen: Seen,
     /// Is it the first step of the run?
     first_step: bool,
@@ -306,7 +315,7 @@ impl Search {
     #[inline]
     fn is_idle(&self) -> bool {
         let Seen { value, anew, .. } = self.seen;
-        !anew && self.points(value) == 0 && passes(value, self.last).is_none()
+        !anew && !self.is_long && self.points(value) == 0 && passes(value, self.last).is_none()
     }
 
     /// The number of points within the step where g is evaluated, if g is `first` at its start.
@@ -365,14 +374,41 @@ impl Search {
                 }
                 (t, g(t)?)
             };
+            self.zeros_between([left, right], if self.is_long { HALVINGS } else { 0 }, g, found)?;
+            left = right;
+        }
+        Ok(self.seen_at_end())
+    }
+
+    /// Calls `found` with the zeros between two points. Their distance is halved at most so often.
+    fn zeros_between(
+        &self,
+        [left, right]: [(f64, f64); 2],
+        halvings: u32,
+        g: &mut dyn FnMut(f64) -> Result<f64, RunError>,
+        found: &mut dyn FnMut(f64, bool),
+    ) -> Result<(), RunError> {
+        let middle = 0.5 * (left.0 + right.0);
+        if halvings == 0 || middle == left.0 || middle == right.0 {
             if let Some(rising) = passes(left.1, right.1)
                 && self.direction.has(rising)
             {
                 found(zero(left, right, g)?, rising);
             }
-            left = right;
+            return Ok(());
         }
-        Ok(self.seen_at_end())
+        let middle = (middle, g(middle)?);
+        // The parabola through the three points leaves the line between two of them by bend/8 at most.
+        let bend = (left.1 - 2.0 * middle.1 + right.1).abs();
+        for [a, b] in [[left, middle], [middle, right]] {
+            let may_hide_two = match passes(a.1, b.1) {
+                Some(_) => (b.1 - a.1).abs() <= bend,
+                None => a.1.abs().min(b.1.abs()) <= 0.5 * bend,
+            };
+            let halvings = if may_hide_two { halvings - 1 } else { 0 };
+            self.zeros_between([a, b], halvings, g, found)?;
+        }
+        Ok(())
     }
 }
 
