@@ -2,7 +2,7 @@
 //!
 //! After each step g is evaluated at the end of the step. If the step may have two zeros, g is also evaluated at points
 //! within it ([`Event::points`]). Methods of order 10 and more take long steps: with them g is evaluated in the middle of
-//! each where it is not far from 0, and again between two points where g bends so much that it may hide two zeros. Between two neighbours of opposite sign the zero is found by dense output, to
+//! each, and again between two points where g bends so much that it may hide two zeros. Between two neighbours of opposite sign the zero is found by dense output, to
 //! rounding of t (the method of Chandrupatla, Adv. Eng. Software 28 (1997)).
 //!
 //! | g | what is found |
@@ -315,39 +315,24 @@ impl Search {
     #[inline]
     fn is_idle(&self) -> bool {
         let Seen { value, anew, .. } = self.seen;
-        let is_far = !self.is_long || self.is_far(value);
-        !anew && is_far && self.points(value) == 0 && passes(value, self.last).is_none()
+        !anew && !self.is_long && self.points(value) == 0 && passes(value, self.last).is_none()
     }
 
     /// The number of points within the step where g is evaluated, if g is `first` at its start.
     #[inline]
     fn points(&self, first: f64) -> u32 {
-        match (self.points, self.bend()) {
+        let Search { seen, span: [start, end], last, .. } = *self;
+        match (self.points, seen.before) {
             (Some(points), _) => points,
             (None, None) => POINTS,
-            (None, Some(bend)) => {
-                let near = first.abs().min(self.last.abs());
+            (None, Some([before, length])) => {
+                let size = (end - start).abs();
+                let slope = (seen.value - before) / length;
+                let bend = ((last - seen.value) / size - slope).abs() * size;
+                let near = first.abs().min(last.abs());
                 if near <= 2.0 * bend { POINTS } else { 0 }
             }
         }
-    }
-
-    /// The change of the slope of g over this step and the one before, times the size of this step.
-    #[inline]
-    fn bend(&self) -> Option<f64> {
-        let Search { seen, span: [start, end], last, .. } = *self;
-        let [before, length] = seen.before?;
-        let size = (end - start).abs();
-        let slope = (seen.value - before) / length;
-        Some(((last - seen.value) / size - slope).abs() * size)
-    }
-
-    /// True if g, which is `first` at the start, is far from 0 for its changes, so that a long step need not be looked at.
-    #[inline]
-    fn is_far(&self, first: f64) -> bool {
-        let near = first.abs().min(self.last.abs());
-        let changed = (self.last - first).abs();
-        self.bend().is_some_and(|bend| near > 8.0 * bend && near > 2.0 * changed)
     }
 
     /// What is known of g at the end of the step.
