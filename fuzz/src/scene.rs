@@ -2,7 +2,7 @@
 //! something to say. The same of the formulas in it.
 
 use lieflow_model::scene::Scene;
-use lieflow_model::scene::formula::{Formula, Parameters};
+use lieflow_model::formula::{Formula, Parameters};
 
 /// Parse the bytes as a scene.
 pub fn parse(data: &[u8]) {

@@ -1,13 +1,36 @@
-//! The order of the library's rooms, by its paths: a file uses its own room and those below only.
+//! The order of the rooms of every crate, by their paths: a file uses its own room and those below only.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-const LIB: &str = include_str!("../../src/lib.rs");
+/// A crate whose root has a table of its rooms.
+struct Crate {
+    /// Its sources, from the root of the repository.
+    src: &'static str,
+    /// Its `lib.rs`.
+    root: &'static str,
+    /// Its rooms, lowest first.
+    rooms: Vec<&'static str>,
+}
 
-/// The rooms in the table of `lib.rs`, lowest first.
-fn rooms() -> Vec<&'static str> {
-    let rows = LIB.lines().filter_map(|line| line.strip_prefix("//! | "));
+fn crates() -> [Crate; 4] {
+    macro_rules! of {
+        ($src:literal) => {
+            ($src, include_str!(concat!("../../", $src, "/lib.rs")))
+        };
+    }
+    let all = [
+        of!("src"),
+        of!("crates/lieflow-model/src"),
+        of!("crates/lieflow-figures/src"),
+        of!("crates/lieflow-cli/src"),
+    ];
+    all.map(|(src, root)| Crate { src, root, rooms: rooms(root) })
+}
+
+/// The rooms in the table of a `lib.rs`, lowest first.
+fn rooms(root: &'static str) -> Vec<&'static str> {
+    let rows = root.lines().filter_map(|line| line.strip_prefix("//! | "));
     rows.filter_map(|row| row.split('|').next()?.split('`').nth(1)).collect()
 }
 
@@ -36,38 +59,43 @@ fn targets(line: &str) -> impl Iterator<Item = &str> {
 
 #[test]
 fn every_room_is_in_the_table() {
-    let mut modules: Vec<_> = LIB
-        .lines()
-        .filter_map(|line| line.trim_start_matches("pub ").strip_prefix("mod ")?.strip_suffix(';'))
-        .filter(|&name| name != "prelude") // names from all rooms
-        .collect();
-    let mut rooms = rooms();
-    modules.sort_unstable();
-    rooms.sort_unstable();
-    assert_eq!(modules, rooms);
+    for Crate { src, root, mut rooms } in crates() {
+        let mut modules: Vec<_> = root
+            .lines()
+            .filter_map(|line| {
+                line.trim_start_matches("pub ").strip_prefix("mod ")?.strip_suffix(';')
+            })
+            .filter(|&name| name != "prelude") // names from all rooms
+            .collect();
+        modules.sort_unstable();
+        rooms.sort_unstable();
+        assert_eq!(modules, rooms, "{src}");
+    }
 }
 
 #[test]
 fn no_file_uses_a_room_above_its_own() {
-    let rooms = rooms();
-    let level = |room: &str| rooms.iter().position(|&r| r == room);
-    let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
-    let (mut all, mut arrows, mut paths) = (Vec::new(), Vec::new(), 0);
-    files(&src, &mut all);
-    for file in &all {
-        let inside = file.strip_prefix(&src).expect("a file of src");
-        let Some(own) = level(room_of(inside)) else { continue };
-        let text = fs::read_to_string(file).expect("a source file");
-        let code = text.split("#[cfg(test)]\nmod").next().unwrap_or_default();
-        for (n, line) in code.lines().enumerate() {
-            for target in targets(line) {
-                paths += 1;
-                if level(target).is_none_or(|target| target > own) {
-                    arrows.push(format!("src/{}:{}: {}", inside.display(), n + 1, line.trim()));
+    let (mut arrows, mut paths) = (Vec::new(), 0);
+    for Crate { src, rooms, .. } in crates() {
+        let level = |room: &str| rooms.iter().position(|&r| r == room);
+        let src = Path::new(env!("CARGO_MANIFEST_DIR")).join(src);
+        let mut all = Vec::new();
+        files(&src, &mut all);
+        for file in all.iter().filter(|file| file.extension().is_some_and(|end| end == "rs")) {
+            let inside = file.strip_prefix(&src).expect("a file of src");
+            let Some(own) = level(room_of(inside)) else { continue };
+            let text = fs::read_to_string(file).expect("a source file");
+            let code = text.split("#[cfg(test)]\nmod tests {").next().unwrap_or_default();
+            for (n, line) in code.lines().enumerate() {
+                for target in targets(line) {
+                    paths += 1;
+                    if level(target).is_none_or(|target| target > own) {
+                        arrows.push(format!("{}:{}: {}", file.display(), n + 1, line.trim()));
+                    }
                 }
             }
         }
     }
-    assert!(paths > 500, "{paths} paths in {} files: were they read?", all.len());
+    assert!(paths > 700, "{paths} paths: were the files read?");
     assert!(arrows.is_empty(), "arrows up, or past the rooms:\n{}", arrows.join("\n"));
 }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 
-use lieflow_model::model::Layer;
+use lieflow_model::problem::Layer;
 use lieflow_model::scene::{Scene, SceneError};
 
 /// Integrate ordinary differential equations on Lie groups.

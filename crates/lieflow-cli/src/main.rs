@@ -6,7 +6,8 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use lieflow_cli::args::{Cli, Command};
-use lieflow_cli::cmd::{self, CliError};
+use lieflow_cli::cmd;
+use lieflow_cli::error::CliError;
 
 fn dispatch(cli: &Cli) -> Result<(), CliError> {
     match &cli.command {

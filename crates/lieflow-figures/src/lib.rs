@@ -4,6 +4,14 @@
 //! element, which serves as a file and inline in a [`Page`]. Colours are CSS variables with light
 //! fallbacks, so that an inline figure follows the theme of its page. A file that a page writes follows
 //! the theme of who looks at it.
+//!
+//! | room | what is in it |
+//! |---|---|
+//! | `number` | numbers as text |
+//! | `plot` | figures |
+//! | `page` | pages of tables and figures |
+//!
+//! A room uses those above it in this table only.
 #![forbid(unsafe_code)]
 
 pub mod number;

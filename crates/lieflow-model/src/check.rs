@@ -13,7 +13,7 @@ use lieflow::problems::Origin;
 use lieflow::solve::Next;
 use lieflow::{Direction, SaveAt, StepControl, TimeGrid};
 
-use crate::model::{EventPlan, Layer, Model, Plan, Steps, Watcher};
+use crate::problem::{EventPlan, Layer, Model, Plan, Steps, Watcher};
 use crate::scene::{Scene, SceneError};
 use crate::schema::{Observable, Row};
 

@@ -1,14 +1,25 @@
 //! Scenes and the problems that they name: what the program `lieflow` runs, without its command line.
 //!
 //! A scene file becomes a [`Scene`](scene::Scene). Its problem, one of [`kinds::KINDS`], becomes a
-//! [`Model`](model::Model), which any method of the catalog runs on.
+//! [`Model`](problem::Model), which any method of the catalog runs on.
+//!
+//! | room | what is in it |
+//! |---|---|
+//! | `schema` | the rows of a run: quantities, their columns, their laws |
+//! | `reader` | values with their places, and what is wrong with them |
+//! | `formula` | texts that become functions |
+//! | `problem` | what is the same for every kind of problem |
+//! | `kinds` | the kinds of problems, one file each |
+//! | `scene` | a problem, a method, times and output, as a TOML file |
+//! | `check` | checks that hold for every scene |
+//!
+//! A room uses those above it in this table only.
 #![forbid(unsafe_code)]
 
-pub mod branch;
 pub mod check;
+pub mod formula;
 pub mod kinds;
-mod mapped;
-pub mod model;
-pub mod operations;
+pub mod problem;
+pub mod reader;
 pub mod scene;
 pub mod schema;

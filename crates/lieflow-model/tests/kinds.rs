@@ -22,9 +22,6 @@ mod mutants;
 mod refused;
 #[path = "kinds/samples.rs"]
 mod samples;
-#[path = "kinds/units.rs"]
-mod units;
-
 use lieflow_model::kinds::KINDS;
 use lieflow_model::scene::{BUNDLED, Scene};
 use lieflow_model::schema::Row;

@@ -7,9 +7,9 @@ use std::time::{Duration, Instant};
 use lieflow::SaveAt;
 use lieflow::catalog::MethodSpec;
 use lieflow::solve::{Next, Status};
-use lieflow_model::kinds::explained_by_rounding;
-use lieflow_model::model::{Outcome, Plan, Watcher};
+use lieflow_model::problem::{Outcome, Plan, Watcher};
 use lieflow_model::scene::Scene;
+use lieflow_model::schema::explained_by_rounding;
 use lieflow_model::schema::{Observable, Part, Row};
 
 use super::apart::{

@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use lieflow::solve::Next;
-use lieflow_model::model::{EventPlan, Watcher};
+use lieflow_model::problem::{EventPlan, Watcher};
 use lieflow_model::schema::{Observable, Part, Row};
 
 use super::watch::Watch;
@@ -473,7 +473,7 @@ mod tests {
     use std::{env, fs, process};
 
     use lieflow::SaveAt;
-    use lieflow_model::model::Plan;
+    use lieflow_model::problem::Plan;
     use lieflow_model::scene::Scene;
 
     use super::*;

@@ -6,8 +6,8 @@ use lieflow::check::Finding;
 use lieflow_model::check::{CheckedScene, check_runs};
 use serde::Serialize;
 
-use super::CliError;
 use crate::args::CheckArgs;
+use crate::error::CliError;
 use crate::measure::checks::{self, checks};
 use crate::output;
 

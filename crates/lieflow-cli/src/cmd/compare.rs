@@ -8,9 +8,9 @@ use std::time::{Duration, Instant};
 
 use serde::Serialize;
 
-use super::CliError;
 use super::stop::{INTERRUPTED, listen};
 use crate::args::CompareArgs;
+use crate::error::CliError;
 use crate::measure::{
     Candidate, Curve, Effort, Journal, MOST_ROWS, Plan, Reached, Reference, Rows, WorkPoint,
     machine, speed_against_error,
@@ -18,8 +18,8 @@ use crate::measure::{
 use crate::output::{self, Progress};
 use crate::report::{self, ADVICE, Answer, Best, Choice, Cost, Found, KEPT, choices};
 use lieflow_figures::{Block, Chart, Page, Section};
-use lieflow_model::model::Layer;
-use lieflow_model::operations::COUNTED_STEPS;
+use lieflow_model::problem::COUNTED_STEPS;
+use lieflow_model::problem::Layer;
 use lieflow_model::scene::Scene;
 
 /// The errors that are answered for where none is asked.

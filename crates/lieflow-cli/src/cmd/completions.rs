@@ -2,8 +2,8 @@
 
 use clap::CommandFactory;
 
-use super::CliError;
 use crate::args::{Cli, CompletionsArgs};
+use crate::error::CliError;
 use crate::output::print;
 
 /// Run the command.

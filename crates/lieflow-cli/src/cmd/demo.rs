@@ -2,8 +2,8 @@
 
 use std::time::Instant;
 
-use super::CliError;
 use crate::args::DemoArgs;
+use crate::error::CliError;
 use crate::measure::machine;
 use crate::output::{self, Progress};
 use crate::paper::speed::Speed;

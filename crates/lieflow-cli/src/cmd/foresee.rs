@@ -5,10 +5,11 @@ use std::time::{Duration, Instant};
 
 use lieflow::solve::Status;
 use lieflow::{RunError, SaveAt, StepControl, TimeGrid};
-use lieflow_model::model::{Model, Plan, Rows, Steps};
-use lieflow_model::scene::{Refusal, Scene};
+use lieflow_model::problem::{Model, Plan, Rows, Steps};
+use lieflow_model::reader::Refusal;
+use lieflow_model::scene::Scene;
 
-use super::CliError;
+use crate::error::CliError;
 use crate::output::{duration, number};
 
 /// A run of more steps of one size is timed before it begins.

@@ -4,11 +4,12 @@ use lieflow::catalog::{MethodInfo, MethodSpec, Needs, Order, TABLEAUS, all_metho
 use lieflow::maps::MAPS;
 use serde::Serialize;
 
-use super::CliError;
 use crate::args::{MethodsArgs, quoted};
+use crate::error::CliError;
 use crate::output::{print, print_json, table, wrap};
-use lieflow_model::kinds::high_order;
-use lieflow_model::scene::{Scene, suggest};
+use lieflow_model::problem::high_order;
+use lieflow_model::reader::suggest;
+use lieflow_model::scene::Scene;
 
 #[derive(Serialize)]
 struct Listing {

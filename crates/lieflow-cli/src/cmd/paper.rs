@@ -2,8 +2,8 @@
 
 use std::time::Instant;
 
-use super::CliError;
 use crate::args::PaperArgs;
+use crate::error::CliError;
 use crate::output::{self, Progress};
 use crate::paper::{PaperExtent, compute};
 

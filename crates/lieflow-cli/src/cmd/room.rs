@@ -3,11 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use lieflow::SaveAt;
-use lieflow_model::model::Plan;
-use lieflow_model::scene::{Refusal, Scene};
+use lieflow_model::problem::Plan;
+use lieflow_model::reader::Refusal;
+use lieflow_model::scene::Scene;
 use lieflow_model::schema::Schema;
 
-use super::CliError;
+use crate::error::CliError;
 use crate::output::{EVENTS, ROWS, TRAJECTORY, number, size};
 
 /// A run writes at most so many bytes without `--yes`.

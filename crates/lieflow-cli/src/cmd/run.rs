@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use super::CliError;
 use super::accuracy::{Check, Checked, LONG, Taken};
 use super::foresee::foresee;
 use super::room::{MOST, Room, foresee_room};
@@ -14,8 +13,9 @@ use super::stop::{INTERRUPTED, listen};
 use super::told::in_words;
 use super::watch::{Recorder, Watch, quantities};
 use crate::args::{ErrorCheck, RunArgs, quoted};
+use crate::error::CliError;
 use crate::output::{self, Drawn, Drift, MethodSummary, RunState, SUMMARY, Summary};
-use lieflow_model::model::Plan;
+use lieflow_model::problem::Plan;
 use lieflow_model::scene::Scene;
 
 /// How often the state of a run is saved.
@@ -326,7 +326,7 @@ pub fn run_scene(
         accuracy,
         accuracy_unknown,
         chosen_by_default: scene.by_default,
-        defaults_in_words: scene.by_default.in_words(scene),
+        defaults_in_words: scene.chosen_by_default(),
         rtol,
         atol,
     };

@@ -4,10 +4,11 @@ use std::io::{self, Write};
 
 use serde::Serialize;
 
-use super::CliError;
 use crate::args::ScenesArgs;
+use crate::error::CliError;
 use crate::output::{print, print_json, wrap};
-use lieflow_model::kinds::{KINDS, Kind};
+use lieflow_model::kinds::{self, KINDS};
+use lieflow_model::problem::Kind;
 use lieflow_model::scene::{BUNDLED, Bundled, Scene, unknown_scene};
 
 #[derive(Serialize)]
@@ -160,7 +161,7 @@ fn all_scenes() -> Result<Vec<SceneEntry>, CliError> {
 
 fn one(name: &str, args: &ScenesArgs) -> Result<(), CliError> {
     let stem = name.strip_suffix(".toml").unwrap_or(name);
-    let (scene, kind) = (Bundled::named(stem), Kind::named(name).ok());
+    let (scene, kind) = (Bundled::named(stem), kinds::named(name).ok());
     match (scene.filter(|_| !args.kind), kind) {
         (Some(scene), _) if args.json => print_json(&scene_entry(scene)?),
         (Some(scene), kind) => {

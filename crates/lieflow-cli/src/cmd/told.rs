@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use lieflow_model::kinds::explained_by_rounding;
+use lieflow_model::schema::explained_by_rounding;
 
 use crate::output::{self, Drift, SUMMARY, Summary, duration, number, short};
 

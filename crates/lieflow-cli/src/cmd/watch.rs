@@ -7,13 +7,13 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use lieflow::RunError;
 use lieflow::solve::{Next, Status};
 
-use super::CliError;
 use super::room::Room;
+use crate::error::CliError;
 use crate::output::{
     self, Chosen, Drift, EventSummary, Kind, Progress, RowFile, RowSample, RunState, Watched,
 };
-use lieflow_model::kinds::Figure;
-use lieflow_model::model::{Model, Outcome, Plan, Watcher};
+use lieflow_model::problem::Figure;
+use lieflow_model::problem::{Model, Outcome, Plan, Watcher};
 use lieflow_model::scene::Scene;
 use lieflow_model::schema::{Observable, Row};
 

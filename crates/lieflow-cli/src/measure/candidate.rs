@@ -3,9 +3,10 @@
 use lieflow::catalog::{Family, MethodInfo, MethodSpec, Property, TABLEAUS, all_methods};
 use lieflow::maps::MAPS;
 
-use crate::cmd::CliError;
-use lieflow_model::model::Layer;
-use lieflow_model::scene::{Scene, suggest};
+use crate::error::CliError;
+use lieflow_model::problem::Layer;
+use lieflow_model::reader::suggest;
+use lieflow_model::scene::Scene;
 
 /// A method on a layer.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]

@@ -9,7 +9,7 @@ use nalgebra::Matrix3;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
-use crate::cmd::CliError;
+use crate::error::CliError;
 
 /// The seed of the random inputs: the same numbers on every machine.
 const SEED: u64 = 2003;

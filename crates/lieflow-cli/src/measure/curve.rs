@@ -3,7 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::journal::number;
-use super::{Candidate, Fit, Size};
+use super::{Candidate, Size};
+use crate::fit::Fit;
 
 /// One run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

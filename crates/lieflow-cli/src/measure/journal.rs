@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::WorkPoint;
-use crate::cmd::CliError;
+use crate::error::CliError;
 
 /// The file.
 pub const JOURNAL: &str = "points.jsonl";

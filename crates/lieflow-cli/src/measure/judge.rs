@@ -9,8 +9,8 @@ use std::time::Duration;
 use lieflow::{RunError, SaveAt, StepControl, TimeGrid};
 
 use super::{Candidate, Size, WorkPoint, cpu_seconds};
-use crate::cmd::CliError;
-use lieflow_model::model::{Model, Plan, Rows as Watched, Sink, Steps};
+use crate::error::CliError;
+use lieflow_model::problem::{Model, Plan, Rows as Watched, Sink, Steps};
 use lieflow_model::scene::Scene;
 use lieflow_model::schema::{Observable, Row, Schema};
 

@@ -8,7 +8,6 @@ mod candidate;
 pub mod checks;
 mod clock;
 mod curve;
-mod fit;
 mod journal;
 mod judge;
 
@@ -16,7 +15,6 @@ pub use candidate::Candidate;
 pub use checks::checks;
 pub use clock::{cpu_seconds, machine, seconds_of};
 pub use curve::{Curve, Reached, WorkPoint, pareto};
-pub use fit::Fit;
 pub use journal::{JOURNAL, Journal};
 pub use judge::{Judge, MOST_ROWS, Reference, Rounding, Rows};
 
@@ -29,9 +27,9 @@ use rand::seq::SliceRandom;
 use rand_pcg::Pcg64;
 use serde::{Deserialize, Serialize};
 
-use crate::cmd::CliError;
+use crate::error::CliError;
 use lieflow::catalog::MethodSpec;
-use lieflow_model::model::{Layer, Model};
+use lieflow_model::problem::{Layer, Model};
 use lieflow_model::scene::Scene;
 use lieflow_model::schema::Row;
 

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use lieflow_figures::Page;
 
-use crate::cmd::CliError;
+use crate::error::CliError;
 
 /// A file that is being written beside its place.
 #[derive(Debug)]

@@ -24,7 +24,7 @@ use comfy_table::{Table, presets};
 use lieflow_figures::number::{DASH, typed};
 use serde::Serialize;
 
-use crate::cmd::CliError;
+use crate::error::CliError;
 
 /// Print to standard output. A reader that went away, as in `| head -1`, is no error.
 ///

@@ -6,7 +6,7 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use super::files::remove_old;
-use crate::cmd::CliError;
+use crate::error::CliError;
 
 /// The names of a file of rows: when its run is complete, and until then.
 pub(crate) type Names = [&'static str; 2];

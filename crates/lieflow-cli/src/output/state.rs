@@ -18,7 +18,7 @@ use std::io::{self, BufReader, Read, Write};
 use std::path::{Path, PathBuf};
 
 use super::files::{remove_old, write_file};
-use crate::cmd::CliError;
+use crate::error::CliError;
 
 const STATE: &str = "run.state";
 /// What a run showed, until it is complete.

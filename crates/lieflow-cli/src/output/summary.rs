@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use crate::measure::Fit;
-use lieflow_model::kinds::explained_by_rounding;
+use crate::fit::Fit;
 use lieflow_model::scene::Defaults;
+use lieflow_model::schema::explained_by_rounding;
 
 use super::{duration, number, short};
 

@@ -7,8 +7,9 @@ use nalgebra::Matrix3;
 use super::experiments::{EXAMPLE2, EXAMPLE3};
 use super::methods::{Body, PaperMethod};
 use super::printed::{Table4, table4};
-use crate::cmd::CliError;
-use crate::measure::{Fit, median};
+use crate::error::CliError;
+use crate::fit::Fit;
+use crate::measure::median;
 
 /// One of the two accuracy tests of section 5.3.
 #[derive(Clone, Copy, Debug)]

@@ -7,8 +7,9 @@ use lieflow_figures::{Axis, Chart, Series};
 use nalgebra::Matrix3;
 
 use super::methods::{Body, PaperMethod};
-use crate::cmd::CliError;
-use crate::measure::{Fit, cpu_seconds};
+use crate::error::CliError;
+use crate::fit::Fit;
+use crate::measure::cpu_seconds;
 
 /// The energy error of one run, sample by sample.
 #[derive(Clone, Debug)]

@@ -4,7 +4,7 @@ use lieflow::TimeGrid;
 
 use super::energy::{EnergyRun, energy_run};
 use super::methods::{Body, PaperMethod};
-use crate::cmd::CliError;
+use crate::error::CliError;
 
 /// An experiment. Its body and its step are those of a bundled scene.
 #[derive(Clone, Copy, Debug)]

@@ -10,7 +10,7 @@ use rand_pcg::Pcg64;
 use super::energy::energy_run;
 use super::experiments::{EXAMPLE1, EXAMPLE3, Experiment};
 use super::methods::{Body, PaperMethod};
-use crate::cmd::CliError;
+use crate::error::CliError;
 
 /// The energy drift of one method in many space frames.
 #[derive(Clone, Debug)]

@@ -27,7 +27,7 @@ use self::experiments::{EXAMPLE1, EXPERIMENTS, SEED};
 use self::findings::{DriftOrder, Frames, Separatrix};
 use self::methods::PaperMethod;
 use self::trace::Trace;
-use crate::cmd::CliError;
+use crate::error::CliError;
 use crate::output;
 
 /// Everything that the page shows.

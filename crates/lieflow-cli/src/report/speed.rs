@@ -4,12 +4,12 @@ use std::path::Path;
 
 use super::choice::{Cost, drawn, fronts};
 use super::{Looks, number};
-use crate::cmd::CliError;
+use crate::error::CliError;
 use crate::measure::{Candidate, Curve, Size};
 use crate::output::{fields, in_full, optional, write_csv};
 use lieflow_figures::number::seconds;
 use lieflow_figures::{Cell, Chart, Column, Marker, Series, Table, tell_apart};
-use lieflow_model::model::Layer;
+use lieflow_model::problem::Layer;
 
 /// The colour and marker of a method: by its map, the same in every figure; `None` for a method
 /// that has no map, whose place in the figure decides.

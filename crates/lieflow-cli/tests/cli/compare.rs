@@ -9,7 +9,7 @@ use lieflow_cli::measure::{
     Size, WorkPoint, speed_against_error,
 };
 use lieflow_cli::report::{ADVICE, Answer, choices};
-use lieflow_model::model::Layer;
+use lieflow_model::problem::Layer;
 use lieflow_model::scene::Scene;
 
 fn judge_of(scene: &Scene, quantities: &[&str], t_span: [f64; 2], steps: &[u64]) -> Judge<'static> {

@@ -1,7 +1,7 @@
 //! What is read off a line of time against error.
 
 use lieflow_cli::measure::{Candidate, Curve, Reached, Size, WorkPoint, pareto};
-use lieflow_model::model::Layer;
+use lieflow_model::problem::Layer;
 
 /// error = h⁴, time per unit = 1/h.
 fn ideal(hs: &[f64]) -> Curve {

@@ -6,8 +6,8 @@ use std::sync::atomic::AtomicBool;
 
 use crate::support::{Folder, SCENE};
 use lieflow_cli::args::ErrorCheck;
-use lieflow_cli::cmd::CliError;
 use lieflow_cli::cmd::run::{Options, run_scene};
+use lieflow_cli::error::CliError;
 use lieflow_model::scene::Scene;
 
 /// Run a scene that may write `most` bytes; the message of one that may not.

@@ -6,7 +6,7 @@ use lieflow::methods::{Rkmk, tableau::RK4};
 use lieflow::problems::{RigidBody, RigidBodyAttitude};
 use lieflow::{SaveAt, TimeGrid, integrate};
 use lieflow_model::kinds::RigidBodySpec;
-use lieflow_model::model::Layer;
+use lieflow_model::problem::Layer;
 use lieflow_model::scene::{BUNDLED, Scene};
 use lieflow_model::schema::Row;
 use nalgebra::Vector3;

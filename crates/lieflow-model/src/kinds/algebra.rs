@@ -14,7 +14,7 @@ use lieflow::groups::MatrixGroup;
 use lieflow::names::plain;
 use lieflow::scalar::{Ops, tally};
 
-use crate::scene::{KeyPath, Refusal};
+use crate::reader::{KeyPath, Refusal};
 
 /// An algebra of n×n matrices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -9,11 +9,11 @@ use lieflow::groups::{AlgebraMatrix, MatrixGroup};
 use lieflow::problems::Flow;
 use lieflow::problems::beam::{Element, transfer_map, tunes};
 
-use super::KNOTS_MAX;
 use super::entries::{row_columns, rows, symplectic_defect};
 use super::flow::OnMatrices;
 use super::matrix::MatrixAction;
 use super::prelude::*;
+use crate::problem::KNOTS_MAX;
 
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {

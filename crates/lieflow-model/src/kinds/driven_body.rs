@@ -22,9 +22,9 @@ use nalgebra::{Matrix3, Vector3};
 use super::body::*;
 use super::flow;
 use super::prelude::*;
-use super::system::PointOf;
-use crate::scene::formula::{Formula, Texts, without_value};
-use crate::scene::values;
+use crate::formula::{Formula, Texts, without_value};
+use crate::problem::PointOf;
+use crate::reader::values;
 
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {

@@ -5,8 +5,8 @@ use lieflow::dense::{largest_entry, multiply, norm, squared_norm, symmetric_eige
 use lieflow::groups::{GroupMatrix, LieGroup, MatrixGroup};
 
 use super::flow::OnMatrices;
-use super::law::{Law, Scale};
 use super::prelude::*;
+use crate::schema::{Law, Scale};
 
 /// The asymmetry that the rounding of written entries explains, relative to the largest entry.
 pub(super) const ROUNDING: f64 = 64.0 * f64::EPSILON;

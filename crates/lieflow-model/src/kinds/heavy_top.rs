@@ -16,8 +16,8 @@ use super::body::*;
 use super::driven_body::Torques;
 use super::flow::{Driven, OnSe3};
 use super::prelude::*;
-use super::system::PointOf;
-use crate::model::{Model, Runnable};
+use crate::problem::PointOf;
+use crate::problem::{Model, Runnable};
 
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {

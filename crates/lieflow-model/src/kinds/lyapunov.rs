@@ -10,7 +10,7 @@ use lieflow::problems::Lyapunov;
 use super::entries::{numbered, row_columns, rows};
 use super::flow::Growing;
 use super::prelude::*;
-use crate::scene::formula::{Formula, Names, Texts, without_value};
+use crate::formula::{Formula, Names, Texts, without_value};
 
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {

@@ -17,23 +17,23 @@ use lieflow::problems::Origin;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::keys::PARAMETERS;
 use super::prelude::{Error, KeyPath, Law, Read, ReadError, Real, Scale, Whole, read_by_keys};
-use super::system::no_such_layer;
-use super::{Figure, KeyInfo, Kind, ProblemSpec, QuantityInfo, ReadProblem};
-use crate::mapped::Mapped;
-use crate::model::{Layer, Model};
-use crate::scene::formula::{Formula, Names, Parameters, Text, Texts};
-use crate::scene::read::KeyReader;
-use crate::scene::values::counted;
-use crate::scene::{Refusal, Value};
+use crate::formula::{Formula, Names, Parameters, Text, Texts};
+use crate::problem::{
+    Figure, KeyInfo, Kind, Layer, Mapped, Model, PARAMETERS, ProblemSpec, QuantityInfo,
+    ReadProblem, no_such_layer,
+};
+use crate::reader::KeyReader;
+use crate::reader::values::counted;
+use crate::reader::{Refusal, Value};
 use crate::schema::{Row, Schema};
 
 /// The entry of a preset in the list of kinds, by the name of its file.
 macro_rules! preset {
     ($name:literal) => {{
         use std::sync::LazyLock;
-        use $crate::kinds::{Kind, preset::Preset};
+        use $crate::kinds::preset::Preset;
+        use $crate::problem::Kind;
         static PRESET: LazyLock<Preset> = LazyLock::new(|| {
             Preset::parse(include_str!(concat!("../../presets/", $name, ".toml")))
         });
@@ -216,7 +216,7 @@ impl Preset {
         let mut problem = self.problem.clone();
         let name = problem.remove("kind");
         let name = name.as_ref().and_then(|name| name.get_ref().as_str());
-        let kind = Kind::named(name.unwrap_or_default())?;
+        let kind = super::named(name.unwrap_or_default())?;
         let names = parameters.names("values", [""; 0])?;
         let mut text = String::new();
         for (key, value) in &self.values {

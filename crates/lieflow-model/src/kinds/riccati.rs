@@ -10,7 +10,7 @@ use super::entries::{check_symmetric, eigenvalues, numbered, square, upper, uppe
 use super::flow::OnMatrices;
 use super::matrix::MatrixAction;
 use super::prelude::*;
-use crate::branch::Branch;
+use crate::schema::Branch;
 
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {

@@ -3,9 +3,9 @@
 //! ṁ = \[m, Ω\], Ω_ij = m_ij/J_ij. f(m) = −Ω; Λ(g, m) = g m gᵀ. Invariants: tr mᵏ for even k (the
 //! action), the energy, and for J_ij = λ_i + λ_j Manakov's further integrals.
 
-use super::SERIES;
 use super::entries::{above_diagonal, antisymmetric};
 use super::prelude::*;
+use crate::problem::SERIES;
 use lieflow::dense::multiply;
 use lieflow::problems::{RigidBodyN, manakov_integrals};
 

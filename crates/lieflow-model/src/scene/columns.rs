@@ -4,12 +4,11 @@ use core::cell::RefCell;
 
 use lieflow::Error;
 
-use super::each_once;
-use super::error::{KeyPath, Refusal};
-use super::formula::{Formula, Lets, Names, Parameters};
-use crate::kinds::{FormulaKeys, ProblemSpec};
-use crate::mapped::Mapped;
-use crate::model::Model;
+use crate::formula::{Formula, Lets, Names, Parameters};
+use crate::problem::Mapped;
+use crate::problem::Model;
+use crate::problem::{FormulaKeys, ProblemSpec};
+use crate::reader::{KeyPath, Refusal};
 use crate::schema::{Row, Schema};
 
 /// The name of the quantity that `[output.formulas]` is.
@@ -224,4 +223,15 @@ pub(super) fn check_plot(
             Err(Refusal { message, ..unknown })
         }
     }
+}
+
+/// The names without those that were there before.
+pub(super) fn each_once<'a>(names: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
+    let mut all = Vec::new();
+    for name in names {
+        if !all.contains(&name) {
+            all.push(name);
+        }
+    }
+    all
 }

@@ -2,8 +2,7 @@
 
 use serde::Serialize;
 
-use super::Scene;
-use crate::kinds::ProblemSpec;
+use crate::problem::ProblemSpec;
 
 /// The error of each step, relative and absolute, of a method of this order: of order 8 the least that rounding
 /// allows, by which eight digits and more are right after many thousand steps; of a lower order one that it can meet.
@@ -29,27 +28,6 @@ pub struct Defaults {
     pub quantities: bool,
     /// The times of the rows.
     pub rows: bool,
-}
-
-impl Defaults {
-    /// The choices in words, or none if the scene says everything.
-    pub fn in_words(self, scene: &Scene) -> Option<String> {
-        let mut chosen = Vec::new();
-        if self.method {
-            chosen.push(format!("method {}", scene.method.label()));
-        }
-        if self.steps {
-            let tolerance = scene.time.tolerances()[0];
-            chosen.push(format!("adaptive steps with rtol = atol = {tolerance:e}"));
-        }
-        if self.quantities {
-            chosen.push(format!("quantities {}", scene.quantities.join(", ")));
-        }
-        if self.rows && self.steps && scene.grid.t_span()[1].is_finite() {
-            chosen.push(format!("rows at {INTERVALS} equal intervals"));
-        }
-        (!chosen.is_empty()).then(|| chosen.join("; "))
-    }
 }
 
 /// The quantities that a user of the problem wants: the state, what is drawn, and what the exact motion conserves. One

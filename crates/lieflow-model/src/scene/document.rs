@@ -6,11 +6,12 @@ use core::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::error::{Mistakes, Refusal, SceneError};
-use super::formula::DECIMAL_POINT;
+use super::error::{Mistakes, SceneError};
 use super::mend::{Found, Mending, Reading, rename};
-use super::read::{Read, ReadError, Value};
-use super::suggest::help_for;
+use crate::formula::DECIMAL_POINT;
+use crate::reader::Refusal;
+use crate::reader::help_for;
+use crate::reader::{Read, ReadError, Value};
 
 /// The keys at the top.
 pub(super) const TOP: &[&str] = &["title", "problem", "method", "time", "events", "output"];

@@ -10,11 +10,11 @@
 use lieflow::{Direction, Error};
 
 use super::columns::{Columns, RowFormula};
-use super::error::{KeyPath, Refusal};
-use super::formula::{Formula, Text};
-use super::read::read_by_keys;
-use super::values::Whole;
-use crate::model::EventPlan;
+use crate::formula::{Formula, Text};
+use crate::problem::EventPlan;
+use crate::reader::read_by_keys;
+use crate::reader::values::Whole;
+use crate::reader::{KeyPath, Refusal};
 use crate::schema::{Row, Schema};
 
 read_by_keys! {

@@ -7,12 +7,12 @@ use lieflow::tolerance::Rule;
 use lieflow::{Error, SaveAt, TimeGrid};
 
 use super::defaults;
-use super::error::{Either, KeyPath, Refusal, at_most_one, exactly_one};
-use super::formula::Lets;
-use super::read::read_by_keys;
-use super::values::{Real, Span, Whole};
-use crate::kinds::{Kind, ProblemSpec, high_order};
-use crate::model::Layer;
+use crate::formula::Lets;
+use crate::problem::Layer;
+use crate::problem::{Kind, ProblemSpec, high_order};
+use crate::reader::read_by_keys;
+use crate::reader::values::{Real, Span, Whole};
+use crate::reader::{Either, KeyPath, Refusal, at_most_one, exactly_one};
 
 read_by_keys! {
     /// `[method]`.

@@ -5,9 +5,9 @@ use core::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::error::Refusal;
-use super::read::{ReadError, Value};
-use super::suggest::suggest;
+use crate::reader::Refusal;
+use crate::reader::suggest;
+use crate::reader::{ReadError, Value};
 use lieflow::names::near;
 
 /// An error of a reading, with its place.

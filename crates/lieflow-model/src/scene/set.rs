@@ -3,7 +3,7 @@
 use toml_edit::{DocumentMut, Item, TableLike, Value};
 
 use super::error::SceneError;
-use super::suggest::help_for;
+use crate::reader::help_for;
 
 /// A step on the way to a value: a key, or the place in a list, from 1.
 enum Step<'a> {

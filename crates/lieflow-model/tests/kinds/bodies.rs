@@ -4,7 +4,7 @@ use core::f64::consts::PI;
 use std::time::Duration;
 
 use lieflow::solve::Next;
-use lieflow_model::model::{Plan, Watcher};
+use lieflow_model::problem::{Plan, Watcher};
 use nalgebra::{Matrix3, Vector3};
 
 use super::formulas::{FINE, RKMK4, refused};

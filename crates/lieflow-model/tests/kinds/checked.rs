@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use lieflow::catalog::MethodSpec;
 use lieflow_model::check::check_runs;
-use lieflow_model::model::Layer;
+use lieflow_model::problem::Layer;
 use lieflow_model::scene::{BUNDLED, Scene};
 
 /// The types of problems that the bundled scenes have: on each layer, with the quantities of the scene and with each

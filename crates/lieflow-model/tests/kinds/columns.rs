@@ -3,7 +3,7 @@
 use std::cell::Cell;
 use std::time::Instant;
 
-use lieflow_model::model::Rows;
+use lieflow_model::problem::Rows;
 
 use super::formulas::{FINE, RKMK4, refused};
 use super::*;
@@ -104,7 +104,7 @@ fn formulas_of_columns() {
     assert_eq!(seen, 201);
     // Both events are the same function.
     struct Zeros(Vec<(usize, f64)>);
-    impl lieflow_model::model::Watcher for Zeros {
+    impl lieflow_model::problem::Watcher for Zeros {
         fn row(&mut self, _: f64, _: Row<'_>) -> lieflow::solve::Next {
             lieflow::solve::Next::Continue
         }
@@ -166,7 +166,7 @@ fn formulas_of_columns() {
 #[test]
 fn events_of_formulas_of_a_preset() {
     struct Zeros(Vec<Vec<f64>>);
-    impl lieflow_model::model::Watcher for Zeros {
+    impl lieflow_model::problem::Watcher for Zeros {
         fn row(&mut self, _: f64, _: Row<'_>) -> lieflow::solve::Next {
             lieflow::solve::Next::Continue
         }

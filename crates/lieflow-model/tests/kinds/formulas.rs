@@ -6,7 +6,7 @@ use lieflow::catalog::MethodSpec;
 use lieflow::groups::{LieGroup, MatrixGroup};
 use lieflow::maps::Exp;
 
-use lieflow_model::model::Rows;
+use lieflow_model::problem::Rows;
 
 use super::*;
 

@@ -2,7 +2,8 @@
 
 use lieflow_figures::number::short;
 use lieflow_figures::{Axis, Block, Chart, Marks, Point, Series};
-use lieflow_model::kinds::{Kind, Scale};
+use lieflow_model::problem::Kind;
+use lieflow_model::schema::Scale;
 use lieflow_model::schema::{Observable, Part, Row};
 
 use super::sample::RowSample;

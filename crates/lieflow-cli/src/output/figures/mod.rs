@@ -12,12 +12,13 @@ use lieflow_figures::{
     self as figures, Axis, Block, Body, Cell, Chart, Column, Ground, Heat, LINE_COLOURS, Marker,
     Page, Path, Point, Scale, Section, Series, Sphere, Table,
 };
-use lieflow_model::kinds::{self, Figure, PrincipalInertia};
+use lieflow_model::problem;
+use lieflow_model::problem::{Figure, PrincipalInertia};
 use lieflow_model::scene::Scene;
 use lieflow_model::schema::{Observable, Row};
 
 use self::lines::{LINES, against_time, constant, in_rows, marked};
-use crate::cmd::CliError;
+use crate::error::CliError;
 use crate::output::{EVENTS, SUMMARY, Summary};
 
 /// Rows of a table that is open.
@@ -216,8 +217,8 @@ fn own_figure(summary: &Summary, run: &Drawn<'_>, figure: Figure) -> Vec<Block> 
             let end = summary.t_end.unwrap_or(summary.t_span[1]);
             let title = format!("The field at t = {}", in_digits(end));
             let ground = match ground {
-                kinds::Ground::Sphere => Ground::Sphere,
-                kinds::Ground::Torus => Ground::Torus,
+                problem::Ground::Sphere => Ground::Sphere,
+                problem::Ground::Torus => Ground::Torus,
             };
             let (values, caption) = (run.field.to_vec(), String::new());
             vec![Block::Heat(Heat { id, title, ground, values, caption })]

@@ -3,7 +3,7 @@
 use lieflow::so3::{quaternion_from_matrix, quaternion_to_wxyz};
 use lieflow_figures::number::short;
 use lieflow_figures::{Body, Pose};
-use lieflow_model::kinds::PrincipalInertia;
+use lieflow_model::problem::PrincipalInertia;
 use lieflow_model::schema::{Observable, Row};
 use nalgebra::Matrix3;
 

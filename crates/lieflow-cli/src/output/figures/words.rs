@@ -1,6 +1,6 @@
 //! What figures and tables call a quantity, its columns and its parts.
 
-use lieflow_model::kinds::Kind;
+use lieflow_model::problem::Kind;
 use lieflow_model::schema::{Observable, Part};
 
 /// The title of a quantity: the first clause of its meaning, or its columns if the scene makes them.

@@ -22,7 +22,7 @@ use rand_pcg::Pcg64;
 
 use self::contest::Contender;
 use self::exact::Matrix;
-use crate::cmd::CliError;
+use crate::error::CliError;
 use crate::measure::{median, seconds_of};
 use crate::output;
 

@@ -11,14 +11,14 @@ use lieflow::check::Finding;
 use lieflow::groups::{LieGroup, So3};
 use lieflow_figures::Body;
 use lieflow_figures::number::{or_dash, scientific, seconds, sig};
-use lieflow_model::model::Layer;
+use lieflow_model::problem::Layer;
 use lieflow_model::scene::Scene;
 
 use super::energy::EnergyRun;
 use super::experiments::{EXPERIMENTS, Experiment, SEED};
 use super::maps::{self, Study};
 use super::methods::PaperMethod;
-use crate::cmd::CliError;
+use crate::error::CliError;
 use crate::measure::{Candidate, Curve, Effort, NEVER, Plan, Rows, checks, speed_against_error};
 use crate::output;
 use crate::report;

@@ -3,7 +3,7 @@
 use lieflow::groups::{LieGroup, So3};
 use lieflow_figures::number::{or_dash, seconds, sig};
 use lieflow_figures::{Axis, Block, Cell, Chart, Column, Page, Row, Section, Series, Table};
-use lieflow_model::model::Layer;
+use lieflow_model::problem::Layer;
 
 use super::{Outcome, Speed, candidate, rounds};
 use crate::measure::Curve;

@@ -1,5 +1,6 @@
 //! What all kinds of bodies share: their keys ([`BodyKeys`]), the start that these state, and their quantities.
 
+mod keys;
 mod quantities;
 mod shape;
 
@@ -10,11 +11,12 @@ use lieflow::problems::inertia::{principal_axes, violates_triangle};
 use lieflow::so3::{quaternion_from_matrix, quaternion_from_wxyz};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
+pub(crate) use self::keys::BodyKeys;
+pub(super) use self::keys::body_keys;
 pub(super) use self::quantities::*;
 pub(crate) use self::shape::Shape;
-use super::keys::BodyKeys;
 use super::prelude::*;
-use crate::scene::values::Diagonal;
+use crate::reader::values::Diagonal;
 
 /// A rigid body with its initial state.
 #[derive(Clone, Debug, PartialEq)]

@@ -5,9 +5,9 @@ use lieflow::so3::{quaternion_from_matrix, quaternion_to_wxyz};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 use super::{RigidBodySpec, rotation};
-use crate::branch::Branch;
 use crate::kinds::prelude::*;
-use crate::kinds::system::PointOf;
+use crate::problem::PointOf;
+use crate::schema::Branch;
 
 /// A rotation from body to space, as it is integrated.
 pub(in crate::kinds) enum Orientation {

@@ -3,9 +3,9 @@
 use lieflow::Error;
 use lieflow::problems::inertia::{cuboid, cylinder, ellipsoid};
 
-use crate::scene::read::read_by_keys;
-use crate::scene::values::{Real, Reals};
-use crate::scene::{Refusal, help_for};
+use crate::reader::read_by_keys;
+use crate::reader::values::{Real, Reals};
+use crate::reader::{Refusal, help_for};
 
 read_by_keys! {
     /// The key, as it is written: which measures belong to which kind is checked after.

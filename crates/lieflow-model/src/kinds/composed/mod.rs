@@ -13,9 +13,9 @@ use super::body::check_rotation;
 use super::entries::check_rows;
 use super::flow;
 use super::prelude::*;
-use super::quantity::part;
-use crate::scene::formula::{Formula, Parameters, Text, Texts, without_value};
-use crate::scene::values::Numbers;
+use crate::formula::{Formula, Parameters, Text, Texts, without_value};
+use crate::problem::part;
+use crate::reader::values::Numbers;
 use crate::schema::{self, Measure};
 
 pub(super) use self::system::{OnParts, Parts};

@@ -18,8 +18,8 @@ use lieflow::problems::Problem;
 use lieflow::scalar::Real;
 use nalgebra::{Matrix3, Vector3};
 
-use crate::kinds::system::Number;
-use crate::scene::formula::Formula;
+use crate::formula::Formula;
+use crate::problem::Number;
 
 type Powers<S> = Power<So3<S>>;
 /// SO(3)ⁿ × SO(3)ᵐ × T(k).

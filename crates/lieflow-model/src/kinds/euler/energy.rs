@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use lieflow::scalar::{Ops, Real, tally};
 
-use crate::scene::Refusal;
-use crate::scene::formula::{Formula, Names, Text, without_value};
+use crate::formula::{Formula, Names, Text, without_value};
+use crate::reader::Refusal;
 
 /// The key.
 const KEY: &str = "hamiltonian";

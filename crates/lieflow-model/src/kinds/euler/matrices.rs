@@ -8,17 +8,17 @@ use lieflow::scalar::{Ops, tally};
 use super::energy::Energy;
 use super::group::WithGroup;
 use super::{Dual, KIND, Keys, OnDual, quantities};
+use crate::formula::Formula;
 use crate::kinds::algebra::{Algebra, Miss, Named, miss};
 use crate::kinds::entries::{
     antisymmetric, numbered, row_columns, rows, size_of_traces, square, traces,
 };
 use crate::kinds::flow::OnMatrices;
-use crate::kinds::keys::SampleKeys;
 use crate::kinds::matrix::MatrixAction;
 use crate::kinds::prelude::*;
-use crate::model::Model;
-use crate::scene::formula::Formula;
-use crate::scene::values::Numbers;
+use crate::problem::Model;
+use crate::problem::SampleKeys;
+use crate::reader::values::Numbers;
 
 /// How H is stated.
 #[derive(Clone, Debug)]

@@ -24,9 +24,9 @@ use self::vectors::Vectors;
 use super::algebra::{ALGEBRAS, Algebra};
 use super::entries::rows;
 use super::prelude::*;
-use super::system::PointOf;
-use crate::scene::formula::Text;
-use crate::scene::values::Numbers;
+use crate::formula::Text;
+use crate::problem::PointOf;
+use crate::reader::values::Numbers;
 
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {

@@ -7,11 +7,11 @@ use nalgebra::Vector3;
 
 use super::energy::Energy;
 use super::{Dual, KIND, Keys, OnDual, quantities};
+use crate::formula::Formula;
 use crate::kinds::flow::{OnSe3, OnSpheres};
-use crate::kinds::keys::SampleKeys;
 use crate::kinds::prelude::*;
-use crate::kinds::system::PointOf;
-use crate::scene::formula::Formula;
+use crate::problem::PointOf;
+use crate::problem::SampleKeys;
 
 /// The energy and the initial momentum, N numbers.
 #[derive(Clone, Debug)]

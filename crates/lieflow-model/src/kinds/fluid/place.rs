@@ -4,7 +4,7 @@ use faer::Mat;
 use lieflow::groups::ComplexMatrix;
 use lieflow::problems::{Sphere, Surface, Torus, Zeitlin};
 
-use crate::kinds::Ground;
+use crate::problem::Ground;
 
 /// A sphere or a torus.
 #[derive(Clone, Debug)]

@@ -9,6 +9,7 @@ use lieflow::maps::{CoordinateMap, Exp};
 use lieflow::problems::Flow;
 
 use super::{ACTIONS, KIND, NAMED_MAX};
+use crate::formula::{Formula, without_value};
 use crate::kinds::algebra::{Algebra, Miss, miss};
 use crate::kinds::entries::{
     numbered, row_columns, rows, size_of_traces, traces, upper, upper_columns,
@@ -16,7 +17,6 @@ use crate::kinds::entries::{
 use crate::kinds::flow::OnMatrices;
 use crate::kinds::matrix::MatrixAction;
 use crate::kinds::prelude::*;
-use crate::scene::formula::{Formula, without_value};
 
 /// The equation with its initial point.
 #[derive(Clone, Debug)]

@@ -25,7 +25,7 @@ use super::body::TYPED;
 use super::entries::{above_diagonal, check_symmetric, row_columns, side_of};
 use super::matrix::MatrixAction;
 use super::prelude::*;
-use crate::scene::formula::{Formula, Text, Texts};
+use crate::formula::{Formula, Text, Texts};
 
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {

@@ -8,10 +8,10 @@ use nalgebra::Matrix3;
 use self::model::{
     Attitude, AttitudeMatrix, Body, ByMethod, MomentumMatrix, MomentumOnly, Quaternion, State,
 };
-use super::SERIES;
-use super::body::RigidBodySpec;
+use super::body::{RigidBodySpec, body_keys};
 use super::prelude::*;
-use crate::model::Model;
+use crate::problem::Model;
+use crate::problem::SERIES;
 
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {

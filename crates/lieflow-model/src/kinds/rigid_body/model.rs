@@ -23,8 +23,8 @@ use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use super::{KIND, RigidBodySpec};
 use crate::kinds::body::*;
 use crate::kinds::prelude::*;
-use crate::kinds::system::PointOf;
-use crate::model::{Model, Orders, Outcome, Plan, Runnable, Steps, Watcher};
+use crate::problem::PointOf;
+use crate::problem::{Model, Orders, Outcome, Plan, Runnable, Steps, Watcher};
 use crate::schema::Schema;
 
 /// Where a body is: its momentum in the body, and its orientation where that is modelled.

@@ -2,11 +2,11 @@
 
 use toml::de::DeValue;
 
-use super::super::Refusal;
-use super::super::read::{Read, ReadError, Value};
-use super::super::values::Real;
+use super::expression::{Formula, read_value};
+use super::names::Names;
 use super::tape::Tape;
-use super::{Formula, KeyPath, Names, read_value};
+use crate::reader::values::Real;
+use crate::reader::{KeyPath, Read, ReadError, Refusal, Value};
 
 /// A formula: a text, or a number.
 #[derive(Clone, Debug, PartialEq, Eq)]

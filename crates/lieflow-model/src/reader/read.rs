@@ -8,7 +8,7 @@ use lieflow::Error;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::error::Refusal;
+use super::refusal::Refusal;
 use super::suggest::help_for;
 
 /// A value of a scene, with its place in the text.
@@ -219,11 +219,11 @@ macro_rules! read_by_keys {
             $($(#[$doc])* $shown $key: $type,)*
         }
 
-        impl $crate::scene::read::Read for $name {
+        impl $crate::reader::Read for $name {
             fn read(
-                value: &$crate::scene::read::Value<'_>,
-            ) -> Result<Self, $crate::scene::read::ReadError> {
-                use $crate::scene::read::{KeyReader, Read, key_name};
+                value: &$crate::reader::Value<'_>,
+            ) -> Result<Self, $crate::reader::ReadError> {
+                use $crate::reader::{KeyReader, Read, key_name};
                 let mut keys = KeyReader::of(value, const { &[$(key_name(stringify!($key)),)*] })?;
                 $(let $key = keys.read(const { key_name(stringify!($key)) }, Read::read);)*
                 keys.check()?;

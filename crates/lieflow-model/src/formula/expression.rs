@@ -1,53 +1,21 @@
-//! Formulas: functions of a user's own, as text in a scene.
-//!
-//! | | |
-//! |---|---|
-//! | numbers | `2`, `0.5`, `1e-3`, `pi`, `e`, the names of `[problem.parameters]` |
-//! | variables | those that the key says, such as `t`, `w1`, `g33`; the columns of a file of samples |
-//! | named formulas | the names of `[problem.let]` |
-//! | operators | `+` `-` `*` `/` `^` and parentheses; −2^2 = −4, 2^−1 = ½, 2^3^2 = 2^9; whole powers are products |
-//! | functions | sin cos tan asin acos atan sinh cosh tanh exp ln log10 sqrt abs sign, atan2(y, x) min(x, y) max(x, y) |
-//! | vectors | `[a, b, c]`; `w` where `w1`, `w2`, … have a meaning; `g` where `g11`, `g12`, … have one, a matrix |
-//! | of vectors | `+` `-`, products with numbers and matrices, dot cross norm transpose |
-//!
-//! A formula is read once, to a list of operations; its derivative is another one. Evaluating it allocates
-//! nothing and cannot fail: where it has no value, the value is NaN, and the formula is kept to be named.
-//!
-//! The crates for expressions have one thing or another of what is needed: powers before signs and to the
-//! right, `1e-3`, mistakes with their place, derivatives, operations that are counted. None has all.
-
-mod calculus;
-mod functions;
-mod lost;
-mod names;
-mod parse;
-mod samples;
-mod tape;
-#[cfg(test)]
-mod tests;
-mod text;
-mod value;
-
-pub use lost::{Lost, Which};
-pub use names::{Lets, Names, Parameters};
-pub use parse::DECIMAL_POINT;
-pub use samples::SamplesFile;
-pub use text::{Text, Texts};
+//! An expression of named variables, ready to be evaluated.
 
 use std::sync::Arc;
 
 use lieflow::samples::Samples;
 use lieflow::scalar::Real;
 
-use self::lost::Origin;
-use self::samples::Table;
-use self::tape::{LENGTH_MAX, Tape};
-use super::{KeyPath, Refusal};
+use super::lost::{Lost, Origin, Which};
+use super::names::Names;
+use super::samples::Table;
+use super::tape::{LENGTH_MAX, Tape};
+use super::{calculus, parse};
+use crate::reader::Refusal;
 
 /// An expression of a scene in named variables.
 #[derive(Clone, Debug)]
 pub struct Formula {
-    tape: Tape,
+    pub(super) tape: Tape,
     /// Of its names, whether it uses them or not.
     table: Option<Arc<Table>>,
     origin: Arc<Origin>,
@@ -74,7 +42,7 @@ impl Formula {
     }
 
     /// The formula of a text, or an entry of its value, at `key`.
-    fn of(tape: Tape, key: &str, text: &str, names: &Names) -> Self {
+    pub(super) fn of(tape: Tape, key: &str, text: &str, names: &Names) -> Self {
         let (key, text, table) = (key.into(), text.into(), names.table().cloned());
         Formula {
             tape,
@@ -177,7 +145,11 @@ pub fn without_value<'a>(
 }
 
 /// The entries of the value of a formula, row by row, and the number of its rows.
-fn read_value(key: &str, text: &str, names: &Names) -> Result<(usize, Vec<Tape>), Refusal> {
+pub(super) fn read_value(
+    key: &str,
+    text: &str,
+    names: &Names,
+) -> Result<(usize, Vec<Tape>), Refusal> {
     let refused = |parse::Mistake { message, help }| Refusal {
         help,
         ..Refusal::at(key, format!("{key}: {message}"))

@@ -5,9 +5,9 @@ use lieflow::scalar::{Counted, Ops};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::super::Refusal;
-use super::super::read::{Read, ReadError};
 use super::{Formula, Lets, Names, Parameters, SamplesFile, Text, Texts, Which};
+use crate::reader::Refusal;
+use crate::reader::{Read, ReadError};
 
 fn names() -> Names {
     Parameters::default().names("variables", ["x", "y", "w_1"]).expect("three names")

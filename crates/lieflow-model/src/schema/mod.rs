@@ -1,13 +1,17 @@
 //! The rows of a run: values with the names of their quantities.
 
+mod branch;
+mod law;
+
+pub use branch::Branch;
+pub(crate) use branch::Branches;
+pub use law::{Law, Scale, explained_by_rounding};
+
 use core::ops::{Index, Range};
 
 use lieflow::Error;
 use lieflow::catalog::{MethodInfo, Property};
 use lieflow::problems::Origin;
-
-use crate::branch::Branch;
-use crate::kinds::{Law, Scale};
 
 /// How far two values of columns are from each other.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -31,15 +31,15 @@ const ROUNDINGS: f64 = 64.0;
 
 impl Law {
     /// A law of the action.
-    pub(super) const fn by_the_action(degree: u32) -> Law {
+    pub(crate) const fn by_the_action(degree: u32) -> Law {
         Law { origin: Origin::Action, degree, scale: Scale::Value }
     }
     /// A law of this flow.
-    pub(super) const fn by_the_flow(degree: u32) -> Law {
+    pub(crate) const fn by_the_flow(degree: u32) -> Law {
         Law { origin: Origin::Flow, ..Law::by_the_action(degree) }
     }
     /// The law with another size that its rounding is relative to.
-    pub(super) const fn on_scale(self, scale: Scale) -> Law {
+    pub(crate) const fn on_scale(self, scale: Scale) -> Law {
         Law { scale, ..self }
     }
 }

@@ -1,20 +1,18 @@
 //! The names that a formula may use: the variables of its kind, the constants and the named formulas of the scene.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use lieflow::samples::Samples;
 
-use super::super::Refusal;
-use super::super::read::{Read, ReadError, Value, read_as_held};
-use super::super::values::Real;
 use super::functions::{CALLED, CONSTANTS};
 use super::lost::Losses;
 use super::samples::{SamplesFile, Table};
 use super::tape::Tape;
-use super::{Formula, KeyPath, Texts};
+use crate::reader::values::Real;
+use crate::reader::{Read, ReadError, Refusal, Value, read_as_held};
 
-read_as_held!(Parameters, Lets);
+read_as_held!(Parameters);
 
 /// `[problem.parameters]`: constants that the formulas of a scene share, `k = 3.0`.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -56,32 +54,6 @@ impl Parameters {
     }
 }
 
-/// `[problem.let]`: formulas with names, which other formulas may use, `b = "3*t"`.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Lets(BTreeMap<String, Texts>);
-
-/// More named formulas than this are refused.
-const LETS_MAX: usize = 256;
-
-impl Lets {
-    /// Are there none?
-    pub fn is_empty(&self) -> bool {
-        self.0.is_empty()
-    }
-
-    /// The names, in alphabetical order.
-    pub fn names(&self) -> impl Iterator<Item = &str> {
-        self.0.keys().map(String::as_str)
-    }
-
-    /// The formula that a name in a text belongs to: that of the name, or of the vector or matrix x by x1 or x12.
-    fn of<'a>(&'a self, word: &str) -> Option<&'a str> {
-        let whole = || self.0.get_key_value(without_digits(word));
-        let found = self.0.get_key_value(word).or_else(whole)?;
-        Some(found.0)
-    }
-}
-
 /// The names that a formula may use.
 #[derive(Clone, Debug, Default)]
 pub struct Names {
@@ -89,9 +61,9 @@ pub struct Names {
     constants: Vec<(String, f64)>,
     table: Option<Arc<Table>>,
     /// The named formulas, after those that they need; of vectors and matrices each entry by its name.
-    formulas: Arc<Vec<Entry>>,
+    pub(super) formulas: Arc<Vec<Entry>>,
     /// Named formulas that have no meaning here, and why.
-    unusable: Vec<(String, String)>,
+    pub(super) unusable: Vec<(String, String)>,
     losses: Arc<Losses>,
 }
 
@@ -120,7 +92,7 @@ impl Entry {
 }
 
 /// The name of a vector or a matrix by that of an entry.
-fn without_digits(name: &str) -> &str {
+pub(super) fn without_digits(name: &str) -> &str {
     name.trim_end_matches(|c: char| c.is_ascii_digit())
 }
 
@@ -171,32 +143,6 @@ impl Names {
         Ok(self)
     }
 
-    /// These names and named formulas, which may use each other in any order. `key` is their table in the scene.
-    ///
-    /// # Errors
-    /// A refusal of the formula that cannot be read, has a name that is taken, or needs itself.
-    pub fn with_lets(mut self, key: &str, lets: &Lets) -> Result<Names, Refusal> {
-        if lets.0.len() > LETS_MAX {
-            let message = format!("found {} formulas, expected at most {LETS_MAX}", lets.0.len());
-            return Err(Refusal::at(key, message));
-        }
-        let mut reader = LetReader::new(key, lets, true);
-        lets.names().try_for_each(|name| reader.define(name, &mut self))?;
-        Ok(self)
-    }
-
-    /// Adds the formulas of [`with_lets`](Self::with_lets) that can be used with these names. A formula hides a variable of
-    /// the same name, also where it cannot be used.
-    pub fn with_usable_lets(mut self, key: &str, lets: &Lets) -> Names {
-        let mut reader = LetReader::new(key, lets, false);
-        for name in lets.names().take(LETS_MAX) {
-            reader.path.clear();
-            // Why it cannot be used is kept in the names.
-            let _ = reader.define(name, &mut self);
-        }
-        self
-    }
-
     /// Is it the name of a named formula, or of an entry of one?
     pub fn is_formula(&self, name: &str) -> bool {
         matches!(self.meaning(name), Some(Meaning::Formula(_))) || self.is_unusable(name)
@@ -205,20 +151,6 @@ impl Names {
     /// Is it the name of a named formula that has no meaning here?
     pub(super) fn is_unusable(&self, name: &str) -> bool {
         self.unusable.iter().any(|(formula, _)| formula == name)
-    }
-
-    /// The named formulas of a table, by the name of each entry.
-    pub fn entries_of<'a>(
-        &'a self,
-        lets: &'a Lets,
-    ) -> impl Iterator<Item = (String, Formula)> + 'a {
-        lets.names().flat_map(move |name| {
-            let of_this = move |entry: &&Entry| lets.of(&entry.name) == Some(name);
-            let entries = self.formulas.iter().filter(of_this);
-            entries.map(|Entry { name, key, text, tape }| {
-                (name.clone(), Formula::of(tape.clone(), key, text, self))
-            })
-        })
     }
 
     /// Why a named formula has no meaning here, by its name or that of an entry.
@@ -272,7 +204,7 @@ impl Names {
         names.push(variable);
     }
 
-    fn check(&self, key: &str, name: &str) -> Result<(), Refusal> {
+    pub(super) fn check(&self, key: &str, name: &str) -> Result<(), Refusal> {
         let first = name.chars().next();
         let why = if !first.is_some_and(starts_name) || !name.chars().all(continues_name) {
             "is no name: expected letters, digits and underscores, and no digit first"
@@ -289,7 +221,7 @@ impl Names {
     }
 
     /// As [`check`](Self::check), and the name must not be that of a vector or a matrix either.
-    fn check_new(&self, key: &str, name: &str) -> Result<(), Refusal> {
+    pub(super) fn check_new(&self, key: &str, name: &str) -> Result<(), Refusal> {
         self.check(key, name)?;
         let has_entries = |ends: [&str; 2]| {
             ends.iter().all(|end| self.meaning(&format!("{name}{end}")).is_some())
@@ -324,71 +256,6 @@ impl Names {
         let own = self.constants.iter().map(|(name, _)| name.as_str());
         let own = variables.chain(formulas).chain(own);
         own.chain(CONSTANTS.iter().map(|(name, _)| *name)).collect()
-    }
-}
-
-/// Reads named formulas.
-struct LetReader<'a> {
-    key: &'a str,
-    lets: &'a Lets,
-    /// Is a name refused that has a meaning already?
-    refuses_taken: bool,
-    /// Those that need the one that is read.
-    path: Vec<&'a str>,
-    done: BTreeSet<&'a str>,
-}
-
-impl<'a> LetReader<'a> {
-    fn new(key: &'a str, lets: &'a Lets, refuses_taken: bool) -> Self {
-        LetReader { key, lets, refuses_taken, path: Vec::new(), done: BTreeSet::new() }
-    }
-
-    /// Read a named formula, and before it those that it needs.
-    fn define(&mut self, name: &'a str, names: &mut Names) -> Result<(), Refusal> {
-        let place = self.key.entry(name);
-        if let Some(start) = self.path.iter().position(|above| *above == name) {
-            let circle = [&self.path[start..], &[name]].concat().join(" needs ");
-            let message = format!("{place}: a formula cannot need itself: {circle}");
-            return Err(Refusal::at(place, message));
-        }
-        let lets = self.lets;
-        let texts = lets.0.get(name).filter(|_| self.done.insert(name));
-        let Some(texts) = texts else { return Ok(()) };
-        self.path.push(name);
-        let read = self.read(name, texts, names);
-        self.path.pop();
-        if let (Err(refusal), false) = (&read, self.refuses_taken) {
-            names.unusable.push((name.into(), refusal.message.clone()));
-        }
-        read
-    }
-
-    fn read(&mut self, name: &str, texts: &Texts, names: &mut Names) -> Result<(), Refusal> {
-        let (place, lets) = (self.key.entry(name), self.lets);
-        for word in texts.texts().flat_map(|text| text.split(|c| !continues_name(c))) {
-            if let Some(needed) = lets.of(word) {
-                self.define(needed, names)?;
-            }
-        }
-        if self.refuses_taken {
-            names.check_new(&place, name)?;
-        }
-        let (rows, tapes) = texts.read_any(&place, names)?;
-        let columns = tapes.len() / rows;
-        for (i, tape) in tapes.into_iter().enumerate() {
-            let (key, text) = texts.entry(&place, i);
-            let name = match (rows, columns) {
-                (1, 1) => name.to_owned(),
-                (_, 1) => format!("{name}{}", i + 1),
-                _ => format!("{name}{}{}", i / columns + 1, i % columns + 1),
-            };
-            if self.refuses_taken {
-                names.check(&place, &name)?;
-            }
-            let entry = Entry { name, key, text: text.into(), tape };
-            Arc::make_mut(&mut names.formulas).push(entry);
-        }
-        Ok(())
     }
 }
 

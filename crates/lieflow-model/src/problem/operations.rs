@@ -8,7 +8,7 @@ use lieflow::problems::{PointOf, ScalarOf};
 use lieflow::scalar::{Counted, Real};
 use lieflow::{Integrator, Solve, Stats, Step, TimeGrid};
 
-use crate::model::{Runnable, Steps};
+use super::model::{Runnable, Steps};
 
 /// So many steps of a run are counted, attempts that are rejected among them; a longer run is charged
 /// their mean for each of its steps.
@@ -19,7 +19,7 @@ const COUNTED_OPERATIONS: u64 = 2_000_000;
 const COUNTED_AT_LEAST: u64 = 8;
 
 /// The mean operations of a step of `problem` from `y`, over the first of the run: what a
-/// [`Model::operations`](crate::model::Model::operations) calls. None where nothing is counted, as of the
+/// [`Model::operations`](crate::problem::Model::operations) calls. None where nothing is counted, as of the
 /// exact motion, or the method fails.
 pub fn operations_by<P: Runnable>(
     spec: &MethodSpec,

@@ -1,14 +1,12 @@
 //! What can be asked of a problem: every quantity is stated once, with its columns, its meaning, its value and
 //! the law that it obeys.
 
-use super::QuantityInfo;
-use super::law::{Law, Scale};
+use super::spec::QuantityInfo;
 use super::system::{PointOf, System};
-use crate::branch::Branch;
-use crate::schema::{Measure, Part};
+use crate::schema::{Branch, Law, Measure, Part, Scale};
 
 /// The value of a quantity at y, a time `t` after the start.
-pub(super) enum Value<S: System> {
+pub(crate) enum Value<S: System> {
     /// A number.
     Number(fn(&S, f64, &PointOf<S>) -> f64),
     /// Numbers, which go to the end of the row.
@@ -16,7 +14,7 @@ pub(super) enum Value<S: System> {
 }
 
 /// So many columns from one on, as a part.
-pub(super) fn part(name: &str, first: usize, columns: usize, measure: Measure) -> Part {
+pub(crate) fn part(name: &str, first: usize, columns: usize, measure: Measure) -> Part {
     Part { name: name.into(), what: "", columns: first..first + columns, measure }
 }
 
@@ -28,22 +26,22 @@ enum Keepers<S> {
 }
 
 /// A quantity of the problems of type `S`.
-pub(super) struct Quantity<S: System> {
-    pub(super) info: QuantityInfo,
-    pub(super) value: Value<S>,
+pub(crate) struct Quantity<S: System> {
+    pub(crate) info: QuantityInfo,
+    pub(crate) value: Value<S>,
     /// The columns where the size of the problem says how many there are.
-    pub(super) columns: Option<fn(&S) -> Vec<String>>,
+    pub(crate) columns: Option<fn(&S) -> Vec<String>>,
     /// Its parts, where it is not one of a length.
-    pub(super) parts: Option<fn(&S) -> Vec<Part>>,
+    pub(crate) parts: Option<fn(&S) -> Vec<Part>>,
     /// What a run of this problem chooses so that the columns are continuous.
-    pub(super) branch: fn(&S) -> Branch,
+    pub(crate) branch: fn(&S) -> Branch,
     law: Keepers<S>,
     /// The size of the terms that the quantity is the sum of.
-    pub(super) terms: Option<fn(&S, &PointOf<S>) -> f64>,
+    pub(crate) terms: Option<fn(&S, &PointOf<S>) -> f64>,
     /// Does a value that is not finite end the run?
-    pub(super) is_state: bool,
+    pub(crate) is_state: bool,
     /// Why this problem has no such quantity.
-    pub(super) missing: fn(&S) -> Option<&'static str>,
+    pub(crate) missing: fn(&S) -> Option<&'static str>,
 }
 
 impl<S: System> Quantity<S> {
@@ -62,7 +60,7 @@ impl<S: System> Quantity<S> {
     }
 
     /// A number; its column has its name.
-    pub(super) const fn number(
+    pub(crate) const fn number(
         name: &'static str,
         meaning: &'static str,
         value: fn(&S, f64, &PointOf<S>) -> f64,
@@ -72,7 +70,7 @@ impl<S: System> Quantity<S> {
 
     /// Numbers under these columns; with an `…` between the first and the last where the size of the problem says
     /// how many there are ([`with_columns`](Self::with_columns)).
-    pub(super) const fn numbers(
+    pub(crate) const fn numbers(
         name: &'static str,
         columns: &'static [&'static str],
         meaning: &'static str,
@@ -82,62 +80,62 @@ impl<S: System> Quantity<S> {
     }
 
     /// The values are angles in radians.
-    pub(super) const fn in_radians(self) -> Self {
+    pub(crate) const fn in_radians(self) -> Self {
         Quantity { info: QuantityInfo { unit: "rad", ..self.info }, ..self }
     }
 
     /// With columns that depend on the problem.
-    pub(super) const fn with_columns(self, columns: fn(&S) -> Vec<String>) -> Self {
+    pub(crate) const fn with_columns(self, columns: fn(&S) -> Vec<String>) -> Self {
         Quantity { columns: Some(columns), ..self }
     }
 
     /// The columns are the entries of a rotation: its error is an angle.
-    pub(super) const fn of_rotation(self) -> Self {
+    pub(crate) const fn of_rotation(self) -> Self {
         self.in_parts(|_| vec![part("", 0, 9, Measure::Rotation)])
     }
 
     /// The columns are a unit quaternion: its error is an angle.
-    pub(super) const fn of_quaternion(self) -> Self {
+    pub(crate) const fn of_quaternion(self) -> Self {
         self.in_parts(|_| vec![part("", 0, 4, Measure::Quaternion)])
     }
 
     /// The error of each of these parts is told.
-    pub(super) const fn in_parts(self, parts: fn(&S) -> Vec<Part>) -> Self {
+    pub(crate) const fn in_parts(self, parts: fn(&S) -> Vec<Part>) -> Self {
         Quantity { parts: Some(parts), ..self }
     }
 
     /// The values are known up to a choice.
-    pub(super) const fn continuous_by(self, branch: fn(&S) -> Branch) -> Self {
+    pub(crate) const fn continuous_by(self, branch: fn(&S) -> Branch) -> Self {
         Quantity { branch, ..self }
     }
 
     /// Every problem of the kind keeps the quantity.
-    pub(super) const fn kept(self, law: Law) -> Self {
+    pub(crate) const fn kept(self, law: Law) -> Self {
         Quantity { law: Keepers::All(law), ..self }
     }
 
     /// Some problems of the kind keep the quantity, or each by a law of its own.
-    pub(super) const fn kept_where(self, law: fn(&S) -> Option<Law>) -> Self {
+    pub(crate) const fn kept_where(self, law: fn(&S) -> Option<Law>) -> Self {
         Quantity { law: Keepers::Where(law), ..self }
     }
 
     /// The quantity is a sum of terms of this size, which may cancel: its rounding is measured in that.
-    pub(super) const fn in_terms(self, terms: fn(&S, &PointOf<S>) -> f64) -> Self {
+    pub(crate) const fn in_terms(self, terms: fn(&S, &PointOf<S>) -> f64) -> Self {
         Quantity { terms: Some(terms), ..self }
     }
 
     /// The quantity is a state that the user started: a value that is not finite ends the run.
-    pub(super) const fn of_state(self) -> Self {
+    pub(crate) const fn of_state(self) -> Self {
         Quantity { is_state: true, ..self }
     }
 
     /// Some problems have no such quantity: this says why.
-    pub(super) const fn missing_where(self, missing: fn(&S) -> Option<&'static str>) -> Self {
+    pub(crate) const fn missing_where(self, missing: fn(&S) -> Option<&'static str>) -> Self {
         Quantity { missing, ..self }
     }
 
     /// The law that the quantity obeys in this problem.
-    pub(super) fn law(&self, system: &S) -> Option<Law> {
+    pub(crate) fn law(&self, system: &S) -> Option<Law> {
         let law = match self.law {
             Keepers::None => None,
             Keepers::All(law) => Some(law),
@@ -148,7 +146,7 @@ impl<S: System> Quantity<S> {
     }
 
     /// The names of the columns.
-    pub(super) fn column_names(&self, system: &S) -> Vec<String> {
+    pub(crate) fn column_names(&self, system: &S) -> Vec<String> {
         match self.columns {
             Some(columns) => columns(system),
             None => self.info.column_names(),

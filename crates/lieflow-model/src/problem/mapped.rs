@@ -7,11 +7,11 @@ use lieflow::catalog::MethodSpec;
 use lieflow::solve::Next;
 use lieflow::{Error, RunError};
 
-use crate::model::{EventPlan, Model, Orders, Outcome, Plan, Steps, Watcher};
+use super::model::{EventPlan, Model, Orders, Outcome, Plan, Steps, Watcher};
 use crate::schema::{Row, Schema};
 
 /// The number of this place in the row at t of the model, from the row of its base.
-pub(crate) type Number = dyn Fn(usize, f64, Row<'_>) -> f64;
+pub(crate) type NumberOf = dyn Fn(usize, f64, Row<'_>) -> f64;
 
 /// The base, with other rows.
 pub(crate) struct Mapped {
@@ -19,7 +19,7 @@ pub(crate) struct Mapped {
     pub(crate) schema: Schema,
     /// What is integrated in words, if the words differ from those of the base.
     pub(crate) modelled: Option<&'static str>,
-    pub(crate) number: Box<Number>,
+    pub(crate) number: Box<NumberOf>,
 }
 
 impl Mapped {

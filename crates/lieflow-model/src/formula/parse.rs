@@ -11,11 +11,11 @@
 //! So −2^2 = −(2²), 2^−1 = ½ and 2^3^2 = 2^(3²). Each part is a [`Value`]: a number, a vector or a matrix. Vectors
 //! and matrices are there while a formula is read; what becomes of it are operations on numbers.
 
-use super::super::help_for;
 use super::functions::{CALLED, Called, Function, Operator};
 use super::names::{Meaning, Names, continues_name, starts_name};
 use super::tape::{Builder, LENGTH_MAX, Tape};
 use super::value::Value;
+use crate::reader::help_for;
 
 /// The help for a number with a comma.
 pub const DECIMAL_POINT: &str = "a number is written with a decimal point, not a comma: 0.5";

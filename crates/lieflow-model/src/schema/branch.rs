@@ -2,7 +2,7 @@
 
 use core::ops::Range;
 
-use crate::schema::Schema;
+use super::Schema;
 
 /// The choices for the columns of a quantity that stand for the same.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

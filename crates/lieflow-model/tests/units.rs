@@ -3,16 +3,7 @@
 //! modules with tests are compiled here.
 #![allow(dead_code, unused_imports, unused_macros, unreachable_pub, missing_docs)] // modules are here for their tests
 
-#[path = "../../src/scene/error.rs"]
-mod error;
-#[path = "../../src/scene/formula/mod.rs"]
+#[path = "../src/formula/mod.rs"]
 mod formula;
-#[path = "../../src/scene/read.rs"]
-mod read;
-#[path = "../../src/scene/suggest.rs"]
-mod suggest;
-#[path = "../../src/scene/values.rs"]
-mod values;
-
-use error::{KeyPath, Refusal};
-use suggest::help_for;
+#[path = "../src/reader/mod.rs"]
+mod reader;

@@ -4,9 +4,9 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 
 use lieflow::samples::{Interpolation, Samples};
 
-use super::super::Refusal;
-use super::super::read::{Read, ReadError, Value};
-use super::super::values::counted;
+use crate::reader::Refusal;
+use crate::reader::values::counted;
+use crate::reader::{Read, ReadError, Value};
 
 /// The key of the file.
 const KEY: &str = "samples";

@@ -10,19 +10,19 @@ use lieflow::scalar::{Counted, Trig};
 use lieflow::space::Numbers;
 use lieflow::{Error, RunError};
 
-use super::quantity::{Quantity, Value};
-use super::{Fact, Figure, Kind, PrincipalInertia, ProblemSpec, high_order};
-use crate::model::{
+use super::model::{
     Layer, Model, Orders, Outcome, Plan, Runnable, Steps, Watcher, drive_by, fits_by, orders_by,
 };
-use crate::operations::operations_by;
-use crate::scene::Refusal;
-use crate::scene::formula::Formula;
+use super::operations::operations_by;
+use super::quantity::{Quantity, Value};
+use super::spec::{Fact, Figure, Kind, PrincipalInertia, ProblemSpec, high_order};
+use crate::formula::Formula;
+use crate::reader::Refusal;
 use crate::schema::Schema;
 
 /// The numbers that a problem of vectors is made of: `f64`, and [`Counted`] where operations are counted.
 /// Matrices count for themselves.
-pub(super) trait Number:
+pub(crate) trait Number:
     Trig + Wide + Into<f64> + LinearSpace<Scalar = Self> + Numbers + Send + Sync
 {
 }
@@ -30,13 +30,13 @@ impl Number for f64 {}
 impl Number for Counted {}
 
 /// A problem with the point that it starts from.
-pub(super) type Start<P> = (P, lieflow::problems::PointOf<P>);
+pub(crate) type Start<P> = (P, lieflow::problems::PointOf<P>);
 
 /// A point of a system.
-pub(super) type PointOf<S> = lieflow::problems::PointOf<<S as System>::Problem<f64>>;
+pub(crate) type PointOf<S> = lieflow::problems::PointOf<<S as System>::Problem<f64>>;
 
 /// A problem of one kind, as its scene states it and checked: what the kind's file is about.
-pub(super) trait System: Clone + Debug + Send + Sync + 'static {
+pub(crate) trait System: Clone + Debug + Send + Sync + 'static {
     /// The problem of the library; one of matrices is the same on all numbers.
     type Problem<N: Number>: Runnable;
     /// The quantities, in the order of listings.
@@ -104,7 +104,7 @@ pub(super) trait System: Clone + Debug + Send + Sync + 'static {
 
 /// The problem of a scene from its system.
 #[derive(Clone, Debug)]
-pub(super) struct Stated<S>(pub(super) S);
+pub(crate) struct Stated<S>(pub(crate) S);
 
 /// The quantity of that name, where this problem has it.
 fn find<S: System>(system: &S, name: &str) -> Result<&'static Quantity<S>, Error> {
@@ -119,13 +119,13 @@ fn find<S: System>(system: &S, name: &str) -> Result<&'static Quantity<S>, Error
 }
 
 /// Does a problem lack one of these quantities, which others of its kind have?
-pub(super) fn lacks_any(problem: &impl ProblemSpec, quantities: &[&str]) -> bool {
+pub(crate) fn lacks_any(problem: &impl ProblemSpec, quantities: &[&str]) -> bool {
     let lacks = |name| matches!(problem.columns(name), Err(Error::Unsupported { .. }));
     quantities.iter().any(|name| lacks(name))
 }
 
 /// The error for a layer that a kind of one layer does not have.
-pub(super) fn no_such_layer(layer: Layer, kind: &Kind) -> Error {
+pub(crate) fn no_such_layer(layer: Layer, kind: &Kind) -> Error {
     Error::Unsupported {
         what: "layer",
         with: format!("`{}` and a problem of kind `{}`", layer.name(), kind.name),

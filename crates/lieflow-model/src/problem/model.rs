@@ -16,7 +16,7 @@ use lieflow::{
     Action, Direction, Error, Event, RunError, SaveAt, Solve, Stats, StepControl, TimeGrid,
 };
 
-use crate::branch::Branches;
+use crate::schema::Branches;
 use crate::schema::{Row, Schema};
 
 /// Which code a problem runs on. Methods that stay on the group agree on the two to rounding; the
@@ -284,7 +284,7 @@ pub trait Model: Debug {
     /// cosines, each as one), in the mean over the first [`COUNTED_STEPS`]; `None` where the method has
     /// none to count, as the exact motion.
     ///
-    /// [`COUNTED_STEPS`]: crate::operations::COUNTED_STEPS
+    /// [`COUNTED_STEPS`]: crate::problem::COUNTED_STEPS
     fn operations(&self, method: &MethodSpec, steps: &Steps) -> Option<f64>;
 
     /// Can this method run on this problem? Nothing is integrated.

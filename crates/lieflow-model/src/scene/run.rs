@@ -1,0 +1,508 @@
+//! A scene: what a run is asked for, read from a file and checked.
+
+use std::hash::{Hash, Hasher};
+use std::path::Path;
+
+use fnv::FnvHasher;
+use lieflow::StepControl;
+use lieflow::catalog::{MethodSpec, all_methods};
+use lieflow::samples::{Outside, Samples};
+use lieflow::{Error, Failure, RunError, SaveAt, StepError, TimeGrid};
+use toml::de::DeValue;
+
+use super::columns::{Columns, FORMULAS, RowFormula, check_plot, each_once, with_formulas};
+use super::defaults::{self, Defaults, INTERVALS};
+use super::document::{Document, with_file};
+use super::error::{Mistakes, SceneError};
+use super::events::{self, EventKeys, SceneEvent};
+use super::files::read_samples;
+use super::keys::{MethodKeys, Output, OutputKeys, TimeKeys, with_defaults};
+use crate::formula::{Formula, Lost, Which};
+use crate::kinds;
+use crate::problem::{FormulaKeys, KNOTS_MAX, Kind, ProblemSpec, SAMPLES};
+use crate::problem::{Layer, Model, Plan, Steps};
+use crate::reader::{KeyPath, Read, ReadError, Refusal};
+use crate::schema::Schema;
+
+/// A run, stated in full and checked.
+#[derive(Debug)]
+pub struct Scene {
+    /// Its title.
+    pub title: String,
+    /// Its name: that of the file, without `.toml`.
+    pub name: String,
+    /// What messages call it.
+    source: String,
+    /// The problem.
+    pub problem: Box<dyn ProblemSpec>,
+    /// The method, with the parts that it takes by default spelt out.
+    pub method: MethodSpec,
+    /// The layer.
+    pub layer: Layer,
+    /// The steps of one size; where `adaptive` chooses, those that `compare` starts from.
+    pub grid: TimeGrid,
+    /// The keys of its times.
+    time: TimeKeys,
+    /// Tolerances and limits of steps that are chosen by their error, where the scene has them.
+    pub adaptive: Option<StepControl>,
+    /// The limit of the attempts, where the scene has one.
+    pub max_steps: Option<u64>,
+    /// Does a step end at each knot of the samples?
+    pub at_knots: bool,
+    /// Where rows are written.
+    pub save: SaveAt,
+    /// Are output times reached by shorter steps, and not by the continuous extension?
+    pub times_by_steps: bool,
+    /// The events.
+    pub events: Vec<SceneEvent>,
+    /// What is written, in this order; `formulas` is that of `[output.formulas]`.
+    pub quantities: Vec<String>,
+    /// Does a run say how large its error is, where that costs a second run?
+    pub error_check: bool,
+    /// The choices that the scene left to the program.
+    pub by_default: Defaults,
+    /// The text of the scene.
+    pub text: String,
+    /// The columns of `[output.formulas]`.
+    formulas: Vec<(String, RowFormula)>,
+    /// The columns and quantities to draw; none where the kind chooses.
+    pub plot: Vec<String>,
+    /// A number of what the scene states, with its samples: another one for another scene. Comments and spaces do not
+    /// count.
+    pub fingerprint: u64,
+}
+
+impl Scene {
+    /// Read a scene. `source` is what messages call it, and its file stem is the scene's name. Files that the scene
+    /// names stand beside it.
+    ///
+    /// # Errors
+    /// [`SceneError`] with all mistakes that can be told. A scene that is returned can be run.
+    pub fn parse(source: &str, text: &str) -> Result<Scene, SceneError> {
+        Self::read(source, text, Path::new(source).parent())
+    }
+
+    /// Read a scene whose files stand in `folder`, or else come with the program.
+    pub(super) fn read(
+        source: &str,
+        text: &str,
+        folder: Option<&Path>,
+    ) -> Result<Scene, SceneError> {
+        let mut document = Document::parse(source, text)?;
+        let mut mistakes = Mistakes::default();
+        mistakes.keep(document.check_top());
+        let document = document;
+        let title = mistakes.keep(document.optional::<String>("title"));
+
+        let kind = mistakes.keep(read_kind(&document));
+        let problem = kind.and_then(|kind| mistakes.keep(read_problem(&document, kind, folder)));
+        let spec = problem.as_deref();
+
+        let method = mistakes.keep(document.keys_if_any::<MethodKeys>("method"));
+        let method_left = method.as_ref().is_some_and(MethodKeys::is_left);
+        let unknown = method.as_ref().map_or_else(Vec::new, MethodKeys::unknown_names);
+        let method = method.filter(|_| unknown.is_empty());
+        mistakes.keep(document.check_all("method", unknown));
+        let method =
+            method.and_then(|method| mistakes.keep(document.check("method", method.resolve(spec))));
+
+        let time = document.section("time").and_then(|section| {
+            document.read("time", section, |section| {
+                let keys = TimeKeys::read(section)?;
+                let steps = keys.resolve()?;
+                Ok((keys, steps))
+            })
+        });
+        let time = mistakes.keep(time);
+        let steps_left = time.as_ref().is_some_and(|(keys, _)| keys.is_left());
+        let at_knots = time.as_ref().zip(spec).and_then(|((keys, _), problem)| {
+            let at_knots = keys.at_knots(problem.knots([0.0, 0.0]).is_some());
+            mistakes.keep(document.check("time", at_knots))
+        });
+        let (time, steps) = time.unzip();
+        let grid = steps.as_ref().map(|(grid, ..)| *grid);
+        if let (Some(grid), Some(problem)) = (grid, spec) {
+            // Beyond its samples a formula has no value.
+            let covered = mistakes.keep(document.check("time", covered(problem, grid.t_span())));
+            let without_value = covered.map(|()| problem.check_start(grid.t_span()[0]));
+            mistakes.keep(document.check_all("problem", without_value.unwrap_or_default()));
+        }
+
+        let mut output = mistakes.keep(document.keys_if_any::<OutputKeys>("output"));
+        if let (Some(output), Some(kind)) = (&mut output, kind) {
+            output.spell(kind);
+        }
+        let asked = output.as_ref().and_then(|output| output.quantities.clone());
+        let quantities_left = asked.is_none();
+        let asked = asked.or_else(|| spec.map(defaults::quantities)).unwrap_or_default();
+        let by_default = Defaults {
+            method: method_left,
+            steps: steps_left,
+            quantities: quantities_left,
+            rows: output.as_ref().is_some_and(OutputKeys::leaves_rows),
+        };
+        if let (Some(output), Some(kind)) = (&output, kind) {
+            mistakes.keep(document.check_all("output", output.wrong_quantities(kind, spec)));
+        }
+        let output = output.zip(grid).and_then(|(output, grid)| {
+            mistakes
+                .keep(document.check("output", output.resolve(asked.clone(), &grid, steps_left)))
+        });
+
+        let columns = spec.and_then(|problem| {
+            let named = FormulaKeys {
+                parameters: document.within("problem", "parameters").unwrap_or_default(),
+                r#let: document.within("problem", "let").unwrap_or_default(),
+            };
+            let columns = Columns::of(problem, &asked, &named);
+            mistakes.keep(document.check("problem", columns))
+        });
+        let (mut output, mut columns) = (output, columns);
+        let formulas = output.as_ref().zip(columns.as_mut()).and_then(|(output, columns)| {
+            mistakes.keep(document.check("output", columns.define(&output.formulas)))
+        });
+        if let (Some(output), Some(problem), Some(formulas)) = (&mut output, spec, &formulas) {
+            let drawn = check_plot(&output.plot, problem, &output.quantities, formulas);
+            mistakes.keep(document.check("output", drawn));
+            if !formulas.is_empty() {
+                output.quantities.push(FORMULAS.into());
+            }
+        }
+
+        let events = mistakes.keep(read_events(&document, columns.as_ref())).flatten();
+        if let (Some(grid), Some(events)) = (grid, &events)
+            && !grid.t_span()[1].is_finite()
+            && events.iter().all(|event| event.stop_after.is_none())
+        {
+            let message =
+                "t_span has no end, expected an event with `stop_after` that ends the run";
+            let refusal = Refusal::at("t_span".index(1), message);
+            mistakes.keep(document.check_all("time", vec![refusal]));
+        }
+
+        let written = output.zip(formulas);
+        let all = || Some((title?, problem?, method?, at_knots?, time?, steps?, written?, events?));
+        let (title, problem, (method, layer), at_knots, time, steps, (output, formulas), events) =
+            mistakes.or(all())?;
+        let (grid, adaptive, max_steps) = steps;
+        let Output { quantities, plot, save, times_by_steps, error_check, .. } = output;
+        let stem = Path::new(source).file_stem().unwrap_or_default().to_string_lossy();
+        // A folder may have this name.
+        let is_name = !stem.trim_matches('.').is_empty();
+        let name = if is_name { stem.into_owned() } else { "scene".into() };
+        let fingerprint = fingerprint(&document.says(), problem.samples());
+        let mut scene = Scene {
+            title: title.unwrap_or_else(|| name.clone()),
+            name,
+            source: source.into(),
+            problem,
+            method,
+            layer,
+            grid,
+            time,
+            adaptive,
+            max_steps,
+            at_knots,
+            save,
+            times_by_steps,
+            events,
+            quantities,
+            error_check,
+            by_default,
+            text: text.into(),
+            formulas,
+            plot,
+            fingerprint,
+        };
+        if scene.knots(scene.grid.t_span()).len() > KNOTS_MAX {
+            let message = format!(
+                "a step has to end at more than {KNOTS_MAX} times in t_span, expected a shorter span \
+                 or `at_knots = false`"
+            );
+            return Err(document.refusal("time", Refusal::at("t_span", message)));
+        }
+        let model = scene.model_with(scene.layer, &scene.computed());
+        let model = model.map_err(|error| document.refusal("problem", error.into()))?;
+        model.fits(&scene.method).map_err(|error| {
+            let mut refusal = Refusal::from(error);
+            if refusal.help.is_none() && scene.fits_in_no_way(&*model) {
+                refusal.key = Some("name".into());
+                refusal.help = Some(format!("methods that fit: {}", fitting(&*model).join(", ")));
+            }
+            document.refusal("method", refusal)
+        })?;
+        if scene.by_default.steps {
+            scene.time.for_order(model.order(&scene.method).unwrap_or(None));
+            scene.adaptive = scene.time.control(1.0).ok();
+        }
+        Ok(scene)
+    }
+
+    /// The choices that the scene left to the program, in words; none if the scene says everything.
+    pub fn chosen_by_default(&self) -> Option<String> {
+        let (Defaults { method, steps, quantities, rows }, mut chosen) =
+            (self.by_default, Vec::new());
+        if method {
+            chosen.push(format!("method {}", self.method.label()));
+        }
+        if steps {
+            let tolerance = self.time.tolerances()[0];
+            chosen.push(format!("adaptive steps with rtol = atol = {tolerance:e}"));
+        }
+        if quantities {
+            chosen.push(format!("quantities {}", self.quantities.join(", ")));
+        }
+        if rows && steps && self.grid.t_span()[1].is_finite() {
+            chosen.push(format!("rows at {INTERVALS} equal intervals"));
+        }
+        (!chosen.is_empty()).then(|| chosen.join("; "))
+    }
+
+    /// The steps of the run.
+    pub fn steps(&self) -> Steps {
+        match &self.adaptive {
+            None => Steps::Equal(self.grid),
+            Some(control) => {
+                Steps::ByError { t_span: self.grid.t_span(), control: control.clone() }
+            }
+        }
+    }
+
+    /// rtol and atol, where steps are chosen by their error.
+    pub fn tolerances(&self) -> Option<[f64; 2]> {
+        self.adaptive.as_ref().map(|_| self.time.tolerances())
+    }
+
+    /// A run to time t that shows its ends and sees no events, with the step size or the tolerances times a factor.
+    /// Steps that are chosen by their error are at most `largest` long.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for a factor that makes a step or a tolerance too small.
+    pub fn plan_to(
+        &self,
+        t: f64,
+        factor: f64,
+        largest: Option<f64>,
+    ) -> Result<Plan<'static>, Error> {
+        let t_span = [self.grid.t_span()[0], t];
+        let steps = match self.adaptive {
+            None => Steps::Equal(TimeGrid::new(t_span, factor * self.grid.h().abs())?),
+            Some(_) => {
+                let control = limited(self.time.control(factor)?, largest)?;
+                Steps::ByError { t_span, control }
+            }
+        };
+        Ok(Plan { stops: self.knots(t_span), ..Plan::new(steps, SaveAt::Ends) })
+    }
+
+    /// The method of a scene of this problem that names none.
+    pub fn default_method(&self) -> MethodSpec {
+        with_defaults(self.problem.default_method())
+    }
+
+    /// The same run as [`plan_to`](Self::plan_to) with the steps of a scene that names none, for a method of this
+    /// order.
+    ///
+    /// # Errors
+    /// Those of [`plan_to`](Self::plan_to).
+    pub fn default_plan_to(
+        &self,
+        t: f64,
+        factor: f64,
+        largest: Option<f64>,
+        order: Option<usize>,
+    ) -> Result<Plan<'static>, Error> {
+        let t_span = [self.grid.t_span()[0], t];
+        let tolerance = factor * defaults::tolerance(order);
+        let control = limited(StepControl::new(tolerance, tolerance)?, largest)?;
+        let stops = self.problem.knots(t_span).unwrap_or_default();
+        Ok(Plan { stops, ..Plan::new(Steps::ByError { t_span, control }, SaveAt::Ends) })
+    }
+
+    /// Forgets which formulas had no value: what [`lost`](Self::lost) tells is of the run after this.
+    pub fn forget_losses(&self) {
+        let of_rows = self.events.iter().map(SceneEvent::formula);
+        self.problem.formula().into_iter().chain(of_rows).for_each(Formula::forget);
+    }
+
+    /// The formula by which a run ended with this error.
+    pub fn lost(&self, error: &RunError) -> Option<Lost> {
+        let which = match error {
+            RunError::Event { name, .. } => {
+                let event = self.events.iter().find(|event| event.name == *name)?;
+                return event.formula().lost(Which::Last);
+            }
+            RunError::Step(Failure { source, .. }) if is_of_values(source) => Which::First,
+            RunError::StepSizeUnderflow { source: Some(source), .. } if is_of_values(source) => {
+                Which::Last
+            }
+            // The last step was so small that t did not reach beyond what it failed by before.
+            RunError::StepSizeUnderflow { t, .. } => {
+                let lost = self.problem.formula()?.lost(Which::Last);
+                return lost.filter(|lost| {
+                    lost.t().is_some_and(|at| (at - t).abs() <= NEAR * (1.0 + t.abs()))
+                });
+            }
+            _ => return None,
+        };
+        self.problem.formula()?.lost(which)
+    }
+
+    /// A refusal of a value of the scene, with its place.
+    pub fn refuse(&self, section: &str, refusal: Refusal) -> SceneError {
+        match Document::parse(&self.source, &self.text) {
+            Ok(document) => document.refusal(section, refusal),
+            Err(error) => error,
+        }
+    }
+
+    /// What a run is asked for, on rows of this schema.
+    ///
+    /// # Errors
+    /// [`Error::UnknownName`] for a schema without a quantity of an event.
+    pub fn plan(&self, schema: &Schema) -> Result<Plan<'_>, Error> {
+        Ok(Plan {
+            times_by_steps: self.times_by_steps,
+            events: self.events.iter().map(|event| event.plan(schema)).collect::<Result<_, _>>()?,
+            max_steps: self.max_steps,
+            stops: self.knots(self.grid.t_span()),
+            ..Plan::new(self.steps(), self.save.clone())
+        })
+    }
+
+    /// The times at which a step ends: the knots of the problem, where they are asked for.
+    fn knots(&self, t_span: [f64; 2]) -> Vec<f64> {
+        let knots = self.at_knots.then(|| self.problem.knots(t_span)).flatten();
+        knots.unwrap_or_default()
+    }
+
+    /// The quantities that a run computes: those that are written, then those of formulas and events.
+    pub fn computed(&self) -> Vec<&str> {
+        let of_events = self.events.iter().flat_map(SceneEvent::quantities);
+        let written = self.quantities.iter().map(String::as_str);
+        each_once(written.chain(self.of_formulas()).chain(of_events))
+    }
+
+    /// The quantities that `[output.formulas]` is made of.
+    fn of_formulas(&self) -> impl Iterator<Item = &str> {
+        self.formulas.iter().flat_map(|(_, formula)| formula.quantities())
+    }
+
+    /// The problem on the layer of the scene, with the quantities of the scene.
+    ///
+    /// # Errors
+    /// [`lieflow::Error`] for a problem that cannot be set up; not after [`parse`](Self::parse).
+    pub fn model(&self) -> Result<Box<dyn Model>, Error> {
+        let quantities: Vec<&str> = self.quantities.iter().map(String::as_str).collect();
+        self.model_with(self.layer, &quantities)
+    }
+
+    /// Does the method of the scene not run on the model, whatever its parts?
+    fn fits_in_no_way(&self, model: &dyn Model) -> bool {
+        model.fits(&MethodSpec::new(&self.method.name, None)).is_err()
+    }
+
+    /// The problem on any layer with any quantities.
+    ///
+    /// # Errors
+    /// [`Error::UnknownName`] for a quantity that the problem does not have.
+    pub fn model_with(&self, layer: Layer, quantities: &[&str]) -> Result<Box<dyn Model>, Error> {
+        if !quantities.contains(&FORMULAS) {
+            return self.problem.model(layer, quantities);
+        }
+        let asked = each_once(quantities.iter().copied().filter(|name| *name != FORMULAS));
+        let of_problem = each_once(asked.iter().copied().chain(self.of_formulas()));
+        with_formulas(self.problem.model(layer, &of_problem)?, asked.len(), &self.formulas)
+    }
+}
+
+/// The distance of the time where a formula has no value from that where steps become too small.
+const NEAR: f64 = 1e-6;
+
+/// Is the reason a value that is not finite?
+fn is_of_values(error: &StepError) -> bool {
+    matches!(error, StepError::NonFiniteRhs { .. } | StepError::NotFinite { .. })
+}
+
+/// A hash of what the scene states and of its samples: the same on every machine.
+fn fingerprint(stated: &str, samples: Option<&Samples>) -> u64 {
+    let mut hasher = FnvHasher::default();
+    hasher.write(stated.as_bytes());
+    if let Some(samples) = samples {
+        samples.hash(&mut hasher);
+    }
+    hasher.finish()
+}
+
+/// The names of the methods that run on a problem, with their default parts.
+fn fitting(model: &dyn Model) -> Vec<&'static str> {
+    let fits = |name: &str| model.fits(&MethodSpec::new(name, None)).is_ok();
+    all_methods().map(|info| info.name).filter(|name| fits(name)).collect()
+}
+
+/// The kind of problem that a scene names.
+fn read_kind(document: &Document<'_>) -> Result<&'static Kind, SceneError> {
+    document.read("problem", document.section("problem")?, |section| {
+        let kind = section.get_ref().get("kind");
+        let kind = kind.ok_or_else(|| ReadError::MissingKey(section.span(), "kind"))?;
+        let name = kind.get_ref().as_str();
+        let name = name.ok_or_else(|| ReadError::expected(kind, "the name of a problem"))?;
+        kinds::named(name).map_err(|error| Refusal::from(error).about("kind").into())
+    })
+}
+
+fn read_problem(
+    document: &Document<'_>,
+    kind: &Kind,
+    folder: Option<&Path>,
+) -> Result<Box<dyn ProblemSpec>, SceneError> {
+    let mut section = document.section("problem")?;
+    if let DeValue::Table(keys) = section.get_mut() {
+        keys.remove("kind");
+    }
+    document.read("problem", section, |section| {
+        if !kind.keys.contains(&SAMPLES) {
+            return (kind.read)(section);
+        }
+        let file = |name: &str| read_samples(folder, name);
+        (kind.read)(&with_file(section, SAMPLES.name, file)?)
+    })
+}
+
+/// The events; none of a problem without columns.
+fn read_events(
+    document: &Document<'_>,
+    columns: Option<&Columns>,
+) -> Result<Option<Vec<SceneEvent>>, SceneError> {
+    let (entries, mut mistakes) = (document.entries("events")?, Mistakes::default());
+    let names = entries.iter().map(|entry| {
+        let name = entry.get_ref().get("name").and_then(|name| name.get_ref().as_str());
+        name.unwrap_or_default()
+    });
+    let names: Vec<&str> = names.collect();
+    let events = entries.iter().enumerate().map(|(i, entry)| {
+        let read = document.read("events", entry.clone(), |entry| {
+            let keys = EventKeys::read(entry)?;
+            let event = |columns| events::resolve(keys, i, &names[..i], columns);
+            Ok(columns.map(event).transpose()?)
+        });
+        mistakes.keep(read).flatten()
+    });
+    // Each is read, also after one that is wrong.
+    let events: Vec<_> = events.collect();
+    mistakes.or(Some(events.into_iter().collect()))
+}
+
+/// A run stays in the span of the samples.
+fn covered(problem: &dyn ProblemSpec, [t0, t1]: [f64; 2]) -> Result<(), Refusal> {
+    let Some(samples) = problem.samples() else { return Ok(()) };
+    samples.covers([t0, t1]).map_err(|Outside { span: [first, last], .. }| {
+        let spans = format!("[{t0}, {t1}], and the samples span {first} to {last}");
+        Refusal::at("t_span", format!("t_span = {spans}"))
+    })
+}
+
+/// The control with a limit of the steps.
+fn limited(control: StepControl, largest: Option<f64>) -> Result<StepControl, Error> {
+    largest.map_or(Ok(control.clone()), |h| control.max_step(h))
+}
