@@ -14,7 +14,7 @@ use crate::tolerance::{PartTolerance, Scales};
 ///
 /// Implemented for numbers, for vectors and matrices of both layers by the Frobenius norm, and for
 /// pairs and boxed slices of them. Allocates nothing.
-pub trait Metric {
+pub trait Metric: Send + Sync {
     /// The reals of the norm.
     type Scalar: Real;
     /// self ← x, into the existing storage.

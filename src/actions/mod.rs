@@ -25,11 +25,11 @@ use crate::space::{Gap, Metric};
 use crate::tolerance::Scales;
 
 /// A left action Λ of G on M: Λ(𝟙, p) = p and Λ(ab, p) = Λ(a, Λ(b, p)).
-pub trait Action<G: LieGroup> {
+pub trait Action<G: LieGroup>: Send + Sync {
     /// A point y ∈ M.
     type Point: Metric<Scalar = G::Scalar> + Clone;
     /// Scratch.
-    type Work;
+    type Work: Send;
 
     /// Makes the scratch for [`act`](Self::act). Only this call allocates.
     fn work(&self, group: &G) -> Self::Work;

@@ -26,7 +26,7 @@ pub trait Adjoint: LieGroup {
     /// m ∈ 𝔤*.
     type Dual: Metric<Scalar = Self::Scalar> + Clone;
     /// Scratch of [`invert`](Self::invert); `()` where it needs none.
-    type Inverting;
+    type Inverting: Send;
 
     /// Scratch for [`invert`](Self::invert).
     fn inverting(&self) -> Self::Inverting;

@@ -41,11 +41,11 @@ use crate::space::{Gap, Metric};
 use crate::tolerance::Scales;
 
 /// A Lie algebra 𝔤: a linear space with a bracket.
-pub trait LieAlgebra {
+pub trait LieAlgebra: Send + Sync {
     /// The type of real coefficients.
     type Scalar: Real;
     /// An element u ∈ 𝔤.
-    type Alg: Clone;
+    type Alg: Clone + Send + Sync;
 
     /// The name of the group. Example: `SO(3)`.
     fn name(&self) -> String;

@@ -57,9 +57,9 @@ use crate::error::{Error, StepError};
 use crate::groups::LieGroup;
 
 /// A coordinate map Ψ with Ψ(0) = 𝟙 and Ψ'(0) = id, together with dΨ⁻¹ (right trivialised).
-pub trait CoordinateMap<G: LieGroup> {
+pub trait CoordinateMap<G: LieGroup>: Send + Sync {
     /// The values that Ψ stores at u, so that dΨ_u⁻¹ costs little more ("Both" in Table 2), and the workspace.
-    type At;
+    type At: Send;
 
     /// The name of the map, as in scene files.
     fn name(&self) -> &'static str;

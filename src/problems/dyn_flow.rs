@@ -48,7 +48,7 @@ pub struct DynFlow<G: LieGroup, A: Action<G>, L = (), H = ()> {
     action: A,
     linear: bool,
     energy: Option<Energy<A::Point, G::Scalar>>,
-    work: Box<dyn Fn() -> DynWork<G, A::Point>>,
+    work: Box<dyn Fn() -> DynWork<G, A::Point> + Send + Sync>,
 }
 
 /// Marks a type of problems of which some have a Hamiltonian.
@@ -56,11 +56,11 @@ pub struct DynFlow<G: LieGroup, A: Action<G>, L = (), H = ()> {
 pub struct WithHamiltonian;
 
 /// H(m).
-type Energy<M, S> = Box<dyn Fn(&M) -> S>;
+type Energy<M, S> = Box<dyn Fn(&M) -> S + Send + Sync>;
 
 /// The problem of a [`DynFlow`] with its scratch.
 #[allow(missing_debug_implementations)] // nothing of it is known
-pub struct DynWork<G: LieGroup, M>(Box<dyn DynField<G, M>>);
+pub struct DynWork<G: LieGroup, M>(Box<dyn DynField<G, M> + Send>);
 
 /// A problem with its scratch.
 trait DynField<G: LieGroup, M> {
@@ -115,7 +115,7 @@ impl<G: LieGroup + Clone + 'static, A: Action<G> + 'static, L, H> DynFlow<G, A, 
     /// Makes it from a problem. `action` is its action, or another one with the same values.
     pub fn new<P>(problem: P, action: A) -> Self
     where
-        P: Problem<Group = G> + 'static,
+        P: Problem<Group = G> + Send + Sync + 'static,
         P::Action: Action<G, Point = A::Point>,
     {
         Self::of(Arc::new(problem), action, None)
@@ -123,14 +123,14 @@ impl<G: LieGroup + Clone + 'static, A: Action<G> + 'static, L, H> DynFlow<G, A, 
 
     fn of<P>(problem: Arc<P>, action: A, gradient: Option<Gradient<P>>) -> Self
     where
-        P: Problem<Group = G> + 'static,
+        P: Problem<Group = G> + Send + Sync + 'static,
         P::Action: Action<G, Point = A::Point>,
     {
         let group = problem.group().clone();
         let work = Box::new(move || {
             let (problem, store) = (problem.clone(), FieldStore::new(&*problem));
             DynWork(Box::new(ProblemWithWork { problem, store, gradient })
-                as Box<dyn DynField<G, A::Point>>)
+                as Box<dyn DynField<G, A::Point> + Send>)
         });
         DynFlow { known: PhantomData, group, action, linear: false, energy: None, work }
     }
@@ -140,7 +140,7 @@ impl<G: LieGroup + Clone + 'static, A: Action<G> + 'static, H> DynFlow<G, A, Tim
     /// Makes it from a linear equation.
     pub fn linear<P>(problem: P, action: A) -> Self
     where
-        P: LinearField<Group = G> + 'static,
+        P: LinearField<Group = G> + Send + Sync + 'static,
         P::Action: Action<G, Point = A::Point>,
     {
         DynFlow { linear: true, ..Self::new(problem, action) }
@@ -151,7 +151,7 @@ impl<G: LieGroup + Clone + 'static, A: Action<G> + 'static, L> DynFlow<G, A, L, 
     /// Makes it from a Lie–Poisson system.
     pub fn lie_poisson<P>(problem: P, action: A) -> Self
     where
-        P: LiePoisson + Problem<Group = G> + 'static,
+        P: LiePoisson + Problem<Group = G> + Send + Sync + 'static,
         P::Action: Action<G, Point = A::Point>,
     {
         let problem = Arc::new(problem);

@@ -23,7 +23,7 @@ pub trait TryProblem {
     /// Λ.
     type Action: Action<Self::Group>;
     /// Scratch of f; `()` when it needs none.
-    type Work;
+    type Work: Send;
     /// The error of f.
     type Error;
 

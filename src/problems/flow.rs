@@ -73,7 +73,7 @@ type With<G, A, F, L, H, I> = Flow<G, A, F, Facts<L, H, I>>;
 /// f(t, y) of a [`Flow`]: a closure, or one with scratch.
 pub trait Field<G: LieGroup, A: Action<G>> {
     /// Scratch.
-    type Work;
+    type Work: Send;
     /// Scratch for [`f`](Self::f).
     fn work(&self) -> Self::Work;
     /// v ← f(t, y).
@@ -115,6 +115,7 @@ impl<G, A, W, M, F> Field<G, A> for WithWork<M, F>
 where
     G: LieGroup,
     A: Action<G>,
+    W: Send,
     M: Fn() -> W,
     F: Fn(G::Scalar, &A::Point, &mut G::Alg, &mut W),
 {

@@ -112,7 +112,7 @@ pub trait Problem {
     /// Λ.
     type Action: Action<Self::Group>;
     /// Scratch of f; `()` when it needs none.
-    type Work;
+    type Work: Send;
 
     /// G as a value.
     fn group(&self) -> &Self::Group;

@@ -15,7 +15,7 @@ pub trait TaylorField: Problem {
     /// True if the coefficients are those of ω with Ψ' = Ψ ω, in the moving frame, instead of f.
     const MOVING: bool = false;
     /// The coefficients of the quantities in f.
-    type Series;
+    type Series: Send;
 
     /// Makes storage for coefficients up to θ^order. Only this call allocates.
     fn series(&self, order: usize) -> Self::Series;

@@ -25,6 +25,8 @@ pub trait Real:
     Copy
     + Debug
     + PartialEq
+    + Send
+    + Sync
     + 'static
     + Add<Output = Self>
     + Sub<Output = Self>

@@ -25,7 +25,7 @@ const REFERENCE_STEPS: u64 = 256;
 const REFERENCE_ERROR: f64 = 5e-14;
 
 /// (t, a square matrix made from the point) ↦ a matrix; its projection on 𝔤 is f(t, y).
-pub(crate) type Field = Box<dyn Fn(f64, &Mat<f64>) -> Mat<f64>>;
+pub(crate) type Field = Box<dyn Fn(f64, &Mat<f64>) -> Mat<f64> + Send + Sync>;
 
 /// A test problem on any group and action; those with a field as [`clock`] are of linear type.
 pub(crate) type Flow<G, A> = DynFlow<G, A, TimeAlone>;
