@@ -125,14 +125,14 @@ pub fn check_runs(quick: bool, mut each: impl FnMut(CheckedScene)) -> Result<(),
         match scene.model_with(case.layer, &quantities(&scene)) {
             Err(error) => result.fail("setup", error.to_string()),
             Ok(model) => {
-                let classical = Method::named(&*model, &scene, "rk dop853");
-                let lie = Method::named(&*model, &scene, "rkmk dop853 exp");
+                let classical = Method::named(&model, &scene, "rk dop853");
+                let lie = Method::named(&model, &scene, "rkmk dop853 exp");
                 match classical.zip(lie) {
                     None => result.fail("setup", "the reference methods do not fit".into()),
                     Some(both) => {
                         let methods =
                             if quick && !case.every { few_methods() } else { every_method() };
-                        result.check(&scene, &*model, case.span, both, methods);
+                        result.check(&scene, &model, case.span, both, methods);
                     }
                 }
             }
@@ -164,7 +164,7 @@ impl CheckedScene {
     fn check(
         &mut self,
         scene: &Scene,
-        model: &dyn Model,
+        model: &Model,
         span: f64,
         (classical, lie): (Method<'_>, Method<'_>),
         methods: Vec<MethodSpec>,
@@ -204,7 +204,7 @@ impl CheckedScene {
 }
 
 /// The rows of the reference against the exact solution, if it is known.
-fn against_exact(model: &dyn Model, method: &Method<'_>, reference: &Reference) -> Option<Finding> {
+fn against_exact(model: &Model, method: &Method<'_>, reference: &Reference) -> Option<Finding> {
     let [t0, _] = reference.t_span();
     let mut worst = 0.0;
     for (t, row) in reference.rows() {
@@ -243,7 +243,7 @@ fn few_methods() -> Vec<MethodSpec> {
 
 /// A method on a model.
 struct Method<'a> {
-    model: &'a dyn Model,
+    model: &'a Model,
     spec: MethodSpec,
     order: Option<usize>,
     dense_order: usize,
@@ -253,11 +253,11 @@ struct Method<'a> {
 }
 
 impl<'a> Method<'a> {
-    fn named(model: &'a dyn Model, scene: &Scene, text: &str) -> Option<Self> {
+    fn named(model: &'a Model, scene: &Scene, text: &str) -> Option<Self> {
         Self::new(model, scene, text.parse().ok()?)
     }
 
-    fn new(model: &'a dyn Model, scene: &Scene, spec: MethodSpec) -> Option<Self> {
+    fn new(model: &'a Model, scene: &Scene, spec: MethodSpec) -> Option<Self> {
         model.fits(&spec).ok()?;
         let orders = model.orders(&spec).ok()?;
         let state = scene.problem.state(&scene.computed());

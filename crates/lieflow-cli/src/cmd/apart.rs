@@ -526,7 +526,7 @@ mod tests {
                     [[events]]\nname = \"flip\"\nwhen = \"w2\"\n";
         let scene = Scene::parse("scene", text).unwrap();
         let model = scene.model_with(scene.layer, &quantities(&scene)).unwrap();
-        let watch = Watch::new(&scene, &*model).unwrap();
+        let watch = Watch::new(&scene, &model).unwrap();
         let folder = env::temp_dir().join(format!("lieflow-apart-{name}-{}", process::id()));
         fs::create_dir_all(&folder).unwrap();
         let folder = Folder(folder);

@@ -31,7 +31,7 @@ const HIGH_ORDER: usize = 4;
 /// A run that would take a month and more.
 pub(super) fn foresee(
     scene: &Scene,
-    model: &dyn Model,
+    model: &Model,
     stop: &AtomicBool,
 ) -> Result<Option<String>, CliError> {
     let may_end_early = scene.events.iter().any(|event| event.stop_after.is_some());
@@ -46,7 +46,7 @@ pub(super) fn foresee(
 
 fn steps_of_one_size(
     scene: &Scene,
-    model: &dyn Model,
+    model: &Model,
     stop: &AtomicBool,
 ) -> Result<Option<String>, CliError> {
     let (steps, h, [t0, _]) = (scene.grid.steps(), scene.grid.h(), scene.grid.t_span());
@@ -79,7 +79,7 @@ fn steps_of_one_size(
     Ok((seconds > LONG).then_some(would))
 }
 
-fn chosen_steps(scene: &Scene, model: &dyn Model, stop: &AtomicBool) -> Option<String> {
+fn chosen_steps(scene: &Scene, model: &Model, stop: &AtomicBool) -> Option<String> {
     let [t0, t1] = scene.grid.t_span();
     let order = model.order(&scene.method).ok()??;
     if order >= HIGH_ORDER {

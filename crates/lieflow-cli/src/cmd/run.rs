@@ -180,10 +180,10 @@ pub fn run_scene(
     stop: &AtomicBool,
 ) -> Result<Summary, CliError> {
     let model = scene.model_with(scene.layer, &quantities(scene))?;
-    if let Some(known) = foresee(scene, &*model, stop)? {
+    if let Some(known) = foresee(scene, &model, stop)? {
         eprintln!("note: {}: {known}", scene.name);
     }
-    let watch = Watch::new(scene, &*model)?;
+    let watch = Watch::new(scene, &model)?;
     let columns: Vec<String> = watch.written.iter().flat_map(|o| o.columns.clone()).collect();
     let plan = scene.plan(model.schema())?;
     if let Some(much) = foresee_room(scene, &plan, (columns.len(), model.schema()), folder, most)? {
@@ -257,7 +257,7 @@ pub fn run_scene(
     };
     let [initial, last] = rows.ends().map_or_else(Default::default, |ends| ends.map(with_time));
     let drift = watch.drift(&kept.watched, done.steps)?;
-    let mut warnings = scene.problem.warnings();
+    let mut warnings = scene.problem.warnings().to_vec();
     warnings.extend(drift.iter().filter(|(_, drift)| drift.breaks_a_promise()).map(broken_promise));
     warnings.extend(drift.iter().filter(|(_, drift)| drift.is_of_rows()).map(drift_of_rows));
     let out_of_range = columns.iter().zip(&kept.not_finite).filter(|(_, (count, _))| *count > 0);
@@ -304,7 +304,7 @@ pub fn run_scene(
         modelled: model.modelled(method),
         facts: scene.problem.facts().iter().map(|fact| (fact.name, fact.value)).collect(),
         warnings,
-        notes: scene.problem.notes(),
+        notes: scene.problem.notes().to_vec(),
         quantities: scene.quantities.clone(),
         columns: core::iter::once("t".into()).chain(columns).collect(),
         trajectory: output::TRAJECTORY[usize::from(!completed)],

@@ -35,7 +35,7 @@ pub(super) fn quantities(scene: &Scene) -> Vec<&str> {
 /// Everything that a run is watched for.
 pub(super) struct Watch<'a> {
     pub(super) scene: &'a Scene,
-    pub(super) model: &'a dyn Model,
+    pub(super) model: &'a Model,
     pub(super) written: Vec<&'a Observable>,
     pub(super) state: Vec<&'a Observable>,
     pub(super) laws: Vec<&'a Observable>,
@@ -44,7 +44,7 @@ pub(super) struct Watch<'a> {
 
 impl<'a> Watch<'a> {
     /// `model` has the [`quantities`] of the scene.
-    pub(super) fn new(scene: &'a Scene, model: &'a dyn Model) -> Result<Self, CliError> {
+    pub(super) fn new(scene: &'a Scene, model: &'a Model) -> Result<Self, CliError> {
         let (problem, schema) = (&scene.problem, model.schema());
         let computed = scene.computed();
         let find = |names: &[&str]| -> Result<Vec<_>, _> {

@@ -138,10 +138,10 @@ impl<'a> Judge<'a> {
         match model.exact(t_span) {
             Some(Ok(exact)) => {
                 judge.end = exact;
-                let rounding = judge.rounding(&*model, t_span, steps, longest);
+                let rounding = judge.rounding(&model, t_span, steps, longest);
                 judge.reference = Reference::Exact { rounding };
             }
-            _ => judge.find_end(&*model, t_span)?,
+            _ => judge.find_end(&model, t_span)?,
         }
         Ok(judge)
     }
@@ -157,7 +157,7 @@ impl<'a> Judge<'a> {
         stop: &'a AtomicBool,
     ) -> Result<Self, CliError> {
         let (mut judge, model) = Self::without_end(scene, quantities, stop)?;
-        judge.find_end(&*model, t_span)?;
+        judge.find_end(&model, t_span)?;
         Ok(judge)
     }
 
@@ -166,7 +166,7 @@ impl<'a> Judge<'a> {
         scene: &Scene,
         quantities: &[&str],
         stop: &'a AtomicBool,
-    ) -> Result<(Self, Box<dyn Model>), CliError> {
+    ) -> Result<(Self, Model), CliError> {
         let state = scene.problem.state(quantities);
         let judged = [state, &scene.problem.invariants(quantities)].concat();
         // The first layer of the problem.
@@ -176,7 +176,7 @@ impl<'a> Judge<'a> {
         Ok((Judge { state, schema, end: Vec::new(), reference, stop }, model))
     }
 
-    fn find_end(&mut self, model: &dyn Model, t_span: [f64; 2]) -> Result<(), CliError> {
+    fn find_end(&mut self, model: &Model, t_span: [f64; 2]) -> Result<(), CliError> {
         let control = per_length(TIGHT, TIGHT)?.max_steps(10_000_000)?;
         let mut ends: Vec<(String, Vec<f64>)> = Vec::new();
         for method in reference_methods() {
@@ -212,7 +212,7 @@ impl<'a> Judge<'a> {
     /// number of steps may meet calm moments only.
     fn rounding(
         &self,
-        model: &dyn Model,
+        model: &Model,
         t_span: [f64; 2],
         steps: &[u64],
         longest: Duration,
@@ -245,7 +245,7 @@ impl<'a> Judge<'a> {
     /// Run once, and judge.
     pub fn point(
         &self,
-        model: &dyn Model,
+        model: &Model,
         candidate: &Candidate,
         t_span: [f64; 2],
         size: Size,
@@ -360,7 +360,7 @@ impl Size {
     /// problem or the method does not run on numbers that count.
     pub fn operations(
         self,
-        model: &dyn Model,
+        model: &Model,
         method: &MethodSpec,
         t_span: [f64; 2],
         steps: u64,
@@ -384,7 +384,7 @@ impl Size {
     /// The run did not reach its end.
     pub fn run(
         self,
-        model: &dyn Model,
+        model: &Model,
         method: &MethodSpec,
         t_span: [f64; 2],
         rows: &Rows,

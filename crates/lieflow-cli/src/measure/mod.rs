@@ -156,7 +156,7 @@ pub fn speed_against_error(
                 let Line { curve, models, .. } = &lines[job.curve];
                 let (method, shortest) = (&curve.candidate.method, effort.shortest.as_secs_f64());
                 let seconds =
-                    job.size.seconds(&*models.timed, method, t_span, &Rows::ENDS, shortest);
+                    job.size.seconds(&models.timed, method, t_span, &Rows::ENDS, shortest);
                 let seconds = seconds.map_err(CliError::Message)?;
                 job.times.push(seconds);
                 if let Some(journal) = &mut journal {
@@ -178,9 +178,9 @@ pub fn speed_against_error(
 struct Models {
     layer: Layer,
     /// With what a run is judged by.
-    judged: Box<dyn Model>,
+    judged: Model,
     /// With what a run is asked for.
-    timed: Box<dyn Model>,
+    timed: Model,
 }
 
 /// A method on its way from large steps to small ones.
@@ -231,7 +231,7 @@ impl Bench<'_> {
             None => {
                 let run = || {
                     let start = cpu_seconds();
-                    let point = self.judge.point(&**judged, candidate, t_span, size);
+                    let point = self.judge.point(judged, candidate, t_span, size);
                     (point, cpu_seconds() - start)
                 };
                 let (mut point, mut took) = run();
@@ -241,7 +241,7 @@ impl Bench<'_> {
                 }
                 point.first_seconds = took;
                 if point.failure.is_none() && *self.rows != Rows::ENDS {
-                    match size.seconds(&**timed, &candidate.method, t_span, self.rows, shortest) {
+                    match size.seconds(timed, &candidate.method, t_span, self.rows, shortest) {
                         Ok(seconds) => point.output_seconds = (seconds - took).max(0.0),
                         // Steps that reach the end may have no rows between them.
                         Err(failure) => point.failure = Some(failure),
@@ -249,8 +249,7 @@ impl Bench<'_> {
                 }
                 if point.failure.is_none() {
                     let attempts = point.steps + point.rejected;
-                    point.operations =
-                        size.operations(&**judged, &candidate.method, t_span, attempts);
+                    point.operations = size.operations(judged, &candidate.method, t_span, attempts);
                 }
                 // A run that was stopped is not kept.
                 (self.tick)(self.share)?;
@@ -320,7 +319,7 @@ impl Size {
     /// words.
     fn seconds(
         self,
-        model: &dyn Model,
+        model: &Model,
         method: &MethodSpec,
         t_span: [f64; 2],
         rows: &Rows,

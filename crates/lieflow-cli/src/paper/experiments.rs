@@ -66,8 +66,6 @@ impl Experiment {
 
 #[cfg(test)]
 mod tests {
-    use core::any::Any;
-
     use lieflow_model::kinds::RigidBodySpec;
     use lieflow_model::scene::Scene;
 
@@ -77,8 +75,7 @@ mod tests {
     fn scenes_and_experiments_are_the_same() {
         for experiment in EXPERIMENTS {
             let scene = Scene::bundled(experiment.scene).unwrap();
-            let problem: &dyn Any = &*scene.problem;
-            let spec = problem.downcast_ref::<RigidBodySpec>().unwrap();
+            let spec = scene.problem.spec::<RigidBodySpec>().unwrap();
             assert_eq!(spec.inertia, experiment.body.inertia);
             assert_eq!(spec.momentum_body, experiment.body.momentum_space);
             assert_eq!(scene.grid.t_span(), [0.0, Experiment::END]);

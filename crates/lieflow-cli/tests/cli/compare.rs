@@ -189,7 +189,7 @@ fn operations_are_those_of_a_step_on_counting_numbers() {
         (PaperMethod::Dmv10, "dmv10", None),
     ] {
         let method = lieflow::catalog::MethodSpec::new(name, map);
-        let ours = Size::Steps(1).operations(&*model, &method, [0.0, 0.05], 3);
+        let ours = Size::Steps(1).operations(&model, &method, [0.0, 0.05], 3);
         let step = row.counted(&body, 0.05).unwrap().unwrap().total();
         assert_eq!(ours, Some(3 * step), "{name}");
     }
@@ -387,7 +387,7 @@ fn a_run_without_numbers_reaches_no_error() {
         let candidate = all.iter().find(|c| c.method.label() == name && !c.adaptive).unwrap();
         for steps in [30, 60, 120] {
             let size = Size::Steps(steps);
-            let point = judge.point(&*model, candidate, t_span, size);
+            let point = judge.point(&model, candidate, t_span, size);
             assert!(point.error.is_nan() || point.error > 1e-3, "{name}, {steps}: {point:?}");
         }
     }
@@ -411,7 +411,7 @@ fn two_methods_agree_where_the_exact_solution_is_not_asked() {
     let model = scene.model_with(Layer::Closed, &judge.quantities()).unwrap();
     let candidate = Candidate::rkmk4("exp", Layer::Closed);
     let size = Size::Steps(100);
-    let [a, b] = [&judge, &exact].map(|j| j.point(&*model, &candidate, [0.0, 2.0], size).error);
+    let [a, b] = [&judge, &exact].map(|j| j.point(&model, &candidate, [0.0, 2.0], size).error);
     assert!((a - b).abs() < 1e-10, "{a:e} {b:e}");
 }
 
@@ -459,7 +459,7 @@ every = 100
     let all = Candidate::all_that_fit(&scene, &["attitude"], Layer::Closed).unwrap();
     let taylor = all.iter().find(|c| c.method.name == "taylor16").unwrap();
     let mut errors = [1500, 2000, 2500, 3000]
-        .map(|steps| judge.point(&*model, taylor, t_span, Size::Steps(steps)).error);
+        .map(|steps| judge.point(&model, taylor, t_span, Size::Steps(steps)).error);
     errors.sort_by(f64::total_cmp);
     assert!(errors[1] > low && errors[2] < 3.0 * high, "{errors:?}, {low:e} {high:e}");
 }

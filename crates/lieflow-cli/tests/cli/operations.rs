@@ -8,7 +8,7 @@ use lieflow_model::scene::{BUNDLED, Scene};
 fn a_step(scene: &Scene, method: &MethodSpec, size: Size) -> Option<u64> {
     let quantities: Vec<&str> = scene.quantities.iter().map(String::as_str).collect();
     let model = scene.model_with(scene.layer, &quantities).unwrap();
-    size.operations(&*model, method, three_steps(scene), 1)
+    size.operations(&model, method, three_steps(scene), 1)
 }
 
 /// A span as long as three of its own steps, so that all succeed.
@@ -37,7 +37,7 @@ fn every_bundled_scene_has_operations() {
             let size = Size::Tolerance(1e-6);
             let model = scene.model_with(scene.layer, &quantities).unwrap();
             let runs = size
-                .run(&*model, method, three_steps(&scene), &Rows::ENDS, None, &mut |_, _| {})
+                .run(&model, method, three_steps(&scene), &Rows::ENDS, None, &mut |_, _| {})
                 .is_ok();
             let found = a_step(&scene, method, size);
             assert_eq!(found.is_some_and(|n| n > 0), runs, "{}: {}", bundled.name, method.label());

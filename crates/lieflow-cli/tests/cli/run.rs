@@ -111,8 +111,7 @@ fn the_columns_are_those_of_the_library() {
     assert_eq!(rows_of(&scene), expected);
 
     let scene = Scene::parse("body", &shortened("tumbling-attitude")).unwrap();
-    let spec = scene.problem.as_ref() as &dyn std::any::Any;
-    let spec: &RigidBodySpec = spec.downcast_ref().unwrap();
+    let spec: &RigidBodySpec = scene.problem.spec().unwrap();
     let in_space = spec.attitude * Vector3::from(spec.momentum_body);
     let body = RigidBodyAttitude::new(spec.inertia, in_space.into()).unwrap();
     let mut expected = Vec::new();

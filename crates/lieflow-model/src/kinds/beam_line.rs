@@ -71,7 +71,7 @@ fn element(keys: &ElementKeys) -> Result<(Element, [f64; 2]), String> {
     }
 }
 
-fn read(keys: Keys) -> Result<Box<dyn ProblemSpec>, ReadError> {
+fn read(keys: Keys) -> Result<Forms, ReadError> {
     let (mut elements, mut strengths, mut end) = (Vec::new(), Vec::new(), 0.0);
     for (i, keys) in keys.elements.iter().enumerate() {
         let refused = |message| Refusal::at("elements".index(i), message);
@@ -84,7 +84,7 @@ fn read(keys: Keys) -> Result<Box<dyn ProblemSpec>, ReadError> {
         return Err(Refusal::at("elements", "no elements, expected at least one").into());
     }
     transfer_map(&elements).map_err(|error| Refusal::from(error).about("elements"))?;
-    Ok(Box::new(Stated(BeamLine { elements, strengths, particle: keys.particle.0 })))
+    Ok(Forms::of(BeamLine { elements, strengths, particle: keys.particle.0 }))
 }
 
 impl BeamLine {
@@ -177,9 +177,6 @@ impl System for BeamLine {
         symplectic_defect(),
     ];
 
-    fn kind(&self) -> &'static Kind {
-        &KIND
-    }
     fn problem<N: Number>(&self) -> Result<Start<OnMatrices>, Error> {
         let line = self.clone();
         let field = move |s: f64, v: &mut AlgebraMatrix| {

@@ -168,7 +168,7 @@ struct Driven {
 
 type Q = Quantity<Driven>;
 
-fn read(mut keys: Keys) -> Result<Box<dyn ProblemSpec>, ReadError> {
+fn read(mut keys: Keys) -> Result<Forms, ReadError> {
     let spec = keys.body_keys().start(Matrix3::identity())?;
     let names = keys.formula_keys().names("torque", VARIABLES, keys.sample_keys())?;
     let formulas = |key: &str, texts: Option<Texts>| match texts {
@@ -186,7 +186,7 @@ fn read(mut keys: Keys) -> Result<Box<dyn ProblemSpec>, ReadError> {
     };
     let body = TorqueBody::new(spec.inertia, torques.clone())?;
     let start = (spec.attitude, spec.momentum_space());
-    Ok(Box::new(Stated(Driven { spec, body, torques, start })))
+    Ok(Forms::of(Driven { spec, body, torques, start }))
 }
 
 impl AsBody for Driven {
@@ -248,9 +248,6 @@ impl System for Driven {
         attitude_defect(),
     ];
 
-    fn kind(&self) -> &'static Kind {
-        &KIND
-    }
     fn layer(&self) -> Layer {
         Layer::Closed
     }

@@ -17,7 +17,7 @@ use super::driven_body::Torques;
 use super::flow::{Driven, OnSe3};
 use super::prelude::*;
 use crate::problem::PointOf;
-use crate::problem::{Model, Runnable};
+use crate::problem::Runnable;
 
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {
@@ -46,7 +46,7 @@ struct TopSpec {
 /// The distance that `vertical` and `attitude` may have from each other.
 const AGREED: f64 = 1e-6;
 
-fn read(mut keys: Keys) -> Result<Box<dyn ProblemSpec>, ReadError> {
+fn read(mut keys: Keys) -> Result<Forms, ReadError> {
     let (body, mut notes) = (keys.body_keys(), Vec::new());
     let stated = match keys.vertical {
         None => None,
@@ -72,7 +72,11 @@ fn read(mut keys: Keys) -> Result<Box<dyn ProblemSpec>, ReadError> {
     let weight = body.along_axes(keys.weight.0.into());
     body.notes.extend(notes);
     let top = HeavyTop::new(body.inertia, weight.into())?;
-    Ok(Box::new(TopSpec { body, top, weight, vertical }))
+    let spec = TopSpec { body, top, weight, vertical };
+    let (momentum, attitude) =
+        (spec.clone().by::<MomentumAndVertical>(), spec.by::<WithAttitude>());
+    // The figure needs the attitude.
+    Ok(Forms::of(momentum).or(Forms::of(attitude)).written(WithAttitude::STATE))
 }
 
 /// The least turn that brings a direction to e₃.
@@ -180,6 +184,12 @@ struct Top<R> {
 
 type Q<R> = Quantity<Top<R>>;
 
+impl TopSpec {
+    fn by<R>(self) -> Top<R> {
+        Top { spec: self, representation: PhantomData }
+    }
+}
+
 impl<R: Representation> Top<R> {
     fn invariant(&self, y: &PointOf<Self>, i: usize) -> f64 {
         let Pose { mu, gamma, .. } = R::pose(y);
@@ -262,9 +272,6 @@ impl<R: Representation> System for Top<R> {
         attitude_defect(),
     ];
 
-    fn kind(&self) -> &'static Kind {
-        &KIND
-    }
     fn layer(&self) -> Layer {
         Layer::Closed
     }
@@ -298,56 +305,5 @@ impl<R: Representation> System for Top<R> {
     }
     fn figure(&self) -> Figure {
         Figure::Sphere(if R::TURNS { "axis" } else { "vertical" })
-    }
-}
-
-impl TopSpec {
-    fn on<R>(&self) -> Stated<Top<R>> {
-        Stated(Top { spec: self.clone(), representation: PhantomData })
-    }
-    /// The system that has these quantities.
-    fn system(&self, quantities: &[&str]) -> Box<dyn ProblemSpec> {
-        let momentum = self.on::<MomentumAndVertical>();
-        match lacks_any(&momentum, quantities) {
-            true => Box::new(self.on::<WithAttitude>()),
-            false => Box::new(momentum),
-        }
-    }
-}
-
-impl ProblemSpec for TopSpec {
-    fn kind(&self) -> &'static Kind {
-        &KIND
-    }
-    fn columns(&self, quantity: &str) -> Result<Vec<String>, Error> {
-        self.on::<WithAttitude>().columns(quantity)
-    }
-    fn model(&self, layer: Layer, quantities: &[&str]) -> Result<Box<dyn Model>, Error> {
-        self.system(quantities).model(layer, quantities)
-    }
-    fn state(&self, quantities: &[&str]) -> &'static [&'static str] {
-        self.system(quantities).state(quantities)
-    }
-    /// The state with the attitude, because the figure needs it.
-    fn default_state(&self) -> &'static [&'static str] {
-        self.state(&["attitude"])
-    }
-    fn layers(&self) -> &'static [Layer] {
-        &[Layer::Closed]
-    }
-    fn invariants(&self, quantities: &[&str]) -> Vec<&'static str> {
-        self.system(quantities).invariants(quantities)
-    }
-    fn inertia(&self) -> Option<PrincipalInertia> {
-        Some(self.body.principal_inertia())
-    }
-    fn figure(&self, quantities: &[&str]) -> Figure {
-        self.system(quantities).figure(quantities)
-    }
-    fn warnings(&self) -> Vec<String> {
-        self.system(&[]).warnings()
-    }
-    fn notes(&self) -> Vec<String> {
-        self.system(&[]).notes()
     }
 }

@@ -47,7 +47,6 @@ keys! { HillKeys {
 /// A, Q and T.
 #[derive(Clone, Debug)]
 struct Hill {
-    kind: &'static Kind,
     a: Mat<f64>,
     q: Mat<f64>,
     period: f64,
@@ -55,18 +54,18 @@ struct Hill {
 
 type Q = Quantity<Hill>;
 
-fn read_mathieu(MathieuKeys { a, q }: MathieuKeys) -> Result<Box<dyn ProblemSpec>, ReadError> {
+fn read_mathieu(MathieuKeys { a, q }: MathieuKeys) -> Result<Forms, ReadError> {
     let one = |x: Real| Mat::full(1, 1, x.0);
-    Ok(Box::new(Stated(Hill { kind: &MATHIEU, a: one(a), q: one(q), period: PI })))
+    Ok(Forms::of(Hill { a: one(a), q: one(q), period: PI }))
 }
 
-fn read_hill(keys: HillKeys) -> Result<Box<dyn ProblemSpec>, ReadError> {
+fn read_hill(keys: HillKeys) -> Result<Forms, ReadError> {
     let a = keys.a.matrix("a", None)?;
     let q = square("q", &keys.q, a.nrows())?;
     check_symmetric("a", &a, 0.0)?;
     check_symmetric("q", &q, 0.0)?;
     match keys.period.0 > 0.0 {
-        true => Ok(Box::new(Stated(Hill { kind: &HILL, a, q, period: keys.period.0 }))),
+        true => Ok(Forms::of(Hill { a, q, period: keys.period.0 })),
         false => Err(Refusal::at("period", format!("{}, expected > 0", keys.period.0)).into()),
     }
 }
@@ -119,9 +118,6 @@ impl System for Hill {
         symplectic_defect(),
     ];
 
-    fn kind(&self) -> &'static Kind {
-        self.kind
-    }
     fn problem<N: Number>(&self) -> Result<Start<OnMatrices>, Error> {
         let one = Mat::identity(2 * self.a.nrows(), 2 * self.a.nrows());
         let action = MatrixAction::Translation;

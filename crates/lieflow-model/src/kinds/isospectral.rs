@@ -55,7 +55,6 @@ keys! { QrKeys {
 /// A flow with its initial matrix.
 #[derive(Clone, Debug)]
 struct Isospectral {
-    kind: &'static Kind,
     flow: IsospectralFlow,
     matrix: Mat<f64>,
 }
@@ -69,7 +68,7 @@ fn symmetric(table: &Table) -> Result<Mat<f64>, Refusal> {
     Ok(l)
 }
 
-fn read_toda(keys: TodaKeys) -> Result<Box<dyn ProblemSpec>, ReadError> {
+fn read_toda(keys: TodaKeys) -> Result<Forms, ReadError> {
     let matrix = match exactly_one(("positions", keys.positions), ("matrix", keys.matrix))? {
         Either::First(positions) => {
             let (q, p) = (positions.values(), keys.momenta.map_or(Vec::new(), |p| p.values()));
@@ -91,20 +90,20 @@ fn read_toda(keys: TodaKeys) -> Result<Box<dyn ProblemSpec>, ReadError> {
         Either::Second(matrix) => symmetric(&matrix)?,
     };
     let flow = IsospectralFlow::toda(matrix.nrows())?;
-    Ok(Box::new(Stated(Isospectral { kind: &TODA, flow, matrix })))
+    Ok(Forms::of(Isospectral { flow, matrix }))
 }
 
-fn read_double_bracket(keys: DoubleBracketKeys) -> Result<Box<dyn ProblemSpec>, ReadError> {
+fn read_double_bracket(keys: DoubleBracketKeys) -> Result<Forms, ReadError> {
     let (matrix, order) = (symmetric(&keys.matrix)?, keys.order.values());
     if order.len() != matrix.nrows() {
         let message = format!("found {} numbers, expected {}", order.len(), matrix.nrows());
         return Err(Refusal::at("order", message).into());
     }
     let flow = IsospectralFlow::double_bracket(&order)?;
-    Ok(Box::new(Stated(Isospectral { kind: &DOUBLE_BRACKET, flow, matrix })))
+    Ok(Forms::of(Isospectral { flow, matrix }))
 }
 
-fn read_qr(keys: QrKeys) -> Result<Box<dyn ProblemSpec>, ReadError> {
+fn read_qr(keys: QrKeys) -> Result<Forms, ReadError> {
     let matrix = symmetric(&keys.matrix)?;
     let smallest = eigenvalues(&matrix).first().copied().unwrap_or(f64::NAN);
     if smallest.is_nan() || smallest <= 0.0 {
@@ -112,7 +111,7 @@ fn read_qr(keys: QrKeys) -> Result<Box<dyn ProblemSpec>, ReadError> {
         return Err(Refusal::at("matrix", message).into());
     }
     let flow = IsospectralFlow::qr(matrix.nrows())?;
-    Ok(Box::new(Stated(Isospectral { kind: &QR_FLOW, flow, matrix })))
+    Ok(Forms::of(Isospectral { flow, matrix }))
 }
 
 impl System for Isospectral {
@@ -147,9 +146,6 @@ impl System for Isospectral {
         .in_terms(|_, l| norm(l.as_ref())),
     ];
 
-    fn kind(&self) -> &'static Kind {
-        self.kind
-    }
     fn problem<N: Number>(&self) -> Result<Start<OnMatrices>, Error> {
         let action = MatrixAction::Conjugation;
         Ok((OnMatrices::new(self.flow.clone(), action), self.matrix.clone()))

@@ -36,7 +36,7 @@ struct Particle {
 
 type Q = Quantity<Particle>;
 
-fn read(keys: Keys) -> Result<Box<dyn ProblemSpec>, ReadError> {
+fn read(keys: Keys) -> Result<Forms, ReadError> {
     let (e, b) = (Vector3::from(keys.electric.0), Vector3::from(keys.magnetic.0));
     let particle = ChargedParticle::new(keys.charge_to_mass.0, move |_: f64, _: &Mat<f64>| (e, b))?;
     let start = particle
@@ -44,7 +44,7 @@ fn read(keys: Keys) -> Result<Box<dyn ProblemSpec>, ReadError> {
         .map_err(|error| Refusal::from(error).about("velocity"))?;
     let mut tensor = particle.group().zero();
     particle.f(0.0, &start, &mut tensor, &mut particle.work());
-    Ok(Box::new(Stated(Particle { tensor, start })))
+    Ok(Forms::of(Particle { tensor, start }))
 }
 
 impl System for Particle {
@@ -82,9 +82,6 @@ impl System for Particle {
         .in_terms(|_, u| squared_norm(u.as_ref())),
     ];
 
-    fn kind(&self) -> &'static Kind {
-        &KIND
-    }
     fn problem<N: Number>(&self) -> Result<Start<OnMatrices>, Error> {
         let tensor = self.tensor.clone();
         let field = move |_: f64, v: &mut AlgebraMatrix| v.copy_from(&*tensor);

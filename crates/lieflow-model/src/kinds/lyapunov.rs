@@ -43,7 +43,7 @@ const MAX: usize = 128;
 /// derivatives take.
 const DERIVED_MAX: usize = 1 << 18;
 
-fn read(mut keys: Keys) -> Result<Box<dyn ProblemSpec>, ReadError> {
+fn read(mut keys: Keys) -> Result<Forms, ReadError> {
     let (formulas, samples) = (keys.formula_keys(), keys.sample_keys());
     let x = keys.x.values();
     let n = x.len();
@@ -66,7 +66,7 @@ fn read(mut keys: Keys) -> Result<Box<dyn ProblemSpec>, ReadError> {
     let by = |f: &Formula| (1..=n).map(|j| f.derivative(j)).collect::<Result<Vec<_>, _>>();
     let jacobian = field.iter().map(by).collect::<Result<Vec<_>, _>>()?.concat();
     let (field, jacobian) = (field.into(), jacobian.into());
-    Ok(Box::new(Stated(Exponents { names, field, jacobian, x })))
+    Ok(Forms::of(Exponents { names, field, jacobian, x }))
 }
 
 /// t and x, for formulas.
@@ -120,9 +120,6 @@ impl System for Exponents {
         .kept(Law::by_the_action(2).on_scale(Scale::One)),
     ];
 
-    fn kind(&self) -> &'static Kind {
-        &KIND
-    }
     fn problem<N: Number>(&self) -> Result<Start<Growing>, Error> {
         let (n, field, by) = (self.x.len(), self.field.clone(), self.jacobian.clone());
         let field = move |t: f64, x: &Mat<f64>, dx: &mut Mat<f64>, jacobian: &mut Mat<f64>| {

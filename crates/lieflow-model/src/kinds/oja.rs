@@ -35,7 +35,7 @@ type Q = Quantity<OjaFlow>;
 /// Columns that depend on each other up to this part of their length span no k-dimensional space.
 const DEPENDENT: f64 = 1e-8;
 
-fn read(keys: Keys) -> Result<Box<dyn ProblemSpec>, ReadError> {
+fn read(keys: Keys) -> Result<Forms, ReadError> {
     let (a, x) = (keys.a.matrix("a", None)?, keys.x.columns("x")?);
     check_rows("x", &x, a.nrows())?;
     check_symmetric("a", &a, ROUNDING)?;
@@ -51,7 +51,7 @@ fn read(keys: Keys) -> Result<Box<dyn ProblemSpec>, ReadError> {
         return Err(Refusal::at("x", message).into());
     }
     let x = Mat::from_fn(x.nrows(), x.ncols(), |i, j| q[(i, j)] * r[(j, j)].signum());
-    Ok(Box::new(Stated(OjaFlow { flow, a, x })))
+    Ok(Forms::of(OjaFlow { flow, a, x }))
 }
 
 impl System for OjaFlow {
@@ -76,9 +76,6 @@ impl System for OjaFlow {
         .kept(Law::by_the_action(0).on_scale(Scale::One)),
     ];
 
-    fn kind(&self) -> &'static Kind {
-        &KIND
-    }
     fn problem<N: Number>(&self) -> Result<Start<OnMatrices>, Error> {
         Ok((OnMatrices::new(self.flow.clone(), MatrixAction::Linear), self.x.clone()))
     }

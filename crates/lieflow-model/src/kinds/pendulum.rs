@@ -33,13 +33,13 @@ struct Pendulum {
 
 type Q = Quantity<Pendulum>;
 
-fn read(keys: Keys) -> Result<Box<dyn ProblemSpec>, ReadError> {
+fn read(keys: Keys) -> Result<Forms, ReadError> {
     let rate2 = keys.gravity_over_length.0;
     let pendulum = SphericalPendulum::new(rate2)?;
     let start = pendulum
         .state(keys.direction.0, keys.velocity.0)
         .map_err(|error| Refusal::from(error).about("direction"))?;
-    Ok(Box::new(Stated(Pendulum { pendulum, rate2, start })))
+    Ok(Forms::of(Pendulum { pendulum, rate2, start }))
 }
 
 impl System for Pendulum {
@@ -79,9 +79,6 @@ impl System for Pendulum {
         .in_terms(|_, (omega, q)| omega.norm() * q.norm()),
     ];
 
-    fn kind(&self) -> &'static Kind {
-        &KIND
-    }
     fn layer(&self) -> Layer {
         Layer::Closed
     }

@@ -4,8 +4,8 @@ pub(super) use faer::Mat;
 pub(super) use lieflow::Error;
 
 pub(super) use crate::problem::{
-    Fact, Figure, Kind, Layer, Number, PrincipalInertia, ProblemSpec, Quantity, Start, Stated,
-    System, formula_keys, keys, lacks_any, sample_keys,
+    Fact, Figure, Forms, Kind, Layer, Number, PrincipalInertia, Quantity, Start, System,
+    formula_keys, keys, sample_keys,
 };
 pub(super) use crate::reader::values::{List, Real, Reals, Table, Whole};
 pub(super) use crate::reader::{

@@ -13,6 +13,10 @@
 //!
 //! A key `x` that is a list of numbers is `x1`, `x2`, ... in formulas.
 
+use std::sync::Arc;
+
+use lieflow::RunError;
+use lieflow::catalog::MethodSpec;
 use lieflow::problems::Origin;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -20,8 +24,8 @@ use toml::de::{DeTable, DeValue};
 use super::prelude::{Error, KeyPath, Law, Read, ReadError, Real, Scale, Whole, read_by_keys};
 use crate::formula::{Formula, Names, Parameters, Text, Texts};
 use crate::problem::{
-    Figure, KeyInfo, Kind, Layer, Mapped, Model, PARAMETERS, ProblemSpec, QuantityInfo,
-    ReadProblem, no_such_layer,
+    Asked, Figure, Form, Forms, KeyInfo, Kind, Mapped, Model, Orders, Outcome, PARAMETERS, Plan,
+    Problem, QuantityInfo, ReadForms, Run, Steps, Watcher, high_order,
 };
 use crate::reader::KeyReader;
 use crate::reader::values::counted;
@@ -37,9 +41,8 @@ macro_rules! preset {
         static PRESET: LazyLock<Preset> = LazyLock::new(|| {
             Preset::parse(include_str!(concat!("../../presets/", $name, ".toml")))
         });
-        static KIND: LazyLock<Kind> = LazyLock::new(|| {
-            PRESET.kind(|| PRESET.quantities(), |section| PRESET.read(&KIND, section))
-        });
+        static KIND: LazyLock<Kind> =
+            LazyLock::new(|| PRESET.kind(|| PRESET.quantities(), |section| PRESET.read(section)));
         *KIND
     }};
 }
@@ -156,25 +159,17 @@ impl Preset {
     pub(super) fn kind(
         &'static self,
         quantities: fn() -> Vec<QuantityInfo>,
-        read: ReadProblem,
+        read: ReadForms,
     ) -> Kind {
         let Stated { name, equation, summary, .. } = self.stated;
         Kind { name, equation, summary, keys: &self.key_infos, quantities, read }
     }
 
     pub(super) fn quantities(&'static self) -> Vec<QuantityInfo> {
-        let info = |quantity: &'static QuantityText| {
-            let QuantityText { name, meaning, .. } = quantity;
-            QuantityInfo { name, columns: quantity.columns(), meaning, unit: "" }
-        };
-        self.stated.quantities.iter().map(info).collect()
+        self.stated.quantities.iter().map(QuantityText::info).collect()
     }
 
-    pub(super) fn read(
-        &'static self,
-        kind: &'static Kind,
-        section: &Value<'_>,
-    ) -> Result<Box<dyn ProblemSpec>, ReadError> {
+    pub(super) fn read(&'static self, section: &Value<'_>) -> Result<Forms, ReadError> {
         let keys = &self.stated.keys;
         let mut section = KeyReader::of(section, &self.key_names)?;
         let lists = keys.iter().map(|Key { name, numbers: count, .. }| {
@@ -208,11 +203,17 @@ impl Preset {
         let names = parameters.names("observed", variables)?;
         let formulas = |quantity: &QuantityText| quantity.read(&names);
         let formulas = self.stated.quantities.iter().map(formulas).collect::<Result<_, _>>()?;
-        Ok(Box::new(Problem { kind, preset: &self.stated, base, formulas }))
+        let layer = base.layers()[0];
+        let (preset, formula) = (&self.stated, base.formula().cloned());
+        let base = base.model(layer, &preset.observed)?;
+        let run = Arc::new(OnBase { preset, base, formulas, formula: formula.clone() });
+        let (state, figure) = (&*preset.state, (preset.figure.0)(preset.drawn));
+        let form = Form { layer, whole_state: false, state, figure, run };
+        Ok(Forms { formula, ..Forms::one(form) })
     }
 
     /// The problem of the base.
-    fn base(&self, parameters: &Parameters) -> Result<Box<dyn ProblemSpec>, ReadError> {
+    fn base(&self, parameters: &Parameters) -> Result<Problem, ReadError> {
         let mut problem = self.problem.clone();
         let name = problem.remove("kind");
         let name = name.as_ref().and_then(|name| name.get_ref().as_str());
@@ -230,7 +231,8 @@ impl Preset {
         // What the base refuses stands in no line of the scene but its section.
         let values = DeTable::parse(&text).map_err(|error| Refusal::section(error.message()))?;
         problem.extend(values.into_inner());
-        (kind.read)(&Spanned::new(0..0, DeValue::Table(problem))).map_err(|error| match error {
+        kind.read_problem(&Spanned::new(0..0, DeValue::Table(problem))).map_err(|error| match error
+        {
             ReadError::Refused(_) => error,
             wrong => Refusal::section(wrong.in_words("problem").0).into(),
         })
@@ -253,6 +255,11 @@ fn as_toml(x: f64) -> String {
 }
 
 impl QuantityText {
+    fn info(&'static self) -> QuantityInfo {
+        let QuantityText { name, meaning, .. } = self;
+        QuantityInfo { name, columns: self.columns(), meaning, unit: "" }
+    }
+
     fn columns(&self) -> &[&'static str] {
         self.columns.as_deref().unwrap_or_default()
     }
@@ -285,57 +292,72 @@ struct QuantityFormulas {
     terms: Option<Formula>,
 }
 
-/// The problem of a scene.
+/// The quantities of a preset on its base.
 #[derive(Debug)]
-struct Problem {
-    kind: &'static Kind,
+struct OnBase {
     preset: &'static Stated,
-    base: Box<dyn ProblemSpec>,
+    base: Model,
     /// Those of each quantity.
     formulas: Vec<QuantityFormulas>,
+    formula: Option<Formula>,
 }
 
-impl ProblemSpec for Problem {
-    fn kind(&self) -> &'static Kind {
-        self.kind
-    }
-    fn layers(&self) -> &'static [Layer] {
-        self.base.layers()
-    }
-    fn columns(&self, quantity: &str) -> Result<Vec<String>, Error> {
-        Ok(self.kind.quantity(quantity)?.column_names())
-    }
-    fn formula(&self) -> Option<&Formula> {
-        self.base.formula()
-    }
-    fn model(&self, layer: Layer, quantities: &[&str]) -> Result<Box<dyn Model>, Error> {
-        if !self.layers().contains(&layer) {
-            return Err(no_such_layer(layer, self.kind));
-        }
-        let base = self.base.model(layer, &self.preset.observed)?;
-        let (mut schema, mut values, mut sizes) = (Schema::default(), Vec::new(), Vec::new());
-        for name in quantities {
-            let all = self.preset.quantities.iter().zip(&self.formulas);
-            let known = all.into_iter().find(|(quantity, _)| quantity.name == *name);
-            let (quantity, formulas) = known.ok_or_else(|| self.kind.unknown_quantity(name))?;
-            schema.push(quantity.name, self.columns(name)?, quantity.law(), false);
-            values.extend_from_slice(&formulas.values);
-            sizes.extend(formulas.terms.clone());
-        }
-        let formulas = [values, sizes].concat();
+impl OnBase {
+    /// The rows of these quantities.
+    fn mapped<T>(&self, asked: Asked<'_>, run: impl FnOnce(Mapped<'_>) -> T) -> T {
+        let quantities = || asked.quantities.iter().map(|&number| &self.formulas[number]);
+        let values = quantities().flat_map(|quantity| &quantity.values);
+        let formulas: Vec<&Formula> =
+            values.chain(quantities().filter_map(|q| q.terms.as_ref())).collect();
         let number =
-            move |place: usize, _: f64, of_base: Row<'_>| formulas[place].value(of_base.values());
-        let modelled = Some(self.preset.modelled);
-        Ok(Box::new(Mapped { base, schema, modelled, number: Box::new(number) }))
+            |place: usize, _: f64, of_base: Row<'_>| formulas[place].value(of_base.values());
+        run(Mapped { base: &self.base, schema: asked.schema, number: &number })
     }
-    fn state(&self, _: &[&str]) -> &'static [&'static str] {
-        &self.preset.state
+}
+
+impl Run for OnBase {
+    fn missing(&self, _: usize) -> Option<&'static str> {
+        None
     }
-    fn invariants(&self, _: &[&str]) -> Vec<&'static str> {
-        let kept = self.preset.quantities.iter().filter(|quantity| quantity.law().is_some());
-        kept.map(|quantity| quantity.name).collect()
+    fn columns(&self, quantity: usize) -> Vec<String> {
+        self.preset.quantities[quantity].info().column_names()
     }
-    fn figure(&self, _: &[&str]) -> Figure {
-        (self.preset.figure.0)(self.preset.drawn)
+    fn law(&self, quantity: usize) -> Option<Law> {
+        self.preset.quantities[quantity].law()
+    }
+    fn describe(&self, quantity: usize, schema: &mut Schema) {
+        let name = self.preset.quantities[quantity].name;
+        schema.push(name, self.columns(quantity), self.law(quantity), false);
+    }
+    fn modelled(&self) -> String {
+        self.preset.modelled.into()
+    }
+    fn drive(
+        &self,
+        asked: Asked<'_>,
+        method: &MethodSpec,
+        plan: Plan<'_>,
+        watcher: &mut dyn Watcher,
+    ) -> Result<Outcome, RunError> {
+        self.mapped(asked, |mapped| mapped.drive(method, plan, watcher))
+    }
+    fn exact(&self, asked: Asked<'_>, t_span: [f64; 2]) -> Option<Result<Vec<f64>, Error>> {
+        self.mapped(asked, |mapped| mapped.exact(t_span))
+    }
+    fn orders(&self, method: &MethodSpec) -> Result<Orders, Error> {
+        self.base.orders(method)
+    }
+    fn problem_type(&self) -> &'static str {
+        self.base.problem_type(&high_order())
+    }
+    fn fits(&self, method: &MethodSpec) -> Result<(), Error> {
+        self.base.fits(method)
+    }
+    fn operations(&self, method: &MethodSpec, steps: &Steps) -> Option<f64> {
+        self.base.operations(method, steps)
+    }
+    fn knots(&self, t_span: [f64; 2]) -> Option<Vec<f64>> {
+        let samples = self.formula.as_ref()?.samples()?;
+        Some(samples.knots(t_span).collect())
     }
 }

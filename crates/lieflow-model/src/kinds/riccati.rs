@@ -38,7 +38,7 @@ struct Riccati {
 
 type Q = Quantity<Riccati>;
 
-fn read(keys: Keys) -> Result<Box<dyn ProblemSpec>, ReadError> {
+fn read(keys: Keys) -> Result<Forms, ReadError> {
     let p = keys.p.matrix("p", None)?;
     let m = p.nrows();
     let (c, b) = (square("c", &keys.c, m)?, square("b", &keys.b, m)?);
@@ -46,7 +46,7 @@ fn read(keys: Keys) -> Result<Box<dyn ProblemSpec>, ReadError> {
     for (key, x) in [("c", &c), ("b", &b), ("p", &p)] {
         check_symmetric(key, x, 0.0)?;
     }
-    Ok(Box::new(Stated(Riccati { c, d, b, p })))
+    Ok(Forms::of(Riccati { c, d, b, p }))
 }
 
 impl System for Riccati {
@@ -74,9 +74,6 @@ impl System for Riccati {
         .with_columns(|riccati| numbered("angle", riccati.p.nrows())),
     ];
 
-    fn kind(&self) -> &'static Kind {
-        &KIND
-    }
     fn problem<N: Number>(&self) -> Result<Start<OnMatrices>, Error> {
         let (m, of_run) = (self.p.nrows(), self.clone());
         let field = move |_: f64, v: &mut AlgebraMatrix| {

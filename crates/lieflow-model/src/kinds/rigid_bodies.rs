@@ -42,7 +42,7 @@ struct Bodies {
 
 type Q = Quantity<Bodies>;
 
-fn read(Keys { bodies: keys }: Keys) -> Result<Box<dyn ProblemSpec>, ReadError> {
+fn read(Keys { bodies: keys }: Keys) -> Result<Forms, ReadError> {
     if keys.is_empty() {
         return Err(Refusal::at("bodies", "no bodies, expected at least one").into());
     }
@@ -52,7 +52,7 @@ fn read(Keys { bodies: keys }: Keys) -> Result<Box<dyn ProblemSpec>, ReadError> 
     };
     let bodies = inertia.iter().enumerate().map(body).collect::<Result<_, _>>()?;
     let start = keys.iter().map(|keys| keys.momentum_body.0.into()).collect();
-    Ok(Box::new(Stated(Bodies { bodies, inertia, start })))
+    Ok(Forms::of(Bodies { bodies, inertia, start }))
 }
 
 impl Bodies {
@@ -96,9 +96,6 @@ impl System for Bodies {
         .kept(Law::by_the_action(2)),
     ];
 
-    fn kind(&self) -> &'static Kind {
-        &KIND
-    }
     fn layer(&self) -> Layer {
         Layer::Closed
     }

@@ -38,7 +38,7 @@ type Q = Quantity<Body>;
 /// operations a row.
 const WATCHED: usize = 8;
 
-fn read(keys: Keys) -> Result<Box<dyn ProblemSpec>, ReadError> {
+fn read(keys: Keys) -> Result<Forms, ReadError> {
     let momentum = keys.momentum.values();
     let Some(start) = antisymmetric(&momentum) else {
         let message = format!("found {} numbers, expected n(n-1)/2", momentum.len());
@@ -66,7 +66,7 @@ fn read(keys: Keys) -> Result<Box<dyn ProblemSpec>, ReadError> {
         }
         Either::Second(inertia) => (RigidBodyN::from_pairs(n, &inertia.values())?, None),
     };
-    Ok(Box::new(Stated(Body { body, lambda, momentum: start })))
+    Ok(Forms::of(Body { body, lambda, momentum: start }))
 }
 
 impl Body {
@@ -132,9 +132,6 @@ impl System for Body {
         }),
     ];
 
-    fn kind(&self) -> &'static Kind {
-        &KIND
-    }
     fn problem<N: Number>(&self) -> Result<Start<RigidBodyN>, Error> {
         Ok((self.body.clone(), self.momentum.clone()))
     }

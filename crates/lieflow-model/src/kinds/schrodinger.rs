@@ -43,7 +43,7 @@ struct Levels {
 
 type Q = Quantity<Levels>;
 
-fn read(keys: Keys) -> Result<Box<dyn ProblemSpec>, ReadError> {
+fn read(keys: Keys) -> Result<Forms, ReadError> {
     let energies = keys.energies.values();
     let n = energies.len();
     let real = square("coupling", &keys.coupling, n)?;
@@ -68,14 +68,14 @@ fn read(keys: Keys) -> Result<Box<dyn ProblemSpec>, ReadError> {
     }
     let psi: Vec<_> = parts[0].1.iter().zip(&parts[1].1).map(|(re, im)| [*re, *im]).collect();
     let start = amplitudes(&psi).map_err(|error| Refusal::from(error).about("amplitudes"))?;
-    Ok(Box::new(Stated(Levels {
+    Ok(Forms::of(Levels {
         energies,
         coupling: [real, imaginary],
         frequency: keys.frequency.map_or(0.0, |x| x.0),
         phase: keys.phase.map_or(0.0, |x| x.0),
         pulse: keys.pulse.map(|pulse| pulse.0),
         start,
-    })))
+    }))
 }
 
 impl Levels {
@@ -113,9 +113,6 @@ impl System for Levels {
             .kept(Law::by_the_action(2)),
     ];
 
-    fn kind(&self) -> &'static Kind {
-        &KIND
-    }
     fn problem<N: Number>(&self) -> Result<Start<OnMatrices>, Error> {
         let levels = self.clone();
         let hamiltonian = move |t: f64, i: usize, j: usize| {

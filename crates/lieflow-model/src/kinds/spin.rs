@@ -35,8 +35,8 @@ struct Spin {
 
 type Q = Quantity<Spin>;
 
-fn read(Keys { field, rate, moment }: Keys) -> Result<Box<dyn ProblemSpec>, ReadError> {
-    Ok(Box::new(Stated(Spin { field: field.0.into(), rate: rate.0, moment: moment.0.into() })))
+fn read(Keys { field, rate, moment }: Keys) -> Result<Forms, ReadError> {
+    Ok(Forms::of(Spin { field: field.0.into(), rate: rate.0, moment: moment.0.into() }))
 }
 
 impl System for Spin {
@@ -51,9 +51,6 @@ impl System for Spin {
             .kept(Law::by_the_action(2)),
     ];
 
-    fn kind(&self) -> &'static Kind {
-        &KIND
-    }
     fn layer(&self) -> Layer {
         Layer::Closed
     }

@@ -47,7 +47,7 @@ struct Chain {
 
 type Q = Quantity<Chain>;
 
-fn read(keys: Keys) -> Result<Box<dyn ProblemSpec>, ReadError> {
+fn read(keys: Keys) -> Result<Forms, ReadError> {
     let (key, spins) = match exactly_one(("spins", keys.spins), ("wave", keys.wave))? {
         Either::First(spins) => {
             ("spins", spins.into_iter().map(|s| Vector3::from(s.0)).collect::<Vec<_>>())
@@ -76,7 +76,7 @@ fn read(keys: Keys) -> Result<Box<dyn ProblemSpec>, ReadError> {
         (keys.damping.map_or(0.0, |x| x.0), keys.field.map_or([0.0; 3], |x| x.0));
     chain = chain.with_anisotropy(keys.anisotropy.map_or(0.0, |x| x.0))?;
     chain = chain.with_field(field)?.with_damping(damping)?;
-    Ok(Box::new(Stated(Chain { chain, damped: damping != 0.0, field: field.into(), start })))
+    Ok(Forms::of(Chain { chain, damped: damping != 0.0, field: field.into(), start }))
 }
 
 impl Chain {
@@ -128,9 +128,6 @@ impl System for Chain {
             .kept(Law::by_the_action(2)),
     ];
 
-    fn kind(&self) -> &'static Kind {
-        &KIND
-    }
     fn layer(&self) -> Layer {
         Layer::Closed
     }

@@ -47,7 +47,7 @@ struct Subspace {
 /// Below this cos² of an angle to the leading subspace nothing is left of Z.
 const RIGHT: f64 = 1e-10;
 
-fn read(keys: Keys) -> Result<Box<dyn ProblemSpec>, ReadError> {
+fn read(keys: Keys) -> Result<Forms, ReadError> {
     let (a, x) = (keys.a.matrix("a", None)?, keys.x.columns("x")?);
     check_rows("x", &x, a.nrows())?;
     check_symmetric("a", &a, ROUNDING)?;
@@ -59,7 +59,7 @@ fn read(keys: Keys) -> Result<Box<dyn ProblemSpec>, ReadError> {
     let mut subspace =
         Subspace { flow, dimension: x.ncols(), start, eigenvalues, eigenvectors, graph: None };
     subspace.graph = subspace.graph_at(&subspace.start);
-    Ok(Box::new(Stated(subspace)))
+    Ok(Forms::of(subspace))
 }
 
 impl Subspace {
@@ -123,9 +123,6 @@ impl System for Subspace {
         .kept(Law::by_the_action(0).on_scale(Scale::One)),
     ];
 
-    fn kind(&self) -> &'static Kind {
-        &KIND
-    }
     fn problem<N: Number>(&self) -> Result<Start<OnMatrices>, Error> {
         Ok((OnMatrices::new(self.flow.clone(), MatrixAction::Conjugation), self.start.clone()))
     }

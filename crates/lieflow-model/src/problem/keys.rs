@@ -3,7 +3,7 @@
 //! `keys! { Keys { … } }` states the keys of a kind. `keys! { Keys [formula_keys] { … } }` has those of a group too,
 //! and a method that takes them out, `formula_keys()`.
 
-use super::spec::{KeyInfo, Kind, ReadProblem};
+use super::kind::{KeyInfo, Kind, ReadForms};
 use super::system::System;
 use crate::formula::Names;
 use crate::reader::Refusal;
@@ -16,7 +16,7 @@ pub(crate) trait KeyTable {
 
 impl Kind {
     /// An entry without its texts: keys, the quantities of a system, and what reads the keys.
-    pub(crate) const fn of<K: KeyTable, S: System>(read: ReadProblem) -> Kind {
+    pub(crate) const fn of<K: KeyTable, S: System>(read: ReadForms) -> Kind {
         let quantities = || S::QUANTITIES.iter().map(|quantity| quantity.info).collect();
         Kind { name: "", equation: "", summary: "", keys: K::INFO, quantities, read }
     }
@@ -46,7 +46,7 @@ pub(crate) use keys;
 /// A group of keys: the table of their values, and the macro that adds them to those of a kind, before or after.
 macro_rules! group {
     (
-        $(#[$doc:meta])* $table:ident in $($room:ident)::+ = $method:ident $dollar:tt,
+        $(#[$doc:meta])* $table:ident in ($($room:tt)+) = $method:ident $dollar:tt,
         before { $($before:ident: $before_type:ty = $before_meaning:expr,)* }
         after { $($after:ident: $after_type:ty = $after_meaning:expr,)* }
     ) => {
@@ -67,8 +67,8 @@ macro_rules! group {
 
                 impl $dollar name {
                     /// Takes the keys of the group out.
-                    fn $method(&mut self) -> $crate::$($room)::+::$table {
-                        $crate::$($room)::+::$table {
+                    fn $method(&mut self) -> $($room)+::$table {
+                        $($room)+::$table {
                             $($before: core::mem::take(&mut self.$before),)*
                             $($after: core::mem::take(&mut self.$after),)*
                         }
@@ -97,7 +97,7 @@ pub(crate) use group;
 
 group! {
     /// The keys of samples, of every kind with formulas in t.
-    SampleKeys in problem = sample_keys $,
+    SampleKeys in (crate::problem) = sample_keys $,
     before {}
     after {
         samples: Option<crate::formula::SamplesFile> = crate::problem::SAMPLES.meaning,
@@ -109,7 +109,7 @@ group! {
 
 group! {
     /// The keys of names, of every kind that reads formulas.
-    FormulaKeys in problem = formula_keys $,
+    FormulaKeys in (crate::problem) = formula_keys $,
     before {}
     after {
         parameters: crate::formula::Parameters = crate::problem::PARAMETERS.meaning,

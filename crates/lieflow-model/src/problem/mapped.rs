@@ -1,61 +1,54 @@
-//! A model whose rows are made of those of another one.
+//! Rows that are made of those of another model.
 
 use core::cell::RefCell;
-use core::fmt;
 
 use lieflow::catalog::MethodSpec;
 use lieflow::solve::Next;
 use lieflow::{Error, RunError};
 
-use super::model::{EventPlan, Model, Orders, Outcome, Plan, Steps, Watcher};
+use super::model::Model;
+use super::run::{EventPlan, Outcome, Plan, Watcher};
 use crate::schema::{Row, Schema};
 
-/// The number of this place in the row at t of the model, from the row of its base.
-pub(crate) type NumberOf = dyn Fn(usize, f64, Row<'_>) -> f64;
+/// The number of this place in a row at t, from the row of the base.
+pub(crate) type NumberOf<'a> = dyn Fn(usize, f64, Row<'_>) -> f64 + Send + Sync + 'a;
 
 /// The base, with other rows.
-pub(crate) struct Mapped {
-    pub(crate) base: Box<dyn Model>,
-    pub(crate) schema: Schema,
-    /// What is integrated in words, if the words differ from those of the base.
-    pub(crate) modelled: Option<&'static str>,
-    pub(crate) number: Box<NumberOf>,
+#[derive(Clone, Copy)]
+pub(crate) struct Mapped<'a> {
+    pub(crate) base: &'a Model,
+    pub(crate) schema: &'a Schema,
+    pub(crate) number: &'a NumberOf<'a>,
 }
 
-impl Mapped {
-    /// numbers ← the row at t from that of the base.
-    fn fill(&self, t: f64, of_base: Row<'_>, numbers: &mut Vec<f64>) {
-        numbers.clear();
-        let places = 0..self.schema.numbers();
-        numbers.extend(places.map(|place| (self.number)(place, t, of_base)));
-    }
-}
-
-impl fmt::Debug for Mapped {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_tuple("Mapped").field(&self.base).field(&self.schema).finish()
-    }
-}
-
-/// A watcher of the base that gives its own watcher the rows of the model.
+/// A watcher of the base that gives its own watcher the mapped rows.
 struct OfBase<'a> {
-    model: &'a Mapped,
+    mapped: Mapped<'a>,
     watcher: &'a mut dyn Watcher,
     numbers: Vec<f64>,
 }
 
+impl OfBase<'_> {
+    /// numbers ← the row at t from that of the base.
+    fn fill(&mut self, t: f64, of_base: Row<'_>) {
+        self.numbers.clear();
+        let places = 0..self.mapped.schema.numbers();
+        self.numbers.extend(places.map(|place| (self.mapped.number)(place, t, of_base)));
+    }
+}
+
 impl Watcher for OfBase<'_> {
     fn row(&mut self, t: f64, of_base: Row<'_>) -> Next {
-        self.model.fill(t, of_base, &mut self.numbers);
-        self.watcher.row(t, self.model.schema.row(&self.numbers))
+        self.fill(t, of_base);
+        self.watcher.row(t, self.mapped.schema.row(&self.numbers))
     }
     fn event(&mut self, event: usize, t: f64, rising: bool, of_base: Row<'_>) {
-        self.model.fill(t, of_base, &mut self.numbers);
-        self.watcher.event(event, t, rising, self.model.schema.row(&self.numbers));
+        self.fill(t, of_base);
+        self.watcher.event(event, t, rising, self.mapped.schema.row(&self.numbers));
     }
     fn end_of_step(&mut self, t: f64, of_base: Row<'_>) {
-        self.model.fill(t, of_base, &mut self.numbers);
-        self.watcher.end_of_step(t, self.model.schema.row(&self.numbers));
+        self.fill(t, of_base);
+        self.watcher.end_of_step(t, self.mapped.schema.row(&self.numbers));
     }
     fn progress(&mut self, t: f64) {
         self.watcher.progress(t);
@@ -65,15 +58,10 @@ impl Watcher for OfBase<'_> {
     }
 }
 
-impl Model for Mapped {
-    fn schema(&self) -> &Schema {
-        &self.schema
-    }
-    fn modelled(&self, method: &MethodSpec) -> Vec<String> {
-        self.modelled.map_or_else(|| self.base.modelled(method), |words| vec![words.into()])
-    }
-    fn drive(
-        &self,
+impl Mapped<'_> {
+    /// Runs the base and gives the watcher the mapped rows.
+    pub(crate) fn drive(
+        self,
         method: &MethodSpec,
         mut plan: Plan<'_>,
         watcher: &mut dyn Watcher,
@@ -92,16 +80,12 @@ impl Model for Mapped {
             EventPlan { value: Box::new(value), places, ..event }
         });
         let plan = Plan { events: events.collect(), ..plan };
-        let mut of_base = OfBase { model: self, watcher, numbers: Vec::new() };
+        let mut of_base = OfBase { mapped: self, watcher, numbers: Vec::new() };
         self.base.drive(method, plan, &mut of_base)
     }
-    fn orders(&self, method: &MethodSpec) -> Result<Orders, Error> {
-        self.base.orders(method)
-    }
-    fn problem_type(&self, method: &MethodSpec) -> &'static str {
-        self.base.problem_type(method)
-    }
-    fn exact(&self, t_span: [f64; 2]) -> Option<Result<Vec<f64>, Error>> {
+
+    /// The values at the end of a span by the exact solution of the base.
+    pub(crate) fn exact(self, t_span: [f64; 2]) -> Option<Result<Vec<f64>, Error>> {
         let end = self.base.exact(t_span)?;
         // An exact solution has no sizes.
         let values = 0..self.schema.columns().count();
@@ -109,11 +93,5 @@ impl Model for Mapped {
             let of_base = self.base.schema().row(&end);
             values.map(|place| (self.number)(place, t_span[1], of_base)).collect()
         }))
-    }
-    fn operations(&self, method: &MethodSpec, steps: &Steps) -> Option<f64> {
-        self.base.operations(method, steps)
-    }
-    fn fits(&self, method: &MethodSpec) -> Result<(), Error> {
-        self.base.fits(method)
     }
 }

@@ -1,17 +1,22 @@
 //! Problems, whatever their kind: what a kind states, and a model of it that any method runs on.
 
+mod forms;
 mod keys;
+mod kind;
 mod mapped;
 mod model;
 mod operations;
 mod quantity;
-mod spec;
+mod run;
 mod system;
 
+pub use forms::Forms;
+pub(crate) use forms::{Asked, Form, Run};
 pub(crate) use keys::*;
-pub(crate) use mapped::*;
-pub use model::*;
+pub use kind::*;
+pub(crate) use mapped::Mapped;
+pub use model::{Model, Problem};
 pub use operations::*;
 pub(crate) use quantity::*;
-pub use spec::*;
+pub use run::*;
 pub(crate) use system::*;

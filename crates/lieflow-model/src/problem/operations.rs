@@ -8,7 +8,7 @@ use lieflow::problems::{PointOf, ScalarOf};
 use lieflow::scalar::{Counted, Real};
 use lieflow::{Integrator, Solve, Stats, Step, TimeGrid};
 
-use super::model::{Runnable, Steps};
+use super::run::{Runnable, Steps};
 
 /// So many steps of a run are counted, attempts that are rejected among them; a longer run is charged
 /// their mean for each of its steps.
@@ -18,8 +18,8 @@ const COUNTED_OPERATIONS: u64 = 2_000_000;
 /// But these many at least.
 const COUNTED_AT_LEAST: u64 = 8;
 
-/// The mean operations of a step of `problem` from `y`, over the first of the run: what a
-/// [`Model::operations`](crate::problem::Model::operations) calls. None where nothing is counted, as of the
+/// The mean operations of a step of `problem` from `y`, over the first of the run: see
+/// [`Model::operations`](super::Model::operations). None where nothing is counted, as of the
 /// exact motion, or the method fails.
 pub fn operations_by<P: Runnable>(
     spec: &MethodSpec,

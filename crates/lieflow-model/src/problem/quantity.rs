@@ -1,7 +1,7 @@
 //! What can be asked of a problem: every quantity is stated once, with its columns, its meaning, its value and
 //! the law that it obeys.
 
-use super::spec::QuantityInfo;
+use super::kind::QuantityInfo;
 use super::system::{PointOf, System};
 use crate::schema::{Branch, Law, Measure, Part, Scale};
 

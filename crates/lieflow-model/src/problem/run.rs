@@ -1,4 +1,4 @@
-//! A problem of any type, ready to run. A run makes one dynamic call.
+//! Runs of a problem of any type: what is asked of a run, and what it tells.
 
 use core::cell::RefCell;
 use core::fmt::{self, Debug};
@@ -210,93 +210,11 @@ pub struct Orders {
     pub stays_on_manifold: bool,
 }
 
-/// A problem with its initial state and the quantities that are asked of it.
-pub trait Model: Debug {
-    /// The observables of its rows.
-    fn schema(&self) -> &Schema;
-
-    /// What a method integrates, in words. Nothing else is computed.
-    fn modelled(&self, method: &MethodSpec) -> Vec<String>;
-
-    /// Integrate from the initial state by a plan; `watcher` sees the rows and the events.
-    ///
-    /// # Errors
-    /// As [`Solve::run`].
-    fn drive(
-        &self,
-        method: &MethodSpec,
-        plan: Plan<'_>,
-        watcher: &mut dyn Watcher,
-    ) -> Result<Outcome, RunError>;
-
-    /// Integrate from the initial state in steps of one size; `sink` gets a row where `save` says.
-    ///
-    /// # Errors
-    /// As [`Solve::run`].
-    fn run(
-        &self,
-        method: &MethodSpec,
-        grid: &TimeGrid,
-        save: &SaveAt,
-        sink: &mut Sink<'_>,
-    ) -> Result<Stats, RunError> {
-        let plan = Plan::new(Steps::Equal(*grid), save.clone());
-        self.drive(method, plan, &mut Rows(sink)).map(|outcome| outcome.stats)
-    }
-
-    /// The same with steps that are chosen by their error.
-    ///
-    /// # Errors
-    /// As [`Solve::run`].
-    fn adapt(
-        &self,
-        method: &MethodSpec,
-        t_span: [f64; 2],
-        control: &StepControl,
-        sink: &mut Sink<'_>,
-    ) -> Result<Stats, RunError> {
-        let steps = Steps::ByError { t_span, control: control.clone() };
-        let plan = Plan::new(steps, SaveAt::Ends);
-        self.drive(method, plan, &mut Rows(sink)).map(|outcome| outcome.stats)
-    }
-
-    /// The orders of a method on this problem.
-    ///
-    /// # Errors
-    /// As [`MethodsByName::method`].
-    fn orders(&self, method: &MethodSpec) -> Result<Orders, Error>;
-
-    /// The order of a method on this problem; none where it is exact.
-    ///
-    /// # Errors
-    /// As [`MethodsByName::method`].
-    fn order(&self, method: &MethodSpec) -> Result<Option<usize>, Error> {
-        Ok(self.orders(method)?.step)
-    }
-
-    /// The name of the type of the problem that the method runs on. The methods are compiled once for each type.
-    fn problem_type(&self, method: &MethodSpec) -> &'static str;
-
-    /// The values of the schema at the end of a span by the exact solution; `None` where none is known.
-    fn exact(&self, t_span: [f64; 2]) -> Option<Result<Vec<f64>, Error>>;
-
-    /// The operations of a step (additions, multiplications, divisions, square roots, sines and
-    /// cosines, each as one), in the mean over the first [`COUNTED_STEPS`]; `None` where the method has
-    /// none to count, as the exact motion.
-    ///
-    /// [`COUNTED_STEPS`]: crate::problem::COUNTED_STEPS
-    fn operations(&self, method: &MethodSpec, steps: &Steps) -> Option<f64>;
-
-    /// Can this method run on this problem? Nothing is integrated.
-    ///
-    /// # Errors
-    /// The reason why it cannot.
-    fn fits(&self, method: &MethodSpec) -> Result<(), Error>;
-}
-
 /// A problem that runs are made of: its methods by name, on numbers that a file can hold.
 pub trait Runnable:
     MethodsByName<Group: LieAlgebra<Scalar: Into<f64>>, Action: Action<Self::Group, Point: Numbers>>
+    + Send
+    + Sync
     + 'static
 {
 }
@@ -304,7 +222,9 @@ impl<P> Runnable for P where
     P: MethodsByName<
             Group: LieAlgebra<Scalar: Into<f64>>,
             Action: Action<<P as lieflow::Problem>::Group, Point: Numbers>,
-        > + 'static
+        > + Send
+        + Sync
+        + 'static
 {
 }
 
@@ -312,7 +232,7 @@ impl<P> Runnable for P where
 /// what is compiled for it.
 pub type RowOf<'a, P> = dyn Fn(f64, &PointOf<P>, &mut Vec<f64>) + 'a;
 
-/// Integrate `problem` from `y` by the method that `spec` names: what a [`Model::drive`] calls.
+/// Integrate `problem` from `y` by the method that `spec` names: see [`Model::drive`](super::Model::drive).
 ///
 /// # Errors
 /// As [`MethodsByName::method`] and [`Solve::run`].
@@ -388,7 +308,7 @@ pub fn drive_by<P: Runnable>(
     Ok(Outcome { t: done.t, status: done.status, stats: done.stats })
 }
 
-/// The orders of the method that `spec` names: what a [`Model::orders`] calls.
+/// The orders of the method that `spec` names: see [`Model::orders`](super::Model::orders).
 ///
 /// # Errors
 /// As [`MethodsByName::method`].
@@ -400,7 +320,7 @@ pub fn orders_by<P: Runnable>(spec: &MethodSpec, problem: &P) -> Result<Orders, 
     Ok(Orders { step, within, stays_on_manifold })
 }
 
-/// Can the method that `spec` names run on the problem? What a [`Model::fits`] calls.
+/// Can the method that `spec` names run on the problem? See [`Model::fits`](super::Model::fits).
 ///
 /// # Errors
 /// The reason why it cannot.

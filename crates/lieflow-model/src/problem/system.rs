@@ -1,7 +1,7 @@
-//! What is the same for every kind: from what is its own, [`System`], to its [`ProblemSpec`] and its
-//! [`Model`].
+//! From what is particular to a kind, [`System`], to the form of a problem that any method runs on.
 
 use core::fmt::{self, Debug};
+use std::sync::{Arc, OnceLock};
 
 use lieflow::catalog::MethodSpec;
 use lieflow::methods::Wide;
@@ -10,15 +10,16 @@ use lieflow::scalar::{Counted, Trig};
 use lieflow::space::Numbers;
 use lieflow::{Error, RunError};
 
-use super::model::{
-    Layer, Model, Orders, Outcome, Plan, Runnable, Steps, Watcher, drive_by, fits_by, orders_by,
-};
+use super::forms::{Asked, Form, Forms, Run};
+use super::kind::{Fact, Figure, PrincipalInertia, high_order};
 use super::operations::operations_by;
 use super::quantity::{Quantity, Value};
-use super::spec::{Fact, Figure, Kind, PrincipalInertia, ProblemSpec, high_order};
+use super::run::{
+    Layer, Orders, Outcome, Plan, Runnable, Steps, Watcher, drive_by, fits_by, orders_by,
+};
 use crate::formula::Formula;
 use crate::reader::Refusal;
-use crate::schema::Schema;
+use crate::schema::{Law, Schema};
 
 /// The numbers that a problem of vectors is made of: `f64`, and [`Counted`] where operations are counted.
 /// Matrices count for themselves.
@@ -46,8 +47,6 @@ pub(crate) trait System: Clone + Debug + Send + Sync + 'static {
     /// The method where a scene names none, of a kind that needs another one than the rest.
     const DEFAULT_METHOD: Option<&'static str> = None;
 
-    /// The entry in the list of kinds.
-    fn kind(&self) -> &'static Kind;
     /// The layer that it is made of.
     fn layer(&self) -> Layer {
         Layer::General
@@ -59,15 +58,15 @@ pub(crate) trait System: Clone + Debug + Send + Sync + 'static {
     fn problem<N: Number>(&self) -> Result<Start<Self::Problem<N>>, Error>;
     /// What is integrated, in words.
     fn modelled(&self) -> String;
-    /// See [`ProblemSpec::check_start`].
+    /// See [`Problem::check_start`](super::Problem::check_start).
     fn check_start(&self, _t0: f64) -> Vec<Refusal> {
         Vec::new()
     }
-    /// See [`ProblemSpec::formula`].
+    /// See [`Problem::formula`](super::Problem::formula).
     fn formula(&self) -> Option<&Formula> {
         None
     }
-    /// See [`ProblemSpec::knots`].
+    /// See [`Problem::knots`](super::Problem::knots).
     fn knots(&self, t_span: [f64; 2]) -> Option<Vec<f64>> {
         self.formula()?.samples().map(|samples| samples.knots(t_span).collect())
     }
@@ -79,7 +78,7 @@ pub(crate) trait System: Clone + Debug + Send + Sync + 'static {
     fn figure(&self) -> Figure {
         Figure::Lines(Self::STATE[0])
     }
-    /// See [`ProblemSpec::inertia`].
+    /// See [`Problem::inertia`](super::Problem::inertia).
     fn inertia(&self) -> Option<PrincipalInertia> {
         None
     }
@@ -92,141 +91,54 @@ pub(crate) trait System: Clone + Debug + Send + Sync + 'static {
     fn facts(&self) -> Vec<Fact> {
         Vec::new()
     }
-    /// See [`ProblemSpec::warnings`].
+    /// See [`Problem::warnings`](super::Problem::warnings).
     fn warnings(&self) -> Vec<String> {
         Vec::new()
     }
-    /// See [`ProblemSpec::notes`].
+    /// See [`Problem::notes`](super::Problem::notes).
     fn notes(&self) -> Vec<String> {
         Vec::new()
     }
 }
 
-/// The problem of a scene from its system.
-#[derive(Clone, Debug)]
-pub(crate) struct Stated<S>(pub(crate) S);
-
-/// The quantity of that name, where this problem has it.
-fn find<S: System>(system: &S, name: &str) -> Result<&'static Quantity<S>, Error> {
-    let known = S::QUANTITIES.iter().find(|quantity| quantity.info.name == name);
-    let quantity = known.ok_or_else(|| system.kind().unknown_quantity(name))?;
-    match (quantity.missing)(system) {
-        None => Ok(quantity),
-        Some(why) => {
-            Err(Error::Unsupported { what: quantity.info.name, with: "this problem".into(), why })
-        }
-    }
-}
-
-/// Does a problem lack one of these quantities, which others of its kind have?
-pub(crate) fn lacks_any(problem: &impl ProblemSpec, quantities: &[&str]) -> bool {
-    let lacks = |name| matches!(problem.columns(name), Err(Error::Unsupported { .. }));
-    quantities.iter().any(|name| lacks(name))
-}
-
-/// The error for a layer that a kind of one layer does not have.
-pub(crate) fn no_such_layer(layer: Layer, kind: &Kind) -> Error {
-    Error::Unsupported {
-        what: "layer",
-        with: format!("`{}` and a problem of kind `{}`", layer.name(), kind.name),
-        why: "it has one layer only; leave layer out",
-    }
-}
-
-impl<S: System> ProblemSpec for Stated<S> {
-    fn kind(&self) -> &'static Kind {
-        self.0.kind()
-    }
-    fn layers(&self) -> &'static [Layer] {
-        match self.0.layer() {
-            Layer::Closed => &[Layer::Closed],
-            Layer::General => &[Layer::General],
-        }
-    }
-    fn columns(&self, quantity: &str) -> Result<Vec<String>, Error> {
-        Ok(find(&self.0, quantity)?.column_names(&self.0))
-    }
-    fn model(&self, layer: Layer, quantities: &[&str]) -> Result<Box<dyn Model>, Error> {
-        let system = &self.0;
-        if layer != system.layer() {
-            return Err(no_such_layer(layer, system.kind()));
-        }
-        let (problem, start) = system.problem()?;
-        let quantities: Vec<_> =
-            quantities.iter().map(|name| find(system, name)).collect::<Result<_, Error>>()?;
-        let mut schema = Schema::default();
-        for quantity in &quantities {
-            let columns = quantity.column_names(system);
-            schema.push(quantity.info.name, columns, quantity.law(system), quantity.is_state);
-            if let Some(parts) = quantity.parts {
-                schema.set_parts(parts(system));
-            }
-            schema.set_branch((quantity.branch)(system));
-        }
-        Ok(Box::new(SystemModel { system: system.clone(), problem, start, quantities, schema }))
-    }
-    fn check_start(&self, t0: f64) -> Vec<Refusal> {
-        self.0.check_start(t0)
-    }
-    fn formula(&self) -> Option<&Formula> {
-        self.0.formula()
-    }
-    fn knots(&self, t_span: [f64; 2]) -> Option<Vec<f64>> {
-        self.0.knots(t_span)
-    }
-    fn default_method(&self) -> MethodSpec {
-        S::DEFAULT_METHOD.map_or_else(high_order, |name| MethodSpec::new(name, None))
-    }
-    fn state(&self, _: &[&str]) -> &'static [&'static str] {
-        S::STATE
-    }
-    fn invariants(&self, _: &[&str]) -> Vec<&'static str> {
-        let present = S::QUANTITIES.iter().filter(|quantity| (quantity.missing)(&self.0).is_none());
-        let kept = present.filter(|quantity| quantity.law(&self.0).is_some());
-        kept.map(|quantity| quantity.info.name).collect()
-    }
-    fn figure(&self, _: &[&str]) -> Figure {
-        self.0.figure()
-    }
-    fn inertia(&self) -> Option<PrincipalInertia> {
-        self.0.inertia()
-    }
-    fn field(&self, values: &[f64]) -> Vec<Vec<f64>> {
-        self.0.field(values)
-    }
-    fn facts(&self) -> Vec<Fact> {
-        self.0.facts()
-    }
-    fn warnings(&self) -> Vec<String> {
-        self.0.warnings()
-    }
-    fn notes(&self) -> Vec<String> {
-        self.0.notes()
-    }
-}
-
-/// The model of a [`System`].
-struct SystemModel<S: System> {
+/// A system as a form of its problem. Its problem is set up when it is needed first.
+struct On<S: System> {
     system: S,
-    problem: S::Problem<f64>,
-    start: PointOf<S>,
-    /// The quantities of the schema.
-    quantities: Vec<&'static Quantity<S>>,
-    schema: Schema,
+    ready: OnceLock<Result<Start<S::Problem<f64>>, Error>>,
 }
 
-impl<S: System> Debug for SystemModel<S> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_tuple("SystemModel").field(&self.system).field(&self.schema).finish()
+impl Forms {
+    /// The form of a system, and what is known of it.
+    pub(crate) fn of<S: System>(system: S) -> Forms {
+        let default_method =
+            S::DEFAULT_METHOD.map_or_else(high_order, |name| MethodSpec::new(name, None));
+        let (formula, inertia, facts) =
+            (system.formula().cloned(), system.inertia(), system.facts());
+        let (warnings, notes) = (system.warnings(), system.notes());
+        let (layer, figure) = (system.layer(), system.figure());
+        let run = Arc::new(On { system, ready: OnceLock::new() });
+        let form = Form { layer, whole_state: false, state: S::STATE, figure, run };
+        Forms { default_method, formula, inertia, facts, warnings, notes, ..Forms::one(form) }
     }
 }
 
-impl<S: System> SystemModel<S> {
+impl<S: System> Debug for On<S> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.system.fmt(f)
+    }
+}
+
+impl<S: System> On<S> {
+    /// The problem and its start.
+    fn ready(&self) -> Result<&Start<S::Problem<f64>>, Error> {
+        self.ready.get_or_init(|| self.system.problem()).as_ref().map_err(Error::clone)
+    }
+
     /// numbers ← the values of the quantities at y, `t` after the start.
-    fn values(&self, t: f64, y: &PointOf<S>, numbers: &mut Vec<f64>) {
+    fn values(&self, asked: Asked<'_>, t: f64, y: &PointOf<S>, numbers: &mut Vec<f64>) {
         numbers.clear();
-        for quantity in &self.quantities {
-            match quantity.value {
+        for &quantity in asked.quantities {
+            match S::QUANTITIES[quantity].value {
                 Value::Number(value) => numbers.push(value(&self.system, t, y)),
                 Value::Numbers(values) => values(&self.system, t, y, numbers),
             }
@@ -234,49 +146,77 @@ impl<S: System> SystemModel<S> {
     }
 
     /// The sizes of terms at y go to the end of `numbers`.
-    fn sizes(&self, y: &PointOf<S>, numbers: &mut Vec<f64>) {
-        let with_size = self.quantities.iter().zip(&self.schema).filter(|(_, o)| o.has_size());
-        let terms = with_size.map(|(quantity, _)| quantity.terms);
+    fn sizes(&self, asked: Asked<'_>, y: &PointOf<S>, numbers: &mut Vec<f64>) {
+        let with_size = asked.quantities.iter().zip(asked.schema).filter(|(_, o)| o.has_size());
+        let terms = with_size.map(|(&quantity, _)| S::QUANTITIES[quantity].terms);
         numbers.extend(terms.map(|of| of.map_or(f64::NAN, |of| of(&self.system, y))));
     }
 }
 
-impl<S: System> Model for SystemModel<S> {
-    fn schema(&self) -> &Schema {
-        &self.schema
+impl<S: System> Run for On<S> {
+    fn missing(&self, quantity: usize) -> Option<&'static str> {
+        (S::QUANTITIES[quantity].missing)(&self.system)
     }
-    fn modelled(&self, _: &MethodSpec) -> Vec<String> {
-        vec![self.system.modelled()]
+    fn columns(&self, quantity: usize) -> Vec<String> {
+        S::QUANTITIES[quantity].column_names(&self.system)
+    }
+    fn law(&self, quantity: usize) -> Option<Law> {
+        S::QUANTITIES[quantity].law(&self.system)
+    }
+    fn describe(&self, quantity: usize, schema: &mut Schema) {
+        let (system, quantity) = (&self.system, &S::QUANTITIES[quantity]);
+        let columns = quantity.column_names(system);
+        schema.push(quantity.info.name, columns, quantity.law(system), quantity.is_state);
+        if let Some(parts) = quantity.parts {
+            schema.set_parts(parts(system));
+        }
+        schema.set_branch((quantity.branch)(system));
+    }
+    fn modelled(&self) -> String {
+        self.system.modelled()
     }
     fn drive(
         &self,
+        asked: Asked<'_>,
         method: &MethodSpec,
         plan: Plan<'_>,
         watcher: &mut dyn Watcher,
     ) -> Result<Outcome, RunError> {
+        let (problem, start) = self.ready()?;
         let [t0, _] = plan.steps.t_span();
         let row_of = |t: f64, y: &PointOf<S>, numbers: &mut Vec<f64>| {
-            self.values(t - t0, y, numbers);
-            self.sizes(y, numbers);
+            self.values(asked, t - t0, y, numbers);
+            self.sizes(asked, y, numbers);
         };
-        drive_by(method, &self.problem, self.start.clone(), plan, (&self.schema, &row_of), watcher)
+        drive_by(method, problem, start.clone(), plan, (asked.schema, &row_of), watcher)
+    }
+    fn exact(&self, asked: Asked<'_>, t_span: [f64; 2]) -> Option<Result<Vec<f64>, Error>> {
+        let mut values = Vec::new();
+        let end = self.system.exact(t_span)?;
+        let t = t_span[1] - t_span[0];
+        Some(end.map(|y| self.values(asked, t, &y, &mut values)).map(|()| values))
     }
     fn orders(&self, method: &MethodSpec) -> Result<Orders, Error> {
-        orders_by(method, &self.problem)
+        orders_by(method, &self.ready()?.0)
     }
-    fn problem_type(&self, _: &MethodSpec) -> &'static str {
+    fn problem_type(&self) -> &'static str {
         core::any::type_name::<S::Problem<f64>>()
     }
     fn fits(&self, method: &MethodSpec) -> Result<(), Error> {
-        fits_by(method, &self.problem, &self.start)
+        let (problem, start) = self.ready()?;
+        fits_by(method, problem, start)
     }
     fn operations(&self, method: &MethodSpec, steps: &Steps) -> Option<f64> {
         let (problem, start) = self.system.problem::<Counted>().ok()?;
         operations_by(method, &problem, start, steps)
     }
-    fn exact(&self, t_span: [f64; 2]) -> Option<Result<Vec<f64>, Error>> {
-        let mut values = Vec::new();
-        let end = self.system.exact(t_span)?;
-        Some(end.map(|y| self.values(t_span[1] - t_span[0], &y, &mut values)).map(|()| values))
+    fn check_start(&self, t0: f64) -> Vec<Refusal> {
+        self.system.check_start(t0)
+    }
+    fn knots(&self, t_span: [f64; 2]) -> Option<Vec<f64>> {
+        self.system.knots(t_span)
+    }
+    fn field(&self, values: &[f64]) -> Vec<Vec<f64>> {
+        self.system.field(values)
     }
 }

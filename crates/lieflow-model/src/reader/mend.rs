@@ -5,22 +5,22 @@ use core::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use crate::reader::Refusal;
-use crate::reader::suggest;
-use crate::reader::{ReadError, Value};
+use super::read::{ReadError, Value};
+use super::refusal::Refusal;
+use super::suggest::suggest;
 use lieflow::names::near;
 
 /// An error of a reading, with its place.
-pub(super) type Found = (Option<Range<usize>>, ReadError);
+pub(crate) type Found = (Option<Range<usize>>, ReadError);
 
 /// What a reading finds: the next error, if there is one.
-pub(super) type Next = Option<Found>;
+type Next = Option<Found>;
 
 /// Reads a section.
-pub(super) type Reading<'r, 'a> = &'r dyn Fn(&Value<'a>) -> Next;
+type Reading<'r, 'a> = &'r dyn Fn(&Value<'a>) -> Next;
 
 /// A section of a scene, in which values with mistakes are replaced.
-pub(super) struct Mending<'a> {
+struct Mending<'a> {
     text: &'a str,
     value: Value<'a>,
     /// The places of the replaced values.
@@ -78,13 +78,13 @@ enum Step {
 }
 
 impl<'a> Mending<'a> {
-    pub(super) fn of(text: &'a str, value: Value<'a>) -> Self {
+    fn of(text: &'a str, value: Value<'a>) -> Self {
         let (places, names, values, left_out) = Default::default();
         Mending { text, value, places, names, values, left_out, loose: false }
     }
 
     /// True if the error may come from a replacement.
-    pub(super) fn explains(&self, (place, error): &Found) -> bool {
+    fn explains(&self, (place, error): &Found) -> bool {
         match error {
             ReadError::MissingKey(table, key) => {
                 let named = |given: &String| suggest(given, &[key]).is_some();
@@ -127,7 +127,7 @@ impl<'a> Mending<'a> {
     }
 
     /// Replaces the value with the error and reads again. Returns `None` if no replacement is known to be harmless.
-    pub(super) fn mend(&mut self, (place, error): &Found, read: Reading<'_, 'a>) -> Option<Next> {
+    fn mend(&mut self, (place, error): &Found, read: Reading<'_, 'a>) -> Option<Next> {
         let place = place.clone()?;
         let mut path = Vec::new();
         let found = path_to(&self.value, &place, &mut path);
@@ -226,6 +226,42 @@ impl<'a> Mending<'a> {
         *at(&mut self.value, path)?.get_mut() = before;
         None
     }
+}
+
+/// More mistakes than this are not looked for in a value.
+const MENDED_MAX: usize = 64;
+
+/// Reads a value, or finds all its mistakes. A mistake is mended in a copy, and the copy is read for the next one, until
+/// nothing can be mended. A mistake that may follow from the mending is left out.
+///
+/// # Errors
+/// The mistakes in the order in which they were found, the first of them that of the value as it is.
+pub(crate) fn every_mistake<'a, T>(
+    text: &'a str,
+    value: Value<'a>,
+    place: &dyn Fn(&Value<'a>, &ReadError) -> Option<Range<usize>>,
+    read: impl Fn(&Value<'_>) -> Result<T, ReadError>,
+) -> Result<T, Vec<Found>> {
+    let attempt = |value: &Value<'a>| read(value).map_err(|error| (place(value, &error), error));
+    let first = match attempt(&value) {
+        Ok(read) => return Ok(read),
+        Err(found) => found,
+    };
+    Err(mistakes_from(first, Mending::of(text, value), &|value| attempt(value).err()))
+}
+
+/// The mistakes from the first one on.
+fn mistakes_from<'a>(first: Found, mut mending: Mending<'a>, read: Reading<'_, 'a>) -> Vec<Found> {
+    let (mut mistakes, mut next) = (Vec::new(), Some(first));
+    for _ in 0..MENDED_MAX {
+        let Some(found) = next else { break };
+        let follows = mending.explains(&found);
+        next = mending.mend(&found, read).flatten();
+        if !follows {
+            mistakes.push(found);
+        }
+    }
+    mistakes
 }
 
 /// The number of steps of a path up to its last key.
@@ -365,7 +401,7 @@ fn at_entry<'a>(
 }
 
 /// Renames an entry if one of these names has a similar spelling and is free.
-pub(super) fn rename(table: &mut DeTable<'_>, given: &str, names: &[&str]) -> bool {
+pub(crate) fn rename(table: &mut DeTable<'_>, given: &str, names: &[&str]) -> bool {
     let Some(meant) = near(given, names).filter(|meant| !table.contains_key(*meant)) else {
         return false;
     };

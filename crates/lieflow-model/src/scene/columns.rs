@@ -1,13 +1,12 @@
 //! Formulas of the columns of a run: the functions of events, and the columns of `[output.formulas]`.
 
-use core::cell::RefCell;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use lieflow::Error;
 
 use crate::formula::{Formula, Lets, Names, Parameters};
-use crate::problem::Mapped;
 use crate::problem::Model;
-use crate::problem::{FormulaKeys, ProblemSpec};
+use crate::problem::{FormulaKeys, Problem};
 use crate::reader::{KeyPath, Refusal};
 use crate::schema::{Row, Schema};
 
@@ -34,12 +33,12 @@ pub(super) struct RowFormula {
 }
 
 /// A formula of the rows of a schema.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(super) struct OnRows {
     formula: Formula,
     /// The variable and the place in a row of each column.
     places: Vec<(usize, usize)>,
-    variables: RefCell<Vec<f64>>,
+    variables: Mutex<Vec<f64>>,
 }
 
 impl RowFormula {
@@ -68,7 +67,7 @@ impl RowFormula {
             Ok((*variable, observable.place(column.index)))
         };
         let places = self.columns.iter().map(place).collect::<Result<_, Error>>()?;
-        let variables = RefCell::new(vec![0.0; self.variables]);
+        let variables = Mutex::new(vec![0.0; self.variables]);
         Ok(OnRows { formula: self.formula.clone(), places, variables })
     }
 }
@@ -81,7 +80,7 @@ impl OnRows {
 
     /// The value at t in a row.
     pub(super) fn value(&self, t: f64, row: Row<'_>) -> f64 {
-        let mut variables = self.variables.borrow_mut();
+        let mut variables = self.variables.lock().unwrap_or_else(PoisonError::into_inner);
         variables[0] = t;
         for &(variable, place) in &self.places {
             variables[variable] = row.numbers()[place];
@@ -106,7 +105,7 @@ impl Columns {
     /// # Errors
     /// As [`Parameters::names`].
     pub(super) fn of(
-        problem: &dyn ProblemSpec,
+        problem: &Problem,
         asked: &[String],
         FormulaKeys { parameters, r#let: lets }: &FormulaKeys,
     ) -> Result<Self, Refusal> {
@@ -181,10 +180,10 @@ impl Columns {
 /// # Errors
 /// As [`RowFormula::on`].
 pub(super) fn with_formulas(
-    base: Box<dyn Model>,
+    base: Model,
     count: usize,
     formulas: &[(String, RowFormula)],
-) -> Result<Box<dyn Model>, Error> {
+) -> Result<Model, Error> {
     let mut schema = base.schema().first(count);
     let width = schema.columns().count();
     schema.push(FORMULAS, formulas.iter().map(|(name, _)| name.clone()).collect(), None, false);
@@ -198,7 +197,7 @@ pub(super) fn with_formulas(
             None => row.numbers()[row.values().len() + i - formulas.len()],
         },
     };
-    Ok(Box::new(Mapped { base, schema, modelled: None, number: Box::new(number) }))
+    Ok(base.mapped(schema, Arc::new(number)))
 }
 
 /// Checks that the scene writes these columns or quantities.
@@ -207,7 +206,7 @@ pub(super) fn with_formulas(
 /// A refusal of `plot` for another name.
 pub(super) fn check_plot(
     plot: &[String],
-    problem: &dyn ProblemSpec,
+    problem: &Problem,
     quantities: &[String],
     formulas: &[(String, RowFormula)],
 ) -> Result<(), Refusal> {

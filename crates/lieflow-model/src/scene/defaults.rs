@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::problem::ProblemSpec;
+use crate::problem::Problem;
 
 /// The error of each step, relative and absolute, of a method of this order: of order 8 the least that rounding
 /// allows, by which eight digits and more are right after many thousand steps; of a lower order one that it can meet.
@@ -32,7 +32,7 @@ pub struct Defaults {
 
 /// The quantities that a user of the problem wants: the state, what is drawn, and what the exact motion conserves. One
 /// with very many columns is left out.
-pub(super) fn quantities(problem: &dyn ProblemSpec) -> Vec<String> {
+pub(super) fn quantities(problem: &Problem) -> Vec<String> {
     let state = problem.default_state();
     let all = [state, &[problem.figure(state).quantity()], &problem.invariants(state)].concat();
     let mut wanted: Vec<String> = Vec::new();

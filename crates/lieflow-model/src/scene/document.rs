@@ -7,10 +7,10 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::error::{Mistakes, SceneError};
-use super::mend::{Found, Mending, Reading, rename};
 use crate::formula::DECIMAL_POINT;
 use crate::reader::Refusal;
 use crate::reader::help_for;
+use crate::reader::{Found, every_mistake, rename};
 use crate::reader::{Read, ReadError, Value};
 
 /// The keys at the top.
@@ -28,9 +28,6 @@ fn has_decimal_comma(text: &[u8], at: usize) -> bool {
     let comma = |i: usize| text.get(i) == Some(&b',') && digit(i.wrapping_sub(1)) && digit(i + 1);
     comma(at) || comma(at.wrapping_sub(1))
 }
-
-/// More mistakes than this are not looked for in a value at the top.
-const MENDED_MAX: usize = 64;
 
 /// A parsed scene file.
 pub(super) struct Document<'a> {
@@ -105,43 +102,21 @@ impl<'a> Document<'a> {
         }
     }
 
-    /// Read a value at the top, and find all its mistakes. A mistake is mended in a copy, and the copy is read for
-    /// the next one, until nothing can be mended. What may follow from the mending is not told.
+    /// Reads a value at the top, and finds all its mistakes.
     pub(super) fn read<T>(
         &self,
         name: &str,
         value: Value<'a>,
         read: impl Fn(&Value<'_>) -> Result<T, ReadError>,
     ) -> Result<T, SceneError> {
-        let attempt = |value: &Value<'a>| {
-            read(value).map_err(|error| (self.place(name, value, &error), error))
-        };
-        let first = match attempt(&value) {
-            Ok(read) => return Ok(read),
-            Err(found) => found,
-        };
-        self.all_mistakes(name, value, first, &|value| attempt(value).err()).or(None)
-    }
-
-    /// The mistakes in a value, from the first one on.
-    fn all_mistakes(
-        &self,
-        name: &str,
-        value: Value<'a>,
-        first: Found,
-        read: Reading<'_, 'a>,
-    ) -> Mistakes {
-        let (mut mistakes, mut next) = (Mistakes::default(), Some(first));
-        let mut mending = Mending::of(self.text, value);
-        for _ in 0..MENDED_MAX {
-            let Some(found) = next else { break };
-            let follows = mending.explains(&found);
-            next = mending.mend(&found, read).flatten();
-            if !follows {
+        let place = |value: &Value<'a>, error: &ReadError| self.place(name, value, error);
+        every_mistake(self.text, value, &place, read).or_else(|found| {
+            let mut mistakes = Mistakes::default();
+            for found in found {
                 mistakes.keep::<()>(Err(self.read_error(name, found)));
             }
-        }
-        mistakes
+            mistakes.or(None)
+        })
     }
 
     /// The keys of a section, as T; the default where there is no such section.

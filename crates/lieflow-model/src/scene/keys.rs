@@ -9,7 +9,7 @@ use lieflow::{Error, SaveAt, TimeGrid};
 use super::defaults;
 use crate::formula::Lets;
 use crate::problem::Layer;
-use crate::problem::{Kind, ProblemSpec, high_order};
+use crate::problem::{Kind, Problem, high_order};
 use crate::reader::read_by_keys;
 use crate::reader::values::{Real, Span, Whole};
 use crate::reader::{Either, KeyPath, Refusal, at_most_one, exactly_one};
@@ -51,18 +51,15 @@ impl MethodKeys {
 
     /// The method with what it takes by default spelt out, and the layer: the first of those of the
     /// problem where none is named.
-    pub(super) fn resolve(
-        self,
-        problem: Option<&dyn ProblemSpec>,
-    ) -> Result<(MethodSpec, Layer), Refusal> {
+    pub(super) fn resolve(self, problem: Option<&Problem>) -> Result<(MethodSpec, Layer), Refusal> {
         let layer = match self.layer {
             Some(name) => Layer::named(&name)?,
-            None => problem.and_then(|p| p.layers().first()).copied().unwrap_or_default(),
+            None => problem.and_then(|p| p.layers().first().copied()).unwrap_or_default(),
         };
         // A map or a tableau alone is one for RKMK.
         let is_rkmk = self.map.is_some() || self.tableau.is_some() || self.q.is_some();
         let of_problem = problem.filter(|_| !is_rkmk);
-        let default = || of_problem.map_or_else(high_order, ProblemSpec::default_method);
+        let default = || of_problem.map_or_else(high_order, Problem::default_method);
         let base = self.name.map_or_else(default, |name| MethodSpec::new(&name, None));
         let method = MethodSpec {
             name: base.name,
@@ -281,11 +278,7 @@ impl OutputKeys {
     }
 
     /// The mistakes in the list of quantities.
-    pub(super) fn wrong_quantities(
-        &self,
-        kind: &Kind,
-        problem: Option<&dyn ProblemSpec>,
-    ) -> Vec<Refusal> {
+    pub(super) fn wrong_quantities(&self, kind: &Kind, problem: Option<&Problem>) -> Vec<Refusal> {
         let Some(asked) = &self.quantities else { return Vec::new() };
         if asked.is_empty() {
             let names: Vec<_> = (kind.quantities)().iter().map(|quantity| quantity.name).collect();

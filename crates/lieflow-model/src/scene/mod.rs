@@ -8,7 +8,6 @@ mod error;
 mod events;
 mod files;
 mod keys;
-mod mend;
 mod open;
 mod run;
 mod set;

@@ -19,7 +19,7 @@ use super::files::read_samples;
 use super::keys::{MethodKeys, Output, OutputKeys, TimeKeys, with_defaults};
 use crate::formula::{Formula, Lost, Which};
 use crate::kinds;
-use crate::problem::{FormulaKeys, KNOTS_MAX, Kind, ProblemSpec, SAMPLES};
+use crate::problem::{FormulaKeys, KNOTS_MAX, Kind, Problem, SAMPLES};
 use crate::problem::{Layer, Model, Plan, Steps};
 use crate::reader::{KeyPath, Read, ReadError, Refusal};
 use crate::schema::Schema;
@@ -34,7 +34,7 @@ pub struct Scene {
     /// What messages call it.
     source: String,
     /// The problem.
-    pub problem: Box<dyn ProblemSpec>,
+    pub problem: Problem,
     /// The method, with the parts that it takes by default spelt out.
     pub method: MethodSpec,
     /// The layer.
@@ -96,7 +96,7 @@ impl Scene {
 
         let kind = mistakes.keep(read_kind(&document));
         let problem = kind.and_then(|kind| mistakes.keep(read_problem(&document, kind, folder)));
-        let spec = problem.as_deref();
+        let spec = problem.as_ref();
 
         let method = mistakes.keep(document.keys_if_any::<MethodKeys>("method"));
         let method_left = method.as_ref().is_some_and(MethodKeys::is_left);
@@ -225,9 +225,9 @@ impl Scene {
         let model = model.map_err(|error| document.refusal("problem", error.into()))?;
         model.fits(&scene.method).map_err(|error| {
             let mut refusal = Refusal::from(error);
-            if refusal.help.is_none() && scene.fits_in_no_way(&*model) {
+            if refusal.help.is_none() && scene.fits_in_no_way(&model) {
                 refusal.key = Some("name".into());
-                refusal.help = Some(format!("methods that fit: {}", fitting(&*model).join(", ")));
+                refusal.help = Some(format!("methods that fit: {}", fitting(&model).join(", ")));
             }
             document.refusal("method", refusal)
         })?;
@@ -392,13 +392,13 @@ impl Scene {
     ///
     /// # Errors
     /// [`lieflow::Error`] for a problem that cannot be set up; not after [`parse`](Self::parse).
-    pub fn model(&self) -> Result<Box<dyn Model>, Error> {
+    pub fn model(&self) -> Result<Model, Error> {
         let quantities: Vec<&str> = self.quantities.iter().map(String::as_str).collect();
         self.model_with(self.layer, &quantities)
     }
 
     /// Does the method of the scene not run on the model, whatever its parts?
-    fn fits_in_no_way(&self, model: &dyn Model) -> bool {
+    fn fits_in_no_way(&self, model: &Model) -> bool {
         model.fits(&MethodSpec::new(&self.method.name, None)).is_err()
     }
 
@@ -406,7 +406,7 @@ impl Scene {
     ///
     /// # Errors
     /// [`Error::UnknownName`] for a quantity that the problem does not have.
-    pub fn model_with(&self, layer: Layer, quantities: &[&str]) -> Result<Box<dyn Model>, Error> {
+    pub fn model_with(&self, layer: Layer, quantities: &[&str]) -> Result<Model, Error> {
         if !quantities.contains(&FORMULAS) {
             return self.problem.model(layer, quantities);
         }
@@ -435,7 +435,7 @@ fn fingerprint(stated: &str, samples: Option<&Samples>) -> u64 {
 }
 
 /// The names of the methods that run on a problem, with their default parts.
-fn fitting(model: &dyn Model) -> Vec<&'static str> {
+fn fitting(model: &Model) -> Vec<&'static str> {
     let fits = |name: &str| model.fits(&MethodSpec::new(name, None)).is_ok();
     all_methods().map(|info| info.name).filter(|name| fits(name)).collect()
 }
@@ -453,19 +453,19 @@ fn read_kind(document: &Document<'_>) -> Result<&'static Kind, SceneError> {
 
 fn read_problem(
     document: &Document<'_>,
-    kind: &Kind,
+    kind: &'static Kind,
     folder: Option<&Path>,
-) -> Result<Box<dyn ProblemSpec>, SceneError> {
+) -> Result<Problem, SceneError> {
     let mut section = document.section("problem")?;
     if let DeValue::Table(keys) = section.get_mut() {
         keys.remove("kind");
     }
     document.read("problem", section, |section| {
         if !kind.keys.contains(&SAMPLES) {
-            return (kind.read)(section);
+            return kind.read_problem(section);
         }
         let file = |name: &str| read_samples(folder, name);
-        (kind.read)(&with_file(section, SAMPLES.name, file)?)
+        kind.read_problem(&with_file(section, SAMPLES.name, file)?)
     })
 }
 
@@ -494,7 +494,7 @@ fn read_events(
 }
 
 /// A run stays in the span of the samples.
-fn covered(problem: &dyn ProblemSpec, [t0, t1]: [f64; 2]) -> Result<(), Refusal> {
+fn covered(problem: &Problem, [t0, t1]: [f64; 2]) -> Result<(), Refusal> {
     let Some(samples) = problem.samples() else { return Ok(()) };
     samples.covers([t0, t1]).map_err(|Outside { span: [first, last], .. }| {
         let spans = format!("[{t0}, {t1}], and the samples span {first} to {last}");

@@ -214,7 +214,7 @@ fn numbers_of_few_digits_are_normalised() {
         let run = |attitude: &str| {
             let body = of(kind, &format!("{more}\n{attitude}"));
             let of = scene(&body, RKMK4, "t_span = [0, 1]\nsteps = 100", quantities);
-            (rows(&of)[0].clone(), of.problem.notes())
+            (rows(&of)[0].clone(), of.problem.notes().to_vec())
         };
         let (start, notes) = run(&exact);
         assert_eq!(notes, [""; 0], "{kind}");
@@ -246,7 +246,7 @@ fn numbers_of_few_digits_are_normalised() {
     assert!(of_vertical.problem.notes()[0].starts_with("vertical: its length"));
     let part = "kind = \"composed\"\n[[problem.parts]]\nname = \"g\"\nspace = \"rotation\"\nfield = [0, 0, 1]\n\
                 start = [[0.8001, -0.6, 0], [0.6, 0.7998, 0], [0, 0, 1]]";
-    let notes = scene(part, RKMK4, FINE, "[\"state\"]").problem.notes();
+    let notes = scene(part, RKMK4, FINE, "[\"state\"]").problem.notes().to_vec();
     assert!(notes[0].starts_with("parts[1].start: "), "{notes:?}");
 }
 

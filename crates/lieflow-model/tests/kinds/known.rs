@@ -229,8 +229,7 @@ fn moments_of_inertia_from_shapes_and_tensors() {
     };
     let moments = |inertia: &str| {
         let scene = of(inertia, "[\"energy\"]");
-        let spec: &dyn std::any::Any = &*scene.problem;
-        spec.downcast_ref::<RigidBodySpec>().unwrap().inertia
+        scene.problem.spec::<RigidBodySpec>().unwrap().inertia
     };
     let shapes = [
         ("kind = \"box\", mass = 12, sides = [1, 2, 3]", [13.0, 10.0, 5.0]),
@@ -271,7 +270,8 @@ fn moments_of_inertia_from_shapes_and_tensors() {
 
     // No body has these moments: a warning, not an error.
     assert_eq!(of("inertia = [1, 2, 3]", "[\"energy\"]").problem.warnings(), [""; 0]);
-    let warnings = of("inertia = [1, 2, 3.1]", "[\"energy\"]").problem.warnings();
+    let body = of("inertia = [1, 2, 3.1]", "[\"energy\"]");
+    let warnings = body.problem.warnings();
     assert!(
         warnings.len() == 1 && warnings[0].contains("J3 > J1 + J2 (3.1 > 1 + 2): impossible"),
         "{warnings:?}"

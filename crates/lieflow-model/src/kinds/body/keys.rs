@@ -4,7 +4,7 @@ use crate::problem::group;
 
 group! {
     /// The keys of a body and its start, of every kind of bodies. The library's moments are about principal axes.
-    BodyKeys in kinds::body = body_keys $,
+    BodyKeys in (crate::kinds::body) = body_keys $,
     before {
         inertia: Option<crate::reader::values::Diagonal> =
             "principal moments of inertia [J1, J2, J3], or the tensor of inertia as three rows",

@@ -64,7 +64,7 @@ struct Composed {
 
 type Q = Quantity<Composed>;
 
-fn read(mut keys: Keys) -> Result<Box<dyn ProblemSpec>, ReadError> {
+fn read(mut keys: Keys) -> Result<Forms, ReadError> {
     let (formulas, samples) = (keys.formula_keys(), keys.sample_keys());
     let Keys { parts: keys, invariants, .. } = keys;
     if keys.is_empty() {
@@ -92,7 +92,7 @@ fn read(mut keys: Keys) -> Result<Box<dyn ProblemSpec>, ReadError> {
         let formula = Formula::read(&key, &text, &names)?;
         kept.push((name, formula));
     }
-    Ok(Box::new(Stated(Composed { parts, start, invariants: kept, notes })))
+    Ok(Forms::of(Composed { parts, start, invariants: kept, notes }))
 }
 
 /// The path of a key of part `i`, from 0.
@@ -287,9 +287,6 @@ impl System for Composed {
         .missing_where(|composed| composed.invariants.is_empty().then_some("the scene names none")),
     ];
 
-    fn kind(&self) -> &'static Kind {
-        &KIND
-    }
     fn layer(&self) -> Layer {
         Layer::Closed
     }

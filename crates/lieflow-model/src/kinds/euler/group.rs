@@ -6,8 +6,8 @@ use lieflow::dense::{inverse, norm};
 use lieflow::groups::{GroupMatrix, LieAlgebra, LieGroup, MatrixGroup};
 use lieflow::problems::{Euler, FromTheBody};
 
+use super::dual::{OnDual, quantities};
 use super::matrices::EulerEquation;
-use super::{KIND, OnDual, quantities};
 use crate::kinds::entries::row_columns;
 use crate::kinds::flow::FromBody;
 use crate::kinds::prelude::*;
@@ -54,9 +54,6 @@ impl System for WithGroup {
     const STATE: &'static [&'static str] = &["momentum", "group"];
     const QUANTITIES: &'static [Quantity<Self>] = &quantities();
 
-    fn kind(&self) -> &'static Kind {
-        &KIND
-    }
     fn problem<N: Number>(&self) -> Result<Start<FromBody>, Error> {
         let EulerEquation { group, energy, momentum } = &self.0;
         let system = Euler::new(group.clone(), energy.clone()).with_group();

@@ -5,9 +5,9 @@ use lieflow::groups::{AlgebraMatrix, LieAlgebra, MatrixGroup};
 use lieflow::problems::{DiscreteGradient, Euler, Hamiltonian, Kinetic, MeanGradient};
 use lieflow::scalar::{Ops, tally};
 
+use super::dual::{Dual, Given, OnDual, quantities};
 use super::energy::Energy;
 use super::group::WithGroup;
-use super::{Dual, KIND, Keys, OnDual, quantities};
 use crate::formula::Formula;
 use crate::kinds::algebra::{Algebra, Miss, Named, miss};
 use crate::kinds::entries::{
@@ -16,7 +16,6 @@ use crate::kinds::entries::{
 use crate::kinds::flow::OnMatrices;
 use crate::kinds::matrix::MatrixAction;
 use crate::kinds::prelude::*;
-use crate::problem::Model;
 use crate::problem::SampleKeys;
 use crate::reader::values::Numbers;
 
@@ -49,10 +48,10 @@ const ROUNDING: f64 = 1e-12;
 /// Formulas name entries by one digit for the row and one for the column.
 const NAMED_MAX: usize = 9;
 
-pub(super) fn on(named: Named, mut keys: Keys) -> Result<Box<dyn ProblemSpec>, Refusal> {
+pub(super) fn on(named: Named, given: Given) -> Result<Forms, Refusal> {
     let algebra = named.algebra;
-    let names = keys.formula_keys();
-    let momentum = match (algebra, keys.momentum) {
+    let names = given.names;
+    let momentum = match (algebra, given.momentum) {
         (Algebra::So, Numbers::List(above)) => antisymmetric(&above).ok_or_else(|| {
             let message = format!(
                 "found {} numbers, expected the n(n-1)/2 entries above the diagonal, or n rows of n",
@@ -64,8 +63,8 @@ pub(super) fn on(named: Named, mut keys: Keys) -> Result<Box<dyn ProblemSpec>, R
     };
     let n = momentum.nrows();
     named.check_size(n, "momentum")?;
-    let stated = ("inverse_inertia", keys.inverse_inertia);
-    let form = match exactly_one(stated, ("hamiltonian", keys.hamiltonian))? {
+    let stated = ("inverse_inertia", given.inverse_inertia);
+    let form = match exactly_one(stated, ("hamiltonian", given.hamiltonian))? {
         Either::First(table) => Form::Weights(square("inverse_inertia", &table, n)?),
         Either::Second(_) if n > NAMED_MAX => {
             let message = format!("the momentum is {n}×{n}, expected at most {NAMED_MAX} rows");
@@ -85,7 +84,7 @@ pub(super) fn on(named: Named, mut keys: Keys) -> Result<Box<dyn ProblemSpec>, R
     }
     let energy = Projected { algebra, form };
     let alone = EulerEquation { group, energy, momentum };
-    Ok(Box::new(Spec { with_group: Stated(WithGroup(alone.clone())), alone: Stated(alone) }))
+    Ok(Forms::of(alone.clone()).or(Forms::of(WithGroup(alone))))
 }
 
 /// The entries of x, row by row, for formulas.
@@ -169,54 +168,6 @@ impl DiscreteGradient<MatrixGroup> for Projected {
     }
 }
 
-/// The equation, with g where a quantity needs it.
-#[derive(Clone, Debug)]
-struct Spec {
-    alone: Stated<EulerEquation>,
-    with_group: Stated<WithGroup>,
-}
-
-impl Spec {
-    fn of(&self, quantities: &[&str]) -> &dyn ProblemSpec {
-        let needs =
-            |name: &str| ["group", "momentum_space"].iter().any(|of_g| name.starts_with(of_g));
-        match quantities.iter().any(|name| needs(name)) {
-            true => &self.with_group,
-            false => &self.alone,
-        }
-    }
-}
-
-impl ProblemSpec for Spec {
-    fn kind(&self) -> &'static Kind {
-        &KIND
-    }
-    fn layers(&self) -> &'static [Layer] {
-        &[Layer::General]
-    }
-    fn columns(&self, quantity: &str) -> Result<Vec<String>, Error> {
-        self.with_group.columns(quantity)
-    }
-    fn model(&self, layer: Layer, quantities: &[&str]) -> Result<Box<dyn Model>, Error> {
-        self.of(quantities).model(layer, quantities)
-    }
-    fn check_start(&self, t0: f64) -> Vec<Refusal> {
-        self.alone.check_start(t0)
-    }
-    fn formula(&self) -> Option<&Formula> {
-        self.alone.formula()
-    }
-    fn state(&self, quantities: &[&str]) -> &'static [&'static str] {
-        self.of(quantities).state(quantities)
-    }
-    fn invariants(&self, quantities: &[&str]) -> Vec<&'static str> {
-        self.of(quantities).invariants(quantities)
-    }
-    fn figure(&self, quantities: &[&str]) -> Figure {
-        self.alone.figure(quantities)
-    }
-}
-
 impl Dual for EulerEquation {
     type Momentum = Mat<f64>;
 
@@ -270,9 +221,6 @@ impl System for EulerEquation {
     const STATE: &'static [&'static str] = &["momentum"];
     const QUANTITIES: &'static [Quantity<Self>] = &quantities();
 
-    fn kind(&self) -> &'static Kind {
-        &KIND
-    }
     fn problem<N: Number>(&self) -> Result<Start<OnMatrices>, Error> {
         let system = Euler::new(self.group.clone(), self.energy.clone());
         Ok((OnMatrices::lie_poisson(system, MatrixAction::Coadjoint), self.momentum.clone()))

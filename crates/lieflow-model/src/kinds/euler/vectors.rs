@@ -5,8 +5,8 @@ use lieflow::groups::{Adjoint, LieGroup, Power, Se3, So3};
 use lieflow::problems::{DiscreteGradient, Euler, MeanGradient};
 use nalgebra::Vector3;
 
+use super::dual::{Dual, Given, OnDual, quantities};
 use super::energy::Energy;
-use super::{Dual, KIND, Keys, OnDual, quantities};
 use crate::formula::Formula;
 use crate::kinds::flow::{OnSe3, OnSpheres};
 use crate::kinds::prelude::*;
@@ -55,19 +55,17 @@ impl<S: Number> Numbers<S, 6> for Pair<S> {
 }
 
 impl<const N: usize> Vectors<N> {
-    pub(super) fn read(mut keys: Keys) -> Result<Self, Refusal> {
-        if keys.inverse_inertia.is_some() {
-            let message =
-                format!("`inverse_inertia` is for matrices; {} has a hamiltonian", keys.algebra);
+    pub(super) fn read(algebra: &str, given: Given) -> Result<Self, Refusal> {
+        if given.inverse_inertia.is_some() {
+            let message = format!("`inverse_inertia` is for matrices; {algebra} has a hamiltonian");
             return Err(Refusal::at("inverse_inertia", message));
         }
         let missing = || Refusal::section("missing key `hamiltonian` in [problem]");
-        let formulas = keys.formula_keys();
-        let text = keys.hamiltonian.ok_or_else(missing)?;
+        let text = given.hamiltonian.ok_or_else(missing)?;
         let variables = NAMES[..N].iter().copied();
-        let names = formulas.names("hamiltonian", variables, SampleKeys::default())?;
+        let names = given.names.names("hamiltonian", variables, SampleKeys::default())?;
         let energy = Energy::read(&text, &names)?;
-        Ok(Vectors { energy, momentum: keys.momentum.list("momentum")? })
+        Ok(Vectors { energy, momentum: given.momentum.list("momentum")? })
     }
 
     /// H, and ∇H at a or at a + s(b − a).
@@ -156,9 +154,6 @@ impl System for Vectors<3> {
     const STATE: &'static [&'static str] = &["momentum"];
     const QUANTITIES: &'static [Quantity<Self>] = &quantities();
 
-    fn kind(&self) -> &'static Kind {
-        &KIND
-    }
     fn layer(&self) -> Layer {
         Layer::Closed
     }
@@ -187,9 +182,6 @@ impl System for Vectors<6> {
     const STATE: &'static [&'static str] = &["momentum"];
     const QUANTITIES: &'static [Quantity<Self>] = &quantities();
 
-    fn kind(&self) -> &'static Kind {
-        &KIND
-    }
     fn layer(&self) -> Layer {
         Layer::Closed
     }

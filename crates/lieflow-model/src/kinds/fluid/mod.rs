@@ -59,9 +59,9 @@ fn below(n: usize) -> impl Iterator<Item = (usize, usize)> {
     (0..n).flat_map(move |j| (j..n).map(move |i| (i, j)))
 }
 
-fn read(keys: Keys) -> Result<Box<dyn ProblemSpec>, ReadError> {
+fn read(keys: Keys) -> Result<Forms, ReadError> {
     let (place, start) = keys.resolve()?;
-    Ok(Box::new(Stated(Fluid { fluid: Zeitlin::new(place)?, start })))
+    Ok(Forms::of(Fluid { fluid: Zeitlin::new(place)?, start }))
 }
 
 impl Fluid {
@@ -137,9 +137,6 @@ impl System for Fluid {
         }),
     ];
 
-    fn kind(&self) -> &'static Kind {
-        &KIND
-    }
     fn problem<N: Number>(&self) -> Result<Start<Zeitlin<Place>>, Error> {
         Ok((self.fluid.clone(), self.start.clone()))
     }

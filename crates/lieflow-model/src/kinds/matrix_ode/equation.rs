@@ -8,7 +8,7 @@ use lieflow::groups::{AlgebraMatrix, LieAlgebra, LieGroup, MatrixGroup};
 use lieflow::maps::{CoordinateMap, Exp};
 use lieflow::problems::Flow;
 
-use super::{ACTIONS, KIND, NAMED_MAX};
+use super::{ACTIONS, NAMED_MAX};
 use crate::formula::{Formula, without_value};
 use crate::kinds::algebra::{Algebra, Miss, miss};
 use crate::kinds::entries::{
@@ -157,9 +157,6 @@ impl System for Equation {
         }),
     ];
 
-    fn kind(&self) -> &'static Kind {
-        &KIND
-    }
     fn problem<N: Number>(&self) -> Result<Start<OnMatrices>, Error> {
         let (this, group, action) = (self.clone(), self.group.clone(), self.action);
         let problem = if self.linear {

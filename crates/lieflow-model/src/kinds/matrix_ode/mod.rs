@@ -60,7 +60,7 @@ const ACTIONS: [(&str, MatrixAction); 5] = [
 /// Formulas name entries by one digit for the row and one for the column.
 const NAMED_MAX: usize = 9;
 
-fn read(mut keys: Keys) -> Result<Box<dyn ProblemSpec>, ReadError> {
+fn read(mut keys: Keys) -> Result<Forms, ReadError> {
     let (formulas, samples) = (keys.formula_keys(), keys.sample_keys());
     let named = Algebra::named(&keys.group)
         .ok_or_else(|| Refusal::unknown("group", &keys.group, &ALGEBRAS))?;
@@ -91,7 +91,7 @@ fn read(mut keys: Keys) -> Result<Box<dyn ProblemSpec>, ReadError> {
     let field = field.into_iter().map(formula).collect::<Result<Arc<[_]>, Refusal>>()?;
     let linear = (1..names.variables().len()).all(|y| field.iter().all(|(_, f)| !f.uses(y)));
     let equation = Equation { algebra, group, action, field, by_upper, linear, start, notes };
-    Ok(Box::new(Stated(equation)))
+    Ok(Forms::of(equation))
 }
 
 /// Formulas, each with its row and its column and its place in the scene.

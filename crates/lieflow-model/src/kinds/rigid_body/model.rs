@@ -11,8 +11,6 @@
 
 use core::fmt::Debug;
 
-use lieflow::RunError;
-use lieflow::catalog::{MethodSpec, Needs};
 use lieflow::groups::{GroupMatrix, LieGroup, MatrixGroup, UnitQuaternions, hat, vee};
 use lieflow::problems::{
     BodyState, Exact, RigidBody, RigidBodyAttitude, RigidBodyN, RigidBodyNAttitude,
@@ -20,12 +18,9 @@ use lieflow::problems::{
 };
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
-use super::{KIND, RigidBodySpec};
 use crate::kinds::body::*;
 use crate::kinds::prelude::*;
-use crate::problem::PointOf;
-use crate::problem::{Model, Orders, Outcome, Plan, Runnable, Steps, Watcher};
-use crate::schema::Schema;
+use crate::problem::{PointOf, Runnable, SERIES};
 
 /// Where a body is: its momentum in the body, and its orientation where that is modelled.
 pub(super) struct Pose {
@@ -275,9 +270,8 @@ impl<R: Representation> System for Body<R> {
         .missing_where(Self::without_orientation),
     ];
 
-    fn kind(&self) -> &'static Kind {
-        &KIND
-    }
+    const DEFAULT_METHOD: Option<&'static str> = Some(SERIES);
+
     fn layer(&self) -> Layer {
         R::LAYER
     }
@@ -291,6 +285,12 @@ impl<R: Representation> System for Body<R> {
     }
     fn modelled(&self) -> String {
         R::MODELLED.into()
+    }
+    fn figure(&self) -> Figure {
+        Figure::Sphere("momentum_body")
+    }
+    fn inertia(&self) -> Option<PrincipalInertia> {
+        Some(self.spec.principal_inertia())
     }
     fn warnings(&self) -> Vec<String> {
         self.spec.impossible()
@@ -309,55 +309,5 @@ impl<R: Representation> System for Body<R> {
             R::point::<f64>(&Pose { m, orientation })
         };
         Some(at(t1 - t0))
-    }
-}
-
-/// The attitude in two representations: the method says which is integrated.
-#[derive(Debug)]
-pub(super) struct ByMethod {
-    /// On the group.
-    pub(super) attitude: Box<dyn Model>,
-    /// For the classical methods, which need m and g as one state.
-    pub(super) state: Box<dyn Model>,
-}
-
-impl ByMethod {
-    fn of(&self, method: &MethodSpec) -> &dyn Model {
-        match method.info().is_ok_and(|info| info.needs == Needs::State) {
-            true => &*self.state,
-            false => &*self.attitude,
-        }
-    }
-}
-
-impl Model for ByMethod {
-    fn schema(&self) -> &Schema {
-        self.attitude.schema()
-    }
-    fn modelled(&self, method: &MethodSpec) -> Vec<String> {
-        self.of(method).modelled(method)
-    }
-    fn drive(
-        &self,
-        method: &MethodSpec,
-        plan: Plan<'_>,
-        watcher: &mut dyn Watcher,
-    ) -> Result<Outcome, RunError> {
-        self.of(method).drive(method, plan, watcher)
-    }
-    fn orders(&self, method: &MethodSpec) -> Result<Orders, Error> {
-        self.of(method).orders(method)
-    }
-    fn problem_type(&self, method: &MethodSpec) -> &'static str {
-        self.of(method).problem_type(method)
-    }
-    fn fits(&self, method: &MethodSpec) -> Result<(), Error> {
-        self.of(method).fits(method)
-    }
-    fn operations(&self, method: &MethodSpec, steps: &Steps) -> Option<f64> {
-        self.of(method).operations(method, steps)
-    }
-    fn exact(&self, t_span: [f64; 2]) -> Option<Result<Vec<f64>, Error>> {
-        self.attitude.exact(t_span)
     }
 }

@@ -1,0 +1,153 @@
+//! What a kind of problem states: its keys, its quantities, and what is known of it before any run.
+
+use lieflow::Error;
+use lieflow::catalog::MethodSpec;
+use lieflow::names::same;
+use serde::Serialize;
+
+use super::forms::Forms;
+use crate::reader::{ReadError, Value};
+
+/// Reads the keys of a problem, without `kind`.
+pub type ReadForms = fn(&Value<'_>) -> Result<Forms, ReadError>;
+
+/// A kind of problem.
+#[derive(Clone, Copy, Debug)]
+pub struct Kind {
+    /// Its name in scene files.
+    pub name: &'static str,
+    /// What is integrated: the equations of motion with their signs.
+    pub equation: &'static str,
+    /// What it is, in one line.
+    pub summary: &'static str,
+    /// The keys of `[problem]`, besides `kind`.
+    pub keys: &'static [KeyInfo],
+    /// What can be asked of it.
+    pub quantities: fn() -> Vec<QuantityInfo>,
+    /// Reads the keys of `[problem]`, without `kind`.
+    pub(crate) read: ReadForms,
+}
+
+/// A key of `[problem]`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct KeyInfo {
+    /// The key.
+    pub name: &'static str,
+    /// What it means, and what it holds.
+    pub meaning: &'static str,
+}
+
+/// A quantity that can be asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct QuantityInfo {
+    /// Its name in scene files.
+    pub name: &'static str,
+    /// Its columns; none where it has one of its own name; with an `…` between the first and the last where
+    /// the size of the problem says how many there are.
+    pub columns: &'static [&'static str],
+    /// What it means.
+    pub meaning: &'static str,
+    /// Its unit, where every scene has the same; empty where the units of the scene decide.
+    pub unit: &'static str,
+}
+
+impl QuantityInfo {
+    /// The names of the columns.
+    pub fn column_names(&self) -> Vec<String> {
+        match self.columns {
+            [] => vec![self.name.into()],
+            columns => columns.iter().map(|&column| column.into()).collect(),
+        }
+    }
+}
+
+impl Kind {
+    /// The quantity of that name.
+    ///
+    /// # Errors
+    /// [`Error::UnknownName`].
+    pub fn quantity(&self, name: &str) -> Result<QuantityInfo, Error> {
+        let quantity = (self.quantities)().into_iter().find(|quantity| same(quantity.name, name));
+        quantity.ok_or_else(|| self.unknown_quantity(name))
+    }
+
+    /// The error for a quantity that the kind does not have.
+    pub(crate) fn unknown_quantity(&self, name: &str) -> Error {
+        let expected = (self.quantities)().iter().map(|quantity| quantity.name).collect();
+        Error::UnknownName { kind: "quantity", name: name.into(), expected }
+    }
+}
+
+/// What a field lies on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ground {
+    /// A sphere: rows from north to south, columns from west to east.
+    Sphere,
+    /// A square torus: rows from the largest y to the least, columns from the least x.
+    Torus,
+}
+
+/// The figure of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Figure {
+    /// The columns of a quantity against time.
+    Lines(&'static str),
+    /// Three columns of a quantity after the other: paths on a sphere.
+    Sphere(&'static str),
+    /// Two columns of a quantity after the other: paths in a plane.
+    Curve(&'static str),
+    /// The same as points, where nothing lies between two rows.
+    Points(&'static str),
+    /// A field on a surface at the end, by [`Problem::field`](super::Problem::field) from a quantity.
+    Map(&'static str, Ground),
+}
+
+impl Figure {
+    /// The quantity that is drawn.
+    pub fn quantity(self) -> &'static str {
+        match self {
+            Figure::Lines(name)
+            | Figure::Sphere(name)
+            | Figure::Curve(name)
+            | Figure::Points(name)
+            | Figure::Map(name, _) => name,
+        }
+    }
+}
+
+/// A run has at most so many times at which a step must end.
+pub const KNOTS_MAX: usize = 1_000_000;
+
+/// The method for any problem that names none: of order 8, with a pair, and on the group.
+pub fn high_order() -> MethodSpec {
+    MethodSpec { tableau: Some("dop853".into()), ..MethodSpec::new("rkmk", None) }
+}
+
+/// The method for problems whose Taylor coefficients follow by recurrence and that name none: the Lie series of order
+/// 16. It takes a third of the steps of [`high_order`], and a step costs less.
+pub const SERIES: &str = "taylor16";
+
+/// The inertia of a rigid body along its principal axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PrincipalInertia {
+    /// The moments of inertia.
+    pub moments: [f64; 3],
+    /// The axes, one after the other, in the frame of the body.
+    pub axes: [[f64; 3]; 3],
+}
+
+impl PrincipalInertia {
+    /// Moments about the axes of the body.
+    pub fn diagonal(moments: [f64; 3]) -> Self {
+        PrincipalInertia { moments, axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] }
+    }
+}
+
+/// Something that is known of a problem before any run.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Fact {
+    /// What.
+    pub name: &'static str,
+    /// Its value; a number that is not finite is none.
+    pub value: f64,
+}

@@ -1,0 +1,242 @@
+//! Values that a program states: numbers, texts, lists and tables, without a file.
+
+use core::fmt;
+use core::ops::Range;
+use std::collections::BTreeMap;
+
+use toml::de::{DeTable, DeValue};
+
+use super::mend::every_mistake;
+use super::read::{ReadError, Value};
+use super::refusal::{KeyPath, Refusal};
+use super::suggest::help_for;
+
+/// A value of a key.
+///
+/// ```
+/// use lieflow_model::reader::Tree;
+///
+/// let keys = Tree::table([("inertia", Tree::from([1.0, 2.0, 3.0])), ("shape", Tree::from("box"))]);
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub enum Tree {
+    /// True or false.
+    Bool(bool),
+    /// A whole number.
+    Whole(i64),
+    /// A number.
+    Number(f64),
+    /// A text: a name or a formula.
+    Text(String),
+    /// A list. A matrix is a list of its rows.
+    List(Vec<Tree>),
+    /// Keys with their values.
+    Table(BTreeMap<String, Tree>),
+}
+
+impl Tree {
+    /// A table with these keys.
+    pub fn table<K: Into<String>, V: Into<Tree>>(
+        entries: impl IntoIterator<Item = (K, V)>,
+    ) -> Tree {
+        let entries = entries.into_iter().map(|(key, value)| (key.into(), value.into()));
+        Tree::Table(entries.collect())
+    }
+
+    /// Reads a table of keys.
+    ///
+    /// # Errors
+    /// All mistakes, by the paths of keys.
+    pub(crate) fn read<T>(
+        &self,
+        read: impl Fn(&Value<'_>) -> Result<T, ReadError>,
+    ) -> Result<T, Mistakes> {
+        let text = format!("{KEYS} = {self}");
+        let not_read = |message: &str| Mistakes(vec![Refusal::section(message)]);
+        let mut root = DeTable::parse(&text).map_err(|error| not_read(error.message()))?;
+        let keys = root.get_mut().remove(KEYS).ok_or_else(|| not_read("no keys"))?;
+        let place = |value: &Value<'_>, error: &ReadError| match error {
+            ReadError::UnknownKey(place, ..)
+            | ReadError::MissingKey(place, _)
+            | ReadError::Wrong(place, _) => Some(place.clone()),
+            ReadError::Refused(Refusal { key, .. }) => place_of(value, key.as_deref()?),
+        };
+        every_mistake(&text, keys.clone(), &place, read).map_err(|found| {
+            Mistakes(found.into_iter().map(|(_, error)| mistake(&keys, error)).collect())
+        })
+    }
+}
+
+/// The name of the table of keys in a text.
+const KEYS: &str = "keys";
+
+/// The value as TOML.
+impl fmt::Display for Tree {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Tree::Bool(x) => x.fmt(f),
+            Tree::Whole(n) => n.fmt(f),
+            Tree::Number(x) => f.write_str(&format!("{x:?}").to_lowercase()),
+            Tree::Text(text) => f.write_str(&quoted(text)),
+            Tree::List(list) => {
+                f.write_str("[")?;
+                list.iter().try_for_each(|entry| write!(f, "{entry}, "))?;
+                f.write_str("]")
+            }
+            Tree::Table(entries) => {
+                f.write_str("{ ")?;
+                for (i, (key, entry)) in entries.iter().enumerate() {
+                    let comma = if i > 0 { ", " } else { "" };
+                    write!(f, "{comma}{} = {entry}", quoted(key))?;
+                }
+                f.write_str(" }")
+            }
+        }
+    }
+}
+
+/// A text as TOML writes it.
+fn quoted(text: &str) -> String {
+    let escaped = |c: char| match c {
+        '"' | '\\' => format!("\\{c}"),
+        c if c.is_control() => format!("\\u{:04X}", c as u32),
+        c => c.into(),
+    };
+    format!("\"{}\"", text.chars().map(escaped).collect::<String>())
+}
+
+/// A mistake in a table of keys as data.
+fn mistake(keys: &Value<'_>, error: ReadError) -> Refusal {
+    let within = |place: &Range<usize>| path_at(keys, place, String::new());
+    match error {
+        ReadError::Refused(refusal) => refusal,
+        ReadError::Wrong(place, message) => Refusal { key: within(&place), message, help: None },
+        ReadError::UnknownKey(place, given, names) => Refusal {
+            key: within(&place),
+            message: format!("unknown key `{given}`"),
+            help: Some(help_for(&given, names)),
+        },
+        ReadError::MissingKey(place, name) => Refusal {
+            key: within(&place).map(|table| join(&table, name)),
+            message: format!("missing key `{name}`"),
+            help: None,
+        },
+    }
+}
+
+/// The path of an entry of a table.
+fn join(table: &str, name: &str) -> String {
+    if table.is_empty() { name.into() } else { table.entry(name) }
+}
+
+/// The place of the value at a path such as `key[i,j]` or `key[i].name`; the last one on the way that is there.
+pub(crate) fn place_of(value: &Value<'_>, path: &str) -> Option<Range<usize>> {
+    let steps = path.split(['[', ']', ',', '.']).map(str::trim).filter(|step| !step.is_empty());
+    let mut place = value;
+    for (depth, step) in steps.enumerate() {
+        let next = match (step.parse::<usize>(), place.get_ref()) {
+            (Ok(i), DeValue::Array(list)) => list.get(i.wrapping_sub(1)),
+            (_, DeValue::Table(table)) => table.get(step),
+            _ => None,
+        };
+        match next {
+            Some(next) => place = next,
+            None if depth == 0 => return None,
+            None => break,
+        }
+    }
+    Some(place.span())
+}
+
+/// The path of the key or the value at a place, such as `parts[2].start`. It is empty for the whole.
+fn path_at(value: &Value<'_>, wanted: &Range<usize>, path: String) -> Option<String> {
+    if value.span() == *wanted {
+        return Some(path);
+    }
+    match value.get_ref() {
+        DeValue::Array(list) => {
+            let mut entries = list.iter().enumerate();
+            entries.find_map(|(i, entry)| path_at(entry, wanted, path.index(i)))
+        }
+        DeValue::Table(table) => table.iter().find_map(|(key, entry)| {
+            let path = join(&path, key.get_ref());
+            if key.span() == *wanted { Some(path) } else { path_at(entry, wanted, path) }
+        }),
+        _ => None,
+    }
+}
+
+/// Keys that no problem can be made of, each by its path, with what was expected.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Mistakes(pub Vec<Refusal>);
+
+impl fmt::Display for Mistakes {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, Refusal { key, message, help }) in self.0.iter().enumerate() {
+            if i > 0 {
+                f.write_str("\n")?;
+            }
+            match key.as_deref().filter(|key| !message.starts_with(key)) {
+                Some(key) => write!(f, "{key}: {message}")?,
+                None => f.write_str(message)?,
+            }
+            if let Some(help) = help {
+                write!(f, " ({help})")?;
+            }
+        }
+        Ok(())
+    }
+}
+
+impl core::error::Error for Mistakes {}
+
+impl From<bool> for Tree {
+    fn from(x: bool) -> Self {
+        Tree::Bool(x)
+    }
+}
+impl From<f64> for Tree {
+    fn from(x: f64) -> Self {
+        Tree::Number(x)
+    }
+}
+impl From<i32> for Tree {
+    fn from(n: i32) -> Self {
+        Tree::Whole(n.into())
+    }
+}
+impl From<i64> for Tree {
+    fn from(n: i64) -> Self {
+        Tree::Whole(n)
+    }
+}
+impl From<&str> for Tree {
+    fn from(text: &str) -> Self {
+        Tree::Text(text.into())
+    }
+}
+impl From<String> for Tree {
+    fn from(text: String) -> Self {
+        Tree::Text(text)
+    }
+}
+impl<T: Into<Tree>> From<Vec<T>> for Tree {
+    fn from(list: Vec<T>) -> Self {
+        list.into_iter().collect()
+    }
+}
+impl<T: Into<Tree>, const N: usize> From<[T; N]> for Tree {
+    fn from(list: [T; N]) -> Self {
+        list.into_iter().collect()
+    }
+}
+impl<T: Clone + Into<Tree>> From<&[T]> for Tree {
+    fn from(list: &[T]) -> Self {
+        list.iter().cloned().collect()
+    }
+}
+impl<T: Into<Tree>> FromIterator<T> for Tree {
+    fn from_iter<I: IntoIterator<Item = T>>(list: I) -> Self {
+        Tree::List(list.into_iter().map(Into::into).collect())
+    }
+}
