@@ -13,7 +13,7 @@ struct Crate {
     rooms: Vec<&'static str>,
 }
 
-fn crates() -> [Crate; 4] {
+fn crates() -> [Crate; 5] {
     macro_rules! of {
         ($src:literal) => {
             ($src, include_str!(concat!("../../", $src, "/lib.rs")))
@@ -23,6 +23,7 @@ fn crates() -> [Crate; 4] {
         of!("src"),
         of!("crates/lieflow-model/src"),
         of!("crates/lieflow-figures/src"),
+        of!("crates/lieflow-paper/src"),
         of!("crates/lieflow-cli/src"),
     ];
     all.map(|(src, root)| Crate { src, root, rooms: rooms(root) })

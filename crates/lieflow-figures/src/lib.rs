@@ -8,12 +8,14 @@
 //! | room | what is in it |
 //! |---|---|
 //! | `number` | numbers as text |
+//! | `csv` | tables as CSV |
 //! | `plot` | figures |
 //! | `page` | pages of tables and figures |
 //!
 //! A room uses those above it in this table only.
 #![forbid(unsafe_code)]
 
+pub mod csv;
 pub mod number;
 mod page;
 mod plot;

@@ -44,6 +44,37 @@ pub fn typed(x: f64, digits: usize) -> String {
     if plain { format!("{}", rounded + 0.0) } else { format!("{rounded:e}") }
 }
 
+/// A number as people write it, with six digits at most: `0.05`, `77.6073`, `1.2e-6`.
+pub fn number(x: f64) -> String {
+    typed(x, 6)
+}
+
+/// A number rounded to two digits, or to a whole number below a million: `144`, `2.7`, `0.0021`, `1.2e-6`.
+pub fn rough(x: f64) -> String {
+    if (100.0..1e6).contains(&x.abs()) { format!("{x:.0}") } else { typed(x, 2) }
+}
+
+/// A duration as people say it: `20 ms`, `1.5 s`, `12 minutes`, `5 years`.
+pub fn duration(seconds: f64) -> String {
+    const LONG: [(f64, &str); 4] =
+        [(365.25 * 86400.0, "years"), (86400.0, "days"), (3600.0, "hours"), (60.0, "minutes")];
+    const SHORT: [(f64, &str); 3] = [(1.0, "s"), (1e-3, "ms"), (1e-6, "µs")];
+    if let Some((unit, name)) = LONG.iter().find(|(unit, _)| seconds >= 2.0 * unit) {
+        return format!("{} {name}", rough((seconds / unit).round()));
+    }
+    let (unit, name) = SHORT.iter().find(|(unit, _)| seconds >= *unit).unwrap_or(&SHORT[2]);
+    format!("{} {name}", rough(seconds / unit))
+}
+
+/// A number of bytes as people say it: `300 bytes`, `2.1 GB`.
+pub fn size(bytes: u64) -> String {
+    const UNITS: [(f64, &str); 5] =
+        [(1e15, "PB"), (1e12, "TB"), (1e9, "GB"), (1e6, "MB"), (1e3, "kB")];
+    let bytes = bytes as f64;
+    let (unit, name) = UNITS.iter().find(|(unit, _)| bytes >= *unit).unwrap_or(&(1.0, "bytes"));
+    format!("{} {name}", rough(bytes / unit))
+}
+
 /// A number in scientific notation with two digits after the point, as `1.23e-4`; a dash for none.
 pub fn scientific(x: f64) -> String {
     if x.is_nan() { DASH.into() } else { format!("{x:.2e}") }
@@ -165,5 +196,18 @@ mod tests {
         assert_eq!(["500\u{a0}ns", "1\u{a0}µs"], [5e-7, 10f64.powi(-6)].map(seconds_short));
         assert_eq!(fixed(-0.001, 2), "0.00");
         assert_eq!(fixed(-1.25, 1), "−1.2");
+    }
+
+    #[test]
+    fn numbers_are_written_as_people_write_them() {
+        let numbers = [0.05, 600.0, 77.607_325_78, 1.0 / 33.0, 1.2e-6, 3e9, 0.0, -0.0];
+        let written = numbers.map(number);
+        assert_eq!(written, ["0.05", "600", "77.6073", "0.030303", "1.2e-6", "3e9", "0", "0"]);
+        let written = [143.7, 2.69, 0.002_14, 9.96e-9, 0.0].map(rough);
+        assert_eq!(written, ["144", "2.7", "0.0021", "1e-8", "0"]);
+        let written = [9.8e-4, 0.021, 90.0, 700.0, 1e5, 1.6e8].map(duration);
+        assert_eq!(written, ["980 µs", "21 ms", "90 s", "12 minutes", "28 hours", "5 years"]);
+        let written = [0, 320, 2_110_000_000, 1 << 50].map(size);
+        assert_eq!(written, ["0 bytes", "320 bytes", "2.1 GB", "1.1 PB"]);
     }
 }

@@ -16,7 +16,7 @@ use super::apart::{
     Apart, Beside, Choice, Gap, Largest, Limits, Shown, ZerosApart, norm, parts_of,
 };
 use super::watch::Watch;
-use crate::output::{Accuracy, Distance, FoundBy, PartError, RowSample, ShownRows, number, short};
+use crate::output::{Accuracy, Distance, FoundBy, PartError, RowSample, ShownRows, number, rough};
 
 /// A run that took longer is not made a second time, but where that is asked for.
 pub(super) const LONG: Duration = Duration::from_secs(10);
@@ -313,8 +313,8 @@ impl<'a> Check<'a> {
             return None;
         }
         let off = match degrees {
-            Some(degrees) => format!("{} degrees", short(degrees)),
-            None => format!("{} % of its size", short(100.0 * relative)),
+            Some(degrees) => format!("{} degrees", rough(degrees)),
+            None => format!("{} % of its size", rough(100.0 * relative)),
         };
         let verdict = if relative <= USELESS { "inaccurate" } else { "not usable" };
         let when = accuracy.when(worst.t);

@@ -13,7 +13,7 @@ use crate::args::CompareArgs;
 use crate::error::CliError;
 use crate::measure::{
     Candidate, Curve, Effort, Journal, MOST_ROWS, Plan, Reached, Reference, Rows, WorkPoint,
-    machine, speed_against_error,
+    speed_against_error,
 };
 use crate::output::{self, Progress};
 use crate::report::{self, ADVICE, Answer, Best, Choice, Cost, Found, KEPT, choices};
@@ -21,6 +21,7 @@ use lieflow_figures::{Block, Chart, Page, Section};
 use lieflow_model::problem::COUNTED_STEPS;
 use lieflow_model::problem::Layer;
 use lieflow_model::scene::Scene;
+use lieflow_timing::machine;
 
 /// The errors that are answered for where none is asked.
 const ASKED: [f64; 2] = [1e-6, 1e-9];
@@ -527,7 +528,7 @@ impl Comparison<'_> {
             Block::fold("Operations and evaluations of f", self.counts()),
             Block::fold("How it was measured", vec![Block::Facts(self.conditions())]),
         ];
-        let page = report::page(
+        let page = Page::new(
             format!("{}: which method?", self.scene.title),
             format!(
                 "t = {} to {}, {} methods on this machine",

@@ -2,11 +2,12 @@
 
 use std::time::Instant;
 
+use lieflow_timing::machine;
+
 use crate::args::DemoArgs;
 use crate::error::CliError;
-use crate::measure::machine;
+use crate::main_job::Speed;
 use crate::output::{self, Progress};
-use crate::paper::speed::Speed;
 
 /// Run the command.
 ///

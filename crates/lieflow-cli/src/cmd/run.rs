@@ -393,15 +393,15 @@ fn drift_of_rows((name, drift): (&String, &Drift)) -> String {
     format!(
         "`{name}` drifted by {} at rows within steps, but by {} at the ends of the steps: the rows are less accurate \
          than the steps. Take shorter steps, or times_by = \"steps\"",
-        output::short(drift.max),
-        output::short(drift.max_at_ends_of_steps.unwrap_or(0.0))
+        output::rough(drift.max),
+        output::rough(drift.max_at_ends_of_steps.unwrap_or(0.0))
     )
 }
 
 fn broken_promise((name, drift): (&String, &Drift)) -> String {
     format!(
         "`{name}` drifted by {}, though the method promises to keep it: rounding explains {}",
-        output::short(drift.max),
-        output::short(drift.rounding)
+        output::rough(drift.max),
+        output::rough(drift.rounding)
     )
 }

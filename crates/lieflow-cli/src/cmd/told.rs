@@ -4,7 +4,7 @@ use std::path::Path;
 
 use lieflow_model::schema::explained_by_rounding;
 
-use crate::output::{self, Drift, SUMMARY, Summary, duration, number, short};
+use crate::output::{self, Drift, SUMMARY, Summary, duration, number, rough};
 
 /// Drifts that are told; summary.json has all.
 const DRIFTS: usize = 10;
@@ -17,8 +17,8 @@ pub(super) fn in_words(summary: &Summary, folder: &Path, page: Option<&str>) -> 
         (Some(dt), _) => format!(" of {}", number(dt)),
         (None, Some(chosen)) => format!(
             " of {} to {} ({} rejected)",
-            short(chosen.smallest_step),
-            short(chosen.largest_step),
+            rough(chosen.smallest_step),
+            rough(chosen.largest_step),
             chosen.rejected
         ),
         (None, None) => String::new(),
@@ -96,6 +96,6 @@ fn drifted(drift: &Drift, steps: u64) -> String {
         true => (drift.initial.abs(), " of its value"),
         false => (1.0, ""),
     };
-    let [at_end, largest] = [drift.at_end, drift.max].map(|moved| short(moved / value));
+    let [at_end, largest] = [drift.at_end, drift.max].map(|moved| rough(moved / value));
     format!("drifted by {at_end}{of} (largest {largest})")
 }

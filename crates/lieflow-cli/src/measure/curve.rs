@@ -1,10 +1,10 @@
 //! A method's line in the plot of time against error.
 
+use lieflow_timing::Fit;
 use serde::{Deserialize, Serialize};
 
 use super::journal::number;
 use super::{Candidate, Size};
-use crate::fit::Fit;
 
 /// One run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -8,11 +8,12 @@ use std::time::Duration;
 
 use lieflow::{RunError, SaveAt, StepControl, TimeGrid};
 
-use super::{Candidate, Size, WorkPoint, cpu_seconds};
+use super::{Candidate, Size, WorkPoint};
 use crate::error::CliError;
 use lieflow_model::problem::{Model, Plan, Rows as Watched, Sink, Steps};
 use lieflow_model::scene::Scene;
 use lieflow_model::schema::{Observable, Row, Schema};
+use lieflow_timing::cpu_seconds;
 
 /// Where the end comes from that errors are measured against.
 #[derive(Clone, Debug, PartialEq)]

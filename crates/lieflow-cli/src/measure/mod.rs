@@ -6,14 +6,12 @@
 
 mod candidate;
 pub mod checks;
-mod clock;
 mod curve;
 mod journal;
 mod judge;
 
 pub use candidate::Candidate;
 pub use checks::checks;
-pub use clock::{cpu_seconds, machine, seconds_of};
 pub use curve::{Curve, Reached, WorkPoint, pareto};
 pub use journal::{JOURNAL, Journal};
 pub use judge::{Judge, MOST_ROWS, Reference, Rounding, Rows};
@@ -32,6 +30,7 @@ use lieflow::catalog::MethodSpec;
 use lieflow_model::problem::{Layer, Model};
 use lieflow_model::scene::Scene;
 use lieflow_model::schema::Row;
+use lieflow_timing::{cpu_seconds, median};
 
 /// How large the steps of a run are.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -297,12 +296,6 @@ impl Bench<'_> {
         }
         Ok(())
     }
-}
-
-/// The median; not a number where there are none.
-pub fn median(times: &mut [f64]) -> f64 {
-    times.sort_by(f64::total_cmp);
-    times.get(times.len() / 2).copied().unwrap_or(f64::NAN)
 }
 
 /// One run to be timed, round after round.

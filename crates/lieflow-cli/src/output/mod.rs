@@ -8,8 +8,8 @@ mod state;
 mod summary;
 
 pub use figures::{Drawn, RowSample, in_digits, moving_body, run_page};
-pub(crate) use files::fields;
-pub use files::{in_full, make_folder, optional, remove_old, write_csv, write_file, write_page};
+pub use files::{make_folder, remove_old, write_file, write_page};
+pub use lieflow_figures::number::{duration, number, rough, size};
 pub use progress::Progress;
 pub use rows::{EVENTS, RowFile, TRAJECTORY};
 pub use state::{Kind, ROWS, Records, RunState, ShownRows};
@@ -21,7 +21,7 @@ pub use summary::{
 use std::io::{self, Write};
 
 use comfy_table::{Table, presets};
-use lieflow_figures::number::{DASH, typed};
+use lieflow_figures::number::DASH;
 use serde::Serialize;
 
 use crate::error::CliError;
@@ -53,37 +53,6 @@ pub fn print_json<T: Serialize>(value: &T) -> Result<(), CliError> {
 pub fn to_json<T: Serialize>(value: &T) -> Result<String, CliError> {
     let json = serde_json::to_string_pretty(value);
     json.map(|json| json + "\n").map_err(|error| CliError::Message(format!("JSON: {error}")))
-}
-
-/// A number as people write it, with six digits at most: `0.05`, `77.6073`, `1.2e-6`.
-pub fn number(x: f64) -> String {
-    typed(x, 6)
-}
-
-/// A number of which the size matters: `144`, `2.7`, `0.0021`, `1.2e-6`.
-pub fn short(x: f64) -> String {
-    if (100.0..1e6).contains(&x.abs()) { format!("{x:.0}") } else { typed(x, 2) }
-}
-
-/// A duration as people say it: `20 ms`, `1.5 s`, `12 minutes`, `5 years`.
-pub fn duration(seconds: f64) -> String {
-    const LONG: [(f64, &str); 4] =
-        [(365.25 * 86400.0, "years"), (86400.0, "days"), (3600.0, "hours"), (60.0, "minutes")];
-    const SHORT: [(f64, &str); 3] = [(1.0, "s"), (1e-3, "ms"), (1e-6, "µs")];
-    if let Some((unit, name)) = LONG.iter().find(|(unit, _)| seconds >= 2.0 * unit) {
-        return format!("{} {name}", short((seconds / unit).round()));
-    }
-    let (unit, name) = SHORT.iter().find(|(unit, _)| seconds >= *unit).unwrap_or(&SHORT[2]);
-    format!("{} {name}", short(seconds / unit))
-}
-
-/// A number of bytes as people say it: `300 bytes`, `2.1 GB`.
-pub fn size(bytes: u64) -> String {
-    const UNITS: [(f64, &str); 5] =
-        [(1e15, "PB"), (1e12, "TB"), (1e9, "GB"), (1e6, "MB"), (1e3, "kB")];
-    let bytes = bytes as f64;
-    let (unit, name) = UNITS.iter().find(|(unit, _)| bytes >= *unit).unwrap_or(&(1.0, "bytes"));
-    format!("{} {name}", short(bytes / unit))
 }
 
 /// A table without lines. Columns without a value are left out.
@@ -124,22 +93,4 @@ pub fn wrap(text: &str, indent: &str) -> String {
         line += word;
     }
     if line.is_empty() { lines } else { lines + indent + &line + "\n" }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_are_written_as_people_write_them() {
-        let numbers = [0.05, 600.0, 77.607_325_78, 1.0 / 33.0, 1.2e-6, 3e9, 0.0, -0.0];
-        let told = numbers.map(number);
-        assert_eq!(told, ["0.05", "600", "77.6073", "0.030303", "1.2e-6", "3e9", "0", "0"]);
-        let told = [143.7, 2.69, 0.002_14, 9.96e-9, 0.0].map(short);
-        assert_eq!(told, ["144", "2.7", "0.0021", "1e-8", "0"]);
-        let told = [9.8e-4, 0.021, 90.0, 700.0, 1e5, 1.6e8].map(duration);
-        assert_eq!(told, ["980 µs", "21 ms", "90 s", "12 minutes", "28 hours", "5 years"]);
-        let told = [0, 320, 2_110_000_000, 1 << 50].map(size);
-        assert_eq!(told, ["0 bytes", "320 bytes", "2.1 GB", "1.1 PB"]);
-    }
 }

@@ -5,7 +5,9 @@ use std::fs::{self, File, OpenOptions};
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-use super::files::remove_old;
+use lieflow_figures::csv::field;
+
+use super::files::{name_file, remove_old};
 use crate::error::CliError;
 
 /// The names of a file of rows: when its run is complete, and until then.
@@ -31,14 +33,6 @@ pub struct RowFile {
     rows: u64,
 }
 
-/// A text as a field.
-fn field(text: &str) -> String {
-    match text.contains([',', '"', '\n', '\r']) {
-        true => format!("\"{}\"", text.replace('"', "\"\"")),
-        false => text.into(),
-    }
-}
-
 impl RowFile {
     /// Remove what earlier runs left.
     ///
@@ -61,7 +55,7 @@ impl RowFile {
         let path = folder.join(names[1]);
         let file = OpenOptions::new().create(true).append(true).open(&path);
         let file = file.map_err(CliError::io("write", &path))?;
-        let header: Vec<String> = columns.into_iter().map(field).collect();
+        let header: Vec<_> = columns.into_iter().map(field).collect();
         let lines = header.join(",") + "\n";
         Ok(RowFile { folder: folder.into(), names, file, lines, written: 0, rows: 0 })
     }
@@ -123,7 +117,7 @@ impl RowFile {
         self.flush()?;
         let [place, from] = self.names.map(|name| self.folder.join(name));
         match complete {
-            true => fs::rename(from, &place).map_err(CliError::io("write", &place)),
+            true => name_file(&self.file, &from, &place).map_err(CliError::io("write", &place)),
             false => Ok(()),
         }
     }

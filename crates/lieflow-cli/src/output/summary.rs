@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use crate::fit::Fit;
 use lieflow_model::scene::Defaults;
 use lieflow_model::schema::explained_by_rounding;
+use lieflow_timing::Fit;
 
-use super::{duration, number, short};
+use super::{duration, number, rough};
 
 /// Errors of parts that are told; the file has all.
 const PARTS: usize = 4;
@@ -252,8 +252,8 @@ impl Distance {
     /// The number and its unit, as "0.002" and "degrees", or "1.2e-9" and "of its size".
     fn in_words(&self) -> (String, &'static str) {
         match self.degrees {
-            Some(degrees) => (short(degrees), "degrees"),
-            None => (short(self.relative), "of its size"),
+            Some(degrees) => (rough(degrees), "degrees"),
+            None => (rough(self.relative), "of its size"),
         }
     }
 }
@@ -317,7 +317,7 @@ impl EventSummary {
 
     /// The error of the times, as "times right to about 2e-12", if it is known.
     pub fn time_error_in_words(&self) -> Option<String> {
-        self.time_error.map(|error| format!("times right to about {}", short(error)))
+        self.time_error.map(|error| format!("times right to about {}", rough(error)))
     }
 
     /// The next zero; so many are drawn.

@@ -15,10 +15,11 @@ pub use choice::{
 pub use kept::kept_table;
 pub use speed::{maps_chart, speed_chart, speed_table, write_speed_csv};
 
+use lieflow_figures::Cell;
 use lieflow_figures::number::{DASH, sig, typed};
-use lieflow_figures::{Cell, Page, Section};
+use lieflow_timing::machine;
 
-use crate::measure::{Reached, Size, WorkPoint, machine};
+use crate::measure::{Reached, Size, WorkPoint};
 
 /// How many times faster, as `3.2×`.
 pub fn times(ratio: f64) -> String {
@@ -62,10 +63,4 @@ pub fn conditions(rounds: u32) -> [(String, String); 2] {
         "CPU time of one thread, medians of {rounds} rounds that visit every method in turn"
     );
     [("Machine".into(), machine()), ("Times".into(), how)]
-}
-
-/// A page with the version of the program at its foot.
-pub fn page(title: impl Into<String>, subtitle: impl Into<String>, sections: Vec<Section>) -> Page {
-    let footer = format!("lieflow {}", env!("CARGO_PKG_VERSION"));
-    Page { title: title.into(), subtitle: subtitle.into(), links: Vec::new(), sections, footer }
 }

@@ -6,7 +6,9 @@ use super::choice::{Cost, drawn, fronts};
 use super::{Looks, number};
 use crate::error::CliError;
 use crate::measure::{Candidate, Curve, Size};
-use crate::output::{fields, in_full, optional, write_csv};
+use crate::output::write_file;
+use lieflow_figures::csv::{self, in_full, optional};
+use lieflow_figures::fields;
 use lieflow_figures::number::seconds;
 use lieflow_figures::{Cell, Chart, Column, Marker, Series, Table, tell_apart};
 use lieflow_model::problem::Layer;
@@ -136,5 +138,5 @@ pub fn write_speed_csv<'a>(
             }));
         }
     }
-    write_csv(path, header.split(','), rows)
+    write_file(path, csv::table(header.split(','), rows))
 }

@@ -176,7 +176,7 @@ fn both_layers_stand_side_by_side() {
 /// The operations of the bodies and methods of the paper, by another way to the same numbers.
 #[test]
 fn operations_are_those_of_a_step_on_counting_numbers() {
-    use lieflow_cli::paper::methods::{Body, PaperMethod};
+    use lieflow_paper::methods::{Body, PaperMethod};
     let scene = Scene::parse("scene", SCENE).unwrap();
     let body = Body::new([1.0, 2.0, 3.0], [0.2, 0.0, 3.0]);
     let model = scene.model_with(Layer::Closed, &["attitude"]).unwrap();

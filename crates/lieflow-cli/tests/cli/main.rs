@@ -9,7 +9,6 @@ mod every_row;
 mod laws;
 mod listing;
 mod operations;
-mod paper;
 #[cfg(unix)]
 mod resume;
 mod right;
@@ -17,4 +16,3 @@ mod room;
 mod run;
 mod same_bits;
 mod support;
-mod survey;

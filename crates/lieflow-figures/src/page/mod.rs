@@ -38,6 +38,16 @@ impl Section {
 }
 
 impl Page {
+    /// A page with the version of lieflow at its foot.
+    pub fn new(
+        title: impl Into<String>,
+        subtitle: impl Into<String>,
+        sections: Vec<Section>,
+    ) -> Self {
+        let footer = format!("lieflow {}", env!("CARGO_PKG_VERSION"));
+        Page { title: title.into(), subtitle: subtitle.into(), links: Vec::new(), sections, footer }
+    }
+
     /// The page with links to these pages and files, relative to this page.
     pub fn with_links<'a>(self, links: impl IntoIterator<Item = (&'a str, &'a str)>) -> Self {
         let links = links.into_iter().map(|(text, href)| (text.into(), href.into())).collect();

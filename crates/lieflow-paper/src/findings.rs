@@ -2,15 +2,14 @@
 
 use lieflow::groups::{Sample, So3};
 use lieflow::problems::RigidBody;
-use lieflow::{SaveAt, TimeGrid};
+use lieflow::{RunError, SaveAt, TimeGrid};
 use nalgebra::{Matrix3, Vector3};
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
 
-use super::energy::energy_run;
-use super::experiments::{EXAMPLE1, EXAMPLE3, Experiment};
-use super::methods::{Body, PaperMethod};
-use crate::error::CliError;
+use crate::energy::energy_run;
+use crate::experiments::{EXAMPLE1, EXAMPLE3, Experiment};
+use crate::methods::{Body, PaperMethod};
 
 /// The energy drift of one method in many space frames.
 #[derive(Clone, Debug)]
@@ -40,7 +39,7 @@ impl Frames {
 }
 
 /// The drift in `count` random frames, for exp and both orderings of ccsk, in examples 1 and 3.
-pub fn frames(count: usize, seed: u64, mut tick: impl FnMut(f64)) -> Result<Vec<Frames>, CliError> {
+pub fn frames(count: usize, seed: u64, mut tick: impl FnMut(f64)) -> Result<Vec<Frames>, RunError> {
     let mut rng = Pcg64::seed_from_u64(seed);
     let turns: Vec<Matrix3<f64>> =
         (0..count).map(|_| So3::<f64>::new().sample_element(&mut rng)).collect();
@@ -53,7 +52,7 @@ pub fn frames(count: usize, seed: u64, mut tick: impl FnMut(f64)) -> Result<Vec<
             // exp does not see the frame: a few show it.
             let turns =
                 if method == PaperMethod::Exp { &turns[..count.min(10)] } else { &turns[..] };
-            let drift = |body: &Body| Ok::<_, CliError>(end_of(body, method, &grid)?.abs());
+            let drift = |body: &Body| Ok::<_, RunError>(end_of(body, method, &grid)?.abs());
             let mut random =
                 turns.iter().map(|r| drift(&body.turned(r))).collect::<Result<Vec<_>, _>>()?;
             random.sort_by(f64::total_cmp);
@@ -65,7 +64,7 @@ pub fn frames(count: usize, seed: u64, mut tick: impl FnMut(f64)) -> Result<Vec<
 }
 
 /// E(t) − E(0) at the end, with nothing looked at on the way.
-fn end_of(body: &Body, method: PaperMethod, grid: &TimeGrid) -> Result<f64, CliError> {
+fn end_of(body: &Body, method: PaperMethod, grid: &TimeGrid) -> Result<f64, RunError> {
     let energy = RigidBody::<f64>::new(body.inertia)?;
     let start = energy.energy(&body.momentum_body());
     let mut last = f64::NAN;
@@ -94,7 +93,7 @@ impl DriftOrder {
 pub const GENERIC: Body = Body::new([1.0, 2.0, 3.0], [0.9, 1.0, 2.1]);
 
 /// How the drift falls with the step on generic data, over t = 0 … 400.
-pub fn drift_orders() -> Result<Vec<DriftOrder>, CliError> {
+pub fn drift_orders() -> Result<Vec<DriftOrder>, RunError> {
     let methods = [
         PaperMethod::Exp,
         PaperMethod::Cay,
@@ -106,7 +105,7 @@ pub fn drift_orders() -> Result<Vec<DriftOrder>, CliError> {
     let order = |method| {
         let point = |h: f64| {
             let grid = TimeGrid::new([0.0, 400.0], h)?;
-            Ok::<_, CliError>((h, energy_run(&GENERIC, method, &grid)?.drift().abs()))
+            Ok::<_, RunError>((h, energy_run(&GENERIC, method, &grid)?.drift().abs()))
         };
         let points =
             [0.1, 0.05, 0.025, 0.0125, 0.00625].into_iter().map(point).collect::<Result<_, _>>()?;
@@ -135,7 +134,7 @@ pub fn side(body: &Body, m: &Vector3<f64>) -> f64 {
 }
 
 /// Methods on g and methods that keep m as a state, over t = 0 … 200 with steps of 0.05.
-pub fn separatrix() -> Result<Vec<Separatrix>, CliError> {
+pub fn separatrix() -> Result<Vec<Separatrix>, RunError> {
     let body = NEAR_SEPARATRIX;
     let grid = TimeGrid::new([0.0, 200.0], 0.05)?;
     let (_, exact) = body.exact(200.0)?;

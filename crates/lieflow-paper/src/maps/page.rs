@@ -6,9 +6,9 @@ use lieflow_figures::{
 };
 
 use super::{Over, Study, StudyLine};
-use crate::measure::machine;
-use crate::output::{fields, in_full};
-use crate::report;
+use lieflow_figures::csv::in_full;
+use lieflow_figures::fields;
+use lieflow_timing::machine;
 
 /// Every point, as rows of CSV.
 pub(super) fn points(studies: &[Study]) -> Vec<Vec<String>> {
@@ -144,7 +144,7 @@ pub(super) fn page(studies: &[Study]) -> Page {
         table(&over_n, "On so(n), over all n.", "at n").into(),
     ];
     n_blocks.extend(drawn(&over_n));
-    report::page(
+    Page::new(
         "The maps: accuracy and time",
         "Closed forms on so(3) and the general layer for any n, beside nalgebra",
         vec![

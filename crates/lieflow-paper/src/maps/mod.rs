@@ -11,9 +11,9 @@ pub mod exact;
 mod page;
 
 use core::f64::consts::{PI, TAU};
-use std::path::{Path, PathBuf};
 
 use faer::Mat;
+use lieflow::RunError;
 use lieflow::groups::{AlgebraMatrix, LieAlgebra, MatrixGroup, Sample, So3, hat};
 use lieflow::maps::{Ccsk, CoordinateMap, Exp};
 use nalgebra::Vector3;
@@ -22,9 +22,8 @@ use rand_pcg::Pcg64;
 
 use self::contest::Contender;
 use self::exact::Matrix;
-use crate::error::CliError;
-use crate::measure::{median, seconds_of};
-use crate::output;
+use lieflow_figures::{Page, csv};
+use lieflow_timing::{median, seconds_of};
 
 /// A map or an inverse differential.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -255,7 +254,7 @@ fn at_angle(angle: f64, count: usize, rng: &mut Pcg64) -> Vec<Case> {
 
 /// The inputs at n, of spectral norm about 1: that of a Gaussian matrix is 2/√n times its Frobenius
 /// norm.
-fn at_size(n: usize, rng: &mut Pcg64) -> Result<Vec<Case>, CliError> {
+fn at_size(n: usize, rng: &mut Pcg64) -> Result<Vec<Case>, RunError> {
     let group = MatrixGroup::so(n)?;
     let mut draw = |size: f64| {
         let x = group.sample_algebra(&mut *rng, 1.0);
@@ -281,7 +280,7 @@ pub fn survey(
     effort: &StudyExtent,
     seed: u64,
     mut tick: impl FnMut(f64),
-) -> Result<Vec<Study>, CliError> {
+) -> Result<Vec<Study>, RunError> {
     let mut rng = Pcg64::seed_from_u64(seed);
     let mut inputs: Vec<(Over, f64, Vec<Case>)> = Vec::new();
     for angle in angles() {
@@ -331,15 +330,19 @@ pub fn survey(
 /// The page of the maps.
 pub const MAPS_PAGE: &str = "maps.html";
 
-/// Write the page with its figures, and every point as maps.csv; the path of the page.
-///
-/// # Errors
-/// A file cannot be written.
-pub fn write(folder: &Path, studies: &[Study]) -> Result<PathBuf, CliError> {
+/// The page with the figures.
+pub fn page(studies: &[Study]) -> Page {
+    page::page(studies)
+}
+
+/// The file of every point.
+pub const MAPS_FILE: &str = "maps.csv";
+
+/// Every point, as CSV.
+pub fn points(studies: &[Study]) -> String {
     let header =
         ["map", "over", "contender", "at", "cases", "refused", "error_eps_cond", "seconds"];
-    output::write_csv(&folder.join("maps.csv"), header, page::points(studies))?;
-    output::write_page(folder, MAPS_PAGE, &page::page(studies))
+    csv::table(header, page::points(studies))
 }
 
 impl Study {

@@ -1,6 +1,6 @@
 //! What the paper prints, and what is wrong in it.
 
-use super::methods::PaperMethod;
+use crate::methods::PaperMethod;
 
 /// A row of Table 3: energy error at t = 400, and its mean.
 pub const TABLE3: [(PaperMethod, &str, &str); 8] = [

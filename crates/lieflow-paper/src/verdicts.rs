@@ -1,17 +1,17 @@
 //! The reading of section 5.3, judged by the numbers of this run.
 
-use super::Paper;
-use super::accuracy::{Accuracy, EPSILONS, TESTS};
-use super::methods::PaperMethod;
+use crate::accuracy::{Accuracy, EPSILONS, TESTS};
+use crate::methods::PaperMethod;
+use crate::results::Paper;
 use lieflow_figures::number::{or_dash, seconds};
 
 /// A sentence of the paper and what the measurements say.
 #[derive(Clone, Debug)]
-pub(super) struct Verdict {
+pub struct Verdict {
     /// The sentence.
-    pub(super) claim: &'static str,
+    pub claim: &'static str,
     /// The answer.
-    pub(super) answer: String,
+    pub answer: String,
 }
 
 const LIE: [PaperMethod; 5] = [

@@ -15,7 +15,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use lieflow_figures::{Marker, Point, Series};
 
-use crate::measure::seconds_of;
+use lieflow_timing::seconds_of;
 
 /// A body of the paper with its initial data, angular momentum and attitude in space.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -6,10 +6,8 @@ use lieflow::{RunError, SaveAt, TimeGrid};
 use lieflow_figures::{Axis, Chart, Series};
 use nalgebra::Matrix3;
 
-use super::methods::{Body, PaperMethod};
-use crate::error::CliError;
-use crate::fit::Fit;
-use crate::measure::cpu_seconds;
+use crate::methods::{Body, PaperMethod};
+use lieflow_timing::{Fit, cpu_seconds};
 
 /// The energy error of one run, sample by sample.
 #[derive(Clone, Debug)]
@@ -66,7 +64,7 @@ impl EnergyRun {
 }
 
 /// The largest |E − E(0)| up to each time, or up to what stands for it.
-pub(super) fn energy_chart(
+pub fn energy_chart(
     id: &str,
     title: &str,
     time: Axis,
@@ -83,7 +81,7 @@ pub fn energy_run(
     body: &Body,
     method: PaperMethod,
     grid: &TimeGrid,
-) -> Result<EnergyRun, CliError> {
+) -> Result<EnergyRun, RunError> {
     let energy = RigidBody::<f64>::new(body.inertia)?;
     let start = energy.energy(&body.momentum_body());
     let mut error = Vec::with_capacity(grid.steps() as usize + 1);

@@ -4,14 +4,14 @@ use lieflow::groups::{LieGroup, So3};
 use lieflow_figures::number::{or_dash, seconds, sig};
 use lieflow_figures::{Axis, Block, Cell, Chart, Column, Page, Row, Section, Series, Table};
 use lieflow_model::problem::Layer;
+use lieflow_paper::energy::energy_chart;
+use lieflow_paper::experiments::Experiment;
+use lieflow_paper::maps::MAPS_PAGE;
+use lieflow_paper::methods::PaperMethod;
+use lieflow_paper::printed;
 
 use super::{Outcome, Speed, candidate, rounds};
 use crate::measure::Curve;
-use crate::paper::energy::energy_chart;
-use crate::paper::experiments::Experiment;
-use crate::paper::maps::MAPS_PAGE;
-use crate::paper::methods::PaperMethod;
-use crate::paper::printed;
 use crate::report;
 
 impl Speed {
@@ -26,7 +26,7 @@ impl Speed {
             outcomes.map(|outcome| Block::fold(outcome.title.clone(), outcome.blocks())).collect();
         sections.push(Section::new("The same for two more bodies", others));
         sections.push(self.agreement());
-        report::page(
+        Page::new(
             "Rotations that stay rotations",
             "Three bodies that turn freely, by Lie group methods and by classical Runge–Kutta",
             sections,

@@ -1,18 +1,18 @@
 //! The page of the paper's numerical section.
 
-use super::Paper;
-use super::accuracy::{Accuracy, EPSILONS, TESTS};
-use super::energy::{EnergyRun, energy_chart};
-use super::methods::PaperMethod;
-use super::printed::{self, ERRATA, TABLE3};
-use super::{news, verdicts};
-use crate::measure::machine;
-use crate::report;
+use crate::accuracy::{Accuracy, EPSILONS, TESTS};
+use crate::energy::{EnergyRun, energy_chart};
+use crate::methods::PaperMethod;
+use crate::news;
+use crate::printed::{self, ERRATA, TABLE3};
+use crate::results::Paper;
+use crate::verdicts;
 use lieflow_figures::number::{DASH, or_dash, scientific, seconds};
 use lieflow_figures::{Axis, Block, Chart, Column, Page, Point, Section, Table};
+use lieflow_timing::machine;
 
 pub(super) fn page(paper: &Paper) -> Page {
-    report::page(
+    Page::new(
         "Lie group methods for rigid body dynamics: the numbers again",
         "The numerical section of Celledoni & Owren (2003), computed by lieflow beside what is printed",
         vec![

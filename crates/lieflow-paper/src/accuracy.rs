@@ -1,15 +1,13 @@
 //! The error at t = 1 over the number of steps: Table 4 and Figure 5.
 
 use lieflow::scalar::Ops;
-use lieflow::{SaveAt, TimeGrid};
+use lieflow::{RunError, SaveAt, TimeGrid};
 use nalgebra::Matrix3;
 
-use super::experiments::{EXAMPLE2, EXAMPLE3};
-use super::methods::{Body, PaperMethod};
-use super::printed::{Table4, table4};
-use crate::error::CliError;
-use crate::fit::Fit;
-use crate::measure::median;
+use crate::experiments::{EXAMPLE2, EXAMPLE3};
+use crate::methods::{Body, PaperMethod};
+use crate::printed::{Table4, table4};
+use lieflow_timing::{Fit, median};
 
 /// One of the two accuracy tests of section 5.3.
 #[derive(Clone, Copy, Debug)]
@@ -132,7 +130,7 @@ impl Accuracy {
 }
 
 /// Measure every method with an attitude in the test of this place in [`TESTS`], in rounds that take turns.
-pub fn accuracy(test: usize, finer: u32, rounds: u32) -> Result<Vec<Accuracy>, CliError> {
+pub fn accuracy(test: usize, finer: u32, rounds: u32) -> Result<Vec<Accuracy>, RunError> {
     let Test { body, powers: paper, .. } = TESTS[test];
     let (_, exact) = body.exact(1.0)?;
     let powers = paper[0]..=paper[5] + finer;
@@ -160,7 +158,7 @@ pub fn accuracy(test: usize, finer: u32, rounds: u32) -> Result<Vec<Accuracy>, C
 /// A timing shorter than this is repeated within its round.
 const SHORTEST: f64 = 2e-4;
 
-fn time(all: &mut [Accuracy], body: &Body, rounds: u32) -> Result<(), CliError> {
+fn time(all: &mut [Accuracy], body: &Body, rounds: u32) -> Result<(), RunError> {
     let mut times: Vec<Vec<Vec<f64>>> =
         all.iter().map(|a| vec![Vec::new(); a.points.len()]).collect();
     for _ in 0..rounds {

@@ -1,11 +1,12 @@
 //! The data as CSV.
 
-use super::Paper;
-use super::accuracy::{EPSILONS, TESTS};
-use super::counts::Count;
-use super::energy::EnergyRun;
-use super::printed::{self, table3};
-use crate::output::{fields, in_full, optional};
+use crate::accuracy::{EPSILONS, TESTS};
+use crate::counts::Count;
+use crate::energy::EnergyRun;
+use crate::printed::{self, table3};
+use crate::results::Paper;
+use lieflow_figures::csv::{in_full, optional};
+use lieflow_figures::fields;
 
 /// The name of a file, its columns and its rows.
 type Data = (&'static str, String, Vec<Vec<String>>);

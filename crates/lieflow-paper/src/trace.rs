@@ -11,7 +11,7 @@ use lieflow::problems::{
 };
 use nalgebra::{Matrix3, Vector3};
 
-use super::methods::Body;
+use crate::methods::Body;
 
 /// A line of the trace: u, and k = dΨ_u⁻¹ f(λ(u)) there; at the end v and nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,4 +1,4 @@
-//! The main job: the three experiments on both layers, against the exact solution, with the report of
+//! The main job: the paper's three experiments on both layers, against the exact solution, with the report of
 //! speed against error.
 
 mod page;
@@ -13,11 +13,11 @@ use lieflow_figures::Body;
 use lieflow_figures::number::{or_dash, scientific, seconds, sig};
 use lieflow_model::problem::Layer;
 use lieflow_model::scene::Scene;
+use lieflow_paper::energy::EnergyRun;
+use lieflow_paper::experiments::{EXPERIMENTS, Experiment, SEED};
+use lieflow_paper::maps::{self, MAPS_FILE, MAPS_PAGE, Study};
+use lieflow_paper::methods::PaperMethod;
 
-use super::energy::EnergyRun;
-use super::experiments::{EXPERIMENTS, Experiment, SEED};
-use super::maps::{self, Study};
-use super::methods::PaperMethod;
 use crate::error::CliError;
 use crate::measure::{Candidate, Curve, Effort, NEVER, Plan, Rows, checks, speed_against_error};
 use crate::output;
@@ -101,7 +101,8 @@ impl Speed {
     /// # Errors
     /// A file cannot be written.
     pub fn write(&self, folder: &Path) -> Result<[PathBuf; 2], CliError> {
-        let maps = maps::write(folder, &self.studies)?;
+        output::write_file(&folder.join(MAPS_FILE), maps::points(&self.studies))?;
+        let maps = output::write_page(folder, MAPS_PAGE, &maps::page(&self.studies))?;
         let page = output::write_page(folder, "index.html", &self.page())?;
         let curves = self.outcomes.iter().map(|o| (o.experiment.scene, &o.curves[..]));
         report::write_speed_csv(&folder.join("speed.csv"), curves)?;
@@ -254,4 +255,23 @@ fn layers_differ(scene: &Scene, row: PaperMethod) -> Result<f64, CliError> {
     let [a, b] = ends.map(nalgebra::Vector3::from);
     let size = a.norm();
     Ok((a - b).norm() / if size > 0.0 { size } else { 1.0 })
+}
+
+#[cfg(test)]
+mod tests {
+    use lieflow_model::kinds::RigidBodySpec;
+
+    use super::*;
+
+    #[test]
+    fn scenes_and_experiments_are_the_same() {
+        for experiment in EXPERIMENTS {
+            let scene = Scene::bundled(experiment.scene).unwrap();
+            let spec = scene.problem.spec::<RigidBodySpec>().unwrap();
+            assert_eq!(spec.inertia, experiment.body.inertia);
+            assert_eq!(spec.momentum_body, experiment.body.momentum_space);
+            assert_eq!(scene.grid.t_span(), [0.0, Experiment::END]);
+            assert!((scene.grid.h() - experiment.dt).abs() < 1e-15);
+        }
+    }
 }

@@ -1,8 +1,8 @@
 //! What is new, for the page: the space frame, the orders of the drift, the separatrix.
 
-use super::Paper;
-use super::findings::{Frames, Separatrix};
-use super::methods::PaperMethod;
+use crate::findings::{Frames, Separatrix};
+use crate::methods::PaperMethod;
+use crate::results::Paper;
 use lieflow_figures::number::{DASH, scientific, sig};
 use lieflow_figures::{Axis, Block, Chart, Column, Scale, Table};
 
