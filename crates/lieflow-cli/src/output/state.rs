@@ -13,9 +13,12 @@
 //! `run.rows` is what the run showed, in records of one length: what it is ([`Kind`]), t, the numbers of the row.
 //! What follows the records of the state is of no use, and is dropped. Both go away when the run is complete.
 
+use core::hash::Hasher;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufReader, Read, Write};
 use std::path::{Path, PathBuf};
+
+use fnv::FnvHasher;
 
 use super::files::{remove_old, write_file};
 use crate::error::CliError;
@@ -25,7 +28,7 @@ const STATE: &str = "run.state";
 pub const ROWS: &str = "run.rows";
 
 /// The name of the format, and its version.
-const FORMAT: u64 = u64::from_le_bytes(*b"lf-run\x00\x01");
+const FORMAT: u64 = u64::from_le_bytes(*b"lf-run\x00\x02");
 
 /// Records are written when there are so many bytes of them.
 const BYTES: usize = 1 << 16;
@@ -41,7 +44,9 @@ pub enum Kind {
 
 /// The check sum of words, one after the other.
 fn sum(sum: u64, word: u64) -> u64 {
-    (sum ^ word).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29)
+    let mut hasher = FnvHasher::with_key(sum);
+    hasher.write(&word.to_le_bytes());
+    hasher.finish()
 }
 
 fn words(bytes: &[u8]) -> impl Iterator<Item = u64> {
@@ -285,6 +290,9 @@ impl RunState {
     /// A file cannot be written: then the state before is there.
     pub fn save(&mut self, driver: &[u8]) -> Result<(), CliError> {
         self.flush()?;
+        // The records that a state counts are on the disk before it.
+        let kept = self.file.as_ref().map_or(Ok(()), File::sync_data);
+        kept.map_err(CliError::io("write", &self.folder.join(ROWS)))?;
         let Shown { length, records, sum } = self.shown;
         let head = [FORMAT, self.owner[0], self.owner[1], length, records, sum];
         let head = head.into_iter().chain([sum_of(&head, driver)]);

@@ -1,7 +1,8 @@
 //! A file of samples as variables of formulas: CSV with a line of names, `t` first, and rows of numbers.
 
-use std::hash::{DefaultHasher, Hash, Hasher};
+use std::hash::{Hash, Hasher};
 
+use fnv::FnvHasher;
 use lieflow::samples::{Interpolation, Samples};
 
 use crate::reader::Refusal;
@@ -78,7 +79,7 @@ impl Table {
             let refusal = Refusal::from(error).renamed(&[("times.len()", "rows")]);
             Refusal::at(KEY, format!("{file}: {}", refusal.message))
         })?;
-        let mut hasher = DefaultHasher::new();
+        let mut hasher = FnvHasher::default();
         text.hash(&mut hasher);
         Ok(Table { file, text: hasher.finish(), columns: columns[1..].into(), samples })
     }
