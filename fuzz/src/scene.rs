@@ -20,7 +20,7 @@ pub fn formula(data: &[u8]) {
     match Formula::read("f", &text, &names) {
         Ok(formula) => {
             let _ = formula.value(&[0.3, -0.7]);
-            if let Ok(slope) = formula.derivative("f", 1) {
+            if let Ok(slope) = formula.derivative(1) {
                 let _ = slope.value(&[0.3, -0.7]);
             }
         }
