@@ -1,8 +1,8 @@
 //! The scene parser on any text: a scene whose problem and grid are checked, or an error that has
 //! something to say. The same of the formulas in it.
 
-use lieflow_model::scene::Scene;
 use lieflow_model::formula::{Formula, Parameters};
+use lieflow_model::scene::Scene;
 
 /// Parse the bytes as a scene.
 pub fn parse(data: &[u8]) {
