@@ -97,8 +97,17 @@ impl<Psi: CoordinateMap<So3> + CoordinateMap<MatrixGroup>> BothLayers<'_, Psi> {
     }
 }
 
-/// exp, cay, ccsk123, ccsk321 and their inverse differentials on both layers, at `cases` random u
-/// of all magnitudes.
+/// Compares exp, cay, ccsk123, ccsk321 and their inverse differentials on both layers, at `cases` random u of all
+/// magnitudes.
+///
+/// ```
+/// use rand::SeedableRng;
+/// let mut rng = rand_pcg::Pcg64::seed_from_u64(1);
+/// for finding in lieflow::check::maps_agree(&mut rng, 1000)? {
+///     assert!(finding.holds(), "{}: {} at {}", finding.name, finding.worst, finding.at);
+/// }
+/// # Ok::<(), lieflow::Error>(())
+/// ```
 ///
 /// # Errors
 /// None that SO(3) can raise.

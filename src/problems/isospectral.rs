@@ -165,6 +165,18 @@ impl Invariants for IsospectralFlow {
 /// tridiagonal with L_ii = −p_i/2 and L_{i,i+1} = ½ e^{(q_i − q_{i+1})/2}. It moves by [`IsospectralFlow::toda`]. Its
 /// eigenvalues are −½ times the momenta after the last collision.
 ///
+/// ```
+/// use lieflow::prelude::*;
+/// use lieflow::problems::{IsospectralFlow, toda_lattice};
+/// let mut l = toda_lattice(&[-1.0, 0.2, 0.9], &[0.8, -0.1, -0.7])?;
+/// let grid = TimeGrid::new([0.0, 40.0], 0.05)?;
+/// let toda = IsospectralFlow::toda(3)?;
+/// integrate(&toda, &Rkmk::new(RK4, Cay), &grid, &SaveAt::Ends, &mut l, |_, _| {})?;
+/// // After the last collision the momenta −2L_ii are sorted, and nothing acts between the particles.
+/// assert!(l[(0, 0)] > l[(1, 1)] && l[(1, 1)] > l[(2, 2)] && l[(0, 1)].abs() < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`Error::Shape`] for lists of different lengths, [`Error::OutOfRange`] for numbers that are not
 /// finite.
