@@ -73,7 +73,7 @@ pub enum Block {
     /// Names with their values.
     Facts(Vec<(String, String)>),
     /// Words with what they mean.
-    Glossary(&'static [(&'static str, &'static str)]),
+    Glossary(Vec<(&'static str, &'static str)>),
     /// A table.
     Table(Table),
     /// A line chart.
