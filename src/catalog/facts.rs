@@ -250,8 +250,8 @@ named! {
     InverseInertia = "K",
     /// A multiplication of numbers, for a vector in ℝ³.
     Multiplication = "multiplication in ℝ³",
-    /// A microsecond, whatever the step.
-    Microsecond = "µs whatever the step",
+    /// The constants of an orbit, and its point at one time, whatever the step.
+    Orbit = "orbit by elliptic functions",
     /// A step of energy-casimir.
     EnergyCasimirStep = "energy-casimir",
     /// A step of isospectral2.

@@ -2,8 +2,8 @@
 //!
 //! From the momentum m at the start, m⁺ = m(h) and g⁺ = g Ψ(h) by Jacobi's elliptic functions
 //! ([`Exact`]). Order: unbounded, reported as `usize::MAX`. Preserves: everything, to the
-//! rounding of a step. Cost: the constants of one orbit and one evaluation, about 1 to 2 µs at any h. It computes in
-//! f64 for every scalar type. To follow one orbit use [`Exact`], which computes the constants only once.
+//! rounding of a step. Cost: the constants of one orbit and its point at one time, at any h. It computes in f64 for every
+//! scalar type. To follow one orbit use [`Exact`], which computes the constants only once.
 //! Source: C. G. J. Jacobi, J. reine angew. Math. 39 (1850); see [`Exact`].
 
 use nalgebra::{Matrix3, Vector3};

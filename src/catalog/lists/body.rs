@@ -12,8 +12,8 @@ use crate::methods::{
 };
 use crate::problems::Projection;
 use Operation::{
-    AmbientField, AxisRotation, CrossProduct, Exp, GramSchmidt, InverseInertia, Microsecond,
-    Multiplication, NewtonIteration, NewtonSchulz, Product, Psi, SimoWongStep,
+    AmbientField, AxisRotation, CrossProduct, Exp, GramSchmidt, InverseInertia, Multiplication,
+    NewtonIteration, NewtonSchulz, Orbit, Product, Psi, SimoWongStep,
 };
 use Property::{Casimirs, Everything, Group, QuadraticInvariants, Symplectic, TimeSymmetry};
 
@@ -180,7 +180,7 @@ pub(super) const BODY: &[MethodInfo] = &[
             0,
             "the exact motion by elliptic functions, any step",
             &[Everything],
-            Cost::of(&[WorkItem { count: Count::Between(1, 2), operation: Microsecond }]),
+            Cost::of(&[times(1, Orbit)]),
             "Jacobi 1850",
             Recipe::Exact,
         )
