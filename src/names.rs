@@ -1,18 +1,18 @@
-//! Names: spellings that count as one, and what was meant by a name that there is not.
+//! Names: spellings that count as one, and the likely meaning of an unknown name.
 //!
 //! ```
-//! use lieflow::names::{Meant, Part, find, meant};
+//! use lieflow::names::{Alias, Part, find, meant};
 //! assert_eq!(find("RKMK4", ["rk4", "rkmk4"]), Some("rkmk4"));
-//! assert_eq!(meant("cayley", &["exp", "cay"]), Some(Meant { name: "cay", part: None }));
-//! let rk45 = Meant { name: "rkmk", part: Some(Part::Tableau("dopri5")) };
+//! assert_eq!(meant("cayley", &["exp", "cay"]), Some(Alias { name: "cay", part: None }));
+//! let rk45 = Alias { name: "rkmk", part: Some(Part::Tableau("dopri5")) };
 //! assert_eq!(meant("rk45", &["rkmk4", "rkmk"]), Some(rk45));
 //! ```
 
 use core::fmt;
 
-/// A name with what has to stand beside it.
+/// A method or map that another program calls by a different name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Meant<'a> {
+pub struct Alias<'a> {
     /// The name.
     pub name: &'a str,
     /// The part of the method that the other name stands for.
@@ -29,7 +29,7 @@ pub enum Part {
 }
 
 /// As [`MethodSpec`](crate::catalog::MethodSpec) reads it: `rkmk dopri5`.
-impl fmt::Display for Meant<'_> {
+impl fmt::Display for Alias<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.part {
             None => f.write_str(self.name),
@@ -46,11 +46,11 @@ enum Is {
 
 impl Is {
     /// The method that a part is a part of, with the part.
-    const fn method(&self) -> Meant<'static> {
+    const fn method(&self) -> Alias<'static> {
         match *self {
-            Is::Method(name) => Meant { name, part: None },
-            Is::Part(part @ Part::Tableau(_)) => Meant { name: "rkmk", part: Some(part) },
-            Is::Part(part @ Part::Map(_)) => Meant { name: "rkmk4", part: Some(part) },
+            Is::Method(name) => Alias { name, part: None },
+            Is::Part(part @ Part::Tableau(_)) => Alias { name: "rkmk", part: Some(part) },
+            Is::Part(part @ Part::Map(_)) => Alias { name: "rkmk4", part: Some(part) },
         }
     }
 }
@@ -149,17 +149,17 @@ const OTHER_NAMES: &[(&str, Is)] = &[
 ];
 
 /// Names of other programs and books, and what each is here.
-pub fn other_names() -> impl Iterator<Item = (&'static str, Meant<'static>)> {
+pub fn other_names() -> impl Iterator<Item = (&'static str, Alias<'static>)> {
     OTHER_NAMES.iter().map(|(name, is)| (*name, is.method()))
 }
 
-/// A name without what does not count: case, hyphens, underscores, parentheses and spaces.
+/// A name in lower case without hyphens, underscores, parentheses and spaces.
 pub fn plain(name: &str) -> String {
     let counts = |c: &char| !matches!(c, '-' | '_' | '(' | ')') && !c.is_whitespace();
     name.chars().filter(counts).flat_map(char::to_lowercase).collect()
 }
 
-/// Are these two spellings of one name? What [`plain`] leaves out does not count.
+/// True if these are two spellings of one name, by [`plain`].
 pub fn same(a: &str, b: &str) -> bool {
     plain(a) == plain(b)
 }
@@ -171,15 +171,15 @@ pub fn find<'a>(given: &str, names: impl IntoIterator<Item = &'a str>) -> Option
 }
 
 /// The name that was meant: another spelling, a name of another program, or the closest one where it is close.
-pub fn meant<'a>(given: &str, names: &[&'a str]) -> Option<Meant<'a>> {
+pub fn meant<'a>(given: &str, names: &[&'a str]) -> Option<Alias<'a>> {
     let listed = |name| names.iter().find(|listed| **listed == name).copied();
     let here = |is: &Is| {
-        let Meant { name, part } = is.method();
+        let Alias { name, part } = is.method();
         let alone = part.and_then(|(Part::Tableau(name) | Part::Map(name))| listed(name));
-        let meant = alone.map(|name| Meant { name, part: None });
-        meant.or_else(|| Some(Meant { name: listed(name)?, part }))
+        let meant = alone.map(|name| Alias { name, part: None });
+        meant.or_else(|| Some(Alias { name: listed(name)?, part }))
     };
-    let alone = |name| Meant { name, part: None };
+    let alone = |name| Alias { name, part: None };
     let spelt = find(given, names.iter().copied()).map(alone);
     let other = OTHER_NAMES.iter().find(|(name, _)| same(name, given));
     spelt.or_else(|| other.and_then(|(_, is)| here(is))).or_else(|| near(given, names).map(alone))

@@ -237,7 +237,7 @@ impl<'a> Scales<'a> {
         self.next += 1;
         part
     }
-    /// The largest of the ratios of copies that share their tolerances.
+    /// The largest error ratio over copies that share their tolerances.
     #[inline]
     pub fn for_each_copy<S: Real>(
         &mut self,

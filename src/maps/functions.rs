@@ -112,7 +112,8 @@ impl LogGroup for MatrixGroup {
     }
 }
 
-/// A group with the differential of exp.
+/// A group with the differential of exp: `So3<f64>`, `UnitQuaternions`, `MatrixGroup`, `Unitary`. Users need it for
+/// [`dexp`] only.
 pub trait DexpGroup: LieGroup {
     /// [`dexp`] on this group.
     ///

@@ -157,7 +157,7 @@ pub enum ErrorCheck {
     Auto,
     /// Always.
     Always,
-    /// Never; where an exact solution is known, the error is told all the same.
+    /// Never, except against a known exact solution.
     Never,
 }
 

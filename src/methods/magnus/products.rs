@@ -138,7 +138,8 @@ const fn by_moments(f: [f64; 4]) -> [f64; 4] {
     out
 }
 
-/// A commutator-free Magnus method.
+/// A commutator-free Magnus method, with a table of S. Blanes and P. C. Moan (2006) or of A. Alvermann and H. Fehske
+/// (2011).
 #[derive(Clone, Copy, Debug)]
 pub struct CfMagnus<const S: usize, const F: usize>(pub CfMagnusTableau<S, F>);
 

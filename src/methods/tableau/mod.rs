@@ -163,7 +163,7 @@ pub(crate) const fn lower<const S: usize>(rows: [&[f64]; S]) -> [[f64; S]; S] {
     a
 }
 
-/// Euler's method, order 1.
+/// Euler's method, order 1 (L. Euler, Institutiones calculi integralis I, 1768).
 pub const EULER: Tableau<1> = Tableau {
     name: "euler",
     order: 1,
@@ -174,7 +174,7 @@ pub const EULER: Tableau<1> = Tableau {
     dense: Dense::Cubic { order: 1, end: &[1.0] },
 };
 
-/// The explicit midpoint rule (Runge), order 2.
+/// The explicit midpoint rule, order 2 (C. Runge, Über die numerische Auflösung von Differentialgleichungen, 1895).
 pub const MIDPOINT: Tableau<2> = Tableau {
     name: "midpoint",
     order: 2,
@@ -185,7 +185,8 @@ pub const MIDPOINT: Tableau<2> = Tableau {
     dense: Dense::Cubic { order: 2, end: &[-1.0, 2.0] },
 };
 
-/// Heun's method (the explicit trapezoidal rule), order 2.
+/// Heun's method, the explicit trapezoidal rule, order 2 (K. Heun, Neue Methoden zur approximativen Integration der
+/// Differentialgleichungen einer unabhängigen Veränderlichen, 1900).
 pub const HEUN: Tableau<2> = Tableau {
     name: "heun",
     order: 2,

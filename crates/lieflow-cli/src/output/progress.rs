@@ -16,7 +16,7 @@ pub struct Progress {
 
 /// The parts of a bar.
 const PARTS: f64 = 1000.0;
-/// What a bar is told sooner after what it was told before is passed over.
+/// Updates sooner than this after the last are dropped.
 const PAUSE: Duration = Duration::from_millis(50);
 /// A bar that waits is not shown before.
 const WAIT: Duration = Duration::from_secs(1);
@@ -62,7 +62,7 @@ impl Progress {
         }
         self.now(share, &what());
         if self.told.is_none() {
-            // What was done before, as of a run that goes on, says nothing of the time that is left.
+            // Steps before a resume do not count for the time left.
             self.bar.reset_eta();
         }
         self.told = Some(now);

@@ -1,6 +1,6 @@
 //! Names that were meant: of keys, kinds and quantities, and those of the library.
 
-use lieflow::names::{self, Meant, Part};
+use lieflow::names::{self, Alias, Part};
 
 /// Names of other programs, and what they are in a scene.
 const OTHER_NAMES: &[(&str, &str)] = &[
@@ -137,8 +137,8 @@ const OTHER_NAMES: &[(&str, &str)] = &[
 ];
 
 /// The name that was meant, when that is clear.
-fn meant<'a>(given: &str, names: &[&'a str]) -> Option<Meant<'a>> {
-    let alone = |name| Meant { name, part: None };
+fn meant<'a>(given: &str, names: &[&'a str]) -> Option<Alias<'a>> {
+    let alone = |name| Alias { name, part: None };
     let others = || {
         let listed = |name| names.iter().find(|listed| *listed == name).copied();
         OTHER_NAMES.iter().filter_map(move |(other, name)| Some((*other, listed(name)?)))
@@ -164,8 +164,8 @@ pub fn suggest<'a>(given: &str, names: &[&'a str]) -> Option<&'a str> {
 pub fn help_for(given: &str, names: &[&str]) -> String {
     let meant = meant(given, names);
     let (name, what, part) = match meant {
-        Some(Meant { name, part: Some(Part::Tableau(part)) }) => (name, "tableau", part),
-        Some(Meant { name, part: Some(Part::Map(part)) }) => (name, "map", part),
+        Some(Alias { name, part: Some(Part::Tableau(part)) }) => (name, "tableau", part),
+        Some(Alias { name, part: Some(Part::Map(part)) }) => (name, "map", part),
         _ => {
             let meant = meant.map(|meant| format!("did you mean `{}`?", meant.name));
             return names::expected(meant.as_deref(), names);
