@@ -18,7 +18,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     println!("{}: {}", kind.name, kind.equation);
     for key in kind.keys {
-        println!("  {:18}{:?}{}", key.name, key.shape, if key.optional { ", optional" } else { "" });
+        println!(
+            "  {:18}{:?}{}",
+            key.name,
+            key.shape,
+            if key.optional { ", optional" } else { "" }
+        );
     }
     println!("conserved: {}", body.invariants(&["attitude"]).join(", "));
 

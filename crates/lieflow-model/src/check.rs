@@ -11,7 +11,7 @@ use lieflow::check::{Finding, Record, Reference, Subject, Trial, TrialSteps, run
 use lieflow::maps::MAPS;
 use lieflow::problems::Origin;
 use lieflow::solve::Next;
-use lieflow::{Direction, SaveAt, StepControl, TimeGrid};
+use lieflow::{SaveAt, StepControl, TimeGrid};
 
 use crate::problem::{EventPlan, Layer, Model, Plan, Steps, Watcher};
 use crate::scene::{Scene, SceneError};
@@ -307,13 +307,9 @@ impl Subject for Method<'_> {
         let mut plan = Plan { times_by_steps, resume, ..Plan::new(steps, SaveAt::Times(times)) };
         plan.checkpoints = save.then_some(Duration::ZERO);
         if let Some((place, value)) = event {
-            plan.events.push(EventPlan {
-                name: "the reference value".into(),
-                places: (0..self.model.schema().columns().count()).collect(),
-                value: Box::new(move |_, row| self.numbers(row)[place] - value),
-                direction: Direction::Both,
-                stop_after: None,
-            });
+            let places = (0..self.model.schema().columns().count()).collect();
+            let value = move |_: f64, row: Row<'_>| self.numbers(row)[place] - value;
+            plan.events.push(EventPlan::new("the reference value", places, value));
         }
         let mut seen = Seen { method: self, record: Record::default(), start: None };
         let done = self.model.drive(&self.spec, plan, &mut seen);

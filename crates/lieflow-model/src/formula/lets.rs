@@ -6,9 +6,9 @@ use std::sync::Arc;
 use super::expression::Formula;
 use super::names::{Entry, Names, continues_name, without_digits};
 use super::text::Texts;
-use crate::reader::{KeyPath, Read, ReadError, Refusal, Value, read_as_held};
+use crate::reader::{KeyPath, Read, ReadError, Refusal, Shape, Value, read_as_held};
 
-read_as_held!(Lets);
+read_as_held!(Lets: BTreeMap<String, Texts> = Shape::TableOf(&Shape::Formulas));
 
 /// `[problem.let]`: formulas with names, which other formulas may use, `b = "3*t"`.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -10,9 +10,9 @@ use super::lost::Losses;
 use super::samples::{SamplesFile, Table};
 use super::tape::Tape;
 use crate::reader::values::Real;
-use crate::reader::{Read, ReadError, Refusal, Value, read_as_held};
+use crate::reader::{Read, ReadError, Refusal, Shape, Value, read_as_held};
 
-read_as_held!(Parameters);
+read_as_held!(Parameters: BTreeMap<String, Real> = Shape::TableOf(&Shape::Number));
 
 /// `[problem.parameters]`: constants that the formulas of a scene share, `k = 3.0`.
 #[derive(Clone, Debug, Default, PartialEq)]

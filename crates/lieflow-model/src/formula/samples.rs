@@ -7,7 +7,7 @@ use lieflow::samples::{Interpolation, Samples};
 
 use crate::reader::Refusal;
 use crate::reader::values::counted;
-use crate::reader::{Read, ReadError, Value};
+use crate::reader::{Read, ReadError, Shape, Value};
 
 /// The key of the file.
 const KEY: &str = "samples";
@@ -17,6 +17,8 @@ const KEY: &str = "samples";
 pub struct SamplesFile(pub(super) String, pub(super) String);
 
 impl Read for SamplesFile {
+    const SHAPE: Shape = Shape::Samples;
+
     fn read(value: &Value<'_>) -> Result<Self, ReadError> {
         let [name, text] = counted(value, 2, "texts")?;
         Ok(SamplesFile(name, text))

@@ -6,7 +6,7 @@ use super::expression::{Formula, read_value};
 use super::names::Names;
 use super::tape::Tape;
 use crate::reader::values::Real;
-use crate::reader::{KeyPath, Read, ReadError, Refusal, Value};
+use crate::reader::{KeyPath, Read, ReadError, Refusal, Shape, Value};
 
 /// A formula: a text, or a number.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -83,6 +83,8 @@ impl Texts {
 }
 
 impl Read for Text {
+    const SHAPE: Shape = Shape::Formula;
+
     fn read(value: &Value<'_>) -> Result<Self, ReadError> {
         match value.get_ref() {
             DeValue::String(text) => Ok(Text(text.to_string())),
@@ -96,6 +98,8 @@ impl Read for Text {
 }
 
 impl Read for Texts {
+    const SHAPE: Shape = Shape::Formulas;
+
     fn read(value: &Value<'_>) -> Result<Self, ReadError> {
         match value.get_ref() {
             DeValue::Array(_) => Vec::read(value).map(Texts::List),

@@ -29,7 +29,7 @@ use crate::problem::{
 };
 use crate::reader::KeyReader;
 use crate::reader::values::counted;
-use crate::reader::{Refusal, Value};
+use crate::reader::{Refusal, Shape, Value};
 use crate::schema::{Row, Schema};
 
 /// The entry of a preset in the list of kinds, by the name of its file.
@@ -116,6 +116,8 @@ read_by_keys! {
 
 /// A text of a preset. It is kept until the program ends, like the preset.
 impl Read for &'static str {
+    const SHAPE: Shape = Shape::Text;
+
     fn read(value: &Value<'_>) -> Result<Self, ReadError> {
         String::read(value).map(|text| &*text.leak())
     }
@@ -126,6 +128,8 @@ impl Read for &'static str {
 struct Drawing(fn(&'static str) -> Figure);
 
 impl Read for Drawing {
+    const SHAPE: Shape = Shape::Text;
+
     fn read(value: &Value<'_>) -> Result<Self, ReadError> {
         let figures = [
             ("lines", Drawing(Figure::Lines)),
@@ -150,7 +154,12 @@ impl Preset {
         let (problem, values) = (section("problem"), section("values"));
         let root = Spanned::new(root.span(), DeValue::Table(root.into_inner()));
         let stated = Stated::read(&root).unwrap_or_else(|error| panic!("a preset: {error:?}"));
-        let info = |key: &Key| KeyInfo { name: key.name, meaning: key.meaning };
+        let info = |key: &Key| KeyInfo {
+            name: key.name,
+            meaning: key.meaning,
+            shape: key.numbers.map_or(Shape::Number, |n| Shape::Numbers(n.0 as usize)),
+            optional: false,
+        };
         let key_infos = stated.keys.iter().map(info).collect();
         let key_names = stated.keys.iter().map(|key| key.name).collect();
         Preset { stated, problem, values, key_infos, key_names }
@@ -331,6 +340,9 @@ impl Run for OnBase {
     }
     fn modelled(&self) -> String {
         self.preset.modelled.into()
+    }
+    fn start(&self) -> Result<Vec<f64>, Error> {
+        self.base.start(&high_order())
     }
     fn drive(
         &self,

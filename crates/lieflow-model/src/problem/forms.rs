@@ -32,6 +32,8 @@ pub(crate) trait Run: Debug + Send + Sync {
     fn describe(&self, quantity: usize, schema: &mut Schema);
     /// What is integrated, in words.
     fn modelled(&self) -> String;
+    /// See [`Model::start`](super::Model::start).
+    fn start(&self) -> Result<Vec<f64>, Error>;
     /// See [`Model::drive`](super::Model::drive).
     fn drive(
         &self,

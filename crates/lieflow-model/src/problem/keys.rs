@@ -6,7 +6,7 @@
 use super::kind::{KeyInfo, Kind, ReadForms};
 use super::system::System;
 use crate::formula::Names;
-use crate::reader::Refusal;
+use crate::reader::{Refusal, Shape};
 
 /// The keys of a kind, as listings show them.
 pub(crate) trait KeyTable {
@@ -37,6 +37,8 @@ macro_rules! keys {
             const INFO: &'static [$crate::problem::KeyInfo] = &[$($crate::problem::KeyInfo {
                 name: $crate::reader::key_name(stringify!($key)),
                 meaning: $meaning,
+                shape: <$type as $crate::reader::Read>::SHAPE,
+                optional: <$type as $crate::reader::Read>::OPTIONAL,
             },)*];
         }
     };
@@ -84,6 +86,8 @@ macro_rules! group {
 pub(crate) const PARAMETERS: KeyInfo = KeyInfo {
     name: "parameters",
     meaning: "constants for the formulas: a table [problem.parameters] of names and numbers; optional",
+    shape: Shape::TableOf(&Shape::Number),
+    optional: true,
 };
 
 /// The key of a file of samples.
@@ -91,6 +95,8 @@ pub(crate) const SAMPLES: KeyInfo = KeyInfo {
     name: "samples",
     meaning: "the name of a CSV file of samples, beside the scene: a line of names, t first, and rows of numbers; \
               the other columns are variables of the formulas, functions of t; optional",
+    shape: Shape::Samples,
+    optional: true,
 };
 
 pub(crate) use group;

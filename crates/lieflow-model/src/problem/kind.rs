@@ -6,7 +6,7 @@ use lieflow::names::same;
 use serde::Serialize;
 
 use super::forms::Forms;
-use crate::reader::{ReadError, Value};
+use crate::reader::{ReadError, Shape, Value};
 
 /// Reads the keys of a problem, without `kind`.
 pub type ReadForms = fn(&Value<'_>) -> Result<Forms, ReadError>;
@@ -35,6 +35,10 @@ pub struct KeyInfo {
     pub name: &'static str,
     /// What it means, and what it holds.
     pub meaning: &'static str,
+    /// What its value is.
+    pub shape: Shape,
+    /// True if it may be left out.
+    pub optional: bool,
 }
 
 /// A quantity that can be asked for.

@@ -279,6 +279,17 @@ impl Model {
         vec![self.form(method).modelled()]
     }
 
+    /// The numbers of the initial point that a method runs on. [`Plan::start`] and [`EventPlan::change`] have the same
+    /// order: a vector in its order, a matrix column by column, the parts of a pair one after the other.
+    ///
+    /// [`EventPlan::change`]: super::EventPlan::change
+    ///
+    /// # Errors
+    /// What the library refuses of the problem.
+    pub fn start(&self, method: &MethodSpec) -> Result<Vec<f64>, Error> {
+        self.form(method).start()
+    }
+
     /// Integrates from the initial state by a plan; `watcher` sees the rows and the events.
     ///
     /// # Errors

@@ -90,6 +90,32 @@ pub struct EventPlan<'a> {
     pub direction: Direction,
     /// The zero that ends the run, from 1.
     pub stop_after: Option<u64>,
+    /// The number of points within each step where the function is evaluated; that of the library where there is none.
+    pub points: Option<u32>,
+    /// What changes the numbers of the point at each zero ([`Model::start`](super::Model::start) has their order).
+    pub change: Option<Change<'a>>,
+}
+
+/// What changes the numbers of a point at time t.
+pub type Change<'a> = Box<dyn FnMut(f64, &mut [f64]) + 'a>;
+
+impl<'a> EventPlan<'a> {
+    /// An event that every zero counts for, and that no zero ends.
+    pub fn new(
+        name: impl Into<String>,
+        places: Vec<usize>,
+        value: impl Fn(f64, Row<'_>) -> f64 + 'a,
+    ) -> Self {
+        EventPlan {
+            name: name.into(),
+            places,
+            value: Box::new(value),
+            direction: Direction::Both,
+            stop_after: None,
+            points: None,
+            change: None,
+        }
+    }
 }
 
 impl Debug for EventPlan<'_> {
@@ -119,6 +145,8 @@ pub struct Plan<'a> {
     pub checkpoints: Option<Duration>,
     /// The state to go on from.
     pub resume: Option<Vec<u8>>,
+    /// The numbers of another point to start from ([`Model::start`](super::Model::start) has their order).
+    pub start: Option<Vec<f64>>,
 }
 
 impl Plan<'_> {
@@ -134,6 +162,7 @@ impl Plan<'_> {
             cancel: None,
             checkpoints: None,
             resume: None,
+            start: None,
         }
     }
 
@@ -239,14 +268,17 @@ pub type RowOf<'a, P> = dyn Fn(f64, &PointOf<P>, &mut Vec<f64>) + 'a;
 pub fn drive_by<P: Runnable>(
     spec: &MethodSpec,
     problem: &P,
-    y: PointOf<P>,
+    mut y: PointOf<P>,
     plan: Plan<'_>,
     (schema, row_of): (&Schema, &RowOf<'_, P>),
     watcher: &mut dyn Watcher,
 ) -> Result<Outcome, RunError> {
     let method = problem.method(spec)?;
     let Plan { steps, save, times_by_steps, stops, .. } = plan;
-    let Plan { events, max_steps, cancel, checkpoints, resume, .. } = plan;
+    let Plan { events, max_steps, cancel, checkpoints, resume, start, .. } = plan;
+    if let Some(numbers) = start {
+        set_numbers(&mut y, "start", &numbers)?;
+    }
     let (watcher, numbers) = (RefCell::new(watcher), RefCell::new(Vec::new()));
     let mut branches = Branches::new(schema);
     let resume = resume.map(|bytes| branches.take_from(bytes));
@@ -279,9 +311,8 @@ pub fn drive_by<P: Runnable>(
         });
     }
     let (fill, numbers) = (&fill, &numbers);
-    for (index, EventPlan { name, value, direction, stop_after, .. }) in
-        events.into_iter().enumerate()
-    {
+    for (index, event) in events.into_iter().enumerate() {
+        let EventPlan { name, value, direction, stop_after, points, change, .. } = event;
         let watcher = &watcher;
         let mut event = Event::new(name, move |t, y: &PointOf<P>| {
             fill(t, y);
@@ -295,6 +326,17 @@ pub fn drive_by<P: Runnable>(
         if let Some(count) = stop_after {
             event = event.stop_after(count);
         }
+        if let Some(points) = points {
+            event = event.points(points);
+        }
+        if let Some(mut change) = change {
+            event = event.change(move |t, y| {
+                let mut numbers = numbers_of(y);
+                change(t, &mut numbers);
+                let mut next = numbers.into_iter();
+                y.each_number(&mut |x| *x = next.next().unwrap_or(*x));
+            });
+        }
         solve = solve.event(event);
     }
     let solve = solve.progress(|t| watcher.borrow_mut().progress(t)).ends_of_steps(|t, y| {
@@ -306,6 +348,32 @@ pub fn drive_by<P: Runnable>(
         watcher.borrow_mut().row(t, schema.row(&numbers.borrow()))
     })?;
     Ok(Outcome { t: done.t, status: done.status, stats: done.stats })
+}
+
+/// The numbers of a point, in the order of [`Numbers`].
+pub(crate) fn numbers_of<Y: Numbers>(y: &mut Y) -> Vec<f64> {
+    let mut numbers = Vec::new();
+    y.each_number(&mut |x| numbers.push(*x));
+    numbers
+}
+
+/// y ← the point of these numbers; `arg` names them.
+///
+/// # Errors
+/// [`Error::OutOfRange`] for another number of them.
+fn set_numbers<Y: Numbers>(y: &mut Y, arg: &str, numbers: &[f64]) -> Result<(), Error> {
+    let mut count = 0;
+    y.each_number(&mut |_| count += 1);
+    if numbers.len() != count {
+        return Err(Error::OutOfRange {
+            arg: format!("the count of {arg}"),
+            value: numbers.len() as f64,
+            expected: format!("{count} numbers"),
+        });
+    }
+    let mut next = numbers.iter();
+    y.each_number(&mut |x| *x = next.next().copied().unwrap_or(*x));
+    Ok(())
 }
 
 /// The orders of the method that `spec` names: see [`Model::orders`](super::Model::orders).

@@ -15,7 +15,8 @@ use super::kind::{Fact, Figure, PrincipalInertia, high_order};
 use super::operations::operations_by;
 use super::quantity::{Quantity, Value};
 use super::run::{
-    Layer, Orders, Outcome, Plan, Runnable, Steps, Watcher, drive_by, fits_by, orders_by,
+    Layer, Orders, Outcome, Plan, Runnable, Steps, Watcher, drive_by, fits_by, numbers_of,
+    orders_by,
 };
 use crate::formula::Formula;
 use crate::reader::Refusal;
@@ -174,6 +175,9 @@ impl<S: System> Run for On<S> {
     }
     fn modelled(&self) -> String {
         self.system.modelled()
+    }
+    fn start(&self) -> Result<Vec<f64>, Error> {
+        Ok(numbers_of(&mut self.ready()?.1.clone()))
     }
     fn drive(
         &self,

@@ -9,7 +9,7 @@ pub mod values;
 
 pub(crate) use mend::{Found, every_mistake, rename};
 pub(crate) use read::{KeyReader, key_name, read_as_held, read_by_keys};
-pub use read::{Read, ReadError, Value};
+pub use read::{Read, ReadError, Shape, Value};
 pub use refusal::{Either, KeyPath, Refusal, at_most_one, exactly_one};
 pub use suggest::{help_for, suggest};
 pub use tree::{Mistakes, Tree};

@@ -14,8 +14,48 @@ use super::suggest::help_for;
 /// A value of a scene, with its place in the text.
 pub type Value<'a> = Spanned<DeValue<'a>>;
 
+/// What the value of a key is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shape {
+    /// True or false.
+    Bool,
+    /// A whole number.
+    Whole,
+    /// A number.
+    Number,
+    /// So many numbers.
+    Numbers(usize),
+    /// Any number of numbers.
+    List,
+    /// Rows of numbers.
+    Rows,
+    /// As many rows of as many numbers.
+    Square(usize),
+    /// A text.
+    Text,
+    /// A formula: a text or a number.
+    Formula,
+    /// A formula, or a list of formulas.
+    Formulas,
+    /// A list of such values.
+    ListOf(&'static Shape),
+    /// A table of names with such values.
+    TableOf(&'static Shape),
+    /// A table with these keys.
+    Keys(&'static [&'static str]),
+    /// One of two.
+    Or(&'static Shape, &'static Shape),
+    /// The name of a file of samples.
+    Samples,
+}
+
 /// A type that is read from a value of a scene.
 pub trait Read: Sized {
+    /// What the value is.
+    const SHAPE: Shape;
+    /// True if the key may be left out.
+    const OPTIONAL: bool = false;
+
     /// Reads a value.
     ///
     /// # Errors
@@ -88,6 +128,8 @@ impl ReadError {
 }
 
 impl Read for String {
+    const SHAPE: Shape = Shape::Text;
+
     fn read(value: &Value<'_>) -> Result<Self, ReadError> {
         let text = value.get_ref().as_str();
         text.map(str::to_owned).ok_or_else(|| ReadError::expected(value, "a text"))
@@ -95,6 +137,8 @@ impl Read for String {
 }
 
 impl Read for bool {
+    const SHAPE: Shape = Shape::Bool;
+
     fn read(value: &Value<'_>) -> Result<Self, ReadError> {
         let known = value.get_ref().as_bool();
         known.ok_or_else(|| ReadError::expected(value, "true or false"))
@@ -102,6 +146,9 @@ impl Read for bool {
 }
 
 impl<T: Read> Read for Option<T> {
+    const SHAPE: Shape = T::SHAPE;
+    const OPTIONAL: bool = true;
+
     fn read(value: &Value<'_>) -> Result<Self, ReadError> {
         T::read(value).map(Some)
     }
@@ -111,6 +158,8 @@ impl<T: Read> Read for Option<T> {
 }
 
 impl<T: Read> Read for Vec<T> {
+    const SHAPE: Shape = Shape::ListOf(&T::SHAPE);
+
     fn read(value: &Value<'_>) -> Result<Self, ReadError> {
         let list = value.get_ref().as_array();
         let list = list.ok_or_else(|| ReadError::expected(value, "a list"))?;
@@ -120,6 +169,9 @@ impl<T: Read> Read for Vec<T> {
 
 /// A table of any keys. A missing one is empty.
 impl<T: Read> Read for BTreeMap<String, T> {
+    const SHAPE: Shape = Shape::TableOf(&T::SHAPE);
+    const OPTIONAL: bool = true;
+
     fn read(value: &Value<'_>) -> Result<Self, ReadError> {
         let table = value.get_ref().as_table();
         let table = table.ok_or_else(|| ReadError::expected(value, "a table"))?;
@@ -193,8 +245,11 @@ pub(crate) const fn key_name(field: &'static str) -> &'static str {
 
 /// Reads a type as the value that it holds.
 macro_rules! read_as_held {
-    ($($name:ident),*) => {$(
+    ($($name:ident: $held:ty = $shape:expr),*) => {$(
         impl Read for $name {
+            const SHAPE: Shape = $shape;
+            const OPTIONAL: bool = <$held>::OPTIONAL;
+
             fn read(value: &Value<'_>) -> Result<Self, ReadError> {
                 Read::read(value).map($name)
             }
@@ -220,6 +275,10 @@ macro_rules! read_by_keys {
         }
 
         impl $crate::reader::Read for $name {
+            const SHAPE: $crate::reader::Shape = $crate::reader::Shape::Keys(
+                &[$($crate::reader::key_name(stringify!($key)),)*]
+            );
+
             fn read(
                 value: &$crate::reader::Value<'_>,
             ) -> Result<Self, $crate::reader::ReadError> {

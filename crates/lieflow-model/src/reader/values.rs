@@ -3,7 +3,7 @@
 use faer::Mat;
 use toml::de::DeValue;
 
-use super::read::{Read, ReadError, Value, read_as_held};
+use super::read::{Read, ReadError, Shape, Value, read_as_held};
 use super::{KeyPath, Refusal};
 
 const OUT_OF_RANGE: &str = "the number is out of range";
@@ -13,6 +13,8 @@ const OUT_OF_RANGE: &str = "the number is out of range";
 pub struct Real(pub f64);
 
 impl Read for Real {
+    const SHAPE: Shape = Shape::Number;
+
     fn read(value: &Value<'_>) -> Result<Self, ReadError> {
         match number(value)? {
             x if x.is_finite() => Ok(Real(x)),
@@ -39,6 +41,8 @@ fn number(value: &Value<'_>) -> Result<f64, ReadError> {
 pub struct Whole<const MIN: u64>(pub u64);
 
 impl<const MIN: u64> Read for Whole<MIN> {
+    const SHAPE: Shape = Shape::Whole;
+
     fn read(value: &Value<'_>) -> Result<Self, ReadError> {
         let expected = || ReadError::expected(value, format!("a whole number, at least {MIN}"));
         let n = value.get_ref().as_integer().ok_or_else(expected)?;
@@ -69,6 +73,8 @@ pub(crate) fn counted<T: Read, L: TryFrom<Vec<T>>>(
 pub struct Reals<const N: usize>(pub [f64; N]);
 
 impl<const N: usize> Read for Reals<N> {
+    const SHAPE: Shape = Shape::Numbers(N);
+
     fn read(value: &Value<'_>) -> Result<Self, ReadError> {
         let numbers: [Real; N] = counted(value, N, "numbers")?;
         Ok(Reals(numbers.map(|x| x.0)))
@@ -80,9 +86,13 @@ impl<const N: usize> Read for Reals<N> {
 pub struct Span(pub [f64; 2]);
 
 impl Read for Span {
+    const SHAPE: Shape = Shape::Numbers(2);
+
     fn read(value: &Value<'_>) -> Result<Self, ReadError> {
         struct End(f64);
         impl Read for End {
+            const SHAPE: Shape = Shape::Number;
+
             fn read(value: &Value<'_>) -> Result<Self, ReadError> {
                 match number(value)? {
                     x if x.is_nan() => Err(ReadError::expected(value, "a finite number")),
@@ -103,6 +113,8 @@ impl Read for Span {
 pub struct Rows<const N: usize>(pub [[f64; N]; N]);
 
 impl<const N: usize> Read for Rows<N> {
+    const SHAPE: Shape = Shape::Square(N);
+
     fn read(value: &Value<'_>) -> Result<Self, ReadError> {
         let rows: [Reals<N>; N] = counted(value, N, "rows of numbers")?;
         Ok(Rows(rows.map(|row| row.0)))
@@ -125,6 +137,8 @@ enum Entry<R> {
 }
 
 impl<R: Read> Read for Entry<R> {
+    const SHAPE: Shape = Shape::Or(&Shape::Number, &R::SHAPE);
+
     fn read(value: &Value<'_>) -> Result<Self, ReadError> {
         match value.get_ref() {
             DeValue::Array(_) => R::read(value).map(Entry::Row),
@@ -134,6 +148,8 @@ impl<R: Read> Read for Entry<R> {
 }
 
 impl Read for Diagonal {
+    const SHAPE: Shape = Shape::Or(&Shape::Numbers(3), &Shape::Square(3));
+
     fn read(value: &Value<'_>) -> Result<Self, ReadError> {
         match counted::<Entry<Reals<3>>, [_; 3]>(value, 3, "numbers")? {
             [Entry::Number(a), Entry::Number(b), Entry::Number(c)] => Ok(Diagonal::List([a, b, c])),
@@ -156,6 +172,8 @@ pub enum Numbers {
 }
 
 impl Read for Numbers {
+    const SHAPE: Shape = Shape::Or(&Shape::List, &Shape::Rows);
+
     fn read(value: &Value<'_>) -> Result<Self, ReadError> {
         let (mut numbers, mut rows) = (Vec::new(), Vec::new());
         for entry in Vec::read(value)? {
@@ -203,7 +221,7 @@ impl Numbers {
     }
 }
 
-read_as_held!(List, Table);
+read_as_held!(List: Vec<Real> = Shape::List, Table: Vec<List> = Shape::Rows);
 
 /// Any number of numbers.
 #[derive(Clone, Debug, PartialEq)]

@@ -60,13 +60,10 @@ impl SceneEvent {
     /// [`Error::UnknownName`] for a schema without a quantity of the event.
     pub fn plan(&self, schema: &Schema) -> Result<EventPlan<'static>, Error> {
         let when = self.when.on(schema)?;
-        Ok(EventPlan {
-            name: self.name.clone(),
-            places: when.places().collect(),
-            value: Box::new(move |t: f64, row: Row<'_>| when.value(t, row)),
-            direction: self.direction,
-            stop_after: self.stop_after,
-        })
+        let places = when.places().collect();
+        let value = move |t: f64, row: Row<'_>| when.value(t, row);
+        let plan = EventPlan::new(&self.name, places, value);
+        Ok(EventPlan { direction: self.direction, stop_after: self.stop_after, ..plan })
     }
 }
 

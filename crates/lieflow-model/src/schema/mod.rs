@@ -201,6 +201,20 @@ impl Schema {
         self.iter().flat_map(|observable| &observable.columns).map(String::as_str)
     }
 
+    /// The place in the numbers of a row of a column.
+    ///
+    /// # Errors
+    /// [`Error::UnknownName`].
+    pub fn place(&self, column: &str) -> Result<usize, Error> {
+        let mut columns = self.iter().flat_map(|o| o.columns.iter().zip(o.places()));
+        let found = columns.find(|(name, _)| *name == column);
+        found.map(|(_, place)| place).ok_or_else(|| Error::UnknownName {
+            kind: "column",
+            name: column.into(),
+            expected: Vec::new(),
+        })
+    }
+
     /// The row of these numbers: [`Row::numbers`] of a row, or the values alone.
     pub fn row<'a>(&'a self, numbers: &'a [f64]) -> Row<'a> {
         Row { schema: self, numbers }
