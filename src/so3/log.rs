@@ -13,7 +13,7 @@ pub const POLAR_MAX: f64 = 1e-5;
 
 /// Up to this defect R counts as orthogonal, what products of rotations have; the logarithm is then
 /// off by no more than the defect.
-const ORTHOGONAL: f64 = 16.0 * f64::EPSILON;
+pub(super) const ORTHOGONAL: f64 = 16.0 * f64::EPSILON;
 
 /// log(R): the u with exp(u) = R and |u| ≤ π. A rotation by exactly π has two; then the first
 /// component of u that is not zero is positive.

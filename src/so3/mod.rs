@@ -51,6 +51,7 @@ pub(crate) use ccsk::{Angles, ccsk_of, dccskinv_of};
 pub use cay::{cay, cay_inv, dcay, dcay_matrix, dcayinv, dcayinv_matrix};
 pub use ccsk::{ccsk, ccsk_inv, dccsk, dccsk_matrix, dccskinv, dccskinv_matrix};
 pub use exp::{dexp, dexp_matrix, dexpinv, dexpinv_matrix, exp, exp_on};
+use log::ORTHOGONAL;
 pub use log::{POLAR_MAX, log};
 pub(crate) use quaternion::half_angle;
 pub use quaternion::{

@@ -172,3 +172,100 @@ fn refusals_and_edges() {
         assert!(matches!(*source, Error::Map(StepError::OutsideChart { .. })));
     }
 }
+
+/// log and cay⁻¹ of rotations, next to 𝟙 and to turns by π too, and dcay and dcay⁻¹, beside the scalar forms.
+#[test]
+fn inverse_maps_agree_with_the_scalar_forms() {
+    let mut rng = Pcg64::seed_from_u64(63);
+    let mut u = vectors(&mut rng, 20_000);
+    u.extend((0..2000).map(|i| {
+        let size = PI - 10f64.powi(-(i % 17));
+        Vector3::from_fn(|_, _| rng.random_range(-1.0f64..1.0)).normalize() * size
+    }));
+    u.extend([[PI, 0.0, 0.0], [0.0, -PI, 0.0], [0.0; 3]].map(Vector3::from));
+    let v: Vec<_> =
+        (0..u.len()).map(|_| Vector3::from_fn(|_, _| rng.random_range(-1.0..1.0))).collect();
+    let rotations: Vec<_> = u.iter().map(|u| so3::exp(u).expect("exp")).collect();
+    let flat = |x: &[Vector3<f64>]| x.iter().flat_map(|x| [x[0], x[1], x[2]]).collect::<Vec<f64>>();
+    let by_rows: Vec<f64> =
+        rotations.iter().flat_map(|g| g.transpose().as_slice().to_vec()).collect();
+
+    let mut logs = vec![0.0; 3 * u.len()];
+    batch::rows::log(&by_rows, &mut logs).expect("log");
+    let mut worst = 0.0f64;
+    for (g, log) in rotations.iter().zip(logs.chunks(3)) {
+        let (one, log) = (so3::log(g).expect("log"), Vector3::from_row_slice(log));
+        let units = (one - log).norm() / (EPS * one.norm().max(f64::MIN_POSITIVE));
+        worst = worst.max(units);
+        assert!(units <= 8.0, "log {g}: {log} beside {one}: {units} ε");
+    }
+    println!("log      worst {worst:.2} ε");
+
+    for (index, g) in rotations.iter().enumerate() {
+        let mut w = [0.0; 3];
+        let found = batch::rows::cay_inv(&by_rows[9 * index..9 * (index + 1)], &mut w);
+        assert_eq!(found.is_ok(), so3::cay_inv(g).is_ok());
+    }
+    let tame: Vec<usize> = (0..u.len()).filter(|&i| so3::cay_inv(&rotations[i]).is_ok()).collect();
+    let of_tame: Vec<f64> =
+        tame.iter().flat_map(|&i| by_rows[9 * i..9 * (i + 1)].to_vec()).collect();
+    let mut back = vec![0.0; 3 * tame.len()];
+    batch::rows::cay_inv(&of_tame, &mut back).expect("cay⁻¹");
+    for (&i, back) in tame.iter().zip(back.chunks(3)) {
+        let one = so3::cay_inv(&rotations[i]).expect("cay⁻¹");
+        let gap = (one - Vector3::from_row_slice(back)).norm();
+        assert!(gap <= 8.0 * EPS * one.norm() * (1.0 + one.norm()), "cay⁻¹ of {}", rotations[i]);
+    }
+
+    let list = |w: Result<Vector3<f64>, StepError>| w.map(|w| w.as_slice().to_vec());
+    let v_at = |u: &[Vector3<f64>]| columns(&v[v.len() - u.len()..]);
+    agrees(
+        "dcay",
+        &u,
+        |u, w| batch::dcay(views(&columns(u)), views(&v_at(u)), w),
+        |i| list(so3::dcay(&u[i], &v[i])),
+    );
+    agrees(
+        "dcayinv",
+        &u,
+        |u, w| batch::dcayinv(views(&columns(u)), views(&v_at(u)), w),
+        |i| list(so3::dcayinv(&u[i], &v[i])),
+    );
+
+    let mut w = [vec![0.0; 3 * u.len()], vec![0.0; 3 * u.len()]];
+    let tame: Vec<_> = u.iter().map(|u| u * (0.5 / (1.0 + u.norm()))).collect();
+    let one = flat(&tame[..1]);
+    batch::rows::dexpinv(&one, &flat(&v), &mut w[0]).expect("one u for all v");
+    let all = flat(&vec![tame[0]; u.len()]);
+    batch::rows::dexpinv(&all, &flat(&v), &mut w[1]).expect("as many u as v");
+    assert_eq!(w[0], w[1]);
+}
+
+/// Matrices that are no rotation are refused by number, in any place of an array; rows of the wrong length, too.
+#[test]
+fn rows_refuse_what_is_no_rotation() {
+    for n in [1, 5, 31, 32, 64, 65, 130] {
+        let u: Vec<f64> = (0..3 * n).map(|i| (i as f64).sin()).collect();
+        let mut r = vec![0.0; 9 * n];
+        batch::rows::exp(&u, &mut r).expect("exp");
+        let mut component = zeros::<9>(n);
+        let of_u = [0, 1, 2].map(|k| u.iter().skip(k).step_by(3).copied().collect::<Vec<_>>());
+        batch::exp(views(&of_u), views_mut(&mut component)).expect("exp");
+        for (k, numbers) in component.iter().enumerate() {
+            assert!(r.iter().skip(k).step_by(9).eq(numbers), "n = {n}, entry {k}");
+        }
+        let mut w = vec![0.0; 3 * n];
+        for bad in [2.0, -1.0, f64::NAN] {
+            let mut r = r.clone();
+            r[9 * (n - 1)..].iter_mut().for_each(|x| *x *= bad);
+            match batch::rows::log(&r, &mut w) {
+                Err(Error::Element { index, .. }) => assert_eq!(index, n - 1),
+                other => panic!("{other:?}"),
+            }
+        }
+        assert!(matches!(batch::rows::log(&r[1..], &mut w), Err(Error::Shape { .. })));
+        assert!(matches!(batch::rows::exp(&u, &mut r[1..]), Err(Error::Shape { .. })));
+    }
+    batch::rows::exp(&[], &mut []).expect("nothing to do");
+    batch::rows::dexpinv(&[], &[], &mut []).expect("nothing to do");
+}
