@@ -11,23 +11,27 @@ use crate::methods::{
     AnyMethod, Buss4, CfMagnus, CommutatorFree, Composition, ConjugationAction, ConjugationGroup,
     Embedded, EnergyCasimir, ExactMotion, GAUSS2, GAUSS4, GAUSS6, Gauss, IsospectralGauss,
     LieSeries, LowStorage, MapCounts, Method, Metric, OneBracket, ProjectionMethod, Rk, Rkmk,
-    RkmkGauss, RkmkGaussSymmetric, SeriesGroup, Taylor, Wide, magnus,
+    RkmkGauss, RkmkGaussSymmetric, SeriesGroup, Taylor, Wide, Within, magnus,
 };
 use crate::methods::{Step, tableau};
 use crate::problems::{
-    Ambient, FreeBody, LiePoisson, LinearField, Orthogonal, PointOf, Problem, ScalarOf, Split,
-    TaylorField,
+    AlgOf, Ambient, FreeBody, LiePoisson, LinearField, Orthogonal, PointOf, Problem, ScalarOf,
+    Split, TaylorField,
 };
 use crate::scalar::{Real, Trig};
 use crate::tolerance::Tolerance;
 
 /// A method without an estimate of its own.
-fn plain<'p, P: Problem + 'p>(method: impl Method<P> + Clone + 'p) -> MaybeMethod<'p, P> {
+fn plain<'p, P: Problem + 'p>(
+    method: impl Method<P> + Clone + Send + Sync + 'p,
+) -> MaybeMethod<'p, P> {
     Ok(Some(AnyMethod::new(method)))
 }
 
 /// A method with one.
-fn pair<'p, P: Problem + 'p>(method: impl Embedded<P> + Clone + 'p) -> MaybeMethod<'p, P> {
+fn pair<'p, P: Problem + 'p>(
+    method: impl Embedded<P> + Clone + Send + Sync + 'p,
+) -> MaybeMethod<'p, P> {
     Ok(Some(AnyMethod::embedded(method)))
 }
 
@@ -190,6 +194,34 @@ macro_rules! constant_method {
             ) -> Result<(), StepError> {
                 let $this = self;
                 $method.prepare(problem, step, from, to, work)
+            }
+            fn within(&self, work: &Self::Work) -> Within {
+                let $this = self;
+                Method::<P>::within(&$method, work)
+            }
+            fn coordinates(
+                &self,
+                problem: &P,
+                step: Step<ScalarOf<P>>,
+                theta: f64,
+                base: &mut PointOf<P>,
+                work: &mut Self::Work,
+                u: &mut AlgOf<P>,
+            ) {
+                let $this = self;
+                $method.coordinates(problem, step, theta, base, work, u);
+            }
+            fn on_chart(
+                &self,
+                problem: &P,
+                n: u64,
+                base: &PointOf<P>,
+                u: &AlgOf<P>,
+                work: &mut Self::Work,
+                at: &mut PointOf<P>,
+            ) -> Result<(), StepError> {
+                let $this = self;
+                $method.on_chart(problem, n, base, u, work, at)
             }
             fn interpolate(
                 &self,

@@ -10,9 +10,9 @@ use core::marker::PhantomData;
 use std::sync::Arc;
 
 use super::doubling::{doubled as step_doubled, within_halves};
-use super::{Embedded, EqualSteps, MapCounts, Method, Metric, Step, Steps, take_steps};
+use super::{Embedded, EqualSteps, MapCounts, Method, Metric, Step, Steps, Within, take_steps};
 use crate::error::{Error, StepError};
-use crate::problems::{PointOf, Problem, ScalarOf};
+use crate::problems::{AlgOf, PointOf, Problem, ScalarOf};
 use crate::tolerance::Tolerance;
 
 /// A method for problems of type `P`, behind a pointer. Cloning copies the pointer.
@@ -20,7 +20,7 @@ use crate::tolerance::Tolerance;
 /// A method without an embedded error estimate gets one by step doubling ([`Doubling`](super::Doubling)).
 /// [`has_pair`](Self::has_pair) is true for an embedded estimate.
 pub struct AnyMethod<'p, P: Problem> {
-    inner: Arc<dyn Inner<'p, P> + 'p>,
+    inner: Arc<dyn Inner<'p, P> + Send + Sync + 'p>,
 }
 
 impl<P: Problem> Clone for AnyMethod<'_, P> {
@@ -37,12 +37,12 @@ impl<P: Problem> fmt::Debug for AnyMethod<'_, P> {
 
 impl<'p, P: Problem + 'p> AnyMethod<'p, P> {
     /// Wraps a method without an embedded error estimate.
-    pub fn new<M: Method<P> + Clone + 'p>(method: M) -> Self {
+    pub fn new<M: Method<P> + Clone + Send + Sync + 'p>(method: M) -> Self {
         AnyMethod { inner: Arc::new(MethodWithEstimate { method, estimate: NoEstimate }) }
     }
 
     /// Wraps a method with its embedded error estimate, if it has one.
-    pub fn embedded<M: Embedded<P> + Clone + 'p>(method: M) -> Self {
+    pub fn embedded<M: Embedded<P> + Clone + Send + Sync + 'p>(method: M) -> Self {
         AnyMethod { inner: Arc::new(MethodWithEstimate { method, estimate: OwnEstimate }) }
     }
 
@@ -68,7 +68,11 @@ trait Inner<'p, P: Problem> {
     fn dense_evaluations(&self, problem: &P) -> [Option<u64>; 2];
     fn stays_on_manifold(&self) -> bool;
     fn pair(&self, problem: &P) -> Option<Pair>;
-    fn stepper(&self, problem: &P, like: &PointOf<P>) -> Result<Box<dyn Stepper<P> + 'p>, Error>;
+    fn stepper(
+        &self,
+        problem: &P,
+        like: &PointOf<P>,
+    ) -> Result<Box<dyn Stepper<P> + Send + 'p>, Error>;
 }
 
 /// A method with its workspace behind the pointer.
@@ -106,9 +110,26 @@ trait Stepper<P: Problem> {
         from: &PointOf<P>,
         at: &mut PointOf<P>,
     ) -> Result<(), StepError>;
+    fn within(&self) -> Within;
+    fn coordinates(
+        &mut self,
+        problem: &P,
+        step: Step<ScalarOf<P>>,
+        theta: f64,
+        base: &mut PointOf<P>,
+        u: &mut AlgOf<P>,
+    );
+    fn on_chart(
+        &mut self,
+        problem: &P,
+        n: u64,
+        base: &PointOf<P>,
+        u: &AlgOf<P>,
+        at: &mut PointOf<P>,
+    ) -> Result<(), StepError>;
 }
 
-impl<P: Problem> dyn Stepper<P> + '_ {
+impl<P: Problem> dyn Stepper<P> + Send + '_ {
     fn step(
         &mut self,
         problem: &P,
@@ -120,7 +141,7 @@ impl<P: Problem> dyn Stepper<P> + '_ {
 }
 
 /// The source of the error estimate of a method.
-trait Estimate<P: Problem, M: Method<P>>: Copy {
+trait Estimate<P: Problem, M: Method<P>>: Copy + Send + Sync {
     fn pair(self, method: &M, problem: &P) -> Option<Pair>;
     fn step(
         self,
@@ -187,7 +208,7 @@ struct MethodWithEstimate<M, E> {
 impl<'p, P, M, E> Inner<'p, P> for MethodWithEstimate<M, E>
 where
     P: Problem + 'p,
-    M: Method<P> + Clone + 'p,
+    M: Method<P> + Clone + Send + Sync + 'p,
     E: Estimate<P, M> + 'p,
 {
     fn name(&self) -> &'static str {
@@ -214,7 +235,11 @@ where
     fn pair(&self, problem: &P) -> Option<Pair> {
         self.estimate.pair(&self.method, problem)
     }
-    fn stepper(&self, problem: &P, like: &PointOf<P>) -> Result<Box<dyn Stepper<P> + 'p>, Error> {
+    fn stepper(
+        &self,
+        problem: &P,
+        like: &PointOf<P>,
+    ) -> Result<Box<dyn Stepper<P> + Send + 'p>, Error> {
         let work = self.method.work(problem, like)?;
         let (method, estimate) = (self.method.clone(), self.estimate);
         Ok(Box::new(MethodWithWork { method, work, estimate, problem: PhantomData::<fn(&P)> }))
@@ -275,12 +300,35 @@ impl<P: Problem, M: Method<P>, E: Estimate<P, M>> Stepper<P> for MethodWithWork<
     ) -> Result<(), StepError> {
         self.method.interpolate(problem, step, theta, from, &mut self.work, at)
     }
+    fn within(&self) -> Within {
+        self.method.within(&self.work)
+    }
+    fn coordinates(
+        &mut self,
+        problem: &P,
+        step: Step<ScalarOf<P>>,
+        theta: f64,
+        base: &mut PointOf<P>,
+        u: &mut AlgOf<P>,
+    ) {
+        self.method.coordinates(problem, step, theta, base, &mut self.work, u);
+    }
+    fn on_chart(
+        &mut self,
+        problem: &P,
+        n: u64,
+        base: &PointOf<P>,
+        u: &AlgOf<P>,
+        at: &mut PointOf<P>,
+    ) -> Result<(), StepError> {
+        self.method.on_chart(problem, n, base, u, &mut self.work, at)
+    }
 }
 
 /// The workspace of an [`AnyMethod`].
 #[allow(missing_debug_implementations)] // the parts belong to the problem's types
 pub struct AnyWork<'p, P: Problem> {
-    stepper: Box<dyn Stepper<P> + 'p>,
+    stepper: Box<dyn Stepper<P> + Send + 'p>,
     /// True if the method has an embedded error estimate here. If not, steps are doubled.
     has_pair: bool,
     /// The point after one long step, for step doubling.
@@ -373,6 +421,31 @@ where
                 stepper.step(problem, step, y)
             }),
         }
+    }
+    fn within(&self, work: &Self::Work) -> Within {
+        if work.doubled { Within::Steps } else { work.stepper.within() }
+    }
+    fn coordinates(
+        &self,
+        problem: &P,
+        step: Step<ScalarOf<P>>,
+        theta: f64,
+        base: &mut PointOf<P>,
+        work: &mut Self::Work,
+        u: &mut AlgOf<P>,
+    ) {
+        work.stepper.coordinates(problem, step, theta, base, u);
+    }
+    fn on_chart(
+        &self,
+        problem: &P,
+        n: u64,
+        base: &PointOf<P>,
+        u: &AlgOf<P>,
+        work: &mut Self::Work,
+        at: &mut PointOf<P>,
+    ) -> Result<(), StepError> {
+        work.stepper.on_chart(problem, n, base, u, at)
     }
     fn steps(
         &self,

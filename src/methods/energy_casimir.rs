@@ -19,7 +19,7 @@
 use super::extension::{Extension, OneIncrement, of_increment};
 use super::implicit_rkmk::OddMap;
 use super::newton::Progress;
-use super::{Method, Step, Symmetric};
+use super::{Method, Step, Symmetric, Within};
 use crate::chart::ChartStore;
 use crate::error::{Error, StepError};
 use crate::groups::LieAlgebra;
@@ -135,6 +135,31 @@ impl<P: LiePoisson, Psi: CoordinateMap<P::Group> + OddMap> Method<P> for EnergyC
         alg.combine(rate, &[1.0], core::slice::from_ref(u), &mut dense.k[0]);
         dense.first(&EXTENSION, alg, &mut chart, step)?;
         dense.prepare(&EXTENSION, alg, &mut chart, step)
+    }
+    fn within(&self, _: &Self::Work) -> Within {
+        Within::Chart
+    }
+    fn coordinates(
+        &self,
+        problem: &P,
+        Step { h, .. }: Step<ScalarOf<P>>,
+        theta: f64,
+        _: &mut PointOf<P>,
+        work: &mut Self::Work,
+        u: &mut AlgOf<P>,
+    ) {
+        work.dense.coordinates(&EXTENSION, problem.group(), (theta, h), u);
+    }
+    fn on_chart(
+        &self,
+        problem: &P,
+        n: u64,
+        base: &PointOf<P>,
+        u: &AlgOf<P>,
+        work: &mut Self::Work,
+        at: &mut PointOf<P>,
+    ) -> Result<(), StepError> {
+        work.chart.around(problem, &self.psi, n, base).lambda(u, at)
     }
     fn interpolate(
         &self,

@@ -249,9 +249,21 @@ impl<'a, const S: usize> Extension<'a, S> {
         u: &mut AlgOf<P>,
         at: &mut PointOf<P>,
     ) -> Result<(), StepError> {
-        self.weights(theta).in_algebra(alg, h, k, d, u);
+        self.coordinates(alg, (theta, h), k, d, u);
         finite(alg.is_finite(u))?;
         chart.lambda(u, at)
+    }
+
+    /// u ← u(θ), after [`prepare_in_chart`](Self::prepare_in_chart).
+    pub(super) fn coordinates<G: LieAlgebra>(
+        &self,
+        alg: &G,
+        (theta, h): (f64, G::Scalar),
+        k: &[G::Alg; S],
+        d: &[G::Alg; EXTRA],
+        u: &mut G::Alg,
+    ) {
+        self.weights(theta).in_algebra(alg, h, k, d, u);
     }
 
     /// d ← the extra stages in the linear space around M.
@@ -332,6 +344,17 @@ impl<P: Problem> OneIncrement<P> {
     ) -> Result<(), StepError> {
         let OneIncrement { k, d, u } = self;
         extension.prepare_in_chart(alg, chart, step, k, d, u)
+    }
+
+    /// u ← u(θ).
+    pub(super) fn coordinates(
+        &self,
+        extension: &Extension<2>,
+        alg: &P::Group,
+        at_part: (f64, ScalarOf<P>),
+        u: &mut AlgOf<P>,
+    ) {
+        extension.coordinates(alg, at_part, &self.k, &self.d, u);
     }
 
     /// `at` ← λ_p(u(θ)).

@@ -14,7 +14,7 @@
 use super::extension::{EXTRA, Extension, of_increment};
 use super::newton::Progress;
 use super::stages::copies;
-use super::{MapCounts, Method, Step, Symmetric};
+use super::{MapCounts, Method, Step, Symmetric, Within};
 use crate::error::{Error, StepError};
 use crate::problems::FieldStore;
 use crate::problems::{Ambient, PointOf, ScalarOf};
@@ -211,6 +211,9 @@ impl<P: Ambient, const S: usize> Method<P> for Gauss<S> {
         }
         problem.field(step.t, from, &mut ends[1], field);
         self.extension().prepare_in_space(problem, step, from, ends, extra, z, field)
+    }
+    fn within(&self, _: &Self::Work) -> Within {
+        Within::Space
     }
     fn interpolate(
         &self,

@@ -19,7 +19,8 @@ use super::extension::{Extension, OneIncrement, of_increment};
 use super::gauss::ImplicitTableau;
 use super::newton::Progress;
 use super::stages::copies;
-use super::{Method, Step, Symmetric};
+use super::{Method, Step, Symmetric, Within};
+use crate::actions::Action;
 use crate::chart::ChartStore;
 use crate::error::{Error, StepError};
 use crate::groups::LieAlgebra;
@@ -208,6 +209,34 @@ macro_rules! method {
                 alg.combine(ScalarOf::<P>::lit(1.0), &self.tableau.b, k, &mut dense.k[0]);
                 dense.first(&self.extension(), alg, &mut chart, step)?;
                 dense.prepare(&self.extension(), alg, &mut chart, step)
+            }
+            fn within(&self, _: &Self::Work) -> Within {
+                Within::Chart
+            }
+            fn coordinates(
+                &self,
+                problem: &P,
+                Step { h, .. }: Step<ScalarOf<P>>,
+                theta: f64,
+                base: &mut PointOf<P>,
+                work: &mut Self::Work,
+                u: &mut AlgOf<P>,
+            ) {
+                if $centred {
+                    problem.action().assign(problem.group(), &work.q, base);
+                }
+                work.dense.coordinates(&self.extension(), problem.group(), (theta, h), u);
+            }
+            fn on_chart(
+                &self,
+                problem: &P,
+                n: u64,
+                base: &PointOf<P>,
+                u: &AlgOf<P>,
+                work: &mut Self::Work,
+                at: &mut PointOf<P>,
+            ) -> Result<(), StepError> {
+                work.chart.around(problem, &self.psi, n, base).lambda(u, at)
             }
             fn interpolate(
                 &self,

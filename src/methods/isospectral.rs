@@ -42,7 +42,7 @@ impl<const S: usize> Symmetric for IsospectralGauss<S> {}
 /// A group of n×n matrices, real or complex, for isospectral methods.
 pub trait ConjugationGroup: LieGroup<Scalar = f64> {
     /// A stage Q_i or P_i, an n×n matrix that need not be in G.
-    type Stage: LinearSpace<Scalar = f64>;
+    type Stage: LinearSpace<Scalar = f64> + Send;
 
     /// n.
     fn rows(&self) -> usize;

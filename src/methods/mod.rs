@@ -65,7 +65,8 @@ pub use taylor::{Taylor, Wide};
 
 use crate::actions::Action;
 use crate::error::{Error, StepError};
-use crate::problems::{PointOf, Problem, ScalarOf};
+use crate::groups::LieAlgebra;
+use crate::problems::{AlgOf, PointOf, Problem, ScalarOf};
 use crate::scalar::Real;
 
 /// A step: number n of the run, from t to t + h.
@@ -166,6 +167,18 @@ impl core::ops::Add for MapCounts {
     }
 }
 
+/// How the points within a step depend on θ.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Within {
+    /// By shorter steps, or in another way that needs the step itself.
+    Steps,
+    /// As λ_p(u(θ)), where u(θ) ∈ 𝔤 is a polynomial of degree 7 at most.
+    Chart,
+    /// As a polynomial of degree 7 at most in the linear space around M.
+    Space,
+}
+
 /// A symmetric method: a step back undoes a step, Φ_{−h} ∘ Φ_h = id, to rounding. Its order is even, and a
 /// [`Composition`] raises it.
 pub trait Symmetric {}
@@ -176,7 +189,7 @@ pub trait Method<P: Problem> {
     ///
     /// It carries no number from one step to the next that the step could not compute again from its arguments, so a step
     /// depends only on these. The one exception is [`FluidMidpoint`], which starts its iteration from the steps before.
-    type Work;
+    type Work: Send;
 
     /// The order of the method. Tests measure it.
     fn order(&self, problem: &P) -> usize;
@@ -272,6 +285,41 @@ pub trait Method<P: Problem> {
     ) -> Result<(), StepError> {
         problem.action().assign(problem.group(), from, at);
         self.step(problem, step.part(theta), at, work)
+    }
+
+    /// The form of the points within the last step with this workspace. The default is a shorter step.
+    fn within(&self, _work: &Self::Work) -> Within {
+        Within::Steps
+    }
+
+    /// u ← u(θ) for [`Within::Chart`], after [`prepare`](Self::prepare). `base` is the start of the step. A method with
+    /// another centre of its chart writes this centre to `base`. The default writes u = 0.
+    fn coordinates(
+        &self,
+        problem: &P,
+        _step: Step<ScalarOf<P>>,
+        _theta: f64,
+        _base: &mut PointOf<P>,
+        _work: &mut Self::Work,
+        u: &mut AlgOf<P>,
+    ) {
+        problem.group().set_zero(u);
+    }
+
+    /// `at` ← λ_p(u), p = `base`, in the chart of step number n. It is for [`Within::Chart`], and calls no f.
+    ///
+    /// # Errors
+    /// Why the point could not be computed.
+    fn on_chart(
+        &self,
+        _problem: &P,
+        _n: u64,
+        _base: &PointOf<P>,
+        _u: &AlgOf<P>,
+        _work: &mut Self::Work,
+        _at: &mut PointOf<P>,
+    ) -> Result<(), StepError> {
+        Err(StepError::NotFinite { what: "the continuous extension" })
     }
 
     /// The evaluations of f in [`prepare`](Self::prepare) and in each [`interpolate`](Self::interpolate), counted like

@@ -18,7 +18,7 @@ use super::embedded::{ratio_in_algebra, without_pair};
 use super::extension::{Extension, OneIncrement, of_increment};
 use super::stages::Stages;
 use super::tableau::pad;
-use super::{Embedded, MapCounts, Method, Step};
+use super::{Embedded, MapCounts, Method, Step, Within};
 use crate::error::{Error, StepError};
 use crate::groups::LieAlgebra;
 use crate::maps::{CoordinateMap, Exp};
@@ -277,6 +277,31 @@ where
         );
         alg.combine(ScalarOf::<P>::lit(1.0), &[1.0], &k[..1], &mut dense.k[1]);
         dense.prepare(&self.extension(), alg, &mut chart.around(problem, &Exp, step.n, from), step)
+    }
+    fn within(&self, _: &Self::Work) -> Within {
+        Within::Chart
+    }
+    fn coordinates(
+        &self,
+        problem: &P,
+        Step { h, .. }: Step<ScalarOf<P>>,
+        theta: f64,
+        _: &mut PointOf<P>,
+        work: &mut Self::Work,
+        u: &mut AlgOf<P>,
+    ) {
+        work.dense.coordinates(&self.extension(), problem.group(), (theta, h), u);
+    }
+    fn on_chart(
+        &self,
+        problem: &P,
+        n: u64,
+        base: &PointOf<P>,
+        u: &AlgOf<P>,
+        work: &mut Self::Work,
+        at: &mut PointOf<P>,
+    ) -> Result<(), StepError> {
+        work.inner.stages.chart.around(problem, &Exp, n, base).lambda(u, at)
     }
     fn interpolate(
         &self,

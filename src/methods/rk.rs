@@ -9,7 +9,7 @@ use super::embedded::without_pair;
 use super::extension::{EXTRA, Extension};
 use super::stages::{Known, copies};
 use super::tableau::{ErrorEstimate, fold_error};
-use super::{Embedded, MapCounts, Method, Step, Tableau};
+use super::{Embedded, MapCounts, Method, Step, Tableau, Within};
 use crate::error::{Error, StepError};
 use crate::problems::FieldStore;
 use crate::problems::{Ambient, PointOf, ScalarOf};
@@ -119,6 +119,9 @@ impl<P: Ambient, const S: usize> Method<P> for Rk<S> {
         RkWork { k, z, extra, field, .. }: &mut Self::Work,
     ) -> Result<(), StepError> {
         Extension::of(&self.0).prepare_in_space(problem, step, from, k, extra, z, field)
+    }
+    fn within(&self, _: &Self::Work) -> Within {
+        Within::Space
     }
     fn interpolate(
         &self,

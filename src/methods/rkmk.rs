@@ -14,7 +14,7 @@ use super::embedded::{ratio_in_algebra, without_pair};
 use super::extension::{EXTRA, Extension};
 use super::stages::{Stages, copies};
 use super::tableau::{ErrorEstimate, fold_error};
-use super::{Embedded, MapCounts, Method, Step, Tableau};
+use super::{Embedded, MapCounts, Method, Step, Tableau, Within};
 use crate::error::{Error, StepError};
 use crate::groups::LieAlgebra;
 use crate::maps::CoordinateMap;
@@ -129,6 +129,31 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> Method<P> for Rkm
         let mut chart = chart.around(problem, &self.psi, step.n, from);
         let extension = Extension::of(&self.tableau);
         extension.prepare_in_chart(problem.group(), &mut chart, step, k, extra, u)
+    }
+    fn within(&self, _: &Self::Work) -> Within {
+        Within::Chart
+    }
+    fn coordinates(
+        &self,
+        problem: &P,
+        Step { h, .. }: Step<ScalarOf<P>>,
+        theta: f64,
+        _: &mut PointOf<P>,
+        RkmkWork { stages, extra, .. }: &mut Self::Work,
+        u: &mut AlgOf<P>,
+    ) {
+        Extension::of(&self.tableau).coordinates(problem.group(), (theta, h), &stages.k, extra, u);
+    }
+    fn on_chart(
+        &self,
+        problem: &P,
+        n: u64,
+        base: &PointOf<P>,
+        u: &AlgOf<P>,
+        work: &mut Self::Work,
+        at: &mut PointOf<P>,
+    ) -> Result<(), StepError> {
+        work.stages.chart.around(problem, &self.psi, n, base).lambda(u, at)
     }
     fn interpolate(
         &self,

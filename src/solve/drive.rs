@@ -39,6 +39,16 @@ impl Patience {
     }
 }
 
+/// What is stored of each step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Keeps {
+    Nothing,
+    /// Its start.
+    Starts,
+    /// The polynomial of its points.
+    Pieces,
+}
+
 /// A run under way.
 pub(super) struct Drive<'a> {
     pub(super) times: Timeline,
@@ -56,8 +66,8 @@ pub(super) struct Drive<'a> {
     pub(super) progress: Option<Box<dyn FnMut(f64) + 'a>>,
     pub(super) checkpoints: Option<Checkpoints<'a>>,
     pub(super) resume: Option<Vec<u8>>,
-    /// True if each step is stored.
-    pub(super) keeps: bool,
+    /// What is stored of each step.
+    pub(super) keeps: Keeps,
     /// The time of the last output.
     pub(super) shown_at: Option<f64>,
     /// True while output and events of the last step are handled. A state that is saved then continues within the step.
@@ -129,8 +139,11 @@ impl Drive<'_> {
             self.skip(output)?;
             let stop = self.next_stop.unwrap_or(t1);
             self.times.step_before(output.points(), stop, self.next_stop.is_some())?;
-            if self.keeps {
-                output.keep(self.times.t, self.times.last);
+            if self.keeps == Keeps::Pieces {
+                self.times.prepare_last(output.points())?;
+            }
+            if self.keeps != Keeps::Nothing {
+                output.keep(self.times.t, self.times.last)?;
             }
             if !self.events.all.is_empty() {
                 let first_step = self.times.stats.accepted == 1;
@@ -183,7 +196,7 @@ impl Drive<'_> {
 
     /// Takes steps without output or events in one call.
     fn skip(&mut self, output: &mut dyn AnyOutput) -> Result<(), RunError> {
-        if !self.events.all.is_empty() || self.keeps {
+        if !self.events.all.is_empty() || self.keeps != Keeps::Nothing {
             return Ok(());
         }
         let steps = self.times.stats.accepted;

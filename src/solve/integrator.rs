@@ -1,6 +1,7 @@
 //! A run that the caller takes step by step, and whose state can be read and set.
 
 use super::control::Controller;
+use super::held::Held;
 use super::points::{Estimator, Points};
 use super::stats::{Cadence, RunError, Stats};
 use super::timeline::{Chooser, Looked, Pace, Pacer, Timeline};
@@ -37,8 +38,7 @@ pub struct Integrator<'a, P: Problem, M: Method<P>> {
 
 impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
     pub(super) fn new(
-        problem: &'a P,
-        method: &'a M,
+        held: (Held<'a, P>, Held<'a, M>),
         [t0, t1]: [f64; 2],
         (pace, estimator): (Pace, Option<Estimator<P, M>>),
         y: PointOf<P>,
@@ -48,7 +48,7 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
             Pace::ByError(control) => estimator.map(|estimator| (&control.tolerance, estimator)),
         };
         let field_at = (t0 != t1).then_some(t0);
-        let (points, costs, error_order) = Points::new(problem, method, adaptive, y, field_at)?;
+        let (points, costs, error_order) = Points::new(held, adaptive, y, field_at)?;
         let pacer = match pace {
             Pace::Equal { grid, max_steps } => Pacer::Equal { grid, done: 0, max_steps },
             Pace::ByError(control) => {

@@ -6,6 +6,7 @@
 //! | [`Solution`] | the result |
 //! | [`Integrator`] | take a run step by step |
 //! | [`Continuous`] | a solution at any time |
+//! | [`Interpolant`] | a solution at any time, as numbers |
 //! | [`integrate`], [`integrate_adaptive`] | the same driver in one call, on a state in place |
 //!
 //! A step is accepted if its error is at most its tolerance ([`tolerance`](crate::tolerance)). A step that fails
@@ -19,7 +20,9 @@ mod control;
 mod drive;
 mod events;
 mod grid;
+mod held;
 mod integrator;
+mod interpolant;
 mod output;
 mod points;
 mod save;
@@ -33,10 +36,12 @@ pub use control::StepControl;
 pub use events::{Direction, Event};
 pub use grid::{SaveAt, TimeGrid};
 pub use integrator::Integrator;
+pub use interpolant::{Interpolant, Reader};
 pub use simple::{integrate, integrate_adaptive};
 pub use solution::{Drift, Interrupted, Next, Occurrence, Solution, Status};
 pub use stats::{RESTORE_EVERY, RunError, Stats};
 
+use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
@@ -45,9 +50,10 @@ use crate::methods::{Embedded, Method};
 use crate::problems::{Invariants, PointOf, Problem, ScalarOf};
 use crate::space::Numbers;
 use crate::tolerance::Rule;
-use drive::{Checkpoints, Drive, Patience};
+use drive::{Checkpoints, Drive, Keeps, Patience};
 use events::Events;
-use output::{Kept, Observe, Output, SeeEnd, Watch};
+use held::Held;
+use output::{Keep, Observe, Output, SeeEnd, Watch};
 use points::Estimator;
 use save::Listing;
 use timeline::{Pace, Timeline};
@@ -74,8 +80,8 @@ use timeline::{Pace, Timeline};
 /// ```
 #[doc(alias = "solve_ivp")]
 pub struct Solve<'a, P: Problem, M: Method<P>> {
-    problem: &'a P,
-    method: &'a M,
+    problem: Held<'a, P>,
+    method: Held<'a, M>,
     settings: Settings<'a>,
     /// For an adaptive step size.
     estimator: Option<Estimator<P, M>>,
@@ -191,7 +197,7 @@ impl<'a> Settings<'a> {
     }
 
     /// The run with these settings.
-    fn drive(self, times: Timeline, events: Events, keeps: bool) -> Drive<'a> {
+    fn drive(self, times: Timeline, events: Events, keeps: Keeps) -> Drive<'a> {
         let Settings { save, times_by_steps, cancel, progress, checkpoints, resume, .. } = self;
         let mut stops = self.stops.into_iter();
         let (t0, next_stop) = (times.t, stops.next());
@@ -232,6 +238,31 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
     /// Solves `problem` by `method` from t₀ to t₁, forward or backward. The span may be empty. t₁ may be infinite if an
     /// event or an observer stops the run.
     pub fn new(problem: &'a P, method: &'a M, t_span: [f64; 2]) -> Self {
+        Self::of(Held::Borrowed(problem), Held::Borrowed(method), t_span)
+    }
+
+    /// The same with a problem and a method that the run shares. So an [`Integrator`] or a [`Continuous`] may outlive the
+    /// scope that made it, and move to another thread.
+    ///
+    /// ```
+    /// use lieflow::prelude::*;
+    /// use lieflow::problems::RigidBody;
+    /// use nalgebra::Vector3;
+    /// use std::sync::Arc;
+    ///
+    /// let body = Arc::new(RigidBody::<f64>::new([1.0, 2.0, 3.0])?);
+    /// let method = Arc::new(Rkmk::new(DOPRI5, Exp));
+    /// let solve = Solve::shared(body, method, [0.0, 10.0]).tolerances(1e-9, 1e-12);
+    /// let mut run = solve.integrator(Vector3::new(0.2, 0.0, 3.0))?;
+    /// let thread = std::thread::spawn(move || run.advance_to(10.0).map(|m| m.norm()));
+    /// assert!((thread.join().unwrap()? - 9.04f64.sqrt()).abs() < 1e-14);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn shared(problem: Arc<P>, method: Arc<M>, t_span: [f64; 2]) -> Self {
+        Self::of(Held::Shared(problem), Held::Shared(method), t_span)
+    }
+
+    fn of(problem: Held<'a, P>, method: Held<'a, M>, t_span: [f64; 2]) -> Self {
         let settings = Settings::new(t_span);
         Solve {
             problem,
@@ -409,7 +440,8 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
 
     fn start(&mut self, y0: PointOf<P>) -> Result<Integrator<'a, P, M>, Error> {
         let pace = (self.settings.check()?, self.estimator);
-        Integrator::new(self.problem, self.method, self.settings.t_span, pace, y0)
+        let held = (self.problem.clone(), self.method.clone());
+        Integrator::new(held, self.settings.t_span, pace, y0)
     }
 
     /// Starts a run from y₀ that you take step by step. It has no output, events, stops or cancellation.
@@ -445,14 +477,14 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
         y0: PointOf<P>,
         mut observe: impl FnMut(f64, &mut PointOf<P>) -> N,
     ) -> Result<Solution<PointOf<P>>, Interrupted<PointOf<P>>> {
-        self.drive(y0, None, &mut |t, y| observe(t, y).into())
+        self.drive(y0, Keep::Nothing, &mut |t, y| observe(t, y).into())
     }
 
     /// Runs from y₀, and keeps the steps where there is a list for them.
     fn drive<'k>(
         mut self,
         y0: PointOf<P>,
-        kept: Option<&'k mut Vec<Kept<PointOf<P>>>>,
+        kept: Keep<'k, P>,
         observe: &'k mut Observe<'k, PointOf<P>>,
     ) -> Result<Solution<PointOf<P>>, Interrupted<PointOf<P>>> {
         let Integrator { mut points, mut times } = self.start(y0)?;
@@ -460,7 +492,12 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
         points.list = self.list;
         let (rules, functions) =
             self.events.into_iter().map(|event| (event.rule, event.functions)).unzip();
-        let mut drive = self.settings.drive(times, Events::new(rules), kept.is_some());
+        let keeps = match kept {
+            Keep::Nothing => Keeps::Nothing,
+            Keep::Starts(_) => Keeps::Starts,
+            Keep::Pieces(_) => Keeps::Pieces,
+        };
+        let mut drive = self.settings.drive(times, Events::new(rules), keeps);
         let mut output = Output::new(points, functions, (self.watch, self.see_end), kept, observe);
         let ended = drive.run(&mut output);
         let Output { points, occurrences, .. } = output;
@@ -486,13 +523,55 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
     ) -> Result<Continuous<'a, P, M>, Interrupted<PointOf<P>>> {
         let again = self.start(y0.clone())?;
         let (mut times, mut points, mut steps) = (Vec::new(), Vec::new(), Vec::new());
-        let done = self.drive(y0, Some(&mut steps), &mut |t, y| {
+        let done = self.drive(y0, Keep::Starts(&mut steps), &mut |t, y| {
             times.push(t);
             points.push(y.clone());
             Next::Continue
         });
         let solution = stored(done, times, points)?;
         Ok(Continuous::new(solution, steps, again))
+    }
+
+    /// Runs from y₀ and returns the solution at all times as numbers, besides the result. It stores the start and eight
+    /// elements of 𝔤 for each step. Cost: the extra stages of dense output in each step.
+    ///
+    /// # Errors
+    /// As [`run`](Self::run); [`Error::Unsupported`] for a method whose points within a step are shorter steps.
+    pub fn run_interpolant(
+        self,
+        y0: PointOf<P>,
+    ) -> Result<(Solution<PointOf<P>>, Interpolant<'a, P, M>), Interrupted<PointOf<P>>>
+    where
+        PointOf<P>: Numbers,
+    {
+        let (mut times, mut points) = (Vec::new(), Vec::new());
+        let (done, curve) = self.run_interpolant_with(y0, |t, y| {
+            times.push(t);
+            points.push(y.clone());
+            Next::Continue
+        });
+        Ok((stored(done, times, points)?, curve))
+    }
+
+    /// The same with an observer, as [`run_with`](Self::run_with). An interrupted run has its interpolant up to there.
+    pub fn run_interpolant_with<N: Into<Next>>(
+        mut self,
+        y0: PointOf<P>,
+        mut observe: impl FnMut(f64, &mut PointOf<P>) -> N,
+    ) -> (Result<Solution<PointOf<P>>, Interrupted<PointOf<P>>>, Interpolant<'a, P, M>)
+    where
+        PointOf<P>: Numbers,
+    {
+        self.list = Some(Numbers::each_number);
+        let held = (self.problem.clone(), self.method.clone());
+        let (t0, start, mut pieces) = (self.settings.t_span[0], y0.clone(), Vec::new());
+        let done = self.drive(y0, Keep::Pieces(&mut pieces), &mut |t, y| observe(t, y).into());
+        let solution = match &done {
+            Ok(solution) => Some(solution),
+            Err(Interrupted { solution, .. }) => solution.as_deref(),
+        };
+        let end = solution.map_or((t0, start), |solution| (solution.t, solution.y.clone()));
+        (done, Interpolant::new(held, pieces, end))
     }
 }
 

@@ -2,8 +2,10 @@
 //! problem and method, and the driver calls it through a pointer.
 
 use super::events::EventFunctions;
+use super::interpolant::Piece;
 use super::points::{AnyPoints, Place, Points};
 use super::solution::{Next, Occurrence};
+use super::stats::RunError;
 use crate::error::{Error, StepError};
 use crate::methods::{Method, Step};
 use crate::problems::{PointOf, Problem};
@@ -38,7 +40,10 @@ pub(super) trait AnyOutput {
     /// Shows the end of a step that had rows within it.
     fn see_end(&mut self, t: f64);
     /// Stores the last step with the time up to which it is valid, if steps are stored.
-    fn keep(&mut self, t: f64, last: Step<f64>);
+    ///
+    /// # Errors
+    /// Why its polynomial could not be computed, if polynomials are stored.
+    fn keep(&mut self, t: f64, last: Step<f64>) -> Result<(), RunError>;
     /// Lets the last stored step end at t.
     fn cut_kept(&mut self, t: f64);
     /// The names of the invariants, if they are watched.
@@ -66,6 +71,15 @@ pub(super) struct Watch<P: Problem> {
 /// A stored step: the time up to which it is valid, the step, and its start.
 pub(super) type Kept<Y> = (f64, Step<f64>, Y);
 
+/// What is kept of the steps.
+pub(super) enum Keep<'k, P: Problem> {
+    Nothing,
+    /// Their starts.
+    Starts(&'k mut Vec<Kept<PointOf<P>>>),
+    /// Their polynomials.
+    Pieces(&'k mut Vec<Piece<P>>),
+}
+
 /// The function that sees the points of the output.
 pub(super) type Observe<'k, Y> = dyn FnMut(f64, &mut Y) -> Next + 'k;
 
@@ -83,7 +97,7 @@ pub(super) struct Output<'a, 'k, P: Problem, M: Method<P>> {
     events: Vec<EventFunctions<'a, PointOf<P>>>,
     watch: Option<Watch<P>>,
     see_end: Option<SeeEnd<'a, PointOf<P>>>,
-    kept: Option<&'k mut Vec<Kept<PointOf<P>>>>,
+    kept: Keep<'k, P>,
     /// The zeros of events that have no function for them.
     pub(super) occurrences: Vec<Occurrence<PointOf<P>>>,
 }
@@ -93,7 +107,7 @@ impl<'a, 'k, P: Problem, M: Method<P>> Output<'a, 'k, P, M> {
         points: Points<'a, P, M>,
         events: Vec<EventFunctions<'a, PointOf<P>>>,
         (watch, see_end): (Option<Watch<P>>, Option<SeeEnd<'a, PointOf<P>>>),
-        kept: Option<&'k mut Vec<Kept<PointOf<P>>>>,
+        kept: Keep<'k, P>,
         observe: &'k mut Observe<'k, PointOf<P>>,
     ) -> Self {
         let [shown, search] = [points.y.clone(), points.y.clone()];
@@ -144,22 +158,30 @@ impl<P: Problem, M: Method<P>> AnyOutput for Output<'_, '_, P, M> {
             see(t, &self.points.y);
         }
     }
-    fn keep(&mut self, t: f64, last: Step<f64>) {
-        if let Some(kept) = self.kept.as_deref_mut() {
-            kept.push((t, last, self.points.from.clone()));
+    fn keep(&mut self, t: f64, last: Step<f64>) -> Result<(), RunError> {
+        let Output { points, search, kept, .. } = self;
+        match kept {
+            Keep::Nothing => {}
+            Keep::Starts(kept) => kept.push((t, last, points.from.clone())),
+            Keep::Pieces(pieces) => pieces.push(points.record(last, t, search)?),
         }
+        Ok(())
     }
     fn cut_kept(&mut self, t: f64) {
-        if let Some(last) = self.kept.as_deref_mut().and_then(|kept| kept.last_mut()) {
-            last.0 = t;
+        match &mut self.kept {
+            Keep::Nothing => {}
+            Keep::Starts(kept) => kept.iter_mut().last().into_iter().for_each(|last| last.0 = t),
+            Keep::Pieces(pieces) => {
+                pieces.iter_mut().last().into_iter().for_each(|last| last.cut(t))
+            }
         }
     }
     fn invariants(&self) -> Vec<String> {
-        self.watch.as_ref().map_or_else(Vec::new, |watch| (watch.names)(self.points.problem))
+        self.watch.as_ref().map_or_else(Vec::new, |watch| (watch.names)(&self.points.problem))
     }
     fn values(&self, at: Option<Slot>) -> Vec<f64> {
         let y = point(at, [&self.points.y, &self.shown, &self.search]);
-        let values = |watch: &Watch<P>| (watch.values)(self.points.problem, y);
+        let values = |watch: &Watch<P>| (watch.values)(&self.points.problem, y);
         self.watch.as_ref().map_or_else(Vec::new, values)
     }
 }

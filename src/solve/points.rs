@@ -4,12 +4,14 @@
 //! [`Drive`](super::drive::Drive)). It calls this part through a pointer, a few times for each step. So the compiler
 //! compiles the driver once, and only this file again for each problem and method. A step itself has no such call.
 
+use super::held::Held;
+use super::interpolant::{Piece, no_polynomial};
 use super::save::Listing;
-use super::stats::{Cadence, Stats, power_of_two_above};
+use super::stats::{Cadence, RunError, Stats, power_of_two_above};
 use crate::actions::Action;
 use crate::error::{Error, StepError};
 use crate::groups::LieAlgebra;
-use crate::methods::{Embedded, EqualSteps, MapCounts, Method, Step};
+use crate::methods::{Embedded, EqualSteps, MapCounts, Method, Step, Within};
 use crate::problems::{AlgOf, PointOf, Problem, ScalarOf};
 use crate::scalar::Real;
 use crate::space::Metric;
@@ -138,8 +140,8 @@ struct Rates<P: Problem, M: Method<P>> {
 
 /// The points of a run.
 pub(super) struct Points<'a, P: Problem, M: Method<P>> {
-    pub(super) problem: &'a P,
-    method: &'a M,
+    pub(super) problem: Held<'a, P>,
+    method: Held<'a, M>,
     /// The state.
     pub(super) y: PointOf<P>,
     /// The start of the last step.
@@ -195,12 +197,13 @@ impl<'a, P: Problem, M: Method<P>> Points<'a, P, M> {
     /// Makes the points of a run that starts at y. Checks f(t, y) at the time `field_at`. Returns them with the costs of a
     /// step and, for an adaptive step size, the order of the error.
     pub(super) fn new(
-        problem: &'a P,
-        method: &'a M,
+        (problem, method): (Held<'a, P>, Held<'a, M>),
         adaptive: Option<(&Tolerance, Estimator<P, M>)>,
         y: PointOf<P>,
         field_at: Option<f64>,
     ) -> Result<(Self, Costs, Option<usize>), Error> {
+        let held = (problem, method);
+        let (problem, method) = (&*held.0, &*held.1);
         let (group, action) = (problem.group(), problem.action());
         action.check(group, &y)?;
         let mut restore = action.work(group);
@@ -235,6 +238,7 @@ impl<'a, P: Problem, M: Method<P>> Points<'a, P, M> {
             group.check("f", &v)?;
         }
         let [from, to, orbit] = [y.clone(), y.clone(), y.clone()];
+        let (problem, method) = held;
         let points =
             Points { problem, method, y, from, to, work, rates, orbit, restore, list: None };
         Ok((points, costs, error_order))
@@ -262,6 +266,7 @@ impl<'a, P: Problem, M: Method<P>> Points<'a, P, M> {
         at: &mut PointOf<P>,
     ) -> Result<(), StepError> {
         let Points { problem, method, y, from, work, rates, .. } = self;
+        let (problem, method) = (&**problem, &**method);
         let (action, group) = (problem.action(), problem.group());
         match place {
             Place::End => action.assign(group, y, at),
@@ -288,15 +293,35 @@ impl<'a, P: Problem, M: Method<P>> Points<'a, P, M> {
         Ok(())
     }
 
+    /// The last step, which is prepared for dense output, as a polynomial.
+    ///
+    /// # Errors
+    /// [`Error::Unsupported`] for a method without one, [`RunError::Within`].
+    pub(super) fn record(
+        &mut self,
+        last: Step<f64>,
+        until: f64,
+        at: &mut PointOf<P>,
+    ) -> Result<Piece<P>, RunError> {
+        let Points { problem, method, from, work, list, .. } = self;
+        let (problem, method) = (&**problem, &**method);
+        let (Some(list), true) = (*list, method.within(work) != Within::Steps) else {
+            return Err(no_polynomial().into());
+        };
+        Piece::record((problem, method), (last, until), from, work, (at, list))
+            .map_err(|source| RunError::Within { t: last.t, h: last.h, source })
+    }
+
     /// y ← y changed by `change`, and corrected to M. It must be on M, else y is unchanged. The run continues on the orbit
     /// of the new y.
     pub(super) fn change(&mut self, change: &mut dyn FnMut(&mut PointOf<P>)) -> Result<(), Error> {
         let Points { problem, y, to, orbit, restore, .. } = self;
+        let problem = &**problem;
         let (action, group) = (problem.action(), problem.group());
         action.assign(group, y, to);
         change(to);
         action.check(group, to)?;
-        check_on_manifold(*problem, to, restore)?;
+        check_on_manifold::<P>(problem, to, restore)?;
         action.assign(group, to, orbit);
         action.assign(group, to, y);
         Ok(())
@@ -304,7 +329,7 @@ impl<'a, P: Problem, M: Method<P>> Points<'a, P, M> {
 
     /// y ← the point, like [`change`](Self::change).
     pub(super) fn change_to(&mut self, point: &PointOf<P>) -> Result<(), Error> {
-        let problem = self.problem;
+        let problem = self.problem.clone();
         self.change(&mut |y| problem.action().assign(problem.group(), point, y))
     }
 }
@@ -312,6 +337,7 @@ impl<'a, P: Problem, M: Method<P>> Points<'a, P, M> {
 impl<P: Problem, M: Method<P>> AnyPoints for Points<'_, P, M> {
     fn step(&mut self, step: Step<f64>) -> Result<(), StepError> {
         let Points { problem, method, y, from, work, .. } = self;
+        let (problem, method) = (&**problem, &**method);
         let (action, group) = (problem.action(), problem.group());
         action.assign(group, y, from);
         let taken = method.step(problem, lit::<P>(step), y, work);
@@ -323,6 +349,7 @@ impl<P: Problem, M: Method<P>> AnyPoints for Points<'_, P, M> {
     }
     fn steps(&mut self, steps: EqualSteps) -> Result<(), (u64, StepError)> {
         let Points { problem, method, y, from, work, .. } = self;
+        let (problem, method) = (&**problem, &**method);
         let (action, group) = (problem.action(), problem.group());
         action.assign(group, y, from);
         method.steps(problem, steps, y, work).inspect_err(|(failed, _)| {
@@ -332,6 +359,7 @@ impl<P: Problem, M: Method<P>> AnyPoints for Points<'_, P, M> {
     }
     fn attempt(&mut self, step: Step<f64>) -> Result<f64, StepError> {
         let Points { problem, method, y, to, work, rates, .. } = self;
+        let (problem, method) = (&**problem, &**method);
         let estimate = StepError::NotFinite { what: "the error estimate" };
         let Some(Rates { estimator, tolerance, .. }) = rates else { return Err(estimate) };
         let ratio = (estimator.attempt)(method, problem, lit::<P>(step), tolerance, y, work, to)?;
@@ -344,6 +372,7 @@ impl<P: Problem, M: Method<P>> AnyPoints for Points<'_, P, M> {
     }
     fn rate(&mut self, t: f64) -> f64 {
         let Points { problem, y, rates, .. } = self;
+        let problem = &**problem;
         rates.as_mut().map_or(0.0, |Rates { estimator, f: [f, _], work, .. }| {
             problem.f(ScalarOf::<P>::lit(t), y, f, work);
             (estimator.norm)(problem, f)
@@ -351,6 +380,7 @@ impl<P: Problem, M: Method<P>> AnyPoints for Points<'_, P, M> {
     }
     fn change_of_rate(&mut self, t: f64) -> f64 {
         let Points { problem, to, rates, .. } = self;
+        let problem = &**problem;
         rates.as_mut().map_or(0.0, |Rates { estimator, f: [f, change], work, .. }| {
             problem.f(ScalarOf::<P>::lit(t), to, change, work);
             problem.group().axpy(ScalarOf::<P>::lit(-1.0), f, change);
@@ -359,6 +389,7 @@ impl<P: Problem, M: Method<P>> AnyPoints for Points<'_, P, M> {
     }
     fn correct(&mut self, cadence: &mut Cadence, stats: &mut Stats) {
         let Points { problem, y, orbit, restore, .. } = self;
+        let problem = &**problem;
         match problem.action().restore_to(problem.group(), orbit, y, restore) {
             Some(residual) => {
                 stats.saw(residual);
@@ -369,6 +400,7 @@ impl<P: Problem, M: Method<P>> AnyPoints for Points<'_, P, M> {
     }
     fn repeat(&mut self, step: Step<f64>) -> Result<(), StepError> {
         let Points { problem, method, from, to, work, rates, .. } = self;
+        let (problem, method) = (&**problem, &**method);
         let step = lit::<P>(step);
         match rates {
             Some(Rates { estimator, tolerance, .. }) => {
@@ -382,6 +414,7 @@ impl<P: Problem, M: Method<P>> AnyPoints for Points<'_, P, M> {
     }
     fn prepare(&mut self, step: Step<f64>, ends_at_y: bool) -> Result<(), StepError> {
         let Points { problem, method, y, from, to, work, .. } = self;
+        let (problem, method) = (&**problem, &**method);
         method.prepare(problem, lit::<P>(step), from, if ends_at_y { y } else { to }, work)
     }
     fn iterations(&self) -> u64 {
@@ -395,6 +428,7 @@ impl<P: Problem, M: Method<P>> AnyPoints for Points<'_, P, M> {
     }
     fn each_number(&mut self, part: Saved, each: &mut dyn FnMut(&mut f64)) {
         let Points { method, y, from, work, orbit, list, .. } = self;
+        let method = &**method;
         let Some(list) = list else { return };
         match part {
             Saved::State => list(y, each),

@@ -319,6 +319,11 @@ impl Timeline {
         RunError::Within { t: self.last.t, h: self.last.h, source }
     }
 
+    /// Prepares the dense output of the last step, to store it.
+    pub(super) fn prepare_last(&mut self, points: &mut dyn AnyPoints) -> Result<(), RunError> {
+        self.prepare(points).map_err(|source| self.no_point(source))
+    }
+
     /// Prepares the dense output of the last step.
     fn prepare(&mut self, points: &mut dyn AnyPoints) -> Result<(), StepError> {
         if self.looked_at == Looked::Prepared {

@@ -3,6 +3,7 @@
 mod controller;
 mod events;
 mod hard_cases;
+mod interpolant;
 mod modes;
 mod physics;
 mod restore;

@@ -25,7 +25,7 @@ fn control(rtol: f64, atol: f64) -> StepControl {
 }
 
 /// The state at the end and the statistics, or why there are none. The driver is compiled once for each problem.
-fn go<P: Problem, M: Embedded<P> + Clone>(
+fn go<P: Problem, M: Embedded<P> + Clone + Send + Sync>(
     problem: &P,
     method: &M,
     span: [f64; 2],

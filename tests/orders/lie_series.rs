@@ -25,7 +25,7 @@ fn series(order: usize) -> LieSeries {
 fn run<P, M>(p: &P, method: &M, y: &PointOf<P>, end: f64, n: u64) -> PointOf<P>
 where
     P: Problem,
-    M: Method<P> + Clone,
+    M: Method<P> + Clone + Send + Sync,
     P::Group: LieAlgebra<Scalar = f64>,
     PointOf<P>: Metric<Scalar = f64>,
 {

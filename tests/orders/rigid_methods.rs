@@ -27,7 +27,7 @@ fn attitude() -> Matrix3<f64> {
 /// The state at `end` after n steps, from the momentum and attitude().
 fn run<M>(method: &M, momentum: [f64; 3], end: f64, steps: u64) -> BodyState
 where
-    M: Method<RigidBodyState> + Clone,
+    M: Method<RigidBodyState> + Clone + Send + Sync,
 {
     let body = RigidBodyState::new(INERTIA).expect("a body");
     let mut y = body.state(momentum, attitude()).expect("a state");
@@ -56,7 +56,12 @@ fn assert_order(name: &str, p: f64, grid: &[u64], errors: &[f64]) {
     assert!(errors.last().is_some_and(|&e| e > 1e-14), "{name}: rounding reached: {errors:?}");
 }
 
-fn check_order<M: Method<RigidBodyState> + Clone>(name: &str, method: &M, end: f64, first: u64) {
+fn check_order<M: Method<RigidBodyState> + Clone + Send + Sync>(
+    name: &str,
+    method: &M,
+    end: f64,
+    first: u64,
+) {
     let body = RigidBodyState::new(INERTIA).expect("a body");
     let p = method.order(&body) as f64;
     // Orders 8 and 10 pass from their first regime to rounding within a factor of 2 in h; this
@@ -158,7 +163,7 @@ fn taylor_chooses_its_steps() {
 }
 
 /// Largest relative deviation of the energy, of |m|, of gm and of gᵀg − 𝟙 over 2000 steps.
-fn deviations<M: Method<RigidBodyState> + Clone>(method: &M, h: f64) -> [f64; 4] {
+fn deviations<M: Method<RigidBodyState> + Clone + Send + Sync>(method: &M, h: f64) -> [f64; 4] {
     let body = RigidBodyState::new(INERTIA).expect("a body");
     let mut y = body.state(MOMENTUM, attitude()).expect("a state");
     let (energy, norm, space) = (body.energy(&y), y.m.norm(), body.momentum_space(&y));
@@ -387,7 +392,7 @@ fn edges() {
 /// The energy error at the end, and its mean over the samples with t = 0.
 #[test]
 fn table_3_of_the_paper() {
-    fn row<M: Method<RigidBodyAttitude> + Clone>(method: &M) -> (f64, f64) {
+    fn row<M: Method<RigidBodyAttitude> + Clone + Send + Sync>(method: &M) -> (f64, f64) {
         let body = RigidBodyAttitude::<f64>::new([1.0, 0.25, 1.0 / 18.0], [0.0, 2.75, 2.75])
             .expect("a body");
         let (mut first, mut last, mut sum) = (None, 0.0, 0.0);
