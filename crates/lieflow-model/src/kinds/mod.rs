@@ -20,6 +20,7 @@ mod lyapunov;
 mod matrix;
 mod matrix_ode;
 mod oja;
+pub mod own;
 mod pendulum;
 mod prelude;
 mod preset;

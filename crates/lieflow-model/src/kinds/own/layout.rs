@@ -1,0 +1,197 @@
+//! Points and values of f as numbers by rows.
+
+use faer::Mat;
+use lieflow::groups::{
+    Adjoint, AlgebraMatrix, GroupMatrix, MatrixGroup, Se3, So3, UnitQuaternions,
+};
+use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
+
+/// How points of this type and elements of the algebra of G are numbers by rows.
+pub(super) trait Layout<G: lieflow::LieGroup, Y>: Copy + Send + Sync + 'static {
+    /// How many numbers a point has, and a value of f.
+    fn sizes(self, group: &G) -> [usize; 2];
+    /// The point of these numbers.
+    fn point(self, group: &G, rows: &[f64]) -> Y;
+    /// rows ← the numbers of the point.
+    fn show(self, y: &Y, rows: &mut [f64]);
+    /// v ← the element of 𝔤 of these numbers.
+    fn value(self, rows: &[f64], v: &mut G::Alg);
+    /// v ← Ad_y v, for a point y of the group.
+    fn to_space(self, _group: &G, _y: &Y, _v: &mut G::Alg) {}
+}
+
+fn vector(x: &[f64]) -> Vector3<f64> {
+    Vector3::new(x[0], x[1], x[2])
+}
+
+fn show_matrix(g: &Matrix3<f64>, width: usize, rows: &mut [f64]) {
+    for i in 0..3 {
+        for j in 0..3 {
+            rows[width * i + j] = g[(i, j)];
+        }
+    }
+}
+
+/// Elements of SO(3).
+#[derive(Clone, Copy)]
+pub(super) struct Rotations;
+
+impl Layout<So3<f64>, Matrix3<f64>> for Rotations {
+    fn sizes(self, _: &So3<f64>) -> [usize; 2] {
+        [9, 3]
+    }
+    fn point(self, _: &So3<f64>, rows: &[f64]) -> Matrix3<f64> {
+        Matrix3::from_row_slice(rows)
+    }
+    fn show(self, y: &Matrix3<f64>, rows: &mut [f64]) {
+        show_matrix(y, 3, rows);
+    }
+    fn value(self, rows: &[f64], v: &mut Vector3<f64>) {
+        *v = vector(rows);
+    }
+    fn to_space(self, _: &So3<f64>, y: &Matrix3<f64>, v: &mut Vector3<f64>) {
+        *v = y * *v;
+    }
+}
+
+/// Vectors under SO(3).
+#[derive(Clone, Copy)]
+pub(super) struct Vectors;
+
+impl Layout<So3<f64>, Vector3<f64>> for Vectors {
+    fn sizes(self, _: &So3<f64>) -> [usize; 2] {
+        [3, 3]
+    }
+    fn point(self, _: &So3<f64>, rows: &[f64]) -> Vector3<f64> {
+        vector(rows)
+    }
+    fn show(self, y: &Vector3<f64>, rows: &mut [f64]) {
+        rows.copy_from_slice(y.as_slice());
+    }
+    fn value(self, rows: &[f64], v: &mut Vector3<f64>) {
+        *v = vector(rows);
+    }
+}
+
+type Pair = (Vector3<f64>, Vector3<f64>);
+
+fn pair(rows: &[f64]) -> Pair {
+    (vector(rows), vector(&rows[3..]))
+}
+
+/// Elements of SE(3) as 4×4 matrices.
+#[derive(Clone, Copy)]
+pub(super) struct Motions;
+
+impl Layout<Se3<f64>, (Matrix3<f64>, Vector3<f64>)> for Motions {
+    fn sizes(self, _: &Se3<f64>) -> [usize; 2] {
+        [16, 6]
+    }
+    fn point(self, _: &Se3<f64>, rows: &[f64]) -> (Matrix3<f64>, Vector3<f64>) {
+        let r = Matrix3::from_fn(|i, j| rows[4 * i + j]);
+        (r, Vector3::from_fn(|i, _| rows[4 * i + 3]))
+    }
+    fn show(self, (r, x): &(Matrix3<f64>, Vector3<f64>), rows: &mut [f64]) {
+        show_matrix(r, 4, rows);
+        for i in 0..3 {
+            rows[4 * i + 3] = x[i];
+        }
+        rows[12..].copy_from_slice(&[0.0, 0.0, 0.0, 1.0]);
+    }
+    fn value(self, rows: &[f64], v: &mut Pair) {
+        *v = pair(rows);
+    }
+    fn to_space(self, group: &Se3<f64>, y: &(Matrix3<f64>, Vector3<f64>), v: &mut Pair) {
+        let body = *v;
+        if group.big_ad(y, &body, v).is_err() {
+            v.0.fill(f64::NAN);
+        }
+    }
+}
+
+/// Elements of se(3)*.
+#[derive(Clone, Copy)]
+pub(super) struct Pairs;
+
+impl Layout<Se3<f64>, Pair> for Pairs {
+    fn sizes(self, _: &Se3<f64>) -> [usize; 2] {
+        [6, 6]
+    }
+    fn point(self, _: &Se3<f64>, rows: &[f64]) -> Pair {
+        pair(rows)
+    }
+    fn show(self, y: &Pair, rows: &mut [f64]) {
+        rows[..3].copy_from_slice(y.0.as_slice());
+        rows[3..].copy_from_slice(y.1.as_slice());
+    }
+    fn value(self, rows: &[f64], v: &mut Pair) {
+        *v = pair(rows);
+    }
+}
+
+/// Unit quaternions, the real part first.
+#[derive(Clone, Copy)]
+pub(super) struct Quaternions;
+
+impl Layout<UnitQuaternions, UnitQuaternion<f64>> for Quaternions {
+    fn sizes(self, _: &UnitQuaternions) -> [usize; 2] {
+        [4, 3]
+    }
+    fn point(self, _: &UnitQuaternions, rows: &[f64]) -> UnitQuaternion<f64> {
+        UnitQuaternion::new_unchecked(Quaternion::new(rows[0], rows[1], rows[2], rows[3]))
+    }
+    fn show(self, y: &UnitQuaternion<f64>, rows: &mut [f64]) {
+        rows.copy_from_slice(&[y.w, y.i, y.j, y.k]);
+    }
+    fn value(self, rows: &[f64], v: &mut Vector3<f64>) {
+        *v = vector(rows);
+    }
+    fn to_space(self, _: &UnitQuaternions, y: &UnitQuaternion<f64>, v: &mut Vector3<f64>) {
+        *v = y.transform_vector(v);
+    }
+}
+
+/// Matrices. f has n×n entries, or for SO(3) three.
+#[derive(Clone, Copy)]
+pub(super) struct Matrices {
+    pub(super) rows: usize,
+    pub(super) columns: usize,
+}
+
+impl Layout<MatrixGroup, Mat<f64>> for Matrices {
+    fn sizes(self, group: &MatrixGroup) -> [usize; 2] {
+        let n = group.n();
+        let is_so3 = matches!(group.form(), lieflow::groups::Form::Identity) && n == 3;
+        [self.rows * self.columns, if is_so3 { 3 } else { n * n }]
+    }
+    fn point(self, _: &MatrixGroup, rows: &[f64]) -> Mat<f64> {
+        Mat::from_fn(self.rows, self.columns, |i, j| rows[i * self.columns + j])
+    }
+    fn show(self, y: &Mat<f64>, rows: &mut [f64]) {
+        for i in 0..self.rows {
+            for j in 0..self.columns {
+                rows[i * self.columns + j] = y[(i, j)];
+            }
+        }
+    }
+    fn value(self, rows: &[f64], v: &mut AlgebraMatrix) {
+        let n = v.nrows();
+        if rows.len() < n * n {
+            let (x, y, z) = (rows[0], rows[1], rows[2]);
+            (v[(2, 1)], v[(0, 2)], v[(1, 0)]) = (x, y, z);
+            (v[(1, 2)], v[(2, 0)], v[(0, 1)]) = (-x, -y, -z);
+            return;
+        }
+        for i in 0..n {
+            for j in 0..n {
+                v[(i, j)] = rows[i * n + j];
+            }
+        }
+    }
+    fn to_space(self, group: &MatrixGroup, y: &Mat<f64>, v: &mut AlgebraMatrix) {
+        let (g, body) = (GroupMatrix::new_unchecked(y.clone()), v.clone());
+        if group.big_ad(&g, &body, v).is_err() {
+            v[(0, 0)] = f64::NAN;
+        }
+    }
+}

@@ -1,0 +1,309 @@
+//! A field of one's own behind slices: the group and the action by name, all numbers by rows.
+//!
+//! | group | action | y | f(t, y) |
+//! |---|---|---|---|
+//! | `SO(3)` | translation | 3×3 | 3 numbers, ω |
+//! | | linear, coadjoint | 3 numbers | 3 numbers |
+//! | `SE(3)` | translation | 4×4, \[R x; 0 1\] | 6 numbers, (ω, v) |
+//! | | coadjoint | 6 numbers, (μ, π) | 6 numbers |
+//! | `S3`, unit quaternions | translation | 4 numbers, the real part first | 3 numbers, ω |
+//! | `SO(n)`, `SL(n)`, `GL(n)`, `Sp(2m)`, `SO(p,q)`, G_M | translation, conjugation, coadjoint | n×n | n×n |
+//! | | linear | n×k | n×n |
+//! | | lagrangian, of Sp(2m) | m×m | 2m×2m |
+//! | `SO(3)` | conjugation; linear with k columns | 3×3; 3×k | 3 numbers |
+//!
+//! ẏ = λ_*(f(t, y))(y). On a group this is ẏ = f·y with [`Frame::Space`], and ẏ = y·f with [`Frame::Body`].
+
+mod layout;
+mod run;
+
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use faer::Mat;
+use lieflow::Error;
+use lieflow::actions::{Coadjoint, LeftTranslation, Linear};
+use lieflow::catalog::MethodSpec;
+use lieflow::groups::{MatrixGroup, Se3, So3, UnitQuaternions};
+use lieflow::names::{near, plain};
+
+use self::layout::{Matrices, Motions, Pairs, Quaternions, Rotations, Vectors};
+use self::run::Typed;
+pub use self::run::{Curve, End, OwnEvent, OwnPlan, Pace, Ran, Run};
+use super::algebra::Algebra;
+use super::matrix::MatrixAction;
+
+/// f: writes the value at (t, y) into the last slice, which is 0 before. It returns false to end the run at once.
+pub type OwnField = dyn Fn(f64, &[f64], &mut [f64]) -> bool + Send + Sync;
+
+/// The frame of the values of a field on a group.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Frame {
+    /// ẏ = f·y.
+    Space,
+    /// ẏ = y·f.
+    Body,
+}
+
+/// What is wrong with an argument.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Misfit {
+    /// The name of the argument.
+    pub argument: &'static str,
+    /// Its value in words.
+    pub value: String,
+    /// What was expected.
+    pub expected: String,
+}
+
+fn misfit<T>(
+    argument: &'static str,
+    value: impl Into<String>,
+    expected: impl Into<String>,
+) -> Result<T, Misfit> {
+    Err(Misfit { argument, value: value.into(), expected: expected.into() })
+}
+
+/// A group, by name or by its form M.
+#[derive(Clone, Debug)]
+pub enum GroupName {
+    /// The name of a group, such as `SO(3)`.
+    Named(String),
+    /// G_M = {g : gᵀMg = M}, with n and M by rows.
+    Form(usize, Vec<f64>),
+}
+
+/// The actions by name.
+pub const ACTIONS: [&str; 5] = ["translation", "linear", "conjugation", "coadjoint", "lagrangian"];
+/// The groups by name; n, m, p and q stand for numbers.
+pub const GROUPS: [&str; 8] =
+    ["SO(3)", "SE(3)", "S3", "SO(n)", "SL(n)", "GL(n)", "Sp(2m)", "SO(p,q)"];
+
+/// The space of a problem: a group, an action, and the shapes of y and f.
+#[derive(Clone, Debug)]
+pub struct Space {
+    kind: SpaceKind,
+    frame: Option<Frame>,
+    point: Vec<usize>,
+    value: Vec<usize>,
+}
+
+#[derive(Clone, Debug)]
+enum SpaceKind {
+    Rotation,
+    Vector,
+    Motion,
+    Pair,
+    Quaternion,
+    Matrix(MatrixGroup, MatrixAction),
+}
+
+/// The name and the size of a group of matrices.
+fn matrix_group(name: &str, rows: usize) -> Result<MatrixGroup, Misfit> {
+    let unknown = || {
+        let hint = near(name, &GROUPS).map_or(String::new(), |name| format!("`{name}`? "));
+        let expected = format!("{hint}one of {}, or the form M of a group", GROUPS.join(", "));
+        Misfit { argument: "group", value: format!("`{name}`"), expected }
+    };
+    let named = Algebra::named(name).ok_or_else(unknown)?;
+    let n = match named.algebra {
+        Algebra::Indefinite(p, q) => p.saturating_add(q),
+        _ => plain(name).trim_start_matches(char::is_alphabetic).parse().unwrap_or(rows),
+    };
+    let group = named.algebra.group(n, "group");
+    group.or_else(|_| misfit("group", format!("`{name}`"), "a group of matrices of even size, 2m"))
+}
+
+fn shape_of(shape: &[usize]) -> String {
+    match shape {
+        [n] => format!("({n},)"),
+        shape => format!("({})", shape.iter().map(usize::to_string).collect::<Vec<_>>().join(", ")),
+    }
+}
+
+impl Space {
+    /// The space of a group, an action and a frame by name, with y of this shape.
+    ///
+    /// # Errors
+    /// A [`Misfit`] of `group`, `action`, `frame` or `y0`.
+    pub fn new(
+        group: &GroupName,
+        action: &str,
+        frame: Option<Frame>,
+        shape: &[usize],
+    ) -> Result<Self, Misfit> {
+        let Some(action) = ACTIONS.into_iter().find(|name| plain(name) == plain(action)) else {
+            let hint = near(action, &ACTIONS).map_or(String::new(), |name| format!("`{name}`? "));
+            let expected = format!("{hint}one of {}", ACTIONS.join(", "));
+            return misfit("action", format!("`{action}`"), expected);
+        };
+        let translates = action == "translation";
+        match frame {
+            None if translates => {
+                return misfit("frame", "None", "\"space\" (ẏ = f y) or \"body\" (ẏ = y f)");
+            }
+            Some(Frame::Body) if !translates => {
+                let expected = format!("None: with action=\"{action}\" f is in space");
+                return misfit("frame", "\"body\"", expected);
+            }
+            _ => {}
+        }
+        let name = match group {
+            GroupName::Named(name) => plain(name),
+            GroupName::Form(..) => String::new(),
+        };
+        let (kind, point, value) = match (&*name, action) {
+            ("so3", "translation") => (SpaceKind::Rotation, vec![3, 3], vec![3]),
+            ("so3", "coadjoint") => (SpaceKind::Vector, vec![3], vec![3]),
+            ("so3", "linear") if shape.len() != 2 => (SpaceKind::Vector, vec![3], vec![3]),
+            ("se3", "translation") => (SpaceKind::Motion, vec![4, 4], vec![6]),
+            ("se3", "coadjoint") => (SpaceKind::Pair, vec![6], vec![6]),
+            ("s3" | "su2" | "quaternions" | "unitquaternions", "translation") => {
+                (SpaceKind::Quaternion, vec![4], vec![3])
+            }
+            ("se3" | "s3" | "su2" | "quaternions" | "unitquaternions", _) => {
+                return misfit("action", format!("`{action}`"), "\"translation\" for this group");
+            }
+            _ => return Self::of_matrices(group, action, frame, shape),
+        };
+        let space = Space { kind, frame, point, value };
+        space.check_shape(shape)?;
+        Ok(space)
+    }
+
+    fn of_matrices(
+        group: &GroupName,
+        action: &str,
+        frame: Option<Frame>,
+        shape: &[usize],
+    ) -> Result<Self, Misfit> {
+        let &[rows, columns] = shape else {
+            return misfit("y0", format!("shape {}", shape_of(shape)), "a matrix, shape (n, k)");
+        };
+        let lagrangian = action == "lagrangian";
+        let group = match group {
+            GroupName::Named(name) => matrix_group(name, if lagrangian { 2 * rows } else { rows })?,
+            GroupName::Form(n, m) => {
+                let form = Mat::from_fn(*n, *n, |i, j| m[i * n + j]);
+                match MatrixGroup::gm(form) {
+                    Ok(group) => group,
+                    Err(error) => return misfit("group", error.to_string(), "an invertible M"),
+                }
+            }
+        };
+        let n = group.n();
+        let (action, point) = match action {
+            "translation" => (MatrixAction::Translation, vec![n, n]),
+            "conjugation" => (MatrixAction::Conjugation, vec![n, n]),
+            "coadjoint" => (MatrixAction::Coadjoint, vec![n, n]),
+            "lagrangian" => (MatrixAction::Lagrangian, vec![n / 2, n / 2]),
+            _ => (MatrixAction::Linear, vec![n, columns]),
+        };
+        let is_so3 = matches!(group.form(), lieflow::groups::Form::Identity) && n == 3;
+        let value = if is_so3 { vec![3] } else { vec![n, n] };
+        let space = Space { kind: SpaceKind::Matrix(group, action), frame, point, value };
+        space.check_shape(shape)?;
+        Ok(space)
+    }
+
+    fn check_shape(&self, shape: &[usize]) -> Result<(), Misfit> {
+        match shape == self.point {
+            true => Ok(()),
+            false => misfit(
+                "y0",
+                format!("shape {}", shape_of(shape)),
+                format!("shape {}", shape_of(&self.point)),
+            ),
+        }
+    }
+
+    /// The shape of y.
+    pub fn point(&self) -> &[usize] {
+        &self.point
+    }
+
+    /// The shape of f.
+    pub fn value(&self) -> &[usize] {
+        &self.value
+    }
+
+    /// The problem with this field. With `linear`, f depends only on t, and methods for linear equations fit.
+    ///
+    /// # Errors
+    /// [`Error::Unsupported`] for a space whose fields cannot be linear.
+    pub fn problem(&self, field: Arc<OwnField>, linear: bool) -> Result<Own, Error> {
+        let body = self.frame == Some(Frame::Body);
+        let run: Box<dyn Run> = match &self.kind {
+            SpaceKind::Rotation => {
+                Typed::linear(So3::new(), LeftTranslation, Rotations, (field, body, linear))
+            }
+            SpaceKind::Vector => Typed::linear(So3::new(), Linear, Vectors, (field, false, linear)),
+            SpaceKind::Motion => {
+                Typed::linear(Se3::new(), LeftTranslation, Motions, (field, body, linear))
+            }
+            SpaceKind::Matrix(group, action) => {
+                let layout = Matrices { rows: self.point[0], columns: self.point[1] };
+                Typed::linear_or_poisson(group.clone(), *action, layout, (field, body, linear))
+            }
+            SpaceKind::Pair | SpaceKind::Quaternion if linear => {
+                return Err(Error::Unsupported {
+                    what: "linear=True",
+                    with: "this group and action".into(),
+                    why: "there is no method for linear equations on it; leave linear out",
+                });
+            }
+            SpaceKind::Quaternion => {
+                Typed::field(UnitQuaternions, LeftTranslation, Quaternions, (field, body))
+            }
+            SpaceKind::Pair => Typed::poisson(Se3::new(), Coadjoint, Pairs, field),
+        };
+        Ok(Own { run })
+    }
+}
+
+/// A problem with a field of one's own.
+pub struct Own {
+    run: Box<dyn Run>,
+}
+
+impl core::fmt::Debug for Own {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.debug_struct("Own").finish_non_exhaustive()
+    }
+}
+
+impl Own {
+    /// Checks that the method fits.
+    ///
+    /// # Errors
+    /// The reason why it does not.
+    pub fn fits(&self, method: &MethodSpec) -> Result<(), Error> {
+        self.run.fits(method)
+    }
+
+    /// Integrates from y0, by rows. `observe` sees the rows of the output. `stop` ends the run when it is set; the
+    /// field and the events may set it.
+    pub fn run(
+        &self,
+        method: &MethodSpec,
+        y0: &[f64],
+        plan: OwnPlan<'_>,
+        observe: &mut dyn FnMut(f64, &[f64]),
+        stop: &AtomicBool,
+    ) -> Ran {
+        self.run.run(method, y0, plan, observe, stop)
+    }
+
+    /// The curve of these numbers, for the method that made them.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for other numbers.
+    pub fn curve(
+        &self,
+        method: &MethodSpec,
+        y0: &[f64],
+        numbers: &[f64],
+    ) -> Result<Box<dyn Curve>, Error> {
+        self.run.curve(method, y0, numbers)
+    }
+}
