@@ -38,7 +38,7 @@ pub use grid::{SaveAt, TimeGrid};
 pub use integrator::Integrator;
 pub use interpolant::{Interpolant, Reader};
 pub use simple::{integrate, integrate_adaptive};
-pub use solution::{Drift, Interrupted, Next, Occurrence, Solution, Status};
+pub use solution::{Drift, Ended, Interrupted, Next, Occurrence, Solution, Status};
 pub use stats::{RESTORE_EVERY, RunError, Stats};
 
 use std::sync::Arc;
@@ -456,7 +456,7 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
     ///
     /// # Errors
     /// [`Interrupted`]: why, and the solution up to there.
-    pub fn run(self, y0: PointOf<P>) -> Result<Solution<PointOf<P>>, Interrupted<PointOf<P>>> {
+    pub fn run(self, y0: PointOf<P>) -> Ended<PointOf<P>> {
         let (mut times, mut points) = (Vec::new(), Vec::new());
         let done = self.run_with(y0, |t, y| {
             times.push(t);
@@ -476,7 +476,7 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
         self,
         y0: PointOf<P>,
         mut observe: impl FnMut(f64, &mut PointOf<P>) -> N,
-    ) -> Result<Solution<PointOf<P>>, Interrupted<PointOf<P>>> {
+    ) -> Ended<PointOf<P>> {
         self.drive(y0, Keep::Nothing, &mut |t, y| observe(t, y).into())
     }
 
@@ -486,7 +486,7 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
         y0: PointOf<P>,
         kept: Keep<'k, P>,
         observe: &'k mut Observe<'k, PointOf<P>>,
-    ) -> Result<Solution<PointOf<P>>, Interrupted<PointOf<P>>> {
+    ) -> Ended<PointOf<P>> {
         let Integrator { mut points, mut times } = self.start(y0)?;
         times.expect_events(!self.events.is_empty());
         points.list = self.list;
@@ -540,7 +540,7 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
     pub fn run_interpolant(
         self,
         y0: PointOf<P>,
-    ) -> Result<(Solution<PointOf<P>>, Interpolant<'a, P, M>), Interrupted<PointOf<P>>>
+    ) -> Result<SolutionWithCurve<'a, P, M>, Interrupted<PointOf<P>>>
     where
         PointOf<P>: Numbers,
     {
@@ -558,7 +558,7 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
         mut self,
         y0: PointOf<P>,
         mut observe: impl FnMut(f64, &mut PointOf<P>) -> N,
-    ) -> (Result<Solution<PointOf<P>>, Interrupted<PointOf<P>>>, Interpolant<'a, P, M>)
+    ) -> (Ended<PointOf<P>>, Interpolant<'a, P, M>)
     where
         PointOf<P>: Numbers,
     {
@@ -576,11 +576,7 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
 }
 
 /// The result of a run, or an error with the results so far.
-fn stored<Y>(
-    mut done: Result<Solution<Y>, Interrupted<Y>>,
-    times: Vec<f64>,
-    points: Vec<Y>,
-) -> Result<Solution<Y>, Interrupted<Y>> {
+fn stored<Y>(mut done: Ended<Y>, times: Vec<f64>, points: Vec<Y>) -> Ended<Y> {
     let solution = match &mut done {
         Ok(solution) => Some(solution),
         Err(Interrupted { solution, .. }) => solution.as_deref_mut(),
@@ -590,6 +586,9 @@ fn stored<Y>(
     }
     done
 }
+
+/// A solution, and the same at all times.
+type SolutionWithCurve<'a, P, M> = (Solution<PointOf<P>>, Interpolant<'a, P, M>);
 
 /// The default rtol and atol.
 const DEFAULT: (f64, f64) = (1e-6, 1e-9);

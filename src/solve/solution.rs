@@ -107,6 +107,9 @@ impl<Y> Solution<Y> {
     }
 }
 
+/// The result of a run, or the error that ended it with the results so far.
+pub type Ended<Y> = Result<Solution<Y>, Interrupted<Y>>;
+
 /// The error of a run that failed, with its results so far.
 pub struct Interrupted<Y> {
     /// Why.

@@ -89,6 +89,7 @@ pub struct Space {
 }
 
 #[derive(Clone, Debug)]
+#[allow(clippy::large_enum_variant)] // one for each run
 enum SpaceKind {
     Rotation,
     Vector,

@@ -26,22 +26,28 @@ pub enum Pace {
     ByError(StepControl),
 }
 
+/// A function of t and the numbers of y.
+type OfRows<'a, V> = Box<dyn FnMut(f64, &[f64]) -> V + 'a>;
+
+/// A function that changes the numbers of y at t.
+type ChangeRows<'a> = Box<dyn FnMut(f64, &mut [f64]) + 'a>;
+
 /// An event: the zeros of a function of t and the numbers of y.
 pub struct OwnEvent<'a> {
     /// Its name.
     pub name: String,
     /// The function.
-    pub value: Box<dyn FnMut(f64, &[f64]) -> f64 + 'a>,
+    pub value: OfRows<'a, f64>,
     /// The zeros that count.
     pub direction: Direction,
     /// The zero that ends the run, from 1.
     pub stop_after: Option<u64>,
     /// What changes y at a zero, if anything does.
-    pub change: Option<Box<dyn FnMut(f64, &mut [f64]) + 'a>>,
+    pub change: Option<ChangeRows<'a>>,
     /// At how many points of each step the function is evaluated.
     pub points: Option<u32>,
     /// What sees the zeros, before a change.
-    pub tell: Box<dyn FnMut(f64, &[f64]) + 'a>,
+    pub tell: OfRows<'a, ()>,
 }
 
 impl core::fmt::Debug for OwnEvent<'_> {
@@ -151,24 +157,28 @@ pub(super) struct Typed<P, L> {
 /// The scratch of a field: the numbers of y and of f.
 type Scratch = (Vec<f64>, Vec<f64>);
 
-/// The closure that makes the scratch, and the field.
-fn field_of<G, A, L>(
+/// The closure that makes the scratch.
+fn scratch_of<G: LieGroup, Y, L: Layout<G, Y>>(
+    group: &G,
+    layout: L,
+) -> impl Fn() -> Scratch + Send + Sync + use<G, Y, L> {
+    let [y, f] = layout.sizes(group);
+    move || (vec![0.0; y], vec![0.0; f])
+}
+
+/// The closure that evaluates the field, in space.
+fn field_of<G, Y, L>(
     group: &G,
     layout: L,
     field: Arc<OwnField>,
     body: bool,
-) -> (
-    impl Fn() -> Scratch + Send + Sync + use<G, A, L>,
-    impl Fn(f64, &A::Point, &mut G::Alg, &mut Scratch) + Send + Sync + use<G, A, L>,
-)
+) -> impl Fn(f64, &Y, &mut G::Alg, &mut Scratch) + Send + Sync + use<G, Y, L>
 where
     G: LieGroup<Scalar = f64> + Clone + 'static,
-    A: Action<G>,
-    L: Layout<G, A::Point>,
+    L: Layout<G, Y>,
 {
-    let ([y, f], group) = (layout.sizes(group), group.clone());
-    let make = move || (vec![0.0; y], vec![0.0; f]);
-    let f = move |t: f64, y: &A::Point, v: &mut G::Alg, (rows, value): &mut Scratch| {
+    let group = group.clone();
+    move |t, y, v, (rows, value)| {
         layout.show(y, rows);
         value.fill(0.0);
         if !field(t, rows, value) {
@@ -178,8 +188,7 @@ where
         if body {
             layout.to_space(&group, y, v);
         }
-    };
-    (make, f)
+    }
 }
 
 impl<G, A, L> Typed<DynFlow<G, A, TimeAlone>, L>
@@ -198,7 +207,8 @@ where
         layout: L,
         (field, body, linear): (Arc<OwnField>, bool, bool),
     ) -> Box<dyn Run> {
-        let (make, f) = field_of::<G, A, L>(&group, layout, field, body);
+        let make = scratch_of(&group, layout);
+        let f = field_of(&group, layout, field, body);
         let flow = Flow::with_work(group, action, make, f);
         let problem = match linear {
             true => DynFlow::linear(flow.linear(), action),
@@ -224,7 +234,8 @@ where
         layout: L,
         (field, body, linear): (Arc<OwnField>, bool, bool),
     ) -> Box<dyn Run> {
-        let (make, f) = field_of::<G, A, L>(&group, layout, field, body);
+        let make = scratch_of(&group, layout);
+        let f = field_of(&group, layout, field, body);
         let flow = Flow::with_work(group, action, make, f);
         let problem = match linear {
             true => DynFlow::linear(flow.linear(), action),
@@ -250,7 +261,8 @@ where
         layout: L,
         (field, body): (Arc<OwnField>, bool),
     ) -> Box<dyn Run> {
-        let (make, f) = field_of::<G, A, L>(&group, layout, field, body);
+        let make = scratch_of(&group, layout);
+        let f = field_of(&group, layout, field, body);
         let problem = DynFlow::new(Flow::with_work(group, action, make, f), action);
         Box::new(Typed { problem: Arc::new(problem), layout })
     }
@@ -267,7 +279,8 @@ where
 {
     /// A problem of a type in which some are Lie–Poisson systems.
     pub(super) fn poisson(group: G, action: A, layout: L, field: Arc<OwnField>) -> Box<dyn Run> {
-        let (make, f) = field_of::<G, A, L>(&group, layout, field, false);
+        let make = scratch_of(&group, layout);
+        let f = field_of(&group, layout, field, false);
         let problem = DynFlow::new(Flow::with_work(group, action, make, f), action);
         Box::new(Typed { problem: Arc::new(problem), layout })
     }

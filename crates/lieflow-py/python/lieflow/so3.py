@@ -1,0 +1,188 @@
+"""The maps of so(3) and SO(3) on arrays.
+
+Vectors have shape (..., 3) and rotations (..., 3, 3). Leading axes broadcast. Every function that returns an array of
+numbers takes ``out=``, an array of float64 in C order, which may share memory with the arguments. With û the matrix of
+v ↦ u × v, α = |u|, and right-trivialised differentials, d/dε Ψ(u + εv) = dΨ_u(v) Ψ(u):
+
+========  ==========================================================
+exp       𝟙 + (sin α/α) û + ((1 − cos α)/α²) û²
+dexp      𝟙 + ((1 − cos α)/α²) û + ((α − sin α)/α³) û²; the left Jacobian of robotics
+dexpinv   𝟙 − û/2 + ((1 − (α/2) cot(α/2))/α²) û²
+cay       𝟙 + (û + û²/2)/(1 + α²/4)
+========  ==========================================================
+
+Errors: :class:`lieflow.ArgumentError` for a shape, a number that is not finite, or a matrix that is no rotation, with
+the place of the element; TypeError for what is not real numbers.
+Source: A. Iserles, H. Munthe-Kaas, S. P. Nørsett, A. Zanna, Lie-group methods, Acta Numerica 9 (2000).
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ._arrays import real
+from ._errors import ArgumentError
+from ._lieflow import (
+    so3_cay as cay,
+    so3_cay_inv as cay_inv,
+    so3_dcay as dcay,
+    so3_dcayinv as dcayinv,
+    so3_dexp as dexp,
+    so3_dexpinv as _dexpinv,
+    so3_exp as exp,
+    so3_exp_on as exp_on,
+    so3_log as log,
+)
+
+__all__ = [
+    "Ad",
+    "ad",
+    "as_rotation",
+    "cay",
+    "cay_inv",
+    "coad",
+    "contains",
+    "dcay",
+    "dcayinv",
+    "dexp",
+    "dexpinv",
+    "exp",
+    "exp_on",
+    "from_rotation",
+    "hat",
+    "log",
+    "project",
+    "random",
+    "vee",
+]
+
+Array = NDArray[np.float64]
+
+
+def _tail(name: str, x: ArrayLike, tail: tuple[int, ...]) -> Array:
+    array = real(name, x)
+    if array.shape[-len(tail) :] != tail or array.ndim < len(tail):
+        sizes = ", ".join(str(n) for n in tail)
+        raise ArgumentError(name, f"shape {array.shape}", f"shape (..., {sizes})")
+    return array
+
+
+def _into(value: Array, out: Array | None) -> Array:
+    if out is None:
+        return value
+    if not isinstance(out, np.ndarray) or out.dtype != np.float64 or out.shape != value.shape:
+        raise ArgumentError("out", "another type or shape", f"an array of float64, shape {value.shape}")
+    out[...] = value
+    return out
+
+
+def dexpinv(u: ArrayLike, v: ArrayLike, out: Array | None = None, *, q: int | None = None) -> Array:
+    """Return dexp_u⁻¹(v), shape (..., 3).
+
+    With q, the series Σ_k B_k/k! ad_u^k v is cut after k = q. Next to |u| = 2πk, k ≥ 1, dexp is singular.
+    """
+    if q is None:
+        return _dexpinv(u, v, out)
+    if q < 0 or q != int(q):
+        raise ArgumentError("q", str(q), "an integer ≥ 0")
+    a, term = _tail("u", u, (3,)), _tail("v", v, (3,))
+    total = term.copy() if q == 0 else term + 0.0 * a
+    bernoulli = _bernoulli(int(q))
+    factorial = 1.0
+    for k in range(1, int(q) + 1):
+        term = np.cross(a, term)
+        factorial *= k
+        if bernoulli[k]:
+            total = total + bernoulli[k] / factorial * term
+    return _into(total, out)
+
+
+def _bernoulli(n: int) -> list[float]:
+    """The Bernoulli numbers B_0, …, B_n, with B_1 = −1/2."""
+    from fractions import Fraction
+    from math import comb
+
+    b: list[Fraction] = []
+    for m in range(n + 1):
+        rest = sum((comb(m + 1, k) * b[k] for k in range(m)), Fraction(0))
+        b.append(Fraction(1) if m == 0 else -rest / (m + 1))
+    return [float(x) for x in b]
+
+
+def hat(u: ArrayLike) -> Array:
+    """Return û, the skew matrices with û x = u × x, shape (..., 3, 3)."""
+    a = _tail("u", u, (3,))
+    out = np.zeros(a.shape + (3,))
+    out[..., 2, 1], out[..., 0, 2], out[..., 1, 0] = a[..., 0], a[..., 1], a[..., 2]
+    out[..., 1, 2], out[..., 2, 0], out[..., 0, 1] = -a[..., 0], -a[..., 1], -a[..., 2]
+    return out
+
+
+def vee(m: ArrayLike) -> Array:
+    """Return the vectors u of skew matrices m = û, shape (..., 3). Only m₃₂, m₁₃ and m₂₁ are read."""
+    a = _tail("m", m, (3, 3))
+    return np.stack([a[..., 2, 1], a[..., 0, 2], a[..., 1, 0]], axis=-1)
+
+
+def Ad(r: ArrayLike, u: ArrayLike) -> Array:
+    """Return Ad_R u = R u, shape (..., 3)."""
+    return np.asarray((_tail("r", r, (3, 3)) @ _tail("u", u, (3,))[..., None])[..., 0])
+
+
+def ad(u: ArrayLike, v: ArrayLike) -> Array:
+    """Return ad_u v = u × v, shape (..., 3)."""
+    return np.asarray(np.cross(_tail("u", u, (3,)), _tail("v", v, (3,))))
+
+
+def coad(u: ArrayLike, m: ArrayLike) -> Array:
+    """Return ad*_u m = m × u, shape (..., 3). Euler's equations are ṁ = ad*_ω m."""
+    return np.asarray(np.cross(_tail("m", m, (3,)), _tail("u", u, (3,))))
+
+
+def contains(r: ArrayLike, tol: float = 1e-12) -> NDArray[np.bool_]:
+    """Return True for each matrix with ‖RᵀR − 𝟙‖ ≤ tol (Frobenius) and det R > 0, shape (...)."""
+    a = _tail("r", r, (3, 3))
+    with np.errstate(invalid="ignore", over="ignore"):
+        gram = np.swapaxes(a, -1, -2) @ a - np.eye(3)
+        return np.asarray((np.sqrt((gram**2).sum((-1, -2))) <= tol) & (np.linalg.det(a) > 0))
+
+
+def project(x: ArrayLike) -> Array:
+    """Return the rotation nearest to each matrix (Frobenius), shape (..., 3, 3).
+
+    It is U diag(1, 1, det UVᵀ) Vᵀ with the singular value decomposition x = U S Vᵀ.
+    """
+    a = _tail("x", x, (3, 3))
+    if not np.isfinite(a).all():
+        raise ArgumentError("x", "a number that is not finite", "finite numbers")
+    u, _, vt = np.linalg.svd(a)
+    u[..., :, 2] *= np.where(np.linalg.det(u @ vt) < 0, -1.0, 1.0)[..., None]
+    return np.asarray(u @ vt)
+
+
+def random(size: int | tuple[int, ...] | None = None, rng: Any = None) -> Array:
+    """Return random rotations by Haar's measure, shape size + (3, 3). ``rng`` is as in numpy.random.default_rng."""
+    lead = () if size is None else (size,) if isinstance(size, int) else tuple(size)
+    q = np.random.default_rng(rng).standard_normal(lead + (4,))
+    w, x, y, z = np.moveaxis(q / np.linalg.norm(q, axis=-1, keepdims=True), -1, 0)
+    rows = [
+        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+    ]
+    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+
+
+def as_rotation(r: ArrayLike) -> Any:
+    """Return SciPy's Rotation of matrices (..., 3, 3)."""
+    from scipy.spatial.transform import Rotation
+
+    return Rotation.from_matrix(_tail("r", r, (3, 3)))
+
+
+def from_rotation(rotation: Any) -> Array:
+    """Return the matrices (..., 3, 3) of SciPy's Rotation."""
+    return np.asarray(rotation.as_matrix())

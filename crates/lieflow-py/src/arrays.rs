@@ -1,0 +1,202 @@
+//! Arrays in and out: real numbers in C order, with the last axes of one element.
+
+use std::borrow::Cow;
+
+use lieflow::Error;
+use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
+use pyo3::prelude::*;
+
+use crate::error::argument;
+
+/// From this number of elements on a map releases the interpreter.
+const MANY: usize = 512;
+
+/// An argument: its numbers in C order, and the shape of its leading axes.
+pub(crate) struct Input<'py> {
+    array: Bound<'py, PyArrayDyn<f64>>,
+    /// A copy, if the result overwrites the array.
+    copy: Option<Vec<f64>>,
+    tail: usize,
+}
+
+/// The array as it is, if its numbers can be read as a slice.
+fn plain<'py>(x: &Bound<'py, PyAny>) -> Option<Bound<'py, PyArrayDyn<f64>>> {
+    let array = x.cast::<PyArrayDyn<f64>>().ok()?;
+    let aligned = (array.data() as usize).is_multiple_of(align_of::<f64>());
+    (array.is_c_contiguous() && aligned).then(|| array.clone())
+}
+
+/// A shape as Python writes it.
+pub(crate) fn shape_text(shape: &[usize]) -> String {
+    match shape {
+        [n] => format!("({n},)"),
+        shape => {
+            let sizes: Vec<_> = shape.iter().map(usize::to_string).collect();
+            format!("({})", sizes.join(", "))
+        }
+    }
+}
+
+/// The shape (..., tail) as Python writes it.
+fn trailing(tail: &[usize]) -> String {
+    let sizes: Vec<_> = tail.iter().map(usize::to_string).collect();
+    format!("shape (..., {})", sizes.join(", "))
+}
+
+impl<'py> Input<'py> {
+    /// The argument `name`, with these last axes.
+    pub(crate) fn new(name: &str, x: &Bound<'py, PyAny>, tail: &[usize]) -> PyResult<Self> {
+        let input = Self::any(name, x, tail.len())?;
+        let shape = input.array.shape();
+        match shape[shape.len() - tail.len()..] == *tail {
+            true => Ok(input),
+            false => {
+                let value = format!("shape {}", shape_text(shape));
+                Err(argument(x.py(), name, value, trailing(tail)))
+            }
+        }
+    }
+
+    /// The argument `name` with at least so many axes.
+    pub(crate) fn any(name: &str, x: &Bound<'py, PyAny>, axes: usize) -> PyResult<Self> {
+        let array = match plain(x) {
+            Some(array) => array,
+            None => {
+                let real = x.py().import("lieflow._arrays")?.getattr("real")?;
+                real.call1((name, x))?.cast_into::<PyArrayDyn<f64>>()?
+            }
+        };
+        if array.ndim() < axes {
+            let value = format!("shape {}", shape_text(array.shape()));
+            return Err(argument(x.py(), name, value, format!("at least {axes} axes")));
+        }
+        Ok(Input { array, copy: None, tail: axes })
+    }
+
+    /// The leading axes.
+    pub(crate) fn lead(&self) -> &[usize] {
+        let shape = self.array.shape();
+        &shape[..shape.len() - self.tail]
+    }
+
+    /// The shape.
+    pub(crate) fn shape(&self) -> &[usize] {
+        self.array.shape()
+    }
+
+    /// The numbers.
+    pub(crate) fn numbers(&self) -> &[f64] {
+        match &self.copy {
+            Some(copy) => copy,
+            // SAFETY: `plain` and `real` give aligned arrays of float64 in C order. Code that writes into an argument
+            // from another thread during the call races, as with NumPy itself.
+            None => unsafe { self.array.as_slice().unwrap_or(&[]) },
+        }
+    }
+
+    /// Copies the numbers if the array shares memory with `out`.
+    fn keep_from(&mut self, out: &Bound<'py, PyArrayDyn<f64>>) {
+        let range = |array: &Bound<'py, PyArrayDyn<f64>>| {
+            let start = array.data() as usize;
+            start..start + size_of::<f64>() * array.len()
+        };
+        let (a, b) = (range(&self.array), range(out));
+        if a.start < b.end && b.start < a.end {
+            self.copy = Some(self.numbers().to_vec());
+        }
+    }
+}
+
+/// The place of a result with these leading and last axes: `out`, or a new array.
+pub(crate) fn output<'py>(
+    py: Python<'py>,
+    (lead, tail): (&[usize], &[usize]),
+    out: Option<&Bound<'py, PyAny>>,
+    inputs: &mut [&mut Input<'py>],
+) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    let mut shape = [0usize; 32];
+    let axes = lead.len() + tail.len();
+    let shape = match shape.get_mut(..axes) {
+        Some(shape) => shape,
+        None => return Err(argument(py, "out", format!("{axes} axes"), "at most 32")),
+    };
+    shape[..lead.len()].copy_from_slice(lead);
+    shape[lead.len()..].copy_from_slice(tail);
+    let Some(out) = out.filter(|out| !out.is_none()) else {
+        // SAFETY: every number is written before the array is returned, or the array is dropped with an exception.
+        return Ok(unsafe { PyArrayDyn::<f64>::new(py, &*shape, false) });
+    };
+    let expected =
+        || format!("a writeable array of float64 in C order, shape {}", shape_text(shape));
+    let Some(array) = plain(out) else {
+        return Err(argument(py, "out", out.get_type().name()?.to_string(), expected()));
+    };
+    if array.shape() != shape || array.try_readwrite().is_err() {
+        return Err(argument(
+            py,
+            "out",
+            format!("shape {}", shape_text(array.shape())),
+            expected(),
+        ));
+    }
+    for input in inputs {
+        input.keep_from(&array);
+    }
+    Ok(array)
+}
+
+/// Runs f on the numbers of the result, without the interpreter if there are many elements.
+pub(crate) fn fill<'py>(
+    py: Python<'py>,
+    name: &str,
+    (out, lead): (Bound<'py, PyArrayDyn<f64>>, &[usize]),
+    f: impl FnOnce(&mut [f64]) -> Result<(), Error> + Send,
+) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    // SAFETY: `output` gives a writeable array in C order, and what shares memory with it was copied.
+    let numbers = unsafe { out.as_slice_mut()? };
+    let many = lead.iter().product::<usize>() >= MANY;
+    let done = if many { py.detach(|| f(numbers)) } else { f(numbers) };
+    match done {
+        Ok(()) => Ok(out),
+        Err(error) => Err(of_element(py, name, lead, error)),
+    }
+}
+
+/// The exception of an error at an element of an array with these leading axes.
+fn of_element(py: Python<'_>, name: &str, lead: &[usize], error: Error) -> PyErr {
+    let Error::Element { mut index, source } = error else {
+        return crate::error::refused(py, name, &error);
+    };
+    let mut place = vec![0; lead.len()];
+    for (axis, size) in lead.iter().enumerate().rev() {
+        place[axis] = index % size.max(&1);
+        index /= size.max(&1);
+    }
+    let place: Vec<_> = place.iter().map(usize::to_string).collect();
+    let name = match place.is_empty() {
+        true => Cow::Borrowed(name),
+        false => Cow::Owned(format!("{name}[{}]", place.join(", "))),
+    };
+    argument(py, &name, source.to_string(), "")
+}
+
+/// The leading axes of two arguments. An argument of one element stands for all. Otherwise both are broadcast by NumPy.
+pub(crate) fn common<'py>(
+    [name_a, name_b]: [&str; 2],
+    (a, b): (Input<'py>, Input<'py>),
+) -> PyResult<(Vec<usize>, Input<'py>, Input<'py>)> {
+    let one = |input: &Input<'_>| input.lead().iter().product::<usize>() == 1;
+    if a.lead() == b.lead() || (one(&b) && b.lead().len() <= a.lead().len()) {
+        return Ok((a.lead().to_vec(), a, b));
+    }
+    if one(&a) && a.lead().len() <= b.lead().len() {
+        return Ok((b.lead().to_vec(), a, b));
+    }
+    let py = a.array.py();
+    let (tail_a, tail_b) = (a.tail, b.tail);
+    let together = py.import("lieflow._arrays")?.getattr("together")?;
+    let both = together.call1((name_a, &a.array, tail_a, name_b, &b.array, tail_b))?;
+    let (x, y): (Bound<'py, PyAny>, Bound<'py, PyAny>) = both.extract()?;
+    let (a, b) = (Input::any(name_a, &x, tail_a)?, Input::any(name_b, &y, tail_b)?);
+    Ok((a.lead().to_vec(), a, b))
+}

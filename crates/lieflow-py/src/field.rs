@@ -1,0 +1,164 @@
+//! f, events and changes of a run: Python callables, and addresses of C functions.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex};
+
+use lieflow_model::kinds::own::OwnField;
+use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
+use pyo3::prelude::*;
+use pyo3::types::{PyFloat, PyTuple};
+
+/// The first exception of the callables of a run, and the flag that ends the run.
+#[derive(Default)]
+pub(crate) struct Raised {
+    first: Mutex<Option<PyErr>>,
+    pub(crate) stop: AtomicBool,
+}
+
+impl Raised {
+    pub(crate) fn keep(&self, error: PyErr) {
+        if let Ok(mut first) = self.first.lock() {
+            first.get_or_insert(error);
+        }
+        self.stop.store(true, Ordering::Relaxed);
+    }
+
+    /// The exception, if there is one.
+    pub(crate) fn take(&self) -> Option<PyErr> {
+        self.first.lock().ok().and_then(|mut first| first.take())
+    }
+}
+
+/// A function of (t, y, *args).
+pub(crate) struct Callable {
+    f: Py<PyAny>,
+    args: Vec<Py<PyAny>>,
+    /// The shape of y.
+    shape: Vec<usize>,
+    /// True for a function of t alone.
+    of_time: bool,
+    raised: Arc<Raised>,
+}
+
+/// A new array with these numbers.
+pub(crate) fn array<'py>(
+    py: Python<'py>,
+    shape: &[usize],
+    numbers: &[f64],
+) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    // SAFETY: all numbers of the new array are written here; it has as many as the slice, which is checked.
+    let array = unsafe { PyArrayDyn::<f64>::new(py, shape, false) };
+    unsafe { array.as_slice_mut()? }.copy_from_slice(numbers);
+    Ok(array)
+}
+
+impl Callable {
+    pub(crate) fn new(
+        f: Py<PyAny>,
+        args: Vec<Py<PyAny>>,
+        (shape, of_time): (&[usize], bool),
+        raised: Arc<Raised>,
+    ) -> Self {
+        Callable { f, args, shape: shape.to_vec(), of_time, raised }
+    }
+
+    /// Calls it, and reads its value. An exception ends the run.
+    pub(crate) fn call<T>(
+        &self,
+        t: f64,
+        y: &[f64],
+        read: impl FnOnce(&Bound<'_, PyAny>) -> PyResult<T>,
+    ) -> Option<T> {
+        if self.raised.stop.load(Ordering::Relaxed) {
+            return None;
+        }
+        Python::attach(|py| {
+            let done = self.value(py, t, y).and_then(|value| read(&value));
+            done.map_err(|error| self.raised.keep(error)).ok()
+        })
+    }
+
+    fn value<'py>(&self, py: Python<'py>, t: f64, y: &[f64]) -> PyResult<Bound<'py, PyAny>> {
+        let f = self.f.bind(py);
+        if self.of_time && self.args.is_empty() {
+            return f.call1((t,));
+        }
+        if self.args.is_empty() {
+            return f.call1((t, array(py, &self.shape, y)?));
+        }
+        let mut all: Vec<Bound<'py, PyAny>> = vec![PyFloat::new(py, t).into_any()];
+        if !self.of_time {
+            all.push(array(py, &self.shape, y)?.into_any());
+        }
+        all.extend(self.args.iter().map(|arg| arg.bind(py).clone()));
+        f.call1(PyTuple::new(py, all)?)
+    }
+}
+
+/// out ← the numbers of a value of f.
+fn read_value(
+    value: &Bound<'_, PyAny>,
+    (name, t): (&str, f64),
+    shape: &[usize],
+    out: &mut [f64],
+) -> PyResult<()> {
+    if let Ok(array) = value.cast::<PyArrayDyn<f64>>()
+        && array.shape() == shape
+        && array.is_c_contiguous()
+    {
+        // SAFETY: the array is in C order, and nothing runs that could change it while it is read.
+        out.copy_from_slice(unsafe { array.as_slice()? });
+        return Ok(());
+    }
+    let py = value.py();
+    let real = py.import("lieflow._arrays")?.getattr("value")?;
+    let array = real.call1((name, value, PyTuple::new(py, shape)?, t))?;
+    let array = array.cast_into::<PyArrayDyn<f64>>()?;
+    // SAFETY: as above; `value` gives an array of this shape in C order.
+    out.copy_from_slice(unsafe { array.as_slice()? });
+    Ok(())
+}
+
+/// The field of a callable.
+pub(crate) fn of_callable(f: Callable, shape: &[usize]) -> Arc<OwnField> {
+    let shape = shape.to_vec();
+    Arc::new(move |t, y, v| f.call(t, y, |value| read_value(value, ("f", t), &shape, v)).is_some())
+}
+
+/// The number of an event.
+pub(crate) fn number(name: &str, t: f64, value: &Bound<'_, PyAny>) -> PyResult<f64> {
+    if let Ok(value) = value.cast_exact::<PyFloat>() {
+        return Ok(value.value());
+    }
+    let mut out = [0.0];
+    read_value(value, (name, t), &[], &mut out)?;
+    Ok(out[0])
+}
+
+/// y ← the value of a change.
+pub(crate) fn change(f: &Callable, name: &str, t: f64, y: &mut [f64]) {
+    let (shape, before) = (f.shape.clone(), y.to_vec());
+    let done = f.call(t, &before, |value| read_value(value, (name, t), &shape, y));
+    if done.is_none() {
+        y.copy_from_slice(&before);
+    }
+}
+
+/// void f(double t, const double *y, double *v, const double *p).
+type CFunction = unsafe extern "C" fn(f64, *const f64, *mut f64, *const f64);
+
+/// The field of a C function at this address, which must not be 0.
+pub(crate) fn of_address(
+    address: usize,
+    parameters: Vec<f64>,
+    raised: Arc<Raised>,
+) -> Arc<OwnField> {
+    // SAFETY: the caller of `solve_ivp` says that a function of this type is at the address, and keeps it alive. This
+    // cannot be checked. A null address is refused before.
+    let f: CFunction = unsafe { core::mem::transmute::<usize, CFunction>(address) };
+    Arc::new(move |t, y, v| {
+        // SAFETY: as above; the slices have the sizes of the space, and the parameters those that the user gave.
+        unsafe { f(t, y.as_ptr(), v.as_mut_ptr(), parameters.as_ptr()) };
+        !raised.stop.load(Ordering::Relaxed)
+    })
+}

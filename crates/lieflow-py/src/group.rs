@@ -1,0 +1,245 @@
+//! The maps of a group of matrices on arrays.
+
+use faer::{Mat, MatRef};
+use lieflow::Error;
+use lieflow::dense::Structure;
+use lieflow::groups::{
+    AlgebraMatrix, Form, GroupMatrix, LieAlgebra, LieGroup, MatrixGroup as Group, Sample,
+};
+use lieflow::maps::{cay, cay_inv, dcayinv, dexp, dexpinv, log};
+use numpy::PyArrayDyn;
+use pyo3::prelude::*;
+use rand::SeedableRng;
+use rand_pcg::Pcg64;
+
+use crate::arrays::{Input, common, fill, output};
+use crate::error::{argument, refused};
+
+/// A group of matrices.
+#[pyclass(frozen, module = "lieflow._lieflow")]
+pub(crate) struct MatrixGroup(Group);
+
+fn matrix(n: usize, rows: &[f64]) -> Mat<f64> {
+    MatRef::from_row_major_slice(rows, n, n).to_owned()
+}
+
+fn write(m: &Mat<f64>, out: &mut [f64]) {
+    let n = m.nrows();
+    for j in 0..n {
+        for (i, x) in m.col_as_slice(j).iter().enumerate() {
+            out[i * n + j] = *x;
+        }
+    }
+}
+
+impl MatrixGroup {
+    fn algebra(&self, rows: &[f64]) -> Result<AlgebraMatrix, Error> {
+        self.0.algebra(matrix(self.0.n(), rows))
+    }
+
+    fn element(&self, rows: &[f64]) -> Result<GroupMatrix, Error> {
+        self.0.element(matrix(self.0.n(), rows))
+    }
+
+    fn one<'py>(
+        &self,
+        name: &str,
+        x: &Bound<'py, PyAny>,
+        out: Option<&Bound<'py, PyAny>>,
+        f: impl Fn(&[f64]) -> Result<Mat<f64>, Error> + Send + Sync,
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        let (py, n) = (x.py(), self.0.n());
+        let mut x = Input::new(name, x, &[n, n])?;
+        let lead = x.lead().to_vec();
+        let out = output(py, (&lead, &[n, n]), out, &mut [&mut x])?;
+        let numbers = x.numbers();
+        fill(py, name, (out, &lead), |out| {
+            let rows = numbers.chunks_exact(n * n).zip(out.chunks_exact_mut(n * n));
+            for (index, (x, out)) in rows.enumerate() {
+                let value =
+                    f(x).map_err(|error| Error::Element { index, source: Box::new(error) })?;
+                write(&value, out);
+            }
+            Ok(())
+        })
+    }
+
+    fn two<'py>(
+        &self,
+        (u, v): (&Bound<'py, PyAny>, &Bound<'py, PyAny>),
+        out: Option<&Bound<'py, PyAny>>,
+        f: impl Fn(&AlgebraMatrix, &AlgebraMatrix) -> Result<AlgebraMatrix, Error> + Send + Sync,
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        let (py, n) = (u.py(), self.0.n());
+        let both = (Input::new("u", u, &[n, n])?, Input::new("v", v, &[n, n])?);
+        let (lead, mut u, mut v) = common(["u", "v"], both)?;
+        let out = output(py, (&lead, &[n, n]), out, &mut [&mut u, &mut v])?;
+        let (a, b, size) = (u.numbers(), v.numbers(), n * n);
+        fill(py, "u", (out, &lead), |out| {
+            let count = out.len() / size;
+            let step = |x: &[f64]| if x.len() == size && count != 1 { 0 } else { size };
+            let steps = [step(a), step(b)];
+            for (index, out) in out.chunks_exact_mut(size).enumerate() {
+                let u = self.algebra(&a[steps[0] * index..][..size]);
+                let v = self.algebra(&b[steps[1] * index..][..size]);
+                let value = u.and_then(|u| f(&u, &v?));
+                let value =
+                    value.map_err(|error| Error::Element { index, source: Box::new(error) })?;
+                write(&value, out);
+            }
+            Ok(())
+        })
+    }
+}
+
+#[pymethods]
+impl MatrixGroup {
+    #[new]
+    #[pyo3(signature = (family, n, q = 0, form = None))]
+    fn new(
+        py: Python<'_>,
+        family: &str,
+        n: usize,
+        q: usize,
+        form: Option<Vec<f64>>,
+    ) -> PyResult<Self> {
+        let group = match (family, form) {
+            ("gm", Some(form)) if form.len() == n * n => Group::gm(matrix(n, &form)),
+            ("so", _) if q > 0 => Group::indefinite(n, q),
+            ("so", _) => Group::so(n),
+            ("sp", _) => Group::sp(n),
+            ("gl", _) => Group::gl(n),
+            _ => return Err(argument(py, "family", family, "so, sp, gl, or gm with a form")),
+        };
+        group.map(MatrixGroup).map_err(|error| refused(py, "n", &error))
+    }
+    #[getter]
+    fn name(&self) -> String {
+        self.0.name()
+    }
+    #[getter]
+    fn n(&self) -> usize {
+        self.0.n()
+    }
+    #[getter]
+    fn dim(&self) -> usize {
+        self.0.dim()
+    }
+    #[pyo3(signature = (u, out = None))]
+    fn exp<'py>(
+        &self,
+        u: &Bound<'py, PyAny>,
+        out: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        let (py, n) = (u.py(), self.0.n());
+        let mut u = Input::new("u", u, &[n, n])?;
+        let lead = u.lead().to_vec();
+        let out = output(py, (&lead, &[n, n]), out, &mut [&mut u])?;
+        let numbers = u.numbers();
+        let structure = match self.0.form() {
+            Form::Identity => Structure::Skew,
+            _ => Structure::General,
+        };
+        fill(py, "u", (out, &lead), |out| {
+            for (index, u) in numbers.chunks_exact(n * n).enumerate() {
+                self.algebra(u)
+                    .map_err(|error| Error::Element { index, source: Box::new(error) })?;
+            }
+            crate::expm::real(n, numbers, structure, out)
+        })
+    }
+    #[pyo3(signature = (g, out = None))]
+    fn log<'py>(
+        &self,
+        g: &Bound<'py, PyAny>,
+        out: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        self.one("g", g, out, |g| Ok(log(&self.0, &self.element(g)?)?.into_mat()))
+    }
+    #[pyo3(signature = (u, out = None))]
+    fn cay<'py>(
+        &self,
+        u: &Bound<'py, PyAny>,
+        out: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        self.one("u", u, out, |u| Ok(cay(&self.0, &self.algebra(u)?)?.into_mat()))
+    }
+    #[pyo3(signature = (g, out = None))]
+    fn cay_inv<'py>(
+        &self,
+        g: &Bound<'py, PyAny>,
+        out: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        self.one("g", g, out, |g| Ok(cay_inv(&self.0, &self.element(g)?)?.into_mat()))
+    }
+    #[pyo3(signature = (x, out = None))]
+    fn project<'py>(
+        &self,
+        x: &Bound<'py, PyAny>,
+        out: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        let n = self.0.n();
+        self.one("x", x, out, |x| Ok(self.0.project_algebra(matrix(n, x).as_ref()).into_mat()))
+    }
+    #[pyo3(signature = (u, v, out = None))]
+    fn dexp<'py>(
+        &self,
+        u: &Bound<'py, PyAny>,
+        v: &Bound<'py, PyAny>,
+        out: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        self.two((u, v), out, |u, v| dexp(&self.0, u, v))
+    }
+    #[pyo3(signature = (u, v, out = None))]
+    fn dexpinv<'py>(
+        &self,
+        u: &Bound<'py, PyAny>,
+        v: &Bound<'py, PyAny>,
+        out: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        self.two((u, v), out, |u, v| dexpinv(&self.0, u, v))
+    }
+    #[pyo3(signature = (u, v, out = None))]
+    fn dcayinv<'py>(
+        &self,
+        u: &Bound<'py, PyAny>,
+        v: &Bound<'py, PyAny>,
+        out: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        self.two((u, v), out, |u, v| dcayinv(&self.0, u, v))
+    }
+    /// The distance ‖gᵀMg − M‖ of each matrix from the group, and for SO(n) 2 for a reflection.
+    #[pyo3(signature = (g))]
+    fn defect<'py>(&self, g: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        let (py, n) = (g.py(), self.0.n());
+        let mut g = Input::new("g", g, &[n, n])?;
+        let lead = g.lead().to_vec();
+        let out = output(py, (&lead, &[]), None, &mut [&mut g])?;
+        let numbers = g.numbers();
+        fill(py, "g", (out, &lead), |out| {
+            for (g, out) in numbers.chunks_exact(n * n).zip(out) {
+                let reflects = matches!(self.element(g), Err(Error::Reflection { .. }));
+                let g = GroupMatrix::new_unchecked(matrix(n, g));
+                *out = if reflects { 2.0 } else { self.0.defect(&g) };
+            }
+            Ok(())
+        })
+    }
+    /// Random elements: the numbers of `count` matrices.
+    fn random<'py>(
+        &self,
+        py: Python<'py>,
+        count: usize,
+        seed: u64,
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        let n = self.0.n();
+        let mut rng = Pcg64::seed_from_u64(seed);
+        let out = output(py, (&[count], &[n, n]), None, &mut [])?;
+        fill(py, "size", (out, &[]), |out| {
+            for out in out.chunks_exact_mut(n * n) {
+                write(&self.0.sample_element(&mut rng), out);
+            }
+            Ok(())
+        })
+    }
+}

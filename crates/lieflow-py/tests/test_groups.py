@@ -1,0 +1,93 @@
+"""lieflow.se3, the groups of matrices and expm, beside SciPy and their own inverses."""
+
+from __future__ import annotations
+
+import pickle
+
+import numpy as np
+import pytest
+import scipy.linalg
+
+import lieflow as lf
+from lieflow import se3
+
+
+def test_se3_maps(rng):
+    u, v = rng.standard_normal((2, 30, 6))
+    g = se3.exp(u)
+    assert np.abs(g - scipy.linalg.expm(se3.hat(u))).max() < 1e-13
+    assert np.abs(se3.log(g) - u).max() < 1e-12 and se3.contains(g).all()
+    h = 1e-6
+    slope = (se3.exp(u + h * v) - se3.exp(u - h * v)) / (2 * h) @ np.linalg.inv(g)
+    assert np.abs(se3.dexpinv(u, se3.vee(slope)) - v).max() < 1e-7
+    assert np.abs(se3.hat(se3.Ad(g, v)) - g @ se3.hat(v) @ np.linalg.inv(g)).max() < 1e-12
+    a, b = se3.hat(u), se3.hat(v)
+    assert np.abs(se3.vee(a @ b - b @ a) - se3.ad(u, v)).max() < 1e-13
+    m = rng.standard_normal((30, 6))
+    assert np.abs((se3.coad(u, m) * v).sum(-1) - (m * se3.ad(u, v)).sum(-1)).max() < 1e-12
+    with pytest.raises(lf.ArgumentError, match=r"g\[1\]"):
+        se3.log(np.stack([np.eye(4), 2 * np.eye(4)]))
+    assert se3.contains(se3.random((2, 3), rng)).all()
+
+
+@pytest.mark.parametrize("group", [lf.SO(3), lf.SO(5), lf.SO(3, 1), lf.Sp(4), lf.GL(3), lf.Gm([[2.0, 1.0], [0.0, 3.0]])])
+def test_maps_of_matrix_groups(rng, group):
+    n = group.n
+    u, v = (group.project(0.3 * rng.standard_normal((7, n, n))) for _ in range(2))
+    g = group.exp(u)
+    assert np.abs(g - scipy.linalg.expm(u)).max() < 1e-13
+    assert np.abs(group.log(g) - u).max() < 1e-10
+    assert group.contains(g, 1e-12).all()
+    assert np.abs(group.dexpinv(u, group.dexp(u, v)) - v).max() < 1e-12
+    h = 1e-5
+    slope = (group.exp(u + h * v) - group.exp(u - h * v)) / (2 * h) @ np.linalg.inv(g)
+    assert np.abs(slope - group.dexp(u, v)).max() < 1e-8
+    assert np.abs(group.Ad(g, v) - g @ v @ np.linalg.inv(g)).max() < 1e-12
+    if "GL" not in group.name:
+        assert np.abs(group.cay_inv(group.cay(u)) - u).max() < 1e-11
+        bad = u.copy()
+        bad[3] += 1.0
+        with pytest.raises(lf.ArgumentError, match=r"u\[3\]"):
+            group.exp(bad)
+    assert pickle.loads(pickle.dumps(group)) == group
+    assert repr(eval(repr(group), {"lieflow": lf})) == repr(group)
+    assert group.contains(group.random((2, 2), rng), 1e-10).all()
+
+
+def test_groups_refuse_wrong_sizes():
+    for make in (lambda: lf.SO(0), lambda: lf.Sp(3), lambda: lf.Gm([[1.0, 0.0]]), lambda: lf.Gm(np.zeros((2, 2)))):
+        with pytest.raises(lf.ArgumentError):
+            make()
+
+
+@pytest.mark.parametrize("n", [0, 1, 2, 3, 4, 5, 6, 7, 8, 16])
+def test_expm_is_scipys(rng, n):
+    for count in (1, 7, 8, 64, 100):
+        scale = 10.0 ** rng.uniform(-6, 1, (count, 1, 1))
+        a = scale * rng.standard_normal((count, n, n))
+        right = scipy.linalg.expm(a) if n else a
+        g = lf.expm(a)
+        assert g.shape == a.shape
+        size = np.maximum(np.linalg.norm(right, axis=(1, 2)), 1.0) if n else 1.0
+        assert (np.linalg.norm(g - right, axis=(1, 2)) / size < 1e-11).all()
+        assert np.array_equal(lf.expm(a, threads=3), g)
+        skew = a - np.swapaxes(a, -1, -2)
+        q = lf.expm(skew, structure="skew")
+        assert np.abs(np.swapaxes(q, -1, -2) @ q - np.eye(n)).max(initial=0.0) < 1e-13
+
+
+def test_expm_of_mixed_norms_and_complex(rng):
+    a = rng.standard_normal((50, 4, 4)) * np.logspace(-10, 1.5, 50)[:, None, None]
+    one_by_one = np.array([scipy.linalg.expm(x) for x in a])
+    assert (np.abs(lf.expm(a) - one_by_one).max((1, 2)) / np.abs(one_by_one).max((1, 2)) < 1e-11).all()
+    z = rng.standard_normal((5, 4, 4)) + 1j * rng.standard_normal((5, 4, 4))
+    assert np.abs(lf.expm(z) - np.array([scipy.linalg.expm(x) for x in z])).max() < 1e-11
+    h = z - np.conj(np.swapaxes(z, -1, -2))
+    q = lf.expm(h, structure="skew")
+    assert np.abs(np.conj(np.swapaxes(q, -1, -2)) @ q - np.eye(4)).max() < 1e-13
+    for bad, words in ((np.full((3, 2, 2), np.nan), r"A\[0\]"), (np.zeros((2, 3)), "A: shape")):
+        with pytest.raises(lf.ArgumentError, match=words):
+            lf.expm(bad)
+    with pytest.raises(lf.ArgumentError, match="structure"):
+        lf.expm(np.eye(2), structure="symmetric")
+    assert lf.expm([[0, 1], [-1, 0]]).shape == (2, 2)
