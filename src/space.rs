@@ -217,6 +217,14 @@ pub trait LinearSpace: Metric + Clone {
             }
         }
     }
+    /// self ← h Σ_j w_j k_j, with all terms, so that a k_j that is not finite is seen.
+    #[inline(always)]
+    fn set_terms(&mut self, h: Self::Scalar, weights: &[f64], k: &[Self]) {
+        self.clear();
+        for (&w, k) in weights.iter().zip(k) {
+            self.add(h * Self::Scalar::lit(w), k);
+        }
+    }
 }
 
 macro_rules! number {
@@ -264,13 +272,14 @@ macro_rules! number {
 number!(f32, f64, Counted, DoubleDouble);
 
 macro_rules! small {
-    ($($t:ident),*) => {$(
+    ($($t:ident: $($i:literal)*;)*) => {$(
         impl<S: Real> Metric for $t<S> {
             type Scalar = S;
-            /// Entry by entry, because a vector that is copied whole goes through memory.
+            /// Entry by entry, because a vector that is copied whole, or in a loop, goes through memory.
             #[inline]
             fn assign(&mut self, x: &Self) {
-                self.as_mut_slice().iter_mut().zip(x.as_slice()).for_each(|(y, x)| *y = *x);
+                let (y, x) = (self.as_mut_slice(), x.as_slice());
+                $(y[$i] = x[$i];)*
             }
             #[inline]
             fn size(&self) -> S {
@@ -336,10 +345,21 @@ macro_rules! small {
                 }
                 self.assign(&sum);
             }
+            #[inline(always)]
+            fn set_terms(&mut self, h: S, weights: &[f64], k: &[Self]) {
+                let mut sum = $t::from_fn(|_, _| S::lit(0.0));
+                for (&w, k) in weights.iter().zip(k) {
+                    sum.add(h * S::lit(w), k);
+                }
+                self.assign(&sum);
+            }
         }
     )*};
 }
-small!(Vector3, Matrix3);
+small! {
+    Vector3: 0 1 2;
+    Matrix3: 0 1 2 3 4 5 6 7 8;
+}
 
 impl Metric for Mat<f64> {
     type Scalar = f64;

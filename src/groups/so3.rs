@@ -25,12 +25,14 @@ impl<S> So3<S> {
 }
 
 /// Are the numbers of a state finite?
-#[inline] // asked after every step of a run
+#[inline(always)] // asked after every step of a run
 pub(super) fn check_finite<S: Real>(y: &[S]) -> Result<(), Error> {
-    match y.iter().all(|x| x.is_finite()) {
-        true => Ok(()),
-        false => Err(Error::out_of_range("y", f64::NAN, "finite numbers")),
-    }
+    if y.iter().all(|x| x.is_finite()) { Ok(()) } else { Err(not_finite()) }
+}
+
+#[cold]
+fn not_finite() -> Error {
+    Error::out_of_range("y", f64::NAN, "finite numbers")
 }
 
 /// √Σx².

@@ -43,7 +43,7 @@ impl<S: Real> CoordinateMap<So3<S>> for Cay {
         *g = so3::cay(u)?;
         Ok(())
     }
-    #[inline]
+    #[inline(always)] // the largest part of a short step
     fn psi_on(
         &self,
         _: &So3<S>,
@@ -53,13 +53,13 @@ impl<S: Real> CoordinateMap<So3<S>> for Cay {
         x: &Vector3<S>,
         y: &mut Vector3<S>,
     ) -> Result<(), StepError> {
-        *y = match so3::cay_coefficients(u) {
-            Some((a, b)) => so3::finite(so3::rodrigues_on(u, a, b, x), "cay(u)·x")?,
+        *y = match so3::cay_on(u, x) {
+            Some(y) => so3::finite(y, "cay(u)·x")?,
             None => so3::cay_huge_on(u, x)?,
         };
         Ok(())
     }
-    #[inline]
+    #[inline(always)]
     fn dpsi_inv(
         &self,
         _: &So3<S>,

@@ -174,7 +174,7 @@ impl<'a, G: LieGroup, Psi: CoordinateMap<G>> PsiOf<'a, G, Psi> {
     ///
     /// # Errors
     /// As [`CoordinateMap::psi`].
-    #[inline]
+    #[inline(always)]
     pub fn form(self) -> Result<(&'a G, &'a G::Elem), StepError> {
         self.psi.psi(self.group, self.u, self.at, self.g)?;
         Ok((self.group, self.g))
@@ -184,7 +184,7 @@ impl<'a, G: LieGroup, Psi: CoordinateMap<G>> PsiOf<'a, G, Psi> {
     ///
     /// # Errors
     /// As [`CoordinateMap::psi_on`].
-    #[inline]
+    #[inline(always)]
     pub fn on(self, x: &G::Vector, y: &mut G::Vector) -> Result<(), StepError> {
         self.psi.psi_on(self.group, self.u, self.at, self.g, x, y)
     }

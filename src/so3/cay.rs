@@ -20,6 +20,20 @@ pub(crate) fn cay_coefficients<S: Real>(u: &Vector3<S>) -> Option<(S, S)> {
     Some((a, S::lit(0.5) * a))
 }
 
+/// cay(u)·x = x + a(w + ½ u×w) with w = u×x and the a of [`cay_coefficients`]. `None` where α² leaves the range. A stage
+/// waits for the quotient a the longest, so it is used last.
+#[inline(always)]
+pub(crate) fn cay_on<S: Real>(u: &Vector3<S>, x: &Vector3<S>) -> Option<Vector3<S>> {
+    let (a, _) = cay_coefficients(u)?;
+    let w = cross(u, x);
+    let (half, uw) = (S::lit(0.5), cross(u, &w));
+    Some(Vector3::new(
+        x[0] + a * (w[0] + half * uw[0]),
+        x[1] + a * (w[1] + half * uw[1]),
+        x[2] + a * (w[2] + half * uw[2]),
+    ))
+}
+
 /// cay(u) = 𝟙 + (û + û²/2)/(1 + α²/4) = (𝟙 − û/2)⁻¹(𝟙 + û/2): the rotation about u by
 /// 2 atan(α/2).
 ///
@@ -57,16 +71,13 @@ pub fn dcay_matrix<S: Real>(u: &Vector3<S>) -> Result<Matrix3<S>, StepError> {
     polar::columns(|e| dcay(u, e))
 }
 
-/// v + ¼(u·v)u − ½ u×v.
+/// v − w×v + (w·v)w = v − ½ u×v + ¼(u·v)u with w = u/2, which is exact.
 #[inline(always)]
 pub(crate) fn dcayinv_of<S: Real>(u: &Vector3<S>, v: &Vector3<S>) -> Vector3<S> {
-    let (half, c) = (S::lit(0.5), S::lit(0.25) * dot3(u, v));
-    let w = cross(u, v);
-    Vector3::new(
-        v[0] + c * u[0] - half * w[0],
-        v[1] + c * u[1] - half * w[1],
-        v[2] + c * u[2] - half * w[2],
-    )
+    let half = S::lit(0.5);
+    let w = Vector3::new(half * u[0], half * u[1], half * u[2]);
+    let (c, wv) = (dot3(&w, v), cross(&w, v));
+    Vector3::new(v[0] - wv[0] + c * w[0], v[1] - wv[1] + c * w[1], v[2] - wv[2] + c * w[2])
 }
 
 /// dcay_u⁻¹(v) = v + ¼(u·v)u − ½ u×v.

@@ -45,7 +45,7 @@ mod vectors;
 
 pub(crate) use angle::{Angle, SERIES};
 pub(crate) use batch::{Lane, SMALL};
-pub(crate) use cay::{cay_coefficients, dcayinv_of};
+pub(crate) use cay::{cay_coefficients, cay_on, dcayinv_of};
 pub(crate) use ccsk::{Angles, ccsk_of, dccskinv_of};
 
 pub use cay::{cay, cay_inv, dcay, dcay_matrix, dcayinv, dcayinv_matrix};
