@@ -9,9 +9,9 @@ use crate::error::{Error, StepError};
 use crate::maps::{Cay, CoordinateMap, Exp, ExpOrCay, MapsByName, NamedMap, Serves};
 use crate::methods::{
     AnyMethod, Buss4, CfMagnus, CommutatorFree, Composition, ConjugationAction, ConjugationGroup,
-    Embedded, EnergyCasimir, ExactMotion, GAUSS2, GAUSS4, GAUSS6, Gauss, IsospectralGauss,
-    LieSeries, LowStorage, MapCounts, Method, Metric, OneBracket, ProjectionMethod, Rk, Rkmk,
-    RkmkGauss, RkmkGaussSymmetric, SeriesGroup, Taylor, Wide, Within, magnus,
+    Embedded, EnergyCasimir, ExactMotion, Facts, GAUSS2, GAUSS4, GAUSS6, Gauss, IsospectralGauss,
+    LieSeries, LowStorage, Method, Metric, OneBracket, ProjectionMethod, Rk, Rkmk, RkmkGauss,
+    RkmkGaussSymmetric, SeriesGroup, Taylor, Wide, Within, magnus,
 };
 use crate::methods::{Step, tableau};
 use crate::problems::{
@@ -145,21 +145,9 @@ macro_rules! constant_method {
         {
             type Work = <$of as Method<P>>::Work;
 
-            fn order(&self, problem: &P) -> usize {
+            fn facts(&self, problem: &P) -> Facts {
                 let $this = self;
-                Method::<P>::order(&$method, problem)
-            }
-            fn evaluations(&self, problem: &P) -> Option<u64> {
-                let $this = self;
-                Method::<P>::evaluations(&$method, problem)
-            }
-            fn map_counts(&self, problem: &P, with_error: bool) -> Option<MapCounts> {
-                let $this = self;
-                Method::<P>::map_counts(&$method, problem, with_error)
-            }
-            fn stays_on_manifold(&self) -> bool {
-                let $this = self;
-                Method::<P>::stays_on_manifold(&$method)
+                Method::<P>::facts(&$method, problem)
             }
             fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
                 let $this = self;
@@ -175,14 +163,6 @@ macro_rules! constant_method {
             ) -> Result<(), StepError> {
                 let $this = self;
                 $method.step(problem, step, y, work)
-            }
-            fn dense_order(&self, problem: &P) -> usize {
-                let $this = self;
-                Method::<P>::dense_order(&$method, problem)
-            }
-            fn dense_evaluations(&self, problem: &P) -> [Option<u64>; 2] {
-                let $this = self;
-                Method::<P>::dense_evaluations(&$method, problem)
             }
             fn prepare(
                 &self,
@@ -256,12 +236,6 @@ macro_rules! constant_pair {
         }
 
         impl<P: Ambient, Psi: CoordinateMap<P::Group> + Copy> Embedded<P> for $name<Psi> {
-            fn error_order(&self, problem: &P) -> Result<usize, Error> {
-                self.method().error_order(problem)
-            }
-            fn evaluations_with_error(&self, problem: &P) -> Option<u64> {
-                self.method().evaluations_with_error(problem)
-            }
             #[inline(always)]
             fn step_with_error(
                 &self,

@@ -11,7 +11,7 @@ use crate::methods::FluidMidpoint;
 use crate::methods::magnus::TripleProduct;
 use crate::methods::{AnyMethod, Composition, Wide};
 use crate::problems::{
-    DynFlow, Energy, Facts, Field, Flow, LiePoisson, LinearField, Problem, RigidBody,
+    DynFlow, Energy, Field, Flow, FlowFacts, LiePoisson, LinearField, Problem, RigidBody,
     RigidBodyAttitude, RigidBodyN, RigidBodyNAttitude, RigidBodyQuaternion, RigidBodyState,
     Surface, TimeAlone, WithHamiltonian, Zeitlin,
 };
@@ -135,7 +135,7 @@ fn offered(linear: Option<Needs>, energy: Option<Needs>) -> Vec<Needs> {
 }
 
 /// A closure. Its facts decide which properties it has.
-impl<G, A, F, L, H, I> MethodsByName for Flow<G, A, F, Facts<L, H, I>>
+impl<G, A, F, L, H, I> MethodsByName for Flow<G, A, F, FlowFacts<L, H, I>>
 where
     G: MapsByName,
     A: Action<G, Point: LinearSpace<Scalar = G::Scalar>>,

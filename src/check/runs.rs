@@ -114,10 +114,10 @@ where
     ScalarOf<P>: Into<f64>,
 {
     fn order(&self) -> Option<usize> {
-        Some(self.method.order(self.problem)).filter(|&order| order != usize::MAX)
+        Some(self.method.facts(self.problem).order).filter(|&order| order != usize::MAX)
     }
     fn dense_order(&self) -> usize {
-        self.method.dense_order(self.problem)
+        self.method.facts(self.problem).dense_order
     }
     fn run(&self, trial: Trial) -> Result<Record, String> {
         let MethodOn { problem, method, start } = *self;
@@ -143,9 +143,10 @@ where
             solve = solve.resume(bytes);
         }
         let mut work = action.work(group);
+        let stays_on_manifold = method.facts(problem).stays_on_manifold;
         let done = solve.run_with(start.clone(), |_, y| {
             rows.push(numbers_of(y));
-            if method.stays_on_manifold() {
+            if stays_on_manifold {
                 let found = action.restore_to(group, start, &mut y.clone(), &mut work);
                 off = found.map(|found| off.map_or(found, |off| off.max(found))).or(off);
             }

@@ -10,7 +10,7 @@ use core::marker::PhantomData;
 use std::sync::Arc;
 
 use super::doubling::{doubled as step_doubled, within_halves};
-use super::{Embedded, EqualSteps, MapCounts, Method, Metric, Step, Steps, Within, take_steps};
+use super::{Embedded, EqualSteps, Facts, Method, Metric, Step, Steps, Within, take_steps};
 use crate::error::{Error, StepError};
 use crate::problems::{AlgOf, PointOf, Problem, ScalarOf};
 use crate::tolerance::Tolerance;
@@ -48,26 +48,14 @@ impl<'p, P: Problem + 'p> AnyMethod<'p, P> {
 
     /// True if the method has an embedded error estimate on this problem. Otherwise steps are doubled.
     pub fn has_pair(&self, problem: &P) -> bool {
-        self.inner.pair(problem).is_some()
+        self.inner.facts(problem).error_order.is_some()
     }
-}
-
-/// An embedded estimate: the order of the error, and the evaluations of a step with it.
-struct Pair {
-    error_order: usize,
-    evaluations: Option<u64>,
 }
 
 /// A method behind the pointer.
 trait Inner<'p, P: Problem> {
     fn name(&self) -> &'static str;
-    fn order(&self, problem: &P) -> usize;
-    fn dense_order(&self, problem: &P) -> usize;
-    fn evaluations(&self, problem: &P) -> Option<u64>;
-    fn map_counts(&self, problem: &P, with_error: bool) -> Option<MapCounts>;
-    fn dense_evaluations(&self, problem: &P) -> [Option<u64>; 2];
-    fn stays_on_manifold(&self) -> bool;
-    fn pair(&self, problem: &P) -> Option<Pair>;
+    fn facts(&self, problem: &P) -> Facts;
     fn stepper(
         &self,
         problem: &P,
@@ -142,7 +130,7 @@ impl<P: Problem> dyn Stepper<P> + Send + '_ {
 
 /// The source of the error estimate of a method.
 trait Estimate<P: Problem, M: Method<P>>: Copy + Send + Sync {
-    fn pair(self, method: &M, problem: &P) -> Option<Pair>;
+    fn facts(self, method: &M, problem: &P) -> Facts;
     fn step(
         self,
         method: &M,
@@ -159,8 +147,8 @@ trait Estimate<P: Problem, M: Method<P>>: Copy + Send + Sync {
 struct NoEstimate;
 
 impl<P: Problem, M: Method<P>> Estimate<P, M> for NoEstimate {
-    fn pair(self, _: &M, _: &P) -> Option<Pair> {
-        None
+    fn facts(self, method: &M, problem: &P) -> Facts {
+        Facts { error_order: None, ..method.facts(problem) }
     }
     #[inline(always)]
     fn step(
@@ -181,9 +169,8 @@ impl<P: Problem, M: Method<P>> Estimate<P, M> for NoEstimate {
 struct OwnEstimate;
 
 impl<P: Problem, M: Embedded<P>> Estimate<P, M> for OwnEstimate {
-    fn pair(self, method: &M, problem: &P) -> Option<Pair> {
-        let error_order = method.error_order(problem).ok()?;
-        Some(Pair { error_order, evaluations: method.evaluations_with_error(problem) })
+    fn facts(self, method: &M, problem: &P) -> Facts {
+        method.facts(problem)
     }
     #[inline(always)]
     fn step(
@@ -214,26 +201,8 @@ where
     fn name(&self) -> &'static str {
         core::any::type_name::<M>()
     }
-    fn order(&self, problem: &P) -> usize {
-        self.method.order(problem)
-    }
-    fn dense_order(&self, problem: &P) -> usize {
-        self.method.dense_order(problem)
-    }
-    fn evaluations(&self, problem: &P) -> Option<u64> {
-        self.method.evaluations(problem)
-    }
-    fn map_counts(&self, problem: &P, with_error: bool) -> Option<MapCounts> {
-        self.method.map_counts(problem, with_error)
-    }
-    fn dense_evaluations(&self, problem: &P) -> [Option<u64>; 2] {
-        self.method.dense_evaluations(problem)
-    }
-    fn stays_on_manifold(&self) -> bool {
-        self.method.stays_on_manifold()
-    }
-    fn pair(&self, problem: &P) -> Option<Pair> {
-        self.estimate.pair(&self.method, problem)
+    fn facts(&self, problem: &P) -> Facts {
+        self.estimate.facts(&self.method, problem)
     }
     fn stepper(
         &self,
@@ -331,6 +300,7 @@ pub struct AnyWork<'p, P: Problem> {
     stepper: Box<dyn Stepper<P> + Send + 'p>,
     /// True if the method has an embedded error estimate here. If not, steps are doubled.
     has_pair: bool,
+    order: usize,
     /// The point after one long step, for step doubling.
     once: PointOf<P>,
     /// The point after the first half of a doubled step.
@@ -346,19 +316,15 @@ where
 {
     type Work = AnyWork<'p, P>;
 
-    fn order(&self, problem: &P) -> usize {
-        self.inner.order(problem)
-    }
-    fn dense_order(&self, problem: &P) -> usize {
-        self.inner.dense_order(problem)
-    }
-    fn evaluations(&self, problem: &P) -> Option<u64> {
-        self.inner.evaluations(problem)
-    }
-    fn map_counts(&self, problem: &P, with_error: bool) -> Option<MapCounts> {
-        match with_error && !self.has_pair(problem) {
-            true => Some(self.inner.map_counts(problem, false)?.times(3)),
-            false => self.inner.map_counts(problem, with_error),
+    fn facts(&self, problem: &P) -> Facts {
+        let facts = self.inner.facts(problem);
+        match facts.error_order {
+            Some(_) => facts,
+            None => Facts {
+                error_order: Some(facts.order),
+                step_with_error: facts.step.times(3),
+                ..facts
+            },
         }
     }
     fn iterations(&self, work: &Self::Work) -> u64 {
@@ -370,17 +336,12 @@ where
     fn each_memory(&self, work: &mut Self::Work, each: &mut dyn FnMut(&mut f64)) {
         work.stepper.each_memory(each);
     }
-    fn dense_evaluations(&self, problem: &P) -> [Option<u64>; 2] {
-        self.inner.dense_evaluations(problem)
-    }
-    fn stays_on_manifold(&self) -> bool {
-        self.inner.stays_on_manifold()
-    }
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
-        let has_pair = self.has_pair(problem);
+        let facts = self.inner.facts(problem);
         Ok(AnyWork {
             stepper: self.inner.stepper(problem, like)?,
-            has_pair,
+            has_pair: facts.error_order.is_some(),
+            order: facts.order,
             once: like.clone(),
             half: like.clone(),
             doubled: false,
@@ -464,36 +425,21 @@ where
     P: Problem + 'p,
     PointOf<P>: Metric<Scalar = ScalarOf<P>>,
 {
-    fn error_order(&self, problem: &P) -> Result<usize, Error> {
-        Ok(self.inner.pair(problem).map_or(self.inner.order(problem), |pair| pair.error_order))
-    }
-    fn evaluations_with_error(&self, problem: &P) -> Option<u64> {
-        match self.inner.pair(problem) {
-            Some(pair) => pair.evaluations,
-            None => Some(3 * self.inner.evaluations(problem)?),
-        }
-    }
     fn step_with_error(
         &self,
         problem: &P,
         step: Step<ScalarOf<P>>,
         tolerance: &Tolerance,
         from: &PointOf<P>,
-        AnyWork { stepper, has_pair, once, half, doubled }: &mut Self::Work,
+        AnyWork { stepper, has_pair, order, once, half, doubled }: &mut Self::Work,
         to: &mut PointOf<P>,
     ) -> Result<ScalarOf<P>, StepError> {
         *doubled = !*has_pair;
         match has_pair {
             true => stepper.step_with_error(problem, step, tolerance, from, to),
-            false => step_doubled(
-                self.order(problem),
-                step,
-                tolerance,
-                from,
-                [once, half],
-                to,
-                |step, y| stepper.step(problem, step, y),
-            ),
+            false => step_doubled(*order, step, tolerance, from, [once, half], to, |step, y| {
+                stepper.step(problem, step, y)
+            }),
         }
     }
 }

@@ -15,7 +15,7 @@
 use nalgebra::Vector3;
 
 use super::simo_wong::turn_body;
-use super::{MapCounts, Method, Step};
+use super::{Facts, MapCounts, Method, Step};
 use crate::error::{Error, StepError};
 use crate::groups::So3;
 use crate::maps::{CoordinateMap, Exp};
@@ -67,11 +67,8 @@ where
 {
     type Work = <Exp as CoordinateMap<So3<ScalarOf<P>>>>::At;
 
-    fn order(&self, _: &P) -> usize {
-        4
-    }
-    fn map_counts(&self, _: &P, _: bool) -> Option<MapCounts> {
-        Some(MapCounts { psi: 1, ..MapCounts::default() })
+    fn facts(&self, _: &P) -> Facts {
+        Facts::of_order(4).cost(None, MapCounts { psi: 1, ..MapCounts::default() })
     }
     fn work(&self, _: &P, _: &PointOf<P>) -> Result<Self::Work, Error> {
         Exp.at(&So3::new())

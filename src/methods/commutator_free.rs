@@ -16,10 +16,10 @@
 //! Commutator-free Lie group methods, FGCS 19 (2003); C. Curry, B. Owren, Variable step size commutator free Lie group
 //! integrators, Numer. Algorithms 82 (2019).
 
-use super::embedded::{ratio_between, without_pair};
+use super::embedded::ratio_between;
 use super::stages::{Stages, copies};
 use super::tableau::pad;
-use super::{Embedded, MapCounts, Method, Metric, Step};
+use super::{Embedded, Facts, MapCounts, Method, Metric, Step, StepCost};
 use crate::error::{Error, StepError};
 use crate::groups::LieAlgebra;
 use crate::maps::{CoordinateMap, Exp};
@@ -237,15 +237,17 @@ where
 {
     type Work = CommutatorFreeWork<P, S>;
 
-    fn order(&self, _: &P) -> usize {
-        self.0.order
-    }
-    fn evaluations(&self, _: &P) -> Option<u64> {
-        Some(self.0.update_stages as u64)
-    }
-    fn map_counts(&self, _: &P, with_error: bool) -> Option<MapCounts> {
-        let psi = self.0.exponentials(with_error) as u64;
-        Some(MapCounts { psi, ..MapCounts::default() })
+    fn facts(&self, _: &P) -> Facts {
+        let maps = |with_error| {
+            let psi = self.0.exponentials(with_error) as u64;
+            MapCounts { psi, ..MapCounts::default() }
+        };
+        let facts =
+            Facts::of_order(self.0.order).cost(Some(self.0.update_stages as u64), maps(false));
+        let evaluations = Some(self.0.all_stages() as u64);
+        let step_with_error = StepCost { evaluations, maps: Some(maps(true)) };
+        let error_order = self.0.embedded.map(|(order, _)| order);
+        Facts { step_with_error, ..facts.estimate(self.0.name, error_order) }
     }
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
         let inner = Inner {
@@ -273,12 +275,6 @@ where
     Exp: CoordinateMap<P::Group>,
     PointOf<P>: Metric<Scalar = ScalarOf<P>>,
 {
-    fn error_order(&self, _: &P) -> Result<usize, Error> {
-        self.0.embedded.map(|(order, _)| order).ok_or_else(|| without_pair(self.0.name))
-    }
-    fn evaluations_with_error(&self, _: &P) -> Option<u64> {
-        Some(self.0.all_stages() as u64)
-    }
     fn step_with_error(
         &self,
         problem: &P,

@@ -14,7 +14,7 @@
 //! A composition conserves what the base method conserves, and is symmetric. Above order 2 some w_i are negative, and
 //! these steps go backward. Cost: S steps of the base method.
 
-use super::{MapCounts, Method, Step, Symmetric};
+use super::{Facts, Method, Step, Symmetric};
 use crate::error::{Error, StepError};
 use crate::problems::{Ambient, PointOf, ScalarOf};
 use crate::scalar::Real;
@@ -146,14 +146,13 @@ pub struct CompositionWork<P: Ambient, M: Method<P>> {
 impl<P: Ambient, M: Method<P> + Symmetric> Method<P> for Composition<M> {
     type Work = CompositionWork<P, M>;
 
-    fn order(&self, problem: &P) -> usize {
-        self.base.order(problem).max(self.scheme.order)
-    }
-    fn evaluations(&self, problem: &P) -> Option<u64> {
-        Some(self.scheme.weights.len() as u64 * self.base.evaluations(problem)?)
-    }
-    fn map_counts(&self, problem: &P, _: bool) -> Option<MapCounts> {
-        Some(self.base.map_counts(problem, false)?.times(self.scheme.weights.len() as u64))
+    fn facts(&self, problem: &P) -> Facts {
+        let base = self.base.facts(problem);
+        let step = base.step.times(self.scheme.weights.len() as u64);
+        let dense_evaluations = [Some(0), step.evaluations];
+        let order = base.order.max(self.scheme.order);
+        let facts = Facts { stays_on_manifold: base.stays_on_manifold, ..Facts::of_order(order) };
+        Facts { step, step_with_error: step, dense_evaluations, ..facts }
     }
     fn iterations(&self, work: &Self::Work) -> u64 {
         self.base.iterations(&work.base)

@@ -20,7 +20,7 @@ use nalgebra::Vector3;
 
 use super::newton::newton3;
 use super::simo_wong::turn_body;
-use super::{MapCounts, Method, Step, Symmetric};
+use super::{Facts, MapCounts, Method, Step, Symmetric};
 use crate::error::{Error, StepError};
 use crate::groups::{LieAlgebra, LieGroup, So3};
 use crate::maps::Cay;
@@ -197,11 +197,8 @@ where
 {
     type Work = DmvWork;
 
-    fn order(&self, _: &P) -> usize {
-        self.order
-    }
-    fn map_counts(&self, _: &P, _: bool) -> Option<MapCounts> {
-        Some(MapCounts { psi: 1, ..MapCounts::default() })
+    fn facts(&self, _: &P) -> Facts {
+        Facts::of_order(self.order).cost(None, MapCounts { psi: 1, ..MapCounts::default() })
     }
     fn iterations(&self, work: &DmvWork) -> u64 {
         work.iterations

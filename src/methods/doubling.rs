@@ -7,7 +7,7 @@
 //! estimate. Source: Hairer, Nørsett, Wanner I, II.4.
 
 use super::embedded::ratio_between;
-use super::{Embedded, MapCounts, Method, Metric, Step};
+use super::{Embedded, Facts, Method, Metric, Step};
 use crate::error::{Error, StepError};
 use crate::problems::{PointOf, Problem, ScalarOf};
 use crate::scalar::Real;
@@ -21,6 +21,7 @@ pub struct Doubling<Me>(pub Me);
 #[allow(missing_debug_implementations)] // the parts belong to the problem's types
 pub struct DoublingWork<P: Problem, Me: Method<P>> {
     inner: Me::Work,
+    order: usize,
     /// The point after one long step.
     once: PointOf<P>,
     /// The point after the first half.
@@ -86,20 +87,8 @@ where
 {
     type Work = DoublingWork<P, Me>;
 
-    fn order(&self, problem: &P) -> usize {
-        self.0.order(problem)
-    }
-    fn stays_on_manifold(&self) -> bool {
-        self.0.stays_on_manifold()
-    }
-    fn evaluations(&self, problem: &P) -> Option<u64> {
-        Some(2 * self.0.evaluations(problem)?)
-    }
-    fn dense_evaluations(&self, problem: &P) -> [Option<u64>; 2] {
-        [Some(0), self.0.evaluations(problem)]
-    }
-    fn map_counts(&self, problem: &P, with_error: bool) -> Option<MapCounts> {
-        Some(self.0.map_counts(problem, false)?.times(2 + u64::from(with_error)))
+    fn facts(&self, problem: &P) -> Facts {
+        self.0.facts(problem).doubled()
     }
     fn iterations(&self, work: &Self::Work) -> u64 {
         self.0.iterations(&work.inner)
@@ -110,6 +99,7 @@ where
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
         Ok(DoublingWork {
             inner: self.0.work(problem, like)?,
+            order: self.0.facts(problem).order,
             once: like.clone(),
             half: like.clone(),
         })
@@ -119,7 +109,7 @@ where
         problem: &P,
         step: Step<ScalarOf<P>>,
         y: &mut PointOf<P>,
-        DoublingWork { inner, once, half }: &mut Self::Work,
+        DoublingWork { inner, once, half, .. }: &mut Self::Work,
     ) -> Result<(), StepError> {
         once.assign(y);
         take_halves(step, once, half, |step, y| self.0.step(problem, step, y, inner))?;
@@ -143,22 +133,16 @@ impl<P: Problem, Me: Method<P>> Embedded<P> for Doubling<Me>
 where
     PointOf<P>: Metric<Scalar = ScalarOf<P>>,
 {
-    fn error_order(&self, problem: &P) -> Result<usize, Error> {
-        Ok(self.0.order(problem))
-    }
-    fn evaluations_with_error(&self, problem: &P) -> Option<u64> {
-        Some(3 * self.0.evaluations(problem)?)
-    }
     fn step_with_error(
         &self,
         problem: &P,
         step: Step<ScalarOf<P>>,
         tolerance: &Tolerance,
         from: &PointOf<P>,
-        DoublingWork { inner, once, half }: &mut Self::Work,
+        DoublingWork { inner, order, once, half }: &mut Self::Work,
         to: &mut PointOf<P>,
     ) -> Result<ScalarOf<P>, StepError> {
-        doubled(self.0.order(problem), step, tolerance, from, [once, half], to, |step, y| {
+        doubled(*order, step, tolerance, from, [once, half], to, |step, y| {
             self.0.step(problem, step, y, inner)
         })
     }

@@ -11,24 +11,15 @@
 
 use super::{Method, Step};
 use crate::actions::Action;
-use crate::error::{Error, StepError};
+use crate::error::StepError;
 use crate::groups::LieAlgebra;
 use crate::problems::{AlgOf, PointOf, Problem, ScalarOf};
 use crate::scalar::Real;
 use crate::space::{Gap, Metric};
 use crate::tolerance::{Rule, Tolerance, ratio};
 
-/// A method whose steps have an error estimate.
+/// A method whose steps have an error estimate. [`Facts`](super::Facts) has the order of the estimate and its cost.
 pub trait Embedded<P: Problem>: Method<P> {
-    /// The order of the estimate: it behaves like h to the power `error_order + 1`.
-    ///
-    /// # Errors
-    /// [`Error::Unsupported`] when the tableau has no embedded row.
-    fn error_order(&self, problem: &P) -> Result<usize, Error>;
-
-    /// [`evaluations`](Method::evaluations) of a [`step_with_error`](Self::step_with_error).
-    fn evaluations_with_error(&self, problem: &P) -> Option<u64>;
-
     /// `to` ← the approximation at t + h from the point `from` at t. Returns its estimated error in units of the
     /// tolerance, or infinity without an estimate. If the step fails, `to` is undefined.
     ///
@@ -95,14 +86,5 @@ pub(super) fn ratio_between<S: Real, M: Metric<Scalar = S>>(
         Rule::PerStep => {
             weight * to.error_ratio(Gap::to(other).of_step_from(from), &mut tolerance.scales())
         }
-    }
-}
-
-/// What [`Embedded::error_order`] says of a tableau without an embedded row.
-pub(super) fn without_pair(tableau: &'static str) -> Error {
-    Error::Unsupported {
-        what: "a step size of its own choice",
-        with: format!("tableau `{tableau}`"),
-        why: "it has no embedded row; use a pair such as `dopri5`, or step doubling",
     }
 }

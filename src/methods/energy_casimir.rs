@@ -19,7 +19,7 @@
 use super::extension::{Extension, OneIncrement, of_increment};
 use super::implicit_rkmk::OddMap;
 use super::newton::Progress;
-use super::{Method, Step, Symmetric, Within};
+use super::{Facts, Method, Step, Symmetric, Within};
 use crate::chart::ChartStore;
 use crate::error::{Error, StepError};
 use crate::groups::LieAlgebra;
@@ -63,8 +63,8 @@ const EXTENSION: Extension<'static, 2> = of_increment(2, 0.0);
 impl<P: LiePoisson, Psi: CoordinateMap<P::Group> + OddMap> Method<P> for EnergyCasimir<Psi> {
     type Work = EnergyCasimirWork<P, Psi>;
 
-    fn order(&self, _: &P) -> usize {
-        2
+    fn facts(&self, _: &P) -> Facts {
+        Facts::of_order(2).dense(2, 1 + EXTENSION.evaluations())
     }
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
         let alg = problem.group();
@@ -117,9 +117,6 @@ impl<P: LiePoisson, Psi: CoordinateMap<P::Group> + OddMap> Method<P> for EnergyC
         }
         core::mem::swap(p, y);
         Ok(())
-    }
-    fn dense_evaluations(&self, _: &P) -> [Option<u64>; 2] {
-        [Some(1 + EXTENSION.evaluations() as u64), Some(0)]
     }
     fn prepare(
         &self,

@@ -8,7 +8,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::{Embedded, MapCounts, Method, Step, Symmetric};
+use super::{Embedded, Facts, MapCounts, Method, Step, Symmetric};
 use crate::error::{Error, StepError};
 use crate::groups::{LieAlgebra, So3};
 use crate::problems::{Exact, Frame, FreeBody, PointOf, ScalarOf};
@@ -29,11 +29,8 @@ where
     /// J.
     type Work = [f64; 3];
 
-    fn order(&self, _: &P) -> usize {
-        usize::MAX
-    }
-    fn map_counts(&self, _: &P, _: bool) -> Option<MapCounts> {
-        Some(MapCounts::default())
+    fn facts(&self, _: &P) -> Facts {
+        Facts::of_order(usize::MAX).cost(None, MapCounts::default()).estimate("", Some(usize::MAX))
     }
     fn work(&self, problem: &P, _: &PointOf<P>) -> Result<[f64; 3], Error> {
         Ok([0, 1, 2].map(|k| 1.0 / problem.inverse_inertia()[k].into()))
@@ -73,12 +70,6 @@ impl<P: FreeBody> Embedded<P> for ExactMotion
 where
     ScalarOf<P>: Into<f64>,
 {
-    fn error_order(&self, _: &P) -> Result<usize, Error> {
-        Ok(usize::MAX)
-    }
-    fn evaluations_with_error(&self, problem: &P) -> Option<u64> {
-        self.evaluations(problem)
-    }
     fn step_with_error(
         &self,
         problem: &P,

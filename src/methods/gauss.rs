@@ -14,7 +14,7 @@
 use super::extension::{EXTRA, Extension, of_increment};
 use super::newton::Progress;
 use super::stages::copies;
-use super::{MapCounts, Method, Step, Symmetric, Within};
+use super::{Facts, MapCounts, Method, Step, Symmetric, Within};
 use crate::error::{Error, StepError};
 use crate::problems::FieldStore;
 use crate::problems::{Ambient, PointOf, ScalarOf};
@@ -129,19 +129,18 @@ impl<const S: usize> Gauss<S> {
 impl<P: Ambient, const S: usize> Method<P> for Gauss<S> {
     type Work = GaussWork<P, S>;
 
-    fn order(&self, _: &P) -> usize {
-        self.0.order
-    }
-    fn map_counts(&self, _: &P, _: bool) -> Option<MapCounts> {
-        Some(MapCounts::default())
+    fn facts(&self, _: &P) -> Facts {
+        let extension = self.extension();
+        let facts = Facts::of_order(self.0.order).cost(None, MapCounts::default());
+        Facts {
+            stays_on_manifold: false,
+            ..facts.dense(extension.order(), 1 + extension.evaluations())
+        }
     }
     fn iterations(&self, work: &Self::Work) -> u64 {
         work.iterations
     }
     /// True for groups of a quadratic form, which the method conserves to the rounding of the iteration.
-    fn stays_on_manifold(&self) -> bool {
-        false
-    }
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
         Ok(GaussWork {
             k: copies(like.clone()),
@@ -190,12 +189,6 @@ impl<P: Ambient, const S: usize> Method<P> for Gauss<S> {
         }
         core::mem::swap(y, z);
         Ok(())
-    }
-    fn dense_order(&self, _: &P) -> usize {
-        self.extension().order()
-    }
-    fn dense_evaluations(&self, _: &P) -> [Option<u64>; 2] {
-        [Some(1 + self.extension().evaluations() as u64), Some(0)]
     }
     fn prepare(
         &self,

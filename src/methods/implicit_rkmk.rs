@@ -19,7 +19,7 @@ use super::extension::{Extension, OneIncrement, of_increment};
 use super::gauss::ImplicitTableau;
 use super::newton::Progress;
 use super::stages::copies;
-use super::{Method, Step, Symmetric, Within};
+use super::{Facts, Method, Step, Symmetric, Within};
 use crate::actions::Action;
 use crate::chart::ChartStore;
 use crate::error::{Error, StepError};
@@ -169,8 +169,10 @@ macro_rules! method {
         {
             type Work = RkmkGaussWork<P, Psi, S>;
 
-            fn order(&self, problem: &P) -> usize {
-                self.tableau.order.min(self.psi.order(problem.group()))
+            fn facts(&self, problem: &P) -> Facts {
+                let (extension, most) = (self.extension(), self.psi.order(problem.group()));
+                Facts::of_order(self.tableau.order.min(most))
+                    .dense(extension.order().min(most), 1 + extension.evaluations())
             }
             fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
                 RkmkGaussWork::new(problem, &self.psi, like)
@@ -189,12 +191,6 @@ macro_rules! method {
                 w.advance($label, (&self.tableau, &self.psi, $centred), problem, step, p)?;
                 core::mem::swap(p, &mut w.y);
                 Ok(())
-            }
-            fn dense_order(&self, problem: &P) -> usize {
-                self.extension().order().min(self.psi.order(problem.group()))
-            }
-            fn dense_evaluations(&self, _: &P) -> [Option<u64>; 2] {
-                [Some(1 + self.extension().evaluations() as u64), Some(0)]
             }
             fn prepare(
                 &self,

@@ -23,7 +23,7 @@ use faer::Mat;
 
 use super::gauss::ImplicitTableau;
 use super::newton::Progress;
-use super::{MapCounts, Method, Step, Symmetric};
+use super::{Facts, MapCounts, Method, Step, Symmetric};
 use crate::actions::{Action, Coadjoint, Conjugation};
 use crate::dense::mul;
 use crate::error::{Error, StepError};
@@ -260,8 +260,8 @@ where
 {
     type Work = IsospectralWork<P, S>;
 
-    fn order(&self, _: &P) -> usize {
-        self.0.order
+    fn facts(&self, _: &P) -> Facts {
+        Facts::of_order(self.0.order).cost(None, MapCounts::default())
     }
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
         let group = problem.group();
@@ -274,9 +274,6 @@ where
             field: problem.work(),
             iterations: 0,
         })
-    }
-    fn map_counts(&self, _: &P, _: bool) -> Option<MapCounts> {
-        Some(MapCounts::default())
     }
     fn iterations(&self, work: &Self::Work) -> u64 {
         work.iterations

@@ -16,7 +16,7 @@ use faer::Mat;
 use nalgebra::Matrix3;
 
 use super::embedded::ratio_of_relative;
-use super::{Embedded, MapCounts, Method, Metric, Step};
+use super::{Embedded, Facts, MapCounts, Method, Metric, Step};
 use crate::actions::Action;
 use crate::dense::{axpy, mul_add};
 use crate::error::{Error, StepError};
@@ -225,14 +225,11 @@ where
 {
     type Work = LieSeriesWork<P>;
 
-    fn order(&self, _: &P) -> usize {
-        self.order
-    }
-    fn evaluations(&self, _: &P) -> Option<u64> {
-        Some(self.order as u64)
-    }
-    fn map_counts(&self, _: &P, _: bool) -> Option<MapCounts> {
-        Some(MapCounts::default())
+    fn facts(&self, _: &P) -> Facts {
+        Facts::of_order(self.order)
+            .cost(Some(self.order as u64), MapCounts::default())
+            .estimate("", Some(self.order - 1))
+            .dense(self.order, 0)
     }
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
         let group = problem.group();
@@ -257,9 +254,6 @@ where
         problem.action().act(problem.group(), &w.g, p, &mut w.y, &mut w.act);
         core::mem::swap(p, &mut w.y);
         Ok(())
-    }
-    fn dense_evaluations(&self, _: &P) -> [Option<u64>; 2] {
-        [Some(0); 2]
     }
     /// The series at θh, from the coefficients of the step.
     fn interpolate(
@@ -288,12 +282,6 @@ impl<P: TaylorField> Embedded<P> for LieSeries
 where
     P::Group: SeriesGroup,
 {
-    fn error_order(&self, _: &P) -> Result<usize, Error> {
-        Ok(self.order - 1)
-    }
-    fn evaluations_with_error(&self, _: &P) -> Option<u64> {
-        Some(self.order as u64)
-    }
     fn step_with_error(
         &self,
         problem: &P,

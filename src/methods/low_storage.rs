@@ -17,9 +17,9 @@
 //! An EES(2,m) method has order 2 and is nearly symmetric: a step of −h undoes a step of h up to O(h^{m+1}). The map is
 //! exp. Preserves: the group, and the invariants of the action. Cost: s f, s exponentials.
 
-use super::embedded::{ratio_in_algebra, without_pair};
+use super::embedded::ratio_in_algebra;
 use super::tableau::pad;
-use super::{Embedded, MapCounts, Method, Step};
+use super::{Embedded, Facts, MapCounts, Method, Step};
 use crate::chart::ChartStore;
 use crate::error::{Error, StepError};
 use crate::groups::LieAlgebra;
@@ -256,14 +256,11 @@ where
 {
     type Work = LowStorageWork<P>;
 
-    fn order(&self, _: &P) -> usize {
-        self.0.order
-    }
-    fn evaluations(&self, _: &P) -> Option<u64> {
-        Some(self.0.stages() as u64)
-    }
-    fn map_counts(&self, _: &P, _: bool) -> Option<MapCounts> {
-        Some(MapCounts { psi: self.0.stages() as u64, ..MapCounts::default() })
+    fn facts(&self, _: &P) -> Facts {
+        let stages = self.0.stages() as u64;
+        Facts::of_order(self.0.order)
+            .cost(Some(stages), MapCounts { psi: stages, ..MapCounts::default() })
+            .estimate(self.0.name, self.0.embedded)
     }
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
         let alg = problem.group();
@@ -295,12 +292,6 @@ impl<P: Problem, const S: usize> Embedded<P> for LowStorage<S>
 where
     Exp: CoordinateMap<P::Group>,
 {
-    fn error_order(&self, _: &P) -> Result<usize, Error> {
-        self.0.embedded.ok_or_else(|| without_pair(self.0.name))
-    }
-    fn evaluations_with_error(&self, _: &P) -> Option<u64> {
-        Some(self.0.stages() as u64)
-    }
     fn step_with_error(
         &self,
         problem: &P,

@@ -14,6 +14,7 @@ mod embedded;
 mod energy_casimir;
 mod exact;
 mod extension;
+mod facts;
 mod fluid_midpoint;
 mod gauss;
 mod implicit_rkmk;
@@ -45,6 +46,7 @@ pub use doubling::Doubling;
 pub use embedded::Embedded;
 pub use energy_casimir::EnergyCasimir;
 pub use exact::ExactMotion;
+pub use facts::{Facts, StepCost};
 pub use fluid_midpoint::{FluidMidpoint, MidpointRule};
 pub use gauss::{GAUSS2, GAUSS4, GAUSS6, Gauss, ImplicitTableau};
 pub use implicit_rkmk::{OddMap, RkmkGauss, RkmkGaussSymmetric};
@@ -191,20 +193,8 @@ pub trait Method<P: Problem> {
     /// depends only on these. The one exception is [`FluidMidpoint`], which starts its iteration from the steps before.
     type Work: Send;
 
-    /// The order of the method. Tests measure it.
-    fn order(&self, problem: &P) -> usize;
-
-    /// Evaluations of f in a step, if all steps have the same number. A method that needs F, A or Taylor coefficients
-    /// counts these.
-    fn evaluations(&self, _problem: &P) -> Option<u64> {
-        None
-    }
-
-    /// Evaluations of Ψ, dΨ⁻¹ and brackets in a step, if all steps have the same numbers. `with_error` is for a step
-    /// with an error estimate ([`Embedded::step_with_error`]).
-    fn map_counts(&self, _problem: &P, _with_error: bool) -> Option<MapCounts> {
-        None
-    }
+    /// What is known of the method on this problem before any step: its orders and costs.
+    fn facts(&self, problem: &P) -> Facts;
 
     /// The iterations of all implicit steps with this workspace so far, failed steps included.
     fn iterations(&self, _work: &Self::Work) -> u64 {
@@ -215,12 +205,6 @@ pub trait Method<P: Problem> {
     /// is the first one of the next.
     fn reused(&self, _work: &Self::Work) -> u64 {
         0
-    }
-
-    /// True if a step stays on M up to rounding. Then the driver corrects the state to M from time to time
-    /// ([`Action::restore`]). The state of other methods is not corrected.
-    fn stays_on_manifold(&self) -> bool {
-        true
     }
 
     /// Makes the workspace. `like` is any point of M.
@@ -244,11 +228,6 @@ pub trait Method<P: Problem> {
     /// Calls `each` with every number that the workspace carries from one step to the next. Most methods have none.
     /// They are saved with the state of a run.
     fn each_memory(&self, _work: &mut Self::Work, _each: &mut dyn FnMut(&mut f64)) {}
-
-    /// The order of [`interpolate`](Self::interpolate): its error at a fixed θ is O(h^(order + 1)).
-    fn dense_order(&self, problem: &P) -> usize {
-        self.order(problem)
-    }
 
     /// Prepares [`interpolate`](Self::interpolate) for `step` from `from` to `to`, the last step with this `work`.
     ///
@@ -320,12 +299,6 @@ pub trait Method<P: Problem> {
         _at: &mut PointOf<P>,
     ) -> Result<(), StepError> {
         Err(StepError::NotFinite { what: "the continuous extension" })
-    }
-
-    /// The evaluations of f in [`prepare`](Self::prepare) and in each [`interpolate`](Self::interpolate), counted like
-    /// [`evaluations`](Self::evaluations). The default is that of a shorter step.
-    fn dense_evaluations(&self, problem: &P) -> [Option<u64>; 2] {
-        [Some(0), self.evaluations(problem)]
     }
 
     /// Takes these steps. The numbers of y must be finite after each ([`Action::is_finite`]).

@@ -14,11 +14,11 @@
 //! Phil. Trans. R. Soc. A 357 (1999); F. Casas, A. Iserles, Explicit Magnus expansions for nonlinear
 //! equations, J. Phys. A 39 (2006).
 
-use super::embedded::{ratio_in_algebra, without_pair};
+use super::embedded::ratio_in_algebra;
 use super::extension::{Extension, OneIncrement, of_increment};
 use super::stages::Stages;
 use super::tableau::pad;
-use super::{Embedded, MapCounts, Method, Step, Within};
+use super::{Embedded, Facts, MapCounts, Method, Step, Within};
 use crate::error::{Error, StepError};
 use crate::groups::LieAlgebra;
 use crate::maps::{CoordinateMap, Exp};
@@ -221,16 +221,14 @@ where
 {
     type Work = OneBracketWork<P, S>;
 
-    fn order(&self, _: &P) -> usize {
-        self.0.order
-    }
-    fn evaluations(&self, _: &P) -> Option<u64> {
-        Some(self.0.stages() as u64)
-    }
-    fn map_counts(&self, _: &P, _: bool) -> Option<MapCounts> {
+    fn facts(&self, _: &P) -> Facts {
         let OneBracketTableau { stages, update, .. } = &self.0;
-        let brackets = stages.iter().chain([update]).filter(|u| u.has_bracket()).count();
-        Some(MapCounts { psi: self.0.stages() as u64, dpsi_inv: 0, brackets: brackets as u64 })
+        let brackets = stages.iter().chain([update]).filter(|u| u.has_bracket()).count() as u64;
+        let (stages, extension) = (self.0.stages() as u64, self.extension());
+        Facts::of_order(self.0.order)
+            .cost(Some(stages), MapCounts { psi: stages, dpsi_inv: 0, brackets })
+            .estimate(self.0.name, self.0.embedded)
+            .dense(extension.order(), extension.evaluations())
     }
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
         let alg = problem.group();
@@ -253,12 +251,6 @@ where
     ) -> Result<(), StepError> {
         let done = inner.advance(&self.0, problem, step, p, y);
         inner.stages.conclude(problem, done, p, y)
-    }
-    fn dense_order(&self, _: &P) -> usize {
-        self.extension().order()
-    }
-    fn dense_evaluations(&self, _: &P) -> [Option<u64>; 2] {
-        [Some(self.extension().evaluations() as u64), Some(0)]
     }
     fn prepare(
         &self,
@@ -321,12 +313,6 @@ impl<P: Problem, const S: usize> Embedded<P> for OneBracket<S>
 where
     Exp: CoordinateMap<P::Group>,
 {
-    fn error_order(&self, _: &P) -> Result<usize, Error> {
-        self.0.embedded.ok_or_else(|| without_pair(self.0.name))
-    }
-    fn evaluations_with_error(&self, _: &P) -> Option<u64> {
-        Some(self.0.stages() as u64)
-    }
     fn step_with_error(
         &self,
         problem: &P,

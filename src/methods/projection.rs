@@ -7,7 +7,7 @@
 //! steps of two products; QR: Gram–Schmidt twice).
 //! Source: Hairer, Lubich, Wanner, Geometric Numerical Integration, IV.4; Celledoni & Owren, 1.
 
-use super::{Embedded, MapCounts, Method, Step};
+use super::{Embedded, Facts, Method, Step};
 use crate::error::{Error, StepError};
 use crate::problems::{Orthogonal, PointOf, Projection, ScalarOf};
 use crate::space::Metric;
@@ -51,14 +51,8 @@ pub struct ProjectionWork<P: Orthogonal, M: Method<P>> {
 impl<P: Orthogonal, M: Method<P>> Method<P> for ProjectionMethod<M> {
     type Work = ProjectionWork<P, M>;
 
-    fn order(&self, problem: &P) -> usize {
-        self.base.order(problem)
-    }
-    fn evaluations(&self, problem: &P) -> Option<u64> {
-        self.base.evaluations(problem)
-    }
-    fn map_counts(&self, problem: &P, with_error: bool) -> Option<MapCounts> {
-        self.base.map_counts(problem, with_error)
+    fn facts(&self, problem: &P) -> Facts {
+        Facts { stays_on_manifold: true, ..self.base.facts(problem) }
     }
     fn iterations(&self, work: &Self::Work) -> u64 {
         self.base.iterations(&work.base)
@@ -79,12 +73,6 @@ impl<P: Orthogonal, M: Method<P>> Method<P> for ProjectionMethod<M> {
         problem.project(self.how, z)?;
         core::mem::swap(y, z);
         Ok(())
-    }
-    fn dense_order(&self, problem: &P) -> usize {
-        self.base.dense_order(problem)
-    }
-    fn dense_evaluations(&self, problem: &P) -> [Option<u64>; 2] {
-        self.base.dense_evaluations(problem)
     }
     fn prepare(
         &self,
@@ -112,12 +100,6 @@ impl<P: Orthogonal, M: Method<P>> Method<P> for ProjectionMethod<M> {
 
 /// The estimate is that of the base method before the projection. The projection moves the point by no more than that.
 impl<P: Orthogonal, M: Embedded<P>> Embedded<P> for ProjectionMethod<M> {
-    fn error_order(&self, problem: &P) -> Result<usize, Error> {
-        self.base.error_order(problem)
-    }
-    fn evaluations_with_error(&self, problem: &P) -> Option<u64> {
-        self.base.evaluations_with_error(problem)
-    }
     fn step_with_error(
         &self,
         problem: &P,

@@ -5,11 +5,10 @@
 //! Points within a step: [`Dense`](super::tableau::Dense).
 //! Source: Hairer, Nørsett, Wanner I, p. 138.
 
-use super::embedded::without_pair;
 use super::extension::{EXTRA, Extension};
 use super::stages::{Known, copies};
 use super::tableau::{ErrorEstimate, fold_error};
-use super::{Embedded, MapCounts, Method, Step, Tableau, Within};
+use super::{Embedded, Facts, MapCounts, Method, Step, StepCost, Tableau, Within};
 use crate::error::{Error, StepError};
 use crate::problems::FieldStore;
 use crate::problems::{Ambient, PointOf, ScalarOf};
@@ -68,17 +67,15 @@ impl<const S: usize> Rk<S> {
 impl<P: Ambient, const S: usize> Method<P> for Rk<S> {
     type Work = RkWork<P, S>;
 
-    fn stays_on_manifold(&self) -> bool {
-        false
-    }
-    fn order(&self, _: &P) -> usize {
-        self.0.order
-    }
-    fn evaluations(&self, _: &P) -> Option<u64> {
-        Some(self.0.update_stages() as u64)
-    }
-    fn map_counts(&self, _: &P, _: bool) -> Option<MapCounts> {
-        Some(MapCounts::default())
+    fn facts(&self, _: &P) -> Facts {
+        let (tableau, extension) = (&self.0, Extension::of(&self.0));
+        let facts = Facts::of_order(tableau.order)
+            .cost(Some(tableau.update_stages() as u64), MapCounts::default())
+            .estimate(tableau.name, tableau.error.map(|e| e.order))
+            .dense(extension.order(), extension.evaluations());
+        let evaluations = Some(tableau.all_stages() as u64);
+        let step_with_error = StepCost { evaluations, ..facts.step };
+        Facts { stays_on_manifold: false, step_with_error, ..facts }
     }
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
         Ok(RkWork {
@@ -103,12 +100,6 @@ impl<P: Ambient, const S: usize> Method<P> for Rk<S> {
     }
     fn reused(&self, work: &Self::Work) -> u64 {
         work.known.used
-    }
-    fn dense_order(&self, _: &P) -> usize {
-        Extension::of(&self.0).order()
-    }
-    fn dense_evaluations(&self, _: &P) -> [Option<u64>; 2] {
-        [Some(Extension::of(&self.0).evaluations() as u64), Some(0)]
     }
     fn prepare(
         &self,
@@ -137,12 +128,6 @@ impl<P: Ambient, const S: usize> Method<P> for Rk<S> {
 }
 
 impl<P: Ambient, const S: usize> Embedded<P> for Rk<S> {
-    fn error_order(&self, _: &P) -> Result<usize, Error> {
-        self.0.error.map(|e| e.order).ok_or_else(|| without_pair(self.0.name))
-    }
-    fn evaluations_with_error(&self, _: &P) -> Option<u64> {
-        Some(self.0.all_stages() as u64)
-    }
     #[inline(always)]
     fn step_with_error(
         &self,
@@ -165,10 +150,7 @@ impl<P: Ambient, const S: usize> Embedded<P> for Rk<S> {
             known.set(step.t + step.h, to);
         }
         let mut size = |weights: &[f64; S]| {
-            z.clear();
-            for (&w, k) in weights[..stages].iter().zip(k.iter()) {
-                z.add(step.h * ScalarOf::<P>::lit(w), k);
-            }
+            z.set_terms(step.h, &weights[..stages], k);
             match tolerance.rule() {
                 Rule::PerLength => ratio(z.size(), tolerance.per_length(to.distance(from))),
                 Rule::PerStep => {

@@ -10,11 +10,11 @@
 //! Points within a step: [`Dense`](super::tableau::Dense) in the chart of the step.
 //! Source: H. Munthe-Kaas, High order Runge–Kutta methods on manifolds, Appl. Numer. Math. 29 (1999).
 
-use super::embedded::{ratio_in_algebra, without_pair};
+use super::embedded::ratio_in_algebra;
 use super::extension::{EXTRA, Extension};
 use super::stages::{Stages, copies};
 use super::tableau::{ErrorEstimate, fold_error};
-use super::{Embedded, MapCounts, Method, Step, Tableau, Within};
+use super::{Embedded, Facts, MapCounts, Method, Step, StepCost, Tableau, Within};
 use crate::error::{Error, StepError};
 use crate::groups::LieAlgebra;
 use crate::maps::CoordinateMap;
@@ -84,15 +84,18 @@ impl<Psi, const S: usize> Rkmk<Psi, S> {
 impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> Method<P> for Rkmk<Psi, S> {
     type Work = RkmkWork<P, Psi, S>;
 
-    fn order(&self, problem: &P) -> usize {
-        self.tableau.order.min(self.psi.order(problem.group()))
-    }
-    fn evaluations(&self, _: &P) -> Option<u64> {
-        Some(self.stages as u64)
-    }
-    fn map_counts(&self, _: &P, with_error: bool) -> Option<MapCounts> {
-        let stages = if with_error { self.tableau.all_stages() } else { self.stages } as u64;
-        Some(MapCounts { psi: stages, dpsi_inv: stages - 1, brackets: 0 })
+    fn facts(&self, problem: &P) -> Facts {
+        let (tableau, extension) = (&self.tableau, Extension::of(&self.tableau));
+        let most = self.psi.order(problem.group());
+        let maps = |stages| MapCounts { psi: stages, dpsi_inv: stages - 1, brackets: 0 };
+        let (stages, all) = (self.stages as u64, tableau.all_stages() as u64);
+        let facts = Facts::of_order(tableau.order.min(most))
+            .cost(Some(stages), maps(stages))
+            // A dΨ⁻¹ that is cut early makes an error of its own, which the pair does not see.
+            .estimate(tableau.name, tableau.error.map(|e| e.order.min(most)))
+            .dense(extension.order().min(most), extension.evaluations());
+        let step_with_error = StepCost { evaluations: Some(all), maps: Some(maps(all)) };
+        Facts { step_with_error, ..facts }
     }
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
         Ok(RkmkWork {
@@ -111,12 +114,6 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> Method<P> for Rkm
     ) -> Result<(), StepError> {
         let done = self.advance(self.stages, problem, step, p, stages, y);
         stages.conclude(problem, done, p, y)
-    }
-    fn dense_order(&self, problem: &P) -> usize {
-        Extension::of(&self.tableau).order().min(self.psi.order(problem.group()))
-    }
-    fn dense_evaluations(&self, _: &P) -> [Option<u64>; 2] {
-        [Some(Extension::of(&self.tableau).evaluations() as u64), Some(0)]
     }
     fn prepare(
         &self,
@@ -171,16 +168,6 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> Method<P> for Rkm
 }
 
 impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> Embedded<P> for Rkmk<Psi, S> {
-    fn error_order(&self, problem: &P) -> Result<usize, Error> {
-        match self.tableau.error {
-            // A dΨ⁻¹ that is cut early makes an error of its own, which the pair does not see.
-            Some(error) => Ok(error.order.min(self.psi.order(problem.group()))),
-            None => Err(without_pair(self.tableau.name)),
-        }
-    }
-    fn evaluations_with_error(&self, _: &P) -> Option<u64> {
-        Some(self.tableau.all_stages() as u64)
-    }
     fn step_with_error(
         &self,
         problem: &P,

@@ -26,7 +26,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::newton::newton3;
-use super::{MapCounts, Method, Step, Symmetric};
+use super::{Facts, MapCounts, Method, Step, Symmetric};
 use crate::error::{Error, StepError};
 use crate::groups::{LieAlgebra, LieGroup, So3};
 use crate::maps::{Cay, CoordinateMap};
@@ -159,11 +159,9 @@ where
     /// The iterations so far.
     type Work = u64;
 
-    fn order(&self, _: &P) -> usize {
-        if self.0 == Factor::LewisSimo && !P::Frame::TURNS { 4 } else { 2 }
-    }
-    fn map_counts(&self, _: &P, _: bool) -> Option<MapCounts> {
-        Some(MapCounts { psi: 1, ..MapCounts::default() })
+    fn facts(&self, _: &P) -> Facts {
+        let order = if self.0 == Factor::LewisSimo && !P::Frame::TURNS { 4 } else { 2 };
+        Facts::of_order(order).cost(None, MapCounts { psi: 1, ..MapCounts::default() })
     }
     fn iterations(&self, work: &u64) -> u64 {
         *work

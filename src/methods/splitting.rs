@@ -10,7 +10,7 @@
 //! 4S + 1 flows, each one sine-cosine pair and one plane rotation (mr2: 5, mr4: 13).
 //! Source: R. McLachlan, Phys. Rev. Lett. 71 (1993); S. Reich, Fields Inst. Commun. 10 (1996).
 
-use super::{MapCounts, Method, STRANG, Scheme, Step, Symmetric, YOSHIDA4};
+use super::{Facts, MapCounts, Method, STRANG, Scheme, Step, Symmetric, YOSHIDA4};
 use crate::error::{Error, StepError};
 use crate::problems::{PointOf, ScalarOf, Split};
 use crate::scalar::Real;
@@ -41,11 +41,8 @@ impl<P: Split, const K: usize> Method<P> for Splitting<K> {
     /// The state before the step.
     type Work = PointOf<P>;
 
-    fn order(&self, _: &P) -> usize {
-        self.scheme.order
-    }
-    fn map_counts(&self, _: &P, _: bool) -> Option<MapCounts> {
-        Some(MapCounts::default())
+    fn facts(&self, _: &P) -> Facts {
+        Facts::of_order(self.scheme.order).cost(None, MapCounts::default())
     }
     /// Also [`Error::Unsupported`] unless the ordering names each part of the problem once.
     fn work(&self, _: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {

@@ -43,10 +43,10 @@ use crate::space::Metric;
 /// ```compile_fail
 /// # use lieflow::{actions::Coadjoint, groups::So3, maps::Cay, methods::EnergyCasimir, problems::Flow};
 /// let body = Flow::new(So3::<f64>::new(), Coadjoint, |_, m, v| *v = -m);
-/// lieflow::Method::order(&EnergyCasimir::new(Cay), &body);
+/// lieflow::Method::facts(&EnergyCasimir::new(Cay), &body);
 /// ```
 #[derive(Clone, Copy)]
-pub struct Flow<G, A, F, K = Facts> {
+pub struct Flow<G, A, F, K = FlowFacts> {
     group: G,
     action: A,
     field: F,
@@ -54,11 +54,11 @@ pub struct Flow<G, A, F, K = Facts> {
 }
 
 /// A [`Flow`] whose closure writes A(t), f(t, y) = A(t).
-pub type LinearFlow<G, A, F> = Flow<G, A, OfTime<F>, Facts<TimeAlone>>;
+pub type LinearFlow<G, A, F> = Flow<G, A, OfTime<F>, FlowFacts<TimeAlone>>;
 
 /// The facts about a [`Flow`]: whether f depends only on t, H, and further invariants.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Facts<L = (), H = (), I = ()> {
+pub struct FlowFacts<L = (), H = (), I = ()> {
     linear: L,
     energy: H,
     invariants: I,
@@ -68,7 +68,7 @@ pub struct Facts<L = (), H = (), I = ()> {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct TimeAlone;
 
-type With<G, A, F, L, H, I> = Flow<G, A, F, Facts<L, H, I>>;
+type With<G, A, F, L, H, I> = Flow<G, A, F, FlowFacts<L, H, I>>;
 
 /// f(t, y) of a [`Flow`]: a closure, or one with scratch.
 pub trait Field<G: LieGroup, A: Action<G>> {
@@ -130,7 +130,7 @@ where
     }
 }
 
-const UNKNOWN: Facts = Facts { linear: (), energy: (), invariants: () };
+const UNKNOWN: FlowFacts = FlowFacts { linear: (), energy: (), invariants: () };
 
 impl<G: LieGroup, A: Action<G>, F: Fn(G::Scalar, &A::Point, &mut G::Alg)> Flow<G, A, F> {
     /// Makes the problem. `field(t, y, v)` writes f(t, y) into v, which is 0 before: entries that are 0 may be left
@@ -166,7 +166,7 @@ impl<G: LieGroup, A: Action<G>, F: Fn(G::Scalar, &mut G::Alg)> LinearFlow<G, A, 
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub const fn of_time(group: G, action: A, field: F) -> Self {
-        let facts = Facts { linear: TimeAlone, energy: (), invariants: () };
+        let facts = FlowFacts { linear: TimeAlone, energy: (), invariants: () };
         Flow { group, action, field: OfTime(field), facts }
     }
 
@@ -191,8 +191,8 @@ impl<G: LieGroup, A: Action<G>, M, F> Flow<G, A, WithWork<M, F>> {
 impl<G: LieGroup, A: Action<G>, F, L, H, I> With<G, A, F, L, H, I> {
     /// Adds the fact that f depends only on t. Magnus methods then apply, and are wrong if it is not true.
     pub fn linear(self) -> With<G, A, F, TimeAlone, H, I> {
-        let Flow { group, action, field, facts: Facts { energy, invariants, .. } } = self;
-        Flow { group, action, field, facts: Facts { linear: TimeAlone, energy, invariants } }
+        let Flow { group, action, field, facts: FlowFacts { energy, invariants, .. } } = self;
+        Flow { group, action, field, facts: FlowFacts { linear: TimeAlone, energy, invariants } }
     }
 
     /// Adds the Hamiltonian of f(m) = −∇H(m) under the coadjoint action.
@@ -203,8 +203,13 @@ impl<G: LieGroup, A: Action<G>, F, L, H, I> With<G, A, F, L, H, I> {
         self,
         value: E,
     ) -> With<G, A, F, L, Energy<E>, I> {
-        let Flow { group, action, field, facts: Facts { linear, invariants, .. } } = self;
-        Flow { group, action, field, facts: Facts { linear, energy: Energy(value), invariants } }
+        let Flow { group, action, field, facts: FlowFacts { linear, invariants, .. } } = self;
+        Flow {
+            group,
+            action,
+            field,
+            facts: FlowFacts { linear, energy: Energy(value), invariants },
+        }
     }
 
     /// Adds an invariant: its name and its value.
@@ -213,9 +218,9 @@ impl<G: LieGroup, A: Action<G>, F, L, H, I> With<G, A, F, L, H, I> {
         invariant: Invariant,
         value: Q,
     ) -> With<G, A, F, L, H, Quantity<I, Q>> {
-        let Flow { group, action, field, facts: Facts { linear, energy, invariants } } = self;
+        let Flow { group, action, field, facts: FlowFacts { linear, energy, invariants } } = self;
         let invariants = Quantity { before: invariants, invariant, value };
-        Flow { group, action, field, facts: Facts { linear, energy, invariants } }
+        Flow { group, action, field, facts: FlowFacts { linear, energy, invariants } }
     }
 }
 
@@ -294,7 +299,7 @@ impl<G: LieGroup, A: Action<G>, F: Field<G, A>, K> Problem for Flow<G, A, F, K> 
     }
 }
 
-impl<G, A, F, H, I> LinearField for Flow<G, A, F, Facts<TimeAlone, H, I>>
+impl<G, A, F, H, I> LinearField for Flow<G, A, F, FlowFacts<TimeAlone, H, I>>
 where
     G: LieGroup,
     A: Action<G>,
@@ -302,7 +307,7 @@ where
 {
 }
 
-impl<G, A, F, L, E, I> LiePoisson for Flow<G, A, F, Facts<L, Energy<E>, I>>
+impl<G, A, F, L, E, I> LiePoisson for Flow<G, A, F, FlowFacts<L, Energy<E>, I>>
 where
     G: LieGroup,
     A: Action<G, Point: LinearSpace<Scalar = G::Scalar>>,
@@ -334,7 +339,7 @@ where
     }
 }
 
-impl<G, A, F, L, H, I> Invariants for Flow<G, A, F, Facts<L, H, I>>
+impl<G, A, F, L, H, I> Invariants for Flow<G, A, F, FlowFacts<L, H, I>>
 where
     G: LieGroup,
     A: Action<G>,

@@ -183,7 +183,7 @@ impl EventRule {
     #[inline(always)]
     fn search(&self, times: &Timeline, last: f64, first_step: bool) -> Search {
         let EventRule { direction, points, seen, .. } = *self;
-        let is_long = times.costs.order >= LONG && points.is_none();
+        let is_long = times.facts.order >= LONG && points.is_none();
         Search { direction, points, is_long, seen, first_step, span: [times.last.t, times.t], last }
     }
 

@@ -48,17 +48,17 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
             Pace::ByError(control) => estimator.map(|estimator| (&control.tolerance, estimator)),
         };
         let field_at = (t0 != t1).then_some(t0);
-        let (points, costs, error_order) = Points::new(held, adaptive, y, field_at)?;
+        let (points, facts, error_order) = Points::new(held, adaptive, y, field_at)?;
         let pacer = match pace {
             Pace::Equal { grid, max_steps } => Pacer::Equal { grid, done: 0, max_steps },
             Pace::ByError(control) => {
-                let controller = Controller::new(error_order.unwrap_or(costs.order));
+                let controller = Controller::new(error_order.unwrap_or(facts.order));
                 let (h, wall, has_events) = (None, None, false);
                 Pacer::ByError(Chooser { control, controller, h, wall, has_events })
             }
         };
-        let cadence = Cadence::new(points.stays_on_manifold());
-        Ok(Integrator { points, times: Timeline::new([t0, t1], pacer, cadence, costs) })
+        let cadence = Cadence::new(facts.stays_on_manifold);
+        Ok(Integrator { points, times: Timeline::new([t0, t1], pacer, cadence, facts) })
     }
 
     /// The time.

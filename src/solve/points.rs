@@ -11,7 +11,7 @@ use super::stats::{Cadence, RunError, Stats, power_of_two_above};
 use crate::actions::Action;
 use crate::error::{Error, StepError};
 use crate::groups::LieAlgebra;
-use crate::methods::{Embedded, EqualSteps, MapCounts, Method, Step, Within};
+use crate::methods::{Embedded, EqualSteps, Facts, Method, Step, Within};
 use crate::problems::{AlgOf, PointOf, Problem, ScalarOf};
 use crate::scalar::Real;
 use crate::space::Metric;
@@ -41,20 +41,6 @@ pub(super) enum Saved {
     Orbit,
     /// The numbers that the method keeps from step to step.
     Memory,
-}
-
-/// The order of a method and the costs of its steps. `None` if the method does not count them.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Costs {
-    pub(super) order: usize,
-    /// The evaluations of f in a step.
-    pub(super) step: Option<u64>,
-    pub(super) maps: Option<MapCounts>,
-    /// The evaluations of f in a step with its error.
-    pub(super) attempt: Option<u64>,
-    pub(super) attempt_maps: Option<MapCounts>,
-    /// The evaluations of f in [`Method::prepare`], and for each point within a step.
-    pub(super) dense: [Option<u64>; 2],
 }
 
 /// The points of a run of any problem and method.
@@ -101,8 +87,6 @@ type Attempt<P, M> = fn(
 /// What an adaptive run needs from its method.
 pub(super) struct Estimator<P: Problem, M: Method<P>> {
     attempt: Attempt<P, M>,
-    error_order: fn(&M, &P) -> Result<usize, Error>,
-    evaluations: fn(&M, &P) -> Option<u64>,
     norm: fn(&P, &AlgOf<P>) -> f64,
 }
 
@@ -122,8 +106,6 @@ where
             attempt: |method, problem, step, tolerance, from, work, to| {
                 method.step_with_error(problem, step, tolerance, from, work, to).map(Into::into)
             },
-            error_order: |method, problem| method.error_order(problem),
-            evaluations: |method, problem| method.evaluations_with_error(problem),
             norm: |problem, v| problem.group().norm(v).into(),
         }
     }
@@ -201,21 +183,14 @@ impl<'a, P: Problem, M: Method<P>> Points<'a, P, M> {
         adaptive: Option<(&Tolerance, Estimator<P, M>)>,
         y: PointOf<P>,
         field_at: Option<f64>,
-    ) -> Result<(Self, Costs, Option<usize>), Error> {
+    ) -> Result<(Self, Facts, Option<usize>), Error> {
         let held = (problem, method);
         let (problem, method) = (&*held.0, &*held.1);
         let (group, action) = (problem.group(), problem.action());
         action.check(group, &y)?;
         let mut restore = action.work(group);
         check_on_manifold(problem, &mut y.clone(), &mut restore)?;
-        let mut costs = Costs {
-            order: method.order(problem),
-            step: method.evaluations(problem),
-            maps: method.map_counts(problem, false),
-            attempt: None,
-            attempt_maps: None,
-            dense: method.dense_evaluations(problem),
-        };
+        let facts = method.facts(problem);
         let mut error_order = None;
         let rates = match adaptive {
             None => None,
@@ -223,9 +198,7 @@ impl<'a, P: Problem, M: Method<P>> Points<'a, P, M> {
                 let mut parts = tolerance.scales();
                 let none = action.error_ratio(group, &group.zero(), &y, &mut parts);
                 tolerance.check(parts.asked(), none.any_below(f64::INFINITY))?;
-                costs.attempt = (estimator.evaluations)(method, problem);
-                costs.attempt_maps = method.map_counts(problem, true);
-                error_order = Some((estimator.error_order)(method, problem)?);
+                error_order = Some(facts.order_of_estimate()?);
                 let f = [group.zero(), group.zero()];
                 let tolerance = tolerance.clone();
                 Some(Rates { estimator, tolerance, f, work: problem.work() })
@@ -241,11 +214,7 @@ impl<'a, P: Problem, M: Method<P>> Points<'a, P, M> {
         let (problem, method) = held;
         let points =
             Points { problem, method, y, from, to, work, rates, orbit, restore, list: None };
-        Ok((points, costs, error_order))
-    }
-
-    pub(super) fn stays_on_manifold(&self) -> bool {
-        self.method.stays_on_manifold()
+        Ok((points, facts, error_order))
     }
 
     /// The start of the last step ← the point.

@@ -198,8 +198,8 @@ impl Timeline {
             Pacer::Equal { .. } => "equal".into(),
             Pacer::ByError(chooser) => format!("{:?}", chooser.control),
         };
-        let costs = (self.costs.step, self.costs.maps);
-        format!("{} {} {costs:?} {pace}", points.group_name(), self.costs.order)
+        let costs = (self.facts.step.evaluations, self.facts.step.maps);
+        format!("{} {} {costs:?} {pace}", points.group_name(), self.facts.order)
     }
 
     fn save(&mut self, points: &mut dyn AnyPoints) -> Vec<u8> {

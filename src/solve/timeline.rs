@@ -2,10 +2,10 @@
 
 use super::control::{Controller, StepControl};
 use super::grid::TimeGrid;
-use super::points::{AnyPoints, Costs, Place, Saved};
+use super::points::{AnyPoints, Place, Saved};
 use super::stats::{Cadence, RunError, Stats};
 use crate::error::{Error, Failure, StepError};
-use crate::methods::{MapCounts, Step};
+use crate::methods::{Facts, MapCounts, Step, StepCost};
 
 /// The choice of the steps of a run.
 #[derive(Clone, Debug)]
@@ -61,7 +61,7 @@ pub(super) struct Timeline {
     pub(super) pacer: Pacer,
     pub(super) cadence: Cadence,
     pub(super) stats: Stats,
-    pub(super) costs: Costs,
+    pub(super) facts: Facts,
 }
 
 /// The size of a step from t to `end`, or to a few rounding units before it.
@@ -77,7 +77,7 @@ fn plus(n: Option<u64>, more: Option<u64>) -> Option<u64> {
 }
 
 impl Timeline {
-    pub(super) fn new([t0, t1]: [f64; 2], pacer: Pacer, cadence: Cadence, costs: Costs) -> Self {
+    pub(super) fn new([t0, t1]: [f64; 2], pacer: Pacer, cadence: Cadence, facts: Facts) -> Self {
         let stats = Stats {
             evaluations: Some(0),
             maps: Some(MapCounts::default()),
@@ -85,7 +85,7 @@ impl Timeline {
             ..Stats::default()
         };
         let last = Step { n: 0, t: t0, h: 0.0 };
-        Timeline { t: t0, t1, last, looked_at: Looked::Nothing, pacer, cadence, stats, costs }
+        Timeline { t: t0, t1, last, looked_at: Looked::Nothing, pacer, cadence, stats, facts }
     }
 
     /// Lets steps be short enough for a search for events.
@@ -104,9 +104,9 @@ impl Timeline {
             stats.smallest_step = 0.0;
         }
         if let Pacer::Equal { .. } = &self.pacer {
-            let steps = self.costs.step.map(|each| each * stats.accepted);
-            stats.evaluations = plus(stats.evaluations, steps);
-            stats.maps = self.costs.maps.map(|each| each.times(stats.accepted));
+            let StepCost { evaluations, maps } = self.facts.step.times(stats.accepted);
+            stats.evaluations = plus(stats.evaluations, evaluations);
+            stats.maps = maps;
         }
         stats
     }
@@ -287,7 +287,7 @@ impl Timeline {
             return Ok(Place::Start);
         }
         self.prepare(points).map_err(|source| self.no_point(source))?;
-        self.looked_within(self.costs.dense[1]);
+        self.looked_within(self.facts.dense_evaluations[1]);
         Ok(Place::Within(((t - start) / h).clamp(0.0, 1.0)))
     }
 
@@ -302,8 +302,8 @@ impl Timeline {
         }
         self.looked_at = Looked::Stale;
         self.looked_within(match &self.pacer {
-            Pacer::Equal { .. } => self.costs.step,
-            Pacer::ByError(_) => self.costs.attempt,
+            Pacer::Equal { .. } => self.facts.step.evaluations,
+            Pacer::ByError(_) => self.facts.step_with_error.evaluations,
         });
         Ok(Place::Shorter(t - self.last.t))
     }
@@ -333,7 +333,7 @@ impl Timeline {
             self.repeat(points)?;
         }
         if self.looked_at != Looked::Restored {
-            self.stats.evaluations = plus(self.stats.evaluations, self.costs.dense[0]);
+            self.stats.evaluations = plus(self.stats.evaluations, self.facts.dense_evaluations[0]);
         }
         // A step that was cut is prepared, or was taken again.
         points.prepare(self.last, self.looked_at == Looked::Fresh)?;
@@ -369,8 +369,8 @@ impl Timeline {
     /// Counts an attempt.
     pub(super) fn attempted(&mut self) {
         self.looked_at = Looked::Nothing;
-        let Costs { attempt, attempt_maps, .. } = self.costs;
-        self.stats.evaluations = plus(self.stats.evaluations, attempt);
-        self.stats.maps = self.stats.maps.zip(attempt_maps).map(|(n, more)| n + more);
+        let StepCost { evaluations, maps } = self.facts.step_with_error;
+        self.stats.evaluations = plus(self.stats.evaluations, evaluations);
+        self.stats.maps = self.stats.maps.zip(maps).map(|(n, more)| n + more);
     }
 }

@@ -288,7 +288,7 @@ impl Sheet {
         match self.column {
             Column::Fit => {
                 assert!(row.offers.contains(&info.needs), "{place}: served without what it needs");
-                let order = method.order(&row.problem);
+                let order = method.facts(&row.problem).order;
                 assert!(info.order.number().is_none_or(|p| p == order), "{place}: {order}");
                 let mut y = row.start.clone();
                 let mut work = method.work(&row.problem, &y).expect("it fits");
@@ -390,7 +390,8 @@ fn fill(column: Column, parts: &[fn(&mut Sheet)], least: usize) {
 fn methods_fit_as_the_catalog_says() {
     fill(Column::Fit, &[bodies, bodies_in_n_dimensions, linear_equations, fluids], 300);
     let body = RigidBodyN::manakov(&[0.4, 0.9, 1.3]).expect("a body");
-    let refused = named::explicit(&MethodSpec::new("mr4", None), |method| method.order(&body));
+    let refused =
+        named::explicit(&MethodSpec::new("mr4", None), |method| method.facts(&body).order);
     let text = refused.expect_err("it does not fit").to_string();
     assert!(text.contains("mr4") && text.contains("a free rigid body"), "{text}");
     assert!(matches!(MethodSpec::new("mr9", None).info(), Err(Error::UnknownName { .. })));

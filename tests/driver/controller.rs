@@ -6,7 +6,7 @@ use std::cell::{Cell, RefCell};
 use lieflow::actions::LeftTranslation;
 use lieflow::groups::Translations;
 use lieflow::methods::tableau::RK4;
-use lieflow::methods::{Embedded, Method, Rk};
+use lieflow::methods::{Embedded, Facts, Method, Rk, StepCost};
 use lieflow::problems::{Flow, Problem};
 use lieflow::solve::Next;
 use lieflow::tolerance::Tolerance;
@@ -52,11 +52,14 @@ where
 {
     type Work = Memory;
 
-    fn order(&self, _: &P) -> usize {
-        self.order
-    }
-    fn evaluations(&self, _: &P) -> Option<u64> {
-        Some(7)
+    fn facts(&self, _: &P) -> Facts {
+        Facts {
+            step: StepCost { evaluations: Some(7), maps: None },
+            step_with_error: StepCost { evaluations: Some(9), maps: None },
+            error_order: Some(self.order),
+            dense_evaluations: [Some(100), Some(10_000)],
+            ..Facts::of_order(self.order)
+        }
     }
     fn work(&self, _: &P, _: &V) -> Result<Memory, Error> {
         Ok(Memory::default())
@@ -104,9 +107,6 @@ where
         self.looked_at.set(self.looked_at.get() + 1);
         Ok(())
     }
-    fn dense_evaluations(&self, _: &P) -> [Option<u64>; 2] {
-        [Some(100), Some(10_000)]
-    }
 }
 
 impl<R, P> Embedded<P> for Told<R>
@@ -114,12 +114,6 @@ where
     P: Problem<Group = Translations<V>, Action = LeftTranslation>,
     R: Fn(f64, f64) -> Option<f64>,
 {
-    fn error_order(&self, _: &P) -> Result<usize, Error> {
-        Ok(self.order)
-    }
-    fn evaluations_with_error(&self, _: &P) -> Option<u64> {
-        Some(9)
-    }
     fn step_with_error(
         &self,
         problem: &P,

@@ -263,7 +263,7 @@ fn an_impulse_on_a_part() {
         },
     );
     let method = Rkmk::new(DOPRI5, Exp);
-    assert_eq!(Method::order(&method, &problem), 5);
+    assert_eq!(method.facts(&problem).order, 5);
     // Turned by 1 at rate 1, then by 2 at rate −4.
     let run = Solve::new(&problem, &method, [0.0, 1.5])
         .tolerances(1e-10, 1e-10)

@@ -27,7 +27,7 @@ use lieflow::methods::commutator_free::{CF4, ProductTableau};
 use lieflow::methods::crouch_grossman::CG3;
 use lieflow::methods::tableau::RK4;
 use lieflow::methods::{
-    CommutatorFree, GAUSS4, ImplicitTableau, LieSeries, Method, Rkmk, RkmkGauss,
+    CommutatorFree, Facts, GAUSS4, ImplicitTableau, LieSeries, Method, Rkmk, RkmkGauss,
     RkmkGaussSymmetric, Step, Tableau, magnus,
 };
 use lieflow::problems::{AlgOf, LinearField, PointOf, Problem, TaylorField};
@@ -184,8 +184,8 @@ struct Magnus4(Slip);
 impl<P: LinearField + Problem<Group = MatrixGroup>> Method<P> for Magnus4 {
     type Work = ChartStore<P, Exp>;
 
-    fn order(&self, _: &P) -> usize {
-        4
+    fn facts(&self, _: &P) -> Facts {
+        Facts::of_order(4)
     }
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
         ChartStore::new(problem, &Exp, like)

@@ -4,7 +4,7 @@ use lieflow::actions::LeftTranslation;
 use lieflow::chart::ChartStore;
 use lieflow::groups::{GroupMatrix, MatrixGroup};
 use lieflow::maps::Exp;
-use lieflow::methods::{Method, Step, Tableau, tableau::RK4};
+use lieflow::methods::{Facts, Method, Step, Tableau, tableau::RK4};
 use lieflow::problems::{AlgOf, PointOf, Problem};
 use lieflow::{CoordinateMap, Error, LieAlgebra, LieGroup, StepError};
 
@@ -34,8 +34,8 @@ where
 {
     type Work = ChartStore<P, Exp>;
 
-    fn order(&self, _: &P) -> usize {
-        self.0.order
+    fn facts(&self, _: &P) -> Facts {
+        Facts::of_order(self.0.order)
     }
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
         ChartStore::new(problem, &Exp, like)
@@ -85,8 +85,8 @@ pub(crate) struct TwoCommutators {
 impl<P: Problem<Group = MatrixGroup, Action = LeftTranslation>> Method<P> for TwoCommutators {
     type Work = P::Work;
 
-    fn order(&self, _: &P) -> usize {
-        RK4.order
+    fn facts(&self, _: &P) -> Facts {
+        Facts::of_order(RK4.order)
     }
     fn work(&self, problem: &P, _: &GroupMatrix) -> Result<P::Work, Error> {
         Ok(problem.work())

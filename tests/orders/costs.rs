@@ -13,7 +13,7 @@ use lieflow::maps::{Cay, Ccsk, CoordinateMap, Exp, Pade22, TruncatedExp};
 use lieflow::methods::tableau::RK4;
 use lieflow::methods::{
     Composition, Doubling, Embedded, GAUSS4, Gauss, MapCounts, Metric, Rkmk, SUZUKI4, SimoWong,
-    Step, magnus::TripleProduct,
+    Step, StepCost, magnus::TripleProduct,
 };
 use lieflow::problems::{
     Flow, PointOf, Problem, RigidBody, RigidBodyAttitude, RigidBodyN, RigidBodyState, ScalarOf,
@@ -163,16 +163,15 @@ counting!(Exp, TruncatedExp, Cay, Pade22, Ccsk<0, 1, 2>, Ccsk<2, 1, 0>);
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Taken {
     asked: Asked,
-    evaluations: Option<u64>,
-    maps: Option<MapCounts>,
+    stated: StepCost,
     iterations: u64,
 }
 
 impl Taken {
     /// A step of an explicit method that knows what it asks for.
     fn known(asked: Asked) -> Self {
-        let (evaluations, maps) = (Some(asked.field), Some(asked.maps()));
-        Taken { asked, evaluations, maps, iterations: 0 }
+        let stated = StepCost { evaluations: Some(asked.field), maps: Some(asked.maps()) };
+        Taken { asked, stated, iterations: 0 }
     }
 }
 
@@ -183,21 +182,17 @@ where
 {
     let (start, mut y) = (M::identity(), M::identity());
     let mut work = method.work(problem, &y).expect("it fits");
-    let step = Step { n: 0, t: 0.2, h: 0.1 };
+    let (facts, step) = (method.facts(problem), Step { n: 0, t: 0.2, h: 0.1 });
     ASKED.set(Asked::default());
     method.step(problem, step, &mut y, &mut work).expect("a step");
-    let plain = Taken {
-        asked: ASKED.take(),
-        evaluations: method.evaluations(problem),
-        maps: method.map_counts(problem, false),
-        iterations: method.iterations(&work),
-    };
+    let plain =
+        Taken { asked: ASKED.take(), stated: facts.step, iterations: method.iterations(&work) };
     // A point within the step costs what the method says.
     method.prepare(problem, step, &start, &y, &mut work).expect("the stages of the extension");
     let prepared = ASKED.take().field;
     let mut at = start;
     method.interpolate(problem, step, 0.4, &start, &mut work, &mut at).expect("a point");
-    let stated = method.dense_evaluations(problem);
+    let stated = facts.dense_evaluations;
     assert_eq!(stated[0], Some(prepared));
     assert!(stated[1].is_none_or(|n| n == ASKED.get().field), "{stated:?} {:?}", ASKED.get());
     ASKED.set(Asked::default());
@@ -206,8 +201,7 @@ where
     method.step_with_error(problem, step, &tolerance, &start, &mut work, &mut y).expect("a step");
     let with_error = Taken {
         asked: ASKED.take(),
-        evaluations: method.evaluations_with_error(problem),
-        maps: method.map_counts(problem, true),
+        stated: facts.step_with_error,
         iterations: method.iterations(&work) - before,
     };
     [plain, with_error]
@@ -324,11 +318,16 @@ fn implicit_methods() {
             ..Asked::default()
         };
         let maps = (each.psi == 0).then(MapCounts::default);
-        let expected = Taken { asked, evaluations: None, maps, iterations };
+        let expected = Taken { asked, stated: StepCost { evaluations: None, maps }, iterations };
         assert_eq!(plain, expected, "{}: {}", info.name, info.cost);
         // Three steps, each of iterations of its own.
         let iterations = with_error.asked.field / each.field - 3;
-        assert_eq!((with_error.maps, with_error.iterations), (maps, iterations), "{}", info.name);
+        assert_eq!(
+            (with_error.stated.maps, with_error.iterations),
+            (maps, iterations),
+            "{}",
+            info.name
+        );
     }
 }
 

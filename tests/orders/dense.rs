@@ -13,7 +13,7 @@ use lieflow::catalog::Needs;
 use lieflow::groups::{LieGroup, MatrixGroup, Sample, Se3, So3};
 use lieflow::maps::Exp;
 use lieflow::methods::tableau::{DOP853, DOPRI5, Dense, RK4, Row};
-use lieflow::methods::{AnyMethod, Embedded, Rk, Rkmk, Tableau};
+use lieflow::methods::{AnyMethod, Embedded, Facts, Rk, Rkmk, Tableau};
 use lieflow::problems::{Ambient, PointOf, Problem, RigidBody, RigidBodyAttitude, RigidBodyState};
 use lieflow::{Action, Error, LieAlgebra, Method, SaveAt, Step, TimeGrid, integrate};
 use nalgebra::{Matrix3, Vector3};
@@ -101,7 +101,7 @@ where
         P: 'p,
     {
         let problem = &self.members[0].0;
-        let (order, dense) = (method.order(problem), method.dense_order(problem));
+        let Facts { order, dense_order: dense, .. } = method.facts(problem);
         if dense < order.saturating_sub(1).min(5) || dense > order {
             return Err(format!("dense order {dense} of a method of order {order}"));
         }
@@ -170,7 +170,7 @@ where
                 let found = numbers(&at);
                 logs[j] += (gap(&found, &exact[i][j]) / exact[i][j].norm_l2()).ln();
                 let off = self.on_the_manifold(member, &at);
-                if method.stays_on_manifold() && (off.is_nan() || off > ROUNDING) {
+                if method.facts(problem).stays_on_manifold && (off.is_nan() || off > ROUNDING) {
                     return Err(format!("{off:e} off M at {part} of {}", self.size(i)));
                 }
                 points.push(found);

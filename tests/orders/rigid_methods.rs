@@ -63,7 +63,7 @@ fn check_order<M: Method<RigidBodyState> + Clone + Send + Sync>(
     first: u64,
 ) {
     let body = RigidBodyState::new(INERTIA).expect("a body");
-    let p = method.order(&body) as f64;
+    let p = method.facts(&body).order as f64;
     // Orders 8 and 10 pass from their first regime to rounding within a factor of 2 in h; this
     // momentum has no accidents there.
     let high = p >= 8.0;
@@ -118,9 +118,9 @@ fn lewis_and_simo_s_choice() {
     assert_order("lewis-simo in m", 4.0, &grid, &ends.map(|y| (y.m - m).norm()));
     assert_order("lewis-simo in g", 2.0, &grid, &ends.map(|y| (y.g - g).norm()));
     let body = RigidBody::<f64>::new(INERTIA).expect("a body");
-    assert_eq!(Method::order(&SimoWong::LEWIS_SIMO, &body), 4);
+    assert_eq!(SimoWong::LEWIS_SIMO.facts(&body).order, 4);
     let with_g = RigidBodyState::<f64>::new(INERTIA).expect("a body");
-    assert_eq!(Method::order(&SimoWong::LEWIS_SIMO, &with_g), 2);
+    assert_eq!(SimoWong::LEWIS_SIMO.facts(&with_g).order, 2);
 }
 
 /// The exact motion, in one step or in many, on each model of the body.

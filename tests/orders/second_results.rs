@@ -86,7 +86,7 @@ fn estimates_have_their_orders() {
             ($($method:expr, $steps:expr);* $(;)?) => {$({
                 let method = $method;
                 let steps: [f64; 5] = $steps;
-                let order = method.error_order(&flows[0].0).unwrap() as f64 + 1.0;
+                let order = method.facts(&flows[0].0).error_order.unwrap() as f64 + 1.0;
                 let errors = steps.map(|h| {
                     let logs: f64 = flows.iter().map(|(flow, start)| {
                         let mut work = method.work(flow, start).unwrap();
@@ -116,7 +116,7 @@ fn estimates_have_their_orders() {
     });
     crate::on_every_group!(clock, 1, flows => {
         // A method for fields of linear type has an estimate by doubling like any other.
-        assert_eq!(Doubling(Magnus4).error_order(&flows[0].0), Ok(4));
+        assert_eq!(Doubling(Magnus4).facts(&flows[0].0).error_order, Some(4));
     });
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
@@ -145,7 +145,7 @@ fn output_between_the_steps_has_the_order_of_the_method() {
                     gap(&middle.unwrap(), exact.end())
                 });
                 let found = slopes(&STEPS.map(|n| n as f64), &errors);
-                let order = method.order(&flow) as f64;
+                let order = method.facts(&flow).order as f64;
                 println!("{} {found:.2?}", stringify!($method));
                 assert!(found[2..].iter().all(|s| (s - order).abs() < 0.15), "{found:?} {errors:?}");
             })*};

@@ -117,7 +117,7 @@ where
     P::Group: LieAlgebra<Scalar = D>,
 {
     const STEPS: [f64; 4] = [0.02, 0.016, 0.0125, 0.01];
-    assert_eq!(method.error_order(&flows[0].0), Ok(order - 1));
+    assert_eq!(method.facts(&flows[0].0).error_order, Some(order - 1));
     let errors = STEPS.map(|h| {
         let logs = flows.iter().map(|(flow, start)| {
             let (mut work, mut to) = (method.work(flow, start).unwrap(), start.clone());

@@ -100,6 +100,6 @@ fn steps_of_its_own_choice() {
             assert!(error(&q) < 1e-8, "{}: {:.1e}", spec.label(), error(&q));
         }
     }
-    let refused = named::pair(&MethodSpec::new("cf4", None), |method| method.order(&body));
+    let refused = named::pair(&MethodSpec::new("cf4", None), |method| method.facts(&body).order);
     assert!(matches!(refused, Err(Error::Unsupported { .. })));
 }

@@ -1,5 +1,6 @@
 //! Runs with and without what takes their state back to M.
 
+use lieflow::methods::Facts;
 use lieflow::problems::{PointOf, ScalarOf};
 use lieflow::{Error, Method, Problem, Step, StepError};
 
@@ -8,11 +9,8 @@ pub(crate) struct Uncorrected<M>(pub(crate) M);
 
 impl<P: Problem, M: Method<P>> Method<P> for Uncorrected<M> {
     type Work = M::Work;
-    fn order(&self, problem: &P) -> usize {
-        self.0.order(problem)
-    }
-    fn stays_on_manifold(&self) -> bool {
-        false
+    fn facts(&self, problem: &P) -> Facts {
+        Facts { stays_on_manifold: false, ..self.0.facts(problem) }
     }
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<M::Work, Error> {
         self.0.work(problem, like)

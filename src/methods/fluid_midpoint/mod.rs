@@ -24,7 +24,7 @@ mod triangle;
 
 use faer::{Accum, Mat};
 
-use super::{Method, Step, Symmetric};
+use super::{Facts, Method, Step, Symmetric};
 use crate::dense::{lower_product, mirror, mul, scaled_sum, wide};
 use crate::error::{Error, StepError};
 use crate::groups::ComplexMatrix;
@@ -233,8 +233,8 @@ fn complete(x: &mut ComplexMatrix, both: &mut Mat<f64>) {
 impl<S: Surface> Method<Zeitlin<S>> for FluidMidpoint {
     type Work = FluidWork;
 
-    fn order(&self, _: &Zeitlin<S>) -> usize {
-        2
+    fn facts(&self, _: &Zeitlin<S>) -> Facts {
+        Facts::of_order(2)
     }
     fn work(&self, fluid: &Zeitlin<S>, _: &ComplexMatrix) -> Result<FluidWork, Error> {
         let n = fluid.n();

@@ -22,7 +22,7 @@
 //! use lieflow::problems::RigidBody;
 //! let body = RigidBody::<f64>::new([1.0, 2.0, 3.0]).unwrap();
 //! // f depends on the momentum, so Magnus4 does not compile.
-//! lieflow::Method::order(&Magnus4, &body);
+//! lieflow::Method::facts(&Magnus4, &body);
 //! ```
 
 mod cayley;
@@ -141,14 +141,9 @@ macro_rules! magnus_method {
         {
             type Work = MagnusWork<P, $psi, $s, $k>;
 
-            fn order(&self, _: &P) -> usize {
-                $order
-            }
-            fn evaluations(&self, _: &P) -> Option<u64> {
-                Some($s)
-            }
-            fn map_counts(&self, _: &P, _: bool) -> Option<crate::methods::MapCounts> {
-                Some(crate::methods::MapCounts { psi: 1, dpsi_inv: 0, brackets: $brackets })
+            fn facts(&self, _: &P) -> crate::methods::Facts {
+                let maps = crate::methods::MapCounts { psi: 1, dpsi_inv: 0, brackets: $brackets };
+                crate::methods::Facts::of_order($order).cost(Some($s), maps)
             }
             fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
                 MagnusWork::new(problem, &$psi, like)

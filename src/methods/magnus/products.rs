@@ -8,7 +8,7 @@ use super::{GAUSS_2, GAUSS_3, GAUSS_4, MagnusWork, ROOT_3, ROOT_15, V, W};
 use crate::error::{Error, StepError};
 use crate::groups::LieAlgebra;
 use crate::maps::{CoordinateMap, Exp};
-use crate::methods::{MapCounts, Method, Step};
+use crate::methods::{Facts, MapCounts, Method, Step};
 use crate::problems::{LinearField, PointOf, ScalarOf};
 
 /// The coefficients of a commutator-free Magnus method: S nodes, F factors.
@@ -149,14 +149,9 @@ where
 {
     type Work = (MagnusWork<P, Exp, S, 1>, PointOf<P>);
 
-    fn order(&self, _: &P) -> usize {
-        self.0.order
-    }
-    fn evaluations(&self, _: &P) -> Option<u64> {
-        Some(S as u64)
-    }
-    fn map_counts(&self, _: &P, _: bool) -> Option<MapCounts> {
-        Some(MapCounts { psi: F as u64, ..MapCounts::default() })
+    fn facts(&self, _: &P) -> Facts {
+        let maps = MapCounts { psi: F as u64, ..MapCounts::default() };
+        Facts::of_order(self.0.order).cost(Some(S as u64), maps)
     }
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
         Ok((MagnusWork::new(problem, &Exp, like)?, like.clone()))

@@ -27,7 +27,7 @@ use series::{Advance, Body, OneStep, Terms, at, at_end, error, reach, rotation};
 
 use super::embedded::ratio_of_relative;
 use super::simo_wong::turn_by;
-use super::{Embedded, MapCounts, Method, Step};
+use super::{Embedded, Facts, MapCounts, Method, Step};
 use crate::error::{Error, StepError};
 use crate::groups::{LieAlgebra, So3};
 use crate::problems::{Frame, FreeBody, PointOf, ScalarOf};
@@ -131,14 +131,11 @@ where
 {
     type Work = TaylorWork<ScalarOf<P>, N>;
 
-    fn order(&self, _: &P) -> usize {
-        N
-    }
-    fn evaluations(&self, _: &P) -> Option<u64> {
-        Some(N as u64)
-    }
-    fn map_counts(&self, _: &P, _: bool) -> Option<MapCounts> {
-        Some(MapCounts::default())
+    fn facts(&self, _: &P) -> Facts {
+        Facts::of_order(N)
+            .cost(Some(N as u64), MapCounts::default())
+            .estimate("", Some(N - 1))
+            .dense(N, N)
     }
     fn work(&self, _: &P, _: &PointOf<P>) -> Result<Self::Work, Error> {
         Ok(TaylorWork { terms: [[Real::lit(0.0); 4]; N], of: None })
@@ -157,9 +154,6 @@ where
         turn_by(problem, &rotation(q), m, &mut frame, y)
     }
     /// A step with an error estimate has its terms. Another one needs them again.
-    fn dense_evaluations(&self, _: &P) -> [Option<u64>; 2] {
-        [Some(N as u64), Some(0)]
-    }
     fn prepare(
         &self,
         problem: &P,
@@ -195,12 +189,6 @@ impl<P: FreeBody, const N: usize> Embedded<P> for Taylor<N>
 where
     ScalarOf<P>: Wide + Into<f64>,
 {
-    fn error_order(&self, _: &P) -> Result<usize, Error> {
-        Ok(N - 1)
-    }
-    fn evaluations_with_error(&self, _: &P) -> Option<u64> {
-        Some(N as u64)
-    }
     fn step_with_error(
         &self,
         problem: &P,

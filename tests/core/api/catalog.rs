@@ -18,7 +18,7 @@ fn body() -> RigidBody {
 fn order_of(spec: &MethodSpec) -> Result<usize, lieflow::Error> {
     named::explicit(spec, |method| {
         method.work(&body(), &Vector3::x()).unwrap();
-        method.order(&body())
+        method.facts(&body()).order
     })
 }
 
@@ -67,7 +67,7 @@ fn estimate(spec: &MethodSpec) -> Result<(usize, f64), lieflow::Error> {
         let step = Step { n: 0, t: 0.0, h: 0.4 };
         let one = Tolerance::new(0.0, 1.0).unwrap().by(Rule::PerLength);
         let found = method.step_with_error(&body(), step, &one, &start, &mut work, &mut to);
-        (method.error_order(&body()).unwrap(), found.unwrap())
+        (method.facts(&body()).order_of_estimate().unwrap(), found.unwrap())
     })
 }
 

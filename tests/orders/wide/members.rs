@@ -201,7 +201,7 @@ pub(crate) fn order<P: Measurable, M: Method<P>>(
         return Outcome::Refused;
     }
     let error = |i: usize, n| members[i].error(method, n);
-    Outcome::Measured(order_over(method.order(problem), members.len(), floors, &error))
+    Outcome::Measured(order_over(method.facts(problem).order, members.len(), floors, &error))
 }
 
 /// The methods of the lists whose order is 8 or more, on a group: all must be measured, to 0.15, or be refused

@@ -160,6 +160,6 @@ where
     P::Group: Represent,
     P::Action: Points<P::Group>,
 {
-    let order = method.order(&members[0].0);
+    let order = method.facts(&members[0].0).order;
     order_over(order, members.len(), FLOORS, &|i, n| error(&members[i], method, n))
 }

@@ -184,7 +184,7 @@ where
     P::Group: Represent,
     P::Action: Points<P::Group>,
 {
-    measure_as(method.order(problem), problem, method, reference)
+    measure_as(method.facts(problem).order, problem, method, reference)
 }
 
 /// The order that `method` shows on `problem`, by relative errors at the end on the grid of methods

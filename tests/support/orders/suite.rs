@@ -66,7 +66,7 @@ where
         if matches!(method.work(problem, reference.start()), Err(Error::Unsupported { .. })) {
             return Outcome::Refused;
         }
-        match method.order(problem) {
+        match method.facts(problem).order {
             usize::MAX => Outcome::Below(EXACT, largest_error(&members[..1], method, 1)),
             // Where the grid of the order has rounding on it, the one that begins at 4 steps has room.
             ..=4 if single => Outcome::Measured(

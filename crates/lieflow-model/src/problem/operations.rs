@@ -29,7 +29,7 @@ pub fn operations_by<P: Runnable>(
 ) -> Option<f64> {
     let method = problem.method(spec).ok()?;
     match steps {
-        Steps::Equal(_) if method.order(problem) == usize::MAX => None,
+        Steps::Equal(_) if method.facts(problem).order == usize::MAX => None,
         Steps::Equal(grid) => of_equal_steps(problem, &method, y, grid),
         Steps::ByError { t_span, control } => {
             let solve = Solve::new(problem, &method, *t_span).control(control.clone());

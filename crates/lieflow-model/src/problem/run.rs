@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use lieflow::catalog::{MethodSpec, MethodsByName};
 use lieflow::groups::LieAlgebra;
-use lieflow::methods::Method;
+use lieflow::methods::{Facts, Method};
 use lieflow::names::same;
 use lieflow::problems::PointOf;
 use lieflow::solve::{Next, Status};
@@ -382,10 +382,9 @@ fn set_numbers<Y: Numbers>(y: &mut Y, arg: &str, numbers: &[f64]) -> Result<(), 
 /// As [`MethodsByName::method`].
 pub fn orders_by<P: Runnable>(spec: &MethodSpec, problem: &P) -> Result<Orders, Error> {
     let method = problem.method(spec)?;
-    let order = method.order(problem);
+    let Facts { order, dense_order, stays_on_manifold, .. } = method.facts(problem);
     let step = (order != usize::MAX).then_some(order);
-    let (within, stays_on_manifold) = (method.dense_order(problem), method.stays_on_manifold());
-    Ok(Orders { step, within, stays_on_manifold })
+    Ok(Orders { step, within: dense_order, stays_on_manifold })
 }
 
 /// Can the method that `spec` names run on the problem? See [`Model::fits`](super::Model::fits).
