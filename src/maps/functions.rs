@@ -1,6 +1,6 @@
 //! The maps as functions: one name for each formula, on every group that has it.
 
-use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, Matrix6, UnitQuaternion, Vector3};
 
 use super::{Cay, CoordinateMap, Exp};
 use crate::error::Error;
@@ -112,7 +112,7 @@ impl LogGroup for MatrixGroup {
     }
 }
 
-/// A group with the differential of exp: `So3<f64>`, `UnitQuaternions`, `MatrixGroup`, `Unitary`. Users need it for
+/// A group with the differential of exp: `So3<f64>`, `UnitQuaternions`, `Se3<f64>`, `MatrixGroup`, `Unitary`. Users need it for
 /// [`dexp`] only.
 pub trait DexpGroup: LieGroup {
     /// [`dexp`] on this group.
@@ -143,6 +143,47 @@ pub fn dexp<G: DexpGroup>(group: &G, u: &G::Alg, v: &G::Alg) -> Result<G::Alg, E
     group.dexp_of(u, v)
 }
 
+/// The left Jacobian of SE(3) at u = (ω, v): the 6×6 matrix J with [`dexp`]_u w = J w. Rows and columns have the rotation
+/// first. The right Jacobian at u is J at −u.
+///
+/// # Errors
+/// As [`dexp`].
+///
+/// ```
+/// use lieflow::maps::{left_jacobian_se3, left_jacobian_inv_se3};
+/// use nalgebra::{Matrix6, Vector3};
+/// let u = (Vector3::new(0.3, -0.2, 0.5), Vector3::new(1.0, 2.0, 0.1));
+/// let unit = left_jacobian_se3(&u)? * left_jacobian_inv_se3(&u)?;
+/// assert!((unit - Matrix6::identity()).norm() < 1e-14);
+/// # Ok::<(), lieflow::Error>(())
+/// ```
+pub fn left_jacobian_se3(u: &(Vector3<f64>, Vector3<f64>)) -> Result<Matrix6<f64>, Error> {
+    of_columns(|w| dexp(&Se3::new(), u, w))
+}
+
+/// The inverse of [`left_jacobian_se3`]: the 6×6 matrix J⁻¹ with [`dexpinv`]_u w = J⁻¹ w. The inverse of the right Jacobian
+/// at u is J⁻¹ at −u.
+///
+/// # Errors
+/// As [`dexpinv`].
+pub fn left_jacobian_inv_se3(u: &(Vector3<f64>, Vector3<f64>)) -> Result<Matrix6<f64>, Error> {
+    of_columns(|w| dexpinv(&Se3::new(), u, w))
+}
+
+/// The matrix of a linear function on se(3).
+fn of_columns(
+    f: impl Fn(&(Vector3<f64>, Vector3<f64>)) -> Result<(Vector3<f64>, Vector3<f64>), Error>,
+) -> Result<Matrix6<f64>, Error> {
+    let mut matrix = Matrix6::zeros();
+    for j in 0..6 {
+        let unit = |first: usize| Vector3::from_fn(|i, _| if first + i == j { 1.0 } else { 0.0 });
+        let (turn, moved) = f(&(unit(0), unit(3)))?;
+        matrix.fixed_view_mut::<3, 1>(0, j).copy_from(&turn);
+        matrix.fixed_view_mut::<3, 1>(3, j).copy_from(&moved);
+    }
+    Ok(matrix)
+}
+
 impl DexpGroup for So3<f64> {
     fn dexp_of(&self, u: &Vector3<f64>, v: &Vector3<f64>) -> Result<Vector3<f64>, Error> {
         Ok(so3::dexp(u, v)?)
@@ -151,6 +192,11 @@ impl DexpGroup for So3<f64> {
 impl DexpGroup for UnitQuaternions {
     fn dexp_of(&self, u: &Vector3<f64>, v: &Vector3<f64>) -> Result<Vector3<f64>, Error> {
         Ok(so3::dexp(u, v)?)
+    }
+}
+impl DexpGroup for Se3<f64> {
+    fn dexp_of(&self, u: &Self::Alg, v: &Self::Alg) -> Result<Self::Alg, Error> {
+        Ok(super::exp::se3::dexp(u, v)?)
     }
 }
 impl DexpGroup for MatrixGroup {

@@ -46,7 +46,9 @@ pub use exp::{
     BakerSum, Dexpinv, Exp, TruncatedExp, dexpinv_truncated, dexpinv_with_remainder,
     distance_to_singular,
 };
-pub use functions::{cay, dcayinv, dexp, dexpinv, exp, log};
+pub use functions::{
+    cay, dcayinv, dexp, dexpinv, exp, left_jacobian_inv_se3, left_jacobian_se3, log,
+};
 pub(crate) use named::FromName;
 pub(crate) use named::Serves;
 pub use named::{AllMaps, ExpOrCay, Groups, MAPS, MapInfo, MapsByName, NamedMap};

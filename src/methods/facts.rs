@@ -28,7 +28,7 @@ impl StepCost {
 /// use lieflow::methods::{Facts, Method, Rkmk, tableau::RK4};
 /// use lieflow::{maps::Exp, problems::RigidBody};
 ///
-/// let facts: Facts = Rkmk::new(RK4, Exp).facts(&RigidBody::new([1.0, 2.0, 3.0])?);
+/// let facts: Facts = Rkmk::new(RK4, Exp).facts(&RigidBody::<f64>::new([1.0, 2.0, 3.0])?);
 /// assert_eq!((facts.order, facts.step.evaluations), (4, Some(4)));
 /// # Ok::<(), lieflow::Error>(())
 /// ```

@@ -10,8 +10,8 @@ use core::fmt;
 
 use super::averaged::mean_of_gradients;
 use super::{Invariant, Invariants, LiePoisson, LinearField, LinearSpace, Problem};
-use crate::actions::Action;
-use crate::groups::{LieAlgebra, LieGroup};
+use crate::actions::{Action, LeftTranslation};
+use crate::groups::{Adjoint, LieAlgebra, LieGroup};
 use crate::scalar::Real;
 use crate::space::Metric;
 
@@ -173,6 +173,67 @@ impl<G: LieGroup, A: Action<G>, F: Fn(G::Scalar, &mut G::Alg)> LinearFlow<G, A, 
     /// The equation with the same A(t) and another action.
     pub fn by<B: Action<G>>(self, action: B) -> LinearFlow<G, B, F> {
         Flow { group: self.group, action, field: self.field, facts: self.facts }
+    }
+}
+
+/// A closure that writes f(t, y) in the body frame, and the group.
+#[derive(Clone, Copy, Debug)]
+pub struct InBody<G, F> {
+    group: G,
+    field: F,
+}
+
+impl<G, F> Field<G, LeftTranslation> for InBody<G, F>
+where
+    G: Adjoint,
+    F: Fn(G::Scalar, &G::Elem, &mut G::Alg),
+{
+    type Work = BodyValue<G::Alg>;
+
+    fn work(&self) -> BodyValue<G::Alg> {
+        BodyValue(self.group.zero())
+    }
+    #[inline]
+    fn f(&self, t: G::Scalar, y: &G::Elem, v: &mut G::Alg, body: &mut BodyValue<G::Alg>) {
+        let BodyValue(body) = body;
+        self.group.set_zero(body);
+        (self.field)(t, y, body);
+        if self.group.big_ad(y, body, v).is_err() {
+            // The driver refuses a value that is not finite.
+            self.group.axpy(G::Scalar::lit(f64::NAN), body, v);
+        }
+    }
+}
+
+/// The value of a field in the body frame.
+#[derive(Clone, Debug)]
+pub struct BodyValue<V>(V);
+
+impl<G, F> Flow<G, LeftTranslation, InBody<G, F>>
+where
+    G: Adjoint + Clone,
+    F: Fn(G::Scalar, &G::Elem, &mut G::Alg),
+{
+    /// Makes the problem ẏ = y·f(t, y) on a group, with f in the body frame: an angular velocity that a gyroscope measures,
+    /// or the twist of a robot in its own axes. `field(t, y, v)` writes f(t, y) into v, which is 0 before.
+    ///
+    /// In space this is ẏ = (Ad_y f)·y. Cost: Ad_y for each evaluation of f.
+    ///
+    /// ```
+    /// use lieflow::groups::Se3;
+    /// use lieflow::nalgebra::{Matrix3, Vector3};
+    /// use lieflow::prelude::*;
+    ///
+    /// // A robot that drives forward at speed 1 and turns left at rate 1: a circle of radius 1.
+    /// let robot = Flow::in_body(Se3::new(), |_, _, twist| *twist = (Vector3::z(), Vector3::x()));
+    /// let run = Solve::new(&robot, &Rkmk::new(RK4, Exp), [0.0, std::f64::consts::PI]).steps(100);
+    /// let end = run.run((Matrix3::identity(), Vector3::zeros()))?.y;
+    /// assert!((end.1 - Vector3::new(0.0, 2.0, 0.0)).norm() < 1e-12);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn in_body(group: G, field: F) -> Self {
+        let field = InBody { group: group.clone(), field };
+        Flow { group, action: LeftTranslation, field, facts: UNKNOWN }
     }
 }
 

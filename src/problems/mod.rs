@@ -51,7 +51,7 @@ pub use capability::{LiePoisson, LinearField, Orthogonal, Projection, Split};
 pub use dyn_flow::{DynFlow, WithHamiltonian};
 pub use euler::{DiscreteGradient, Euler, EulerGroup, FromTheBody, Hamiltonian, Kinetic};
 pub use fallible::{Fallible, InAlgebra, TryFlow, TryProblem};
-pub use flow::{Energy, Field, Flow, FlowFacts, LinearFlow, TimeAlone};
+pub use flow::{BodyValue, Energy, Field, Flow, FlowFacts, InBody, LinearFlow, TimeAlone};
 pub use grassmann::SubspaceFlow;
 pub use heavy_top::HeavyTop;
 pub use invariants::{Invariant, Invariants, Origin};

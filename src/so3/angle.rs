@@ -9,6 +9,8 @@
 //! | (α − sin α)/α³ | a polynomial in α² | (1 − 2kc)/α² |
 //! | (1 − (α/2)cot(α/2))/α² | a polynomial in α² | (1 − c/2k)/α² |
 //! | its derivative in α² | a polynomial in α² | (c/2k + 1/4k² − 2)/2α⁴ |
+//! | b′ of b = (1 − cos α)/α² | a polynomial in α² | (2kc − 2b)/2α² |
+//! | d′ of d = (α − sin α)/α³ | a polynomial in α² | (b − 3d)/2α² |
 //!
 //! c and k themselves are polynomials in α² for all rotations by up to π and a little more: no root, no
 //! division, no trigonometric function. exp as a matrix is the rotation of the quaternion (c, k·u), which
@@ -65,6 +67,28 @@ const COTC: [f64; 8] = [
 const COTC_SLOPE: [f64; 8] = [
     0.0013888888888888887, 6.613756613757471e-05, 2.480158729979068e-06, 8.350702938564351e-08,
     2.64208945557739e-09, 8.030712340508873e-11, 2.35885576085506e-12, 7.706946286242862e-14,
+];
+/// d/dα² of (1 − cos α)/α², by Taylor: the next term is below 4e-18 for α² < 1.
+const COSC_SLOPE: [f64; 8] = [
+    -1.0 / 24.0,
+    1.0 / 360.0,
+    -1.0 / 13_440.0,
+    1.0 / 907_200.0,
+    -1.0 / 95_800_320.0,
+    1.0 / 14_529_715_200.0,
+    -1.0 / 2_988_969_984_000.0,
+    1.0 / 800_296_713_216_000.0,
+];
+/// d/dα² of (α − sin α)/α³, by Taylor.
+const SINCC_SLOPE: [f64; 8] = [
+    -1.0 / 120.0,
+    1.0 / 2_520.0,
+    -1.0 / 120_960.0,
+    1.0 / 9_979_200.0,
+    -1.0 / 1_245_404_160.0,
+    1.0 / 217_945_728_000.0,
+    -1.0 / 50_812_489_728_000.0,
+    1.0 / 15_205_637_551_104_000.0,
 ];
 impl<S: Trig> Angle<S> {
     /// The angle of u = 0.
@@ -161,6 +185,25 @@ impl<S: Trig> Angle<S> {
             || [(S::lit(1.0) - twice * self.cos_half) / self.alpha2],
         );
         (twice * self.half_sinc, d)
+    }
+
+    /// The derivatives in α² of (1 − cos α)/α² and (α − sin α)/α³, of an angle that has its half. Let b and d be the two:
+    /// b′ = (sin α/α − 2b)/(2α²), d′ = (b − 3d)/(2α²).
+    #[inline(always)]
+    pub(crate) fn dexp_slopes(&self) -> (S, S) {
+        let l = S::lit;
+        let [slope_b, slope_d] = self.alpha2.branch(
+            SERIES,
+            || [estrin(self.alpha2, &COSC_SLOPE), estrin(self.alpha2, &SINCC_SLOPE)],
+            || {
+                let twice = self.half_sinc + self.half_sinc;
+                let (sinc, b) = (twice * self.cos_half, twice * self.half_sinc);
+                let d = (l(1.0) - sinc) / self.alpha2;
+                let over = l(0.5) / self.alpha2;
+                [(sinc - l(2.0) * b) * over, (b - l(3.0) * d) * over]
+            },
+        );
+        (slope_b, slope_d)
     }
 
     /// cos(α/2) and sin(α/2)/α: the unit quaternion of exp(u) is (cos(α/2), (sin(α/2)/α)·u).

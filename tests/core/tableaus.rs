@@ -1,8 +1,10 @@
 //! The order conditions of every tableau of the catalog, tree by tree, and of every embedded row.
 
-use crate::support::orders::{defects, order_conditions, row_conditions, tree_counts};
+use crate::support::orders::{order_conditions, row_conditions};
 use lieflow::catalog::TABLEAUS;
-use lieflow::methods::{Tableau, tableau};
+use lieflow::methods::tableau::{Tableau, order_defects};
+use lieflow::methods::{Rk, tableau};
+use lieflow::{Error, Method};
 
 fn check<const S: usize>(t: &Tableau<S>) {
     order_conditions(t).unwrap();
@@ -37,12 +39,28 @@ fn every_tableau_has_its_order_and_no_more() {
 fn a_wrong_coefficient_is_seen() {
     let mut broken = tableau::DOPRI5;
     broken.a[3][1] += 1e-12;
-    let found = defects(5, &broken.a, &broken.b);
+    let found = order_defects(5, &broken.a, &broken.b);
     assert!(found.iter().any(|d| *d > 1e-13), "{found:?}");
     assert!(row_conditions("broken", &broken.a, &broken.b, 5).is_err());
 }
 
+/// A user's tableau that is wrong is an error: by a call, and before a run of a debug build.
 #[test]
-fn rooted_trees_are_all_there() {
-    assert_eq!(tree_counts(9), [1, 1, 2, 4, 9, 20, 48, 115, 286]); // OEIS A000081
+fn a_wrong_tableau_is_refused() {
+    let rk4 = tableau::RK4;
+    let (mut c, mut implicit, mut nan) = (rk4, rk4, rk4);
+    (c.c[2], implicit.a[1][1], nan.b[0]) = (0.4, 0.1, f64::NAN);
+    for (wrong, says) in [
+        (Tableau { b: [0.5, 0.5, 0.25, 0.25], ..rk4 }, "order of the tableau `rk4` = 4"),
+        (c, "c[3] of the tableau `rk4` = 0.4, expected"),
+        (implicit, "a[2,2] of the tableau `rk4` = 0.1, expected 0"),
+        (nan, "at most 0: a condition of order 1 fails"),
+    ] {
+        let error = wrong.check().unwrap_err();
+        assert!(matches!(error, Error::OutOfRange { .. }));
+        assert!(error.to_string().contains(says), "{error}");
+        let body = lieflow::problems::RigidBody::<f64>::new([1.0, 2.0, 3.0]).unwrap();
+        let refused = Rk(wrong).work(&body, &nalgebra::Vector3::x()).is_err();
+        assert_eq!(refused, cfg!(debug_assertions), "{says}");
+    }
 }

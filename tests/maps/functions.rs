@@ -33,7 +33,7 @@ fn each_function_has_its_inverse_on_every_group() -> Result<(), Error> {
     let (so5, sp4) = (|| MatrixGroup::so(5), || MatrixGroup::sp(4));
     back!(So3::new(), UnitQuaternions, Se3::new(), so5()?, sp4()?;
         |g, u, v| log(g, &exp(g, u)?)? => u);
-    back!(So3::new(), UnitQuaternions, Unitary::new(3)?, so5()?, sp4()?;
+    back!(So3::new(), UnitQuaternions, Se3::new(), Unitary::new(3)?, so5()?, sp4()?;
         |g, u, v| dexpinv(g, u, &dexp(g, u, v)?)? => v);
     back!(So3::new(), so5()?, sp4()?; |g, u, v| cay_inv(g, &cay(g, u)?)? => u);
     back!(So3::new(), so5()?, sp4()?; |g, u, v| dcayinv(g, u, &dcay(g, u, v)?)? => v);

@@ -8,10 +8,10 @@ use crate::support::{EPS, gap};
 use faer::Mat;
 use faer::prelude::Solve;
 use lieflow::actions::{Coadjoint, LeftTranslation, Linear};
-use lieflow::groups::{Adjoint, AlgebraMatrix, LieGroup, MatrixGroup, Sample, Se3};
-use lieflow::maps::{CCSK123, Cay, CoordinateMap, Exp, Pade22};
+use lieflow::groups::{Adjoint, AlgebraMatrix, LieAlgebra, LieGroup, MatrixGroup, Sample, Se3};
+use lieflow::maps::{CCSK123, Cay, CoordinateMap, Exp, Pade22, dexp, left_jacobian_se3};
 use lieflow::{Action, StepError};
-use nalgebra::Vector3;
+use nalgebra::{Vector3, Vector6};
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
 
@@ -74,6 +74,33 @@ fn closed_forms_are_those_of_the_4x4_matrices() {
     check(Exp, 32.0);
     check(Cay, 32.0);
     check(Pade22, 32.0);
+}
+
+/// dexp is that of the 4×4 matrices, on both sides of α² = 1 and for small angles. The Jacobians are its matrices.
+#[test]
+fn dexp_is_that_of_the_4x4_matrices() {
+    let gl4 = MatrixGroup::gl(4).unwrap();
+    let mut rng = Pcg64::seed_from_u64(5);
+    for k in 0..300 {
+        let size = 10f64.powf(-6.0 + 6.8 * k as f64 / 300.0);
+        let (u, w) = (SE3.of_size(&mut rng, size), SE3.of_size(&mut rng, 1.0));
+        let closed = dexp(&SE3, &u, &w).unwrap();
+        let general = dexp(&gl4, &dense(&u), &dense(&w)).unwrap();
+        let far = gap(&SE3.algebra_matrix(&closed), &general);
+        assert!(far < 32.0 * EPS * (1.0 + size).powi(2), "case {k}: {far:e}");
+
+        let numbers = |u: &Twist| Vector6::from_iterator(u.0.iter().chain(&u.1).copied());
+        let product = left_jacobian_se3(&u).unwrap() * numbers(&w);
+        assert!((product - numbers(&closed)).norm() < 8.0 * EPS * (1.0 + size));
+        // J_r(u) = Ad_exp(−u) J_l(u) = J_l(−u).
+        let mut there = SE3.zero();
+        let back = (-u.0, -u.1);
+        SE3.big_ad(&Exp.eval(&SE3, &back).unwrap(), &closed, &mut there).unwrap();
+        let right = left_jacobian_se3(&back).unwrap() * numbers(&w);
+        assert!((numbers(&there) - right).norm() < 64.0 * EPS * (1.0 + size).powi(2));
+    }
+    let huge = (Vector3::new(1e200, 0.0, 0.0), Vector3::zeros());
+    assert!(dexp(&SE3, &huge, &huge).is_err());
 }
 
 fn inverse(g: &Mat<f64>) -> Mat<f64> {

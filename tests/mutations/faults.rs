@@ -382,7 +382,7 @@ fn tableaus_with_a_wrong_coefficient() {
     // A node that is not its row sum: only a problem with time in it can tell.
     let mut node = RK4;
     node.c[3] = 0.5;
-    caught(c(node), "Σ a_ij");
+    caught(c(node), "Σ a[4,j]");
     falls_to(1, so(5), &Rkmk::new(node, Exp));
     // An order claimed too high or too low.
     caught(order_conditions(&Tableau { order: 3, ..HEUN }), "condition of");

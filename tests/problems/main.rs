@@ -9,6 +9,7 @@ mod fluids;
 mod fluids_catalog;
 mod fluids_gauss;
 mod fluids_limits;
+mod frames;
 mod grassmann;
 mod library;
 mod quaternion_body;

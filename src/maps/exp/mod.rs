@@ -7,7 +7,7 @@
 
 mod functions;
 mod general;
-mod se3;
+pub(super) mod se3;
 mod series;
 mod so3;
 

@@ -4,9 +4,11 @@
 //! |---|---|
 //! | exp(ω, v) | (exp ω, J v) |
 //! | dexp⁻¹ (a, b) | (J⁻¹a, J⁻¹b + D a) |
+//! | dexp (a, b) | (J a, J b + E a) |
+//! | E a = d/dε dexp_{ω+εv} a | β v×a + δ (v×(ω×a) + ω×(v×a)) + 2(ω·v)(β′ ω×a + δ′ ω×(ω×a)) |
 //! | D a = d/dε dexp⁻¹_{ω+εv} a | −½ v×a + c (v×(ω×a) + ω×(v×a)) + 2c′ (ω·v) ω×(ω×a) |
 //!
-//! c = (1 − (α/2)cot(α/2))/α² as in (16), c′ = dc/dα². For ad_{(ω, v)} = \[ω̂ 0; v̂ ω̂\], and a power
+//! c = (1 − (α/2)cot(α/2))/α² as in (16), β = (1 − cos α)/α², δ = (α − sin α)/α³, and ′ is d/dα². For ad_{(ω, v)} = \[ω̂ 0; v̂ ω̂\], and a power
 //! series in such a matrix has its own derivative in the direction v as its lower left block.
 
 use nalgebra::{Matrix3, Vector3};
@@ -75,6 +77,29 @@ impl<S: Trig> CoordinateMap<Se3<S>> for Exp {
         *a = Vector3::from_fn(|i, _| a[i] - l(0.5) * wa[i] + c * wwa[i]);
         finite_pair(&(*a, *b), "dexp⁻¹")
     }
+}
+
+/// dexp_u w for u = (ω, v), w = (a, b). Refused for α² ≥ 1e300, where squares leave the range.
+pub(crate) fn dexp<S: Trig>(
+    (omega, v): &Twist<S>,
+    (a, b): &Twist<S>,
+) -> Result<Twist<S>, StepError> {
+    let (angle, _, _) = Angle::with_exp(omega);
+    if !angle.in_range() {
+        return Err(StepError::NormTooLarge { map: "exp" });
+    }
+    let ((beta, delta), (slope_beta, slope_delta)) =
+        (angle.dexp_coefficients(), angle.dexp_slopes());
+    let (wa, va) = (cross(omega, a), cross(v, a));
+    let (wwa, mixed) = (cross(omega, &wa), add3(&cross(v, &wa), &cross(omega, &va)));
+    let turn = S::lit(2.0) * (omega[0] * v[0] + omega[1] * v[1] + omega[2] * v[2]);
+    let (first, second) = (turn * slope_beta, turn * slope_delta);
+    let moved = rodrigues_on(omega, beta, delta, b);
+    let moved = Vector3::from_fn(|i, _| {
+        moved[i] + beta * va[i] + delta * mixed[i] + first * wa[i] + second * wwa[i]
+    });
+    let w = (rodrigues_on(omega, beta, delta, a), moved);
+    finite_pair(&w, "dexp").map(|()| w)
 }
 
 impl<S: Trig> CoordinateMap<Se3<S>> for TruncatedExp {

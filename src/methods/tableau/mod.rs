@@ -2,10 +2,12 @@
 //!
 //! Tests check the order conditions of each tableau and of each embedded row.
 
+mod conditions;
 mod dense;
 mod dop853;
 mod pairs;
 
+pub use conditions::{order_defects, order_of};
 pub use dense::{Dense, Row};
 pub use dop853::DOP853;
 pub use pairs::{BS3, DOPRI5, RKF45, VERNER6};

@@ -18,4 +18,4 @@ pub(crate) use flow::{
     reference_after, start, wave,
 };
 pub(crate) use suite::{Outcome, Problems, Report, specs};
-pub(crate) use tree::{defects, order_conditions, row_conditions, tree_counts};
+pub(crate) use tree::{order_conditions, row_conditions};
