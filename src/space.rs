@@ -211,9 +211,9 @@ pub trait LinearSpace: Metric + Clone {
     #[inline(always)]
     fn set_sum(&mut self, y: &Self, h: Self::Scalar, weights: &[f64], k: &[Self]) {
         self.assign(y);
-        for (&w, k) in weights.iter().zip(k) {
-            if w != 0.0 {
-                self.add(h * Self::Scalar::lit(w), k);
+        for j in 0..weights.len().min(k.len()) {
+            if weights[j] != 0.0 {
+                self.add(h * Self::Scalar::lit(weights[j]), &k[j]);
             }
         }
     }
@@ -221,8 +221,8 @@ pub trait LinearSpace: Metric + Clone {
     #[inline(always)]
     fn set_terms(&mut self, h: Self::Scalar, weights: &[f64], k: &[Self]) {
         self.clear();
-        for (&w, k) in weights.iter().zip(k) {
-            self.add(h * Self::Scalar::lit(w), k);
+        for j in 0..weights.len().min(k.len()) {
+            self.add(h * Self::Scalar::lit(weights[j]), &k[j]);
         }
     }
 }
@@ -275,7 +275,8 @@ macro_rules! small {
     ($($t:ident: $($i:literal)*;)*) => {$(
         impl<S: Real> Metric for $t<S> {
             type Scalar = S;
-            /// Entry by entry, because a vector that is copied whole, or in a loop, goes through memory.
+            /// Entry by entry, because a vector that is copied whole, or in a loop, goes through memory. Here and below there is
+            /// no iterator and no closure: a build of many units without LTO does not put them in line.
             #[inline]
             fn assign(&mut self, x: &Self) {
                 let (y, x) = (self.as_mut_slice(), x.as_slice());
@@ -283,15 +284,17 @@ macro_rules! small {
             }
             #[inline]
             fn size(&self) -> S {
-                self.as_slice().iter().fold(S::lit(0.0), |s, &x| s + x * x).sqrt()
+                let (mut squares, x) = (S::lit(0.0), self.as_slice());
+                $(squares += x[$i] * x[$i];)*
+                squares.sqrt()
             }
             #[inline]
             fn distance(&self, x: &Self) -> S {
-                let pairs = self.as_slice().iter().zip(x.as_slice());
-                let squares = pairs.fold(S::lit(0.0), |s, (&a, &b)| {
-                    let d = a - b;
-                    s + d * d
-                });
+                let (mut squares, y, x) = (S::lit(0.0), self.as_slice(), x.as_slice());
+                $(
+                    let d = y[$i] - x[$i];
+                    squares += d * d;
+                )*
                 squares.sqrt()
             }
             #[inline]
@@ -316,40 +319,43 @@ macro_rules! small {
         impl<S: Real> LinearSpace for $t<S> {
             #[inline]
             fn clear(&mut self) {
-                self.as_mut_slice().fill(S::lit(0.0));
+                let x = self.as_mut_slice();
+                $(x[$i] = S::lit(0.0);)*
             }
             #[inline]
             fn add(&mut self, a: S, x: &Self) {
-                for (y, x) in self.as_mut_slice().iter_mut().zip(x.as_slice()) {
-                    *y += a * *x;
-                }
+                let (y, x) = (self.as_mut_slice(), x.as_slice());
+                $(y[$i] += a * x[$i];)*
             }
             #[inline]
             fn dot(&self, x: &Self) -> S {
-                let pairs = self.as_slice().iter().zip(x.as_slice());
-                pairs.fold(S::lit(0.0), |sum, (y, x)| sum + *y * *x)
+                let (mut sum, y, x) = (S::lit(0.0), self.as_slice(), x.as_slice());
+                $(sum += y[$i] * x[$i];)*
+                sum
             }
             #[inline]
             fn is_finite(&self) -> bool {
-                self.as_slice().iter().all(|x| x.is_finite())
+                let x = self.as_slice();
+                true $(&& x[$i].is_finite())*
             }
             /// In a local sum, which stays in registers. Three numbers that are stored as two and one, and loaded as one
             /// and two, would wait for the store.
             #[inline(always)]
             fn set_sum(&mut self, y: &Self, h: S, weights: &[f64], k: &[Self]) {
                 let mut sum = *y;
-                for (&w, k) in weights.iter().zip(k) {
-                    if w != 0.0 {
-                        sum.add(h * S::lit(w), k);
+                for j in 0..weights.len().min(k.len()) {
+                    if weights[j] != 0.0 {
+                        sum.add(h * S::lit(weights[j]), &k[j]);
                     }
                 }
                 self.assign(&sum);
             }
             #[inline(always)]
             fn set_terms(&mut self, h: S, weights: &[f64], k: &[Self]) {
-                let mut sum = $t::from_fn(|_, _| S::lit(0.0));
-                for (&w, k) in weights.iter().zip(k) {
-                    sum.add(h * S::lit(w), k);
+                let mut sum = *self;
+                sum.clear();
+                for j in 0..weights.len().min(k.len()) {
+                    sum.add(h * S::lit(weights[j]), &k[j]);
                 }
                 self.assign(&sum);
             }

@@ -5,21 +5,19 @@
 
 use super::recipe::{Recipe, SizedTableau};
 use super::{Choice, MaybeMethod};
-use crate::error::{Error, StepError};
 use crate::maps::{Cay, CoordinateMap, Exp, ExpOrCay, MapsByName, NamedMap, Serves};
+use crate::methods::tableau;
 use crate::methods::{
     AnyMethod, Buss4, CfMagnus, CommutatorFree, Composition, ConjugationAction, ConjugationGroup,
-    Embedded, EnergyCasimir, ExactMotion, Facts, GAUSS2, GAUSS4, GAUSS6, Gauss, IsospectralGauss,
+    Embedded, EnergyCasimir, ExactMotion, GAUSS2, GAUSS4, GAUSS6, Gauss, IsospectralGauss,
     LieSeries, LowStorage, Method, Metric, OneBracket, ProjectionMethod, Rk, Rkmk, RkmkGauss,
-    RkmkGaussSymmetric, SeriesGroup, Taylor, Wide, Within, magnus,
+    RkmkGaussSymmetric, SeriesGroup, Taylor, Wide, magnus,
 };
-use crate::methods::{Step, tableau};
 use crate::problems::{
-    AlgOf, Ambient, FreeBody, LiePoisson, LinearField, Orthogonal, PointOf, Problem, ScalarOf,
-    Split, TaylorField,
+    Ambient, FreeBody, LiePoisson, LinearField, Orthogonal, PointOf, Problem, ScalarOf, Split,
+    TaylorField,
 };
 use crate::scalar::{Real, Trig};
-use crate::tolerance::Tolerance;
 
 /// A method without an estimate of its own.
 fn plain<'p, P: Problem + 'p>(
@@ -60,10 +58,9 @@ where
     }
 }
 
-/// The lane of the closed rigid body, before [`fields`]: its steps are so short that the choice of the map, and
-/// coefficients that the compiler does not know, would show. RKMK of at most four stages with the map as a type,
-/// the classical tableau as a constant, and RKMK on Gauss tableaus with the number of stages as a type. Numbers that
-/// count operations have no such lane.
+/// The lane of the closed rigid body, before [`fields`]: its steps are so short that the choice of the map, and a number
+/// of stages that the compiler does not know, would show. RKMK of at most four stages with the map as a type, `dopri5` and
+/// `dop853` with exp, and RKMK on Gauss tableaus. Numbers that count operations have no such lane.
 ///
 /// # Errors
 /// [`Error::Unsupported`](crate::Error::Unsupported) for a map that the group does not have.
@@ -88,19 +85,17 @@ where
         let psi = *served::<P::Group, _>(&psi);
         let name = choice.tableau.name;
         if name == tableau::DOPRI5.name {
-            return pair(RkmkDopri5(psi));
+            return pair(Rkmk::new(tableau::DOPRI5, psi));
         }
         if name == tableau::DOP853.name {
-            return pair(RkmkDop853(psi));
+            return pair(Rkmk::new(tableau::DOP853, psi));
         }
     }
     let SizedTableau::Small(table) = choice.tableau.table else { return Ok(None) };
-    let is_classical = table.name == tableau::RK4.name;
     macro_rules! with {
-        ($psi:expr) => {{
-            let psi = *served::<P::Group, _>(&$psi);
-            if is_classical { plain(Rkmk4(psi)) } else { pair(Rkmk::new(table, psi)) }
-        }};
+        ($psi:expr) => {
+            pair(Rkmk::new(table, *served::<P::Group, _>(&$psi)))
+        };
     }
     match choice.info.recipe {
         Recipe::Rkmk => match choice.map::<P::Group>()? {
@@ -112,7 +107,6 @@ where
             NamedMap::Ccsk(psi) => with!(psi),
             _ => Ok(None),
         },
-        Recipe::Rk if is_classical => plain(Rk4),
         _ => Ok(None),
     }
 }
@@ -120,139 +114,6 @@ where
 fn served<G: Serves<Psi>, Psi>(psi: &Psi) -> &G::Map {
     G::map(psi)
 }
-
-/// RKMK in the coordinates Ψ with the classical tableau as a constant.
-#[derive(Clone, Copy)]
-struct Rkmk4<Psi>(Psi);
-
-/// RKMK with the pair of order 5 as a constant.
-#[derive(Clone, Copy)]
-struct RkmkDopri5<Psi>(Psi);
-
-/// RKMK with the pair of order 8 as a constant. It is the method of scenes that name none.
-#[derive(Clone, Copy)]
-struct RkmkDop853<Psi>(Psi);
-
-/// Runge–Kutta on the entries of the state with the classical tableau as a constant.
-#[derive(Clone, Copy)]
-struct Rk4;
-
-macro_rules! constant_method {
-    ([$($psi:ident)?] $name:ty, [$($bound:tt)*], $this:ident => $method:expr, $of:ty) => {
-        impl<P: Ambient, $($psi)?> Method<P> for $name
-        where
-            $($bound)*
-        {
-            type Work = <$of as Method<P>>::Work;
-
-            fn facts(&self, problem: &P) -> Facts {
-                let $this = self;
-                Method::<P>::facts(&$method, problem)
-            }
-            fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
-                let $this = self;
-                Method::<P>::work(&$method, problem, like)
-            }
-            #[inline(always)]
-            fn step(
-                &self,
-                problem: &P,
-                step: Step<ScalarOf<P>>,
-                y: &mut PointOf<P>,
-                work: &mut Self::Work,
-            ) -> Result<(), StepError> {
-                let $this = self;
-                $method.step(problem, step, y, work)
-            }
-            fn prepare(
-                &self,
-                problem: &P,
-                step: Step<ScalarOf<P>>,
-                from: &PointOf<P>,
-                to: &PointOf<P>,
-                work: &mut Self::Work,
-            ) -> Result<(), StepError> {
-                let $this = self;
-                $method.prepare(problem, step, from, to, work)
-            }
-            fn within(&self, work: &Self::Work) -> Within {
-                let $this = self;
-                Method::<P>::within(&$method, work)
-            }
-            fn coordinates(
-                &self,
-                problem: &P,
-                step: Step<ScalarOf<P>>,
-                theta: f64,
-                base: &mut PointOf<P>,
-                work: &mut Self::Work,
-                u: &mut AlgOf<P>,
-            ) {
-                let $this = self;
-                $method.coordinates(problem, step, theta, base, work, u);
-            }
-            fn on_chart(
-                &self,
-                problem: &P,
-                n: u64,
-                base: &PointOf<P>,
-                u: &AlgOf<P>,
-                work: &mut Self::Work,
-                at: &mut PointOf<P>,
-            ) -> Result<(), StepError> {
-                let $this = self;
-                $method.on_chart(problem, n, base, u, work, at)
-            }
-            fn interpolate(
-                &self,
-                problem: &P,
-                step: Step<ScalarOf<P>>,
-                theta: f64,
-                from: &PointOf<P>,
-                work: &mut Self::Work,
-                at: &mut PointOf<P>,
-            ) -> Result<(), StepError> {
-                let $this = self;
-                $method.interpolate(problem, step, theta, from, work, at)
-            }
-        }
-    };
-}
-constant_method!([Psi] Rkmk4<Psi>, [Psi: CoordinateMap<P::Group> + Copy],
-    this => Rkmk::new(tableau::RK4, this.0), Rkmk<Psi, 4>);
-constant_method!([] Rk4, [], _this => Rk(tableau::RK4), Rk<4>);
-constant_method!([Psi] RkmkDopri5<Psi>, [Psi: CoordinateMap<P::Group> + Copy],
-    this => this.method(), Rkmk<Psi, { tableau::DOPRI5.a.len() }>);
-constant_method!([Psi] RkmkDop853<Psi>, [Psi: CoordinateMap<P::Group> + Copy],
-    this => this.method(), Rkmk<Psi, { tableau::DOP853.a.len() }>);
-
-macro_rules! constant_pair {
-    ($name:ident, $table:expr) => {
-        impl<Psi: Copy> $name<Psi> {
-            #[inline(always)]
-            fn method(&self) -> Rkmk<Psi, { $table.a.len() }> {
-                Rkmk::new($table, self.0)
-            }
-        }
-
-        impl<P: Ambient, Psi: CoordinateMap<P::Group> + Copy> Embedded<P> for $name<Psi> {
-            #[inline(always)]
-            fn step_with_error(
-                &self,
-                problem: &P,
-                step: Step<ScalarOf<P>>,
-                tolerance: &Tolerance,
-                from: &PointOf<P>,
-                work: &mut Self::Work,
-                to: &mut PointOf<P>,
-            ) -> Result<ScalarOf<P>, StepError> {
-                self.method().step_with_error(problem, step, tolerance, from, work, to)
-            }
-        }
-    };
-}
-constant_pair!(RkmkDopri5, tableau::DOPRI5);
-constant_pair!(RkmkDop853, tableau::DOP853);
 
 /// Classical methods on the entries of the state, explicit and implicit.
 ///

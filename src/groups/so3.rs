@@ -82,7 +82,9 @@ impl<S: Real> LieAlgebra for So3<S> {
     #[inline]
     fn combine(&self, h: S, weights: &[f64], terms: &[Vector3<S>], u: &mut Vector3<S>) {
         let mut first = true;
-        for (&w, k) in weights.iter().zip(terms) {
+        // No iterator: a build of many units without LTO does not put it in line.
+        for j in 0..weights.len().min(terms.len()) {
+            let (w, k) = (weights[j], &terms[j]);
             if w != 0.0 {
                 let a = h * S::lit(w);
                 if first {

@@ -218,7 +218,10 @@ impl<S: Trig> Angle<S> {
 fn half<S: Trig>(u: &Vector3<S>, alpha2: S) -> [S; 2] {
     alpha2.branch(
         TURN,
-        || [&HALF_COS, &HALF_SINC].map(|[low @ .., last]| longer(alpha2, low, *last)),
+        || {
+            let ([c @ .., c8], [s @ .., s8]) = (&HALF_COS, &HALF_SINC);
+            [longer(alpha2, c, *c8), longer(alpha2, s, *s8)]
+        },
         || {
             let alpha = alpha2.sqrt();
             let (s, c) = (S::lit(0.5) * alpha).sin_cos();

@@ -52,7 +52,8 @@ impl<S: Real> Lanes<S> for Plain {
     }
     #[inline(always)]
     fn mul_add_pairs(self, a: [[S; 4]; 2], b: [[S; 4]; 2], c: [[S; 4]; 2]) -> [[S; 4]; 2] {
-        [0, 1].map(|i| Lanes::<S>::mul_add(self, a[i], b[i], c[i]))
+        let at = |i: usize| Lanes::<S>::mul_add(self, a[i], b[i], c[i]);
+        [at(0), at(1)]
     }
 
     #[inline(always)]
@@ -81,7 +82,7 @@ impl<S: Real> Lanes<S> for Plain {
     }
     #[inline(always)]
     fn mul_sub(self, a: [S; 4], b: [S; 4], c: [S; 4]) -> [S; 4] {
-        Lanes::<S>::add(self, Lanes::<S>::mul(self, a, b), c.map(|x| -x))
+        Lanes::<S>::add(self, Lanes::<S>::mul(self, a, b), [-c[0], -c[1], -c[2], -c[3]])
     }
     #[inline(always)]
     fn cycled(self, [x, y, z, w]: [S; 4]) -> [[S; 4]; 2] {

@@ -70,7 +70,8 @@ impl<S: Wide> Body<S> {
                 m = l.mul_add(m_zxy, l.mul(rate, first[0]), m);
             }
             let older = l.mul(scale, l.add(z, l.add(x, y)));
-            let omega = omega.map(|w| l.mul(scale, w));
+            // No `map`: in a build of many units without LTO it leaves the lanes.
+            let omega = [l.mul(scale, omega[0]), l.mul(scale, omega[1]), l.mul(scale, omega[2])];
             q = l.add(
                 l.mul_add(q_x, omega[0], l.mul_add(scale, w, older)),
                 l.mul_add(q_y, omega[1], l.mul(q_z, omega[2])),
