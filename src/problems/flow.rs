@@ -226,8 +226,8 @@ where
     ///
     /// // A robot that drives forward at speed 1 and turns left at rate 1: a circle of radius 1.
     /// let robot = Flow::in_body(Se3::new(), |_, _, twist| *twist = (Vector3::z(), Vector3::x()));
-    /// let run = Solve::new(&robot, &Rkmk::new(RK4, Exp), [0.0, std::f64::consts::PI]).steps(100);
-    /// let end = run.run((Matrix3::identity(), Vector3::zeros()))?.y;
+    /// let (method, start) = (Rkmk::new(RK4, Exp), (Matrix3::identity(), Vector3::zeros()));
+    /// let end = Solve::new(&robot, &method, [0.0, std::f64::consts::PI]).steps(100).run(start)?.y;
     /// assert!((end.1 - Vector3::new(0.0, 2.0, 0.0)).norm() < 1e-12);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
