@@ -52,6 +52,8 @@ pub enum Command {
     Scenes(ScenesArgs),
     /// Tell which method to take; list the methods, coordinate maps and tableaus.
     Methods(MethodsArgs),
+    /// Measure the order of methods on a scene: errors with steps that are halved.
+    Order(OrderArgs),
     /// Print completions for a shell.
     Completions(CompletionsArgs),
 }
@@ -299,6 +301,30 @@ pub struct MethodsArgs {
     /// What is changed in the scene.
     #[command(flatten)]
     pub settings: Settings,
+    /// Print JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Options of `order`.
+#[derive(Args, Clone, Debug)]
+#[command(after_help = "Examples:
+  lieflow order asymmetric-top          the method of the scene
+  lieflow order my.toml --method \"rkmk dopri5 exp\" --method cf4
+  lieflow order my.toml --method rkmk4 --steps 10 --json")]
+pub struct OrderArgs {
+    /// A scene file, the name of a bundled scene, or - for standard input.
+    pub scene: PathBuf,
+    /// What is changed in the scene.
+    #[command(flatten)]
+    pub settings: Settings,
+    /// A method, with parts where wanted; may be given several times [default: that of the scene].
+    #[arg(long = "method", value_name = "NAME")]
+    pub methods: Vec<String>,
+    /// The smallest number of steps; it is doubled eleven times [default: those of the scene over 16].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    #[arg(allow_negative_numbers = true)]
+    pub steps: Option<u64>,
     /// Print JSON.
     #[arg(long)]
     pub json: bool,

@@ -19,6 +19,7 @@ fn dispatch(cli: &Cli) -> Result<(), CliError> {
         Some(Command::Run(args)) => cmd::run::run(args),
         Some(Command::Scenes(args)) => cmd::scenes::run(args),
         Some(Command::Methods(args)) => cmd::methods::run(args),
+        Some(Command::Order(args)) => cmd::order::run(args),
         Some(Command::Completions(args)) => cmd::completions::run(args),
     }
 }

@@ -10,6 +10,7 @@ use crate::output::{print, print_json, table, wrap};
 use lieflow_model::problem::high_order;
 use lieflow_model::reader::suggest;
 use lieflow_model::scene::Scene;
+use lieflow_model::schema::Observable;
 
 #[derive(Serialize)]
 struct Listing {
@@ -107,8 +108,28 @@ fn listing(scene: Option<&Scene>) -> Result<Listing, CliError> {
 struct Advice {
     want: &'static str,
     because: &'static str,
-    /// Methods with the problems that they are for; a scene is told the first that fits it.
-    take: &'static [(&'static str, &'static str)],
+    /// A scene is told the first that serves it.
+    take: &'static [Take],
+}
+
+/// A method that serves a need.
+struct Take {
+    method: &'static str,
+    /// The problems that it is for, in words; none for all that it fits.
+    problems: &'static str,
+    serves: Serves,
+}
+
+/// The problems that a method serves.
+enum Serves {
+    /// All that it fits.
+    Fitting,
+    /// Those whose invariants are polynomials of degree 2 at most.
+    QuadraticInvariants,
+}
+
+const fn take(method: &'static str, problems: &'static str) -> Take {
+    Take { method, problems, serves: Serves::Fitting }
 }
 
 /// The usual wants.
@@ -117,46 +138,69 @@ const ADVICE: &[Advice] = &[
         want: "small errors",
         because: "a high order needs few steps",
         take: &[
-            ("taylor16", "free bodies"),
-            ("magnus8", "y' = A(t) y"),
-            ("rkmk dop853 cay", "all others"),
+            take("taylor16", "free bodies"),
+            take("magnus8", "y' = A(t) y"),
+            take("rkmk dop853 cay", "all others"),
         ],
     },
     Advice {
         want: "rough answers, soon",
         because: "a step costs little",
-        take: &[("mr4", "free bodies"), ("magnus4", "y' = A(t) y"), ("rkmk4 cay", "all others")],
+        take: &[
+            take("mr4", "free bodies"),
+            take("magnus4", "y' = A(t) y"),
+            take("rkmk4 cay", "all others"),
+        ],
     },
     Advice {
         want: "energy that stays",
         because: "it conserves the energy to rounding; each step iterates",
-        take: &[("dmv8", "free bodies"), ("energy-casimir4", "Lie–Poisson systems")],
+        take: &[
+            take("dmv8", "free bodies"),
+            Take {
+                method: "gauss4",
+                problems: "quadratic invariants only, as chains of spins: it conserves them all",
+                serves: Serves::QuadraticInvariants,
+            },
+            take("energy-casimir4", "other Lie–Poisson systems"),
+        ],
     },
     Advice {
         want: "long runs, large steps",
         because: "it is symplectic: the energy error stays within bounds",
-        take: &[("mr4", "free bodies"), ("isospectral4", "momenta as matrices")],
+        take: &[take("mr4", "free bodies"), take("isospectral4", "momenta as matrices")],
     },
     Advice {
         want: "y' = A(t) y",
         because: "f depends on t alone: one exponential is a step of order 6",
-        take: &[("magnus6", "")],
+        take: &[take("magnus6", "")],
     },
     Advice {
         want: "symmetry in time",
         because: "a step back undoes a step; each step iterates",
-        take: &[("rkmk-gauss4-symmetric", "")],
+        take: &[take("rkmk-gauss4-symmetric", "")],
     },
     Advice {
         want: "the exact motion",
         because: "any time at once, at one evaluation for each row of output",
-        take: &[("exact", "free bodies")],
+        take: &[take("exact", "free bodies")],
     },
 ];
+
+/// True if the problem has invariants, its energy among them, and all are polynomials of degree 2 at most in the state.
+fn has_quadratic_invariants(scene: &Scene) -> Result<bool, CliError> {
+    let quantities: Vec<&str> = scene.quantities.iter().map(String::as_str).collect();
+    let kept = scene.problem.invariants(&quantities);
+    let model = scene.model_with(scene.layer, &kept)?;
+    let mut laws = model.schema().laws();
+    let is_quadratic = |law: &Observable| law.law.is_some_and(|law| (1..=2).contains(&law.degree));
+    Ok(kept.contains(&"energy") && laws.all(is_quadratic))
+}
 
 /// The recommendations: for a scene, which was typed like this, or for all.
 fn advice(scene: Option<&Scene>, typed: &str) -> Result<String, CliError> {
     let model = scene.map(Scene::model).transpose()?;
+    let quadratic = scene.map(has_quadratic_invariants).transpose()?.unwrap_or(false);
     let default = scene.map_or_else(high_order, |scene| scene.problem.default_method());
     let mut rows = vec![[
         "nothing special".into(),
@@ -165,11 +209,14 @@ fn advice(scene: Option<&Scene>, typed: &str) -> Result<String, CliError> {
     ]];
     for Advice { want, because, take } in ADVICE {
         let mut first = true;
-        for (name, problems) in *take {
+        for Take { method, problems, serves } in *take {
+            let serves = matches!(serves, Serves::Fitting) || quadratic;
             let take = match &model {
-                None if problems.is_empty() => (*name).to_string(),
-                None => format!("{name} ({problems})"),
-                Some(model) if first && model.fits(&name.parse()?).is_ok() => (*name).to_string(),
+                None if problems.is_empty() => (*method).to_string(),
+                None => format!("{method} ({problems})"),
+                Some(model) if first && serves && model.fits(&method.parse()?).is_ok() => {
+                    (*method).to_string()
+                }
                 Some(_) => continue,
             };
             let [want, because] = [want, because].map(|text| if first { *text } else { "" });

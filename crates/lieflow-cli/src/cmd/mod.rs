@@ -8,6 +8,7 @@ pub mod completions;
 pub mod demo;
 mod foresee;
 pub mod methods;
+pub mod order;
 pub mod paper;
 mod room;
 pub mod run;

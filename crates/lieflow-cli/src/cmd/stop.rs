@@ -1,7 +1,7 @@
 //! Ctrl-C and SIGTERM: the first asks a command to stop, the second ends the program at once.
 
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
@@ -24,4 +24,15 @@ pub(super) fn listen() -> Result<Arc<AtomicBool>, CliError> {
             .map_err(CliError::Signals)?;
     }
     Ok(stop)
+}
+
+/// An error if the first signal came, for a command that keeps nothing.
+///
+/// # Errors
+/// [`CliError::Stopped`].
+pub(super) fn ended(stop: &AtomicBool) -> Result<(), CliError> {
+    match stop.load(Ordering::Relaxed) {
+        true => Err(CliError::Stopped { message: "interrupted".into(), code: INTERRUPTED }),
+        false => Ok(()),
+    }
 }
