@@ -1,13 +1,14 @@
 //! Rows that are made of those of another model.
 
 use core::cell::RefCell;
+use std::sync::Arc;
 
 use lieflow::catalog::MethodSpec;
 use lieflow::solve::Next;
 use lieflow::{Error, RunError};
 
 use super::model::Model;
-use super::run::{EventPlan, Outcome, Plan, Watcher};
+use super::run::{EventPlan, Outcome, Plan, RowCurve, Watcher};
 use crate::schema::{Row, Schema};
 
 /// The number of this place in a row at t, from the row of the base.
@@ -93,5 +94,33 @@ impl Mapped<'_> {
             let of_base = self.base.schema().row(&end);
             values.map(|place| (self.number)(place, t_span[1], of_base)).collect()
         }))
+    }
+}
+
+/// The rows at all times, from those of the base.
+pub(crate) struct MappedCurve {
+    pub(crate) curve: Box<dyn RowCurve>,
+    pub(crate) model: Model,
+    pub(crate) base: Arc<Model>,
+    pub(crate) number: Arc<NumberOf<'static>>,
+}
+
+impl RowCurve for MappedCurve {
+    fn t_span(&self) -> [f64; 2] {
+        self.curve.t_span()
+    }
+    fn steps(&self) -> usize {
+        self.curve.steps()
+    }
+    fn rows(&self, times: &[f64], values: &mut Vec<f64>) -> Result<(), (usize, RunError)> {
+        let mut of_base = Vec::new();
+        for (i, &t) in times.iter().enumerate() {
+            of_base.clear();
+            self.curve.rows(&[t], &mut of_base).map_err(|(_, error)| (i, error))?;
+            let row = self.base.schema().row(&of_base);
+            let places = 0..self.model.schema().columns().count();
+            values.extend(places.map(|place| (self.number)(place, t, row)));
+        }
+        Ok(())
     }
 }

@@ -10,8 +10,8 @@ use lieflow::{Error, RunError, SaveAt, Stats, StepControl, TimeGrid};
 
 use super::forms::{Asked, Form, Forms, Run};
 use super::kind::{Fact, Figure, Kind, PrincipalInertia};
-use super::mapped::{Mapped, NumberOf};
-use super::run::{Layer, Orders, Outcome, Plan, Rows, Sink, Steps, Watcher};
+use super::mapped::{Mapped, MappedCurve, NumberOf};
+use super::run::{CurvePlace, Layer, Orders, Outcome, Plan, RowCurve, Rows, Sink, Steps, Watcher};
 use crate::formula::Formula;
 use crate::reader::{Mistakes, ReadError, Refusal, Tree, Value};
 use crate::schema::Schema;
@@ -306,8 +306,19 @@ impl Model {
                 self.form(method).drive(asked, method, plan, watcher)
             }
             Source::Model { base, number } => {
-                let (schema, number) = (&self.schema, &**number);
-                Mapped { base, schema, number }.drive(method, plan, watcher)
+                let mapped = Mapped { base, schema: &self.schema, number: &**number };
+                let mut plan = plan;
+                let Some(CurvePlace(place)) = plan.curve.take() else {
+                    return mapped.drive(method, plan, watcher);
+                };
+                let mut of_base = None;
+                let plan = Plan { curve: Some(CurvePlace(&mut of_base)), ..plan };
+                let done = mapped.drive(method, plan, watcher);
+                *place = of_base.map(|curve| {
+                    let (model, base, number) = (self.clone(), base.clone(), number.clone());
+                    Box::new(MappedCurve { curve, model, base, number }) as Box<dyn RowCurve>
+                });
+                done
             }
         }
     }

@@ -2,15 +2,16 @@
 
 use core::cell::RefCell;
 use core::fmt::{self, Debug};
+use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use lieflow::catalog::{MethodSpec, MethodsByName};
 use lieflow::groups::LieAlgebra;
-use lieflow::methods::{Facts, Method};
+use lieflow::methods::{AnyMethod, Facts, Method};
 use lieflow::names::same;
 use lieflow::problems::PointOf;
-use lieflow::solve::{Next, Status};
+use lieflow::solve::{Interpolant, Next, Status};
 use lieflow::space::Numbers;
 use lieflow::{
     Action, Direction, Error, Event, RunError, SaveAt, Solve, Stats, StepControl, TimeGrid,
@@ -147,6 +148,30 @@ pub struct Plan<'a> {
     pub resume: Option<Vec<u8>>,
     /// The numbers of another point to start from ([`Model::start`](super::Model::start) has their order).
     pub start: Option<Vec<f64>>,
+    /// The place of the rows at all times, if they are kept. A method whose points within a step call f again is refused.
+    pub curve: Option<CurvePlace<'a>>,
+}
+
+/// The place where a run leaves its rows at all times.
+pub struct CurvePlace<'a>(pub &'a mut Option<Box<dyn RowCurve>>);
+
+impl Debug for CurvePlace<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("CurvePlace")
+    }
+}
+
+/// The rows of a run at all times. f is not called.
+pub trait RowCurve: Send + Sync {
+    /// The first and the last time.
+    fn t_span(&self) -> [f64; 2];
+    /// The number of steps.
+    fn steps(&self) -> usize;
+    /// Appends the values of the schema at these times to `values`, one row after the other.
+    ///
+    /// # Errors
+    /// The number of the time that failed, and why: a time outside of the run.
+    fn rows(&self, times: &[f64], values: &mut Vec<f64>) -> Result<(), (usize, RunError)>;
 }
 
 impl Plan<'_> {
@@ -163,6 +188,7 @@ impl Plan<'_> {
             checkpoints: None,
             resume: None,
             start: None,
+            curve: None,
         }
     }
 
@@ -261,21 +287,56 @@ impl<P> Runnable for P where
 /// what is compiled for it.
 pub type RowOf<'a, P> = dyn Fn(f64, &PointOf<P>, &mut Vec<f64>) + 'a;
 
+/// The values of the row at (t, y), for a curve that outlives its run.
+pub type SharedRowOf<P> = dyn Fn(f64, &PointOf<P>, &mut Vec<f64>) + Send + Sync;
+
+/// The rows of a run: their schema, their numbers, and what makes their values for a curve.
+pub(crate) struct RowsOf<'a, P: Runnable> {
+    pub(crate) schema: &'a Schema,
+    pub(crate) row_of: &'a RowOf<'a, P>,
+    pub(crate) shared: &'a dyn Fn() -> Box<SharedRowOf<P>>,
+}
+
+/// The rows of a run of this type of problem at all times.
+struct CurveOf<P: Runnable> {
+    points: Interpolant<'static, P, AnyMethod<'static, P>>,
+    row_of: Box<SharedRowOf<P>>,
+}
+
+impl<P: Runnable> RowCurve for CurveOf<P> {
+    fn t_span(&self) -> [f64; 2] {
+        self.points.t_span()
+    }
+    fn steps(&self) -> usize {
+        self.points.steps()
+    }
+    fn rows(&self, times: &[f64], values: &mut Vec<f64>) -> Result<(), (usize, RunError)> {
+        let mut reader = self.points.reader().map_err(|error| (0, error.into()))?;
+        let mut row = Vec::new();
+        for (i, &t) in times.iter().enumerate() {
+            row.clear();
+            (self.row_of)(t, reader.at(t).map_err(|error| (i, error))?, &mut row);
+            values.append(&mut row);
+        }
+        Ok(())
+    }
+}
+
 /// Integrate `problem` from `y` by the method that `spec` names: see [`Model::drive`](super::Model::drive).
 ///
 /// # Errors
 /// As [`MethodsByName::method`] and [`Solve::run`].
-pub fn drive_by<P: Runnable>(
+pub(crate) fn drive_by<P: Runnable>(
     spec: &MethodSpec,
-    problem: &P,
+    problem: &Arc<P>,
     mut y: PointOf<P>,
     plan: Plan<'_>,
-    (schema, row_of): (&Schema, &RowOf<'_, P>),
+    RowsOf { schema, row_of, shared }: RowsOf<'_, P>,
     watcher: &mut dyn Watcher,
 ) -> Result<Outcome, RunError> {
-    let method = problem.method(spec)?;
+    let method = Arc::new(problem.method(spec)?);
     let Plan { steps, save, times_by_steps, stops, .. } = plan;
-    let Plan { events, max_steps, cancel, checkpoints, resume, start, .. } = plan;
+    let Plan { events, max_steps, cancel, checkpoints, resume, start, curve, .. } = plan;
     if let Some(numbers) = start {
         set_numbers(&mut y, "start", &numbers)?;
     }
@@ -288,7 +349,7 @@ pub fn drive_by<P: Runnable>(
         row_of(t, y, &mut numbers);
         branches.borrow_mut().follow(&mut numbers);
     };
-    let mut solve = Solve::new(problem, &method, steps.t_span()).save(save).stops(stops);
+    let mut solve = Solve::shared(problem.clone(), method, steps.t_span()).save(save).stops(stops);
     solve = match steps {
         Steps::Equal(grid) => solve.grid(grid),
         Steps::ByError { control, .. } => solve.control(control),
@@ -343,10 +404,20 @@ pub fn drive_by<P: Runnable>(
         fill(t, y);
         watcher.borrow_mut().end_of_step(t, schema.row(&numbers.borrow()));
     });
-    let done = solve.run_with(y, |t, y: &mut PointOf<P>| {
+    let see = |t: f64, y: &mut PointOf<P>| {
         fill(t, y);
         watcher.borrow_mut().row(t, schema.row(&numbers.borrow()))
-    })?;
+    };
+    let done = match curve {
+        None => solve.run_with(y, see)?,
+        Some(CurvePlace(place)) => {
+            let (done, points) = solve.run_interpolant_with(y, see);
+            let curve =
+                |points| Box::new(CurveOf { points, row_of: shared() }) as Box<dyn RowCurve>;
+            *place = points.into_shared().map(curve);
+            done?
+        }
+    };
     Ok(Outcome { t: done.t, status: done.status, stats: done.stats })
 }
 

@@ -15,8 +15,8 @@ use super::kind::{Fact, Figure, PrincipalInertia, high_order};
 use super::operations::operations_by;
 use super::quantity::{Quantity, Value};
 use super::run::{
-    Layer, Orders, Outcome, Plan, Runnable, Steps, Watcher, drive_by, fits_by, numbers_of,
-    orders_by,
+    Layer, Orders, Outcome, Plan, RowsOf, Runnable, SharedRowOf, Steps, Watcher, drive_by, fits_by,
+    numbers_of, orders_by,
 };
 use crate::formula::Formula;
 use crate::reader::Refusal;
@@ -102,10 +102,13 @@ pub(crate) trait System: Clone + Debug + Send + Sync + 'static {
     }
 }
 
+/// A problem that is set up, with its start.
+type Ready<S> = (Arc<<S as System>::Problem<f64>>, PointOf<S>);
+
 /// A system as a form of its problem. Its problem is set up when it is needed first.
 struct On<S: System> {
     system: S,
-    ready: OnceLock<Result<Start<S::Problem<f64>>, Error>>,
+    ready: OnceLock<Result<Ready<S>, Error>>,
 }
 
 impl Forms {
@@ -129,21 +132,28 @@ impl<S: System> Debug for On<S> {
     }
 }
 
+/// numbers ← the values of the quantities of these numbers at y, `t` after the start.
+fn values_of<S: System>(
+    system: &S,
+    quantities: &[usize],
+    t: f64,
+    y: &PointOf<S>,
+    numbers: &mut Vec<f64>,
+) {
+    numbers.clear();
+    for &quantity in quantities {
+        match S::QUANTITIES[quantity].value {
+            Value::Number(value) => numbers.push(value(system, t, y)),
+            Value::Numbers(values) => values(system, t, y, numbers),
+        }
+    }
+}
+
 impl<S: System> On<S> {
     /// The problem and its start.
-    fn ready(&self) -> Result<&Start<S::Problem<f64>>, Error> {
-        self.ready.get_or_init(|| self.system.problem()).as_ref().map_err(Error::clone)
-    }
-
-    /// numbers ← the values of the quantities at y, `t` after the start.
-    fn values(&self, asked: Asked<'_>, t: f64, y: &PointOf<S>, numbers: &mut Vec<f64>) {
-        numbers.clear();
-        for &quantity in asked.quantities {
-            match S::QUANTITIES[quantity].value {
-                Value::Number(value) => numbers.push(value(&self.system, t, y)),
-                Value::Numbers(values) => values(&self.system, t, y, numbers),
-            }
-        }
+    fn ready(&self) -> Result<&Ready<S>, Error> {
+        let ready = || self.system.problem().map(|(problem, start)| (Arc::new(problem), start));
+        self.ready.get_or_init(ready).as_ref().map_err(Error::clone)
     }
 
     /// The sizes of terms at y go to the end of `numbers`.
@@ -189,26 +199,34 @@ impl<S: System> Run for On<S> {
         let (problem, start) = self.ready()?;
         let [t0, _] = plan.steps.t_span();
         let row_of = |t: f64, y: &PointOf<S>, numbers: &mut Vec<f64>| {
-            self.values(asked, t - t0, y, numbers);
+            values_of(&self.system, asked.quantities, t - t0, y, numbers);
             self.sizes(asked, y, numbers);
         };
-        drive_by(method, problem, start.clone(), plan, (asked.schema, &row_of), watcher)
+        let shared = || -> Box<SharedRowOf<S::Problem<f64>>> {
+            let (system, quantities) = (self.system.clone(), asked.quantities.to_vec());
+            Box::new(move |t, y, numbers| values_of(&system, &quantities, t - t0, y, numbers))
+        };
+        let rows = RowsOf { schema: asked.schema, row_of: &row_of, shared: &shared };
+        drive_by(method, problem, start.clone(), plan, rows, watcher)
     }
     fn exact(&self, asked: Asked<'_>, t_span: [f64; 2]) -> Option<Result<Vec<f64>, Error>> {
         let mut values = Vec::new();
         let end = self.system.exact(t_span)?;
         let t = t_span[1] - t_span[0];
-        Some(end.map(|y| self.values(asked, t, &y, &mut values)).map(|()| values))
+        Some(
+            end.map(|y| values_of(&self.system, asked.quantities, t, &y, &mut values))
+                .map(|()| values),
+        )
     }
     fn orders(&self, method: &MethodSpec) -> Result<Orders, Error> {
-        orders_by(method, &self.ready()?.0)
+        orders_by(method, &*self.ready()?.0)
     }
     fn problem_type(&self) -> &'static str {
         core::any::type_name::<S::Problem<f64>>()
     }
     fn fits(&self, method: &MethodSpec) -> Result<(), Error> {
         let (problem, start) = self.ready()?;
-        fits_by(method, problem, start)
+        fits_by(method, &**problem, start)
     }
     fn operations(&self, method: &MethodSpec, steps: &Steps) -> Option<f64> {
         let (problem, start) = self.system.problem::<Counted>().ok()?;
