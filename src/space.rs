@@ -17,6 +17,9 @@ use crate::tolerance::{PartTolerance, Scales};
 pub trait Metric: Send + Sync {
     /// The reals of the norm.
     type Scalar: Real;
+    /// True for a few numbers without an allocation: a copy of them may stay in registers. Methods keep their newest stage
+    /// in such a copy.
+    const IS_SMALL: bool = false;
     /// self ← x, into the existing storage.
     fn assign(&mut self, x: &Self);
     /// ‖self‖.
@@ -231,6 +234,7 @@ macro_rules! number {
     ($($t:ty),*) => {$(
         impl Metric for $t {
             type Scalar = $t;
+            const IS_SMALL: bool = true;
             #[inline]
             fn assign(&mut self, x: &Self) {
                 *self = *x;
@@ -275,6 +279,7 @@ macro_rules! small {
     ($($t:ident: $($i:literal)*;)*) => {$(
         impl<S: Real> Metric for $t<S> {
             type Scalar = S;
+            const IS_SMALL: bool = true;
             /// Entry by entry, because a vector that is copied whole, or in a loop, goes through memory. Here and below there is
             /// no iterator and no closure: a build of many units without LTO does not put them in line.
             #[inline]
@@ -429,6 +434,7 @@ impl LinearSpace for Mat<f64> {
 /// As a point of ℝ⁴: q and −q are different points.
 impl Metric for UnitQuaternion<f64> {
     type Scalar = f64;
+    const IS_SMALL: bool = true;
     #[inline]
     fn assign(&mut self, x: &Self) {
         *self = *x;
@@ -472,6 +478,7 @@ impl LinearSpace for UnitQuaternion<f64> {
 
 impl<A: Metric, B: Metric<Scalar = A::Scalar>> Metric for (A, B) {
     type Scalar = A::Scalar;
+    const IS_SMALL: bool = A::IS_SMALL && B::IS_SMALL;
     #[inline]
     fn assign(&mut self, x: &Self) {
         self.0.assign(&x.0);

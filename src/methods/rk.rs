@@ -6,8 +6,7 @@
 //! Source: Hairer, Nørsett, Wanner I, p. 138.
 
 use super::extension::{EXTRA, Extension};
-use super::stages::{Known, copies};
-use super::tableau::{ErrorEstimate, fold_error};
+use super::stages::{Known, copies, sum};
 use super::{Embedded, Facts, MapCounts, Method, Step, StepCost, Tableau, Within};
 use crate::error::{Error, StepError};
 use crate::problems::FieldStore;
@@ -43,6 +42,8 @@ impl<const S: usize> Rk<S> {
         RkWork { k, z, field, .. }: &mut RkWork<P, S>,
     ) -> Result<(), StepError> {
         let tab = &self.0;
+        // Up to four stages the compiler keeps all of them in registers.
+        let mut newest = if PointOf::<P>::IS_SMALL && S > 4 { Some(k[0].clone()) } else { None };
         for i in 0..S {
             if i >= count {
                 break;
@@ -50,10 +51,15 @@ impl<const S: usize> Rk<S> {
             if i == 0 && known {
                 continue;
             }
-            z.set_sum(y, h, &tab.a[i][..i], k);
-            problem.field(t + h * ScalarOf::<P>::lit(tab.c[i]), z, &mut k[i], field);
+            sum(y, h, &tab.a[i][..i], k, newest.as_ref(), z);
+            let t = t + h * ScalarOf::<P>::lit(tab.c[i]);
+            let stage = newest.as_mut().unwrap_or(&mut k[i]);
+            problem.field(t, z, stage, field);
+            if let Some(newest) = &newest {
+                k[i].assign(newest);
+            }
         }
-        z.set_sum(y, h, &tab.b[..count], k);
+        sum(y, h, &tab.b[..count], k, newest.as_ref(), z);
         if !z.is_finite() {
             return Err(match k[..count].iter().position(|k| !k.is_finite()) {
                 Some(stage) => StepError::NonFiniteRhs { stage: stage + 1 },
@@ -152,7 +158,7 @@ impl<P: Ambient, const S: usize> Embedded<P> for Rk<S> {
         if known.is_offered {
             known.set(step.t + step.h, to);
         }
-        let mut size = |weights: &[f64; S]| {
+        let size = |weights: &[f64; S]| {
             z.set_terms(step.h, &weights[..stages], k);
             match tolerance.rule() {
                 Rule::PerLength => ratio(z.size(), tolerance.per_length(to.distance(from))),
@@ -161,8 +167,8 @@ impl<P: Ambient, const S: usize> Embedded<P> for Rk<S> {
                 }
             }
         };
-        let error = match self.0.error {
-            Some(ErrorEstimate { e, damp, .. }) => fold_error(size(&e), damp.map(|d| size(&d))),
+        let error = match &self.0.error {
+            Some(estimate) => estimate.error(size),
             None => ScalarOf::<P>::lit(f64::INFINITY),
         };
         if !error.is_finite() && self.0.error.is_some() {

@@ -13,7 +13,6 @@
 use super::embedded::ratio_in_algebra;
 use super::extension::{EXTRA, Extension};
 use super::stages::{Stages, copies};
-use super::tableau::{ErrorEstimate, fold_error};
 use super::{Embedded, Facts, MapCounts, Method, Step, StepCost, Tableau, Within};
 use crate::error::{Error, StepError};
 use crate::groups::LieAlgebra;
@@ -185,12 +184,12 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> Embedded<P> for R
         done.map_err(|error| stages.blame(problem, error))?;
         let Stages { k, u, .. } = stages;
         let length = alg.norm(u);
-        let mut size = |weights: &[f64; S]| {
+        let size = |weights: &[f64; S]| {
             alg.combine(step.h, weights, k, u);
             ratio_in_algebra(problem, tolerance, u, from, length)
         };
-        let error = match self.tableau.error {
-            Some(ErrorEstimate { e, damp, .. }) => fold_error(size(&e), damp.map(|d| size(&d))),
+        let error = match &self.tableau.error {
+            Some(estimate) => estimate.error(size),
             None => ScalarOf::<P>::lit(f64::INFINITY),
         };
         if !error.is_finite() && self.tableau.error.is_some() {

@@ -5,11 +5,32 @@ use crate::error::{Error, StepError};
 use crate::groups::LieAlgebra;
 use crate::maps::CoordinateMap;
 use crate::problems::{AlgOf, PointOf, Problem};
-use crate::space::Metric;
+use crate::scalar::Real;
+use crate::space::{LinearSpace, Metric};
 
 /// Makes S copies. One function serves all methods, because each closure would compile to another function.
 pub(super) fn copies<T: Clone, const S: usize>(of: T) -> [T; S] {
     core::array::from_fn(|_| of.clone())
+}
+
+/// z ← y + h Σ_j w_j k_j. The last term is that of `newest`, if there is one: the same stage in a copy that stays in registers.
+/// A stage that was just stored as two numbers and one, and is loaded as one and two, would wait for the store.
+#[inline(always)]
+pub(super) fn sum<Y: LinearSpace>(
+    y: &Y,
+    h: Y::Scalar,
+    weights: &[f64],
+    k: &[Y],
+    newest: Option<&Y>,
+    z: &mut Y,
+) {
+    let (Some(newest), Some((&last, before))) = (newest, weights.split_last()) else {
+        return z.set_sum(y, h, weights, k);
+    };
+    z.set_sum(y, h, before, k);
+    if last != 0.0 {
+        z.add(h * Y::Scalar::lit(last), newest);
+    }
 }
 
 /// The stages k, an increment u and the chart.

@@ -105,10 +105,9 @@ pub(super) const fn pad<const S: usize, const N: usize>(x: &[f64; S]) -> [f64; N
     padded
 }
 
-/// The error from ‖h Σ e_j k_j‖ and, where there is one, the size of the damping row:
-/// E²/√(E² + D²/100), and 0 when both vanish.
+/// E²/√(E² + D²/100), or E without a damping row, and 0 when both vanish.
 #[inline]
-pub(super) fn fold_error<R: Real>(e: R, damp: Option<R>) -> R {
+fn fold_error<R: Real>(e: R, damp: Option<R>) -> R {
     match damp {
         Some(d) if !(e + d).all_below(f64::MIN_POSITIVE) => {
             let d = R::lit(0.1) * d;
@@ -136,6 +135,19 @@ impl<const S: usize> ErrorEstimate<S> {
     /// Makes the estimate from both rows of weights; b̂ has the order `order`.
     pub const fn of_pair(order: usize, b: [f64; S], b_hat: [f64; S]) -> Self {
         ErrorEstimate { order, e: difference(b, b_hat), damp: None }
+    }
+
+    /// The error from the size of ‖h Σ w_j k_j‖ for each row w.
+    #[inline(always)]
+    pub(super) fn error<R: Real>(&self, mut size: impl FnMut(&[f64; S]) -> R) -> R {
+        let mut sizes = [R::lit(0.0); 2];
+        // One call of `size` in the code: with two it would not be put in line.
+        for (i, size_of_row) in sizes.iter_mut().enumerate() {
+            let row = if i == 0 { Some(&self.e) } else { self.damp.as_ref() };
+            let Some(row) = row else { break };
+            *size_of_row = size(row);
+        }
+        fold_error(sizes[0], self.damp.is_some().then_some(sizes[1]))
     }
 }
 
