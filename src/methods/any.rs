@@ -10,9 +10,14 @@ use core::marker::PhantomData;
 use std::sync::Arc;
 
 use super::doubling::{doubled as step_doubled, within_halves};
-use super::{Embedded, EqualSteps, Facts, Method, Metric, Step, Steps, Within, take_steps};
+use super::streak::attempt_steps;
+use super::{
+    Attempts, Embedded, EqualSteps, Facts, Method, Metric, Step, Steps, Streak, Watch, Within,
+    take_steps,
+};
 use crate::error::{Error, StepError};
 use crate::problems::{AlgOf, PointOf, Problem, ScalarOf};
+use crate::scalar::Real;
 use crate::tolerance::Tolerance;
 
 /// A method for problems of type `P`, behind a pointer. Cloning copies the pointer.
@@ -72,14 +77,18 @@ trait Stepper<P: Problem> {
         steps: Steps<ScalarOf<P>>,
         y: &mut PointOf<P>,
     ) -> Result<(), (u64, StepError)>;
-    fn step_with_error(
+    /// See [`Embedded::attempt`].
+    fn attempt(
         &mut self,
         problem: &P,
-        step: Step<ScalarOf<P>>,
         tolerance: &Tolerance,
-        from: &PointOf<P>,
-        to: &mut PointOf<P>,
-    ) -> Result<ScalarOf<P>, StepError>;
+        first: (Step<f64>, f64),
+        streak: &Streak,
+        points: [&mut PointOf<P>; 3],
+        watch: Option<&mut Watch<'_, PointOf<P>>>,
+    ) -> Attempts
+    where
+        ScalarOf<P>: Into<f64>;
     fn iterations(&self) -> u64;
     fn reused(&self) -> u64;
     fn each_memory(&mut self, each: &mut dyn FnMut(&mut f64));
@@ -131,16 +140,19 @@ impl<P: Problem> dyn Stepper<P> + Send + '_ {
 /// The source of the error estimate of a method.
 trait Estimate<P: Problem, M: Method<P>>: Copy + Send + Sync {
     fn facts(self, method: &M, problem: &P) -> Facts;
-    fn step(
+    fn attempt(
         self,
         method: &M,
         problem: &P,
-        step: Step<ScalarOf<P>>,
         tolerance: &Tolerance,
-        from: &PointOf<P>,
+        first: (Step<f64>, f64),
+        streak: &Streak,
+        points: [&mut PointOf<P>; 3],
         work: &mut M::Work,
-        to: &mut PointOf<P>,
-    ) -> Result<ScalarOf<P>, StepError>;
+        watch: Option<&mut Watch<'_, PointOf<P>>>,
+    ) -> Attempts
+    where
+        ScalarOf<P>: Into<f64>;
 }
 
 #[derive(Clone, Copy)]
@@ -150,18 +162,19 @@ impl<P: Problem, M: Method<P>> Estimate<P, M> for NoEstimate {
     fn facts(self, method: &M, problem: &P) -> Facts {
         Facts { error_order: None, ..method.facts(problem) }
     }
-    #[inline(always)]
-    fn step(
+    fn attempt(
         self,
         _: &M,
         _: &P,
-        _: Step<ScalarOf<P>>,
         _: &Tolerance,
-        _: &PointOf<P>,
+        (step, end): (Step<f64>, f64),
+        _: &Streak,
+        _: [&mut PointOf<P>; 3],
         _: &mut M::Work,
-        _: &mut PointOf<P>,
-    ) -> Result<ScalarOf<P>, StepError> {
-        Err(StepError::NotFinite { what: "the error estimate" })
+        _: Option<&mut Watch<'_, PointOf<P>>>,
+    ) -> Attempts {
+        let ratio = Err(StepError::NotFinite { what: "the error estimate" });
+        Attempts { accepted: 0, accepted_ratio: 0.0, step, end, ratio }
     }
 }
 
@@ -173,17 +186,21 @@ impl<P: Problem, M: Embedded<P>> Estimate<P, M> for OwnEstimate {
         method.facts(problem)
     }
     #[inline(always)]
-    fn step(
+    fn attempt(
         self,
         method: &M,
         problem: &P,
-        step: Step<ScalarOf<P>>,
         tolerance: &Tolerance,
-        from: &PointOf<P>,
+        first: (Step<f64>, f64),
+        streak: &Streak,
+        points: [&mut PointOf<P>; 3],
         work: &mut M::Work,
-        to: &mut PointOf<P>,
-    ) -> Result<ScalarOf<P>, StepError> {
-        method.step_with_error(problem, step, tolerance, from, work, to)
+        watch: Option<&mut Watch<'_, PointOf<P>>>,
+    ) -> Attempts
+    where
+        ScalarOf<P>: Into<f64>,
+    {
+        method.attempt(problem, tolerance, first, streak, points, work, watch)
     }
 }
 
@@ -231,15 +248,20 @@ impl<P: Problem, M: Method<P>, E: Estimate<P, M>> Stepper<P> for MethodWithWork<
     ) -> Result<(), (u64, StepError)> {
         take_steps(&self.method, problem, steps, y, &mut self.work)
     }
-    fn step_with_error(
+    fn attempt(
         &mut self,
         problem: &P,
-        step: Step<ScalarOf<P>>,
         tolerance: &Tolerance,
-        from: &PointOf<P>,
-        to: &mut PointOf<P>,
-    ) -> Result<ScalarOf<P>, StepError> {
-        self.estimate.step(&self.method, problem, step, tolerance, from, &mut self.work, to)
+        first: (Step<f64>, f64),
+        streak: &Streak,
+        points: [&mut PointOf<P>; 3],
+        watch: Option<&mut Watch<'_, PointOf<P>>>,
+    ) -> Attempts
+    where
+        ScalarOf<P>: Into<f64>,
+    {
+        let MethodWithWork { method, work, estimate, .. } = self;
+        estimate.attempt(method, problem, tolerance, first, streak, points, work, watch)
     }
     fn iterations(&self) -> u64 {
         self.method.iterations(&self.work)
@@ -424,6 +446,7 @@ impl<'p, P> Embedded<P> for AnyMethod<'p, P>
 where
     P: Problem + 'p,
     PointOf<P>: Metric<Scalar = ScalarOf<P>>,
+    ScalarOf<P>: Into<f64>,
 {
     fn step_with_error(
         &self,
@@ -436,10 +459,34 @@ where
     ) -> Result<ScalarOf<P>, StepError> {
         *doubled = !*has_pair;
         match has_pair {
-            true => stepper.step_with_error(problem, step, tolerance, from, to),
+            true => {
+                half.assign(from);
+                let Step { n, t, h } = step;
+                let first = (Step { n, t: t.into(), h: h.into() }, f64::NAN); // nothing follows
+                let points = [once, half, to];
+                let ratio =
+                    stepper.attempt(problem, tolerance, first, &Streak::ONE, points, None).ratio;
+                ratio.map(ScalarOf::<P>::lit)
+            }
             false => step_doubled(*order, step, tolerance, from, [once, half], to, |step, y| {
                 stepper.step(problem, step, y)
             }),
         }
+    }
+    fn attempt(
+        &self,
+        problem: &P,
+        tolerance: &Tolerance,
+        first: (Step<f64>, f64),
+        streak: &Streak,
+        points: [&mut PointOf<P>; 3],
+        work: &mut Self::Work,
+        watch: Option<&mut Watch<'_, PointOf<P>>>,
+    ) -> Attempts {
+        if work.has_pair {
+            work.doubled = false;
+            return work.stepper.attempt(problem, tolerance, first, streak, points, watch);
+        }
+        attempt_steps(self, problem, tolerance, first, streak, points, work, watch)
     }
 }

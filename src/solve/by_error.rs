@@ -1,11 +1,12 @@
-//! Adaptive step size: one accepted step, and the choice of the first step.
+//! Adaptive step size: accepted steps, and the choice of the first step.
 
 use super::control::StepControl;
 use super::points::AnyPoints;
 use super::stats::{RunError, Stats};
-use super::timeline::{Pacer, Timeline, size_to};
+use super::streak::{Reach, Run};
+use super::timeline::{Chooser, Pacer, Timeline, size_to};
 use crate::error::StepError;
-use crate::methods::Step;
+use crate::methods::{Attempts, Step, Streak};
 
 /// The number of rejections in a row that ends a run.
 const REJECTIONS_MAX: u32 = 60;
@@ -13,18 +14,19 @@ const REJECTIONS_MAX: u32 = 60;
 const EXACT_TURN: f64 = 1.0;
 
 impl Timeline {
-    pub(super) fn chosen_step(
+    /// Takes accepted steps: one, or those of a streak.
+    pub(super) fn chosen_steps(
         &mut self,
-        points: &mut dyn AnyPoints,
-        stop: f64,
-        jumps: bool,
+        run: &mut Run<'_>,
+        (stop, jumps): (f64, bool),
+        reach: Reach,
     ) -> Result<(), RunError> {
         let Pacer::ByError(chooser) = &self.pacer else { return Ok(()) };
         let StepControl { min_step, max_steps, first_step, .. } = chooser.control;
         let mut h = match chooser.h.or(first_step) {
-            _ if chooser.controller.is_exact() => self.exact_step(points, stop),
+            _ if chooser.controller.is_exact() => self.exact_step(run.points(), stop),
             Some(h) => h,
-            None => self.first_step(points, stop),
+            None => self.first_step(run.points(), stop),
         };
         let mut in_a_row = 0;
         loop {
@@ -38,21 +40,31 @@ impl Timeline {
             }
             let h_to_end = size_to(self.t, end, jumps && end == stop);
             let step = Step { n: self.stats.accepted, t: self.t, h: h_to_end };
-            match self.attempt(points, step) {
+            let streak = self.streak((h, end), stop, reach);
+            let tried = run.attempt(step, end, &streak);
+            self.attempted(tried.accepted + 1);
+            if tried.accepted > 0 {
+                self.went_on(step, &tried);
+            }
+            let Attempts { step, end, ratio, .. } = tried;
+            let size = if tried.accepted > 0 { (end - self.t).abs() } else { size };
+            match ratio {
                 Ok(ratio) if ratio <= 1.0 => {
                     let forward = self.t1 > self.t;
-                    points.accept();
-                    self.accepted(points, step, end);
+                    run.points().accept();
+                    self.accepted(run.points(), step, end);
                     let Pacer::ByError(chooser) = &mut self.pacer else { return Ok(()) };
                     let passed = |wall: &f64| if forward { end >= *wall } else { end <= *wall };
                     chooser.wall = chooser.wall.filter(|wall| !passed(wall));
                     chooser.controller.hold |= chooser.wall.is_some();
-                    let next = size * chooser.controller.accept(ratio);
+                    let factor = chooser.controller.accept(ratio);
+                    let next = size * factor;
                     // A step that was shortened to end at `stop` says nothing against the size before, and one that
                     // goes half the way nothing against the other half.
                     chooser.h = Some(match size / h {
                         part if part < 0.5 => next.max(h),
                         part if part < 0.99 => next.max(size),
+                        _ if factor == 1.0 => h, // without the rounding of t
                         _ => next,
                     });
                     return Ok(());
@@ -92,10 +104,31 @@ impl Timeline {
         (end, (end - self.t).abs())
     }
 
-    /// `to` ← the step from y. Returns its error in units of the tolerance.
-    fn attempt(&mut self, points: &mut dyn AnyPoints, step: Step<f64>) -> Result<f64, StepError> {
-        self.attempted();
-        points.attempt(step)
+    /// The streak that an attempt of size h, which ends at `end`, may begin.
+    fn streak(&self, (h, end): (f64, f64), stop: f64, Reach { steps, time }: Reach) -> Streak {
+        let Pacer::ByError(Chooser { controller, control, wall, .. }) = &self.pacer else {
+            return Streak::ONE;
+        };
+        let Stats { accepted, rejected, .. } = self.stats;
+        let size = h.copysign(stop - self.t);
+        let is_free = (stop - self.t).abs() >= 2.0 * h && end == self.t + size;
+        if !is_free || !controller.keeps() || wall.is_some() {
+            return Streak::ONE;
+        }
+        let most = steps.min(self.cadence.next).saturating_sub(accepted);
+        let most = most.min(control.max_steps - accepted - rejected).max(1);
+        Streak { most, size, kept: controller.kept, stop, time }
+    }
+
+    /// Records the accepted steps of a streak that began with `first`, but for the last attempt.
+    fn went_on(&mut self, first: Step<f64>, tried: &Attempts) {
+        self.t = tried.step.t;
+        let Stats { accepted, smallest_step, largest_step, .. } = &mut self.stats;
+        *accepted += tried.accepted;
+        *smallest_step = smallest_step.min(first.h.abs());
+        *largest_step = largest_step.max(first.h.abs());
+        let Pacer::ByError(chooser) = &mut self.pacer else { return };
+        chooser.controller.accept(tried.accepted_ratio);
     }
 
     /// A step of a method that is exact at any size.
@@ -134,7 +167,8 @@ impl Timeline {
             return if still { span } else { h0 };
         }
         let trial = Step { n: self.stats.accepted, t: self.t, h: end - self.t };
-        if self.attempt(points, trial).is_err() {
+        self.attempted(1);
+        if points.attempt(trial, end, &Streak::ONE).ratio.is_err() {
             return h0;
         }
         let change = points.change_of_rate(end);

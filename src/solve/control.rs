@@ -5,8 +5,8 @@
 //! Gustafsson's PI controller). The step after a rejected one does not grow.
 //!
 //! Where r stays at 0.9^(k/0.3), the step size does too. It is kept while both r and r₋ are near there, so that either
-//! would change the step size by 5 % at most. A step of the same size needs no powers, and the processor begins it
-//! before it knows the error of the step before.
+//! would change the step size by 15 % at most. A step of the same size needs no powers, and the processor begins it
+//! before it knows the error of the step before ([`Streak`](crate::methods::Streak)).
 
 use crate::error::Error;
 use crate::tolerance::{Rule, Tolerance};
@@ -113,7 +113,7 @@ pub(super) struct Controller {
     /// True if the next step must not be larger than this one.
     pub(super) hold: bool,
     /// The least and the largest ratio at which the step size is kept.
-    kept: [f64; 2],
+    pub(super) kept: [f64; 2],
 }
 
 /// The largest factor by which a step grows; 1 over it is the smallest factor by which it shrinks.
@@ -122,7 +122,7 @@ const SAFETY: f64 = 0.9;
 /// The powers of r and r₋, times k.
 const POWERS: [f64; 2] = [0.7, 0.4];
 /// The step size is kept where a ratio would change it by this factor at most.
-const NEAR_ONE: f64 = 1.05;
+const NEAR_ONE: f64 = 1.15;
 
 impl Controller {
     pub(super) fn new(error_order: usize) -> Self {
@@ -142,11 +142,20 @@ impl Controller {
         self.k >= usize::MAX as f64
     }
 
+    /// True if the ratio is near that at which the step size stays.
+    fn is_near(&self, ratio: f64) -> bool {
+        let [least, most] = self.kept;
+        least <= ratio && ratio <= most
+    }
+
+    /// True if the step size is kept, unless the next ratio is far away.
+    pub(super) fn keeps(&self) -> bool {
+        self.is_near(self.last)
+    }
+
     /// The factor of the next step after an accepted one.
     pub(super) fn accept(&mut self, ratio: f64) -> f64 {
-        let [least, most] = self.kept;
-        let is_near = |r: f64| least <= r && r <= most;
-        if is_near(self.last) && is_near(ratio) {
+        if self.is_near(self.last) && self.is_near(ratio) {
             self.last = ratio;
             self.hold = false;
             return 1.0;

@@ -8,6 +8,7 @@ use super::grid::SaveAt;
 use super::output::{AnyOutput, Slot};
 use super::solution::{Drift, Next, Status};
 use super::stats::RunError;
+use super::streak::{Reach, Run};
 use super::timeline::Timeline;
 
 /// The function that takes the bytes of a state.
@@ -136,9 +137,7 @@ impl Drive<'_> {
                 return Ok(Status::Cancelled);
             }
             self.pass_stops();
-            self.skip(output)?;
-            let stop = self.next_stop.unwrap_or(t1);
-            self.times.step_before(output.points(), stop, self.next_stop.is_some())?;
+            self.step(output)?;
             if self.keeps == Keeps::Pieces {
                 self.times.prepare_last(output.points())?;
             }
@@ -194,21 +193,26 @@ impl Drive<'_> {
         }
     }
 
-    /// Takes steps without output or events in one call.
-    fn skip(&mut self, output: &mut dyn AnyOutput) -> Result<(), RunError> {
-        if !self.events.all.is_empty() || self.keeps != Keeps::Nothing {
-            return Ok(());
+    /// Takes a step, and steps without output or zeros of events before it.
+    fn step(&mut self, output: &mut dyn AnyOutput) -> Result<(), RunError> {
+        let stop = (self.next_stop.unwrap_or(self.times.t1), self.next_stop.is_some());
+        if self.keeps != Keeps::Nothing {
+            return self.times.steps_before(&mut Run::Points(output.points()), stop, Reach::STEP);
         }
-        let steps = self.times.stats.accepted;
-        let mut end = self.save.next_after(steps);
+        let taken = self.times.stats.accepted;
+        let mut steps = self.save.next_after(taken);
         let is_watched = self.cancel.is_some() || self.progress.is_some();
         if is_watched {
-            end = end.min(steps.saturating_add(self.patience.0));
+            steps = steps.min(taken.saturating_add(self.patience.0));
         }
         let time = [self.next_time(), self.next_stop].into_iter().flatten();
         let time = time.reduce(|a, b| if self.times.is_before(a, b) { a } else { b });
         let clock = is_watched.then(Instant::now);
-        self.times.quietly(output.points(), end, time)?;
+        if self.events.all.is_empty() {
+            self.times.quietly(output.points(), steps, time)?;
+        }
+        let run = &mut Run::Watched(output, &mut self.events);
+        self.times.steps_before(run, stop, Reach { steps, time })?;
         if let Some(clock) = clock {
             self.patience.after(clock.elapsed());
         }

@@ -88,6 +88,8 @@ pub(super) struct EventRule {
     /// True if the event changes the state.
     pub(super) changes: bool,
     points: Option<u32>,
+    /// True if the steps of the run are long.
+    has_long_steps: bool,
     pub(super) seen: Seen,
     /// The number of zeros found so far.
     pub(super) count: u64,
@@ -128,6 +130,7 @@ impl<'a, Y> Event<'a, Y> {
             stop_after: None,
             changes: false,
             points: None,
+            has_long_steps: false,
             seen: Seen::default(),
             count: 0,
         };
@@ -181,10 +184,10 @@ impl<'a, Y> Event<'a, Y> {
 impl EventRule {
     /// The search for zeros in a step at whose end g is `last`.
     #[inline(always)]
-    fn search(&self, times: &Timeline, last: f64, first_step: bool) -> Search {
-        let EventRule { direction, points, seen, .. } = *self;
-        let is_long = times.facts.order >= LONG && points.is_none();
-        Search { direction, points, is_long, seen, first_step, span: [times.last.t, times.t], last }
+    fn search(&self, span: [f64; 2], last: f64, first_step: bool) -> Search {
+        let EventRule { direction, points, has_long_steps, seen, .. } = *self;
+        let is_long = has_long_steps && points.is_none();
+        Search { direction, points, is_long, seen, first_step, span, last }
     }
 
     /// The value of g at t, if it is finite.
@@ -226,12 +229,44 @@ pub(super) struct Events {
     pub(super) all: Vec<EventRule>,
     /// The zeros of the last step, in the order of time.
     pub(super) found: Vec<Zero>,
+    /// The values of g at the end of a step.
+    values: Vec<f64>,
 }
 
 impl Events {
-    pub(super) fn new(all: Vec<EventRule>) -> Self {
+    /// The events of a run by a method of this order.
+    pub(super) fn new(mut all: Vec<EventRule>, order: usize) -> Self {
+        all.iter_mut().for_each(|event| event.has_long_steps = order >= LONG);
         let found = Vec::with_capacity(2 * all.len() * (POINTS as usize + 2));
-        Events { all, found }
+        let values = Vec::with_capacity(all.len());
+        Events { all, found, values }
+    }
+
+    /// True if each step needs a search, whatever the values at its end.
+    pub(super) fn search_always(&self) -> bool {
+        let always = |event: &EventRule| match event.points {
+            Some(points) => points > 0,
+            None => event.has_long_steps,
+        };
+        self.all.iter().any(always)
+    }
+
+    /// Passes a step of a streak, which is not the first step of a run, if no event can have a zero in it. `value` gives g
+    /// at the end of the step. Returns false if the step needs a search; then nothing is passed.
+    #[inline]
+    pub(super) fn pass(&mut self, span: [f64; 2], mut value: impl FnMut(usize) -> f64) -> bool {
+        self.values.clear();
+        for (index, event) in self.all.iter().enumerate() {
+            let last = value(index);
+            if !(last.is_finite() && event.search(span, last, false).is_idle()) {
+                return false;
+            }
+            self.values.push(last);
+        }
+        for (event, &last) in self.all.iter_mut().zip(&self.values) {
+            event.seen = event.search(span, last, false).seen_at_end();
+        }
+        true
     }
 
     /// At the start of a run.
@@ -274,10 +309,10 @@ impl Events {
     ) -> Result<(), RunError> {
         self.found.clear();
         let (start, end) = (times.last.t, times.t);
-        let Events { all, found } = self;
+        let Events { all, found, .. } = self;
         for (index, event) in all.iter_mut().enumerate() {
             let last = event.finite(end, output.event(index, end, None))?;
-            let search = event.search(times, last, first_step);
+            let search = event.search([start, end], last, first_step);
             if search.is_idle() {
                 event.seen = search.seen_at_end();
                 continue;

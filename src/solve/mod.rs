@@ -29,6 +29,7 @@ mod save;
 mod simple;
 mod solution;
 mod stats;
+mod streak;
 mod timeline;
 
 pub use continuous::Continuous;
@@ -497,7 +498,8 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
             Keep::Starts(_) => Keeps::Starts,
             Keep::Pieces(_) => Keeps::Pieces,
         };
-        let mut drive = self.settings.drive(times, Events::new(rules), keeps);
+        let events = Events::new(rules, times.facts.order);
+        let mut drive = self.settings.drive(times, events, keeps);
         let mut output = Output::new(points, functions, (self.watch, self.see_end), kept, observe);
         let ended = drive.run(&mut output);
         let Output { points, occurrences, .. } = output;

@@ -1,13 +1,13 @@
 //! What a run shows: the points of the output, events and invariants. Like [`Points`], it knows the types of the
 //! problem and method, and the driver calls it through a pointer.
 
-use super::events::EventFunctions;
+use super::events::{EventFunctions, Events};
 use super::interpolant::Piece;
 use super::points::{AnyPoints, Place, Points};
 use super::solution::{Next, Occurrence};
 use super::stats::RunError;
 use crate::error::{Error, StepError};
-use crate::methods::{Method, Step};
+use crate::methods::{Attempts, Method, Step, Streak};
 use crate::problems::{PointOf, Problem};
 
 /// A point that a run keeps for its output.
@@ -23,6 +23,14 @@ pub(super) enum Slot {
 pub(super) trait AnyOutput {
     /// The points of the run.
     fn points(&mut self) -> &mut dyn AnyPoints;
+    /// [`AnyPoints::attempt`]; a step in which an event may have a zero is the last attempt.
+    fn attempt(
+        &mut self,
+        step: Step<f64>,
+        end: f64,
+        streak: &Streak,
+        events: &mut Events,
+    ) -> Attempts;
     /// The value of the event with this number at a point, or at y.
     fn event(&mut self, event: usize, t: f64, at: Option<Slot>) -> f64;
     /// slot ← the point at a place in the last step.
@@ -119,6 +127,25 @@ impl<'a, 'k, P: Problem, M: Method<P>> Output<'a, 'k, P, M> {
 impl<P: Problem, M: Method<P>> AnyOutput for Output<'_, '_, P, M> {
     fn points(&mut self) -> &mut dyn AnyPoints {
         &mut self.points
+    }
+    fn attempt(
+        &mut self,
+        step: Step<f64>,
+        end: f64,
+        streak: &Streak,
+        events: &mut Events,
+    ) -> Attempts {
+        let Output { points, events: functions, .. } = self;
+        if functions.is_empty() || streak.most == 1 {
+            return points.attempt_watched(step, end, streak, None);
+        }
+        if events.search_always() {
+            return points.attempt_watched(step, end, &Streak::ONE, None);
+        }
+        let watch = &mut |span: [f64; 2], y: &PointOf<P>| {
+            events.pass(span, |event| (functions[event].g)(span[1], y))
+        };
+        points.attempt_watched(step, end, streak, Some(watch))
     }
     fn event(&mut self, event: usize, t: f64, at: Option<Slot>) -> f64 {
         let Output { points, shown, search, events, .. } = self;

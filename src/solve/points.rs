@@ -11,7 +11,7 @@ use super::stats::{Cadence, RunError, Stats, power_of_two_above};
 use crate::actions::Action;
 use crate::error::{Error, StepError};
 use crate::groups::LieAlgebra;
-use crate::methods::{Embedded, EqualSteps, Facts, Method, Step, Within};
+use crate::methods::{Attempts, Embedded, EqualSteps, Facts, Method, Step, Streak, Watch, Within};
 use crate::problems::{AlgOf, PointOf, Problem, ScalarOf};
 use crate::scalar::Real;
 use crate::space::Metric;
@@ -49,8 +49,8 @@ pub(super) trait AnyPoints {
     fn step(&mut self, step: Step<f64>) -> Result<(), StepError>;
     /// from ← y, y ← the end of these steps. On an error y is the start of the step that failed.
     fn steps(&mut self, steps: EqualSteps) -> Result<(), (u64, StepError)>;
-    /// to ← the end of the step from y, with adaptive steps. Returns its error in units of the tolerance.
-    fn attempt(&mut self, step: Step<f64>) -> Result<f64, StepError>;
+    /// to ← the end of an adaptive step from y, which ends at `end`, after the steps of the streak.
+    fn attempt(&mut self, step: Step<f64>, end: f64, streak: &Streak) -> Attempts;
     /// from ← y, y ← to.
     fn accept(&mut self);
     /// ‖f(t, y)‖. Stores f.
@@ -73,16 +73,17 @@ pub(super) trait AnyPoints {
     fn each_number(&mut self, part: Saved, each: &mut dyn FnMut(&mut f64));
 }
 
-/// A step with its error in units of the tolerance, as a number.
+/// See [`Embedded::attempt`].
 type Attempt<P, M> = fn(
     &M,
     &P,
-    Step<ScalarOf<P>>,
     &Tolerance,
-    &PointOf<P>,
+    (Step<f64>, f64),
+    &Streak,
+    [&mut PointOf<P>; 3],
     &mut <M as Method<P>>::Work,
-    &mut PointOf<P>,
-) -> Result<f64, StepError>;
+    Option<&mut Watch<'_, PointOf<P>>>,
+) -> Attempts;
 
 /// What an adaptive run needs from its method.
 pub(super) struct Estimator<P: Problem, M: Method<P>> {
@@ -102,12 +103,7 @@ where
     ScalarOf<P>: Into<f64>,
 {
     pub(super) fn of_method() -> Self {
-        Estimator {
-            attempt: |method, problem, step, tolerance, from, work, to| {
-                method.step_with_error(problem, step, tolerance, from, work, to).map(Into::into)
-            },
-            norm: |problem, v| problem.group().norm(v).into(),
-        }
+        Estimator { attempt: M::attempt, norm: |problem, v| problem.group().norm(v).into() }
     }
 }
 
@@ -234,7 +230,7 @@ impl<'a, P: Problem, M: Method<P>> Points<'a, P, M> {
         last: Step<f64>,
         at: &mut PointOf<P>,
     ) -> Result<(), StepError> {
-        let Points { problem, method, y, from, work, rates, .. } = self;
+        let Points { problem, method, y, from, to, work, rates, .. } = self;
         let (problem, method) = (&**problem, &**method);
         let (action, group) = (problem.action(), problem.group());
         match place {
@@ -245,15 +241,19 @@ impl<'a, P: Problem, M: Method<P>> Points<'a, P, M> {
                 finite(action.is_finite(group, at))?;
             }
             Place::Shorter(h) => {
-                let step = lit::<P>(Step { h, ..last });
                 match rates {
                     // As the steps of the run are taken: in two halves, if the method has no estimate.
                     Some(Rates { estimator, tolerance, .. }) => {
-                        (estimator.attempt)(method, problem, step, tolerance, from, work, at)?;
+                        let (step, one) = ((Step { h, ..last }, 0.0), &Streak::ONE);
+                        let points = [to, from, at];
+                        (estimator.attempt)(
+                            method, problem, tolerance, step, one, points, work, None,
+                        )
+                        .ratio?;
                     }
                     None => {
                         action.assign(group, from, at);
-                        method.step(problem, step, at, work)?;
+                        method.step(problem, lit::<P>(Step { h, ..last }), at, work)?;
                     }
                 }
                 finite(action.is_finite(group, at))?;
@@ -296,6 +296,28 @@ impl<'a, P: Problem, M: Method<P>> Points<'a, P, M> {
         Ok(())
     }
 
+    /// [`AnyPoints::attempt`], where `watch` sees the steps of the streak.
+    #[inline]
+    pub(super) fn attempt_watched(
+        &mut self,
+        step: Step<f64>,
+        end: f64,
+        streak: &Streak,
+        watch: Option<&mut Watch<'_, PointOf<P>>>,
+    ) -> Attempts {
+        let Points { problem, method, y, from, to, work, rates, .. } = self;
+        match rates {
+            Some(Rates { estimator, tolerance, .. }) => {
+                let (step, points) = ((step, end), [from, y, to]);
+                (estimator.attempt)(method, problem, tolerance, step, streak, points, work, watch)
+            }
+            None => {
+                let ratio = Err(StepError::NotFinite { what: "the error estimate" });
+                Attempts { accepted: 0, accepted_ratio: 0.0, step, end, ratio }
+            }
+        }
+    }
+
     /// y ← the point, like [`change`](Self::change).
     pub(super) fn change_to(&mut self, point: &PointOf<P>) -> Result<(), Error> {
         let problem = self.problem.clone();
@@ -326,14 +348,8 @@ impl<P: Problem, M: Method<P>> AnyPoints for Points<'_, P, M> {
             let _ = method.steps(problem, EqualSteps { end: *failed, ..steps }, y, work);
         })
     }
-    fn attempt(&mut self, step: Step<f64>) -> Result<f64, StepError> {
-        let Points { problem, method, y, to, work, rates, .. } = self;
-        let (problem, method) = (&**problem, &**method);
-        let estimate = StepError::NotFinite { what: "the error estimate" };
-        let Some(Rates { estimator, tolerance, .. }) = rates else { return Err(estimate) };
-        let ratio = (estimator.attempt)(method, problem, lit::<P>(step), tolerance, y, work, to)?;
-        finite(problem.action().is_finite(problem.group(), to))?;
-        if ratio.is_finite() { Ok(ratio) } else { Err(estimate) }
+    fn attempt(&mut self, step: Step<f64>, end: f64, streak: &Streak) -> Attempts {
+        self.attempt_watched(step, end, streak, None)
     }
     fn accept(&mut self) {
         core::mem::swap(&mut self.from, &mut self.y);
@@ -368,16 +384,19 @@ impl<P: Problem, M: Method<P>> AnyPoints for Points<'_, P, M> {
         }
     }
     fn repeat(&mut self, step: Step<f64>) -> Result<(), StepError> {
-        let Points { problem, method, from, to, work, rates, .. } = self;
+        let Points { problem, method, y, from, to, work, rates, .. } = self;
         let (problem, method) = (&**problem, &**method);
-        let step = lit::<P>(step);
         match rates {
             Some(Rates { estimator, tolerance, .. }) => {
-                (estimator.attempt)(method, problem, step, tolerance, from, work, to).map(drop)
+                let (step, one) = ((step, 0.0), &Streak::ONE);
+                let points = [y, from, to]; // one attempt leaves y alone
+                (estimator.attempt)(method, problem, tolerance, step, one, points, work, None)
+                    .ratio
+                    .map(drop)
             }
             None => {
                 problem.action().assign(problem.group(), from, to);
-                method.step(problem, step, to, work)
+                method.step(problem, lit::<P>(step), to, work)
             }
         }
     }

@@ -4,6 +4,7 @@ use super::control::{Controller, StepControl};
 use super::grid::TimeGrid;
 use super::points::{AnyPoints, Place, Saved};
 use super::stats::{Cadence, RunError, Stats};
+use super::streak::{Reach, Run};
 use crate::error::{Error, Failure, StepError};
 use crate::methods::{Facts, MapCounts, Step, StepCost};
 
@@ -143,24 +144,26 @@ impl Timeline {
             return Err(Error::out_of_range("t", t, expected).into());
         }
         while self.t != t {
-            self.step_before(points, t, false)?;
+            let reach = Reach { steps: u64::MAX, time: None };
+            self.steps_before(&mut Run::Points(points), (t, false), reach)?;
         }
         Ok(())
     }
 
-    /// Takes one accepted step, at most to `stop`. No stage evaluates f exactly at `stop`, where f may jump.
-    pub(super) fn step_before(
+    /// Takes one step, at most to `stop`; steps by error may be several, within their reach. No stage evaluates f exactly
+    /// at `stop` if f jumps there.
+    pub(super) fn steps_before(
         &mut self,
-        points: &mut dyn AnyPoints,
-        stop: f64,
-        jumps: bool,
+        run: &mut Run<'_>,
+        (stop, jumps): (f64, bool),
+        reach: Reach,
     ) -> Result<(), RunError> {
         if self.t == stop {
             return Ok(());
         }
         match &mut self.pacer {
-            Pacer::Equal { .. } => self.equal_step(points, stop, jumps),
-            Pacer::ByError(_) => self.chosen_step(points, stop, jumps),
+            Pacer::Equal { .. } => self.equal_step(run.points(), stop, jumps),
+            Pacer::ByError(_) => self.chosen_steps(run, (stop, jumps), reach),
         }
     }
 
@@ -366,10 +369,10 @@ impl Timeline {
         repeated
     }
 
-    /// Counts an attempt.
-    pub(super) fn attempted(&mut self) {
+    /// Counts attempts.
+    pub(super) fn attempted(&mut self, count: u64) {
         self.looked_at = Looked::Nothing;
-        let StepCost { evaluations, maps } = self.facts.step_with_error;
+        let StepCost { evaluations, maps } = self.facts.step_with_error.times(count);
         self.stats.evaluations = plus(self.stats.evaluations, evaluations);
         self.stats.maps = self.stats.maps.zip(maps).map(|(n, more)| n + more);
     }

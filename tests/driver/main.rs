@@ -10,6 +10,7 @@ mod restore;
 mod scipy;
 mod scipy_events;
 mod series;
+mod streaks;
 #[path = "../support/mod.rs"]
 mod support;
 mod tolerances;

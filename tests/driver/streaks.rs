@@ -1,0 +1,107 @@
+//! Steps by error are taken in streaks where their size is kept. A run has the same steps, to the last bit, wherever its
+//! streaks end: at output times, at events, at the end of a call, or after each step.
+
+use std::cell::Cell;
+use std::sync::atomic::AtomicBool;
+
+use lieflow::catalog::{MethodSpec, MethodsByName};
+use lieflow::maps::{Cay, Exp};
+use lieflow::methods::tableau::{BS3, DOP853, DOPRI5};
+use lieflow::methods::{Embedded, Rk, Rkmk, Taylor};
+use lieflow::nalgebra::Vector3;
+use lieflow::problems::{RigidBody, RigidBodyAttitude};
+use lieflow::{Event, Problem, Solution, Solve};
+
+type V = Vector3<f64>;
+
+/// Beside the saddle: step sizes change and are kept in turns.
+const START: V = V::new(0.01, 2.0, 0.01);
+const TOLERANCE: f64 = 1e-8;
+
+/// The numbers that say which steps a run had.
+fn steps<Y: Copy>(run: &Solution<Y>) -> (Y, [u64; 2], [f64; 2]) {
+    let stats = &run.stats;
+    (run.y, [stats.accepted, stats.rejected], [stats.smallest_step, stats.largest_step])
+}
+
+fn same_steps<P, M, Y>(name: &str, problem: &P, method: &M, start: Y)
+where
+    P: Problem<Action: lieflow::actions::Action<P::Group, Point = Y>>,
+    M: Embedded<P>,
+    Y: Copy + PartialEq + core::fmt::Debug,
+    <P::Group as lieflow::LieAlgebra>::Scalar: Into<f64>,
+{
+    for span in [[0.0, 60.0], [3.0, -50.0]] {
+        let [t0, t1] = span;
+        let solve = || Solve::new(problem, method, span).tolerances(TOLERANCE, TOLERANCE);
+        let free = solve().run(start).expect("a run");
+        assert!(free.stats.accepted > 20, "{name}: {:?}", free.stats);
+
+        let mut single = solve().integrator(start).expect("a start");
+        while !single.is_done() {
+            single.step().expect("a step");
+        }
+        let stats = single.stats();
+        assert_eq!(*single.y(), free.y, "{name}, one step a call");
+        assert_eq!(
+            (stats.accepted, stats.rejected, stats.evaluations),
+            (free.stats.accepted, free.stats.rejected, free.stats.evaluations),
+            "{name}, one step a call"
+        );
+
+        let every = solve().every(1).run(start).expect("a run");
+        assert_eq!(steps(&every).0, free.y, "{name}, with each step as a row");
+        assert_eq!(steps(&every).1, steps(&free).1, "{name}, with each step as a row");
+        assert_eq!(every.times.len() as u64, free.stats.accepted + 1, "{name}");
+
+        let times: Vec<f64> = (1..=400).map(|i| t0 + (t1 - t0) * f64::from(i) / 400.0).collect();
+        let rows = solve().times(&*times).run(start).expect("a run");
+        assert_eq!(steps(&rows).0, free.y, "{name}, with 400 rows");
+        assert_eq!(steps(&rows).1, steps(&free).1, "{name}, with 400 rows");
+
+        let (looks, cancel) = (Cell::new(0), AtomicBool::new(false));
+        let clock = Event::new("clock", |t: f64, _: &Y| {
+            looks.set(looks.get() + 1);
+            t - 1e3
+        });
+        let watched = solve().event(clock).cancel(&cancel).progress(|_| {}).run(start);
+        let watched = watched.expect("a run");
+        assert_eq!(steps(&watched).0, free.y, "{name}, with an event");
+        assert_eq!(steps(&watched).1, steps(&free).1, "{name}, with an event");
+        assert!(looks.get() > free.stats.accepted, "{name}: g at each end, {} looks", looks.get());
+    }
+}
+
+#[test]
+fn a_run_has_the_same_steps_however_it_is_watched() {
+    let body = RigidBody::<f64>::new([1.0, 2.0, 3.0]).expect("a body");
+    same_steps("rk dopri5", &body, &Rk(DOPRI5), START);
+    same_steps("rk bs3", &body, &Rk(BS3), START);
+    same_steps("rk dop853", &body, &Rk(DOP853), START);
+    same_steps("rkmk dopri5 exp", &body, &Rkmk::new(DOPRI5, Exp), START);
+    same_steps("rkmk dop853 cay", &body, &Rkmk::new(DOP853, Cay), START);
+    same_steps("taylor16", &body, &Taylor::<16>, START);
+    for name in ["rkmk dop853 exp", "rk dopri5", "taylor12", "mr4", "cf4"] {
+        let spec: MethodSpec = name.parse().expect("a name");
+        same_steps(name, &body, &body.method(&spec).expect("a method"), START);
+    }
+    let attitude = RigidBodyAttitude::<f64>::new([1.0, 2.0, 3.0], START.into()).expect("a body");
+    let one = lieflow::nalgebra::Matrix3::identity();
+    same_steps("attitude", &attitude, &Rkmk::new(DOPRI5, Exp), one);
+}
+
+#[test]
+fn zeros_within_streaks_are_found() {
+    // An event that passes zero many times in steps whose size is kept: a clock.
+    let body = RigidBody::<f64>::new([1.0, 2.0, 3.0]).expect("a body");
+    let run = Solve::new(&body, &Rk(DOPRI5), [0.0, 40.0])
+        .tolerances(TOLERANCE, TOLERANCE)
+        .event(Event::new("ring", |t: f64, _: &V| (0.5 * core::f64::consts::PI * t).cos()))
+        .run(V::new(0.3, 0.2, 3.0))
+        .expect("a run");
+    let rings: Vec<f64> = run.events.iter().map(|zero| zero.t).collect();
+    assert_eq!(rings.len(), 20);
+    for (i, t) in rings.iter().enumerate() {
+        assert!((t - (2.0 * i as f64 + 1.0)).abs() < 1e-13, "{t}");
+    }
+}
