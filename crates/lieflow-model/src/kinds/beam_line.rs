@@ -9,7 +9,7 @@ use lieflow::groups::{AlgebraMatrix, MatrixGroup};
 use lieflow::problems::Flow;
 use lieflow::problems::beam::{Element, transfer_map, tunes};
 
-use super::entries::{row_columns, rows, symplectic_defect};
+use super::entries::{rows, symplectic_defect};
 use super::flow::OnMatrices;
 use super::matrix::MatrixAction;
 use super::prelude::*;
@@ -159,7 +159,7 @@ impl System for BeamLine {
             "the transfer map from the start, row by row, of (x, z, x', z')",
             |_, _, g, row| row.extend(rows(g)),
         )
-        .with_columns(|_| row_columns("g", 4, 4)),
+        .of_matrix("g", |_| [4, 4]),
         Q::numbers(
             "particle",
             &["x", "z", "x_slope", "z_slope"],

@@ -87,11 +87,6 @@ pub(super) fn numbered(letter: &str, n: usize) -> Vec<String> {
     (1..=n).map(|i| format!("{letter}{i}")).collect()
 }
 
-/// The columns x11, …, xnk, row by row.
-pub(super) fn row_columns(letter: &str, n: usize, k: usize) -> Vec<String> {
-    (1..=n).flat_map(|i| (1..=k).map(move |j| format!("{letter}{i}{j}"))).collect()
-}
-
 /// The columns x11, …, xnn, on and above the diagonal, row by row.
 pub(super) fn upper_columns(letter: &str, n: usize) -> Vec<String> {
     (1..=n).flat_map(|i| (i..=n).map(move |j| format!("{letter}{i}{j}"))).collect()

@@ -9,9 +9,7 @@ use lieflow::methods::magnus::Magnus6;
 use lieflow::problems::{LinearHamiltonian, hill};
 use lieflow::scalar::{Ops, tally};
 
-use super::entries::{
-    check_symmetric, numbered, row_columns, rows, square, symplectic_defect, trace,
-};
+use super::entries::{check_symmetric, numbered, rows, square, symplectic_defect, trace};
 use super::flow::OnMatrices;
 use super::matrix::MatrixAction;
 use super::prelude::*;
@@ -106,7 +104,7 @@ impl System for Hill {
             "the fundamental solution, row by row; the monodromy after a period",
             |_, _, g, row| row.extend(rows(g)),
         )
-        .with_columns(|hill| row_columns("g", 2 * hill.a.nrows(), 2 * hill.a.nrows())),
+        .of_matrix("g", |hill| [2 * hill.a.nrows(); 2]),
         Q::numbers(
             "solution",
             &["x1", "…", "xm"],

@@ -7,7 +7,7 @@ use lieflow::actions::LeftTranslation;
 use lieflow::groups::{LieGroup, MatrixGroup};
 use lieflow::problems::Lyapunov;
 
-use super::entries::{numbered, row_columns, rows};
+use super::entries::{numbered, rows};
 use super::flow::Growing;
 use super::prelude::*;
 use crate::formula::{Formula, Names, Texts, without_value};
@@ -113,7 +113,7 @@ impl System for Exponents {
             "directions of the perturbations, row by row",
             |_, _, (q, _), row| row.extend(rows(q)),
         )
-        .with_columns(|system| row_columns("q", system.x.len(), system.x.len())),
+        .of_matrix("q", |system| [system.x.len(); 2]),
         Q::number("frame_defect", "distance of Q'Q from the identity", |_, _, (q, _)| {
             MatrixGroup::so(q.nrows()).map_or(f64::NAN, |group| group.defect(q))
         })

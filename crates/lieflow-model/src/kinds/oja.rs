@@ -4,7 +4,7 @@
 use lieflow::dense::{multiply, norm, qr};
 use lieflow::problems::Oja;
 
-use super::entries::{ROUNDING, check_rows, check_symmetric, eigenvalues, row_columns, rows};
+use super::entries::{ROUNDING, check_rows, check_symmetric, eigenvalues, rows};
 use super::flow::OnMatrices;
 use super::matrix::MatrixAction;
 use super::prelude::*;
@@ -62,7 +62,7 @@ impl System for OjaFlow {
         Q::numbers("x", &["x11", "…", "xnk"], "the entries of X, row by row", |_, _, x, row| {
             row.extend(rows(x))
         })
-        .with_columns(|oja| row_columns("x", oja.x.nrows(), oja.x.ncols())),
+        .of_matrix("x", |oja| [oja.x.nrows(), oja.x.ncols()]),
         Q::number(
             "trace",
             "trace of X'AX, which grows to the sum of the leading eigenvalues",

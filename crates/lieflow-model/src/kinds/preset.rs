@@ -24,8 +24,8 @@ use toml::de::{DeTable, DeValue};
 use super::prelude::{Error, KeyPath, Law, Read, ReadError, Real, Scale, Whole, read_by_keys};
 use crate::formula::{Formula, Names, Parameters, Text, Texts};
 use crate::problem::{
-    Asked, Figure, Form, Forms, KeyInfo, Kind, Mapped, Model, Orders, Outcome, PARAMETERS, Plan,
-    Problem, QuantityInfo, ReadForms, Run, Steps, Watcher, high_order,
+    Asked, Figure, Form, Forms, KeyInfo, Kind, Model, Orders, Outcome, PARAMETERS, Plan, Problem,
+    QuantityInfo, ReadForms, RowCurve, Run, Stepper, Steps, Watcher, high_order,
 };
 use crate::reader::KeyReader;
 use crate::reader::values::counted;
@@ -312,15 +312,15 @@ struct OnBase {
 }
 
 impl OnBase {
-    /// The rows of these quantities.
-    fn mapped<T>(&self, asked: Asked<'_>, run: impl FnOnce(Mapped<'_>) -> T) -> T {
+    /// The base with the rows of these quantities.
+    fn mapped(&self, asked: Asked<'_>) -> Model {
         let quantities = || asked.quantities.iter().map(|&number| &self.formulas[number]);
         let values = quantities().flat_map(|quantity| &quantity.values);
-        let formulas: Vec<&Formula> =
-            values.chain(quantities().filter_map(|q| q.terms.as_ref())).collect();
+        let formulas: Vec<Formula> =
+            values.chain(quantities().filter_map(|q| q.terms.as_ref())).cloned().collect();
         let number =
-            |place: usize, _: f64, of_base: Row<'_>| formulas[place].value(of_base.values());
-        run(Mapped { base: &self.base, schema: asked.schema, number: &number })
+            move |place: usize, _: f64, of_base: Row<'_>| formulas[place].value(of_base.values());
+        self.base.clone().mapped(asked.schema.clone(), Arc::new(number))
     }
 }
 
@@ -351,10 +351,26 @@ impl Run for OnBase {
         plan: Plan<'_>,
         watcher: &mut dyn Watcher,
     ) -> Result<Outcome, RunError> {
-        self.mapped(asked, |mapped| mapped.drive(method, plan, watcher))
+        self.mapped(asked).drive(method, plan, watcher)
     }
     fn exact(&self, asked: Asked<'_>, t_span: [f64; 2]) -> Option<Result<Vec<f64>, Error>> {
-        self.mapped(asked, |mapped| mapped.exact(t_span))
+        self.mapped(asked).exact(t_span)
+    }
+    fn curve(
+        &self,
+        asked: Asked<'_>,
+        method: &MethodSpec,
+        numbers: &[f64],
+    ) -> Result<Box<dyn RowCurve>, Error> {
+        self.mapped(asked).curve(method, numbers)
+    }
+    fn stepper(
+        &self,
+        asked: Asked<'_>,
+        method: &MethodSpec,
+        (steps, start): (Steps, Option<&[f64]>),
+    ) -> Result<Box<dyn Stepper>, RunError> {
+        self.mapped(asked).stepper(method, steps, start)
     }
     fn orders(&self, method: &MethodSpec) -> Result<Orders, Error> {
         self.base.orders(method)

@@ -8,7 +8,8 @@ use lieflow::catalog::MethodSpec;
 use lieflow::{Error, RunError};
 
 use super::kind::{Fact, Figure, PrincipalInertia, high_order};
-use super::run::{Layer, Orders, Outcome, Plan, Steps, Watcher};
+use super::run::{Layer, Orders, Outcome, Plan, RowCurve, Steps, Watcher};
+use super::stepper::Stepper;
 use crate::formula::Formula;
 use crate::reader::Refusal;
 use crate::schema::{Law, Schema};
@@ -42,6 +43,20 @@ pub(crate) trait Run: Debug + Send + Sync {
         plan: Plan<'_>,
         watcher: &mut dyn Watcher,
     ) -> Result<Outcome, RunError>;
+    /// See [`Model::stepper`](super::Model::stepper).
+    fn stepper(
+        &self,
+        asked: Asked<'_>,
+        method: &MethodSpec,
+        start: (Steps, Option<&[f64]>),
+    ) -> Result<Box<dyn Stepper>, RunError>;
+    /// See [`Model::curve`](super::Model::curve).
+    fn curve(
+        &self,
+        asked: Asked<'_>,
+        method: &MethodSpec,
+        numbers: &[f64],
+    ) -> Result<Box<dyn RowCurve>, Error>;
     /// See [`Model::exact`](super::Model::exact).
     fn exact(&self, asked: Asked<'_>, t_span: [f64; 2]) -> Option<Result<Vec<f64>, Error>>;
     /// See [`Model::orders`](super::Model::orders).

@@ -5,10 +5,11 @@ use std::sync::Arc;
 
 use lieflow::catalog::MethodSpec;
 use lieflow::solve::Next;
-use lieflow::{Error, RunError};
+use lieflow::{Error, RunError, Stats};
 
 use super::model::Model;
 use super::run::{EventPlan, Outcome, Plan, RowCurve, Watcher};
+use super::stepper::Stepper;
 use crate::schema::{Row, Schema};
 
 /// The number of this place in a row at t, from the row of the base.
@@ -57,6 +58,9 @@ impl Watcher for OfBase<'_> {
     fn state(&mut self, bytes: &[u8]) {
         self.watcher.state(bytes);
     }
+    fn end(&mut self, t: f64, stats: &Stats) {
+        self.watcher.end(t, stats);
+    }
 }
 
 impl Mapped<'_> {
@@ -97,12 +101,30 @@ impl Mapped<'_> {
     }
 }
 
+/// What makes the values of rows of those of the base, for what outlives a run.
+#[derive(Clone)]
+pub(crate) struct RowMap {
+    base: Schema,
+    columns: usize,
+    number: Arc<NumberOf<'static>>,
+}
+
+impl RowMap {
+    pub(crate) fn new(base: &Schema, schema: &Schema, number: Arc<NumberOf<'static>>) -> Self {
+        RowMap { base: base.clone(), columns: schema.columns().count(), number }
+    }
+
+    /// Appends the values at t, from those of the base.
+    fn append(&self, t: f64, of_base: &[f64], values: &mut Vec<f64>) {
+        let row = self.base.row(of_base);
+        values.extend((0..self.columns).map(|place| (self.number)(place, t, row)));
+    }
+}
+
 /// The rows at all times, from those of the base.
 pub(crate) struct MappedCurve {
     pub(crate) curve: Box<dyn RowCurve>,
-    pub(crate) model: Model,
-    pub(crate) base: Arc<Model>,
-    pub(crate) number: Arc<NumberOf<'static>>,
+    pub(crate) map: RowMap,
 }
 
 impl RowCurve for MappedCurve {
@@ -117,10 +139,58 @@ impl RowCurve for MappedCurve {
         for (i, &t) in times.iter().enumerate() {
             of_base.clear();
             self.curve.rows(&[t], &mut of_base).map_err(|(_, error)| (i, error))?;
-            let row = self.base.schema().row(&of_base);
-            let places = 0..self.model.schema().columns().count();
-            values.extend(places.map(|place| (self.number)(place, t, row)));
+            self.map.append(t, &of_base, values);
         }
         Ok(())
+    }
+    fn numbers(&self) -> Vec<f64> {
+        self.curve.numbers()
+    }
+}
+
+/// A run that the caller takes step by step, with the rows of another model.
+pub(crate) struct MappedStepper {
+    pub(crate) run: Box<dyn Stepper>,
+    pub(crate) map: RowMap,
+}
+
+impl Stepper for MappedStepper {
+    fn t(&self) -> f64 {
+        self.run.t()
+    }
+    fn t_end(&self) -> f64 {
+        self.run.t_end()
+    }
+    fn stats(&self) -> Stats {
+        self.run.stats()
+    }
+    fn row(&self, values: &mut Vec<f64>) {
+        let mut of_base = Vec::new();
+        self.run.row(&mut of_base);
+        self.map.append(self.t(), &of_base, values);
+    }
+    fn state(&self) -> Vec<f64> {
+        self.run.state()
+    }
+    fn set_state(&mut self, numbers: &[f64]) -> Result<(), RunError> {
+        self.run.set_state(numbers)
+    }
+    fn step(&mut self) -> Result<f64, RunError> {
+        self.run.step()
+    }
+    fn advance_to(&mut self, t: f64) -> Result<(), RunError> {
+        self.run.advance_to(t)
+    }
+    fn interpolate(&mut self, t: f64, values: &mut Vec<f64>) -> Result<(), RunError> {
+        let mut of_base = Vec::new();
+        self.run.interpolate(t, &mut of_base)?;
+        self.map.append(t, &of_base, values);
+        Ok(())
+    }
+    fn save(&mut self) -> Vec<u8> {
+        self.run.save()
+    }
+    fn restore(&mut self, bytes: &[u8]) -> Result<(), Error> {
+        self.run.restore(bytes)
     }
 }

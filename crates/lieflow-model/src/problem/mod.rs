@@ -8,15 +8,17 @@ mod model;
 mod operations;
 mod quantity;
 mod run;
+mod stepper;
 mod system;
 
 pub use forms::Forms;
 pub(crate) use forms::{Asked, Form, Run};
 pub(crate) use keys::*;
 pub use kind::*;
-pub(crate) use mapped::Mapped;
 pub use model::{Model, Problem};
 pub use operations::*;
 pub(crate) use quantity::*;
 pub use run::*;
+pub use stepper::Stepper;
+pub(crate) use stepper::{Points, stepper_by};
 pub(crate) use system::*;

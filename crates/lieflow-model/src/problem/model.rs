@@ -10,8 +10,9 @@ use lieflow::{Error, RunError, SaveAt, Stats, StepControl, TimeGrid};
 
 use super::forms::{Asked, Form, Forms, Run};
 use super::kind::{Fact, Figure, Kind, PrincipalInertia};
-use super::mapped::{Mapped, MappedCurve, NumberOf};
+use super::mapped::{Mapped, MappedCurve, MappedStepper, NumberOf, RowMap};
 use super::run::{CurvePlace, Layer, Orders, Outcome, Plan, RowCurve, Rows, Sink, Steps, Watcher};
+use super::stepper::Stepper;
 use crate::formula::Formula;
 use crate::reader::{Mistakes, ReadError, Refusal, Tree, Value};
 use crate::schema::Schema;
@@ -314,13 +315,56 @@ impl Model {
                 let mut of_base = None;
                 let plan = Plan { curve: Some(CurvePlace(&mut of_base)), ..plan };
                 let done = mapped.drive(method, plan, watcher);
-                *place = of_base.map(|curve| {
-                    let (model, base, number) = (self.clone(), base.clone(), number.clone());
-                    Box::new(MappedCurve { curve, model, base, number }) as Box<dyn RowCurve>
-                });
+                let map = || self.map_of(base, number);
+                *place = of_base
+                    .map(|curve| Box::new(MappedCurve { curve, map: map() }) as Box<dyn RowCurve>);
                 done
             }
         }
+    }
+
+    /// The rows at all times of these numbers, of a run of this model by this method.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for other numbers.
+    pub fn curve(&self, method: &MethodSpec, numbers: &[f64]) -> Result<Box<dyn RowCurve>, Error> {
+        match &self.source {
+            Source::Form { quantities, .. } => {
+                let asked = Asked { quantities, schema: &self.schema };
+                self.form(method).curve(asked, method, numbers)
+            }
+            Source::Model { base, number } => {
+                let (curve, map) = (base.curve(method, numbers)?, self.map_of(base, number));
+                Ok(Box::new(MappedCurve { curve, map }))
+            }
+        }
+    }
+
+    /// A run that the caller takes step by step, from the initial state or from the numbers of another point.
+    ///
+    /// # Errors
+    /// As [`Solve::integrator`](lieflow::Solve::integrator).
+    pub fn stepper(
+        &self,
+        method: &MethodSpec,
+        steps: Steps,
+        start: Option<&[f64]>,
+    ) -> Result<Box<dyn Stepper>, RunError> {
+        match &self.source {
+            Source::Form { quantities, .. } => {
+                let asked = Asked { quantities, schema: &self.schema };
+                self.form(method).stepper(asked, method, (steps, start))
+            }
+            Source::Model { base, number } => {
+                let (run, map) = (base.stepper(method, steps, start)?, self.map_of(base, number));
+                Ok(Box::new(MappedStepper { run, map }))
+            }
+        }
+    }
+
+    /// What makes the values of its rows of those of the base.
+    fn map_of(&self, base: &Arc<Model>, number: &Arc<NumberOf<'static>>) -> RowMap {
+        RowMap::new(base.schema(), &self.schema, number.clone())
     }
 
     /// Integrates from the initial state in steps of one size; `sink` gets a row where `save` says.

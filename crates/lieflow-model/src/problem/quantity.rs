@@ -5,6 +5,21 @@ use super::kind::QuantityInfo;
 use super::system::{PointOf, System};
 use crate::schema::{Branch, Law, Measure, Part, Scale};
 
+/// The columns x11, …, xnk, row by row.
+pub(crate) fn row_columns(letter: &str, n: usize, k: usize) -> Vec<String> {
+    (1..=n).flat_map(|i| (1..=k).map(move |j| format!("{letter}{i}{j}"))).collect()
+}
+
+/// The columns of a quantity.
+enum Columns<S> {
+    /// Those of the listing.
+    Listed,
+    /// Those that the size of the problem says.
+    Named(fn(&S) -> Vec<String>),
+    /// The entries of a matrix, row by row: a letter, and how many rows and columns it has.
+    Matrix(&'static str, fn(&S) -> [usize; 2]),
+}
+
 /// The value of a quantity at y, a time `t` after the start.
 pub(crate) enum Value<S: System> {
     /// A number.
@@ -29,8 +44,7 @@ enum Keepers<S> {
 pub(crate) struct Quantity<S: System> {
     pub(crate) info: QuantityInfo,
     pub(crate) value: Value<S>,
-    /// The columns where the size of the problem says how many there are.
-    pub(crate) columns: Option<fn(&S) -> Vec<String>>,
+    columns: Columns<S>,
     /// Its parts, where it is not one of a length.
     pub(crate) parts: Option<fn(&S) -> Vec<Part>>,
     /// What a run of this problem chooses so that the columns are continuous.
@@ -49,7 +63,7 @@ impl<S: System> Quantity<S> {
         Quantity {
             info,
             value,
-            columns: None,
+            columns: Columns::Listed,
             parts: None,
             branch: |_| Branch::Single,
             law: Keepers::None,
@@ -86,7 +100,12 @@ impl<S: System> Quantity<S> {
 
     /// With columns that depend on the problem.
     pub(crate) const fn with_columns(self, columns: fn(&S) -> Vec<String>) -> Self {
-        Quantity { columns: Some(columns), ..self }
+        Quantity { columns: Columns::Named(columns), ..self }
+    }
+
+    /// The values are the entries of a matrix of this size, row by row, in columns with this letter.
+    pub(crate) const fn of_matrix(self, letter: &'static str, size: fn(&S) -> [usize; 2]) -> Self {
+        Quantity { columns: Columns::Matrix(letter, size), ..self }
     }
 
     /// The columns are the entries of a rotation: its error is an angle.
@@ -148,8 +167,20 @@ impl<S: System> Quantity<S> {
     /// The names of the columns.
     pub(crate) fn column_names(&self, system: &S) -> Vec<String> {
         match self.columns {
-            Some(columns) => columns(system),
-            None => self.info.column_names(),
+            Columns::Listed => self.info.column_names(),
+            Columns::Named(columns) => columns(system),
+            Columns::Matrix(letter, size) => {
+                let [rows, columns] = size(system);
+                row_columns(letter, rows, columns)
+            }
+        }
+    }
+
+    /// The rows and columns of a quantity that is a matrix.
+    pub(crate) fn matrix(&self, system: &S) -> Option<[usize; 2]> {
+        match self.columns {
+            Columns::Matrix(_, size) => Some(size(system)),
+            _ => None,
         }
     }
 }

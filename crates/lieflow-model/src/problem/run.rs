@@ -11,7 +11,7 @@ use lieflow::groups::LieAlgebra;
 use lieflow::methods::{AnyMethod, Facts, Method};
 use lieflow::names::same;
 use lieflow::problems::PointOf;
-use lieflow::solve::{Interpolant, Next, Status};
+use lieflow::solve::{Interpolant, Interrupted, Next, Status};
 use lieflow::space::Numbers;
 use lieflow::{
     Action, Direction, Error, Event, RunError, SaveAt, Solve, Stats, StepControl, TimeGrid,
@@ -172,6 +172,8 @@ pub trait RowCurve: Send + Sync {
     /// # Errors
     /// The number of the time that failed, and why: a time outside of the run.
     fn rows(&self, times: &[f64], values: &mut Vec<f64>) -> Result<(), (usize, RunError)>;
+    /// All its numbers, for [`Model::curve`](super::Model::curve).
+    fn numbers(&self) -> Vec<f64>;
 }
 
 impl Plan<'_> {
@@ -230,6 +232,8 @@ pub trait Watcher {
     fn progress(&mut self, _t: f64) {}
     /// The state, to go on from.
     fn state(&mut self, _bytes: &[u8]) {}
+    /// The end of a run that began, also of one that failed: the time, and what the run did.
+    fn end(&mut self, _t: f64, _stats: &Stats) {}
 }
 
 /// A sink as a watcher.
@@ -267,15 +271,17 @@ pub struct Orders {
 
 /// A problem that runs are made of: its methods by name, on numbers that a file can hold.
 pub trait Runnable:
-    MethodsByName<Group: LieAlgebra<Scalar: Into<f64>>, Action: Action<Self::Group, Point: Numbers>>
-    + Send
+    MethodsByName<
+        Group: LieAlgebra<Scalar: Into<f64>, Alg: Numbers>,
+        Action: Action<Self::Group, Point: Numbers>,
+    > + Send
     + Sync
     + 'static
 {
 }
 impl<P> Runnable for P where
     P: MethodsByName<
-            Group: LieAlgebra<Scalar: Into<f64>>,
+            Group: LieAlgebra<Scalar: Into<f64>, Alg: Numbers>,
             Action: Action<<P as lieflow::Problem>::Group, Point: Numbers>,
         > + Send
         + Sync
@@ -312,14 +318,31 @@ impl<P: Runnable> RowCurve for CurveOf<P> {
     }
     fn rows(&self, times: &[f64], values: &mut Vec<f64>) -> Result<(), (usize, RunError)> {
         let mut reader = self.points.reader().map_err(|error| (0, error.into()))?;
-        let mut row = Vec::new();
         for (i, &t) in times.iter().enumerate() {
-            row.clear();
-            (self.row_of)(t, reader.at(t).map_err(|error| (i, error))?, &mut row);
-            values.append(&mut row);
+            (self.row_of)(t, reader.at(t).map_err(|error| (i, error))?, values);
         }
         Ok(())
     }
+    fn numbers(&self) -> Vec<f64> {
+        self.points.numbers()
+    }
+}
+
+/// The curve of these numbers. `shared` makes the values of its rows, for a run that starts at a time.
+///
+/// # Errors
+/// As [`MethodsByName::method`] and [`Interpolant::from_numbers`].
+pub(crate) fn curve_by<P: Runnable>(
+    spec: &MethodSpec,
+    problem: &Arc<P>,
+    like: &PointOf<P>,
+    numbers: &[f64],
+    shared: &dyn Fn(f64) -> Box<SharedRowOf<P>>,
+) -> Result<Box<dyn RowCurve>, Error> {
+    let method = Arc::new(problem.method(spec)?);
+    let points = Interpolant::from_numbers(problem.clone(), method, like, numbers)?;
+    let row_of = shared(points.t_span()[0]);
+    Ok(Box::new(CurveOf { points, row_of }))
 }
 
 /// Integrate `problem` from `y` by the method that `spec` names: see [`Model::drive`](super::Model::drive).
@@ -409,15 +432,23 @@ pub(crate) fn drive_by<P: Runnable>(
         watcher.borrow_mut().row(t, schema.row(&numbers.borrow()))
     };
     let done = match curve {
-        None => solve.run_with(y, see)?,
+        None => solve.run_with(y, see),
         Some(CurvePlace(place)) => {
             let (done, points) = solve.run_interpolant_with(y, see);
             let curve =
                 |points| Box::new(CurveOf { points, row_of: shared() }) as Box<dyn RowCurve>;
             *place = points.into_shared().map(curve);
-            done?
+            done
         }
     };
+    let end = match &done {
+        Ok(done) => Some(done),
+        Err(Interrupted { solution, .. }) => solution.as_deref(),
+    };
+    if let Some(end) = end {
+        watcher.borrow_mut().end(end.t, &end.stats);
+    }
+    let done = done?;
     Ok(Outcome { t: done.t, status: done.status, stats: done.stats })
 }
 
@@ -432,7 +463,7 @@ pub(crate) fn numbers_of<Y: Numbers>(y: &mut Y) -> Vec<f64> {
 ///
 /// # Errors
 /// [`Error::OutOfRange`] for another number of them.
-fn set_numbers<Y: Numbers>(y: &mut Y, arg: &str, numbers: &[f64]) -> Result<(), Error> {
+pub(crate) fn set_numbers<Y: Numbers>(y: &mut Y, arg: &str, numbers: &[f64]) -> Result<(), Error> {
     let mut count = 0;
     y.each_number(&mut |_| count += 1);
     if numbers.len() != count {

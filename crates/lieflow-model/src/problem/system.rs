@@ -15,9 +15,10 @@ use super::kind::{Fact, Figure, PrincipalInertia, high_order};
 use super::operations::operations_by;
 use super::quantity::{Quantity, Value};
 use super::run::{
-    Layer, Orders, Outcome, Plan, RowsOf, Runnable, SharedRowOf, Steps, Watcher, drive_by, fits_by,
-    numbers_of, orders_by,
+    Layer, Orders, Outcome, Plan, RowCurve, RowsOf, Runnable, SharedRowOf, Steps, Watcher,
+    curve_by, drive_by, fits_by, numbers_of, orders_by,
 };
+use super::stepper::{Points, Stepper, stepper_by};
 use crate::formula::Formula;
 use crate::reader::Refusal;
 use crate::schema::{Law, Schema};
@@ -141,6 +142,17 @@ fn values_of<S: System>(
     numbers: &mut Vec<f64>,
 ) {
     numbers.clear();
+    append_values(system, quantities, t, y, numbers);
+}
+
+/// The same at the end of `numbers`.
+fn append_values<S: System>(
+    system: &S,
+    quantities: &[usize],
+    t: f64,
+    y: &PointOf<S>,
+    numbers: &mut Vec<f64>,
+) {
     for &quantity in quantities {
         match S::QUANTITIES[quantity].value {
             Value::Number(value) => numbers.push(value(system, t, y)),
@@ -154,6 +166,12 @@ impl<S: System> On<S> {
     fn ready(&self) -> Result<&Ready<S>, Error> {
         let ready = || self.system.problem().map(|(problem, start)| (Arc::new(problem), start));
         self.ready.get_or_init(ready).as_ref().map_err(Error::clone)
+    }
+
+    /// What appends the values of these quantities, for what outlives a run that starts at t0.
+    fn shared(&self, quantities: &[usize], t0: f64) -> Box<SharedRowOf<S::Problem<f64>>> {
+        let (system, quantities) = (self.system.clone(), quantities.to_vec());
+        Box::new(move |t, y, numbers| append_values(&system, &quantities, t - t0, y, numbers))
     }
 
     /// The sizes of terms at y go to the end of `numbers`.
@@ -181,6 +199,9 @@ impl<S: System> Run for On<S> {
         if let Some(parts) = quantity.parts {
             schema.set_parts(parts(system));
         }
+        if let Some(size) = quantity.matrix(system) {
+            schema.set_matrix(size);
+        }
         schema.set_branch((quantity.branch)(system));
     }
     fn modelled(&self) -> String {
@@ -202,12 +223,28 @@ impl<S: System> Run for On<S> {
             values_of(&self.system, asked.quantities, t - t0, y, numbers);
             self.sizes(asked, y, numbers);
         };
-        let shared = || -> Box<SharedRowOf<S::Problem<f64>>> {
-            let (system, quantities) = (self.system.clone(), asked.quantities.to_vec());
-            Box::new(move |t, y, numbers| values_of(&system, &quantities, t - t0, y, numbers))
-        };
+        let shared = || self.shared(asked.quantities, t0);
         let rows = RowsOf { schema: asked.schema, row_of: &row_of, shared: &shared };
         drive_by(method, problem, start.clone(), plan, rows, watcher)
+    }
+    fn stepper(
+        &self,
+        asked: Asked<'_>,
+        method: &MethodSpec,
+        start: (Steps, Option<&[f64]>),
+    ) -> Result<Box<dyn Stepper>, RunError> {
+        let (problem, y) = self.ready()?;
+        let points = Points::in_order(self.shared(asked.quantities, start.0.t_span()[0]));
+        stepper_by(method, problem, y.clone(), start, points)
+    }
+    fn curve(
+        &self,
+        asked: Asked<'_>,
+        method: &MethodSpec,
+        numbers: &[f64],
+    ) -> Result<Box<dyn RowCurve>, Error> {
+        let (problem, like) = self.ready()?;
+        curve_by(method, problem, like, numbers, &|t0| self.shared(asked.quantities, t0))
     }
     fn exact(&self, asked: Asked<'_>, t_span: [f64; 2]) -> Option<Result<Vec<f64>, Error>> {
         let mut values = Vec::new();

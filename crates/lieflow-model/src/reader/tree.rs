@@ -43,6 +43,24 @@ impl Tree {
         Tree::Table(entries.collect())
     }
 
+    /// The tree of a value of a file. A date is its text.
+    pub(crate) fn of(value: &Value<'_>) -> Tree {
+        match value.get_ref() {
+            DeValue::Boolean(x) => Tree::Bool(*x),
+            DeValue::String(text) => Tree::Text(text.to_string()),
+            DeValue::Array(list) => Tree::List(list.iter().map(Tree::of).collect()),
+            DeValue::Table(table) => {
+                Tree::table(table.iter().map(|(key, value)| (&**key.get_ref(), Tree::of(value))))
+            }
+            DeValue::Integer(n) => match i64::from_str_radix(n.as_str(), n.radix()) {
+                Ok(n) => Tree::Whole(n),
+                Err(_) => Tree::Text(n.to_string()),
+            },
+            DeValue::Float(x) => x.as_str().parse().map_or(Tree::Text(x.to_string()), Tree::Number),
+            DeValue::Datetime(date) => Tree::Text(date.to_string()),
+        }
+    }
+
     /// Reads a table of keys.
     ///
     /// # Errors

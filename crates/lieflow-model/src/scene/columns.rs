@@ -7,7 +7,7 @@ use lieflow::Error;
 use crate::formula::{Formula, Lets, Names, Parameters};
 use crate::problem::Model;
 use crate::problem::{FormulaKeys, Problem};
-use crate::reader::{KeyPath, Refusal};
+use crate::reader::{KeyPath, Mistakes, Read, Refusal, Tree, read_by_keys};
 use crate::schema::{Row, Schema};
 
 /// The name of the quantity that `[output.formulas]` is.
@@ -24,7 +24,7 @@ struct Column {
 
 /// A formula of t and columns.
 #[derive(Clone, Debug)]
-pub(super) struct RowFormula {
+pub struct RowFormula {
     formula: Formula,
     /// The columns that it uses, each with its variable.
     columns: Vec<(usize, Column)>,
@@ -34,7 +34,7 @@ pub(super) struct RowFormula {
 
 /// A formula of the rows of a schema.
 #[derive(Debug)]
-pub(super) struct OnRows {
+pub struct OnRows {
     formula: Formula,
     /// The variable and the place in a row of each column.
     places: Vec<(usize, usize)>,
@@ -43,7 +43,7 @@ pub(super) struct OnRows {
 
 impl RowFormula {
     /// The quantities that it is made of.
-    pub(super) fn quantities(&self) -> impl Iterator<Item = &str> {
+    pub fn quantities(&self) -> impl Iterator<Item = &str> {
         self.columns.iter().map(|(_, column)| -> &str { column.quantity })
     }
 
@@ -61,7 +61,7 @@ impl RowFormula {
     ///
     /// # Errors
     /// [`Error::UnknownName`] for a schema without a quantity of the formula.
-    pub(super) fn on(&self, schema: &Schema) -> Result<OnRows, Error> {
+    pub fn on(&self, schema: &Schema) -> Result<OnRows, Error> {
         let place = |(variable, column): &(usize, Column)| {
             let observable = schema.get(column.quantity)?;
             Ok((*variable, observable.place(column.index)))
@@ -74,12 +74,12 @@ impl RowFormula {
 
 impl OnRows {
     /// The places in a row of its columns.
-    pub(super) fn places(&self) -> impl Iterator<Item = usize> {
+    pub fn places(&self) -> impl Iterator<Item = usize> {
         self.places.iter().map(|(_, place)| *place)
     }
 
     /// The value at t in a row.
-    pub(super) fn value(&self, t: f64, row: Row<'_>) -> f64 {
+    pub fn value(&self, t: f64, row: Row<'_>) -> f64 {
         let mut variables = self.variables.lock().unwrap_or_else(PoisonError::into_inner);
         variables[0] = t;
         for &(variable, place) in &self.places {
@@ -91,14 +91,40 @@ impl OnRows {
 
 /// The columns of a problem, and the names that formulas of them may use: t, the columns, the constants and the
 /// named formulas of the problem.
-pub(super) struct Columns {
+#[derive(Debug)]
+pub struct Columns {
     columns: Vec<Column>,
     names: Names,
     /// The column of each variable; none of t.
     variables: Vec<Option<usize>>,
 }
 
+read_by_keys! {
+    /// The keys of a problem that give names to formulas of its columns.
+    struct Named {
+        parameters: Parameters,
+        r#let: Lets,
+    }
+}
+
 impl Columns {
+    /// The columns of the problem of these keys. A column that several quantities have is taken first from those of
+    /// `asked`.
+    ///
+    /// # Errors
+    /// [`Mistakes`] of `parameters`.
+    pub fn of_keys(problem: &Problem, keys: &Tree, asked: &[String]) -> Result<Self, Mistakes> {
+        let Tree::Table(keys) = keys else {
+            return Err(Mistakes(vec![Refusal::section("expected a table of keys")]));
+        };
+        let named = ["parameters", "let"].into_iter();
+        let named = named.filter_map(|name| Some((name, keys.get(name)?.clone())));
+        Tree::table(named).read(|values| {
+            let Named { parameters, r#let } = Named::read(values)?;
+            Ok(Columns::of(problem, asked, &FormulaKeys { parameters, r#let })?)
+        })
+    }
+
     /// `asked` are the quantities that the scene writes: a column that several quantities have is taken from them
     /// first.
     ///
@@ -145,7 +171,7 @@ impl Columns {
     ///
     /// # Errors
     /// As [`Formula::read`], and a refusal of `key` for the name of a quantity of several columns.
-    pub(super) fn read(&self, key: &str, text: &str) -> Result<RowFormula, Refusal> {
+    pub fn read(&self, key: &str, text: &str) -> Result<RowFormula, Refusal> {
         let formula = || Ok(self.of_rows(Formula::read(key, text, &self.names.apart())?));
         if self.names.is_formula(text) {
             return formula();

@@ -6,7 +6,7 @@ use crate::problem::Problem;
 
 /// The error of each step, relative and absolute, of a method of this order: of order 8 the least that rounding
 /// allows, by which eight digits and more are right after many thousand steps; of a lower order one that it can meet.
-pub(super) fn tolerance(order: Option<usize>) -> f64 {
+pub fn tolerance(order: Option<usize>) -> f64 {
     match order {
         Some(order @ ..8) => 1.0 / 10_f64.powi(order as i32 + 5),
         _ => 1e-14,

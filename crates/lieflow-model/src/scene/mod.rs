@@ -13,7 +13,8 @@ mod run;
 mod set;
 
 pub use bundled::{BUNDLED, Bundled};
-pub use defaults::Defaults;
+pub use columns::{Columns, OnRows, RowFormula};
+pub use defaults::{Defaults, tolerance};
 pub use error::SceneError;
 pub use events::SceneEvent;
 pub use open::unknown_scene;

@@ -21,7 +21,7 @@ use crate::formula::{Formula, Lost, Which};
 use crate::kinds;
 use crate::problem::{FormulaKeys, KNOTS_MAX, Kind, Problem, SAMPLES};
 use crate::problem::{Layer, Model, Plan, Steps};
-use crate::reader::{KeyPath, Read, ReadError, Refusal};
+use crate::reader::{KeyPath, Read, ReadError, Refusal, Tree};
 use crate::schema::Schema;
 
 /// A run, stated in full and checked.
@@ -35,6 +35,8 @@ pub struct Scene {
     source: String,
     /// The problem.
     pub problem: Problem,
+    /// The keys of the problem, without `kind`. A file of samples is its name and its text.
+    pub keys: Tree,
     /// The method, with the parts that it takes by default spelt out.
     pub method: MethodSpec,
     /// The layer.
@@ -96,6 +98,7 @@ impl Scene {
 
         let kind = mistakes.keep(read_kind(&document));
         let problem = kind.and_then(|kind| mistakes.keep(read_problem(&document, kind, folder)));
+        let (problem, keys) = problem.unzip();
         let spec = problem.as_ref();
 
         let method = mistakes.keep(document.keys_if_any::<MethodKeys>("method"));
@@ -181,10 +184,13 @@ impl Scene {
         }
 
         let written = output.zip(formulas);
-        let all = || Some((title?, problem?, method?, at_knots?, time?, steps?, written?, events?));
-        let (title, problem, (method, layer), at_knots, time, steps, (output, formulas), events) =
+        let all = || {
+            let problem = problem.zip(keys);
+            Some((title?, problem?, method?, at_knots?, time?, steps?, written?, events?))
+        };
+        let (title, whole, (method, layer), at_knots, time, steps, (output, formulas), events) =
             mistakes.or(all())?;
-        let (grid, adaptive, max_steps) = steps;
+        let ((problem, keys), (grid, adaptive, max_steps)) = (whole, steps);
         let Output { quantities, plot, save, times_by_steps, error_check, .. } = output;
         let stem = Path::new(source).file_stem().unwrap_or_default().to_string_lossy();
         // A folder may have this name.
@@ -196,6 +202,7 @@ impl Scene {
             name,
             source: source.into(),
             problem,
+            keys,
             method,
             layer,
             grid,
@@ -455,17 +462,18 @@ fn read_problem(
     document: &Document<'_>,
     kind: &'static Kind,
     folder: Option<&Path>,
-) -> Result<Problem, SceneError> {
+) -> Result<(Problem, Tree), SceneError> {
     let mut section = document.section("problem")?;
     if let DeValue::Table(keys) = section.get_mut() {
         keys.remove("kind");
     }
     document.read("problem", section, |section| {
         if !kind.keys.contains(&SAMPLES) {
-            return kind.read_problem(section);
+            return Ok((kind.read_problem(section)?, Tree::of(section)));
         }
         let file = |name: &str| read_samples(folder, name);
-        kind.read_problem(&with_file(section, SAMPLES.name, file)?)
+        let section = with_file(section, SAMPLES.name, file)?;
+        Ok((kind.read_problem(&section)?, Tree::of(&section)))
     })
 }
 

@@ -74,6 +74,8 @@ pub struct Observable {
     pub parts: Vec<Part>,
     /// What a run chooses so that the columns are continuous.
     pub branch: Branch,
+    /// The shape of its values as an array, rows first; none of a number.
+    pub shape: Vec<usize>,
     place: Range<usize>,
     /// The place of the size of its terms, where its rounding is relative to that.
     size: Option<usize>,
@@ -136,14 +138,28 @@ impl Schema {
         let parts =
             vec![Part { name: String::new(), what: "", columns: 0..columns.len(), measure }];
         let branch = Branch::Single;
-        let observable = Observable { name, columns, law, is_state, parts, branch, place, size };
+        let shape = if columns.len() == 1 { Vec::new() } else { vec![columns.len()] };
+        let observable =
+            Observable { name, columns, law, is_state, parts, branch, shape, place, size };
         self.observables.push(observable);
     }
 
     /// Give the last observable these parts.
     pub(crate) fn set_parts(&mut self, parts: Vec<Part>) {
         if let Some(observable) = self.observables.last_mut() {
+            if let [Part { measure: Measure::Rotation, .. }] = parts[..]
+                && observable.columns.len() == 9
+            {
+                observable.shape = vec![3, 3];
+            }
             observable.parts = parts;
+        }
+    }
+
+    /// Make the last observable a matrix of this size, row by row.
+    pub(crate) fn set_matrix(&mut self, size: [usize; 2]) {
+        if let Some(observable) = self.observables.last_mut() {
+            observable.shape = size.into();
         }
     }
 

@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use lieflow::groups::{LieGroup, So3};
 use nalgebra::{Matrix3, Vector3};
 
-use self::system::{Coupled, ON_PARTS, Part, Point, Space};
+use self::system::{Coupled, Part, Space};
 use super::body::check_rotation;
 use super::entries::check_rows;
 use super::flow;
@@ -18,7 +18,7 @@ use crate::problem::part;
 use crate::reader::values::Numbers;
 use crate::schema::{self, Measure};
 
-pub(super) use self::system::{OnParts, Parts};
+pub(super) use self::system::{Field, ON_PARTS, OnParts, Parts, Point, group_of};
 
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {

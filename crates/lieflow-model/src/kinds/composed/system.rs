@@ -27,11 +27,11 @@ pub(crate) type Parts<S = f64> = Product<Powers<S>, Product<Powers<S>, Translati
 /// On vectors, and on rotations and numbers.
 pub(crate) type OnParts = Pair<Linear, LeftTranslation>;
 /// Vectors, rotations and numbers.
-pub(super) type Point<S = f64> = (Box<[Vector3<S>]>, (Box<[Matrix3<S>]>, Box<[S]>));
+pub(crate) type Point<S = f64> = (Box<[Vector3<S>]>, (Box<[Matrix3<S>]>, Box<[S]>));
 /// f of each.
-type Field<S> = (Box<[Vector3<S>]>, (Box<[Vector3<S>]>, Box<[S]>));
+pub(crate) type Field<S = f64> = (Box<[Vector3<S>]>, (Box<[Vector3<S>]>, Box<[S]>));
 
-pub(super) const ON_PARTS: OnParts = Pair(Linear, LeftTranslation);
+pub(crate) const ON_PARTS: OnParts = Pair(Linear, LeftTranslation);
 
 /// The space of a part, and where in a point it stands.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -120,18 +120,26 @@ pub(super) struct Coupled<S: Number> {
     parts: Vec<Part>,
 }
 
+/// The group of so many vectors, rotations and numbers.
+///
+/// # Errors
+/// As [`Power::new`].
+pub(crate) fn group_of<S: Number>(counts: [usize; 3]) -> Result<Parts<S>, Error> {
+    let copies = |n: usize| match n {
+        0 => Ok(Power::none(So3::new())),
+        n => Power::new(So3::new(), n),
+    };
+    let [vectors, rotations, numbers] = counts;
+    let zero: Box<[S]> = (0..numbers).map(|_| S::lit(0.0)).collect();
+    let translations = Translations::new(zero, numbers);
+    Ok(Product(copies(vectors)?, Product(copies(rotations)?, translations)))
+}
+
 impl<S: Number> Coupled<S> {
     /// `like` is a point.
     pub(super) fn new(parts: Vec<Part>, like: &Point<S>) -> Result<Self, Error> {
-        let copies = |n: usize| match n {
-            0 => Ok(Power::none(So3::new())),
-            n => Power::new(So3::new(), n),
-        };
         let (vectors, (rotations, numbers)) = like;
-        let zero: Box<[S]> = numbers.iter().map(|_| S::lit(0.0)).collect();
-        let translations = Translations::new(zero, numbers.len());
-        let group =
-            Product(copies(vectors.len())?, Product(copies(rotations.len())?, translations));
+        let group = group_of([vectors.len(), rotations.len(), numbers.len()])?;
         Ok(Coupled { group, parts })
     }
 }

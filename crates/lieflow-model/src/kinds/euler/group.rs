@@ -8,9 +8,9 @@ use lieflow::problems::{Euler, FromTheBody};
 
 use super::dual::{OnDual, quantities};
 use super::matrices::EulerEquation;
-use crate::kinds::entries::row_columns;
 use crate::kinds::flow::FromBody;
 use crate::kinds::prelude::*;
+use crate::problem::row_columns;
 
 /// The equation with g, from g = 𝟙.
 #[derive(Clone, Debug)]

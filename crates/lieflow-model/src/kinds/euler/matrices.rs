@@ -10,13 +10,11 @@ use super::energy::Energy;
 use super::group::WithGroup;
 use crate::formula::Formula;
 use crate::kinds::algebra::{Algebra, Miss, Named, miss};
-use crate::kinds::entries::{
-    antisymmetric, numbered, row_columns, rows, size_of_traces, square, traces,
-};
+use crate::kinds::entries::{antisymmetric, numbered, rows, size_of_traces, square, traces};
 use crate::kinds::flow::OnMatrices;
 use crate::kinds::matrix::MatrixAction;
 use crate::kinds::prelude::*;
-use crate::problem::SampleKeys;
+use crate::problem::{SampleKeys, row_columns};
 use crate::reader::values::Numbers;
 
 /// How H is stated.

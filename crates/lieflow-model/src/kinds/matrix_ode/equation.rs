@@ -11,12 +11,11 @@ use lieflow::problems::Flow;
 use super::{ACTIONS, NAMED_MAX};
 use crate::formula::{Formula, without_value};
 use crate::kinds::algebra::{Algebra, Miss, miss};
-use crate::kinds::entries::{
-    numbered, row_columns, rows, size_of_traces, traces, upper, upper_columns,
-};
+use crate::kinds::entries::{numbered, rows, size_of_traces, traces, upper, upper_columns};
 use crate::kinds::flow::OnMatrices;
 use crate::kinds::matrix::MatrixAction;
 use crate::kinds::prelude::*;
+use crate::problem::row_columns;
 
 /// The equation with its initial point.
 #[derive(Clone, Debug)]
@@ -110,7 +109,7 @@ impl System for Equation {
         Q::numbers("point", &["y11", "…", "ynk"], "the point, row by row", |_, _, y, row| {
             row.extend(rows(y));
         })
-        .with_columns(|equation| row_columns("y", equation.start.nrows(), equation.start.ncols())),
+        .of_matrix("y", |equation| [equation.start.nrows(), equation.start.ncols()]),
         Q::numbers(
             "column",
             &["y11", "…", "yn1"],

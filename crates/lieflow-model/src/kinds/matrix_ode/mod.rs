@@ -22,10 +22,11 @@ use lieflow::groups::{GroupMatrix, LieAlgebra, LieGroup, MatrixGroup};
 use self::equation::Equation;
 use super::algebra::{ALGEBRAS, Algebra};
 use super::body::TYPED;
-use super::entries::{above_diagonal, check_symmetric, row_columns, side_of};
+use super::entries::{above_diagonal, check_symmetric, side_of};
 use super::matrix::MatrixAction;
 use super::prelude::*;
 use crate::formula::{Formula, Text, Texts};
+use crate::problem::row_columns;
 
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {

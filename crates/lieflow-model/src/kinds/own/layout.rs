@@ -6,6 +6,8 @@ use lieflow::groups::{
 };
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
+use crate::kinds::composed::{Field, Parts, Point};
+
 /// How points of this type and elements of the algebra of G are numbers by rows.
 pub(super) trait Layout<G: lieflow::LieGroup, Y>: Copy + Send + Sync + 'static {
     /// How many numbers a point has, and a value of f.
@@ -148,6 +150,43 @@ impl Layout<UnitQuaternions, UnitQuaternion<f64>> for Quaternions {
     }
     fn to_space(self, _: &UnitQuaternions, y: &UnitQuaternion<f64>, v: &mut Vector3<f64>) {
         *v = y.transform_vector(v);
+    }
+}
+
+/// Vectors, rotations and numbers, in this order.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct InParts {
+    pub(super) vectors: usize,
+    pub(super) rotations: usize,
+    pub(super) numbers: usize,
+}
+
+impl Layout<Parts, Point> for InParts {
+    fn sizes(self, _: &Parts) -> [usize; 2] {
+        let InParts { vectors, rotations, numbers } = self;
+        [3 * vectors + 9 * rotations + numbers, 3 * (vectors + rotations) + numbers]
+    }
+    fn point(self, _: &Parts, rows: &[f64]) -> Point {
+        let (vectors, rest) = rows.split_at(3 * self.vectors);
+        let (rotations, numbers) = rest.split_at(9 * self.rotations);
+        let rotations = rotations.chunks_exact(9).map(Matrix3::from_row_slice);
+        (vectors.chunks_exact(3).map(vector).collect(), (rotations.collect(), numbers.into()))
+    }
+    fn show(self, (vectors, (rotations, numbers)): &Point, rows: &mut [f64]) {
+        let entries = |g: &Matrix3<f64>| g.transpose().data.0.into_iter().flatten();
+        let vectors = vectors.iter().flat_map(|x| x.iter().copied());
+        let all = vectors.chain(rotations.iter().flat_map(entries)).chain(numbers.iter().copied());
+        rows.iter_mut().zip(all).for_each(|(row, x)| *row = x);
+    }
+    fn value(self, rows: &[f64], (vectors, (rotations, numbers)): &mut Field) {
+        let (all, last) = rows.split_at(3 * (vectors.len() + rotations.len()));
+        let each = vectors.iter_mut().chain(rotations);
+        each.zip(all.chunks_exact(3)).for_each(|(v, rows)| *v = vector(rows));
+        numbers.copy_from_slice(last);
+    }
+    /// The angular velocities of rotations alone have a frame.
+    fn to_space(self, _: &Parts, (_, (rotations, _)): &Point, v: &mut Field) {
+        v.1.0.iter_mut().zip(rotations).for_each(|(v, g)| *v = g * *v);
     }
 }
 

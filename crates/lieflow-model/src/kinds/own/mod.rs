@@ -10,10 +10,12 @@
 //! | `SO(n)`, `SL(n)`, `GL(n)`, `Sp(2m)`, `SO(p,q)`, G_M | translation, conjugation, coadjoint | n×n | n×n |
 //! | | linear | n×k | n×n |
 //! | | lagrangian, of Sp(2m) | m×m | 2m×2m |
+//! | parts: vectors, rotations and numbers, in this order | that of each | 3 numbers, 3×3, 1 number each | 3, 3, 1 number each |
 //! | `SO(3)` | conjugation; linear with k columns | 3×3; 3×k | 3 numbers |
 //!
 //! ẏ = λ_*(f(t, y))(y). On a group this is ẏ = f·y with [`Frame::Space`], and ẏ = y·f with [`Frame::Body`].
 
+mod formulas;
 mod layout;
 mod run;
 
@@ -21,17 +23,20 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use faer::Mat;
-use lieflow::Error;
 use lieflow::actions::{Coadjoint, LeftTranslation, Linear};
 use lieflow::catalog::MethodSpec;
 use lieflow::groups::{MatrixGroup, Se3, So3, UnitQuaternions};
 use lieflow::names::{near, plain};
+use lieflow::{Error, RunError};
 
-use self::layout::{Matrices, Motions, Pairs, Quaternions, Rotations, Vectors};
+pub use self::formulas::Formulas;
+use self::layout::{InParts, Matrices, Motions, Pairs, Quaternions, Rotations, Vectors};
 use self::run::Typed;
-pub use self::run::{Curve, End, OwnEvent, OwnPlan, Pace, Ran, Run};
+pub use self::run::{Curve, End, OwnEvent, OwnPlan, Ran, Run};
 use super::algebra::Algebra;
+use super::composed::{ON_PARTS, group_of};
 use super::matrix::MatrixAction;
+use crate::problem::{Orders, Stepper, Steps};
 
 /// f: writes the value at (t, y) into the last slice, which is 0 before. It returns false to end the run at once.
 pub type OwnField = dyn Fn(f64, &[f64], &mut [f64]) -> bool + Send + Sync;
@@ -71,6 +76,8 @@ pub enum GroupName {
     Named(String),
     /// G_M = {g : gᵀMg = M}, with n and M by rows.
     Form(usize, Vec<f64>),
+    /// So many vectors, rotations and numbers: SO(3)ⁿ × SO(3)ᵐ × ℝᵏ.
+    Parts([usize; 3]),
 }
 
 /// The actions by name.
@@ -96,6 +103,7 @@ enum SpaceKind {
     Motion,
     Pair,
     Quaternion,
+    Parts(InParts),
     Matrix(MatrixGroup, MatrixAction),
 }
 
@@ -138,7 +146,10 @@ impl Space {
             let expected = format!("{hint}one of {}", ACTIONS.join(", "));
             return misfit("action", format!("`{action}`"), expected);
         };
-        let translates = action == "translation";
+        let translates = match group {
+            GroupName::Parts([_, rotations, _]) => *rotations > 0,
+            _ => action == "translation",
+        };
         match frame {
             None if translates => {
                 return misfit("frame", "None", "\"space\" (ẏ = f y) or \"body\" (ẏ = y f)");
@@ -152,6 +163,7 @@ impl Space {
         let name = match group {
             GroupName::Named(name) => plain(name),
             GroupName::Form(..) => String::new(),
+            GroupName::Parts(counts) => return Self::of_parts(*counts, action, frame, shape),
         };
         let (kind, point, value) = match (&*name, action) {
             ("so3", "translation") => (SpaceKind::Rotation, vec![3, 3], vec![3]),
@@ -172,6 +184,24 @@ impl Space {
         Ok(space)
     }
 
+    fn of_parts(
+        [vectors, rotations, numbers]: [usize; 3],
+        action: &str,
+        frame: Option<Frame>,
+        shape: &[usize],
+    ) -> Result<Self, Misfit> {
+        if action != ACTIONS[0] {
+            return misfit("action", format!("`{action}`"), "none: each part has its own");
+        }
+        let parts = InParts { vectors, rotations, numbers };
+        let turns = 3 * (vectors + rotations);
+        let (point, value) = (turns + 6 * rotations + numbers, turns + numbers);
+        let (kind, point, value) = (SpaceKind::Parts(parts), vec![point], vec![value]);
+        let space = Space { kind, frame, point, value };
+        space.check_shape(shape)?;
+        Ok(space)
+    }
+
     fn of_matrices(
         group: &GroupName,
         action: &str,
@@ -184,6 +214,7 @@ impl Space {
         let lagrangian = action == "lagrangian";
         let group = match group {
             GroupName::Named(name) => matrix_group(name, if lagrangian { 2 * rows } else { rows })?,
+            GroupName::Parts(_) => return misfit("group", "parts", "a group of matrices"),
             GroupName::Form(n, m) => {
                 let form = Mat::from_fn(*n, *n, |i, j| m[i * n + j]);
                 match MatrixGroup::gm(form) {
@@ -246,7 +277,7 @@ impl Space {
                 let layout = Matrices { rows: self.point[0], columns: self.point[1] };
                 Typed::linear_or_poisson(group.clone(), *action, layout, (field, body, linear))
             }
-            SpaceKind::Pair | SpaceKind::Quaternion if linear => {
+            SpaceKind::Pair | SpaceKind::Quaternion | SpaceKind::Parts(_) if linear => {
                 return Err(Error::Unsupported {
                     what: "linear=True",
                     with: "this group and action".into(),
@@ -255,6 +286,11 @@ impl Space {
             }
             SpaceKind::Quaternion => {
                 Typed::field(UnitQuaternions, LeftTranslation, Quaternions, (field, body))
+            }
+            SpaceKind::Parts(parts) => {
+                let InParts { vectors, rotations, numbers } = *parts;
+                let group = group_of([vectors, rotations, numbers])?;
+                Typed::field(group, ON_PARTS, *parts, (field, body))
             }
             SpaceKind::Pair => Typed::poisson(Se3::new(), Coadjoint, Pairs, field),
         };
@@ -274,12 +310,12 @@ impl core::fmt::Debug for Own {
 }
 
 impl Own {
-    /// Checks that the method fits.
+    /// The orders of a method that fits.
     ///
     /// # Errors
     /// The reason why it does not.
-    pub fn fits(&self, method: &MethodSpec) -> Result<(), Error> {
-        self.run.fits(method)
+    pub fn orders(&self, method: &MethodSpec) -> Result<Orders, Error> {
+        self.run.orders(method)
     }
 
     /// Integrates from y0, by rows. `observe` sees the rows of the output. `stop` ends the run when it is set; the
@@ -293,6 +329,19 @@ impl Own {
         stop: &AtomicBool,
     ) -> Ran {
         self.run.run(method, y0, plan, observe, stop)
+    }
+
+    /// A run from y0, by rows, that the caller takes step by step.
+    ///
+    /// # Errors
+    /// As [`Solve::integrator`](lieflow::Solve::integrator).
+    pub fn stepper(
+        &self,
+        method: &MethodSpec,
+        y0: &[f64],
+        steps: Steps,
+    ) -> Result<Box<dyn Stepper>, RunError> {
+        self.run.stepper(method, y0, steps)
     }
 
     /// The curve of these numbers, for the method that made them.

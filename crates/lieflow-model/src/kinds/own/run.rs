@@ -10,21 +10,11 @@ use lieflow::methods::{AnyMethod, Method};
 use lieflow::problems::{AlgOf, DynFlow, Flow, PointOf, Problem, TimeAlone, WithHamiltonian};
 use lieflow::solve::{Interpolant, Interrupted, Next, Solution, Status};
 use lieflow::space::Numbers;
-use lieflow::{
-    Action, Direction, Error, Event, RunError, SaveAt, Solve, Stats, StepControl, TimeGrid,
-};
+use lieflow::{Action, Direction, Error, Event, RunError, SaveAt, Solve, Stats};
 
 use super::OwnField;
 use super::layout::Layout;
-
-/// How the steps of a run are chosen.
-#[derive(Clone, Debug)]
-pub enum Pace {
-    /// Equal steps.
-    Equal(TimeGrid),
-    /// By their error.
-    ByError(StepControl),
-}
+use crate::problem::{Orders, Points, Stepper, Steps, orders_by, stepper_by};
 
 /// A function of t and the numbers of y.
 type OfRows<'a, V> = Box<dyn FnMut(f64, &[f64]) -> V + 'a>;
@@ -59,10 +49,8 @@ impl core::fmt::Debug for OwnEvent<'_> {
 /// What a run is asked for.
 #[allow(missing_debug_implementations)] // closures
 pub struct OwnPlan<'a> {
-    /// The span.
-    pub t_span: [f64; 2],
     /// The steps.
-    pub pace: Pace,
+    pub steps: Steps,
     /// The rows of the output.
     pub save: SaveAt,
     /// Times at which a step ends.
@@ -122,11 +110,11 @@ pub trait Curve: Send + Sync {
 
 /// A problem of any space.
 pub trait Run: Send + Sync {
-    /// As [`Own::fits`](super::Own::fits).
+    /// As [`Own::orders`](super::Own::orders).
     ///
     /// # Errors
-    /// The reason why it does not.
-    fn fits(&self, method: &MethodSpec) -> Result<(), Error>;
+    /// The reason why it does not fit.
+    fn orders(&self, method: &MethodSpec) -> Result<Orders, Error>;
     /// As [`Own::run`](super::Own::run).
     fn run(
         &self,
@@ -136,6 +124,16 @@ pub trait Run: Send + Sync {
         observe: &mut dyn FnMut(f64, &[f64]),
         stop: &AtomicBool,
     ) -> Ran;
+    /// As [`Own::stepper`](super::Own::stepper).
+    ///
+    /// # Errors
+    /// As [`Solve::integrator`].
+    fn stepper(
+        &self,
+        method: &MethodSpec,
+        y0: &[f64],
+        steps: Steps,
+    ) -> Result<Box<dyn Stepper>, RunError>;
     /// As [`Own::curve`](super::Own::curve).
     ///
     /// # Errors
@@ -310,8 +308,8 @@ where
     AlgOf<P>: Numbers,
     L: Layout<P::Group, PointOf<P>>,
 {
-    fn fits(&self, method: &MethodSpec) -> Result<(), Error> {
-        self.problem.method(method).map(drop)
+    fn orders(&self, method: &MethodSpec) -> Result<Orders, Error> {
+        orders_by(method, &*self.problem)
     }
 
     fn run(
@@ -329,20 +327,20 @@ where
             Err(error) => return error.into(),
         };
         let start = layout.point(group, y0);
-        let OwnPlan { t_span, pace, save, stops, max_steps, dense, events, progress } = plan;
+        let OwnPlan { steps, save, stops, max_steps, dense, events, progress } = plan;
         let rows = RefCell::new(vec![0.0; size]);
         let show = |y: &PointOf<P>, see: &mut dyn FnMut(&[f64]) -> f64| {
             let mut rows = rows.borrow_mut();
             layout.show(y, &mut rows);
             see(&rows)
         };
-        let mut solve = Solve::shared(self.problem.clone(), method, t_span)
+        let mut solve = Solve::shared(self.problem.clone(), method, steps.t_span())
             .save(save)
             .stops(stops)
             .cancel(stop);
-        solve = match pace {
-            Pace::Equal(grid) => solve.grid(grid),
-            Pace::ByError(control) => solve.control(control),
+        solve = match steps {
+            Steps::Equal(grid) => solve.grid(grid),
+            Steps::ByError { control, .. } => solve.control(control),
         };
         if let Some(attempts) = max_steps {
             solve = solve.max_steps(attempts);
@@ -400,6 +398,28 @@ where
             Err(Interrupted { error, solution }) => (Err(error), solution.map(|s| end(*s))),
         };
         Ran { status, end, curve }
+    }
+
+    fn stepper(
+        &self,
+        method: &MethodSpec,
+        y0: &[f64],
+        steps: Steps,
+    ) -> Result<Box<dyn Stepper>, RunError> {
+        let (layout, problem) = (self.layout, self.problem.clone());
+        let [size, _] = layout.sizes(problem.group());
+        let start = layout.point(problem.group(), y0);
+        let show = move |_: f64, y: &PointOf<P>, values: &mut Vec<f64>| {
+            let first = values.len();
+            values.resize(first + size, 0.0);
+            layout.show(y, &mut values[first..]);
+        };
+        let point = move |numbers: &[f64], y: &mut PointOf<P>| {
+            *y = layout.point(problem.group(), numbers);
+            Ok(())
+        };
+        let points = Points::by_rows(Box::new(show), Box::new(point));
+        stepper_by(method, &self.problem, start, (steps, None), points)
     }
 
     fn curve(

@@ -1,0 +1,89 @@
+//! f as formulas in t and the numbers of y.
+
+use std::sync::Arc;
+
+use lieflow::samples::Samples;
+
+use super::OwnField;
+use crate::formula::{Formula, Texts, Which};
+use crate::kinds::prelude::*;
+use crate::reader::{Mistakes, Tree};
+
+keys! { Keys [sample_keys formula_keys] {
+    field: Vec<Texts> = "the formulas of each part",
+} }
+
+/// f as formulas in t and the numbers of y.
+#[derive(Clone, Debug)]
+pub struct Formulas {
+    formulas: Arc<[Formula]>,
+    /// t and y have so many numbers.
+    variables: usize,
+}
+
+/// Up to this number of variables a call needs no memory.
+const FEW: usize = 40;
+
+impl Formulas {
+    /// The formulas of a table with the keys `field`, `parameters`, `let`, `samples` and `interpolation`. `variables` are
+    /// the names of the numbers of y, and entry `i` of `field` has `counts[i]` values.
+    ///
+    /// # Errors
+    /// [`Mistakes`], by the paths of keys.
+    pub fn read(variables: &[String], counts: &[usize], keys: &Tree) -> Result<Self, Mistakes> {
+        keys.read(|values| {
+            let mut keys = Keys::read(values)?;
+            let (named, samples) = (keys.formula_keys(), keys.sample_keys());
+            let all = core::iter::once("t").chain(variables.iter().map(String::as_str));
+            let names = named.names("field", all, samples)?;
+            let Keys { field, .. } = keys;
+            if field.len() != counts.len() {
+                let message = format!("found {} parts, expected {}", field.len(), counts.len());
+                return Err(Refusal::at("field", message).into());
+            }
+            let mut formulas = Vec::new();
+            for (i, (texts, &count)) in field.iter().zip(counts).enumerate() {
+                formulas.extend(texts.read(&"field".index(i), count, &names)?);
+            }
+            Ok(Formulas { formulas: formulas.into(), variables: 1 + variables.len() })
+        })
+    }
+
+    /// f.
+    pub fn field(&self) -> Arc<OwnField> {
+        let Formulas { formulas, variables } = self.clone();
+        let evaluate = move |values: &[f64], out: &mut [f64]| {
+            out.iter_mut().zip(&*formulas).for_each(|(out, formula)| *out = formula.value(values));
+        };
+        Arc::new(move |t, y, out| {
+            let (mut few, mut many) = ([0.0; FEW], Vec::new());
+            let values = match few.get_mut(..variables) {
+                Some(few) => few,
+                None => {
+                    many.resize(variables, 0.0);
+                    &mut *many
+                }
+            };
+            values[0] = t;
+            values[1..].copy_from_slice(y);
+            evaluate(values, out);
+            true
+        })
+    }
+
+    /// Does f depend on y?
+    pub fn depends_on_y(&self) -> bool {
+        self.formulas.iter().any(|formula| (1..self.variables).any(|i| formula.uses(i)))
+    }
+
+    /// The samples that the formulas name: a run stays in their span.
+    pub fn samples(&self) -> Option<&Samples> {
+        self.formulas.first()?.samples()
+    }
+
+    /// The formula that had no finite value first, in words.
+    pub fn lost(&self) -> Option<String> {
+        let lost = self.formulas.first()?.lost(Which::First)?;
+        Some(lost.to_string())
+    }
+}

@@ -1,0 +1,167 @@
+//! Runs that the caller takes step by step, of a problem of any type.
+
+use std::sync::Arc;
+
+use lieflow::catalog::MethodSpec;
+use lieflow::methods::AnyMethod;
+use lieflow::problems::PointOf;
+use lieflow::solve::Integrator;
+use lieflow::space::Numbers;
+use lieflow::{Error, RunError, Solve, Stats};
+
+use super::run::{Runnable, SharedRowOf, Steps, numbers_of, set_numbers};
+
+/// A run that the caller takes step by step. It owns its problem.
+pub trait Stepper: Send {
+    /// The time.
+    fn t(&self) -> f64;
+    /// The end of the span.
+    fn t_end(&self) -> f64;
+    /// What the run did so far.
+    fn stats(&self) -> Stats;
+    /// Appends the values of the row at t.
+    fn row(&self, values: &mut Vec<f64>);
+    /// The numbers of the state, in the order of [`Model::start`](super::Model::start).
+    fn state(&self) -> Vec<f64>;
+    /// Sets the state at the same time. The run goes on from it.
+    ///
+    /// # Errors
+    /// [`RunError`] for numbers that are no point; then the state is unchanged.
+    fn set_state(&mut self, numbers: &[f64]) -> Result<(), RunError>;
+    /// Takes one step, at most to the end of the span. Returns the time.
+    ///
+    /// # Errors
+    /// As [`Integrator::step`].
+    fn step(&mut self) -> Result<f64, RunError>;
+    /// Takes steps until the time is t.
+    ///
+    /// # Errors
+    /// As [`Integrator::advance_to`].
+    fn advance_to(&mut self, t: f64) -> Result<(), RunError>;
+    /// Appends the values of the row at a time within the last step.
+    ///
+    /// # Errors
+    /// As [`Integrator::interpolate`].
+    fn interpolate(&mut self, t: f64, values: &mut Vec<f64>) -> Result<(), RunError>;
+    /// The state as bytes.
+    fn save(&mut self) -> Vec<u8>;
+    /// Goes on from a state of [`save`](Self::save) of a run with the same problem, method and steps.
+    ///
+    /// # Errors
+    /// As [`Integrator::restore`].
+    fn restore(&mut self, bytes: &[u8]) -> Result<(), Error>;
+}
+
+/// What makes a point of numbers.
+pub(crate) type PointFrom<Y> = Box<dyn Fn(&[f64], &mut Y) -> Result<(), Error> + Send + Sync>;
+
+/// How the points of a run are numbers.
+#[allow(missing_debug_implementations)] // closures
+pub(crate) struct Points<P: Runnable> {
+    /// The values of the row.
+    pub(crate) row_of: Box<SharedRowOf<P>>,
+    /// The numbers of a point.
+    pub(crate) numbers: fn(&SharedRowOf<P>, f64, &PointOf<P>) -> Vec<f64>,
+    /// The point of numbers.
+    pub(crate) point: PointFrom<PointOf<P>>,
+}
+
+impl<P: Runnable> Points<P> {
+    /// The numbers of a point in the order of [`Numbers`].
+    pub(crate) fn in_order(row_of: Box<SharedRowOf<P>>) -> Self {
+        Points {
+            row_of,
+            numbers: |_, _, y| numbers_of(&mut y.clone()),
+            point: Box::new(|numbers, y| set_numbers(y, "state", numbers)),
+        }
+    }
+
+    /// The numbers of a point are those of its row.
+    pub(crate) fn by_rows(row_of: Box<SharedRowOf<P>>, point: PointFrom<PointOf<P>>) -> Self {
+        let numbers = |row_of: &SharedRowOf<P>, t: f64, y: &PointOf<P>| {
+            let mut numbers = Vec::new();
+            row_of(t, y, &mut numbers);
+            numbers
+        };
+        Points { row_of, numbers, point }
+    }
+}
+
+/// A run of one type of problem.
+struct Typed<P: Runnable> {
+    run: Integrator<'static, P, AnyMethod<'static, P>>,
+    /// A point to write to.
+    at: PointOf<P>,
+    points: Points<P>,
+}
+
+/// The run of a problem from y that the caller takes step by step.
+///
+/// # Errors
+/// As [`MethodsByName::method`](lieflow::catalog::MethodsByName::method) and [`Solve::integrator`].
+pub(crate) fn stepper_by<P: Runnable>(
+    spec: &MethodSpec,
+    problem: &Arc<P>,
+    mut y: PointOf<P>,
+    (steps, start): (Steps, Option<&[f64]>),
+    points: Points<P>,
+) -> Result<Box<dyn Stepper>, RunError>
+where
+    Integrator<'static, P, AnyMethod<'static, P>>: Send,
+    PointOf<P>: Send,
+{
+    let method = Arc::new(problem.method(spec)?);
+    if let Some(numbers) = start {
+        (points.point)(numbers, &mut y)?;
+    }
+    let solve = Solve::shared(problem.clone(), method, steps.t_span());
+    let solve = match steps {
+        Steps::Equal(grid) => solve.grid(grid),
+        Steps::ByError { control, .. } => solve.control(control),
+    };
+    let run = solve.integrator(y.clone())?;
+    Ok(Box::new(Typed { run, at: y, points }))
+}
+
+impl<P: Runnable> Stepper for Typed<P>
+where
+    Integrator<'static, P, AnyMethod<'static, P>>: Send,
+    PointOf<P>: Send + Numbers,
+{
+    fn t(&self) -> f64 {
+        self.run.t()
+    }
+    fn t_end(&self) -> f64 {
+        self.run.t_end()
+    }
+    fn stats(&self) -> Stats {
+        self.run.stats()
+    }
+    fn row(&self, values: &mut Vec<f64>) {
+        (self.points.row_of)(self.run.t(), self.run.y(), values);
+    }
+    fn state(&self) -> Vec<f64> {
+        (self.points.numbers)(&self.points.row_of, self.run.t(), self.run.y())
+    }
+    fn set_state(&mut self, numbers: &[f64]) -> Result<(), RunError> {
+        (self.points.point)(numbers, &mut self.at)?;
+        self.run.set_state(&self.at)
+    }
+    fn step(&mut self) -> Result<f64, RunError> {
+        self.run.step()
+    }
+    fn advance_to(&mut self, t: f64) -> Result<(), RunError> {
+        self.run.advance_to(t).map(drop)
+    }
+    fn interpolate(&mut self, t: f64, values: &mut Vec<f64>) -> Result<(), RunError> {
+        self.run.interpolate(t, &mut self.at)?;
+        (self.points.row_of)(t, &self.at, values);
+        Ok(())
+    }
+    fn save(&mut self) -> Vec<u8> {
+        self.run.save()
+    }
+    fn restore(&mut self, bytes: &[u8]) -> Result<(), Error> {
+        self.run.restore(bytes)
+    }
+}
