@@ -2,18 +2,57 @@
 
 use std::sync::Arc;
 
+use lieflow::RunError;
 use lieflow_model::kinds::own;
+use lieflow_model::problem::RowCurve;
 use numpy::{PyArray1, PyArrayDyn, PyArrayMethods};
 use pyo3::prelude::*;
 
 use crate::arrays::{Input, output};
 use crate::error::argument;
 
+/// The points of a run of a field, or the rows of one of a model.
+enum Kept {
+    Points(Box<dyn own::Curve>),
+    Rows(Box<dyn RowCurve>),
+}
+
 /// The points of a run at all times, as numbers.
 #[pyclass(frozen, module = "lieflow._lieflow")]
 pub(crate) struct Curve {
-    pub(crate) curve: Arc<dyn own::Curve>,
-    pub(crate) shape: Vec<usize>,
+    kept: Arc<Kept>,
+    shape: Vec<usize>,
+}
+
+impl Kept {
+    fn t_span(&self) -> [f64; 2] {
+        match self {
+            Kept::Points(curve) => curve.t_span(),
+            Kept::Rows(curve) => curve.t_span(),
+        }
+    }
+
+    fn at(&self, times: &[f64], out: &mut [f64]) -> Result<(), (usize, RunError)> {
+        match self {
+            Kept::Points(curve) => curve.at(times, out),
+            Kept::Rows(curve) => {
+                let mut values = Vec::with_capacity(out.len());
+                curve.rows(times, &mut values)?;
+                out.copy_from_slice(&values);
+                Ok(())
+            }
+        }
+    }
+}
+
+impl Curve {
+    pub(crate) fn new(curve: Box<dyn own::Curve>, shape: &[usize]) -> Self {
+        Curve { kept: Arc::new(Kept::Points(curve)), shape: shape.to_vec() }
+    }
+
+    pub(crate) fn of_rows(curve: Box<dyn RowCurve>, width: usize) -> Self {
+        Curve { kept: Arc::new(Kept::Rows(curve)), shape: vec![width] }
+    }
 }
 
 #[pymethods]
@@ -28,11 +67,11 @@ impl Curve {
         let numbers = unsafe { out.as_slice_mut()? };
         let times = t.numbers();
         let done = match times.len() < 64 {
-            true => self.curve.at(times, numbers),
-            false => py.detach(|| self.curve.at(times, numbers)),
+            true => self.kept.at(times, numbers),
+            false => py.detach(|| self.kept.at(times, numbers)),
         };
         done.map_err(|(index, error)| {
-            let [start, end] = self.curve.t_span();
+            let [start, end] = self.kept.t_span();
             match start.min(end) <= times[index] && times[index] <= start.max(end) {
                 true => pyo3::exceptions::PyRuntimeError::new_err(error.to_string()),
                 false => {
@@ -45,15 +84,24 @@ impl Curve {
     }
     #[getter]
     fn t_span(&self) -> (f64, f64) {
-        let [start, end] = self.curve.t_span();
+        let [start, end] = self.kept.t_span();
         (start, end)
     }
     #[getter]
     fn steps(&self) -> usize {
-        self.curve.steps()
+        match &*self.kept {
+            Kept::Points(curve) => curve.steps(),
+            Kept::Rows(curve) => curve.steps(),
+        }
     }
     /// All its numbers, to store it.
     fn numbers<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_vec(py, self.curve.numbers())
+        PyArray1::from_vec(
+            py,
+            match &*self.kept {
+                Kept::Points(curve) => curve.numbers(),
+                Kept::Rows(curve) => curve.numbers(),
+            },
+        )
     }
 }

@@ -4,14 +4,21 @@
 //! used only to write into new arrays, to read arrays whose layout was checked, and for addresses of C functions.
 
 mod arrays;
+mod bodies;
 mod curve;
 mod error;
 mod expm;
 mod field;
+mod formulas;
 mod group;
+mod model;
+mod run;
+mod scene;
 mod se3;
 mod so3;
 mod solve;
+mod stepper;
+mod tree;
 
 use pyo3::prelude::*;
 
@@ -21,8 +28,17 @@ fn _lieflow(m: &Bound<'_, PyModule>) -> PyResult<()> {
     se3::add(m)?;
     expm::add(m)?;
     m.add_class::<group::MatrixGroup>()?;
+    m.add_class::<bodies::FreeBodies>()?;
     m.add_class::<curve::Curve>()?;
+    m.add_class::<formulas::Formulas>()?;
+    m.add_class::<model::Model>()?;
+    m.add_class::<model::Problem>()?;
+    m.add_class::<solve::SampledField>()?;
     m.add_class::<solve::Space>()?;
+    m.add_class::<stepper::Stepper>()?;
+    m.add_function(wrap_pyfunction!(model::kinds, m)?)?;
+    m.add_class::<scene::Scene>()?;
+    m.add_function(wrap_pyfunction!(scene::bundled, m)?)?;
     m.add_function(wrap_pyfunction!(solve::solve, m)?)?;
     m.add_function(wrap_pyfunction!(solve::check_method, m)?)?;
     m.add("__version__", env!("CARGO_PKG_VERSION"))

@@ -21,6 +21,8 @@ class ArgumentError(ValueError):
     argument: str
     value: str
     expected: str
+    #: The other mistakes of the same call, of keys of a problem.
+    others: tuple[ArgumentError, ...] = ()
 
     def __init__(self, argument: str, value: str, expected: str = "") -> None:
         message = f"{argument}: {value}" + (f", expected {expected}" if expected else "")
@@ -31,6 +33,18 @@ class ArgumentError(ValueError):
 
     def __reduce__(self) -> tuple[type[ArgumentError], tuple[str, str, str]]:
         return (type(self), (self.argument, self.value, self.expected))
+
+
+def mistakes(found: list[tuple[str, str, str]]) -> ArgumentError:
+    """Return the error of all mistakes in the keys of a problem: argument, what is wrong, advice."""
+    errors = [ArgumentError(argument or "keys", value, "") for argument, value, _ in found]
+    for error, (_, _, advice) in zip(errors, found):
+        error.expected = advice
+    first = errors[0]
+    first.others = tuple(errors[1:])
+    words = [f"{argument or 'keys'}: {value}" + (f" ({advice})" if advice else "") for argument, value, advice in found]
+    Exception.__init__(first, "\n".join(words))
+    return first
 
 
 class RunError(RuntimeError):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -10,16 +10,20 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _lieflow
 from ._arrays import real
-from ._errors import ArgumentError, RunError
+from ._errors import ArgumentError
+from ._fields import CFunction, Field, Parts, Quantities, Samples, address
 from ._groups import Group
+from ._problems import Problem
+from ._result import Layout, OdeSolution, Result
 
-__all__ = ["CFunction", "Event", "OdeSolution", "Result", "solve_ivp"]
+__all__ = ["Event", "solve_ivp"]
 
 Array = NDArray[np.float64]
 
-#: The tolerances if none are given.
-RTOL = 1e-8
-ATOL = 1e-8
+#: The method if none is given.
+METHOD = "rkmk dop853 exp"
+#: The least relative tolerance that rounding allows.
+LEAST = 1e-14
 
 
 class Event:
@@ -27,14 +31,16 @@ class Event:
 
     Parameters
     ----------
-    g : callable
-        g(t, y, *args), a number. Where it changes its sign, the zero is found to rounding of t.
+    g : callable or str
+        g(t, y, *args), a number; or a formula in t and y1, y11, … A problem has the names of its columns. Where it changes
+        its sign, the zero is found to rounding of t.
     terminal : int or bool
         The zero that ends the run, from 1. True is 1, and 0 or False is none.
     direction : float
         Only rising zeros for a positive number, only falling ones for a negative number.
     change : callable, optional
-        change(t, y, *args) returns the new y. The run goes on from it. It must be on M.
+        change(t, y, *args) returns the new y. The run goes on from it. It must be on M. Of a problem y is the array of the
+        numbers of its state, in the order of :attr:`lieflow.Integrator.state`.
     points : int, optional
         At how many points of each step g is evaluated. The default depends on g.
     name : str, optional
@@ -45,15 +51,15 @@ class Event:
 
     def __init__(
         self,
-        g: Callable[..., Any],
+        g: Callable[..., Any] | str,
         terminal: int | bool = 0,
         direction: float = 0.0,
         change: Callable[..., Any] | None = None,
         points: int | None = None,
         name: str | None = None,
     ) -> None:
-        if not callable(g):
-            raise TypeError(f"g: a value of type {type(g).__name__}, expected a function of t and y")
+        if not (callable(g) or isinstance(g, str)):
+            raise TypeError(f"g: a value of type {type(g).__name__}, expected a function of t and y, or a formula")
         if change is not None and not callable(change):
             raise TypeError(f"change: a value of type {type(change).__name__}, expected a function of t and y")
         if terminal != int(terminal) or terminal < 0:
@@ -61,7 +67,8 @@ class Event:
         self.g, self.change = g, change
         self.terminal, self.direction = int(terminal), float(direction)
         self.points = None if points is None else int(points)
-        self.name = name if name is not None else getattr(g, "__name__", "event")
+        default = g if isinstance(g, str) else getattr(g, "__name__", "event")
+        self.name = name if name is not None else default
 
     def __repr__(self) -> str:
         return f"lieflow.Event({self.name}, terminal={self.terminal}, direction={self.direction})"
@@ -71,177 +78,17 @@ def _event(i: int, g: Any) -> Event:
     """An event of SciPy's kind: a function with the attributes terminal and direction."""
     if isinstance(g, Event):
         return g
+    if isinstance(g, str):
+        return Event(g)
     if not callable(g):
-        raise TypeError(f"events[{i}]: a value of type {type(g).__name__}, expected a function of t and y")
+        raise TypeError(f"events[{i}]: a value of type {type(g).__name__}, expected a function of t and y, or a formula")
     return Event(g, getattr(g, "terminal", None) or 0, getattr(g, "direction", None) or 0.0)
 
 
-class CFunction:
-    """The address of a C function as f: ``void f(double t, const double *y, double *v, const double *p)``.
-
-    y has the numbers of the point by rows, v gets the value of f and is 0 before, p is ``parameters``. The run calls it
-    without the interpreter. A wrong address cannot be seen and ends the program.
-
-    Parameters
-    ----------
-    function : int, or an object with an address
-        An integer, ``numba.cfunc`` (its ``address``), a function of ctypes, or a ``scipy.LowLevelCallable``.
-    parameters : array_like
-        The numbers p.
-    """
-
-    __slots__ = ("address", "function", "parameters")
-
-    def __init__(self, function: Any, parameters: ArrayLike = ()) -> None:
-        self.function = function
-        self.parameters = [float(x) for x in np.atleast_1d(real("parameters", parameters)).ravel()]
-        self.address = _address(function)
-
-
-def _address(function: Any) -> int:
-    import ctypes
-
-    if isinstance(function, bool) or function is None:
-        raise TypeError(f"fun: {function}, expected the address of a C function")
-    address: Any
-    if isinstance(function, (int, np.integer)):
-        address = int(function)
-    elif hasattr(function, "address") and isinstance(function.address, int):
-        address = function.address
-    elif hasattr(function, "argtypes") and hasattr(function, "restype"):  # of ctypes
-        address = ctypes.cast(function, ctypes.c_void_p).value or 0
-    elif type(function).__name__ == "LowLevelCallable":
-        return _address(function.function)
-    else:
-        raise TypeError(f"fun: a value of type {type(function).__name__}, expected the address of a C function")
-    if address <= 0:
-        raise ArgumentError("fun", f"the address {address}", "the address of a C function")
-    return int(address)
-
-
-class OdeSolution:
-    """The solution at all times of a run, from its stored polynomials. f is not called.
-
-    ``sol(t)`` has the shape of t followed by that of y. Times may be in any order. It can be pickled, and used from any
-    thread. Error: that of the continuous extension of the method. A time outside of the run is refused.
-    """
-
-    __slots__ = ("_curve", "_made_by")
-
-    def __init__(self, curve: _lieflow.Curve, made_by: tuple[Any, ...]) -> None:
-        self._curve, self._made_by = curve, made_by
-
-    def __call__(self, t: ArrayLike) -> Array:
-        return self._curve.at(t)
-
-    @property
-    def t_min(self) -> float:
-        """The smallest time."""
-        return min(self._curve.t_span)
-
-    @property
-    def t_max(self) -> float:
-        """The largest time."""
-        return max(self._curve.t_span)
-
-    @property
-    def n_segments(self) -> int:
-        """The number of steps."""
-        return self._curve.steps
-
-    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
-        return (_restored, (self._made_by, self._curve.numbers()))
-
-
-def _restored(made_by: tuple[Any, ...], numbers: Array) -> OdeSolution:
-    space, method, linear, y0 = made_by
-    curve = _lieflow.Space(*space).curve(method, linear, y0, numbers.tolist())
-    return OdeSolution(curve, made_by)
-
-
-class Result:
-    """The result of a run.
-
-    Attributes
-    ----------
-    t : (k,) array
-        The times of the output.
-    y : (k, ...) array
-        The points. **Time is the first axis.**
-    sol : OdeSolution or None
-        The solution at all times, with ``dense_output=True``.
-    t_events, y_events : list of arrays
-        For each event its zeros and the points there, before a change.
-    status : int
-        0: the end was reached. 1: an event ended the run. −1: the run failed; all that it reached is here.
-    message : str
-        The reason.
-    success : bool
-        True if status ≥ 0.
-    nfev, nsteps, nrejected : int
-        Evaluations of f (None if the method does not count them), accepted steps, rejected attempts.
-    t_end, y_end : float, array
-        The end of the run.
-    residual : float
-        A power of two above the distances from M that were found when the state was corrected to M.
-    restored : int
-        How often the state was corrected to M.
-    """
-
-    t: Array
-    y: Array
-    sol: OdeSolution | None
-    t_events: list[Array]
-    y_events: list[Array]
-    status: int
-    message: str
-    nfev: int | None
-    nsteps: int
-    nrejected: int
-    t_end: float
-    y_end: Array
-    residual: float
-    restored: int
-    group: str | None
-
-    def __init__(self, **values: Any) -> None:
-        self.__dict__.update(values)
-
-    @property
-    def success(self) -> bool:
-        """True if the end was reached, or an event ended the run."""
-        return self.status >= 0
-
-    def check(self) -> Result:
-        """Return the result. Raise :class:`lieflow.RunError` if the run failed."""
-        if not self.success:
-            raise RunError(self.message)
-        return self
-
-    def as_rotation(self) -> Any:
-        """Return the points as SciPy's Rotation; for matrices of shape (k, 3, 3) and unit quaternions (k, 4)."""
-        from scipy.spatial.transform import Rotation
-
-        if self.y.shape[1:] == (3, 3):
-            return Rotation.from_matrix(self.y)
-        if self.y.shape[1:] == (4,):
-            return Rotation.from_quat(self.y, scalar_first=True)
-        raise ArgumentError("y", f"shape {self.y.shape}", "rotations (k, 3, 3) or unit quaternions (k, 4)")
-
-    def to_dataframe(self) -> Any:
-        """Return a pandas DataFrame: the index is t, the columns are the numbers of y by rows."""
-        import pandas
-
-        places = np.ndindex(*self.y.shape[1:])
-        names = ["y" + "".join(str(i + 1) for i in place) for place in places]
-        return pandas.DataFrame(self.y.reshape(len(self.t), -1), index=pandas.Index(self.t, name="t"), columns=names)
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self.__dict__)
-
-    def __repr__(self) -> str:
-        shape = f"{len(self.t)} points of shape {self.y.shape[1:]}"
-        return f"<lieflow.Result: {shape}, status {self.status}, {self.nsteps} steps, {self.message}>"
+def events_of(events: Any) -> list[Event]:
+    """Return the events of an argument: none, one or a list."""
+    given = events if isinstance(events, (list, tuple)) else () if events is None else (events,)
+    return [_event(i, g) for i, g in enumerate(given)]
 
 
 def _positive(name: str, x: Any, whole: bool = False) -> Any:
@@ -255,12 +102,176 @@ def _positive(name: str, x: Any, whole: bool = False) -> Any:
     return int(number) if whole else number
 
 
+def span_of(t_span: Any) -> tuple[float, float]:
+    """Return the two times of an argument."""
+    if type(t_span) is tuple and len(t_span) == 2 and type(t_span[0]) in (int, float) and type(t_span[1]) in (int, float):
+        span: Any = t_span
+    else:
+        span = real("t_span", t_span)
+        if span.shape != (2,):
+            raise ArgumentError("t_span", f"shape {span.shape}", "two times")
+    start, end = float(span[0]), float(span[1])
+    if end != end or start - start != 0.0:
+        raise ArgumentError("t_span", repr(t_span), "two times, the first one finite")
+    return start, end
+
+
+def times_of(t_eval: Any, span: tuple[float, float]) -> Array | None:
+    """Return the times of the output, which lie in the span."""
+    if t_eval is None:
+        return None
+    times = real("t_eval", t_eval)
+    if times.ndim != 1:
+        raise ArgumentError("t_eval", f"shape {times.shape}", "a list of times")
+    low, high = min(span), max(span)
+    if len(times) and not (times.min() >= low and times.max() <= high):
+        i = int(np.argmax(~((times >= low) & (times <= high))))
+        raise ArgumentError(f"t_eval[{i}]", repr(float(times[i])), f"a time within [{low}, {high}]")
+    return times
+
+
+def settings_of(
+    rtol: Any = None,
+    atol: Any = None,
+    first_step: Any = None,
+    min_step: Any = None,
+    max_step: Any = None,
+    max_steps: Any = None,
+    dt: Any = None,
+    steps: Any = None,
+    stops: Any = (),
+    dense_output: Any = False,
+    linear: Any = False,
+) -> dict[str, Any]:
+    """Return the settings of the steps, checked."""
+    if dt is not None and steps is not None:
+        raise ArgumentError("steps", repr(steps), "only one of dt and steps")
+    return {
+        "rtol": None if rtol is None else float(rtol),
+        "atol": None if atol is None else float(atol),
+        "first_step": _positive("first_step", first_step),
+        "min_step": _positive("min_step", min_step),
+        "max_step": None if max_step is None or np.isinf(max_step) else _positive("max_step", max_step),
+        "max_steps": _positive("max_steps", max_steps, whole=True),
+        "dt": _positive("dt", dt),
+        "steps": _positive("steps", steps, whole=True),
+        "stops": [] if isinstance(stops, tuple) and not stops else np.atleast_1d(real("stops", stops)).tolist(),
+        "dense_output": bool(dense_output),
+        "linear": bool(linear),
+    }
+
+
+class Ready:
+    """A field of the user on its space, ready to run."""
+
+    __slots__ = ("args", "calls", "field", "flat", "group", "linear", "parts", "shape", "space", "space_args", "stops")
+
+    def __init__(
+        self, fun: Any, y0: Any, args: tuple[Any, ...], group: Any, action: Any, frame: Any, linear: bool,
+        span: tuple[float, float],
+    ) -> None:
+        if isinstance(fun, Field):
+            if group is not None and group is not fun.group:
+                raise ArgumentError("group", repr(group), "none: the Field has its group")
+            group = fun.group
+        if group is None:
+            raise ArgumentError("group", "None", 'the name of a group, such as "SO(3)"')
+        if not isinstance(group, (str, Group, Parts)):
+            raise TypeError(f"group: a value of type {type(group).__name__}, expected a name, a Group or Parts")
+        if not isinstance(action, str):
+            raise TypeError(f"action: a value of type {type(action).__name__}, expected a name")
+        if not (frame is None or isinstance(frame, str)):
+            raise TypeError(f"frame: a value of type {type(frame).__name__}, expected \"space\" or \"body\"")
+        self.parts = group if isinstance(group, Parts) else None
+        start = real("y0", y0) if self.parts is None else self.parts.join("y0", y0, True)
+        name: Any = group
+        if isinstance(group, Parts):
+            name = group.counts()
+        elif isinstance(group, Group):
+            form = group._args[3]
+            name = group.name if form is None else (group.n, form.ravel().tolist())
+        self.group = group
+        self.space_args = (name, action, frame, start.shape)
+        self.space = _lieflow.Space(*self.space_args)
+        if not np.isfinite(start).all():
+            place = tuple(int(i) for i in np.argwhere(~np.isfinite(start))[0])
+            raise ArgumentError(f"y0[{', '.join(map(str, place))}]", repr(float(start[place])), "a finite number")
+        self.flat, self.shape = start.ravel().tolist(), start.shape
+        self.linear, self.args = bool(linear), list(args)
+        self.stops: list[float] = []
+        self.field = self._field(fun, span)
+        self.calls = isinstance(self.field, tuple) and callable(self.field[0])
+
+    def _field(self, fun: Any, span: tuple[float, float]) -> Any:
+        if isinstance(fun, (CFunction, Field, Samples)) and self.args:
+            expected = "no arguments: the constants of a Field, of Samples and of a CFunction are its own"
+            raise ArgumentError("args", repr(tuple(self.args)), expected)
+        if isinstance(fun, CFunction):
+            return (fun.address, fun.parameters)
+        if isinstance(fun, Field):
+            formulas = fun.formulas(fun.field, self.shape, tuple(self.space.value))
+            self.stops = formulas.knots(span)
+            self.linear = self.linear or self.parts is None and self._may_be_linear() and not formulas.depends_on_y
+            return formulas
+        if isinstance(fun, Samples):
+            if fun.values.shape[1] != int(np.prod(self.space.value)):
+                expected = f"{int(np.prod(self.space.value))}, a value of f at each time"
+                raise ArgumentError("fun", f"samples of {fun.values.shape[1]} columns", expected)
+            self.stops = fun._sampled.knots(span)
+            self.linear = self.linear or self._may_be_linear()
+            return fun._sampled
+        if callable(fun) and not hasattr(fun, "address"):
+            return (self._on_parts(fun), self.args)
+        if isinstance(fun, (int, np.integer)) or hasattr(fun, "address"):
+            return (address(fun), [float(x) for x in self.args])
+        raise TypeError(f"fun: a value of type {type(fun).__name__}, expected a function of t and y")
+
+    def _may_be_linear(self) -> bool:
+        """Does the space have methods for linear equations?"""
+        name, action = self.space_args[0], self.space_args[1]
+        return not (isinstance(name, str) and name.upper() in ("S3", "SU(2)")) and not (
+            name == "SE(3)" and action == "coadjoint"
+        )
+
+    def _on_parts(self, fun: Any) -> Any:
+        """f of parts as f of their numbers."""
+        parts = self.parts
+        if parts is None:
+            return fun
+
+        def of_numbers(t: float, y: Array, *args: Any) -> Array:
+            return parts.join(f"f at t = {t}", fun(t, parts.split(y), *args), False)
+
+        return of_numbers
+
+    def event(self, i: int, event: Event, field: Any) -> tuple[Any, ...]:
+        """Return the parts of an event."""
+        change, parts = event.change, self.parts
+        g: Any = event.g
+        if isinstance(g, str):
+            maker = field if isinstance(field, Field) else Field(self.group, g)
+            try:
+                g = maker.formulas(g, self.shape, ())
+            except ArgumentError as error:
+                raise ArgumentError(f"events[{i}]", error.value, error.expected) from None
+        elif parts is not None:
+            of_parts = g
+            g = lambda t, y, *args: of_parts(t, parts.split(y), *args)  # noqa: E731
+        if parts is not None and change is not None:
+            changed = change
+
+            def change(t: float, y: Array, *args: Any) -> Array:
+                return parts.join(f"change of events[{i}] at t = {t}", changed(t, parts.split(y), *args), True)
+
+        return (g, f"events[{i}] ({event.name})", event.direction, event.terminal, change, event.points)
+
+
 def solve_ivp(
-    fun: Callable[..., Any] | CFunction,
+    fun: Callable[..., Any] | CFunction | Field | Samples | Problem,
     t_span: Sequence[float],
-    y0: ArrayLike,
+    y0: ArrayLike | dict[str, Any] | None = None,
     *,
-    method: str = "rkmk dop853 exp",
+    method: str | None = None,
     t_eval: ArrayLike | None = None,
     dense_output: bool = False,
     events: Any = None,
@@ -274,11 +285,12 @@ def solve_ivp(
     steps: int | None = None,
     stops: ArrayLike = (),
     args: tuple[Any, ...] = (),
-    group: str | Group | None = None,
+    group: str | Group | Parts | None = None,
     action: str = "translation",
     frame: str | None = None,
     linear: bool = False,
-    callback: Callable[[float, Array], Any] | None = None,
+    quantities: Sequence[str] | str | None = None,
+    callback: Callable[[float, Any], Any] | None = None,
 ) -> Result:
     """Solve ẏ = λ_*(f(t, y))(y) on a manifold M with the action of a Lie group.
 
@@ -287,42 +299,48 @@ def solve_ivp(
 
     Parameters
     ----------
-    fun : callable or CFunction
+    fun : callable, Problem, Field, Samples or CFunction
         f(t, y, *args), the value in 𝔤: 3 numbers ω for SO(3) and unit quaternions, 6 numbers (ω, v) for SE(3), an n×n
-        matrix for other groups. With ``linear=True`` it is f(t, *args).
+        matrix for other groups. With ``linear=True`` it is f(t, *args). A problem such as ``lf.RigidBody(…)`` has its own
+        start, group and frame.
     t_span : (float, float)
         From when to when, forward or backward.
     y0 : array_like
-        The start. It must be on M to 1e-6.
-    method : str
-        A method of lieflow with its tableau and its map.
+        The start. It must be on M to 1e-6. Of Parts it is a dict. A problem has its own; here are then the numbers of
+        another state, in the order of :attr:`lieflow.Integrator.state`.
+    method : str, optional
+        A method of lieflow with its tableau and its map. The default is "rkmk dop853 exp"; of a problem without
+        dense output its own.
     t_eval : array_like, optional
         The times of the output, in order, each once. **A time outside of t_span is an error.** By default the ends of
         steps.
     dense_output : bool
         Keep the solution at all times, ``result.sol``.
-    events : callable, Event, or a list of them
-        Functions g(t, y, *args), with SciPy's attributes ``terminal`` and ``direction``, or :class:`lieflow.Event`.
+    events : callable, text, Event, or a list of them
+        Functions g(t, y, *args), with SciPy's attributes ``terminal`` and ``direction``; columns and formulas; or
+        :class:`lieflow.Event`.
     rtol, atol : float, optional
-        Tolerances for each step. **The defaults are 1e-8, not 1e-3 and 1e-6.** On a group the error is an angle, and the
-        tolerance rtol + atol.
+        Tolerances for each step. **The defaults are those of scenes, 1e-14 for methods of order 8.** On a group the error
+        is an angle, and the tolerance rtol + atol.
     first_step, min_step, max_step, max_steps : optional
         Limits of the adaptive step size.
     dt, steps : optional
         Steps of one size, or so many. Then rtol and atol are not used.
     stops : array_like
-        Times at which a step ends, where f or one of its derivatives jumps.
+        Times at which a step ends, where f or one of its derivatives jumps. Those of samples are added.
     args : tuple
         Further arguments of f and of the events.
-    group : str or Group
+    group : str, Group or Parts
         "SO(3)", "SE(3)", "S3" (unit quaternions, real part first), "SO(n)", "SL(n)", "GL(n)", "Sp(2m)", "SO(p,q)" with
-        numbers, or a Group.
+        numbers, a Group, or Parts.
     action : str
         "translation", "linear" (vectors or columns), "conjugation", "coadjoint", "lagrangian".
     frame : "space" or "body"
         The frame of f. It must be given for ``action="translation"``.
     linear : bool
         f depends only on t. Methods for linear equations, as "magnus4", then fit.
+    quantities : list of str, optional
+        Of a problem: what is computed.
     callback : callable, optional
         callback(t, y) is called at each point of the output. If it returns True, the run ends.
 
@@ -343,75 +361,144 @@ def solve_ivp(
     An exception in f, in an event or in the callback ends the run and leaves as the same object.
     Source: H. Munthe-Kaas, High order Runge–Kutta methods on manifolds, Appl. Numer. Math. 29 (1999).
     """
-    span = real("t_span", t_span)
-    if span.shape != (2,):
-        raise ArgumentError("t_span", f"shape {span.shape}", "two times")
-    if np.isnan(span).any() or not np.isfinite(span[0]):
-        raise ArgumentError("t_span", repr(t_span), "two times, the first one finite")
-    if group is None:
-        raise ArgumentError("group", "None", 'the name of a group, such as "SO(3)"')
-    if not isinstance(group, (str, Group)):
-        raise TypeError(f"group: a value of type {type(group).__name__}, expected a name or a Group")
-    form: tuple[int, list[float]] | None = None
-    name = group if isinstance(group, str) else group.name
-    if isinstance(group, Group) and group._args[3] is not None:
-        form = (group.n, [float(x) for x in group._args[3].ravel()])
-    for key, text in (("method", method), ("action", action)):
-        if not isinstance(text, str):
-            raise TypeError(f"{key}: a value of type {type(text).__name__}, expected a name")
-    if not (frame is None or isinstance(frame, str)):
-        raise TypeError(f"frame: a value of type {type(frame).__name__}, expected \"space\" or \"body\"")
-    start = real("y0", y0)
-    space_args = (name, form, action, frame, start.shape)
-    space = _lieflow.Space(*space_args)
-    if not np.isfinite(start).all():
-        place = tuple(int(i) for i in np.argwhere(~np.isfinite(start))[0])
-        raise ArgumentError(f"y0[{', '.join(map(str, place))}]", repr(float(start[place])), "a finite number")
+    span = span_of(t_span)
+    if not (method is None or isinstance(method, str)):
+        raise TypeError(f"method: a value of type {type(method).__name__}, expected a name")
+    planned = events_of(events)
+    settings = settings_of(
+        rtol, atol, first_step, min_step, max_step, max_steps, dt, steps, stops, dense_output, linear
+    )
+    times = times_of(t_eval, span)
+    if isinstance(fun, Problem):
+        for name, value, default in (("group", group, None), ("frame", frame, None), ("action", action, "translation")):
+            if value != default:
+                raise ArgumentError(name, repr(value), "none: a problem has its own")
+        return _of_problem(fun, span, y0, method, settings, times, planned, quantities, callback, args)
+    if quantities is not None:
+        raise ArgumentError("quantities", repr(quantities), "none: only a problem has quantities")
+    return _of_field(
+        fun, span, y0, method or METHOD, settings, times, planned, callback, (args, group, action, frame)
+    )
 
-    field: tuple[Any, Any]
-    if isinstance(fun, CFunction):
-        if args:
-            raise ArgumentError("args", repr(args), "no arguments: the numbers of a CFunction are its parameters")
-        field = (fun.address, fun.parameters)
-    elif callable(fun) and not hasattr(fun, "address"):
-        field = (fun, list(args))
-    elif isinstance(fun, int) or hasattr(fun, "address"):
-        field = (_address(fun), [float(x) for x in args])
-    else:
-        raise TypeError(f"fun: a value of type {type(fun).__name__}, expected a function of t and y")
 
-    given = events if isinstance(events, (list, tuple)) else () if events is None else (events,)
-    planned = [_event(i, g) for i, g in enumerate(given)]
-    times = None
-    if t_eval is not None:
-        rows = real("t_eval", t_eval)
-        if rows.ndim != 1:
-            raise ArgumentError("t_eval", f"shape {rows.shape}", "a list of times")
-        low, high = min(span), max(span)
-        outside = ~((rows >= low) & (rows <= high))
-        if outside.any():
-            i = int(np.argmax(outside))
-            raise ArgumentError(f"t_eval[{i}]", repr(float(rows[i])), f"a time within [{low}, {high}]")
-        times = rows.tolist()
-    if dt is not None and steps is not None:
-        raise ArgumentError("steps", repr(steps), "only one of dt and steps")
-    settings = {
-        "rtol": RTOL if rtol is None else float(rtol),
-        "atol": ATOL if atol is None else float(atol),
-        "first_step": _positive("first_step", first_step),
-        "min_step": _positive("min_step", min_step),
-        "max_step": None if max_step is None or np.isinf(max_step) else _positive("max_step", max_step),
-        "max_steps": _positive("max_steps", max_steps, whole=True),
-        "dt": _positive("dt", dt),
-        "steps": _positive("steps", steps, whole=True),
-        "t_eval": times,
-        "stops": np.atleast_1d(real("stops", stops)).tolist(),
-        "dense_output": bool(dense_output),
-        "linear": bool(linear),
-    }
-    flat = start.ravel().tolist()
-    parts = [(e.g, f"events[{i}] ({e.name})", e.direction, e.terminal, e.change, e.points) for i, e in enumerate(planned)]
-    found = _lieflow.solve(space, field, method, (float(span[0]), float(span[1])), flat, settings, parts, callback)
+def _of_field(
+    fun: Any, span: tuple[float, float], y0: Any, method: str, settings: dict[str, Any], times: Array | None,
+    events: list[Event], callback: Any, space: tuple[Any, Any, Any, Any],
+) -> Result:
+    ready = Ready(fun, y0, *space, settings["linear"], span)
+    if ready.linear != settings["linear"]:
+        settings = {**settings, "linear": ready.linear}
+    if ready.stops:
+        settings = {**settings, "stops": sorted({*settings["stops"], *ready.stops})}
+    parts = [ready.event(i, event, fun) for i, event in enumerate(events)]
+    told = callback
+    if callback is not None and ready.parts is not None:
+        layout = ready.parts
+        told = lambda t, y: callback(t, layout.split(y))  # noqa: E731
+    found = _lieflow.solve(ready.space, ready.field, ready.args, method, span, ready.flat, settings, times, parts, told)
     curve = found.pop("curve")
-    made_by = (space_args, method, bool(linear), flat)
-    return Result(sol=None if curve is None else OdeSolution(curve, made_by), group=name, **found)
+    if ready.parts is not None:
+        found["y"] = ready.parts.split(found["y"])
+        found["y_events"] = [ready.parts.split(y) for y in found["y_events"]]
+        found["y_end"] = ready.parts.split(found["y_end"])
+    if isinstance(fun, Field) and found["status"] < 0:
+        lost = ready.field.lost()
+        if lost is not None:
+            found["message"] += f" {lost}."
+    made_by = (ready.space_args, method, ready.linear, ready.flat)
+    sol = None if curve is None else OdeSolution(curve, made_by, ready.parts)
+    on_so3 = ready.space_args[0] == "SO(3)" and ready.space_args[1] == "translation"
+
+    def again(result: Result) -> tuple[str, Result]:
+        found_by, finer = _finer(settings)
+        return found_by, _of_field(fun, span, y0, method, finer, result.t, events, None, space)
+
+    return Result(sol=sol, drift={}, _layout=ready.parts, _on_so3=on_so3, _again=again, **found)
+
+
+def _finer(settings: dict[str, Any]) -> tuple[str, dict[str, Any]]:
+    """Return what a second run is, and its settings."""
+    finer = {**settings, "dense_output": False}
+    if settings["dt"] is not None:
+        return "a second run in steps of half the size", {**finer, "dt": settings["dt"] / 2}
+    if settings["steps"] is not None:
+        return "a second run in steps of half the size", {**finer, "steps": 2 * settings["steps"]}
+    rtol, atol = (LEAST if settings[name] is None else settings[name] for name in ("rtol", "atol"))
+    tenth = rtol + atol >= 20 * LEAST
+    factor = 0.1 if tenth else 10.0
+    found_by = "a second run at a tenth of the tolerance" if tenth else "a second run at ten times the tolerance"
+    return found_by, {**finer, "rtol": rtol * factor, "atol": atol * factor}
+
+
+def _of_problem(
+    problem: Problem, span: tuple[float, float], y0: Any, method: str | None, settings: dict[str, Any],
+    times: Array | None, events: list[Event], quantities: Any, callback: Any, args: tuple[Any, ...],
+) -> Result:
+    asked = problem.asked(quantities)
+    # The points within a step of a Lie series are shorter steps, and no numbers to keep.
+    method = method or (METHOD if settings["dense_output"] else problem.method)
+    texts = tuple((f"events[{i}]", e.g) for i, e in enumerate(events) if isinstance(e.g, str))
+    model = problem._model(asked, texts)
+    layout = problem._layout(asked, texts)
+    parts, number = [], 0
+    for i, event in enumerate(events):
+        g: Any = event.g
+        if isinstance(g, str):
+            g, number = number, number + 1
+        else:
+            g = _of_rows(g, layout, args)
+        change = event.change
+        if change is not None and args:
+            change = _with_args(change, args)
+        parts.append((g, f"events[{i}] ({event.name})", event.direction, event.terminal, change, event.points))
+    told = None if callback is None else _of_rows(callback, layout, ())
+    knots = problem._problem.knots(span)
+    if knots:
+        settings = {**settings, "stops": sorted({*settings["stops"], *knots})}
+    start = None if y0 is None else real("y0", y0)
+    found = model.solve(method, span, start, settings, times, parts, told)
+    curve, lost, rows = found.pop("curve"), found.pop("lost"), found["y"]
+    if lost is not None and found["status"] < 0:
+        found["message"] += f" {lost}."
+    found["y"] = layout.split(rows)
+    found["y_events"] = [layout.split(y) for y in found["y_events"]]
+    at_end = len(rows) > 0 and found["t"][-1] == found["t_end"]
+    found["y_end"] = layout.split(rows[-1]) if at_end else None
+    sol = None if curve is None else OdeSolution(curve, (problem, method, asked, texts), layout)
+    if sol is not None and found["status"] == 1 and found["t_end"] != span[1]:
+
+        def rest() -> _lieflow.Curve:
+            on = [(*part[:3], 0, *part[4:]) for part in parts]
+            whole: _lieflow.Curve | None = model.solve(method, span, start, settings, None, on, None)["curve"]
+            return curve if whole is None else whole
+
+        sol._rest = rest
+
+    def again(result: Result) -> tuple[str, Result]:
+        plain = y0 is None and not any(event.change for event in events)
+        exact = problem.exact(result.t, asked, t0=span[0]) if plain else None
+        found_by, finer = _finer(settings)
+        if exact is not None and not events:
+            return "the exact motion", Result(y=exact, t_events=[])
+        other = _of_problem(problem, span, y0, method, finer, result.t, events, asked, None, args)
+        if exact is not None:
+            return "the exact motion, and the events by " + found_by, Result(y=exact, t_events=other.t_events)
+        return found_by, other
+
+    return Result(sol=sol, drift=layout.drift(rows), _layout=layout, _again=again, **found)
+
+
+def _of_rows(g: Callable[..., Any], layout: Layout, args: tuple[Any, ...]) -> Callable[..., Any]:
+    """A function of t and the quantities as one of t and a row."""
+
+    def of_row(t: float, row: Array) -> Any:
+        return g(t, layout.split(row), *args)
+
+    return of_row
+
+
+def _with_args(change: Callable[..., Any], args: tuple[Any, ...]) -> Callable[..., Any]:
+    def of_state(t: float, state: Array) -> Any:
+        return change(t, state, *args)
+
+    return of_state

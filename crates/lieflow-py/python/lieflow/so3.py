@@ -178,7 +178,7 @@ def random(size: int | tuple[int, ...] | None = None, rng: Any = None) -> Array:
 
 def as_rotation(r: ArrayLike) -> Any:
     """Return SciPy's Rotation of matrices (..., 3, 3)."""
-    from scipy.spatial.transform import Rotation
+    from scipy.spatial.transform import Rotation  # type: ignore[import-untyped, import-not-found, unused-ignore]
 
     return Rotation.from_matrix(_tail("r", r, (3, 3)))
 

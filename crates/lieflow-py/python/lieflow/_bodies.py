@@ -1,0 +1,85 @@
+"""Many free rigid bodies at once, in SIMD lanes."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _lieflow
+from ._arrays import real
+from ._errors import ArgumentError
+
+__all__ = ["FreeBodies"]
+
+Array = NDArray[np.float64]
+
+
+class FreeBodies:
+    """Many free rigid bodies: ṁ = m × J⁻¹m, and with attitudes ġ = g ω̂.
+
+    Parameters
+    ----------
+    inertia : (N, 3) or (3,) array_like
+        The principal moments of each body, or of all.
+    momentum : (N, 3) array_like
+        The angular momenta in the bodies.
+    attitude : (N, 3, 3) array_like, optional
+        The rotations from the bodies to space. Without them only the momenta are computed.
+    """
+
+    def __init__(self, inertia: ArrayLike, momentum: ArrayLike, attitude: ArrayLike | None = None) -> None:
+        m = real("momentum", momentum)
+        if m.ndim != 2 or m.shape[1] != 3:
+            raise ArgumentError("momentum", f"shape {m.shape}", "shape (N, 3)")
+        j = real("inertia", inertia)
+        if j.shape == (3,):
+            j = np.ascontiguousarray(np.broadcast_to(j, m.shape))
+        if j.shape != m.shape:
+            raise ArgumentError("inertia", f"shape {j.shape}", f"shape (3,) or {m.shape}")
+        g = None if attitude is None else real("attitude", attitude)
+        if g is not None and g.shape != (len(m), 3, 3):
+            raise ArgumentError("attitude", f"shape {g.shape}", f"shape ({len(m)}, 3, 3)")
+        self._inertia = j
+        self._bodies = _lieflow.FreeBodies(j, m, g)
+
+    def advance(self, method: str, h: float, steps: int, threads: int = 1) -> None:
+        """Take steps of the size h with "rkmk4 exp", "rkmk4 cay" or "rk4-mg". The results are the same for any threads.
+
+        Cost: some 10 ns for each body and step with momenta alone, on one core with AVX-512.
+        """
+        if steps != int(steps) or steps < 0:
+            raise ArgumentError("steps", repr(steps), "an integer ≥ 0")
+        if threads != int(threads) or threads < 1:
+            raise ArgumentError("threads", repr(threads), "an integer ≥ 1")
+        self._bodies.advance(method, float(h), int(steps), int(threads))
+
+    @property
+    def momentum(self) -> Array:
+        """The angular momenta in the bodies, (N, 3)."""
+        return self._bodies.momentum()
+
+    @property
+    def attitude(self) -> Array | None:
+        """The rotations from the bodies to space, (N, 3, 3); None without attitudes."""
+        return self._bodies.attitude()
+
+    @property
+    def energy(self) -> Array:
+        """The energies ½ m·J⁻¹m, (N,)."""
+        return self._bodies.energy()
+
+    @property
+    def inertia(self) -> Array:
+        """The principal moments, (N, 3)."""
+        return self._inertia.copy()
+
+    def __len__(self) -> int:
+        return len(self._inertia)
+
+    def __repr__(self) -> str:
+        return f"<lieflow.FreeBodies: {len(self)} bodies>"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (FreeBodies, (self._inertia, self.momentum, self.attitude))

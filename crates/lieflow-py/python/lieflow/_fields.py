@@ -1,0 +1,339 @@
+"""Fields that are not Python functions: formulas, samples, C functions; and systems of parts."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _lieflow
+from ._arrays import real
+from ._errors import ArgumentError
+from ._groups import Group
+
+__all__ = ["CFunction", "Field", "Parts", "Quantities", "Samples"]
+
+Array = NDArray[np.float64]
+
+
+class Quantities(dict[str, Array]):
+    """Arrays by name, which are attributes, too: ``y["attitude"]`` is ``y.attitude``."""
+
+    def __getattr__(self, name: str) -> Array:
+        try:
+            return self[name]
+        except KeyError:
+            raise AttributeError(f"no quantity {name!r}, expected one of {', '.join(self)}") from None
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *self]
+
+    def __reduce__(self) -> tuple[type[Quantities], tuple[dict[str, Array]]]:
+        return (Quantities, (dict(self),))
+
+
+class CFunction:
+    """The address of a C function as f: ``void f(double t, const double *y, double *v, const double *p)``.
+
+    y has the numbers of the point by rows, v gets the value of f and is 0 before, p is ``parameters``. The run calls it
+    without the interpreter. A wrong address cannot be seen and ends the program.
+
+    Parameters
+    ----------
+    function : int, or an object with an address
+        An integer, ``numba.cfunc`` (its ``address``), a function of ctypes, or a ``scipy.LowLevelCallable``.
+    parameters : array_like
+        The numbers p.
+    """
+
+    __slots__ = ("address", "function", "parameters")
+
+    def __init__(self, function: Any, parameters: ArrayLike = ()) -> None:
+        self.function = function
+        self.parameters = [float(x) for x in np.atleast_1d(real("parameters", parameters)).ravel()]
+        self.address = address(function)
+
+    def __repr__(self) -> str:
+        return f"lieflow.CFunction({self.function!r}, {self.parameters})"
+
+
+def address(function: Any) -> int:
+    """Return the address of a C function."""
+    import ctypes
+
+    if isinstance(function, bool) or function is None:
+        raise TypeError(f"fun: {function}, expected the address of a C function")
+    found: Any
+    if isinstance(function, (int, np.integer)):
+        found = int(function)
+    elif hasattr(function, "address") and isinstance(function.address, int):
+        found = function.address
+    elif hasattr(function, "argtypes") and hasattr(function, "restype"):  # of ctypes
+        found = ctypes.cast(function, ctypes.c_void_p).value or 0
+    elif type(function).__name__ == "LowLevelCallable":
+        return address(function.function)
+    else:
+        raise TypeError(f"fun: a value of type {type(function).__name__}, expected the address of a C function")
+    if found <= 0:
+        raise ArgumentError("fun", f"the address {found}", "the address of a C function")
+    return int(found)
+
+
+class Samples:
+    """Sampled values as a function of time.
+
+    As f of :func:`lieflow.solve_ivp` it is a function of t alone; a step ends at each time where it is not smooth. As the
+    key ``samples`` of a problem its columns are variables of the formulas.
+
+    Parameters
+    ----------
+    t : (k,) array_like
+        Increasing times, at least two.
+    values : (k, n) or (k,) array_like
+        The values at these times.
+    interpolation : {"linear", "cubic", "mean-rate"}
+        Straight lines; the cubic spline, not-a-knot; or, of increments over the interval before each time, the rate whose
+        integrals they are.
+    names : sequence of str, optional
+        The names of the columns in formulas. The default is s1, s2, …, of one column s.
+    """
+
+    __slots__ = ("_sampled", "interpolation", "names", "t", "values")
+
+    def __init__(
+        self, t: ArrayLike, values: ArrayLike, interpolation: str = "linear", names: Sequence[str] | None = None
+    ) -> None:
+        self.t, self.values = real("t", t), real("values", values)
+        if self.t.ndim != 1:
+            raise ArgumentError("t", f"shape {self.t.shape}", "shape (k,)")
+        if self.values.ndim == 1:
+            self.values = self.values[:, None]
+        if self.values.ndim != 2 or len(self.values) != len(self.t):
+            raise ArgumentError("values", f"shape {self.values.shape}", f"shape ({len(self.t)}, n)")
+        if not isinstance(interpolation, str):
+            raise TypeError(f"interpolation: a value of type {type(interpolation).__name__}, expected a name")
+        self.interpolation = interpolation
+        n = self.values.shape[1]
+        self.names = tuple(names) if names is not None else ("s",) if n == 1 else tuple(f"s{j + 1}" for j in range(n))
+        if len(self.names) != n:
+            raise ArgumentError("names", f"{len(self.names)} names", f"{n}, one for each column")
+        columns = [np.ascontiguousarray(column) for column in self.values.T]
+        self._sampled = _lieflow.SampledField(self.t, columns, interpolation)
+
+    def __call__(self, t: ArrayLike) -> Array:
+        """Return the values at t, the shape of t followed by (n,). A time outside of the samples is refused."""
+        return self._sampled.at(t)
+
+    def as_file(self) -> tuple[str, str]:
+        """Return a name and the text of a CSV file with the same numbers."""
+        rows = np.column_stack([self.t, self.values]).tolist()
+        lines = [",".join(["t", *self.names]), *(",".join(map(repr, row)) for row in rows)]
+        return ("samples", "\n".join(lines) + "\n")
+
+    def __repr__(self) -> str:
+        t, values = self.t.tolist(), self.values.tolist()
+        return f"lieflow.Samples({t}, {values}, {self.interpolation!r}, {self.names})"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (Samples, (self.t, self.values, self.interpolation, self.names))
+
+
+class Parts:
+    """A system of rotations, vectors and numbers, as the ``group`` of a run. Then y is a dict of arrays.
+
+    ``lf.Parts(R="rotation", x="vector", m="numbers 3")``:
+
+    ============  ===========  =============================  ==========================
+    space         y            f                              equation
+    ============  ===========  =============================  ==========================
+    rotation      (3, 3)       (3,), the angular velocity ω   Ṙ = ω̂ R, or R ω̂ (body)
+    vector        (3,)         (3,), the angular velocity ω   ẋ = ω × x; the length stays
+    numbers k     (k,)         (k,), the derivative           ẏ = f
+    number        ()           a number                       ẏ = f
+    ============  ===========  =============================  ==========================
+    """
+
+    __slots__ = ("_places", "spaces")
+
+    def __init__(self, **spaces: str) -> None:
+        if not spaces:
+            raise ArgumentError("spaces", "none", 'at least one part, such as R="rotation"')
+        self.spaces = spaces
+        sizes: dict[str, tuple[int, int, tuple[int, ...]]] = {}
+        for name, space in spaces.items():
+            if not isinstance(space, str):
+                raise TypeError(f"{name}: a value of type {type(space).__name__}, expected the name of a space")
+            word, _, count = space.partition(" ")
+            if space == "vector":
+                sizes[name] = (3, 3, (3,))
+            elif space == "rotation":
+                sizes[name] = (9, 3, (3, 3))
+            elif space == "number":
+                sizes[name] = (1, 1, ())
+            elif word == "numbers" and count.isdigit() and int(count) > 0:
+                sizes[name] = (int(count), int(count), (int(count),))
+            else:
+                raise ArgumentError(name, repr(space), '"rotation", "vector", "number" or "numbers k"')
+        # Vectors, then rotations, then numbers.
+        order = sorted(spaces, key=lambda name: ["v", "r", "n"].index(spaces[name][0]))
+        self._places: dict[str, tuple[slice, slice, tuple[int, ...]]] = {}
+        point = value = 0
+        for name in order:
+            of_point, of_value, shape = sizes[name]
+            self._places[name] = (slice(point, point + of_point), slice(value, value + of_value), shape)
+            point, value = point + of_point, value + of_value
+
+    @property
+    def name(self) -> str:
+        """The name in messages."""
+        return ", ".join(f"{name}: {space}" for name, space in self.spaces.items())
+
+    def counts(self) -> tuple[int, int, int]:
+        """Return the numbers of vectors, of rotations and of single numbers."""
+        places = self._places
+        numbers = sum(p[0].stop - p[0].start for n, p in places.items() if self.spaces[n][0] == "n")
+        return (sum(s == "vector" for s in self.spaces.values()), sum(s == "rotation" for s in self.spaces.values()), numbers)
+
+    def split(self, y: Array) -> Quantities:
+        """Return the parts of points, shape (..., n)."""
+        lead = y.shape[:-1]
+        return Quantities({name: y[..., self._places[name][0]].reshape(lead + self._places[name][2]) for name in self.spaces})
+
+    def join(self, name: str, parts: Mapping[str, Any], point: bool) -> Array:
+        """Return the numbers of a dict of parts: of a point, or of a value of f."""
+        if not isinstance(parts, Mapping):
+            raise TypeError(f"{name}: a value of type {type(parts).__name__}, expected a dict of {', '.join(self.spaces)}")
+        for key in parts:
+            if key not in self.spaces:
+                raise ArgumentError(f"{name}[{key!r}]", "no part has this name", f"one of {', '.join(self.spaces)}")
+        all_parts = []
+        for key, (of_point, of_value, shape) in self._places.items():
+            if key not in parts:
+                raise ArgumentError(f"{name}[{key!r}]", "missing", "a value for each part")
+            array = real(f"{name}[{key!r}]", parts[key])
+            count = of_value.stop - of_value.start
+            wanted = shape if point or shape == () else (count,)
+            if array.shape != wanted:
+                raise ArgumentError(f"{name}[{key!r}]", f"shape {array.shape}", f"shape {wanted}")
+            all_parts.append(array.ravel())
+        return np.concatenate(all_parts)
+
+    def columns(self) -> list[str]:
+        """Return the names of the numbers of a point in formulas."""
+        names: list[str] = []
+        for name, (_, _, shape) in self._places.items():
+            names += [name + "".join(str(i + 1) for i in place) for place in np.ndindex(*shape)]
+        return names
+
+    def __repr__(self) -> str:
+        return f"lieflow.Parts({', '.join(f'{name}={space!r}' for name, space in self.spaces.items())})"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (_parts, (self.spaces,))
+
+
+def _parts(spaces: dict[str, str]) -> Parts:
+    return Parts(**spaces)
+
+
+class Field:
+    """A field as formulas. A run calls it without the interpreter.
+
+    Parameters
+    ----------
+    group : str, Group or Parts
+        The group, as in :func:`lieflow.solve_ivp`.
+    field : list of formulas, or for Parts a dict of them
+        The components of f(t, y). A formula is a text or a number; a single text may have a vector as its value.
+    y : str
+        The name of y in the formulas: ``y1``, … are the components of a vector, ``y11``, … those of a matrix by rows, and
+        ``y`` is the whole. Parts have their own names.
+    let : dict, optional
+        Formulas with names, which other formulas use.
+    samples : Samples, optional
+        Functions of t, by the names of their columns.
+    **parameters : float or array_like
+        Constants by name. The entries of an array ``J`` are ``J1``, ``J2``, … or ``J11``, …
+
+    Examples
+    --------
+    >>> import numpy as np, lieflow as lf
+    >>> body = lf.Field("SO(3)", ["dot(m, [y11, y21, y31])/J1", "dot(m, [y12, y22, y32])/J2", "dot(m, [y13, y23, y33])/J3"],
+    ...                 m=[0.0, 2.75, 2.75], J=[1.0, 4.0, 18.0])
+    >>> lf.solve_ivp(body, (0, 10), np.eye(3), frame="body").success
+    True
+    """
+
+    __slots__ = ("_made", "field", "group", "let", "parameters", "samples", "y")
+
+    def __init__(
+        self,
+        group: str | Group | Parts,
+        field: Any,
+        /,
+        *,
+        y: str = "y",
+        let: Mapping[str, Any] | None = None,
+        samples: Samples | None = None,
+        **parameters: Any,
+    ) -> None:
+        if not isinstance(group, (str, Group, Parts)):
+            raise TypeError(f"group: a value of type {type(group).__name__}, expected a name, a Group or Parts")
+        if samples is not None and not isinstance(samples, Samples):
+            raise TypeError(f"samples: a value of type {type(samples).__name__}, expected lieflow.Samples")
+        self.group, self.field, self.y, self.samples = group, field, y, samples
+        self.let, self.parameters = dict(let or {}), parameters
+        self._made: dict[Any, _lieflow.Formulas] = {}
+
+    def formulas(self, texts: Any, shape: tuple[int, ...], value: tuple[int, ...]) -> _lieflow.Formulas:
+        """Return formulas in t and the numbers of y of this shape, with values of another."""
+        key = (repr(texts), shape, value)
+        if key not in self._made:
+            self._made[key] = self._read(texts, shape, value)
+        return self._made[key]
+
+    def _read(self, texts: Any, shape: tuple[int, ...], value: tuple[int, ...]) -> _lieflow.Formulas:
+        if isinstance(self.group, Parts):
+            columns = self.group.columns()
+        else:
+            columns = [self.y + "".join(str(i + 1) for i in place) for place in np.ndindex(*shape)]
+        if isinstance(self.group, Parts) and value != ():
+            if not isinstance(texts, Mapping) or set(texts) != set(self.group.spaces):
+                raise ArgumentError("field", repr(texts), f"a dict with formulas of {', '.join(self.group.spaces)}")
+            places = self.group._places
+            entries, counts = [texts[name] for name in places], [p[1].stop - p[1].start for p in places.values()]
+        else:
+            flat = texts
+            if len(value) == 2 and isinstance(texts, (list, tuple)) and texts and isinstance(texts[0], (list, tuple)):
+                flat = [text for row in texts for text in row]
+            entries, counts = [flat], [int(np.prod(value, dtype=int))]
+        keys: dict[str, Any] = {"field": [list(e) if isinstance(e, tuple) else e for e in entries]}
+        constants: dict[str, float] = {}
+        for name, x in self.parameters.items():
+            array = real(name, x)
+            for place in np.ndindex(*array.shape):
+                constants[name + "".join(str(i + 1) for i in place)] = float(array[place])
+        keys["parameters"] = constants
+        if self.let:
+            keys["let"] = {name: list(x) if isinstance(x, tuple) else x for name, x in self.let.items()}
+        if self.samples is not None:
+            keys["samples"] = list(self.samples.as_file())
+            keys["interpolation"] = self.samples.interpolation
+        return _lieflow.Formulas(columns, counts, keys)
+
+    def __repr__(self) -> str:
+        group = repr(self.group)
+        more = "".join(f", {name}={value!r}" for name, value in self.parameters.items())
+        let = f", let={self.let!r}" if self.let else ""
+        samples = f", samples={self.samples!r}" if self.samples is not None else ""
+        y = f", y={self.y!r}" if self.y != "y" else ""
+        return f"lieflow.Field({group}, {self.field!r}{y}{let}{samples}{more})"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (_field, (self.group, self.field, self.y, self.let, self.samples, self.parameters))
+
+
+def _field(group: Any, field: Any, y: str, let: Any, samples: Any, parameters: dict[str, Any]) -> Field:
+    return Field(group, field, y=y, let=let, samples=samples, **parameters)

@@ -1,0 +1,210 @@
+"""Every kind of problem as a class, made from the kinds of the library."""
+
+from __future__ import annotations
+
+import inspect
+import pathlib
+from collections.abc import Sequence
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _lieflow
+from ._arrays import real
+from ._errors import ArgumentError
+from ._fields import Quantities, Samples
+from ._result import Layout
+from ._values import plain
+
+Array = NDArray[np.float64]
+
+#: A quantity with more columns is given only when it is asked for.
+COLUMNS = 64
+
+
+class Problem:
+    """A problem of one kind, such as :class:`lieflow.RigidBody`: its equation, its parameters and its start.
+
+    The keys are those of scene files. Values are numbers, lists, arrays, texts, dicts (``let``, ``parameters``), SciPy's
+    Rotation, and :class:`lieflow.Samples` for ``samples``.
+    """
+
+    #: The name of the kind in scene files.
+    kind: ClassVar[str] = ""
+    #: The equations of motion.
+    equation: ClassVar[str] = ""
+    #: The keys: name, what its value is, its type, whether it may be left out, what it means.
+    key_table: ClassVar[tuple[tuple[str, str, str, bool, str], ...]] = ()
+    #: What can be asked for: name, columns, meaning, unit.
+    quantity_table: ClassVar[tuple[tuple[str, tuple[str, ...], str, str], ...]] = ()
+
+    keys: dict[str, Any]
+
+    def __init__(self, **keys: Any) -> None:
+        if not type(self).kind:
+            raise TypeError("Problem is the base of the kinds, such as lieflow.RigidBody")
+        keys = {name: value for name, value in keys.items() if value is not None}
+        samples = keys.get("samples")
+        if isinstance(samples, Samples):
+            keys.setdefault("interpolation", samples.interpolation)
+        elif isinstance(samples, (str, pathlib.Path)):
+            keys["samples"] = [str(samples), pathlib.Path(samples).read_text()]
+        self.keys = {name: plain(name, value) for name, value in keys.items()}
+        self._problem = _lieflow.Problem(type(self).kind, self.keys)
+        self._models: dict[Any, tuple[_lieflow.Model, Layout]] = {}
+
+    def replace(self, **keys: Any) -> Any:
+        """Return the problem with other values of these keys. None takes a key away."""
+        return type(self)(**{**self.keys, **keys})
+
+    @property
+    def method(self) -> str:
+        """The method that runs take by default."""
+        return self._problem.method
+
+    @property
+    def quantities(self) -> tuple[str, ...]:
+        """The quantities that results have by default."""
+        return tuple(self._problem.quantities)
+
+    @property
+    def invariants(self) -> tuple[str, ...]:
+        """The quantities that the exact motion keeps."""
+        return tuple(self._problem.invariants(list(self.quantities)))
+
+    @property
+    def facts(self) -> dict[str, float]:
+        """What is known before any run, by name."""
+        return dict(self._problem.facts)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Changes that were made to numbers, and warnings."""
+        return tuple(self._problem.notes)
+
+    def columns(self, quantity: str) -> tuple[str, ...]:
+        """Return the names of the columns of a quantity, which texts of events may use."""
+        return tuple(self._problem.columns(quantity))
+
+    def methods(self, quantities: Sequence[str] | str | None = None) -> tuple[str, ...]:
+        """Return the names of the methods that run on it."""
+        return tuple(self._model(self.asked(quantities), ()).methods())
+
+    def exact(self, t: ArrayLike, quantities: Sequence[str] | str | None = None, *, t0: float = 0.0) -> Quantities | None:
+        """Return the exact motion at the times t, from the start at t0; None where it is not known.
+
+        Shapes: that of t, followed by that of each quantity. Error: some 1e-14 times the phase that the motion has passed.
+        """
+        asked = self.asked(quantities)
+        times = real("t", t)
+        found = self._model(asked, ()).exact(float(t0), np.ascontiguousarray(times.ravel()))
+        if found is None:
+            return None
+        return self._layout(asked, ()).split(found.reshape(times.shape + found.shape[1:]))
+
+    def asked(self, quantities: Sequence[str] | str | None) -> tuple[str, ...]:
+        """Return the quantities that are asked for, or the default ones."""
+        if quantities is None:
+            return self.quantities
+        given = (quantities,) if isinstance(quantities, str) else tuple(quantities)
+        if not all(isinstance(name, str) for name in given):
+            raise TypeError("quantities: expected names")
+        for name in given:
+            self._problem.columns(name)
+        return tuple(dict.fromkeys(given))
+
+    def _both(self, asked: tuple[str, ...], events: tuple[tuple[str, str], ...]) -> tuple[_lieflow.Model, Layout]:
+        """The model of these quantities, of what the motion keeps, and of events."""
+        key = (asked, events)
+        if key not in self._models:
+            kept = [name for name in self._problem.invariants(list(asked)) if len(self._problem.columns(name)) <= COLUMNS]
+            model = self._problem.model(list(dict.fromkeys([*asked, *kept])), None, list(events))
+            self._models[key] = (model, Layout(model.schema, asked))
+        return self._models[key]
+
+    def _model(self, asked: tuple[str, ...], events: tuple[tuple[str, str], ...] = ()) -> _lieflow.Model:
+        return self._both(asked, events)[0]
+
+    def _layout(self, asked: tuple[str, ...], events: tuple[tuple[str, str], ...] = ()) -> Layout:
+        return self._both(asked, events)[1]
+
+    def __repr__(self) -> str:
+        keys = ", ".join(f"{name}={value!r}" for name, value in self.keys.items())
+        return f"lieflow.{type(self).__name__}({keys})"
+
+    def __eq__(self, other: object) -> bool:
+        return type(self) is type(other) and isinstance(other, Problem) and self.keys == other.keys
+
+    def __hash__(self) -> int:
+        return hash((type(self).__name__, repr(sorted(self.keys.items()))))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (problem_of, (type(self).kind, self.keys))
+
+
+def problem_of(kind: str, keys: dict[str, Any]) -> Problem:
+    """Return the problem of a kind by its name in scene files."""
+    if kind not in KINDS:
+        import difflib
+
+        near = difflib.get_close_matches(kind, KINDS, 1)
+        hint = f"`{near[0]}`? one of " if near else "one of "
+        raise ArgumentError("kind", repr(kind), hint + ", ".join(KINDS))
+    made: Problem = KINDS[kind](**keys)
+    return made
+
+
+def _class_name(kind: str) -> str:
+    return "".join(word[:1].upper() + word[1:] for word in kind.split("-"))
+
+
+def _document(kind: dict[str, Any]) -> str:
+    """The text of help()."""
+    import textwrap
+
+    def entry(head: str, text: str) -> str:
+        return head + "\n" + textwrap.indent(textwrap.fill(text, 100), "    ")
+
+    keys = [entry(f"{name} : {what}{', optional' if optional else ''}", text) for name, text, what, optional, _ in kind["keys"]]
+    quantities = [
+        entry(f"{name} : {', '.join(columns)}{f' [{unit}]' if unit else ''}", text)
+        for name, columns, text, unit in kind["quantities"]
+    ]
+    head = f"{kind['summary'][:1].upper()}{kind['summary'][1:]}.\n\n{kind['equation']}"
+    return f"{head}\n\nParameters\n----------\n" + "\n".join(keys) + "\n\nQuantities\n----------\n" + "\n".join(quantities)
+
+
+class _Help:
+    """The text of help(), made when it is asked for."""
+
+    def __init__(self, kind: dict[str, Any]) -> None:
+        self.kind = kind
+
+    def __get__(self, instance: object, owner: type) -> str:
+        return _document(self.kind)
+
+
+def _make(kind: dict[str, Any]) -> type[Problem]:
+    parameters = [
+        inspect.Parameter(key[0], inspect.Parameter.KEYWORD_ONLY, default=None if key[3] else inspect.Parameter.empty)
+        for key in kind["keys"]
+    ]
+    entries = {
+        "__module__": "lieflow",
+        "__doc__": _Help(kind),
+        "__signature__": inspect.Signature(parameters),
+        "kind": kind["name"],
+        "equation": kind["equation"],
+        "key_table": tuple((name, what, of, optional, text) for name, text, what, optional, of in kind["keys"]),
+        "quantity_table": tuple((name, tuple(columns), text, unit) for name, columns, text, unit in kind["quantities"]),
+    }
+    return type(_class_name(kind["name"]), (Problem,), entries)
+
+
+#: The classes by the names of their kinds.
+KINDS: dict[str, type[Problem]] = {kind["name"]: _make(kind) for kind in _lieflow.kinds()}
+
+globals().update({made.__name__: made for made in KINDS.values()})
+
+__all__ = ["KINDS", "Problem", "problem_of", *(made.__name__ for made in KINDS.values())]

@@ -1,0 +1,358 @@
+"""Every kind of problem as a class. Made by tests/stub_of_problems.py."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _lieflow
+from ._fields import Quantities, Samples
+from ._result import Layout
+
+Array = NDArray[np.float64]
+COLUMNS: int
+
+class Problem:
+    kind: ClassVar[str]
+    equation: ClassVar[str]
+    key_table: ClassVar[tuple[tuple[str, str, str, bool, str], ...]]
+    quantity_table: ClassVar[tuple[tuple[str, tuple[str, ...], str, str], ...]]
+    keys: dict[str, Any]
+    _problem: _lieflow.Problem
+    def __init__(self, **keys: Any) -> None: ...
+    def __eq__(self, other: object) -> bool: ...
+    def __hash__(self) -> int: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
+    def replace(self, **keys: Any) -> Any: ...
+    @property
+    def method(self) -> str: ...
+    @property
+    def quantities(self) -> tuple[str, ...]: ...
+    @property
+    def invariants(self) -> tuple[str, ...]: ...
+    @property
+    def facts(self) -> dict[str, float]: ...
+    @property
+    def notes(self) -> tuple[str, ...]: ...
+    def columns(self, quantity: str) -> tuple[str, ...]: ...
+    def methods(self, quantities: Sequence[str] | str | None = None) -> tuple[str, ...]: ...
+    def exact(
+        self, t: ArrayLike, quantities: Sequence[str] | str | None = None, *, t0: float = 0.0
+    ) -> Quantities | None: ...
+    def asked(self, quantities: Sequence[str] | str | None) -> tuple[str, ...]: ...
+    def _both(
+        self, asked: tuple[str, ...], events: tuple[tuple[str, str], ...]
+    ) -> tuple[_lieflow.Model, Layout]: ...
+    def _model(self, asked: tuple[str, ...], events: tuple[tuple[str, str], ...] = ()) -> _lieflow.Model: ...
+    def _layout(self, asked: tuple[str, ...], events: tuple[tuple[str, str], ...] = ()) -> Layout: ...
+
+def problem_of(kind: str, keys: dict[str, Any]) -> Problem: ...
+
+KINDS: dict[str, type[Problem]]
+
+class BeamLine(Problem):
+    def __init__(
+        self,
+        *,
+        elements: Sequence[Any],
+        particle: ArrayLike,
+    ) -> None: ...
+
+class Composed(Problem):
+    def __init__(
+        self,
+        *,
+        parts: Sequence[Any],
+        invariants: Mapping[str, Any] | None = None,
+        samples: Samples | str | None = None,
+        interpolation: str | None = None,
+        parameters: Mapping[str, Any] | None = None,
+        let: Mapping[str, Any] | None = None,
+    ) -> None: ...
+
+class DoubleBracket(Problem):
+    def __init__(
+        self,
+        *,
+        matrix: ArrayLike,
+        order: ArrayLike,
+    ) -> None: ...
+
+class DrivenBody(Problem):
+    def __init__(
+        self,
+        *,
+        inertia: ArrayLike | ArrayLike | None = None,
+        inverse_inertia: ArrayLike | None = None,
+        shape: Mapping[str, Any] | None = None,
+        omega_body: ArrayLike | None = None,
+        momentum_body: ArrayLike | None = None,
+        omega_space: ArrayLike | None = None,
+        momentum_space: ArrayLike | None = None,
+        attitude: ArrayLike | None = None,
+        quaternion: ArrayLike | None = None,
+        weight: ArrayLike | None = None,
+        thruster: ArrayLike | None = None,
+        damping: float | None = None,
+        control: ArrayLike | None = None,
+        torque: str | float | Sequence[str | float] | None = None,
+        torque_space: str | float | Sequence[str | float] | None = None,
+        samples: Samples | str | None = None,
+        interpolation: str | None = None,
+        parameters: Mapping[str, Any] | None = None,
+        let: Mapping[str, Any] | None = None,
+    ) -> None: ...
+
+class Euler(Problem):
+    def __init__(
+        self,
+        *,
+        algebra: str,
+        hamiltonian: str | float | None = None,
+        inverse_inertia: ArrayLike | None = None,
+        momentum: ArrayLike | ArrayLike,
+        parameters: Mapping[str, Any] | None = None,
+        let: Mapping[str, Any] | None = None,
+    ) -> None: ...
+
+class Fluid(Problem):
+    def __init__(
+        self,
+        *,
+        surface: str,
+        n: int,
+        random: Mapping[str, Any] | None = None,
+        jets: Sequence[Any] | None = None,
+        modes: Sequence[Any] | None = None,
+        vortices: Sequence[Any] | None = None,
+    ) -> None: ...
+
+class HeavyTop(Problem):
+    def __init__(
+        self,
+        *,
+        inertia: ArrayLike | ArrayLike | None = None,
+        inverse_inertia: ArrayLike | None = None,
+        shape: Mapping[str, Any] | None = None,
+        omega_body: ArrayLike | None = None,
+        momentum_body: ArrayLike | None = None,
+        omega_space: ArrayLike | None = None,
+        momentum_space: ArrayLike | None = None,
+        attitude: ArrayLike | None = None,
+        quaternion: ArrayLike | None = None,
+        weight: ArrayLike,
+        vertical: ArrayLike | None = None,
+    ) -> None: ...
+
+class Hill(Problem):
+    def __init__(
+        self,
+        *,
+        a: ArrayLike,
+        q: ArrayLike,
+        period: float,
+    ) -> None: ...
+
+class Kirchhoff(Problem):
+    def __init__(
+        self,
+        *,
+        inertia: ArrayLike,
+        mass: ArrayLike,
+        angular_momentum: ArrayLike,
+        linear_momentum: ArrayLike,
+    ) -> None: ...
+
+class Lorentz(Problem):
+    def __init__(
+        self,
+        *,
+        charge_to_mass: float,
+        electric: ArrayLike,
+        magnetic: ArrayLike,
+        velocity: ArrayLike,
+    ) -> None: ...
+
+class Lyapunov(Problem):
+    def __init__(
+        self,
+        *,
+        x: ArrayLike,
+        variables: Sequence[Any] | None = None,
+        field: str | float | Sequence[str | float],
+        parameters: Mapping[str, Any] | None = None,
+        let: Mapping[str, Any] | None = None,
+        samples: Samples | str | None = None,
+        interpolation: str | None = None,
+    ) -> None: ...
+
+class Mathieu(Problem):
+    def __init__(
+        self,
+        *,
+        a: float,
+        q: float,
+    ) -> None: ...
+
+class MatrixOde(Problem):
+    def __init__(
+        self,
+        *,
+        group: str,
+        action: str | None = None,
+        field: Sequence[Any],
+        start: ArrayLike | None = None,
+        samples: Samples | str | None = None,
+        interpolation: str | None = None,
+        parameters: Mapping[str, Any] | None = None,
+        let: Mapping[str, Any] | None = None,
+    ) -> None: ...
+
+class Oja(Problem):
+    def __init__(
+        self,
+        *,
+        a: ArrayLike,
+        x: ArrayLike,
+    ) -> None: ...
+
+class QrFlow(Problem):
+    def __init__(
+        self,
+        *,
+        matrix: ArrayLike,
+    ) -> None: ...
+
+class Riccati(Problem):
+    def __init__(
+        self,
+        *,
+        c: ArrayLike,
+        d: ArrayLike | None = None,
+        b: ArrayLike,
+        p: ArrayLike,
+    ) -> None: ...
+
+class RigidBodies(Problem):
+    def __init__(
+        self,
+        *,
+        bodies: Sequence[Any],
+    ) -> None: ...
+
+class RigidBody(Problem):
+    def __init__(
+        self,
+        *,
+        inertia: ArrayLike | ArrayLike | None = None,
+        inverse_inertia: ArrayLike | None = None,
+        shape: Mapping[str, Any] | None = None,
+        omega_body: ArrayLike | None = None,
+        momentum_body: ArrayLike | None = None,
+        omega_space: ArrayLike | None = None,
+        momentum_space: ArrayLike | None = None,
+        attitude: ArrayLike | None = None,
+        quaternion: ArrayLike | None = None,
+    ) -> None: ...
+
+class RigidBodyN(Problem):
+    def __init__(
+        self,
+        *,
+        mass_moments: ArrayLike | None = None,
+        inertia: ArrayLike | None = None,
+        momentum: ArrayLike,
+    ) -> None: ...
+
+class Schrodinger(Problem):
+    def __init__(
+        self,
+        *,
+        energies: ArrayLike,
+        coupling: ArrayLike,
+        coupling_imaginary: ArrayLike | None = None,
+        frequency: float | None = None,
+        phase: float | None = None,
+        pulse: ArrayLike | None = None,
+        amplitudes: ArrayLike,
+        amplitudes_imaginary: ArrayLike | None = None,
+    ) -> None: ...
+
+class SphericalPendulum(Problem):
+    def __init__(
+        self,
+        *,
+        gravity_over_length: float,
+        direction: ArrayLike,
+        velocity: ArrayLike,
+    ) -> None: ...
+
+class Spin(Problem):
+    def __init__(
+        self,
+        *,
+        field: ArrayLike,
+        rate: float,
+        moment: ArrayLike,
+    ) -> None: ...
+
+class SpinChain(Problem):
+    def __init__(
+        self,
+        *,
+        spins: Sequence[Any] | None = None,
+        wave: Mapping[str, Any] | None = None,
+        ring: bool | None = None,
+        anisotropy: float | None = None,
+        field: ArrayLike | None = None,
+        damping: float | None = None,
+    ) -> None: ...
+
+class Subspace(Problem):
+    def __init__(
+        self,
+        *,
+        a: ArrayLike,
+        x: ArrayLike,
+    ) -> None: ...
+
+class Toda(Problem):
+    def __init__(
+        self,
+        *,
+        positions: ArrayLike | None = None,
+        momenta: ArrayLike | None = None,
+        matrix: ArrayLike | None = None,
+    ) -> None: ...
+
+__all__ = [
+    "BeamLine",
+    "Composed",
+    "DoubleBracket",
+    "DrivenBody",
+    "Euler",
+    "Fluid",
+    "HeavyTop",
+    "Hill",
+    "KINDS",
+    "Kirchhoff",
+    "Lorentz",
+    "Lyapunov",
+    "Mathieu",
+    "MatrixOde",
+    "Oja",
+    "Problem",
+    "QrFlow",
+    "Riccati",
+    "RigidBodies",
+    "RigidBody",
+    "RigidBodyN",
+    "Schrodinger",
+    "SphericalPendulum",
+    "Spin",
+    "SpinChain",
+    "Subspace",
+    "Toda",
+    "problem_of",
+]

@@ -1,0 +1,280 @@
+"""Results of runs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _lieflow
+from ._errors import ArgumentError, RunError
+from ._fields import Parts, Quantities
+
+__all__ = ["ErrorEstimate", "Layout", "OdeSolution", "Result"]
+
+Array = NDArray[np.float64]
+
+
+class Layout:
+    """How the numbers of a row are arrays by name."""
+
+    __slots__ = ("asked", "schema")
+
+    def __init__(self, schema: list[tuple[str, list[str], list[int], bool]], asked: tuple[str, ...]) -> None:
+        self.schema, self.asked = schema, asked
+
+    def split(self, rows: Array, every: bool = False) -> Quantities:
+        """Return the arrays of rows, shape (..., n), by the names of quantities: those asked for, or all."""
+        out, start = {}, 0
+        for name, columns, shape, _ in self.schema:
+            end = start + len(columns)
+            if every or name in self.asked:
+                out[name] = rows[..., start:end].reshape(rows.shape[:-1] + tuple(shape))
+            start = end
+        return Quantities({name: out[name] for name in (out if every else self.asked)})
+
+    def columns(self) -> list[str]:
+        """Return the names of the columns of what was asked for."""
+        return [column for name, columns, _, _ in self.schema if name in self.asked for column in columns]
+
+    def drift(self, rows: Array) -> dict[str, float]:
+        """Return the largest |value − value at the start| of what the exact motion keeps."""
+        if len(rows) == 0:
+            return {}
+        every = self.split(rows, every=True)
+        kept = [name for name, _, _, is_kept in self.schema if is_kept]
+        return {name: float(np.abs(every[name] - every[name][0]).max(initial=0.0)) for name in kept}
+
+
+class OdeSolution:
+    """The solution at all times of a run, from its stored polynomials. f is not called.
+
+    ``sol(t)`` has the shape of t followed by that of y; of a problem and of parts it has arrays by name. Times may be in any
+    order. It can be pickled, and used from any thread. Error: that of the continuous extension of the method. A time
+    outside of the run is refused. Where an event ended the run of a problem, the solution goes on to the end of t_span,
+    and this rest is computed when it is asked for; a pickled solution has what was computed.
+    """
+
+    __slots__ = ("_curve", "_layout", "_made_by", "_rest")
+
+    def __init__(
+        self,
+        curve: _lieflow.Curve,
+        made_by: tuple[Any, ...],
+        layout: Layout | Parts | None,
+        rest: Callable[[], _lieflow.Curve] | None = None,
+    ) -> None:
+        self._curve, self._made_by, self._layout, self._rest = curve, made_by, layout, rest
+
+    def __call__(self, t: ArrayLike) -> Any:
+        """Return the points at t."""
+        if self._rest is not None:
+            times, (start, end) = np.asarray(t), self._curve.t_span
+            if times.size and times.dtype.kind in "fiu" and bool(((times - end) * (end - start) > 0).any()):
+                self._curve, self._rest = self._rest(), None
+        rows = self._curve.at(t)
+        return rows if self._layout is None else self._layout.split(rows)
+
+    @property
+    def t_min(self) -> float:
+        """The smallest time."""
+        return min(self._curve.t_span)
+
+    @property
+    def t_max(self) -> float:
+        """The largest time."""
+        return max(self._curve.t_span)
+
+    @property
+    def n_segments(self) -> int:
+        """The number of steps."""
+        return self._curve.steps
+
+    def __repr__(self) -> str:
+        start, end = self._curve.t_span
+        return f"<lieflow.OdeSolution from t = {start} to {end}, {self.n_segments} steps>"
+
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
+        return (_restored, (self._made_by, self._curve.numbers(), self._layout))
+
+
+def _restored(made_by: tuple[Any, ...], numbers: Array, layout: Layout | Parts | None) -> OdeSolution:
+    where, method, *rest = made_by
+    if isinstance(where, tuple):
+        linear, y0 = rest
+        curve = _lieflow.Space(*where).curve(method, linear, y0, numbers)
+    else:
+        curve = where._model(*rest).curve(method, numbers)
+    return OdeSolution(curve, made_by, layout)
+
+
+class ErrorEstimate(NamedTuple):
+    """How far a run is from another result, at most over all outputs and events.
+
+    ``found_by`` says what it was compared with, ``y`` is the largest distance of the points (an angle for rotations; a dict
+    for a problem and for parts), ``t_events`` the largest distance of the times of each event.
+    """
+
+    found_by: str
+    y: Any
+    t_events: list[float]
+
+
+def _distance(a: Array, b: Array, is_rotation: bool) -> float:
+    """The largest distance of the points in a and b: the length of the difference, or the angle."""
+    if len(a) == 0:
+        return 0.0
+    lengths = np.sqrt(((a - b).reshape(len(a), -1) ** 2).sum(1))
+    if is_rotation:
+        lengths = 2.0 * np.arcsin(np.minimum(lengths / np.sqrt(8.0), 1.0))
+    return float(lengths.max())
+
+
+class Result:
+    """The result of a run.
+
+    Attributes
+    ----------
+    t : (k,) array
+        The times of the output.
+    y : (k, ...) array, or Quantities
+        The points. **Time is the first axis.** Of a problem and of parts: arrays by name, which are attributes of the
+        result, too.
+    sol : OdeSolution or None
+        The solution at all times, with ``dense_output=True``.
+    t_events, y_events : list of arrays
+        For each event its zeros and the points there, before a change.
+    status : int
+        0: the end was reached. 1: an event or the callback ended the run. −1: the run failed; all that it reached is here.
+    message : str
+        The reason.
+    success : bool
+        True if status ≥ 0.
+    nfev, nsteps, nrejected : int
+        Evaluations of f (None if the method does not count them), accepted steps, rejected attempts.
+    t_end, y_end : float, array
+        The end of the run. ``y_end`` is None for a problem whose last row is not at the end.
+    drift : dict
+        Of a problem: the largest |value − value at the start| of each invariant, over the output.
+    residual : float
+        A power of two above the distances from M that were found when the state was corrected to M.
+    restored : int
+        How often the state was corrected to M.
+    """
+
+    t: Array
+    y: Any
+    sol: OdeSolution | None
+    t_events: list[Array]
+    y_events: list[Any]
+    status: int
+    message: str
+    nfev: int | None
+    nsteps: int
+    nrejected: int
+    t_end: float
+    y_end: Any
+    drift: dict[str, float]
+    residual: float
+    restored: int
+
+    def __init__(self, **values: Any) -> None:
+        self.__dict__.update(values)
+
+    def __getattr__(self, name: str) -> Any:
+        y = self.__dict__.get("y")
+        if isinstance(y, Quantities) and name in y:
+            return y[name]
+        known = f", expected one of {', '.join(y)}" if isinstance(y, Quantities) else ""
+        raise AttributeError(f"the result has no {name!r}{known}")
+
+    def __dir__(self) -> list[str]:
+        y = self.__dict__.get("y")
+        return [*super().__dir__(), *(y if isinstance(y, Quantities) else ())]
+
+    def __getstate__(self) -> dict[str, Any]:
+        # f may be a function that cannot be pickled.
+        return {name: value for name, value in self.__dict__.items() if name != "_again"}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+
+    @property
+    def success(self) -> bool:
+        """True if the end was reached, or an event ended the run."""
+        return self.status >= 0
+
+    def check(self) -> Result:
+        """Return the result. Raise :class:`lieflow.RunError` if the run failed."""
+        if not self.success:
+            raise RunError(self.message)
+        return self
+
+    def as_rotation(self) -> Any:
+        """Return the points as SciPy's Rotation.
+
+        These are matrices of shape (k, 3, 3), unit quaternions (k, 4), or the ``attitude`` or ``quaternion`` of a problem.
+        """
+        from scipy.spatial.transform import Rotation  # type: ignore[import-untyped, import-not-found, unused-ignore]
+
+        y = self.y
+        if isinstance(y, Quantities):
+            y = y.get("attitude", y.get("quaternion", np.empty(0)))
+        if y.shape[1:] == (3, 3):
+            return Rotation.from_matrix(y)
+        if y.shape[1:] == (4,):
+            return Rotation.from_quat(y, scalar_first=True)
+        raise ArgumentError("y", f"shape {y.shape}", "rotations (k, 3, 3) or unit quaternions (k, 4)")
+
+    def to_dataframe(self) -> Any:
+        """Return a pandas DataFrame: the index is t, the columns are the numbers of y by rows."""
+        import pandas  # type: ignore[import-untyped, import-not-found, unused-ignore]
+
+        if isinstance(self.y, Quantities):
+            layout = self.__dict__["_layout"]
+            names = layout.columns()
+            rows = np.column_stack([self.y[name].reshape(len(self.t), -1) for name in _in_order(layout)])
+        else:
+            places = np.ndindex(*self.y.shape[1:])
+            names = ["y" + "".join(str(i + 1) for i in place) for place in places]
+            rows = self.y.reshape(len(self.t), -1)
+        return pandas.DataFrame(rows, index=pandas.Index(self.t, name="t"), columns=names)
+
+    def estimate_error(self) -> ErrorEstimate:
+        """Return how far the outputs and the events are from the exact motion, or from a second run.
+
+        The second run has half the step size, or a tenth of the tolerances; where these are the least that rounding allows,
+        ten times the tolerances. Then the estimate is an upper bound.
+        """
+        again = self.__dict__.get("_again")
+        if again is None:
+            raise RunError("the run cannot be repeated: this is a copy of the result without f")
+        found_by, other = again(self)
+        if isinstance(self.y, Quantities):
+            y: Any = {name: _distance(x, other.y[name], x.shape[1:] == (3, 3)) for name, x in self.y.items()}
+        else:
+            y = _distance(self.y, other.y, self.y.shape[1:] == (3, 3) and self.__dict__.get("_on_so3", False))
+        times = [
+            float(np.abs(a - b).max(initial=0.0)) if len(a) == len(b) else float("inf")
+            for a, b in zip(self.t_events, other.t_events)
+        ]
+        return ErrorEstimate(found_by, y, times)
+
+    def __iter__(self) -> Iterator[str]:
+        return (name for name in self.__dict__ if not name.startswith("_"))
+
+    def __repr__(self) -> str:
+        if isinstance(self.y, Quantities):
+            shape = f"{len(self.t)} rows of {', '.join(self.y)}"
+        else:
+            shape = f"{len(self.t)} points of shape {self.y.shape[1:]}"
+        return f"<lieflow.Result: {shape}, status {self.status}, {self.nsteps} steps, {self.message}>"
+
+
+def _in_order(layout: Any) -> list[str]:
+    """The names in the order of the columns."""
+    if isinstance(layout, Parts):
+        return list(layout._places)
+    return [name for name, *_ in layout.schema if name in layout.asked]

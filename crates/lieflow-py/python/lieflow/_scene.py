@@ -1,0 +1,86 @@
+"""Scene files, and the scenes that come with lieflow."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from typing import Any
+
+from . import _lieflow
+from ._problems import Problem, problem_of
+from ._result import Layout, Result
+
+__all__ = ["Scene", "load", "scenes"]
+
+
+class Scene:
+    """A scene: a problem, a method, times and what is computed. :func:`lieflow.load` opens it."""
+
+    def __init__(self, scene: str | os.PathLike[str], settings: Sequence[str] = ()) -> None:
+        self._args = (os.fspath(scene), tuple(settings))
+        self._scene = _lieflow.Scene(os.fspath(scene), list(settings))
+
+    @property
+    def name(self) -> str:
+        """The name, that of the file."""
+        return self._scene.name
+
+    @property
+    def title(self) -> str:
+        """The title."""
+        return self._scene.title
+
+    @property
+    def text(self) -> str:
+        """The text of the scene, with the settings."""
+        return self._scene.text
+
+    @property
+    def problem(self) -> Problem:
+        """The problem."""
+        return problem_of(self._scene.kind, self._scene.keys())
+
+    @property
+    def method(self) -> str:
+        """The method."""
+        return self._scene.method
+
+    @property
+    def t_span(self) -> tuple[float, float]:
+        """The span."""
+        start, end = self._scene.t_span
+        return start, end
+
+    @property
+    def quantities(self) -> tuple[str, ...]:
+        """What is computed."""
+        return tuple(self._scene.quantities)
+
+    def run(self) -> Result:
+        """Run the scene, without the interpreter. The result has the rows that ``lieflow run`` writes."""
+        schema, found = self._scene.run()
+        layout = Layout(schema, self.quantities)
+        rows, lost = found["y"], found.pop("lost")
+        if lost is not None and found["status"] < 0:
+            found["message"] += f" {lost}."
+        found["y"] = layout.split(rows)
+        found["y_events"] = [layout.split(y) for y in found["y_events"]]
+        at_end = len(rows) > 0 and found["t"][-1] == found["t_end"]
+        found["y_end"] = layout.split(rows[-1]) if at_end else None
+        return Result(sol=None, drift=layout.drift(rows), _layout=layout, **found)
+
+    def __repr__(self) -> str:
+        return f"lieflow.Scene({self._args[0]!r}{f', {list(self._args[1])}' if self._args[1] else ''})"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (Scene, self._args)
+
+
+def load(scene: str | os.PathLike[str], *, set: Sequence[str] = ()) -> Scene:
+    """Open a scene by the path of its file or by its bundled name, changed by settings such as ``"time.dt=0.01"``."""
+    return Scene(scene, set)
+
+
+def scenes() -> tuple[str, ...]:
+    """Return the names of the bundled scenes."""
+    return tuple(_lieflow.bundled())

@@ -1,0 +1,33 @@
+"""Values of keys: numbers, texts, lists and dicts, from arrays and what else users have."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from ._fields import Samples
+
+__all__ = ["plain"]
+
+
+def plain(name: str, x: Any) -> Any:
+    """Return x as numbers, texts, lists and dicts. Raise TypeError for what is none of them."""
+    if x is None or isinstance(x, (str, bool, int, float)):
+        return x
+    if isinstance(x, Samples):
+        return list(x.as_file())
+    if isinstance(x, np.ndarray) or isinstance(x, np.generic):
+        if x.dtype.kind not in "fiubU":
+            raise TypeError(f"{name}: an array of {x.dtype}, expected real numbers")
+        return x.tolist()
+    if isinstance(x, Mapping):
+        return {str(key): plain(f"{name}.{key}", value) for key, value in x.items()}
+    if isinstance(x, (list, tuple)):
+        return [plain(f"{name}[{i}]", entry) for i, entry in enumerate(x)]
+    if hasattr(x, "as_matrix"):  # SciPy's Rotation
+        return x.as_matrix().tolist()
+    if hasattr(x, "__array__"):
+        return plain(name, np.asarray(x))
+    raise TypeError(f"{name}: a value of type {type(x).__name__}, expected numbers, texts, lists, arrays or dicts")

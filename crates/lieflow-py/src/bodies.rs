@@ -1,0 +1,95 @@
+//! Many free rigid bodies at once.
+
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use lieflow::ensemble::{Ensemble, EnsembleMethod};
+use nalgebra::Matrix3;
+use numpy::{PyArrayDyn, PyReadonlyArray2, PyReadonlyArray3};
+use pyo3::prelude::*;
+
+use crate::error::{argument, refused};
+use crate::field::array;
+
+/// The methods by name.
+const METHODS: [(&str, EnsembleMethod); 3] = [
+    ("rkmk4 exp", EnsembleMethod::Rkmk4Exp),
+    ("rkmk4 cay", EnsembleMethod::Rkmk4Cay),
+    ("rk4-mg", EnsembleMethod::Rk4),
+];
+
+/// Many free rigid bodies.
+#[pyclass(frozen, module = "lieflow._lieflow")]
+pub(crate) struct FreeBodies {
+    bodies: Mutex<Ensemble>,
+    count: usize,
+    has_attitudes: bool,
+}
+
+impl FreeBodies {
+    fn bodies(&self, py: Python<'_>) -> MutexGuard<'_, Ensemble> {
+        py.detach(|| drop(self.bodies.lock()));
+        self.bodies.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+#[pymethods]
+impl FreeBodies {
+    #[new]
+    #[pyo3(signature = (inertia, momentum, attitude = None))]
+    fn new(
+        py: Python<'_>,
+        inertia: PyReadonlyArray2<'_, f64>,
+        momentum: PyReadonlyArray2<'_, f64>,
+        attitude: Option<PyReadonlyArray3<'_, f64>>,
+    ) -> PyResult<Self> {
+        let (inertia, momentum) = (inertia.as_slice()?, momentum.as_slice()?);
+        let (inertia, _) = inertia.as_chunks::<3>();
+        let (momentum, _) = momentum.as_chunks::<3>();
+        let refuse = |error: lieflow::Error| refused(py, "bodies", &error);
+        let mut bodies = Ensemble::new(inertia, momentum).map_err(refuse)?;
+        if let Some(attitude) = &attitude {
+            let rows = attitude.as_slice()?.chunks_exact(9);
+            let attitudes: Vec<_> = rows.map(Matrix3::from_row_slice).collect();
+            bodies = bodies.with_attitudes(&attitudes).map_err(refuse)?;
+        }
+        let (count, has_attitudes) = (momentum.len(), attitude.is_some());
+        Ok(FreeBodies { bodies: Mutex::new(bodies), count, has_attitudes })
+    }
+    fn advance(
+        &self,
+        py: Python<'_>,
+        method: &str,
+        h: f64,
+        steps: u64,
+        threads: usize,
+    ) -> PyResult<()> {
+        let known = METHODS.iter().find(|(name, _)| *name == method);
+        let (_, known) = known.ok_or_else(|| {
+            let names = METHODS.map(|(name, _)| name).join(", ");
+            argument(py, "method", format!("{method:?}"), format!("one of {names}"))
+        })?;
+        let done = py.detach(|| {
+            let mut bodies = self.bodies.lock().unwrap_or_else(PoisonError::into_inner);
+            bodies.advance(*known, h, steps, threads)
+        });
+        done.map_err(|error| refused(py, "bodies", &error))
+    }
+    fn momentum<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        let bodies = self.bodies(py);
+        let all = (0..self.count).filter_map(|i| bodies.momentum(i));
+        let numbers: Vec<f64> = all.flat_map(|m| [m.x, m.y, m.z]).collect();
+        array(py, &[self.count, 3], &numbers)
+    }
+    fn attitude<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArrayDyn<f64>>>> {
+        let bodies = self.bodies(py);
+        let all = (0..self.count).filter_map(|i| bodies.attitude(i));
+        let numbers: Vec<f64> = all.flat_map(|g| g.transpose().data.0.concat()).collect();
+        let array = || array(py, &[self.count, 3, 3], &numbers);
+        self.has_attitudes.then(array).transpose()
+    }
+    fn energy<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        let bodies = self.bodies(py);
+        let numbers: Vec<f64> = (0..self.count).filter_map(|i| bodies.energy(i)).collect();
+        array(py, &[self.count], &numbers)
+    }
+}

@@ -1,0 +1,401 @@
+//! Problems by the name of their kind, and their runs.
+
+use std::sync::Arc;
+
+use lieflow::catalog::{MethodSpec, all_methods};
+use lieflow::solve::{Next, Status};
+use lieflow::{RunError, SaveAt};
+use lieflow_model::formula::Which;
+use lieflow_model::kinds::{KINDS, named};
+use lieflow_model::problem::{self, CurvePlace, EventPlan, KeyInfo, Layer, Plan, Steps, Watcher};
+use lieflow_model::reader::{Shape, Tree};
+use lieflow_model::scene::{Columns, OnRows, RowFormula};
+use lieflow_model::schema::{Observable, Row, Schema};
+use numpy::{PyArray1, PyArrayDyn, PyReadonlyArray1};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::curve::Curve;
+use crate::error::{argument, refused};
+use crate::field::{self, Callable, Raised};
+use crate::run::{EventParts, Function, Seen, Settings, Watch, Watched, save_of, spec_of};
+use crate::solve::knots;
+use crate::stepper::Stepper;
+use crate::tree::{mistake, mistakes, tree};
+
+/// What a value of this shape is, in words.
+fn shape_words(shape: Shape) -> String {
+    match shape {
+        Shape::Bool => "True or False".into(),
+        Shape::Whole => "a whole number".into(),
+        Shape::Number => "a number".into(),
+        Shape::Numbers(n) => format!("shape ({n},)"),
+        Shape::List => "shape (n,)".into(),
+        Shape::Rows => "shape (n, k)".into(),
+        Shape::Square(n) => format!("shape ({n}, {n})"),
+        Shape::Text => "a text".into(),
+        Shape::Formula => "a formula: a text or a number".into(),
+        Shape::Formulas => "a formula or a list of them".into(),
+        Shape::ListOf(entry) => format!("a list, of each {}", shape_words(*entry)),
+        Shape::TableOf(entry) => format!("a dict of names, each {}", shape_words(*entry)),
+        Shape::Keys(keys) => format!("a dict of {}", keys.join(", ")),
+        Shape::Or(a, b) => format!("{}, or {}", shape_words(*a), shape_words(*b)),
+        Shape::Samples => "lieflow.Samples, or the name of a CSV file".into(),
+    }
+}
+
+/// The type of a value of this shape, for type checkers.
+fn shape_type(shape: Shape) -> String {
+    match shape {
+        Shape::Bool => "bool".into(),
+        Shape::Whole => "int".into(),
+        Shape::Number => "float".into(),
+        Shape::Numbers(_) | Shape::List | Shape::Rows | Shape::Square(_) => "ArrayLike".into(),
+        Shape::Text => "str".into(),
+        Shape::Formula => "str | float".into(),
+        Shape::Formulas => "str | float | Sequence[str | float]".into(),
+        Shape::ListOf(_) => "Sequence[Any]".into(),
+        Shape::TableOf(_) | Shape::Keys(_) => "Mapping[str, Any]".into(),
+        Shape::Or(a, b) => format!("{} | {}", shape_type(*a), shape_type(*b)),
+        Shape::Samples => "Samples | str".into(),
+    }
+}
+
+/// What every kind states: its name, equation, summary, keys and quantities.
+#[pyfunction]
+pub(crate) fn kinds(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
+    let kind = |kind: &problem::Kind| {
+        let all = PyDict::new(py);
+        all.set_item("name", kind.name)?;
+        all.set_item("equation", kind.equation)?;
+        all.set_item("summary", kind.summary)?;
+        let keys = kind.keys.iter().map(|key| {
+            let KeyInfo { name, meaning, shape, optional } = *key;
+            (name, meaning, shape_words(shape), optional, shape_type(shape))
+        });
+        all.set_item("keys", keys.collect::<Vec<_>>())?;
+        let quantities = (kind.quantities)().into_iter();
+        let quantities = quantities.map(|q| (q.name, q.column_names(), q.meaning, q.unit));
+        all.set_item("quantities", quantities.collect::<Vec<_>>())?;
+        Ok(all)
+    };
+    KINDS.iter().map(kind).collect()
+}
+
+/// A problem of a kind.
+#[pyclass(frozen, module = "lieflow._lieflow")]
+pub(crate) struct Problem {
+    problem: problem::Problem,
+    keys: Tree,
+}
+
+fn names(quantities: &[String]) -> Vec<&str> {
+    quantities.iter().map(String::as_str).collect()
+}
+
+#[pymethods]
+impl Problem {
+    #[new]
+    fn new(kind: &str, keys: &Bound<'_, PyDict>) -> PyResult<Self> {
+        let py = keys.py();
+        let kind = named(kind).map_err(|error| refused(py, "kind", &error))?;
+        let keys = tree("", keys)?;
+        let problem = kind.problem(&keys).map_err(|error| mistakes(py, &error))?;
+        Ok(Problem { problem, keys })
+    }
+    /// The name of the default method.
+    #[getter]
+    fn method(&self) -> String {
+        self.problem.default_method().label()
+    }
+    /// The quantities that are given where none are asked for.
+    #[getter]
+    fn quantities(&self) -> Vec<&'static str> {
+        self.problem.default_state().to_vec()
+    }
+    /// The layers.
+    #[getter]
+    fn layers(&self) -> Vec<&'static str> {
+        self.problem.layers().into_iter().map(Layer::name).collect()
+    }
+    /// What is known before a run.
+    #[getter]
+    fn facts(&self) -> Vec<(&'static str, f64)> {
+        self.problem.facts().iter().map(|fact| (fact.name, fact.value)).collect()
+    }
+    /// What a reader should know: changed numbers, and warnings.
+    #[getter]
+    fn notes(&self) -> Vec<String> {
+        [self.problem.notes(), self.problem.warnings()].concat()
+    }
+    /// What the exact motion keeps, of what follows from these quantities.
+    fn invariants(&self, quantities: Vec<String>) -> Vec<&'static str> {
+        self.problem.invariants(&names(&quantities))
+    }
+    /// The quantities of the state that these are made of.
+    fn state(&self, quantities: Vec<String>) -> Vec<&'static str> {
+        self.problem.state(&names(&quantities)).to_vec()
+    }
+    /// The columns of a quantity.
+    fn columns(&self, py: Python<'_>, quantity: &str) -> PyResult<Vec<String>> {
+        let found = self.problem.columns(quantity);
+        found.map_err(|error| argument(py, "quantities", quantity, error.to_string()))
+    }
+    /// The times at which the problem is not smooth.
+    fn knots(&self, py: Python<'_>, t_span: [f64; 2]) -> PyResult<Vec<f64>> {
+        if let Some(samples) = self.problem.samples() {
+            knots(py, samples, t_span)?;
+        }
+        Ok(self.problem.knots(t_span).unwrap_or_default())
+    }
+    /// The problem with these quantities on a layer. `events` are formulas of its columns, each with its path.
+    #[pyo3(signature = (quantities, layer = None, events = vec![]))]
+    fn model(
+        &self,
+        py: Python<'_>,
+        quantities: Vec<String>,
+        layer: Option<&str>,
+        events: Vec<(String, String)>,
+    ) -> PyResult<Model> {
+        let layer = match layer {
+            Some(name) => Layer::named(name).map_err(|error| refused(py, "layer", &error))?,
+            None => self.problem.layers()[0],
+        };
+        let formulas: Vec<RowFormula> = if events.is_empty() {
+            Vec::new()
+        } else {
+            let columns = Columns::of_keys(&self.problem, &self.keys, &quantities);
+            let columns = columns.map_err(|error| mistakes(py, &error))?;
+            let read = |(path, text): &(String, String)| columns.read(path, text);
+            let formulas = events.iter().map(read).collect::<Result<_, _>>();
+            formulas.map_err(|refusal| mistake(py, refusal))?
+        };
+        let mut all = names(&quantities);
+        for name in formulas.iter().flat_map(RowFormula::quantities) {
+            if !all.contains(&name) {
+                all.push(name);
+            }
+        }
+        let model = self.problem.model(layer, &all);
+        let model = model.map_err(|error| refused(py, "quantities", &error))?;
+        let formulas = formulas.iter().map(|formula| formula.on(model.schema()).map(Arc::new));
+        let formulas = formulas.collect::<Result<_, _>>();
+        let formulas = formulas.map_err(|error| refused(py, "events", &error))?;
+        Ok(Model { problem: self.problem.clone(), model, formulas })
+    }
+}
+
+/// A quantity of a row: its name, its columns, its shape, and whether the exact motion keeps it.
+type Quantity = (&'static str, Vec<String>, Vec<usize>, bool);
+
+/// The quantities of a row.
+pub(crate) fn schema_of(schema: &Schema) -> Vec<Quantity> {
+    let each = |o: &Observable| (o.name, o.columns.clone(), o.shape.clone(), o.law.is_some());
+    schema.iter().map(each).collect()
+}
+
+/// A problem with the quantities that are asked for.
+#[pyclass(frozen, module = "lieflow._lieflow")]
+pub(crate) struct Model {
+    problem: problem::Problem,
+    model: problem::Model,
+    /// The functions of events.
+    formulas: Vec<Arc<OnRows>>,
+}
+
+/// A function of t and a row.
+type RowValue<'a> = Box<dyn Fn(f64, Row<'_>) -> f64 + 'a>;
+
+/// What watches a run of a model.
+pub(crate) struct OfModel<'a> {
+    pub(crate) callback: Option<&'a Callable>,
+    pub(crate) raised: &'a Raised,
+    pub(crate) seen: &'a mut Seen,
+}
+
+impl Watcher for OfModel<'_> {
+    fn row(&mut self, t: f64, row: Row<'_>) -> Next {
+        self.seen.row(self.callback, self.raised, t, row.values());
+        Next::Continue
+    }
+    fn event(&mut self, event: usize, t: f64, _: bool, row: Row<'_>) {
+        self.seen.found[event].push(t, row.values());
+    }
+    fn progress(&mut self, _: f64) {
+        self.seen.signals(self.raised);
+    }
+    fn end(&mut self, t: f64, stats: &lieflow::Stats) {
+        self.seen.end = Some((t, *stats));
+    }
+}
+
+impl Model {
+    fn width(&self) -> usize {
+        self.model.schema().columns().count()
+    }
+
+    fn spec(&self, py: Python<'_>, method: &str) -> PyResult<MethodSpec> {
+        let spec = spec_of(py, method)?;
+        let fits = self.model.fits(&spec);
+        fits.map_err(|error| argument(py, "method", format!("{method:?}"), error.to_string()))?;
+        Ok(spec)
+    }
+
+    fn event<'a>(&'a self, event: &'a Watched) -> EventPlan<'a> {
+        let (places, value): (_, RowValue<'a>) = match event.function {
+            Function::Column(number) => {
+                let formula = self.formulas[number].clone();
+                (formula.places().collect(), Box::new(move |t, row| formula.value(t, row)))
+            }
+            _ => ((0..self.width()).collect(), Box::new(|t, row| event.value(t, row.values()))),
+        };
+        EventPlan {
+            direction: event.direction,
+            stop_after: event.stop_after,
+            points: event.points,
+            change: event.change.is_some().then(|| -> problem::Change<'a> {
+                Box::new(|t, numbers| event.change(t, numbers))
+            }),
+            ..EventPlan::new(event.name.clone(), places, value)
+        }
+    }
+
+    fn drive(
+        &self,
+        (spec, start): (&MethodSpec, Option<Vec<f64>>),
+        (steps, save): (Steps, SaveAt),
+        settings: &Settings,
+        watch: &mut Watch,
+    ) -> (Result<Status, RunError>, Option<Curve>) {
+        let (events, callback, raised, seen) = watch.parts();
+        let mut curve = None;
+        let plan = Plan {
+            stops: settings.stops.clone(),
+            max_steps: settings.max_steps,
+            events: events.iter().map(|event| self.event(event)).collect(),
+            cancel: Some(&raised.stop),
+            curve: settings.dense_output.then_some(CurvePlace(&mut curve)),
+            start,
+            ..Plan::new(steps, save)
+        };
+        let mut watcher = OfModel { callback, raised, seen };
+        let done = self.model.drive(spec, plan, &mut watcher);
+        let curve = curve.map(|curve| Curve::of_rows(curve, self.width()));
+        (done.map(|outcome| outcome.status), curve)
+    }
+}
+
+#[pymethods]
+impl Model {
+    /// The quantities of a row: name, columns, shape, and whether the exact motion keeps it.
+    #[getter]
+    fn schema(&self) -> Vec<Quantity> {
+        schema_of(self.model.schema())
+    }
+    /// The names of the methods that fit.
+    fn methods(&self) -> Vec<&'static str> {
+        let fits = |name: &str| self.model.fits(&MethodSpec::new(name, None)).is_ok();
+        all_methods().map(|info| info.name).filter(|name| fits(name)).collect()
+    }
+    /// The numbers of the state at the start.
+    fn start<'py>(&self, py: Python<'py>, method: &str) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let start = self.model.start(&self.spec(py, method)?);
+        let start = start.map_err(|error| refused(py, "problem", &error))?;
+        Ok(PyArray1::from_vec(py, start))
+    }
+    /// Runs it.
+    #[pyo3(signature = (method, t_span, start, settings, t_eval, events, callback = None))]
+    fn solve<'py>(
+        &self,
+        py: Python<'py>,
+        method: &str,
+        t_span: [f64; 2],
+        start: Option<PyReadonlyArray1<'py, f64>>,
+        settings: Settings,
+        t_eval: Option<PyReadonlyArray1<'py, f64>>,
+        events: Vec<EventParts>,
+        callback: Option<Py<PyAny>>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let spec = self.spec(py, method)?;
+        if let Some(refusal) = self.problem.check_start(t_span[0]).into_iter().next() {
+            return Err(mistake(py, refusal));
+        }
+        let steps = settings.steps(t_span, || self.model.orders(&spec));
+        let steps = steps.map_err(|error| refused(py, "solve_ivp", &error))?;
+        let start = start.map(|start| start.as_slice().map(<[f64]>::to_vec)).transpose()?;
+        let (raised, shape) = (Arc::new(Raised::default()), [self.width()]);
+        let state = match events.iter().any(|(.., change, _)| change.is_some()) {
+            true => self.model.start(&spec).map_or(0, |numbers| numbers.len()),
+            false => 0,
+        };
+        let parts = (events, callback);
+        let mut watch = Watch::new(py, parts, &[], (&shape, &[state]), raised.clone());
+        let (attached, save) = (watch.has_callables(), save_of(t_eval)?);
+        if let Some(formula) = self.problem.formula() {
+            formula.forget();
+        }
+        let mut run = || {
+            let (steps, save) = (steps.clone(), save.clone());
+            self.drive((&spec, start.clone()), (steps, save), &settings, &mut watch)
+        };
+        let (status, curve) = if attached { run() } else { py.detach(run) };
+        let result = watch.seen.into_dict(py, &raised, status, &shape)?;
+        let lost = self.problem.formula().and_then(|formula| formula.lost(Which::First));
+        result.set_item("lost", lost.map(|lost| lost.to_string()))?;
+        result.set_item("curve", curve.map(|curve| Py::new(py, curve)).transpose()?)?;
+        Ok(result)
+    }
+    /// The rows of the exact motion at these times; None where it is not known.
+    fn exact<'py>(
+        &self,
+        py: Python<'py>,
+        t0: f64,
+        t: PyReadonlyArray1<'py, f64>,
+    ) -> PyResult<Option<Bound<'py, PyArrayDyn<f64>>>> {
+        let times = t.as_slice()?;
+        let found = py.detach(|| {
+            let mut numbers: Vec<f64> = Vec::with_capacity(self.width() * times.len());
+            for (i, &t) in times.iter().enumerate() {
+                let mut row = match self.model.exact([t0, t]) {
+                    None => return Ok(None),
+                    Some(row) => row.map_err(|error| (i, error))?,
+                };
+                if let Some(before) = numbers.len().checked_sub(row.len()) {
+                    self.model.schema().follow(&numbers[before..], &mut row);
+                }
+                numbers.append(&mut row);
+            }
+            Ok(Some(numbers))
+        });
+        let found = found.map_err(|(i, error)| refused(py, &format!("t[{i}]"), &error))?;
+        let array = |x: Vec<f64>| field::array(py, &[times.len(), self.width()], &x);
+        found.map(array).transpose()
+    }
+    /// The curve of these numbers.
+    fn curve(
+        &self,
+        py: Python<'_>,
+        method: &str,
+        numbers: PyReadonlyArray1<'_, f64>,
+    ) -> PyResult<Curve> {
+        let curve = self.model.curve(&self.spec(py, method)?, numbers.as_slice()?);
+        let curve = curve.map_err(|error| refused(py, "curve", &error))?;
+        Ok(Curve::of_rows(curve, self.width()))
+    }
+    /// A run that is taken step by step.
+    fn stepper(
+        &self,
+        py: Python<'_>,
+        method: &str,
+        t_span: [f64; 2],
+        start: Option<PyReadonlyArray1<'_, f64>>,
+        settings: Settings,
+    ) -> PyResult<Stepper> {
+        let spec = self.spec(py, method)?;
+        let steps = settings.steps(t_span, || self.model.orders(&spec));
+        let steps = steps.map_err(|error| refused(py, "Integrator", &error))?;
+        let start = start.as_ref().map(|start| start.as_slice()).transpose()?;
+        let run = self.model.stepper(&spec, steps, start);
+        Stepper::new(py, run, &[self.width()], (Arc::default(), false))
+    }
+}

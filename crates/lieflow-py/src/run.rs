@@ -1,0 +1,316 @@
+//! What all runs share: the steps, what watches, and what a run did.
+
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use std::time::{Duration, Instant};
+
+use lieflow::catalog::MethodSpec;
+use lieflow::solve::Status;
+use lieflow::{Direction, RunError, SaveAt, Stats, StepControl, TimeGrid};
+use lieflow_model::kinds::own::OwnField;
+use lieflow_model::problem::{Orders, Steps};
+use lieflow_model::scene::tolerance;
+use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::error::{argument, of_run, refused};
+use crate::field::{self, Callable, Raised};
+use crate::formulas::Formulas;
+
+/// How often a run asks for signals.
+const SIGNALS: Duration = Duration::from_millis(20);
+
+/// The method of this name.
+pub(crate) fn spec_of(py: Python<'_>, method: &str) -> PyResult<MethodSpec> {
+    let spec = method.parse::<MethodSpec>();
+    spec.and_then(|spec| spec.choose().map(|_| spec.clone()))
+        .map_err(|error| argument(py, "method", format!("{method:?}"), error.to_string()))
+}
+
+/// The settings of a run.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct Settings {
+    rtol: Option<f64>,
+    atol: Option<f64>,
+    first_step: Option<f64>,
+    min_step: Option<f64>,
+    max_step: Option<f64>,
+    pub(crate) max_steps: Option<u64>,
+    dt: Option<f64>,
+    steps: Option<u64>,
+    pub(crate) stops: Vec<f64>,
+    pub(crate) dense_output: bool,
+    pub(crate) linear: bool,
+}
+
+impl Settings {
+    /// The steps. What is left out is that of a scene, for a method of this order.
+    pub(crate) fn steps(
+        &self,
+        t_span: [f64; 2],
+        orders: impl FnOnce() -> Result<Orders, lieflow::Error>,
+    ) -> Result<Steps, lieflow::Error> {
+        if let Some(dt) = self.dt {
+            return Ok(Steps::Equal(TimeGrid::new(t_span, dt)?));
+        }
+        if let Some(steps) = self.steps {
+            return Ok(Steps::Equal(TimeGrid::with_steps(t_span, steps)?));
+        }
+        let [rtol, atol] = match (self.rtol, self.atol) {
+            (Some(rtol), Some(atol)) => [rtol, atol],
+            (rtol, atol) => {
+                let default = tolerance(orders()?.step);
+                [rtol.unwrap_or(default), atol.unwrap_or(default)]
+            }
+        };
+        let mut control = StepControl::new(rtol, atol)?;
+        if let Some(h) = self.max_step {
+            control = control.max_step(h)?;
+        }
+        if let Some(h) = self.min_step {
+            control = control.min_step(h)?;
+        }
+        if let Some(h) = self.first_step {
+            control = control.first_step(h)?;
+        }
+        Ok(Steps::ByError { t_span, control })
+    }
+}
+
+/// The rows of the output.
+pub(crate) fn save_of(times: Option<PyReadonlyArray1<'_, f64>>) -> PyResult<SaveAt> {
+    Ok(match times {
+        Some(times) => SaveAt::Times(times.as_slice()?.to_vec()),
+        None => SaveAt::Every(1),
+    })
+}
+
+/// The times and the numbers of the output or of an event.
+#[derive(Default)]
+pub(crate) struct Rows {
+    times: Vec<f64>,
+    points: Vec<f64>,
+}
+
+impl Rows {
+    pub(crate) fn push(&mut self, t: f64, y: &[f64]) {
+        self.times.push(t);
+        self.points.extend_from_slice(y);
+    }
+
+    pub(crate) fn into_arrays<'py>(
+        self,
+        py: Python<'py>,
+        shape: &[usize],
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        let shape: Vec<usize> =
+            core::iter::once(self.times.len()).chain(shape.iter().copied()).collect();
+        let points = PyArray1::from_vec(py, self.points).reshape(shape)?;
+        Ok((PyArray1::from_vec(py, self.times).into_any(), points.into_any()))
+    }
+}
+
+/// The function of an event.
+#[derive(FromPyObject)]
+pub(crate) enum EventFunction {
+    /// Formulas in t and the numbers of y.
+    Formulas(Py<Formulas>),
+    /// The number of a formula of the columns of a model.
+    Column(usize),
+    /// A callable.
+    Callable(Py<PyAny>),
+}
+
+/// An event: the function, its name, direction, the zero that ends the run or 0, what changes y, points.
+pub(crate) type EventParts = (EventFunction, String, f64, u64, Option<Py<PyAny>>, Option<u32>);
+
+/// The function of an event that can be called without the interpreter.
+pub(crate) enum Function {
+    Formulas(Arc<OwnField>),
+    Column(usize),
+    Callable(Callable),
+}
+
+/// An event of a run.
+pub(crate) struct Watched {
+    pub(crate) name: String,
+    pub(crate) function: Function,
+    pub(crate) direction: Direction,
+    pub(crate) stop_after: Option<u64>,
+    pub(crate) change: Option<Callable>,
+    pub(crate) points: Option<u32>,
+}
+
+impl Watched {
+    /// The value at (t, y), by rows; NaN if the function raised.
+    pub(crate) fn value(&self, t: f64, y: &[f64]) -> f64 {
+        match &self.function {
+            Function::Formulas(formulas) => {
+                let mut value = [f64::NAN];
+                formulas(t, y, &mut value);
+                value[0]
+            }
+            Function::Callable(g) => {
+                let read = |value: &Bound<'_, PyAny>| field::number(&self.name, t, value);
+                g.call(t, y, read).unwrap_or(f64::NAN)
+            }
+            Function::Column(_) => f64::NAN,
+        }
+    }
+
+    /// y ← what the event changes it to.
+    pub(crate) fn change(&self, t: f64, y: &mut [f64]) {
+        if let Some(change) = &self.change {
+            field::change(change, &format!("change of {}", self.name), t, y);
+        }
+    }
+}
+
+/// What watches a run: its events and its callback, with what they saw.
+pub(crate) struct Watch {
+    pub(crate) events: Vec<Watched>,
+    callback: Option<Callable>,
+    pub(crate) raised: Arc<Raised>,
+    pub(crate) seen: Seen,
+}
+
+/// What was seen of a run.
+#[derive(Default)]
+pub(crate) struct Seen {
+    rows: Rows,
+    pub(crate) found: Vec<Rows>,
+    ended_by_callback: bool,
+    /// The time and the numbers at the end, and what the run did.
+    pub(crate) end: Option<(f64, Stats)>,
+    last: Option<Instant>,
+}
+
+impl Watch {
+    /// The events and the callback of a run whose callables get y of this shape, and whose changes get the state.
+    pub(crate) fn new(
+        py: Python<'_>,
+        (events, callback): (Vec<EventParts>, Option<Py<PyAny>>),
+        args: &[Py<PyAny>],
+        (shape, state): (&[usize], &[usize]),
+        raised: Arc<Raised>,
+    ) -> Self {
+        let make = |g: Py<PyAny>, args: &[Py<PyAny>], shape: &[usize]| {
+            let args = args.iter().map(|arg| arg.clone_ref(py)).collect();
+            Callable::new(g, args, (shape, false), raised.clone())
+        };
+        let watched = |(g, name, direction, stop, change, points): EventParts| Watched {
+            name,
+            function: match g {
+                EventFunction::Formulas(formulas) => Function::Formulas(formulas.get().0.field()),
+                EventFunction::Column(place) => Function::Column(place),
+                EventFunction::Callable(g) => Function::Callable(make(g, args, shape)),
+            },
+            direction: match direction {
+                d if d > 0.0 => Direction::Rising,
+                d if d < 0.0 => Direction::Falling,
+                _ => Direction::Both,
+            },
+            stop_after: (stop > 0).then_some(stop),
+            change: change.map(|change| make(change, args, state)),
+            points,
+        };
+        let events: Vec<Watched> = events.into_iter().map(watched).collect();
+        let found = events.iter().map(|_| Rows::default()).collect();
+        let seen = Seen { found, ..Seen::default() };
+        Watch {
+            events,
+            callback: callback.map(|callback| make(callback, &[], shape)),
+            raised,
+            seen,
+        }
+    }
+
+    /// Does it call Python?
+    pub(crate) fn has_callables(&self) -> bool {
+        let calls = |event: &Watched| {
+            event.change.is_some() || matches!(event.function, Function::Callable(_))
+        };
+        self.callback.is_some() || self.events.iter().any(calls)
+    }
+}
+
+impl Seen {
+    /// Sees a row of the output.
+    pub(crate) fn row(&mut self, callback: Option<&Callable>, raised: &Raised, t: f64, y: &[f64]) {
+        self.rows.push(t, y);
+        if let Some(callback) = callback
+            && callback.call(t, y, |value| value.is_truthy()) == Some(true)
+        {
+            self.ended_by_callback = true;
+            raised.stop.store(true, Ordering::Relaxed);
+        }
+    }
+
+    /// Asks for signals now and then.
+    pub(crate) fn signals(&mut self, raised: &Raised) {
+        if self.last.is_none_or(|last| last.elapsed() >= SIGNALS) {
+            self.last = Some(Instant::now());
+            if let Err(error) = Python::attach(|py| py.check_signals()) {
+                raised.keep(error);
+            }
+        }
+    }
+
+    /// The dict of a result. `shape` is that of the points.
+    pub(crate) fn into_dict<'py>(
+        self,
+        py: Python<'py>,
+        raised: &Raised,
+        status: Result<Status, RunError>,
+        shape: &[usize],
+    ) -> PyResult<Bound<'py, PyDict>> {
+        if let Some(error) = raised.take() {
+            return Err(error);
+        }
+        let Some((t_end, stats)) = self.end else {
+            let error =
+                status.err().map_or_else(|| argument(py, "fun", "", ""), |e| of_run(py, &e));
+            return Err(error);
+        };
+        if let Err(RunError::Setup(error)) = &status {
+            return Err(refused(py, "solve_ivp", error));
+        }
+        let (code, message) = match &status {
+            Ok(Status::Finished) => (0, "The end of the span was reached.".to_owned()),
+            Ok(Status::Event(name)) => (1, format!("The event {name} ended the run.")),
+            Ok(_) if self.ended_by_callback => (1, "The callback ended the run.".to_owned()),
+            Ok(status) => (-1, format!("The run was ended: {status:?}.")),
+            Err(error) => (-1, error.to_string()),
+        };
+        let result = PyDict::new(py);
+        let (t, y) = self.rows.into_arrays(py, shape)?;
+        let (mut t_events, mut y_events) = (Vec::new(), Vec::new());
+        for found in self.found {
+            let (t, y) = found.into_arrays(py, shape)?;
+            t_events.push(t);
+            y_events.push(y);
+        }
+        result.set_item("t", t)?;
+        result.set_item("y", y)?;
+        result.set_item("t_events", t_events)?;
+        result.set_item("y_events", y_events)?;
+        result.set_item("status", code)?;
+        result.set_item("message", message)?;
+        result.set_item("t_end", t_end)?;
+        result.set_item("nfev", stats.evaluations)?;
+        result.set_item("nsteps", stats.accepted)?;
+        result.set_item("nrejected", stats.rejected)?;
+        result.set_item("residual", stats.residual)?;
+        result.set_item("restored", stats.restored)?;
+        Ok(result)
+    }
+}
+
+impl Watch {
+    /// Its parts: the events, and what sees the rows.
+    pub(crate) fn parts(&mut self) -> (&[Watched], Option<&Callable>, &Arc<Raised>, &mut Seen) {
+        (&self.events, self.callback.as_ref(), &self.raised, &mut self.seen)
+    }
+}

@@ -1,0 +1,97 @@
+//! Scene files and their runs.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use lieflow_model::problem::Plan;
+use lieflow_model::scene;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::error::{argument, refused};
+use crate::field::Raised;
+use crate::model::{OfModel, schema_of};
+use crate::run::{Rows, Seen};
+use crate::tree::untree;
+
+/// A scene.
+#[pyclass(frozen, module = "lieflow._lieflow")]
+pub(crate) struct Scene(scene::Scene);
+
+#[pymethods]
+impl Scene {
+    /// The scene of a file or of a bundled name, with settings such as `time.dt=0.01`.
+    #[new]
+    fn new(py: Python<'_>, path: PathBuf, settings: Vec<String>) -> PyResult<Self> {
+        let opened = py.detach(|| scene::Scene::open_with(&path, &settings));
+        opened.map(Scene).map_err(|error| argument(py, "scene", error.to_string(), ""))
+    }
+    #[getter]
+    fn title(&self) -> &str {
+        &self.0.title
+    }
+    #[getter]
+    fn name(&self) -> &str {
+        &self.0.name
+    }
+    #[getter]
+    fn text(&self) -> &str {
+        &self.0.text
+    }
+    #[getter]
+    fn method(&self) -> String {
+        self.0.method.label()
+    }
+    #[getter]
+    fn quantities(&self) -> Vec<String> {
+        self.0.quantities.clone()
+    }
+    #[getter]
+    fn t_span(&self) -> [f64; 2] {
+        self.0.grid.t_span()
+    }
+    #[getter]
+    fn events(&self) -> Vec<String> {
+        self.0.events.iter().map(|event| event.name.clone()).collect()
+    }
+    #[getter]
+    fn kind(&self) -> &'static str {
+        self.0.problem.kind().name
+    }
+    /// The keys of the problem.
+    fn keys<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        untree(py, &self.0.keys)
+    }
+    /// Runs it: the schema of the rows, and the dict of the result.
+    fn run<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyDict>)> {
+        let refuse = |error: lieflow::Error| refused(py, "scene", &error);
+        let computed = self.0.computed();
+        let model = self.0.model_with(self.0.layer, &computed).map_err(refuse)?;
+        let raised = Arc::new(Raised::default());
+        let plan = self.0.plan(model.schema()).map_err(refuse)?;
+        let mut seen = Seen::default();
+        seen.found = plan.events.iter().map(|_| Rows::default()).collect();
+        drop(plan);
+        self.0.forget_losses();
+        let (status, lost) = py.detach(|| {
+            let plan = match self.0.plan(model.schema()) {
+                Ok(plan) => Plan { cancel: Some(&raised.stop), ..plan },
+                Err(error) => return (Err(error.into()), None),
+            };
+            let mut watcher = OfModel { callback: None, raised: &raised, seen: &mut seen };
+            let done = model.drive(&self.0.method, plan, &mut watcher);
+            let lost = done.as_ref().err().and_then(|error| self.0.lost(error));
+            (done.map(|outcome| outcome.status), lost)
+        });
+        let width = model.schema().columns().count();
+        let result = seen.into_dict(py, &raised, status, &[width])?;
+        result.set_item("lost", lost.map(|lost| lost.to_string()))?;
+        Ok((schema_of(model.schema()).into_pyobject(py)?.into_any(), result))
+    }
+}
+
+/// The names of the bundled scenes.
+#[pyfunction]
+pub(crate) fn bundled() -> Vec<&'static str> {
+    scene::BUNDLED.iter().map(|scene| scene.name).collect()
+}

@@ -1,0 +1,101 @@
+//! Values of Python as values of the keys of a problem.
+
+use lieflow_model::reader::{KeyPath, Mistakes, Refusal, Tree};
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
+
+/// The tree of numbers, texts, lists and dicts. `path` is that of the key, counted from 0 as in Python.
+pub(crate) fn tree(path: &str, x: &Bound<'_, PyAny>) -> PyResult<Tree> {
+    if x.is_instance_of::<PyBool>() {
+        return Ok(Tree::Bool(x.extract()?));
+    }
+    if x.is_instance_of::<PyInt>() {
+        return Ok(x.extract::<i64>().map_or(Tree::Number(x.extract()?), Tree::Whole));
+    }
+    if x.is_instance_of::<PyFloat>() {
+        return Ok(Tree::Number(x.extract()?));
+    }
+    if x.is_instance_of::<PyString>() {
+        return Ok(Tree::Text(x.extract()?));
+    }
+    if let Ok(table) = x.cast::<PyDict>() {
+        let entries = table.iter().map(|(key, value)| {
+            let key: String = key.extract()?;
+            let value =
+                tree(&if path.is_empty() { key.clone() } else { path.entry(&key) }, &value)?;
+            Ok((key, value))
+        });
+        return Ok(Tree::table(entries.collect::<PyResult<Vec<_>>>()?));
+    }
+    let entry = |(i, x): (usize, Bound<'_, PyAny>)| tree(&format!("{path}[{i}]"), &x);
+    if let Ok(list) = x.cast::<PyList>() {
+        return Ok(Tree::List(list.iter().enumerate().map(entry).collect::<PyResult<_>>()?));
+    }
+    if let Ok(list) = x.cast::<PyTuple>() {
+        return Ok(Tree::List(list.iter().enumerate().map(entry).collect::<PyResult<_>>()?));
+    }
+    let what = x.get_type().name()?;
+    Err(PyTypeError::new_err(format!(
+        "{path}: a value of type {what}, expected numbers, texts, lists or dicts"
+    )))
+}
+
+/// A tree as numbers, texts, lists and dicts.
+pub(crate) fn untree<'py>(py: Python<'py>, x: &Tree) -> PyResult<Bound<'py, PyAny>> {
+    Ok(match x {
+        Tree::Bool(x) => PyBool::new(py, *x).to_owned().into_any(),
+        Tree::Whole(n) => n.into_pyobject(py)?.into_any(),
+        Tree::Number(x) => PyFloat::new(py, *x).into_any(),
+        Tree::Text(text) => PyString::new(py, text).into_any(),
+        Tree::List(list) => {
+            let list = list.iter().map(|x| untree(py, x)).collect::<PyResult<Vec<_>>>()?;
+            PyList::new(py, list)?.into_any()
+        }
+        Tree::Table(entries) => {
+            let table = PyDict::new(py);
+            for (key, value) in entries {
+                table.set_item(key, untree(py, value)?)?;
+            }
+            table.into_any()
+        }
+    })
+}
+
+/// The path of a key, counted from 0.
+fn from_zero(path: &str) -> String {
+    let mut parts = path.split('[');
+    let first = parts.next().unwrap_or_default().to_owned();
+    parts.fold(first, |all, part| {
+        let (index, rest) = part.split_once(']').unwrap_or((part, ""));
+        let less = index.split(',').map(|i| match i.trim().parse::<usize>() {
+            Ok(i) => i.saturating_sub(1).to_string(),
+            Err(_) => i.to_owned(),
+        });
+        format!("{all}[{}]{rest}", less.collect::<Vec<_>>().join(", "))
+    })
+}
+
+/// A mistake as (argument, what is wrong, advice).
+type Parts = (String, String, String);
+
+fn parts(Refusal { key, message, help }: &Refusal) -> Parts {
+    let key = key.as_deref().unwrap_or_default();
+    // A message tells the value as `key = value`.
+    let message = message
+        .strip_prefix(key)
+        .map_or(message.as_str(), |rest| rest.trim_start_matches([':', '=', ' ']));
+    (from_zero(key), message.to_owned(), help.clone().unwrap_or_default())
+}
+
+/// The `ArgumentError` of mistakes in the keys of a problem.
+pub(crate) fn mistakes(py: Python<'_>, Mistakes(all): &Mistakes) -> PyErr {
+    let all: Vec<Parts> = all.iter().map(parts).collect();
+    let made = py.import("lieflow._errors").and_then(|m| m.getattr("mistakes")?.call1((all,)));
+    made.map_or_else(|error| error, PyErr::from_value)
+}
+
+/// The same of one mistake.
+pub(crate) fn mistake(py: Python<'_>, refusal: Refusal) -> PyErr {
+    mistakes(py, &Mistakes(vec![refusal]))
+}

@@ -1,0 +1,234 @@
+"""Fields as formulas, samples and parts; integrators; many bodies."""
+
+from __future__ import annotations
+
+import multiprocessing
+import pickle
+
+import numpy as np
+import pytest
+from conftest import J, M, body
+
+import lieflow as lf
+
+ROTATION = {"group": "SO(3)", "frame": "body"}
+FORMULAS = ["dot(m, [y11, y21, y31])/J1", "dot(m, [y12, y22, y32])/J2", "dot(m, [y13, y23, y33])/J3"]
+TIMES = np.linspace(0, 20, 41)
+
+
+@pytest.fixture(scope="module")
+def right():
+    return lf.solve_ivp(body, (0, 20), np.eye(3), t_eval=TIMES, rtol=1e-12, atol=1e-12, **ROTATION)
+
+
+def test_formulas_are_the_function(right):
+    field = lf.Field("SO(3)", FORMULAS, m=M, J=J)
+    r = lf.solve_ivp(field, (0, 20), np.eye(3), frame="body", t_eval=TIMES, rtol=1e-12, atol=1e-12, events="y11 - 0.5")
+    assert np.abs(r.y - right.y).max() < 1e-9
+    assert len(r.t_events[0]) > 0 and np.abs(r.y_events[0][:, 0, 0] - 0.5).max() < 1e-9
+    copy = pickle.loads(pickle.dumps(field))
+    again = eval(repr(field), {"lieflow": lf, "array": np.array})
+    for other in (copy, again):
+        assert np.array_equal(lf.solve_ivp(other, (0, 20), np.eye(3), frame="body", t_eval=TIMES, rtol=1e-12, atol=1e-12).y, r.y)
+    named = lf.Field("SO(3)", "transpose(R)*m", y="R", m=M)
+    function = lf.solve_ivp(lambda t, R: M @ R, (0, 5), np.eye(3), t_eval=[5.0], **ROTATION)
+    assert np.abs(lf.solve_ivp(named, (0, 5), np.eye(3), frame="body", t_eval=[5.0]).y - function.y).max() < 1e-9
+
+
+def test_formulas_of_other_groups():
+    hill = lf.Field("Sp(2)", [["0", "1"], ["-(2 + cos(t))", 0]])
+    r = lf.solve_ivp(hill, (0, 5), np.eye(2), frame="space", method="magnus4", steps=500)
+    assert np.abs(np.linalg.det(r.y) - 1).max() < 1e-13
+    spin = lf.Field("SO(3)", "b", let={"b": ["cos(t)", "sin(t)", "w"]}, w=2.0)
+    s = lf.solve_ivp(spin, (0, 9), [0, 0, 1.0], action="linear")
+    f = lf.solve_ivp(lambda t, y: [np.cos(t), np.sin(t), 2.0], (0, 9), [0, 0, 1.0], group="SO(3)", action="linear")
+    assert np.abs(s.y_end - f.y_end).max() < 1e-10
+    with pytest.raises(lf.ArgumentError, match="its group"):
+        lf.solve_ivp(spin, (0, 9), [0, 0, 1.0], group="SE(3)", action="linear")
+
+
+@pytest.mark.parametrize(
+    ("field", "argument"),
+    [(["x", "0", "0"], "field"), (["0", "0"], "field"), (["1 +", "0", "0"], "field"), ("1", "field")],
+)
+def test_wrong_formulas_are_named(field, argument):
+    with pytest.raises(lf.ArgumentError) as caught:
+        lf.solve_ivp(lf.Field("SO(3)", field), (0, 1), np.eye(3), frame="body")
+    assert caught.value.argument.startswith(argument), str(caught.value)
+
+
+def test_a_formula_without_a_value_ends_the_run():
+    r = lf.solve_ivp(lf.Field("SO(3)", ["sqrt(1 - t)", 0, 0]), (0, 3), np.eye(3), frame="body")
+    assert r.status == -1 and "sqrt(1 - t)" in r.message and 0.9 < r.t_end <= 1
+
+
+def test_samples_as_a_field():
+    t = np.linspace(0, 4, 41)
+    rate = np.column_stack([np.sin(t), np.cos(t), 0.3 * t])
+    increments = np.zeros_like(rate)
+    exact = lambda t: np.column_stack([-np.cos(t), np.sin(t), 0.15 * t**2])  # noqa: E731
+    increments[1:] = np.diff(exact(t), axis=0)
+    truth = lf.solve_ivp(lambda t, y: [np.sin(t), np.cos(t), 0.3 * t], (0, 4), np.eye(3), t_eval=[4.0], **ROTATION)
+    for values, kind, bound in ((rate, "linear", 1e-2), (rate, "cubic", 1e-4), (increments, "mean-rate", 1e-4)):
+        samples = lf.Samples(t, values, kind)
+        for method in (None, "magnus4"):
+            steps = {"steps": 400} if method else {}
+            r = lf.solve_ivp(samples, (0, 4), np.eye(3), t_eval=[4.0], method=method, **steps, **ROTATION)
+            assert np.abs(r.y - truth.y).max() < bound
+        assert samples([0.05, 1.0]).shape == (2, 3)
+        copy = pickle.loads(pickle.dumps(samples))
+        assert np.array_equal(copy([0.05, 1.0]), samples([0.05, 1.0]))
+    with pytest.raises(lf.ArgumentError, match="t_span"):
+        lf.solve_ivp(lf.Samples(t, rate), (0, 5), np.eye(3), **ROTATION)
+    with pytest.raises(lf.ArgumentError, match=r"t\[1\]"):
+        lf.Samples(t, rate)([1.0, 5.0])
+    for bad in ((t[::-1], rate, "linear"), (t, rate[:-1], "linear"), (t, rate, "quadratic"), (t[:1], rate[:1], "linear")):
+        with pytest.raises(lf.ArgumentError):
+            lf.Samples(*bad)
+
+
+PARTS = lf.Parts(q="number", R="rotation", x="vector", m="numbers 3")
+
+
+def coupled(t, y):
+    return {"R": y["m"] / J, "x": [0.0, np.cos(t), y["q"]], "m": np.cross(y["m"], y["m"] / J), "q": y["x"][0]}
+
+
+START = {"R": np.eye(3), "x": [0.0, 0.0, 1.0], "m": M, "q": 0.5}
+
+
+def test_parts_have_arrays_by_name():
+    r = lf.solve_ivp(coupled, (0, 10), START, group=PARTS, frame="body", t_eval=TIMES / 2, dense_output=True,
+                     events=lambda t, y: y.m[0], rtol=1e-11, atol=1e-11)
+    assert r.R.shape == (41, 3, 3) and r.x.shape == (41, 3) and r.m.shape == (41, 3) and r.q.shape == (41,)
+    assert lf.so3.contains(r.R, 1e-13).all() and np.abs(np.linalg.norm(r.x, axis=1) - 1).max() < 1e-13
+    # The momentum in space stays.
+    assert np.abs(np.einsum("kij,kj->ki", r.R, r.m) - M).max() < 1e-8
+    assert np.abs(r.sol(5.0).R - r.R[20]).max() < 1e-12 and r.y_events[0].m.shape[1] == 3
+    copy = pickle.loads(pickle.dumps(r))
+    assert np.array_equal(copy.sol(3.3).m, r.sol(3.3).m)
+    text = {"R": ["m1/J1", "m2/J2", "m3/J3"], "x": [0, "cos(t)", "q"],
+            "m": "cross(m, [m1/J1, m2/J2, m3/J3])", "q": "x1"}
+    field = lf.solve_ivp(lf.Field(PARTS, text, J=J), (0, 10), START, frame="body", t_eval=TIMES / 2, rtol=1e-11, atol=1e-11)
+    assert np.abs(field.R - r.R).max() < 1e-9 and np.abs(field.q - r.q).max() < 1e-9
+    assert eval(repr(PARTS), {"lieflow": lf}).spaces == PARTS.spaces
+    assert r.to_dataframe().shape == (41, 16) and r.estimate_error().y["q"] < 1e-8
+
+
+@pytest.mark.parametrize(
+    ("y0", "words"),
+    [({"R": np.eye(3)}, "missing"), ({**START, "z": 1.0}, "no part"), ({**START, "R": np.eye(2)}, "shape"),
+     ({**START, "R": 2 * np.eye(3)}, "SO"), ({**START, "x": [np.nan, 0, 0]}, "finite")],
+)
+def test_wrong_parts_are_named(y0, words):
+    with pytest.raises(lf.ArgumentError, match=words):
+        lf.solve_ivp(coupled, (0, 1), y0, group=PARTS, frame="body")
+
+
+def test_wrong_values_of_parts():
+    with pytest.raises(lf.ArgumentError, match="frame"):
+        lf.solve_ivp(coupled, (0, 1), START, group=PARTS)
+    with pytest.raises(TypeError, match="f at t = 0.0"):
+        lf.solve_ivp(lambda t, y: [1.0], (0, 1), START, group=PARTS, frame="body")
+    for spaces in ({}, {"x": "vectr"}, {"x": "numbers 0"}):
+        with pytest.raises(lf.ArgumentError):
+            lf.Parts(**spaces)
+
+
+@pytest.mark.parametrize("of", ["function", "formulas", "problem", "parts"])
+def test_an_integrator(of):
+    make = {
+        "function": lambda: lf.Integrator(body, None, (0, 20), np.eye(3), rtol=1e-11, atol=1e-11, **ROTATION),
+        "formulas": lambda: lf.Integrator(lf.Field("SO(3)", FORMULAS, m=M, J=J), "rkmk dop853 exp", (0, 20), np.eye(3),
+                                          frame="body", rtol=1e-11, atol=1e-11),
+        "problem": lambda: lf.Integrator(lf.RigidBody(inertia=J, momentum_body=M), None, (0, 20), rtol=1e-11, atol=1e-11),
+        "parts": lambda: lf.Integrator(coupled, None, (0, 20), START, group=PARTS, frame="body", rtol=1e-11, atol=1e-11),
+    }[of]
+    attitude = lambda run: run.y if of in ("function", "formulas") else run.y["R" if of == "parts" else "attitude"]  # noqa: E731
+    run = make()
+    assert run.t == 0 and run.t_end == 20
+    run.advance_to(10.0)
+    reference = lf.solve_ivp(body, (0, 10), np.eye(3), rtol=1e-12, atol=1e-12, **ROTATION)
+    assert run.t == 10 and np.abs(attitude(run) - reference.y_end).max() < 1e-8
+    state = run.save()
+    copy = pickle.loads(pickle.dumps(run))
+    run.step()
+    within = 0.5 * (10 + run.t)
+    between = run.interpolate(within)
+    assert lf.so3.contains(between if of in ("function", "formulas") else between["R" if of == "parts" else "attitude"], 1e-12)
+    end = attitude(run)
+    other = make()
+    other.restore(state)
+    other.step()
+    copy.step()
+    assert np.array_equal(attitude(other), end) and np.array_equal(attitude(copy), end)
+    run.advance_to(20.0)
+    assert run.nsteps > 3 and run.step() == 20
+    with pytest.raises(lf.ArgumentError):
+        run.advance_to(5.0)
+    with pytest.raises(lf.ArgumentError):
+        run.restore(state[:-3])
+    run.state = run.state
+    with pytest.raises(lf.ArgumentError):
+        run.state = run.state[:-1]
+
+
+def test_the_state_of_an_integrator_is_set():
+    run = lf.Integrator(body, None, (0, 20), np.eye(3), **ROTATION)
+    run.advance_to(1.0)
+    turned = lf.so3.exp([0.3, 0.0, 0.0])
+    run.y = turned
+    assert np.abs(run.y - turned).max() < 1e-15 and run.t == 1
+    with pytest.raises(lf.ArgumentError):
+        run.y = 2 * np.eye(3)
+    assert np.abs(run.y - turned).max() < 1e-15
+    with pytest.raises(lf.ArgumentError):
+        run.y = np.eye(4)
+    raised = ValueError("mine")
+
+    def f(t, y):
+        raise raised
+
+    with pytest.raises(ValueError) as caught:
+        lf.Integrator(f, None, (0, 20), np.eye(3), **ROTATION).step()
+    assert caught.value is raised
+    with pytest.raises(TypeError, match="t_eval"):
+        lf.Integrator(body, None, (0, 20), np.eye(3), t_eval=[1.0], **ROTATION)
+
+
+def test_many_bodies_are_single_ones():
+    rng = np.random.default_rng(5)
+    m = rng.standard_normal((130, 3))
+    bodies = lf.FreeBodies(J, m, np.broadcast_to(np.eye(3), (130, 3, 3)))
+    energy = bodies.energy
+    bodies.advance("rkmk4 cay", 0.01, 200, threads=2)
+    assert len(bodies) == 130 and lf.so3.contains(bodies.attitude, 1e-12).all()
+    assert np.abs(np.linalg.norm(bodies.momentum, axis=1) - np.linalg.norm(m, axis=1)).max() < 1e-13
+    assert np.abs(bodies.energy - energy).max() < 1e-6
+    one = lf.solve_ivp(lf.RigidBody(inertia=J, momentum_body=m[100]), (0, 2), method="rkmk4 cay", dt=0.01)
+    assert np.abs(one.attitude[-1] - bodies.attitude[100]).max() < 1e-12
+    copy = pickle.loads(pickle.dumps(bodies))
+    assert np.array_equal(copy.momentum, bodies.momentum)
+    alone = lf.FreeBodies(np.tile(J, (3, 1)), m[:3])
+    alone.advance("rk4-mg", 0.01, 10)
+    assert alone.attitude is None
+    for bad in (("euler", 0.01, 1, 1), ("rkmk4 cay", np.nan, 1, 1), ("rkmk4 cay", 0.01, -1, 1), ("rkmk4 cay", 0.01, 1, 0)):
+        with pytest.raises(lf.ArgumentError):
+            bodies.advance(*bad)
+    with pytest.raises(lf.ArgumentError):
+        lf.FreeBodies(J, m[0])
+
+
+def work(given):
+    problem, t = given
+    run = lf.solve_ivp(problem, (0, t), dense_output=True)
+    return run, run.sol
+
+
+def test_objects_go_through_processes():
+    problem = lf.RigidBody(inertia=J, momentum_body=M)
+    with multiprocessing.get_context("spawn").Pool(1) as pool:
+        [(run, sol)] = pool.map(work, [(problem, 3.0)])
+    here = lf.solve_ivp(problem, (0, 3.0), dense_output=True)
+    assert np.array_equal(run.attitude, here.attitude)
+    assert np.abs(sol(3.0).attitude - here.attitude[-1]).max() < 1e-13

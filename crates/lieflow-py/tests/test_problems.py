@@ -1,0 +1,262 @@
+"""Problems by the name of their kind, their runs, and scenes."""
+
+from __future__ import annotations
+
+import pickle
+import pydoc
+
+import numpy as np
+import pytest
+from stub_of_problems import stub
+
+import lieflow as lf
+from lieflow import _problems
+
+BODY = {"inertia": [0.0026, 0.0103, 0.0108], "omega_body": [0.01, 1.0, 0.0]}
+
+
+@pytest.fixture(scope="module")
+def run():
+    body = lf.RigidBody(**BODY)
+    times = np.linspace(0, 600, 1001)
+    return lf.solve_ivp(body, (0, 600), t_eval=times, events=lf.Event("w2", terminal=5), dense_output=True)
+
+
+def test_the_first_example(run):
+    body = lf.RigidBody(**BODY)
+    assert run.status == 1 and run.success and len(run.t_events[0]) == 5
+    k = len(run.t)
+    assert run.attitude.shape == (k, 3, 3) and lf.so3.contains(run.attitude, 1e-13).all()
+    assert run.momentum_body.shape == (k, 3) and set(run.y) == {"momentum_body", "attitude"}
+    exact = body.exact(run.t)
+    assert np.abs(run.attitude - exact.attitude).max() < 1e-9
+    assert run.drift["energy"] < 1e-15 and "momentum_norm" in run.drift
+    assert np.abs(body.exact(run.t_events[0], "omega_body").omega_body[:, 1]).max() < 1e-9
+    error = run.estimate_error()
+    assert "exact" in error.found_by and error.y["attitude"] < 1e-9 and error.t_events[0] < 1e-8
+    # The fifth zero ended the run before 300: the solution goes on when it is asked for.
+    point = run.sol(300.0)
+    assert np.abs(point.attitude - body.exact(300.0).attitude).max() < 1e-7
+    assert point.attitude.shape == (3, 3) and lf.so3.contains(point["attitude"], 1e-13)
+    assert np.abs(run.sol(run.t).attitude - run.attitude).max() < 1e-13
+    assert run.as_rotation().as_matrix().shape == (k, 3, 3)
+    pandas = pytest.importorskip("pandas")
+    frame = run.to_dataframe()
+    assert isinstance(frame, pandas.DataFrame) and list(frame.columns[:3]) == ["m1", "m2", "m3"]
+    assert np.array_equal(frame["g23"], run.attitude[:, 1, 2])
+
+
+def test_results_pickle(run):
+    copy = pickle.loads(pickle.dumps(run))
+    assert np.array_equal(copy.attitude, run.attitude) and copy.drift == run.drift
+    times = np.linspace(0, run.t_end, 57)
+    assert np.array_equal(copy.sol(times).attitude, run.sol(times).attitude)
+    with pytest.raises(lf.RunError, match="without f"):
+        copy.estimate_error()
+
+
+def test_an_event_by_a_function_is_that_by_its_formula(run):
+    body = lf.RigidBody(**BODY)
+
+    def g(t, y):
+        return y.omega_body[1]
+
+    other = lf.solve_ivp(body, (0, 600), t_eval=run.t, quantities=["attitude", "omega_body"],
+                         events=lf.Event(g, terminal=5), method="rkmk dop853 exp")
+    assert np.allclose(other.t_events[0], run.t_events[0], rtol=0, atol=1e-9)
+    assert other.y_events[0].omega_body.shape == (5, 3)
+    both = lf.solve_ivp(body, (0, 60), events=["2*w2 - 0.1", "m1*m1 - 1e-5"], quantities="attitude")
+    assert len(both.t_events) == 2
+
+
+def test_an_event_changes_the_state():
+    body = lf.RigidBody(inertia=[1.0, 2.0, 3.0], momentum_body=[0.0, 0.0, 3.0])
+    kick = lf.Event(lambda t, y: t - 1.0, change=lambda t, m: 2 * m, name="kick")
+    r = lf.solve_ivp(body, (0, 2), quantities="momentum_body", events=kick, t_eval=[0.5, 2.0])
+    assert np.allclose(r.momentum_body, [[0, 0, 3], [0, 0, 6]])
+    assert "second run" in r.estimate_error().found_by
+
+
+def test_numbers_of_another_start():
+    body = lf.RigidBody(inertia=[1.0, 2.0, 3.0], momentum_body=[0.0, 0.0, 3.0])
+    r = lf.solve_ivp(body, (0, 1), [1.0, 0.0, 0.0], quantities="momentum_body")
+    assert np.allclose(r.momentum_body[-1], [1, 0, 0])
+    with pytest.raises(lf.ArgumentError, match="3 numbers"):
+        lf.solve_ivp(body, (0, 1), [1.0, 0.0], quantities="momentum_body")
+
+
+def test_a_callback_and_an_exception():
+    body, seen = lf.RigidBody(**BODY), []
+    r = lf.solve_ivp(body, (0, 600), t_eval=np.arange(600.0), callback=lambda t, y: seen.append(y.attitude) or t > 3)
+    assert r.status == 1 and len(seen) == 5
+    raised = ValueError("mine")
+
+    def g(t, y):
+        raise raised
+
+    with pytest.raises(ValueError) as caught:
+        lf.solve_ivp(body, (0, 600), events=g)
+    assert caught.value is raised
+
+
+def test_every_kind_is_a_class():
+    assert len(_problems.KINDS) >= 25
+    for name, made in _problems.KINDS.items():
+        assert getattr(lf, made.__name__) is made and made.__name__ in lf.__all__
+        text = pydoc.render_doc(made)
+        assert made.equation in text and made.kind == name
+        for key, *_ in made.key_table:
+            assert key in text
+
+
+def test_the_stub_of_the_classes():
+    import pathlib
+
+    there = pathlib.Path(_problems.__file__).with_name("_problems.pyi")
+    assert there.read_text() == stub()
+
+
+@pytest.mark.parametrize("name", lf.scenes())
+def test_every_scene_is_a_problem_that_its_repr_makes_again(name):
+    scene = lf.load(name)
+    problem = scene.problem
+    again = eval(repr(problem), {"lieflow": lf})
+    assert again == problem and type(again) is type(problem)
+    copy = pickle.loads(pickle.dumps(problem))
+    assert copy == problem and copy.method == problem.method
+    assert problem.quantities and problem.methods()
+
+
+@pytest.mark.parametrize("name", ["flipping-book", "lagrange-top", "toda-lattice", "gyro-record", "spin-and-oscillator"])
+def test_a_scene_runs(name, tmp_path):
+    scene = lf.load(name, set=["time.t_span=[0, 2]"])
+    r = scene.run()
+    assert r.success and len(r.t) > 1
+    for quantity in scene.quantities:
+        if quantity != "formulas":
+            assert len(r.y[quantity]) == len(r.t)
+    file = tmp_path / "scene.toml"
+    file.write_text(scene.text)
+    if name != "gyro-record":
+        again = lf.load(file).run()
+        assert all(np.array_equal(a, b) for a, b in zip(r.y.values(), again.y.values()))
+    assert np.array_equal(pickle.loads(pickle.dumps(scene)).run().t, r.t)
+
+
+def test_a_scene_that_is_none():
+    with pytest.raises(lf.ArgumentError, match="flipping-book"):
+        lf.load("flipping-bok")
+
+
+@pytest.mark.parametrize(
+    ("keys", "argument", "words"),
+    [
+        ({"inertia": [1.0, -2.0, 3.0]}, "inertia[1]", "> 0"),
+        ({"inertia": [1.0, 2.0]}, "inertia", "3"),
+        ({"inertia": "x"}, "inertia", "text"),
+        ({"omega_bdy": [0.0, 1.0, 0.0]}, "omega_bdy", "omega_body"),
+        ({"omega_body": [0.0, float("nan"), 0.0]}, "omega_body[1]", ""),
+        ({"attitude": 2 * np.eye(3)}, "attitude", ""),
+    ],
+)
+def test_a_wrong_key_is_named(keys, argument, words):
+    with pytest.raises(lf.ArgumentError) as caught:
+        lf.RigidBody(**{**BODY, **keys})
+    assert caught.value.argument == argument and words in str(caught.value), str(caught.value)
+
+
+def test_all_mistakes_are_told_at_once():
+    with pytest.raises(lf.ArgumentError) as caught:
+        lf.RigidBody(inertia=[1.0, -2.0, 3.0], omega_bdy=[0.0, 1.0, 0.0])
+    assert len(caught.value.others) >= 1 and "omega_body" in str(caught.value)
+
+
+@pytest.mark.parametrize("value", [1j, object(), {1, 2}, np.array([1j])])
+def test_a_key_of_another_type(value):
+    with pytest.raises(TypeError, match="inertia"):
+        lf.RigidBody(**{**BODY, "inertia": value})
+
+
+@pytest.mark.parametrize(
+    ("change", "argument", "words"),
+    [
+        ({"quantities": "attitud"}, "quantities", "attitude"),
+        ({"method": "magnus4"}, "method", ""),
+        ({"method": "rkmk dop835"}, "method", "dop853"),
+        ({"group": "SO(3)"}, "group", "its own"),
+        ({"frame": "body"}, "frame", "its own"),
+        ({"events": "w4"}, "events[0]", "w"),
+        ({"events": "w1 +"}, "events[0]", ""),
+        ({"t_eval": [700.0]}, "t_eval[0]", "600"),
+    ],
+)
+def test_wrong_arguments_of_a_run(change, argument, words):
+    with pytest.raises(lf.ArgumentError) as caught:
+        lf.solve_ivp(lf.RigidBody(**BODY), (0, 600), **change)
+    assert caught.value.argument == argument and words in str(caught.value), str(caught.value)
+
+
+def test_values_of_all_types():
+    whole = lf.RigidBody(inertia=(1, 2, 3), omega_body=np.float32([0, 1, 0]))
+    assert whole.keys["inertia"] == [1, 2, 3]
+    from scipy.spatial.transform import Rotation
+
+    turned = whole.replace(attitude=Rotation.from_euler("z", 90, degrees=True))
+    assert np.allclose(lf.solve_ivp(turned, (0, 0)).attitude[0], [[0, -1, 0], [1, 0, 0], [0, 0, 1]])
+    assert "attitude" not in turned.replace(attitude=None).keys
+    with pytest.raises(lf.ArgumentError, match="rigid-body"):
+        lf.problem_of("rigid-bdy", {})
+    assert lf.problem_of("rigid-body", whole.keys) == whole
+
+
+def test_facts_and_names():
+    top = lf.load("lagrange-top").problem
+    assert isinstance(top.facts, dict) and "energy" in top.invariants
+    book = lf.load("flipping-book").problem
+    assert "exact" in book.methods() and book.columns("omega_body") == ("w1", "w2", "w3")
+    driven = lf.load("damped-satellite").problem
+    assert driven.exact(1.0) is None
+
+
+def test_a_formula_without_a_value_is_named():
+    ode = lf.Composed(parts=[{"name": "x", "space": "numbers", "start": [1.0], "field": ["-1/sqrt(x)"]}])
+    r = lf.solve_ivp(ode, (0, 5))
+    assert r.status == -1 and "sqrt" in r.message and r.t[-1] > 0.5
+
+
+def test_samples_from_arrays():
+    t = np.linspace(0, 2, 21)
+    w = np.column_stack([np.sin(t), np.cos(t), t])
+    samples = lf.Samples(t, w, "cubic", names=("a", "b", "c"))
+    system = lf.Composed(
+        samples=samples,
+        parts=[{"name": "R", "space": "rotation", "field": ["a", "b", "c"]}],
+    )
+    r = lf.solve_ivp(system, (0, 2), t_eval=[2.0])
+    direct = lf.solve_ivp(samples, (0, 2), np.eye(3), group="SO(3)", frame="space", t_eval=[2.0])
+    assert np.abs(r.state.reshape(-1, 3, 3) - direct.y).max() < 1e-10
+    assert pickle.loads(pickle.dumps(system)) == system
+    with pytest.raises(lf.ArgumentError, match="t_span"):
+        lf.solve_ivp(system, (0, 3))
+
+
+def test_an_interrupt_of_a_large_fluid():
+    import signal
+    import threading
+    import time
+
+    fluid = lf.load("vortices-on-sphere").problem
+    sent = []
+
+    def send():
+        time.sleep(0.3)
+        sent.append(time.perf_counter())
+        signal.pthread_kill(threading.main_thread().ident, signal.SIGINT)
+
+    thread = threading.Thread(target=send)
+    thread.start()
+    with pytest.raises(KeyboardInterrupt):
+        lf.solve_ivp(fluid, (0, 1e6), dt=1e-3, t_eval=[1e6])
+    late = time.perf_counter() - sent[0]
+    thread.join()
+    assert late < 0.5, late
