@@ -6,7 +6,9 @@ use lieflow::dense::Structure;
 use lieflow::groups::{
     AlgebraMatrix, Form, GroupMatrix, LieAlgebra, LieGroup, MatrixGroup as Group, Sample,
 };
-use lieflow::maps::{cay, cay_inv, dcayinv, dexp, dexpinv, log};
+use lieflow::maps::{
+    CCSK123, CCSK321, CoordinateMap, cay, cay_inv, dcay, dcayinv, dexp, dexpinv, log,
+};
 use numpy::PyArrayDyn;
 use pyo3::prelude::*;
 use rand::SeedableRng;
@@ -172,6 +174,23 @@ impl MatrixGroup {
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         self.one("g", g, out, |g| Ok(cay_inv(&self.0, &self.element(g)?)?.into_mat()))
     }
+    #[pyo3(signature = (u, order, out = None))]
+    fn ccsk<'py>(
+        &self,
+        u: &Bound<'py, PyAny>,
+        order: &str,
+        out: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        match order {
+            "123" => {
+                self.one("u", u, out, |u| Ok(CCSK123.eval(&self.0, &self.algebra(u)?)?.into_mat()))
+            }
+            "321" => {
+                self.one("u", u, out, |u| Ok(CCSK321.eval(&self.0, &self.algebra(u)?)?.into_mat()))
+            }
+            _ => Err(argument(u.py(), "order", format!("{order:?}"), "\"123\" or \"321\"")),
+        }
+    }
     #[pyo3(signature = (x, out = None))]
     fn project<'py>(
         &self,
@@ -198,6 +217,15 @@ impl MatrixGroup {
         out: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         self.two((u, v), out, |u, v| dexpinv(&self.0, u, v))
+    }
+    #[pyo3(signature = (u, v, out = None))]
+    fn dcay<'py>(
+        &self,
+        u: &Bound<'py, PyAny>,
+        v: &Bound<'py, PyAny>,
+        out: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        self.two((u, v), out, |u, v| dcay(&self.0, u, v))
     }
     #[pyo3(signature = (u, v, out = None))]
     fn dcayinv<'py>(

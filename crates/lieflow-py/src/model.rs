@@ -297,6 +297,12 @@ impl Model {
         let fits = |name: &str| self.model.fits(&MethodSpec::new(name, None)).is_ok();
         all_methods().map(|info| info.name).filter(|name| fits(name)).collect()
     }
+    /// The order of the steps of a method, None if they are exact, and of the points within a step.
+    fn orders(&self, py: Python<'_>, method: &str) -> PyResult<(Option<usize>, usize)> {
+        let orders = self.model.orders(&self.spec(py, method)?);
+        let orders = orders.map_err(|error| refused(py, "method", &error))?;
+        Ok((orders.step, orders.within))
+    }
     /// The numbers of the state at the start.
     fn start<'py>(&self, py: Python<'py>, method: &str) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let start = self.model.start(&self.spec(py, method)?);

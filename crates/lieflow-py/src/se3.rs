@@ -2,7 +2,7 @@
 
 use lieflow::Error;
 use lieflow::groups::Se3;
-use lieflow::maps::{cay, dcayinv, dexpinv, exp, log};
+use lieflow::maps::{cay, dcayinv, dexp, dexpinv, exp, log};
 use nalgebra::{Matrix3, Vector3};
 use numpy::PyArrayDyn;
 use pyo3::prelude::*;
@@ -136,6 +136,7 @@ maps! {
         Ok(())
     };
     --
+    se3_dexp |u, v| dexp(&GROUP, u, v);
     se3_dexpinv |u, v| dexpinv(&GROUP, u, v);
     se3_dcayinv |u, v| dcayinv(&GROUP, u, v);
 }

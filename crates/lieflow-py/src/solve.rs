@@ -160,7 +160,10 @@ impl SampledField {
         let numbers = unsafe { out.as_slice_mut()? };
         for (i, (t, out)) in t.numbers().iter().zip(numbers.chunks_exact_mut(columns)).enumerate() {
             let found = self.0.value(*t, out);
-            found.map_err(|error| refused(py, &format!("t[{i}]"), &error.into()))?;
+            found.map_err(|lieflow::samples::Outside { span: [first, last], .. }| {
+                let expected = format!("a time within the samples, from {first} to {last}");
+                argument(py, &format!("t[{i}]"), t.to_string(), expected)
+            })?;
         }
         Ok(out)
     }

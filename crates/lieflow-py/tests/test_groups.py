@@ -91,3 +91,49 @@ def test_expm_of_mixed_norms_and_complex(rng):
     with pytest.raises(lf.ArgumentError, match="structure"):
         lf.expm(np.eye(2), structure="symmetric")
     assert lf.expm([[0, 1], [-1, 0]]).shape == (2, 2)
+
+
+def test_differentials_of_se3(rng):
+    u, v = rng.standard_normal((2, 7, 6))
+    h = 1e-6
+    moved = lf.se3.exp(u + h * v) @ np.linalg.inv(lf.se3.exp(u - h * v))
+    assert np.abs(lf.se3.log(moved) / (2 * h) - lf.se3.dexp(u, v)).max() < 1e-8
+    assert np.abs(lf.se3.dexpinv(u, lf.se3.dexp(u, v)) - v).max() < 1e-13
+    g = lf.se3.exp(u)
+    assert lf.se3.contains(lf.se3.project(g + 1e-3)).all()
+
+
+def test_motions_of_scipy(rng):
+    transform = pytest.importorskip("scipy.spatial.transform")
+    if not hasattr(transform, "RigidTransform"):
+        pytest.skip("no RigidTransform")
+    u = rng.standard_normal((9, 6))
+    rigid = lf.se3.as_transform(lf.se3.exp(u))
+    assert np.abs(rigid.as_exp_coords() - lf.se3.log(lf.se3.exp(u))).max() < 1e-12
+    assert np.abs(lf.se3.from_transform(transform.RigidTransform.from_exp_coords(u)) - lf.se3.exp(u)).max() < 1e-13
+
+
+@pytest.mark.parametrize("group", [lf.SO(4), lf.Sp(4), lf.SO(3, 1)])
+def test_the_differential_of_cay(rng, group):
+    u, v = (group.project(0.3 * rng.standard_normal((5, 4, 4))) for _ in range(2))
+    h = 1e-6
+    moved = (group.cay(u + h * v) - group.cay(u - h * v)) / (2 * h)
+    assert np.abs(group.dcay(u, v) @ group.cay(u) - moved).max() < 1e-8
+    assert np.abs(group.dcayinv(u, group.dcay(u, v)) - v).max() < 1e-13
+
+
+def test_lielabs_checks_of_exp_and_log(rng):
+    # As in Lielab's tests: exp(0) = 1, log(exp(u)) = u, d exp by commutators at small u, the Cayley map to second order.
+    for group in (lf.SO(3), lf.SO(5), lf.Sp(4), lf.GL(3)):
+        n = group.n
+        u, v = (group.project(0.05 * rng.standard_normal((n, n))) for _ in range(2))
+        assert np.array_equal(group.exp(np.zeros((n, n))), np.eye(n))
+        assert np.abs(group.log(group.exp(u)) - u).max() < 1e-14
+        ad = group.ad
+        series = v + ad(u, v) / 2 + ad(u, ad(u, v)) / 6 + ad(u, ad(u, ad(u, v))) / 24
+        assert np.abs(group.dexp(u, v) - series).max() < 1e-5
+        inverse = v - ad(u, v) / 2 + ad(u, ad(u, v)) / 12
+        assert np.abs(group.dexpinv(u, v) - inverse).max() < 1e-5
+        if group.name != "GL(3)":
+            assert np.abs(group.cay(u) - (np.eye(n) + u + u @ u / 2)).max() < 1e-3
+            assert group.contains(group.cay(u), 1e-14)

@@ -140,3 +140,49 @@ def test_the_small_functions(rng):
     assert np.allclose(so3.hat(so3.Ad(r, u)), r @ so3.hat(u) @ np.swapaxes(r, -1, -2))
     assert np.allclose((so3.coad(u, v) * r[:, 0]).sum(-1), (v * so3.ad(u, r[:, 0])).sum(-1))
     assert np.array_equal(so3.from_rotation(so3.as_rotation(r)).round(12), r.round(12))
+
+
+@pytest.mark.parametrize("order", ["123", "321", "213", "231", "132", "312"])
+def test_canonical_coordinates_of_the_second_kind(rng, order):
+    u = rng.standard_normal((5, 3))
+    right = np.array([np.eye(3)] * 5)
+    for axis in order:
+        right = right @ Rotation.from_rotvec(u * np.eye(3)[int(axis) - 1]).as_matrix()
+    assert np.abs(lf.so3.ccsk(u, order=order) - right).max() < 1e-14
+    if order in ("123", "321"):
+        assert np.abs(lf.SO(3).ccsk(lf.so3.hat(u), order=order) - right).max() < 1e-14
+    with pytest.raises(lf.ArgumentError, match="order"):
+        lf.so3.ccsk(u, order="112")
+
+
+@pytest.mark.parametrize("scalar_first", [True, False])
+def test_quaternions_are_scipys(rng, scalar_first):
+    rotation = Rotation.random(50, random_state=3)
+    r = rotation.as_matrix()
+    q = lf.so3.as_quaternion(r, scalar_first=scalar_first)
+    right = rotation.as_quat(canonical=True, scalar_first=scalar_first)
+    assert np.abs(q - right).max() < 1e-14
+    assert np.abs(lf.so3.from_quaternion(q, scalar_first=scalar_first) - r).max() < 1e-14
+    with pytest.raises(TypeError):
+        lf.so3.as_quaternion(r)
+    with pytest.raises(lf.ArgumentError, match=r"q\[1\]"):
+        lf.so3.from_quaternion([[1, 0, 0, 0], [2, 0, 0, 0]], scalar_first=scalar_first)
+
+
+def test_values_of_scipys_test_rotation():
+    # scipy/spatial/transform/tests/test_rotation.py: from_rotvec and as_rotvec.
+    assert np.allclose(lf.so3.exp([[1, 0, 0], [1e-3, 0, 0], [0, 0, 0]]),
+                       Rotation.from_rotvec([[1, 0, 0], [1e-3, 0, 0], [0, 0, 0]]).as_matrix(), rtol=0, atol=3e-16)
+    for degrees in (0, 1e-9, 90, 120, 180 - 1e-6, 180):
+        u = np.deg2rad(degrees) * np.array([0.6, 0.0, 0.8])
+        r = lf.so3.exp(u)
+        assert np.abs(r - Rotation.from_rotvec(u).as_matrix()).max() < 1e-15
+        back = lf.so3.log(r)
+        assert min(np.abs(back - u).max(), np.abs(back + u).max() if degrees == 180 else 1) < 1e-12
+    quarter = np.array([[0, 0, 1], [1, 0, 0], [0, 1, 0]], dtype=float)  # 120° about (1, 1, 1)
+    assert np.allclose(lf.so3.log(quarter), 2 * np.pi / 3 / np.sqrt(3), rtol=0, atol=1e-15)
+    near = np.array([[0.0, 1.0, 0.1], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])  # no rotation: test_from_matrix_calculation
+    assert np.abs(lf.so3.project(near) - Rotation.from_matrix(near).as_matrix()).max() < 5e-3
+    for size in (0, 1, 3):
+        assert lf.so3.exp(np.zeros((size, 3))).shape == (size, 3, 3)
+        assert lf.so3.log(np.zeros((size, 0, 3, 3))).shape == (size, 0, 3)

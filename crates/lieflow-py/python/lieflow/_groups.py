@@ -27,6 +27,7 @@ class Group:
     ``cay(u), cay_inv(g)``    (𝟙 − u/2)⁻¹(𝟙 + u/2) and its inverse (not for GL)
     ``dexp(u, v)``            d/dε exp(u + εv) = dexp_u(v) exp(u)
     ``dexpinv(u, v)``         its inverse
+    ``dcay(u, v)``            (𝟙 − u/2)⁻¹ v (𝟙 + u/2)⁻¹
     ``dcayinv(u, v)``         (𝟙 − u/2) v (𝟙 + u/2)
     ``project(x)``            the element of 𝔤 nearest to x (Frobenius)
     ========================  ====================================================
@@ -34,14 +35,14 @@ class Group:
     All take ``out=``, an array of float64 in C order.
     """
 
-    __slots__ = ("_args", "_group", "cay", "cay_inv", "dcayinv", "dexp", "dexpinv", "exp", "log", "project")
+    __slots__ = ("_args", "_group", "cay", "cay_inv", "dcay", "dcayinv", "dexp", "dexpinv", "exp", "log", "project")
 
     def __init__(self, family: str, n: int, q: int = 0, form: Array | None = None) -> None:
         self._args = (family, n, q, form)
         flat = None if form is None else [float(x) for x in form.ravel()]
         group = self._group = _lieflow.MatrixGroup(family, n, q, flat)
         self.exp, self.log, self.cay, self.cay_inv = group.exp, group.log, group.cay, group.cay_inv
-        self.dexp, self.dexpinv, self.dcayinv = group.dexp, group.dexpinv, group.dcayinv
+        self.dexp, self.dexpinv, self.dcay, self.dcayinv = group.dexp, group.dexpinv, group.dcay, group.dcayinv
         self.project = group.project
 
     @property
@@ -82,6 +83,13 @@ class Group:
         if array.shape[-2:] != (self.n, self.n):
             raise ArgumentError(name, f"shape {array.shape}", f"shape (..., {self.n}, {self.n})")
         return array
+
+    def ccsk(self, u: ArrayLike, out: Array | None = None, *, order: str = "123") -> Array:
+        """Return canonical coordinates of the second kind, in the order "123" or "321".
+
+        On SO(n) a product of plane rotations, on GL(n) and Sp(n) of triangular matrices; a general G_M has none.
+        """
+        return self._group.ccsk(u, order, out)
 
     def Ad(self, g: ArrayLike, u: ArrayLike) -> Array:
         """Return Ad_g u = g u g⁻¹."""

@@ -91,6 +91,10 @@ class Problem:
         """Return the names of the methods that run on it."""
         return tuple(self._model(self.asked(quantities), ()).methods())
 
+    def orders(self, method: str) -> tuple[int | None, int]:
+        """Return the order of the steps of a method, None if they are exact, and the order of its dense output."""
+        return self._model(self.quantities).orders(method)
+
     def exact(self, t: ArrayLike, quantities: Sequence[str] | str | None = None, *, t0: float = 0.0) -> Quantities | None:
         """Return the exact motion at the times t, from the start at t0; None where it is not known.
 

@@ -18,13 +18,17 @@ from . import so3
 from ._lieflow import (
     se3_cay as cay,
     se3_dcayinv as dcayinv,
+    se3_dexp as dexp,
     se3_dexpinv as dexpinv,
     se3_exp as exp,
     se3_log as log,
 )
 from .so3 import _tail
 
-__all__ = ["Ad", "ad", "cay", "coad", "contains", "dcayinv", "dexpinv", "exp", "hat", "log", "random", "vee"]
+__all__ = [
+    "Ad", "ad", "as_transform", "cay", "coad", "contains", "dcayinv", "dexp", "dexpinv", "exp", "from_transform", "hat", "log",
+    "project", "random", "vee",
+]
 
 Array = NDArray[np.float64]
 
@@ -83,3 +87,25 @@ def random(size: int | tuple[int, ...] | None = None, rng: Any = None) -> Array:
     out[..., :3, 3] = generator.standard_normal(r.shape[:-2] + (3,))
     out[..., 3, 3] = 1.0
     return out
+
+
+def project(x: ArrayLike) -> Array:
+    """Return the motions with the rotations nearest to those of x (Frobenius) and its translations, shape (..., 4, 4)."""
+    a = _tail("x", x, (4, 4))
+    out = np.zeros(a.shape)
+    out[..., :3, :3] = so3.project(a[..., :3, :3])
+    out[..., :3, 3] = a[..., :3, 3]
+    out[..., 3, 3] = 1.0
+    return out
+
+
+def as_transform(g: ArrayLike) -> Any:
+    """Return SciPy's RigidTransform of matrices (..., 4, 4). It needs SciPy 1.16 or later."""
+    from scipy.spatial.transform import RigidTransform  # type: ignore[import-untyped, import-not-found, unused-ignore]
+
+    return RigidTransform.from_matrix(_tail("g", g, (4, 4)))
+
+
+def from_transform(transform: Any) -> Array:
+    """Return the matrices (..., 4, 4) of SciPy's RigidTransform."""
+    return np.asarray(transform.as_matrix())

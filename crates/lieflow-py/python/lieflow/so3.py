@@ -40,9 +40,11 @@ from ._lieflow import (
 __all__ = [
     "Ad",
     "ad",
+    "as_quaternion",
     "as_rotation",
     "cay",
     "cay_inv",
+    "ccsk",
     "coad",
     "contains",
     "dcay",
@@ -51,6 +53,7 @@ __all__ = [
     "dexpinv",
     "exp",
     "exp_on",
+    "from_quaternion",
     "from_rotation",
     "hat",
     "log",
@@ -112,6 +115,48 @@ def _bernoulli(n: int) -> list[float]:
     return [float(x) for x in b]
 
 
+def ccsk(u: ArrayLike, out: Array | None = None, *, order: str = "123") -> Array:
+    """Return exp(u_i e_i) exp(u_j e_j) exp(u_k e_k) for the order ijk of the axes, shape (..., 3, 3)."""
+    if not (isinstance(order, str) and sorted(order) == ["1", "2", "3"]):
+        raise ArgumentError("order", repr(order), 'an order of the axes, such as "123" or "321"')
+    a = _tail("u", u, (3,))
+    i, j, k = (exp(a * np.eye(3)[int(axis) - 1]) for axis in order)
+    return _into(i @ j @ k, out)
+
+
+def as_quaternion(r: ArrayLike, *, scalar_first: bool) -> Array:
+    """Return unit quaternions (..., 4) of rotations; of q and −q the one with a real part ≥ 0.
+
+    ``scalar_first`` has no default, because programs differ: True for (w, x, y, z), False for (x, y, z, w).
+    """
+    u = log(r)
+    half = 0.5 * np.linalg.norm(u, axis=-1, keepdims=True)
+    vector = 0.5 * np.sinc(half / np.pi) * u
+    return np.concatenate([np.cos(half), vector] if scalar_first else [vector, np.cos(half)], axis=-1)
+
+
+def from_quaternion(q: ArrayLike, *, scalar_first: bool) -> Array:
+    """Return the rotations (..., 3, 3) of unit quaternions (..., 4). They are normalised if they are off by at most 1e-6."""
+    a = _tail("q", q, (4,))
+    norm = np.linalg.norm(a, axis=-1, keepdims=True)
+    if not (np.abs(norm - 1.0) <= 1e-6).all():
+        place = tuple(int(i) for i in np.argwhere(~(np.abs(norm[..., 0] - 1.0) <= 1e-6))[0])
+        name = f"q[{', '.join(map(str, place))}]" if place else "q"
+        raise ArgumentError(name, f"a quaternion of length {norm[(*place, 0)]}", "length 1")
+    w, x, y, z = np.moveaxis(a / norm, -1, 0) if scalar_first else np.moveaxis(np.roll(a / norm, 1, -1), -1, 0)
+    return _of_quaternion(w, x, y, z)
+
+
+def _of_quaternion(w: Array, x: Array, y: Array, z: Array) -> Array:
+    """The rotations of the parts of unit quaternions."""
+    rows = [
+        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+    ]
+    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+
+
 def hat(u: ArrayLike) -> Array:
     """Return û, the skew matrices with û x = u × x, shape (..., 3, 3)."""
     a = _tail("u", u, (3,))
@@ -168,12 +213,7 @@ def random(size: int | tuple[int, ...] | None = None, rng: Any = None) -> Array:
     lead = () if size is None else (size,) if isinstance(size, int) else tuple(size)
     q = np.random.default_rng(rng).standard_normal(lead + (4,))
     w, x, y, z = np.moveaxis(q / np.linalg.norm(q, axis=-1, keepdims=True), -1, 0)
-    rows = [
-        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-    ]
-    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+    return _of_quaternion(w, x, y, z)
 
 
 def as_rotation(r: ArrayLike) -> Any:
