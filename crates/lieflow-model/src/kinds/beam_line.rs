@@ -147,7 +147,7 @@ fn power(mut g: Mat<f64>, mut k: u64) -> Mat<f64> {
 }
 
 impl System for BeamLine {
-    type Problem<N: Number> = OnMatrices;
+    type Problem = OnMatrices;
 
     const STATE: &'static [&'static str] = &["map"];
     // Its points lie within a step, never on the jumps at its ends.
@@ -177,7 +177,7 @@ impl System for BeamLine {
         symplectic_defect(),
     ];
 
-    fn problem<N: Number>(&self) -> Result<Start<OnMatrices>, Error> {
+    fn problem(&self) -> Result<Start<OnMatrices>, Error> {
         let line = self.clone();
         let field = move |s: f64, v: &mut AlgebraMatrix| {
             v.fill(0.0);

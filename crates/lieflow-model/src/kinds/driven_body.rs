@@ -16,7 +16,7 @@ use std::sync::Arc;
 use lieflow::actions::LeftTranslation;
 use lieflow::groups::{LieGroup, So3};
 use lieflow::problems::{BodyMotion, BodyTorque, Exact, Torque, TorqueBody};
-use lieflow::scalar::Real;
+use lieflow::scalar::{Counted, Real, Trig};
 use nalgebra::{Matrix3, Vector3};
 
 use super::body::*;
@@ -218,8 +218,16 @@ impl Driven {
     }
 }
 
+/// The body on these numbers.
+pub(super) fn on<S: Trig + Into<f64> + 'static>(
+    body: &TorqueBody<Torques>,
+    torques: &Torques,
+) -> flow::Driven<S> {
+    flow::Driven::new(body.on(torques.clone()), LeftTranslation)
+}
+
 impl System for Driven {
-    type Problem<N: Number> = flow::Driven<N>;
+    type Problem = flow::Driven;
 
     const STATE: &'static [&'static str] = &["attitude", "momentum_space"];
     const QUANTITIES: &'static [Q] = &[
@@ -251,10 +259,12 @@ impl System for Driven {
     fn layer(&self) -> Layer {
         Layer::Closed
     }
-    fn problem<N: Number>(&self) -> Result<Start<flow::Driven<N>>, Error> {
-        let body = self.body.on::<N, _>(self.torques.clone());
-        let start = (self.start.0.map(N::lit), self.start.1.map(N::lit));
-        Ok((flow::Driven::new(body, LeftTranslation), start))
+    fn problem(&self) -> Result<Start<flow::Driven>, Error> {
+        Ok((on(&self.body, &self.torques), self.start))
+    }
+    fn operations(&self, method: &MethodSpec, steps: &Steps) -> Option<f64> {
+        let start = (self.start.0.map(Counted), self.start.1.map(Counted));
+        operations_of(&on(&self.body, &self.torques), start, method, steps)
     }
     fn check_start(&self, t0: f64) -> Vec<Refusal> {
         let at = variables(&self.torques.in_scene(&self.body.motion(t0, &self.start)));

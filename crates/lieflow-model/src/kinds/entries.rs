@@ -132,7 +132,7 @@ pub(super) fn eigenvalues(x: &Mat<f64>) -> Vec<f64> {
 }
 
 /// The distance of gᵀJg from J, of a problem whose point is g.
-pub(super) const fn symplectic_defect<S: System<Problem<f64> = OnMatrices>>() -> Quantity<S> {
+pub(super) const fn symplectic_defect<S: System<Problem = OnMatrices>>() -> Quantity<S> {
     Quantity::number("symplectic_defect", "distance of g'Jg from J", |_, _, g: &Mat<f64>| {
         let element = GroupMatrix::new_unchecked(g.clone());
         MatrixGroup::sp(element.nrows()).map_or(f64::NAN, |group| group.defect(&element))

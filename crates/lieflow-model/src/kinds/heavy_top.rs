@@ -8,12 +8,13 @@
 use core::fmt::Debug;
 use core::marker::PhantomData;
 
-use lieflow::actions::{Coadjoint, LeftTranslation};
+use lieflow::actions::Coadjoint;
 use lieflow::problems::{Exact, HeavyTop, Invariants, TorqueBody};
+use lieflow::scalar::{Counted, Trig};
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
 use super::body::*;
-use super::driven_body::Torques;
+use super::driven_body::{self, Torques};
 use super::flow::{Driven, OnSe3};
 use super::prelude::*;
 use crate::problem::PointOf;
@@ -95,7 +96,7 @@ struct Pose {
 /// A way to represent the state of a top.
 trait Representation: Clone + Debug + Send + Sync + 'static {
     /// The problem of the library.
-    type Problem<N: Number>: Runnable;
+    type Problem: Runnable;
     /// What is integrated, in words.
     const MODELLED: &'static str;
     /// The quantities that make up the state.
@@ -109,39 +110,55 @@ trait Representation: Clone + Debug + Send + Sync + 'static {
     ///
     /// # Errors
     /// What the library refuses.
-    fn problem<N: Number>(spec: &TopSpec) -> Result<Self::Problem<N>, Error>;
+    fn problem(spec: &TopSpec) -> Result<Self::Problem, Error>;
     /// The point at this attitude, momentum and vertical, the latter two in the body.
-    fn point<N: Number>(g: Matrix3<f64>, mu: Vector3<f64>, gamma: Vector3<f64>) -> Point<Self, N>;
+    fn point(g: Matrix3<f64>, mu: Vector3<f64>, gamma: Vector3<f64>) -> Point<Self>;
+    /// See [`System::operations`].
+    fn operations(
+        spec: &TopSpec,
+        start: Point<Self>,
+        method: &MethodSpec,
+        steps: &Steps,
+    ) -> Option<f64>;
     /// The pose of a point.
-    fn pose(y: &Point<Self, f64>) -> Pose;
+    fn pose(y: &Point<Self>) -> Pose;
     /// The momentum about the vertical.
-    fn about_vertical(top: &HeavyTop, y: &Point<Self, f64>) -> f64 {
+    fn about_vertical(top: &HeavyTop, y: &Point<Self>) -> f64 {
         let Pose { mu, gamma, .. } = Self::pose(y);
         top.problem().values(&(mu, gamma))[2]
     }
 }
 
-type Point<R, N> = lieflow::problems::PointOf<<R as Representation>::Problem<N>>;
+type Point<R> = lieflow::problems::PointOf<<R as Representation>::Problem>;
 
 /// μ and γ.
 #[derive(Clone, Debug)]
 struct MomentumAndVertical;
 
 impl Representation for MomentumAndVertical {
-    type Problem<N: Number> = OnSe3<N>;
+    type Problem = OnSe3;
     const MODELLED: &'static str = "momentum and vertical on se(3)*";
     const STATE: &'static [&'static str] = &["momentum_body", "vertical"];
     const TURNS: bool = false;
     const LAWS: [Law; 3] = [Law::by_the_flow(2), Law::by_the_action(2), Law::by_the_action(2)];
 
-    fn problem<N: Number>(spec: &TopSpec) -> Result<OnSe3<N>, Error> {
-        let top = HeavyTop::<N>::new(spec.body.inertia, spec.weight.into())?;
-        Ok(OnSe3::lie_poisson(top.problem(), Coadjoint))
+    fn problem(spec: &TopSpec) -> Result<OnSe3, Error> {
+        Ok(OnSe3::lie_poisson(spec.top.problem(), Coadjoint))
     }
-    fn point<N: Number>(_: Matrix3<f64>, mu: Vector3<f64>, gamma: Vector3<f64>) -> Point<Self, N> {
-        (mu.map(N::lit), gamma.map(N::lit))
+    fn point(_: Matrix3<f64>, mu: Vector3<f64>, gamma: Vector3<f64>) -> Point<Self> {
+        (mu, gamma)
     }
-    fn pose(&(mu, gamma): &Point<Self, f64>) -> Pose {
+    fn operations(
+        spec: &TopSpec,
+        (mu, gamma): Point<Self>,
+        method: &MethodSpec,
+        steps: &Steps,
+    ) -> Option<f64> {
+        let top = HeavyTop::<Counted>::new(spec.body.inertia, spec.weight.into()).ok()?;
+        let (top, start) = (top.problem(), (mu.map(Counted), gamma.map(Counted)));
+        operations_of(&OnSe3::lie_poisson(top, Coadjoint), start, method, steps)
+    }
+    fn pose(&(mu, gamma): &Point<Self>) -> Pose {
         Pose { mu, gamma, orientation: Orientation::NotModelled }
     }
 }
@@ -151,28 +168,42 @@ impl Representation for MomentumAndVertical {
 struct WithAttitude;
 
 impl Representation for WithAttitude {
-    type Problem<N: Number> = Driven<N>;
+    type Problem = Driven;
     const MODELLED: &'static str = "attitude and momentum in space; torques: gravity";
     const STATE: &'static [&'static str] = &["attitude", "momentum_space"];
     const TURNS: bool = true;
     const LAWS: [Law; 3] = [Law::by_the_flow(0), Law::by_the_action(2), Law::by_the_flow(1)];
 
-    fn problem<N: Number>(spec: &TopSpec) -> Result<Driven<N>, Error> {
-        let torques = Torques::of_weight(spec.weight);
-        let body = TorqueBody::new(spec.body.inertia, torques.clone())?.on::<N, _>(torques);
-        Ok(Driven::new(body, LeftTranslation))
+    fn problem(spec: &TopSpec) -> Result<Driven, Error> {
+        under_gravity(spec)
     }
-    fn point<N: Number>(g: Matrix3<f64>, mu: Vector3<f64>, _: Vector3<f64>) -> Point<Self, N> {
-        (g.map(N::lit), (g * mu).map(N::lit))
+    fn point(g: Matrix3<f64>, mu: Vector3<f64>, _: Vector3<f64>) -> Point<Self> {
+        (g, (g * mu))
     }
-    fn pose((g, m): &Point<Self, f64>) -> Pose {
+    fn operations(
+        spec: &TopSpec,
+        (g, m): Point<Self>,
+        method: &MethodSpec,
+        steps: &Steps,
+    ) -> Option<f64> {
+        let counted = under_gravity::<Counted>(spec).ok()?;
+        operations_of(&counted, (g.map(Counted), m.map(Counted)), method, steps)
+    }
+    fn pose((g, m): &Point<Self>) -> Pose {
         let gamma = g.row(2).transpose();
         Pose { mu: g.tr_mul(m), gamma, orientation: Orientation::Matrix(*g) }
     }
     /// Linear in the point, so that methods that leave the group keep it too.
-    fn about_vertical(_: &HeavyTop, (_, m): &Point<Self, f64>) -> f64 {
+    fn about_vertical(_: &HeavyTop, (_, m): &Point<Self>) -> f64 {
         m[2]
     }
+}
+
+/// The top as a body that its weight turns.
+fn under_gravity<S: Trig + Into<f64> + 'static>(spec: &TopSpec) -> Result<Driven<S>, Error> {
+    let torques = Torques::of_weight(spec.weight);
+    let body = TorqueBody::new(spec.body.inertia, torques.clone())?;
+    Ok(driven_body::on(&body, &torques))
 }
 
 /// A top in one representation.
@@ -224,7 +255,7 @@ impl<R: Representation> AsBody for Top<R> {
 }
 
 impl<R: Representation> System for Top<R> {
-    type Problem<N: Number> = R::Problem<N>;
+    type Problem = R::Problem;
 
     const STATE: &'static [&'static str] = R::STATE;
     const QUANTITIES: &'static [Q<R>] = &[
@@ -275,10 +306,14 @@ impl<R: Representation> System for Top<R> {
     fn layer(&self) -> Layer {
         Layer::Closed
     }
-    fn problem<N: Number>(&self) -> Result<Start<Self::Problem<N>>, Error> {
+    fn problem(&self) -> Result<Start<Self::Problem>, Error> {
         let TopSpec { body, vertical, .. } = &self.spec;
-        let start = R::point::<N>(body.attitude, body.momentum_body.into(), *vertical);
+        let start = R::point(body.attitude, body.momentum_body.into(), *vertical);
         Ok((R::problem(&self.spec)?, start))
+    }
+    fn operations(&self, method: &MethodSpec, steps: &Steps) -> Option<f64> {
+        let (_, start) = self.problem().ok()?;
+        R::operations(&self.spec, start, method, steps)
     }
     fn modelled(&self) -> String {
         R::MODELLED.into()
@@ -290,7 +325,7 @@ impl<R: Representation> System for Top<R> {
         let at = |t: f64| {
             let exact = Exact::new(body.inertia, body.momentum_body, body.attitude)?;
             let (mu, g) = exact.state(t)?;
-            Ok(R::point::<f64>(g, mu, g.tr_mul(&up)))
+            Ok(R::point(g, mu, g.tr_mul(&up)))
         };
         (weight.norm() == 0.0).then(|| at(t1 - t0))
     }

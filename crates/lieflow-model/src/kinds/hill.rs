@@ -94,7 +94,7 @@ impl Hill {
 }
 
 impl System for Hill {
-    type Problem<N: Number> = OnMatrices;
+    type Problem = OnMatrices;
 
     const STATE: &'static [&'static str] = &["map"];
     const QUANTITIES: &'static [Q] = &[
@@ -116,7 +116,7 @@ impl System for Hill {
         symplectic_defect(),
     ];
 
-    fn problem<N: Number>(&self) -> Result<Start<OnMatrices>, Error> {
+    fn problem(&self) -> Result<Start<OnMatrices>, Error> {
         let one = Mat::identity(2 * self.a.nrows(), 2 * self.a.nrows());
         let action = MatrixAction::Translation;
         Ok((OnMatrices::linear(self.equation()?.by(action), action), one))

@@ -115,7 +115,7 @@ fn read_qr(keys: QrKeys) -> Result<Forms, ReadError> {
 }
 
 impl System for Isospectral {
-    type Problem<N: Number> = OnMatrices;
+    type Problem = OnMatrices;
 
     const STATE: &'static [&'static str] = &["matrix"];
     const QUANTITIES: &'static [Q] = &[
@@ -146,7 +146,7 @@ impl System for Isospectral {
         .in_terms(|_, l| norm(l.as_ref())),
     ];
 
-    fn problem<N: Number>(&self) -> Result<Start<OnMatrices>, Error> {
+    fn problem(&self) -> Result<Start<OnMatrices>, Error> {
         let action = MatrixAction::Conjugation;
         Ok((OnMatrices::new(self.flow.clone(), action), self.matrix.clone()))
     }

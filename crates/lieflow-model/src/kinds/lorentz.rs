@@ -48,7 +48,7 @@ fn read(keys: Keys) -> Result<Forms, ReadError> {
 }
 
 impl System for Particle {
-    type Problem<N: Number> = OnMatrices;
+    type Problem = OnMatrices;
 
     const STATE: &'static [&'static str] = &["four_velocity"];
     const QUANTITIES: &'static [Q] = &[
@@ -82,7 +82,7 @@ impl System for Particle {
         .in_terms(|_, u| squared_norm(u.as_ref())),
     ];
 
-    fn problem<N: Number>(&self) -> Result<Start<OnMatrices>, Error> {
+    fn problem(&self) -> Result<Start<OnMatrices>, Error> {
         let tensor = self.tensor.clone();
         let field = move |_: f64, v: &mut AlgebraMatrix| v.copy_from(&*tensor);
         let (group, action) = (MatrixGroup::indefinite(3, 1)?, MatrixAction::Linear);

@@ -79,7 +79,7 @@ fn values(t: f64, x: &[f64]) -> [f64; 1 + MAX] {
 type Q = Quantity<Exponents>;
 
 impl System for Exponents {
-    type Problem<N: Number> = Growing;
+    type Problem = Growing;
 
     const STATE: &'static [&'static str] = &["x", "growth", "frame"];
     const QUANTITIES: &'static [Q] = &[
@@ -120,7 +120,7 @@ impl System for Exponents {
         .kept(Law::by_the_action(2).on_scale(Scale::One)),
     ];
 
-    fn problem<N: Number>(&self) -> Result<Start<Growing>, Error> {
+    fn problem(&self) -> Result<Start<Growing>, Error> {
         let (n, field, by) = (self.x.len(), self.field.clone(), self.jacobian.clone());
         let field = move |t: f64, x: &Mat<f64>, dx: &mut Mat<f64>, jacobian: &mut Mat<f64>| {
             let values = values(t, x.col_as_slice(0));

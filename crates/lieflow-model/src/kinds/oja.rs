@@ -55,7 +55,7 @@ fn read(keys: Keys) -> Result<Forms, ReadError> {
 }
 
 impl System for OjaFlow {
-    type Problem<N: Number> = OnMatrices;
+    type Problem = OnMatrices;
 
     const STATE: &'static [&'static str] = &["x"];
     const QUANTITIES: &'static [Q] = &[
@@ -76,7 +76,7 @@ impl System for OjaFlow {
         .kept(Law::by_the_action(0).on_scale(Scale::One)),
     ];
 
-    fn problem<N: Number>(&self) -> Result<Start<OnMatrices>, Error> {
+    fn problem(&self) -> Result<Start<OnMatrices>, Error> {
         Ok((OnMatrices::new(self.flow.clone(), MatrixAction::Linear), self.x.clone()))
     }
     fn modelled(&self) -> String {

@@ -3,6 +3,7 @@
 
 use lieflow::actions::Coadjoint;
 use lieflow::problems::SphericalPendulum;
+use lieflow::scalar::Counted;
 use nalgebra::Vector3;
 
 use super::flow::OnSe3;
@@ -43,7 +44,7 @@ fn read(keys: Keys) -> Result<Forms, ReadError> {
 }
 
 impl System for Pendulum {
-    type Problem<N: Number> = OnSe3<N>;
+    type Problem = OnSe3;
 
     const STATE: &'static [&'static str] = &["direction", "omega"];
     const QUANTITIES: &'static [Q] = &[
@@ -82,9 +83,13 @@ impl System for Pendulum {
     fn layer(&self) -> Layer {
         Layer::Closed
     }
-    fn problem<N: Number>(&self) -> Result<Start<OnSe3<N>>, Error> {
-        let start = (self.start.0.map(N::lit), self.start.1.map(N::lit));
-        Ok((OnSe3::lie_poisson(self.pendulum.on::<N>(), Coadjoint), start))
+    fn problem(&self) -> Result<Start<OnSe3>, Error> {
+        Ok((OnSe3::lie_poisson(self.pendulum, Coadjoint), self.start))
+    }
+    fn operations(&self, method: &MethodSpec, steps: &Steps) -> Option<f64> {
+        let counted = OnSe3::lie_poisson(self.pendulum.on::<Counted>(), Coadjoint);
+        let start = (self.start.0.map(Counted), self.start.1.map(Counted));
+        operations_of(&counted, start, method, steps)
     }
     fn modelled(&self) -> String {
         "angular velocity and direction on an orbit of SE(3)".into()

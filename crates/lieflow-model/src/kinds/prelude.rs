@@ -2,10 +2,11 @@
 
 pub(super) use faer::Mat;
 pub(super) use lieflow::Error;
+pub(super) use lieflow::catalog::MethodSpec;
 
 pub(super) use crate::problem::{
-    Fact, Figure, Forms, Kind, Layer, Number, PrincipalInertia, Quantity, Start, System,
-    formula_keys, keys, sample_keys,
+    Fact, Figure, Forms, Kind, Layer, PrincipalInertia, Quantity, Start, Steps, System,
+    formula_keys, keys, operations_by, operations_of, sample_keys,
 };
 pub(super) use crate::reader::values::{List, Real, Reals, Table, Whole};
 pub(super) use crate::reader::{

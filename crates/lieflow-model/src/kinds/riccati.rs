@@ -50,7 +50,7 @@ fn read(keys: Keys) -> Result<Forms, ReadError> {
 }
 
 impl System for Riccati {
-    type Problem<N: Number> = OnMatrices;
+    type Problem = OnMatrices;
 
     const STATE: &'static [&'static str] = &["p"];
     /// None is kept: the action moves each Lagrangian subspace to each.
@@ -74,7 +74,7 @@ impl System for Riccati {
         .with_columns(|riccati| numbered("angle", riccati.p.nrows())),
     ];
 
-    fn problem<N: Number>(&self) -> Result<Start<OnMatrices>, Error> {
+    fn problem(&self) -> Result<Start<OnMatrices>, Error> {
         let (m, of_run) = (self.p.nrows(), self.clone());
         let field = move |_: f64, v: &mut AlgebraMatrix| {
             let Riccati { c, d, b, .. } = &of_run;

@@ -6,6 +6,7 @@
 use lieflow::actions::Linear;
 use lieflow::groups::{Power, So3};
 use lieflow::problems::{Euler, Exact, Kinetic, RigidBody};
+use lieflow::scalar::{Counted, Trig};
 use nalgebra::{Matrix3, Vector3};
 
 use super::flow::OnSpheres;
@@ -30,7 +31,7 @@ read_by_keys! {
     }
 }
 
-type Momenta<N = f64> = Box<[Vector3<N>]>;
+type Momenta<S = f64> = Box<[Vector3<S>]>;
 
 /// The bodies with their initial momenta.
 #[derive(Clone, Debug)]
@@ -60,10 +61,23 @@ impl Bodies {
     fn each<T>(&self, column: impl FnMut(usize) -> T) -> impl Iterator<Item = T> {
         (1..=self.bodies.len()).map(column)
     }
+
+    /// The problem on these numbers.
+    fn on<S: Trig + 'static>(&self) -> Result<OnSpheres<S>, Error> {
+        let bodies = self.inertia.iter().map(|inertia| RigidBody::<S>::new(*inertia));
+        let bodies = bodies.collect::<Result<Vec<_>, _>>()?;
+        let omega = move |m: &Momenta<S>, xi: &mut Momenta<S>| {
+            for ((body, m), xi) in bodies.iter().zip(m).zip(xi) {
+                *xi = body.omega(m);
+            }
+        };
+        let group = Power::new(So3::new(), self.bodies.len())?;
+        Ok(OnSpheres::lie_poisson(Euler::new(group, Kinetic(omega)), Linear))
+    }
 }
 
 impl System for Bodies {
-    type Problem<N: Number> = OnSpheres<N>;
+    type Problem = OnSpheres;
 
     const STATE: &'static [&'static str] = &["momentum_body"];
     const QUANTITIES: &'static [Q] = &[
@@ -99,17 +113,12 @@ impl System for Bodies {
     fn layer(&self) -> Layer {
         Layer::Closed
     }
-    fn problem<N: Number>(&self) -> Result<Start<OnSpheres<N>>, Error> {
-        let group = Power::new(So3::new(), self.bodies.len())?;
-        let bodies = self.inertia.iter().map(|inertia| RigidBody::new(*inertia));
-        let bodies = bodies.collect::<Result<Vec<RigidBody<N>>, _>>()?;
-        let omega = move |m: &Momenta<N>, xi: &mut Momenta<N>| {
-            for ((body, m), xi) in bodies.iter().zip(m).zip(xi) {
-                *xi = body.omega(m);
-            }
-        };
-        let start = self.start.iter().map(|m| m.map(N::lit)).collect();
-        Ok((OnSpheres::lie_poisson(Euler::new(group, Kinetic(omega)), Linear), start))
+    fn problem(&self) -> Result<Start<OnSpheres>, Error> {
+        Ok((self.on()?, self.start.clone()))
+    }
+    fn operations(&self, method: &MethodSpec, steps: &Steps) -> Option<f64> {
+        let start = self.start.iter().map(|m| m.map(Counted)).collect();
+        operations_of(&self.on().ok()?, start, method, steps)
     }
     fn modelled(&self) -> String {
         format!("momenta of {} bodies", self.bodies.len())

@@ -76,7 +76,7 @@ impl Body {
 }
 
 impl System for Body {
-    type Problem<N: Number> = RigidBodyN;
+    type Problem = RigidBodyN;
 
     const STATE: &'static [&'static str] = &["momentum"];
     const DEFAULT_METHOD: Option<&'static str> = Some(SERIES);
@@ -132,7 +132,7 @@ impl System for Body {
         }),
     ];
 
-    fn problem<N: Number>(&self) -> Result<Start<RigidBodyN>, Error> {
+    fn problem(&self) -> Result<Start<RigidBodyN>, Error> {
         Ok((self.body.clone(), self.momentum.clone()))
     }
     fn modelled(&self) -> String {

@@ -89,7 +89,7 @@ impl Levels {
 }
 
 impl System for Levels {
-    type Problem<N: Number> = OnMatrices;
+    type Problem = OnMatrices;
 
     const STATE: &'static [&'static str] = &["amplitudes"];
     const QUANTITIES: &'static [Q] = &[
@@ -113,7 +113,7 @@ impl System for Levels {
             .kept(Law::by_the_action(2)),
     ];
 
-    fn problem<N: Number>(&self) -> Result<Start<OnMatrices>, Error> {
+    fn problem(&self) -> Result<Start<OnMatrices>, Error> {
         let levels = self.clone();
         let hamiltonian = move |t: f64, i: usize, j: usize| {
             let (drive, [re, im]) = (levels.drive(t), &levels.coupling);

@@ -5,6 +5,7 @@
 use lieflow::actions::Linear;
 use lieflow::groups::So3;
 use lieflow::problems::Flow;
+use lieflow::scalar::{Counted, Trig};
 use lieflow::so3;
 use nalgebra::Vector3;
 
@@ -39,8 +40,19 @@ fn read(Keys { field, rate, moment }: Keys) -> Result<Forms, ReadError> {
     Ok(Forms::of(Spin { field: field.0.into(), rate: rate.0, moment: moment.0.into() }))
 }
 
+impl Spin {
+    fn on<S: Trig + 'static>(&self) -> OnSphere<S> {
+        let (field, rate) = (self.field.map(S::lit), S::lit(self.rate));
+        let omega = move |t: S, v: &mut Vector3<S>| {
+            let (s, c) = (rate * t).sin_cos();
+            *v = Vector3::new(c * field[0] - s * field[1], s * field[0] + c * field[1], field[2]);
+        };
+        OnSphere::linear(Flow::of_time(So3::new(), Linear, omega), Linear)
+    }
+}
+
 impl System for Spin {
-    type Problem<N: Number> = OnSphere<N>;
+    type Problem = OnSphere;
 
     const STATE: &'static [&'static str] = &["moment"];
     const QUANTITIES: &'static [Q] = &[
@@ -54,14 +66,11 @@ impl System for Spin {
     fn layer(&self) -> Layer {
         Layer::Closed
     }
-    fn problem<N: Number>(&self) -> Result<Start<OnSphere<N>>, Error> {
-        let (field, rate) = (self.field.map(N::lit), N::lit(self.rate));
-        let omega = move |t: N, v: &mut Vector3<N>| {
-            let (s, c) = (rate * t).sin_cos();
-            *v = Vector3::new(c * field[0] - s * field[1], s * field[0] + c * field[1], field[2]);
-        };
-        let flow = Flow::of_time(So3::new(), Linear, omega);
-        Ok((OnSphere::linear(flow, Linear), self.moment.map(N::lit)))
+    fn problem(&self) -> Result<Start<OnSphere>, Error> {
+        Ok((self.on(), self.moment))
+    }
+    fn operations(&self, method: &MethodSpec, steps: &Steps) -> Option<f64> {
+        operations_of(&self.on(), self.moment.map(Counted), method, steps)
     }
     fn modelled(&self) -> String {
         "moment on the sphere".into()

@@ -2,6 +2,7 @@
 
 use lieflow::actions::Linear;
 use lieflow::problems::SpinChain;
+use lieflow::scalar::{self, Counted};
 use nalgebra::Vector3;
 
 use super::flow::OnSpheres;
@@ -80,6 +81,14 @@ fn read(keys: Keys) -> Result<Forms, ReadError> {
 }
 
 impl Chain {
+    /// A Lie–Poisson system where nothing damps it.
+    fn on<S: scalar::Real + 'static>(&self) -> Result<OnSpheres<S>, Error> {
+        let chain = self.chain.on::<S>()?;
+        Ok(match self.damped {
+            true => OnSpheres::new(chain, Linear),
+            false => OnSpheres::lie_poisson(chain, Linear),
+        })
+    }
     /// A law of the chain without damping.
     fn undamped(&self, law: Law) -> Option<Law> {
         (!self.damped).then_some(law)
@@ -98,7 +107,7 @@ fn sum_of_squares(spins: &[Vector3<f64>]) -> f64 {
 }
 
 impl System for Chain {
-    type Problem<N: Number> = OnSpheres<N>;
+    type Problem = OnSpheres;
 
     const STATE: &'static [&'static str] = &["spins"];
     const QUANTITIES: &'static [Q] = &[
@@ -131,14 +140,12 @@ impl System for Chain {
     fn layer(&self) -> Layer {
         Layer::Closed
     }
-    /// A Lie–Poisson system where nothing damps it.
-    fn problem<N: Number>(&self) -> Result<Start<OnSpheres<N>>, Error> {
-        let chain = self.chain.on::<N>()?;
-        let flow = match self.damped {
-            true => OnSpheres::new(chain, Linear),
-            false => OnSpheres::lie_poisson(chain, Linear),
-        };
-        Ok((flow, self.start.iter().map(|s| s.map(N::lit)).collect()))
+    fn problem(&self) -> Result<Start<OnSpheres>, Error> {
+        Ok((self.on()?, self.start.clone()))
+    }
+    fn operations(&self, method: &MethodSpec, steps: &Steps) -> Option<f64> {
+        let start = self.start.iter().map(|s| s.map(Counted)).collect();
+        operations_of(&self.on().ok()?, start, method, steps)
     }
     fn modelled(&self) -> String {
         format!("{} spins on spheres", self.start.len())

@@ -91,7 +91,7 @@ impl Subspace {
 type Q = Quantity<Subspace>;
 
 impl System for Subspace {
-    type Problem<N: Number> = OnMatrices;
+    type Problem = OnMatrices;
 
     const STATE: &'static [&'static str] = &["projector"];
     const QUANTITIES: &'static [Q] = &[
@@ -123,7 +123,7 @@ impl System for Subspace {
         .kept(Law::by_the_action(0).on_scale(Scale::One)),
     ];
 
-    fn problem<N: Number>(&self) -> Result<Start<OnMatrices>, Error> {
+    fn problem(&self) -> Result<Start<OnMatrices>, Error> {
         Ok((OnMatrices::new(self.flow.clone(), MatrixAction::Conjugation), self.start.clone()))
     }
     fn modelled(&self) -> String {

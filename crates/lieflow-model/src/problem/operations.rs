@@ -1,8 +1,9 @@
 //! Counts the operations of a run, by running it.
 //!
-//! Problems on vectors run with numbers that count. Matrices report their operations ([`lieflow::scalar::tally`]).
+//! Matrices report their operations ([`lieflow::scalar::tally`]). A problem on vectors runs on numbers that count; its methods
+//! are compiled in the library.
 
-use lieflow::catalog::MethodSpec;
+use lieflow::catalog::{CountingMethods, MethodSpec};
 use lieflow::methods::{AnyMethod, Method};
 use lieflow::problems::{PointOf, ScalarOf};
 use lieflow::scalar::{Counted, Real};
@@ -21,18 +22,36 @@ const COUNTED_AT_LEAST: u64 = 8;
 /// The mean operations of a step of `problem` from `y`, over the first of the run: see
 /// [`Model::operations`](super::Model::operations). None where nothing is counted, as of the
 /// exact motion, or the method fails.
-pub fn operations_by<P: Runnable>(
+pub(crate) fn operations_by<P: Runnable>(
     spec: &MethodSpec,
     problem: &P,
     y: PointOf<P>,
     steps: &Steps,
 ) -> Option<f64> {
-    let method = problem.method(spec).ok()?;
+    counted(&problem.method(spec).ok()?, problem, y, steps)
+}
+
+/// The same for a problem on numbers that count.
+pub(crate) fn operations_of<P: Runnable + CountingMethods>(
+    problem: &P,
+    y: PointOf<P>,
+    spec: &MethodSpec,
+    steps: &Steps,
+) -> Option<f64> {
+    counted(&problem.counting_method(spec).ok()?, problem, y, steps)
+}
+
+fn counted<P: Runnable>(
+    method: &AnyMethod<'static, P>,
+    problem: &P,
+    y: PointOf<P>,
+    steps: &Steps,
+) -> Option<f64> {
     match steps {
         Steps::Equal(_) if method.facts(problem).order == usize::MAX => None,
-        Steps::Equal(grid) => of_equal_steps(problem, &method, y, grid),
+        Steps::Equal(grid) => of_equal_steps(problem, method, y, grid),
         Steps::ByError { t_span, control } => {
-            let solve = Solve::new(problem, &method, *t_span).control(control.clone());
+            let solve = Solve::new(problem, method, *t_span).control(control.clone());
             of_a_run(solve.integrator(y).ok()?)
         }
     }

@@ -4,10 +4,6 @@ use core::fmt::{self, Debug};
 use std::sync::{Arc, OnceLock};
 
 use lieflow::catalog::MethodSpec;
-use lieflow::methods::Wide;
-use lieflow::problems::LinearSpace;
-use lieflow::scalar::{Counted, Trig};
-use lieflow::space::Numbers;
 use lieflow::{Error, RunError};
 
 use super::forms::{Asked, Form, Forms, Run};
@@ -23,25 +19,16 @@ use crate::formula::Formula;
 use crate::reader::Refusal;
 use crate::schema::{Law, Schema};
 
-/// The numbers that a problem of vectors is made of: `f64`, and [`Counted`] where operations are counted.
-/// Matrices count for themselves.
-pub(crate) trait Number:
-    Trig + Wide + Into<f64> + LinearSpace<Scalar = Self> + Numbers + Send + Sync
-{
-}
-impl Number for f64 {}
-impl Number for Counted {}
-
 /// A problem with the point that it starts from.
 pub(crate) type Start<P> = (P, lieflow::problems::PointOf<P>);
 
 /// A point of a system.
-pub(crate) type PointOf<S> = lieflow::problems::PointOf<<S as System>::Problem<f64>>;
+pub(crate) type PointOf<S> = lieflow::problems::PointOf<<S as System>::Problem>;
 
 /// A problem of one kind, as its scene states it and checked: what the kind's file is about.
 pub(crate) trait System: Clone + Debug + Send + Sync + 'static {
-    /// The problem of the library; one of matrices is the same on all numbers.
-    type Problem<N: Number>: Runnable;
+    /// The problem of the library.
+    type Problem: Runnable;
     /// The quantities, in the order of listings.
     const QUANTITIES: &'static [Quantity<Self>];
     /// The quantities that make up the state.
@@ -57,9 +44,15 @@ pub(crate) trait System: Clone + Debug + Send + Sync + 'static {
     ///
     /// # Errors
     /// What the library refuses.
-    fn problem<N: Number>(&self) -> Result<Start<Self::Problem<N>>, Error>;
+    fn problem(&self) -> Result<Start<Self::Problem>, Error>;
     /// What is integrated, in words.
     fn modelled(&self) -> String;
+    /// The operations of a step: see [`Model::operations`](super::Model::operations). A problem of matrices reports what it
+    /// computes. One of vectors runs on numbers that count, by [`operations_of`](super::operations_of).
+    fn operations(&self, method: &MethodSpec, steps: &Steps) -> Option<f64> {
+        let (problem, start) = self.problem().ok()?;
+        operations_by(method, &problem, start, steps)
+    }
     /// See [`Problem::check_start`](super::Problem::check_start).
     fn check_start(&self, _t0: f64) -> Vec<Refusal> {
         Vec::new()
@@ -104,7 +97,7 @@ pub(crate) trait System: Clone + Debug + Send + Sync + 'static {
 }
 
 /// A problem that is set up, with its start.
-type Ready<S> = (Arc<<S as System>::Problem<f64>>, PointOf<S>);
+type Ready<S> = (Arc<<S as System>::Problem>, PointOf<S>);
 
 /// A system as a form of its problem. Its problem is set up when it is needed first.
 struct On<S: System> {
@@ -169,7 +162,7 @@ impl<S: System> On<S> {
     }
 
     /// What appends the values of these quantities, for what outlives a run that starts at t0.
-    fn shared(&self, quantities: &[usize], t0: f64) -> Box<SharedRowOf<S::Problem<f64>>> {
+    fn shared(&self, quantities: &[usize], t0: f64) -> Box<SharedRowOf<S::Problem>> {
         let (system, quantities) = (self.system.clone(), quantities.to_vec());
         Box::new(move |t, y, numbers| append_values(&system, &quantities, t - t0, y, numbers))
     }
@@ -259,15 +252,14 @@ impl<S: System> Run for On<S> {
         orders_by(method, &*self.ready()?.0)
     }
     fn problem_type(&self) -> &'static str {
-        core::any::type_name::<S::Problem<f64>>()
+        core::any::type_name::<S::Problem>()
     }
     fn fits(&self, method: &MethodSpec) -> Result<(), Error> {
         let (problem, start) = self.ready()?;
         fits_by(method, &**problem, start)
     }
     fn operations(&self, method: &MethodSpec, steps: &Steps) -> Option<f64> {
-        let (problem, start) = self.system.problem::<Counted>().ok()?;
-        operations_by(method, &problem, start, steps)
+        self.system.operations(method, steps)
     }
     fn check_start(&self, t0: f64) -> Vec<Refusal> {
         self.system.check_start(t0)

@@ -6,6 +6,7 @@ mod system;
 use std::collections::{BTreeMap, BTreeSet};
 
 use lieflow::groups::{LieGroup, So3};
+use lieflow::scalar::Counted;
 use nalgebra::{Matrix3, Vector3};
 
 use self::system::{Coupled, Part, Space};
@@ -231,7 +232,7 @@ fn kept<'a>(parts: impl Iterator<Item = &'a Part>) -> Vec<String> {
 }
 
 impl System for Composed {
-    type Problem<N: Number> = flow::Composed<N>;
+    type Problem = flow::Composed;
 
     const STATE: &'static [&'static str] = &["state"];
     const QUANTITIES: &'static [Q] = &[
@@ -290,13 +291,17 @@ impl System for Composed {
     fn layer(&self) -> Layer {
         Layer::Closed
     }
-    fn problem<N: Number>(&self) -> Result<Start<flow::Composed<N>>, Error> {
+    fn problem(&self) -> Result<Start<flow::Composed>, Error> {
+        let coupled = Coupled::new(self.parts.clone(), &self.start)?;
+        Ok((flow::Composed::new(coupled, ON_PARTS), self.start.clone()))
+    }
+    fn operations(&self, method: &MethodSpec, steps: &Steps) -> Option<f64> {
         let (vectors, (rotations, numbers)) = &self.start;
-        let vectors = vectors.iter().map(|x| x.map(N::lit)).collect();
-        let rotations = rotations.iter().map(|g| g.map(N::lit)).collect();
-        let start = (vectors, (rotations, numbers.iter().map(|&x| N::lit(x)).collect()));
-        let coupled = Coupled::new(self.parts.clone(), &start)?;
-        Ok((flow::Composed::new(coupled, ON_PARTS), start))
+        let vectors = vectors.iter().map(|x| x.map(Counted)).collect();
+        let rotations = rotations.iter().map(|g| g.map(Counted)).collect();
+        let start = (vectors, (rotations, numbers.iter().map(|&x| Counted(x)).collect()));
+        let coupled = Coupled::new(self.parts.clone(), &start).ok()?;
+        operations_of(&flow::Composed::new(coupled, ON_PARTS), start, method, steps)
     }
     fn check_start(&self, t0: f64) -> Vec<Refusal> {
         let mut at = vec![t0];

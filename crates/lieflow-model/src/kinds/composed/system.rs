@@ -15,11 +15,11 @@ use lieflow::Error;
 use lieflow::actions::{LeftTranslation, Linear, Pair};
 use lieflow::groups::{LieAlgebra, Power, Product, So3, Translations};
 use lieflow::problems::Problem;
-use lieflow::scalar::Real;
+use lieflow::scalar::{Real, Trig};
+use lieflow::space::LinearSpace;
 use nalgebra::{Matrix3, Vector3};
 
 use crate::formula::Formula;
-use crate::problem::Number;
 
 type Powers<S> = Power<So3<S>>;
 /// SO(3)ⁿ × SO(3)ᵐ × T(k).
@@ -112,6 +112,10 @@ impl Space {
         }
     }
 }
+
+/// Numbers of a problem: `f64`, and the number that counts operations.
+pub(crate) trait Number: Trig + Into<f64> + LinearSpace<Scalar = Self> {}
+impl<S: Trig + Into<f64> + LinearSpace<Scalar = S>> Number for S {}
 
 /// Parts that are coupled by their fields.
 #[derive(Clone, Debug)]

@@ -49,12 +49,12 @@ impl OnDual for WithGroup {
 }
 
 impl System for WithGroup {
-    type Problem<N: Number> = FromBody;
+    type Problem = FromBody;
 
     const STATE: &'static [&'static str] = &["momentum", "group"];
     const QUANTITIES: &'static [Quantity<Self>] = &quantities();
 
-    fn problem<N: Number>(&self) -> Result<Start<FromBody>, Error> {
+    fn problem(&self) -> Result<Start<FromBody>, Error> {
         let EulerEquation { group, energy, momentum } = &self.0;
         let system = Euler::new(group.clone(), energy.clone()).with_group();
         Ok((FromBody::new(system, FromTheBody), (group.identity(), momentum.clone())))

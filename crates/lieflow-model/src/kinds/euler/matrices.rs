@@ -214,12 +214,12 @@ impl OnDual for EulerEquation {
 }
 
 impl System for EulerEquation {
-    type Problem<N: Number> = OnMatrices;
+    type Problem = OnMatrices;
 
     const STATE: &'static [&'static str] = &["momentum"];
     const QUANTITIES: &'static [Quantity<Self>] = &quantities();
 
-    fn problem<N: Number>(&self) -> Result<Start<OnMatrices>, Error> {
+    fn problem(&self) -> Result<Start<OnMatrices>, Error> {
         let system = Euler::new(self.group.clone(), self.energy.clone());
         Ok((OnMatrices::lie_poisson(system, MatrixAction::Coadjoint), self.momentum.clone()))
     }

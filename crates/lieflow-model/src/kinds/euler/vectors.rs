@@ -3,6 +3,7 @@
 use lieflow::actions::{Coadjoint, Linear};
 use lieflow::groups::{Adjoint, LieGroup, Power, Se3, So3};
 use lieflow::problems::{DiscreteGradient, Euler, MeanGradient};
+use lieflow::scalar::{Counted, Real, Trig};
 use nalgebra::Vector3;
 
 use super::dual::{Dual, Given, OnDual, quantities};
@@ -35,7 +36,7 @@ trait Numbers<S, const N: usize> {
     fn set(&mut self, number: impl Fn(usize) -> S);
 }
 
-impl<S: Number> Numbers<S, 3> for Momentum<S> {
+impl<S: Real + Into<f64> + 'static> Numbers<S, 3> for Momentum<S> {
     fn numbers(&self) -> [S; 3] {
         self.first().map_or([S::lit(f64::NAN); 3], |m| (*m).into())
     }
@@ -44,7 +45,7 @@ impl<S: Number> Numbers<S, 3> for Momentum<S> {
     }
 }
 
-impl<S: Number> Numbers<S, 6> for Pair<S> {
+impl<S: Real + Into<f64> + 'static> Numbers<S, 6> for Pair<S> {
     fn numbers(&self) -> [S; 6] {
         core::array::from_fn(|i| if i < 3 { self.0[i] } else { self.1[i - 3] })
     }
@@ -69,7 +70,9 @@ impl<const N: usize> Vectors<N> {
     }
 
     /// H, and ∇H at a or at a + s(b − a).
-    fn averaged<G, S: Number, M: Numbers<S, N>>(&self) -> impl DiscreteGradient<G> + use<G, S, M, N>
+    fn averaged<G, S: Real + Into<f64> + 'static, M: Numbers<S, N>>(
+        &self,
+    ) -> impl DiscreteGradient<G> + use<G, S, M, N>
     where
         G: Adjoint<Dual = M> + LieGroup<Scalar = S, Alg = M>,
     {
@@ -148,8 +151,25 @@ where
     }
 }
 
+impl Vectors<3> {
+    fn on<S: Trig + Into<f64> + 'static>(&self) -> Result<OnSpheres<S>, Error> {
+        let system = Euler::new(Power::new(So3::new(), 1)?, self.averaged());
+        Ok(OnSpheres::lie_poisson(system, Linear))
+    }
+}
+
+impl Vectors<6> {
+    fn on<S: Trig + Into<f64> + 'static>(&self) -> OnSe3<S> {
+        OnSe3::lie_poisson(Euler::new(Se3::new(), self.averaged()), Coadjoint)
+    }
+    fn start(&self) -> Pair<f64> {
+        let [m1, m2, m3, p1, p2, p3] = self.momentum;
+        (Vector3::new(m1, m2, m3), Vector3::new(p1, p2, p3))
+    }
+}
+
 impl System for Vectors<3> {
-    type Problem<N: Number> = OnSpheres<N>;
+    type Problem = OnSpheres;
 
     const STATE: &'static [&'static str] = &["momentum"];
     const QUANTITIES: &'static [Quantity<Self>] = &quantities();
@@ -157,10 +177,12 @@ impl System for Vectors<3> {
     fn layer(&self) -> Layer {
         Layer::Closed
     }
-    fn problem<N: Number>(&self) -> Result<Start<OnSpheres<N>>, Error> {
-        let system = Euler::new(Power::new(So3::new(), 1)?, self.averaged());
-        let start: Momentum<N> = Box::new([Vector3::from(self.momentum.map(N::lit))]);
-        Ok((OnSpheres::lie_poisson(system, Linear), start))
+    fn problem(&self) -> Result<Start<OnSpheres>, Error> {
+        Ok((self.on()?, Box::new([self.momentum.into()])))
+    }
+    fn operations(&self, method: &MethodSpec, steps: &Steps) -> Option<f64> {
+        let start = Box::new([Vector3::from(self.momentum).map(Counted)]);
+        operations_of(&self.on().ok()?, start, method, steps)
     }
     fn check_start(&self, _: f64) -> Vec<Refusal> {
         self.energy.check(&self.momentum)
@@ -177,7 +199,7 @@ impl System for Vectors<3> {
 }
 
 impl System for Vectors<6> {
-    type Problem<N: Number> = OnSe3<N>;
+    type Problem = OnSe3;
 
     const STATE: &'static [&'static str] = &["momentum"];
     const QUANTITIES: &'static [Quantity<Self>] = &quantities();
@@ -185,11 +207,12 @@ impl System for Vectors<6> {
     fn layer(&self) -> Layer {
         Layer::Closed
     }
-    fn problem<N: Number>(&self) -> Result<Start<OnSe3<N>>, Error> {
-        let system = Euler::new(Se3::new(), self.averaged());
-        let [m1, m2, m3, p1, p2, p3] = self.momentum.map(N::lit);
-        let start: Pair<N> = (Vector3::new(m1, m2, m3), Vector3::new(p1, p2, p3));
-        Ok((OnSe3::lie_poisson(system, Coadjoint), start))
+    fn problem(&self) -> Result<Start<OnSe3>, Error> {
+        Ok((self.on(), self.start()))
+    }
+    fn operations(&self, method: &MethodSpec, steps: &Steps) -> Option<f64> {
+        let (m, p) = self.start();
+        operations_of(&self.on(), (m.map(Counted), p.map(Counted)), method, steps)
     }
     fn check_start(&self, _: f64) -> Vec<Refusal> {
         self.energy.check(&self.momentum)

@@ -72,7 +72,7 @@ impl Fluid {
 }
 
 impl System for Fluid {
-    type Problem<N: Number> = Zeitlin<Place>;
+    type Problem = Zeitlin<Place>;
 
     const STATE: &'static [&'static str] = &["matrix"];
     const QUANTITIES: &'static [Q] = &[
@@ -137,7 +137,7 @@ impl System for Fluid {
         }),
     ];
 
-    fn problem<N: Number>(&self) -> Result<Start<Zeitlin<Place>>, Error> {
+    fn problem(&self) -> Result<Start<Zeitlin<Place>>, Error> {
         Ok((self.fluid.clone(), self.start.clone()))
     }
     fn modelled(&self) -> String {

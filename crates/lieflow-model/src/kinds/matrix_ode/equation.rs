@@ -102,7 +102,7 @@ impl Equation {
 type Q = Quantity<Equation>;
 
 impl System for Equation {
-    type Problem<N: Number> = OnMatrices;
+    type Problem = OnMatrices;
 
     const STATE: &'static [&'static str] = &["point"];
     const QUANTITIES: &'static [Q] = &[
@@ -156,7 +156,7 @@ impl System for Equation {
         }),
     ];
 
-    fn problem<N: Number>(&self) -> Result<Start<OnMatrices>, Error> {
+    fn problem(&self) -> Result<Start<OnMatrices>, Error> {
         let (this, group, action) = (self.clone(), self.group.clone(), self.action);
         let problem = if self.linear {
             let a = move |t: f64, v: &mut AlgebraMatrix| this.projected(t, &this.start, v);

@@ -16,6 +16,7 @@ use lieflow::problems::{
     BodyState, Exact, RigidBody, RigidBodyAttitude, RigidBodyN, RigidBodyNAttitude,
     RigidBodyQuaternion, RigidBodyState,
 };
+use lieflow::scalar::Counted;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 use crate::kinds::body::*;
@@ -31,7 +32,7 @@ pub(super) struct Pose {
 /// A way to represent the state of a free rigid body.
 pub(super) trait Representation: Clone + Debug + Send + Sync + 'static {
     /// The problem of the library.
-    type Problem<N: Number>: Runnable + Clone + Debug + Send + Sync;
+    type Problem: Runnable + Clone + Debug + Send + Sync;
     /// The layer of the problem.
     const LAYER: Layer;
     /// What is integrated, in words.
@@ -45,17 +46,27 @@ pub(super) trait Representation: Clone + Debug + Send + Sync + 'static {
     ///
     /// # Errors
     /// What the library refuses.
-    fn problem<N: Number>(spec: &RigidBodySpec) -> Result<Self::Problem<N>, Error>;
+    fn problem(spec: &RigidBodySpec) -> Result<Self::Problem, Error>;
     /// The point of a pose.
     ///
     /// # Errors
     /// [`Error::NotOnGroup`] for an orientation that is no rotation.
-    fn point<N: Number>(pose: &Pose) -> Result<Point<Self, N>, Error>;
+    fn point(pose: &Pose) -> Result<Point<Self>, Error>;
     /// The pose of a point.
-    fn pose(problem: &Self::Problem<f64>, y: &Point<Self, f64>) -> Pose;
+    fn pose(problem: &Self::Problem, y: &Point<Self>) -> Pose;
+    /// See [`System::operations`].
+    fn operations(
+        spec: &RigidBodySpec,
+        start: Point<Self>,
+        method: &MethodSpec,
+        steps: &Steps,
+    ) -> Option<f64> {
+        let problem = Self::problem(spec).ok()?;
+        operations_by(method, &problem, start, steps)
+    }
 }
 
-type Point<R, N> = lieflow::problems::PointOf<<R as Representation>::Problem<N>>;
+type Point<R> = lieflow::problems::PointOf<<R as Representation>::Problem>;
 
 fn to_faer(m: &Matrix3<f64>) -> Mat<f64> {
     Mat::from_fn(3, 3, |i, j| m[(i, j)])
@@ -69,16 +80,25 @@ fn to_nalgebra(m: &Mat<f64>) -> Matrix3<f64> {
 pub(super) struct MomentumOnly;
 
 impl Representation for MomentumOnly {
-    type Problem<N: Number> = RigidBody<N>;
+    type Problem = RigidBody;
     const LAYER: Layer = Layer::Closed;
     const MODELLED: &'static str = "momentum on so(3)*";
     const TURNS: bool = false;
 
-    fn problem<N: Number>(spec: &RigidBodySpec) -> Result<RigidBody<N>, Error> {
+    fn problem(spec: &RigidBodySpec) -> Result<RigidBody, Error> {
         RigidBody::new(spec.inertia)
     }
-    fn point<N: Number>(pose: &Pose) -> Result<Vector3<N>, Error> {
-        Ok(pose.m.map(N::lit))
+    fn point(pose: &Pose) -> Result<Vector3<f64>, Error> {
+        Ok(pose.m)
+    }
+    fn operations(
+        spec: &RigidBodySpec,
+        start: Point<Self>,
+        method: &MethodSpec,
+        steps: &Steps,
+    ) -> Option<f64> {
+        let body = RigidBody::<Counted>::new(spec.inertia).ok()?;
+        operations_of(&body, start.map(Counted), method, steps)
     }
     fn pose(_: &RigidBody, m: &Vector3<f64>) -> Pose {
         Pose { m: *m, orientation: Orientation::NotModelled }
@@ -90,17 +110,27 @@ impl Representation for MomentumOnly {
 pub(super) struct Attitude;
 
 impl Representation for Attitude {
-    type Problem<N: Number> = RigidBodyAttitude<N>;
+    type Problem = RigidBodyAttitude;
     const LAYER: Layer = Layer::Closed;
     const MODELLED: &'static str = "attitude on SO(3)";
     const TURNS: bool = true;
 
-    fn problem<N: Number>(spec: &RigidBodySpec) -> Result<RigidBodyAttitude<N>, Error> {
+    fn problem(spec: &RigidBodySpec) -> Result<RigidBodyAttitude, Error> {
         let (inertia, m) = (spec.inertia, spec.momentum_space());
         RigidBodyAttitude::new(inertia, m.into())
     }
-    fn point<N: Number>(pose: &Pose) -> Result<Matrix3<N>, Error> {
-        Ok(pose.orientation.rotation().map(N::lit))
+    fn point(pose: &Pose) -> Result<Matrix3<f64>, Error> {
+        Ok(pose.orientation.rotation())
+    }
+    fn operations(
+        spec: &RigidBodySpec,
+        start: Point<Self>,
+        method: &MethodSpec,
+        steps: &Steps,
+    ) -> Option<f64> {
+        let body =
+            RigidBodyAttitude::<Counted>::new(spec.inertia, spec.momentum_space().into()).ok()?;
+        operations_of(&body, start.map(Counted), method, steps)
     }
     fn pose(body: &RigidBodyAttitude, g: &Matrix3<f64>) -> Pose {
         Pose { m: body.momentum_body(g), orientation: Orientation::Matrix(*g) }
@@ -112,16 +142,26 @@ impl Representation for Attitude {
 pub(super) struct State;
 
 impl Representation for State {
-    type Problem<N: Number> = RigidBodyState<N>;
+    type Problem = RigidBodyState;
     const LAYER: Layer = Layer::Closed;
     const MODELLED: &'static str = "momentum and attitude as one state of 12 numbers";
     const TURNS: bool = true;
 
-    fn problem<N: Number>(spec: &RigidBodySpec) -> Result<RigidBodyState<N>, Error> {
+    fn problem(spec: &RigidBodySpec) -> Result<RigidBodyState, Error> {
         RigidBodyState::new(spec.inertia)
     }
-    fn point<N: Number>(pose: &Pose) -> Result<BodyState<N>, Error> {
-        Ok(BodyState { m: pose.m.map(N::lit), g: pose.orientation.rotation().map(N::lit) })
+    fn point(pose: &Pose) -> Result<BodyState, Error> {
+        Ok(BodyState { m: pose.m, g: pose.orientation.rotation() })
+    }
+    fn operations(
+        spec: &RigidBodySpec,
+        start: Point<Self>,
+        method: &MethodSpec,
+        steps: &Steps,
+    ) -> Option<f64> {
+        let body = RigidBodyState::<Counted>::new(spec.inertia).ok()?;
+        let start = BodyState { m: start.m.map(Counted), g: start.g.map(Counted) };
+        operations_of(&body, start, method, steps)
     }
     fn pose(_: &RigidBodyState, y: &BodyState) -> Pose {
         Pose { m: y.m, orientation: Orientation::Matrix(y.g) }
@@ -133,18 +173,18 @@ impl Representation for State {
 pub(super) struct Quaternion;
 
 impl Representation for Quaternion {
-    type Problem<N: Number> = RigidBodyQuaternion;
+    type Problem = RigidBodyQuaternion;
     const LAYER: Layer = Layer::Closed;
     const MODELLED: &'static str = "attitude on S³, a unit quaternion";
     const TURNS: bool = true;
     /// Both are of degree 4.
     const DEGREE: u32 = 0;
 
-    fn problem<N: Number>(spec: &RigidBodySpec) -> Result<RigidBodyQuaternion, Error> {
+    fn problem(spec: &RigidBodySpec) -> Result<RigidBodyQuaternion, Error> {
         let (inertia, m) = (spec.inertia, spec.momentum_space());
         RigidBodyQuaternion::new(inertia, m.into())
     }
-    fn point<N: Number>(pose: &Pose) -> Result<UnitQuaternion<f64>, Error> {
+    fn point(pose: &Pose) -> Result<UnitQuaternion<f64>, Error> {
         Ok(pose.orientation.quaternion())
     }
     fn pose(body: &RigidBodyQuaternion, q: &UnitQuaternion<f64>) -> Pose {
@@ -157,15 +197,15 @@ impl Representation for Quaternion {
 pub(super) struct MomentumMatrix;
 
 impl Representation for MomentumMatrix {
-    type Problem<N: Number> = RigidBodyN;
+    type Problem = RigidBodyN;
     const LAYER: Layer = Layer::General;
     const MODELLED: &'static str = "momentum on so(n)*, n = 3";
     const TURNS: bool = false;
 
-    fn problem<N: Number>(spec: &RigidBodySpec) -> Result<RigidBodyN, Error> {
+    fn problem(spec: &RigidBodySpec) -> Result<RigidBodyN, Error> {
         RigidBodyN::from_principal(spec.inertia)
     }
-    fn point<N: Number>(pose: &Pose) -> Result<Mat<f64>, Error> {
+    fn point(pose: &Pose) -> Result<Mat<f64>, Error> {
         Ok(to_faer(&hat(&pose.m)))
     }
     fn pose(_: &RigidBodyN, m: &Mat<f64>) -> Pose {
@@ -178,16 +218,16 @@ impl Representation for MomentumMatrix {
 pub(super) struct AttitudeMatrix;
 
 impl Representation for AttitudeMatrix {
-    type Problem<N: Number> = RigidBodyNAttitude;
+    type Problem = RigidBodyNAttitude;
     const LAYER: Layer = Layer::General;
     const MODELLED: &'static str = "attitude on SO(n), n = 3";
     const TURNS: bool = true;
 
-    fn problem<N: Number>(spec: &RigidBodySpec) -> Result<RigidBodyNAttitude, Error> {
+    fn problem(spec: &RigidBodySpec) -> Result<RigidBodyNAttitude, Error> {
         let (inertia, m) = (spec.inertia, spec.momentum_space());
         RigidBodyNAttitude::new(RigidBodyN::from_principal(inertia)?, to_faer(&hat(&m)))
     }
-    fn point<N: Number>(pose: &Pose) -> Result<GroupMatrix, Error> {
+    fn point(pose: &Pose) -> Result<GroupMatrix, Error> {
         MatrixGroup::so(3)?.element(to_faer(&pose.orientation.rotation()))
     }
     fn pose(body: &RigidBodyNAttitude, g: &GroupMatrix) -> Pose {
@@ -204,7 +244,7 @@ pub(super) struct Body<R: Representation> {
     spec: RigidBodySpec,
     /// ω and the energy, for all representations.
     body: RigidBody,
-    problem: R::Problem<f64>,
+    problem: R::Problem,
 }
 
 type Q<R> = Quantity<Body<R>>;
@@ -237,7 +277,7 @@ impl<R: Representation> AsBody for Body<R> {
 }
 
 impl<R: Representation> System for Body<R> {
-    type Problem<N: Number> = R::Problem<N>;
+    type Problem = R::Problem;
 
     const STATE: &'static [&'static str] =
         if R::TURNS { &["momentum_body", "attitude"] } else { &["momentum_body"] };
@@ -275,13 +315,16 @@ impl<R: Representation> System for Body<R> {
     fn layer(&self) -> Layer {
         R::LAYER
     }
-    fn problem<N: Number>(&self) -> Result<Start<R::Problem<N>>, Error> {
+    fn problem(&self) -> Result<Start<R::Problem>, Error> {
         let orientation = match self.spec.quaternion {
             Some(q) => Orientation::Quaternion(q),
             None => Orientation::Matrix(self.spec.attitude),
         };
         let pose = Pose { m: self.spec.momentum_body.into(), orientation };
-        Ok((R::problem(&self.spec)?, R::point::<N>(&pose)?))
+        Ok((R::problem(&self.spec)?, R::point(&pose)?))
+    }
+    fn operations(&self, method: &MethodSpec, steps: &Steps) -> Option<f64> {
+        R::operations(&self.spec, self.problem().ok()?.1, method, steps)
     }
     fn modelled(&self) -> String {
         R::MODELLED.into()
@@ -306,7 +349,7 @@ impl<R: Representation> System for Body<R> {
                 true => exact.state(t).map(|(m, g)| (m, Orientation::Matrix(g)))?,
                 false => (exact.momentum_body(t)?, Orientation::NotModelled),
             };
-            R::point::<f64>(&Pose { m, orientation })
+            R::point(&Pose { m, orientation })
         };
         Some(at(t1 - t0))
     }
