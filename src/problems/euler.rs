@@ -30,6 +30,10 @@ pub trait Hamiltonian<G: Adjoint> {
     fn further_values(&self, _m: &G::Dual) -> Vec<G::Scalar> {
         Vec::new()
     }
+    /// The sizes of their terms, as [`Invariants::sizes`].
+    fn further_sizes(&self, m: &G::Dual) -> Vec<G::Scalar> {
+        self.further_values(m).into_iter().map(Real::abs).collect()
+    }
 }
 
 /// A Hamiltonian with a discrete gradient, for methods that conserve the energy.
@@ -170,12 +174,16 @@ where
     Coadjoint: Action<G, Point = G::Dual>,
 {
     fn invariants(&self) -> Vec<Invariant> {
-        let energy = Invariant::of_the_flow("energy");
+        let energy = Invariant::of_the_flow("energy", 0);
         core::iter::once(energy).chain(self.hamiltonian.further()).collect()
     }
     fn values(&self, m: &G::Dual) -> Vec<G::Scalar> {
         let further = self.hamiltonian.further_values(m);
         core::iter::once(self.energy(m)).chain(further).collect()
+    }
+    fn sizes(&self, m: &G::Dual) -> Vec<G::Scalar> {
+        let further = self.hamiltonian.further_sizes(m);
+        core::iter::once(self.energy(m).abs()).chain(further).collect()
     }
 }
 
@@ -338,6 +346,9 @@ where
     }
     fn values(&self, y: &PointOf<Self>) -> Vec<G::Scalar> {
         self.system.values(&y.1)
+    }
+    fn sizes(&self, y: &PointOf<Self>) -> Vec<G::Scalar> {
+        self.system.sizes(&y.1)
     }
 }
 

@@ -317,7 +317,7 @@ impl<M, S, E: Fn(&M) -> S> Quantities<M, S> for Energy<E> {
         take((self.0)(y));
     }
     fn names(&self) -> Vec<Invariant> {
-        vec![Invariant::of_the_flow("energy")]
+        vec![Invariant::of_the_flow("energy", 0)]
     }
 }
 

@@ -107,7 +107,7 @@ impl Problem for SubspaceFlow {
 
 impl Invariants for SubspaceFlow {
     fn invariants(&self) -> Vec<Invariant> {
-        ["tr P", "tr P²"].map(Invariant::of_the_action).into()
+        vec![Invariant::of_the_action("tr P", 0), Invariant::of_the_action("tr P²", 0)]
     }
     fn values(&self, p: &Mat<f64>) -> Vec<f64> {
         vec![(0..p.nrows()).map(|i| p[(i, i)]).sum(), p.squared_norm_l2()]

@@ -100,6 +100,36 @@ impl<S: Real> HeavyTop<S> {
         Euler::new(Se3::new(), self)
     }
 
+    /// The energy ½ μ·J⁻¹μ + w·γ.
+    pub fn energy(&self, (mu, gamma): &(Vector3<S>, Vector3<S>)) -> S {
+        S::lit(0.5) * dot(mu, &self.omega(mu)) + dot(&self.weight, gamma)
+    }
+
+    /// The Casimirs |γ|² and μ·γ.
+    pub fn casimirs(&self, (mu, gamma): &(Vector3<S>, Vector3<S>)) -> [S; 2] {
+        [dot(gamma, gamma), dot(mu, gamma)]
+    }
+
+    /// The fourth integral of Euler's, Lagrange's or Kovalevskaya's top. `None` for other tops.
+    pub fn fourth_integral(&self, (mu, gamma): &(Vector3<S>, Vector3<S>)) -> Option<S> {
+        match self.integral {
+            Integral::None => None,
+            Integral::Euler => Some(dot(mu, mu)),
+            Integral::Lagrange => Some(mu[2]),
+            Integral::Kovalevskaya(c) => {
+                let w = self.omega(mu);
+                let re = w[0] * w[0] - w[1] * w[1] - c * gamma[0];
+                let im = S::lit(2.0) * w[0] * w[1] - c * gamma[1];
+                Some(re * re + im * im)
+            }
+        }
+    }
+
+    /// True for a top with a fourth integral.
+    pub fn is_integrable(&self) -> bool {
+        !matches!(self.integral, Integral::None)
+    }
+
     /// ω = J⁻¹μ.
     #[inline]
     pub fn omega(&self, mu: &Vector3<S>) -> Vector3<S> {
@@ -112,37 +142,31 @@ fn dot<S: Real>(a: &Vector3<S>, b: &Vector3<S>) -> S {
 }
 
 impl<S: Real> Hamiltonian<Se3<S>> for HeavyTop<S> {
-    fn value(&self, _: &Se3<S>, (mu, gamma): &(Vector3<S>, Vector3<S>)) -> S {
-        S::lit(0.5) * dot(mu, &self.omega(mu)) + dot(&self.weight, gamma)
+    fn value(&self, _: &Se3<S>, y: &(Vector3<S>, Vector3<S>)) -> S {
+        self.energy(y)
     }
     #[inline]
     fn gradient(&self, (mu, _): &(Vector3<S>, Vector3<S>), xi: &mut (Vector3<S>, Vector3<S>)) {
         *xi = (self.omega(mu), self.weight);
     }
     fn further(&self) -> Vec<Invariant> {
-        let casimirs = ["|γ|²", "μ·γ"].map(Invariant::of_the_action);
+        let length = Invariant::of_the_action("|γ|²", 2);
+        let casimirs = [length, Invariant::of_the_action("μ·γ", 2).in_terms()];
         let fourth = match self.integral {
             Integral::None => None,
             Integral::Euler => Some("|μ|²"),
             Integral::Lagrange => Some("μ₃"),
             Integral::Kovalevskaya(_) => Some("Kovalevskaya's integral"),
         };
-        casimirs.into_iter().chain(fourth.map(Invariant::of_the_flow)).collect()
+        casimirs.into_iter().chain(fourth.map(|name| Invariant::of_the_flow(name, 0))).collect()
     }
-    fn further_values(&self, (mu, gamma): &(Vector3<S>, Vector3<S>)) -> Vec<S> {
-        let mut values = vec![dot(gamma, gamma), dot(mu, gamma)];
-        match self.integral {
-            Integral::None => {}
-            Integral::Euler => values.push(dot(mu, mu)),
-            Integral::Lagrange => values.push(mu[2]),
-            Integral::Kovalevskaya(c) => {
-                let w = self.omega(mu);
-                let re = w[0] * w[0] - w[1] * w[1] - c * gamma[0];
-                let im = S::lit(2.0) * w[0] * w[1] - c * gamma[1];
-                values.push(re * re + im * im);
-            }
-        }
-        values
+    fn further_values(&self, y: &(Vector3<S>, Vector3<S>)) -> Vec<S> {
+        self.casimirs(y).into_iter().chain(self.fourth_integral(y)).collect()
+    }
+    fn further_sizes(&self, y: &(Vector3<S>, Vector3<S>)) -> Vec<S> {
+        let [gamma2, _] = self.casimirs(y);
+        let sizes = [gamma2, (dot(&y.0, &y.0) * gamma2).sqrt()];
+        sizes.into_iter().chain(self.fourth_integral(y).map(S::abs)).collect()
     }
 }
 

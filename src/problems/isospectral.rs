@@ -150,12 +150,17 @@ impl Problem for IsospectralFlow {
 
 impl Invariants for IsospectralFlow {
     fn invariants(&self) -> Vec<Invariant> {
-        ["tr L", "tr L²", "tr L³"].map(Invariant::of_the_action).into()
+        let trace = |name| Invariant::of_the_action(name, 0).in_terms();
+        ["tr L", "tr L²", "tr L³"].map(trace).into()
     }
     fn values(&self, l: &Mat<f64>) -> Vec<f64> {
         let square = l * l;
         let trace = |a: &Mat<f64>| (0..a.nrows()).map(|i| a[(i, i)]).sum::<f64>();
         vec![trace(l), trace(&square), trace(&(&square * l))]
+    }
+    fn sizes(&self, l: &Mat<f64>) -> Vec<f64> {
+        let size = l.norm_l2();
+        [1, 2, 3].map(|k| size.powi(k)).into()
     }
 }
 

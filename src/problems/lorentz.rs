@@ -96,10 +96,13 @@ impl<F: Fn(f64, &Mat<f64>) -> (Vector3<f64>, Vector3<f64>)> Problem for ChargedP
 
 impl<F: Fn(f64, &Mat<f64>) -> (Vector3<f64>, Vector3<f64>)> Invariants for ChargedParticle<F> {
     fn invariants(&self) -> Vec<Invariant> {
-        vec![Invariant::of_the_action("u·Mu")]
+        vec![Invariant::of_the_action("u·Mu", 2).in_terms()]
     }
     fn values(&self, u: &Mat<f64>) -> Vec<f64> {
         let square = |i: usize| u[(i, 0)] * u[(i, 0)];
         vec![square(0) + square(1) + square(2) - square(3)]
+    }
+    fn sizes(&self, u: &Mat<f64>) -> Vec<f64> {
+        vec![u.squared_norm_l2()]
     }
 }

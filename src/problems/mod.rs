@@ -54,7 +54,7 @@ pub use fallible::{Fallible, InAlgebra, TryFlow, TryProblem};
 pub use flow::{BodyValue, Energy, Field, Flow, FlowFacts, InBody, LinearFlow, TimeAlone};
 pub use grassmann::SubspaceFlow;
 pub use heavy_top::HeavyTop;
-pub use invariants::{Invariant, Invariants, Origin};
+pub use invariants::{Invariant, Invariants, Law, Origin, Scale, explained_by_rounding};
 pub use isospectral::{IsospectralFlow, toda_lattice};
 pub use lorentz::ChargedParticle;
 pub use lyapunov::Lyapunov;

@@ -106,7 +106,7 @@ impl Problem for Oja {
 
 impl Invariants for Oja {
     fn invariants(&self) -> Vec<Invariant> {
-        vec![Invariant::of_the_action("tr XᵀX")]
+        vec![Invariant::of_the_action("tr XᵀX", 0)]
     }
     fn values(&self, x: &Mat<f64>) -> Vec<f64> {
         vec![x.squared_norm_l2()]

@@ -128,7 +128,7 @@ impl Split for RigidBodyQuaternion {
 
 impl Invariants for RigidBodyQuaternion {
     fn invariants(&self) -> Vec<Invariant> {
-        vec![Invariant::of_the_action("|q|²"), Invariant::of_the_flow("energy")]
+        vec![Invariant::of_the_action("|q|²", 2), Invariant::of_the_flow("energy", 0)]
     }
     fn values(&self, q: &UnitQuaternion<f64>) -> Vec<f64> {
         vec![q.coords.norm_squared(), self.body.energy(&self.momentum_body(q))]

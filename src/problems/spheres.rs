@@ -123,12 +123,20 @@ impl<S: Real> LiePoisson for SphericalPendulum<S> {
 
 impl<S: Real> Invariants for SphericalPendulum<S> {
     fn invariants(&self) -> Vec<Invariant> {
-        let mut all: Vec<_> = ["|q|²", "ω·q"].map(Invariant::of_the_action).into();
-        all.extend(["energy", "ω₃"].map(Invariant::of_the_flow));
-        all
+        vec![
+            Invariant::of_the_action("|q|²", 2),
+            Invariant::of_the_action("ω·q", 2).in_terms(),
+            Invariant::of_the_flow("energy", 2).in_terms(),
+            Invariant::of_the_flow("ω₃", 1).in_terms(),
+        ]
     }
     fn values(&self, y: &(V<S>, V<S>)) -> Vec<S> {
         vec![dot(&y.1, &y.1), dot(&y.0, &y.1), self.energy(y), y.0[2]]
+    }
+    fn sizes(&self, (omega, q): &(V<S>, V<S>)) -> Vec<S> {
+        let (omega2, q2) = (dot(omega, omega), dot(q, q));
+        let along = (omega2 * q2).sqrt();
+        vec![q2, along, S::lit(0.5) * omega2 + self.rate2.abs() * q2.sqrt(), along]
     }
 }
 
@@ -316,12 +324,12 @@ impl<S: Real> LiePoisson for SpinChain<S> {
 
 impl<S: Real> Invariants for SpinChain<S> {
     fn invariants(&self) -> Vec<Invariant> {
-        let mut all = vec![Invariant::of_the_action("Σ|s_i|²")];
+        let mut all = vec![Invariant::of_the_action("Σ|s_i|²", 2)];
         let zero = S::lit(0.0);
         if self.damping == zero {
-            all.push(Invariant::of_the_flow("energy"));
+            all.push(Invariant::of_the_flow("energy", 2).in_terms());
             if self.field[0] == zero && self.field[1] == zero {
-                all.push(Invariant::of_the_flow("Σ(s_i)₃"));
+                all.push(Invariant::of_the_flow("Σ(s_i)₃", 1).in_terms());
             }
         }
         all
@@ -330,5 +338,11 @@ impl<S: Real> Invariants for SpinChain<S> {
         let sum = |of: fn(&V<S>) -> S| s.iter().map(of).fold(S::lit(0.0), |sum, x| sum + x);
         let all = [sum(|s| dot(s, s)), self.energy(s), sum(|s| s[2])];
         all[..self.invariants().len()].into()
+    }
+    /// Each spin has an energy of some units.
+    fn sizes(&self, s: &Box<[V<S>]>) -> Vec<S> {
+        let lengths2 = s.iter().map(|s| dot(s, s)).fold(S::lit(0.0), |sum, x| sum + x);
+        let size = lengths2 * (S::lit(1.0) + dot(&self.field, &self.field).sqrt());
+        vec![size; self.invariants().len()]
     }
 }

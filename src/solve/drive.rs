@@ -3,10 +3,11 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+use super::drift::Drift;
 use super::events::{Events, Zero};
 use super::grid::SaveAt;
 use super::output::{AnyOutput, Slot};
-use super::solution::{Drift, Next, Status};
+use super::solution::{Next, Status};
 use super::stats::RunError;
 use super::streak::{Reach, Run};
 use super::timeline::Timeline;
@@ -88,8 +89,7 @@ impl Drive<'_> {
     /// Runs to the end, or to an error.
     pub(super) fn run(&mut self, output: &mut dyn AnyOutput) -> Result<Status, RunError> {
         let starts = output.invariants().into_iter().zip(output.values(None));
-        let drift = |(name, start)| Drift { name, start, largest: 0.0, at_end: 0.0 };
-        self.drift = starts.map(drift).collect();
+        self.drift = starts.map(|(of, [value, terms])| Drift::new(of, value, terms)).collect();
         let ended = self.steps(output);
         self.see(output, true);
         ended
@@ -101,13 +101,8 @@ impl Drive<'_> {
             return;
         }
         let values = output.values((!end).then_some(Slot::Shown));
-        for (drift, value) in self.drift.iter_mut().zip(values) {
-            let moved = value - drift.start;
-            drift.largest = drift.largest.max(moved.abs());
-            if end {
-                drift.at_end = moved;
-            }
-        }
+        let drifts = self.drift.iter_mut().zip(values);
+        drifts.for_each(|(drift, [value, terms])| drift.see(value, terms));
     }
 
     fn steps(&mut self, output: &mut dyn AnyOutput) -> Result<Status, RunError> {

@@ -17,6 +17,7 @@
 mod by_error;
 mod continuous;
 mod control;
+mod drift;
 mod drive;
 mod events;
 mod grid;
@@ -34,12 +35,13 @@ mod timeline;
 
 pub use continuous::Continuous;
 pub use control::StepControl;
+pub use drift::Drift;
 pub use events::{Direction, Event};
 pub use grid::{SaveAt, TimeGrid};
 pub use integrator::Integrator;
 pub use interpolant::{Interpolant, Reader};
 pub use simple::{integrate, integrate_adaptive};
-pub use solution::{Drift, Ended, Interrupted, Next, Occurrence, Solution, Status};
+pub use solution::{Ended, Interrupted, Next, Occurrence, Solution, Status};
 pub use stats::{RESTORE_EVERY, RunError, Stats};
 
 use std::sync::Arc;
@@ -431,10 +433,11 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
         ScalarOf<P>: Into<f64>,
     {
         self.watch = Some(Watch {
-            names: |problem| {
-                problem.invariants().into_iter().map(|invariant| invariant.name).collect()
+            invariants: Invariants::invariants,
+            values: |problem, y| {
+                let pairs = problem.values(y).into_iter().zip(problem.sizes(y));
+                pairs.map(|(value, terms)| [value.into(), terms.into()]).collect()
             },
-            values: |problem, y| problem.values(y).into_iter().map(Into::into).collect(),
         });
         self
     }

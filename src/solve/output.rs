@@ -8,7 +8,7 @@ use super::solution::{Next, Occurrence};
 use super::stats::RunError;
 use crate::error::{Error, StepError};
 use crate::methods::{Attempts, Method, Step, Streak};
-use crate::problems::{PointOf, Problem};
+use crate::problems::{Invariant, PointOf, Problem};
 
 /// A point that a run keeps for its output.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,10 +54,10 @@ pub(super) trait AnyOutput {
     fn keep(&mut self, t: f64, last: Step<f64>) -> Result<(), RunError>;
     /// Lets the last stored step end at t.
     fn cut_kept(&mut self, t: f64);
-    /// The names of the invariants, if they are watched.
-    fn invariants(&self) -> Vec<String>;
-    /// Their values at a point, or at y.
-    fn values(&self, at: Option<Slot>) -> Vec<f64>;
+    /// The invariants, if they are watched.
+    fn invariants(&self) -> Vec<Invariant>;
+    /// Their values at a point, or at y, with the sizes of their terms.
+    fn values(&self, at: Option<Slot>) -> Vec<[f64; 2]>;
 }
 
 /// The point in a slot, or the state.
@@ -72,8 +72,8 @@ fn point<Y>(slot: Option<Slot>, [state, shown, search]: [&Y; 3]) -> &Y {
 
 /// The function that gives the invariants of a problem.
 pub(super) struct Watch<P: Problem> {
-    pub(super) names: fn(&P) -> Vec<String>,
-    pub(super) values: fn(&P, &PointOf<P>) -> Vec<f64>,
+    pub(super) invariants: fn(&P) -> Vec<Invariant>,
+    pub(super) values: fn(&P, &PointOf<P>) -> Vec<[f64; 2]>,
 }
 
 /// A stored step: the time up to which it is valid, the step, and its start.
@@ -203,10 +203,10 @@ impl<P: Problem, M: Method<P>> AnyOutput for Output<'_, '_, P, M> {
             }
         }
     }
-    fn invariants(&self) -> Vec<String> {
-        self.watch.as_ref().map_or_else(Vec::new, |watch| (watch.names)(&self.points.problem))
+    fn invariants(&self) -> Vec<Invariant> {
+        self.watch.as_ref().map_or_else(Vec::new, |watch| (watch.invariants)(&self.points.problem))
     }
-    fn values(&self, at: Option<Slot>) -> Vec<f64> {
+    fn values(&self, at: Option<Slot>) -> Vec<[f64; 2]> {
         let y = point(at, [&self.points.y, &self.shown, &self.search]);
         let values = |watch: &Watch<P>| (watch.values)(&self.points.problem, y);
         self.watch.as_ref().map_or_else(Vec::new, values)

@@ -266,6 +266,7 @@ impl Drive<'_> {
         for drift in &mut self.drift {
             number(each, &mut drift.start);
             number(each, &mut drift.largest);
+            number(each, &mut drift.size);
         }
     }
 

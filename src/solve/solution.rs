@@ -2,6 +2,7 @@
 
 use core::fmt;
 
+use super::drift::Drift;
 use super::stats::{RunError, Stats};
 use crate::error::Error;
 
@@ -49,20 +50,6 @@ pub struct Occurrence<Y> {
     pub y: Y,
     /// True if g rises through zero.
     pub rising: bool,
-}
-
-/// The drift of an invariant.
-#[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct Drift {
-    /// The name of the invariant.
-    pub name: String,
-    /// The value at the start.
-    pub start: f64,
-    /// The largest |value − start| at the points of the output and at the end.
-    pub largest: f64,
-    /// value − start at the end.
-    pub at_end: f64,
 }
 
 /// The result of a run.

@@ -246,7 +246,7 @@ fn a_changed_state_stays_on_its_own_orbit() {
 fn the_largest_drift_is_that_of_the_output() {
     // The invariant that is claimed is x of a turning vector: it is 1 at both ends, and −1 half way.
     let flow = Flow::of_time(So3::new(), Linear, |_: f64, v: &mut V| *v = V::z())
-        .invariant(Invariant::of_the_flow("x"), |x: &V| x[0]);
+        .invariant(Invariant::of_the_flow("x", 1), |x: &V| x[0]);
     let span = [0.0, core::f64::consts::TAU];
     let method = Rkmk::new(RK4, CCSK);
     let solve = || Solve::new(&flow, &method, span).steps(100).watch_invariants();

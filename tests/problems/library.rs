@@ -81,10 +81,12 @@ fn keeps_its_invariants<P: Invariants>(
     let names = problem.invariants();
     let values = |y: &PointOf<P>| -> Vec<ScalarOf<P>> { problem.values(y) };
     let (before, after) = (values(y), values(&flow(problem, t, steps, y)));
-    assert_eq!((names.len(), before.len()), (before.len(), after.len()));
-    for ((name, a), b) in names.iter().zip(before).zip(after) {
-        let bound = match name.origin {
-            Origin::Action => 16.0 * EPS * (steps as f64).sqrt() * a.abs().max(1.0),
+    let terms = problem.sizes(y);
+    assert_eq!([names.len(), terms.len(), after.len()], [before.len(); 3]);
+    for (((name, a), b), terms) in names.iter().zip(before).zip(after).zip(terms) {
+        let size = name.law.scale.size(a, terms);
+        let bound = match name.law.origin {
+            Origin::Action => 16.0 * EPS * (steps as f64).sqrt() * size,
             Origin::Flow => accuracy,
         };
         assert!((a - b).abs() <= bound, "{}: {a} → {b}", name.name);

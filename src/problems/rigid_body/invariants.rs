@@ -17,7 +17,7 @@ fn squares<S: Real>(m: &Vector3<S>) -> S {
 
 impl<S: Real> Invariants for RigidBody<S> {
     fn invariants(&self) -> Vec<Invariant> {
-        vec![Invariant::of_the_action("|m|²"), Invariant::of_the_flow("energy")]
+        vec![Invariant::of_the_action("|m|²", 2), Invariant::of_the_flow("energy", 2)]
     }
     fn values(&self, m: &Vector3<S>) -> Vec<S> {
         vec![squares(m), self.energy(m)]
@@ -36,7 +36,7 @@ impl<S: Real> Invariants for RigidBodyAttitude<S> {
 
 impl<S: Real> Invariants for RigidBodyState<S> {
     fn invariants(&self) -> Vec<Invariant> {
-        let space = (1..=3).map(|i| Invariant::of_the_action(format!("(gm)_{i}")));
+        let space = (1..=3).map(|i| Invariant::of_the_action(format!("(gm)_{i}"), 2).in_terms());
         self.body().invariants().into_iter().chain(space).collect()
     }
     fn values(&self, y: &BodyState<S>) -> Vec<S> {
@@ -45,14 +45,22 @@ impl<S: Real> Invariants for RigidBodyState<S> {
         values.extend(space.iter());
         values
     }
+    /// |g m| and |m| are equal, and a component may be small.
+    fn sizes(&self, y: &BodyState<S>) -> Vec<S> {
+        let mut sizes = self.body().values(&y.m);
+        let size = squares(&y.m).sqrt();
+        sizes.extend([size; 3]);
+        sizes
+    }
 }
 
 /// tr mᵏ for even k ≤ n, which are the Casimirs of so(n)* except the Pfaffian, and the energy.
 impl Invariants for RigidBodyN {
     fn invariants(&self) -> Vec<Invariant> {
         let n = self.group().n();
-        let casimirs = (2..=n).step_by(2).map(|k| Invariant::of_the_action(format!("tr m^{k}")));
-        casimirs.chain([Invariant::of_the_flow("energy")]).collect()
+        let casimirs =
+            (2..=n).step_by(2).map(|k| Invariant::of_the_action(format!("tr m^{k}"), k as u32));
+        casimirs.chain([Invariant::of_the_flow("energy", 2)]).collect()
     }
     fn values(&self, m: &Mat<f64>) -> Vec<f64> {
         let n = m.nrows();

@@ -235,12 +235,12 @@ impl<S: Surface> LiePoisson for Zeitlin<S> {
 impl<S: Surface> Invariants for Zeitlin<S> {
     fn invariants(&self) -> Vec<Invariant> {
         let mut all = vec![
-            Invariant::of_the_flow("energy"),
-            Invariant::of_the_action("enstrophy"),
-            Invariant::of_the_action("mean ω³"),
-            Invariant::of_the_action("mean ω⁴"),
+            Invariant::of_the_flow("energy", 2),
+            Invariant::of_the_action("enstrophy", 2),
+            Invariant::of_the_action("mean ω³", 3),
+            Invariant::of_the_action("mean ω⁴", 4),
         ];
-        all.extend(self.surface.momenta().iter().map(|m| Invariant::of_the_flow(*m)));
+        all.extend(self.surface.momenta().iter().map(|m| Invariant::of_the_flow(*m, 1)));
         all
     }
     fn values(&self, w: &ComplexMatrix) -> Vec<f64> {

@@ -114,9 +114,9 @@ fn a_hamiltonian_and_invariants() {
         *v = -k.component_mul(&m.component_mul(&k).map(f64::sinh));
     })
     .hamiltonian(energy)
-    .invariant(Invariant::of_the_action("|m|²"), |m| m.norm_squared());
+    .invariant(Invariant::of_the_action("|m|²", 2), |m| m.norm_squared());
 
-    let names = [Invariant::of_the_flow("energy"), Invariant::of_the_action("|m|²")];
+    let names = [Invariant::of_the_flow("energy", 0), Invariant::of_the_action("|m|²", 2)];
     assert_eq!(flow.invariants(), names);
     let m = V::new(0.3, 0.1, 1.0);
     assert_eq!(flow.values(&m), [energy(&m), m.norm_squared()]);

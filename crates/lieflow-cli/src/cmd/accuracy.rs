@@ -6,10 +6,10 @@ use std::time::{Duration, Instant};
 
 use lieflow::SaveAt;
 use lieflow::catalog::MethodSpec;
+use lieflow::problems::explained_by_rounding;
 use lieflow::solve::{Next, Status};
 use lieflow_model::problem::{Outcome, Plan, Watcher};
 use lieflow_model::scene::Scene;
-use lieflow_model::schema::explained_by_rounding;
 use lieflow_model::schema::{Observable, Part, Row};
 
 use super::apart::{

@@ -17,7 +17,7 @@ use crate::output::{Kind, Records, ShownRows};
 const NEAR: f64 = 1e-3;
 /// The part of a step over which the slope of an event is taken.
 const SLOPE: f64 = 1e-4;
-/// A zero that is known to be in an interval is found by so many halvings of that.
+/// The number of halvings that find a zero in its interval.
 const HALVINGS: u32 = 8;
 
 /// The parts of the state, with their quantities.
@@ -99,7 +99,7 @@ impl ZerosApart {
 }
 
 impl Apart {
-    /// No rows yet, and so many events.
+    /// No rows yet, and this number of events.
     fn new(watch: &Watch<'_>, events: usize) -> Self {
         let none = Largest { gap: Gap::default(), t: f64::NAN, last: Gap::default() };
         let parts = parts_of(watch).map(|_| none).collect();
@@ -214,7 +214,7 @@ fn larger(a: f64, b: f64) -> f64 {
     if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }
 }
 
-/// The rows, or the zeros, that are compared: every so many of them, and the last.
+/// The rows, or the zeros, that are compared: each `every`-th, and the last.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Choice {
     every: u64,

@@ -28,7 +28,7 @@ struct MethodEntry {
     summary: &'static str,
     #[serde(skip)]
     needs: Needs,
-    /// None where it is the tableau's, or the method exact.
+    /// None if the order is that of the tableau, or the method is exact.
     order: Option<usize>,
     /// The order in words.
     #[serde(skip)]
@@ -108,7 +108,7 @@ fn listing(scene: Option<&Scene>) -> Result<Listing, CliError> {
 struct Advice {
     want: &'static str,
     because: &'static str,
-    /// A scene is told the first that serves it.
+    /// A scene is advised the first that serves it.
     take: &'static [Take],
 }
 

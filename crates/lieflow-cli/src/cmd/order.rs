@@ -11,7 +11,7 @@ use crate::measure::{Candidate, Curve, Judge, Reference, Size};
 use crate::output::{self, print, print_json, table};
 use lieflow_model::scene::Scene;
 
-/// So many times the step is halved.
+/// The number of times that the step is halved.
 const HALVINGS: u32 = 11;
 /// A method whose runs have taken so long takes no smaller steps.
 const LONGEST: Duration = Duration::from_secs(2);

@@ -11,7 +11,7 @@ use lieflow_model::schema::Schema;
 use crate::error::CliError;
 use crate::output::{EVENTS, ROWS, TRAJECTORY, number, size};
 
-/// A run writes at most so many bytes without `--yes`.
+/// The largest number of bytes that a run writes without `--yes`.
 pub(super) const MOST: u64 = 10_000_000_000;
 /// A run that writes more bytes says so before it begins.
 const MUCH: u64 = 100_000_000;
@@ -19,7 +19,7 @@ const MUCH: u64 = 100_000_000;
 const VALUE: u64 = 22;
 /// The free bytes that a run leaves for its state, its summary and its page.
 const RESERVE: u64 = 20_000_000;
-/// The free bytes are counted again after so many bytes.
+/// The number of bytes after which the free bytes are counted again.
 const COUNTED_EVERY: u64 = 1_000_000;
 
 /// An estimate of what a run writes.
@@ -34,7 +34,7 @@ struct Estimate {
 }
 
 impl Estimate {
-    /// The estimate of so many rows with these columns besides t.
+    /// The estimate of this number of rows with these columns besides t.
     fn new(rows: u64, columns: usize, schema: &Schema) -> Self {
         let columns = columns as u64 + 1;
         let row = [VALUE * columns, 8 * (schema.numbers() as u64 + 2)];
@@ -143,7 +143,7 @@ impl Room {
     }
 }
 
-/// The free bytes on the disk of a folder that may have to be made; none where they are not known.
+/// The free bytes on the disk of a folder, which may not exist yet. None if they are not known.
 #[cfg(unix)]
 fn free(folder: &Path) -> Option<u64> {
     let there = folder.ancestors().find(|folder| folder.is_dir()).unwrap_or(Path::new("."));

@@ -241,7 +241,7 @@ pub fn run_scene(
     let mut checked = Ok(None);
     let end = rows.ends().filter(|_| completed).map(|[_, end]| end);
     if let (Some((t, _)), Some(state)) = (end, &mut kept.state) {
-        // Of a run that goes on only a part was timed.
+        // Only a part of a resumed run was timed.
         let share = ((t - begun_at) / (t - scene.grid.t_span()[0])).max(1e-3);
         let largest = done.chosen.as_ref().map_or(scene.grid.h().abs(), |c| c.largest_step);
         let taken = Taken { steps: done.steps, largest };

@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use lieflow_model::schema::explained_by_rounding;
+use lieflow::problems::explained_by_rounding;
 
 use crate::output::{self, Drift, SUMMARY, Summary, duration, number, rough};
 
-/// Drifts that are told; summary.json has all.
+/// The number of drifts in the text. summary.json has all.
 const DRIFTS: usize = 10;
 
 /// The result of a run, in lines; `page` is the name of its page, where it has one.

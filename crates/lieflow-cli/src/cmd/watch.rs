@@ -5,6 +5,7 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use lieflow::RunError;
+use lieflow::problems::Invariant;
 use lieflow::solve::{Next, Status};
 
 use super::room::Room;
@@ -67,14 +68,17 @@ impl<'a> Watch<'a> {
 
     /// The invariants of the next row, each in its turn.
     fn see(&self, t: f64, row: Row<'_>, watched: &mut Vec<Watched>) {
-        let values = self
-            .laws
-            .iter()
-            .flat_map(|law| row[law].iter().enumerate().map(move |(i, x)| (*x, row.size(law, i))));
+        let of = |&law: &&'a Observable| row[law].iter().map(move |x| (law, *x, row.terms(law)));
+        let values = self.laws.iter().flat_map(of);
         if watched.is_empty() {
-            watched.extend(values.map(|(x, size)| Watched::new(t, x, size)));
+            let columns = self.laws.iter().flat_map(|law| &law.columns);
+            let starts = columns.zip(values).filter_map(|(name, (quantity, x, terms))| {
+                Some(Watched::new(t, Invariant::new(name, quantity.law?), x, terms))
+            });
+            watched.extend(starts);
         } else {
-            watched.iter_mut().zip(values).for_each(|(watched, (x, size))| watched.see(t, x, size));
+            let rows = watched.iter_mut().zip(values);
+            rows.for_each(|(watched, (_, x, terms))| watched.see(t, x, terms));
         }
     }
 

@@ -137,7 +137,7 @@ impl Speed {
         )
     }
 
-    /// What a terminal is told.
+    /// The text for a terminal.
     pub fn in_words(&self) -> String {
         let mut text = format!("\n{}", output::wrap(&self.result(), ""));
         text += "\nThe tables have the CPU time that one unit of simulated time takes, to a relative error of \

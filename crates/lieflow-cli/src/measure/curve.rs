@@ -20,7 +20,7 @@ pub struct WorkPoint {
     pub h: f64,
     /// Evaluations of f, where they were counted.
     pub evaluations: Option<u64>,
-    /// Its operations, rejected attempts among them; none where they cannot be counted.
+    /// Its operations, with those of rejected attempts. None if they cannot be counted.
     pub operations: Option<u64>,
     /// Relative distance of the final state from the reference.
     #[serde(with = "number")]
@@ -147,7 +147,7 @@ pub struct Curve {
     pub candidate: Candidate,
     /// Its name in tables and figures.
     pub label: String,
-    /// The order it should have; none where it is exact.
+    /// The order that it should have. None if it is exact.
     pub order: Option<usize>,
     /// Smaller errors are rounding.
     pub floor: f64,
@@ -158,7 +158,7 @@ pub struct Curve {
 /// Errors outside of this range say nothing of the order: larger ones are not yet asymptotic,
 /// smaller ones are rounding.
 const ASYMPTOTIC: core::ops::Range<f64> = 1e-10..1e-2;
-/// An error is clear of the floor if it is so many times larger.
+/// An error is clear of the floor if it is larger by this factor.
 const CLEAR: f64 = 10.0;
 /// Rounding has begun where the slope falls below this part of the slope of the pair of runs before.
 const STEADY: f64 = 0.7;
@@ -228,7 +228,7 @@ impl Curve {
             seconds: between(a.seconds_per_unit, b.seconds_per_unit),
             output: b.output_per_unit(),
             h: between(a.h, b.h),
-            // Rounding makes no step of its own.
+            // Rounding adds no step.
             steps: (between(a.steps as f64, b.steps as f64) * (1.0 - 1e-9)).ceil() as u64,
             length: b.length(),
             tolerance,

@@ -1,4 +1,4 @@
-//! Points on disk as they are measured. A comparison that is interrupted goes on from them, and one with other
+//! Points on disk as they are measured. An interrupted comparison continues from them, and one with other
 //! options adds to them.
 
 use std::collections::HashMap;

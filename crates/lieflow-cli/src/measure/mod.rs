@@ -35,7 +35,7 @@ use lieflow_timing::{cpu_seconds, median};
 /// How large the steps of a run are.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Size {
-    /// So many steps of one size.
+    /// This number of steps of one size.
     Steps(u64),
     /// Steps chosen by their error: rtol, with atol = 0.
     Tolerance(f64),
@@ -200,7 +200,7 @@ impl Line<'_> {
     }
 }
 
-/// So many methods go on at a time to an error that none has reached.
+/// The number of methods that continue at a time to an error that none has reached.
 const PROMISING: usize = 6;
 
 /// Where runs are made and judged.
@@ -217,7 +217,7 @@ struct Bench<'a> {
 }
 
 impl Bench<'_> {
-    /// The next run of line i, and how long it took; none where no more are planned.
+    /// The next run of line i, and its time. None if no more are planned.
     fn next(&mut self, i: usize, line: &mut Line<'_>) -> Result<Option<f64>, CliError> {
         let Line { curve, models: Models { judged, timed, .. }, left } = line;
         let Some(size) = left.pop_front() else { return Ok(None) };

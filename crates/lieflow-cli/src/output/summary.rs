@@ -4,8 +4,9 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
+use lieflow::problems::Invariant;
+use lieflow::solve;
 use lieflow_model::scene::Defaults;
-use lieflow_model::schema::explained_by_rounding;
 use lieflow_timing::Fit;
 
 use super::{duration, number, rough};
@@ -368,55 +369,43 @@ impl Drift {
 const OF_ROWS: f64 = 100.0;
 
 /// A drift that is being watched.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Watched {
-    start: [f64; 2],
-    at_end: f64,
-    max: f64,
-    max_at_ends_of_steps: Option<f64>,
-    /// The largest size of its terms.
-    size: f64,
+    drift: solve::Drift,
+    t0: f64,
     /// t and the value, from the start.
     fit: Fit,
 }
 
 impl Watched {
     /// The value and the size of its terms at the start.
-    pub fn new(t: f64, value: f64, size: f64) -> Self {
+    pub fn new(t0: f64, invariant: Invariant, value: f64, terms: f64) -> Self {
         let fit = Fit::from_iter([(0.0, 0.0)]);
-        let (start, max_at_ends_of_steps) = ([t, value], None);
-        Watched { start, at_end: 0.0, max: 0.0, max_at_ends_of_steps, size, fit }
+        Watched { drift: solve::Drift::new(invariant, value, terms), t0, fit }
     }
 
     /// The next row.
-    pub fn see(&mut self, t: f64, value: f64, size: f64) {
-        let now = [t - self.start[0], value - self.start[1]];
-        self.at_end = now[1].abs();
-        // A value that is not a number is a drift of no size, and stays one.
-        self.max =
-            if self.at_end > self.max || self.at_end.is_nan() { self.at_end } else { self.max };
-        self.size = self.size.max(size);
-        self.fit.add((now[0], now[1]));
+    pub fn see(&mut self, t: f64, value: f64, terms: f64) {
+        self.drift.see(value, terms);
+        self.fit.add((t - self.t0, self.drift.at_end));
     }
 
     /// The end of a step that had rows within it.
     pub fn see_end_of_step(&mut self, value: f64) {
-        let moved = (value - self.start[1]).abs();
-        let before = self.max_at_ends_of_steps.unwrap_or(0.0);
-        self.max_at_ends_of_steps = Some(if moved > before { moved } else { before });
+        self.drift.see_end_of_step(value);
     }
 
     /// What was seen, by a method that took so many steps.
     pub fn drift(&self, promised: bool, steps: u64) -> Drift {
         Drift {
-            initial: self.start[1],
-            at_end: self.at_end,
-            max: self.max,
-            max_at_ends_of_steps: self.max_at_ends_of_steps,
+            initial: self.drift.start,
+            at_end: self.drift.at_end.abs(),
+            max: self.drift.largest,
+            max_at_ends_of_steps: self.drift.largest_at_ends_of_steps,
             // One row alone has no slope.
             slope: self.fit.slope().unwrap_or(0.0),
             promised,
-            rounding: explained_by_rounding(steps, self.size),
+            rounding: self.drift.explained_by_rounding(steps),
         }
     }
 }

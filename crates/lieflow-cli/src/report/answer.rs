@@ -53,7 +53,7 @@ impl<'a> Answer<'a> {
         Answer { error, verdict }
     }
 
-    /// The fastest method; none where no method reaches the error.
+    /// The fastest method. None if no method reaches the error.
     pub fn best(&self) -> Option<Found<'a>> {
         match self.verdict {
             Verdict::Fastest(best, _) => Some(best),

@@ -5,9 +5,9 @@ use crate::measure::Curve;
 use lieflow_figures::number::{DASH, seconds};
 use lieflow_figures::{Cell, Column, LINE_COLOURS, Marker, Point, Row, Series, Table};
 
-/// So many methods are shown where nobody asks for all.
+/// The number of methods that are shown by default.
 const BEST: usize = 10;
-/// So many of them are of one kind at most.
+/// The largest number of them that are of one kind.
 const OF_A_KIND: usize = 3;
 
 /// The methods of a comparison, the best first.
@@ -19,7 +19,7 @@ pub struct Best<'a> {
     pub by: f64,
     /// Those that are shown.
     pub shown: Vec<Found<'a>>,
-    /// So many methods are in the figure: the best, whatever is shown in the table.
+    /// The number of methods in the figure: the best, whatever the table shows.
     drawn_count: usize,
     /// How many methods reach the error.
     reaching: usize,

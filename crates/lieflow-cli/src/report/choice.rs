@@ -18,7 +18,7 @@ pub struct Choice<'a> {
     pub error: f64,
     /// Can the reference tell such an error from none?
     pub judged: bool,
-    /// The method and where it reaches the error; none where no method does, or nobody can tell.
+    /// The method, and where it reaches the error. None if no method does, or if that is not known.
     pub best: Option<(&'a Curve, Reached)>,
 }
 

@@ -8,7 +8,7 @@ use lieflow_figures::{Cell, Column, Table};
 /// The error of the state at which methods are compared.
 const AT: f64 = 1e-6;
 
-/// The run whose error is nearest to [`AT`]; none where no run ended.
+/// The run whose error is nearest to [`AT`]. None if no run ended.
 fn nearest(curve: &Curve) -> Option<&WorkPoint> {
     let off = |point: &WorkPoint| (point.error.max(1e-17) / AT).ln().abs();
     let ended = curve.points.iter().filter(|point| point.error.is_finite());

@@ -37,7 +37,7 @@ pub fn maps_chart(id: &str, title: &str, curves: &[Curve]) -> Option<Chart> {
     Cost::Time.chart(id, title, series, curves.first()?.floor)
 }
 
-/// Speed against error of some of the curves, each as it looks everywhere. None where there is nothing to draw.
+/// Speed against error of some of the curves, each as it looks everywhere. None if there is nothing to draw.
 pub fn speed_chart(
     id: &str,
     title: &str,

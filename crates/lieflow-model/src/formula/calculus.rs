@@ -17,7 +17,7 @@
 use super::functions::{Function, Operator};
 use super::tape::{Builder, Op, TIME, Tape};
 
-/// The derivative; none where it is too long.
+/// The derivative. None if it has too many operations.
 pub(super) fn derivative(tape: &Tape, variable: usize) -> Option<Tape> {
     if !tape.uses(variable) {
         let mut build = Builder::default();

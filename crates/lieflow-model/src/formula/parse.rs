@@ -27,7 +27,7 @@ pub(super) struct Mistake {
     pub(super) help: Option<String>,
 }
 
-/// Parentheses, signs and powers within each other, at most: each is a call of its own.
+/// The largest depth of parentheses, signs and powers. Each level is one call.
 const NESTING_MAX: usize = 64;
 
 /// Longer texts are not formulas.

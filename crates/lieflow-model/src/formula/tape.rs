@@ -203,7 +203,7 @@ impl Builder {
         }
     }
 
-    /// What `root` needs, and no more; none where it is too long.
+    /// The operations that `root` needs, and no others. None if they are too many.
     pub(super) fn finish(&self, root: usize) -> Option<Tape> {
         let mut needed = vec![false; root + 1];
         needed[root] = true;

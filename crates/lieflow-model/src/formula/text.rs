@@ -39,7 +39,7 @@ impl Texts {
         }
     }
 
-    /// The formulas of so many components.
+    /// The formulas of this number of components.
     ///
     /// # Errors
     /// As [`Formula::read`], and a refusal of `key` for another number of them.

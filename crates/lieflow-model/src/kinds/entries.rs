@@ -32,7 +32,7 @@ pub(super) fn check_rows(key: &str, x: &Mat<f64>, n: usize) -> Result<(), Refusa
     }
 }
 
-/// The n of n×n matrices that have so many entries above the diagonal, n(n − 1)/2.
+/// The n of n×n matrices with this number of entries above the diagonal, n(n − 1)/2.
 pub(super) fn side_of(count: usize) -> Option<usize> {
     (2..).take_while(|n| n * (n - 1) / 2 <= count).find(|n| n * (n - 1) / 2 == count)
 }

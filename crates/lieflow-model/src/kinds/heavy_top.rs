@@ -9,7 +9,7 @@ use core::fmt::Debug;
 use core::marker::PhantomData;
 
 use lieflow::actions::Coadjoint;
-use lieflow::problems::{Exact, HeavyTop, Invariants, TorqueBody};
+use lieflow::problems::{Exact, HeavyTop, TorqueBody};
 use lieflow::scalar::{Counted, Trig};
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
@@ -125,7 +125,7 @@ trait Representation: Clone + Debug + Send + Sync + 'static {
     /// The momentum about the vertical.
     fn about_vertical(top: &HeavyTop, y: &Point<Self>) -> f64 {
         let Pose { mu, gamma, .. } = Self::pose(y);
-        top.problem().values(&(mu, gamma))[2]
+        top.casimirs(&(mu, gamma))[1]
     }
 }
 
@@ -222,14 +222,15 @@ impl TopSpec {
 }
 
 impl<R: Representation> Top<R> {
-    fn invariant(&self, y: &PointOf<Self>, i: usize) -> f64 {
+    /// μ and γ.
+    fn momentum_and_vertical(y: &PointOf<Self>) -> (Vector3<f64>, Vector3<f64>) {
         let Pose { mu, gamma, .. } = R::pose(y);
-        self.spec.top.problem().values(&(mu, gamma))[i]
+        (mu, gamma)
     }
     /// Why there is no fourth integral.
     fn without_integral(&self) -> Option<&'static str> {
         const NONE: &str = "only Euler's, Lagrange's and Kovalevskaya's top have a fourth integral";
-        (self.spec.top.problem().invariants().len() <= 3).then_some(NONE)
+        (!self.spec.top.is_integrable()).then_some(NONE)
     }
 }
 
@@ -273,14 +274,16 @@ impl<R: Representation> System for Top<R> {
         axis(),
         momentum_space(),
         omega_space(),
-        Q::number("energy", "kinetic and potential energy", |top, _, y| top.invariant(y, 0))
-            .kept(R::LAWS[0])
-            .in_terms(|top, y| {
-                let Pose { mu, gamma, .. } = R::pose(y);
-                mu.dot(&top.spec.top.omega(&mu)) + top.spec.weight.norm() * gamma.norm()
-            }),
+        Q::number("energy", "kinetic and potential energy", |top, _, y| {
+            top.spec.top.energy(&Top::<R>::momentum_and_vertical(y))
+        })
+        .kept(R::LAWS[0])
+        .in_terms(|top, y| {
+            let Pose { mu, gamma, .. } = R::pose(y);
+            mu.dot(&top.spec.top.omega(&mu)) + top.spec.weight.norm() * gamma.norm()
+        }),
         Q::number("vertical_norm2", "square of the length of the vertical", |top, _, y| {
-            top.invariant(y, 1)
+            top.spec.top.casimirs(&Top::<R>::momentum_and_vertical(y))[0]
         })
         .kept(R::LAWS[1]),
         Q::number("momentum_vertical", "angular momentum about the vertical", |top, _, y| {
@@ -294,7 +297,10 @@ impl<R: Representation> System for Top<R> {
         Q::number(
             "integral",
             "the fourth integral of Euler's, Lagrange's and Kovalevskaya's top; others have none",
-            |top, _, y| top.invariant(y, 3),
+            |top, _, y| {
+                let integral = top.spec.top.fourth_integral(&Top::<R>::momentum_and_vertical(y));
+                integral.unwrap_or(f64::NAN)
+            },
         )
         .kept(Law::by_the_flow(0))
         .missing_where(Self::without_integral),

@@ -23,7 +23,7 @@ pub(crate) struct Asked<'a> {
 
 /// A problem in one form, on which any method runs. Quantities are numbered as in the list of the kind.
 pub(crate) trait Run: Debug + Send + Sync {
-    /// Why the form lacks a quantity; none where it has the quantity.
+    /// The reason why the form lacks a quantity. None if it has the quantity.
     fn missing(&self, quantity: usize) -> Option<&'static str>;
     /// The names of the columns of a quantity.
     fn columns(&self, quantity: usize) -> Vec<String>;

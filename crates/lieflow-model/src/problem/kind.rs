@@ -46,8 +46,8 @@ pub struct KeyInfo {
 pub struct QuantityInfo {
     /// Its name in scene files.
     pub name: &'static str,
-    /// Its columns; none where it has one of its own name; with an `…` between the first and the last where
-    /// the size of the problem says how many there are.
+    /// The names of its columns. Empty: one column with the quantity's name. An `…` between the first and the last: the size
+    /// of the problem decides how many there are.
     pub columns: &'static [&'static str],
     /// What it means.
     pub meaning: &'static str,
@@ -119,7 +119,7 @@ impl Figure {
     }
 }
 
-/// A run has at most so many times at which a step must end.
+/// The largest number of times at which a step of a run must end.
 pub const KNOTS_MAX: usize = 1_000_000;
 
 /// The method for any problem that names none: of order 8, with a pair, and on the group.

@@ -406,7 +406,7 @@ impl Model {
         self.form(method).orders(method)
     }
 
-    /// The order of a method on this problem; none where it is exact.
+    /// The order of a method on this problem. None if the method is exact.
     ///
     /// # Errors
     /// As [`orders`](Self::orders).

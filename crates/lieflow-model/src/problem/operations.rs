@@ -11,17 +11,16 @@ use lieflow::{Integrator, Solve, Stats, Step, TimeGrid};
 
 use super::run::{Runnable, Steps};
 
-/// So many steps of a run are counted, attempts that are rejected among them; a longer run is charged
-/// their mean for each of its steps.
+/// The number of steps of a run that are counted, with rejected attempts. A longer run has their mean for each of its
+/// steps.
 pub const COUNTED_STEPS: u64 = 256;
-/// Steps that take so many operations together are enough of them: large problems need few.
+/// The number of operations that is enough, because large problems need few steps.
 const COUNTED_OPERATIONS: u64 = 2_000_000;
-/// But these many at least.
+/// The least number of steps that are counted.
 const COUNTED_AT_LEAST: u64 = 8;
 
-/// The mean operations of a step of `problem` from `y`, over the first of the run: see
-/// [`Model::operations`](super::Model::operations). None where nothing is counted, as of the
-/// exact motion, or the method fails.
+/// The mean number of operations of a step of `problem` from `y`, over the first steps of the run: see
+/// [`Model::operations`](super::Model::operations). None if nothing is counted (the exact motion), or if the method fails.
 pub(crate) fn operations_by<P: Runnable>(
     spec: &MethodSpec,
     problem: &P,
@@ -57,17 +56,17 @@ fn counted<P: Runnable>(
     }
 }
 
-/// Are so many steps with so many operations enough?
+/// True if these steps with these operations are enough.
 fn enough(steps: u64, operations: u64) -> bool {
     steps >= COUNTED_STEPS || (steps >= COUNTED_AT_LEAST && operations > COUNTED_OPERATIONS)
 }
 
-/// Operations of a step; none where nothing was counted.
+/// The operations of a step. None if nothing was counted.
 fn mean(steps: u64, operations: u64) -> Option<f64> {
     (steps > 0 && operations > 0).then(|| operations as f64 / steps as f64)
 }
 
-/// Of the method alone: what the driver does now and then is not counted.
+/// The operations of the method. Those of the driver between steps are not counted.
 fn of_equal_steps<P: Runnable>(
     problem: &P,
     method: &AnyMethod<'static, P>,
@@ -86,7 +85,7 @@ fn of_equal_steps<P: Runnable>(
     mean(n, operations)
 }
 
-/// Of the attempts of a run.
+/// The operations of the attempts of a run.
 fn of_a_run<P: Runnable>(mut run: Integrator<'_, P, AnyMethod<'static, P>>) -> Option<f64> {
     let attempts = |stats: Stats| stats.accepted + stats.rejected;
     let mut operations = 0;

@@ -28,12 +28,12 @@ pub(crate) enum Value<S: System> {
     Numbers(fn(&S, f64, &PointOf<S>, &mut Vec<f64>)),
 }
 
-/// So many columns from one on, as a part.
+/// A part of `columns` columns, from the column `first` on.
 pub(crate) fn part(name: &str, first: usize, columns: usize, measure: Measure) -> Part {
     Part { name: name.into(), what: "", columns: first..first + columns, measure }
 }
 
-/// Which problems keep a quantity.
+/// The problems that conserve a quantity.
 enum Keepers<S> {
     None,
     All(Law),
@@ -45,16 +45,16 @@ pub(crate) struct Quantity<S: System> {
     pub(crate) info: QuantityInfo,
     pub(crate) value: Value<S>,
     columns: Columns<S>,
-    /// Its parts, where it is not one of a length.
+    /// Its parts. None: one part, whose error is a length.
     pub(crate) parts: Option<fn(&S) -> Vec<Part>>,
-    /// What a run of this problem chooses so that the columns are continuous.
+    /// The choice that makes the columns of a run continuous.
     pub(crate) branch: fn(&S) -> Branch,
     law: Keepers<S>,
-    /// The size of the terms that the quantity is the sum of.
+    /// The size of the terms, if the quantity is a sum.
     pub(crate) terms: Option<fn(&S, &PointOf<S>) -> f64>,
-    /// Does a value that is not finite end the run?
+    /// True if a value that is not finite ends the run.
     pub(crate) is_state: bool,
-    /// Why this problem has no such quantity.
+    /// The reason why this problem lacks the quantity.
     pub(crate) missing: fn(&S) -> Option<&'static str>,
 }
 
@@ -118,7 +118,7 @@ impl<S: System> Quantity<S> {
         self.in_parts(|_| vec![part("", 0, 4, Measure::Quaternion)])
     }
 
-    /// The error of each of these parts is told.
+    /// A run reports the error of each of these parts.
     pub(crate) const fn in_parts(self, parts: fn(&S) -> Vec<Part>) -> Self {
         Quantity { parts: Some(parts), ..self }
     }
@@ -128,27 +128,27 @@ impl<S: System> Quantity<S> {
         Quantity { branch, ..self }
     }
 
-    /// Every problem of the kind keeps the quantity.
+    /// Every problem of the kind conserves the quantity.
     pub(crate) const fn kept(self, law: Law) -> Self {
         Quantity { law: Keepers::All(law), ..self }
     }
 
-    /// Some problems of the kind keep the quantity, or each by a law of its own.
+    /// Some problems of the kind conserve the quantity, or each has a different law.
     pub(crate) const fn kept_where(self, law: fn(&S) -> Option<Law>) -> Self {
         Quantity { law: Keepers::Where(law), ..self }
     }
 
-    /// The quantity is a sum of terms of this size, which may cancel: its rounding is measured in that.
+    /// The quantity is a sum of terms of this size, which may cancel. Its rounding is relative to that size.
     pub(crate) const fn in_terms(self, terms: fn(&S, &PointOf<S>) -> f64) -> Self {
         Quantity { terms: Some(terms), ..self }
     }
 
-    /// The quantity is a state that the user started: a value that is not finite ends the run.
+    /// The quantity is part of the state. A value that is not finite ends the run.
     pub(crate) const fn of_state(self) -> Self {
         Quantity { is_state: true, ..self }
     }
 
-    /// Some problems have no such quantity: this says why.
+    /// The reason why a problem lacks the quantity. None if it has the quantity.
     pub(crate) const fn missing_where(self, missing: fn(&S) -> Option<&'static str>) -> Self {
         Quantity { missing, ..self }
     }

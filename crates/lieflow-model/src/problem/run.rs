@@ -1,4 +1,4 @@
-//! Runs of a problem of any type: what is asked of a run, and what it tells.
+//! Runs of a problem of any type: their arguments and their results.
 
 use core::cell::RefCell;
 use core::fmt::{self, Debug};
@@ -228,7 +228,7 @@ pub trait Watcher {
     fn event(&mut self, _event: usize, _t: f64, _rising: bool, _row: Row<'_>) {}
     /// The end of a step that had rows within it, after these.
     fn end_of_step(&mut self, _t: f64, _row: Row<'_>) {}
-    /// The time that the run has reached; told now and then.
+    /// The time that the run has reached. Called now and then.
     fn progress(&mut self, _t: f64) {}
     /// The state, to go on from.
     fn state(&mut self, _bytes: &[u8]) {}

@@ -1,11 +1,10 @@
 //! The rows of a run: values with the names of their quantities.
 
 mod branch;
-mod law;
 
 pub use branch::Branch;
 pub(crate) use branch::Branches;
-pub use law::{Law, Scale, explained_by_rounding};
+pub use lieflow::problems::{Law, Scale};
 
 use core::ops::{Index, Range};
 
@@ -170,7 +169,7 @@ impl Schema {
         }
     }
 
-    /// The first so many observables alone.
+    /// The schema of the first `count` observables.
     pub(crate) fn first(&self, count: usize) -> Schema {
         let observables = self.observables[..count].to_vec();
         let width = observables.last().map_or(0, |last| last.place.end);
@@ -272,14 +271,14 @@ impl<'a> Row<'a> {
     /// The size that the rounding of the column `i` is relative to, by the scale of the law; NaN for
     /// a sum of terms in a row without their sizes.
     pub fn size(self, observable: &Observable, i: usize) -> f64 {
-        match observable.law.map(|law| law.scale) {
-            Some(Scale::One) => 1.0,
-            Some(Scale::Terms) => {
-                let place = observable.size.map(|size| self.schema.width + size);
-                place.and_then(|place| self.numbers.get(place)).copied().unwrap_or(f64::NAN)
-            }
-            Some(Scale::Value) | None => self[observable][i].abs(),
-        }
+        let scale = observable.law.map_or(Scale::Value, |law| law.scale);
+        scale.size(self[observable][i], self.terms(observable))
+    }
+
+    /// The size of the terms of a quantity; NaN without terms, and in a row without their sizes.
+    pub fn terms(self, observable: &Observable) -> f64 {
+        let place = observable.size.map(|size| self.schema.width + size);
+        place.and_then(|place| self.numbers.get(place)).copied().unwrap_or(f64::NAN)
     }
 
     /// The values, and the sizes of terms after them: what [`Schema::row`] makes a row of.
