@@ -89,10 +89,6 @@ impl Chain {
             false => OnSpheres::lie_poisson(chain, Linear),
         })
     }
-    /// A law of the chain without damping.
-    fn undamped(&self, law: Law) -> Option<Law> {
-        (!self.damped).then_some(law)
-    }
     /// The size of the terms of sums over the chain: each spin has an energy of some units.
     fn size(&self, s: &[Vector3<f64>]) -> f64 {
         sum_of_squares(s) * (1.0 + self.field.norm())
@@ -125,16 +121,13 @@ impl System for Chain {
             row.extend((sum(s) / s.len() as f64).iter());
         }),
         Q::number("energy", "energy", |chain, _, s| chain.chain.energy(s))
-            .kept_where(|chain| chain.undamped(Law::by_the_flow(2)))
+            .kept_where(|chain| law_of(&chain.chain, "energy"))
             .in_terms(|chain, s| chain.size(s)),
         Q::number("total_spin3", "sum of the third components", |_, _, s| sum(s)[2])
-            .kept_where(|chain| {
-                let along = chain.field[0] == 0.0 && chain.field[1] == 0.0;
-                chain.undamped(Law::by_the_flow(1)).filter(|_| along)
-            })
+            .kept_where(|chain| law_of(&chain.chain, "Σ(s_i)₃"))
             .in_terms(|chain, s| chain.size(s)),
         Q::number("lengths2", "sum of the squares of the lengths", |_, _, s| sum_of_squares(s))
-            .kept(Law::by_the_action(2)),
+            .kept_where(|chain| law_of(&chain.chain, "Σ|s_i|²")),
     ];
 
     fn layer(&self) -> Layer {

@@ -1,6 +1,8 @@
 //! What can be asked of a problem: every quantity is stated once, with its columns, its meaning, its value and
 //! the law that it obeys.
 
+use lieflow::problems::Invariants;
+
 use super::kind::QuantityInfo;
 use super::system::{PointOf, System};
 use crate::schema::{Branch, Law, Measure, Part, Scale};
@@ -18,6 +20,12 @@ enum Columns<S> {
     Named(fn(&S) -> Vec<String>),
     /// The entries of a matrix, row by row: a letter, and how many rows and columns it has.
     Matrix(&'static str, fn(&S) -> [usize; 2]),
+}
+
+/// The law of an invariant of the library's problem. None if this problem does not have the invariant.
+pub(crate) fn law_of(problem: &impl Invariants, invariant: &str) -> Option<Law> {
+    let mut all = problem.invariants().into_iter();
+    all.find(|known| known.name == invariant).map(|known| known.law)
 }
 
 /// The value of a quantity at y, a time `t` after the start.

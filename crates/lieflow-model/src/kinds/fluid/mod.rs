@@ -106,11 +106,11 @@ impl System for Fluid {
         )
         .with_columns(|fluid| fluid.fluid.surface().coefficient_names()),
         Q::number("energy", "kinetic energy", |fluid, _, w| fluid.fluid.energy(w))
-            .kept(Law::by_the_flow(2)),
+            .kept_where(|fluid| law_of(&fluid.fluid, "energy")),
         Q::number("enstrophy", "half the mean of the vorticity's square", |fluid, _, w| {
             fluid.fluid.enstrophy(w)
         })
-        .kept(Law::by_the_action(2)),
+        .kept_where(|fluid| law_of(&fluid.fluid, "enstrophy")),
         Q::numbers(
             "levels",
             &["level1", "…", "levelN"],
