@@ -5,6 +5,7 @@ use std::sync::atomic::AtomicBool;
 
 use crate::support::Folder;
 use lieflow::catalog::{MethodSpec, all_methods};
+use lieflow::problems::{Invariant, Law};
 use lieflow_cli::args::ErrorCheck;
 use lieflow_cli::cmd::run::{Options, run_scene};
 use lieflow_cli::output::{Drift, Watched};
@@ -225,9 +226,13 @@ fn a_run_states_what_was_modelled_and_draws_it() {
     assert_eq!(folder.json("out/summary.json")["warnings"].as_array().unwrap().len(), 1);
 }
 
+fn energy() -> Invariant {
+    Invariant::new("energy", Law::by_the_flow(2))
+}
+
 #[test]
 fn the_slope_of_a_drift_is_that_of_the_line() {
-    let mut watched = Watched::new(2.0, 5.0, 5.0);
+    let mut watched = Watched::new(2.0, energy(), 5.0, 5.0);
     for i in 1..100 {
         let t = 2.0 + 0.1 * f64::from(i);
         let wave = if i % 2 == 0 { 1e-3 } else { -1e-3 };
@@ -237,13 +242,13 @@ fn the_slope_of_a_drift_is_that_of_the_line() {
     assert!((drift.slope + 0.25).abs() < 1e-4, "{drift:?}");
     assert!((drift.at_end - 0.25 * 9.9).abs() < 2e-3 && drift.max >= drift.at_end);
     assert!(drift.breaks_a_promise() && !Drift { promised: false, ..drift }.breaks_a_promise());
-    let still = Watched::new(0.0, 1.0, 1.0).drift(true, 0);
+    let still = Watched::new(0.0, energy(), 1.0, 1.0).drift(true, 0);
     assert_eq!((still.max, still.slope, still.breaks_a_promise()), (0.0, 0.0, false));
 }
 
 #[test]
 fn what_is_not_a_number_is_no_promise_kept() {
-    let mut watched = Watched::new(0.0, 1.0, 1.0);
+    let mut watched = Watched::new(0.0, energy(), 1.0, 1.0);
     watched.see(1.0, f64::NAN, 1.0);
     watched.see(2.0, 1.0, 1.0);
     assert!(watched.drift(true, 2).breaks_a_promise());

@@ -262,9 +262,9 @@ impl System for Driven {
     fn problem(&self) -> Result<Start<flow::Driven>, Error> {
         Ok((on(&self.body, &self.torques), self.start))
     }
-    fn operations(&self, method: &MethodSpec, steps: &Steps) -> Option<f64> {
+    fn counted(&self) -> Option<Counting> {
         let start = (self.start.0.map(Counted), self.start.1.map(Counted));
-        operations_of(&on(&self.body, &self.torques), start, method, steps)
+        counting(on(&self.body, &self.torques), start)
     }
     fn check_start(&self, t0: f64) -> Vec<Refusal> {
         let at = variables(&self.torques.in_scene(&self.body.motion(t0, &self.start)));

@@ -113,13 +113,8 @@ trait Representation: Clone + Debug + Send + Sync + 'static {
     fn problem(spec: &TopSpec) -> Result<Self::Problem, Error>;
     /// The point at this attitude, momentum and vertical, the latter two in the body.
     fn point(g: Matrix3<f64>, mu: Vector3<f64>, gamma: Vector3<f64>) -> Point<Self>;
-    /// See [`System::operations`].
-    fn operations(
-        spec: &TopSpec,
-        start: Point<Self>,
-        method: &MethodSpec,
-        steps: &Steps,
-    ) -> Option<f64>;
+    /// See [`System::counted`].
+    fn counted(spec: &TopSpec, start: Point<Self>) -> Option<Counting>;
     /// The pose of a point.
     fn pose(y: &Point<Self>) -> Pose;
     /// The momentum about the vertical.
@@ -148,15 +143,10 @@ impl Representation for MomentumAndVertical {
     fn point(_: Matrix3<f64>, mu: Vector3<f64>, gamma: Vector3<f64>) -> Point<Self> {
         (mu, gamma)
     }
-    fn operations(
-        spec: &TopSpec,
-        (mu, gamma): Point<Self>,
-        method: &MethodSpec,
-        steps: &Steps,
-    ) -> Option<f64> {
+    fn counted(spec: &TopSpec, (mu, gamma): Point<Self>) -> Option<Counting> {
         let top = HeavyTop::<Counted>::new(spec.body.inertia, spec.weight.into()).ok()?;
         let (top, start) = (top.problem(), (mu.map(Counted), gamma.map(Counted)));
-        operations_of(&OnSe3::lie_poisson(top, Coadjoint), start, method, steps)
+        counting(OnSe3::lie_poisson(top, Coadjoint), start)
     }
     fn pose(&(mu, gamma): &Point<Self>) -> Pose {
         Pose { mu, gamma, orientation: Orientation::NotModelled }
@@ -180,14 +170,9 @@ impl Representation for WithAttitude {
     fn point(g: Matrix3<f64>, mu: Vector3<f64>, _: Vector3<f64>) -> Point<Self> {
         (g, (g * mu))
     }
-    fn operations(
-        spec: &TopSpec,
-        (g, m): Point<Self>,
-        method: &MethodSpec,
-        steps: &Steps,
-    ) -> Option<f64> {
+    fn counted(spec: &TopSpec, (g, m): Point<Self>) -> Option<Counting> {
         let counted = under_gravity::<Counted>(spec).ok()?;
-        operations_of(&counted, (g.map(Counted), m.map(Counted)), method, steps)
+        counting(counted, (g.map(Counted), m.map(Counted)))
     }
     fn pose((g, m): &Point<Self>) -> Pose {
         let gamma = g.row(2).transpose();
@@ -317,9 +302,9 @@ impl<R: Representation> System for Top<R> {
         let start = R::point(body.attitude, body.momentum_body.into(), *vertical);
         Ok((R::problem(&self.spec)?, start))
     }
-    fn operations(&self, method: &MethodSpec, steps: &Steps) -> Option<f64> {
+    fn counted(&self) -> Option<Counting> {
         let (_, start) = self.problem().ok()?;
-        R::operations(&self.spec, start, method, steps)
+        R::counted(&self.spec, start)
     }
     fn modelled(&self) -> String {
         R::MODELLED.into()

@@ -86,10 +86,10 @@ impl System for Pendulum {
     fn problem(&self) -> Result<Start<OnSe3>, Error> {
         Ok((OnSe3::lie_poisson(self.pendulum, Coadjoint), self.start))
     }
-    fn operations(&self, method: &MethodSpec, steps: &Steps) -> Option<f64> {
+    fn counted(&self) -> Option<Counting> {
         let counted = OnSe3::lie_poisson(self.pendulum.on::<Counted>(), Coadjoint);
         let start = (self.start.0.map(Counted), self.start.1.map(Counted));
-        operations_of(&counted, start, method, steps)
+        counting(counted, start)
     }
     fn modelled(&self) -> String {
         "angular velocity and direction on an orbit of SE(3)".into()

@@ -2,11 +2,10 @@
 
 pub(super) use faer::Mat;
 pub(super) use lieflow::Error;
-pub(super) use lieflow::catalog::MethodSpec;
 
 pub(super) use crate::problem::{
-    Fact, Figure, Forms, Kind, Layer, PrincipalInertia, Quantity, Start, Steps, System,
-    formula_keys, keys, law_of, operations_by, operations_of, sample_keys,
+    Counting, Fact, Figure, Forms, Kind, Layer, PrincipalInertia, Quantity, Start, System,
+    counting, formula_keys, keys, law_of, sample_keys,
 };
 pub(super) use crate::reader::values::{List, Real, Reals, Table, Whole};
 pub(super) use crate::reader::{

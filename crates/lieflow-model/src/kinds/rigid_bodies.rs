@@ -116,9 +116,9 @@ impl System for Bodies {
     fn problem(&self) -> Result<Start<OnSpheres>, Error> {
         Ok((self.on()?, self.start.clone()))
     }
-    fn operations(&self, method: &MethodSpec, steps: &Steps) -> Option<f64> {
+    fn counted(&self) -> Option<Counting> {
         let start = self.start.iter().map(|m| m.map(Counted)).collect();
-        operations_of(&self.on().ok()?, start, method, steps)
+        counting(self.on().ok()?, start)
     }
     fn modelled(&self) -> String {
         format!("momenta of {} bodies", self.bodies.len())

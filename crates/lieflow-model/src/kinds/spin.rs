@@ -69,8 +69,8 @@ impl System for Spin {
     fn problem(&self) -> Result<Start<OnSphere>, Error> {
         Ok((self.on(), self.moment))
     }
-    fn operations(&self, method: &MethodSpec, steps: &Steps) -> Option<f64> {
-        operations_of(&self.on(), self.moment.map(Counted), method, steps)
+    fn counted(&self) -> Option<Counting> {
+        counting(self.on(), self.moment.map(Counted))
     }
     fn modelled(&self) -> String {
         "moment on the sphere".into()

@@ -136,9 +136,9 @@ impl System for Chain {
     fn problem(&self) -> Result<Start<OnSpheres>, Error> {
         Ok((self.on()?, self.start.clone()))
     }
-    fn operations(&self, method: &MethodSpec, steps: &Steps) -> Option<f64> {
+    fn counted(&self) -> Option<Counting> {
         let start = self.start.iter().map(|s| s.map(Counted)).collect();
-        operations_of(&self.on().ok()?, start, method, steps)
+        counting(self.on().ok()?, start)
     }
     fn modelled(&self) -> String {
         format!("{} spins on spheres", self.start.len())

@@ -17,7 +17,7 @@ pub(crate) use keys::*;
 pub use kind::*;
 pub use model::{Model, Problem};
 pub use operations::COUNTED_STEPS;
-pub(crate) use operations::{operations_by, operations_of};
+pub(crate) use operations::{Counting, counting};
 pub(crate) use quantity::*;
 pub use run::*;
 pub use stepper::Stepper;

@@ -30,14 +30,28 @@ pub(crate) fn operations_by<P: Runnable>(
     counted(&problem.method(spec).ok()?, problem, y, steps)
 }
 
-/// The same for a problem on numbers that count.
-pub(crate) fn operations_of<P: Runnable + CountingMethods>(
-    problem: &P,
-    y: PointOf<P>,
-    spec: &MethodSpec,
-    steps: &Steps,
-) -> Option<f64> {
-    counted(&problem.counting_method(spec).ok()?, problem, y, steps)
+/// A problem on numbers that count operations, ready to run from its start.
+pub(crate) struct Counting(Box<Operations>);
+
+/// The mean number of operations of a step.
+type Operations = dyn FnOnce(&MethodSpec, &Steps) -> Option<f64>;
+
+/// The problem on numbers that count, and y(t₀).
+pub(crate) fn counting<P>(problem: P, y: PointOf<P>) -> Option<Counting>
+where
+    P: Runnable + CountingMethods,
+    PointOf<P>: 'static,
+{
+    Some(Counting(Box::new(move |spec, steps| {
+        counted(&problem.counting_method(spec).ok()?, &problem, y, steps)
+    })))
+}
+
+impl Counting {
+    /// The mean number of operations of a step, as of [`operations_by`].
+    pub(crate) fn operations(self, spec: &MethodSpec, steps: &Steps) -> Option<f64> {
+        (self.0)(spec, steps)
+    }
 }
 
 fn counted<P: Runnable>(

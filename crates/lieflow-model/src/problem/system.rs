@@ -8,7 +8,7 @@ use lieflow::{Error, RunError};
 
 use super::forms::{Asked, Form, Forms, Run};
 use super::kind::{Fact, Figure, PrincipalInertia, high_order};
-use super::operations::operations_by;
+use super::operations::{Counting, operations_by};
 use super::quantity::{Quantity, Value};
 use super::run::{
     Layer, Orders, Outcome, Plan, RowCurve, RowsOf, Runnable, SharedRowOf, Steps, Watcher,
@@ -47,11 +47,10 @@ pub(crate) trait System: Clone + Debug + Send + Sync + 'static {
     fn problem(&self) -> Result<Start<Self::Problem>, Error>;
     /// What is integrated, in words.
     fn modelled(&self) -> String;
-    /// The operations of a step: see [`Model::operations`](super::Model::operations). A problem of matrices reports what it
-    /// computes. One of vectors runs on numbers that count, by [`operations_of`](super::operations_of).
-    fn operations(&self, method: &MethodSpec, steps: &Steps) -> Option<f64> {
-        let (problem, start) = self.problem().ok()?;
-        operations_by(method, &problem, start, steps)
+    /// The problem of a kind on vectors, on numbers that count operations. None for a kind on matrices: they report their
+    /// operations on `f64`.
+    fn counted(&self) -> Option<Counting> {
+        None
     }
     /// See [`Problem::check_start`](super::Problem::check_start).
     fn check_start(&self, _t0: f64) -> Vec<Refusal> {
@@ -259,7 +258,11 @@ impl<S: System> Run for On<S> {
         fits_by(method, &**problem, start)
     }
     fn operations(&self, method: &MethodSpec, steps: &Steps) -> Option<f64> {
-        self.system.operations(method, steps)
+        if let Some(counting) = self.system.counted() {
+            return counting.operations(method, steps);
+        }
+        let (problem, start) = self.ready().ok()?;
+        operations_by(method, &**problem, start.clone(), steps)
     }
     fn check_start(&self, t0: f64) -> Vec<Refusal> {
         self.system.check_start(t0)

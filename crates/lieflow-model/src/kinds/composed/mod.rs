@@ -295,13 +295,13 @@ impl System for Composed {
         let coupled = Coupled::new(self.parts.clone(), &self.start)?;
         Ok((flow::Composed::new(coupled, ON_PARTS), self.start.clone()))
     }
-    fn operations(&self, method: &MethodSpec, steps: &Steps) -> Option<f64> {
+    fn counted(&self) -> Option<Counting> {
         let (vectors, (rotations, numbers)) = &self.start;
         let vectors = vectors.iter().map(|x| x.map(Counted)).collect();
         let rotations = rotations.iter().map(|g| g.map(Counted)).collect();
         let start = (vectors, (rotations, numbers.iter().map(|&x| Counted(x)).collect()));
         let coupled = Coupled::new(self.parts.clone(), &start).ok()?;
-        operations_of(&flow::Composed::new(coupled, ON_PARTS), start, method, steps)
+        counting(flow::Composed::new(coupled, ON_PARTS), start)
     }
     fn check_start(&self, t0: f64) -> Vec<Refusal> {
         let mut at = vec![t0];

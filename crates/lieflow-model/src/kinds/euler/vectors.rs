@@ -180,9 +180,9 @@ impl System for Vectors<3> {
     fn problem(&self) -> Result<Start<OnSpheres>, Error> {
         Ok((self.on()?, Box::new([self.momentum.into()])))
     }
-    fn operations(&self, method: &MethodSpec, steps: &Steps) -> Option<f64> {
+    fn counted(&self) -> Option<Counting> {
         let start = Box::new([Vector3::from(self.momentum).map(Counted)]);
-        operations_of(&self.on().ok()?, start, method, steps)
+        counting(self.on().ok()?, start)
     }
     fn check_start(&self, _: f64) -> Vec<Refusal> {
         self.energy.check(&self.momentum)
@@ -210,9 +210,9 @@ impl System for Vectors<6> {
     fn problem(&self) -> Result<Start<OnSe3>, Error> {
         Ok((self.on(), self.start()))
     }
-    fn operations(&self, method: &MethodSpec, steps: &Steps) -> Option<f64> {
+    fn counted(&self) -> Option<Counting> {
         let (m, p) = self.start();
-        operations_of(&self.on(), (m.map(Counted), p.map(Counted)), method, steps)
+        counting(self.on(), (m.map(Counted), p.map(Counted)))
     }
     fn check_start(&self, _: f64) -> Vec<Refusal> {
         self.energy.check(&self.momentum)

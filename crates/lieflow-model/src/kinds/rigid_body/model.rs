@@ -54,15 +54,9 @@ pub(super) trait Representation: Clone + Debug + Send + Sync + 'static {
     fn point(pose: &Pose) -> Result<Point<Self>, Error>;
     /// The pose of a point.
     fn pose(problem: &Self::Problem, y: &Point<Self>) -> Pose;
-    /// See [`System::operations`].
-    fn operations(
-        spec: &RigidBodySpec,
-        start: Point<Self>,
-        method: &MethodSpec,
-        steps: &Steps,
-    ) -> Option<f64> {
-        let problem = Self::problem(spec).ok()?;
-        operations_by(method, &problem, start, steps)
+    /// See [`System::counted`].
+    fn counted(_spec: &RigidBodySpec, _start: Point<Self>) -> Option<Counting> {
+        None
     }
 }
 
@@ -91,14 +85,9 @@ impl Representation for MomentumOnly {
     fn point(pose: &Pose) -> Result<Vector3<f64>, Error> {
         Ok(pose.m)
     }
-    fn operations(
-        spec: &RigidBodySpec,
-        start: Point<Self>,
-        method: &MethodSpec,
-        steps: &Steps,
-    ) -> Option<f64> {
+    fn counted(spec: &RigidBodySpec, start: Point<Self>) -> Option<Counting> {
         let body = RigidBody::<Counted>::new(spec.inertia).ok()?;
-        operations_of(&body, start.map(Counted), method, steps)
+        counting(body, start.map(Counted))
     }
     fn pose(_: &RigidBody, m: &Vector3<f64>) -> Pose {
         Pose { m: *m, orientation: Orientation::NotModelled }
@@ -122,15 +111,10 @@ impl Representation for Attitude {
     fn point(pose: &Pose) -> Result<Matrix3<f64>, Error> {
         Ok(pose.orientation.rotation())
     }
-    fn operations(
-        spec: &RigidBodySpec,
-        start: Point<Self>,
-        method: &MethodSpec,
-        steps: &Steps,
-    ) -> Option<f64> {
+    fn counted(spec: &RigidBodySpec, start: Point<Self>) -> Option<Counting> {
         let body =
             RigidBodyAttitude::<Counted>::new(spec.inertia, spec.momentum_space().into()).ok()?;
-        operations_of(&body, start.map(Counted), method, steps)
+        counting(body, start.map(Counted))
     }
     fn pose(body: &RigidBodyAttitude, g: &Matrix3<f64>) -> Pose {
         Pose { m: body.momentum_body(g), orientation: Orientation::Matrix(*g) }
@@ -153,15 +137,10 @@ impl Representation for State {
     fn point(pose: &Pose) -> Result<BodyState, Error> {
         Ok(BodyState { m: pose.m, g: pose.orientation.rotation() })
     }
-    fn operations(
-        spec: &RigidBodySpec,
-        start: Point<Self>,
-        method: &MethodSpec,
-        steps: &Steps,
-    ) -> Option<f64> {
+    fn counted(spec: &RigidBodySpec, start: Point<Self>) -> Option<Counting> {
         let body = RigidBodyState::<Counted>::new(spec.inertia).ok()?;
         let start = BodyState { m: start.m.map(Counted), g: start.g.map(Counted) };
-        operations_of(&body, start, method, steps)
+        counting(body, start)
     }
     fn pose(_: &RigidBodyState, y: &BodyState) -> Pose {
         Pose { m: y.m, orientation: Orientation::Matrix(y.g) }
@@ -323,8 +302,8 @@ impl<R: Representation> System for Body<R> {
         let pose = Pose { m: self.spec.momentum_body.into(), orientation };
         Ok((R::problem(&self.spec)?, R::point(&pose)?))
     }
-    fn operations(&self, method: &MethodSpec, steps: &Steps) -> Option<f64> {
-        R::operations(&self.spec, self.problem().ok()?.1, method, steps)
+    fn counted(&self) -> Option<Counting> {
+        R::counted(&self.spec, self.problem().ok()?.1)
     }
     fn modelled(&self) -> String {
         R::MODELLED.into()
