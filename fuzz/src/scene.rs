@@ -24,6 +24,6 @@ pub fn formula(data: &[u8]) {
                 let _ = slope.value(&[0.3, -0.7]);
             }
         }
-        Err(refusal) => assert!(!refusal.message.is_empty(), "{text:?}"),
+        Err(error) => assert!(!error.mistakes.is_empty(), "{text:?}"),
     }
 }

@@ -2,11 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::error::{ContextKind, ContextValue};
+use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
+use lieflow::names::near;
 
 use lieflow_model::problem::Layer;
-use lieflow_model::scene::{Scene, SceneError};
+use lieflow_model::scene::{BUNDLED, Scene, SceneError};
 
 /// Integrate ordinary differential equations on Lie groups.
 ///
@@ -33,6 +35,37 @@ pub struct Cli {
     /// Options of the demonstration.
     #[command(flatten)]
     pub demo: DemoArgs,
+}
+
+impl Cli {
+    /// The options that the program was started with. The program ends here where they cannot be read.
+    pub fn started_with() -> Self {
+        Cli::try_parse().unwrap_or_else(|error| match meant(&error) {
+            Some(meant) => {
+                eprintln!("error: {meant}");
+                std::process::exit(error.exit_code())
+            }
+            None => error.exit(),
+        })
+    }
+}
+
+/// What was meant by a word that is no command: a scene to run, or a command with another spelling.
+fn meant(error: &clap::Error) -> Option<String> {
+    let Some(ContextValue::String(given)) = error.get(ContextKind::InvalidSubcommand) else {
+        return None;
+    };
+    let is_scene = Path::new(given).is_file()
+        || given.ends_with(".toml")
+        || BUNDLED.iter().any(|scene| scene.name == given);
+    let command = Cli::command();
+    let names: Vec<&str> = command.get_subcommands().map(clap::Command::get_name).collect();
+    let meant = match near(given, &names).filter(|_| !is_scene) {
+        Some(name) => format!("did you mean `lieflow {name}`?"),
+        None if is_scene => format!("did you mean `lieflow run {}`?", quoted(given)),
+        None => format!("expected one of {}", names.join(", ")),
+    };
+    Some(format!("there is no command `{given}`\n{meant}"))
 }
 
 /// A command.
@@ -91,7 +124,7 @@ pub struct RunArgs {
     /// Go on with a run that was interrupted or killed, to the same bits.
     #[arg(long)]
     pub resume: bool,
-    /// Write more than 10 GB, where that is meant.
+    /// Write more than 10 GB, or run for more than a day, where that is meant.
     #[arg(long)]
     pub yes: bool,
 }
@@ -395,6 +428,7 @@ Written: trajectory.csv, a column t and the columns of each quantity, 17 signifi
 start first and the end last; events.csv, a line for each event; summary.json, what was modelled and run,
 the errors of the rows and of the times of events, the drift of each invariant, and a warning where
 a run is wrong or a method did not keep what it promises; index.html with figures, and each as an SVG
-file. When a step fails, the rows up to it are in trajectory.partial.csv and the exit code is 2.
+file. When a step fails, the rows up to it are in trajectory.partial.csv, a trajectory.csv of a run
+before stays, and the exit code is 2.
 It is 130 after Ctrl-C, and 1 where a file cannot be written, the disk is full or a run wrote 10 GB;
 --resume goes on from there.";

@@ -4,7 +4,6 @@
 use std::io::Write;
 use std::process::ExitCode;
 
-use clap::Parser;
 use lieflow_cli::args::{Cli, Command};
 use lieflow_cli::cmd;
 use lieflow_cli::error::CliError;
@@ -25,7 +24,7 @@ fn dispatch(cli: &Cli) -> Result<(), CliError> {
 }
 
 fn main() -> ExitCode {
-    match dispatch(&Cli::parse()) {
+    match dispatch(&Cli::started_with()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             // Nobody is left to tell when stderr is gone too.

@@ -8,7 +8,7 @@ use lieflow::{RunError, SaveAt};
 use lieflow_model::formula::Which;
 use lieflow_model::kinds::{KINDS, named};
 use lieflow_model::problem::{self, CurvePlace, EventPlan, KeyInfo, Layer, Plan, Steps, Watcher};
-use lieflow_model::reader::{Shape, Tree};
+use lieflow_model::reader::{ReadError, Shape, Tree};
 use lieflow_model::scene::{Columns, OnRows, RowFormula};
 use lieflow_model::schema::{Observable, Row, Schema};
 use numpy::{PyArray1, PyArrayDyn, PyReadonlyArray1};
@@ -168,7 +168,7 @@ impl Problem {
             let columns = columns.map_err(|error| mistakes(py, &error))?;
             let read = |(path, text): &(String, String)| columns.read(path, text);
             let formulas = events.iter().map(read).collect::<Result<_, _>>();
-            formulas.map_err(|refusal| mistake(py, refusal))?
+            formulas.map_err(|error: ReadError| mistakes(py, &error.into()))?
         };
         let mut all = names(&quantities);
         for name in formulas.iter().flat_map(RowFormula::quantities) {

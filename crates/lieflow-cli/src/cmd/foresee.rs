@@ -16,8 +16,8 @@ use crate::output::{duration, number};
 const MANY: u64 = 10_000_000;
 /// Steps are timed for this long.
 const TRIAL: Duration = Duration::from_millis(20);
-/// A longer run is refused, in seconds.
-const LONGEST: f64 = 30.0 * 86400.0;
+/// A longer run is refused without `--yes`, in seconds.
+const LONGEST: f64 = 86400.0;
 /// A longer run is announced, in seconds.
 const LONG: f64 = 60.0;
 /// The number of attempts in a trial run with adaptive steps.
@@ -28,10 +28,11 @@ const HIGH_ORDER: usize = 4;
 /// The warning about a run that will take long. `stop` ends the trial of it.
 ///
 /// # Errors
-/// A run that would take a month and more.
+/// A run that would take more than a day, unless `any_length` is meant.
 pub(super) fn foresee(
     scene: &Scene,
     model: &Model,
+    any_length: bool,
     stop: &AtomicBool,
 ) -> Result<Option<String>, CliError> {
     let may_end_early = scene.events.iter().any(|event| event.stop_after.is_some());
@@ -39,7 +40,7 @@ pub(super) fn foresee(
         return Ok(None);
     }
     match scene.adaptive {
-        None => steps_of_one_size(scene, model, stop),
+        None => steps_of_one_size(scene, model, any_length, stop),
         Some(_) => Ok(chosen_steps(scene, model, stop)),
     }
 }
@@ -47,6 +48,7 @@ pub(super) fn foresee(
 fn steps_of_one_size(
     scene: &Scene,
     model: &Model,
+    any_length: bool,
     stop: &AtomicBool,
 ) -> Result<Option<String>, CliError> {
     let (steps, h, [t0, _]) = (scene.grid.steps(), scene.grid.h(), scene.grid.t_span());
@@ -69,8 +71,8 @@ fn steps_of_one_size(
         trial *= 8;
     };
     let would = format!("{} steps would take about {}", number(steps as f64), duration(seconds));
-    if seconds > LONGEST {
-        let message = format!("dt = {}: {would}", number(h.abs()));
+    if seconds > LONGEST && !any_length {
+        let message = format!("dt = {}: {would}. More than a day needs --yes", number(h.abs()));
         let help =
             Some("take a larger step, or leave it out: lieflow then chooses the steps".into());
         let refusal = Refusal { help, ..Refusal::at("dt", message) };

@@ -1,7 +1,8 @@
 //! `lieflow methods`: which method to take; methods, coordinate maps and tableaus.
 
-use lieflow::catalog::{MethodInfo, MethodSpec, Needs, Order, TABLEAUS, all_methods};
-use lieflow::maps::MAPS;
+use lieflow::catalog::{MethodInfo, MethodSpec, Needs, Order, TABLEAUS, TableauInfo, all_methods};
+use lieflow::maps::{MAPS, MapInfo};
+use lieflow::names::same;
 use serde::Serialize;
 
 use crate::args::{MethodsArgs, quoted};
@@ -53,6 +54,18 @@ struct TableauEntry {
     order: usize,
 }
 
+impl MapEntry {
+    fn of(map: &MapInfo) -> Self {
+        MapEntry { name: map.name, summary: map.summary, groups: map.groups.to_string() }
+    }
+}
+
+impl TableauEntry {
+    fn of(tableau: &TableauInfo) -> Self {
+        TableauEntry { name: tableau.name, order: tableau.order }
+    }
+}
+
 /// The method as the catalog has it, with the maps and tableaus that `fits` lets through; nothing
 /// when there is no way to run it.
 fn method_entry(info: &MethodInfo, fits: impl Fn(&MethodSpec) -> bool) -> Option<MethodEntry> {
@@ -93,13 +106,10 @@ fn listing(scene: Option<&Scene>) -> Result<Listing, CliError> {
     let methods: Vec<_> = all_methods().filter_map(|info| method_entry(info, fits)).collect();
     let used = |map: &str| methods.iter().any(|method| method.maps.contains(&map));
     let maps = MAPS.iter().filter(|map| used(map.name));
-    let maps =
-        maps.map(|m| MapEntry { name: m.name, summary: m.summary, groups: m.groups.to_string() });
-    let tableaus = TABLEAUS.iter().map(|t| TableauEntry { name: t.name, order: t.order });
     Ok(Listing {
         scene: scene.map(|scene| scene.name.clone()),
-        maps: maps.collect(),
-        tableaus: tableaus.collect(),
+        maps: maps.map(MapEntry::of).collect(),
+        tableaus: TABLEAUS.iter().map(TableauEntry::of).collect(),
         methods,
     })
 }
@@ -315,22 +325,92 @@ fn one_in_words(method: &MethodEntry) -> String {
     text
 }
 
+/// What a name in a listing is: a method, with parts where it has some, a tableau or a map.
+enum Named {
+    Method(MethodEntry),
+    Tableau(&'static TableauInfo),
+    Map(&'static MapInfo),
+}
+
+/// What is called by this name.
+///
+/// # Errors
+/// Nothing is.
+fn named(name: &str) -> Result<Named, CliError> {
+    if let Some(tableau) = TABLEAUS.iter().find(|tableau| same(tableau.name, name)) {
+        return Ok(Named::Tableau(tableau));
+    }
+    if let Some(map) = MAPS.iter().find(|map| same(map.name, name)) {
+        return Ok(Named::Map(map));
+    }
+    let nothing = |why: String| CliError::Message(format!("there is no method `{name}`{why}"));
+    let first = name.split_whitespace().next().unwrap_or_default();
+    let Some(info) = all_methods().find(|info| same(info.name, first)) else {
+        let names = all_methods().map(|info| info.name);
+        let parts = TABLEAUS.iter().map(|t| t.name).chain(MAPS.iter().map(|map| map.name));
+        let names: Vec<&str> = names.chain(parts).collect();
+        let near = suggest(name, &names).map(|near| format!("; did you mean `{near}`?"));
+        return Err(nothing(near.unwrap_or_else(|| ": `lieflow methods` lists them".into())));
+    };
+    let spec: MethodSpec = name.parse().map_err(|why| nothing(format!(": {why}")))?;
+    let is_part = |given: &Option<String>, part: &Option<String>| {
+        given.as_ref().is_none_or(|given| part.as_ref() == Some(given))
+    };
+    let fits = |other: &MethodSpec| {
+        (other.map.is_none() || is_part(&spec.map, &other.map))
+            && (other.tableau.is_none() || is_part(&spec.tableau, &other.tableau))
+    };
+    let entry = method_entry(info, fits).ok_or_else(|| nothing(String::new()))?;
+    let order = spec.tableau.as_deref().and_then(|tableau| {
+        TABLEAUS.iter().find(|info| info.name == tableau).map(|info| info.order)
+    });
+    match order {
+        Some(order) => Ok(Named::Method(MethodEntry {
+            order: Some(order),
+            says_order: Order::Of(order),
+            ..entry
+        })),
+        None => Ok(Named::Method(entry)),
+    }
+}
+
+/// Everything about a tableau.
+fn tableau_in_words(TableauInfo { name, order, stages, pair, .. }: &TableauInfo) -> String {
+    let with = if *pair { "with an error estimate" } else { "without an error estimate" };
+    let takes = all_methods().filter(|info| info.takes_tableau).map(|info| info.name);
+    let takes: Vec<_> = takes.collect();
+    let mut text = format!("{name}\n");
+    let what = format!("A Runge–Kutta tableau of order {order} with {stages} stages, {with}.");
+    text += &wrap(&what, " ");
+    text += &wrap(&format!("methods that take it: {}", takes.join(", ")), " ");
+    text += &wrap(&format!("in a scene: name = \"{}\", tableau = \"{name}\"", takes[0]), " ");
+    text
+}
+
+/// Everything about a map.
+fn map_in_words(MapInfo { name, summary, groups, .. }: &MapInfo) -> String {
+    let takes = all_methods().filter(|info| info.takes_map()).map(|info| info.name);
+    let takes: Vec<_> = takes.collect();
+    let mut text = format!("{name}\n");
+    text += &wrap(&format!("A coordinate map: {summary}."), " ");
+    text += &wrap(&format!("groups: {groups}"), " ");
+    text += &wrap(&format!("methods that take it: {}", takes.join(", ")), " ");
+    text
+}
+
 /// Run the command.
 ///
 /// # Errors
 /// There is no such method; the scene cannot be used; standard output cannot be written.
 pub fn run(args: &MethodsArgs) -> Result<(), CliError> {
     if let Some(name) = &args.name {
-        let Some(info) = all_methods().find(|info| info.name == name) else {
-            let names: Vec<&str> = all_methods().map(|info| info.name).collect();
-            let near = suggest(name, &names).map(|near| format!("; did you mean `{near}`?"));
-            let near = near.unwrap_or_else(|| ": `lieflow methods` lists them".into());
-            return Err(CliError::Message(format!("there is no method `{name}`{near}")));
-        };
-        return match (method_entry(info, |_| true), args.json) {
-            (Some(entry), true) => print_json(&entry),
-            (Some(entry), false) => print(&one_in_words(&entry)),
-            (None, _) => Ok(()),
+        return match (named(name)?, args.json) {
+            (Named::Method(entry), true) => print_json(&entry),
+            (Named::Method(entry), false) => print(&one_in_words(&entry)),
+            (Named::Tableau(tableau), true) => print_json(&TableauEntry::of(tableau)),
+            (Named::Tableau(tableau), false) => print(&tableau_in_words(tableau)),
+            (Named::Map(map), true) => print_json(&MapEntry::of(map)),
+            (Named::Map(map), false) => print(&map_in_words(map)),
         };
     }
     let scene = args.scene.as_deref().map(|scene| args.settings.open(scene)).transpose()?;

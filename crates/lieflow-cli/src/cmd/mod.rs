@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod apart;
+mod between;
 pub mod check;
 pub mod compare;
 pub mod completions;

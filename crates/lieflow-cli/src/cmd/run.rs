@@ -35,12 +35,14 @@ pub struct Options {
     pub error_check: ErrorCheck,
     /// The most bytes that a run may write.
     pub most: u64,
+    /// Take more than a day.
+    pub any_length: bool,
 }
 
 impl Default for Options {
     fn default() -> Self {
         let error_check = ErrorCheck::default();
-        Options { resume: false, no_page: false, error_check, most: MOST }
+        Options { resume: false, no_page: false, error_check, most: MOST, any_length: false }
     }
 }
 
@@ -115,6 +117,7 @@ fn run_one(args: &RunArgs, path: &Path, scene: &Scene, stop: &AtomicBool) -> Res
         no_page: args.no_page,
         error_check: args.error_check,
         most: if args.yes { u64::MAX } else { MOST },
+        any_length: args.yes,
     };
     let how = |yes: bool| {
         let again = RunArgs { yes, ..args.clone() };
@@ -139,7 +142,11 @@ fn run_one(args: &RunArgs, path: &Path, scene: &Scene, stop: &AtomicBool) -> Res
         return output::print(&in_words(&summary, &folder, page));
     };
     let place = folder.join(summary.trajectory);
-    let kept = format!("The rows up to there ({}) are in {}", summary.rows, place.display());
+    let mut kept = format!("The rows up to there ({}) are in {}", summary.rows, place.display());
+    let before = folder.join(output::TRAJECTORY[0]);
+    if before.is_file() {
+        kept += &format!("; {} is that of a run before", before.display());
+    }
     Err(match summary.interrupted {
         true => {
             let message = format!("{failure}\n{kept}; {}", how(args.yes));
@@ -176,11 +183,11 @@ fn fingerprint(scene: &Scene) -> String {
 pub fn run_scene(
     scene: &Scene,
     folder: &Path,
-    Options { resume, no_page, error_check, most }: Options,
+    Options { resume, no_page, error_check, most, any_length }: Options,
     stop: &AtomicBool,
 ) -> Result<Summary, CliError> {
     let model = scene.model_with(scene.layer, &quantities(scene))?;
-    if let Some(known) = foresee(scene, &model, stop)? {
+    if let Some(known) = foresee(scene, &model, any_length, stop)? {
         eprintln!("note: {}: {known}", scene.name);
     }
     let watch = Watch::new(scene, &model)?;
@@ -255,9 +262,19 @@ pub fn run_scene(
         watch.line(row, &mut line);
         line
     };
-    let [initial, last] = rows.ends().map_or_else(Default::default, |ends| ends.map(with_time));
+    let names: Vec<String> = core::iter::once("t".into()).chain(columns.clone()).collect();
+    let by_name = |end| names.iter().cloned().zip(with_time(end)).collect();
+    let [initial, last] = rows.ends().map_or_else(Default::default, |ends| ends.map(by_name));
     let drift = watch.drift(&kept.watched, done.steps)?;
     let mut warnings = scene.problem.warnings().to_vec();
+    warnings.extend(one_long_step(scene));
+    let by_events = kept.between.iter().zip(&scene.events).zip(&kept.seen);
+    warnings.extend(by_events.clone().filter_map(|((between, _), _)| between.warning()));
+    let mut notes = scene.problem.notes().to_vec();
+    let ended = done.ended_by.is_some();
+    notes.extend(by_events.filter_map(|((between, event), seen)| {
+        between.note(seen, event.stop_after.filter(|_| completed && !ended))
+    }));
     warnings.extend(drift.iter().filter(|(_, drift)| drift.breaks_a_promise()).map(broken_promise));
     warnings.extend(drift.iter().filter(|(_, drift)| drift.is_of_rows()).map(drift_of_rows));
     let out_of_range = columns.iter().zip(&kept.not_finite).filter(|(_, (count, _))| *count > 0);
@@ -304,15 +321,15 @@ pub fn run_scene(
         modelled: model.modelled(method),
         facts: scene.problem.facts().iter().map(|fact| (fact.name, fact.value)).collect(),
         warnings,
-        notes: scene.problem.notes().to_vec(),
+        notes,
         quantities: scene.quantities.clone(),
-        columns: core::iter::once("t".into()).chain(columns).collect(),
+        columns: names.clone(),
         trajectory: output::TRAJECTORY[usize::from(!completed)],
         t_span: scene.grid.t_span(),
         t_end: done.t,
         ended_by: done.ended_by,
         events,
-        dt: scene.adaptive.is_none().then(|| scene.grid.h().abs()),
+        dt: scene.adaptive.is_none().then(|| scene.grid.h().abs().min(length(scene))),
         steps: done.steps,
         adaptive: done.chosen,
         side_steps: done.points_within,
@@ -387,6 +404,24 @@ fn check_errors(
     let poor = check.warning(&checked.accuracy, advise.then_some(seconds));
     checked.warnings.splice(0..0, poor);
     Ok(Some(checked))
+}
+
+/// The length of the span of a scene.
+fn length(scene: &Scene) -> f64 {
+    let [t0, t1] = scene.grid.t_span();
+    (t1 - t0).abs()
+}
+
+/// The warning about a step that is longer than the span.
+fn one_long_step(scene: &Scene) -> Option<String> {
+    let (dt, length) = (scene.grid.h().abs(), length(scene));
+    (scene.adaptive.is_none() && dt > length).then(|| {
+        format!(
+            "dt = {} is longer than t_span, which is {} long: the run is a single step",
+            output::number(dt),
+            output::number(length)
+        )
+    })
 }
 
 fn drift_of_rows((name, drift): (&String, &Drift)) -> String {

@@ -23,8 +23,9 @@ pub(super) fn in_words(summary: &Summary, folder: &Path, page: Option<&str>) -> 
         ),
         (None, None) => String::new(),
     };
+    let of_steps = if *steps == 1 { "step" } else { "steps" };
     let mut text = format!(
-        "{title}: {}, {}, {} layer\n  t = {} to {}, {steps} steps{sizes}, {rows} rows, {}\n",
+        "{title}: {}, {}, {} layer\n  t = {} to {}, {steps} {of_steps}{sizes}, {rows} rows, {}\n",
         summary.modelled.join(", "),
         summary.method.label,
         summary.layer,

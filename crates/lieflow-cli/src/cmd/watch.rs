@@ -1,13 +1,14 @@
 //! What a run is watched for: what is written, what says how good it is, what is drawn.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use lieflow::RunError;
 use lieflow::problems::Invariant;
 use lieflow::solve::{Next, Status};
+use lieflow::{Error, RunError};
 
+use super::between::Between;
 use super::room::Room;
 use crate::error::CliError;
 use crate::output::{
@@ -135,9 +136,10 @@ impl<'a> Watch<'a> {
             }),
             Err(RunError::Setup(error)) => Err(error.into()),
             Err(error) => Ok(Done {
-                failure: Some(match scene.lost(&error) {
-                    Some(lost) => format!("{error}: {lost}"),
-                    None => error.to_string(),
+                failure: Some({
+                    let lost = scene.lost(&error).map(|lost| lost.to_string());
+                    let why = lost.or_else(|| scene.pole(&error));
+                    why.map_or_else(|| error.to_string(), |why| format!("{error}: {why}"))
                 }),
                 steps: error.accepted().unwrap_or(0),
                 ..Done::default()
@@ -195,6 +197,7 @@ const MARKS: usize = 200;
 /// What is kept of a run as it goes, in memory and on disk.
 pub(super) struct Recorder<'a> {
     watch: &'a Watch<'a>,
+    folder: PathBuf,
     pub(super) trajectory: RowFile,
     pub(super) events: Option<RowFile>,
     /// None while an earlier part of the run is shown again.
@@ -205,6 +208,8 @@ pub(super) struct Recorder<'a> {
     /// The number of the rows where a column is not finite, and the time of the first.
     pub(super) not_finite: Vec<(u64, f64)>,
     pub(super) seen: Vec<EventSummary>,
+    /// What the rows say of each event.
+    pub(super) between: Vec<Between>,
     line: Vec<f64>,
     pub(super) overflow: Option<String>,
     /// What could not be written: it ends the run.
@@ -227,11 +232,15 @@ impl<'a> Recorder<'a> {
     ) -> Result<Self, CliError> {
         let events = &watch.scene.events;
         let columns = || core::iter::once("t").chain(columns.iter().map(String::as_str));
-        RowFile::clear(folder, output::EVENTS)?;
+        output::remove_old(&folder.join(output::EVENTS[1]))?;
+        let schema = watch.model.schema();
+        let between = events.iter().map(|event| Ok(Between::new(event, event.plan(schema)?.value)));
         let with_events = (!events.is_empty()).then(|| {
             RowFile::create(folder, output::EVENTS, core::iter::once("name").chain(columns()))
         });
         Ok(Recorder {
+            folder: folder.into(),
+            between: between.collect::<Result<_, Error>>()?,
             trajectory: RowFile::create(folder, output::TRAJECTORY, columns())?,
             events: with_events.transpose()?,
             state: None,
@@ -261,6 +270,9 @@ impl<'a> Recorder<'a> {
                 for ((count, first), _) in columns.filter(without_value) {
                     *first = if *count == 0 { t } else { *first };
                     *count += 1;
+                }
+                for (between, seen) in self.between.iter_mut().zip(&self.seen) {
+                    between.see(t, row, seen.count);
                 }
                 self.watch.see(t, row, &mut self.watched);
                 self.rows.see(t, row);
@@ -306,7 +318,12 @@ impl<'a> Recorder<'a> {
     /// Name the files; what is left is the state of the run.
     pub(super) fn finish(self, complete: bool) -> Result<Option<RunState>, CliError> {
         self.trajectory.finish(complete)?;
-        self.events.map_or(Ok(()), |file| file.finish(complete))?;
+        match self.events {
+            Some(events) => events.finish(complete)?,
+            // Those of an earlier run are of other rows.
+            None if complete => output::remove_old(&self.folder.join(output::EVENTS[0]))?,
+            None => {}
+        }
         Ok(self.state)
     }
 

@@ -2,7 +2,7 @@
 
 use core::fmt::Write as _;
 use std::fs::{self, File, OpenOptions};
-use std::io::Write as _;
+use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
 use lieflow_figures::csv::field;
@@ -34,25 +34,22 @@ pub struct RowFile {
 }
 
 impl RowFile {
-    /// Remove what earlier runs left.
+    /// Start a file of these columns in a folder, in place of what a run that did not end left there. The file of a
+    /// complete run stays until this one is complete.
     ///
     /// # Errors
-    /// A file is there and stays.
-    pub fn clear(folder: &Path, names: Names) -> Result<(), CliError> {
-        names.iter().try_for_each(|old| remove_old(&folder.join(old)))
-    }
-
-    /// Start a file of these columns in a folder, in place of what earlier runs left there.
-    ///
-    /// # Errors
-    /// The file cannot be made, or old ones cannot be removed.
+    /// The file cannot be made, or the old one cannot be removed.
     pub fn create<'c>(
         folder: &Path,
         names: Names,
         columns: impl IntoIterator<Item = &'c str>,
     ) -> Result<Self, CliError> {
-        Self::clear(folder, names)?;
-        let path = folder.join(names[1]);
+        let [place, path] = names.map(|name| folder.join(name));
+        if place.is_dir() {
+            let source = io::ErrorKind::IsADirectory.into();
+            return Err(CliError::Io { doing: "replace", path: place, source });
+        }
+        remove_old(&path)?;
         let file = OpenOptions::new().create(true).append(true).open(&path);
         let file = file.map_err(CliError::io("write", &path))?;
         let header: Vec<_> = columns.into_iter().map(field).collect();

@@ -76,11 +76,11 @@ pub struct Summary {
     pub rows: u64,
     /// Seconds, with writing.
     pub wall_time_s: f64,
-    /// The first row, by column.
-    pub initial: Vec<f64>,
-    /// The last row, by column.
+    /// The first row: t and each column by its name.
+    pub initial: BTreeMap<String, f64>,
+    /// The last row: t and each column by its name.
     #[serde(rename = "final")]
-    pub last: Vec<f64>,
+    pub last: BTreeMap<String, f64>,
     /// Where the drifts were looked at.
     pub drift_computed_at: &'static str,
     /// The drift of each invariant that follows from what was modelled, by column.

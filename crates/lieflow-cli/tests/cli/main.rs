@@ -8,6 +8,7 @@ mod events;
 mod every_row;
 mod laws;
 mod listing;
+mod messages;
 mod operations;
 #[cfg(unix)]
 mod resume;

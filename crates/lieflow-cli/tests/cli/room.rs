@@ -12,7 +12,8 @@ use lieflow_model::scene::Scene;
 
 /// Run a scene that may write `most` bytes; the message of one that may not.
 fn run(scene: &Scene, folder: &Folder, most: u64, resume: bool) -> Result<(), CliError> {
-    let options = Options { most, resume, no_page: true, error_check: ErrorCheck::Never };
+    let options =
+        Options { most, resume, no_page: true, error_check: ErrorCheck::Never, any_length: false };
     run_scene(scene, folder.path(), options, &AtomicBool::new(false)).map(drop)
 }
 

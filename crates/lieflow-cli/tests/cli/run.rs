@@ -231,6 +231,7 @@ fn a_step_that_fails_keeps_the_rows_before_it() {
     let folder = Folder::new();
     folder.write("scene.toml", SCENE);
     folder.lieflow(&["run", "scene.toml", "--out", "out"]).ok();
+    let before = folder.read("out/trajectory.csv");
     // Euler's method on the entries blows up: each step squares the size.
     let unstable = SCENE
         .replace("name = \"rkmk4\"\nmap = \"exp\"", "name = \"rk\"\ntableau = \"euler\"")
@@ -240,7 +241,11 @@ fn a_step_that_fails_keeps_the_rows_before_it() {
     folder.write("scene.toml", &unstable);
     let message = folder.lieflow(&["run", "scene.toml", "--out", "out"]).refused();
     assert!(message.contains("out/trajectory.partial.csv"), "{message}");
-    assert_eq!(folder.data("out"), ["summary.json", "trajectory.partial.csv"]);
+    // The rows of the good run before it stay.
+    assert!(message.contains("; out/trajectory.csv is that of a run before"), "{message}");
+    let files = ["summary.json", "trajectory.csv", "trajectory.partial.csv"];
+    assert_eq!(folder.data("out"), files);
+    assert_eq!(folder.read("out/trajectory.csv"), before);
     let summary = folder.json("out/summary.json");
     let (_, rows) = read_csv(&folder.read("out/trajectory.partial.csv"));
     assert_eq!(summary["completed"], false);

@@ -10,7 +10,7 @@ use super::names::Names;
 use super::samples::Table;
 use super::tape::{LENGTH_MAX, Tape};
 use super::{calculus, parse};
-use crate::reader::Refusal;
+use crate::reader::{ReadError, Refusal};
 
 /// An expression of a scene in named variables.
 #[derive(Clone, Debug)]
@@ -25,8 +25,9 @@ impl Formula {
     /// Read `text`; `key` names its place in the scene, `torque[1]`.
     ///
     /// # Errors
-    /// A refusal of `key` that says what is wrong, and at which character.
-    pub fn read(key: &str, text: &str, names: &Names) -> Result<Self, Refusal> {
+    /// A refusal of `key` that says what is wrong, and at which character; none where the formula needs a named one
+    /// whose mistakes are known.
+    pub fn read(key: &str, text: &str, names: &Names) -> Result<Self, ReadError> {
         let (rows, tapes) = read_value(key, text, names)?;
         let count = tapes.len();
         match <[Tape; 1]>::try_from(tapes) {
@@ -36,7 +37,7 @@ impl Formula {
                 let message =
                     format!("{key}: the value is {value} of {count} numbers, expected one");
                 let help = "x1 is the first component of a vector x, norm(x) its length".into();
-                Err(Refusal { help: Some(help), ..Refusal::at(key, message) })
+                Err(Refusal { help: Some(help), ..Refusal::at(key, message) }.into())
             }
         }
     }
@@ -149,11 +150,11 @@ pub(super) fn read_value(
     key: &str,
     text: &str,
     names: &Names,
-) -> Result<(usize, Vec<Tape>), Refusal> {
-    let refused = |parse::Mistake { message, help }| Refusal {
-        help,
-        ..Refusal::at(key, format!("{key}: {message}"))
-    };
-    let value = parse::parse(text, names).map_err(refused)?;
+) -> Result<(usize, Vec<Tape>), ReadError> {
+    let value =
+        parse::parse(text, names).map_err(|parse::Mistake { message, help, is_known }| {
+            let refusal = Refusal { help, ..Refusal::at(key, format!("{key}: {message}")) };
+            if is_known { ReadError::known() } else { refusal.into() }
+        })?;
     Ok((value.rows, value.entries))
 }

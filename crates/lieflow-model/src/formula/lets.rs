@@ -6,13 +6,13 @@ use std::sync::Arc;
 use super::expression::Formula;
 use super::names::{Entry, Names, continues_name, without_digits};
 use super::text::Texts;
-use crate::reader::{KeyPath, Read, ReadError, Refusal, Shape, Value, read_as_held};
+use crate::reader::{Key, KeyPath, Read, ReadError, Refusal, Shape, Value, read_as_held, seen};
 
-read_as_held!(Lets: BTreeMap<String, Texts> = Shape::TableOf(&Shape::Formulas));
+read_as_held!(Lets: BTreeMap<String, Key<Texts>> = Shape::TableOf(&Shape::Formulas));
 
 /// `[problem.let]`: formulas with names, which other formulas may use, `b = "3*t"`.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Lets(BTreeMap<String, Texts>);
+#[derive(Clone, Debug, Default)]
+pub struct Lets(BTreeMap<String, Key<Texts>>);
 
 /// More named formulas than this are refused.
 const LETS_MAX: usize = 256;
@@ -39,16 +39,22 @@ impl Lets {
 impl Names {
     /// These names and named formulas, which may use each other in any order. `key` is their table in the scene.
     ///
-    /// # Errors
-    /// A refusal of the formula that cannot be read, has a name that is taken, or needs itself.
-    pub fn with_lets(mut self, key: &str, lets: &Lets) -> Result<Names, Refusal> {
+    /// A formula that cannot be read, has a name that is taken, or needs itself is a mistake that
+    /// [`checked`](Self::checked) returns. Other formulas that need it cannot be read, without a mistake of their own.
+    pub fn with_lets(mut self, key: &str, lets: &Lets) -> Names {
         if lets.0.len() > LETS_MAX {
             let message = format!("found {} formulas, expected at most {LETS_MAX}", lets.0.len());
-            return Err(Refusal::at(key, message));
+            self.mistakes.add(Refusal::at(key, message));
         }
         let mut reader = LetReader::new(key, lets, true);
-        lets.names().try_for_each(|name| reader.define(name, &mut self))?;
-        Ok(self)
+        for name in lets.names().take(LETS_MAX) {
+            reader.path.clear();
+            let read = reader.define(name, &mut self);
+            let mut mistakes = core::mem::take(&mut self.mistakes);
+            mistakes.keep(read);
+            self.mistakes = mistakes;
+        }
+        self
     }
 
     /// Adds the formulas of [`with_lets`](Self::with_lets) that can be used with these names. A formula hides a variable of
@@ -95,26 +101,27 @@ impl<'a> LetReader<'a> {
     }
 
     /// Read a named formula, and before it those that it needs.
-    fn define(&mut self, name: &'a str, names: &mut Names) -> Result<(), Refusal> {
+    fn define(&mut self, name: &'a str, names: &mut Names) -> Result<(), ReadError> {
         let place = self.key.entry(name);
         if let Some(start) = self.path.iter().position(|above| *above == name) {
             let circle = [&self.path[start..], &[name]].concat().join(" needs ");
             let message = format!("{place}: a formula cannot need itself: {circle}");
-            return Err(Refusal::at(place, message));
+            return Err(Refusal::at(place, message).into());
         }
         let lets = self.lets;
         let texts = lets.0.get(name).filter(|_| self.done.insert(name));
         let Some(texts) = texts else { return Ok(()) };
         self.path.push(name);
-        let read = self.read(name, texts, names);
+        let read = seen(texts).and_then(|texts| self.read(name, texts, names));
         self.path.pop();
-        if let (Err(refusal), false) = (&read, self.refuses_taken) {
-            names.unusable.push((name.into(), refusal.message.clone()));
+        if let Err(error) = &read {
+            let why = error.message().filter(|_| !self.refuses_taken);
+            names.unusable.push((name.into(), why.map(str::to_owned)));
         }
         read
     }
 
-    fn read(&mut self, name: &str, texts: &Texts, names: &mut Names) -> Result<(), Refusal> {
+    fn read(&mut self, name: &str, texts: &Texts, names: &mut Names) -> Result<(), ReadError> {
         let (place, lets) = (self.key.entry(name), self.lets);
         for word in texts.texts().flat_map(|text| text.split(|c| !continues_name(c))) {
             if let Some(needed) = lets.of(word) {

@@ -10,47 +10,50 @@ use super::lost::Losses;
 use super::samples::{SamplesFile, Table};
 use super::tape::Tape;
 use crate::reader::values::Real;
-use crate::reader::{Read, ReadError, Refusal, Shape, Value, read_as_held};
+use crate::reader::{Key, Read, ReadError, Refusal, Shape, Value, read_as_held};
 
-read_as_held!(Parameters: BTreeMap<String, Real> = Shape::TableOf(&Shape::Number));
+read_as_held!(Parameters: BTreeMap<String, Key<Real>> = Shape::TableOf(&Shape::Number));
 
 /// `[problem.parameters]`: constants that the formulas of a scene share, `k = 3.0`.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Parameters(BTreeMap<String, Real>);
+#[derive(Clone, Debug, Default)]
+pub struct Parameters(BTreeMap<String, Key<Real>>);
 
 impl FromIterator<(String, Real)> for Parameters {
     fn from_iter<I: IntoIterator<Item = (String, Real)>>(parameters: I) -> Self {
-        Parameters(parameters.into_iter().collect())
+        Parameters(parameters.into_iter().map(|(name, x)| (name, Ok(x))).collect())
     }
 }
 
 impl Parameters {
     /// The names and their values.
     pub fn iter(&self) -> impl Iterator<Item = (&str, f64)> {
-        self.0.iter().map(|(name, x)| (name.as_str(), x.0))
+        self.0.iter().filter_map(|(name, x)| Some((name.as_str(), x.as_ref().ok()?.0)))
     }
 
     /// These variables, in the order of their values, and the parameters.
     ///
     /// # Errors
-    /// A refusal of `key` for a variable, and of `parameters` for a parameter, that is no name (letters,
+    /// A refusal of `key` for a variable, and of `parameters` for each parameter, that is no name (letters,
     /// digits and underscores, no digit first), or has that of another, or of a function.
     pub fn names<N: Into<String>>(
         &self,
         key: &str,
         variables: impl IntoIterator<Item = N>,
-    ) -> Result<Names, Refusal> {
-        let mut names = Names::default();
+    ) -> Result<Names, ReadError> {
+        let (mut names, mut mistakes) = (Names::default(), ReadError::default());
         for variable in variables {
             let variable = variable.into();
             names.check(key, &variable)?;
             names.push(variable);
         }
         for (name, value) in &self.0 {
-            names.check_new("parameters", name)?;
-            names.constants.push((name.clone(), value.0));
+            if mistakes.keep(names.check_new("parameters", name)).is_some() {
+                // With a wrong number formulas can be read, and not run.
+                let value = value.as_ref().map_or(f64::NAN, |x| x.0);
+                names.constants.push((name.clone(), value));
+            }
         }
-        Ok(names)
+        mistakes.or(Some(names))
     }
 }
 
@@ -62,8 +65,10 @@ pub struct Names {
     table: Option<Arc<Table>>,
     /// The named formulas, after those that they need; of vectors and matrices each entry by its name.
     pub(super) formulas: Arc<Vec<Entry>>,
-    /// Named formulas that have no meaning here, and why.
-    pub(super) unusable: Vec<(String, String)>,
+    /// Named formulas that have no meaning here, and why. Without a reason its mistakes are known.
+    pub(super) unusable: Vec<(String, Option<String>)>,
+    /// The mistakes in named formulas.
+    pub(super) mistakes: ReadError,
     losses: Arc<Losses>,
 }
 
@@ -153,10 +158,27 @@ impl Names {
         self.unusable.iter().any(|(formula, _)| formula == name)
     }
 
-    /// Why a named formula has no meaning here, by its name or that of an entry.
-    pub(super) fn unusable(&self, word: &str) -> Option<&str> {
+    /// Why a named formula has no meaning here, by its name or that of an entry. The reason is none where its mistakes
+    /// are known.
+    pub(super) fn unusable(&self, word: &str) -> Option<Option<&str>> {
         let of = |wanted: &str| self.unusable.iter().find(|(name, _)| name == wanted);
-        of(word).or_else(|| of(without_digits(word))).map(|(_, why)| why.as_str())
+        of(word).or_else(|| of(without_digits(word))).map(|(_, why)| why.as_deref())
+    }
+
+    /// These names, where no named formula has a mistake.
+    ///
+    /// # Errors
+    /// The mistakes in the named formulas.
+    pub fn checked(mut self) -> Result<Names, ReadError> {
+        self.take_mistakes().map(|()| self)
+    }
+
+    /// Takes the mistakes in the named formulas out.
+    ///
+    /// # Errors
+    /// The mistakes, if there are some.
+    pub fn take_mistakes(&mut self) -> Result<(), ReadError> {
+        core::mem::take(&mut self.mistakes).or(Some(()))
     }
 
     /// Where a scene gives a name its meaning.

@@ -8,6 +8,8 @@
 //! | power | atom, atom `^` signed |
 //! | atom | number, name, name `(` sum (`,` sum) `)`, `(` sum `)`, `[` sum (`,` sum)* `]` |
 //!
+//! In brackets numbers are a vector, and vectors of one length the rows of a matrix.
+//!
 //! So −2^2 = −(2²), 2^−1 = ½ and 2^3^2 = 2^(3²). Each part is a [`Value`]: a number, a vector or a matrix. Vectors
 //! and matrices are there while a formula is read; what becomes of it are operations on numbers.
 
@@ -25,6 +27,8 @@ pub const DECIMAL_POINT: &str = "a number is written with a decimal point, not a
 pub(super) struct Mistake {
     pub(super) message: String,
     pub(super) help: Option<String>,
+    /// True if it follows from the mistakes of a named formula, which are known.
+    pub(super) is_known: bool,
 }
 
 /// The largest depth of parentheses, signs and powers. Each level is one call.
@@ -40,7 +44,7 @@ pub(super) struct Parsed {
 }
 
 pub(super) fn parse(text: &str, names: &Names) -> Result<Parsed, Mistake> {
-    let plain = |message: String| Mistake { message, help: None };
+    let plain = |message: String| Mistake { message, help: None, is_known: false };
     if text.len() > TEXT_MAX {
         return Err(plain(format!(
             "a formula of {} bytes, expected at most {TEXT_MAX}",
@@ -89,7 +93,8 @@ impl Parser<'_> {
     }
 
     fn mistake(&self, message: &str, at: usize) -> Mistake {
-        Mistake { message: format!("{message} at character {} of the formula", at + 1), help: None }
+        let message = format!("{message} at character {} of the formula", at + 1);
+        Mistake { message, help: None, is_known: false }
     }
     /// What is next was not expected.
     fn expected(&mut self, what: &str) -> Mistake {
@@ -104,6 +109,7 @@ impl Parser<'_> {
             {
                 Some(DECIMAL_POINT.into())
             }
+            (_, Some('<' | '>' | '=')) => Some("a formula is a number, and no comparison".into()),
             (Some(_), Some(c)) if what.contains("operator") && (starts_name(c) || c == '(') => {
                 Some("a product is written 2*x".into())
             }
@@ -180,23 +186,32 @@ impl Parser<'_> {
             }
             Some('[') => {
                 self.at += 1;
-                let mut entries = vec![self.entry()?];
+                let Value { rows: length, mut entries } = self.entry(None)?;
+                let mut rows = 1;
                 while self.take(&[',']).is_some() {
-                    entries.push(self.entry()?);
+                    entries.extend(self.entry(Some(length))?.entries);
+                    rows += 1;
                 }
                 match self.take(&[']']) {
-                    Some(_) => Ok(Value { rows: entries.len(), entries }),
+                    Some(_) => Ok(Value { rows, entries }),
                     None => Err(self.expected("`,` or `]`")),
                 }
             }
             _ => Err(self.expected("a number, a name or a parenthesis")),
         }
     }
-    /// A component of a vector that is written out.
-    fn entry(&mut self) -> Result<usize, Mistake> {
+    /// A component of a vector that is written out, or a row of a matrix: of this length, where the first one has it.
+    fn entry(&mut self, length: Option<usize>) -> Result<Value, Mistake> {
         let (at, value) = (self.at, self.sum()?);
-        let not_one = || self.mistake(&format!("found {value}, expected a number"), at);
-        value.as_number().ok_or_else(not_one)
+        if value.columns() == 1 && length.is_none_or(|length| value.rows == length) {
+            return Ok(value);
+        }
+        let expected = match length {
+            None => "a number or a row of numbers".into(),
+            Some(1) => "a number".into(),
+            Some(length) => format!("a row of {length} numbers"),
+        };
+        Err(self.mistake(&format!("found {value}, expected {expected}"), at))
     }
     fn close(&mut self) -> Result<(), Mistake> {
         match self.take(&[')']) {
@@ -237,8 +252,9 @@ impl Parser<'_> {
             return Err(self.expected(&format!("`(` after {name}")));
         }
         if let Some(why) = self.names.unusable(&name) {
-            let message = format!("`{name}` of [problem.let] has no meaning here ({why})");
-            return Err(self.mistake(&message, start));
+            let reason = why.unwrap_or_default();
+            let message = format!("`{name}` of [problem.let] has no meaning here ({reason})");
+            return Err(Mistake { is_known: why.is_none(), ..self.mistake(&message, start) });
         }
         let help = help_for(&name, &self.names.all());
         let help = format!("{help}; {}", self.names.where_to_state(&name));

@@ -20,6 +20,10 @@ impl Read for SamplesFile {
     const SHAPE: Shape = Shape::Samples;
 
     fn read(value: &Value<'_>) -> Result<Self, ReadError> {
+        // A file whose mistake is known.
+        if value.get_ref().as_array().is_some_and(|list| list.is_empty()) {
+            return Err(ReadError::known());
+        }
         let [name, text] = counted(value, 2, "texts")?;
         Ok(SamplesFile(name, text))
     }

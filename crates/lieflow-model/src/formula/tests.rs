@@ -6,14 +6,20 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::{Formula, Lets, Names, Parameters, SamplesFile, Text, Texts, Which};
-use crate::reader::Refusal;
-use crate::reader::{Read, ReadError};
+use crate::reader::{Mistake, Read, ReadError, Refusal};
 
 fn names() -> Names {
     Parameters::default().names("variables", ["x", "y", "w_1"]).expect("three names")
 }
 fn read(text: &str) -> Result<Formula, Refusal> {
-    Formula::read("f", text, &names())
+    Formula::read("f", text, &names()).map_err(refusal)
+}
+/// The only mistake of an error.
+fn refusal(error: ReadError) -> Refusal {
+    match &error.mistakes[..] {
+        [Mistake::Refused(refusal)] => refusal.clone(),
+        _ => panic!("{error:?}"),
+    }
 }
 fn value(text: &str, at: [f64; 3]) -> f64 {
     read(text).unwrap_or_else(|refusal| panic!("{text}: {refusal:?}")).value(&at)
@@ -188,7 +194,7 @@ fn parameters_are_numbers_with_names() {
         ("k = 3", "", "`` is no name"),
     ] {
         let parameters: Parameters = table(text).unwrap();
-        let refusal = parameters.names("variables", [variable]).unwrap_err();
+        let refusal = refusal(parameters.names("variables", [variable]).unwrap_err());
         assert!(refusal.message.starts_with(why), "{}", refusal.message);
     }
     assert!(table::<Parameters>("k = inf").is_err());
@@ -200,7 +206,7 @@ fn vectors_and_matrices_are_their_components() {
     let variables = ["t", "a1", "a2", "a3", "g11", "g12", "g21", "g22", "b1", "b2", "norm"];
     let names = Parameters::default().names("variables", variables).expect("names");
     let lets: Lets = table("c = \"2*g*b\"\nup = [0, \"t\", 1]").expect("formulas");
-    let names = names.with_lets("let", &lets).expect("formulas");
+    let names = names.with_lets("let", &lets).checked().expect("formulas");
     let of =
         |text: &str| Formula::read("f", text, &names).unwrap_or_else(|e| panic!("{text}: {e:?}"));
     let at: [f64; 11] = [0.3, 1.1, -0.7, 0.4, 2.0, -1.5, 0.25, 3.0, 0.9, -0.2, 7.0];
@@ -274,7 +280,7 @@ fn what_is_wrong_is_said_with_its_place() {
         }
     }
     let texts = Texts::List(["x", "y +"].map(|text| Text(text.into())).into());
-    let refusal = texts.read("torque", 2, &names()).unwrap_err();
+    let refusal = refusal(texts.read("torque", 2, &names()).unwrap_err());
     assert_eq!(refusal.key.as_deref(), Some("torque[2]"));
 }
 

@@ -42,8 +42,8 @@ impl Texts {
     /// The formulas of this number of components.
     ///
     /// # Errors
-    /// As [`Formula::read`], and a refusal of `key` for another number of them.
-    pub fn read(&self, key: &str, count: usize, names: &Names) -> Result<Vec<Formula>, Refusal> {
+    /// As [`Formula::read`], of all formulas, and a refusal of `key` for another number of them.
+    pub fn read(&self, key: &str, count: usize, names: &Names) -> Result<Vec<Formula>, ReadError> {
         let (rows, tapes) = self.read_any(key, names)?;
         let found = tapes.len();
         if found == count && (rows == count || count == 1) {
@@ -61,21 +61,29 @@ impl Texts {
                 format!("the value of this formula is {found}, expected a vector of {count}")
             }
         };
-        Err(Refusal::at(key, format!("{key}: {found}")))
+        Err(Refusal::at(key, format!("{key}: {found}")).into())
     }
 
     /// The entries of the value, row by row, and the number of its rows.
-    pub(super) fn read_any(&self, key: &str, names: &Names) -> Result<(usize, Vec<Tape>), Refusal> {
+    pub(super) fn read_any(
+        &self,
+        key: &str,
+        names: &Names,
+    ) -> Result<(usize, Vec<Tape>), ReadError> {
         match self {
             Texts::One(text) => read_value(key, &text.0, names),
             Texts::List(list) if list.is_empty() => {
-                Err(Refusal::at(key, format!("{key}: no formulas, expected at least one")))
+                Err(Refusal::at(key, format!("{key}: no formulas, expected at least one")).into())
             }
             Texts::List(list) => {
-                let read = |(i, text): (usize, &Text)| {
-                    Formula::read(&key.index(i), &text.0, names).map(|formula| formula.tape)
-                };
-                let tapes = list.iter().enumerate().map(read).collect::<Result<Vec<_>, _>>()?;
+                let mut mistakes = ReadError::default();
+                let tapes = list.iter().enumerate().map(|(i, text)| {
+                    let formula = mistakes.keep(Formula::read(&key.index(i), &text.0, names));
+                    formula.map(|formula| formula.tape)
+                });
+                // Each is read, also after one that is wrong.
+                let tapes: Vec<_> = tapes.collect();
+                let tapes = mistakes.or(tapes.into_iter().collect::<Option<Vec<_>>>())?;
                 Ok((tapes.len(), tapes))
             }
         }

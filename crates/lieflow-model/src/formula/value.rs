@@ -43,7 +43,7 @@ impl Value {
             _ => None,
         }
     }
-    fn columns(&self) -> usize {
+    pub(super) fn columns(&self) -> usize {
         self.entries.len() / self.rows
     }
     fn as_vector(&self, rows: usize) -> Option<&[usize]> {

@@ -20,7 +20,7 @@ pub(super) const KIND: Kind = Kind {
     name: "beam-line",
     equation: "x″ = −k_x x, z″ = −k_z z: (k_x, k_z) = (k, −k) in a quadrupole, (1/radius², 0) in a dipole",
     summary: "a particle through the magnets of a periodic beam line; t is the path along it",
-    ..Kind::of::<Keys, BeamLine>(|section| read(Read::read(section)?))
+    ..Kind::of::<Keys, BeamLine>(|section| read_with(section, read))
 };
 
 keys! { Keys {
@@ -42,8 +42,7 @@ read_by_keys! {
 #[derive(Clone, Debug)]
 struct BeamLine {
     elements: Vec<Element>,
-    /// Where each element ends, and (k_x, k_z) along it.
-    strengths: Vec<(f64, [f64; 2])>,
+    strengths: Strengths,
     particle: [f64; 4],
 }
 
@@ -72,19 +71,32 @@ fn element(keys: &ElementKeys) -> Result<(Element, [f64; 2]), String> {
 }
 
 fn read(keys: Keys) -> Result<Forms, ReadError> {
+    let (cell, particle) = (keys.elements.and_then(cell), keys.particle);
+    let ((elements, strengths), particle) = all!(cell, particle)?;
+    Ok(Forms::of(BeamLine { elements, strengths, particle: particle.0 }))
+}
+
+/// Where each element ends, and (k_x, k_z) along it.
+type Strengths = Vec<(f64, [f64; 2])>;
+
+/// The elements, and where each of them ends with its strengths.
+fn cell(keys: Vec<ElementKeys>) -> Result<(Vec<Element>, Strengths), ReadError> {
+    let mut mistakes = ReadError::default();
     let (mut elements, mut strengths, mut end) = (Vec::new(), Vec::new(), 0.0);
-    for (i, keys) in keys.elements.iter().enumerate() {
+    for (i, keys) in keys.iter().enumerate() {
         let refused = |message| Refusal::at("elements".index(i), message);
-        let (element, strength) = element(keys).map_err(refused)?;
-        end += keys.length.0;
-        elements.push(element);
-        strengths.push((end, strength));
+        if let Some((element, strength)) = mistakes.keep(element(keys).map_err(refused)) {
+            end += keys.length.0;
+            elements.push(element);
+            strengths.push((end, strength));
+        }
     }
-    if elements.is_empty() {
-        return Err(Refusal::at("elements", "no elements, expected at least one").into());
+    if keys.is_empty() {
+        mistakes.add(Refusal::at("elements", "no elements, expected at least one"));
     }
+    let (elements, strengths) = mistakes.or(Some((elements, strengths)))?;
     transfer_map(&elements).map_err(|error| Refusal::from(error).about("elements"))?;
-    Ok(Forms::of(BeamLine { elements, strengths, particle: keys.particle.0 }))
+    Ok((elements, strengths))
 }
 
 impl BeamLine {

@@ -22,7 +22,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::body::*;
 use super::flow;
 use super::prelude::*;
-use crate::formula::{Formula, Texts, without_value};
+use crate::formula::{Formula, Names, Texts, without_value};
 use crate::problem::PointOf;
 use crate::reader::values;
 
@@ -31,7 +31,7 @@ pub(super) const KIND: Kind = Kind {
     name: "driven-body",
     equation: "m = Jω; ṁ = m × ω + gᵀ(e₃ × g weight) + thruster − damping ω − k (g − gᵀ)ᵛ/2 − c ω + torque + gᵀ torque_space, ġ = gω̂",
     summary: "a rigid body with its attitude under the torques that are named",
-    ..Kind::of::<Keys, Driven>(|section| read(Read::read(section)?))
+    ..Kind::of::<Keys, Driven>(|section| read_with(section, read))
 };
 
 keys! { Keys [sample_keys formula_keys body_keys] {
@@ -169,20 +169,26 @@ struct Driven {
 type Q = Quantity<Driven>;
 
 fn read(mut keys: Keys) -> Result<Forms, ReadError> {
-    let spec = keys.body_keys().start(Matrix3::identity())?;
-    let names = keys.formula_keys().names("torque", VARIABLES, keys.sample_keys())?;
-    let formulas = |key: &str, texts: Option<Texts>| match texts {
-        Some(texts) => texts.read(key, 3, &names).map(|formulas| Some(formulas.into())),
-        None => Ok(None),
+    let spec = keys.body_keys().start(Matrix3::identity());
+    let names = keys.formula_keys().names("torque", VARIABLES, keys.sample_keys());
+    let formulas = |key: &str, texts: Key<Option<Texts>>| -> Result<Option<Formulas>, ReadError> {
+        let Some(texts) = texts? else { return Ok(None) };
+        Ok(Some(texts.read(key, 3, seen(&names)?)?.into()))
     };
+    let Keys { weight, thruster, damping, control, torque, torque_space, .. } = keys;
+    let in_the_body = formulas("torque", torque);
+    let in_space = formulas("torque_space", torque_space);
+    let names = names.and_then(Names::checked);
+    let (spec, _, weight, thruster, damping, control, in_the_body, in_space) =
+        all!(spec, names, weight, thruster, damping, control, in_the_body, in_space)?;
     let torques = Torques {
         axes: spec.axes,
-        weight: keys.weight.map(|x| x.0.into()),
-        thruster: keys.thruster.map(|x| x.0.into()),
-        damping: keys.damping.map(|x| x.0),
-        control: keys.control.map(|x| x.0),
-        in_the_body: formulas("torque", keys.torque)?,
-        in_space: formulas("torque_space", keys.torque_space)?,
+        weight: weight.map(|x| x.0.into()),
+        thruster: thruster.map(|x| x.0.into()),
+        damping: damping.map(|x| x.0),
+        control: control.map(|x| x.0),
+        in_the_body,
+        in_space,
     };
     let body = TorqueBody::new(spec.inertia, torques.clone())?;
     let start = (spec.attitude, spec.momentum_space());

@@ -15,9 +15,27 @@ pub(super) const ROUNDING: f64 = 64.0 * f64::EPSILON;
 ///
 /// # Errors
 /// A refusal of `key` for another shape.
-pub(super) fn square(key: &str, table: &Table, n: usize) -> Result<Mat<f64>, Refusal> {
+pub(super) fn square(key: &str, table: &Table, n: usize) -> Result<Mat<f64>, ReadError> {
     let x = table.matrix(key, Some(n))?;
     check_rows(key, &x, n)?;
+    Ok(x)
+}
+
+/// The symmetric matrix under a key, n×n where n is known, up to this part of the largest entry.
+///
+/// # Errors
+/// A refusal of `key` for another shape, and of the entry of `key` where it is not symmetric.
+pub(super) fn symmetric(
+    key: &str,
+    table: &Table,
+    n: Option<usize>,
+    tolerance: f64,
+) -> Result<Mat<f64>, ReadError> {
+    let x = match n {
+        Some(n) => square(key, table, n)?,
+        None => table.matrix(key, None)?,
+    };
+    check_symmetric(key, &x, tolerance)?;
     Ok(x)
 }
 

@@ -25,7 +25,7 @@ pub(super) const KIND: Kind = Kind {
     name: "heavy-top",
     equation: "μ̇ = μ × ω + γ × w, γ̇ = γ × ω, μ = Jω, γ upward, w the weight, all in the body; ġ = gω̂, gγ = e3",
     summary: "the heavy top about a fixed point, by its momentum and the vertical in the body, or by its attitude",
-    ..Kind::of::<Keys, Top<WithAttitude>>(|section| read(Read::read(section)?))
+    ..Kind::of::<Keys, Top<WithAttitude>>(|section| read_with(section, read))
 };
 
 keys! { Keys [body_keys] {
@@ -49,19 +49,22 @@ const AGREED: f64 = 1e-6;
 
 fn read(mut keys: Keys) -> Result<Forms, ReadError> {
     let (body, mut notes) = (keys.body_keys(), Vec::new());
-    let stated = match keys.vertical {
-        None => None,
-        Some(vertical) => {
-            check_unit("vertical", &vertical.0, &mut notes)?;
-            let vertical = Vector3::from(vertical.0);
-            Some(vertical / vertical.norm())
+    let vertical = keys.vertical.and_then(|vertical| {
+        let Some(vertical) = vertical else { return Ok(None) };
+        check_unit("vertical", &vertical.0, &mut notes)?;
+        let vertical = Vector3::from(vertical.0);
+        Ok(Some(vertical / vertical.norm()))
+    });
+    let stands = match &vertical {
+        Ok(None) if !body.has_attitude() => {
+            let message = "expected `vertical`, `attitude` or `quaternion`, found none of them";
+            Err(Refusal::section(message))
         }
+        _ => Ok(()),
     };
-    if stated.is_none() && !body.has_attitude() {
-        let message = "expected `vertical`, `attitude` or `quaternion`, found none of them";
-        return Err(Refusal::section(message).into());
-    }
-    let mut body = body.start(stated.map_or_else(Matrix3::identity, upright))?;
+    let upright = vertical.as_ref().ok().and_then(|vertical| vertical.map(upright));
+    let (body, weight) = (body.start(upright.unwrap_or_else(Matrix3::identity)), keys.weight);
+    let (stated, (), mut body, weight) = all!(vertical, stands, body, weight)?;
     let of_attitude = || body.attitude.row(2).transpose();
     let vertical = stated.map_or_else(of_attitude, |vertical| body.along_axes(vertical));
     let apart = (vertical - of_attitude()).norm();
@@ -70,7 +73,7 @@ fn read(mut keys: Keys) -> Result<Forms, ReadError> {
         let help = Some("leave one of the two out".into());
         return Err(Refusal { help, ..Refusal::at("vertical", message) }.into());
     }
-    let weight = body.along_axes(keys.weight.0.into());
+    let weight = body.along_axes(weight.0.into());
     body.notes.extend(notes);
     let top = HeavyTop::new(body.inertia, weight.into())?;
     let spec = TopSpec { body, top, weight, vertical };

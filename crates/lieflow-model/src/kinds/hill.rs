@@ -9,7 +9,7 @@ use lieflow::methods::magnus::Magnus6;
 use lieflow::problems::{LinearHamiltonian, hill};
 use lieflow::scalar::{Ops, tally};
 
-use super::entries::{check_symmetric, numbered, rows, square, symplectic_defect, trace};
+use super::entries::{check_symmetric, numbered, rows, symmetric, symplectic_defect, trace};
 use super::flow::OnMatrices;
 use super::matrix::MatrixAction;
 use super::prelude::*;
@@ -19,7 +19,7 @@ pub(super) const MATHIEU: Kind = Kind {
     name: "mathieu",
     equation: "ġ = [0 1; −(a − 2q cos 2t) 0] g, g = 𝟙 at the start",
     summary: "Mathieu's equation x'' + (a - 2q cos 2t) x = 0, its solutions as a matrix of Sp(2)",
-    ..Kind::of::<MathieuKeys, Hill>(|section| read_mathieu(Read::read(section)?))
+    ..Kind::of::<MathieuKeys, Hill>(|section| read_with(section, read_mathieu))
 };
 
 /// The entry of Hill's equation in the list of kinds.
@@ -28,7 +28,7 @@ pub(super) const HILL: Kind = Kind {
     equation: "ġ = [0 𝟙; −(A − 2Q cos 2πt/T) 0] g, g = 𝟙 at the start",
     summary: "m coupled equations x'' + (A - 2Q cos 2πt/T) x = 0, their solutions as a matrix of \
               Sp(2m)",
-    ..Kind::of::<HillKeys, Hill>(|section| read_hill(Read::read(section)?))
+    ..Kind::of::<HillKeys, Hill>(|section| read_with(section, read_hill))
 };
 
 keys! { MathieuKeys {
@@ -53,19 +53,21 @@ struct Hill {
 type Q = Quantity<Hill>;
 
 fn read_mathieu(MathieuKeys { a, q }: MathieuKeys) -> Result<Forms, ReadError> {
+    let (a, q) = all!(a, q)?;
     let one = |x: Real| Mat::full(1, 1, x.0);
     Ok(Forms::of(Hill { a: one(a), q: one(q), period: PI }))
 }
 
 fn read_hill(keys: HillKeys) -> Result<Forms, ReadError> {
-    let a = keys.a.matrix("a", None)?;
-    let q = square("q", &keys.q, a.nrows())?;
-    check_symmetric("a", &a, 0.0)?;
-    check_symmetric("q", &q, 0.0)?;
-    match keys.period.0 > 0.0 {
-        true => Ok(Forms::of(Hill { a, q, period: keys.period.0 })),
-        false => Err(Refusal::at("period", format!("{}, expected > 0", keys.period.0)).into()),
-    }
+    let a = keys.a.and_then(|a| a.matrix("a", None));
+    let symmetry = seen(&a).and_then(|a| Ok(check_symmetric("a", a, 0.0)?));
+    let q = keys.q.and_then(|q| symmetric("q", &q, Some(seen(&a)?.nrows()), 0.0));
+    let period = keys.period.and_then(|Real(period)| match period > 0.0 {
+        true => Ok(period),
+        false => Err(Refusal::at("period", format!("{period}, expected > 0")).into()),
+    });
+    let (a, (), q, period) = all!(a, symmetry, q, period)?;
+    Ok(Forms::of(Hill { a, q, period }))
 }
 
 /// Steps over the period of the monodromy in the facts: it is exact to rounding where a period has a few

@@ -5,7 +5,7 @@ use lieflow::dense::{largest_entry, norm};
 use lieflow::problems::{IsospectralFlow, toda_lattice};
 
 use super::entries::{
-    ROUNDING, check_symmetric, diagonal, eigenvalues, numbered, upper, upper_columns,
+    ROUNDING, check_symmetric, diagonal, eigenvalues, numbered, symmetric, upper, upper_columns,
 };
 use super::flow::OnMatrices;
 use super::matrix::MatrixAction;
@@ -16,7 +16,7 @@ pub(super) const TODA: Kind = Kind {
     name: "toda",
     equation: "L̇ = [L₋ᵀ − L₋, L], L₋ what is below the diagonal",
     summary: "Toda's flow of a symmetric matrix, and the lattice of particles in Flaschka's variables",
-    ..Kind::of::<TodaKeys, Isospectral>(|section| read_toda(Read::read(section)?))
+    ..Kind::of::<TodaKeys, Isospectral>(|section| read_with(section, read_toda))
 };
 
 /// The entry of Brockett's flow in the list of kinds.
@@ -24,9 +24,7 @@ pub(super) const DOUBLE_BRACKET: Kind = Kind {
     name: "double-bracket",
     equation: "L̇ = [[N, L], L], N diagonal",
     summary: "Brockett's flow of a symmetric matrix, which diagonalises and sorts",
-    ..Kind::of::<DoubleBracketKeys, Isospectral>(|section| {
-        read_double_bracket(Read::read(section)?)
-    })
+    ..Kind::of::<DoubleBracketKeys, Isospectral>(|section| read_with(section, read_double_bracket))
 };
 
 /// The entry of the QR flow in the list of kinds.
@@ -34,7 +32,7 @@ pub(super) const QR_FLOW: Kind = Kind {
     name: "qr-flow",
     equation: "L̇ = [log(L)₋ᵀ − log(L)₋, L]: L(k) is the k-th iterate",
     summary: "the flow through the iterates of the QR algorithm of a positive definite matrix",
-    ..Kind::of::<QrKeys, Isospectral>(|section| read_qr(Read::read(section)?))
+    ..Kind::of::<QrKeys, Isospectral>(|section| read_with(section, read_qr))
 };
 
 keys! { TodaKeys {
@@ -62,16 +60,16 @@ struct Isospectral {
 type Q = Quantity<Isospectral>;
 
 /// The symmetric matrix under the key `matrix`.
-fn symmetric(table: &Table) -> Result<Mat<f64>, Refusal> {
-    let l = table.matrix("matrix", None)?;
-    check_symmetric("matrix", &l, ROUNDING)?;
-    Ok(l)
+fn matrix_of(table: &Table) -> Result<Mat<f64>, ReadError> {
+    symmetric("matrix", table, None, ROUNDING)
 }
 
 fn read_toda(keys: TodaKeys) -> Result<Forms, ReadError> {
-    let matrix = match exactly_one(("positions", keys.positions), ("matrix", keys.matrix))? {
+    let TodaKeys { positions, momenta, matrix } = keys;
+    let (positions, momenta, matrix) = all!(positions, momenta, matrix)?;
+    let matrix = match exactly_one(("positions", positions), ("matrix", matrix))? {
         Either::First(positions) => {
-            let (q, p) = (positions.values(), keys.momenta.map_or(Vec::new(), |p| p.values()));
+            let (q, p) = (positions.values(), momenta.map_or(Vec::new(), |p| p.values()));
             if p.len() != q.len() {
                 let message =
                     format!("found {} momenta of {} particles, expected as many", p.len(), q.len());
@@ -84,27 +82,33 @@ fn read_toda(keys: TodaKeys) -> Result<Forms, ReadError> {
             }
             matrix
         }
-        Either::Second(_) if keys.momenta.is_some() => {
+        Either::Second(_) if momenta.is_some() => {
             return Err(Refusal::at("momenta", "a matrix has no momenta; leave momenta out").into());
         }
-        Either::Second(matrix) => symmetric(&matrix)?,
+        Either::Second(matrix) => matrix_of(&matrix)?,
     };
     let flow = IsospectralFlow::toda(matrix.nrows())?;
     Ok(Forms::of(Isospectral { flow, matrix }))
 }
 
 fn read_double_bracket(keys: DoubleBracketKeys) -> Result<Forms, ReadError> {
-    let (matrix, order) = (symmetric(&keys.matrix)?, keys.order.values());
-    if order.len() != matrix.nrows() {
-        let message = format!("found {} numbers, expected {}", order.len(), matrix.nrows());
-        return Err(Refusal::at("order", message).into());
-    }
+    let matrix = keys.matrix.and_then(|table| table.matrix("matrix", None));
+    let symmetry = seen(&matrix).and_then(|l| Ok(check_symmetric("matrix", l, ROUNDING)?));
+    let order = keys.order.and_then(|order| {
+        let (order, n) = (order.values(), seen(&matrix)?.nrows());
+        let message = || format!("found {} numbers, expected {n}", order.len());
+        match order.len() == n {
+            true => Ok(order),
+            false => Err(Refusal::at("order", message()).into()),
+        }
+    });
+    let (matrix, (), order) = all!(matrix, symmetry, order)?;
     let flow = IsospectralFlow::double_bracket(&order)?;
     Ok(Forms::of(Isospectral { flow, matrix }))
 }
 
 fn read_qr(keys: QrKeys) -> Result<Forms, ReadError> {
-    let matrix = symmetric(&keys.matrix)?;
+    let matrix = matrix_of(&keys.matrix?)?;
     let smallest = eigenvalues(&matrix).first().copied().unwrap_or(f64::NAN);
     if smallest.is_nan() || smallest <= 0.0 {
         let message = format!("an eigenvalue is {smallest:.3e}, expected all to be > 0");

@@ -17,7 +17,7 @@ pub(super) const KIND: Kind = Kind {
     name: "lorentz",
     equation: "d(γv)/dτ = (q/m)(γE + γv × B), dγ/dτ = (q/m) E·γv",
     summary: "a charged particle in constant fields, by its four-velocity; t is its proper time",
-    ..Kind::of::<Keys, Particle>(|section| read(Read::read(section)?))
+    ..Kind::of::<Keys, Particle>(|section| read_with(section, read))
 };
 
 keys! { Keys {
@@ -37,10 +37,13 @@ struct Particle {
 type Q = Quantity<Particle>;
 
 fn read(keys: Keys) -> Result<Forms, ReadError> {
-    let (e, b) = (Vector3::from(keys.electric.0), Vector3::from(keys.magnetic.0));
-    let particle = ChargedParticle::new(keys.charge_to_mass.0, move |_: f64, _: &Mat<f64>| (e, b))?;
+    let Keys { charge_to_mass, electric, magnetic, velocity } = keys;
+    let (charge_to_mass, electric, magnetic, velocity) =
+        all!(charge_to_mass, electric, magnetic, velocity)?;
+    let (e, b) = (Vector3::from(electric.0), Vector3::from(magnetic.0));
+    let particle = ChargedParticle::new(charge_to_mass.0, move |_: f64, _: &Mat<f64>| (e, b))?;
     let start = particle
-        .four_velocity(keys.velocity.0)
+        .four_velocity(velocity.0)
         .map_err(|error| Refusal::from(error).about("velocity"))?;
     let mut tensor = particle.group().zero();
     particle.f(0.0, &start, &mut tensor, &mut particle.work());

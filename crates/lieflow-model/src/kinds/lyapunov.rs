@@ -17,7 +17,7 @@ pub(super) const KIND: Kind = Kind {
     name: "lyapunov",
     equation: "ẋ = F(t, x), Ẏ = DF(t, x)Y = d(QR)/dt, growth ln R_ii",
     summary: "Lyapunov exponents of a vector field in formulas, by continuous QR",
-    ..Kind::of::<Keys, Exponents>(|section| read(Read::read(section)?))
+    ..Kind::of::<Keys, Exponents>(|section| read_with(section, read))
 };
 
 keys! { Keys [formula_keys sample_keys] {
@@ -45,19 +45,21 @@ const DERIVED_MAX: usize = 1 << 18;
 
 fn read(mut keys: Keys) -> Result<Forms, ReadError> {
     let (formulas, samples) = (keys.formula_keys(), keys.sample_keys());
-    let x = keys.x.values();
+    let x = keys.x?.values();
     let n = x.len();
     if !(1..=MAX).contains(&n) {
         return Err(Refusal::at("x", format!("found {n} numbers, expected 1 to {MAX}")).into());
     }
-    let variables = keys.variables.unwrap_or_else(|| numbered("x", n));
+    let variables = keys.variables?.unwrap_or_else(|| numbered("x", n));
     if variables.len() != n {
         let message = format!("found {} names, expected {n} as x has numbers", variables.len());
         return Err(Refusal::at("variables", message).into());
     }
     let names = ["t".into()].into_iter().chain(variables);
-    let names = formulas.names("variables", names, samples)?;
-    let field = keys.field.read("field", n, &names)?;
+    let names = formulas.names("variables", names, samples);
+    let field = keys.field.and_then(|field| field.read("field", n, seen(&names)?));
+    let names = names.and_then(Names::checked);
+    let (names, field) = all!(names, field)?;
     let derived = |f: &Formula| f.operations() * (1..=n).filter(|&j| f.uses(j)).count();
     if field.iter().map(derived).sum::<usize>() > DERIVED_MAX {
         let message = format!("its derivatives take more than {DERIVED_MAX} operations");

@@ -4,7 +4,7 @@
 use lieflow::dense::{multiply, norm, qr};
 use lieflow::problems::Oja;
 
-use super::entries::{ROUNDING, check_rows, check_symmetric, eigenvalues, rows};
+use super::entries::{ROUNDING, check_rows, eigenvalues, rows, symmetric};
 use super::flow::OnMatrices;
 use super::matrix::MatrixAction;
 use super::prelude::*;
@@ -14,7 +14,7 @@ pub(super) const KIND: Kind = Kind {
     name: "oja",
     equation: "Ẋ = AX − XXᵀAX",
     summary: "Oja's flow on orthonormal columns, to the leading eigenvectors of a symmetric matrix",
-    ..Kind::of::<Keys, OjaFlow>(|section| read(Read::read(section)?))
+    ..Kind::of::<Keys, OjaFlow>(|section| read_with(section, read))
 };
 
 keys! { Keys {
@@ -36,9 +36,10 @@ type Q = Quantity<OjaFlow>;
 const DEPENDENT: f64 = 1e-8;
 
 fn read(keys: Keys) -> Result<Forms, ReadError> {
-    let (a, x) = (keys.a.matrix("a", None)?, keys.x.columns("x")?);
+    let a = keys.a.and_then(|a| symmetric("a", &a, None, ROUNDING));
+    let x = keys.x.and_then(|x| x.columns("x"));
+    let (a, x) = all!(a, x)?;
     check_rows("x", &x, a.nrows())?;
-    check_symmetric("a", &a, ROUNDING)?;
     if x.ncols() > x.nrows() {
         let message = format!("{} columns of {} rows depend on each other", x.ncols(), x.nrows());
         return Err(Refusal::at("x", message).into());

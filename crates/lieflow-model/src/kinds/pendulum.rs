@@ -14,7 +14,7 @@ pub(super) const KIND: Kind = Kind {
     name: "spherical-pendulum",
     equation: "q̇ = ω × q, ω̇ = −(g/ℓ) q × e₃",
     summary: "the spherical pendulum, by its direction and its angular velocity; e3 points upward",
-    ..Kind::of::<Keys, Pendulum>(|section| read(Read::read(section)?))
+    ..Kind::of::<Keys, Pendulum>(|section| read_with(section, read))
 };
 
 keys! { Keys {
@@ -35,10 +35,11 @@ struct Pendulum {
 type Q = Quantity<Pendulum>;
 
 fn read(keys: Keys) -> Result<Forms, ReadError> {
-    let rate2 = keys.gravity_over_length.0;
-    let pendulum = SphericalPendulum::new(rate2)?;
+    let Keys { gravity_over_length, direction, velocity } = keys;
+    let pendulum = gravity_over_length.and_then(|x| Ok((SphericalPendulum::new(x.0)?, x.0)));
+    let ((pendulum, rate2), direction, velocity) = all!(pendulum, direction, velocity)?;
     let start = pendulum
-        .state(keys.direction.0, keys.velocity.0)
+        .state(direction.0, velocity.0)
         .map_err(|error| Refusal::from(error).about("direction"))?;
     Ok(Forms::of(Pendulum { pendulum, rate2, start }))
 }

@@ -27,8 +27,8 @@ use crate::problem::{
     Asked, Figure, Form, Forms, KeyInfo, Kind, Model, Orders, Outcome, PARAMETERS, Plan, Problem,
     QuantityInfo, ReadForms, RowCurve, Run, Stepper, Steps, Watcher, high_order,
 };
-use crate::reader::KeyReader;
 use crate::reader::values::counted;
+use crate::reader::{KeyReader, Mistake};
 use crate::reader::{Refusal, Shape, Value};
 use crate::schema::{Row, Schema};
 
@@ -72,7 +72,7 @@ read_by_keys! {
         figure: Drawing,
         drawn: &'static str,
         observed: Vec<&'static str>,
-        keys: Vec<Key>,
+        keys: Vec<KeyText>,
         quantities: Vec<QuantityText>,
     }
 }
@@ -80,7 +80,7 @@ read_by_keys! {
 read_by_keys! {
     /// A key of a preset.
     #[derive(Debug)]
-    struct Key {
+    struct KeyText {
         name: &'static str,
         meaning: &'static str,
         /// The length of the list; none for one number.
@@ -154,7 +154,7 @@ impl Preset {
         let (problem, values) = (section("problem"), section("values"));
         let root = Spanned::new(root.span(), DeValue::Table(root.into_inner()));
         let stated = Stated::read(&root).unwrap_or_else(|error| panic!("a preset: {error:?}"));
-        let info = |key: &Key| KeyInfo {
+        let info = |key: &KeyText| KeyInfo {
             name: key.name,
             meaning: key.meaning,
             shape: key.numbers.map_or(Shape::Number, |n| Shape::Numbers(n.0 as usize)),
@@ -179,31 +179,7 @@ impl Preset {
     }
 
     pub(super) fn read(&'static self, section: &Value<'_>) -> Result<Forms, ReadError> {
-        let keys = &self.stated.keys;
-        let mut section = KeyReader::of(section, &self.key_names)?;
-        let lists = keys.iter().map(|Key { name, numbers: count, .. }| {
-            section.read(name, |value| match count {
-                None => Ok(vec![Real::read(value)?]),
-                Some(count) => counted(value, count.0 as usize, "numbers"),
-            })
-        });
-        let lists: Vec<_> = lists.collect();
-        section.check()?;
-        let mut parameters = Vec::new();
-        for (Key { name, numbers, positive, .. }, list) in keys.iter().zip(lists) {
-            for (i, Real(x)) in section.or_missing(name, list)?.into_iter().enumerate() {
-                let (parameter, place) = match numbers {
-                    None => ((*name).into(), (*name).into()),
-                    Some(_) => (format!("{name}{}", i + 1), name.index(i)),
-                };
-                if *positive == Some(true) && !(x > 0.0 && x.recip().is_finite()) {
-                    let message = format!("{place} = {x}, expected a finite number > 0");
-                    return Err(Refusal::at(place, message).into());
-                }
-                parameters.push((parameter, Real(x)));
-            }
-        }
-        let parameters: Parameters = parameters.into_iter().collect();
+        let parameters: Parameters = self.parameters(section)?.into_iter().collect();
         let base = self.base(&parameters)?;
         let mut variables = Vec::new();
         for quantity in &self.stated.observed {
@@ -219,6 +195,35 @@ impl Preset {
         let (state, figure) = (&*preset.state, (preset.figure.0)(preset.drawn));
         let form = Form { layer, whole_state: false, state, figure, run };
         Ok(Forms { formula, ..Forms::one(form) })
+    }
+
+    /// The numbers of the keys.
+    fn parameters(&'static self, section: &Value<'_>) -> Result<Vec<(String, Real)>, ReadError> {
+        let (mut parameters, mut mistakes) = (Vec::new(), ReadError::default());
+        let Some(mut section) = KeyReader::of(section, &self.key_names, &mut mistakes) else {
+            return mistakes.or(None);
+        };
+        for KeyText { name, numbers, positive, .. } in &self.stated.keys {
+            let list = section.read_by(name, |value, mistakes| {
+                mistakes.keep(match numbers {
+                    None => Real::read(value).map(|x| vec![x]),
+                    Some(count) => counted(value, count.0 as usize, "numbers"),
+                })
+            });
+            for (i, Real(x)) in list.into_iter().flatten().enumerate() {
+                let (parameter, place) = match numbers {
+                    None => ((*name).into(), (*name).into()),
+                    Some(_) => (format!("{name}{}", i + 1), name.index(i)),
+                };
+                if *positive == Some(true) && !(x > 0.0 && x.recip().is_finite()) {
+                    let message = format!("{place} = {x}, expected a finite number > 0");
+                    section.refuse(Refusal::at(place, message));
+                    break;
+                }
+                parameters.push((parameter, Real(x)));
+            }
+        }
+        mistakes.or(Some(parameters))
     }
 
     /// The problem of the base.
@@ -240,11 +245,12 @@ impl Preset {
         // What the base refuses stands in no line of the scene but its section.
         let values = DeTable::parse(&text).map_err(|error| Refusal::section(error.message()))?;
         problem.extend(values.into_inner());
-        kind.read_problem(&Spanned::new(0..0, DeValue::Table(problem))).map_err(|error| match error
-        {
-            ReadError::Refused(_) => error,
-            wrong => Refusal::section(wrong.in_words("problem").0).into(),
-        })
+        let in_words = |mistake| match mistake {
+            Mistake::Refused(refusal) => refusal,
+            wrong => Refusal::section(wrong.in_words("problem").0),
+        };
+        kind.read_problem(&Spanned::new(0..0, DeValue::Table(problem)))
+            .map_err(|error| error.mistakes.into_iter().map(in_words).collect::<Vec<_>>().into())
     }
 }
 
@@ -273,7 +279,7 @@ impl QuantityText {
         self.columns.as_deref().unwrap_or_default()
     }
 
-    fn read(&self, names: &Names) -> Result<QuantityFormulas, Refusal> {
+    fn read(&self, names: &Names) -> Result<QuantityFormulas, ReadError> {
         let terms = self.kept.as_ref().and_then(|law| law.terms.as_ref());
         let terms = terms.map(|text| Formula::read(self.name, text, names)).transpose()?;
         let values = self.formulas.read(self.name, self.columns().len().max(1), names)?;

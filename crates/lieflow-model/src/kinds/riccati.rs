@@ -6,7 +6,9 @@
 use lieflow::groups::{AlgebraMatrix, MatrixGroup};
 use lieflow::problems::Flow;
 
-use super::entries::{check_symmetric, eigenvalues, numbered, square, upper, upper_columns};
+use super::entries::{
+    check_symmetric, eigenvalues, numbered, square, symmetric, upper, upper_columns,
+};
 use super::flow::OnMatrices;
 use super::matrix::MatrixAction;
 use super::prelude::*;
@@ -17,7 +19,7 @@ pub(super) const KIND: Kind = Kind {
     name: "riccati",
     equation: "Ṗ = C + DP + PDᵀ − PBP",
     summary: "the matrix Riccati equation P' = C + DP + PD' − PBP, on Lagrangian subspaces",
-    ..Kind::of::<Keys, Riccati>(|section| read(Read::read(section)?))
+    ..Kind::of::<Keys, Riccati>(|section| read_with(section, read))
 };
 
 keys! { Keys {
@@ -39,13 +41,13 @@ struct Riccati {
 type Q = Quantity<Riccati>;
 
 fn read(keys: Keys) -> Result<Forms, ReadError> {
-    let p = keys.p.matrix("p", None)?;
+    let p = keys.p?.matrix("p", None)?;
     let m = p.nrows();
-    let (c, b) = (square("c", &keys.c, m)?, square("b", &keys.b, m)?);
-    let d = keys.d.map_or(Ok(Mat::zeros(m, m)), |d| square("d", &d, m))?;
-    for (key, x) in [("c", &c), ("b", &b), ("p", &p)] {
-        check_symmetric(key, x, 0.0)?;
-    }
+    let of_p = |key, table: Key<Table>| table.and_then(|x| symmetric(key, &x, Some(m), 0.0));
+    let (c, b) = (of_p("c", keys.c), of_p("b", keys.b));
+    let d = keys.d.and_then(|d| d.map_or(Ok(Mat::zeros(m, m)), |d| square("d", &d, m)));
+    let start = check_symmetric("p", &p, 0.0);
+    let (c, d, b, ()) = all!(c, d, b, start)?;
     Ok(Forms::of(Riccati { c, d, b, p }))
 }
 

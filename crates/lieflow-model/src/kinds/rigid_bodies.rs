@@ -17,7 +17,7 @@ pub(super) const KIND: Kind = Kind {
     name: "rigid-bodies",
     equation: "ṁᵢ = mᵢ × Jᵢ⁻¹mᵢ, each in its body",
     summary: "many free rigid bodies as one system, by their momenta",
-    ..Kind::of::<Keys, Bodies>(|section| read(Read::read(section)?))
+    ..Kind::of::<Keys, Bodies>(|section| read_with(section, read))
 };
 
 keys! { Keys {
@@ -44,14 +44,18 @@ struct Bodies {
 type Q = Quantity<Bodies>;
 
 fn read(Keys { bodies: keys }: Keys) -> Result<Forms, ReadError> {
+    let keys = keys?;
     if keys.is_empty() {
         return Err(Refusal::at("bodies", "no bodies, expected at least one").into());
     }
     let inertia: Vec<_> = keys.iter().map(|keys| keys.inertia.0).collect();
-    let body = |(i, inertia): (usize, &[f64; 3])| {
-        RigidBody::new(*inertia).map_err(|error| Refusal::from(error).about("bodies".index(i)))
-    };
-    let bodies = inertia.iter().enumerate().map(body).collect::<Result<_, _>>()?;
+    let mut mistakes = ReadError::default();
+    let bodies = inertia.iter().enumerate().filter_map(|(i, inertia)| {
+        let refused = |error| Refusal::from(error).about("bodies".index(i));
+        mistakes.keep(RigidBody::new(*inertia).map_err(refused))
+    });
+    let bodies = bodies.collect();
+    let bodies = mistakes.or(Some(bodies))?;
     let start = keys.iter().map(|keys| keys.momentum_body.0.into()).collect();
     Ok(Forms::of(Bodies { bodies, inertia, start }))
 }

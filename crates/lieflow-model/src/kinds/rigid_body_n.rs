@@ -14,7 +14,7 @@ pub(super) const KIND: Kind = Kind {
     name: "rigid-body-n",
     equation: "ṁ = [m, Ω], Ω_ij = m_ij/J_ij, with J_ij = λ_i + λ_j for Manakov's body",
     summary: "the free rigid body in n dimensions, by its momentum on so(n)*",
-    ..Kind::of::<Keys, Body>(|section| read(Read::read(section)?))
+    ..Kind::of::<Keys, Body>(|section| read_with(section, read))
 };
 
 keys! { Keys {
@@ -39,14 +39,26 @@ type Q = Quantity<Body>;
 const WATCHED: usize = 8;
 
 fn read(keys: Keys) -> Result<Forms, ReadError> {
-    let momentum = keys.momentum.values();
-    let Some(start) = antisymmetric(&momentum) else {
-        let message = format!("found {} numbers, expected n(n-1)/2", momentum.len());
-        return Err(Refusal::at("momentum", message).into());
-    };
-    let n = start.nrows();
-    let which = exactly_one(("mass_moments", keys.mass_moments), ("inertia", keys.inertia))?;
-    let (body, lambda) = match which {
+    let momentum = keys.momentum.and_then(|momentum| {
+        let above = momentum.values();
+        let message = || format!("found {} numbers, expected n(n-1)/2", above.len());
+        Ok(antisymmetric(&above).ok_or_else(|| Refusal::at("momentum", message()))?)
+    });
+    let n = seen(&momentum).map(Mat::nrows);
+    let body = body(keys.mass_moments, keys.inertia, n);
+    let ((body, lambda), momentum) = all!(body, momentum)?;
+    Ok(Forms::of(Body { body, lambda, momentum }))
+}
+
+/// The body in n dimensions, and λ of Manakov's.
+fn body(
+    mass_moments: Key<Option<List>>,
+    inertia: Key<Option<List>>,
+    n: Result<usize, ReadError>,
+) -> Result<(RigidBodyN, Option<Vec<f64>>), ReadError> {
+    let which = exactly_one(("mass_moments", mass_moments?), ("inertia", inertia?))?;
+    let n = n?;
+    match which {
         Either::First(lambda) => {
             let lambda = lambda.values();
             if lambda.len() != n {
@@ -62,11 +74,10 @@ fn read(keys: Keys) -> Result<Forms, ReadError> {
                 let message = format!("{first} + {second} = {sum}, expected a number > 0");
                 return Err(Refusal::at(second, message).into());
             }
-            (RigidBodyN::manakov(&lambda)?, Some(lambda))
+            Ok((RigidBodyN::manakov(&lambda)?, Some(lambda)))
         }
-        Either::Second(inertia) => (RigidBodyN::from_pairs(n, &inertia.values())?, None),
-    };
-    Ok(Forms::of(Body { body, lambda, momentum: start }))
+        Either::Second(inertia) => Ok((RigidBodyN::from_pairs(n, &inertia.values())?, None)),
+    }
 }
 
 impl Body {

@@ -5,7 +5,7 @@ use lieflow::dense::squared_norm;
 use lieflow::problems::{amplitudes, populations, schrodinger};
 use lieflow::scalar::{Ops, tally};
 
-use super::entries::{check_antisymmetric, check_symmetric, numbered, square};
+use super::entries::{check_antisymmetric, numbered, square, symmetric};
 use super::flow::OnMatrices;
 use super::matrix::MatrixAction;
 use super::prelude::*;
@@ -15,7 +15,7 @@ pub(super) const KIND: Kind = Kind {
     name: "schrodinger",
     equation: "iψ̇ = (H₀ + a(t)H₁)ψ, a(t) = cos(ωt + φ) exp(−((t − t₁)/w)²), the last factor with a pulse",
     summary: "Schrödinger's equation with n levels under a drive",
-    ..Kind::of::<Keys, Levels>(|section| read(Read::read(section)?))
+    ..Kind::of::<Keys, Levels>(|section| read_with(section, read))
 };
 
 keys! { Keys {
@@ -44,36 +44,45 @@ struct Levels {
 type Q = Quantity<Levels>;
 
 fn read(keys: Keys) -> Result<Forms, ReadError> {
-    let energies = keys.energies.values();
-    let n = energies.len();
-    let real = square("coupling", &keys.coupling, n)?;
-    check_symmetric("coupling", &real, 0.0)?;
-    let imaginary = match &keys.coupling_imaginary {
-        Some(table) => square("coupling_imaginary", table, n)?,
-        None => Mat::zeros(n, n),
+    let Keys { frequency, phase, pulse, .. } = keys;
+    let pulse = pulse.and_then(|pulse| match pulse {
+        Some(Reals([_, width])) if width <= 0.0 => {
+            Err(Refusal::at("pulse".index(1), format!("width {width}, expected > 0")).into())
+        }
+        pulse => Ok(pulse),
+    });
+    let energies = keys.energies.map(|energies| energies.values());
+    let n = seen(&energies).map(Vec::len);
+    let real = keys.coupling.and_then(|x| symmetric("coupling", &x, Some(n.clone()?), 0.0));
+    let imaginary = keys.coupling_imaginary.and_then(|table| {
+        let (key, n) = ("coupling_imaginary", n.clone()?);
+        let x = table.map_or(Ok(Mat::zeros(n, n)), |table| square(key, &table, n))?;
+        check_antisymmetric(key, &x)?;
+        Ok(x)
+    });
+    let one_a_level = |key: &str, numbers: Option<List>| {
+        let n = n.clone()?;
+        let numbers = numbers.map_or(vec![0.0; n], |numbers| numbers.values());
+        let message = || format!("found {} numbers, expected {n}, one a level", numbers.len());
+        match numbers.len() == n {
+            true => Ok(numbers),
+            false => Err(ReadError::from(Refusal::at(key, message()))),
+        }
     };
-    check_antisymmetric("coupling_imaginary", &imaginary)?;
-    let parts = [
-        ("amplitudes", keys.amplitudes.values()),
-        ("amplitudes_imaginary", keys.amplitudes_imaginary.map_or(vec![0.0; n], |x| x.values())),
-    ];
-    if let Some((key, part)) = parts.iter().find(|(_, part)| part.len() != n) {
-        let message = format!("found {} numbers, expected {n}, one a level", part.len());
-        return Err(Refusal::at(*key, message).into());
-    }
-    if let Some([_, width]) = keys.pulse.map(|pulse| pulse.0)
-        && width <= 0.0
-    {
-        return Err(Refusal::at("pulse".index(1), format!("width {width}, expected > 0")).into());
-    }
-    let psi: Vec<_> = parts[0].1.iter().zip(&parts[1].1).map(|(re, im)| [*re, *im]).collect();
-    let start = amplitudes(&psi).map_err(|error| Refusal::from(error).about("amplitudes"))?;
+    let re = keys.amplitudes.and_then(|x| one_a_level("amplitudes", Some(x)));
+    let im = keys.amplitudes_imaginary.and_then(|x| one_a_level("amplitudes_imaginary", x));
+    let psi = all!(re, im).and_then(|(re, im)| {
+        let psi: Vec<_> = re.iter().zip(&im).map(|(re, im)| [*re, *im]).collect();
+        Ok(amplitudes(&psi).map_err(|error| Refusal::from(error).about("amplitudes"))?)
+    });
+    let (energies, real, imaginary, frequency, phase, pulse, start) =
+        all!(energies, real, imaginary, frequency, phase, pulse, psi)?;
     Ok(Forms::of(Levels {
         energies,
         coupling: [real, imaginary],
-        frequency: keys.frequency.map_or(0.0, |x| x.0),
-        phase: keys.phase.map_or(0.0, |x| x.0),
-        pulse: keys.pulse.map(|pulse| pulse.0),
+        frequency: frequency.map_or(0.0, |x| x.0),
+        phase: phase.map_or(0.0, |x| x.0),
+        pulse: pulse.map(|pulse| pulse.0),
         start,
     }))
 }

@@ -17,7 +17,7 @@ pub(super) const KIND: Kind = Kind {
     name: "spin",
     equation: "ẋ = ω(t) × x, ω(t) = the field turned about e₃ by rate·t",
     summary: "a magnetic moment in a field that turns about the third axis, on the sphere",
-    ..Kind::of::<Keys, Spin>(|section| read(Read::read(section)?))
+    ..Kind::of::<Keys, Spin>(|section| read_with(section, read))
 };
 
 keys! { Keys {
@@ -37,6 +37,7 @@ struct Spin {
 type Q = Quantity<Spin>;
 
 fn read(Keys { field, rate, moment }: Keys) -> Result<Forms, ReadError> {
+    let (field, rate, moment) = all!(field, rate, moment)?;
     Ok(Forms::of(Spin { field: field.0.into(), rate: rate.0, moment: moment.0.into() }))
 }
 

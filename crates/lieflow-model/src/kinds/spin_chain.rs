@@ -13,7 +13,7 @@ pub(super) const KIND: Kind = Kind {
     name: "spin-chain",
     equation: "ṡᵢ = Hᵢ × sᵢ + α (sᵢ × Hᵢ) × sᵢ, Hᵢ = sᵢ₋₁ + sᵢ₊₁ + K (sᵢ)₃ e₃ + B, α the damping",
     summary: "a chain of spins with exchange, anisotropy, a field and damping, on spheres",
-    ..Kind::of::<Keys, Chain>(|section| read(Read::read(section)?))
+    ..Kind::of::<Keys, Chain>(|section| read_with(section, read))
 };
 
 keys! { Keys {
@@ -48,10 +48,14 @@ struct Chain {
 
 type Q = Quantity<Chain>;
 
-fn read(keys: Keys) -> Result<Forms, ReadError> {
-    let (key, spins) = match exactly_one(("spins", keys.spins), ("wave", keys.wave))? {
+/// The key of the initial spins, and the spins.
+fn spins_of(
+    spins: Key<Option<Vec<Reals<3>>>>,
+    wave: Key<Option<Wave>>,
+) -> Result<(&'static str, Vec<Vector3<f64>>), ReadError> {
+    match exactly_one(("spins", spins?), ("wave", wave?))? {
         Either::First(spins) => {
-            ("spins", spins.into_iter().map(|s| Vector3::from(s.0)).collect::<Vec<_>>())
+            Ok(("spins", spins.into_iter().map(|s| Vector3::from(s.0)).collect()))
         }
         Either::Second(Wave { count, turns, cone }) => {
             if count.0 > SPINS_MAX {
@@ -64,18 +68,26 @@ fn read(keys: Keys) -> Result<Forms, ReadError> {
                 let phase = step * i as f64;
                 Vector3::new(s * phase.cos(), s * phase.sin(), c)
             };
-            ("wave", (0..count.0).map(spin).collect())
+            Ok(("wave", (0..count.0).map(spin).collect()))
         }
-    };
-    let refused = |error: Error| Refusal::from(error).about(key);
-    let mut chain = SpinChain::new(spins.len()).map_err(refused)?;
-    let start = chain.spins(|i| spins[i]).map_err(refused)?;
-    if keys.ring == Some(false) {
+    }
+}
+
+fn read(keys: Keys) -> Result<Forms, ReadError> {
+    let spins = spins_of(keys.spins, keys.wave).and_then(|(key, spins)| {
+        let refused = |error: Error| Refusal::from(error).about(key);
+        let chain = SpinChain::new(spins.len()).map_err(refused)?;
+        let start = chain.spins(|i| spins[i]).map_err(refused)?;
+        Ok((chain, start))
+    });
+    let Keys { ring, anisotropy, field, damping, .. } = keys;
+    let ((mut chain, start), ring, anisotropy, field, damping) =
+        all!(spins, ring, anisotropy, field, damping)?;
+    if ring == Some(false) {
         chain = chain.open();
     }
-    let (damping, field) =
-        (keys.damping.map_or(0.0, |x| x.0), keys.field.map_or([0.0; 3], |x| x.0));
-    chain = chain.with_anisotropy(keys.anisotropy.map_or(0.0, |x| x.0))?;
+    let (damping, field) = (damping.map_or(0.0, |x| x.0), field.map_or([0.0; 3], |x| x.0));
+    chain = chain.with_anisotropy(anisotropy.map_or(0.0, |x| x.0))?;
     chain = chain.with_field(field)?.with_damping(damping)?;
     Ok(Forms::of(Chain { chain, damped: damping != 0.0, field: field.into(), start }))
 }

@@ -11,9 +11,7 @@ use lieflow::dense::{
 };
 use lieflow::problems::SubspaceFlow;
 
-use super::entries::{
-    ROUNDING, check_rows, check_symmetric, numbered, trace, upper, upper_columns,
-};
+use super::entries::{ROUNDING, check_rows, numbered, symmetric, trace, upper, upper_columns};
 use super::flow::OnMatrices;
 use super::matrix::MatrixAction;
 use super::prelude::*;
@@ -23,7 +21,7 @@ pub(super) const KIND: Kind = Kind {
     name: "subspace",
     equation: "Ṗ = [[A, P], P] for the projector P on the subspace",
     summary: "the flow of subspaces to the leading invariant subspace of a symmetric matrix",
-    ..Kind::of::<Keys, Subspace>(|section| read(Read::read(section)?))
+    ..Kind::of::<Keys, Subspace>(|section| read_with(section, read))
 };
 
 keys! { Keys {
@@ -48,9 +46,10 @@ struct Subspace {
 const RIGHT: f64 = 1e-10;
 
 fn read(keys: Keys) -> Result<Forms, ReadError> {
-    let (a, x) = (keys.a.matrix("a", None)?, keys.x.columns("x")?);
+    let a = keys.a.and_then(|a| symmetric("a", &a, None, ROUNDING));
+    let x = keys.x.and_then(|x| x.columns("x"));
+    let (a, x) = all!(a, x)?;
     check_rows("x", &x, a.nrows())?;
-    check_symmetric("a", &a, ROUNDING)?;
     let flow = SubspaceFlow::new(a.clone())?;
     let wrong = |error: Error| Refusal::at("x", error.to_string().replace('X', "x"));
     let start = flow.span(&x).map_err(wrong)?;

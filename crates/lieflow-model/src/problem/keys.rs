@@ -6,7 +6,7 @@
 use super::kind::{KeyInfo, Kind, ReadForms};
 use super::system::System;
 use crate::formula::Names;
-use crate::reader::{Refusal, Shape};
+use crate::reader::{ReadError, Shape, all, seen};
 
 /// The keys of a kind, as listings show them.
 pub(crate) trait KeyTable {
@@ -31,7 +31,7 @@ macro_rules! keys {
         keys! { $name { $($own)* } }
     };
     ($name:ident { $($key:ident: $type:ty = $meaning:expr,)* }) => {
-        $crate::reader::read_by_keys! { struct $name { $($key: $type,)* } }
+        $crate::reader::read_by_keys! { struct $name { $($key: $crate::reader::Key<$type>,)* } }
 
         impl $crate::problem::KeyTable for $name {
             const INFO: &'static [$crate::problem::KeyInfo] = &[$($crate::problem::KeyInfo {
@@ -53,10 +53,10 @@ macro_rules! group {
         after { $($after:ident: $after_type:ty = $after_meaning:expr,)* }
     ) => {
         $(#[$doc])*
-        #[derive(Clone, Debug, Default)]
+        #[derive(Clone, Debug)]
         pub(crate) struct $table {
-            $(pub(crate) $before: $before_type,)*
-            $(pub(crate) $after: $after_type,)*
+            $(pub(crate) $before: $crate::reader::Key<$before_type>,)*
+            $(pub(crate) $after: $crate::reader::Key<$after_type>,)*
         }
 
         macro_rules! $method {
@@ -70,9 +70,10 @@ macro_rules! group {
                 impl $dollar name {
                     /// Takes the keys of the group out.
                     fn $method(&mut self) -> $($room)+::$table {
+                        use $crate::reader::take;
                         $($room)+::$table {
-                            $($before: core::mem::take(&mut self.$before),)*
-                            $($after: core::mem::take(&mut self.$after),)*
+                            $($before: take(&mut self.$before),)*
+                            $($after: take(&mut self.$after),)*
                         }
                     }
                 }
@@ -125,19 +126,29 @@ group! {
     }
 }
 
+impl SampleKeys {
+    /// The keys of a problem without samples.
+    pub(crate) fn none() -> Self {
+        SampleKeys { samples: Ok(None), interpolation: Ok(None) }
+    }
+}
+
 impl FormulaKeys {
     /// The names of these variables, the samples, the constants and the named formulas. A variable that is no name is
-    /// refused at `key`.
+    /// refused at `key`. The mistakes of named formulas are those of [`Names::checked`].
     ///
     /// # Errors
-    /// As [`Parameters::names`], [`Names::with_samples`] and [`Names::with_lets`].
+    /// As [`Parameters::names`](crate::formula::Parameters::names) and [`Names::with_samples`].
     pub(crate) fn names<N: Into<String>>(
         &self,
         key: &str,
         variables: impl IntoIterator<Item = N>,
         SampleKeys { samples, interpolation }: SampleKeys,
-    ) -> Result<Names, Refusal> {
-        let names = self.parameters.names(key, variables)?;
-        names.with_samples(samples, interpolation.as_deref())?.with_lets("let", &self.r#let)
+    ) -> Result<Names, ReadError> {
+        let parameters = seen(&self.parameters);
+        let names = parameters.and_then(|parameters| parameters.names(key, variables));
+        let (names, samples, interpolation) = all!(names, samples, interpolation)?;
+        let names = names.with_samples(samples, interpolation.as_deref())?;
+        Ok(names.with_lets("let", seen(&self.r#let)?))
     }
 }

@@ -5,11 +5,12 @@ use core::ops::Range;
 use std::collections::BTreeMap;
 
 use lieflow::Error;
+use lieflow::names::near;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::refusal::Refusal;
-use super::suggest::help_for;
+use super::suggest::{help_for, suggest};
 
 /// A value of a scene, with its place in the text.
 pub type Value<'a> = Spanned<DeValue<'a>>;
@@ -59,18 +60,73 @@ pub trait Read: Sized {
     /// Reads a value.
     ///
     /// # Errors
-    /// [`ReadError`] for a value of another type, and for one that cannot be used.
+    /// [`ReadError`] with all mistakes: values of another type, and those that cannot be used.
     fn read(value: &Value<'_>) -> Result<Self, ReadError>;
+
+    /// Reads what can be used of a value, and adds its mistakes to those known. `None` if nothing can be used.
+    fn read_usable(value: &Value<'_>, mistakes: &mut ReadError) -> Option<Self> {
+        mistakes.keep(Self::read(value))
+    }
 
     /// What a missing key means. `None` if the key must be there.
     fn missing() -> Option<Self> {
         None
     }
+
+    /// What stands for a value whose mistakes are known.
+    fn unusable() -> Option<Self> {
+        None
+    }
 }
 
-/// Why a value cannot be read.
+/// Reads a value of a type that can be used in parts, without a mistake.
+///
+/// # Errors
+/// All mistakes.
+pub(crate) fn read_whole<T: Read>(value: &Value<'_>) -> Result<T, ReadError> {
+    let mut mistakes = ReadError::default();
+    let read = T::read_usable(value, &mut mistakes);
+    mistakes.or(read)
+}
+
+/// Reads the keys of a table as K, and makes something of those that can be used.
+///
+/// # Errors
+/// The mistakes in single keys, and those that are found in what is made of them.
+pub(crate) fn read_with<K: Read, T>(
+    value: &Value<'_>,
+    make: impl FnOnce(K) -> Result<T, ReadError>,
+) -> Result<T, ReadError> {
+    let mut mistakes = ReadError::default();
+    let keys = K::read_usable(value, &mut mistakes);
+    let made = keys.and_then(|keys| mistakes.keep(make(keys)));
+    mistakes.or(made)
+}
+
+/// The value of a key. The mistakes of one that cannot be used are known to its reader, and not in the error.
+pub type Key<T> = Result<T, ReadError>;
+
+impl<T: Read> Read for Key<T> {
+    const SHAPE: Shape = T::SHAPE;
+    const OPTIONAL: bool = T::OPTIONAL;
+
+    fn read(value: &Value<'_>) -> Result<Self, ReadError> {
+        read_whole(value)
+    }
+    fn read_usable(value: &Value<'_>, mistakes: &mut ReadError) -> Option<Self> {
+        Some(T::read_usable(value, mistakes).ok_or_else(ReadError::known))
+    }
+    fn missing() -> Option<Self> {
+        T::missing().map(Ok)
+    }
+    fn unusable() -> Option<Self> {
+        Some(Err(ReadError::known()))
+    }
+}
+
+/// A mistake in a value.
 #[derive(Clone, Debug)]
-pub enum ReadError {
+pub enum Mistake {
     /// A key that does not exist, and the keys that do.
     UnknownKey(Range<usize>, String, &'static [&'static str]),
     /// A key that must be in the table at this place.
@@ -81,21 +137,58 @@ pub enum ReadError {
     Refused(Refusal),
 }
 
+impl Mistake {
+    /// The message in a section, or at the top, and a suggestion.
+    pub(crate) fn in_words(self, section: &str) -> (String, Option<String>) {
+        let within = if section.is_empty() { String::new() } else { format!(" in [{section}]") };
+        match self {
+            Mistake::UnknownKey(_, given, names) => {
+                (format!("unknown key `{given}`{within}"), Some(help_for(&given, names)))
+            }
+            Mistake::MissingKey(_, name) => (format!("missing key `{name}`{within}"), None),
+            Mistake::Wrong(_, message) => (message, None),
+            Mistake::Refused(Refusal { message, help, .. }) => (message, help),
+        }
+    }
+}
+
+/// Why something cannot be read: all its mistakes. It has none where it follows from mistakes that are known.
+#[derive(Clone, Debug, Default)]
+pub struct ReadError {
+    /// The mistakes, in the order in which they were found.
+    pub mistakes: Vec<Mistake>,
+}
+
+impl From<Mistake> for ReadError {
+    fn from(mistake: Mistake) -> Self {
+        ReadError { mistakes: vec![mistake] }
+    }
+}
 impl From<Refusal> for ReadError {
     fn from(refusal: Refusal) -> Self {
-        ReadError::Refused(refusal)
+        Mistake::Refused(refusal).into()
+    }
+}
+impl From<Vec<Refusal>> for ReadError {
+    fn from(refusals: Vec<Refusal>) -> Self {
+        ReadError { mistakes: refusals.into_iter().map(Mistake::Refused).collect() }
     }
 }
 impl From<Error> for ReadError {
     fn from(error: Error) -> Self {
-        ReadError::Refused(error.into())
+        Refusal::from(error).into()
     }
 }
 
 impl ReadError {
+    /// What follows from mistakes that are known.
+    pub(crate) fn known() -> Self {
+        ReadError::default()
+    }
+
     /// A mistake in a value.
     pub fn of(value: &Value<'_>, message: impl Into<String>) -> Self {
-        ReadError::Wrong(value.span(), message.into())
+        Mistake::Wrong(value.span(), message.into()).into()
     }
 
     /// A value where something else is expected.
@@ -112,20 +205,56 @@ impl ReadError {
         Self::of(value, format!("found {found}, expected {expected}"))
     }
 
-    /// The message of an error in a section, and a suggestion.
-    pub(crate) fn in_words(self, section: &str) -> (String, Option<String>) {
-        match self {
-            ReadError::UnknownKey(_, given, names) => {
-                (format!("unknown key `{given}` in [{section}]"), Some(help_for(&given, names)))
+    /// The message of the first mistake in the value of a key.
+    pub(crate) fn message(&self) -> Option<&str> {
+        self.mistakes.iter().find_map(|mistake| match mistake {
+            Mistake::Wrong(_, message) | Mistake::Refused(Refusal { message, .. }) => {
+                Some(message.as_str())
             }
-            ReadError::MissingKey(_, name) => {
-                (format!("missing key `{name}` in [{section}]"), None)
-            }
-            ReadError::Wrong(_, message) => (message, None),
-            ReadError::Refused(Refusal { message, help, .. }) => (message, help),
-        }
+            _ => None,
+        })
+    }
+
+    /// Adds a mistake.
+    pub(crate) fn add(&mut self, mistake: impl Into<ReadError>) {
+        self.mistakes.extend(mistake.into().mistakes);
+    }
+
+    /// Returns the value, or adds its mistakes.
+    pub(crate) fn keep<T, E: Into<ReadError>>(&mut self, read: Result<T, E>) -> Option<T> {
+        read.map_err(|error| self.add(error)).ok()
+    }
+
+    /// Returns the value if there is no mistake.
+    pub(crate) fn or<T>(self, value: Option<T>) -> Result<T, ReadError> {
+        value.filter(|_| self.mistakes.is_empty()).ok_or(self)
     }
 }
+
+/// What a value is for others that need it: its mistakes are not theirs.
+pub(crate) fn seen<T, E>(value: &Result<T, E>) -> Result<&T, ReadError> {
+    value.as_ref().map_err(|_| ReadError::known())
+}
+
+/// Takes the value of a key out.
+pub(crate) fn take<T>(key: &mut Key<T>) -> Key<T> {
+    core::mem::replace(key, Err(ReadError::known()))
+}
+
+/// The values of results, or the mistakes of all of them.
+macro_rules! all {
+    ($($result:ident),+ $(,)?) => {{
+        let mut mistakes = $crate::reader::ReadError::default();
+        $(let $result = mistakes.keep($result);)+
+        #[allow(clippy::question_mark)]
+        let values = match ($($result,)+) {
+            ($(Some($result),)+) => Some(($($result),+)),
+            _ => None,
+        };
+        mistakes.or(values)
+    }};
+}
+pub(crate) use all;
 
 impl Read for String {
     const SHAPE: Shape = Shape::Text;
@@ -152,18 +281,32 @@ impl<T: Read> Read for Option<T> {
     fn read(value: &Value<'_>) -> Result<Self, ReadError> {
         T::read(value).map(Some)
     }
+    fn read_usable(value: &Value<'_>, mistakes: &mut ReadError) -> Option<Self> {
+        T::read_usable(value, mistakes).map(Some)
+    }
     fn missing() -> Option<Self> {
         Some(None)
     }
+}
+
+/// Reads an entry of a list or a table.
+fn read_entry<T: Read>(entry: &Value<'_>, mistakes: &mut ReadError) -> Option<T> {
+    T::read_usable(entry, mistakes).or_else(T::unusable)
 }
 
 impl<T: Read> Read for Vec<T> {
     const SHAPE: Shape = Shape::ListOf(&T::SHAPE);
 
     fn read(value: &Value<'_>) -> Result<Self, ReadError> {
+        read_whole(value)
+    }
+    fn read_usable(value: &Value<'_>, mistakes: &mut ReadError) -> Option<Self> {
         let list = value.get_ref().as_array();
-        let list = list.ok_or_else(|| ReadError::expected(value, "a list"))?;
-        list.iter().map(T::read).collect()
+        let list = list.ok_or_else(|| ReadError::expected(value, "a list"));
+        let entries = mistakes.keep(list)?.iter().map(|entry| read_entry(entry, mistakes));
+        // Each is read, also after one that is wrong.
+        let entries: Vec<_> = entries.collect();
+        entries.into_iter().collect()
     }
 }
 
@@ -173,66 +316,106 @@ impl<T: Read> Read for BTreeMap<String, T> {
     const OPTIONAL: bool = true;
 
     fn read(value: &Value<'_>) -> Result<Self, ReadError> {
+        read_whole(value)
+    }
+    fn read_usable(value: &Value<'_>, mistakes: &mut ReadError) -> Option<Self> {
         let table = value.get_ref().as_table();
-        let table = table.ok_or_else(|| ReadError::expected(value, "a table"))?;
-        table.iter().map(|(key, value)| Ok((key.get_ref().to_string(), T::read(value)?))).collect()
+        let table = table.ok_or_else(|| ReadError::expected(value, "a table"));
+        let entries = mistakes.keep(table)?.iter().map(|(key, entry)| {
+            read_entry(entry, mistakes).map(|entry| (key.get_ref().to_string(), entry))
+        });
+        let entries: Vec<_> = entries.collect();
+        entries.into_iter().collect()
     }
     fn missing() -> Option<Self> {
         Some(BTreeMap::new())
     }
 }
 
-/// Reads the values of the keys of a table. All values are read before a missing key is told.
-pub(crate) struct KeyReader<'v, 'a> {
+/// Reads the values of the keys of a table.
+pub(crate) struct KeyReader<'v, 'a, 'm> {
     table: &'v DeTable<'a>,
     place: Range<usize>,
-    /// The mistakes, each with its key.
-    mistakes: Vec<(&'v str, ReadError)>,
+    names: &'static [&'static str],
+    /// The keys in the table that are none of the names, and close to none that is not there.
+    unknown: Vec<&'v str>,
+    mistakes: &'m mut ReadError,
 }
 
-impl<'v, 'a> KeyReader<'v, 'a> {
-    /// Begins to read a table that has no other keys than these.
+impl<'v, 'a, 'm> KeyReader<'v, 'a, 'm> {
+    /// Begins to read a table that has no other keys than these. `None` if the value is no table.
     pub(crate) fn of(
         value: &'v Value<'a>,
         names: &'static [&'static str],
-    ) -> Result<Self, ReadError> {
+        mistakes: &'m mut ReadError,
+    ) -> Option<Self> {
         let DeValue::Table(table) = value.get_ref() else {
             let keys = format!("a table with the keys {}", names.join(", "));
-            return Err(ReadError::expected(value, keys));
+            mistakes.add(ReadError::expected(value, keys));
+            return None;
         };
-        let unknown = table.keys().find(|key| !names.contains(&key.get_ref().as_ref()));
-        let mistake = unknown.map(|key| {
+        let mut unknown = Vec::new();
+        for key in table.keys().filter(|key| !names.contains(&key.get_ref().as_ref())) {
             let given: &str = key.get_ref();
-            (given, ReadError::UnknownKey(key.span(), given.into(), names))
-        });
-        Ok(KeyReader { table, place: value.span(), mistakes: mistake.into_iter().collect() })
+            if near(given, names).is_none_or(|name| table.contains_key(name)) {
+                unknown.push(given);
+            }
+            mistakes.add(Mistake::UnknownKey(key.span(), given.into(), names));
+        }
+        Some(KeyReader { table, place: value.span(), names, unknown, mistakes })
     }
 
-    /// Reads the value of a key. Returns `None` if the key is missing or its value has a mistake.
-    pub(crate) fn read<T>(
+    /// Reads the value of a key; of one that is misspelt, too. Returns `None` if nothing of it can be used.
+    pub(crate) fn read<T: Read>(&mut self, name: &'static str) -> Option<T> {
+        self.read_by(name, T::read_usable)
+    }
+
+    /// Adds a mistake in the value of a key.
+    pub(crate) fn refuse(&mut self, refusal: Refusal) {
+        self.mistakes.add(refusal);
+    }
+
+    /// Reads the value of a key by a function.
+    pub(crate) fn read_by<T: Read>(
         &mut self,
         name: &'static str,
-        read: impl FnOnce(&Value<'_>) -> Result<T, ReadError>,
+        read: impl FnOnce(&Value<'_>, &mut ReadError) -> Option<T>,
     ) -> Option<T> {
-        let found = read(self.table.get(name)?);
-        found.map_err(|error| self.mistakes.push((name, error))).ok()
+        if let Some(value) = entry_of(self.table, name, self.names) {
+            return read(value, self.mistakes).or_else(T::unusable);
+        }
+        // One of the unknown keys may be meant.
+        let suggested = || self.unknown.iter().any(|given| suggest(given, &[name]).is_some());
+        let may_be_there = T::OPTIONAL && T::unusable().is_none() && !self.unknown.is_empty();
+        if may_be_there || suggested() {
+            return T::unusable();
+        }
+        T::missing().or_else(|| {
+            self.mistakes.add(Mistake::MissingKey(self.place.clone(), name));
+            T::unusable()
+        })
     }
+}
 
-    /// Returns the mistake with the first key in the alphabet.
-    pub(crate) fn check(&mut self) -> Result<(), ReadError> {
-        let first = self.mistakes.drain(..).min_by_key(|(name, _)| *name);
-        first.map_or(Ok(()), |(_, error)| Err(error))
-    }
+/// The value of a key of a table with these names; of one that is none of them and close to it, where the key is not
+/// there.
+pub(crate) fn entry_of<'v, 'a>(
+    table: &'v DeTable<'a>,
+    name: &str,
+    names: &[&str],
+) -> Option<&'v Value<'a>> {
+    table.get(given_key(table, name, names)?)
+}
 
-    /// The value of a key, or what its type takes if the key is missing.
-    pub(crate) fn or_missing<T: Read>(
-        &self,
-        name: &'static str,
-        value: Option<T>,
-    ) -> Result<T, ReadError> {
-        let missing = || ReadError::MissingKey(self.place.clone(), name);
-        value.or_else(T::missing).ok_or_else(missing)
-    }
+/// The key of that name as it is spelt in a table with these names.
+pub(crate) fn given_key<'v>(
+    table: &'v DeTable<'_>,
+    name: &'v str,
+    names: &[&str],
+) -> Option<&'v str> {
+    let unknown = || table.keys().map(|key| &**key.get_ref()).filter(|key| !names.contains(key));
+    let close = || unknown().find(|key| near(key, names) == Some(name));
+    if table.contains_key(name) { Some(name) } else { close() }
 }
 
 /// The name of a key by that of its field, `let` by `r#let`.
@@ -251,7 +434,10 @@ macro_rules! read_as_held {
             const OPTIONAL: bool = <$held>::OPTIONAL;
 
             fn read(value: &Value<'_>) -> Result<Self, ReadError> {
-                Read::read(value).map($name)
+                $crate::reader::read_whole(value)
+            }
+            fn read_usable(value: &Value<'_>, mistakes: &mut ReadError) -> Option<Self> {
+                Read::read_usable(value, mistakes).map($name)
             }
             fn missing() -> Option<Self> {
                 Read::missing().map($name)
@@ -282,13 +468,18 @@ macro_rules! read_by_keys {
             fn read(
                 value: &$crate::reader::Value<'_>,
             ) -> Result<Self, $crate::reader::ReadError> {
-                use $crate::reader::{KeyReader, Read, key_name};
-                let mut keys = KeyReader::of(value, const { &[$(key_name(stringify!($key)),)*] })?;
-                $(let $key = keys.read(const { key_name(stringify!($key)) }, Read::read);)*
-                keys.check()?;
-                Ok($name {
-                    $($key: keys.or_missing(const { key_name(stringify!($key)) }, $key)?,)*
-                })
+                $crate::reader::read_whole(value)
+            }
+            fn read_usable(
+                value: &$crate::reader::Value<'_>,
+                mistakes: &mut $crate::reader::ReadError,
+            ) -> Option<Self> {
+                use $crate::reader::{KeyReader, key_name};
+                let names = const { &[$(key_name(stringify!($key)),)*] };
+                let mut keys = KeyReader::of(value, names, mistakes)?;
+                // Each is read, also after one that is wrong.
+                $(let $key = keys.read(const { key_name(stringify!($key)) });)*
+                Some($name { $($key: $key?,)* })
             }
         }
     };

@@ -6,8 +6,7 @@ use std::collections::BTreeMap;
 
 use toml::de::{DeTable, DeValue};
 
-use super::mend::every_mistake;
-use super::read::{ReadError, Value};
+use super::read::{Mistake, ReadError, Value};
 use super::refusal::{KeyPath, Refusal};
 use super::suggest::help_for;
 
@@ -73,14 +72,13 @@ impl Tree {
         let not_read = |message: &str| Mistakes(vec![Refusal::section(message)]);
         let mut root = DeTable::parse(&text).map_err(|error| not_read(error.message()))?;
         let keys = root.get_mut().remove(KEYS).ok_or_else(|| not_read("no keys"))?;
-        let place = |value: &Value<'_>, error: &ReadError| match error {
-            ReadError::UnknownKey(place, ..)
-            | ReadError::MissingKey(place, _)
-            | ReadError::Wrong(place, _) => Some(place.clone()),
-            ReadError::Refused(Refusal { key, .. }) => place_of(value, key.as_deref()?),
-        };
-        every_mistake(&text, keys.clone(), &place, read).map_err(|found| {
-            Mistakes(found.into_iter().map(|(_, error)| mistake(&keys, error)).collect())
+        read(&keys).map_err(|error| {
+            let mistakes = error.mistakes.into_iter().map(|one| refusal(&keys, one));
+            let mistakes: Vec<_> = mistakes.collect();
+            match mistakes.is_empty() {
+                true => not_read("a value that cannot be used"),
+                false => Mistakes(mistakes),
+            }
         })
     }
 }
@@ -123,18 +121,18 @@ fn quoted(text: &str) -> String {
     format!("\"{}\"", text.chars().map(escaped).collect::<String>())
 }
 
-/// A mistake in a table of keys as data.
-fn mistake(keys: &Value<'_>, error: ReadError) -> Refusal {
+/// A mistake in a table of keys by the path of its key.
+fn refusal(keys: &Value<'_>, mistake: Mistake) -> Refusal {
     let within = |place: &Range<usize>| path_at(keys, place, String::new());
-    match error {
-        ReadError::Refused(refusal) => refusal,
-        ReadError::Wrong(place, message) => Refusal { key: within(&place), message, help: None },
-        ReadError::UnknownKey(place, given, names) => Refusal {
+    match mistake {
+        Mistake::Refused(refusal) => refusal,
+        Mistake::Wrong(place, message) => Refusal { key: within(&place), message, help: None },
+        Mistake::UnknownKey(place, given, names) => Refusal {
             key: within(&place),
             message: format!("unknown key `{given}`"),
             help: Some(help_for(&given, names)),
         },
-        ReadError::MissingKey(place, name) => Refusal {
+        Mistake::MissingKey(place, name) => Refusal {
             key: within(&place).map(|table| join(&table, name)),
             message: format!("missing key `{name}`"),
             help: None,
@@ -145,25 +143,6 @@ fn mistake(keys: &Value<'_>, error: ReadError) -> Refusal {
 /// The path of an entry of a table.
 fn join(table: &str, name: &str) -> String {
     if table.is_empty() { name.into() } else { table.entry(name) }
-}
-
-/// The place of the value at a path such as `key[i,j]` or `key[i].name`; the last one on the way that is there.
-pub(crate) fn place_of(value: &Value<'_>, path: &str) -> Option<Range<usize>> {
-    let steps = path.split(['[', ']', ',', '.']).map(str::trim).filter(|step| !step.is_empty());
-    let mut place = value;
-    for (depth, step) in steps.enumerate() {
-        let next = match (step.parse::<usize>(), place.get_ref()) {
-            (Ok(i), DeValue::Array(list)) => list.get(i.wrapping_sub(1)),
-            (_, DeValue::Table(table)) => table.get(step),
-            _ => None,
-        };
-        match next {
-            Some(next) => place = next,
-            None if depth == 0 => return None,
-            None => break,
-        }
-    }
-    Some(place.span())
 }
 
 /// The path of the key or the value at a place, such as `parts[2].start`. It is empty for the whole.
@@ -207,6 +186,20 @@ impl fmt::Display for Mistakes {
 }
 
 impl core::error::Error for Mistakes {}
+
+/// Mistakes whose keys are in their refusals.
+impl From<ReadError> for Mistakes {
+    fn from(error: ReadError) -> Self {
+        let refusal = |mistake| match mistake {
+            Mistake::Refused(refusal) => refusal,
+            other => {
+                let (message, help) = other.in_words("");
+                Refusal { key: None, message, help }
+            }
+        };
+        Mistakes(error.mistakes.into_iter().map(refusal).collect())
+    }
+}
 
 impl From<bool> for Tree {
     fn from(x: bool) -> Self {

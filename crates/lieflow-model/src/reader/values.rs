@@ -197,9 +197,9 @@ impl Numbers {
     ///
     /// # Errors
     /// A refusal of `key` for rows and for another count.
-    pub fn list<const N: usize>(self, key: &str) -> Result<[f64; N], Refusal> {
+    pub fn list<const N: usize>(self, key: &str) -> Result<[f64; N], ReadError> {
         let refused =
-            |found: String| Refusal::at(key, format!("found {found}, expected {N} numbers"));
+            |found: String| Refusal::at(key, format!("found {found}, expected {N} numbers")).into();
         match self {
             Numbers::List(list) => {
                 list.try_into().map_err(|list: Vec<_>| refused(list.len().to_string()))
@@ -212,11 +212,13 @@ impl Numbers {
     ///
     /// # Errors
     /// A refusal of `key` for numbers that are no rows, and as [`Table::matrix`].
-    pub fn square(self, key: &str) -> Result<Mat<f64>, Refusal> {
+    pub fn square(self, key: &str) -> Result<Mat<f64>, ReadError> {
         match self {
             Numbers::Rows(table) => table.matrix(key, None),
             Numbers::List(list) if list.is_empty() => Table(Vec::new()).matrix(key, None),
-            Numbers::List(_) => Err(Refusal::at(key, "found numbers, expected rows of numbers")),
+            Numbers::List(_) => {
+                Err(Refusal::at(key, "found numbers, expected rows of numbers").into())
+            }
         }
     }
 }
@@ -243,9 +245,11 @@ impl Table {
     ///
     /// # Errors
     /// As [`matrix`](Self::matrix), and for rows of no numbers.
-    pub fn columns(&self, key: &str) -> Result<Mat<f64>, Refusal> {
+    pub fn columns(&self, key: &str) -> Result<Mat<f64>, ReadError> {
         match self.0.first().map(|row| row.0.len()) {
-            Some(0) => Err(Refusal::at(key, "rows of no numbers, expected at least one column")),
+            Some(0) => {
+                Err(Refusal::at(key, "rows of no numbers, expected at least one column").into())
+            }
             columns => self.matrix(key, columns),
         }
     }
@@ -254,15 +258,15 @@ impl Table {
     ///
     /// # Errors
     /// A refusal of `key` for a row of another length, and for no rows.
-    pub fn matrix(&self, key: &str, columns: Option<usize>) -> Result<Mat<f64>, Refusal> {
+    pub fn matrix(&self, key: &str, columns: Option<usize>) -> Result<Mat<f64>, ReadError> {
         let columns = columns.unwrap_or(self.0.len());
         if self.0.is_empty() {
-            return Err(Refusal::at(key, "no rows, expected at least one"));
+            return Err(Refusal::at(key, "no rows, expected at least one").into());
         }
         if let Some(i) = self.0.iter().position(|row| row.0.len() != columns) {
             let found = self.0[i].0.len();
             let message = format!("row {} has {found} numbers, expected {columns}", i + 1);
-            return Err(Refusal::at(key.index(i), message));
+            return Err(Refusal::at(key.index(i), message).into());
         }
         Ok(Mat::from_fn(self.0.len(), columns, |i, j| self.0[i].0[j].0))
     }

@@ -7,7 +7,7 @@ use lieflow::Error;
 use crate::formula::{Formula, Lets, Names, Parameters};
 use crate::problem::Model;
 use crate::problem::{FormulaKeys, Problem};
-use crate::reader::{KeyPath, Mistakes, Read, Refusal, Tree, read_by_keys};
+use crate::reader::{KeyPath, Mistakes, Read, ReadError, Refusal, Tree, read_by_keys, seen};
 use crate::schema::{Row, Schema};
 
 /// The name of the quantity that `[output.formulas]` is.
@@ -121,7 +121,8 @@ impl Columns {
         let named = named.filter_map(|name| Some((name, keys.get(name)?.clone())));
         Tree::table(named).read(|values| {
             let Named { parameters, r#let } = Named::read(values)?;
-            Ok(Columns::of(problem, asked, &FormulaKeys { parameters, r#let })?)
+            let named = FormulaKeys { parameters: Ok(parameters), r#let: Ok(r#let) };
+            Columns::of(problem, asked, &named)
         })
     }
 
@@ -134,7 +135,7 @@ impl Columns {
         problem: &Problem,
         asked: &[String],
         FormulaKeys { parameters, r#let: lets }: &FormulaKeys,
-    ) -> Result<Self, Refusal> {
+    ) -> Result<Self, ReadError> {
         let mut quantities: Vec<&'static str> =
             (problem.kind().quantities)().iter().map(|quantity| quantity.name).collect();
         quantities.sort_by_key(|name| !asked.iter().any(|asked| asked == name));
@@ -145,7 +146,7 @@ impl Columns {
             numbered.map(move |(index, name)| Column { name, quantity, index })
         });
         let columns: Vec<Column> = columns.collect();
-        let mut names = parameters.names("t", ["t"])?;
+        let mut names = seen(parameters)?.names("t", ["t"])?;
         let mut variables = vec![None];
         for (place, Column { name, .. }) in columns.iter().enumerate() {
             if names.add(name) {
@@ -153,16 +154,17 @@ impl Columns {
             }
         }
         // A name means in all formulas of a scene what it means in its problem.
-        let names = names.with_usable_lets("let", lets);
+        let names = names.with_usable_lets("let", seen(lets)?);
         Ok(Columns { columns, names, variables })
     }
 
     /// The columns of `[output.formulas]`; their names may be used after that.
     ///
     /// # Errors
-    /// As [`Names::with_lets`].
-    pub(super) fn define(&mut self, lets: &Lets) -> Result<Vec<(String, RowFormula)>, Refusal> {
-        self.names = core::mem::take(&mut self.names).with_lets(FORMULAS, lets)?;
+    /// The mistakes in the formulas.
+    pub(super) fn define(&mut self, lets: &Lets) -> Result<Vec<(String, RowFormula)>, ReadError> {
+        self.names = core::mem::take(&mut self.names).with_lets(FORMULAS, lets);
+        self.names.take_mistakes()?;
         let entries = self.names.entries_of(lets);
         Ok(entries.map(|(name, formula)| (name, self.of_rows(formula))).collect())
     }
@@ -171,7 +173,7 @@ impl Columns {
     ///
     /// # Errors
     /// As [`Formula::read`], and a refusal of `key` for the name of a quantity of several columns.
-    pub fn read(&self, key: &str, text: &str) -> Result<RowFormula, Refusal> {
+    pub fn read(&self, key: &str, text: &str) -> Result<RowFormula, ReadError> {
         let formula = || Ok(self.of_rows(Formula::read(key, text, &self.names.apart())?));
         if self.names.is_formula(text) {
             return formula();
@@ -187,7 +189,7 @@ impl Columns {
             let names: Vec<&str> = of_quantity().map(|c| c.name.as_str()).take(20).collect();
             let message = format!("`{text}` has more than one column");
             let help = Some(format!("choose from {}", names.join(", ")));
-            return Err(Refusal { help, ..Refusal::at(key, message) });
+            return Err(Refusal { help, ..Refusal::at(key, message) }.into());
         }
         formula()
     }
@@ -235,19 +237,18 @@ pub(super) fn check_plot(
     problem: &Problem,
     quantities: &[String],
     formulas: &[(String, RowFormula)],
-) -> Result<(), Refusal> {
+) -> Result<(), ReadError> {
     let columns = quantities.iter().flat_map(|name| problem.columns(name).unwrap_or_default());
     let derived = formulas.iter().map(|(name, _)| name.clone());
     let names: Vec<String> = quantities.iter().cloned().chain(columns).chain(derived).collect();
-    match plot.iter().position(|name| !names.contains(name)) {
-        None => Ok(()),
-        Some(i) => {
-            let names = each_once(names.iter().map(String::as_str));
-            let unknown = Refusal::unknown("column", &plot[i], &names).about("plot".index(i));
-            let message = format!("{}: it is not among what the scene writes", unknown.message);
-            Err(Refusal { message, ..unknown })
-        }
-    }
+    let wrong = plot.iter().enumerate().filter(|(_, name)| !names.contains(name));
+    let refusals = wrong.map(|(i, name)| {
+        let known = each_once(names.iter().map(String::as_str));
+        let unknown = Refusal::unknown("column", name, &known).about("plot".index(i));
+        let message = format!("{}: it is not among what the scene writes", unknown.message);
+        Refusal { message, ..unknown }
+    });
+    ReadError::from(refusals.collect::<Vec<_>>()).or(Some(()))
 }
 
 /// The names without those that were there before.

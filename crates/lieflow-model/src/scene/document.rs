@@ -4,14 +4,12 @@ use core::iter;
 use core::ops::Range;
 
 use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+use toml::de::{DeString, DeTable, DeValue};
 
 use super::error::{Mistakes, SceneError};
 use crate::formula::DECIMAL_POINT;
-use crate::reader::Refusal;
-use crate::reader::help_for;
-use crate::reader::{Found, every_mistake, rename};
-use crate::reader::{Read, ReadError, Value};
+use crate::problem::KeyInfo;
+use crate::reader::{Mistake, Read, ReadError, Refusal, Value, entry_of, given_key, suggest};
 
 /// The keys at the top.
 pub(super) const TOP: &[&str] = &["title", "problem", "method", "time", "events", "output"];
@@ -29,23 +27,42 @@ fn has_decimal_comma(text: &[u8], at: usize) -> bool {
     comma(at) || comma(at.wrapping_sub(1))
 }
 
+/// What to do about a text that is not TOML, by the place of the mistake.
+fn help_for_text(text: &str, place: Range<usize>) -> Option<String> {
+    if has_decimal_comma(text.as_bytes(), place.start) {
+        return Some(DECIMAL_POINT.into());
+    }
+    let wrong = text.get(place)?;
+    if let Some(quote) = wrong.chars().find(|c| "“”„‟‘’‚‛«»".contains(*c)) {
+        return Some(format!("`{quote}` is no plain quotation mark: write \""));
+    }
+    // Two values of a list with a space between them.
+    let mut values = wrong.split_whitespace();
+    let is_value = |value: &str| value.parse::<f64>().is_ok() || value.starts_with(['[', '"']);
+    let pair = values.next().zip(values.next());
+    let (first, second) = pair.filter(|(first, second)| is_value(first) && is_value(second))?;
+    Some(format!("a comma is missing: {first}, {second}"))
+}
+
 /// A parsed scene file.
 pub(super) struct Document<'a> {
     source: &'a str,
     text: &'a str,
+    /// The text without settings.
+    file: &'a str,
     root: DeTable<'a>,
 }
 
 impl<'a> Document<'a> {
-    pub(super) fn parse(source: &'a str, text: &'a str) -> Result<Self, SceneError> {
+    /// Parses a text, which is that of a file, or that with settings.
+    pub(super) fn parse(source: &'a str, text: &'a str, file: &'a str) -> Result<Self, SceneError> {
         match DeTable::parse(text) {
-            Ok(root) => Ok(Document { source, text, root: root.into_inner() }),
+            Ok(root) => Ok(Document { source, text, file, root: root.into_inner() }),
             Err(error) => {
                 let message = error.message().lines().collect::<Vec<_>>().join("; ");
                 let refused = SceneError::new(source, format!("not TOML: {message}"));
-                let at = error.span().map_or(0, |span| span.start);
-                let help = has_decimal_comma(text.as_bytes(), at).then(|| DECIMAL_POINT.into());
-                Err(refused.at(text, error.span()).with_help(help))
+                let help = help_for_text(text, error.span().unwrap_or_default());
+                Err(refused.at(text, file, error.span()).with_help(help))
             }
         }
     }
@@ -55,163 +72,92 @@ impl<'a> Document<'a> {
         without_places(&self.root)
     }
 
-    /// Refuse keys at the top that no scene has. What is close to a key of a scene is read as that key.
-    pub(super) fn check_top(&mut self) -> Result<(), SceneError> {
-        let mut mistakes = Mistakes::default();
-        let unknown = |key: &&Spanned<_>| !TOP.contains(&AsRef::<str>::as_ref(key.get_ref()));
-        let unknown: Vec<_> = self.root.keys().filter(unknown).cloned().collect();
-        for key in unknown {
-            let error = self.error(format!("unknown key `{}`", key.get_ref()), Some(key.span()));
-            mistakes.keep::<()>(Err(error.with_help(Some(help_for(key.get_ref(), TOP)))));
-            rename(&mut self.root, key.get_ref(), TOP);
-        }
-        mistakes.or(Some(()))
+    /// The keys at the top that no scene has.
+    fn unknown(&self) -> impl Iterator<Item = &Spanned<DeString<'a>>> {
+        self.root.keys().filter(|key| !TOP.contains(&key.get_ref().as_ref()))
     }
 
-    /// The value of a key at the top that may be missing, as T.
-    pub(super) fn optional<T: Read>(&self, key: &str) -> Result<Option<T>, SceneError> {
-        let Some(value) = self.root.get(key) else { return Ok(None) };
-        self.read(key, value.clone(), Read::read)
+    /// Refuses the keys at the top that no scene has.
+    pub(super) fn check_top(&self) -> Result<(), ReadError> {
+        let mistake = |key: &Spanned<DeString<'_>>| {
+            Mistake::UnknownKey(key.span(), key.get_ref().to_string(), TOP)
+        };
+        ReadError { mistakes: self.unknown().map(mistake).collect() }.or(Some(()))
+    }
+
+    /// The value of a key at the top; of one that is misspelt, too.
+    pub(super) fn get(&self, key: &str) -> Option<&Value<'a>> {
+        entry_of(&self.root, key, TOP)
     }
 
     /// The value of a key of a section, where it is there and reads as T.
     pub(super) fn within<T: Read>(&self, section: &str, key: &str) -> Option<T> {
-        T::read(self.root.get(section)?.get_ref().get(key)?).ok()
+        T::read(self.get(section)?.get_ref().get(key)?).ok()
     }
 
     /// The entries of a list at the top; none where it is missing.
-    pub(super) fn entries(&self, key: &str) -> Result<Vec<Value<'a>>, SceneError> {
-        let Some(value) = self.root.get(key) else { return Ok(Vec::new()) };
-        match value.get_ref().as_array() {
-            Some(list) => Ok(list.iter().cloned().collect()),
-            None => Err(self.expected(value, &format!("a list: [[{key}]]"))),
-        }
+    pub(super) fn entries(&self, key: &str) -> Result<&[Value<'a>], ReadError> {
+        let Some(value) = self.get(key) else { return Ok(&[]) };
+        let list = value.get_ref().as_array();
+        list.map(|list| &list[..])
+            .ok_or_else(|| ReadError::expected(value, format!("a list: [[{key}]]")))
     }
 
     /// A section, which is a table.
-    pub(super) fn section(&self, name: &str) -> Result<Value<'a>, SceneError> {
-        match self.root.get(name) {
+    pub(super) fn section(&self, name: &str) -> Result<&Value<'a>, ReadError> {
+        match self.get(name) {
+            // An unknown key may be meant to be this one.
+            None if self.unknown().any(|key| suggest(key.get_ref(), &[name]).is_some()) => {
+                Err(ReadError::known())
+            }
             None => {
                 let example = EXAMPLES.iter().find(|(section, _)| *section == name);
                 let help =
                     example.map(|(_, lines)| format!("write such lines:\n[{name}]\n{lines}"));
-                Err(self.error(format!("missing section [{name}]"), None).with_help(help))
+                let missing = Refusal::section(format!("missing section [{name}]"));
+                Err(Refusal { help, ..missing }.into())
             }
-            Some(section) if section.get_ref().is_table() => Ok(section.clone()),
-            Some(other) => Err(self.expected(other, &format!("a section [{name}]"))),
+            Some(section) if section.get_ref().is_table() => Ok(section),
+            Some(other) => Err(ReadError::expected(other, format!("a section [{name}]"))),
         }
-    }
-
-    /// Reads a value at the top, and finds all its mistakes.
-    pub(super) fn read<T>(
-        &self,
-        name: &str,
-        value: Value<'a>,
-        read: impl Fn(&Value<'_>) -> Result<T, ReadError>,
-    ) -> Result<T, SceneError> {
-        let place = |value: &Value<'a>, error: &ReadError| self.place(name, value, error);
-        every_mistake(self.text, value, &place, read).or_else(|found| {
-            let mut mistakes = Mistakes::default();
-            for found in found {
-                mistakes.keep::<()>(Err(self.read_error(name, found)));
-            }
-            mistakes.or(None)
-        })
-    }
-
-    /// The keys of a section, as T; the default where there is no such section.
-    pub(super) fn keys_if_any<T: Default + Read>(&self, name: &str) -> Result<T, SceneError> {
-        if !self.root.contains_key(name) {
-            return Ok(T::default());
-        }
-        self.read(name, self.section(name)?, T::read)
-    }
-
-    /// The error for a value where something else is expected.
-    fn expected(&self, value: &Value<'_>, expected: &str) -> SceneError {
-        self.read_error("", (Some(value.span()), ReadError::expected(value, expected)))
-    }
-
-    fn error(&self, message: String, span: Option<Range<usize>>) -> SceneError {
-        SceneError::new(self.source, message).at(self.text, span)
-    }
-
-    /// Gives a refusal of a section the place that it is about.
-    pub(super) fn check<T>(
-        &self,
-        section: &str,
-        checked: Result<T, Refusal>,
-    ) -> Result<T, SceneError> {
-        checked.map_err(|refusal| self.refusal(section, refusal))
-    }
-
-    /// Gives all refusals of a section their places. No refusal is no error.
-    pub(super) fn check_all(
-        &self,
-        section: &str,
-        refusals: Vec<Refusal>,
-    ) -> Result<(), SceneError> {
-        let mut mistakes = Mistakes::default();
-        for refusal in refusals {
-            mistakes.keep::<()>(Err(self.refusal(section, refusal)));
-        }
-        mistakes.or(Some(()))
-    }
-
-    /// The place that an error in a value at the top is about.
-    fn place(&self, section: &str, value: &Value<'a>, error: &ReadError) -> Option<Range<usize>> {
-        match error {
-            ReadError::UnknownKey(place, ..)
-            | ReadError::MissingKey(place, _)
-            | ReadError::Wrong(place, _) => Some(place.clone()),
-            ReadError::Refused(refusal) => self.place_of(section, Some(value), refusal),
-        }
-    }
-
-    /// An error in a value at the top, with its place.
-    fn read_error(&self, section: &str, (place, error): Found) -> SceneError {
-        let (message, help) = error.in_words(section);
-        self.error(message, place).with_help(help)
     }
 
     /// A refusal with its place.
     pub(super) fn refusal(&self, section: &str, refusal: Refusal) -> SceneError {
-        let place = self.place_of(section, None, &refusal);
-        self.error(refusal.message, place).with_help(refusal.help)
+        self.mistake(section, Mistake::Refused(refusal))
     }
 
-    /// The place that a refusal is about: its key, wherever it stands, or else the section.
-    fn place_of(
-        &self,
-        section: &str,
-        value: Option<&Value<'a>>,
-        refusal: &Refusal,
-    ) -> Option<Range<usize>> {
-        let place = refusal.key.as_ref().and_then(|key| self.locate(section, value, key));
-        place.or_else(|| self.root.get(section).map(Spanned::span))
+    /// A mistake in a section with its place.
+    pub(super) fn mistake(&self, section: &str, mistake: Mistake) -> SceneError {
+        let place = match &mistake {
+            Mistake::UnknownKey(place, ..)
+            | Mistake::MissingKey(place, _)
+            | Mistake::Wrong(place, _) => Some(place.clone()),
+            Mistake::Refused(Refusal { key, .. }) => {
+                let place = key.as_ref().and_then(|key| self.locate(section, key));
+                place.or_else(|| self.get(section).map(Spanned::span))
+            }
+        };
+        let (message, help) = mistake.in_words(section);
+        SceneError::new(self.source, message).at(self.text, self.file, place).with_help(help)
     }
 
     /// Where `key`, `key[i]`, `key[i,j]` or `key[i].name[j]` ([`KeyPath`](super::KeyPath)) stands, first in this
-    /// value, then in this section, then in the others, then at the top.
-    fn locate(&self, section: &str, value: Option<&Value<'a>>, key: &str) -> Option<Range<usize>> {
+    /// section, then in the others, then at the top.
+    fn locate(&self, section: &str, key: &str) -> Option<Range<usize>> {
         let mut path =
             key.split(['[', ']', ',', '.']).map(str::trim).filter(|step| !step.is_empty());
         let name = path.next()?;
-        let others = iter::once(&section).chain(TOP).filter_map(|section| self.root.get(*section));
-        let within = value.into_iter().chain(others).find_map(|value| match value.get_ref() {
-            DeValue::Table(table) => table.get(name),
-            _ => None,
-        });
-        let mut place = within.or_else(|| self.root.get(name))?;
-        if let Some(entry) = value.filter(|_| name == section) {
-            // The value is one of the list, with the number that is next.
-            place = entry;
-            path.next();
-        }
+        let sections = iter::once(&section).chain(TOP).filter_map(|section| self.get(section));
+        let within = sections.filter_map(|section| section.get_ref().as_table());
+        // A key with this name, and else one that is misspelt.
+        let exact = within.clone().find_map(|table| table.get(name));
+        let close = || within.clone().find_map(|table| entry_of(table, name, &[name]));
+        let mut place = exact.or_else(|| self.get(name)).or_else(close)?;
         for step in path {
             let next = match (step.parse::<usize>(), place.get_ref()) {
                 (Ok(i), DeValue::Array(list)) => list.get(i.wrapping_sub(1)),
-                (_, DeValue::Table(table)) => table.get(step),
+                (_, DeValue::Table(table)) => entry_of(table, step, &[step]),
                 _ => None,
             };
             match next {
@@ -223,23 +169,83 @@ impl<'a> Document<'a> {
     }
 }
 
-/// A section in which the text of a file stands behind its name, where a key names a file: \[name, text\].
-pub(super) fn with_file<'a>(
-    section: &Value<'a>,
+/// The mistakes in a document that have been found so far.
+pub(super) struct Finder<'d, 'a> {
+    document: &'d Document<'a>,
+    mistakes: Mistakes,
+}
+
+impl<'d, 'a> Finder<'d, 'a> {
+    pub(super) fn new(document: &'d Document<'a>) -> Self {
+        Finder { document, mistakes: Mistakes::default() }
+    }
+
+    /// Returns the value, or keeps its mistakes, which are in this section.
+    pub(super) fn keep<T, E: Into<ReadError>>(
+        &mut self,
+        section: &str,
+        read: Result<T, E>,
+    ) -> Option<T> {
+        read.map_err(|error| self.add(section, error.into())).ok()
+    }
+
+    /// Reads what can be used of a value in a section, and keeps its mistakes.
+    pub(super) fn read<T: Read>(&mut self, section: &str, value: &Value<'_>) -> Option<T> {
+        let mut mistakes = ReadError::default();
+        let read = T::read_usable(value, &mut mistakes);
+        self.add(section, mistakes);
+        read
+    }
+
+    /// Reads the keys of a section, all of which may be missing, as the section may be.
+    pub(super) fn read_if_any<T: Read>(&mut self, section: &str) -> Option<T> {
+        let none = Spanned::new(0..0, DeValue::Table(DeTable::new()));
+        let value = match self.document.get(section) {
+            Some(_) => self.keep(section, self.document.section(section))?,
+            None => &none,
+        };
+        self.read(section, value)
+    }
+
+    /// Adds refusals of keys of a section.
+    pub(super) fn refuse(&mut self, section: &str, refusals: Vec<Refusal>) {
+        self.add(section, refusals.into());
+    }
+
+    fn add(&mut self, section: &str, error: ReadError) {
+        for mistake in error.mistakes {
+            self.mistakes.add(self.document.mistake(section, mistake));
+        }
+    }
+
+    /// Returns the value if there is no mistake.
+    pub(super) fn or<T>(self, value: Option<T>) -> Result<T, SceneError> {
+        self.mistakes.or(value)
+    }
+}
+
+/// Puts the text of a file behind its name, where a key of a section names a file: \[name, text\]. An empty list stands
+/// for a file whose mistake is known.
+pub(super) fn with_file(
+    section: &mut Value<'_>,
     key: &str,
+    keys: &[KeyInfo],
     read: impl Fn(&str) -> Result<String, String>,
-) -> Result<Value<'a>, ReadError> {
-    let mut section = section.clone();
-    let DeValue::Table(table) = section.get_mut() else { return Ok(section) };
-    let Some(value) = table.get_mut(key) else { return Ok(section) };
-    let DeValue::String(name) = value.get_ref() else {
-        return Err(ReadError::expected(value, "the name of a file"));
+) -> Result<(), ReadError> {
+    let DeValue::Table(table) = section.get_mut() else { return Ok(()) };
+    let names: Vec<&str> = keys.iter().map(|key| key.name).collect();
+    let Some(given) = given_key(table, key, &names).map(str::to_owned) else { return Ok(()) };
+    let Some(value) = table.get_mut(given.as_str()) else { return Ok(()) };
+    let text = match value.get_ref() {
+        DeValue::String(name) => read(name).map_err(|why| Refusal::at(key, why).into()),
+        _ => Err(ReadError::expected(value, "the name of a file")),
     };
-    let text = read(name).map_err(|why| Refusal::at(key, why))?;
-    let parts = [name.clone(), text.into()].map(DeValue::String);
-    let file = parts.map(|part| Spanned::new(value.span(), part)).into_iter().collect();
+    let name = DeValue::String(value.get_ref().as_str().unwrap_or_default().to_owned().into());
+    let parts =
+        text.as_ref().map_or(Vec::new(), |text| vec![name, DeValue::String(text.clone().into())]);
+    let file = parts.into_iter().map(|part| Spanned::new(value.span(), part)).collect();
     *value.get_mut() = DeValue::Array(file);
-    Ok(section)
+    text.map(|_| ())
 }
 
 /// A table without the places of its values.

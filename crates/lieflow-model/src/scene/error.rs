@@ -24,7 +24,8 @@ const MISTAKES: usize = 10;
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Place {
-    line: usize,
+    /// From 1; none of a line that is not in the file.
+    line: Option<usize>,
     column: usize,
     /// The line, or the part of it around the caret, without control characters.
     shown: String,
@@ -45,7 +46,8 @@ fn char_boundary(text: &str, i: usize) -> usize {
 }
 
 impl Place {
-    fn of(text: &str, span: &Range<usize>) -> Place {
+    /// The place in a text, with the number of its line in the file, which settings may have changed.
+    fn of(text: &str, file: &str, span: &Range<usize>) -> Place {
         let start = char_boundary(text, span.start);
         let end = char_boundary(text, span.end).max(start);
         // What lies after the last line break is no line of its own.
@@ -54,7 +56,9 @@ impl Place {
             _ => start,
         };
         let from = text[..anchor].rfind('\n').map_or(0, |i| i + 1);
-        let line: Vec<char> = text[from..].lines().next().unwrap_or_default().chars().collect();
+        let (whole, number) =
+            (text[from..].lines().next().unwrap_or_default(), text[..from].matches('\n').count());
+        let line: Vec<char> = whole.chars().collect();
         let before = text[from..anchor].chars().count().min(line.len());
         let marked = text[anchor..end.max(anchor)].lines().next().unwrap_or_default();
         let marked = marked.chars().count().clamp(1, (line.len() - before).max(1));
@@ -63,12 +67,20 @@ impl Place {
         let shown: String = line.iter().skip(skipped).take(SHOWN).map(visible).collect();
         let caret_end = (before + marked - skipped).min(SHOWN);
         Place {
-            line: text[..from].matches('\n').count() + 1,
+            line: number_in(file, whole, number),
             column: before + 1,
             shown,
             caret: before - skipped..caret_end,
         }
     }
+}
+
+/// The number of a line in a file, from 1: of the one that is nearest to a number from 0.
+fn number_in(file: &str, line: &str, number: usize) -> Option<usize> {
+    let same = file.lines().enumerate().filter(|(_, other)| *other == line);
+    // What lies after the last line break is no line.
+    let end = || line.is_empty().then_some(number);
+    same.map(|(i, _)| i).min_by_key(|i| i.abs_diff(number)).or_else(end).map(|i| i + 1)
 }
 
 impl SceneError {
@@ -77,8 +89,9 @@ impl SceneError {
         SceneError { mistakes: vec![mistake] }
     }
 
-    pub(super) fn at(mut self, text: &str, span: Option<Range<usize>>) -> Self {
-        self.mistakes[0].place = span.map(|span| Place::of(text, &span));
+    /// With a place in a text, which is that of a file, or that with settings.
+    pub(super) fn at(mut self, text: &str, file: &str, span: Option<Range<usize>>) -> Self {
+        self.mistakes[0].place = span.map(|span| Place::of(text, file, &span));
         self
     }
 
@@ -89,7 +102,7 @@ impl SceneError {
 
     /// The line of the first mistake, from 1, where it is about one.
     pub fn line(&self) -> Option<usize> {
-        self.mistakes[0].place.as_ref().map(|place| place.line)
+        self.mistakes[0].place.as_ref().and_then(|place| place.line)
     }
 
     /// The message of the first mistake, without its place.
@@ -120,12 +133,16 @@ impl fmt::Display for Mistake {
             write!(f, "{source}: {message}")?;
             return write_help(f, "", help.as_deref());
         };
-        let number = line.to_string();
+        let number = line.map_or(String::new(), |line| line.to_string());
         let margin = " ".repeat(number.len());
+        let place = match line {
+            Some(line) => format!("{source}:{line}:{column}"),
+            None => format!("{source}, changed by --set"),
+        };
         let indent: String =
             shown.chars().take(caret.start).map(|c| if c == '\t' { '\t' } else { ' ' }).collect();
         let marks = "^".repeat(caret.len().max(1));
-        write!(f, "{source}:{line}:{column}: {message}\n{margin} |\n{number} | {shown}")?;
+        write!(f, "{place}: {message}\n{margin} |\n{number} | {shown}")?;
         write!(f, "\n{margin} | {indent}{marks}")?;
         write_help(f, &margin, help.as_deref())
     }
@@ -143,25 +160,21 @@ fn write_help(f: &mut fmt::Formatter<'_>, margin: &str, help: Option<&str>) -> f
 pub(super) struct Mistakes(Vec<Mistake>);
 
 impl Mistakes {
-    /// Returns the value, or keeps its mistakes.
-    pub(super) fn keep<T>(&mut self, read: Result<T, SceneError>) -> Option<T> {
-        read.map_err(|error| self.0.extend(error.mistakes)).ok()
-    }
-
-    /// True if no mistake was found so far.
-    pub(super) fn is_empty(&self) -> bool {
-        self.0.is_empty()
+    /// Adds mistakes.
+    pub(super) fn add(&mut self, error: SceneError) {
+        self.0.extend(error.mistakes);
     }
 
     /// Returns the value if there is no mistake. Otherwise returns all mistakes in the order of the file, and those without
     /// a place last.
     pub(super) fn or<T>(mut self, value: Option<T>) -> Result<T, SceneError> {
         match value {
-            Some(value) if self.is_empty() => Ok(value),
+            Some(value) if self.0.is_empty() => Ok(value),
             _ => {
                 let place = |mistake: &Mistake| {
                     let place = mistake.place.as_ref();
-                    place.map_or((usize::MAX, 0), |place| (place.line, place.column))
+                    let line = |place: &Place| (place.line.unwrap_or(usize::MAX - 1), place.column);
+                    place.map_or((usize::MAX, 0), line)
                 };
                 self.0.sort_by_key(place);
                 Err(SceneError { mistakes: self.0 })

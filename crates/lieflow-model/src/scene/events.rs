@@ -12,18 +12,17 @@ use lieflow::{Direction, Error};
 use super::columns::{Columns, RowFormula};
 use crate::formula::{Formula, Text};
 use crate::problem::EventPlan;
-use crate::reader::read_by_keys;
 use crate::reader::values::Whole;
-use crate::reader::{KeyPath, Refusal};
+use crate::reader::{Key, KeyPath, ReadError, Refusal, all, read_by_keys};
 use crate::schema::{Row, Schema};
 
 read_by_keys! {
     /// An entry of `[[events]]`.
     pub(super) struct EventKeys {
-        name: String,
-        when: Text,
-        direction: Option<String>,
-        stop_after: Option<Whole<1>>,
+        name: Key<String>,
+        when: Key<Text>,
+        direction: Key<Option<String>>,
+        stop_after: Key<Option<Whole<1>>>,
     }
 }
 
@@ -67,38 +66,65 @@ impl SceneEvent {
     }
 }
 
-/// The event `i` of a scene, from 0, of these columns, after events of these names.
+/// The refusal of a comparison, such as `m2 > 0`, in the place of a number.
+fn comparison(key: &str, when: &str) -> Option<Refusal> {
+    let is_sign = |c: char| "<>=≤≥".contains(c);
+    let (left, rest) = when.split_at(when.find(is_sign)?);
+    let right = rest.trim_start_matches(is_sign).trim();
+    let number = match right.parse() {
+        Ok(0.0) => left.trim().to_owned(),
+        _ => format!("{} - ({right})", left.trim()),
+    };
+    let direction = match rest.chars().next() {
+        Some('>' | '≥') => ", direction = \"rising\"",
+        Some('<' | '≤') => ", direction = \"falling\"",
+        _ => "",
+    };
+    let message = format!("{key}: `{when}` is a comparison, expected a number that passes zero");
+    let help =
+        Some(format!("an event is where a number passes zero: when = \"{number}\"{direction}"));
+    Some(Refusal { help, ..Refusal::at(key, message) })
+}
+
+/// The event `i` of a scene, from 0, of these columns, after events of these names. Without columns it has no formula,
+/// and is none.
 ///
 /// # Errors
-/// A refusal of the first key that cannot be used.
+/// Refusals of the keys that cannot be used.
 pub(super) fn resolve(
     keys: EventKeys,
     i: usize,
     names_before: &[&str],
-    columns: &Columns,
-) -> Result<SceneEvent, Refusal> {
-    let EventKeys { name, when: Text(when), direction, stop_after } = keys;
+    columns: Option<&Columns>,
+) -> Result<SceneEvent, ReadError> {
+    let EventKeys { name, when, direction, stop_after } = keys;
     let key = |key: &str| "events".index(i).entry(key);
-    if name.trim().is_empty() {
-        return Err(Refusal::at(key("name"), "an event without a name"));
-    }
-    if names_before.contains(&&*name) {
-        return Err(Refusal::at(key("name"), format!("event `{name}` is there twice")));
-    }
-    let formula = columns.read(&key("when"), when.trim())?;
-    if formula.is_constant() {
-        let message = format!("`{when}` is the same at all times, expected a column or t in it");
-        return Err(Refusal::at(key("when"), message));
-    }
-    let direction = match direction {
-        None => Direction::Both,
-        Some(given) => {
-            let found = DIRECTIONS.iter().find(|(name, _)| *name == given);
-            let names = DIRECTIONS.map(|(name, _)| name);
-            let unknown = || Refusal::unknown("direction", &given, &names);
-            found.ok_or_else(|| unknown().about(key("direction")))?.1
+    let name = name.and_then(|name| match name.trim() {
+        "" => Err(Refusal::at(key("name"), "an event without a name").into()),
+        _ if names_before.contains(&&*name) => {
+            Err(Refusal::at(key("name"), format!("event `{name}` is there twice")).into())
         }
-    };
-    let stop_after = stop_after.map(|count| count.0);
-    Ok(SceneEvent { name, direction, stop_after, when: formula })
+        _ => Ok(name),
+    });
+    let when = when.and_then(|Text(when)| {
+        if let Some(refusal) = comparison(&key("when"), &when) {
+            return Err(refusal.into());
+        }
+        let formula = columns.ok_or_else(ReadError::known)?.read(&key("when"), when.trim())?;
+        if formula.is_constant() {
+            let message =
+                format!("`{when}` is the same at all times, expected a column or t in it");
+            return Err(Refusal::at(key("when"), message).into());
+        }
+        Ok(formula)
+    });
+    let direction = direction.and_then(|direction| {
+        let Some(given) = direction else { return Ok(Direction::Both) };
+        let names = DIRECTIONS.map(|(name, _)| name);
+        let unknown = || Refusal::unknown("direction", &given, &names).about(key("direction"));
+        let found = DIRECTIONS.iter().find(|(name, _)| *name == given);
+        Ok(found.ok_or_else(unknown)?.1)
+    });
+    let (name, when, direction, stop_after) = all!(name, when, direction, stop_after)?;
+    Ok(SceneEvent { name, direction, stop_after: stop_after.map(|count| count.0), when })
 }

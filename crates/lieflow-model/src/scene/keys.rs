@@ -10,62 +10,70 @@ use super::defaults;
 use crate::formula::Lets;
 use crate::problem::Layer;
 use crate::problem::{Kind, Problem, high_order};
-use crate::reader::read_by_keys;
 use crate::reader::values::{Real, Span, Whole};
-use crate::reader::{Either, KeyPath, Refusal, at_most_one, exactly_one};
+use crate::reader::{
+    Either, Key, KeyPath, ReadError, Refusal, all, at_most_one, read_by_keys, seen,
+};
 
 read_by_keys! {
     /// `[method]`.
-    #[derive(Default)]
     pub(super) struct MethodKeys {
-        name: Option<String>,
-        map: Option<String>,
-        tableau: Option<String>,
-        q: Option<Whole<0>>,
-        layer: Option<String>,
+        name: Key<Option<String>>,
+        map: Key<Option<String>>,
+        tableau: Key<Option<String>>,
+        q: Key<Option<Whole<0>>>,
+        layer: Key<Option<String>>,
+    }
+}
+
+/// A name, where it is one of these or is not given.
+fn known(
+    key: &str,
+    what: &str,
+    given: Key<Option<String>>,
+    names: Vec<&str>,
+) -> Result<Option<String>, ReadError> {
+    match given? {
+        Some(given) if find(&given, names.iter().copied()).is_none() => {
+            Err(Refusal::unknown(what, &given, &names).about(key).into())
+        }
+        given => Ok(given),
     }
 }
 
 impl MethodKeys {
     /// Is the method left to the program?
     pub(super) fn is_left(&self) -> bool {
-        self.name.is_none()
-    }
-
-    /// The names of a method and of its parts that there are not.
-    pub(super) fn unknown_names(&self) -> Vec<Refusal> {
-        let tableaus = || TABLEAUS.iter().map(|info| info.name);
-        let parts: [(&str, &str, &Option<String>, Vec<&str>); 3] = [
-            ("name", "method", &self.name, all_methods().map(|info| info.name).collect()),
-            ("map", "map", &self.map, MAPS.iter().map(|info| info.name).collect()),
-            ("tableau", "tableau", &self.tableau, tableaus().collect()),
-        ];
-        let unknown = parts.into_iter().filter_map(|(key, what, given, names)| {
-            let given = given.as_deref()?;
-            let key = Some(key.to_owned());
-            let known = find(given, names.iter().copied()).is_some();
-            (!known).then(|| Refusal { key, ..Refusal::unknown(what, given, &names) })
-        });
-        unknown.collect()
+        matches!(self.name, Ok(None))
     }
 
     /// The method with what it takes by default spelt out, and the layer: the first of those of the
     /// problem where none is named.
-    pub(super) fn resolve(self, problem: Option<&Problem>) -> Result<(MethodSpec, Layer), Refusal> {
-        let layer = match self.layer {
-            Some(name) => Layer::named(&name)?,
-            None => problem.and_then(|p| p.layers().first().copied()).unwrap_or_default(),
-        };
+    pub(super) fn resolve(
+        self,
+        problem: Option<&Problem>,
+    ) -> Result<(MethodSpec, Layer), ReadError> {
+        let MethodKeys { name, map, tableau, q, layer } = self;
+        let methods = all_methods().map(|info| info.name).collect();
+        let name = known("name", "method", name, methods);
+        let map = known("map", "map", map, MAPS.iter().map(|info| info.name).collect());
+        let tableaus = TABLEAUS.iter().map(|info| info.name).collect();
+        let tableau = known("tableau", "tableau", tableau, tableaus);
+        let layer = layer.and_then(|layer| match layer {
+            Some(name) => Ok(Layer::named(&name)?),
+            None => Ok(problem.and_then(|p| p.layers().first().copied()).unwrap_or_default()),
+        });
+        let (name, map, tableau, q, layer) = all!(name, map, tableau, q, layer)?;
         // A map or a tableau alone is one for RKMK.
-        let is_rkmk = self.map.is_some() || self.tableau.is_some() || self.q.is_some();
+        let is_rkmk = map.is_some() || tableau.is_some() || q.is_some();
         let of_problem = problem.filter(|_| !is_rkmk);
         let default = || of_problem.map_or_else(high_order, Problem::default_method);
-        let base = self.name.map_or_else(default, |name| MethodSpec::new(&name, None));
+        let base = name.map_or_else(default, |name| MethodSpec::new(&name, None));
         let method = MethodSpec {
             name: base.name,
-            map: self.map.or(base.map),
-            tableau: self.tableau.or(base.tableau),
-            q: self.q.map(|q| usize::try_from(q.0).unwrap_or(usize::MAX)),
+            map: map.or(base.map),
+            tableau: tableau.or(base.tableau),
+            q: q.map(|q| usize::try_from(q.0).unwrap_or(usize::MAX)),
         };
         Ok((with_defaults(method.spelt()?), layer))
     }
@@ -86,21 +94,47 @@ pub(super) fn with_defaults(mut method: MethodSpec) -> MethodSpec {
 
 read_by_keys! {
     /// `[time]`.
-    #[derive(Debug)]
     pub(super) struct TimeKeys {
-        t_span: Span,
-        dt: Option<Real>,
-        steps: Option<Whole<1>>,
-        rtol: Option<Real>,
-        atol: Option<Real>,
-        h_init: Option<Real>,
-        h_min: Option<Real>,
-        h_max: Option<Real>,
-        max_steps: Option<Whole<1>>,
-        tolerance: Option<String>,
-        at_knots: Option<bool>,
+        t_span: Key<Span>,
+        dt: Key<Option<Real>>,
+        steps: Key<Option<Whole<1>>>,
+        rtol: Key<Option<Real>>,
+        atol: Key<Option<Real>>,
+        h_init: Key<Option<Real>>,
+        h_min: Key<Option<Real>>,
+        h_max: Key<Option<Real>>,
+        max_steps: Key<Option<Whole<1>>>,
+        tolerance: Key<Option<String>>,
+        at_knots: Key<Option<bool>>,
     }
 }
+
+/// The times of a run.
+pub(super) struct Times {
+    /// The steps of one size; where `control` chooses, those that `compare` starts from.
+    pub(super) grid: TimeGrid,
+    /// How steps are chosen by their error, where they are.
+    pub(super) control: Option<StepControl>,
+    pub(super) limits: Limits,
+    at_knots: Option<bool>,
+}
+
+/// The tolerances and the limits of the steps, as the scene states them.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Limits {
+    rtol: Option<f64>,
+    atol: Option<f64>,
+    h_init: Option<f64>,
+    h_min: Option<f64>,
+    h_max: Option<f64>,
+    pub(super) max_steps: Option<u64>,
+    rule: Option<Rule>,
+    /// Are the steps left to the program?
+    pub(super) is_left: bool,
+}
+
+/// A step, or the number of steps.
+type Fixed = Either<f64, u64>;
 
 /// The steps that `compare` starts from where a scene leaves them to the error.
 const STEPS: u64 = 1000;
@@ -110,16 +144,76 @@ const PER_STEP: &str = "per-step";
 const PER_LENGTH: &str = "per-length";
 
 impl TimeKeys {
-    /// Are the steps left to the program?
-    pub(super) fn is_left(&self) -> bool {
-        self.dt.is_none() && self.steps.is_none() && self.rtol.is_none() && self.atol.is_none()
+    /// The times of a run.
+    ///
+    /// # Errors
+    /// Refusals of the keys that cannot be used, and of those that exclude each other.
+    pub(super) fn resolve(self) -> Result<Times, ReadError> {
+        let fixed = self.fixed();
+        let limits = seen(&fixed).and_then(|fixed| self.limits(fixed.is_some()));
+        let TimeKeys { t_span, at_knots, .. } = self;
+        let t_span = t_span.and_then(|Span([t0, t1])| match t0 == t1 {
+            false => Ok([t0, t1]),
+            true => {
+                let message = format!("t_span is empty: it starts and ends at t = {t0}");
+                Err(Refusal::at("t_span", message).into())
+            }
+        });
+        let control = match (seen(&fixed), seen(&limits)) {
+            (Ok(fixed), Ok(limits)) => limits.chosen_by_error(fixed.as_ref()),
+            _ => Err(ReadError::known()),
+        };
+        let ([t0, t1], fixed, limits, control, at_knots) =
+            all!(t_span, fixed, limits, control, at_knots)?;
+        let grid = match fixed {
+            Some(Either::First(dt)) => TimeGrid::new([t0, t1], dt)?,
+            Some(Either::Second(steps)) => TimeGrid::with_steps([t0, t1], steps)
+                .map_err(|error| Refusal::from(error).renamed(&[("dt", "steps")]))?,
+            None if t1.is_finite() => TimeGrid::with_steps([t0, t1], STEPS)?,
+            None => TimeGrid::new([t0, t1], 1.0)?,
+        };
+        Ok(Times { grid, control, limits, at_knots })
     }
 
-    /// Are the steps of one size?
-    fn is_fixed(&self) -> bool {
-        self.dt.is_some() || self.steps.is_some()
+    /// The step or the number of steps, where the scene states one.
+    fn fixed(&self) -> Result<Option<Fixed>, ReadError> {
+        let (dt, steps) = (*seen(&self.dt)?, *seen(&self.steps)?);
+        at_most_one([("dt", dt.is_some()), ("steps", steps.is_some())])?;
+        match dt {
+            Some(Real(dt)) if dt <= 0.0 => {
+                let expected = "a finite number > 0".into();
+                Err(Error::OutOfRange { arg: "dt".into(), value: dt, expected }.into())
+            }
+            Some(Real(dt)) => Ok(Some(Either::First(dt))),
+            None => Ok(steps.map(|steps| Either::Second(steps.0))),
+        }
     }
 
+    fn limits(&self, is_fixed: bool) -> Result<Limits, ReadError> {
+        let number = |key: &Key<Option<Real>>| Ok::<_, ReadError>(seen(key)?.map(|x| x.0));
+        let [rtol, atol] = [&self.rtol, &self.atol].map(number);
+        let [h_init, h_min, h_max] = [&self.h_init, &self.h_min, &self.h_max].map(number);
+        let max_steps = seen(&self.max_steps).map(|n| n.map(|n| n.0));
+        let rule = seen(&self.tolerance).and_then(|rule| match rule.as_deref() {
+            None => Ok(None),
+            Some(PER_STEP) => Ok(Some(Rule::PerStep)),
+            Some(PER_LENGTH) => Ok(Some(Rule::PerLength)),
+            // Steps of one size have no rule.
+            Some(_) if is_fixed => Ok(Some(Rule::PerStep)),
+            Some(other) => {
+                let message =
+                    format!("unknown rule `{other}`, expected \"{PER_STEP}\" or \"{PER_LENGTH}\"");
+                Err(Refusal::at("tolerance", message).into())
+            }
+        });
+        let (rtol, atol, h_init, h_min, h_max, max_steps, rule) =
+            all!(rtol, atol, h_init, h_min, h_max, max_steps, rule)?;
+        let is_left = !is_fixed && rtol.is_none() && atol.is_none();
+        Ok(Limits { rtol, atol, h_init, h_min, h_max, max_steps, rule, is_left })
+    }
+}
+
+impl Times {
     /// Does a step end at each knot? By default where steps are chosen by their error.
     pub(super) fn at_knots(&self, has_knots: bool) -> Result<bool, Refusal> {
         match self.at_knots {
@@ -127,104 +221,87 @@ impl TimeKeys {
                 let message = "`at_knots` is of `samples` and of magnets: the problem has neither";
                 Err(Refusal::at("at_knots", message))
             }
-            given => Ok(has_knots && given.unwrap_or(!self.is_fixed())),
+            given => Ok(has_knots && given.unwrap_or(self.control.is_some())),
         }
     }
+}
 
-    /// The steps of one size, those that are chosen by their error where tolerances are given, and the limit of
-    /// their number.
-    pub(super) fn resolve(&self) -> Result<(TimeGrid, Option<StepControl>, Option<u64>), Refusal> {
-        let max_steps = self.max_steps.map(|n| n.0);
-        let [t0, t1] = self.t_span.0;
-        if t0 == t1 {
-            let message = format!("t_span is empty: it starts and ends at t = {t0}");
-            return Err(Refusal::at("t_span", message));
-        }
-        if let Some(control) = self.adaptive()? {
-            let fixed = [("dt", self.dt.is_some()), ("steps", self.steps.is_some())];
-            if let Some((key, _)) = fixed.into_iter().find(|(_, given)| *given) {
+impl Limits {
+    /// How steps are chosen by their error; none where they are of one size.
+    fn chosen_by_error(&self, fixed: Option<&Fixed>) -> Result<Option<StepControl>, ReadError> {
+        let fixed = fixed.map(|fixed| match fixed {
+            Either::First(_) => "dt",
+            Either::Second(_) => "steps",
+        });
+        if let Some(key) = fixed {
+            if self.rtol.is_some() || self.atol.is_some() {
                 let message = format!(
                     "`{key}` fixes the steps and `rtol`, `atol` leave them to the error: expected \
                      one of the two"
                 );
-                return Err(Refusal::at(key, message));
+                return Err(Refusal::at(key, message).into());
             }
-            let grid = match t1.is_finite() {
-                true => TimeGrid::with_steps([t0, t1], STEPS)?,
-                false => TimeGrid::new([t0, t1], 1.0)?,
-            };
-            return Ok((grid, Some(control), max_steps));
-        }
-        let grid = match exactly_one(("dt", self.dt), ("steps", self.steps))? {
-            Either::First(dt) => TimeGrid::new([t0, t1], dt.0)?,
-            Either::Second(steps) => TimeGrid::with_steps([t0, t1], steps.0)
-                .map_err(|error| Refusal::from(error).renamed(&[("dt", "steps")]))?,
-        };
-        Ok((grid, None, max_steps))
-    }
-
-    /// Tolerances and limits; none where the steps are of one size. Those of the program where none are given.
-    fn adaptive(&self) -> Result<Option<StepControl>, Refusal> {
-        if self.is_fixed() && self.rtol.is_none() && self.atol.is_none() {
             let limits = [
                 ("h_init", self.h_init.is_some()),
                 ("h_min", self.h_min.is_some()),
                 ("h_max", self.h_max.is_some()),
-                ("tolerance", self.tolerance.is_some()),
+                ("tolerance", self.rule.is_some()),
             ];
             return match limits.into_iter().find(|(_, given)| *given) {
                 None => Ok(None),
-                Some((key, _)) => {
-                    let fixed = if self.dt.is_some() { "dt" } else { "steps" };
+                Some((limit, _)) => {
                     let message = format!(
-                        "`{key}` is for steps chosen by error: give `rtol` or `atol` instead of `{fixed}`"
+                        "`{limit}` is for steps chosen by error: give `rtol` or `atol` instead of `{key}`"
                     );
-                    Err(Refusal::at(key, message))
+                    Err(Refusal::at(limit, message).into())
                 }
             };
         }
-        if let Some(other) = self.tolerance.as_deref()
-            && ![PER_STEP, PER_LENGTH].contains(&other)
+        if let (Some(rtol), None | Some(0.0)) = (self.rtol, self.atol)
+            && 0.0 < rtol
+            && rtol < f64::EPSILON
         {
-            let message =
-                format!("unknown rule `{other}`, expected \"{PER_STEP}\" or \"{PER_LENGTH}\"");
-            return Err(Refusal::at("tolerance", message));
+            let message = format!(
+                "rtol = {rtol:e} is below the rounding of numbers, expected at least {:.1e}",
+                f64::EPSILON
+            );
+            return Err(Refusal::at("rtol", message).into());
         }
         let names = [("first_step", "h_init"), ("min_step", "h_min"), ("max_step", "h_max")];
-        self.control(1.0).map(Some).map_err(|error| Refusal::from(error).renamed(&names))
+        let control = self.control(1.0);
+        Ok(Some(control.map_err(|error| Refusal::from(error).renamed(&names))?))
     }
 
     /// Take the tolerances for a method of this order.
     pub(super) fn for_order(&mut self, order: Option<usize>) {
-        let tolerance = Some(Real(defaults::tolerance(order)));
+        let tolerance = Some(defaults::tolerance(order));
         (self.rtol, self.atol) = (tolerance, tolerance);
     }
 
     /// rtol and atol. Both are 1 while the steps are left to the program.
     pub(super) fn tolerances(&self) -> [f64; 2] {
-        let left = if self.is_left() { 1.0 } else { 0.0 };
-        [self.rtol, self.atol].map(|x| x.map_or(left, |x| x.0))
+        let left = if self.is_left { 1.0 } else { 0.0 };
+        [self.rtol, self.atol].map(|x| x.unwrap_or(left))
     }
 
     /// Limits of steps, and the tolerances times a factor. With another factor than 1 the first step is chosen, and ten
     /// times as many steps may be taken.
     pub(super) fn control(&self, factor: f64) -> Result<StepControl, Error> {
         let [rtol, atol] = self.tolerances().map(|tolerance| factor * tolerance);
-        let per_length = self.tolerance.as_deref() == Some(PER_LENGTH);
-        let rule = if per_length { Rule::PerLength } else { Rule::PerStep };
+        let rule = self.rule.unwrap_or(Rule::PerStep);
         let mut control = StepControl::new(rtol, atol)?.rule(rule);
         let is_own = factor == 1.0;
         if let Some(h) = self.h_init.filter(|_| is_own) {
-            control = control.first_step(h.0)?;
+            control = control.first_step(h)?;
         }
         if let Some(h) = self.h_max {
-            control = control.max_step(h.0)?;
+            control = control.max_step(h)?;
         }
         if let Some(h) = self.h_min {
-            control = control.min_step(h.0)?;
+            control = control.min_step(h)?;
         }
         if let Some(n) = self.max_steps {
-            control = control.max_steps(if is_own { n.0 } else { n.0.saturating_mul(10) })?;
+            control = control.max_steps(if is_own { n } else { n.saturating_mul(10) })?;
         }
         Ok(control)
     }
@@ -232,25 +309,21 @@ impl TimeKeys {
 
 read_by_keys! {
     /// `[output]`.
-    #[derive(Default)]
     pub(super) struct OutputKeys {
-        pub(super) quantities: Option<Vec<String>>,
-        formulas: Lets,
-        plot: Option<Vec<String>>,
-        every: Option<Whole<1>>,
-        times: Option<Vec<Real>>,
-        count: Option<Whole<1>>,
-        interval: Option<Real>,
-        times_by: Option<String>,
-        error_check: Option<bool>,
+        pub(super) quantities: Key<Option<Vec<String>>>,
+        pub(super) formulas: Key<Lets>,
+        pub(super) plot: Key<Option<Vec<String>>>,
+        every: Key<Option<Whole<1>>>,
+        times: Key<Option<Vec<Real>>>,
+        count: Key<Option<Whole<1>>>,
+        interval: Key<Option<Real>>,
+        times_by: Key<Option<String>>,
+        error_check: Key<Option<bool>>,
     }
 }
 
-/// What `[output]` asks for.
-pub(super) struct Output {
-    pub(super) quantities: Vec<String>,
-    pub(super) formulas: Lets,
-    pub(super) plot: Vec<String>,
+/// The rows of a run.
+pub(super) struct Rows {
     pub(super) save: SaveAt,
     pub(super) times_by_steps: bool,
     pub(super) error_check: bool,
@@ -259,18 +332,19 @@ pub(super) struct Output {
 impl OutputKeys {
     /// Are the times of the rows left to the program?
     pub(super) fn leaves_rows(&self) -> bool {
-        !self.has_times() && self.every.is_none()
+        !self.has_times() && matches!(self.every, Ok(None))
     }
 
     /// Are there times that need not be ends of steps?
     fn has_times(&self) -> bool {
-        self.times.is_some() || self.count.is_some() || self.interval.is_some()
+        let none = (&self.times, &self.count, &self.interval);
+        !matches!(none, (Ok(None), Ok(None), Ok(None)))
     }
 
     /// Spells the quantities as the kind does.
     pub(super) fn spell(&mut self, kind: &Kind) {
-        let plot = self.plot.iter_mut().flatten();
-        for name in self.quantities.iter_mut().flatten().chain(plot) {
+        let lists = [&mut self.quantities, &mut self.plot];
+        for name in lists.into_iter().flatten().flatten().flatten() {
             if let Ok(known) = kind.quantity(name) {
                 *name = known.name.into();
             }
@@ -279,7 +353,7 @@ impl OutputKeys {
 
     /// The mistakes in the list of quantities.
     pub(super) fn wrong_quantities(&self, kind: &Kind, problem: Option<&Problem>) -> Vec<Refusal> {
-        let Some(asked) = &self.quantities else { return Vec::new() };
+        let Ok(Some(asked)) = &self.quantities else { return Vec::new() };
         if asked.is_empty() {
             let names: Vec<_> = (kind.quantities)().iter().map(|quantity| quantity.name).collect();
             let mut refusal = Refusal::at("quantities", "no quantities, expected at least one");
@@ -305,49 +379,44 @@ impl OutputKeys {
         asked.iter().enumerate().filter_map(wrong).collect()
     }
 
-    /// Resolves the keys, with these quantities. `steps_left` says that the program chooses the steps.
-    pub(super) fn resolve(
-        self,
-        quantities: Vec<String>,
-        grid: &TimeGrid,
-        steps_left: bool,
-    ) -> Result<Output, Refusal> {
-        let save = self.save(grid.t_span(), steps_left)?;
-        let times_by_steps = match self.times_by.as_deref() {
-            None | Some("dense") => false,
-            Some("steps") => true,
+    /// The rows over a span. `steps_left` says that the program chooses the steps.
+    pub(super) fn rows(&self, t_span: [f64; 2], steps_left: bool) -> Result<Rows, ReadError> {
+        let save = self.save(t_span, steps_left);
+        let times_by_steps = seen(&self.times_by).and_then(|way| match way.as_deref() {
+            None | Some("dense") => Ok(false),
+            Some("steps") => Ok(true),
             Some(other) => {
-                let refusal = Refusal::unknown("way", other, &["dense", "steps"]);
-                return Err(Refusal { key: Some("times_by".into()), ..refusal });
+                Err(Refusal::unknown("way", other, &["dense", "steps"]).about("times_by").into())
             }
-        };
-        let error_check = self.error_check.unwrap_or(true);
-        let OutputKeys { formulas, plot, .. } = self;
-        let plot = plot.unwrap_or_default();
-        Ok(Output { quantities, formulas, plot, save, times_by_steps, error_check })
+        });
+        let error_check = seen(&self.error_check).map(|check| check.unwrap_or(true));
+        let (save, times_by_steps, error_check) = all!(save, times_by_steps, error_check)?;
+        Ok(Rows { save, times_by_steps, error_check })
     }
 
     /// Where rows are written.
-    fn save(&self, [t0, t1]: [f64; 2], steps_left: bool) -> Result<SaveAt, Refusal> {
-        if self.times_by.is_some() && !self.has_times() {
+    fn save(&self, [t0, t1]: [f64; 2], steps_left: bool) -> Result<SaveAt, ReadError> {
+        if matches!(self.times_by, Ok(Some(_))) && !self.has_times() {
             let message =
                 "`times_by` is for `times`, `count` and `interval`: add one, or leave this";
-            return Err(Refusal::at("times_by", message));
+            return Err(Refusal::at("times_by", message).into());
         }
+        let (every, times) = (*seen(&self.every)?, seen(&self.times)?);
+        let (count, interval) = (*seen(&self.count)?, *seen(&self.interval)?);
         at_most_one([
-            ("every", self.every.is_some()),
-            ("times", self.times.is_some()),
-            ("count", self.count.is_some()),
-            ("interval", self.interval.is_some()),
+            ("every", every.is_some()),
+            ("times", times.is_some()),
+            ("count", count.is_some()),
+            ("interval", interval.is_some()),
         ])?;
         let intervals = |count: u64| SaveAt::Interval((t1 - t0).abs() / count as f64);
-        let save = match (self.every, &self.times, self.count, self.interval) {
+        let save = match (every, times, count, interval) {
             (Some(every), ..) => SaveAt::Every(every.0),
             (_, Some(times), ..) => SaveAt::Times(times.iter().map(|t| t.0).collect()),
             (_, _, Some(_), _) if !t1.is_finite() => {
                 let message = "`count` divides a span with an end: expected `interval`, such as \
                                interval = 0.1";
-                return Err(Refusal::at("count", message));
+                return Err(Refusal::at("count", message).into());
             }
             (_, _, Some(count), _) => intervals(count.0),
             (_, _, _, Some(interval)) => SaveAt::Interval(interval.0),

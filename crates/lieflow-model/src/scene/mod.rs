@@ -8,6 +8,7 @@ mod error;
 mod events;
 mod files;
 mod keys;
+mod losses;
 mod open;
 mod run;
 mod set;

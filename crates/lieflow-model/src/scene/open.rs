@@ -59,7 +59,7 @@ struct Found {
 impl Found {
     fn read(self, settings: &[String]) -> Result<Scene, SceneError> {
         let text = set::with_settings(&self.source, &self.text, settings)?;
-        Scene::read(&self.source, &text, self.folder.as_deref())
+        Scene::read(&self.source, [&text, &self.text], self.folder.as_deref())
     }
 
     fn file(path: &Path) -> Result<Self, SceneError> {

@@ -7,21 +7,20 @@ use fnv::FnvHasher;
 use lieflow::StepControl;
 use lieflow::catalog::{MethodSpec, all_methods};
 use lieflow::samples::{Outside, Samples};
-use lieflow::{Error, Failure, RunError, SaveAt, StepError, TimeGrid};
+use lieflow::{Error, SaveAt, TimeGrid};
 use toml::de::DeValue;
 
 use super::columns::{Columns, FORMULAS, RowFormula, check_plot, each_once, with_formulas};
 use super::defaults::{self, Defaults, INTERVALS};
-use super::document::{Document, with_file};
-use super::error::{Mistakes, SceneError};
+use super::document::{Document, Finder, with_file};
+use super::error::SceneError;
 use super::events::{self, EventKeys, SceneEvent};
 use super::files::read_samples;
-use super::keys::{MethodKeys, Output, OutputKeys, TimeKeys, with_defaults};
-use crate::formula::{Formula, Lost, Which};
+use super::keys::{Limits, MethodKeys, OutputKeys, Rows, TimeKeys, Times, with_defaults};
 use crate::kinds;
 use crate::problem::{FormulaKeys, KNOTS_MAX, Kind, Problem, SAMPLES};
 use crate::problem::{Layer, Model, Plan, Steps};
-use crate::reader::{KeyPath, Read, ReadError, Refusal, Tree};
+use crate::reader::{KeyPath, Mistake, ReadError, Refusal, Tree, Value, seen};
 use crate::schema::Schema;
 
 /// A run, stated in full and checked.
@@ -43,8 +42,8 @@ pub struct Scene {
     pub layer: Layer,
     /// The steps of one size; where `adaptive` chooses, those that `compare` starts from.
     pub grid: TimeGrid,
-    /// The keys of its times.
-    time: TimeKeys,
+    /// The tolerances and limits of its steps.
+    limits: Limits,
     /// Tolerances and limits of steps that are chosen by their error, where the scene has them.
     pub adaptive: Option<StepControl>,
     /// The limit of the attempts, where the scene has one.
@@ -65,6 +64,8 @@ pub struct Scene {
     pub by_default: Defaults,
     /// The text of the scene.
     pub text: String,
+    /// The text of its file, without settings.
+    file: String,
     /// The columns of `[output.formulas]`.
     formulas: Vec<(String, RowFormula)>,
     /// The columns and quantities to draw; none where the kind chooses.
@@ -81,117 +82,103 @@ impl Scene {
     /// # Errors
     /// [`SceneError`] with all mistakes that can be told. A scene that is returned can be run.
     pub fn parse(source: &str, text: &str) -> Result<Scene, SceneError> {
-        Self::read(source, text, Path::new(source).parent())
+        Self::read(source, [text; 2], Path::new(source).parent())
     }
 
-    /// Read a scene whose files stand in `folder`, or else come with the program.
+    /// Read a scene whose files stand in `folder`, or else come with the program. The texts are that with settings, and
+    /// that of the file.
     pub(super) fn read(
         source: &str,
-        text: &str,
+        [text, file]: [&str; 2],
         folder: Option<&Path>,
     ) -> Result<Scene, SceneError> {
-        let mut document = Document::parse(source, text)?;
-        let mut mistakes = Mistakes::default();
-        mistakes.keep(document.check_top());
-        let document = document;
-        let title = mistakes.keep(document.optional::<String>("title"));
+        let document = Document::parse(source, text, file)?;
+        let mut finder = Finder::new(&document);
+        finder.keep("", document.check_top());
+        let title = document.get("title").and_then(|title| finder.read::<String>("", title));
 
-        let kind = mistakes.keep(read_kind(&document));
-        let problem = kind.and_then(|kind| mistakes.keep(read_problem(&document, kind, folder)));
+        let kind = finder.keep("problem", read_kind(&document));
+        let problem =
+            kind.and_then(|kind| finder.keep("problem", read_problem(&document, kind, folder)));
         let (problem, keys) = problem.unzip();
         let spec = problem.as_ref();
 
-        let method = mistakes.keep(document.keys_if_any::<MethodKeys>("method"));
+        let method = finder.read_if_any::<MethodKeys>("method");
         let method_left = method.as_ref().is_some_and(MethodKeys::is_left);
-        let unknown = method.as_ref().map_or_else(Vec::new, MethodKeys::unknown_names);
-        let method = method.filter(|_| unknown.is_empty());
-        mistakes.keep(document.check_all("method", unknown));
-        let method =
-            method.and_then(|method| mistakes.keep(document.check("method", method.resolve(spec))));
+        let method = method.and_then(|method| finder.keep("method", method.resolve(spec)));
 
-        let time = document.section("time").and_then(|section| {
-            document.read("time", section, |section| {
-                let keys = TimeKeys::read(section)?;
-                let steps = keys.resolve()?;
-                Ok((keys, steps))
-            })
+        let times = finder.keep("time", document.section("time"));
+        let times = times.and_then(|section| finder.read::<TimeKeys>("time", section));
+        let times = times.and_then(|times| finder.keep("time", times.resolve()));
+        let steps_left = times.as_ref().is_some_and(|times| times.limits.is_left);
+        let at_knots = times.as_ref().zip(spec).and_then(|(times, problem)| {
+            finder.keep("time", times.at_knots(problem.knots([0.0, 0.0]).is_some()))
         });
-        let time = mistakes.keep(time);
-        let steps_left = time.as_ref().is_some_and(|(keys, _)| keys.is_left());
-        let at_knots = time.as_ref().zip(spec).and_then(|((keys, _), problem)| {
-            let at_knots = keys.at_knots(problem.knots([0.0, 0.0]).is_some());
-            mistakes.keep(document.check("time", at_knots))
-        });
-        let (time, steps) = time.unzip();
-        let grid = steps.as_ref().map(|(grid, ..)| *grid);
+        let grid = times.as_ref().map(|times| times.grid);
         if let (Some(grid), Some(problem)) = (grid, spec) {
             // Beyond its samples a formula has no value.
-            let covered = mistakes.keep(document.check("time", covered(problem, grid.t_span())));
+            let covered = finder.keep("time", covered(problem, grid.t_span()));
             let without_value = covered.map(|()| problem.check_start(grid.t_span()[0]));
-            mistakes.keep(document.check_all("problem", without_value.unwrap_or_default()));
+            finder.refuse("problem", without_value.unwrap_or_default());
         }
 
-        let mut output = mistakes.keep(document.keys_if_any::<OutputKeys>("output"));
+        let mut output = finder.read_if_any::<OutputKeys>("output");
         if let (Some(output), Some(kind)) = (&mut output, kind) {
             output.spell(kind);
+            finder.refuse("output", output.wrong_quantities(kind, spec));
         }
-        let asked = output.as_ref().and_then(|output| output.quantities.clone());
-        let quantities_left = asked.is_none();
-        let asked = asked.or_else(|| spec.map(defaults::quantities)).unwrap_or_default();
+        let asked = output.as_ref().and_then(|output| output.quantities.clone().ok()?);
         let by_default = Defaults {
             method: method_left,
             steps: steps_left,
-            quantities: quantities_left,
+            quantities: asked.is_none(),
             rows: output.as_ref().is_some_and(OutputKeys::leaves_rows),
         };
-        if let (Some(output), Some(kind)) = (&output, kind) {
-            mistakes.keep(document.check_all("output", output.wrong_quantities(kind, spec)));
-        }
-        let output = output.zip(grid).and_then(|(output, grid)| {
-            mistakes
-                .keep(document.check("output", output.resolve(asked.clone(), &grid, steps_left)))
+        let asked = asked.or_else(|| spec.map(defaults::quantities)).unwrap_or_default();
+        let rows = output.as_ref().zip(grid).and_then(|(output, grid)| {
+            finder.keep("output", output.rows(grid.t_span(), steps_left))
         });
 
-        let columns = spec.and_then(|problem| {
+        let mut columns = spec.and_then(|problem| {
             let named = FormulaKeys {
-                parameters: document.within("problem", "parameters").unwrap_or_default(),
-                r#let: document.within("problem", "let").unwrap_or_default(),
+                parameters: Ok(document.within("problem", "parameters").unwrap_or_default()),
+                r#let: Ok(document.within("problem", "let").unwrap_or_default()),
             };
-            let columns = Columns::of(problem, &asked, &named);
-            mistakes.keep(document.check("problem", columns))
+            finder.keep("problem", Columns::of(problem, &asked, &named))
         });
-        let (mut output, mut columns) = (output, columns);
         let formulas = output.as_ref().zip(columns.as_mut()).and_then(|(output, columns)| {
-            mistakes.keep(document.check("output", columns.define(&output.formulas)))
+            let formulas = seen(&output.formulas).and_then(|lets| columns.define(lets));
+            finder.keep("output", formulas)
         });
-        if let (Some(output), Some(problem), Some(formulas)) = (&mut output, spec, &formulas) {
-            let drawn = check_plot(&output.plot, problem, &output.quantities, formulas);
-            mistakes.keep(document.check("output", drawn));
-            if !formulas.is_empty() {
-                output.quantities.push(FORMULAS.into());
-            }
+        let plot = output.and_then(|output| output.plot.ok()).map(Option::unwrap_or_default);
+        if let (Some(plot), Some(problem), Some(formulas)) = (&plot, spec, &formulas) {
+            finder.keep("output", check_plot(plot, problem, &asked, formulas));
         }
 
-        let events = mistakes.keep(read_events(&document, columns.as_ref())).flatten();
+        let events = finder.keep("events", document.entries("events"));
+        let events = events.and_then(|entries| read_events(&mut finder, entries, columns.as_ref()));
         if let (Some(grid), Some(events)) = (grid, &events)
             && !grid.t_span()[1].is_finite()
             && events.iter().all(|event| event.stop_after.is_none())
         {
             let message =
                 "t_span has no end, expected an event with `stop_after` that ends the run";
-            let refusal = Refusal::at("t_span".index(1), message);
-            mistakes.keep(document.check_all("time", vec![refusal]));
+            finder.refuse("time", vec![Refusal::at("t_span".index(1), message)]);
         }
 
-        let written = output.zip(formulas);
         let all = || {
             let problem = problem.zip(keys);
-            Some((title?, problem?, method?, at_knots?, time?, steps?, written?, events?))
+            Some((problem?, method?, at_knots?, times?, rows?, plot?, formulas?, events?))
         };
-        let (title, whole, (method, layer), at_knots, time, steps, (output, formulas), events) =
-            mistakes.or(all())?;
-        let ((problem, keys), (grid, adaptive, max_steps)) = (whole, steps);
-        let Output { quantities, plot, save, times_by_steps, error_check, .. } = output;
+        let (whole, (method, layer), at_knots, times, rows, plot, formulas, events) =
+            finder.or(all())?;
+        let (problem, keys) = whole;
+        let Times { grid, control: adaptive, limits, .. } = times;
+        let Rows { save, times_by_steps, error_check } = rows;
+        let mut quantities = asked;
+        if !formulas.is_empty() {
+            quantities.push(FORMULAS.into());
+        }
         let stem = Path::new(source).file_stem().unwrap_or_default().to_string_lossy();
         // A folder may have this name.
         let is_name = !stem.trim_matches('.').is_empty();
@@ -206,9 +193,9 @@ impl Scene {
             method,
             layer,
             grid,
-            time,
+            limits,
             adaptive,
-            max_steps,
+            max_steps: limits.max_steps,
             at_knots,
             save,
             times_by_steps,
@@ -217,6 +204,7 @@ impl Scene {
             error_check,
             by_default,
             text: text.into(),
+            file: file.into(),
             formulas,
             plot,
             fingerprint,
@@ -239,8 +227,8 @@ impl Scene {
             document.refusal("method", refusal)
         })?;
         if scene.by_default.steps {
-            scene.time.for_order(model.order(&scene.method).unwrap_or(None));
-            scene.adaptive = scene.time.control(1.0).ok();
+            scene.limits.for_order(model.order(&scene.method).unwrap_or(None));
+            scene.adaptive = scene.limits.control(1.0).ok();
         }
         Ok(scene)
     }
@@ -253,7 +241,7 @@ impl Scene {
             chosen.push(format!("method {}", self.method.label()));
         }
         if steps {
-            let tolerance = self.time.tolerances()[0];
+            let tolerance = self.limits.tolerances()[0];
             chosen.push(format!("adaptive steps with rtol = atol = {tolerance:e}"));
         }
         if quantities {
@@ -277,7 +265,7 @@ impl Scene {
 
     /// rtol and atol, where steps are chosen by their error.
     pub fn tolerances(&self) -> Option<[f64; 2]> {
-        self.adaptive.as_ref().map(|_| self.time.tolerances())
+        self.adaptive.as_ref().map(|_| self.limits.tolerances())
     }
 
     /// A run to time t that shows its ends and sees no events, with the step size or the tolerances times a factor.
@@ -295,7 +283,7 @@ impl Scene {
         let steps = match self.adaptive {
             None => Steps::Equal(TimeGrid::new(t_span, factor * self.grid.h().abs())?),
             Some(_) => {
-                let control = limited(self.time.control(factor)?, largest)?;
+                let control = limited(self.limits.control(factor)?, largest)?;
                 Steps::ByError { t_span, control }
             }
         };
@@ -326,38 +314,9 @@ impl Scene {
         Ok(Plan { stops, ..Plan::new(Steps::ByError { t_span, control }, SaveAt::Ends) })
     }
 
-    /// Forgets which formulas had no value: what [`lost`](Self::lost) tells is of the run after this.
-    pub fn forget_losses(&self) {
-        let of_rows = self.events.iter().map(SceneEvent::formula);
-        self.problem.formula().into_iter().chain(of_rows).for_each(Formula::forget);
-    }
-
-    /// The formula by which a run ended with this error.
-    pub fn lost(&self, error: &RunError) -> Option<Lost> {
-        let which = match error {
-            RunError::Event { name, .. } => {
-                let event = self.events.iter().find(|event| event.name == *name)?;
-                return event.formula().lost(Which::Last);
-            }
-            RunError::Step(Failure { source, .. }) if is_of_values(source) => Which::First,
-            RunError::StepSizeUnderflow { source: Some(source), .. } if is_of_values(source) => {
-                Which::Last
-            }
-            // The last step was so small that t did not reach beyond what it failed by before.
-            RunError::StepSizeUnderflow { t, .. } => {
-                let lost = self.problem.formula()?.lost(Which::Last);
-                return lost.filter(|lost| {
-                    lost.t().is_some_and(|at| (at - t).abs() <= NEAR * (1.0 + t.abs()))
-                });
-            }
-            _ => return None,
-        };
-        self.problem.formula()?.lost(which)
-    }
-
     /// A refusal of a value of the scene, with its place.
     pub fn refuse(&self, section: &str, refusal: Refusal) -> SceneError {
-        match Document::parse(&self.source, &self.text) {
+        match Document::parse(&self.source, &self.text, &self.file) {
             Ok(document) => document.refusal(section, refusal),
             Err(error) => error,
         }
@@ -423,14 +382,6 @@ impl Scene {
     }
 }
 
-/// The distance of the time where a formula has no value from that where steps become too small.
-const NEAR: f64 = 1e-6;
-
-/// Is the reason a value that is not finite?
-fn is_of_values(error: &StepError) -> bool {
-    matches!(error, StepError::NonFiniteRhs { .. } | StepError::NotFinite { .. })
-}
-
 /// A hash of what the scene states and of its samples: the same on every machine.
 fn fingerprint(stated: &str, samples: Option<&Samples>) -> u64 {
     let mut hasher = FnvHasher::default();
@@ -448,57 +399,51 @@ fn fitting(model: &Model) -> Vec<&'static str> {
 }
 
 /// The kind of problem that a scene names.
-fn read_kind(document: &Document<'_>) -> Result<&'static Kind, SceneError> {
-    document.read("problem", document.section("problem")?, |section| {
-        let kind = section.get_ref().get("kind");
-        let kind = kind.ok_or_else(|| ReadError::MissingKey(section.span(), "kind"))?;
-        let name = kind.get_ref().as_str();
-        let name = name.ok_or_else(|| ReadError::expected(kind, "the name of a problem"))?;
-        kinds::named(name).map_err(|error| Refusal::from(error).about("kind").into())
-    })
+fn read_kind(document: &Document<'_>) -> Result<&'static Kind, ReadError> {
+    let section = document.section("problem")?;
+    let kind = section.get_ref().get("kind");
+    let kind = kind.ok_or_else(|| Mistake::MissingKey(section.span(), "kind"))?;
+    let name = kind.get_ref().as_str();
+    let name = name.ok_or_else(|| ReadError::expected(kind, "the name of a problem"))?;
+    kinds::named(name).map_err(|error| Refusal::from(error).about("kind").into())
 }
 
 fn read_problem(
     document: &Document<'_>,
     kind: &'static Kind,
     folder: Option<&Path>,
-) -> Result<(Problem, Tree), SceneError> {
-    let mut section = document.section("problem")?;
+) -> Result<(Problem, Tree), ReadError> {
+    let mut section = document.section("problem")?.clone();
     if let DeValue::Table(keys) = section.get_mut() {
         keys.remove("kind");
     }
-    document.read("problem", section, |section| {
-        if !kind.keys.contains(&SAMPLES) {
-            return Ok((kind.read_problem(section)?, Tree::of(section)));
-        }
+    let mut mistakes = ReadError::default();
+    if kind.keys.contains(&SAMPLES) {
         let file = |name: &str| read_samples(folder, name);
-        let section = with_file(section, SAMPLES.name, file)?;
-        Ok((kind.read_problem(&section)?, Tree::of(&section)))
-    })
+        mistakes.keep(with_file(&mut section, SAMPLES.name, kind.keys, file));
+    }
+    let problem = mistakes.keep(kind.read_problem(&section));
+    mistakes.or(problem.map(|problem| (problem, Tree::of(&section))))
 }
 
-/// The events; none of a problem without columns.
+/// The events, where all of them can be used.
 fn read_events(
-    document: &Document<'_>,
+    finder: &mut Finder<'_, '_>,
+    entries: &[Value<'_>],
     columns: Option<&Columns>,
-) -> Result<Option<Vec<SceneEvent>>, SceneError> {
-    let (entries, mut mistakes) = (document.entries("events")?, Mistakes::default());
+) -> Option<Vec<SceneEvent>> {
     let names = entries.iter().map(|entry| {
         let name = entry.get_ref().get("name").and_then(|name| name.get_ref().as_str());
         name.unwrap_or_default()
     });
     let names: Vec<&str> = names.collect();
     let events = entries.iter().enumerate().map(|(i, entry)| {
-        let read = document.read("events", entry.clone(), |entry| {
-            let keys = EventKeys::read(entry)?;
-            let event = |columns| events::resolve(keys, i, &names[..i], columns);
-            Ok(columns.map(event).transpose()?)
-        });
-        mistakes.keep(read).flatten()
+        let keys = finder.read::<EventKeys>("events", entry)?;
+        finder.keep("events", events::resolve(keys, i, &names[..i], columns))
     });
     // Each is read, also after one that is wrong.
     let events: Vec<_> = events.collect();
-    mistakes.or(Some(events.into_iter().collect()))
+    events.into_iter().collect()
 }
 
 /// A run stays in the span of the samples.

@@ -2,8 +2,11 @@
 
 use toml_edit::{DocumentMut, Item, TableLike, Value};
 
+use super::document::TOP;
 use super::error::SceneError;
-use crate::reader::help_for;
+use super::keys::{MethodKeys, OutputKeys, TimeKeys};
+use crate::kinds;
+use crate::reader::{Read, Shape, help_for, suggest};
 
 /// A step on the way to a value: a key, or the place in a list, from 1.
 enum Step<'a> {
@@ -43,6 +46,11 @@ fn set(root: &mut Item, setting: &str) -> Result<(), String> {
     let Some((last, before)) = steps.split_last() else {
         return Err("expected a key before the `=`, such as time.dt".into());
     };
+    if let Some(Step::Key(first)) = steps.first()
+        && !TOP.contains(first)
+    {
+        return Err(unknown_at_the_top(root, first));
+    }
     let mut item = root;
     let mut done = String::new();
     for step in before {
@@ -67,6 +75,42 @@ fn set(root: &mut Item, setting: &str) -> Result<(), String> {
         (place @ Step::Place(_), Some(value)) => *enter(item, place, &done)? = Item::Value(value),
     }
     Ok(())
+}
+
+/// What is said of a key that no scene has at the top: the section that has it, or the name that was meant.
+fn unknown_at_the_top(root: &Item, given: &str) -> String {
+    let kind = root.get("problem").and_then(|problem| problem.get("kind"));
+    let kind = kind.and_then(|kind| kinds::named(kind.as_str()?).ok());
+    let of_problem = kind.map_or_else(Vec::new, |kind| kind.keys.iter().map(|k| k.name).collect());
+    let sections = [
+        ("time", names_of(TimeKeys::SHAPE)),
+        ("problem", of_problem),
+        ("output", names_of(OutputKeys::SHAPE)),
+        ("method", names_of(MethodKeys::SHAPE)),
+    ];
+    let in_section = sections
+        .iter()
+        .find_map(|(section, names)| names.contains(&given).then(|| format!("{section}.{given}")));
+    let meant = in_section.or_else(|| suggest(given, TOP).map(str::to_owned)).or_else(|| {
+        let meant = |(section, names): &(&str, Vec<&str>)| {
+            Some(format!("{section}.{}", suggest(given, names)?))
+        };
+        sections.iter().find_map(meant)
+    });
+    match meant {
+        Some(meant) => format!("there is no `{given}` at the top: did you mean `{meant}`?"),
+        None => format!(
+            "there is no `{given}` at the top, expected a key with its section, such as time.dt"
+        ),
+    }
+}
+
+/// The keys of a section.
+fn names_of(shape: Shape) -> Vec<&'static str> {
+    match shape {
+        Shape::Keys(names) => names.to_vec(),
+        _ => Vec::new(),
+    }
 }
 
 impl Step<'_> {

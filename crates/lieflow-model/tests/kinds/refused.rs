@@ -104,7 +104,7 @@ const BROKEN: &[(&str, &str, &str, &[&str])] = &[
         "circulation = 6, width = 0",
         &["> 0"],
     ),
-    ("vortices-on-sphere", "isospectral2", "magnus4", &["methods that fit: rkmk4"]),
+    ("vortices-on-sphere", "isospectral4", "magnus4", &["methods that fit: rkmk4"]),
     ("spherical-pendulum", "direction = [0.8, 0.0, -0.6]", "direction = [0, 0, 0]", &["|q|"]),
     ("spin-wave", "count = 8", "count = 1", &["at least 2"]),
     ("spin-wave", "wave = { count = 8, turns = 1, cone = 0.8 }", "", &["`spins` or `wave`"]),
@@ -311,6 +311,8 @@ fn all_values_at_once() {
         "7:10: t_span is empty",
         "8:6: dt = -1",
         "12:14: found 0",
+        "14:8: an event without a name",
+        "16:13: unknown direction `up`",
     ];
     let found = told(&format!("{body}{rest}"));
     let as_expected = |found: &[String], expected: &[&str]| {

@@ -160,35 +160,20 @@ type Principal = ([f64; 3], Option<Matrix3<f64>>);
 impl BodyKeys {
     /// Does the scene say how the body stands?
     pub(super) fn has_attitude(&self) -> bool {
-        self.attitude.is_some() || self.quaternion.is_some()
+        !matches!((&self.attitude, &self.quaternion), (Ok(None), Ok(None)))
     }
 
     /// The body with its start; the attitude where the scene does not say it.
     ///
     /// # Errors
-    /// A refusal of the first key that cannot be used.
+    /// Refusals of the keys that cannot be used.
     pub(super) fn start(self, otherwise: Matrix3<f64>) -> Result<RigidBodySpec, ReadError> {
-        let (inertia, axes) = self.principal()?;
-        RigidBody::<f64>::new(inertia)?;
         let mut notes = Vec::new();
-        let (mut attitude, mut quaternion) = (otherwise, None);
-        match (self.attitude, self.quaternion) {
-            (Some(_), Some(_)) => {
-                let message = "both `attitude` and `quaternion`, expected at most one of them";
-                return Err(Refusal::at("quaternion", message).into());
-            }
-            (Some(rows), None) => {
-                let g = Matrix3::from_fn(|i, j| rows.0[i][j]);
-                attitude = check_rotation("attitude", g, &mut notes)?;
-            }
-            (None, Some(wxyz)) => {
-                check_unit("quaternion", &wxyz.0, &mut notes)?;
-                let q = quaternion_from_wxyz(wxyz.0)?;
-                (attitude, quaternion) = (rotation(&q), Some(q));
-            }
-            (None, None) => {}
-        }
-        let momentum = self.momentum(inertia, axes.as_ref(), &attitude)?;
+        let (principal, rate) = (self.principal(), self.rate());
+        let orientation = self.orientation(otherwise, &mut notes);
+        let ((inertia, axes), rate, (mut attitude, mut quaternion)) =
+            all!(principal, rate, orientation)?;
+        let momentum = momentum(rate, inertia, axes.as_ref(), &attitude)?;
         if let Some(axes) = axes {
             attitude *= axes;
             if let Some(q) = &mut quaternion {
@@ -199,50 +184,60 @@ impl BodyKeys {
         Ok(RigidBodySpec { quaternion, axes, notes, ..body })
     }
 
-    /// The initial momentum in the body along the principal axes; g as the scene has it.
-    fn momentum(
+    /// The rotation to space as the scene has it, and its quaternion where the scene gives one.
+    fn orientation(
         &self,
-        inertia: [f64; 3],
-        axes: Option<&Matrix3<f64>>,
-        g: &Matrix3<f64>,
-    ) -> Result<Vector3<f64>, Refusal> {
-        let starts = [
-            ("omega_body", self.omega_body),
-            ("momentum_body", self.momentum_body),
-            ("omega_space", self.omega_space),
-            ("momentum_space", self.momentum_space),
-        ];
-        at_most_one(starts.map(|(key, x)| (key, x.is_some())))?;
-        let given = starts.into_iter().find_map(|(key, x)| Some((key, x?.0)));
-        let (key, x) = given.ok_or_else(|| {
-            Refusal::section("expected `omega_body` or `momentum_body`, found neither")
-        })?;
-        let x = if key.ends_with("space") { g.tr_mul(&x.into()) } else { x.into() };
-        let x = axes.map_or(x, |axes| axes.tr_mul(&x));
-        if key.starts_with("momentum") {
-            return Ok(x);
+        otherwise: Matrix3<f64>,
+        notes: &mut Vec<String>,
+    ) -> Result<(Matrix3<f64>, Option<UnitQuaternion<f64>>), ReadError> {
+        if is_given(&self.attitude) && is_given(&self.quaternion) {
+            let message = "both `attitude` and `quaternion`, expected at most one of them";
+            return Err(Refusal::at("quaternion", message).into());
         }
-        let momentum = Vector3::from(inertia).component_mul(&x);
-        match momentum.iter().position(|m| !m.is_finite()) {
-            None => Ok(momentum),
-            Some(i) => {
-                let (at, of) = (key.index(i), "inertia".index(i));
-                let message = format!("the momentum {of} * {at} is not finite");
-                Err(Refusal::at(at, message))
+        if let Some(rows) = seen(&self.attitude)? {
+            let g = Matrix3::from_fn(|i, j| rows.0[i][j]);
+            return Ok((check_rotation("attitude", g, notes)?, None));
+        }
+        let Some(wxyz) = seen(&self.quaternion)? else { return Ok((otherwise, None)) };
+        check_unit("quaternion", &wxyz.0, notes)?;
+        let q = quaternion_from_wxyz(wxyz.0)?;
+        Ok((rotation(&q), Some(q)))
+    }
+
+    /// The key of the initial velocity or momentum, and its value.
+    fn rate(&self) -> Result<(&'static str, [f64; 3]), ReadError> {
+        let keys = [
+            ("omega_body", &self.omega_body),
+            ("momentum_body", &self.momentum_body),
+            ("omega_space", &self.omega_space),
+            ("momentum_space", &self.momentum_space),
+        ];
+        at_most_one(keys.map(|(key, x)| (key, is_given(x))))?;
+        for (key, x) in keys {
+            if let Some(x) = seen(x)? {
+                return Ok((key, x.0));
             }
         }
+        Err(Refusal::section("expected `omega_body` or `momentum_body`, found neither").into())
     }
 
     fn principal(&self) -> Result<Principal, ReadError> {
         at_most_one([
-            ("inertia", self.inertia.is_some()),
-            ("inverse_inertia", self.inverse_inertia.is_some()),
-            ("shape", self.shape.is_some()),
+            ("inertia", is_given(&self.inertia)),
+            ("inverse_inertia", is_given(&self.inverse_inertia)),
+            ("shape", is_given(&self.shape)),
         ])?;
-        if let Some(shape) = &self.shape {
-            return Ok((shape.moments()?, None));
-        }
-        match exactly_one(("inertia", self.inertia), ("inverse_inertia", self.inverse_inertia))? {
+        let (inertia, axes) = match seen(&self.shape)? {
+            Some(shape) => (shape.moments()?, None),
+            None => self.of_inertia()?,
+        };
+        RigidBody::<f64>::new(inertia)?;
+        Ok((inertia, axes))
+    }
+
+    fn of_inertia(&self) -> Result<Principal, ReadError> {
+        let (inertia, inverse) = (*seen(&self.inertia)?, *seen(&self.inverse_inertia)?);
+        match exactly_one(("inertia", inertia), ("inverse_inertia", inverse))? {
             Either::First(Diagonal::List(inertia)) => Ok((inertia, None)),
             Either::First(Diagonal::Rows(rows)) => {
                 let tensor = Matrix3::from_rows(&rows.map(|row| Vector3::from(row).transpose()));
@@ -256,6 +251,35 @@ impl BodyKeys {
                 check_each("inverse_inertia", &inverse.0, range, good)?;
                 Ok((inverse.0.map(f64::recip), None))
             }
+        }
+    }
+}
+
+/// Is the key there, with a value that can be used?
+fn is_given<T>(key: &Key<Option<T>>) -> bool {
+    matches!(key, Ok(Some(_)))
+}
+
+/// The initial momentum in the body along the principal axes, by the velocity or the momentum of a key; g as the scene
+/// has it.
+fn momentum(
+    (key, x): (&str, [f64; 3]),
+    inertia: [f64; 3],
+    axes: Option<&Matrix3<f64>>,
+    g: &Matrix3<f64>,
+) -> Result<Vector3<f64>, Refusal> {
+    let x = if key.ends_with("space") { g.tr_mul(&x.into()) } else { x.into() };
+    let x = axes.map_or(x, |axes| axes.tr_mul(&x));
+    if key.starts_with("momentum") {
+        return Ok(x);
+    }
+    let momentum = Vector3::from(inertia).component_mul(&x);
+    match momentum.iter().position(|m| !m.is_finite()) {
+        None => Ok(momentum),
+        Some(i) => {
+            let (at, of) = (key.index(i), "inertia".index(i));
+            let message = format!("the momentum {of} * {at} is not finite");
+            Err(Refusal::at(at, message))
         }
     }
 }

@@ -14,7 +14,7 @@ use super::body::check_rotation;
 use super::entries::check_rows;
 use super::flow;
 use super::prelude::*;
-use crate::formula::{Formula, Parameters, Text, Texts, without_value};
+use crate::formula::{Formula, Names, Parameters, Text, Texts, without_value};
 use crate::problem::part;
 use crate::reader::values::Numbers;
 use crate::schema::{self, Measure};
@@ -26,7 +26,7 @@ pub(super) const KIND: Kind = Kind {
     name: "composed",
     equation: "ȧ = f × a for vectors, ȧ = f̂ a for rotations, ȧ = f for numbers, f of all parts",
     summary: "a system composed from parts, vectors on spheres, rotations and numbers, by formulas",
-    ..Kind::of::<Keys, Composed>(|section| read(Read::read(section)?))
+    ..Kind::of::<Keys, Composed>(|section| read_with(section, read))
 };
 
 keys! { Keys [sample_keys formula_keys] {
@@ -42,10 +42,10 @@ keys! { Keys [sample_keys formula_keys] {
 
 read_by_keys! {
     struct PartKeys {
-        name: String,
-        space: String,
-        start: Option<Numbers>,
-        field: Texts,
+        name: Key<String>,
+        space: Key<String>,
+        start: Key<Option<Numbers>>,
+        field: Key<Texts>,
     }
 }
 
@@ -68,32 +68,59 @@ type Q = Quantity<Composed>;
 fn read(mut keys: Keys) -> Result<Forms, ReadError> {
     let (formulas, samples) = (keys.formula_keys(), keys.sample_keys());
     let Keys { parts: keys, invariants, .. } = keys;
+    let keys = keys?;
     if keys.is_empty() {
         return Err(Refusal::at("parts", "no parts, expected at least one").into());
     }
-    let mut notes = Vec::new();
-    let (spaces, start) = places(&keys, &mut notes)?;
-    let (coordinates, mut taken) = names_of(&keys, &spaces, &formulas.parameters)?;
-    let all = core::iter::once(TIME).chain(coordinates.iter().map(String::as_str));
-    let names = formulas.names("parts", all, samples)?;
+    let (mut notes, mut mistakes) = (Vec::new(), ReadError::default());
+    let (spaces, start) = places(&keys, &mut notes, &mut mistakes);
+    // The formulas are read also where a start is wrong, and not without the names of all coordinates.
+    let names = spaces.as_ref().ok_or_else(ReadError::known).and_then(|spaces| {
+        let (coordinates, taken) = names_of(&keys, spaces, seen(&formulas.parameters)?)?;
+        let all = core::iter::once(TIME).chain(coordinates.iter().map(String::as_str));
+        let of_fields = formulas.names("parts", all, samples)?;
+        let of_invariants = seen(&formulas.parameters)?.names("parts", &coordinates)?;
+        let of_invariants = of_invariants.with_usable_lets("let", seen(&formulas.r#let)?);
+        Ok((taken, of_fields, of_invariants))
+    });
+    let (taken, of_fields, of_invariants) = match names {
+        Ok(names) => names,
+        Err(error) => {
+            mistakes.add(error);
+            return mistakes.or(None);
+        }
+    };
     let mut parts = Vec::new();
-    for (i, (keys, space)) in keys.into_iter().zip(spaces).enumerate() {
-        let field = keys.field.read(&of_part(i, "field"), space.dim(), &names)?;
-        parts.push(Part { name: keys.name, space, field });
+    for (i, (keys, space)) in keys.into_iter().zip(spaces.into_iter().flatten()).enumerate() {
+        let field = keys.field.and_then(|f| f.read(&of_part(i, "field"), space.dim(), &of_fields));
+        if let (Some(field), Ok(name)) = (mistakes.keep(field), keys.name) {
+            parts.push(Part { name, space, field });
+        }
     }
-    let names = formulas.parameters.names("parts", &coordinates)?;
-    let names = names.with_usable_lets("let", &formulas.r#let);
-    let mut kept = Vec::new();
-    for (name, Text(text)) in invariants {
+    mistakes.keep(of_fields.checked());
+    let kept = invariants.and_then(|kept| read_invariants(kept, taken, &of_invariants));
+    let kept = mistakes.keep(kept);
+    let kept = mistakes.or(kept)?;
+    Ok(Forms::of(Composed { parts, start, invariants: kept, notes }))
+}
+
+/// The invariants, whose names are none of those that are taken.
+fn read_invariants(
+    texts: BTreeMap<String, Text>,
+    mut taken: BTreeSet<String>,
+    names: &Names,
+) -> Result<Vec<(String, Formula)>, ReadError> {
+    let (mut kept, mut mistakes) = (Vec::new(), ReadError::default());
+    for (name, Text(text)) in texts {
         let key = "invariants".entry(&name);
         if !taken.insert(name.clone()) {
             let message = format!("the invariant `{name}` has the name of something else");
-            return Err(Refusal::at(key, message).into());
+            mistakes.add(Refusal::at(key, message));
+        } else if let Some(formula) = mistakes.keep(Formula::read(&key, &text, names)) {
+            kept.push((name, formula));
         }
-        let formula = Formula::read(&key, &text, &names)?;
-        kept.push((name, formula));
     }
-    Ok(Forms::of(Composed { parts, start, invariants: kept, notes }))
+    mistakes.or(Some(kept))
 }
 
 /// The path of a key of part `i`, from 0.
@@ -101,66 +128,87 @@ fn of_part(i: usize, key: &str) -> String {
     "parts".index(i).entry(key)
 }
 
-/// The spaces of the parts with their places, and the start.
-fn places(keys: &[PartKeys], notes: &mut Vec<String>) -> Result<(Vec<Space>, Point), Refusal> {
+/// The spaces of the parts with their places, where all are known, and the start.
+fn places(
+    keys: &[PartKeys],
+    notes: &mut Vec<String>,
+    mistakes: &mut ReadError,
+) -> (Option<Vec<Space>>, Point) {
     let (mut vectors, mut rotations, mut numbers) = (Vec::new(), Vec::new(), Vec::new());
-    let mut spaces = Vec::new();
-    for (i, part) in keys.iter().enumerate() {
-        let refused = |key: &str, message: String| Refusal::at(of_part(i, key), message);
-        spaces.push(match (part.space.as_str(), &part.start) {
-            ("vector", Some(Numbers::List(x))) => {
-                vectors.push(vector(x).map_err(|message| refused("start", message))?);
+    let spaces = keys.iter().enumerate().map(|(i, part)| {
+        let space = match mistakes.keep(seen(&part.space))?.as_str() {
+            // The coordinates have their names also where the start is wrong.
+            "vector" => {
+                vectors.push(mistakes.keep(vector(i, part)).unwrap_or_default());
                 Space::Vector(vectors.len() - 1)
             }
-            ("rotation", None) => {
-                rotations.push(Matrix3::identity());
+            "rotation" => {
+                rotations.push(mistakes.keep(rotation(i, part, notes)).unwrap_or_default());
                 Space::Rotation(rotations.len() - 1)
             }
-            ("rotation", Some(Numbers::Rows(rows))) => {
-                rotations.push(rotation(&of_part(i, "start"), rows, notes)?);
-                Space::Rotation(rotations.len() - 1)
+            "numbers" => {
+                let start = mistakes.keep(list(i, part))?;
+                numbers.extend(start);
+                Space::Numbers(numbers.len() - start.len()..numbers.len())
             }
-            ("numbers", Some(Numbers::List(x))) if !x.is_empty() => {
-                numbers.extend(x);
-                Space::Numbers(numbers.len() - x.len()..numbers.len())
-            }
-            ("vector" | "rotation" | "numbers", start) => {
-                let expected = match part.space.as_str() {
-                    "vector" => "3 numbers",
-                    "rotation" => "3 rows of 3 numbers",
-                    _ => "a list of numbers",
-                };
-                let message = format!("the start of `{}` is to be {expected}", part.name);
-                return Err(refused(if start.is_some() { "start" } else { "name" }, message));
-            }
-            (other, _) => {
+            other => {
                 let help = Some(help_for(other, &["vector", "rotation", "numbers"]));
-                let message = format!("unknown space `{other}`");
-                return Err(Refusal { help, ..refused("space", message) });
+                let refusal = Refusal::at(of_part(i, "space"), format!("unknown space `{other}`"));
+                mistakes.add(Refusal { help, ..refusal });
+                return None;
             }
-        });
-    }
-    Ok((spaces, (vectors.into(), (rotations.into(), numbers.into()))))
+        };
+        Some(space)
+    });
+    // Each is read, also after one that is wrong.
+    let spaces: Vec<_> = spaces.collect();
+    let start = (vectors.into(), (rotations.into(), numbers.into()));
+    (spaces.into_iter().collect(), start)
 }
 
-/// A matrix of SO(3).
-fn rotation(key: &str, rows: &Table, notes: &mut Vec<String>) -> Result<Matrix3<f64>, Refusal> {
-    let rows = rows.matrix(key, Some(3))?;
-    check_rows(key, &rows, 3)?;
-    check_rotation(key, Matrix3::from_fn(|i, j| rows[(i, j)]), notes)
+/// The refusal of a start that is missing or of another shape.
+fn other_start(i: usize, part: &PartKeys, expected: &str) -> ReadError {
+    let Ok(name) = &part.name else { return ReadError::known() };
+    let key = of_part(i, if matches!(part.start, Ok(None)) { "name" } else { "start" });
+    Refusal::at(key, format!("the start of `{name}` is to be {expected}")).into()
 }
 
-/// A vector on a sphere.
-fn vector(x: &[f64]) -> Result<Vector3<f64>, String> {
-    match *x {
+/// The start of a rotation: a matrix of SO(3).
+fn rotation(i: usize, part: &PartKeys, notes: &mut Vec<String>) -> Result<Matrix3<f64>, ReadError> {
+    let rows = match seen(&part.start)? {
+        None => return Ok(Matrix3::identity()),
+        Some(Numbers::Rows(rows)) => rows,
+        Some(Numbers::List(_)) => return Err(other_start(i, part, "3 rows of 3 numbers")),
+    };
+    let key = of_part(i, "start");
+    let rows = rows.matrix(&key, Some(3))?;
+    check_rows(&key, &rows, 3)?;
+    Ok(check_rotation(&key, Matrix3::from_fn(|i, j| rows[(i, j)]), notes)?)
+}
+
+/// The start of a vector on a sphere.
+fn vector(i: usize, part: &PartKeys) -> Result<Vector3<f64>, ReadError> {
+    let Some(Numbers::List(x)) = seen(&part.start)? else {
+        return Err(other_start(i, part, "3 numbers"));
+    };
+    let message = match x[..] {
         [a, b, c] => {
             let x = Vector3::new(a, b, c);
             match x.norm() {
-                length if length > 0.0 && length.is_finite() => Ok(x),
-                length => Err(format!("a vector of length {length}, expected a finite one > 0")),
+                length if length > 0.0 && length.is_finite() => return Ok(x),
+                length => format!("a vector of length {length}, expected a finite one > 0"),
             }
         }
-        _ => Err(format!("expected 3 numbers, found {}", x.len())),
+        _ => format!("expected 3 numbers, found {}", x.len()),
+    };
+    Err(Refusal::at(of_part(i, "start"), message).into())
+}
+
+/// The start of numbers.
+fn list(i: usize, part: &PartKeys) -> Result<&[f64], ReadError> {
+    match seen(&part.start)? {
+        Some(Numbers::List(x)) if !x.is_empty() => Ok(x),
+        _ => Err(other_start(i, part, "a list of numbers")),
     }
 }
 
@@ -170,15 +218,16 @@ fn names_of(
     keys: &[PartKeys],
     spaces: &[Space],
     parameters: &Parameters,
-) -> Result<(Vec<String>, BTreeSet<String>), Refusal> {
+) -> Result<(Vec<String>, BTreeSet<String>), ReadError> {
     let (mut coordinates, mut taken) = (Vec::new(), BTreeSet::new());
     for (i, (PartKeys { name, .. }, space)) in keys.iter().zip(spaces).enumerate() {
+        let name = seen(name)?;
         let (own, key) = (space.coordinates(name), of_part(i, "name"));
         parameters.names(&key, core::iter::once(&TIME.to_string()).chain(&own))?;
         for column in own.iter().cloned().chain(space.kept(name)) {
             if taken.contains(&column) {
                 let message = format!("part `{name}`: `{column}` is of another part already");
-                return Err(Refusal::at(key, message));
+                return Err(Refusal::at(key, message).into());
             }
             taken.insert(column);
         }

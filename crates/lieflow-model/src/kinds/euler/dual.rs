@@ -12,9 +12,9 @@ use crate::reader::values::Numbers;
 #[derive(Debug)]
 pub(super) struct Given {
     pub(super) names: FormulaKeys,
-    pub(super) hamiltonian: Option<Text>,
-    pub(super) inverse_inertia: Option<Table>,
-    pub(super) momentum: Numbers,
+    pub(super) hamiltonian: Key<Option<Text>>,
+    pub(super) inverse_inertia: Key<Option<Table>>,
+    pub(super) momentum: Key<Numbers>,
 }
 
 /// An energy on the dual of an algebra.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use lieflow::scalar::{Ops, Real, tally};
 
 use crate::formula::{Formula, Names, Text, without_value};
-use crate::reader::Refusal;
+use crate::reader::{ReadError, Refusal};
 
 /// The key.
 const KEY: &str = "hamiltonian";
@@ -21,8 +21,8 @@ pub(super) struct Energy {
 
 impl Energy {
     /// # Errors
-    /// A refusal of `hamiltonian`.
-    pub(super) fn read(Text(text): &Text, names: &Names) -> Result<Self, Refusal> {
+    /// Refusals of `hamiltonian`.
+    pub(super) fn read(Text(text): &Text, names: &Names) -> Result<Self, ReadError> {
         let value = Formula::read(KEY, text, names)?;
         let by = |i| value.derivative(i);
         let gradient: Arc<[Formula]> =

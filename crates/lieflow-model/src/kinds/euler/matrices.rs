@@ -8,13 +8,13 @@ use lieflow::scalar::{Ops, tally};
 use super::dual::{Dual, Given, OnDual, quantities};
 use super::energy::Energy;
 use super::group::WithGroup;
-use crate::formula::Formula;
+use crate::formula::{Formula, Text};
 use crate::kinds::algebra::{Algebra, Miss, Named, miss};
 use crate::kinds::entries::{antisymmetric, numbered, rows, size_of_traces, square, traces};
 use crate::kinds::flow::OnMatrices;
 use crate::kinds::matrix::MatrixAction;
 use crate::kinds::prelude::*;
-use crate::problem::{SampleKeys, row_columns};
+use crate::problem::{FormulaKeys, SampleKeys, row_columns};
 use crate::reader::values::Numbers;
 
 /// How H is stated.
@@ -46,10 +46,10 @@ const ROUNDING: f64 = 1e-12;
 /// Formulas name entries by one digit for the row and one for the column.
 const NAMED_MAX: usize = 9;
 
-pub(super) fn on(named: Named, given: Given) -> Result<Forms, Refusal> {
+pub(super) fn on(named: Named, given: Given) -> Result<Forms, ReadError> {
     let algebra = named.algebra;
-    let names = given.names;
-    let momentum = match (algebra, given.momentum) {
+    let Given { names, hamiltonian, inverse_inertia, momentum } = given;
+    let momentum = match (algebra, momentum?) {
         (Algebra::So, Numbers::List(above)) => antisymmetric(&above).ok_or_else(|| {
             let message = format!(
                 "found {} numbers, expected the n(n-1)/2 entries above the diagonal, or n rows of n",
@@ -61,28 +61,43 @@ pub(super) fn on(named: Named, given: Given) -> Result<Forms, Refusal> {
     };
     let n = momentum.nrows();
     named.check_size(n, "momentum")?;
-    let stated = ("inverse_inertia", given.inverse_inertia);
-    let form = match exactly_one(stated, ("hamiltonian", given.hamiltonian))? {
-        Either::First(table) => Form::Weights(square("inverse_inertia", &table, n)?),
-        Either::Second(_) if n > NAMED_MAX => {
-            let message = format!("the momentum is {n}×{n}, expected at most {NAMED_MAX} rows");
-            return Err(Refusal::at("hamiltonian", message));
-        }
-        Either::Second(text) => {
-            let variables = row_columns("m", n, n);
-            let names = names.names("hamiltonian", variables, SampleKeys::default())?;
-            Form::Formula(Energy::read(&text, &names)?)
+    let group = algebra.group(n, "momentum")?;
+    let in_algebra = match miss(algebra, "momentum", &momentum, ROUNDING) {
+        None => Ok(()),
+        Some(Miss { at: (i, j), why, form }) => {
+            let message = format!("it is not in {}: {why}", algebra.name(n));
+            let refusal = Refusal::at("momentum".cell(i, j), message);
+            Err(Refusal { help: Some(form), ..refusal })
         }
     };
-    let group = algebra.group(n, "momentum")?;
-    if let Some(Miss { at: (i, j), why, form }) = miss(algebra, "momentum", &momentum, ROUNDING) {
-        let message = format!("it is not in {}: {why}", algebra.name(n));
-        let refusal = Refusal::at("momentum".cell(i, j), message);
-        return Err(Refusal { help: Some(form), ..refusal });
-    }
+    let form = form_of(inverse_inertia, hamiltonian, &names, n);
+    let (form, ()) = all!(form, in_algebra)?;
     let energy = Projected { algebra, form };
     let alone = EulerEquation { group, energy, momentum };
     Ok(Forms::of(alone.clone()).or(Forms::of(WithGroup(alone))))
+}
+
+/// How H of n×n matrices is stated.
+fn form_of(
+    inverse_inertia: Key<Option<Table>>,
+    hamiltonian: Key<Option<Text>>,
+    keys: &FormulaKeys,
+    n: usize,
+) -> Result<Form, ReadError> {
+    let stated = ("inverse_inertia", inverse_inertia?);
+    match exactly_one(stated, ("hamiltonian", hamiltonian?))? {
+        Either::First(table) => Ok(Form::Weights(square("inverse_inertia", &table, n)?)),
+        Either::Second(_) if n > NAMED_MAX => {
+            let message = format!("the momentum is {n}×{n}, expected at most {NAMED_MAX} rows");
+            Err(Refusal::at("hamiltonian", message).into())
+        }
+        Either::Second(text) => {
+            let names = keys.names("hamiltonian", row_columns("m", n, n), SampleKeys::none())?;
+            let (energy, names) = (Energy::read(&text, &names), names.checked());
+            let (energy, _) = all!(energy, names)?;
+            Ok(Form::Formula(energy))
+        }
+    }
 }
 
 /// The entries of x, row by row, for formulas.

@@ -33,7 +33,7 @@ pub(super) const KIND: Kind = Kind {
     equation: "ṁ = P(ξᵀm − mξᵀ), ξ = P(∂H/∂m) or P(W ∘ m), P the orthogonal projection on the algebra; on so3 \
                ṁ = m × ∂H/∂m, on se3 ṁ = m × ∂H/∂m + p × ∂H/∂p, ṗ = p × ∂H/∂m",
     summary: "Euler's equations of any energy on the dual of so(n), sl(n), gl(n), sp(2m), so(p,q), so3 or se3",
-    ..Kind::of::<Keys, WithGroup>(|section| read(Read::read(section)?))
+    ..Kind::of::<Keys, WithGroup>(|section| read_with(section, read))
 };
 
 keys! { Keys [formula_keys] {
@@ -52,7 +52,7 @@ keys! { Keys [formula_keys] {
 fn read(mut keys: Keys) -> Result<Forms, ReadError> {
     let names = keys.formula_keys();
     let Keys { algebra, hamiltonian, inverse_inertia, momentum, .. } = keys;
-    let given = Given { names, hamiltonian, inverse_inertia, momentum };
+    let (algebra, given) = (algebra?, Given { names, hamiltonian, inverse_inertia, momentum });
     match (plain(&algebra).as_str(), Algebra::named(&algebra)) {
         ("so3", _) => Ok(Forms::of(Vectors::<3>::read(&algebra, given)?)),
         ("se3", _) => Ok(Forms::of(Vectors::<6>::read(&algebra, given)?)),

@@ -8,7 +8,7 @@ use nalgebra::Vector3;
 
 use super::dual::{Dual, Given, OnDual, quantities};
 use super::energy::Energy;
-use crate::formula::Formula;
+use crate::formula::{Formula, Names};
 use crate::kinds::flow::{OnSe3, OnSpheres};
 use crate::kinds::prelude::*;
 use crate::problem::PointOf;
@@ -56,17 +56,21 @@ impl<S: Real + Into<f64> + 'static> Numbers<S, 6> for Pair<S> {
 }
 
 impl<const N: usize> Vectors<N> {
-    pub(super) fn read(algebra: &str, given: Given) -> Result<Self, Refusal> {
-        if given.inverse_inertia.is_some() {
+    pub(super) fn read(algebra: &str, given: Given) -> Result<Self, ReadError> {
+        let Given { names, hamiltonian, inverse_inertia, momentum } = given;
+        if inverse_inertia?.is_some() {
             let message = format!("`inverse_inertia` is for matrices; {algebra} has a hamiltonian");
-            return Err(Refusal::at("inverse_inertia", message));
+            return Err(Refusal::at("inverse_inertia", message).into());
         }
-        let missing = || Refusal::section("missing key `hamiltonian` in [problem]");
-        let text = given.hamiltonian.ok_or_else(missing)?;
-        let variables = NAMES[..N].iter().copied();
-        let names = given.names.names("hamiltonian", variables, SampleKeys::default())?;
-        let energy = Energy::read(&text, &names)?;
-        Ok(Vectors { energy, momentum: given.momentum.list("momentum")? })
+        let names = names.names("hamiltonian", NAMES[..N].iter().copied(), SampleKeys::none());
+        let energy = hamiltonian.and_then(|text| {
+            let missing = || Refusal::section("missing key `hamiltonian` in [problem]");
+            Energy::read(&text.ok_or_else(missing)?, seen(&names)?)
+        });
+        let (names, momentum) =
+            (names.and_then(Names::checked), momentum.and_then(|m| m.list("momentum")));
+        let (_, energy, momentum) = all!(names, energy, momentum)?;
+        Ok(Vectors { energy, momentum })
     }
 
     /// H, and ∇H at a or at a + s(b − a).

@@ -11,7 +11,7 @@ use lieflow::groups::ComplexMatrix;
 use lieflow::problems::{Surface, Zeitlin};
 
 use self::place::Place;
-use self::start::{Random, VortexKeys};
+use self::start::{Random, VortexKeys, Vorticity, check_size, check_surface};
 use super::entries::numbered;
 use super::prelude::*;
 
@@ -20,7 +20,7 @@ pub(super) const KIND: Kind = Kind {
     name: "fluid",
     equation: "Ẇ = [P, W]/ħ, ΔP = W: vorticity ω carried by the stream function ψ, Δψ = ω",
     summary: "an ideal fluid on the sphere or the torus, Zeitlin's model with N×N matrices",
-    ..Kind::of::<Keys, Fluid>(|section| read(Read::read(section)?))
+    ..Kind::of::<Keys, Fluid>(|section| read_with(section, read))
 };
 
 keys! { Keys {
@@ -60,7 +60,11 @@ fn below(n: usize) -> impl Iterator<Item = (usize, usize)> {
 }
 
 fn read(keys: Keys) -> Result<Forms, ReadError> {
-    let (place, start) = keys.resolve()?;
+    let Keys { surface, n, random, jets, modes, vortices } = keys;
+    let (surface, size) = (surface.and_then(check_surface), n.and_then(check_size));
+    let (surface, n, random, jets, modes, vortices) =
+        all!(surface, size, random, jets, modes, vortices)?;
+    let (place, start) = Vorticity { random, jets, modes, vortices }.on(&surface, n)?;
     Ok(Forms::of(Fluid { fluid: Zeitlin::new(place)?, start }))
 }
 

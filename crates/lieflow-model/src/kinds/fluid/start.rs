@@ -7,7 +7,6 @@ use lieflow::problems::{LinearSpace, Sphere, Torus, Vortex, Zeitlin};
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
 
-use super::Keys;
 use super::place::Place;
 use crate::kinds::prelude::*;
 
@@ -32,29 +31,48 @@ read_by_keys! {
 /// Larger matrices take longer than a scene should.
 const N_MAX: u64 = 512;
 
-impl Keys {
-    /// The surface and the vorticity on it.
-    pub(super) fn resolve(self) -> Result<(Place, ComplexMatrix), Refusal> {
-        let surfaces = ["sphere", "torus"];
-        if !surfaces.contains(&self.surface.as_str()) {
-            return Err(Refusal::unknown("surface", &self.surface, &surfaces));
-        }
-        if self.n.0 > N_MAX {
-            let message = format!("n = {}, expected at most {N_MAX}", self.n.0);
-            return Err(Refusal::at("n", message));
-        }
+/// Checks the name of the surface.
+pub(super) fn check_surface(surface: String) -> Result<String, ReadError> {
+    let surfaces = ["sphere", "torus"];
+    match surfaces.contains(&surface.as_str()) {
+        true => Ok(surface),
+        false => Err(Refusal::unknown("surface", &surface, &surfaces).into()),
+    }
+}
+
+/// Checks N.
+pub(super) fn check_size(Whole(n): Whole<2>) -> Result<usize, ReadError> {
+    match n <= N_MAX {
+        true => Ok(n as usize),
+        false => Err(Refusal::at("n", format!("n = {n}, expected at most {N_MAX}")).into()),
+    }
+}
+
+/// What the vorticity at the start is made of.
+pub(super) struct Vorticity {
+    pub(super) random: Option<Random>,
+    pub(super) jets: Option<Vec<Reals<2>>>,
+    pub(super) modes: Option<Vec<List>>,
+    pub(super) vortices: Option<Vec<VortexKeys>>,
+}
+
+impl Vorticity {
+    /// The surface of that name, and the vorticity on it.
+    ///
+    /// # Errors
+    /// Refusals of the keys.
+    pub(super) fn on(self, surface: &str, n: usize) -> Result<(Place, ComplexMatrix), ReadError> {
         let given = self.jets.is_some() || self.modes.is_some() || self.vortices.is_some();
         if given && self.random.is_some() {
             let message = "`random` and `jets`, `modes` or `vortices`, expected one or the other";
-            return Err(Refusal::at("random", message));
+            return Err(Refusal::at("random", message).into());
         }
         if !given && self.random.is_none() {
             let message = "expected `random`, `jets`, `modes` or `vortices`, found none";
-            return Err(Refusal::section(message));
+            return Err(Refusal::section(message).into());
         }
-        let n = self.n.0 as usize;
         let no_surface = |error: Error| Refusal::from(error).renamed(&[("N", "n")]);
-        Ok(match self.surface.as_str() {
+        Ok(match surface {
             "sphere" => {
                 let fluid = Zeitlin::sphere(n).map_err(no_surface)?;
                 let start = self.start(&fluid)?;
@@ -68,11 +86,11 @@ impl Keys {
         })
     }
 
-    fn start<F: Fields>(&self, fluid: &F) -> Result<ComplexMatrix, Refusal> {
+    fn start<F: Fields>(&self, fluid: &F) -> Result<ComplexMatrix, ReadError> {
         if let Some(Random { seed, below }) = &self.random {
             let mut rng = Pcg64::seed_from_u64(seed.0);
             let random = fluid.random_below(&mut rng, below.0 as usize);
-            return random.map_err(|error| Refusal::from(error).about("random"));
+            return Ok(random.map_err(|error| Refusal::from(error).about("random"))?);
         }
         let jets = self.jets.iter().flatten().enumerate();
         let jets = jets.map(|(i, jet)| fluid.jet(jet.0).map_err(at("jets", i)));
@@ -80,17 +98,17 @@ impl Keys {
         let modes = modes.map(|(i, mode)| fluid.mode(&mode.values()).map_err(at("modes", i)));
         let vortices = self.vortices.iter().flatten().enumerate();
         let vortices = vortices.map(|(i, keys)| fluid.vortex(keys).map_err(at("vortices", i)));
-        let mut parts = jets.chain(modes).chain(vortices);
-        let Some(first) = parts.next() else {
-            return Err(Refusal::section("no jets, modes or vortices, expected at least one"));
-        };
-        let mut sum = first?;
-        for part in parts {
-            sum.add(1.0, &part?);
-        }
+        let mut mistakes = ReadError::default();
+        let parts = jets.chain(modes).chain(vortices).filter_map(|part| mistakes.keep(part));
+        let sum = parts.reduce(|mut sum, part| {
+            sum.add(1.0, &part);
+            sum
+        });
+        let none = || Refusal::section("no jets, modes or vortices, expected at least one");
+        let sum = mistakes.or(Some(sum))?.ok_or_else(none)?;
         match LinearSpace::is_finite(&sum) {
             true => Ok(sum),
-            false => Err(Refusal::section("the vorticity is not finite")),
+            false => Err(Refusal::section("the vorticity is not finite").into()),
         }
     }
 }

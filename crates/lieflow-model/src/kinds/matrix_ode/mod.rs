@@ -34,7 +34,7 @@ pub(super) const KIND: Kind = Kind {
     equation: "ẏ = f y (translation, linear), f y − y f (conjugation), y fᵀ − fᵀ y (coadjoint), c + d y − y a − y b y \
                (lagrangian, f = [a b; c d]), f(t, y) in the algebra",
     summary: "an equation on matrices in formulas, by the action of a matrix group",
-    ..Kind::of::<Keys, Equation>(|section| read(Read::read(section)?))
+    ..Kind::of::<Keys, Equation>(|section| read_with(section, read))
 };
 
 keys! { Keys [sample_keys formula_keys] {
@@ -63,15 +63,19 @@ const NAMED_MAX: usize = 9;
 
 fn read(mut keys: Keys) -> Result<Forms, ReadError> {
     let (formulas, samples) = (keys.formula_keys(), keys.sample_keys());
-    let named = Algebra::named(&keys.group)
-        .ok_or_else(|| Refusal::unknown("group", &keys.group, &ALGEBRAS))?;
+    let named = keys.group.and_then(|group| {
+        let unknown = || Refusal::unknown("group", &group, &ALGEBRAS);
+        Ok(Algebra::named(&group).ok_or_else(unknown)?)
+    });
+    let action = keys.action.and_then(|action| {
+        let action = action.as_deref().unwrap_or("translation");
+        let unknown = || Refusal::unknown("action", action, &ACTIONS.map(|(name, _)| name));
+        let (_, action) = ACTIONS.iter().find(|(name, _)| *name == action).ok_or_else(unknown)?;
+        Ok(*action)
+    });
+    let (named, action) = all!(named, action)?;
     let algebra = named.algebra;
-    let action = keys.action.as_deref().unwrap_or("translation");
-    let (_, action) = *ACTIONS
-        .iter()
-        .find(|(name, _)| *name == action)
-        .ok_or_else(|| Refusal::unknown("action", action, &ACTIONS.map(|(name, _)| name)))?;
-    let (n, by_upper, field) = entries_of(algebra, keys.field)?;
+    let (n, by_upper, field) = entries_of(algebra, keys.field?)?;
     if !(1..=NAMED_MAX).contains(&n) {
         let message = format!("found {n} rows, expected 1 to {NAMED_MAX}");
         return Err(Refusal::at("field", message).into());
@@ -81,15 +85,17 @@ fn read(mut keys: Keys) -> Result<Forms, ReadError> {
     if action == MatrixAction::Lagrangian && algebra != Algebra::Sp {
         return Err(Refusal::at("action", "lagrangian is an action of sp").into());
     }
-    let mut notes = Vec::new();
-    let start = start(algebra, &group, action, keys.start, &mut notes)?;
+    let (mut notes, mut mistakes) = (Vec::new(), ReadError::default());
+    let start = start(algebra, &group, action, keys.start?, &mut notes)?;
     let entries = row_columns("y", start.nrows(), start.ncols());
     let variables = ["t".to_owned()].into_iter().chain(entries);
     let names = formulas.names("field", variables, samples)?;
-    let formula = |((i, j), key, Text(text)): (_, String, Text)| {
-        Ok(((i, j), Formula::read(&key, &text, &names)?))
-    };
-    let field = field.into_iter().map(formula).collect::<Result<Arc<[_]>, Refusal>>()?;
+    let formulas = field.into_iter().filter_map(|(place, key, Text(text))| {
+        Some((place, mistakes.keep(Formula::read(&key, &text, &names))?))
+    });
+    let field: Arc<[_]> = formulas.collect();
+    let names = mistakes.keep(names.checked());
+    let names = mistakes.or(names)?;
     let linear = (1..names.variables().len()).all(|y| field.iter().all(|(_, f)| !f.uses(y)));
     let equation = Equation { algebra, group, action, field, by_upper, linear, start, notes };
     Ok(Forms::of(equation))
@@ -142,13 +148,13 @@ fn start(
     action: MatrixAction,
     stated: Option<Table>,
     notes: &mut Vec<String>,
-) -> Result<Mat<f64>, Refusal> {
+) -> Result<Mat<f64>, ReadError> {
     let n = group.n();
     let refused = |message: String| Refusal::at("start", message);
     let mut start = match (stated, action) {
         (Some(table), _) => table.columns("start")?,
         (None, MatrixAction::Translation) => Mat::identity(n, n),
-        (None, _) => return Err(Refusal::section("missing key `start` in [problem]")),
+        (None, _) => return Err(Refusal::section("missing key `start` in [problem]").into()),
     };
     let (rows, columns) = match action {
         MatrixAction::Lagrangian => (n / 2, n / 2),
@@ -159,7 +165,8 @@ fn start(
         let (found, of) = (start.nrows(), start.ncols());
         return Err(refused(format!(
             "found {found} rows of {of} numbers, expected {rows} rows of {columns} as field has them"
-        )));
+        ))
+        .into());
     }
     if action == MatrixAction::Lagrangian {
         check_symmetric("start", &start, 0.0)?;
@@ -178,7 +185,7 @@ fn start(
         }
         let det = determinant(start.as_ref());
         if algebra == Algebra::Sl && (det - 1.0).abs() > ON_THE_GROUP {
-            return Err(refused(format!("its determinant is {det}, expected 1")));
+            return Err(refused(format!("its determinant is {det}, expected 1")).into());
         }
     }
     Ok(start)

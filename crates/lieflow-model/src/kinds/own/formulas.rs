@@ -35,8 +35,8 @@ impl Formulas {
             let mut keys = Keys::read(values)?;
             let (named, samples) = (keys.formula_keys(), keys.sample_keys());
             let all = core::iter::once("t").chain(variables.iter().map(String::as_str));
-            let names = named.names("field", all, samples)?;
-            let Keys { field, .. } = keys;
+            let (names, field) = (named.names("field", all, samples), keys.field);
+            let (names, field) = all!(names, field)?;
             if field.len() != counts.len() {
                 let message = format!("found {} parts, expected {}", field.len(), counts.len());
                 return Err(Refusal::at("field", message).into());

@@ -15,7 +15,7 @@ pub(super) const KIND: Kind = Kind {
     name: "rigid-body",
     equation: "ṁ = m × ω, m = Jω, in the body; ġ = gω̂ takes the body to space",
     summary: "the free rigid body, by its momentum on so(3)*, its attitude on SO(3) or its quaternion",
-    ..Kind::of::<Keys, Body<Attitude>>(|section| read(Read::read(section)?))
+    ..Kind::of::<Keys, Body<Attitude>>(|section| read_with(section, read))
 };
 
 keys! { Keys [body_keys] {} }

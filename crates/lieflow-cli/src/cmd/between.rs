@@ -1,0 +1,109 @@
+//! What the rows of a run say of its events: were zeros missed, is the function of an event zero all the time?
+
+use lieflow::Direction;
+use lieflow_model::scene::SceneEvent;
+use lieflow_model::schema::Row;
+
+use crate::output::{EventSummary, number};
+
+/// The function of an event, of t and a row.
+type ValueOfRow = Box<dyn Fn(f64, Row<'_>) -> f64>;
+
+/// A value that is this part of the largest one may be a zero that is found.
+const NEAR_ZERO: f64 = 1e-9;
+
+/// So many rows are looked at in between, and at so many points.
+const LOOKED_AT: u64 = 64;
+const POINTS: u32 = 101;
+
+/// A row before: its time, the value, and the zeros up to there.
+#[derive(Clone, Copy)]
+struct Before {
+    t: f64,
+    value: f64,
+    zeros: u64,
+}
+
+/// The function of an event at the rows of a run.
+pub(super) struct Between {
+    name: String,
+    direction: Direction,
+    value: ValueOfRow,
+    before: Option<Before>,
+    /// The rows before which zeros were missed.
+    missed: u64,
+    rows: u64,
+    /// The largest absolute value.
+    largest: f64,
+}
+
+impl Between {
+    /// No row yet. `value` is the function of the event.
+    pub(super) fn new(event: &SceneEvent, value: ValueOfRow) -> Self {
+        let (name, direction) = (event.name.clone(), event.direction);
+        Between { name, direction, value, before: None, missed: 0, rows: 0, largest: 0.0 }
+    }
+
+    /// The next row, after so many zeros.
+    pub(super) fn see(&mut self, t: f64, row: Row<'_>, zeros: u64) {
+        let value = (self.value)(t, row);
+        self.rows += 1;
+        self.largest = self.largest.max(value.abs());
+        if let Some(before) = self.before
+            && self.rows <= LOOKED_AT
+        {
+            self.look_between(before.t, (t, row), zeros - before.zeros);
+        }
+        if value.abs() <= NEAR_ZERO * self.largest {
+            return;
+        }
+        let counts = |before: f64| match self.direction {
+            Direction::Rising => before < 0.0 && value > 0.0,
+            Direction::Falling => before > 0.0 && value < 0.0,
+            _ => before * value < 0.0,
+        };
+        if self.before.is_some_and(|before| counts(before.value) && before.zeros == zeros) {
+            self.missed += 1;
+        }
+        self.before = Some(Before { t, value, zeros });
+    }
+
+    /// Looks at the function of t between two rows, with the columns of the second one: it may swing fast by itself.
+    fn look_between(&mut self, before: f64, (t, row): (f64, Row<'_>), found: u64) {
+        let at = |k: u32| before + (t - before) * f64::from(k) / f64::from(POINTS);
+        let signs = (0..=POINTS).map(|k| (self.value)(at(k), row) > 0.0);
+        let signs: Vec<bool> = signs.collect();
+        let swings = signs.windows(2).filter(|pair| pair[0] != pair[1]).count() as u64;
+        // In one direction every second zero counts, and the columns move a little.
+        if swings > 2 * found + 2 {
+            self.missed += 1;
+        }
+    }
+
+    /// The warning about zeros that were missed.
+    pub(super) fn warning(&self) -> Option<String> {
+        (self.missed > 0).then(|| {
+            format!(
+                "event {}: zeros were missed, before {} of the rows. Its function changes faster than the steps: take \
+                 shorter steps (dt, or h_max)",
+                self.name,
+                number(self.missed as f64)
+            )
+        })
+    }
+
+    /// The note about an event that is zero all the time, that never comes, or whose `stop_after` was not reached.
+    pub(super) fn note(&self, seen: &EventSummary, stop_after: Option<u64>) -> Option<String> {
+        let name = &self.name;
+        if self.largest == 0.0 && self.rows > 1 {
+            return Some(format!("event {name}: its function is zero all the time"));
+        }
+        match (seen.count, stop_after) {
+            (count, Some(stop_after)) => Some(format!(
+                "event {name}: stop_after = {stop_after} was not reached, it came {count} times"
+            )),
+            (0, None) => Some(format!("event {name}: it never came")),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,204 @@
+//! Slips of the keyboard and of thought: each gets the sentence that helps.
+
+use crate::support::{Folder, SCENE, read_csv};
+
+/// Runs the scene with one line changed, which is refused.
+fn refused(folder: &Folder, good: &str, bad: &str) -> String {
+    assert_eq!(SCENE.matches(good).count(), 1, "{good}");
+    folder.write("scene.toml", &SCENE.replace(good, bad));
+    folder.lieflow(&["run", "scene.toml"]).refused()
+}
+
+#[test]
+fn a_word_that_is_no_command_is_a_scene_or_a_command() {
+    let folder = Folder::new();
+    folder.write("body", SCENE);
+    for (word, meant) in [
+        ("cubesat.toml", "did you mean `lieflow run cubesat.toml`?"),
+        ("body", "did you mean `lieflow run body`?"),
+        ("asymmetric-top", "did you mean `lieflow run asymmetric-top`?"),
+        ("rnu", "did you mean `lieflow run`?"),
+        ("method", "did you mean `lieflow methods`?"),
+        ("xxxxxx", "expected one of run, compare"),
+    ] {
+        let message = folder.lieflow(&[word]).refused();
+        assert!(message.contains(&format!("there is no command `{word}`\n{meant}")), "{message}");
+    }
+    // Other mistakes are told as before.
+    let message = folder.lieflow(&["run"]).refused();
+    assert!(message.contains("<SCENE>"), "{message}");
+}
+
+#[test]
+fn an_event_is_a_number_and_no_comparison() {
+    let folder = Folder::new();
+    for (when, help) in [
+        ("m2 > 0", "when = \"m2\", direction = \"rising\""),
+        ("m2 <= 0.5", "when = \"m2 - (0.5)\", direction = \"falling\""),
+        ("m2 == m1", "when = \"m2 - (m1)\"\n"),
+    ] {
+        let event = format!("[[events]]\nname = \"a\"\nwhen = \"{when}\"\n[output]");
+        let message = refused(&folder, "[output]", &event);
+        assert!(message.starts_with("error: scene.toml:15:8: events[1].when: "), "{message}");
+        let expected = format!("`{when}` is a comparison, expected a number that passes zero");
+        assert!(message.contains(&expected) && message.contains(help), "{message}");
+    }
+}
+
+#[test]
+fn events_that_never_come_or_are_missed_are_told() {
+    let folder = Folder::new();
+    let run = |events: &str| {
+        folder.write("scene.toml", &SCENE.replace("every = 10", &format!("every = 1\n{events}")));
+        folder.lieflow(&["run", "scene.toml", "--no-page", "--out", "out"]).ok()
+    };
+    let event = |when: &str, more: &str| {
+        run(&format!("[[events]]\nname = \"z\"\nwhen = \"{when}\"\n{more}"))
+    };
+    let told = event("0*t", "");
+    assert!(told.contains("note: event z: its function is zero all the time"), "{told}");
+    let told = event("t - 100", "");
+    assert!(told.contains("note: event z: it never came"), "{told}");
+    let told = event("t - 1", "stop_after = 2");
+    assert!(told.contains("z: stop_after = 2 was not reached, it came 1 times"), "{told}");
+    let told = event("sin(1e6*t)", "");
+    assert!(told.contains("WARNING: event z: zeros were missed"), "{told}");
+    // Nothing is said of events that come, in either direction, also at the times of rows.
+    for (when, more) in [
+        ("t - 1", "stop_after = 1"),
+        ("sin(20*pi*t)", ""),
+        ("sin(20*pi*t)", "direction = \"falling\""),
+        ("m1 - 0.19", ""),
+    ] {
+        let told = event(when, more);
+        assert!(!told.contains("event z: zeros") && !told.contains("note: event"), "{told}");
+    }
+}
+
+#[test]
+fn a_comma_and_quotation_marks() {
+    let folder = Folder::new();
+    let inertia = "inertia = [1, 2.0, 3.0]";
+    let message = refused(&folder, inertia, "inertia = [1, 2.0 3.0]");
+    assert!(message.contains("= a comma is missing: 2.0, 3.0\n"), "{message}");
+    for (kind, quote) in [("“rigid-body”", '“'), ("‘rigid-body’", '‘')] {
+        let message = refused(&folder, "\"rigid-body\"", kind);
+        let help = format!("`{quote}` is no plain quotation mark: write \"");
+        assert!(message.contains("scene.toml:3:8:") && message.contains(&help), "{message}");
+    }
+}
+
+#[test]
+fn a_setting_names_its_section_and_no_line_of_no_file() {
+    let folder = Folder::new();
+    folder.write("scene.toml", SCENE);
+    let refused =
+        |set: &str| folder.lieflow(&["run", "scene.toml", "--set", set, "--out", "out"]).refused();
+    for (set, meant) in [
+        ("dt=0.1", "time.dt"),
+        ("inertia[2]=3", "problem.inertia"),
+        ("tableau=heun", "method.tableau"),
+        ("evry=3", "output.every"),
+        ("tiem.dt=1", "time"),
+    ] {
+        let message = refused(set);
+        assert!(message.contains(&format!("at the top: did you mean `{meant}`?")), "{message}");
+    }
+    // The line of a setting is in no file.
+    let message = refused("time.dt=-1");
+    assert!(message.starts_with("error: scene.toml, changed by --set: dt = -1"), "{message}");
+    assert!(message.contains("\n | dt = -1\n |      ^^\n"), "{message}");
+    // Lines of the file have the numbers of the file, wherever a setting puts them.
+    folder.write("scene.toml", &SCENE.replace("every = 10", "evry = 10"));
+    let message = refused("problem.quaternion=[1, 0, 0, 0]");
+    assert!(message.starts_with("error: scene.toml:15:1: unknown key `evry`"), "{message}");
+}
+
+#[test]
+fn a_step_that_is_longer_than_the_span_is_told() {
+    let folder = Folder::new();
+    folder.write("scene.toml", &SCENE.replace("dt = 0.05", "dt = 100"));
+    let told = folder.lieflow(&["run", "scene.toml", "--out", "out"]).ok();
+    assert!(told.contains("t = 0 to 2, 1 step of 2, 2 rows"), "{told}");
+    let warning =
+        "WARNING: dt = 100 is longer than t_span, which is 2 long: the run is a single step";
+    assert!(told.contains(warning), "{told}");
+}
+
+#[test]
+fn a_tolerance_below_rounding_and_very_many_steps_are_refused_at_once() {
+    let folder = Folder::new();
+    let message = refused(&folder, "dt = 0.05", "rtol = 1e-30");
+    assert!(message.contains(":12:8: rtol = 1e-30 is below the rounding of numbers"), "{message}");
+    let message = refused(&folder, "t_span = [0, 2.0]\ndt = 0.05", "t_span = [0, 5e13]\ndt = 50");
+    assert!(message.contains("More than a day needs --yes"), "{message}");
+}
+
+#[test]
+fn a_pole_of_a_formula_is_named() {
+    let folder = Folder::new();
+    let torque = "torque = [\"0.01/(t-1.5)\", \"0\", \"0\"]\n[method]";
+    let text = SCENE.replace("rigid-body", "driven-body").replace("layer = \"closed\"\n", "");
+    let text = text.replace("[method]", torque).replace("dt = 0.05", "rtol = 1e-9");
+    folder.write("scene.toml", &text);
+    let message = folder.lieflow(&["run", "scene.toml", "--out", "out"]).failed(2);
+    let pole = "`torque[1]` has a pole there: it has no finite value at t = 1.5";
+    assert!(message.contains(pole), "{message}");
+}
+
+/// A tensor of inertia in `let`, as a matrix that is written out.
+#[test]
+fn a_formula_may_have_a_matrix() {
+    let folder = Folder::new();
+    let text = SCENE.replace("rigid-body", "driven-body").replace("layer = \"closed\"\n", "");
+    let run = |torque: &str, lets: &str| {
+        let keys = format!("torque = {torque}\nlet = {{ {lets} }}\n[method]");
+        folder.write("scene.toml", &text.replace("[method]", &keys));
+        folder.lieflow(&["run", "scene.toml", "--out", "out", "--no-page"])
+    };
+    let matrix = "J = \"[[0.02, 0, 0], [0, 0.05, 0.01], [0, 0.01, 0.06]]\"";
+    run("\"-J*w\"", matrix).ok();
+    let by_matrix = folder.read("out/trajectory.csv");
+    run("[\"-0.02*w1\", \"-0.05*w2 - 0.01*w3\", \"-0.01*w2 - 0.06*w3\"]", "a = 0").ok();
+    let (_, plain) = read_csv(&folder.read("out/trajectory.csv"));
+    for (row, other) in read_csv(&by_matrix).1.iter().zip(&plain) {
+        assert!(row.iter().zip(other).all(|(a, b)| (a - b).abs() < 1e-14), "{row:?} {other:?}");
+    }
+    let message = run("\"-J*w\"", "J = \"[[1, 2], [3]]\"").refused();
+    assert!(message.contains("found a number, expected a row of 2 numbers"), "{message}");
+}
+
+#[test]
+fn methods_answers_for_tableaus_maps_and_parts() {
+    let folder = Folder::new();
+    let told = |name: &str| folder.lieflow(&["methods", name]).ok();
+    let dop853 = told("dop853");
+    assert!(dop853.contains("tableau of order 8 with 12 stages"), "{dop853}");
+    assert!(dop853.contains("methods that take it: rkmk,"), "{dop853}");
+    assert!(told("cay").contains("A coordinate map: "));
+    let spelt = told("rkmk dopri5 cay");
+    for line in ["rkmk\n", "order: 5\n", "maps: cay\n", "tableaus: dopri5\n"] {
+        assert!(spelt.contains(line), "{line}{spelt}");
+    }
+    let message = folder.lieflow(&["methods", "dop583"]).refused();
+    assert!(message.contains("did you mean `dop853`?"), "{message}");
+    let message = folder.lieflow(&["methods", "rkmk4 dopri5"]).refused();
+    assert!(message.contains("there is no method `rkmk4 dopri5`: "), "{message}");
+}
+
+/// The last row has its numbers by the names of the columns.
+#[test]
+fn the_last_row_is_there_by_name() {
+    let folder = Folder::new();
+    folder.write("scene.toml", SCENE);
+    folder.lieflow(&["run", "scene.toml", "--out", "out"]).ok();
+    let summary = folder.json("out/summary.json");
+    let (columns, rows) = read_csv(&folder.read("out/trajectory.csv"));
+    for (end, row) in [("initial", &rows[0]), ("final", &rows[rows.len() - 1])] {
+        assert_eq!(summary[end].as_object().unwrap().len(), columns.len());
+        for (column, x) in columns.iter().zip(row) {
+            let by_name = summary[end][column].as_f64().unwrap();
+            assert!((by_name - x).abs() < 1e-15 * (1.0 + x.abs()), "{end}: {column}");
+        }
+    }
+}

@@ -1,0 +1,63 @@
+//! Which formula ended a run: one that had no value, or one with a pole.
+
+use lieflow::{Failure, RunError, StepError};
+
+use super::events::SceneEvent;
+use super::run::Scene;
+use crate::formula::{Formula, Lost, Which};
+
+impl Scene {
+    /// Forgets which formulas had no value: what [`lost`](Self::lost) tells is of the run after this.
+    pub fn forget_losses(&self) {
+        let of_rows = self.events.iter().map(SceneEvent::formula);
+        self.problem.formula().into_iter().chain(of_rows).for_each(Formula::forget);
+    }
+
+    /// The formula by which a run ended with this error.
+    pub fn lost(&self, error: &RunError) -> Option<Lost> {
+        let which = match error {
+            RunError::Event { name, .. } => {
+                let event = self.events.iter().find(|event| event.name == *name)?;
+                return event.formula().lost(Which::Last);
+            }
+            RunError::Step(Failure { source, .. }) if is_of_values(source) => Which::First,
+            RunError::StepSizeUnderflow { source: Some(source), .. } if is_of_values(source) => {
+                Which::Last
+            }
+            // The last step was so small that t did not reach beyond what it failed by before.
+            RunError::StepSizeUnderflow { t, .. } => {
+                let lost = self.problem.formula()?.lost(Which::Last);
+                return lost.filter(|lost| {
+                    lost.t().is_some_and(|at| (at - t).abs() <= NEAR * (1.0 + t.abs()))
+                });
+            }
+            _ => return None,
+        };
+        self.problem.formula()?.lost(which)
+    }
+
+    /// The formula with a pole at which the steps became too small, in words: one that has no finite value at a time of
+    /// few digits close by, with the rest as at the start.
+    pub fn pole(&self, error: &RunError) -> Option<String> {
+        let RunError::StepSizeUnderflow { t, .. } = *error else { return None };
+        let rounded = (0..=POLE_DIGITS).map(|digits| {
+            let scale = 10_f64.powi(digits);
+            (t * scale).round() / scale
+        });
+        let mut close = rounded.filter(|at| (at - t).abs() <= NEAR * (1.0 + t.abs()));
+        close.find_map(|at| {
+            let key = self.problem.check_start(at).into_iter().next()?.key?;
+            Some(format!("`{key}` has a pole there: it has no finite value at t = {at}"))
+        })
+    }
+}
+
+/// The decimal digits of a time at which a pole is looked for.
+const POLE_DIGITS: i32 = 6;
+/// The distance of the time where a formula has no value from that where steps become too small.
+const NEAR: f64 = 1e-6;
+
+/// Is the reason a value that is not finite?
+fn is_of_values(error: &StepError) -> bool {
+    matches!(error, StepError::NonFiniteRhs { .. } | StepError::NotFinite { .. })
+}
