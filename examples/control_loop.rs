@@ -9,9 +9,9 @@
 
 use std::cell::Cell;
 
+use lieflow::nalgebra::{Matrix3, Vector3};
 use lieflow::prelude::*;
 use lieflow::problems::{BodyMotion, BodyTorque, TorqueBody};
-use nalgebra::{Matrix3, Vector3};
 
 type V = Vector3<f64>;
 
@@ -26,7 +26,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let satellite = TorqueBody::new(inertia.into(), BodyTorque(|_: &BodyMotion| torque.get()))?;
     let method = Rkmk::new(DOPRI5, Exp);
     // The satellite is turned by 2 radian about an oblique axis, and tumbles.
-    let attitude = *nalgebra::Rotation3::new(V::new(1.2, -1.2, 1.0)).matrix();
+    let attitude = *lieflow::nalgebra::Rotation3::new(V::new(1.2, -1.2, 1.0)).matrix();
     let start = (attitude, attitude * V::new(0.3, 0.8, -0.5));
     let mut run = Solve::new(&satellite, &method, [0.0, f64::INFINITY])
         .tolerances(1e-9, 1e-9)

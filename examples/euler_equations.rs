@@ -7,9 +7,9 @@
 
 use lieflow::groups::Product;
 use lieflow::methods::EnergyCasimir;
+use lieflow::nalgebra::Vector3;
 use lieflow::prelude::*;
 use lieflow::problems::{Euler, Kinetic, MeanGradient};
-use nalgebra::Vector3;
 
 type V = Vector3<f64>;
 

@@ -4,9 +4,9 @@
 //! cargo run --release --example events
 //! ```
 
+use lieflow::nalgebra::Vector3;
 use lieflow::prelude::*;
 use lieflow::problems::{RigidBody, SphericalPendulum};
-use nalgebra::Vector3;
 
 type V = Vector3<f64>;
 

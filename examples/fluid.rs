@@ -8,7 +8,7 @@
 use std::f64::consts::PI;
 use std::path::Path;
 
-use faer::Mat;
+use lieflow::faer::Mat;
 use lieflow::groups::ComplexMatrix;
 use lieflow::methods::FluidMidpoint;
 use lieflow::problems::{Invariants, Surface, Vortex, Zeitlin};

@@ -3,7 +3,7 @@
 //! Prints the energy, the momenta in space, and the mean direction of the third axes.
 
 use lieflow::ensemble::{Ensemble, EnsembleMethod};
-use nalgebra::{Matrix3, Vector3};
+use lieflow::nalgebra::{Matrix3, Vector3};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 

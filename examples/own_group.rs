@@ -12,9 +12,9 @@ use lieflow::check::laws;
 use lieflow::groups::{Sample, So3};
 use lieflow::maps::Cay;
 use lieflow::methods::{Rkmk, tableau::RK4};
+use lieflow::nalgebra::{Matrix3, Vector3};
 use lieflow::problems::{Flow, RigidBodyAttitude};
 use lieflow::{CoordinateMap, Error, LieAlgebra, LieGroup, SaveAt, StepError, TimeGrid};
-use nalgebra::{Matrix3, Vector3};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_distr::StandardNormal;
 

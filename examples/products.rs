@@ -8,8 +8,8 @@
 
 use lieflow::actions::Pair;
 use lieflow::groups::{Product, Translations};
+use lieflow::nalgebra::{Matrix3, Vector3};
 use lieflow::prelude::*;
-use nalgebra::{Matrix3, Vector3};
 
 /// The exact solution from (−e₃, (2, 0)).
 ///

@@ -4,8 +4,8 @@
 //! cargo run --release --example riccati
 //! ```
 
-use faer::{Mat, mat};
 use lieflow::actions::Lagrangian;
+use lieflow::faer::{Mat, mat};
 use lieflow::groups::AlgebraMatrix;
 use lieflow::methods::magnus::Magnus6;
 use lieflow::prelude::*;

@@ -8,12 +8,12 @@
 
 use lieflow::maps::{CCSK, CCSK123, CCSK321, Cay, Exp};
 use lieflow::methods::{Rkmk, tableau::RK4};
+use lieflow::nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use lieflow::problems::{Exact, PointOf, RigidBody, RigidBodyAttitude, RigidBodyQuaternion};
 use lieflow::scalar::{Counted, Real};
 use lieflow::{
     CoordinateMap, LieGroup, Problem, RunError, SaveAt, TimeGrid, groups::So3, integrate,
 };
-use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 const INERTIA: [f64; 3] = [1.0, 2.0, 3.0];
 /// The momentum in the body and in space: at the start the axes of both coincide.

@@ -10,9 +10,9 @@
 use lieflow::groups::{LieGroup, So3, vee};
 use lieflow::maps::Exp;
 use lieflow::methods::{Rkmk, tableau::DOPRI5};
+use lieflow::nalgebra::{Matrix3, Vector3};
 use lieflow::problems::{BodyMotion, BodyTorque, SpaceTorque, Torque, TorqueBody, inertia};
 use lieflow::{SaveAt, TimeGrid, integrate};
-use nalgebra::{Matrix3, Vector3};
 
 type State = (Matrix3<f64>, Vector3<f64>);
 

@@ -50,7 +50,7 @@
 //! ```
 //! use lieflow::prelude::*;
 //! use lieflow::problems::{Exact, RigidBodyAttitude};
-//! use nalgebra::Matrix3;
+//! use lieflow::nalgebra::Matrix3;
 //!
 //! let (inertia, momentum) = ([1.0, 2.0, 3.0], [0.2, 0.0, 3.0]);
 //! let body = RigidBodyAttitude::new(inertia, momentum)?;
@@ -64,21 +64,6 @@
 //! ```
 #![forbid(unsafe_code)]
 #![deny(missing_docs, rustdoc::broken_intra_doc_links)]
-
-/// The programs of README.md, as tests.
-#[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct Readme;
-
-/// The programs of docs/driver.md, as tests.
-#[cfg(doctest)]
-#[doc = include_str!("../docs/driver.md")]
-struct DriverPage;
-
-/// The program of docs/tutorial.md, as a test.
-#[cfg(doctest)]
-#[doc = include_str!("../docs/tutorial.md")]
-struct Tutorial;
 
 pub mod actions;
 pub mod catalog;

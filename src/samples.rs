@@ -85,7 +85,7 @@ impl From<Outside> for Error {
 /// use lieflow::problems::Flow;
 /// use lieflow::samples::{Interpolation, Samples};
 /// use lieflow::{SaveAt, TimeGrid, integrate};
-/// use nalgebra::Vector3;
+/// use lieflow::nalgebra::Vector3;
 ///
 /// // Each row: the integral of the angular velocity in the body since the row before.
 /// let times = [0.0, 0.1, 0.2, 0.3, 0.4];

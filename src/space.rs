@@ -194,7 +194,7 @@ impl<'a, M: Metric + ?Sized> Gap<'a, M> {
 ///
 /// ```
 /// use lieflow::space::{LinearSpace, Metric};
-/// use nalgebra::Vector3;
+/// use lieflow::nalgebra::Vector3;
 /// // A vector and a number: pairs of points are points.
 /// let mut y = (Vector3::new(1.0, 0.0, 0.0), 2.0);
 /// y.add(-0.5, &y.clone());

@@ -27,7 +27,7 @@ use crate::scalar::{Ops, tally};
 /// let riccati = Flow::of_time(MatrixGroup::sp(2)?, Lagrangian, |_, v| {
 ///     (v[(1, 0)], v[(0, 1)]) = (1.0, -1.0);
 /// });
-/// let mut p = faer::mat![[0.0]];
+/// let mut p = lieflow::faer::mat![[0.0]];
 /// let grid = TimeGrid::new([0.0, 3.0], 0.1)?;
 /// integrate(&riccati, &Magnus4, &grid, &SaveAt::Ends, &mut p, |_, _| {})?;
 /// assert!((p[(0, 0)] - 3f64.tan()).abs() < 1e-12);

@@ -17,7 +17,7 @@ use crate::tolerance::Scales;
 /// use lieflow::Action;
 /// use lieflow::actions::{LeftTranslation, Linear, Pair};
 /// use lieflow::groups::{LieGroup, Product, So3};
-/// use nalgebra::{Matrix3, Vector3};
+/// use lieflow::nalgebra::{Matrix3, Vector3};
 /// // An attitude, and a vector that another rotation turns.
 /// let (group, action) = (Product(So3::<f64>::new(), So3::new()), Pair(LeftTranslation, Linear));
 /// let p = (Matrix3::identity(), Vector3::new(1.0, 2.0, 3.0));

@@ -6,7 +6,7 @@
 //! use lieflow::catalog::MethodsByName;
 //! use lieflow::problems::RigidBody;
 //! use lieflow::{SaveAt, TimeGrid, integrate};
-//! use nalgebra::Vector3;
+//! use lieflow::nalgebra::Vector3;
 //!
 //! let (body, mut m) = (RigidBody::new([1.0, 2.0, 3.0])?, Vector3::new(0.2, 0.0, 3.0));
 //! let grid = TimeGrid::new([0.0, 10.0], 0.05)?;
@@ -283,7 +283,7 @@ pub type MaybeMethod<'p, P> = Result<Option<AnyMethod<'p, P>>, Error>;
 /// ```
 /// use lieflow::catalog::{Choice, MaybeMethod, MethodsByName, Needs, fields, first, implicit};
 /// # use lieflow::{actions::Linear, groups::So3, problems::Problem};
-/// # use nalgebra::Vector3;
+/// # use lieflow::nalgebra::Vector3;
 /// # struct Spin(So3, Linear);
 /// # impl Problem for Spin {
 /// #     type Group = So3;

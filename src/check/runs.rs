@@ -348,7 +348,7 @@ impl Errors {
 /// use lieflow::check::{MethodOn, Reference, runs_agree};
 /// use lieflow::prelude::*;
 /// use lieflow::problems::RigidBody;
-/// use nalgebra::Vector3;
+/// use lieflow::nalgebra::Vector3;
 ///
 /// let body = RigidBody::<f64>::new([1.0, 2.0, 3.0])?;
 /// let start = &Vector3::new(0.1, 2.0, 0.3);

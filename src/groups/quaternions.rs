@@ -25,7 +25,7 @@ use crate::so3;
 /// use lieflow::CoordinateMap;
 /// use lieflow::groups::{LieGroup, UnitQuaternions};
 /// use lieflow::maps::Exp;
-/// use nalgebra::Vector3;
+/// use lieflow::nalgebra::Vector3;
 /// // A rotation by a quarter turn about e₃.
 /// let q = Exp.eval(&UnitQuaternions, &Vector3::new(0.0, 0.0, std::f64::consts::FRAC_PI_2))?;
 /// let mut y = Vector3::zeros();

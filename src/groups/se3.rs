@@ -38,7 +38,7 @@ use crate::tolerance::Scales;
 /// use lieflow::CoordinateMap;
 /// use lieflow::groups::Se3;
 /// use lieflow::maps::Exp;
-/// use nalgebra::Vector3;
+/// use lieflow::nalgebra::Vector3;
 /// // A screw: a quarter turn about e₃ and a move by 1 along it.
 /// let screw = (Vector3::new(0.0, 0.0, std::f64::consts::FRAC_PI_2), Vector3::new(0.0, 0.0, 1.0));
 /// let g = Exp.eval(&Se3::new(), &screw)?;

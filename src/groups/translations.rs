@@ -13,7 +13,7 @@ use crate::tolerance::Scales;
 ///
 /// ```
 /// use lieflow::groups::{LieGroup, Translations};
-/// use nalgebra::Vector3;
+/// use lieflow::nalgebra::Vector3;
 /// let group = Translations::new(Vector3::<f64>::zeros(), 3);
 /// let mut y = Vector3::zeros();
 /// group.apply(&Vector3::new(1.0, 2.0, 3.0), &Vector3::new(1.0, 0.0, 0.0), &mut y);

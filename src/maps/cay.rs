@@ -186,7 +186,7 @@ pub trait CayleyGroup: LieGroup {
 /// use lieflow::CoordinateMap;
 /// use lieflow::groups::So3;
 /// use lieflow::maps::{Cay, cay_inv};
-/// use nalgebra::{Matrix3, Vector3};
+/// use lieflow::nalgebra::{Matrix3, Vector3};
 /// let so3 = So3::new();
 /// let u = Vector3::new(0.3, -0.4, 1.2);
 /// assert!((cay_inv(&so3, &Cay.eval(&so3, &u)?)? - u).norm() < 1e-15);

@@ -18,7 +18,7 @@ use crate::so3;
 /// ```
 /// use lieflow::groups::{MatrixGroup, So3};
 /// use lieflow::maps::{dexp, dexpinv, exp, log};
-/// use nalgebra::Vector3;
+/// use lieflow::nalgebra::Vector3;
 /// // The same names on rotations as matrices 3×3, and on matrices n×n.
 /// let so3 = So3::new();
 /// let (u, v) = (Vector3::new(0.3, -1.2, 0.5), Vector3::new(1.0, 0.0, 2.0));
@@ -26,8 +26,8 @@ use crate::so3;
 /// assert!((dexpinv(&so3, &u, &dexp(&so3, &u, &v)?)? - v).norm() < 1e-14);
 ///
 /// let so5 = MatrixGroup::so(5)?;
-/// let u = so5.algebra(faer::Mat::from_fn(5, 5, |i, j| 0.1 * (i as f64 - j as f64)))?;
-/// let v = so5.algebra(faer::Mat::from_fn(5, 5, |i, j| (i as f64 - j as f64).powi(3)))?;
+/// let u = so5.algebra(lieflow::faer::Mat::from_fn(5, 5, |i, j| 0.1 * (i as f64 - j as f64)))?;
+/// let v = so5.algebra(lieflow::faer::Mat::from_fn(5, 5, |i, j| (i as f64 - j as f64).powi(3)))?;
 /// assert!((&*log(&so5, &exp(&so5, &u)?)? - &*u).norm_l2() < 1e-14);
 /// assert!((&*dexpinv(&so5, &u, &dexp(&so5, &u, &v)?)? - &*v).norm_l2() < 1e-12);
 /// # Ok::<(), lieflow::Error>(())
@@ -129,7 +129,7 @@ pub trait DexpGroup: LieGroup {
 /// [`Error::Shape`], [`Error::NotFiniteEntry`], [`Error::Map`] when numbers leave the range.
 ///
 /// ```
-/// use faer::mat;
+/// use lieflow::faer::mat;
 /// use lieflow::groups::MatrixGroup;
 /// use lieflow::maps::dexp;
 /// let sp2 = MatrixGroup::sp(2)?;
@@ -151,7 +151,7 @@ pub fn dexp<G: DexpGroup>(group: &G, u: &G::Alg, v: &G::Alg) -> Result<G::Alg, E
 ///
 /// ```
 /// use lieflow::maps::{left_jacobian_se3, left_jacobian_inv_se3};
-/// use nalgebra::{Matrix6, Vector3};
+/// use lieflow::nalgebra::{Matrix6, Vector3};
 /// let u = (Vector3::new(0.3, -0.2, 0.5), Vector3::new(1.0, 2.0, 0.1));
 /// let unit = left_jacobian_se3(&u)? * left_jacobian_inv_se3(&u)?;
 /// assert!((unit - Matrix6::identity()).norm() < 1e-14);

@@ -19,7 +19,7 @@ use crate::tolerance::Tolerance;
 /// use lieflow::methods::{ProjectionMethod, Rk, tableau::RK4};
 /// use lieflow::problems::{Projection, RigidBodyAttitude};
 /// use lieflow::{LieGroup, Problem, SaveAt, TimeGrid, integrate};
-/// use nalgebra::Matrix3;
+/// use lieflow::nalgebra::Matrix3;
 ///
 /// let body = RigidBodyAttitude::<f64>::new([1.0, 2.0, 3.0], [0.2, 0.5, 3.0])?;
 /// let method = ProjectionMethod::new(Rk(RK4), Projection::Polar);

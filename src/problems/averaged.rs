@@ -27,7 +27,7 @@ use crate::scalar::Real;
 /// use lieflow::methods::EnergyCasimir;
 /// use lieflow::problems::{MeanGradient, Euler};
 /// use lieflow::{SaveAt, TimeGrid, integrate};
-/// use nalgebra::Vector3;
+/// use lieflow::nalgebra::Vector3;
 /// type V = Vector3<f64>;
 ///
 /// // H = Σ cosh(k_i m_i).

@@ -27,7 +27,7 @@ use crate::scalar::Real;
 /// use lieflow::methods::{Rk, tableau::RK4};
 /// use lieflow::problems::{DynFlow, Flow, TimeAlone};
 /// use lieflow::{SaveAt, TimeGrid, integrate};
-/// use nalgebra::Vector3;
+/// use lieflow::nalgebra::Vector3;
 /// let so3 = So3::<f64>::new();
 /// let problems: [DynFlow<_, _, TimeAlone>; 2] = [
 ///     DynFlow::new(Flow::new(so3, Linear, |_, x, v| *v = Vector3::new(0.0, 0.0, x[0])), Linear),

@@ -97,7 +97,7 @@ where
 /// use lieflow::methods::{Rkmk, tableau::RK4};
 /// use lieflow::problems::{Euler, Kinetic};
 /// use lieflow::{SaveAt, TimeGrid, integrate};
-/// use nalgebra::Vector3;
+/// use lieflow::nalgebra::Vector3;
 /// type Pair = (Vector3<f64>, Vector3<f64>);
 ///
 /// // Kirchhoff's equations: an ellipsoid in an ideal fluid.

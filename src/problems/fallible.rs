@@ -57,7 +57,7 @@ pub trait TryProblem {
 /// use lieflow::methods::{Rkmk, tableau::RK4};
 /// use lieflow::problems::{Fallible, TryProblem};
 /// use lieflow::{SaveAt, TimeGrid, integrate};
-/// use nalgebra::Vector3;
+/// use lieflow::nalgebra::Vector3;
 ///
 /// /// A rate that was measured at full seconds.
 /// struct Measured(So3, Vec<f64>);
@@ -152,7 +152,7 @@ impl<P: TryProblem> Problem for Fallible<P> {
 /// use lieflow::problems::{Fallible, TryFlow};
 /// use lieflow::samples::{Interpolation, Samples};
 /// use lieflow::{SaveAt, TimeGrid, integrate};
-/// use nalgebra::Vector3;
+/// use lieflow::nalgebra::Vector3;
 ///
 /// let rates = Samples::new(&[0.0, 1.0], &[[0.1, 0.2], [0.0, 0.0], [0.5, 0.4]], Interpolation::Linear)?;
 /// let attitude = TryFlow::new(So3::<f64>::new(), LeftTranslation, |t, _, v: &mut Vector3<f64>| {

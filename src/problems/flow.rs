@@ -26,7 +26,7 @@ use crate::space::Metric;
 /// use lieflow::methods::EnergyCasimir;
 /// use lieflow::problems::Flow;
 /// use lieflow::{SaveAt, TimeGrid, integrate};
-/// use nalgebra::Vector3;
+/// use lieflow::nalgebra::Vector3;
 ///
 /// // A free rigid body: f = −J⁻¹m, H = ½ m·J⁻¹m.
 /// let omega = |m: &Vector3<f64>| m.component_div(&Vector3::new(1.0, 2.0, 3.0));
@@ -153,7 +153,7 @@ impl<G: LieGroup, A: Action<G>, F: Fn(G::Scalar, &mut G::Alg)> LinearFlow<G, A, 
     /// use lieflow::methods::magnus::Magnus4;
     /// use lieflow::problems::Flow;
     /// use lieflow::{SaveAt, TimeGrid, integrate};
-    /// use nalgebra::Vector3;
+    /// use lieflow::nalgebra::Vector3;
     ///
     /// // A spin in a rotating field.
     /// let spin = Flow::of_time(So3::<f64>::new(), Linear, |t, v| {

@@ -19,7 +19,7 @@ use crate::groups::{AlgebraMatrix, MatrixGroup};
 /// The flow of subspaces for a symmetric A.
 ///
 /// ```
-/// use faer::mat;
+/// use lieflow::faer::mat;
 /// use lieflow::maps::Cay;
 /// use lieflow::methods::{Rkmk, tableau::RK4};
 /// use lieflow::problems::SubspaceFlow;

@@ -30,7 +30,7 @@ use crate::scalar::Real;
 /// use lieflow::methods::{Rkmk, tableau::RK4};
 /// use lieflow::problems::HeavyTop;
 /// use lieflow::{SaveAt, TimeGrid, integrate};
-/// use nalgebra::Vector3;
+/// use lieflow::nalgebra::Vector3;
 /// let top = HeavyTop::<f64>::lagrange(1.0, 0.5, 1.0)?.problem();
 /// let mut y = (Vector3::new(0.1, 0.0, 2.0), Vector3::new(0.0, 0.6, 0.8));
 /// let grid = TimeGrid::new([0.0, 10.0], 0.01)?;

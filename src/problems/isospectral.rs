@@ -31,7 +31,7 @@ enum Kind {
 /// An isospectral flow L̇ = \[B(L), L\].
 ///
 /// ```
-/// use faer::mat;
+/// use lieflow::faer::mat;
 /// use lieflow::maps::Cay;
 /// use lieflow::methods::{Rkmk, tableau::RK4};
 /// use lieflow::problems::IsospectralFlow;

@@ -23,12 +23,12 @@ use crate::scalar::{Ops, tally};
 /// A particle of charge-to-mass ratio q/m in the fields (E, B) that `field` gives at (τ, u).
 ///
 /// ```
-/// use faer::mat;
+/// use lieflow::faer::mat;
 /// use lieflow::maps::Exp;
 /// use lieflow::methods::{Rkmk, tableau::RK4};
 /// use lieflow::problems::ChargedParticle;
 /// use lieflow::{SaveAt, TimeGrid, integrate};
-/// use nalgebra::Vector3;
+/// use lieflow::nalgebra::Vector3;
 /// // A constant E: the rapidity of the particle grows at the rate E in proper time.
 /// let field = |_: f64, _: &_| (Vector3::new(1.0, 0.0, 0.0), Vector3::zeros());
 /// let particle = ChargedParticle::new(1.0, field)?;

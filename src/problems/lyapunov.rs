@@ -25,7 +25,7 @@ type Growth = (Mat<f64>, Mat<f64>);
 /// The variational equation of ẋ = F(t, x) in QR form; `field(t, x, dx, jacobian)` writes F and DF.
 ///
 /// ```
-/// use faer::Mat;
+/// use lieflow::faer::Mat;
 /// use lieflow::maps::Cay;
 /// use lieflow::methods::{Rkmk, tableau::RK4};
 /// use lieflow::problems::Lyapunov;
@@ -33,7 +33,7 @@ type Growth = (Mat<f64>, Mat<f64>);
 /// // ẋ = (x₁ + x₂, −2x₂): the exponents are the eigenvalues.
 /// let field = |_: f64, x: &Mat<f64>, dx: &mut Mat<f64>, jacobian: &mut Mat<f64>| {
 ///     (dx[(0, 0)], dx[(1, 0)]) = (x[(0, 0)] + x[(1, 0)], -2.0 * x[(1, 0)]);
-///     jacobian.copy_from(faer::mat![[1.0, 1.0], [0.0, -2.0]]);
+///     jacobian.copy_from(lieflow::faer::mat![[1.0, 1.0], [0.0, -2.0]]);
 /// };
 /// let system = Lyapunov::new(2, field)?;
 /// let mut y = system.state(&[0.0, 0.1])?;

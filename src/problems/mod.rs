@@ -90,7 +90,7 @@ pub type PointOf<P> = <<P as Problem>::Action as Action<<P as Problem>::Group>>:
 /// use lieflow::actions::Linear;
 /// use lieflow::groups::So3;
 /// use lieflow::problems::Problem;
-/// use nalgebra::Vector3;
+/// use lieflow::nalgebra::Vector3;
 ///
 /// /// A vector that turns about e₃ at the rate t.
 /// struct Spin(So3, Linear);

@@ -17,7 +17,7 @@ use crate::problems::FieldStore;
 /// Oja's flow for a symmetric A.
 ///
 /// ```
-/// use faer::mat;
+/// use lieflow::faer::mat;
 /// use lieflow::maps::Cay;
 /// use lieflow::methods::{Rkmk, tableau::RK4};
 /// use lieflow::problems::Oja;

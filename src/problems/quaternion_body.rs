@@ -23,7 +23,7 @@ use crate::so3;
 /// use lieflow::methods::{Rkmk, tableau::RK4};
 /// use lieflow::problems::{Exact, RigidBodyQuaternion};
 /// use lieflow::{SaveAt, TimeGrid, integrate};
-/// use nalgebra::{Matrix3, UnitQuaternion};
+/// use lieflow::nalgebra::{Matrix3, UnitQuaternion};
 /// let (inertia, momentum) = ([1.0, 2.0, 3.0], [0.2, 0.0, 3.0]);
 /// let body = RigidBodyQuaternion::new(inertia, momentum)?;
 /// let mut q = UnitQuaternion::identity();

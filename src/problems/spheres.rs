@@ -147,7 +147,7 @@ impl<S: Real> Invariants for SphericalPendulum<S> {
 /// use lieflow::methods::{Rkmk, tableau::RK4};
 /// use lieflow::problems::SpinChain;
 /// use lieflow::{SaveAt, TimeGrid, integrate};
-/// use nalgebra::Vector3;
+/// use lieflow::nalgebra::Vector3;
 /// let chain = SpinChain::new(100)?.with_anisotropy(0.1)?;
 /// let mut spins = chain.spins(|i| Vector3::new((i as f64).sin(), (i as f64).cos(), 1.0))?;
 /// let start = chain.energy(&spins);

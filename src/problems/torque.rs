@@ -73,7 +73,7 @@ impl<S: Real, A: Torque<S>, B: Torque<S>> Torque<S> for (A, B) {
 /// use lieflow::methods::{Rkmk, tableau::RK4};
 /// use lieflow::problems::{BodyTorque, TorqueBody};
 /// use lieflow::{SaveAt, TimeGrid, integrate};
-/// use nalgebra::{Matrix3, Vector3};
+/// use lieflow::nalgebra::{Matrix3, Vector3};
 /// // Damping brings the body to rest.
 /// let body = TorqueBody::new([1.0, 2.0, 3.0], BodyTorque(|at: &_| damping(at)))?;
 /// # fn damping(at: &lieflow::problems::BodyMotion) -> Vector3<f64> { -2.0 * at.omega_body }

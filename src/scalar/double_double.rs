@@ -17,7 +17,7 @@ use super::{Real, Select, Trig};
 /// ```
 /// use lieflow::scalar::{DoubleDouble, Real};
 /// use lieflow::so3;
-/// use nalgebra::Vector3;
+/// use lieflow::nalgebra::Vector3;
 /// let u = Vector3::new(0.3, -1.2, 0.5).map(DoubleDouble::lit);
 /// let r = so3::exp(&u)?;
 /// let column = r[(0, 0)] * r[(0, 0)] + r[(1, 0)] * r[(1, 0)] + r[(2, 0)] * r[(2, 0)];

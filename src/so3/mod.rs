@@ -24,7 +24,7 @@
 //!
 //! ```
 //! use lieflow::so3;
-//! use nalgebra::Vector3;
+//! use lieflow::nalgebra::Vector3;
 //! let u = Vector3::new(0.3, -1.2, 0.5);
 //! let r = so3::exp(&u)?;
 //! assert!((so3::log(&r)? - u).norm() < 1e-15);

@@ -54,7 +54,7 @@ pub(super) type Change<'a, Y> = Box<dyn FnMut(f64, &mut Y) + 'a>;
 /// ```
 /// use lieflow::prelude::*;
 /// use lieflow::problems::RigidBody;
-/// use nalgebra::Vector3;
+/// use lieflow::nalgebra::Vector3;
 ///
 /// // The flips of a free body that rotates about its middle axis, until the third.
 /// let body = RigidBody::<f64>::new([1.0, 2.0, 3.0])?;

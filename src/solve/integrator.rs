@@ -19,7 +19,7 @@ use crate::problems::{PointOf, Problem};
 /// ```
 /// use lieflow::prelude::*;
 /// use lieflow::problems::RigidBody;
-/// use nalgebra::Vector3;
+/// use lieflow::nalgebra::Vector3;
 ///
 /// let body = RigidBody::<f64>::new([1.0, 2.0, 3.0])?;
 /// let method = Rkmk::new(DOPRI5, Exp);

@@ -69,7 +69,7 @@ use timeline::{Pace, Timeline};
 /// ```
 /// use lieflow::prelude::*;
 /// use lieflow::problems::RigidBody;
-/// use nalgebra::Vector3;
+/// use lieflow::nalgebra::Vector3;
 ///
 /// let body = RigidBody::<f64>::new([1.0, 2.0, 3.0])?;
 /// let run = Solve::new(&body, &Rkmk::new(DOPRI5, Exp), [0.0, 10.0])
@@ -250,7 +250,7 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
     /// ```
     /// use lieflow::prelude::*;
     /// use lieflow::problems::RigidBody;
-    /// use nalgebra::Vector3;
+    /// use lieflow::nalgebra::Vector3;
     /// use std::sync::Arc;
     ///
     /// let body = Arc::new(RigidBody::<f64>::new([1.0, 2.0, 3.0])?);
@@ -324,7 +324,7 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
     ///
     /// ```
     /// use lieflow::prelude::*;
-    /// use nalgebra::Matrix3;
+    /// use lieflow::nalgebra::Matrix3;
     /// let turn = Flow::of_time(So3::new(), LeftTranslation, |t: f64, v| v.z = t);
     /// let method = Rkmk::new(DOPRI5, Exp);
     /// let solve = Solve::new(&turn, &method, [0.0, 2.0]).tolerances(1e-9, 1e-12);

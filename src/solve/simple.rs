@@ -23,7 +23,7 @@ use crate::problems::{PointOf, Problem, ScalarOf};
 /// use lieflow::methods::{Rkmk, tableau::RK4};
 /// use lieflow::problems::RigidBody;
 /// use lieflow::{SaveAt, TimeGrid, integrate};
-/// use nalgebra::Vector3;
+/// use lieflow::nalgebra::Vector3;
 ///
 /// let body = RigidBody::<f64>::new([1.0, 2.0, 3.0])?;
 /// let mut m = Vector3::new(0.2, 0.0, 3.0);
@@ -57,7 +57,7 @@ pub fn integrate<P: Problem, M: Method<P>>(
 /// use lieflow::methods::{Rkmk, tableau::DOPRI5};
 /// use lieflow::problems::RigidBody;
 /// use lieflow::{SaveAt, StepControl, integrate_adaptive};
-/// use nalgebra::Vector3;
+/// use lieflow::nalgebra::Vector3;
 ///
 /// let body = RigidBody::<f64>::new([1.0, 2.0, 3.0])?;
 /// let mut m = Vector3::new(0.2, 0.0, 3.0);

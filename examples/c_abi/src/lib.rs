@@ -18,11 +18,11 @@
 use core::ffi::{CStr, c_char};
 use std::hint::black_box;
 
-use faer::Mat;
 use lieflow::dense::{Exponential, ExponentialBatch, Structure};
+use lieflow::faer::Mat;
 use lieflow::groups::So3;
 use lieflow::maps::{CoordinateMap, Exp};
-use nalgebra::Vector3;
+use lieflow::nalgebra::Vector3;
 
 /// Copies in a batch. Not a power of two, because then entries of one matrix would share one set of the cache.
 const COPIES: usize = 1000;
@@ -93,7 +93,7 @@ fn run(name: &str, n: usize, a: &[f64], out: &mut [f64], reps: usize) -> f64 {
         "rodrigues" if n == 3 && skew => {
             let (group, u) = (So3::new(), Vector3::new(u[(2, 1)], u[(0, 2)], u[(1, 0)]));
             let Ok(mut at) = Exp.at(&group) else { return f64::NAN };
-            let mut rotation = nalgebra::Matrix3::identity();
+            let mut rotation = lieflow::nalgebra::Matrix3::identity();
             let time =
                 timed(reps, || Exp.psi(&group, black_box(&u), &mut at, &mut rotation).is_ok());
             g = Mat::from_fn(3, 3, |i, j| rotation[(i, j)]);

@@ -25,7 +25,7 @@ const MEAN_MAX: f64 = 650.0;
 /// ones are su(n).
 ///
 /// ```
-/// use faer::{Mat, c64};
+/// use lieflow::faer::{Mat, c64};
 /// use lieflow::dense::{ComplexExponential, Structure};
 ///
 /// // exp(i θ σ_z) = diag(e^{iθ}, e^{−iθ})

@@ -77,7 +77,7 @@ const NORM_MAX_SKEW: f64 = 1e15;
 /// exp of n×n matrices, with a workspace of nine matrices.
 ///
 /// ```
-/// use faer::mat;
+/// use lieflow::faer::mat;
 /// use lieflow::dense::{Exponential, Structure};
 ///
 /// let u = mat![[0.0, -1.0], [1.0, 0.0]];

@@ -99,7 +99,7 @@ impl MatrixGroup {
     /// Makes u an element of the algebra, if it is one within [`MEMBERSHIP`].
     ///
     /// ```
-    /// use faer::mat;
+    /// use lieflow::faer::mat;
     /// use lieflow::groups::MatrixGroup;
     /// let so2 = MatrixGroup::so(2)?;
     /// assert!(so2.algebra(mat![[0.0, -1.0], [1.0, 0.0]]).is_ok());

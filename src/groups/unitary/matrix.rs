@@ -17,7 +17,7 @@ use crate::space::{LinearSpace, Metric, Numbers};
 /// A complex matrix re + i·im.
 ///
 /// ```
-/// use faer::c64;
+/// use lieflow::faer::c64;
 /// use lieflow::groups::ComplexMatrix;
 /// let x = ComplexMatrix::from_fn(2, 2, |i, j| c64::new(i as f64, j as f64));
 /// assert_eq!(x.get(1, 0), c64::new(1.0, 0.0));

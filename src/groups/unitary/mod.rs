@@ -34,7 +34,7 @@ use crate::space::{LinearSpace, Metric};
 /// use lieflow::maps::Exp;
 /// let group = Unitary::new(2)?;
 /// // exp(iθσ_x)
-/// let u = ComplexMatrix::from_fn(2, 2, |i, j| faer::c64::new(0.0, if i == j { 0.0 } else { 0.3 }));
+/// let u = ComplexMatrix::from_fn(2, 2, |i, j| lieflow::faer::c64::new(0.0, if i == j { 0.0 } else { 0.3 }));
 /// let g = Exp.eval(&group, &u)?;
 /// assert!((g.re[(0, 0)] - 0.3f64.cos()).abs() < 1e-15 && group.defect(&g) < 1e-15);
 /// # Ok::<(), lieflow::Error>(())

@@ -44,7 +44,7 @@ impl MatrixGroup {
     /// ```
     /// use lieflow::groups::MatrixGroup;
     /// let so2 = MatrixGroup::so(2)?;
-    /// let quarter = so2.element(faer::mat![[0.0, -1.0], [1.0, 0.0]])?;
+    /// let quarter = so2.element(lieflow::faer::mat![[0.0, -1.0], [1.0, 0.0]])?;
     /// let u = so2.log(&quarter)?;
     /// assert!((u[(1, 0)] - std::f64::consts::FRAC_PI_2).abs() < 1e-15);
     /// # Ok::<(), lieflow::Error>(())

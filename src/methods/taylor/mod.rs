@@ -41,7 +41,7 @@ use crate::tolerance::Tolerance;
 /// use lieflow::problems::RigidBody;
 /// use lieflow::Step;
 /// let body = RigidBody::<f64>::new([1.0, 2.0, 3.0]).unwrap();
-/// let mut m = nalgebra::Vector3::x();
+/// let mut m = lieflow::nalgebra::Vector3::x();
 /// let mut work = Taylor::<17>.work(&body, &m).unwrap();
 /// let _ = Taylor::<17>.step(&body, Step { n: 0, t: 0.0, h: 0.1 }, &mut m, &mut work);
 /// ```

@@ -37,7 +37,7 @@ use crate::so3::cross;
 ///
 /// ```
 /// use lieflow::problems::Exact;
-/// use nalgebra::Matrix3;
+/// use lieflow::nalgebra::Matrix3;
 /// let body = Exact::new([1.0, 2.0, 3.0], [0.2, 0.0, 3.0], Matrix3::identity())?;
 /// let (m, g) = body.state(400.0)?;
 /// assert!((m.norm() - 9.04f64.sqrt()).abs() < 1e-14);

@@ -143,7 +143,7 @@ impl<S: Real> Action<So3<S>> for BodyFrame {
 /// use lieflow::methods::{Splitting, YOSHIDA4};
 /// use lieflow::problems::{Exact, RigidBodyState};
 /// use lieflow::{SaveAt, TimeGrid, integrate};
-/// use nalgebra::Matrix3;
+/// use lieflow::nalgebra::Matrix3;
 ///
 /// let body = RigidBodyState::new([1.0, 2.0, 3.0])?;
 /// let mut y = body.state([0.2, 0.5, 3.0], Matrix3::identity())?;

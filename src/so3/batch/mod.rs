@@ -11,7 +11,7 @@
 //!
 //! ```
 //! use lieflow::so3::{self, batch};
-//! use nalgebra::Vector3;
+//! use lieflow::nalgebra::Vector3;
 //! let (x, y, z) = (vec![0.1; 100], vec![-0.4; 100], vec![2.0; 100]);
 //! let v = [vec![1.0; 100], vec![0.0; 100], vec![0.5; 100]];
 //! let mut w = [vec![0.0; 100], vec![0.0; 100], vec![0.0; 100]];

@@ -5,13 +5,17 @@ use std::path::{Path, PathBuf};
 
 use crate::support::Folder;
 
+/// The folder of the repository.
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
 /// README.md and the pages of docs.
 fn pages() -> Vec<PathBuf> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let docs = fs::read_dir(root.join("docs")).unwrap().map(|entry| entry.unwrap().path());
+    let docs = fs::read_dir(root().join("docs")).unwrap().map(|entry| entry.unwrap().path());
     let mut pages: Vec<_> =
         docs.filter(|path| path.extension().is_some_and(|end| end == "md")).collect();
-    pages.push(root.join("README.md"));
+    pages.push(root().join("README.md"));
     pages.sort();
     pages
 }
@@ -102,4 +106,77 @@ fn every_scene_on_a_page_runs() {
         }
     }
     assert!(count >= 9, "only {count} scenes were found");
+}
+
+/// The one result of the README: how far both methods have left the rotations after 8000 steps.
+#[test]
+fn the_result_of_the_readme() {
+    let readme = fs::read_to_string(root().join("README.md")).unwrap();
+    let folder = Folder::new();
+    let defect = |method: &str| {
+        let method = format!("method.name={method}");
+        let quantities = "output.quantities=[\"attitude_defect\"]";
+        let set = ["--set", &method, "--set", quantities, "--set", "method.map="];
+        let run = ["run", "asymmetric-top", "--out", "out", "--no-page"];
+        folder.lieflow(&[&run[..], &set].concat()).ok();
+        let summary = folder.json("out/summary.json");
+        assert_eq!((&summary["steps"], &summary["t_end"]), (&8000.into(), &400.0.into()));
+        summary["final"]["attitude_defect"].as_f64().unwrap()
+    };
+    let (classical, lie) = (defect("rk4"), defect("rkmk4"));
+    assert!(readme.contains(&format!("the rotations by {classical:.1e}.")), "{classical:e}");
+    assert!(readme.contains("has left them by 2e-15.") && lie < 1e-14, "{lie:e}");
+}
+
+/// A user has nalgebra and faer through lieflow alone.
+#[test]
+fn programs_take_matrices_from_lieflow() {
+    fn sources(folder: &Path, all: &mut Vec<PathBuf>) {
+        for path in fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
+            match path.is_dir() {
+                true => sources(&path, all),
+                false => all.push(path),
+            }
+        }
+    }
+    let (mut all, mut wrong) = (pages(), Vec::new());
+    ["src", "examples"].iter().for_each(|folder| sources(&root().join(folder), &mut all));
+    for path in
+        all.iter().filter(|path| path.extension().is_some_and(|end| end == "rs" || end == "md"))
+    {
+        let is_src = path.starts_with(root().join("src"));
+        for line in fs::read_to_string(path).unwrap().lines() {
+            // Of the sources, the programs in comments.
+            let comment = line.trim_start().strip_prefix("//");
+            let program = if is_src { comment.unwrap_or_default() } else { line };
+            let words = program.trim_start_matches(['/', '!', ' ', '#']);
+            if ["use nalgebra", "use faer"].iter().any(|start| words.starts_with(start)) {
+                wrong.push(format!("{}: {line}", path.display()));
+            }
+        }
+    }
+    assert!(all.len() > 100 && wrong.is_empty(), "{wrong:#?}");
+}
+
+/// Each sentence of the README that promises something stands in promises.md, with a test that is there.
+#[test]
+fn each_promise_of_the_readme_has_a_test() {
+    let [readme, promises] = ["README.md", "docs/promises.md"]
+        .map(|page| fs::read_to_string(root().join(page)).unwrap());
+    let one_line = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let readme = one_line(&readme);
+    let table = promises.split("| the README says | test |").nth(1).unwrap();
+    let rows = table.lines().skip(2).take_while(|line| line.starts_with('|'));
+    let mut count = 0;
+    for row in rows {
+        let cells: Vec<&str> = row.trim_matches('|').split(" | ").map(str::trim).collect();
+        let [says, tests] = cells[..] else { panic!("{row}") };
+        assert!(readme.contains(says), "not in the README: {says}");
+        let files = tests.split('`').skip(1).step_by(2).filter(|name| name.contains('/'));
+        for file in files {
+            assert!(root().join(file).exists(), "{says}: there is no {file}");
+            count += 1;
+        }
+    }
+    assert!(count > 10, "{count}");
 }
