@@ -17,8 +17,8 @@ use super::Action;
 use crate::dense::{Lu, congruence, mul, mul_add, skew_commutator};
 use crate::error::{Error, StepError};
 use crate::groups::{
-    AlgebraMatrix, Form, GroupMatrix, LieAlgebra, LieGroup, MatrixGroup, RESIDUAL_MAX, Se3, So3,
-    UnitQuaternions, worse,
+    AlgebraMatrix, Form, GroupMatrix, LieAlgebra, LieGroup, MatrixGroup, RESIDUAL_MAX, Se3, Se23,
+    So3, UnitQuaternions, worse,
 };
 use crate::maps::CoordinateMap;
 use crate::maps::PsiOf;
@@ -163,6 +163,45 @@ impl<S: Real> Action<Se3<S>> for Coadjoint {
             so3.axpy(missing / pi2, &p.1, &mut p.0);
         }
         worse(found, Some(residual))
+    }
+}
+
+/// Λ(g, m) = (Rμ + v × Rπ + p × Rλ, (Rπ, Rλ)).
+impl<S: Real> Action<Se23<S>> for Coadjoint {
+    type Point = (Vector3<S>, (Vector3<S>, Vector3<S>));
+    type Work = ();
+
+    fn work(&self, _: &Se23<S>) {}
+    #[inline]
+    fn check(&self, _: &Se23<S>, (mu, (pi, lambda)): &Self::Point) -> Result<(), Error> {
+        [mu, pi, lambda].into_iter().try_for_each(|x| So3::new().check_vector(x))
+    }
+    #[inline]
+    fn act(
+        &self,
+        _: &Se23<S>,
+        (r, (v, p)): &(Matrix3<S>, (Vector3<S>, Vector3<S>)),
+        (mu, (pi, lambda)): &Self::Point,
+        q: &mut Self::Point,
+        _: &mut (),
+    ) {
+        let so3 = So3::new();
+        so3.apply(r, mu, &mut q.0);
+        so3.apply(r, pi, &mut q.1.0);
+        so3.apply(r, lambda, &mut q.1.1);
+        q.0 = add3(&q.0, &add3(&cross(v, &q.1.0), &cross(p, &q.1.1)));
+    }
+    #[inline]
+    fn generate(
+        &self,
+        _: &Se23<S>,
+        (omega, (v, p)): &Self::Point,
+        (mu, (pi, lambda)): &Self::Point,
+        dm: &mut Self::Point,
+        _: &mut (),
+    ) {
+        let arms = add3(&cross(v, pi), &cross(p, lambda));
+        *dm = (add3(&cross(omega, mu), &arms), (cross(omega, pi), cross(omega, lambda)));
     }
 }
 

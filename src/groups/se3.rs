@@ -17,7 +17,7 @@
 
 use core::marker::PhantomData;
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Isometry3, Matrix3, Translation3, Vector3};
 use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
 
@@ -219,6 +219,30 @@ impl<S: Real> Adjoint for Se3<S> {
 }
 
 impl Se3<f64> {
+    /// The element of a rigid motion of nalgebra: of an `Isometry3`, or of what can be one.
+    ///
+    /// ```
+    /// use lieflow::groups::Se3;
+    /// use lieflow::nalgebra::{Isometry3, Point3, Vector3};
+    /// let pose = Isometry3::new(Vector3::new(1.0, 2.0, 3.0), Vector3::new(0.1, -0.2, 0.3));
+    /// let g = Se3::from_isometry(pose);
+    /// assert!((g.0 * Vector3::x() + g.1 - (pose * Point3::new(1.0, 0.0, 0.0)).coords).norm() < 1e-15);
+    /// assert!((Se3::to_isometry(&g)?.to_matrix() - pose.to_matrix()).norm() < 1e-15);
+    /// # Ok::<(), lieflow::Error>(())
+    /// ```
+    pub fn from_isometry(motion: impl Into<Isometry3<f64>>) -> (Matrix3<f64>, Vector3<f64>) {
+        let motion = motion.into();
+        (So3::from_rotation(motion.rotation), motion.translation.vector)
+    }
+
+    /// The `Isometry3` of an element.
+    ///
+    /// # Errors
+    /// As [`so3::log`], for a matrix that is no rotation.
+    pub fn to_isometry((r, x): &(Matrix3<f64>, Vector3<f64>)) -> Result<Isometry3<f64>, Error> {
+        Ok(Isometry3::from_parts(Translation3::from(*x), So3::to_quaternion(r)?))
+    }
+
     /// log(g): the twist u with exp(u) = g and |ω| ≤ π; at |ω| = π as [`so3::log`] chooses.
     ///
     /// # Errors

@@ -2,14 +2,14 @@
 
 use core::marker::PhantomData;
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
 
 use super::{LieAlgebra, LieGroup, RESIDUAL_MAX, Sample};
 use crate::error::Error;
 use crate::scalar::Real;
-use crate::so3::{apply3, compose3, cross, dot3, in_range};
+use crate::so3::{self, apply3, compose3, cross, dot3, in_range};
 
 /// The group SO(3). Elements of the algebra are 3-vectors (û of the paper), elements of the group are 3×3 rotations.
 ///
@@ -212,6 +212,41 @@ impl So3<f64> {
             return Err(Error::Reflection { arg });
         }
         Ok(())
+    }
+}
+
+impl So3<f64> {
+    /// The element of a rotation of nalgebra: of a `Rotation3`, or of a `UnitQuaternion`.
+    ///
+    /// ```
+    /// use lieflow::groups::So3;
+    /// use lieflow::nalgebra::{Rotation3, UnitQuaternion, Vector3};
+    /// let q = UnitQuaternion::new(Vector3::new(0.1, -0.2, 0.3));
+    /// let g = So3::from_rotation(q);
+    /// assert!((So3::from_rotation(Rotation3::from(q)) - g).norm() < 1e-15);
+    /// assert!(So3::to_quaternion(&g)?.angle_to(&q) < 1e-15);
+    /// assert_eq!(So3::to_rotation(&g)?.into_inner(), g);
+    /// # Ok::<(), lieflow::Error>(())
+    /// ```
+    pub fn from_rotation(rotation: impl Into<Rotation3<f64>>) -> Matrix3<f64> {
+        rotation.into().into_inner()
+    }
+
+    /// The `Rotation3` of an element.
+    ///
+    /// # Errors
+    /// As [`so3::log`], for a matrix that is no rotation.
+    pub fn to_rotation(g: &Matrix3<f64>) -> Result<Rotation3<f64>, Error> {
+        so3::log(g)?;
+        Ok(Rotation3::from_matrix_unchecked(*g))
+    }
+
+    /// The `UnitQuaternion` of an element. Its largest component, or nearly the largest, is positive.
+    ///
+    /// # Errors
+    /// As [`so3::log`], for a matrix that is no rotation.
+    pub fn to_quaternion(g: &Matrix3<f64>) -> Result<UnitQuaternion<f64>, Error> {
+        so3::quaternion_from_matrix(g)
     }
 }
 

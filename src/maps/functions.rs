@@ -1,12 +1,12 @@
 //! The maps as functions: one name for each formula, on every group that has it.
 
-use nalgebra::{Matrix3, Matrix6, UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, Matrix6, SMatrix, UnitQuaternion, Vector3};
 
 use super::{Cay, CoordinateMap, Exp};
 use crate::error::Error;
 use crate::groups::{
-    AlgebraMatrix, ComplexMatrix, GroupMatrix, LieGroup, MatrixGroup, Se3, So3, UnitQuaternions,
-    Unitary,
+    AlgebraMatrix, ComplexMatrix, GroupMatrix, LieAlgebra, LieGroup, MatrixGroup, Se3, Se23, So3,
+    UnitQuaternions, Unitary,
 };
 use crate::so3;
 
@@ -106,14 +106,19 @@ impl LogGroup for Se3<f64> {
         self.log(g)
     }
 }
+impl LogGroup for Se23<f64> {
+    fn log_of(&self, g: &Self::Elem) -> Result<Self::Alg, Error> {
+        self.log(g)
+    }
+}
 impl LogGroup for MatrixGroup {
     fn log_of(&self, g: &GroupMatrix) -> Result<AlgebraMatrix, Error> {
         self.log(g)
     }
 }
 
-/// A group with the differential of exp: `So3<f64>`, `UnitQuaternions`, `Se3<f64>`, `MatrixGroup`, `Unitary`. Users need it for
-/// [`dexp`] only.
+/// A group with the differential of exp: `So3<f64>`, `UnitQuaternions`, `Se3<f64>`, `Se23<f64>`, `MatrixGroup`, `Unitary`.
+/// Users need it for [`dexp`] only.
 pub trait DexpGroup: LieGroup {
     /// [`dexp`] on this group.
     ///
@@ -174,12 +179,36 @@ pub fn left_jacobian_inv_se3(u: &(Vector3<f64>, Vector3<f64>)) -> Result<Matrix6
 fn of_columns(
     f: impl Fn(&(Vector3<f64>, Vector3<f64>)) -> Result<(Vector3<f64>, Vector3<f64>), Error>,
 ) -> Result<Matrix6<f64>, Error> {
-    let mut matrix = Matrix6::zeros();
-    for j in 0..6 {
-        let unit = |first: usize| Vector3::from_fn(|i, _| if first + i == j { 1.0 } else { 0.0 });
-        let (turn, moved) = f(&(unit(0), unit(3)))?;
-        matrix.fixed_view_mut::<3, 1>(0, j).copy_from(&turn);
-        matrix.fixed_view_mut::<3, 1>(3, j).copy_from(&moved);
+    matrix_of(|[a, b]| f(&(a, b)).map(|(a, b)| [a, b]))
+}
+
+/// The left Jacobian of SE₂(3) at u = (ω, (ν, ρ)): the 9×9 matrix J with [`dexp`]_u w = J w. Rows and columns have the
+/// rotation first, then the velocity, then the place. The right Jacobian at u is J at −u.
+///
+/// # Errors
+/// As [`dexp`].
+pub fn left_jacobian_se23(u: &<Se23 as LieAlgebra>::Alg) -> Result<SMatrix<f64, 9, 9>, Error> {
+    matrix_of(|[a, b, c]| dexp(&Se23::new(), u, &(a, (b, c))).map(|(a, (b, c))| [a, b, c]))
+}
+
+/// The inverse of [`left_jacobian_se23`]: the 9×9 matrix J⁻¹ with [`dexpinv`]_u w = J⁻¹ w.
+///
+/// # Errors
+/// As [`dexpinv`].
+pub fn left_jacobian_inv_se23(u: &<Se23 as LieAlgebra>::Alg) -> Result<SMatrix<f64, 9, 9>, Error> {
+    matrix_of(|[a, b, c]| dexpinv(&Se23::new(), u, &(a, (b, c))).map(|(a, (b, c))| [a, b, c]))
+}
+
+/// The matrix of a linear function of K vectors, one after the other.
+fn matrix_of<const K: usize, const N: usize>(
+    f: impl Fn([Vector3<f64>; K]) -> Result<[Vector3<f64>; K], Error>,
+) -> Result<SMatrix<f64, N, N>, Error> {
+    let mut matrix: SMatrix<f64, N, N> = SMatrix::zeros();
+    for j in 0..3 * K {
+        let unit = |k: usize| Vector3::from_fn(|i, _| if 3 * k + i == j { 1.0 } else { 0.0 });
+        for (k, part) in f(core::array::from_fn(unit))?.iter().enumerate() {
+            matrix.fixed_view_mut::<3, 1>(3 * k, j).copy_from(part);
+        }
     }
     Ok(matrix)
 }
@@ -197,6 +226,11 @@ impl DexpGroup for UnitQuaternions {
 impl DexpGroup for Se3<f64> {
     fn dexp_of(&self, u: &Self::Alg, v: &Self::Alg) -> Result<Self::Alg, Error> {
         Ok(super::exp::se3::dexp(u, v)?)
+    }
+}
+impl DexpGroup for Se23<f64> {
+    fn dexp_of(&self, u: &Self::Alg, v: &Self::Alg) -> Result<Self::Alg, Error> {
+        Ok(super::exp::se3::dexp_two(u, v)?)
     }
 }
 impl DexpGroup for MatrixGroup {

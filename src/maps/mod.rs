@@ -8,8 +8,8 @@
 //! | formula | call | on |
 //! |---|---|---|
 //! | exp(u) | [`exp(&group, &u)`](exp()) | every group |
-//! | log(g) | [`log(&group, &g)`](log()) | `So3`, `UnitQuaternions`, `Se3`, `MatrixGroup` |
-//! | dexp_u(v) | [`dexp(&group, &u, &v)`](dexp()) | `So3`, `UnitQuaternions`, `MatrixGroup`, `Unitary` |
+//! | log(g) | [`log(&group, &g)`](log()) | `So3`, `UnitQuaternions`, `Se3`, `Se23`, `MatrixGroup` |
+//! | dexp_u(v) | [`dexp(&group, &u, &v)`](dexp()) | `So3`, `UnitQuaternions`, `Se3`, `Se23`, `MatrixGroup`, `Unitary` |
 //! | dexp_u⁻¹(v) | [`dexpinv(&group, &u, &v)`](dexpinv()) | every group |
 //! | dexp_u⁻¹(v), cut after q brackets | [`dexpinv_truncated(&group, &u, &v, q)`](dexpinv_truncated()) | `MatrixGroup` |
 //! | cay(u) | [`cay(&group, &u)`](cay()) | every group |
@@ -47,7 +47,8 @@ pub use exp::{
     distance_to_singular,
 };
 pub use functions::{
-    cay, dcayinv, dexp, dexpinv, exp, left_jacobian_inv_se3, left_jacobian_se3, log,
+    cay, dcayinv, dexp, dexpinv, exp, left_jacobian_inv_se3, left_jacobian_inv_se23,
+    left_jacobian_se3, left_jacobian_se23, log,
 };
 pub(crate) use named::FromName;
 pub(crate) use named::Serves;

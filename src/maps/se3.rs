@@ -1,5 +1,5 @@
 //! cay, pade22 and ccsk on SE(3), the maps of its 4×4 matrices: Ψ(ω, v) = (ψ(ω), x), x = φ(ω)v, with
-//! the map ψ of SO(3).
+//! the map ψ of SO(3). On SE₂(3) there are two such v.
 //!
 //! dΨ⁻¹(a, b) = (ω̇, v̇): ω̇ = dψ_ω⁻¹a, and v̇ from ẋ = z = b + a × x:
 //!
@@ -13,19 +13,21 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::{Cay, Ccsk, CoordinateMap, Pade22, pade22};
 use crate::error::{Error, StepError};
-use crate::groups::{Se3, So3, finite_pair};
+use crate::groups::{Se3, Se23, So3, finite_pair, finite_three};
 use crate::scalar::{Real, Trig};
 use crate::so3::{Angles, cay_coefficients, rodrigues_on};
 use crate::so3::{add3, cross};
 
 type Twist<S> = (Vector3<S>, Vector3<S>);
 type BodyMotion<S> = (Matrix3<S>, Vector3<S>);
+type TwoTwist<S> = (Vector3<S>, Twist<S>);
+type ExtendedPose<S> = (Matrix3<S>, Twist<S>);
 
 /// The values that a map stores: those of ψ, and x.
 #[derive(Clone, Copy, Debug)]
-pub struct ScrewAt<T, S> {
+pub struct ScrewAt<T, X> {
     turn: T,
-    x: Vector3<S>,
+    x: X,
 }
 
 /// −½ ω×z − ½ ω̇×x, with the sign of cay.
@@ -44,7 +46,7 @@ fn half<S: Real>(
 macro_rules! on_se3 {
     ($map:ty, [$($parameters:tt)*], $at:ty, $translate:expr, $pull:expr) => {
         impl<$($parameters)*> CoordinateMap<Se3<S>> for $map {
-            type At = ScrewAt<$at, S>;
+            type At = ScrewAt<$at, Vector3<S>>;
 
             fn name(&self) -> &'static str {
                 CoordinateMap::<So3<S>>::name(self)
@@ -81,6 +83,45 @@ macro_rules! on_se3 {
                 self.dpsi_inv(&So3::new(), omega, &mut at.turn, a)?;
                 *b = $pull(omega, &z, &*a, &at.x);
                 finite_pair(&(*a, *b), "dΨ⁻¹")
+            }
+        }
+
+        impl<$($parameters)*> CoordinateMap<Se23<S>> for $map {
+            type At = ScrewAt<$at, Twist<S>>;
+
+            fn name(&self) -> &'static str {
+                CoordinateMap::<So3<S>>::name(self)
+            }
+            fn at(&self, _: &Se23<S>) -> Result<Self::At, Error> {
+                let o = Vector3::repeat(S::lit(0.0));
+                Ok(ScrewAt { turn: self.at(&So3::<S>::new())?, x: (o, o) })
+            }
+            #[inline]
+            fn psi(
+                &self,
+                _: &Se23<S>,
+                (omega, (v, p)): &TwoTwist<S>,
+                at: &mut Self::At,
+                g: &mut ExtendedPose<S>,
+            ) -> Result<(), StepError> {
+                self.psi(&So3::new(), omega, &mut at.turn, &mut g.0)?;
+                at.x = ($translate(omega, v)?, $translate(omega, p)?);
+                g.1 = at.x;
+                finite_pair(&at.x, "Ψ(u)")
+            }
+            #[inline]
+            fn dpsi_inv(
+                &self,
+                _: &Se23<S>,
+                (omega, _): &TwoTwist<S>,
+                at: &mut Self::At,
+                (a, (b, c)): &mut TwoTwist<S>,
+            ) -> Result<(), StepError> {
+                let z = (add3(b, &cross(a, &at.x.0)), add3(c, &cross(a, &at.x.1)));
+                self.dpsi_inv(&So3::new(), omega, &mut at.turn, a)?;
+                *b = $pull(omega, &z.0, &*a, &at.x.0);
+                *c = $pull(omega, &z.1, &*a, &at.x.1);
+                finite_three(&(*a, (*b, *c)), "dΨ⁻¹")
             }
         }
     };

@@ -8,8 +8,8 @@ use crate::support::{EPS, Verdict, gaussian, holds, laws, within};
 use faer::{Mat, mat};
 use lieflow::actions::{Coadjoint, Conjugation, Each, Lagrangian, LeftTranslation, Linear, Pair};
 use lieflow::groups::{
-    Form, MatrixGroup, Power, Product, Sample, Se3, So3, Translations, UnitQuaternions, Unitary,
-    hat, vee,
+    Form, MatrixGroup, Power, Product, Sample, Se3, Se23, So3, Translations, UnitQuaternions,
+    Unitary, hat, vee,
 };
 use lieflow::maps::{CCSK, CCSK123, CCSK321, Cay, Ccsk, CoordinateMap, Dexpinv, Exp, Pade22};
 use lieflow::problems::{BodyFrame, FromTheBody};
@@ -191,6 +191,7 @@ laws! {
     u2: u2(), general;
     skewed4: skewed(4), general;
     se3: Se3::<f64>::new(), closed;
+    se23: Se23::<f64>::new(), closed;
     quaternions: UnitQuaternions, exp_and_cay;
     unitary1: unitary(1), exp_and_cay;
     unitary2: unitary(2), exp_and_cay;

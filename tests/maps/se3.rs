@@ -1,4 +1,4 @@
-//! SE(3): against references of 36 digits, against the general 4×4 matrices, the representations on
+//! SE(3) and SE₂(3): against references of 36 digits, against the general 4×4 matrices, the representations on
 //! the algebra and its dual, the logarithm, and what is refused.
 
 use crate::support::points::Points;
@@ -8,10 +8,15 @@ use crate::support::{EPS, gap};
 use faer::Mat;
 use faer::prelude::Solve;
 use lieflow::actions::{Coadjoint, LeftTranslation, Linear};
-use lieflow::groups::{Adjoint, AlgebraMatrix, LieAlgebra, LieGroup, MatrixGroup, Sample, Se3};
-use lieflow::maps::{CCSK123, Cay, CoordinateMap, Exp, Pade22, dexp, left_jacobian_se3};
+use lieflow::groups::{
+    Adjoint, AlgebraMatrix, LieAlgebra, LieGroup, MatrixGroup, Sample, Se3, Se23,
+};
+use lieflow::maps::{
+    CCSK123, Cay, CoordinateMap, Exp, Pade22, dexp, dexpinv, exp, left_jacobian_inv_se23,
+    left_jacobian_se3, left_jacobian_se23, log,
+};
 use lieflow::{Action, StepError};
-use nalgebra::{Vector3, Vector6};
+use nalgebra::{SVector, Vector3, Vector6};
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
 
@@ -101,6 +106,88 @@ fn dexp_is_that_of_the_4x4_matrices() {
     }
     let huge = (Vector3::new(1e200, 0.0, 0.0), Vector3::zeros());
     assert!(dexp(&SE3, &huge, &huge).is_err());
+}
+
+/// On SE₂(3) the maps, dexp and dexp⁻¹ are those of the 5×5 matrices and, of each translation alone, those of SE(3) to the
+/// last bit. The Jacobians are their matrices.
+#[test]
+fn extended_poses_are_two_motions_and_5x5_matrices() {
+    let (gl5, group) = (MatrixGroup::gl(5).unwrap(), Se23::new());
+    let dense = |u: &(Vector3<f64>, Twist)| AlgebraMatrix::new_unchecked(group.algebra_matrix(u));
+    let mut rng = Pcg64::seed_from_u64(6);
+    for k in 0..200 {
+        let size = 10f64.powf(-6.0 + 6.8 * k as f64 / 200.0);
+        let (u, w) = (group.of_size(&mut rng, size), group.of_size(&mut rng, 1.0));
+        let bound = 64.0 * EPS * (1.0 + size).powi(2);
+        let close = |closed: &Mat<f64>, general: &Mat<f64>| {
+            let far = gap(closed, general);
+            assert!(far < bound * general.norm_l2().max(1.0), "case {k}: {far:e}");
+        };
+        let g = exp(&group, &u).unwrap();
+        close(&group.element_matrix(&g), &exp(&gl5, &dense(&u)).unwrap());
+        let there = dexp(&group, &u, &w).unwrap();
+        close(&group.algebra_matrix(&there), &dexp(&gl5, &dense(&u), &dense(&w)).unwrap());
+        let back = dexpinv(&group, &u, &w).unwrap();
+        close(&group.algebra_matrix(&back), &dexpinv(&gl5, &dense(&u), &dense(&w)).unwrap());
+        for (psi_g, gl) in [
+            (Cay.eval(&group, &u).unwrap(), Cay.eval(&gl5, &dense(&u)).unwrap()),
+            (Pade22.eval(&group, &u).unwrap(), Pade22.eval(&gl5, &dense(&u)).unwrap()),
+        ] {
+            close(&group.element_matrix(&psi_g), &gl);
+        }
+
+        let first = ((u.0, u.1.0), (w.0, w.1.0));
+        let second = ((u.0, u.1.1), (w.0, w.1.1));
+        for (pair, at) in [(first, 0), (second, 1)] {
+            let of = |x: (Vector3<f64>, Twist)| (x.0, [x.1.0, x.1.1][at]);
+            let motion = exp(&SE3, &pair.0).unwrap();
+            assert!(motion.0 == g.0 && motion.1 == [g.1.0, g.1.1][at]);
+            assert_eq!(dexp(&SE3, &pair.0, &pair.1).unwrap(), of(there));
+            assert_eq!(dexpinv(&SE3, &pair.0, &pair.1).unwrap(), of(back));
+        }
+        if size < 3.0 {
+            let again = log(&group, &g).unwrap();
+            let far = group.algebra_matrix(&again) - group.algebra_matrix(&u);
+            assert!(far.norm_l2() < bound, "log, case {k}: {:e}", far.norm_l2());
+        }
+
+        let numbers = |u: &(Vector3<f64>, Twist)| {
+            SVector::<f64, 9>::from_iterator([u.0, u.1.0, u.1.1].iter().flatten().copied())
+        };
+        let j = left_jacobian_se23(&u).unwrap();
+        assert!((j * numbers(&w) - numbers(&there)).norm() < bound);
+        let inverse = left_jacobian_inv_se23(&u).unwrap();
+        assert!((inverse * numbers(&w) - numbers(&back)).norm() < bound);
+    }
+    let huge = (Vector3::new(1e200, 0.0, 0.0), (Vector3::zeros(), Vector3::zeros()));
+    let nan = (Vector3::zeros(), (Vector3::zeros(), Vector3::new(0.0, f64::NAN, 0.0)));
+    assert!(dexp(&group, &huge, &huge).is_err() && dexpinv(&group, &huge, &huge).is_err());
+    assert!(exp(&group, &nan).is_err() && Cay.eval(&group, &nan).is_err());
+    assert!(Pade22.eval(&group, &nan).is_err() && CCSK123.eval(&group, &nan).is_err());
+}
+
+/// ⟨Ad*_g m, u⟩ = ⟨m, Ad_g u⟩, ⟨ad*_u m, w⟩ = ⟨m, [u, w]⟩, and g⁻¹ as the 5×5 matrices have them.
+#[test]
+fn the_duals_of_extended_poses() {
+    let (group, mut rng) = (Se23::new(), Pcg64::seed_from_u64(7));
+    for _ in 0..100 {
+        let g = group.sample_element(&mut rng);
+        let [u, w] = [(); 2].map(|()| group.sample_algebra(&mut rng, 1.0));
+        let m = Points::<Se23>::draw(&Coadjoint, &group, &mut rng);
+        let (mut there, mut back, mut one) = (group.zero(), group.zero(), group.identity());
+        group.inverse(&g, &mut one).unwrap();
+        let (matrix, inverse) = (group.element_matrix(&g), group.element_matrix(&one));
+        let size = matrix.norm_l2().powi(2);
+        assert!(gap(&(&matrix * &inverse), &Mat::identity(5, 5)) < 32.0 * EPS * size);
+        group.big_ad(&g, &u, &mut there).unwrap();
+        let expected = &matrix * group.algebra_matrix(&u) * &inverse;
+        assert!(gap(&group.algebra_matrix(&there), &expected) < 32.0 * EPS * size);
+        group.coad_group(&g, &m, &mut back).unwrap();
+        assert!((group.pair(&back, &u) - group.pair(&m, &there)).abs() < 64.0 * EPS * size);
+        group.coad(&u, &m, &mut back);
+        let bracket = group.commutator(&u, &w);
+        assert!((group.pair(&back, &w) - group.pair(&m, &bracket)).abs() < 64.0 * EPS);
+    }
 }
 
 fn inverse(g: &Mat<f64>) -> Mat<f64> {

@@ -1,6 +1,6 @@
 //! A field in the body frame and the same field in space are one motion.
 
-use lieflow::groups::{Adjoint, LieGroup, MatrixGroup, Sample, Se3, So3, UnitQuaternions};
+use lieflow::groups::{Adjoint, LieGroup, MatrixGroup, Sample, Se3, Se23, So3, UnitQuaternions};
 use lieflow::maps::{CoordinateMap, Exp};
 use lieflow::methods::tableau::DOP853;
 use lieflow::prelude::{LeftTranslation, Rkmk, Solve};
@@ -44,6 +44,7 @@ where
 fn both_frames_are_one_motion_on_every_group() {
     one_motion(So3::<f64>::new());
     one_motion(Se3::<f64>::new());
+    one_motion(Se23::<f64>::new());
     one_motion(UnitQuaternions);
     one_motion(MatrixGroup::so(4).unwrap());
     one_motion(MatrixGroup::gl(3).unwrap());

@@ -5,7 +5,7 @@ use faer::Mat;
 use lieflow::Action;
 use lieflow::actions::{Coadjoint, Each, LeftTranslation, Linear, Pair};
 use lieflow::groups::{
-    Adjoint, ComplexMatrix, MatrixGroup, Power, Product, Sample, Se3, So3, UnitQuaternions,
+    Adjoint, ComplexMatrix, MatrixGroup, Power, Product, Sample, Se3, Se23, So3, UnitQuaternions,
     Unitary, hat,
 };
 use lieflow::problems::{BodyFrame, BodyState};
@@ -171,6 +171,30 @@ impl Points<Se3> for Coadjoint {
     }
     fn square(&self, _: &Se3, m: &(Vector3<f64>, Vector3<f64>)) -> Mat<f64> {
         affine(&faer3(&hat(&m.0)), &m.1, 0.0)
+    }
+}
+
+impl Points<Se23> for Coadjoint {
+    fn draw(&self, group: &Se23, rng: &mut Pcg64) -> Self::Point {
+        self.with_numbers(group, &gaussian(rng, 9, 1))
+    }
+    fn numbers(&self, _: &Se23, m: &Self::Point) -> Mat<f64> {
+        Mat::from_fn(9, 1, |i, _| [m.0, m.1.0, m.1.1][i / 3][i % 3])
+    }
+    fn with_numbers(&self, _: &Se23, x: &Mat<f64>) -> Self::Point {
+        let three = |first: usize| Vector3::from_fn(|i, _| x[(first + i, 0)]);
+        (three(0), (three(3), three(6)))
+    }
+    /// As on SE(3).
+    fn generator(&self, group: &Se23, xi: &Mat<f64>, m: &Self::Point) -> Mat<f64> {
+        let xi = group.nearest(xi);
+        Mat::from_fn(9, 1, |i, _| {
+            let e = Mat::from_fn(9, 1, |k, _| if k == i { 1.0 } else { 0.0 });
+            -group.pair(m, &group.commutator(&xi, &self.with_numbers(group, &e)))
+        })
+    }
+    fn square(&self, group: &Se23, m: &Self::Point) -> Mat<f64> {
+        group.algebra_matrix(m)
     }
 }
 

@@ -3,7 +3,8 @@
 
 use faer::{Mat, c64};
 use lieflow::groups::{
-    ComplexMatrix, MatrixGroup, Power, Product, Sample, Se3, So3, UnitQuaternions, Unitary, hat,
+    ComplexMatrix, MatrixGroup, Power, Product, Sample, Se3, Se23, So3, UnitQuaternions, Unitary,
+    hat,
 };
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
@@ -153,6 +154,51 @@ impl Represent for Se3 {
     }
     fn element_of(&self, x: &Mat<f64>) -> (Matrix3<f64>, Vector3<f64>) {
         (So3::new().element_of(x), column(x))
+    }
+    fn vector_of(&self, x: &Mat<f64>) -> Vector3<f64> {
+        column(x)
+    }
+    fn bilinear(&self) -> Option<Mat<f64>> {
+        None
+    }
+}
+
+/// [a v p; 0 w 0; 0 0 w].
+fn extended(a: &Mat<f64>, (v, p): &(Vector3<f64>, Vector3<f64>), w: f64) -> Mat<f64> {
+    Mat::from_fn(5, 5, |i, j| match (i < 3, j) {
+        (true, 0..3) => a[(i, j)],
+        (true, 3) => v[i],
+        (true, _) => p[i],
+        (false, _) => {
+            if i == j {
+                w
+            } else {
+                0.0
+            }
+        }
+    })
+}
+/// The last two columns of a 5×5 matrix, without their last entries.
+fn columns(x: &Mat<f64>) -> (Vector3<f64>, Vector3<f64>) {
+    (Vector3::from_fn(|i, _| x[(i, 3)]), Vector3::from_fn(|i, _| x[(i, 4)]))
+}
+
+impl Represent for Se23 {
+    fn algebra_matrix(&self, u: &Self::Alg) -> Mat<f64> {
+        extended(&faer3(&hat(&u.0)), &u.1, 0.0)
+    }
+    fn element_matrix(&self, g: &Self::Elem) -> Mat<f64> {
+        extended(&faer3(&g.0), &g.1, 1.0)
+    }
+    /// (x, 0, 1).
+    fn vector_matrix(&self, x: &Vector3<f64>) -> Mat<f64> {
+        Mat::from_fn(5, 1, |i, _| if i < 3 { x[i] } else { (i - 3) as f64 })
+    }
+    fn nearest(&self, x: &Mat<f64>) -> Self::Alg {
+        (So3::new().nearest(x), columns(x))
+    }
+    fn element_of(&self, x: &Mat<f64>) -> Self::Elem {
+        (So3::new().element_of(x), columns(x))
     }
     fn vector_of(&self, x: &Mat<f64>) -> Vector3<f64> {
         column(x)

@@ -9,7 +9,7 @@
 use super::{GAUSS_2, GAUSS_3, MagnusWork, ROOT_15, magnus_method, sum};
 use crate::dense::{antisymmetrise, mul, mul_add};
 use crate::error::{Error, StepError};
-use crate::groups::{AlgebraMatrix, Form, LieAlgebra, MatrixGroup, Power, Product, Se3, So3};
+use crate::groups::{AlgebraMatrix, Form, LieAlgebra, MatrixGroup, Power, Product, Se3, Se23, So3};
 use crate::maps::{Cay, CoordinateMap};
 use crate::methods::Step;
 use crate::problems::{PointOf, ScalarOf};
@@ -65,6 +65,27 @@ impl<S: Real> TripleProduct for Se3<S> {
         let first = cross(&u.0, &cross(&v.0, &w.1));
         let second = cross(&w.0, &cross(&v.0, &u.1));
         out.1 = Vector3::from_fn(|i, _| first[i] + second[i]);
+    }
+}
+
+/// On se₂(3): the same with both translations.
+impl<S: Real> TripleProduct for Se23<S> {
+    #[inline]
+    fn triple(
+        &self,
+        u: &Self::Alg,
+        v: &Self::Alg,
+        w: &Self::Alg,
+        work: &mut Self::Alg,
+        out: &mut Self::Alg,
+    ) {
+        So3::new().triple(&u.0, &v.0, &w.0, &mut work.0, &mut out.0);
+        let moved = |x: &Vector3<S>, z: &Vector3<S>| {
+            let first = cross(&u.0, &cross(&v.0, z));
+            let second = cross(&w.0, &cross(&v.0, x));
+            Vector3::from_fn(|i, _| first[i] + second[i])
+        };
+        out.1 = (moved(&u.1.0, &w.1.0), moved(&u.1.1, &w.1.1));
     }
 }
 
