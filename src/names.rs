@@ -155,13 +155,18 @@ pub fn other_names() -> impl Iterator<Item = (&'static str, Alias<'static>)> {
 
 /// A name in lower case without hyphens, underscores, parentheses and spaces.
 pub fn plain(name: &str) -> String {
+    letters(name).collect()
+}
+
+/// The letters that count.
+fn letters(name: &str) -> impl Iterator<Item = char> {
     let counts = |c: &char| !matches!(c, '-' | '_' | '(' | ')') && !c.is_whitespace();
-    name.chars().filter(counts).flat_map(char::to_lowercase).collect()
+    name.chars().filter(counts).flat_map(char::to_lowercase)
 }
 
 /// True if these are two spellings of one name, by [`plain`].
 pub fn same(a: &str, b: &str) -> bool {
-    plain(a) == plain(b)
+    a == b || letters(a).eq(letters(b))
 }
 
 /// The name that `given` spells, as it stands among these.

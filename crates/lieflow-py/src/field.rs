@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex};
 use lieflow_model::kinds::own::OwnField;
 use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
-use pyo3::types::{PyFloat, PyTuple};
+use pyo3::types::{PyFloat, PyList, PyTuple};
 
 /// The first exception of the callables of a run, and the flag that ends the run.
 #[derive(Default)]
@@ -95,6 +95,35 @@ impl Callable {
     }
 }
 
+/// A list or a tuple, which may hold floats.
+enum Floats<'a, 'py> {
+    List(&'a Bound<'py, PyList>),
+    Tuple(&'a Bound<'py, PyTuple>),
+}
+
+impl<'a, 'py> Floats<'a, 'py> {
+    fn of(value: &'a Bound<'py, PyAny>) -> Option<Self> {
+        let list = value.cast_exact::<PyList>().ok().map(Floats::List);
+        list.or_else(|| value.cast_exact::<PyTuple>().ok().map(Floats::Tuple))
+    }
+
+    fn len(&self) -> usize {
+        match self {
+            Floats::List(list) => list.len(),
+            Floats::Tuple(tuple) => tuple.len(),
+        }
+    }
+
+    /// The entry, if it is a float and nothing else.
+    fn get(&self, i: usize) -> Option<f64> {
+        let entry = match self {
+            Floats::List(list) => list.get_item(i),
+            Floats::Tuple(tuple) => tuple.get_item(i),
+        };
+        entry.ok()?.cast_exact::<PyFloat>().ok().map(|x| x.value())
+    }
+}
+
 /// out ← the numbers of a value of f.
 fn read_value(
     value: &Bound<'_, PyAny>,
@@ -108,6 +137,18 @@ fn read_value(
     {
         // SAFETY: the array is in C order, and nothing runs that could change it while it is read.
         out.copy_from_slice(unsafe { array.as_slice()? });
+        return Ok(());
+    }
+    if let [n] = shape
+        && let Some(list) = Floats::of(value)
+        && list.len() == *n
+        && (0..*n).all(|i| {
+            list.get(i).is_some_and(|x| {
+                out[i] = x;
+                true
+            })
+        })
+    {
         return Ok(());
     }
     let py = value.py();

@@ -7,7 +7,9 @@ use lieflow::solve::{Next, Status};
 use lieflow::{RunError, SaveAt};
 use lieflow_model::formula::Which;
 use lieflow_model::kinds::{KINDS, named};
-use lieflow_model::problem::{self, CurvePlace, EventPlan, KeyInfo, Layer, Plan, Steps, Watcher};
+use lieflow_model::problem::{
+    self, CurvePlace, EventPlan, KeyInfo, Layer, Orders, Plan, Steps, Watcher,
+};
 use lieflow_model::reader::{ReadError, Shape, Tree};
 use lieflow_model::scene::{Columns, OnRows, RowFormula};
 use lieflow_model::schema::{Observable, Row, Schema};
@@ -18,7 +20,7 @@ use pyo3::types::PyDict;
 use crate::curve::Curve;
 use crate::error::{argument, refused};
 use crate::field::{self, Callable, Raised};
-use crate::run::{EventParts, Function, Seen, Settings, Watch, Watched, save_of, spec_of};
+use crate::run::{EventParts, Fitting, Function, Seen, Settings, Watch, Watched, save_of};
 use crate::solve::knots;
 use crate::stepper::Stepper;
 use crate::tree::{mistake, mistakes, tree};
@@ -181,7 +183,7 @@ impl Problem {
         let formulas = formulas.iter().map(|formula| formula.on(model.schema()).map(Arc::new));
         let formulas = formulas.collect::<Result<_, _>>();
         let formulas = formulas.map_err(|error| refused(py, "events", &error))?;
-        Ok(Model { problem: self.problem.clone(), model, formulas })
+        Ok(Model { problem: self.problem.clone(), model, formulas, fitting: Fitting::default() })
     }
 }
 
@@ -201,6 +203,7 @@ pub(crate) struct Model {
     model: problem::Model,
     /// The functions of events.
     formulas: Vec<Arc<OnRows>>,
+    fitting: Fitting,
 }
 
 /// A function of t and a row.
@@ -234,11 +237,11 @@ impl Model {
         self.model.schema().columns().count()
     }
 
-    fn spec(&self, py: Python<'_>, method: &str) -> PyResult<MethodSpec> {
-        let spec = spec_of(py, method)?;
-        let fits = self.model.fits(&spec);
-        fits.map_err(|error| argument(py, "method", format!("{method:?}"), error.to_string()))?;
-        Ok(spec)
+    fn method(&self, py: Python<'_>, method: &str) -> PyResult<(MethodSpec, Orders)> {
+        self.fitting.method(py, method, |spec| {
+            self.model.fits(spec)?;
+            self.model.orders(spec)
+        })
     }
 
     fn event<'a>(&'a self, event: &'a Watched) -> EventPlan<'a> {
@@ -299,13 +302,12 @@ impl Model {
     }
     /// The order of the steps of a method, None if they are exact, and of the points within a step.
     fn orders(&self, py: Python<'_>, method: &str) -> PyResult<(Option<usize>, usize)> {
-        let orders = self.model.orders(&self.spec(py, method)?);
-        let orders = orders.map_err(|error| refused(py, "method", &error))?;
+        let (_, orders) = self.method(py, method)?;
         Ok((orders.step, orders.within))
     }
     /// The numbers of the state at the start.
     fn start<'py>(&self, py: Python<'py>, method: &str) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let start = self.model.start(&self.spec(py, method)?);
+        let start = self.model.start(&self.method(py, method)?.0);
         let start = start.map_err(|error| refused(py, "problem", &error))?;
         Ok(PyArray1::from_vec(py, start))
     }
@@ -322,11 +324,11 @@ impl Model {
         events: Vec<EventParts>,
         callback: Option<Py<PyAny>>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let spec = self.spec(py, method)?;
+        let (spec, orders) = self.method(py, method)?;
         if let Some(refusal) = self.problem.check_start(t_span[0]).into_iter().next() {
             return Err(mistake(py, refusal));
         }
-        let steps = settings.steps(t_span, || self.model.orders(&spec));
+        let steps = settings.steps(t_span, orders);
         let steps = steps.map_err(|error| refused(py, "solve_ivp", &error))?;
         let start = start.map(|start| start.as_slice().map(<[f64]>::to_vec)).transpose()?;
         let (raised, shape) = (Arc::new(Raised::default()), [self.width()]);
@@ -384,7 +386,7 @@ impl Model {
         method: &str,
         numbers: PyReadonlyArray1<'_, f64>,
     ) -> PyResult<Curve> {
-        let curve = self.model.curve(&self.spec(py, method)?, numbers.as_slice()?);
+        let curve = self.model.curve(&self.method(py, method)?.0, numbers.as_slice()?);
         let curve = curve.map_err(|error| refused(py, "curve", &error))?;
         Ok(Curve::of_rows(curve, self.width()))
     }
@@ -397,8 +399,8 @@ impl Model {
         start: Option<PyReadonlyArray1<'_, f64>>,
         settings: Settings,
     ) -> PyResult<Stepper> {
-        let spec = self.spec(py, method)?;
-        let steps = settings.steps(t_span, || self.model.orders(&spec));
+        let (spec, orders) = self.method(py, method)?;
+        let steps = settings.steps(t_span, orders);
         let steps = steps.map_err(|error| refused(py, "Integrator", &error))?;
         let start = start.as_ref().map(|start| start.as_slice()).transpose()?;
         let run = self.model.stepper(&spec, steps, start);

@@ -1,7 +1,7 @@
 //! What all runs share: the steps, what watches, and what a run did.
 
-use std::sync::Arc;
 use std::sync::atomic::Ordering;
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use lieflow::catalog::MethodSpec;
@@ -28,6 +28,34 @@ pub(crate) fn spec_of(py: Python<'_>, method: &str) -> PyResult<MethodSpec> {
         .map_err(|error| argument(py, "method", format!("{method:?}"), error.to_string()))
 }
 
+/// The methods that were found to fit, with their orders: to find a method again costs more than a short run.
+#[derive(Default)]
+pub(crate) struct Fitting(Mutex<Vec<(String, MethodSpec, Orders)>>);
+
+impl Fitting {
+    /// The method of this name, if it fits.
+    pub(crate) fn method(
+        &self,
+        py: Python<'_>,
+        name: &str,
+        orders: impl FnOnce(&MethodSpec) -> Result<Orders, lieflow::Error>,
+    ) -> PyResult<(MethodSpec, Orders)> {
+        let known = |all: &Vec<(String, MethodSpec, Orders)>| {
+            all.iter().find(|(known, ..)| known == name).map(|(_, spec, o)| (spec.clone(), *o))
+        };
+        if let Some(found) = self.0.lock().ok().as_deref().and_then(known) {
+            return Ok(found);
+        }
+        let spec = spec_of(py, name)?;
+        let orders = orders(&spec)
+            .map_err(|error| argument(py, "method", format!("{name:?}"), error.to_string()))?;
+        if let Ok(mut all) = self.0.lock() {
+            all.push((name.to_owned(), spec.clone(), orders));
+        }
+        Ok((spec, orders))
+    }
+}
+
 /// The settings of a run.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
@@ -47,11 +75,7 @@ pub(crate) struct Settings {
 
 impl Settings {
     /// The steps. What is left out is that of a scene, for a method of this order.
-    pub(crate) fn steps(
-        &self,
-        t_span: [f64; 2],
-        orders: impl FnOnce() -> Result<Orders, lieflow::Error>,
-    ) -> Result<Steps, lieflow::Error> {
+    pub(crate) fn steps(&self, t_span: [f64; 2], orders: Orders) -> Result<Steps, lieflow::Error> {
         if let Some(dt) = self.dt {
             return Ok(Steps::Equal(TimeGrid::new(t_span, dt)?));
         }
@@ -61,7 +85,7 @@ impl Settings {
         let [rtol, atol] = match (self.rtol, self.atol) {
             (Some(rtol), Some(atol)) => [rtol, atol],
             (rtol, atol) => {
-                let default = tolerance(orders()?.step);
+                let default = tolerance(orders.step);
                 [rtol.unwrap_or(default), atol.unwrap_or(default)]
             }
         };

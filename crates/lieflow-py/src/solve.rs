@@ -17,12 +17,16 @@ use crate::curve::Curve;
 use crate::error::{argument, refused};
 use crate::field::{self, Callable, Raised};
 use crate::formulas::Formulas;
-use crate::run::{EventParts, Settings, Watch, save_of, spec_of};
+use crate::run::{EventParts, Fitting, Settings, Watch, save_of, spec_of};
 use crate::stepper::Stepper;
 
 /// The space of a run: a group, an action, and the shapes of y and f.
 #[pyclass(frozen, module = "lieflow._lieflow")]
-pub(crate) struct Space(own::Space);
+pub(crate) struct Space {
+    space: own::Space,
+    /// The methods of its fields, and of those that depend on t alone.
+    fitting: [Fitting; 2],
+}
 
 /// A group: its name, its form M of size n by rows, or numbers of parts.
 #[derive(FromPyObject)]
@@ -61,18 +65,18 @@ impl Space {
             }
         };
         own::Space::new(&group, action, frame, &shape)
-            .map(Space)
+            .map(|space| Space { space, fitting: Default::default() })
             .map_err(|wrong| argument(py, wrong.argument, wrong.value, wrong.expected))
     }
     /// The shape of y.
     #[getter]
     fn point(&self) -> Vec<usize> {
-        self.0.point().to_vec()
+        self.space.point().to_vec()
     }
     /// The shape of f.
     #[getter]
     fn value(&self) -> Vec<usize> {
-        self.0.value().to_vec()
+        self.space.value().to_vec()
     }
     /// The curve of these numbers. f is not called.
     fn curve(
@@ -86,11 +90,11 @@ impl Space {
         let nothing: Arc<OwnField> = Arc::new(|_, _, _| false);
         let numbers = numbers.as_slice()?;
         let made = self
-            .0
+            .space
             .problem(nothing, linear)
             .and_then(|problem| problem.curve(&method.parse::<MethodSpec>()?, &y0, numbers));
         let curve = made.map_err(|error| refused(py, "curve", &error))?;
-        Ok(Curve::new(curve, self.0.point()))
+        Ok(Curve::new(curve, self.space.point()))
     }
     /// A run that is taken step by step.
     fn stepper(
@@ -108,7 +112,7 @@ impl Space {
         if let Some(error) = raised.take() {
             return Err(error);
         }
-        Stepper::new(py, run, self.0.point(), (raised, ready.attached))
+        Stepper::new(py, run, self.space.point(), (raised, ready.attached))
     }
 }
 
@@ -197,7 +201,8 @@ impl Ready {
         (t_span, settings): ([f64; 2], &Settings),
         raised: &Arc<Raised>,
     ) -> PyResult<Self> {
-        let (spec, shape) = (spec_of(py, method)?, space.0.point());
+        let (fitting, space) = (&space.fitting[usize::from(settings.linear)], &space.space);
+        let shape = space.point();
         let attached = matches!(field, FieldParts::Callable(..));
         let field = match field {
             FieldParts::Address(0, _) => {
@@ -213,15 +218,13 @@ impl Ready {
             }
             FieldParts::Callable(f, args) => {
                 let f = Callable::new(f, args, (shape, settings.linear), raised.clone());
-                field::of_callable(f, space.0.value())
+                field::of_callable(f, space.value())
             }
         };
         let refuse = |error: Error| refused(py, "fun", &error);
-        let problem = space.0.problem(field, settings.linear).map_err(refuse)?;
-        let orders = problem
-            .orders(&spec)
-            .map_err(|error| argument(py, "method", format!("{method:?}"), error.to_string()))?;
-        let steps = settings.steps(t_span, || Ok(orders)).map_err(refuse)?;
+        let problem = space.problem(field, settings.linear).map_err(refuse)?;
+        let (spec, orders) = fitting.method(py, method, |spec| problem.orders(spec))?;
+        let steps = settings.steps(t_span, orders).map_err(refuse)?;
         Ok(Ready { problem, spec, steps, attached })
     }
 }
@@ -241,7 +244,7 @@ pub(crate) fn solve<'py>(
     events: Vec<EventParts>,
     callback: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let (raised, shape) = (Arc::new(Raised::default()), space.0.point());
+    let (raised, shape) = (Arc::new(Raised::default()), space.space.point());
     let ready = Ready::new(py, space, field, method, (t_span, &settings), &raised)?;
     let mut watch = Watch::new(py, (events, callback), &args, (shape, shape), raised.clone());
     let save = save_of(t_eval)?;

@@ -151,7 +151,10 @@ def expm(
     matrices among threads. Errors: :class:`lieflow.ArgumentError` with the place of a matrix that has no exponential.
     Relative error: a small multiple of ε times the condition number of exp.
     """
-    array = A if isinstance(A, np.ndarray) else np.asarray(A)
+    try:
+        array = A if isinstance(A, np.ndarray) else np.asarray(A)
+    except ValueError:
+        array = real("A", A)  # rows of different lengths: it raises
     if array.dtype.kind != "c":
         return _lieflow.expm(A, structure, threads, out)
     value = _lieflow.expm_complex(np.array(array, dtype=np.complex128, order="C"), structure)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -161,6 +162,11 @@ def settings_of(
     }
 
 
+@functools.lru_cache(maxsize=64)
+def _space(group: Any, action: str, frame: str | None, shape: tuple[int, ...]) -> _lieflow.Space:
+    return _lieflow.Space(group, action, frame, shape)
+
+
 class Ready:
     """A field of the user on its space, ready to run."""
 
@@ -189,10 +195,10 @@ class Ready:
             name = group.counts()
         elif isinstance(group, Group):
             form = group._args[3]
-            name = group.name if form is None else (group.n, form.ravel().tolist())
+            name = group.name if form is None else (group.n, tuple(form.ravel().tolist()))
         self.group = group
         self.space_args = (name, action, frame, start.shape)
-        self.space = _lieflow.Space(*self.space_args)
+        self.space = _space(*self.space_args)
         if not np.isfinite(start).all():
             place = tuple(int(i) for i in np.argwhere(~np.isfinite(start))[0])
             raise ArgumentError(f"y0[{', '.join(map(str, place))}]", repr(float(start[place])), "a finite number")
@@ -413,7 +419,7 @@ def _of_field(
         found_by, finer = _finer(settings)
         return found_by, _of_field(fun, span, y0, method, finer, result.t, events, None, space)
 
-    return Result(sol=sol, drift={}, _layout=ready.parts, _on_so3=on_so3, _again=again, **found)
+    return Result(sol=sol, _layout=ready.parts, _on_so3=on_so3, _again=again, **found)
 
 
 def _finer(settings: dict[str, Any]) -> tuple[str, dict[str, Any]]:
@@ -485,7 +491,7 @@ def _of_problem(
             return "the exact motion, and the events by " + found_by, Result(y=exact, t_events=other.t_events)
         return found_by, other
 
-    return Result(sol=sol, drift=layout.drift(rows), _layout=layout, _again=again, **found)
+    return Result(sol=sol, _rows=rows, _layout=layout, _again=again, **found)
 
 
 def _of_rows(g: Callable[..., Any], layout: Layout, args: tuple[Any, ...]) -> Callable[..., Any]:

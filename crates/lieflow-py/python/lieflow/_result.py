@@ -176,7 +176,6 @@ class Result:
     nrejected: int
     t_end: float
     y_end: Any
-    drift: dict[str, float]
     residual: float
     restored: int
 
@@ -200,6 +199,12 @@ class Result:
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state)
+
+    @property
+    def drift(self) -> dict[str, float]:
+        """Of a problem: the largest |value − value at the start| of each invariant, over the output."""
+        rows, layout = self.__dict__.get("_rows"), self.__dict__.get("_layout")
+        return layout.drift(rows) if isinstance(layout, Layout) else {}
 
     @property
     def success(self) -> bool:

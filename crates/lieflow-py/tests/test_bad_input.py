@@ -1,0 +1,154 @@
+"""Every map with every kind of argument: what works, and what is refused in which words."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import lieflow as lf
+
+RNG = np.random.default_rng(11)
+U3, V3 = RNG.standard_normal((2, 4, 3))
+U6, V6 = RNG.standard_normal((2, 4, 6))
+SO4, SP4 = lf.SO(4), lf.Sp(4)
+A4, B4 = (SO4.project(0.3 * RNG.standard_normal((4, 4, 4))) for _ in range(2))
+C4, D4 = (SP4.project(0.3 * RNG.standard_normal((4, 4, 4))) for _ in range(2))
+GOOD = {
+    "so3.exp": (lf.so3.exp, (U3,)),
+    "so3.cay": (lf.so3.cay, (U3,)),
+    "so3.log": (lf.so3.log, (lf.so3.exp(U3),)),
+    "so3.cay_inv": (lf.so3.cay_inv, (lf.so3.cay(U3),)),
+    "so3.exp_on": (lf.so3.exp_on, (U3, V3)),
+    "so3.dexp": (lf.so3.dexp, (U3, V3)),
+    "so3.dexpinv": (lf.so3.dexpinv, (U3, V3)),
+    "so3.dcay": (lf.so3.dcay, (U3, V3)),
+    "so3.dcayinv": (lf.so3.dcayinv, (U3, V3)),
+    "se3.exp": (lf.se3.exp, (U6,)),
+    "se3.cay": (lf.se3.cay, (U6,)),
+    "se3.log": (lf.se3.log, (lf.se3.exp(U6),)),
+    "se3.dexp": (lf.se3.dexp, (U6, V6)),
+    "se3.dexpinv": (lf.se3.dexpinv, (U6, V6)),
+    "se3.dcayinv": (lf.se3.dcayinv, (U6, V6)),
+    "SO(4).exp": (SO4.exp, (A4,)),
+    "SO(4).log": (SO4.log, (SO4.exp(A4),)),
+    "SO(4).cay": (SO4.cay, (A4,)),
+    "SO(4).cay_inv": (SO4.cay_inv, (SO4.cay(A4),)),
+    "SO(4).dexp": (SO4.dexp, (A4, B4)),
+    "SO(4).dexpinv": (SO4.dexpinv, (A4, B4)),
+    "SO(4).dcay": (SO4.dcay, (A4, B4)),
+    "SO(4).dcayinv": (SO4.dcayinv, (A4, B4)),
+    "Sp(4).exp": (SP4.exp, (C4,)),
+    "Sp(4).dexpinv": (SP4.dexpinv, (C4, D4)),
+    "expm": (lf.expm, (A4,)),
+}
+#: Arguments are elements of a group, or of an algebra of matrices.
+ON_GROUP = {"so3.log", "so3.cay_inv", "se3.log", "SO(4).log", "SO(4).cay_inv"}
+ALL = pytest.mark.parametrize("name", GOOD)
+
+
+@ALL
+def test_arrays_of_every_layout_work(name):
+    f, args = GOOD[name]
+    right = f(*args)
+    wide = [np.repeat(a, 2, axis=0)[::2] for a in args]
+    read_only = [a.copy() for a in args]
+    for a in read_only:
+        a.flags.writeable = False
+
+    class Sub(np.ndarray):
+        pass
+
+    for other in (wide, [np.asfortranarray(a) for a in args], [a[::-1][::-1] for a in args], [a.tolist() for a in args],
+                  read_only, [a.view(Sub) for a in args], [a.astype(">f8") for a in args]):
+        value = f(*other)
+        assert np.array_equal(value, right) and type(value) is np.ndarray
+    single = f(*(a[0] for a in args))
+    assert np.abs(single - right[0]).max() < 1e-14 and single.shape == right.shape[1:]
+    if name not in ON_GROUP:
+        assert np.abs(f(*(a.astype(np.float32) for a in args)) - right).max() < 1e-4
+
+
+@ALL
+def test_empty_axes_give_an_empty_result(name):
+    f, args = GOOD[name]
+    tail = f(*args).shape[1:]
+    for lead in ((0,), (3, 0), (0, 2)):
+        assert f(*(np.zeros(lead + a.shape[1:]) for a in args)).shape == lead + tail
+
+
+@ALL
+@pytest.mark.parametrize("bad", [1j, None, "text", "ragged", "objects"])
+def test_what_is_not_real_is_a_type_error(name, bad):
+    f, args = GOOD[name]
+    first = {"ragged": [[1.0], [1.0, 2.0]], "objects": np.array([object()] * 3), "text": "text", None: None}.get(bad)
+    if bad == 1j:
+        first = 1j * args[0]
+        if name == "expm":
+            assert np.abs(f(first) - lf.expm(first)).max() == 0
+            return
+    with pytest.raises(TypeError):
+        f(first, *args[1:])
+
+
+@ALL
+def test_a_wrong_shape_is_named(name):
+    f, args = GOOD[name]
+    with pytest.raises(lf.ArgumentError, match="shape") as caught:
+        f(args[0][..., :-1], *args[1:])
+    assert caught.value.argument and caught.value.value and caught.value.expected
+    if len(args) == 2:
+        with pytest.raises(lf.ArgumentError):
+            f(args[0], args[1][:3])
+
+
+@ALL
+@pytest.mark.parametrize("wrong", [np.nan, np.inf])
+def test_numbers_that_are_not_finite_are_named_by_element(name, wrong):
+    f, args = GOOD[name]
+    first = args[0].copy()
+    first[(2,) + (0,) * (first.ndim - 1)] = wrong
+    with pytest.raises(lf.ArgumentError) as caught:
+        f(first, *args[1:])
+    assert "[2" in caught.value.argument, caught.value.argument
+
+
+@pytest.mark.parametrize("name", sorted(ON_GROUP))
+def test_what_is_not_on_the_group_is_named_by_element(name):
+    f, args = GOOD[name]
+    first = args[0].copy()
+    first[1] *= 2
+    with pytest.raises(lf.ArgumentError) as caught:
+        f(first)
+    assert "[1" in caught.value.argument, caught.value.argument
+
+
+@pytest.mark.parametrize("name", [n for n in GOOD if n.startswith("SO(4).d") or n in ("SO(4).exp", "SO(4).cay")])
+def test_what_is_not_in_the_algebra_is_named(name):
+    f, args = GOOD[name]
+    first = args[0].copy()
+    first[3] += np.eye(4)
+    with pytest.raises(lf.ArgumentError) as caught:
+        f(first, *args[1:])
+    assert "[3" in caught.value.argument or "algebra" in str(caught.value)
+
+
+@ALL
+def test_out_is_filled_or_refused(name):
+    f, args = GOOD[name]
+    right = f(*args)
+    out = np.full(right.shape, 7.0)
+    assert f(*args, out=out) is out and np.array_equal(out, right)
+    for a in args:  # it may overlap an argument
+        if a.size >= right.size and a.shape == right.shape:
+            mine = [b.copy() for b in args]
+            assert np.array_equal(f(*mine, out=mine[0]), right)
+    read_only = np.empty(right.shape)
+    read_only.flags.writeable = False
+    for bad in (np.empty(right.shape, np.float32), np.empty(right.shape[1:]), np.empty(right.shape, order="F"), read_only, [1.0]):
+        with pytest.raises((lf.ArgumentError, TypeError)):
+            f(*args, out=bad)
+    memory = np.zeros(args[0].size + right.size)
+    start = memory[: args[0].size].reshape(args[0].shape)
+    start[...] = args[0]
+    shifted = memory[1 : 1 + right.size].reshape(right.shape)  # it begins within the argument
+    assert np.array_equal(f(start, *args[1:], out=shifted), right)
