@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -162,9 +161,18 @@ def settings_of(
     }
 
 
-@functools.lru_cache(maxsize=64)
-def _space(group: Any, action: str, frame: str | None, shape: tuple[int, ...]) -> _lieflow.Space:
-    return _lieflow.Space(group, action, frame, shape)
+#: The last spaces: to make one again costs more than a short run.
+_SPACES: dict[Any, _lieflow.Space] = {}
+
+
+def _space(*given: Any) -> _lieflow.Space:
+    space = _SPACES.get(given)
+    if space is None:
+        space = _lieflow.Space(*given)
+        if len(_SPACES) >= 64:
+            _SPACES.clear()
+        _SPACES[given] = space
+    return space
 
 
 class Ready:

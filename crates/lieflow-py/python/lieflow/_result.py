@@ -203,8 +203,8 @@ class Result:
     @property
     def drift(self) -> dict[str, float]:
         """Of a problem: the largest |value − value at the start| of each invariant, over the output."""
-        rows, layout = self.__dict__.get("_rows"), self.__dict__.get("_layout")
-        return layout.drift(rows) if isinstance(layout, Layout) else {}
+        layout = self.__dict__.get("_layout")
+        return layout.drift(self.__dict__["_rows"]) if isinstance(layout, Layout) else {}
 
     @property
     def success(self) -> bool:

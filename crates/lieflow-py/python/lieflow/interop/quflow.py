@@ -7,7 +7,6 @@ Source: K. Modin, M. Viviani, Lie–Poisson methods for isospectral flows, Found
 
 from __future__ import annotations
 
-import functools
 from collections.abc import Callable
 from typing import Any
 
@@ -23,10 +22,14 @@ __all__ = ["isomp"]
 Complex = NDArray[np.complex128]
 
 
-@functools.lru_cache(maxsize=4)
+_FLUIDS: dict[int, Problem] = {}
+
+
 def _fluid(n: int) -> Problem:
     """The fluid on the sphere with n×n matrices. Its own start is not used."""
-    return problem_of("fluid", {"surface": "sphere", "n": n, "jets": [[1, 1.0]]})
+    if n not in _FLUIDS:
+        _FLUIDS[n] = problem_of("fluid", {"surface": "sphere", "n": n, "jets": [[1, 1.0]]})
+    return _FLUIDS[n]
 
 
 def isomp(
