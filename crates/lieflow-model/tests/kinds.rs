@@ -22,6 +22,8 @@ mod mutants;
 mod refused;
 #[path = "kinds/samples.rs"]
 mod samples;
+#[path = "kinds/values.rs"]
+mod values;
 use lieflow_model::kinds::KINDS;
 use lieflow_model::scene::{BUNDLED, Scene};
 use lieflow_model::schema::Row;

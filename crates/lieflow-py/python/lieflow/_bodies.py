@@ -73,7 +73,7 @@ class FreeBodies:
     @property
     def inertia(self) -> Array:
         """The principal moments, (N, 3)."""
-        return self._inertia.copy()
+        return np.array(self._inertia)
 
     def __len__(self) -> int:
         return len(self._inertia)

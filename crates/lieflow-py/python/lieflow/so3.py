@@ -142,7 +142,7 @@ def from_quaternion(q: ArrayLike, *, scalar_first: bool) -> Array:
     if not (np.abs(norm - 1.0) <= 1e-6).all():
         place = tuple(int(i) for i in np.argwhere(~(np.abs(norm[..., 0] - 1.0) <= 1e-6))[0])
         name = f"q[{', '.join(map(str, place))}]" if place else "q"
-        raise ArgumentError(name, f"a quaternion of length {norm[(*place, 0)]}", "length 1")
+        raise ArgumentError(name, f"a quaternion of length {norm[place][0]}", "length 1")
     w, x, y, z = np.moveaxis(a / norm, -1, 0) if scalar_first else np.moveaxis(np.roll(a / norm, 1, -1), -1, 0)
     return _of_quaternion(w, x, y, z)
 
