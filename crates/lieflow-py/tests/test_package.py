@@ -18,9 +18,13 @@ ROOT = pathlib.Path(os.environ.get("LIEFLOW_DOCS", "."))
 PAGES = [page for page in (ROOT / "README.md", ROOT / "docs/python.md") if page.exists()]
 
 
-def test_the_stub_is_that_of_the_module():
+def test_the_stubs_are_those_of_the_modules(tmp_path):
     pytest.importorskip("mypy")
-    done = subprocess.run([sys.executable, "-m", "mypy.stubtest", "lieflow", "--ignore-missing-stub"], capture_output=True, text=True)
+    # NumPy 2.5 has aliases of arrays that look like functions.
+    allowed = tmp_path / "allowed"
+    allowed.write_text("lieflow\\..*\\.(Array|Complex)\n")
+    options = ["--ignore-missing-stub", "--ignore-unused-allowlist", "--allowlist", str(allowed)]
+    done = subprocess.run([sys.executable, "-m", "mypy.stubtest", "lieflow", *options], capture_output=True, text=True)
     assert done.returncode == 0, done.stdout + done.stderr
 
 
