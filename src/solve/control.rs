@@ -4,9 +4,10 @@
 //! the tolerance, k the order of the estimate + 1, and r₋ the r of the step before (Hairer, Nørsett, Wanner II, IV.2;
 //! Gustafsson's PI controller). The step after a rejected one does not grow.
 //!
-//! Where r stays at 0.9^(k/0.3), the step size does too. It is kept while both r and r₋ are near there, so that either
-//! would change the step size by 15 % at most. A step of the same size needs no powers, and the processor begins it
-//! before it knows the error of the step before ([`Streak`](crate::methods::Streak)).
+//! Where r stays at 0.9^(k/0.3), the step size does too. It is kept while both r and r₋ are between
+//! 1/3 and 1.4 of that: with k = 5 the step size would grow by 17 % or shrink by 5 % at most. A larger error is not kept,
+//! because it costs accuracy. A step of the same size needs no powers, and the processor begins it before it knows the
+//! error of the step before ([`Streak`](crate::methods::Streak)).
 
 use crate::error::Error;
 use crate::tolerance::{Rule, Tolerance};
@@ -121,15 +122,15 @@ const GROWTH_MAX: f64 = 5.0;
 const SAFETY: f64 = 0.9;
 /// The powers of r and r₋, times k.
 const POWERS: [f64; 2] = [0.7, 0.4];
-/// The step size is kept where a ratio would change it by this factor at most.
-const NEAR_ONE: f64 = 1.15;
+/// The step size is kept where the ratio is between these multiples of the one that keeps it.
+const NEAR: [f64; 2] = [1.0 / 3.0, 1.4];
 
 impl Controller {
     pub(super) fn new(error_order: usize) -> Self {
         let k = error_order as f64 + 1.0;
         let [power, memory] = POWERS;
-        let kept = |factor: f64| SAFETY.powf(k / (power - memory)) * factor.powf(k / power);
-        Controller { k, last: 1.0, hold: false, kept: [kept(1.0 / NEAR_ONE), kept(NEAR_ONE)] }
+        let goal = SAFETY.powf(k / (power - memory));
+        Controller { k, last: 1.0, hold: false, kept: NEAR.map(|near| near * goal) }
     }
 
     /// The controller at a start: it knows no step.

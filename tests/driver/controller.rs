@@ -180,10 +180,7 @@ fn the_next_step() {
         let (mut before, mut kept): (f64, u32) = (1.0, 0);
         for (pair, ratio) in seen.windows(2).zip(ratios) {
             // The step size is kept where both ratios are near that of steps of one size.
-            let is_near = |r: f64| {
-                let factor = 0.9f64.powf(0.7 / 0.3) * r.powf(-0.7 / k);
-                (1.0 / 1.05..=1.05).contains(&factor)
-            };
+            let is_near = |r: f64| (steady / 3.0..=1.4 * steady).contains(&r);
             let factor = match is_near(ratio) && is_near(before) {
                 true => 1.0,
                 false => 0.9 * ratio.powf(-0.7 / k) * before.powf(0.4 / k),
