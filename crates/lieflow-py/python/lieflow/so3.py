@@ -96,7 +96,7 @@ def dexpinv(u: ArrayLike, v: ArrayLike, out: Array | None = None, *, q: int | No
     bernoulli = _bernoulli(int(q))
     factorial = 1.0
     for k in range(1, int(q) + 1):
-        term = np.cross(a, term)
+        term = np.asarray(np.cross(a, term), dtype=np.float64)
         factorial *= k
         if bernoulli[k]:
             total = total + bernoulli[k] / factorial * term
