@@ -283,16 +283,23 @@ def test_the_address_of_a_c_function(reference):
             lf.CFunction(bad)
 
 
-def test_two_threads_run_at_once():
-    def run():
-        lf.solve_ivp(CFUNC, (0, 3000), np.eye(3), t_eval=[3000.0], rtol=1e-10, atol=1e-10, **ROTATION)
-
-    run()
-    threads = [threading.Thread(target=run) for _ in range(2)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
+@pytest.mark.parametrize("of", ["address", "formula", "samples", "problem"])
+def test_runs_without_python_release_the_interpreter(of):
+    samples = lf.Samples([0.0, 1e5], [[0.1, 0.2, 0.3]] * 2)
+    fun = {"address": CFUNC, "formula": lf.Field("SO(3)", [0, "0.1*y11", 1]), "samples": samples,
+           "problem": lf.RigidBody(inertia=J, momentum_body=M)}[of]
+    space = {"address": ROTATION, "formula": {"frame": "body"}, "samples": ROTATION, "problem": {}}[of]
+    start = None if of == "problem" else np.eye(3)
+    thread = threading.Thread(
+        target=lf.solve_ivp, args=(fun, (0, 1e5), start),
+        kwargs={"steps": 400_000, "t_eval": [1e5], "method": "rkmk4 exp", **space},
+    )
+    thread.start()
+    turns = 0
+    while thread.is_alive():
+        turns += 1  # a run that held the interpreter would let no turn pass
+        time.sleep(0.0005)
+    assert turns > 20, turns
 
 
 @pytest.mark.parametrize(
