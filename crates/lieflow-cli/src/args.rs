@@ -73,6 +73,8 @@ fn meant(error: &clap::Error) -> Option<String> {
 pub enum Command {
     /// Run a scene: trajectory.csv, summary.json, and a page with figures.
     Run(RunArgs),
+    /// Draw columns of runs that were made before, those of several runs in one figure.
+    Plot(PlotArgs),
     /// Find the fastest method to an error on a scene: run all that fit, and write a report.
     Compare(CompareArgs),
     /// Show what Lie group methods are good for, on three bodies that turn: a page with figures. The same as no command.
@@ -196,11 +198,41 @@ pub enum ErrorCheck {
     Never,
 }
 
+/// Options of `plot`.
+#[derive(Args, Clone, Debug)]
+#[command(after_help = "Examples:
+  lieflow plot lieflow-out/a lieflow-out/b
+                                        each column with a line for each run
+  lieflow plot lieflow-out/* --columns energy,m1 --out both
+  lieflow plot lieflow-out/a --columns m --from 10 --to 20
+                                        m1, m2 and m3 of one run, a part of its time
+
+Written: index.html, and each figure as an SVG file.")]
+pub struct PlotArgs {
+    /// Folders of runs, as `lieflow run` writes them.
+    #[arg(required = true, value_name = "DIR")]
+    pub runs: Vec<PathBuf>,
+    /// The columns to draw; m stands for m1, m2 and m3 [default: all that every run has].
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    pub columns: Vec<String>,
+    /// From this time on.
+    #[arg(long, value_name = "T", allow_negative_numbers = true)]
+    pub from: Option<f64>,
+    /// Up to this time.
+    #[arg(long, value_name = "T", allow_negative_numbers = true)]
+    pub to: Option<f64>,
+    /// Folder for the page.
+    #[arg(long, value_name = "DIR", default_value = "lieflow-plot")]
+    pub out: PathBuf,
+}
+
 /// Options of `compare`.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = "Examples:
   lieflow compare asymmetric-top --error 1e-8
                                         which method is the fastest to this error, and why
+  lieflow compare asymmetric-top --error 1e-6 --keep energy
+                                        the same among methods for long times
   lieflow compare my.toml --out results --repeat 15
   lieflow compare my.toml --methods rkmk4,mr4,taylor12,exact
   lieflow compare my.toml --methods \"rkmk dopri5\" --tolerances 1e-4,1e-8,1e-12
@@ -208,8 +240,8 @@ pub enum ErrorCheck {
 
 Written: index.html, speed.csv and speed.json with every run, the figures as SVG files, and points.jsonl
 with everything that was measured. A comparison that is stopped goes on from there when the command is given
-again. One with other options adds to it, as --repeat 9 after --repeat 5. Events of the scene are left out;
-its rows of output are part of what is timed.")]
+again. One with other options adds to it, as --repeat 9 after --repeat 5. With --error and without --all, methods
+that are many times slower than the best are left out soon. Events of the scene are left out.")]
 pub struct CompareArgs {
     /// A scene file, the name of a bundled scene, or - for standard input.
     pub scene: PathBuf,
@@ -220,6 +252,9 @@ pub struct CompareArgs {
     #[arg(long = "error", value_name = "LIST", value_delimiter = ',', value_parser = tolerance)]
     #[arg(allow_negative_numbers = true)]
     pub errors: Vec<f64>,
+    /// Only methods that keep this invariant of the scene for long times, as energy: to rounding, or within bounds.
+    #[arg(long, value_name = "NAME")]
+    pub keep: Option<String>,
     /// Show all methods, and not the ten best.
     #[arg(long)]
     pub all: bool,
@@ -322,6 +357,8 @@ pub struct ScenesArgs {
 #[command(after_help = "Examples:
   lieflow methods                       which one to take, and all there are
   lieflow methods --for my.toml         the same for a scene
+  lieflow methods --for my.toml --keep energy
+                                        those for long times
   lieflow methods taylor13              what it is
   lieflow methods --json")]
 pub struct MethodsArgs {
@@ -331,6 +368,9 @@ pub struct MethodsArgs {
     /// Only what fits this scene: a scene file, or the name of a bundled scene.
     #[arg(long = "for", value_name = "SCENE")]
     pub scene: Option<PathBuf>,
+    /// Of these only what keeps this invariant of the scene for long times, as energy.
+    #[arg(long, value_name = "NAME", requires = "scene")]
+    pub keep: Option<String>,
     /// What is changed in the scene.
     #[command(flatten)]
     pub settings: Settings,

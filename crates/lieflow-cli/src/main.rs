@@ -15,6 +15,7 @@ fn dispatch(cli: &Cli) -> Result<(), CliError> {
         Some(Command::Compare(args)) => cmd::compare::run(args),
         Some(Command::Check(args)) => cmd::check::run(args),
         Some(Command::Paper(args)) => cmd::paper::run(args),
+        Some(Command::Plot(args)) => cmd::plot::run(args),
         Some(Command::Run(args)) => cmd::run::run(args),
         Some(Command::Scenes(args)) => cmd::scenes::run(args),
         Some(Command::Methods(args)) => cmd::methods::run(args),

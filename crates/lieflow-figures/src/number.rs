@@ -125,6 +125,27 @@ pub fn fixed(value: f64, decimals: usize) -> String {
     if value < 0.0 && !zero { format!("−{text}") } else { text }
 }
 
+/// The text of a number with its digits before the point in groups of three, where they are five or more.
+pub(crate) fn grouped(text: &str) -> String {
+    let (whole, rest) = text.split_at(text.find('.').unwrap_or(text.len()));
+    let digits = whole.chars().filter(char::is_ascii_digit).count();
+    if digits < 5 {
+        return text.into();
+    }
+    let mut out = String::new();
+    let mut left = digits;
+    for c in whole.chars() {
+        if c.is_ascii_digit() {
+            if left < digits && left.is_multiple_of(3) {
+                out.push('\u{202f}');
+            }
+            left -= 1;
+        }
+        out.push(c);
+    }
+    out + rest
+}
+
 /// The digits of a positive number as `d.ddd` and its decimal exponent after rounding.
 fn decimal_parts(x: f64, digits: usize) -> (String, i32) {
     let text = format!("{x:.*e}", digits - 1);
@@ -183,6 +204,12 @@ mod tests {
         let typed: Vec<String> = [0.5, 240.0, 1.2e-8, -2e9, -0.0].map(|x| typed(x, 6)).into();
         assert_eq!(typed, ["0.5", "240", "1.2e-8", "-2e9", "0"]);
         assert_eq!([f64::NAN, -f64::INFINITY].map(|x| super::short(x, 6)), ["n/a", "−∞"]);
+    }
+
+    #[test]
+    fn long_numbers_are_in_groups() {
+        let grouped = ["1234", "12345.5", "−1000000", "0.00001"].map(super::grouped);
+        assert_eq!(grouped, ["1234", "12\u{202f}345.5", "−1\u{202f}000\u{202f}000", "0.00001"]);
     }
 
     #[test]

@@ -10,6 +10,8 @@ mod columns;
 mod composed;
 #[path = "kinds/energies.rs"]
 mod energies;
+#[path = "kinds/euler.rs"]
+mod euler;
 #[path = "kinds/formulas.rs"]
 mod formulas;
 #[path = "kinds/known.rs"]

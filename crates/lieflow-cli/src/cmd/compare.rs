@@ -12,7 +12,7 @@ use super::stop::{INTERRUPTED, listen};
 use crate::args::CompareArgs;
 use crate::error::CliError;
 use crate::measure::{
-    Candidate, Curve, Effort, Journal, MOST_ROWS, Plan, Reached, Reference, Rows, WorkPoint,
+    Candidate, Curve, Effort, Journal, Kept, MOST_ROWS, Plan, Reached, Reference, Rows, WorkPoint,
     speed_against_error,
 };
 use crate::output::{self, Progress};
@@ -75,6 +75,8 @@ struct AnswerJson {
     best: Option<FoundJson>,
     /// The fastest method of another kind.
     next: Option<FoundJson>,
+    /// The fastest that leaves M, where it is faster than the best.
+    leaving: Option<FoundJson>,
 }
 
 /// A method where it reaches an error.
@@ -84,7 +86,10 @@ struct FoundJson {
     h: f64,
     steps: u64,
     rtol: Option<f64>,
+    /// Without rows of output.
     seconds_per_unit: f64,
+    /// How far the end is from M.
+    off_manifold: Option<f64>,
 }
 
 /// The fastest method to an error.
@@ -134,6 +139,15 @@ pub fn run(args: &CompareArgs) -> Result<(), CliError> {
     if !args.methods.is_empty() {
         candidates = Candidate::chosen(&candidates, &args.methods)?;
     }
+    if let Some(name) = &args.keep {
+        let kept = Kept::of(&scene, name)?;
+        candidates.retain(|candidate| kept.by(&candidate.method));
+        if candidates.is_empty() {
+            return Err(CliError::Message(format!(
+                "--keep: no method that is asked for keeps {name}"
+            )));
+        }
+    }
     if !scene.grid.t_span()[1].is_finite() {
         let message = "a comparison needs a span with an end: t_span of the scene has none";
         return Err(CliError::Message(message.into()));
@@ -154,6 +168,7 @@ pub fn run(args: &CompareArgs) -> Result<(), CliError> {
         seed: args.seed,
         wanted: &wanted,
         patience: Duration::from_millis(if args.quick { 100 } else { 1000 }),
+        goal: asked.last().copied().filter(|_| !args.errors.is_empty() && !args.all),
         stop: &stop,
     };
     let plan = Plan {
@@ -279,6 +294,7 @@ impl From<Found<'_>> for FoundJson {
             steps: reached.steps,
             rtol: reached.tolerance,
             seconds_per_unit: reached.seconds,
+            off_manifold: Some(reached.off_manifold).filter(|off| off.is_finite()),
         }
     }
 }
@@ -290,6 +306,7 @@ impl From<&Answer<'_>> for AnswerJson {
             in_words: answer.in_words(),
             best: answer.best().map(Into::into),
             next: answer.next().map(Into::into),
+            leaving: answer.leaving().map(Into::into),
         }
     }
 }
@@ -334,7 +351,7 @@ impl Comparison<'_> {
              here."
         );
         let mut told = vec![(
-            "The fastest method for each error. Times are CPU times for each unit of simulated time."
+            "The fastest method for each error. Times are CPU times for each unit of simulated time, without rows of output."
                 .to_string(),
             all,
         )];
@@ -407,7 +424,11 @@ impl Comparison<'_> {
             false => "",
         };
         let reference = self.reference.in_words();
-        format!("Times are CPU times of a whole run with its rows of output.{energy} {reference}")
+        let off = " The last column is how far a run ends from M, the set of all possible states.";
+        let off = if self.curves.iter().any(Curve::leaves) { off } else { "" };
+        format!(
+            "Times are CPU times of a whole run without its rows of output.{energy}{off} {reference}"
+        )
     }
 
     /// A figure of speed against error, or of what is counted, for some of the methods.

@@ -7,8 +7,9 @@ use serde::Serialize;
 
 use crate::args::{MethodsArgs, quoted};
 use crate::error::CliError;
+use crate::measure::Kept;
 use crate::output::{print, print_json, table, wrap};
-use lieflow_model::problem::high_order;
+use lieflow_model::problem::{Model, high_order};
 use lieflow_model::reader::suggest;
 use lieflow_model::scene::Scene;
 use lieflow_model::schema::Observable;
@@ -97,12 +98,25 @@ fn method_entry(info: &MethodInfo, fits: impl Fn(&MethodSpec) -> bool) -> Option
     (!lost).then_some(entry)
 }
 
-fn listing(scene: Option<&Scene>) -> Result<Listing, CliError> {
+/// A scene, and what its methods are to keep.
+#[derive(Clone, Copy)]
+struct Wanted<'a> {
+    scene: Option<&'a Scene>,
+    keep: Option<&'a Kept>,
+}
+
+impl Wanted<'_> {
+    /// Does a method fit, on the model of the scene?
+    fn fits(&self, model: Option<&Model>, method: &MethodSpec) -> bool {
+        model.is_none_or(|model| model.fits(method).is_ok())
+            && self.keep.is_none_or(|kept| kept.by(method))
+    }
+}
+
+fn listing(wanted: Wanted<'_>) -> Result<Listing, CliError> {
+    let scene = wanted.scene;
     let model = scene.map(Scene::model).transpose()?;
-    let fits = |spec: &MethodSpec| match &model {
-        Some(model) => model.fits(spec).is_ok(),
-        None => true,
-    };
+    let fits = |spec: &MethodSpec| wanted.fits(model.as_ref(), spec);
     let methods: Vec<_> = all_methods().filter_map(|info| method_entry(info, fits)).collect();
     let used = |map: &str| methods.iter().any(|method| method.maps.contains(&map));
     let maps = MAPS.iter().filter(|map| used(map.name));
@@ -208,15 +222,19 @@ fn has_quadratic_invariants(scene: &Scene) -> Result<bool, CliError> {
 }
 
 /// The recommendations: for a scene, which was typed like this, or for all.
-fn advice(scene: Option<&Scene>, typed: &str) -> Result<String, CliError> {
+fn advice(wanted: Wanted<'_>, typed: &str) -> Result<String, CliError> {
+    let scene = wanted.scene;
     let model = scene.map(Scene::model).transpose()?;
     let quadratic = scene.map(has_quadratic_invariants).transpose()?.unwrap_or(false);
     let default = scene.map_or_else(high_order, |scene| scene.problem.default_method());
-    let mut rows = vec![[
-        "nothing special".into(),
-        format!("{} (the default)", default.label()),
-        "it stays on the group, and chooses its steps by rtol".into(),
-    ]];
+    let mut rows = Vec::new();
+    if wanted.fits(model.as_ref(), &default) {
+        rows.push([
+            "nothing special".into(),
+            format!("{} (the default)", default.label()),
+            "it stays on the group, and chooses its steps by rtol".into(),
+        ]);
+    }
     for Advice { want, because, take } in ADVICE {
         let mut first = true;
         for Take { method, problems, serves } in *take {
@@ -224,7 +242,7 @@ fn advice(scene: Option<&Scene>, typed: &str) -> Result<String, CliError> {
             let take = match &model {
                 None if problems.is_empty() => (*method).to_string(),
                 None => format!("{method} ({problems})"),
-                Some(model) if first && serves && model.fits(&method.parse()?).is_ok() => {
+                Some(model) if first && serves && wanted.fits(Some(model), &method.parse()?) => {
                     (*method).to_string()
                 }
                 Some(_) => continue,
@@ -237,8 +255,9 @@ fn advice(scene: Option<&Scene>, typed: &str) -> Result<String, CliError> {
             }
         }
     }
+    let keep = wanted.keep.map_or_else(String::new, |kept| format!(" --keep {}", kept.name()));
     let more = format!(
-        "`lieflow compare {typed} --error 1e-8` measures which method is the fastest. No method here is made for \
+        "`lieflow compare {typed} --error 1e-8{keep}` measures which method is the fastest. No method here is made for \
          stiff problems: the implicit ones need short steps there too."
     );
     let table = table(["you want", "take", "because"], rows);
@@ -414,7 +433,12 @@ pub fn run(args: &MethodsArgs) -> Result<(), CliError> {
         };
     }
     let scene = args.scene.as_deref().map(|scene| args.settings.open(scene)).transpose()?;
-    let listing = listing(scene.as_ref())?;
+    let keep = match (&scene, &args.keep) {
+        (Some(scene), Some(name)) => Some(Kept::of(scene, name)?),
+        _ => None,
+    };
+    let wanted = Wanted { scene: scene.as_ref(), keep: keep.as_ref() };
+    let listing = listing(wanted)?;
     if args.json {
         return print_json(&listing);
     }
@@ -425,5 +449,5 @@ pub fn run(args: &MethodsArgs) -> Result<(), CliError> {
     let typed = args.scene.as_ref().map_or("SCENE".into(), |path| {
         quoted(&path.display().to_string()) + &args.settings.typed()
     });
-    print(&(about + &advice(scene.as_ref(), &typed)? + &in_words(&listing)))
+    print(&(about + &advice(wanted, &typed)? + &in_words(&listing)))
 }

@@ -11,6 +11,7 @@ mod foresee;
 pub mod methods;
 pub mod order;
 pub mod paper;
+pub mod plot;
 mod room;
 pub mod run;
 pub mod scenes;

@@ -74,7 +74,8 @@ pub fn run(args: &OrderArgs) -> Result<(), CliError> {
         let order = model.order(&candidate.method)?;
         let label = candidate.method.label();
         let floor = judge.reference.floor();
-        let mut curve = Curve { candidate, label, order, floor, points: Vec::new() };
+        let stays = model.orders(&candidate.method)?.stays_on_manifold;
+        let mut curve = Curve { candidate, label, order, stays, floor, points: Vec::new() };
         let clock = std::time::Instant::now();
         for &steps in &steps {
             let point = judge.point(&model, &curve.candidate, t_span, Size::Steps(steps));

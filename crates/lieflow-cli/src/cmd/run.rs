@@ -275,6 +275,7 @@ pub fn run_scene(
     notes.extend(by_events.filter_map(|((between, event), seen)| {
         between.note(seen, event.stop_after.filter(|_| completed && !ended))
     }));
+    notes.extend(kept.singular_in_words());
     warnings.extend(drift.iter().filter(|(_, drift)| drift.breaks_a_promise()).map(broken_promise));
     warnings.extend(drift.iter().filter(|(_, drift)| drift.is_of_rows()).map(drift_of_rows));
     let out_of_range = columns.iter().zip(&kept.not_finite).filter(|(_, (count, _))| *count > 0);
@@ -319,7 +320,7 @@ pub fn run_scene(
         },
         layer: scene.layer.name(),
         modelled: model.modelled(method),
-        facts: scene.problem.facts().iter().map(|fact| (fact.name, fact.value)).collect(),
+        facts: scene.problem.facts().to_vec(),
         warnings,
         notes,
         quantities: scene.quantities.clone(),

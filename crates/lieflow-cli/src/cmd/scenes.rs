@@ -103,8 +103,17 @@ fn meanings(kind: &KindEntry) -> String {
     text += &wrap(kind.equation, "  ");
     let keys = kind.keys.iter().map(|key| [key.name.into(), key.meaning.into()]);
     text += &format!("\n{}", entries(["key", "meaning"], keys));
-    let quantity = |q: &Meaning| [q.name.into(), shown_columns(&q.columns), q.meaning.into()];
-    let quantities = kind.quantities.iter().map(quantity);
+    // Quantities that follow each other and mean the same, as the angles of all sequences of axes, are one line.
+    let quantity = |alike: &[Meaning]| {
+        let (first, others) = (&alike[0], &alike[1..]);
+        let mut meaning = first.meaning.to_string();
+        if !others.is_empty() {
+            let others: Vec<&str> = others.iter().map(|other| other.name).collect();
+            meaning += &format!("; so are {}", others.join(", "));
+        }
+        [first.name.into(), shown_columns(&first.columns), meaning]
+    };
+    let quantities = kind.quantities.chunk_by(|a, b| a.meaning == b.meaning).map(quantity);
     text + "\n" + &entries(["quantity", "columns", "meaning"], quantities)
 }
 

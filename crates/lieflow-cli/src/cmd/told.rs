@@ -65,8 +65,8 @@ pub(super) fn in_words(summary: &Summary, folder: &Path, page: Option<&str>) -> 
     if more(drifts.len()) > 0 {
         line(format!("{} further drifts are smaller", more(drifts.len())));
     }
-    for (name, value) in &summary.facts {
-        line(format!("{}: {}", name.replace('_', " "), number(*value)));
+    for fact in &summary.facts {
+        line(format!("{}: {}", fact.name.replace('_', " "), fact.in_words(number)));
     }
     if let Some(accuracy) = &summary.accuracy {
         line(format!("error, {}: {}", accuracy.found_in_words(*rows), accuracy.errors_in_words()));

@@ -17,15 +17,18 @@ use crate::output::{
 use lieflow_model::problem::Figure;
 use lieflow_model::problem::{Model, Outcome, Plan, Watcher};
 use lieflow_model::scene::Scene;
-use lieflow_model::schema::{Observable, Row};
+use lieflow_model::schema::{Branch, Observable, Row};
 
 /// The quantities of a run: those that the scene names first, then those of its events, the state, the invariants
-/// and the one that is drawn.
+/// and those that are drawn.
 pub(super) fn quantities(scene: &Scene) -> Vec<&str> {
     let problem = &scene.problem;
     let mut all = scene.computed();
-    let further =
-        [problem.state(&all), &problem.invariants(&all), &[problem.figure(&all).quantity()]];
+    let drawn_as = all.iter().filter_map(|name| problem.kind().quantity(name).ok());
+    let drawn: Vec<&str> =
+        drawn_as.map(|info| info.drawn_as).filter(|name| !name.is_empty()).collect();
+    let figure = problem.figure(&all).quantity();
+    let further = [problem.state(&all), &problem.invariants(&all), &[figure], &drawn];
     for name in further.concat() {
         if !all.contains(&name) {
             all.push(name);
@@ -191,6 +194,9 @@ pub(super) struct Done {
     pub(super) t: Option<f64>,
 }
 
+/// Euler angles that are nearer to where they are singular turn fast: a degree, in radians.
+const NEAR_SINGULAR: f64 = 0.0175;
+
 /// Zeros of an event that are drawn.
 const MARKS: usize = 200;
 
@@ -210,6 +216,8 @@ pub(super) struct Recorder<'a> {
     pub(super) seen: Vec<EventSummary>,
     /// What the rows say of each event.
     pub(super) between: Vec<Between>,
+    /// How near each written quantity of Euler angles came to where they are singular, and when.
+    singular: Vec<(f64, f64)>,
     line: Vec<f64>,
     pub(super) overflow: Option<String>,
     /// What could not be written: it ends the run.
@@ -249,6 +257,7 @@ impl<'a> Recorder<'a> {
             watched: Vec::new(),
             not_finite: vec![(0, 0.0); columns().count() - 1],
             seen: events.iter().map(|event| EventSummary::new(&event.name)).collect(),
+            singular: vec![(f64::INFINITY, 0.0); watch.written.len()],
             line: Vec::new(),
             overflow: None,
             failure: None,
@@ -274,6 +283,12 @@ impl<'a> Recorder<'a> {
                 for (between, seen) in self.between.iter_mut().zip(&self.seen) {
                     between.see(t, row, seen.count);
                 }
+                for (nearest, angles) in self.singular.iter_mut().zip(&self.watch.written) {
+                    let far = angles.branch.from_singular(&row[*angles]);
+                    if let Some(far) = far.filter(|far| *far < nearest.0) {
+                        *nearest = (far, t);
+                    }
+                }
                 self.watch.see(t, row, &mut self.watched);
                 self.rows.see(t, row);
                 self.trajectory.row(None, t, &self.line)?;
@@ -296,6 +311,26 @@ impl<'a> Recorder<'a> {
         let events = self.events.as_ref().map_or(0, RowFile::bytes);
         let state = self.state.as_ref().map_or(0, RunState::bytes);
         self.trajectory.bytes() + events + state
+    }
+
+    /// What is to be known of Euler angles that came to where they are singular, or near.
+    pub(super) fn singular_in_words(&self) -> Vec<String> {
+        let told = |(&(far, t), angles): (&(f64, f64), &&Observable)| {
+            let (name, t) = (angles.name, output::number(t));
+            let degrees = output::rough(far.to_degrees());
+            match far {
+                _ if far <= Branch::SINGULAR => Some(format!(
+                    "{name} is singular at t = {t}: the first and the third angle turn about one axis there, and the \
+                     third goes on as it was"
+                )),
+                _ if far <= NEAR_SINGULAR => Some(format!(
+                    "{name} comes within {degrees} degrees of its singular angle at t = {t}: the first and the third \
+                     angle turn fast there; another sequence or the quaternion does not"
+                )),
+                _ => None,
+            }
+        };
+        self.singular.iter().zip(&self.watch.written).filter_map(told).collect()
     }
 
     /// Writes the lines so far.

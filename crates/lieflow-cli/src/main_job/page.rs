@@ -139,7 +139,8 @@ impl Outcome {
             chart.with_caption(format!(
                 "Attitude and momentum from t = {from} to {to}. The error is the larger relative distance of the \
                  two from the exact solution. Solid: closed formulas for rotations. Dashed: the general code for \
-                 matrices of any size.",
+                 matrices of any size. {}",
+                self.price()
             ))
         });
         let lines =

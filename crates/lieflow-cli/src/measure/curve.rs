@@ -34,6 +34,9 @@ pub struct WorkPoint {
     /// Distance of the final state from its group, where it has one.
     #[serde(with = "number")]
     pub group_residual: f64,
+    /// The distance of the final state from M, by what the action keeps: relative, but for a distance from a group.
+    #[serde(with = "number")]
+    pub off_manifold: f64,
     /// CPU time per unit of simulated time.
     #[serde(with = "number")]
     pub seconds_per_unit: f64,
@@ -65,6 +68,7 @@ impl WorkPoint {
             energy_error: f64::NAN,
             casimir_error: f64::NAN,
             group_residual: f64::NAN,
+            off_manifold: f64::NAN,
             seconds_per_unit: f64::NAN,
             first_seconds: f64::NAN,
             output_seconds: 0.0,
@@ -86,9 +90,9 @@ impl WorkPoint {
 /// Where a method reaches an error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reached {
-    /// CPU time per unit of simulated time.
+    /// CPU time per unit of simulated time, without rows of output; with them where they are all that is computed.
     pub seconds: f64,
-    /// The part of it that is output.
+    /// CPU time of the rows of output.
     pub output: f64,
     /// The simulated time of the run.
     pub length: f64,
@@ -100,17 +104,24 @@ pub struct Reached {
     pub tolerance: Option<f64>,
     /// The energy error.
     pub energy_error: f64,
+    /// The distance from M.
+    pub off_manifold: f64,
 }
 
 impl Reached {
-    /// CPU time of the whole run.
+    /// CPU time of the run without rows of output, or with them where they are all that is computed.
     pub fn run_seconds(&self) -> f64 {
         self.seconds * self.length
+    }
+
+    /// CPU time of the run with its rows of output.
+    pub fn seconds_with_rows(&self) -> f64 {
+        (self.seconds + self.output) * self.length
     }
 }
 
 /// A run with a larger error has lost the solution.
-const OFF: f64 = 0.1;
+pub(super) const OFF: f64 = 0.1;
 
 /// The runs that no other run beats in both error and cost, as (curve, point), from the largest error
 /// to the smallest. A run without a cost is none, nor one that is more than a tenth off.
@@ -149,6 +160,8 @@ pub struct Curve {
     pub label: String,
     /// The order that it should have. None if it is exact.
     pub order: Option<usize>,
+    /// Do its steps stay on M?
+    pub stays: bool,
     /// Smaller errors are rounding.
     pub floor: f64,
     /// The runs.
@@ -167,6 +180,24 @@ impl Curve {
     /// The error of a run, as far as it can be told: no smaller than the floor.
     pub fn error(&self, point: &WorkPoint) -> f64 {
         if point.error < self.floor { self.floor } else { point.error }
+    }
+
+    /// CPU time of a run per unit of simulated time, without rows of output. The exact motion computes nothing else.
+    pub fn seconds(&self, point: &WorkPoint) -> f64 {
+        match self.order {
+            Some(_) => point.seconds_per_unit - point.output_per_unit(),
+            None => point.seconds_per_unit,
+        }
+    }
+
+    /// CPU time of the rows of output that is not in [`seconds`](Self::seconds).
+    fn output(&self, point: &WorkPoint) -> f64 {
+        point.seconds_per_unit - self.seconds(point)
+    }
+
+    /// Does it leave M by a distance that is known?
+    pub fn leaves(&self) -> bool {
+        !self.stays && self.points.iter().any(|point| !point.off_manifold.is_nan())
     }
 
     /// The measured order: the slope of the least-squares line through log h, log error, over the runs that are clear
@@ -220,28 +251,27 @@ impl Curve {
             way => (log_error(a) - error.ln()) / way,
         };
         let between = |x: f64, y: f64| (x.ln() + share * (y.ln() - x.ln())).exp();
+        // Where it is exactly 0 there is no line in the logarithms.
+        let error_between = |x: f64, y: f64| if x.min(y) > 0.0 { between(x, y) } else { x.max(y) };
         let tolerance = match (a.size, b.size) {
             (Size::Tolerance(x), Size::Tolerance(y)) => Some(between(x, y)),
             _ => None,
         };
         let between = Reached {
-            seconds: between(a.seconds_per_unit, b.seconds_per_unit),
-            output: b.output_per_unit(),
+            seconds: between(self.seconds(a), self.seconds(b)),
+            output: self.output(b),
             h: between(a.h, b.h),
             // Rounding adds no step.
             steps: (between(a.steps as f64, b.steps as f64) * (1.0 - 1e-9)).ceil() as u64,
             length: b.length(),
             tolerance,
-            // Where it is exactly 0 there is no line in the logarithms.
-            energy_error: match a.energy_error.min(b.energy_error) > 0.0 {
-                true => between(a.energy_error, b.energy_error),
-                false => a.energy_error.max(b.energy_error),
-            },
+            energy_error: error_between(a.energy_error, b.energy_error),
+            off_manifold: error_between(a.off_manifold, b.off_manifold),
         };
         // Where a run costs little more than its beginning, a more accurate one may be as fast.
         let measured = runs[after..].iter().filter(|p| p.error <= error).map(|p| Reached {
-            seconds: p.seconds_per_unit,
-            output: p.output_per_unit(),
+            seconds: self.seconds(p),
+            output: self.output(p),
             h: p.h,
             steps: p.steps,
             length: p.length(),
@@ -250,6 +280,7 @@ impl Curve {
                 Size::Steps(_) => None,
             },
             energy_error: p.energy_error,
+            off_manifold: p.off_manifold,
         });
         let passing = core::iter::once(between).chain(measured).filter(pass);
         passing.min_by(|a, b| a.seconds.total_cmp(&b.seconds))
@@ -263,6 +294,6 @@ impl Curve {
     /// CPU time of one step without output, at the smallest step.
     pub fn seconds_per_step(&self) -> Option<f64> {
         let last = self.points.iter().rev().find(|p| p.seconds_per_unit > 0.0)?;
-        Some((last.seconds_per_unit - last.output_per_unit()) * last.h)
+        Some(self.seconds(last) * last.h)
     }
 }

@@ -9,12 +9,15 @@ pub mod checks;
 mod curve;
 mod journal;
 mod judge;
+mod kept;
 
 pub use candidate::Candidate;
 pub use checks::checks;
+use curve::OFF;
 pub use curve::{Curve, Reached, WorkPoint, pareto};
 pub use journal::{JOURNAL, Journal};
 pub use judge::{Judge, MOST_ROWS, Reference, Rounding, Rows};
+pub use kept::Kept;
 
 use std::collections::VecDeque;
 use std::sync::atomic::AtomicBool;
@@ -60,6 +63,9 @@ pub struct Effort<'a> {
     pub wanted: &'a [f64],
     /// For these a single run may take so long.
     pub patience: Duration,
+    /// The error that is asked for, where nothing else is: no method goes on beyond it, nor one that is many times
+    /// slower than the best.
+    pub goal: Option<f64>,
     /// The flag that ends a run before its end; then the measurement must end too, by its `tick`.
     pub stop: &'a AtomicBool,
 }
@@ -116,14 +122,25 @@ pub fn speed_against_error(
         tick: &mut tick,
     };
     let mut lines = Vec::new();
-    for (i, candidate) in candidates.iter().enumerate() {
+    let mut best = f64::INFINITY;
+    // Those of high order reach the goal soon, and the others need not go far then.
+    let rank = |candidate: &Candidate| {
+        let models = models.iter().find(|models| models.layer == candidate.layer);
+        let order = models.and_then(|models| models.judged.order(&candidate.method).ok().flatten());
+        core::cmp::Reverse(order.filter(|_| effort.goal.is_some()))
+    };
+    let mut in_order: Vec<(usize, &Candidate)> = candidates.iter().enumerate().collect();
+    in_order.sort_by_key(|(_, candidate)| rank(candidate));
+    for (done, (i, candidate)) in in_order.into_iter().enumerate() {
         let Some(models) = models.iter().find(|models| models.layer == candidate.layer) else {
             continue;
         };
+        let orders = models.judged.orders(&candidate.method)?;
         let curve = Curve {
             candidate: candidate.clone(),
             label: if layers.len() > 1 { candidate.label() } else { candidate.name() },
-            order: models.judged.order(&candidate.method)?,
+            order: orders.step,
+            stays: orders.stays_on_manifold,
             floor,
             points: Vec::new(),
         };
@@ -136,12 +153,37 @@ pub fn speed_against_error(
             if took > effort.longest.as_secs_f64() {
                 break;
             }
+            if let Some(goal) = effort.goal {
+                let is_there = line.curve.points.last().is_some_and(|point| point.error <= goal);
+                // Methods that leave M, and the exact motion, say nothing of the others.
+                if is_there && line.curve.stays && line.curve.order.is_some() {
+                    best = best.min(took);
+                }
+                if is_there || took > SLOW * best {
+                    break;
+                }
+            }
         }
-        lines.push(line);
-        bench.share = 0.2 * (i + 1) as f64 / candidates.len() as f64;
+        lines.push((i, line));
+        bench.share = 0.2 * (done + 1) as f64 / candidates.len() as f64;
     }
+    lines.sort_by_key(|(i, _)| *i);
+    // The place of a line is the number of its candidate, but where its layer has no model.
+    let mut places = vec![usize::MAX; candidates.len()];
+    lines.iter().enumerate().for_each(|(place, (i, _))| places[*i] = place);
+    bench.jobs.iter_mut().for_each(|job| job.curve = places[job.curve]);
+    let mut lines: Vec<Line<'_>> = lines.into_iter().map(|(_, line)| line).collect();
     bench.go_on(&mut lines)?;
     let Bench { mut journal, mut jobs, tick, .. } = bench;
+    if let Some(goal) = effort.goal {
+        let length = (t_span[1] - t_span[0]).abs();
+        // What is far from the goal, or slow, is not timed again.
+        jobs.retain(|job| {
+            let point = &mut lines[job.curve].curve.points[job.point];
+            point.seconds_per_unit = (point.first_seconds + point.output_seconds) / length;
+            point.error <= NEAR * goal && point.first_seconds <= SLOW * best
+        });
+    }
     let mut rng = Pcg64::seed_from_u64(effort.seed);
     for round in 0..effort.rounds {
         jobs.shuffle(&mut rng);
@@ -200,6 +242,11 @@ impl Line<'_> {
     }
 }
 
+/// A method that is so many times slower than the best is not asked for.
+const SLOW: f64 = 8.0;
+/// An error of so many times the goal is near it.
+const NEAR: f64 = 1e4;
+
 /// The number of methods that continue at a time to an error that none has reached.
 const PROMISING: usize = 6;
 
@@ -239,7 +286,8 @@ impl Bench<'_> {
                     took = took.min(run().1);
                 }
                 point.first_seconds = took;
-                if point.failure.is_none() && *self.rows != Rows::ENDS {
+                // Nobody asks for the rows of a run that has lost the solution.
+                if point.error <= OFF && *self.rows != Rows::ENDS {
                     match size.seconds(timed, &candidate.method, t_span, self.rows, shortest) {
                         Ok(seconds) => point.output_seconds = (seconds - took).max(0.0),
                         // Steps that reach the end may have no rows between them.

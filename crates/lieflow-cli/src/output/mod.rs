@@ -7,7 +7,7 @@ mod rows;
 mod state;
 mod summary;
 
-pub use figures::{Drawn, RowSample, in_digits, moving_body, run_page};
+pub use figures::{Drawn, RowSample, Sample, Written, in_digits, moving_body, run_page, together};
 pub use files::{make_folder, remove_old, write_file, write_page};
 pub use lieflow_figures::number::{duration, number, rough, size};
 pub use progress::Progress;

@@ -2,10 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use lieflow::problems::Invariant;
 use lieflow::solve;
+use lieflow_model::problem::Fact;
 use lieflow_model::scene::Defaults;
 use lieflow_timing::Fit;
 
@@ -44,7 +45,8 @@ pub struct Summary {
     /// What was integrated.
     pub modelled: Vec<String>,
     /// What is known of the problem before any run.
-    pub facts: BTreeMap<&'static str, f64>,
+    #[serde(serialize_with = "by_name")]
+    pub facts: Vec<Fact>,
     /// What a reader should know: a body that cannot be, an invariant that moved.
     pub warnings: Vec<String>,
     /// Changes that were made to numbers of the scene.
@@ -100,6 +102,12 @@ pub struct Summary {
     pub rtol: Option<f64>,
     /// As `rtol`.
     pub atol: Option<f64>,
+}
+
+/// The facts as a table of names and values.
+fn by_name<S: Serializer>(facts: &[Fact], to: S) -> Result<S::Ok, S::Error> {
+    let table: BTreeMap<&str, f64> = facts.iter().map(|fact| (fact.name, fact.value)).collect();
+    table.serialize(to)
 }
 
 /// How right the rows of a run are.

@@ -16,10 +16,17 @@ pub struct Answer<'a> {
 }
 
 /// What was found.
+#[allow(clippy::large_enum_variant)] // one for each error that is asked for
 #[derive(Clone, Debug)]
 enum Verdict<'a> {
-    /// The fastest method, and the fastest of another kind.
-    Fastest(Found<'a>, Option<Found<'a>>),
+    /// The fastest method that stays on M, or of all where none does.
+    Fastest {
+        best: Found<'a>,
+        /// The fastest of another kind among those.
+        next: Option<Found<'a>>,
+        /// The fastest of those that leave M, where it is faster.
+        leaving: Option<Found<'a>>,
+    },
     /// Such an error is below the floor.
     BelowFloor(&'a Reference),
     /// No method reaches it. The closest run.
@@ -41,11 +48,19 @@ impl<'a> Answer<'a> {
     /// The answer for `error` that these runs give.
     pub fn new(curves: &'a [Curve], reference: &'a Reference, error: f64) -> Self {
         let found = ranking(curves, error);
-        let verdict = match found.first() {
+        let stays = || found.iter().filter(|(curve, _)| !curve.leaves());
+        let verdict = match stays().next().or(found.first()).copied() {
             Some(best) => {
                 let kind = best.0.candidate.kind();
-                let next = found.iter().find(|(curve, _)| curve.candidate.kind() != kind);
-                Verdict::Fastest(*best, next.copied())
+                let of_another_kind = |(curve, _): &&Found<'a>| curve.candidate.kind() != kind;
+                let next = match best.0.leaves() {
+                    true => found.iter().find(of_another_kind),
+                    false => stays().find(of_another_kind),
+                };
+                let leaving = found.first().filter(|(curve, reached)| {
+                    curve.leaves() && SAME * reached.seconds < best.1.seconds
+                });
+                Verdict::Fastest { best, next: next.copied(), leaving: leaving.copied() }
             }
             None if error < reference.floor() => Verdict::BelowFloor(reference),
             None => Verdict::NotReached(closest(curves)),
@@ -56,7 +71,7 @@ impl<'a> Answer<'a> {
     /// The fastest method. None if no method reaches the error.
     pub fn best(&self) -> Option<Found<'a>> {
         match self.verdict {
-            Verdict::Fastest(best, _) => Some(best),
+            Verdict::Fastest { best, .. } => Some(best),
             _ => None,
         }
     }
@@ -64,16 +79,24 @@ impl<'a> Answer<'a> {
     /// The fastest method of another kind than the best.
     pub fn next(&self) -> Option<Found<'a>> {
         match self.verdict {
-            Verdict::Fastest(_, next) => next,
+            Verdict::Fastest { next, .. } => next,
             _ => None,
         }
     }
 
-    /// One to three sentences.
+    /// The fastest method of those that leave M, where it is faster than the best.
+    pub fn leaving(&self) -> Option<Found<'a>> {
+        match self.verdict {
+            Verdict::Fastest { leaving, .. } => leaving,
+            _ => None,
+        }
+    }
+
+    /// One to four sentences.
     pub fn in_words(&self) -> String {
         let error = self.error;
         match &self.verdict {
-            Verdict::Fastest(best, next) => {
+            Verdict::Fastest { best, next, leaving } => {
                 let (curve, reached) = best;
                 let take = match (curve.order, reached.tolerance) {
                     (None, _) => "at the times of the output".into(),
@@ -84,12 +107,15 @@ impl<'a> Answer<'a> {
                         reached.steps
                     ),
                 };
-                let name = name(curve);
+                let name = name_of(curve);
                 let time = seconds(reached.run_seconds());
                 let mut text =
                     format!("For an error of {error:e}, take {name} {take}: the run takes {time}");
-                if reached.output > 0.5 * reached.seconds {
-                    text += ", most of it for the rows of output";
+                if reached.output > 0.1 * reached.seconds {
+                    text += &format!(
+                        ", and {} with its rows of output",
+                        seconds(reached.seconds_with_rows())
+                    );
                 }
                 text += ".";
                 text += &match next {
@@ -98,7 +124,22 @@ impl<'a> Answer<'a> {
                         " No method of another kind reaches it in the runs that were made.".into()
                     }
                 };
-                text + &kept(best)
+                text += &kept(best);
+                if curve.leaves() {
+                    text += &format!(
+                        " No method that stays on M reaches it; this one ends {} away from M.",
+                        off(reached)
+                    );
+                }
+                if let Some((curve, there)) = leaving {
+                    let times = sig(reached.seconds / there.seconds, 2);
+                    text += &format!(
+                        " {} is {times} times as fast, and leaves M: it ends {} away from it.",
+                        name_of(curve),
+                        off(there)
+                    );
+                }
+                text
             }
             Verdict::BelowFloor(reference) => format!(
                 "An error of {error:e} cannot be seen here. {} Ask for an error of {:.0e} or more.",
@@ -111,7 +152,7 @@ impl<'a> Answer<'a> {
             Verdict::NotReached(Some((curve, point))) => format!(
                 "No method reaches an error of {error:e} in the runs that were made. The closest is {} \
                  with {} steps: an error of {:.0e} in {}. {}",
-                name(curve),
+                name_of(curve),
                 point.steps,
                 point.error,
                 seconds(point.seconds_per_unit * point.length()),
@@ -136,14 +177,19 @@ fn why_not(curve: &Curve, point: &WorkPoint) -> &'static str {
     }
 }
 
+/// The distance from M in a sentence.
+fn off(reached: &Reached) -> String {
+    format!("{:.0e}", reached.off_manifold)
+}
+
 /// The name of a method in a sentence.
-fn name(curve: &Curve) -> String {
+fn name_of(curve: &Curve) -> String {
     format!("“{}”", curve.label)
 }
 
 /// How much faster the best method is than the next, and why.
 fn faster((best, here): &Found<'_>, (next, there): &Found<'_>) -> String {
-    let [a, b] = [best, next].map(|curve| name(curve));
+    let [a, b] = [best, next].map(|curve| name_of(curve));
     let times = |ratio: f64| format!("{} times", sig(ratio, 2));
     let ratio = there.seconds / here.seconds;
     if ratio < SAME {
@@ -166,7 +212,7 @@ fn faster((best, here): &Found<'_>, (next, there): &Found<'_>) -> String {
         return text;
     };
     let steps = there.steps as f64 / here.steps as f64;
-    let [mine, others] = [here, there].map(|at| (at.seconds - at.output) * at.h);
+    let [mine, others] = [here, there].map(|at| at.seconds * at.h);
     let cost = others / mine;
     let more_steps = |who: &str, ratio: f64| format!("{who} needs {} as many steps", times(ratio));
     let dearer = |who: &str, ratio: f64| format!("a step of {who} costs {} as much", times(ratio));
@@ -214,7 +260,7 @@ fn kept((curve, reached): &Found<'_>) -> String {
             )
         }
     };
-    let name = name(curve);
+    let name = name_of(curve);
     match (keeps.is_empty(), energy.is_empty()) {
         (true, true) => String::new(),
         (true, false) => format!(" With {name}, {energy}."),

@@ -25,6 +25,8 @@ pub struct Best<'a> {
     reaching: usize,
     /// Does the problem have an energy?
     energy: bool,
+    /// Does a method leave M?
+    leaving: bool,
     /// The look of each curve.
     pub looks: Looks,
 }
@@ -48,7 +50,8 @@ impl<'a> Best<'a> {
         let (reaching, drawn_count) = (ranked.len(), drawn.len());
         let shown = if all { ranked } else { drawn };
         let energy = curves.iter().flat_map(|c| &c.points).any(|p| !p.energy_error.is_nan());
-        Best { errors, by, shown, drawn_count, reaching, energy, looks }
+        let leaving = curves.iter().any(Curve::leaves);
+        Best { errors, by, shown, drawn_count, reaching, energy, leaving, looks }
     }
 
     /// The headings of [`rows`](Self::rows), and which of them are of numbers.
@@ -60,6 +63,9 @@ impl<'a> Best<'a> {
         }
         if self.energy {
             columns.push(Column::number("Energy error"));
+        }
+        if self.leaving {
+            columns.push(Column::number("Off M"));
         }
         columns
     }
@@ -88,6 +94,9 @@ impl<'a> Best<'a> {
             }
             if self.energy {
                 cells.push(number(by.energy_error, about));
+            }
+            if self.leaving {
+                cells.push(number(by.off_manifold, about));
             }
             cells
         });

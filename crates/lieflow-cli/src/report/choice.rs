@@ -82,9 +82,9 @@ pub fn choice_table(caption: &str, choices: &[Choice<'_>]) -> Table {
 /// What a run costs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cost {
-    /// CPU time per unit of simulated time.
+    /// CPU time per unit of simulated time, without rows of output.
     Time,
-    /// CPU time of the whole run.
+    /// CPU time of the whole run, without rows of output.
     Run,
     /// Evaluations of f.
     Evaluations,
@@ -93,10 +93,10 @@ pub enum Cost {
 }
 
 impl Cost {
-    pub(super) fn of(self, point: &WorkPoint) -> Option<f64> {
+    pub(super) fn of(self, curve: &Curve, point: &WorkPoint) -> Option<f64> {
         match self {
-            Cost::Time => Some(point.seconds_per_unit).filter(|t| *t > 0.0),
-            Cost::Run => Cost::Time.of(point).map(|t| t * point.length()),
+            Cost::Time => Some(curve.seconds(point)).filter(|t| *t > 0.0),
+            Cost::Run => Cost::Time.of(curve, point).map(|t| t * point.length()),
             Cost::Evaluations => point.evaluations.map(|n| n as f64),
             Cost::Operations => point.operations.map(|n| n as f64),
         }
@@ -136,7 +136,7 @@ impl Cost {
 /// The front of the methods that go in steps; of the exact motion where there is no other.
 fn front(curves: &[Curve], cost: Cost) -> Vec<(usize, usize)> {
     let any = curves.iter().any(steps);
-    pareto(curves, |curve, point| cost.of(point).filter(|_| !any || steps(curve)))
+    pareto(curves, |curve, point| cost.of(curve, point).filter(|_| !any || steps(curve)))
 }
 
 /// For each curve the places of its points on the Pareto front of error and time.
@@ -153,7 +153,8 @@ const DRAWN: f64 = 1.0;
 
 /// The runs of a curve that are drawn: those that ended and have a cost, down to the first at the floor.
 pub(super) fn drawn(curve: &Curve, cost: Cost) -> Vec<Point> {
-    let fit = |p: &&WorkPoint| p.failure.is_none() && p.error <= DRAWN && cost.of(p).is_some();
+    let fit =
+        |p: &&WorkPoint| p.failure.is_none() && p.error <= DRAWN && cost.of(curve, p).is_some();
     let mut points = Vec::new();
     for run in curve.points.iter().filter(fit) {
         points.extend(point(curve, run, cost));
@@ -167,7 +168,7 @@ pub(super) fn drawn(curve: &Curve, cost: Cost) -> Vec<Point> {
 /// A run as a point of error and cost.
 fn point(curve: &Curve, run: &WorkPoint, cost: Cost) -> Option<Point> {
     let note = format!("{}, {}", curve.label, size_of(run));
-    Some(Point::new(curve.error(run), cost.of(run)?).with_note(note))
+    Some(Point::new(curve.error(run), cost.of(curve, run)?).with_note(note))
 }
 
 /// The lines of some curves, and through the runs that no other method with steps beats in both error and

@@ -13,7 +13,7 @@ pub use choice::{
     steps,
 };
 pub use kept::kept_table;
-pub use speed::{maps_chart, speed_chart, speed_table, write_speed_csv};
+pub use speed::{above_order, maps_chart, speed_chart, speed_table, write_speed_csv};
 
 use lieflow_figures::Cell;
 use lieflow_figures::number::{DASH, sig, typed};

@@ -50,6 +50,21 @@ pub fn speed_chart(
     Cost::Run.chart(id, title, series.collect(), curves.first()?.floor)
 }
 
+/// A measured order above this is more than the scatter of a fit.
+const MORE: f64 = 0.25;
+
+/// Why methods measure better than their order, where some do.
+pub fn above_order(curves: &[Curve]) -> Option<&'static str> {
+    let is_above = |c: &Curve| match (c.measured_order(), c.order) {
+        (Some(measured), Some(order)) => measured > order as f64 + MORE,
+        _ => false,
+    };
+    let remark = "An order above that of the method is one of long times: the errors of the energy, which have the order \
+                  of the method, turn the phase by an error that has one more; where both are of one size, the \
+                  measured order is between the two.";
+    curves.iter().any(is_above).then_some(remark)
+}
+
 /// The table of times to these errors, with the fastest method for each error said in its caption.
 pub fn speed_table(curves: &[Curve], errors: &[f64]) -> Table {
     let fastest = errors.iter().map(|&error| {
@@ -61,17 +76,7 @@ pub fn speed_table(curves: &[Curve], errors: &[f64]) -> Table {
             None => format!("to {error:e} none"),
         }
     });
-    let above = |c: &Curve| match (c.measured_order(), c.order) {
-        (Some(measured), Some(order)) => measured > order as f64 + 0.5,
-        _ => false,
-    };
-    let remark = match curves.iter().any(above) {
-        true => {
-            " Over long times some methods look one order better than they are: their phase error comes from \
-             the energy error, which has that order."
-        }
-        false => "",
-    };
+    let remark = above_order(curves).map_or_else(String::new, |remark| format!(" {remark}"));
     let mut columns = Column::all(["Method"], ["Order", "Measured", "Time a step"]);
     columns.extend(errors.iter().map(|error| Column::number(format!("Time to {error:e}"))));
     let or_none = |x: Option<f64>, show: fn(f64) -> String| number(x.unwrap_or(f64::NAN), show);

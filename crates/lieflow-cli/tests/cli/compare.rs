@@ -43,6 +43,12 @@ fn the_advice_follows_from_the_points() {
     assert_eq!(tolerances.as_array().unwrap().len(), 2);
     assert!(tolerances[1]["evaluations"].as_u64() > tolerances[0]["evaluations"].as_u64());
 
+    // Times without rows of output; the exact motion is nothing but its rows.
+    let without_rows = |curve: &serde_json::Value, point: &serde_json::Value| {
+        let number = |key: &str| point[key].as_f64().unwrap();
+        let output = number("output_seconds") / (number("h") * number("steps"));
+        number("seconds_per_unit") - if curve["method"] == "exact" { 0.0 } else { output }
+    };
     for (advice, kept, steps) in [
         ("advice", false, false),
         ("advice_energy_kept", true, false),
@@ -63,7 +69,7 @@ fn the_advice_follows_from_the_points() {
                         && (!kept || p["energy_error"].as_f64().unwrap() < 1e-13)
                 };
                 for point in points.iter().filter(reaches) {
-                    let time = point["seconds_per_unit"].as_f64().unwrap();
+                    let time = without_rows(curve, point);
                     assert!(seconds.unwrap() <= time * (1.0 + 1e-9), "{choice} but {point}");
                 }
             }
@@ -105,7 +111,7 @@ fn the_advice_follows_from_the_points() {
         for at in curve["pareto"].as_array().unwrap() {
             let point = &curve["points"][at.as_u64().unwrap() as usize];
             let number = |key: &str| point[key].as_f64().unwrap();
-            front.push((number("error"), number("seconds_per_unit")));
+            front.push((number("error"), without_rows(curve, point)));
         }
     }
     front.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -216,6 +222,7 @@ fn no_advice_below_the_error_of_the_reference() {
         seed: 1,
         wanted: &[],
         patience: second,
+        goal: None,
         stop: &NEVER,
     };
     let (curves, _) = speed_against_error(&scene, &plan, effort, None, |_| Ok(())).unwrap();
@@ -291,6 +298,7 @@ fn what_was_measured_before_an_interruption_is_not_measured_again() {
         seed: 1,
         wanted: &[],
         patience: Duration::ZERO,
+        goal: None,
         stop: &NEVER,
     };
     let measure = |of: &str, rounds| {
@@ -359,6 +367,7 @@ fn long_times_are_gone_through_to_the_wanted_error() {
             seed: 1,
             wanted,
             patience,
+            goal: None,
             stop: &NEVER,
         };
         speed_against_error(&scene, &plan, effort, None, |_| Ok(())).unwrap().0
@@ -400,7 +409,7 @@ fn two_methods_agree_where_the_exact_solution_is_not_asked() {
     let Reference::Own { by, beside, apart } = &judge.reference else { panic!("not exact") };
     assert_ne!(by, beside);
     assert!(*apart < 1e-11, "{apart:e}");
-    assert!(judge.reference.in_words().contains("The two agree"));
+    assert!(judge.reference.in_words().contains("It agrees with a run of"));
 
     let exact = judge_of(&scene, &["attitude"], [0.0, 2.0], &[1, 100]);
     let Reference::Exact { rounding: Some(Rounding { apart, steps: 100 }) } = exact.reference
@@ -421,7 +430,7 @@ fn a_scene_without_an_exact_solution_is_judged_by_two_runs() {
     let methods = "magnus4,magnus6,rkmk4 exp,rk4";
     let args = ["compare", "rabi", "--out", "out", "--quick", "--methods", methods];
     let told = folder.lieflow(&args).ok();
-    assert!(told.contains("The two agree"), "{told}");
+    assert!(told.contains("It agrees with a run of"), "{told}");
     let json = folder.json("out/speed.json");
     assert!(json["reference"].as_str().unwrap().contains("dop853"), "{json}");
     let best = json["advice"][1]["method"].as_str().unwrap();
@@ -490,6 +499,7 @@ fn the_output_of_the_scene_is_timed() {
             seed: 1,
             wanted: &[],
             patience: millisecond,
+            goal: None,
             stop: &NEVER,
         };
         let (curves, _) = speed_against_error(&scene, &plan, effort, None, |_| Ok(())).unwrap();
@@ -514,7 +524,14 @@ fn an_answer_follows_from_the_runs() {
             ..WorkPoint::new([0.0, 1.0], Size::Steps(steps))
         };
         let points = (0..12).map(|k| run(1 << k)).collect();
-        Curve { label: candidate.name(), candidate, order: Some(order), floor: 1e-13, points }
+        Curve {
+            label: candidate.name(),
+            candidate,
+            order: Some(order),
+            stays: name != "rk4",
+            floor: 1e-13,
+            points,
+        }
     };
     let curves = [curve("taylor8", 8, 2e-6), curve("taylor10", 10, 4e-5), curve("rk4", 4, 1e-6)];
     let reference = Reference::Own { by: "a".into(), beside: "b".into(), apart: 1e-13 };
@@ -537,6 +554,107 @@ fn an_answer_follows_from_the_runs() {
         told.contains("cannot be seen") && told.contains("an error of 1e-13 or more"),
         "{told}"
     );
+}
+
+/// A method that leaves M comes after those that stay, with its distance from M.
+#[test]
+fn who_stays_on_m_is_told_first() {
+    let scene = Scene::parse("scene", SCENE).unwrap();
+    let all = Candidate::all_that_fit(&scene, &["momentum_body"], Layer::Closed).unwrap();
+    let curve = |name: &str, stays: bool, cost: f64| {
+        let candidate = all.iter().find(|c| c.name() == name).unwrap().clone();
+        let run = |steps: u64| WorkPoint {
+            error: (steps as f64).powi(-4),
+            off_manifold: if stays { 1e-16 } else { 0.1 * (steps as f64).powi(-4) },
+            seconds_per_unit: cost * steps as f64 + 1e-4,
+            output_seconds: 1e-4,
+            ..WorkPoint::new([0.0, 1.0], Size::Steps(steps))
+        };
+        let (label, points) = (candidate.name(), (0..12).map(|k| run(1 << k)).collect());
+        Curve { label, candidate, order: Some(4), stays, floor: 1e-13, points }
+    };
+    let reference = Reference::Own { by: "a".into(), beside: "b".into(), apart: 1e-13 };
+    let curves =
+        [curve("rkmk4 exp", true, 2e-6), curve("rk4", false, 1e-6), curve("cf4", true, 4e-6)];
+    let told = Answer::new(&curves, &reference, 1e-8).in_words();
+    for part in [
+        "take “rkmk4 exp” in 100 steps (dt = 0.01): the run takes 200\u{a0}µs, and 300\u{a0}µs with its rows of output.",
+        "It is 2.0 times as fast as “cf4”",
+        "“rk4” is 2.0 times as fast, and leaves M: it ends 1e-9 away from it.",
+    ] {
+        assert!(told.contains(part), "{told}");
+    }
+    let told = Answer::new(&curves[1..2], &reference, 1e-8).in_words();
+    assert!(
+        told.contains("No method that stays on M reaches it; this one ends 1e-9 away from M."),
+        "{told}"
+    );
+    // A reference that is good enough is no reason to worry.
+    let reference = Reference::Own { by: "a".into(), beside: "b".into(), apart: 5e-9 };
+    assert!(!reference.in_words().contains("NOT") && reference.in_words().contains("to 5e-9"));
+}
+
+/// Where one error is asked for, methods stop there, and slow ones before.
+#[test]
+fn an_error_that_is_asked_for_is_a_goal() {
+    let scene = Scene::parse("scene", SCENE).unwrap();
+    let candidates = Candidate::all_that_fit(&scene, &["momentum_body"], Layer::Closed).unwrap();
+    let steps: Vec<u64> = (0..14).map(|k| 1 << k).collect();
+    let plan = Plan {
+        quantities: &["momentum_body"],
+        candidates: &candidates,
+        t_span: [0.0, 20.0],
+        steps: &steps,
+        tolerances: &[1e-4, 1e-8, 1e-12],
+        rows: &Rows::ENDS,
+    };
+    let measure = |goal| {
+        let effort = Effort {
+            rounds: 1,
+            longest: Duration::from_millis(3),
+            shortest: Duration::ZERO,
+            seed: 1,
+            wanted: &[],
+            patience: Duration::ZERO,
+            goal,
+            stop: &NEVER,
+        };
+        speed_against_error(&scene, &plan, effort, None, |_| Ok(())).unwrap().0
+    };
+    let (every, pruned) = (measure(None), measure(Some(1e-8)));
+    assert!(every.iter().zip(&pruned).all(|(a, b)| a.candidate == b.candidate));
+    let runs = |curves: &[Curve]| curves.iter().map(|curve| curve.points.len()).sum::<usize>();
+    assert!(runs(&pruned) < runs(&every), "{} of {}", runs(&pruned), runs(&every));
+    let beyond = |curve: &Curve| {
+        let there = curve.points.iter().position(|point| point.error <= 1e-8);
+        there.is_some_and(|there| there + 1 < curve.points.len())
+    };
+    assert!(!pruned.iter().any(beyond) && every.iter().any(beyond));
+    let timed = |p: &WorkPoint| p.seconds_per_unit > 0.0 || p.failure.is_some();
+    assert!(pruned.iter().flat_map(|curve| &curve.points).all(timed));
+}
+
+#[test]
+fn an_invariant_may_be_kept_for_long_times() {
+    let folder = Folder::new();
+    folder.write("scene.toml", SCENE);
+    let args =
+        ["compare", "scene.toml", "--quick", "--repeat", "1", "--error", "1e-4", "--out", "out"];
+    folder.lieflow(&[&args[..], &["--keep", "energy"]].concat()).ok();
+    let json = folder.json("out/speed.json");
+    let curves = json["curves"].as_array().unwrap();
+    let names: Vec<&str> = curves.iter().map(|curve| curve["method"].as_str().unwrap()).collect();
+    assert!(names.contains(&"mr4") && names.contains(&"exact"), "{names:?}");
+    assert!(!names.contains(&"rkmk4") && !names.contains(&"rk4"), "{names:?}");
+    let listed = folder.lieflow(&["methods", "--for", "scene.toml", "--keep", "energy"]).ok();
+    assert!(listed.contains("mr4") && !listed.contains("rkmk4"), "{listed}");
+    assert!(listed.contains("--error 1e-8 --keep energy"), "{listed}");
+    let refused = folder.lieflow(&[&args[..], &["--keep", "enrgy"]].concat()).refused();
+    assert!(refused.contains("no invariant `enrgy`") && refused.contains("energy"), "{refused}");
+    let refused = folder
+        .lieflow(&[&args[..], &["--keep", "energy", "--methods", "rkmk4"]].concat())
+        .refused();
+    assert!(refused.contains("keeps energy"), "{refused}");
 }
 
 /// Ctrl-C keeps what was measured and says how to go on; the same command does, with other options too.

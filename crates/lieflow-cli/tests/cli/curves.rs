@@ -7,7 +7,8 @@ use lieflow_model::problem::Layer;
 fn ideal(hs: &[f64]) -> Curve {
     let candidate = Candidate::rk4(Layer::Closed);
     let label = candidate.name();
-    let mut curve = Curve { candidate, label, order: Some(4), floor: 1e-17, points: Vec::new() };
+    let (order, stays, points) = (Some(4), false, Vec::new());
+    let mut curve = Curve { candidate, label, order, stays, floor: 1e-17, points };
     curve.points = hs
         .iter()
         .map(|&h| WorkPoint {

@@ -188,7 +188,7 @@ fn a_run_states_what_was_modelled_and_draws_it() {
     let folder = Folder::new();
     let told = folder.lieflow(&["run", "mathieu", "--out", "out"]).ok();
     assert!(
-        told.contains("stable: 0") && told.contains("conserved to rounding: symplectic_defect"),
+        told.contains("stable: no") && told.contains("conserved to rounding: symplectic_defect"),
         "{told}"
     );
     let summary = folder.json("out/summary.json");

@@ -41,7 +41,16 @@ fn a_kind_is_printed_with_all_that_a_scene_of_it_can_say() {
         // Some kinds have the name of a scene.
         let shown = folder.lieflow(&["scenes", "--kind", kind.name]).ok();
         let keys = kind.keys.iter().map(|key| key.name);
-        let quantities = (kind.quantities)().into_iter().map(|quantity| quantity.name);
+        let all_quantities = (kind.quantities)();
+        // Those that mean the same are told together.
+        let alike = all_quantities.chunk_by(|a, b| a.meaning == b.meaning);
+        for other in alike.clone().flat_map(|alike| &alike[1..]) {
+            assert!(
+                shown.contains(&format!("{},", other.name))
+                    || shown.contains(&format!("{}\n", other.name))
+            );
+        }
+        let quantities = alike.map(|alike| alike[0].name);
         for name in keys.chain(quantities) {
             for text in [&shown, &all] {
                 assert!(text.contains(&format!("\n  {name} ")), "{}: {name}\n{text}", kind.name);

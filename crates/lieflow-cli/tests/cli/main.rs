@@ -10,6 +10,7 @@ mod laws;
 mod listing;
 mod messages;
 mod operations;
+mod plot;
 #[cfg(unix)]
 mod resume;
 mod right;

@@ -19,7 +19,7 @@ fn a_word_that_is_no_command_is_a_scene_or_a_command() {
         ("asymmetric-top", "did you mean `lieflow run asymmetric-top`?"),
         ("rnu", "did you mean `lieflow run`?"),
         ("method", "did you mean `lieflow methods`?"),
-        ("xxxxxx", "expected one of run, compare"),
+        ("xxxxxx", "expected one of run, plot, compare"),
     ] {
         let message = folder.lieflow(&[word]).refused();
         assert!(message.contains(&format!("there is no command `{word}`\n{meant}")), "{message}");

@@ -37,7 +37,7 @@ fn charts_say_what_they_show() {
     assert!(angle.contains(">angle (rad)<"), "{angle}");
     let page = folder.read("magnetic-damping/index.html");
     assert_eq!(page.matches("\"title\">Angular velocity in the body<").count(), 1);
-    assert!(page.contains("\"title\">By a formula of the scene: speed<"));
+    assert!(page.contains("\"title\">speed<"));
     let drift = folder.read("vortices/drift.svg");
     assert_eq!(drift.matches("class=\"lf-s ").count(), 6);
     assert!(drift.contains("The 6 that moved most, of 29."), "{drift}");

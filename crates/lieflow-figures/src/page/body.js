@@ -32,15 +32,24 @@
       const screen = (p) => `${px(centre[0] + scale * dot(p, right))} ${px(centre[1] - scale * dot(p, up))}`;
       const path = (points) => "M" + points.map(screen).join("L");
       const [at, turn] = pose(time);
-      svg.querySelectorAll("[data-axis]").forEach((line, i) => {
-        const tip = [0, 1, 2].map((j) => (i === j ? scene.axis : 0));
-        line.setAttribute("d", path([[0, 0, 0], tip]));
-        const [x, y] = screen(tip.map((c) => 1.08 * c)).split(" ").map(Number);
-        const name = svg.querySelector(`[data-name="${i}"]`);
-        name.setAttribute("x", x);
-        name.setAttribute("y", y + 4);
-      });
       const now = edges.map((edge) => rotated(turn, edge));
+      svg.querySelectorAll("[data-axis]").forEach((line, i) => {
+        const along = (length) => [0, 1, 2].map((j) => (i === j ? length : 0));
+        const tip = along(scene.axis), at = screen(tip), [x, y] = at.split(" ").map(Number);
+        const dx = right[i], dy = up[i], size = Math.max(0.2, Math.hypot(dx, dy)), ux = dx / size, uy = -dy / size;
+        const corner = (side) => `${px(x - 9 * dx + side * uy)} ${px(y + 9 * dy - side * ux)}`;
+        const arrow = (from) => `M${corner(3.6)}L${at}L${corner(-3.6)}${path([along(from), tip])}`;
+        line.setAttribute("d", arrow(0));
+        // The part that leaves the box toward the viewer lies before the box.
+        const leaves = (edge) => dot(edge, edge) / Math.abs(edge[i]);
+        const face = now.reduce((a, b) => (leaves(b) < leaves(a) ? b : a));
+        const front = face[i] * dot(face, toward) > 0 ? arrow(leaves(face)) : "";
+        svg.querySelectorAll(`[data-front="${i}"]`).forEach((part) => part.setAttribute("d", front));
+        const [left, top] = screen(along(scene.name)).split(" ").map(Number);
+        const name = svg.querySelector(`[data-name="${i}"]`);
+        name.setAttribute("x", left);
+        name.setAttribute("y", top + 4);
+      });
       const from = Math.max(0, at - 240);
       svg.querySelector("[data-way]").setAttribute("d", path([...tips.slice(from, at + 1), rotated(turn, axis)]));
       svg.querySelectorAll("[data-face]").forEach((face, k) => {

@@ -158,17 +158,17 @@
     }
   };
 
-  // Numbers along the axis that would touch are left out, those between the decades first.
+  // Numbers along the axis that would touch are left out: all but every second, fifth, … so that the others stand at even
+  // distances; those between the decades first.
   const thinOut = (labels) => {
     labels.forEach((label) => label.classList.remove("lf-off"));
-    const kept = [];
-    const between = (label) => label.textContent.includes("×");
-    for (const label of [...labels.filter((l) => !between(l)), ...labels.filter(between)]) {
-      const half = label.getComputedTextLength() / 2 + 4, at = Number(label.getAttribute("x"));
-      const touches = kept.some((other) => Math.abs(other.at - at) < other.half + half);
-      if (touches) label.classList.add("lf-off");
-      else kept.push({ at, half });
-    }
+    const spots = labels.map((label) =>
+      ({ label, half: label.getComputedTextLength() / 2 + 4, at: Number(label.getAttribute("x")), n: label.dataset.n }));
+    const fit = (some) => some.every((a, i) => some.slice(0, i).every((b) => Math.abs(a.at - b.at) >= a.half + b.half));
+    const even = spots.filter((spot) => spot.n !== undefined);
+    const every = (k) => even.filter((spot) => spot.n % k === 0);
+    const kept = fit(spots) ? spots : every([1, 2, 5, 10, 20, 50, 100].find((k) => fit(every(k))) || 200);
+    spots.forEach((spot) => spot.label.classList.toggle("lf-off", !kept.includes(spot)));
   };
 
   // Draws a chart as wide as its place: lines are stretched, text and markers keep their size. On a narrow

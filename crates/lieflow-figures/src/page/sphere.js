@@ -52,6 +52,8 @@
     const mesh = semi ? meshOutside(semi) : [];
     const find = (name, k) => svg.querySelector(`[data-${name}="${k}"]`);
 
+    const ends = scene.ends.map((end) => end.map((x) => x / 1000));
+
     const draw = (azimuth, elevation) => {
       const { right, up, toward } = camera(azimuth, elevation);
       const screen = (p) => [centre[0] + scale * dot(p, right), centre[1] - scale * dot(p, up)];
@@ -102,6 +104,13 @@
         name.setAttribute("x", px(x + 9 * dx + 13 * ux));
         name.setAttribute("y", px(y - 9 * dy + 13 * uy + 4));
         [head, name].forEach((element) => element.classList.toggle("lf-far", far));
+      });
+
+      ends.forEach((end, i) => {
+        const mark = find("end", i), [x, y] = screen(end);
+        mark.setAttribute("cx", px(x));
+        mark.setAttribute("cy", px(y));
+        mark.classList.toggle("lf-far", hidden(end));
       });
     };
 

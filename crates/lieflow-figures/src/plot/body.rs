@@ -1,7 +1,7 @@
 //! A body that turns: a box at the attitudes of a motion, and the way of one of its axes in space.
 
 use super::camera::{Camera, Vec3, dot, norm};
-use super::svg::{Opening, polyline, px, slug, text};
+use super::svg::{Opening, arrow_head, polyline, px, slug, text};
 use super::theme;
 use super::thin::thin_path;
 
@@ -11,8 +11,9 @@ const HEIGHT: f64 = 458.0;
 const CENTRE: (f64, f64) = (260.0, 248.0);
 const SCALE: f64 = 158.0;
 
-/// The length of the axes of space, in halves of the diagonal.
-const AXIS: f64 = 1.2;
+/// The length of the axes of space, and how far their names are, in halves of the diagonal.
+const AXIS: f64 = 1.18;
+const NAME: f64 = 1.32;
 
 /// The attitude of a body at a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -90,16 +91,20 @@ impl Body {
         let tip = |i: usize, length: f64| -> Vec3 {
             core::array::from_fn(|j| if i == j { length } else { 0.0 })
         };
+        let edges = self.edges();
+        let first = self.seen().next().map_or([1.0, 0.0, 0.0, 0.0], |pose| pose.quaternion);
+        let edges = edges.map(|edge| rotated(&first, &edge));
+        let arrow = |i: usize, from: f64| {
+            let (x, y) = screen(&tip(i, AXIS));
+            let (dx, dy) = camera.project(&tip(i, 1.0));
+            arrow_head((x, y), (dx, dy)) + &polyline(&[screen(&tip(i, from)), (x, y)])
+        };
         for i in 0..3 {
-            let d = polyline(&[screen(&[0.0; 3]), screen(&tip(i, AXIS))]);
-            out += &format!("<path class=\"lf-axis\" data-axis=\"{i}\" d=\"{d}\"/>");
+            out += &format!("<path class=\"lf-axis\" data-axis=\"{i}\" d=\"{}\"/>", arrow(i, 0.0));
         }
         let way: Vec<Vec3> = self.seen().map(|pose| self.tip(pose)).collect();
         let way: Vec<_> = thin_path(&way, 2e-3).iter().map(screen).collect();
         out += &format!("<path class=\"lf-way lf-c1\" data-way=\"\" d=\"{}\"/>", polyline(&way));
-        let edges = self.edges();
-        let first = self.seen().next().map_or([1.0, 0.0, 0.0, 0.0], |pose| pose.quaternion);
-        let edges = edges.map(|edge| rotated(&first, &edge));
         for face in 0..6 {
             let (axis, sign) = (face / 2, if face % 2 == 0 { 1.0 } else { -1.0 });
             let (a, b, c) = (edges[axis], edges[(axis + 1) % 3], edges[(axis + 2) % 3]);
@@ -114,8 +119,15 @@ impl Body {
             };
             out += &format!("<path class=\"lf-face lf-c{axis}\" data-face=\"{face}\" d=\"{d}\"/>");
         }
+        // The part of an axis that leaves the box toward the viewer lies before the box.
         for i in 0..3 {
-            let (x, y) = screen(&tip(i, 1.08 * AXIS));
+            let front = leaves(&edges, i, &camera.toward).map_or(String::new(), |at| arrow(i, at));
+            for class in ["lf-halo", "lf-axis"] {
+                out += &format!("<path class=\"{class}\" data-front=\"{i}\" d=\"{front}\"/>");
+            }
+        }
+        for i in 0..3 {
+            let (x, y) = screen(&tip(i, NAME));
             out += &format!(
                 "<text class=\"lf-name\" data-name=\"{i}\" x=\"{}\" y=\"{}\">e<tspan \
                  font-size=\".7em\" font-style=\"normal\" dy=\"4\">{}</tspan></text>",
@@ -145,7 +157,7 @@ impl Body {
         let turns = list(&mut turns.map(|x| format!("{:.0}", 1e4 * x)));
         format!(
             "{{\"view\":[{:e},{:e}],\"centre\":[{},{}],\"scale\":{SCALE},\"axis\":{AXIS},\
-             \"edges\":{edges},\"way\":{},\"span\":[{start:e},{end:e}],\"t\":{times},\"q\":{turns}}}",
+             \"name\":{NAME},\"edges\":{edges},\"way\":{},\"span\":[{start:e},{end:e}],\"t\":{times},\"q\":{turns}}}",
             self.view.0,
             self.view.1,
             CENTRE.0,
@@ -177,6 +189,13 @@ impl Body {
     fn tip(&self, pose: &Pose) -> Vec3 {
         rotated(&pose.quaternion, &self.axes[self.longest()])
     }
+}
+
+/// Where the axis of space `i` leaves a box with these halves of edges, if that is on a face toward the viewer.
+fn leaves(edges: &[Vec3; 3], i: usize, toward: &Vec3) -> Option<f64> {
+    let at = |edge: &Vec3| dot(edge, edge) / edge[i].abs();
+    let face = edges.iter().min_by(|a, b| at(a).total_cmp(&at(b)))?;
+    (face[i] * dot(face, toward) > 0.0).then(|| at(face))
 }
 
 /// q v q*.
@@ -231,6 +250,17 @@ mod tests {
         assert_eq!(svg.matches("z\"/>").count(), 3, "{svg}");
         assert_eq!(svg.matches("data-face").count(), 6);
         assert!(svg.contains("a &amp; b"));
+    }
+
+    /// Seen from e₁, that axis lies before the box, and the other two do not leave it toward the viewer.
+    #[test]
+    fn an_axis_toward_the_viewer_lies_before_the_box() {
+        let edges = [[0.2, 0.0, 0.0], [0.0, 0.5, 0.0], [0.0, 0.0, 0.8]];
+        let at = |i, toward| leaves(&edges, i, &toward).map(|at| (10.0 * at).round());
+        let from_e1 = |i| at(i, [1.0, 0.0, 0.0]);
+        assert_eq!([0, 1, 2].map(from_e1), [Some(2.0), None, None]);
+        let aside = |i| at(i, [0.6, -0.6, 0.5]);
+        assert_eq!([0, 1, 2].map(aside), [Some(2.0), None, Some(8.0)]);
     }
 
     #[test]

@@ -192,8 +192,14 @@ impl Chart {
             out.push_str(&format!("<path class=\"{class}\" d=\"{d}\"/>"));
         }
         out.push_str(&format!("<path class=\"lf-frame\" d=\"M{left} {TOP}V{BOTTOM}H{right}\"/>"));
-        for (at, label) in columns.iter().filter_map(|t| Some((t.at, t.label.as_ref()?))) {
-            out.push_str(&text("lf-tick", (at, BOTTOM + 18.0), "middle", label));
+        for (tick, label) in columns.iter().filter_map(|t| Some((t, t.label.as_ref()?))) {
+            let number = tick.number.map_or_else(String::new, |n| format!(" data-n=\"{n}\""));
+            out.push_str(&format!(
+                "<text class=\"lf-tick\" x=\"{}\" y=\"{}\" text-anchor=\"middle\"{number}>{}</text>",
+                px(tick.at),
+                px(BOTTOM + 18.0),
+                escape(label)
+            ));
         }
         for (at, label) in rows.iter().filter_map(|t| Some((t.at, t.label.as_ref()?))) {
             out.push_str(&text("lf-tick", (x.from - BESIDE, at + 4.2), "end", label));

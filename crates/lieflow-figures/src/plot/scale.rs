@@ -1,6 +1,6 @@
 //! Axes: from data to pixels, and where the ticks are.
 
-use crate::number::{fixed, power_of_ten, seconds, seconds_short, short, sig};
+use crate::number::{fixed, grouped, power_of_ten, seconds, seconds_short, short, sig};
 
 /// How the values of an axis are spread over its length.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,13 +68,18 @@ impl Axis {
         Axis::new(title, Scale::Log10)
     }
 
-    /// The title beside the labels of a map: with the unit, if they do not have it, and with the offset that they
-    /// leave out, as in "energy − 0.00515 (J)".
-    pub(crate) fn title_beside(&self, &Map { offset, lo, hi, in_seconds, .. }: &Map) -> String {
-        let unit = match self.unit {
-            "" => String::new(),
-            _ if in_seconds => String::new(),
-            unit => format!(" ({unit})"),
+    /// The title beside the labels of a map: with the unit, if they do not have it, and with the offset and the power of
+    /// ten that they leave out, as in "energy − 0.00515 (10⁻⁹ J)".
+    pub(crate) fn title_beside(
+        &self,
+        &Map { offset, lo, hi, power, in_seconds, .. }: &Map,
+    ) -> String {
+        let unit = match (power, self.unit) {
+            (0, "") => String::new(),
+            (0, _) if in_seconds => String::new(),
+            (0, unit) => format!(" ({unit})"),
+            (power, "") => format!(" (×{})", power_of_ten(power)),
+            (power, unit) => format!(" ({} {unit})", power_of_ten(power)),
         };
         if offset == 0.0 {
             return format!("{}{unit}", self.title);
@@ -108,7 +113,11 @@ impl Axis {
         let (lo, hi) = padded(placed, padding);
         let offset = if scale == Scale::Linear { offset(lo, hi) } else { 0.0 };
         let in_seconds = self.unit == "s" && offset == 0.0;
-        Map { scale, lo, hi, offset, in_seconds, from: pixels.0, to: pixels.1 }
+        let power = match scale {
+            Scale::Linear if !in_seconds => power_of((lo - offset).abs().max((hi - offset).abs())),
+            _ => 0,
+        };
+        Map { scale, lo, hi, offset, power, in_seconds, from: pixels.0, to: pixels.1 }
     }
 }
 
@@ -139,6 +148,11 @@ fn offset(lo: f64, hi: f64) -> f64 {
     (0.5 * (lo + hi) / unit).round() * unit
 }
 
+/// The power of ten that labels of numbers up to this size leave out; 0 of sizes that are written plainly.
+fn power_of(size: f64) -> i32 {
+    if (1e-3..1e6).contains(&size) { 0 } else { size.log10().floor() as i32 }
+}
+
 /// An axis with its range, laid out over pixels.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Map {
@@ -148,6 +162,8 @@ pub(crate) struct Map {
     pub(crate) hi: f64,
     /// What is left out of the labels; 0 on most axes.
     pub(crate) offset: f64,
+    /// The power of ten that is left out of the labels; 0 on most axes.
+    pub(crate) power: i32,
     /// Do the labels have units of time?
     pub(crate) in_seconds: bool,
     /// The pixels of these ends.
@@ -161,6 +177,8 @@ pub(crate) struct Tick {
     pub(crate) at: f64,
     pub(crate) label: Option<String>,
     pub(crate) major: bool,
+    /// Its number on an even axis: where labels have no room, every second or fifth of these keeps its own.
+    pub(crate) number: Option<i64>,
 }
 
 impl Map {
@@ -184,19 +202,22 @@ impl Map {
         let labels = ((self.to - self.from).abs() / spacing).max(1.0);
         let found = match self.scale {
             Scale::Linear => {
-                let ticks = linear_ticks(self.lo - self.offset, self.hi - self.offset, labels);
-                ticks.into_iter().map(|(x, label, major)| (x + self.offset, label, major)).collect()
+                let ends = (self.lo - self.offset, self.hi - self.offset);
+                let ticks = linear_ticks(ends, labels, self.power);
+                let with_offset =
+                    |found: Found| Found { value: found.value + self.offset, ..found };
+                ticks.into_iter().map(with_offset).collect()
             }
             Scale::Log10 => log_ticks(self.lo, self.hi, labels),
             Scale::SymLog { linear } => self.symlog_ticks(linear.max(f64::MIN_POSITIVE), labels),
         };
-        let placed = found.into_iter().filter_map(|(value, label, major)| {
+        let placed = found.into_iter().filter_map(|Found { value, label, major, number }| {
             let label = match label {
                 Some(_) if self.in_seconds => Some(seconds_short(value)),
                 label => label,
             };
             let at = self.pixel(value).filter(|at| self.contains(*at))?;
-            Some(Tick { at, label, major })
+            Some(Tick { at, label, major, number })
         });
         placed.collect()
     }
@@ -205,40 +226,46 @@ impl Map {
         let first = linear.log10().ceil() as i32;
         let decades = (self.lo.abs().max(self.hi.abs()).ceil() as i32).max(1);
         let step = stride((self.hi - self.lo).ceil(), labels);
-        let mut ticks = vec![(0.0, Some("0".to_string()), true)];
+        let zero = Some("0".to_string());
+        let mut ticks = vec![Found { value: 0.0, label: zero, major: true, number: Some(0) }];
         for i in 0..=decades {
             // The labels count from the largest decade in steps, and leave zero its room.
             let label = (i % step == 0 && i > 0).then(|| power_of_ten(first + i));
-            let value = 10f64.powi(first + i);
-            ticks.push((value, label.clone(), label.is_some()));
-            ticks.push((-value, label.as_ref().map(|l| format!("−{l}")), label.is_some()));
+            let (value, major) = (10f64.powi(first + i), label.is_some());
+            let minus = label.as_ref().map(|label| format!("−{label}"));
+            let number = i64::from(i / step);
+            ticks.push(Found { value, label, major, number: Some(number) });
+            ticks.push(Found { value: -value, label: minus, major, number: Some(-number) });
         }
         ticks
     }
 }
 
-/// The value, label and rank of a grid line.
-type Found = (f64, Option<String>, bool);
+/// A grid line before it has a place.
+struct Found {
+    value: f64,
+    label: Option<String>,
+    major: bool,
+    number: Option<i64>,
+}
 
-/// Ticks at multiples of 1, 2 or 5 times a power of ten.
-fn linear_ticks(lo: f64, hi: f64, labels: f64) -> Vec<Found> {
+/// Ticks at multiples of 1, 2 or 5 times a power of ten, with labels in units of a power of ten.
+fn linear_ticks((lo, hi): (f64, f64), labels: f64, power: i32) -> Vec<Found> {
     let step = nice_step((hi - lo) / labels);
     let first = (lo / step - 1e-9).ceil();
     let count = (hi / step + 1e-9).floor() - first;
-    let values: Vec<f64> =
-        (0..=count.clamp(-1.0, 100.0) as i64).map(|i| (first + i as f64) * step).collect();
-    let size = lo.abs().max(hi.abs());
-    let (power, fine) = (size.log10().floor() as i32, (step.log10() + 1e-9).floor() as i32);
-    let text = |value: f64| match (-5..5).contains(&fine) && (1e-3..1e5).contains(&size) {
-        _ if value == 0.0 => "0".into(),
-        true => fixed(value, (-fine).max(0) as usize),
-        // One power of ten for all labels.
-        false => {
-            let mantissa = fixed(value / 10f64.powi(power), (power - fine).max(0) as usize);
-            format!("{mantissa}×{}", power_of_ten(power))
-        }
+    let fine = (step.log10() + 1e-9).floor() as i32;
+    let decimals = (power - fine).max(0) as usize;
+    let text = |value: f64| match value == 0.0 {
+        true => "0".into(),
+        false => grouped(&fixed(value / 10f64.powi(power), decimals)),
     };
-    values.into_iter().map(|value| (value, Some(text(value)), true)).collect()
+    let tick = |i: i64| {
+        let number = first + i as f64;
+        let value = number * step;
+        Found { value, label: Some(text(value)), major: true, number: Some(number as i64) }
+    };
+    (0..=count.clamp(-1.0, 100.0) as i64).map(tick).collect()
 }
 
 /// The smallest of 1, 2, 5 times a power of ten that is at least `step`.
@@ -253,7 +280,13 @@ fn log_ticks(lo: f64, hi: f64, labels: f64) -> Vec<Found> {
     let decades = hi - lo;
     let ends = [lo, hi].map(|log| 10f64.powf(log));
     if decades < 0.7 && ends[1] - ends[0] >= SHORTEST {
-        return linear_ticks(ends[0], ends[1], labels);
+        let power = power_of(ends[1]);
+        let with_power = |label: String| match power {
+            0 => label,
+            power => format!("{label}×{}", power_of_ten(power)),
+        };
+        let ticks = linear_ticks((ends[0], ends[1]), labels, power).into_iter();
+        return ticks.map(|found| Found { label: found.label.map(with_power), ..found }).collect();
     }
     let step = stride(decades, labels);
     let fine = 3.0 * decades <= labels;
@@ -268,11 +301,13 @@ fn log_ticks(lo: f64, hi: f64, labels: f64) -> Vec<Found> {
             (false, m) => format!("{m}×{}", power_of_ten(exponent)),
         };
         let labelled = exponent.rem_euclid(step) == 0;
-        ticks.push((decade, labelled.then(|| label(1)), labelled));
+        let number = Some(i64::from(exponent.div_euclid(step)));
+        let own = labelled.then(|| label(1));
+        ticks.push(Found { value: decade, label: own, major: labelled, number });
         if step == 1 && decades <= labels {
             ticks.extend((2..10).map(|m| {
-                let text = (fine && (m == 2 || m == 5)).then(|| label(m));
-                (f64::from(m) * decade, text, false)
+                let label = (fine && (m == 2 || m == 5)).then(|| label(m));
+                Found { value: f64::from(m) * decade, label, major: false, number: None }
             }));
         }
     }
@@ -342,11 +377,12 @@ mod tests {
     fn labels_of_a_narrow_range_leave_out_what_they_share() {
         let axis = Axis::linear("energy").with_unit("J");
         for (lo, hi, title) in [
-            (1.03 - 1e-9, 1.03 + 1e-9, "energy − 1.03 (J)"),
-            (0.005151, 0.00515100004, "energy − 0.005151 (J)"),
-            (-2.0 - 3e-7, -2.0, "energy + 2 (J)"),
+            (1.03 - 1e-9, 1.03 + 1e-9, "energy − 1.03 (10⁻⁹ J)"),
+            (0.005151, 0.00515100004, "energy − 0.005151 (10⁻¹¹ J)"),
+            (-2.0 - 3e-7, -2.0, "energy + 2 (10⁻⁷ J)"),
             (0.00515, 0.0052, "energy (J)"),
-            (4e-7, 9e-7, "energy (J)"),
+            (4e-7, 9e-7, "energy (10⁻⁷ J)"),
+            (0.0, 2e6, "energy (10⁶ J)"),
         ] {
             let m = axis.map([lo, hi].into_iter(), (0.0, 500.0), 0.04);
             let found = labels(&m, 60.0);
@@ -354,6 +390,16 @@ mod tests {
             assert!(found.windows(2).all(|pair| pair[0] != pair[1]), "{found:?}");
             assert_eq!(axis.title_beside(&m), title);
         }
+    }
+
+    #[test]
+    fn large_numbers_are_plain_below_a_million() {
+        let labels = |hi: f64| labels(&map(Scale::Linear, (0.0, hi), (0.0, 500.0)), 100.0);
+        assert_eq!(labels(1e4), ["0", "2000", "4000", "6000", "8000", "10\u{202f}000"]);
+        assert_eq!(labels(1e5)[1..3], ["20\u{202f}000", "40\u{202f}000"]);
+        assert_eq!(labels(5e6), ["0", "1", "2", "3", "4", "5"]);
+        let axis = Axis::linear("t");
+        assert_eq!(axis.title_beside(&map(Scale::Linear, (0.0, 5e6), (0.0, 1.0))), "t (×10⁶)");
     }
 
     #[test]

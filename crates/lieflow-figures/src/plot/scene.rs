@@ -84,7 +84,7 @@ impl Scene {
             lines.push(Line { kind: Kind::Polhode, pieces: e.polhodes() });
         }
         for path in &sphere.paths {
-            lines.push(Line { kind: Kind::Path, pieces: vec![unit_path(sphere, &path.points)] });
+            lines.push(Line { kind: Kind::Path, pieces: unit_path(sphere, &path.points) });
         }
         for (i, tip) in tips.iter().enumerate() {
             let at = |length: f64| std::array::from_fn(|j| if i == j { length } else { 0.0 });
@@ -112,9 +112,37 @@ fn energy_ellipsoid(sphere: &Sphere) -> Option<Ellipsoid> {
     semi.iter().all(|a| a.is_finite() && *a > 1e-6).then_some(Ellipsoid { semi })
 }
 
-/// A path in radii of the sphere, thinned to less than a pixel.
-fn unit_path(sphere: &Sphere, points: &[Vec3]) -> Vec<Vec3> {
+/// Two points that are farther apart, seen from the centre, are not joined: the path between them is not known. In
+/// radians.
+const FAR: f64 = 1.0;
+
+/// A path in radii of the sphere, thinned to less than a pixel, without chords between points that are far apart. A
+/// point alone is there twice, and so is a dot.
+fn unit_path(sphere: &Sphere, points: &[Vec3]) -> Vec<Vec<Vec3>> {
     let scaled = points.iter().map(|p| p.map(|x| x / sphere.radius));
     let finite: Vec<Vec3> = scaled.filter(|p| norm(p).is_finite()).collect();
-    thin_path(&finite, 2e-3)
+    let is_near = |a: &Vec3, b: &Vec3| dot(a, b) >= FAR.cos() * norm(a) * norm(b);
+    let piece = |piece: &[Vec3]| match piece {
+        [only] => vec![*only; 2],
+        several => thin_path(several, 2e-3),
+    };
+    finite.chunk_by(is_near).map(piece).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_that_are_far_apart_are_not_joined() {
+        let sphere = Sphere { radius: 2.0, ..Sphere::default() };
+        let at = |angle: f64| [2.0 * angle.cos(), 2.0 * angle.sin(), 0.0];
+        let path = |angles: &[f64]| -> Vec<usize> {
+            let points: Vec<Vec3> = angles.iter().map(|angle| at(*angle)).collect();
+            unit_path(&sphere, &points).iter().map(Vec::len).collect()
+        };
+        assert_eq!(path(&[0.0, 0.9, 1.8]), [3]);
+        assert_eq!(path(&[0.0, 1.1, 1.9, 3.2]), [2, 2, 2]);
+        assert_eq!(path(&[]), [0; 0]);
+    }
 }

@@ -4,7 +4,7 @@ use super::camera::{Camera, Vec3, clip, dot, norm, split};
 use super::labels::{self, ROW};
 use super::scene::{Kind, Line, Scene};
 use super::series::Series;
-use super::svg::{Opening, polyline, px, slug, text};
+use super::svg::{Opening, arrow_head, polyline, px, slug, text};
 use super::theme::{self, SHADES};
 
 /// The size of the picture without the names of the paths, and the centre of the sphere.
@@ -22,7 +22,7 @@ pub struct Path {
     pub name: String,
     /// The index of the colour, as in [`Series::colour`].
     pub colour: usize,
-    /// The momenta in the body frame.
+    /// The momenta in the body frame, in the order of time. Where a picture has several paths, the end of each is a dot.
     pub points: Vec<[f64; 3]>,
 }
 
@@ -31,7 +31,7 @@ pub struct Path {
 ///
 /// A point is hidden if the ray from it to the viewer passes through the sphere or through the
 /// ellipsoid. Hidden parts of paths and of axes are faint and dashed.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Sphere {
     /// An identifier that is unique within the page.
     pub id: String,
@@ -87,6 +87,17 @@ impl Sphere {
         out.push_str("</g>");
         self.draw_lines(&mut out, &scene, &camera, |kind| kind == Kind::Path || kind == Kind::Axis);
         draw_arrows(&mut out, &scene, &camera, scale);
+        for (i, end) in self.ends().iter().enumerate() {
+            let (x, y) = screen(&camera, scale, end);
+            let far = if scene.hides(end, &camera.toward) { " lf-far" } else { "" };
+            out.push_str(&format!(
+                "<g class=\"lf-s {}\" data-line=\"{i}\"><circle class=\"lf-end{far}\" data-end=\"{i}\" \
+                 cx=\"{}\" cy=\"{}\" r=\"4\"/></g>",
+                self.paths[i].as_series().classes(),
+                px(x),
+                px(y)
+            ));
+        }
         for (k, path) in self.paths.iter().enumerate() {
             let at = (24.0, HEIGHT + ROW * (k as f64 + 0.5));
             out.push_str(&labels::entry(&path.as_series(), k, at, None, WIDTH - 48.0));
@@ -113,15 +124,26 @@ impl Sphere {
         };
         format!(
             "{{\"view\":[{:e},{:e}],\"centre\":[{},{}],\"scale\":{:e},\"shades\":{SHADES},\
-             \"semi\":{semi},\"tips\":{},\"lines\":{}}}",
+             \"semi\":{semi},\"tips\":{},\"ends\":{},\"lines\":{}}}",
             self.view.0,
             self.view.1,
             CENTRE.0,
             CENTRE.1,
             HALF / scene.extent,
             list(scene.tips.iter().map(|t| format!("{t:e}")).collect()),
+            list(self.ends().iter().map(point).collect()),
             list(scene.lines.iter().map(line).collect())
         )
+    }
+
+    /// Where several paths end, in radii of the sphere: they may lie on one curve, and their ends tell them apart.
+    fn ends(&self) -> Vec<Vec3> {
+        let end = |path: &Path| {
+            let mut points = path.points.iter().rev().map(|p| p.map(|x| x / self.radius));
+            points.find(|p| norm(p).is_finite())
+        };
+        let ends: Option<Vec<Vec3>> = self.paths.iter().map(end).collect();
+        ends.filter(|ends| ends.len() > 1).unwrap_or_default()
     }
 
     fn description(&self) -> String {
@@ -240,21 +262,16 @@ fn draw_arrows(out: &mut String, scene: &Scene, camera: &Camera, scale: f64) {
         let (x, y) = screen(camera, scale, &tip);
         let (dx, dy) = camera.project(&tip.map(|t| t / norm(&tip)));
         let far = if scene.hides(&tip, &camera.toward) { " lf-far" } else { "" };
-        // Along (dx, dy) the head is foreshortened like the axis, across it has its full width.
         let size = dx.hypot(dy).max(0.2);
         let (ux, uy) = (dx / size, -dy / size);
+        let tip = (x + 9.0 * dx, y - 9.0 * dy);
         out.push_str(&format!(
-            "<path class=\"lf-head{far}\" data-head=\"{i}\" d=\"M{} {}L{} {} {} {}z\"/>\
+            "<path class=\"lf-head{far}\" data-head=\"{i}\" d=\"{}z\"/>\
              <text class=\"lf-name{far}\" data-name=\"{i}\" x=\"{}\" y=\"{}\">e<tspan \
              font-size=\".7em\" font-style=\"normal\" dy=\"4\">{}</tspan></text>",
-            px(x + 9.0 * dx),
-            px(y - 9.0 * dy),
-            px(x + 3.6 * uy),
-            px(y - 3.6 * ux),
-            px(x - 3.6 * uy),
-            px(y + 3.6 * ux),
-            px(x + 9.0 * dx + 13.0 * ux),
-            px(y - 9.0 * dy + 13.0 * uy + 4.0),
+            arrow_head(tip, (dx, dy)),
+            px(tip.0 + 13.0 * ux),
+            px(tip.1 + 13.0 * uy + 4.0),
             i + 1
         ));
     }

@@ -88,6 +88,16 @@ pub(crate) fn polyline(points: &[(f64, f64)]) -> String {
     }
 }
 
+/// The head of an arrow with its tip at these pixels, which points to the direction (right, up) of the view: a unit vector
+/// of space as it is seen.
+pub(crate) fn arrow_head((x, y): (f64, f64), (dx, dy): (f64, f64)) -> String {
+    // Along the direction it is foreshortened like an axis, across it has its full width.
+    let size = dx.hypot(dy).max(0.2);
+    let (across, down) = (3.6 * -dy / size, 3.6 * dx / size);
+    let (left, top) = (x - 9.0 * dx, y + 9.0 * dy);
+    polyline(&[(left + across, top - down), (x, y), (left - across, top + down)])
+}
+
 /// The estimated width of `text` set in a sans-serif font of `size` pixels; a wide font of digits fits.
 pub(crate) fn text_width(text: &str, size: f64) -> f64 {
     0.6 * size * text.chars().count() as f64

@@ -231,13 +231,13 @@ impl System for BeamLine {
         let [x, z] = tunes(&cell);
         let trace = |i: usize| cell[(i, i)] + cell[(i + 2, i + 2)];
         let mut facts = vec![
-            Fact { name: "cell_length", value: self.cell_length() },
-            Fact { name: "trace_x", value: trace(0) },
-            Fact { name: "trace_z", value: trace(1) },
-            Fact { name: "stable", value: f64::from(u8::from(x.is_some() && z.is_some())) },
+            Fact::of("cell_length", self.cell_length()),
+            Fact::of("trace_x", trace(0)),
+            Fact::of("trace_z", trace(1)),
+            Fact::answer("stable", x.is_some() && z.is_some()),
         ];
-        facts.extend(x.map(|value| Fact { name: "tune_x", value }));
-        facts.extend(z.map(|value| Fact { name: "tune_z", value }));
+        facts.extend(x.map(|value| Fact::of("tune_x", value)));
+        facts.extend(z.map(|value| Fact::of("tune_z", value)));
         facts
     }
 }

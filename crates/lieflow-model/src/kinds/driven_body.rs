@@ -192,7 +192,11 @@ fn read(mut keys: Keys) -> Result<Forms, ReadError> {
     };
     let body = TorqueBody::new(spec.inertia, torques.clone())?;
     let start = (spec.attitude, spec.momentum_space());
-    Ok(Forms::of(Driven { spec, body, torques, start }))
+    let forms = Forms::of(Driven { spec, body, torques: torques.clone(), start });
+    Ok(match torques.are_none() {
+        true => forms,
+        false => forms.written(&["attitude", "momentum_space", "omega_body", "torque"]),
+    })
 }
 
 impl AsBody for Driven {
@@ -214,6 +218,11 @@ impl AsBody for Driven {
 }
 
 impl Driven {
+    /// The sum of the torques in the body, along the axes of the scene.
+    fn torque(&self, t: f64, y: &Point) -> Vector3<f64> {
+        let in_space = self.torques.in_space(&self.body.motion(t, y));
+        self.in_scene(y.0.tr_mul(&in_space))
+    }
     /// A law of the motion under gravity alone, or under no torque.
     fn undriven(&self, law: Law) -> Option<Law> {
         let Torques { axes: _, weight: _, thruster, damping, control, in_the_body, in_space } =
@@ -236,7 +245,7 @@ impl System for Driven {
     type Problem = flow::Driven;
 
     const STATE: &'static [&'static str] = &["attitude", "momentum_space"];
-    const QUANTITIES: &'static [Q] = &[
+    const QUANTITIES: &'static [Q] = with_angles![
         attitude(),
         quaternion(),
         momentum_space(),
@@ -244,6 +253,12 @@ impl System for Driven {
         momentum_body(&["mb1", "mb2", "mb3"]),
         omega_body(),
         omega_space(),
+        Q::numbers(
+            "torque",
+            &["torque1", "torque2", "torque3"],
+            "the sum of the torques, in the body",
+            |driven, at, y, row| row.extend(driven.torque(at.t, y).iter()),
+        ),
         axis(),
         nutation(),
         Q::number("energy", "kinetic energy, and that of the weight", |driven, _, y| {

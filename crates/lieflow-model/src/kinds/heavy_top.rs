@@ -57,7 +57,7 @@ fn read(mut keys: Keys) -> Result<Forms, ReadError> {
     });
     let stands = match &vertical {
         Ok(None) if !body.has_attitude() => {
-            let message = "expected `vertical`, `attitude` or `quaternion`, found none of them";
+            let message = "expected `vertical`, `attitude` or `quaternion`, or Euler angles, found none of them";
             Err(Refusal::section(message))
         }
         _ => Ok(()),
@@ -247,7 +247,7 @@ impl<R: Representation> System for Top<R> {
     type Problem = R::Problem;
 
     const STATE: &'static [&'static str] = R::STATE;
-    const QUANTITIES: &'static [Q<R>] = &[
+    const QUANTITIES: &'static [Q<R>] = with_angles![
         momentum_body(&["m1", "m2", "m3"]),
         omega_body(),
         Q::numbers(

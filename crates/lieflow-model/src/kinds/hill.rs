@@ -132,13 +132,12 @@ impl System for Hill {
     fn facts(&self) -> Vec<Fact> {
         let Some((floquet, trace)) = self.multipliers() else { return Vec::new() };
         let radius = floquet.spectral_radius();
-        let stable = f64::from(u8::from(radius < 1.0 + OFF_THE_CIRCLE));
         vec![
-            Fact { name: "period", value: self.period },
-            Fact { name: "trace_of_the_monodromy", value: trace },
-            Fact { name: "largest_multiplier", value: radius },
-            Fact { name: "growth_rate", value: floquet.growth(self.period) },
-            Fact { name: "stable", value: stable },
+            Fact::of("period", self.period),
+            Fact::of("trace_of_the_monodromy", trace),
+            Fact::of("largest_multiplier", radius),
+            Fact::of("growth_rate", floquet.growth(self.period)),
+            Fact::answer("stable", radius < 1.0 + OFF_THE_CIRCLE),
         ]
     }
 }

@@ -103,8 +103,8 @@ impl System for Exponents {
             "exponents",
             &["e1", "…", "en"],
             "growth over time: the exponents where the time is long; 0 at the start",
-            |_, t, (_, (growth, _)), row| {
-                let time = if t == 0.0 { 1.0 } else { t };
+            |_, at, (_, (growth, _)), row| {
+                let time = if at.since_start == 0.0 { 1.0 } else { at.since_start };
                 row.extend(growth.col_as_slice(0).iter().map(|s| s / time));
             },
         )

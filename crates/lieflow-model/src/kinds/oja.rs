@@ -88,6 +88,6 @@ impl System for OjaFlow {
     }
     fn facts(&self) -> Vec<Fact> {
         let leading = eigenvalues(&self.a).iter().rev().take(self.x.ncols()).sum();
-        vec![Fact { name: "sum_of_the_leading_eigenvalues", value: leading }]
+        vec![Fact::of("sum_of_the_leading_eigenvalues", leading)]
     }
 }

@@ -147,10 +147,10 @@ impl System for Subspace {
     fn facts(&self) -> Vec<Fact> {
         let others = self.start.nrows() - self.dimension;
         let leading = self.eigenvalues[others..].iter().sum();
-        let mut facts = vec![Fact { name: "sum_of_the_leading_eigenvalues", value: leading }];
+        let mut facts = vec![Fact::of("sum_of_the_leading_eigenvalues", leading)];
         if others > 0 {
             let gap = self.eigenvalues[others] - self.eigenvalues[others - 1];
-            facts.push(Fact { name: "rate_of_convergence", value: gap });
+            facts.push(Fact::of("rate_of_convergence", gap));
         }
         facts
     }

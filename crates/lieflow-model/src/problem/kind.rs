@@ -53,6 +53,8 @@ pub struct QuantityInfo {
     pub meaning: &'static str,
     /// Its unit, where every scene has the same; empty where the units of the scene decide.
     pub unit: &'static str,
+    /// The quantity that shows the same better in a figure; empty where there is none.
+    pub drawn_as: &'static str,
 }
 
 impl QuantityInfo {
@@ -77,7 +79,10 @@ impl Kind {
 
     /// The error for a quantity that the kind does not have.
     pub(crate) fn unknown_quantity(&self, name: &str) -> Error {
-        let expected = (self.quantities)().iter().map(|quantity| quantity.name).collect();
+        // Of those that mean the same, as the angles of all sequences of axes, one stands for all.
+        let all = (self.quantities)();
+        let alike = all.chunk_by(|a, b| a.meaning == b.meaning);
+        let expected = alike.map(|alike| alike[0].name).collect();
         Error::UnknownName { kind: "quantity", name: name.into(), expected }
     }
 }
@@ -152,6 +157,28 @@ impl PrincipalInertia {
 pub struct Fact {
     /// What.
     pub name: &'static str,
-    /// Its value; a number that is not finite is none.
+    /// Its value; a number that is not finite is none. An answer is 1 for yes and 0 for no.
     pub value: f64,
+    /// Is it the answer to a question?
+    pub is_answer: bool,
+}
+
+impl Fact {
+    /// A number.
+    pub(crate) fn of(name: &'static str, value: f64) -> Self {
+        Fact { name, value, is_answer: false }
+    }
+
+    /// Yes or no.
+    pub(crate) fn answer(name: &'static str, yes: bool) -> Self {
+        Fact { name, value: f64::from(u8::from(yes)), is_answer: true }
+    }
+
+    /// The value in words: yes or no, or the number in a format.
+    pub fn in_words(&self, number: impl FnOnce(f64) -> String) -> String {
+        match (self.is_answer, self.value == 1.0) {
+            (false, _) => number(self.value),
+            (true, yes) => if yes { "yes" } else { "no" }.into(),
+        }
+    }
 }

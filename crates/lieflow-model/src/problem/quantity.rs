@@ -28,12 +28,28 @@ pub(crate) fn law_of(problem: &impl Invariants, invariant: &str) -> Option<Law> 
     all.find(|known| known.name == invariant).map(|known| known.law)
 }
 
-/// The value of a quantity at y, a time `t` after the start.
+/// When a value is asked for.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Moment {
+    /// The time.
+    pub(crate) t: f64,
+    /// The time after the start.
+    pub(crate) since_start: f64,
+}
+
+impl Moment {
+    /// The time t of a run that starts at t0.
+    pub(crate) fn of_run(t: f64, t0: f64) -> Self {
+        Moment { t, since_start: t - t0 }
+    }
+}
+
+/// The value of a quantity at y.
 pub(crate) enum Value<S: System> {
     /// A number.
-    Number(fn(&S, f64, &PointOf<S>) -> f64),
+    Number(fn(&S, Moment, &PointOf<S>) -> f64),
     /// Numbers, which go to the end of the row.
-    Numbers(fn(&S, f64, &PointOf<S>, &mut Vec<f64>)),
+    Numbers(fn(&S, Moment, &PointOf<S>, &mut Vec<f64>)),
 }
 
 /// A part of `columns` columns, from the column `first` on.
@@ -67,9 +83,14 @@ pub(crate) struct Quantity<S: System> {
 }
 
 impl<S: System> Quantity<S> {
-    const fn new(info: QuantityInfo, value: Value<S>) -> Self {
+    const fn new(
+        name: &'static str,
+        columns: &'static [&'static str],
+        meaning: &'static str,
+        value: Value<S>,
+    ) -> Self {
         Quantity {
-            info,
+            info: QuantityInfo { name, columns, meaning, unit: "", drawn_as: "" },
             value,
             columns: Columns::Listed,
             parts: None,
@@ -85,9 +106,9 @@ impl<S: System> Quantity<S> {
     pub(crate) const fn number(
         name: &'static str,
         meaning: &'static str,
-        value: fn(&S, f64, &PointOf<S>) -> f64,
+        value: fn(&S, Moment, &PointOf<S>) -> f64,
     ) -> Self {
-        Self::new(QuantityInfo { name, columns: &[], meaning, unit: "" }, Value::Number(value))
+        Self::new(name, &[], meaning, Value::Number(value))
     }
 
     /// Numbers under these columns; with an `…` between the first and the last where the size of the problem says
@@ -96,14 +117,19 @@ impl<S: System> Quantity<S> {
         name: &'static str,
         columns: &'static [&'static str],
         meaning: &'static str,
-        value: fn(&S, f64, &PointOf<S>, &mut Vec<f64>),
+        value: fn(&S, Moment, &PointOf<S>, &mut Vec<f64>),
     ) -> Self {
-        Self::new(QuantityInfo { name, columns, meaning, unit: "" }, Value::Numbers(value))
+        Self::new(name, columns, meaning, Value::Numbers(value))
     }
 
     /// The values are angles in radians.
     pub(crate) const fn in_radians(self) -> Self {
         Quantity { info: QuantityInfo { unit: "rad", ..self.info }, ..self }
+    }
+
+    /// A figure shows another quantity of the same problems in its place.
+    pub(crate) const fn drawn_as(self, other: &'static str) -> Self {
+        Quantity { info: QuantityInfo { drawn_as: other, ..self.info }, ..self }
     }
 
     /// With columns that depend on the problem.

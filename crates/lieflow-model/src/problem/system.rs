@@ -9,7 +9,7 @@ use lieflow::{Error, RunError};
 use super::forms::{Asked, Form, Forms, Run};
 use super::kind::{Fact, Figure, PrincipalInertia, high_order};
 use super::operations::{Counting, operations_by};
-use super::quantity::{Quantity, Value};
+use super::quantity::{Moment, Quantity, Value};
 use super::run::{
     Layer, Orders, Outcome, Plan, RowCurve, RowsOf, Runnable, SharedRowOf, Steps, Watcher,
     curve_by, drive_by, fits_by, numbers_of, orders_by,
@@ -125,30 +125,30 @@ impl<S: System> Debug for On<S> {
     }
 }
 
-/// numbers ← the values of the quantities of these numbers at y, `t` after the start.
+/// numbers ← the values of the quantities of these numbers at y.
 fn values_of<S: System>(
     system: &S,
     quantities: &[usize],
-    t: f64,
+    at: Moment,
     y: &PointOf<S>,
     numbers: &mut Vec<f64>,
 ) {
     numbers.clear();
-    append_values(system, quantities, t, y, numbers);
+    append_values(system, quantities, at, y, numbers);
 }
 
 /// The same at the end of `numbers`.
 fn append_values<S: System>(
     system: &S,
     quantities: &[usize],
-    t: f64,
+    at: Moment,
     y: &PointOf<S>,
     numbers: &mut Vec<f64>,
 ) {
     for &quantity in quantities {
         match S::QUANTITIES[quantity].value {
-            Value::Number(value) => numbers.push(value(system, t, y)),
-            Value::Numbers(values) => values(system, t, y, numbers),
+            Value::Number(value) => numbers.push(value(system, at, y)),
+            Value::Numbers(values) => values(system, at, y, numbers),
         }
     }
 }
@@ -163,7 +163,9 @@ impl<S: System> On<S> {
     /// What appends the values of these quantities, for what outlives a run that starts at t0.
     fn shared(&self, quantities: &[usize], t0: f64) -> Box<SharedRowOf<S::Problem>> {
         let (system, quantities) = (self.system.clone(), quantities.to_vec());
-        Box::new(move |t, y, numbers| append_values(&system, &quantities, t - t0, y, numbers))
+        Box::new(move |t, y, numbers| {
+            append_values(&system, &quantities, Moment::of_run(t, t0), y, numbers);
+        })
     }
 
     /// The sizes of terms at y go to the end of `numbers`.
@@ -212,7 +214,7 @@ impl<S: System> Run for On<S> {
         let (problem, start) = self.ready()?;
         let [t0, _] = plan.steps.t_span();
         let row_of = |t: f64, y: &PointOf<S>, numbers: &mut Vec<f64>| {
-            values_of(&self.system, asked.quantities, t - t0, y, numbers);
+            values_of(&self.system, asked.quantities, Moment::of_run(t, t0), y, numbers);
             self.sizes(asked, y, numbers);
         };
         let shared = || self.shared(asked.quantities, t0);
@@ -241,9 +243,9 @@ impl<S: System> Run for On<S> {
     fn exact(&self, asked: Asked<'_>, t_span: [f64; 2]) -> Option<Result<Vec<f64>, Error>> {
         let mut values = Vec::new();
         let end = self.system.exact(t_span)?;
-        let t = t_span[1] - t_span[0];
+        let at = Moment::of_run(t_span[1], t_span[0]);
         Some(
-            end.map(|y| values_of(&self.system, asked.quantities, t, &y, &mut values))
+            end.map(|y| values_of(&self.system, asked.quantities, at, &y, &mut values))
                 .map(|()| values),
         )
     }

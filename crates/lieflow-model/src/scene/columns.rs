@@ -7,7 +7,7 @@ use lieflow::Error;
 use crate::formula::{Formula, Lets, Names, Parameters};
 use crate::problem::Model;
 use crate::problem::{FormulaKeys, Problem};
-use crate::reader::{KeyPath, Mistakes, Read, ReadError, Refusal, Tree, read_by_keys, seen};
+use crate::reader::{Mistakes, Read, ReadError, Refusal, Tree, read_by_keys, seen};
 use crate::schema::{Row, Schema};
 
 /// The name of the quantity that `[output.formulas]` is.
@@ -226,29 +226,6 @@ pub(super) fn with_formulas(
         },
     };
     Ok(base.mapped(schema, Arc::new(number)))
-}
-
-/// Checks that the scene writes these columns or quantities.
-///
-/// # Errors
-/// A refusal of `plot` for another name.
-pub(super) fn check_plot(
-    plot: &[String],
-    problem: &Problem,
-    quantities: &[String],
-    formulas: &[(String, RowFormula)],
-) -> Result<(), ReadError> {
-    let columns = quantities.iter().flat_map(|name| problem.columns(name).unwrap_or_default());
-    let derived = formulas.iter().map(|(name, _)| name.clone());
-    let names: Vec<String> = quantities.iter().cloned().chain(columns).chain(derived).collect();
-    let wrong = plot.iter().enumerate().filter(|(_, name)| !names.contains(name));
-    let refusals = wrong.map(|(i, name)| {
-        let known = each_once(names.iter().map(String::as_str));
-        let unknown = Refusal::unknown("column", name, &known).about("plot".index(i));
-        let message = format!("{}: it is not among what the scene writes", unknown.message);
-        Refusal { message, ..unknown }
-    });
-    ReadError::from(refusals.collect::<Vec<_>>()).or(Some(()))
 }
 
 /// The names without those that were there before.

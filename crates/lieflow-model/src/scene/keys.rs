@@ -7,6 +7,7 @@ use lieflow::tolerance::Rule;
 use lieflow::{Error, SaveAt, TimeGrid};
 
 use super::defaults;
+use super::plot::{Entry, PlotFigure};
 use crate::formula::Lets;
 use crate::problem::Layer;
 use crate::problem::{Kind, Problem, high_order};
@@ -312,7 +313,7 @@ read_by_keys! {
     pub(super) struct OutputKeys {
         pub(super) quantities: Key<Option<Vec<String>>>,
         pub(super) formulas: Key<Lets>,
-        pub(super) plot: Key<Option<Vec<String>>>,
+        plot: Key<Option<Vec<Entry>>>,
         every: Key<Option<Whole<1>>>,
         times: Key<Option<Vec<Real>>>,
         count: Key<Option<Whole<1>>>,
@@ -343,12 +344,19 @@ impl OutputKeys {
 
     /// Spells the quantities as the kind does.
     pub(super) fn spell(&mut self, kind: &Kind) {
-        let lists = [&mut self.quantities, &mut self.plot];
-        for name in lists.into_iter().flatten().flatten().flatten() {
+        for name in self.quantities.iter_mut().flatten().flatten() {
             if let Ok(known) = kind.quantity(name) {
                 *name = known.name.into();
             }
         }
+        let figures = self.plot.iter_mut().flatten().flatten();
+        figures.for_each(|Entry(figure)| figure.spell(kind));
+    }
+
+    /// The figures that are asked for. None where a mistake in them is known.
+    pub(super) fn figures(self) -> Option<Vec<PlotFigure>> {
+        let entries = self.plot.ok()?.unwrap_or_default();
+        Some(entries.into_iter().map(|Entry(figure)| figure).collect())
     }
 
     /// The mistakes in the list of quantities.

@@ -10,6 +10,7 @@ mod files;
 mod keys;
 mod losses;
 mod open;
+mod plot;
 mod run;
 mod set;
 
@@ -19,4 +20,5 @@ pub use defaults::{Defaults, tolerance};
 pub use error::SceneError;
 pub use events::SceneEvent;
 pub use open::unknown_scene;
+pub use plot::PlotFigure;
 pub use run::Scene;

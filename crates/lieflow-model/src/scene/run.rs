@@ -10,13 +10,14 @@ use lieflow::samples::{Outside, Samples};
 use lieflow::{Error, SaveAt, TimeGrid};
 use toml::de::DeValue;
 
-use super::columns::{Columns, FORMULAS, RowFormula, check_plot, each_once, with_formulas};
+use super::columns::{Columns, FORMULAS, RowFormula, each_once, with_formulas};
 use super::defaults::{self, Defaults, INTERVALS};
 use super::document::{Document, Finder, with_file};
 use super::error::SceneError;
 use super::events::{self, EventKeys, SceneEvent};
 use super::files::read_samples;
 use super::keys::{Limits, MethodKeys, OutputKeys, Rows, TimeKeys, Times, with_defaults};
+use super::plot::{PlotFigure, check_plot};
 use crate::kinds;
 use crate::problem::{FormulaKeys, KNOTS_MAX, Kind, Problem, SAMPLES};
 use crate::problem::{Layer, Model, Plan, Steps};
@@ -68,8 +69,8 @@ pub struct Scene {
     file: String,
     /// The columns of `[output.formulas]`.
     formulas: Vec<(String, RowFormula)>,
-    /// The columns and quantities to draw; none where the kind chooses.
-    pub plot: Vec<String>,
+    /// The figures to draw; none where the kind chooses.
+    pub plot: Vec<PlotFigure>,
     /// A number of what the scene states, with its samples: another one for another scene. Comments and spaces do not
     /// count.
     pub fingerprint: u64,
@@ -150,7 +151,7 @@ impl Scene {
             let formulas = seen(&output.formulas).and_then(|lets| columns.define(lets));
             finder.keep("output", formulas)
         });
-        let plot = output.and_then(|output| output.plot.ok()).map(Option::unwrap_or_default);
+        let plot = output.and_then(OutputKeys::figures);
         if let (Some(plot), Some(problem), Some(formulas)) = (&plot, spec, &formulas) {
             finder.keep("output", check_plot(plot, problem, &asked, formulas));
         }

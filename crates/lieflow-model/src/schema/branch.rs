@@ -1,5 +1,6 @@
 //! Values that the state gives only up to a choice: a run chooses so that they are continuous.
 
+use core::f64::consts::{FRAC_PI_2, PI, TAU};
 use core::ops::Range;
 
 use super::Schema;
@@ -14,9 +15,28 @@ pub enum Branch {
     Sign,
     /// Angles in ascending order, each known up to π: the first + π may stand at the end, or the last − π at the start.
     HalfTurns,
+    /// Three Euler angles. Each is known up to a turn, and (α + π, −β, γ + π) is the same attitude, or (α + π, π − β,
+    /// γ + π) where the three axes differ. At the singular β only α + γ or α − γ is known.
+    Euler {
+        /// True if the first axis is the third.
+        is_proper: bool,
+        /// True if α + γ is known at the lower end of the range of β, which is 0 or −π/2, and α − γ at the upper end;
+        /// false if it is the other way round.
+        rises: bool,
+    },
 }
 
 impl Branch {
+    /// Euler angles are singular where the second is so near to an end of its range.
+    pub const SINGULAR: f64 = 1e-7;
+
+    /// How far three Euler angles are from where they are singular: an angle from 0 to π/2.
+    pub fn from_singular(self, values: &[f64]) -> Option<f64> {
+        let Branch::Euler { is_proper, .. } = self else { return None };
+        let beta = if is_proper { values[1] } else { values[1] + FRAC_PI_2 };
+        Some((beta - PI * (beta / PI).round()).abs())
+    }
+
     /// values ← the choice that is nearest to the values `before`; as they are, where one of these is NaN.
     pub(crate) fn follow(self, before: &[f64], values: &mut [f64]) {
         match self {
@@ -30,16 +50,39 @@ impl Branch {
             Branch::HalfTurns => {
                 // Each angle that goes from one end to the other changes the sum by π.
                 let sum: f64 = before.iter().zip(&*values).map(|(a, b)| a - b).sum();
-                let moved = (sum / core::f64::consts::PI).round();
+                let moved = (sum / PI).round();
                 if !moved.is_finite() || values.is_empty() {
                     return;
                 }
                 let count = values.len() as f64;
                 let around = moved.div_euclid(count);
                 let first = (moved - around * count) as usize;
-                values[..first].iter_mut().for_each(|x| *x += core::f64::consts::PI);
+                values[..first].iter_mut().for_each(|x| *x += PI);
                 values.rotate_left(first);
-                values.iter_mut().for_each(|x| *x += around * core::f64::consts::PI);
+                values.iter_mut().for_each(|x| *x += around * PI);
+            }
+            Branch::Euler { is_proper, rises } => {
+                let ([a0, b0, c0], [a, b, c]) = (before, &*values) else { return };
+                if before.iter().any(|x| x.is_nan()) {
+                    return;
+                }
+                let (mut a, b, mut c) = (*a, *b, *c);
+                if self.from_singular(values).is_some_and(|far| far <= Branch::SINGULAR) {
+                    // The third goes on as it was.
+                    let low = if is_proper { b.cos() > 0.0 } else { b.sin() < 0.0 };
+                    let moved = c0 - c;
+                    a -= if low == rises { moved } else { -moved };
+                    c = *c0;
+                }
+                let nearest = |x: f64, before: f64| x + TAU * ((before - x) / TAU).round();
+                let other = if is_proper { -b } else { PI - b };
+                let all = [[a, b, c], [a + PI, other, c + PI]]
+                    .map(|[a, b, c]| [nearest(a, *a0), nearest(b, *b0), nearest(c, *c0)]);
+                let far = |angles: &[f64; 3]| {
+                    angles.iter().zip(before).map(|(x, before)| (x - before).powi(2)).sum::<f64>()
+                };
+                let [same, other] = &all;
+                values.copy_from_slice(if far(other) < far(same) { other } else { same });
             }
         }
     }
@@ -98,8 +141,6 @@ impl Branches {
 
 #[cfg(test)]
 mod tests {
-    use core::f64::consts::PI;
-
     use super::*;
 
     #[test]
@@ -121,6 +162,27 @@ mod tests {
         let mut falling = [-1.5, 1.5];
         Branch::HalfTurns.follow(&[-4.6, -1.7], &mut falling);
         assert_eq!(falling, [1.5 - 2.0 * PI, -1.5]);
+    }
+
+    /// At the singular angle the first and the third are known together alone: the third goes on as it was.
+    #[test]
+    fn euler_angles_go_on_at_the_singular_one() {
+        let follow = |is_proper, rises, before: [f64; 3], values: [f64; 3]| {
+            let mut values = values;
+            Branch::Euler { is_proper, rises }.follow(&before, &mut values);
+            values
+        };
+        let close = |a: [f64; 3], b: [f64; 3]| {
+            assert!(a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-12), "{a:?}, expected {b:?}");
+        };
+        let before = [0.4, 1.5, 0.7];
+        close(follow(false, false, before, [1.1, FRAC_PI_2, 0.0]), [0.4, FRAC_PI_2, 0.7]);
+        close(follow(false, true, before, [-0.3, FRAC_PI_2, 0.0]), [0.4, FRAC_PI_2, 0.7]);
+        let before = [0.4, 0.1, 0.7 + TAU];
+        close(follow(true, true, before, [1.1, 0.0, 0.0]), [0.4, 0.0, 0.7 + TAU]);
+        // Beyond it, the other angles of the same attitude are near.
+        close(follow(true, true, before, [0.4 - PI, 0.1, 0.7 - PI]), [0.4, -0.1, 0.7 + TAU]);
+        close(follow(true, true, [f64::NAN; 3], [3.0, 0.1, 0.7]), [3.0, 0.1, 0.7]);
     }
 
     #[test]

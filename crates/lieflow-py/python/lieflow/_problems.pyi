@@ -93,6 +93,8 @@ class DrivenBody(Problem):
         momentum_space: ArrayLike | None = None,
         attitude: ArrayLike | None = None,
         quaternion: ArrayLike | None = None,
+        euler: Mapping[str, Any] | None = None,
+        fixed: Mapping[str, Any] | None = None,
         weight: ArrayLike | None = None,
         thruster: ArrayLike | None = None,
         damping: float | None = None,
@@ -142,6 +144,8 @@ class HeavyTop(Problem):
         momentum_space: ArrayLike | None = None,
         attitude: ArrayLike | None = None,
         quaternion: ArrayLike | None = None,
+        euler: Mapping[str, Any] | None = None,
+        fixed: Mapping[str, Any] | None = None,
         weight: ArrayLike,
         vertical: ArrayLike | None = None,
     ) -> None: ...
@@ -255,6 +259,8 @@ class RigidBody(Problem):
         momentum_space: ArrayLike | None = None,
         attitude: ArrayLike | None = None,
         quaternion: ArrayLike | None = None,
+        euler: Mapping[str, Any] | None = None,
+        fixed: Mapping[str, Any] | None = None,
     ) -> None: ...
 
 class RigidBodyN(Problem):

@@ -3,21 +3,23 @@
 mod lines;
 mod motion;
 mod sample;
+mod together;
 mod words;
 
-pub use sample::RowSample;
+pub use sample::{RowSample, Sample};
+pub use together::{Written, together};
 
 use lieflow_figures::number::{seconds, short, sig};
 use lieflow_figures::{
-    self as figures, Axis, Block, Body, Cell, Chart, Column, Ground, Heat, LINE_COLOURS, Marker,
-    Page, Path, Point, Scale, Section, Series, Sphere, Table,
+    self as figures, Axis, Block, Body, Cell, Chart, Column as TableColumn, Ground, Heat,
+    LINE_COLOURS, Marker, Page, Path, Point, Scale, Section, Series, Sphere, Table,
 };
 use lieflow_model::problem;
 use lieflow_model::problem::{Figure, PrincipalInertia};
 use lieflow_model::scene::Scene;
 use lieflow_model::schema::{Observable, Row};
 
-use self::lines::{LINES, against_time, constant, in_rows, marked};
+use self::lines::{Column, Drawn as Figured, LINES, Shown, against_time, figure, in_rows, marked};
 use crate::error::CliError;
 use crate::output::{EVENTS, SUMMARY, Summary};
 
@@ -45,52 +47,36 @@ pub struct Drawn<'a> {
 
 /// The page of a run.
 pub fn run_page(summary: &Summary, run: &Drawn<'_>) -> Page {
-    let kind = run.scene.problem.kind();
     let figure = run.scene.problem.figure(&run.scene.computed());
-    let wanted = &run.scene.plot[..];
-    let mut motion = own_figure(summary, run, figure);
-    let mut constants = Vec::new();
-    let mut charts = Vec::new();
     let is_line = matches!(figure, Figure::Lines(_));
-    let wants = |quantity: &Observable| {
-        wanted.iter().any(|name| *name == quantity.name || quantity.columns.contains(name))
+    let mut asked_for = asked_for(summary, run, is_line);
+    let mut motion = own_figure(summary, run, figure);
+    let mut charts = match asked_for.is_empty() {
+        true => over_time(summary, run, is_line),
+        false => Vec::new(),
     };
-    if is_line {
-        let columns = if wants(run.figure) { wanted } else { &[] };
-        let lines = against_time("figure", kind, run.figure, run.rows, columns, summary);
-        charts.push((run.figure, lines));
-    }
-    let drawn = |asked: &&&Observable| {
-        let again = is_line && asked.name == run.figure.name;
-        !again && (wanted.is_empty() || wants(asked))
-    };
-    for quantity in run.asked.iter().filter(drawn) {
-        if let Some(value) = constant(quantity, run.rows) {
-            constants.push((words::title(kind, quantity), value));
-            continue;
-        }
-        let id = format!("time-{}", quantity.name.replace('_', "-"));
-        let lines = against_time(&id, kind, quantity, run.rows, wanted, summary);
-        charts.push((*quantity, lines));
-    }
     let inertia = run.scene.problem.inertia();
     if let Some(body) = inertia.and_then(|inertia| motion::body(&inertia, run.rows)) {
         motion.insert(0, body.into());
     }
-    // A single body or sphere has the first chart beside it, unless that is one of many of another quantity.
-    if let ([Block::Sphere(_) | Block::Body(_)], Some((quantity, lines))) =
-        (&motion[..], charts.first_mut())
-        && (lines.len() <= 2 || quantity.name == run.figure.name)
-        && matches!(lines.first(), Some(Block::Chart(_)))
-    {
-        motion.push(lines.remove(0));
+    // A single body or sphere has a chart beside it: the first that is narrow, and not one of many of another quantity.
+    if let [Block::Sphere(_) | Block::Body(_)] = motion[..] {
+        let beside = charts.iter_mut().find_map(|(quantity, figures)| {
+            let is_free = figures.len() <= 2 || quantity.name == run.figure.name;
+            match figures.first() {
+                Some(Figured::Narrow(_)) if is_free => Some(figures.remove(0)),
+                _ => None,
+            }
+        });
+        motion.extend(beside.map(|figure| in_rows(vec![figure])).into_iter().flatten());
     }
     let motion = if motion.len() > 1 { vec![Block::Row(motion)] } else { motion };
-    let mut charts: Vec<Block> = charts.into_iter().flat_map(|(_, lines)| in_rows(lines)).collect();
-    if !constants.is_empty() {
-        charts.push(Block::text("These quantities stay as they are at the start:"));
-        charts.push(Block::Facts(constants));
+    let charts = in_rows(charts.into_iter().flat_map(|(_, figures)| figures).collect());
+    // What is asked for first is large.
+    if let Some(first) = asked_for.first_mut() {
+        first.widen();
     }
+    let asked_for = in_rows(asked_for);
     let mut result: Vec<Block> = summary.warnings.iter().cloned().map(Block::Notice).collect();
     result
         .extend(summary.failure.iter().map(|why| Block::Notice(format!("The run stopped: {why}"))));
@@ -106,6 +92,7 @@ pub fn run_page(summary: &Summary, run: &Drawn<'_>) -> Page {
     result.push(facts(summary));
     let mut sections = vec![
         Section::new("How it went", result),
+        Section::new("What was asked for", asked_for),
         Section::new("The motion", motion),
         Section::new("Over time", charts),
     ];
@@ -138,6 +125,114 @@ pub fn run_page(summary: &Summary, run: &Drawn<'_>) -> Page {
         sections,
         footer: format!("lieflow {}", summary.lieflow),
     }
+}
+
+/// The figures of the quantities of a run against time, each quantity once.
+fn over_time<'a>(
+    summary: &Summary,
+    run: &Drawn<'a>,
+    is_line: bool,
+) -> Vec<(&'a Observable, Vec<Figured>)> {
+    let kind = run.scene.problem.kind();
+    let mut charts: Vec<(&Observable, Vec<Figured>)> = Vec::new();
+    let figure = is_line.then_some(run.figure);
+    for quantity in figure.into_iter().chain(run.asked.iter().copied()) {
+        let figures_of = |id: &str, quantity: &Observable| {
+            against_time(id, kind, quantity, run.rows, &[], summary)
+        };
+        let is_drawn = |name: &str| {
+            charts.iter().any(|(quantity, _): &(&Observable, _)| quantity.name == name)
+        };
+        if is_drawn(quantity.name) {
+            continue;
+        }
+        let id = match is_line && quantity.name == run.figure.name {
+            true => "figure".into(),
+            false => format!("time-{}", quantity.name.replace('_', "-")),
+        };
+        let mut figures = figures_of(&id, quantity);
+        let drawn_as = kind.quantity(quantity.name).map_or("", |info| info.drawn_as);
+        if let Ok(other) = run.rows.schema().get(drawn_as) {
+            if !is_drawn(drawn_as) {
+                charts.push((other, figures_of(&format!("time-{drawn_as}"), other)));
+            }
+            let is_one = matches!(figures[..], [Figured::Constant(..)]);
+            if !is_one {
+                figures = vec![Figured::Closed(words::title(kind, quantity), figures)];
+            }
+        }
+        charts.push((quantity, figures));
+    }
+    charts
+}
+
+/// The figures that the scene asks for by `plot`, in their order. The first is that of the run, where its kind has none
+/// of another sort.
+fn asked_for(summary: &Summary, run: &Drawn<'_>, is_line: bool) -> Vec<Figured> {
+    let (plot, kind) = (&run.scene.plot, run.scene.problem.kind());
+    let of_name = |name: &str| -> Vec<Column<'_>> {
+        if let Some(quantity) = run.asked.iter().find(|quantity| quantity.name == name) {
+            return Column::all(quantity).collect();
+        }
+        let columns = run.asked.iter().flat_map(|quantity| Column::all(quantity));
+        columns.filter(|column| column.name() == name).take(1).collect()
+    };
+    let names: Vec<(&str, Column<'_>)> = plot
+        .iter()
+        .filter(|figure| figure.is_name())
+        .filter_map(|figure| Some((&figure.columns[0][..], *of_name(&figure.columns[0]).first()?)))
+        .collect();
+    let (mut figures, mut drawn) = (Vec::new(), Vec::new());
+    for (i, asked) in plot.iter().enumerate() {
+        let id = match i {
+            0 if is_line => "figure".into(),
+            0 => "plot".into(),
+            _ => format!("plot-{}", i + 1),
+        };
+        let columns: Vec<Column<'_>> =
+            asked.columns.iter().flat_map(|name| of_name(name)).collect();
+        let Some(Column { quantity, .. }) = columns.first().copied() else { continue };
+        if asked.is_name() {
+            // The names of one quantity are one figure, at the place of the first.
+            if !drawn.contains(&quantity.name) {
+                drawn.push(quantity.name);
+                let of_quantity =
+                    names.iter().filter(|(_, column)| column.quantity.name == quantity.name);
+                let wanted: Vec<String> = of_quantity.map(|(name, _)| (*name).into()).collect();
+                figures.extend(against_time(&id, kind, quantity, run.rows, &wanted, summary));
+            }
+            continue;
+        }
+        let against = asked.against.iter().flat_map(|name| of_name(name)).next();
+        let named: Vec<String> =
+            columns.iter().map(|column| words::column(column.name())).collect();
+        let is_whole = columns.len() == quantity.columns.len()
+            && columns.iter().all(|column| column.quantity.name == quantity.name);
+        let title = asked.title.clone().unwrap_or_else(|| match (is_whole, against) {
+            (true, None) => words::title(kind, quantity),
+            (_, None) => named.join(", "),
+            (_, Some(x)) => format!("{} against {}", named.join(", "), words::column(x.name())),
+        });
+        let x = against.map_or("t".into(), |column| words::column(column.name()));
+        let x = asked.x_label.clone().unwrap_or(x);
+        let y = asked.y_label.clone().unwrap_or_else(|| named.join(", "));
+        let shown = Shown { title, axes: [x, y], unit: "", columns };
+        figures.push(match against {
+            None => figure(&id, &shown, run.rows, summary),
+            Some(against) => Figured::Narrow(curves(&id, &shown, against, run.rows)),
+        });
+    }
+    figures
+}
+
+/// Columns against another column.
+fn curves(id: &str, shown: &Shown<'_>, against: Column<'_>, rows: &RowSample<'_>) -> Chart {
+    let Shown { title, axes, columns, .. } = shown;
+    let line = |(colour, column): (usize, &Column<'_>)| {
+        let points = rows.rows().map(|(_, row)| (against.of(row), column.of(row)));
+        Series::line(words::column(column.name()), colour, points)
+    };
+    Chart::new(id, title, axes.each_ref().map(Axis::linear), columns.iter().enumerate().map(line))
 }
 
 /// The body of a scene as it turns, by a run of that scene.
@@ -188,7 +283,7 @@ fn facts(summary: &Summary) -> Block {
         summary.defaults_in_words.iter().map(|chosen| ("Chosen by default".into(), chosen.clone())),
     );
     facts.extend(
-        summary.facts.iter().map(|(name, value)| (name.replace('_', " "), in_digits(*value))),
+        summary.facts.iter().map(|fact| (fact.name.replace('_', " "), fact.in_words(in_digits))),
     );
     facts.extend(summary.events.iter().map(|event| {
         let mut text = format!("{} times", event.count);
@@ -330,13 +425,13 @@ fn sphere(id: String, title: String, run: &Drawn<'_>) -> Sphere {
 
 fn drift_table(summary: &Summary) -> Block {
     let columns = vec![
-        Column::text("Quantity"),
-        Column::number("at the start"),
-        Column::number("largest change"),
-        Column::number("change at the end"),
-        Column::number("change per unit of time"),
-        Column::text("the method"),
-        Column::number("rounding alone"),
+        TableColumn::text("Quantity"),
+        TableColumn::number("at the start"),
+        TableColumn::number("largest change"),
+        TableColumn::number("change at the end"),
+        TableColumn::number("change per unit of time"),
+        TableColumn::text("the method"),
+        TableColumn::number("rounding alone"),
     ];
     let rows = summary.drift.iter().map(|(name, drift)| {
         let promise = match (drift.promised, drift.breaks_a_promise()) {
@@ -381,7 +476,7 @@ fn drifts(summary: &Summary, watched: &[&Observable], rows: &RowSample<'_>) -> C
         let initial = summary.drift.get(column).map_or(f64::NAN, |drift| drift.initial);
         let gap = |(t, row): (f64, Row<'_>)| (t, (row[law][i] - initial).abs());
         // A change of exactly 0, as at the start, has no place on a logarithm.
-        let points = rows.rows().map(gap).filter(|(_, gap)| *gap != 0.0);
+        let points = rows.columns().map(gap).filter(|(_, gap)| *gap != 0.0);
         Series::line(words::column(column), colour, points)
     });
     let axes = [Axis::linear("t"), Axis::log("|value − value at the start|")];

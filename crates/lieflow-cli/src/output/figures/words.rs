@@ -8,10 +8,9 @@ pub(super) fn title(kind: &Kind, quantity: &Observable) -> String {
     let info = match (kind.quantity(quantity.name), &quantity.parts[..]) {
         (Ok(_), [part]) if !part.what.is_empty() => return of_part(part),
         (Ok(info), _) => info,
-        (Err(_), _) => return by_formula(&path(quantity, &quantity.columns, 1)),
+        (Err(_), _) => return path(quantity, &quantity.columns, 1),
     };
-    let clause = info.meaning.split([';', ',', ':']).next().unwrap_or(info.meaning);
-    let clause = clause.replace('_', " ");
+    let clause = first_clause(info.meaning).replace('_', " ");
     let mut letters = clause.chars();
     letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }
@@ -21,9 +20,15 @@ pub(super) fn of_part(part: &Part) -> String {
     format!("The {} {}", part.what, part.name.replace('_', " "))
 }
 
-/// The title of what a formula of the scene computes.
-pub(super) fn by_formula(name: &str) -> String {
-    format!("By a formula of the scene: {name}")
+/// The first clause of a meaning, with the further parts of a list: "real parts, then imaginary parts".
+fn first_clause(meaning: &str) -> &str {
+    let ends = meaning.char_indices().filter(|(at, c)| {
+        let rest = meaning[*at..].trim_start_matches(", ");
+        let goes_on = ["then ", "and ", "or "].iter().any(|word| rest.starts_with(word));
+        matches!(c, ';' | ':') || (*c == ',' && !goes_on)
+    });
+    let end = ends.map(|(at, _)| at).next().unwrap_or(meaning.len());
+    &meaning[..end]
 }
 
 /// The name of a quantity on an axis: of its one part, or its columns, where one of them has that name.
@@ -104,6 +109,19 @@ pub(super) fn shared(columns: &[String]) -> &str {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_title_does_not_leave_parts_of_a_list_out() {
+        for (meaning, clause) in [
+            ("real parts, then imaginary parts", "real parts, then imaginary parts"),
+            ("rotation from body to space, row by row; more", "rotation from body to space"),
+            ("gamma times the velocity, and gamma", "gamma times the velocity, and gamma"),
+            ("angular momentum; on the sphere", "angular momentum"),
+            ("energy", "energy"),
+        ] {
+            assert_eq!(first_clause(meaning), clause);
+        }
+    }
 
     #[test]
     fn columns_and_what_they_share() {

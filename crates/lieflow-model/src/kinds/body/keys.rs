@@ -24,6 +24,11 @@ group! {
         quaternion: Option<crate::reader::values::Reals<4>> =
             "the same as a unit quaternion [w, x, y, z], instead of attitude; a rigid-body is then integrated by its \
              quaternion",
+        euler: std::collections::BTreeMap<String, crate::reader::values::Reals<3>> =
+            "the same as Euler angles in radians, instead of attitude: euler.zyx = [yaw, pitch, roll] turns about z, \
+             then the new y, then the new x; any other sequence such as euler.zxz too",
+        fixed: std::collections::BTreeMap<String, crate::reader::values::Reals<3>> =
+            "the same as turns about fixed axes of space: fixed.xyz = [about x, then y, then z]",
     }
     after {}
 }

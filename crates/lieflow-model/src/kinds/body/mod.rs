@@ -1,8 +1,11 @@
 //! What all kinds of bodies share: their keys ([`BodyKeys`]), the start that these state, and their quantities.
 
+mod euler;
 mod keys;
 mod quantities;
 mod shape;
+
+use std::collections::BTreeMap;
 
 use lieflow::Error;
 use lieflow::groups::{LieGroup, MEMBERSHIP, So3};
@@ -160,7 +163,10 @@ type Principal = ([f64; 3], Option<Matrix3<f64>>);
 impl BodyKeys {
     /// Does the scene say how the body stands?
     pub(super) fn has_attitude(&self) -> bool {
-        !matches!((&self.attitude, &self.quaternion), (Ok(None), Ok(None)))
+        let Self { attitude, quaternion, euler, fixed, .. } = self;
+        let has_angles =
+            [euler, fixed].iter().any(|angles| !matches!(angles, Ok(angles) if angles.is_empty()));
+        has_angles || !matches!((attitude, quaternion), (Ok(None), Ok(None)))
     }
 
     /// The body with its start; the attitude where the scene does not say it.
@@ -190,18 +196,32 @@ impl BodyKeys {
         otherwise: Matrix3<f64>,
         notes: &mut Vec<String>,
     ) -> Result<(Matrix3<f64>, Option<UnitQuaternion<f64>>), ReadError> {
-        if is_given(&self.attitude) && is_given(&self.quaternion) {
-            let message = "both `attitude` and `quaternion`, expected at most one of them";
-            return Err(Refusal::at("quaternion", message).into());
+        let angles = [("euler", &self.euler), ("fixed", &self.fixed)];
+        let has_angles = |(key, table): (_, &Key<BTreeMap<_, _>>)| {
+            (key, seen(table).is_ok_and(|table| !table.is_empty()))
+        };
+        let both =
+            [("attitude", is_given(&self.attitude)), ("quaternion", is_given(&self.quaternion))];
+        let stated = both.into_iter().chain(angles.map(has_angles));
+        let mut stated = stated.filter(|(_, stated)| *stated).map(|(key, _)| key);
+        if let (Some(a), Some(b)) = (stated.next(), stated.next()) {
+            let message = format!("both `{a}` and `{b}`, expected at most one of them");
+            return Err(Refusal::at(b, message).into());
         }
         if let Some(rows) = seen(&self.attitude)? {
             let g = Matrix3::from_fn(|i, j| rows.0[i][j]);
             return Ok((check_rotation("attitude", g, notes)?, None));
         }
-        let Some(wxyz) = seen(&self.quaternion)? else { return Ok((otherwise, None)) };
-        check_unit("quaternion", &wxyz.0, notes)?;
-        let q = quaternion_from_wxyz(wxyz.0)?;
-        Ok((rotation(&q), Some(q)))
+        if let Some(wxyz) = seen(&self.quaternion)? {
+            check_unit("quaternion", &wxyz.0, notes)?;
+            let q = quaternion_from_wxyz(wxyz.0)?;
+            return Ok((rotation(&q), Some(q)));
+        }
+        let mut attitude = otherwise;
+        for (key, table) in angles {
+            attitude = euler::stated(key, seen(table)?)?.map_or(attitude, |q| rotation(&q));
+        }
+        Ok((attitude, None))
     }
 
     /// The key of the initial velocity or momentum, and its value.

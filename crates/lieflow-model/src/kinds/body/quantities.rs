@@ -4,6 +4,7 @@ use lieflow::groups::{LieGroup, So3, vee};
 use lieflow::so3::{quaternion_from_matrix, quaternion_to_wxyz};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
+use super::euler::SEQUENCES;
 use super::{RigidBodySpec, rotation};
 use crate::kinds::prelude::*;
 use crate::problem::PointOf;
@@ -124,7 +125,19 @@ pub(in crate::kinds) const fn attitude<S: AsBody>() -> Quantity<S> {
         |body: &S, _, y, row| row.extend(body.attitude(y).transpose().iter()),
     )
     .of_rotation()
+    .drawn_as("quaternion")
     .missing_where(S::without_orientation)
+}
+
+/// The quaternion of the attitude, and whether its sign is that of the state; NaN where the state is no rotation.
+fn wxyz<S: AsBody>(body: &S, y: &PointOf<S>) -> ([f64; 4], bool) {
+    let orientation = body.orientation(y);
+    let axes = body
+        .spec()
+        .axes
+        .map_or(Ok(UnitQuaternion::identity()), |axes| quaternion_from_matrix(&axes.transpose()));
+    let q = axes.map(|axes| quaternion_to_wxyz(&(orientation.quaternion() * axes)));
+    (q.unwrap_or([f64::NAN; 4]), matches!(orientation, Orientation::Quaternion(_)))
 }
 
 /// The attitude as a quaternion.
@@ -136,13 +149,7 @@ pub(in crate::kinds) const fn quaternion<S: AsBody>() -> Quantity<S> {
          the sign that is nearer to the row before, the first has qw >= 0, or the sign of the key quaternion of a \
          rigid-body",
         |body: &S, _, y, row| {
-            let orientation = body.orientation(y);
-            let axes = body.spec().axes.map_or(Ok(UnitQuaternion::identity()), |axes| {
-                quaternion_from_matrix(&axes.transpose())
-            });
-            let q = axes.map(|axes| quaternion_to_wxyz(&(orientation.quaternion() * axes)));
-            let q = q.unwrap_or([f64::NAN; 4]);
-            let is_given = matches!(orientation, Orientation::Quaternion(_));
+            let (q, is_given) = wxyz(body, y);
             row.extend(if q[0] < 0.0 && !is_given { q.map(|x| -x) } else { q });
         },
     )
@@ -150,6 +157,28 @@ pub(in crate::kinds) const fn quaternion<S: AsBody>() -> Quantity<S> {
     .continuous_by(|_| Branch::Sign)
     .missing_where(S::without_orientation)
 }
+
+/// The attitude as the Euler angles of a sequence.
+pub(in crate::kinds) const fn angles<S: AsBody, const SEQUENCE: usize>() -> Quantity<S> {
+    let sequence = &SEQUENCES[SEQUENCE];
+    Quantity::numbers(sequence.name, sequence.columns, sequence.meaning(), |body: &S, _, y, row| {
+        row.extend(SEQUENCES[SEQUENCE].angles(wxyz(body, y).0))
+    })
+    .in_radians()
+    .continuous_by(|_| SEQUENCES[SEQUENCE].branch())
+    .missing_where(S::without_orientation)
+}
+
+/// The quantities of a kind, and after them the Euler angles in all sequences.
+macro_rules! with_angles {
+    ($($quantity:expr,)*) => {
+        with_angles!(@ $($quantity,)*; 0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23)
+    };
+    (@ $($quantity:expr,)*; $($sequence:literal)*) => {
+        &[$($quantity,)* $($crate::kinds::body::angles::<Self, $sequence>(),)*]
+    };
+}
+pub(in crate::kinds) use with_angles;
 
 /// The third axis of the body, in space.
 pub(in crate::kinds) const fn axis<S: AsBody>() -> Quantity<S> {

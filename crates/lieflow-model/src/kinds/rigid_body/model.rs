@@ -260,7 +260,7 @@ impl<R: Representation> System for Body<R> {
 
     const STATE: &'static [&'static str] =
         if R::TURNS { &["momentum_body", "attitude"] } else { &["momentum_body"] };
-    const QUANTITIES: &'static [Q<R>] = &[
+    const QUANTITIES: &'static [Q<R>] = with_angles![
         momentum_body(&["m1", "m2", "m3"]),
         omega_body(),
         attitude(),

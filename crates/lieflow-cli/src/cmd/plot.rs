@@ -1,0 +1,129 @@
+//! `lieflow plot`: columns of runs that were made before, those of several runs in one figure.
+
+use std::fs::File;
+use std::io::{BufRead, BufReader};
+use std::path::{Path, PathBuf};
+
+use lieflow_figures::{Page, Section};
+use lieflow_model::reader::help_for;
+
+use crate::args::PlotArgs;
+use crate::error::CliError;
+use crate::output::{self, SUMMARY, Sample, TRAJECTORY, Written, together};
+
+/// Run the command.
+///
+/// # Errors
+/// A folder without a run, a file that is no file of rows, a column that the runs do not have; the page cannot be
+/// written.
+pub fn run(args: &PlotArgs) -> Result<(), CliError> {
+    let names = names_of(&args.runs);
+    let runs = args.runs.iter().zip(names).map(|(folder, name)| read(folder, name, args));
+    let runs: Vec<Written> = runs.collect::<Result<_, _>>()?;
+    let columns = columns_of(&runs, &args.columns)?;
+    let title = match &runs[..] {
+        [only] => only.name.clone(),
+        _ => format!("{} runs", runs.len()),
+    };
+    let subtitle = runs.iter().map(|run| run.name.as_str()).collect::<Vec<_>>().join(", ");
+    let page =
+        Page::new(title, subtitle, vec![Section::new("Over time", together(&runs, &columns))]);
+    output::make_folder(&args.out)?;
+    let path = output::write_page(&args.out, "index.html", &page)?;
+    output::print(&format!(
+        "{} columns of {} runs: {}\n",
+        columns.len(),
+        runs.len(),
+        path.display()
+    ))
+}
+
+/// What the runs are called: their folders without what all paths begin with.
+fn names_of(folders: &[PathBuf]) -> Vec<String> {
+    let last = |folder: &PathBuf| match folder.file_name() {
+        Some(name) => name.to_string_lossy().into_owned(),
+        None => folder.display().to_string(),
+    };
+    let names: Vec<String> = folders.iter().map(last).collect();
+    let is_twice = |name: &String| names.iter().filter(|other| *other == name).count() > 1;
+    match names.iter().any(is_twice) {
+        true => folders.iter().map(|folder| folder.display().to_string()).collect(),
+        false => names,
+    }
+}
+
+/// The columns to draw: those that are named, or all that every run has.
+fn columns_of(runs: &[Written], wanted: &[String]) -> Result<Vec<String>, CliError> {
+    let in_all = |column: &&String| runs.iter().all(|run| run.columns.contains(column));
+    let all: Vec<String> = runs[0].columns.iter().filter(in_all).cloned().collect();
+    if wanted.is_empty() {
+        return match all.is_empty() {
+            true => Err(CliError::Message("these runs have no column in common".into())),
+            false => Ok(all),
+        };
+    }
+    // A name without its number stands for all of that name, as m for m1, m2 and m3.
+    let mut columns = Vec::new();
+    for name in wanted.iter().map(|name| name.trim()) {
+        let is_meant = |column: &&String| {
+            let rest = column.strip_prefix(name);
+            rest.is_some_and(|rest| rest.chars().all(|c| c.is_ascii_digit()))
+        };
+        let mut found: Vec<String> = match all.iter().find(|column| *column == name) {
+            Some(column) => vec![column.clone()],
+            None => all.iter().filter(is_meant).cloned().collect(),
+        };
+        if found.is_empty() {
+            let known: Vec<&str> = all.iter().map(String::as_str).collect();
+            let help = help_for(name, &known);
+            let message = format!("--columns: no column `{name}` in every run: {help}");
+            return Err(CliError::Message(message));
+        }
+        found.retain(|column| !columns.contains(column));
+        columns.append(&mut found);
+    }
+    Ok(columns)
+}
+
+/// The rows of a run between two times.
+fn read(folder: &Path, name: String, args: &PlotArgs) -> Result<Written, CliError> {
+    let paths = TRAJECTORY.map(|file| folder.join(file));
+    let Some(path) = paths.iter().find(|path| path.exists()) else {
+        let has = if folder.join(SUMMARY).exists() { "rows" } else { "run" };
+        let message =
+            format!("there is no {has} in `{}`: {} is missing", folder.display(), TRAJECTORY[0]);
+        return Err(CliError::Message(message));
+    };
+    let file = File::open(path).map_err(CliError::io("read", path))?;
+    let mut lines = BufReader::new(file).lines();
+    let wrong =
+        |line: usize, what: &str| CliError::Message(format!("{}:{line}: {what}", path.display()));
+    let header = lines.next().transpose().map_err(CliError::io("read", path))?.unwrap_or_default();
+    let mut columns = header.split(',').map(|name| name.trim_matches('"').to_string());
+    if columns.next().as_deref() != Some("t") {
+        return Err(wrong(1, "expected the names of columns, t first"));
+    }
+    let columns: Vec<String> = columns.collect();
+    let (mut rows, mut values) = (Sample::default(), Vec::new());
+    let within =
+        |t: f64| args.from.is_none_or(|from| t >= from) && args.to.is_none_or(|to| t <= to);
+    for (i, line) in lines.enumerate() {
+        let line = line.map_err(CliError::io("read", path))?;
+        values.clear();
+        for value in line.split(',') {
+            let value = value.trim().parse::<f64>();
+            values.push(value.map_err(|_| wrong(i + 2, "expected numbers between commas"))?);
+        }
+        if values.len() != columns.len() + 1 {
+            let what = format!("{} numbers, expected {}", values.len(), columns.len() + 1);
+            return Err(wrong(i + 2, &what));
+        }
+        if within(values[0]) {
+            rows.see(values[0], &values[1..]);
+        }
+    }
+    if rows.seen() == 0 {
+        return Err(CliError::Message(format!("{} has no rows at these times", path.display())));
+    }
+    Ok(Written { name, columns, rows })
+}

@@ -1,0 +1,85 @@
+//! Columns of runs that were written before, those of several runs in one figure.
+
+use lieflow_figures::{Axis, Block};
+
+use super::lines::{Curve, Drawn, LINES, constants, drawn, in_rows};
+use super::sample::Sample;
+use super::words;
+
+/// A relative change below this is rounding.
+const CONSTANT: f64 = 1e-12;
+/// Figures that are open; the others are in a fold.
+const OPEN: usize = 12;
+
+/// The rows of a run that was written before.
+#[derive(Clone, Debug)]
+pub struct Written {
+    /// What the run is called in a legend.
+    pub name: String,
+    /// The columns, without t.
+    pub columns: Vec<String>,
+    /// The rows.
+    pub rows: Sample,
+}
+
+impl Written {
+    /// The points of a column.
+    fn points<'a>(
+        &self,
+        column: &str,
+        rows: impl Iterator<Item = (f64, &'a [f64])>,
+    ) -> Vec<(f64, f64)> {
+        match self.columns.iter().position(|name| name == column) {
+            Some(place) => rows.map(|(t, row)| (t, row[place])).collect(),
+            None => Vec::new(),
+        }
+    }
+
+    fn curve(&self, name: String, column: &str) -> Curve {
+        let whole = self.points(column, self.rows.columns());
+        let size = whole.iter().map(|point| point.1.abs()).fold(0.0, f64::max);
+        Curve { name, whole, first: self.points(column, self.rows.first()), size }
+    }
+}
+
+/// Figures of columns: a column with a line for each run, or, of one run, columns of one name together.
+pub fn together(runs: &[Written], columns: &[String]) -> Vec<Block> {
+    let groups: Vec<&[String]> = match runs {
+        [_] => {
+            let same = |a: &String, b: &String| words::stem(a) == words::stem(b);
+            columns.chunk_by(same).flat_map(|group| group.chunks(LINES)).collect()
+        }
+        _ => columns.chunks(1).collect(),
+    };
+    let figure = |(number, group): (usize, &&[String])| {
+        let named: Vec<String> = group.iter().map(|name| words::column(name)).collect();
+        let title = named.join(", ");
+        let mut curves: Vec<Curve> = match runs {
+            [run] => {
+                group.iter().zip(named).map(|(column, name)| run.curve(name, column)).collect()
+            }
+            _ => runs.iter().map(|run| run.curve(run.name.clone(), &group[0])).collect(),
+        };
+        // All are in one figure, so that the rounding of the largest is the rounding of each.
+        let size = curves.iter().map(|curve| curve.size).fold(0.0, f64::max);
+        curves.iter_mut().for_each(|curve| curve.size = size);
+        if let Some(values) = constants(&mut curves, CONSTANT) {
+            let names = curves.iter().map(|curve| &curve.name);
+            let told = |(name, value)| format!("{name}: {value}");
+            return Drawn::Constant(
+                title,
+                names.zip(values).map(told).collect::<Vec<_>>().join("; "),
+            );
+        }
+        let rows = runs.iter().map(|run| run.rows.seen()).min().unwrap_or(0);
+        let axes = [Axis::linear("t"), Axis::linear(&title)];
+        drawn(&format!("plot-{}", number + 1), &title, axes, &curves, rows)
+    };
+    let mut figures: Vec<Drawn> = groups.iter().enumerate().map(figure).collect();
+    let closed = figures.split_off(figures.len().min(OPEN));
+    let mut blocks = in_rows(figures);
+    if !closed.is_empty() {
+        blocks.push(Block::fold(format!("{} more", closed.len()), in_rows(closed)));
+    }
+    blocks
+}

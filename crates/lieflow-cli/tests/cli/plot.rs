@@ -1,0 +1,155 @@
+//! The figures of a run: what a scene asks for by `plot`, and `lieflow plot` of several runs.
+
+use crate::support::{Folder, SCENE};
+
+/// The scene with these keys in its output.
+fn with_output(keys: &str) -> String {
+    SCENE.replace("every = 10", &format!("every = 1\n{keys}"))
+}
+
+#[test]
+fn a_scene_decides_its_figures_their_order_and_their_words() {
+    let folder = Folder::new();
+    let keys = "plot = [\"energy\", { columns = [\"m1\", \"m3\"], title = \"Two of three\", x_label = \"t (s)\", \
+                y_label = \"m (kg m²/s)\" }, { columns = [\"m2\"], against = \"m1\" }]";
+    folder.write("scene.toml", &with_output(keys));
+    folder.lieflow(&["run", "scene.toml", "--out", "out"]).ok();
+    let page = folder.read("out/index.html");
+    let places = [
+        "What was asked for",
+        "id=\"plot\"",
+        "Two of three",
+        "m₂ against m₁",
+        "<h2 id=\"s3-the-motion",
+    ];
+    let places = places.map(|part| page.find(part).unwrap_or_else(|| panic!("{part}")));
+    assert!(places.is_sorted(), "{places:?}");
+    assert!(!page.contains("id=\"time-"), "nothing else is drawn over time");
+    let figure = folder.read("out/plot-2.svg");
+    for part in
+        [">Two of three<", ">t (s)<", ">m (kg m²/s)<", "data-series=\"m₁\"", "data-series=\"m₃\""]
+    {
+        assert!(figure.contains(part), "{part}");
+    }
+    // Names alone are a figure of each quantity, as before.
+    folder.write("scene.toml", &with_output("plot = [\"m3\", \"energy\", \"m1\"]"));
+    folder.lieflow(&["run", "scene.toml", "--out", "names"]).ok();
+    let figure = folder.read("names/plot.svg");
+    assert!(figure.contains("data-series=\"m₁\"") && figure.contains("data-series=\"m₃\""));
+    assert!(!figure.contains("m₂") && folder.read("names/plot-2.svg").contains("energy"));
+    for (keys, message) in [
+        ("plot = [{ columns = [\"m4\"] }]", "unknown column `m4`"),
+        ("plot = [\"m4\", { columns = [\"m1\"], against = \"m5\" }]", "unknown column `m4`"),
+        ("plot = [\"m4\", { columns = [\"m1\"], against = \"m5\" }]", "unknown column `m5`"),
+        ("plot = [{ columns = [] }]", "a figure of no columns"),
+        (
+            "plot = [{ columns = [\"m1\"], against = \"momentum_body\" }]",
+            "unknown column `momentum_body`",
+        ),
+        ("plot = [{ columns = [\"m1\"], titel = \"x\" }]", "unknown key `titel`"),
+        ("plot = [3]", "expected the name of a column"),
+    ] {
+        folder.write("scene.toml", &with_output(keys));
+        let error = folder.lieflow(&["run", "scene.toml"]).refused();
+        assert!(error.contains(message) && error.contains("scene.toml:"), "{error}");
+    }
+}
+
+#[test]
+fn several_runs_are_drawn_in_one_figure() {
+    let folder = Folder::new();
+    folder.write("a.toml", &with_output(""));
+    folder.write("b.toml", &with_output("").replace("[0.2, 0.0, 1.0]", "[0.4, 0.0, 1.0]"));
+    folder.lieflow(&["run", "a.toml", "b.toml", "--no-page"]).ok();
+    let runs = ["lieflow-out/a", "lieflow-out/b"];
+    let told = folder.lieflow(&[&["plot"][..], &runs, &["--columns", "m"]].concat()).ok();
+    assert!(told.starts_with("3 columns of 2 runs: lieflow-plot"), "{told}");
+    let figure = folder.read("lieflow-plot/plot-1.svg");
+    assert!(figure.contains(">m₁<"), "the title");
+    for run in ["a", "b"] {
+        assert_eq!(
+            figure.matches(&format!("lf-dense\" tabindex=\"-1\" data-series=\"{run}\"")).count(),
+            1
+        );
+    }
+    assert_eq!(
+        folder.names("lieflow-plot"),
+        ["index.html", "plot-1.svg", "plot-2.svg", "plot-3.svg"]
+    );
+    // One run: columns of one name together, and a part of its time.
+    let options = ["--columns", "m1,m2", "--from", "0.5", "--to", "1", "--out", "one"];
+    folder.lieflow(&[&["plot", runs[0]][..], &options].concat()).ok();
+    let figure = folder.read("one/plot-1.svg");
+    assert!(figure.contains("data-series=\"m₁\"") && figure.contains("data-series=\"m₂\""));
+    let ends = figure.split("data-x=\"linear ").nth(1).unwrap().split(' ').take(2);
+    assert_eq!(ends.collect::<Vec<_>>(), ["5e-1", "1e0"]);
+    for (args, message) in [
+        (&["plot", "nowhere"][..], "there is no run in `nowhere`"),
+        (&["plot", "lieflow-out/a", "--columns", "m7"], "no column `m7`"),
+        (&["plot", "lieflow-out/a", "--from", "3"], "no rows at these times"),
+    ] {
+        assert!(folder.lieflow(args).refused().contains(message), "{args:?}");
+    }
+}
+
+/// Two thousand turns are a band, as high as they are from the start to the end; what is less than rounding is straight.
+#[test]
+fn fast_swings_are_a_band_and_noise_is_a_line() {
+    let folder = Folder::new();
+    let text = with_output("").replace("[0.2, 0.0, 1.0]", "[0.2, 0.0, 9.0]");
+    let text = text.replace("t_span = [0, 2.0]", "t_span = [0, 2000.0]").replace("rkmk4", "exact");
+    folder.write(
+        "fast.toml",
+        &text.replace("map = \"exp\"\n", "").replace("energy", "momentum_norm"),
+    );
+    folder.lieflow(&["run", "fast.toml", "--out", "out"]).ok();
+    let names = folder.names("out");
+    assert!(names.contains(&"time-momentum-body-beginning.svg".to_string()), "{names:?}");
+    let whole = folder.read("out/time-momentum-body.svg");
+    assert!(whole.contains("lf-filled") && whole.contains("the whole run"));
+    // The length of the momentum moves by rounding alone: it is told, not drawn.
+    assert!(!names.contains(&"time-momentum-norm.svg".to_string()), "{names:?}");
+    let page = folder.read("out/index.html");
+    assert!(page.contains("These quantities stay as they are at the start"));
+}
+
+/// The attitude is drawn as its quaternion, and its nine entries are in a fold.
+#[test]
+fn the_attitude_is_drawn_as_a_quaternion() {
+    let folder = Folder::new();
+    folder.write("scene.toml", &SCENE.replace("\"energy\"", "\"attitude\", \"euler_zyx\""));
+    folder.lieflow(&["run", "scene.toml", "--out", "out"]).ok();
+    let figure = folder.read("out/time-quaternion.svg");
+    assert!(figure.contains("data-series=\"qw\""));
+    let page = folder.read("out/index.html");
+    let fold = page.find("<summary>Rotation from body to space</summary>").unwrap();
+    assert!(page.find("id=\"time-quaternion\"").unwrap() < fold);
+    assert!(fold < page.find("id=\"time-attitude\"").unwrap());
+    let header = folder.read("out/trajectory.csv");
+    assert!(
+        header.lines().next().unwrap().ends_with("g33,euler_zyx1,euler_zyx2,euler_zyx3"),
+        "no further columns"
+    );
+    assert!(folder.read("out/time-euler-zyx.svg").contains("rad"));
+}
+
+/// Euler angles that come to where they are singular are told.
+#[test]
+fn singular_angles_are_told() {
+    let folder = Folder::new();
+    let told = |start: f64| {
+        let body = format!("omega_body = [0, 1, 0]\neuler.xyz = [0, {start}, 0]");
+        let text = SCENE.replace("omega_body = [0.2, 0.0, 1.0]", &body);
+        folder.write("scene.toml", &text.replace("\"energy\"", "\"euler_xyz\""));
+        folder.lieflow(&["run", "scene.toml", "--out", "out"]).ok()
+    };
+    let half = core::f64::consts::FRAC_PI_2;
+    let text = told(half - 1.0);
+    assert!(text.contains("note: euler_xyz is singular at t = 1:"), "{text}");
+    let text = told(half - 1.01);
+    assert!(
+        text.contains("euler_xyz comes within 0.57 degrees of its singular angle at t = 1:"),
+        "{text}"
+    );
+    assert!(!told(half - 3.0).contains("singular"));
+}

@@ -1,0 +1,144 @@
+//! Euler angles: their values in all sequences against SciPy's, both ways, and from row to row.
+
+use lieflow_model::scene::Scene;
+use lieflow_model::schema::{Branch, Row};
+
+/// What SciPy's `Rotation.as_euler` gives for eight rotations, four of them where sequences are singular.
+const SCIPY: &str = include_str!("euler.csv");
+
+/// A rotation, the name of a sequence, its key, and SciPy's angles.
+struct Reference {
+    quaternion: Vec<f64>,
+    name: String,
+    key: String,
+    angles: Vec<f64>,
+    singular: bool,
+}
+
+fn references() -> Vec<Reference> {
+    let line = |line: &str| {
+        let parts: Vec<&str> = line.split(',').collect();
+        let numbers = |range: core::ops::Range<usize>| -> Vec<f64> {
+            parts[range].iter().map(|x| x.parse().unwrap()).collect()
+        };
+        let letters = parts[4].to_lowercase();
+        // Capital letters are axes that move.
+        let frame = if letters == parts[4] { "fixed" } else { "euler" };
+        Reference {
+            quaternion: numbers(0..4),
+            name: format!("{frame}_{letters}"),
+            key: format!("{frame}.{letters}"),
+            angles: numbers(5..8),
+            singular: parts[8] == "1",
+        }
+    };
+    SCIPY.lines().filter(|text| !text.starts_with('#')).map(line).collect()
+}
+
+fn scene(attitude: &str, omega: [f64; 3], quantity: &str) -> Scene {
+    let text = format!(
+        "[problem]\nkind = \"rigid-body\"\ninertia = [1.0, 1.0, 1.0]\nomega_body = {omega:?}\n{attitude}\n\
+         [time]\nt_span = [0, 8]\nsteps = 400\n[method]\nname = \"exact\"\n[output]\nquantities = [{quantity:?}]\n"
+    );
+    Scene::parse("scene", &text).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// The rows of the first quantity.
+fn rows(scene: &Scene) -> Vec<(f64, Vec<f64>)> {
+    let model = scene.model().unwrap();
+    let mut rows = Vec::new();
+    let mut sink = |t: f64, row: Row<'_>| rows.push((t, row.values().to_vec()));
+    model.run(&scene.method, &scene.grid, &scene.save, &mut sink).unwrap();
+    rows
+}
+
+/// The largest difference of angles, up to whole turns.
+fn apart(a: &[f64], b: &[f64]) -> f64 {
+    let gap = |(a, b): (&f64, &f64)| (0.5 * (a - b)).sin().abs() * 2.0;
+    a.iter().zip(b).map(gap).fold(0.0, f64::max)
+}
+
+#[test]
+fn angles_are_those_of_scipy_in_all_sequences() {
+    let references = references();
+    assert_eq!(references.len(), 8 * 24);
+    assert!(references.iter().filter(|reference| reference.singular).count() > 30);
+    for Reference { quaternion, name, key, angles, singular } in &references {
+        let start = scene(&format!("quaternion = {quaternion:?}"), [0.3, 0.2, 0.1], name);
+        let found = &rows(&start)[0].1;
+        assert!(
+            apart(found, angles) < 1e-14,
+            "{name} of {quaternion:?}: {found:?}, not {angles:?}"
+        );
+        let model = start.model().unwrap();
+        let far = model.schema().get(name).unwrap().branch.from_singular(found).unwrap();
+        assert_eq!(far <= Branch::SINGULAR, *singular, "{name} of {quaternion:?}: {far:e}");
+        // Back.
+        let stated = scene(&format!("{key} = {angles:?}"), [0.3, 0.2, 0.1], "quaternion");
+        let found = &rows(&stated)[0].1;
+        let cosine: f64 = found.iter().zip(quaternion).map(|(a, b)| a * b).sum();
+        assert!((cosine.abs() - 1.0).abs() < 1e-15, "{key} = {angles:?}: {found:?}");
+    }
+}
+
+/// A turn about the second axis goes through the singular angle, and on: its angle rises, and the others stay.
+#[test]
+fn angles_go_on_through_the_singular_one() {
+    for (name, rate) in
+        [("euler_xyz", 1.1), ("fixed_zyx", 1.1), ("euler_zyz", -0.9), ("fixed_xyx", 1.3)]
+    {
+        for start in [0.0, 0.25] {
+            let (key, letters) = name.split_once('_').unwrap();
+            let attitude = format!("{key}.{letters} = [0.4, {start}, 0.7]");
+            // About the second axis as it stands: the third turn comes after it, or the first.
+            let last = if key == "euler" { 0.7_f64 } else { 0.4 };
+            let axis = letters.as_bytes()[if key == "euler" { 2 } else { 0 }];
+            let (s, c) = last.sin_cos();
+            let omega = match axis {
+                b'z' => [rate * s, rate * c, 0.0],
+                _ => [0.0, rate * c, -rate * s],
+            };
+            let rows = rows(&scene(&attitude, omega, name));
+            let mut before = [0.4, start, 0.7].to_vec();
+            for (t, angles) in rows.iter().skip(usize::from(start == 0.0)) {
+                let expected = [0.4, start + rate * t, 0.7];
+                // At the start of a proper sequence the angle 0 is singular: the third is 0 there.
+                let moved = angles.iter().zip(&before).map(|(a, b)| (a - b).abs());
+                if *t > 0.05 {
+                    assert!(
+                        moved.fold(0.0, f64::max) < 0.03,
+                        "{name}, t = {t}: {angles:?}, {before:?}"
+                    );
+                }
+                if start > 0.0 {
+                    let gap = angles.iter().zip(expected).map(|(a, b)| (a - b).abs());
+                    assert!(
+                        gap.fold(0.0, f64::max) < 1e-9,
+                        "{name}, t = {t}: {angles:?}, not {expected:?}"
+                    );
+                }
+                before = angles.clone();
+            }
+        }
+    }
+}
+
+#[test]
+fn other_sequences_are_refused() {
+    for (keys, message) in [
+        ("euler.xxy = [0, 0, 0]", "unknown sequence of axes `xxy`"),
+        ("euler = { xxy = [0, 0, 0], zyy = [0, 0, 0] }", "unknown sequence of axes `zyy`"),
+        ("euler = { xxy = [0, 0, 0], zyy = [0, 0, 0] }", "unknown sequence of axes `xxy`"),
+        ("euler.xxy = [0, 0, 0]\nshape = 3", "unknown sequence of axes `xxy`"),
+        ("euler = { xyz = [0, 0, 0], zyx = [0, 0, 0] }", "both `euler.xyz` and `euler.zyx`"),
+        ("fixed.zyx = [0, 0]", "expected 3 numbers"),
+        ("euler.zyx = [0, 0, 0]\nquaternion = [1, 0, 0, 0]", "`euler`"),
+    ] {
+        let text = format!(
+            "[problem]\nkind = \"rigid-body\"\ninertia = [1, 2, 3]\nomega_body = [1, 0, 0]\n{keys}\n\
+             [time]\nt_span = [0, 1]\n"
+        );
+        let error = Scene::parse("scene", &text).unwrap_err().to_string();
+        assert!(error.contains(message), "{error}");
+    }
+}
