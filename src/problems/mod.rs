@@ -9,6 +9,7 @@
 //! | rigid body under torques | SO(3) × T(3); translation | [`TorqueBody`], [`inertia`] |
 //! | isospectral flows: Toda, QR, double bracket | SO(n); conjugation | [`IsospectralFlow`] |
 //! | spherical pendulum, spin chain | SE(3); coadjoint; SO(3)ᴺ; vectors | [`SphericalPendulum`], [`SpinChain`] |
+//! | spins on any bonds, with couplings in time | SO(3)ᴺ; vectors | [`CoupledSpins`] |
 //! | Oja's flow | SO(n); n×k matrices | [`Oja`] |
 //! | subspaces, the Grassmann manifold | SO(n); conjugation of projectors | [`SubspaceFlow`] |
 //! | Lyapunov exponents of a vector field | SO(n) × T(2n); translation | [`Lyapunov`] |
@@ -16,6 +17,7 @@
 //! | Hill, Mathieu; beam lines | Sp(2m); translation | [`hill`], [`mathieu`], [`beam`]; [`floquet`](crate::floquet) |
 //! | Riccati | Sp(2m); [`Lagrangian`](crate::actions::Lagrangian) | [`Flow::of_time`] |
 //! | Schrödinger's equation, n levels | U(n) ⊂ SO(2n); vectors | [`schrodinger`](fn@schrodinger) |
+//! | von Neumann's equation, n levels | U(n) ⊂ SO(2n); density matrices | [`von_neumann`] |
 //! | ideal fluids on a sphere and a torus, Zeitlin's model | U(N); conjugation | [`Zeitlin`] |
 //! | charged particle | SO(3,1); vectors | [`ChargedParticle`] |
 //!
@@ -24,6 +26,7 @@
 mod averaged;
 pub mod beam;
 mod capability;
+mod coupled_spins;
 mod dyn_flow;
 mod euler;
 mod fallible;
@@ -48,6 +51,7 @@ mod zeitlin;
 pub use crate::space::LinearSpace;
 pub use averaged::MeanGradient;
 pub use capability::{LiePoisson, LinearField, Orthogonal, Projection, Split};
+pub use coupled_spins::{Bond, Constant, CoupledSpins, Couplings, CouplingsAt, Site};
 pub use dyn_flow::{DynFlow, WithHamiltonian};
 pub use euler::{DiscreteGradient, Euler, EulerGroup, FromTheBody, Hamiltonian, Kinetic};
 pub use fallible::{Fallible, InAlgebra, TryFlow, TryProblem};
@@ -65,7 +69,10 @@ pub use rigid_body::{
     BodyFrame, BodyState, Exact, Frame, FreeBody, RigidBody, RigidBodyAttitude, RigidBodyN,
     RigidBodyNAttitude, RigidBodyState, manakov_integrals,
 };
-pub use schrodinger::{Schrodinger, amplitudes, populations, schrodinger};
+pub use schrodinger::{
+    Schrodinger, VonNeumann, amplitudes, density_matrix, populations, populations_of, schrodinger,
+    von_neumann,
+};
 pub(crate) use series::MomentumSeries;
 pub use series::TaylorField;
 pub use spheres::{SphericalPendulum, SpinChain};

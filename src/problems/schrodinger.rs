@@ -1,26 +1,34 @@
-//! Schrödinger's equation with n levels, iψ̇ = H(t)ψ, in real numbers.
+//! Quantum systems with n levels in real numbers: iψ̇ = H(t)ψ, and iρ̇ = \[H(t), ρ\] for a density matrix.
 //!
-//! U(n) is the part of SO(2n) that commutes with the multiplication by i. With ψ = a + ib and H = R + iI (R symmetric,
-//! I skew):
+//! U(n) is the part of SO(2n) that commutes with the multiplication by i. With ψ = a + ib, ρ = A + iB and H = R + iI (R,
+//! A symmetric, I, B skew):
 //!
 //! ```text
 //!     d ⎡ a ⎤   ⎡  I  R ⎤ ⎡ a ⎤
 //!     ─ ⎢   ⎥ = ⎢       ⎥ ⎢   ⎥       f(t, ψ) ∈ u(n) ⊂ so(2n);  Λ(g, ψ) = gψ
 //!     dt⎣ b ⎦   ⎣ −R  I ⎦ ⎣ b ⎦
+//!
+//!           ⎡ A  −B ⎤
+//!       ρ ↦ ⎢       ⎥                 the same f;  Λ(g, ρ) = gρgᵀ
+//!           ⎣ B   A ⎦
 //! ```
 //!
-//! Invariant: |ψ|² (by the action). Brackets and exponentials of elements of u(n) stay complex-linear, so all methods
-//! conserve the complex structure to rounding.
+//! Invariants (by the action): |ψ|²; the eigenvalues of ρ, so its trace and tr ρ². Brackets and exponentials of elements
+//! of u(n) stay complex-linear, so all methods conserve the complex structure to rounding.
 
 use faer::Mat;
 
 use super::{Flow, LinearFlow};
-use crate::actions::Linear;
+use crate::actions::{Conjugation, Linear};
+use crate::dense::symmetric_eigenvalues;
 use crate::error::Error;
 use crate::groups::{AlgebraMatrix, MatrixGroup};
 
 /// Schrödinger's equation iψ̇ = H(t)ψ on SO(2n). The function writes the element of u(n).
 pub type Schrodinger<F> = LinearFlow<MatrixGroup, Linear, F>;
+
+/// Von Neumann's equation iρ̇ = \[H(t), ρ\] on SO(2n). The function writes the element of u(n).
+pub type VonNeumann<F> = LinearFlow<MatrixGroup, Conjugation, F>;
 
 /// Schrödinger's equation iψ̇ = H(t)ψ with n levels. `hamiltonian(t, i, j)` is (Re, Im) of H_ij.
 ///
@@ -46,7 +54,40 @@ pub fn schrodinger<H: Fn(f64, usize, usize) -> [f64; 2]>(
     hamiltonian: H,
 ) -> Result<Schrodinger<impl Fn(f64, &mut AlgebraMatrix)>, Error> {
     let group = MatrixGroup::so(n.saturating_mul(2))?;
-    let field = move |t: f64, v: &mut AlgebraMatrix| {
+    Ok(Flow::of_time(group, Linear, generator(n, hamiltonian)))
+}
+
+/// Von Neumann's equation iρ̇ = \[H(t), ρ\] of a density matrix with n levels. `hamiltonian` is as of [`schrodinger`].
+///
+/// ```
+/// use lieflow::methods::magnus::Magnus4;
+/// use lieflow::problems::{density_matrix, populations_of, von_neumann};
+/// use lieflow::{SaveAt, TimeGrid, integrate};
+/// // A π pulse turns a mixture of 80 % and 20 % around.
+/// let pulse = von_neumann(2, |_, i, j| if i == j { [0.0, 0.0] } else { [0.5, 0.0] })?;
+/// let mut rho = density_matrix(2, |i, j| if i == j { [[0.8, 0.2][i], 0.0] } else { [0.0; 2] })?;
+/// let grid = TimeGrid::with_steps([0.0, std::f64::consts::PI], 8)?;
+/// integrate(&pulse, &Magnus4, &grid, &SaveAt::Ends, &mut rho, |_, _| {})?;
+/// assert!((populations_of(&rho)[0] - 0.2).abs() < 1e-13);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// [`Error::OutOfRange`] as [`MatrixGroup::so`].
+pub fn von_neumann<H: Fn(f64, usize, usize) -> [f64; 2]>(
+    n: usize,
+    hamiltonian: H,
+) -> Result<VonNeumann<impl Fn(f64, &mut AlgebraMatrix)>, Error> {
+    let group = MatrixGroup::so(n.saturating_mul(2))?;
+    Ok(Flow::of_time(group, Conjugation, generator(n, hamiltonian)))
+}
+
+/// v ← −iH(t) as an element of so(2n).
+fn generator<H: Fn(f64, usize, usize) -> [f64; 2]>(
+    n: usize,
+    hamiltonian: H,
+) -> impl Fn(f64, &mut AlgebraMatrix) {
+    move |t: f64, v: &mut AlgebraMatrix| {
         for j in 0..n {
             for i in 0..=j {
                 let [re, im] = hamiltonian(t, i, j);
@@ -57,8 +98,7 @@ pub fn schrodinger<H: Fn(f64, usize, usize) -> [f64; 2]>(
                 }
             }
         }
-    };
-    Ok(Flow::of_time(group, Linear, field))
+    }
 }
 
 /// The state with these complex amplitudes (re, im), normalised to length 1.
@@ -78,4 +118,43 @@ pub fn amplitudes(psi: &[[f64; 2]]) -> Result<Mat<f64>, Error> {
 pub fn populations(psi: &Mat<f64>) -> Vec<f64> {
     let n = psi.nrows() / 2;
     (0..n).map(|i| psi[(i, 0)].powi(2) + psi[(n + i, 0)].powi(2)).collect()
+}
+
+/// The density matrix with these complex entries (re, im), divided by its trace. `entry(i, j)` is called only for i ≤ j, and
+/// the imaginary part of the diagonal is ignored.
+///
+/// # Errors
+/// [`Error::OutOfRange`] for a trace that is not finite and > 0, and for a negative eigenvalue beyond rounding.
+pub fn density_matrix(
+    n: usize,
+    entry: impl Fn(usize, usize) -> [f64; 2],
+) -> Result<Mat<f64>, Error> {
+    let trace: f64 = (0..n).map(|i| entry(i, i)[0]).sum();
+    if !(trace.is_finite() && trace > 0.0) {
+        return Err(Error::out_of_range("tr ρ", trace, "a finite number > 0"));
+    }
+    let mut rho = Mat::zeros(2 * n, 2 * n);
+    for j in 0..n {
+        for i in 0..=j {
+            let [re, im] = entry(i, j).map(|x| x / trace);
+            let im = if i == j { 0.0 } else { im };
+            for (i, j, im) in [(i, j, im), (j, i, -im)] {
+                (rho[(i, j)], rho[(n + i, n + j)]) = (re, re);
+                (rho[(n + i, j)], rho[(i, n + j)]) = (im, -im);
+            }
+        }
+    }
+    let least = symmetric_eigenvalues(rho.as_ref()).map_or(f64::NAN, |values| values[0]);
+    match least >= -POSITIVE {
+        true => Ok(rho),
+        false => Err(Error::out_of_range("the least eigenvalue of ρ/tr ρ", least, "at least 0")),
+    }
+}
+
+/// How far below 0 the rounding of written entries may move an eigenvalue, for a trace of 1.
+const POSITIVE: f64 = 1e-12;
+
+/// ρ_ii of each level.
+pub fn populations_of(rho: &Mat<f64>) -> Vec<f64> {
+    (0..rho.nrows() / 2).map(|i| rho[(i, i)]).collect()
 }

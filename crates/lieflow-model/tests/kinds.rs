@@ -20,6 +20,8 @@ mod known;
 mod matrices;
 #[path = "kinds/mutants.rs"]
 mod mutants;
+#[path = "kinds/quantum.rs"]
+mod quantum;
 #[path = "kinds/refused.rs"]
 mod refused;
 #[path = "kinds/samples.rs"]

@@ -1,9 +1,12 @@
-//! Schrödinger's equation with two levels and with more: Rabi's formula, a ladder, unitarity.
+//! Schrödinger's equation with two levels and with more: Rabi's formula, a ladder, unitarity; the same by density
+//! matrices.
 
 use super::*;
 use faer::Mat;
 use lieflow::methods::magnus::{Magnus4, Magnus6};
-use lieflow::problems::{amplitudes, populations, schrodinger};
+use lieflow::problems::{
+    amplitudes, density_matrix, populations, populations_of, schrodinger, von_neumann,
+};
 
 /// Rabi: H = ½[ω₀ Ωe^{−iωt}; Ωe^{iωt} −ω₀] takes level 0 to level 1 with the probability
 /// Ω²/(Ω² + Δ²) sin²(√(Ω² + Δ²) t/2), Δ = ω − ω₀.
@@ -55,4 +58,56 @@ fn a_ring_of_three_levels() {
     }
     assert!(amplitudes(&[]).is_err() && amplitudes(&[[0.0, 0.0]]).is_err());
     assert!(amplitudes(&[[f64::NAN, 0.0]]).is_err() && schrodinger(0, |_, _, _| [0.0; 2]).is_err());
+}
+
+/// A mixture of two states is at each time the mixture of these states, and its eigenvalues are the weights.
+#[test]
+fn a_mixture_moves_as_its_states() {
+    let field = |t: f64, i: usize, j: usize| match (i, j) {
+        (0, 1) => [0.7 * t.cos(), 0.4 * (2.0 * t).sin()],
+        (1, 2) => [0.2, -0.9 * t],
+        _ => [[0.3, -0.1, 0.5][i] * f64::from(u8::from(i == j)), 0.0],
+    };
+    let (pure, mixed) = (schrodinger(3, field).unwrap(), von_neumann(3, field).unwrap());
+    let (a, b) = ([[0.6, 0.0], [0.0, 0.8], [0.0, 0.0]], [[0.0, 0.8], [0.6, 0.0], [0.0, 0.0]]);
+    let weights = [0.7, 0.3];
+    // ρ_ij = Σ w ψ_i ψ̄_j; `a` and `b` are at right angles.
+    let mixture = |states: [&Mat<f64>; 2], i: usize, j: usize| {
+        let term = |psi: &Mat<f64>| {
+            let [re, im] = [0, 3].map(|part| move |i: usize| psi[(part + i, 0)]);
+            [re(i) * re(j) + im(i) * im(j), im(i) * re(j) - re(i) * im(j)]
+        };
+        let [a, b] = states.map(term);
+        [0, 1].map(|part| weights[0] * a[part] + weights[1] * b[part])
+    };
+    let states = [a, b].map(|psi| amplitudes(&psi).unwrap());
+    let start = density_matrix(3, |i, j| mixture([&states[0], &states[1]], i, j)).unwrap();
+    let end = run(&mixed, &Magnus6, 2.0, 40, &start);
+    let moved = states.map(|psi| run(&pure, &Magnus6, 2.0, 40, &psi));
+    let expected = density_matrix(3, |i, j| mixture([&moved[0], &moved[1]], i, j)).unwrap();
+    assert!((&end - &expected).norm_l2() < 1e-13, "{:e}", (&end - &expected).norm_l2());
+    assert!((&end - &start).norm_l2() > 0.1);
+    assert!((populations_of(&end).iter().sum::<f64>() - 1.0).abs() < 1e-14);
+    let spectrum = lieflow::dense::symmetric_eigenvalues(end.as_ref()).unwrap();
+    for (found, weight) in spectrum.iter().zip([0.0, 0.0, 0.3, 0.3, 0.7, 0.7]) {
+        assert!((found - weight).abs() < 1e-14, "{spectrum:?}");
+    }
+}
+
+#[test]
+fn what_is_no_density_matrix_is_refused() {
+    let of = |rows: [[f64; 2]; 2]| density_matrix(2, move |i, j| [rows[i][j], 0.0]);
+    assert!(of([[2.0, 0.5], [0.5, 6.0]]).is_ok_and(|rho| rho[(1, 1)] == 0.75));
+    for (rows, why) in [
+        ([[1.0, 2.0], [2.0, 1.0]], "the least eigenvalue"),
+        ([[1.0, 0.0], [0.0, -1.0]], "tr ρ"),
+        ([[1.0, f64::NAN], [f64::NAN, 1.0]], "the least eigenvalue"),
+        ([[f64::INFINITY, 0.0], [0.0, 1.0]], "tr ρ"),
+    ] {
+        let message = of(rows).unwrap_err().to_string();
+        assert!(message.contains(why), "{message}");
+    }
+    assert!(
+        density_matrix(0, |_, _| [0.0; 2]).is_err() && von_neumann(0, |_, _, _| [0.0; 2]).is_err()
+    );
 }

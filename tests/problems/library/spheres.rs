@@ -1,7 +1,10 @@
 //! Systems on spheres: the conical pendulum, spin waves, damping.
 
 use super::*;
-use lieflow::problems::{SphericalPendulum, SpinChain};
+use lieflow::methods::EnergyCasimir;
+use lieflow::problems::{
+    Bond, Constant, CoupledSpins, Couplings, LiePoisson, Site, SphericalPendulum, SpinChain,
+};
 use nalgebra::Vector3;
 
 type V = Vector3<f64>;
@@ -91,4 +94,61 @@ fn damping_leads_to_the_ground_state() {
     assert!(y.iter().all(|s| (s.norm() - 1.0).abs() < 1e-13));
     assert!(SpinChain::new(1).is_err() && chain.with_damping(-0.1).is_err());
     assert!(chain.spins(|_| V::zeros()).is_err());
+}
+
+/// The couplings of that chain, ring or open.
+fn couplings(bonds: usize) -> Couplings {
+    let bond = |i| Bond { sites: [i, (i + 1) % 8], exchange: V::repeat(1.0), dm: V::zeros() };
+    let site = Site { anisotropy: V::new(0.0, 0.0, 0.3), field: V::new(0.0, 0.0, 0.2) };
+    Couplings { bonds: (0..bonds).map(bond).collect(), sites: [site; 8].into() }
+}
+
+/// Spins on the bonds of a chain are the chain: the field, the energy and its discrete gradient.
+#[test]
+fn coupled_spins_are_the_chain() {
+    for (chain, bonds) in [(chain(), 8), (chain().open(), 7)] {
+        for damping in [0.0, 0.3] {
+            let chain = chain.with_damping(damping).unwrap();
+            let spins = CoupledSpins::new(couplings(bonds), damping, Constant).unwrap();
+            let y = crooked(&chain);
+            let far = flow(&chain, 1.0, 50, &y).distance(&flow(&spins, 1.0, 50, &y));
+            assert!(far < 1e-13, "{far:e}");
+            assert!((chain.energy(&y) - spins.hamiltonian(&y)).abs() < 1e-13);
+        }
+    }
+}
+
+/// With all couplings the method has its order, E is kept by the flow and, to rounding, by the discrete gradient. With
+/// couplings in time too, order 4.
+#[test]
+fn coupled_spins_keep_their_energy() {
+    let mut all = couplings(8);
+    for (i, bond) in all.bonds.iter_mut().enumerate() {
+        bond.exchange = V::new(1.0, 0.5 + 0.1 * i as f64, -0.3);
+        bond.dm = V::new(0.2, -0.1 * i as f64, 0.4);
+    }
+    all.sites[3] = Site { anisotropy: V::new(0.4, -0.2, 0.0), field: V::new(0.3, 0.1, 0.0) };
+    let (y, spins) = (crooked(&chain()), CoupledSpins::new(all.clone(), 0.0, Constant).unwrap());
+    has_order_4(&spins, &y, 1.0, 16);
+    let energy = spins.hamiltonian(&y);
+    let far = (spins.hamiltonian(&flow(&spins, 4.0, 200, &y)) - energy).abs();
+    assert!(far < 1e-8, "{far:e}");
+    let kept = run(&spins, &EnergyCasimir::new(Cay), 4.0, 100, &y);
+    assert!((spins.hamiltonian(&kept) - energy).abs() < 1e-12);
+    assert!(kept.distance(&y) > 0.1);
+
+    let at = |t: f64, couplings: &mut Couplings| {
+        couplings.bonds[2].exchange = V::repeat(t.cos());
+        couplings.sites[1].field = V::new(t.sin(), 0.0, t);
+    };
+    let moving = CoupledSpins::new(all.clone(), 0.1, at).unwrap();
+    has_order_4(&moving, &y, 1.0, 16);
+
+    let wrong = |sites: [usize; 2]| {
+        let mut wrong = all.clone();
+        wrong.bonds[1].sites = sites;
+        CoupledSpins::new(wrong, 0.0, Constant).unwrap_err().to_string()
+    };
+    assert!(wrong([2, 2]).contains("bonds[1].sites") && wrong([2, 8]).contains("below 8"));
+    assert!(CoupledSpins::new(all, f64::NAN, Constant).is_err());
 }

@@ -82,6 +82,9 @@ fn magnus_methods_fit_linear_equations() {
         "rabi",
         "three-level-transfer",
         "rotating-drive",
+        "landau-zener",
+        "stirap",
+        "thermal-qubit",
     ];
     for bundled in BUNDLED {
         let fits = Scene::bundled(bundled.name).unwrap().model().unwrap();

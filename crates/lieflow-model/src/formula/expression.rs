@@ -103,6 +103,10 @@ impl Formula {
         self.tape.ops().len() == 1 && self.tape.value::<f64>(&[], None) == 0.0
     }
 
+    /// Is it the same function as another formula of the same names, operation by operation?
+    pub fn is(&self, other: &Formula) -> bool {
+        self.tape.ops() == other.tape.ops()
+    }
     /// Does the value depend on this variable?
     pub fn uses(&self, variable: usize) -> bool {
         self.tape.uses(variable)

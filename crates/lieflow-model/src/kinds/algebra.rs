@@ -6,6 +6,10 @@
 //! | sl | tr x = 0 | x − (tr x/n)𝟙 |
 //! | so, so(p,q) | xᵀM + Mx = 0, M = diag(1, …, −1) with p ones | ½(x − MxᵀM) |
 //! | sp | \[a b; c −aᵀ\], b and c symmetric | the means of what must be equal |
+//! | u | x† + x = 0, complex | ½(x − x†) |
+//! | su | and tr x = 0 | that, less its trace/n on the diagonal |
+//!
+//! A complex matrix X + iY is here the real one \[X −Y; Y X\], of twice the size: U(n) is in SO(2n).
 
 use faer::Mat;
 use lieflow::Error;
@@ -25,6 +29,8 @@ pub(super) enum Algebra {
     /// p and q.
     Indefinite(usize, usize),
     Sp,
+    U,
+    Su,
 }
 
 /// An algebra as a scene names it.
@@ -51,10 +57,17 @@ impl Named {
     }
 }
 
-/// The names in scenes; `so(p,q)` with numbers for p and q.
-pub(super) const ALGEBRAS: [&str; 5] = ["so", "sl", "gl", "sp", "so(p,q)"];
+/// The names in scenes; `so(p,q)` with numbers for p and q. The last two have complex matrices.
+pub(super) const ALGEBRAS: [&str; 7] = ["so", "sl", "gl", "sp", "so(p,q)", "u", "su"];
+/// Those with real matrices.
+pub(super) const REAL_ALGEBRAS: &[&str] = ALGEBRAS.split_at(5).0;
 
 impl Algebra {
+    /// As [`named`](Self::named), for real matrices alone.
+    pub(super) fn real_named(name: &str) -> Option<Named> {
+        Algebra::named(name).filter(|named| !named.algebra.is_complex())
+    }
+
     /// The algebra of that name or of its group, and n where the name has it: `so`, `so4`, `SO(4)`, `so(3,1)`; none for
     /// other names.
     pub(super) fn named(name: &str) -> Option<Named> {
@@ -71,10 +84,17 @@ impl Algebra {
             "sl" => Algebra::Sl,
             "so" => Algebra::So,
             "sp" => Algebra::Sp,
+            "u" => Algebra::U,
+            "su" => Algebra::Su,
             _ => return None,
         };
         let n = if size.is_empty() { None } else { Some(size.parse().ok()?) };
         Some(Named { algebra, n })
+    }
+
+    /// Are its matrices complex?
+    pub(super) fn is_complex(self) -> bool {
+        matches!(self, Algebra::U | Algebra::Su)
     }
 
     /// Its name with n.
@@ -85,10 +105,12 @@ impl Algebra {
             Algebra::So => format!("so({n})"),
             Algebra::Indefinite(p, q) => format!("so({p},{q})"),
             Algebra::Sp => format!("sp({n})"),
+            Algebra::U => format!("u({n})"),
+            Algebra::Su => format!("su({n})"),
         }
     }
 
-    /// The group. For sl(n) it is GL(n): a field in sl(n) moves nothing out of SL(n).
+    /// The group. For sl(n) it is GL(n): a field in sl(n) moves nothing out of SL(n). For u(n) and su(n) it is SO(2n).
     ///
     /// # Errors
     /// A refusal of `key`, whose value has n rows.
@@ -104,6 +126,7 @@ impl Algebra {
                 return Err(Refusal::at(key, message));
             }
             Algebra::Sp => MatrixGroup::sp(n),
+            Algebra::U | Algebra::Su => MatrixGroup::so(n.saturating_mul(2)),
         };
         group.map_err(|error: Error| Refusal::from(error).about(key))
     }
@@ -123,6 +146,8 @@ impl Algebra {
                 let m = n / 2;
                 format!("gᵀJg = J with J = [0 1; -1 0] of {m}×{m} blocks; {}", coordinates(m))
             }
+            Algebra::U => "g†g = 1".into(),
+            Algebra::Su => "g†g = 1, and its determinant is 1".into(),
         }
     }
 
@@ -151,6 +176,24 @@ impl Algebra {
                     }
                 }
             }
+            Algebra::U => skew_hermitian(x, false),
+            Algebra::Su => skew_hermitian(x, true),
+        }
+    }
+}
+
+/// \[X −Y; Y X\] ← that of X, Y ← ½(X − Xᵀ), ½(Y + Yᵀ), from its first n columns; and Y without its trace.
+fn skew_hermitian(x: &mut Mat<f64>, traceless: bool) {
+    let n = x.ncols() / 2;
+    tally(|| Ops::muladds(n * (n + 1)) + Ops::adds(if traceless { 2 * n } else { 0 }));
+    let sum = || (0..n).map(|i| x[(n + i, i)]).sum::<f64>();
+    let mean = if traceless { sum() / n as f64 } else { 0.0 };
+    for (i, j) in (0..n).flat_map(|i| (0..=i).map(move |j| (i, j))) {
+        let re = 0.5 * (x[(i, j)] - x[(j, i)]);
+        let im = 0.5 * (x[(n + i, j)] + x[(n + j, i)]) - if i == j { mean } else { 0.0 };
+        for (i, j, re) in [(i, j, re), (j, i, -re)] {
+            (x[(i, j)], x[(n + i, n + j)]) = (re, re);
+            (x[(n + i, j)], x[(i, n + j)]) = (im, -im);
         }
     }
 }
@@ -169,8 +212,8 @@ fn skew(x: &mut Mat<f64>, p: usize) {
 /// How a matrix that is not in an algebra misses it.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Miss {
-    /// The first of the entries that do not go together.
-    pub(super) at: (usize, usize),
+    /// The place of the first of the entries that do not go together.
+    pub(super) key: String,
     /// The mistake in these entries.
     pub(super) why: String,
     /// The form of the algebra.
@@ -178,12 +221,14 @@ pub(super) struct Miss {
 }
 
 /// How x, the value of `key`, misses the algebra by more than `tolerance` times its size, at the entry where it does
-/// most.
+/// most. The imaginary part of a complex one is the value of `{key}_imaginary`.
 pub(super) fn miss(algebra: Algebra, key: &str, x: &Mat<f64>, tolerance: f64) -> Option<Miss> {
-    let n = x.nrows();
+    let rows = x.nrows();
+    let n = if algebra.is_complex() { rows / 2 } else { rows };
     let mut inside = x.clone();
     algebra.project(&mut inside);
-    let entries = (0..n).flat_map(|i| (0..n).map(move |j| (i, j)));
+    // Of a complex one the last n rows are the imaginary part.
+    let entries = (0..rows).flat_map(|i| (0..n).map(move |j| (i, j)));
     let away = |&(i, j): &(usize, usize)| (x[(i, j)] - inside[(i, j)]).abs();
     let farthest = entries.max_by(|a, b| away(a).total_cmp(&away(b)))?;
     if away(&farthest) <= tolerance * largest_entry(x.as_ref()) {
@@ -200,13 +245,22 @@ pub(super) fn miss(algebra: Algebra, key: &str, x: &Mat<f64>, tolerance: f64) ->
             let same_half = (i < n / 2) == (j < n / 2);
             ((other(j), other(i)), if same_half { -1.0 } else { 1.0 })
         }
+        Algebra::U | Algebra::Su if i < n => ((j, i), -1.0),
+        Algebra::U | Algebra::Su => ((n + j, i - n), 1.0),
     };
     let [first, second] = [farthest.min(partner), farthest.max(partner)];
-    let name = |(i, j): (usize, usize)| key.cell(i, j);
+    let name = |(i, j): (usize, usize)| match i < n {
+        true => key.cell(i, j),
+        false => format!("{key}_imaginary").cell(i - n, j),
+    };
     let why = match algebra {
         Algebra::Gl | Algebra::Sl => {
             let trace: f64 = (0..n).map(|i| x[(i, i)]).sum();
             format!("the sum of its diagonal is {trace}, expected 0")
+        }
+        Algebra::Su if i >= n && i - n == j => {
+            let trace: f64 = (0..n).map(|i| x[(n + i, i)]).sum();
+            format!("the sum of the imaginary parts of its diagonal is {trace}, expected 0")
         }
         _ if first == second => format!("{} is {}, expected 0", name(first), x[first]),
         _ => {
@@ -237,8 +291,15 @@ pub(super) fn miss(algebra: Algebra, key: &str, x: &Mat<f64>, tolerance: f64) ->
                 coordinates(m)
             )
         }
+        Algebra::U | Algebra::Su => {
+            let traceless = if algebra == Algebra::Su { ", with the trace 0" } else { "" };
+            format!(
+                "{of}: the real part is antisymmetric and the imaginary part symmetric{traceless}; -iH is in it for a \
+                 Hermitian H"
+            )
+        }
     };
-    Some(Miss { at: first, why, form })
+    Some(Miss { key: name(first), why, form })
 }
 
 /// The order of the coordinates of sp(2m).

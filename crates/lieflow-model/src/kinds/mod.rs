@@ -24,11 +24,11 @@ pub mod own;
 mod pendulum;
 mod prelude;
 mod preset;
+mod quantum;
 mod riccati;
 mod rigid_bodies;
 mod rigid_body;
 mod rigid_body_n;
-mod schrodinger;
 mod spin;
 mod spin_chain;
 mod subspace;
@@ -67,7 +67,8 @@ pub static KINDS: LazyLock<Vec<Kind>> = LazyLock::new(|| {
         beam_line::KIND,
         riccati::KIND,
         lorentz::KIND,
-        schrodinger::KIND,
+        quantum::SCHRODINGER,
+        quantum::DENSITY_MATRIX,
         matrix_ode::KIND,
         lyapunov::KIND,
         composed::KIND,

@@ -1,28 +1,39 @@
-//! `kind = "spin-chain"`: the Landau–Lifshitz chain on (S²)ᴺ; see [`SpinChain`].
+//! `kind = "spin-chain"`: the Landau–Lifshitz chain on (S²)ᴺ; see [`SpinChain`], and [`CoupledSpins`] where couplings
+//! are formulas of the site and of time, or there is more than exchange and an axis.
+
+use std::sync::Arc;
 
 use lieflow::actions::Linear;
-use lieflow::problems::SpinChain;
-use lieflow::scalar::{self, Counted};
+use lieflow::problems::{Bond, Constant, CoupledSpins, Couplings, Site, SpinChain};
+use lieflow::scalar::{Counted, Real as Scalar};
 use nalgebra::Vector3;
 
 use super::flow::OnSpheres;
 use super::prelude::*;
+use crate::formula::{Formula, Names, Text, Texts, without_value};
 
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {
     name: "spin-chain",
-    equation: "ṡᵢ = Hᵢ × sᵢ + α (sᵢ × Hᵢ) × sᵢ, Hᵢ = sᵢ₋₁ + sᵢ₊₁ + K (sᵢ)₃ e₃ + B, α the damping",
-    summary: "a chain of spins with exchange, anisotropy, a field and damping, on spheres",
+    equation: "ṡᵢ = Hᵢ × sᵢ + α (sᵢ × Hᵢ) × sᵢ, Hᵢ = −∂E/∂sᵢ, α the damping, \
+               E = Σ (−sᵢ·J sᵢ₊₁ + D·(sᵢ × sᵢ₊₁) − ½ K (sᵢ)₃² − B·sᵢ)",
+    summary: "a chain of spins with exchange, anisotropy, a Dzyaloshinskii–Moriya vector, a field and damping",
     ..Kind::of::<Keys, Chain>(|section| read_with(section, read))
 };
 
-keys! { Keys {
+keys! { Keys [sample_keys formula_keys] {
     spins: Option<Vec<Reals<3>>> = "initial directions, one row a spin, normalised",
     wave: Option<Wave> = "{count, turns, cone}, instead of spins: count spins at the angle cone to e3, \
                           that turn so often around it along the chain",
     ring: Option<bool> = "are the ends joined? optional, true",
-    anisotropy: Option<Real> = "K, > 0 for an easy axis e3; optional, 0",
-    field: Option<Reals<3>> = "the field; optional, 0",
+    exchange: Option<Texts> =
+        "J, > 0 for a ferromagnet: a formula of t and of the site i = 1, 2, …, for the bond of i and i + 1; or three, \
+         [Jx, Jy, Jz]; optional, 1",
+    dm: Option<Texts> =
+        "D, the Dzyaloshinskii–Moriya vector of the bond of i and i + 1: three formulas of t and i; optional, 0",
+    anisotropy: Option<Texts> =
+        "K, > 0 for an easy axis e3: a formula of t and i; or three, of each axis; optional, 0",
+    field: Option<Texts> = "B: three numbers, or formulas of t and i; optional, 0",
     damping: Option<Real> = "Gilbert's damping, at least 0; optional, 0",
 } }
 
@@ -40,10 +51,26 @@ const SPINS_MAX: u64 = 1 << 16;
 /// The chain with its initial spins.
 #[derive(Clone, Debug)]
 struct Chain {
-    chain: SpinChain,
-    damped: bool,
-    field: Vector3<f64>,
+    of: Of,
+    damping: f64,
     start: Box<[Vector3<f64>]>,
+}
+
+/// What couples the spins.
+#[derive(Clone, Debug)]
+enum Of {
+    /// One exchange of all, an axis and a field: numbers.
+    Numbers(SpinChain, Vector3<f64>),
+    Formulas(Arc<Stated>),
+}
+
+/// Couplings as formulas of t and i.
+#[derive(Debug)]
+struct Stated {
+    /// J, D, K and B.
+    formulas: [[Formula; 3]; 4],
+    /// Their values; 0 of those that depend on time.
+    constant: Couplings,
 }
 
 type Q = Quantity<Chain>;
@@ -73,37 +100,214 @@ fn spins_of(
     }
 }
 
-fn read(keys: Keys) -> Result<Forms, ReadError> {
+fn read(mut keys: Keys) -> Result<Forms, ReadError> {
+    let (formulas, samples) = (keys.formula_keys(), keys.sample_keys());
     let spins = spins_of(keys.spins, keys.wave).and_then(|(key, spins)| {
         let refused = |error: Error| Refusal::from(error).about(key);
         let chain = SpinChain::new(spins.len()).map_err(refused)?;
         let start = chain.spins(|i| spins[i]).map_err(refused)?;
         Ok((chain, start))
     });
-    let Keys { ring, anisotropy, field, damping, .. } = keys;
-    let ((mut chain, start), ring, anisotropy, field, damping) =
-        all!(spins, ring, anisotropy, field, damping)?;
-    if ring == Some(false) {
-        chain = chain.open();
+    let names = formulas.names("field", VARIABLES, samples);
+    let of = |key: &str, stated: Key<Option<Texts>>, alone| {
+        read_three(key, stated?.as_ref(), alone, seen(&names)?)
+    };
+    let exchange = of("exchange", keys.exchange, Alone::All(1.0));
+    let dm = of("dm", keys.dm, Alone::Refused);
+    let anisotropy = of("anisotropy", keys.anisotropy, Alone::Third);
+    let field = of("field", keys.field, Alone::Refused);
+    let names = names.and_then(Names::checked);
+    let Keys { ring, damping, .. } = keys;
+    let ((chain, start), _, exchange, dm, anisotropy, field, ring, damping) =
+        all!(spins, names, exchange, dm, anisotropy, field, ring, damping)?;
+    let damping = damping.map_or(0.0, |x| x.0);
+    let chain = chain.with_damping(damping)?;
+    let ring = ring != Some(false);
+    let stated = Stated::new([exchange, dm, anisotropy, field], start.len(), ring);
+    let of = match stated.numbers() {
+        Some([anisotropy, x, y, z]) => {
+            let chain = if ring { chain } else { chain.open() };
+            let chain = chain.with_anisotropy(anisotropy)?.with_field([x, y, z])?;
+            Of::Numbers(chain, Vector3::new(x, y, z))
+        }
+        None => Of::Formulas(stated.into()),
+    };
+    Ok(Forms::of(Chain { of, damping, start }))
+}
+
+/// The variables of formulas.
+const VARIABLES: [&str; 2] = ["t", "i"];
+/// Their places.
+const TIME: usize = 0;
+const SITE: usize = 1;
+
+/// What a single formula means, of a key that has three.
+#[derive(Clone, Copy)]
+enum Alone {
+    /// All three; left out, this number.
+    All(f64),
+    /// The third.
+    Third,
+    /// Nothing.
+    Refused,
+}
+
+/// The three formulas of a key.
+fn read_three(
+    key: &str,
+    stated: Option<&Texts>,
+    alone: Alone,
+    names: &Names,
+) -> Result<[Formula; 3], ReadError> {
+    let number = |x: f64| Formula::read(key, &format!("{x:?}"), names);
+    let all = |formula: Formula| [formula.clone(), formula.clone(), formula];
+    match (stated, alone) {
+        (None, Alone::All(x)) => number(x).map(all),
+        (None, _) => number(0.0).map(all),
+        (Some(Texts::One(Text(text))), Alone::All(_)) => Formula::read(key, text, names).map(all),
+        (Some(Texts::One(Text(text))), Alone::Third) => {
+            let zero = number(0.0)?;
+            Ok([zero.clone(), zero, Formula::read(key, text, names)?])
+        }
+        (Some(texts), _) => {
+            let three: Result<[Formula; 3], _> = texts.read(key, 3, names)?.try_into();
+            three.map_err(|_| Refusal::at(key, "expected three formulas").into())
+        }
     }
-    let (damping, field) = (damping.map_or(0.0, |x| x.0), field.map_or([0.0; 3], |x| x.0));
-    chain = chain.with_anisotropy(anisotropy.map_or(0.0, |x| x.0))?;
-    chain = chain.with_field(field)?.with_damping(damping)?;
-    Ok(Forms::of(Chain { chain, damped: damping != 0.0, field: field.into(), start }))
+}
+
+/// No coupling.
+fn zero<N: Scalar>() -> Vector3<N> {
+    Vector3::repeat(N::lit(0.0))
+}
+
+impl Stated {
+    fn new(formulas: [[Formula; 3]; 4], spins: usize, ring: bool) -> Self {
+        let last = spins - 1;
+        let bond = |i: usize| Bond {
+            sites: [i, if i == last { 0 } else { i + 1 }],
+            exchange: zero(),
+            dm: zero(),
+        };
+        let bonds = (0..if ring { spins } else { last }).map(bond).collect();
+        let sites = vec![Site { anisotropy: zero(), field: zero() }; spins].into();
+        let mut stated = Stated { formulas, constant: Couplings { bonds, sites } };
+        let mut constant = stated.constant.clone();
+        stated.write(0.0, false, &mut constant);
+        stated.constant = constant;
+        stated
+    }
+    fn each(&self) -> impl Iterator<Item = &Formula> {
+        self.formulas.iter().flat_map(|three| three.iter())
+    }
+    /// Does a formula depend on this variable?
+    fn uses(&self, variable: usize) -> bool {
+        self.each().any(|formula| formula.uses(variable))
+    }
+    fn in_time(&self) -> bool {
+        self.uses(TIME)
+    }
+    /// K along e3 and B, where they are finite numbers and there is nothing else but an exchange of 1.
+    fn numbers(&self) -> Option<[f64; 4]> {
+        if self.in_time() || self.uses(SITE) {
+            return None;
+        }
+        let number = |formula: &Formula| formula.value(&[0.0; 2]);
+        let [j, d, k, b] = self.formulas.each_ref().map(|three| three.each_ref().map(number));
+        let plain = j == [1.0; 3] && d == [0.0; 3] && k[..2] == [0.0; 2];
+        let numbers = [k[2], b[0], b[1], b[2]];
+        (plain && numbers.iter().all(|x| x.is_finite())).then_some(numbers)
+    }
+    /// The bonds and the sites at t, those that depend on time alone where that is said.
+    fn write<N: Scalar + Into<f64>>(&self, t: N, moving: bool, couplings: &mut Couplings<N>) {
+        let write = |which: usize, i: usize, x: &mut Vector3<N>| {
+            for (x, formula) in x.iter_mut().zip(&self.formulas[which]) {
+                if formula.uses(TIME) == moving {
+                    *x = formula.value(&[t, N::lit((i + 1) as f64)]);
+                }
+            }
+        };
+        for bond in &mut couplings.bonds {
+            write(0, bond.sites[0], &mut bond.exchange);
+            write(1, bond.sites[0], &mut bond.dm);
+        }
+        for (i, site) in couplings.sites.iter_mut().enumerate() {
+            write(2, i, &mut site.anisotropy);
+            write(3, i, &mut site.field);
+        }
+    }
+    /// The couplings that do not depend on time, on other numbers.
+    fn constant<N: Scalar>(&self) -> Couplings<N> {
+        let Couplings { bonds, sites } = &self.constant;
+        let on = |x: &Vector3<f64>| x.map(N::lit);
+        let bond = |b: &Bond| Bond { sites: b.sites, exchange: on(&b.exchange), dm: on(&b.dm) };
+        let site = |s: &Site| Site { anisotropy: on(&s.anisotropy), field: on(&s.field) };
+        Couplings {
+            bonds: bonds.iter().map(bond).collect(),
+            sites: sites.iter().map(site).collect(),
+        }
+    }
+    /// Does a turn of all spins about e3 change nothing?
+    fn turns_about_e3(&self) -> bool {
+        let [j, d, k, b] = &self.formulas;
+        let at = |formula: &Formula, i: usize| formula.value(&[0.0, i as f64]);
+        let all = |holds: &dyn Fn(usize) -> bool| (1..=self.constant.sites.len()).all(holds);
+        let zero = |formula: &Formula| !formula.uses(TIME) && all(&|i| at(formula, i) == 0.0);
+        let equal = |a: &Formula, b: &Formula| {
+            a.is(b) || ![a, b].iter().any(|x| x.uses(TIME)) && all(&|i| at(a, i) == at(b, i))
+        };
+        let lie = [&d[0], &d[1], &b[0], &b[1]];
+        equal(&j[0], &j[1]) && equal(&k[0], &k[1]) && lie.into_iter().all(zero)
+    }
 }
 
 impl Chain {
+    fn in_time(&self) -> bool {
+        matches!(&self.of, Of::Formulas(stated) if stated.in_time())
+    }
     /// A Lie–Poisson system where nothing damps it.
-    fn on<S: scalar::Real + 'static>(&self) -> Result<OnSpheres<S>, Error> {
-        let chain = self.chain.on::<S>()?;
-        Ok(match self.damped {
-            true => OnSpheres::new(chain, Linear),
-            false => OnSpheres::lie_poisson(chain, Linear),
+    fn on<S: Scalar + Into<f64> + 'static>(&self) -> Result<OnSpheres<S>, Error> {
+        let damped = self.damping != 0.0;
+        let stated = match &self.of {
+            Of::Numbers(chain, _) if damped => return Ok(OnSpheres::new(chain.on::<S>()?, Linear)),
+            Of::Numbers(chain, _) => return Ok(OnSpheres::lie_poisson(chain.on::<S>()?, Linear)),
+            Of::Formulas(stated) => stated.clone(),
+        };
+        let (couplings, damping) = (stated.constant(), S::lit(self.damping));
+        if stated.in_time() {
+            let at = move |t: S, to: &mut Couplings<S>| stated.write(t, true, to);
+            return Ok(OnSpheres::new(CoupledSpins::new(couplings, damping, at)?, Linear));
+        }
+        let spins = CoupledSpins::new(couplings, damping, Constant)?;
+        Ok(match damped {
+            true => OnSpheres::new(spins, Linear),
+            false => OnSpheres::lie_poisson(spins, Linear),
         })
+    }
+    /// A law of the library's problem; by formulas, this one without damping.
+    fn law(&self, invariant: &str, by_formulas: Law) -> Option<Law> {
+        match &self.of {
+            Of::Numbers(chain, _) => law_of(chain, invariant),
+            Of::Formulas(_) => (self.damping == 0.0).then_some(by_formulas),
+        }
+    }
+    fn energy(&self, s: &[Vector3<f64>]) -> f64 {
+        match &self.of {
+            Of::Numbers(chain, _) => chain.energy(s),
+            Of::Formulas(stated) => stated.constant.energy(s),
+        }
     }
     /// The size of the terms of sums over the chain: each spin has an energy of some units.
     fn size(&self, s: &[Vector3<f64>]) -> f64 {
-        sum_of_squares(s) * (1.0 + self.field.norm())
+        match &self.of {
+            Of::Numbers(_, field) => sum_of_squares(s) * (1.0 + field.norm()),
+            Of::Formulas(stated) => {
+                let Couplings { bonds, sites } = &stated.constant;
+                let bonds = bonds.iter().map(|bond| bond.exchange.norm() + bond.dm.norm());
+                let sites = sites.iter().map(|site| site.anisotropy.norm() + site.field.norm());
+                sum_of_squares(s).max(bonds.chain(sites).sum())
+            }
+        }
     }
 }
 
@@ -132,14 +336,23 @@ impl System for Chain {
         Q::numbers("magnetisation", &["mx", "my", "mz"], "mean of the spins", |_, _, s, row| {
             row.extend((sum(s) / s.len() as f64).iter());
         }),
-        Q::number("energy", "energy", |chain, _, s| chain.chain.energy(s))
-            .kept_where(|chain| law_of(&chain.chain, "energy"))
-            .in_terms(|chain, s| chain.size(s)),
+        Q::number("energy", "energy, where no coupling depends on t", |chain, _, s| {
+            chain.energy(s)
+        })
+        .kept_where(|chain| chain.law("energy", Law::by_the_flow(2)))
+        .in_terms(|chain, s| chain.size(s))
+        .missing_where(|chain| chain.in_time().then_some("its couplings depend on t")),
         Q::number("total_spin3", "sum of the third components", |_, _, s| sum(s)[2])
-            .kept_where(|chain| law_of(&chain.chain, "Σ(s_i)₃"))
+            .kept_where(|chain| {
+                let turns = match &chain.of {
+                    Of::Numbers(..) => true,
+                    Of::Formulas(stated) => stated.turns_about_e3(),
+                };
+                chain.law("Σ(s_i)₃", Law::by_the_flow(1)).filter(|_| turns)
+            })
             .in_terms(|chain, s| chain.size(s)),
         Q::number("lengths2", "sum of the squares of the lengths", |_, _, s| sum_of_squares(s))
-            .kept_where(|chain| law_of(&chain.chain, "Σ|s_i|²")),
+            .kept(Law::by_the_action(2)),
     ];
 
     fn layer(&self) -> Layer {
@@ -151,6 +364,17 @@ impl System for Chain {
     fn counted(&self) -> Option<Counting> {
         let start = self.start.iter().map(|s| s.map(Counted)).collect();
         counting(self.on().ok()?, start)
+    }
+    fn check_start(&self, t0: f64) -> Vec<Refusal> {
+        let Of::Formulas(stated) = &self.of else { return Vec::new() };
+        let wrong = (1..=self.start.len()).map(|i| without_value(stated.each(), &[t0, i as f64]));
+        wrong.into_iter().find(|wrong| !wrong.is_empty()).unwrap_or_default()
+    }
+    fn formula(&self) -> Option<&Formula> {
+        match &self.of {
+            Of::Numbers(..) => None,
+            Of::Formulas(stated) => stated.each().next(),
+        }
     }
     fn modelled(&self) -> String {
         format!("{} spins on spheres", self.start.len())

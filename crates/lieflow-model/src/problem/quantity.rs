@@ -20,6 +20,8 @@ enum Columns<S> {
     Named(fn(&S) -> Vec<String>),
     /// The entries of a matrix, row by row: a letter, and how many rows and columns it has.
     Matrix(&'static str, fn(&S) -> [usize; 2]),
+    /// The entries of several matrices of one size, one matrix after the other: a letter of each, and the size.
+    Matrices(fn(&S) -> (&'static [&'static str], [usize; 2])),
 }
 
 /// The law of an invariant of the library's problem. None if this problem does not have the invariant.
@@ -142,6 +144,14 @@ impl<S: System> Quantity<S> {
         Quantity { columns: Columns::Matrix(letter, size), ..self }
     }
 
+    /// The values are the entries of matrices of one size, one after the other, such as a real and an imaginary part.
+    pub(crate) const fn of_matrices(
+        self,
+        matrices: fn(&S) -> (&'static [&'static str], [usize; 2]),
+    ) -> Self {
+        Quantity { columns: Columns::Matrices(matrices), ..self }
+    }
+
     /// The columns are the entries of a rotation: its error is an angle.
     pub(crate) const fn of_rotation(self) -> Self {
         self.in_parts(|_| vec![part("", 0, 9, Measure::Rotation)])
@@ -207,6 +217,10 @@ impl<S: System> Quantity<S> {
                 let [rows, columns] = size(system);
                 row_columns(letter, rows, columns)
             }
+            Columns::Matrices(matrices) => {
+                let (letters, [rows, columns]) = matrices(system);
+                letters.iter().flat_map(|letter| row_columns(letter, rows, columns)).collect()
+            }
         }
     }
 
@@ -214,6 +228,10 @@ impl<S: System> Quantity<S> {
     pub(crate) fn matrix(&self, system: &S) -> Option<[usize; 2]> {
         match self.columns {
             Columns::Matrix(_, size) => Some(size(system)),
+            Columns::Matrices(matrices) => match matrices(system) {
+                ([_], size) => Some(size),
+                _ => None,
+            },
             _ => None,
         }
     }

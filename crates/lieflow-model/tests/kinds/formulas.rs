@@ -259,7 +259,7 @@ fn equations_that_are_none_are_refused_at_their_line() {
             &["row 2 has 1 formulas, expected 2"],
         ),
         ("group = \"so\"\nfield = []", 5, &["found 0 rows"]),
-        ("field = [[\"0\"]]\ngroup = \"su\"", 5, &["unknown group `su`", "sp"]),
+        ("field = [[\"0\"]]\ngroup = \"ru\"", 5, &["unknown group `ru`", "su"]),
         ("field = [[\"0\"]]\ngroup = \"sp\"", 4, &["even"]),
         ("field = [[\"0\"]]\ngroup = \"so(2,1)\"", 4, &["p + q = 1"]),
         (
@@ -284,7 +284,8 @@ fn equations_that_are_none_are_refused_at_their_line() {
     }
     let problem = "kind = \"matrix-ode\"\ngroup = \"gl\"\nfield = [[\"1\"]]";
     let (_, message) = refused(problem, FINE, "group_defect");
-    let why = "this problem has no `group_defect`: it is for translation on so, sp and so(p,q)";
+    let why =
+        "this problem has no `group_defect`: it is for translation on so, sp, so(p,q), u and su";
     assert!(message.contains(why), "{message}");
 }
 

@@ -72,6 +72,29 @@ class Composed(Problem):
         let: Mapping[str, Any] | None = None,
     ) -> None: ...
 
+class DensityMatrix(Problem):
+    def __init__(
+        self,
+        *,
+        hamiltonian: Sequence[Any] | None = None,
+        hamiltonian_imaginary: Sequence[Any] | None = None,
+        energies: ArrayLike | None = None,
+        coupling: ArrayLike | None = None,
+        coupling_imaginary: ArrayLike | None = None,
+        frequency: float | None = None,
+        phase: float | None = None,
+        pulse: ArrayLike | None = None,
+        hbar: float | None = None,
+        density: ArrayLike | None = None,
+        density_imaginary: ArrayLike | None = None,
+        amplitudes: ArrayLike | None = None,
+        amplitudes_imaginary: ArrayLike | None = None,
+        samples: Samples | str | None = None,
+        interpolation: str | None = None,
+        parameters: Mapping[str, Any] | None = None,
+        let: Mapping[str, Any] | None = None,
+    ) -> None: ...
+
 class DoubleBracket(Problem):
     def __init__(
         self,
@@ -207,7 +230,9 @@ class MatrixOde(Problem):
         group: str,
         action: str | None = None,
         field: Sequence[Any],
+        field_imaginary: Sequence[Any] | None = None,
         start: ArrayLike | None = None,
+        start_imaginary: ArrayLike | None = None,
         samples: Samples | str | None = None,
         interpolation: str | None = None,
         parameters: Mapping[str, Any] | None = None,
@@ -276,14 +301,21 @@ class Schrodinger(Problem):
     def __init__(
         self,
         *,
-        energies: ArrayLike,
-        coupling: ArrayLike,
+        hamiltonian: Sequence[Any] | None = None,
+        hamiltonian_imaginary: Sequence[Any] | None = None,
+        energies: ArrayLike | None = None,
+        coupling: ArrayLike | None = None,
         coupling_imaginary: ArrayLike | None = None,
         frequency: float | None = None,
         phase: float | None = None,
         pulse: ArrayLike | None = None,
+        hbar: float | None = None,
         amplitudes: ArrayLike,
         amplitudes_imaginary: ArrayLike | None = None,
+        samples: Samples | str | None = None,
+        interpolation: str | None = None,
+        parameters: Mapping[str, Any] | None = None,
+        let: Mapping[str, Any] | None = None,
     ) -> None: ...
 
 class SphericalPendulum(Problem):
@@ -311,9 +343,15 @@ class SpinChain(Problem):
         spins: Sequence[Any] | None = None,
         wave: Mapping[str, Any] | None = None,
         ring: bool | None = None,
-        anisotropy: float | None = None,
-        field: ArrayLike | None = None,
+        exchange: str | float | Sequence[str | float] | None = None,
+        dm: str | float | Sequence[str | float] | None = None,
+        anisotropy: str | float | Sequence[str | float] | None = None,
+        field: str | float | Sequence[str | float] | None = None,
         damping: float | None = None,
+        samples: Samples | str | None = None,
+        interpolation: str | None = None,
+        parameters: Mapping[str, Any] | None = None,
+        let: Mapping[str, Any] | None = None,
     ) -> None: ...
 
 class Subspace(Problem):
@@ -336,6 +374,7 @@ class Toda(Problem):
 __all__ = [
     "BeamLine",
     "Composed",
+    "DensityMatrix",
     "DoubleBracket",
     "DrivenBody",
     "Euler",

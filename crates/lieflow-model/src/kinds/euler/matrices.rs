@@ -64,10 +64,9 @@ pub(super) fn on(named: Named, given: Given) -> Result<Forms, ReadError> {
     let group = algebra.group(n, "momentum")?;
     let in_algebra = match miss(algebra, "momentum", &momentum, ROUNDING) {
         None => Ok(()),
-        Some(Miss { at: (i, j), why, form }) => {
+        Some(Miss { key, why, form }) => {
             let message = format!("it is not in {}: {why}", algebra.name(n));
-            let refusal = Refusal::at("momentum".cell(i, j), message);
-            Err(Refusal { help: Some(form), ..refusal })
+            Err(Refusal { help: Some(form), ..Refusal::at(key, message) })
         }
     };
     let form = form_of(inverse_inertia, hamiltonian, &names, n);

@@ -22,7 +22,7 @@ use lieflow::names::plain;
 use self::dual::Given;
 use self::group::WithGroup;
 use self::vectors::Vectors;
-use super::algebra::{ALGEBRAS, Algebra};
+use super::algebra::{Algebra, REAL_ALGEBRAS};
 use super::prelude::*;
 use crate::formula::Text;
 use crate::reader::values::Numbers;
@@ -53,12 +53,12 @@ fn read(mut keys: Keys) -> Result<Forms, ReadError> {
     let names = keys.formula_keys();
     let Keys { algebra, hamiltonian, inverse_inertia, momentum, .. } = keys;
     let (algebra, given) = (algebra?, Given { names, hamiltonian, inverse_inertia, momentum });
-    match (plain(&algebra).as_str(), Algebra::named(&algebra)) {
+    match (plain(&algebra).as_str(), Algebra::real_named(&algebra)) {
         ("so3", _) => Ok(Forms::of(Vectors::<3>::read(&algebra, given)?)),
         ("se3", _) => Ok(Forms::of(Vectors::<6>::read(&algebra, given)?)),
         (_, Some(named)) => Ok(matrices::on(named, given)?),
         (_, None) => {
-            let names = [&ALGEBRAS[..], &["so3", "se3"]].concat();
+            let names = [REAL_ALGEBRAS, &["so3", "se3"]].concat();
             Err(Refusal::unknown("algebra", &algebra, &names).into())
         }
     }

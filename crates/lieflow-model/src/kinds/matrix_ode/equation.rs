@@ -8,14 +8,13 @@ use lieflow::groups::{AlgebraMatrix, LieAlgebra, LieGroup, MatrixGroup};
 use lieflow::maps::{CoordinateMap, Exp};
 use lieflow::problems::Flow;
 
-use super::{ACTIONS, NAMED_MAX};
+use super::{ACTIONS, NAMED_MAX, entry_names, letters};
 use crate::formula::{Formula, without_value};
 use crate::kinds::algebra::{Algebra, Miss, miss};
-use crate::kinds::entries::{numbered, rows, size_of_traces, traces, upper, upper_columns};
+use crate::kinds::entries::{numbered, size_of_traces, traces, upper, upper_columns};
 use crate::kinds::flow::OnMatrices;
 use crate::kinds::matrix::MatrixAction;
 use crate::kinds::prelude::*;
-use crate::problem::row_columns;
 
 /// The equation with its initial point.
 #[derive(Clone, Debug)]
@@ -23,7 +22,8 @@ pub(super) struct Equation {
     pub(super) algebra: Algebra,
     pub(super) group: MatrixGroup,
     pub(super) action: MatrixAction,
-    /// f, or its part above the diagonal: each formula with its row and its column.
+    /// f, or its part above the diagonal: each formula with its row and its column. The rows of an imaginary part are below
+    /// those of the real one.
     pub(super) field: Arc<[((usize, usize), Formula)]>,
     /// Is the part below the diagonal minus that above it?
     pub(super) by_upper: bool,
@@ -37,22 +37,61 @@ pub(super) struct Equation {
 /// The distance from the algebra that f may have at the points where it is checked, relative to its size.
 const IN_THE_ALGEBRA: f64 = 1e-8;
 
-/// t and the entries of y, for formulas.
-fn values(t: f64, y: &Mat<f64>) -> [f64; 1 + NAMED_MAX * NAMED_MAX] {
-    let mut values = [t; 1 + NAMED_MAX * NAMED_MAX];
-    values[1..].iter_mut().zip(rows(y)).for_each(|(value, y)| *value = y);
-    values
+/// The real matrix \[X −Y; Y X\] of X + iY, from \[X; Y\].
+pub(super) fn whole(x: &Mat<f64>) -> Mat<f64> {
+    let n = x.ncols();
+    Mat::from_fn(2 * n, 2 * n, |i, j| match j < n {
+        true => x[(i, j)],
+        false if i < n => -x[(n + i, j - n)],
+        false => x[(i - n, j - n)],
+    })
 }
 
 impl Equation {
+    /// n, of the field of n×n formulas.
+    fn n(&self) -> usize {
+        self.group.n() / self.parts()
+    }
+    /// 2 for complex matrices, else 1.
+    fn parts(&self) -> usize {
+        if self.algebra.is_complex() { 2 } else { 1 }
+    }
+    /// The rows and the columns of the point, which may be complex.
+    fn shape(&self) -> [usize; 2] {
+        let columns = match self.action {
+            MatrixAction::Linear => self.start.ncols(),
+            _ => self.start.ncols() / self.parts(),
+        };
+        [self.start.nrows() / self.parts(), columns]
+    }
+    /// The names of the entries of a matrix of this shape: of a complex one the real and then the imaginary parts.
+    fn names_of(&self, rows: usize, columns: usize) -> Vec<String> {
+        entry_names(self.algebra, [rows, columns])
+    }
+    /// The entries of the point: of a complex one the real and then the imaginary parts.
+    fn entries<'a>(&self, y: &'a Mat<f64>) -> impl Iterator<Item = f64> + use<'a> {
+        let [_, columns] = self.shape();
+        (0..y.nrows()).flat_map(move |i| (0..columns).map(move |j| y[(i, j)]))
+    }
+    /// t and the entries of y, for formulas: the first numbers of N.
+    fn values<const N: usize>(&self, t: f64, y: &Mat<f64>) -> [f64; N] {
+        let mut values = [t; N];
+        values[1..].iter_mut().zip(self.entries(y)).for_each(|(value, y)| *value = y);
+        values
+    }
     /// v ← f(t, y) by the formulas.
     fn stated(&self, t: f64, y: &Mat<f64>, v: &mut Mat<f64>) {
-        let values = values(t, y);
+        match self.algebra.is_complex() {
+            true => self.by_values(&self.values::<{ 1 + 2 * NAMED_MAX * NAMED_MAX }>(t, y), v),
+            false => self.by_values(&self.values::<{ 1 + NAMED_MAX * NAMED_MAX }>(t, y), v),
+        }
+    }
+    fn by_values(&self, values: &[f64], v: &mut Mat<f64>) {
         if self.by_upper {
             v.fill(0.0);
         }
         for &((i, j), ref formula) in &*self.field {
-            v[(i, j)] = formula.value(&values);
+            v[(i, j)] = formula.value(values);
             if self.by_upper {
                 v[(j, i)] = -v[(i, j)];
             }
@@ -83,6 +122,21 @@ impl Equation {
         let ym = multiply(y.transpose(), self.group.m()?.as_ref());
         Some(multiply(ym.as_ref(), y.as_ref()))
     }
+    /// tr y, tr y², …, tr yⁿ: of a complex y the real and then the imaginary parts.
+    fn traces(&self, y: &Mat<f64>) -> Vec<f64> {
+        let n = self.n();
+        if !self.algebra.is_complex() {
+            return traces(y).collect();
+        }
+        let mut power = Mat::<f64>::identity(2 * n, 2 * n);
+        let mut all = vec![0.0; 2 * n];
+        for k in 0..n {
+            power = multiply(power.as_ref(), y.as_ref());
+            all[k] = (0..n).map(|i| power[(i, i)]).sum();
+            all[n + k] = (0..n).map(|i| power[(n + i, i)]).sum();
+        }
+        all
+    }
     /// The quantity that the action keeps.
     fn kept(&self) -> Option<&'static str> {
         let keeps_a_form = !matches!(self.algebra, Algebra::Gl | Algebra::Sl);
@@ -106,49 +160,56 @@ impl System for Equation {
 
     const STATE: &'static [&'static str] = &["point"];
     const QUANTITIES: &'static [Q] = &[
-        Q::numbers("point", &["y11", "…", "ynk"], "the point, row by row", |_, _, y, row| {
-            row.extend(rows(y));
+        Q::numbers("point", &["y11", "…", "ynk"], "the point, row by row; re11, …, im11, … of a complex one", |equation, _, y, row| {
+            row.extend(equation.entries(y));
         })
-        .of_matrix("y", |equation| [equation.start.nrows(), equation.start.ncols()]),
+        .of_matrices(|equation| (letters(equation.algebra), equation.shape())),
         Q::numbers(
             "column",
             &["y11", "…", "yn1"],
             "the first column of the point: where the first direction goes",
             |_, _, y, row| row.extend(y.col_as_slice(0)),
         )
-        .with_columns(|equation| row_columns("y", equation.start.nrows(), 1)),
+        .with_columns(|equation| equation.names_of(equation.shape()[0], 1)),
         Q::number(
             "group_defect",
-            "distance of y'My from M, for translation on so, sp and so(p,q)",
+            "distance of y'My from M, for translation on so, sp, so(p,q), u and su",
             |equation, _, y| {
                 let away = equation.form(y).zip(equation.group.m());
-                away.map_or(f64::NAN, |(form, m)| norm((form - m).as_ref()))
+                // A complex matrix is there twice in its real one.
+                let copies = (equation.parts() as f64).sqrt();
+                away.map_or(f64::NAN, |(form, m)| norm((form - m).as_ref()) / copies)
             },
         )
         .kept(Law::by_the_action(2))
         .in_terms(|_, y| squared_norm(y.as_ref()))
         .missing_where(|equation| {
-            equation.unless_kept("group_defect", "it is for translation on so, sp and so(p,q)")
+            equation.unless_kept("group_defect", "it is for translation on so, sp, so(p,q), u and su")
         }),
         Q::numbers(
             "form",
             &["f11", "…", "fkk"],
-            "y'My, on and above the diagonal, for the linear action of so, sp and so(p,q)",
+            "y'My, on and above the diagonal, for the linear action of so, sp, so(p,q), u and su; the real part of a \
+             complex one",
             |equation, _, y, row| row.extend(equation.form(y).iter().flat_map(upper)),
         )
         .with_columns(|equation| upper_columns("f", equation.start.ncols()))
         .kept(Law::by_the_action(2))
         .in_terms(|_, y| squared_norm(y.as_ref()))
         .missing_where(|equation| {
-            equation.unless_kept("form", "it is for the linear action of so, sp and so(p,q)")
+            equation.unless_kept("form", "it is for the linear action of so, sp, so(p,q), u and su")
         }),
         Q::numbers(
             "traces",
             &["tr1", "…", "trn"],
-            "traces of the powers of the point, for conjugation and coadjoint",
-            |_, _, y, row| row.extend(traces(y)),
+            "traces of the powers of the point, for conjugation and coadjoint; of a complex one their imaginary parts, \
+             ti1, …, too",
+            |equation, _, y, row| row.extend(equation.traces(y)),
         )
-        .with_columns(|equation| numbered("tr", equation.start.nrows()))
+        .with_columns(|equation| {
+            let letters = &["tr", "ti"][..equation.parts()];
+            letters.iter().flat_map(|letter| numbered(letter, equation.n())).collect()
+        })
         .kept(Law::by_the_action(0))
         .in_terms(|_, y| size_of_traces(y))
         .missing_where(|equation| {
@@ -168,12 +229,15 @@ impl System for Equation {
         Ok((problem, self.start.clone()))
     }
     fn check_start(&self, t0: f64) -> Vec<Refusal> {
-        let n = self.group.n();
-        let wrong = without_value(self.formulas(), &values(t0, &self.start));
+        let n = self.n();
+        let wrong = without_value(
+            self.formulas(),
+            &self.values::<{ 1 + 2 * NAMED_MAX * NAMED_MAX }>(t0, &self.start),
+        );
         if !wrong.is_empty() {
             return wrong;
         }
-        let mut f = Mat::zeros(n, n);
+        let mut f = self.group.zero();
         let beside = self.beside_the_start();
         let first = (t0, &self.start, "at the start");
         // At another time too. A field that has no value there is not refused.
@@ -181,11 +245,10 @@ impl System for Equation {
         for (t, y, place) in [first].into_iter().chain(second) {
             self.stated(t, y, &mut f);
             let missed = miss(self.algebra, "field", &f, IN_THE_ALGEBRA);
-            if let Some(Miss { at: (i, j), why, form }) = missed.filter(|_| f.is_all_finite()) {
+            if let Some(Miss { key, why, form }) = missed.filter(|_| f.is_all_finite()) {
                 let algebra = self.algebra.name(n);
                 let message = format!("the field is not in {algebra}: {place} {why}");
-                let refusal = Refusal::at("field".cell(i, j), message);
-                return vec![Refusal { help: Some(form), ..refusal }];
+                return vec![Refusal { help: Some(form), ..Refusal::at(key, message) }];
             }
         }
         Vec::new()
@@ -197,10 +260,14 @@ impl System for Equation {
         self.notes.clone()
     }
     fn modelled(&self) -> String {
-        let (rows, columns) = (self.start.nrows(), self.start.ncols());
+        let [rows, columns] = self.shape();
         let action = ACTIONS.iter().find(|(_, action)| *action == self.action);
         let name = action.map_or("", |(name, _)| name);
-        format!("{rows}×{columns} matrix, {} by {name}", self.group.name())
+        let (complex, group) = match self.algebra.is_complex() {
+            true => ("complex ", self.algebra.name(self.n()).to_uppercase()),
+            false => ("", self.group.name()),
+        };
+        format!("{complex}{rows}×{columns} matrix, {group} by {name}")
     }
     fn figure(&self) -> Figure {
         match self.action {

@@ -8,7 +8,7 @@
 //! | coadjoint | y fᵀ − fᵀ y | tr yᵏ |
 //! | lagrangian | c + dy − ya − yby, f = \[a b; c d\] in sp(2m), y symmetric | |
 //!
-//! M is that of the group; GL(n) and SL(n) have none. The projection of f on 𝔤 is integrated: it takes rounding
+//! Of U(n) and SU(n) y and f are complex, and ᵀ is †. M is that of the group; GL(n) and SL(n) have none. The projection of f on 𝔤 is integrated: it takes rounding
 //! away. An f that is not in 𝔤 at the start, or at a point beside it, is refused. Where f depends on t alone the
 //! equation is of linear type, and Magnus methods fit.
 
@@ -16,13 +16,14 @@ mod equation;
 
 use std::sync::Arc;
 
+use faer::c64;
 use lieflow::dense::{determinant, largest_entry};
 use lieflow::groups::{GroupMatrix, LieAlgebra, LieGroup, MatrixGroup};
 
-use self::equation::Equation;
+use self::equation::{Equation, whole};
 use super::algebra::{ALGEBRAS, Algebra};
 use super::body::TYPED;
-use super::entries::{above_diagonal, check_symmetric, side_of};
+use super::entries::{above_diagonal, check_rows, check_symmetric, side_of};
 use super::matrix::MatrixAction;
 use super::prelude::*;
 use crate::formula::{Formula, Text, Texts};
@@ -38,16 +39,22 @@ pub(super) const KIND: Kind = Kind {
 };
 
 keys! { Keys [sample_keys formula_keys] {
-    group: String = "\"so\", \"sl\", \"gl\", \"sp\" or \"so(p,q)\"; also with n, as \"SO(4)\"",
+    group: String =
+        "\"so\", \"sl\", \"gl\", \"sp\", \"so(p,q)\", or of complex matrices \"u\", \"su\"; also with n, as \
+         \"SO(4)\"",
     action: Option<String> =
         "\"translation\", \"linear\", \"conjugation\", \"coadjoint\" or, of sp, \"lagrangian\"; optional: \
          translation",
     field: Vec<Texts> =
         "n rows of n formulas, n at most 9: f in the algebra, by the time t and the entries y11, y12, ... of the \
-         point; of so also a list of the n(n-1)/2 formulas above the diagonal, row by row",
+         point, of complex ones re11, re12, ..., im11, ...; of so also a list of the n(n-1)/2 formulas above the \
+         diagonal, row by row",
+    field_imaginary: Option<Vec<Texts>> =
+        "of u and su: the imaginary part of f, n rows of n formulas; optional, 0",
     start: Option<Table> =
         "initial point, n rows, of n numbers but for linear; for translation in the group and optional, the \
          identity; for lagrangian symmetric, n/2 rows of n/2",
+    start_imaginary: Option<Table> = "of u and su: its imaginary part; optional, 0",
 } }
 
 const ACTIONS: [(&str, MatrixAction); 5] = [
@@ -65,7 +72,7 @@ fn read(mut keys: Keys) -> Result<Forms, ReadError> {
     let (formulas, samples) = (keys.formula_keys(), keys.sample_keys());
     let named = keys.group.and_then(|group| {
         let unknown = || Refusal::unknown("group", &group, &ALGEBRAS);
-        Ok(Algebra::named(&group).ok_or_else(unknown)?)
+        Ok((Algebra::named(&group).ok_or_else(unknown)?, group))
     });
     let action = keys.action.and_then(|action| {
         let action = action.as_deref().unwrap_or("translation");
@@ -73,12 +80,32 @@ fn read(mut keys: Keys) -> Result<Forms, ReadError> {
         let (_, action) = ACTIONS.iter().find(|(name, _)| *name == action).ok_or_else(unknown)?;
         Ok(*action)
     });
-    let (named, action) = all!(named, action)?;
+    let ((named, group), action) = all!(named, action)?;
     let algebra = named.algebra;
-    let (n, by_upper, field) = entries_of(algebra, keys.field?)?;
+    let complex = algebra.is_complex();
+    let given = |key: &'static str, given: bool| (given && !complex).then_some(key);
+    let imaginary = given("field_imaginary", !matches!(keys.field_imaginary, Ok(None)))
+        .or_else(|| given("start_imaginary", !matches!(keys.start_imaginary, Ok(None))));
+    if let Some(key) = imaginary {
+        let message = format!("{group} has real matrices; complex ones are of u and su");
+        return Err(Refusal::at(key, message).into());
+    }
+    let Keys { field, field_imaginary, start: real, start_imaginary, .. } = keys;
+    let (field, field_imaginary, real, start_imaginary) =
+        all!(field, field_imaginary, real, start_imaginary)?;
+    let (n, by_upper, mut field) = entries_of(algebra, "field", field)?;
     if !(1..=NAMED_MAX).contains(&n) {
         let message = format!("found {n} rows, expected 1 to {NAMED_MAX}");
         return Err(Refusal::at("field", message).into());
+    }
+    if let Some(imaginary) = field_imaginary {
+        let (rows, _, imaginary) = entries_of(algebra, "field_imaginary", imaginary)?;
+        if rows != n {
+            let message = format!("found {rows} rows, expected {n} as field has");
+            return Err(Refusal::at("field_imaginary", message).into());
+        }
+        let below = |((i, j), key, text)| ((n + i, j), key, text);
+        field.extend(imaginary.into_iter().map(below));
     }
     named.check_size(n, "field")?;
     let group = algebra.group(n, "field")?;
@@ -86,9 +113,13 @@ fn read(mut keys: Keys) -> Result<Forms, ReadError> {
         return Err(Refusal::at("action", "lagrangian is an action of sp").into());
     }
     let (mut notes, mut mistakes) = (Vec::new(), ReadError::default());
-    let start = start(algebra, &group, action, keys.start?, &mut notes)?;
-    let entries = row_columns("y", start.nrows(), start.ncols());
-    let variables = ["t".to_owned()].into_iter().chain(entries);
+    let start = start(algebra, &group, action, [real, start_imaginary], &mut notes)?;
+    let shape = match (complex, action) {
+        (false, _) => [start.nrows(), start.ncols()],
+        (true, MatrixAction::Linear) => [n, start.ncols()],
+        (true, _) => [n, n],
+    };
+    let variables = ["t".to_owned()].into_iter().chain(entry_names(algebra, shape));
     let names = formulas.names("field", variables, samples)?;
     let formulas = field.into_iter().filter_map(|(place, key, Text(text))| {
         Some((place, mistakes.keep(Formula::read(&key, &text, &names))?))
@@ -101,11 +132,25 @@ fn read(mut keys: Keys) -> Result<Forms, ReadError> {
     Ok(Forms::of(equation))
 }
 
+/// The letters of the parts of a matrix.
+fn letters(algebra: Algebra) -> &'static [&'static str] {
+    if algebra.is_complex() { &["re", "im"] } else { &["y"] }
+}
+
+/// The names of the entries of a matrix: of a complex one the real and then the imaginary parts.
+fn entry_names(algebra: Algebra, [rows, columns]: [usize; 2]) -> Vec<String> {
+    letters(algebra).iter().flat_map(|letter| row_columns(letter, rows, columns)).collect()
+}
+
 /// Formulas, each with its row and its column and its place in the scene.
 type Entries = Vec<((usize, usize), String, Text)>;
 
 /// The number of rows of a field, and its formulas: all, or of so those above the diagonal alone, which is said.
-fn entries_of(algebra: Algebra, field: Vec<Texts>) -> Result<(usize, bool, Entries), Refusal> {
+fn entries_of(
+    algebra: Algebra,
+    key: &str,
+    field: Vec<Texts>,
+) -> Result<(usize, bool, Entries), Refusal> {
     let (mut rows, mut above) = (Vec::new(), Vec::new());
     for entry in field {
         match entry {
@@ -117,17 +162,17 @@ fn entries_of(algebra: Algebra, field: Vec<Texts>) -> Result<(usize, bool, Entri
     if above.is_empty() {
         if let Some(i) = rows.iter().position(|row| row.len() != n) {
             let message = format!("row {} has {} formulas, expected {n}", i + 1, rows[i].len());
-            return Err(Refusal::at("field".index(i), message));
+            return Err(Refusal::at(key.index(i), message));
         }
         let places = (0..n).flat_map(|i| (0..n).map(move |j| (i, j)));
         let entries = places.zip(rows.into_iter().flatten());
-        let with_key = |((i, j), text)| ((i, j), "field".cell(i, j), text);
+        let with_key = |((i, j), text)| ((i, j), key.cell(i, j), text);
         return Ok((n, false, entries.map(with_key).collect()));
     }
     match (algebra, side_of(above.len())) {
         (Algebra::So, Some(n)) if rows.is_empty() => {
             let entries = above_diagonal(n).zip(above).enumerate();
-            let with_key = |(k, (place, text))| (place, "field".index(k), text);
+            let with_key = |(k, (place, text))| (place, key.index(k), text);
             Ok((n, true, entries.map(with_key).collect()))
         }
         _ => {
@@ -136,7 +181,7 @@ fn entries_of(algebra: Algebra, field: Vec<Texts>) -> Result<(usize, bool, Entri
                  above the diagonal",
                 above.len()
             );
-            Err(Refusal::at("field", message))
+            Err(Refusal::at(key, message))
         }
     }
 }
@@ -146,12 +191,12 @@ fn start(
     algebra: Algebra,
     group: &MatrixGroup,
     action: MatrixAction,
-    stated: Option<Table>,
+    [real, imaginary]: [Option<Table>; 2],
     notes: &mut Vec<String>,
 ) -> Result<Mat<f64>, ReadError> {
-    let n = group.n();
+    let n = if algebra.is_complex() { group.n() / 2 } else { group.n() };
     let refused = |message: String| Refusal::at("start", message);
-    let mut start = match (stated, action) {
+    let mut start = match (real, action) {
         (Some(table), _) => table.columns("start")?,
         (None, MatrixAction::Translation) => Mat::identity(n, n),
         (None, _) => return Err(Refusal::section("missing key `start` in [problem]").into()),
@@ -168,6 +213,18 @@ fn start(
         ))
         .into());
     }
+    if algebra.is_complex() {
+        let imaginary = match imaginary {
+            Some(table) => table.matrix("start_imaginary", Some(columns))?,
+            None => Mat::zeros(rows, columns),
+        };
+        check_rows("start_imaginary", &imaginary, rows)?;
+        let both = Mat::from_fn(2 * rows, columns, |i, j| match i < rows {
+            true => start[(i, j)],
+            false => imaginary[(i - rows, j)],
+        });
+        start = if action == MatrixAction::Linear { both } else { whole(&both) };
+    }
     if action == MatrixAction::Lagrangian {
         check_symmetric("start", &start, 0.0)?;
     }
@@ -179,13 +236,20 @@ fn start(
             let moved = largest_entry((&near - &start).as_ref());
             notes.push(format!(
                 "start: it is replaced by an element of {} nearby, which moves its entries by up to {moved:.1e}",
-                group.name()
+                if algebra.is_complex() { algebra.name(n).to_uppercase() } else { group.name() }
             ));
             start = near;
         }
         let det = determinant(start.as_ref());
         if algebra == Algebra::Sl && (det - 1.0).abs() > ON_THE_GROUP {
             return Err(refused(format!("its determinant is {det}, expected 1")).into());
+        }
+        if algebra == Algebra::Su {
+            let x = Mat::from_fn(n, n, |i, j| c64::new(start[(i, j)], start[(n + i, j)]));
+            let det = x.determinant();
+            if (det - c64::ONE).norm() > ON_THE_GROUP {
+                return Err(refused(format!("its determinant is {det}, expected 1")).into());
+            }
         }
     }
     Ok(start)

@@ -114,7 +114,7 @@ fn matrix_group(name: &str, rows: usize) -> Result<MatrixGroup, Misfit> {
         let expected = format!("{hint}one of {}, or the form M of a group", GROUPS.join(", "));
         Misfit { argument: "group", value: format!("`{name}`"), expected }
     };
-    let named = Algebra::named(name).ok_or_else(unknown)?;
+    let named = Algebra::real_named(name).ok_or_else(unknown)?;
     let n = match named.algebra {
         Algebra::Indefinite(p, q) => p.saturating_add(q),
         _ => plain(name).trim_start_matches(char::is_alphabetic).parse().unwrap_or(rows),
