@@ -53,7 +53,7 @@ pub struct QuantityInfo {
     pub meaning: &'static str,
     /// Its unit, where every scene has the same; empty where the units of the scene decide.
     pub unit: &'static str,
-    /// The quantity that shows the same better in a figure; empty where there is none.
+    /// The name of the quantity that figures draw instead of this one. Empty: figures draw this one.
     pub drawn_as: &'static str,
 }
 
@@ -157,7 +157,7 @@ impl PrincipalInertia {
 pub struct Fact {
     /// What.
     pub name: &'static str,
-    /// Its value; a number that is not finite is none. An answer is 1 for yes and 0 for no.
+    /// Its value. It is not finite if it is unknown. 1 means yes and 0 means no.
     pub value: f64,
     /// Is it the answer to a question?
     pub is_answer: bool,

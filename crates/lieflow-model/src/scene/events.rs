@@ -86,8 +86,8 @@ fn comparison(key: &str, when: &str) -> Option<Refusal> {
     Some(Refusal { help, ..Refusal::at(key, message) })
 }
 
-/// The event `i` of a scene, from 0, of these columns, after events of these names. Without columns it has no formula,
-/// and is none.
+/// The event `i` of a scene, from 0, of these columns, after events of these names. None if there
+/// are no columns: then its formula cannot be read.
 ///
 /// # Errors
 /// Refusals of the keys that cannot be used.

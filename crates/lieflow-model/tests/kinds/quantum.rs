@@ -1,5 +1,5 @@
-//! States, density matrices and unitary matrices under H(t) of one's own, and spins under couplings of one's own, against
-//! closed forms.
+//! States, density matrices and unitary matrices under a given H(t), and spins under given couplings. They are compared
+//! with closed solutions.
 
 use super::formulas::{FINE, RKMK4, SAME};
 use super::*;

@@ -316,7 +316,7 @@ fn given<T>(key: &Key<Option<T>>) -> bool {
     !matches!(key, Ok(None))
 }
 
-/// The antisymmetric n×n matrix under a key, 0 where there is none.
+/// The antisymmetric n×n matrix of a key. It is 0 if the key is left out.
 fn imaginary_part(key: &str, table: Option<Table>, n: usize) -> Result<Mat<f64>, ReadError> {
     let x = table.map_or(Ok(Mat::zeros(n, n)), |table| square(key, &table, n))?;
     check_antisymmetric(key, &x)?;
