@@ -3,12 +3,13 @@
 //! M is the set of all matrices that are similar to one matrix. With G = SO(n) and p symmetric, Λ(g, p) = g p gᵀ is
 //! symmetric, too.
 
-use faer::Mat;
+use faer::{Mat, Scale};
 
 use super::Action;
-use crate::dense::{Lu, congruence, mul, mul_add, skew_commutator};
+use crate::dense::{Lu, congruence, mul, mul_add, skew_commutator, squared_norm};
 use crate::error::Error;
-use crate::groups::{AlgebraMatrix, Form, GroupMatrix, MatrixGroup};
+use crate::groups::{AlgebraMatrix, Form, GroupMatrix, MatrixGroup, RESIDUAL_MAX};
+use crate::so3::in_range;
 
 /// Λ(g, p) = g p g⁻¹: isospectral flows, ṗ = \[f(p), p\].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -74,5 +75,26 @@ impl Action<MatrixGroup> for Conjugation {
         }
         mul(dp, v.as_ref(), p.as_ref());
         mul_add(dp, -1.0, p.as_ref(), v.as_ref());
+    }
+    /// On SO(n) the Frobenius norm of p is constant: p ← p + ½p(‖from‖² − ‖p‖²)/‖from‖², as for vectors.
+    fn restore_to(
+        &self,
+        group: &MatrixGroup,
+        from: &Mat<f64>,
+        p: &mut Mat<f64>,
+        _: &mut ConjugationWork,
+    ) -> Option<f64> {
+        if !matches!(group.form(), Form::Identity) {
+            return None;
+        }
+        let [from2, p2] = [from, &*p].map(|x| squared_norm(x.as_ref()));
+        if !in_range(from2) {
+            return Some(0.0);
+        }
+        let missing = (from2 - p2) / from2;
+        if missing.abs() < RESIDUAL_MAX {
+            *p *= Scale(1.0 + 0.5 * missing);
+        }
+        Some(missing.abs())
     }
 }

@@ -111,3 +111,18 @@ fn what_is_no_density_matrix_is_refused() {
         density_matrix(0, |_, _| [0.0; 2]).is_err() && von_neumann(0, |_, _, _| [0.0; 2]).is_err()
     );
 }
+
+/// The driver takes ρ back to its length: an H that does not change has the same rounding in each of 20 000 steps.
+#[test]
+fn a_density_matrix_stays_as_mixed_as_it_was() {
+    let field = |_: f64, i: usize, j: usize| if i == j { [0.0, 0.0] } else { [0.4, -0.3] };
+    let mixed = von_neumann(3, field).unwrap();
+    let weights = [0.7, 0.2, 0.1];
+    let start = density_matrix(3, |i, j| [if i == j { weights[i] } else { 0.0 }, 0.0]).unwrap();
+    let solve = lieflow::Solve::new(&mixed, &Magnus4, [0.0, 1000.0]).steps(20_000);
+    let end = solve.run(start.clone()).unwrap();
+    let purity = |rho: &Mat<f64>| 0.5 * rho.squared_norm_l2();
+    let drift = purity(&end.y) - purity(&start);
+    assert!(drift.abs() < 30.0 * EPS, "{drift:e}");
+    assert!(end.stats.residual > 0.0 && end.stats.residual < 1e-13, "{:?}", end.stats);
+}

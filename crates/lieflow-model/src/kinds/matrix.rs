@@ -112,4 +112,16 @@ impl Action<MatrixGroup> for MatrixAction {
         *p = g.into_mat();
         Some(residual)
     }
+    fn restore_to(
+        &self,
+        group: &MatrixGroup,
+        from: &Mat<f64>,
+        p: &mut Mat<f64>,
+        work: &mut MatrixWork,
+    ) -> Option<f64> {
+        match work {
+            MatrixWork::Conjugation(work) => Conjugation.restore_to(group, from, p, work),
+            work => self.restore(group, p, work),
+        }
+    }
 }

@@ -4,9 +4,7 @@
 use lieflow::dense::{norm, squared_norm};
 use lieflow::problems::{density_matrix, populations_of, von_neumann};
 
-use super::super::entries::{
-    ROUNDING, eigenvalues, numbered, size_of_traces, symmetric, upper_columns,
-};
+use super::super::entries::{ROUNDING, eigenvalues, numbered, symmetric, upper_columns};
 use super::super::flow::OnMatrices;
 use super::super::matrix::MatrixAction;
 use super::super::prelude::*;
@@ -108,8 +106,7 @@ impl System for Mixture {
         Q::number("purity", "tr ρ²: 1 for a pure state, 1/n at least", |_, _, rho| {
             0.5 * squared_norm(rho.as_ref())
         })
-        .kept(Law::by_the_action(2))
-        .in_terms(|_, rho| size_of_traces(rho)),
+        .kept(Law::by_the_action(2)),
         Q::numbers(
             "eigenvalues",
             &["e1", "…", "en"],
