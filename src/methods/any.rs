@@ -12,8 +12,7 @@ use std::sync::Arc;
 use super::doubling::{doubled as step_doubled, within_halves};
 use super::streak::attempt_steps;
 use super::{
-    Attempts, Embedded, EqualSteps, Facts, Method, Metric, Step, Steps, Streak, Watch, Within,
-    take_steps,
+    Attempt, Attempts, Embedded, EqualSteps, Facts, Method, Metric, Step, Steps, Within, take_steps,
 };
 use crate::error::{Error, StepError};
 use crate::problems::{AlgOf, PointOf, Problem, ScalarOf};
@@ -78,15 +77,7 @@ trait Stepper<P: Problem> {
         y: &mut PointOf<P>,
     ) -> Result<(), (u64, StepError)>;
     /// See [`Embedded::attempt`].
-    fn attempt(
-        &mut self,
-        problem: &P,
-        tolerance: &Tolerance,
-        first: (Step<f64>, f64),
-        streak: &Streak,
-        points: [&mut PointOf<P>; 3],
-        watch: Option<&mut Watch<'_, PointOf<P>>>,
-    ) -> Attempts
+    fn attempt(&mut self, problem: &P, attempt: Attempt<'_, P>) -> Attempts
     where
         ScalarOf<P>: Into<f64>;
     fn iterations(&self) -> u64;
@@ -144,12 +135,8 @@ trait Estimate<P: Problem, M: Method<P>>: Copy + Send + Sync {
         self,
         method: &M,
         problem: &P,
-        tolerance: &Tolerance,
-        first: (Step<f64>, f64),
-        streak: &Streak,
-        points: [&mut PointOf<P>; 3],
+        attempt: Attempt<'_, P>,
         work: &mut M::Work,
-        watch: Option<&mut Watch<'_, PointOf<P>>>,
     ) -> Attempts
     where
         ScalarOf<P>: Into<f64>;
@@ -162,17 +149,8 @@ impl<P: Problem, M: Method<P>> Estimate<P, M> for NoEstimate {
     fn facts(self, method: &M, problem: &P) -> Facts {
         Facts { error_order: None, ..method.facts(problem) }
     }
-    fn attempt(
-        self,
-        _: &M,
-        _: &P,
-        _: &Tolerance,
-        (step, end): (Step<f64>, f64),
-        _: &Streak,
-        _: [&mut PointOf<P>; 3],
-        _: &mut M::Work,
-        _: Option<&mut Watch<'_, PointOf<P>>>,
-    ) -> Attempts {
+    fn attempt(self, _: &M, _: &P, attempt: Attempt<'_, P>, _: &mut M::Work) -> Attempts {
+        let Attempt { step, end, .. } = attempt;
         let ratio = Err(StepError::NotFinite { what: "the error estimate" });
         Attempts { accepted: 0, accepted_ratio: 0.0, step, end, ratio }
     }
@@ -190,17 +168,13 @@ impl<P: Problem, M: Embedded<P>> Estimate<P, M> for OwnEstimate {
         self,
         method: &M,
         problem: &P,
-        tolerance: &Tolerance,
-        first: (Step<f64>, f64),
-        streak: &Streak,
-        points: [&mut PointOf<P>; 3],
+        attempt: Attempt<'_, P>,
         work: &mut M::Work,
-        watch: Option<&mut Watch<'_, PointOf<P>>>,
     ) -> Attempts
     where
         ScalarOf<P>: Into<f64>,
     {
-        method.attempt(problem, tolerance, first, streak, points, work, watch)
+        method.attempt(problem, attempt, work)
     }
 }
 
@@ -248,20 +222,12 @@ impl<P: Problem, M: Method<P>, E: Estimate<P, M>> Stepper<P> for MethodWithWork<
     ) -> Result<(), (u64, StepError)> {
         take_steps(&self.method, problem, steps, y, &mut self.work)
     }
-    fn attempt(
-        &mut self,
-        problem: &P,
-        tolerance: &Tolerance,
-        first: (Step<f64>, f64),
-        streak: &Streak,
-        points: [&mut PointOf<P>; 3],
-        watch: Option<&mut Watch<'_, PointOf<P>>>,
-    ) -> Attempts
+    fn attempt(&mut self, problem: &P, attempt: Attempt<'_, P>) -> Attempts
     where
         ScalarOf<P>: Into<f64>,
     {
         let MethodWithWork { method, work, estimate, .. } = self;
-        estimate.attempt(method, problem, tolerance, first, streak, points, work, watch)
+        estimate.attempt(method, problem, attempt, work)
     }
     fn iterations(&self) -> u64 {
         self.method.iterations(&self.work)
@@ -462,31 +428,20 @@ where
             true => {
                 half.assign(from);
                 let Step { n, t, h } = step;
-                let first = (Step { n, t: t.into(), h: h.into() }, f64::NAN); // nothing follows
-                let points = [once, half, to];
-                let ratio =
-                    stepper.attempt(problem, tolerance, first, &Streak::ONE, points, None).ratio;
-                ratio.map(ScalarOf::<P>::lit)
+                let step = Step { n, t: t.into(), h: h.into() };
+                let one = Attempt::one(tolerance, step, [once, half, to]);
+                stepper.attempt(problem, one).ratio.map(ScalarOf::<P>::lit)
             }
             false => step_doubled(*order, step, tolerance, from, [once, half], to, |step, y| {
                 stepper.step(problem, step, y)
             }),
         }
     }
-    fn attempt(
-        &self,
-        problem: &P,
-        tolerance: &Tolerance,
-        first: (Step<f64>, f64),
-        streak: &Streak,
-        points: [&mut PointOf<P>; 3],
-        work: &mut Self::Work,
-        watch: Option<&mut Watch<'_, PointOf<P>>>,
-    ) -> Attempts {
+    fn attempt(&self, problem: &P, attempt: Attempt<'_, P>, work: &mut Self::Work) -> Attempts {
         if work.has_pair {
             work.doubled = false;
-            return work.stepper.attempt(problem, tolerance, first, streak, points, watch);
+            return work.stepper.attempt(problem, attempt);
         }
-        attempt_steps(self, problem, tolerance, first, streak, points, work, watch)
+        attempt_steps(self, problem, attempt, work)
     }
 }

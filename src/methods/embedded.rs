@@ -10,7 +10,7 @@
 //! An error e in 𝔤 is always relative to the point: λ_p(v + e) ≈ Λ(Ψ(e), λ_p(v)).
 
 use super::streak::attempt_steps;
-use super::{Attempts, Method, Step, Streak, Watch};
+use super::{Attempt, Attempts, Method, Step};
 use crate::actions::Action;
 use crate::error::StepError;
 use crate::groups::LieAlgebra;
@@ -36,25 +36,16 @@ pub trait Embedded<P: Problem>: Method<P> {
         to: &mut PointOf<P>,
     ) -> Result<ScalarOf<P>, StepError>;
 
-    /// Attempts the step `first`, which ends at a given time, from the second point to the third, and then those of the
-    /// streak after it. Each accepted step moves the points on: the first is then its start, the second its end.
+    /// Attempts a step from the second point to the third, and then those of the streak after it. Each accepted step moves
+    /// the points on: the first is then its start, the second its end.
     ///
-    /// A step is accepted and the next one attempted, while the error keeps the step size, `streak` allows another
+    /// A step is accepted and the next one attempted, while the error keeps the step size, the streak allows another
     /// attempt, and `watch` has nothing to look at in the step.
-    fn attempt(
-        &self,
-        problem: &P,
-        tolerance: &Tolerance,
-        first: (Step<f64>, f64),
-        streak: &Streak,
-        points: [&mut PointOf<P>; 3],
-        work: &mut Self::Work,
-        watch: Option<&mut Watch<'_, PointOf<P>>>,
-    ) -> Attempts
+    fn attempt(&self, problem: &P, attempt: Attempt<'_, P>, work: &mut Self::Work) -> Attempts
     where
         ScalarOf<P>: Into<f64>,
     {
-        attempt_steps(self, problem, tolerance, first, streak, points, work, watch)
+        attempt_steps(self, problem, attempt, work)
     }
 }
 

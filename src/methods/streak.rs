@@ -70,21 +70,44 @@ pub struct Attempts {
 /// Sees the start, the end and the point at the end of a step of a streak. Returns false if the step must be the last one.
 pub type Watch<'w, Y> = dyn FnMut([f64; 2], &Y) -> bool + 'w;
 
+/// A step by its error, to be attempted with those of its streak.
+#[allow(missing_debug_implementations)] // the points belong to the problem's types
+pub struct Attempt<'a, P: Problem> {
+    /// The allowed error.
+    pub tolerance: &'a Tolerance,
+    /// The first step.
+    pub step: Step<f64>,
+    /// Its end.
+    pub end: f64,
+    /// The conditions of the steps after it.
+    pub streak: &'a Streak,
+    /// The start of the last accepted step, the start of the attempt, and its end.
+    pub points: [&'a mut PointOf<P>; 3],
+    /// Looks at each accepted step.
+    pub watch: Option<&'a mut Watch<'a, PointOf<P>>>,
+}
+
+impl<'a, P: Problem> Attempt<'a, P> {
+    /// One attempt alone. It leaves the first point as it is.
+    pub fn one(tolerance: &'a Tolerance, step: Step<f64>, points: [&'a mut PointOf<P>; 3]) -> Self {
+        let end = step.t + step.h;
+        Attempt { tolerance, step, end, streak: &Streak::ONE, points, watch: None }
+    }
+}
+
 /// Attempts the steps of a streak, as [`Embedded::attempt`] does.
 #[inline(always)]
 pub(super) fn attempt_steps<P: Problem, M: Embedded<P> + ?Sized>(
     method: &M,
     problem: &P,
-    tolerance: &Tolerance,
-    (mut step, mut end): (Step<f64>, f64),
-    streak: &Streak,
-    [from, y, to]: [&mut PointOf<P>; 3],
+    attempt: Attempt<'_, P>,
     work: &mut M::Work,
-    mut watch: Option<&mut Watch<'_, PointOf<P>>>,
 ) -> Attempts
 where
     ScalarOf<P>: Into<f64>,
 {
+    let Attempt { tolerance, mut step, mut end, streak, points: [from, y, to], mut watch } =
+        attempt;
     let (action, group) = (problem.action(), problem.group());
     let (mut accepted, mut accepted_ratio) = (0, 0.0);
     // Points of a few numbers stay in registers from step to step.

@@ -11,7 +11,9 @@ use super::stats::{Cadence, RunError, Stats, power_of_two_above};
 use crate::actions::Action;
 use crate::error::{Error, StepError};
 use crate::groups::LieAlgebra;
-use crate::methods::{Attempts, Embedded, EqualSteps, Facts, Method, Step, Streak, Watch, Within};
+use crate::methods::{
+    Attempt, Attempts, Embedded, EqualSteps, Facts, Method, Step, Streak, Watch, Within,
+};
 use crate::problems::{AlgOf, PointOf, Problem, ScalarOf};
 use crate::scalar::Real;
 use crate::space::Metric;
@@ -74,20 +76,11 @@ pub(super) trait AnyPoints {
 }
 
 /// See [`Embedded::attempt`].
-type Attempt<P, M> = fn(
-    &M,
-    &P,
-    &Tolerance,
-    (Step<f64>, f64),
-    &Streak,
-    [&mut PointOf<P>; 3],
-    &mut <M as Method<P>>::Work,
-    Option<&mut Watch<'_, PointOf<P>>>,
-) -> Attempts;
+type AttemptOf<P, M> = for<'a> fn(&M, &P, Attempt<'a, P>, &mut <M as Method<P>>::Work) -> Attempts;
 
 /// What an adaptive run needs from its method.
 pub(super) struct Estimator<P: Problem, M: Method<P>> {
-    attempt: Attempt<P, M>,
+    attempt: AttemptOf<P, M>,
     norm: fn(&P, &AlgOf<P>) -> f64,
 }
 
@@ -244,12 +237,9 @@ impl<'a, P: Problem, M: Method<P>> Points<'a, P, M> {
                 match rates {
                     // As the steps of the run are taken: in two halves, if the method has no estimate.
                     Some(Rates { estimator, tolerance, .. }) => {
-                        let (step, one) = ((Step { h, ..last }, 0.0), &Streak::ONE);
-                        let points = [to, from, at];
-                        (estimator.attempt)(
-                            method, problem, tolerance, step, one, points, work, None,
-                        )
-                        .ratio?;
+                        let (step, points) = (Step { h, ..last }, [to, from, at]);
+                        let one = Attempt::one(tolerance, step, points);
+                        (estimator.attempt)(method, problem, one, work).ratio?;
                     }
                     None => {
                         action.assign(group, from, at);
@@ -298,18 +288,19 @@ impl<'a, P: Problem, M: Method<P>> Points<'a, P, M> {
 
     /// [`AnyPoints::attempt`], where `watch` sees the steps of the streak.
     #[inline]
-    pub(super) fn attempt_watched(
-        &mut self,
+    pub(super) fn attempt_watched<'w>(
+        &'w mut self,
         step: Step<f64>,
         end: f64,
-        streak: &Streak,
-        watch: Option<&mut Watch<'_, PointOf<P>>>,
+        streak: &'w Streak,
+        watch: Option<&'w mut Watch<'w, PointOf<P>>>,
     ) -> Attempts {
         let Points { problem, method, y, from, to, work, rates, .. } = self;
         match rates {
             Some(Rates { estimator, tolerance, .. }) => {
-                let (step, points) = ((step, end), [from, y, to]);
-                (estimator.attempt)(method, problem, tolerance, step, streak, points, work, watch)
+                let points = [from, y, to];
+                let attempt = Attempt { tolerance, step, end, streak, points, watch };
+                (estimator.attempt)(method, problem, attempt, work)
             }
             None => {
                 let ratio = Err(StepError::NotFinite { what: "the error estimate" });
@@ -388,11 +379,9 @@ impl<P: Problem, M: Method<P>> AnyPoints for Points<'_, P, M> {
         let (problem, method) = (&**problem, &**method);
         match rates {
             Some(Rates { estimator, tolerance, .. }) => {
-                let (step, one) = ((step, 0.0), &Streak::ONE);
-                let points = [y, from, to]; // one attempt leaves y alone
-                (estimator.attempt)(method, problem, tolerance, step, one, points, work, None)
-                    .ratio
-                    .map(drop)
+                // One attempt leaves y alone.
+                let one = Attempt::one(tolerance, step, [y, from, to]);
+                (estimator.attempt)(method, problem, one, work).ratio.map(drop)
             }
             None => {
                 problem.action().assign(problem.group(), from, to);
