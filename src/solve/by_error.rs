@@ -17,7 +17,7 @@ impl Timeline {
     /// Takes accepted steps: one, or those of a streak.
     pub(super) fn chosen_steps(
         &mut self,
-        run: &mut Run<'_>,
+        run: &mut dyn Run,
         (stop, jumps): (f64, bool),
         reach: Reach,
     ) -> Result<(), RunError> {

@@ -7,10 +7,12 @@ use super::drift::Drift;
 use super::events::{Events, Zero};
 use super::grid::SaveAt;
 use super::output::{AnyOutput, Slot};
+use super::points::AnyPoints;
 use super::solution::{Next, Status};
 use super::stats::RunError;
-use super::streak::{Reach, Run};
+use super::streak::{Alone, Reach, Run};
 use super::timeline::Timeline;
+use crate::methods::{Attempts, Step, Streak};
 
 /// The function that takes the bytes of a state.
 type TakeBytes<'a> = Box<dyn FnMut(&[u8]) + 'a>;
@@ -49,6 +51,21 @@ pub(super) enum Keeps {
     Starts,
     /// The polynomial of its points.
     Pieces,
+}
+
+/// The points of a run with its events.
+struct Watched<'a> {
+    output: &'a mut dyn AnyOutput,
+    events: &'a mut Events,
+}
+
+impl Run for Watched<'_> {
+    fn points(&mut self) -> &mut dyn AnyPoints {
+        self.output.points()
+    }
+    fn attempt(&mut self, step: Step<f64>, end: f64, streak: &Streak) -> Attempts {
+        self.output.attempt(step, end, streak, self.events)
+    }
 }
 
 /// A run under way.
@@ -192,7 +209,7 @@ impl Drive<'_> {
     fn step(&mut self, output: &mut dyn AnyOutput) -> Result<(), RunError> {
         let stop = (self.next_stop.unwrap_or(self.times.t1), self.next_stop.is_some());
         if self.keeps != Keeps::Nothing {
-            return self.times.steps_before(&mut Run::Points(output.points()), stop, Reach::STEP);
+            return self.times.steps_before(&mut Alone(output.points()), stop, Reach::STEP);
         }
         let taken = self.times.stats.accepted;
         let mut steps = self.save.next_after(taken);
@@ -206,7 +223,7 @@ impl Drive<'_> {
         if self.events.all.is_empty() {
             self.times.quietly(output.points(), steps, time)?;
         }
-        let run = &mut Run::Watched(output, &mut self.events);
+        let run = &mut Watched { output, events: &mut self.events };
         self.times.steps_before(run, stop, Reach { steps, time })?;
         if let Some(clock) = clock {
             self.patience.after(clock.elapsed());

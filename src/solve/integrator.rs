@@ -4,7 +4,7 @@ use super::control::Controller;
 use super::held::Held;
 use super::points::{Estimator, Points};
 use super::stats::{Cadence, RunError, Stats};
-use super::streak::{Reach, Run};
+use super::streak::{Alone, Reach};
 use super::timeline::{Chooser, Looked, Pace, Pacer, Timeline};
 use crate::error::Error;
 use crate::methods::{Method, Step};
@@ -93,7 +93,7 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
     /// [`RunError`]; the state is then the last accepted one. At the end of the span a step does nothing.
     pub fn step(&mut self) -> Result<f64, RunError> {
         let Self { points, times } = self;
-        times.steps_before(&mut Run::Points(points), (times.t1, false), Reach::STEP)?;
+        times.steps_before(&mut Alone(points), (times.t1, false), Reach::STEP)?;
         Ok(times.t)
     }
 

@@ -42,6 +42,9 @@ fn polynomials(theta: f64) -> [f64; COUNT] {
     t
 }
 
+/// The function that lists the numbers of a point.
+pub(super) type Listing<P> = fn(&mut PointOf<P>, &mut dyn FnMut(&mut f64));
+
 /// The polynomial of a piece.
 enum Curve<P: Problem> {
     /// u(θ) in the chart around the point.
@@ -64,7 +67,7 @@ impl<P: Problem> Piece<P> {
         (step, until): (Step<f64>, f64),
         from: &PointOf<P>,
         work: &mut M::Work,
-        (at, list): (&mut PointOf<P>, super::save::Listing<P>),
+        (at, list): (&mut PointOf<P>, Listing<P>),
     ) -> Result<Self, StepError> {
         let Step { n, t, h } = step;
         let typed = Step { n, t: ScalarOf::<P>::lit(t), h: ScalarOf::<P>::lit(h) };

@@ -56,9 +56,9 @@ use crate::tolerance::Rule;
 use drive::{Checkpoints, Drive, Keeps, Patience};
 use events::Events;
 use held::Held;
+use interpolant::Listing;
 use output::{Keep, Observe, Output, SeeEnd, Watch};
 use points::Estimator;
-use save::Listing;
 use timeline::{Pace, Timeline};
 
 /// The settings of a run: a problem, a method, a span, steps, output and events.

@@ -5,8 +5,7 @@
 //! compiles the driver once, and only this file again for each problem and method. A step itself has no such call.
 
 use super::held::Held;
-use super::interpolant::{Piece, no_polynomial};
-use super::save::Listing;
+use super::interpolant::{Listing, Piece, no_polynomial};
 use super::stats::{Cadence, RunError, Stats, power_of_two_above};
 use crate::actions::Action;
 use crate::error::{Error, StepError};

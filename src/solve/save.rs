@@ -37,9 +37,6 @@ fn hash(bytes: &[u8]) -> u64 {
 /// The function that reads or writes each word of a state.
 type Each<'a> = dyn FnMut(&mut u64) + 'a;
 
-/// The function that lists the numbers of a point.
-pub(super) type Listing<P> = fn(&mut PointOf<P>, &mut dyn FnMut(&mut f64));
-
 fn number(each: &mut Each<'_>, x: &mut f64) {
     let mut word = x.to_bits();
     each(&mut word);

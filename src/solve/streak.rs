@@ -1,7 +1,5 @@
 //! The way from the driver to streaks of attempts.
 
-use super::events::Events;
-use super::output::AnyOutput;
 use super::points::AnyPoints;
 use crate::methods::{Attempts, Step, Streak};
 
@@ -20,25 +18,22 @@ impl Reach {
 }
 
 /// The points of a run, with or without events.
-pub(super) enum Run<'a> {
-    Points(&'a mut dyn AnyPoints),
-    Watched(&'a mut dyn AnyOutput, &'a mut Events),
-}
-
-impl Run<'_> {
-    pub(super) fn points(&mut self) -> &mut dyn AnyPoints {
-        match self {
-            Run::Points(points) => &mut **points,
-            Run::Watched(output, _) => output.points(),
-        }
-    }
-
+pub(super) trait Run {
+    /// The points.
+    fn points(&mut self) -> &mut dyn AnyPoints;
     /// Attempts a step that ends at `end`, and those of the streak after it. A step in which an event may have a zero is
     /// the last attempt.
-    pub(super) fn attempt(&mut self, step: Step<f64>, end: f64, streak: &Streak) -> Attempts {
-        match self {
-            Run::Points(points) => points.attempt(step, end, streak),
-            Run::Watched(output, events) => output.attempt(step, end, streak, events),
-        }
+    fn attempt(&mut self, step: Step<f64>, end: f64, streak: &Streak) -> Attempts;
+}
+
+/// The points of a run without events.
+pub(super) struct Alone<'a>(pub(super) &'a mut dyn AnyPoints);
+
+impl Run for Alone<'_> {
+    fn points(&mut self) -> &mut dyn AnyPoints {
+        &mut *self.0
+    }
+    fn attempt(&mut self, step: Step<f64>, end: f64, streak: &Streak) -> Attempts {
+        self.0.attempt(step, end, streak)
     }
 }

@@ -4,7 +4,7 @@ use super::control::{Controller, StepControl};
 use super::grid::TimeGrid;
 use super::points::{AnyPoints, Place, Saved};
 use super::stats::{Cadence, RunError, Stats};
-use super::streak::{Reach, Run};
+use super::streak::{Alone, Reach, Run};
 use crate::error::{Error, Failure, StepError};
 use crate::methods::{Facts, MapCounts, Step, StepCost};
 
@@ -145,7 +145,7 @@ impl Timeline {
         }
         while self.t != t {
             let reach = Reach { steps: u64::MAX, time: None };
-            self.steps_before(&mut Run::Points(points), (t, false), reach)?;
+            self.steps_before(&mut Alone(points), (t, false), reach)?;
         }
         Ok(())
     }
@@ -154,7 +154,7 @@ impl Timeline {
     /// at `stop` if f jumps there.
     pub(super) fn steps_before(
         &mut self,
-        run: &mut Run<'_>,
+        run: &mut dyn Run,
         (stop, jumps): (f64, bool),
         reach: Reach,
     ) -> Result<(), RunError> {
