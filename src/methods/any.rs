@@ -99,6 +99,7 @@ trait Stepper<P: Problem> {
         at: &mut PointOf<P>,
     ) -> Result<(), StepError>;
     fn within(&self) -> Within;
+    fn each_term(&mut self, each: &mut dyn FnMut(&mut f64));
     fn coordinates(
         &mut self,
         problem: &P,
@@ -260,6 +261,9 @@ impl<P: Problem, M: Method<P>, E: Estimate<P, M>> Stepper<P> for MethodWithWork<
     fn within(&self) -> Within {
         self.method.within(&self.work)
     }
+    fn each_term(&mut self, each: &mut dyn FnMut(&mut f64)) {
+        self.method.each_term(&mut self.work, each);
+    }
     fn coordinates(
         &mut self,
         problem: &P,
@@ -373,6 +377,9 @@ where
     }
     fn within(&self, work: &Self::Work) -> Within {
         if work.doubled { Within::Steps } else { work.stepper.within() }
+    }
+    fn each_term(&self, work: &mut Self::Work, each: &mut dyn FnMut(&mut f64)) {
+        work.stepper.each_term(each);
     }
     fn coordinates(
         &self,

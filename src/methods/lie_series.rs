@@ -16,7 +16,7 @@ use faer::Mat;
 use nalgebra::Matrix3;
 
 use super::embedded::ratio_of_relative;
-use super::{Embedded, Facts, MapCounts, Method, Metric, Step};
+use super::{Embedded, Facts, MapCounts, Method, Metric, Step, Within};
 use crate::actions::Action;
 use crate::dense::{axpy, mul_add};
 use crate::error::{Error, StepError};
@@ -25,10 +25,11 @@ use crate::groups::{
 };
 use crate::problems::{AlgOf, ElemOf, PointOf, ScalarOf, TaylorField};
 use crate::scalar::Real;
+use crate::space::Numbers;
 use crate::tolerance::Tolerance;
 
 /// A group whose elements lie in a linear space with products by elements of 𝔤.
-pub trait SeriesGroup: LieGroup + LieAlgebra<Scalar: Into<f64>> {
+pub trait SeriesGroup: LieGroup<Elem: Numbers> + LieAlgebra<Scalar: Into<f64>> {
     /// x ← 0.
     fn clear(&self, x: &mut Self::Elem);
     /// x ← a·x.
@@ -274,6 +275,12 @@ where
         w.onto_group(group)?;
         problem.action().act(group, &w.g, from, at, &mut w.act);
         Ok(())
+    }
+    fn within(&self, _: &Self::Work) -> Within {
+        Within::Series
+    }
+    fn each_term(&self, work: &mut Self::Work, each: &mut dyn FnMut(&mut f64)) {
+        work.psi.iter_mut().for_each(|term| term.each_number(each));
     }
 }
 

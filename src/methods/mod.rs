@@ -181,6 +181,8 @@ pub enum Within {
     Chart,
     /// As a polynomial of degree 7 at most in the linear space around M.
     Space,
+    /// As a series: [`Method::interpolate`] reads the step, its start, and the numbers of [`Method::each_term`] only.
+    Series,
 }
 
 /// A symmetric method: a step back undoes a step, Φ_{−h} ∘ Φ_h = id, to rounding. Its order is even, and a
@@ -302,6 +304,10 @@ pub trait Method<P: Problem> {
     ) -> Result<(), StepError> {
         Err(StepError::NotFinite { what: "the continuous extension" })
     }
+
+    /// Calls `each` with every number of the workspace that [`interpolate`](Self::interpolate) reads, for
+    /// [`Within::Series`]. With other numbers in them the workspace is that of another step.
+    fn each_term(&self, _work: &mut Self::Work, _each: &mut dyn FnMut(&mut f64)) {}
 
     /// Takes these steps. The numbers of y must be finite after each ([`Action::is_finite`]).
     ///

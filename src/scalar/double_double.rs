@@ -26,8 +26,8 @@ use super::{Real, Select, Trig};
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DoubleDouble {
-    hi: f64,
-    lo: f64,
+    pub(crate) hi: f64,
+    pub(crate) lo: f64,
 }
 
 /// a + b without error, for any a and b.

@@ -2,7 +2,8 @@
 //!
 //! In a step from p the method gives y(t + θh) = λ_p(u(θ)), where u(θ) ∈ 𝔤 is a polynomial of degree 7 at most
 //! ([`Within::Chart`]). On the linear space around M the point itself is the polynomial ([`Within::Space`]). A piece
-//! holds p and the coefficients of Chebyshev's polynomials T₀, …, T₇ in 2θ − 1.
+//! holds p and the coefficients of Chebyshev's polynomials T₀, …, T₇ in 2θ − 1. Of a Lie series it holds p and the terms
+//! of the series ([`Within::Series`]).
 
 use core::f64::consts::PI;
 use std::sync::Arc;
@@ -51,6 +52,8 @@ enum Curve<P: Problem> {
     Chart(PointOf<P>, [AlgOf<P>; COUNT]),
     /// The numbers of y(θ), one coefficient after the other.
     Space(Vec<f64>),
+    /// The terms of the series of the method from the point.
+    Series(PointOf<P>, Vec<f64>),
 }
 
 /// A step, with the time up to which it is valid.
@@ -105,6 +108,14 @@ impl<P: Problem> Piece<P> {
                 }
                 Curve::Space(numbers)
             }
+            Within::Series => {
+                let mut terms = Vec::new();
+                method.each_term(work, &mut |x| terms.push(*x));
+                if !terms.iter().all(|x| x.is_finite()) {
+                    return Err(StepError::NotFinite { what: "the Taylor series" });
+                }
+                Curve::Series(from.clone(), terms)
+            }
             Within::Steps => return Err(StepError::NotFinite { what: "the continuous extension" }),
         };
         Ok(Piece { until, step, curve })
@@ -123,15 +134,15 @@ pub(super) fn no_polynomial() -> Error {
         with: "this method".into(),
         why: "points within its steps are shorter steps, which call f again. Use rkmk with any tableau and map \
               (with an adaptive step size: a pair, such as dop853, verner6, dopri5, bs3), \
-              a method with one bracket, rkmk-gauss, or rk",
+              a Lie series, a method with one bracket, rkmk-gauss, or rk",
     }
 }
 
 /// The solution of a run at all times, as numbers.
 ///
 /// [`Solve::run_interpolant`](super::Solve::run_interpolant) makes it. A [`reader`](Self::reader) computes points, in any
-/// order. It does not call f and does not repeat steps. Cost of a point: one combination of eight elements of 𝔤, Ψ and Λ.
-/// Its error is that of the continuous extension of the method, and rounding.
+/// order. It does not call f and does not repeat steps. Cost of a point: one combination of eight elements of 𝔤, Ψ and Λ;
+/// of a Lie series the sum of its terms, and Λ. Its error is that of the continuous extension of the method, and rounding.
 ///
 /// ```
 /// use lieflow::prelude::*;
@@ -197,7 +208,7 @@ impl<'a, P: Problem, M: Method<P>> Interpolant<'a, P, M> {
     pub fn reader(&self) -> Result<Reader<'_, 'a, P, M>, Error> {
         let work = self.method.work(&self.problem, &self.y)?;
         let (u, at) = (self.problem.group().zero(), self.y.clone());
-        Ok(Reader { of: self, work, u, at, numbers: Vec::new() })
+        Ok(Reader { of: self, work, u, at, numbers: Vec::new(), series: None })
     }
 }
 
@@ -209,6 +220,8 @@ pub struct Reader<'i, 'a, P: Problem, M: Method<P>> {
     u: AlgOf<P>,
     at: PointOf<P>,
     numbers: Vec<f64>,
+    /// The piece whose terms are in the workspace.
+    series: Option<usize>,
 }
 
 impl<P: Problem<Action: Action<P::Group, Point: Numbers>>, M: Method<P>> Reader<'_, '_, P, M> {
@@ -217,7 +230,7 @@ impl<P: Problem<Action: Action<P::Group, Point: Numbers>>, M: Method<P>> Reader<
     /// # Errors
     /// [`Error::OutOfRange`] for a t outside the span, [`RunError::Within`] where the point cannot be computed.
     pub fn at(&mut self, t: f64) -> Result<&PointOf<P>, RunError> {
-        let Reader { of, work, u, at, numbers } = self;
+        let Reader { of, work, u, at, numbers, series } = self;
         let (problem, method) = (&*of.problem, &*of.method);
         let [start, end] = of.t_span();
         if !(start.min(end) <= t && t <= start.max(end)) {
@@ -235,8 +248,20 @@ impl<P: Problem<Action: Action<P::Group, Point: Numbers>>, M: Method<P>> Reader<
             _ => return Ok(&of.y),
         };
         let Step { n, t: from, h } = piece.step;
-        let weights = polynomials(((t - from) / h).clamp(0.0, 1.0));
+        let theta = ((t - from) / h).clamp(0.0, 1.0);
+        let weights = polynomials(theta);
         match &piece.curve {
+            Curve::Series(base, terms) => {
+                if *series != Some(index) {
+                    let mut terms = terms.iter();
+                    method.each_term(work, &mut |x| *x = terms.next().copied().unwrap_or(*x));
+                    *series = Some(index);
+                }
+                let step = Step { n, t: ScalarOf::<P>::lit(from), h: ScalarOf::<P>::lit(h) };
+                method
+                    .interpolate(problem, step, theta, base, work, at)
+                    .map_err(|source| RunError::Within { t: from, h, source })?;
+            }
             Curve::Chart(base, coefficients) => {
                 problem.group().combine(ScalarOf::<P>::lit(1.0), &weights, coefficients, u);
                 method
@@ -262,6 +287,8 @@ impl<P: Problem<Action: Action<P::Group, Point: Numbers>>, M: Method<P>> Reader<
 const CHART: f64 = 1.0;
 /// The mark of a piece in the linear space.
 const SPACE: f64 = 2.0;
+/// The mark of a piece of a series.
+const SERIES: f64 = 3.0;
 
 impl<'a, P, M> Interpolant<'a, P, M>
 where
@@ -274,7 +301,11 @@ where
         let mut all = vec![self.t];
         self.y.clone().each_number(&mut |x| all.push(*x));
         for Piece { until, step: Step { n, t, h }, curve } in &self.pieces {
-            let mark = if let Curve::Chart(..) = curve { CHART } else { SPACE };
+            let mark = match curve {
+                Curve::Chart(..) => CHART,
+                Curve::Space(_) => SPACE,
+                Curve::Series(..) => SERIES,
+            };
             all.extend([mark, *until, f64::from_bits(*n), *t, *h]);
             match curve {
                 Curve::Chart(base, coefficients) => {
@@ -282,6 +313,10 @@ where
                     coefficients.clone().each_number(&mut |x| all.push(*x));
                 }
                 Curve::Space(coefficients) => all.extend(coefficients),
+                Curve::Series(base, terms) => {
+                    base.clone().each_number(&mut |x| all.push(*x));
+                    all.extend(terms);
+                }
             }
         }
         all
@@ -331,6 +366,16 @@ where
                 let mut coefficients = vec![0.0; size * COUNT];
                 coefficients.iter_mut().for_each(|x| fill(&mut rest, x));
                 Curve::Space(coefficients)
+            } else if mark == SERIES {
+                let mut base = like.clone();
+                base.each_number(&mut |x| fill(&mut rest, x));
+                let mut terms = Vec::new();
+                let mut work = method.work(&problem, like)?;
+                method.each_term(&mut work, &mut |x| {
+                    fill(&mut rest, x);
+                    terms.push(*x);
+                });
+                Curve::Series(base, terms)
             } else {
                 return Err(wrong());
             };

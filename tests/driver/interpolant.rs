@@ -6,12 +6,14 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use lieflow::actions::LeftTranslation;
 use lieflow::catalog::MethodsByName;
-use lieflow::groups::So3;
-use lieflow::methods::AnyMethod;
-use lieflow::problems::{DynFlow, Flow, RigidBody, TimeAlone};
+use lieflow::groups::{Sample, So3};
+use lieflow::methods::{AnyMethod, LieSeries};
+use lieflow::problems::{DynFlow, Flow, Problem, RigidBody, RigidBodyN, TimeAlone};
 use lieflow::solve::{Continuous, Integrator, Interpolant, RunError};
 use lieflow::{Error, Event, Solve};
 use nalgebra::{Matrix3, Vector3};
+use rand::SeedableRng;
+use rand_pcg::Pcg64;
 
 type Rotations = DynFlow<So3, LeftTranslation, TimeAlone>;
 
@@ -80,13 +82,49 @@ fn the_interpolant_is_dense_output_without_f() {
     }
 }
 
+/// The terms of a Lie series are its dense output.
+#[test]
+fn a_lie_series_is_dense_output_without_f() {
+    let body = Arc::new(RigidBodyN::manakov(&[1.0, 2.5, 3.0, 4.5, 6.0]).expect("a body"));
+    let start = {
+        let mut rng = Pcg64::seed_from_u64(5);
+        body.group().sample_algebra(&mut rng, 1.0).into_mat()
+    };
+    for order in [6, 12, 16] {
+        let method = Arc::new(LieSeries::new(order).expect("a method"));
+        for end in [4.0, -4.0] {
+            let solve =
+                || Solve::shared(body.clone(), method.clone(), [0.0, end]).tolerances(1e-7, 1e-7);
+            let mut dense = solve().run_continuous(start.clone()).expect("a run");
+            let (run, curve) = solve().run_interpolant(start.clone()).expect("a run");
+            assert!(run.stats.accepted > 1);
+            let numbers = curve.numbers();
+            let again = Interpolant::from_numbers(body.clone(), method.clone(), &run.y, &numbers)
+                .expect("it");
+            let (mut reader, mut copy) =
+                (curve.reader().expect("a reader"), again.reader().expect("a reader"));
+            for t in (0..=200).map(|i| end * f64::from(i * 37 % 201) / 200.0) {
+                let point = reader.at(t).expect("a point").clone();
+                assert_eq!(&point, copy.at(t).expect("a point"), "order {order} at {t}");
+                let gap = (&point - dense.at(t).expect("a point")).norm_l2();
+                assert!(gap < 2e-14 * point.norm_l2(), "order {order} at {t}: {gap:e}");
+            }
+            let short = &numbers[..numbers.len() - 1];
+            assert!(
+                Interpolant::from_numbers(body.clone(), method.clone(), &run.y, short).is_err()
+            );
+        }
+    }
+}
+
 /// Events that cut a step cut its polynomial, too, and a run backward has the same points.
 #[test]
 fn the_interpolant_ends_at_events_and_runs_backward() {
     let body = RigidBody::<f64>::new([1.0, 2.0, 3.0]).expect("a body");
-    let method = body.method(&"rkmk dop853 exp".parse().expect("a method")).expect("it fits");
     let start = Vector3::new(0.2, 0.1, 3.0);
-    for end in [30.0, -30.0] {
+    for (name, end) in ["rkmk dop853 exp", "taylor16"].iter().flat_map(|n| [(n, 30.0), (n, -30.0)])
+    {
+        let method = body.method(&name.parse().expect("a method")).expect("it fits");
         let kick = Event::new("kick", |_, m: &Vector3<f64>| m[1])
             .change(|_, m: &mut Vector3<f64>| m[2] = -m[2]);
         let (run, curve) = Solve::new(&body, &method, [0.0, end])

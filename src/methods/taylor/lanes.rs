@@ -4,6 +4,7 @@
 use core::arch::x86_64::{__m256d, __m512d};
 
 use crate::scalar::{Counted, DoubleDouble, Real};
+use crate::space::Numbers;
 
 /// The operations of the recurrences, on a quaternion with the vector part first, or on a vector with w = 0.
 pub trait Lanes<S>: Copy {
@@ -221,7 +222,7 @@ pub(super) const INVERSE: [f64; 16] = {
 };
 
 /// A number that the recurrences run on.
-pub trait Wide: Real {
+pub trait Wide: Real + Numbers {
     /// 1/(k+1) for k < 16.
     #[doc(hidden)]
     #[inline(always)]

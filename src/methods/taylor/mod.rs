@@ -27,11 +27,12 @@ use series::{Advance, Body, OneStep, Terms, at, at_end, error, reach, rotation};
 
 use super::embedded::ratio_of_relative;
 use super::simo_wong::turn_by;
-use super::{Embedded, Facts, MapCounts, Method, Step};
+use super::{Embedded, Facts, MapCounts, Method, Step, Within};
 use crate::error::{Error, StepError};
 use crate::groups::{LieAlgebra, So3};
 use crate::problems::{Frame, FreeBody, PointOf, ScalarOf};
 use crate::scalar::Real;
+use crate::space::Numbers;
 use crate::tolerance::Tolerance;
 
 /// The Taylor method of order N, 4 ≤ N ≤ 16. Another N does not compile.
@@ -180,6 +181,13 @@ where
     ) -> Result<(), StepError> {
         let (m, mut frame) = problem.load(from);
         turn_by(problem, &rotation(at(&work.terms, Real::lit(theta))), m, &mut frame, y)
+    }
+    fn within(&self, _: &Self::Work) -> Within {
+        Within::Series
+    }
+    fn each_term(&self, work: &mut Self::Work, each: &mut dyn FnMut(&mut f64)) {
+        work.of = None;
+        work.terms.iter_mut().flatten().for_each(|x| x.each_number(each));
     }
 }
 

@@ -20,6 +20,12 @@ pub(crate) struct Square {
     rows: [[D; ROWS]; ROWS],
 }
 
+impl lieflow::space::Numbers for Square {
+    fn each_number(&mut self, each: &mut dyn FnMut(&mut f64)) {
+        self.rows.iter_mut().flatten().for_each(|x| x.each_number(each));
+    }
+}
+
 impl Square {
     pub(crate) fn from_fn(n: usize, entry: impl Fn(usize, usize) -> D) -> Self {
         let at = |i, j| if i < n && j < n { entry(i, j) } else { D::lit(0.0) };
