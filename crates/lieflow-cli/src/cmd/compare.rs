@@ -6,17 +6,17 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use serde::Serialize;
+use serde_json::{Value, json};
 
 use super::stop::{INTERRUPTED, listen};
 use crate::args::CompareArgs;
 use crate::error::CliError;
 use crate::measure::{
-    Candidate, Curve, Effort, Journal, Kept, MOST_ROWS, Plan, Reached, Reference, Rows, WorkPoint,
+    Candidate, Curve, Effort, Journal, Kept, MOST_ROWS, Plan, Reached, Reference, Rows,
     speed_against_error,
 };
 use crate::output::{self, Progress};
-use crate::report::{self, ADVICE, Answer, Best, Choice, Cost, Found, KEPT, choices};
+use crate::report::{self, ADVICE, Answer, Best, Choice, Cost, KEPT, choices, json};
 use lieflow_figures::{Block, Chart, Page, Section};
 use lieflow_model::problem::COUNTED_STEPS;
 use lieflow_model::problem::Layer;
@@ -34,73 +34,6 @@ const TOLERANCES: [f64; 7] = [1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-13];
 
 /// How often a line tells where a comparison is, where no bar can.
 const TOLD_EVERY: Duration = Duration::from_secs(10);
-
-/// Everything as JSON.
-#[derive(Serialize)]
-struct Json<'a> {
-    scene: &'a str,
-    t_span: [f64; 2],
-    reference: String,
-    machine: String,
-    reference_error: Option<f64>,
-    answers: Vec<AnswerJson>,
-    advice: Vec<AdviceJson>,
-    advice_energy_kept: Vec<AdviceJson>,
-    /// Without the exact motion, which goes in no steps.
-    advice_steps: Vec<AdviceJson>,
-    advice_steps_energy_kept: Vec<AdviceJson>,
-    curves: Vec<CurveJson<'a>>,
-}
-
-/// A curve as JSON.
-#[derive(Serialize)]
-struct CurveJson<'a> {
-    method: &'a str,
-    map: Option<&'a str>,
-    tableau: Option<&'a str>,
-    layer: &'static str,
-    adaptive: bool,
-    order: Option<usize>,
-    measured_order: Option<f64>,
-    /// Places of the points that no other run beats.
-    pareto: Vec<usize>,
-    points: &'a [WorkPoint],
-}
-
-/// An answer as JSON.
-#[derive(Serialize)]
-struct AnswerJson {
-    error: f64,
-    in_words: String,
-    best: Option<FoundJson>,
-    /// The fastest method of another kind.
-    next: Option<FoundJson>,
-    /// The fastest that leaves M, where it is faster than the best.
-    leaving: Option<FoundJson>,
-}
-
-/// A method where it reaches an error.
-#[derive(Serialize)]
-struct FoundJson {
-    method: String,
-    h: f64,
-    steps: u64,
-    rtol: Option<f64>,
-    /// Without rows of output.
-    seconds_per_unit: f64,
-    /// How far the end is from M.
-    off_manifold: Option<f64>,
-}
-
-/// The fastest method to an error.
-#[derive(Serialize)]
-struct AdviceJson {
-    error: f64,
-    method: Option<String>,
-    h: Option<f64>,
-    rtol: Option<f64>,
-    seconds_per_unit: Option<f64>,
-}
 
 /// What was measured.
 struct Comparison<'a> {
@@ -273,44 +206,6 @@ fn numbers_of_steps(scene: &Scene) -> Vec<u64> {
     steps
 }
 
-impl From<&Choice<'_>> for AdviceJson {
-    fn from(choice: &Choice<'_>) -> Self {
-        let (curve, reached) = choice.best.unzip();
-        AdviceJson {
-            error: choice.error,
-            method: curve.map(|curve| curve.candidate.label()),
-            h: reached.map(|reached| reached.h),
-            rtol: reached.and_then(|reached| reached.tolerance),
-            seconds_per_unit: reached.map(|reached| reached.seconds),
-        }
-    }
-}
-
-impl From<Found<'_>> for FoundJson {
-    fn from((curve, reached): Found<'_>) -> Self {
-        FoundJson {
-            method: curve.candidate.label(),
-            h: reached.h,
-            steps: reached.steps,
-            rtol: reached.tolerance,
-            seconds_per_unit: reached.seconds,
-            off_manifold: Some(reached.off_manifold).filter(|off| off.is_finite()),
-        }
-    }
-}
-
-impl From<&Answer<'_>> for AnswerJson {
-    fn from(answer: &Answer<'_>) -> Self {
-        AnswerJson {
-            error: answer.error,
-            in_words: answer.in_words(),
-            best: answer.best().map(Into::into),
-            next: answer.next().map(Into::into),
-            leaving: answer.leaving().map(Into::into),
-        }
-    }
-}
-
 impl Comparison<'_> {
     /// The answers to the errors that were asked for.
     fn answers(&self) -> Vec<Answer<'_>> {
@@ -381,21 +276,22 @@ impl Comparison<'_> {
         let curves = [(self.scene.name.as_str(), &self.curves[..])];
         report::write_speed_csv(&folder.join("speed.csv"), curves)?;
         let [advice, advice_energy_kept, advice_steps, advice_steps_energy_kept] =
-            self.advice().map(|choices| choices.iter().map(AdviceJson::from).collect());
-        let json = Json {
-            scene: &self.scene.name,
-            t_span: self.scene.grid.t_span(),
-            reference: self.reference.in_words(),
-            machine: machine(),
-            reference_error: self.reference.error(),
-            answers: self.answers().iter().map(AnswerJson::from).collect(),
-            advice,
-            advice_energy_kept,
-            advice_steps,
-            advice_steps_energy_kept,
-            curves: self.curves.iter().zip(report::fronts(&self.curves)).map(curve_json).collect(),
-        };
-        output::write_file(&folder.join("speed.json"), output::to_json(&json)?)?;
+            self.advice().map(|choices| json::choices(&choices));
+        let document = json!({
+            "scene": self.scene.name,
+            "t_span": self.scene.grid.t_span(),
+            "reference": self.reference.in_words(),
+            "machine": machine(),
+            "reference_error": self.reference.error(),
+            "answers": self.answers().iter().map(json::answer).collect::<Value>(),
+            "advice": advice,
+            "advice_energy_kept": advice_energy_kept,
+            // Without the exact motion, which goes in no steps.
+            "advice_steps": advice_steps,
+            "advice_steps_energy_kept": advice_steps_energy_kept,
+            "curves": json::curves(&self.curves),
+        });
+        output::write_file(&folder.join("speed.json"), output::to_json(&document)?)?;
         output::write_page(folder, "index.html", &self.page())
     }
 
@@ -560,19 +456,5 @@ impl Comparison<'_> {
             vec![Section::new("In short", answer), Section::new("More", more)],
         );
         page.with_links([("Every run (CSV)", "speed.csv"), ("Every run (JSON)", "speed.json")])
-    }
-}
-
-fn curve_json((curve, pareto): (&Curve, Vec<usize>)) -> CurveJson<'_> {
-    CurveJson {
-        method: &curve.candidate.method.name,
-        map: curve.candidate.method.map.as_deref(),
-        tableau: curve.candidate.method.tableau.as_deref(),
-        layer: curve.candidate.layer.name(),
-        adaptive: curve.candidate.adaptive,
-        order: curve.order,
-        measured_order: curve.measured_order(),
-        pareto,
-        points: &curve.points,
     }
 }

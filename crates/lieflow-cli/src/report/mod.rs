@@ -3,6 +3,7 @@
 mod answer;
 mod best;
 mod choice;
+pub mod json;
 mod kept;
 mod speed;
 
