@@ -117,9 +117,9 @@ impl Stepper {
         let done = self.run(py).restore(bytes);
         done.map_err(|error| refused(py, "bytes", &error))
     }
-    /// (nfev, nsteps, nrejected).
-    fn stats(&self, py: Python<'_>) -> (Option<u64>, u64, u64) {
+    /// (nfev, nsteps, nrejected, iterations of implicit steps).
+    fn stats(&self, py: Python<'_>) -> (Option<u64>, u64, u64, u64) {
         let stats = self.run(py).stats();
-        (stats.evaluations, stats.accepted, stats.rejected)
+        (stats.evaluations, stats.accepted, stats.rejected, stats.iterations)
     }
 }

@@ -41,6 +41,9 @@ def test_it_keeps_the_spectrum_and_is_the_run_by_name(w):
     assert out is w and not np.array_equal(w, before)
     assert np.abs(np.linalg.eigvalsh(-1j * w) - levels).max() < 1e-12
     assert np.abs(w + w.conj().T).max() < 1e-13 and stats["number_of_maxit"] == 0
+    shorter = {"_": 0}
+    isomp(before.copy(), 0.001, steps=20, stats=shorter)
+    assert 2 < shorter["iterations"] < stats["iterations"] < 50
     state = np.concatenate([before.real.ravel("F"), before.imag.ravel("F")])
     r = lf.solve_ivp(_fluid(N), (0, 0.2), state, method="isospectral2", steps=20, t_eval=[0.2], quantities="matrix")
     below = [x for j in range(N) for i in range(j, N) for x in ([w[i, j].imag] if i == j else [w[i, j].real, w[i, j].imag])]

@@ -64,7 +64,8 @@ def isomp(
     time, forcing, strang_splitting : None
         ``time`` has no effect on an autonomous flow. A forcing and a splitting are refused.
     stats : dict, optional
-        Gets ``number_of_maxit``, which is 0: each step is iterated to rounding. The iterations are not counted.
+        Gets ``iterations``, the mean number for a step, and ``number_of_maxit``, which is 0: each step is iterated to
+        rounding.
     callback : callable, optional
         callback(W, dW) after each step, before W is changed.
     tol, maxit, minit, verbatim, compsum, reinitialize
@@ -104,7 +105,7 @@ def isomp(
             callback(W, after - W)
             W[...] = after
     if stats is not None:
-        stats["number_of_maxit"] = 0.0
+        stats.update(iterations=run._run.stats()[3] / int(steps), number_of_maxit=0.0)
     return W
 
 
