@@ -50,6 +50,7 @@ from ._problems import (
 )
 from ._result import ErrorEstimate, OdeSolution, Result
 from ._scene import Scene, load, scenes
+from ._unitary import U, Unitary
 
 __all__ = [
     "ArgumentError",
@@ -98,6 +99,8 @@ __all__ = [
     "SpinChain",
     "Subspace",
     "Toda",
+    "U",
+    "Unitary",
     "__version__",
     "expm",
     "load",

@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 
 from ._errors import ArgumentError
 
-__all__ = ["real", "together", "value"]
+__all__ = ["real", "together", "value", "what"]
 
 
-def _what(x: Any) -> str:
+def what(x: Any) -> str:
     """Describe a value that is no array of real numbers."""
     if x is None:
         return "None"
@@ -33,8 +33,8 @@ def real(name: str, x: Any) -> NDArray[np.float64]:
         if array.size == 0 and array.dtype.kind == "O" and x is not None:
             array = array.astype(float)
         else:
-            what = f"complex numbers ({array.dtype})" if array.dtype.kind == "c" else _what(x)
-            raise TypeError(f"{name}: {what}, expected real numbers")
+            found = f"complex numbers ({array.dtype})" if array.dtype.kind == "c" else what(x)
+            raise TypeError(f"{name}: {found}, expected real numbers")
     array = np.asarray(array, dtype=np.float64)
     if not (array.flags.c_contiguous and array.flags.aligned and type(array) is np.ndarray):
         array = np.array(array, dtype=np.float64, order="C", copy=True, subok=False)
@@ -49,7 +49,7 @@ def value(name: str, x: Any, shape: tuple[int, ...], t: float) -> NDArray[np.flo
     try:
         array = real(name, x)
     except TypeError:
-        raise TypeError(f"{name} returned {_what(x)} at t = {t}, expected {expected}") from None
+        raise TypeError(f"{name} returned {what(x)} at t = {t}, expected {expected}") from None
     if shape == () and array.size == 1:
         array = array.reshape(())
     if array.shape != shape:

@@ -13,6 +13,7 @@ from ._errors import ArgumentError
 from ._fields import Parts
 from ._ivp import METHOD, Ready, settings_of, span_of
 from ._problems import Problem
+from ._unitary import ComplexPoints, Unitary
 
 __all__ = ["Integrator"]
 
@@ -72,7 +73,7 @@ class Integrator:
                 raise TypeError(f"{name}: not an argument of Integrator, expected one of {', '.join(known)}")
         span, settings = span_of(t_span), settings_of(**steps, linear=linear)
         self._split: Any = None
-        self._join: Parts | None = None
+        self._join: Parts | ComplexPoints | None = None
         if isinstance(problem, Problem):
             asked = problem.asked(quantities)
             start = None if y0 is None else real("y0", y0)
@@ -84,8 +85,8 @@ class Integrator:
                 raise ArgumentError("quantities", repr(quantities), "none: only a problem has quantities")
             ready = Ready(problem, y0, args, group, action, frame, linear, span)
             settings["linear"] = ready.linear
-            self._split = None if ready.parts is None else ready.parts.split
-            self._join = ready.parts
+            self._split = None if ready.layout is None else ready.layout.split
+            self._join = ready.layout
             self._run = ready.space.stepper(
                 ready.field, method or METHOD, span, ready.flat, settings
             )
@@ -111,7 +112,7 @@ class Integrator:
         if self._problem is not None:
             raise ArgumentError("y", "quantities", "set `state`, the numbers that the method integrates")
         if self._join is not None:
-            flat = self._join.join("y", value, True)
+            flat = self._join.join("y", value, True).ravel()
         else:
             array, shape = real("y", value), self._run.row().shape
             if array.shape != shape:

@@ -15,6 +15,7 @@ from ._fields import CFunction, Field, Parts, Quantities, Samples, address
 from ._groups import Group
 from ._problems import Problem
 from ._result import Layout, OdeSolution, Result
+from ._unitary import ComplexPoints, Unitary, is_unitary_name
 
 __all__ = ["Event", "solve_ivp"]
 
@@ -178,7 +179,7 @@ def _space(*given: Any) -> _lieflow.Space:
 class Ready:
     """A field of the user on its space, ready to run."""
 
-    __slots__ = ("args", "calls", "field", "flat", "group", "linear", "parts", "shape", "space", "space_args", "stops")
+    __slots__ = ("args", "calls", "field", "flat", "group", "layout", "linear", "parts", "shape", "space", "space_args", "stops")
 
     def __init__(
         self, fun: Any, y0: Any, args: tuple[Any, ...], group: Any, action: Any, frame: Any, linear: bool,
@@ -190,23 +191,32 @@ class Ready:
             group = fun.group
         if group is None:
             raise ArgumentError("group", "None", 'the name of a group, such as "SO(3)"')
-        if not isinstance(group, (str, Group, Parts)):
-            raise TypeError(f"group: a value of type {type(group).__name__}, expected a name, a Group or Parts")
+        if not isinstance(group, (str, Group, Unitary, Parts)):
+            raise TypeError(f"group: a value of type {type(group).__name__}, expected a name, a Group, U(n) or Parts")
         if not isinstance(action, str):
             raise TypeError(f"action: a value of type {type(action).__name__}, expected a name")
         if not (frame is None or isinstance(frame, str)):
             raise TypeError(f"frame: a value of type {type(frame).__name__}, expected \"space\" or \"body\"")
         self.parts = group if isinstance(group, Parts) else None
-        start = real("y0", y0) if self.parts is None else self.parts.join("y0", y0, True)
+        self.layout: Parts | ComplexPoints | None = self.parts
+        if isinstance(group, Unitary) or isinstance(group, str) and is_unitary_name(group):
+            # SU(2) is the group of unit quaternions, too.
+            if isinstance(group, Unitary) or np.shape(y0) != (4,):
+                self.layout = ComplexPoints()
+        start = real("y0", y0) if self.layout is None else self.layout.join("y0", y0, True)
         name: Any = group
         if isinstance(group, Parts):
             name = group.counts()
         elif isinstance(group, Group):
             form = group._args[3]
             name = group.name if form is None else (group.n, tuple(form.ravel().tolist()))
+        elif isinstance(group, Unitary):
+            name = group.name
         self.group = group
         self.space_args = (name, action, frame, start.shape)
         self.space = _space(*self.space_args)
+        if isinstance(self.layout, ComplexPoints):
+            self.layout = ComplexPoints(tuple(self.space.point[:-1]), tuple(self.space.value[:-1]))
         if not np.isfinite(start).all():
             place = tuple(int(i) for i in np.argwhere(~np.isfinite(start))[0])
             raise ArgumentError(f"y0[{', '.join(map(str, place))}]", repr(float(start[place])), "a finite number")
@@ -223,6 +233,9 @@ class Ready:
         if isinstance(fun, CFunction):
             return (fun.address, fun.parameters)
         if isinstance(fun, Field):
+            if isinstance(self.layout, ComplexPoints):
+                expected = "a function; formulas have real values (lf.MatrixOde and lf.Schrodinger have complex ones)"
+                raise ArgumentError("fun", f"formulas for {self.group}", expected)
             formulas = fun.formulas(fun.field, self.shape, tuple(self.space.value))
             self.stops = formulas.knots(span)
             self.linear = self.linear or self.parts is None and self._may_be_linear() and not formulas.depends_on_y
@@ -235,7 +248,7 @@ class Ready:
             self.linear = self.linear or self._may_be_linear()
             return fun._sampled
         if callable(fun) and not hasattr(fun, "address"):
-            return (self._on_parts(fun), self.args)
+            return (self._on_layout(fun), self.args)
         if isinstance(fun, (int, np.integer)) or hasattr(fun, "address"):
             return (address(fun), [float(x) for x in self.args])
         raise TypeError(f"fun: a value of type {type(fun).__name__}, expected a function of t and y")
@@ -247,35 +260,39 @@ class Ready:
             name == "SE(3)" and action == "coadjoint"
         )
 
-    def _on_parts(self, fun: Any) -> Any:
-        """f of parts as f of their numbers."""
-        parts = self.parts
-        if parts is None:
+    def _on_layout(self, fun: Any) -> Any:
+        """f of parts or of complex arrays as f of real numbers."""
+        layout = self.layout
+        if layout is None:
             return fun
+        if isinstance(layout, ComplexPoints) and self.linear:
+            return lambda t, *args: layout.join(f"f at t = {t}", fun(t, *args), False)
 
         def of_numbers(t: float, y: Array, *args: Any) -> Array:
-            return parts.join(f"f at t = {t}", fun(t, parts.split(y), *args), False)
+            return layout.join(f"f at t = {t}", fun(t, layout.split(y), *args), False)
 
         return of_numbers
 
     def event(self, i: int, event: Event, field: Any) -> tuple[Any, ...]:
         """Return the parts of an event."""
-        change, parts = event.change, self.parts
+        change, layout = event.change, self.layout
         g: Any = event.g
         if isinstance(g, str):
+            if isinstance(layout, ComplexPoints) or isinstance(self.group, Unitary):
+                raise ArgumentError(f"events[{i}]", repr(g), "a function of t and y: formulas have real numbers")
             maker = field if isinstance(field, Field) else Field(self.group, g)
             try:
                 g = maker.formulas(g, self.shape, ())
             except ArgumentError as error:
                 raise ArgumentError(f"events[{i}]", error.value, error.expected) from None
-        elif parts is not None:
-            of_parts = g
-            g = lambda t, y, *args: of_parts(t, parts.split(y), *args)  # noqa: E731
-        if parts is not None and change is not None:
+        elif layout is not None:
+            of_layout = g
+            g = lambda t, y, *args: of_layout(t, layout.split(y), *args)  # noqa: E731
+        if layout is not None and change is not None:
             changed = change
 
             def change(t: float, y: Array, *args: Any) -> Array:
-                return parts.join(f"change of events[{i}] at t = {t}", changed(t, parts.split(y), *args), True)
+                return layout.join(f"change of events[{i}] at t = {t}", changed(t, layout.split(y), *args), True)
 
         return (g, f"events[{i}] ({event.name})", event.direction, event.terminal, change, event.points)
 
@@ -299,7 +316,7 @@ def solve_ivp(
     steps: int | None = None,
     stops: ArrayLike = (),
     args: tuple[Any, ...] = (),
-    group: str | Group | Parts | None = None,
+    group: str | Group | Unitary | Parts | None = None,
     action: str = "translation",
     frame: str | None = None,
     linear: bool = False,
@@ -406,28 +423,28 @@ def _of_field(
         settings = {**settings, "stops": sorted({*settings["stops"], *ready.stops})}
     parts = [ready.event(i, event, fun) for i, event in enumerate(events)]
     told = callback
-    if callback is not None and ready.parts is not None:
-        layout = ready.parts
+    if callback is not None and ready.layout is not None:
+        layout = ready.layout
         told = lambda t, y: callback(t, layout.split(y))  # noqa: E731
     found = _lieflow.solve(ready.space, ready.field, ready.args, method, span, ready.flat, settings, times, parts, told)
     curve = found.pop("curve")
-    if ready.parts is not None:
-        found["y"] = ready.parts.split(found["y"])
-        found["y_events"] = [ready.parts.split(y) for y in found["y_events"]]
-        found["y_end"] = ready.parts.split(found["y_end"])
+    if ready.layout is not None:
+        found["y"] = ready.layout.split(found["y"])
+        found["y_events"] = [ready.layout.split(y) for y in found["y_events"]]
+        found["y_end"] = ready.layout.split(found["y_end"])
     if isinstance(fun, Field) and found["status"] < 0:
         lost = ready.field.lost()
         if lost is not None:
             found["message"] += f" {lost}."
     made_by = (ready.space_args, method, ready.linear, ready.flat)
-    sol = None if curve is None else OdeSolution(curve, made_by, ready.parts)
+    sol = None if curve is None else OdeSolution(curve, made_by, ready.layout)
     on_so3 = ready.space_args[0] == "SO(3)" and ready.space_args[1] == "translation"
 
     def again(result: Result) -> tuple[str, Result]:
         found_by, finer = _finer(settings)
         return found_by, _of_field(fun, span, y0, method, finer, result.t, events, None, space)
 
-    return Result(sol=sol, _layout=ready.parts, _on_so3=on_so3, _again=again, **found)
+    return Result(sol=sol, _layout=ready.layout, _on_so3=on_so3, _again=again, **found)
 
 
 def _finer(settings: dict[str, Any]) -> tuple[str, dict[str, Any]]:

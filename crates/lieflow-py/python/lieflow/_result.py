@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _lieflow
 from ._errors import ArgumentError, RunError
 from ._fields import Parts, Quantities
+from ._unitary import ComplexPoints
 
 __all__ = ["ErrorEstimate", "Layout", "OdeSolution", "Result"]
 
@@ -63,7 +64,7 @@ class OdeSolution:
         self,
         curve: _lieflow.Curve,
         made_by: tuple[Any, ...],
-        layout: Layout | Parts | None,
+        layout: Layout | Parts | ComplexPoints | None,
         rest: Callable[[], _lieflow.Curve] | None = None,
     ) -> None:
         self._curve, self._made_by, self._layout, self._rest = curve, made_by, layout, rest
@@ -100,7 +101,7 @@ class OdeSolution:
         return (_restored, (self._made_by, self._curve.numbers(), self._layout))
 
 
-def _restored(made_by: tuple[Any, ...], numbers: Array, layout: Layout | Parts | None) -> OdeSolution:
+def _restored(made_by: tuple[Any, ...], numbers: Array, layout: Layout | Parts | ComplexPoints | None) -> OdeSolution:
     where, method, *rest = made_by
     if isinstance(where, tuple):
         linear, y0 = rest
@@ -126,7 +127,7 @@ def _distance(a: Array, b: Array, is_rotation: bool) -> float:
     """The largest distance of the points in a and b: the length of the difference, or the angle."""
     if len(a) == 0:
         return 0.0
-    lengths = np.sqrt(((a - b).reshape(len(a), -1) ** 2).sum(1))
+    lengths = np.sqrt((np.abs(a - b).reshape(len(a), -1) ** 2).sum(1))
     if is_rotation:
         lengths = 2.0 * np.arcsin(np.minimum(lengths / np.sqrt(8.0), 1.0))
     return float(lengths.max())

@@ -228,9 +228,64 @@ impl Layout<MatrixGroup, Mat<f64>> for Matrices {
         }
     }
     fn to_space(self, group: &MatrixGroup, y: &Mat<f64>, v: &mut AlgebraMatrix) {
-        let (g, body) = (GroupMatrix::new_unchecked(y.clone()), v.clone());
-        if group.big_ad(&g, &body, v).is_err() {
-            v[(0, 0)] = f64::NAN;
+        ad_by(group, y, v);
+    }
+}
+
+/// v ← Ad_y v.
+fn ad_by(group: &MatrixGroup, y: &Mat<f64>, v: &mut AlgebraMatrix) {
+    let (g, body) = (GroupMatrix::new_unchecked(y.clone()), v.clone());
+    if group.big_ad(&g, &body, v).is_err() {
+        v[(0, 0)] = f64::NAN;
+    }
+}
+
+/// Complex matrices X + iY as numbers Re, Im, Re, … by rows. In the run they are real: \[X −Y; Y X\] where the group acts
+/// on both sides, so that U(n) is in SO(2n), and \[X; Y\] where it acts on vectors.
+#[derive(Clone, Copy)]
+pub(super) struct ComplexMatrices {
+    pub(super) rows: usize,
+    pub(super) columns: usize,
+    /// True if the group acts on vectors.
+    pub(super) vectors: bool,
+}
+
+/// x ← \[X −Y; Y X\] of the numbers, or its first columns.
+fn realify(rows: &[f64], n: usize, columns: usize, x: &mut Mat<f64>) {
+    for (i, j) in (0..n).flat_map(|i| (0..columns).map(move |j| (i, j))) {
+        let at = 2 * (i * columns + j);
+        let (re, im) = (rows[at], rows[at + 1]);
+        (x[(i, j)], x[(n + i, j)]) = (re, im);
+        if columns < x.ncols() {
+            (x[(i, columns + j)], x[(n + i, columns + j)]) = (-im, re);
         }
+    }
+}
+
+impl Layout<MatrixGroup, Mat<f64>> for ComplexMatrices {
+    fn sizes(self, group: &MatrixGroup) -> [usize; 2] {
+        let n = group.n() / 2;
+        [2 * self.rows * self.columns, 2 * n * n]
+    }
+    fn point(self, _: &MatrixGroup, rows: &[f64]) -> Mat<f64> {
+        let columns = if self.vectors { self.columns } else { 2 * self.columns };
+        let mut x = Mat::zeros(2 * self.rows, columns);
+        realify(rows, self.rows, self.columns, &mut x);
+        x
+    }
+    fn show(self, y: &Mat<f64>, rows: &mut [f64]) {
+        for i in 0..self.rows {
+            for j in 0..self.columns {
+                let at = 2 * (i * self.columns + j);
+                (rows[at], rows[at + 1]) = (y[(i, j)], y[(self.rows + i, j)]);
+            }
+        }
+    }
+    fn value(self, rows: &[f64], v: &mut AlgebraMatrix) {
+        let n = v.nrows() / 2;
+        realify(rows, n, n, v);
+    }
+    fn to_space(self, group: &MatrixGroup, y: &Mat<f64>, v: &mut AlgebraMatrix) {
+        ad_by(group, y, v);
     }
 }

@@ -8,11 +8,14 @@
 //! | | coadjoint | 6 numbers, (μ, π) | 6 numbers |
 //! | `S3`, unit quaternions | translation | 4 numbers, the real part first | 3 numbers, ω |
 //! | `SO(n)`, `SL(n)`, `GL(n)`, `Sp(2m)`, `SO(p,q)`, G_M | translation, conjugation, coadjoint | n×n | n×n |
-//! | | linear | n×k | n×n |
+//! | | linear | n numbers, n×k | n×n |
 //! | | lagrangian, of Sp(2m) | m×m | 2m×2m |
+//! | `U(n)`, `SU(n)` | translation, conjugation, coadjoint | n×n complex | n×n complex |
+//! | | linear | n complex numbers, n×k complex | n×n complex |
 //! | parts: vectors, rotations and numbers, in this order | that of each | 3 numbers, 3×3, 1 number each | 3, 3, 1 number each |
 //! | `SO(3)` | conjugation; linear with k columns | 3×3; 3×k | 3 numbers |
 //!
+//! A complex number is two numbers, Re and Im; they are the last axis of a shape.
 //! ẏ = λ_*(f(t, y))(y). On a group this is ẏ = f·y with [`Frame::Space`], and ẏ = y·f with [`Frame::Body`].
 
 mod formulas;
@@ -30,7 +33,9 @@ use lieflow::names::{near, plain};
 use lieflow::{Error, RunError};
 
 pub use self::formulas::Formulas;
-use self::layout::{InParts, Matrices, Motions, Pairs, Quaternions, Rotations, Vectors};
+use self::layout::{
+    ComplexMatrices, InParts, Matrices, Motions, Pairs, Quaternions, Rotations, Vectors,
+};
 use self::run::Typed;
 pub use self::run::{Curve, End, OwnEvent, OwnPlan, Ran, Run};
 use super::algebra::Algebra;
@@ -83,8 +88,8 @@ pub enum GroupName {
 /// The actions by name.
 pub const ACTIONS: [&str; 5] = ["translation", "linear", "conjugation", "coadjoint", "lagrangian"];
 /// The groups by name; n, m, p and q stand for numbers.
-pub const GROUPS: [&str; 8] =
-    ["SO(3)", "SE(3)", "S3", "SO(n)", "SL(n)", "GL(n)", "Sp(2m)", "SO(p,q)"];
+pub const GROUPS: [&str; 10] =
+    ["SO(3)", "SE(3)", "S3", "SO(n)", "SL(n)", "GL(n)", "Sp(2m)", "SO(p,q)", "U(n)", "SU(n)"];
 
 /// The space of a problem: a group, an action, and the shapes of y and f.
 #[derive(Clone, Debug)]
@@ -105,22 +110,26 @@ enum SpaceKind {
     Quaternion,
     Parts(InParts),
     Matrix(MatrixGroup, MatrixAction),
+    Complex(MatrixGroup, MatrixAction),
 }
 
-/// The name and the size of a group of matrices.
-fn matrix_group(name: &str, rows: usize) -> Result<MatrixGroup, Misfit> {
+/// A group of matrices by its name, and whether they are complex. `rows` is the size where the name has none.
+fn matrix_group(name: &str, rows: usize) -> Result<(MatrixGroup, bool), Misfit> {
     let unknown = || {
         let hint = near(name, &GROUPS).map_or(String::new(), |name| format!("`{name}`? "));
         let expected = format!("{hint}one of {}, or the form M of a group", GROUPS.join(", "));
         Misfit { argument: "group", value: format!("`{name}`"), expected }
     };
-    let named = Algebra::real_named(name).ok_or_else(unknown)?;
+    let named = Algebra::named(name).ok_or_else(unknown)?;
     let n = match named.algebra {
         Algebra::Indefinite(p, q) => p.saturating_add(q),
         _ => plain(name).trim_start_matches(char::is_alphabetic).parse().unwrap_or(rows),
     };
     let group = named.algebra.group(n, "group");
-    group.or_else(|_| misfit("group", format!("`{name}`"), "a group of matrices of even size, 2m"))
+    match group {
+        Ok(group) => Ok((group, named.algebra.is_complex())),
+        Err(_) => misfit("group", format!("`{name}`"), "a group of matrices of even size, 2m"),
+    }
 }
 
 fn shape_of(shape: &[usize]) -> String {
@@ -171,10 +180,13 @@ impl Space {
             ("so3", "linear") if shape.len() != 2 => (SpaceKind::Vector, vec![3], vec![3]),
             ("se3", "translation") => (SpaceKind::Motion, vec![4, 4], vec![6]),
             ("se3", "coadjoint") => (SpaceKind::Pair, vec![6], vec![6]),
+            ("su2", _) if shape.len() > 1 => {
+                return Self::of_matrices(group, action, frame, shape);
+            }
             ("s3" | "su2" | "quaternions" | "unitquaternions", "translation") => {
                 (SpaceKind::Quaternion, vec![4], vec![3])
             }
-            ("se3" | "s3" | "su2" | "quaternions" | "unitquaternions", _) => {
+            ("se3" | "s3" | "quaternions" | "unitquaternions", _) => {
                 return misfit("action", format!("`{action}`"), "\"translation\" for this group");
             }
             _ => return Self::of_matrices(group, action, frame, shape),
@@ -208,33 +220,47 @@ impl Space {
         frame: Option<Frame>,
         shape: &[usize],
     ) -> Result<Self, Misfit> {
-        let &[rows, columns] = shape else {
-            return misfit("y0", format!("shape {}", shape_of(shape)), "a matrix, shape (n, k)");
-        };
         let lagrangian = action == "lagrangian";
-        let group = match group {
+        let rows = shape.first().copied().unwrap_or(0);
+        let (group, is_complex) = match group {
             GroupName::Named(name) => matrix_group(name, if lagrangian { 2 * rows } else { rows })?,
             GroupName::Parts(_) => return misfit("group", "parts", "a group of matrices"),
             GroupName::Form(n, m) => {
                 let form = Mat::from_fn(*n, *n, |i, j| m[i * n + j]);
                 match MatrixGroup::gm(form) {
-                    Ok(group) => group,
+                    Ok(group) => (group, false),
                     Err(error) => return misfit("group", error.to_string(), "an invertible M"),
                 }
             }
         };
-        let n = group.n();
-        let (action, point) = match action {
-            "translation" => (MatrixAction::Translation, vec![n, n]),
-            "conjugation" => (MatrixAction::Conjugation, vec![n, n]),
-            "coadjoint" => (MatrixAction::Coadjoint, vec![n, n]),
-            "lagrangian" => (MatrixAction::Lagrangian, vec![n / 2, n / 2]),
-            _ => (MatrixAction::Linear, vec![n, columns]),
+        let n = if is_complex { group.n() / 2 } else { group.n() };
+        // The last axis of complex numbers are Re and Im.
+        let (shape, last) = match shape {
+            [first @ .., 2] if is_complex => (first, &[2][..]),
+            _ if is_complex => return misfit("y0", "real numbers", "complex numbers"),
+            _ => (shape, &[][..]),
+        };
+        let with_last = |shape: Vec<usize>| [&shape, last].concat();
+        let (action, point) = match (action, shape) {
+            ("translation", _) => (MatrixAction::Translation, vec![n, n]),
+            ("conjugation", _) => (MatrixAction::Conjugation, vec![n, n]),
+            ("coadjoint", _) => (MatrixAction::Coadjoint, vec![n, n]),
+            ("lagrangian", _) if is_complex => {
+                return misfit("action", "`lagrangian`", "translation, linear or conjugation");
+            }
+            ("lagrangian", _) => (MatrixAction::Lagrangian, vec![n / 2, n / 2]),
+            (_, &[_, columns]) => (MatrixAction::Linear, vec![n, columns]),
+            _ => (MatrixAction::Linear, vec![n]),
         };
         let is_so3 = matches!(group.form(), lieflow::groups::Form::Identity) && n == 3;
-        let value = if is_so3 { vec![3] } else { vec![n, n] };
-        let space = Space { kind: SpaceKind::Matrix(group, action), frame, point, value };
-        space.check_shape(shape)?;
+        let value = if is_so3 && !is_complex { vec![3] } else { vec![n, n] };
+        let kind = match is_complex {
+            true => SpaceKind::Complex(group, action),
+            false => SpaceKind::Matrix(group, action),
+        };
+        let space = Space { kind, frame, point: with_last(point), value: with_last(value) };
+        let shape = [shape, last].concat();
+        space.check_shape(&shape)?;
         Ok(space)
     }
 
@@ -274,7 +300,16 @@ impl Space {
                 Typed::linear(Se3::new(), LeftTranslation, Motions, (field, body, linear))
             }
             SpaceKind::Matrix(group, action) => {
-                let layout = Matrices { rows: self.point[0], columns: self.point[1] };
+                let columns = self.point.get(1).copied().unwrap_or(1);
+                let layout = Matrices { rows: self.point[0], columns };
+                Typed::linear_or_poisson(group.clone(), *action, layout, (field, body, linear))
+            }
+            SpaceKind::Complex(group, action) => {
+                let layout = ComplexMatrices {
+                    rows: self.point[0],
+                    columns: if self.point.len() > 2 { self.point[1] } else { 1 },
+                    vectors: *action == MatrixAction::Linear,
+                };
                 Typed::linear_or_poisson(group.clone(), *action, layout, (field, body, linear))
             }
             SpaceKind::Pair | SpaceKind::Quaternion | SpaceKind::Parts(_) if linear => {

@@ -1,0 +1,237 @@
+"""The group U(n) of unitary matrices, with complex arrays."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ._arrays import real, what
+from ._errors import ArgumentError
+from ._groups import SO, expm
+
+__all__ = ["U", "ComplexPoints", "Unitary", "is_unitary_name"]
+
+Complex = NDArray[np.complex128]
+
+#: Matrices of an algebra or of a group may be so far from it, relative to their size.
+MISS = 1e-10
+
+
+def is_unitary_name(name: str) -> bool:
+    """Return True for ``U(n)``, ``SU(n)``, with or without n and parentheses."""
+    plain = name.lower().replace("(", "").replace(")", "").replace(" ", "")
+    family = plain.rstrip("0123456789")
+    return family in ("u", "su")
+
+
+def complex_numbers(name: str, x: Any) -> Complex:
+    """Return x as an array of complex128 in C order. Raise TypeError if it has other things than numbers."""
+    array = x if isinstance(x, np.ndarray) else None
+    if array is None:
+        try:
+            array = np.asarray(x)
+        except ValueError:
+            raise TypeError(f"{name}: rows of different lengths, expected complex numbers in an array") from None
+    if array.dtype.kind != "c":
+        if array.dtype.kind not in "fiub":
+            raise TypeError(f"{name}: {what(x)}, expected complex numbers")
+        array = real(name, array)
+    return np.array(array, dtype=np.complex128, order="C", subok=False)
+
+
+class ComplexPoints:
+    """Complex arrays as the pairs of real numbers that a run has."""
+
+    __slots__ = ("point", "value")
+
+    def __init__(self, point: tuple[int, ...] | None = None, value: tuple[int, ...] | None = None) -> None:
+        self.point, self.value = point, value
+
+    def split(self, y: NDArray[np.float64]) -> Complex:
+        """Return complex numbers of real ones, whose last axis has Re and Im."""
+        return np.ascontiguousarray(y).view(np.complex128)[..., 0]
+
+    def join(self, name: str, x: Any, point: bool) -> NDArray[np.float64]:
+        """Return the real numbers of a point, or of a value of f."""
+        array, shape = complex_numbers(name, x), self.point if point else self.value
+        if shape is not None and array.shape != shape:
+            if point:
+                raise ArgumentError(name, f"shape {array.shape}", f"shape {shape}")
+            raise TypeError(f"{name}: an array of shape {array.shape}, expected complex numbers of shape {shape}")
+        return array.view(np.float64).reshape(*array.shape, 2)
+
+
+def _on_both_sides(x: Complex) -> NDArray[np.float64]:
+    """[X −Y; Y X] of X + iY."""
+    return np.concatenate(
+        [np.concatenate([x.real, -x.imag], axis=-1), np.concatenate([x.imag, x.real], axis=-1)], axis=-2
+    )
+
+
+def _adjoint(x: Complex) -> Complex:
+    return x.conj().swapaxes(-1, -2)
+
+
+class Unitary:
+    """The group U(n) with its maps on complex arrays of shape (..., n, n). Leading axes broadcast.
+
+    :func:`lieflow.U` makes it. The maps are those of :class:`lieflow.Group`: ``exp``, ``log``, ``cay``, ``cay_inv``,
+    ``dexp``, ``dexpinv``, ``dcay``, ``dcayinv``, ``Ad``, ``ad``, ``coad``, ``project``, ``contains``, ``random``. Elements
+    of u(n) are skew-Hermitian, and arguments are checked to be in u(n) or in U(n). Physics writes exp(−iH) with a
+    Hermitian H: here u = −iH. Errors: :class:`lieflow.ArgumentError` with the place of the matrix, TypeError.
+    """
+
+    __slots__ = ("_n", "_real")
+
+    def __init__(self, n: int) -> None:
+        self._n, self._real = n, SO(2 * n)
+
+    @property
+    def name(self) -> str:
+        """The name, such as ``U(4)``."""
+        return f"U({self._n})"
+
+    @property
+    def n(self) -> int:
+        """The size of the matrices."""
+        return self._n
+
+    @property
+    def dim(self) -> int:
+        """The dimension of the group."""
+        return self._n**2
+
+    def __repr__(self) -> str:
+        return f"lieflow.U({self._n})"
+
+    def __reduce__(self) -> tuple[type[Unitary], tuple[int]]:
+        return (Unitary, (self._n,))
+
+    def __eq__(self, other: object) -> bool:
+        return self._n == other._n if isinstance(other, Unitary) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(("U", self._n))
+
+    def _matrices(self, name: str, x: ArrayLike) -> Complex:
+        array = complex_numbers(name, x)
+        if array.shape[-2:] != (self._n, self._n):
+            raise ArgumentError(name, f"shape {array.shape}", f"shape (..., {self._n}, {self._n})")
+        return array
+
+    def _first(self, name: str, wrong: NDArray[np.bool_], value: str, expected: str) -> None:
+        if wrong.any():
+            place = [int(i) for i in np.argwhere(wrong)[0]]
+            raise ArgumentError(f"{name}[{', '.join(map(str, place))}]" if place else name, value, expected)
+
+    def _algebra(self, name: str, x: ArrayLike) -> Complex:
+        u = self._matrices(name, x)
+        size = np.abs(u).max(axis=(-1, -2), initial=0.0)
+        self._first(name, ~np.isfinite(size), "a number that is not finite", "finite numbers")
+        off = np.abs(u + _adjoint(u)).max(axis=(-1, -2), initial=0.0)
+        self._first(name, off > MISS * size, "a matrix with u + u† ≠ 0", "a skew-Hermitian matrix, −iH of a Hermitian H")
+        return u
+
+    def _element(self, name: str, x: ArrayLike) -> Complex:
+        g = self._matrices(name, x)
+        self._first(name, ~(self.defect(g) <= MISS), "a matrix with g†g ≠ 1", "a unitary matrix")
+        return g
+
+    def defect(self, g: ArrayLike) -> NDArray[np.float64]:
+        """Return the distance ‖g†g − 1‖ of each matrix from U(n) (Frobenius)."""
+        a = self._matrices("g", g)
+        return np.asarray(np.linalg.norm(_adjoint(a) @ a - np.eye(self._n), axis=(-1, -2)))
+
+    def _complex(self, x: NDArray[np.float64], out: Complex | None) -> Complex:
+        n = self._n
+        value = x[..., :n, :n] + 1j * x[..., n:, :n]
+        if out is None:
+            return value
+        if not isinstance(out, np.ndarray) or out.dtype != np.complex128 or out.shape != value.shape:
+            raise ArgumentError("out", "another type or shape", f"an array of complex128, shape {value.shape}")
+        out[...] = value
+        return out
+
+    def exp(self, u: ArrayLike, out: Complex | None = None) -> Complex:
+        """Return exp(u), unitary to rounding at every norm."""
+        return np.asarray(expm(self._algebra("u", u), structure="skew", out=out))
+
+    def log(self, g: ArrayLike, out: Complex | None = None) -> Complex:
+        """Return the principal logarithm, with eigenvalues i(−π, π]."""
+        x = self._real.log(_on_both_sides(self._element("g", g)))
+        n = self._n
+        off = np.abs(x[..., :n, :n] - x[..., n:, n:]) + np.abs(x[..., n:, :n] + x[..., :n, n:])
+        wrong = off.max(axis=(-1, -2), initial=0.0) > 1e-8
+        self._first("g", wrong, "a matrix with −1 as an eigenvalue more than once", "a matrix with a principal logarithm")
+        return self._complex(x, out)
+
+    def cay(self, u: ArrayLike, out: Complex | None = None) -> Complex:
+        """Return (1 − u/2)⁻¹(1 + u/2)."""
+        return self._complex(self._real.cay(_on_both_sides(self._algebra("u", u))), out)
+
+    def cay_inv(self, g: ArrayLike, out: Complex | None = None) -> Complex:
+        """Return the u with cay(u) = g. An eigenvalue −1 of g is refused."""
+        return self._complex(self._real.cay_inv(_on_both_sides(self._element("g", g))), out)
+
+    def _two(self, f: Any, u: ArrayLike, v: ArrayLike, out: Complex | None) -> Complex:
+        a, b = self._algebra("u", u), self._algebra("v", v)
+        return self._complex(f(_on_both_sides(a), _on_both_sides(b)), out)
+
+    def dexp(self, u: ArrayLike, v: ArrayLike, out: Complex | None = None) -> Complex:
+        """Return dexp_u(v) with d/dε exp(u + εv) = dexp_u(v) exp(u)."""
+        return self._two(self._real.dexp, u, v, out)
+
+    def dexpinv(self, u: ArrayLike, v: ArrayLike, out: Complex | None = None) -> Complex:
+        """Return the inverse of dexp_u, applied to v."""
+        return self._two(self._real.dexpinv, u, v, out)
+
+    def dcay(self, u: ArrayLike, v: ArrayLike, out: Complex | None = None) -> Complex:
+        """Return (1 − u/2)⁻¹ v (1 + u/2)⁻¹."""
+        return self._two(self._real.dcay, u, v, out)
+
+    def dcayinv(self, u: ArrayLike, v: ArrayLike, out: Complex | None = None) -> Complex:
+        """Return (1 − u/2) v (1 + u/2)."""
+        return self._two(self._real.dcayinv, u, v, out)
+
+    def project(self, x: ArrayLike) -> Complex:
+        """Return ½(x − x†), the element of u(n) nearest to x (Frobenius)."""
+        a = self._matrices("x", x)
+        return np.asarray((a - _adjoint(a)) / 2)
+
+    def Ad(self, g: ArrayLike, u: ArrayLike) -> Complex:
+        """Return Ad_g u = g u g†."""
+        a, b = self._matrices("g", g), self._matrices("u", u)
+        return np.asarray(a @ b @ _adjoint(a))
+
+    def ad(self, u: ArrayLike, v: ArrayLike) -> Complex:
+        """Return ad_u v = uv − vu."""
+        a, b = self._matrices("u", u), self._matrices("v", v)
+        return np.asarray(a @ b - b @ a)
+
+    def coad(self, u: ArrayLike, m: ArrayLike) -> Complex:
+        """Return ad*_u m = u†m − mu†, with ⟨m, v⟩ = Re tr(m†v)."""
+        a, b = _adjoint(self._matrices("u", u)), self._matrices("m", m)
+        return np.asarray(a @ b - b @ a)
+
+    def contains(self, g: ArrayLike, tol: float = 1e-12) -> NDArray[np.bool_]:
+        """Return True for each matrix with ‖g†g − 1‖ ≤ tol (Frobenius)."""
+        return np.asarray(self.defect(g) <= tol)
+
+    def random(self, size: int | tuple[int, ...] | None = None, rng: Any = None) -> Complex:
+        """Return random elements with Haar's measure, shape size + (n, n)."""
+        lead = () if size is None else (size,) if isinstance(size, int) else tuple(size)
+        generator, shape = np.random.default_rng(rng), (*lead, self._n, self._n)
+        q, r = np.linalg.qr(generator.standard_normal(shape) + 1j * generator.standard_normal(shape))
+        d = np.diagonal(r, axis1=-2, axis2=-1)
+        return np.asarray(q * (d / np.abs(d))[..., None, :])
+
+
+def U(n: int) -> Unitary:
+    """Return U(n), g†g = 1, with complex arrays."""
+    if isinstance(n, bool) or not isinstance(n, (int, np.integer)):
+        raise TypeError(f"n: a value of type {type(n).__name__}, expected an integer")
+    if n < 1:
+        raise ArgumentError("n", repr(int(n)), "an integer ≥ 1")
+    return Unitary(int(n))

@@ -1,0 +1,179 @@
+"""U(n): the maps on complex arrays, and runs with complex y."""
+
+from __future__ import annotations
+
+import pickle
+
+import numpy as np
+import pytest
+import scipy.integrate
+import scipy.linalg
+
+import lieflow as lf
+
+N = 3
+
+
+@pytest.fixture
+def pair(rng):
+    a = rng.standard_normal((2, 7, N, N)) + 1j * rng.standard_normal((2, 7, N, N))
+    return 0.3 * (a - np.swapaxes(a.conj(), -1, -2))
+
+
+def test_maps_are_those_of_complex_matrices(rng, pair):
+    group, (u, v) = lf.U(N), pair
+    g = group.exp(u)
+    assert g.dtype == np.complex128 and np.abs(g - scipy.linalg.expm(u)).max() < 1e-13
+    assert np.abs(group.log(g) - u).max() < 1e-12
+    one = np.eye(N)
+    assert np.abs(group.cay(u) - np.linalg.solve(one - u / 2, one + u / 2)).max() < 1e-13
+    assert np.abs(group.cay_inv(group.cay(u)) - u).max() < 1e-12
+    assert np.abs(group.dexpinv(u, group.dexp(u, v)) - v).max() < 1e-13
+    assert np.abs(group.dcayinv(u, group.dcay(u, v)) - v).max() < 1e-13
+    h = 1e-5
+    for psi, dpsi in ((group.exp, group.dexp), (group.cay, group.dcay)):
+        slope = (psi(u + h * v) - psi(u - h * v)) / (2 * h) @ np.linalg.inv(psi(u))
+        assert np.abs(slope - dpsi(u, v)).max() < 1e-9
+    assert np.abs(group.Ad(g, v) - g @ v @ np.linalg.inv(g)).max() < 1e-13
+    m = rng.standard_normal((7, N, N)) + 1j * rng.standard_normal((7, N, N))
+    pairing = lambda a, b: (a.conj() * b).sum((-1, -2)).real  # noqa: E731
+    assert np.abs(pairing(group.coad(u, m), v) - pairing(m, group.ad(u, v))).max() < 1e-12
+    x = rng.standard_normal((N, N))
+    assert np.abs(group.project(x) + group.project(x).conj().T).max() == 0.0
+    out = np.empty((7, N, N), complex)
+    assert group.cay(u, out=out) is out and np.array_equal(out, group.cay(u))
+    assert group.contains(group.random((4, 2), rng)).all() and group.dim == 9
+    assert np.abs(group.log(-np.eye(1) + 0j) if N == 1 else lf.U(1).log([[-1.0]])) == pytest.approx(np.pi)
+
+
+def test_a_group_is_a_value():
+    group = lf.U(4)
+    assert pickle.loads(pickle.dumps(group)) == group != lf.U(3)
+    assert eval(repr(group), {"lieflow": lf}) == group and group.name == "U(4)" and hash(group) == hash(lf.U(4))
+
+
+def test_what_is_not_in_it_is_named(pair):
+    group, (u, _) = lf.U(N), pair
+    bad = u.copy()
+    bad[3, 0, 0] = 1.0
+    for make, argument in ((lambda: group.exp(bad), "u[3]"), (lambda: group.cay(bad), "u[3]"),
+                           (lambda: group.log(bad), "g[0]"), (lambda: group.exp(np.eye(2)), "u"),
+                           (lambda: group.log(-np.eye(3)), "g"), (lambda: lf.U(0), "n"),
+                           (lambda: group.exp(np.full((N, N), np.nan)), "u")):
+        with pytest.raises(lf.ArgumentError) as caught:
+            make()
+        assert caught.value.argument == argument
+    for wrong in ("text", None, [[1.0], [1.0, 2.0]]):
+        with pytest.raises(TypeError, match="^u"):
+            group.exp(wrong)
+    with pytest.raises(TypeError, match="^n"):
+        lf.U(2.5)
+
+
+SIGMA = np.array([[[0, 1], [1, 0]], [[0, -1j], [1j, 0]], [[1, 0], [0, -1]]])
+
+
+def hamiltonian(t):
+    """Three levels that do not commute at different times."""
+    h = np.diag([0.0, 1.0, 2.5]).astype(complex)
+    h[0, 1], h[1, 2] = 0.7 * np.exp(1j * t), 0.4 * np.cos(2 * t) * np.exp(-0.3j)
+    return h + np.triu(h, 1).conj().T
+
+
+def exact(y0, right):
+    def f(t, y):
+        h = -1j * hamiltonian(t)
+        y = y.reshape(y0.shape)
+        return (h @ y - (y @ h if right else 0)).ravel()
+
+    done = scipy.integrate.solve_ivp(f, (0, 4), y0.astype(complex).ravel(), method="DOP853", rtol=1e-13, atol=1e-14)
+    return done.y[:, -1].reshape(y0.shape)
+
+
+RHO = np.array([[0.5, 0.2j, 0.0], [-0.2j, 0.3, 0.1], [0.0, 0.1, 0.2]])
+
+
+@pytest.mark.parametrize(
+    ("y0", "action", "frame"),
+    [(np.eye(3), "translation", "space"), (RHO, "conjugation", None), (np.array([1.0, 0, 0]), "linear", None),
+     (np.eye(3)[:, :2], "linear", None)],
+)
+@pytest.mark.parametrize("group", ["U(3)", "U", lf.U(3)])
+def test_a_field_of_t_has_the_solution_of_scipy(y0, action, frame, group):
+    right = exact(y0, action == "conjugation")
+    for method, linear in ((None, False), ("magnus6", True), ("rkmk dopri5 cay", False)):
+        f = (lambda t: -1j * hamiltonian(t)) if linear else (lambda t, y: -1j * hamiltonian(t))
+        r = lf.solve_ivp(f, (0, 4), y0, group=group, action=action, frame=frame, linear=linear, method=method,
+                         rtol=1e-11, atol=1e-11, t_eval=[0, 2, 4])
+        assert r.success and r.y.dtype == np.complex128 and r.y.shape == (3, *y0.shape)
+        assert np.abs(r.y[-1] - right).max() < 2e-8 and np.array_equal(r.y[-1], r.y_end)
+        if action == "translation":
+            assert lf.U(3).contains(r.y).all()
+        elif action == "conjugation":
+            levels = np.linalg.eigvalsh(r.y)
+            assert np.abs(levels - levels[0]).max() < 1e-13
+
+
+def test_the_body_frame_and_a_field_of_y():
+    # ẏ = y f with f = y† g y is ẏ = g y.
+    g = lambda t, y: 1j * (hamiltonian(t) + np.diag(np.abs(y[:, 0]) ** 2))  # noqa: E731
+    tight = {"group": "SU(3)", "rtol": 1e-11, "atol": 1e-11}
+    a = lf.solve_ivp(g, (0, 2), np.eye(3), frame="space", **tight)
+    b = lf.solve_ivp(lambda t, y: y.conj().T @ g(t, y) @ y, (0, 2), np.eye(3), frame="body", **tight)
+    assert np.abs(a.y_end - b.y_end).max() < 1e-8
+
+
+def test_rabi_flips_with_events_sol_and_a_change():
+    omega = 1.3
+    kept = {"group": "U(2)", "action": "linear", "rtol": 1e-11, "atol": 1e-11}
+    field = lambda t, y: -0.5j * omega * SIGMA[0]  # noqa: E731
+    half = lambda t, y: abs(y[1]) ** 2 - 0.5  # noqa: E731
+    r = lf.solve_ivp(field, (0, 9), [1, 0], events=lf.Event(half), dense_output=True, **kept)
+    times = np.arange(1, 8, 2) * np.pi / (2 * omega)
+    assert len(r.t_events[0]) == 4 and np.abs(r.t_events[0] - times).max() < 1e-10
+    assert np.abs(r.y_events[0][:, 1] ** 2 + 0.5).max() < 1e-10
+    t = np.linspace(0, 9, 50)
+    right = np.stack([np.cos(omega * t / 2), -1j * np.sin(omega * t / 2)], axis=1)
+    again = pickle.loads(pickle.dumps(r.sol))
+    assert np.abs(r.sol(t) - right).max() < 1e-9 and np.array_equal(again(t), r.sol(t))
+    assert r.estimate_error().y < 1e-9 and r.to_dataframe().shape == (len(r.t), 2)
+    # A measurement: after the first flip the level is 1 again.
+    seen = []
+    change = lf.Event(half, change=lambda t, y: np.array([1.0, 0.0]), direction=1)
+    r = lf.solve_ivp(field, (0, 9), [1, 0], events=change, callback=lambda t, y: seen.append(y), **kept)
+    assert np.abs(r.t_events[0] - times[0] * np.arange(1, len(r.t_events[0]) + 1)).max() < 1e-9
+    assert seen[0].dtype == np.complex128 and seen[0].shape == (2,)
+    run = lf.Integrator(field, None, (0, 9), [1, 0], **kept)
+    run.advance_to(2.0)
+    assert np.abs(run.y - [np.cos(omega), -1j * np.sin(omega)]).max() < 1e-9
+    run.y = [0, 1j]
+    assert np.array_equal(run.y, [0, 1j])
+
+
+def test_su2_has_quaternions_and_complex_matrices():
+    q = lf.solve_ivp(lambda t, q: [0.1, 0.2, t], (0, 3), [1, 0, 0, 0], group="SU(2)", frame="space", rtol=1e-12, atol=1e-12)
+    m = lf.solve_ivp(lambda t, m: -0.5j * np.einsum("i,ijk", [0.1, 0.2, t], SIGMA), (0, 3), np.eye(2), group="SU(2)",
+                     frame="space", rtol=1e-12, atol=1e-12)
+    w, x, y, z = q.y_end
+    assert np.abs(m.y_end - (w * np.eye(2) - 1j * (x * SIGMA[0] + y * SIGMA[1] + z * SIGMA[2]))).max() < 1e-11
+
+
+@pytest.mark.parametrize(
+    ("change", "argument"),
+    [({"y0": np.eye(2)}, "y0"), ({"y0": 2 * np.eye(3)}, "y0"), ({"frame": None}, "frame"),
+     ({"events": "abs(y11)"}, "events[0]"), ({"action": "lagrangian", "frame": None}, "action"),
+     ({"fun": lf.Field("U(3)", ["1"] * 9), "group": None}, "fun")],
+)
+def test_bad_input_is_named(change, argument):
+    given = {"fun": lambda t, y: -1j * hamiltonian(t), "t_span": (0, 1), "y0": np.eye(3), "group": "U(3)", "frame": "space"}
+    with pytest.raises(lf.ArgumentError) as caught:
+        lf.solve_ivp(**{**given, **change})
+    assert caught.value.argument == argument, str(caught.value)
+
+
+def test_wrong_values_of_f_are_named():
+    for value in (np.eye(2), None, "text"):
+        with pytest.raises(TypeError, match="f at t = 0"):
+            lf.solve_ivp(lambda t, y: value, (0, 1), np.eye(3), group="U(3)", frame="space")
+    r = lf.solve_ivp(lambda t, y: np.full((3, 3), np.nan), (0, 1), np.eye(3), group="U(3)", frame="space")
+    assert r.status == -1
