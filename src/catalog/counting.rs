@@ -12,7 +12,7 @@ use crate::error::Error;
 use crate::groups::{Power, Product, Se3, So3, Translations};
 use crate::methods::AnyMethod;
 use crate::problems::{
-    DynFlow, RigidBody, RigidBodyAttitude, RigidBodyState, TimeAlone, WithHamiltonian,
+    DynFlow, RigidBody, RigidBodyAttitude, RigidBodyState, TimeAlone, WithHamiltonian, WithSeries,
 };
 use crate::scalar::Counted;
 
@@ -48,7 +48,7 @@ counting! {
     RigidBodyState<Counted>,
     DynFlow<Rotation, Linear, TimeAlone>,
     DynFlow<Rotations, Linear, (), WithHamiltonian>,
-    DynFlow<Se3<Counted>, Coadjoint, (), WithHamiltonian>,
+    DynFlow<Se3<Counted>, Coadjoint, WithSeries, WithHamiltonian>,
     DynFlow<Product<Rotation, Shift>, LeftTranslation>,
     DynFlow<Product<Rotations, Product<Rotations, Shifts>>, Pair<Linear, LeftTranslation>>,
 }

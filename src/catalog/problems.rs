@@ -9,11 +9,11 @@ use crate::actions::Action;
 use crate::maps::{Cay, CoordinateMap, Exp, ExpOrCay, MapsByName};
 use crate::methods::FluidMidpoint;
 use crate::methods::magnus::TripleProduct;
-use crate::methods::{AnyMethod, Composition, Wide};
+use crate::methods::{AnyMethod, Composition, SeriesGroup, Wide};
 use crate::problems::{
     DynFlow, Energy, Field, Flow, FlowFacts, LiePoisson, LinearField, Problem, RigidBody,
     RigidBodyAttitude, RigidBodyN, RigidBodyNAttitude, RigidBodyQuaternion, RigidBodyState,
-    Surface, TimeAlone, WithHamiltonian, Zeitlin,
+    Surface, TaylorField, TimeAlone, WithHamiltonian, WithSeries, Zeitlin,
 };
 use crate::scalar::{Real, Trig};
 use crate::space::LinearSpace;
@@ -107,6 +107,16 @@ where
     }
 }
 
+impl<P: TaylorField<Group: SeriesGroup>> Fact<P> for WithSeries {
+    const OFFERS: Option<Needs> = Some(Needs::Series);
+    fn make<'p>(choice: &Choice<'_>) -> MaybeMethod<'p, P>
+    where
+        P: 'p,
+    {
+        series(choice)
+    }
+}
+
 macro_rules! hamiltonian {
     ($([$($generic:ident)?] $fact:ty;)*) => {$(
         impl<P: LiePoisson, $($generic)?> Fact<P> for $fact
@@ -129,8 +139,8 @@ hamiltonian! {
 }
 
 /// The properties that a field has, and those that are added by name.
-fn offered(linear: Option<Needs>, energy: Option<Needs>) -> Vec<Needs> {
-    let all = [Some(Needs::Field), Some(Needs::Norm), linear, energy];
+fn offered(field: Option<Needs>, energy: Option<Needs>) -> Vec<Needs> {
+    let all = [Some(Needs::Field), Some(Needs::Norm), field, energy];
     all.into_iter().flatten().collect()
 }
 
@@ -171,7 +181,7 @@ where
 {
     fn offers(&self) -> Vec<Needs> {
         offered(
-            if self.is_linear() { L::OFFERS } else { None },
+            if self.is_linear() || self.has_series() { L::OFFERS } else { None },
             if self.is_lie_poisson() { H::OFFERS } else { None },
         )
     }

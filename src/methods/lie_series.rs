@@ -6,14 +6,14 @@
 //!
 //! Order N. Preserves: the group and the invariants of the action, to rounding; energy and symmetry to the size of the
 //! terms left out. A sum that is far from the group (0.1 in gᵀMg − M) is refused with [`StepError::OutsideChart`].
-//! Cost: N(N+1)/2 products for Ψ, as many for the coefficients of a quadratic field, one action, and one or two steps
+//! Cost: N(N−1)/2 products for Ψ, as many for the coefficients of a quadratic field, one action, and one or two steps
 //! of Newton–Schulz. A point within a step costs only the action and Newton–Schulz. The last two terms are the error
 //! estimate of an adaptive run. For the free rigid body in ℝ³ [`Taylor`](super::Taylor) is the same method on
 //! quaternions. Source: W. Gröbner, Die Lie-Reihen und ihre Anwendungen (1960); À. Jorba & M. Zou, Experiment.
 //! Math. 14 (2005), for the step.
 
 use faer::Mat;
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Vector3};
 
 use super::embedded::ratio_of_relative;
 use super::{Embedded, Facts, MapCounts, Method, Metric, Step, Within};
@@ -21,10 +21,12 @@ use crate::actions::Action;
 use crate::dense::{axpy, mul_add};
 use crate::error::{Error, StepError};
 use crate::groups::{
-    AlgebraMatrix, GroupMatrix, LieAlgebra, LieGroup, MatrixGroup, RESIDUAL_MAX, So3, hat,
+    Adjoint, AlgebraMatrix, GroupMatrix, LieAlgebra, LieGroup, MatrixGroup, RESIDUAL_MAX, Se3, So3,
+    hat,
 };
 use crate::problems::{AlgOf, ElemOf, PointOf, ScalarOf, TaylorField};
 use crate::scalar::Real;
+use crate::so3::{add3, all_finite, apply3, cross};
 use crate::space::Numbers;
 use crate::tolerance::Tolerance;
 
@@ -36,7 +38,9 @@ pub trait SeriesGroup: LieGroup<Elem: Numbers> + LieAlgebra<Scalar: Into<f64>> {
     fn scale(&self, a: Self::Scalar, x: &mut Self::Elem);
     /// y ← y + x.
     fn add(&self, x: &Self::Elem, y: &mut Self::Elem);
-    /// out ← out + a·u·x, or a·x·u from the right.
+    /// out ← out + a·u, the product with 𝟙.
+    fn add_algebra(&self, a: Self::Scalar, u: &Self::Alg, out: &mut Self::Elem);
+    /// out ← out + a·u·x, or a·x·u from the right, where x is a difference of elements or a derivative of one.
     fn add_product(
         &self,
         a: Self::Scalar,
@@ -45,7 +49,7 @@ pub trait SeriesGroup: LieGroup<Elem: Numbers> + LieAlgebra<Scalar: Into<f64>> {
         from_right: bool,
         out: &mut Self::Elem,
     );
-    /// ‖x‖.
+    /// ‖x‖, of parts without a unit.
     fn size(&self, x: &Self::Elem) -> Self::Scalar;
 }
 
@@ -59,10 +63,13 @@ impl SeriesGroup for So3 {
     fn add(&self, x: &Matrix3<f64>, y: &mut Matrix3<f64>) {
         *y += x;
     }
+    fn add_algebra(&self, a: f64, u: &Vector3<f64>, out: &mut Matrix3<f64>) {
+        *out += hat(&(a * u));
+    }
     fn add_product(
         &self,
         a: f64,
-        u: &nalgebra::Vector3<f64>,
+        u: &Vector3<f64>,
         x: &Matrix3<f64>,
         from_right: bool,
         out: &mut Matrix3<f64>,
@@ -72,6 +79,47 @@ impl SeriesGroup for So3 {
     }
     fn size(&self, x: &Matrix3<f64>) -> f64 {
         Metric::size(x)
+    }
+}
+
+/// Elements are (R, x), as in [`Se3`].
+impl<S: Real + Numbers + Into<f64>> SeriesGroup for Se3<S> {
+    fn clear(&self, x: &mut Self::Elem) {
+        self.scale(S::lit(0.0), x);
+    }
+    fn scale(&self, a: S, x: &mut Self::Elem) {
+        *x = (x.0.map(|x| a * x), x.1.map(|x| a * x));
+    }
+    fn add(&self, x: &Self::Elem, y: &mut Self::Elem) {
+        *y = (y.0.zip_map(&x.0, |y, x| y + x), add3(&y.1, &x.1));
+    }
+    fn add_algebra(&self, a: S, u: &Self::Alg, out: &mut Self::Elem) {
+        let turned = u.0.map(|u| a * u);
+        self.add(&(hat(&turned), u.1.map(|u| a * u)), out);
+    }
+    /// (ω̂R, ω × x), or (Rω̂, Rv) from the right: x is a derivative, so the last row of its matrix is 0.
+    fn add_product(
+        &self,
+        a: S,
+        u: &Self::Alg,
+        x: &Self::Elem,
+        from_right: bool,
+        out: &mut Self::Elem,
+    ) {
+        let mut product = (x.0, x.1);
+        if from_right {
+            So3::new().tangent_in_body(&x.0, &u.0, &mut product.0);
+            product.1 = apply3(&x.0, &u.1);
+        } else {
+            So3::new().tangent(&u.0, &x.0, &mut product.0);
+            product.1 = cross(&u.0, &x.1);
+        }
+        self.scale(a, &mut product);
+        self.add(&product, out);
+    }
+    /// ‖R‖. The terms of x fall with those of R, and their size depends on the unit of length.
+    fn size(&self, x: &Self::Elem) -> S {
+        if all_finite(&x.1) { Metric::size(&x.0) } else { S::lit(f64::NAN) }
     }
 }
 
@@ -85,6 +133,9 @@ impl SeriesGroup for MatrixGroup {
     }
     fn add(&self, x: &GroupMatrix, y: &mut GroupMatrix) {
         axpy(1.0, x, y);
+    }
+    fn add_algebra(&self, a: f64, u: &AlgebraMatrix, out: &mut GroupMatrix) {
+        axpy(a, u, out);
     }
     fn add_product(
         &self,
@@ -179,9 +230,10 @@ fn next_term<G: SeriesGroup>(
     from_right: bool,
     psi: &mut [G::Elem],
 ) {
-    if let Some((next, known)) = psi.split_last_mut() {
+    if let (Some((next, known)), Some((last, f))) = (psi.split_last_mut(), f.split_last()) {
         group.clear(next);
-        for (f, psi) in f.iter().rev().zip(known) {
+        group.add_algebra(scale, last, next); // Ψ_0 = 𝟙
+        for (f, psi) in f.iter().rev().zip(&known[1..]) {
             group.add_product(scale, f, psi, from_right, next);
         }
     }

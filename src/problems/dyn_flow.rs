@@ -9,7 +9,7 @@ use core::marker::PhantomData;
 use std::sync::Arc;
 
 use super::flow::TimeAlone;
-use super::{AlgOf, LiePoisson, LinearField, LinearSpace, PointOf, Problem, ScalarOf};
+use super::{AlgOf, LiePoisson, LinearField, LinearSpace, PointOf, Problem, ScalarOf, TaylorField};
 use crate::actions::Action;
 use crate::groups::{LieAlgebra, LieGroup};
 use crate::problems::FieldStore;
@@ -17,9 +17,10 @@ use crate::scalar::Real;
 
 /// A problem on M with any field. Its further facts are known at run time.
 ///
-/// With L = [`TimeAlone`] some problems of the type may be linear. With H = [`WithHamiltonian`] some may be Lie–Poisson
-/// systems. [`is_linear`](Self::is_linear) and [`is_lie_poisson`](Self::is_lie_poisson) are facts of each problem.
-/// Methods by name use them.
+/// With L = [`TimeAlone`] some problems of the type may be linear. With L = [`WithSeries`] some may have Taylor
+/// coefficients. With H = [`WithHamiltonian`] some may be Lie–Poisson systems. [`is_linear`](Self::is_linear),
+/// [`has_series`](Self::has_series) and [`is_lie_poisson`](Self::is_lie_poisson) are facts of each problem. Methods by
+/// name use them.
 ///
 /// ```
 /// use lieflow::actions::Linear;
@@ -47,6 +48,7 @@ pub struct DynFlow<G: LieGroup, A: Action<G>, L = (), H = ()> {
     group: G,
     action: A,
     linear: bool,
+    series: Option<MakeSeries<G, A::Point>>,
     energy: Option<Energy<A::Point, G::Scalar>>,
     work: Box<dyn Fn() -> DynWork<G, A::Point> + Send + Sync>,
 }
@@ -54,6 +56,23 @@ pub struct DynFlow<G: LieGroup, A: Action<G>, L = (), H = ()> {
 /// Marks a type of problems of which some have a Hamiltonian.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct WithHamiltonian;
+
+/// Marks a type of problems of which some have Taylor coefficients.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct WithSeries;
+
+/// [`TaylorField::coefficient`] with its storage.
+type Coefficient<G, M> =
+    Box<dyn FnMut([<G as LieAlgebra>::Scalar; 2], &M, usize, &mut [<G as LieAlgebra>::Alg]) + Send>;
+/// [`TaylorField::series`].
+type MakeSeries<G, M> = Box<dyn Fn(usize) -> Coefficient<G, M> + Send + Sync>;
+
+/// The Taylor coefficients of a [`DynFlow`].
+#[allow(missing_debug_implementations)] // nothing of it is known
+pub struct DynSeries<G: LieGroup, M> {
+    coefficient: Option<Coefficient<G, M>>,
+    zero: G::Alg,
+}
 
 /// H(m).
 type Energy<M, S> = Box<dyn Fn(&M) -> S + Send + Sync>;
@@ -132,7 +151,15 @@ impl<G: LieGroup + Clone + 'static, A: Action<G> + 'static, L, H> DynFlow<G, A, 
             DynWork(Box::new(ProblemWithWork { problem, store, gradient })
                 as Box<dyn DynField<G, A::Point> + Send>)
         });
-        DynFlow { known: PhantomData, group, action, linear: false, energy: None, work }
+        DynFlow {
+            known: PhantomData,
+            group,
+            action,
+            linear: false,
+            series: None,
+            energy: None,
+            work,
+        }
     }
 }
 
@@ -163,7 +190,33 @@ impl<G: LieGroup + Clone + 'static, A: Action<G> + 'static, L> DynFlow<G, A, L, 
     }
 }
 
+impl<G: LieGroup + Clone + 'static, A: Action<G> + 'static>
+    DynFlow<G, A, WithSeries, WithHamiltonian>
+{
+    /// Makes it from a Lie–Poisson system whose f has Taylor coefficients.
+    pub fn lie_poisson_with_series<P>(problem: P, action: A) -> Self
+    where
+        P: LiePoisson + TaylorField + Problem<Group = G> + Clone + Send + Sync + 'static,
+        P::Action: Action<G, Point = A::Point>,
+    {
+        const { assert!(!P::MOVING, "the coefficients are those of f") };
+        let series: MakeSeries<G, A::Point> = Box::new({
+            let problem = problem.clone();
+            move |order| {
+                let (problem, mut series) = (problem.clone(), problem.series(order));
+                Box::new(move |time, y, k, f| problem.coefficient(time, y, k, f, &mut series))
+            }
+        });
+        DynFlow { series: Some(series), ..Self::lie_poisson(problem, action) }
+    }
+}
+
 impl<G: LieGroup, A: Action<G>, L, H> DynFlow<G, A, L, H> {
+    /// True if f has Taylor coefficients.
+    pub fn has_series(&self) -> bool {
+        self.series.is_some()
+    }
+
     /// True if f depends only on t.
     pub fn is_linear(&self) -> bool {
         self.linear
@@ -205,6 +258,29 @@ impl<G: LieGroup, A: Action<G>, L, H> Problem for DynFlow<G, A, L, H> {
 
 /// For problems from [`DynFlow::linear`].
 impl<G: LieGroup, A: Action<G>, H> LinearField for DynFlow<G, A, TimeAlone, H> {}
+
+/// For problems from [`DynFlow::lie_poisson_with_series`]. For others the coefficients are NaN.
+impl<G: LieGroup, A: Action<G>, H> TaylorField for DynFlow<G, A, WithSeries, H> {
+    type Series = DynSeries<G, A::Point>;
+
+    fn series(&self, order: usize) -> Self::Series {
+        let coefficient = self.series.as_ref().map(|make| make(order));
+        DynSeries { coefficient, zero: self.group.zero() }
+    }
+    fn coefficient(
+        &self,
+        time: [G::Scalar; 2],
+        y: &A::Point,
+        k: usize,
+        f: &mut [G::Alg],
+        DynSeries { coefficient, zero }: &mut Self::Series,
+    ) {
+        match coefficient {
+            Some(coefficient) => coefficient(time, y, k, f),
+            None => self.group.axpy(G::Scalar::lit(f64::NAN), zero, &mut f[k]),
+        }
+    }
+}
 
 /// For problems from [`DynFlow::lie_poisson`]. For others H and its gradient are NaN.
 impl<G: LieGroup, A, L> LiePoisson for DynFlow<G, A, L, WithHamiltonian>

@@ -9,11 +9,12 @@
 use faer::Mat;
 
 use super::{
-    Invariant, Invariants, LiePoisson, LinearSpace, MomentumSeries, PointOf, Problem, TaylorField,
+    AlgOf, Invariant, Invariants, LiePoisson, LinearSpace, MomentumSeries, PointOf, Problem,
+    Se3Series, TaylorField,
 };
 use crate::actions::{Action, Coadjoint};
 use crate::error::Error;
-use crate::groups::{Adjoint, AlgebraMatrix, MatrixGroup, worse};
+use crate::groups::{Adjoint, AlgebraMatrix, LieAlgebra, MatrixGroup, Se3, worse};
 use crate::scalar::Real;
 
 /// A Hamiltonian H : 𝔤* → ℝ. A new Euler equation needs only an implementation of this trait.
@@ -52,6 +53,16 @@ pub trait DiscreteGradient<G: Adjoint>: Hamiltonian<G> {
     }
 }
 
+/// A Hamiltonian of degree at most 2, so that ∇H is affine. On se(3)* Lie series need no more.
+///
+/// For a homogeneous H of degree 2 the default is right: `impl Quadratic<G> for MyHamiltonian {}`.
+pub trait Quadratic<G: Adjoint>: Hamiltonian<G> {
+    /// ξ ← ∇H(m) − ∇H(0).
+    fn linear_gradient(&self, m: &G::Dual, xi: &mut G::Alg) {
+        self.gradient(m, xi);
+    }
+}
+
 /// The kinetic energy H = ½⟨m, J⁻¹m⟩ of an inertia J, from a function that writes J⁻¹m.
 ///
 /// J⁻¹ : 𝔤* → 𝔤 must be linear and symmetric: ⟨m, J⁻¹n⟩ = ⟨n, J⁻¹m⟩. An n×n matrix m stands for the functional v ↦
@@ -72,6 +83,8 @@ impl<G: Adjoint, F: Fn(&G::Dual, &mut G::Alg)> Hamiltonian<G> for Kinetic<F> {
 }
 
 impl<G: Adjoint, F: Fn(&G::Dual, &mut G::Alg)> DiscreteGradient<G> for Kinetic<F> {}
+
+impl<G: Adjoint, F: Fn(&G::Dual, &mut G::Alg)> Quadratic<G> for Kinetic<F> {}
 
 /// A Hamiltonian from two functions, its value and its gradient.
 impl<G, H, D> Hamiltonian<G> for (H, D)
@@ -230,6 +243,32 @@ impl<F: Fn(&Mat<f64>, &mut AlgebraMatrix)> TaylorField for Euler<MatrixGroup, Ki
     }
 }
 
+/// The Taylor coefficients of −∇H(m) on se(3).
+impl<S: Real, H: Quadratic<Se3<S>>> TaylorField for Euler<Se3<S>, H> {
+    type Series = Se3Series<S>;
+
+    fn series(&self, order: usize) -> Se3Series<S> {
+        Se3Series::new(order)
+    }
+    fn coefficient(
+        &self,
+        [_, h]: [S; 2],
+        m: &PointOf<Self>,
+        k: usize,
+        f: &mut [AlgOf<Self>],
+        series: &mut Se3Series<S>,
+    ) {
+        let m = series.next(h, m, k, f);
+        let mut xi = self.group.zero();
+        match k {
+            0 => self.hamiltonian.gradient(m, &mut xi),
+            _ => self.hamiltonian.linear_gradient(m, &mut xi),
+        }
+        self.group.set_zero(&mut f[k]);
+        self.group.axpy(S::lit(-1.0), &xi, &mut f[k]);
+    }
+}
+
 /// Euler's equations with the motion of g: points (g, m).
 #[derive(Clone, Copy, Debug)]
 pub struct EulerGroup<G, H> {
@@ -366,6 +405,25 @@ impl<F: Fn(&Mat<f64>, &mut AlgebraMatrix)> TaylorField for EulerGroup<MatrixGrou
         k: usize,
         f: &mut [AlgebraMatrix],
         series: &mut MomentumSeries,
+    ) {
+        self.system.coefficient(time, m, k, f, series);
+    }
+}
+
+/// f is that of the system without g.
+impl<S: Real, H: Quadratic<Se3<S>>> TaylorField for EulerGroup<Se3<S>, H> {
+    type Series = Se3Series<S>;
+
+    fn series(&self, order: usize) -> Se3Series<S> {
+        self.system.series(order)
+    }
+    fn coefficient(
+        &self,
+        time: [S; 2],
+        (_, m): &PointOf<Self>,
+        k: usize,
+        f: &mut [AlgOf<Self>],
+        series: &mut Se3Series<S>,
     ) {
         self.system.coefficient(time, m, k, f, series);
     }

@@ -13,12 +13,15 @@
 //! | Lagrange | (A, A, C) | (0, 0, w) | μ₃ |
 //! | Kovalevskaya | (2C, 2C, C) | (w, 0, 0) | \|(ω₁ + iω₂)² − (w/C)(γ₁ + iγ₂)\|² |
 //!
+//! f is affine in (μ, γ), so its Taylor coefficients are short sums, and Lie series apply
+//! ([`LieSeries`](crate::methods::LieSeries)).
+//!
 //! Source: S. Kowalevski, Acta Math. 12 (1889); V. I. Arnold, Mathematical Methods, appendix 5.
 
 use nalgebra::Vector3;
 
 use super::rigid_body::{check_finite, check_inertia};
-use super::{DiscreteGradient, Euler, Hamiltonian, Invariant};
+use super::{DiscreteGradient, Euler, Hamiltonian, Invariant, Quadratic};
 use crate::error::Error;
 use crate::groups::Se3;
 use crate::scalar::Real;
@@ -171,3 +174,14 @@ impl<S: Real> Hamiltonian<Se3<S>> for HeavyTop<S> {
 }
 
 impl<S: Real> DiscreteGradient<Se3<S>> for HeavyTop<S> {}
+
+impl<S: Real> Quadratic<Se3<S>> for HeavyTop<S> {
+    #[inline]
+    fn linear_gradient(
+        &self,
+        (mu, _): &(Vector3<S>, Vector3<S>),
+        xi: &mut (Vector3<S>, Vector3<S>),
+    ) {
+        *xi = (self.omega(mu), Vector3::from_element(S::lit(0.0)));
+    }
+}

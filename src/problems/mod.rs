@@ -52,8 +52,10 @@ pub use crate::space::LinearSpace;
 pub use averaged::MeanGradient;
 pub use capability::{LiePoisson, LinearField, Orthogonal, Projection, Split};
 pub use coupled_spins::{Bond, Constant, CoupledSpins, Couplings, CouplingsAt, Site};
-pub use dyn_flow::{DynFlow, WithHamiltonian};
-pub use euler::{DiscreteGradient, Euler, EulerGroup, FromTheBody, Hamiltonian, Kinetic};
+pub use dyn_flow::{DynFlow, WithHamiltonian, WithSeries};
+pub use euler::{
+    DiscreteGradient, Euler, EulerGroup, FromTheBody, Hamiltonian, Kinetic, Quadratic,
+};
 pub use fallible::{Fallible, InAlgebra, TryFlow, TryProblem};
 pub use flow::{BodyValue, Energy, Field, Flow, FlowFacts, InBody, LinearFlow, TimeAlone};
 pub use grassmann::SubspaceFlow;
@@ -73,8 +75,8 @@ pub use schrodinger::{
     Schrodinger, VonNeumann, amplitudes, density_matrix, populations, populations_of, schrodinger,
     von_neumann,
 };
-pub(crate) use series::MomentumSeries;
 pub use series::TaylorField;
+pub(crate) use series::{MomentumSeries, Se3Series};
 pub use spheres::{SphericalPendulum, SpinChain};
 pub use torque::{BodyMotion, BodyTorque, SpaceTorque, Torque, TorqueBody};
 pub use zeitlin::{Sphere, Surface, Torus, Vortex, Zeitlin};

@@ -4,8 +4,8 @@ use faer::Mat;
 
 use super::{AlgOf, PointOf, Problem, ScalarOf};
 use crate::dense::{antisymmetrise, mul_add};
-use crate::groups::AlgebraMatrix;
-use crate::scalar::{Ops, tally};
+use crate::groups::{Adjoint, AlgebraMatrix, LieAlgebra, Se3};
+use crate::scalar::{Ops, Real, tally};
 
 /// A field with Taylor coefficients along the solution through a point.
 ///
@@ -79,5 +79,40 @@ impl MomentumSeries {
             antisymmetrise(next);
         }
         next
+    }
+}
+
+/// The coefficients of a momentum in se(3)*.
+#[derive(Clone, Debug)]
+pub struct Se3Series<S>(Vec<<Se3<S> as Adjoint>::Dual>)
+where
+    S: Real;
+
+impl<S: Real> Se3Series<S> {
+    /// Storage for coefficients up to θ^order.
+    pub(crate) fn new(order: usize) -> Self {
+        Se3Series(vec![Se3::new().zero(); order + 1])
+    }
+
+    /// m_k of ṁ = −ad*_f m from m, by k m_k = −h Σ_{i+j=k−1} ad*_{f_j} m_i.
+    pub(crate) fn next(
+        &mut self,
+        h: S,
+        m: &<Se3<S> as Adjoint>::Dual,
+        k: usize,
+        f: &[<Se3<S> as LieAlgebra>::Alg],
+    ) -> &<Se3<S> as Adjoint>::Dual {
+        let group = Se3::new();
+        let [mut sum, mut term, mut next] = [group.zero(); 3];
+        for (m, f) in self.0[..k].iter().zip(f[..k].iter().rev()) {
+            group.coad(f, m, &mut term);
+            group.axpy(S::lit(1.0), &term, &mut sum);
+        }
+        match k {
+            0 => next = *m,
+            _ => group.axpy(-h / S::lit(k as f64), &sum, &mut next),
+        }
+        self.0[k] = next;
+        &self.0[k]
     }
 }

@@ -14,7 +14,7 @@
 use nalgebra::Vector3;
 
 use super::rigid_body::check_finite;
-use super::{Invariant, Invariants, LiePoisson, Problem};
+use super::{Invariant, Invariants, LiePoisson, Problem, Se3Series, TaylorField};
 use crate::actions::{Coadjoint, Linear};
 use crate::error::Error;
 use crate::groups::{Power, Se3, So3};
@@ -99,6 +99,29 @@ impl<S: Real> Problem for SphericalPendulum<S> {
     ) {
         let torque = V::new(-(self.rate2 * q[1]), self.rate2 * q[0], S::lit(0.0));
         *dy = (torque, cross(omega, q));
+    }
+}
+
+/// f is affine in (ω, q).
+impl<S: Real> TaylorField for SphericalPendulum<S> {
+    type Series = Se3Series<S>;
+
+    fn series(&self, order: usize) -> Se3Series<S> {
+        Se3Series::new(order)
+    }
+    fn coefficient(
+        &self,
+        [t, h]: [S; 2],
+        y: &(V<S>, V<S>),
+        k: usize,
+        f: &mut [(V<S>, V<S>)],
+        series: &mut Se3Series<S>,
+    ) {
+        let y = series.next(h, y, k, f);
+        self.f(t, y, &mut f[k], &mut ());
+        if k > 0 {
+            f[k].1 = V::from_element(S::lit(0.0));
+        }
     }
 }
 

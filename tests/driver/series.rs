@@ -3,7 +3,7 @@
 use lieflow::groups::Sample;
 use lieflow::methods::{Embedded, LieSeries, Rkmk, Taylor};
 use lieflow::prelude::*;
-use lieflow::problems::{Exact, RigidBody, RigidBodyAttitude, RigidBodyN};
+use lieflow::problems::{Exact, Problem, RigidBody, RigidBodyAttitude, RigidBodyN, TaylorField};
 use nalgebra::{Matrix3, Vector3};
 use rand::SeedableRng;
 
@@ -11,7 +11,7 @@ type V = Vector3<f64>;
 
 const INERTIA: [f64; 3] = [1.0, 2.0, 3.0];
 /// A start, the end of its run, and how much the motion enlarges an error until then, with some room.
-const STARTS: [([f64; 3], f64, f64); 5] = [
+const STARTS: [([f64; 3], f64, f64); 6] = [
     ([0.1, 2.0, 0.3], 20.0, 1e4),
     // A turn about the middle axis: the separatrix, and 1e-14 beside it.
     ([0.0, 2.0, 0.0], 20.0, 10.0),
@@ -19,6 +19,7 @@ const STARTS: [([f64; 3], f64, f64); 5] = [
     // 1e-14 beside the first axis, and a fast turn.
     ([3.0, 1e-14, 1e-14], 20.0, 1e3),
     ([40.0, 30.0, -20.0], 5.0, 1e4),
+    ([1000.0, 800.0, -900.0], 0.3, 1e4),
 ];
 
 fn times(end: f64) -> Vec<f64> {
@@ -137,4 +138,96 @@ fn rows_on_so5() {
         steps.push(run.stats.accepted);
     }
     assert!(steps[2] < steps[0], "{steps:?}");
+}
+
+/// ġ = (t a + t³ b) g on SO(3): from t = 0 each second term of g vanishes.
+struct Odd(So3, LeftTranslation);
+
+const ODD: [V; 2] = [V::new(0.9, 0.2, -0.4), V::new(-0.1, 0.2, 0.15)];
+
+impl Problem for Odd {
+    type Group = So3;
+    type Action = LeftTranslation;
+    type Work = ();
+    fn group(&self) -> &So3 {
+        &self.0
+    }
+    fn action(&self) -> &LeftTranslation {
+        &self.1
+    }
+    fn work(&self) {}
+    fn f(&self, t: f64, _: &Matrix3<f64>, v: &mut V, (): &mut ()) {
+        *v = t * ODD[0] + t.powi(3) * ODD[1];
+    }
+}
+
+impl TaylorField for Odd {
+    type Series = ();
+    fn series(&self, _: usize) {}
+    fn coefficient(&self, [t, h]: [f64; 2], _: &Matrix3<f64>, k: usize, f: &mut [V], (): &mut ()) {
+        let [a, b] = ODD;
+        f[k] = match k {
+            0 => t * a + t.powi(3) * b,
+            1 => h * (a + 3.0 * t * t * b),
+            2 => 3.0 * t * h * h * b,
+            3 => h.powi(3) * b,
+            _ => V::zeros(),
+        };
+    }
+}
+
+/// Both of the last terms limit a step, because one of them may vanish.
+#[test]
+fn a_term_that_vanishes_lengthens_no_step() {
+    let problem = Odd(So3::new(), LeftTranslation);
+    let fine = Rkmk::new(DOP853, Exp);
+    let reference = Solve::new(&problem, &fine, [0.0, 3.0]).tolerances(1e-14, 1e-14);
+    let reference = reference.run(Matrix3::identity()).unwrap().y;
+    for order in 9..=16 {
+        for first in [0.2, 0.5, 0.9, 1.3, 1.7] {
+            let method = LieSeries::new(order).unwrap();
+            let solve = Solve::new(&problem, &method, [0.0, 3.0]).tolerances(1e-9, 0.0);
+            let run = solve.first_step(first).run(Matrix3::identity()).unwrap();
+            let error = (run.y - reference).norm();
+            assert!(error < 3e-8, "order {order}, first step {first}: {error:e}");
+        }
+    }
+}
+
+/// On so(5) from hard starts: a relative equilibrium, 1e-14 beside one that is not stable, and a fast turn.
+#[test]
+fn hard_starts_on_so5() {
+    let body = RigidBodyN::manakov(&[1.0, 2.0, 3.0, 4.0, 5.5]).unwrap();
+    let mut rng = rand_pcg::Pcg64::seed_from_u64(10);
+    let random = body.group().sample_algebra(&mut rng, 1.0).into_mat();
+    let plane = |i: usize, j: usize| {
+        lieflow::faer::Mat::from_fn(5, 5, |a, b| match (a, b) {
+            _ if (a, b) == (i, j) => 3.0,
+            _ if (a, b) == (j, i) => -3.0,
+            _ => 0.0,
+        })
+    };
+    for (name, start, end, growth) in [
+        ("equilibrium", plane(0, 1), 10.0, 1e3),
+        ("beside one", plane(0, 4) + 1e-14 * &random, 10.0, 1e8),
+        ("fast", 1000.0 * &random, 0.02, 1e4),
+    ] {
+        let times: Vec<f64> = (0..=20).map(|k| end * f64::from(k) / 20.0).collect();
+        let fine = Rkmk::new(DOP853, Exp);
+        let reference = Solve::new(&body, &fine, [0.0, end]).tolerances(1e-14, 0.0);
+        let reference = reference.times(times.clone()).times_by_steps().run(start.clone()).unwrap();
+        for (order, rtol) in [(8, 1e-7), (16, 1e-7), (16, 1e-11)] {
+            let method = LieSeries::new(order).unwrap();
+            let run = Solve::new(&body, &method, [0.0, end]).tolerances(rtol, 0.0);
+            let run = run.times(times.clone()).run(start.clone()).unwrap();
+            for (a, b) in run.points.iter().zip(&reference.points) {
+                let error = (a - b).norm_l2() / start.norm_l2();
+                assert!(
+                    error < growth * (rtol + 1e-13),
+                    "{name}, order {order}, {rtol}: {error:e}"
+                );
+                assert!((a.norm_l2() / start.norm_l2() - 1.0).abs() < 1e-13, "{name}");
+            }
+        }
+    }
 }

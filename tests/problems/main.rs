@@ -14,4 +14,5 @@ mod grassmann;
 mod library;
 mod quaternion_body;
 mod samples;
+mod tops_by_series;
 mod unitary;

@@ -187,9 +187,9 @@ pub(super) const BODY: &[MethodInfo] = &[
     },
 ];
 
-/// 15 p (p + 1)/2 multiplications for a vector, p (p + 1) products of matrices.
+/// 15 p (p + 1)/2 multiplications for a vector, p (p − 1) products of matrices.
 const fn taylor_work(p: u32) -> [WorkItem; 2] {
-    [times(15 * p * (p + 1) / 2, Multiplication), times(p * (p + 1), Product)]
+    [times(15 * p * (p + 1) / 2, Multiplication), times(p * (p - 1), Product)]
 }
 
 const fn taylor(

@@ -6,7 +6,7 @@ use lieflow::groups::{
     AlgebraMatrix, LieGroup, MatrixGroup, Power, Product, Sample, Se3, So3, Translations,
 };
 use lieflow::maps::{CCSK, Cay, Ccsk, Exp, Pade22};
-use lieflow::methods::{CommutatorFree, Rkmk, commutator_free::CF4, tableau::RK4};
+use lieflow::methods::{CommutatorFree, LieSeries, Rkmk, commutator_free::CF4, tableau::RK4};
 use lieflow::problems::{
     BodyMotion, BodyTorque, ChargedParticle, Euler, Flow, HeavyTop, IsospectralFlow, Kinetic, Oja,
     SphericalPendulum, SpinChain, TorqueBody, toda_lattice,
@@ -95,6 +95,7 @@ fn problems() {
     let pair = (v(0.2), v(1.0));
     let top = HeavyTop::new([1.0, 2.0, 2.5], [0.1, 0.2, 0.3]).expect("a top").problem();
     none!(top, pair);
+    assert_eq!(of_steps(&top, &LieSeries::new(8).expect("an order"), &pair), 0, "a top's series");
     let kirchhoff = Kinetic(|m: &(Vector3<f64>, Vector3<f64>), u: &mut (_, _)| *u = *m);
     let euler = Euler::new(Se3::<f64>::new(), kirchhoff);
     none!(euler, pair);

@@ -199,6 +199,9 @@ impl SeriesGroup for Matrices {
     fn add(&self, x: &Square, y: &mut Square) {
         *y = *y + *x;
     }
+    fn add_algebra(&self, a: D, u: &Square, out: &mut Square) {
+        LinearSpace::add(out, a, u);
+    }
     fn add_product(&self, a: D, u: &Square, x: &Square, from_right: bool, out: &mut Square) {
         let product = if from_right { *x * *u } else { *u * *x };
         LinearSpace::add(out, a, &product);

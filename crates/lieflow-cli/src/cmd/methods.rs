@@ -162,7 +162,7 @@ const ADVICE: &[Advice] = &[
         want: "small errors",
         because: "a high order needs few steps",
         take: &[
-            take("taylor16", "free bodies"),
+            take("taylor16", "free bodies, tops, pendulums"),
             take("magnus8", "y' = A(t) y"),
             take("rkmk dop853 cay", "all others"),
         ],

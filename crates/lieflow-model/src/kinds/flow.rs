@@ -4,7 +4,7 @@
 
 use lieflow::actions::{Coadjoint, LeftTranslation, Linear};
 use lieflow::groups::{MatrixGroup, Power, Product, Se3, So3, Translations};
-use lieflow::problems::{DynFlow, FromTheBody, TimeAlone, WithHamiltonian};
+use lieflow::problems::{DynFlow, FromTheBody, TimeAlone, WithHamiltonian, WithSeries};
 use nalgebra::Vector3;
 
 use super::composed::{OnParts, Parts};
@@ -15,7 +15,7 @@ pub(super) type OnSphere<S = f64> = DynFlow<So3<S>, Linear, TimeAlone>;
 /// Vectors under SO(3)ᴺ: spin chains, many bodies, Euler's equations on so(3)*.
 pub(super) type OnSpheres<S = f64> = DynFlow<Power<So3<S>>, Linear, (), WithHamiltonian>;
 /// Momenta on se(3)*: heavy tops, the spherical pendulum, Euler's equations.
-pub(super) type OnSe3<S = f64> = DynFlow<Se3<S>, Coadjoint, (), WithHamiltonian>;
+pub(super) type OnSe3<S = f64> = DynFlow<Se3<S>, Coadjoint, WithSeries, WithHamiltonian>;
 /// All that is made of matrices.
 pub(super) type OnMatrices = DynFlow<MatrixGroup, MatrixAction, TimeAlone, WithHamiltonian>;
 /// The group element of Euler's equations on matrices.

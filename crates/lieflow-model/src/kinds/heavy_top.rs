@@ -141,7 +141,7 @@ impl Representation for MomentumAndVertical {
     const LAWS: [Law; 3] = [Law::by_the_flow(2), Law::by_the_action(2), Law::by_the_action(2)];
 
     fn problem(spec: &TopSpec) -> Result<OnSe3, Error> {
-        Ok(OnSe3::lie_poisson(spec.top.problem(), Coadjoint))
+        Ok(OnSe3::lie_poisson_with_series(spec.top.problem(), Coadjoint))
     }
     fn point(_: Matrix3<f64>, mu: Vector3<f64>, gamma: Vector3<f64>) -> Point<Self> {
         (mu, gamma)
@@ -149,7 +149,7 @@ impl Representation for MomentumAndVertical {
     fn counted(spec: &TopSpec, (mu, gamma): Point<Self>) -> Option<Counting> {
         let top = HeavyTop::<Counted>::new(spec.body.inertia, spec.weight.into()).ok()?;
         let (top, start) = (top.problem(), (mu.map(Counted), gamma.map(Counted)));
-        counting(OnSe3::lie_poisson(top, Coadjoint), start)
+        counting(OnSe3::lie_poisson_with_series(top, Coadjoint), start)
     }
     fn pose(&(mu, gamma): &Point<Self>) -> Pose {
         Pose { mu, gamma, orientation: Orientation::NotModelled }

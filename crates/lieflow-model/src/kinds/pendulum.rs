@@ -85,10 +85,10 @@ impl System for Pendulum {
         Layer::Closed
     }
     fn problem(&self) -> Result<Start<OnSe3>, Error> {
-        Ok((OnSe3::lie_poisson(self.pendulum, Coadjoint), self.start))
+        Ok((OnSe3::lie_poisson_with_series(self.pendulum, Coadjoint), self.start))
     }
     fn counted(&self) -> Option<Counting> {
-        let counted = OnSe3::lie_poisson(self.pendulum.on::<Counted>(), Coadjoint);
+        let counted = OnSe3::lie_poisson_with_series(self.pendulum.on::<Counted>(), Coadjoint);
         let start = (self.start.0.map(Counted), self.start.1.map(Counted));
         counting(counted, start)
     }
