@@ -1,16 +1,21 @@
 //! Events: where a function g(t, y) of the solution passes zero.
 //!
 //! After each step g is evaluated at the end of the step. If the step may have two zeros, g is also evaluated at points
-//! within it ([`Event::points`]). Methods of order 10 and more take long steps: with them g is evaluated in the middle of
-//! each, and again between two points where g bends so much that it may hide two zeros. Between two neighbours of opposite sign the zero is found by dense output, to
-//! rounding of t (the method of Chandrupatla, Adv. Eng. Software 28 (1997)).
+//! within it ([`Event::points`]). Between two neighbours of opposite sign the zero is found by dense output, to rounding
+//! of t (the method of Chandrupatla, Adv. Eng. Software 28 (1997)).
+//!
+//! Methods of order 10 and more take long steps, in which g may have many zeros. There g is replaced by a polynomial in
+//! t. Its coefficients tell whether it has converged, and its zeros are counted (`roots.rs`). Where g has not
+//! converged the step is halved, five times at most. Points between the zeros of the polynomial separate those of g, which
+//! are then found as above. A step whose values are far from 0 needs one value in its middle: with the end of the step
+//! before it shows how far the parabola through three values is from g.
 //!
 //! | g | what is found |
 //! |---|---|
 //! | from < 0 to ≥ 0 | a rising zero |
 //! | from > 0 to ≤ 0 | a falling zero |
 //! | 0 at the start of the run | a zero at the start: rising if g > 0 follows, falling if g < 0 follows |
-//! | touches 0 and turns back | nothing, unless g is exactly 0 at a point that is evaluated |
+//! | touches 0 and turns back | nothing, unless g is exactly 0 at a point where signs are compared |
 //! | not finite | [`RunError::Event`] with the name of the event |
 //!
 //! After a zero that changed the state, the sign of g is taken again 2⁻¹⁶ of a step later. So the same zero is not found
@@ -20,6 +25,7 @@ use core::fmt;
 use core::ops::Range;
 
 use super::output::{AnyOutput, Slot};
+use super::roots::{self, Proxy};
 use super::stats::RunError;
 use super::timeline::Timeline;
 
@@ -110,14 +116,23 @@ pub(super) struct Seen {
     pub(super) before: Option<[f64; 2]>,
     /// True if the sign of g has to be taken again, a little later.
     pub(super) anew: bool,
+    /// In long steps: the level of the polynomials that described g in the step before.
+    pub(super) level: usize,
+}
+
+impl Seen {
+    /// Nothing is known but g at a point.
+    fn only(value: f64, anew: bool) -> Self {
+        Seen { value, before: None, anew, level: 1 }
+    }
 }
 
 /// The number of points within a step where g is evaluated, if the step may have two zeros.
 const POINTS: u32 = 8;
 /// Methods of this order and more take long steps.
 const LONG: usize = 10;
-/// How often the distance of two points is halved, where g may have two zeros between them.
-const HALVINGS: u32 = 4;
+/// How often a part of a long step is halved, where no polynomial describes g.
+const HALVINGS: u32 = 5;
 /// The part of a step after which the sign of g is taken again.
 const A_LITTLE_LATER: f64 = 1.0 / 65536.0;
 
@@ -168,9 +183,9 @@ impl<'a, Y> Event<'a, Y> {
     }
     /// Evaluates g at this many points within every step.
     ///
-    /// The default is 8 points in steps that may have two zeros, and none in others; methods of order 10 and more, whose
-    /// steps are long, add points where g bends. A step may have two zeros if |g|
+    /// The default is 8 points in steps that may have two zeros, and none in others. A step may have two zeros if |g|
     /// at one end is at most twice the change of the slope of g over this step and the one before, times the step size.
+    /// Methods of order 10 and more look for all zeros without this, see `docs/driver.md`.
     pub fn points(mut self, points: u32) -> Self {
         self.rule.points = Some(points);
         self
@@ -274,7 +289,7 @@ impl Events {
         for (index, event) in self.all.iter_mut().enumerate() {
             event.count = 0;
             let value = event.finite(t, output.event(index, t, None))?;
-            event.seen = Seen { value, before: None, anew: value == 0.0 };
+            event.seen = Seen::only(value, value == 0.0);
         }
         Ok(())
     }
@@ -293,7 +308,7 @@ impl Events {
             // Its zero was just passed, or may have been, up to rounding.
             let anew = value.abs() <= 64.0 * f64::EPSILON * size
                 || self.found[at.clone()].iter().any(|zero| zero.event == index);
-            event.seen = Seen { value, before: None, anew };
+            event.seen = Seen::only(value, anew);
         }
         self.found.clear();
         Ok(())
@@ -375,7 +390,7 @@ impl Search {
     fn seen_at_end(&self) -> Seen {
         let [start, end] = self.span;
         let before = Some([self.seen.value, (end - start).abs()]);
-        Seen { value: self.last, before, anew: false }
+        Seen { value: self.last, before, anew: false, level: self.seen.level }
     }
 
     /// Calls `found` with t and the direction of each zero. Returns what is known at the end of the step.
@@ -396,52 +411,110 @@ impl Search {
             }
             left = (t, value);
         }
-        let points = self.points(left.1);
-        let begin = left.0;
-        let whole = end - begin;
-        for i in 0..=points {
-            let right = if i == points {
-                (end, last)
-            } else {
-                let t = begin + whole * (f64::from(i) + 1.0) / (f64::from(points) + 1.0);
-                if t == left.0 || t == end {
-                    continue;
-                }
-                (t, g(t)?)
-            };
-            self.zeros_between([left, right], if self.is_long { HALVINGS } else { 0 }, g, found)?;
-            left = right;
+        let mut seen = self.seen_at_end();
+        if self.is_long {
+            seen.level = self.zeros_of_long([left, (end, last)], g, found)?;
+            return Ok(seen);
         }
-        Ok(self.seen_at_end())
+        let points = self.points(left.1);
+        let (begin, whole) = (left.0, end - left.0);
+        let places = (1..=points).map(|i| begin + whole * f64::from(i) / (f64::from(points) + 1.0));
+        self.zeros_among([left, (end, last)], places, g, found)?;
+        Ok(seen)
     }
 
-    /// Calls `found` with the zeros between two points. Their distance is halved at most so often.
-    fn zeros_between(
+    /// Calls `found` with the zeros between two points of a long step. Returns the level that describes g there.
+    fn zeros_of_long(
         &self,
         [left, right]: [(f64, f64); 2],
-        halvings: u32,
+        g: &mut dyn FnMut(f64) -> Result<f64, RunError>,
+        found: &mut dyn FnMut(f64, bool),
+    ) -> Result<usize, RunError> {
+        let length = right.0 - left.0;
+        let mut values = [0.0; roots::MOST];
+        (values[0], values[roots::MOST - 1]) = (left.1, right.1);
+        let middle = roots::MOST / 2;
+        values[middle] = g(left.0 + 0.5 * length)?;
+        if let (0, Some([before, size])) = (self.seen.level, self.seen.before)
+            && roots::has_none([left.1, values[middle], right.1], (size / length.abs(), before))
+        {
+            return Ok(0);
+        }
+        self.zeros_between([left, right], values, (self.seen.level, HALVINGS), g, found)
+    }
+
+    /// Calls `found` with the zeros between two points, from the values of g there and in the middle. Polynomials of
+    /// this level and finer describe g, else those of halves, which are halved so often at most. Returns the level.
+    fn zeros_between(
+        &self,
+        ends: [(f64, f64); 2],
+        mut values: [f64; roots::MOST],
+        (level, halvings): (usize, u32),
+        g: &mut dyn FnMut(f64) -> Result<f64, RunError>,
+        found: &mut dyn FnMut(f64, bool),
+    ) -> Result<usize, RunError> {
+        let [left, right] = ends;
+        let at = |place: f64| left.0 + place * (right.0 - left.0);
+        let middle = roots::MOST / 2;
+        let mut known = middle;
+        for level in level..=roots::FINEST {
+            let stride = roots::stride(level);
+            for j in (0..roots::MOST).step_by(stride).filter(|j| j % known != 0) {
+                values[j] = g(at(roots::place(j)))?;
+            }
+            known = stride;
+            let proxy = Proxy::new(&values, level);
+            if let Some(separators) = proxy.separators() {
+                let places = separators.places().iter().map(|&place| at(place));
+                self.zeros_among(ends, places, g, found)?;
+                return Ok(proxy.level.unwrap_or(level));
+            }
+        }
+        let (half, value) = (at(0.5), values[middle]);
+        if halvings == 0 || half == left.0 || half == right.0 {
+            let places = (1..roots::MOST - 1).map(|j| at(roots::place(j)));
+            self.zeros_among(ends, places, g, found)?;
+            return Ok(roots::FINEST);
+        }
+        for [a, b] in [[left, (half, value)], [(half, value), right]] {
+            let mut values = [0.0; roots::MOST];
+            (values[0], values[middle], values[roots::MOST - 1]) =
+                (a.1, g(0.5 * (a.0 + b.0))?, b.1);
+            self.zeros_between([a, b], values, (roots::FINEST, halvings - 1), g, found)?;
+        }
+        Ok(roots::FINEST)
+    }
+
+    /// Calls `found` with one zero between each two neighbours of opposite sign, of the ends and the points between.
+    fn zeros_among(
+        &self,
+        [mut left, end]: [(f64, f64); 2],
+        points: impl Iterator<Item = f64>,
         g: &mut dyn FnMut(f64) -> Result<f64, RunError>,
         found: &mut dyn FnMut(f64, bool),
     ) -> Result<(), RunError> {
-        let middle = 0.5 * (left.0 + right.0);
-        if halvings == 0 || middle == left.0 || middle == right.0 {
-            if let Some(rising) = passes(left.1, right.1)
-                && self.direction.has(rising)
-            {
-                found(zero(left, right, g)?, rising);
+        for t in points {
+            if t == left.0 || t == end.0 {
+                continue;
             }
-            return Ok(());
+            let right = (t, g(t)?);
+            self.zero_between([left, right], g, found)?;
+            left = right;
         }
-        let middle = (middle, g(middle)?);
-        // The parabola through the three points leaves the line between two of them by bend/8 at most.
-        let bend = (left.1 - 2.0 * middle.1 + right.1).abs();
-        for [a, b] in [[left, middle], [middle, right]] {
-            let may_hide_two = match passes(a.1, b.1) {
-                Some(_) => (b.1 - a.1).abs() <= bend,
-                None => a.1.abs().min(b.1.abs()) <= 0.5 * bend,
-            };
-            let halvings = if may_hide_two { halvings - 1 } else { 0 };
-            self.zeros_between([a, b], halvings, g, found)?;
+        self.zero_between([left, end], g, found)
+    }
+
+    /// Calls `found` with the zero between two points of opposite sign.
+    fn zero_between(
+        &self,
+        [left, right]: [(f64, f64); 2],
+        g: &mut dyn FnMut(f64) -> Result<f64, RunError>,
+        found: &mut dyn FnMut(f64, bool),
+    ) -> Result<(), RunError> {
+        if let Some(rising) = passes(left.1, right.1)
+            && self.direction.has(rising)
+        {
+            found(zero(left, right, g)?, rising);
         }
         Ok(())
     }

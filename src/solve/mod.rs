@@ -26,6 +26,7 @@ mod integrator;
 mod interpolant;
 mod output;
 mod points;
+mod roots;
 mod save;
 mod simple;
 mod solution;

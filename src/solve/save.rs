@@ -14,6 +14,7 @@ use fnv::FnvHasher;
 use super::drive::Drive;
 use super::integrator::Integrator;
 use super::points::{AnyPoints, Saved};
+use super::roots::FINEST;
 use super::stats::Stats;
 use super::timeline::{Looked, Pacer, Timeline};
 use crate::error::Error;
@@ -22,7 +23,7 @@ use crate::problems::{PointOf, Problem};
 use crate::space::Numbers;
 
 /// The name of the format, and its version.
-const HEADER: [u8; 8] = *b"lieflow\x02";
+const HEADER: [u8; 8] = *b"lieflow\x03";
 
 /// The largest number of values of a list.
 const LIST_MAX: u64 = 1 << 24;
@@ -256,6 +257,9 @@ impl Drive<'_> {
             each(&mut event.count);
             number(each, &mut event.seen.value);
             flag(each, &mut event.seen.anew);
+            let mut level = event.seen.level as u64;
+            each(&mut level);
+            event.seen.level = FINEST.min(level as usize);
             option(each, &mut event.seen.before, |each, before: &mut [f64; 2]| {
                 before.iter_mut().for_each(|x| number(each, x));
             });

@@ -7,6 +7,7 @@ mod interpolant;
 mod modes;
 mod physics;
 mod restore;
+mod roots;
 mod scipy;
 mod scipy_events;
 mod series;
