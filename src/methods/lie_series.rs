@@ -256,6 +256,14 @@ where
                 what: "its terms have not become small",
             });
         }
+        // On so(3) and se(3) a call is one step of Newton–Schulz, which squares the residual.
+        let mut rest = residual;
+        for _ in 0..4 {
+            if rest.all_below(ScalarOf::<P>::EPSILON.sqrt()) {
+                break;
+            }
+            rest = group.correct(g, scratch.each_mut());
+        }
         Ok(())
     }
 }

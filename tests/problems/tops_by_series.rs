@@ -67,7 +67,7 @@ fn has_orders<P>(
     let reference = rows(problem, 16, start, 300, &times);
     let fine = Rkmk::new(DOP853, Exp);
     let other = Solve::new(problem, &fine, [0.0, 4.0]).tolerances(1e-14, 1e-14);
-    let other = other.times(&times).times_by_steps().run(start.clone()).unwrap().points;
+    let other = other.times(times).times_by_steps().run(start.clone()).unwrap().points;
     for (a, b) in reference.iter().zip(&other) {
         assert!(far(a, b) < 1e-12, "{name}: the reference is {:e} off", far(a, b));
     }
@@ -100,6 +100,23 @@ fn orders_of_every_problem() {
     let start = (Se3::new().identity(), START);
     let grids = [FOUR, FIVE, SIX, (8, [22, 30, 41, 56])];
     has_orders(("top with its pose", &top().problem().with_group()), &start, &grids, far);
+}
+
+/// Steps so large that the error is plain stay on the orbit to rounding.
+#[test]
+fn rough_steps_stay_on_the_orbit() {
+    let problem = top().problem();
+    for (order, steps) in [(4, 12), (6, 10), (9, 9), (16, 8)] {
+        let end = rows(&problem, order, &START, steps, &[4.0])[0];
+        let fine = rows(&problem, 16, &START, 300, &[4.0])[0];
+        assert!(
+            order == 16 || apart(&end, &fine) > 1e-6,
+            "order {order}: {:e}",
+            apart(&end, &fine)
+        );
+        assert!((end.1.norm() - 1.0).abs() < 1e-14, "order {order}: {:e}", end.1.norm() - 1.0);
+        assert!((end.0.dot(&end.1) - START.0.dot(&START.1)).abs() < 1e-13, "order {order}");
+    }
 }
 
 /// The units of mass and length change no step and no digit.
