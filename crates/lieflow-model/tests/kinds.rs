@@ -20,6 +20,8 @@ mod known;
 mod matrices;
 #[path = "kinds/mutants.rs"]
 mod mutants;
+#[path = "kinds/numbers.rs"]
+mod numbers;
 #[path = "kinds/quantum.rs"]
 mod quantum;
 #[path = "kinds/refused.rs"]

@@ -40,7 +40,10 @@ fn shape_words(shape: Shape) -> String {
         Shape::Formulas => "a formula or a list of them".into(),
         Shape::ListOf(entry) => format!("a list, of each {}", shape_words(*entry)),
         Shape::TableOf(entry) => format!("a dict of names, each {}", shape_words(*entry)),
-        Shape::Keys(keys) => format!("a dict of {}", keys.join(", ")),
+        Shape::Keys(keys) => {
+            let names: Vec<&str> = keys.iter().map(|(name, _)| *name).collect();
+            format!("a dict of {}", names.join(", "))
+        }
         Shape::Or(a, b) => format!("{}, or {}", shape_words(*a), shape_words(*b)),
         Shape::Samples => "lieflow.Samples, or the name of a CSV file".into(),
     }

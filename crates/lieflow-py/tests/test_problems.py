@@ -171,6 +171,19 @@ def test_all_mistakes_are_told_at_once():
     assert len(caught.value.others) >= 1 and "omega_body" in str(caught.value)
 
 
+def test_numbers_are_formulas_of_parameters():
+    texts = {"inertia": ["k/3", 2, "k"], "omega_body": ["90*deg", "rpm", 0], "parameters": {"k": "2*j", "j": 1.5}}
+    numbers = {"inertia": [1, 2, 3], "omega_body": [np.pi / 2, np.pi / 30, 0]}
+    body = lf.RigidBody(**texts)
+    assert body.keys["inertia"] == ["k/3", 2, "k"]
+    ends = [lf.solve_ivp(lf.RigidBody(**keys), (0, 1)).momentum_body[-1] for keys in (texts, numbers)]
+    assert np.abs(ends[0] - ends[1]).max() < 1e-14
+    for text, words in (("5 deg", "write 5*deg"), ("t", "may change with time"), ("1/0", "expected a finite number")):
+        with pytest.raises(lf.ArgumentError) as caught:
+            lf.RigidBody(**{**BODY, "inertia": [1, 2, text]})
+        assert caught.value.argument == "inertia[2]" and words in str(caught.value), str(caught.value)
+
+
 @pytest.mark.parametrize("value", [1j, object(), {1, 2}, np.array([1j])])
 def test_a_key_of_another_type(value):
     with pytest.raises(TypeError, match="inertia"):

@@ -18,7 +18,7 @@ const BROKEN: &[(&str, &str, usize, &[&str])] = &[
         "inertia = [1, 2.0, 3.0]",
         "inertia = [1, \"two\", 3]",
         4,
-        &["the text \"two\"", "expected a number"],
+        &["\"two\" is no number", "unknown name `two`"],
     ),
     ("inertia = [1, 2.0, 3.0]", "inertia = [1, nan, 3]", 4, &["expected a finite number"]),
     ("inertia = [1, 2.0, 3.0]", "inertia = [1, 2, -inf]", 4, &["expected a finite number"]),
@@ -281,7 +281,7 @@ fn all_mistakes_are_told_at_once() {
         ":6:1: unknown key `colour`",
         ":9:1: unknown key `nmae`",
         ":9:8: unknown method `rkmk5`",
-        ":13:14: found the text \"two\"",
+        ":13:15: \"two\" is no number",
         ":14:6: dt = -1.0",
         ":15:2: unknown key `outptu`",
     ];
@@ -300,7 +300,7 @@ fn all_mistakes_are_told_at_once() {
     let keys = "torque = [\"k*w1\", \"0\", \"l\"]\nparameters = { k = \"x\" }\n[method]";
     let text = SCENE.replace("rigid-body", "driven-body").replace("[method]", keys);
     let text = text.replace("layer = \"closed\"\n", "").replace("\"momentum_body\", ", "");
-    let all = ["2 mistakes", ":6:24: torque[3]: unknown name `l`", ":7:20: found the text \"x\""];
+    let all = ["2 mistakes", ":6:24: torque[3]: unknown name `l`", ":7:21: \"x\" is no number"];
     expect(&text, &all);
     let text = text.replace("\"x\"", "1").replace("k*w1", "k*w9").replace("t_span", "t_spam");
     let all = ["3 mistakes", ":6:11: torque[", ":6:24: torque[", ":12:1: unknown key `t_spam`"];

@@ -155,10 +155,11 @@ pub(super) fn read_value(
     text: &str,
     names: &Names,
 ) -> Result<(usize, Vec<Tape>), ReadError> {
-    let value =
-        parse::parse(text, names).map_err(|parse::Mistake { message, help, is_known }| {
+    let value = parse::parse(text, names).map_err(
+        |parse::Mistake { message, help, is_known, .. }| {
             let refusal = Refusal { help, ..Refusal::at(key, format!("{key}: {message}")) };
             if is_known { ReadError::known() } else { refusal.into() }
-        })?;
+        },
+    )?;
     Ok((value.rows, value.entries))
 }

@@ -1,5 +1,7 @@
 //! The functions and operators of formulas: names, values, costs.
 
+use core::f64::consts::{PI, TAU};
+
 use lieflow::scalar::Ops;
 
 /// A function of one number.
@@ -116,9 +118,23 @@ impl Called {
     }
 }
 
-/// Numbers that have a name.
-pub(super) const CONSTANTS: &[(&str, f64)] =
-    &[("pi", core::f64::consts::PI), ("e", core::f64::consts::E)];
+/// Numbers that have a name. Those of angles are units in radians: 5 degrees are `5*deg`, 3 turns a minute `3*rpm`.
+pub(super) const CONSTANTS: &[(&str, f64)] = &[
+    ("pi", PI),
+    ("e", core::f64::consts::E),
+    ("rad", 1.0),
+    ("deg", PI / 180.0),
+    ("arcmin", PI / 10_800.0),
+    ("arcsec", PI / 648_000.0),
+    ("turn", TAU),
+    ("rev", TAU),
+    ("rpm", TAU / 60.0),
+];
+
+/// Is it the name of a unit of angles?
+pub(super) fn angle_unit(name: &str) -> bool {
+    CONSTANTS.iter().any(|(constant, _)| *constant == name) && !["pi", "e"].contains(&name)
+}
 
 impl Function {
     pub(super) fn value(self, x: f64) -> f64 {

@@ -1,6 +1,6 @@
 //! The names that a formula may use: the variables of its kind, the constants and the named formulas of the scene.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use lieflow::samples::Samples;
@@ -9,59 +9,15 @@ use super::functions::{CALLED, CONSTANTS};
 use super::lost::Losses;
 use super::samples::{SamplesFile, Table};
 use super::tape::Tape;
-use crate::reader::values::Real;
-use crate::reader::{Key, Read, ReadError, Refusal, Shape, Value, read_as_held};
-
-read_as_held!(Parameters: BTreeMap<String, Key<Real>> = Shape::TableOf(&Shape::Number));
-
-/// `[problem.parameters]`: constants that the formulas of a scene share, `k = 3.0`.
-#[derive(Clone, Debug, Default)]
-pub struct Parameters(BTreeMap<String, Key<Real>>);
-
-impl FromIterator<(String, Real)> for Parameters {
-    fn from_iter<I: IntoIterator<Item = (String, Real)>>(parameters: I) -> Self {
-        Parameters(parameters.into_iter().map(|(name, x)| (name, Ok(x))).collect())
-    }
-}
-
-impl Parameters {
-    /// The names and their values.
-    pub fn iter(&self) -> impl Iterator<Item = (&str, f64)> {
-        self.0.iter().filter_map(|(name, x)| Some((name.as_str(), x.as_ref().ok()?.0)))
-    }
-
-    /// These variables, in the order of their values, and the parameters.
-    ///
-    /// # Errors
-    /// A refusal of `key` for a variable, and of `parameters` for each parameter, that is no name (letters,
-    /// digits and underscores, no digit first), or has that of another, or of a function.
-    pub fn names<N: Into<String>>(
-        &self,
-        key: &str,
-        variables: impl IntoIterator<Item = N>,
-    ) -> Result<Names, ReadError> {
-        let (mut names, mut mistakes) = (Names::default(), ReadError::default());
-        for variable in variables {
-            let variable = variable.into();
-            names.check(key, &variable)?;
-            names.push(variable);
-        }
-        for (name, value) in &self.0 {
-            if mistakes.keep(names.check_new("parameters", name)).is_some() {
-                // With a wrong number formulas can be read, and not run.
-                let value = value.as_ref().map_or(f64::NAN, |x| x.0);
-                names.constants.push((name.clone(), value));
-            }
-        }
-        mistakes.or(Some(names))
-    }
-}
+use crate::reader::{ReadError, Refusal};
 
 /// The names that a formula may use.
 #[derive(Clone, Debug, Default)]
 pub struct Names {
     variables: Arc<Variables>,
     constants: Vec<(String, f64)>,
+    /// The names of what may change with time, of formulas that may not.
+    varying: Option<Arc<BTreeSet<String>>>,
     table: Option<Arc<Table>>,
     /// The named formulas, after those that they need; of vectors and matrices each entry by its name.
     pub(super) formulas: Arc<Vec<Entry>>,
@@ -114,6 +70,39 @@ impl Names {
     /// The variables, in the order of their values.
     pub fn variables(&self) -> &[String] {
         &self.variables.names
+    }
+
+    /// These variables, in the order of their values.
+    ///
+    /// # Errors
+    /// A refusal of `key` for a variable that is no name (letters, digits and underscores, no digit first), or has that of
+    /// another, or of a function.
+    pub(super) fn of<N: Into<String>>(
+        key: &str,
+        variables: impl IntoIterator<Item = N>,
+    ) -> Result<Names, ReadError> {
+        let mut names = Names::default();
+        for variable in variables {
+            let variable = variable.into();
+            names.check(key, &variable)?;
+            names.push(variable);
+        }
+        Ok(names)
+    }
+
+    /// Those of formulas that do not change with time, as these names do.
+    pub(super) fn of_numbers(varying: Arc<BTreeSet<String>>) -> Names {
+        Names { varying: Some(varying), ..Names::default() }
+    }
+
+    /// May what has this name change with time, where a formula may not?
+    pub(super) fn varies(&self, name: &str) -> bool {
+        self.varying.as_ref().is_some_and(|varying| varying.contains(name))
+    }
+
+    /// Another constant.
+    pub(super) fn add_constant(&mut self, name: &str, value: f64) {
+        self.constants.push((name.into(), value));
     }
 
     /// These names, the first of them `t`, and the columns of a file of samples, functions of t.
@@ -183,9 +172,15 @@ impl Names {
 
     /// Where a scene gives a name its meaning.
     pub(super) fn where_to_state(&self, name: &str) -> String {
-        format!(
-            "a constant is a line `{name} = 0.5` in [problem.parameters], a formula one in [problem.let]"
-        )
+        match &self.varying {
+            None => format!(
+                "a constant is a line `{name} = 0.5` in [problem.parameters], a formula one in [problem.let]"
+            ),
+            Some(_) if self.varies(name) => {
+                "a number is computed before the run, from names of [problem.parameters]".into()
+            }
+            Some(_) => format!("a constant is a line `{name} = 0.5` in [problem.parameters]"),
+        }
     }
 
     /// The samples.

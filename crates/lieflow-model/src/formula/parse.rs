@@ -13,7 +13,7 @@
 //! So −2^2 = −(2²), 2^−1 = ½ and 2^3^2 = 2^(3²). Each part is a [`Value`]: a number, a vector or a matrix. Vectors
 //! and matrices are there while a formula is read; what becomes of it are operations on numbers.
 
-use super::functions::{CALLED, Called, Function, Operator};
+use super::functions::{CALLED, Called, Function, Operator, angle_unit};
 use super::names::{Meaning, Names, continues_name, starts_name};
 use super::tape::{Builder, LENGTH_MAX, Tape};
 use super::value::Value;
@@ -26,6 +26,8 @@ pub const DECIMAL_POINT: &str = "a number is written with a decimal point, not a
 #[derive(Debug)]
 pub(super) struct Mistake {
     pub(super) message: String,
+    /// The character, from 0.
+    pub(super) at: usize,
     pub(super) help: Option<String>,
     /// True if it follows from the mistakes of a named formula, which are known.
     pub(super) is_known: bool,
@@ -44,7 +46,7 @@ pub(super) struct Parsed {
 }
 
 pub(super) fn parse(text: &str, names: &Names) -> Result<Parsed, Mistake> {
-    let plain = |message: String| Mistake { message, help: None, is_known: false };
+    let plain = |message: String| Mistake { message, at: 0, help: None, is_known: false };
     if text.len() > TEXT_MAX {
         return Err(plain(format!(
             "a formula of {} bytes, expected at most {TEXT_MAX}",
@@ -94,7 +96,7 @@ impl Parser<'_> {
 
     fn mistake(&self, message: &str, at: usize) -> Mistake {
         let message = format!("{message} at character {} of the formula", at + 1);
-        Mistake { message, help: None, is_known: false }
+        Mistake { message, at, help: None, is_known: false }
     }
     /// What is next was not expected.
     fn expected(&mut self, what: &str) -> Mistake {
@@ -109,13 +111,38 @@ impl Parser<'_> {
             {
                 Some(DECIMAL_POINT.into())
             }
+            (_, Some('°')) => Some("degrees are written 5*deg".into()),
             (_, Some('<' | '>' | '=')) => Some("a formula is a number, and no comparison".into()),
             (Some(_), Some(c)) if what.contains("operator") && (starts_name(c) || c == '(') => {
-                Some("a product is written 2*x".into())
+                Some(self.as_product())
             }
             _ => None,
         };
         mistake
+    }
+
+    /// How the product of what is before this place and what is next is written.
+    fn as_product(&self) -> String {
+        let (before, next) = self.text.split_at(self.at);
+        let word = |c: &&char| continues_name(**c) || **c == '.';
+        let first: Vec<char> = before
+            .iter()
+            .rev()
+            .skip_while(|c| c.is_whitespace())
+            .take_while(word)
+            .copied()
+            .collect();
+        let first: String = first.into_iter().rev().collect();
+        let second: String = next.iter().take_while(word).collect();
+        if first.is_empty() || second.is_empty() {
+            return "a product is written 2*x".into();
+        }
+        match angle_unit(&second) {
+            true => {
+                format!("write {first}*{second}; other units than those of angles are left out")
+            }
+            false => format!("a product is written {first}*{second}"),
+        }
     }
 
     fn sum(&mut self) -> Result<Value, Mistake> {
@@ -256,9 +283,13 @@ impl Parser<'_> {
             let message = format!("`{name}` of [problem.let] has no meaning here ({reason})");
             return Err(Mistake { is_known: why.is_none(), ..self.mistake(&message, start) });
         }
-        let help = help_for(&name, &self.names.all());
-        let help = format!("{help}; {}", self.names.where_to_state(&name));
-        Err(Mistake { help: Some(help), ..self.mistake(&format!("unknown name `{name}`"), start) })
+        let (message, help) = match self.names.varies(&name) {
+            true => (format!("`{name}` may change with time"), None),
+            false => (format!("unknown name `{name}`"), Some(help_for(&name, &self.names.all()))),
+        };
+        let help = help.into_iter().chain([self.names.where_to_state(&name)]);
+        let help = Some(help.collect::<Vec<_>>().join("; "));
+        Err(Mistake { help, ..self.mistake(&message, start) })
     }
     /// A number of that name; the vector of x1, x2, … by the name x; the matrix of x11, x12, … by the name x.
     fn value_of(&mut self, name: &str) -> Option<Value> {

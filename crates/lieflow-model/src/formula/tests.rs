@@ -193,11 +193,16 @@ fn parameters_are_numbers_with_names() {
         ("k = 3", "2x", "`2x` is no name"),
         ("k = 3", "", "`` is no name"),
     ] {
-        let parameters: Parameters = table(text).unwrap();
-        let refusal = refusal(parameters.names("variables", [variable]).unwrap_err());
+        let parameters = table::<Parameters>(text);
+        let names = parameters.and_then(|parameters| parameters.names("variables", [variable]));
+        let refusal = refusal(names.unwrap_err());
         assert!(refusal.message.starts_with(why), "{}", refusal.message);
     }
     assert!(table::<Parameters>("k = inf").is_err());
+    // Parameters of parameters, in any order.
+    let of_others: Parameters = table("a = \"2*b\"\nb = \"c + 1\"\nc = 3\nd = \"90*deg\"").unwrap();
+    let values: Vec<_> = of_others.iter().collect();
+    assert_eq!(values, [("a", 8.0), ("b", 4.0), ("c", 3.0), ("d", core::f64::consts::FRAC_PI_2)]);
 }
 
 /// Vectors and matrices by their names and written out, against the same by components.

@@ -52,7 +52,7 @@ struct Hill {
 
 type Q = Quantity<Hill>;
 
-fn read_mathieu(MathieuKeys { a, q }: MathieuKeys) -> Result<Forms, ReadError> {
+fn read_mathieu(MathieuKeys { a, q, .. }: MathieuKeys) -> Result<Forms, ReadError> {
     let (a, q) = all!(a, q)?;
     let one = |x: Real| Mat::full(1, 1, x.0);
     Ok(Forms::of(Hill { a: one(a), q: one(q), period: PI }))

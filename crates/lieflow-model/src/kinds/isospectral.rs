@@ -65,7 +65,7 @@ fn matrix_of(table: &Table) -> Result<Mat<f64>, ReadError> {
 }
 
 fn read_toda(keys: TodaKeys) -> Result<Forms, ReadError> {
-    let TodaKeys { positions, momenta, matrix } = keys;
+    let TodaKeys { positions, momenta, matrix, .. } = keys;
     let (positions, momenta, matrix) = all!(positions, momenta, matrix)?;
     let matrix = match exactly_one(("positions", positions), ("matrix", matrix))? {
         Either::First(positions) => {

@@ -37,7 +37,7 @@ struct Particle {
 type Q = Quantity<Particle>;
 
 fn read(keys: Keys) -> Result<Forms, ReadError> {
-    let Keys { charge_to_mass, electric, magnetic, velocity } = keys;
+    let Keys { charge_to_mass, electric, magnetic, velocity, .. } = keys;
     let (charge_to_mass, electric, magnetic, velocity) =
         all!(charge_to_mass, electric, magnetic, velocity)?;
     let (e, b) = (Vector3::from(electric.0), Vector3::from(magnetic.0));

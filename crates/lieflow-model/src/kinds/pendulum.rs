@@ -35,7 +35,7 @@ struct Pendulum {
 type Q = Quantity<Pendulum>;
 
 fn read(keys: Keys) -> Result<Forms, ReadError> {
-    let Keys { gravity_over_length, direction, velocity } = keys;
+    let Keys { gravity_over_length, direction, velocity, .. } = keys;
     let pendulum = gravity_over_length.and_then(|x| Ok((SphericalPendulum::new(x.0)?, x.0)));
     let ((pendulum, rate2), direction, velocity) = all!(pendulum, direction, velocity)?;
     let start = pendulum

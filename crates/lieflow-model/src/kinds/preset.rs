@@ -160,8 +160,8 @@ impl Preset {
             shape: key.numbers.map_or(Shape::Number, |n| Shape::Numbers(n.0 as usize)),
             optional: false,
         };
-        let key_infos = stated.keys.iter().map(info).collect();
-        let key_names = stated.keys.iter().map(|key| key.name).collect();
+        let key_infos: Vec<KeyInfo> = stated.keys.iter().map(info).chain([PARAMETERS]).collect();
+        let key_names = key_infos.iter().map(|key| key.name).collect();
         Preset { stated, problem, values, key_infos, key_names }
     }
 
@@ -223,6 +223,8 @@ impl Preset {
                 parameters.push((parameter, Real(x)));
             }
         }
+        // The numbers know them already.
+        let _: Option<Parameters> = section.read(PARAMETERS.name);
         mistakes.or(Some(parameters))
     }
 
@@ -238,10 +240,8 @@ impl Preset {
             let key = key.get_ref();
             text += &format!("{key} = {}\n", evaluate(key, value, &names)?);
         }
-        if kind.keys.contains(&PARAMETERS) {
-            text += &format!("[{}]\n", PARAMETERS.name);
-            text.extend(parameters.iter().map(|(name, x)| format!("{name} = {}\n", as_toml(x))));
-        }
+        text += &format!("[{}]\n", PARAMETERS.name);
+        text.extend(parameters.iter().map(|(name, x)| format!("{name} = {}\n", as_toml(x))));
         // What the base refuses stands in no line of the scene but its section.
         let values = DeTable::parse(&text).map_err(|error| Refusal::section(error.message()))?;
         problem.extend(values.into_inner());

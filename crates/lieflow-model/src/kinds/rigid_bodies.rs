@@ -43,7 +43,7 @@ struct Bodies {
 
 type Q = Quantity<Bodies>;
 
-fn read(Keys { bodies: keys }: Keys) -> Result<Forms, ReadError> {
+fn read(Keys { bodies: keys, .. }: Keys) -> Result<Forms, ReadError> {
     let keys = keys?;
     if keys.is_empty() {
         return Err(Refusal::at("bodies", "no bodies, expected at least one").into());

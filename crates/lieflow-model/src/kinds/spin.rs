@@ -36,7 +36,7 @@ struct Spin {
 
 type Q = Quantity<Spin>;
 
-fn read(Keys { field, rate, moment }: Keys) -> Result<Forms, ReadError> {
+fn read(Keys { field, rate, moment, .. }: Keys) -> Result<Forms, ReadError> {
     let (field, rate, moment) = all!(field, rate, moment)?;
     Ok(Forms::of(Spin { field: field.0.into(), rate: rate.0, moment: moment.0.into() }))
 }

@@ -5,8 +5,8 @@
 
 use super::kind::{KeyInfo, Kind, ReadForms};
 use super::system::System;
-use crate::formula::Names;
-use crate::reader::{ReadError, Shape, all, seen};
+use crate::formula::{Names, Parameters};
+use crate::reader::{Read, ReadError, Shape, all, seen};
 
 /// The keys of a kind, as listings show them.
 pub(crate) trait KeyTable {
@@ -31,30 +31,43 @@ macro_rules! keys {
         keys! { $name { $($own)* } }
     };
     ($name:ident { $($key:ident: $type:ty = $meaning:expr,)* }) => {
-        $crate::reader::read_by_keys! { struct $name { $($key: $crate::reader::Key<$type>,)* } }
+        $crate::reader::read_by_keys! {
+            struct $name {
+                $($key: $crate::reader::Key<$type>,)*
+                // Numbers know them before a kind reads its keys.
+                #[allow(dead_code)]
+                parameters: $crate::reader::Key<$crate::formula::Parameters>,
+            }
+        }
 
         impl $crate::problem::KeyTable for $name {
-            const INFO: &'static [$crate::problem::KeyInfo] = &[$($crate::problem::KeyInfo {
-                name: $crate::reader::key_name(stringify!($key)),
-                meaning: $meaning,
-                shape: <$type as $crate::reader::Read>::SHAPE,
-                optional: <$type as $crate::reader::Read>::OPTIONAL,
-            },)*];
+            const INFO: &'static [$crate::problem::KeyInfo] = &[
+                $($crate::problem::KeyInfo {
+                    name: $crate::reader::key_name(stringify!($key)),
+                    meaning: $meaning,
+                    shape: <$type as $crate::reader::Read>::SHAPE,
+                    optional: <$type as $crate::reader::Read>::OPTIONAL,
+                },)*
+                $crate::problem::PARAMETERS,
+            ];
         }
     };
 }
 pub(crate) use keys;
 
-/// A group of keys: the table of their values, and the macro that adds them to those of a kind, before or after.
+/// A group of keys: the table of their values, and the macro that adds them to those of a kind, before or after. The table
+/// may have keys that every kind has, too.
 macro_rules! group {
     (
         $(#[$doc:meta])* $table:ident in ($($room:tt)+) = $method:ident $dollar:tt,
+        $(with { $($with:ident: $with_type:ty,)* })?
         before { $($before:ident: $before_type:ty = $before_meaning:expr,)* }
         after { $($after:ident: $after_type:ty = $after_meaning:expr,)* }
     ) => {
         $(#[$doc])*
         #[derive(Clone, Debug)]
         pub(crate) struct $table {
+            $($(pub(crate) $with: $crate::reader::Key<$with_type>,)*)?
             $(pub(crate) $before: $crate::reader::Key<$before_type>,)*
             $(pub(crate) $after: $crate::reader::Key<$after_type>,)*
         }
@@ -72,6 +85,7 @@ macro_rules! group {
                     fn $method(&mut self) -> $($room)+::$table {
                         use $crate::reader::take;
                         $($room)+::$table {
+                            $($($with: take(&mut self.$with),)*)?
                             $($before: take(&mut self.$before),)*
                             $($after: take(&mut self.$after),)*
                         }
@@ -83,11 +97,12 @@ macro_rules! group {
     };
 }
 
-/// The key of the constants.
+/// The key of the constants, of every kind.
 pub(crate) const PARAMETERS: KeyInfo = KeyInfo {
     name: "parameters",
-    meaning: "constants for the formulas: a table [problem.parameters] of names and numbers; optional",
-    shape: Shape::TableOf(&Shape::Number),
+    meaning: "constants for formulas and for numbers, which may be texts such as \"m*a^2/6\" or \"5*deg\": a table \
+              [problem.parameters] of names with numbers, or with formulas of others; optional",
+    shape: Parameters::SHAPE,
     optional: true,
 };
 
@@ -117,9 +132,9 @@ group! {
 group! {
     /// The keys of names, of every kind that reads formulas.
     FormulaKeys in (crate::problem) = formula_keys $,
+    with { parameters: crate::formula::Parameters, }
     before {}
     after {
-        parameters: crate::formula::Parameters = crate::problem::PARAMETERS.meaning,
         r#let: crate::formula::Lets =
             "formulas with names, for other formulas: a table [problem.let] of names and formulas; a list of formulas, \
              or a formula such as \"cross(w, b)\", is a vector; optional",

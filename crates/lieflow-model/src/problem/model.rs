@@ -9,11 +9,11 @@ use lieflow::samples::Samples;
 use lieflow::{Error, RunError, SaveAt, Stats, StepControl, TimeGrid};
 
 use super::forms::{Asked, Form, Forms, Run};
-use super::kind::{Fact, Figure, Kind, PrincipalInertia};
+use super::kind::{Fact, Figure, Kind, PrincipalInertia, QuantityInfo};
 use super::mapped::{Mapped, MappedCurve, MappedStepper, NumberOf, RowMap};
 use super::run::{CurvePlace, Layer, Orders, Outcome, Plan, RowCurve, Rows, Sink, Steps, Watcher};
 use super::stepper::Stepper;
-use crate::formula::Formula;
+use crate::formula::{Constants, Formula};
 use crate::reader::{Mistakes, ReadError, Refusal, Tree, Value};
 use crate::schema::Schema;
 
@@ -32,7 +32,19 @@ impl Kind {
     /// # Errors
     /// [`ReadError`] for a value that cannot be used.
     pub(crate) fn read_problem(&'static self, values: &Value<'_>) -> Result<Problem, ReadError> {
-        Ok(Problem { kind: self, forms: (self.read)(values)? })
+        let keys: Vec<_> = self.keys.iter().map(|key| (key.name, key.shape)).collect();
+        let mut mistakes = ReadError::default();
+        let forms =
+            self.constants(values).read(values, &keys, &mut mistakes, |values, mistakes| {
+                mistakes.keep((self.read)(values))
+            });
+        Ok(Problem { kind: self, forms: mistakes.or(forms)? })
+    }
+
+    /// What formulas of numbers may name in a scene with this section `problem`.
+    pub(crate) fn constants(&self, section: &Value<'_>) -> Constants {
+        let columns = (self.quantities)();
+        Constants::of(Some(section), columns.iter().flat_map(QuantityInfo::column_names))
     }
 
     /// The problem of this kind whose keys have these values.

@@ -42,8 +42,8 @@ pub enum Shape {
     ListOf(&'static Shape),
     /// A table of names with such values.
     TableOf(&'static Shape),
-    /// A table with these keys.
-    Keys(&'static [&'static str]),
+    /// A table with these keys, and what is under each.
+    Keys(&'static [(&'static str, Shape)]),
     /// One of two.
     Or(&'static Shape, &'static Shape),
     /// The name of a file of samples.
@@ -131,8 +131,8 @@ pub enum Mistake {
     UnknownKey(Range<usize>, String, &'static [&'static str]),
     /// A key that must be in the table at this place.
     MissingKey(Range<usize>, &'static str),
-    /// A value that is not what is expected: its place and the message.
-    Wrong(Range<usize>, String),
+    /// A value that is not what is expected: its place, the message, and what to do.
+    Wrong(Range<usize>, String, Option<String>),
     /// A value that cannot be used. The place is found by its key.
     Refused(Refusal),
 }
@@ -146,7 +146,7 @@ impl Mistake {
                 (format!("unknown key `{given}`{within}"), Some(help_for(&given, names)))
             }
             Mistake::MissingKey(_, name) => (format!("missing key `{name}`{within}"), None),
-            Mistake::Wrong(_, message) => (message, None),
+            Mistake::Wrong(_, message, help) => (message, help),
             Mistake::Refused(Refusal { message, help, .. }) => (message, help),
         }
     }
@@ -188,7 +188,25 @@ impl ReadError {
 
     /// A mistake in a value.
     pub fn of(value: &Value<'_>, message: impl Into<String>) -> Self {
-        Mistake::Wrong(value.span(), message.into()).into()
+        Mistake::Wrong(value.span(), message.into(), None).into()
+    }
+
+    /// A mistake at a character, from 0, of the text that a value is. It is at the whole value where the file writes some
+    /// of the text in another way.
+    pub(crate) fn in_text(
+        value: &Value<'_>,
+        character: usize,
+        message: String,
+        help: Option<String>,
+    ) -> Self {
+        let text = value.get_ref().as_str().unwrap_or_default();
+        let (span, before) = (value.span(), text.char_indices().nth(character));
+        let bytes = before.map_or(text.len(), |(byte, _)| byte);
+        let place = match span.len() == text.len() + 2 {
+            true if bytes < text.len() => span.start + 1 + bytes..span.start + 2 + bytes,
+            _ => span,
+        };
+        Mistake::Wrong(place, message, help).into()
     }
 
     /// A value where something else is expected.
@@ -208,7 +226,7 @@ impl ReadError {
     /// The message of the first mistake in the value of a key.
     pub(crate) fn message(&self) -> Option<&str> {
         self.mistakes.iter().find_map(|mistake| match mistake {
-            Mistake::Wrong(_, message) | Mistake::Refused(Refusal { message, .. }) => {
+            Mistake::Wrong(_, message, _) | Mistake::Refused(Refusal { message, .. }) => {
                 Some(message.as_str())
             }
             _ => None,
@@ -462,7 +480,10 @@ macro_rules! read_by_keys {
 
         impl $crate::reader::Read for $name {
             const SHAPE: $crate::reader::Shape = $crate::reader::Shape::Keys(
-                &[$($crate::reader::key_name(stringify!($key)),)*]
+                &[$((
+                    $crate::reader::key_name(stringify!($key)),
+                    <$type as $crate::reader::Read>::SHAPE,
+                ),)*]
             );
 
             fn read(

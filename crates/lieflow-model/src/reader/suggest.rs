@@ -68,6 +68,13 @@ const OTHER_NAMES: &[(&str, &str)] = &[
     ("y0", "start"),
     ("rhs", "field"),
     ("f", "field"),
+    // Units of angles in formulas.
+    ("degree", "deg"),
+    ("degrees", "deg"),
+    ("radian", "rad"),
+    ("radians", "rad"),
+    ("turns", "turn"),
+    ("revolution", "rev"),
     // Quantities, and keys of the same names.
     ("omega", "omega_body"),
     ("omega0", "omega_body"),

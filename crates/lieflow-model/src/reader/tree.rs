@@ -126,7 +126,7 @@ fn refusal(keys: &Value<'_>, mistake: Mistake) -> Refusal {
     let within = |place: &Range<usize>| path_at(keys, place, String::new());
     match mistake {
         Mistake::Refused(refusal) => refusal,
-        Mistake::Wrong(place, message) => Refusal { key: within(&place), message, help: None },
+        Mistake::Wrong(place, message, help) => Refusal { key: within(&place), message, help },
         Mistake::UnknownKey(place, given, names) => Refusal {
             key: within(&place),
             message: format!("unknown key `{given}`"),
@@ -145,9 +145,13 @@ fn join(table: &str, name: &str) -> String {
     if table.is_empty() { name.into() } else { table.entry(name) }
 }
 
-/// The path of the key or the value at a place, such as `parts[2].start`. It is empty for the whole.
+/// The path of the key or the value at a place, or around it, such as `parts[2].start`. It is empty for the whole.
 fn path_at(value: &Value<'_>, wanted: &Range<usize>, path: String) -> Option<String> {
-    if value.span() == *wanted {
+    let span = value.span();
+    if span == *wanted {
+        return Some(path);
+    }
+    if value.get_ref().is_str() && span.contains(&wanted.start) {
         return Some(path);
     }
     match value.get_ref() {

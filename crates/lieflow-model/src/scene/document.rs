@@ -7,12 +7,14 @@ use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue};
 
 use super::error::{Mistakes, SceneError};
-use crate::formula::DECIMAL_POINT;
+use crate::formula::{Constants, DECIMAL_POINT, of_keys};
+use crate::kinds;
 use crate::problem::KeyInfo;
 use crate::reader::{Mistake, Read, ReadError, Refusal, Value, entry_of, given_key, suggest};
 
 /// The keys at the top.
-pub(super) const TOP: &[&str] = &["title", "problem", "method", "time", "events", "output"];
+pub(super) const TOP: &[&str] =
+    &["title", "problem", "method", "time", "events", "output"];
 
 /// The sections that a scene must have, with lines that may stand there.
 const EXAMPLES: [(&str, &str); 2] = [
@@ -44,6 +46,16 @@ fn help_for_text(text: &str, place: Range<usize>) -> Option<String> {
     Some(format!("a comma is missing: {first}, {second}"))
 }
 
+/// What formulas of numbers may name.
+fn constants_of(root: &DeTable<'_>) -> Constants {
+    let Some(problem) = entry_of(root, "problem", TOP) else {
+        return Constants::of(None, []);
+    };
+    let kind = problem.get_ref().get("kind").and_then(|kind| kind.get_ref().as_str());
+    let kind = kind.and_then(|kind| kinds::named(kind).ok());
+    kind.map_or_else(|| Constants::of(Some(problem), []), |kind| kind.constants(problem))
+}
+
 /// A parsed scene file.
 pub(super) struct Document<'a> {
     source: &'a str,
@@ -51,13 +63,19 @@ pub(super) struct Document<'a> {
     /// The text without settings.
     file: &'a str,
     root: DeTable<'a>,
+    /// What formulas of numbers may name.
+    constants: Constants,
 }
 
 impl<'a> Document<'a> {
     /// Parses a text, which is that of a file, or that with settings.
     pub(super) fn parse(source: &'a str, text: &'a str, file: &'a str) -> Result<Self, SceneError> {
         match DeTable::parse(text) {
-            Ok(root) => Ok(Document { source, text, file, root: root.into_inner() }),
+            Ok(root) => {
+                let root = root.into_inner();
+                let constants = constants_of(&root);
+                Ok(Document { source, text, file, root, constants })
+            }
             Err(error) => {
                 let message = error.message().lines().collect::<Vec<_>>().join("; ");
                 let refused = SceneError::new(source, format!("not TOML: {message}"));
@@ -129,22 +147,24 @@ impl<'a> Document<'a> {
 
     /// A mistake in a section with its place.
     pub(super) fn mistake(&self, section: &str, mistake: Mistake) -> SceneError {
-        let place = match &mistake {
+        let (place, formula) = match &mistake {
             Mistake::UnknownKey(place, ..)
             | Mistake::MissingKey(place, _)
-            | Mistake::Wrong(place, _) => Some(place.clone()),
+            | Mistake::Wrong(place, ..) => (Some(place.clone()), None),
             Mistake::Refused(Refusal { key, .. }) => {
-                let place = key.as_ref().and_then(|key| self.locate(section, key));
-                place.or_else(|| self.get(section).map(Spanned::span))
+                let value = key.as_ref().and_then(|key| self.locate(section, key));
+                let place = value.or_else(|| self.get(section)).map(Spanned::span);
+                (place, value.and_then(|value| self.value_of(value)))
             }
         };
         let (message, help) = mistake.in_words(section);
+        let help = formula.into_iter().chain(help).reduce(|formula, help| formula + "; " + &help);
         SceneError::new(self.source, message).at(self.text, self.file, place).with_help(help)
     }
 
     /// Where `key`, `key[i]`, `key[i,j]` or `key[i].name[j]` ([`KeyPath`](super::KeyPath)) stands, first in this
     /// section, then in the others, then at the top.
-    fn locate(&self, section: &str, key: &str) -> Option<Range<usize>> {
+    fn locate(&self, section: &str, key: &str) -> Option<&Value<'a>> {
         let mut path =
             key.split(['[', ']', ',', '.']).map(str::trim).filter(|step| !step.is_empty());
         let name = path.next()?;
@@ -165,7 +185,14 @@ impl<'a> Document<'a> {
                 None => break,
             }
         }
-        Some(place.span())
+        Some(place)
+    }
+
+    /// The value of a text that is a formula of a number, in words.
+    fn value_of(&self, value: &Value<'_>) -> Option<String> {
+        let text = value.get_ref().as_str().filter(|text| text.parse::<f64>().is_err())?;
+        let x = self.constants.value(value)?;
+        Some(format!("the value of {text:?} is {x}"))
     }
 }
 
@@ -191,8 +218,8 @@ impl<'d, 'a> Finder<'d, 'a> {
 
     /// Reads what can be used of a value in a section, and keeps its mistakes.
     pub(super) fn read<T: Read>(&mut self, section: &str, value: &Value<'_>) -> Option<T> {
-        let mut mistakes = ReadError::default();
-        let read = T::read_usable(value, &mut mistakes);
+        let (mut mistakes, keys) = (ReadError::default(), of_keys(T::SHAPE));
+        let read = self.document.constants.read(value, keys, &mut mistakes, T::read_usable);
         self.add(section, mistakes);
         read
     }

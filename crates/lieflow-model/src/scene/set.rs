@@ -108,7 +108,7 @@ fn unknown_at_the_top(root: &Item, given: &str) -> String {
 /// The keys of a section.
 fn names_of(shape: Shape) -> Vec<&'static str> {
     match shape {
-        Shape::Keys(names) => names.to_vec(),
+        Shape::Keys(keys) => keys.iter().map(|(name, _)| *name).collect(),
         _ => Vec::new(),
     }
 }

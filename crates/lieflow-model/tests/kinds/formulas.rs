@@ -94,7 +94,7 @@ fn formulas_are_refused_at_their_line() {
             FINE,
             &["torque[2]: unknown name `w4` at character 1", "`w", "[problem.parameters]"][..],
         ),
-        ("[\"w1\", \"0\", \"2 w1\"]", FINE, &["torque[3]: found `w`", "2*x"]),
+        ("[\"w1\", \"0\", \"2 w1\"]", FINE, &["torque[3]: found `w`", "2*w1"]),
         ("[\"w1\", \"0\"]", FINE, &["found 2 formulas, expected 3"]),
         ("[\"w1\", \"0\", true]", FINE, &["found true, expected a formula: a text or a number"]),
         ("[\"0\", \"1/t\", \"0\"]", FINE, &["torque[2] is inf at the start"]),

@@ -211,7 +211,7 @@ fn what_is_no_file_of_samples_is_refused_at_its_line() {
         ),
         ("\"cubic\"", "\"cubical\"", 8, &["unknown interpolation `cubical`", "`cubic`"]),
         ("samples = \"data.csv\"", "", 8, &["`interpolation` is of `samples`"]),
-        ("\"u\"", "\"uu\"", 6, &["torque[1]: unknown name `uu`", "u, v"]),
+        ("\"u\"", "\"uu\"", 6, &["torque[1]: unknown name `uu`", "did you mean `u`?"]),
     ] {
         let (at, message) = instead(from, to);
         assert_eq!(at, line, "{message}");

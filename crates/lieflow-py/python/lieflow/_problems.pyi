@@ -58,6 +58,7 @@ class BeamLine(Problem):
         *,
         elements: Sequence[Any],
         particle: ArrayLike,
+        parameters: Mapping[str, Any] | None = None,
     ) -> None: ...
 
 class Composed(Problem):
@@ -68,8 +69,8 @@ class Composed(Problem):
         invariants: Mapping[str, Any] | None = None,
         samples: Samples | str | None = None,
         interpolation: str | None = None,
-        parameters: Mapping[str, Any] | None = None,
         let: Mapping[str, Any] | None = None,
+        parameters: Mapping[str, Any] | None = None,
     ) -> None: ...
 
 class DensityMatrix(Problem):
@@ -91,8 +92,8 @@ class DensityMatrix(Problem):
         amplitudes_imaginary: ArrayLike | None = None,
         samples: Samples | str | None = None,
         interpolation: str | None = None,
-        parameters: Mapping[str, Any] | None = None,
         let: Mapping[str, Any] | None = None,
+        parameters: Mapping[str, Any] | None = None,
     ) -> None: ...
 
 class DoubleBracket(Problem):
@@ -101,6 +102,7 @@ class DoubleBracket(Problem):
         *,
         matrix: ArrayLike,
         order: ArrayLike,
+        parameters: Mapping[str, Any] | None = None,
     ) -> None: ...
 
 class DrivenBody(Problem):
@@ -126,8 +128,8 @@ class DrivenBody(Problem):
         torque_space: str | float | Sequence[str | float] | None = None,
         samples: Samples | str | None = None,
         interpolation: str | None = None,
-        parameters: Mapping[str, Any] | None = None,
         let: Mapping[str, Any] | None = None,
+        parameters: Mapping[str, Any] | None = None,
     ) -> None: ...
 
 class Euler(Problem):
@@ -138,8 +140,8 @@ class Euler(Problem):
         hamiltonian: str | float | None = None,
         inverse_inertia: ArrayLike | None = None,
         momentum: ArrayLike | ArrayLike,
-        parameters: Mapping[str, Any] | None = None,
         let: Mapping[str, Any] | None = None,
+        parameters: Mapping[str, Any] | None = None,
     ) -> None: ...
 
 class Fluid(Problem):
@@ -152,6 +154,7 @@ class Fluid(Problem):
         jets: Sequence[Any] | None = None,
         modes: Sequence[Any] | None = None,
         vortices: Sequence[Any] | None = None,
+        parameters: Mapping[str, Any] | None = None,
     ) -> None: ...
 
 class HeavyTop(Problem):
@@ -171,6 +174,7 @@ class HeavyTop(Problem):
         fixed: Mapping[str, Any] | None = None,
         weight: ArrayLike,
         vertical: ArrayLike | None = None,
+        parameters: Mapping[str, Any] | None = None,
     ) -> None: ...
 
 class Hill(Problem):
@@ -180,6 +184,7 @@ class Hill(Problem):
         a: ArrayLike,
         q: ArrayLike,
         period: float,
+        parameters: Mapping[str, Any] | None = None,
     ) -> None: ...
 
 class Kirchhoff(Problem):
@@ -190,6 +195,7 @@ class Kirchhoff(Problem):
         mass: ArrayLike,
         angular_momentum: ArrayLike,
         linear_momentum: ArrayLike,
+        parameters: Mapping[str, Any] | None = None,
     ) -> None: ...
 
 class Lorentz(Problem):
@@ -200,6 +206,7 @@ class Lorentz(Problem):
         electric: ArrayLike,
         magnetic: ArrayLike,
         velocity: ArrayLike,
+        parameters: Mapping[str, Any] | None = None,
     ) -> None: ...
 
 class Lyapunov(Problem):
@@ -209,10 +216,10 @@ class Lyapunov(Problem):
         x: ArrayLike,
         variables: Sequence[Any] | None = None,
         field: str | float | Sequence[str | float],
-        parameters: Mapping[str, Any] | None = None,
         let: Mapping[str, Any] | None = None,
         samples: Samples | str | None = None,
         interpolation: str | None = None,
+        parameters: Mapping[str, Any] | None = None,
     ) -> None: ...
 
 class Mathieu(Problem):
@@ -221,6 +228,7 @@ class Mathieu(Problem):
         *,
         a: float,
         q: float,
+        parameters: Mapping[str, Any] | None = None,
     ) -> None: ...
 
 class MatrixOde(Problem):
@@ -235,8 +243,8 @@ class MatrixOde(Problem):
         start_imaginary: ArrayLike | None = None,
         samples: Samples | str | None = None,
         interpolation: str | None = None,
-        parameters: Mapping[str, Any] | None = None,
         let: Mapping[str, Any] | None = None,
+        parameters: Mapping[str, Any] | None = None,
     ) -> None: ...
 
 class Oja(Problem):
@@ -245,6 +253,7 @@ class Oja(Problem):
         *,
         a: ArrayLike,
         x: ArrayLike,
+        parameters: Mapping[str, Any] | None = None,
     ) -> None: ...
 
 class QrFlow(Problem):
@@ -252,6 +261,7 @@ class QrFlow(Problem):
         self,
         *,
         matrix: ArrayLike,
+        parameters: Mapping[str, Any] | None = None,
     ) -> None: ...
 
 class Riccati(Problem):
@@ -262,6 +272,7 @@ class Riccati(Problem):
         d: ArrayLike | None = None,
         b: ArrayLike,
         p: ArrayLike,
+        parameters: Mapping[str, Any] | None = None,
     ) -> None: ...
 
 class RigidBodies(Problem):
@@ -269,6 +280,7 @@ class RigidBodies(Problem):
         self,
         *,
         bodies: Sequence[Any],
+        parameters: Mapping[str, Any] | None = None,
     ) -> None: ...
 
 class RigidBody(Problem):
@@ -286,6 +298,7 @@ class RigidBody(Problem):
         quaternion: ArrayLike | None = None,
         euler: Mapping[str, Any] | None = None,
         fixed: Mapping[str, Any] | None = None,
+        parameters: Mapping[str, Any] | None = None,
     ) -> None: ...
 
 class RigidBodyN(Problem):
@@ -295,6 +308,7 @@ class RigidBodyN(Problem):
         mass_moments: ArrayLike | None = None,
         inertia: ArrayLike | None = None,
         momentum: ArrayLike,
+        parameters: Mapping[str, Any] | None = None,
     ) -> None: ...
 
 class Schrodinger(Problem):
@@ -314,8 +328,8 @@ class Schrodinger(Problem):
         amplitudes_imaginary: ArrayLike | None = None,
         samples: Samples | str | None = None,
         interpolation: str | None = None,
-        parameters: Mapping[str, Any] | None = None,
         let: Mapping[str, Any] | None = None,
+        parameters: Mapping[str, Any] | None = None,
     ) -> None: ...
 
 class SphericalPendulum(Problem):
@@ -325,6 +339,7 @@ class SphericalPendulum(Problem):
         gravity_over_length: float,
         direction: ArrayLike,
         velocity: ArrayLike,
+        parameters: Mapping[str, Any] | None = None,
     ) -> None: ...
 
 class Spin(Problem):
@@ -334,6 +349,7 @@ class Spin(Problem):
         field: ArrayLike,
         rate: float,
         moment: ArrayLike,
+        parameters: Mapping[str, Any] | None = None,
     ) -> None: ...
 
 class SpinChain(Problem):
@@ -350,8 +366,8 @@ class SpinChain(Problem):
         damping: float | None = None,
         samples: Samples | str | None = None,
         interpolation: str | None = None,
-        parameters: Mapping[str, Any] | None = None,
         let: Mapping[str, Any] | None = None,
+        parameters: Mapping[str, Any] | None = None,
     ) -> None: ...
 
 class Subspace(Problem):
@@ -360,6 +376,7 @@ class Subspace(Problem):
         *,
         a: ArrayLike,
         x: ArrayLike,
+        parameters: Mapping[str, Any] | None = None,
     ) -> None: ...
 
 class Toda(Problem):
@@ -369,6 +386,7 @@ class Toda(Problem):
         positions: ArrayLike | None = None,
         momenta: ArrayLike | None = None,
         matrix: ArrayLike | None = None,
+        parameters: Mapping[str, Any] | None = None,
     ) -> None: ...
 
 __all__ = [

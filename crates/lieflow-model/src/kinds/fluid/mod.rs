@@ -60,7 +60,7 @@ fn below(n: usize) -> impl Iterator<Item = (usize, usize)> {
 }
 
 fn read(keys: Keys) -> Result<Forms, ReadError> {
-    let Keys { surface, n, random, jets, modes, vortices } = keys;
+    let Keys { surface, n, random, jets, modes, vortices, .. } = keys;
     let (surface, size) = (surface.and_then(check_surface), n.and_then(check_size));
     let (surface, n, random, jets, modes, vortices) =
         all!(surface, size, random, jets, modes, vortices)?;
