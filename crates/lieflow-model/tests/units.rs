@@ -3,6 +3,8 @@
 //! modules with tests are compiled here.
 #![allow(dead_code, unused_imports, unused_macros, unreachable_pub, missing_docs)] // modules are here for their tests
 
+#[path = "../src/schema/dimension.rs"]
+mod dimension;
 #[path = "../src/formula/mod.rs"]
 mod formula;
 #[path = "../src/reader/mod.rs"]

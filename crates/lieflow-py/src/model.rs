@@ -12,7 +12,7 @@ use lieflow_model::problem::{
 };
 use lieflow_model::reader::{ReadError, Shape, Tree};
 use lieflow_model::scene::{Columns, OnRows, RowFormula};
-use lieflow_model::schema::{Observable, Row, Schema};
+use lieflow_model::schema::{Observable, Row, Schema, Units};
 use numpy::{PyArray1, PyArrayDyn, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -80,7 +80,8 @@ pub(crate) fn kinds(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
         });
         all.set_item("keys", keys.collect::<Vec<_>>())?;
         let quantities = (kind.quantities)().into_iter();
-        let quantities = quantities.map(|q| (q.name, q.column_names(), q.meaning, q.unit));
+        let quantities =
+            quantities.map(|q| (q.name, q.column_names(), q.meaning, q.unit(&Units::default())));
         all.set_item("quantities", quantities.collect::<Vec<_>>())?;
         Ok(all)
     };

@@ -270,7 +270,7 @@ pub fn run_scene(
     warnings.extend(one_long_step(scene));
     let by_events = kept.between.iter().zip(&scene.events).zip(&kept.seen);
     warnings.extend(by_events.clone().filter_map(|((between, _), _)| between.warning()));
-    let mut notes = scene.problem.notes().to_vec();
+    let mut notes = scene.notes();
     let ended = done.ended_by.is_some();
     notes.extend(by_events.filter_map(|((between, event), seen)| {
         between.note(seen, event.stop_after.filter(|_| completed && !ended))
@@ -325,6 +325,8 @@ pub fn run_scene(
         notes,
         quantities: scene.quantities.clone(),
         columns: names.clone(),
+        units: output::units_of(scene),
+        unit_names: scene.units.clone(),
         trajectory: output::TRAJECTORY[usize::from(!completed)],
         t_span: scene.grid.t_span(),
         t_end: done.t,

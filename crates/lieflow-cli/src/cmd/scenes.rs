@@ -44,6 +44,8 @@ struct Meaning {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     columns: Vec<String>,
     meaning: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    dimension: Option<String>,
 }
 
 fn scene_entry(bundled: &Bundled) -> Result<SceneEntry, CliError> {
@@ -67,16 +69,23 @@ fn kind_entry(kind: &Kind) -> KindEntry {
         name: kind.name,
         summary: kind.summary,
         equation: kind.equation,
-        keys: keys.map(|k| Meaning { name: k.name, columns: vec![], meaning: k.meaning }).collect(),
+        keys: keys
+            .map(|k| Meaning { name: k.name, columns: vec![], meaning: k.meaning, dimension: None })
+            .collect(),
         quantities: quantities
-            .map(|q| Meaning { name: q.name, columns: q.column_names(), meaning: q.meaning })
+            .map(|q| Meaning {
+                name: q.name,
+                columns: q.column_names(),
+                meaning: q.meaning,
+                dimension: q.dimension.map(|dimension| dimension.to_string()),
+            })
             .collect(),
     }
 }
 
 /// The units of the numbers of a scene.
-const UNITS: &str =
-    "Numbers are in SI units, or in any other units that go together. Angles are in radians.";
+const UNITS: &str = "Numbers are in SI units, or in any other units that go together; a section [units] names them. Angles are in \
+     radians: 5 degrees are \"5*deg\". Each number may be such a formula of the names in [problem.parameters].";
 
 /// A line for each kind, and below it a line for each of its scenes.
 fn overview(listing: &Listing) -> String {
@@ -107,6 +116,9 @@ fn meanings(kind: &KindEntry) -> String {
     let quantity = |alike: &[Meaning]| {
         let (first, others) = (&alike[0], &alike[1..]);
         let mut meaning = first.meaning.to_string();
+        if let Some(dimension) = &first.dimension {
+            meaning += &format!(" [{dimension}]");
+        }
         if !others.is_empty() {
             let others: Vec<&str> = others.iter().map(|other| other.name).collect();
             meaning += &format!("; so are {}", others.join(", "));

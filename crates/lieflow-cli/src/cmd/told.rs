@@ -24,8 +24,12 @@ pub(super) fn in_words(summary: &Summary, folder: &Path, page: Option<&str>) -> 
         (None, None) => String::new(),
     };
     let of_steps = if *steps == 1 { "step" } else { "steps" };
+    let unit = match summary.time_unit() {
+        none if none.is_empty() => none,
+        unit => format!(" {unit}"),
+    };
     let mut text = format!(
-        "{title}: {}, {}, {} layer\n  t = {} to {}, {steps} {of_steps}{sizes}, {rows} rows, {}\n",
+        "{title}: {}, {}, {} layer\n  t = {} to {}{unit}, {steps} {of_steps}{sizes}, {rows} rows, {}\n",
         summary.modelled.join(", "),
         summary.method.label,
         summary.layer,

@@ -15,7 +15,7 @@ pub use rows::{EVENTS, RowFile, TRAJECTORY};
 pub use state::{Kind, ROWS, Records, RunState, ShownRows};
 pub use summary::{
     Accuracy, Chosen, Distance, Drift, EventSummary, FoundBy, MethodSummary, PartError, SUMMARY,
-    Summary, Watched,
+    Summary, Watched, units_of,
 };
 
 use std::io::{self, Write};

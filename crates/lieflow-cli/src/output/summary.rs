@@ -7,7 +7,8 @@ use serde::{Serialize, Serializer};
 use lieflow::problems::Invariant;
 use lieflow::solve;
 use lieflow_model::problem::Fact;
-use lieflow_model::scene::Defaults;
+use lieflow_model::scene::{Defaults, Scene};
+use lieflow_model::schema::{Dimension, Units};
 use lieflow_timing::Fit;
 
 use super::{duration, number, rough};
@@ -55,6 +56,12 @@ pub struct Summary {
     pub quantities: Vec<String>,
     /// The columns of the trajectory.
     pub columns: Vec<String>,
+    /// The units of t and of the quantities, where they are known.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub units: BTreeMap<String, String>,
+    /// The names of units.
+    #[serde(skip)]
+    pub unit_names: Units,
     /// The file of the trajectory, next to this one.
     pub trajectory: &'static str,
     /// From when to when; null where there is no end.
@@ -102,6 +109,24 @@ pub struct Summary {
     pub rtol: Option<f64>,
     /// As `rtol`.
     pub atol: Option<f64>,
+}
+
+impl Summary {
+    /// The unit of times; empty where it is not known.
+    pub fn time_unit(&self) -> String {
+        self.unit_names.of(Dimension::TIME).unwrap_or_default()
+    }
+}
+
+/// The units of t and of the quantities that a scene writes, where they are known.
+pub fn units_of(scene: &Scene) -> BTreeMap<String, String> {
+    let time = ("t".to_string(), scene.units.of(Dimension::TIME).unwrap_or_default());
+    let kind = scene.problem.kind();
+    let quantities = scene.quantities.iter().filter_map(|name| {
+        let info = kind.quantity(name).ok()?;
+        Some((name.clone(), info.unit(&scene.units)))
+    });
+    core::iter::once(time).chain(quantities).filter(|(_, unit)| !unit.is_empty()).collect()
 }
 
 /// The facts as a table of names and values.

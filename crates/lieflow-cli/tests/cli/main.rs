@@ -18,3 +18,4 @@ mod room;
 mod run;
 mod same_bits;
 mod support;
+mod units;

@@ -372,7 +372,7 @@ fn map_attribute(name: &str, map: &Map, axis: &Axis) -> String {
         Scale::SymLog { linear } => ("symlog", linear),
     };
     let title = escape(&axis.title);
-    let unit = escape(axis.unit);
+    let unit = escape(&axis.unit);
     format!(
         " data-{name}=\"{kind} {:e} {:e} {} {} {linear:e}\" data-{name}-title=\"{title}\" \
          data-{name}-unit=\"{unit}\"",

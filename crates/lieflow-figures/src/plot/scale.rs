@@ -1,5 +1,7 @@
 //! Axes: from data to pixels, and where the ticks are.
 
+use std::borrow::Cow;
+
 use crate::number::{fixed, grouped, power_of_ten, seconds, seconds_short, short, sig};
 
 /// How the values of an axis are spread over its length.
@@ -42,7 +44,7 @@ pub struct Axis {
     /// The quantity: `"CPU time"`.
     pub title: String,
     /// The unit; empty where there is none, or where the scene decides.
-    pub unit: &'static str,
+    pub unit: Cow<'static, str>,
     /// The scale.
     pub scale: Scale,
 }
@@ -50,12 +52,12 @@ pub struct Axis {
 impl Axis {
     /// An axis of this title and scale.
     pub fn new(title: impl Into<String>, scale: Scale) -> Self {
-        Axis { title: title.into(), unit: "", scale }
+        Axis { title: title.into(), unit: "".into(), scale }
     }
 
     /// The axis in this unit. The labels of an axis in `"s"` have units of time, as in `20 µs`.
-    pub fn with_unit(self, unit: &'static str) -> Self {
-        Axis { unit, ..self }
+    pub fn with_unit(self, unit: impl Into<Cow<'static, str>>) -> Self {
+        Axis { unit: unit.into(), ..self }
     }
 
     /// A linear axis.
@@ -74,7 +76,7 @@ impl Axis {
         &self,
         &Map { offset, lo, hi, power, in_seconds, .. }: &Map,
     ) -> String {
-        let unit = match (power, self.unit) {
+        let unit = match (power, &*self.unit) {
             (0, "") => String::new(),
             (0, _) if in_seconds => String::new(),
             (0, unit) => format!(" ({unit})"),
@@ -93,7 +95,7 @@ impl Axis {
 
     /// `value` of this axis for people, with its unit.
     pub(crate) fn value_text(&self, value: f64) -> String {
-        match self.unit {
+        match &*self.unit {
             "s" => seconds(value),
             "" => sig(value, 3),
             unit => format!("{}\u{a0}{unit}", sig(value, 3)),

@@ -258,13 +258,15 @@ impl System for Driven {
             &["torque1", "torque2", "torque3"],
             "the sum of the torques, in the body",
             |driven, at, y, row| row.extend(driven.torque(at.t, y).iter()),
-        ),
+        )
+        .of_dimension(Dimension::ENERGY),
         axis(),
         nutation(),
         Q::number("energy", "kinetic energy, and that of the weight", |driven, _, y| {
             let height = driven.torques.weight.map_or(0.0, |w| (driven.attitude(y) * w)[2]);
             driven.body.kinetic_energy(y) + height
         })
+        .of_dimension(Dimension::ENERGY)
         .kept_where(|driven| driven.undriven(Law::by_the_flow(0)))
         .in_terms(|driven, y| {
             driven.body.kinetic_energy(y) + driven.torques.weight.map_or(0.0, |w| w.norm())
@@ -272,6 +274,7 @@ impl System for Driven {
         angle(),
         momentum_norm(),
         Q::number("vertical_momentum", "angular momentum about e3 in space", |_, _, (_, m)| m[2])
+            .of_dimension(Dimension::ANGULAR_MOMENTUM)
             .kept_where(|driven| driven.undriven(Law::by_the_flow(1)))
             .in_terms(|_, (_, m)| m.norm()),
         attitude_defect(),
@@ -327,6 +330,9 @@ impl System for Driven {
     }
     fn inertia(&self) -> Option<PrincipalInertia> {
         Some(self.spec.principal_inertia())
+    }
+    fn rate(&self) -> Option<f64> {
+        Some(self.spec.rate())
     }
     fn figure(&self) -> Figure {
         match (&self.torques.control, &self.torques.in_the_body) {

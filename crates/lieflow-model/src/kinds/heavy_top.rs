@@ -265,6 +265,7 @@ impl<R: Representation> System for Top<R> {
         Q::number("energy", "kinetic and potential energy", |top, _, y| {
             top.spec.top.energy(&Top::<R>::momentum_and_vertical(y))
         })
+        .of_dimension(Dimension::ENERGY)
         .kept(R::LAWS[0])
         .in_terms(|top, y| {
             let Pose { mu, gamma, .. } = R::pose(y);
@@ -277,6 +278,7 @@ impl<R: Representation> System for Top<R> {
         Q::number("momentum_vertical", "angular momentum about the vertical", |top, _, y| {
             R::about_vertical(&top.spec.top, y)
         })
+        .of_dimension(Dimension::ANGULAR_MOMENTUM)
         .kept(R::LAWS[2])
         .in_terms(|_, y| {
             let Pose { mu, gamma, .. } = R::pose(y);
@@ -331,6 +333,9 @@ impl<R: Representation> System for Top<R> {
     }
     fn inertia(&self) -> Option<PrincipalInertia> {
         Some(self.spec.body.principal_inertia())
+    }
+    fn rate(&self) -> Option<f64> {
+        Some(self.spec.body.rate())
     }
     fn figure(&self) -> Figure {
         Figure::Sphere(if R::TURNS { "axis" } else { "vertical" })

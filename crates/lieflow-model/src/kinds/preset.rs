@@ -272,7 +272,7 @@ fn as_toml(x: f64) -> String {
 impl QuantityText {
     fn info(&'static self) -> QuantityInfo {
         let QuantityText { name, meaning, .. } = self;
-        QuantityInfo { name, columns: self.columns(), meaning, unit: "", drawn_as: "" }
+        QuantityInfo { name, columns: self.columns(), meaning, dimension: None, drawn_as: "" }
     }
 
     fn columns(&self) -> &[&'static str] {

@@ -91,6 +91,7 @@ impl System for Bodies {
             "angular momenta in the bodies, one after the other",
             |_, _, m, row| row.extend(m.iter().flat_map(|m| m.iter())),
         )
+        .of_dimension(Dimension::ANGULAR_MOMENTUM)
         .with_columns(|bodies| {
             bodies.each(|i| [1, 2, 3].map(|axis| format!("m{i}_{axis}"))).flatten().collect()
         }),
@@ -102,6 +103,7 @@ impl System for Bodies {
                 row.extend(bodies.bodies.iter().zip(m).map(|(body, m)| body.energy(m)));
             },
         )
+        .of_dimension(Dimension::ENERGY)
         .with_columns(|bodies| bodies.each(|i| format!("energy{i}")).collect())
         .kept(Law::by_the_flow(2)),
         Q::numbers(
@@ -110,6 +112,7 @@ impl System for Bodies {
             "length of the angular momentum of each",
             |_, _, m, row| row.extend(m.iter().map(Vector3::norm)),
         )
+        .of_dimension(Dimension::ANGULAR_MOMENTUM)
         .with_columns(|bodies| bodies.each(|i| format!("norm{i}")).collect())
         .kept(Law::by_the_action(2)),
     ];

@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use super::forms::Forms;
 use crate::reader::{ReadError, Shape, Value};
+use crate::schema::{Dimension, Units};
 
 /// Reads the keys of a problem, without `kind`.
 pub type ReadForms = fn(&Value<'_>) -> Result<Forms, ReadError>;
@@ -51,13 +52,18 @@ pub struct QuantityInfo {
     pub columns: &'static [&'static str],
     /// What it means.
     pub meaning: &'static str,
-    /// Its unit, where every scene has the same; empty where the units of the scene decide.
-    pub unit: &'static str,
+    /// Its dimension, where that is the same in every problem of the kind.
+    pub dimension: Option<Dimension>,
     /// The name of the quantity that figures draw instead of this one. Empty: figures draw this one.
     pub drawn_as: &'static str,
 }
 
 impl QuantityInfo {
+    /// The unit where a scene names these; empty where it is not known.
+    pub fn unit(&self, units: &Units) -> String {
+        self.dimension.and_then(|dimension| units.of(dimension)).unwrap_or_default()
+    }
+
     /// The names of the columns.
     pub fn column_names(&self) -> Vec<String> {
         match self.columns {

@@ -205,6 +205,11 @@ impl Problem {
         self.forms.inertia
     }
 
+    /// The angular velocity at the start, of a body: its length.
+    pub fn rate(&self) -> Option<f64> {
+        self.forms.rate
+    }
+
     /// The field that [`Figure::Map`] draws, from the values of its quantity: rows from north to south, columns from
     /// west to east.
     pub fn field(&self, values: &[f64]) -> Vec<Vec<f64>> {

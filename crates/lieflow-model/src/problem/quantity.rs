@@ -5,7 +5,7 @@ use lieflow::problems::Invariants;
 
 use super::kind::QuantityInfo;
 use super::system::{PointOf, System};
-use crate::schema::{Branch, Law, Measure, Part, Scale};
+use crate::schema::{Branch, Dimension, Law, Measure, Part, Scale};
 
 /// The columns x11, …, xnk, row by row.
 pub(crate) fn row_columns(letter: &str, n: usize, k: usize) -> Vec<String> {
@@ -92,7 +92,7 @@ impl<S: System> Quantity<S> {
         value: Value<S>,
     ) -> Self {
         Quantity {
-            info: QuantityInfo { name, columns, meaning, unit: "", drawn_as: "" },
+            info: QuantityInfo { name, columns, meaning, dimension: None, drawn_as: "" },
             value,
             columns: Columns::Listed,
             parts: None,
@@ -126,7 +126,13 @@ impl<S: System> Quantity<S> {
 
     /// The values are angles in radians.
     pub(crate) const fn in_radians(self) -> Self {
-        Quantity { info: QuantityInfo { unit: "rad", ..self.info }, ..self }
+        self.of_dimension(Dimension::ANGLE)
+    }
+
+    /// The values have this dimension.
+    pub(crate) const fn of_dimension(self, dimension: Dimension) -> Self {
+        let info = QuantityInfo { dimension: Some(dimension), ..self.info };
+        Quantity { info, ..self }
     }
 
     /// A figure shows another quantity of the same problems in its place.

@@ -76,6 +76,10 @@ pub(crate) trait System: Clone + Debug + Send + Sync + 'static {
     fn inertia(&self) -> Option<PrincipalInertia> {
         None
     }
+    /// See [`Problem::rate`](super::Problem::rate).
+    fn rate(&self) -> Option<f64> {
+        None
+    }
     /// The field that [`Figure::Map`] draws, from its quantity: rows from north to south, columns from
     /// west to east.
     fn field(&self, _values: &[f64]) -> Vec<Vec<f64>> {
@@ -111,11 +115,11 @@ impl Forms {
             S::DEFAULT_METHOD.map_or_else(high_order, |name| MethodSpec::new(name, None));
         let (formula, inertia, facts) =
             (system.formula().cloned(), system.inertia(), system.facts());
-        let (warnings, notes) = (system.warnings(), system.notes());
+        let (warnings, notes, rate) = (system.warnings(), system.notes(), system.rate());
         let (layer, figure) = (system.layer(), system.figure());
         let run = Arc::new(On { system, ready: OnceLock::new() });
         let form = Form { layer, whole_state: false, state: S::STATE, figure, run };
-        Forms { default_method, formula, inertia, facts, warnings, notes, ..Forms::one(form) }
+        Forms { default_method, formula, inertia, rate, facts, warnings, notes, ..Forms::one(form) }
     }
 }
 

@@ -14,7 +14,7 @@ use crate::reader::{Mistake, Read, ReadError, Refusal, Value, entry_of, given_ke
 
 /// The keys at the top.
 pub(super) const TOP: &[&str] =
-    &["title", "problem", "method", "time", "events", "output"];
+    &["title", "units", "problem", "method", "time", "events", "output"];
 
 /// The sections that a scene must have, with lines that may stand there.
 const EXAMPLES: [(&str, &str); 2] = [

@@ -3,6 +3,7 @@
 mod bundled;
 mod columns;
 mod defaults;
+mod degrees;
 mod document;
 mod error;
 mod events;
@@ -13,6 +14,7 @@ mod open;
 mod plot;
 mod run;
 mod set;
+mod units;
 
 pub use bundled::{BUNDLED, Bundled};
 pub use columns::{Columns, OnRows, RowFormula};

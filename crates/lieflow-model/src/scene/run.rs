@@ -18,11 +18,12 @@ use super::events::{self, EventKeys, SceneEvent};
 use super::files::read_samples;
 use super::keys::{Limits, MethodKeys, OutputKeys, Rows, TimeKeys, Times, with_defaults};
 use super::plot::{PlotFigure, check_plot};
+use super::units::UnitKeys;
 use crate::kinds;
 use crate::problem::{FormulaKeys, KNOTS_MAX, Kind, Problem, SAMPLES};
 use crate::problem::{Layer, Model, Plan, Steps};
 use crate::reader::{KeyPath, Mistake, ReadError, Refusal, Tree, Value, seen};
-use crate::schema::Schema;
+use crate::schema::{Schema, Units};
 
 /// A run, stated in full and checked.
 #[derive(Debug)]
@@ -74,6 +75,8 @@ pub struct Scene {
     /// A number of what the scene states, with its samples: another one for another scene. Comments and spaces do not
     /// count.
     pub fingerprint: u64,
+    /// The names of units.
+    pub units: Units,
 }
 
 impl Scene {
@@ -97,6 +100,9 @@ impl Scene {
         let mut finder = Finder::new(&document);
         finder.keep("", document.check_top());
         let title = document.get("title").and_then(|title| finder.read::<String>("", title));
+
+        let units = finder.read_if_any::<UnitKeys>("units");
+        let units = units.and_then(|units| finder.keep("units", units.resolve()));
 
         let kind = finder.keep("problem", read_kind(&document));
         let problem =
@@ -169,9 +175,9 @@ impl Scene {
 
         let all = || {
             let problem = problem.zip(keys);
-            Some((problem?, method?, at_knots?, times?, rows?, plot?, formulas?, events?))
+            Some((problem?, method?, at_knots?, times?, rows?, plot?, formulas?, events?, units?))
         };
-        let (whole, (method, layer), at_knots, times, rows, plot, formulas, events) =
+        let (whole, (method, layer), at_knots, times, rows, plot, formulas, events, units) =
             finder.or(all())?;
         let (problem, keys) = whole;
         let Times { grid, control: adaptive, limits, .. } = times;
@@ -209,6 +215,7 @@ impl Scene {
             formulas,
             plot,
             fingerprint,
+            units,
         };
         if scene.knots(scene.grid.t_span()).len() > KNOTS_MAX {
             let message = format!(

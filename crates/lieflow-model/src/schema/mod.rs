@@ -1,9 +1,11 @@
 //! The rows of a run: values with the names of their quantities.
 
 mod branch;
+mod dimension;
 
 pub use branch::Branch;
 pub(crate) use branch::Branches;
+pub use dimension::{Dimension, Units};
 pub use lieflow::problems::{Law, Scale};
 
 use core::ops::{Index, Range};

@@ -6,7 +6,7 @@ use lieflow::problems::explained_by_rounding;
 use lieflow_figures::number::short;
 use lieflow_figures::{Axis, Block, Chart, Marks, Series};
 use lieflow_model::problem::Kind;
-use lieflow_model::schema::{Observable, Part, Row, Scale};
+use lieflow_model::schema::{Dimension, Observable, Part, Row, Scale, Units};
 
 use super::sample::RowSample;
 use super::words;
@@ -69,7 +69,8 @@ impl<'a> Column<'a> {
 pub(super) struct Shown<'a> {
     pub(super) title: String,
     pub(super) axes: [String; 2],
-    pub(super) unit: &'static str,
+    /// The units of both axes; empty where they are not known.
+    pub(super) units: [String; 2],
     pub(super) columns: Vec<Column<'a>>,
 }
 
@@ -117,7 +118,8 @@ pub(super) fn against_time(
     wanted: &[String],
     summary: &Summary,
 ) -> Vec<Drawn> {
-    let parts = parts_of(kind, quantity, wanted).into_iter().take(CHARTS).enumerate();
+    let parts =
+        parts_of(kind, quantity, wanted, &summary.unit_names).into_iter().take(CHARTS).enumerate();
     let id = |place| if place == 0 { id.into() } else { format!("{id}-{}", place + 1) };
     let mut figures: Vec<Drawn> =
         parts.map(|(place, shown)| figure(&id(place), &shown, rows, summary)).collect();
@@ -177,13 +179,18 @@ pub(super) fn in_rows(figures: Vec<Drawn>) -> Vec<Block> {
 
 /// The columns that belong together: all of a few, the parts of a composed system, or those of one name; those with
 /// the fewest columns first.
-fn parts_of<'a>(kind: &Kind, quantity: &'a Observable, wanted: &[String]) -> Vec<Shown<'a>> {
+fn parts_of<'a>(
+    kind: &Kind,
+    quantity: &'a Observable,
+    wanted: &[String],
+    units: &Units,
+) -> Vec<Shown<'a>> {
     let names = &quantity.columns;
-    let unit = kind.quantity(quantity.name).map_or("", |info| info.unit);
+    let unit = kind.quantity(quantity.name).map_or(String::new(), |info| info.unit(units));
     let shown = |title: String, axis: String, columns: &[usize]| Shown {
         title,
         axes: ["t".into(), axis],
-        unit,
+        units: [units.of(Dimension::TIME).unwrap_or_default(), unit.clone()],
         columns: columns.iter().map(|&index| Column { quantity, index }).collect(),
     };
     let is_wanted = |i: &usize| {
@@ -288,7 +295,7 @@ pub(super) fn figure(
     rows: &RowSample<'_>,
     summary: &Summary,
 ) -> Drawn {
-    let Shown { title, axes: [x, y], unit, columns } = shown;
+    let Shown { title, axes: [x, y], units: [of_x, of_y], columns } = shown;
     let sizes = sizes(columns, rows);
     let curve = |(column, &size): (&Column<'_>, &f64)| {
         let point = |(t, row): (f64, Row<'_>)| (t, column.of(row));
@@ -323,7 +330,7 @@ pub(super) fn figure(
             curve.whole.iter_mut().chain(&mut curve.first).for_each(|point| point.1 -= start);
         }
     }
-    let axes = [Axis::linear(x), Axis::linear(y).with_unit(unit)];
+    let axes = [Axis::linear(x).with_unit(of_x.clone()), Axis::linear(y).with_unit(of_y.clone())];
     drawn(id, &title, axes, &curves, rows.seen()).map(|chart| marked(chart, summary))
 }
 
@@ -576,7 +583,7 @@ mod tests {
             let model = scene.model_with(scene.layer, &[quantity]).unwrap();
             let wanted: Vec<String> = wanted.iter().map(|name| name.to_string()).collect();
             let quantity = model.schema().get(quantity).unwrap();
-            let parts = parts_of(scene.problem.kind(), quantity, &wanted);
+            let parts = parts_of(scene.problem.kind(), quantity, &wanted, &scene.units);
             parts.into_iter().map(|part| (part.title, part.columns.len())).collect()
         };
         let named = |parts: &[(&str, usize)]| -> Vec<(String, usize)> {
@@ -603,7 +610,7 @@ mod tests {
         let scene = Scene::bundled("gyro-record").unwrap();
         let model = scene.model_with(scene.layer, &["state"]).unwrap();
         let state = model.schema().get("state").unwrap();
-        let of_one_part = parts_of(scene.problem.kind(), state, &[]);
+        let of_one_part = parts_of(scene.problem.kind(), state, &[], &scene.units);
         assert!(of_one_part.iter().all(|part| part.axes[1] == "g"), "{of_one_part:?}");
     }
 }

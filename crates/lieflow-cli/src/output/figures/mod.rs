@@ -115,11 +115,15 @@ pub fn run_page(summary: &Summary, run: &Drawn<'_>) -> Page {
     Page {
         title: summary.title.clone(),
         subtitle: format!(
-            "{}: {}, t = {} to {}, in the units of the scene",
+            "{}: {}, t = {} to {}{}",
             summary.problem,
             summary.modelled.join(", "),
             in_digits(t0),
-            in_digits(t1)
+            in_digits(t1),
+            match &*summary.time_unit() {
+                "" => ", in the units of the scene".into(),
+                unit => format!(" {unit}"),
+            }
         ),
         links: links.into_iter().map(|(text, file)| (text.into(), file.into())).collect(),
         sections,
@@ -206,6 +210,14 @@ fn asked_for(summary: &Summary, run: &Drawn<'_>, is_line: bool) -> Vec<Figured> 
         let against = asked.against.iter().flat_map(|name| of_name(name)).next();
         let named: Vec<String> =
             columns.iter().map(|column| words::column(column.name())).collect();
+        let unit_of = |columns: &[Column<'_>]| {
+            let of = |column: &Column<'_>| {
+                kind.quantity(column.quantity.name)
+                    .map_or(String::new(), |info| info.unit(&summary.unit_names))
+            };
+            let first = columns.first().map(of).unwrap_or_default();
+            if columns.iter().all(|column| of(column) == first) { first } else { String::new() }
+        };
         let is_whole = columns.len() == quantity.columns.len()
             && columns.iter().all(|column| column.quantity.name == quantity.name);
         let title = asked.title.clone().unwrap_or_else(|| match (is_whole, against) {
@@ -214,9 +226,14 @@ fn asked_for(summary: &Summary, run: &Drawn<'_>, is_line: bool) -> Vec<Figured> 
             (_, Some(x)) => format!("{} against {}", named.join(", "), words::column(x.name())),
         });
         let x = against.map_or("t".into(), |column| words::column(column.name()));
-        let x = asked.x_label.clone().unwrap_or(x);
-        let y = asked.y_label.clone().unwrap_or_else(|| named.join(", "));
-        let shown = Shown { title, axes: [x, y], unit: "", columns };
+        let units = [against.map_or(summary.time_unit(), |x| unit_of(&[x])), unit_of(&columns)];
+        let named = named.join(", ");
+        // A label of the scene says its unit.
+        let [(x, x_unit), (y, y_unit)] =
+            [(&asked.x_label, x, units[0].clone()), (&asked.y_label, named, units[1].clone())].map(
+                |(asked, name, unit)| asked.clone().map_or((name, unit), |l| (l, String::new())),
+            );
+        let shown = Shown { title, axes: [x, y], units: [x_unit, y_unit], columns };
         figures.push(match against {
             None => figure(&id, &shown, run.rows, summary),
             Some(against) => Figured::Narrow(curves(&id, &shown, against, run.rows)),
@@ -227,12 +244,14 @@ fn asked_for(summary: &Summary, run: &Drawn<'_>, is_line: bool) -> Vec<Figured> 
 
 /// Columns against another column.
 fn curves(id: &str, shown: &Shown<'_>, against: Column<'_>, rows: &RowSample<'_>) -> Chart {
-    let Shown { title, axes, columns, .. } = shown;
+    let Shown { title, axes: [x, y], units: [of_x, of_y], columns } = shown;
     let line = |(colour, column): (usize, &Column<'_>)| {
         let points = rows.rows().map(|(_, row)| (against.of(row), column.of(row)));
         Series::line(words::column(column.name()), colour, points)
     };
-    Chart::new(id, title, axes.each_ref().map(Axis::linear), columns.iter().enumerate().map(line))
+    let axes =
+        [(x, of_x), (y, of_y)].map(|(name, unit)| Axis::linear(name).with_unit(unit.clone()));
+    Chart::new(id, title, axes, columns.iter().enumerate().map(line))
 }
 
 /// The body of a scene as it turns, by a run of that scene.

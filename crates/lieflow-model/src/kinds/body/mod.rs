@@ -40,6 +40,12 @@ pub struct RigidBodySpec {
 }
 
 impl RigidBodySpec {
+    /// The length of the angular velocity at the start.
+    pub(super) fn rate(&self) -> f64 {
+        let pairs = self.momentum_body.iter().zip(&self.inertia);
+        pairs.map(|(m, moment)| (m / moment).powi(2)).sum::<f64>().sqrt()
+    }
+
     /// The inertia along the principal axes, in the frame that the scene is written in.
     pub fn principal_inertia(&self) -> PrincipalInertia {
         let diagonal = PrincipalInertia::diagonal(self.inertia);

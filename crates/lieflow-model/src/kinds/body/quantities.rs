@@ -80,6 +80,7 @@ pub(in crate::kinds) const fn momentum_body<S: AsBody>(
         "angular momentum in the body",
         |body: &S, _, y, row| row.extend(body.in_scene(body.momentum(y)).iter()),
     )
+    .of_dimension(Dimension::ANGULAR_MOMENTUM)
 }
 
 /// The angular velocity in the body.
@@ -90,6 +91,7 @@ pub(in crate::kinds) const fn omega_body<S: AsBody>() -> Quantity<S> {
         "angular velocity in the body",
         |body: &S, _, y, row| row.extend(body.in_scene(body.omega(y)).iter()),
     )
+    .of_dimension(Dimension::RATE)
 }
 
 /// The angular momentum in space.
@@ -100,6 +102,7 @@ pub(in crate::kinds) const fn momentum_space<S: AsBody>() -> Quantity<S> {
         "angular momentum in space",
         |body: &S, _, y, row| row.extend(body.momentum_in_space(y).iter()),
     )
+    .of_dimension(Dimension::ANGULAR_MOMENTUM)
     .missing_where(S::without_orientation)
 }
 
@@ -113,6 +116,7 @@ pub(in crate::kinds) const fn omega_space<S: AsBody>() -> Quantity<S> {
             row.extend((body.orientation(y).rotation() * body.omega(y)).iter());
         },
     )
+    .of_dimension(Dimension::RATE)
     .missing_where(S::without_orientation)
 }
 
@@ -226,6 +230,7 @@ pub(in crate::kinds) const fn momentum_norm<S: AsBody>() -> Quantity<S> {
     Quantity::number("momentum_norm", "length of the angular momentum", |body: &S, _, y| {
         body.momentum(y).norm()
     })
+    .of_dimension(Dimension::ANGULAR_MOMENTUM)
 }
 
 /// The distance of the attitude from SO(3).

@@ -270,6 +270,7 @@ impl<R: Representation> System for Body<R> {
         momentum_space(),
         omega_space(),
         Q::number("energy", "kinetic energy", |body, _, y| body.body.energy(&body.momentum(y)))
+            .of_dimension(Dimension::ENERGY)
             .kept(Law::by_the_flow(R::DEGREE)),
         momentum_norm().kept(Law::by_the_action(R::DEGREE)),
         angle(),
@@ -313,6 +314,9 @@ impl<R: Representation> System for Body<R> {
     }
     fn inertia(&self) -> Option<PrincipalInertia> {
         Some(self.spec.principal_inertia())
+    }
+    fn rate(&self) -> Option<f64> {
+        Some(self.spec.rate())
     }
     fn warnings(&self) -> Vec<String> {
         self.spec.impossible()
