@@ -49,6 +49,7 @@ counting! {
     DynFlow<Rotation, Linear, TimeAlone>,
     DynFlow<Rotations, Linear, (), WithHamiltonian>,
     DynFlow<Se3<Counted>, Coadjoint, WithSeries, WithHamiltonian>,
+    DynFlow<Se3<Counted>, LeftTranslation, TimeAlone>,
     DynFlow<Product<Rotation, Shift>, LeftTranslation>,
     DynFlow<Product<Rotations, Product<Rotations, Shifts>>, Pair<Linear, LeftTranslation>>,
 }

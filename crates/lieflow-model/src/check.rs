@@ -60,6 +60,7 @@ const CASES: &[Case] = &[
         settings: &["problem.n=5", "problem.jets=[[1,-0.58],[2,0.52]]"],
         ..case("shear-layer", 4.0)
     },
+    closed("rolling-turn", 4.0),
     closed("spherical-pendulum", 2.0),
     closed("rotating-field", 8.0),
     closed("spin-wave", 4.0),

@@ -29,6 +29,7 @@ mod riccati;
 mod rigid_bodies;
 mod rigid_body;
 mod rigid_body_n;
+mod rigid_motion;
 mod spin;
 mod spin_chain;
 mod subspace;
@@ -54,6 +55,7 @@ pub static KINDS: LazyLock<Vec<Kind>> = LazyLock::new(|| {
         preset!("kirchhoff"),
         euler::KIND,
         fluid::KIND,
+        rigid_motion::KIND,
         pendulum::KIND,
         spin::KIND,
         spin_chain::KIND,

@@ -46,6 +46,7 @@ pub const BUNDLED: &[Bundled] = bundled![
     "cubic-anisotropy",
     "vortices-on-sphere",
     "shear-layer",
+    "rolling-turn",
     "spherical-pendulum",
     "rotating-field",
     "spin-wave",

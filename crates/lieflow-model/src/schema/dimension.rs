@@ -28,6 +28,10 @@ const RADIAN: &str = "rad";
 impl Dimension {
     /// A time.
     pub const TIME: Dimension = Dimension::of(0, 0, 0, 1);
+    /// A length.
+    pub const LENGTH: Dimension = Dimension::of(0, 1, 0, 0);
+    /// A velocity.
+    pub const VELOCITY: Dimension = Dimension::of(0, 1, 0, -1);
     /// An angle.
     pub const ANGLE: Dimension = Dimension::of(0, 0, 1, 0);
     /// An angular velocity.
@@ -92,6 +96,7 @@ mod tests {
             (Dimension::TIME, "s", "time"),
             (Dimension::ANGLE, "rad", "angle"),
             (Dimension::RATE, "rad/s", "angle/time"),
+            (Dimension::VELOCITY, "m/s", "length/time"),
             (Dimension::ANGULAR_MOMENTUM, "kg·m²/s", "mass·length²/time"),
             (Dimension::ENERGY, "kg·m²/s²", "mass·length²/time²"),
             (Dimension::of(0, 0, 0, -1), "1/s", "1/time"),

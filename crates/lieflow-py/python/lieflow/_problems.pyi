@@ -311,6 +311,21 @@ class RigidBodyN(Problem):
         parameters: Mapping[str, Any] | None = None,
     ) -> None: ...
 
+class RigidMotion(Problem):
+    def __init__(
+        self,
+        *,
+        omega: str | float | Sequence[str | float],
+        velocity: str | float | Sequence[str | float],
+        frame: str | None = None,
+        attitude: ArrayLike | None = None,
+        position: ArrayLike | None = None,
+        samples: Samples | str | None = None,
+        interpolation: str | None = None,
+        let: Mapping[str, Any] | None = None,
+        parameters: Mapping[str, Any] | None = None,
+    ) -> None: ...
+
 class Schrodinger(Problem):
     def __init__(
         self,
@@ -412,6 +427,7 @@ __all__ = [
     "RigidBodies",
     "RigidBody",
     "RigidBodyN",
+    "RigidMotion",
     "Schrodinger",
     "SphericalPendulum",
     "Spin",

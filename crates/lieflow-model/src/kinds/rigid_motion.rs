@@ -1,0 +1,201 @@
+//! `kind = "rigid-motion"`: a frame that moves in space by a twist in formulas, on SE(3). A point p of the frame is at gp + x.
+//!
+//! | `frame` | ġ | ẋ |
+//! |---|---|---|
+//! | `"body"` | g ω̂ | g v |
+//! | `"space"` | ω̂ g | ω × x + v |
+
+use std::sync::Arc;
+
+use lieflow::actions::LeftTranslation;
+use lieflow::groups::{LieGroup, Se3, So3};
+use lieflow::problems::Flow;
+use lieflow::scalar::{Counted, Trig};
+use lieflow::so3::{quaternion_from_matrix, quaternion_to_wxyz};
+use nalgebra::{Matrix3, Vector3};
+
+use super::body::check_rotation;
+use super::flow;
+use super::prelude::*;
+use crate::formula::{Formula, Names, Texts, without_value};
+use crate::reader::values::Rows;
+use crate::schema::Branch;
+
+/// The entry in the list of kinds.
+pub(super) const KIND: Kind = Kind {
+    name: "rigid-motion",
+    equation: "ġ = g ω̂, ẋ = g v of a twist in the body; ġ = ω̂ g, ẋ = ω × x + v of one in space",
+    summary: "a vehicle or a tool that moves in space by its twist, by formulas",
+    ..Kind::of::<Keys, Motion>(|section| read_with(section, read))
+};
+
+keys! { Keys [sample_keys formula_keys] {
+    omega: Texts =
+        "the angular velocity: three formulas, or one whose value is a vector, in t, the attitude g11, ..., g33 and the \
+         position x1, x2, x3",
+    velocity: Texts =
+        "the velocity, by formulas in the same variables: that of the origin of the body; with frame = \"space\" that of \
+         the point of the body at the origin of space",
+    frame: Option<String> =
+        "the axes of omega and velocity: \"body\" or \"space\"; optional, \"body\"",
+    attitude: Option<Rows<3>> = "initial rotation from body to space; optional, the identity",
+    position: Option<Reals<3>> = "initial position; optional, the origin",
+} }
+
+/// What a twist may depend on.
+#[rustfmt::skip]
+const VARIABLES: [&str; 13] = [
+    "t", "g11", "g12", "g13", "g21", "g22", "g23", "g31", "g32", "g33", "x1", "x2", "x3",
+];
+
+/// A rotation and a position.
+type Pose<S = f64> = (Matrix3<S>, Vector3<S>);
+
+fn variables<S: Copy>(t: S, (g, x): &Pose<S>) -> [S; 13] {
+    core::array::from_fn(|i| match i {
+        0 => t,
+        1..=9 => g[((i - 1) / 3, (i - 1) % 3)],
+        _ => x[i - 10],
+    })
+}
+
+/// The motion with its start.
+#[derive(Clone, Debug)]
+struct Motion {
+    /// ω and v.
+    twist: Arc<[Formula]>,
+    in_body: bool,
+    start: Pose,
+    /// Changes that were made to numbers of the scene.
+    notes: Vec<String>,
+}
+
+type Q = Quantity<Motion>;
+
+fn read(mut keys: Keys) -> Result<Forms, ReadError> {
+    let names = keys.formula_keys().names("omega", VARIABLES, keys.sample_keys());
+    let formulas = |key: &str, texts: Key<Texts>| texts?.read(key, 3, seen(&names)?);
+    let Keys { omega, velocity, frame, attitude, position, .. } = keys;
+    let (omega, velocity) = (formulas("omega", omega), formulas("velocity", velocity));
+    let names = names.and_then(Names::checked);
+    let in_body = frame.and_then(|frame| match frame.as_deref() {
+        None | Some("body") => Ok(true),
+        Some("space") => Ok(false),
+        Some(other) => Err(Refusal::unknown("frame", other, &["body", "space"]).into()),
+    });
+    let mut notes = Vec::new();
+    let attitude = attitude.and_then(|rows| match rows {
+        None => Ok(Matrix3::identity()),
+        Some(Rows(rows)) => {
+            let g = Matrix3::from_fn(|i, j| rows[i][j]);
+            Ok::<_, ReadError>(check_rotation("attitude", g, &mut notes)?)
+        }
+    });
+    let (omega, velocity, _, in_body, attitude, position) =
+        all!(omega, velocity, names, in_body, attitude, position)?;
+    let position = position.map_or_else(Vector3::zeros, |x| x.0.into());
+    let twist = omega.into_iter().chain(velocity).collect();
+    Ok(Forms::of(Motion { twist, in_body, start: (attitude, position), notes }))
+}
+
+impl Motion {
+    /// The problem on these numbers.
+    fn on<S: Trig + Into<f64> + 'static>(&self) -> flow::Motion<S> {
+        let twist = self.twist.clone();
+        let field = move |t: S, y: &Pose<S>, v: &mut (Vector3<S>, Vector3<S>)| {
+            let at = variables(t, y);
+            v.0 = Vector3::from_fn(|i, _| twist[i].value(&at));
+            v.1 = Vector3::from_fn(|i, _| twist[3 + i].value(&at));
+        };
+        if self.in_body {
+            return flow::Motion::new(Flow::in_body(Se3::new(), field), LeftTranslation);
+        }
+        let flow = Flow::new(Se3::new(), LeftTranslation, field);
+        let of_time = !(1..VARIABLES.len()).any(|i| self.twist.iter().any(|f| f.uses(i)));
+        match of_time {
+            true => flow::Motion::linear(flow.linear(), LeftTranslation),
+            false => flow::Motion::new(flow, LeftTranslation),
+        }
+    }
+
+    /// Three numbers of the twist, from the first on.
+    fn part(&self, first: usize, t: f64, y: &Pose, row: &mut Vec<f64>) {
+        let at = variables(t, y);
+        row.extend(self.twist[first..first + 3].iter().map(|formula| formula.value(&at)));
+    }
+}
+
+impl System for Motion {
+    type Problem = flow::Motion;
+
+    const STATE: &'static [&'static str] = &["position", "attitude"];
+    const QUANTITIES: &'static [Q] = &[
+        Q::numbers("position", &["x1", "x2", "x3"], "position of the origin of the body", |_, _, (_, x), row| {
+            row.extend(x.iter());
+        })
+        .of_dimension(Dimension::LENGTH),
+        Q::numbers(
+            "attitude",
+            &["g11", "g12", "g13", "g21", "g22", "g23", "g31", "g32", "g33"],
+            "rotation from body to space, row by row",
+            |_, _, (g, _), row| row.extend(g.transpose().iter()),
+        )
+        .of_rotation()
+        .drawn_as("quaternion"),
+        Q::numbers(
+            "quaternion",
+            &["qw", "qx", "qy", "qz"],
+            "the attitude as a unit quaternion, real part first; each row has the sign that is nearer to the row before, \
+             the first has qw >= 0",
+            |_, _, (g, _), row| {
+                let q = quaternion_from_matrix(g).map(|q| quaternion_to_wxyz(&q));
+                let q = q.unwrap_or([f64::NAN; 4]);
+                row.extend(if q[0] < 0.0 { q.map(|x| -x) } else { q });
+            },
+        )
+        .of_quaternion()
+        .continuous_by(|_| Branch::Sign),
+        Q::numbers(
+            "omega",
+            &["w1", "w2", "w3"],
+            "angular velocity, in the axes of the scene's twist",
+            |motion, at, y, row| motion.part(0, at.t, y, row),
+        )
+        .of_dimension(Dimension::RATE),
+        Q::numbers(
+            "velocity",
+            &["v1", "v2", "v3"],
+            "velocity, in the axes of the scene's twist",
+            |motion, at, y, row| motion.part(3, at.t, y, row),
+        )
+        .of_dimension(Dimension::VELOCITY),
+        Q::number("attitude_defect", "distance of g'g from the identity", |_, _, (g, _)| {
+            So3::new().defect(g)
+        })
+        .kept(Law::by_the_action(2).on_scale(Scale::One)),
+    ];
+
+    fn layer(&self) -> Layer {
+        Layer::Closed
+    }
+    fn problem(&self) -> Result<Start<flow::Motion>, Error> {
+        Ok((self.on(), self.start))
+    }
+    fn counted(&self) -> Option<Counting> {
+        let (g, x) = self.start;
+        counting(self.on(), (g.map(Counted), x.map(Counted)))
+    }
+    fn check_start(&self, t0: f64) -> Vec<Refusal> {
+        without_value(self.twist.iter(), &variables(t0, &self.start))
+    }
+    fn formula(&self) -> Option<&Formula> {
+        self.twist.first()
+    }
+    fn notes(&self) -> Vec<String> {
+        self.notes.clone()
+    }
+    fn modelled(&self) -> String {
+        let frame = if self.in_body { "the body" } else { "space" };
+        format!("attitude and position on SE(3), by a twist in {frame}")
+    }
+}
