@@ -1,10 +1,10 @@
 //! Names: spellings that count as one, and the likely meaning of an unknown name.
 //!
 //! ```
-//! use lieflow::names::{Alias, Part, find, meant};
+//! use lieflow::names::{Alias, MethodPart, find, meant};
 //! assert_eq!(find("RKMK4", ["rk4", "rkmk4"]), Some("rkmk4"));
 //! assert_eq!(meant("cayley", &["exp", "cay"]), Some(Alias { name: "cay", part: None }));
-//! let rk45 = Alias { name: "rkmk", part: Some(Part::Tableau("dopri5")) };
+//! let rk45 = Alias { name: "rkmk", part: Some(MethodPart::Tableau("dopri5")) };
 //! assert_eq!(meant("rk45", &["rkmk4", "rkmk"]), Some(rk45));
 //! ```
 
@@ -16,12 +16,12 @@ pub struct Alias<'a> {
     /// The name.
     pub name: &'a str,
     /// The part of the method that the other name stands for.
-    pub part: Option<Part>,
+    pub part: Option<MethodPart>,
 }
 
 /// A part of a method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
+pub enum MethodPart {
     /// A Runge–Kutta tableau.
     Tableau(&'static str),
     /// A coordinate map.
@@ -33,7 +33,9 @@ impl fmt::Display for Alias<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.part {
             None => f.write_str(self.name),
-            Some(Part::Tableau(part) | Part::Map(part)) => write!(f, "{} {part}", self.name),
+            Some(MethodPart::Tableau(part) | MethodPart::Map(part)) => {
+                write!(f, "{} {part}", self.name)
+            }
         }
     }
 }
@@ -41,7 +43,7 @@ impl fmt::Display for Alias<'_> {
 /// What a name of another program, or of a book, is here.
 enum Is {
     Method(&'static str),
-    Part(Part),
+    OfMethod(MethodPart),
 }
 
 impl Is {
@@ -49,8 +51,8 @@ impl Is {
     const fn method(&self) -> Alias<'static> {
         match *self {
             Is::Method(name) => Alias { name, part: None },
-            Is::Part(part @ Part::Tableau(_)) => Alias { name: "rkmk", part: Some(part) },
-            Is::Part(part @ Part::Map(_)) => Alias { name: "rkmk4", part: Some(part) },
+            Is::OfMethod(part @ MethodPart::Tableau(_)) => Alias { name: "rkmk", part: Some(part) },
+            Is::OfMethod(part @ MethodPart::Map(_)) => Alias { name: "rkmk4", part: Some(part) },
         }
     }
 }
@@ -59,10 +61,10 @@ const fn method(name: &'static str) -> Is {
     Is::Method(name)
 }
 const fn tableau(name: &'static str) -> Is {
-    Is::Part(Part::Tableau(name))
+    Is::OfMethod(MethodPart::Tableau(name))
 }
 const fn map(name: &'static str) -> Is {
-    Is::Part(Part::Map(name))
+    Is::OfMethod(MethodPart::Map(name))
 }
 
 /// Names of other programs and books. The tableaus and the maps are in it too: they are no methods.
@@ -180,7 +182,8 @@ pub fn meant<'a>(given: &str, names: &[&'a str]) -> Option<Alias<'a>> {
     let listed = |name| names.iter().find(|listed| **listed == name).copied();
     let here = |is: &Is| {
         let Alias { name, part } = is.method();
-        let alone = part.and_then(|(Part::Tableau(name) | Part::Map(name))| listed(name));
+        let alone =
+            part.and_then(|(MethodPart::Tableau(name) | MethodPart::Map(name))| listed(name));
         let meant = alone.map(|name| Alias { name, part: None });
         meant.or_else(|| Some(Alias { name: listed(name)?, part }))
     };

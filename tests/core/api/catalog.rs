@@ -3,7 +3,7 @@
 use lieflow::Step;
 use lieflow::catalog::{MAPS, MethodSpec, Needs, TABLEAUS, all_methods};
 use lieflow::methods::{Embedded, Method};
-use lieflow::names::{Alias, Part, find, meant, other_names, same};
+use lieflow::names::{Alias, MethodPart, find, meant, other_names, same};
 use lieflow::problems::RigidBody;
 use lieflow::tolerance::{Rule, Tolerance};
 use nalgebra::Vector3;
@@ -142,7 +142,7 @@ fn names_in_other_spellings() {
     // What is no method says what it is, and each name of another program is something here.
     let parts = MAPS.iter().map(|m| m.name).chain(TABLEAUS.iter().map(|t| t.name));
     for part in parts.filter(|part| !methods.contains(part)) {
-        let Some(Alias { name, part: Some(Part::Tableau(meant) | Part::Map(meant)) }) =
+        let Some(Alias { name, part: Some(MethodPart::Tableau(meant) | MethodPart::Map(meant)) }) =
             meant(part, &methods)
         else {
             panic!("{part}")

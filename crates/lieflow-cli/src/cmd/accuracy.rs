@@ -10,7 +10,7 @@ use lieflow::problems::explained_by_rounding;
 use lieflow::solve::{Next, Status};
 use lieflow_model::problem::{Outcome, Plan, Watcher};
 use lieflow_model::scene::Scene;
-use lieflow_model::schema::{Observable, Part, Row};
+use lieflow_model::schema::{Component, Observable, Row};
 
 use super::apart::{
     Apart, Beside, Choice, Gap, Largest, Limits, Shown, ZerosApart, norm, parts_of,
@@ -430,7 +430,7 @@ fn nice_below(x: f64) -> impl Iterator<Item = f64> {
 }
 
 /// The size that an error is relative to: of the start, of the end and of the middle one of the rows, the largest.
-fn size((observable, part): (&Observable, &Part), rows: &RowSample<'_>) -> f64 {
+fn size((observable, part): (&Observable, &Component), rows: &RowSample<'_>) -> f64 {
     let norm = |row: Row<'_>| norm(&row[observable][part.columns.clone()]);
     let mut sizes: Vec<f64> = rows.rows().map(|(_, row)| norm(row)).collect();
     let ends = rows.ends().map_or([0.0; 2], |ends| ends.map(|(_, row)| norm(row)));

@@ -8,7 +8,7 @@ use std::time::Instant;
 
 use lieflow::solve::Next;
 use lieflow_model::problem::{EventPlan, Watcher};
-use lieflow_model::schema::{Observable, Part, Row};
+use lieflow_model::schema::{Component, Observable, Row};
 
 use super::watch::Watch;
 use crate::output::{Kind, Records, ShownRows};
@@ -23,7 +23,7 @@ const HALVINGS: u32 = 8;
 /// The parts of the state, with their quantities.
 pub(super) fn parts_of<'a>(
     watch: &'a Watch<'_>,
-) -> impl Iterator<Item = (&'a Observable, &'a Part)> {
+) -> impl Iterator<Item = (&'a Observable, &'a Component)> {
     watch
         .state
         .iter()

@@ -6,7 +6,7 @@ use serde::{Serialize, Serializer};
 
 use lieflow::problems::Invariant;
 use lieflow::solve;
-use lieflow_model::problem::Fact;
+use lieflow_model::problem::Property;
 use lieflow_model::scene::{Defaults, Scene};
 use lieflow_model::schema::{Dimension, Units};
 use lieflow_timing::Fit;
@@ -47,7 +47,7 @@ pub struct Summary {
     pub modelled: Vec<String>,
     /// What is known of the problem before any run.
     #[serde(serialize_with = "by_name")]
-    pub facts: Vec<Fact>,
+    pub facts: Vec<Property>,
     /// What a reader should know: a body that cannot be, an invariant that moved.
     pub warnings: Vec<String>,
     /// Changes that were made to numbers of the scene.
@@ -130,7 +130,7 @@ pub fn units_of(scene: &Scene) -> BTreeMap<String, String> {
 }
 
 /// The facts as a table of names and values.
-fn by_name<S: Serializer>(facts: &[Fact], to: S) -> Result<S::Ok, S::Error> {
+fn by_name<S: Serializer>(facts: &[Property], to: S) -> Result<S::Ok, S::Error> {
     let table: BTreeMap<&str, f64> = facts.iter().map(|fact| (fact.name, fact.value)).collect();
     table.serialize(to)
 }

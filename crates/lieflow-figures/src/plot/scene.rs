@@ -67,7 +67,7 @@ const ARROW: f64 = 0.26;
 
 impl Scene {
     pub(crate) fn new(sphere: &Sphere) -> Self {
-        let ellipsoid = energy_ellipsoid(sphere);
+        let ellipsoid = ellipsoid_of(sphere);
         let semi = ellipsoid.map_or([1.0; 3], |e| e.semi);
         let longest = semi.iter().copied().fold(1.0, f64::max);
         let reach = longest.min(LARGEST);
@@ -106,9 +106,9 @@ impl Scene {
     }
 }
 
-/// The energy ellipsoid, unless the numbers do not describe one.
-fn energy_ellipsoid(sphere: &Sphere) -> Option<Ellipsoid> {
-    let semi = sphere.inertia.map(|j| (2.0 * j * sphere.energy).sqrt() / sphere.radius);
+/// The ellipsoid, unless the numbers do not describe one.
+fn ellipsoid_of(sphere: &Sphere) -> Option<Ellipsoid> {
+    let semi = sphere.ellipsoid?.map(|a| a / sphere.radius);
     semi.iter().all(|a| a.is_finite() && *a > 1e-6).then_some(Ellipsoid { semi })
 }
 

@@ -1,4 +1,4 @@
-//! The momentum sphere of a rigid body with its energy ellipsoid.
+//! Paths on a sphere, with an ellipsoid that they lie on, too.
 
 use super::camera::{Camera, Vec3, clip, dot, norm, split};
 use super::labels::{self, ROW};
@@ -26,8 +26,8 @@ pub struct Path {
     pub points: Vec<[f64; 3]>,
 }
 
-/// A picture of the sphere |m| = `radius` in orthographic projection, with the parts of the energy
-/// ellipsoid Σ mᵢ²/(2Jᵢ) = E outside of it and with paths of the momentum m.
+/// A picture of the sphere |m| = `radius` in orthographic projection, with the parts of an ellipsoid outside of it and with
+/// paths of m. A momentum of a free body keeps its length and its energy, and both are such surfaces.
 ///
 /// A point is hidden if the ray from it to the viewer passes through the sphere or through the
 /// ellipsoid. Hidden parts of paths and of axes are faint and dashed.
@@ -37,12 +37,10 @@ pub struct Sphere {
     pub id: String,
     /// The title above the picture.
     pub title: String,
-    /// The magnitude of the momentum.
+    /// The radius.
     pub radius: f64,
-    /// The principal moments of inertia J.
-    pub inertia: [f64; 3],
-    /// The kinetic energy E.
-    pub energy: f64,
+    /// The semi-axes of the ellipsoid, if there is one.
+    pub ellipsoid: Option<[f64; 3]>,
     /// The paths.
     pub paths: Vec<Path>,
     /// The text below the picture.
@@ -298,13 +296,17 @@ fn definitions(id: &str) -> String {
 mod tests {
     use super::*;
 
+    /// The semi-axes of Σ mᵢ²/(2Jᵢ) = E with J = (1, 2, 3).
+    fn energy(e: f64) -> Option<[f64; 3]> {
+        Some([1.0, 2.0, 3.0].map(|j: f64| (2.0 * j * e).sqrt()))
+    }
+
     fn sphere(points: Vec<Vec3>) -> Sphere {
         Sphere {
             id: "s".into(),
             title: "Sphere".into(),
             radius: 2.0,
-            inertia: [1.0, 2.0, 3.0],
-            energy: 1.0,
+            ellipsoid: energy(1.0),
             paths: vec![Path { name: "p & q".into(), colour: 0, points }],
             caption: String::new(),
             view: (0.0, 0.0),
@@ -330,14 +332,14 @@ mod tests {
     #[test]
     fn half_of_the_equator_is_hidden() {
         // Begins on the front side: front, back, front.
-        let round = Sphere { energy: 1e-3, ..sphere(equator()) };
+        let round = Sphere { ellipsoid: energy(1e-3), ..sphere(equator()) };
         assert_eq!(parts(&round), (2, 1));
         assert_eq!(parts(&Sphere { view: (0.0, 90.0), ..round }), (1, 0));
     }
 
     #[test]
     fn a_large_ellipsoid_hides_all() {
-        assert_eq!(parts(&Sphere { energy: 1e3, ..sphere(equator()) }), (0, 1));
+        assert_eq!(parts(&Sphere { ellipsoid: energy(1e3), ..sphere(equator()) }), (0, 1));
     }
 
     #[test]
@@ -345,7 +347,7 @@ mod tests {
         let nan = vec![[f64::NAN; 3], [0.0, 0.0, 2.0]];
         let good = sphere(nan);
         let flat = Sphere { radius: 0.0, ..good.clone() };
-        let odd = Sphere { energy: f64::NAN, inertia: [-1.0, 0.0, 1.0], ..good.clone() };
+        let odd = Sphere { ellipsoid: Some([f64::NAN, 0.0, 1.0]), ..good.clone() };
         for s in [good, flat, odd] {
             for text in [s.svg(), s.json()] {
                 assert!(!text.contains("NaN") && !text.contains("inf"));

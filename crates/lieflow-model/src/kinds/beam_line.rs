@@ -226,18 +226,18 @@ impl System for BeamLine {
     fn figure(&self) -> Figure {
         Figure::Points("phase_space")
     }
-    fn facts(&self) -> Vec<Fact> {
+    fn facts(&self) -> Vec<Property> {
         let Ok(cell) = transfer_map(&self.elements) else { return Vec::new() };
         let [x, z] = tunes(&cell);
         let trace = |i: usize| cell[(i, i)] + cell[(i + 2, i + 2)];
         let mut facts = vec![
-            Fact::of("cell_length", self.cell_length()),
-            Fact::of("trace_x", trace(0)),
-            Fact::of("trace_z", trace(1)),
-            Fact::answer("stable", x.is_some() && z.is_some()),
+            Property::of("cell_length", self.cell_length()),
+            Property::of("trace_x", trace(0)),
+            Property::of("trace_z", trace(1)),
+            Property::answer("stable", x.is_some() && z.is_some()),
         ];
-        facts.extend(x.map(|value| Fact::of("tune_x", value)));
-        facts.extend(z.map(|value| Fact::of("tune_z", value)));
+        facts.extend(x.map(|value| Property::of("tune_x", value)));
+        facts.extend(z.map(|value| Property::of("tune_z", value)));
         facts
     }
 }

@@ -129,15 +129,15 @@ impl System for Hill {
     fn figure(&self) -> Figure {
         Figure::Lines("solution")
     }
-    fn facts(&self) -> Vec<Fact> {
+    fn facts(&self) -> Vec<Property> {
         let Some((floquet, trace)) = self.multipliers() else { return Vec::new() };
         let radius = floquet.spectral_radius();
         vec![
-            Fact::of("period", self.period),
-            Fact::of("trace_of_the_monodromy", trace),
-            Fact::of("largest_multiplier", radius),
-            Fact::of("growth_rate", floquet.growth(self.period)),
-            Fact::answer("stable", radius < 1.0 + OFF_THE_CIRCLE),
+            Property::of("period", self.period),
+            Property::of("trace_of_the_monodromy", trace),
+            Property::of("largest_multiplier", radius),
+            Property::of("growth_rate", floquet.growth(self.period)),
+            Property::answer("stable", radius < 1.0 + OFF_THE_CIRCLE),
         ]
     }
 }

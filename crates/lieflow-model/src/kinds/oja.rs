@@ -86,8 +86,8 @@ impl System for OjaFlow {
     fn figure(&self) -> Figure {
         Figure::Lines("trace")
     }
-    fn facts(&self) -> Vec<Fact> {
+    fn facts(&self) -> Vec<Property> {
         let leading = eigenvalues(&self.a).iter().rev().take(self.x.ncols()).sum();
-        vec![Fact::of("sum_of_the_leading_eigenvalues", leading)]
+        vec![Property::of("sum_of_the_leading_eigenvalues", leading)]
     }
 }

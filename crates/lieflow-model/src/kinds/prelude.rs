@@ -4,7 +4,7 @@ pub(super) use faer::Mat;
 pub(super) use lieflow::Error;
 
 pub(super) use crate::problem::{
-    Counting, Fact, Figure, Forms, Kind, Layer, PrincipalInertia, Quantity, Start, System,
+    Counting, Figure, Forms, Kind, Layer, PrincipalInertia, Property, Quantity, Start, System,
     counting, formula_keys, keys, law_of, sample_keys,
 };
 pub(super) use crate::reader::values::{List, Real, Reals, Table, Whole};

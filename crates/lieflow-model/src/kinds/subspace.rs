@@ -144,13 +144,13 @@ impl System for Subspace {
     fn figure(&self) -> Figure {
         Figure::Lines("angles")
     }
-    fn facts(&self) -> Vec<Fact> {
+    fn facts(&self) -> Vec<Property> {
         let others = self.start.nrows() - self.dimension;
         let leading = self.eigenvalues[others..].iter().sum();
-        let mut facts = vec![Fact::of("sum_of_the_leading_eigenvalues", leading)];
+        let mut facts = vec![Property::of("sum_of_the_leading_eigenvalues", leading)];
         if others > 0 {
             let gap = self.eigenvalues[others] - self.eigenvalues[others - 1];
-            facts.push(Fact::of("rate_of_convergence", gap));
+            facts.push(Property::of("rate_of_convergence", gap));
         }
         facts
     }

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use lieflow::catalog::MethodSpec;
 use lieflow::{Error, RunError};
 
-use super::kind::{Fact, Figure, PrincipalInertia, high_order};
+use super::kind::{Figure, PrincipalInertia, Property, high_order};
 use super::run::{Layer, Orders, Outcome, Plan, RowCurve, Steps, Watcher};
 use super::stepper::Stepper;
 use crate::formula::Formula;
@@ -104,7 +104,7 @@ pub struct Forms {
     pub(crate) formula: Option<Formula>,
     pub(crate) inertia: Option<PrincipalInertia>,
     pub(crate) rate: Option<f64>,
-    pub(crate) facts: Vec<Fact>,
+    pub(crate) facts: Vec<Property>,
     pub(crate) warnings: Vec<String>,
     pub(crate) notes: Vec<String>,
     pub(crate) spec: Option<Arc<dyn Any + Send + Sync>>,

@@ -156,11 +156,26 @@ impl PrincipalInertia {
     pub fn diagonal(moments: [f64; 3]) -> Self {
         PrincipalInertia { moments, axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] }
     }
+
+    /// The sides of a box with these moments; the longest is 1. The box of a flat body, or of one that cannot be, has a
+    /// small side instead of none.
+    pub fn sides_of_a_box(&self) -> [f64; 3] {
+        let sum: f64 = self.moments.iter().sum();
+        let squares = self.moments.map(|j| sum - 2.0 * j);
+        let largest = squares.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+        squares.map(|square| (square / largest).max(0.005).sqrt())
+    }
+
+    /// The semi-axes of the ellipsoid Σ mᵢ²/(2Jᵢ) = E of the momenta with the energy of m.
+    pub fn energy_ellipsoid(&self, m: &[f64; 3]) -> [f64; 3] {
+        let twice: f64 = m.iter().zip(self.moments).map(|(m, j)| m * m / j).sum();
+        self.moments.map(|j| (j * twice).sqrt())
+    }
 }
 
 /// Something that is known of a problem before any run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Fact {
+pub struct Property {
     /// What.
     pub name: &'static str,
     /// Its value. It is not finite if it is unknown. 1 means yes and 0 means no.
@@ -169,15 +184,15 @@ pub struct Fact {
     pub is_answer: bool,
 }
 
-impl Fact {
+impl Property {
     /// A number.
     pub(crate) fn of(name: &'static str, value: f64) -> Self {
-        Fact { name, value, is_answer: false }
+        Property { name, value, is_answer: false }
     }
 
     /// Yes or no.
     pub(crate) fn answer(name: &'static str, yes: bool) -> Self {
-        Fact { name, value: f64::from(u8::from(yes)), is_answer: true }
+        Property { name, value: f64::from(u8::from(yes)), is_answer: true }
     }
 
     /// The value in words: yes or no, or the number in a format.
@@ -185,6 +200,32 @@ impl Fact {
         match (self.is_answer, self.value == 1.0) {
             (false, _) => number(self.value),
             (true, yes) => if yes { "yes" } else { "no" }.into(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::PrincipalInertia;
+
+    /// A box with sides a, b, c and mass 12 has moments of inertia b² + c², c² + a², a² + b².
+    #[test]
+    fn sides_have_their_moments() {
+        let sides = |moments| PrincipalInertia::diagonal(moments).sides_of_a_box();
+        let [a, b, c]: [f64; 3] = [3.0, 2.0, 1.0];
+        let all = sides([b * b + c * c, c * c + a * a, a * a + b * b]);
+        for (side, expected) in all.iter().zip([1.0, 2.0 / 3.0, 1.0 / 3.0]) {
+            assert!((side - expected).abs() < 1e-12, "{all:?}");
+        }
+        assert!(sides([1.0, 1.0, 2.0])[2] > 0.0 && sides([1.0, 1.0, 9.0])[2] > 0.0);
+    }
+
+    #[test]
+    fn an_ellipsoid_has_the_energy() {
+        let (inertia, m) = (PrincipalInertia::diagonal([1.0, 2.0, 4.0]), [0.3, -2.0, 1.0]);
+        let energy = 0.5 * (0.09 + 2.0 + 0.25);
+        for (axis, j) in inertia.energy_ellipsoid(&m).iter().zip([1.0, 2.0, 4.0]) {
+            assert!((axis * axis / (2.0 * j) - energy).abs() < 1e-15);
         }
     }
 }

@@ -9,7 +9,7 @@ use lieflow::samples::Samples;
 use lieflow::{Error, RunError, SaveAt, Stats, StepControl, TimeGrid};
 
 use super::forms::{Asked, Form, Forms, Run};
-use super::kind::{Fact, Figure, Kind, PrincipalInertia, QuantityInfo};
+use super::kind::{Figure, Kind, PrincipalInertia, Property, QuantityInfo};
 use super::mapped::{Mapped, MappedCurve, MappedStepper, NumberOf, RowMap};
 use super::run::{CurvePlace, Layer, Orders, Outcome, Plan, RowCurve, Rows, Sink, Steps, Watcher};
 use super::stepper::Stepper;
@@ -217,7 +217,7 @@ impl Problem {
     }
 
     /// What is known before any run.
-    pub fn facts(&self) -> &[Fact] {
+    pub fn facts(&self) -> &[Property] {
         &self.forms.facts
     }
 

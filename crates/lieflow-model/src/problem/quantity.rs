@@ -5,7 +5,7 @@ use lieflow::problems::Invariants;
 
 use super::kind::QuantityInfo;
 use super::system::{PointOf, System};
-use crate::schema::{Branch, Dimension, Law, Measure, Part, Scale};
+use crate::schema::{Branch, Component, Dimension, Law, Measure, Scale};
 
 /// The columns x11, …, xnk, row by row.
 pub(crate) fn row_columns(letter: &str, n: usize, k: usize) -> Vec<String> {
@@ -55,8 +55,8 @@ pub(crate) enum Value<S: System> {
 }
 
 /// A part of `columns` columns, from the column `first` on.
-pub(crate) fn part(name: &str, first: usize, columns: usize, measure: Measure) -> Part {
-    Part { name: name.into(), what: "", columns: first..first + columns, measure }
+pub(crate) fn part(name: &str, first: usize, columns: usize, measure: Measure) -> Component {
+    Component { name: name.into(), what: "", columns: first..first + columns, measure }
 }
 
 /// The problems that conserve a quantity.
@@ -72,7 +72,7 @@ pub(crate) struct Quantity<S: System> {
     pub(crate) value: Value<S>,
     columns: Columns<S>,
     /// Its parts. None: one part, whose error is a length.
-    pub(crate) parts: Option<fn(&S) -> Vec<Part>>,
+    pub(crate) parts: Option<fn(&S) -> Vec<Component>>,
     /// The choice that makes the columns of a run continuous.
     pub(crate) branch: fn(&S) -> Branch,
     law: Keepers<S>,
@@ -169,7 +169,7 @@ impl<S: System> Quantity<S> {
     }
 
     /// A run reports the error of each of these parts.
-    pub(crate) const fn in_parts(self, parts: fn(&S) -> Vec<Part>) -> Self {
+    pub(crate) const fn in_parts(self, parts: fn(&S) -> Vec<Component>) -> Self {
         Quantity { parts: Some(parts), ..self }
     }
 

@@ -7,7 +7,7 @@ use lieflow::catalog::MethodSpec;
 use lieflow::{Error, RunError};
 
 use super::forms::{Asked, Form, Forms, Run};
-use super::kind::{Fact, Figure, PrincipalInertia, high_order};
+use super::kind::{Figure, PrincipalInertia, Property, high_order};
 use super::operations::{Counting, operations_by};
 use super::quantity::{Moment, Quantity, Value};
 use super::run::{
@@ -86,7 +86,7 @@ pub(crate) trait System: Clone + Debug + Send + Sync + 'static {
         Vec::new()
     }
     /// What is known before any run.
-    fn facts(&self) -> Vec<Fact> {
+    fn facts(&self) -> Vec<Property> {
         Vec::new()
     }
     /// See [`Problem::warnings`](super::Problem::warnings).

@@ -1,6 +1,6 @@
 //! Names that were meant: of keys, kinds and quantities, and those of the library.
 
-use lieflow::names::{self, Alias, Part};
+use lieflow::names::{self, Alias, MethodPart};
 
 /// Names of other programs, and what they are in a scene.
 const OTHER_NAMES: &[(&str, &str)] = &[
@@ -177,8 +177,8 @@ pub fn suggest<'a>(given: &str, names: &[&'a str]) -> Option<&'a str> {
 pub fn help_for(given: &str, names: &[&str]) -> String {
     let meant = meant(given, names);
     let (name, what, part) = match meant {
-        Some(Alias { name, part: Some(Part::Tableau(part)) }) => (name, "tableau", part),
-        Some(Alias { name, part: Some(Part::Map(part)) }) => (name, "map", part),
+        Some(Alias { name, part: Some(MethodPart::Tableau(part)) }) => (name, "tableau", part),
+        Some(Alias { name, part: Some(MethodPart::Map(part)) }) => (name, "map", part),
         _ => {
             let meant = meant.map(|meant| format!("did you mean `{}`?", meant.name));
             return names::expected(meant.as_deref(), names);

@@ -49,7 +49,7 @@ impl Measure {
 
 /// Columns of a quantity that belong together.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Part {
+pub struct Component {
     /// Its name; none of a quantity that is one part.
     pub name: String,
     /// What it is, as in "vector"; empty for a quantity that is one part.
@@ -72,7 +72,7 @@ pub struct Observable {
     /// Is it a state, so that a value that is not finite ends the run?
     pub is_state: bool,
     /// Its parts: all of its columns, in order.
-    pub parts: Vec<Part>,
+    pub parts: Vec<Component>,
     /// What a run chooses so that the columns are continuous.
     pub branch: Branch,
     /// The shape of its values as an array, rows first; none of a number.
@@ -137,7 +137,7 @@ impl Schema {
         self.sizes += usize::from(in_terms);
         let measure = Measure::Length;
         let parts =
-            vec![Part { name: String::new(), what: "", columns: 0..columns.len(), measure }];
+            vec![Component { name: String::new(), what: "", columns: 0..columns.len(), measure }];
         let branch = Branch::Single;
         let shape = if columns.len() == 1 { Vec::new() } else { vec![columns.len()] };
         let observable =
@@ -146,9 +146,9 @@ impl Schema {
     }
 
     /// Give the last observable these parts.
-    pub(crate) fn set_parts(&mut self, parts: Vec<Part>) {
+    pub(crate) fn set_parts(&mut self, parts: Vec<Component>) {
         if let Some(observable) = self.observables.last_mut() {
-            if let [Part { measure: Measure::Rotation, .. }] = parts[..]
+            if let [Component { measure: Measure::Rotation, .. }] = parts[..]
                 && observable.columns.len() == 9
             {
                 observable.shape = vec![3, 3];

@@ -6,7 +6,7 @@ use lieflow::problems::explained_by_rounding;
 use lieflow_figures::number::short;
 use lieflow_figures::{Axis, Block, Chart, Marks, Series};
 use lieflow_model::problem::Kind;
-use lieflow_model::schema::{Dimension, Observable, Part, Row, Scale, Units};
+use lieflow_model::schema::{Component, Dimension, Observable, Row, Scale, Units};
 
 use super::sample::RowSample;
 use super::words;
@@ -200,7 +200,7 @@ fn parts_of<'a>(
     let of_formulas = kind.quantity(quantity.name).is_err();
     let title = || words::title(kind, quantity);
     let mut parts: Vec<Shown<'a>> = if quantity.parts.len() > 1 {
-        let part = |part: &Part| {
+        let part = |part: &Component| {
             let columns: Vec<usize> = part.columns.clone().filter(is_wanted).collect();
             shown(words::of_part(part), part.name.replace('_', " "), &columns)
         };

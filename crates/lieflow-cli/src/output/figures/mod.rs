@@ -414,11 +414,9 @@ fn sphere(id: String, title: String, run: &Drawn<'_>) -> Sphere {
         .problem
         .inertia()
         .filter(|inertia| free && *inertia == PrincipalInertia::diagonal(inertia.moments));
-    let inertia = inertia.map_or([f64::NAN; 3], |inertia| inertia.moments);
     let start = paths.first().and_then(|path| path.points.first());
-    let energy =
-        start.map_or(f64::NAN, |m| (0..3).map(|i| m[i].powi(2) / (2.0 * inertia[i])).sum());
-    let surfaces = match energy.is_finite() {
+    let ellipsoid = inertia.zip(start).map(|(inertia, m)| inertia.energy_ellipsoid(m));
+    let surfaces = match ellipsoid.is_some_and(|semi| semi.iter().all(|a| a.is_finite())) {
         true => {
             "The sphere is |m| = const, and the ellipsoid is energy = const. A free body keeps both."
         }
@@ -434,8 +432,7 @@ fn sphere(id: String, title: String, run: &Drawn<'_>) -> Sphere {
         id,
         title,
         radius: 1.0,
-        inertia,
-        energy,
+        ellipsoid,
         paths,
         caption: caption.trim().into(),
         view: (35.0, if height < 0.0 { -25.0 } else { 25.0 }),

@@ -33,7 +33,7 @@ pub(super) fn body(inertia: &PrincipalInertia, rows: &RowSample<'_>) -> Option<B
     Some(Body {
         id: "body".into(),
         title: "The body as it turns in space".into(),
-        sides: Body::sides(inertia.moments),
+        sides: inertia.sides_of_a_box(),
         axes: inertia.axes,
         poses,
         caption: format!(

@@ -1,7 +1,7 @@
 //! What figures and tables call a quantity, its columns and its parts.
 
 use lieflow_model::problem::Kind;
-use lieflow_model::schema::{Observable, Part};
+use lieflow_model::schema::{Component, Observable};
 
 /// The title of a quantity: the first clause of its meaning, or its columns if the scene makes them.
 pub(super) fn title(kind: &Kind, quantity: &Observable) -> String {
@@ -16,7 +16,7 @@ pub(super) fn title(kind: &Kind, quantity: &Observable) -> String {
 }
 
 /// The title of a part of a composed system.
-pub(super) fn of_part(part: &Part) -> String {
+pub(super) fn of_part(part: &Component) -> String {
     format!("The {} {}", part.what, part.name.replace('_', " "))
 }
 
@@ -33,7 +33,7 @@ fn first_clause(meaning: &str) -> &str {
 
 /// The name of a quantity on an axis: of its one part, or its columns, where one of them has that name.
 pub(super) fn on_axis(quantity: &Observable) -> String {
-    if let [Part { name, .. }] = &quantity.parts[..]
+    if let [Component { name, .. }] = &quantity.parts[..]
         && !name.is_empty()
     {
         return name.replace('_', " ");

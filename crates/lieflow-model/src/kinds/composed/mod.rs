@@ -251,7 +251,7 @@ impl Composed {
         self.vectors().next().is_some()
     }
     /// These parts, as a quantity has them one after the other.
-    fn in_a_row<'a>(parts: impl Iterator<Item = &'a Part>) -> Vec<schema::Part> {
+    fn in_a_row<'a>(parts: impl Iterator<Item = &'a Part>) -> Vec<schema::Component> {
         let mut first = 0;
         let each = parts.map(|Part { name, space, .. }| {
             let measure = match space {
@@ -261,7 +261,7 @@ impl Composed {
             let columns = space.coordinates(name).len();
             first += columns;
             let what = space.describe();
-            schema::Part { what, ..part(name, first - columns, columns, measure) }
+            schema::Component { what, ..part(name, first - columns, columns, measure) }
         });
         each.collect()
     }
