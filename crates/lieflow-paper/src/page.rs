@@ -142,7 +142,7 @@ fn chart(id: &str, title: &str, runs: &[EnergyRun], rows: &[PaperMethod], measur
     });
     match measured {
         true => {
-            let time = Axis::linear("CPU time").with_unit("s");
+            let time = Axis::linear("CPU time").of_durations();
             energy_chart(id, &format!("{title}, over the CPU time"), time, lines)
         }
         false => energy_chart(id, title, Axis::linear("time t"), lines),
@@ -270,7 +270,7 @@ fn table4(paper: &Paper) -> Vec<Block> {
             cost_chart(
                 &format!("figure5-{}-time", test.key),
                 &format!("{figure}: measured time, {}", test.name),
-                Axis::log("CPU time").with_unit("s"),
+                Axis::log("CPU time").of_durations(),
                 all,
                 |a, i| Some(a.points[i].seconds),
             ),

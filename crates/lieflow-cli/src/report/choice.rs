@@ -103,8 +103,8 @@ impl Cost {
     }
     fn axis(self) -> Axis {
         match self {
-            Cost::Time => Axis::log("CPU time per unit of simulated time").with_unit("s"),
-            Cost::Run => Axis::log("CPU time of the run").with_unit("s"),
+            Cost::Time => Axis::log("CPU time per unit of simulated time").of_durations(),
+            Cost::Run => Axis::log("CPU time of the run").of_durations(),
             Cost::Evaluations => Axis::log("evaluations of f"),
             Cost::Operations => Axis::log("operations"),
         }

@@ -125,7 +125,7 @@
     const digits = kind === "linear" ? Math.min(15, 3 + Math.max(0, Math.ceil(Math.log10(size)))) : 3;
     return (pixel) => {
       const value = unwarp(lo + ((pixel - from) / (to - from)) * (hi - lo));
-      const [factor, name] = unit === "s" ? inTime(value) : [1, unit];
+      const [factor, name] = unit === "durations" ? inTime(value) : [1, unit];
       return `${title}: ${number(value * factor, digits)} ${name}`.trim();
     };
   };

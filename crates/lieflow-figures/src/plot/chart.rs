@@ -372,7 +372,8 @@ fn map_attribute(name: &str, map: &Map, axis: &Axis) -> String {
         Scale::SymLog { linear } => ("symlog", linear),
     };
     let title = escape(&axis.title);
-    let unit = escape(&axis.unit);
+    // The script of a page gives durations their own units.
+    let unit = escape(if axis.is_of_durations() { "durations" } else { &axis.unit });
     format!(
         " data-{name}=\"{kind} {:e} {:e} {} {} {linear:e}\" data-{name}-title=\"{title}\" \
          data-{name}-unit=\"{unit}\"",
@@ -385,7 +386,7 @@ mod tests {
     use super::*;
 
     fn chart(points: Vec<Point>, marker: Marker) -> Chart {
-        let axes = [Axis::log("CPU time").with_unit("s"), Axis::log("global error")];
+        let axes = [Axis::log("CPU time").of_durations(), Axis::log("global error")];
         let series = [Series::line("a <b>", 0, points).with_marker(marker)];
         Chart::new("demo", "Speed & error", axes, series).with_caption("A chart.")
     }

@@ -47,17 +47,29 @@ pub struct Axis {
     pub unit: Cow<'static, str>,
     /// The scale.
     pub scale: Scale,
+    /// True if each label has its own unit of time, as in `20 µs`.
+    durations: bool,
 }
 
 impl Axis {
     /// An axis of this title and scale.
     pub fn new(title: impl Into<String>, scale: Scale) -> Self {
-        Axis { title: title.into(), unit: "".into(), scale }
+        Axis { title: title.into(), unit: "".into(), scale, durations: false }
     }
 
-    /// The axis in this unit. The labels of an axis in `"s"` have units of time, as in `20 µs`.
+    /// The axis in this unit.
     pub fn with_unit(self, unit: impl Into<Cow<'static, str>>) -> Self {
         Axis { unit: unit.into(), ..self }
+    }
+
+    /// The axis of durations in seconds. Each label has its own unit of time, as in `20 µs`.
+    pub fn of_durations(self) -> Self {
+        Axis { unit: "s".into(), durations: true, ..self }
+    }
+
+    /// True for an axis of durations.
+    pub(crate) fn is_of_durations(&self) -> bool {
+        self.durations
     }
 
     /// A linear axis.
@@ -96,7 +108,7 @@ impl Axis {
     /// `value` of this axis for people, with its unit.
     pub(crate) fn value_text(&self, value: f64) -> String {
         match &*self.unit {
-            "s" => seconds(value),
+            _ if self.durations => seconds(value),
             "" => sig(value, 3),
             unit => format!("{}\u{a0}{unit}", sig(value, 3)),
         }
@@ -114,7 +126,7 @@ impl Axis {
         let placed = data.filter(|v| scale.accepts(*v)).map(|v| scale.warp(v));
         let (lo, hi) = padded(placed, padding);
         let offset = if scale == Scale::Linear { offset(lo, hi) } else { 0.0 };
-        let in_seconds = self.unit == "s" && offset == 0.0;
+        let in_seconds = self.durations && offset == 0.0;
         let power = match scale {
             Scale::Linear if !in_seconds => power_of((lo - offset).abs().max((hi - offset).abs())),
             _ => 0,
@@ -416,11 +428,11 @@ mod tests {
 
     #[test]
     fn times_have_units() {
-        let axis = Axis::log("CPU time").with_unit("s");
+        let axis = Axis::log("CPU time").of_durations();
         let m = axis.map([1e-8, 1e-3].into_iter(), (0.0, 500.0), 0.0);
         assert_eq!(labels(&m, 80.0).concat().replace('\u{a0}', ""), "10ns100ns1µs10µs100µs1ms");
         assert_eq!(axis.title_beside(&m), "CPU time");
-        let axis = Axis::linear("CPU time").with_unit("s");
+        let axis = Axis::linear("CPU time").of_durations();
         let m = axis.map([0.0, 1.5e-3].into_iter(), (0.0, 500.0), 0.0);
         assert_eq!(labels(&m, 150.0).concat().replace('\u{a0}', ""), "0s500µs1ms1.5ms");
     }
@@ -477,7 +489,7 @@ mod tests {
 
     #[test]
     fn values_have_units() {
-        assert_eq!(Axis::log("CPU time").with_unit("s").value_text(0.0125), "12.5\u{a0}ms");
+        assert_eq!(Axis::log("CPU time").of_durations().value_text(0.0125), "12.5\u{a0}ms");
         assert_eq!(Axis::linear("angle").with_unit("rad").value_text(0.5), "0.500\u{a0}rad");
         assert_eq!(Axis::log("error").value_text(0.5), "0.500");
     }

@@ -91,7 +91,7 @@ fn charts(study: &Study) -> Block {
     // Linear as long as that shows something of everybody.
     let scale = if largest < 30.0 { Scale::Linear } else { Scale::SymLog { linear: 1.0 } };
     let units = Axis::new("error", scale).with_unit("eps·cond");
-    let time = Axis::log("CPU time of a call").with_unit("s");
+    let time = Axis::log("CPU time of a call").of_durations();
     let timed = match study.topic.is_inverse_differential() {
         true => format!("Time of the map and {name} {over}"),
         false => format!("Time of {name} {over}"),
