@@ -8,6 +8,9 @@ use thiserror::Error as ThisError;
 
 use crate::names;
 
+/// The smallest reciprocal condition number (1-norm) that counts as invertible.
+pub const RCOND_MIN: f64 = 1e-14;
+
 /// An argument that cannot be used. Each message names the argument, its value and what was expected.
 #[derive(Clone, PartialEq, ThisError)]
 #[non_exhaustive]
@@ -274,6 +277,7 @@ pub enum StepError {
 
 impl StepError {
     /// Is this size, rows×columns, the one that `arg` should have?
+    #[cfg(feature = "dense")]
     pub(crate) fn check_shape(
         arg: &'static str,
         (rows, cols): (usize, usize),

@@ -42,6 +42,14 @@
 //! Two layers share every trait: closed forms on so(3) ≅ ℝ³ over nalgebra, and any n over faer. The
 //! same [`Rkmk`](methods::Rkmk) runs on both, and they agree to rounding.
 //!
+//! # Features
+//! - `dense`, on by default: the layer of any n. It has [`dense`], [`MatrixGroup`](groups::MatrixGroup),
+//!   [`Unitary`](groups::Unitary), their maps, actions, problems and methods, [`floquet`], [`check`] and [`catalog`].
+//! - `tally`, off by default: matrices report how many operations they did.
+//!
+//! Without `dense` a build is small: rotations, unit quaternions, SE(3), SE₂(3), translations, and products and powers
+//! of them. `prelude` then has neither `MatrixGroup` nor `MethodsByName`.
+//!
 //! # Conventions
 //! Left actions, right-trivialised differentials (d/dε Ψ(u + εv) = dΨ_u(v)·Ψ(u)), hat and vee as in
 //! equation (2), g maps body to space. They are stated once, in `docs/maths.md`; there is no switch.
@@ -64,15 +72,21 @@
 //! ```
 #![forbid(unsafe_code)]
 #![deny(missing_docs, rustdoc::broken_intra_doc_links)]
+// The tables link to all that there is.
+#![cfg_attr(not(feature = "dense"), allow(rustdoc::broken_intra_doc_links))]
 
 pub mod actions;
+#[cfg(feature = "dense")]
 pub mod catalog;
 pub mod chart;
+#[cfg(feature = "dense")]
 pub mod check;
+#[cfg(feature = "dense")]
 pub mod dense;
 mod elliptic;
 pub mod ensemble;
 pub mod error;
+#[cfg(feature = "dense")]
 pub mod floquet;
 pub mod groups;
 pub mod maps;
@@ -89,6 +103,7 @@ pub mod space;
 pub mod tolerance;
 
 /// The matrices of n rows and n columns that this library takes and gives.
+#[cfg(feature = "dense")]
 pub use faer;
 /// The vectors and matrices of three dimensions that this library takes and gives.
 pub use nalgebra;

@@ -1,8 +1,11 @@
 //! The names that most programs need: `use lieflow::prelude::*;`.
 
 pub use crate::actions::{Coadjoint, LeftTranslation, Linear};
+#[cfg(feature = "dense")]
 pub use crate::catalog::MethodsByName;
-pub use crate::groups::{LieAlgebra, LieGroup, MatrixGroup, Se3, So3};
+#[cfg(feature = "dense")]
+pub use crate::groups::MatrixGroup;
+pub use crate::groups::{LieAlgebra, LieGroup, Se3, So3};
 pub use crate::maps::{Cay, Exp};
 pub use crate::methods::{
     AnyMethod, Rk, Rkmk,

@@ -3,15 +3,20 @@
 //! To add an action: one file with an `impl` of [`Action`], one line here, one in the law tests.
 
 mod coadjoint;
+#[cfg(feature = "dense")]
 mod conjugation;
+#[cfg(feature = "dense")]
 mod lagrangian;
 mod linear;
 mod parts;
 mod translation;
+#[cfg(feature = "dense")]
 mod unitary;
 
 pub use coadjoint::Coadjoint;
+#[cfg(feature = "dense")]
 pub use conjugation::Conjugation;
+#[cfg(feature = "dense")]
 pub use lagrangian::Lagrangian;
 pub use linear::Linear;
 pub use parts::{Each, Pair};

@@ -9,9 +9,6 @@ use super::ops::SMALL;
 use super::product::load;
 use crate::scalar::{Ops, tally};
 
-/// The smallest reciprocal condition number (1-norm) that counts as invertible.
-pub const RCOND_MIN: f64 = 1e-14;
-
 /// An LU factorisation that can be repeated in place.
 pub(crate) struct Lu {
     /// Write the matrix here, then call [`factor`](Self::factor).

@@ -14,6 +14,7 @@ mod product;
 mod schur;
 mod symmetric;
 
+pub use crate::error::RCOND_MIN;
 pub(crate) use ad::{AdForm, AdKind, AdSchur, Direction};
 pub(crate) use eigen::SkewEigen;
 pub(crate) use expm::Expm;
@@ -27,7 +28,6 @@ pub use linear_algebra::{
     singular_values, squared_norm, symmetric_eigen, symmetric_eigenvalues,
 };
 pub(crate) use lu::Lu;
-pub use lu::RCOND_MIN;
 pub(crate) use ops::{axpy, is_finite, norm_frobenius, norm1, scaled_sum, wide};
 pub(crate) use product::{
     antisymmetrise, congruence, lower_product, mirror, mul, mul_add, orthogonalise, skew_commutator,

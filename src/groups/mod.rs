@@ -8,6 +8,7 @@
 //! the law tests. A matrix group needs no file: it is a constructor of [`MatrixGroup`].
 
 mod adjoint;
+#[cfg(feature = "dense")]
 mod matrix;
 mod power;
 mod product;
@@ -16,13 +17,16 @@ mod se23;
 mod se3;
 mod so3;
 mod translations;
+#[cfg(feature = "dense")]
 mod unitary;
 
-pub use crate::dense::RCOND_MIN;
+pub use crate::error::RCOND_MIN;
 pub use crate::so3::{hat, vee};
 pub use adjoint::Adjoint;
+#[cfg(feature = "dense")]
 pub(crate) use matrix::finite as check_entries;
-pub use matrix::{AlgebraMatrix, Form, GroupMatrix, MEMBERSHIP, MatrixGroup};
+#[cfg(feature = "dense")]
+pub use matrix::{AlgebraMatrix, Form, GroupMatrix, MatrixGroup};
 pub use power::Power;
 pub use product::Product;
 pub(crate) use product::worse;
@@ -33,7 +37,9 @@ pub use se23::Se23;
 pub(crate) use se23::finite_three;
 pub use so3::So3;
 pub use translations::Translations;
+#[cfg(feature = "dense")]
 pub use unitary::{ComplexMatrix, Unitary};
+#[cfg(feature = "dense")]
 pub(crate) use unitary::{mul_adjoint_skew, mul_complex};
 
 use rand::Rng;
@@ -183,6 +189,9 @@ pub trait LieGroup: LieAlgebra {
         None
     }
 }
+
+/// The default tolerance of membership: the relative residual that checked constructors allow.
+pub const MEMBERSHIP: f64 = 1e-12;
 
 /// The smallest residual at which Newton–Schulz might not converge. Then g is not corrected.
 pub const RESIDUAL_MAX: f64 = 0.1;

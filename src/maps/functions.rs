@@ -4,10 +4,7 @@ use nalgebra::{Matrix3, Matrix6, SMatrix, UnitQuaternion, Vector3};
 
 use super::{Cay, CoordinateMap, Exp};
 use crate::error::Error;
-use crate::groups::{
-    AlgebraMatrix, ComplexMatrix, GroupMatrix, LieAlgebra, LieGroup, MatrixGroup, Se3, Se23, So3,
-    UnitQuaternions, Unitary,
-};
+use crate::groups::{LieAlgebra, LieGroup, Se3, Se23, So3, UnitQuaternions};
 use crate::so3;
 
 /// exp(u). Fresh storage.
@@ -86,7 +83,8 @@ pub trait LogGroup: LieGroup {
 /// log(g): the u with exp(u) = g, the shortest one on rotations. Fresh storage.
 ///
 /// # Errors
-/// g is not in the group, or has no logarithm in the algebra: as [`so3::log`] and [`MatrixGroup::log`].
+/// g is not in the group, or has no logarithm in the algebra: as [`so3::log`] and
+/// [`MatrixGroup::log`](crate::groups::MatrixGroup::log).
 pub fn log<G: LogGroup>(group: &G, g: &G::Elem) -> Result<G::Alg, Error> {
     group.log_of(g)
 }
@@ -108,11 +106,6 @@ impl LogGroup for Se3<f64> {
 }
 impl LogGroup for Se23<f64> {
     fn log_of(&self, g: &Self::Elem) -> Result<Self::Alg, Error> {
-        self.log(g)
-    }
-}
-impl LogGroup for MatrixGroup {
-    fn log_of(&self, g: &GroupMatrix) -> Result<AlgebraMatrix, Error> {
         self.log(g)
     }
 }
@@ -231,17 +224,5 @@ impl DexpGroup for Se3<f64> {
 impl DexpGroup for Se23<f64> {
     fn dexp_of(&self, u: &Self::Alg, v: &Self::Alg) -> Result<Self::Alg, Error> {
         Ok(super::exp::se3::dexp_two(u, v)?)
-    }
-}
-impl DexpGroup for MatrixGroup {
-    fn dexp_of(&self, u: &AlgebraMatrix, v: &AlgebraMatrix) -> Result<AlgebraMatrix, Error> {
-        super::exp::dexp(self, u, v)
-    }
-}
-impl DexpGroup for Unitary {
-    fn dexp_of(&self, u: &ComplexMatrix, v: &ComplexMatrix) -> Result<ComplexMatrix, Error> {
-        let mut w = v.clone();
-        CoordinateMap::<Unitary>::at(&Exp, self)?.dexp(self, u, &mut w)?;
-        Ok(w)
     }
 }

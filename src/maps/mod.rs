@@ -29,30 +29,32 @@ mod cay;
 mod ccsk;
 mod exp;
 mod functions;
+#[cfg(feature = "dense")]
 mod log;
 mod named;
 mod pade22;
 mod parts;
 mod quaternions;
+#[cfg(feature = "dense")]
 mod quotient;
 mod se3;
 mod translations;
+#[cfg(feature = "dense")]
 mod unitary;
 
 pub use alternating::{Alternating, CCSK};
 pub use cay::{Cay, cay_inv, dcay};
 pub use ccsk::{CCSK123, CCSK321, Ccsk};
-pub use exp::{
-    BakerSum, Dexpinv, Exp, TruncatedExp, dexpinv_truncated, dexpinv_with_remainder,
-    distance_to_singular,
-};
+#[cfg(feature = "dense")]
+pub use exp::{BakerSum, Dexpinv, dexpinv_truncated, dexpinv_with_remainder, distance_to_singular};
+pub use exp::{Exp, TruncatedExp};
 pub use functions::{
     cay, dcayinv, dexp, dexpinv, exp, left_jacobian_inv_se3, left_jacobian_inv_se23,
     left_jacobian_se3, left_jacobian_se23, log,
 };
-pub(crate) use named::FromName;
-pub(crate) use named::Serves;
 pub use named::{AllMaps, ExpOrCay, Groups, MAPS, MapInfo, MapsByName, NamedMap};
+#[cfg(feature = "dense")]
+pub(crate) use named::{FromName, Serves};
 pub use pade22::Pade22;
 pub use parts::{Each, Pair};
 

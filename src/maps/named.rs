@@ -12,7 +12,7 @@ use super::{
     Alternating, CCSK, CCSK123, CCSK321, Cay, Ccsk, CoordinateMap, Exp, Pade22, TruncatedExp,
 };
 use crate::error::{Error, StepError};
-use crate::groups::{LieGroup, UnitQuaternions, Unitary};
+use crate::groups::{LieGroup, UnitQuaternions};
 use crate::names::same;
 
 /// A coordinate map that scene files can name.
@@ -304,9 +304,6 @@ pub trait MapsByName: LieGroup + Sized {
 
 impl<G: AllMaps> MapsByName for G {
     type Map = NamedMap;
-}
-impl MapsByName for Unitary {
-    type Map = ExpOrCay;
 }
 impl MapsByName for UnitQuaternions {
     type Map = ExpOrCay;

@@ -14,6 +14,8 @@ use faer::perm::PermRef;
 use faer::{Mat, Par, c64};
 
 use super::exp::{Dexpinv, EXACT_FROM, Powers, phi, phi1};
+use super::functions::DexpGroup;
+use super::named::{ExpOrCay, MapsByName};
 use super::{Cay, CoordinateMap, Exp};
 use crate::dense::{ComplexExponential, SkewEigen, Structure};
 use crate::error::{Error, StepError};
@@ -296,4 +298,16 @@ fn split(x: &Mat<c64>, out: &mut ComplexMatrix) {
 
 fn finite(x: &ComplexMatrix, what: &'static str) -> Result<(), StepError> {
     if LinearSpace::is_finite(x) { Ok(()) } else { Err(StepError::NotFinite { what }) }
+}
+
+impl DexpGroup for Unitary {
+    fn dexp_of(&self, u: &ComplexMatrix, v: &ComplexMatrix) -> Result<ComplexMatrix, Error> {
+        let mut w = v.clone();
+        CoordinateMap::<Unitary>::at(&Exp, self)?.dexp(self, u, &mut w)?;
+        Ok(w)
+    }
+}
+
+impl MapsByName for Unitary {
+    type Map = ExpOrCay;
 }

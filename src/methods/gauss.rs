@@ -48,6 +48,7 @@ impl<const S: usize> ImplicitTableau<S> {
 
     /// This tableau with room for N stages, at least as many as it has, so that methods chosen by name share one type.
     /// The added stages have the weight 0. RKMK methods never evaluate them.
+    #[cfg(feature = "dense")]
     pub(crate) const fn resized<const N: usize>(&self) -> ImplicitTableau<N> {
         let mut to = ImplicitTableau {
             name: self.name,

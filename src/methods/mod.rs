@@ -15,9 +15,11 @@ mod energy_casimir;
 mod exact;
 mod extension;
 mod facts;
+#[cfg(feature = "dense")]
 mod fluid_midpoint;
 mod gauss;
 mod implicit_rkmk;
+#[cfg(feature = "dense")]
 mod isospectral;
 mod lie_series;
 pub mod low_storage;
@@ -48,11 +50,15 @@ pub use embedded::Embedded;
 pub use energy_casimir::EnergyCasimir;
 pub use exact::ExactMotion;
 pub use facts::{Facts, StepCost};
+#[cfg(feature = "dense")]
 pub use fluid_midpoint::{FluidMidpoint, MidpointRule};
 pub use gauss::{GAUSS2, GAUSS4, GAUSS6, Gauss, ImplicitTableau};
 pub use implicit_rkmk::{OddMap, RkmkGauss, RkmkGaussSymmetric};
+#[cfg(feature = "dense")]
 pub(crate) use isospectral::ConjugationAction;
+#[cfg(feature = "dense")]
 pub(crate) use isospectral::ConjugationGroup;
+#[cfg(feature = "dense")]
 pub use isospectral::IsospectralGauss;
 pub use lie_series::{LieSeries, SeriesGroup};
 pub use low_storage::LowStorage;

@@ -24,6 +24,7 @@
 //! To add a problem: one file with an `impl` of [`Problem`], one line here.
 
 mod averaged;
+#[cfg(feature = "dense")]
 pub mod beam;
 mod capability;
 mod coupled_spins;
@@ -31,21 +32,31 @@ mod dyn_flow;
 mod euler;
 mod fallible;
 mod flow;
+#[cfg(feature = "dense")]
 mod grassmann;
 mod heavy_top;
 pub mod inertia;
 mod invariants;
+#[cfg(feature = "dense")]
 mod isospectral;
+#[cfg(feature = "dense")]
 mod lorentz;
+#[cfg(feature = "dense")]
 mod lyapunov;
+#[cfg(feature = "dense")]
+mod momentum;
+#[cfg(feature = "dense")]
 mod oja;
+#[cfg(feature = "dense")]
 mod periodic;
 mod quaternion_body;
 mod rigid_body;
+#[cfg(feature = "dense")]
 mod schrodinger;
 mod series;
 mod spheres;
 mod torque;
+#[cfg(feature = "dense")]
 mod zeitlin;
 
 pub use crate::space::LinearSpace;
@@ -58,27 +69,38 @@ pub use euler::{
 };
 pub use fallible::{Fallible, InAlgebra, TryFlow, TryProblem};
 pub use flow::{BodyValue, Energy, Field, Flow, FlowFacts, InBody, LinearFlow, TimeAlone};
+#[cfg(feature = "dense")]
 pub use grassmann::SubspaceFlow;
 pub use heavy_top::HeavyTop;
 pub use invariants::{Invariant, Invariants, Law, Origin, Scale, explained_by_rounding};
+#[cfg(feature = "dense")]
 pub use isospectral::{IsospectralFlow, toda_lattice};
+#[cfg(feature = "dense")]
 pub use lorentz::ChargedParticle;
+#[cfg(feature = "dense")]
 pub use lyapunov::Lyapunov;
+#[cfg(feature = "dense")]
+pub(crate) use momentum::MomentumSeries;
+#[cfg(feature = "dense")]
 pub use oja::Oja;
+#[cfg(feature = "dense")]
 pub use periodic::{LinearHamiltonian, hill, mathieu};
 pub use quaternion_body::RigidBodyQuaternion;
 pub use rigid_body::{
-    BodyFrame, BodyState, Exact, Frame, FreeBody, RigidBody, RigidBodyAttitude, RigidBodyN,
-    RigidBodyNAttitude, RigidBodyState, manakov_integrals,
+    BodyFrame, BodyState, Exact, Frame, FreeBody, RigidBody, RigidBodyAttitude, RigidBodyState,
 };
+#[cfg(feature = "dense")]
+pub use rigid_body::{RigidBodyN, RigidBodyNAttitude, manakov_integrals};
+#[cfg(feature = "dense")]
 pub use schrodinger::{
     Schrodinger, VonNeumann, amplitudes, density_matrix, populations, populations_of, schrodinger,
     von_neumann,
 };
+pub(crate) use series::Se3Series;
 pub use series::TaylorField;
-pub(crate) use series::{MomentumSeries, Se3Series};
 pub use spheres::{SphericalPendulum, SpinChain};
 pub use torque::{BodyMotion, BodyTorque, SpaceTorque, Torque, TorqueBody};
+#[cfg(feature = "dense")]
 pub use zeitlin::{Sphere, Surface, Torus, Vortex, Zeitlin};
 
 use crate::actions::Action;

@@ -1,11 +1,8 @@
 //! Fields with Taylor coefficients by recurrence, such as polynomial fields. Lie series methods need them.
 
-use faer::Mat;
-
 use super::{AlgOf, PointOf, Problem, ScalarOf};
-use crate::dense::{antisymmetrise, mul_add};
-use crate::groups::{Adjoint, AlgebraMatrix, LieAlgebra, Se3};
-use crate::scalar::{Ops, Real, tally};
+use crate::groups::{Adjoint, LieAlgebra, Se3};
+use crate::scalar::Real;
 
 /// A field with Taylor coefficients along the solution through a point.
 ///
@@ -30,56 +27,6 @@ pub trait TaylorField: Problem {
         f: &mut [AlgOf<Self>],
         series: &mut Self::Series,
     );
-}
-
-/// The coefficients of a momentum in 𝔤*.
-#[derive(Clone, Debug)]
-pub struct MomentumSeries {
-    m: Vec<Mat<f64>>,
-    /// True if all u ∈ 𝔤 are skew, and so the momenta.
-    skew: bool,
-}
-
-impl MomentumSeries {
-    /// Storage for coefficients up to θ^order of momenta of size n×n.
-    pub(crate) fn new(n: usize, skew: bool, order: usize) -> Self {
-        MomentumSeries { m: vec![Mat::zeros(n, n); order + 1], skew }
-    }
-
-    /// m₀. Write it before the first [`next`](Self::next).
-    pub(crate) fn start(&mut self) -> &mut Mat<f64> {
-        &mut self.m[0]
-    }
-
-    /// m_k of ṁ = −ad*_f m, by k m_k = h Σ_{i+j=k−1} (m_i f_jᵀ − f_jᵀ m_i): 2k products, and k where
-    /// 𝔤 is skew.
-    #[inline(never)]
-    #[expect(clippy::disallowed_methods, reason = "not inlined, so each reference has one role")]
-    pub(crate) fn next(&mut self, h: f64, k: usize, f: &[AlgebraMatrix]) -> &Mat<f64> {
-        if k == 0 {
-            if self.skew {
-                // The symmetric part of a momentum vanishes on 𝔤.
-                antisymmetrise(&mut self.m[0]);
-                tally(|| Ops::muls(self.m[0].nrows() * self.m[0].ncols()));
-                self.m[0] *= faer::Scale(0.5);
-            }
-            return &self.m[0];
-        }
-        let (known, rest) = self.m.split_at_mut(k);
-        let next = &mut rest[0];
-        next.fill(0.0);
-        let scale = h / k as f64;
-        for (m, f) in known.iter().zip(f[..k].iter().rev()) {
-            mul_add(next, scale, m.as_ref(), f.transpose());
-            if !self.skew {
-                mul_add(next, -scale, f.transpose(), m.as_ref());
-            }
-        }
-        if self.skew {
-            antisymmetrise(next);
-        }
-        next
-    }
 }
 
 /// The coefficients of a momentum in se(3)*.

@@ -5,8 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::cross;
 use super::log::quaternion_of;
 use super::{dot3, finite, finite_matrix, polar, rodrigues};
-use crate::dense::RCOND_MIN;
-use crate::error::{Error, StepError};
+use crate::error::{Error, RCOND_MIN, StepError};
 use crate::scalar::Real;
 
 /// a and a/2 with a = 1/(1 + α²/4): cay(u) = 𝟙 + a û + (a/2) û². `None` where α² leaves the range.

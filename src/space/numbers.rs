@@ -1,6 +1,5 @@
 //! Points as lists of numbers.
 
-use faer::Mat;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 use crate::scalar::{Counted, DoubleDouble, Real};
@@ -53,14 +52,6 @@ impl<S: Real + Numbers> Numbers for Matrix3<S> {
 impl Numbers for UnitQuaternion<f64> {
     fn each_number(&mut self, each: &mut dyn FnMut(&mut f64)) {
         self.as_mut_unchecked().coords.iter_mut().for_each(each);
-    }
-}
-
-impl Numbers for Mat<f64> {
-    fn each_number(&mut self, each: &mut dyn FnMut(&mut f64)) {
-        for j in 0..self.ncols() {
-            self.col_as_slice_mut(j).iter_mut().for_each(&mut *each);
-        }
     }
 }
 

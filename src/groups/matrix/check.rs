@@ -5,10 +5,7 @@ use faer::{Mat, MatRef};
 use super::{AlgebraMatrix, Form, GroupMatrix, MatrixGroup};
 use crate::dense::{Lu, RCOND_MIN, is_finite, norm_frobenius};
 use crate::error::{Error, StepError};
-use crate::groups::LieAlgebra;
-
-/// The default tolerance of membership: the relative residual that checked constructors allow.
-pub const MEMBERSHIP: f64 = 1e-12;
+use crate::groups::{LieAlgebra, MEMBERSHIP};
 
 pub(super) fn square(arg: &'static str, x: MatRef<'_, f64>) -> Result<(), Error> {
     match x.nrows() == x.ncols() {

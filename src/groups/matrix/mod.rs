@@ -1,6 +1,7 @@
 //! GL(n), SO(n), Sp(2m) and G_M for any n and any invertible real M, over faer.
 
 mod ad;
+mod adjoint;
 mod check;
 mod correct;
 mod element;
@@ -10,7 +11,6 @@ use std::sync::OnceLock;
 
 use faer::{Mat, MatRef};
 
-pub use check::MEMBERSHIP;
 pub(crate) use check::finite;
 use correct::Cosquare;
 pub use element::{AlgebraMatrix, GroupMatrix};

@@ -2,9 +2,11 @@
 
 use faer::Mat;
 
-use super::GIMBAL;
 use crate::error::StepError;
 use crate::scalar::{Ops, tally};
+
+const GIMBAL: StepError =
+    StepError::OutsideChart { map: "ccsk", what: "the cosine of a middle angle is nearly zero" };
 
 /// Sines and cosines of the angles, and workspace.
 #[derive(Debug)]

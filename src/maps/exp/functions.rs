@@ -5,6 +5,7 @@ use core::f64::consts::TAU;
 use super::general::{ExpAt, ad_bound};
 use crate::error::{Error, StepError};
 use crate::groups::{AlgebraMatrix, LieAlgebra, MatrixGroup};
+use crate::maps::functions::DexpGroup;
 
 fn check(group: &MatrixGroup, arg: &'static str, x: &AlgebraMatrix) -> Result<(), Error> {
     let (n, rows, cols) = (group.n(), x.nrows(), x.ncols());
@@ -122,4 +123,10 @@ pub(in crate::maps) fn dexp(
 pub fn distance_to_singular(group: &MatrixGroup, u: &AlgebraMatrix) -> Result<f64, Error> {
     check(group, "u", u)?;
     Ok(ExpAt::new(group, false).distance_to_singular(group, u)?)
+}
+
+impl DexpGroup for MatrixGroup {
+    fn dexp_of(&self, u: &AlgebraMatrix, v: &AlgebraMatrix) -> Result<AlgebraMatrix, Error> {
+        dexp(self, u, v)
+    }
 }

@@ -1,6 +1,6 @@
 //! exp on n×n matrices.
 
-use super::series::{
+use super::powers::{
     DIVERGES, Dexpinv, EXACT_FROM, Powers, SINGULAR, SINGULAR_AT, finite, phi, phi1,
 };
 use super::{Exp, TruncatedExp};

@@ -5,16 +5,22 @@
 //! | any n | Padé, scaling and squaring | Σ B_k/k! ad_u^k (15); beyond its radius the eigen form on so(n) and u(n), halvings of u in Schur coordinates elsewhere |
 //! | so(3) | 𝟙 + (sin α/α) u + ((1−cos α)/α²) u² (14) | 𝟙 − u/2 + ((1−(α/2)cot(α/2))/α²) u² (16) |
 
+#[cfg(feature = "dense")]
 mod functions;
+#[cfg(feature = "dense")]
 mod general;
+#[cfg(feature = "dense")]
+mod powers;
 pub(super) mod se3;
 mod series;
 mod so3;
 
-pub(super) use functions::dexp;
+#[cfg(feature = "dense")]
 pub use functions::{BakerSum, dexpinv_truncated, dexpinv_with_remainder, distance_to_singular};
-pub use series::Dexpinv;
-pub(super) use series::{EXACT_FROM, Powers, phi, phi1};
+#[cfg(feature = "dense")]
+pub use powers::Dexpinv;
+#[cfg(feature = "dense")]
+pub(super) use powers::{EXACT_FROM, Powers, phi, phi1};
 
 /// The exponential map with dexp⁻¹ to rounding.
 ///

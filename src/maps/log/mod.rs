@@ -19,6 +19,7 @@ mod triangular;
 use faer::{Mat, c64};
 use triangular::Negative;
 
+use super::functions::LogGroup;
 use crate::dense::{Lu, is_finite, norm1, scaled_sum};
 use crate::error::{Error, NoLogarithm, StepError};
 use crate::groups::{AlgebraMatrix, Form, GroupMatrix, LieAlgebra, MatrixGroup};
@@ -112,4 +113,10 @@ fn near_identity(x: &Mat<f64>) -> Mat<f64> {
         crate::dense::axpy(w, &y, &mut sum);
     }
     sum
+}
+
+impl LogGroup for MatrixGroup {
+    fn log_of(&self, g: &GroupMatrix) -> Result<AlgebraMatrix, Error> {
+        self.log(g)
+    }
 }

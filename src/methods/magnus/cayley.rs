@@ -7,9 +7,8 @@
 //! Found. Comput. Math. 1 (2001).
 
 use super::{GAUSS_2, GAUSS_3, MagnusWork, ROOT_15, magnus_method, sum};
-use crate::dense::{antisymmetrise, mul, mul_add};
 use crate::error::{Error, StepError};
-use crate::groups::{AlgebraMatrix, Form, LieAlgebra, MatrixGroup, Power, Product, Se3, Se23, So3};
+use crate::groups::{LieAlgebra, Power, Product, Se3, Se23, So3};
 use crate::maps::{Cay, CoordinateMap};
 use crate::methods::Step;
 use crate::problems::{PointOf, ScalarOf};
@@ -86,28 +85,6 @@ impl<S: Real> TripleProduct for Se23<S> {
             Vector3::from_fn(|i, _| first[i] + second[i])
         };
         out.1 = (moved(&u.1.0, &w.1.0), moved(&u.1.1, &w.1.1));
-    }
-}
-
-/// Two products on so(n), where (uvw)ᵀ = −wvu; four elsewhere.
-impl TripleProduct for MatrixGroup {
-    fn triple(
-        &self,
-        u: &AlgebraMatrix,
-        v: &AlgebraMatrix,
-        w: &AlgebraMatrix,
-        work: &mut AlgebraMatrix,
-        out: &mut AlgebraMatrix,
-    ) {
-        mul(work, u.as_ref(), v.as_ref());
-        mul(out, work.as_ref(), w.as_ref());
-        match self.form() {
-            Form::Identity => antisymmetrise(out),
-            _ => {
-                mul(work, w.as_ref(), v.as_ref());
-                mul_add(out, 1.0, work.as_ref(), u.as_ref());
-            }
-        }
     }
 }
 

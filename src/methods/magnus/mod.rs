@@ -27,6 +27,8 @@
 
 mod cayley;
 mod expansion;
+#[cfg(feature = "dense")]
+mod general;
 mod products;
 
 pub use cayley::{CayleyMagnus4, CayleyMagnus6, TripleProduct};

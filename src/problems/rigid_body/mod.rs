@@ -3,8 +3,11 @@
 mod closed;
 mod exact;
 mod free;
+#[cfg(feature = "dense")]
 mod general;
+#[cfg(feature = "dense")]
 mod invariants;
+#[cfg(feature = "dense")]
 mod series;
 mod state;
 mod theta;
@@ -13,7 +16,9 @@ pub(super) use closed::apply_transpose;
 pub use closed::{RigidBody, RigidBodyAttitude};
 pub use exact::Exact;
 pub use free::{Frame, FreeBody};
+#[cfg(feature = "dense")]
 pub use general::{RigidBodyN, RigidBodyNAttitude};
+#[cfg(feature = "dense")]
 pub use invariants::manakov_integrals;
 pub use state::{BodyFrame, BodyState, RigidBodyState};
 

@@ -10,16 +10,14 @@
 //! | se(3) | (μ, π), ⟨m, v⟩ = μ·ω + π·v | (Rμ + x × Rπ, Rπ) | (ω × μ + v × π, ω × π) |
 //! | any n | n×n matrices, ⟨m, v⟩ = tr(mᵀv) | g⁻ᵀ m gᵀ: g m gᵀ on SO(n), MgM⁻¹ m gᵀ on G_M | m vᵀ − vᵀ m |
 
-use faer::Mat;
+#[cfg(feature = "dense")]
+mod general;
+
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 use super::Action;
-use crate::dense::{Lu, congruence, mul, mul_add, skew_commutator};
 use crate::error::{Error, StepError};
-use crate::groups::{
-    AlgebraMatrix, Form, GroupMatrix, LieAlgebra, LieGroup, MatrixGroup, RESIDUAL_MAX, Se3, Se23,
-    So3, UnitQuaternions, worse,
-};
+use crate::groups::{LieAlgebra, LieGroup, RESIDUAL_MAX, Se3, Se23, So3, UnitQuaternions, worse};
 use crate::maps::CoordinateMap;
 use crate::maps::PsiOf;
 use crate::scalar::Real;
@@ -202,86 +200,5 @@ impl<S: Real> Action<Se23<S>> for Coadjoint {
     ) {
         let arms = add3(&cross(v, pi), &cross(p, lambda));
         *dm = (add3(&cross(omega, mu), &arms), (cross(omega, pi), cross(omega, lambda)));
-    }
-}
-
-/// Scratch of the coadjoint action on n×n matrices.
-#[derive(Debug)]
-pub struct CoadjointWork {
-    left: Mat<f64>,
-    product: Mat<f64>,
-    lu: Option<Lu>,
-}
-
-impl Action<MatrixGroup> for Coadjoint {
-    type Point = Mat<f64>;
-    type Work = CoadjointWork;
-
-    fn work(&self, group: &MatrixGroup) -> CoadjointWork {
-        let n = group.n();
-        let lu = matches!(group.form(), Form::Free).then(|| Lu::new(n));
-        CoadjointWork { left: Mat::zeros(n, n), product: Mat::zeros(n, n), lu }
-    }
-    fn check(&self, group: &MatrixGroup, p: &Mat<f64>) -> Result<(), Error> {
-        group.rows_fit("y", p, group.n())
-    }
-    fn assign(&self, _: &MatrixGroup, p: &Mat<f64>, q: &mut Mat<f64>) {
-        q.copy_from(p);
-    }
-    fn act(
-        &self,
-        group: &MatrixGroup,
-        g: &GroupMatrix,
-        p: &Mat<f64>,
-        q: &mut Mat<f64>,
-        work: &mut CoadjointWork,
-    ) {
-        let CoadjointWork { left, product, lu } = work;
-        match (group.form(), lu) {
-            (Form::Free, Some(lu)) => {
-                lu.a.copy_from(g.transpose());
-                lu.factor();
-                product.copy_from(p);
-                lu.solve(product.as_mut());
-            }
-            (Form::Bilinear { m, inverse }, _) => {
-                mul(product, m.as_ref(), g.as_ref());
-                mul(left, product.as_ref(), inverse.as_ref());
-                mul(product, left.as_ref(), p.as_ref());
-            }
-            (Form::Symplectic, _) => {
-                conjugate_by_j(g, left);
-                mul(product, left.as_ref(), p.as_ref());
-            }
-            _ => return congruence(q, g, p, product),
-        }
-        mul(q, product.as_ref(), g.transpose());
-    }
-    fn generate(
-        &self,
-        group: &MatrixGroup,
-        v: &AlgebraMatrix,
-        m: &Mat<f64>,
-        dm: &mut Mat<f64>,
-        _: &mut CoadjointWork,
-    ) {
-        if matches!(group.form(), Form::Identity) {
-            return skew_commutator(dm, v, m);
-        }
-        mul(dm, m.as_ref(), v.transpose());
-        mul_add(dm, -1.0, v.transpose(), m.as_ref());
-    }
-}
-
-/// out ← J g J⁻¹: blocks \[a b; c d\] become \[d −c; −b a\].
-fn conjugate_by_j(g: &Mat<f64>, out: &mut Mat<f64>) {
-    let m = g.nrows() / 2;
-    for j in 0..m {
-        for i in 0..m {
-            out[(i, j)] = g[(i + m, j + m)];
-            out[(i, j + m)] = -g[(i + m, j)];
-            out[(i + m, j)] = -g[(i, j + m)];
-            out[(i + m, j + m)] = g[(i, j)];
-        }
     }
 }

@@ -6,15 +6,15 @@
 //! With g in the state: (ġ, ṁ) = (g ∇H(m), ad*_{∇H(m)} m) on G × 𝔤*, Λ(a, (g, m)) = (g a⁻¹, Ad*_{a⁻¹} m), and the same
 //! f. Every method that acts by the group conserves Ad*_{g⁻¹} m, the momentum in space.
 
-use faer::Mat;
+#[cfg(feature = "dense")]
+mod general;
 
-use super::{
-    AlgOf, Invariant, Invariants, LiePoisson, LinearSpace, MomentumSeries, PointOf, Problem,
-    Se3Series, TaylorField,
-};
 use crate::actions::{Action, Coadjoint};
 use crate::error::Error;
-use crate::groups::{Adjoint, AlgebraMatrix, LieAlgebra, MatrixGroup, Se3, worse};
+use crate::groups::{Adjoint, LieAlgebra, Se3, worse};
+use crate::problems::{
+    AlgOf, Invariant, Invariants, LiePoisson, LinearSpace, PointOf, Problem, Se3Series, TaylorField,
+};
 use crate::scalar::Real;
 
 /// A Hamiltonian H : 𝔤* → ℝ. A new Euler equation needs only an implementation of this trait.
@@ -40,7 +40,7 @@ pub trait Hamiltonian<G: Adjoint> {
 /// A Hamiltonian with a discrete gradient, for methods that conserve the energy.
 ///
 /// For H of degree at most 2 the default is one: `impl DiscreteGradient<G> for MyHamiltonian {}`. For any other H use
-/// [`MeanGradient`](super::MeanGradient).
+/// [`MeanGradient`](crate::problems::MeanGradient).
 pub trait DiscreteGradient<G: Adjoint>: Hamiltonian<G> {
     /// ξ ← ∇̄H(a, b), symmetric in a and b: ⟨b − a, ξ⟩ = H(b) − H(a), ∇̄H(m, m) = ∇H(m). The default is
     /// (∇H(a) + ∇H(b))/2, which has these properties only if ∇H is affine.
@@ -220,29 +220,6 @@ where
     }
 }
 
-/// The Taylor coefficients of −J⁻¹m, on the algebra of any matrix group.
-impl<F: Fn(&Mat<f64>, &mut AlgebraMatrix)> TaylorField for Euler<MatrixGroup, Kinetic<F>> {
-    type Series = MomentumSeries;
-
-    fn series(&self, order: usize) -> MomentumSeries {
-        MomentumSeries::new(self.group.n(), self.group.is_skew(), order)
-    }
-    fn coefficient(
-        &self,
-        [_, h]: [f64; 2],
-        m: &Mat<f64>,
-        k: usize,
-        f: &mut [AlgebraMatrix],
-        series: &mut MomentumSeries,
-    ) {
-        if k == 0 {
-            series.start().copy_from(m);
-        }
-        (self.hamiltonian.0)(series.next(h, k, f), &mut f[k]);
-        *f[k] *= faer::Scale(-1.0);
-    }
-}
-
 /// The Taylor coefficients of −∇H(m) on se(3).
 impl<S: Real, H: Quadratic<Se3<S>>> TaylorField for Euler<Se3<S>, H> {
     type Series = Se3Series<S>;
@@ -388,25 +365,6 @@ where
     }
     fn sizes(&self, y: &PointOf<Self>) -> Vec<G::Scalar> {
         self.system.sizes(&y.1)
-    }
-}
-
-/// f is that of the system without g.
-impl<F: Fn(&Mat<f64>, &mut AlgebraMatrix)> TaylorField for EulerGroup<MatrixGroup, Kinetic<F>> {
-    type Series = MomentumSeries;
-
-    fn series(&self, order: usize) -> MomentumSeries {
-        self.system.series(order)
-    }
-    fn coefficient(
-        &self,
-        time: [f64; 2],
-        (_, m): &PointOf<Self>,
-        k: usize,
-        f: &mut [AlgebraMatrix],
-        series: &mut MomentumSeries,
-    ) {
-        self.system.coefficient(time, m, k, f, series);
     }
 }
 

@@ -8,22 +8,20 @@
 //! terms left out. A sum that is far from the group (0.1 in gᵀMg − M) is refused with [`StepError::OutsideChart`].
 //! Cost: N(N−1)/2 products for Ψ, as many for the coefficients of a quadratic field, one action, and one or two steps
 //! of Newton–Schulz. A point within a step costs only the action and Newton–Schulz. The last two terms are the error
-//! estimate of an adaptive run. For the free rigid body in ℝ³ [`Taylor`](super::Taylor) is the same method on
+//! estimate of an adaptive run. For the free rigid body in ℝ³ [`Taylor`](crate::methods::Taylor) is the same method on
 //! quaternions. Source: W. Gröbner, Die Lie-Reihen und ihre Anwendungen (1960); À. Jorba & M. Zou, Experiment.
 //! Math. 14 (2005), for the step.
 
-use faer::Mat;
+#[cfg(feature = "dense")]
+mod general;
+
 use nalgebra::{Matrix3, Vector3};
 
-use super::embedded::ratio_of_relative;
-use super::{Embedded, Facts, MapCounts, Method, Metric, Step, Within};
 use crate::actions::Action;
-use crate::dense::{axpy, mul_add};
 use crate::error::{Error, StepError};
-use crate::groups::{
-    Adjoint, AlgebraMatrix, GroupMatrix, LieAlgebra, LieGroup, MatrixGroup, RESIDUAL_MAX, Se3, So3,
-    hat,
-};
+use crate::groups::{Adjoint, LieAlgebra, LieGroup, RESIDUAL_MAX, Se3, So3, hat};
+use crate::methods::embedded::ratio_of_relative;
+use crate::methods::{Embedded, Facts, MapCounts, Method, Metric, Step, Within};
 use crate::problems::{AlgOf, ElemOf, PointOf, ScalarOf, TaylorField};
 use crate::scalar::Real;
 use crate::so3::{add3, all_finite, apply3, cross};
@@ -120,37 +118,6 @@ impl<S: Real + Numbers + Into<f64>> SeriesGroup for Se3<S> {
     /// ‖R‖. The terms of x fall with those of R, and their size depends on the unit of length.
     fn size(&self, x: &Self::Elem) -> S {
         if all_finite(&x.1) { Metric::size(&x.0) } else { S::lit(f64::NAN) }
-    }
-}
-
-impl SeriesGroup for MatrixGroup {
-    fn clear(&self, x: &mut GroupMatrix) {
-        x.fill(0.0);
-    }
-    fn scale(&self, a: f64, x: &mut GroupMatrix) {
-        let x: &mut Mat<f64> = x;
-        x.col_iter_mut().for_each(|column| column.iter_mut().for_each(|x| *x *= a));
-    }
-    fn add(&self, x: &GroupMatrix, y: &mut GroupMatrix) {
-        axpy(1.0, x, y);
-    }
-    fn add_algebra(&self, a: f64, u: &AlgebraMatrix, out: &mut GroupMatrix) {
-        axpy(a, u, out);
-    }
-    fn add_product(
-        &self,
-        a: f64,
-        u: &AlgebraMatrix,
-        x: &GroupMatrix,
-        from_right: bool,
-        out: &mut GroupMatrix,
-    ) {
-        let (u, x): (&Mat<f64>, &Mat<f64>) = (u, x);
-        let (left, right) = if from_right { (x, u) } else { (u, x) };
-        mul_add(out, a, left.as_ref(), right.as_ref());
-    }
-    fn size(&self, x: &GroupMatrix) -> f64 {
-        Metric::size(x)
     }
 }
 
