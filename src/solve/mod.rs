@@ -28,6 +28,7 @@ mod output;
 mod points;
 mod roots;
 mod save;
+mod settings;
 mod simple;
 mod solution;
 mod stats;
@@ -54,13 +55,13 @@ use crate::methods::{Embedded, Method};
 use crate::problems::{Invariants, PointOf, Problem, ScalarOf};
 use crate::space::Numbers;
 use crate::tolerance::Rule;
-use drive::{Checkpoints, Drive, Keeps, Patience};
+use drive::{Checkpoints, Keeps};
 use events::Events;
 use held::Held;
 use interpolant::Listing;
 use output::{Keep, Observe, Output, SeeEnd, Watch};
 use points::Estimator;
-use timeline::{Pace, Timeline};
+use settings::Settings;
 
 /// The settings of a run: a problem, a method, a span, steps, output and events.
 ///
@@ -94,138 +95,6 @@ pub struct Solve<'a, P: Problem, M: Method<P>> {
     list: Option<Listing<P>>,
     watch: Option<Watch<P>>,
     see_end: Option<SeeEnd<'a, PointOf<P>>>,
-}
-
-/// The settings of a run that do not depend on the types of its problem and method.
-struct Settings<'a> {
-    t_span: [f64; 2],
-    pace: Option<Pace>,
-    save: SaveAt,
-    times_by_steps: bool,
-    stops: Vec<f64>,
-    max_steps: Option<u64>,
-    cancel: Option<&'a AtomicBool>,
-    progress: Option<Box<dyn FnMut(f64) + 'a>>,
-    checkpoints: Option<Checkpoints<'a>>,
-    resume: Option<Vec<u8>>,
-    /// The number of equal intervals of the output, which the span decides.
-    count: Option<u64>,
-    /// The error of the first wrong value.
-    wrong: Option<Error>,
-}
-
-impl<'a> Settings<'a> {
-    fn new(t_span: [f64; 2]) -> Self {
-        Settings {
-            t_span,
-            pace: None,
-            save: SaveAt::End,
-            times_by_steps: false,
-            stops: Vec::new(),
-            max_steps: None,
-            cancel: None,
-            progress: None,
-            checkpoints: None,
-            resume: None,
-            count: None,
-            wrong: None,
-        }
-    }
-
-    fn or_wrong<T>(&mut self, value: Result<T, Error>) -> Option<T> {
-        match value {
-            Ok(value) => Some(value),
-            Err(error) => {
-                self.wrong.get_or_insert(error);
-                None
-            }
-        }
-    }
-
-    fn equal(&mut self, grid: Result<TimeGrid, Error>) {
-        if let Some(grid) = self.or_wrong(grid) {
-            if self.pace.is_some() {
-                let why =
-                    "the size of the steps was chosen already: give one of dt, steps, tolerances";
-                self.wrong.get_or_insert(Error::out_of_range("dt", grid.h().abs(), why));
-            }
-            self.pace = Some(Pace::Equal { grid, max_steps: u64::MAX });
-        }
-    }
-
-    fn control(&mut self, control: StepControl) {
-        if let Some(Pace::Equal { grid, .. }) = &self.pace {
-            let why = "the size of the steps was chosen already: give one of dt, steps, tolerances";
-            let error = Error::out_of_range("dt", grid.h().abs(), why);
-            self.wrong.get_or_insert(error);
-        }
-        self.pace = Some(Pace::ByError(control));
-    }
-
-    /// Changes the tolerances and limits.
-    fn with(&mut self, change: impl FnOnce(StepControl) -> Result<StepControl, Error>) {
-        let control = match &self.pace {
-            Some(Pace::ByError(control)) => Ok(control.clone()),
-            _ => StepControl::new(DEFAULT.0, DEFAULT.1),
-        };
-        if let Some(control) = self.or_wrong(control.and_then(change)) {
-            self.control(control);
-        }
-    }
-
-    fn check(&mut self) -> Result<Pace, Error> {
-        grid::length_of(self.t_span)?;
-        if let Some(error) = self.wrong.take() {
-            return Err(error);
-        }
-        if let Some(count) = self.count {
-            self.save = SaveAt::count(count, self.t_span)?;
-        }
-        self.save.check(self.t_span)?;
-        grid::in_order(&mut self.stops, self.t_span)?;
-        let Some(mut pace) = self.pace.clone() else {
-            let expected = "one of dt, steps, or tolerances";
-            return Err(Error::out_of_range("steps", f64::NAN, expected));
-        };
-        match &mut pace {
-            Pace::Equal { max_steps, .. } => {
-                let unbounded =
-                    if self.t_span[1].is_finite() { u64::MAX } else { StepControl::MAX_STEPS };
-                *max_steps = self.max_steps.unwrap_or(unbounded);
-            }
-            Pace::ByError(control) => {
-                control.max_steps = self.max_steps.unwrap_or(control.max_steps);
-            }
-        }
-        Ok(pace)
-    }
-
-    /// The run with these settings.
-    fn drive(self, times: Timeline, events: Events, keeps: Keeps) -> Drive<'a> {
-        let Settings { save, times_by_steps, cancel, progress, checkpoints, resume, .. } = self;
-        let mut stops = self.stops.into_iter();
-        let (t0, next_stop) = (times.t, stops.next());
-        Drive {
-            times,
-            events,
-            save,
-            t0,
-            times_done: 0,
-            times_by_steps,
-            stops,
-            next_stop,
-            cancel,
-            progress,
-            checkpoints,
-            resume,
-            keeps,
-            shown_at: None,
-            is_within: false,
-            zeros_done: 0,
-            patience: Patience::new(),
-            drift: Vec::new(),
-        }
-    }
 }
 
 impl<P: Problem, M: Method<P>> core::fmt::Debug for Solve<'_, P, M> {
@@ -595,9 +464,6 @@ fn stored<Y>(mut done: Ended<Y>, times: Vec<f64>, points: Vec<Y>) -> Ended<Y> {
 
 /// A solution, and the same at all times.
 type SolutionWithCurve<'a, P, M> = (Solution<PointOf<P>>, Interpolant<'a, P, M>);
-
-/// The default rtol and atol.
-const DEFAULT: (f64, f64) = (1e-6, 1e-9);
 
 impl<P: Problem, M: Embedded<P>> Solve<'_, P, M>
 where

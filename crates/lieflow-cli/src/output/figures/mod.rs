@@ -3,6 +3,7 @@
 mod lines;
 mod motion;
 mod sample;
+mod swings;
 mod together;
 mod words;
 
@@ -19,7 +20,8 @@ use lieflow_model::problem::{Figure, PrincipalInertia};
 use lieflow_model::scene::Scene;
 use lieflow_model::schema::{Observable, Row};
 
-use self::lines::{Column, Drawn as Figured, LINES, Shown, against_time, figure, in_rows, marked};
+use self::lines::{Column, LINES, Shown, against_time, figure, in_rows, marked};
+use self::swings::Drawn as Figured;
 use crate::error::CliError;
 use crate::output::{EVENTS, SUMMARY, Summary};
 

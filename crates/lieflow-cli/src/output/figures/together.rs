@@ -2,8 +2,9 @@
 
 use lieflow_figures::{Axis, Block};
 
-use super::lines::{Curve, Drawn, LINES, constants, drawn, in_rows};
+use super::lines::{LINES, in_rows};
 use super::sample::Sample;
+use super::swings::{Curve, Drawn, constants, drawn};
 use super::words;
 
 /// A relative change below this is rounding.
