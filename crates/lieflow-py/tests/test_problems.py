@@ -127,6 +127,24 @@ def test_every_scene_is_a_problem_that_its_repr_makes_again(name):
     assert problem.quantities and problem.methods()
 
 
+@pytest.mark.parametrize(
+    "problem",
+    [lf.RigidBody(inertia=[1.0, 2.0, 3.0], omega_body=[0.1, 1.0, 0.2]),
+     lf.HeavyTop(inertia=[1.0, 2.0, 0.7], weight=[0.1, 0.0, 1.0], omega_body=[0.3, 0.0, 4.0], vertical=[0.6, 0.0, 0.8])],
+    ids=["body", "top"],
+)
+def test_a_lie_series_is_dense_output(problem):
+    assert problem.method == "taylor16"
+    given = {"dense_output": True, "rtol": 1e-11, "atol": 1e-11, "quantities": "momentum_body"}
+    series = lf.solve_ivp(problem, (0, 10), method="taylor16", **given)
+    other = lf.solve_ivp(problem, (0, 10), method="rkmk dop853 exp", **{**given, "rtol": 1e-14, "atol": 1e-14})
+    t = np.linspace(0, 10, 333)
+    assert np.abs(series.sol(t).momentum_body - other.sol(t).momentum_body).max() < 1e-9
+    again = pickle.loads(pickle.dumps(series.sol))
+    assert np.array_equal(again(t).momentum_body, series.sol(t).momentum_body)
+    assert series.nsteps < other.nsteps / 2
+
+
 @pytest.mark.parametrize("name", ["flipping-book", "lagrange-top", "toda-lattice", "gyro-record", "spin-and-oscillator"])
 def test_a_scene_runs(name, tmp_path):
     scene = lf.load(name, set=["time.t_span=[0, 2]"])

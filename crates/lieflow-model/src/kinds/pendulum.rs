@@ -8,6 +8,7 @@ use nalgebra::Vector3;
 
 use super::flow::OnSe3;
 use super::prelude::*;
+use crate::problem::SERIES;
 
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {
@@ -47,6 +48,7 @@ fn read(keys: Keys) -> Result<Forms, ReadError> {
 impl System for Pendulum {
     type Problem = OnSe3;
 
+    const DEFAULT_METHOD: Option<&'static str> = Some(SERIES);
     const STATE: &'static [&'static str] = &["direction", "omega"];
     const QUANTITIES: &'static [Q] = &[
         Q::numbers(

@@ -466,7 +466,7 @@ def _of_problem(
     times: Array | None, events: list[Event], quantities: Any, callback: Any, args: tuple[Any, ...],
 ) -> Result:
     asked = problem.asked(quantities)
-    # The points within a step of a Lie series are shorter steps, and no numbers to keep.
+    # The points within a step of some methods, as Magnus methods, are shorter steps, and no numbers to keep.
     method = method or (METHOD if settings["dense_output"] else problem.method)
     texts = tuple((f"events[{i}]", e.g) for i, e in enumerate(events) if isinstance(e.g, str))
     model = problem._model(asked, texts)
