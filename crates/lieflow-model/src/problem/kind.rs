@@ -203,29 +203,3 @@ impl Property {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::PrincipalInertia;
-
-    /// A box with sides a, b, c and mass 12 has moments of inertia b² + c², c² + a², a² + b².
-    #[test]
-    fn sides_have_their_moments() {
-        let sides = |moments| PrincipalInertia::diagonal(moments).sides_of_a_box();
-        let [a, b, c]: [f64; 3] = [3.0, 2.0, 1.0];
-        let all = sides([b * b + c * c, c * c + a * a, a * a + b * b]);
-        for (side, expected) in all.iter().zip([1.0, 2.0 / 3.0, 1.0 / 3.0]) {
-            assert!((side - expected).abs() < 1e-12, "{all:?}");
-        }
-        assert!(sides([1.0, 1.0, 2.0])[2] > 0.0 && sides([1.0, 1.0, 9.0])[2] > 0.0);
-    }
-
-    #[test]
-    fn an_ellipsoid_has_the_energy() {
-        let (inertia, m) = (PrincipalInertia::diagonal([1.0, 2.0, 4.0]), [0.3, -2.0, 1.0]);
-        let energy = 0.5 * (0.09 + 2.0 + 0.25);
-        for (axis, j) in inertia.energy_ellipsoid(&m).iter().zip([1.0, 2.0, 4.0]) {
-            assert!((axis * axis / (2.0 * j) - energy).abs() < 1e-15);
-        }
-    }
-}
