@@ -2,24 +2,28 @@
 //!
 //! The first table compares runs of lieflow with loops that a person writes by hand on nalgebra in a dozen lines, for the
 //! body by its momentum. Typed: the method is a type. By name: it was chosen at run time. The second table compares steps
-//! by their error with steps of given size. The third has single steps of RKMK4 for each coordinate map and type of
+//! by their error with steps of given size, and so does the third on other spaces. The last has single steps of RKMK4 for each coordinate map and type of
 //! problem. All loops of a table take turns. A number is the least time of the rounds.
 //!
 //! `examples/check_build` compiles this file in a crate of its own, for other settings of the compiler.
 
 use std::hint::black_box;
+use std::rc::Rc;
 use std::time::Instant;
 
+use lieflow::actions::{LeftTranslation, Linear, Pair};
 use lieflow::catalog::{MethodSpec, MethodsByName};
 use lieflow::faer::Mat;
-use lieflow::groups::{LieGroup, hat};
+use lieflow::groups::{LieGroup, Product, So3, Translations, hat};
 use lieflow::maps::{CCSK123, CCSK321, Cay, Exp};
 use lieflow::methods::commutator_free::CommutatorFree;
 use lieflow::methods::crouch_grossman::CG3;
 use lieflow::methods::tableau::{DOP853, DOPRI5, RK4};
 use lieflow::methods::{AnyMethod, Embedded, Method, Rk, Rkmk, Taylor};
 use lieflow::nalgebra::{Matrix3, Vector3};
-use lieflow::problems::{PointOf, RigidBody, RigidBodyAttitude, RigidBodyN, RigidBodyNAttitude};
+use lieflow::problems::{
+    Flow, HeavyTop, PointOf, RigidBody, RigidBodyAttitude, RigidBodyN, RigidBodyNAttitude,
+};
 use lieflow::{LieAlgebra, Problem, Solve, Step};
 
 type V = Vector3<f64>;
@@ -152,6 +156,68 @@ fn compare_choice() {
     }
 }
 
+/// Runs of a method from a start: as many steps of given size as the run by error has, and that one.
+fn both<P, M>(problem: P, method: M, y: PointOf<P>) -> [Loop; 2]
+where
+    P: Problem<Group: LieAlgebra<Scalar = f64>> + 'static,
+    M: Embedded<P> + Copy + 'static,
+    PointOf<P>: Clone + 'static,
+{
+    let problem = Rc::new(problem);
+    let run_by_error = move |problem: &P, y: &PointOf<P>| {
+        let solve = Solve::new(problem, &method, [0.0, 0.1 * black_box(END)]);
+        let stats = solve.tolerances(TOLERANCE, TOLERANCE).run(y.clone()).expect("a run").stats;
+        stats.accepted + stats.rejected
+    };
+    let attempts = run_by_error(&problem, &y);
+    let (again, start) = (problem.clone(), y.clone());
+    let given: Loop = Box::new(move || {
+        let solve = Solve::new(&*again, &method, [0.0, 0.1 * black_box(END)]).steps(attempts);
+        let _ = black_box(solve.run(start.clone()).expect("a run").t);
+        attempts
+    });
+    [given, Box::new(move || run_by_error(&problem, &y))]
+}
+
+/// Steps by error beside steps of given size, on other spaces than vectors of ℝ³.
+fn compare_spaces() {
+    let top = HeavyTop::<f64>::new(INERTIA, [0.1, 0.0, 1.0]).expect("a top").problem();
+    let at_start = (MOMENTUM, V::new(0.6, 0.0, 0.8));
+    let parts = Product(So3::<f64>::new(), Product(So3::new(), Translations::new(0.0, 1)));
+    let inertia = V::from(INERTIA);
+    let wheel = Flow::new(
+        parts,
+        Pair(Linear, LeftTranslation),
+        move |_, (m, (g, h)): &(V, (Matrix3<f64>, f64)), v: &mut (V, (V, f64))| {
+            let omega = (m - V::x() * *h).component_div(&inertia);
+            *v = (-omega, (g * omega, 0.002));
+        },
+    );
+    let body = |n: usize| {
+        let moments: Vec<f64> = (0..n).map(|i| 1.0 + 0.7 * i as f64).collect();
+        let body = RigidBodyN::manakov(&moments).expect("a body");
+        let m = Mat::from_fn(n, n, |i, j| (i as f64 - j as f64) / (1.0 + (i + j) as f64));
+        (body, m)
+    };
+    let ((body5, m5), (body10, m10)) = (body(5), body(10));
+    let (dopri5, dop853) = (Rkmk::new(DOPRI5, Exp), Rkmk::new(DOP853, Exp));
+    let rows = [
+        ("rkmk dopri5, se(3)*", both(top, dopri5, at_start)),
+        ("rkmk dop853, se(3)*", both(top, dop853, at_start)),
+        ("rkmk dopri5, product", both(wheel, dopri5, (MOMENTUM, (Matrix3::identity(), 0.0)))),
+        ("rkmk dopri5, so(5)*", both(body5.clone(), dopri5, m5.clone())),
+        ("rkmk dop853, so(5)*", both(body5, dop853, m5)),
+        ("rkmk dopri5, so(10)*", both(body10, dopri5, m10)),
+    ];
+    let (names, loops): (Vec<_>, Vec<_>) = rows.into_iter().unzip();
+    println!("\n{:20} typed: given size, by error [ns an attempt]", "");
+    for (row, least) in
+        names.iter().zip(least_times(loops.into_iter().flatten().collect()).chunks(2))
+    {
+        println!("{row:20} {:7.1} {:7.1} {:5.2}", least[0], least[1], least[1] / least[0]);
+    }
+}
+
 /// Single steps of a method.
 fn steps<P, M>(problem: P, method: M, y: PointOf<P>) -> Loop
 where
@@ -207,6 +273,7 @@ fn compare_problems() {
 fn main() {
     compare_with_hand();
     compare_choice();
+    compare_spaces();
     if !std::env::args().any(|arg| arg == "--quick") {
         compare_problems();
     }
