@@ -76,6 +76,8 @@ const STEPS: u64 = 1000;
 /// A multiplier counts as outside of the unit circle from this distance on: where two meet on it, rounding in the
 /// monodromy moves them by its root.
 const OFF_THE_CIRCLE: f64 = 1e-6;
+/// Multipliers so near to the circle are on it.
+const ROUNDING: f64 = 1e-12;
 
 impl Hill {
     fn equation(
@@ -132,11 +134,14 @@ impl System for Hill {
     fn facts(&self) -> Vec<Property> {
         let Some((floquet, trace)) = self.multipliers() else { return Vec::new() };
         let radius = floquet.spectral_radius();
+        // Rounding of the multipliers is no growth.
+        let is_one = (radius - 1.0).abs() < ROUNDING;
+        let growth = if is_one { 0.0 } else { floquet.growth(self.period) };
         vec![
             Property::of("period", self.period),
             Property::of("trace_of_the_monodromy", trace),
             Property::of("largest_multiplier", radius),
-            Property::of("growth_rate", floquet.growth(self.period)),
+            Property::of("growth_rate", growth),
             Property::answer("stable", radius < 1.0 + OFF_THE_CIRCLE),
         ]
     }
