@@ -109,6 +109,16 @@ fn slopes(curve: &Curve) -> Vec<Option<f64>> {
     (0..curve.points.len()).map(slope).collect()
 }
 
+/// The order by the last two slopes that are clear of the floor: those of larger steps do not have it yet.
+fn measured(curve: &Curve) -> Option<f64> {
+    let clear = |(i, slope): (usize, Option<f64>)| {
+        slope.filter(|_| curve.points[i].error > 10.0 * curve.floor)
+    };
+    let all: Vec<f64> = slopes(curve).into_iter().enumerate().filter_map(clear).collect();
+    let last = &all[all.len().saturating_sub(2)..];
+    (!last.is_empty()).then(|| last.iter().sum::<f64>() / last.len() as f64)
+}
+
 fn json<'a>(scene: &'a Scene, curves: &[Curve], reference: &Reference) -> Json<'a> {
     let methods = curves.iter().map(|curve| {
         let runs = curve.points.iter().zip(slopes(curve)).map(|(point, slope)| RunJson {
@@ -121,7 +131,7 @@ fn json<'a>(scene: &'a Scene, curves: &[Curve], reference: &Reference) -> Json<'
         MethodJson {
             method: curve.label.clone(),
             order: curve.order,
-            measured_order: curve.measured_order(),
+            measured_order: measured(curve),
             runs: runs.collect(),
         }
     });
@@ -137,9 +147,12 @@ fn json<'a>(scene: &'a Scene, curves: &[Curve], reference: &Reference) -> Json<'
 fn in_words(scene: &Scene, curves: &[Curve], reference: &Reference) -> String {
     let [t0, t1] = scene.grid.t_span();
     let mut text = format!("Errors at t = {t1} on the scene {}, from t = {t0}\n", scene.name);
-    text += &output::wrap(&format!("The reference: {}.", reference.in_words()), "");
+    text += &output::wrap(
+        &format!("The reference: {}.", reference.in_words().trim_end_matches('.')),
+        "",
+    );
     for curve in curves {
-        let order = match (curve.order, curve.measured_order()) {
+        let order = match (curve.order, measured(curve)) {
             (Some(order), Some(found)) => format!("order {order}, measured {found:.2}"),
             (Some(order), None) => {
                 format!("order {order}; too few runs are clear of rounding to measure it")

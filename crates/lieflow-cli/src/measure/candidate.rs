@@ -138,7 +138,9 @@ impl Candidate {
             names.filter(|name| !["adaptive", "general"].contains(name))
         };
         if names().next().is_none() {
-            return Err(CliError::Message("--methods: no method is named".into()));
+            return Err(CliError::Message(
+                "no method is named, expected names such as \"rkmk4 cay\"".into(),
+            ));
         }
         for name in names() {
             if !all.iter().any(|candidate| stands_for(name, candidate)) {
@@ -146,7 +148,7 @@ impl Candidate {
                 known.dedup();
                 let near = suggest(name, &known).map(|near| format!("; did you mean `{near}`?"));
                 return Err(CliError::Message(format!(
-                    "--methods: no method `{name}` fits this scene{} It takes: {}",
+                    "no method `{name}` fits this scene{} It takes: {}",
                     near.unwrap_or_else(|| ".".into()),
                     known.join(", ")
                 )));

@@ -17,7 +17,8 @@ use super::body::*;
 use super::driven_body::{self, Torques};
 use super::flow::{Driven, OnSe3};
 use super::prelude::*;
-use crate::problem::{PointOf, Runnable, SERIES};
+use crate::problem::PointOf;
+use crate::problem::Runnable;
 
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {
@@ -105,8 +106,6 @@ trait Representation: Clone + Debug + Send + Sync + 'static {
     const STATE: &'static [&'static str];
     /// Is the attitude a part of the point?
     const TURNS: bool;
-    /// As [`System::DEFAULT_METHOD`].
-    const DEFAULT_METHOD: Option<&'static str> = None;
     /// The laws of the energy, of |γ|² and of μ·γ.
     const LAWS: [Law; 3];
 
@@ -139,7 +138,6 @@ impl Representation for MomentumAndVertical {
     const MODELLED: &'static str = "momentum and vertical on se(3)*";
     const STATE: &'static [&'static str] = &["momentum_body", "vertical"];
     const TURNS: bool = false;
-    const DEFAULT_METHOD: Option<&'static str> = Some(SERIES);
     const LAWS: [Law; 3] = [Law::by_the_flow(2), Law::by_the_action(2), Law::by_the_action(2)];
 
     fn problem(spec: &TopSpec) -> Result<OnSe3, Error> {
@@ -248,7 +246,6 @@ impl<R: Representation> AsBody for Top<R> {
 impl<R: Representation> System for Top<R> {
     type Problem = R::Problem;
 
-    const DEFAULT_METHOD: Option<&'static str> = R::DEFAULT_METHOD;
     const STATE: &'static [&'static str] = R::STATE;
     const QUANTITIES: &'static [Q<R>] = with_angles![
         momentum_body(&["m1", "m2", "m3"]),

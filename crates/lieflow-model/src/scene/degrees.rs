@@ -14,6 +14,12 @@ impl Scene {
         self.problem.notes().iter().cloned().chain(self.likely_in_degrees()).collect()
     }
 
+    /// True if the step that was typed is longer than the span.
+    fn has_one_long_step(&self) -> bool {
+        let [start, end] = self.grid.t_span();
+        self.grid.h().abs() > (end - start).abs()
+    }
+
     /// The note where a body turns more than once in a step of the scene. A body that spins fast is right, too. So nothing
     /// is said where the start is a formula, where each point is exact, and of rows, but where the time is in seconds.
     fn likely_in_degrees(&self) -> Option<String> {
@@ -30,7 +36,8 @@ impl Scene {
         let is_exact = self.method.info().is_ok_and(|info| info.keeps(Property::Everything));
         let in_seconds = self.units.time.as_deref() == Some("s");
         let (between, how_long) = match (&self.adaptive, &self.save) {
-            (None, _) if !is_exact => {
+            // A step that is longer than the span is the mistake, and not the angular velocity.
+            (None, _) if !is_exact && !self.has_one_long_step() => {
                 (format!("in a step of {}", self.grid.h().abs()), self.grid.h())
             }
             (_, SaveAt::Interval(interval))
