@@ -249,7 +249,6 @@ impl<P: Problem<Action: Action<P::Group, Point: Numbers>>, M: Method<P>> Reader<
         };
         let Step { n, t: from, h } = piece.step;
         let theta = ((t - from) / h).clamp(0.0, 1.0);
-        let weights = polynomials(theta);
         match &piece.curve {
             Curve::Series(base, terms) => {
                 if *series != Some(index) {
@@ -263,6 +262,7 @@ impl<P: Problem<Action: Action<P::Group, Point: Numbers>>, M: Method<P>> Reader<
                     .map_err(|source| RunError::Within { t: from, h, source })?;
             }
             Curve::Chart(base, coefficients) => {
+                let weights = polynomials(theta);
                 problem.group().combine(ScalarOf::<P>::lit(1.0), &weights, coefficients, u);
                 method
                     .on_chart(problem, n, base, u, work, at)
@@ -272,7 +272,8 @@ impl<P: Problem<Action: Action<P::Group, Point: Numbers>>, M: Method<P>> Reader<
                 let size = coefficients.len() / COUNT;
                 numbers.clear();
                 numbers.resize(size, 0.0);
-                for (w, c) in weights.iter().zip(coefficients.chunks_exact(size.max(1))) {
+                for (w, c) in polynomials(theta).iter().zip(coefficients.chunks_exact(size.max(1)))
+                {
                     numbers.iter_mut().zip(c).for_each(|(x, c)| *x += w * c);
                 }
                 let mut numbers = numbers.iter();
@@ -350,7 +351,7 @@ where
             size += 1;
             fill(&mut rest, x);
         });
-        let mut pieces = Vec::new();
+        let (mut pieces, mut work) = (Vec::new(), method.work(&problem, like)?);
         while let Some(mark) = rest.next() {
             let mut head = [0.0; 4];
             head.iter_mut().for_each(|x| fill(&mut rest, x));
@@ -370,7 +371,6 @@ where
                 let mut base = like.clone();
                 base.each_number(&mut |x| fill(&mut rest, x));
                 let mut terms = Vec::new();
-                let mut work = method.work(&problem, like)?;
                 method.each_term(&mut work, &mut |x| {
                     fill(&mut rest, x);
                     terms.push(*x);
