@@ -338,7 +338,9 @@ impl Events {
                 event.finite(t, output.event(index, t, Some(Slot::Search)))
             };
             let zeros = &mut |t, rising| found.push(Zero { t, event: index, rising });
-            event.seen = search.zeros(&mut g, zeros)?;
+            let (seen, is_sure) = search.zeros(&mut g, zeros)?;
+            event.seen = seen;
+            times.stats.unsure_steps += u64::from(!is_sure);
         }
         sort(found, end >= start);
         Ok(())
@@ -393,13 +395,14 @@ impl Search {
         Seen { value: self.last, before, anew: false, level: self.seen.level }
     }
 
-    /// Calls `found` with t and the direction of each zero. Returns what is known at the end of the step.
+    /// Calls `found` with t and the direction of each zero. Returns what is known at the end of the step, and false if a
+    /// long step may have more zeros.
     #[inline(never)]
     fn zeros(
         &self,
         g: &mut dyn FnMut(f64) -> Result<f64, RunError>,
         found: &mut dyn FnMut(f64, bool),
-    ) -> Result<Seen, RunError> {
+    ) -> Result<(Seen, bool), RunError> {
         let Search { seen, span: [start, end], last, .. } = *self;
         let mut left = (start, seen.value);
         if seen.anew {
@@ -413,23 +416,25 @@ impl Search {
         }
         let mut seen = self.seen_at_end();
         if self.is_long {
-            seen.level = self.zeros_of_long([left, (end, last)], g, found)?;
-            return Ok(seen);
+            let level = self.zeros_of_long([left, (end, last)], g, found)?;
+            seen.level = level.unwrap_or(roots::FINEST);
+            return Ok((seen, level.is_some()));
         }
         let points = self.points(left.1);
         let (begin, whole) = (left.0, end - left.0);
         let places = (1..=points).map(|i| begin + whole * f64::from(i) / (f64::from(points) + 1.0));
         self.zeros_among([left, (end, last)], places, g, found)?;
-        Ok(seen)
+        Ok((seen, true))
     }
 
-    /// Calls `found` with the zeros between two points of a long step. Returns the level that describes g there.
+    /// Calls `found` with the zeros between two points of a long step. Returns the level that describes g there; none if
+    /// no polynomial does, so that there may be more zeros.
     fn zeros_of_long(
         &self,
         [left, right]: [(f64, f64); 2],
         g: &mut dyn FnMut(f64) -> Result<f64, RunError>,
         found: &mut dyn FnMut(f64, bool),
-    ) -> Result<usize, RunError> {
+    ) -> Result<Option<usize>, RunError> {
         let length = right.0 - left.0;
         let mut values = [0.0; roots::MOST];
         (values[0], values[roots::MOST - 1]) = (left.1, right.1);
@@ -438,13 +443,14 @@ impl Search {
         if let (0, Some([before, size])) = (self.seen.level, self.seen.before)
             && roots::has_none([left.1, values[middle], right.1], (size / length.abs(), before))
         {
-            return Ok(0);
+            return Ok(Some(0));
         }
         self.zeros_between([left, right], values, (self.seen.level, HALVINGS), g, found)
     }
 
     /// Calls `found` with the zeros between two points, from the values of g there and in the middle. Polynomials of
-    /// this level and finer describe g, else those of halves, which are halved so often at most. Returns the level.
+    /// this level and finer describe g, else those of halves, which are halved so often at most. Returns as
+    /// [`zeros_of_long`](Self::zeros_of_long).
     fn zeros_between(
         &self,
         ends: [(f64, f64); 2],
@@ -452,7 +458,7 @@ impl Search {
         (level, halvings): (usize, u32),
         g: &mut dyn FnMut(f64) -> Result<f64, RunError>,
         found: &mut dyn FnMut(f64, bool),
-    ) -> Result<usize, RunError> {
+    ) -> Result<Option<usize>, RunError> {
         let [left, right] = ends;
         let at = |place: f64| left.0 + place * (right.0 - left.0);
         let middle = roots::MOST / 2;
@@ -467,22 +473,25 @@ impl Search {
             if let Some(separators) = proxy.separators() {
                 let places = separators.places().iter().map(|&place| at(place));
                 self.zeros_among(ends, places, g, found)?;
-                return Ok(proxy.level.unwrap_or(level));
+                return Ok(Some(proxy.level.unwrap_or(level)));
             }
         }
         let (half, value) = (at(0.5), values[middle]);
         if halvings == 0 || half == left.0 || half == right.0 {
             let places = (1..roots::MOST - 1).map(|j| at(roots::place(j)));
             self.zeros_among(ends, places, g, found)?;
-            return Ok(roots::FINEST);
+            return Ok(None);
         }
+        let mut is_sure = true;
         for [a, b] in [[left, (half, value)], [(half, value), right]] {
             let mut values = [0.0; roots::MOST];
             (values[0], values[middle], values[roots::MOST - 1]) =
                 (a.1, g(0.5 * (a.0 + b.0))?, b.1);
-            self.zeros_between([a, b], values, (roots::FINEST, halvings - 1), g, found)?;
+            let of_half =
+                self.zeros_between([a, b], values, (roots::FINEST, halvings - 1), g, found)?;
+            is_sure &= of_half.is_some();
         }
-        Ok(roots::FINEST)
+        Ok(is_sure.then_some(roots::FINEST))
     }
 
     /// Calls `found` with one zero between each two neighbours of opposite sign, of the ends and the points between.

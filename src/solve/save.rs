@@ -69,6 +69,7 @@ fn each_of_stats(each: &mut Each<'_>, stats: &mut Stats) {
         &mut stats.accepted,
         &mut stats.rejected,
         &mut stats.points_within,
+        &mut stats.unsure_steps,
         &mut stats.restored,
         &mut stats.not_restored,
         &mut stats.iterations,

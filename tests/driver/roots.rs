@@ -2,6 +2,7 @@
 
 use std::cell::Cell;
 
+use lieflow::Stats;
 use lieflow::groups::Sample;
 use lieflow::methods::{Embedded, LieSeries, Metric, Taylor};
 use lieflow::prelude::*;
@@ -299,6 +300,28 @@ fn what_an_event_costs() {
             let run = solve.event(event).run(FLIPS).unwrap();
             let each = f64::from(calls.get()) / run.stats.accepted as f64;
             assert!(each < most, "rtol = {rtol}, m₂ = {level}: {each} evaluations of g a step");
+        }
+    }
+}
+
+/// A function that turns too fast for its steps is told, and one that does not is not.
+#[test]
+fn steps_that_may_have_more_zeros_are_counted() {
+    let body = RigidBody::<f64>::new(INERTIA).unwrap();
+    for (rate, is_sure) in [(1.0, true), (40.0, true), (1e4, false), (1e6, false)] {
+        let solve = Solve::new(&body, &Taylor::<16>, [0.0, 20.0]).tolerances(1e-9, 1e-9);
+        let run =
+            solve.event(Event::new("g", |t: f64, _: &V| (rate * t).sin())).run(FLIPS).unwrap();
+        let Stats { unsure_steps, accepted, .. } = run.stats;
+        assert_eq!(unsure_steps == 0, is_sure, "sin {rate}t: {unsure_steps} of {accepted}");
+        assert!(unsure_steps <= accepted);
+        // In shorter steps all are found.
+        if rate == 1e4 {
+            let solve = Solve::new(&body, &Taylor::<16>, [0.0, 20.0]).tolerances(1e-9, 1e-9);
+            let event = Event::new("g", |t: f64, _: &V| (rate * t).sin());
+            let run = solve.max_step(1e-3).event(event).run(FLIPS).unwrap();
+            let expected = (20.0 * rate / std::f64::consts::PI) as usize + 1;
+            assert_eq!((run.events.len(), run.stats.unsure_steps), (expected, 0));
         }
     }
 }

@@ -270,6 +270,13 @@ pub fn run_scene(
     warnings.extend(one_long_step(scene));
     let by_events = kept.between.iter().zip(&scene.events).zip(&kept.seen);
     warnings.extend(by_events.clone().filter_map(|((between, _), _)| between.warning()));
+    warnings.extend((done.unsure_steps > 0).then(|| {
+        format!(
+            "zeros of events may be missed in {} of the steps: the function of an event turns much faster than the \
+             state. Take shorter steps (dt, or h_max)",
+            output::number(done.unsure_steps as f64)
+        )
+    }));
     let mut notes = scene.notes();
     let ended = done.ended_by.is_some();
     notes.extend(by_events.filter_map(|((between, event), seen)| {

@@ -122,6 +122,7 @@ impl<'a> Watch<'a> {
             Ok(Outcome { t, status, stats }) => Ok(Done {
                 steps: stats.accepted,
                 points_within: Some(stats.points_within),
+                unsure_steps: stats.unsure_steps,
                 chosen: scene.adaptive.is_some().then_some(Chosen {
                     accepted: stats.accepted,
                     rejected: stats.rejected,
@@ -187,6 +188,8 @@ pub(super) struct Done {
     pub(super) interrupted: bool,
     pub(super) steps: u64,
     pub(super) points_within: Option<u64>,
+    /// Searches for the zeros of an event in a step that may have missed some.
+    pub(super) unsure_steps: u64,
     pub(super) chosen: Option<Chosen>,
     /// The event that ended the run.
     pub(super) ended_by: Option<String>,

@@ -63,6 +63,14 @@ fn events_that_never_come_or_are_missed_are_told() {
     assert!(told.contains("z: stop_after = 2 was not reached, it came 1 times"), "{told}");
     let told = event("sin(1e6*t)", "");
     assert!(told.contains("WARNING: event z: zeros were missed"), "{told}");
+    // Long steps know that they may have more zeros, where no row shows it.
+    let body = "[problem]\nkind = \"rigid-body\"\ninertia = [1, 2, 3]\nomega_body = [0.1, 1, 0.1]\n\
+                [time]\nt_span = [0, 4]\n[[events]]\nname = \"z\"\nwhen = \"sin(RATE*t)\"\n";
+    for (rate, is_told) in [("1e6", true), ("40", false)] {
+        folder.write("scene.toml", &body.replace("RATE", rate));
+        let told = folder.lieflow(&["run", "scene.toml", "--no-page", "--out", "out"]).ok();
+        assert_eq!(told.contains("WARNING: zeros of events may be missed in"), is_told, "{told}");
+    }
     // Nothing is said of events that come, in either direction, also at the times of rows.
     for (when, more) in [
         ("t - 1", "stop_after = 1"),
