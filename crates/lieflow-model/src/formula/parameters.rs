@@ -92,6 +92,9 @@ impl Read for Parameters {
     }
 }
 
+/// The most parameters of which each needs the next.
+const LONGEST_CHAIN: usize = 256;
+
 /// Evaluates parameters, each after those that it needs.
 struct Reader<'v, 'a, 'm> {
     table: &'v DeTable<'a>,
@@ -108,9 +111,17 @@ impl<'v> Reader<'v, '_, '_> {
         let Some(value) = self.table.get(name).filter(|_| !self.done.0.contains_key(name)) else {
             return;
         };
-        if let Some(start) = self.path.iter().position(|above| *above == name) {
-            let circle = [&self.path[start..], &[name]].concat().join(" needs ");
-            let message = format!("parameters.{name}: a number cannot need itself: {circle}");
+        let wrong = match self.path.iter().position(|above| *above == name) {
+            Some(start) => {
+                let circle = [&self.path[start..], &[name]].concat().join(" needs ");
+                Some(format!("parameters.{name}: a number cannot need itself: {circle}"))
+            }
+            None => (self.path.len() >= LONGEST_CHAIN).then(|| {
+                let most = LONGEST_CHAIN;
+                format!("parameters.{name}: expected at most {most} parameters that need each other in a row")
+            }),
+        };
+        if let Some(message) = wrong {
             self.mistakes.add(ReadError::of(value, message));
             self.done.0.insert(name.into(), None);
             self.names.add_constant(name, f64::NAN);

@@ -4,6 +4,22 @@ use lieflow_model::reader::Tree;
 
 use super::*;
 
+/// Many parameters that need each other in a row are a mistake, and no crash.
+#[test]
+fn a_long_chain_of_parameters_is_refused() {
+    let chain = |n: usize| {
+        let links: String = (1..n).map(|i| format!("p{i} = \"p{}\"\n", i + 1)).collect();
+        let text = format!(
+            "[problem]\nkind = \"rigid-body\"\ninertia = [1, 2, \"p1\"]\nomega_body = [0, 0, 1]\n\
+             [problem.parameters]\n{links}p{n} = 3\n[time]\nt_span = [0, 1]\n"
+        );
+        Scene::parse("chain", &text)
+    };
+    assert!(chain(200).is_ok());
+    let message = chain(5_000).unwrap_err().to_string();
+    assert!(message.contains("expected at most 256 parameters that need each other"), "{message}");
+}
+
 /// Each place that takes a number takes a formula: both scenes are the same problem.
 #[test]
 fn formulas_stand_for_numbers_of_every_shape() {
