@@ -2,7 +2,7 @@
 
 use lieflow::catalog::MethodSpec;
 use lieflow::{SaveAt, TimeGrid};
-use lieflow_model::kinds::own::{Formulas, GroupName, OwnPlan, Space};
+use lieflow_model::kinds::own::{Formulas, Frame, GroupName, OwnPlan, Space};
 use lieflow_model::problem::{CurvePlace, Model, Plan, Rows, Steps};
 use lieflow_model::reader::Tree;
 
@@ -123,4 +123,65 @@ fn formulas_on_parts_are_a_composed_system() {
     let unknown = Tree::table([("field", Tree::from([Tree::from(["z", "0", "0"])]))]);
     let mistakes = Formulas::read(&variables, &[3], &unknown).unwrap_err();
     assert_eq!(mistakes.0[0].key.as_deref(), Some("field[1][1]"));
+}
+
+/// A state, a density matrix and a propagator of U(2) under one H are one motion, that of the closed form.
+#[test]
+fn complex_spaces_are_one_motion() {
+    let stop = std::sync::atomic::AtomicBool::new(false);
+    let run = |action: &str, frame: Option<Frame>, shape: &[usize], start: &[f64]| {
+        let space = Space::new(&GroupName::Named("U(2)".into()), action, frame, shape).unwrap();
+        assert_eq!(space.value(), [2, 2, 2]);
+        // −iH with H = ½(0.6 σ_x + 0.8 σ_y + 0.2·𝟙): off the diagonal −0.3i ∓ 0.4.
+        let field = |_: f64, _: &[f64], v: &mut [f64]| {
+            v.copy_from_slice(&[0.0, -0.1, -0.4, -0.3, 0.4, -0.3, 0.0, -0.1]);
+            true
+        };
+        let own = space.problem(std::sync::Arc::new(field), false).unwrap();
+        let plan = OwnPlan {
+            steps: steps(1.0),
+            save: SaveAt::End,
+            stops: Vec::new(),
+            max_steps: None,
+            dense: false,
+            events: Vec::new(),
+            progress: None,
+        };
+        let method: MethodSpec = "rkmk dop853 exp".parse().unwrap();
+        own.run(&method, start, plan, &mut |_, _| {}, &stop).end.unwrap().y
+    };
+    // exp(−iHt) at t = 1: (cos ½ 𝟙 − i sin ½ n·σ) e^{−0.1i}.
+    let ((s, c), (ps, pc)) = (0.5_f64.sin_cos(), 0.1_f64.sin_cos());
+    let turned = |re: f64, im: f64| [re * pc + im * ps, im * pc - re * ps];
+    let (diagonal, above, below) =
+        (turned(c, 0.0), turned(-0.8 * s, -0.6 * s), turned(0.8 * s, -0.6 * s));
+    let g: Vec<f64> = [diagonal, above, below, diagonal].concat();
+    let near = |a: &[f64], b: &[f64], what: &str| {
+        let far = a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(a.len() == b.len() && far < 1e-13, "{what}: {a:?}, {b:?}");
+    };
+    let one = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+    for frame in [Frame::Space, Frame::Body] {
+        near(&run("translation", Some(frame), &[2, 2, 2], &one), &g, "g");
+    }
+    // The first column, as a vector and as a matrix of one column.
+    let psi = [diagonal, below].concat();
+    near(&run("linear", None, &[2, 2], &[1.0, 0.0, 0.0, 0.0]), &psi, "ψ");
+    near(&run("linear", None, &[2, 1, 2], &[1.0, 0.0, 0.0, 0.0]), &psi, "ψ as a matrix");
+    // ρ = ψψ†.
+    let product = |a: &[f64], b: &[f64]| [a[0] * b[0] + a[1] * b[1], a[1] * b[0] - a[0] * b[1]];
+    let (a, b) = (&psi[..2], &psi[2..]);
+    let rho = [product(a, a), product(a, b), product(b, a), product(b, b)].concat();
+    let start = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+    near(&run("conjugation", None, &[2, 2, 2], &start), &rho, "ρ");
+
+    let refused = |action: &str, shape: &[usize], argument: &str| {
+        let frame = (action == "translation").then_some(Frame::Space);
+        let misfit =
+            Space::new(&GroupName::Named("SU(2)".into()), action, frame, shape).unwrap_err();
+        assert_eq!(misfit.argument, argument);
+    };
+    refused("translation", &[3, 3, 2], "y0");
+    refused("translation", &[2, 3], "y0");
+    refused("lagrangian", &[1, 1, 2], "action");
 }
