@@ -1,10 +1,11 @@
-"""Compares the job of flips.rs with Boost odeint and heyoka, in turns, at equal error.
+"""Compares the job of flips.rs with Boost odeint, diffsol and heyoka, in turns, at equal error.
 
     cargo bench --bench flips --no-run       # prints the path of the executable
     python benches/flips.py EXECUTABLE
 
-It needs g++ with Boost's headers, and heyoka (pip install heyoka); what is missing is left out. Prints the time at
-some errors, between the tolerances on a straight line through the logarithms, and the ratio to that of odeint.
+It needs g++ with Boost's headers, cargo for diffsol, and heyoka (pip install heyoka); what is missing is left out.
+Prints the time at some errors, between the tolerances on a straight line through the logarithms, and the ratio to that
+of odeint.
 """
 import math
 import subprocess
@@ -57,12 +58,16 @@ def at(points, error):
 with tempfile.TemporaryDirectory() as folder:
     rows, odeint = Path(folder) / "rows", Path(folder) / "odeint"
     build = ["g++", "-std=c++17", "-O3", "-march=native", HERE / "flips.cpp", "-o", odeint]
-    has_odeint = subprocess.run(build).returncode == 0
+    peers = [odeint] if subprocess.run(build).returncode == 0 else []
+    target = Path(folder) / "target"
+    build = ["cargo", "build", "--release", "--quiet", "--manifest-path", HERE / "diffsol/Cargo.toml", "--target-dir", target]
+    if subprocess.run(build).returncode == 0:
+        peers.append(target / "release/flips-diffsol")
     least = {}
     for _ in range(ROUNDS):
-        lines = subprocess.run([EXE, rows], capture_output=True, text=True, check=True).stdout.splitlines()
-        if has_odeint:
-            lines += subprocess.run([odeint, rows], capture_output=True, text=True, check=True).stdout.splitlines()
+        lines = []
+        for program in [EXE, *peers]:
+            lines += subprocess.run([program, rows], capture_output=True, text=True, check=True).stdout.splitlines()
         for line in [*lines, *heyoka_lines(rows)]:
             name, (rtol, _, _, error, ms) = line[:20].strip(), line[20:].split()
             before = least.get((name, rtol), (0.0, math.inf))
