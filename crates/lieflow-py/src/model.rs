@@ -309,6 +309,12 @@ impl Model {
         let (_, orders) = self.method(py, method)?;
         Ok((orders.step, orders.within))
     }
+    /// True if the points within its steps can be kept as numbers: of steps of given size, and of steps by error.
+    fn keeps_points(&self, py: Python<'_>, method: &str) -> PyResult<[bool; 2]> {
+        let (spec, _) = self.method(py, method)?;
+        let fit = self.model.fits(&spec).map_err(|error| refused(py, "method", &error))?;
+        Ok(fit.keeps_points)
+    }
     /// The numbers of the state at the start.
     fn start<'py>(&self, py: Python<'py>, method: &str) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let start = self.model.start(&self.method(py, method)?.0);

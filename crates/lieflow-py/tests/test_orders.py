@@ -57,3 +57,31 @@ def test_output_has_the_stated_order(method, right):
     except lf.ArgumentError:
         return
     assert order(method, True, right) > expected - 0.5
+
+
+BODY = lf.RigidBody(inertia=[1, 2, 3], momentum_body=[0.1, 2, 0.3])
+LEVELS = lf.Schrodinger(hamiltonian=[["t", 0.3], [0.3, "-t"]], amplitudes=[1, 0])
+
+
+@pytest.mark.parametrize("problem", [BODY, SYSTEM, LEVELS])
+@pytest.mark.parametrize("settings", [{}, {"steps": 3}])
+def test_what_dense_output_keeps_is_known_before_a_run(problem, settings):
+    model = problem._model(problem.quantities)
+    seen = set()
+    for method in problem.methods():
+        try:
+            lf.solve_ivp(problem, (0, 0.01), method=method, dense_output=True, **settings)
+            kept = True
+        except lf.ArgumentError as error:
+            if "dense output as data" not in str(error):
+                continue
+            kept = False
+        assert kept == model.keeps_points(method)[not settings], method
+        seen.add(kept)
+    assert seen == {True, False}
+
+
+def test_a_problem_has_the_same_method_with_dense_output():
+    plain, kept = (lf.solve_ivp(BODY, (0, 30), dense_output=dense) for dense in (False, True))
+    assert np.array_equal(plain.t, kept.t) and np.array_equal(plain.momentum_body, kept.momentum_body)
+    assert lf.solve_ivp(LEVELS, (0, 1), dense_output=True).check().sol(0.5) is not None

@@ -24,8 +24,8 @@ use toml::de::{DeTable, DeValue};
 use super::prelude::{Error, KeyPath, Law, Read, ReadError, Real, Scale, Whole, read_by_keys};
 use crate::formula::{Formula, Names, Parameters, Text, Texts};
 use crate::problem::{
-    Asked, Figure, Form, Forms, KeyInfo, Kind, Model, Orders, Outcome, PARAMETERS, Plan, Problem,
-    QuantityInfo, ReadForms, RowCurve, Run, Stepper, Steps, Watcher, high_order,
+    Asked, Figure, Fit, Form, Forms, KeyInfo, Kind, Model, Orders, Outcome, PARAMETERS, Plan,
+    Problem, QuantityInfo, ReadForms, RowCurve, Run, Stepper, Steps, Watcher, high_order,
 };
 use crate::reader::values::counted;
 use crate::reader::{KeyReader, Mistake};
@@ -384,7 +384,7 @@ impl Run for OnBase {
     fn problem_type(&self) -> &'static str {
         self.base.problem_type(&high_order())
     }
-    fn fits(&self, method: &MethodSpec) -> Result<(), Error> {
+    fn fits(&self, method: &MethodSpec) -> Result<Fit, Error> {
         self.base.fits(method)
     }
     fn operations(&self, method: &MethodSpec, steps: &Steps) -> Option<f64> {

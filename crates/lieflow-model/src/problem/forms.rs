@@ -8,7 +8,7 @@ use lieflow::catalog::MethodSpec;
 use lieflow::{Error, RunError};
 
 use super::kind::{Figure, PrincipalInertia, Property, high_order};
-use super::run::{Layer, Orders, Outcome, Plan, RowCurve, Steps, Watcher};
+use super::run::{Fit, Layer, Orders, Outcome, Plan, RowCurve, Steps, Watcher};
 use super::stepper::Stepper;
 use crate::formula::Formula;
 use crate::reader::Refusal;
@@ -64,7 +64,7 @@ pub(crate) trait Run: Debug + Send + Sync {
     /// See [`Model::problem_type`](super::Model::problem_type).
     fn problem_type(&self) -> &'static str;
     /// See [`Model::fits`](super::Model::fits).
-    fn fits(&self, method: &MethodSpec) -> Result<(), Error>;
+    fn fits(&self, method: &MethodSpec) -> Result<Fit, Error>;
     /// See [`Model::operations`](super::Model::operations).
     fn operations(&self, method: &MethodSpec, steps: &Steps) -> Option<f64>;
     /// See [`Problem::check_start`](super::Problem::check_start).

@@ -11,7 +11,9 @@ use lieflow::{Error, RunError, SaveAt, Stats, StepControl, TimeGrid};
 use super::forms::{Asked, Form, Forms, Run};
 use super::kind::{Figure, Kind, PrincipalInertia, Property, QuantityInfo};
 use super::mapped::{Mapped, MappedCurve, MappedStepper, NumberOf, RowMap};
-use super::run::{CurvePlace, Layer, Orders, Outcome, Plan, RowCurve, Rows, Sink, Steps, Watcher};
+use super::run::{
+    CurvePlace, Fit, Layer, Orders, Outcome, Plan, RowCurve, Rows, Sink, Steps, Watcher,
+};
 use super::stepper::Stepper;
 use crate::formula::{Constants, Formula};
 use crate::reader::{Mistakes, ReadError, Refusal, Tree, Value};
@@ -456,11 +458,11 @@ impl Model {
         self.form(method).operations(method, steps)
     }
 
-    /// Can this method run on this problem? Nothing is integrated.
+    /// What a method offers on this problem, if it can run there. Nothing is integrated.
     ///
     /// # Errors
     /// The reason why it cannot.
-    pub fn fits(&self, method: &MethodSpec) -> Result<(), Error> {
+    pub fn fits(&self, method: &MethodSpec) -> Result<Fit, Error> {
         self.form(method).fits(method)
     }
 }

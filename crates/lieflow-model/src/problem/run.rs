@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use lieflow::catalog::{MethodSpec, MethodsByName};
 use lieflow::groups::LieAlgebra;
-use lieflow::methods::{AnyMethod, Facts, Method};
+use lieflow::methods::{AnyMethod, Facts, Method, Within};
 use lieflow::names::same;
 use lieflow::problems::PointOf;
 use lieflow::solve::{Interpolant, Interrupted, Next, Status};
@@ -269,6 +269,13 @@ pub struct Orders {
     pub stays_on_manifold: bool,
 }
 
+/// What a method offers on a problem that it runs on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Fit {
+    /// True if the points within a step can be kept as numbers: for steps of given size, and for steps by error.
+    pub keeps_points: [bool; 2],
+}
+
 /// A problem that runs are made of: its methods by name, on numbers that a file can hold.
 pub trait Runnable:
     MethodsByName<
@@ -493,6 +500,8 @@ pub fn orders_by<P: Runnable>(spec: &MethodSpec, problem: &P) -> Result<Orders, 
 ///
 /// # Errors
 /// The reason why it cannot.
-pub fn fits_by<P: Runnable>(spec: &MethodSpec, problem: &P, y: &PointOf<P>) -> Result<(), Error> {
-    problem.method(spec)?.work(problem, y).map(drop)
+pub fn fits_by<P: Runnable>(spec: &MethodSpec, problem: &P, y: &PointOf<P>) -> Result<Fit, Error> {
+    let method = problem.method(spec)?;
+    let keeps_points = method.within(&method.work(problem, y)?) != Within::Steps;
+    Ok(Fit { keeps_points: [keeps_points, keeps_points && method.has_pair(problem)] })
 }

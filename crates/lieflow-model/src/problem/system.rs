@@ -11,7 +11,7 @@ use super::kind::{Figure, PrincipalInertia, Property, high_order};
 use super::operations::{Counting, operations_by};
 use super::quantity::{Moment, Quantity, Value};
 use super::run::{
-    Layer, Orders, Outcome, Plan, RowCurve, RowsOf, Runnable, SharedRowOf, Steps, Watcher,
+    Fit, Layer, Orders, Outcome, Plan, RowCurve, RowsOf, Runnable, SharedRowOf, Steps, Watcher,
     curve_by, drive_by, fits_by, numbers_of, orders_by,
 };
 use super::stepper::{Points, Stepper, stepper_by};
@@ -259,7 +259,7 @@ impl<S: System> Run for On<S> {
     fn problem_type(&self) -> &'static str {
         core::any::type_name::<S::Problem>()
     }
-    fn fits(&self, method: &MethodSpec) -> Result<(), Error> {
+    fn fits(&self, method: &MethodSpec) -> Result<Fit, Error> {
         let (problem, start) = self.ready()?;
         fits_by(method, &**problem, start)
     }

@@ -340,8 +340,8 @@ def solve_ivp(
         The start. It must be on M to 1e-6. Of Parts it is a dict. A problem has its own; here are then the numbers of
         another state, in the order of :attr:`lieflow.Integrator.state`.
     method : str, optional
-        A method of lieflow with its tableau and its map. The default is "rkmk dop853 exp"; of a problem without
-        dense output its own.
+        A method of lieflow with its tableau and its map. The default is "rkmk dop853 exp"; of a problem its
+        own, where ``dense_output`` can keep the points within its steps.
     t_eval : array_like, optional
         The times of the output, in order, each once. **A time outside of t_span is an error.** By default the ends of
         steps.
@@ -466,10 +466,14 @@ def _of_problem(
     times: Array | None, events: list[Event], quantities: Any, callback: Any, args: tuple[Any, ...],
 ) -> Result:
     asked = problem.asked(quantities)
-    # The points within a step of some methods, as Magnus methods, are shorter steps, and no numbers to keep.
-    method = method or (METHOD if settings["dense_output"] else problem.method)
     texts = tuple((f"events[{i}]", e.g) for i, e in enumerate(events) if isinstance(e.g, str))
     model = problem._model(asked, texts)
+    if method is None:
+        method = problem.method
+        by_error = settings["dt"] is None and settings["steps"] is None
+        # The points within a step of some methods, as Magnus methods, are shorter steps, and no numbers to keep.
+        if settings["dense_output"] and not model.keeps_points(method)[by_error]:
+            method = METHOD
     layout = problem._layout(asked, texts)
     parts, number = [], 0
     for i, event in enumerate(events):
