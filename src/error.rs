@@ -107,6 +107,14 @@ pub enum Error {
         /// What was expected, in words.
         expected: String,
     },
+    /// An argument that is needed was not given.
+    #[error("{arg}: not given, expected {expected}")]
+    NotGiven {
+        /// The argument.
+        arg: &'static str,
+        /// What was expected, in words.
+        expected: &'static str,
+    },
     /// Two parts do not fit together, such as a map and a group for which the map has no formula.
     #[error("{what} cannot be used with {with}: {why}")]
     Unsupported {

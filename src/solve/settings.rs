@@ -100,8 +100,9 @@ impl<'a> Settings<'a> {
         self.save.check(self.t_span)?;
         in_order(&mut self.stops, self.t_span)?;
         let Some(mut pace) = self.pace.clone() else {
-            let expected = "one of dt, steps, or tolerances";
-            return Err(Error::out_of_range("steps", f64::NAN, expected));
+            let expected = "a step size by `dt`, a number of steps by `steps`, or steps chosen by \
+                            their error by `tolerances`";
+            return Err(Error::NotGiven { arg: "steps", expected });
         };
         match &mut pace {
             Pace::Equal { max_steps, .. } => {

@@ -152,7 +152,9 @@ fn t4_arguments_are_named() {
     starts(said(over([1e9, 1e9 + 1.0]).dt(1e-9)), "dt");
     starts(said(over([0.0, 1.0]).steps(0)), "steps");
     starts(said(over([0.0, f64::INFINITY]).steps(3)), "t_span[1]");
-    starts(said(over([0.0, 1.0])), "steps");
+    let none = said(over([0.0, 1.0]));
+    starts(none.clone(), "steps: not given, expected a step size by `dt`, a number of steps by ");
+    assert!(none.contains("`tolerances`") && !none.contains("NaN"), "{none}");
     starts(said(over([0.0, 1.0]).tolerances(-1e-6, 1e-6)), "rtol");
     starts(said(over([0.0, 1.0]).tolerances(1e-6, -1e-6)), "atol");
     starts(said(over([0.0, 1.0]).tolerances(0.0, 0.0)), "rtol");

@@ -109,6 +109,7 @@ impl From<Error> for Refusal {
             | Error::Shape { arg, .. }
             | Error::NotInAlgebra { arg, .. }
             | Error::NotOnGroup { arg, .. }
+            | Error::NotGiven { arg, .. }
             | Error::Reflection { arg }
             | Error::Singular { arg, .. } => Some(arg.into()),
             Error::Unsupported { what, .. } => Some(what.into()),
