@@ -229,9 +229,17 @@ impl FromStr for MethodSpec {
                 })?;
                 spec.q = Some(q);
             } else if let Some(tableau) = TABLEAUS.iter().find(|t| same(t.name, word)) {
-                spec.tableau = Some(tableau.name.into());
+                let with = spec.label();
+                if spec.tableau.replace(tableau.name.into()).is_some() {
+                    let why = "it has a tableau already, and a method has one";
+                    return Err(Error::Unsupported { what: tableau.name, with, why });
+                }
             } else if let Some(map) = MAPS.iter().find(|map| same(map.name, word)) {
-                spec.map = Some(map.name.into());
+                let with = spec.label();
+                if spec.map.replace(map.name.into()).is_some() {
+                    let why = "it has a map already, and a method has one";
+                    return Err(Error::Unsupported { what: map.name, with, why });
+                }
             } else {
                 let parts = MAPS.iter().map(|m| m.name).chain(TABLEAUS.iter().map(|t| t.name));
                 return Err(unknown("map or tableau", word, parts));

@@ -18,6 +18,8 @@ mod formulas;
 mod known;
 #[path = "kinds/matrices.rs"]
 mod matrices;
+#[path = "kinds/methods.rs"]
+mod methods;
 #[path = "kinds/motions.rs"]
 mod motions;
 #[path = "kinds/mutants.rs"]

@@ -115,6 +115,9 @@ fn unknown_names_are_answered_with_the_list() {
         says(&refused, &TABLEAUS.iter().map(|t| t.name).collect::<Vec<_>>());
     }
     assert!(order_of(&MethodSpec::new("", None)).is_err());
+    for (text, part) in [("rkmk heun bs3", "tableau"), ("rkmk4 exp exp", "map")] {
+        says(text.parse::<MethodSpec>().unwrap_err(), &[&format!("has a {part} already")]);
+    }
 }
 
 /// Case and hyphens do not count, and what comes back is spelt as in the listings.

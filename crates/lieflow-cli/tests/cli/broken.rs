@@ -93,6 +93,24 @@ const BROKEN: &[(&str, &str, usize, &[&str])] = &[
     ("name = \"rkmk4\"", "name = \"rkmk4\"\ntableau = \"heun\"", 8, &["tableau", "fixed"]),
     (
         "name = \"rkmk4\"",
+        "name = \"rkmk heun cay\"",
+        8,
+        &["`map` is exp and the method `rkmk heun cay` has cay, expected one of the two"],
+    ),
+    (
+        "name = \"rkmk4\"",
+        "name = \"rkmk heum\"",
+        7,
+        &["unknown map or tableau `heum`", "did you mean `heun`?"],
+    ),
+    (
+        "name = \"rkmk4\"",
+        "name = \"rkmk heun bs3\"",
+        7,
+        &["bs3 cannot be used with rkmk heun: it has a tableau already"],
+    ),
+    (
+        "name = \"rkmk4\"",
         "name = \"rkmk\"\ntableau = \"hune\"",
         8,
         &["unknown tableau `hune`", "did you mean `heun`?"],

@@ -1,8 +1,10 @@
 //! The keys of the sections that every scene has.
 
+use core::fmt::Display;
+
 use lieflow::StepControl;
-use lieflow::catalog::{MAPS, MethodSpec, TABLEAUS, all_methods};
-use lieflow::names::find;
+use lieflow::catalog::{MAPS, MethodSpec, TABLEAUS};
+use lieflow::names::{find, same};
 use lieflow::tolerance::Rule;
 use lieflow::{Error, SaveAt, TimeGrid};
 
@@ -42,6 +44,26 @@ fn known(
     }
 }
 
+/// A part of a method by its key, which must not contradict the one in the name of the method.
+fn no_other<T: Display>(
+    key: &str,
+    given: &Option<T>,
+    named: &MethodSpec,
+    part: &Option<T>,
+    agree: impl Fn(&T, &T) -> bool,
+) -> Result<(), Refusal> {
+    match (given, part) {
+        (Some(given), Some(part)) if !agree(given, part) => {
+            let name = named.label();
+            let message = format!(
+                "`{key}` is {given} and the method `{name}` has {part}, expected one of the two"
+            );
+            Err(Refusal::at(key, message))
+        }
+        _ => Ok(()),
+    }
+}
+
 impl MethodKeys {
     /// Is the method left to the program?
     pub(super) fn is_left(&self) -> bool {
@@ -55,8 +77,10 @@ impl MethodKeys {
         problem: Option<&Problem>,
     ) -> Result<(MethodSpec, Layer), ReadError> {
         let MethodKeys { name, map, tableau, q, layer } = self;
-        let methods = all_methods().map(|info| info.name).collect();
-        let name = known("name", "method", name, methods);
+        let named = name.and_then(|name| {
+            let method = name.map(|name| name.parse::<MethodSpec>()).transpose();
+            method.map_err(|error| Refusal::from(error).about("name").into())
+        });
         let map = known("map", "map", map, MAPS.iter().map(|info| info.name).collect());
         let tableaus = TABLEAUS.iter().map(|info| info.name).collect();
         let tableau = known("tableau", "tableau", tableau, tableaus);
@@ -64,17 +88,25 @@ impl MethodKeys {
             Some(name) => Ok(Layer::named(&name)?),
             None => Ok(problem.and_then(|p| p.layers().first().copied()).unwrap_or_default()),
         });
-        let (name, map, tableau, q, layer) = all!(name, map, tableau, q, layer)?;
+        let q = q.map(|q| q.map(|q| usize::try_from(q.0).unwrap_or(usize::MAX)));
+        let (named, map, tableau, q, layer) = all!(named, map, tableau, q, layer)?;
+        if let Some(named) = &named {
+            let agree = |a: &String, b: &String| same(a, b);
+            let map = no_other("map", &map, named, &named.map, agree);
+            let tableau = no_other("tableau", &tableau, named, &named.tableau, agree);
+            let q = no_other("q", &q, named, &named.q, usize::eq);
+            all!(map, tableau, q)?;
+        }
         // A map or a tableau alone is one for RKMK.
         let is_rkmk = map.is_some() || tableau.is_some() || q.is_some();
         let of_problem = problem.filter(|_| !is_rkmk);
         let default = || of_problem.map_or_else(high_order, Problem::default_method);
-        let base = name.map_or_else(default, |name| MethodSpec::new(&name, None));
+        let base = named.unwrap_or_else(default);
         let method = MethodSpec {
             name: base.name,
             map: map.or(base.map),
             tableau: tableau.or(base.tableau),
-            q: q.map(|q| usize::try_from(q.0).unwrap_or(usize::MAX)),
+            q: q.or(base.q),
         };
         Ok((with_defaults(method.spelt()?), layer))
     }
