@@ -191,7 +191,7 @@ pub fn run_scene(
         eprintln!("note: {}: {known}", scene.name);
     }
     let watch = Watch::new(scene, &model)?;
-    let columns: Vec<String> = watch.written.iter().flat_map(|o| o.columns.clone()).collect();
+    let columns: Vec<String> = watch.columns.iter().map(|(name, _)| (*name).into()).collect();
     let plan = scene.plan(model.schema())?;
     if let Some(much) = foresee_room(scene, &plan, (columns.len(), model.schema()), folder, most)? {
         eprintln!("note: {}: {much}", scene.name);

@@ -17,7 +17,7 @@ use crate::output::{
 use lieflow_model::problem::Figure;
 use lieflow_model::problem::{Model, Outcome, Plan, Watcher};
 use lieflow_model::scene::Scene;
-use lieflow_model::schema::{Branch, Observable, Row};
+use lieflow_model::schema::{Branch, Observable, Row, Schema};
 
 /// The quantities of a run: those that the scene names first, then those of its events, the state, the invariants
 /// and those that are drawn.
@@ -42,6 +42,8 @@ pub(super) struct Watch<'a> {
     pub(super) scene: &'a Scene,
     pub(super) model: &'a Model,
     pub(super) written: Vec<&'a Observable>,
+    /// The columns of what is written, each with its place in a row.
+    pub(super) columns: Vec<(&'a str, usize)>,
     pub(super) state: Vec<&'a Observable>,
     pub(super) laws: Vec<&'a Observable>,
     pub(super) drawn: &'a Observable,
@@ -55,19 +57,21 @@ impl<'a> Watch<'a> {
         let find = |names: &[&str]| -> Result<Vec<_>, _> {
             names.iter().map(|name| schema.get(name)).collect()
         };
+        let written = find(&computed[..scene.quantities.len()])?;
         Ok(Watch {
             scene,
             model,
+            columns: Schema::each_column_once(written.iter().copied()),
             state: find(problem.state(&computed))?,
             laws: find(&problem.invariants(&computed))?,
             drawn: schema.get(problem.figure(&computed).quantity())?,
-            written: find(&computed[..scene.quantities.len()])?,
+            written,
         })
     }
 
     /// The values that are written of a row go to the end of `line`.
     pub(super) fn line(&self, row: Row<'_>, line: &mut Vec<f64>) {
-        self.written.iter().for_each(|observable| line.extend_from_slice(&row[observable]));
+        line.extend(self.columns.iter().map(|(_, place)| row.numbers()[*place]));
     }
 
     /// The invariants of the next row, each in its turn.

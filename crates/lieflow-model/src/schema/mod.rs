@@ -9,6 +9,7 @@ pub use dimension::{Dimension, Units};
 pub use lieflow::problems::{Law, Scale};
 
 use core::ops::{Index, Range};
+use std::collections::HashSet;
 
 use lieflow::Error;
 use lieflow::catalog::{MethodInfo, Property};
@@ -216,6 +217,18 @@ impl Schema {
     /// The names of all columns.
     pub fn columns(&self) -> impl Iterator<Item = &str> {
         self.iter().flat_map(|observable| &observable.columns).map(String::as_str)
+    }
+
+    /// The columns of some of its quantities, each with its place in the numbers of a row. A column that several of them
+    /// have is there once: it has one value.
+    pub fn each_column_once<'a>(
+        quantities: impl IntoIterator<Item = &'a Observable>,
+    ) -> Vec<(&'a str, usize)> {
+        let all = quantities.into_iter().flat_map(|quantity| {
+            quantity.columns.iter().map(String::as_str).zip(quantity.places())
+        });
+        let mut known = HashSet::new();
+        all.filter(|(name, _)| known.insert(*name)).collect()
     }
 
     /// The place in the numbers of a row of a column.

@@ -3,7 +3,9 @@
 use std::cell::Cell;
 use std::time::Instant;
 
+use lieflow::{SaveAt, TimeGrid};
 use lieflow_model::problem::Rows;
+use lieflow_model::schema::Schema;
 
 use super::formulas::{FINE, RKMK4, refused};
 use super::*;
@@ -262,6 +264,43 @@ fn an_event_needs_no_other_column() {
     });
     model.drive(&scene.method, plan, &mut Rows(&mut |_, _| {})).unwrap();
     assert_eq!(row_of.get(), (true, false));
+}
+
+/// A column that several quantities have is one number, which a run writes once.
+#[test]
+fn a_column_of_several_quantities_has_one_value() {
+    let mut shared = 0;
+    for bundled in BUNDLED {
+        let scene = Scene::bundled(bundled.name).unwrap();
+        let all = (scene.problem.kind().quantities)();
+        let names = all.iter().map(|info| info.name);
+        // Each alone is there, and some are of different layers.
+        let names: Vec<&str> = names.filter(|name| scene.problem.columns(name).is_ok()).collect();
+        let Ok(model) = scene.model_with(scene.layer, &names) else { continue };
+        let schema = model.schema();
+        let once = Schema::each_column_once(schema);
+        assert!(once.len() <= schema.columns().count(), "{}", bundled.name);
+        let mut sink = |_: f64, row: Row<'_>| {
+            for quantity in schema {
+                for (name, x) in quantity.columns.iter().zip(&row[quantity]) {
+                    let place = once.iter().find(|(known, _)| known == name).unwrap().1;
+                    let known = row.numbers()[place];
+                    let same = known.to_bits() == x.to_bits() || (known.is_nan() && x.is_nan());
+                    assert!(
+                        same,
+                        "{}: {name} is {known} and, of {}, {x}",
+                        bundled.name, quantity.name
+                    );
+                }
+            }
+        };
+        let [t0, t1] = scene.grid.t_span();
+        let t1 = if t1.is_finite() { t0 + 1e-2 * (t1 - t0) } else { t0 + 0.1 };
+        let grid = TimeGrid::with_steps([t0, t1], 3).unwrap();
+        model.run(&scene.method, &grid, &SaveAt::Every(1), &mut sink).unwrap();
+        shared += usize::from(once.len() < schema.columns().count());
+    }
+    assert!(shared >= 4, "{shared} scenes with columns of several quantities");
 }
 
 /// The names of hundreds of thousands of columns are read at once.
