@@ -1,15 +1,17 @@
 //! `lieflow plot`: columns of runs that were made before, those of several runs in one figure.
 
-use std::fs::File;
+use std::collections::BTreeMap;
+use std::fs::{self, File};
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 
 use lieflow_figures::{Page, Section};
 use lieflow_model::reader::help_for;
+use serde::Deserialize;
 
 use crate::args::PlotArgs;
 use crate::error::CliError;
-use crate::output::{self, SUMMARY, Sample, TRAJECTORY, Written, together};
+use crate::output::{self, SUMMARY, Sample, TIME, TRAJECTORY, Written, together, unit_of};
 
 /// Run the command.
 ///
@@ -21,6 +23,9 @@ pub fn run(args: &PlotArgs) -> Result<(), CliError> {
     let runs = args.runs.iter().zip(names).map(|(folder, name)| read(folder, name, args));
     let runs: Vec<Written> = runs.collect::<Result<_, _>>()?;
     let columns = columns_of(&runs, &args.columns)?;
+    for column in [TIME].into_iter().chain(columns.iter().map(String::as_str)) {
+        known_unit(&runs, column)?;
+    }
     let title = match &runs[..] {
         [only] => only.name.clone(),
         _ => format!("{} runs", runs.len()),
@@ -85,6 +90,52 @@ fn columns_of(runs: &[Written], wanted: &[String]) -> Result<Vec<String>, CliErr
     Ok(columns)
 }
 
+/// Checks that the runs have one unit for a column, which its axis has. A unit that some of them do not state is noted:
+/// the axis has none.
+fn known_unit(runs: &[Written], column: &str) -> Result<(), CliError> {
+    let in_words = |run: &Written| format!("`{}` in {}", run.name, run.units[column]);
+    match unit_of(runs, column) {
+        Err([a, b]) => Err(CliError::Message(format!(
+            "{column} has different units: that of {}, and that of {}. One axis cannot show both: convert one of the \
+             runs, or draw them apart",
+            in_words(a),
+            in_words(b)
+        ))),
+        Ok(None) => {
+            let is_stated = |run: &&Written| run.units.contains_key(column);
+            if let (Some(with), Some(without)) =
+                (runs.iter().find(is_stated), runs.iter().find(|run| !is_stated(run)))
+            {
+                let (with, without) = (in_words(with), &without.name);
+                eprintln!(
+                    "note: {column} of {with}; `{without}` states no unit, so the axis has none"
+                );
+            }
+            Ok(())
+        }
+        Ok(Some(_)) => Ok(()),
+    }
+}
+
+/// The units of a run, by the names of its columns. A folder without a summary has none.
+fn units_of(folder: &Path) -> Result<BTreeMap<String, String>, CliError> {
+    #[derive(Deserialize)]
+    struct Stated {
+        #[serde(default)]
+        units: BTreeMap<String, String>,
+    }
+    let path = folder.join(SUMMARY);
+    if !path.exists() {
+        return Ok(BTreeMap::new());
+    }
+    let text = fs::read_to_string(&path).map_err(CliError::io("read", &path))?;
+    let stated = serde_json::from_str(&text);
+    let stated: Stated = stated.map_err(|error| {
+        CliError::Message(format!("{}: {error}, expected the summary of a run", path.display()))
+    })?;
+    Ok(stated.units)
+}
+
 /// The rows of a run between two times.
 fn read(folder: &Path, name: String, args: &PlotArgs) -> Result<Written, CliError> {
     let paths = TRAJECTORY.map(|file| folder.join(file));
@@ -100,7 +151,7 @@ fn read(folder: &Path, name: String, args: &PlotArgs) -> Result<Written, CliErro
         |line: usize, what: &str| CliError::Message(format!("{}:{line}: {what}", path.display()));
     let header = lines.next().transpose().map_err(CliError::io("read", path))?.unwrap_or_default();
     let mut columns = header.split(',').map(|name| name.trim_matches('"').to_string());
-    if columns.next().as_deref() != Some("t") {
+    if columns.next().as_deref() != Some(TIME) {
         return Err(wrong(1, "expected the names of columns, t first"));
     }
     let columns: Vec<String> = columns.collect();
@@ -125,5 +176,5 @@ fn read(folder: &Path, name: String, args: &PlotArgs) -> Result<Written, CliErro
     if rows.seen() == 0 {
         return Err(CliError::Message(format!("{} has no rows at these times", path.display())));
     }
-    Ok(Written { name, columns, rows })
+    Ok(Written { name, columns, units: units_of(folder)?, rows })
 }

@@ -332,7 +332,7 @@ pub fn run_scene(
         notes,
         quantities: scene.quantities.clone(),
         columns: names.clone(),
-        units: output::units_of(scene),
+        units: output::units_of(scene, &watch.written),
         unit_names: scene.units.clone(),
         trajectory: output::TRAJECTORY[usize::from(!completed)],
         t_span: scene.grid.t_span(),

@@ -7,7 +7,9 @@ mod rows;
 mod state;
 mod summary;
 
-pub use figures::{Drawn, RowSample, Sample, Written, in_digits, moving_body, run_page, together};
+pub use figures::{
+    Drawn, RowSample, Sample, Written, in_digits, moving_body, run_page, together, unit_of,
+};
 pub use files::{make_folder, remove_old, write_file, write_page};
 pub use lieflow_figures::number::{duration, number, rough, size};
 pub use progress::Progress;
@@ -15,7 +17,7 @@ pub use rows::{EVENTS, RowFile, TRAJECTORY};
 pub use state::{Kind, ROWS, Records, RunState, ShownRows};
 pub use summary::{
     Accuracy, Chosen, Distance, Drift, EventSummary, FoundBy, MethodSummary, PartError, SUMMARY,
-    Summary, Watched, units_of,
+    Summary, TIME, Watched, units_of,
 };
 
 use std::io::{self, Write};

@@ -8,13 +8,16 @@ use lieflow::problems::Invariant;
 use lieflow::solve;
 use lieflow_model::problem::Property;
 use lieflow_model::scene::{Defaults, Scene};
-use lieflow_model::schema::{Dimension, Units};
+use lieflow_model::schema::{Dimension, Observable, Units};
 use lieflow_timing::Fit;
 
 use super::{duration, number, rough};
 
 /// Errors of parts that are told; the file has all.
 const PARTS: usize = 4;
+
+/// The name of the first column, the time.
+pub const TIME: &str = "t";
 
 /// The name of the file.
 pub const SUMMARY: &str = "summary.json";
@@ -56,7 +59,7 @@ pub struct Summary {
     pub quantities: Vec<String>,
     /// The columns of the trajectory.
     pub columns: Vec<String>,
-    /// The units of t and of the quantities, where they are known.
+    /// The units of t and of the columns, where they are known.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub units: BTreeMap<String, String>,
     /// The names of units.
@@ -118,15 +121,16 @@ impl Summary {
     }
 }
 
-/// The units of t and of the quantities that a scene writes, where they are known.
-pub fn units_of(scene: &Scene) -> BTreeMap<String, String> {
-    let time = ("t".to_string(), scene.units.of(Dimension::TIME).unwrap_or_default());
+/// The units of t and of the columns of these quantities of a scene, where they are known.
+pub fn units_of(scene: &Scene, written: &[&Observable]) -> BTreeMap<String, String> {
+    let time = (TIME.to_string(), scene.units.of(Dimension::TIME).unwrap_or_default());
     let kind = scene.problem.kind();
-    let quantities = scene.quantities.iter().filter_map(|name| {
-        let info = kind.quantity(name).ok()?;
-        Some((name.clone(), info.unit(&scene.units)))
+    let columns = written.iter().flat_map(|quantity| {
+        let info = kind.quantity(quantity.name);
+        let unit = info.map_or(String::new(), |info| info.unit(&scene.units));
+        quantity.columns.iter().map(move |column| (column.clone(), unit.clone()))
     });
-    core::iter::once(time).chain(quantities).filter(|(_, unit)| !unit.is_empty()).collect()
+    core::iter::once(time).chain(columns).filter(|(_, unit)| !unit.is_empty()).collect()
 }
 
 /// The facts as a table of names and values.

@@ -30,14 +30,16 @@ fn units_are_words_beside_numbers() {
     let units = &folder.json("named/summary.json")["units"];
     for (name, unit) in [
         ("t", "s"),
-        ("omega_body", "rad/s"),
-        ("momentum_body", "kg·m²/s"),
+        ("w1", "rad/s"),
+        ("w3", "rad/s"),
+        ("mb2", "kg·m²/s"),
         ("energy", "kg·m²/s²"),
         ("nutation", "rad"),
     ] {
         assert_eq!(units[name], unit, "{units}");
     }
-    assert!(units.get("axis").is_none(), "{units}");
+    // t, and each column but those of the axis, which is a direction.
+    assert_eq!(units.as_object().unwrap().len(), 1 + 3 + 3 + 1 + 1, "{units}");
     let units = folder.json("bare/summary.json")["units"].to_string();
     assert_eq!(units, "{\"nutation\":\"rad\"}");
     let [with, without] = ["named", "bare"].map(|run| folder.read(&format!("{run}/index.html")));
@@ -61,6 +63,45 @@ fn units_are_words_beside_numbers() {
     }
     folder.write("good.toml", &format!("[units]\nangle = \"rad\"\n{BODY}"));
     folder.lieflow(&["run", "good.toml", "--out", "good"]).ok();
+}
+
+/// What is drawn of the files of runs has the units that their scenes name.
+#[test]
+fn figures_of_files_have_units() {
+    let folder = Folder::new();
+    for (name, units) in
+        [("si", SI), ("again", SI), ("bare", ""), ("min", "[units]\ntime = \"min\"\n")]
+    {
+        folder.write(&format!("{name}.toml"), &format!("{units}{BODY}"));
+        folder.lieflow(&["run", &format!("{name}.toml"), "--no-page"]).ok();
+    }
+    let plot = |runs: &[&str], columns: &str| {
+        let runs: Vec<String> = runs.iter().map(|run| format!("lieflow-out/{run}")).collect();
+        let runs: Vec<&str> = runs.iter().map(String::as_str).collect();
+        folder.lieflow(&[&["plot"], &runs[..], &["--columns", columns]].concat())
+    };
+    // Several runs of one unit, and one run: columns of one name and of one unit.
+    for runs in [&["si", "again"][..], &["si"]] {
+        plot(runs, "w1,energy").ok();
+        let [rate, energy] = [1, 2].map(|i| folder.read(&format!("lieflow-plot/plot-{i}.svg")));
+        assert!(rate.contains(">t (s)<") && rate.contains(">ω₁ (rad/s)<"), "{rate}");
+        assert!(energy.contains("(kg·m²/s²)"), "{energy}");
+    }
+    // A unit that one of them does not state is on no axis, and that is noted.
+    let run = plot(&["si", "bare"], "w1");
+    let noted = "note: w1 of `si` in rad/s; `bare` states no unit, so the axis has none";
+    assert!(run.err.contains(noted) && run.err.contains("note: t of `si` in s"), "{run:?}");
+    let rate = folder.read("lieflow-plot/plot-1.svg");
+    assert!(rate.contains(">ω₁<") && !rate.contains("rad/s"), "{rate}");
+    // Two units are on no axis.
+    let message = plot(&["bare", "si", "min"], "nutation").refused();
+    let expected = "t has different units: that of `si` in s, and that of `min` in min.";
+    assert!(message.contains(expected), "{message}");
+    // An angle has one unit everywhere.
+    let run = plot(&["bare", "si"], "nutation");
+    assert!(!run.err.contains("nutation"), "{run:?}");
+    folder.write("lieflow-out/si/summary.json", "{\"units\": 1}");
+    assert!(plot(&["si"], "w1").refused().contains("expected the summary of a run"));
 }
 
 #[test]

@@ -8,7 +8,7 @@ mod together;
 mod words;
 
 pub use sample::{RowSample, Sample};
-pub use together::{Written, together};
+pub use together::{Written, together, unit_of};
 
 use lieflow_figures::number::{seconds, short, sig};
 use lieflow_figures::{

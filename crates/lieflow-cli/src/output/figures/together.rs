@@ -1,11 +1,14 @@
 //! Columns of runs that were written before, those of several runs in one figure.
 
+use std::collections::BTreeMap;
+
 use lieflow_figures::{Axis, Block};
 
 use super::lines::{LINES, in_rows};
 use super::sample::Sample;
 use super::swings::{Curve, Drawn, constants, drawn};
 use super::words;
+use crate::output::TIME;
 
 /// A relative change below this is rounding.
 const CONSTANT: f64 = 1e-12;
@@ -19,8 +22,24 @@ pub struct Written {
     pub name: String,
     /// The columns, without t.
     pub columns: Vec<String>,
+    /// The units of t and of the columns, by their names, where they are known.
+    pub units: BTreeMap<String, String>,
     /// The rows.
     pub rows: Sample,
+}
+
+/// The unit of t or of a column, where all of these runs have the same.
+///
+/// # Errors
+/// Two of them that have different units.
+pub fn unit_of<'a>(runs: &'a [Written], column: &str) -> Result<Option<&'a str>, [&'a Written; 2]> {
+    let known = |run: &&Written| run.units.contains_key(column);
+    let Some(first) = runs.iter().find(known) else { return Ok(None) };
+    let unit = &first.units[column];
+    match runs.iter().filter(known).find(|run| run.units[column] != *unit) {
+        Some(other) => Err([first, other]),
+        None => Ok(runs.iter().all(|run| known(&run)).then_some(unit)),
+    }
 }
 
 impl Written {
@@ -43,11 +62,15 @@ impl Written {
     }
 }
 
-/// Figures of columns: a column with a line for each run, or, of one run, columns of one name together.
+/// Figures of columns: a column with a line for each run, or, of one run, columns of one name and one unit together. An
+/// axis has a unit where [`unit_of`] the runs is one.
 pub fn together(runs: &[Written], columns: &[String]) -> Vec<Block> {
     let groups: Vec<&[String]> = match runs {
         [_] => {
-            let same = |a: &String, b: &String| words::stem(a) == words::stem(b);
+            let unit = |column: &String| unit_of(runs, column);
+            let same = |a: &String, b: &String| {
+                words::stem(a) == words::stem(b) && unit(a).ok() == unit(b).ok()
+            };
             columns.chunk_by(same).flat_map(|group| group.chunks(LINES)).collect()
         }
         _ => columns.chunks(1).collect(),
@@ -73,7 +96,10 @@ pub fn together(runs: &[Written], columns: &[String]) -> Vec<Block> {
             );
         }
         let rows = runs.iter().map(|run| run.rows.seen()).min().unwrap_or(0);
-        let axes = [Axis::linear("t"), Axis::linear(&title)];
+        let axes = [(TIME, TIME), (&title, &group[0])].map(|(name, column)| {
+            let unit = unit_of(runs, column).ok().flatten().unwrap_or_default();
+            Axis::linear(name).with_unit(unit.to_string())
+        });
         drawn(&format!("plot-{}", number + 1), &title, axes, &curves, rows)
     };
     let mut figures: Vec<Drawn> = groups.iter().enumerate().map(figure).collect();
