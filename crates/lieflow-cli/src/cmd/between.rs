@@ -4,7 +4,7 @@ use lieflow::Direction;
 use lieflow_model::scene::SceneEvent;
 use lieflow_model::schema::Row;
 
-use crate::output::{EventSummary, number};
+use crate::output::{EventSummary, count_in_words, number};
 
 /// The function of an event, of t and a row.
 type ValueOfRow = Box<dyn Fn(f64, Row<'_>) -> f64>;
@@ -100,7 +100,8 @@ impl Between {
         }
         match (seen.count, stop_after) {
             (count, Some(stop_after)) => Some(format!(
-                "event {name}: stop_after = {stop_after} was not reached, it came {count} times"
+                "event {name}: stop_after = {stop_after} was not reached, it came {}",
+                count_in_words(count)
             )),
             (0, None) => Some(format!("event {name}: it never came")),
             _ => None,

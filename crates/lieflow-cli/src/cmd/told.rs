@@ -44,10 +44,8 @@ pub(super) fn in_words(summary: &Summary, folder: &Path, page: Option<&str>) -> 
         .for_each(|chosen| line(format!("chosen by default: {chosen}")));
     summary.ended_by.iter().for_each(|name| line(format!("ended by event {name}")));
     for event in &summary.events {
-        let mut told = format!("event {}: {} times", event.name, event.count);
-        if let (Some(first), Some(last)) = (event.first, event.last) {
-            told += &format!(", first at t = {first}, last at t = {last}");
-        }
+        let came = event.in_words(|t| t.to_string());
+        let mut told = format!("event {}: {came}", event.name);
         event.time_error_in_words().iter().for_each(|error| told += &format!(", {error}"));
         line(told);
     }

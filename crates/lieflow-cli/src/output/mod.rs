@@ -17,7 +17,7 @@ pub use rows::{EVENTS, RowFile, TRAJECTORY};
 pub use state::{Kind, ROWS, Records, RunState, ShownRows};
 pub use summary::{
     Accuracy, Chosen, Distance, Drift, EventSummary, FoundBy, MethodSummary, PartError, SUMMARY,
-    Summary, TIME, Watched, units_of,
+    Summary, TIME, Watched, count_in_words, units_of,
 };
 
 use std::io::{self, Write};

@@ -346,11 +346,33 @@ pub struct EventSummary {
     pub marks: Vec<f64>,
 }
 
+/// How often something came: never, once, or so many times.
+pub fn count_in_words(count: u64) -> String {
+    match count {
+        0 => "never".into(),
+        1 => "once".into(),
+        count => format!("{count} times"),
+    }
+}
+
 impl EventSummary {
     /// None yet.
     pub fn new(name: &str) -> Self {
         let (name, marks) = (name.into(), Vec::new());
         EventSummary { name, count: 0, first: None, last: None, time_error: None, marks }
+    }
+
+    /// How often and when it came, as "once, at t = 3" or "21 times, first at t = 1.5, last at t = 60", with this way to
+    /// write a time.
+    pub fn in_words(&self, time: impl Fn(f64) -> String) -> String {
+        let told = count_in_words(self.count);
+        match (self.count, self.first, self.last) {
+            (1, Some(at), _) => format!("{told}, at t = {}", time(at)),
+            (_, Some(first), Some(last)) => {
+                format!("{told}, first at t = {}, last at t = {}", time(first), time(last))
+            }
+            _ => told,
+        }
     }
 
     /// The error of the times, as "times right to about 2e-12", if it is known.

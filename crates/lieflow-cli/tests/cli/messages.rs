@@ -57,10 +57,18 @@ fn events_that_never_come_or_are_missed_are_told() {
     };
     let told = event("0*t", "");
     assert!(told.contains("note: event z: its function is zero all the time"), "{told}");
+    assert!(told.contains("event z: never\n"), "{told}");
     let told = event("t - 100", "");
     assert!(told.contains("note: event z: it never came"), "{told}");
     let told = event("t - 1", "stop_after = 2");
-    assert!(told.contains("z: stop_after = 2 was not reached, it came 1 times"), "{told}");
+    assert!(told.contains("z: stop_after = 2 was not reached, it came once"), "{told}");
+    // One zero has one time, also on the page.
+    assert!(told.contains("event z: once, at t = 1"), "{told}");
+    folder.lieflow(&["run", "scene.toml", "--out", "page"]).ok();
+    let page = folder.read("page/index.html");
+    assert!(page.contains("once, at t = 1") && !page.contains("1 times"), "no words for one zero");
+    let told = event("sin(pi*(t - 0.25))", "");
+    assert!(told.contains("event z: 2 times, first at t = 0.25"), "{told}");
     let told = event("sin(1e6*t)", "");
     assert!(told.contains("WARNING: event z: zeros were missed"), "{told}");
     // Long steps know that they may have more zeros, where no row shows it.

@@ -307,10 +307,7 @@ fn facts(summary: &Summary) -> Block {
         summary.facts.iter().map(|fact| (fact.name.replace('_', " "), fact.in_words(in_digits))),
     );
     facts.extend(summary.events.iter().map(|event| {
-        let mut text = format!("{} times", event.count);
-        if let (Some(first), Some(last)) = (event.first, event.last) {
-            text += &format!(", from t = {} to {}", in_digits(first), in_digits(last));
-        }
+        let mut text = event.in_words(in_digits);
         event.time_error_in_words().iter().for_each(|error| text += &format!("; {error}"));
         (format!("Event {}", event.name), text)
     }));
