@@ -5,14 +5,14 @@ use std::sync::Arc;
 
 use super::expression::Formula;
 use super::names::{Entry, Names, continues_name, without_digits};
-use super::text::Texts;
+use super::text::NamedTexts;
 use crate::reader::{Key, KeyPath, Read, ReadError, Refusal, Shape, Value, read_as_held, seen};
 
-read_as_held!(Lets: BTreeMap<String, Key<Texts>> = Shape::TableOf(&Shape::Formulas));
+read_as_held!(Lets: BTreeMap<String, Key<NamedTexts>> = Shape::TableOf(&NamedTexts::SHAPE));
 
 /// `[problem.let]`: formulas with names, which other formulas may use, `b = "3*t"`.
 #[derive(Clone, Debug, Default)]
-pub struct Lets(BTreeMap<String, Key<Texts>>);
+pub struct Lets(BTreeMap<String, Key<NamedTexts>>);
 
 /// More named formulas than this are refused.
 const LETS_MAX: usize = 256;
@@ -121,7 +121,7 @@ impl<'a> LetReader<'a> {
         read
     }
 
-    fn read(&mut self, name: &str, texts: &Texts, names: &mut Names) -> Result<(), ReadError> {
+    fn read(&mut self, name: &str, texts: &NamedTexts, names: &mut Names) -> Result<(), ReadError> {
         let (place, lets) = (self.key.entry(name), self.lets);
         for word in texts.texts().flat_map(|text| text.split(|c| !continues_name(c))) {
             if let Some(needed) = lets.of(word) {

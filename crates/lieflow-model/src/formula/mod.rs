@@ -43,4 +43,4 @@ pub(crate) use numbers::{Constants, of_keys};
 pub use parameters::Parameters;
 pub use parse::DECIMAL_POINT;
 pub use samples::SamplesFile;
-pub use text::{Text, Texts};
+pub use text::{NamedTexts, Text, Texts};

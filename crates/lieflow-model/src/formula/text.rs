@@ -90,6 +90,86 @@ impl Texts {
     }
 }
 
+/// A formula with a name: [`Texts`], or rows of the entries of a matrix.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum NamedTexts {
+    /// One text, whose value may be a vector or a matrix, or a text for each entry of a vector.
+    Texts(Texts),
+    /// Rows of one text for each entry; all have as many.
+    Rows(Vec<Vec<Text>>),
+}
+
+impl NamedTexts {
+    /// All texts.
+    pub(super) fn texts(&self) -> impl Iterator<Item = &str> {
+        let (texts, rows) = match self {
+            NamedTexts::Texts(texts) => (Some(texts.texts()), &[][..]),
+            NamedTexts::Rows(rows) => (None, &rows[..]),
+        };
+        texts.into_iter().flatten().chain(rows.iter().flatten().map(|text| text.0.as_str()))
+    }
+
+    /// The place and the text of an entry of the value, from 0; `key` is that of all.
+    pub(super) fn entry(&self, key: &str, i: usize) -> (String, &str) {
+        match self {
+            NamedTexts::Texts(texts) => texts.entry(key, i),
+            NamedTexts::Rows(rows) => {
+                let columns = rows.first().map_or(1, Vec::len).max(1);
+                let (row, column) = (i / columns, i % columns);
+                let text = rows.get(row).and_then(|row| row.get(column));
+                (key.cell(row, column), text.map_or("", |text| &text.0))
+            }
+        }
+    }
+
+    /// The entries of the value, row by row, and the number of its rows.
+    pub(super) fn read_any(
+        &self,
+        key: &str,
+        names: &Names,
+    ) -> Result<(usize, Vec<Tape>), ReadError> {
+        let rows = match self {
+            NamedTexts::Texts(texts) => return texts.read_any(key, names),
+            NamedTexts::Rows(rows) => rows,
+        };
+        let columns = rows.first().map_or(0, Vec::len);
+        if let Some(i) = rows.iter().position(|row| row.len() != columns || row.is_empty()) {
+            let expected = if columns == 0 { "at least 1".into() } else { columns.to_string() };
+            let message =
+                format!("{key}: row {} has {} formulas, expected {expected}", i + 1, rows[i].len());
+            return Err(Refusal::at(key.index(i), message).into());
+        }
+        let mut mistakes = ReadError::default();
+        let texts = rows.iter().flatten().enumerate();
+        let tapes = texts.map(|(i, text)| {
+            let (key, _) = self.entry(key, i);
+            mistakes.keep(Formula::read(&key, &text.0, names)).map(|formula| formula.tape)
+        });
+        // Each is read, also after one that is wrong.
+        let tapes: Vec<_> = tapes.collect();
+        let tapes = mistakes.or(tapes.into_iter().collect::<Option<Vec<_>>>())?;
+        Ok((rows.len(), tapes))
+    }
+}
+
+impl Read for NamedTexts {
+    const SHAPE: Shape =
+        Shape::Or(&Shape::Formulas, &Shape::ListOf(&Shape::ListOf(&Shape::Formula)));
+
+    fn read(value: &Value<'_>) -> Result<Self, ReadError> {
+        let entries = value.get_ref().as_array().into_iter().flat_map(|list| list.iter());
+        let mut is_row = entries.map(|entry| entry.get_ref().is_array());
+        match (is_row.clone().any(|row| row), is_row.all(|row| row)) {
+            (false, _) => <Texts as Read>::read(value).map(NamedTexts::Texts),
+            (true, true) => Vec::read(value).map(NamedTexts::Rows),
+            (true, false) => {
+                let message = "found formulas and rows of formulas, expected one of the two";
+                Err(ReadError::of(value, message))
+            }
+        }
+    }
+}
+
 impl Read for Text {
     const SHAPE: Shape = Shape::Formula;
 

@@ -137,7 +137,7 @@ group! {
     after {
         r#let: crate::formula::Lets =
             "formulas with names, for other formulas: a table [problem.let] of names and formulas; a list of formulas, \
-             or a formula such as \"cross(w, b)\", is a vector; optional",
+             or a formula such as \"cross(w, b)\", is a vector, and rows of formulas are a matrix; optional",
     }
 }
 

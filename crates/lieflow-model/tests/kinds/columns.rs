@@ -51,6 +51,29 @@ fn named_formulas_are_what_they_stand_for() {
     }
 }
 
+/// A matrix is the same as one text and as rows of texts and numbers, in `let` and in formulas of columns.
+#[test]
+fn a_matrix_may_be_rows_of_formulas() {
+    let run = |matrix: &str| {
+        let text = format!(
+            "[problem]\n{BODY}\ntorque = \"-c*(J*w)\"\nparameters = {{ c = 0.3 }}\n[problem.let]\n\
+             J = {matrix}\n[method]\n{RKMK4}\n[time]\n{FINE}\n[output]\nquantities = [\"omega_body\"]\n\
+             [output.formulas]\np = {matrix}\n"
+        );
+        let scene = Scene::parse("scene", &text).unwrap_or_else(|error| panic!("{error}"));
+        let columns: Vec<String> =
+            scene.model().unwrap().schema().columns().map(str::to_owned).collect();
+        (columns, last(&scene))
+    };
+    let text = run("\"[[2, t/9, 0], [0.25, 1 + t, -t], [0, 3, 0.5]]\"");
+    assert_eq!(text.0[3..], ["p11", "p12", "p13", "p21", "p22", "p23", "p31", "p32", "p33"]);
+    let rows = run("[[2, \"t/9\", 0], [0.25, \"1 + t\", \"-t\"], [\"0\", 3, 0.5]]");
+    assert_eq!(rows, text);
+    // One row is no vector.
+    let (columns, _) = run("[[2, \"t/9\", 0], [0, 1, 0], [0, 0, 1]]");
+    assert_eq!(columns.len(), 12);
+}
+
 /// An energy in named formulas has the gradient of what they stand for.
 #[test]
 fn named_formulas_are_derived() {
@@ -214,6 +237,16 @@ fn named_formulas_are_refused_at_their_line() {
         ("g = \"[t, t, t]\"", &["`g` is the name of a vector or a matrix already"]),
         ("cos = \"t\"", &["`cos` is the name of a function"]),
         ("b = true", &["a formula, or a list of formulas"]),
+        ("b = [[1, \"t\"], [2]]", &["let.b: row 2 has 1 formulas, expected 2"]),
+        ("b = [[1, 2], [3, 4], []]", &["let.b: row 3 has 0 formulas, expected 2"]),
+        ("b = [[], []]", &["let.b: row 1 has 0 formulas, expected at least 1"]),
+        ("b = [[1, 2], [3, \"q\"]]", &["let.b[2,2]: unknown name `q`"]),
+        (
+            "b = [[1, 2], [3, \"w\"]]",
+            &["let.b[2,2]: the value is a vector of 3 numbers, expected one"],
+        ),
+        ("b = [[1, 2], \"w\"]", &["formulas and rows of formulas, expected one of the two"]),
+        ("b = [[[1]]]", &["found a list, expected a formula: a text or a number"]),
     ] {
         let problem = format!("{BODY}\ntorque = [0, 0, 0]\n[problem.let]\n{formulas}");
         let (line, message) = refused(&problem, FINE, "axis");
