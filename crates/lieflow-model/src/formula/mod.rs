@@ -39,7 +39,7 @@ pub use expression::{Formula, without_value};
 pub use lets::Lets;
 pub use lost::{Lost, Which};
 pub use names::Names;
-pub(crate) use numbers::{Constants, of_keys};
+pub(crate) use numbers::{Constants, Instead, of_keys};
 pub use parameters::Parameters;
 pub use parse::DECIMAL_POINT;
 pub use samples::SamplesFile;

@@ -19,7 +19,11 @@ use crate::reader::{Mistake, Read, ReadError, Shape, Value, given_key};
 pub(crate) struct Constants {
     parameters: Parameters,
     names: Names,
+    instead: Instead,
 }
+
+/// Keys of numbers, each with what to use for numbers that change with time.
+pub(crate) type Instead = &'static [(&'static str, &'static str)];
 
 impl Constants {
     /// Those of a section, whose named formulas and `varying` names may change with time. The mistakes in its parameters
@@ -45,7 +49,12 @@ impl Constants {
                 names.add_constant(name, parameters.value(name).unwrap_or(f64::NAN));
             }
         }
-        Constants { parameters, names }
+        Constants { parameters, names, instead: &[] }
+    }
+
+    /// These, of a kind with such keys.
+    pub(crate) fn with_instead(self, instead: Instead) -> Self {
+        Constants { instead, ..self }
     }
 
     /// Reads a table with these keys, in which texts that stand for numbers are numbers.
@@ -58,7 +67,7 @@ impl Constants {
     ) -> Option<T> {
         let mut found = Vec::new();
         if let Some(table) = value.get_ref().as_table() {
-            self.find_in(table, keys, &[], &mut found);
+            self.find_in(table, keys, &[], None, &mut found);
         }
         if found.is_empty() {
             return read(value, mistakes);
@@ -82,18 +91,24 @@ impl Constants {
     /// The value of a text that stands for a number, where it has one.
     pub(crate) fn value(&self, value: &Value<'_>) -> Option<f64> {
         let text = value.get_ref().as_str()?;
-        evaluated(value, text, &self.names, &self.parameters).ok()
+        evaluated(value, text, &self.names, &self.parameters, None).ok()
     }
 
     /// Finds the texts that stand for numbers in a value that is one of these shapes.
-    fn find(&self, value: &Value<'_>, shapes: &[Shape], found: &mut Vec<Number>) {
+    fn find(
+        &self,
+        value: &Value<'_>,
+        shapes: &[Shape],
+        instead: Option<&'static str>,
+        found: &mut Vec<Number>,
+    ) {
         let mut flat = Vec::new();
         shapes.iter().for_each(|shape| flatten(*shape, &mut flat));
         match value.get_ref() {
-            DeValue::String(text) => found.extend(self.number(value, text, &flat)),
+            DeValue::String(text) => found.extend(self.number(value, text, &flat, instead)),
             DeValue::Array(list) => {
                 let of_entries: Vec<Shape> = flat.iter().filter_map(|s| of_entry(*s)).collect();
-                list.iter().for_each(|entry| self.find(entry, &of_entries, found));
+                list.iter().for_each(|entry| self.find(entry, &of_entries, instead, found));
             }
             DeValue::Table(table) => {
                 let all = flat.iter().filter_map(|shape| match shape {
@@ -102,7 +117,7 @@ impl Constants {
                 });
                 let of_all: Vec<Shape> = all.collect();
                 let keys: Vec<_> = flat.iter().flat_map(|shape| of_keys(*shape)).copied().collect();
-                self.find_in(table, &keys, &of_all, found);
+                self.find_in(table, &keys, &of_all, instead, found);
             }
             _ => {}
         }
@@ -114,6 +129,7 @@ impl Constants {
         table: &DeTable<'_>,
         keys: &[(&str, Shape)],
         of_all: &[Shape],
+        instead: Option<&'static str>,
         found: &mut Vec<Number>,
     ) {
         let names: Vec<&str> = keys.iter().map(|(name, _)| *name).collect();
@@ -122,12 +138,20 @@ impl Constants {
             let own = keys.iter().filter(|(name, _)| given_key(table, name, &names) == Some(given));
             let shapes: Vec<Shape> =
                 own.map(|(_, shape)| *shape).chain(of_all.iter().copied()).collect();
-            self.find(entry, &shapes, found);
+            let of_key = || self.instead.iter().find(|(key, _)| *key == given);
+            let instead = instead.or_else(|| of_key().map(|(_, instead)| *instead));
+            self.find(entry, &shapes, instead, found);
         }
     }
 
     /// The number that a text stands for, where it stands for one.
-    fn number(&self, value: &Value<'_>, text: &str, shapes: &[Shape]) -> Option<Number> {
+    fn number(
+        &self,
+        value: &Value<'_>,
+        text: &str,
+        shapes: &[Shape],
+        instead: Option<&'static str>,
+    ) -> Option<Number> {
         let takes_text = |shape: &Shape| {
             matches!(shape, Shape::Text | Shape::Formula | Shape::Formulas | Shape::Samples)
         };
@@ -139,7 +163,7 @@ impl Constants {
             true => Ok(format!("{}", x as i64)),
             false => Err(not_a(value, text, x, "a whole number")),
         };
-        let x = evaluated(value, text, &self.names, &self.parameters);
+        let x = evaluated(value, text, &self.names, &self.parameters, instead);
         let read = match takes_number {
             true => x.map(|x| format!("{x:?}")),
             false => x.and_then(whole),
@@ -212,16 +236,20 @@ fn not_a(
     ReadError::of(value, format!("the value of {text:?} is {found}, expected {expected}"))
 }
 
-/// The value of the formula that a text is. Its mistake is known where it names a parameter that has one.
+/// The value of the formula that a text is. Its mistake is known where it names a parameter that has one. `instead` is what
+/// to use for a formula that changes with time.
 pub(super) fn evaluated(
     value: &Value<'_>,
     text: &str,
     names: &Names,
     parameters: &Parameters,
+    instead: Option<&str>,
 ) -> Result<f64, ReadError> {
-    let parsed = parse(text, names).map_err(|parse::Mistake { message, at, help, .. }| {
-        ReadError::in_text(value, at, format!("{text:?} is no number: {message}"), help)
-    })?;
+    let parsed =
+        parse(text, names).map_err(|parse::Mistake { message, at, help, varies, .. }| {
+            let help = instead.filter(|_| varies).map(str::to_owned).or(help);
+            ReadError::in_text(value, at, format!("{text:?} is no number: {message}"), help)
+        })?;
     if words(text).any(|word| parameters.is_unusable(word)) {
         return Err(ReadError::known());
     }

@@ -137,7 +137,7 @@ impl<'v> Reader<'v, '_, '_> {
                     }
                 }
                 self.path.pop();
-                evaluated(value, text, &self.names, &self.done)
+                evaluated(value, text, &self.names, &self.done, None)
             }
             (Ok(()), _) => Real::read(value).map(|x| x.0),
         };

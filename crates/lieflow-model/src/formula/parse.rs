@@ -31,6 +31,8 @@ pub(super) struct Mistake {
     pub(super) help: Option<String>,
     /// True if it follows from the mistakes of a named formula, which are known.
     pub(super) is_known: bool,
+    /// True for a name of what may change with time, where it may not.
+    pub(super) varies: bool,
 }
 
 /// The largest depth of parentheses, signs and powers. Each level is one call.
@@ -46,7 +48,8 @@ pub(super) struct Parsed {
 }
 
 pub(super) fn parse(text: &str, names: &Names) -> Result<Parsed, Mistake> {
-    let plain = |message: String| Mistake { message, at: 0, help: None, is_known: false };
+    let plain =
+        |message: String| Mistake { message, at: 0, help: None, is_known: false, varies: false };
     if text.len() > TEXT_MAX {
         return Err(plain(format!(
             "a formula of {} bytes, expected at most {TEXT_MAX}",
@@ -96,7 +99,7 @@ impl Parser<'_> {
 
     fn mistake(&self, message: &str, at: usize) -> Mistake {
         let message = format!("{message} at character {} of the formula", at + 1);
-        Mistake { message, at, help: None, is_known: false }
+        Mistake { message, at, help: None, is_known: false, varies: false }
     }
     /// What is next was not expected.
     fn expected(&mut self, what: &str) -> Mistake {
@@ -283,13 +286,14 @@ impl Parser<'_> {
             let message = format!("`{name}` of [problem.let] has no meaning here ({reason})");
             return Err(Mistake { is_known: why.is_none(), ..self.mistake(&message, start) });
         }
-        let (message, help) = match self.names.varies(&name) {
+        let varies = self.names.varies(&name);
+        let (message, help) = match varies {
             true => (format!("`{name}` may change with time"), None),
             false => (format!("unknown name `{name}`"), Some(help_for(&name, &self.names.all()))),
         };
         let help = help.into_iter().chain([self.names.where_to_state(&name)]);
         let help = Some(help.collect::<Vec<_>>().join("; "));
-        Err(Mistake { help, ..self.mistake(&message, start) })
+        Err(Mistake { help, varies, ..self.mistake(&message, start) })
     }
     /// A number of that name; the vector of x1, x2, … by the name x; the matrix of x11, x12, … by the name x.
     fn value_of(&mut self, name: &str) -> Option<Value> {

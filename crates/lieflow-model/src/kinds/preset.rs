@@ -171,7 +171,7 @@ impl Preset {
         read: ReadForms,
     ) -> Kind {
         let Stated { name, equation, summary, .. } = self.stated;
-        Kind { name, equation, summary, keys: &self.key_infos, quantities, read }
+        Kind { name, equation, summary, keys: &self.key_infos, instead: &[], quantities, read }
     }
 
     pub(super) fn quantities(&'static self) -> Vec<QuantityInfo> {

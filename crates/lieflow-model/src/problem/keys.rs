@@ -18,7 +18,7 @@ impl Kind {
     /// An entry without its texts: keys, the quantities of a system, and what reads the keys.
     pub(crate) const fn of<K: KeyTable, S: System>(read: ReadForms) -> Kind {
         let quantities = || S::QUANTITIES.iter().map(|quantity| quantity.info).collect();
-        Kind { name: "", equation: "", summary: "", keys: K::INFO, quantities, read }
+        Kind { name: "", equation: "", summary: "", keys: K::INFO, instead: &[], quantities, read }
     }
 }
 

@@ -6,6 +6,7 @@ use lieflow::names::same;
 use serde::Serialize;
 
 use super::forms::Forms;
+use crate::formula::Instead;
 use crate::reader::{ReadError, Shape, Value};
 use crate::schema::{Dimension, Units};
 
@@ -23,6 +24,8 @@ pub struct Kind {
     pub summary: &'static str,
     /// The keys of `[problem]`, besides `kind`.
     pub keys: &'static [KeyInfo],
+    /// Keys of numbers, each with what to use for numbers that change with time.
+    pub(crate) instead: Instead,
     /// What can be asked of it.
     pub quantities: fn() -> Vec<QuantityInfo>,
     /// Reads the keys of `[problem]`, without `kind`.

@@ -46,7 +46,8 @@ impl Kind {
     /// What formulas of numbers may name in a scene with this section `problem`.
     pub(crate) fn constants(&self, section: &Value<'_>) -> Constants {
         let columns = (self.quantities)();
-        Constants::of(Some(section), columns.iter().flat_map(QuantityInfo::column_names))
+        let varying = columns.iter().flat_map(QuantityInfo::column_names);
+        Constants::of(Some(section), varying).with_instead(self.instead)
     }
 
     /// The problem of this kind whose keys have these values.

@@ -171,6 +171,26 @@ fn hamiltonians_and_unitary_fields_that_are_none_are_refused() {
         (quantum(""), 2, &["missing key `hamiltonian`"][..]),
         (quantum("energies = [0, 1]"), 2, &["missing key `coupling`"]),
         (
+            quantum("energies = [\"-t/2\", \"1/2\"]\ncoupling = [[0, 1], [1, 0]]"),
+            5,
+            &[
+                "`t` may change with time",
+                "formulas of t",
+                "hamiltonian = [[\"-v*t/2\", \"w\"], [\"v*t/2\"]]",
+            ],
+        ),
+        (
+            quantum("energies = [0, 1]\ncoupling = [[0, \"cos(t)\"], [1, 0]]"),
+            6,
+            &["`t` may change with time", "hamiltonian = [["],
+        ),
+        // What is no matter of time has the advice of all numbers.
+        (
+            quantum("energies = [\"v\", 1]\ncoupling = [[0, 1], [1, 0]]"),
+            5,
+            &["unknown name `v`", "[problem.parameters]"],
+        ),
+        (
             quantum("hamiltonian = [[0, 1], [0]]\nfrequency = 1"),
             6,
             &["both `hamiltonian` and `frequency`"],

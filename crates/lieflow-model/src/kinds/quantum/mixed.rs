@@ -8,7 +8,7 @@ use super::super::entries::{ROUNDING, eigenvalues, numbered, symmetric, upper_co
 use super::super::flow::OnMatrices;
 use super::super::matrix::MatrixAction;
 use super::super::prelude::*;
-use super::{Hamiltonian, above_diagonal, hamiltonian_keys, imaginary_part, state};
+use super::{Hamiltonian, INSTEAD, above_diagonal, hamiltonian_keys, imaginary_part, state};
 use crate::formula::Formula;
 
 /// The entry in the list of kinds.
@@ -16,6 +16,7 @@ pub(in super::super) const KIND: Kind = Kind {
     name: "density-matrix",
     equation: "iħρ̇ = H(t)ρ − ρH(t), H(t) as of schrodinger",
     summary: "von Neumann's equation: a mixed state of n levels by its density matrix",
+    instead: INSTEAD,
     ..Kind::of::<Keys, Mixture>(|section| read_with(section, read))
 };
 

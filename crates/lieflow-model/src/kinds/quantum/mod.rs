@@ -18,7 +18,7 @@ pub(super) use self::mixed::KIND as DENSITY_MATRIX;
 pub(super) use self::pure::KIND as SCHRODINGER;
 use super::entries::{above_diagonal, check_antisymmetric, square, symmetric};
 use super::prelude::*;
-use crate::formula::{Formula, Names, Text, without_value};
+use crate::formula::{Formula, Instead, Names, Text, without_value};
 use crate::problem::{FormulaKeys, SampleKeys, group};
 
 group! {
@@ -43,6 +43,13 @@ group! {
     }
     after {}
 }
+
+/// What to use for energies and couplings that change with time.
+const INSTEAD: Instead = {
+    let entries = "an H that changes with time has its entries as formulas of t, those on and above the diagonal: \
+                   hamiltonian = [[\"-v*t/2\", \"w\"], [\"v*t/2\"]]";
+    &[("energies", entries), ("coupling", entries), ("coupling_imaginary", entries)]
+};
 
 /// H(t)/ħ.
 #[derive(Clone, Debug)]

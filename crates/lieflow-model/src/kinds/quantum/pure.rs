@@ -8,7 +8,7 @@ use super::super::entries::numbered;
 use super::super::flow::OnMatrices;
 use super::super::matrix::MatrixAction;
 use super::super::prelude::*;
-use super::{Hamiltonian, hamiltonian_keys, state};
+use super::{Hamiltonian, INSTEAD, hamiltonian_keys, state};
 use crate::formula::Formula;
 
 /// The entry in the list of kinds.
@@ -17,6 +17,7 @@ pub(in super::super) const KIND: Kind = Kind {
     equation: "iħψ̇ = H(t)ψ, H(t) by formulas; or H₀ + a(t)H₁, a(t) = cos(ωt + φ) exp(−((t − t₁)/w)²), the last factor \
                with a pulse",
     summary: "Schrödinger's equation with n levels and any H(t), or under a drive",
+    instead: INSTEAD,
     ..Kind::of::<Keys, Levels>(|section| read_with(section, read))
 };
 
