@@ -1,6 +1,6 @@
 //! Figures and pages without anything from the network: plain values in, SVG and HTML text out.
 //!
-//! A figure ([`Chart`], [`Sphere`], [`Heat`]) is a plain value; `svg()` turns it into one complete `<svg>`
+//! A figure ([`Chart`], [`Sphere`], [`Space`], [`Heat`]) is a plain value; `svg()` turns it into one complete `<svg>`
 //! element, which serves as a file and inline in a [`Page`]. Colours are CSS variables with light
 //! fallbacks, so that an inline figure follows the theme of its page. A file that a page writes follows
 //! the theme of who looks at it.
@@ -23,5 +23,5 @@ mod plot;
 pub use page::{Block, Cell, Column, Page, Row, Section, Table};
 pub use plot::{
     Axis, Body, Chart, Ground, Heat, LINE_COLOURS, Marker, Marks, Path, Point, Pose, Scale, Series,
-    Sphere, tell_apart,
+    Space, Sphere, tell_apart,
 };

@@ -133,6 +133,26 @@ fn the_attitude_is_drawn_as_a_quaternion() {
     assert!(folder.read("out/time-euler-zyx.svg").contains("rad"));
 }
 
+/// A motion in space has its path as its figure, with the units of its lengths, beside its coordinates over time.
+#[test]
+fn a_position_is_a_path_in_space() {
+    let folder = Folder::new();
+    folder.lieflow(&["run", "rolling-turn", "--out", "out"]).ok();
+    let figure = folder.read("out/figure.svg");
+    for part in ["class=\"lf lf-space\"", ">x₁ (m)<", ">x₂ (m)<", ">x₃ (m)<", "class=\"lf-path\""]
+    {
+        assert!(figure.contains(part), "{part}");
+    }
+    // The shadow is a path, too, and the line has as many corners as a turn needs.
+    let corners = |class: &str| {
+        let line = figure.split(&format!("class=\"{class}\" d=\"")).nth(1).unwrap();
+        line.split('"').next().unwrap().split(' ').count()
+    };
+    assert!(corners("lf-path") > 20 && corners("lf-shadow") > 20);
+    assert!(folder.read("out/index.html").contains("From the ring to the dot"));
+    assert!(folder.names("out").contains(&"time-position.svg".to_string()));
+}
+
 /// Euler angles that come to where they are singular are told.
 #[test]
 fn singular_angles_are_told() {

@@ -4,7 +4,7 @@
 mod glossary;
 mod render;
 
-use crate::plot::{Body, Chart, Heat, Sphere, for_file, slug};
+use crate::plot::{Body, Chart, Heat, Space, Sphere, for_file, slug};
 
 /// A page.
 #[derive(Clone, Debug, Default)]
@@ -80,6 +80,8 @@ pub enum Block {
     Chart(Chart),
     /// A momentum sphere, which a reader can turn.
     Sphere(Sphere),
+    /// Paths in space.
+    Space(Space),
     /// A body that turns, which a reader plays.
     Body(Body),
     /// A field on a sphere.
@@ -119,6 +121,7 @@ impl Block {
         match self {
             Block::Chart(chart) => file(&chart.id, chart.svg()),
             Block::Sphere(sphere) => file(&sphere.id, sphere.svg()),
+            Block::Space(space) => file(&space.id, space.svg()),
             Block::Body(body) => file(&body.id, body.svg()),
             Block::Heat(heat) => file(&heat.id, heat.svg()),
             Block::Row(blocks) | Block::Fold { blocks, .. } => {
@@ -142,6 +145,11 @@ impl From<Chart> for Block {
 impl From<Body> for Block {
     fn from(body: Body) -> Self {
         Block::Body(body)
+    }
+}
+impl From<Space> for Block {
+    fn from(space: Space) -> Self {
+        Block::Space(space)
     }
 }
 impl From<Sphere> for Block {

@@ -137,6 +137,7 @@ fn block(block: &Block) -> String {
             let drawing = with_data(&body.svg(), "motion", &body.json());
             figure(&body.title, &drawing, &body.caption)
         }
+        Block::Space(space) => figure(&space.title, &space.svg(), &space.caption),
         Block::Heat(heat) => figure(&heat.title, &heat.svg(), &heat.caption),
         Block::Row(row) => format!("<div class=\"row\">\n{}</div>\n", blocks(row)),
         Block::Fold { title, blocks: inner } => format!(

@@ -82,6 +82,14 @@ impl Axis {
         Axis::new(title, Scale::Log10)
     }
 
+    /// The title with the unit, as in "energy (J)".
+    pub(crate) fn title_with_unit(&self) -> String {
+        match &*self.unit {
+            "" => self.title.clone(),
+            unit => format!("{} ({unit})", self.title),
+        }
+    }
+
     /// The title beside the labels of a map: with the unit, if they do not have it, and with the offset and the power of
     /// ten that they leave out, as in "energy − 0.00515 (10⁻⁹ J)".
     pub(crate) fn title_beside(

@@ -188,7 +188,7 @@ impl Sphere {
 }
 
 impl Path {
-    fn as_series(&self) -> Series {
+    pub(crate) fn as_series(&self) -> Series {
         Series { name: self.name.clone(), colour: self.colour, ..Series::default() }
     }
 }

@@ -117,6 +117,11 @@ pub(crate) fn body_css() -> String {
     style(concat!(include_str!("common.css"), include_str!("body.css")))
 }
 
+/// The style sheet of paths in space.
+pub(crate) fn space_css() -> String {
+    style(concat!(include_str!("common.css"), include_str!("space.css")))
+}
+
 /// The style sheet of a momentum sphere.
 pub(crate) fn sphere_css() -> String {
     let shade = |k| {
@@ -133,7 +138,7 @@ mod tests {
 
     #[test]
     fn every_colour_has_a_light_fallback() {
-        for css in [chart_css(), body_css(), sphere_css()] {
+        for css in [chart_css(), body_css(), space_css(), sphere_css()] {
             assert!(css.contains("var(--lf-"));
             assert!(!css.contains(":;") && !css.contains(",)"));
         }

@@ -198,4 +198,7 @@ impl System for Motion {
         let frame = if self.in_body { "the body" } else { "space" };
         format!("attitude and position on SE(3), by a twist in {frame}")
     }
+    fn figure(&self) -> Figure {
+        Figure::Space("position")
+    }
 }

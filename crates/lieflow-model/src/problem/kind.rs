@@ -112,6 +112,8 @@ pub enum Figure {
     Lines(&'static str),
     /// Three columns of a quantity after the other: paths on a sphere.
     Sphere(&'static str),
+    /// The same as paths in space.
+    Space(&'static str),
     /// Two columns of a quantity after the other: paths in a plane.
     Curve(&'static str),
     /// The same as points, where nothing lies between two rows.
@@ -126,6 +128,7 @@ impl Figure {
         match self {
             Figure::Lines(name)
             | Figure::Sphere(name)
+            | Figure::Space(name)
             | Figure::Curve(name)
             | Figure::Points(name)
             | Figure::Map(name, _) => name,

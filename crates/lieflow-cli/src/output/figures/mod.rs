@@ -13,7 +13,7 @@ pub use together::{Written, together, unit_of};
 use lieflow_figures::number::{seconds, short, sig};
 use lieflow_figures::{
     self as figures, Axis, Block, Body, Cell, Chart, Column as TableColumn, Ground, Heat,
-    LINE_COLOURS, Marker, Page, Path, Point, Scale, Section, Series, Sphere, Table,
+    LINE_COLOURS, Marker, Page, Path, Point, Scale, Section, Series, Space, Sphere, Table,
 };
 use lieflow_model::problem;
 use lieflow_model::problem::{Figure, PrincipalInertia};
@@ -61,8 +61,8 @@ pub fn run_page(summary: &Summary, run: &Drawn<'_>) -> Page {
     if let Some(body) = inertia.and_then(|inertia| motion::body(&inertia, run.rows)) {
         motion.insert(0, body.into());
     }
-    // A single body or sphere has a chart beside it: the first that is narrow, and not one of many of another quantity.
-    if let [Block::Sphere(_) | Block::Body(_)] = motion[..] {
+    // A single body, sphere or path in space has a chart beside it: the first that is narrow, and not one of many of another quantity.
+    if let [Block::Sphere(_) | Block::Space(_) | Block::Body(_)] = motion[..] {
         let beside = charts.iter_mut().find_map(|(quantity, figures)| {
             let is_free = figures.len() <= 2 || quantity.name == run.figure.name;
             match figures.first() {
@@ -324,6 +324,7 @@ fn own_figure(summary: &Summary, run: &Drawn<'_>, figure: Figure) -> Vec<Block> 
     match figure {
         Figure::Lines(_) => Vec::new(),
         Figure::Sphere(_) => vec![sphere(id, title, run).into()],
+        Figure::Space(_) => vec![space(id, title, summary, run).into()],
         Figure::Curve(_) => vec![plane(id, &title, run.figure, run.rows, false).into()],
         Figure::Points(_) => vec![plane(id, &title, run.figure, run.rows, true).into()],
         Figure::Map(_, ground) => {
@@ -376,6 +377,41 @@ fn plane(
     let axes = [axis(0), axis(1)].map(|name| Axis::new(name, Scale::Linear));
     let caption = said(quantity.name, pairs.min(LINE_COLOURS), pairs);
     Chart::new(id, title, axes, series).with_caption(caption)
+}
+
+/// Triples of columns as paths in space.
+fn space(id: String, title: String, summary: &Summary, run: &Drawn<'_>) -> Space {
+    let (quantity, rows) = (run.figure, run.rows);
+    let triples = quantity.columns.len() / 3;
+    let path = |k: usize| Path {
+        name: words::path(quantity, &quantity.columns[3 * k..3 * k + 3], k + 1),
+        colour: k,
+        points: rows
+            .rows()
+            .map(|(_, row)| core::array::from_fn(|i| row[quantity][3 * k + i]))
+            .collect(),
+    };
+    let unit = run.scene.problem.kind().quantity(quantity.name);
+    let unit = unit.map_or(String::new(), |info| info.unit(&summary.unit_names));
+    let axis = |i: usize| {
+        let name = match triples {
+            1 => words::column(&quantity.columns[i]),
+            _ => ["x", "y", "z"][i].into(),
+        };
+        Axis::linear(name).with_unit(unit.clone())
+    };
+    let caption = format!(
+        "{} From the ring to the dot; the grey line is the shadow on the floor.",
+        said(quantity.name, triples.min(LINE_COLOURS), triples)
+    );
+    Space {
+        id,
+        title,
+        axes: core::array::from_fn(axis),
+        paths: (0..triples.min(LINE_COLOURS)).map(path).collect(),
+        caption: caption.trim().into(),
+        view: (35.0, 25.0),
+    }
 }
 
 /// Triples of columns as paths on a sphere, each in lengths of its own start.
