@@ -24,9 +24,9 @@ pub use crate::error::RCOND_MIN;
 pub use crate::so3::{hat, vee};
 pub use adjoint::Adjoint;
 #[cfg(feature = "dense")]
-pub(crate) use matrix::finite as check_entries;
-#[cfg(feature = "dense")]
 pub use matrix::{AlgebraMatrix, Form, GroupMatrix, MatrixGroup};
+#[cfg(feature = "dense")]
+pub(crate) use matrix::{correct_length, finite as check_entries};
 pub use power::Power;
 pub use product::Product;
 pub(crate) use product::worse;

@@ -3,13 +3,17 @@
 //! the same rotation it errs the same way each time, by up to 1.3 ε a step.
 
 use crate::support::uncorrected::{Uncorrected, cpu_seconds};
+use faer::{Mat, c64};
 use lieflow::actions::{Coadjoint, LeftTranslation, Linear, Pair};
-use lieflow::groups::{LieAlgebra, LieGroup, Power, Product, So3, Translations};
+use lieflow::groups::{
+    ComplexMatrix, LieAlgebra, LieGroup, Power, Product, So3, Translations, Unitary,
+};
 use lieflow::maps::{Cay, Exp};
 use lieflow::methods::magnus::Magnus4;
 use lieflow::methods::{CommutatorFree, Method, Rk, Rkmk, commutator_free::CF4, tableau::RK4};
 use lieflow::problems::{
     Flow, LinearFlow, PointOf, Problem, RigidBody, RigidBodyState, SphericalPendulum, SpinChain,
+    amplitudes, schrodinger,
 };
 use lieflow::{Action, SaveAt, Stats, TimeGrid, integrate};
 use nalgebra::{Matrix3, Vector3};
@@ -93,6 +97,54 @@ fn the_same_rotation_at_every_step() {
     }
 }
 
+/// A state of n levels keeps its length under SO(2n), as scenes have it, and under U(n); so does each column.
+#[test]
+fn quantum_states_keep_their_length() {
+    for n in [2, 3] {
+        let states = Mat::from_fn(2 * n, 2, |i, j| ((3 * i + 5 * j + 1) as f64).sin());
+        let lengths =
+            |x: &Mat<f64>| [0, 1].map(|j| x.col(j).iter().map(|x| x * x).sum::<f64>().sqrt());
+        let begin = lengths(&states);
+        let away = |x: &Mat<f64>| {
+            let now = lengths(x);
+            1.0 + (now[0] / begin[0] - 1.0).abs().max((now[1] / begin[1] - 1.0).abs())
+        };
+        // Every step is the same rotation, or none is.
+        for turning in [0.0, 1.0] {
+            let h = move |t: f64, i: usize, j: usize| {
+                let x = ((2 * i + 3 * j) as f64 + turning * t).cos();
+                [9.0 * x, if i == j { 0.0 } else { 5.0 * (1.3 * x).sin() }]
+            };
+            let conjugate = |[re, im]: [f64; 2]| [re, -im];
+            let so = schrodinger(n, h).expect("levels");
+            let found = [
+                drift(&so, &Magnus4, &states, away),
+                drift(&so, &Rkmk::new(RK4, Exp), &states, away),
+            ];
+            assert!(found.iter().all(|x| *x < HELD), "SO({}): {found:.1?}", 2 * n);
+            let u = Flow::of_time(
+                Unitary::new(n).expect("a group"),
+                Linear,
+                move |t, v: &mut ComplexMatrix| {
+                    *v = ComplexMatrix::from_fn(n, n, |i, j| {
+                        let [re, im] = if i <= j { h(t, i, j) } else { conjugate(h(t, j, i)) };
+                        c64::new(im, -re)
+                    });
+                },
+            );
+            let parts =
+                ComplexMatrix::from_fn(n, 2, |i, j| c64::new(states[(i, j)], states[(n + i, j)]));
+            let found =
+                drift(&u, &Magnus4, &parts, |x| {
+                    away(&Mat::from_fn(2 * n, 2, |i, j| {
+                        if i < n { x.re[(i, j)] } else { x.im[(i - n, j)] }
+                    }))
+                });
+            assert!(found < HELD, "U({n}): {found:.1e}");
+        }
+    }
+}
+
 #[test]
 fn a_momentum_stays_on_its_orbit() {
     let body = RigidBody::<f64>::new([1.0, 2.0, 3.0]).expect("a body");
@@ -139,6 +191,31 @@ fn a_million_steps() {
     let (left, _) = drift_over(1_000_000, &body, &plain, &m, V::norm);
     println!("momentum: {:.1} eps, left alone {:.0} eps", found / EPS, left / EPS);
     assert!(found < HELD, "{found:.1e}");
+
+    let rabi = schrodinger(2, |t, i, j| if i == j { [t.cos(), 0.0] } else { [0.3, 0.0] });
+    let (rabi, psi) =
+        (rabi.expect("levels"), amplitudes(&[[0.6, 0.0], [0.0, 0.8]]).expect("a state"));
+    let levels = |held: bool| {
+        let start = cpu_seconds();
+        let (grid, mut y) =
+            (TimeGrid::with_steps([0.0, 50_000.0], 1_000_000).expect("a grid"), psi.clone());
+        let ran = match held {
+            true => integrate(&rabi, &Magnus4, &grid, &SaveAt::Ends, &mut y, |_, _| {}),
+            false => {
+                let method = Uncorrected(Magnus4);
+                integrate(&rabi, &method, &grid, &SaveAt::Ends, &mut y, |_, _| {})
+            }
+        };
+        ran.expect("a run");
+        cpu_seconds() - start
+    };
+    let (mut with, mut without) = (f64::INFINITY, f64::INFINITY);
+    for _ in 0..5 {
+        with = with.min(levels(true));
+        without = without.min(levels(false));
+    }
+    println!("two levels, magnus4: time with/without {:.3}", with / without);
+    assert!(with <= 1.05 * without, "{with} beside {without}");
 
     let time = |held: bool| {
         let start = cpu_seconds();

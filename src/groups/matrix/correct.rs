@@ -14,17 +14,38 @@
 //! part that does not commute, A = (g + PgP)/2. D is 𝟙 − gᵀg of the rest. This takes four products instead of nine. The
 //! residual is ‖𝟙 − g♯g‖² = ‖D‖² + 2‖A‖², up to terms of higher order.
 
-use faer::Mat;
+use faer::{ColMut, ColRef, Mat};
 
 use super::ad::has_scalar_part;
 use super::{Form, GroupMatrix, MatrixGroup};
 use crate::dense::{axpy, mul, mul_add, norm_frobenius, scaled_sum};
 use crate::groups::RESIDUAL_MAX;
+use crate::so3::in_range;
 
 /// The largest number of steps.
 const STEPS_MAX: usize = 6;
 /// One quadratic step takes a residual below this to rounding.
 const ONE_STEP: f64 = 1e-8;
+
+/// x ← x + ½x(|from|² − |x|²)/|from|² for a vector in parts, such as its real and its imaginary part. Returns
+/// ||x|²/|from|² − 1|. It is [`LieGroup::correct_vector`](crate::LieGroup::correct_vector) of one vector.
+pub(crate) fn correct_length<const N: usize>(
+    from: [ColRef<'_, f64>; N],
+    x: [ColMut<'_, f64>; N],
+) -> f64 {
+    let square = |parts: [ColRef<'_, f64>; N]| -> f64 {
+        parts.iter().flat_map(|part| part.iter()).map(|x| x * x).sum()
+    };
+    let from2 = square(from);
+    if !in_range(from2) {
+        return 0.0;
+    }
+    let missing = (from2 - square(x.each_ref().map(|part| part.as_ref()))) / from2;
+    if missing.abs() < RESIDUAL_MAX {
+        x.into_iter().for_each(|part| part.iter_mut().for_each(|x| *x += 0.5 * missing * *x));
+    }
+    missing.abs()
+}
 
 /// The kind of P.
 #[derive(Clone, Debug)]

@@ -13,12 +13,13 @@ use faer::{Mat, MatRef};
 
 pub(crate) use check::finite;
 use correct::Cosquare;
+pub(crate) use correct::correct_length;
 pub use element::{AlgebraMatrix, GroupMatrix};
 
 use super::{LieAlgebra, LieGroup};
 use crate::dense::{self, Lu, RCOND_MIN, antisymmetrise, mul, mul_add};
 use crate::error::Error;
-use crate::scalar::{Ops, tally};
+use crate::scalar::{Ops, larger, tally};
 
 /// The bilinear form M that the group conserves: gᵀMg = M (paper 4.3).
 #[derive(Clone, Debug)]
@@ -285,6 +286,11 @@ impl LieGroup for MatrixGroup {
     }
     fn check_vector(&self, x: &Mat<f64>) -> Result<(), Error> {
         self.rows_fit("y", x, x.ncols())
+    }
+    /// On SO(n) each column keeps its length.
+    fn correct_vector(&self, from: &Mat<f64>, x: &mut Mat<f64>) -> Option<f64> {
+        let column = |j: usize| correct_length([from.col(j)], [x.as_mut().col_mut(j)]);
+        matches!(self.form, Form::Identity).then(|| (0..from.ncols()).map(column).fold(0.0, larger))
     }
     fn correct(&self, g: &mut GroupMatrix, scratch: [&mut GroupMatrix; 2]) -> f64 {
         self.newton_schulz(g, scratch)

@@ -21,9 +21,10 @@ use faer::c64;
 use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
 
+use super::correct_length;
 use super::{LieAlgebra, LieGroup, MEMBERSHIP, RESIDUAL_MAX, Sample};
 use crate::error::Error;
-use crate::scalar::{Ops, tally};
+use crate::scalar::{Ops, larger, tally};
 use crate::space::{LinearSpace, Metric};
 
 /// The group U(n). Its algebra u(n) has the skew-Hermitian matrices.
@@ -158,6 +159,14 @@ impl LieGroup for Unitary {
     }
     fn is_finite_vector(&self, x: &ComplexMatrix) -> bool {
         LinearSpace::is_finite(x)
+    }
+    /// Each column keeps its length; its phase is not touched.
+    fn correct_vector(&self, from: &ComplexMatrix, x: &mut ComplexMatrix) -> Option<f64> {
+        let column = |j: usize| {
+            let from = from.parts().map(|part| part.col(j));
+            correct_length(from, x.parts_mut().map(|part| part.as_mut().col_mut(j)))
+        };
+        Some((0..from.re.ncols()).map(column).fold(0.0, larger))
     }
     fn correct(&self, g: &mut ComplexMatrix, [gap, step]: [&mut ComplexMatrix; 2]) -> f64 {
         adjoint_mul_complex(gap, g, g);
