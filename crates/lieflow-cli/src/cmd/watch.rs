@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use lieflow::catalog::{MethodSpec, Needs};
 use lieflow::problems::Invariant;
 use lieflow::solve::{Next, Status};
 use lieflow::{Error, RunError};
@@ -146,13 +147,32 @@ impl<'a> Watch<'a> {
             Err(error) => Ok(Done {
                 failure: Some({
                     let lost = scene.lost(&error).map(|lost| lost.to_string());
-                    let why = lost.or_else(|| scene.pole(&error));
-                    why.map_or_else(|| error.to_string(), |why| format!("{error}: {why}"))
+                    let why = lost.or_else(|| scene.pole(&error)).map(|why| format!(": {why}"));
+                    let told = why.or_else(|| self.larger_steps(&error)).unwrap_or_default();
+                    format!("{error}{told}")
                 }),
                 steps: error.accepted().unwrap_or(0),
                 ..Done::default()
             }),
         }
+    }
+
+    /// What takes larger steps, where the attempts of a run were used up and f depends on time alone: the methods that
+    /// are for such an f.
+    fn larger_steps(&self, error: &RunError) -> Option<String> {
+        let RunError::TooManySteps { .. } = error else { return None };
+        if self.scene.method.info().ok()?.needs == Needs::LinearType {
+            return None;
+        }
+        let names = Needs::LinearType.methods().iter().map(|method| method.name);
+        let fits = |name: &&str| self.model.fits(&MethodSpec::new(name, None)).is_ok();
+        let names: Vec<String> = names.filter(fits).map(|name| format!("`{name}`")).collect();
+        (!names.is_empty()).then(|| {
+            format!(
+                "; or take one of {}, whose steps are larger where f depends on t alone, as here",
+                names.join(", ")
+            )
+        })
     }
 
     /// Is the figure a map?

@@ -162,6 +162,28 @@ fn a_pole_of_a_formula_is_named() {
     assert!(message.contains(pole), "{message}");
 }
 
+/// A run whose attempts are used up is told of the methods for a field of t alone, where it has one and takes none.
+#[test]
+fn methods_with_larger_steps_are_named() {
+    let folder = Folder::new();
+    let told = |scene: &str, method: &str| {
+        let method = format!("method.name={method}");
+        let sets = ["--set", "time.dt=", "--set", "time.max_steps=50", "--set", "time.rtol=1e-9"];
+        let args = ["run", scene, "--out", "out", "--set", &method];
+        folder.lieflow(&[&args[..], &sets].concat()).failed(2)
+    };
+    let both = "raise max_steps or the tolerances; or take one of ";
+    for scene in ["landau-zener", "rotating-drive", "rotating-field"] {
+        let message = told(scene, "\"rkmk dop853\"");
+        assert!(message.contains(both) && message.contains("`magnus6`"), "{message}");
+        let message = told(scene, "magnus4");
+        assert!(message.contains("raise max_steps") && !message.contains("one of"), "{message}");
+    }
+    // Its field depends on the state.
+    let message = told("spin-wave", "\"rkmk dop853\"");
+    assert!(message.contains("raise max_steps") && !message.contains("magnus"), "{message}");
+}
+
 /// A tensor of inertia in `let`, as a matrix that is written out.
 #[test]
 fn a_formula_may_have_a_matrix() {
