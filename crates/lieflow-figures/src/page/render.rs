@@ -131,7 +131,7 @@ fn block(block: &Block) -> String {
         Block::Chart(chart) => figure(&chart.title, &chart.svg(), &chart.full_caption()),
         Block::Sphere(sphere) => {
             let drawing = with_data(&sphere.svg(), "scene", &sphere.json());
-            figure(&sphere.title, &drawing, &sphere.caption)
+            figure(&sphere.title, &drawing, &sphere.full_caption())
         }
         Block::Body(body) => {
             let drawing = with_data(&body.svg(), "motion", &body.json());

@@ -4,7 +4,7 @@
 use super::camera::{Vec3, dot, norm, split};
 use super::ellipsoid::{Ellipsoid, SPHERE};
 use super::sphere::Sphere;
-use super::thin::thin_path;
+use super::thin::{distance_to_segment, thin_path};
 
 /// What a line shows, which decides about its style and its hidden parts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -99,6 +99,28 @@ impl Scene {
         SPHERE.hides(p, toward) || self.ellipsoid.is_some_and(|e| e.hides(p, toward))
     }
 
+    /// For each path: does it share its curve with another one? Then most of its points lie on the other one, and of two
+    /// colours one is not seen there.
+    pub(crate) fn share_a_curve(&self) -> Vec<bool> {
+        let paths = self.lines.iter().filter(|line| line.kind == Kind::Path);
+        let paths: Vec<&[Vec<Vec3>]> = paths.map(|line| &line.pieces[..]).collect();
+        let is_on = |p: &Vec3, path: &[Vec<Vec3>]| {
+            let mut segments = path.iter().flat_map(|piece| piece.windows(2));
+            segments.any(|ab| distance_to_segment(p, &ab[0], &ab[1]) < SAME_CURVE)
+        };
+        let shares = |i: usize, j: usize| {
+            let all = sampled(paths[i]);
+            2 * all.iter().filter(|p| is_on(p, paths[j])).count() > all.len()
+        };
+        let mut shared = vec![false; paths.len()];
+        for (i, j) in (0..paths.len()).flat_map(|i| (0..i).map(move |j| (i, j))) {
+            if !(shared[i] && shared[j]) && (shares(i, j) || shares(j, i)) {
+                (shared[i], shared[j]) = (true, true);
+            }
+        }
+        shared
+    }
+
     /// The brightness, 0 to 1, of the ellipsoid at `p` in light from `lamp`.
     pub(crate) fn brightness(&self, p: &Vec3, lamp: &Vec3) -> f64 {
         let normal = self.ellipsoid.unwrap_or(SPHERE).normal(p);
@@ -116,6 +138,36 @@ fn ellipsoid_of(sphere: &Sphere) -> Option<Ellipsoid> {
 /// radians.
 const FAR: f64 = 1.0;
 
+/// Paths that are nearer to each other are one curve to the eye: two pixels.
+const SAME_CURVE: f64 = 0.01;
+/// Points of a path that are compared with another one.
+const COMPARED: usize = 64;
+
+/// About so many points of a path, at equal distances along each of its pieces.
+fn sampled(path: &[Vec<Vec3>]) -> Vec<Vec3> {
+    let every = path.len().div_ceil(COMPARED).max(1);
+    let count = COMPARED.div_ceil(path.len().max(1));
+    path.iter().step_by(every).flat_map(|piece| along(piece, count)).collect()
+}
+
+/// So many points at equal distances along a piece; the piece itself where it has no length.
+fn along(piece: &[Vec3], count: usize) -> Vec<Vec3> {
+    let ends = piece.windows(2).scan(0.0, |length, ab| {
+        *length += distance_to_segment(&ab[0], &ab[1], &ab[1]);
+        Some(*length)
+    });
+    let ends: Vec<f64> = ends.collect();
+    let whole = ends.last().copied().unwrap_or(0.0);
+    let at = |k: usize| {
+        let along = whole * (k as f64 + 0.5) / count as f64;
+        let i = ends.partition_point(|end| *end < along).min(ends.len() - 1);
+        let from = if i == 0 { 0.0 } else { ends[i - 1] };
+        let part = (along - from) / (ends[i] - from).max(f64::MIN_POSITIVE);
+        std::array::from_fn(|axis| piece[i][axis] + part * (piece[i + 1][axis] - piece[i][axis]))
+    };
+    if ends.is_empty() { piece.to_vec() } else { (0..count).map(at).collect() }
+}
+
 /// A path in radii of the sphere, thinned to less than a pixel, without chords between points that are far apart. A
 /// point alone is there twice, and so is a dot.
 fn unit_path(sphere: &Sphere, points: &[Vec3]) -> Vec<Vec<Vec3>> {
@@ -131,7 +183,36 @@ fn unit_path(sphere: &Sphere, points: &[Vec3]) -> Vec<Vec<Vec3>> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::sphere::Path;
     use super::*;
+
+    /// Arcs of one circle share it where most of the one lies on the other; circles that cross do not.
+    #[test]
+    fn paths_on_one_curve_are_known() {
+        let arc = |height: f64, from: f64, to: f64| {
+            let radius = (1.0 - height * height).sqrt();
+            let point = |i: usize| {
+                let angle = from + (to - from) * i as f64 / 200.0;
+                [radius * angle.cos(), radius * angle.sin(), height]
+            };
+            Path { points: (0..=200).map(point).collect(), ..Path::default() }
+        };
+        let upright = Path {
+            points: arc(0.0, 0.0, 6.0).points.iter().map(|p| [p[1], p[2], p[0]]).collect(),
+            ..Path::default()
+        };
+        let shared = |paths: Vec<Path>| {
+            Scene::new(&Sphere { radius: 1.0, paths, ..Sphere::default() }).share_a_curve()
+        };
+        let arcs =
+            vec![arc(0.3, 0.0, 5.0), upright.clone(), arc(0.3, 0.8, 5.8), arc(0.35, 0.0, 5.0)];
+        assert_eq!(shared(arcs), [true, false, true, false]);
+        // A short one on a long one is not seen, whichever is first.
+        assert_eq!(shared(vec![arc(0.3, 1.0, 1.5), arc(0.3, 0.0, 6.0)]), [true, true]);
+        assert_eq!(shared(vec![arc(0.3, 0.0, 6.0), arc(0.3, 1.0, 1.5)]), [true, true]);
+        assert_eq!(shared(vec![arc(0.3, 0.0, 3.0), arc(0.3, 2.5, 5.5)]), [false, false]);
+        assert_eq!(shared(vec![upright, Path::default()]), [false, false]);
+    }
 
     #[test]
     fn points_that_are_far_apart_are_not_joined() {

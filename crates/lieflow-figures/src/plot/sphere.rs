@@ -3,7 +3,7 @@
 use super::camera::{Camera, Vec3, clip, dot, norm, split};
 use super::labels::{self, ROW};
 use super::scene::{Kind, Line, Scene};
-use super::series::Series;
+use super::series::{Marker, Series};
 use super::svg::{Opening, arrow_head, polyline, px, slug, text};
 use super::theme::{self, SHADES};
 
@@ -53,6 +53,7 @@ impl Sphere {
     /// The picture as a complete `<svg>` element.
     pub fn svg(&self) -> String {
         let scene = Scene::new(self);
+        let shared = self.shared(&scene);
         let camera = Camera::new(self.view.0, self.view.1);
         let scale = HALF / scene.extent;
         let height = HEIGHT + ROW * self.paths.len() as f64 + 8.0;
@@ -81,9 +82,13 @@ impl Sphere {
             px(scale)
         ));
         draw_fills(&mut out, before, SHADES);
-        self.draw_lines(&mut out, &scene, &camera, |kind| kind != Kind::Path && kind != Kind::Axis);
+        self.draw_lines(&mut out, (&scene, &shared), &camera, |kind| {
+            kind != Kind::Path && kind != Kind::Axis
+        });
         out.push_str("</g>");
-        self.draw_lines(&mut out, &scene, &camera, |kind| kind == Kind::Path || kind == Kind::Axis);
+        self.draw_lines(&mut out, (&scene, &shared), &camera, |kind| {
+            kind == Kind::Path || kind == Kind::Axis
+        });
         draw_arrows(&mut out, &scene, &camera, scale);
         for (i, end) in self.ends().iter().enumerate() {
             let (x, y) = screen(&camera, scale, end);
@@ -98,7 +103,10 @@ impl Sphere {
         }
         for (k, path) in self.paths.iter().enumerate() {
             let at = (24.0, HEIGHT + ROW * (k as f64 + 0.5));
-            out.push_str(&labels::entry(&path.as_series(), k, at, None, WIDTH - 48.0));
+            // Of a path on the curve of another one the dot alone has its colour.
+            let marker = if shared[k] { Marker::Dot } else { Marker::None };
+            let series = path.as_series().with_marker(marker);
+            out.push_str(&labels::entry(&series, k, at, None, WIDTH - 48.0));
         }
         out.push_str("</svg>");
         out
@@ -144,6 +152,25 @@ impl Sphere {
         ends.filter(|ends| ends.len() > 1).unwrap_or_default()
     }
 
+    /// The paths that share a curve, where the dots at their ends tell them apart.
+    fn shared(&self, scene: &Scene) -> Vec<bool> {
+        match self.ends().is_empty() {
+            true => vec![false; self.paths.len()],
+            false => scene.share_a_curve(),
+        }
+    }
+
+    /// The caption, and what is drawn of paths that share a curve.
+    pub fn full_caption(&self) -> String {
+        let is_shared = self.shared(&Scene::new(self)).contains(&true);
+        let told = if is_shared {
+            "Paths on one curve are drawn in one colour; the dot of each is where it ends."
+        } else {
+            ""
+        };
+        [self.caption.trim(), told].join(" ").trim().to_string()
+    }
+
     fn description(&self) -> String {
         let names: Vec<&str> = self.paths.iter().map(|p| p.name.as_str()).collect();
         format!(
@@ -152,14 +179,14 @@ impl Sphere {
             self.view.0,
             self.view.1,
             names.join(", "),
-            self.caption
+            self.full_caption()
         )
     }
 
     fn draw_lines(
         &self,
         out: &mut String,
-        scene: &Scene,
+        (scene, shared): (&Scene, &[bool]),
         camera: &Camera,
         which: fn(Kind) -> bool,
     ) {
@@ -168,7 +195,10 @@ impl Sphere {
             let (front, back) = visible_parts(line, scene, camera);
             let path = paths.next().filter(|_| line.kind == Kind::Path);
             if let Some(i) = path {
-                let classes = self.paths[i].as_series().classes();
+                let classes = match shared[i] {
+                    true => "lf-ink".into(),
+                    false => self.paths[i].as_series().classes(),
+                };
                 out.push_str(&format!("<g class=\"lf-s {classes}\" data-line=\"{i}\">"));
             }
             let class = line.kind.class();
@@ -335,6 +365,29 @@ mod tests {
         let round = Sphere { ellipsoid: energy(1e-3), ..sphere(equator()) };
         assert_eq!(parts(&round), (2, 1));
         assert_eq!(parts(&Sphere { view: (0.0, 90.0), ..round }), (1, 0));
+    }
+
+    /// Of two paths on one circle neither has its colour on it; the legend shows the dots.
+    #[test]
+    fn paths_on_one_curve_are_told_by_their_ends() {
+        let later: Vec<Vec3> = equator().into_iter().skip(90).collect();
+        let path = |name: &str, colour, points| Path { name: name.into(), colour, points };
+        let two = |second: Vec<Vec3>| Sphere {
+            paths: vec![path("a", 0, equator()), path("b", 1, second)],
+            ..sphere(Vec::new())
+        };
+        let one_curve = two(later.clone());
+        let svg = one_curve.svg();
+        assert_eq!(svg.matches("<g class=\"lf-s lf-ink\"").count(), 2);
+        assert_eq!(svg.matches("lf-end").count() - svg.matches(".lf-end").count(), 2);
+        assert!(!svg.contains("class=\"lf-key-line\"") && svg.contains("class=\"lf-m\""));
+        // A file has no style of other figures.
+        assert!(svg.contains(".lf-m{fill:currentColor"));
+        assert!(one_curve.full_caption().contains("one colour"));
+        let apart = two(later.iter().map(|p| [p[2], p[0], p[1]]).collect());
+        let svg = apart.svg();
+        assert!(!svg.contains("\"lf-s lf-ink\"") && apart.full_caption().is_empty());
+        assert_eq!(svg.matches("class=\"lf-key-line\"").count(), 2);
     }
 
     #[test]

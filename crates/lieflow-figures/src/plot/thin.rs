@@ -47,7 +47,8 @@ pub(crate) fn thin_path<const N: usize>(points: &[[f64; N]], tolerance: f64) -> 
     points.iter().zip(keep).filter(|(_, keep)| *keep).map(|(p, _)| *p).collect()
 }
 
-fn distance_to_segment<const N: usize>(p: &[f64; N], a: &[f64; N], b: &[f64; N]) -> f64 {
+/// The distance of p from the segment from a to b.
+pub(crate) fn distance_to_segment<const N: usize>(p: &[f64; N], a: &[f64; N], b: &[f64; N]) -> f64 {
     let (mut along, mut length) = (0.0, 0.0);
     for i in 0..N {
         along += (p[i] - a[i]) * (b[i] - a[i]);
