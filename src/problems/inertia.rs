@@ -105,9 +105,16 @@ pub fn principal_axes(tensor: &Matrix3<f64>) -> Result<([f64; 3], Matrix3<f64>),
             }
         }
     }
-    let (size, skew) = (tensor.amax(), (tensor - tensor.transpose()).amax());
-    if skew > 64.0 * f64::EPSILON * size {
-        return Err(Error::out_of_range("inertia − inertiaᵀ", skew, "a symmetric tensor"));
+    let size = tensor.amax();
+    for (i, j) in [(0, 1), (0, 2), (1, 2)] {
+        let (above, below) = (tensor[(i, j)], tensor[(j, i)]);
+        if (above - below).abs() > 64.0 * f64::EPSILON * size {
+            let (arg, expected) = (
+                format!("inertia[{},{}]", i + 1, j + 1),
+                format!("{below}, as inertia[{},{}]", j + 1, i + 1),
+            );
+            return Err(Error::out_of_range(arg, above, expected));
+        }
     }
     if size == 0.0 {
         return Err(Error::out_of_range("inertia", 0.0, "a tensor with moments > 0"));

@@ -243,7 +243,9 @@ impl SpinChain {
             let length = s.norm();
             match length > 0.0 && length.is_finite() {
                 true => Ok(s / length),
-                false => Err(Error::out_of_range(format!("|s[{i}]|"), length, "finite and > 0")),
+                false => {
+                    Err(Error::out_of_range(format!("|s[{i}]|"), length, "a finite length > 0"))
+                }
             }
         };
         (0..self.group.copies()).map(unit).collect()

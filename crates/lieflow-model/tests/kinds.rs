@@ -35,7 +35,7 @@ mod samples;
 #[path = "kinds/values.rs"]
 mod values;
 use lieflow_model::kinds::KINDS;
-use lieflow_model::scene::{BUNDLED, Scene};
+use lieflow_model::scene::{BUNDLED, Scene, SceneError};
 use lieflow_model::schema::Row;
 
 /// The text of a bundled scene.

@@ -42,7 +42,7 @@ impl Torus {
     /// [`Error::OutOfRange`] unless N is odd and 3 ≤ N ≤ 4095.
     pub fn new(n: usize) -> Result<Self, Error> {
         if !(3..=4095).contains(&n) || n.is_multiple_of(2) {
-            return Err(Error::out_of_range("N", n as f64, "odd, 3 ≤ N ≤ 4095"));
+            return Err(Error::out_of_range("N", n as f64, "an odd number, 3 to 4095"));
         }
         let wave_number = |j: usize| j.div_ceil(2);
         let scale = (2.0 / n as f64).sqrt();

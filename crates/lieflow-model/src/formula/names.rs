@@ -223,6 +223,12 @@ impl Names {
 
     pub(super) fn check(&self, key: &str, name: &str) -> Result<(), Refusal> {
         let first = name.chars().next();
+        if name.is_empty() {
+            return Err(Refusal::at(
+                key,
+                "the name is empty, expected letters, digits and underscores",
+            ));
+        }
         let why = if !first.is_some_and(starts_name) || !name.chars().all(continues_name) {
             "is no name: expected letters, digits and underscores, and no digit first"
         } else if CALLED.iter().any(|(called, _)| *called == name) {

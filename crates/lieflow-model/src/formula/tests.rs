@@ -191,7 +191,7 @@ fn parameters_are_numbers_with_names() {
         ("pi = 3", "x", "`pi` is the name of a number"),
         ("\"a b\" = 3", "x", "`a b` is no name"),
         ("k = 3", "2x", "`2x` is no name"),
-        ("k = 3", "", "`` is no name"),
+        ("k = 3", "", "the name is empty"),
     ] {
         let parameters = table::<Parameters>(text);
         let names = parameters.and_then(|parameters| parameters.names("variables", [variable]));

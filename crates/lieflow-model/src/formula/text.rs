@@ -163,7 +163,8 @@ impl Read for NamedTexts {
             (false, _) => <Texts as Read>::read(value).map(NamedTexts::Texts),
             (true, true) => Vec::read(value).map(NamedTexts::Rows),
             (true, false) => {
-                let message = "found formulas and rows of formulas, expected one of the two";
+                let message =
+                    "found formulas beside rows, expected either formulas or rows of formulas";
                 Err(ReadError::of(value, message))
             }
         }

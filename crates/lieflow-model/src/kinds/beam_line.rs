@@ -52,7 +52,7 @@ type Q = Quantity<BeamLine>;
 fn element(keys: &ElementKeys) -> Result<(Element, [f64; 2]), String> {
     let length = keys.length.0;
     if length <= 0.0 {
-        return Err(format!("length {length}, expected > 0"));
+        return Err(format!("length = {length}, expected a number > 0"));
     }
     match (keys.kind.as_str(), keys.k, keys.radius) {
         ("drift", None, None) => Ok((Element::Drift { length }, [0.0, 0.0])),

@@ -64,7 +64,9 @@ fn read_hill(keys: HillKeys) -> Result<Forms, ReadError> {
     let q = keys.q.and_then(|q| symmetric("q", &q, Some(seen(&a)?.nrows()), 0.0));
     let period = keys.period.and_then(|Real(period)| match period > 0.0 {
         true => Ok(period),
-        false => Err(Refusal::at("period", format!("{period}, expected > 0")).into()),
+        false => {
+            Err(Refusal::at("period", format!("period = {period}, expected a number > 0")).into())
+        }
     });
     let (a, (), q, period) = all!(a, symmetry, q, period)?;
     Ok(Forms::of(Hill { a, q, period }))

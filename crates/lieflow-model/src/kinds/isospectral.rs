@@ -71,8 +71,11 @@ fn read_toda(keys: TodaKeys) -> Result<Forms, ReadError> {
         Either::First(positions) => {
             let (q, p) = (positions.values(), momenta.map_or(Vec::new(), |p| p.values()));
             if p.len() != q.len() {
-                let message =
-                    format!("found {} momenta of {} particles, expected as many", p.len(), q.len());
+                let message = format!(
+                    "found {} momenta, expected {}, one for each position",
+                    p.len(),
+                    q.len()
+                );
                 return Err(Refusal::at("momenta", message).into());
             }
             let matrix = toda_lattice(&q, &p)?;
@@ -111,7 +114,7 @@ fn read_qr(keys: QrKeys) -> Result<Forms, ReadError> {
     let matrix = matrix_of(&keys.matrix?)?;
     let smallest = eigenvalues(&matrix).first().copied().unwrap_or(f64::NAN);
     if smallest.is_nan() || smallest <= 0.0 {
-        let message = format!("an eigenvalue is {smallest:.3e}, expected all to be > 0");
+        let message = format!("an eigenvalue is {smallest:.4}, expected all eigenvalues to be > 0");
         return Err(Refusal::at("matrix", message).into());
     }
     let flow = IsospectralFlow::qr(matrix.nrows())?;

@@ -48,7 +48,10 @@ fn read(keys: Keys) -> Result<Forms, ReadError> {
     let (q, r) = qr(x.as_ref());
     let depends = |j: &usize| r[(*j, *j)].abs() <= DEPENDENT * norm(x.subcols(*j, 1));
     if let Some(j) = (0..x.ncols()).find(depends) {
-        let message = format!("column {} depends on those before it", j + 1);
+        let message = format!(
+            "column {} is a sum of multiples of the columns before it, expected independent columns",
+            j + 1
+        );
         return Err(Refusal::at("x", message).into());
     }
     let x = Mat::from_fn(x.nrows(), x.ncols(), |i, j| q[(i, j)] * r[(j, j)].signum());

@@ -41,7 +41,9 @@ const WATCHED: usize = 8;
 fn read(keys: Keys) -> Result<Forms, ReadError> {
     let momentum = keys.momentum.and_then(|momentum| {
         let above = momentum.values();
-        let message = || format!("found {} numbers, expected n(n-1)/2", above.len());
+        let message = || {
+            format!("found {} numbers, expected n(n-1)/2 numbers, such as 3, 6 or 10", above.len())
+        };
         Ok(antisymmetric(&above).ok_or_else(|| Refusal::at("momentum", message()))?)
     });
     let n = seen(&momentum).map(Mat::nrows);
@@ -63,8 +65,9 @@ fn body(
             let lambda = lambda.values();
             if lambda.len() != n {
                 let message = format!(
-                    "found {} numbers, expected {n} for a momentum of n(n-1)/2",
-                    lambda.len()
+                    "found {} numbers, expected {n}, as the momentum has {n}·{}/2 numbers",
+                    lambda.len(),
+                    n - 1
                 );
                 return Err(Refusal::at("mass_moments", message).into());
             }

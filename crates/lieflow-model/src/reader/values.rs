@@ -155,7 +155,8 @@ impl Read for Diagonal {
             [Entry::Number(a), Entry::Number(b), Entry::Number(c)] => Ok(Diagonal::List([a, b, c])),
             [Entry::Row(a), Entry::Row(b), Entry::Row(c)] => Ok(Diagonal::Rows([a.0, b.0, c.0])),
             _ => {
-                let message = "numbers and rows, expected 3 numbers or 3 rows of them";
+                let message =
+                    "found numbers beside rows, expected 3 numbers or 3 rows of 3 numbers";
                 Err(ReadError::of(value, message))
             }
         }
@@ -185,9 +186,10 @@ impl Read for Numbers {
         match (numbers.is_empty(), rows.is_empty()) {
             (_, true) => Ok(Numbers::List(numbers)),
             (true, false) => Ok(Numbers::Rows(Table(rows))),
-            (false, false) => {
-                Err(ReadError::of(value, "numbers and rows, expected one of the two"))
-            }
+            (false, false) => Err(ReadError::of(
+                value,
+                "found numbers beside rows, expected either numbers or rows of numbers",
+            )),
         }
     }
 }
@@ -261,7 +263,7 @@ impl Table {
     pub fn matrix(&self, key: &str, columns: Option<usize>) -> Result<Mat<f64>, ReadError> {
         let columns = columns.unwrap_or(self.0.len());
         if self.0.is_empty() {
-            return Err(Refusal::at(key, "no rows, expected at least one").into());
+            return Err(Refusal::at(key, "found no rows, expected at least one").into());
         }
         if let Some(i) = self.0.iter().position(|row| row.0.len() != columns) {
             let found = self.0[i].0.len();

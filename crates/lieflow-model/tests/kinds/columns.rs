@@ -245,7 +245,10 @@ fn named_formulas_are_refused_at_their_line() {
             "b = [[1, 2], [3, \"w\"]]",
             &["let.b[2,2]: the value is a vector of 3 numbers, expected one"],
         ),
-        ("b = [[1, 2], \"w\"]", &["formulas and rows of formulas, expected one of the two"]),
+        (
+            "b = [[1, 2], \"w\"]",
+            &["found formulas beside rows, expected either formulas or rows of formulas"],
+        ),
         ("b = [[[1]]]", &["found a list, expected a formula: a text or a number"]),
     ] {
         let problem = format!("{BODY}\ntorque = [0, 0, 0]\n[problem.let]\n{formulas}");

@@ -225,7 +225,7 @@ fn hamiltonians_are_refused_at_their_line() {
         (
             "hamiltonian = \"m11^2\"\nalgebra = \"so\"\nmomentum = [[1, 0], 0]",
             6,
-            &["one of the two"],
+            &["found numbers beside rows"],
         ),
         (
             "hamiltonian = \"ln(m2)\"\nalgebra = \"so3\"\nmomentum = [1, 0, 0]",

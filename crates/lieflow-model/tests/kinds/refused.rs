@@ -2,277 +2,198 @@
 
 use super::*;
 
-/// A line of a bundled scene, what stands there instead, and what the message says.
-const BROKEN: &[(&str, &str, &str, &[&str])] = &[
-    ("flipping-book", "sides = ", "edges = ", &["unknown key `edges`", "sides"]),
-    ("flipping-book", "kind = \"box\"", "kind = \"bax\"", &["unknown shape `bax`", "`box`"]),
-    ("flipping-book", "mass = 0.5", "mass = -1", &["mass = -1"]),
-    ("flipping-book", "mass = 0.5, ", "", &["missing key `mass`"]),
-    ("flipping-book", "sides = [0.2, 0.15, 0.03]", "radius = 1", &["a box has a mass and sides"]),
+/// A line of a bundled scene, and what stands there instead. The messages are in a snapshot: `cargo insta review` shows
+/// those that a change makes different.
+const BROKEN: &[(&str, &str, &str)] = &[
+    ("flipping-book", "sides = ", "edges = "),
+    ("flipping-book", "kind = \"box\"", "kind = \"bax\""),
+    ("flipping-book", "mass = 0.5", "mass = -1"),
+    ("flipping-book", "mass = 0.5, ", ""),
+    ("flipping-book", "sides = [0.2, 0.15, 0.03]", "radius = 1"),
     (
         "asymmetric-top",
         "inertia = [1.0, 2.0, 3.0]",
         "inertia = [[1, 0, 0], [0.1, 2, 0], [0, 0, 3]]",
-        &["symmetric"],
     ),
-    (
-        "flipping-book",
-        "shape = ",
-        "shape = [\"box\", 1, [1, 2, 3]] # ",
-        &["found a list, expected a table with the keys kind, mass, sides"],
-    ),
-    ("gyro-record", "samples = ", "sample = ", &["did you mean `samples`?"]),
-    (
-        "asymmetric-top",
-        "inertia = [1.0, 2.0, 3.0]",
-        "inertia = [[1, 0, 0], 2, 3]",
-        &["numbers and rows"],
-    ),
-    ("wing-nut", "quaternion = [1.0,", "quaternion = [1.1,", &["its length is 1.1"]),
-    ("wing-nut", "quaternion = [1.0, 0.0,", "quaternion = [1.0,", &["expected 4 numbers"]),
+    ("flipping-book", "shape = ", "shape = [\"box\", 1, [1, 2, 3]] # "),
+    ("gyro-record", "samples = ", "sample = "),
+    ("asymmetric-top", "inertia = [1.0, 2.0, 3.0]", "inertia = [[1, 0, 0], 2, 3]"),
+    ("wing-nut", "quaternion = [1.0,", "quaternion = [1.1,"),
+    ("wing-nut", "quaternion = [1.0, 0.0,", "quaternion = [1.0,"),
     (
         "wing-nut",
         "quaternion = [1.0,",
         "attitude = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]\nquaternion = [1.0,",
-        &["at most one of them"],
     ),
-    ("damped-satellite", "damping = 0.1", "dampen = 0.1", &["did you mean `damping`?"]),
-    ("attitude-control", "control = [3.0, 4.0]", "control = 3.0", &["a list of 2 numbers"]),
-    ("attitude-control", "[0.0012727073855697268,", "[0.5,", &["SO(3)"]),
-    ("many-bodies", "inertia = [1.0, 1.0, 2.0]", "inertia = [1, 0, 2]", &["> 0"]),
-    ("manakov-body", "mass_moments = [0.4,", "mass_moments = [-1.4,", &["mass_moments[1]", "> 0"]),
-    ("manakov-body", "mass_moments = [0.4,", "mass_moments = [", &["found 3 numbers, expected 4"]),
-    ("manakov-body", "momentum = [1.0,", "momentum = [", &["n(n-1)/2"]),
-    ("manakov-body", "momentum = [1.0,", "momentum = [\"one\",", &["\"one\" is no number"]),
-    ("lagrange-top", "inertia = [1.0, 1.0, 0.5]", "inertia = [1, 1, -2]", &["inertia[3] = -2"]),
-    ("lagrange-top", "vertical = [0.6,", "vertical = [0.7,", &["length", "expected 1"]),
-    ("lagrange-top", "omega_body", "omega", &["unknown key `omega`", "omega_body"]),
-    ("ellipsoid-in-fluid", "mass = [1.5,", "mass = [0,", &["mass[1] = 0"]),
-    ("ellipsoid-in-fluid", "inertia = ", "inertai = ", &["`inertai`", "did you mean `inertia`?"]),
-    ("ellipsoid-in-fluid", "mass = [1.5, 1.2, 1.0]", "", &["missing key `mass` in [problem]"]),
-    ("ellipsoid-in-fluid", "mass = [1.5,", "mass = [", &["expected 3 numbers, found 2"]),
-    ("ellipsoid-in-fluid", "mass = [1.5,", "mass = [\"a\",", &["\"a\" is no number", "`a`"]),
-    ("ellipsoid-in-fluid", "mass = [1.5,", "mass = 1 # [", &["found 1", "a list of 3 numbers"]),
-    ("euler-on-sl3", "algebra = \"sl\"", "algebra = \"su\"", &["unknown algebra `su`", "so"]),
-    ("euler-on-sl3", "momentum = [[0.2,", "momentum = [[0.3,", &["not in sl(3)"]),
-    ("euler-on-sl3", "inverse_inertia = [[0.4, ", "inverse_inertia = [[", &["row 1 has 2 numbers"]),
-    ("vortices-on-sphere", "n = 24", "n = 1", &["at least 2"]),
-    ("vortices-on-sphere", "n = 24", "n = 513", &["n = 513, expected at most 512"]),
-    (
-        "vortices-on-sphere",
-        "surface = \"sphere\"",
-        "surface = \"shpere\"",
-        &["did you mean `sphere`"],
-    ),
-    ("vortices-on-sphere", "surface = \"sphere\"", "", &["missing key `surface`"]),
-    (
-        "vortices-on-sphere",
-        "n = 24",
-        "n = 24\nrandom = { seed = 1, below = 3 }",
-        &["one or the other"],
-    ),
-    ("vortices-on-sphere", "n = 24", "n = 24\njets = [[24, 1]]", &["degree = 24", "1 to 23"]),
-    ("vortices-on-sphere", "n = 24", "n = 24\nmodes = [[3, 4, 1]]", &["order = 4", "-3 to 3"]),
-    ("vortices-on-sphere", "n = 24", "n = 24\nmodes = [[3, 1]]", &["[degree, order, amplitude]"]),
-    (
-        "vortices-on-sphere",
-        "latitude = 0.5, longitude = -0.6",
-        "x = 0.5, y = -0.6",
-        &["has a latitude and a longitude"],
-    ),
-    ("subspaces", "  [4.0, 0.5,", "  [4.0, 0.6,", &["symmetric"]),
-    ("subspaces", "  [4.0, 0.5,", "  [0.5,", &["row 1 has 4 numbers"]),
-    ("subspaces", "  [0.1, 0.0],", "", &["found 4 rows, expected 5"]),
-    ("vortices-on-sphere", "longitude = -0.6", "longitude = 57.3", &["longitude = 57.3", "6.2832"]),
-    ("toda-lattice", "positions = [", "positions = [900, -900, 0, 1] # ", &["overlap"]),
-    ("shear-layer", "n = 41", "n = 42", &["n = 42", "odd"]),
-    ("shear-layer", "n = 41", "n = 1", &["at least 2"]),
-    ("shear-layer", "jets = [[1, -0.58]", "jets = [[1.5, 1.5]", &["a whole number, 1 to 20"]),
-    ("shear-layer", "modes = [[1, 0, 0.0, 0.1]", "modes = [[21, 0, 1, 0]", &["-20 to 20"]),
-    ("shear-layer", "modes = [[1, 0, 0.0, 0.1]", "modes = [[0, 0, 1, 0]", &["the mean"]),
-    ("shear-layer", "modes = [[1, 0, 0.0, 0.1]", "modes = [[1, 0, nan, 0]", &["finite"]),
-    ("shear-layer", "[\"energy\", ", "[\"angular_momentum\", ", &["has no `angular_momentum`"]),
-    (
-        "shear-layer",
-        "jets = [",
-        "vortices = [{ x = 1, y = 1, circulation = 1, width = -1 }] # ",
-        &["> 0"],
-    ),
-    (
-        "vortices-on-sphere",
-        "circulation = 6.0, width = 0.25",
-        "circulation = 6, width = 0",
-        &["> 0"],
-    ),
-    ("vortices-on-sphere", "isospectral4", "magnus4", &["methods that fit: rkmk4"]),
-    ("spherical-pendulum", "direction = [0.8, 0.0, -0.6]", "direction = [0, 0, 0]", &["|q|"]),
-    ("spin-wave", "count = 8", "count = 1", &["at least 2"]),
-    ("spin-wave", "wave = { count = 8, turns = 1, cone = 0.8 }", "", &["`spins` or `wave`"]),
-    (
-        "spin-wave",
-        "wave = { count = 8, turns = 1, cone = 0.8 }",
-        "spins = [[1, 0, 0], [0, 0, 0]]",
-        &["|s[2]|"],
-    ),
-    ("toda-lattice", "momenta = [1.0, ", "momenta = [", &["3 momenta of 4 particles"]),
-    ("sorting", "  [4.0, 0.1, 0.1, 0.1],", "  [4.0, 0.2, 0.1, 0.1],", &["symmetric"]),
-    ("sorting", "order = [1.0, ", "order = [", &["found 3 numbers, expected 4"]),
-    ("qr-flow", "  [2.0, 1.0, 0.0],", "  [-2.0, 1.0, 0.0],", &["eigenvalue", "> 0"]),
-    ("oja", "  [4.0, 1.0,", "  [4.0, 2.0,", &["symmetric"]),
-    ("oja", "x = [[0.1, 0.2],", "x = [", &["found 3 rows, expected 4"]),
+    ("damped-satellite", "damping = 0.1", "dampen = 0.1"),
+    ("attitude-control", "control = [3.0, 4.0]", "control = 3.0"),
+    ("attitude-control", "[0.0012727073855697268,", "[0.5,"),
+    ("many-bodies", "inertia = [1.0, 1.0, 2.0]", "inertia = [1, 0, 2]"),
+    ("manakov-body", "mass_moments = [0.4,", "mass_moments = [-1.4,"),
+    ("manakov-body", "mass_moments = [0.4,", "mass_moments = ["),
+    ("manakov-body", "momentum = [1.0,", "momentum = ["),
+    ("manakov-body", "momentum = [1.0,", "momentum = [\"one\","),
+    ("lagrange-top", "inertia = [1.0, 1.0, 0.5]", "inertia = [1, 1, -2]"),
+    ("lagrange-top", "vertical = [0.6,", "vertical = [0.7,"),
+    ("lagrange-top", "omega_body", "omega"),
+    ("ellipsoid-in-fluid", "mass = [1.5,", "mass = [0,"),
+    ("ellipsoid-in-fluid", "inertia = ", "inertai = "),
+    ("ellipsoid-in-fluid", "mass = [1.5, 1.2, 1.0]", ""),
+    ("ellipsoid-in-fluid", "mass = [1.5,", "mass = ["),
+    ("ellipsoid-in-fluid", "mass = [1.5,", "mass = [\"a\","),
+    ("ellipsoid-in-fluid", "mass = [1.5,", "mass = 1 # ["),
+    ("euler-on-sl3", "algebra = \"sl\"", "algebra = \"su\""),
+    ("euler-on-sl3", "momentum = [[0.2,", "momentum = [[0.3,"),
+    ("euler-on-sl3", "inverse_inertia = [[0.4, ", "inverse_inertia = [["),
+    ("vortices-on-sphere", "n = 24", "n = 1"),
+    ("vortices-on-sphere", "n = 24", "n = 513"),
+    ("vortices-on-sphere", "surface = \"sphere\"", "surface = \"shpere\""),
+    ("vortices-on-sphere", "surface = \"sphere\"", ""),
+    ("vortices-on-sphere", "n = 24", "n = 24\nrandom = { seed = 1, below = 3 }"),
+    ("vortices-on-sphere", "n = 24", "n = 24\njets = [[24, 1]]"),
+    ("vortices-on-sphere", "n = 24", "n = 24\nmodes = [[3, 4, 1]]"),
+    ("vortices-on-sphere", "n = 24", "n = 24\nmodes = [[3, 1]]"),
+    ("vortices-on-sphere", "latitude = 0.5, longitude = -0.6", "x = 0.5, y = -0.6"),
+    ("subspaces", "  [4.0, 0.5,", "  [4.0, 0.6,"),
+    ("subspaces", "  [4.0, 0.5,", "  [0.5,"),
+    ("subspaces", "  [0.1, 0.0],", ""),
+    ("vortices-on-sphere", "longitude = -0.6", "longitude = 57.3"),
+    ("toda-lattice", "positions = [", "positions = [900, -900, 0, 1] # "),
+    ("shear-layer", "n = 41", "n = 42"),
+    ("shear-layer", "n = 41", "n = 1"),
+    ("shear-layer", "jets = [[1, -0.58]", "jets = [[1.5, 1.5]"),
+    ("shear-layer", "modes = [[1, 0, 0.0, 0.1]", "modes = [[21, 0, 1, 0]"),
+    ("shear-layer", "modes = [[1, 0, 0.0, 0.1]", "modes = [[0, 0, 1, 0]"),
+    ("shear-layer", "modes = [[1, 0, 0.0, 0.1]", "modes = [[1, 0, nan, 0]"),
+    ("shear-layer", "[\"energy\", ", "[\"angular_momentum\", "),
+    ("shear-layer", "jets = [", "vortices = [{ x = 1, y = 1, circulation = 1, width = -1 }] # "),
+    ("vortices-on-sphere", "circulation = 6.0, width = 0.25", "circulation = 6, width = 0"),
+    ("vortices-on-sphere", "isospectral4", "magnus4"),
+    ("spherical-pendulum", "direction = [0.8, 0.0, -0.6]", "direction = [0, 0, 0]"),
+    ("spin-wave", "count = 8", "count = 1"),
+    ("spin-wave", "wave = { count = 8, turns = 1, cone = 0.8 }", ""),
+    ("spin-wave", "wave = { count = 8, turns = 1, cone = 0.8 }", "spins = [[1, 0, 0], [0, 0, 0]]"),
+    ("toda-lattice", "momenta = [1.0, ", "momenta = ["),
+    ("sorting", "  [4.0, 0.1, 0.1, 0.1],", "  [4.0, 0.2, 0.1, 0.1],"),
+    ("sorting", "order = [1.0, ", "order = ["),
+    ("qr-flow", "  [2.0, 1.0, 0.0],", "  [-2.0, 1.0, 0.0],"),
+    ("oja", "  [4.0, 1.0,", "  [4.0, 2.0,"),
+    ("oja", "x = [[0.1, 0.2],", "x = ["),
     (
         "oja",
         "x = [[0.1, 0.2], [0.3, -0.5], [0.9, 0.4], [-0.2, 0.7]]",
         "x = [[1, 2], [1, 2], [0, 0], [0, 0]]",
-        &["column 2 depends"],
     ),
-    ("mathieu", "q = 0.3", "", &["missing key `q`"]),
-    ("coupled-oscillators", "period = 2.0", "period = 0", &["> 0"]),
-    (
-        "coupled-oscillators",
-        "q = [[0.0, 0.1],",
-        "q = [[0.0, 0.2],",
-        &["expected a symmetric matrix, but q[1,2] is 0.2 and q[2,1] is 0.1"],
-    ),
-    (
-        "fodo-cell",
-        "{ kind = \"drift\", length = 0.25 }",
-        "{ kind = \"drift\", length = -1 }",
-        &["> 0"],
-    ),
-    ("fodo-cell", "radius = 8.0", "k = 8.0", &["a dipole has a length and a radius"]),
-    ("fodo-cell", "kind = \"dipole\"", "kind = \"dipol\"", &["did you mean `dipole`?"]),
-    ("riccati-pole", "c = [[1.0, 0.0],", "c = [[1.0, 0.5],", &["symmetric"]),
-    ("riccati-pole", "p = [[0.0, 0.0], [0.0, 0.0]]", "p = []", &["no rows"]),
-    ("crossed-fields", "velocity = [0.0, 0.0, 0.3]", "velocity = [0, 0, 1]", &["less than 1"]),
-    ("rabi", "coupling = [[0.0, 0.1],", "coupling = [[0.0, 0.2],", &["a symmetric matrix"]),
+    ("mathieu", "q = 0.3", ""),
+    ("coupled-oscillators", "period = 2.0", "period = 0"),
+    ("coupled-oscillators", "q = [[0.0, 0.1],", "q = [[0.0, 0.2],"),
+    ("fodo-cell", "{ kind = \"drift\", length = 0.25 }", "{ kind = \"drift\", length = -1 }"),
+    ("fodo-cell", "radius = 8.0", "k = 8.0"),
+    ("fodo-cell", "kind = \"dipole\"", "kind = \"dipol\""),
+    ("riccati-pole", "c = [[1.0, 0.0],", "c = [[1.0, 0.5],"),
+    ("riccati-pole", "p = [[0.0, 0.0], [0.0, 0.0]]", "p = []"),
+    ("crossed-fields", "velocity = [0.0, 0.0, 0.3]", "velocity = [0, 0, 1]"),
+    ("rabi", "coupling = [[0.0, 0.1],", "coupling = [[0.0, 0.2],"),
     (
         "rabi",
         "amplitudes = [1.0, 0.0]",
         "coupling_imaginary = [[0, 1], [-1, 2]]\namplitudes = [1.0, 0.0]",
-        &["expected an antisymmetric matrix, but coupling_imaginary[2,2] is 2"],
     ),
-    ("rabi", "amplitudes = [1.0, 0.0]", "amplitudes = [0, 0]", &["|ψ|"]),
-    ("rabi", "amplitudes = [1.0, 0.0]", "amplitudes = [1]", &["expected 2, one a level"]),
-    ("three-level-transfer", "12.533]", "0]", &["width 0"]),
-    ("lorenz", "\"x*y - beta*z\"", "\"x*y - betta*z\"", &["character 7", "did you mean `beta`?"]),
-    ("lorenz", "[\"x\", \"y\", \"z\"]", "[\"x\", \"y\"]", &["found 2 names, expected 3"]),
-    (
-        "lorenz",
-        "[\"x\", \"y\", \"z\"]",
-        "[\"x\", \"y\", \"t\"]",
-        &["`t` is the name of a variable"],
-    ),
-    ("lorenz", "[\"x\", \"y\", \"z\"]", "[\"x\", \"y\", \"2z\"]", &["`2z` is no name"]),
-    ("lorenz", "\"x*(rho - z) - y\", ", "", &["found 2 formulas, expected 3"]),
-    ("lorenz", "sigma*(y - x)", "sqrt(x - y)", &["field[1]: its derivative by x is inf"]),
-    ("lorenz", "sigma = 10", "sigma = \"ten\"", &["\"ten\" is no number", "`ten`"]),
-    ("spin-pair", "name = \"b\"", "name = \"a\"", &["`a1` is of another part"]),
-    ("spin-pair", "name = \"b\"", "name = \"2b\"", &["`2b1` is no name"]),
-    ("spin-pair", "name = \"b\"", "", &["missing key `name`"]),
-    ("gyrostat", "name = \"h\"", "name = \"m1\"", &["`m1` is of another part"]),
-    ("gyrostat", "name = \"h\"", "name = \"m_length\"", &["`m_length` is of another part"]),
-    ("gyrostat", "name = \"h\"", "name = \"t\"", &["`t` is the name of a variable"]),
-    ("gyrostat", "name = \"h\"", "name = \"sin\"", &["`sin` is the name of a function"]),
-    ("gyrostat", "name = \"h\"", "name = \"\"", &["is no name"]),
-    (
-        "spin-pair",
-        "field = [\"b1\", ",
-        "field = [",
-        &["parts[1].field: found 2 formulas, expected 3"],
-    ),
-    ("spin-pair", "field = [\"b1\", ", "field = [\"c1\", ", &["parts[1].field[1]", "`c1`"]),
-    ("spin-pair", "field = [\"a1\", ", "field = [\"a1 +\", ", &["parts[2].field[1]"]),
-    ("spin-pair", "field = [\"a1\", ", "field = [true, ", &["a text or a number"]),
-    ("spin-pair", "start = [0.6, 0.0, 0.8]", "start = [0, 0, 0]", &["a vector of length 0"]),
-    ("spin-pair", "start = [0.6, 0.0, 0.8]", "start = [1e200, 0, 0]", &["length inf"]),
-    (
-        "spin-pair",
-        "start = [0.6, 0.0, 0.8]",
-        "start = [0.6, 0.8]",
-        &["expected 3 numbers, found 2"],
-    ),
-    ("spin-pair", "start = [0.6, 0.0, 0.8]", "start = [0.6, nan, 0]", &["a finite number"]),
-    (
-        "spin-pair",
-        "start = [0.6, 0.0, 0.8]",
-        "start = [[1, 2, 3]]",
-        &["the start of `a` is to be 3 numbers"],
-    ),
-    ("spin-pair", "start = [0.6, 0.0, 0.8]", "", &["the start of `a` is to be 3 numbers"]),
-    ("spin-pair", "invariants = { energy", "invariants = { a1", &["`a1`", "something else"]),
-    (
-        "spin-pair",
-        "field = [\"b1\", ",
-        "field = [\"1/a2\", ",
-        &["parts[1].field[1] is inf at the start"],
-    ),
-    (
-        "spin-pair",
-        "total3 = \"a3",
-        "total3 = \"ln(b1) + a3",
-        &["invariants.total3", "at the start"],
-    ),
-    ("spin-pair", "total3 = \"a3", "total3 = \"t + a3", &["invariants.total3", "`t`"]),
-    ("spin-pair", "parameters = { K", "parameters = { a1", &["`a1`"]),
-    ("gyrostat", "start = [0.0]", "start = []", &["the start of `h` is to be a list of numbers"]),
-    (
-        "gyrostat",
-        "space = \"rotation\"",
-        "space = \"rotatoin\"",
-        &["unknown space `rotatoin`", "did you mean `rotation`?"],
-    ),
+    ("rabi", "amplitudes = [1.0, 0.0]", "amplitudes = [0, 0]"),
+    ("rabi", "amplitudes = [1.0, 0.0]", "amplitudes = [1]"),
+    ("three-level-transfer", "12.533]", "0]"),
+    ("lorenz", "\"x*y - beta*z\"", "\"x*y - betta*z\""),
+    ("lorenz", "[\"x\", \"y\", \"z\"]", "[\"x\", \"y\"]"),
+    ("lorenz", "[\"x\", \"y\", \"z\"]", "[\"x\", \"y\", \"t\"]"),
+    ("lorenz", "[\"x\", \"y\", \"z\"]", "[\"x\", \"y\", \"2z\"]"),
+    ("lorenz", "\"x*(rho - z) - y\", ", ""),
+    ("lorenz", "sigma*(y - x)", "sqrt(x - y)"),
+    ("lorenz", "sigma = 10", "sigma = \"ten\""),
+    ("spin-pair", "name = \"b\"", "name = \"a\""),
+    ("spin-pair", "name = \"b\"", "name = \"2b\""),
+    ("spin-pair", "name = \"b\"", ""),
+    ("gyrostat", "name = \"h\"", "name = \"m1\""),
+    ("gyrostat", "name = \"h\"", "name = \"m_length\""),
+    ("gyrostat", "name = \"h\"", "name = \"t\""),
+    ("gyrostat", "name = \"h\"", "name = \"sin\""),
+    ("gyrostat", "name = \"h\"", "name = \"\""),
+    ("spin-pair", "field = [\"b1\", ", "field = ["),
+    ("spin-pair", "field = [\"b1\", ", "field = [\"c1\", "),
+    ("spin-pair", "field = [\"a1\", ", "field = [\"a1 +\", "),
+    ("spin-pair", "field = [\"a1\", ", "field = [true, "),
+    ("spin-pair", "start = [0.6, 0.0, 0.8]", "start = [0, 0, 0]"),
+    ("spin-pair", "start = [0.6, 0.0, 0.8]", "start = [1e200, 0, 0]"),
+    ("spin-pair", "start = [0.6, 0.0, 0.8]", "start = [0.6, 0.8]"),
+    ("spin-pair", "start = [0.6, 0.0, 0.8]", "start = [0.6, nan, 0]"),
+    ("spin-pair", "start = [0.6, 0.0, 0.8]", "start = [[1, 2, 3]]"),
+    ("spin-pair", "start = [0.6, 0.0, 0.8]", ""),
+    ("spin-pair", "invariants = { energy", "invariants = { a1"),
+    ("spin-pair", "field = [\"b1\", ", "field = [\"1/a2\", "),
+    ("spin-pair", "total3 = \"a3", "total3 = \"ln(b1) + a3"),
+    ("spin-pair", "total3 = \"a3", "total3 = \"t + a3"),
+    ("spin-pair", "parameters = { K", "parameters = { a1"),
+    ("gyrostat", "start = [0.0]", "start = []"),
+    ("gyrostat", "space = \"rotation\"", "space = \"rotatoin\""),
     (
         "gyrostat",
         "space = \"rotation\"",
         "space = \"rotation\"\nstart = [[1, 0, 0], [0, 1, 0], [0, 1, 1]]",
-        &["start", "SO(3)"],
     ),
     (
         "gyrostat",
         "space = \"rotation\"",
         "space = \"rotation\"\nstart = [[1, 0, 0], [0, 1, 0], [0, 0, -1]]",
-        &["start", "rotation"],
     ),
-    (
-        "gyrostat",
-        "space = \"rotation\"",
-        "space = \"rotation\"\nstart = [1, 0, 0]",
-        &["the start of `g` is to be 3 rows of 3 numbers"],
-    ),
-    ("general-top", "[\"vertical\", ", "[\"integral\", ", &["has no `integral`: only Euler's"]),
-    ("spin-pair", "\"lengths\"]", "\"defects\"]", &["has no `defects`: no part is a rotation"]),
-    ("cubic-anisotropy", "quantities = [", "quantities = [\"group\", ", &["has no `group`: "]),
+    ("gyrostat", "space = \"rotation\"", "space = \"rotation\"\nstart = [1, 0, 0]"),
+    ("general-top", "[\"vertical\", ", "[\"integral\", "),
+    ("spin-pair", "\"lengths\"]", "\"defects\"]"),
+    ("cubic-anisotropy", "quantities = [", "quantities = [\"group\", "),
 ];
+
+/// What is said of a scene.
+fn message_of(name: &str, text: &str) -> SceneError {
+    match Scene::parse(name, text) {
+        Ok(_) => panic!("{name} was taken:\n{text}"),
+        Err(error) => error,
+    }
+}
 
 #[test]
 fn each_names_the_line_and_what_was_expected() {
-    for (name, line, instead, words) in BROKEN {
+    let mut all = String::new();
+    for (name, line, instead) in BROKEN {
         let text = bundled(name);
         let number = text.lines().position(|l| l.contains(line));
         let number = 1 + number.unwrap_or_else(|| panic!("{name} has no {line}"));
-        let error = match Scene::parse(name, &text.replacen(line, instead, 1)) {
-            Ok(_) => panic!("{name} with {instead} was taken"),
-            Err(error) => error,
-        };
+        let error = message_of(name, &text.replacen(line, instead, 1));
         let message = error.to_string();
-        for word in *words {
-            assert!(message.contains(word), "{name}, {instead}: {message}");
-        }
         assert!(!message.contains(" mistakes"), "{name}, {instead}: {message}");
         // The key may begin above, the entry across may be the one that is named, and what is missing is
         // missed in its section.
         let at = error.line().unwrap_or_else(|| panic!("no line: {message}"));
         assert!(at.abs_diff(number) < 12, "line {at} for {number}: {message}");
+        all += &format!("# {name}: {line:?} -> {instead:?}\n{message}\n\n");
     }
+    insta::assert_snapshot!(all);
 }
 
 /// Of two mistakes in one scene both are told where the second can be found without the first, and never more.
 #[test]
 fn two_mistakes_are_two() {
+    // The message without its place, which another mistake may move.
+    let words = |error: &SceneError| {
+        let message = error.to_string();
+        let line = message.lines().next().unwrap_or_default();
+        line.splitn(4, ':').last().unwrap_or_default().trim().to_owned()
+    };
+    let alone: Vec<String> = (BROKEN.iter())
+        .map(|(name, line, instead)| {
+            words(&message_of(name, &bundled(name).replacen(line, instead, 1)))
+        })
+        .collect();
     let (mut told, mut wrong) = (0, Vec::new());
-    for (i, (name, line, instead, words)) in BROKEN.iter().enumerate() {
-        for (other_name, other_line, other_instead, other_words) in &BROKEN[i + 1..] {
+    for (i, (name, line, instead)) in BROKEN.iter().enumerate() {
+        for (j, (other_name, other_line, other_instead)) in BROKEN.iter().enumerate().skip(i + 1) {
             let text = bundled(name);
             let place = |line: &str| text.find(line).map(|at| at..at + line.len());
             let (Some(a), Some(b)) = (place(line), place(other_line)) else { continue };
@@ -284,8 +205,7 @@ fn two_mistakes_are_two() {
             if message.contains(" mistakes") && !message.contains(": 2 mistakes") {
                 wrong.push(format!("{name}: {instead} and {other_instead}\n{message}\n"));
             }
-            let mut all = words.iter().chain(*other_words);
-            told += usize::from(all.all(|word| message.contains(word)));
+            told += usize::from([i, j].iter().all(|&one| message.contains(&alone[one])));
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));

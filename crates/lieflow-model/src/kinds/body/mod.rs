@@ -7,6 +7,7 @@ mod shape;
 
 use std::collections::BTreeMap;
 
+use faer::Mat;
 use lieflow::Error;
 use lieflow::groups::{LieGroup, MEMBERSHIP, So3};
 use lieflow::problems::RigidBody;
@@ -18,6 +19,7 @@ pub(crate) use self::keys::BodyKeys;
 pub(super) use self::keys::body_keys;
 pub(super) use self::quantities::*;
 pub(crate) use self::shape::Shape;
+use super::entries::check_symmetric;
 use super::prelude::*;
 use crate::reader::values::Diagonal;
 
@@ -138,8 +140,8 @@ pub(super) fn check_rotation(
                 "its determinant is -1, expected a rotation of SO(3)".into()
             }
             _ => format!(
-                "not in SO(3): its rows are no unit vectors at right angles (they miss it by {away:.1e}, expected \
-                 at most {TYPED:.0e})"
+                "not in SO(3): its rows are no unit vectors at right angles; they miss this by {away:.1e}, expected \
+                 at most {TYPED:.0e}"
             ),
         };
         Refusal::at(key, format!("{key}: {message}"))
@@ -266,6 +268,8 @@ impl BodyKeys {
         match exactly_one(("inertia", inertia), ("inverse_inertia", inverse))? {
             Either::First(Diagonal::List(inertia)) => Ok((inertia, None)),
             Either::First(Diagonal::Rows(rows)) => {
+                let rounding = 64.0 * f64::EPSILON;
+                check_symmetric("inertia", &Mat::from_fn(3, 3, |i, j| rows[i][j]), rounding)?;
                 let tensor = Matrix3::from_rows(&rows.map(|row| Vector3::from(row).transpose()));
                 let refused = |error: Error| Refusal::from(error).about("inertia");
                 let (inertia, axes) = principal_axes(&tensor).map_err(refused)?;

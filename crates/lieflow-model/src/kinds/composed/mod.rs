@@ -170,7 +170,7 @@ fn places(
 fn other_start(i: usize, part: &PartKeys, expected: &str) -> ReadError {
     let Ok(name) = &part.name else { return ReadError::known() };
     let key = of_part(i, if matches!(part.start, Ok(None)) { "name" } else { "start" });
-    Refusal::at(key, format!("the start of `{name}` is to be {expected}")).into()
+    Refusal::at(key, format!("expected {expected} as the start of `{name}`")).into()
 }
 
 /// The start of a rotation: a matrix of SO(3).
@@ -196,7 +196,7 @@ fn vector(i: usize, part: &PartKeys) -> Result<Vector3<f64>, ReadError> {
             let x = Vector3::new(a, b, c);
             match x.norm() {
                 length if length > 0.0 && length.is_finite() => return Ok(x),
-                length => format!("a vector of length {length}, expected a finite one > 0"),
+                length => format!("its length is {length}, expected a finite length > 0"),
             }
         }
         _ => format!("expected 3 numbers, found {}", x.len()),
@@ -226,7 +226,8 @@ fn names_of(
         parameters.names(&key, core::iter::once(&TIME.to_string()).chain(&own))?;
         for column in own.iter().cloned().chain(space.kept(name)) {
             if taken.contains(&column) {
-                let message = format!("part `{name}`: `{column}` is of another part already");
+                let message =
+                    format!("part `{name}`: another part has a number `{column}` already");
                 return Err(Refusal::at(key, message).into());
             }
             taken.insert(column);

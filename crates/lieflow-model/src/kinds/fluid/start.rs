@@ -149,7 +149,10 @@ impl Fields for Zeitlin<Sphere> {
     }
     fn mode(&self, mode: &[f64]) -> Result<ComplexMatrix, String> {
         let &[degree, order, amplitude] = mode else {
-            return Err(format!("{} numbers, expected [degree, order, amplitude]", mode.len()));
+            return Err(format!(
+                "found {} numbers, expected [degree, order, amplitude]",
+                mode.len()
+            ));
         };
         let l = whole("degree", degree, [1.0, self.n() as f64 - 1.0])?;
         let m = whole("order", order, [-degree, degree])?;
@@ -170,7 +173,10 @@ impl Fields for Zeitlin<Sphere> {
         };
         for (name, x, limit) in [("latitude", latitude, FRAC_PI_2), ("longitude", longitude, TAU)] {
             if x.0.abs() > limit {
-                return Err(format!("{name} = {}, expected {:.4} to {limit:.4}", x.0, -limit));
+                return Err(format!(
+                    "{name} = {}, expected {:.4} to {limit:.4}, in radians",
+                    x.0, -limit
+                ));
             }
         }
         let vortex = Vortex {
@@ -194,10 +200,10 @@ impl Fields for Zeitlin<Torus> {
     }
     fn mode(&self, mode: &[f64]) -> Result<ComplexMatrix, String> {
         let &[m1, m2, a, b] = mode else {
-            return Err(format!("{} numbers, expected [m1, m2, a, b]", mode.len()));
+            return Err(format!("found {} numbers, expected [m1, m2, a, b]", mode.len()));
         };
         if m1 == 0.0 && m2 == 0.0 {
-            return Err("m = [0, 0]: the mean of the vorticity is 0".into());
+            return Err("mode [0, 0] is the mean of the vorticity, which is 0 on a torus; expected another mode".into());
         }
         let max = self.surface().wave_number_max() as f64;
         let m = [whole("m1", m1, [-max, max])?, whole("m2", m2, [-max, max])?];

@@ -286,7 +286,7 @@ impl Drive {
             .and_then(|table| imaginary_part("coupling_imaginary", table, n.clone()?));
         let pulse = pulse.and_then(|pulse| match pulse {
             Some(Reals([_, width])) if width <= 0.0 => {
-                let message = format!("width {width}, expected > 0");
+                let message = format!("width = {width}, expected a number > 0");
                 Err(Refusal::at("pulse".index(1), message).into())
             }
             pulse => Ok(pulse.map(|pulse| pulse.0)),
@@ -339,7 +339,8 @@ fn state(
     let one_a_level = |key: &str, numbers: Option<List>| {
         let n = *seen(n)?;
         let numbers = numbers.map_or(vec![0.0; n], |numbers| numbers.values());
-        let message = || format!("found {} numbers, expected {n}, one a level", numbers.len());
+        let message =
+            || format!("found {} numbers, expected {n}, one for each level", numbers.len());
         match numbers.len() == n {
             true => Ok(numbers),
             false => Err(ReadError::from(Refusal::at(key, message()))),
