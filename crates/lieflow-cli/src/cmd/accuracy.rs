@@ -145,10 +145,13 @@ impl<'a> Check<'a> {
         };
         let zeros = || self.scene().events.iter().zip(&apart.events);
         let warnings = zeros().filter(|(_, zeros)| !zeros.agree()).map(|(event, zeros)| {
+            let others = match self.is_exact {
+                true => format!("at least {} in the exact motion", zeros.other.sure),
+                false => format!("{} in the second run", zeros.other.possible),
+            };
             format!(
-                "event `{}` has {} zeros in this run, and {} in the second run: take smaller steps or a \
-                 smaller tolerance",
-                event.name, zeros.own.possible, zeros.other.possible
+                "event `{}` has {} zeros in this run, and {others}: take smaller steps or a smaller tolerance",
+                event.name, zeros.own.possible
             )
         });
         let time_error = |zeros: &ZerosApart| {

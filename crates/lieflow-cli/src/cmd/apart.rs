@@ -10,6 +10,7 @@ use lieflow::solve::Next;
 use lieflow_model::problem::{EventPlan, Watcher};
 use lieflow_model::schema::{Component, Observable, Row};
 
+use super::signs::changes_of_sign;
 use super::watch::Watch;
 use crate::output::{Kind, Records, ShownRows};
 
@@ -19,6 +20,11 @@ const NEAR: f64 = 1e-3;
 const SLOPE: f64 = 1e-4;
 /// The number of halvings that find a zero in its interval.
 const HALVINGS: u32 = 8;
+/// The number of points in each step where a second run looks at an event: those where the library looks if an event may have
+/// two zeros. A ninth of half a step is no multiple of most periods that the steps of the first run hide.
+const POINTS: u32 = 8;
+/// Methods of this order and more search their steps for all zeros.
+const SEARCHES: usize = 10;
 
 /// The parts of the state, with their quantities.
 pub(super) fn parts_of<'a>(
@@ -86,7 +92,7 @@ pub(super) struct ZerosApart {
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Count {
     /// Those before the end.
-    sure: u64,
+    pub(super) sure: u64,
     /// These and those at the end.
     pub(super) possible: u64,
 }
@@ -117,15 +123,26 @@ impl Apart {
         apart
     }
 
-    /// The distances of a run from the exact motion. Zeros are compared with those of the exact motion beside them.
+    /// The distances of a run from the exact motion. Zeros are compared with those of the exact motion beside them, and
+    /// their number with its changes of sign.
     pub(super) fn from_exact(watch: &Watch<'_>, run: &Shown<'_>) -> Result<Self, String> {
         let schema = watch.model.schema();
         let events = run.events(watch)?;
         let mut apart = Apart::new(watch, events.len());
+        // Zeros near the end may be of one motion only.
+        let [t0, end] = run.t_span;
+        let before_end = [t0, end - NEAR * run.step * (end - t0).signum()];
+        let changes = changes_of_sign(watch, before_end, &events);
+        for (zeros, changes) in apart.events.iter_mut().zip(changes) {
+            zeros.other = Count { sure: changes, possible: u64::MAX };
+        }
         let mut own = run.reader()?;
         let (mut row, mut zero) = (0, 0);
         while own.read()? {
             let (kind, t, numbers) = own.records.shown();
+            if let Kind::Event(event) = kind {
+                run.count(&mut apart.events[event].own, t);
+            }
             match kind {
                 Kind::Row => {
                     let exact = run.rows.has(row).then(|| watch.exact(t)).flatten();
@@ -265,11 +282,13 @@ impl<'a> Shown<'a> {
         Ok(times)
     }
 
-    /// The events of the scene. None of them ends a run.
+    /// The events of the scene, which are looked at within each step, too. None of them ends a run.
     pub(super) fn events(&self, watch: &Watch<'a>) -> Result<Vec<EventPlan<'static>>, String> {
+        let order = watch.model.order(&watch.scene.method).ok().flatten();
+        let points = order.is_some_and(|order| order < SEARCHES).then_some(POINTS);
         let plan = |event: &lieflow_model::scene::SceneEvent| {
             let plan = event.plan(watch.model.schema()).map_err(|error| error.to_string())?;
-            Ok(EventPlan { stop_after: None, ..plan })
+            Ok(EventPlan { stop_after: None, points, ..plan })
         };
         watch.scene.events.iter().map(plan).collect()
     }

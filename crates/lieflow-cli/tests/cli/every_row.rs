@@ -215,6 +215,25 @@ fn another_number_of_zeros_is_a_warning() {
     assert!(summary["warnings"].to_string().contains("event `flip` has "), "{summary}");
 }
 
+/// A function whose period divides the steps has the same sign at the end of each. Beside the exact motion and beside a second
+/// run its zeros are counted elsewhere.
+#[test]
+fn zeros_that_all_steps_hide_are_a_warning() {
+    let folder = Folder::new();
+    let steps = ["time.t_span=[0, 10]", "time.rtol=", "time.atol=", "time.dt=0.1"];
+    for (text, others) in [(FLIPS.to_string(), "at least "), (driven(), "200 in the second run")] {
+        for (when, hidden) in [("sin(20*pi*t + 1)", true), ("sin(2*pi*t + 1)", false)] {
+            let when = format!("events[1].when=\"{when}\"");
+            let (told, summary) = run(&folder, &text, &[&steps[..], &[&when]].concat());
+            let zeros = if hidden { "has 2 zeros in this run, and " } else { "zeros in this run" };
+            let warned = told.lines().any(|line| line.contains(zeros));
+            assert_eq!(warned, hidden, "{told}");
+            assert_eq!(told.contains(others), hidden, "{told}");
+            assert_eq!(summary["events"][0]["time_error"].is_null(), hidden, "{summary}");
+        }
+    }
+}
+
 #[test]
 fn columns_that_are_not_written_count_all_the_same() {
     let folder = Folder::new();
