@@ -145,7 +145,7 @@ impl Problem {
     /// The columns of a quantity.
     fn columns(&self, py: Python<'_>, quantity: &str) -> PyResult<Vec<String>> {
         let found = self.problem.columns(quantity);
-        found.map_err(|error| argument(py, "quantities", quantity, error.to_string()))
+        found.map_err(|error| argument(py, "quantities", error.to_string(), ""))
     }
     /// The times at which the problem is not smooth.
     fn knots(&self, py: Python<'_>, t_span: [f64; 2]) -> PyResult<Vec<f64>> {

@@ -25,7 +25,7 @@ const SIGNALS: Duration = Duration::from_millis(20);
 pub(crate) fn spec_of(py: Python<'_>, method: &str) -> PyResult<MethodSpec> {
     let spec = method.parse::<MethodSpec>();
     spec.and_then(|spec| spec.choose().map(|_| spec.clone()))
-        .map_err(|error| argument(py, "method", format!("{method:?}"), error.to_string()))
+        .map_err(|error| argument(py, "method", error.to_string(), ""))
 }
 
 /// The methods that were found to fit, with their orders: to find a method again costs more than a short run.
@@ -47,8 +47,8 @@ impl Fitting {
             return Ok(found);
         }
         let spec = spec_of(py, name)?;
-        let orders = orders(&spec)
-            .map_err(|error| argument(py, "method", format!("{name:?}"), error.to_string()))?;
+        let orders =
+            orders(&spec).map_err(|error| argument(py, "method", error.to_string(), ""))?;
         if let Ok(mut all) = self.0.lock() {
             all.push((name.to_owned(), spec.clone(), orders));
         }
@@ -328,6 +328,7 @@ impl Seen {
         result.set_item("nrejected", stats.rejected)?;
         result.set_item("residual", stats.residual)?;
         result.set_item("restored", stats.restored)?;
+        result.set_item("unsure_steps", stats.unsure_steps)?;
         Ok(result)
     }
 }

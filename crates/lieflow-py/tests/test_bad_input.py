@@ -152,3 +152,12 @@ def test_out_is_filled_or_refused(name):
     start[...] = args[0]
     shifted = memory[1 : 1 + right.size].reshape(right.shape)  # it begins within the argument
     assert np.array_equal(f(start, *args[1:], out=shifted), right)
+
+
+def test_unknown_names_are_told_once():
+    body = lf.RigidBody(inertia=[1, 2, 3], omega_body=[1, 0, 0])
+    for keys in ({"method": "RK45"}, {"method": "magnus4"}, {"quantities": ["atitude"]}):
+        with pytest.raises(lf.ArgumentError) as refused:
+            lf.solve_ivp(body, (0, 1), **keys)
+        assert "expected unknown" not in str(refused.value)
+        assert refused.value.argument == next(iter(keys))

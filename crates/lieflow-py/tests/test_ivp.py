@@ -425,3 +425,12 @@ def test_memory_is_flat():
 
     before = run(500)
     assert run(5000) - before < 4000  # kB
+
+
+def test_events_that_are_too_fast_are_a_warning():
+    body = lf.RigidBody(inertia=[1, 2, 3], omega_body=[0.2, 0.0, 1.0])
+    with pytest.warns(RuntimeWarning, match="zeros of events may be missed in"):
+        r = lf.solve_ivp(body, (0, 10), method="taylor16", events="sin(1e6*t)")
+    assert r.unsure_steps > 0
+    r = lf.solve_ivp(body, (0, 10), method="taylor16", events="sin(20*t)")
+    assert r.unsure_steps == 0 and len(r.t_events[0]) == 64

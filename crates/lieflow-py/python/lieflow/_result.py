@@ -163,6 +163,9 @@ class Result:
         A power of two above the distances from M that were found when the state was corrected to M.
     restored : int
         How often the state was corrected to M.
+    unsure_steps : int
+        The number of steps in which zeros of events may be missed, because the function of an event turns much faster than
+        the state. It is counted for methods of order 10 and more.
     """
 
     t: Array
@@ -179,6 +182,7 @@ class Result:
     y_end: Any
     residual: float
     restored: int
+    unsure_steps: int
 
     def __init__(self, **values: Any) -> None:
         self.__dict__.update(values)
