@@ -39,7 +39,12 @@ pub(crate) fn refused(py: Python<'_>, name: &str, error: &Error) -> PyErr {
         Error::Reflection { arg } => {
             argument(py, of(arg), "determinant −1", "a rotation, determinant +1")
         }
-        Error::NotInAlgebra { arg, .. } => argument(py, of(arg), error.to_string(), ""),
+        Error::NotInAlgebra { arg, group, residual, tolerance } => {
+            let value = format!(
+                "not in the Lie algebra of {group}, at a relative distance of {residual:.1e}"
+            );
+            argument(py, of(arg), value, format!("at most {tolerance:e}"))
+        }
         error => argument(py, name, error.to_string(), ""),
     }
 }

@@ -125,6 +125,12 @@ impl<'a> LetReader<'a> {
         let (place, lets) = (self.key.entry(name), self.lets);
         for word in texts.texts().flat_map(|text| text.split(|c| !continues_name(c))) {
             if let Some(needed) = lets.of(word) {
+                if needed == name && word != name && names.meaning(word).is_some() {
+                    let message = format!(
+                        "{place}: `{word}` is a part of `{name}`, and the name of something else: rename one of them"
+                    );
+                    return Err(Refusal::at(place, message).into());
+                }
                 self.define(needed, names)?;
             }
         }

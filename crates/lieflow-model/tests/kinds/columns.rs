@@ -232,6 +232,10 @@ fn named_formulas_are_refused_at_their_line() {
         ("b = \"w^2\"", &["a vector of 3 to the power of a number", "dot(a, a)"]),
         ("b = []", &["no formulas"]),
         ("b = \"b1 + 1\"", &["cannot need itself: b needs b"]),
+        (
+            "J = [[\"J1\", 0], [0, 1]]\n[problem.parameters]\nJ1 = 2.0",
+            &["let.J: `J1` is a part of `J`, and the name of something else: rename one of them"],
+        ),
         ("w1 = \"t\"", &["`w1` is the name of a variable already"]),
         ("w = \"t\"", &["`w` is the name of a vector or a matrix already"]),
         ("g = \"[t, t, t]\"", &["`g` is the name of a vector or a matrix already"]),
