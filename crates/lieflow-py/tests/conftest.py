@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+import signal
+
 import numpy as np
 import pytest
+
+# A shell that starts a program in the background lets it ignore interrupts, which some tests send.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 J = np.array([1.0, 4.0, 18.0])
 M = np.array([0.0, 2.75, 2.75])
