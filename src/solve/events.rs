@@ -49,6 +49,11 @@ impl Direction {
             Direction::Both => true,
         }
     }
+
+    /// True if the values of g before and after have opposite signs, in this direction.
+    pub fn has_change(self, before: f64, after: f64) -> bool {
+        (before < 0.0 && after > 0.0 || before > 0.0 && after < 0.0) && self.has(after > 0.0)
+    }
 }
 
 pub(super) type Function<'a, Y> = Box<dyn FnMut(f64, &Y) -> f64 + 'a>;
@@ -129,8 +134,8 @@ impl Seen {
 
 /// The number of points within a step where g is evaluated, if the step may have two zeros.
 const POINTS: u32 = 8;
-/// Methods of this order and more take long steps.
-const LONG: usize = 10;
+/// The steps of methods of this order and more are long: each is searched for all zeros of an event.
+pub const LONG_STEPS: usize = 10;
 /// How often a part of a long step is halved, where no polynomial describes g.
 const HALVINGS: u32 = 5;
 /// The part of a step after which the sign of g is taken again.
@@ -251,7 +256,7 @@ pub(super) struct Events {
 impl Events {
     /// The events of a run by a method of this order.
     pub(super) fn new(mut all: Vec<EventRule>, order: usize) -> Self {
-        all.iter_mut().for_each(|event| event.has_long_steps = order >= LONG);
+        all.iter_mut().for_each(|event| event.has_long_steps = order >= LONG_STEPS);
         let found = Vec::with_capacity(2 * all.len() * (POINTS as usize + 2));
         let values = Vec::with_capacity(all.len());
         Events { all, found, values }

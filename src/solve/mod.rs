@@ -38,7 +38,7 @@ mod timeline;
 pub use continuous::Continuous;
 pub use control::StepControl;
 pub use drift::Drift;
-pub use events::{Direction, Event};
+pub use events::{Direction, Event, LONG_STEPS};
 pub use grid::{SaveAt, TimeGrid};
 pub use integrator::Integrator;
 pub use interpolant::{Interpolant, Reader};

@@ -6,7 +6,7 @@ use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-use lieflow::solve::Next;
+use lieflow::solve::{LONG_STEPS, Next};
 use lieflow_model::problem::{EventPlan, Watcher};
 use lieflow_model::schema::{Component, Observable, Row};
 
@@ -23,8 +23,6 @@ const HALVINGS: u32 = 8;
 /// The number of points in each step where a second run looks at an event: those where the library looks if an event may have
 /// two zeros. A ninth of half a step is no multiple of most periods that the steps of the first run hide.
 const POINTS: u32 = 8;
-/// Methods of this order and more search their steps for all zeros.
-const SEARCHES: usize = 10;
 
 /// The parts of the state, with their quantities.
 pub(super) fn parts_of<'a>(
@@ -285,7 +283,7 @@ impl<'a> Shown<'a> {
     /// The events of the scene, which are looked at within each step, too. None of them ends a run.
     pub(super) fn events(&self, watch: &Watch<'a>) -> Result<Vec<EventPlan<'static>>, String> {
         let order = watch.model.order(&watch.scene.method).ok().flatten();
-        let points = order.is_some_and(|order| order < SEARCHES).then_some(POINTS);
+        let points = order.is_some_and(|order| order < LONG_STEPS).then_some(POINTS);
         let plan = |event: &lieflow_model::scene::SceneEvent| {
             let plan = event.plan(watch.model.schema()).map_err(|error| error.to_string())?;
             Ok(EventPlan { stop_after: None, points, ..plan })

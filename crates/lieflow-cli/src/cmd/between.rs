@@ -57,11 +57,7 @@ impl Between {
         if value.abs() <= NEAR_ZERO * self.largest {
             return;
         }
-        let counts = |before: f64| match self.direction {
-            Direction::Rising => before < 0.0 && value > 0.0,
-            Direction::Falling => before > 0.0 && value < 0.0,
-            _ => before * value < 0.0,
-        };
+        let counts = |before: f64| self.direction.has_change(before, value);
         if self.before.is_some_and(|before| counts(before.value) && before.zeros == zeros) {
             self.missed += 1;
         }

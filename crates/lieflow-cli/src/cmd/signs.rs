@@ -1,6 +1,5 @@
 //! The least number of zeros of events on the exact motion.
 
-use lieflow::solve::Direction;
 use lieflow_model::problem::EventPlan;
 
 use super::watch::Watch;
@@ -34,12 +33,7 @@ pub(super) fn changes_of_sign(
             let is_same = |&place: &usize| followed[place].to_bits() == exact[place].to_bits();
             is_single[i] &= event.places.iter().all(is_same);
             let g = (event.value)(t, schema.row(&exact));
-            let counts = match event.direction {
-                Direction::Rising => before[i] < 0.0 && g > 0.0,
-                Direction::Falling => before[i] > 0.0 && g < 0.0,
-                Direction::Both => before[i] * g < 0.0,
-            };
-            changes[i] += u64::from(counts);
+            changes[i] += u64::from(event.direction.has_change(before[i], g));
             before[i] = g;
         }
         last = Some(exact);

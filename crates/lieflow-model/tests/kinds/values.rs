@@ -87,6 +87,19 @@ fn quantities_have_shapes() {
     assert_eq!(shape("coupled-oscillators", "map"), [4, 4]);
 }
 
+/// A run from 0 to 1 that keeps its end.
+fn to_the_end() -> OwnPlan<'static> {
+    OwnPlan {
+        steps: steps(1.0),
+        save: SaveAt::End,
+        stops: Vec::new(),
+        max_steps: None,
+        dense: false,
+        events: Vec::new(),
+        progress: None,
+    }
+}
+
 /// Formulas on parts are the equations of a composed system, and their samples bound a run.
 #[test]
 fn formulas_on_parts_are_a_composed_system() {
@@ -99,15 +112,7 @@ fn formulas_on_parts_are_a_composed_system() {
     assert!(formulas.depends_on_y() && formulas.samples().is_none());
     let own = space.problem(formulas.field(), false).unwrap();
     let method: MethodSpec = "rkmk dop853 exp".parse().unwrap();
-    let plan = OwnPlan {
-        steps: steps(1.0),
-        save: SaveAt::End,
-        stops: Vec::new(),
-        max_steps: None,
-        dense: false,
-        events: Vec::new(),
-        progress: None,
-    };
+    let plan = to_the_end();
     let stop = std::sync::atomic::AtomicBool::new(false);
     let start = [0.0, 0.0, -1.0, 1.9, 0.0];
     let end = own.run(&method, &start, plan, &mut |_, _| {}, &stop).end.unwrap().y;
@@ -138,15 +143,7 @@ fn complex_spaces_are_one_motion() {
             true
         };
         let own = space.problem(std::sync::Arc::new(field), false).unwrap();
-        let plan = OwnPlan {
-            steps: steps(1.0),
-            save: SaveAt::End,
-            stops: Vec::new(),
-            max_steps: None,
-            dense: false,
-            events: Vec::new(),
-            progress: None,
-        };
+        let plan = to_the_end();
         let method: MethodSpec = "rkmk dop853 exp".parse().unwrap();
         own.run(&method, start, plan, &mut |_, _| {}, &stop).end.unwrap().y
     };
