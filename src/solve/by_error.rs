@@ -193,6 +193,7 @@ impl Timeline {
     pub(super) fn too_many(&self, h: f64, max_steps: u64) -> RunError {
         let Stats { accepted, rejected, .. } = self.stats;
         let h = h.copysign(self.t1 - self.t);
-        RunError::TooManySteps { t: self.t, h, accepted, rejected, max_steps }
+        let left = (self.t1 - self.t).abs();
+        RunError::TooManySteps { t: self.t, left, h, accepted, rejected, max_steps }
     }
 }

@@ -130,12 +130,15 @@ pub enum RunError {
     },
     /// The attempts were used up.
     #[error(
-        "{max_steps} attempts did not reach the end: t = {}, last step h = {h:?} ({accepted} accepted, {rejected} rejected); raise max_steps or the tolerances",
-        Plain(.t)
+        "{max_steps} attempts did not reach the end: t = {}, last step h = {h:?} ({accepted} accepted, {rejected} rejected){}; raise max_steps or the tolerances",
+        Plain(.t),
+        still_to_take(*left, *h)
     )]
     TooManySteps {
         /// The time of the last accepted point.
         t: f64,
+        /// The time from there to the end of the run.
+        left: f64,
         /// The last step that was tried.
         h: f64,
         /// Steps accepted.
@@ -177,6 +180,16 @@ pub enum RunError {
     },
 }
 debug_is_display!(RunError);
+
+/// The number of steps of the last size to the end, with one digit; nothing for a run without an end.
+fn still_to_take(left: f64, h: f64) -> String {
+    let steps = (left / h.abs()).ceil();
+    if steps.is_nan() || steps >= 1e15 {
+        return String::new();
+    }
+    let digit = 10_f64.powi(steps.max(1.0).log10() as i32);
+    format!(", the rest is about {} steps of this size", (steps / digit).round() * digit)
+}
 
 fn reason(source: &Option<StepError>) -> String {
     match source {

@@ -368,6 +368,13 @@ fn limits() {
         }
         other => panic!("{other:?}"),
     }
+    // How far the end still is, in steps of the last size.
+    let (_, end) = run(Some(0.01), None, |_, _| Some(0.5));
+    let told = end.expect_err("200 steps of 0.01").to_string();
+    assert!(
+        told.contains("(200 accepted, 0 rejected), the rest is about 800 steps of this size; "),
+        "{told}"
+    );
     // By hand too, and with steps of one size.
     let rk = Rk(RK4);
     let solve = Solve::new(&problem, &rk, [0.0, 1.0]).dt(0.1).max_steps(3);

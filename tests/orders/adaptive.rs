@@ -206,7 +206,7 @@ fn limits_on_the_step() {
     assert!(matches!(error, RunError::StepSizeUnderflow { source: None, .. }), "{error}");
     let tols = control(1e-9, 1e-9).max_steps(10).expect("limits");
     match go(&body, &method, [0.0, 50.0], &tols, &start).expect_err("10 steps do not do") {
-        RunError::TooManySteps { t, h, accepted, rejected, max_steps: 10 } => {
+        RunError::TooManySteps { t, h, accepted, rejected, max_steps: 10, .. } => {
             assert!(t > 0.0 && h > 0.0 && accepted + rejected == 10);
         }
         other => panic!("{other}"),
