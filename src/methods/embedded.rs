@@ -15,7 +15,7 @@ use crate::actions::Action;
 use crate::error::StepError;
 use crate::groups::LieAlgebra;
 use crate::problems::{AlgOf, PointOf, Problem, ScalarOf};
-use crate::scalar::Real;
+use crate::scalar::{Real, smaller};
 use crate::space::{Gap, Metric};
 use crate::tolerance::{Rule, Tolerance, ratio};
 
@@ -79,8 +79,13 @@ pub(super) fn ratio_of_relative<S: Real, M: Metric<Scalar = S>>(
     }
 }
 
+/// The largest ratio of an error that may be rounding. Such a step is accepted. The next one is at most a little larger: if
+/// the ratio were 0, the controller would take a step of five times the size, which is rejected where the tolerance is
+/// near the rounding.
+const ROUNDING: f64 = 0.01;
+
 /// The ratio of `weight` times the distance of `other` from the result `to` of a step. A distance that may be rounding
-/// counts as 0.
+/// counts as [`ROUNDING`] at most.
 #[inline]
 pub(super) fn ratio_between<S: Real, M: Metric<Scalar = S>>(
     tolerance: &Tolerance,
@@ -91,13 +96,12 @@ pub(super) fn ratio_between<S: Real, M: Metric<Scalar = S>>(
 ) -> S {
     let weight = S::lit(weight);
     let error = weight * to.distance(other);
-    if (error - S::lit(8.0 * S::EPSILON) * to.size()).all_below(0.0) {
-        return S::lit(0.0);
-    }
-    match tolerance.rule() {
+    let ratio = match tolerance.rule() {
         Rule::PerLength => ratio(error, tolerance.per_length(to.distance(from))),
         Rule::PerStep => {
             weight * to.error_ratio(Gap::to(other).of_step_from(from), &mut tolerance.scales())
         }
-    }
+    };
+    let may_be_rounding = (error - S::lit(8.0 * S::EPSILON) * to.size()).all_below(0.0);
+    if may_be_rounding { smaller(ratio, S::lit(ROUNDING)) } else { ratio }
 }

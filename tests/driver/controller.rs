@@ -5,9 +5,10 @@ use std::cell::{Cell, RefCell};
 
 use lieflow::actions::LeftTranslation;
 use lieflow::groups::Translations;
+use lieflow::methods::magnus::Magnus8;
 use lieflow::methods::tableau::RK4;
-use lieflow::methods::{Embedded, Facts, Method, Rk, StepCost};
-use lieflow::problems::{Flow, Problem};
+use lieflow::methods::{Doubling, Embedded, Facts, Method, Rk, StepCost};
+use lieflow::problems::{Flow, Problem, amplitudes, schrodinger};
 use lieflow::solve::Next;
 use lieflow::tolerance::Tolerance;
 use lieflow::{Error, Event, Integrator, RunError, Solve, Step, StepError};
@@ -498,4 +499,29 @@ fn ends_of_steps_are_not_computed() {
     let mut by_hand: Integrator<'_, _, _> = solve().integrator(V::zeros()).expect("a run");
     by_hand.advance_to(10.0).expect("the end");
     assert_eq!((by_hand.stats().points_within, method.prepared.get(), times), (0, 0, vec![10.0]));
+}
+
+/// A state that turns fast under a field that changes slowly: the error of a step of order 8 goes below rounding where the
+/// step becomes a little smaller.
+#[test]
+fn errors_that_may_be_rounding_do_not_make_steps_that_are_rejected() -> Result<(), Error> {
+    // Landau–Zener, far from the crossing.
+    let energies = |t: f64, i: usize, j: usize| match (i, j) {
+        (0, 0) => [-t / 2.0, 0.0],
+        (1, 1) => [t / 2.0, 0.0],
+        _ => [0.3, 0.0],
+    };
+    let levels = schrodinger(2, energies)?;
+    let start = amplitudes(&[[1.0, 0.0], [0.0, 0.0]])?;
+    for tolerance in [1e-13, 1e-14, 1e-15] {
+        let method = Doubling(Magnus8);
+        let run = Solve::new(&levels, &method, [-2000.0, -1999.0]).tolerances(tolerance, tolerance);
+        let stats = run.run(start.clone()).expect("the end").stats;
+        let (accepted, rejected) = (stats.accepted, stats.rejected);
+        assert!(
+            rejected * 5 <= accepted,
+            "{tolerance:e}: {accepted} accepted, {rejected} rejected"
+        );
+    }
+    Ok(())
 }
