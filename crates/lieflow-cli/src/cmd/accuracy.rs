@@ -30,6 +30,11 @@ const GOOD: f64 = 1e-4;
 const PATIENCE: [f64; 2] = [3.0, 5.0];
 /// Rows at which an advice is tried, about.
 const SAMPLE: usize = 100;
+/// A short pulse is looked for in steps of this part of the span, and longer than that the search may not take.
+const SHORT_STEP: f64 = 1.0 / 2000.0;
+const SEARCH: Duration = Duration::from_millis(300);
+/// Steps passed over something if a run in short steps ends so many times the estimated error away from them.
+const PASSED_OVER: f64 = 1e3;
 /// A tolerance this small is compared with a larger one: a smaller one is rounding.
 const SMALLEST: f64 = 1e-13;
 
@@ -56,6 +61,8 @@ pub(super) struct Check<'a> {
     is_exact: bool,
     /// The times of some rows, and of the last.
     sample: Vec<f64>,
+    /// The last row.
+    last: Vec<f64>,
     deadline: Cell<Option<Instant>>,
 }
 
@@ -125,7 +132,8 @@ impl<'a> Check<'a> {
         let mut sample: Vec<f64> =
             kept.iter().copied().step_by(kept.len().div_ceil(SAMPLE).max(1)).collect();
         sample.extend((sample.last() != Some(&t)).then_some(t));
-        Check { watch, run, own, ended_by_event, is_exact, sample, deadline: Cell::new(None) }
+        let last = rows.ends().map_or(Vec::new(), |[_, (_, row)]| row.numbers().into());
+        Check { watch, run, own, ended_by_event, is_exact, sample, last, deadline: Cell::new(None) }
     }
 
     /// Is the exact motion known?
@@ -133,8 +141,8 @@ impl<'a> Check<'a> {
         self.is_exact
     }
 
-    /// The errors of the run. Where a second run is needed and fails, the reason.
-    pub(super) fn errors(&self) -> Result<Checked, String> {
+    /// The errors of the run, which took so many seconds. Where a second run is needed and fails, the reason.
+    pub(super) fn errors(&self, seconds: f64) -> Result<Checked, String> {
         let clock = Instant::now();
         let (found_by, share, apart) = match self.is_exact {
             true => (FoundBy::Exact, 1.0, Apart::from_exact(self.watch, &self.run)?),
@@ -160,10 +168,50 @@ impl<'a> Check<'a> {
             let error = zeros.distance * share;
             (zeros.agree() && error.is_finite()).then(|| error.max(rounding))
         };
-        Ok(Checked {
-            time_errors: apart.events.iter().map(time_error).collect(),
-            warnings: warnings.collect(),
-            accuracy: self.judge(found_by, &apart, share, clock),
+        let (mut accuracy, mut warnings) =
+            (self.judge(found_by, &apart, share, clock), warnings.collect::<Vec<_>>());
+        let mut time_errors: Vec<_> = apart.events.iter().map(time_error).collect();
+        if let Some((other, warning)) = self.passed_over(&accuracy, seconds) {
+            (accuracy, time_errors) = (other, vec![None; time_errors.len()]);
+            warnings.push(warning);
+        }
+        Ok(Checked { accuracy, time_errors, warnings })
+    }
+
+    /// The size of short steps, where steps are chosen by their error and may be larger.
+    fn short_step(&self) -> Option<f64> {
+        let [t0, end] = self.run.t_span;
+        let short = (end - t0).abs() * SHORT_STEP;
+        (self.scene().tolerances().is_some() && 2.0 * short < self.own.largest).then_some(short)
+    }
+
+    /// The distance of the last row from that of a run in short steps, with a warning, where the steps of both runs
+    /// passed over something, such as a short pulse. f is evaluated within it by neither, so the error of a step shows
+    /// nothing.
+    fn passed_over(&self, known: &Accuracy, seconds: f64) -> Option<(Accuracy, String)> {
+        let clock = Instant::now();
+        let (short, end) = (self.short_step()?, self.end());
+        let steps = SHORT_STEP.recip() + self.own.steps as f64;
+        let takes = seconds * steps / self.own.steps.max(1) as f64;
+        if self.is_exact || self.ended_by_event || takes > SEARCH.as_secs_f64().max(seconds) {
+            return None;
+        }
+        let way = Way { largest: Some(short), ..OWN };
+        let (rows, taken) = self.rows_at(way, &[end]).ok()?;
+        let pair = rows.first().map(|row| (end, [&self.last[..], &row[..]]));
+        let apart = Apart::of_rows(self.watch, &self.run.sizes, pair.into_iter());
+        let found = self.judge(FoundBy::ShortSteps, &apart, 1.0, clock);
+        let rounding = explained_by_rounding(taken.steps, 1.0);
+        let is_far = found.relative() > PASSED_OVER * known.relative().max(rounding);
+        is_far.then(|| {
+            let name = found.worst().map_or("", |worst| &worst.name);
+            let short = number(short);
+            let warning = format!(
+                "in steps of at most {short} `{name}` ends elsewhere: the steps of this run, of up to {}, \
+                 pass over something short, such as a pulse. Give h_max = {short} in [time], or less",
+                number(self.own.largest)
+            );
+            (found, warning)
         })
     }
 
@@ -273,7 +321,7 @@ impl<'a> Check<'a> {
                 let largest = Some(shorter * taken.largest);
                 (FoundBy::TenthTolerance, 0.1, largest, 1.0 / (1.0 - ratio))
             }
-            Some(_) => (FoundBy::TenfoldTolerance, 10.0, None, ratio / (1.0 - ratio)),
+            Some(_) => (FoundBy::TenfoldTolerance, 10.0, way.largest, ratio / (1.0 - ratio)),
         };
         let (other, steps) = run(Way { factor: factor * way.factor, largest, ..way })?;
         let is_limited = steps as f64 > CHOSEN * taken.steps as f64;
@@ -312,7 +360,7 @@ impl<'a> Check<'a> {
     pub(super) fn warning(&self, accuracy: &Accuracy, seconds: Option<f64>) -> Option<String> {
         let worst = accuracy.worst()?;
         let Distance { relative, degrees, .. } = worst.largest;
-        if relative <= POOR {
+        if relative <= POOR || accuracy.found_by == FoundBy::ShortSteps {
             return None;
         }
         let off = match degrees {
@@ -339,7 +387,10 @@ impl<'a> Check<'a> {
         let default = default.map(|accuracy| accuracy.digits_in_words());
         // Where high order and the least tolerance do not do, no step does.
         let is_hopeless = is_tried && default.is_none();
-        let smaller = if is_hopeless { None } else { self.smaller_steps(until, seconds, &times) };
+        let smaller = match is_hopeless {
+            true => self.shorter_steps(&times),
+            false => self.smaller_steps(until, seconds, &times),
+        };
         self.deadline.set(None);
         let advice = match (smaller, default) {
             (Some(steps), Some(digits)) => {
@@ -382,6 +433,15 @@ impl<'a> Check<'a> {
             }
         };
         Some(self.judge(found_by, &apart, share, clock))
+    }
+
+    /// A limit of the step size that would do at these times, and the digits that it gives.
+    fn shorter_steps(&self, times: &[f64]) -> Option<String> {
+        let short = self.short_step()?;
+        let accuracy = self.tried(Way { largest: Some(short), ..OWN }, times)?;
+        let digits = accuracy.digits_in_words();
+        (accuracy.relative() <= POOR)
+            .then(|| format!("h_max = {} would give {digits}", number(short)))
     }
 
     /// Smaller steps of the same method that would do at these times, and the digits that they give.

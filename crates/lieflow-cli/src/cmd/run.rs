@@ -404,7 +404,7 @@ fn check_errors(
             ));
         }
     }
-    let mut checked = check.errors().map_err(|why| match check.is_exact() {
+    let mut checked = check.errors(seconds).map_err(|why| match check.is_exact() {
         true => format!("not known. The comparison with the exact motion did not end: {why}"),
         false => {
             format!("not known. The second run, by which it is estimated, did not end: {why}")

@@ -169,6 +169,8 @@ pub enum FoundBy {
     TenthTolerance,
     /// A second run at ten times the tolerance.
     TenfoldTolerance,
+    /// A run in short steps, which ends elsewhere.
+    ShortSteps,
 }
 
 /// The error of a part of the state: the largest of all rows that were compared, and that of the last row.
@@ -273,6 +275,7 @@ impl Accuracy {
             FoundBy::HalfStep => by("with half the step"),
             FoundBy::TenthTolerance => by("at a tenth of the tolerance"),
             FoundBy::TenfoldTolerance => by("at ten times the tolerance"),
+            FoundBy::ShortSteps => by("in short steps"),
         };
         match self.rows < rows {
             true => format!("{found}, in {} of {rows} rows", self.rows),

@@ -73,6 +73,8 @@ fn eight_digits_are_right_where_a_scene_names_no_method_and_no_steps() {
             json!({ "method": true, "steps": true, "quantities": true, "rows": true }),
             "{name}"
         );
+        let warnings = summary["warnings"].to_string();
+        assert!(!warnings.contains("pass over"), "{name}: {warnings}");
         let (_, rows) = read_csv(&folder.read(&format!("{name}/trajectory.csv")));
         if summary["t_span"][1].is_number() {
             assert_eq!(rows.len(), 1001, "{name}");
@@ -178,6 +180,43 @@ fn a_run_that_is_wrong_warns_and_what_it_advises_does() {
     let loose = ["run", "cubesat.toml", "--out", "out", "--set", "time.rtol=1e-4"];
     let told = folder.lieflow(&[&loose[..], &set[..]].concat()).ok();
     assert!(told.contains("WARNING: `") && told.contains(". rtol = 1e-"), "{told}");
+}
+
+/// A thruster that fires for milliseconds in a minute and a half. The steps that the error chooses pass over it, in the run
+/// and in the second one. The limit of steps that the warning gives finds it.
+#[test]
+fn a_pulse_that_all_steps_pass_over_is_told() {
+    let folder = Folder::new();
+    let run = |rtol: &str, width: f64, middle: f64, limit: &str| {
+        let text = format!(
+            "[problem]\nkind = \"driven-body\"\ninertia = [1, 2, 3]\nmomentum_body = [0.1, 0.2, 0.3]\n\
+             torque = [\"5*exp(-((t - {middle})/{width})^2)\", 0, 0]\n\
+             [time]\nt_span = [0, 100]\n{rtol}\n{limit}\n"
+        );
+        folder.write("scene.toml", &text);
+        let told = folder.lieflow(&["run", "scene.toml", "--no-page", "--out", "out"]).ok();
+        (told, folder.json("out/summary.json"))
+    };
+    let advice = "h_max = 0.05";
+    for (rtol, width, middle) in [
+        ("rtol = 1e-6", 0.002, 51.337),
+        ("rtol = 1e-9", 0.002, 33.33),
+        ("rtol = 1e-9", 0.01, 51.337),
+        ("", 0.002, 33.33),
+        ("", 0.01, 51.337),
+    ] {
+        let case = format!("{rtol}, {width} s at {middle}");
+        let (told, summary) = run(rtol, width, middle, "");
+        assert!(told.contains("WARNING: ") && told.contains(advice), "{case}: {told}");
+        assert!(summary["accuracy"]["digits"].as_u64().unwrap() <= 1, "{case}: {told}");
+        let (told, summary) = run(rtol, width, middle, advice);
+        assert!(!told.contains("WARNING: "), "{case}: {told}");
+        assert!(summary["accuracy"]["digits"].as_u64().unwrap() >= 6, "{case}: {told}");
+    }
+    // The tolerance finds a longer one.
+    let (told, summary) = run("rtol = 1e-9", 0.1, 51.337, "");
+    assert!(!told.contains("WARNING: "), "{told}");
+    assert_eq!(summary["accuracy"]["found_by"], "tenth-tolerance");
 }
 
 #[test]
