@@ -3,9 +3,9 @@
 //! modules with tests are compiled here.
 #![allow(dead_code, unused_imports, unused_macros, unreachable_pub, missing_docs)] // modules are here for their tests
 
-#[path = "../src/schema/dimension.rs"]
-mod dimension;
 #[path = "../src/formula/mod.rs"]
 mod formula;
 #[path = "../src/reader/mod.rs"]
 mod reader;
+#[path = "../src/schema/mod.rs"]
+mod schema;

@@ -311,7 +311,7 @@ impl<'a> Recorder<'a> {
                     between.see(t, row, seen.count);
                 }
                 for (nearest, angles) in self.singular.iter_mut().zip(&self.watch.written) {
-                    let far = angles.branch.from_singular(&row[*angles]);
+                    let far = angles.branch.distance_to_singular(&row[*angles]);
                     if let Some(far) = far.filter(|far| *far < nearest.0) {
                         *nearest = (far, t);
                     }

@@ -31,7 +31,7 @@ impl Branch {
     pub const SINGULAR: f64 = 1e-7;
 
     /// How far three Euler angles are from where they are singular: an angle from 0 to π/2.
-    pub fn from_singular(self, values: &[f64]) -> Option<f64> {
+    pub fn distance_to_singular(self, values: &[f64]) -> Option<f64> {
         let Branch::Euler { is_proper, .. } = self else { return None };
         let beta = if is_proper { values[1] } else { values[1] + FRAC_PI_2 };
         Some((beta - PI * (beta / PI).round()).abs())
@@ -67,7 +67,7 @@ impl Branch {
                     return;
                 }
                 let (mut a, b, mut c) = (*a, *b, *c);
-                if self.from_singular(values).is_some_and(|far| far <= Branch::SINGULAR) {
+                if self.distance_to_singular(values).is_some_and(|far| far <= Branch::SINGULAR) {
                     // The third goes on as it was.
                     let low = if is_proper { b.cos() > 0.0 } else { b.sin() < 0.0 };
                     let moved = c0 - c;
@@ -159,9 +159,13 @@ mod tests {
             }
             last = values;
         }
+        // Both fall, and one after the other goes through −π/2.
         let mut falling = [-1.5, 1.5];
         Branch::HalfTurns.follow(&[-4.6, -1.7], &mut falling);
-        assert_eq!(falling, [1.5 - 2.0 * PI, -1.5]);
+        assert_eq!(falling, [-1.5 - PI, 1.5 - PI]);
+        let mut falling = [-1.5, 1.5];
+        Branch::HalfTurns.follow(&[-1.7, -1.45], &mut falling);
+        assert_eq!(falling, [1.5 - PI, -1.5]);
     }
 
     /// At the singular angle the first and the third are known together alone: the third goes on as it was.

@@ -71,7 +71,7 @@ fn angles_are_those_of_scipy_in_all_sequences() {
             "{name} of {quaternion:?}: {found:?}, not {angles:?}"
         );
         let model = start.model().unwrap();
-        let far = model.schema().get(name).unwrap().branch.from_singular(found).unwrap();
+        let far = model.schema().get(name).unwrap().branch.distance_to_singular(found).unwrap();
         assert_eq!(far <= Branch::SINGULAR, *singular, "{name} of {quaternion:?}: {far:e}");
         // Back.
         let stated = scene(&format!("{key} = {angles:?}"), [0.3, 0.2, 0.1], "quaternion");
