@@ -12,9 +12,8 @@ use lieflow_model::problem::{Outcome, Plan, Watcher};
 use lieflow_model::scene::Scene;
 use lieflow_model::schema::{Component, Observable, Row};
 
-use super::apart::{
-    Apart, Beside, Choice, Gap, Largest, Limits, Shown, ZerosApart, norm, parts_of,
-};
+use super::apart::{Apart, Beside, Gap, Largest, Limits, ZerosApart, norm, parts_of};
+use super::shown::{Choice, Shown};
 use super::watch::Watch;
 use crate::output::{Accuracy, Distance, FoundBy, PartError, RowSample, ShownRows, number, rough};
 

@@ -1,18 +1,16 @@
 //! How far the rows and the zeros of a run are from those of another motion.
 
-use std::collections::VecDeque;
-use std::fs::File;
-use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-use lieflow::solve::{LONG_STEPS, Next};
-use lieflow_model::problem::{EventPlan, Watcher};
+use lieflow::solve::Next;
+use lieflow_model::problem::Watcher;
 use lieflow_model::schema::{Component, Observable, Row};
 
+use super::shown::{OwnRows, OwnZeros, Shown};
 use super::signs::changes_of_sign;
 use super::watch::Watch;
-use crate::output::{Kind, Records, ShownRows};
+use crate::output::Kind;
 
 /// The part of a step at the end of a run where a zero may be of one run only, by rounding.
 const NEAR: f64 = 1e-3;
@@ -20,9 +18,6 @@ const NEAR: f64 = 1e-3;
 const SLOPE: f64 = 1e-4;
 /// The number of halvings that find a zero in its interval.
 const HALVINGS: u32 = 8;
-/// The number of points in each step where a second run looks at an event: those where the library looks if an event may have
-/// two zeros. A ninth of half a step is no multiple of most periods that the steps of the first run hide.
-const POINTS: u32 = 8;
 
 /// The parts of the state, with their quantities.
 pub(super) fn parts_of<'a>(
@@ -95,6 +90,16 @@ pub(super) struct Count {
     pub(super) possible: u64,
 }
 
+impl Count {
+    /// Counts a zero at t of a run.
+    fn see(&mut self, t: f64, run: &Shown<'_>) {
+        let [t0, end] = run.t_span;
+        let (before, near) = ((end - t) * (end - t0).signum(), NEAR * run.step);
+        self.sure += u64::from(before > near);
+        self.possible += u64::from(before >= -near);
+    }
+}
+
 impl ZerosApart {
     /// Do both runs have the same number of zeros?
     pub(super) fn agree(&self) -> bool {
@@ -139,7 +144,7 @@ impl Apart {
         while own.read()? {
             let (kind, t, numbers) = own.records.shown();
             if let Kind::Event(event) = kind {
-                run.count(&mut apart.events[event].own, t);
+                apart.events[event].own.see(t, run);
             }
             match kind {
                 Kind::Row => {
@@ -229,162 +234,6 @@ fn larger(a: f64, b: f64) -> f64 {
     if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }
 }
 
-/// The rows, or the zeros, that are compared: each `every`-th, and the last.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Choice {
-    every: u64,
-    all: u64,
-}
-
-impl Choice {
-    /// About `most` of them all, at equal distances.
-    pub(super) fn new(all: u64, most: u64) -> Self {
-        Choice { every: all.div_ceil(most.max(1)).max(1), all }
-    }
-
-    /// Is the one of this number, from 0, compared?
-    fn has(self, number: u64) -> bool {
-        number.is_multiple_of(self.every) || number + 1 == self.all
-    }
-
-    /// How many are compared.
-    fn count(self) -> u64 {
-        let last = self.all.saturating_sub(1);
-        self.all.div_ceil(self.every) + u64::from(!last.is_multiple_of(self.every))
-    }
-}
-
-/// What a run has shown, and what of it is compared.
-pub(super) struct Shown<'a> {
-    pub(super) records: ShownRows,
-    pub(super) rows: Choice,
-    pub(super) zeros: Choice,
-    /// The size of each part of the state.
-    pub(super) sizes: Vec<f64>,
-    /// The start and the end of the run.
-    pub(super) t_span: [f64; 2],
-    /// The largest step of the run.
-    pub(super) step: f64,
-    /// The flag that ends a comparison.
-    pub(super) stop: &'a AtomicBool,
-}
-
-impl<'a> Shown<'a> {
-    /// The times of the rows that are compared.
-    pub(super) fn times(&self) -> Result<Vec<f64>, String> {
-        let mut own = self.own_rows()?;
-        let mut times = Vec::with_capacity(self.rows.count() as usize);
-        while let Some((t, _)) = own.next_chosen()? {
-            times.push(t);
-        }
-        Ok(times)
-    }
-
-    /// The events of the scene, which are looked at within each step, too. None of them ends a run.
-    pub(super) fn events(&self, watch: &Watch<'a>) -> Result<Vec<EventPlan<'static>>, String> {
-        let order = watch.model.order(&watch.scene.method).ok().flatten();
-        let points = order.is_some_and(|order| order < LONG_STEPS).then_some(POINTS);
-        let plan = |event: &lieflow_model::scene::SceneEvent| {
-            let plan = event.plan(watch.model.schema()).map_err(|error| error.to_string())?;
-            Ok(EventPlan { stop_after: None, points, ..plan })
-        };
-        watch.scene.events.iter().map(plan).collect()
-    }
-
-    fn reader(&self) -> Result<Reader<'a>, String> {
-        let records = self.records.open().map_err(unreadable)?;
-        Ok(Reader { records, stop: self.stop })
-    }
-
-    fn own_rows(&self) -> Result<OwnRows<'a>, String> {
-        Ok(OwnRows { reader: self.reader()?, choice: self.rows, next: 0 })
-    }
-
-    fn own_zeros(&self, events: usize) -> Result<OwnZeros<'a>, String> {
-        // Without events there is nothing to read.
-        let reader = (events > 0).then(|| self.reader()).transpose()?;
-        Ok(OwnZeros { reader, ahead: vec![VecDeque::new(); events] })
-    }
-
-    /// The length of the run.
-    fn length(&self) -> f64 {
-        (self.t_span[1] - self.t_span[0]).abs()
-    }
-
-    /// Counts a zero at t.
-    fn count(&self, count: &mut Count, t: f64) {
-        let [t0, end] = self.t_span;
-        let (before, near) = ((end - t) * (end - t0).signum(), NEAR * self.step);
-        count.sure += u64::from(before > near);
-        count.possible += u64::from(before >= -near);
-    }
-}
-
-fn unreadable(error: io::Error) -> String {
-    format!("the rows of the run cannot be read: {error}")
-}
-
-/// A reader of what the run has shown, until it is stopped.
-struct Reader<'a> {
-    records: Records<File>,
-    stop: &'a AtomicBool,
-}
-
-impl Reader<'_> {
-    fn read(&mut self) -> Result<bool, String> {
-        if self.stop.load(Ordering::Relaxed) {
-            return Err("it was stopped".into());
-        }
-        self.records.read().map_err(unreadable)
-    }
-}
-
-/// The rows of the run that are compared, one after the other.
-struct OwnRows<'a> {
-    reader: Reader<'a>,
-    choice: Choice,
-    /// The number of the next row.
-    next: u64,
-}
-
-impl OwnRows<'_> {
-    fn next_chosen(&mut self) -> Result<Option<(f64, &[f64])>, String> {
-        while self.reader.read()? {
-            let is_row = self.reader.records.shown().0 == Kind::Row;
-            self.next += u64::from(is_row);
-            if is_row && self.choice.has(self.next - 1) {
-                let (_, t, numbers) = self.reader.records.shown();
-                return Ok(Some((t, numbers)));
-            }
-        }
-        Ok(None)
-    }
-}
-
-/// The zeros of the run, event by event.
-struct OwnZeros<'a> {
-    reader: Option<Reader<'a>>,
-    /// Those that were read while one of another event was looked for.
-    ahead: Vec<VecDeque<f64>>,
-}
-
-impl OwnZeros<'_> {
-    fn next_of(&mut self, event: usize) -> Result<Option<f64>, String> {
-        if let Some(t) = self.ahead[event].pop_front() {
-            return Ok(Some(t));
-        }
-        let Some(reader) = &mut self.reader else { return Ok(None) };
-        while reader.read()? {
-            match reader.records.shown() {
-                (Kind::Event(of), t, _) if of == event => return Ok(Some(t)),
-                (Kind::Event(other), t, _) => self.ahead[other].push_back(t),
-                (Kind::Row, ..) => {}
-            }
-        }
-        Ok(None)
-    }
-}
-
 /// What ends a run early.
 pub(super) struct Limits<'a> {
     /// The flag that cancels this run.
@@ -431,7 +280,7 @@ impl<'a> Beside<'a> {
     pub(super) fn finish(mut self) -> Result<Option<Apart>, String> {
         for event in 0..self.apart.events.len() {
             while let Some(t) = self.zeros.next_of(event)? {
-                self.run.count(&mut self.apart.events[event].own, t);
+                self.apart.events[event].own.see(t, self.run);
             }
         }
         match self.failure {
@@ -451,9 +300,9 @@ impl<'a> Beside<'a> {
 
     fn see_zero(&mut self, event: usize, t: f64) -> Result<(), String> {
         let apart = &mut self.apart.events[event];
-        self.run.count(&mut apart.other, t);
+        apart.other.see(t, self.run);
         if let Some(own) = self.zeros.next_of(event)? {
-            self.run.count(&mut apart.own, own);
+            apart.own.see(own, self.run);
             apart.distance = larger(apart.distance, (own - t).abs());
         }
         Ok(())
@@ -494,6 +343,7 @@ mod tests {
     use lieflow_model::scene::Scene;
 
     use super::*;
+    use crate::cmd::shown::Choice;
     use crate::cmd::watch::quantities;
     use crate::output::RunState;
 
@@ -605,16 +455,5 @@ mod tests {
         }
         assert!(largest.gap.relative.is_nan());
         assert_eq!((largest.t, largest.last), (2.0, gap(5.0)));
-    }
-
-    #[test]
-    fn a_choice_has_the_first_and_the_last() {
-        for (all, most) in [(1, 5), (10, 10), (11, 10), (100, 7), (1000, 1), (5, 0)] {
-            let choice = Choice::new(all, most);
-            let chosen: Vec<u64> = (0..all).filter(|number| choice.has(*number)).collect();
-            assert_eq!((chosen[0], chosen[chosen.len() - 1]), (0, all - 1));
-            assert_eq!(chosen.len() as u64, choice.count());
-            assert!(choice.count() <= most.max(1) + 1);
-        }
     }
 }

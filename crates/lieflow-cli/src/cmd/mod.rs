@@ -15,6 +15,7 @@ pub mod plot;
 mod room;
 pub mod run;
 pub mod scenes;
+mod shown;
 mod signs;
 mod stop;
 mod told;

@@ -7,6 +7,7 @@ mod curves;
 mod docs;
 mod events;
 mod every_row;
+mod goals;
 mod laws;
 mod listing;
 mod messages;

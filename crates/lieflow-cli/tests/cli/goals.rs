@@ -1,0 +1,162 @@
+//! `lieflow compare` with a goal: the method for an error that is asked for, or for an invariant that is kept.
+
+use std::time::Duration;
+
+use crate::support::{Folder, SCENE};
+use lieflow_cli::measure::{
+    Candidate, Curve, Effort, NEVER, Plan, Reference, Rows, Size, WorkPoint, speed_against_error,
+};
+use lieflow_cli::report::Answer;
+use lieflow_model::problem::Layer;
+use lieflow_model::scene::Scene;
+
+#[test]
+fn an_answer_follows_from_the_runs() {
+    let scene = Scene::parse("scene", SCENE).unwrap();
+    let all = Candidate::all_that_fit(&scene, &["momentum_body"], Layer::Closed).unwrap();
+    // error = h^p and a cost for each step, on a span of 1.
+    let curve = |name: &str, order: usize, cost: f64| {
+        let candidate = all.iter().find(|c| c.name() == name).unwrap().clone();
+        let run = |steps: u64| WorkPoint {
+            error: (steps as f64).powi(-(order as i32)).max(1e-12),
+            seconds_per_unit: cost * steps as f64,
+            ..WorkPoint::new([0.0, 1.0], Size::Steps(steps))
+        };
+        let points = (0..12).map(|k| run(1 << k)).collect();
+        Curve {
+            label: candidate.name(),
+            candidate,
+            order: Some(order),
+            stays: name != "rk4",
+            floor: 1e-13,
+            points,
+        }
+    };
+    let curves = [curve("taylor8", 8, 2e-6), curve("taylor10", 10, 4e-5), curve("rk4", 4, 1e-6)];
+    let reference = Reference::Own { by: "a".into(), beside: "b".into(), apart: 1e-13 };
+    let answer = |error| Answer::new(&curves, &reference, error);
+    let told = answer(1e-8).in_words();
+    for part in [
+        "For an error of 1e-8, take “taylor8” in 10 steps (dt = 0.1): the run takes 20.0\u{a0}µs.",
+        "It is 5.0 times as fast as “rk4”, the best method of another kind: ",
+        "“rk4” needs 10 times as many steps (its order is 4, that of “taylor8” is 8), though a step of \
+         “taylor8” costs 2.0 times as much.",
+        "“taylor8” conserves: group, Casimirs.",
+    ] {
+        assert!(told.contains(part), "{told}");
+    }
+    assert_eq!(answer(1e-8).next().unwrap().0.label, "rk4");
+    let told = answer(3e-13).in_words();
+    assert!(told.contains("No method reaches an error of 3e-13"), "{told}");
+    let told = answer(1e-14).in_words();
+    assert!(
+        told.contains("cannot be seen") && told.contains("an error of 1e-13 or more"),
+        "{told}"
+    );
+}
+
+/// A method that leaves M comes after those that stay, with its distance from M.
+#[test]
+fn who_stays_on_m_is_told_first() {
+    let scene = Scene::parse("scene", SCENE).unwrap();
+    let all = Candidate::all_that_fit(&scene, &["momentum_body"], Layer::Closed).unwrap();
+    let curve = |name: &str, stays: bool, cost: f64| {
+        let candidate = all.iter().find(|c| c.name() == name).unwrap().clone();
+        let run = |steps: u64| WorkPoint {
+            error: (steps as f64).powi(-4),
+            off_manifold: if stays { 1e-16 } else { 0.1 * (steps as f64).powi(-4) },
+            seconds_per_unit: cost * steps as f64 + 1e-4,
+            output_seconds: 1e-4,
+            ..WorkPoint::new([0.0, 1.0], Size::Steps(steps))
+        };
+        let (label, points) = (candidate.name(), (0..12).map(|k| run(1 << k)).collect());
+        Curve { label, candidate, order: Some(4), stays, floor: 1e-13, points }
+    };
+    let reference = Reference::Own { by: "a".into(), beside: "b".into(), apart: 1e-13 };
+    let curves =
+        [curve("rkmk4 exp", true, 2e-6), curve("rk4", false, 1e-6), curve("cf4", true, 4e-6)];
+    let told = Answer::new(&curves, &reference, 1e-8).in_words();
+    for part in [
+        "take “rkmk4 exp” in 100 steps (dt = 0.01): the run takes 200\u{a0}µs, and 300\u{a0}µs with its rows of output.",
+        "It is 2.0 times as fast as “cf4”",
+        "“rk4” is 2.0 times as fast, and leaves M: it ends 1e-9 away from it.",
+    ] {
+        assert!(told.contains(part), "{told}");
+    }
+    let told = Answer::new(&curves[1..2], &reference, 1e-8).in_words();
+    assert!(
+        told.contains("No method that stays on M reaches it; this one ends 1e-9 away from M."),
+        "{told}"
+    );
+    // A reference that is good enough is no reason to worry.
+    let reference = Reference::Own { by: "a".into(), beside: "b".into(), apart: 5e-9 };
+    assert!(!reference.in_words().contains("NOT") && reference.in_words().contains("to 5e-9"));
+}
+
+/// Where one error is asked for, methods stop there, and slow ones before.
+#[test]
+fn an_error_that_is_asked_for_is_a_goal() {
+    let scene = Scene::parse("scene", SCENE).unwrap();
+    let candidates = Candidate::all_that_fit(&scene, &["momentum_body"], Layer::Closed).unwrap();
+    let steps: Vec<u64> = (0..14).map(|k| 1 << k).collect();
+    let plan = Plan {
+        quantities: &["momentum_body"],
+        candidates: &candidates,
+        t_span: [0.0, 20.0],
+        steps: &steps,
+        tolerances: &[1e-4, 1e-8, 1e-12],
+        rows: &Rows::ENDS,
+    };
+    let measure = |goal| {
+        let effort = Effort {
+            rounds: 1,
+            longest: Duration::from_millis(30),
+            shortest: Duration::ZERO,
+            seed: 1,
+            wanted: &[],
+            patience: Duration::ZERO,
+            goal,
+            stop: &NEVER,
+        };
+        speed_against_error(&scene, &plan, effort, None, |_| Ok(())).unwrap().0
+    };
+    let (every, pruned) = (measure(None), measure(Some(1e-8)));
+    assert!(every.iter().zip(&pruned).all(|(a, b)| a.candidate == b.candidate));
+    let runs = |curves: &[Curve]| curves.iter().map(|curve| curve.points.len()).sum::<usize>();
+    assert!(3 * runs(&pruned) < 2 * runs(&every), "{} of {}", runs(&pruned), runs(&every));
+    let seconds = |curves: &[Curve]| -> f64 {
+        curves.iter().flat_map(|curve| &curve.points).map(|point| point.first_seconds).sum()
+    };
+    let [goal, all] = [&pruned, &every].map(|curves| seconds(curves));
+    assert!(goal < 0.2 * all, "{goal} of {all} seconds");
+    let beyond = |curve: &Curve| {
+        let there = curve.points.iter().position(|point| point.error <= 1e-8);
+        there.is_some_and(|there| there + 1 < curve.points.len())
+    };
+    assert!(!pruned.iter().any(beyond) && every.iter().any(beyond));
+    let timed = |p: &WorkPoint| p.seconds_per_unit > 0.0 || p.failure.is_some();
+    assert!(pruned.iter().flat_map(|curve| &curve.points).all(timed));
+}
+
+#[test]
+fn an_invariant_may_be_kept_for_long_times() {
+    let folder = Folder::new();
+    folder.write("scene.toml", SCENE);
+    let args =
+        ["compare", "scene.toml", "--quick", "--repeat", "1", "--error", "1e-4", "--out", "out"];
+    folder.lieflow(&[&args[..], &["--keep", "energy"]].concat()).ok();
+    let json = folder.json("out/speed.json");
+    let curves = json["curves"].as_array().unwrap();
+    let names: Vec<&str> = curves.iter().map(|curve| curve["method"].as_str().unwrap()).collect();
+    assert!(names.contains(&"mr4") && names.contains(&"exact"), "{names:?}");
+    assert!(!names.contains(&"rkmk4") && !names.contains(&"rk4"), "{names:?}");
+    let listed = folder.lieflow(&["methods", "--for", "scene.toml", "--keep", "energy"]).ok();
+    assert!(listed.contains("mr4") && !listed.contains("rkmk4"), "{listed}");
+    assert!(listed.contains("--error 1e-8 --keep energy"), "{listed}");
+    let refused = folder.lieflow(&[&args[..], &["--keep", "enrgy"]].concat()).refused();
+    assert!(refused.contains("no invariant `enrgy`") && refused.contains("energy"), "{refused}");
+    let refused = folder
+        .lieflow(&[&args[..], &["--keep", "energy", "--methods", "rkmk4"]].concat())
+        .refused();
+    assert!(refused.contains("keeps energy"), "{refused}");
+}
