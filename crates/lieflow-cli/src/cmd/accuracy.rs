@@ -29,10 +29,13 @@ const GOOD: f64 = 1e-4;
 const PATIENCE: [f64; 2] = [3.0, 5.0];
 /// Rows at which an advice is tried, about.
 const SAMPLE: usize = 100;
-/// A short pulse is looked for in steps of this part of the span, and longer than that the search may not take.
+/// The size of the steps that find a short pulse, as a part of the span.
 const SHORT_STEP: f64 = 1.0 / 2000.0;
+/// The time that the search for a short pulse may take, where the run itself took less.
 const SEARCH: Duration = Duration::from_millis(300);
-/// Steps passed over something if a run in short steps ends so many times the estimated error away from them.
+/// The search is given up after this many times the time that it may take.
+const MISJUDGED: f64 = 3.0;
+/// A run in short steps that ends this many estimated errors away has found something that the run has passed over.
 const PASSED_OVER: f64 = 1e3;
 /// A tolerance this small is compared with a larger one: a smaller one is rounding.
 const SMALLEST: f64 = 1e-13;
@@ -185,18 +188,23 @@ impl<'a> Check<'a> {
     }
 
     /// The distance of the last row from that of a run in short steps, with a warning, where the steps of both runs
-    /// passed over something, such as a short pulse. f is evaluated within it by neither, so the error of a step shows
-    /// nothing.
+    /// passed over something, such as a short pulse. Neither run evaluates f within the pulse, so the error of a step
+    /// shows nothing. Only the last row is compared: a pulse whose effect dies out before it is not seen.
     fn passed_over(&self, known: &Accuracy, seconds: f64) -> Option<(Accuracy, String)> {
         let clock = Instant::now();
         let (short, end) = (self.short_step()?, self.end());
         let steps = SHORT_STEP.recip() + self.own.steps as f64;
         let takes = seconds * steps / self.own.steps.max(1) as f64;
-        if self.is_exact || self.ended_by_event || takes > SEARCH.as_secs_f64().max(seconds) {
+        let most = SEARCH.as_secs_f64().max(seconds);
+        if self.is_exact || self.ended_by_event || takes > most {
             return None;
         }
         let way = Way { largest: Some(short), ..OWN };
-        let (rows, taken) = self.rows_at(way, &[end]).ok()?;
+        // The estimate of its time may be wrong: within a pulse f may be dear, or steps small.
+        self.deadline.set(Some(clock + Duration::from_secs_f64(most * MISJUDGED)));
+        let found = self.rows_at(way, &[end]);
+        self.deadline.set(None);
+        let (rows, taken) = found.ok()?;
         let pair = rows.first().map(|row| (end, [&self.last[..], &row[..]]));
         let apart = Apart::of_rows(self.watch, &self.run.sizes, pair.into_iter());
         let found = self.judge(FoundBy::ShortSteps, &apart, 1.0, clock);
