@@ -3,48 +3,8 @@
 //! Source: J. C. Butcher; Hairer, Nørsett, Wanner I, II.2.
 
 use super::Tableau;
+use super::trees::trees;
 use crate::error::Error;
-
-/// A rooted tree: the numbers of the trees at its root, its number of nodes, and its density γ.
-struct Tree {
-    under: Vec<usize>,
-    nodes: usize,
-    density: f64,
-}
-
-/// All ways to choose trees from number `from` on, with `left` nodes in all.
-fn forests(
-    all: &[Tree],
-    from: usize,
-    left: usize,
-    under: &mut Vec<usize>,
-    out: &mut Vec<Vec<usize>>,
-) {
-    if left == 0 {
-        out.push(under.clone());
-    }
-    for (i, tree) in all.iter().enumerate().skip(from) {
-        if tree.nodes <= left {
-            under.push(i);
-            forests(all, i, left - tree.nodes, under, out);
-            under.pop();
-        }
-    }
-}
-
-/// All rooted trees of 1 to `max` nodes, the smaller ones first.
-fn trees(max: usize) -> Vec<Tree> {
-    let mut all: Vec<Tree> = Vec::new();
-    for nodes in 1..=max {
-        let mut found = Vec::new();
-        forests(&all, 0, nodes - 1, &mut Vec::new(), &mut found);
-        for under in found {
-            let density = nodes as f64 * under.iter().map(|&i| all[i].density).product::<f64>();
-            all.push(Tree { under, nodes, density });
-        }
-    }
-    all
-}
 
 /// How far weights b with stages a are from the order conditions: the worst |Σ b_i Φ_i(τ) − 1/γ(τ)| over the trees with
 /// 1, 2, … `max` nodes, relative to the largest |b_i Φ_i(τ)|, at least 1. Cost: S² for each tree; there are 200 trees of 8
@@ -116,17 +76,5 @@ impl<const S: usize> Tableau<S> {
             }
             _ => Ok(()),
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::trees;
-
-    #[test]
-    fn rooted_trees_are_all_there() {
-        let all = trees(9);
-        let counts = (1..=9).map(|n| all.iter().filter(|tree| tree.nodes == n).count());
-        assert_eq!(counts.collect::<Vec<_>>(), [1, 1, 2, 4, 9, 20, 48, 115, 286]); // OEIS A000081
     }
 }

@@ -6,6 +6,7 @@ mod conditions;
 mod dense;
 mod dop853;
 mod pairs;
+mod trees;
 
 pub use conditions::{order_defects, order_of};
 pub use dense::{Dense, Row};
