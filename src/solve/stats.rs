@@ -187,8 +187,8 @@ fn still_to_take(left: f64, h: f64) -> String {
     if steps.is_nan() || steps >= 1e15 {
         return String::new();
     }
-    let digit = 10_f64.powi(steps.max(1.0).log10() as i32);
-    format!(", the rest is about {} steps of this size", (steps / digit).round() * digit)
+    let about: f64 = format!("{steps:.0e}").parse().unwrap_or(steps);
+    format!(", the rest is about {about} steps of this size")
 }
 
 fn reason(source: &Option<StepError>) -> String {

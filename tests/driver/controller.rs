@@ -513,13 +513,14 @@ fn errors_that_may_be_rounding_do_not_make_steps_that_are_rejected() -> Result<(
     };
     let levels = schrodinger(2, energies)?;
     let start = amplitudes(&[[1.0, 0.0], [0.0, 0.0]])?;
-    for tolerance in [1e-13, 1e-14, 1e-15] {
+    // The last tolerance is below rounding: there an error that is rounding can be too large.
+    for (tolerance, most) in [(1e-13, 0.1), (1e-14, 0.1), (1e-15, 0.2)] {
         let method = Doubling(Magnus8);
         let run = Solve::new(&levels, &method, [-2000.0, -1999.0]).tolerances(tolerance, tolerance);
         let stats = run.run(start.clone()).expect("the end").stats;
         let (accepted, rejected) = (stats.accepted, stats.rejected);
         assert!(
-            rejected * 5 <= accepted,
+            rejected as f64 <= most * accepted as f64,
             "{tolerance:e}: {accepted} accepted, {rejected} rejected"
         );
     }
