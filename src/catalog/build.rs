@@ -181,7 +181,7 @@ where
     }
 }
 
-/// Lie series for fields with Taylor coefficients by recurrence ([`Needs::Series`](super::Needs::Series)).
+/// Lie series for fields with Taylor coefficients ([`Needs::Series`](super::Needs::Series)).
 ///
 /// # Errors
 /// None.

@@ -391,7 +391,7 @@ pub enum Needs {
     LinearType,
     /// A norm of the points.
     Norm,
-    /// Taylor coefficients by recurrence ([`TaylorField`](crate::problems::TaylorField)).
+    /// Taylor coefficients ([`TaylorField`](crate::problems::TaylorField)).
     Series,
     /// The free rigid body in ℝ³ ([`FreeBody`](crate::problems::FreeBody), [`Split`](crate::problems::Split)).
     Body,
@@ -442,7 +442,7 @@ needs_in_words! {
     Field = "a vector field on the linear space around M",
     LinearType = "an equation of linear type, f(t, y) = A(t)",
     Norm = "a norm of the states",
-    Series = "a field with Taylor coefficients by recurrence",
+    Series = "a field with Taylor coefficients",
     Body = "a free rigid body in three dimensions",
     Attitude = "an attitude in the state",
     State = "a rigid body in three dimensions by its momentum and its attitude",

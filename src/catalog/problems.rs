@@ -71,7 +71,7 @@ pub fn fluids<'p, S: Surface + 'p>(choice: &Choice<'_>) -> MaybeMethod<'p, Zeitl
 /// What is known of a problem beyond f, and the methods that rest on it.
 pub trait Fact<P: Problem> {
     /// What the problem offers for it.
-    const OFFERS: Option<Needs>;
+    fn offers() -> Vec<Needs>;
     /// The method that is chosen, where it rests on this fact.
     ///
     /// # Errors
@@ -82,7 +82,9 @@ pub trait Fact<P: Problem> {
 }
 
 impl<P: Problem> Fact<P> for () {
-    const OFFERS: Option<Needs> = None;
+    fn offers() -> Vec<Needs> {
+        Vec::new()
+    }
     fn make<'p>(_: &Choice<'_>) -> MaybeMethod<'p, P>
     where
         P: 'p,
@@ -98,7 +100,9 @@ where
     Exp: CoordinateMap<P::Group>,
     Cay: CoordinateMap<P::Group>,
 {
-    const OFFERS: Option<Needs> = Some(Needs::LinearType);
+    fn offers() -> Vec<Needs> {
+        vec![Needs::LinearType]
+    }
     fn make<'p>(choice: &Choice<'_>) -> MaybeMethod<'p, P>
     where
         P: 'p,
@@ -107,13 +111,15 @@ where
     }
 }
 
-impl<P: TaylorField<Group: SeriesGroup>> Fact<P> for WithSeries {
-    const OFFERS: Option<Needs> = Some(Needs::Series);
+impl<P: TaylorField<Group: SeriesGroup>, L: Fact<P>> Fact<P> for WithSeries<L> {
+    fn offers() -> Vec<Needs> {
+        [L::offers(), vec![Needs::Series]].concat()
+    }
     fn make<'p>(choice: &Choice<'_>) -> MaybeMethod<'p, P>
     where
         P: 'p,
     {
-        series(choice)
+        first([L::make, series], choice)
     }
 }
 
@@ -123,7 +129,9 @@ macro_rules! hamiltonian {
         where
             ExpOrCay: CoordinateMap<P::Group>,
         {
-            const OFFERS: Option<Needs> = Some(Needs::LiePoisson);
+            fn offers() -> Vec<Needs> {
+                vec![Needs::LiePoisson]
+            }
             fn make<'p>(choice: &Choice<'_>) -> MaybeMethod<'p, P>
             where
                 P: 'p,
@@ -138,10 +146,9 @@ hamiltonian! {
     [] WithHamiltonian;
 }
 
-/// The properties that a field has, and those that are added by name.
-fn offered(field: Option<Needs>, energy: Option<Needs>) -> Vec<Needs> {
-    let all = [Some(Needs::Field), Some(Needs::Norm), field, energy];
-    all.into_iter().flatten().collect()
+/// What problems with these facts may offer.
+fn offered<P: Problem, L: Fact<P>, H: Fact<P>>() -> Vec<Needs> {
+    [vec![Needs::Field, Needs::Norm], L::offers(), H::offers()].concat()
 }
 
 /// A closure. Its facts decide which properties it has.
@@ -156,10 +163,7 @@ where
     H: Fact<Self>,
 {
     fn offers(&self) -> Vec<Needs> {
-        [Some(Needs::Field), Some(Needs::Norm), L::OFFERS, H::OFFERS]
-            .into_iter()
-            .flatten()
-            .collect()
+        offered::<Self, L, H>()
     }
     fn make<'p>(&self, choice: &Choice<'_>) -> MaybeMethod<'p, Self>
     where
@@ -180,10 +184,14 @@ where
     H: Fact<Self>,
 {
     fn offers(&self) -> Vec<Needs> {
-        offered(
-            if self.is_linear() || self.has_series() { L::OFFERS } else { None },
-            if self.is_lie_poisson() { H::OFFERS } else { None },
-        )
+        let mut offers = offered::<Self, L, H>();
+        offers.retain(|need| match need {
+            Needs::LinearType => self.is_linear(),
+            Needs::Series => self.has_series(),
+            Needs::LiePoisson => self.is_lie_poisson(),
+            _ => true,
+        });
+        offers
     }
     fn make<'p>(&self, choice: &Choice<'_>) -> MaybeMethod<'p, Self>
     where

@@ -7,7 +7,7 @@
 //! | [`Split`] | F = Σ F_k with exact flows | [`Splitting`](crate::methods::Splitting) |
 //! | [`LiePoisson`] | ṁ = ad*_{∇H(m)} m with a discrete gradient | [`EnergyCasimir`](crate::methods::EnergyCasimir) |
 //! | [`LinearField`] | f depends only on t | [`magnus`](crate::methods::magnus) |
-//! | [`TaylorField`](super::TaylorField) | Taylor coefficients of f by recurrence | [`LieSeries`](crate::methods::LieSeries) |
+//! | [`TaylorField`](super::TaylorField) | Taylor coefficients of f | [`LieSeries`](crate::methods::LieSeries) |
 //! | [`Orthogonal`] | the place of the orthogonal matrix in y | [`ProjectionMethod`](crate::methods::ProjectionMethod) |
 //! | [`FreeBody`](super::FreeBody) | a free rigid body in ℝ³ | Simo–Wong, Buss, DMV, exact, Taylor |
 

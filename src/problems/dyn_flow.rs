@@ -8,7 +8,7 @@ use core::fmt;
 use core::marker::PhantomData;
 use std::sync::Arc;
 
-use super::flow::TimeAlone;
+use super::flow::{TimeAlone, WithSeries};
 use super::{AlgOf, LiePoisson, LinearField, LinearSpace, PointOf, Problem, ScalarOf, TaylorField};
 use crate::actions::Action;
 use crate::groups::{LieAlgebra, LieGroup};
@@ -18,9 +18,9 @@ use crate::scalar::Real;
 /// A problem on M with any field. Its further facts are known at run time.
 ///
 /// With L = [`TimeAlone`] some problems of the type may be linear. With L = [`WithSeries`] some may have Taylor
-/// coefficients. With H = [`WithHamiltonian`] some may be Lie–Poisson systems. [`is_linear`](Self::is_linear),
-/// [`has_series`](Self::has_series) and [`is_lie_poisson`](Self::is_lie_poisson) are facts of each problem. Methods by
-/// name use them.
+/// coefficients, and with L = `WithSeries<TimeAlone>` some may be linear, too. With H = [`WithHamiltonian`] some may be
+/// Lie–Poisson systems. [`is_linear`](Self::is_linear), [`has_series`](Self::has_series) and
+/// [`is_lie_poisson`](Self::is_lie_poisson) are facts of each problem. Methods by name use them.
 ///
 /// ```
 /// use lieflow::actions::Linear;
@@ -56,10 +56,6 @@ pub struct DynFlow<G: LieGroup, A: Action<G>, L = (), H = ()> {
 /// Marks a type of problems of which some have a Hamiltonian.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct WithHamiltonian;
-
-/// Marks a type of problems of which some have Taylor coefficients.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct WithSeries;
 
 /// [`TaylorField::coefficient`] with its storage.
 type Coefficient<G, M> =
@@ -163,7 +159,10 @@ impl<G: LieGroup + Clone + 'static, A: Action<G> + 'static, L, H> DynFlow<G, A, 
     }
 }
 
-impl<G: LieGroup + Clone + 'static, A: Action<G> + 'static, H> DynFlow<G, A, TimeAlone, H> {
+impl<G: LieGroup + Clone + 'static, A: Action<G> + 'static, L, H> DynFlow<G, A, L, H>
+where
+    Self: LinearField,
+{
     /// Makes it from a linear equation.
     pub fn linear<P>(problem: P, action: A) -> Self
     where
@@ -171,6 +170,25 @@ impl<G: LieGroup + Clone + 'static, A: Action<G> + 'static, H> DynFlow<G, A, Tim
         P::Action: Action<G, Point = A::Point>,
     {
         DynFlow { linear: true, ..Self::new(problem, action) }
+    }
+}
+
+impl<G, A, H> DynFlow<G, A, WithSeries<TimeAlone>, H>
+where
+    G: LieGroup + Clone + 'static,
+    A: Action<G> + 'static,
+{
+    /// Makes it from a linear equation whose A(t) has Taylor coefficients, as [`of_derivatives`] makes it.
+    ///
+    /// [`of_derivatives`]: super::Flow::of_derivatives
+    pub fn linear_with_series<P>(problem: P, action: A) -> Self
+    where
+        P: LinearField + TaylorField + Problem<Group = G> + Send + Sync + 'static,
+        P::Action: Action<G, Point = A::Point>,
+    {
+        let problem = Arc::new(problem);
+        let series = Some(series_of(problem.clone()));
+        DynFlow { linear: true, series, ..Self::of(problem, action, None) }
     }
 }
 
@@ -199,16 +217,21 @@ impl<G: LieGroup + Clone + 'static, A: Action<G> + 'static>
         P: LiePoisson + TaylorField + Problem<Group = G> + Clone + Send + Sync + 'static,
         P::Action: Action<G, Point = A::Point>,
     {
-        const { assert!(!P::MOVING, "the coefficients are those of f") };
-        let series: MakeSeries<G, A::Point> = Box::new({
-            let problem = problem.clone();
-            move |order| {
-                let (problem, mut series) = (problem.clone(), problem.series(order));
-                Box::new(move |time, y, k, f| problem.coefficient(time, y, k, f, &mut series))
-            }
-        });
-        DynFlow { series: Some(series), ..Self::lie_poisson(problem, action) }
+        let series = Some(series_of(Arc::new(problem.clone())));
+        DynFlow { series, ..Self::lie_poisson(problem, action) }
     }
+}
+
+/// What makes the Taylor coefficients of a problem.
+fn series_of<P>(problem: Arc<P>) -> MakeSeries<P::Group, PointOf<P>>
+where
+    P: TaylorField + Send + Sync + 'static,
+{
+    const { assert!(!P::MOVING, "the coefficients are those of f") };
+    Box::new(move |order| {
+        let (problem, mut series) = (problem.clone(), problem.series(order));
+        Box::new(move |time, y, k, f| problem.coefficient(time, y, k, f, &mut series))
+    })
 }
 
 impl<G: LieGroup, A: Action<G>, L, H> DynFlow<G, A, L, H> {
@@ -259,8 +282,12 @@ impl<G: LieGroup, A: Action<G>, L, H> Problem for DynFlow<G, A, L, H> {
 /// For problems from [`DynFlow::linear`].
 impl<G: LieGroup, A: Action<G>, H> LinearField for DynFlow<G, A, TimeAlone, H> {}
 
-/// For problems from [`DynFlow::lie_poisson_with_series`]. For others the coefficients are NaN.
-impl<G: LieGroup, A: Action<G>, H> TaylorField for DynFlow<G, A, WithSeries, H> {
+/// For problems from [`DynFlow::linear`] and [`DynFlow::linear_with_series`].
+impl<G: LieGroup, A: Action<G>, H> LinearField for DynFlow<G, A, WithSeries<TimeAlone>, H> {}
+
+/// For problems from [`DynFlow::linear_with_series`] and [`DynFlow::lie_poisson_with_series`]. For others the
+/// coefficients are NaN.
+impl<G: LieGroup, A: Action<G>, L, H> TaylorField for DynFlow<G, A, WithSeries<L>, H> {
     type Series = DynSeries<G, A::Point>;
 
     fn series(&self, order: usize) -> Self::Series {

@@ -3,13 +3,14 @@
 //! | fact | added by | capability |
 //! |---|---|---|
 //! | f depends only on t, f(t, y) = A(t) | [`Flow::of_time`], [`Flow::linear`] | [`LinearField`] |
+//! | and the derivatives of A are known | [`Flow::of_derivatives`] | [`LinearField`], [`TaylorField`] |
 //! | f(m) = −∇H(m) | [`Flow::hamiltonian`] | [`LiePoisson`], [`Invariants`] |
 //! | a quantity that is constant | [`Flow::invariant`] | [`Invariants`] |
 
 use core::fmt;
 
 use super::averaged::mean_of_gradients;
-use super::{Invariant, Invariants, LiePoisson, LinearField, LinearSpace, Problem};
+use super::{Invariant, Invariants, LiePoisson, LinearField, LinearSpace, Problem, TaylorField};
 use crate::actions::{Action, LeftTranslation};
 use crate::groups::{Adjoint, LieAlgebra, LieGroup};
 use crate::scalar::Real;
@@ -56,7 +57,10 @@ pub struct Flow<G, A, F, K = FlowFacts> {
 /// A [`Flow`] whose closure writes A(t), f(t, y) = A(t).
 pub type LinearFlow<G, A, F> = Flow<G, A, OfTime<F>, FlowFacts<TimeAlone>>;
 
-/// The facts about a [`Flow`]: whether f depends only on t, H, and further invariants.
+/// A [`Flow`] whose closure writes A(t) and its derivatives, f(t, y) = A(t).
+pub type TaylorFlow<G, A, F> = Flow<G, A, OfDerivatives<F>, FlowFacts<WithSeries<TimeAlone>>>;
+
+/// The facts about a [`Flow`]: whether f depends only on t and has derivatives, H, and further invariants.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct FlowFacts<L = (), H = (), I = ()> {
     linear: L,
@@ -67,6 +71,10 @@ pub struct FlowFacts<L = (), H = (), I = ()> {
 /// The fact that f depends only on t.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct TimeAlone;
+
+/// The fact that f has Taylor coefficients, with the fact L about f.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct WithSeries<L = ()>(L);
 
 type With<G, A, F, L, H, I> = Flow<G, A, F, FlowFacts<L, H, I>>;
 
@@ -101,6 +109,25 @@ impl<G: LieGroup, A: Action<G>, F: Fn(G::Scalar, &mut G::Alg)> Field<G, A> for O
     #[inline]
     fn f(&self, t: G::Scalar, _: &A::Point, v: &mut G::Alg, _: &mut ()) {
         (self.0)(t, v);
+    }
+}
+
+/// A closure of t and the number of a derivative.
+#[derive(Clone, Copy, Debug)]
+pub struct OfDerivatives<F>(F);
+
+impl<G, A, F> Field<G, A> for OfDerivatives<F>
+where
+    G: LieGroup,
+    A: Action<G>,
+    F: Fn(G::Scalar, usize, &mut G::Alg),
+{
+    type Work = ();
+
+    fn work(&self) {}
+    #[inline]
+    fn f(&self, t: G::Scalar, _: &A::Point, v: &mut G::Alg, _: &mut ()) {
+        (self.0)(t, 0, v);
     }
 }
 
@@ -169,9 +196,46 @@ impl<G: LieGroup, A: Action<G>, F: Fn(G::Scalar, &mut G::Alg)> LinearFlow<G, A, 
         let facts = FlowFacts { linear: TimeAlone, energy: (), invariants: () };
         Flow { group, action, field: OfTime(field), facts }
     }
+}
 
+impl<G: LieGroup, A: Action<G>, F: Fn(G::Scalar, usize, &mut G::Alg)> TaylorFlow<G, A, F> {
+    /// Makes a linear equation ẏ = λ_*(A(t))(y) whose A has known derivatives. Lie series methods need them, and
+    /// Magnus methods take A(t) alone.
+    ///
+    /// `field(t, k, v)` writes the k-th derivative of A at t into v, without 1/k!, and A(t) itself for k = 0. v is 0
+    /// before. A method of order p calls it with k = 0, …, p − 1, and p is at most 16. A derivative that is left out
+    /// counts as 0. So write NaN for one that you do not know: then a method that needs it fails. Lie series, and
+    /// methods by name with them, are for SO(3), SE(3) and matrix groups.
+    ///
+    /// ```
+    /// use lieflow::methods::LieSeries;
+    /// use lieflow::nalgebra::Vector3;
+    /// use lieflow::prelude::*;
+    ///
+    /// // A spin in a rotating field. A derivative of cos t and sin t turns them by a right angle.
+    /// let spin = Flow::of_derivatives(So3::<f64>::new(), Linear, |t, k, v| {
+    ///     let (sin, cos) = (t + k as f64 * std::f64::consts::FRAC_PI_2).sin_cos();
+    ///     *v = Vector3::new(cos, sin, if k == 0 { 2.0 } else { 0.0 });
+    /// });
+    /// let method = LieSeries::new(16)?;
+    /// let run = Solve::new(&spin, &method, [0.0, 10.0]).tolerances(1e-12, 0.0).run(Vector3::z())?;
+    /// // In the frame of the field the spin turns about (1, 0, 1) at the rate √2.
+    /// let exact = 0.5 + 0.5 * (10.0 * 2f64.sqrt()).cos();
+    /// assert!((run.y.z - exact).abs() < 1e-11);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub const fn of_derivatives(group: G, action: A, field: F) -> Self {
+        let facts = FlowFacts { linear: WithSeries(TimeAlone), energy: (), invariants: () };
+        Flow { group, action, field: OfDerivatives(field), facts }
+    }
+}
+
+impl<G: LieGroup, A: Action<G>, F: Field<G, A>, L> Flow<G, A, F, FlowFacts<L>>
+where
+    Self: LinearField,
+{
     /// The equation with the same A(t) and another action.
-    pub fn by<B: Action<G>>(self, action: B) -> LinearFlow<G, B, F> {
+    pub fn by<B: Action<G>>(self, action: B) -> Flow<G, B, F, FlowFacts<L>> {
         Flow { group: self.group, action, field: self.field, facts: self.facts }
     }
 }
@@ -366,6 +430,42 @@ where
     A: Action<G>,
     F: Field<G, A>,
 {
+}
+
+impl<G, A, F, H, I> LinearField for Flow<G, A, F, FlowFacts<WithSeries<TimeAlone>, H, I>>
+where
+    G: LieGroup,
+    A: Action<G>,
+    F: Field<G, A>,
+{
+}
+
+/// The coefficient of θᵏ in A(t + θh) is A⁽ᵏ⁾(t) hᵏ/k!.
+impl<G, A, F, L, H, I> TaylorField for Flow<G, A, OfDerivatives<F>, FlowFacts<WithSeries<L>, H, I>>
+where
+    G: LieGroup,
+    A: Action<G>,
+    F: Fn(G::Scalar, usize, &mut G::Alg),
+{
+    type Series = G::Alg;
+
+    fn series(&self, _: usize) -> G::Alg {
+        self.group.zero()
+    }
+    fn coefficient(
+        &self,
+        [t, h]: [G::Scalar; 2],
+        _: &A::Point,
+        k: usize,
+        f: &mut [G::Alg],
+        derivative: &mut G::Alg,
+    ) {
+        let lit = G::Scalar::lit;
+        let scale = (1..=k).fold(lit(1.0), |scale, i| scale * h / lit(i as f64));
+        self.group.set_zero(derivative);
+        (self.field.0)(t, k, derivative);
+        self.group.combine(scale, &[1.0], core::slice::from_ref(derivative), &mut f[k]);
+    }
 }
 
 impl<G, A, F, L, E, I> LiePoisson for Flow<G, A, F, FlowFacts<L, Energy<E>, I>>

@@ -63,12 +63,15 @@ pub use crate::space::LinearSpace;
 pub use averaged::MeanGradient;
 pub use capability::{LiePoisson, LinearField, Orthogonal, Projection, Split};
 pub use coupled_spins::{Bond, Constant, CoupledSpins, Couplings, CouplingsAt, Site};
-pub use dyn_flow::{DynFlow, WithHamiltonian, WithSeries};
+pub use dyn_flow::{DynFlow, WithHamiltonian};
 pub use euler::{
     DiscreteGradient, Euler, EulerGroup, FromTheBody, Hamiltonian, Kinetic, Quadratic,
 };
 pub use fallible::{Fallible, InAlgebra, TryFlow, TryProblem};
-pub use flow::{BodyValue, Energy, Field, Flow, FlowFacts, InBody, LinearFlow, TimeAlone};
+pub use flow::{
+    BodyValue, Energy, Field, Flow, FlowFacts, InBody, LinearFlow, TaylorFlow, TimeAlone,
+    WithSeries,
+};
 #[cfg(feature = "dense")]
 pub use grassmann::SubspaceFlow;
 pub use heavy_top::HeavyTop;

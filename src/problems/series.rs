@@ -1,4 +1,5 @@
-//! Fields with Taylor coefficients by recurrence, such as polynomial fields. Lie series methods need them.
+//! Fields with Taylor coefficients: by recurrence, such as polynomial fields, or by derivatives of A(t). Lie series
+//! methods need them.
 
 use super::{AlgOf, PointOf, Problem, ScalarOf};
 use crate::groups::{Adjoint, LieAlgebra, Se3};

@@ -10,6 +10,7 @@ mod dense;
 mod fields;
 mod implicit;
 mod lie_series;
+mod lie_series_of_time;
 mod not_computed;
 mod products;
 mod rigid_body;

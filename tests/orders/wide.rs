@@ -22,7 +22,7 @@ mod members;
 mod square;
 
 use crate::support::orders::{Report, in_units_of_one, slopes};
-use fields::{CoupledField, Kind, Wide};
+use fields::{CoupledField, Kind, Wide, fast_clock};
 use group::Matrices;
 use lieflow::catalog::Needs;
 use lieflow::groups::{Power, Product, Se3, So3, Translations};
@@ -36,7 +36,7 @@ use lieflow::methods::{
 use lieflow::problems::{PointOf, Problem};
 use lieflow::scalar::{DoubleDouble, Real};
 use lieflow::{LieAlgebra, Step};
-use members::{STORED, UNIT, UNIT_FINE, by_name, high_orders, lie_series, members, order};
+use members::{STORED, Span, UNIT, UNIT_FINE, by_name, high_orders, lie_series, members, order};
 use nalgebra::Vector3;
 
 type D = DoubleDouble;
@@ -109,6 +109,13 @@ fn series_on<G: Wide + SeriesGroup>(group: &G, strength: f64) {
     for order in 8..=16 {
         check_estimate(&flows, &of(order), order);
     }
+}
+
+/// The same on linear equations whose A(t) has known derivatives.
+fn series_of_time_on<G: Wide + SeriesGroup>(group: &G, strength: f64) {
+    let span = Span { rate: 3.0 * UNIT_FINE.rate, ..UNIT_FINE };
+    let all = members(MEMBERS, span, |i| fast_clock(group, strength, 21 + i));
+    high_orders("linear equations", &group.name(), &[Needs::Series], |spec| lie_series(spec, &all));
 }
 
 /// The estimate of one step is of this order.
@@ -219,4 +226,11 @@ measure! {
     series_on_gl3: Matrices::gl3(), 0.4;
     series_on_sp4: Matrices::sp4(), 0.4;
     series_on_so31: Matrices::so31(), 0.5;
+}
+
+measure! {
+    series_of_time_on:
+    series_of_time_on_so5: Matrices::so5(), 0.5;
+    series_of_time_on_gl3: Matrices::gl3(), 0.5;
+    series_of_time_on_se3: Se3::new(), 1.0;
 }

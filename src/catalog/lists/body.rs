@@ -214,7 +214,7 @@ const fn taylor(
 
 macro_rules! taylor {
     ($($name:literal $order:literal,)*) => {
-        /// For fields with Taylor coefficients by recurrence, and the free rigid body in ℝ³.
+        /// For fields with Taylor coefficients, and the free rigid body in ℝ³.
         pub(super) const SERIES: &[MethodInfo] = &[
             $(taylor($name, &const { taylor_work($order) }, $order),)*
         ];

@@ -12,7 +12,7 @@
 use lieflow::LieGroup;
 use lieflow::actions::LeftTranslation;
 use lieflow::groups::{Power, Product, Se3, So3, Translations};
-use lieflow::problems::{LinearField, LinearSpace, Problem, TaylorField};
+use lieflow::problems::{Flow, LinearField, LinearSpace, Problem, TaylorField};
 use lieflow::scalar::{Real, Trig};
 use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
@@ -171,4 +171,29 @@ impl<G: Wide> TaylorField for CoupledField<G> {
         f[k] = self.f([time, constant, D::lit(0.5)], &next.numbers());
         series[k] = next;
     }
+}
+
+/// A faster clock by its derivatives, and where it starts: w₀ = cos 3t and w₁ = sin 2t. So the last coefficient of a
+/// series shows in its order, up to order 10.
+pub(crate) fn fast_clock<G: Wide>(
+    group: &G,
+    strength: f64,
+    seed: u64,
+) -> (impl TaylorField<Group = G, Action = LeftTranslation>, G::Elem) {
+    let (clock, start) = CoupledField::new(group, Kind::Clock, strength, seed);
+    let field = move |t: D, k: usize, v: &mut G::Alg| {
+        // A derivative turns (cos, sin) by a right angle.
+        let turned = |(sin, cos): (D, D)| match k % 4 {
+            0 => [cos, sin],
+            1 => [-sin, cos],
+            2 => [-cos, -sin],
+            _ => [sin, -cos],
+        };
+        let [cos, sin] = [(3.0, 0), (2.0, 1)].map(|(rate, which)| {
+            let wave = turned((D::lit(rate) * t).sin_cos())[which];
+            (0..k).fold(wave, |wave, _| wave * D::lit(rate))
+        });
+        *v = clock.f([cos, sin, D::lit(0.0)], &[]);
+    };
+    (Flow::of_derivatives(group.clone(), LeftTranslation, field), start)
 }
