@@ -84,9 +84,7 @@ impl<P: Ambient, const S: usize> Method<P> for Rk<S> {
         Facts { stays_on_manifold: false, step_with_error, ..facts }
     }
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
-        if cfg!(debug_assertions) {
-            self.0.check()?;
-        }
+        self.0.check_before_run()?;
         Ok(RkWork {
             k: copies(like.clone()),
             z: like.clone(),

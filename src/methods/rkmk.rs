@@ -97,9 +97,7 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> Method<P> for Rkm
         Facts { step_with_error, ..facts }
     }
     fn work(&self, problem: &P, like: &PointOf<P>) -> Result<Self::Work, Error> {
-        if cfg!(debug_assertions) {
-            self.tableau.check()?;
-        }
+        self.tableau.check_before_run()?;
         Ok(RkmkWork {
             stages: Stages::new(problem, &self.psi, like)?,
             y: like.clone(),

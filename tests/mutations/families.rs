@@ -108,7 +108,11 @@ fn rkmk() {
         refused(name, left, &problem, &Rkmk::new(method(), Exp), &reference);
     };
     sound("rkmk4", &problem, &Rkmk::new(RK4, Exp), &reference);
-    bad("frozen", Some(1), &|| Tableau { c: [0.0; 4], ..RK4 });
+    // The sum of each row is the same.
+    bad("exchanged", Some(2), &|| Tableau {
+        a: [RK4.a[0], RK4.a[1], [0.5, 0.0, 0.0, 0.0], RK4.a[3]],
+        ..RK4
+    });
     let no_bracket = Rkmk::new(RK4, Faulty(Exp, crate::maps::Fault::NoDifferential));
     refused("no bracket", Some(2), &problem, &no_bracket, &reference);
     let left = Rkmk::new(RK4, Faulty(Exp, crate::maps::Fault::LeftTrivialised));

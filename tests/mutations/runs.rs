@@ -101,6 +101,7 @@ fn faults_of_dense_output_are_found() {
 fn faults_of_steps_are_found() {
     let mut coefficient = DOPRI5;
     coefficient.a[4][2] += 1e-3;
+    coefficient.a[4][1] -= 1e-3;
     assert!(broken(&Rkmk::new(coefficient, Exp)).contains(&"order of steps".into()));
     let claims_more = Tableau { order: 7, ..VERNER6 };
     assert!(broken(&Rkmk::new(claims_more, Exp)).contains(&"order of steps".into()));
