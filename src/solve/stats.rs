@@ -130,7 +130,7 @@ pub enum RunError {
     },
     /// The attempts were used up.
     #[error(
-        "{max_steps} attempts did not reach the end: t = {}, last step h = {h:?} ({accepted} accepted, {rejected} rejected){}; raise max_steps or the tolerances",
+        "{max_steps} attempts did not reach the end: t = {}, last step h = {h:?} ({accepted} accepted, {rejected} rejected){}",
         Plain(.t),
         still_to_take(*left, *h)
     )]
@@ -181,14 +181,20 @@ pub enum RunError {
 }
 debug_is_display!(RunError);
 
-/// The number of steps of the last size to the end, with one digit; nothing for a run without an end.
+/// The number of steps of the last size to the end, with one digit, and what to do.
 fn still_to_take(left: f64, h: f64) -> String {
-    let steps = (left / h.abs()).ceil();
-    if steps.is_nan() || steps >= 1e15 {
-        return String::new();
+    if left == f64::INFINITY {
+        return "; the span has no end, and no event ended the run: give t_span an end, or look at the function and the \
+                direction of the event"
+            .into();
     }
+    let steps = (left / h.abs()).ceil();
     let about: f64 = format!("{steps:.0e}").parse().unwrap_or(steps);
-    format!(", the rest is about {about} steps of this size")
+    let rest = match steps < 1e15 {
+        true => format!(", the rest is about {about} steps of this size"),
+        false => String::new(),
+    };
+    format!("{rest}; raise max_steps or the tolerances")
 }
 
 fn reason(source: &Option<StepError>) -> String {

@@ -434,3 +434,9 @@ def test_events_that_are_too_fast_are_a_warning():
     assert r.unsure_steps > 0
     r = lf.solve_ivp(body, (0, 10), method="taylor16", events="sin(20*t)")
     assert r.unsure_steps == 0 and len(r.t_events[0]) == 64
+
+
+def test_a_span_without_an_end_says_what_ends_it():
+    body = lf.RigidBody(inertia=[1, 2, 3], omega_body=[0.2, 0.0, 1.0])
+    r = lf.solve_ivp(body, (0, np.inf), events=lf.Event("w1 - 100", terminal=1), max_steps=100)
+    assert r.status == -1 and "the span has no end, and no event ended the run: give t_span an end" in r.message

@@ -4,10 +4,12 @@ use faer::Mat;
 use lieflow::actions::{Coadjoint, Conjugation, LeftTranslation, Linear};
 use lieflow::groups::{AlgebraMatrix, MatrixGroup, So3};
 use lieflow::maps::{CCSK, Cay, CoordinateMap, Exp};
-use lieflow::methods::{Method, Rk, Rkmk, Step, tableau::RK4};
+use lieflow::methods::tableau::{DOPRI5, RK4};
+use lieflow::methods::{Method, Rk, Rkmk, Step};
 use lieflow::problems::{Ambient, Flow, PointOf, Problem, RigidBody};
 use lieflow::{
-    Action, Error, Failure, LieAlgebra, LieGroup, RunError, SaveAt, StepError, TimeGrid, integrate,
+    Action, Error, Event, Failure, LieAlgebra, LieGroup, RunError, SaveAt, Solve, StepError,
+    TimeGrid, integrate,
 };
 use nalgebra::Vector3;
 
@@ -220,4 +222,24 @@ fn a_time_is_told_in_few_digits() {
     assert!(message.starts_with("step 0 from t = 1e300 with h = 5e299 failed"), "{message}");
     let error = lieflow::TimeGrid::with_steps([0.0, 5e-324], 3).unwrap_err();
     assert!(error.to_string().ends_with("a step that changes t = 5e-324"), "{error}");
+}
+
+#[test]
+fn a_run_without_an_end_says_what_ends_it() {
+    let body = RigidBody::<f64>::new([1.0, 2.0, 3.0]).unwrap();
+    let never = |_: f64, m: &Vector3<f64>| m.x - 100.0;
+    let said = |end: f64| {
+        let method = Rkmk::new(DOPRI5, Exp);
+        let solve = Solve::new(&body, &method, [0.0, end]).tolerances(1e-6, 1e-6).max_steps(100);
+        let start = Vector3::new(0.1, 1.0, 0.2);
+        let run = solve.event(Event::new("late", never).stop_after(1)).run(start);
+        run.expect_err("it has no end").to_string()
+    };
+    let advice = "; the span has no end, and no event ended the run: give t_span an end";
+    let (endless, long) = (said(f64::INFINITY), said(1e6));
+    assert!(endless.contains(advice) && !endless.contains("raise max_steps"), "{endless}");
+    assert!(
+        !long.contains(advice) && long.contains("; raise max_steps or the tolerances"),
+        "{long}"
+    );
 }
