@@ -42,6 +42,11 @@ impl StepControl {
         Ok(Tolerance::new(rtol, atol)?.into())
     }
 
+    /// The tolerances.
+    pub fn tolerance(&self) -> &Tolerance {
+        &self.tolerance
+    }
+
     /// Sets the rule of the tolerances.
     pub fn rule(self, rule: Rule) -> Self {
         StepControl { tolerance: self.tolerance.by(rule), ..self }

@@ -183,6 +183,7 @@ impl<'a, P: Problem, M: Method<P>> Points<'a, P, M> {
         let rates = match adaptive {
             None => None,
             Some((tolerance, estimator)) => {
+                tolerance.check_rounding::<ScalarOf<P>>()?;
                 let mut parts = tolerance.scales();
                 let none = action.error_ratio(group, &group.zero(), &y, &mut parts);
                 tolerance.check(parts.asked(), none.any_below(f64::INFINITY))?;

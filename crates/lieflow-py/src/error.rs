@@ -30,7 +30,12 @@ pub(crate) fn argument(
 pub(crate) fn refused(py: Python<'_>, name: &str, error: &Error) -> PyErr {
     match error {
         Error::OutOfRange { arg, value, expected } => {
-            argument(py, arg, value.to_string(), expected.clone())
+            let short = if *value == 0.0 || (1e-5..1e16).contains(&value.abs()) {
+                value.to_string()
+            } else {
+                format!("{value:?}")
+            };
+            argument(py, arg, short, expected.clone())
         }
         Error::NotOnGroup { arg, group, residual, tolerance } => {
             let value = format!("a point at a relative distance of {residual:.1e} from {group}");

@@ -4,9 +4,11 @@ use faer::Mat;
 use lieflow::actions::{Coadjoint, Conjugation, LeftTranslation, Linear};
 use lieflow::groups::{AlgebraMatrix, MatrixGroup, So3};
 use lieflow::maps::{CCSK, Cay, CoordinateMap, Exp};
-use lieflow::methods::tableau::{DOPRI5, RK4};
+use lieflow::methods::tableau::{DOP853, DOPRI5, RK4};
 use lieflow::methods::{Method, Rk, Rkmk, Step};
 use lieflow::problems::{Ambient, Flow, PointOf, Problem, RigidBody};
+use lieflow::scalar::DoubleDouble;
+use lieflow::tolerance::{Tolerance, least_rtol};
 use lieflow::{
     Action, Error, Event, Failure, LieAlgebra, LieGroup, RunError, SaveAt, Solve, StepError,
     TimeGrid, integrate,
@@ -242,4 +244,26 @@ fn a_run_without_an_end_says_what_ends_it() {
         !long.contains(advice) && long.contains("; raise max_steps or the tolerances"),
         "{long}"
     );
+}
+
+/// Without atol, an rtol below the rounding of the numbers is refused; the least one is met by methods of every order.
+#[test]
+fn an_rtol_below_rounding_is_refused() {
+    let body = RigidBody::<f64>::new([1.0, 2.0, 3.0]).unwrap();
+    let run = |rtol: f64, atol: f64| {
+        let method = Rkmk::new(DOP853, Exp);
+        let solve = Solve::new(&body, &method, [0.0, 1.0]).tolerances(rtol, atol);
+        solve.run(Vector3::new(0.1, 1.0, 0.2)).map(|run| run.stats)
+    };
+    for rtol in [1e-30, 1e-16, 0.99 * least_rtol::<f64>()] {
+        let error = run(rtol, 0.0).expect_err("it is below rounding");
+        assert!(matches!(error.error, RunError::Setup(Error::OutOfRange { .. })), "{error}");
+        let (found, least) = (format!("rtol = {rtol:?}, expected at least"), least_rtol::<f64>());
+        let told = error.to_string();
+        assert!(told.starts_with(&found) && told.contains(&format!("{least:.0e}")), "{told}");
+        assert!(run(rtol, 1e-12).is_ok());
+    }
+    let stats = run(least_rtol::<f64>(), 0.0).unwrap();
+    assert!(stats.rejected < stats.accepted && stats.accepted < 1000, "{stats:?}");
+    assert!(Tolerance::new(1e-25, 0.0).unwrap().check_rounding::<DoubleDouble>().is_ok());
 }

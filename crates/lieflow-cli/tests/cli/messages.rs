@@ -1,6 +1,7 @@
 //! Slips of the keyboard and of thought: each gets the sentence that helps.
 
 use crate::support::{Folder, SCENE, read_csv};
+use lieflow::tolerance::least_rtol;
 
 /// Runs the scene with one line changed, which is refused.
 fn refused(folder: &Folder, good: &str, bad: &str) -> String {
@@ -144,8 +145,16 @@ fn a_step_that_is_longer_than_the_span_is_told() {
 #[test]
 fn a_tolerance_below_rounding_and_very_many_steps_are_refused_at_once() {
     let folder = Folder::new();
-    let message = refused(&folder, "dt = 0.05", "rtol = 1e-30");
-    assert!(message.contains(":12:8: rtol = 1e-30 is below the rounding of numbers"), "{message}");
+    for rtol in ["1e-30", "1e-16"] {
+        let message = refused(&folder, "dt = 0.05", &format!("rtol = {rtol}"));
+        let words = format!(
+            ":12:8: rtol = {rtol}, expected at least {:.0e}, where atol",
+            least_rtol::<f64>()
+        );
+        assert!(message.contains(&words), "{message}");
+    }
+    folder.write("scene.toml", &SCENE.replace("dt = 0.05", "rtol = 1e-30\natol = 1e-12"));
+    folder.lieflow(&["run", "scene.toml", "--out", "out"]).ok();
     let message = refused(&folder, "t_span = [0, 2.0]\ndt = 0.05", "t_span = [0, 5e13]\ndt = 50");
     assert!(message.contains("More than a day needs --yes"), "{message}");
 }

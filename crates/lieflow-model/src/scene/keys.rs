@@ -290,18 +290,11 @@ impl Limits {
                 }
             };
         }
-        if let (Some(rtol), None | Some(0.0)) = (self.rtol, self.atol)
-            && 0.0 < rtol
-            && rtol < f64::EPSILON
-        {
-            let message = format!(
-                "rtol = {rtol:e} is below the rounding of numbers, expected at least {:.1e}",
-                f64::EPSILON
-            );
-            return Err(Refusal::at("rtol", message).into());
-        }
         let names = [("first_step", "h_init"), ("min_step", "h_min"), ("max_step", "h_max")];
-        let control = self.control(1.0);
+        let control = self.control(1.0).and_then(|control| {
+            control.tolerance().check_rounding::<f64>()?;
+            Ok(control)
+        });
         Ok(Some(control.map_err(|error| Refusal::from(error).renamed(&names))?))
     }
 
