@@ -20,6 +20,16 @@ pub enum Status {
     Cancelled,
 }
 
+impl Status {
+    /// The name of the event that stopped the run.
+    pub fn event(&self) -> Option<&str> {
+        match self {
+            Status::Event(name) => Some(name),
+            _ => None,
+        }
+    }
+}
+
 /// The answer of an observer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Next {

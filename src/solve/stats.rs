@@ -45,6 +45,23 @@ pub struct Stats {
 }
 
 impl Stats {
+    /// The warning about zeros of events that may be missed ([`unsure_steps`](Self::unsure_steps)), if there is a reason.
+    /// `limit` is the name of the setting that limits the step size, `ended_by` the event that ended the run.
+    pub fn unsure_in_words(&self, limit: &str, ended_by: Option<&str>) -> Option<String> {
+        let ended = ended_by.map_or(String::new(), |name| {
+            format!(
+                " The event {name} may have ended the run at a wrong zero: do not use this run."
+            )
+        });
+        (self.unsure_steps > 0).then(|| {
+            format!(
+                "zeros of events may be missed in {} of the steps: the function of an event turns much faster than the \
+                 state.{ended} Take shorter steps (dt, or {limit})",
+                self.unsure_steps
+            )
+        })
+    }
+
     pub(super) fn saw<S: Real>(&mut self, residual: S) {
         match residual.all_below(RESIDUAL_MAX) {
             true => self.restored += 1,

@@ -20,7 +20,7 @@ use pyo3::types::PyDict;
 use crate::curve::Curve;
 use crate::error::{argument, refused};
 use crate::field::{self, Callable, Raised};
-use crate::run::{EventParts, Fitting, Function, Seen, Settings, Watch, Watched, save_of};
+use crate::run::{EventParts, Fitting, Function, LONGEST, Seen, Settings, Watch, Watched, save_of};
 use crate::solve::knots;
 use crate::stepper::Stepper;
 use crate::tree::{mistake, mistakes, tree};
@@ -357,7 +357,7 @@ impl Model {
             self.drive((&spec, start.clone()), (steps, save), &settings, &mut watch)
         };
         let (status, curve) = if attached { run() } else { py.detach(run) };
-        let result = watch.seen.into_dict(py, &raised, status, &shape)?;
+        let result = watch.seen.into_dict(py, &raised, status, (&shape, LONGEST))?;
         let lost = self.problem.formula().and_then(|formula| formula.lost(Which::First));
         result.set_item("lost", lost.map(|lost| lost.to_string()))?;
         result.set_item("curve", curve.map(|curve| Py::new(py, curve)).transpose()?)?;

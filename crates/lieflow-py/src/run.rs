@@ -21,6 +21,9 @@ use crate::formulas::Formulas;
 /// How often a run asks for signals.
 const SIGNALS: Duration = Duration::from_millis(20);
 
+/// The argument that limits the step size.
+pub(crate) const LONGEST: &str = "max_step";
+
 /// The method of this name.
 pub(crate) fn spec_of(py: Python<'_>, method: &str) -> PyResult<MethodSpec> {
     let spec = method.parse::<MethodSpec>();
@@ -282,13 +285,13 @@ impl Seen {
         }
     }
 
-    /// The dict of a result. `shape` is that of the points.
+    /// The dict of a result. `shape` is that of the points, `limit` the name of the setting that limits the step size.
     pub(crate) fn into_dict<'py>(
         self,
         py: Python<'py>,
         raised: &Raised,
         status: Result<Status, RunError>,
-        shape: &[usize],
+        (shape, limit): (&[usize], &str),
     ) -> PyResult<Bound<'py, PyDict>> {
         if let Some(error) = raised.take() {
             return Err(error);
@@ -329,6 +332,8 @@ impl Seen {
         result.set_item("residual", stats.residual)?;
         result.set_item("restored", stats.restored)?;
         result.set_item("unsure_steps", stats.unsure_steps)?;
+        let ended_by = status.as_ref().ok().and_then(Status::event);
+        result.set_item("unsure", stats.unsure_in_words(limit, ended_by))?;
         Ok(result)
     }
 }

@@ -84,7 +84,7 @@ impl Scene {
             (done.map(|outcome| outcome.status), lost)
         });
         let width = model.schema().columns().count();
-        let result = seen.into_dict(py, &raised, status, &[width])?;
+        let result = seen.into_dict(py, &raised, status, (&[width], "h_max"))?;
         result.set_item("lost", lost.map(|lost| lost.to_string()))?;
         Ok((schema_of(model.schema()).into_pyobject(py)?.into_any(), result))
     }

@@ -17,7 +17,7 @@ use crate::curve::Curve;
 use crate::error::{argument, refused};
 use crate::field::{self, Callable, Raised};
 use crate::formulas::Formulas;
-use crate::run::{EventParts, Fitting, Settings, Watch, save_of, spec_of};
+use crate::run::{EventParts, Fitting, LONGEST, Settings, Watch, save_of, spec_of};
 use crate::stepper::Stepper;
 
 /// The space of a run: a group, an action, and the shapes of y and f.
@@ -253,7 +253,7 @@ pub(crate) fn solve<'py>(
     let Ran { status, end, curve } = if attached { run() } else { py.detach(run) };
     let y_end = end.as_ref().map(|end| end.y.clone());
     watch.seen.end = end.map(|end| (end.t, end.stats));
-    let result = watch.seen.into_dict(py, &raised, status, shape)?;
+    let result = watch.seen.into_dict(py, &raised, status, (shape, LONGEST))?;
     result.set_item("y_end", y_end.map(|y| field::array(py, shape, &y)).transpose()?)?;
     let curve = curve.map(|curve| Py::new(py, Curve::new(curve, shape))).transpose()?;
     result.set_item("curve", curve)?;

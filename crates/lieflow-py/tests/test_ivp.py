@@ -434,6 +434,9 @@ def test_events_that_are_too_fast_are_a_warning():
     assert r.unsure_steps > 0
     r = lf.solve_ivp(body, (0, 10), method="taylor16", events="sin(20*t)")
     assert r.unsure_steps == 0 and len(r.t_events[0]) == 64
+    with pytest.warns(RuntimeWarning, match="may have ended the run at a wrong zero: do not use this run"):
+        r = lf.solve_ivp(body, (0, 10), method="taylor16", events=lf.Event("sin(1e6*t)", terminal=3))
+    assert r.status == 1 and r.unsure_steps > 0
 
 
 def test_a_span_without_an_end_says_what_ends_it():

@@ -76,9 +76,14 @@ impl Between {
         }
     }
 
+    /// Were zeros missed?
+    pub(super) fn has_missed(&self) -> bool {
+        self.missed > 0
+    }
+
     /// The warning about zeros that were missed.
     pub(super) fn warning(&self) -> Option<String> {
-        (self.missed > 0).then(|| {
+        self.has_missed().then(|| {
             format!(
                 "event {}: zeros were missed, before {} of the rows. Its function changes faster than the steps: take \
                  shorter steps (dt, or h_max)",

@@ -14,9 +14,9 @@ use super::told::in_words;
 use super::watch::{Recorder, Watch, quantities};
 use crate::args::{ErrorCheck, RunArgs, quoted};
 use crate::error::CliError;
-use crate::output::{self, Drawn, Drift, MethodSummary, RunState, SUMMARY, Summary};
+use crate::output::{self, Drawn, Drift, FoundBy, MethodSummary, RunState, SUMMARY, Summary};
 use lieflow_model::problem::Plan;
-use lieflow_model::scene::Scene;
+use lieflow_model::scene::{Scene, SceneEvent};
 
 /// How often the state of a run is saved.
 const SAVED_EVERY: Duration = Duration::from_secs(1);
@@ -270,13 +270,10 @@ pub fn run_scene(
     warnings.extend(one_long_step(scene));
     let by_events = kept.between.iter().zip(&scene.events).zip(&kept.seen);
     warnings.extend(by_events.clone().filter_map(|((between, _), _)| between.warning()));
-    warnings.extend((done.unsure_steps > 0).then(|| {
-        format!(
-            "zeros of events may be missed in {} of the steps: the function of an event turns much faster than the \
-             state. Take shorter steps (dt, or h_max)",
-            output::number(done.unsure_steps as f64)
-        )
-    }));
+    let is_end = |event: &SceneEvent| done.ended_by.as_ref() == Some(&event.name);
+    let mut ends_wrong =
+        by_events.clone().any(|((between, event), _)| is_end(event) && between.has_missed());
+    warnings.extend(done.unsure);
     let mut notes = scene.notes();
     let ended = done.ended_by.is_some();
     notes.extend(by_events.filter_map(|((between, event), seen)| {
@@ -295,6 +292,10 @@ pub fn run_scene(
     let (accuracy, accuracy_unknown) = match checked {
         Ok(Some(checked)) => {
             warnings.extend(checked.warnings);
+            // The other motion has no such zero, or another number of zeros up to it.
+            let mut known = scene.events.iter().zip(&checked.time_errors);
+            ends_wrong |= checked.accuracy.found_by != FoundBy::ShortSteps
+                && known.any(|(event, error)| is_end(event) && error.is_none());
             for (event, error) in events.iter_mut().zip(checked.time_errors) {
                 event.time_error = error.filter(|_| event.count > 0);
             }
@@ -303,6 +304,12 @@ pub fn run_scene(
         Ok(None) => (None, None),
         Err(why) => (None, Some(why)),
     };
+    if let (Some(name), true) = (&done.ended_by, ends_wrong) {
+        warnings.insert(
+            0,
+            format!("event {name} ended the run at a wrong zero: this run is not usable"),
+        );
+    }
     let method = &scene.method;
     let [rtol, atol] = match scene.tolerances() {
         Some(both) => both.map(Some),

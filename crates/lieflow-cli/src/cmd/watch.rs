@@ -125,9 +125,9 @@ impl<'a> Watch<'a> {
         scene.forget_losses();
         match self.model.drive(&scene.method, plan, watcher) {
             Ok(Outcome { t, status, stats }) => Ok(Done {
+                unsure: stats.unsure_in_words("h_max", status.event()),
                 steps: stats.accepted,
                 points_within: Some(stats.points_within),
-                unsure_steps: stats.unsure_steps,
                 chosen: scene.adaptive.is_some().then_some(Chosen {
                     accepted: stats.accepted,
                     rejected: stats.rejected,
@@ -137,10 +137,7 @@ impl<'a> Watch<'a> {
                 }),
                 failure: (status == Status::Cancelled).then(|| format!("interrupted at t = {t}")),
                 interrupted: status == Status::Cancelled,
-                ended_by: match status {
-                    Status::Event(name) => Some(name),
-                    _ => None,
-                },
+                ended_by: status.event().map(String::from),
                 t: Some(t),
             }),
             Err(RunError::Setup(error)) => Err(error.into()),
@@ -212,8 +209,8 @@ pub(super) struct Done {
     pub(super) interrupted: bool,
     pub(super) steps: u64,
     pub(super) points_within: Option<u64>,
-    /// Searches for the zeros of an event in a step that may have missed some.
-    pub(super) unsure_steps: u64,
+    /// The warning about zeros of events that may be missed.
+    pub(super) unsure: Option<String>,
     pub(super) chosen: Option<Chosen>,
     /// The event that ended the run.
     pub(super) ended_by: Option<String>,

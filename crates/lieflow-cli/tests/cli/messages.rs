@@ -72,6 +72,9 @@ fn events_that_never_come_or_are_missed_are_told() {
     assert!(told.contains("event z: 2 times, first at t = 0.25"), "{told}");
     let told = event("sin(1e6*t)", "");
     assert!(told.contains("WARNING: event z: zeros were missed"), "{told}");
+    let told = event("sin(1e6*t)", "stop_after = 3");
+    let wrong = "WARNING: event z ended the run at a wrong zero: this run is not usable";
+    assert!(told.contains("ended by event z") && told.contains(wrong), "{told}");
     // Long steps know that they may have more zeros, where no row shows it.
     let body = "[problem]\nkind = \"rigid-body\"\ninertia = [1, 2, 3]\nomega_body = [0.1, 1, 0.1]\n\
                 [time]\nt_span = [0, 4]\n[[events]]\nname = \"z\"\nwhen = \"sin(RATE*t)\"\n";
@@ -79,6 +82,11 @@ fn events_that_never_come_or_are_missed_are_told() {
         folder.write("scene.toml", &body.replace("RATE", rate));
         let told = folder.lieflow(&["run", "scene.toml", "--no-page", "--out", "out"]).ok();
         assert_eq!(told.contains("WARNING: zeros of events may be missed in"), is_told, "{told}");
+        assert!(!told.contains("wrong zero"), "{told}");
+        folder.write("scene.toml", &(body.replace("RATE", rate) + "stop_after = 3\n"));
+        let told = folder.lieflow(&["run", "scene.toml", "--no-page", "--out", "out"]).ok();
+        let wrong = "The event z may have ended the run at a wrong zero: do not use this run.";
+        assert_eq!(told.contains(wrong), is_told, "{told}");
     }
     // Nothing is said of events that come, in either direction, also at the times of rows.
     for (when, more) in [

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -15,7 +14,7 @@ from ._errors import ArgumentError
 from ._fields import CFunction, Field, Parts, Quantities, Samples, address
 from ._groups import Group
 from ._problems import Problem
-from ._result import Layout, OdeSolution, Result
+from ._result import Layout, OdeSolution, Result, warn_of_events
 from ._unitary import ComplexPoints, Unitary, is_unitary_name
 
 __all__ = ["Event", "solve_ivp"]
@@ -428,7 +427,7 @@ def _of_field(
         layout = ready.layout
         told = lambda t, y: callback(t, layout.split(y))  # noqa: E731
     found = _lieflow.solve(ready.space, ready.field, ready.args, method, span, ready.flat, settings, times, parts, told)
-    _warn_of_events(found)
+    warn_of_events(found, 3)
     curve = found.pop("curve")
     if ready.layout is not None:
         found["y"] = ready.layout.split(found["y"])
@@ -463,17 +462,6 @@ def _finer(settings: dict[str, Any]) -> tuple[str, dict[str, Any]]:
     return found_by, {**finer, "rtol": rtol * factor, "atol": atol * factor}
 
 
-def _warn_of_events(found: dict[str, Any]) -> None:
-    """Warn of steps in which zeros of events may be missed."""
-    if found["unsure_steps"]:
-        warnings.warn(
-            f"zeros of events may be missed in {found['unsure_steps']} of the steps: the function of an event turns much "
-            "faster than the state. Take shorter steps (dt, or max_step)",
-            RuntimeWarning,
-            stacklevel=4,
-        )
-
-
 def _of_problem(
     problem: Problem, span: tuple[float, float], y0: Any, method: str | None, settings: dict[str, Any],
     times: Array | None, events: list[Event], quantities: Any, callback: Any, args: tuple[Any, ...],
@@ -505,7 +493,7 @@ def _of_problem(
         settings = {**settings, "stops": sorted({*settings["stops"], *knots})}
     start = None if y0 is None else real("y0", y0)
     found = model.solve(method, span, start, settings, times, parts, told)
-    _warn_of_events(found)
+    warn_of_events(found, 3)
     curve, lost, rows = found.pop("curve"), found.pop("lost"), found["y"]
     if lost is not None and found["status"] < 0:
         found["message"] += f" {lost}."

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
 
@@ -13,9 +14,16 @@ from ._errors import ArgumentError, RunError
 from ._fields import Parts, Quantities
 from ._unitary import ComplexPoints
 
-__all__ = ["ErrorEstimate", "Layout", "OdeSolution", "Result"]
+__all__ = ["ErrorEstimate", "Layout", "OdeSolution", "Result", "warn_of_events"]
 
 Array = NDArray[np.float64]
+
+
+def warn_of_events(found: dict[str, Any], stacklevel: int) -> None:
+    """Warn of steps in which zeros of events may be missed."""
+    unsure = found.pop("unsure")
+    if unsure is not None:
+        warnings.warn(unsure, RuntimeWarning, stacklevel=stacklevel + 1)
 
 
 class Layout:

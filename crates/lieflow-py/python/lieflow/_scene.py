@@ -8,7 +8,7 @@ from typing import Any
 
 from . import _lieflow
 from ._problems import Problem, problem_of
-from ._result import Layout, Result
+from ._result import Layout, Result, warn_of_events
 
 __all__ = ["Scene", "load", "scenes"]
 
@@ -59,6 +59,7 @@ class Scene:
     def run(self) -> Result:
         """Run the scene, without the interpreter. The result has the rows that ``lieflow run`` writes."""
         schema, found = self._scene.run()
+        warn_of_events(found, 2)
         layout = Layout(schema, self.quantities)
         rows, lost = found["y"], found.pop("lost")
         if lost is not None and found["status"] < 0:
