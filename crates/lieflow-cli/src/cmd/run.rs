@@ -202,7 +202,7 @@ pub fn run_scene(
         false => (RunState::begin(folder, scene.fingerprint)?, None),
     };
     let summary_path: PathBuf = folder.join(SUMMARY);
-    output::remove_old(&summary_path)?;
+    output::remove_summary(folder)?;
     let clock = Instant::now();
     let cancel = AtomicBool::new(false);
     let mut kept =
@@ -315,7 +315,7 @@ pub fn run_scene(
         Some(both) => both.map(Some),
         None => [None; 2],
     };
-    let summary = Summary {
+    let mut summary = Summary {
         lieflow: env!("CARGO_PKG_VERSION"),
         title: scene.title.clone(),
         scene: scene.name.clone(),
@@ -342,6 +342,7 @@ pub fn run_scene(
         units: output::units_of(scene, &watch.written),
         unit_names: scene.units.clone(),
         trajectory: output::TRAJECTORY[usize::from(!completed)],
+        figures: Vec::new(),
         t_span: scene.grid.t_span(),
         t_end: done.t,
         ended_by: done.ended_by,
@@ -378,9 +379,12 @@ pub fn run_scene(
         output::run_page(&summary, &drawn)
     });
     let state = kept.finish(completed)?;
+    if let Some(page) = &page {
+        summary.figures = output::write_figures(folder, page)?;
+    }
     output::write_file(&summary_path, &output::to_json(&summary)?)?;
     match page {
-        Some(page) => drop(output::write_page(folder, PAGE, &page)?),
+        Some(page) => output::write_file(&folder.join(PAGE), page.html())?,
         // That of an earlier run shows other rows.
         None => output::remove_old(&folder.join(PAGE))?,
     }

@@ -37,12 +37,22 @@ pub(super) fn name_file(file: &File, from: &Path, name: &Path) -> io::Result<()>
 /// A file cannot be written.
 pub fn write_page(folder: &Path, name: &str, page: &Page) -> Result<PathBuf, CliError> {
     make_folder(folder)?;
-    for (name, svg) in page.figures() {
-        write_file(&folder.join(name), svg)?;
-    }
+    write_figures(folder, page)?;
     let path = folder.join(name);
     write_file(&path, page.html())?;
     Ok(path)
+}
+
+/// Write the figures of a page as SVG files; their names.
+///
+/// # Errors
+/// A file cannot be written.
+pub fn write_figures(folder: &Path, page: &Page) -> Result<Vec<String>, CliError> {
+    let write = |(name, svg): (String, String)| {
+        write_file(&folder.join(&name), svg)?;
+        Ok(name)
+    };
+    page.figures().into_iter().map(write).collect()
 }
 
 /// Make a folder for results, with those above it.

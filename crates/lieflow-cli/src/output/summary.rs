@@ -1,6 +1,8 @@
 //! summary.json: what was run, and how well it went.
 
 use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
 
 use serde::{Serialize, Serializer};
 
@@ -11,7 +13,9 @@ use lieflow_model::scene::{Defaults, Scene};
 use lieflow_model::schema::{Dimension, Observable, Units};
 use lieflow_timing::Fit;
 
+use super::files::remove_old;
 use super::{duration, number, rough};
+use crate::error::CliError;
 
 /// Errors of parts that are told; the file has all.
 const PARTS: usize = 4;
@@ -21,6 +25,23 @@ pub const TIME: &str = "t";
 
 /// The name of the file.
 pub const SUMMARY: &str = "summary.json";
+
+/// Remove the summary of an earlier run, and the figures that it names: they show other rows.
+///
+/// # Errors
+/// A file is there and stays.
+pub fn remove_summary(folder: &Path) -> Result<(), CliError> {
+    let path = folder.join(SUMMARY);
+    let text = fs::read_to_string(&path).unwrap_or_default();
+    let summary: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
+    let names = summary["figures"].as_array().into_iter().flatten();
+    // A file of the folder itself.
+    let is_figure = |name: &&str| name.ends_with(".svg") && !name.contains(['/', '\\']);
+    for name in names.filter_map(serde_json::Value::as_str).filter(is_figure) {
+        remove_old(&folder.join(name))?;
+    }
+    remove_old(&path)
+}
 
 /// What was run, and how well it went.
 #[derive(Clone, Debug, Serialize)]
@@ -67,6 +88,9 @@ pub struct Summary {
     pub unit_names: Units,
     /// The file of the trajectory, next to this one.
     pub trajectory: &'static str,
+    /// The files of the figures, next to this one: the next run in the folder removes them.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub figures: Vec<String>,
     /// From when to when; null where there is no end.
     pub t_span: [f64; 2],
     /// The time that was reached; none when a step failed.

@@ -43,6 +43,35 @@ fn charts_say_what_they_show() {
     assert!(drift.contains("The 6 that moved most, of 29."), "{drift}");
 }
 
+/// The next run in a folder removes the figures that lieflow wrote, with a page or without, and no other file.
+#[test]
+fn figures_of_an_earlier_run_do_not_stay() {
+    let folder = Folder::new();
+    folder.write("scene.toml", SCENE);
+    let run = |more: &[&str]| {
+        folder.lieflow(&[&["run", "scene.toml", "--out", "out"], more].concat()).ok();
+        let names = folder.names("out").into_iter();
+        names.filter(|name| name.ends_with(".svg") || name.ends_with(".html")).collect::<Vec<_>>()
+    };
+    let first = run(&[]);
+    for name in ["index.html", "time-momentum-body.svg", "time-energy.svg"] {
+        assert!(first.contains(&name.into()), "{first:?}");
+    }
+    folder.write("out/mine.svg", "<svg/>");
+    let energy = run(&["--set", "output.quantities=[\"energy\"]"]);
+    let has = |name: &str| energy.contains(&name.into());
+    assert!(
+        has("mine.svg") && has("time-energy.svg") && !has("time-momentum-body.svg"),
+        "{energy:?}"
+    );
+    assert_eq!(run(&["--no-page"]), ["mine.svg"]);
+    // A summary that names what is no figure of the folder.
+    folder.write("other.svg", "<svg/>");
+    folder.write("out/summary.json", "{\"figures\": [\"../other.svg\", \"trajectory.csv\", 3]}");
+    run(&["--no-page"]);
+    assert_eq!(folder.read("other.svg"), "<svg/>");
+}
+
 #[test]
 fn every_bundled_scene_runs_and_reads_back_exactly() {
     let folder = Folder::new();
