@@ -295,7 +295,7 @@ fn in_words(listing: &Listing) -> String {
             continue;
         }
         text += &match needs {
-            Needs::Field => "\nMethods for every problem\n".to_string(),
+            Needs::Field => format!("\nMethods for {EVERY}\n"),
             Needs::Norm => "\nImplicit methods for every problem with a norm\n".to_string(),
             needs => format!("\nMethods that need {}\n", needs.describe()),
         };
@@ -326,12 +326,20 @@ fn in_words(listing: &Listing) -> String {
     text + "\n`lieflow methods NAME` tells what a method is, and where it comes from.\n"
 }
 
+/// What methods are for that need nothing but f.
+const EVERY: &str = "every problem";
+
 /// Everything about one method.
 fn one_in_words(method: &MethodEntry) -> String {
+    let (is_for, needs) = match method.needs {
+        Needs::Field => (EVERY, ""),
+        needs => ("", needs.describe()),
+    };
     let mut text = format!("{}\n", method.name);
     text += &wrap(&format!("{}. {}.", method.summary, method.source.trim_end_matches('.')), " ");
     let rows = [
-        ("needs", method.needs.describe().to_string()),
+        ("for", is_for.to_string()),
+        ("needs", needs.to_string()),
         ("order", method.says_order.to_string()),
         ("keeps", method.preserves.clone()),
         ("a step costs", method.cost.clone()),

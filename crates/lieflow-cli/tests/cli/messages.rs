@@ -1,7 +1,9 @@
 //! Slips of the keyboard and of thought: each gets the sentence that helps.
 
 use crate::support::{Folder, SCENE, read_csv};
+use lieflow::catalog::MethodSpec;
 use lieflow::tolerance::least_rtol;
+use lieflow_model::scene::{BUNDLED, Scene};
 
 /// Runs the scene with one line changed, which is refused.
 fn refused(folder: &Folder, good: &str, bad: &str) -> String {
@@ -227,6 +229,19 @@ fn a_formula_may_have_a_matrix() {
 fn methods_answers_for_tableaus_maps_and_parts() {
     let folder = Folder::new();
     let told = |name: &str| folder.lieflow(&["methods", name]).ok();
+    // What it says a method is for is where it fits.
+    for name in
+        ["rkmk", "rkmk4", "cf4", "rk", "magnus4", "taylor16", "gauss4", "rkmk-gauss4-symmetric"]
+    {
+        let fits =
+            |scene: &Scene| scene.model().unwrap().fits(&MethodSpec::new(name, None)).is_ok();
+        let everywhere =
+            BUNDLED.iter().all(|scene| fits(&Scene::parse(scene.name, scene.text).unwrap()));
+        let text = told(name);
+        let says = ["\n for: every problem\n", "\n needs: "].map(|words| text.contains(words));
+        assert!(says[0] != says[1] && (everywhere || says[1]), "{text}");
+        assert_eq!(says[0], ["rkmk", "rkmk4", "cf4", "rk"].contains(&name), "{text}");
+    }
     let dop853 = told("dop853");
     assert!(dop853.contains("tableau of order 8 with 12 stages"), "{dop853}");
     assert!(dop853.contains("methods that take it: rkmk,"), "{dop853}");
