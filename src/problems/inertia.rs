@@ -77,6 +77,15 @@ pub fn violates_triangle(inertia: [f64; 3]) -> Option<f64> {
     (missed > ROUNDING).then_some(missed)
 }
 
+/// [`violates_triangle`] in words, as `J3 > J1 + J2 (4 > 1 + 2): impossible for a real body`.
+pub fn impossible(inertia: [f64; 3]) -> Option<String> {
+    violates_triangle(inertia)?;
+    let largest = (0..3).fold(0, |k, i| if inertia[i] > inertia[k] { i } else { k });
+    let order = [[0, 1, 2], [1, 0, 2], [2, 0, 1]][largest];
+    let [(i, a), (j, b), (k, c)] = order.map(|i| (i + 1, inertia[i]));
+    Some(format!("J{i} > J{j} + J{k} ({a} > {b} + {c}): impossible for a real body"))
+}
+
 /// [`violates_triangle`] as an error.
 ///
 /// # Errors

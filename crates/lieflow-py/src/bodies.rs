@@ -3,6 +3,7 @@
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use lieflow::ensemble::{Ensemble, EnsembleMethod};
+use lieflow::problems::inertia::impossible;
 use nalgebra::Matrix3;
 use numpy::{PyArrayDyn, PyReadonlyArray2, PyReadonlyArray3};
 use pyo3::prelude::*;
@@ -23,6 +24,7 @@ pub(crate) struct FreeBodies {
     bodies: Mutex<Ensemble>,
     count: usize,
     has_attitudes: bool,
+    impossible: Option<String>,
 }
 
 impl FreeBodies {
@@ -53,7 +55,14 @@ impl FreeBodies {
             bodies = bodies.with_attitudes(&attitudes).map_err(refuse)?;
         }
         let (count, has_attitudes) = (momentum.len(), attitude.is_some());
-        Ok(FreeBodies { bodies: Mutex::new(bodies), count, has_attitudes })
+        let mut all = inertia.iter().enumerate();
+        let impossible = all.find_map(|(i, j)| Some(format!("inertia[{i}]: {}", impossible(*j)?)));
+        Ok(FreeBodies { bodies: Mutex::new(bodies), count, has_attitudes, impossible })
+    }
+    /// What is wrong with the moments of the first body that cannot be.
+    #[getter]
+    fn impossible(&self) -> Option<&str> {
+        self.impossible.as_deref()
     }
     fn advance(
         &self,

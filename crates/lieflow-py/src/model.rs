@@ -134,6 +134,11 @@ impl Problem {
     fn notes(&self) -> Vec<String> {
         [self.problem.notes(), self.problem.warnings()].concat()
     }
+    /// What is wrong with the numbers, though they can be integrated.
+    #[getter]
+    fn warnings(&self) -> &[String] {
+        self.problem.warnings()
+    }
     /// What the exact motion keeps, of what follows from these quantities.
     fn invariants(&self, quantities: Vec<String>) -> Vec<&'static str> {
         self.problem.invariants(&names(&quantities))

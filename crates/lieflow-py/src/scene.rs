@@ -62,6 +62,11 @@ impl Scene {
     fn keys<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         untree(py, &self.0.keys)
     }
+    /// What is wrong with the numbers of the problem, though they can be integrated.
+    #[getter]
+    fn warnings(&self) -> &[String] {
+        self.0.problem.warnings()
+    }
     /// Runs it: the schema of the rows, and the dict of the result.
     fn run<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyDict>)> {
         let refuse = |error: lieflow::Error| refused(py, "scene", &error);

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import pickle
 import pydoc
+import re
+import warnings
 
 import numpy as np
 import pytest
@@ -290,3 +292,27 @@ def test_an_interrupt_of_a_large_fluid():
     late = time.perf_counter() - sent[0]
     thread.join()
     assert late < 0.5, late
+
+
+def test_moments_that_no_body_has_are_a_warning(tmp_path):
+    bad, good = [1.0, 2.0, 4.0], [1.0, 2.0, 3.0]
+    file = tmp_path / "scene.toml"
+
+    def scene(inertia):
+        body = f'kind = "rigid-body"\ninertia = {inertia}\nomega_body = [0, 1, 0]'
+        file.write_text(f"[problem]\n{body}\n[time]\nt_span = [0, 1]\n")
+        return lf.load(file)
+
+    for make in (
+        lambda inertia: lf.RigidBody(inertia=inertia, omega_body=[0, 1, 0]),
+        lambda inertia: lf.DrivenBody(inertia=inertia, omega_body=[0, 1, 0], torque=["0", "0", "t"]),
+        lambda inertia: lf.RigidBodies(bodies=[{"inertia": j, "momentum_body": good} for j in (good, inertia)]),
+        lambda inertia: lf.FreeBodies(inertia, [good]),
+        scene,
+    ):
+        with pytest.warns(UserWarning, match=re.escape("J3 > J1 + J2 (4 > 1 + 2): impossible for a real body")) as told:
+            make(bad)
+        assert len(told) == 1 and told[0].filename == __file__
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            make(good)

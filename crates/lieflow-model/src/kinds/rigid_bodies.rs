@@ -5,6 +5,7 @@
 
 use lieflow::actions::Linear;
 use lieflow::groups::{Power, So3};
+use lieflow::problems::inertia::impossible;
 use lieflow::problems::{Euler, Exact, Kinetic, RigidBody};
 use lieflow::scalar::{Counted, Trig};
 use nalgebra::{Matrix3, Vector3};
@@ -126,6 +127,14 @@ impl System for Bodies {
     fn counted(&self) -> Option<Counting> {
         let start = self.start.iter().map(|m| m.map(Counted)).collect();
         counting(self.on().ok()?, start)
+    }
+    fn warnings(&self) -> Vec<String> {
+        let all = self.inertia.iter().enumerate();
+        all.filter_map(|(i, inertia)| {
+            let key = "bodies".index(i);
+            impossible(*inertia).map(|why| format!("{key}.inertia: {why}"))
+        })
+        .collect()
     }
     fn modelled(&self) -> String {
         format!("momenta of {} bodies", self.bodies.len())

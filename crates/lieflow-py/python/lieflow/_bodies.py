@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from typing import Any
 
 import numpy as np
@@ -43,6 +44,8 @@ class FreeBodies:
             raise ArgumentError("attitude", f"shape {g.shape}", f"shape ({len(m)}, 3, 3)")
         self._inertia = j
         self._bodies = _lieflow.FreeBodies(j, m, g)
+        if self._bodies.impossible is not None:
+            warnings.warn(self._bodies.impossible, UserWarning, stacklevel=2)
 
     def advance(self, method: str, h: float, steps: int, threads: int = 1) -> None:
         """Take steps of the size h with "rkmk4 exp", "rkmk4 cay" or "rk4-mg". The results are the same for any threads.

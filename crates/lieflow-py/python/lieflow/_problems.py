@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 import pathlib
+import warnings
 from collections.abc import Sequence
 from typing import Any, ClassVar
 
@@ -42,6 +43,14 @@ class Problem:
     keys: dict[str, Any]
 
     def __init__(self, **keys: Any) -> None:
+        self._make(keys)
+        self._warn(3)
+
+    def _warn(self, level: int) -> None:
+        for text in self._problem.warnings:
+            warnings.warn(text, UserWarning, stacklevel=level)
+
+    def _make(self, keys: dict[str, Any]) -> None:
         if not type(self).kind:
             raise TypeError("Problem is the base of the kinds, such as lieflow.RigidBody")
         keys = {name: value for name, value in keys.items() if value is not None}
@@ -56,7 +65,9 @@ class Problem:
 
     def replace(self, **keys: Any) -> Any:
         """Return the problem with other values of these keys. None takes a key away."""
-        return type(self)(**{**self.keys, **keys})
+        changed = _quietly(type(self).kind, {**self.keys, **keys})
+        changed._warn(3)
+        return changed
 
     @property
     def method(self) -> str:
@@ -144,7 +155,7 @@ class Problem:
         return hash((type(self).__name__, repr(sorted(self.keys.items()))))
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return (problem_of, (type(self).kind, self.keys))
+        return (_quietly, (type(self).kind, self.keys))
 
 
 def problem_of(kind: str, keys: dict[str, Any]) -> Problem:
@@ -155,7 +166,15 @@ def problem_of(kind: str, keys: dict[str, Any]) -> Problem:
         near = difflib.get_close_matches(kind, KINDS, 1)
         hint = f"`{near[0]}`? one of " if near else "one of "
         raise ArgumentError("kind", repr(kind), hint + ", ".join(KINDS))
-    made: Problem = KINDS[kind](**keys)
+    made = _quietly(kind, keys)
+    made._warn(3)
+    return made
+
+
+def _quietly(kind: str, keys: dict[str, Any]) -> Problem:
+    """The problem of a kind, whose warnings are known."""
+    made: Problem = object.__new__(KINDS[kind])
+    made._make(keys)
     return made
 
 

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Sequence
 from typing import Any
 
 from . import _lieflow
-from ._problems import Problem, problem_of
+from ._problems import Problem, _quietly
 from ._result import Layout, Result, warn_of_events
 
 __all__ = ["Scene", "load", "scenes"]
@@ -19,6 +20,8 @@ class Scene:
     def __init__(self, scene: str | os.PathLike[str], settings: Sequence[str] = ()) -> None:
         self._args = (os.fspath(scene), tuple(settings))
         self._scene = _lieflow.Scene(os.fspath(scene), list(settings))
+        for text in self._scene.warnings:
+            warnings.warn(text, UserWarning, stacklevel=3)
 
     @property
     def name(self) -> str:
@@ -38,7 +41,7 @@ class Scene:
     @property
     def problem(self) -> Problem:
         """The problem."""
-        return problem_of(self._scene.kind, self._scene.keys())
+        return _quietly(self._scene.kind, self._scene.keys())
 
     @property
     def method(self) -> str:

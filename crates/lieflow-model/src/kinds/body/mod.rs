@@ -11,7 +11,7 @@ use faer::Mat;
 use lieflow::Error;
 use lieflow::groups::{LieGroup, MEMBERSHIP, So3};
 use lieflow::problems::RigidBody;
-use lieflow::problems::inertia::{principal_axes, violates_triangle};
+use lieflow::problems::inertia::{impossible, principal_axes};
 use lieflow::so3::{quaternion_from_matrix, quaternion_from_wxyz};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
@@ -85,16 +85,7 @@ impl RigidBodySpec {
 
     /// The warning about moments of inertia that no body has.
     pub(super) fn impossible(&self) -> Vec<String> {
-        let largest = (0..3).fold(0, |k, i| if self.inertia[i] > self.inertia[k] { i } else { k });
-        let order = [[0, 1, 2], [1, 0, 2], [2, 0, 1]][largest];
-        let [a, b, c] = order.map(|i| (i + 1, self.inertia[i]));
-        let warning = |_| {
-            format!(
-                "inertia: J{} > J{} + J{} ({} > {} + {}): impossible for a real body",
-                a.0, b.0, c.0, a.1, b.1, c.1
-            )
-        };
-        violates_triangle(self.inertia).map(warning).into_iter().collect()
+        impossible(self.inertia).map(|why| format!("inertia: {why}")).into_iter().collect()
     }
 }
 
