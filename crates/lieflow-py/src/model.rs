@@ -343,8 +343,7 @@ impl Model {
         if let Some(refusal) = self.problem.check_start(t_span[0]).into_iter().next() {
             return Err(mistake(py, refusal));
         }
-        let steps = settings.steps(t_span, orders);
-        let steps = steps.map_err(|error| refused(py, "solve_ivp", &error))?;
+        let steps = settings.steps(py, t_span, orders, "solve_ivp")?;
         let start = start.map(|start| start.as_slice().map(<[f64]>::to_vec)).transpose()?;
         let (raised, shape) = (Arc::new(Raised::default()), [self.width()]);
         let state = match events.iter().any(|(.., change, _)| change.is_some()) {
@@ -415,8 +414,7 @@ impl Model {
         settings: Settings,
     ) -> PyResult<Stepper> {
         let (spec, orders) = self.method(py, method)?;
-        let steps = settings.steps(t_span, orders);
-        let steps = steps.map_err(|error| refused(py, "Integrator", &error))?;
+        let steps = settings.steps(py, t_span, orders, "Integrator")?;
         let start = start.as_ref().map(|start| start.as_slice()).transpose()?;
         let run = self.model.stepper(&spec, steps, start);
         Stepper::new(py, run, &[self.width()], (Arc::default(), false))

@@ -9,7 +9,7 @@ use lieflow::solve::Status;
 use lieflow::{Direction, RunError, SaveAt, Stats, StepControl, TimeGrid};
 use lieflow_model::kinds::own::OwnField;
 use lieflow_model::problem::{Orders, Steps};
-use lieflow_model::scene::tolerance;
+use lieflow_model::scene::{beside_fixed_steps, tolerance};
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -77,8 +77,30 @@ pub(crate) struct Settings {
 }
 
 impl Settings {
-    /// The steps. What is left out is that of a scene, for a method of this order.
-    pub(crate) fn steps(&self, t_span: [f64; 2], orders: Orders) -> Result<Steps, lieflow::Error> {
+    /// The steps. What is left out is that of a scene, for a method of this order; `function` is told of them.
+    pub(crate) fn steps(
+        &self,
+        py: Python<'_>,
+        t_span: [f64; 2],
+        orders: Orders,
+        function: &str,
+    ) -> PyResult<Steps> {
+        let fixed = [("dt", self.dt.is_some()), ("steps", self.steps.is_some())];
+        if let Some((key, _)) = fixed.into_iter().find(|(_, given)| *given) {
+            let limits = [
+                ("first_step", self.first_step.is_some()),
+                ("min_step", self.min_step.is_some()),
+                (LONGEST, self.max_step.is_some()),
+            ];
+            let tolerances = self.rtol.is_some() || self.atol.is_some();
+            if let Some((wrong, message)) = beside_fixed_steps(key, tolerances, &limits) {
+                return Err(argument(py, wrong, message, ""));
+            }
+        }
+        self.chosen(t_span, orders).map_err(|error| refused(py, function, &error))
+    }
+
+    fn chosen(&self, t_span: [f64; 2], orders: Orders) -> Result<Steps, lieflow::Error> {
         if let Some(dt) = self.dt {
             return Ok(Steps::Equal(TimeGrid::new(t_span, dt)?));
         }

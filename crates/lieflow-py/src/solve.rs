@@ -224,7 +224,7 @@ impl Ready {
         let refuse = |error: Error| refused(py, "fun", &error);
         let problem = space.problem(field, settings.linear).map_err(refuse)?;
         let (spec, orders) = fitting.method(py, method, |spec| problem.orders(spec))?;
-        let steps = settings.steps(t_span, orders).map_err(refuse)?;
+        let steps = settings.steps(py, t_span, orders, "fun")?;
         Ok(Ready { problem, spec, steps, attached })
     }
 }

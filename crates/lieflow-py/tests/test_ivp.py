@@ -439,6 +439,26 @@ def test_events_that_are_too_fast_are_a_warning():
     assert r.status == 1 and r.unsure_steps > 0
 
 
+@pytest.mark.parametrize(
+    ("steps", "argument", "words"),
+    [({"dt": 0.1, "rtol": 1e-6}, "dt",
+      "`dt` fixes the steps and `rtol`, `atol` leave them to the error: expected one of the two"),
+     ({"steps": 10, "atol": 1e-6}, "steps", "`steps` fixes the steps"),
+     ({"dt": 0.1, "max_step": 0.2}, "max_step",
+      "`max_step` is for steps chosen by error: give `rtol` or `atol` instead of `dt`"),
+     ({"steps": 10, "first_step": 0.2}, "first_step", "instead of `steps`"),
+     ({"rtol": 1e-30, "atol": 0.0}, "rtol", "expected at least"), ({"rtol": 1e-16, "atol": 0.0}, "rtol", "where atol is 0")],
+)
+def test_settings_that_exclude_each_other(steps, argument, words):
+    body = lf.RigidBody(inertia=[1, 2, 3], omega_body=[0.2, 0.0, 1.0])
+    field = lambda t, y: [0.0, 0.0, 1.0]  # noqa: E731
+    for run in (lambda: lf.solve_ivp(body, (0, 1), **steps), lambda: lf.Integrator(body, None, (0, 1), **steps),
+                lambda: lf.solve_ivp(field, (0, 1), np.eye(3), group="SO(3)", frame="space", **steps)):
+        with pytest.raises(lf.ArgumentError) as caught:
+            run()
+        assert caught.value.argument == argument and words in str(caught.value), str(caught.value)
+
+
 def test_a_span_without_an_end_says_what_ends_it():
     body = lf.RigidBody(inertia=[1, 2, 3], omega_body=[0.2, 0.0, 1.0])
     r = lf.solve_ivp(body, (0, np.inf), events=lf.Event("w1 - 100", terminal=1), max_steps=100)

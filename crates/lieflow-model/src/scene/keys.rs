@@ -259,6 +259,25 @@ impl Times {
     }
 }
 
+/// The mistake of settings beside `key`, which fixes the steps: its place and what is wrong. `tolerances` says that there
+/// are some, `limits` which limits of the step size are given.
+pub fn beside_fixed_steps<'a>(
+    key: &'a str,
+    tolerances: bool,
+    limits: &[(&'a str, bool)],
+) -> Option<(&'a str, String)> {
+    if tolerances {
+        let message = format!(
+            "`{key}` fixes the steps and `rtol`, `atol` leave them to the error: expected one of the two"
+        );
+        return Some((key, message));
+    }
+    let (limit, _) = *limits.iter().find(|(_, given)| *given)?;
+    let message =
+        format!("`{limit}` is for steps chosen by error: give `rtol` or `atol` instead of `{key}`");
+    Some((limit, message))
+}
+
 impl Limits {
     /// How steps are chosen by their error; none where they are of one size.
     fn chosen_by_error(&self, fixed: Option<&Fixed>) -> Result<Option<StepControl>, ReadError> {
@@ -267,27 +286,16 @@ impl Limits {
             Either::Second(_) => "steps",
         });
         if let Some(key) = fixed {
-            if self.rtol.is_some() || self.atol.is_some() {
-                let message = format!(
-                    "`{key}` fixes the steps and `rtol`, `atol` leave them to the error: expected \
-                     one of the two"
-                );
-                return Err(Refusal::at(key, message).into());
-            }
             let limits = [
                 ("h_init", self.h_init.is_some()),
                 ("h_min", self.h_min.is_some()),
                 ("h_max", self.h_max.is_some()),
                 ("tolerance", self.rule.is_some()),
             ];
-            return match limits.into_iter().find(|(_, given)| *given) {
+            let tolerances = self.rtol.is_some() || self.atol.is_some();
+            return match beside_fixed_steps(key, tolerances, &limits) {
                 None => Ok(None),
-                Some((limit, _)) => {
-                    let message = format!(
-                        "`{limit}` is for steps chosen by error: give `rtol` or `atol` instead of `{key}`"
-                    );
-                    Err(Refusal::at(limit, message).into())
-                }
+                Some((key, message)) => Err(Refusal::at(key, message).into()),
             };
         }
         let names = [("first_step", "h_init"), ("min_step", "h_min"), ("max_step", "h_max")];

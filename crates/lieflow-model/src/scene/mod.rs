@@ -21,6 +21,7 @@ pub use columns::{Columns, OnRows, RowFormula};
 pub use defaults::{Defaults, tolerance};
 pub use error::SceneError;
 pub use events::SceneEvent;
+pub use keys::beside_fixed_steps;
 pub use open::unknown_scene;
 pub use plot::PlotFigure;
 pub use run::Scene;

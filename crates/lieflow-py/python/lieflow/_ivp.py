@@ -356,7 +356,7 @@ def solve_ivp(
     first_step, min_step, max_step, max_steps : optional
         Limits of the adaptive step size.
     dt, steps : optional
-        Steps of one size, or so many. Then rtol and atol are not used.
+        Steps of one size, or so many. Then rtol, atol and the limits of the step size are refused.
     stops : array_like
         Times at which a step ends, where f or one of its derivatives jumps. Those of samples are added.
     args : tuple
