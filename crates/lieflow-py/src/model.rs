@@ -12,7 +12,7 @@ use lieflow_model::problem::{
 };
 use lieflow_model::reader::{ReadError, Shape, Tree};
 use lieflow_model::scene::{Columns, OnRows, RowFormula};
-use lieflow_model::schema::{Observable, Row, Schema, Units};
+use lieflow_model::schema::{Observable, Part, Row, Schema, Units};
 use numpy::{PyArray1, PyArrayDyn, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -196,12 +196,16 @@ impl Problem {
     }
 }
 
-/// A quantity of a row: its name, its columns, its shape, and whether the exact motion keeps it.
-type Quantity = (&'static str, Vec<String>, Vec<usize>, bool);
+/// A quantity of a row: its name, its columns, its shape, whether the exact motion keeps it, and the parts of its complex
+/// numbers.
+type Quantity = (&'static str, Vec<String>, Vec<usize>, bool, Vec<[Part; 2]>);
 
 /// The quantities of a row.
 pub(crate) fn schema_of(schema: &Schema) -> Vec<Quantity> {
-    let each = |o: &Observable| (o.name, o.columns.clone(), o.shape.clone(), o.law.is_some());
+    let each = |o: &Observable| {
+        let parts = o.numbers.parts(o.columns.len());
+        (o.name, o.columns.clone(), o.shape.clone(), o.law.is_some(), parts)
+    };
     schema.iter().map(each).collect()
 }
 
@@ -299,7 +303,7 @@ impl Model {
 
 #[pymethods]
 impl Model {
-    /// The quantities of a row: name, columns, shape, and whether the exact motion keeps it.
+    /// The quantities of a row.
     #[getter]
     fn schema(&self) -> Vec<Quantity> {
         schema_of(self.model.schema())

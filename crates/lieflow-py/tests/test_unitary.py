@@ -136,7 +136,10 @@ def test_rabi_flips_with_events_sol_and_a_change():
     right = np.stack([np.cos(omega * t / 2), -1j * np.sin(omega * t / 2)], axis=1)
     again = pickle.loads(pickle.dumps(r.sol))
     assert np.abs(r.sol(t) - right).max() < 1e-9 and np.array_equal(again(t), r.sol(t))
-    assert r.estimate_error().y < 1e-9 and r.to_dataframe().shape == (len(r.t), 2)
+    assert r.estimate_error().y < 1e-9
+    frame = r.to_dataframe()
+    assert list(frame.columns) == ["re1", "re2", "im1", "im2"]
+    assert np.array_equal(frame.to_numpy(), np.hstack([r.y.real, r.y.imag]))
     # A measurement: after the first flip the level is 1 again.
     seen = []
     change = lf.Event(half, change=lambda t, y: np.array([1.0, 0.0]), direction=1)
@@ -177,3 +180,92 @@ def test_wrong_values_of_f_are_named():
             lf.solve_ivp(lambda t, y: value, (0, 1), np.eye(3), group="U(3)", frame="space")
     r = lf.solve_ivp(lambda t, y: np.full((3, 3), np.nan), (0, 1), np.eye(3), group="U(3)", frame="space")
     assert r.status == -1
+
+
+TURN = np.array([[0.2j, -0.65j + 0.1], [-0.65j - 0.1, -0.3j]])
+STARTS = {"translation": np.array([[0, 1j], [1, 0]]), "linear": np.array([[0.6], [0.8j]]),
+          "conjugation": np.array([[0.5, 0.2j], [-0.2j, 0.3]])}
+
+
+@pytest.mark.parametrize("action", list(STARTS))
+def test_a_problem_by_name_is_the_field(action):
+    y0, tight = STARTS[action], {"rtol": 1e-11, "atol": 1e-11, "method": "rkmk dop853 exp"}
+    problem = lf.MatrixOde(group="U(2)", action=action, field=TURN, start=y0)
+    assert eval(repr(problem), {"lieflow": lf}) == problem == pickle.loads(pickle.dumps(problem))
+    frame = "space" if action == "translation" else None
+    g = lambda t, y: abs(y[0, 0]) ** 2 - 0.2  # noqa: E731
+    field = lf.solve_ivp(lambda t, y: TURN, (0, 4), y0, group="U(2)", action=action, frame=frame, events=g,
+                         dense_output=True, **tight)
+    named = lf.solve_ivp(problem, (0, 4), events=lambda t, y: g(t, y.point), dense_output=True, quantities="point", **tight)
+    assert named.point.dtype == np.complex128 and named.point.shape == (len(named.t), *y0.shape)
+    assert np.abs(named.y["point"][-1] - field.y_end).max() < 1e-11
+    assert len(field.t_events[0]) > 0 and np.abs(named.t_events[0] - field.t_events[0]).max() < 1e-10
+    assert np.abs(named.y_events[0].point - field.y_events[0]).max() < 1e-10
+    t = np.linspace(0, 4, 9)
+    again = pickle.loads(pickle.dumps(named))
+    assert np.abs(named.sol(t).point - field.sol(t)).max() < 1e-10
+    assert np.array_equal(again.sol(t).point, named.sol(t).point) and np.array_equal(again.point, named.point)
+    assert all(drift < 1e-13 for drift in named.drift.values()) and named.drift
+    assert named.estimate_error().y["point"] < 1e-8
+    frame = named.to_dataframe()
+    assert list(frame.columns) == list(problem.columns("point"))
+    flat = named.point.reshape(len(t := named.t), -1)
+    assert np.array_equal(frame.to_numpy(), np.hstack([flat.real, flat.imag]))
+    # Another start by its complex array: of a run, of an integrator, after an event.
+    other = 1j * y0 if action != "conjugation" else y0.conj()
+    right = lf.solve_ivp(problem.replace(start=other), (0, 4), t_eval=[4.0], **tight).point
+    assert np.array_equal(lf.solve_ivp(problem, (0, 4), other, t_eval=[4.0], **tight).point, right)
+    run = lf.Integrator(problem, tight["method"], (0, 4), other, rtol=1e-11, atol=1e-11)
+    run.advance_to(4.0)
+    assert np.abs(run.y.point - right[0]).max() < 1e-9
+    seen = []
+    set_other = lf.Event(lambda t, y: t - 1.0, change=lambda t, y: seen.append(y) or other)
+    moved = lf.solve_ivp(problem, (0, 5), events=set_other, t_eval=[1.0, 5.0], **tight)
+    assert np.abs(seen[0] - field.sol(1.0)).max() < 1e-10 and np.abs(moved.point[-1] - right[0]).max() < 1e-9
+
+
+def test_states_of_quantum_systems_and_fluids_are_complex():
+    h = np.array([[0.3, 0.4 - 0.2j, 0.1j], [0.4 + 0.2j, -0.5, 0.2], [-0.1j, 0.2, 1.0]])
+    psi = np.array([0.6, 0.8j, 0.0])
+    move = scipy.linalg.expm(-2j * h)
+    state = lf.Schrodinger(hamiltonian=h, amplitudes=psi)
+    r = lf.solve_ivp(state, (0, 2), t_eval=[0, 2])
+    assert r.amplitudes.shape == (2, 3) and np.abs(r.amplitudes - [psi, move @ psi]).max() < 1e-10
+    assert np.abs(lf.solve_ivp(state, (0, 2), psi.conj(), t_eval=[2]).amplitudes - move @ psi.conj()).max() < 1e-10
+    rho = np.outer(psi, psi.conj()) * 0.5 + np.diag([0.1, 0.1, 0.3])
+    for keys in ({"density": rho}, {"amplitudes": psi}):
+        start = rho if "density" in keys else np.outer(psi, psi.conj())
+        mixed = lf.DensityMatrix(hamiltonian=h, **keys)
+        r = lf.solve_ivp(mixed, (0, 2), t_eval=[0, 2])
+        assert r.density.shape == (2, 3, 3)
+        assert np.abs(r.density - [start, move @ start @ move.conj().T]).max() < 1e-10
+    other = move @ rho @ move.conj().T
+    assert np.abs(lf.solve_ivp(mixed, (0, 2), other, t_eval=[0]).density - other).max() < 1e-14
+    fluid = lf.Fluid(surface="sphere", n=6, random={"seed": 1, "below": 4})
+    r = lf.solve_ivp(fluid, (0, 1), t_eval=[0, 1], quantities=["matrix", "levels"])
+    w = r.matrix
+    assert w.shape == (2, 6, 6) and np.abs(w).max() > 0.1 and np.array_equal(w, -w.conj().swapaxes(1, 2))
+    assert np.abs(w[0] - w[1]).max() > 1e-3
+    assert np.abs(np.diff(np.linalg.eigvalsh(-1j * w), axis=0)).max() < 1e-12
+    assert np.array_equal(lf.solve_ivp(fluid, (0, 1), w[1], t_eval=[0], quantities="matrix").matrix[0], w[1])
+    seen = []
+    turned = lf.Event(lambda t, y: t - 0.5, change=lambda t, state: seen.append(state) or state.conj().T)
+    r = lf.solve_ivp(fluid, (0, 1), events=turned, t_eval=[0.5, 1], quantities="matrix")
+    assert np.array_equal(seen[0], r.y_events[0].matrix[0])
+    back = lf.solve_ivp(fluid, (0.5, 1), -seen[0], t_eval=[1], quantities="matrix")
+    assert np.abs(r.matrix[-1] - back.matrix[0]).max() < 1e-11
+
+
+@pytest.mark.parametrize(
+    ("wrong", "argument"),
+    [(lambda p: lf.solve_ivp(p, (0, 1), np.eye(3) + 0j), "y0"), (lambda p: p.replace(start=2 * np.eye(2)), "start"),
+     (lambda p: p.replace(start=2j * np.eye(2)), "start"), (lambda p: lf.solve_ivp(p, (0, 1), 2j * np.eye(2)), "y0"),
+     (lambda p: lf.solve_ivp(p.replace(field=[[1, 0], [0, 0]]), (0, 1)), "field[0, 0]"),
+     (lambda p: lf.solve_ivp(lambda t, y: TURN, (0, 1), 2 * np.eye(2), group="U(2)", frame="space"), "y0"),
+     (lambda p: lf.solve_ivp(lambda t, y: np.eye(2), (0, 1), np.eye(2), group="U(2)", frame="space"), "f"),
+     (lambda p: lf.MatrixOde(group="U(2)", field=TURN, start=1j * np.eye(2), start_imaginary=np.eye(2)), "start_imaginary")],
+)
+def test_messages_name_u_n(wrong, argument):
+    with pytest.raises(lf.ArgumentError) as caught:
+        wrong(lf.MatrixOde(group="U(2)", field=TURN))
+    assert caught.value.argument == argument and "SO(4)" not in str(caught.value), str(caught.value)

@@ -137,6 +137,11 @@ impl MatrixGroup {
         Self::new(n, Form::Bilinear { m, inverse }, format!("G_M({n})"))
     }
 
+    /// The group under another name in messages. U(n) as the matrices \[X −Y; Y X\] of SO(2n) is an example.
+    pub fn with_name(self, name: impl Into<String>) -> Self {
+        MatrixGroup { name: name.into(), ..self }
+    }
+
     /// The n of n×n.
     pub fn n(&self) -> usize {
         self.n

@@ -126,7 +126,8 @@ impl Algebra {
                 return Err(Refusal::at(key, message));
             }
             Algebra::Sp => MatrixGroup::sp(n),
-            Algebra::U | Algebra::Su => MatrixGroup::so(n.saturating_mul(2)),
+            Algebra::U | Algebra::Su => MatrixGroup::so(n.saturating_mul(2))
+                .map(|group| group.with_name(self.name(n).to_uppercase())),
         };
         group.map_err(|error: Error| Refusal::from(error).about(key))
     }

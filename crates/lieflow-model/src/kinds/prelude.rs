@@ -12,4 +12,4 @@ pub(super) use crate::reader::{
     Either, Key, KeyPath, Read, ReadError, Refusal, all, at_most_one, exactly_one, help_for,
     read_by_keys, read_with, seen,
 };
-pub(super) use crate::schema::{Dimension, Law, Scale};
+pub(super) use crate::schema::{Dimension, Law, Numbers, Scale};

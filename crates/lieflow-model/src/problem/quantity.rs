@@ -5,7 +5,7 @@ use lieflow::problems::Invariants;
 
 use super::kind::QuantityInfo;
 use super::system::{PointOf, System};
-use crate::schema::{Branch, Component, Dimension, Law, Measure, Scale};
+use crate::schema::{Branch, Component, Dimension, Law, Measure, Numbers, Scale};
 
 /// The columns x11, …, xnk, row by row.
 pub(crate) fn row_columns(letter: &str, n: usize, k: usize) -> Vec<String> {
@@ -73,6 +73,8 @@ pub(crate) struct Quantity<S: System> {
     columns: Columns<S>,
     /// Its parts. None: one part, whose error is a length.
     pub(crate) parts: Option<fn(&S) -> Vec<Component>>,
+    /// The numbers whose parts the columns are.
+    pub(crate) numbers: fn(&S) -> Numbers,
     /// The choice that makes the columns of a run continuous.
     pub(crate) branch: fn(&S) -> Branch,
     law: Keepers<S>,
@@ -96,6 +98,7 @@ impl<S: System> Quantity<S> {
             value,
             columns: Columns::Listed,
             parts: None,
+            numbers: |_| Numbers::Real,
             branch: |_| Branch::Single,
             law: Keepers::None,
             terms: None,
@@ -156,6 +159,11 @@ impl<S: System> Quantity<S> {
         matrices: fn(&S) -> (&'static [&'static str], [usize; 2]),
     ) -> Self {
         Quantity { columns: Columns::Matrices(matrices), ..self }
+    }
+
+    /// The columns are the parts of such numbers.
+    pub(crate) const fn of_numbers(self, numbers: fn(&S) -> Numbers) -> Self {
+        Quantity { numbers, ..self }
     }
 
     /// The columns are the entries of a rotation: its error is an angle.
@@ -230,14 +238,11 @@ impl<S: System> Quantity<S> {
         }
     }
 
-    /// The rows and columns of a quantity that is a matrix.
+    /// The rows and columns of a quantity that is a matrix, or has the parts of one.
     pub(crate) fn matrix(&self, system: &S) -> Option<[usize; 2]> {
         match self.columns {
             Columns::Matrix(_, size) => Some(size(system)),
-            Columns::Matrices(matrices) => match matrices(system) {
-                ([_], size) => Some(size),
-                _ => None,
-            },
+            Columns::Matrices(matrices) => Some(matrices(system).1),
             _ => None,
         }
     }

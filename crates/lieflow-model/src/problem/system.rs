@@ -197,9 +197,7 @@ impl<S: System> Run for On<S> {
         if let Some(parts) = quantity.parts {
             schema.set_parts(parts(system));
         }
-        if let Some(size) = quantity.matrix(system) {
-            schema.set_matrix(size);
-        }
+        schema.set_numbers((quantity.numbers)(system), quantity.matrix(system));
         schema.set_branch((quantity.branch)(system));
     }
     fn modelled(&self) -> String {

@@ -48,6 +48,59 @@ impl Measure {
     }
 }
 
+/// The numbers whose parts the columns of a quantity are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Numbers {
+    /// Real numbers: a column for each.
+    #[default]
+    Real,
+    /// Complex numbers: all real parts, then all imaginary parts.
+    Complex,
+    /// The entries of a Hermitian matrix: the real parts on and above the diagonal, row by row, then the imaginary
+    /// parts above it.
+    Hermitian,
+    /// The entries of a skew-Hermitian matrix on and below the diagonal, column by column: the imaginary part of that
+    /// on the diagonal, the real and the imaginary part of each below it.
+    SkewHermitian,
+}
+
+/// A part of a complex number: the number of a column, and the factor of its value, which may be 0.
+pub type Part = (usize, f64);
+
+impl Numbers {
+    /// The parts of each complex number that so many columns state, by rows: the real one and the imaginary one. None
+    /// for real numbers.
+    pub fn parts(self, columns: usize) -> Vec<[Part; 2]> {
+        let n = columns.isqrt();
+        let entry = |i: usize, j: usize| {
+            // The entry of the triangle that is stated, and the sign of the part that is opposite on the other side.
+            let (low, high, sign) = (i.min(j), i.max(j), if i <= j { 1.0 } else { -1.0 });
+            let beside = if i == j { 0.0 } else { sign };
+            let before = low * n - low * (low + 1) / 2;
+            match self {
+                Numbers::SkewHermitian if i == j => [(0, 0.0), (low * (2 * n - low), 1.0)],
+                Numbers::SkewHermitian => {
+                    let real = low * (2 * n - low) + 2 * (high - low) - 1;
+                    [(real, -sign), (real + 1, 1.0)]
+                }
+                _ => {
+                    let imaginary = n * (n + 1) / 2 + before + (high - low).saturating_sub(1);
+                    [(before + high, 1.0), (if i == j { 0 } else { imaginary }, beside)]
+                }
+            }
+        };
+        match self {
+            Numbers::Real => Vec::new(),
+            Numbers::Complex => {
+                (0..columns / 2).map(|i| [(i, 1.0), (columns / 2 + i, 1.0)]).collect()
+            }
+            Numbers::Hermitian | Numbers::SkewHermitian => {
+                (0..n * n).map(|k| entry(k / n, k % n)).collect()
+            }
+        }
+    }
+}
+
 /// Columns of a quantity that belong together.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Component {
@@ -78,6 +131,8 @@ pub struct Observable {
     pub branch: Branch,
     /// The shape of its values as an array, rows first; none of a number.
     pub shape: Vec<usize>,
+    /// The numbers in that array.
+    pub numbers: Numbers,
     place: Range<usize>,
     /// The place of the size of its terms, where its rounding is relative to that.
     size: Option<usize>,
@@ -141,8 +196,9 @@ impl Schema {
             vec![Component { name: String::new(), what: "", columns: 0..columns.len(), measure }];
         let branch = Branch::Single;
         let shape = if columns.len() == 1 { Vec::new() } else { vec![columns.len()] };
+        let numbers = Numbers::Real;
         let observable =
-            Observable { name, columns, law, is_state, parts, branch, shape, place, size };
+            Observable { name, columns, law, is_state, parts, branch, shape, numbers, place, size };
         self.observables.push(observable);
     }
 
@@ -158,10 +214,19 @@ impl Schema {
         }
     }
 
-    /// Make the last observable a matrix of this size, row by row.
-    pub(crate) fn set_matrix(&mut self, size: [usize; 2]) {
+    /// Make the last observable an array of such numbers; without a size a list of complex numbers, or a square matrix.
+    pub(crate) fn set_numbers(&mut self, numbers: Numbers, size: Option<[usize; 2]>) {
         if let Some(observable) = self.observables.last_mut() {
-            observable.shape = size.into();
+            let columns = observable.columns.len();
+            let shape = match numbers {
+                Numbers::Real => None,
+                Numbers::Complex => Some(vec![columns / 2]),
+                Numbers::Hermitian | Numbers::SkewHermitian => Some(vec![columns.isqrt(); 2]),
+            };
+            observable.numbers = numbers;
+            if let Some(shape) = size.map(Vec::from).or(shape) {
+                observable.shape = shape;
+            }
         }
     }
 

@@ -18,10 +18,10 @@ __all__ = ["CFunction", "Field", "Parts", "Quantities", "Samples"]
 Array = NDArray[np.float64]
 
 
-class Quantities(dict[str, Array]):
+class Quantities(dict[str, NDArray[Any]]):
     """Arrays by name, which are attributes, too: ``y["attitude"]`` is ``y.attitude``."""
 
-    def __getattr__(self, name: str) -> Array:
+    def __getattr__(self, name: str) -> NDArray[Any]:
         try:
             return self[name]
         except KeyError:
@@ -30,7 +30,7 @@ class Quantities(dict[str, Array]):
     def __dir__(self) -> list[str]:
         return [*super().__dir__(), *self]
 
-    def __reduce__(self) -> tuple[type[Quantities], tuple[dict[str, Array]]]:
+    def __reduce__(self) -> tuple[type[Quantities], tuple[dict[str, NDArray[Any]]]]:
         return (Quantities, (dict(self),))
 
 

@@ -32,7 +32,7 @@ class Integrator:
     t_span : (float, float)
         From when to when; the end may be infinite.
     y0 : array_like, optional
-        The start; of a problem the numbers of another state.
+        The start; of a problem the numbers of another state, or the complex array of one that is complex.
     **options
         rtol, atol, first_step, min_step, max_step, dt, steps, args, group, action, frame, linear, and for a problem
         quantities, as in :func:`lieflow.solve_ivp`.
@@ -76,7 +76,7 @@ class Integrator:
         self._join: Parts | ComplexPoints | None = None
         if isinstance(problem, Problem):
             asked = problem.asked(quantities)
-            start = None if y0 is None else real("y0", y0)
+            start = problem._start(y0)
             model = problem._model(asked)
             self._split = problem._layout(asked).split
             self._run = model.stepper(method or problem.method, span, start, settings)

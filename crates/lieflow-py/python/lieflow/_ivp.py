@@ -15,7 +15,7 @@ from ._fields import CFunction, Field, Parts, Quantities, Samples, address
 from ._groups import Group
 from ._problems import Problem
 from ._result import Layout, OdeSolution, Result, warn_of_events
-from ._unitary import ComplexPoints, Unitary, is_unitary_name
+from ._unitary import ComplexPoints, ComplexState, Unitary, is_unitary_name
 
 __all__ = ["Event", "solve_ivp"]
 
@@ -41,7 +41,7 @@ class Event:
         Only rising zeros for a positive number, only falling ones for a negative number.
     change : callable, optional
         change(t, y, *args) returns the new y. The run goes on from it. It must be on M. Of a problem y is the array of the
-        numbers of its state, in the order of :attr:`lieflow.Integrator.state`.
+        numbers of its state, in the order of :attr:`lieflow.Integrator.state`; a complex state is a complex array.
     points : int, optional
         At how many points of each step g is evaluated. The default depends on g.
     name : str, optional
@@ -338,7 +338,7 @@ def solve_ivp(
         From when to when, forward or backward.
     y0 : array_like
         The start. It must be on M to 1e-6. Of Parts it is a dict. A problem has its own; here are then the numbers of
-        another state, in the order of :attr:`lieflow.Integrator.state`.
+        another state, in the order of :attr:`lieflow.Integrator.state`, or the complex array of one that is complex.
     method : str, optional
         A method of lieflow with its tableau and its map. The default is "rkmk dop853 exp"; of a problem its
         own, where ``dense_output`` can keep the points within its steps.
@@ -483,15 +483,13 @@ def _of_problem(
             g, number = number, number + 1
         else:
             g = _of_rows(g, layout, args)
-        change = event.change
-        if change is not None and args:
-            change = _with_args(change, args)
+        change = None if event.change is None else _of_state(event.change, problem._complex_state(), args, i)
         parts.append((g, f"events[{i}] ({event.name})", event.direction, event.terminal, change, event.points))
     told = None if callback is None else _of_rows(callback, layout, ())
     knots = problem._problem.knots(span)
     if knots:
         settings = {**settings, "stops": sorted({*settings["stops"], *knots})}
-    start = None if y0 is None else real("y0", y0)
+    start = problem._start(y0)
     found = model.solve(method, span, start, settings, times, parts, told)
     warn_of_events(found, 3)
     curve, lost, rows = found.pop("curve"), found.pop("lost"), found["y"]
@@ -534,8 +532,14 @@ def _of_rows(g: Callable[..., Any], layout: Layout, args: tuple[Any, ...]) -> Ca
     return of_row
 
 
-def _with_args(change: Callable[..., Any], args: tuple[Any, ...]) -> Callable[..., Any]:
-    def of_state(t: float, state: Array) -> Any:
-        return change(t, state, *args)
+def _of_state(
+    change: Callable[..., Any], form: ComplexState | None, args: tuple[Any, ...], i: int
+) -> Callable[..., Any]:
+    """A change of the state, which may be complex, as one of its numbers."""
 
-    return of_state
+    def of_numbers(t: float, numbers: Array) -> Any:
+        if form is None:
+            return change(t, numbers, *args)
+        return form.join(f"change of events[{i}] at t = {t}", change(t, form.split(numbers), *args))
+
+    return of_numbers

@@ -16,7 +16,8 @@ from ._arrays import real
 from ._errors import ArgumentError
 from ._fields import Quantities, Samples
 from ._result import Layout
-from ._values import plain
+from ._unitary import ComplexState, complex_numbers
+from ._values import is_complex, part, plain
 
 Array = NDArray[np.float64]
 
@@ -28,7 +29,8 @@ class Problem:
     """A problem of one kind, such as :class:`lieflow.RigidBody`: its equation, its parameters and its start.
 
     The keys are those of scene files. Values are numbers, lists, arrays, texts, dicts (``let``, ``parameters``), SciPy's
-    Rotation, and :class:`lieflow.Samples` for ``samples``.
+    Rotation, and :class:`lieflow.Samples` for ``samples``. Where a kind has the keys ``x`` and ``x_imaginary``, complex
+    numbers for ``x`` are both.
     """
 
     #: The name of the kind in scene files.
@@ -59,12 +61,27 @@ class Problem:
             keys.setdefault("interpolation", samples.interpolation)
         elif isinstance(samples, (str, pathlib.Path)):
             keys["samples"] = [str(samples), pathlib.Path(samples).read_text()]
+        keys = type(self)._in_parts(keys)
         self.keys = {name: plain(name, value) for name, value in keys.items()}
         self._problem = _lieflow.Problem(type(self).kind, self.keys)
         self._models: dict[Any, tuple[_lieflow.Model, Layout]] = {}
+        self._complex: tuple[ComplexState | None] | None = None
+
+    @classmethod
+    def _in_parts(cls, keys: dict[str, Any]) -> dict[str, Any]:
+        """The keys, where one of complex numbers is two: ``start`` and ``start_imaginary``."""
+        names = {name for name, *_ in cls.key_table}
+        both = {name: f"{name}_imaginary" for name in keys if f"{name}_imaginary" in names and is_complex(keys[name])}
+        for name, imaginary in both.items():
+            if imaginary in keys:
+                raise ArgumentError(imaginary, repr(keys[imaginary]), f"none: {name} has complex numbers")
+        real = {name: part(x, "real") if name in both else x for name, x in keys.items()}
+        return {**real, **{imaginary: part(keys[name], "imag") for name, imaginary in both.items()}}
 
     def replace(self, **keys: Any) -> Any:
         """Return the problem with other values of these keys. None takes a key away."""
+        for name in [name for name in keys if is_complex(keys[name])]:
+            keys.setdefault(f"{name}_imaginary", None)
         changed = _quietly(type(self).kind, {**self.keys, **keys})
         changed._warn(3)
         return changed
@@ -143,6 +160,29 @@ class Problem:
 
     def _layout(self, asked: tuple[str, ...], events: tuple[tuple[str, str], ...] = ()) -> Layout:
         return self._both(asked, events)[1]
+
+    def _complex_state(self) -> ComplexState | None:
+        """The complex array of the state, if it is complex."""
+        if self._complex is None:
+            names = self._problem.state(list(self.quantities))
+            model = self._problem.model(names, None, [])
+            (_, _, shape, _, parts), *others = model.schema
+            is_real = others or not parts
+            size = 0 if is_real else len(model.start(self.method))
+            self._complex = (None if is_real else ComplexState(tuple(shape), size, type(self).kind == "fluid"),)
+        return self._complex[0]
+
+    def _start(self, y0: Any) -> Array | None:
+        """The numbers of another state: these, or a complex array."""
+        if y0 is None:
+            return None
+        state = self._complex_state()
+        if state is None:
+            return real("y0", y0)
+        z = complex_numbers("y0", y0)
+        if z.shape == (state.size,) and not z.imag.any():
+            return np.ascontiguousarray(z.real)
+        return state.join("y0", z)
 
     def __repr__(self) -> str:
         keys = ", ".join(f"{name}={value!r}" for name, value in self.keys.items())

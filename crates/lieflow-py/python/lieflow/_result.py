@@ -29,31 +29,43 @@ def warn_of_events(found: dict[str, Any], stacklevel: int) -> None:
 class Layout:
     """How the numbers of a row are arrays by name."""
 
-    __slots__ = ("asked", "schema")
+    __slots__ = ("_complex", "asked", "schema")
 
-    def __init__(self, schema: list[tuple[str, list[str], list[int], bool]], asked: tuple[str, ...]) -> None:
+    def __init__(self, schema: list[Any], asked: tuple[str, ...]) -> None:
         self.schema, self.asked = schema, asked
+        # Of complex numbers: the columns of their real and imaginary parts, and the factors of these.
+        self._complex = {name: np.array(parts).T for name, _, _, _, parts in schema if parts}
 
     def split(self, rows: Array, every: bool = False) -> Quantities:
         """Return the arrays of rows, shape (..., n), by the names of quantities: those asked for, or all."""
         out, start = {}, 0
-        for name, columns, shape, _ in self.schema:
+        for name, columns, shape, _, _ in self.schema:
             end = start + len(columns)
             if every or name in self.asked:
-                out[name] = rows[..., start:end].reshape(rows.shape[:-1] + tuple(shape))
+                numbers: Any = rows[..., start:end]
+                if name in self._complex:
+                    places, factors = self._complex[name]
+                    re, im = np.moveaxis(numbers[..., places.astype(int)] * factors, -2, 0)
+                    numbers = re + 1j * im
+                out[name] = numbers.reshape(rows.shape[:-1] + tuple(shape))
             start = end
         return Quantities({name: out[name] for name in (out if every else self.asked)})
 
     def columns(self) -> list[str]:
-        """Return the names of the columns of what was asked for."""
-        return [column for name, columns, _, _ in self.schema if name in self.asked for column in columns]
+        """Return the names of the columns of what was asked for, in the order of rows."""
+        return [column for name, columns, *_ in self.schema if name in self.asked for column in columns]
+
+    def numbers(self, rows: Array) -> Array:
+        """Return these columns of rows."""
+        asked = [name in self.asked for name, columns, *_ in self.schema for _ in columns]
+        return rows[..., np.array(asked, dtype=bool)]
 
     def drift(self, rows: Array) -> dict[str, float]:
         """Return the largest |value − value at the start| of what the exact motion keeps."""
         if len(rows) == 0:
             return {}
         every = self.split(rows, every=True)
-        kept = [name for name, _, _, is_kept in self.schema if is_kept]
+        kept = [name for name, _, _, is_kept, _ in self.schema if is_kept]
         return {name: float(np.abs(every[name] - every[name][0]).max(initial=0.0)) for name in kept}
 
 
@@ -247,17 +259,25 @@ class Result:
         raise ArgumentError("y", f"shape {y.shape}", "rotations (k, 3, 3) or unit quaternions (k, 4)")
 
     def to_dataframe(self) -> Any:
-        """Return a pandas DataFrame: the index is t, the columns are the numbers of y by rows."""
+        """Return a pandas DataFrame: the index is t, the columns are the numbers of y by rows.
+
+        A complex number has two columns: all real parts are there first, then the imaginary parts.
+        """
         import pandas  # type: ignore[import-untyped, import-not-found, unused-ignore]
 
-        if isinstance(self.y, Quantities):
-            layout = self.__dict__["_layout"]
+        layout = self.__dict__["_layout"]
+        if isinstance(layout, Layout):
+            names, rows = layout.columns(), layout.numbers(self.__dict__["_rows"])
+        elif isinstance(self.y, Quantities):
             names = layout.columns()
-            rows = np.column_stack([self.y[name].reshape(len(self.t), -1) for name in _in_order(layout)])
+            rows = np.column_stack([self.y[name].reshape(len(self.t), -1) for name in layout._places])
         else:
-            places = np.ndindex(*self.y.shape[1:])
-            names = ["y" + "".join(str(i + 1) for i in place) for place in places]
-            rows = self.y.reshape(len(self.t), -1)
+            numbers = self.y.reshape(len(self.t), -1)
+            is_complex = np.iscomplexobj(numbers)
+            letters = ["re", "im"] if is_complex else ["y"]
+            places = ["".join(str(i + 1) for i in place) for place in np.ndindex(*self.y.shape[1:])]
+            names = [letter + place for letter in letters for place in places]
+            rows = np.hstack([numbers.real, numbers.imag]) if is_complex else numbers
         return pandas.DataFrame(rows, index=pandas.Index(self.t, name="t"), columns=names)
 
     def estimate_error(self) -> ErrorEstimate:
@@ -290,9 +310,3 @@ class Result:
             shape = f"{len(self.t)} points of shape {self.y.shape[1:]}"
         return f"<lieflow.Result: {shape}, status {self.status}, {self.nsteps} steps, {self.message}>"
 
-
-def _in_order(layout: Any) -> list[str]:
-    """The names in the order of the columns."""
-    if isinstance(layout, Parts):
-        return list(layout._places)
-    return [name for name, *_ in layout.schema if name in layout.asked]

@@ -63,6 +63,40 @@ class ComplexPoints:
         return array.view(np.float64).reshape(*array.shape, 2)
 
 
+class ComplexState:
+    """The complex array of a state of a problem, from the real numbers that a run integrates, and back.
+
+    These are, column by column, a skew-Hermitian matrix as its real and then its imaginary part; [X; Y] of X + iY; or
+    [X −Y; Y X].
+    """
+
+    __slots__ = ("by_parts", "shape", "size")
+
+    def __init__(self, shape: tuple[int, ...], size: int, by_parts: bool) -> None:
+        self.shape, self.size, self.by_parts = shape, size, by_parts
+
+    def split(self, numbers: NDArray[np.float64]) -> Complex:
+        """Return the complex array of the real numbers."""
+        rows = self.shape[0]
+        if self.by_parts:
+            x, y = numbers.reshape(2, *self.shape[::-1]).swapaxes(1, 2)
+        else:
+            both = numbers.reshape(-1, 2 * rows).T[:, : int(np.prod(self.shape[1:]))]
+            x, y = both[:rows].reshape(self.shape), both[rows:].reshape(self.shape)
+        return np.asarray(x + 1j * y)
+
+    def join(self, name: str, x: Any) -> NDArray[np.float64]:
+        """Return the real numbers of a complex array."""
+        z = complex_numbers(name, x)
+        if z.shape != self.shape:
+            raise ArgumentError(name, f"shape {z.shape}", f"shape {self.shape}")
+        if self.by_parts:
+            return np.concatenate([z.real.ravel("F"), z.imag.ravel("F")])
+        if self.size == 4 * z.size:
+            return _on_both_sides(z).ravel("F")
+        return np.concatenate([z.real, z.imag]).ravel("F")
+
+
 def _on_both_sides(x: Complex) -> NDArray[np.float64]:
     """[X −Y; Y X] of X + iY."""
     return np.concatenate(

@@ -9,7 +9,23 @@ import numpy as np
 
 from ._fields import Samples
 
-__all__ = ["plain"]
+__all__ = ["is_complex", "part", "plain"]
+
+
+def is_complex(x: Any) -> bool:
+    """Is x a complex number, or are some in it?"""
+    if isinstance(x, (list, tuple)):
+        return any(is_complex(entry) for entry in x)
+    return isinstance(x, complex) or isinstance(x, (np.ndarray, np.generic)) and x.dtype.kind == "c"
+
+
+def part(x: Any, name: str) -> Any:
+    """Return the part ``"real"`` or ``"imag"`` of the numbers in x. A text is a real formula."""
+    if isinstance(x, (list, tuple)):
+        return [part(entry, name) for entry in x]
+    if isinstance(x, str):
+        return x if name == "real" else 0.0
+    return getattr(x, name)
 
 
 def plain(name: str, x: Any) -> Any:

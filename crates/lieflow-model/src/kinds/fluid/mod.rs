@@ -100,7 +100,8 @@ impl System for Fluid {
                 false => ["re", "im"].map(|part| format!("{part}{}_{}", i + 1, j + 1)).into(),
             };
             below(fluid.fluid.n()).flat_map(entry).collect()
-        }),
+        })
+        .of_numbers(|_| Numbers::SkewHermitian),
         Q::numbers(
             "coefficients",
             &["w1", "…", "wNN"],

@@ -56,6 +56,10 @@ impl Equation {
     fn parts(&self) -> usize {
         if self.algebra.is_complex() { 2 } else { 1 }
     }
+    /// The numbers of the point.
+    fn numbers(&self) -> Numbers {
+        if self.algebra.is_complex() { Numbers::Complex } else { Numbers::Real }
+    }
     /// The rows and the columns of the point, which may be complex.
     fn shape(&self) -> [usize; 2] {
         let columns = match self.action {
@@ -163,14 +167,16 @@ impl System for Equation {
         Q::numbers("point", &["y11", "…", "ynk"], "the point, row by row; re11, …, im11, … of a complex one", |equation, _, y, row| {
             row.extend(equation.entries(y));
         })
-        .of_matrices(|equation| (letters(equation.algebra), equation.shape())),
+        .of_matrices(|equation| (letters(equation.algebra), equation.shape()))
+        .of_numbers(Equation::numbers),
         Q::numbers(
             "column",
             &["y11", "…", "yn1"],
             "the first column of the point: where the first direction goes",
             |_, _, y, row| row.extend(y.col_as_slice(0)),
         )
-        .with_columns(|equation| equation.names_of(equation.shape()[0], 1)),
+        .with_columns(|equation| equation.names_of(equation.shape()[0], 1))
+        .of_numbers(Equation::numbers),
         Q::number(
             "group_defect",
             "distance of y'My from M, for translation on so, sp, so(p,q), u and su",
@@ -210,6 +216,7 @@ impl System for Equation {
             let letters = &["tr", "ti"][..equation.parts()];
             letters.iter().flat_map(|letter| numbered(letter, equation.n())).collect()
         })
+        .of_numbers(Equation::numbers)
         .kept(Law::by_the_action(0))
         .in_terms(|_, y| size_of_traces(y))
         .missing_where(|equation| {
@@ -263,11 +270,8 @@ impl System for Equation {
         let [rows, columns] = self.shape();
         let action = ACTIONS.iter().find(|(_, action)| *action == self.action);
         let name = action.map_or("", |(name, _)| name);
-        let (complex, group) = match self.algebra.is_complex() {
-            true => ("complex ", self.algebra.name(self.n()).to_uppercase()),
-            false => ("", self.group.name()),
-        };
-        format!("{complex}{rows}×{columns} matrix, {group} by {name}")
+        let complex = if self.algebra.is_complex() { "complex " } else { "" };
+        format!("{complex}{rows}×{columns} matrix, {} by {name}", self.group.name())
     }
     fn figure(&self) -> Figure {
         match self.action {

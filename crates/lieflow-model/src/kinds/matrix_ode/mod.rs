@@ -236,7 +236,7 @@ fn start(
             let moved = largest_entry((&near - &start).as_ref());
             notes.push(format!(
                 "start: it is replaced by an element of {} nearby, which moves its entries by up to {moved:.1e}",
-                if algebra.is_complex() { algebra.name(n).to_uppercase() } else { group.name() }
+                group.name()
             ));
             start = near;
         }

@@ -92,7 +92,8 @@ impl System for Mixture {
             let n = mixture.hamiltonian.n;
             let above = above_diagonal(n).map(|(i, j)| format!("im{}{}", i + 1, j + 1));
             upper_columns("re", n).into_iter().chain(above).collect()
-        }),
+        })
+        .of_numbers(|_| Numbers::Hermitian),
         Q::numbers(
             "populations",
             &["p1", "…", "pn"],

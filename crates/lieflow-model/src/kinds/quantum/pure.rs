@@ -56,7 +56,8 @@ impl System for Levels {
         )
         .with_columns(|levels| {
             ["re", "im"].map(|part| numbered(part, levels.hamiltonian.n)).concat()
-        }),
+        })
+        .of_numbers(|_| Numbers::Complex),
         Q::numbers(
             "populations",
             &["p1", "…", "pn"],
