@@ -85,12 +85,14 @@ impl Scene {
             };
             let mut watcher = OfModel { callback: None, raised: &raised, seen: &mut seen };
             let done = model.drive(&self.0.method, plan, &mut watcher);
-            let lost = done.as_ref().err().and_then(|error| self.0.lost(error));
+            let lost = done.as_ref().err().and_then(|error| self.0.lost_in_words(error));
             (done.map(|outcome| outcome.status), lost)
         });
         let width = model.schema().columns().count();
         let result = seen.into_dict(py, &raised, status, (&[width], "h_max"))?;
-        result.set_item("lost", lost.map(|lost| lost.to_string()))?;
+        if let Some(lost) = lost {
+            result.set_item("message", lost)?;
+        }
         Ok((schema_of(model.schema()).into_pyobject(py)?.into_any(), result))
     }
 }

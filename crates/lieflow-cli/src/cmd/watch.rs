@@ -142,11 +142,10 @@ impl<'a> Watch<'a> {
             }),
             Err(RunError::Setup(error)) => Err(error.into()),
             Err(error) => Ok(Done {
-                failure: Some({
-                    let lost = scene.lost(&error).map(|lost| lost.to_string());
-                    let why = lost.or_else(|| scene.pole(&error)).map(|why| format!(": {why}"));
-                    let told = why.or_else(|| self.larger_steps(&error)).unwrap_or_default();
-                    format!("{error}{told}")
+                failure: scene.lost_in_words(&error).or_else(|| {
+                    let pole = scene.pole(&error).map(|why| format!(": {why}"));
+                    let told = pole.or_else(|| self.larger_steps(&error)).unwrap_or_default();
+                    Some(format!("{error}{told}"))
                 }),
                 steps: error.accepted().unwrap_or(0),
                 ..Done::default()

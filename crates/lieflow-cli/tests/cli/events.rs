@@ -116,7 +116,14 @@ fn an_event_that_is_no_number_ends_the_run_with_its_name() {
     let folder = Folder::new();
     folder.write("scene.toml", &with_events("[[events]]\nname = \"odd\"\nwhen = \"ln(m2 - 2)\""));
     let message = folder.lieflow(&["run", "scene.toml", "--out", "out"]).refused();
-    assert!(message.contains("event `odd`: its value at t = "), "{message}");
+    assert!(
+        message.contains("event `odd` at t = ") && message.contains("ln(m2 - 2) is NaN at m2 = "),
+        "{message}"
+    );
+    assert!(
+        message.matches("NaN").count() == 1 && message.contains(", expected a finite number"),
+        "{message}"
+    );
     assert_eq!(
         folder.data("out"),
         ["events.partial.csv", "summary.json", "trajectory.partial.csv"]

@@ -13,6 +13,17 @@ impl Scene {
         self.problem.formula().into_iter().chain(of_rows).for_each(Formula::forget);
     }
 
+    /// The error in words, where a run ended with it by a formula.
+    pub fn lost_in_words(&self, error: &RunError) -> Option<String> {
+        let lost = self.lost(error)?;
+        let RunError::Event { name, t, .. } = error else {
+            return Some(format!("{error}: {lost}"));
+        };
+        // The formula has the value, and mostly the time.
+        let at = if lost.t().is_some() { String::new() } else { format!(" at t = {t}") };
+        Some(format!("event `{name}`{at}: {lost}, expected a finite number"))
+    }
+
     /// The formula by which a run ended with this error.
     pub fn lost(&self, error: &RunError) -> Option<Lost> {
         let which = match error {

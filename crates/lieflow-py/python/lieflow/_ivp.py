@@ -436,7 +436,7 @@ def _of_field(
     if isinstance(fun, Field) and found["status"] < 0:
         lost = ready.field.lost()
         if lost is not None:
-            found["message"] += f" {lost}."
+            found["message"] += f": {lost}"
     made_by = (ready.space_args, method, ready.linear, ready.flat)
     sol = None if curve is None else OdeSolution(curve, made_by, ready.layout)
     on_so3 = ready.space_args[0] == "SO(3)" and ready.space_args[1] == "translation"
@@ -494,7 +494,7 @@ def _of_problem(
     warn_of_events(found, 3)
     curve, lost, rows = found.pop("curve"), found.pop("lost"), found["y"]
     if lost is not None and found["status"] < 0:
-        found["message"] += f" {lost}."
+        found["message"] += f": {lost}"
     found["y"] = layout.split(rows)
     found["y_events"] = [layout.split(y) for y in found["y_events"]]
     at_end = len(rows) > 0 and found["t"][-1] == found["t_end"]

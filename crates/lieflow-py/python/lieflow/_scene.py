@@ -64,9 +64,7 @@ class Scene:
         schema, found = self._scene.run()
         warn_of_events(found, 2)
         layout = Layout(schema, self.quantities)
-        rows, lost = found["y"], found.pop("lost")
-        if lost is not None and found["status"] < 0:
-            found["message"] += f" {lost}."
+        rows = found["y"]
         found["y"] = layout.split(rows)
         found["y_events"] = [layout.split(y) for y in found["y_events"]]
         at_end = len(rows) > 0 and found["t"][-1] == found["t_end"]
