@@ -41,5 +41,7 @@ fn _lieflow(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(scene::bundled, m)?)?;
     m.add_function(wrap_pyfunction!(solve::solve, m)?)?;
     m.add_function(wrap_pyfunction!(solve::check_method, m)?)?;
+    m.add_function(wrap_pyfunction!(solve::time_to_search, m)?)?;
+    m.add("SHORT_STEPS", lieflow_model::problem::SHORT_STEPS)?;
     m.add("__version__", env!("CARGO_PKG_VERSION"))
 }

@@ -122,6 +122,12 @@ pub(crate) fn check_method(py: Python<'_>, method: &str) -> PyResult<String> {
     Ok(spec_of(py, method)?.label())
 }
 
+/// The time in seconds that the search for short pulses may take, after a run of so many steps and seconds.
+#[pyfunction]
+pub(crate) fn time_to_search(steps: u64, seconds: f64) -> Option<f64> {
+    lieflow_model::problem::time_to_search(steps, seconds)
+}
+
 /// f: a callable with its further arguments, the address of a C function with its parameters, formulas, or samples.
 #[derive(FromPyObject)]
 pub(crate) enum FieldParts {

@@ -463,3 +463,20 @@ def test_a_span_without_an_end_says_what_ends_it():
     body = lf.RigidBody(inertia=[1, 2, 3], omega_body=[0.2, 0.0, 1.0])
     r = lf.solve_ivp(body, (0, np.inf), events=lf.Event("w1 - 100", terminal=1), max_steps=100)
     assert r.status == -1 and "the span has no end, and no event ended the run: give t_span an end" in r.message
+
+
+def test_the_estimate_finds_a_pulse_that_the_run_passed_over():
+    def f(t, y):
+        return [0.0, 0.0, 1.0 if 50.0003 < t < 50.0203 else 0.0]
+
+    r = lf.solve_ivp(f, (0, 100), np.eye(3), group="SO(3)", frame="body")
+    passed = np.abs(r.y[-1] - lf.so3.exp([0, 0, 0.02])).max()
+    error = r.estimate_error()
+    assert passed > 0.01 and abs(error.y - 0.02) < 1e-6 and error.found_by.endswith("in at least 2000 steps")
+    found = lf.solve_ivp(f, (0, 100), np.eye(3), group="SO(3)", frame="body", stops=[50.0003, 50.0203])
+    assert found.estimate_error().y < 1e-9
+    # A limit of the user stays, and a run that takes long is not made in short steps.
+    slow = lf.solve_ivp(f, (0, 100), np.eye(3), group="SO(3)", frame="body", min_step=1.0, first_step=2.0)
+    assert "steps" not in slow.estimate_error().found_by
+    fixed = lf.solve_ivp(f, (0, 100), np.eye(3), group="SO(3)", frame="body", dt=1.0)
+    assert fixed.estimate_error().found_by == "a second run in steps of half the size"

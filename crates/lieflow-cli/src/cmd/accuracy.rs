@@ -8,7 +8,7 @@ use lieflow::SaveAt;
 use lieflow::catalog::MethodSpec;
 use lieflow::problems::explained_by_rounding;
 use lieflow::solve::{Next, Status};
-use lieflow_model::problem::{Outcome, Plan, Watcher};
+use lieflow_model::problem::{Outcome, Plan, SHORT_STEPS, Watcher, time_to_search};
 use lieflow_model::scene::Scene;
 use lieflow_model::schema::{Component, Observable, Row};
 
@@ -29,11 +29,7 @@ const GOOD: f64 = 1e-4;
 const PATIENCE: [f64; 2] = [3.0, 5.0];
 /// Rows at which an advice is tried, about.
 const SAMPLE: usize = 100;
-/// The size of the steps that find a short pulse, as a part of the span.
-const SHORT_STEP: f64 = 1.0 / 2000.0;
-/// The time that the search for a short pulse may take, where the run itself took less.
-const SEARCH: Duration = Duration::from_millis(300);
-/// The search is given up after this many times the time that it may take.
+/// The search for a short pulse is given up after this many times the time that it may take.
 const MISJUDGED: f64 = 3.0;
 /// A run in short steps that ends this many estimated errors away has found something that the run has passed over.
 const PASSED_OVER: f64 = 1e3;
@@ -183,7 +179,7 @@ impl<'a> Check<'a> {
     /// The size of short steps, where steps are chosen by their error and may be larger.
     fn short_step(&self) -> Option<f64> {
         let [t0, end] = self.run.t_span;
-        let short = (end - t0).abs() * SHORT_STEP;
+        let short = (end - t0).abs() / SHORT_STEPS as f64;
         (self.scene().tolerances().is_some() && 2.0 * short < self.own.largest).then_some(short)
     }
 
@@ -193,10 +189,8 @@ impl<'a> Check<'a> {
     fn passed_over(&self, known: &Accuracy, seconds: f64) -> Option<(Accuracy, String)> {
         let clock = Instant::now();
         let (short, end) = (self.short_step()?, self.end());
-        let steps = SHORT_STEP.recip() + self.own.steps as f64;
-        let takes = seconds * steps / self.own.steps.max(1) as f64;
-        let most = SEARCH.as_secs_f64().max(seconds);
-        if self.is_exact || self.ended_by_event || takes > most {
+        let most = time_to_search(self.own.steps, seconds)?;
+        if self.is_exact || self.ended_by_event {
             return None;
         }
         let way = Way { largest: Some(short), ..OWN };

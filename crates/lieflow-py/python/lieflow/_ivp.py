@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from time import perf_counter
 from typing import Any
 
 import numpy as np
@@ -426,7 +427,9 @@ def _of_field(
     if callback is not None and ready.layout is not None:
         layout = ready.layout
         told = lambda t, y: callback(t, layout.split(y))  # noqa: E731
+    clock = perf_counter()
     found = _lieflow.solve(ready.space, ready.field, ready.args, method, span, ready.flat, settings, times, parts, told)
+    seconds = perf_counter() - clock
     warn_of_events(found, 3)
     curve = found.pop("curve")
     if ready.layout is not None:
@@ -442,14 +445,14 @@ def _of_field(
     on_so3 = ready.space_args[0] == "SO(3)" and ready.space_args[1] == "translation"
 
     def again(result: Result) -> tuple[str, Result]:
-        found_by, finer = _finer(settings)
+        found_by, finer = _finer(settings, result, span[0], seconds)
         return found_by, _of_field(fun, span, y0, method, finer, result.t, events, None, space)
 
     return Result(sol=sol, _layout=ready.layout, _on_so3=on_so3, _again=again, **found)
 
 
-def _finer(settings: dict[str, Any]) -> tuple[str, dict[str, Any]]:
-    """Return what a second run is, and its settings."""
+def _finer(settings: dict[str, Any], first: Result, t0: float, seconds: float) -> tuple[str, dict[str, Any]]:
+    """Return what a second run is, and its settings, after a first one from t0 that took so many seconds."""
     finer = {**settings, "dense_output": False}
     if settings["dt"] is not None:
         return "a second run in steps of half the size", {**finer, "dt": settings["dt"] / 2}
@@ -459,6 +462,12 @@ def _finer(settings: dict[str, Any]) -> tuple[str, dict[str, Any]]:
     tenth = rtol + atol >= 20 * LEAST
     factor = 0.1 if tenth else 10.0
     found_by = "a second run at a tenth of the tolerance" if tenth else "a second run at ten times the tolerance"
+    # Short steps see what steps by error pass over, such as a pulse.
+    short = abs(first.t_end - t0) / _lieflow.SHORT_STEPS
+    if short > (settings["min_step"] or 0.0) and _lieflow.time_to_search(first.nsteps, seconds) is not None:
+        found_by += f", in at least {_lieflow.SHORT_STEPS} steps"
+        finer["max_step"] = min(settings["max_step"] or short, short)
+        finer["first_step"] = settings["first_step"] and min(settings["first_step"], short)
     return found_by, {**finer, "rtol": rtol * factor, "atol": atol * factor}
 
 
@@ -490,7 +499,9 @@ def _of_problem(
     if knots:
         settings = {**settings, "stops": sorted({*settings["stops"], *knots})}
     start = problem._start(y0)
+    clock = perf_counter()
     found = model.solve(method, span, start, settings, times, parts, told)
+    seconds = perf_counter() - clock
     warn_of_events(found, 3)
     curve, lost, rows = found.pop("curve"), found.pop("lost"), found["y"]
     if lost is not None and found["status"] < 0:
@@ -512,7 +523,7 @@ def _of_problem(
     def again(result: Result) -> tuple[str, Result]:
         plain = y0 is None and not any(event.change for event in events)
         exact = problem.exact(result.t, asked, t0=span[0]) if plain else None
-        found_by, finer = _finer(settings)
+        found_by, finer = _finer(settings, result, span[0], seconds)
         if exact is not None and not events:
             return "the exact motion", Result(y=exact, t_events=[])
         other = _of_problem(problem, span, y0, method, finer, result.t, events, asked, None, args)

@@ -15,6 +15,7 @@ __all__ = [
     "MatrixGroup",
     "Model",
     "Problem",
+    "SHORT_STEPS",
     "SampledField",
     "Scene",
     "Space",
@@ -41,7 +42,9 @@ __all__ = [
     "so3_exp_on",
     "so3_log",
     "solve",
+    "time_to_search",
 ]
+SHORT_STEPS: int
 __version__: str
 
 def so3_exp(u: ArrayLike, out: _Array | None = None) -> _Array: ...
@@ -214,6 +217,7 @@ class Scene:
 def kinds() -> list[dict[str, Any]]: ...
 def bundled() -> list[str]: ...
 def check_method(method: str) -> str: ...
+def time_to_search(steps: int, seconds: float) -> float | None: ...
 def solve(
     space: Space,
     field: Any,
