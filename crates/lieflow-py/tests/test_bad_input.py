@@ -161,3 +161,17 @@ def test_unknown_names_are_told_once():
             lf.solve_ivp(body, (0, 1), **keys)
         assert "expected unknown" not in str(refused.value)
         assert refused.value.argument == next(iter(keys))
+
+
+@pytest.mark.parametrize(
+    ("options", "argument"),
+    [({"rtol": [1e-3] * 3}, "rtol"), ({"atol": np.ones(3) * 1e-6}, "atol"), ({"max_step": [1.0]}, "max_step"),
+     ({"t_eval": [1.0, 0.0]}, "t_eval[1]"), ({"t_span": (0, np.inf)}, "t_span")],
+)
+def test_options_are_named(options, argument):
+    options = {"t_span": (0, 1), **options}
+    with pytest.raises(lf.ArgumentError) as caught:
+        lf.solve_ivp(lambda t, y: 0 * y, y0=[1.0, 0, 0], group="SO(3)", action="linear", **options)
+    assert caught.value.argument == argument
+    with pytest.raises(TypeError, match="direction: 'up', expected a number"):
+        lf.Event("m1", direction="up")

@@ -117,7 +117,7 @@ def test_a_field_of_t_has_the_solution_of_scipy(y0, action, frame, group):
 def test_the_body_frame_and_a_field_of_y():
     # ẏ = y f with f = y† g y is ẏ = g y.
     g = lambda t, y: 1j * (hamiltonian(t) + np.diag(np.abs(y[:, 0]) ** 2))  # noqa: E731
-    tight = {"group": "SU(3)", "rtol": 1e-11, "atol": 1e-11}
+    tight = {"group": "U(3)", "rtol": 1e-11, "atol": 1e-11}
     a = lf.solve_ivp(g, (0, 2), np.eye(3), frame="space", **tight)
     b = lf.solve_ivp(lambda t, y: y.conj().T @ g(t, y) @ y, (0, 2), np.eye(3), frame="body", **tight)
     assert np.abs(a.y_end - b.y_end).max() < 1e-8
@@ -269,3 +269,35 @@ def test_messages_name_u_n(wrong, argument):
     with pytest.raises(lf.ArgumentError) as caught:
         wrong(lf.MatrixOde(group="U(2)", field=TURN))
     assert caught.value.argument == argument and "SO(4)" not in str(caught.value), str(caught.value)
+
+
+def test_another_value_of_a_complex_key_is_both_parts():
+    levels = lf.Schrodinger(hamiltonian=[[0, 1j], [-1j, 0]], amplitudes=[1, 1j])
+    still = levels.replace(hamiltonian=[[0, 0], [0, 0]], amplitudes=[1, 0])
+    assert np.array_equal(lf.solve_ivp(still, (0, 1), t_eval=[1.0]).amplitudes, [[1, 0]])
+    mixed = lf.DensityMatrix(hamiltonian=[[1, 0], [0, 0]], density=[[0.7, 0.2 - 0.1j], [0.2 + 0.1j, 0.3]])
+    pure = mixed.replace(density=[[1, 0], [0, 0]])
+    assert np.allclose(lf.solve_ivp(pure, (0, 1), t_eval=[1.0]).density, [[[1, 0], [0, 0]]])
+    assert "density" not in mixed.replace(density=None, amplitudes=[1, 1j]).keys
+
+
+@pytest.mark.parametrize(
+    ("group", "y0", "det"),
+    [("SL(2)", 2 * np.eye(2), "4"), ("SU(3)", 1j * np.eye(3), "-1i"), ("SO(4)", np.diag([1.0, 1, 1, -1]), "-1")],
+)
+def test_a_start_of_another_determinant_is_refused(group, y0, det):
+    with pytest.raises(lf.ArgumentError, match=f"determinant .*{det}") as caught:
+        lf.solve_ivp(lambda t, y: 0 * y, (0, 1), y0, group=group, frame="space")
+    assert caught.value.argument == "y0"
+
+
+@pytest.mark.parametrize("group", ["SL(2)", "SU(3)"])
+@pytest.mark.parametrize("frame", ["space", "body"])
+def test_a_field_with_a_trace_is_refused(group, frame):
+    one = np.eye(2) if group == "SL(2)" else np.eye(3, dtype=complex)
+    with pytest.raises(lf.ArgumentError, match="trace") as caught:
+        lf.solve_ivp(lambda t, y: one if group == "SL(2)" else 1j * one, (0, 1), one, group=group, frame=frame)
+    assert caught.value.argument == "fun"
+    inside = np.diag([1.0, -1.0]) if group == "SL(2)" else 1j * np.diag([1.0, 1.0, -2.0])
+    r = lf.solve_ivp(lambda t, y: inside, (0, 1), one, group=group, frame=frame, t_eval=[1.0])
+    assert abs(np.linalg.det(r.y[0]) - 1) < 1e-13

@@ -67,8 +67,8 @@ class Event:
         if terminal != int(terminal) or terminal < 0:
             raise ArgumentError("terminal", repr(terminal), "an integer ≥ 0, True or False")
         self.g, self.change = g, change
-        self.terminal, self.direction = int(terminal), float(direction)
-        self.points = None if points is None else int(points)
+        self.terminal, self.direction = int(terminal), _number("direction", direction)
+        self.points = _positive("points", points, whole=True)
         default = g if isinstance(g, str) else getattr(g, "__name__", "event")
         self.name = name if name is not None else default
 
@@ -93,12 +93,19 @@ def events_of(events: Any) -> list[Event]:
     return [_event(i, g) for i, g in enumerate(given)]
 
 
+def _number(name: str, x: Any) -> float:
+    if isinstance(x, (str, bytes, complex)):
+        raise TypeError(f"{name}: {x!r}, expected a number")
+    array = real(name, x)
+    if array.ndim > 0:
+        raise ArgumentError(name, f"shape {array.shape}", "one number")
+    return float(array)
+
+
 def _positive(name: str, x: Any, whole: bool = False) -> Any:
     if x is None:
         return None
-    if isinstance(x, (str, bytes, complex)):
-        raise TypeError(f"{name}: {x!r}, expected a number")
-    number = float(x)
+    number = _number(name, x)
     if not number > 0 or (whole and (not np.isfinite(number) or number != int(number))):
         raise ArgumentError(name, repr(x), "an integer > 0" if whole else "a number > 0")
     return int(number) if whole else number
@@ -129,6 +136,10 @@ def times_of(t_eval: Any, span: tuple[float, float]) -> Array | None:
     if len(times) and not (times.min() >= low and times.max() <= high):
         i = int(np.argmax(~((times >= low) & (times <= high))))
         raise ArgumentError(f"t_eval[{i}]", repr(float(times[i])), f"a time within [{low}, {high}]")
+    turns = np.diff(times) * (1.0 if span[1] >= span[0] else -1.0) < 0
+    if turns.any():
+        i = int(np.argmax(turns)) + 1
+        raise ArgumentError(f"t_eval[{i}]", repr(float(times[i])), f"a time after {float(times[i - 1])}, as in the run")
     return times
 
 
@@ -149,8 +160,8 @@ def settings_of(
     if dt is not None and steps is not None:
         raise ArgumentError("steps", repr(steps), "only one of dt and steps")
     return {
-        "rtol": None if rtol is None else float(rtol),
-        "atol": None if atol is None else float(atol),
+        "rtol": None if rtol is None else _number("rtol", rtol),
+        "atol": None if atol is None else _number("atol", atol),
         "first_step": _positive("first_step", first_step),
         "min_step": _positive("min_step", min_step),
         "max_step": None if max_step is None or np.isinf(max_step) else _positive("max_step", max_step),
@@ -397,6 +408,8 @@ def solve_ivp(
     if not (method is None or isinstance(method, str)):
         raise TypeError(f"method: a value of type {type(method).__name__}, expected a name")
     planned = events_of(events)
+    if np.isinf(span[1]) and callback is None and not any(event.terminal for event in planned):
+        raise ArgumentError("t_span", f"({span[0]}, {span[1]})", "an end, or an event with terminal")
     settings = settings_of(
         rtol, atol, first_step, min_step, max_step, max_steps, dt, steps, stops, dense_output, linear
     )

@@ -80,7 +80,8 @@ class Problem:
 
     def replace(self, **keys: Any) -> Any:
         """Return the problem with other values of these keys. None takes a key away."""
-        for name in [name for name in keys if is_complex(keys[name])]:
+        # Another value is both parts of it.
+        for name in [name for name in keys if f"{name}_imaginary" in self.keys]:
             keys.setdefault(f"{name}_imaginary", None)
         changed = _quietly(type(self).kind, {**self.keys, **keys})
         changed._warn(3)
