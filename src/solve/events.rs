@@ -485,7 +485,7 @@ impl Search {
         if halvings == 0 || half == left.0 || half == right.0 {
             let places = (1..roots::MOST - 1).map(|j| at(roots::place(j)));
             self.zeros_among(ends, places, g, found)?;
-            return Ok(None);
+            return Ok(roots::shows_all(&values).then_some(roots::FINEST));
         }
         let mut is_sure = true;
         for [a, b] in [[left, (half, value)], [(half, value), right]] {

@@ -56,6 +56,16 @@ pub(super) fn stride(level: usize) -> usize {
     (MOST - 1) / DEGREES[level]
 }
 
+/// True if the values show all zeros, though no polynomial describes them, as at a jump, at a kink and at a zero of high
+/// multiplicity: they only rise, they only fall, or they are farther from zero than from each other. Values of a function
+/// that is much faster than their distance hardly ever do so.
+pub(super) fn shows_all(values: &[f64; MOST]) -> bool {
+    let (least, largest) =
+        values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(*x), b.max(*x)));
+    let is_far = least.max(-largest) > largest - least;
+    values.is_sorted() || values.iter().rev().is_sorted() || is_far
+}
+
 /// Numbers for polynomials of degree 16 at most.
 type Numbers = [f64; MOST];
 

@@ -49,9 +49,7 @@ impl Stats {
     /// `limit` is the name of the setting that limits the step size, `ended_by` the event that ended the run.
     pub fn unsure_in_words(&self, limit: &str, ended_by: Option<&str>) -> Option<String> {
         let ended = ended_by.map_or(String::new(), |name| {
-            format!(
-                " The event {name} may have ended the run at a wrong zero: do not use this run."
-            )
+            format!(" The event {name} may have ended the run at a wrong zero.")
         });
         (self.unsure_steps > 0).then(|| {
             format!(

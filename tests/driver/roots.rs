@@ -325,3 +325,31 @@ fn steps_that_may_have_more_zeros_are_counted() {
         }
     }
 }
+
+/// A kink, a jump and a zero of high multiplicity do not count as functions that are too fast.
+#[test]
+fn functions_that_are_not_smooth_are_sure() {
+    let body = RigidBody::<f64>::new(INERTIA).unwrap();
+    let zeros = |g: fn(f64, &V) -> f64| {
+        let solve = Solve::new(&body, &Taylor::<16>, [0.0, 40.0]).tolerances(1e-9, 1e-9);
+        let run = solve.event(Event::new("g", g)).run(V::new(0.2, 1.0, 3.0)).unwrap();
+        assert_eq!(
+            run.stats.unsure_steps, 0,
+            "{} of {}",
+            run.stats.unsure_steps, run.stats.accepted
+        );
+        run.times_of(0).collect::<Vec<_>>()
+    };
+    let plain = zeros(|_, m| m.y);
+    assert!(plain.len() > 5);
+    let same: [fn(f64, &V) -> f64; 3] =
+        [|_, m| m.y.powi(3), |_, m| m.y.signum(), |_, m| (100.0 * m.y).tanh()];
+    for same in same {
+        let found = zeros(same);
+        assert_eq!(found.len(), plain.len());
+        assert!(found.iter().zip(&plain).all(|(a, b)| (a - b).abs() < 1e-4), "{found:?} {plain:?}");
+    }
+    let [level, both] = [zeros(|_, m| m.y - 0.5), zeros(|_, m| m.y.abs() - 0.5)];
+    assert_eq!(both.len(), level.len() + zeros(|_, m| m.y + 0.5).len());
+    assert_eq!(zeros(|t, _| (t - 5.0).powi(3)).len(), 1);
+}

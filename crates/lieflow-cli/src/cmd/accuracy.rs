@@ -107,6 +107,7 @@ impl<'a> Check<'a> {
         (t, own, ended_by_event): (f64, Taken, bool),
         stop: &'a AtomicBool,
     ) -> Self {
+        let [t0, last] = watch.scene.grid.t_span();
         let sizes = parts_of(watch).map(|part| size(part, rows)).collect();
         let is_exact = watch.exact(t).is_some();
         let width = watch.model.schema().columns().count().max(1) as u64;
@@ -122,7 +123,8 @@ impl<'a> Check<'a> {
             records,
             rows: Choice::new(shown, most),
             sizes,
-            t_span: [watch.scene.grid.t_span()[0], t],
+            t_span: [t0, t],
+            direction: (last - t0).signum(),
             step: own.largest,
             stop,
         };
@@ -289,8 +291,8 @@ impl<'a> Check<'a> {
 
     /// The end of a second run. The zero that ended the first may be later there.
     fn beyond(&self) -> f64 {
-        let ([t0, end], [_, last]) = (self.run.t_span, self.scene().grid.t_span());
-        match (self.ended_by_event, end >= t0) {
+        let ([_, end], [_, last]) = (self.run.t_span, self.scene().grid.t_span());
+        match (self.ended_by_event, self.run.direction > 0.0) {
             (false, _) => end,
             (true, true) => (end + self.own.largest).min(last),
             (true, false) => (end - self.own.largest).max(last),
@@ -377,7 +379,7 @@ impl<'a> Check<'a> {
         self.deadline.set(Some(until));
         let mut times = self.sample.clone();
         // In the direction of the run.
-        let is_before = |t: &f64| (worst.t - t) * (self.end() - self.run.t_span[0]) > 0.0;
+        let is_before = |t: &f64| (worst.t - t) * self.run.direction > 0.0;
         let place = times.partition_point(is_before);
         if times.get(place) != Some(&worst.t) {
             times.insert(place, worst.t);

@@ -93,8 +93,7 @@ pub(super) struct Count {
 impl Count {
     /// Counts a zero at t of a run.
     fn see(&mut self, t: f64, run: &Shown<'_>) {
-        let [t0, end] = run.t_span;
-        let (before, near) = ((end - t) * (end - t0).signum(), NEAR * run.step);
+        let (before, near) = ((run.t_span[1] - t) * run.direction, NEAR * run.step);
         self.sure += u64::from(before > near);
         self.possible += u64::from(before >= -near);
     }
@@ -134,7 +133,7 @@ impl Apart {
         let mut apart = Apart::new(watch, events.len());
         // Zeros near the end may be of one motion only.
         let [t0, end] = run.t_span;
-        let before_end = [t0, end - NEAR * run.step * (end - t0).signum()];
+        let before_end = [t0, end - NEAR * run.step * run.direction];
         let changes = changes_of_sign(watch, before_end, &events);
         for (zeros, changes) in apart.events.iter_mut().zip(changes) {
             zeros.other = Count { sure: changes, possible: u64::MAX };
@@ -408,6 +407,7 @@ mod tests {
             zeros: Choice::new(wrong.zeros as u64, 1000),
             sizes: vec![1.0],
             t_span: [0.0, 60.0],
+            direction: 1.0,
             step: stats.largest_step,
             stop: &stop,
         };

@@ -49,6 +49,8 @@ pub(super) struct Shown<'a> {
     pub(super) sizes: Vec<f64>,
     /// The start and the end of the run.
     pub(super) t_span: [f64; 2],
+    /// 1, or −1 where time runs backward.
+    pub(super) direction: f64,
     /// The largest step of the run.
     pub(super) step: f64,
     /// The flag that ends a comparison.

@@ -87,9 +87,17 @@ fn events_that_never_come_or_are_missed_are_told() {
         assert!(!told.contains("wrong zero"), "{told}");
         folder.write("scene.toml", &(body.replace("RATE", rate) + "stop_after = 3\n"));
         let told = folder.lieflow(&["run", "scene.toml", "--no-page", "--out", "out"]).ok();
-        let wrong = "The event z may have ended the run at a wrong zero: do not use this run.";
+        let wrong = "The event z may have ended the run at a wrong zero.";
         assert_eq!(told.contains(wrong), is_told, "{told}");
     }
+    // A run back in time that ends where it starts.
+    folder.write(
+        "scene.toml",
+        "[problem]\nkind = \"driven-body\"\ninertia = [1, 2, 2.5]\nomega_body = [0.3, 0.2, 1]\ndamping = 0.1\n\
+         [time]\nt_span = [0, -20]\n[[events]]\nname = \"z\"\nwhen = \"sin(3*t)\"\nstop_after = 1\n",
+    );
+    let told = folder.lieflow(&["run", "scene.toml", "--no-page", "--out", "out"]).ok();
+    assert!(told.contains("ended by event z") && !told.contains("WARNING"), "{told}");
     // Nothing is said of events that come, in either direction, also at the times of rows.
     for (when, more) in [
         ("t - 1", "stop_after = 1"),
