@@ -85,6 +85,8 @@ def test_numbers_of_another_start():
     assert np.allclose(r.momentum_body[-1], [1, 0, 0])
     with pytest.raises(lf.ArgumentError, match="3 numbers"):
         lf.solve_ivp(body, (0, 1), [1.0, 0.0], quantities="momentum_body")
+    with pytest.raises(lf.ArgumentError, match="y0: quantities by name, expected the numbers of a state"):
+        lf.solve_ivp(body, (1, 2), r.y_end, quantities="momentum_body")
 
 
 def test_a_callback_and_an_exception():

@@ -177,6 +177,9 @@ class Problem:
         """The numbers of another state: these, or a complex array."""
         if y0 is None:
             return None
+        if isinstance(y0, dict):
+            expected = "the numbers of a state, as lieflow.Integrator.state has them, or replace() with the keys of a start"
+            raise ArgumentError("y0", "quantities by name", expected)
         state = self._complex_state()
         if state is None:
             return real("y0", y0)
