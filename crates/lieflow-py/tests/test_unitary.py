@@ -291,6 +291,11 @@ def test_a_start_of_another_determinant_is_refused(group, y0, det):
     assert caught.value.argument == "y0"
 
 
+def test_shapes_are_those_of_the_user():
+    with pytest.raises(lf.ArgumentError, match=r"y0: shape \(3,\), expected shape \(2, 2\)"):
+        lf.solve_ivp(lambda t, y: 0 * y, (0, 1), [1j, 0, 0], group="U(2)", frame="space")
+
+
 @pytest.mark.parametrize("group", ["SL(2)", "SU(3)"])
 @pytest.mark.parametrize("frame", ["space", "body"])
 def test_a_field_with_a_trace_is_refused(group, frame):

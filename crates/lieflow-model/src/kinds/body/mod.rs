@@ -237,7 +237,8 @@ impl BodyKeys {
                 return Ok((key, x.0));
             }
         }
-        Err(Refusal::section("expected `omega_body` or `momentum_body`, found neither").into())
+        let names = keys.map(|(key, _)| format!("`{key}`")).join(", ");
+        Err(Refusal::section(format!("expected one of {names}, found none")).into())
     }
 
     fn principal(&self) -> Result<Principal, ReadError> {

@@ -289,13 +289,12 @@ impl Space {
     }
 
     fn check_shape(&self, shape: &[usize]) -> Result<(), Misfit> {
+        // The last axis of complex numbers is not the user's.
+        let axes = usize::from(matches!(self.kind, SpaceKind::Complex(..)));
+        let told = |shape: &[usize]| format!("shape {}", shape_of(&shape[..shape.len() - axes]));
         match shape == self.point {
             true => Ok(()),
-            false => misfit(
-                "y0",
-                format!("shape {}", shape_of(shape)),
-                format!("shape {}", shape_of(&self.point)),
-            ),
+            false => misfit("y0", told(shape), told(&self.point)),
         }
     }
 
