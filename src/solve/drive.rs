@@ -368,6 +368,10 @@ impl Drive<'_> {
             return Ok(None);
         }
         self.look_at(output, t, false)?;
+        if t != self.times.t {
+            // The point at t is one within a step.
+            output.see_end(self.times.t);
+        }
         self.cut(output, t);
         for zero in &self.events.found[at..self.zeros_done] {
             let event = &self.events.all[zero.event];

@@ -1,6 +1,6 @@
 //! Hard cases of events (T13), of stops, of states that are changed within a run, and of what is left of one that failed (T14).
 
-use core::cell::Cell;
+use core::cell::{Cell, RefCell};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
@@ -432,4 +432,22 @@ fn t14_what_a_failed_run_leaves() {
     assert_eq!(known.stats.smallest_step, 0.001);
     assert_eq!(known.stats.accepted, 499);
     assert!((known.t - 0.499).abs() < 1e-12 && (known.y - exact(known.t)).norm() < 1e-10);
+}
+
+/// The end of a step that an event cuts is seen, because the point at the event is one within the step.
+#[test]
+fn the_end_of_a_step_that_is_cut_is_seen() {
+    let (body, method) = (body(), Rkmk::new(DOPRI5, Exp));
+    let ends = |level: f64| {
+        let ends = RefCell::new(Vec::new());
+        let see = |t: f64, m: &V| ends.borrow_mut().push((t, *m));
+        let event = Event::new("level", move |t: f64, _: &V| t - level).stop_after(1);
+        let solve = Solve::new(&body, &method, [0.0, 2.0]).dt(0.5).event(event).ends_of_steps(see);
+        let run = solve.run(START).unwrap();
+        assert!((run.t - level).abs() < 1e-15);
+        ends.into_inner()
+    };
+    let whole = Solve::new(&body, &method, [0.0, 1.0]).dt(0.5).run(START).unwrap();
+    assert_eq!(ends(0.8), [(1.0, whole.y)]);
+    assert_eq!(ends(1.0), []);
 }

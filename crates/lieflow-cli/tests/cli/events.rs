@@ -176,3 +176,22 @@ fn a_span_without_end_has_a_limit_of_steps_and_no_comparison() {
     assert!(message.contains("a span with an end"), "{message}");
     assert!(folder.names("cmp").is_empty());
 }
+
+/// The row of a zero that ends a run is one within a step: what the method keeps there is no promise.
+#[test]
+fn a_run_that_ends_within_a_step_breaks_no_promise() {
+    let folder = Folder::new();
+    folder.write(
+        "scene.toml",
+        "[problem]\nkind = \"rigid-body\"\ninertia = [1, 2, 2.5]\nomega_body = [1.3, 0.16, -0.8]\n\
+         [method]\nname = \"gauss4\"\n[time]\nt_span = [0, 20]\ndt = 0.1\n[output]\nevery = 1\n\
+         [[events]]\nname = \"turned\"\nwhen = \"w2 + 0.25\"\nstop_after = 1\n",
+    );
+    let told = folder.lieflow(&["run", "scene.toml", "--no-page", "--out", "out"]).ok();
+    assert!(told.contains("ended by event turned"), "{told}");
+    assert!(!told.contains("promises to keep it"), "{told}");
+    assert!(
+        told.contains("`energy` drifted by") && told.contains("at rows within steps"),
+        "{told}"
+    );
+}
