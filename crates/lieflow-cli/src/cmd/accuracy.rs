@@ -70,6 +70,8 @@ pub(super) struct Checked {
     pub(super) accuracy: Accuracy,
     /// The largest error of the times of each event, where it is known.
     pub(super) time_errors: Vec<Option<f64>>,
+    /// Of each event: has the other motion other zeros?
+    pub(super) wrong_zeros: Vec<bool>,
     /// What a reader should know.
     pub(super) warnings: Vec<String>,
 }
@@ -162,11 +164,12 @@ impl<'a> Check<'a> {
                 event.name, zeros.own.possible
             )
         });
+        let are_wrong = |zeros: &ZerosApart| !zeros.agree() || !zeros.distance.is_finite();
+        let wrong_zeros = apart.events.iter().map(are_wrong).collect();
         let time_error = |zeros: &ZerosApart| {
             // A time is no better than its last digit.
             let rounding = f64::EPSILON * self.run.t_span[0].abs().max(self.run.t_span[1].abs());
-            let error = zeros.distance * share;
-            (zeros.agree() && error.is_finite()).then(|| error.max(rounding))
+            (!are_wrong(zeros)).then(|| (zeros.distance * share).max(rounding))
         };
         let (mut accuracy, mut warnings) =
             (self.judge(found_by, &apart, share, clock), warnings.collect::<Vec<_>>());
@@ -175,7 +178,7 @@ impl<'a> Check<'a> {
             (accuracy, time_errors) = (other, vec![None; time_errors.len()]);
             warnings.push(warning);
         }
-        Ok(Checked { accuracy, time_errors, warnings })
+        Ok(Checked { accuracy, time_errors, wrong_zeros, warnings })
     }
 
     /// The size of short steps, where steps are chosen by their error and may be larger.

@@ -14,7 +14,7 @@ use super::told::in_words;
 use super::watch::{Recorder, Watch, quantities};
 use crate::args::{ErrorCheck, RunArgs, quoted};
 use crate::error::CliError;
-use crate::output::{self, Drawn, Drift, FoundBy, MethodSummary, RunState, SUMMARY, Summary};
+use crate::output::{self, Drawn, Drift, MethodSummary, RunState, SUMMARY, Summary};
 use lieflow_model::problem::Plan;
 use lieflow_model::scene::{Scene, SceneEvent};
 
@@ -292,10 +292,8 @@ pub fn run_scene(
     let (accuracy, accuracy_unknown) = match checked {
         Ok(Some(checked)) => {
             warnings.extend(checked.warnings);
-            // The other motion has no such zero, or another number of zeros up to it.
-            let mut known = scene.events.iter().zip(&checked.time_errors);
-            ends_wrong |= checked.accuracy.found_by != FoundBy::ShortSteps
-                && known.any(|(event, error)| is_end(event) && error.is_none());
+            let mut zeros = scene.events.iter().zip(checked.wrong_zeros);
+            ends_wrong |= zeros.any(|(event, are_wrong)| is_end(event) && are_wrong);
             for (event, error) in events.iter_mut().zip(checked.time_errors) {
                 event.time_error = error.filter(|_| event.count > 0);
             }
