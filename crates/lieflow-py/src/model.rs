@@ -12,7 +12,7 @@ use lieflow_model::problem::{
 };
 use lieflow_model::reader::{ReadError, Shape, Tree};
 use lieflow_model::scene::{Columns, OnRows, RowFormula};
-use lieflow_model::schema::{Observable, Part, Row, Schema, Units};
+use lieflow_model::schema::{Numbers, Observable, Part, Row, Schema, Units};
 use numpy::{PyArray1, PyArrayDyn, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -303,6 +303,11 @@ impl Model {
 
 #[pymethods]
 impl Model {
+    /// Does the point state a matrix by all its real and then all its imaginary parts?
+    #[getter]
+    fn by_parts(&self) -> bool {
+        self.model.schema().iter().any(|o| o.numbers == Numbers::SkewHermitian)
+    }
     /// The quantities of a row.
     #[getter]
     fn schema(&self) -> Vec<Quantity> {

@@ -60,7 +60,8 @@ pub enum Numbers {
     /// parts above it.
     Hermitian,
     /// The entries of a skew-Hermitian matrix on and below the diagonal, column by column: the imaginary part of that
-    /// on the diagonal, the real and the imaginary part of each below it.
+    /// on the diagonal, the real and the imaginary part of each below it. The point of such a problem is the matrix of the
+    /// real parts, then that of the imaginary parts.
     SkewHermitian,
 }
 

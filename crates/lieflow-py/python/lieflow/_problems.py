@@ -170,7 +170,7 @@ class Problem:
             (_, _, shape, _, parts), *others = model.schema
             is_real = others or not parts
             size = 0 if is_real else len(model.start(self.method))
-            self._complex = (None if is_real else ComplexState(tuple(shape), size, type(self).kind == "fluid"),)
+            self._complex = (None if is_real else ComplexState(tuple(shape), size, model.by_parts),)
         return self._complex[0]
 
     def _start(self, y0: Any) -> Array | None:
