@@ -85,6 +85,28 @@ pub enum Error {
         /// The argument.
         arg: &'static str,
     },
+    /// The determinant of a matrix is not 1, as that of an element of SL(n) and SU(n) is.
+    #[error("{arg}: not in {group}: its determinant is {}, expected 1", of_parts(*.re, *.im))]
+    Determinant {
+        /// The argument.
+        arg: &'static str,
+        /// The group.
+        group: String,
+        /// The real part of the determinant.
+        re: f64,
+        /// The imaginary part of the determinant; 0 of a real matrix.
+        im: f64,
+    },
+    /// The trace of a matrix is not 0, as that of an element of 𝔰𝔩(n) and 𝔰𝔲(n) is.
+    #[error("{arg}: not in the Lie algebra of {group}: its trace is {} away from 0", Plain(.distance))]
+    Trace {
+        /// The argument.
+        arg: &'static str,
+        /// The group.
+        group: String,
+        /// |tr|.
+        distance: f64,
+    },
     /// A matrix is singular to working accuracy.
     #[error(
         "{arg}: singular to working accuracy: rcond = {rcond:.3e}, expected at least {minimum:.1e}"
@@ -299,7 +321,8 @@ impl StepError {
 }
 
 /// A number in a message, with an exponent where it would have many zeros.
-pub(crate) struct Plain<'a>(pub(crate) &'a f64);
+#[derive(Clone, Copy, Debug)]
+pub struct Plain<'a>(pub &'a f64);
 
 impl fmt::Display for Plain<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -307,6 +330,15 @@ impl fmt::Display for Plain<'_> {
             size if size == 0.0 || (1e-5..1e16).contains(&size) => write!(f, "{}", self.0),
             _ => write!(f, "{:?}", self.0),
         }
+    }
+}
+
+/// A complex number in a message, as a real one where its imaginary part is 0.
+pub fn of_parts(re: f64, im: f64) -> String {
+    let sign = if im < 0.0 { '-' } else { '+' };
+    match im == 0.0 {
+        true => Plain(&re).to_string(),
+        false => format!("{} {sign} {}i", Plain(&(re + 0.0)), Plain(&im.abs())),
     }
 }
 

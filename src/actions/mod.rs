@@ -47,6 +47,14 @@ pub trait Action<G: LieGroup>: Send + Sync {
         Ok(())
     }
 
+    /// Checks, at the start of a run, what [`restore`](Self::restore) does not see ([`LieGroup::check_member`]).
+    ///
+    /// # Errors
+    /// As [`LieGroup::check_member`].
+    fn check_member(&self, _group: &G, _p: &Self::Point) -> Result<(), Error> {
+        Ok(())
+    }
+
     /// Checks after every step that the numbers of p are finite. A state that overflows ends the run. The default is
     /// [`check`](Self::check).
     #[inline(always)]

@@ -49,6 +49,10 @@ where
         self.0.check(&group.0, &p.0)?;
         self.1.check(&group.1, &p.1)
     }
+    fn check_member(&self, group: &Product<A, B>, p: &Self::Point) -> Result<(), Error> {
+        self.0.check_member(&group.0, &p.0)?;
+        self.1.check_member(&group.1, &p.1)
+    }
     fn assign(&self, group: &Product<A, B>, p: &Self::Point, q: &mut Self::Point) {
         self.0.assign(&group.0, &p.0, &mut q.0);
         self.1.assign(&group.1, &p.1, &mut q.1);
@@ -120,6 +124,9 @@ impl<G: LieGroup, L: Action<G>> Action<Power<G>> for Each<L> {
     fn check(&self, group: &Power<G>, p: &Self::Point) -> Result<(), Error> {
         group.check_copies("y", p)?;
         p.iter().try_for_each(|p| self.0.check(group.group(), p))
+    }
+    fn check_member(&self, group: &Power<G>, p: &Self::Point) -> Result<(), Error> {
+        p.iter().try_for_each(|p| self.0.check_member(group.group(), p))
     }
     fn assign(&self, group: &Power<G>, p: &Self::Point, q: &mut Self::Point) {
         p.iter().zip(q).for_each(|(p, q)| self.0.assign(group.group(), p, q));

@@ -21,6 +21,9 @@ impl<G: LieGroup> Action<G> for LeftTranslation {
     fn check(&self, group: &G, p: &G::Elem) -> Result<(), Error> {
         group.check_elem(p)
     }
+    fn check_member(&self, group: &G, p: &G::Elem) -> Result<(), Error> {
+        group.check_member(p)
+    }
     fn assign(&self, group: &G, p: &G::Elem, q: &mut G::Elem) {
         group.assign(p, q);
     }

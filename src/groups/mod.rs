@@ -140,6 +140,14 @@ pub trait LieGroup: LieAlgebra {
     fn check_elem(&self, _g: &Self::Elem) -> Result<(), Error> {
         Ok(())
     }
+    /// Checks, at the start of a run, what neither the form of G nor [`correct`](Self::correct) sees: determinants on SL(n)
+    /// and SU(n), the blocks of complex matrices, reflections.
+    ///
+    /// # Errors
+    /// [`Error::Determinant`], [`Error::Reflection`], [`Error::NotOnGroup`].
+    fn check_member(&self, _g: &Self::Elem) -> Result<(), Error> {
+        Ok(())
+    }
     /// Checks a vector as [`check_elem`](Self::check_elem) checks an element.
     ///
     /// # Errors
@@ -192,6 +200,9 @@ pub trait LieGroup: LieAlgebra {
 
 /// The default tolerance of membership: the relative residual that checked constructors allow.
 pub const MEMBERSHIP: f64 = 1e-12;
+
+/// The largest relative distance from M of a point that a user gives to a run.
+pub(crate) const OFF_M_MAX: f64 = 1e-6;
 
 /// The smallest residual at which Newton–Schulz might not converge. Then g is not corrected.
 pub const RESIDUAL_MAX: f64 = 0.1;

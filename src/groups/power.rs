@@ -175,6 +175,9 @@ impl<G: LieGroup> LieGroup for Power<G> {
         self.check_copies("g", g)?;
         g.iter().try_for_each(|g| self.group.check_elem(g))
     }
+    fn check_member(&self, g: &Self::Elem) -> Result<(), Error> {
+        g.iter().try_for_each(|g| self.group.check_member(g))
+    }
     fn check_vector(&self, x: &Self::Vector) -> Result<(), Error> {
         self.check_copies("x", x)?;
         x.iter().try_for_each(|x| self.group.check_vector(x))

@@ -140,6 +140,10 @@ impl<A: LieGroup, B: LieGroup<Scalar = A::Scalar>> LieGroup for Product<A, B> {
         self.0.check_elem(&g.0)?;
         self.1.check_elem(&g.1)
     }
+    fn check_member(&self, g: &Self::Elem) -> Result<(), Error> {
+        self.0.check_member(&g.0)?;
+        self.1.check_member(&g.1)
+    }
     fn check_vector(&self, x: &Self::Vector) -> Result<(), Error> {
         self.0.check_vector(&x.0)?;
         self.1.check_vector(&x.1)

@@ -53,7 +53,7 @@ pub fn schrodinger<H: Fn(f64, usize, usize) -> [f64; 2]>(
     n: usize,
     hamiltonian: H,
 ) -> Result<Schrodinger<impl Fn(f64, &mut AlgebraMatrix)>, Error> {
-    let group = MatrixGroup::so(n.saturating_mul(2))?.with_name(format!("U({n})"));
+    let group = MatrixGroup::u(n)?;
     Ok(Flow::of_time(group, Linear, generator(n, hamiltonian)))
 }
 
@@ -78,7 +78,7 @@ pub fn von_neumann<H: Fn(f64, usize, usize) -> [f64; 2]>(
     n: usize,
     hamiltonian: H,
 ) -> Result<VonNeumann<impl Fn(f64, &mut AlgebraMatrix)>, Error> {
-    let group = MatrixGroup::so(n.saturating_mul(2))?.with_name(format!("U({n})"));
+    let group = MatrixGroup::u(n)?;
     Ok(Flow::of_time(group, Conjugation, generator(n, hamiltonian)))
 }
 

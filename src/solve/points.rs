@@ -9,7 +9,7 @@ use super::interpolant::{Listing, Piece, no_polynomial};
 use super::stats::{Cadence, RunError, Stats, power_of_two_above};
 use crate::actions::Action;
 use crate::error::{Error, StepError};
-use crate::groups::LieAlgebra;
+use crate::groups::{LieAlgebra, OFF_M_MAX};
 use crate::methods::{
     Attempt, Attempts, Embedded, EqualSteps, Facts, Method, Step, Streak, Watch, Within,
 };
@@ -139,9 +139,6 @@ fn finite(is: bool) -> Result<(), StepError> {
     }
 }
 
-/// The largest relative distance from M of a point that a user gives.
-const OFF_M_MAX: f64 = 1e-6;
-
 /// Corrects y to M. Refuses a y that is farther from M than numbers with seven digits are.
 fn check_on_manifold<P: Problem>(
     problem: &P,
@@ -178,6 +175,7 @@ impl<'a, P: Problem, M: Method<P>> Points<'a, P, M> {
         action.check(group, &y)?;
         let mut restore = action.work(group);
         check_on_manifold(problem, &mut y.clone(), &mut restore)?;
+        action.check_member(group, &y)?;
         let facts = method.facts(problem);
         let mut error_order = None;
         let rates = match adaptive {

@@ -190,6 +190,9 @@ laws! {
     so22: indefinite(2, 2), general;
     u2: u2(), general;
     skewed4: skewed(4), general;
+    sl2: MatrixGroup::sl(2).unwrap(), general;
+    complex_u2: MatrixGroup::u(2).unwrap(), general;
+    complex_su2: MatrixGroup::su(2).unwrap(), general;
     se3: Se3::<f64>::new(), closed;
     se23: Se23::<f64>::new(), closed;
     quaternions: UnitQuaternions, exp_and_cay;
@@ -326,7 +329,14 @@ fn dimensions() {
     assert_eq!((UnitQuaternions.dim(), unitary(1).dim(), unitary(5).dim()), (3, 1, 25));
     assert_eq!((indefinite(3, 1).dim(), indefinite(2, 2).dim()), (6, 6));
     assert_eq!((u2().dim(), skewed(4).dim(), skewed(6).dim()), (4, 2, 3));
-    for group in matrix_groups() {
+    let subgroups = [(MatrixGroup::sl(2), 3), (MatrixGroup::u(2), 4), (MatrixGroup::su(2), 3)];
+    let subgroups = subgroups.map(|(group, dim)| (group.unwrap(), dim));
+    for (group, dim) in &subgroups {
+        assert_eq!(group.dim(), *dim, "{}", group.name());
+    }
+    let has_form_alone =
+        |g: &MatrixGroup| subgroups.iter().all(|(other, _)| other.name() != g.name());
+    for group in matrix_groups().into_iter().filter(has_form_alone) {
         assert_eq!(group.dim(), null_space(&group), "{}", group.name());
     }
 }

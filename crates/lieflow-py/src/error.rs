@@ -1,5 +1,6 @@
 //! Errors of the library as exceptions.
 
+use lieflow::error::{Plain, of_parts};
 use lieflow::{Error, RunError};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
@@ -30,12 +31,7 @@ pub(crate) fn argument(
 pub(crate) fn refused(py: Python<'_>, name: &str, error: &Error) -> PyErr {
     match error {
         Error::OutOfRange { arg, value, expected } => {
-            let short = if *value == 0.0 || (1e-5..1e16).contains(&value.abs()) {
-                value.to_string()
-            } else {
-                format!("{value:?}")
-            };
-            argument(py, arg, short, expected.clone())
+            argument(py, arg, Plain(value).to_string(), expected.clone())
         }
         Error::NotOnGroup { arg, group, residual, tolerance } => {
             let value = format!("a point at a relative distance of {residual:.1e} from {group}");
@@ -50,13 +46,25 @@ pub(crate) fn refused(py: Python<'_>, name: &str, error: &Error) -> PyErr {
             );
             argument(py, of(arg), value, format!("at most {tolerance:e}"))
         }
+        Error::Determinant { arg, group, re, im } => {
+            let value = format!("a matrix of determinant {}", of_parts(*re, *im));
+            argument(py, of(arg), value, format!("1, as in {group}"))
+        }
+        Error::Trace { arg, group, distance } => {
+            let value = format!("a matrix whose trace is {} away from 0", Plain(distance));
+            argument(py, of(arg), value, format!("an element of the Lie algebra of {group}"))
+        }
         error => argument(py, name, error.to_string(), ""),
     }
 }
 
 /// The name of an argument of the library in Python.
 fn of(name: &'static str) -> &'static str {
-    if name == "y" { "y0" } else { name }
+    match name {
+        "y" => "y0",
+        "f" => "fun",
+        name => name,
+    }
 }
 
 /// The exception of a run that could not begin.

@@ -107,7 +107,7 @@ impl Space {
         settings: Settings,
     ) -> PyResult<Stepper> {
         let raised = Arc::new(Raised::default());
-        let ready = Ready::new(py, self, (field, &y0), method, (t_span, &settings), &raised)?;
+        let ready = Ready::new(py, self, field, method, (t_span, &settings), &raised)?;
         let run = ready.problem.stepper(&ready.spec, &y0, ready.steps);
         if let Some(error) = raised.take() {
             return Err(error);
@@ -202,7 +202,7 @@ impl Ready {
     fn new(
         py: Python<'_>,
         space: &Space,
-        (field, y0): (FieldParts, &[f64]),
+        field: FieldParts,
         method: &str,
         (t_span, settings): ([f64; 2], &Settings),
         raised: &Arc<Raised>,
@@ -228,10 +228,6 @@ impl Ready {
             }
         };
         let refuse = |error: Error| refused(py, "fun", &error);
-        if y0.len() == shape.iter().product::<usize>() {
-            let checked = space.check_start(&*field, t_span[0], y0);
-            checked.map_err(|wrong| argument(py, wrong.argument, wrong.value, wrong.expected))?;
-        }
         let problem = space.problem(field, settings.linear).map_err(refuse)?;
         let (spec, orders) = fitting.method(py, method, |spec| problem.orders(spec))?;
         let steps = settings.steps(py, t_span, orders, "fun")?;
@@ -255,7 +251,7 @@ pub(crate) fn solve<'py>(
     callback: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let (raised, shape) = (Arc::new(Raised::default()), space.space.point());
-    let ready = Ready::new(py, space, (field, &y0), method, (t_span, &settings), &raised)?;
+    let ready = Ready::new(py, space, field, method, (t_span, &settings), &raised)?;
     let mut watch = Watch::new(py, (events, callback), &args, (shape, shape), raised.clone());
     let save = save_of(t_eval)?;
     let attached = ready.attached || watch.has_callables();

@@ -262,7 +262,7 @@ def test_states_of_quantum_systems_and_fluids_are_complex():
      (lambda p: p.replace(start=2j * np.eye(2)), "start"), (lambda p: lf.solve_ivp(p, (0, 1), 2j * np.eye(2)), "y0"),
      (lambda p: lf.solve_ivp(p.replace(field=[[1, 0], [0, 0]]), (0, 1)), "field[0, 0]"),
      (lambda p: lf.solve_ivp(lambda t, y: TURN, (0, 1), 2 * np.eye(2), group="U(2)", frame="space"), "y0"),
-     (lambda p: lf.solve_ivp(lambda t, y: np.eye(2), (0, 1), np.eye(2), group="U(2)", frame="space"), "f"),
+     (lambda p: lf.solve_ivp(lambda t, y: np.eye(2), (0, 1), np.eye(2), group="U(2)", frame="space"), "fun"),
      (lambda p: lf.MatrixOde(group="U(2)", field=TURN, start=1j * np.eye(2), start_imaginary=np.eye(2)), "start_imaginary")],
 )
 def test_messages_name_u_n(wrong, argument):
@@ -283,12 +283,17 @@ def test_another_value_of_a_complex_key_is_both_parts():
 
 @pytest.mark.parametrize(
     ("group", "y0", "det"),
-    [("SL(2)", 2 * np.eye(2), "4"), ("SU(3)", 1j * np.eye(3), "-1i"), ("SO(4)", np.diag([1.0, 1, 1, -1]), "-1")],
+    [("SL(2)", 2 * np.eye(2), "4, expected 1, as in SL"),
+     ("SU(3)", 1j * np.eye(3), r"0 - 1i, expected 1, as in SU"),
+     ("SO(4)", np.diag([1.0, 1, 1, -1]), "−1")],
 )
 def test_a_start_of_another_determinant_is_refused(group, y0, det):
-    with pytest.raises(lf.ArgumentError, match=f"determinant .*{det}") as caught:
+    with pytest.raises(lf.ArgumentError, match=f"y0: .*determinant .*{det}") as caught:
         lf.solve_ivp(lambda t, y: 0 * y, (0, 1), y0, group=group, frame="space")
     assert caught.value.argument == "y0"
+    still = lf.MatrixOde(group=group, field=np.zeros(y0.shape).tolist())
+    with pytest.raises(lf.ArgumentError, match=f"y0: .*determinant .*{det}"):
+        lf.solve_ivp(still, (0, 1), y0 if np.iscomplexobj(y0) else y0.ravel())
 
 
 def test_shapes_are_those_of_the_user():

@@ -1,11 +1,14 @@
 //! Checked constructors: a matrix of a user is in the algebra or on the group, or it is refused.
 
-use faer::{Mat, MatRef};
+use faer::{Mat, MatRef, c64};
 
 use super::{AlgebraMatrix, Form, GroupMatrix, MatrixGroup};
 use crate::dense::{Lu, RCOND_MIN, is_finite, norm_frobenius};
 use crate::error::{Error, StepError};
 use crate::groups::{LieAlgebra, MEMBERSHIP};
+
+/// The largest distance of a determinant from 1 that a checked constructor allows.
+const DETERMINANT: f64 = 1e-10;
 
 pub(super) fn square(arg: &'static str, x: MatRef<'_, f64>) -> Result<(), Error> {
     match x.nrows() == x.ncols() {
@@ -87,10 +90,70 @@ impl MatrixGroup {
         Ok(())
     }
 
+    /// How far x is from the matrices \[X −Y; Y X\], relative to its norm; 0 where it need not be one.
+    fn off_blocks(&self, x: &Mat<f64>) -> f64 {
+        if !self.subgroup.is_complex {
+            return 0.0;
+        }
+        let blocks = self.blocks(x.as_ref());
+        let (gap, size) = (norm_frobenius(&(&blocks - x)), norm_frobenius(x));
+        if gap > 0.0 { gap / size } else { 0.0 }
+    }
+
+    /// u, in the algebra of the form, is in that of the subgroup, to `tolerance` times the norm of u.
+    fn check_subalgebra(
+        &self,
+        arg: &'static str,
+        u: &Mat<f64>,
+        tolerance: f64,
+    ) -> Result<(), Error> {
+        let (group, residual) = (|| self.name(), self.off_blocks(u));
+        if residual > tolerance {
+            return Err(Error::NotInAlgebra { arg, group: group(), residual, tolerance });
+        }
+        let distance = self.trace(u.as_ref()).abs();
+        match self.subgroup.is_special && distance > tolerance * norm_frobenius(u) {
+            true => Err(Error::Trace { arg, group: group(), distance }),
+            false => Ok(()),
+        }
+    }
+
+    /// g, with the form of the group, is in the subgroup, to `tolerance`; for the determinant to `tolerance` times the
+    /// product of the norms of the rows. No element of SO(n) is a reflection.
+    pub(super) fn check_subgroup(
+        &self,
+        arg: &'static str,
+        g: &Mat<f64>,
+        tolerance: f64,
+    ) -> Result<(), Error> {
+        let (group, residual) = (|| self.name(), self.off_blocks(g));
+        if residual > tolerance {
+            return Err(Error::NotOnGroup { arg, group: group(), residual, tolerance });
+        }
+        let det = match (self.subgroup.is_special, self.subgroup.is_complex) {
+            (false, false) if matches!(self.form(), Form::Identity) && g.determinant() < 0.0 => {
+                return Err(Error::Reflection { arg });
+            }
+            (false, _) => return Ok(()),
+            (true, false) => c64::new(g.determinant(), 0.0),
+            (true, true) => {
+                let m = self.n() / 2;
+                let x = Mat::from_fn(m, m, |i, j| c64::new(g[(i, j)], g[(m + i, j)]));
+                x.determinant()
+            }
+        };
+        let size: f64 = (0..self.n()).map(|i| g.row(i).norm_l2()).product();
+        match (det - c64::ONE).norm() > tolerance.max(DETERMINANT) * size.max(1.0) {
+            true => Err(Error::Determinant { arg, group: group(), re: det.re, im: det.im }),
+            false => Ok(()),
+        }
+    }
+
     /// [`LieAlgebra::check`] with the tolerance [`MEMBERSHIP`].
     pub(super) fn check_algebra(&self, arg: &'static str, u: &Mat<f64>) -> Result<(), Error> {
         self.size(arg, u.as_ref())?;
-        self.belongs(arg, u, MEMBERSHIP)
+        self.belongs(arg, u, MEMBERSHIP)?;
+        self.check_subalgebra(arg, u, MEMBERSHIP)
     }
 
     /// Makes u an element of the algebra, if it is one within [`MEMBERSHIP`].
@@ -106,7 +169,7 @@ impl MatrixGroup {
     /// ```
     ///
     /// # Errors
-    /// [`Error::NotSquare`], [`Error::Shape`], [`Error::NotFiniteEntry`], and
+    /// [`Error::NotSquare`], [`Error::Shape`], [`Error::NotFiniteEntry`], [`Error::Trace`] on SL(n) and SU(n), and
     /// [`Error::NotInAlgebra`] with the residual ‖uᵀM + Mu‖/(‖M‖‖u‖).
     pub fn algebra(&self, u: Mat<f64>) -> Result<AlgebraMatrix, Error> {
         self.algebra_within(u, MEMBERSHIP)
@@ -119,6 +182,7 @@ impl MatrixGroup {
     pub fn algebra_within(&self, u: Mat<f64>, tolerance: f64) -> Result<AlgebraMatrix, Error> {
         self.shape("u", u.as_ref())?;
         self.belongs("u", &u, tolerance)?;
+        self.check_subalgebra("u", &u, tolerance)?;
         Ok(AlgebraMatrix::new_unchecked(u))
     }
 
@@ -126,7 +190,7 @@ impl MatrixGroup {
     ///
     /// # Errors
     /// [`Error::NotSquare`], [`Error::Shape`], [`Error::NotFiniteEntry`], [`Error::Singular`] on
-    /// GL(n), [`Error::Reflection`] on SO(n), and [`Error::NotOnGroup`] with the residual
+    /// GL(n), [`Error::Reflection`] on SO(n), [`Error::Determinant`] on SL(n) and SU(n), and [`Error::NotOnGroup`] with the residual
     /// ‖gᵀMg − M‖/(‖M‖ max(1, ‖g‖²)).
     pub fn element(&self, g: Mat<f64>) -> Result<GroupMatrix, Error> {
         self.element_within(g, MEMBERSHIP)
@@ -146,9 +210,6 @@ impl MatrixGroup {
                     let group = self.name();
                     return Err(Error::NotOnGroup { arg: "g", group, residual, tolerance });
                 }
-                if matches!(self.form(), Form::Identity) && g.determinant() < 0.0 {
-                    return Err(Error::Reflection { arg: "g" });
-                }
             }
             _ => {
                 let rcond = Lu::rcond(g.as_ref());
@@ -157,6 +218,7 @@ impl MatrixGroup {
                 }
             }
         }
+        self.check_subgroup("g", &g, tolerance)?;
         Ok(GroupMatrix::new_unchecked(g))
     }
 }

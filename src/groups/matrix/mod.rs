@@ -16,7 +16,7 @@ use correct::Cosquare;
 pub(crate) use correct::correct_length;
 pub use element::{AlgebraMatrix, GroupMatrix};
 
-use super::{LieAlgebra, LieGroup};
+use super::{LieAlgebra, LieGroup, OFF_M_MAX};
 use crate::dense::{self, Lu, RCOND_MIN, antisymmetrise, mul, mul_add};
 use crate::error::Error;
 use crate::scalar::{Ops, larger, tally};
@@ -40,7 +40,7 @@ pub enum Form {
     },
 }
 
-/// A group of n×n matrices: GL(n), SO(n), Sp(2m), SO(p,q) or G_M.
+/// A group of n×n matrices: GL(n), SL(n), SO(n), Sp(2m), SO(p,q), G_M, or U(n) and SU(n) as real matrices.
 ///
 /// | constructor | group | algebra |
 /// |---|---|---|
@@ -49,15 +49,31 @@ pub enum Form {
 /// | [`sp(2m)`](Self::sp) | gᵀJg = J | uᵀJ + Ju = 0 |
 /// | [`indefinite(p, q)`](Self::indefinite) | SO(p,q): M = diag(1,…,1,−1,…,−1) | uᵀM + Mu = 0 |
 /// | [`gm(M)`](Self::gm) | gᵀMg = M | uᵀM + Mu = 0 |
+/// | [`sl(n)`](Self::sl) | det g = 1 | tr u = 0 |
+/// | [`u(n)`](Self::u), [`su(n)`](Self::su) | X + iY unitary, det 1 on SU(n), as \[X −Y; Y X\] in SO(2n) | skew-Hermitian, trace 0 on SU(n) |
+///
+/// A run on SL(n), U(n) or SU(n) is one on the larger group GL(n) or SO(2n), and f keeps it in the smaller one. What the
+/// smaller one asks for is checked at the start of a run: the blocks and the determinant of y, the blocks and the trace of f.
 #[derive(Clone, Debug)]
 pub struct MatrixGroup {
     n: usize,
     form: Form,
+    /// What elements have beside the form.
+    subgroup: Subgroup,
     name: String,
     /// An orthonormal basis of 𝔤_M, one vectorised element in each column; only if M needs one.
     basis: OnceLock<Mat<f64>>,
     /// M⁻ᵀM, which decides how elements are corrected.
     cosquare: Cosquare,
+}
+
+/// What elements have beside the form: runs are those of the group of the form, and f keeps them in the subgroup.
+#[derive(Clone, Copy, Debug, Default)]
+struct Subgroup {
+    /// The determinant is 1, that of X + iY where the matrices are complex.
+    is_special: bool,
+    /// The matrices are \[X −Y; Y X\].
+    is_complex: bool,
 }
 
 /// The largest n that constructors take; a matrix of this size has 8 GiB.
@@ -69,7 +85,14 @@ impl MatrixGroup {
             return Err(Error::out_of_range("n", n as f64, format!("1 ≤ n ≤ {N_MAX}")));
         }
         let cosquare = Cosquare::of(&form);
-        Ok(MatrixGroup { n, form, name, basis: OnceLock::new(), cosquare })
+        Ok(MatrixGroup {
+            n,
+            form,
+            subgroup: Subgroup::default(),
+            name,
+            basis: OnceLock::new(),
+            cosquare,
+        })
     }
 
     /// GL(n).
@@ -137,9 +160,37 @@ impl MatrixGroup {
         Self::new(n, Form::Bilinear { m, inverse }, format!("G_M({n})"))
     }
 
-    /// The group under another name in messages. U(n) as the matrices \[X −Y; Y X\] of SO(2n) is an example.
-    pub fn with_name(self, name: impl Into<String>) -> Self {
-        MatrixGroup { name: name.into(), ..self }
+    /// SL(n): GL(n) with determinant 1. exp stays on it; cay does not for n > 2.
+    ///
+    /// # Errors
+    /// As [`gl`](Self::gl).
+    pub fn sl(n: usize) -> Result<Self, Error> {
+        let subgroup = Subgroup { is_special: true, is_complex: false };
+        Ok(MatrixGroup { name: format!("SL({n})"), subgroup, ..Self::gl(n)? })
+    }
+
+    /// U(n) as the matrices \[X −Y; Y X\] of SO(2n), where X + iY is unitary. [`Unitary`](super::Unitary) has complex
+    /// matrices.
+    ///
+    /// # Errors
+    /// As [`so`](Self::so) for 2n.
+    pub fn u(n: usize) -> Result<Self, Error> {
+        let subgroup = Subgroup { is_special: false, is_complex: true };
+        Ok(MatrixGroup { name: format!("U({n})"), subgroup, ..Self::so(n.saturating_mul(2))? })
+    }
+
+    /// SU(n): U(n), as [`u`](Self::u), with determinant 1. exp stays on it; cay does not for n > 2.
+    ///
+    /// # Errors
+    /// As [`u`](Self::u).
+    pub fn su(n: usize) -> Result<Self, Error> {
+        let subgroup = Subgroup { is_special: true, is_complex: true };
+        Ok(MatrixGroup { name: format!("SU({n})"), subgroup, ..Self::u(n)? })
+    }
+
+    /// True for U(n) and SU(n): the matrices are \[X −Y; Y X\].
+    pub(crate) fn is_complex(&self) -> bool {
+        self.subgroup.is_complex
     }
 
     /// The n of n×n.
@@ -208,7 +259,8 @@ impl LieAlgebra for MatrixGroup {
     }
     fn dim(&self) -> usize {
         let n = self.n;
-        match &self.form {
+        let of_form = match &self.form {
+            Form::Identity if self.subgroup.is_complex => (n / 2) * (n / 2),
             Form::Free => n * n,
             Form::Identity => n * (n - 1) / 2,
             Form::Symplectic => n * (n + 1) / 2,
@@ -217,7 +269,8 @@ impl LieAlgebra for MatrixGroup {
                 Some(sample::Symmetry::Skew) => n * (n + 1) / 2,
                 None => self.basis().ncols(),
             },
-        }
+        };
+        of_form - usize::from(self.subgroup.is_special)
     }
     fn zero(&self) -> AlgebraMatrix {
         AlgebraMatrix::new_unchecked(Mat::zeros(self.n, self.n))
@@ -279,6 +332,9 @@ impl LieGroup for MatrixGroup {
     }
     fn check_elem(&self, g: &GroupMatrix) -> Result<(), Error> {
         self.rows_fit("y", g, self.n)
+    }
+    fn check_member(&self, g: &GroupMatrix) -> Result<(), Error> {
+        self.check_subgroup("y", g, OFF_M_MAX)
     }
     fn assign(&self, g: &GroupMatrix, out: &mut GroupMatrix) {
         out.copy_from(&**g);

@@ -67,7 +67,35 @@ impl MatrixGroup {
                 _ => self.project_by_basis(x),
             },
         };
+        let mut nearest =
+            if self.subgroup.is_complex { self.blocks(nearest.as_ref()) } else { nearest };
+        if self.subgroup.is_special {
+            let m = if self.subgroup.is_complex { self.n / 2 } else { 0 };
+            let mean = self.trace(nearest.as_ref()) / (self.n - m) as f64;
+            for i in 0..self.n - m {
+                nearest[(m + i, i)] -= mean;
+                if m > 0 {
+                    nearest[(i, m + i)] += mean;
+                }
+            }
+        }
         AlgebraMatrix::new_unchecked(nearest)
+    }
+
+    /// The matrix \[X −Y; Y X\] that is nearest to x.
+    pub(super) fn blocks(&self, x: MatRef<'_, f64>) -> Mat<f64> {
+        let m = self.n / 2;
+        Mat::from_fn(self.n, self.n, |i, j| {
+            let (k, l) = ((i + m) % self.n, (j + m) % self.n);
+            let sign = if (i < m) == (j < m) { 0.5 } else { -0.5 };
+            0.5 * x[(i, j)] + sign * x[(k, l)]
+        })
+    }
+
+    /// The trace of u; of a skew-Hermitian X + iY that of Y.
+    pub(super) fn trace(&self, u: MatRef<'_, f64>) -> f64 {
+        let m = if self.subgroup.is_complex { self.n / 2 } else { 0 };
+        (0..self.n - m).map(|i| u[(m + i, i)]).sum()
     }
 
     fn project_by_basis(&self, x: MatRef<'_, f64>) -> Mat<f64> {
@@ -105,7 +133,7 @@ impl Sample for MatrixGroup {
     fn sample_element<R: Rng + ?Sized>(&self, rng: &mut R) -> GroupMatrix {
         let n = self.n;
         let element = match self.form {
-            Form::Identity => {
+            Form::Identity if !self.subgroup.is_complex => {
                 let qr = gaussian(rng, n, n, 1.0).qr();
                 let (mut q, r) = (qr.compute_thin_Q(), qr.thin_R());
                 for j in 0..n {

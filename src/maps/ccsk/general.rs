@@ -34,6 +34,13 @@ enum Product {
 impl CcskAt {
     fn new(group: &MatrixGroup) -> Result<Self, Error> {
         let n = group.n();
+        if group.is_complex() {
+            return Err(Error::Unsupported {
+                what: "ccsk",
+                with: group.name(),
+                why: "its factors turn single pairs of real axes, and leave the complex matrices; use exp or cay",
+            });
+        }
         let product = match group.form() {
             Form::Identity => Product::SoN(SoN::new(n)),
             Form::Free => Product::Gl(Gl::new(n)),

@@ -1,10 +1,17 @@
 //! Groups, elements and problems are checked where they are made.
 
 use approx::{AbsDiffEq, RelativeEq, assert_abs_diff_eq, assert_relative_eq};
-use faer::{Mat, mat};
-use lieflow::Error;
-use lieflow::groups::{MEMBERSHIP, MatrixGroup, RCOND_MIN, So3};
-use lieflow::problems::{Exact, RigidBody, RigidBodyAttitude, RigidBodyN, RigidBodyNAttitude};
+use faer::{Mat, Scale, mat};
+use lieflow::actions::LeftTranslation;
+use lieflow::groups::{
+    AlgebraMatrix, GroupMatrix, LieAlgebra, MEMBERSHIP, MatrixGroup, RCOND_MIN, So3,
+};
+use lieflow::maps::{CCSK, CoordinateMap, Exp};
+use lieflow::methods::{Rkmk, tableau::DOPRI5};
+use lieflow::problems::{
+    Exact, Flow, RigidBody, RigidBodyAttitude, RigidBodyN, RigidBodyNAttitude,
+};
+use lieflow::{Error, Solve};
 use nalgebra::Matrix3;
 
 use super::says;
@@ -96,6 +103,90 @@ fn elements_of_the_group_are_checked() {
     for g in [1e200, 1e308] {
         assert!(so(2).element(mat![[g, 0.0], [0.0, g]]).is_err(), "{g}");
     }
+}
+
+/// SL(n), U(n) and SU(n) ask for more than their form, of matrices and at the start of a run.
+#[test]
+fn what_subgroups_ask_for_is_checked() {
+    let [sl, u, su] =
+        [MatrixGroup::sl(2), MatrixGroup::u(2), MatrixGroup::su(2)].map(Result::unwrap);
+    assert_eq!([&sl, &u, &su].map(|group| group.name()), ["SL(2)", "U(2)", "SU(2)"]);
+    let scaled = |x: f64| Mat::<f64>::identity(2, 2) * Scale(x);
+    assert!(sl.element(mat![[2.0, 7.0], [0.0, 0.5]]).is_ok());
+    says(
+        sl.element(scaled(2.0)).unwrap_err(),
+        &["g: not in SL(2)", "determinant is 4, expected 1"],
+    );
+    says(sl.element(scaled(1.0 + 1e-8)).unwrap_err(), &["determinant is 1.0000000", "expected 1"]);
+    assert!(sl.algebra(mat![[1.0, 5.0], [0.0, -1.0]]).is_ok());
+    says(
+        sl.algebra(scaled(0.5)).unwrap_err(),
+        &["u: not in the Lie algebra of SL(2)", "trace is 1 away"],
+    );
+    // i·𝟙 is in U(2), and e^{i·𝟙·π/2} has the determinant −1.
+    let i = |x: f64| {
+        Mat::from_fn(4, 4, |j, k| {
+            if j == k + 2 {
+                x
+            } else if k == j + 2 {
+                -x
+            } else {
+                0.0
+            }
+        })
+    };
+    assert!(u.algebra(i(1.0)).is_ok() && u.element(i(1.0)).is_ok());
+    says(su.algebra(i(1.0)).unwrap_err(), &["SU(2)", "trace is 2 away from 0"]);
+    says(su.element(i(1.0)).unwrap_err(), &["SU(2)", "determinant is -1, expected 1"]);
+    // In so(4), and in SO(4), but no complex matrix.
+    let mut turned = Mat::<f64>::zeros(4, 4);
+    (turned[(0, 1)], turned[(1, 0)]) = (-1.0, 1.0);
+    assert!(so(4).algebra(turned.clone()).is_ok());
+    says(
+        u.algebra(turned.clone()).unwrap_err(),
+        &["u: not in the Lie algebra of U(2)", "residual"],
+    );
+    (turned[(2, 2)], turned[(3, 3)]) = (1.0, 1.0);
+    assert!(so(4).element(turned.clone()).is_ok());
+    says(u.element(turned).unwrap_err(), &["g: not in U(2)", "residual"]);
+
+    let run = |group: &MatrixGroup, start: Mat<f64>, f: Mat<f64>| {
+        let flow = Flow::new(group.clone(), LeftTranslation, move |_, _, v: &mut AlgebraMatrix| {
+            v.copy_from(&f);
+        });
+        let method = Rkmk::new(DOPRI5, Exp);
+        let solve = Solve::new(&flow, &method, [0.0, 1.0]);
+        let start = GroupMatrix::new_unchecked(start);
+        solve.dt(0.1).run(start).map(drop).map_err(|error| error.to_string())
+    };
+    let told = |result: Result<(), String>, words: &str| {
+        assert!(result.as_ref().is_err_and(|told| told.contains(words)), "{result:?}: {words}");
+    };
+    let (zero, one) = (Mat::zeros(4, 4), Mat::<f64>::identity(4, 4));
+    let reflection = Mat::from_fn(4, 4, |j, k| {
+        if j != k {
+            0.0
+        } else if j == 3 {
+            -1.0
+        } else {
+            1.0
+        }
+    });
+    told(run(&so(4), reflection, zero.clone()), "y: its determinant is −1");
+    told(run(&sl, scaled(2.0), Mat::zeros(2, 2)), "y: not in SL(2)");
+    told(run(&su, i(1.0), zero.clone()), "y: not in SU(2)");
+    told(run(&sl, scaled(1.0), scaled(1.0)), "f: not in the Lie algebra of SL(2)");
+    told(run(&su, one.clone(), i(1.0)), "f: not in the Lie algebra of SU(2)");
+    assert_eq!(run(&u, i(1.0), i(1.0)), Ok(()));
+    assert_eq!(run(&su, one, zero), Ok(()));
+}
+
+/// Coordinates of the second kind turn single pairs of real axes, and so leave the complex matrices.
+#[test]
+fn ccsk_is_not_for_complex_matrices() {
+    let u = MatrixGroup::u(2).unwrap();
+    says(CCSK.at(&u).unwrap_err(), &["ccsk cannot be used with U(2)", "use exp or cay"]);
+    assert!(CCSK.at(&so(4)).is_ok() && Exp.at(&u).is_ok());
 }
 
 #[test]

@@ -110,13 +110,14 @@ impl Algebra {
         }
     }
 
-    /// The group. For sl(n) it is GL(n): a field in sl(n) moves nothing out of SL(n). For u(n) and su(n) it is SO(2n).
+    /// The group; of u(n) and su(n) as real matrices.
     ///
     /// # Errors
     /// A refusal of `key`, whose value has n rows.
     pub(super) fn group(self, n: usize, key: &str) -> Result<MatrixGroup, Refusal> {
         let group = match self {
-            Algebra::Gl | Algebra::Sl => MatrixGroup::gl(n),
+            Algebra::Gl => MatrixGroup::gl(n),
+            Algebra::Sl => MatrixGroup::sl(n),
             Algebra::So => MatrixGroup::so(n),
             Algebra::Indefinite(p, q) if p.checked_add(q) == Some(n) => {
                 MatrixGroup::indefinite(p, q)
@@ -126,8 +127,8 @@ impl Algebra {
                 return Err(Refusal::at(key, message));
             }
             Algebra::Sp => MatrixGroup::sp(n),
-            Algebra::U | Algebra::Su => MatrixGroup::so(n.saturating_mul(2))
-                .map(|group| group.with_name(self.name(n).to_uppercase())),
+            Algebra::U => MatrixGroup::u(n),
+            Algebra::Su => MatrixGroup::su(n),
         };
         group.map_err(|error: Error| Refusal::from(error).about(key))
     }

@@ -55,6 +55,12 @@ impl Action<MatrixGroup> for MatrixAction {
             MatrixAction::Lagrangian => Lagrangian.check(group, p),
         }
     }
+    fn check_member(&self, group: &MatrixGroup, p: &Mat<f64>) -> Result<(), Error> {
+        match self {
+            MatrixAction::Translation => group.check_member(&GroupMatrix::new_unchecked(p.clone())),
+            _ => Ok(()),
+        }
+    }
     fn assign(&self, _: &MatrixGroup, p: &Mat<f64>, q: &mut Mat<f64>) {
         q.copy_from(p);
     }

@@ -109,6 +109,8 @@ impl From<Error> for Refusal {
             | Error::Shape { arg, .. }
             | Error::NotInAlgebra { arg, .. }
             | Error::NotOnGroup { arg, .. }
+            | Error::Determinant { arg, .. }
+            | Error::Trace { arg, .. }
             | Error::NotGiven { arg, .. }
             | Error::Reflection { arg }
             | Error::Singular { arg, .. } => Some(arg.into()),

@@ -250,7 +250,7 @@ fn eulers_equations_on_matrix_algebras() {
     let text =
         bundled("euler-on-sl3").replace("[\"momentum\", ", "[\"group\", \"momentum_space\", ");
     let of = Scene::parse("scene", &text).unwrap();
-    assert_eq!(of.model().unwrap().modelled(&of.method), ["momentum on sl(3)* and g in GL(3)"]);
+    assert_eq!(of.model().unwrap().modelled(&of.method), ["momentum on sl(3)* and g in SL(3)"]);
     let end = last(&of);
     let g = Matrix3::from_row_slice(&end[..9]);
     assert!((g.determinant() - 1.0).abs() < 1e-12 && (g - Matrix3::identity()).norm() > 0.5);

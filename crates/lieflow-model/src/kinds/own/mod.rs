@@ -25,7 +25,7 @@ mod run;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use faer::{Mat, c64};
+use faer::Mat;
 use lieflow::actions::{Coadjoint, LeftTranslation, Linear};
 use lieflow::catalog::MethodSpec;
 use lieflow::groups::{MatrixGroup, Se3, So3, UnitQuaternions};
@@ -95,8 +95,6 @@ pub const GROUPS: [&str; 10] =
 #[derive(Clone, Debug)]
 pub struct Space {
     kind: SpaceKind,
-    /// What a point and a value of f have beyond the group of the run.
-    special: Option<Special>,
     frame: Option<Frame>,
     point: Vec<usize>,
     value: Vec<usize>,
@@ -115,20 +113,8 @@ enum SpaceKind {
     Complex(MatrixGroup, MatrixAction),
 }
 
-/// A group that the run takes as a larger one: SO(n) as O(n), SL(n) as GL(n), SU(n) as U(n).
-#[derive(Clone, Copy, Debug)]
-struct Special {
-    /// Is a point of M an element of the group? Then its determinant is 1.
-    is_element: bool,
-    /// Has f the trace 0? f of SO(n) has it anyway.
-    is_traceless: bool,
-}
-
-/// The distance of a determinant from 1, and of a trace from 0, that counts as rounding.
-const SPECIAL: f64 = 1e-6;
-
-/// A group of matrices by its name, and its algebra. `rows` is the size where the name has none.
-fn matrix_group(name: &str, rows: usize) -> Result<(MatrixGroup, Algebra), Misfit> {
+/// A group of matrices by its name, and whether they are complex. `rows` is the size where the name has none.
+fn matrix_group(name: &str, rows: usize) -> Result<(MatrixGroup, bool), Misfit> {
     let unknown = || {
         let hint = near(name, &GROUPS).map_or(String::new(), |name| format!("`{name}`? "));
         let expected = format!("{hint}one of {}, or the form M of a group", GROUPS.join(", "));
@@ -141,7 +127,7 @@ fn matrix_group(name: &str, rows: usize) -> Result<(MatrixGroup, Algebra), Misfi
     };
     let group = named.algebra.group(n, "group");
     match group {
-        Ok(group) => Ok((group, named.algebra)),
+        Ok(group) => Ok((group, named.algebra.is_complex())),
         Err(_) => misfit("group", format!("`{name}`"), "a group of matrices of even size, 2m"),
     }
 }
@@ -205,7 +191,7 @@ impl Space {
             }
             _ => return Self::of_matrices(group, action, frame, shape),
         };
-        let space = Space { kind, special: None, frame, point, value };
+        let space = Space { kind, frame, point, value };
         space.check_shape(shape)?;
         Ok(space)
     }
@@ -223,7 +209,7 @@ impl Space {
         let turns = 3 * (vectors + rotations);
         let (point, value) = (turns + 6 * rotations + numbers, turns + numbers);
         let (kind, point, value) = (SpaceKind::Parts(parts), vec![point], vec![value]);
-        let space = Space { kind, special: None, frame, point, value };
+        let space = Space { kind, frame, point, value };
         space.check_shape(shape)?;
         Ok(space)
     }
@@ -236,22 +222,17 @@ impl Space {
     ) -> Result<Self, Misfit> {
         let lagrangian = action == "lagrangian";
         let rows = shape.first().copied().unwrap_or(0);
-        let (group, algebra) = match group {
-            GroupName::Named(name) => {
-                let (group, algebra) =
-                    matrix_group(name, if lagrangian { 2 * rows } else { rows })?;
-                (group, Some(algebra))
-            }
+        let (group, is_complex) = match group {
+            GroupName::Named(name) => matrix_group(name, if lagrangian { 2 * rows } else { rows })?,
             GroupName::Parts(_) => return misfit("group", "parts", "a group of matrices"),
             GroupName::Form(n, m) => {
                 let form = Mat::from_fn(*n, *n, |i, j| m[i * n + j]);
                 match MatrixGroup::gm(form) {
-                    Ok(group) => (group, None),
+                    Ok(group) => (group, false),
                     Err(error) => return misfit("group", error.to_string(), "an invertible M"),
                 }
             }
         };
-        let is_complex = algebra.is_some_and(Algebra::is_complex);
         let n = if is_complex { group.n() / 2 } else { group.n() };
         // The last axis of complex numbers are Re and Im.
         let (shape, last) = match shape {
@@ -273,16 +254,11 @@ impl Space {
         };
         let is_so3 = matches!(group.form(), lieflow::groups::Form::Identity) && n == 3;
         let value = if is_so3 && !is_complex { vec![3] } else { vec![n, n] };
-        let is_element = action == MatrixAction::Translation;
         let kind = match is_complex {
             true => SpaceKind::Complex(group, action),
             false => SpaceKind::Matrix(group, action),
         };
-        let is_traceless = matches!(algebra, Some(Algebra::Sl | Algebra::Su));
-        let special = (is_traceless || algebra == Some(Algebra::So))
-            .then_some(Special { is_element, is_traceless });
-        let space =
-            Space { kind, special, frame, point: with_last(point), value: with_last(value) };
+        let space = Space { kind, frame, point: with_last(point), value: with_last(value) };
         let shape = [shape, last].concat();
         space.check_shape(&shape)?;
         Ok(space)
@@ -306,45 +282,6 @@ impl Space {
     /// The shape of f.
     pub fn value(&self) -> &[usize] {
         &self.value
-    }
-
-    /// Checks what the group of the run does not: the determinant of y0, and the trace of f at the start. f is evaluated
-    /// once where its trace counts.
-    ///
-    /// # Errors
-    /// A [`Misfit`] of `y0` or `fun`.
-    pub fn check_start(&self, field: &OwnField, t: f64, y0: &[f64]) -> Result<(), Misfit> {
-        let Some(special) = self.special else { return Ok(()) };
-        let is_complex = matches!(self.kind, SpaceKind::Complex(..));
-        let matrix = |numbers: &[f64], n: usize| {
-            Mat::from_fn(n, n, |i, j| match is_complex {
-                true => c64::new(numbers[2 * (i * n + j)], numbers[2 * (i * n + j) + 1]),
-                false => c64::new(numbers[i * n + j], 0.0),
-            })
-        };
-        let told =
-            |z: c64| if is_complex { format!("{} + {}i", z.re, z.im) } else { z.re.to_string() };
-        if special.is_element && y0.iter().all(|x| x.is_finite()) {
-            let det = matrix(y0, self.point[0]).determinant();
-            if (det - c64::ONE).norm() > SPECIAL {
-                return misfit(
-                    "y0",
-                    format!("a matrix of determinant {}", told(det)),
-                    "determinant 1",
-                );
-            }
-        }
-        let mut v = vec![0.0; self.value.iter().product()];
-        // Where f fails the run says why.
-        if special.is_traceless && field(t, y0, &mut v) {
-            let v = matrix(&v, self.value[0]);
-            let trace: c64 = (0..v.nrows()).map(|i| v[(i, i)]).sum();
-            if trace.norm() > SPECIAL * v.norm_l2() {
-                let value = format!("a matrix of trace {} at t = {t}", told(trace));
-                return misfit("fun", value, "trace 0, as in the algebra of the group");
-            }
-        }
-        Ok(())
     }
 
     /// The problem with this field. With `linear`, f depends only on t, and methods for linear equations fit.
