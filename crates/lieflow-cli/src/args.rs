@@ -249,7 +249,7 @@ pub struct CompareArgs {
     #[command(flatten)]
     pub settings: Settings,
     /// The error at the end that you want, or a list of them [default: 1e-6,1e-9].
-    #[arg(long = "error", value_name = "LIST", value_delimiter = ',', value_parser = tolerance)]
+    #[arg(long = "error", value_name = "LIST", value_delimiter = ',', value_parser = wanted_error)]
     #[arg(allow_negative_numbers = true)]
     pub errors: Vec<f64>,
     /// Only methods that keep this invariant of the scene for long times, as energy: to rounding, or within bounds.
@@ -294,6 +294,13 @@ fn tolerance(text: &str) -> Result<f64, String> {
     match text.trim().parse::<f64>() {
         Ok(x) if x > 0.0 && x < 1.0 => Ok(x),
         _ => Err("expected a number between 0 and 1, as 1e-6".into()),
+    }
+}
+
+fn wanted_error(text: &str) -> Result<f64, String> {
+    match tolerance(text)? {
+        x if x < 1e-15 => Err("expected at least 1e-15, because numbers have 16 digits".into()),
+        x => Ok(x),
     }
 }
 

@@ -262,6 +262,7 @@ fn wrong_options_are_refused_by_one_sentence() {
         (["--tolerances", "-1"], &["between 0 and 1"]),
         (["--error", "1"], &["between 0 and 1"]),
         (["--error", "1e-6,x"], &["between 0 and 1"]),
+        (["--error", "1e-20"], &["at least 1e-15"]),
         (["--repeat", "-3"], &["--repeat"]),
         (["--tolerances", "0"], &["between 0 and 1"]),
         (["--tolerances", "small"], &["between 0 and 1"]),
