@@ -315,6 +315,8 @@ impl<G: LieGroup, A: Action<G>, M, F> Flow<G, A, WithWork<M, F>> {
 
 impl<G: LieGroup, A: Action<G>, F, L, H, I> With<G, A, F, L, H, I> {
     /// Adds the fact that f depends only on t. Magnus methods then apply, and are wrong if it is not true.
+    /// It is not true of a field in the body, as of `in_body`: in space that field is Ad_y f, which depends on y. Magnus
+    /// methods are of order 2 there.
     pub fn linear(self) -> With<G, A, F, TimeAlone, H, I> {
         let Flow { group, action, field, facts: FlowFacts { energy, invariants, .. } } = self;
         Flow { group, action, field, facts: FlowFacts { linear: TimeAlone, energy, invariants } }

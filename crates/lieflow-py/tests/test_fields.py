@@ -71,7 +71,7 @@ def test_samples_as_a_field():
     truth = lf.solve_ivp(lambda t, y: [np.sin(t), np.cos(t), 0.3 * t], (0, 4), np.eye(3), t_eval=[4.0], **ROTATION)
     for values, kind, bound in ((rate, "linear", 1e-2), (rate, "cubic", 1e-4), (increments, "mean-rate", 1e-4)):
         samples = lf.Samples(t, values, kind)
-        for method in (None, "magnus4"):
+        for method in (None, "rkmk4"):
             steps = {"steps": 400} if method else {}
             r = lf.solve_ivp(samples, (0, 4), np.eye(3), t_eval=[4.0], method=method, **steps, **ROTATION)
             assert np.abs(r.y - truth.y).max() < bound

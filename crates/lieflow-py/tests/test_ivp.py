@@ -480,3 +480,23 @@ def test_the_estimate_finds_a_pulse_that_the_run_passed_over():
     assert "steps" not in slow.estimate_error().found_by
     fixed = lf.solve_ivp(f, (0, 100), np.eye(3), group="SO(3)", frame="body", dt=1.0)
     assert fixed.estimate_error().found_by == "a second run in steps of half the size"
+
+
+@pytest.mark.parametrize("method", ["magnus4", "magnus6", "magnus8", "cfm4-2", "cfm6-5", "cayley-magnus4"])
+def test_methods_for_linear_equations_are_not_for_the_body(method):
+    """In space f is Ad_y f, which depends on y. These methods were of order 2."""
+
+    def rate(t, y=None):
+        return np.array([np.cos(t), 0.1 * t, 1.0])
+
+    for frame in ("space", "body"):
+        general = lf.solve_ivp(rate, (0, 10), np.eye(3), group="SO(3)", frame=frame)
+        alone = lf.solve_ivp(lambda t: rate(t), (0, 10), np.eye(3), group="SO(3)", frame=frame, linear=True)
+        assert np.abs(alone.y_end - general.y_end).max() < 1e-9
+    settings = {"group": "SO(3)", "linear": True, "method": method, "steps": 400}
+    assert lf.solve_ivp(lambda t: rate(t), (0, 10), np.eye(3), frame="space", **settings).success
+    with pytest.raises(lf.ArgumentError, match=method):
+        lf.solve_ivp(lambda t: rate(t), (0, 10), np.eye(3), frame="body", **settings)
+    gyro = lf.Samples(np.linspace(0, 10, 101), [rate(t) for t in np.linspace(0, 10, 101)])
+    with pytest.raises(lf.ArgumentError, match=method):
+        lf.solve_ivp(gyro, (0, 10), np.eye(3), group="SO(3)", frame="body", method=method, steps=100)

@@ -284,24 +284,26 @@ impl Space {
         &self.value
     }
 
-    /// The problem with this field. With `linear`, f depends only on t, and methods for linear equations fit.
+    /// The problem with this field. With `linear`, f depends only on t, and methods for linear equations fit. They do not
+    /// fit a field in the frame of the body: in space it is Ad_y f, which depends on y.
     ///
     /// # Errors
     /// [`Error::Unsupported`] for a space whose fields cannot be linear.
     pub fn problem(&self, field: Arc<OwnField>, linear: bool) -> Result<Own, Error> {
         let body = self.frame == Some(Frame::Body);
+        let fits_linear = linear && !body;
         let run: Box<dyn Run> = match &self.kind {
             SpaceKind::Rotation => {
-                Typed::linear(So3::new(), LeftTranslation, Rotations, (field, body, linear))
+                Typed::linear(So3::new(), LeftTranslation, Rotations, (field, body, fits_linear))
             }
             SpaceKind::Vector => Typed::linear(So3::new(), Linear, Vectors, (field, false, linear)),
             SpaceKind::Motion => {
-                Typed::linear(Se3::new(), LeftTranslation, Motions, (field, body, linear))
+                Typed::linear(Se3::new(), LeftTranslation, Motions, (field, body, fits_linear))
             }
             SpaceKind::Matrix(group, action) => {
                 let columns = self.point.get(1).copied().unwrap_or(1);
                 let layout = Matrices { rows: self.point[0], columns };
-                Typed::linear_or_poisson(group.clone(), *action, layout, (field, body, linear))
+                Typed::linear_or_poisson(group.clone(), *action, layout, (field, body, fits_linear))
             }
             SpaceKind::Complex(group, action) => {
                 let layout = ComplexMatrices {
@@ -309,7 +311,7 @@ impl Space {
                     columns: if self.point.len() > 2 { self.point[1] } else { 1 },
                     vectors: *action == MatrixAction::Linear,
                 };
-                Typed::linear_or_poisson(group.clone(), *action, layout, (field, body, linear))
+                Typed::linear_or_poisson(group.clone(), *action, layout, (field, body, fits_linear))
             }
             SpaceKind::Pair | SpaceKind::Quaternion | SpaceKind::Parts(_) if linear => {
                 return Err(Error::Unsupported {
