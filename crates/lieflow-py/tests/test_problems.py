@@ -318,3 +318,11 @@ def test_moments_that_no_body_has_are_a_warning(tmp_path):
         with warnings.catch_warnings():
             warnings.simplefilter("error")
             make(good)
+
+
+@pytest.mark.parametrize("name", ["inertia", "omega", "keys", "method"])
+def test_a_problem_does_not_change(name):
+    body = lf.RigidBody(inertia=[1, 2, 2.5], momentum_body=[1, 0, 1])
+    with pytest.raises(AttributeError, match=f"{name}: a problem does not change; replace"):
+        setattr(body, name, [1, 1, 1])
+    assert body.replace(inertia=[1, 1, 1]).keys["inertia"] == [1, 1, 1] and body.keys["inertia"] == [1, 2, 2.5]

@@ -48,6 +48,12 @@ class Problem:
         self._make(keys)
         self._warn(3)
 
+    def __setattr__(self, name: str, value: Any) -> None:
+        # Runs read the problem that was made from the keys.
+        if not name.startswith("_") and (name != "keys" or hasattr(self, "keys")):
+            raise AttributeError(f"{name}: a problem does not change; replace({name}=...) returns another one")
+        super().__setattr__(name, value)
+
     def _warn(self, level: int) -> None:
         for text in self._problem.warnings:
             warnings.warn(text, UserWarning, stacklevel=level)
