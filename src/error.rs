@@ -86,7 +86,7 @@ pub enum Error {
         arg: &'static str,
     },
     /// The determinant of a matrix is not 1, as that of an element of SL(n) and SU(n) is.
-    #[error("{arg}: not in {group}: its determinant is {}, expected 1", of_parts(*.re, *.im))]
+    #[error("{arg}: not in {group}: its determinant is {}, expected 1", plain_complex(*.re, *.im))]
     Determinant {
         /// The argument.
         arg: &'static str,
@@ -334,7 +334,7 @@ impl fmt::Display for Plain<'_> {
 }
 
 /// A complex number in a message, as a real one where its imaginary part is 0.
-pub fn of_parts(re: f64, im: f64) -> String {
+pub fn plain_complex(re: f64, im: f64) -> String {
     let sign = if im < 0.0 { '-' } else { '+' };
     match im == 0.0 {
         true => Plain(&re).to_string(),

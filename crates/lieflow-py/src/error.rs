@@ -1,6 +1,6 @@
 //! Errors of the library as exceptions.
 
-use lieflow::error::{Plain, of_parts};
+use lieflow::error::{Plain, plain_complex};
 use lieflow::{Error, RunError};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
@@ -47,7 +47,7 @@ pub(crate) fn refused(py: Python<'_>, name: &str, error: &Error) -> PyErr {
             argument(py, of(arg), value, format!("at most {tolerance:e}"))
         }
         Error::Determinant { arg, group, re, im } => {
-            let value = format!("a matrix of determinant {}", of_parts(*re, *im));
+            let value = format!("a matrix of determinant {}", plain_complex(*re, *im));
             argument(py, of(arg), value, format!("1, as in {group}"))
         }
         Error::Trace { arg, group, distance } => {

@@ -107,13 +107,13 @@ impl MatrixGroup {
         u: &Mat<f64>,
         tolerance: f64,
     ) -> Result<(), Error> {
-        let (group, residual) = (|| self.name(), self.off_blocks(u));
+        let residual = self.off_blocks(u);
         if residual > tolerance {
-            return Err(Error::NotInAlgebra { arg, group: group(), residual, tolerance });
+            return Err(Error::NotInAlgebra { arg, group: self.name(), residual, tolerance });
         }
         let distance = self.trace(u.as_ref()).abs();
         match self.subgroup.is_special && distance > tolerance * norm_frobenius(u) {
-            true => Err(Error::Trace { arg, group: group(), distance }),
+            true => Err(Error::Trace { arg, group: self.name(), distance }),
             false => Ok(()),
         }
     }
@@ -126,9 +126,9 @@ impl MatrixGroup {
         g: &Mat<f64>,
         tolerance: f64,
     ) -> Result<(), Error> {
-        let (group, residual) = (|| self.name(), self.off_blocks(g));
+        let residual = self.off_blocks(g);
         if residual > tolerance {
-            return Err(Error::NotOnGroup { arg, group: group(), residual, tolerance });
+            return Err(Error::NotOnGroup { arg, group: self.name(), residual, tolerance });
         }
         let det = match (self.subgroup.is_special, self.subgroup.is_complex) {
             (false, false) if matches!(self.form(), Form::Identity) && g.determinant() < 0.0 => {
@@ -144,7 +144,7 @@ impl MatrixGroup {
         };
         let size: f64 = (0..self.n()).map(|i| g.row(i).norm_l2()).product();
         match (det - c64::ONE).norm() > tolerance.max(DETERMINANT) * size.max(1.0) {
-            true => Err(Error::Determinant { arg, group: group(), re: det.re, im: det.im }),
+            true => Err(Error::Determinant { arg, group: self.name(), re: det.re, im: det.im }),
             false => Ok(()),
         }
     }
@@ -190,8 +190,8 @@ impl MatrixGroup {
     ///
     /// # Errors
     /// [`Error::NotSquare`], [`Error::Shape`], [`Error::NotFiniteEntry`], [`Error::Singular`] on
-    /// GL(n), [`Error::Reflection`] on SO(n), [`Error::Determinant`] on SL(n) and SU(n), and [`Error::NotOnGroup`] with the residual
-    /// ‖gᵀMg − M‖/(‖M‖ max(1, ‖g‖²)).
+    /// GL(n), [`Error::Reflection`] on SO(n), [`Error::Determinant`] on SL(n) and SU(n), and
+    /// [`Error::NotOnGroup`] with the residual ‖gᵀMg − M‖/(‖M‖ max(1, ‖g‖²)).
     pub fn element(&self, g: Mat<f64>) -> Result<GroupMatrix, Error> {
         self.element_within(g, MEMBERSHIP)
     }
