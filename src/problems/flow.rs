@@ -80,6 +80,8 @@ type With<G, A, F, L, H, I> = Flow<G, A, F, FlowFacts<L, H, I>>;
 
 /// f(t, y) of a [`Flow`]: a closure, or one with scratch.
 pub trait Field<G: LieGroup, A: Action<G>> {
+    /// True if f is what the closure writes. In space a field in the body is Ad_y f, which depends on y.
+    const IS_IN_SPACE: bool = true;
     /// Scratch.
     type Work: Send;
     /// Scratch for [`f`](Self::f).
@@ -252,6 +254,7 @@ where
     G: Adjoint,
     F: Fn(G::Scalar, &G::Elem, &mut G::Alg),
 {
+    const IS_IN_SPACE: bool = false;
     type Work = BodyValue<G::Alg>;
 
     fn work(&self) -> BodyValue<G::Alg> {
@@ -315,9 +318,17 @@ impl<G: LieGroup, A: Action<G>, M, F> Flow<G, A, WithWork<M, F>> {
 
 impl<G: LieGroup, A: Action<G>, F, L, H, I> With<G, A, F, L, H, I> {
     /// Adds the fact that f depends only on t. Magnus methods then apply, and are wrong if it is not true.
-    /// It is not true of a field in the body, as of `in_body`: in space that field is Ad_y f, which depends on y. Magnus
-    /// methods are of order 2 there.
-    pub fn linear(self) -> With<G, A, F, TimeAlone, H, I> {
+    ///
+    /// It is not true of a field in the body ([`Field::IS_IN_SPACE`]), which does not compile:
+    /// ```compile_fail
+    /// use lieflow::{groups::So3, nalgebra::Vector3, problems::Flow};
+    /// Flow::in_body(So3::<f64>::new(), |t, _, v| *v = Vector3::new(t, 1.0, 0.0)).linear();
+    /// ```
+    pub fn linear(self) -> With<G, A, F, TimeAlone, H, I>
+    where
+        F: Field<G, A>,
+    {
+        const { assert!(F::IS_IN_SPACE, "a field in the body is Ad_y f in space: it depends on y") };
         let Flow { group, action, field, facts: FlowFacts { energy, invariants, .. } } = self;
         Flow { group, action, field, facts: FlowFacts { linear: TimeAlone, energy, invariants } }
     }
