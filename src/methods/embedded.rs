@@ -49,19 +49,25 @@ pub trait Embedded<P: Problem>: Method<P> {
     }
 }
 
-/// The ratio of an error e ∈ 𝔤 of a step from y, whose increment has this length.
+/// The ratio of an error e ∈ 𝔤 of a step from y to z, whose increment has this length.
+///
+/// A part that begins at 0 has no tolerance at y, where atol is 0. Then that of z counts.
 #[inline]
 pub(super) fn ratio_in_algebra<P: Problem>(
     problem: &P,
     tolerance: &Tolerance,
     e: &AlgOf<P>,
-    y: &PointOf<P>,
+    [y, z]: [&PointOf<P>; 2],
     length: ScalarOf<P>,
 ) -> ScalarOf<P> {
     let group = problem.group();
+    let at = |y| problem.action().error_ratio(group, e, y, &mut tolerance.scales());
     match tolerance.rule() {
         Rule::PerLength => ratio(group.norm(e), tolerance.per_length(length)),
-        Rule::PerStep => problem.action().error_ratio(group, e, y, &mut tolerance.scales()),
+        Rule::PerStep => {
+            let ratio = at(y);
+            if ratio.is_finite() { ratio } else { at(z) }
+        }
     }
 }
 

@@ -303,7 +303,7 @@ where
     ) -> Result<ScalarOf<P>, StepError> {
         let length = inner.advance(&self.0, problem, step, from, to, true)?;
         Ok(match self.0.embedded {
-            Some(_) => ratio_in_algebra(problem, tolerance, &inner.u, from, length),
+            Some(_) => ratio_in_algebra(problem, tolerance, &inner.u, [from, &*to], length),
             None => ScalarOf::<P>::lit(f64::INFINITY),
         })
     }

@@ -329,7 +329,7 @@ where
         let length = alg.norm(u);
         alg.axpy(ScalarOf::<P>::lit(-1.0), u, v);
         let error = match self.0.embedded {
-            Some(_) => ratio_in_algebra(problem, tolerance, v, from, length),
+            Some(_) => ratio_in_algebra(problem, tolerance, v, [from, &*to], length),
             None => ScalarOf::<P>::lit(f64::INFINITY),
         };
         Ok(error)

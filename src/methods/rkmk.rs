@@ -184,7 +184,7 @@ impl<P: Problem, Psi: CoordinateMap<P::Group>, const S: usize> Embedded<P> for R
         let length = alg.norm(u);
         let size = |weights: &[f64; S]| {
             alg.combine(step.h, weights, k, u);
-            ratio_in_algebra(problem, tolerance, u, from, length)
+            ratio_in_algebra(problem, tolerance, u, [from, &*to], length)
         };
         let error = match &self.tableau.error {
             Some(estimate) => estimate.error(size),

@@ -276,3 +276,26 @@ fn by_the_step_and_by_the_length() {
     let errors = [1e-5, 1e-9].map(|rtol| run(Rule::PerStep, 1.0, rtol).0);
     assert!(errors[1] < 1e-3 * errors[0], "{errors:?}");
 }
+
+/// rtol alone, from parts that are 0 at the start: the size of the end of the step counts there.
+#[test]
+fn rtol_alone_from_zero() {
+    let group = Product(So3::<f64>::new(), free());
+    let action = lieflow::actions::Pair(LeftTranslation, LeftTranslation);
+    let flow = Flow::new(group, action, |t: f64, y: &(Matrix3<f64>, V), v: &mut (_, V)| {
+        v.0 = Vector3::new(0.3, t.cos(), 0.1) + y.1;
+        v.1 = V::new(t, (3.0 * t).sin(), 1.0);
+    });
+    let y0 = (Matrix3::identity(), V::zeros());
+    let end = |rtol: f64| {
+        let method = Rkmk::new(DOPRI5, Exp);
+        let solve = Solve::new(&flow, &method, [0.0, 2.0]).tolerances(rtol, 0.0);
+        solve.run(y0).expect("a run")
+    };
+    let (rough, fine) = (end(1e-5), end(1e-9));
+    let exact = V::new(2.0, (1.0 - 6f64.cos()) / 3.0, 2.0);
+    assert!((rough.y.1 - exact).norm() < 1e-4 && (fine.y.1 - exact).norm() < 1e-8);
+    assert!((rough.y.0 - fine.y.0).norm() < 1e-4);
+    // Steps are few: none is a search for a part that is 0.
+    assert!(rough.stats.accepted + rough.stats.rejected < 60, "{:?}", rough.stats);
+}
