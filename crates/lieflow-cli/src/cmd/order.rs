@@ -99,24 +99,17 @@ fn numbers_of_steps(scene: &Scene, first: Option<u64>) -> Vec<u64> {
     (0..=HALVINGS).filter_map(|k| first.checked_shl(k)).collect()
 }
 
-/// log₂ of the ratio of the errors of a run and the run before it; none below the floor of rounding.
-fn slopes(curve: &Curve) -> Vec<Option<f64>> {
-    let slope = |i: usize| {
-        let (before, this) = (&curve.points[i.checked_sub(1)?], &curve.points[i]);
-        let slope = (before.error / this.error).log2() / (before.h / this.h).log2();
-        (this.error > curve.floor && slope.is_finite()).then_some(slope)
-    };
-    (0..curve.points.len()).map(slope).collect()
+/// The number of the first run that is rounding. The runs after it, of smaller steps, are too.
+fn first_of_rounding(curve: &Curve) -> usize {
+    let rounding = 2.0 * curve.rounding();
+    let first = curve.points.iter().position(|run| run.error <= rounding);
+    first.unwrap_or(curve.points.len())
 }
 
-/// The order by the last two slopes that are clear of the floor: those of larger steps do not have it yet.
-fn measured(curve: &Curve) -> Option<f64> {
-    let clear = |(i, slope): (usize, Option<f64>)| {
-        slope.filter(|_| curve.points[i].error > 10.0 * curve.floor)
-    };
-    let all: Vec<f64> = slopes(curve).into_iter().enumerate().filter_map(clear).collect();
-    let last = &all[all.len().saturating_sub(2)..];
-    (!last.is_empty()).then(|| last.iter().sum::<f64>() / last.len() as f64)
+/// The slopes of the runs that are not rounding.
+fn slopes(curve: &Curve) -> impl Iterator<Item = Option<f64>> {
+    let end = first_of_rounding(curve);
+    curve.slopes().into_iter().enumerate().map(move |(i, slope)| slope.filter(|_| i < end))
 }
 
 fn json<'a>(scene: &'a Scene, curves: &[Curve], reference: &Reference) -> Json<'a> {
@@ -131,7 +124,7 @@ fn json<'a>(scene: &'a Scene, curves: &[Curve], reference: &Reference) -> Json<'
         MethodJson {
             method: curve.label.clone(),
             order: curve.order,
-            measured_order: measured(curve),
+            measured_order: curve.measured_order(),
             runs: runs.collect(),
         }
     });
@@ -152,24 +145,30 @@ fn in_words(scene: &Scene, curves: &[Curve], reference: &Reference) -> String {
         "",
     );
     for curve in curves {
-        let order = match (curve.order, measured(curve)) {
+        let order = match (curve.order, curve.measured_order()) {
             (Some(order), Some(found)) => format!("order {order}, measured {found:.2}"),
-            (Some(order), None) => {
-                format!("order {order}; too few runs are clear of rounding to measure it")
-            }
+            (Some(order), None) => format!(
+                "order {order}; it cannot be measured here: no three runs that are clear of rounding have one slope"
+            ),
             (None, _) => "exact: it has no order".into(),
         };
         text += &format!("\n{}: {order}\n", curve.label);
-        let rows = curve.points.iter().zip(slopes(curve)).map(|(point, slope)| {
+        let rounding = first_of_rounding(curve);
+        let rows = curve.points.iter().zip(slopes(curve)).enumerate().map(|(i, (point, slope))| {
             let error = match &point.failure {
-                Some(failure) => failure.clone(),
-                None if point.error <= curve.floor => format!("{:.1e}, rounding", point.error),
+                Some(_) => "failed".into(),
+                None if i >= rounding => format!("{:.1e}, rounding", point.error),
                 None => format!("{:.1e}", point.error),
             };
             let slope = slope.map_or(String::new(), |slope| format!("{slope:.2}"));
             [point.steps.to_string(), format!("{:.3e}", point.h), error, slope]
         });
         text += &table(["steps", "h", "error", "slope"], rows);
+        for point in &curve.points {
+            if let Some(failure) = &point.failure {
+                text += &output::wrap(&format!("{} steps: {failure}.", point.steps), "");
+            }
+        }
     }
     text
 }

@@ -173,8 +173,14 @@ pub struct Curve {
 const ASYMPTOTIC: core::ops::Range<f64> = 1e-10..1e-2;
 /// An error is clear of the floor if it is larger by this factor.
 const CLEAR: f64 = 10.0;
+/// An error is clear of rounding that shows if it is larger by this factor.
+const ABOVE: f64 = 3.0;
 /// Rounding has begun where the slope falls below this part of the slope of the pair of runs before.
 const STEADY: f64 = 0.7;
+/// Two slopes agree if they differ by no more than this part of the larger one.
+const AGREE: f64 = 0.15;
+/// The largest number of slopes that an order is measured with.
+const SLOPES_MAX: usize = 3;
 
 impl Curve {
     /// The error of a run, as far as it can be told: no smaller than the floor.
@@ -200,19 +206,55 @@ impl Curve {
         !self.stays && self.points.iter().any(|point| !point.off_manifold.is_nan())
     }
 
-    /// The measured order: the slope of the least-squares line through log h, log error, over the runs that are clear
-    /// of the floor and before the error falls more slowly. None where these are fewer than three.
-    pub fn measured_order(&self) -> Option<f64> {
-        let clear = |error: f64| ASYMPTOTIC.contains(&error) && error > CLEAR * self.floor;
-        let used: Vec<&WorkPoint> = self.points.iter().filter(|p| clear(p.error)).collect();
-        let slope = |pair: &[&WorkPoint]| {
-            (pair[0].error / pair[1].error).ln() / (pair[0].h / pair[1].h).ln()
+    /// log(error ratio)/log(step ratio) of each run and the run before it.
+    pub fn slopes(&self) -> Vec<Option<f64>> {
+        let slope = |pair: &[WorkPoint]| {
+            let slope = (pair[0].error / pair[1].error).ln() / (pair[0].h / pair[1].h).ln();
+            Some(slope).filter(|slope| slope.is_finite())
         };
-        let slopes: Vec<f64> = used.windows(2).map(slope).collect();
-        let falls = |i: usize| slopes[i] > 0.0 && (i == 0 || slopes[i] >= STEADY * slopes[i - 1]);
-        let clean = (0..slopes.len()).take_while(|i| falls(*i)).count();
-        let fit: Fit = used.iter().take(clean + 1).map(|p| (p.h.ln(), p.error.ln())).collect();
-        fit.slope().filter(|_| clean >= 2)
+        let first = self.points.first().map(|_| None);
+        first.into_iter().chain(self.points.windows(2).map(slope)).collect()
+    }
+
+    /// The size of the rounding errors: the floor of the reference, or the smallest error where smaller steps no longer
+    /// help. Rounding errors of many small steps are above the floor.
+    pub fn rounding(&self) -> f64 {
+        let finite = || self.points.iter().enumerate().filter(|(_, run)| run.error > 0.0);
+        let Some((least, run)) = finite().min_by(|a, b| a.1.error.total_cmp(&b.1.error)) else {
+            return self.floor;
+        };
+        let slopes = self.slopes();
+        let last = slopes.len() - 1;
+        let falls = match slopes[..].last_chunk() {
+            Some([Some(before), Some(last)]) => *last >= STEADY * before,
+            _ => true,
+        };
+        if least == last && falls { self.floor } else { run.error.max(self.floor) }
+    }
+
+    /// The measured order: the slope of the least-squares line through log h, log error. The line goes through the
+    /// smallest runs that are clear of rounding and whose slopes agree. None where these are fewer than three.
+    pub fn measured_order(&self) -> Option<f64> {
+        let rounding = (CLEAR * self.floor).max(ABOVE * self.rounding());
+        let is_clear = |run: &WorkPoint| ASYMPTOTIC.contains(&run.error) && run.error > rounding;
+        let slopes = self.slopes();
+        // The slope into a run, if both of its runs are clear.
+        let clear = |i: usize| {
+            let both = is_clear(&self.points[i - 1]) && is_clear(&self.points[i]);
+            slopes[i].filter(|slope| both && *slope > 0.0)
+        };
+        // The smaller one of the slope into a run and that before it, where they agree.
+        let agreed = |i: usize| {
+            let (a, b) = clear(i - 1).zip(clear(i))?;
+            ((a - b).abs() <= AGREE * a.max(b)).then_some(a.min(b))
+        };
+        // Slopes of rounding may agree by chance. They are small.
+        let steepest = (2..slopes.len()).filter_map(agreed).fold(0.0, f64::max);
+        let is_steep = |i: &usize| agreed(*i).is_some_and(|slope| slope >= STEADY * steepest);
+        let end = (2..slopes.len()).rev().find(is_steep)?;
+        let more = (2..end).rev().take(SLOPES_MAX - 2).take_while(is_steep).count();
+        let used = &self.points[end - 2 - more..=end];
+        used.iter().map(|run| (run.h.ln(), run.error.ln())).collect::<Fit>().slope()
     }
 
     /// Where this error is reached soonest, by a run or between two by the line through them in the

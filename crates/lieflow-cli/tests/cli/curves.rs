@@ -3,6 +3,8 @@
 use lieflow_cli::measure::{Candidate, Curve, Reached, Size, WorkPoint, pareto};
 use lieflow_model::problem::Layer;
 
+use crate::support::Folder;
+
 /// error = h⁴, time per unit = 1/h.
 fn ideal(hs: &[f64]) -> Curve {
     let candidate = Candidate::rk4(Layer::Closed);
@@ -42,6 +44,46 @@ fn no_order_is_fitted_into_the_floor() {
     assert_eq!(order(&curve), Some(4.0));
     curve.floor = 1e-7;
     assert_eq!(order(&curve), None);
+}
+
+/// Rounding of many small steps, large first steps, and slopes that never agree.
+#[test]
+fn the_order_is_that_of_runs_whose_slopes_agree() {
+    let order = |errors: &[f64]| {
+        let hs: Vec<f64> = (0..errors.len()).map(|i| 0.5_f64.powi(i as i32)).collect();
+        let mut curve = ideal(&hs);
+        curve.points.iter_mut().zip(errors).for_each(|(point, error)| point.error = *error);
+        curve.measured_order()
+    };
+    // Rounding far above the floor, with a slope of its own by chance.
+    let rounds = [9e-3, 5.6e-4, 3.5e-5, 2.2e-6, 1.4e-7, 9e-9, 1e-9, 6e-10, 3.5e-10, 2.1e-10];
+    assert!((order(&rounds).expect("an order") - 4.0).abs() < 0.05);
+    // The first steps are too large, and the first slope with them.
+    let large = [1.7e-3, 1.1e-5, 9.6e-7, 7.2e-8, 4.9e-9, 3.2e-10, 2.0e-11, 1.3e-12];
+    assert!((order(&large).expect("an order") - 3.85).abs() < 0.1);
+    // A jump of f within steps, and then none.
+    assert_eq!(order(&[1.3e-3, 8e-3, 1.3e-4, 5.9e-5, 4.9e-14, 7.2e-14, 9.7e-14]), None);
+    assert_eq!(order(&[4.7e-15, 4.3e-15, 2.8e-14, 1.4e-13]), None);
+    assert_eq!(order(&[]), None);
+}
+
+/// `lieflow order` on bundled scenes, whose smallest steps are all rounding.
+#[test]
+fn orders_of_bundled_scenes() {
+    let folder = Folder::new();
+    let scenes = ["rotating-field", "crossed-fields", "sorting", "oja", "mathieu", "manakov-body"];
+    for scene in scenes {
+        let told = folder.lieflow(&["order", scene, "--json"]).ok();
+        let json: serde_json::Value = serde_json::from_str(&told).unwrap();
+        for method in json["methods"].as_array().unwrap() {
+            let [order, found] = ["order", "measured_order"].map(|key| method[key].as_f64());
+            let apart = (order.expect("an order") - found.expect(scene)).abs();
+            assert!(apart < 0.25, "{scene}: {method}");
+        }
+    }
+    let told = folder.lieflow(&["order", "riccati-pole"]).ok();
+    assert!(told.contains("order 4; it cannot be measured here"), "{told}");
+    assert!(told.contains("rounding") && !told.contains("measured -"), "{told}");
 }
 
 #[test]
