@@ -28,7 +28,7 @@ pub use linear_algebra::{
     singular_values, squared_norm, symmetric_eigen, symmetric_eigenvalues,
 };
 pub(crate) use lu::Lu;
-pub(crate) use ops::{axpy, is_finite, norm_frobenius, norm1, scaled_sum, wide};
+pub(crate) use ops::{axpy, is_finite, norm_frobenius, norm_of, norm1, scaled_sum, wide};
 pub(crate) use product::{
     antisymmetrise, congruence, lower_product, mirror, mul, mul_add, orthogonalise, skew_commutator,
 };

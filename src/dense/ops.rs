@@ -224,6 +224,21 @@ pub(crate) fn norm_frobenius(x: &Mat<f64>) -> f64 {
     }
 }
 
+/// The Frobenius norm of a matrix that is not stored.
+pub(crate) fn norm_of(rows: usize, cols: usize, entry: impl Fn(usize, usize) -> f64) -> f64 {
+    let sum = |term: &dyn Fn(f64) -> f64| -> f64 {
+        (0..cols).map(|j| (0..rows).map(|i| term(entry(i, j))).sum::<f64>()).sum()
+    };
+    let square = sum(&|x| x * x);
+    if square.is_normal() {
+        return square.sqrt();
+    }
+    // The squares left the range.
+    let entries = (0..cols).flat_map(|j| (0..rows).map(move |i| (i, j)));
+    let top = entries.fold(0.0, |top: f64, (i, j)| top.max(entry(i, j).abs()));
+    if top > 0.0 && top.is_finite() { top * sum(&|x| (x / top).powi(2)).sqrt() } else { top }
+}
+
 /// True if every entry is finite. It does not use sums of moduli, which may overflow although no entry does.
 pub(crate) fn is_finite(x: &Mat<f64>) -> bool {
     (0..x.ncols()).all(|j| sum(x.col_as_slice(j), |x| 0.0 * x) == 0.0)

@@ -82,6 +82,14 @@ pub trait LieAlgebra: Send + Sync {
         Ok(())
     }
 
+    /// The distance of u from 𝔤, as ‖uᵀM + Mu‖/‖M‖ on a matrix group. Allocates nothing.
+    ///
+    /// During a run the driver asks for the distance of f. The default is `None`, for storage that holds only elements of 𝔤.
+    #[inline]
+    fn off_algebra(&self, _u: &Self::Alg) -> Option<Self::Scalar> {
+        None
+    }
+
     /// u ← Σ_j h·w_j·k_j over the nonzero weights.
     #[inline]
     fn combine(&self, h: Self::Scalar, weights: &[f64], terms: &[Self::Alg], u: &mut Self::Alg) {

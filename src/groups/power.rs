@@ -119,6 +119,9 @@ impl<G: LieAlgebra> LieAlgebra for Power<G> {
         self.check_copies(arg, u)?;
         u.iter().try_for_each(|u| self.group.check(arg, u))
     }
+    fn off_algebra(&self, u: &Self::Alg) -> Option<G::Scalar> {
+        u.iter().map(|u| self.group.off_algebra(u)).fold(None, worse)
+    }
 }
 
 impl<G: LieGroup> LieGroup for Power<G> {

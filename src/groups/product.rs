@@ -86,6 +86,10 @@ impl<A: LieAlgebra, B: LieAlgebra<Scalar = A::Scalar>> LieAlgebra for Product<A,
         self.0.check(arg, &u.0)?;
         self.1.check(arg, &u.1)
     }
+    #[inline]
+    fn off_algebra(&self, u: &Self::Alg) -> Option<A::Scalar> {
+        worse(self.0.off_algebra(&u.0), self.1.off_algebra(&u.1))
+    }
 }
 
 impl<A: LieGroup, B: LieGroup<Scalar = A::Scalar>> LieGroup for Product<A, B> {

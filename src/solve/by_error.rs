@@ -52,7 +52,7 @@ impl Timeline {
                 Ok(ratio) if ratio <= 1.0 => {
                     let forward = self.t1 > self.t;
                     run.points().accept();
-                    self.accepted(run.points(), step, end);
+                    self.accepted(run.points(), step, end)?;
                     let Pacer::ByError(chooser) = &mut self.pacer else { return Ok(()) };
                     let passed = |wall: &f64| if forward { end >= *wall } else { end <= *wall };
                     chooser.wall = chooser.wall.filter(|wall| !passed(wall));

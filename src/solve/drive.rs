@@ -107,7 +107,10 @@ impl Drive<'_> {
     pub(super) fn run(&mut self, output: &mut dyn AnyOutput) -> Result<Status, RunError> {
         let starts = output.invariants().into_iter().zip(output.values(None));
         self.drift = starts.map(|(of, [value, terms])| Drift::new(of, value, terms)).collect();
-        let ended = self.steps(output);
+        let ended = self.steps(output).and_then(|status| {
+            self.times.check_end(output.points())?;
+            Ok(status)
+        });
         self.see(output, true);
         ended
     }

@@ -98,7 +98,7 @@ pub(super) struct EventRule {
     pub(super) stop_after: Option<u64>,
     /// True if the event changes the state.
     pub(super) changes: bool,
-    points: Option<u32>,
+    pub(super) points: Option<u32>,
     /// True if the steps of the run are long.
     has_long_steps: bool,
     pub(super) seen: Seen,
@@ -136,6 +136,8 @@ impl Seen {
 const POINTS: u32 = 8;
 /// The steps of methods of this order and more are long: each is searched for all zeros of an event.
 pub const LONG_STEPS: usize = 10;
+/// The largest number of points within a step that a caller may ask for ([`Event::points`]).
+pub(super) const POINTS_MAX: u32 = 100_000;
 /// How often a part of a long step is halved, where no polynomial describes g.
 const HALVINGS: u32 = 5;
 /// The part of a step after which the sign of g is taken again.
@@ -186,7 +188,7 @@ impl<'a, Y> Event<'a, Y> {
         self.functions.told = Some(Box::new(told));
         self
     }
-    /// Evaluates g at this many points within every step.
+    /// Evaluates g at this many points within every step, at most 100 000.
     ///
     /// The default is 8 points in steps that may have two zeros, and none in others. A step may have two zeros if |g|
     /// at one end is at most twice the change of the slope of g over this step and the one before, times the step size.

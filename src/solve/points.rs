@@ -18,6 +18,9 @@ use crate::scalar::Real;
 use crate::space::Metric;
 use crate::tolerance::Tolerance;
 
+/// How far from M, relative to y, a step may move because f is not in 𝔤. Rounding of f moves it less.
+const OFF_BY_A_STEP: f64 = 1e-9;
+
 /// A place in the last step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Place {
@@ -58,8 +61,15 @@ pub(super) trait AnyPoints {
     fn rate(&mut self, t: f64) -> f64;
     /// ‖f(t, to) − f‖ with the stored f.
     fn change_of_rate(&mut self, t: f64) -> f64;
-    /// Corrects y to M, and records how far it was.
-    fn correct(&mut self, cadence: &mut Cadence, stats: &mut Stats);
+    /// Corrects y to M, and records how far it was. Where f may be outside of 𝔤, refuses a state that was farther from M
+    /// than rounding moves it.
+    fn correct(&mut self, cadence: &mut Cadence, stats: &mut Stats) -> Result<(), Error>;
+    /// Checks that f(t, y) is in 𝔤, so far that steps of this size stay on M. Does nothing where no f is outside.
+    fn check_field(&mut self, t: f64, size: f64, stats: &mut Stats) -> Result<(), Error>;
+    /// Checks that y is on M ([`Action::restore`]), and leaves it as it is. Does nothing where no f is outside of 𝔤.
+    ///
+    /// It does not see the determinant of SL(n) and SU(n): methods with cay leave these by the error of their order.
+    fn check_state(&mut self) -> Result<(), Error>;
     /// Takes the last step again, so that the workspace holds it. to ← its end.
     fn repeat(&mut self, step: Step<f64>) -> Result<(), StepError>;
     /// Prepares the dense output of the last step. Its end is y, or else `to`.
@@ -99,13 +109,12 @@ where
     }
 }
 
-/// What adaptive steps need besides the method: the estimator with its tolerance, and two values of f with their scratch
-/// for the choice of a first step.
+/// What adaptive steps need besides the method: the estimator with its tolerance, and a value of f for the choice of a
+/// first step.
 struct Rates<P: Problem, M: Method<P>> {
     estimator: Estimator<P, M>,
     tolerance: Tolerance,
-    f: [AlgOf<P>; 2],
-    work: P::Work,
+    f: AlgOf<P>,
 }
 
 /// The points of a run.
@@ -124,6 +133,9 @@ pub(super) struct Points<'a, P: Problem, M: Method<P>> {
     /// The start of the run. The state is corrected to its orbit.
     orbit: PointOf<P>,
     restore: <P::Action as Action<P::Group>>::Work,
+    /// A value of f, and the scratch of f.
+    v: AlgOf<P>,
+    field: P::Work,
     /// The function that lists the numbers of a point, if the state is saved.
     pub(super) list: Option<Listing<P>>,
 }
@@ -139,16 +151,28 @@ fn finite(is: bool) -> Result<(), StepError> {
     }
 }
 
+/// max(1, ‖y‖²).
+fn square_of_size<P: Problem>(y: &PointOf<P>) -> ScalarOf<P> {
+    let (one, size) = (ScalarOf::<P>::lit(1.0), y.size());
+    let square = size * size;
+    if square.all_below(1.0) { one } else { square }
+}
+
 /// Corrects y to M. Refuses a y that is farther from M than numbers with seven digits are.
 fn check_on_manifold<P: Problem>(
     problem: &P,
     y: &mut PointOf<P>,
     work: &mut <P::Action as Action<P::Group>>::Work,
 ) -> Result<(), Error> {
-    let size = y.size();
-    let Some(residual) = problem.action().restore(problem.group(), y, work) else { return Ok(()) };
-    let (one, square) = (ScalarOf::<P>::lit(1.0), size * size);
-    let relative = residual / if square.all_below(1.0) { one } else { square };
+    let square = square_of_size::<P>(y);
+    match problem.action().restore(problem.group(), y, work) {
+        Some(residual) => check_residual(problem, residual / square),
+        None => Ok(()),
+    }
+}
+
+/// Refuses the relative residual of a y that is farther from M than numbers with seven digits are.
+fn check_residual<P: Problem>(problem: &P, relative: ScalarOf<P>) -> Result<(), Error> {
     match relative.all_below(OFF_M_MAX) {
         true => Ok(()),
         false => Err(Error::NotOnGroup {
@@ -186,21 +210,21 @@ impl<'a, P: Problem, M: Method<P>> Points<'a, P, M> {
                 let none = action.error_ratio(group, &group.zero(), &y, &mut parts);
                 tolerance.check(parts.asked(), none.any_below(f64::INFINITY))?;
                 error_order = Some(facts.order_of_estimate()?);
-                let f = [group.zero(), group.zero()];
                 let tolerance = tolerance.clone();
-                Some(Rates { estimator, tolerance, f, work: problem.work() })
+                Some(Rates { estimator, tolerance, f: group.zero() })
             }
         };
         let work = method.work(problem, &y)?;
+        let (mut v, mut field) = (group.zero(), problem.work());
         if let Some(t) = field_at {
-            let mut v = group.zero();
-            problem.f(ScalarOf::<P>::lit(t), &y, &mut v, &mut problem.work());
+            problem.f(ScalarOf::<P>::lit(t), &y, &mut v, &mut field);
             group.check("f", &v)?;
         }
         let [from, to, orbit] = [y.clone(), y.clone(), y.clone()];
         let (problem, method) = held;
+        let list = None;
         let points =
-            Points { problem, method, y, from, to, work, rates, orbit, restore, list: None };
+            Points { problem, method, y, from, to, work, rates, orbit, restore, v, field, list };
         Ok((points, facts, error_order))
     }
 
@@ -345,32 +369,64 @@ impl<P: Problem, M: Method<P>> AnyPoints for Points<'_, P, M> {
         core::mem::swap(&mut self.y, &mut self.to);
     }
     fn rate(&mut self, t: f64) -> f64 {
-        let Points { problem, y, rates, .. } = self;
+        let Points { problem, y, rates, field, .. } = self;
         let problem = &**problem;
-        rates.as_mut().map_or(0.0, |Rates { estimator, f: [f, _], work, .. }| {
-            problem.f(ScalarOf::<P>::lit(t), y, f, work);
+        rates.as_mut().map_or(0.0, |Rates { estimator, f, .. }| {
+            problem.f(ScalarOf::<P>::lit(t), y, f, field);
             (estimator.norm)(problem, f)
         })
     }
     fn change_of_rate(&mut self, t: f64) -> f64 {
-        let Points { problem, to, rates, .. } = self;
+        let Points { problem, to, rates, v, field, .. } = self;
         let problem = &**problem;
-        rates.as_mut().map_or(0.0, |Rates { estimator, f: [f, change], work, .. }| {
-            problem.f(ScalarOf::<P>::lit(t), to, change, work);
-            problem.group().axpy(ScalarOf::<P>::lit(-1.0), f, change);
-            (estimator.norm)(problem, change)
+        rates.as_mut().map_or(0.0, |Rates { estimator, f, .. }| {
+            problem.f(ScalarOf::<P>::lit(t), to, v, field);
+            problem.group().axpy(ScalarOf::<P>::lit(-1.0), f, v);
+            (estimator.norm)(problem, v)
         })
     }
-    fn correct(&mut self, cadence: &mut Cadence, stats: &mut Stats) {
-        let Points { problem, y, orbit, restore, .. } = self;
+    fn correct(&mut self, cadence: &mut Cadence, stats: &mut Stats) -> Result<(), Error> {
+        let Points { problem, y, orbit, restore, v, .. } = self;
         let problem = &**problem;
-        match problem.action().restore_to(problem.group(), orbit, y, restore) {
-            Some(residual) => {
-                stats.saw(residual);
-                cadence.saw(residual);
+        let Some(residual) = problem.action().restore_to(problem.group(), orbit, y, restore) else {
+            match problem.group().off_algebra(v) {
+                Some(_) => cadence.saw(0.0),
+                None => cadence.next = u64::MAX,
             }
-            None => cadence.next = u64::MAX,
+            return Ok(());
+        };
+        stats.saw(residual);
+        cadence.saw(residual);
+        match problem.group().off_algebra(v) {
+            Some(_) => check_residual(problem, residual / square_of_size::<P>(y)),
+            None => Ok(()),
         }
+    }
+    fn check_field(&mut self, t: f64, size: f64, stats: &mut Stats) -> Result<(), Error> {
+        let Points { problem, y, v, field, .. } = self;
+        let problem = &**problem;
+        let group = problem.group();
+        if group.off_algebra(v).is_none() {
+            return Ok(());
+        }
+        problem.f(ScalarOf::<P>::lit(t), y, v, field);
+        stats.evaluations = stats.evaluations.map(|n| n + 1);
+        // In the frame of the body rounding moves f by ε‖y‖².
+        let square = square_of_size::<P>(y);
+        let allowed = if square.all_below(1e6) { square } else { ScalarOf::<P>::lit(1e6) };
+        let moved = group.off_algebra(v).map(|off| off * ScalarOf::<P>::lit(size) / allowed);
+        match moved.is_none_or(|moved| moved.all_below(OFF_BY_A_STEP)) {
+            true => Ok(()),
+            false => group.check("f", v),
+        }
+    }
+    fn check_state(&mut self) -> Result<(), Error> {
+        let Points { problem, y, restore, v, .. } = self;
+        let problem = &**problem;
+        if problem.group().off_algebra(v).is_none() {
+            return Ok(());
+        }
+        check_on_manifold(problem, &mut y.clone(), restore)
     }
     fn repeat(&mut self, step: Step<f64>) -> Result<(), StepError> {
         let Points { problem, method, y, from, to, work, rates, .. } = self;

@@ -183,6 +183,17 @@ pub enum RunError {
         /// What is wrong with it.
         source: Error,
     },
+    /// The run left M, because f is not in 𝔤: f or the state say so.
+    ///
+    /// It is checked where the storage of f can hold more than 𝔤 ([`LieAlgebra::off_algebra`](crate::LieAlgebra::off_algebra)):
+    /// at each correction ([`RESTORE_EVERY`]), by one evaluation of f, and at the end.
+    #[error("the run leaves M before t = {}: {source}", Plain(.t))]
+    LeftManifold {
+        /// The time of the last accepted point.
+        t: f64,
+        /// What is not in its group or algebra.
+        source: Error,
+    },
     /// A point within an accepted step could not be computed.
     #[error("no point within the step from t = {} with h = {h:?}: {source}", Plain(.t))]
     Within {

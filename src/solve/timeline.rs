@@ -196,20 +196,51 @@ impl Timeline {
             self.looked_at = Looked::Nothing;
             return Err(Failure { step: n, t: self.t, h: step.h, source }.into());
         }
-        self.accepted(points, step, end);
-        Ok(())
+        self.accepted(points, step, end)
     }
 
     /// Records that y is the state after `step`, at `end`.
-    pub(super) fn accepted(&mut self, points: &mut dyn AnyPoints, step: Step<f64>, end: f64) {
+    ///
+    /// # Errors
+    /// [`RunError::LeftManifold`].
+    pub(super) fn accepted(
+        &mut self,
+        points: &mut dyn AnyPoints,
+        step: Step<f64>,
+        end: f64,
+    ) -> Result<(), RunError> {
         self.last = step;
         self.looked_at = Looked::Fresh;
         self.t = end;
         self.stats.accepted += 1;
         self.stats.smallest_step = self.stats.smallest_step.min(step.h.abs());
         self.stats.largest_step = self.stats.largest_step.max(step.h.abs());
-        if self.stats.accepted == self.cadence.next {
-            points.correct(&mut self.cadence, &mut self.stats);
+        if self.stats.accepted != self.cadence.next {
+            return Ok(());
+        }
+        self.check_field(points)?;
+        let corrected = points.correct(&mut self.cadence, &mut self.stats);
+        corrected.map_err(|source| RunError::LeftManifold { t: end, source })
+    }
+
+    /// Checks that f, just before the end of the last step, is in 𝔤.
+    fn check_field(&mut self, points: &mut dyn AnyPoints) -> Result<(), RunError> {
+        let t = self.last.t + size_to(self.last.t, self.t, true);
+        let checked = points.check_field(t, self.stats.largest_step, &mut self.stats);
+        checked.map_err(|source| RunError::LeftManifold { t: self.t, source })
+    }
+
+    /// Checks at the end of a run that it has stayed on M, and would further do so.
+    pub(super) fn check_end(&mut self, points: &mut dyn AnyPoints) -> Result<(), RunError> {
+        if self.stats.accepted == 0 {
+            return Ok(());
+        }
+        self.check_field(points)?;
+        match self.facts.stays_on_manifold {
+            true => {
+                points.check_state().map_err(|source| RunError::LeftManifold { t: self.t, source })
+            }
+            false => Ok(()),
         }
     }
 

@@ -4,6 +4,7 @@ mod controller;
 mod events;
 mod hard_cases;
 mod interpolant;
+mod leaves;
 mod modes;
 mod physics;
 mod restore;

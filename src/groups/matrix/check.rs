@@ -3,7 +3,7 @@
 use faer::{Mat, MatRef, c64};
 
 use super::{AlgebraMatrix, Form, GroupMatrix, MatrixGroup};
-use crate::dense::{Lu, RCOND_MIN, is_finite, norm_frobenius};
+use crate::dense::{Lu, RCOND_MIN, is_finite, norm_frobenius, norm_of};
 use crate::error::{Error, StepError};
 use crate::groups::{LieAlgebra, MEMBERSHIP};
 
@@ -77,12 +77,11 @@ impl MatrixGroup {
 
     /// ‖uᵀM + Mu‖/(‖M‖‖u‖) is at most `tolerance`, or not a number.
     fn belongs(&self, arg: &'static str, u: &Mat<f64>, tolerance: f64) -> Result<(), Error> {
-        let (Some(m), scale) = (self.m(), u.norm_max()) else { return Ok(()) };
+        let scale = u.norm_max();
         if scale > 0.0 {
             // The residual is relative: no overflow, and 1/scale might be one.
             let v = Mat::from_fn(self.n(), self.n(), |i, j| u[(i, j)] / scale);
-            let gap = v.transpose() * &m + &m * &v;
-            let residual = norm_frobenius(&gap) / (norm_frobenius(&m) * norm_frobenius(&v));
+            let residual = self.off_form(&v) / norm_frobenius(&v);
             if residual > tolerance {
                 return Err(Error::NotInAlgebra { arg, group: self.name(), residual, tolerance });
             }
@@ -90,14 +89,47 @@ impl MatrixGroup {
         Ok(())
     }
 
-    /// How far x is from the matrices \[X −Y; Y X\], relative to its norm; 0 where it need not be one.
+    /// ‖uᵀM + Mu‖/‖M‖; 0 on GL(n).
+    fn off_form(&self, u: &Mat<f64>) -> f64 {
+        let n = self.n();
+        match self.form() {
+            Form::Free => 0.0,
+            Form::Identity => norm_of(n, n, |i, j| u[(i, j)] + u[(j, i)]) / (n as f64).sqrt(),
+            Form::Symplectic => {
+                // (Ju)ᵀ = −uᵀJ.
+                let ju =
+                    |i: usize, j| if i < n / 2 { u[(i + n / 2, j)] } else { -u[(i - n / 2, j)] };
+                norm_of(n, n, |i, j| ju(i, j) - ju(j, i)) / (n as f64).sqrt()
+            }
+            Form::Bilinear { m, .. } => {
+                let term = |i, j, k| u[(k, i)] * m[(k, j)] + m[(i, k)] * u[(k, j)];
+                let gap = |i, j| (0..n).map(|k| term(i, j, k)).sum::<f64>();
+                norm_of(n, n, gap) / norm_frobenius(m)
+            }
+        }
+    }
+
+    /// [`LieAlgebra::off_algebra`]; `None` for the matrices of GL(n).
+    pub(super) fn off_form_and_subgroup(&self, u: &Mat<f64>) -> Option<f64> {
+        if matches!(self.form(), Form::Free) && !self.subgroup.is_special {
+            return None;
+        }
+        let trace = if self.subgroup.is_special { self.trace(u.as_ref()).abs() } else { 0.0 };
+        Some(self.off_form(u) + self.off_blocks(u) + trace)
+    }
+
+    /// The distance of x from the matrices \[X −Y; Y X\]; 0 where it need not be one.
     fn off_blocks(&self, x: &Mat<f64>) -> f64 {
         if !self.subgroup.is_complex {
             return 0.0;
         }
-        let blocks = self.blocks(x.as_ref());
-        let (gap, size) = (norm_frobenius(&(&blocks - x)), norm_frobenius(x));
-        if gap > 0.0 { gap / size } else { 0.0 }
+        norm_of(self.n(), self.n(), |i, j| x[(i, j)] - self.block(x.as_ref(), i, j))
+    }
+
+    /// [`off_blocks`](Self::off_blocks), relative to the norm of x.
+    fn off_blocks_relative(&self, x: &Mat<f64>) -> f64 {
+        let gap = self.off_blocks(x);
+        if gap > 0.0 { gap / norm_frobenius(x) } else { 0.0 }
     }
 
     /// u, in the algebra of the form, is in that of the subgroup, to `tolerance` times the norm of u.
@@ -107,7 +139,7 @@ impl MatrixGroup {
         u: &Mat<f64>,
         tolerance: f64,
     ) -> Result<(), Error> {
-        let residual = self.off_blocks(u);
+        let residual = self.off_blocks_relative(u);
         if residual > tolerance {
             return Err(Error::NotInAlgebra { arg, group: self.name(), residual, tolerance });
         }
@@ -126,7 +158,7 @@ impl MatrixGroup {
         g: &Mat<f64>,
         tolerance: f64,
     ) -> Result<(), Error> {
-        let residual = self.off_blocks(g);
+        let residual = self.off_blocks_relative(g);
         if residual > tolerance {
             return Err(Error::NotOnGroup { arg, group: self.name(), residual, tolerance });
         }

@@ -300,6 +300,9 @@ impl LieAlgebra for MatrixGroup {
     fn check(&self, arg: &'static str, u: &AlgebraMatrix) -> Result<(), Error> {
         self.check_algebra(arg, u)
     }
+    fn off_algebra(&self, u: &AlgebraMatrix) -> Option<f64> {
+        self.off_form_and_subgroup(u)
+    }
 }
 
 impl LieGroup for MatrixGroup {

@@ -84,12 +84,15 @@ impl MatrixGroup {
 
     /// The matrix \[X −Y; Y X\] that is nearest to x.
     pub(super) fn blocks(&self, x: MatRef<'_, f64>) -> Mat<f64> {
+        Mat::from_fn(self.n, self.n, |i, j| self.block(x, i, j))
+    }
+
+    /// An entry of [`blocks`](Self::blocks).
+    pub(super) fn block(&self, x: MatRef<'_, f64>, i: usize, j: usize) -> f64 {
         let m = self.n / 2;
-        Mat::from_fn(self.n, self.n, |i, j| {
-            let (k, l) = ((i + m) % self.n, (j + m) % self.n);
-            let sign = if (i < m) == (j < m) { 0.5 } else { -0.5 };
-            0.5 * x[(i, j)] + sign * x[(k, l)]
-        })
+        let (k, l) = ((i + m) % self.n, (j + m) % self.n);
+        let sign = if (i < m) == (j < m) { 0.5 } else { -0.5 };
+        0.5 * x[(i, j)] + sign * x[(k, l)]
     }
 
     /// The trace of u; of a skew-Hermitian X + iY that of Y.

@@ -101,6 +101,9 @@ impl LieAlgebra for Unitary {
             false => Ok(()),
         }
     }
+    fn off_algebra(&self, u: &ComplexMatrix) -> Option<f64> {
+        Some(u.off_skew())
+    }
 }
 
 impl Unitary {

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use lieflow::actions::Action;
-use lieflow::dense::{multiply, norm, squared_norm};
+use lieflow::dense::{largest_entry, multiply, norm, squared_norm};
 use lieflow::groups::{AlgebraMatrix, LieAlgebra, LieGroup, MatrixGroup};
 use lieflow::maps::{CoordinateMap, Exp};
 use lieflow::problems::Flow;
@@ -104,10 +104,20 @@ impl Equation {
     fn formulas(&self) -> impl Iterator<Item = &Formula> {
         self.field.iter().map(|(_, formula)| formula)
     }
-    /// v ← the projection of f(t, y) on 𝔤.
-    fn projected(&self, t: f64, y: &Mat<f64>, v: &mut Mat<f64>) {
+    /// v ← the projection of f(t, y) on 𝔤, where f is near it. Elsewhere f itself: the run ends with an error then.
+    fn projected(&self, t: f64, y: &Mat<f64>, v: &mut AlgebraMatrix) {
         self.stated(t, y, v);
-        self.algebra.project(v);
+        if self.algebra.is_complex() {
+            // The formulas are X and Y of [X −Y; Y X].
+            let n = self.n();
+            for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))) {
+                (v[(i, n + j)], v[(n + i, n + j)]) = (-v[(n + i, j)], v[(i, j)]);
+            }
+        }
+        let off = self.group.off_algebra(v);
+        if off.is_some_and(|off| off <= IN_THE_ALGEBRA * largest_entry(v.as_ref())) {
+            self.algebra.project(v);
+        }
     }
     /// A point of M beside the start: Λ(exp v, start) for a generic v ∈ 𝔤.
     fn beside_the_start(&self) -> Option<Mat<f64>> {

@@ -8,9 +8,10 @@
 //! | coadjoint | y fᵀ − fᵀ y | tr yᵏ |
 //! | lagrangian | c + dy − ya − yby, f = \[a b; c d\] in sp(2m), y symmetric | |
 //!
-//! Of U(n) and SU(n) y and f are complex, and ᵀ is †. M is that of the group; GL(n) and SL(n) have none. The projection of f on 𝔤 is integrated: it takes rounding
-//! away. An f that is not in 𝔤 at the start, or at a point beside it, is refused. Where f depends on t alone the
-//! equation is of linear type, and Magnus methods fit.
+//! Of U(n) and SU(n) y and f are complex, and ᵀ is †. M is that of the group; GL(n) and SL(n) have none. The projection
+//! of f on 𝔤 is integrated: it takes rounding away. An f that is not in 𝔤 at the start, or at a point beside it, is
+//! refused, and an f that leaves 𝔤 later ends the run. Where f depends on t alone the equation is of linear type, and
+//! Magnus methods fit.
 
 mod equation;
 

@@ -1,0 +1,251 @@
+//! An f that is not in 𝔤 ends a run, and rounding of f does not.
+
+use lieflow::actions::{Conjugation, Each, LeftTranslation, Linear, Pair};
+use lieflow::faer::{Mat, c64};
+use lieflow::groups::{
+    AlgebraMatrix, ComplexMatrix, MatrixGroup, Power, Product, Sample, So3, Unitary,
+};
+use lieflow::maps::Exp;
+use lieflow::methods::tableau::{DOPRI5, RK4};
+use lieflow::methods::{Embedded, Rk, Rkmk};
+use lieflow::problems::{Flow, PointOf, Problem};
+use lieflow::{Error, LieAlgebra, LieGroup, RunError, Solve};
+use nalgebra::Matrix3;
+use rand::SeedableRng;
+use rand_pcg::Pcg64;
+
+/// From this time on f leaves 𝔤.
+const LEAVES: f64 = 1.0;
+
+/// How far f(t) is out: nothing before [`LEAVES`].
+fn out(t: f64) -> f64 {
+    0.3 * (t - LEAVES).max(0.0)
+}
+
+/// The error of runs to t = 3 by fixed and by adaptive steps.
+fn runs<P: Problem<Group: LieAlgebra<Scalar = f64>>, M: Embedded<P>>(
+    problem: &P,
+    method: &M,
+    y0: &PointOf<P>,
+) -> [Result<f64, RunError>; 2] {
+    let solve = || Solve::new(problem, method, [0.0, 3.0]);
+    [solve().dt(0.01), solve().tolerances(1e-8, 1e-8)]
+        .map(|solve| solve.run(y0.clone()).map(|run| run.t).map_err(|failed| failed.error))
+}
+
+/// f that leaves 𝔤 ends the runs soon after, with an error of f; f that stays does not.
+fn is_seen<P: Problem<Group: LieAlgebra<Scalar = f64>>>(
+    name: &str,
+    leaving: &P,
+    staying: &P,
+    y0: &PointOf<P>,
+) where
+    Exp: lieflow::maps::CoordinateMap<P::Group>,
+{
+    let method = Rkmk::new(DOPRI5, Exp);
+    for run in runs(leaving, &method, y0) {
+        match run {
+            Err(RunError::LeftManifold {
+                t,
+                source: Error::NotInAlgebra { arg: "f", .. } | Error::Trace { arg: "f", .. },
+            }) => assert!(t > LEAVES && t < 3.0, "{name}: seen at t = {t}"),
+            run => panic!("{name}: {run:?}"),
+        }
+    }
+    for run in runs(staying, &method, y0) {
+        assert_eq!(run.expect(name), 3.0);
+    }
+}
+
+fn groups() -> Vec<MatrixGroup> {
+    let form =
+        Mat::from_fn(3, 3, |i, j| if i == j { 1.0 + i as f64 } else { 0.3 * (i * j) as f64 });
+    [
+        MatrixGroup::so(4),
+        MatrixGroup::sp(4),
+        MatrixGroup::sl(3),
+        MatrixGroup::u(2),
+        MatrixGroup::su(2),
+        MatrixGroup::indefinite(2, 1),
+        MatrixGroup::gm(form),
+    ]
+    .map(|group| group.expect("a group"))
+    .into()
+}
+
+/// x, an element of 𝔤, and all of it that is not.
+fn with_out(group: &MatrixGroup, x: &AlgebraMatrix, out: f64) -> AlgebraMatrix {
+    let n = group.n();
+    let mut v = group.zero();
+    v.copy_from(Mat::from_fn(n, n, |i, j| x[(i, j)] + if i == 0 && j == 0 { out } else { 0.0 }));
+    v
+}
+
+#[test]
+fn an_f_that_leaves_the_algebra_ends_the_run() {
+    let mut rng = Pcg64::seed_from_u64(7);
+    for group in groups() {
+        let x = group.sample_algebra(&mut rng, 0.4);
+        let flow = |size: f64| {
+            let (of, x) = (group.clone(), x.clone());
+            Flow::new(group.clone(), LeftTranslation, move |t, _: &_, v: &mut AlgebraMatrix| {
+                v.copy_from(&*with_out(&of, &x, size * out(t)));
+            })
+        };
+        is_seen(&group.name(), &flow(1.0), &flow(0.0), &group.identity());
+    }
+    let unitary = Unitary::new(3).expect("a group");
+    let flow = |size: f64| {
+        Flow::new(unitary, LeftTranslation, move |t: f64, _: &_, v: &mut ComplexMatrix| {
+            let level = |i: usize, j: usize| c64::new(0.0, if i == j { t } else { 0.5 });
+            *v = ComplexMatrix::from_fn(3, 3, |i, j| level(i, j) + size * out(t));
+        })
+    };
+    is_seen("U(3)", &flow(1.0), &flow(0.0), &unitary.identity());
+}
+
+/// Parts, copies, and other actions than translation.
+#[test]
+fn an_f_that_leaves_the_algebra_in_a_part_ends_the_run() {
+    let mut rng = Pcg64::seed_from_u64(8);
+    let so = MatrixGroup::so(3).expect("a group");
+    let x = so.sample_algebra(&mut rng, 1.0);
+    let bad = |size: f64| {
+        let (so, x) = (so.clone(), x.clone());
+        move |t: f64, v: &mut AlgebraMatrix| v.copy_from(&*with_out(&so, &x, size * out(t)))
+    };
+    let product = Product(So3::new(), so.clone());
+    let action = || Pair(LeftTranslation, LeftTranslation);
+    let flow = |size: f64| {
+        let bad = bad(size);
+        Flow::new(product.clone(), action(), move |t, _: &_, v: &mut (_, AlgebraMatrix)| {
+            v.0 = nalgebra::Vector3::new(1.0, t, 0.0);
+            bad(t, &mut v.1);
+        })
+    };
+    is_seen("a product", &flow(1.0), &flow(0.0), &(Matrix3::identity(), so.identity()));
+
+    let power = Power::new(so.clone(), 3).expect("a group");
+    let flow = |size: f64| {
+        let bad = bad(size);
+        let f = move |t, _: &_, v: &mut Box<[AlgebraMatrix]>| bad(t, &mut v[2]);
+        Flow::new(power.clone(), Each(LeftTranslation), f)
+    };
+    is_seen("a power", &flow(1.0), &flow(0.0), &power.identity());
+
+    let flow = |size: f64| {
+        let bad = bad(size);
+        Flow::new(so.clone(), Linear, move |t, _: &_, v: &mut AlgebraMatrix| bad(t, v))
+    };
+    is_seen("columns", &flow(1.0), &flow(0.0), &Mat::from_fn(3, 2, |i, j| (1 + i + j) as f64));
+    let flow = |size: f64| {
+        let bad = bad(size);
+        Flow::new(so.clone(), Conjugation, move |t, _: &_, v: &mut AlgebraMatrix| bad(t, v))
+    };
+    is_seen("by conjugation", &flow(1.0), &flow(0.0), &Mat::from_fn(3, 3, |i, j| (i + j) as f64));
+}
+
+/// ẏ in place of f: at y = 𝟙 both are the same. Methods that leave M see it at the end.
+#[test]
+fn a_derivative_in_place_of_f_is_seen() {
+    let group = MatrixGroup::so(4).expect("a group");
+    let k = group.sample_algebra(&mut Pcg64::seed_from_u64(9), 1.0);
+    let flow = Flow::new(
+        group.clone(),
+        LeftTranslation,
+        move |_, y: &lieflow::groups::GroupMatrix, v: &mut AlgebraMatrix| {
+            v.copy_from(k.as_ref() * y.as_ref());
+        },
+    );
+    let y0 = group.identity();
+    for run in runs(&flow, &Rkmk::new(DOPRI5, Exp), &y0) {
+        assert!(matches!(run, Err(RunError::LeftManifold { t, .. }) if t < 3.0), "{run:?}");
+    }
+    for run in runs(&flow, &Rk(DOPRI5), &y0) {
+        assert!(matches!(run, Err(RunError::LeftManifold { t: 3.0, .. })), "{run:?}");
+    }
+}
+
+/// f is out for a moment, between two looks at it: then the state says so.
+#[test]
+fn a_state_that_has_left_m_is_seen() {
+    let group = MatrixGroup::so(4).expect("a group");
+    let x = group.sample_algebra(&mut Pcg64::seed_from_u64(10), 1.0);
+    let of = group.clone();
+    let flow = Flow::new(group.clone(), LeftTranslation, move |t, _: &_, v: &mut AlgebraMatrix| {
+        let size = if t > 1.0 && t < 1.0 + 5e-3 { 1.0 } else { 0.0 };
+        v.copy_from(&*with_out(&of, &x, size));
+    });
+    let run = Solve::new(&flow, &Rkmk::new(RK4, Exp), [0.0, 3.0]).dt(1e-3).run(group.identity());
+    match run.map_err(|failed| failed.error) {
+        Err(RunError::LeftManifold { t, source: Error::NotOnGroup { arg: "y", .. } }) => {
+            assert!(t > 1.0 && t < 1.11, "{t}");
+        }
+        run => panic!("{run:?}"),
+    }
+}
+
+/// Rounding of f is no error: near rest, where all of f is rounding, and in the body, where y is large.
+#[test]
+fn rounding_of_f_ends_no_run() {
+    // Brockett's flow: f = [L, N] goes to 0, and its rounding is not skew.
+    let group = MatrixGroup::so(4).expect("a group");
+    let f = |_, l: &Mat<f64>, v: &mut AlgebraMatrix| {
+        let n = Mat::from_fn(4, 4, |i, j| if i == j { 1.0 + i as f64 } else { 0.0 });
+        let left = Mat::from_fn(4, 4, |i, j| (0..4).map(|k| l[(i, k)] * n[(k, j)]).sum::<f64>());
+        let term = |i: usize, j: usize, k: usize| n[(i, k)] * l[(k, j)];
+        let right = Mat::from_fn(4, 4, |i, j| (0..4).rev().map(|k| term(i, j, k)).sum::<f64>());
+        v.copy_from(left - right);
+    };
+    let start = Mat::from_fn(4, 4, |i, j| 1.0 / (1 + i + j) as f64);
+    let flow = Flow::new(group, Conjugation, f);
+    let method = Rkmk::new(DOPRI5, Exp);
+    for solve in [0, 1].map(|i| {
+        let solve = Solve::new(&flow, &method, [0.0, 200.0]);
+        if i == 0 { solve.dt(0.05) } else { solve.tolerances(1e-10, 1e-12) }
+    }) {
+        solve.run(start.clone()).expect("a run to rest");
+    }
+    // In the body Ad_y f has the rounding of ‖y‖².
+    let group = MatrixGroup::sp(2).expect("a group");
+    let flow = Flow::in_body(group.clone(), |t: f64, _: &_, v: &mut AlgebraMatrix| {
+        v.copy_from(Mat::from_fn(2, 2, |i, j| match (i, j) {
+            (0, 0) => 1.0,
+            (1, 1) => -1.0,
+            _ => 0.3 * t.cos(),
+        }));
+    });
+    let run = Solve::new(&flow, &method, [0.0, 8.0]).dt(0.01);
+    let run = run.run(group.identity()).expect("a run that grows");
+    assert!(run.y[(0, 0)].abs() > 1e3);
+}
+
+/// The distance is 0 in 𝔤, and that of what is added to it; storage of 𝔤 alone has none.
+#[test]
+fn the_distance_from_the_algebra() {
+    let mut rng = Pcg64::seed_from_u64(11);
+    for group in groups() {
+        let x = group.sample_algebra(&mut rng, 1.0);
+        let inside = group.off_algebra(&x).expect("a distance");
+        assert!(inside < 1e-14, "{}: {inside:e}", group.name());
+        let [near, far] = [1e-6, 1e-3].map(|out| group.off_algebra(&with_out(&group, &x, out)));
+        let (near, far) = (near.expect("a distance"), far.expect("a distance"));
+        assert!((far / near - 1e3).abs() < 1e-4, "{}: {near:e} {far:e}", group.name());
+        assert!(near > 1e-7 && near < 1e-5, "{}: {near:e}", group.name());
+    }
+    let so = MatrixGroup::so(3).expect("a group");
+    let x = so.sample_algebra(&mut rng, 1.0);
+    let far = with_out(&so, &x, 1.0);
+    // ‖u + uᵀ‖/‖𝟙‖ with one entry of 2.
+    let expected = 2.0 / 3f64.sqrt();
+    let found = so.off_algebra(&far).expect("a distance");
+    assert!((found - expected).abs() < 1e-15, "{found}");
+    let huge = with_out(&so, &so.zero(), 1e200);
+    assert!((so.off_algebra(&huge).expect("a distance") / 1e200 - expected).abs() < 1e-15);
+    assert!(MatrixGroup::gl(3).expect("a group").off_algebra(&far).is_none());
+    assert!(So3::<f64>::new().off_algebra(&nalgebra::Vector3::x()).is_none());
+    let product = Product(So3::<f64>::new(), so.clone());
+    assert_eq!(product.off_algebra(&(nalgebra::Vector3::x(), far.clone())), Some(found));
+    let power = Power::new(so.clone(), 2).expect("a group");
+    assert_eq!(power.off_algebra(&vec![so.zero(), far].into()), Some(found));
+}
