@@ -8,7 +8,7 @@ use faer::{Mat, MatRef};
 use super::Action;
 use crate::dense::{Lu, is_finite, mul_add};
 use crate::error::{Error, StepError};
-use crate::groups::{AlgebraMatrix, GroupMatrix, MatrixGroup, check_entries};
+use crate::groups::{AlgebraMatrix, GroupMatrix, MatrixGroup, OFF_M_MAX, check_entries};
 use crate::maps::CoordinateMap;
 use crate::maps::PsiOf;
 use crate::scalar::{Ops, tally};
@@ -64,6 +64,14 @@ impl Action<MatrixGroup> for Lagrangian {
         match (rows, cols) == (m, m) {
             true => check_entries("y", p.as_ref()),
             false => Err(Error::Shape { arg: "y", rows, cols, expected_rows: m, expected_cols: m }),
+        }
+    }
+    /// P is symmetric, to 1e-6 of its size. [`act`](Action::act) takes the symmetric part of its result.
+    fn check_member(&self, _: &MatrixGroup, p: &Mat<f64>) -> Result<(), Error> {
+        let skew = (p - p.transpose()).norm_max();
+        match skew > OFF_M_MAX * p.norm_max() {
+            true => Err(Error::out_of_range("y − yᵀ", skew, "0: a symmetric y")),
+            false => Ok(()),
         }
     }
     fn assign(&self, _: &MatrixGroup, p: &Mat<f64>, q: &mut Mat<f64>) {

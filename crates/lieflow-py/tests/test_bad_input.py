@@ -175,3 +175,33 @@ def test_options_are_named(options, argument):
     assert caught.value.argument == argument
     with pytest.raises(TypeError, match="direction: 'up', expected a number"):
         lf.Event("m1", direction="up")
+
+
+def test_what_would_have_no_effect_is_refused():
+    body = lf.RigidBody(inertia=[1, 2, 3], omega_body=[1, 0, 0])
+    for keys in ({"args": (1.0,)}, {"linear": True}, {"method": ""}):
+        with pytest.raises(lf.ArgumentError) as caught:
+            lf.solve_ivp(body, (0, 1), **keys)
+        assert caught.value.argument == next(iter(keys))
+    # Events take them.
+    lf.solve_ivp(body, (0, 1), args=(1.0,), events=lambda t, y, a: a + t)
+    for keys in ({"args": 1.0}, {"quantities": 3}, {"callback": 3}):
+        with pytest.raises(TypeError, match=next(iter(keys))):
+            lf.solve_ivp(body, (0, 1), **keys)
+    with pytest.raises(TypeError, match="terminal: 'yes'"):
+        lf.Event("m1", terminal="yes")
+    with pytest.raises(lf.ArgumentError, match="direction: nan"):
+        lf.Event("m1", direction=np.nan)
+    with pytest.raises(lf.ArgumentError, match="points of event"):
+        lf.solve_ivp(body, (0, 1), events=lf.Event("m1", points=10**9))
+    assert lf.load("asymmetric-top", set="time.dt=0.01").run().success
+
+
+@pytest.mark.parametrize(
+    ("group", "says"),
+    [("SO(-3)", "unknown|one of"), ("U(n)", "numbers in place"), ("SO(0)", "a size from 1"), ("Sp(3)", "even size")],
+)
+def test_groups_are_named(group, says):
+    with pytest.raises(lf.ArgumentError, match=says) as caught:
+        lf.solve_ivp(lambda t, y: 0 * y, (0, 1), np.eye(3), group=group, frame="space")
+    assert caught.value.argument == "group" and "expected expected" not in str(caught.value)

@@ -232,3 +232,37 @@ def test_objects_go_through_processes():
     here = lf.solve_ivp(problem, (0, 3.0), dense_output=True)
     assert np.array_equal(run.attitude, here.attitude)
     assert np.abs(sol(3.0).attitude - here.attitude[-1]).max() < 1e-13
+
+
+@pytest.mark.parametrize("options", [{"dt": 0.01}, {"rtol": 1e-8, "atol": 1e-8}])
+def test_a_value_outside_the_algebra_ends_the_run(options):
+    K = lf.SO(4).random(rng=1) - lf.SO(4).random(rng=1).T
+    K = K - K.T
+    space = {"group": "SO(4)", "frame": "space", **options}
+    # The derivative in place of f: at the start both are equal.
+    wrong = lf.solve_ivp(lambda t, y: K @ y, (0, 3), np.eye(4), **space)
+    assert wrong.status == -1 and "f: not in the Lie algebra of SO(4)" in wrong.message and wrong.t_end < 3
+    late = lf.solve_ivp(lambda t, y: K + max(t - 1, 0) * np.eye(4), (0, 3), np.eye(4), **space)
+    assert late.status == -1 and 1 < late.t_end < 3
+    right = lf.solve_ivp(lambda t, y: K, (0, 3), np.eye(4), **space)
+    assert right.success
+    late = lf.solve_ivp(
+        lambda t: np.array([[1j - max(t - 1, 0), 0], [0, 2j]]), (0, 3), np.eye(2), group="U(2)", frame="space", linear=True,
+        **options
+    )
+    assert late.status == -1 and "U(2)" in late.message
+
+
+def test_rtol_alone_from_rest():
+    f = lambda t, y: [0.1, 0.2, np.cos(t), 1.0, 0.0, t]  # noqa: E731
+    run = lf.solve_ivp(f, (0, 2), np.eye(4), group="SE(3)", frame="body", method="rkmk dopri5", rtol=1e-8, atol=0)
+    fine = lf.solve_ivp(f, (0, 2), np.eye(4), group="SE(3)", frame="body", rtol=1e-12, atol=1e-12)
+    assert run.success and np.abs(run.y_end - fine.y_end).max() < 1e-7
+
+
+def test_a_lagrangian_start_is_symmetric():
+    f = lambda t, y: [[0, 0, 1, 0], [0, 0, 0, 1], [-1, 0, 0, 0], [0, -1, 0, 0]]  # noqa: E731
+    space = {"group": "Sp(4)", "action": "lagrangian"}
+    assert lf.solve_ivp(f, (0, 1), np.eye(2), **space).success
+    with pytest.raises(lf.ArgumentError, match="symmetric"):
+        lf.solve_ivp(f, (0, 1), [[1.0, 0.2], [0.1, 1.0]], **space)

@@ -1,6 +1,7 @@
 //! How right the rows of a run are, and what would do where they are wrong.
 
 use std::cell::Cell;
+use std::f64::consts::PI;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
@@ -343,8 +344,11 @@ impl<'a> Check<'a> {
         let all = parts_of(self.watch).zip(&apart.parts);
         let parts = all.map(|((observable, part), &Largest { gap, t, last })| {
             let error = |Gap { absolute, relative }: Gap| {
-                let [absolute, relative] = [absolute, relative].map(|x| x * share);
-                let degrees = part.measure.is_angle().then(|| absolute.to_degrees());
+                let is_angle = part.measure.is_angle();
+                // No two rotations are farther apart than half a turn.
+                let most = if is_angle { PI } else { f64::INFINITY };
+                let [absolute, relative] = [absolute, relative].map(|x| (x * share).min(most));
+                let degrees = is_angle.then(|| absolute.to_degrees());
                 Distance { absolute, relative, degrees }
             };
             let name =

@@ -95,17 +95,18 @@ impl System for Exponents {
         Q::numbers(
             "growth",
             &["s1", "…", "sn"],
-            "logarithms of the growth of perturbations, in falling order",
+            "logarithms of the growth of perturbations along the columns of `frame`",
             |_, _, (_, (growth, _)), row| row.extend(growth.col_as_slice(0)),
         )
         .with_columns(|system| numbered("s", system.x.len())),
         Q::numbers(
             "exponents",
             &["e1", "…", "en"],
-            "growth over time: the exponents where the time is long; 0 at the start",
+            "growth over time, in falling order: the exponents where the time is long; 0 at the start",
             |_, at, (_, (growth, _)), row| {
-                let time = if at.since_start == 0.0 { 1.0 } else { at.since_start };
+                let (first, time) = (row.len(), if at.since_start == 0.0 { 1.0 } else { at.since_start });
                 row.extend(growth.col_as_slice(0).iter().map(|s| s / time));
+                row[first..].sort_unstable_by(|a, b| b.total_cmp(a));
             },
         )
         .with_columns(|system| numbered("e", system.x.len())),

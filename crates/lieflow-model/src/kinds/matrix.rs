@@ -58,6 +58,7 @@ impl Action<MatrixGroup> for MatrixAction {
     fn check_member(&self, group: &MatrixGroup, p: &Mat<f64>) -> Result<(), Error> {
         match self {
             MatrixAction::Translation => group.check_member(&GroupMatrix::new_unchecked(p.clone())),
+            MatrixAction::Lagrangian => Lagrangian.check_member(group, p),
             _ => Ok(()),
         }
     }

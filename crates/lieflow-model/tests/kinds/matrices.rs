@@ -211,6 +211,10 @@ fn lyapunov_exponents() {
     let end = last(&scene(linear, RKMK4_CAY, time, "[\"exponents\"]"));
     // The first direction stays where it is, at every time: so it does not with DFᵀ for DF.
     assert!(far(&end, &[1.0, -2.0]) < 1e-12, "{end:?}");
+    // Where nothing mixes the directions they are sorted all the same.
+    let apart = "kind = \"lyapunov\"\nx = [1, 1]\nfield = [\"-x1\", \"0.5*x2\"]";
+    let end = last(&scene(apart, RKMK4_CAY, time, "[\"exponents\"]"));
+    assert!(far(&end, &[0.5, -1.0]) < 1e-12, "{end:?}");
     let text = bundled("lorenz").replace("t_span = [0.0, 30.0]", "t_span = [0.0, 10.0]");
     let rows = rows(&Scene::parse("scene", &text).unwrap());
     for row in &rows[1..] {

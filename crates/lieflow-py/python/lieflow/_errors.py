@@ -25,6 +25,7 @@ class ArgumentError(ValueError):
     others: tuple[ArgumentError, ...] = ()
 
     def __init__(self, argument: str, value: str, expected: str = "") -> None:
+        expected = expected.removeprefix("expected ")
         message = f"{argument}: {value}" + (f", expected {expected}" if expected else "")
         super().__init__(message)
         self.argument = argument

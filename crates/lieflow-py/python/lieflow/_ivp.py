@@ -64,10 +64,13 @@ class Event:
             raise TypeError(f"g: a value of type {type(g).__name__}, expected a function of t and y, or a formula")
         if change is not None and not callable(change):
             raise TypeError(f"change: a value of type {type(change).__name__}, expected a function of t and y")
-        if terminal != int(terminal) or terminal < 0:
+        zero = _number("terminal", terminal)
+        if not (np.isfinite(zero) and zero == int(zero) and zero >= 0):
             raise ArgumentError("terminal", repr(terminal), "an integer ≥ 0, True or False")
         self.g, self.change = g, change
-        self.terminal, self.direction = int(terminal), _number("direction", direction)
+        self.terminal, self.direction = int(zero), _number("direction", direction)
+        if self.direction != self.direction:
+            raise ArgumentError("direction", repr(direction), "a number: its sign tells which zeros count")
         self.points = _positive("points", points, whole=True)
         default = g if isinstance(g, str) else getattr(g, "__name__", "event")
         self.name = name if name is not None else default
@@ -408,6 +411,10 @@ def solve_ivp(
     span = span_of(t_span)
     if not (method is None or isinstance(method, str)):
         raise TypeError(f"method: a value of type {type(method).__name__}, expected a name")
+    if not isinstance(args, tuple):
+        raise TypeError(f"args: a value of type {type(args).__name__}, expected a tuple, as in args=(2.0,)")
+    if not (callback is None or callable(callback)):
+        raise TypeError(f"callback: a value of type {type(callback).__name__}, expected a function of t and y")
     planned = events_of(events)
     if np.isinf(span[1]) and callback is None and not any(event.terminal for event in planned):
         raise ArgumentError("t_span", f"({span[0]}, {span[1]})", "an end, or an event with terminal")
@@ -419,11 +426,15 @@ def solve_ivp(
         for name, value, default in (("group", group, None), ("frame", frame, None), ("action", action, "translation")):
             if value != default:
                 raise ArgumentError(name, repr(value), "none: a problem has its own")
+        if linear:
+            raise ArgumentError("linear", repr(linear), "none: a problem knows whether it is linear")
+        if args and not any(callable(event.g) or event.change for event in planned):
+            raise ArgumentError("args", repr(args), "none: a problem takes no arguments, and no event is a function")
         return _of_problem(fun, span, y0, method, settings, times, planned, quantities, callback, args)
     if quantities is not None:
         raise ArgumentError("quantities", repr(quantities), "none: only a problem has quantities")
     return _of_field(
-        fun, span, y0, method or METHOD, settings, times, planned, callback, (args, group, action, frame)
+        fun, span, y0, METHOD if method is None else method, settings, times, planned, callback, (args, group, action, frame)
     )
 
 

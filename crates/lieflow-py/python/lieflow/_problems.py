@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 import pathlib
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any, ClassVar
 
 import numpy as np
@@ -146,6 +146,8 @@ class Problem:
         """Return the quantities that are asked for, or the default ones."""
         if quantities is None:
             return self.quantities
+        if not isinstance(quantities, Iterable):
+            raise TypeError(f"quantities: {quantities!r}, expected names")
         given = (quantities,) if isinstance(quantities, str) else tuple(quantities)
         if not all(isinstance(name, str) for name in given):
             raise TypeError("quantities: expected names")

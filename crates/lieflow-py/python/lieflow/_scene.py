@@ -78,9 +78,9 @@ class Scene:
         return (Scene, self._args)
 
 
-def load(scene: str | os.PathLike[str], *, set: Sequence[str] = ()) -> Scene:
+def load(scene: str | os.PathLike[str], *, set: Sequence[str] | str = ()) -> Scene:
     """Open a scene by the path of its file or by its bundled name, changed by settings such as ``"time.dt=0.01"``."""
-    return Scene(scene, set)
+    return Scene(scene, (set,) if isinstance(set, str) else set)
 
 
 def scenes() -> tuple[str, ...]:

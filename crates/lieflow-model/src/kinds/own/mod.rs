@@ -113,9 +113,20 @@ enum SpaceKind {
     Complex(MatrixGroup, MatrixAction),
 }
 
+/// The largest size of a matrix in a group by its name.
+const SIZE_MAX: usize = 16384;
+
 /// A group of matrices by its name, and whether they are complex. `rows` is the size where the name has none.
 fn matrix_group(name: &str, rows: usize) -> Result<(MatrixGroup, bool), Misfit> {
     let unknown = || {
+        if GROUPS.contains(&name) {
+            let expected = "numbers in place of its letters, as in SO(4), Sp(6) or SO(3,1)";
+            return Misfit {
+                argument: "group",
+                value: format!("`{name}`"),
+                expected: expected.into(),
+            };
+        }
         let hint = near(name, &GROUPS).map_or(String::new(), |name| format!("`{name}`? "));
         let expected = format!("{hint}one of {}, or the form M of a group", GROUPS.join(", "));
         Misfit { argument: "group", value: format!("`{name}`"), expected }
@@ -128,6 +139,9 @@ fn matrix_group(name: &str, rows: usize) -> Result<(MatrixGroup, bool), Misfit> 
     let group = named.algebra.group(n, "group");
     match group {
         Ok(group) => Ok((group, named.algebra.is_complex())),
+        Err(_) if n == 0 || n > SIZE_MAX => {
+            misfit("group", format!("`{name}`"), format!("a size from 1 to {SIZE_MAX}"))
+        }
         Err(_) => misfit("group", format!("`{name}`"), "a group of matrices of even size, 2m"),
     }
 }
@@ -170,6 +184,10 @@ impl Space {
             _ => {}
         }
         let name = match group {
+            // A hyphen before a digit is a sign.
+            GroupName::Named(name) if name.contains("-") && name.contains(char::is_numeric) => {
+                return Self::of_matrices(group, action, frame, shape);
+            }
             GroupName::Named(name) => plain(name),
             GroupName::Form(..) => String::new(),
             GroupName::Parts(counts) => return Self::of_parts(*counts, action, frame, shape),
