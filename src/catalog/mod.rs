@@ -26,8 +26,6 @@
 //! is decided in `build.rs`, once a family.
 
 mod build;
-#[cfg(feature = "tally")]
-mod counting;
 mod facts;
 mod lists;
 mod problems;
@@ -37,8 +35,6 @@ pub use build::{
     bodies, classical, closed, energy_casimir, fields, implicit, isospectral, linear_type,
     projected, series,
 };
-#[cfg(feature = "tally")]
-pub use counting::CountingMethods;
 pub use facts::{
     Cost, Count, Family, Maps, MethodInfo, Needs, Operation, Order, OtherCase, Property, WorkItem,
 };

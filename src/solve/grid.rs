@@ -1,5 +1,6 @@
-//! Times: equal steps over a span, and the times of output.
+//! Times: equal steps over a span, the choice of steps, and the times of output.
 
+use super::control::StepControl;
 use crate::error::{Error, Plain};
 use crate::methods::{EqualSteps, Step};
 use crate::scalar::Real;
@@ -15,6 +16,30 @@ pub struct TimeGrid {
     t1: f64,
     h: f64,
     steps: u64,
+}
+
+/// How the steps of a run are chosen.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Steps {
+    /// One size.
+    Equal(TimeGrid),
+    /// By their error.
+    ByError {
+        /// From when to when.
+        t_span: [f64; 2],
+        /// Tolerances and limits.
+        control: StepControl,
+    },
+}
+
+impl Steps {
+    /// From when to when.
+    pub fn t_span(&self) -> [f64; 2] {
+        match self {
+            Steps::Equal(grid) => grid.t_span(),
+            Steps::ByError { t_span, .. } => *t_span,
+        }
+    }
 }
 
 /// The largest number of steps; more are a mistake in the input.

@@ -8,6 +8,7 @@
 //! | [`Continuous`] | a solution at any time |
 //! | [`Interpolant`] | a solution at any time, as numbers |
 //! | [`integrate`], [`integrate_adaptive`] | the same driver in one call, on a state in place |
+//! | [`operations_of_a_step`] | count the operations of a method |
 //!
 //! A step is accepted if its error is at most its tolerance ([`tolerance`](crate::tolerance)). A step that fails
 //! (outside a chart, not finite) is rejected like one with too large an error, and halved; none of its results is used.
@@ -24,6 +25,7 @@ mod grid;
 mod held;
 mod integrator;
 mod interpolant;
+mod operations;
 mod output;
 mod points;
 mod roots;
@@ -39,9 +41,10 @@ pub use continuous::Continuous;
 pub use control::StepControl;
 pub use drift::Drift;
 pub use events::{Direction, Event, LONG_STEPS};
-pub use grid::{SaveAt, TimeGrid};
+pub use grid::{SaveAt, Steps, TimeGrid};
 pub use integrator::Integrator;
 pub use interpolant::{Interpolant, Reader};
+pub use operations::{COUNTED_STEPS, operations_of_a_step};
 pub use simple::{integrate, integrate_adaptive};
 pub use solution::{Ended, Interrupted, Next, Occurrence, Solution, Status};
 pub use stats::{RESTORE_EVERY, RunError, Stats};

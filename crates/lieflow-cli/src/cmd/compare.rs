@@ -17,8 +17,8 @@ use crate::measure::{
 };
 use crate::output::{self, Progress};
 use crate::report::{self, ADVICE, Answer, Best, Choice, Cost, KEPT, choices, json};
+use lieflow::solve::COUNTED_STEPS;
 use lieflow_figures::{Block, Chart, Page, Section};
-use lieflow_model::problem::COUNTED_STEPS;
 use lieflow_model::problem::Layer;
 use lieflow_model::scene::Scene;
 use lieflow_timing::machine;

@@ -11,6 +11,7 @@ use lieflow::{RunError, SaveAt, StepControl, TimeGrid};
 
 use super::{Candidate, Size, WorkPoint};
 use crate::error::CliError;
+use lieflow_counting::operations;
 use lieflow_model::problem::{Model, Plan, Rows as Watched, Sink, Steps};
 use lieflow_model::scene::Scene;
 use lieflow_model::schema::{Observable, Row, Schema};
@@ -367,11 +368,11 @@ impl Size {
         let a_step = match self {
             Size::Steps(steps) => {
                 let grid = TimeGrid::with_steps(t_span, steps).ok()?;
-                model.operations(method, &Steps::Equal(grid))?
+                model.operations(method, &Steps::Equal(grid), operations)?
             }
             Size::Tolerance(rtol) => {
                 let control = per_length(rtol, 0.0).ok()?;
-                model.operations(method, &Steps::ByError { t_span, control })?
+                model.operations(method, &Steps::ByError { t_span, control }, operations)?
             }
         };
         Some((a_step * steps as f64).round() as u64)

@@ -24,8 +24,9 @@ use toml::de::{DeTable, DeValue};
 use super::prelude::{Error, KeyPath, Law, Read, ReadError, Real, Scale, Whole, read_by_keys};
 use crate::formula::{Formula, Names, Parameters, Text, Texts};
 use crate::problem::{
-    Asked, Figure, Fit, Form, Forms, KeyInfo, Kind, Model, Orders, Outcome, PARAMETERS, Plan,
-    Problem, QuantityInfo, ReadForms, RowCurve, Run, Stepper, Steps, Watcher, high_order,
+    Asked, CountOnVectors, Figure, Fit, Form, Forms, KeyInfo, Kind, Model, Orders, Outcome,
+    PARAMETERS, Plan, Problem, QuantityInfo, ReadForms, RowCurve, Run, Stepper, Steps, Watcher,
+    high_order,
 };
 use crate::reader::values::counted;
 use crate::reader::{KeyReader, Mistake};
@@ -387,8 +388,13 @@ impl Run for OnBase {
     fn fits(&self, method: &MethodSpec) -> Result<Fit, Error> {
         self.base.fits(method)
     }
-    fn operations(&self, method: &MethodSpec, steps: &Steps) -> Option<f64> {
-        self.base.operations(method, steps)
+    fn operations(
+        &self,
+        method: &MethodSpec,
+        steps: &Steps,
+        on_vectors: CountOnVectors,
+    ) -> Option<f64> {
+        self.base.operations(method, steps, on_vectors)
     }
     fn knots(&self, t_span: [f64; 2]) -> Option<Vec<f64>> {
         let samples = self.formula.as_ref()?.samples()?;

@@ -8,6 +8,7 @@ use lieflow::catalog::MethodSpec;
 use lieflow::{Error, RunError};
 
 use super::kind::{Figure, PrincipalInertia, Property, high_order};
+use super::operations::CountOnVectors;
 use super::run::{Fit, Layer, Orders, Outcome, Plan, RowCurve, Steps, Watcher};
 use super::stepper::Stepper;
 use crate::formula::Formula;
@@ -66,7 +67,12 @@ pub(crate) trait Run: Debug + Send + Sync {
     /// See [`Model::fits`](super::Model::fits).
     fn fits(&self, method: &MethodSpec) -> Result<Fit, Error>;
     /// See [`Model::operations`](super::Model::operations).
-    fn operations(&self, method: &MethodSpec, steps: &Steps) -> Option<f64>;
+    fn operations(
+        &self,
+        method: &MethodSpec,
+        steps: &Steps,
+        on_vectors: CountOnVectors,
+    ) -> Option<f64>;
     /// See [`Problem::check_start`](super::Problem::check_start).
     fn check_start(&self, _t0: f64) -> Vec<Refusal> {
         Vec::new()

@@ -17,7 +17,7 @@ pub(crate) use forms::{Asked, Form, Run};
 pub(crate) use keys::*;
 pub use kind::*;
 pub use model::{Model, Problem};
-pub use operations::COUNTED_STEPS;
+pub use operations::CountOnVectors;
 pub(crate) use operations::{Counting, counting};
 pub use pulses::{SHORT_STEPS, time_to_search};
 pub(crate) use quantity::*;

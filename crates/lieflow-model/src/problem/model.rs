@@ -11,6 +11,7 @@ use lieflow::{Error, RunError, SaveAt, Stats, StepControl, TimeGrid};
 use super::forms::{Asked, Form, Forms, Run};
 use super::kind::{Figure, Kind, PrincipalInertia, Property, QuantityInfo};
 use super::mapped::{Mapped, MappedCurve, MappedStepper, NumberOf, RowMap};
+use super::operations::CountOnVectors;
 use super::run::{
     CurvePlace, Fit, Layer, Orders, Outcome, Plan, RowCurve, Rows, Sink, Steps, Watcher,
 };
@@ -453,10 +454,15 @@ impl Model {
     }
 
     /// The operations of a step (additions, multiplications, divisions, square roots, sines and cosines, each as one), in
-    /// the mean over the first [`COUNTED_STEPS`](super::COUNTED_STEPS); `None` where the method has none to count, as the
-    /// exact motion.
-    pub fn operations(&self, method: &MethodSpec, steps: &Steps) -> Option<f64> {
-        self.form(method).operations(method, steps)
+    /// the mean over the first [`COUNTED_STEPS`](lieflow::solve::COUNTED_STEPS); `None` where the method has none to
+    /// count, as the exact motion. A problem on vectors is counted by `on_vectors`.
+    pub fn operations(
+        &self,
+        method: &MethodSpec,
+        steps: &Steps,
+        on_vectors: CountOnVectors,
+    ) -> Option<f64> {
+        self.form(method).operations(method, steps, on_vectors)
     }
 
     /// What a method offers on this problem, if it can run there. Nothing is integrated.

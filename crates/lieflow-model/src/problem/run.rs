@@ -13,9 +13,9 @@ use lieflow::names::same;
 use lieflow::problems::PointOf;
 use lieflow::solve::{Interpolant, Interrupted, Next, Status};
 use lieflow::space::Numbers;
-use lieflow::{
-    Action, Direction, Error, Event, RunError, SaveAt, Solve, Stats, StepControl, TimeGrid,
-};
+use lieflow::{Action, Direction, Error, Event, RunError, SaveAt, Solve, Stats};
+
+pub use lieflow::solve::Steps;
 
 use crate::schema::Branches;
 use crate::schema::{Row, Schema};
@@ -52,30 +52,6 @@ impl Layer {
             let expected = Self::ALL.map(Layer::name).to_vec();
             Error::UnknownName { kind: "layer", name: name.into(), expected }
         })
-    }
-}
-
-/// How the steps of a run are chosen.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Steps {
-    /// One size.
-    Equal(TimeGrid),
-    /// By their error.
-    ByError {
-        /// From when to when.
-        t_span: [f64; 2],
-        /// Tolerances and limits.
-        control: StepControl,
-    },
-}
-
-impl Steps {
-    /// From when to when.
-    pub fn t_span(&self) -> [f64; 2] {
-        match self {
-            Steps::Equal(grid) => grid.t_span(),
-            Steps::ByError { t_span, .. } => *t_span,
-        }
     }
 }
 

@@ -8,7 +8,7 @@ use lieflow::{Error, RunError};
 
 use super::forms::{Asked, Form, Forms, Run};
 use super::kind::{Figure, PrincipalInertia, Property, high_order};
-use super::operations::{Counting, operations_by};
+use super::operations::{CountOnVectors, Counting, operations_by};
 use super::quantity::{Moment, Quantity, Value};
 use super::run::{
     Fit, Layer, Orders, Outcome, Plan, RowCurve, RowsOf, Runnable, SharedRowOf, Steps, Watcher,
@@ -261,9 +261,14 @@ impl<S: System> Run for On<S> {
         let (problem, start) = self.ready()?;
         fits_by(method, &**problem, start)
     }
-    fn operations(&self, method: &MethodSpec, steps: &Steps) -> Option<f64> {
-        if let Some(counting) = self.system.counted() {
-            return counting.operations(method, steps);
+    fn operations(
+        &self,
+        method: &MethodSpec,
+        steps: &Steps,
+        on_vectors: CountOnVectors,
+    ) -> Option<f64> {
+        if let Some(start) = self.system.counted() {
+            return on_vectors(start, method, steps);
         }
         let (problem, start) = self.ready().ok()?;
         operations_by(method, &**problem, start.clone(), steps)
