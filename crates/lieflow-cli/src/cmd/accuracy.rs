@@ -34,6 +34,8 @@ const SAMPLE: usize = 100;
 const MISJUDGED: f64 = 3.0;
 /// A run in short steps that ends this many estimated errors away has found something that the run has passed over.
 const PASSED_OVER: f64 = 1e3;
+/// A motion that makes this of the last digits of its start is worth a warning.
+const AMPLIFIED: f64 = 1e-8;
 /// A tolerance this small is compared with a larger one: a smaller one is rounding.
 const SMALLEST: f64 = 1e-13;
 
@@ -175,6 +177,20 @@ impl<'a> Check<'a> {
         let (mut accuracy, mut warnings) =
             (self.judge(found_by, &apart, share, clock), warnings.collect::<Vec<_>>());
         let mut time_errors: Vec<_> = apart.events.iter().map(time_error).collect();
+        if let Some(moved) = self.moved_by_last_digits() {
+            accuracy = accuracy.with_digits(moved.relative().max(f64::EPSILON));
+            let worst = moved.worst().filter(|worst| worst.largest.relative > AMPLIFIED);
+            warnings.extend(worst.map(|worst| {
+                let by = match worst.largest.degrees {
+                    Some(degrees) => format!("{} degrees", rough(degrees)),
+                    None => format!("{} of its size", rough(worst.largest.relative)),
+                };
+                format!(
+                    "the last digits of the start move `{}` by {by} at the end: no method has more digits there",
+                    worst.name
+                )
+            }));
+        }
         if let Some((other, warning)) = self.passed_over(&accuracy, seconds) {
             (accuracy, time_errors) = (other, vec![None; time_errors.len()]);
             warnings.push(warning);
@@ -222,6 +238,28 @@ impl<'a> Check<'a> {
         })
     }
 
+    /// How far the last digits of the start move the end of a run by a method that is exact. Such a run has no other error,
+    /// and the exact motion has the same one.
+    fn moved_by_last_digits(&self) -> Option<Accuracy> {
+        let (clock, end) = (Instant::now(), self.end());
+        let method = self.method(OWN);
+        let has_order = self.watch.model.order(&method).ok()?.is_some();
+        if !self.is_exact || has_order || self.ended_by_event {
+            return None;
+        }
+        let start = self.watch.model.start(&method).ok()?;
+        // Two changes of neighbouring numbers in opposite directions.
+        let moved = [1.0, -1.0].map(|sign| {
+            let sign = |i: usize| if i.is_multiple_of(2) { sign } else { -sign };
+            let last_digit = |(i, x): (usize, &f64)| x + sign(i) * f64::EPSILON * x;
+            let start = start.iter().enumerate().map(last_digit).collect();
+            self.rows_from(Some(start), OWN, &[end]).ok()?.0.pop()
+        });
+        let pairs = moved.iter().flatten().map(|row| (end, [&self.last[..], &row[..]]));
+        let apart = Apart::of_rows(self.watch, &self.run.sizes, pairs);
+        Some(self.judge(FoundBy::Exact, &apart, 1.0, clock))
+    }
+
     fn scene(&self) -> &'a Scene {
         self.watch.scene
     }
@@ -257,11 +295,21 @@ impl<'a> Check<'a> {
 
     /// The rows of another run at these times, and its steps; or why it did not get to the end.
     fn rows_at(&self, way: Way, times: &[f64]) -> Result<(Vec<Vec<f64>>, Taken), String> {
+        self.rows_from(None, way, times)
+    }
+
+    /// [`rows_at`](Self::rows_at) from another start, by the numbers of its point.
+    fn rows_from(
+        &self,
+        start: Option<Vec<f64>>,
+        way: Way,
+        times: &[f64],
+    ) -> Result<(Vec<Vec<f64>>, Taken), String> {
         let cancel = AtomicBool::new(false);
         let mut kept = Kept { rows: Vec::new(), limits: self.limits(&cancel) };
         let save = SaveAt::Times(times.to_vec());
         let plan = self.plan(way, self.end())?;
-        let plan = Plan { save, times_by_steps: true, cancel: Some(&cancel), ..plan };
+        let plan = Plan { save, times_by_steps: true, cancel: Some(&cancel), start, ..plan };
         let outcome = self.watch.model.drive(&self.method(way), plan, &mut kept);
         let Outcome { status, stats, .. } = outcome.map_err(|error| error.to_string())?;
         match status {

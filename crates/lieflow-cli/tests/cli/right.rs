@@ -434,3 +434,23 @@ fn without_a_page_none_is_left() {
     assert!(!told.contains("index.html"), "{told}");
     assert!(!folder.names("out").contains(&"index.html".to_string()));
 }
+
+/// Beside a separatrix the exact motion has no digit: the last digits of the start decide where it ends.
+#[test]
+fn the_exact_motion_has_the_digits_that_its_start_has() {
+    let folder = Folder::new();
+    let scene = |omega: &str| {
+        let text = format!(
+            "[problem]\nkind = \"rigid-body\"\ninertia = [1, 2, 3]\nomega_body = {omega}\n\
+             attitude = [[1,0,0],[0,1,0],[0,0,1]]\n[method]\nname = \"exact\"\n[time]\nt_span = [0, 60]\ndt = 60\n"
+        );
+        folder.write("scene.toml", &text);
+        let told = folder.lieflow(&["run", "scene.toml", "--out", "out"]).ok();
+        (told, folder.json("out/summary.json")["accuracy"]["digits"].as_u64().unwrap())
+    };
+    let (told, digits) = scene("[1, 0.3, 0.5773502691896257]");
+    assert!(told.contains("the last digits of the start move `attitude` by"), "{told}");
+    assert!(digits <= 2, "{told}");
+    let (told, digits) = scene("[1, 0.3, 0.7]");
+    assert!(!told.contains("last digits") && digits >= 12, "{told}");
+}
