@@ -1,6 +1,6 @@
 //! The names that most programs need: `use lieflow::prelude::*;`.
 
-pub use crate::actions::{Coadjoint, LeftTranslation, Linear};
+pub use crate::actions::{Coadjoint, LeftTranslation, Linear, RightTranslation};
 #[cfg(feature = "dense")]
 pub use crate::catalog::MethodsByName;
 #[cfg(feature = "dense")]

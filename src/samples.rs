@@ -76,10 +76,8 @@ impl From<Outside> for Error {
 
 /// Columns of values at increasing times, as functions of time.
 ///
-/// The attitude of a body from the increments of its gyros: ġ = gω̂ with g from body to space, which is
-/// ẏ = −ω̂y for y = gᵀ, an equation of linear type.
+/// The attitude of a body from the increments of its gyros: ġ = gω̂ with g from body to space, an equation of linear type.
 /// ```
-/// use lieflow::actions::LeftTranslation;
 /// use lieflow::groups::{LieGroup, So3};
 /// use lieflow::methods::magnus::Magnus4;
 /// use lieflow::problems::Flow;
@@ -95,15 +93,15 @@ impl From<Outside> for Error {
 /// let gyros = Samples::new(&times, &[x, y, z], Interpolation::MeanRate)?;
 /// let span = [0.0, 0.4];
 /// gyros.covers(span)?;
-/// let attitude = Flow::of_time(So3::<f64>::new(), LeftTranslation, |t, v: &mut Vector3<f64>| {
-///     // Outside of the samples v is not a number, and the run ends there.
-///     let _ = gyros.value(t, v.as_mut_slice());
-///     *v = -*v;
-/// });
-/// let mut g_transposed = So3::new().identity();
+/// let attitude = Flow::in_body(So3::<f64>::new(), |t, _, omega: &mut Vector3<f64>| {
+///     // Outside of the samples ω is not a number, and the run ends there.
+///     let _ = gyros.value(t, omega.as_mut_slice());
+/// })
+/// .linear();
+/// let mut g = So3::new().identity();
 /// let grid = TimeGrid::with_steps(span, 4)?;
-/// integrate(&attitude, &Magnus4, &grid, &SaveAt::Ends, &mut g_transposed, |_, _| {})?;
-/// assert!((g_transposed.transpose()[(0, 2)] - 0.19).abs() < 0.01);
+/// integrate(&attitude, &Magnus4, &grid, &SaveAt::Ends, &mut g, |_, _| {})?;
+/// assert!((g[(0, 2)] - 0.19).abs() < 0.01);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 /// With a [`TryFlow`](crate::problems::TryFlow) the error of the run has the time at which it left the samples.

@@ -20,7 +20,7 @@ pub use conjugation::Conjugation;
 pub use lagrangian::Lagrangian;
 pub use linear::Linear;
 pub use parts::{Each, Pair};
-pub use translation::LeftTranslation;
+pub use translation::{LeftTranslation, RightTranslation, RightWork, Translation};
 
 use crate::error::{Error, StepError};
 use crate::groups::LieGroup;

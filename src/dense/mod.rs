@@ -29,6 +29,8 @@ pub use linear_algebra::{
 };
 pub(crate) use lu::Lu;
 pub(crate) use ops::{axpy, is_finite, norm_frobenius, norm_of, norm1, scaled_sum, wide};
+#[doc(hidden)] // for the crates of this workspace: the shapes are not checked
+pub use product::multiply_into;
 pub(crate) use product::{
     antisymmetrise, congruence, lower_product, mirror, mul, mul_add, orthogonalise, skew_commutator,
 };

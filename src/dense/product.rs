@@ -124,6 +124,11 @@ impl Kernel for Product<'_> {
     }
 }
 
+/// out ← a b, of the right size. Allocates nothing for small matrices. Cost: O(n³).
+pub fn multiply_into(out: &mut Mat<f64>, a: MatRef<'_, f64>, b: MatRef<'_, f64>) {
+    mul(out, a, b);
+}
+
 /// out ← a·b, known to be symmetric (`sign` = 1) or skew (`sign` = −1).
 pub(crate) fn half_mul(out: &mut Mat<f64>, a: MatRef<'_, f64>, b: MatRef<'_, f64>, sign: f64) {
     half_product(out, a, b, Accum::Replace, sign);

@@ -11,7 +11,7 @@ use core::fmt;
 
 use super::averaged::mean_of_gradients;
 use super::{Invariant, Invariants, LiePoisson, LinearField, LinearSpace, Problem, TaylorField};
-use crate::actions::{Action, LeftTranslation};
+use crate::actions::{Action, RightTranslation};
 use crate::groups::{Adjoint, LieAlgebra, LieGroup};
 use crate::scalar::Real;
 use crate::space::Metric;
@@ -80,8 +80,6 @@ type With<G, A, F, L, H, I> = Flow<G, A, F, FlowFacts<L, H, I>>;
 
 /// f(t, y) of a [`Flow`]: a closure, or one with scratch.
 pub trait Field<G: LieGroup, A: Action<G>> {
-    /// True if f is what the closure writes. In space a field in the body is Ad_y f, which depends on y.
-    const IS_IN_SPACE: bool = true;
     /// Scratch.
     type Work: Send;
     /// Scratch for [`f`](Self::f).
@@ -242,19 +240,18 @@ where
     }
 }
 
-/// A closure that writes f(t, y) in the body frame, and the group.
+/// A closure that writes f(t, y) in the body frame, and the group. The field of a [`RightTranslation`] is −f.
 #[derive(Clone, Copy, Debug)]
 pub struct InBody<G, F> {
     group: G,
     field: F,
 }
 
-impl<G, F> Field<G, LeftTranslation> for InBody<G, F>
+impl<G, F> Field<G, RightTranslation> for InBody<G, F>
 where
     G: Adjoint,
     F: Fn(G::Scalar, &G::Elem, &mut G::Alg),
 {
-    const IS_IN_SPACE: bool = false;
     type Work = BodyValue<G::Alg>;
 
     fn work(&self) -> BodyValue<G::Alg> {
@@ -265,10 +262,8 @@ where
         let BodyValue(body) = body;
         self.group.set_zero(body);
         (self.field)(t, y, body);
-        if self.group.big_ad(y, body, v).is_err() {
-            // The driver refuses a value that is not finite.
-            self.group.axpy(G::Scalar::lit(f64::NAN), body, v);
-        }
+        self.group.set_zero(v);
+        self.group.axpy(G::Scalar::lit(-1.0), body, v);
     }
 }
 
@@ -276,7 +271,7 @@ where
 #[derive(Clone, Debug)]
 pub struct BodyValue<V>(V);
 
-impl<G, F> Flow<G, LeftTranslation, InBody<G, F>>
+impl<G, F> Flow<G, RightTranslation, InBody<G, F>>
 where
     G: Adjoint + Clone,
     F: Fn(G::Scalar, &G::Elem, &mut G::Alg),
@@ -284,7 +279,8 @@ where
     /// Makes the problem ẏ = y·f(t, y) on a group, with f in the body frame: an angular velocity that a gyroscope measures,
     /// or the twist of a robot in its own axes. `field(t, y, v)` writes f(t, y) into v, which is 0 before.
     ///
-    /// In space this is ẏ = (Ad_y f)·y. Cost: Ad_y for each evaluation of f.
+    /// It is the action Λ(g, y) = y·g⁻¹ with the field −f. So f is not turned into space, and where it depends on t alone
+    /// the equation is linear ([`linear`](Self::linear)), and Magnus methods fit. Events and rows see −f nowhere.
     ///
     /// ```
     /// use lieflow::groups::Se3;
@@ -300,7 +296,7 @@ where
     /// ```
     pub fn in_body(group: G, field: F) -> Self {
         let field = InBody { group: group.clone(), field };
-        Flow { group, action: LeftTranslation, field, facts: UNKNOWN }
+        Flow { group, action: RightTranslation, field, facts: UNKNOWN }
     }
 }
 
@@ -318,17 +314,7 @@ impl<G: LieGroup, A: Action<G>, M, F> Flow<G, A, WithWork<M, F>> {
 
 impl<G: LieGroup, A: Action<G>, F, L, H, I> With<G, A, F, L, H, I> {
     /// Adds the fact that f depends only on t. Magnus methods then apply, and are wrong if it is not true.
-    ///
-    /// It is not true of a field in the body ([`Field::IS_IN_SPACE`]), which does not compile:
-    /// ```compile_fail
-    /// use lieflow::{groups::So3, nalgebra::Vector3, problems::Flow};
-    /// Flow::in_body(So3::<f64>::new(), |t, _, v| *v = Vector3::new(t, 1.0, 0.0)).linear();
-    /// ```
-    pub fn linear(self) -> With<G, A, F, TimeAlone, H, I>
-    where
-        F: Field<G, A>,
-    {
-        const { assert!(F::IS_IN_SPACE, "a field in the body is Ad_y f in space: it depends on y") };
+    pub fn linear(self) -> With<G, A, F, TimeAlone, H, I> {
         let Flow { group, action, field, facts: FlowFacts { energy, invariants, .. } } = self;
         Flow { group, action, field, facts: FlowFacts { linear: TimeAlone, energy, invariants } }
     }

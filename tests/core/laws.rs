@@ -6,7 +6,9 @@ use crate::support::points::Points;
 use crate::support::represent::Represent;
 use crate::support::{EPS, Verdict, gaussian, holds, laws, within};
 use faer::{Mat, mat};
-use lieflow::actions::{Coadjoint, Conjugation, Each, Lagrangian, LeftTranslation, Linear, Pair};
+use lieflow::actions::{
+    Coadjoint, Conjugation, Each, Lagrangian, LeftTranslation, Linear, Pair, RightTranslation,
+};
 use lieflow::groups::{
     Form, MatrixGroup, Power, Product, Sample, Se3, Se23, So3, Translations, UnitQuaternions,
     Unitary, hat, vee,
@@ -63,6 +65,7 @@ macro_rules! map_laws {
             let holds = |law: &dyn Fn(&mut Pcg64) -> Verdict| holds(CASES, law).unwrap();
             holds(&|rng| laws::map(&group, &psi, $cap, rng));
             holds(&|rng| laws::lambda(&group, &psi, &LeftTranslation, $cap, rng));
+            holds(&|rng| laws::lambda(&group, &psi, &RightTranslation, $cap, rng));
             holds(&|rng| laws::lambda(&group, &psi, &Linear, $cap, rng));
             holds(&|rng| laws::lambda(&group, &psi, &Coadjoint, $cap, rng));
         }
@@ -144,6 +147,7 @@ macro_rules! laws {
             fn actions() {
                 let group = $group;
                 holds(CASES, |rng| laws::action(&group, &LeftTranslation, rng)).unwrap();
+                holds(CASES, |rng| laws::action(&group, &RightTranslation, rng)).unwrap();
                 holds(CASES, |rng| laws::action(&group, &Linear, rng)).unwrap();
                 holds(CASES, |rng| laws::action(&group, &Coadjoint, rng)).unwrap();
             }
@@ -152,6 +156,7 @@ macro_rules! laws {
                 let group = $group;
                 let holds = |law: &dyn Fn(&mut Pcg64) -> Verdict| holds(CASES, law).unwrap();
                 holds(&|rng| laws::generator_of_matrices(&group, &LeftTranslation, rng));
+                holds(&|rng| laws::generator_of_matrices(&group, &RightTranslation, rng));
                 holds(&|rng| laws::generator_of_matrices(&group, &Linear, rng));
                 holds(&|rng| laws::generator_of_matrices(&group, &Coadjoint, rng));
             }

@@ -3,7 +3,7 @@
 
 use faer::Mat;
 use lieflow::Action;
-use lieflow::actions::{Coadjoint, Each, LeftTranslation, Linear, Pair};
+use lieflow::actions::{Coadjoint, Each, LeftTranslation, Linear, Pair, RightTranslation};
 use lieflow::groups::{
     Adjoint, ComplexMatrix, MatrixGroup, Power, Product, Sample, Se3, Se23, So3, UnitQuaternions,
     Unitary, hat,
@@ -52,6 +52,24 @@ impl<G: Represent> Points<G> for LeftTranslation {
     }
     fn generator(&self, group: &G, xi: &Mat<f64>, g: &G::Elem) -> Mat<f64> {
         xi * group.element_matrix(g)
+    }
+}
+
+impl<G: Represent + Adjoint> Points<G> for RightTranslation {
+    fn draw(&self, group: &G, rng: &mut Pcg64) -> G::Elem {
+        group.sample_element(rng)
+    }
+    fn numbers(&self, group: &G, g: &G::Elem) -> Mat<f64> {
+        group.element_matrix(g)
+    }
+    fn with_numbers(&self, group: &G, x: &Mat<f64>) -> G::Elem {
+        group.element_of(x)
+    }
+    fn shape(&self, group: &G) -> (usize, usize) {
+        (order_of(group), order_of(group))
+    }
+    fn generator(&self, group: &G, xi: &Mat<f64>, g: &G::Elem) -> Mat<f64> {
+        group.element_matrix(g) * xi * faer::Scale(-1.0)
     }
 }
 

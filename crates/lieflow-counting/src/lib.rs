@@ -8,7 +8,7 @@
 use std::any::Any;
 
 use lieflow::LieAlgebra;
-use lieflow::actions::{Coadjoint, LeftTranslation, Linear, Pair};
+use lieflow::actions::{Coadjoint, LeftTranslation, Linear, Pair, Translation};
 use lieflow::catalog::{MethodSpec, MethodsByName};
 use lieflow::groups::{Power, Product, Se3, So3, Translations};
 use lieflow::problems::{
@@ -41,15 +41,13 @@ pub fn operations(start: Box<dyn Any>, method: &MethodSpec, steps: &Steps) -> Op
                 start, method, steps,
             )
         })
-        .or_else(|start| {
-            of::<DynFlow<Se3<Counted>, LeftTranslation, TimeAlone>>(start, method, steps)
-        })
+        .or_else(|start| of::<DynFlow<Se3<Counted>, Translation, TimeAlone>>(start, method, steps))
         .or_else(|start| {
             of::<DynFlow<Product<Rotation, Shift>, LeftTranslation>>(start, method, steps)
         })
         .or_else(|start| {
             type Parts = Product<Rotations, Product<Rotations, Shifts>>;
-            of::<DynFlow<Parts, Pair<Linear, LeftTranslation>>>(start, method, steps)
+            of::<DynFlow<Parts, Pair<Linear, Translation>>>(start, method, steps)
         })
         .ok()
         .flatten()

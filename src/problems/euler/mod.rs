@@ -9,7 +9,7 @@
 #[cfg(feature = "dense")]
 mod general;
 
-use crate::actions::{Action, Coadjoint};
+use crate::actions::{Action, Coadjoint, RightTranslation, RightWork};
 use crate::error::Error;
 use crate::groups::{Adjoint, LieAlgebra, Se3, worse};
 use crate::problems::{
@@ -268,13 +268,10 @@ where
     Coadjoint: Action<G, Point = G::Dual>,
 {
     type Point = (G::Elem, G::Dual);
-    /// a⁻¹ and its scratch, the scratch of the coadjoint action, that of [`restore`](Action::restore), and −v.
-    type Work = ((G::Elem, G::Inverting), <Coadjoint as Action<G>>::Work, [G::Elem; 2], G::Alg);
+    type Work = (RightWork<G>, <Coadjoint as Action<G>>::Work);
 
     fn work(&self, group: &G) -> Self::Work {
-        let one = || group.identity();
-        let coadjoint = Action::<G>::work(&Coadjoint, group);
-        ((one(), group.inverting()), coadjoint, [one(), one()], group.zero())
+        (RightTranslation.work(group), Action::<G>::work(&Coadjoint, group))
     }
     fn check(&self, group: &G, p: &Self::Point) -> Result<(), Error> {
         group.check_elem(&p.0)?;
@@ -294,11 +291,9 @@ where
         a: &G::Elem,
         p: &Self::Point,
         q: &mut Self::Point,
-        ((inverse, inverting), coadjoint, ..): &mut Self::Work,
+        (right, coadjoint): &mut Self::Work,
     ) {
-        // A singular a is not in G; its numbers are not finite, and the step ends with that.
-        let _ = group.invert(a, inverting, inverse);
-        group.compose(&p.0, inverse, &mut q.0);
+        RightTranslation.act(group, a, &p.0, &mut q.0, right);
         Coadjoint.act(group, a, &p.1, &mut q.1, coadjoint);
     }
     /// (−g v, −ad*_v m).
@@ -309,16 +304,14 @@ where
         v: &G::Alg,
         (g, m): &Self::Point,
         (dg, dm): &mut Self::Point,
-        (_, coadjoint, _, minus): &mut Self::Work,
+        (right, coadjoint): &mut Self::Work,
     ) {
-        group.set_zero(minus);
-        group.axpy(G::Scalar::lit(-1.0), v, minus);
-        group.tangent_in_body(g, minus, dg);
+        RightTranslation.generate(group, v, g, dg, right);
         Coadjoint.generate(group, v, m, dm, coadjoint);
     }
     /// Corrects g to G.
     fn restore(&self, group: &G, p: &mut Self::Point, work: &mut Self::Work) -> Option<G::Scalar> {
-        Some(group.correct(&mut p.0, work.2.each_mut()))
+        RightTranslation.restore(group, &mut p.0, &mut work.0)
     }
     /// Corrects g to G, and m to its orbit.
     fn restore_to(

@@ -74,6 +74,7 @@ fn every_method_that_fits_a_kind_is_right() {
 fn magnus_methods_fit_linear_equations() {
     let linear = [
         "rotating-field",
+        "rolling-turn",
         "mathieu",
         "coupled-oscillators",
         "fodo-cell",

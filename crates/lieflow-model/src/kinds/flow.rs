@@ -2,7 +2,7 @@
 //!
 //! Those of vectors have another number type where their operations are counted. Matrices report what they compute.
 
-use lieflow::actions::{Coadjoint, LeftTranslation, Linear};
+use lieflow::actions::{Coadjoint, LeftTranslation, Linear, Translation};
 use lieflow::groups::{MatrixGroup, Power, Product, Se3, So3, Translations};
 use lieflow::problems::{DynFlow, FromTheBody, TimeAlone, WithHamiltonian, WithSeries};
 use nalgebra::Vector3;
@@ -16,8 +16,8 @@ pub(super) type OnSphere<S = f64> = DynFlow<So3<S>, Linear, TimeAlone>;
 pub(super) type OnSpheres<S = f64> = DynFlow<Power<So3<S>>, Linear, (), WithHamiltonian>;
 /// Momenta on se(3)*: heavy tops, the spherical pendulum, Euler's equations.
 pub(super) type OnSe3<S = f64> = DynFlow<Se3<S>, Coadjoint, WithSeries, WithHamiltonian>;
-/// A frame that moves in space.
-pub(super) type Motion<S = f64> = DynFlow<Se3<S>, LeftTranslation, TimeAlone>;
+/// A frame that moves, by its twist in space or in the body.
+pub(super) type Motion<S = f64> = DynFlow<Se3<S>, Translation, TimeAlone>;
 /// All that is made of matrices.
 pub(super) type OnMatrices = DynFlow<MatrixGroup, MatrixAction, TimeAlone, WithHamiltonian>;
 /// The group element of Euler's equations on matrices.

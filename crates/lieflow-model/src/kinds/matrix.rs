@@ -5,13 +5,15 @@
 //! |---|---|
 //! | `Linear` | g p |
 //! | `Translation` | g p, p ∈ G |
+//! | `RightTranslation` | p g⁻¹, p ∈ G, of minus a field in the body |
 //! | `Conjugation` | g p g⁻¹ |
 //! | `Coadjoint` | g⁻ᵀ p gᵀ |
 //! | `Lagrangian` | (C + Dp)(A + Bp)⁻¹ |
 
 use faer::Mat;
 use lieflow::actions::{Action, Coadjoint, Conjugation, Lagrangian, LeftTranslation, Linear};
-use lieflow::groups::{AlgebraMatrix, GroupMatrix, LieGroup, MatrixGroup};
+use lieflow::dense::multiply_into;
+use lieflow::groups::{Adjoint, AlgebraMatrix, GroupMatrix, LieGroup, MatrixGroup};
 use lieflow::maps::PsiOf;
 use lieflow::{CoordinateMap, Error, StepError};
 
@@ -20,15 +22,20 @@ use lieflow::{CoordinateMap, Error, StepError};
 pub(super) enum MatrixAction {
     Linear,
     Translation,
+    RightTranslation,
     Conjugation,
     Coadjoint,
     Lagrangian,
 }
 
+type Inverting = <MatrixGroup as Adjoint>::Inverting;
+
 /// Scratch of the one that was chosen.
 pub(super) enum MatrixWork {
     Linear,
     Translation([GroupMatrix; 2]),
+    /// With g⁻¹ and its scratch.
+    RightTranslation(GroupMatrix, Inverting, [GroupMatrix; 2]),
     Conjugation(<Conjugation as Action<MatrixGroup>>::Work),
     Coadjoint(<Coadjoint as Action<MatrixGroup>>::Work),
     Lagrangian(<Lagrangian as Action<MatrixGroup>>::Work),
@@ -42,6 +49,11 @@ impl Action<MatrixGroup> for MatrixAction {
         match self {
             MatrixAction::Linear => MatrixWork::Linear,
             MatrixAction::Translation => MatrixWork::Translation(LeftTranslation.work(group)),
+            MatrixAction::RightTranslation => MatrixWork::RightTranslation(
+                group.identity(),
+                group.inverting(),
+                LeftTranslation.work(group),
+            ),
             MatrixAction::Conjugation => MatrixWork::Conjugation(Conjugation.work(group)),
             MatrixAction::Coadjoint => MatrixWork::Coadjoint(Coadjoint.work(group)),
             MatrixAction::Lagrangian => MatrixWork::Lagrangian(Lagrangian.work(group)),
@@ -49,7 +61,9 @@ impl Action<MatrixGroup> for MatrixAction {
     }
     fn check(&self, group: &MatrixGroup, p: &Mat<f64>) -> Result<(), Error> {
         match self {
-            MatrixAction::Linear | MatrixAction::Translation => Linear.check(group, p),
+            MatrixAction::Linear | MatrixAction::Translation | MatrixAction::RightTranslation => {
+                Linear.check(group, p)
+            }
             MatrixAction::Conjugation => Conjugation.check(group, p),
             MatrixAction::Coadjoint => Coadjoint.check(group, p),
             MatrixAction::Lagrangian => Lagrangian.check(group, p),
@@ -57,7 +71,9 @@ impl Action<MatrixGroup> for MatrixAction {
     }
     fn check_member(&self, group: &MatrixGroup, p: &Mat<f64>) -> Result<(), Error> {
         match self {
-            MatrixAction::Translation => group.check_member(&GroupMatrix::new_unchecked(p.clone())),
+            MatrixAction::Translation | MatrixAction::RightTranslation => {
+                group.check_member(&GroupMatrix::new_unchecked(p.clone()))
+            }
             MatrixAction::Lagrangian => Lagrangian.check_member(group, p),
             _ => Ok(()),
         }
@@ -75,6 +91,11 @@ impl Action<MatrixGroup> for MatrixAction {
     ) {
         match work {
             MatrixWork::Linear | MatrixWork::Translation(_) => group.apply(g, p, q),
+            MatrixWork::RightTranslation(inverse, inverting, _) => {
+                // A singular g is not in G; its numbers are not finite, and the step ends with that.
+                let _ = group.invert(g, inverting, inverse);
+                multiply_into(q, p.as_ref(), inverse.as_ref());
+            }
             MatrixWork::Conjugation(work) => Conjugation.act(group, g, p, q, work),
             MatrixWork::Coadjoint(work) => Coadjoint.act(group, g, p, q, work),
             MatrixWork::Lagrangian(work) => Lagrangian.act(group, g, p, q, work),
@@ -90,6 +111,10 @@ impl Action<MatrixGroup> for MatrixAction {
     ) {
         match work {
             MatrixWork::Linear | MatrixWork::Translation(_) => group.apply_algebra(v, p, dp),
+            MatrixWork::RightTranslation(..) => {
+                multiply_into(dp, p.as_ref(), v.as_ref());
+                dp.col_iter_mut().for_each(|column| column.iter_mut().for_each(|x| *x = -*x));
+            }
             MatrixWork::Conjugation(work) => Conjugation.generate(group, v, p, dp, work),
             MatrixWork::Coadjoint(work) => Coadjoint.generate(group, v, p, dp, work),
             MatrixWork::Lagrangian(work) => Lagrangian.generate(group, v, p, dp, work),
@@ -113,7 +138,10 @@ impl Action<MatrixGroup> for MatrixAction {
         }
     }
     fn restore(&self, group: &MatrixGroup, p: &mut Mat<f64>, work: &mut MatrixWork) -> Option<f64> {
-        let MatrixWork::Translation(scratch) = work else { return None };
+        let (MatrixWork::Translation(scratch) | MatrixWork::RightTranslation(.., scratch)) = work
+        else {
+            return None;
+        };
         let mut g = GroupMatrix::new_unchecked(core::mem::replace(p, Mat::new()));
         let residual = group.correct(&mut g, scratch.each_mut());
         *p = g.into_mat();

@@ -7,7 +7,7 @@
 
 use std::sync::Arc;
 
-use lieflow::actions::LeftTranslation;
+use lieflow::actions::Translation;
 use lieflow::groups::{LieGroup, Se3, So3};
 use lieflow::problems::Flow;
 use lieflow::scalar::{Counted, Trig};
@@ -101,20 +101,21 @@ fn read(mut keys: Keys) -> Result<Forms, ReadError> {
 impl Motion {
     /// The problem on these numbers.
     fn on<S: Trig + Into<f64> + 'static>(&self) -> flow::Motion<S> {
-        let twist = self.twist.clone();
+        let (side, sign) = match self.in_body {
+            true => (Translation::Right, -1.0),
+            false => (Translation::Left, 1.0),
+        };
+        let (twist, sign) = (self.twist.clone(), S::lit(sign));
         let field = move |t: S, y: &Pose<S>, v: &mut (Vector3<S>, Vector3<S>)| {
             let at = variables(t, y);
-            v.0 = Vector3::from_fn(|i, _| twist[i].value(&at));
-            v.1 = Vector3::from_fn(|i, _| twist[3 + i].value(&at));
+            v.0 = Vector3::from_fn(|i, _| sign * twist[i].value(&at));
+            v.1 = Vector3::from_fn(|i, _| sign * twist[3 + i].value(&at));
         };
-        if self.in_body {
-            return flow::Motion::new(Flow::in_body(Se3::new(), field), LeftTranslation);
-        }
-        let flow = Flow::new(Se3::new(), LeftTranslation, field);
+        let flow = Flow::new(Se3::new(), side, field);
         let of_time = !(1..VARIABLES.len()).any(|i| self.twist.iter().any(|f| f.uses(i)));
         match of_time {
-            true => flow::Motion::linear(flow.linear(), LeftTranslation),
-            false => flow::Motion::new(flow, LeftTranslation),
+            true => flow::Motion::linear(flow.linear(), side),
+            false => flow::Motion::new(flow, side),
         }
     }
 

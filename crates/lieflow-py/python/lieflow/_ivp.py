@@ -384,8 +384,7 @@ def solve_ivp(
     frame : "space" or "body"
         The frame of f. It must be given for ``action="translation"``.
     linear : bool
-        f depends only on t. Methods for linear equations, as "magnus4", then fit; not with frame="body", because f
-        in space depends on y there.
+        f depends only on t. Methods for linear equations, as "magnus4", then fit, in both frames.
     quantities : list of str, optional
         Of a problem: what is computed.
     callback : callable, optional

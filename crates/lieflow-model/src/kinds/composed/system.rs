@@ -12,7 +12,7 @@
 use core::ops::Range;
 
 use lieflow::Error;
-use lieflow::actions::{LeftTranslation, Linear, Pair};
+use lieflow::actions::{Linear, Pair, Translation};
 use lieflow::groups::{LieAlgebra, Power, Product, So3, Translations};
 use lieflow::problems::Problem;
 use lieflow::scalar::{Real, Trig};
@@ -25,13 +25,13 @@ type Powers<S> = Power<So3<S>>;
 /// SO(3)ⁿ × SO(3)ᵐ × T(k).
 pub(crate) type Parts<S = f64> = Product<Powers<S>, Product<Powers<S>, Translations<Box<[S]>>>>;
 /// On vectors, and on rotations and numbers.
-pub(crate) type OnParts = Pair<Linear, LeftTranslation>;
+pub(crate) type OnParts = Pair<Linear, Translation>;
 /// Vectors, rotations and numbers.
 pub(crate) type Point<S = f64> = (Box<[Vector3<S>]>, (Box<[Matrix3<S>]>, Box<[S]>));
 /// f of each.
 pub(crate) type Field<S = f64> = (Box<[Vector3<S>]>, (Box<[Vector3<S>]>, Box<[S]>));
 
-pub(crate) const ON_PARTS: OnParts = Pair(Linear, LeftTranslation);
+pub(crate) const ON_PARTS: OnParts = Pair(Linear, Translation::Left);
 
 /// The space of a part, and where in a point it stands.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -158,7 +158,9 @@ impl Equation {
             MatrixAction::Conjugation | MatrixAction::Coadjoint => Some("traces"),
             // Each Lagrangian subspace can be moved to each.
             MatrixAction::Lagrangian => None,
-            MatrixAction::Translation => keeps_a_form.then_some("group_defect"),
+            MatrixAction::Translation | MatrixAction::RightTranslation => {
+                keeps_a_form.then_some("group_defect")
+            }
             MatrixAction::Linear => keeps_a_form.then_some("form"),
         }
     }
@@ -285,7 +287,7 @@ impl System for Equation {
     }
     fn figure(&self) -> Figure {
         match self.action {
-            MatrixAction::Translation => Figure::Lines("column"),
+            MatrixAction::Translation | MatrixAction::RightTranslation => Figure::Lines("column"),
             _ => Figure::Lines("point"),
         }
     }

@@ -1,9 +1,7 @@
 //! Points and values of f as numbers by rows.
 
 use faer::Mat;
-use lieflow::groups::{
-    Adjoint, AlgebraMatrix, GroupMatrix, MatrixGroup, Se3, So3, UnitQuaternions,
-};
+use lieflow::groups::{AlgebraMatrix, MatrixGroup, Se3, So3, UnitQuaternions};
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
 use crate::kinds::composed::{Field, Parts, Point};
@@ -18,8 +16,8 @@ pub(super) trait Layout<G: lieflow::LieGroup, Y>: Copy + Send + Sync + 'static {
     fn show(self, y: &Y, rows: &mut [f64]);
     /// v ← the element of 𝔤 of these numbers.
     fn value(self, rows: &[f64], v: &mut G::Alg);
-    /// v ← Ad_y v, for a point y of the group.
-    fn to_space(self, _group: &G, _y: &Y, _v: &mut G::Alg) {}
+    /// v ← −v in the parts that have a frame: the field of a translation from the right.
+    fn reverse(self, _v: &mut G::Alg) {}
 }
 
 fn vector(x: &[f64]) -> Vector3<f64> {
@@ -51,8 +49,8 @@ impl Layout<So3<f64>, Matrix3<f64>> for Rotations {
     fn value(self, rows: &[f64], v: &mut Vector3<f64>) {
         *v = vector(rows);
     }
-    fn to_space(self, _: &So3<f64>, y: &Matrix3<f64>, v: &mut Vector3<f64>) {
-        *v = y * *v;
+    fn reverse(self, v: &mut Vector3<f64>) {
+        *v = -*v;
     }
 }
 
@@ -103,11 +101,8 @@ impl Layout<Se3<f64>, (Matrix3<f64>, Vector3<f64>)> for Motions {
     fn value(self, rows: &[f64], v: &mut Pair) {
         *v = pair(rows);
     }
-    fn to_space(self, group: &Se3<f64>, y: &(Matrix3<f64>, Vector3<f64>), v: &mut Pair) {
-        let body = *v;
-        if group.big_ad(y, &body, v).is_err() {
-            v.0.fill(f64::NAN);
-        }
+    fn reverse(self, v: &mut Pair) {
+        *v = (-v.0, -v.1);
     }
 }
 
@@ -148,8 +143,8 @@ impl Layout<UnitQuaternions, UnitQuaternion<f64>> for Quaternions {
     fn value(self, rows: &[f64], v: &mut Vector3<f64>) {
         *v = vector(rows);
     }
-    fn to_space(self, _: &UnitQuaternions, y: &UnitQuaternion<f64>, v: &mut Vector3<f64>) {
-        *v = y.transform_vector(v);
+    fn reverse(self, v: &mut Vector3<f64>) {
+        *v = -*v;
     }
 }
 
@@ -184,9 +179,10 @@ impl Layout<Parts, Point> for InParts {
         each.zip(all.chunks_exact(3)).for_each(|(v, rows)| *v = vector(rows));
         numbers.copy_from_slice(last);
     }
-    /// The angular velocities of rotations alone have a frame.
-    fn to_space(self, _: &Parts, (_, (rotations, _)): &Point, v: &mut Field) {
-        v.1.0.iter_mut().zip(rotations).for_each(|(v, g)| *v = g * *v);
+    /// Numbers are translated, too. Vectors are not.
+    fn reverse(self, (_, (rotations, numbers)): &mut Field) {
+        rotations.iter_mut().for_each(|v| *v = -*v);
+        numbers.iter_mut().for_each(|v| *v = -*v);
     }
 }
 
@@ -227,17 +223,14 @@ impl Layout<MatrixGroup, Mat<f64>> for Matrices {
             }
         }
     }
-    fn to_space(self, group: &MatrixGroup, y: &Mat<f64>, v: &mut AlgebraMatrix) {
-        ad_by(group, y, v);
+    fn reverse(self, v: &mut AlgebraMatrix) {
+        minus(v);
     }
 }
 
-/// v ← Ad_y v.
-fn ad_by(group: &MatrixGroup, y: &Mat<f64>, v: &mut AlgebraMatrix) {
-    let (g, body) = (GroupMatrix::new_unchecked(y.clone()), v.clone());
-    if group.big_ad(&g, &body, v).is_err() {
-        v[(0, 0)] = f64::NAN;
-    }
+/// v ← −v.
+fn minus(v: &mut Mat<f64>) {
+    v.col_iter_mut().for_each(|column| column.iter_mut().for_each(|x| *x = -*x));
 }
 
 /// Complex matrices X + iY as numbers Re, Im, Re, … by rows. In the run they are real: \[X −Y; Y X\] where the group acts
@@ -285,7 +278,7 @@ impl Layout<MatrixGroup, Mat<f64>> for ComplexMatrices {
         let n = v.nrows() / 2;
         realify(rows, n, n, v);
     }
-    fn to_space(self, group: &MatrixGroup, y: &Mat<f64>, v: &mut AlgebraMatrix) {
-        ad_by(group, y, v);
+    fn reverse(self, v: &mut AlgebraMatrix) {
+        minus(v);
     }
 }

@@ -26,7 +26,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use faer::Mat;
-use lieflow::actions::{Coadjoint, LeftTranslation, Linear};
+use lieflow::actions::{Coadjoint, Linear, Pair, Translation};
 use lieflow::catalog::MethodSpec;
 use lieflow::groups::{MatrixGroup, Se3, So3, UnitQuaternions};
 use lieflow::names::{near, plain};
@@ -39,7 +39,7 @@ use self::layout::{
 use self::run::Typed;
 pub use self::run::{Curve, End, OwnEvent, OwnPlan, Ran, Run};
 use super::algebra::Algebra;
-use super::composed::{ON_PARTS, group_of};
+use super::composed::group_of;
 use super::matrix::MatrixAction;
 use crate::problem::{Orders, Stepper, Steps};
 
@@ -302,26 +302,31 @@ impl Space {
         &self.value
     }
 
-    /// The problem with this field. With `linear`, f depends only on t, and methods for linear equations fit. They do not
-    /// fit a field in the frame of the body: in space it is Ad_y f, which depends on y.
+    /// The problem with this field. With `linear`, f depends only on t, and methods for linear equations fit. On quaternions,
+    /// parts and se(3)* there are none, and other methods run.
     ///
     /// # Errors
-    /// [`Error::Unsupported`] for a space whose fields cannot be linear.
+    /// What the library refuses of the group.
     pub fn problem(&self, field: Arc<OwnField>, linear: bool) -> Result<Own, Error> {
         let body = self.frame == Some(Frame::Body);
-        let fits_linear = linear && !body;
+        let side = if body { Translation::Right } else { Translation::Left };
+        // Only translations have a frame.
+        let from = |action| if body { MatrixAction::RightTranslation } else { action };
         let run: Box<dyn Run> = match &self.kind {
             SpaceKind::Rotation => {
-                Typed::linear(So3::new(), LeftTranslation, Rotations, (field, body, fits_linear))
+                Typed::linear(So3::new(), side, Rotations, (field, body, linear))
             }
             SpaceKind::Vector => Typed::linear(So3::new(), Linear, Vectors, (field, false, linear)),
-            SpaceKind::Motion => {
-                Typed::linear(Se3::new(), LeftTranslation, Motions, (field, body, fits_linear))
-            }
+            SpaceKind::Motion => Typed::linear(Se3::new(), side, Motions, (field, body, linear)),
             SpaceKind::Matrix(group, action) => {
                 let columns = self.point.get(1).copied().unwrap_or(1);
                 let layout = Matrices { rows: self.point[0], columns };
-                Typed::linear_or_poisson(group.clone(), *action, layout, (field, body, fits_linear))
+                Typed::linear_or_poisson(
+                    group.clone(),
+                    from(*action),
+                    layout,
+                    (field, body, linear),
+                )
             }
             SpaceKind::Complex(group, action) => {
                 let layout = ComplexMatrices {
@@ -329,22 +334,20 @@ impl Space {
                     columns: if self.point.len() > 2 { self.point[1] } else { 1 },
                     vectors: *action == MatrixAction::Linear,
                 };
-                Typed::linear_or_poisson(group.clone(), *action, layout, (field, body, fits_linear))
-            }
-            SpaceKind::Pair | SpaceKind::Quaternion | SpaceKind::Parts(_) if linear => {
-                return Err(Error::Unsupported {
-                    what: "linear=True",
-                    with: "this group and action".into(),
-                    why: "there is no method for linear equations on it; leave linear out",
-                });
+                Typed::linear_or_poisson(
+                    group.clone(),
+                    from(*action),
+                    layout,
+                    (field, body, linear),
+                )
             }
             SpaceKind::Quaternion => {
-                Typed::field(UnitQuaternions, LeftTranslation, Quaternions, (field, body))
+                Typed::field(UnitQuaternions, side, Quaternions, (field, body))
             }
             SpaceKind::Parts(parts) => {
                 let InParts { vectors, rotations, numbers } = *parts;
                 let group = group_of([vectors, rotations, numbers])?;
-                Typed::field(group, ON_PARTS, *parts, (field, body))
+                Typed::field(group, Pair(Linear, side), *parts, (field, body))
             }
             SpaceKind::Pair => Typed::poisson(Se3::new(), Coadjoint, Pairs, field),
         };

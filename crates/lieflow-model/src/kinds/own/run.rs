@@ -164,9 +164,8 @@ fn scratch_of<G: LieGroup, Y, L: Layout<G, Y>>(
     move || (vec![0.0; y], vec![0.0; f])
 }
 
-/// The closure that evaluates the field, in space.
+/// The closure that evaluates the field; minus a field in the body.
 fn field_of<G, Y, L>(
-    group: &G,
     layout: L,
     field: Arc<OwnField>,
     body: bool,
@@ -175,7 +174,6 @@ where
     G: LieGroup<Scalar = f64> + Clone + 'static,
     L: Layout<G, Y>,
 {
-    let group = group.clone();
     move |t, y, v, (rows, value)| {
         layout.show(y, rows);
         value.fill(0.0);
@@ -184,7 +182,7 @@ where
         }
         layout.value(value, v);
         if body {
-            layout.to_space(&group, y, v);
+            layout.reverse(v);
         }
     }
 }
@@ -206,7 +204,7 @@ where
         (field, body, linear): (Arc<OwnField>, bool, bool),
     ) -> Box<dyn Run> {
         let make = scratch_of(&group, layout);
-        let f = field_of(&group, layout, field, body);
+        let f = field_of::<G, A::Point, L>(layout, field, body);
         let flow = Flow::with_work(group, action, make, f);
         let problem = match linear {
             true => DynFlow::linear(flow.linear(), action),
@@ -233,7 +231,7 @@ where
         (field, body, linear): (Arc<OwnField>, bool, bool),
     ) -> Box<dyn Run> {
         let make = scratch_of(&group, layout);
-        let f = field_of(&group, layout, field, body);
+        let f = field_of::<G, A::Point, L>(layout, field, body);
         let flow = Flow::with_work(group, action, make, f);
         let problem = match linear {
             true => DynFlow::linear(flow.linear(), action),
@@ -260,7 +258,7 @@ where
         (field, body): (Arc<OwnField>, bool),
     ) -> Box<dyn Run> {
         let make = scratch_of(&group, layout);
-        let f = field_of(&group, layout, field, body);
+        let f = field_of::<G, A::Point, L>(layout, field, body);
         let problem = DynFlow::new(Flow::with_work(group, action, make, f), action);
         Box::new(Typed { problem: Arc::new(problem), layout })
     }
@@ -278,7 +276,7 @@ where
     /// A problem of a type in which some are Lie–Poisson systems.
     pub(super) fn poisson(group: G, action: A, layout: L, field: Arc<OwnField>) -> Box<dyn Run> {
         let make = scratch_of(&group, layout);
-        let f = field_of(&group, layout, field, false);
+        let f = field_of::<G, A::Point, L>(layout, field, false);
         let problem = DynFlow::new(Flow::with_work(group, action, make, f), action);
         Box::new(Typed { problem: Arc::new(problem), layout })
     }
