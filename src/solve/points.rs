@@ -411,7 +411,7 @@ impl<P: Problem, M: Method<P>> AnyPoints for Points<'_, P, M> {
         }
         problem.f(ScalarOf::<P>::lit(t), y, v, field);
         stats.evaluations = stats.evaluations.map(|n| n + 1);
-        // In the frame of the body rounding moves f by ε‖y‖².
+        // An f that y turns, Ad_y w, has a rounding of ε‖y‖².
         let square = square_of_size::<P>(y);
         let allowed = if square.all_below(1e6) { square } else { ScalarOf::<P>::lit(1e6) };
         let moved = group.off_algebra(v).map(|off| off * ScalarOf::<P>::lit(size) / allowed);

@@ -31,7 +31,13 @@ pub(crate) fn argument(
 pub(crate) fn refused(py: Python<'_>, name: &str, error: &Error) -> PyErr {
     match error {
         Error::OutOfRange { arg, value, expected } => {
-            argument(py, arg, Plain(value).to_string(), expected.clone())
+            // Times have the name of the argument that they come from.
+            let arg = match arg.strip_prefix("times") {
+                Some(rest) if name == "solve_ivp" => format!("t_eval{rest}"),
+                Some(rest) => format!("{name}{rest}"),
+                None => arg.clone(),
+            };
+            argument(py, &arg, Plain(value).to_string(), expected.clone())
         }
         Error::NotOnGroup { arg, group, residual, tolerance } => {
             let value = format!("a point at a relative distance of {residual:.1e} from {group}");

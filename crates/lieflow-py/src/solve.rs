@@ -152,8 +152,9 @@ impl SampledField {
     ) -> PyResult<Self> {
         let columns = columns.iter().map(|x| x.as_slice()).collect::<Result<Vec<_>, _>>()?;
         let t = t.as_slice()?;
-        let made =
-            Interpolation::named(interpolation).and_then(|kind| Samples::new(t, &columns, kind));
+        let kind = Interpolation::named(interpolation)
+            .map_err(|error| refused(py, "interpolation", &error))?;
+        let made = Samples::new(t, &columns, kind);
         made.map(|samples| SampledField(samples.into())).map_err(|error| refused(py, "t", &error))
     }
     /// The times within a span at which the samples are not smooth. A span beyond the samples is refused.

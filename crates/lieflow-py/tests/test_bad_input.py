@@ -205,3 +205,14 @@ def test_groups_are_named(group, says):
     with pytest.raises(lf.ArgumentError, match=says) as caught:
         lf.solve_ivp(lambda t, y: 0 * y, (0, 1), np.eye(3), group=group, frame="space")
     assert caught.value.argument == "group" and "expected expected" not in str(caught.value)
+
+
+def test_times_have_the_name_of_their_argument():
+    for t, says in (([0.0, 0.0], r"t\[1\]: 0"), ([0.0], r"t\.len\(\): 1")):
+        with pytest.raises(lf.ArgumentError, match=says):
+            lf.Samples(t, np.zeros(len(t)))
+    with pytest.raises(lf.ArgumentError, match="interpolation: .*quadratic"):
+        lf.Samples([0.0, 1.0], [0.0, 1.0], "quadratic")
+    body = lf.RigidBody(inertia=[1, 2, 3], omega_body=[1, 0, 0])
+    with pytest.raises(lf.ArgumentError, match=r"t_eval\[1\]: 0\.5"):
+        lf.solve_ivp(body, (0, 1), t_eval=[0.5, 0.5])
