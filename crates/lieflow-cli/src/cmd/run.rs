@@ -291,6 +291,9 @@ pub fn run_scene(
     let mut events = core::mem::take(&mut kept.seen);
     let (accuracy, accuracy_unknown) = match checked {
         Ok(Some(checked)) => {
+            let error = checked.accuracy.relative();
+            let moving = drift.iter().filter(|(_, drift)| drift.is_of_the_motion(error));
+            warnings.extend(moving.map(no_constant));
             warnings.extend(checked.warnings);
             let mut zeros = scene.events.iter().zip(checked.wrong_zeros);
             ends_wrong |= zeros.any(|(event, are_wrong)| is_end(event) && are_wrong);
@@ -449,6 +452,15 @@ fn drift_of_rows((name, drift): (&String, &Drift)) -> String {
          than the steps. Take shorter steps, or times_by = \"steps\"",
         output::rough(drift.max),
         output::rough(drift.max_at_ends_of_steps.unwrap_or(0.0))
+    )
+}
+
+fn no_constant((name, drift): (&String, &Drift)) -> String {
+    format!(
+        "`{name}` moves by {}, {} of its size, and the error of the run does not explain that: it is no constant of this \
+         motion. Look at its formula, or at what acts on the motion",
+        output::rough(drift.max),
+        output::rough(drift.max / drift.size)
     )
 }
 

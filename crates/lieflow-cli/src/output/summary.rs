@@ -435,6 +435,9 @@ pub struct Drift {
     pub promised: bool,
     /// What rounding explains of `max`.
     pub rounding: f64,
+    /// The largest size that rounding is relative to.
+    #[serde(skip)]
+    pub size: f64,
 }
 
 impl Drift {
@@ -449,7 +452,18 @@ impl Drift {
     pub fn breaks_a_promise(&self) -> bool {
         self.promised && (self.max.is_nan() || self.max > self.rounding) && !self.is_of_rows()
     }
+
+    /// Did it move by far more than the relative error of the run explains? Then it is no constant of the motion.
+    pub fn is_of_the_motion(&self, error: f64) -> bool {
+        let explained = self.rounding.max(error.max(NO_CONSTANT / BEYOND) * self.size);
+        !self.promised && self.max > BEYOND * explained && !self.is_of_rows()
+    }
 }
+
+/// A drift that is so many times the error of the run is none of the method.
+const BEYOND: f64 = 1e3;
+/// A smaller relative drift is no reason to doubt a formula.
+const NO_CONSTANT: f64 = 1e-6;
 
 /// A drift at rows that is so many times the one at ends of steps comes from the rows.
 const OF_ROWS: f64 = 100.0;
@@ -492,6 +506,7 @@ impl Watched {
             slope: self.fit.slope().unwrap_or(0.0),
             promised,
             rounding: self.drift.explained_by_rounding(steps),
+            size: self.drift.size,
         }
     }
 }

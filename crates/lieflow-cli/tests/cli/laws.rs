@@ -285,3 +285,27 @@ fn a_drift_of_rows_within_steps_is_a_warning() {
         assert!(warned == 0 && energy["max"].as_f64().unwrap() < 1e-14, "{output}: {energy}");
     }
 }
+
+/// A formula that is no invariant is told; one that is, at whatever accuracy, is not.
+#[test]
+fn a_formula_that_is_no_invariant_is_told() {
+    let folder = Folder::new();
+    let told = |invariant: &str, rtol: &str| {
+        folder.write(
+            "scene.toml",
+            &format!(
+                "[problem]\nkind = \"composed\"\ninvariants = {{ kept = \"{invariant}\" }}\n[[problem.parts]]\n\
+                 name = \"q\"\nspace = \"numbers\"\nstart = [1, 0]\nfield = [\"q2\", \"-q1\"]\n\
+                 [method]\nname = \"rkmk dopri5\"\n[time]\nt_span = [0, 20]\nrtol = {rtol}\natol = {rtol}\n"
+            ),
+        );
+        folder.lieflow(&["run", "scene.toml", "--out", "out"]).ok()
+    };
+    let moves = "`kept` moves by 1, 1 of its size, and the error of the run does not explain that";
+    let of_one = told("q1^2", "1e-9");
+    assert!(of_one.contains(moves), "{of_one}");
+    for rtol in ["1e-3", "1e-9"] {
+        let of_both = told("q1^2 + q2^2", rtol);
+        assert!(!of_both.contains("no constant of this motion"), "{of_both}");
+    }
+}
