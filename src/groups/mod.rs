@@ -185,8 +185,9 @@ pub trait LieGroup: LieAlgebra {
     ///
     /// The correction is Newton–Schulz in residual form. For M symmetric or skew it is g ← g + g(𝟙 − M⁻¹gᵀMg)/2.
     ///
-    /// g is not changed in three cases: its residual is at rounding level, ε‖g‖²; its residual is [`RESIDUAL_MAX`] or
-    /// more; for this M no step is known to converge. On a non-compact group the rounding level grows with ‖g‖², so
+    /// g is not changed in four cases: its residual is at rounding level, ε‖g‖²; its residual is [`RESIDUAL_MAX`] or
+    /// more; for this M no step is known to converge; ‖g‖² is so large on a non-compact group, 90 and more above n, that
+    /// the rounding of the correction moves g by more than a run does. On a non-compact group the rounding level grows with ‖g‖², so
     /// compare the returned residual with it. Groups without a form return 0.
     ///
     /// `scratch` is overwritten. Nothing is allocated.

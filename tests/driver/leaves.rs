@@ -249,3 +249,33 @@ fn the_distance_from_the_algebra() {
     let power = Power::new(so.clone(), 2).expect("a group");
     assert_eq!(power.off_algebra(&vec![so.zero(), far].into()), Some(found));
 }
+
+/// Where a solution grows on a non-compact group, the rounding of a correction is larger than the error of the run.
+#[test]
+fn corrections_do_no_harm_where_a_solution_grows() {
+    let field = |n: usize| {
+        move |t: f64, _: &_, v: &mut AlgebraMatrix| {
+            let boost = 1.0 + 0.3 * t.cos();
+            match n {
+                2 => (v[(0, 1)], v[(1, 0)]) = (1.0, 1.23 + 8.7 * (2.0 * t).cos()),
+                _ => {
+                    (v[(0, 3)], v[(3, 0)]) = (boost, boost);
+                    (v[(0, 1)], v[(1, 0)]) = (0.4, -0.4);
+                }
+            }
+        }
+    };
+    let groups = [(MatrixGroup::sp(2), 11.0), (MatrixGroup::indefinite(3, 1), 14.0)];
+    for (group, end) in groups {
+        let group = group.expect("a group");
+        let (n, free) = (group.n(), MatrixGroup::gl(group.n()).expect("a group"));
+        let [on_group, on_gl] = [group, free].map(|group| {
+            let y0 = group.identity();
+            let flow = Flow::new(group, LeftTranslation, field(n));
+            let method = Rkmk::new(DOPRI5, Exp);
+            Solve::new(&flow, &method, [0.0, end]).steps(20_000).run(y0).expect("a run").y
+        });
+        let (size, apart) = (on_gl.norm_l2(), (&*on_group - &*on_gl).norm_l2());
+        assert!(size > 1e4 && apart < 1e-10 * size, "{n}: {:e} of {size:e}", apart / size);
+    }
+}

@@ -24,6 +24,9 @@ use crate::so3::in_range;
 
 /// The largest number of steps.
 const STEPS_MAX: usize = 6;
+/// A correction moves g by its rounding, ε‖g‖² of its size, where no step of a run needs more than ε. On a compact group
+/// ‖g‖² is n. From this excess on it does more harm than good.
+const LARGE: f64 = 2e-14;
 /// One quadratic step takes a residual below this to rounding.
 const ONE_STEP: f64 = 1e-8;
 
@@ -100,8 +103,10 @@ impl MatrixGroup {
             };
             first.get_or_insert(residual);
             // The rounding of g♯g: ε‖g‖², and half of that where g is orthogonal.
-            let noise = f64::EPSILON * (norm_frobenius(g).powi(2) - 0.5 * self.n as f64);
-            let reach = residual > noise && residual < RESIDUAL_MAX;
+            let (square, n) = (norm_frobenius(g).powi(2), self.n as f64);
+            let noise = f64::EPSILON * (square - 0.5 * n);
+            let is_large = f64::EPSILON * (square - n) > LARGE;
+            let reach = residual > noise && residual < RESIDUAL_MAX && !is_large;
             if !reach || matches!(self.cosquare, Cosquare::Other) {
                 break;
             }
