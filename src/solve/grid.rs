@@ -272,7 +272,8 @@ pub(super) fn in_order(stops: &mut Vec<f64>, [t0, t1]: [f64; 2]) -> Result<(), E
     if let Some(i) = stops.iter().position(|t| t.is_nan()) {
         return Err(Error::out_of_range(format!("stops[{i}]"), f64::NAN, "a number"));
     }
-    stops.retain(|t| t0.min(t1) < *t && *t < t0.max(t1));
+    // f may jump at the end, too: the last step evaluates it before that.
+    stops.retain(|t| (t0.min(t1) < *t && *t < t0.max(t1)) || (*t == t1 && t0 != t1));
     stops.sort_by(f64::total_cmp);
     if t1 < t0 {
         stops.reverse();

@@ -475,3 +475,25 @@ fn every_mode_ends() {
     }
     assert!(reached > 1500, "{reached} runs reached their end");
 }
+
+/// f jumps at the end of the span: with a stop there, the last step evaluates it before the jump.
+#[test]
+fn a_jump_at_the_end_is_not_stepped_on() {
+    use nalgebra::Matrix3;
+    for [from, to] in [[0.0, 1.0], [2.0, 1.0]] {
+        let turn =
+            Flow::of_time(So3::new(), LeftTranslation, move |t: f64, v: &mut Vector3<f64>| {
+                let is_before = if to > from { t < 1.0 } else { t > 1.0 };
+                v.z = if is_before { 0.5 } else { 5.0 };
+            });
+        let method = Rkmk::new(DOPRI5, Exp);
+        for adaptive in [false, true] {
+            let solve = Solve::new(&turn, &method, [from, to]).stops([1.0]);
+            let solve = if adaptive { solve.tolerances(1e-9, 1e-9) } else { solve.steps(10) };
+            let run = solve.run(Matrix3::identity()).expect("a run");
+            let angle = run.y[(1, 0)].atan2(run.y[(0, 0)]);
+            assert!((angle - 0.5 * (to - from)).abs() < 1e-13, "{from} {adaptive}: {angle}");
+            assert_eq!(run.stats.rejected, 0);
+        }
+    }
+}

@@ -217,7 +217,8 @@ impl System for BeamLine {
         let ends =
             starts.flat_map(|cell| self.strengths.iter().map(move |(end, _)| cell * length + end));
         // One more than a scene may have, which refuses it.
-        Some(ends.filter(|s| from < *s && *s < to).take(KNOTS_MAX + 1).collect())
+        let counts = |s: &f64| (from < *s && *s < to) || *s == s1;
+        Some(ends.filter(counts).take(KNOTS_MAX + 1).collect())
     }
     fn exact(&self, [s0, s1]: [f64; 2]) -> Option<Result<Mat<f64>, Error>> {
         let both = self.map_to(s0).and_then(|to_start| Ok((to_start, self.map_to(s1)?)));
