@@ -15,8 +15,8 @@ pub enum Branch {
     Sign,
     /// Angles in ascending order, each known up to π: the first + π may stand at the end, or the last − π at the start.
     HalfTurns,
-    /// Three Euler angles. Each is known up to a turn, and (α + π, −β, γ + π) is the same attitude, or (α + π, π − β,
-    /// γ + π) where the three axes differ. At the singular β only α + γ or α − γ is known.
+    /// Three Euler angles. The first and the third are known up to a turn; the second stays within its range, so that it
+    /// does not depend on the rows before. At the singular β only α + γ or α − γ is known.
     Euler {
         /// True if the first axis is the third.
         is_proper: bool,
@@ -62,7 +62,7 @@ impl Branch {
                 values.iter_mut().for_each(|x| *x += around * PI);
             }
             Branch::Euler { is_proper, rises } => {
-                let ([a0, b0, c0], [a, b, c]) = (before, &*values) else { return };
+                let ([a0, _, c0], [a, b, c]) = (before, &*values) else { return };
                 if before.iter().any(|x| x.is_nan()) {
                     return;
                 }
@@ -75,14 +75,7 @@ impl Branch {
                     c = *c0;
                 }
                 let nearest = |x: f64, before: f64| x + TAU * ((before - x) / TAU).round();
-                let other = if is_proper { -b } else { PI - b };
-                let all = [[a, b, c], [a + PI, other, c + PI]]
-                    .map(|[a, b, c]| [nearest(a, *a0), nearest(b, *b0), nearest(c, *c0)]);
-                let far = |angles: &[f64; 3]| {
-                    angles.iter().zip(before).map(|(x, before)| (x - before).powi(2)).sum::<f64>()
-                };
-                let [same, other] = &all;
-                values.copy_from_slice(if far(other) < far(same) { other } else { same });
+                values.copy_from_slice(&[nearest(a, *a0), b, nearest(c, *c0)]);
             }
         }
     }
@@ -184,8 +177,9 @@ mod tests {
         close(follow(false, true, before, [-0.3, FRAC_PI_2, 0.0]), [0.4, FRAC_PI_2, 0.7]);
         let before = [0.4, 0.1, 0.7 + TAU];
         close(follow(true, true, before, [1.1, 0.0, 0.0]), [0.4, 0.0, 0.7 + TAU]);
-        // Beyond it, the other angles of the same attitude are near.
-        close(follow(true, true, before, [0.4 - PI, 0.1, 0.7 - PI]), [0.4, -0.1, 0.7 + TAU]);
+        // Beyond it the first and the third jump, and the second stays in its range.
+        close(follow(true, true, before, [-2.6, 0.1, -2.3]), [-2.6, 0.1, TAU - 2.3]);
+        close(follow(false, true, [3.0, 1.5, -3.0], [-3.0, 1.4, 3.0]), [TAU - 3.0, 1.4, 3.0 - TAU]);
         close(follow(true, true, [f64::NAN; 3], [3.0, 0.1, 0.7]), [3.0, 0.1, 0.7]);
     }
 

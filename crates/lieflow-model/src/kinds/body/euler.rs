@@ -65,7 +65,7 @@ impl Sequence {
         match self.fixed {
             false => {
                 "Euler angles of the attitude: turns about these axes of the body, one after the other, as zyx: yaw, \
-                 pitch, roll; in radians, continuous from row to row"
+                 pitch, roll; in radians, the first and the third continuous from row to row"
             }
             true => {
                 "the same about fixed axes of space, the first letter first; fixed_xyz is euler_zyx in reverse order"
