@@ -36,7 +36,12 @@ pub(super) fn symmetric(
         None => table.matrix(key, None)?,
     };
     check_symmetric(key, &x, tolerance)?;
-    Ok(x)
+    Ok(symmetric_part(&x))
+}
+
+/// ½(x + xᵀ): x without the rounding of its entries.
+pub(super) fn symmetric_part(x: &Mat<f64>) -> Mat<f64> {
+    Mat::from_fn(x.nrows(), x.ncols(), |i, j| 0.5 * (x[(i, j)] + x[(j, i)]))
 }
 
 /// Does a matrix have n rows?
@@ -82,8 +87,8 @@ pub(super) fn check_symmetric(key: &str, x: &Mat<f64>, tolerance: f64) -> Result
 ///
 /// # Errors
 /// As [`check_symmetric`].
-pub(super) fn check_antisymmetric(key: &str, x: &Mat<f64>) -> Result<(), Refusal> {
-    check_symmetry(key, x, -1.0, 0.0)
+pub(super) fn check_antisymmetric(key: &str, x: &Mat<f64>, tolerance: f64) -> Result<(), Refusal> {
+    check_symmetry(key, x, -1.0, tolerance)
 }
 
 fn check_symmetry(key: &str, x: &Mat<f64>, sign: f64, tolerance: f64) -> Result<(), Refusal> {

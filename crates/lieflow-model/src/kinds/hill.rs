@@ -9,7 +9,9 @@ use lieflow::methods::magnus::Magnus6;
 use lieflow::problems::{LinearHamiltonian, hill};
 use lieflow::scalar::{Ops, tally};
 
-use super::entries::{check_symmetric, numbered, rows, symmetric, symplectic_defect, trace};
+use super::entries::{
+    self, check_symmetric, numbered, rows, symmetric, symmetric_part, symplectic_defect, trace,
+};
 use super::flow::OnMatrices;
 use super::matrix::MatrixAction;
 use super::prelude::*;
@@ -60,8 +62,8 @@ fn read_mathieu(MathieuKeys { a, q, .. }: MathieuKeys) -> Result<Forms, ReadErro
 
 fn read_hill(keys: HillKeys) -> Result<Forms, ReadError> {
     let a = keys.a.and_then(|a| a.matrix("a", None));
-    let symmetry = seen(&a).and_then(|a| Ok(check_symmetric("a", a, 0.0)?));
-    let q = keys.q.and_then(|q| symmetric("q", &q, Some(seen(&a)?.nrows()), 0.0));
+    let symmetry = seen(&a).and_then(|a| Ok(check_symmetric("a", a, entries::ROUNDING)?));
+    let q = keys.q.and_then(|q| symmetric("q", &q, Some(seen(&a)?.nrows()), entries::ROUNDING));
     let period = keys.period.and_then(|Real(period)| match period > 0.0 {
         true => Ok(period),
         false => {
@@ -69,7 +71,7 @@ fn read_hill(keys: HillKeys) -> Result<Forms, ReadError> {
         }
     });
     let (a, (), q, period) = all!(a, symmetry, q, period)?;
-    Ok(Forms::of(Hill { a, q, period }))
+    Ok(Forms::of(Hill { a: symmetric_part(&a), q, period }))
 }
 
 /// Steps over the period of the monodromy in the facts: it is exact to rounding where a period has a few

@@ -7,7 +7,8 @@ use lieflow::groups::{AlgebraMatrix, MatrixGroup};
 use lieflow::problems::Flow;
 
 use super::entries::{
-    check_symmetric, eigenvalues, numbered, square, symmetric, upper, upper_columns,
+    ROUNDING, check_symmetric, eigenvalues, numbered, square, symmetric, symmetric_part, upper,
+    upper_columns,
 };
 use super::flow::OnMatrices;
 use super::matrix::MatrixAction;
@@ -43,12 +44,12 @@ type Q = Quantity<Riccati>;
 fn read(keys: Keys) -> Result<Forms, ReadError> {
     let p = keys.p?.matrix("p", None)?;
     let m = p.nrows();
-    let of_p = |key, table: Key<Table>| table.and_then(|x| symmetric(key, &x, Some(m), 0.0));
+    let of_p = |key, table: Key<Table>| table.and_then(|x| symmetric(key, &x, Some(m), ROUNDING));
     let (c, b) = (of_p("c", keys.c), of_p("b", keys.b));
     let d = keys.d.and_then(|d| d.map_or(Ok(Mat::zeros(m, m)), |d| square("d", &d, m)));
-    let start = check_symmetric("p", &p, 0.0);
+    let start = check_symmetric("p", &p, ROUNDING);
     let (c, d, b, ()) = all!(c, d, b, start)?;
-    Ok(Forms::of(Riccati { c, d, b, p }))
+    Ok(Forms::of(Riccati { c, d, b, p: symmetric_part(&p) }))
 }
 
 impl System for Riccati {

@@ -57,7 +57,7 @@ fn start(n: &Key<usize>, keys: Keys) -> Result<Mat<f64>, ReadError> {
     let entries: [Mat<f64>; 2] = match stated {
         Either::First(real) => {
             let real = symmetric("density", &real, Some(size), ROUNDING);
-            let imaginary = imaginary_part("density_imaginary", density_imaginary, size);
+            let imaginary = imaginary_part("density_imaginary", density_imaginary, size, 1.0);
             let (real, imaginary) = all!(real, imaginary)?;
             [real, imaginary]
         }

@@ -11,12 +11,13 @@ mod pure;
 
 use std::sync::Arc;
 
+use lieflow::dense::largest_entry;
 use lieflow::problems::amplitudes;
 use lieflow::scalar::{Ops, tally};
 
 pub(super) use self::mixed::KIND as DENSITY_MATRIX;
 pub(super) use self::pure::KIND as SCHRODINGER;
-use super::entries::{above_diagonal, check_antisymmetric, square, symmetric};
+use super::entries::{ROUNDING, above_diagonal, check_antisymmetric, square, symmetric};
 use super::prelude::*;
 use crate::formula::{Formula, Instead, Names, Text, without_value};
 use crate::problem::{FormulaKeys, SampleKeys, group};
@@ -280,10 +281,10 @@ impl Drive {
         let n = seen(&energies).map(Vec::len);
         let real = coupling.and_then(|x| {
             let table = x.ok_or_else(missing("coupling"))?;
-            symmetric("coupling", &table, Some(n.clone()?), 0.0)
+            symmetric("coupling", &table, Some(n.clone()?), ROUNDING)
         });
         let imaginary = coupling_imaginary
-            .and_then(|table| imaginary_part("coupling_imaginary", table, n.clone()?));
+            .and_then(|table| imaginary_part("coupling_imaginary", table, n.clone()?, 0.0));
         let pulse = pulse.and_then(|pulse| match pulse {
             Some(Reals([_, width])) if width <= 0.0 => {
                 let message = format!("width = {width}, expected a number > 0");
@@ -323,11 +324,19 @@ fn given<T>(key: &Key<Option<T>>) -> bool {
     !matches!(key, Ok(None))
 }
 
-/// The antisymmetric n×n matrix of a key. It is 0 if the key is left out.
-fn imaginary_part(key: &str, table: Option<Table>, n: usize) -> Result<Mat<f64>, ReadError> {
+/// The antisymmetric n×n matrix of a key, to the rounding of numbers of this size. It is 0 if the key is left out.
+fn imaginary_part(
+    key: &str,
+    table: Option<Table>,
+    n: usize,
+    size: f64,
+) -> Result<Mat<f64>, ReadError> {
     let x = table.map_or(Ok(Mat::zeros(n, n)), |table| square(key, &table, n))?;
-    check_antisymmetric(key, &x)?;
-    Ok(x)
+    let largest = largest_entry(x.as_ref());
+    if largest > 0.0 {
+        check_antisymmetric(key, &x, ROUNDING * (size / largest).max(1.0))?;
+    }
+    Ok(Mat::from_fn(n, n, |i, j| 0.5 * (x[(i, j)] - x[(j, i)])))
 }
 
 /// The state of n levels with these amplitudes.
