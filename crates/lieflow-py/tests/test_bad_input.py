@@ -216,3 +216,34 @@ def test_times_have_the_name_of_their_argument():
     body = lf.RigidBody(inertia=[1, 2, 3], omega_body=[1, 0, 0])
     with pytest.raises(lf.ArgumentError, match=r"t_eval\[1\]: 0\.5"):
         lf.solve_ivp(body, (0, 1), t_eval=[0.5, 0.5])
+
+
+@pytest.mark.parametrize("number", [5, 0, -1, True, 1.5])
+def test_a_number_is_no_field(number):
+    space = {"group": "SO(3)", "frame": "body"}
+    with pytest.raises(TypeError, match="fun"):
+        lf.solve_ivp(number, (0, 1), np.eye(3), **space)
+    with pytest.raises(TypeError, match="fun"):
+        lf.Integrator(number, None, (0, 1), np.eye(3), **space)
+
+
+@pytest.mark.parametrize(("group", "y0"), [("SO(4)", np.eye(4)), ("U(2)", np.eye(2)), ("SU(2)", np.eye(2))])
+def test_a_value_outside_the_algebra_is_refused_in_both_frames(group, y0):
+    for frame in ("space", "body"):
+        with pytest.raises(lf.ArgumentError, match="fun"):
+            lf.solve_ivp(lambda t, y: np.diag(np.arange(1.0, 1 + len(y0))) + 0 * y, (0, 1), y0, group=group, frame=frame)
+
+
+def test_the_density_matrix_of_a_state_is_taken():
+    rng = np.random.default_rng(3)
+    for n in (2, 3, 4):
+        for _ in range(20):
+            psi = rng.standard_normal(n) + 1j * rng.standard_normal(n)
+            psi /= np.linalg.norm(psi)
+            lf.DensityMatrix(hamiltonian=np.eye(n), density=np.outer(psi, psi.conj()))
+            q = np.linalg.qr(rng.standard_normal((n, n)))[0]
+            a = q @ np.diag(np.arange(1.0, n + 1)) @ q.T
+            lf.Hill(a=a, q=a, period=1.0)
+            lf.Riccati(c=a, b=a, p=a)
+    with pytest.raises(lf.ArgumentError, match="antisymmetric"):
+        lf.DensityMatrix(hamiltonian=np.eye(2), density=np.array([[0.5, 0.1j], [0.1j, 0.5]]))

@@ -264,7 +264,9 @@ class Ready:
             return fun._sampled
         if callable(fun) and not hasattr(fun, "address"):
             return (self._on_layout(fun), self.args)
-        if isinstance(fun, (int, np.integer)) or hasattr(fun, "address"):
+        if isinstance(fun, (int, np.integer)) and not isinstance(fun, bool):
+            raise TypeError(f"fun: {fun}, expected a function of t and y; an address of a C function goes through lf.CFunction")
+        if hasattr(fun, "address"):
             return (address(fun), [float(x) for x in self.args])
         raise TypeError(f"fun: a value of type {type(fun).__name__}, expected a function of t and y")
 
