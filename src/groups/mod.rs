@@ -82,12 +82,16 @@ pub trait LieAlgebra: Send + Sync {
         Ok(())
     }
 
-    /// The distance of u from 𝔤, as ‖uᵀM + Mu‖/‖M‖ on a matrix group. Allocates nothing.
-    ///
-    /// During a run the driver asks for the distance of f. The default is `None`, for storage that holds only elements of 𝔤.
+    /// True if the storage of u can hold more than 𝔤, as n×n matrices do for 𝔰𝔬(n). The driver then looks at f during a run.
     #[inline]
-    fn off_algebra(&self, _u: &Self::Alg) -> Option<Self::Scalar> {
-        None
+    fn holds_more(&self) -> bool {
+        false
+    }
+
+    /// The distance of u from 𝔤, as ‖uᵀM + Mu‖/‖M‖ on a matrix group; 0 where the storage holds 𝔤 alone. Allocates nothing.
+    #[inline]
+    fn off_algebra(&self, _u: &Self::Alg) -> Self::Scalar {
+        Self::Scalar::lit(0.0)
     }
 
     /// u ← Σ_j h·w_j·k_j over the nonzero weights.

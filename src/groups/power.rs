@@ -119,8 +119,12 @@ impl<G: LieAlgebra> LieAlgebra for Power<G> {
         self.check_copies(arg, u)?;
         u.iter().try_for_each(|u| self.group.check(arg, u))
     }
-    fn off_algebra(&self, u: &Self::Alg) -> Option<G::Scalar> {
-        u.iter().map(|u| self.group.off_algebra(u)).fold(None, worse)
+    #[inline]
+    fn holds_more(&self) -> bool {
+        self.group.holds_more()
+    }
+    fn off_algebra(&self, u: &Self::Alg) -> G::Scalar {
+        u.iter().map(|u| self.group.off_algebra(u)).fold(G::Scalar::lit(0.0), larger)
     }
 }
 

@@ -87,8 +87,12 @@ impl<A: LieAlgebra, B: LieAlgebra<Scalar = A::Scalar>> LieAlgebra for Product<A,
         self.1.check(arg, &u.1)
     }
     #[inline]
-    fn off_algebra(&self, u: &Self::Alg) -> Option<A::Scalar> {
-        worse(self.0.off_algebra(&u.0), self.1.off_algebra(&u.1))
+    fn holds_more(&self) -> bool {
+        self.0.holds_more() || self.1.holds_more()
+    }
+    #[inline]
+    fn off_algebra(&self, u: &Self::Alg) -> A::Scalar {
+        larger(self.0.off_algebra(&u.0), self.1.off_algebra(&u.1))
     }
 }
 

@@ -386,27 +386,28 @@ impl<P: Problem, M: Method<P>> AnyPoints for Points<'_, P, M> {
         })
     }
     fn correct(&mut self, cadence: &mut Cadence, stats: &mut Stats) -> Result<(), Error> {
-        let Points { problem, y, orbit, restore, v, .. } = self;
+        let Points { problem, y, orbit, restore, .. } = self;
         let problem = &**problem;
+        let is_checked = problem.group().holds_more();
         let Some(residual) = problem.action().restore_to(problem.group(), orbit, y, restore) else {
-            match problem.group().off_algebra(v) {
-                Some(_) => cadence.saw(0.0),
-                None => cadence.next = u64::MAX,
+            match is_checked {
+                true => cadence.saw(0.0),
+                false => cadence.next = u64::MAX,
             }
             return Ok(());
         };
         stats.saw(residual);
         cadence.saw(residual);
-        match problem.group().off_algebra(v) {
-            Some(_) => check_residual(problem, residual / square_of_size::<P>(y)),
-            None => Ok(()),
+        match is_checked {
+            true => check_residual(problem, residual / square_of_size::<P>(y)),
+            false => Ok(()),
         }
     }
     fn check_field(&mut self, t: f64, size: f64, stats: &mut Stats) -> Result<(), Error> {
         let Points { problem, y, v, field, .. } = self;
         let problem = &**problem;
         let group = problem.group();
-        if group.off_algebra(v).is_none() {
+        if !group.holds_more() {
             return Ok(());
         }
         problem.f(ScalarOf::<P>::lit(t), y, v, field);
@@ -414,19 +415,19 @@ impl<P: Problem, M: Method<P>> AnyPoints for Points<'_, P, M> {
         // An f that y turns, Ad_y w, has a rounding of ε‖y‖².
         let square = square_of_size::<P>(y);
         let allowed = if square.all_below(1e6) { square } else { ScalarOf::<P>::lit(1e6) };
-        let moved = group.off_algebra(v).map(|off| off * ScalarOf::<P>::lit(size) / allowed);
-        match moved.is_none_or(|moved| moved.all_below(OFF_BY_A_STEP)) {
+        let moved = group.off_algebra(v) * ScalarOf::<P>::lit(size) / allowed;
+        match moved.all_below(OFF_BY_A_STEP) {
             true => Ok(()),
             false => group.check("f", v),
         }
     }
     fn check_state(&mut self) -> Result<(), Error> {
-        let Points { problem, y, restore, v, .. } = self;
+        let Points { problem, y, restore, .. } = self;
         let problem = &**problem;
-        if problem.group().off_algebra(v).is_none() {
-            return Ok(());
+        match problem.group().holds_more() {
+            true => check_on_manifold(problem, &mut y.clone(), restore),
+            false => Ok(()),
         }
-        check_on_manifold(problem, &mut y.clone(), restore)
     }
     fn repeat(&mut self, step: Step<f64>) -> Result<(), StepError> {
         let Points { problem, method, y, from, to, work, rates, .. } = self;

@@ -60,6 +60,8 @@ fn is_seen<P: Problem<Group: LieAlgebra<Scalar = f64>>>(
 fn groups() -> Vec<MatrixGroup> {
     let form =
         Mat::from_fn(3, 3, |i, j| if i == j { 1.0 + i as f64 } else { 0.3 * (i * j) as f64 });
+    // Neither symmetric nor skew.
+    let neither = lieflow::faer::mat![[2.0, 0.5, 0.0], [-0.3, 1.5, 0.4], [0.2, 0.0, 1.0]];
     [
         MatrixGroup::so(4),
         MatrixGroup::sp(4),
@@ -68,6 +70,7 @@ fn groups() -> Vec<MatrixGroup> {
         MatrixGroup::su(2),
         MatrixGroup::indefinite(2, 1),
         MatrixGroup::gm(form),
+        MatrixGroup::gm(neither),
     ]
     .map(|group| group.expect("a group"))
     .into()
@@ -94,6 +97,18 @@ fn an_f_that_leaves_the_algebra_ends_the_run() {
         };
         is_seen(&group.name(), &flow(1.0), &flow(0.0), &group.identity());
     }
+    // Skew, but without the blocks of U(2).
+    let group = MatrixGroup::u(2).expect("a group");
+    let x = group.sample_algebra(&mut rng, 0.4);
+    let flow = |size: f64| {
+        let x = x.clone();
+        Flow::new(group.clone(), LeftTranslation, move |t, _: &_, v: &mut AlgebraMatrix| {
+            v.copy_from(&*x);
+            v[(0, 1)] += size * out(t);
+            v[(1, 0)] -= size * out(t);
+        })
+    };
+    is_seen("blocks", &flow(1.0), &flow(0.0), &group.identity());
     let unitary = Unitary::new(3).expect("a group");
     let flow = |size: f64| {
         Flow::new(unitary, LeftTranslation, move |t: f64, _: &_, v: &mut ComplexMatrix| {
@@ -226,10 +241,9 @@ fn the_distance_from_the_algebra() {
     let mut rng = Pcg64::seed_from_u64(11);
     for group in groups() {
         let x = group.sample_algebra(&mut rng, 1.0);
-        let inside = group.off_algebra(&x).expect("a distance");
+        let inside = group.off_algebra(&x);
         assert!(inside < 1e-14, "{}: {inside:e}", group.name());
         let [near, far] = [1e-6, 1e-3].map(|out| group.off_algebra(&with_out(&group, &x, out)));
-        let (near, far) = (near.expect("a distance"), far.expect("a distance"));
         assert!((far / near - 1e3).abs() < 1e-4, "{}: {near:e} {far:e}", group.name());
         assert!(near > 1e-7 && near < 1e-5, "{}: {near:e}", group.name());
     }
@@ -238,16 +252,19 @@ fn the_distance_from_the_algebra() {
     let far = with_out(&so, &x, 1.0);
     // ‖u + uᵀ‖/‖𝟙‖ with one entry of 2.
     let expected = 2.0 / 3f64.sqrt();
-    let found = so.off_algebra(&far).expect("a distance");
+    let found = so.off_algebra(&far);
     assert!((found - expected).abs() < 1e-15, "{found}");
     let huge = with_out(&so, &so.zero(), 1e200);
-    assert!((so.off_algebra(&huge).expect("a distance") / 1e200 - expected).abs() < 1e-15);
-    assert!(MatrixGroup::gl(3).expect("a group").off_algebra(&far).is_none());
-    assert!(So3::<f64>::new().off_algebra(&nalgebra::Vector3::x()).is_none());
+    assert!((so.off_algebra(&huge) / 1e200 - expected).abs() < 1e-15);
+    let free = MatrixGroup::gl(3).expect("a group");
+    assert!(!free.holds_more() && free.off_algebra(&far) == 0.0);
+    assert!(!So3::<f64>::new().holds_more() && so.holds_more());
     let product = Product(So3::<f64>::new(), so.clone());
-    assert_eq!(product.off_algebra(&(nalgebra::Vector3::x(), far.clone())), Some(found));
+    assert!(product.holds_more());
+    assert_eq!(product.off_algebra(&(nalgebra::Vector3::x(), far.clone())), found);
     let power = Power::new(so.clone(), 2).expect("a group");
-    assert_eq!(power.off_algebra(&vec![so.zero(), far].into()), Some(found));
+    assert!(power.holds_more());
+    assert_eq!(power.off_algebra(&vec![so.zero(), far].into()), found);
 }
 
 /// Where a solution grows on a non-compact group, the rounding of a correction is larger than the error of the run.

@@ -109,13 +109,10 @@ impl MatrixGroup {
         }
     }
 
-    /// [`LieAlgebra::off_algebra`]; `None` for the matrices of GL(n).
-    pub(super) fn off_form_and_subgroup(&self, u: &Mat<f64>) -> Option<f64> {
-        if matches!(self.form(), Form::Free) && !self.subgroup.is_special {
-            return None;
-        }
+    /// [`LieAlgebra::off_algebra`].
+    pub(super) fn off_form_and_subgroup(&self, u: &Mat<f64>) -> f64 {
         let trace = if self.subgroup.is_special { self.trace(u.as_ref()).abs() } else { 0.0 };
-        Some(self.off_form(u) + self.off_blocks(u) + trace)
+        self.off_form(u) + self.off_blocks(u) + trace
     }
 
     /// The distance of x from the matrices \[X −Y; Y X\]; 0 where it need not be one.

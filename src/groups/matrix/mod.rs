@@ -300,7 +300,10 @@ impl LieAlgebra for MatrixGroup {
     fn check(&self, arg: &'static str, u: &AlgebraMatrix) -> Result<(), Error> {
         self.check_algebra(arg, u)
     }
-    fn off_algebra(&self, u: &AlgebraMatrix) -> Option<f64> {
+    fn holds_more(&self) -> bool {
+        !matches!(self.form, Form::Free) || self.subgroup.is_special
+    }
+    fn off_algebra(&self, u: &AlgebraMatrix) -> f64 {
         self.off_form_and_subgroup(u)
     }
 }

@@ -101,8 +101,11 @@ impl LieAlgebra for Unitary {
             false => Ok(()),
         }
     }
-    fn off_algebra(&self, u: &ComplexMatrix) -> Option<f64> {
-        Some(u.off_skew())
+    fn holds_more(&self) -> bool {
+        true
+    }
+    fn off_algebra(&self, u: &ComplexMatrix) -> f64 {
+        u.off_skew()
     }
 }
 

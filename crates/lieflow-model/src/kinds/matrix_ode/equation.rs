@@ -115,7 +115,7 @@ impl Equation {
             }
         }
         let off = self.group.off_algebra(v);
-        if off.is_some_and(|off| off <= IN_THE_ALGEBRA * largest_entry(v.as_ref())) {
+        if off <= IN_THE_ALGEBRA * largest_entry(v.as_ref()) {
             self.algebra.project(v);
         }
     }
