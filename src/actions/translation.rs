@@ -6,6 +6,32 @@ use crate::groups::{Adjoint, LieGroup};
 use crate::scalar::Real;
 use crate::tolerance::Scales;
 
+/// What is the same from both sides: points are elements of G.
+macro_rules! on_the_group {
+    () => {
+        #[inline]
+        fn check(&self, group: &G, p: &G::Elem) -> Result<(), Error> {
+            group.check_elem(p)
+        }
+        fn check_member(&self, group: &G, p: &G::Elem) -> Result<(), Error> {
+            group.check_member(p)
+        }
+        fn assign(&self, group: &G, p: &G::Elem, q: &mut G::Elem) {
+            group.assign(p, q);
+        }
+        #[inline]
+        fn error_ratio(
+            &self,
+            group: &G,
+            e: &G::Alg,
+            g: &G::Elem,
+            scales: &mut Scales<'_>,
+        ) -> G::Scalar {
+            group.error_ratio(e, g, scales)
+        }
+    };
+}
+
 /// G acting on itself from the left: ġ = f(g)·g, equation (12).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LeftTranslation;
@@ -18,16 +44,7 @@ impl<G: LieGroup> Action<G> for LeftTranslation {
     fn work(&self, group: &G) -> Self::Work {
         [group.identity(), group.identity()]
     }
-    #[inline]
-    fn check(&self, group: &G, p: &G::Elem) -> Result<(), Error> {
-        group.check_elem(p)
-    }
-    fn check_member(&self, group: &G, p: &G::Elem) -> Result<(), Error> {
-        group.check_member(p)
-    }
-    fn assign(&self, group: &G, p: &G::Elem, q: &mut G::Elem) {
-        group.assign(p, q);
-    }
+    on_the_group!();
     #[inline]
     fn act(&self, group: &G, g: &G::Elem, p: &G::Elem, q: &mut G::Elem, _: &mut Self::Work) {
         group.compose(g, p, q);
@@ -35,16 +52,6 @@ impl<G: LieGroup> Action<G> for LeftTranslation {
     #[inline]
     fn generate(&self, group: &G, v: &G::Alg, g: &G::Elem, dg: &mut G::Elem, _: &mut Self::Work) {
         group.tangent(v, g, dg);
-    }
-    #[inline]
-    fn error_ratio(
-        &self,
-        group: &G,
-        e: &G::Alg,
-        g: &G::Elem,
-        scales: &mut Scales<'_>,
-    ) -> G::Scalar {
-        group.error_ratio(e, g, scales)
     }
     fn restore(&self, group: &G, p: &mut G::Elem, work: &mut Self::Work) -> Option<G::Scalar> {
         Some(group.correct(p, work.each_mut()))
@@ -77,16 +84,7 @@ impl<G: Adjoint> Action<G> for RightTranslation {
         let (inverting, minus) = (group.inverting(), group.zero());
         RightWork { inverse: one(), inverting, minus, restore: [one(), one()] }
     }
-    #[inline]
-    fn check(&self, group: &G, p: &G::Elem) -> Result<(), Error> {
-        group.check_elem(p)
-    }
-    fn check_member(&self, group: &G, p: &G::Elem) -> Result<(), Error> {
-        group.check_member(p)
-    }
-    fn assign(&self, group: &G, p: &G::Elem, q: &mut G::Elem) {
-        group.assign(p, q);
-    }
+    on_the_group!();
     #[inline]
     fn act(&self, group: &G, g: &G::Elem, p: &G::Elem, q: &mut G::Elem, work: &mut RightWork<G>) {
         // A singular g is not in G; its numbers are not finite, and the step ends with that.
@@ -106,16 +104,6 @@ impl<G: Adjoint> Action<G> for RightTranslation {
         group.set_zero(minus);
         group.axpy(G::Scalar::lit(-1.0), v, minus);
         group.tangent_in_body(g, minus, dg);
-    }
-    #[inline]
-    fn error_ratio(
-        &self,
-        group: &G,
-        e: &G::Alg,
-        g: &G::Elem,
-        scales: &mut Scales<'_>,
-    ) -> G::Scalar {
-        group.error_ratio(e, g, scales)
     }
     fn restore(&self, group: &G, p: &mut G::Elem, work: &mut RightWork<G>) -> Option<G::Scalar> {
         Some(group.correct(p, work.restore.each_mut()))
@@ -138,16 +126,7 @@ impl<G: Adjoint> Action<G> for Translation {
     fn work(&self, group: &G) -> RightWork<G> {
         RightTranslation.work(group)
     }
-    #[inline]
-    fn check(&self, group: &G, p: &G::Elem) -> Result<(), Error> {
-        group.check_elem(p)
-    }
-    fn check_member(&self, group: &G, p: &G::Elem) -> Result<(), Error> {
-        group.check_member(p)
-    }
-    fn assign(&self, group: &G, p: &G::Elem, q: &mut G::Elem) {
-        group.assign(p, q);
-    }
+    on_the_group!();
     #[inline]
     fn act(&self, group: &G, g: &G::Elem, p: &G::Elem, q: &mut G::Elem, work: &mut RightWork<G>) {
         match self {
@@ -168,16 +147,6 @@ impl<G: Adjoint> Action<G> for Translation {
             Translation::Left => group.tangent(v, g, dg),
             Translation::Right => RightTranslation.generate(group, v, g, dg, work),
         }
-    }
-    #[inline]
-    fn error_ratio(
-        &self,
-        group: &G,
-        e: &G::Alg,
-        g: &G::Elem,
-        scales: &mut Scales<'_>,
-    ) -> G::Scalar {
-        group.error_ratio(e, g, scales)
     }
     fn restore(&self, group: &G, p: &mut G::Elem, work: &mut RightWork<G>) -> Option<G::Scalar> {
         RightTranslation.restore(group, p, work)

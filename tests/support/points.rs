@@ -55,18 +55,19 @@ impl<G: Represent> Points<G> for LeftTranslation {
     }
 }
 
+/// Its points are those of [`LeftTranslation`].
 impl<G: Represent + Adjoint> Points<G> for RightTranslation {
     fn draw(&self, group: &G, rng: &mut Pcg64) -> G::Elem {
-        group.sample_element(rng)
+        LeftTranslation.draw(group, rng)
     }
     fn numbers(&self, group: &G, g: &G::Elem) -> Mat<f64> {
-        group.element_matrix(g)
+        LeftTranslation.numbers(group, g)
     }
     fn with_numbers(&self, group: &G, x: &Mat<f64>) -> G::Elem {
-        group.element_of(x)
+        LeftTranslation.with_numbers(group, x)
     }
     fn shape(&self, group: &G) -> (usize, usize) {
-        (order_of(group), order_of(group))
+        LeftTranslation.shape(group)
     }
     fn generator(&self, group: &G, xi: &Mat<f64>, g: &G::Elem) -> Mat<f64> {
         group.element_matrix(g) * xi * faer::Scale(-1.0)

@@ -248,12 +248,13 @@ impl<'a> Check<'a> {
             return None;
         }
         let start = self.watch.model.start(&method).ok()?;
-        // Two changes of neighbouring numbers in opposite directions.
+        // Two changes of neighbouring numbers in opposite directions. Steps of one size are one step.
+        let way = Way { factor: self.own.steps.max(1) as f64, ..OWN };
         let moved = [1.0, -1.0].map(|sign| {
             let sign = |i: usize| if i.is_multiple_of(2) { sign } else { -sign };
             let last_digit = |(i, x): (usize, &f64)| x + sign(i) * f64::EPSILON * x;
             let start = start.iter().enumerate().map(last_digit).collect();
-            self.rows_from(Some(start), OWN, &[end]).ok()?.0.pop()
+            self.rows_from(Some(start), way, &[end]).ok()?.0.pop()
         });
         let pairs = moved.iter().flatten().map(|row| (end, [&self.last[..], &row[..]]));
         let apart = Apart::of_rows(self.watch, &self.run.sizes, pairs);

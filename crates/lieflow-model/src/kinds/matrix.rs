@@ -41,6 +41,11 @@ pub(super) enum MatrixWork {
     Lagrangian(<Lagrangian as Action<MatrixGroup>>::Work),
 }
 
+/// x ← −x.
+pub(super) fn reverse(x: &mut Mat<f64>) {
+    x.col_iter_mut().for_each(|column| column.iter_mut().for_each(|x| *x = -*x));
+}
+
 impl Action<MatrixGroup> for MatrixAction {
     type Point = Mat<f64>;
     type Work = MatrixWork;
@@ -113,7 +118,7 @@ impl Action<MatrixGroup> for MatrixAction {
             MatrixWork::Linear | MatrixWork::Translation(_) => group.apply_algebra(v, p, dp),
             MatrixWork::RightTranslation(..) => {
                 multiply_into(dp, p.as_ref(), v.as_ref());
-                dp.col_iter_mut().for_each(|column| column.iter_mut().for_each(|x| *x = -*x));
+                reverse(dp);
             }
             MatrixWork::Conjugation(work) => Conjugation.generate(group, v, p, dp, work),
             MatrixWork::Coadjoint(work) => Coadjoint.generate(group, v, p, dp, work),

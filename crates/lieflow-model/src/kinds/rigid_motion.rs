@@ -101,15 +101,16 @@ fn read(mut keys: Keys) -> Result<Forms, ReadError> {
 impl Motion {
     /// The problem on these numbers.
     fn on<S: Trig + Into<f64> + 'static>(&self) -> flow::Motion<S> {
-        let (side, sign) = match self.in_body {
-            true => (Translation::Right, -1.0),
-            false => (Translation::Left, 1.0),
-        };
-        let (twist, sign) = (self.twist.clone(), S::lit(sign));
+        let in_body = self.in_body;
+        let side = if in_body { Translation::Right } else { Translation::Left };
+        let twist = self.twist.clone();
         let field = move |t: S, y: &Pose<S>, v: &mut (Vector3<S>, Vector3<S>)| {
             let at = variables(t, y);
-            v.0 = Vector3::from_fn(|i, _| sign * twist[i].value(&at));
-            v.1 = Vector3::from_fn(|i, _| sign * twist[3 + i].value(&at));
+            v.0 = Vector3::from_fn(|i, _| twist[i].value(&at));
+            v.1 = Vector3::from_fn(|i, _| twist[3 + i].value(&at));
+            if in_body {
+                *v = (-v.0, -v.1);
+            }
         };
         let flow = Flow::new(Se3::new(), side, field);
         let of_time = !(1..VARIABLES.len()).any(|i| self.twist.iter().any(|f| f.uses(i)));

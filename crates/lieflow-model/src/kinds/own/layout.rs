@@ -5,6 +5,7 @@ use lieflow::groups::{AlgebraMatrix, MatrixGroup, Se3, So3, UnitQuaternions};
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
 use crate::kinds::composed::{Field, Parts, Point};
+use crate::kinds::matrix::reverse;
 
 /// How points of this type and elements of the algebra of G are numbers by rows.
 pub(super) trait Layout<G: lieflow::LieGroup, Y>: Copy + Send + Sync + 'static {
@@ -224,13 +225,8 @@ impl Layout<MatrixGroup, Mat<f64>> for Matrices {
         }
     }
     fn reverse(self, v: &mut AlgebraMatrix) {
-        minus(v);
+        reverse(v);
     }
-}
-
-/// v ← −v.
-fn minus(v: &mut Mat<f64>) {
-    v.col_iter_mut().for_each(|column| column.iter_mut().for_each(|x| *x = -*x));
 }
 
 /// Complex matrices X + iY as numbers Re, Im, Re, … by rows. In the run they are real: \[X −Y; Y X\] where the group acts
@@ -279,6 +275,6 @@ impl Layout<MatrixGroup, Mat<f64>> for ComplexMatrices {
         realify(rows, n, n, v);
     }
     fn reverse(self, v: &mut AlgebraMatrix) {
-        minus(v);
+        reverse(v);
     }
 }
