@@ -105,8 +105,10 @@ impl BeamLine {
     }
     /// The map from 0 to s: whole cells, and the elements of the last one up to s.
     fn map_to(&self, s: f64) -> Result<Mat<f64>, Error> {
-        let cells = (s / self.cell_length()).floor();
-        let (mut rest, mut begun) = (s.rem_euclid(self.cell_length()), Vec::new());
+        let length = self.cell_length();
+        let cells = (s / length).floor();
+        // The rest of the same cells: beside the end of a cell a remainder may be of another number of them.
+        let (mut rest, mut begun) = ((s - cells * length).clamp(0.0, length), Vec::new());
         for element in &self.elements {
             let (Element::Drift { length }
             | Element::Quadrupole { length, .. }

@@ -5,6 +5,7 @@ use lieflow_model::kinds::RigidBodySpec;
 use nalgebra::{Matrix3, Vector3};
 
 use super::*;
+use lieflow_model::problem::Rows;
 
 const FINE: &str = "t_span = [0, 2]\ndt = 0.005";
 const RKMK4: &str = "name = \"rkmk4\"";
@@ -302,4 +303,37 @@ fn exact_solutions_from_any_start() {
             assert!(gap < 1e-11, "{quantity}, {span}: {gap:e}");
         }
     }
+}
+
+/// At the ends of cells, whose length is no binary fraction, quotient and remainder of rounded numbers may be those of
+/// different cells.
+#[test]
+fn the_exact_map_of_whole_cells_is_a_power() {
+    for (length, k) in [(1.3, 0.4), (0.7, 0.9), (0.1, 3.0)] {
+        let keys = format!(
+            "kind = \"beam-line\"\nparticle = [1, 1, 0, 0]\nelements = [\n\
+             {{ kind = \"quadrupole\", length = {length}, k = {k} }},\n\
+             {{ kind = \"quadrupole\", length = {length}, k = -{k} }}]"
+        );
+        for cells in 1..60 {
+            // Both roundings of the end.
+            for end in [f64::from(cells) * (2.0 * length), (f64::from(20 * cells) * length) / 10.0]
+            {
+                let time = format!("t_span = [0, {end:?}]\nat_knots = true\ndt = {length}");
+                let of = scene(&keys, "name = \"magnus4\"", &time, "[\"map\"]");
+                let exact = of.model().unwrap().exact([0.0, end]).unwrap().unwrap();
+                let gap = far(&last_at_stops(&of), &exact);
+                assert!(gap < 1e-10, "{length}, {cells}, {end}: {gap:e}");
+            }
+        }
+    }
+}
+
+/// The last row of a run whose steps end at the knots.
+fn last_at_stops(of: &Scene) -> Vec<f64> {
+    let (model, mut end) = (of.model().unwrap(), Vec::new());
+    let plan = of.plan(model.schema()).unwrap();
+    let mut sink = |_: f64, row: Row<'_>| end = row.values().to_vec();
+    model.drive(&of.method, plan, &mut Rows(&mut sink)).unwrap();
+    end
 }
