@@ -77,6 +77,11 @@ impl StepControl {
         StepControl { max_step: positive("max_step", h)?, ..self }.limits("max_step", h)
     }
 
+    /// The largest step size; infinite if none was set.
+    pub fn longest_step(&self) -> f64 {
+        self.max_step
+    }
+
     fn limits(self, arg: &'static str, h: f64) -> Result<Self, Error> {
         if self.min_step > self.max_step {
             let expected = format!("{} ≤ max_step = {}", self.min_step, self.max_step);

@@ -470,7 +470,14 @@ impl<'a> Check<'a> {
                     .into()
             }
         };
-        Some(format!("{wrong} {advice}."))
+        let knots = match self.scene().passes_knots() {
+            true => {
+                " Steps pass over knots of samples or ends of magnets, and lose their order there: `at_knots = true` \
+                     in [time] ends a step at each."
+            }
+            false => "",
+        };
+        Some(format!("{wrong} {advice}.{knots}"))
     }
 
     /// The errors of another run at these times, if they can be found.

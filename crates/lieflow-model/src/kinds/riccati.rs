@@ -52,6 +52,25 @@ fn read(keys: Keys) -> Result<Forms, ReadError> {
     Ok(Forms::of(Riccati { c, d, b, p: symmetric_part(&p) }))
 }
 
+impl Riccati {
+    /// A bound of |d/dt| of the sum of the angles: it is tr XᵀSX with S = \[C D; Dᵀ −B\] and orthonormal columns X of the
+    /// subspace, so it is at most the sum of the m largest eigenvalues of S, and at least that of the m smallest.
+    fn rate_of_angles(&self) -> f64 {
+        let Riccati { c, d, b, .. } = self;
+        let m = c.nrows();
+        let s = Mat::from_fn(2 * m, 2 * m, |i, j| match (i < m, j < m) {
+            (true, true) => c[(i, j)],
+            (true, false) => d[(i, j - m)],
+            (false, true) => d[(j, i - m)],
+            (false, false) => -b[(i - m, j - m)],
+        });
+        let eigenvalues = eigenvalues(&s);
+        let [low, high] =
+            [&eigenvalues[..m], &eigenvalues[m..]].map(|half| half.iter().sum::<f64>());
+        high.max(-low)
+    }
+}
+
 impl System for Riccati {
     type Problem = OnMatrices;
 
@@ -73,7 +92,7 @@ impl System for Riccati {
             |_, _, p, row| row.extend(eigenvalues(p).iter().map(|x| x.atan())),
         )
         .in_radians()
-        .continuous_by(|_| Branch::HalfTurns)
+        .continuous_by(|riccati| Branch::HalfTurns { rate: riccati.rate_of_angles() })
         .with_columns(|riccati| numbered("angle", riccati.p.nrows())),
     ];
 

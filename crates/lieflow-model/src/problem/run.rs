@@ -344,7 +344,7 @@ pub(crate) fn drive_by<P: Runnable>(
     let Plan { steps, save, times_by_steps, stops, .. } = plan;
     let Plan { events, max_steps, cancel, checkpoints, resume, start, curve, .. } = plan;
     if let Some(numbers) = start {
-        set_numbers(&mut y, "start", &numbers)?;
+        set_numbers(&mut y, "y0", &numbers)?;
     }
     let (watcher, numbers) = (RefCell::new(watcher), RefCell::new(Vec::new()));
     let mut branches = Branches::new(schema);
@@ -355,10 +355,16 @@ pub(crate) fn drive_by<P: Runnable>(
         row_of(t, y, &mut numbers);
         branches.borrow_mut().follow(&mut numbers);
     };
+    let gap = schema.longest_gap();
     let mut solve = Solve::shared(problem.clone(), method, steps.t_span()).save(save).stops(stops);
     solve = match steps {
         Steps::Equal(grid) => solve.grid(grid),
-        Steps::ByError { control, .. } => solve.control(control),
+        Steps::ByError { control, .. } => solve.control(match gap {
+            Some(gap) if gap < control.longest_step() => {
+                control.clone().max_step(gap).unwrap_or(control)
+            }
+            _ => control,
+        }),
     };
     if times_by_steps {
         solve = solve.times_by_steps();
@@ -406,6 +412,14 @@ pub(crate) fn drive_by<P: Runnable>(
         }
         solve = solve.event(event);
     }
+    if gap.is_some() {
+        // No zero: it sees the end of each step, where the choices are followed.
+        let follow = |t: f64, y: &PointOf<P>| {
+            fill(t, y);
+            1.0
+        };
+        solve = solve.event(Event::new("", follow).points(0));
+    }
     let solve = solve.progress(|t| watcher.borrow_mut().progress(t)).ends_of_steps(|t, y| {
         fill(t, y);
         watcher.borrow_mut().end_of_step(t, schema.row(&numbers.borrow()));
@@ -451,9 +465,9 @@ pub(crate) fn set_numbers<Y: Numbers>(y: &mut Y, arg: &str, numbers: &[f64]) -> 
     y.each_number(&mut |_| count += 1);
     if numbers.len() != count {
         return Err(Error::OutOfRange {
-            arg: format!("the count of {arg}"),
+            arg: format!("the number of entries of {arg}"),
             value: numbers.len() as f64,
-            expected: format!("{count} numbers"),
+            expected: format!("{count}, those of a state"),
         });
     }
     let mut next = numbers.iter();

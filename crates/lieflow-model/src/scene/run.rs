@@ -350,6 +350,12 @@ impl Scene {
         knots.unwrap_or_default()
     }
 
+    /// True if steps may pass over knots of the problem.
+    pub fn passes_knots(&self) -> bool {
+        let knots = || self.problem.knots(self.grid.t_span());
+        !self.at_knots && knots().is_some_and(|knots| !knots.is_empty())
+    }
+
     /// The quantities that a run computes: those that are written, then those of formulas and events.
     pub fn computed(&self) -> Vec<&str> {
         let of_events = self.events.iter().flat_map(SceneEvent::quantities);

@@ -6,7 +6,7 @@ use core::ops::Range;
 use super::Schema;
 
 /// The choices for the columns of a quantity that stand for the same.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Branch {
     /// There is none.
     #[default]
@@ -14,7 +14,10 @@ pub enum Branch {
     /// The sign of all columns: q and −q are the same attitude.
     Sign,
     /// Angles in ascending order, each known up to π: the first + π may stand at the end, or the last − π at the start.
-    HalfTurns,
+    HalfTurns {
+        /// A bound of |d/dt| of their sum.
+        rate: f64,
+    },
     /// Three Euler angles. The first and the third are known up to a turn; the second stays within its range, so that it
     /// does not depend on the rows before. At the singular β only α + γ or α − γ is known.
     Euler {
@@ -37,6 +40,13 @@ impl Branch {
         Some((beta - PI * (beta / PI).round()).abs())
     }
 
+    /// The time in which the values surely change by less than half of the way to another choice, if a bound is known. Points
+    /// that are further apart may lose half turns.
+    pub fn longest_gap(self) -> Option<f64> {
+        let Branch::HalfTurns { rate } = self else { return None };
+        (rate > 0.0 && rate.is_finite()).then(|| 0.9 * FRAC_PI_2 / rate)
+    }
+
     /// values ← the choice that is nearest to the values `before`; as they are, where one of these is NaN.
     pub(crate) fn follow(self, before: &[f64], values: &mut [f64]) {
         match self {
@@ -47,7 +57,7 @@ impl Branch {
                     values.iter_mut().for_each(|x| *x = -*x);
                 }
             }
-            Branch::HalfTurns => {
+            Branch::HalfTurns { .. } => {
                 // Each angle that goes from one end to the other changes the sum by π.
                 let sum: f64 = before.iter().zip(&*values).map(|(a, b)| a - b).sum();
                 let moved = (sum / PI).round();
@@ -136,6 +146,8 @@ impl Branches {
 mod tests {
     use super::*;
 
+    const HALF_TURNS: Branch = Branch::HalfTurns { rate: 1.0 };
+
     #[test]
     fn angles_go_on_over_a_half_turn() {
         let (slow, fast) = (0.3, 1.1);
@@ -146,7 +158,7 @@ mod tests {
             let exact = [-0.2 + slow * t, 0.4 + slow * t + 0.5 * (fast * t).sin()];
             let mut values = exact.map(|x| (x + 0.5 * PI).rem_euclid(PI) - 0.5 * PI);
             values.sort_by(f64::total_cmp);
-            Branch::HalfTurns.follow(&last, &mut values);
+            HALF_TURNS.follow(&last, &mut values);
             for (x, exact) in values.iter().zip(exact) {
                 assert!((x - exact).abs() < 1e-12, "t = {t}: {values:?}, expected {exact}");
             }
@@ -154,10 +166,10 @@ mod tests {
         }
         // Both fall, and one after the other goes through −π/2.
         let mut falling = [-1.5, 1.5];
-        Branch::HalfTurns.follow(&[-4.6, -1.7], &mut falling);
+        HALF_TURNS.follow(&[-4.6, -1.7], &mut falling);
         assert_eq!(falling, [-1.5 - PI, 1.5 - PI]);
         let mut falling = [-1.5, 1.5];
-        Branch::HalfTurns.follow(&[-1.7, -1.45], &mut falling);
+        HALF_TURNS.follow(&[-1.7, -1.45], &mut falling);
         assert_eq!(falling, [1.5 - PI, -1.5]);
     }
 
@@ -191,7 +203,7 @@ mod tests {
         Branch::Sign.follow(&[0.6, 0.8], &mut q);
         assert_eq!(q, [1.0, 0.0]);
         let mut angles = [f64::NAN, 0.0];
-        Branch::HalfTurns.follow(&[0.0, 0.0], &mut angles);
+        HALF_TURNS.follow(&[0.0, 0.0], &mut angles);
         assert!(angles[0].is_nan() && angles[1] == 0.0);
     }
 }

@@ -116,7 +116,7 @@ pub struct Component {
 }
 
 /// A quantity of a model, and where its values are in a row.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Observable {
     /// The name of the quantity.
     pub name: &'static str,
@@ -170,7 +170,7 @@ impl Observable {
 }
 
 /// The observables of a model, in the order of its rows.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Schema {
     observables: Vec<Observable>,
     /// The number of values in a row; the sizes of terms are after them.
@@ -236,6 +236,11 @@ impl Schema {
         if let Some(observable) = self.observables.last_mut() {
             observable.branch = branch;
         }
+    }
+
+    /// The longest time between two points of a run for which the choices of all its values are sure, if one is bounded.
+    pub fn longest_gap(&self) -> Option<f64> {
+        self.iter().filter_map(|observable| observable.branch.longest_gap()).reduce(f64::min)
     }
 
     /// The schema of the first `count` observables.

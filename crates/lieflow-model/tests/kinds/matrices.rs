@@ -3,8 +3,10 @@
 use core::f64::consts::{PI, TAU};
 
 use faer::Mat;
+use lieflow::SaveAt;
 use lieflow::problems::Exact;
 use lieflow::problems::beam::{Element, transfer_map};
+use lieflow_model::problem::Rows;
 use nalgebra::Matrix3;
 
 use super::*;
@@ -150,6 +152,41 @@ fn riccati_angles_have_no_jump() {
         let [t, a, b] = pair[1][..] else { panic!("{pair:?}") };
         assert!((a + b - 1.3 * t).abs() < 1e-9 && a <= b && b - a < PI + 1e-9, "{pair:?}");
         assert!(t > 4.48 || far(&[a, b], &[0.3 * t, t]) < 1e-9, "{pair:?}");
+    }
+}
+
+/// Steps by error are short enough to count the poles, however far the rows are apart, in one dimension and in two.
+#[test]
+fn riccati_angles_count_the_poles_between_rows() {
+    let one = ("c = [[1]]\nb = [[-1]]\np = [[0]]", 1.0);
+    let two = ("c = [[1, 0], [0, 0.3]]\nb = [[-1, 0], [0, -0.3]]\np = [[0, 0], [0, 0]]", 1.3);
+    let back = ("c = [[-2]]\nb = [[2]]\np = [[0]]", -2.0);
+    for ((keys, rate), method) in
+        [one, two, back].into_iter().flat_map(|keys| ["magnus4", "rkmk dop853"].map(|m| (keys, m)))
+    {
+        let (problem, method) =
+            (format!("kind = \"riccati\"\n{keys}"), format!("name = {method:?}"));
+        let of = scene(&problem, &method, "t_span = [0, 60]\nrtol = 1e-12", "[\"angles\"]");
+        let (mut rows, mut plan) = (Vec::new(), of.plan(of.model().unwrap().schema()).unwrap());
+        plan.save = SaveAt::Ends;
+        let mut sink = |_: f64, row: Row<'_>| rows.push(row.values().iter().sum::<f64>());
+        of.model().unwrap().drive(&of.method, plan, &mut Rows(&mut sink)).unwrap();
+        assert_eq!(rows.len(), 2);
+        assert!((rows[1] - 60.0 * rate).abs() < 1e-9, "{problem}, {method}: {rows:?}");
+    }
+    // The rate that steps are limited by is that of the sum: here P moves by D and by B alone.
+    let gap = |keys: &str| {
+        let of = scene(
+            &format!("kind = \"riccati\"\n{keys}"),
+            "name = \"magnus4\"",
+            "t_span = [0, 1]",
+            "[\"angles\"]",
+        );
+        of.model().unwrap().schema().longest_gap().unwrap()
+    };
+    let rates = [(one.0, 1.0), (two.0, 2.0), ("c = [[0]]\nd = [[3]]\nb = [[0]]\np = [[1]]", 3.0)];
+    for (keys, rate) in rates {
+        assert!((gap(keys) * rate - 0.45 * PI).abs() < 1e-12, "{keys}: {}", gap(keys));
     }
 }
 
