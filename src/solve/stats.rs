@@ -129,7 +129,7 @@ pub enum RunError {
     #[error(
         "no step from t = {} succeeded, down to h = {h:?} ({accepted} steps accepted, {rejected} rejected): {}",
         Plain(.t),
-        reason(.source)
+        reason(.source, *.rejected == 0 && .t + .h == *.t)
     )]
     StepSizeUnderflow {
         /// The time of the last accepted point.
@@ -223,9 +223,10 @@ fn still_to_take(left: f64, h: f64) -> String {
     format!("{rest}; raise max_steps or the tolerances")
 }
 
-fn reason(source: &Option<StepError>) -> String {
+fn reason(source: &Option<StepError>, is_lost: bool) -> String {
     match source {
         Some(error) => error.to_string(),
+        None if is_lost => "t + h is t after rounding; let the times begin near 0".into(),
         None => "the error stays above the tolerance".into(),
     }
 }

@@ -197,6 +197,36 @@ def test_what_would_have_no_effect_is_refused():
     assert lf.load("asymmetric-top", set="time.dt=0.01").run().success
 
 
+def test_settings_of_another_kind_are_refused():
+    def run(**keys):
+        span = keys.pop("t_span", (0, 1))
+        return lf.solve_ivp(lambda t, y: [0, 0, 1.0], span, np.eye(3), group="SO(3)", frame="body", **keys)
+
+    for keys, says in (
+        ({"dense_output": "no"}, "dense_output: 'no', expected True or False"),
+        ({"linear": "yes"}, "linear: 'yes', expected True or False"),
+        ({"method": "rkmk4", "steps": True}, "steps: True, expected a number"),
+        ({"t_span": ("0", "1")}, r"t_span: \('0', '1'\), expected two numbers"),
+    ):
+        with pytest.raises(TypeError, match=says):
+            run(**keys)
+    for stop in (7, -1e-9, np.nan):
+        with pytest.raises(lf.ArgumentError, match=r"stops\[1\]: .*expected a time within \[0.0, 1.0\]"):
+            run(stops=[0.5, stop])
+    assert run(stops=[0.5], dense_output=np.True_).success
+    late = run(t_span=(1e15, 1e15 + 4))
+    assert late.status == -1 and "t + h is t after rounding" in late.message
+    with pytest.raises(lf.ArgumentError, match="names: 'a' twice"):
+        lf.Samples([0.0, 1.0], np.zeros((2, 2)), names=["a", "a"])
+    body = lf.RigidBody(inertia=[1, 2, 3], omega_body=[1, 0, 0])
+    with pytest.raises(lf.ArgumentError, match=r"y0: shape \(3, 3\), expected a list of the numbers of a state"):
+        lf.solve_ivp(body, (0, 1), np.eye(3))
+    with pytest.raises(lf.ArgumentError, match="entries of y0: 2, expected 9, those of a state"):
+        lf.solve_ivp(body, (0, 1), [1, 2.0])
+    with pytest.raises(lf.ArgumentError, match="singular"):
+        lf.solve_ivp(lambda t, g: np.eye(2), (0, 1), np.diag([1, 0.0]), group="GL(2)", frame="body")
+
+
 @pytest.mark.parametrize(
     ("group", "says"),
     [("SO(-3)", "unknown|one of"), ("U(n)", "numbers in place"), ("SO(0)", "a size from 1"), ("Sp(3)", "even size")],

@@ -5,10 +5,12 @@ use faer::{Mat, MatRef, c64};
 use super::{AlgebraMatrix, Form, GroupMatrix, MatrixGroup};
 use crate::dense::{Lu, RCOND_MIN, is_finite, norm_frobenius, norm_of};
 use crate::error::{Error, StepError};
-use crate::groups::{LieAlgebra, MEMBERSHIP};
+use crate::groups::{LieAlgebra, MEMBERSHIP, OFF_M_MAX};
 
 /// The largest distance of a determinant from 1 that a checked constructor allows.
 const DETERMINANT: f64 = 1e-10;
+/// The least reciprocal condition number of a start on GL(n): the pivots of a singular matrix are 0, or rounding.
+const PIVOT_MIN: f64 = 1e-30;
 
 pub(super) fn square(arg: &'static str, x: MatRef<'_, f64>) -> Result<(), Error> {
     match x.nrows() == x.ncols() {
@@ -176,6 +178,18 @@ impl MatrixGroup {
             true => Err(Error::Determinant { arg, group: self.name(), re: det.re, im: det.im }),
             false => Ok(()),
         }
+    }
+
+    /// [`LieGroup::check_member`](crate::groups::LieGroup::check_member). On GL(n) g is refused where a pivot is 0: elements
+    /// that a run has grown or damped may be singular to working accuracy.
+    pub(super) fn check_start(&self, arg: &'static str, g: &Mat<f64>) -> Result<(), Error> {
+        if matches!(self.form(), Form::Free) {
+            let rcond = Lu::rcond(g.as_ref());
+            if rcond < PIVOT_MIN {
+                return Err(Error::Singular { arg, rcond, minimum: PIVOT_MIN });
+            }
+        }
+        self.check_subgroup(arg, g, OFF_M_MAX)
     }
 
     /// [`LieAlgebra::check`] with the tolerance [`MEMBERSHIP`].

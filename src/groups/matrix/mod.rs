@@ -16,7 +16,7 @@ use correct::Cosquare;
 pub(crate) use correct::correct_length;
 pub use element::{AlgebraMatrix, GroupMatrix};
 
-use super::{LieAlgebra, LieGroup, OFF_M_MAX};
+use super::{LieAlgebra, LieGroup};
 use crate::dense::{self, Lu, RCOND_MIN, antisymmetrise, mul, mul_add};
 use crate::error::Error;
 use crate::scalar::{Ops, larger, tally};
@@ -340,7 +340,7 @@ impl LieGroup for MatrixGroup {
         self.rows_fit("y", g, self.n)
     }
     fn check_member(&self, g: &GroupMatrix) -> Result<(), Error> {
-        self.check_subgroup("y", g, OFF_M_MAX)
+        self.check_start("y", g)
     }
     fn assign(&self, g: &GroupMatrix, out: &mut GroupMatrix) {
         out.copy_from(&**g);

@@ -119,6 +119,9 @@ class Samples:
         self.names = tuple(names) if names is not None else ("s",) if n == 1 else tuple(f"s{j + 1}" for j in range(n))
         if len(self.names) != n:
             raise ArgumentError("names", f"{len(self.names)} names", f"{n}, one for each column")
+        if len(set(self.names)) < n:
+            twice = next(name for name in self.names if self.names.count(name) > 1)
+            raise ArgumentError("names", f"{twice!r} twice", "another name for each column")
         columns = [np.ascontiguousarray(column) for column in self.values.T]
         self._sampled = _lieflow.SampledField(self.t, columns, interpolation)
 

@@ -41,7 +41,8 @@ class Event:
     direction : float
         Only rising zeros for a positive number, only falling ones for a negative number.
     change : callable, optional
-        change(t, y, *args) returns the new y. The run goes on from it. It must be on M. Of a problem y is the array of the
+        change(t, y, *args) returns the new y. The run goes on from it. It must be on M. Rows and events at that time have
+        the y before it; ``sol`` has the new one. Of a problem y is the array of the
         numbers of its state, in the order of :attr:`lieflow.Integrator.state`; a complex state is a complex array.
     points : int, optional
         At how many points of each step g is evaluated. The default depends on g.
@@ -109,9 +110,17 @@ def _positive(name: str, x: Any, whole: bool = False) -> Any:
     if x is None:
         return None
     number = _number(name, x)
+    if isinstance(x, (bool, np.bool_)):
+        raise TypeError(f"{name}: {x!r}, expected a number")
     if not number > 0 or (whole and (not np.isfinite(number) or number != int(number))):
         raise ArgumentError(name, repr(x), "an integer > 0" if whole else "a number > 0")
     return int(number) if whole else number
+
+
+def _flag(name: str, x: Any) -> bool:
+    if not isinstance(x, (bool, np.bool_)):
+        raise TypeError(f"{name}: {x!r}, expected True or False")
+    return bool(x)
 
 
 def span_of(t_span: Any) -> tuple[float, float]:
@@ -119,6 +128,8 @@ def span_of(t_span: Any) -> tuple[float, float]:
     if type(t_span) is tuple and len(t_span) == 2 and type(t_span[0]) in (int, float) and type(t_span[1]) in (int, float):
         span: Any = t_span
     else:
+        if isinstance(t_span, (tuple, list)) and any(isinstance(t, (str, bytes)) for t in t_span):
+            raise TypeError(f"t_span: {t_span!r}, expected two numbers")
         span = real("t_span", t_span)
         if span.shape != (2,):
             raise ArgumentError("t_span", f"shape {span.shape}", "two times")
@@ -172,8 +183,8 @@ def settings_of(
         "dt": _positive("dt", dt),
         "steps": _positive("steps", steps, whole=True),
         "stops": [] if isinstance(stops, tuple) and not stops else np.atleast_1d(real("stops", stops)).tolist(),
-        "dense_output": bool(dense_output),
-        "linear": bool(linear),
+        "dense_output": _flag("dense_output", dense_output),
+        "linear": _flag("linear", linear),
     }
 
 
@@ -423,6 +434,10 @@ def solve_ivp(
         rtol, atol, first_step, min_step, max_step, max_steps, dt, steps, stops, dense_output, linear
     )
     times = times_of(t_eval, span)
+    low, high = min(span), max(span)
+    for i, stop in enumerate(settings["stops"]):
+        if not low <= stop <= high:
+            raise ArgumentError(f"stops[{i}]", repr(stop), f"a time within [{low}, {high}]")
     if isinstance(fun, Problem):
         for name, value, default in (("group", group, None), ("frame", frame, None), ("action", action, "translation")):
             if value != default:

@@ -190,7 +190,11 @@ class Problem:
             raise ArgumentError("y0", "quantities by name", expected)
         state = self._complex_state()
         if state is None:
-            return real("y0", y0)
+            numbers = real("y0", y0)
+            if numbers.ndim != 1:
+                expected = "a list of the numbers of a state, as lieflow.Integrator.state has them"
+                raise ArgumentError("y0", f"shape {numbers.shape}", expected)
+            return numbers
         z = complex_numbers("y0", y0)
         if z.shape == (state.size,) and not z.imag.any():
             return np.ascontiguousarray(z.real)

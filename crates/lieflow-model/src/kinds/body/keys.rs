@@ -20,7 +20,7 @@ group! {
         momentum_space: Option<crate::reader::values::Reals<3>> =
             "initial angular momentum in space, instead of omega_body",
         attitude: Option<crate::reader::values::Rows<3>> =
-            "initial rotation from body to space, three rows; optional, the identity",
+            "initial rotation from body to space, three rows; left out, it is the identity, but a heavy-top needs it or vertical",
         quaternion: Option<crate::reader::values::Reals<4>> =
             "the same as a unit quaternion [w, x, y, z], instead of attitude; a rigid-body is then integrated by its \
              quaternion",
