@@ -347,13 +347,13 @@ pub(crate) fn drive_by<P: Runnable>(
         set_numbers(&mut y, "y0", &numbers)?;
     }
     let (watcher, numbers) = (RefCell::new(watcher), RefCell::new(Vec::new()));
-    let mut branches = Branches::new(schema);
+    let mut branches = Branches::new(schema, steps.t_span());
     let resume = resume.map(|bytes| branches.take_from(bytes));
     let branches = RefCell::new(branches);
     let fill = |t: f64, y: &PointOf<P>| {
         let mut numbers = numbers.borrow_mut();
         row_of(t, y, &mut numbers);
-        branches.borrow_mut().follow(&mut numbers);
+        branches.borrow_mut().follow(t, &mut numbers);
     };
     let gap = schema.longest_gap();
     let mut solve = Solve::shared(problem.clone(), method, steps.t_span()).save(save).stops(stops);
@@ -386,7 +386,7 @@ pub(crate) fn drive_by<P: Runnable>(
     let (fill, numbers) = (&fill, &numbers);
     for (index, event) in events.into_iter().enumerate() {
         let EventPlan { name, value, direction, stop_after, points, change, .. } = event;
-        let watcher = &watcher;
+        let (watcher, branches, changes) = (&watcher, &branches, change.is_some());
         let mut event = Event::new(name, move |t, y: &PointOf<P>| {
             fill(t, y);
             value(t, schema.row(&numbers.borrow()))
@@ -394,7 +394,11 @@ pub(crate) fn drive_by<P: Runnable>(
         .direction(direction)
         .tell(move |t, y, rising| {
             fill(t, y);
-            watcher.borrow_mut().event(index, t, rising, schema.row(&numbers.borrow()));
+            let numbers = numbers.borrow();
+            if changes {
+                branches.borrow_mut().cut(t, &numbers);
+            }
+            watcher.borrow_mut().event(index, t, rising, schema.row(&numbers));
         });
         if let Some(count) = stop_after {
             event = event.stop_after(count);
@@ -412,7 +416,7 @@ pub(crate) fn drive_by<P: Runnable>(
         }
         solve = solve.event(event);
     }
-    if gap.is_some() {
+    if !branches.borrow().is_empty() {
         // No zero: it sees the end of each step, where the choices are followed.
         let follow = |t: f64, y: &PointOf<P>| {
             fill(t, y);

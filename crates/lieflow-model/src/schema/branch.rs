@@ -91,50 +91,90 @@ impl Branch {
     }
 }
 
-/// The columns with choices, and their values at the point that was shown last.
+/// The columns with choices, and their values at both ends of a step.
+///
+/// All points of a step follow its start, so that a value does not depend on which points were seen before it. A point that
+/// is further than all others is the end of a step.
 #[derive(Clone, Debug)]
 pub(crate) struct Branches {
     columns: Vec<(Branch, Range<usize>)>,
-    /// The values of these columns, one after the other; NaN before the first point.
-    last: Vec<f64>,
+    is_forward: bool,
+    /// The time at the end of the step.
+    front: f64,
+    /// The values of these columns at the start, one after the other; NaN before the first point.
+    start: Vec<f64>,
+    /// Those at the end.
+    end: Vec<f64>,
 }
 
 impl Branches {
     /// Those of a model, before its first point.
-    pub(crate) fn new(schema: &Schema) -> Self {
+    pub(crate) fn new(schema: &Schema, [t0, t1]: [f64; 2]) -> Self {
         let with_choices = schema.iter().filter(|observable| observable.branch != Branch::Single);
         let columns: Vec<_> = with_choices.map(|o| (o.branch, o.places())).collect();
         let count = columns.iter().map(|(_, places)| places.len()).sum();
-        Branches { columns, last: vec![f64::NAN; count] }
+        let unknown = vec![f64::NAN; count];
+        Branches {
+            columns,
+            is_forward: t1 > t0,
+            front: f64::NAN,
+            start: unknown.clone(),
+            end: unknown,
+        }
     }
 
-    /// numbers ← the row whose choices are nearest to those of the row before.
-    pub(crate) fn follow(&mut self, numbers: &mut [f64]) {
+    /// True if no value has a choice.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.columns.is_empty()
+    }
+
+    /// numbers ← the row at t whose choices are nearest to those of the start of the step.
+    pub(crate) fn follow(&mut self, t: f64, numbers: &mut [f64]) {
+        let Branches { front, start, end, .. } = self;
+        let is_end = front.is_nan() || if self.is_forward { t > *front } else { t < *front };
+        if is_end {
+            start.copy_from_slice(end);
+            *front = t;
+        }
         let mut first = 0;
         for (branch, places) in &self.columns {
-            let before = &mut self.last[first..first + places.len()];
+            let place = first..first + places.len();
             let values = &mut numbers[places.clone()];
-            branch.follow(before, values);
+            branch.follow(&start[place.clone()], values);
             // A point without values is passed over.
-            if values.iter().all(|x| x.is_finite()) {
-                before.copy_from_slice(values);
+            if is_end && values.iter().all(|x| x.is_finite()) {
+                end[place].copy_from_slice(values);
             }
             first += places.len();
+        }
+    }
+
+    /// Ends the step at t, where the numbers are these: what comes next starts there.
+    pub(crate) fn cut(&mut self, t: f64, numbers: &[f64]) {
+        self.front = t;
+        let values = self.columns.iter().flat_map(|(_, places)| &numbers[places.clone()]);
+        for (end, value) in self.end.iter_mut().zip(values) {
+            *end = *value;
         }
     }
 
     /// The state of a run: that of its driver, and the last values after it.
     pub(crate) fn append_to(&self, driver: &[u8]) -> Vec<u8> {
         let mut bytes = driver.to_vec();
-        self.last.iter().for_each(|x| bytes.extend(x.to_le_bytes()));
+        if !self.is_empty() {
+            let numbers = self.start.iter().chain(&self.end).chain([&self.front]);
+            numbers.for_each(|x| bytes.extend(x.to_le_bytes()));
+        }
         bytes
     }
 
     /// Goes on from [`append_to`](Self::append_to); the state of the driver. Bytes that are too short are left to the
     /// driver to refuse.
     pub(crate) fn take_from(&mut self, mut bytes: Vec<u8>) -> Vec<u8> {
-        let Some(of_driver) = bytes.len().checked_sub(8 * self.last.len()) else { return bytes };
-        for (x, bytes) in self.last.iter_mut().zip(bytes[of_driver..].chunks_exact(8)) {
+        let count = if self.is_empty() { 0 } else { self.start.len() + self.end.len() + 1 };
+        let Some(of_driver) = bytes.len().checked_sub(8 * count) else { return bytes };
+        let places = self.start.iter_mut().chain(&mut self.end).chain([&mut self.front]);
+        for (x, bytes) in places.zip(bytes[of_driver..].chunks_exact(8)) {
             *x = f64::from_le_bytes(bytes.try_into().unwrap_or_default());
         }
         bytes.truncate(of_driver);

@@ -1,5 +1,6 @@
 //! Euler angles: their values in all sequences against SciPy's, both ways, and from row to row.
 
+use lieflow_model::problem::Rows;
 use lieflow_model::scene::Scene;
 use lieflow_model::schema::{Branch, Row};
 
@@ -122,6 +123,79 @@ fn angles_go_on_beyond_the_singular_one() {
                 before = [angles[0], angles[2]];
             }
             assert!(jumps <= 3, "{name}: {jumps} jumps");
+        }
+    }
+}
+
+/// A row and an event follow the start of their step: what events look at changes no row, also where a path goes exactly
+/// through the singular angle, and the third angle jumps by half a turn.
+#[test]
+fn events_change_no_angle_of_a_row() {
+    use core::f64::consts::{FRAC_PI_2, PI, TAU};
+    let run = |method: &str, events: &str| {
+        let text = format!(
+            "[problem]\nkind = \"rigid-body\"\ninertia = [1.0, 1.0, 2.0]\nomega_body = [0, 1.0, 0]\n\
+             euler.zyx = [0.3, 0, 0]\n[time]\nt_span = [0, 10]\n{method}\n{events}\n[output]\n\
+             quantities = [\"euler_zyx\"]\ninterval = 0.1\n"
+        );
+        let scene = Scene::parse("scene", &text).unwrap_or_else(|error| panic!("{error}"));
+        let model = scene.model().unwrap();
+        let mut rows = Vec::new();
+        let mut sink = |t: f64, row: Row<'_>| rows.push((t, row.values()[..3].to_vec()));
+        let plan = scene.plan(model.schema()).unwrap();
+        model.drive(&scene.method, plan, &mut Rows(&mut sink)).unwrap();
+        rows
+    };
+    let event = |when: &str| format!("[[events]]\nname = \"{}\"\nwhen = \"{when}\"\n", when.len());
+    let several = event("euler_zyx3 + 1") + &event("euler_zyx1") + &event("euler_zyx2 - 0.25");
+    for method in [
+        "",
+        "rtol = 1e-10\n[method]\nname = \"rkmk dop853 exp\"",
+        "dt = 0.25\n[method]\nname = \"taylor12\"",
+        "steps = 40\n[method]\nname = \"exact\"",
+    ] {
+        let plain = run(method, "");
+        assert_eq!(plain.len(), 101);
+        assert_eq!(plain, run(method, &several), "{method}");
+        assert_eq!(plain, run(method, &event("euler_zyx2 - 0.5")), "{method}");
+        for (t, angles) in plain {
+            // The number of half turns of the first and the third; at the singular angle either is right.
+            let passed = ((t + FRAC_PI_2) / PI).floor();
+            if ((t + FRAC_PI_2) / PI - passed).min(passed + 1.0 - (t + FRAC_PI_2) / PI) < 0.02 {
+                continue;
+            }
+            let half = if passed % 2.0 == 0.0 { 0.0 } else { PI };
+            for (angle, first) in [(angles[0], 0.3), (angles[2], 0.0)] {
+                let turns = (angle - first - half) / TAU;
+                assert!((turns - turns.round()).abs() < 1e-6, "{method}, t = {t}: {angles:?}");
+                assert!(
+                    (angle - first).abs() < (passed + 0.1) * PI,
+                    "{method}, t = {t}: {angles:?}"
+                );
+            }
+        }
+    }
+}
+
+/// Between rows that are half a turn apart and more, the turns of each step count.
+#[test]
+fn turns_between_rows_are_counted() {
+    let text = "[problem]\nkind = \"rigid-body\"\ninertia = [1, 1, 2]\nomega_body = [0, 0, 1.5]\n\
+                euler.zyx = [0.3, 0, 0]\n[time]\nt_span = [0, 40]\n[output]\n\
+                quantities = [\"euler_zyx\", \"quaternion\"]\ncount = 5\n";
+    for method in ["", "[method]\nname = \"exact\"\n", "[method]\nname = \"rkmk dop853 exp\"\n"] {
+        let scene = Scene::parse("scene", &format!("{text}{method}")).unwrap();
+        let model = scene.model().unwrap();
+        let mut rows = Vec::new();
+        let mut sink = |t: f64, row: Row<'_>| rows.push((t, row.values().to_vec()));
+        model
+            .drive(&scene.method, scene.plan(model.schema()).unwrap(), &mut Rows(&mut sink))
+            .unwrap();
+        assert!(rows.len() <= 7, "{}", rows.len());
+        for (t, row) in rows {
+            let yaw = 0.3 + 1.5 * t;
+            assert!((row[0] - yaw).abs() < 1e-10, "{method}, t = {t}: {row:?}, {yaw}");
+            assert!((row[3] - (0.5 * yaw).cos()).abs() < 1e-10, "{method}, t = {t}: {row:?}");
         }
     }
 }
