@@ -170,7 +170,7 @@ pub struct Curve {
 
 /// Errors outside of this range say nothing of the order: larger ones are not yet asymptotic,
 /// smaller ones are rounding.
-const ASYMPTOTIC: core::ops::Range<f64> = 1e-10..1e-2;
+const ASYMPTOTIC: core::ops::Range<f64> = 1e-12..1e-2;
 /// An error is clear of the floor if it is larger by this factor.
 const CLEAR: f64 = 10.0;
 /// An error is clear of rounding that shows if it is larger by this factor.

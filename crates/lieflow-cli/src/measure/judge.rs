@@ -82,6 +82,14 @@ const TIGHT: f64 = 1e-13;
 /// Numbers of steps in which the exact motion is always taken, to see how much it rounds.
 const PARTS: [u64; 5] = [2, 3, 5, 7, 11];
 
+/// Where runs of few steps are judged besides their end, in parts of the span. The errors of a few steps may cancel at the
+/// end of a whole number of turns.
+const WITHIN: [f64; 2] = [0.382, 0.809];
+/// Runs of fewer steps are judged there.
+const FEW: u64 = 200;
+/// An error there that is larger by this factor than that at the end is the error of the run.
+const CANCELLED: f64 = 30.0;
+
 /// The methods of a reference, of different kinds: the first two that fit are taken.
 fn reference_methods() -> Vec<MethodSpec> {
     let with = |name: &str, tableau: &str| MethodSpec {
@@ -105,6 +113,8 @@ pub struct Judge<'a> {
     /// The state and the invariants.
     schema: Schema,
     end: Vec<f64>,
+    /// Times of [`WITHIN`], where the motion is known, with the state there.
+    within: Vec<(f64, Vec<f64>)>,
     /// Where the end comes from.
     pub reference: Reference,
     /// The flag that ends each run.
@@ -133,6 +143,8 @@ impl<'a> Judge<'a> {
         match model.exact(t_span) {
             Some(Ok(exact)) => {
                 judge.end = exact;
+                let at = |t: f64| Some((t, model.exact([t_span[0], t])?.ok()?));
+                judge.within = times_within(t_span).into_iter().filter_map(at).collect();
                 let rounding = judge.rounding(&model, t_span, steps, longest);
                 judge.reference = Reference::Exact { rounding };
             }
@@ -168,22 +180,31 @@ impl<'a> Judge<'a> {
         let layer = scene.problem.layers().first().copied().unwrap_or(scene.layer);
         let model = scene.model_with(layer, &judged)?;
         let (schema, reference) = (model.schema().clone(), Reference::Exact { rounding: None });
-        Ok((Judge { state, schema, end: Vec::new(), reference, stop }, model))
+        Ok((Judge { state, schema, end: Vec::new(), within: Vec::new(), reference, stop }, model))
     }
 
     fn find_end(&mut self, model: &Model, t_span: [f64; 2]) -> Result<(), CliError> {
         let control = per_length(TIGHT, TIGHT)?.max_steps(10_000_000)?;
         let mut ends: Vec<(String, Vec<f64>)> = Vec::new();
+        let [t0, t1] = t_span;
+        let times = [&[t0], &times_within(t_span)[..], &[t1]].concat();
         for method in reference_methods() {
-            let mut last = Vec::new();
+            let (mut rows, cancel) = (Vec::new(), Some(self.stop));
             let steps = Steps::ByError { t_span, control: control.clone() };
-            let plan = Plan { cancel: Some(self.stop), ..Plan::new(steps, SaveAt::Ends) };
-            let mut see = |_: f64, row: Row<'_>| last = row.values().to_vec();
+            let save = SaveAt::Times(times.clone());
+            let plan = Plan { cancel, times_by_steps: true, ..Plan::new(steps, save) };
+            let mut see = |t: f64, row: Row<'_>| rows.push((t, row.values().to_vec()));
             match model.drive(&method, plan, &mut Watched(&mut see)) {
                 Ok(outcome) if outcome.status == Status::Cancelled => {
                     return Err(CliError::Message("no reference solution: it was stopped".into()));
                 }
-                Ok(_) => ends.push((method.label(), last)),
+                Ok(_) => {
+                    let (_, end) = rows.pop().unwrap_or_default();
+                    if ends.is_empty() {
+                        self.within = rows.split_off(1.min(rows.len()));
+                    }
+                    ends.push((method.label(), end));
+                }
                 Err(RunError::Setup(_)) => continue,
                 Err(error) => {
                     return Err(CliError::Message(format!(
@@ -221,7 +242,8 @@ impl<'a> Judge<'a> {
             let mut see = |_: f64, row: Row<'_>| last = row.values().to_vec();
             let exact = MethodSpec::new("exact", None);
             let size = Size::Steps(steps);
-            size.run(model, &exact, t_span, &Rows::ENDS, Some(self.stop), &mut see).ok()?;
+            let rows = &Rows::ENDS;
+            size.run(model, &exact, (t_span, t_span[1]), rows, Some(self.stop), &mut see).ok()?;
             let before = worst.map_or(0.0, |worst: Rounding| worst.apart);
             let apart = Some(self.error(&last)).filter(|apart| apart.is_finite())?;
             worst = Some(Rounding { apart: before.max(apart), steps });
@@ -237,6 +259,16 @@ impl<'a> Judge<'a> {
         self.schema.iter().map(|observable| observable.name).collect()
     }
 
+    /// True if the method keeps all that the action keeps here, and so M. Gauss methods keep quadratic invariants, though
+    /// they add vectors.
+    pub fn promises_manifold(&self, method: &MethodSpec) -> bool {
+        let is_of_action =
+            |law: &&Observable| law.law.is_some_and(|law| law.origin == Origin::Action);
+        let mut laws = self.schema.laws().filter(is_of_action).peekable();
+        let Ok(info) = method.info() else { return false };
+        laws.peek().is_some() && laws.all(|law| law.promised_by(info))
+    }
+
     /// Run once, and judge.
     pub fn point(
         &self,
@@ -248,13 +280,14 @@ impl<'a> Judge<'a> {
         let (mut first, mut last) = (Vec::new(), Vec::new());
         let mut see = |_: f64, row: Row<'_>| {
             if first.is_empty() {
-                first = row.values().to_vec();
+                first = row.numbers().to_vec();
             }
-            last = row.values().to_vec();
+            last = row.numbers().to_vec();
         };
         let mut point = WorkPoint::new(t_span, size);
         let method = &candidate.method;
-        let outcome = size.run(model, method, t_span, &Rows::ENDS, Some(self.stop), &mut see);
+        let whole = (t_span, t_span[1]);
+        let outcome = size.run(model, method, whole, &Rows::ENDS, Some(self.stop), &mut see);
         match outcome {
             Ok(done) => {
                 let length = (t_span[1] - t_span[0]).abs();
@@ -267,7 +300,8 @@ impl<'a> Judge<'a> {
                 let [first, last] = [&first, &last].map(|values| self.schema.row(values));
                 for law in self.schema.laws() {
                     for (&start, &end) in first[law].iter().zip(&last[law]) {
-                        let moved = relative(end - start, start);
+                        // A sum that is 0 has the size of its terms.
+                        let moved = relative(end - start, start.abs().max(first.terms(law)));
                         let is_defect = law.name.ends_with("defect");
                         if law.law.is_some_and(|law| law.origin == Origin::Action) {
                             let off = if is_defect { end } else { moved };
@@ -287,19 +321,55 @@ impl<'a> Judge<'a> {
         point
     }
 
-    /// The largest relative distance of a part of the state from the reference.
+    /// Takes the largest error within the span as that of a run of few steps, where the errors of its steps cancel at the
+    /// end: by runs to the times of [`WITHIN`].
+    pub fn look_within(
+        &self,
+        model: &Model,
+        method: &MethodSpec,
+        t_span: [f64; 2],
+        point: &mut WorkPoint,
+    ) {
+        if point.failure.is_some() || point.steps >= FEW {
+            return;
+        }
+        let at = |(t, state): &(f64, Vec<f64>)| {
+            let mut last = Vec::new();
+            let mut see = |_: f64, row: Row<'_>| last = row.values().to_vec();
+            let (to, ends) = ((t_span, *t), &Rows::ENDS);
+            match point.size.run(model, method, to, ends, Some(self.stop), &mut see) {
+                Ok(_) => self.error_from(state, &last),
+                Err(_) => 0.0,
+            }
+        };
+        let within = self.within.iter().map(at).fold(0.0, f64::max);
+        if within > CANCELLED * point.error {
+            point.error = within;
+        }
+    }
+
+    /// The largest relative distance of a part of the state from the reference at the end.
     fn error(&self, values: &[f64]) -> f64 {
-        let [row, end] = [values, &self.end].map(|values| self.schema.row(values));
+        self.error_from(&self.end, values)
+    }
+
+    /// The largest relative distance of a part of the state from `right`. A part that passes zero has the size of the end.
+    fn error_from(&self, right: &[f64], values: &[f64]) -> f64 {
+        let [row, right, end] = [values, right, &self.end].map(|values| self.schema.row(values));
         let part = |part: &Observable| {
-            let (x, end) = (&row[part], &end[part]);
-            let gap: Vec<f64> = x.iter().zip(end).map(|(x, e)| x - e).collect();
-            relative(norm(&gap), norm(end))
+            let gap: Vec<f64> = row[part].iter().zip(&right[part]).map(|(x, e)| x - e).collect();
+            relative(norm(&gap), norm(&right[part]).max(norm(&end[part])))
         };
         // A part that is no number has left the solution: `f64::max` would forget it.
         let worst = |a: f64, b: f64| if a >= b || a.is_nan() { a } else { b };
         let state = self.schema.iter().filter(|part| self.state.contains(&part.name));
         state.map(part).fold(0.0, worst)
     }
+}
+
+/// The times of [`WITHIN`].
+fn times_within([t0, t1]: [f64; 2]) -> [f64; 2] {
+    WITHIN.map(|part| t0 + part * (t1 - t0))
 }
 
 /// Tolerances relative to the length of the step. The error of a run then follows rtol, whatever the order of the
@@ -378,7 +448,8 @@ impl Size {
         Some((a_step * steps as f64).round() as u64)
     }
 
-    /// Run a method over a span in steps of this size, with these rows; why not, in words. A flag cancels the run.
+    /// Run a method over a span in steps of this size, or to a time in it, with these rows; why not, in words. A flag
+    /// cancels the run.
     ///
     /// # Errors
     /// The run did not reach its end.
@@ -386,7 +457,7 @@ impl Size {
         self,
         model: &Model,
         method: &MethodSpec,
-        t_span: [f64; 2],
+        (t_span, to): ([f64; 2], f64),
         rows: &Rows,
         cancel: Option<&AtomicBool>,
         sink: &mut Sink<'_>,
@@ -394,11 +465,14 @@ impl Size {
         let in_words = |error: lieflow::Error| error.to_string();
         let steps = match self {
             Size::Steps(steps) => {
-                Steps::Equal(TimeGrid::with_steps(t_span, steps).map_err(in_words)?)
+                let grid = TimeGrid::with_steps(t_span, steps).map_err(in_words)?;
+                let is_whole = to == t_span[1];
+                let part = || TimeGrid::new([t_span[0], to], grid.h().abs()).map_err(in_words);
+                Steps::Equal(if is_whole { grid } else { part()? })
             }
             Size::Tolerance(rtol) => {
                 let control = per_length(rtol, 0.0).map_err(in_words)?;
-                Steps::ByError { t_span, control }
+                Steps::ByError { t_span: [t_span[0], to], control }
             }
         };
         let times_by_steps = rows.by_steps;

@@ -140,7 +140,7 @@ pub fn speed_against_error(
             candidate: candidate.clone(),
             label: if layers.len() > 1 { candidate.label() } else { candidate.name() },
             order: orders.step,
-            stays: orders.stays_on_manifold,
+            stays: orders.stays_on_manifold || judge.promises_manifold(&candidate.method),
             floor,
             points: Vec::new(),
         };
@@ -286,6 +286,7 @@ impl Bench<'_> {
                     took = took.min(run().1);
                 }
                 point.first_seconds = took;
+                self.judge.look_within(judged, &candidate.method, t_span, &mut point);
                 // Nobody asks for the rows of a run that has lost the solution.
                 if point.error <= OFF && *self.rows != Rows::ENDS {
                     match size.seconds(timed, &candidate.method, t_span, self.rows, shortest) {
@@ -372,7 +373,7 @@ impl Size {
         let mut seconds = |repeats: u32| {
             let start = cpu_seconds();
             for _ in 0..repeats {
-                self.run(model, method, t_span, rows, None, &mut see)?;
+                self.run(model, method, (t_span, t_span[1]), rows, None, &mut see)?;
             }
             Ok::<_, String>((cpu_seconds() - start) / f64::from(repeats))
         };

@@ -425,6 +425,49 @@ fn two_methods_agree_where_the_exact_solution_is_not_asked() {
     assert!((a - b).abs() < 1e-10, "{a:e} {b:e}");
 }
 
+/// A drive of resonance over whole turns: the errors of two long steps cancel at the end, and the state between is wrong.
+#[test]
+fn errors_that_cancel_at_the_end_are_seen() {
+    let scene = Scene::bundled("thermal-qubit").unwrap();
+    let t_span = scene.grid.t_span();
+    let judge = judge_of(&scene, &["populations"], t_span, &[2]);
+    let model = scene.model_with(scene.layer, &judge.quantities()).unwrap();
+    let candidate = Candidate { layer: scene.layer, ..Candidate::rkmk4("cay", Layer::Closed) };
+    let error = |steps| {
+        let mut point = judge.point(&model, &candidate, t_span, Size::Steps(steps));
+        judge.look_within(&model, &candidate.method, t_span, &mut point);
+        point.error
+    };
+    assert!(error(2) > 0.1, "{:e}", error(2));
+    // Of many steps it is that at the end.
+    assert!(error(1600) < 1e-5, "{:e}", error(1600));
+}
+
+/// Gauss methods keep quadratic invariants, and so the spheres of spins. An invariant that is 0 has the size of its terms.
+#[test]
+fn the_distance_from_m_is_that_of_the_invariants() {
+    let folder = Folder::new();
+    let found = |scene: &str, methods: &str| {
+        let quick = ["--quick", "--repeat", "1", "--error", "1e-5"];
+        let args = [&["compare", scene, "--out", "out", "--methods", methods], &quick[..]].concat();
+        (folder.lieflow(&args).ok(), folder.json("out/speed.json"))
+    };
+    let (told, _) = found("many-bodies", "gauss6,energy-casimir6 cay");
+    assert!(told.contains("take “gauss6”") && !told.contains("leaves M"), "{told}");
+    let (_, json) = found("spherical-pendulum", "rk dop853,rkmk4 exp");
+    let mut points = 0;
+    for curve in json["curves"].as_array().unwrap() {
+        for point in curve["points"].as_array().unwrap() {
+            let [off, error] = ["off_manifold", "error"].map(|key| point[key].as_f64());
+            if let Some(off) = off.filter(|_| error < Some(0.01)) {
+                assert!(off < 0.01, "{point}");
+                points += 1;
+            }
+        }
+    }
+    assert!(points > 4, "{points}");
+}
+
 #[test]
 fn a_scene_without_an_exact_solution_is_judged_by_two_runs() {
     let folder = Folder::new();

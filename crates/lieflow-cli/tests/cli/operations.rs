@@ -36,8 +36,9 @@ fn every_bundled_scene_has_operations() {
             // Where the run itself ends, which between magnets it does not.
             let size = Size::Tolerance(1e-6);
             let model = scene.model_with(scene.layer, &quantities).unwrap();
+            let span = three_steps(&scene);
             let runs = size
-                .run(&model, method, three_steps(&scene), &Rows::ENDS, None, &mut |_, _| {})
+                .run(&model, method, (span, span[1]), &Rows::ENDS, None, &mut |_, _| {})
                 .is_ok();
             let found = a_step(&scene, method, size);
             assert_eq!(found.is_some_and(|n| n > 0), runs, "{}: {}", bundled.name, method.label());
