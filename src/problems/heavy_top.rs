@@ -128,6 +128,16 @@ impl<S: Real> HeavyTop<S> {
         }
     }
 
+    /// The degree of [`fourth_integral`](Self::fourth_integral) in (μ, γ); 0 where there is none.
+    pub fn degree_of_fourth_integral(&self) -> u32 {
+        match self.integral {
+            Integral::None => 0,
+            Integral::Euler => 2,
+            Integral::Lagrange => 1,
+            Integral::Kovalevskaya(_) => 4,
+        }
+    }
+
     /// True for a top with a fourth integral.
     pub fn is_integrable(&self) -> bool {
         !matches!(self.integral, Integral::None)

@@ -3,6 +3,7 @@
 use lieflow::catalog::{MethodInfo, MethodSpec, Needs, Order, TABLEAUS, TableauInfo, all_methods};
 use lieflow::maps::{MAPS, MapInfo};
 use lieflow::names::same;
+use lieflow::problems::{Law, Origin};
 use serde::Serialize;
 
 use crate::args::{MethodsArgs, quoted};
@@ -211,13 +212,17 @@ const ADVICE: &[Advice] = &[
     },
 ];
 
-/// True if the problem has invariants, its energy among them, and all are polynomials of degree 2 at most in the state.
+/// True if the problem has invariants, its energy among them, and the energy and all that the action keeps are polynomials of
+/// degree 2 at most in the state. Methods that keep the energy promise nothing of further integrals.
 fn has_quadratic_invariants(scene: &Scene) -> Result<bool, CliError> {
     let quantities: Vec<&str> = scene.quantities.iter().map(String::as_str).collect();
     let kept = scene.problem.invariants(&quantities);
     let model = scene.model_with(scene.layer, &kept)?;
     let mut laws = model.schema().laws();
-    let is_quadratic = |law: &Observable| law.law.is_some_and(|law| (1..=2).contains(&law.degree));
+    let is_quadratic = |observable: &Observable| {
+        let is_further = |law: Law| law.origin == Origin::Flow && observable.name != "energy";
+        observable.law.is_some_and(|law| is_further(law) || (1..=2).contains(&law.degree))
+    };
     Ok(kept.contains(&"energy") && laws.all(is_quadratic))
 }
 

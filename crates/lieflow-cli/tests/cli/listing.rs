@@ -136,7 +136,9 @@ fn methods_are_recommended_before_they_are_listed() {
             &["magnus"][..],
         ),
         ("rabi", &["magnus8", "magnus6", "rkmk-gauss4-symmetric"], &["taylor", "dmv8", "exact"]),
-        ("lagrange-top", &["taylor16", "energy-casimir4"], &["magnus", "dmv8"]),
+        ("lagrange-top", &["taylor16", "gauss4"], &["magnus", "dmv8", "energy-casimir"]),
+        ("kovalevskaya-top", &["taylor16", "gauss4"], &["magnus", "dmv8", "energy-casimir"]),
+        ("manakov-body", &["gauss4"], &["magnus", "dmv8", "energy-casimir"]),
     ] {
         let told = folder.lieflow(&["methods", "--for", scene]).ok();
         let rows = table(&told);

@@ -292,7 +292,12 @@ impl<R: Representation> System for Top<R> {
                 integral.unwrap_or(f64::NAN)
             },
         )
-        .kept(Law::by_the_flow(0))
+        .kept_where(|top| {
+            // By the attitude it is no polynomial of the state, as the energy is none.
+            let is_polynomial = R::LAWS[0].degree > 0;
+            let degree = if is_polynomial { top.spec.top.degree_of_fourth_integral() } else { 0 };
+            Some(Law::by_the_flow(degree))
+        })
         .missing_where(Self::without_integral),
         angle(),
         momentum_norm(),

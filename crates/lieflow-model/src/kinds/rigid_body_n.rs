@@ -87,6 +87,11 @@ impl Body {
     fn n(&self) -> usize {
         self.momentum.nrows()
     }
+    /// The degree of the polynomials that the Casimirs and Manakov's integrals are made of. On so(4) tr m⁴ is one of tr m²
+    /// and of the Pfaffian, and there is no integral of higher degree; on larger ones there are.
+    fn degree(&self) -> u32 {
+        if self.n() <= 4 { 2 } else { 0 }
+    }
 }
 
 impl System for Body {
@@ -124,7 +129,7 @@ impl System for Body {
             },
         )
         .with_columns(|body| (2..=body.n()).step_by(2).map(|k| format!("trm{k}")).collect())
-        .kept(Law::by_the_action(0)),
+        .kept_where(|body| Some(Law::by_the_action(body.degree()))),
         Q::numbers(
             "manakov_integrals",
             &["integral1", "…", "integralk"],
@@ -138,7 +143,7 @@ impl System for Body {
             let count: usize = (3..=body.n()).map(|k| (k - 1) / 2).sum();
             (1..=count).map(|k| format!("integral{k}")).collect()
         })
-        .kept_where(|body| (body.n() <= WATCHED).then_some(Law::by_the_flow(0)))
+        .kept_where(|body| (body.n() <= WATCHED).then_some(Law::by_the_flow(body.degree())))
         .missing_where(|body| match body.lambda {
             Some(_) if body.n() > 2 => None,
             Some(_) => Some("a body in two dimensions has none"),
