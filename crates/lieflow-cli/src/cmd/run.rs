@@ -294,7 +294,8 @@ pub fn run_scene(
     let (accuracy, accuracy_unknown) = match checked {
         Ok(Some(checked)) => {
             let error = checked.accuracy.relative();
-            let moving = drift.iter().filter(|(_, drift)| drift.is_of_the_motion(error));
+            let numbers = rows.ends().map_or(0.0, |[(_, row), _]| largest(row.values()));
+            let moving = drift.iter().filter(|(_, drift)| drift.is_of_the_motion(error, numbers));
             warnings.extend(moving.map(no_constant));
             warnings.extend(checked.warnings);
             let mut zeros = scene.events.iter().zip(checked.wrong_zeros);
@@ -446,6 +447,10 @@ fn one_long_step(scene: &Scene) -> Option<String> {
             output::number(length)
         )
     })
+}
+
+fn largest(numbers: &[f64]) -> f64 {
+    numbers.iter().fold(0.0, |most, x| most.max(x.abs()))
 }
 
 /// Equal steps that are too long to count the half turns of angles.

@@ -453,9 +453,11 @@ impl Drift {
         self.promised && (self.max.is_nan() || self.max > self.rounding) && !self.is_of_rows()
     }
 
-    /// Did it move by far more than the relative error of the run explains? Then it is no constant of the motion.
-    pub fn is_of_the_motion(&self, error: f64) -> bool {
-        let explained = self.rounding.max(error.max(NO_CONSTANT / BEYOND) * self.size);
+    /// Did it move by far more than the relative error of the run explains? Then it is no constant of the motion. A formula
+    /// that is 0 may have terms as large as `numbers`, those of its row.
+    pub fn is_of_the_motion(&self, error: f64, numbers: f64) -> bool {
+        let error = error.max(NO_CONSTANT / BEYOND);
+        let explained = self.rounding.max(error * self.size).max(f64::EPSILON * numbers);
         !self.promised && self.max > BEYOND * explained && !self.is_of_rows()
     }
 }

@@ -136,7 +136,10 @@ fn ellipsoid_of(sphere: &Sphere) -> Option<Ellipsoid> {
 
 /// Two points that are farther apart, seen from the centre, are not joined: the path between them is not known. In
 /// radians.
-const FAR: f64 = 1.0;
+const FAR: f64 = 0.5;
+/// The cosine of the most that a path turns at a point from one chord to the next. Where both ends of a chord turn more, the
+/// points pass round a circle faster than they show it, and it is not joined.
+const TURN: f64 = 0.5;
 
 /// Paths that are nearer to each other are one curve to the eye: two pixels.
 const SAME_CURVE: f64 = 0.01;
@@ -168,17 +171,29 @@ fn along(piece: &[Vec3], count: usize) -> Vec<Vec3> {
     if ends.is_empty() { piece.to_vec() } else { (0..count).map(at).collect() }
 }
 
-/// A path in radii of the sphere, thinned to less than a pixel, without chords between points that are far apart. A
+/// A path in radii of the sphere, thinned to less than a pixel, without chords between points that do not show the path. A
 /// point alone is there twice, and so is a dot.
 fn unit_path(sphere: &Sphere, points: &[Vec3]) -> Vec<Vec<Vec3>> {
     let scaled = points.iter().map(|p| p.map(|x| x / sphere.radius));
     let finite: Vec<Vec3> = scaled.filter(|p| norm(p).is_finite()).collect();
     let is_near = |a: &Vec3, b: &Vec3| dot(a, b) >= FAR.cos() * norm(a) * norm(b);
+    let chords: Vec<Vec3> =
+        finite.windows(2).map(|ab| std::array::from_fn(|i| ab[1][i] - ab[0][i])).collect();
+    let goes_on = |a: &Vec3, b: &Vec3| dot(a, b) >= TURN * norm(a) * norm(b);
+    let is_shown = |i: usize| {
+        let before = i.checked_sub(1).map(|before| goes_on(&chords[before], &chords[i]));
+        let after = chords.get(i + 1).map(|after| goes_on(&chords[i], after));
+        before.unwrap_or(chords.len() == 1) || after.unwrap_or(chords.len() == 1)
+    };
+    let is_joined: Vec<bool> =
+        (0..chords.len()).map(|i| is_near(&finite[i], &finite[i + 1]) && is_shown(i)).collect();
     let piece = |piece: &[Vec3]| match piece {
         [only] => vec![*only; 2],
         several => thin_path(several, 2e-3),
     };
-    finite.chunk_by(is_near).map(piece).collect()
+    let mut places = 0..finite.len();
+    let joined = |_: &Vec3, _: &Vec3| places.next().is_some_and(|i| is_joined[i]);
+    finite.chunk_by(joined).map(piece).collect()
 }
 
 #[cfg(test)]
@@ -222,8 +237,20 @@ mod tests {
             let points: Vec<Vec3> = angles.iter().map(|angle| at(*angle)).collect();
             unit_path(&sphere, &points).iter().map(Vec::len).collect()
         };
-        assert_eq!(path(&[0.0, 0.9, 1.8]), [3]);
-        assert_eq!(path(&[0.0, 1.1, 1.9, 3.2]), [2, 2, 2]);
+        assert_eq!(path(&[0.0, 0.4, 0.8]), [3]);
+        assert_eq!(path(&[0.0, 0.4]), [2]);
+        assert_eq!(path(&[0.0, 0.6, 1.0, 1.4, 2.0]), [2, 3, 2]);
         assert_eq!(path(&[]), [0; 0]);
+        // A small circle about a pole, passed in steps of 2.5 radians.
+        let about_pole = |step: f64| -> Vec<usize> {
+            let point = |i: usize| {
+                let (s, c) = (step * i as f64).sin_cos();
+                [0.2 * c, 0.2 * s, 1.99]
+            };
+            let points: Vec<Vec3> = (0..40).map(point).collect();
+            unit_path(&sphere, &points).iter().map(Vec::len).collect()
+        };
+        assert_eq!(about_pole(2.5), [2; 40]);
+        assert_eq!(about_pole(0.3).len(), 1);
     }
 }

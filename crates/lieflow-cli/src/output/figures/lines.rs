@@ -208,8 +208,8 @@ impl<'a> Shown<'a> {
     }
 }
 
-/// The size that the rounding of each column is relative to: the largest of the numbers that belong together with it,
-/// and 1 for a distance from a group.
+/// The size that the rounding of each column is relative to: the largest of the numbers that belong together with it, the
+/// size of the terms of a sum, and 1 for a distance from a group.
 fn sizes(columns: &[Column<'_>], rows: &RowSample<'_>) -> Vec<f64> {
     let mut sizes: Vec<f64> = Vec::new();
     for (i, &Column { quantity, index }) in columns.iter().enumerate() {
@@ -223,6 +223,8 @@ fn sizes(columns: &[Column<'_>], rows: &RowSample<'_>) -> Vec<f64> {
         let of_group = quantity.law.is_some_and(|law| law.scale == Scale::One);
         let least = if of_group { 1.0 } else { 0.0 };
         sizes.push(rows.columns().fold(least, |size, (_, row)| {
+            // Without terms it is NaN, which `max` passes over.
+            let size = size.max(row.terms(quantity));
             row[quantity][part.clone()].iter().fold(size, |size: f64, x| size.max(x.abs()))
         }));
     }
