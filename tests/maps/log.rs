@@ -52,6 +52,24 @@ fn inverse_of_exp() {
     }
 }
 
+/// Far from 𝟙 the small eigenvalues are the rounding of the large ones: refused on each group that is not compact.
+#[test]
+fn elements_without_digits_are_refused() {
+    let sp = MatrixGroup::sp(2).unwrap();
+    let shear = |a: f64| {
+        // a·(e₁ stretched, e₂ shrunk), sheared.
+        let u = Mat::from_fn(2, 2, |i, j| a * [[1.0, -1.4], [0.0, -1.0]][i][j]);
+        exp(&sp, &sp.algebra(u).unwrap())
+    };
+    assert!(sp.log(&shear(10.0)).is_ok());
+    for a in [18.0, 30.0] {
+        match sp.log(&shear(a)) {
+            Err(Error::Singular { arg: "g", rcond, .. }) => assert!(rcond < 1e-14, "{rcond:e}"),
+            other => panic!("{a}: {other:?}"),
+        }
+    }
+}
+
 fn negative(group: &MatrixGroup, u: &AlgebraMatrix) -> AlgebraMatrix {
     let mut out = group.zero();
     group.axpy(-1.0, u, &mut out);

@@ -20,9 +20,9 @@ use faer::{Mat, c64};
 use triangular::Negative;
 
 use super::functions::LogGroup;
-use crate::dense::{Lu, is_finite, norm1, scaled_sum};
+use crate::dense::{Lu, RCOND_MIN, is_finite, norm1, scaled_sum};
 use crate::error::{Error, NoLogarithm, StepError};
-use crate::groups::{AlgebraMatrix, Form, GroupMatrix, LieAlgebra, MatrixGroup};
+use crate::groups::{Adjoint, AlgebraMatrix, Form, GroupMatrix, LieAlgebra, MatrixGroup};
 use crate::quadrature::GAUSS_LEGENDRE7;
 use crate::so3::POLAR_MAX;
 
@@ -52,7 +52,8 @@ impl MatrixGroup {
     /// ```
     ///
     /// # Errors
-    /// As [`element`](Self::element), with [`Error::Reflection`] for determinant −1 on SO(n);
+    /// As [`element`](Self::element), with [`Error::Reflection`] for determinant −1 on SO(n), and [`Error::Singular`] on each
+    /// group that is not compact: the error is about ε·cond(g);
     /// [`Error::NoLogarithm`] with a negative eigenvalue that is not as above, and the reason: there is
     /// no real logarithm at all, none in 𝔤, or it is not decided;
     /// [`Error::Map`] when an iteration does not converge or the result is not finite. Cost: O(n³),
@@ -60,6 +61,9 @@ impl MatrixGroup {
     pub fn log(&self, g: &GroupMatrix) -> Result<AlgebraMatrix, Error> {
         // A clone: what was made unchecked is checked here.
         let g = self.element_within((**g).clone(), POLAR_MAX)?.into_mat();
+        if !matches!(self.form(), Form::Free | Form::Identity) {
+            self.check_condition(&g)?;
+        }
         let n = self.n();
         let mut x = g.clone();
         for i in 0..n {
@@ -78,6 +82,18 @@ impl MatrixGroup {
 }
 
 impl MatrixGroup {
+    /// The small eigenvalues of a g that is far from 𝟙 are the rounding of the large ones.
+    fn check_condition(&self, g: &Mat<f64>) -> Result<(), Error> {
+        let g = GroupMatrix::new_unchecked(g.clone());
+        let mut inverse = g.clone();
+        self.invert(&g, &mut self.inverting(), &mut inverse)?;
+        let rcond = 1.0 / (norm1(g.as_ref()) * norm1(inverse.as_ref()));
+        match rcond < RCOND_MIN {
+            true => Err(Error::Singular { arg: "g", rcond, minimum: RCOND_MIN }),
+            false => Ok(()),
+        }
+    }
+
     /// Where negative eigenvalues come in pairs, with a turn by π taken out.
     fn log_by_triangle(&self, g: &Mat<f64>) -> Result<Mat<f64>, Error> {
         let refuse =
