@@ -371,7 +371,16 @@ impl<'a> Check<'a> {
         let shorter = 0.1_f64.powf(1.0 / (order + 1.0));
         let ratio = shorter.powf(order);
         let (found_by, factor, largest, share) = match tolerance {
-            None => (FoundBy::HalfStep, 0.5, None, halved),
+            None => {
+                // Where knots have made the steps shorter than they were to be, it is their mean that is halved.
+                let [t0, t1] = self.run.t_span;
+                let planned = (t1 - t0).abs() / (way.factor * self.scene().grid.h().abs());
+                let factor = match taken.steps as f64 > (planned - 1e-9).ceil() {
+                    true => 0.5 * planned / taken.steps as f64,
+                    false => 0.5,
+                };
+                (FoundBy::HalfStep, factor, None, halved)
+            }
             // The limit shortens the steps also where `h_max` or knots chose them.
             Some(tolerance) if tolerance >= SMALLEST => {
                 let largest = Some(shorter * taken.largest);

@@ -251,8 +251,7 @@ pub fn run_scene(
     if let (Some((t, _)), Some(state)) = (end, &mut kept.state) {
         // Only a part of a resumed run was timed.
         let share = ((t - begun_at) / (t - scene.grid.t_span()[0])).max(1e-3);
-        let largest = done.chosen.as_ref().map_or(scene.grid.h().abs(), |c| c.largest_step);
-        let taken = Taken { steps: done.steps, largest };
+        let taken = Taken { steps: done.steps, largest: done.largest_step };
         let shown = (state.shown()?, written);
         let check = Check::new(&watch, rows, shown, (t, taken, done.ended_by.is_some()), stop);
         kept.bar.now(1.0, "a second run, to estimate the error");

@@ -127,6 +127,7 @@ impl<'a> Watch<'a> {
             Ok(Outcome { t, status, stats }) => Ok(Done {
                 unsure: stats.unsure_in_words("h_max", status.event()),
                 steps: stats.accepted,
+                largest_step: stats.largest_step,
                 points_within: Some(stats.points_within),
                 chosen: scene.adaptive.is_some().then_some(Chosen {
                     accepted: stats.accepted,
@@ -207,6 +208,7 @@ pub(super) struct Done {
     pub(super) failure: Option<String>,
     pub(super) interrupted: bool,
     pub(super) steps: u64,
+    pub(super) largest_step: f64,
     pub(super) points_within: Option<u64>,
     /// The warning about zeros of events that may be missed.
     pub(super) unsure: Option<String>,

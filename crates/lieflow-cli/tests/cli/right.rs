@@ -50,6 +50,37 @@ fn relative(summary: &Value) -> f64 {
     parts.iter().map(|part| part["relative"].as_f64().unwrap()).fold(0.0, f64::max)
 }
 
+/// Knots shorten the steps of a run: with half of the step that was asked for it would be the same run again.
+#[test]
+fn the_second_run_has_shorter_steps_than_knots_leave() {
+    let folder = Folder::new();
+    let run = |sets: &[&str]| {
+        let sets: Vec<&str> = sets.iter().flat_map(|set| ["--set", *set]).collect();
+        let args = [&["run", "gyro-record", "--no-page", "--out", "out"], &sets[..]].concat();
+        folder.lieflow(&args).ok();
+        folder.json("out/summary.json")
+    };
+    let midpoint = ["method.name=rkmk", "method.tableau=midpoint", "time.at_knots=true"];
+    for dt in ["time.dt=0.2", "time.dt=0.1", "time.dt=0.07", "time.dt=0.05"] {
+        let summary = run(&[&midpoint[..], &[dt]].concat());
+        let stated = summary["accuracy"]["parts"][0]["at_end"]["absolute"].as_f64().unwrap();
+        // The matrix at the end is the last row; the reference is that of the default.
+        let last = |summary: &Value| {
+            let last = &summary["final"];
+            let entry = |k: usize| last[format!("g{}{}", k / 3 + 1, k % 3 + 1)].as_f64().unwrap();
+            (0..9).map(entry).collect::<Vec<_>>()
+        };
+        let right = run(&["method.name=rkmk", "method.tableau=dop853", "time.dt=0.001"]);
+        let gap =
+            last(&summary).iter().zip(last(&right)).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
+        let angle = gap.sqrt() / 2f64.sqrt();
+        assert!(
+            angle > 1e-3 && angle < 1.5 * stated && stated < 1.5 * angle,
+            "{dt}: {stated} {angle}"
+        );
+    }
+}
+
 /// Scenes with fewer digits: a chaotic one, in which errors grow; and a body that turns six thousand times, in
 /// which the errors of 200000 steps add up.
 const FEWER: &[(&str, f64)] = &[("lorenz", 3e-3), ("high-energy", 3e-8)];
