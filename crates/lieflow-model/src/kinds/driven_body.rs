@@ -199,18 +199,21 @@ fn read(mut keys: Keys) -> Result<Forms, ReadError> {
     })
 }
 
-impl AsBody for Driven {
-    fn spec(&self) -> &RigidBodySpec {
-        &self.spec
+impl Oriented for Driven {
+    fn orientation(&self, (g, _): &Point) -> Orientation {
+        Orientation::Matrix(*g)
     }
+    fn axes(&self) -> Option<Matrix3<f64>> {
+        self.spec.axes
+    }
+}
+
+impl AsBody for Driven {
     fn momentum(&self, (g, m): &Point) -> Vector3<f64> {
         g.tr_mul(m)
     }
     fn omega(&self, y: &Point) -> Vector3<f64> {
         self.body.motion(0.0, y).omega_body
-    }
-    fn orientation(&self, (g, _): &Point) -> Orientation {
-        Orientation::Matrix(*g)
     }
     fn momentum_in_space(&self, (_, m): &Point) -> Vector3<f64> {
         *m

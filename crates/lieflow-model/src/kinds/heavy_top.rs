@@ -222,21 +222,24 @@ impl<R: Representation> Top<R> {
     }
 }
 
-impl<R: Representation> AsBody for Top<R> {
-    fn spec(&self) -> &RigidBodySpec {
-        &self.spec.body
-    }
-    fn momentum(&self, y: &PointOf<Self>) -> Vector3<f64> {
-        R::pose(y).mu
-    }
-    fn omega(&self, y: &PointOf<Self>) -> Vector3<f64> {
-        self.spec.top.omega(&R::pose(y).mu)
-    }
+impl<R: Representation> Oriented for Top<R> {
     fn orientation(&self, y: &PointOf<Self>) -> Orientation {
         R::pose(y).orientation
     }
     fn without_orientation(&self) -> Option<&'static str> {
         (!R::TURNS).then_some("the momentum and the vertical alone are integrated")
+    }
+    fn axes(&self) -> Option<Matrix3<f64>> {
+        self.spec.body.axes
+    }
+}
+
+impl<R: Representation> AsBody for Top<R> {
+    fn momentum(&self, y: &PointOf<Self>) -> Vector3<f64> {
+        R::pose(y).mu
+    }
+    fn omega(&self, y: &PointOf<Self>) -> Vector3<f64> {
+        self.spec.top.omega(&R::pose(y).mu)
     }
     fn vertical(&self, y: &PointOf<Self>) -> Vector3<f64> {
         R::pose(y).gamma

@@ -11,15 +11,13 @@ use lieflow::actions::Translation;
 use lieflow::groups::{LieGroup, Se3, So3};
 use lieflow::problems::Flow;
 use lieflow::scalar::{Counted, Trig};
-use lieflow::so3::{quaternion_from_matrix, quaternion_to_wxyz};
 use nalgebra::{Matrix3, Vector3};
 
-use super::body::check_rotation;
+use super::body::{Orientation, Oriented, check_rotation, quaternion, with_angles};
 use super::flow;
 use super::prelude::*;
 use crate::formula::{Formula, Names, Texts, without_value};
 use crate::reader::values::Rows;
-use crate::schema::Branch;
 
 /// The entry in the list of kinds.
 pub(super) const KIND: Kind = Kind {
@@ -127,14 +125,25 @@ impl Motion {
     }
 }
 
+impl Oriented for Motion {
+    fn orientation(&self, (g, _): &Pose) -> Orientation {
+        Orientation::Matrix(*g)
+    }
+}
+
 impl System for Motion {
     type Problem = flow::Motion;
 
     const STATE: &'static [&'static str] = &["position", "attitude"];
-    const QUANTITIES: &'static [Q] = &[
-        Q::numbers("position", &["x1", "x2", "x3"], "position of the origin of the body", |_, _, (_, x), row| {
-            row.extend(x.iter());
-        })
+    const QUANTITIES: &'static [Q] = with_angles![
+        Q::numbers(
+            "position",
+            &["x1", "x2", "x3"],
+            "position of the origin of the body",
+            |_, _, (_, x), row| {
+                row.extend(x.iter());
+            }
+        )
         .of_dimension(Dimension::LENGTH),
         Q::numbers(
             "attitude",
@@ -144,19 +153,7 @@ impl System for Motion {
         )
         .of_rotation()
         .drawn_as("quaternion"),
-        Q::numbers(
-            "quaternion",
-            &["qw", "qx", "qy", "qz"],
-            "the attitude as a unit quaternion, real part first; each row has the sign that is nearer to the row before, \
-             the first has qw >= 0",
-            |_, _, (g, _), row| {
-                let q = quaternion_from_matrix(g).map(|q| quaternion_to_wxyz(&q));
-                let q = q.unwrap_or([f64::NAN; 4]);
-                row.extend(if q[0] < 0.0 { q.map(|x| -x) } else { q });
-            },
-        )
-        .of_quaternion()
-        .continuous_by(|_| Branch::Sign),
+        quaternion(),
         Q::numbers(
             "omega",
             &["w1", "w2", "w3"],

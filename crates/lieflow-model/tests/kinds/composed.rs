@@ -154,3 +154,57 @@ fn a_field_without_a_value_ends_the_run() {
     let run = of.model().unwrap().run(&of.method, &of.grid, &of.save, &mut |_, _| rows += 1);
     assert!(run.is_err() && rows > 100, "{rows}");
 }
+
+/// The rotation of a system with one, and that of a rigid motion, as a quaternion and as Euler angles: those of the matrix.
+/// Systems with none or several have neither.
+#[test]
+fn a_rotation_is_a_quaternion_and_angles() {
+    let record = end_of("gyro-record", &[], "[\"state\", \"quaternion\", \"euler_zyx\"]");
+    let rolling = end_of("rolling-turn", &[], "[\"attitude\", \"quaternion\", \"euler_zyx\"]");
+    for end in [record, rolling] {
+        let (g, rest) = end.split_at(9);
+        let (q, angles) = rest.split_at(4);
+        let [w, x, y, z] = q else { panic!("{end:?}") };
+        let of_q = [
+            1.0 - 2.0 * (y * y + z * z),
+            2.0 * (x * y - w * z),
+            2.0 * (x * z + w * y),
+            2.0 * (x * y + w * z),
+            1.0 - 2.0 * (x * x + z * z),
+            2.0 * (y * z - w * x),
+            2.0 * (x * z - w * y),
+            2.0 * (y * z + w * x),
+            1.0 - 2.0 * (x * x + y * y),
+        ];
+        assert!(far(&of_q, g) < 1e-12, "{end:?}");
+        let of_angles = [g[3].atan2(g[0]), -g[6].asin(), g[7].atan2(g[8])];
+        for (angle, expected) in angles.iter().zip(of_angles) {
+            let turns = (angle - expected) / std::f64::consts::TAU;
+            assert!((turns - turns.round()).abs() < 1e-12, "{angles:?} {of_angles:?}");
+        }
+    }
+    let part =
+        |name: &str| format!("{{ name = \"{name}\", space = \"rotation\", field = [1, 0, 0] }}");
+    for (parts, why) in [
+        (vec![part("a"), part("b")], "several parts are rotations"),
+        (
+            vec!["{ name = \"x\", space = \"numbers\", start = [1], field = [0] }".into()],
+            "no part is a rotation",
+        ),
+        (
+            vec![
+                part("a"),
+                "{ name = \"qx\", space = \"numbers\", start = [1], field = [0] }".into(),
+            ],
+            "a part has a number by the name of a column",
+        ),
+    ] {
+        let text = format!(
+            "[problem]\nkind = \"composed\"\nparts = [{}]\n[time]\nt_span = [0, 1]\n[output]\n\
+             quantities = [\"quaternion\"]\n",
+            parts.join(", ")
+        );
+        let error = Scene::parse("scene", &text).unwrap_err().to_string();
+        assert!(error.contains(why), "{error}");
+    }
+}

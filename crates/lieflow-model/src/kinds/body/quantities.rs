@@ -5,7 +5,7 @@ use lieflow::so3::{quaternion_from_matrix, quaternion_to_wxyz};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 use super::euler::SEQUENCES;
-use super::{RigidBodySpec, rotation};
+use super::rotation;
 use crate::kinds::prelude::*;
 use crate::problem::PointOf;
 use crate::schema::Branch;
@@ -36,20 +36,26 @@ impl Orientation {
     }
 }
 
-/// A system that is a body: what its quantities are made of, along its principal axes.
-pub(in crate::kinds) trait AsBody: System {
-    /// The body, as its scene states it.
-    fn spec(&self) -> &RigidBodySpec;
-    /// The momentum in the body.
-    fn momentum(&self, y: &PointOf<Self>) -> Vector3<f64>;
-    /// The angular velocity in the body.
-    fn omega(&self, y: &PointOf<Self>) -> Vector3<f64>;
+/// A system with a rotation from body to space.
+pub(in crate::kinds) trait Oriented: System {
     /// The rotation to space.
     fn orientation(&self, y: &PointOf<Self>) -> Orientation;
     /// Why the problem has no orientation, if it has none.
     fn without_orientation(&self) -> Option<&'static str> {
         None
     }
+    /// The axes that the rotation is about, in those of the scene, where they are others.
+    fn axes(&self) -> Option<Matrix3<f64>> {
+        None
+    }
+}
+
+/// A system that is a body: what its quantities are made of, along its principal axes.
+pub(in crate::kinds) trait AsBody: Oriented {
+    /// The momentum in the body.
+    fn momentum(&self, y: &PointOf<Self>) -> Vector3<f64>;
+    /// The angular velocity in the body.
+    fn omega(&self, y: &PointOf<Self>) -> Vector3<f64>;
     /// The momentum in space.
     fn momentum_in_space(&self, y: &PointOf<Self>) -> Vector3<f64> {
         self.orientation(y).rotation() * self.momentum(y)
@@ -61,12 +67,12 @@ pub(in crate::kinds) trait AsBody: System {
 
     /// A vector along the axes of the scene.
     fn in_scene(&self, x: Vector3<f64>) -> Vector3<f64> {
-        self.spec().axes.map_or(x, |axes| axes * x)
+        self.axes().map_or(x, |axes| axes * x)
     }
     /// The rotation from the axes of the scene to space.
     fn attitude(&self, y: &PointOf<Self>) -> Matrix3<f64> {
         let g = self.orientation(y).rotation();
-        self.spec().axes.map_or(g, |axes| g * axes.transpose())
+        self.axes().map_or(g, |axes| g * axes.transpose())
     }
 }
 
@@ -134,18 +140,17 @@ pub(in crate::kinds) const fn attitude<S: AsBody>() -> Quantity<S> {
 }
 
 /// The quaternion of the attitude, and whether its sign is that of the state; NaN where the state is no rotation.
-fn wxyz<S: AsBody>(body: &S, y: &PointOf<S>) -> ([f64; 4], bool) {
+fn wxyz<S: Oriented>(body: &S, y: &PointOf<S>) -> ([f64; 4], bool) {
     let orientation = body.orientation(y);
     let axes = body
-        .spec()
-        .axes
+        .axes()
         .map_or(Ok(UnitQuaternion::identity()), |axes| quaternion_from_matrix(&axes.transpose()));
     let q = axes.map(|axes| quaternion_to_wxyz(&(orientation.quaternion() * axes)));
     (q.unwrap_or([f64::NAN; 4]), matches!(orientation, Orientation::Quaternion(_)))
 }
 
 /// The attitude as a quaternion.
-pub(in crate::kinds) const fn quaternion<S: AsBody>() -> Quantity<S> {
+pub(in crate::kinds) const fn quaternion<S: Oriented>() -> Quantity<S> {
     Quantity::numbers(
         "quaternion",
         &["qw", "qx", "qy", "qz"],
@@ -163,7 +168,7 @@ pub(in crate::kinds) const fn quaternion<S: AsBody>() -> Quantity<S> {
 }
 
 /// The attitude as the Euler angles of a sequence.
-pub(in crate::kinds) const fn angles<S: AsBody, const SEQUENCE: usize>() -> Quantity<S> {
+pub(in crate::kinds) const fn angles<S: Oriented, const SEQUENCE: usize>() -> Quantity<S> {
     let sequence = &SEQUENCES[SEQUENCE];
     Quantity::numbers(sequence.name, sequence.columns, sequence.meaning(), |body: &S, _, y, row| {
         row.extend(SEQUENCES[SEQUENCE].angles(wxyz(body, y).0))

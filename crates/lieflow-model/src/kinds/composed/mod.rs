@@ -10,7 +10,7 @@ use lieflow::scalar::Counted;
 use nalgebra::{Matrix3, Vector3};
 
 use self::system::{Coupled, Part, Space};
-use super::body::check_rotation;
+use super::body::{Orientation, Oriented, check_rotation, quaternion, with_angles};
 use super::entries::check_rows;
 use super::flow;
 use super::prelude::*;
@@ -281,11 +281,30 @@ fn kept<'a>(parts: impl Iterator<Item = &'a Part>) -> Vec<String> {
     parts.filter_map(|part| part.space.kept(&part.name)).collect()
 }
 
+impl Oriented for Composed {
+    /// That of the only rotation.
+    fn orientation(&self, (_, (rotations, _)): &Point) -> Orientation {
+        rotations.first().map_or(Orientation::NotModelled, |g| Orientation::Matrix(*g))
+    }
+    fn without_orientation(&self) -> Option<&'static str> {
+        match self.rotations().count() {
+            0 => Some("no part is a rotation"),
+            1 => {
+                let taken = |part: &Part| part.space.coordinates(&part.name);
+                let is_column = |name: String| ["qw", "qx", "qy", "qz"].contains(&&*name);
+                let is_taken = self.parts.iter().flat_map(taken).any(is_column);
+                is_taken.then_some("a part has a number by the name of a column of the quaternion")
+            }
+            _ => Some("several parts are rotations"),
+        }
+    }
+}
+
 impl System for Composed {
     type Problem = flow::Composed;
 
     const STATE: &'static [&'static str] = &["state"];
-    const QUANTITIES: &'static [Q] = &[
+    const QUANTITIES: &'static [Q] = with_angles![
         Q::numbers(
             "state",
             &["…"],
@@ -323,6 +342,7 @@ impl System for Composed {
             let without = composed.rotations().next().is_none();
             without.then_some("no part is a rotation")
         }),
+        quaternion(),
         Q::numbers(
             "invariants",
             &["…"],

@@ -178,7 +178,10 @@ impl Space {
                 return misfit("frame", "None", "\"space\" (ẏ = f y) or \"body\" (ẏ = y f)");
             }
             Some(Frame::Body) if !translates => {
-                let expected = format!("None: with action=\"{action}\" f is in space");
+                let expected = match group {
+                    GroupName::Parts(_) => "None: no part is a rotation".into(),
+                    _ => format!("None: with action=\"{action}\" f is in space"),
+                };
                 return misfit("frame", "\"body\"", expected);
             }
             _ => {}

@@ -237,21 +237,24 @@ impl<R: Representation> Body<R> {
     }
 }
 
-impl<R: Representation> AsBody for Body<R> {
-    fn spec(&self) -> &RigidBodySpec {
-        &self.spec
-    }
-    fn momentum(&self, y: &PointOf<Self>) -> Vector3<f64> {
-        R::pose(&self.problem, y).m
-    }
-    fn omega(&self, y: &PointOf<Self>) -> Vector3<f64> {
-        self.body.omega(&self.momentum(y))
-    }
+impl<R: Representation> Oriented for Body<R> {
     fn orientation(&self, y: &PointOf<Self>) -> Orientation {
         R::pose(&self.problem, y).orientation
     }
     fn without_orientation(&self) -> Option<&'static str> {
         (!R::TURNS).then_some("the momentum alone is integrated")
+    }
+    fn axes(&self) -> Option<Matrix3<f64>> {
+        self.spec.axes
+    }
+}
+
+impl<R: Representation> AsBody for Body<R> {
+    fn momentum(&self, y: &PointOf<Self>) -> Vector3<f64> {
+        R::pose(&self.problem, y).m
+    }
+    fn omega(&self, y: &PointOf<Self>) -> Vector3<f64> {
+        self.body.omega(&self.momentum(y))
     }
 }
 
