@@ -107,6 +107,16 @@ impl PartTolerance {
         }
     }
 
+    /// The relative tolerance.
+    pub fn rtol(&self) -> f64 {
+        self.rtol
+    }
+
+    /// The absolute tolerance; of a vector with one for each component the least.
+    pub fn atol(&self) -> f64 {
+        self.atol
+    }
+
     /// The allowed error of a part of this size.
     #[inline]
     pub fn scale<S: Real>(&self, size: S) -> S {

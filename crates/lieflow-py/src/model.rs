@@ -370,7 +370,7 @@ impl Model {
             self.drive((&spec, start.clone()), (steps, save), &settings, &mut watch)
         };
         let (status, curve) = if attached { run() } else { py.detach(run) };
-        let result = watch.seen.into_dict(py, &raised, status, (&shape, LONGEST))?;
+        let result = watch.seen.into_dict(py, &raised, status, (&shape, LONGEST), Some(&steps))?;
         let lost = self.problem.formula().and_then(|formula| formula.lost(Which::First));
         result.set_item("lost", lost.map(|lost| lost.to_string()))?;
         result.set_item("curve", curve.map(|curve| Py::new(py, curve)).transpose()?)?;

@@ -108,11 +108,9 @@ impl Settings {
             return Ok(Steps::Equal(TimeGrid::with_steps(t_span, steps)?));
         }
         let [rtol, atol] = match (self.rtol, self.atol) {
-            (Some(rtol), Some(atol)) => [rtol, atol],
-            (rtol, atol) => {
-                let default = tolerance(orders.step);
-                [rtol.unwrap_or(default), atol.unwrap_or(default)]
-            }
+            (None, None) => [tolerance(orders.step); 2],
+            // As in scenes.
+            given => [given.0.unwrap_or(0.0), given.1.unwrap_or(0.0)],
         };
         let mut control = StepControl::new(rtol, atol)?;
         if let Some(h) = self.max_step {
@@ -314,6 +312,7 @@ impl Seen {
         raised: &Raised,
         status: Result<Status, RunError>,
         (shape, limit): (&[usize], &str),
+        steps: Option<&Steps>,
     ) -> PyResult<Bound<'py, PyDict>> {
         if let Some(error) = raised.take() {
             return Err(error);
@@ -351,6 +350,16 @@ impl Seen {
         result.set_item("nfev", stats.evaluations)?;
         result.set_item("nsteps", stats.accepted)?;
         result.set_item("nrejected", stats.rejected)?;
+        result.set_item("largest_step", stats.largest_step)?;
+        let tolerances = match steps {
+            Some(Steps::ByError { control, .. }) => {
+                let mut parts = control.tolerance().scales();
+                let part = parts.part();
+                Some((part.rtol(), part.atol()))
+            }
+            _ => None,
+        };
+        result.set_item("_tolerances", tolerances)?;
         result.set_item("residual", stats.residual)?;
         result.set_item("restored", stats.restored)?;
         result.set_item("unsure_steps", stats.unsure_steps)?;

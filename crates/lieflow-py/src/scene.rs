@@ -89,7 +89,7 @@ impl Scene {
             (done.map(|outcome| outcome.status), lost)
         });
         let width = model.schema().columns().count();
-        let result = seen.into_dict(py, &raised, status, (&[width], "h_max"))?;
+        let result = seen.into_dict(py, &raised, status, (&[width], "h_max"), None)?;
         if let Some(lost) = lost {
             result.set_item("message", lost)?;
         }

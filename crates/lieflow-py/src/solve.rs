@@ -260,7 +260,7 @@ pub(crate) fn solve<'py>(
     let Ran { status, end, curve } = if attached { run() } else { py.detach(run) };
     let y_end = end.as_ref().map(|end| end.y.clone());
     watch.seen.end = end.map(|end| (end.t, end.stats));
-    let result = watch.seen.into_dict(py, &raised, status, (shape, LONGEST))?;
+    let result = watch.seen.into_dict(py, &raised, status, (shape, LONGEST), Some(&ready.steps))?;
     result.set_item("y_end", y_end.map(|y| field::array(py, shape, &y)).transpose()?)?;
     let curve = curve.map(|curve| Py::new(py, Curve::new(curve, shape))).transpose()?;
     result.set_item("curve", curve)?;

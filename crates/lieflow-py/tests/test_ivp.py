@@ -511,3 +511,67 @@ def test_methods_for_linear_equations_have_their_order_in_both_frames(method):
     gyro = lf.Samples(times, [rate(t) for t in times])
     measured = lf.solve_ivp(gyro, (0, 10), np.eye(3), group="SO(3)", frame="body", method=method, steps=1000)
     assert np.abs(measured.y_end - general.y_end).max() < 1e-4
+
+
+def _turning(t, R):
+    return [np.sin(t), np.cos(2 * t), 0.5]
+
+
+ON_SO3 = {"group": "SO(3)", "frame": "body"}
+
+
+def _true_error(r, f=_turning, **keys):
+    exact = lf.solve_ivp(f, (r.t[0], r.t[-1]), np.eye(3), t_eval=r.t, **ON_SO3, **keys)
+    return np.abs(lf.so3.log(np.swapaxes(exact.y, -1, -2) @ r.y)).max()
+
+
+@pytest.mark.parametrize("steps", [{"steps": 4}, {"steps": 8}, {"dt": 0.5}])
+def test_the_second_run_has_shorter_steps_where_stops_shorten_them(steps):
+    stops = np.arange(1, 20) * 0.1
+    r = lf.solve_ivp(_turning, (0, 2), np.eye(3), method="rkmk midpoint exp", stops=stops, **steps, **ON_SO3)
+    assert r.nsteps == 20 and abs(r.largest_step - 0.1) < 1e-12
+    stated, true = r.estimate_error().y, _true_error(r)
+    assert 1e-4 < true < 3 * stated < 9 * true
+    samples = lf.Samples(np.linspace(0, 2, 21), np.array([_turning(t, None) for t in np.linspace(0, 2, 21)]))
+    r = lf.solve_ivp(samples, (0, 2), np.eye(3), method="rkmk midpoint exp", **steps, **ON_SO3)
+    assert 1e-4 < _true_error(r, samples) < 3 * r.estimate_error().y
+
+
+def test_the_second_run_has_other_steps_where_rounding_chooses_them():
+    r = lf.solve_ivp(_turning, (0, 2), np.eye(3), method="rkmk heun exp", rtol=1e-12, atol=0.0, **ON_SO3)
+    stated, true = r.estimate_error(), _true_error(r)
+    assert true < 5 * stated.y < 50 * true
+
+
+def test_a_second_run_may_take_more_attempts_or_says_why_not():
+    keys = {"method": "rkmk heun exp", "rtol": 1e-8, "atol": 1e-7, "max_steps": 3000, **ON_SO3}
+    r = lf.solve_ivp(_turning, (0, 2), np.eye(3), t_eval=[0, 1, 2], **keys)
+    assert r.success and _true_error(r) < 3 * r.estimate_error().y < 1e-4
+    calls = []
+
+    def fails(t, R):
+        calls.append(t)
+        return _turning(t, R) if len(calls) < 3000 else [np.nan] * 3
+
+    r = lf.solve_ivp(fails, (0, 2), np.eye(3), method="rkmk4 exp", steps=400, **ON_SO3)
+    assert r.success
+    with pytest.raises(lf.RunError, match="no estimate: a second run in steps of half the size ended at t ="):
+        r.estimate_error()
+
+
+@pytest.mark.parametrize("t0", [0.0, 10.0, 1e3, 1e6])
+def test_errors_are_estimated_after_a_terminal_event(t0):
+    for level in np.arange(0.2, 0.8, 0.04):
+        event = lf.Event(lambda t, R, level=level: R[0, 0] - level, terminal=True)
+        r = lf.solve_ivp(_turning, (t0, t0 + 6), np.eye(3), method="rkmk4 cay", steps=60, events=event, **ON_SO3)
+        assert r.status == 1 and len(r.t_events[0]) == 1
+        estimate = r.estimate_error()
+        assert estimate.y < 1e-3 and estimate.t_events[0] < 1e-3
+
+
+def test_a_tolerance_alone_is_that_of_scenes():
+    counts = []
+    for keys in ({"rtol": 1e-10}, {"rtol": 1e-10, "atol": 0.0}, {"atol": 1e-10}, {"atol": 1e-10, "rtol": 0.0}):
+        r = lf.solve_ivp(_turning, (0, 2), np.eye(3), method="rkmk bs3 exp", **keys, **ON_SO3)
+        counts.append(r.nsteps)
+    assert counts[0] == counts[1] and counts[2] == counts[3]

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _lieflow
 from ._arrays import real
-from ._errors import ArgumentError
+from ._errors import ArgumentError, RunError
 from ._fields import CFunction, Field, Parts, Quantities, Samples, address
 from ._groups import Group
 from ._problems import Problem
@@ -379,8 +379,9 @@ def solve_ivp(
         Functions g(t, y, *args), with SciPy's attributes ``terminal`` and ``direction``; columns and formulas; or
         :class:`lieflow.Event`.
     rtol, atol : float, optional
-        Tolerances for each step. **The defaults are those of scenes, 1e-14 for methods of order 8.** On a group the error
-        is an angle, and the tolerance rtol + atol.
+        Tolerances for each step. **The defaults are those of scenes, 1e-14 for methods of order 8; beside the one that is
+        given the other is 0.** On a group the error is an angle, and the tolerance rtol + atol; rtol counts less in the
+        short steps of methods that take each step twice to see their error.
     first_step, min_step, max_step, max_steps : optional
         Limits of the adaptive step size.
     dt, steps : optional
@@ -486,20 +487,58 @@ def _of_field(
     on_so3 = ready.space_args[0] == "SO(3)" and ready.space_args[1] == "translation"
 
     def again(result: Result) -> tuple[str, Result]:
-        found_by, finer = _finer(settings, result, span[0], seconds)
-        return found_by, _of_field(fun, span, y0, method, finer, result.t, events, None, space)
+        def run(finer: dict[str, Any]) -> Result:
+            end, others = _beyond(result, span, events)
+            return _of_field(fun, (span[0], end), y0, method, finer, result.t, others, None, space)
+
+        return _second(run, settings, result, span[0], seconds)
 
     return Result(sol=sol, _layout=ready.layout, _on_so3=on_so3, _again=again, **found)
 
 
-def _finer(settings: dict[str, Any], first: Result, t0: float, seconds: float) -> tuple[str, dict[str, Any]]:
-    """Return what a second run is, and its settings, after a first one from t0 that took so many seconds."""
+def _beyond(first: Result, span: tuple[float, float], events: list[Event]) -> tuple[float, list[Event]]:
+    """Return the end and the events of a second run. The zero that ended the first may be earlier or later there."""
+    if first.status == 0 or any(event.change for event in events):
+        return span[1], events
+    low, high = min(span), max(span)
+    end = first.t_end + (first.largest_step if span[1] > span[0] else -first.largest_step)
+    on = [Event(event.g, 0, event.direction, None, event.points, event.name) for event in events]
+    return min(max(end, low), high), on
+
+
+def _second(
+    run: Callable[[dict[str, Any]], Result], settings: dict[str, Any], first: Result, t0: float, seconds: float
+) -> tuple[str, Result]:
+    """Return what a second run is, and the run. Its steps are no more like those of the first than 5 %."""
+    if not first.nsteps:
+        raise RunError("no estimate: the run has no step")
     finer = {**settings, "dense_output": False}
-    if settings["dt"] is not None:
-        return "a second run in steps of half the size", {**finer, "dt": settings["dt"] / 2}
-    if settings["steps"] is not None:
-        return "a second run in steps of half the size", {**finer, "steps": 2 * settings["steps"]}
-    rtol, atol = (LEAST if settings[name] is None else settings[name] for name in ("rtol", "atol"))
+    if settings["max_steps"] is not None:
+        finer["max_steps"] = 10 * settings["max_steps"]
+    limits = dict.fromkeys(("rtol", "atol", "first_step", "min_step", "max_step", "steps"))
+    found_by, mean = "a second run in steps of half the size", abs(first.t_end - t0) / first.nsteps
+    if first._tolerances is None:
+        # Where knots have made the steps shorter than they were to be, it is their mean that is halved.
+        h = min(settings["dt"] or first.largest_step, first.largest_step)
+        other = run({**finer, **limits, "dt": (mean if mean < 0.95 * h else h) / 2})
+    else:
+        by_tolerance, finer = _finer(finer, first, t0, seconds)
+        other, is_limited = run(finer), settings["min_step"] is not None
+        if not is_limited and (other.status < 0 or 0.95 * first.nsteps < other.nsteps < 1.05 * first.nsteps):
+            # A tolerance below rounding chooses the same steps again. Some methods take a step in two halves.
+            found_by = "a second run in steps of a quarter of the mean size"
+            other = run({**finer, **limits, "dt": mean / 4})
+        else:
+            found_by = by_tolerance
+    if other.status < 0 or len(other.t) < len(first.t):
+        raise RunError(f"no estimate: {found_by} ended at t = {other.t_end}: {other.message}")
+    return found_by, other
+
+
+def _finer(settings: dict[str, Any], first: Result, t0: float, seconds: float) -> tuple[str, dict[str, Any]]:
+    """Return what a second run by tolerances is, and its settings, after a first one from t0 that took so many seconds."""
+    finer = dict(settings)
+    rtol, atol = first._tolerances
     tenth = rtol + atol >= 20 * LEAST
     factor = 0.1 if tenth else 10.0
     found_by = "a second run at a tenth of the tolerance" if tenth else "a second run at ten times the tolerance"
@@ -564,10 +603,14 @@ def _of_problem(
     def again(result: Result) -> tuple[str, Result]:
         plain = y0 is None and not any(event.change for event in events)
         exact = problem.exact(result.t, asked, t0=span[0]) if plain else None
-        found_by, finer = _finer(settings, result, span[0], seconds)
         if exact is not None and not events:
             return "the exact motion", Result(y=exact, t_events=[])
-        other = _of_problem(problem, span, y0, method, finer, result.t, events, asked, None, args)
+
+        def run(finer: dict[str, Any]) -> Result:
+            end, others = _beyond(result, span, events)
+            return _of_problem(problem, (span[0], end), y0, method, finer, result.t, others, asked, None, args)
+
+        found_by, other = _second(run, settings, result, span[0], seconds)
         if exact is not None:
             return "the exact motion, and the events by " + found_by, Result(y=exact, t_events=other.t_events)
         return found_by, other
