@@ -322,7 +322,7 @@ impl<'a> Judge<'a> {
     }
 
     /// Takes the largest error within the span as that of a run of few steps, where the errors of its steps cancel at the
-    /// end: by runs to the times of [`WITHIN`].
+    /// end: by runs to two times within.
     pub fn look_within(
         &self,
         model: &Model,

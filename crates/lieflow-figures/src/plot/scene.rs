@@ -136,9 +136,11 @@ fn ellipsoid_of(sphere: &Sphere) -> Option<Ellipsoid> {
 
 /// Two points that are farther apart, seen from the centre, are not joined: the path between them is not known. In
 /// radians.
-const FAR: f64 = 0.5;
-/// The cosine of the most that a path turns at a point from one chord to the next. Where both ends of a chord turn more, the
-/// points pass round a circle faster than they show it, and it is not joined.
+const FAR: f64 = 0.25;
+/// Two points that are farther apart than this are joined only where the path goes on smoothly at both.
+const NEAR: f64 = 0.1;
+/// The cosine of the most that a path turns at a point from one chord to the next, where it goes on smoothly. Where both
+/// ends of a chord turn more, the points pass round a circle faster than they show it, and it is not joined.
 const TURN: f64 = 0.5;
 
 /// Paths that are nearer to each other are one curve to the eye: two pixels.
@@ -176,17 +178,21 @@ fn along(piece: &[Vec3], count: usize) -> Vec<Vec3> {
 fn unit_path(sphere: &Sphere, points: &[Vec3]) -> Vec<Vec<Vec3>> {
     let scaled = points.iter().map(|p| p.map(|x| x / sphere.radius));
     let finite: Vec<Vec3> = scaled.filter(|p| norm(p).is_finite()).collect();
-    let is_near = |a: &Vec3, b: &Vec3| dot(a, b) >= FAR.cos() * norm(a) * norm(b);
+    let is_within = |a: &Vec3, b: &Vec3, far: f64| dot(a, b) >= far.cos() * norm(a) * norm(b);
     let chords: Vec<Vec3> =
         finite.windows(2).map(|ab| std::array::from_fn(|i| ab[1][i] - ab[0][i])).collect();
     let goes_on = |a: &Vec3, b: &Vec3| dot(a, b) >= TURN * norm(a) * norm(b);
     let is_shown = |i: usize| {
         let before = i.checked_sub(1).map(|before| goes_on(&chords[before], &chords[i]));
         let after = chords.get(i + 1).map(|after| goes_on(&chords[i], after));
-        before.unwrap_or(chords.len() == 1) || after.unwrap_or(chords.len() == 1)
+        let [a, b] = [&finite[i], &finite[i + 1]];
+        match chords.len() {
+            1 => is_within(a, b, FAR),
+            _ if is_within(a, b, NEAR) => before == Some(true) || after == Some(true),
+            _ => is_within(a, b, FAR) && before != Some(false) && after != Some(false),
+        }
     };
-    let is_joined: Vec<bool> =
-        (0..chords.len()).map(|i| is_near(&finite[i], &finite[i + 1]) && is_shown(i)).collect();
+    let is_joined: Vec<bool> = (0..chords.len()).map(is_shown).collect();
     let piece = |piece: &[Vec3]| match piece {
         [only] => vec![*only; 2],
         several => thin_path(several, 2e-3),
@@ -237,9 +243,9 @@ mod tests {
             let points: Vec<Vec3> = angles.iter().map(|angle| at(*angle)).collect();
             unit_path(&sphere, &points).iter().map(Vec::len).collect()
         };
-        assert_eq!(path(&[0.0, 0.4, 0.8]), [3]);
-        assert_eq!(path(&[0.0, 0.4]), [2]);
-        assert_eq!(path(&[0.0, 0.6, 1.0, 1.4, 2.0]), [2, 3, 2]);
+        assert_eq!(path(&[0.0, 0.2, 0.4]), [3]);
+        assert_eq!(path(&[0.0, 0.2]), [2]);
+        assert_eq!(path(&[0.0, 0.3, 0.5, 0.7, 1.0]), [2, 3, 2]);
         assert_eq!(path(&[]), [0; 0]);
         // A small circle about a pole, passed in steps of 2.5 radians.
         let about_pole = |step: f64| -> Vec<usize> {

@@ -109,6 +109,14 @@ pub(super) fn drawn(
             line.points.retain(|(t, _)| (t - start).abs() <= end);
         }
     }
+    // The rows of each swing at the beginning: where they are few, the swings that are seen may be others.
+    let is_shaped = |line: &Line| line.points.len() >= SHAPED * (turns(&line.points).len() / 2);
+    let first = match beginning.iter().all(is_shaped) {
+        true => "The first swings of many. The file of the rows has them all.",
+        false => {
+            "The first swings of many. The rows are too few to show their shape: write more rows."
+        }
+    };
     let early = Chart::new(
         format!("{id}-beginning"),
         format!("{title}, at the beginning"),
@@ -124,7 +132,7 @@ pub(super) fn drawn(
     });
     let whole = Chart::new(id, format!("{title}, the whole run"), axes, whole);
     Drawn::Both([
-        early.with_caption("The first swings of many. The file of the rows has them all."),
+        early.with_caption(first),
         whole.with_caption(
             "Too many swings to draw each: a band is filled from the lowest to the highest values.",
         ),
