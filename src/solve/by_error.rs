@@ -82,6 +82,8 @@ impl Timeline {
                     let smaller = self.propose(h, stop).0;
                     let stuck = smaller == self.t || smaller == end;
                     if in_a_row >= REJECTIONS_MAX || h < min_step || stuck {
+                        // Of a step that may not be smaller it is the size that was tried.
+                        let h = if h < min_step { size } else { h };
                         return Err(self.underflow(h, rejected.err()));
                     }
                 }

@@ -1,5 +1,6 @@
 //! Problems by the name of their kind, and their runs.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use lieflow::catalog::{MethodSpec, all_methods};
@@ -276,6 +277,14 @@ impl Model {
         }
     }
 
+    /// The numbers of this start, or of that of the problem.
+    fn numbers<'a>(&self, spec: &MethodSpec, start: Option<&'a [f64]>) -> Cow<'a, [f64]> {
+        match start {
+            Some(start) => start.into(),
+            None => self.model.start(spec).unwrap_or_default().into(),
+        }
+    }
+
     fn drive(
         &self,
         (spec, start): (&MethodSpec, Option<Vec<f64>>),
@@ -352,8 +361,9 @@ impl Model {
         if let Some(refusal) = self.problem.check_start(t_span[0]).into_iter().next() {
             return Err(mistake(py, refusal));
         }
-        let steps = settings.steps(py, t_span, orders, "solve_ivp")?;
         let start = start.map(|start| start.as_slice().map(<[f64]>::to_vec)).transpose()?;
+        let numbers = self.numbers(&spec, start.as_deref());
+        let steps = settings.steps(py, t_span, (orders, &numbers), "solve_ivp")?;
         let (raised, shape) = (Arc::new(Raised::default()), [self.width()]);
         let state = match events.iter().any(|(.., change, _)| change.is_some()) {
             true => self.model.start(&spec).map_or(0, |numbers| numbers.len()),
@@ -423,8 +433,9 @@ impl Model {
         settings: Settings,
     ) -> PyResult<Stepper> {
         let (spec, orders) = self.method(py, method)?;
-        let steps = settings.steps(py, t_span, orders, "Integrator")?;
         let start = start.as_ref().map(|start| start.as_slice()).transpose()?;
+        let numbers = self.numbers(&spec, start);
+        let steps = settings.steps(py, t_span, (orders, &numbers), "Integrator")?;
         let run = self.model.stepper(&spec, steps, start);
         Stepper::new(py, run, &[self.width()], (Arc::default(), false))
     }

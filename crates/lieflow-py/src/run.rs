@@ -9,7 +9,7 @@ use lieflow::solve::Status;
 use lieflow::{Direction, RunError, SaveAt, Stats, StepControl, TimeGrid};
 use lieflow_model::kinds::own::OwnField;
 use lieflow_model::problem::{Orders, Steps};
-use lieflow_model::scene::{beside_fixed_steps, tolerance};
+use lieflow_model::scene::{beside_fixed_steps, default_tolerances};
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -77,12 +77,12 @@ pub(crate) struct Settings {
 }
 
 impl Settings {
-    /// The steps. What is left out is that of a scene, for a method of this order; `function` is told of them.
+    /// The steps. What is left out is that of a scene, for a method of this order from this start; `function` is told of them.
     pub(crate) fn steps(
         &self,
         py: Python<'_>,
         t_span: [f64; 2],
-        orders: Orders,
+        (orders, start): (Orders, &[f64]),
         function: &str,
     ) -> PyResult<Steps> {
         let fixed = [("dt", self.dt.is_some()), ("steps", self.steps.is_some())];
@@ -97,10 +97,15 @@ impl Settings {
                 return Err(argument(py, wrong, message, ""));
             }
         }
-        self.chosen(t_span, orders).map_err(|error| refused(py, function, &error))
+        self.chosen(t_span, orders, start).map_err(|error| refused(py, function, &error))
     }
 
-    fn chosen(&self, t_span: [f64; 2], orders: Orders) -> Result<Steps, lieflow::Error> {
+    fn chosen(
+        &self,
+        t_span: [f64; 2],
+        orders: Orders,
+        start: &[f64],
+    ) -> Result<Steps, lieflow::Error> {
         if let Some(dt) = self.dt {
             return Ok(Steps::Equal(TimeGrid::new(t_span, dt)?));
         }
@@ -108,7 +113,7 @@ impl Settings {
             return Ok(Steps::Equal(TimeGrid::with_steps(t_span, steps)?));
         }
         let [rtol, atol] = match (self.rtol, self.atol) {
-            (None, None) => [tolerance(orders.step); 2],
+            (None, None) => default_tolerances(orders.step, start),
             // As in scenes.
             given => [given.0.unwrap_or(0.0), given.1.unwrap_or(0.0)],
         };

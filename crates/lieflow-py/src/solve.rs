@@ -107,7 +107,7 @@ impl Space {
         settings: Settings,
     ) -> PyResult<Stepper> {
         let raised = Arc::new(Raised::default());
-        let ready = Ready::new(py, self, field, method, (t_span, &settings), &raised)?;
+        let ready = Ready::new(py, self, field, method, (t_span, &y0, &settings), &raised)?;
         let run = ready.problem.stepper(&ready.spec, &y0, ready.steps);
         if let Some(error) = raised.take() {
             return Err(error);
@@ -205,7 +205,7 @@ impl Ready {
         space: &Space,
         field: FieldParts,
         method: &str,
-        (t_span, settings): ([f64; 2], &Settings),
+        (t_span, y0, settings): ([f64; 2], &[f64], &Settings),
         raised: &Arc<Raised>,
     ) -> PyResult<Self> {
         let (fitting, space) = (&space.fitting[usize::from(settings.linear)], &space.space);
@@ -231,7 +231,7 @@ impl Ready {
         let refuse = |error: Error| refused(py, "fun", &error);
         let problem = space.problem(field, settings.linear).map_err(refuse)?;
         let (spec, orders) = fitting.method(py, method, |spec| problem.orders(spec))?;
-        let steps = settings.steps(py, t_span, orders, "fun")?;
+        let steps = settings.steps(py, t_span, (orders, y0), "fun")?;
         Ok(Ready { problem, spec, steps, attached })
     }
 }
@@ -252,7 +252,7 @@ pub(crate) fn solve<'py>(
     callback: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let (raised, shape) = (Arc::new(Raised::default()), space.space.point());
-    let ready = Ready::new(py, space, field, method, (t_span, &settings), &raised)?;
+    let ready = Ready::new(py, space, field, method, (t_span, &y0, &settings), &raised)?;
     let mut watch = Watch::new(py, (events, callback), &args, (shape, shape), raised.clone());
     let save = save_of(t_eval)?;
     let attached = ready.attached || watch.has_callables();

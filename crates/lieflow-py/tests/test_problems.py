@@ -326,3 +326,19 @@ def test_a_problem_does_not_change(name):
     with pytest.raises(AttributeError, match=f"{name}: a problem does not change; replace"):
         setattr(body, name, [1, 1, 1])
     assert body.replace(inertia=[1, 1, 1]).keys["inertia"] == [1, 1, 1] and body.keys["inertia"] == [1, 2, 2.5]
+
+
+@pytest.mark.parametrize("unit", [1.0, 1e-6, 1e-12, 1e-34])
+def test_the_default_tolerances_know_the_unit_of_a_small_body(unit):
+    body = lf.RigidBody(inertia=[unit, 2 * unit, 2.5 * unit], omega_body=[0.1, 1.0, 0.0])
+    exact = body.exact([50.0], "omega_body")["omega_body"]
+    for method in (None, "rkmk dop853 exp", "rkmk4"):
+        r = lf.solve_ivp(body, (0, 50), t_eval=[50.0], quantities="omega_body", method=method)
+        assert np.abs(r.omega_body - exact).max() < (1e-6 if method == "rkmk4" else 1e-9), (unit, method)
+
+    def f(t, m):
+        return -m / (unit * np.array([1.0, 2.0, 2.5]))
+
+    m0 = unit * np.array([0.1, 2.0, 0.0])
+    r = lf.solve_ivp(f, (0, 50), m0, group="SO(3)", action="coadjoint", t_eval=[50.0])
+    assert np.abs(r.y / (unit * np.array([1.0, 2.0, 2.5])) - exact).max() < 1e-9, unit

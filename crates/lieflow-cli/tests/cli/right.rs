@@ -50,6 +50,31 @@ fn relative(summary: &Value) -> f64 {
     parts.iter().map(|part| part["relative"].as_f64().unwrap()).fold(0.0, f64::max)
 }
 
+/// A body whose numbers are all far below 1, as a molecule in SI units: what a scene leaves out is as right as in units of
+/// its own.
+#[test]
+fn the_unit_of_a_body_does_not_matter() {
+    let folder = Folder::new();
+    for (unit, tolerances) in [
+        ("1", "rtol = atol = 1e-14"),
+        ("1e-12", "rtol = 1e-14, atol = 2e-26"),
+        ("1e-34", "rtol = 1e-14, atol = 2e-48"),
+    ] {
+        let text = format!(
+            "[problem]\nkind = \"rigid-body\"\ninertia = [\"1*u\", \"2*u\", \"2.5*u\"]\n\
+             omega_body = [0.1, 1.0, 0]\n[problem.parameters]\nu = {unit}\n[time]\nt_span = [0, 50]\n\
+             [output]\nquantities = [\"omega_body\"]\n"
+        );
+        folder.write("body.toml", &text);
+        let told = folder.lieflow(&["run", "body.toml", "--no-page", "--out", "out"]).ok();
+        assert!(told.contains(tolerances), "{told}");
+        assert!(
+            folder.json("out/summary.json")["accuracy"]["digits"].as_u64() >= Some(10),
+            "{told}"
+        );
+    }
+}
+
 /// Knots shorten the steps of a run: with half of the step that was asked for it would be the same run again.
 #[test]
 fn the_second_run_has_shorter_steps_than_knots_leave() {

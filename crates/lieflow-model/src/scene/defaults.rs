@@ -4,13 +4,21 @@ use serde::Serialize;
 
 use crate::problem::Problem;
 
-/// The error of each step, relative and absolute, of a method of this order: of order 8 the least that rounding
+/// The relative error of each step of a method of this order: of order 8 the least that rounding
 /// allows, by which eight digits and more are right after many thousand steps; of a lower order one that it can meet.
-pub fn tolerance(order: Option<usize>) -> f64 {
+fn tolerance(order: Option<usize>) -> f64 {
     match order {
         Some(order @ ..8) => 1.0 / 10_f64.powi(order as i32 + 5),
         _ => 1e-14,
     }
+}
+/// rtol and atol of a method of this order, from a start with these numbers. atol is rtol, times the largest number where
+/// that is below 1: it does not hide a body whose momentum is 1e-30 in its units.
+pub fn tolerances(order: Option<usize>, start: &[f64]) -> [f64; 2] {
+    let rtol = tolerance(order);
+    let largest = start.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+    let share = if largest > 0.0 { largest.min(1.0) } else { 1.0 };
+    [rtol, share * rtol]
 }
 /// The equal intervals of the output, where the steps are left out too.
 pub(super) const INTERVALS: u64 = 1000;

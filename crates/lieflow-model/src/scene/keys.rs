@@ -306,10 +306,9 @@ impl Limits {
         Ok(Some(control.map_err(|error| Refusal::from(error).renamed(&names))?))
     }
 
-    /// Take the tolerances for a method of this order.
-    pub(super) fn for_order(&mut self, order: Option<usize>) {
-        let tolerance = Some(defaults::tolerance(order));
-        (self.rtol, self.atol) = (tolerance, tolerance);
+    /// Take the tolerances that the program chooses.
+    pub(super) fn take(&mut self, [rtol, atol]: [f64; 2]) {
+        (self.rtol, self.atol) = (Some(rtol), Some(atol));
     }
 
     /// rtol and atol. Both are 1 while the steps are left to the program.

@@ -18,7 +18,7 @@ mod units;
 
 pub use bundled::{BUNDLED, Bundled};
 pub use columns::{Columns, OnRows, RowFormula};
-pub use defaults::{Defaults, tolerance};
+pub use defaults::{Defaults, tolerances as default_tolerances};
 pub use error::SceneError;
 pub use events::SceneEvent;
 pub use keys::beside_fixed_steps;

@@ -235,7 +235,9 @@ impl Scene {
             document.refusal("method", refusal)
         })?;
         if scene.by_default.steps {
-            scene.limits.for_order(model.order(&scene.method).unwrap_or(None));
+            let order = model.order(&scene.method).unwrap_or(None);
+            let start = model.start(&scene.method).unwrap_or_default();
+            scene.limits.take(defaults::tolerances(order, &start));
             scene.adaptive = scene.limits.control(1.0).ok();
         }
         Ok(scene)
@@ -249,8 +251,10 @@ impl Scene {
             chosen.push(format!("method {}", self.method.label()));
         }
         if steps {
-            let tolerance = self.limits.tolerances()[0];
-            chosen.push(format!("adaptive steps with rtol = atol = {tolerance:e}"));
+            let [rtol, atol] = self.limits.tolerances();
+            let equal =
+                if rtol == atol { " = atol".into() } else { format!(" = {rtol:.0e}, atol") };
+            chosen.push(format!("adaptive steps with rtol{equal} = {atol:.0e}"));
         }
         if quantities {
             chosen.push(format!("quantities {}", self.quantities.join(", ")));
@@ -316,8 +320,9 @@ impl Scene {
         order: Option<usize>,
     ) -> Result<Plan<'static>, Error> {
         let t_span = [self.grid.t_span()[0], t];
-        let tolerance = factor * defaults::tolerance(order);
-        let control = limited(StepControl::new(tolerance, tolerance)?, largest)?;
+        let start = self.model()?.start(&self.default_method())?;
+        let [rtol, atol] = defaults::tolerances(order, &start).map(|tolerance| factor * tolerance);
+        let control = limited(StepControl::new(rtol, atol)?, largest)?;
         let stops = self.problem.knots(t_span).unwrap_or_default();
         Ok(Plan { stops, ..Plan::new(Steps::ByError { t_span, control }, SaveAt::Ends) })
     }
