@@ -256,6 +256,23 @@ mod tests {
         assert!(band(&[(0.0, f64::NAN)], 10).is_empty());
     }
 
+    /// The beginning of a run has the shape of its swings where each has rows enough.
+    #[test]
+    fn rows_that_are_too_few_are_told_at_the_beginning() {
+        let caption = |rate: f64| {
+            let point = |i: i32| (f64::from(i), (rate * f64::from(i)).sin());
+            let (whole, first) = ((0..4000).map(point).collect(), (0..2000).map(point).collect());
+            let curves = [Curve { name: "a".into(), whole, first, size: 1.0 }];
+            let axes = ["t", "a"].map(Axis::linear);
+            match drawn("id", "title", axes, &curves, 4000) {
+                Drawn::Both([early, _]) => early.caption,
+                _ => panic!("not so many swings at {rate}"),
+            }
+        };
+        assert!(caption(2.5).contains("The rows are too few to show their shape"));
+        assert!(caption(0.6).contains("The file of the rows has them all"));
+    }
+
     /// Two lines that a reader cannot tell apart are one line with both names, and a line that looks straight has no
     /// swings.
     #[test]
