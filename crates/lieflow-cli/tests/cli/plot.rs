@@ -113,6 +113,20 @@ fn fast_swings_are_a_band_and_noise_is_a_line() {
     assert!(page.contains("These quantities stay as they are at the start"));
 }
 
+/// A distance from the group is 0 to the rounding of its terms: it is told, not drawn.
+#[test]
+fn a_distance_that_is_rounding_is_no_figure() {
+    let folder = Folder::new();
+    let text = "[problem]\nkind = \"matrix-ode\"\ngroup = \"so\"\nfield = [[\"0\", \"-cos(t)\", \"sin(2*t)\"], \
+                [\"cos(t)\", \"0\", \"-y11\"], [\"-sin(2*t)\", \"y11\", \"0\"]]\n[time]\nt_span = [0, 20]\n\
+                [output]\nquantities = [\"point\", \"group_defect\"]\n";
+    folder.write("own.toml", text);
+    folder.lieflow(&["run", "own.toml", "--out", "out"]).ok();
+    let names = folder.names("out");
+    assert!(names.contains(&"time-point.svg".into()), "{names:?}");
+    assert!(!names.iter().any(|name| name.contains("defect")), "{names:?}");
+}
+
 /// The attitude is drawn as its quaternion, and its nine entries are in a fold.
 #[test]
 fn the_attitude_is_drawn_as_a_quaternion() {

@@ -248,15 +248,17 @@ mod tests {
         assert_eq!(path(&[0.0, 0.3, 0.5, 0.7, 1.0]), [2, 3, 2]);
         assert_eq!(path(&[]), [0; 0]);
         // A small circle about a pole, passed in steps of 2.5 radians.
-        let about_pole = |step: f64| -> Vec<usize> {
+        let about_pole = |radius: f64, step: f64| -> Vec<usize> {
             let point = |i: usize| {
                 let (s, c) = (step * i as f64).sin_cos();
-                [0.2 * c, 0.2 * s, 1.99]
+                [radius * c, radius * s, 1.99]
             };
             let points: Vec<Vec3> = (0..40).map(point).collect();
             unit_path(&sphere, &points).iter().map(Vec::len).collect()
         };
-        assert_eq!(about_pole(2.5), [2; 40]);
-        assert_eq!(about_pole(0.3).len(), 1);
+        for radius in [0.2, 0.06] {
+            assert_eq!(about_pole(radius, 2.5), [2; 40]);
+            assert_eq!(about_pole(radius, 0.3).len(), 1);
+        }
     }
 }
