@@ -416,7 +416,7 @@ pub(crate) fn drive_by<P: Runnable>(
         }
         solve = solve.event(event);
     }
-    if !branches.borrow().is_empty() {
+    if branches.borrow().count_turns() {
         // No zero: it sees the end of each step, where the choices are followed.
         let follow = |t: f64, y: &PointOf<P>| {
             fill(t, y);

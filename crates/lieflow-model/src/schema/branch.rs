@@ -128,6 +128,11 @@ impl Branches {
         self.columns.is_empty()
     }
 
+    /// True if turns between two points count, so that each step has to be seen. A sign follows the point before.
+    pub(crate) fn count_turns(&self) -> bool {
+        self.columns.iter().any(|(branch, _)| *branch != Branch::Sign)
+    }
+
     /// numbers ← the row at t whose choices are nearest to those of the start of the step.
     pub(crate) fn follow(&mut self, t: f64, numbers: &mut [f64]) {
         let Branches { front, start, end, .. } = self;
