@@ -128,7 +128,7 @@ impl<S: Real> HeavyTop<S> {
         }
     }
 
-    /// The degree of [`fourth_integral`](Self::fourth_integral) in (μ, γ); 0 where there is none.
+    /// The degree of [`fourth_integral`](Self::fourth_integral) as a polynomial in (μ, γ). A top without one has 0.
     pub fn degree_of_fourth_integral(&self) -> u32 {
         match self.integral {
             Integral::None => 0,

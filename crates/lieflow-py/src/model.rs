@@ -1,6 +1,5 @@
 //! Problems by the name of their kind, and their runs.
 
-use std::borrow::Cow;
 use std::sync::Arc;
 
 use lieflow::catalog::{MethodSpec, all_methods};
@@ -278,11 +277,8 @@ impl Model {
     }
 
     /// The numbers of this start, or of that of the problem.
-    fn numbers<'a>(&self, spec: &MethodSpec, start: Option<&'a [f64]>) -> Cow<'a, [f64]> {
-        match start {
-            Some(start) => start.into(),
-            None => self.model.start(spec).unwrap_or_default().into(),
-        }
+    fn numbers(&self, spec: &MethodSpec, start: Option<&[f64]>) -> Vec<f64> {
+        start.map_or_else(|| self.model.start(spec).unwrap_or_default(), <[f64]>::to_vec)
     }
 
     fn drive(
@@ -362,8 +358,8 @@ impl Model {
             return Err(mistake(py, refusal));
         }
         let start = start.map(|start| start.as_slice().map(<[f64]>::to_vec)).transpose()?;
-        let numbers = self.numbers(&spec, start.as_deref());
-        let steps = settings.steps(py, t_span, (orders, &numbers), "solve_ivp")?;
+        let numbers = || self.numbers(&spec, start.as_deref());
+        let steps = settings.steps(py, t_span, (orders, numbers), "solve_ivp")?;
         let (raised, shape) = (Arc::new(Raised::default()), [self.width()]);
         let state = match events.iter().any(|(.., change, _)| change.is_some()) {
             true => self.model.start(&spec).map_or(0, |numbers| numbers.len()),
@@ -434,8 +430,8 @@ impl Model {
     ) -> PyResult<Stepper> {
         let (spec, orders) = self.method(py, method)?;
         let start = start.as_ref().map(|start| start.as_slice()).transpose()?;
-        let numbers = self.numbers(&spec, start);
-        let steps = settings.steps(py, t_span, (orders, &numbers), "Integrator")?;
+        let numbers = || self.numbers(&spec, start);
+        let steps = settings.steps(py, t_span, (orders, numbers), "Integrator")?;
         let run = self.model.stepper(&spec, steps, start);
         Stepper::new(py, run, &[self.width()], (Arc::default(), false))
     }

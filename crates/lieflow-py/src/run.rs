@@ -82,7 +82,7 @@ impl Settings {
         &self,
         py: Python<'_>,
         t_span: [f64; 2],
-        (orders, start): (Orders, &[f64]),
+        (orders, start): (Orders, impl FnOnce() -> Vec<f64>),
         function: &str,
     ) -> PyResult<Steps> {
         let fixed = [("dt", self.dt.is_some()), ("steps", self.steps.is_some())];
@@ -104,7 +104,7 @@ impl Settings {
         &self,
         t_span: [f64; 2],
         orders: Orders,
-        start: &[f64],
+        start: impl FnOnce() -> Vec<f64>,
     ) -> Result<Steps, lieflow::Error> {
         if let Some(dt) = self.dt {
             return Ok(Steps::Equal(TimeGrid::new(t_span, dt)?));
@@ -113,7 +113,7 @@ impl Settings {
             return Ok(Steps::Equal(TimeGrid::with_steps(t_span, steps)?));
         }
         let [rtol, atol] = match (self.rtol, self.atol) {
-            (None, None) => default_tolerances(orders.step, start),
+            (None, None) => default_tolerances(orders.step, &start()),
             // As in scenes.
             given => [given.0.unwrap_or(0.0), given.1.unwrap_or(0.0)],
         };

@@ -231,7 +231,7 @@ impl Ready {
         let refuse = |error: Error| refused(py, "fun", &error);
         let problem = space.problem(field, settings.linear).map_err(refuse)?;
         let (spec, orders) = fitting.method(py, method, |spec| problem.orders(spec))?;
-        let steps = settings.steps(py, t_span, (orders, y0), "fun")?;
+        let steps = settings.steps(py, t_span, (orders, || y0.into()), "fun")?;
         Ok(Ready { problem, spec, steps, attached })
     }
 }

@@ -448,6 +448,7 @@ fn one_long_step(scene: &Scene) -> Option<String> {
     })
 }
 
+/// The largest size of a number; 0 if there is none.
 fn largest(numbers: &[f64]) -> f64 {
     numbers.iter().fold(0.0, |most, x| most.max(x.abs()))
 }

@@ -296,7 +296,7 @@ impl<R: Representation> System for Top<R> {
             },
         )
         .kept_where(|top| {
-            // By the attitude it is no polynomial of the state, as the energy is none.
+            // Where the attitude is integrated, neither the energy nor this is a polynomial of the state.
             let is_polynomial = R::LAWS[0].degree > 0;
             let degree = if is_polynomial { top.spec.top.degree_of_fourth_integral() } else { 0 };
             Some(Law::by_the_flow(degree))

@@ -94,7 +94,7 @@ impl Branch {
 /// The columns with choices, and their values at both ends of a step.
 ///
 /// All points of a step follow its start, so that a value does not depend on which points were seen before it. A point that
-/// is further than all others is the end of a step.
+/// is further than all others is taken as the end of a step.
 #[derive(Clone, Debug)]
 pub(crate) struct Branches {
     columns: Vec<(Branch, Range<usize>)>,

@@ -288,8 +288,9 @@ class Result:
 
         The second run has half the step size, or a tenth of the tolerances; where these are the least that rounding allows,
         ten times the tolerances. Then the estimate is an upper bound. Where the steps are the same again, because tolerances
-        below rounding choose them, it takes steps of a quarter of their mean size. Where it is quick (0.3 s, or the time of the run), a
-        run by tolerances takes at least 2000 steps, so that it finds a short pulse of f that the first one passed over.
+        below rounding choose them, it takes steps of a quarter of their mean size. Where it is quick (0.3 s, or the time of
+        the run), a run by tolerances takes at least 2000 steps, so that it finds a short pulse of f that the first one
+        passed over.
         """
         again = self.__dict__.get("_again")
         if again is None:

@@ -1,5 +1,7 @@
 //! How right the rows of a run are, and what would do where they are wrong.
 
+mod advice;
+
 use std::cell::Cell;
 use std::f64::consts::PI;
 use std::sync::atomic::AtomicBool;
@@ -20,14 +22,6 @@ use crate::output::{Accuracy, Distance, FoundBy, PartError, RowSample, ShownRows
 
 /// A run that took longer is not made a second time, but where that is asked for.
 pub(super) const LONG: Duration = Duration::from_secs(10);
-/// A larger relative error is worth a warning.
-const POOR: f64 = 1e-2;
-/// A larger one makes a run useless.
-const USELESS: f64 = 0.1;
-/// The relative error that an advice should lead to.
-const GOOD: f64 = 1e-4;
-/// How long an advice is looked for, in seconds, and in times that the run took where that is longer.
-const PATIENCE: [f64; 2] = [3.0, 5.0];
 /// Rows at which an advice is tried, about.
 const SAMPLE: usize = 100;
 /// The search for a short pulse is given up after this many times the time that it may take.
@@ -423,72 +417,6 @@ impl<'a> Check<'a> {
         Accuracy { found_by, seconds, rows, digits: 0, parts, t_end }.with_digits(unseen)
     }
 
-    /// The warning about a poor error, with a change that would help. If the seconds of the run are given, further runs
-    /// look for that change.
-    pub(super) fn warning(&self, accuracy: &Accuracy, seconds: Option<f64>) -> Option<String> {
-        let worst = accuracy.worst()?;
-        let Distance { relative, degrees, .. } = worst.largest;
-        if relative <= POOR || accuracy.found_by == FoundBy::ShortSteps {
-            return None;
-        }
-        let off = match degrees {
-            Some(degrees) => format!("{} degrees", rough(degrees)),
-            None => format!("{} % of its size", rough(100.0 * relative)),
-        };
-        let verdict = if relative <= USELESS { "inaccurate" } else { "not usable" };
-        let when = accuracy.when(worst.t);
-        let wrong = format!("`{}` is wrong by {off} {when}: this run is {verdict}.", worst.name);
-        let Some(seconds) = seconds else { return Some(wrong) };
-        let patience = PATIENCE[0].max(PATIENCE[1] * seconds.min(LONG.as_secs_f64()));
-        let until = Instant::now() + Duration::from_secs_f64(patience);
-        self.deadline.set(Some(until));
-        let mut times = self.sample.clone();
-        // In the direction of the run.
-        let is_before = |t: &f64| (worst.t - t) * self.run.direction > 0.0;
-        let place = times.partition_point(is_before);
-        if times.get(place) != Some(&worst.t) {
-            times.insert(place, worst.t);
-        }
-        let default = self.tried(Way { default: true, ..OWN }, &times);
-        let is_tried = default.is_some();
-        let default = default.filter(|accuracy| accuracy.relative() <= POOR);
-        let default = default.map(|accuracy| accuracy.digits_in_words());
-        // Where high order and the least tolerance do not do, no step does.
-        let is_hopeless = is_tried && default.is_none();
-        let smaller = match is_hopeless {
-            true => self.shorter_steps(&times),
-            false => self.smaller_steps(until, seconds, &times),
-        };
-        self.deadline.set(None);
-        let advice = match (smaller, default) {
-            (Some(steps), Some(digits)) => {
-                format!("{steps}. Leave [method] and the steps out, and lieflow gives {digits}")
-            }
-            (Some(steps), None) => steps,
-            (None, Some(digits)) => {
-                format!("Leave [method] and the steps out, and lieflow gives {digits}")
-            }
-            (None, None) if !is_hopeless => {
-                "Take a smaller step, or leave [method] and the steps out; lieflow did not try \
-                 what takes longer than a few seconds"
-                    .into()
-            }
-            (None, None) => {
-                "The default method, at its least tolerance, is not enough either: small errors grow \
-                 fast here. Take a shorter t_span, or trust averages only"
-                    .into()
-            }
-        };
-        let knots = match self.scene().passes_knots() {
-            true => {
-                " Steps pass over knots of samples or ends of magnets, and lose their order there: `at_knots = true` \
-                     in [time] ends a step at each."
-            }
-            false => "",
-        };
-        Some(format!("{wrong} {advice}.{knots}"))
-    }
-
     /// The errors of another run at these times, if they can be found.
     fn tried(&self, way: Way, times: &[f64]) -> Option<Accuracy> {
         let clock = Instant::now();
@@ -509,62 +437,6 @@ impl<'a> Check<'a> {
         };
         Some(self.judge(found_by, &apart, share, clock))
     }
-
-    /// A limit of the step size that would do at these times, and the digits that it gives.
-    fn shorter_steps(&self, times: &[f64]) -> Option<String> {
-        let short = self.short_step()?;
-        let accuracy = self.tried(Way { largest: Some(short), ..OWN }, times)?;
-        let digits = accuracy.digits_in_words();
-        (accuracy.relative() <= POOR)
-            .then(|| format!("h_max = {} would give {digits}", number(short)))
-    }
-
-    /// Smaller steps of the same method that would do at these times, and the digits that they give.
-    fn smaller_steps(&self, until: Instant, seconds: f64, times: &[f64]) -> Option<String> {
-        let h = self.scene().grid.h().abs();
-        let tolerances = self.scene().tolerances();
-        let factors: Vec<f64> = match tolerances {
-            None => nice_below(h).take(10).map(|nice| nice / h).collect(),
-            Some(_) => (1..12).map(|i| 0.1_f64.powi(i)).collect(),
-        };
-        let mut best = None;
-        for factor in factors {
-            let left = until.saturating_duration_since(Instant::now()).as_secs_f64();
-            let longer = if tolerances.is_none() { factor.recip() } else { 1.0 };
-            if longer * seconds > left {
-                break;
-            }
-            let Some(accuracy) = self.tried(Way { factor, ..OWN }, times) else { break };
-            let relative = accuracy.relative();
-            if relative <= POOR {
-                let steps = match tolerances {
-                    None => format!("dt = {}", number(factor * h)),
-                    Some([rtol, atol]) => {
-                        let both = [("rtol", rtol), ("atol", atol)];
-                        let both = both.iter().filter(|(_, tolerance)| *tolerance > 0.0);
-                        let told =
-                            |(name, x): &(&str, f64)| format!("{name} = {}", number(factor * x));
-                        both.map(told).collect::<Vec<_>>().join(" and ")
-                    }
-                };
-                best = Some(format!("{steps} would give {}", accuracy.digits_in_words()));
-            }
-            if relative <= GOOD {
-                break;
-            }
-        }
-        best
-    }
-}
-
-/// Numbers of the kind 1, 2, 5 below x, from large to small.
-fn nice_below(x: f64) -> impl Iterator<Item = f64> {
-    let decade = x.log10().floor() as i32;
-    let nice = (0..).flat_map(move |i| {
-        // Decimal as it is written, not a product that is rounded.
-        [5, 2, 1].map(|digit| format!("{digit}e{}", decade - i).parse().unwrap_or(f64::NAN))
-    });
-    nice.skip_while(move |nice| *nice > 0.6 * x)
 }
 
 /// The size that an error is relative to: of the start, of the end and of the middle one of the rows, the largest.
@@ -591,18 +463,5 @@ impl Watcher for Kept<'_> {
 
     fn progress(&mut self, _t: f64) {
         self.limits.look();
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_next_steps_are_such_as_people_write() {
-        let first = |x: f64| nice_below(x).take(4).collect::<Vec<_>>();
-        assert_eq!(first(0.1), [0.05, 0.02, 0.01, 0.005]);
-        assert_eq!(first(0.3), [0.1, 0.05, 0.02, 0.01]);
-        assert_eq!(first(7.0), [2.0, 1.0, 0.5, 0.2]);
     }
 }
