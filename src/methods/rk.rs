@@ -30,12 +30,22 @@ pub struct RkWork<P: Ambient, const S: usize> {
     known: Known<PointOf<P>>,
 }
 
+/// The stages that a step takes.
+#[derive(Clone, Copy)]
+struct Stages {
+    count: usize,
+    /// True if the first stage is there already.
+    has_first: bool,
+    /// True if the last stage is taken at the end of the step. Then no further sum is needed.
+    ends_at_last: bool,
+}
+
 impl<const S: usize> Rk<S> {
-    /// z ← the step from y, with the first `count` stages. `known` says that the first of them is there.
+    /// z ← the step from y.
     #[inline(always)]
     fn advance<P: Ambient>(
         &self,
-        (count, known): (usize, bool),
+        Stages { count, has_first, ends_at_last }: Stages,
         problem: &P,
         Step { t, h, .. }: Step<ScalarOf<P>>,
         y: &PointOf<P>,
@@ -44,12 +54,16 @@ impl<const S: usize> Rk<S> {
         let tab = &self.0;
         // Up to four stages the compiler keeps all of them in registers.
         let mut newest = if PointOf::<P>::IS_SMALL && S > 4 { Some(k[0].clone()) } else { None };
-        for i in 0..S {
+        if !has_first {
+            let stage = newest.as_mut().unwrap_or(&mut k[0]);
+            problem.field(t, y, stage, field);
+            if let Some(newest) = &newest {
+                k[0].assign(newest);
+            }
+        }
+        for i in 1..S {
             if i >= count {
                 break;
-            }
-            if i == 0 && known {
-                continue;
             }
             sum(y, h, &tab.a[i][..i], k, newest.as_ref(), z);
             let t = t + h * ScalarOf::<P>::lit(tab.c[i]);
@@ -59,7 +73,9 @@ impl<const S: usize> Rk<S> {
                 k[i].assign(newest);
             }
         }
-        sum(y, h, &tab.b[..count], k, newest.as_ref(), z);
+        if !ends_at_last {
+            sum(y, h, &tab.b[..count], k, newest.as_ref(), z);
+        }
         if !z.is_finite() {
             return Err(match k[..count].iter().position(|k| !k.is_finite()) {
                 Some(stage) => StepError::NonFiniteRhs { stage: stage + 1 },
@@ -101,7 +117,9 @@ impl<P: Ambient, const S: usize> Method<P> for Rk<S> {
         y: &mut PointOf<P>,
         work: &mut Self::Work,
     ) -> Result<(), StepError> {
-        self.advance((self.0.update_stages(), false), problem, step, y, work)?;
+        let count = self.0.update_stages();
+        let stages = Stages { count, has_first: false, ends_at_last: false };
+        self.advance(stages, problem, step, y, work)?;
         y.assign(&work.z);
         Ok(())
     }
@@ -146,11 +164,13 @@ impl<P: Ambient, const S: usize> Embedded<P> for Rk<S> {
         to: &mut PointOf<P>,
     ) -> Result<ScalarOf<P>, StepError> {
         let stages = self.0.all_stages();
-        let is_known = work.known.take(step.t, from);
-        if is_known {
+        let has_first = work.known.take(step.t, from);
+        if has_first {
             work.k.swap(0, stages - 1);
         }
-        self.advance((stages, is_known), problem, step, from, work)?;
+        let ends_at_last = work.known.is_offered;
+        let which = Stages { count: stages, has_first, ends_at_last };
+        self.advance(which, problem, step, from, work)?;
         let RkWork { k, z, known, .. } = work;
         to.assign(z);
         if known.is_offered {

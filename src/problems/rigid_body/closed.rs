@@ -9,7 +9,7 @@ use crate::groups::So3;
 use crate::problems::FieldStore;
 use crate::problems::Problem;
 use crate::scalar::Real;
-use crate::so3::{apply3, cross};
+use crate::so3::apply3;
 
 /// J⁻¹·m for diagonal J.
 #[inline(always)]
@@ -88,10 +88,13 @@ impl<S: Real> Problem for RigidBody<S> {
     fn f(&self, _: S, m: &Vector3<S>, v: &mut Vector3<S>, _: &mut ()) {
         *v = -self.omega(m);
     }
-    /// m × ω. To change the sign of f instead would cost a seventh of a classical step.
+    /// m × J⁻¹m by its components: ṁ₁ = (1/J₃ − 1/J₂) m₂m₃, and so on. Where two moments are the same, the third component is
+    /// constant to the last bit. This has fewer operations one after the other than the product of m and ω.
     #[inline]
     fn field(&self, _: S, m: &Vector3<S>, dm: &mut Vector3<S>, _: &mut FieldStore<Self>) {
-        *dm = cross(m, &self.omega(m));
+        let [a, b, c] = self.inverse_inertia.into();
+        *dm =
+            Vector3::new((c - b) * (m[1] * m[2]), (a - c) * (m[2] * m[0]), (b - a) * (m[0] * m[1]));
     }
 }
 
