@@ -386,8 +386,7 @@ impl Search {
             (None, None) => POINTS,
             (None, Some([before, length])) => {
                 let size = (end - start).abs();
-                let slope = (seen.value - before) / length;
-                let bend = ((last - seen.value) / size - slope).abs() * size;
+                let bend = (last - seen.value - (seen.value - before) * (size / length)).abs();
                 let near = first.abs().min(last.abs());
                 if near <= 2.0 * bend { POINTS } else { 0 }
             }
@@ -452,17 +451,17 @@ impl Search {
         {
             return Ok(Some(0));
         }
-        self.zeros_between([left, right], values, (self.seen.level, HALVINGS), g, found)
+        self.zeros_between([left, right], values, (self.seen.level, HALVINGS, 0.0), g, found)
     }
 
     /// Calls `found` with the zeros between two points, from the values of g there and in the middle. Polynomials of
-    /// this level and finer describe g, else those of halves, which are halved so often at most. Returns as
-    /// [`zeros_of_long`](Self::zeros_of_long).
+    /// this level and finer describe g, else those of halves, which are halved so often at most. `noise` is the rounding of g
+    /// in the whole step, once that is known. Returns as [`zeros_of_long`](Self::zeros_of_long).
     fn zeros_between(
         &self,
         ends: [(f64, f64); 2],
         mut values: [f64; roots::MOST],
-        (level, halvings): (usize, u32),
+        (level, halvings, noise): (usize, u32, f64),
         g: &mut dyn FnMut(f64) -> Result<f64, RunError>,
         found: &mut dyn FnMut(f64, bool),
     ) -> Result<Option<usize>, RunError> {
@@ -476,7 +475,7 @@ impl Search {
                 values[j] = g(at(roots::place(j)))?;
             }
             known = stride;
-            let proxy = Proxy::new(&values, level);
+            let proxy = Proxy::new(&values, level, noise);
             if let Some(separators) = proxy.separators() {
                 let places = separators.places().iter().map(|&place| at(place));
                 self.zeros_among(ends, places, g, found)?;
@@ -489,13 +488,14 @@ impl Search {
             self.zeros_among(ends, places, g, found)?;
             return Ok(roots::shows_all(&values).then_some(roots::FINEST));
         }
+        let noise = if halvings == HALVINGS { roots::noise_of(&values) } else { noise };
+        let of_halves = (roots::FINEST, halvings - 1, noise);
         let mut is_sure = true;
         for [a, b] in [[left, (half, value)], [(half, value), right]] {
             let mut values = [0.0; roots::MOST];
             (values[0], values[middle], values[roots::MOST - 1]) =
                 (a.1, g(0.5 * (a.0 + b.0))?, b.1);
-            let of_half =
-                self.zeros_between([a, b], values, (roots::FINEST, halvings - 1), g, found)?;
+            let of_half = self.zeros_between([a, b], values, of_halves, g, found)?;
             is_sure &= of_half.is_some();
         }
         Ok(is_sure.then_some(roots::FINEST))

@@ -66,6 +66,14 @@ pub(super) fn shows_all(values: &[f64; MOST]) -> bool {
     values.is_sorted() || values.iter().rev().is_sorted() || is_far
 }
 
+/// The rounding of values of a function that has these values.
+///
+/// A part of a step may have small values with the rounding of the whole step: those of g(y) have that of y, whose size does
+/// not depend on the part.
+pub(super) fn noise_of(values: &[f64; MOST]) -> f64 {
+    ROUNDING * values.iter().fold(0.0, |most: f64, x| most.max(x.abs()))
+}
+
 /// Numbers for polynomials of degree 16 at most.
 type Numbers = [f64; MOST];
 
@@ -142,12 +150,13 @@ pub(super) struct Proxy {
 }
 
 impl Proxy {
-    /// The polynomial through the values of this level, which are at their places among 17.
-    pub(super) fn new(values: &Numbers, level: usize) -> Self {
+    /// The polynomial through the values of this level, which are at their places among 17. `noise` is the least rounding
+    /// of the values.
+    pub(super) fn new(values: &Numbers, level: usize, noise: f64) -> Self {
         let (degree, stride) = (DEGREES[level], stride(level));
         let (to_bernstein, largest) = &BERNSTEIN[level];
         let (mut c, mut b) = ([0.0; MOST], [0.0; MOST]);
-        let mut rounding = 0.0;
+        let mut rounding = noise;
         for k in 0..=degree {
             let mut sum = 0.0;
             for j in 0..=degree {

@@ -53,8 +53,8 @@ impl Stats {
         });
         (self.unsure_steps > 0).then(|| {
             format!(
-                "zeros of events may be missed in {} of the steps: the function of an event turns much faster than the \
-                 state.{ended} Take shorter steps (dt, or {limit})",
+                "zeros of events may be missed in {} of the steps: the function of an event is much faster than the \
+                 state, or hardly passes 0.{ended} Take shorter steps (dt, or {limit})",
                 self.unsure_steps
             )
         })

@@ -76,6 +76,30 @@ fn two_zeros_next_to_each_other_and_touching_ones() {
     }
 }
 
+/// Zeros of a function of the state, in pairs next to each other: m₂² passes a small level twice at each zero of m₂. The
+/// rounding of m₂² is that of m, however small it is.
+#[test]
+fn pairs_of_zeros_of_the_state() {
+    let body = RigidBody::<f64>::new(INERTIA).unwrap();
+    for (rtol, level) in [(1e-12, 2.5e-11), (1e-12, 1e-9), (1e-9, 1e-9), (1e-9, 1e-7), (1e-6, 1e-7)]
+    {
+        for span in [[0.0, 100.0], [0.0, -100.0]] {
+            let solve = || Solve::new(&body, &Taylor::<16>, span).tolerances(rtol, rtol);
+            let flips = solve().event(Event::new("flip", |_, m: &V| m.y)).run(FLIPS).unwrap();
+            let pairs = solve().event(Event::new("pair", |_, m: &V| m.y * m.y - level));
+            let pairs = pairs.run(FLIPS).unwrap();
+            let what = format!("{level:e} by rtol {rtol:e}");
+            assert_eq!(flips.events.len(), 9, "{what}");
+            assert_eq!(pairs.events.len(), 2 * flips.events.len(), "{what}");
+            assert_eq!(pairs.stats.unsure_steps, 0, "{what}");
+            for (flip, pair) in flips.events.iter().zip(pairs.events.as_chunks::<2>().0) {
+                let middle = 0.5 * (pair[0].t + pair[1].t);
+                assert!((middle - flip.t).abs() < 1e-8, "{what}: {middle} and {}", flip.t);
+            }
+        }
+    }
+}
+
 /// At the start and at the ends of steps, and so near that only rounding is between.
 #[test]
 fn zeros_at_the_ends_of_a_step() {
