@@ -14,8 +14,23 @@ const REJECTIONS_MAX: u32 = 60;
 const EXACT_TURN: f64 = 1.0;
 
 impl Timeline {
-    /// Takes accepted steps: one, or those of a streak.
+    /// Takes accepted steps: one, or those of a streak. After an error the choice of the step size is as before, so that a
+    /// caller who has mended f goes on with the same attempt.
     pub(super) fn chosen_steps(
+        &mut self,
+        run: &mut dyn Run,
+        stop: (f64, bool),
+        reach: Reach,
+    ) -> Result<(), RunError> {
+        let Pacer::ByError(Chooser { h, wall, controller, .. }) = self.pacer else { return Ok(()) };
+        let done = self.attempt_steps(run, stop, reach);
+        if let (Err(_), Pacer::ByError(chooser)) = (&done, &mut self.pacer) {
+            (chooser.h, chooser.wall, chooser.controller) = (h, wall, controller);
+        }
+        done
+    }
+
+    fn attempt_steps(
         &mut self,
         run: &mut dyn Run,
         (stop, jumps): (f64, bool),

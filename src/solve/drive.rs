@@ -37,8 +37,13 @@ impl Patience {
         Patience(1)
     }
 
-    /// The number of steps of the next call, after a call that took so long.
-    fn after(&mut self, took: Duration) {
+    /// The number of steps of the next call.
+    pub(super) fn steps(&self) -> u64 {
+        self.0
+    }
+
+    /// Called after a call that took this time.
+    pub(super) fn after(&mut self, took: Duration) {
         self.0 = if took > Self::LONG { self.0 / 4 } else { 2 * self.0 }.clamp(1, Self::MOST);
     }
 }
@@ -218,7 +223,7 @@ impl Drive<'_> {
         let mut steps = self.save.next_after(taken);
         let is_watched = self.cancel.is_some() || self.progress.is_some();
         if is_watched {
-            steps = steps.min(taken.saturating_add(self.patience.0));
+            steps = steps.min(taken.saturating_add(self.patience.steps()));
         }
         let time = [self.next_time(), self.next_stop].into_iter().flatten();
         let time = time.reduce(|a, b| if self.times.is_before(a, b) { a } else { b });

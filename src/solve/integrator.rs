@@ -1,6 +1,9 @@
 //! A run that the caller takes step by step, and whose state can be read and set.
 
+use std::time::{Duration, Instant};
+
 use super::control::Controller;
+use super::drive::Patience;
 use super::held::Held;
 use super::points::{Estimator, Points};
 use super::stats::{Cadence, RunError, Stats};
@@ -35,6 +38,9 @@ use crate::problems::{PointOf, Problem};
 pub struct Integrator<'a, P: Problem, M: Method<P>> {
     pub(super) points: Points<'a, P, M>,
     pub(super) times: Timeline,
+    /// The times at which a step ends, in order.
+    stops: Vec<f64>,
+    patience: Patience,
 }
 
 impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
@@ -42,7 +48,7 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
         held: (Held<'a, P>, Held<'a, M>),
         [t0, t1]: [f64; 2],
         (pace, estimator): (Pace, Option<Estimator<P, M>>),
-        y: PointOf<P>,
+        (y, stops): (PointOf<P>, Vec<f64>),
     ) -> Result<Self, Error> {
         let adaptive = match &pace {
             Pace::Equal { .. } => None,
@@ -59,7 +65,8 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
             }
         };
         let cadence = Cadence::new(facts.stays_on_manifold);
-        Ok(Integrator { points, times: Timeline::new([t0, t1], pacer, cadence, facts) })
+        let times = Timeline::new([t0, t1], pacer, cadence, facts);
+        Ok(Integrator { points, times, stops, patience: Patience::new() })
     }
 
     /// The time.
@@ -92,9 +99,9 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
     /// # Errors
     /// [`RunError`]; the state is then the last accepted one. At the end of the span a step does nothing.
     pub fn step(&mut self) -> Result<f64, RunError> {
-        let Self { points, times } = self;
-        times.steps_before(&mut Alone(points), (times.t1, false), Reach::STEP)?;
-        Ok(times.t)
+        let stop = self.stop(self.times.t1);
+        self.times.steps_before(&mut Alone(&mut self.points), stop, Reach::STEP)?;
+        Ok(self.times.t)
     }
 
     /// Takes steps until the time is exactly t. The last step is shortened to end there. f is never evaluated after t, so
@@ -103,8 +110,44 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
     /// # Errors
     /// [`Error::OutOfRange`] for a t before the current time or after the end of the span; else as [`step`](Self::step).
     pub fn advance_to(&mut self, t: f64) -> Result<&PointOf<P>, RunError> {
-        self.times.advance_to(&mut self.points, t)?;
+        self.times.check_ahead(t)?;
+        while self.times.t != t {
+            self.steps_to(t, u64::MAX)?;
+        }
         Ok(&self.points.y)
+    }
+
+    /// As [`advance_to`](Self::advance_to), but returns after about this time on the clock, and after one step at least. Returns
+    /// true if t is reached. A caller that has other work in between, or can be cancelled, calls it until then.
+    ///
+    /// # Errors
+    /// As [`advance_to`](Self::advance_to).
+    pub fn advance_for(&mut self, t: f64, limit: Duration) -> Result<bool, RunError> {
+        self.times.check_ahead(t)?;
+        let start = Instant::now();
+        while self.times.t != t {
+            let clock = Instant::now();
+            self.steps_to(t, self.times.stats.accepted.saturating_add(self.patience.steps()))?;
+            self.patience.after(clock.elapsed());
+            if start.elapsed() >= limit {
+                break;
+            }
+        }
+        Ok(self.times.t == t)
+    }
+
+    /// Takes steps of one call of the method, at most to t, and to this number of steps of the run.
+    fn steps_to(&mut self, t: f64, steps: u64) -> Result<(), RunError> {
+        let (stop, reach) = (self.stop(t), Reach { steps, time: None });
+        self.times.steps_before(&mut Alone(&mut self.points), stop, reach)
+    }
+
+    /// The time of the next stop, and true; `end` if that is before it.
+    fn stop(&self, end: f64) -> (f64, bool) {
+        let passed = |stop: &f64| !self.times.is_ahead(*stop);
+        let next = self.stops.get(self.stops.partition_point(passed)).copied();
+        let is_reached = |stop: &f64| (end - self.times.t).abs() >= (stop - self.times.t).abs();
+        next.filter(is_reached).map_or((end, false), |stop| (stop, true))
     }
 
     /// `at` ← the state at a time within the last step, by dense output.

@@ -324,10 +324,11 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
     fn start(&mut self, y0: PointOf<P>) -> Result<Integrator<'a, P, M>, Error> {
         let pace = (self.settings.check()?, self.estimator);
         let held = (self.problem.clone(), self.method.clone());
-        Integrator::new(held, self.settings.t_span, pace, y0)
+        let stops = self.settings.stops.clone();
+        Integrator::new(held, self.settings.t_span, pace, (y0, stops))
     }
 
-    /// Starts a run from y₀ that you take step by step. It has no output, events, stops or cancellation.
+    /// Starts a run from y₀ that you take step by step. It has stops, but no output, events or cancellation.
     ///
     /// # Errors
     /// [`RunError::Setup`] for wrong arguments.
@@ -370,7 +371,7 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
         kept: Keep<'k, P>,
         observe: &'k mut Observe<'k, PointOf<P>>,
     ) -> Ended<PointOf<P>> {
-        let Integrator { mut points, mut times } = self.start(y0)?;
+        let Integrator { mut points, mut times, .. } = self.start(y0)?;
         times.expect_events(!self.events.is_empty());
         points.list = self.list;
         let (rules, functions) =

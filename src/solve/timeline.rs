@@ -4,7 +4,7 @@ use super::control::{Controller, StepControl};
 use super::grid::TimeGrid;
 use super::points::{AnyPoints, Place, Saved};
 use super::stats::{Cadence, RunError, Stats};
-use super::streak::{Alone, Reach, Run};
+use super::streak::{Reach, Run};
 use crate::error::{Error, Failure, StepError};
 use crate::methods::{Facts, MapCounts, Step, StepCost};
 
@@ -129,25 +129,18 @@ impl Timeline {
         Ok(())
     }
 
-    /// Takes steps until the time is exactly t.
-    pub(super) fn advance_to(
-        &mut self,
-        points: &mut dyn AnyPoints,
-        t: f64,
-    ) -> Result<(), RunError> {
-        let ahead = match self.t1 >= self.t {
-            true => self.t <= t && t <= self.t1,
-            false => self.t >= t && t >= self.t1,
-        };
-        if !(ahead && t.is_finite()) {
-            let expected = format!("a time from {} to {}", self.t, self.t1);
-            return Err(Error::out_of_range("t", t, expected).into());
+    /// True if t is ahead in the direction of the run.
+    pub(super) fn is_ahead(&self, t: f64) -> bool {
+        if self.t1 >= self.t { self.t < t } else { self.t > t }
+    }
+
+    /// Checks that a run can go on to t.
+    pub(super) fn check_ahead(&self, t: f64) -> Result<(), Error> {
+        let is_within = (t - self.t).abs() <= (self.t1 - self.t).abs();
+        if t.is_finite() && (t == self.t || self.is_ahead(t) && is_within) {
+            return Ok(());
         }
-        while self.t != t {
-            let reach = Reach { steps: u64::MAX, time: None };
-            self.steps_before(&mut Alone(points), (t, false), reach)?;
-        }
-        Ok(())
+        Err(Error::out_of_range("t", t, format!("a time from {} to {}", self.t, self.t1)))
     }
 
     /// Takes one step, at most to `stop`; steps by error may be several, within their reach. No stage evaluates f exactly

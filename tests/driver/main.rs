@@ -12,6 +12,7 @@ mod roots;
 mod scipy;
 mod scipy_events;
 mod series;
+mod step_by_step;
 mod streaks;
 #[path = "../support/mod.rs"]
 mod support;

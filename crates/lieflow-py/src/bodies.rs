@@ -1,6 +1,7 @@
 //! Many free rigid bodies at once.
 
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, MutexGuard};
+use std::time::{Duration, Instant};
 
 use lieflow::ensemble::{Ensemble, EnsembleMethod};
 use lieflow::problems::inertia::impossible;
@@ -10,6 +11,7 @@ use pyo3::prelude::*;
 
 use crate::error::{argument, refused};
 use crate::field::array;
+use crate::stepper::{lock, wait_for};
 
 /// The methods by name.
 const METHODS: [(&str, EnsembleMethod); 3] = [
@@ -29,8 +31,7 @@ pub(crate) struct FreeBodies {
 
 impl FreeBodies {
     fn bodies(&self, py: Python<'_>) -> MutexGuard<'_, Ensemble> {
-        py.detach(|| drop(self.bodies.lock()));
-        self.bodies.lock().unwrap_or_else(PoisonError::into_inner)
+        wait_for(py, &self.bodies)
     }
 }
 
@@ -77,11 +78,25 @@ impl FreeBodies {
             let names = METHODS.map(|(name, _)| name).join(", ");
             argument(py, "method", format!("{method:?}"), format!("one of {names}"))
         })?;
-        let done = py.detach(|| {
-            let mut bodies = self.bodies.lock().unwrap_or_else(PoisonError::into_inner);
-            bodies.advance(*known, h, steps, threads)
-        });
-        done.map_err(|error| refused(py, "bodies", &error))
+        // In parts of about this time, with a look at Ctrl-C after each. The bits do not depend on the parts.
+        const PART: Duration = Duration::from_millis(20);
+        let refuse = |error| refused(py, "bodies", &error);
+        py.detach(|| {
+            let mut bodies = lock(&self.bodies);
+            let (mut left, mut part) = (steps, 1);
+            loop {
+                let start = Instant::now();
+                let now = left.min(part);
+                bodies.advance(*known, h, now, threads).map_err(Err)?;
+                left -= now;
+                if left == 0 {
+                    return Ok(());
+                }
+                part = if start.elapsed() < PART { 2 * part } else { (part / 2).max(1) };
+                Python::attach(|py| py.check_signals()).map_err(Ok)?;
+            }
+        })
+        .map_err(|error: Result<PyErr, _>| error.unwrap_or_else(refuse))
     }
     fn momentum<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let bodies = self.bodies(py);

@@ -8,7 +8,7 @@ use lieflow::{RunError, SaveAt};
 use lieflow_model::formula::Which;
 use lieflow_model::kinds::{KINDS, named};
 use lieflow_model::problem::{
-    self, CurvePlace, EventPlan, KeyInfo, Layer, Orders, Plan, Steps, Watcher,
+    self, CurvePlace, EventPlan, KeyInfo, Layer, Orders, Plan, StepByStep, Steps, Watcher,
 };
 use lieflow_model::reader::{ReadError, Shape, Tree};
 use lieflow_model::scene::{Columns, OnRows, RowFormula};
@@ -156,6 +156,10 @@ impl Problem {
     fn knots(&self, py: Python<'_>, t_span: [f64; 2]) -> PyResult<Vec<f64>> {
         if let Some(samples) = self.problem.samples() {
             knots(py, samples, t_span)?;
+        } else if t_span[1].is_infinite() && self.problem.knots([0.0; 2]).is_some() {
+            let [start, end] = t_span;
+            let expected = "a finite end: f jumps again and again";
+            return Err(argument(py, "t_span", format!("({start}, {end})"), expected));
         }
         Ok(self.problem.knots(t_span).unwrap_or_default())
     }
@@ -432,7 +436,8 @@ impl Model {
         let start = start.as_ref().map(|start| start.as_slice()).transpose()?;
         let numbers = || self.numbers(&spec, start);
         let steps = settings.steps(py, t_span, (orders, numbers), "Integrator")?;
-        let run = self.model.stepper(&spec, steps, start);
+        let run = StepByStep { steps, stops: settings.stops, start };
+        let run = self.model.stepper(&spec, run);
         Stepper::new(py, run, &[self.width()], (Arc::default(), false))
     }
 }

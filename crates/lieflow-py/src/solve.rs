@@ -108,7 +108,7 @@ impl Space {
     ) -> PyResult<Stepper> {
         let raised = Arc::new(Raised::default());
         let ready = Ready::new(py, self, field, method, (t_span, &y0, &settings), &raised)?;
-        let run = ready.problem.stepper(&ready.spec, &y0, ready.steps);
+        let run = ready.problem.stepper(&ready.spec, &y0, (ready.steps, settings.stops));
         if let Some(error) = raised.take() {
             return Err(error);
         }

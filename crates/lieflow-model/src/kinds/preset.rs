@@ -25,8 +25,8 @@ use super::prelude::{Error, KeyPath, Law, Read, ReadError, Real, Scale, Whole, r
 use crate::formula::{Formula, Names, Parameters, Text, Texts};
 use crate::problem::{
     Asked, CountOnVectors, Figure, Fit, Form, Forms, KeyInfo, Kind, Model, Orders, Outcome,
-    PARAMETERS, Plan, Problem, QuantityInfo, ReadForms, RowCurve, Run, Stepper, Steps, Watcher,
-    high_order,
+    PARAMETERS, Plan, Problem, QuantityInfo, ReadForms, RowCurve, Run, StepByStep, Stepper, Steps,
+    Watcher, high_order,
 };
 use crate::reader::values::counted;
 use crate::reader::{KeyReader, Mistake};
@@ -375,9 +375,9 @@ impl Run for OnBase {
         &self,
         asked: Asked<'_>,
         method: &MethodSpec,
-        (steps, start): (Steps, Option<&[f64]>),
+        steps: StepByStep<'_>,
     ) -> Result<Box<dyn Stepper>, RunError> {
-        self.mapped(asked).stepper(method, steps, start)
+        self.mapped(asked).stepper(method, steps)
     }
     fn orders(&self, method: &MethodSpec) -> Result<Orders, Error> {
         self.base.orders(method)

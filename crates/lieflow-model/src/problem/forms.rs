@@ -10,7 +10,7 @@ use lieflow::{Error, RunError};
 use super::kind::{Figure, PrincipalInertia, Property, high_order};
 use super::operations::CountOnVectors;
 use super::run::{Fit, Layer, Orders, Outcome, Plan, RowCurve, Steps, Watcher};
-use super::stepper::Stepper;
+use super::stepper::{StepByStep, Stepper};
 use crate::formula::Formula;
 use crate::reader::Refusal;
 use crate::schema::{Law, Schema};
@@ -49,7 +49,7 @@ pub(crate) trait Run: Debug + Send + Sync {
         &self,
         asked: Asked<'_>,
         method: &MethodSpec,
-        start: (Steps, Option<&[f64]>),
+        steps: StepByStep<'_>,
     ) -> Result<Box<dyn Stepper>, RunError>;
     /// See [`Model::curve`](super::Model::curve).
     fn curve(

@@ -2,6 +2,7 @@
 
 use core::cell::RefCell;
 use std::sync::Arc;
+use std::time::Duration;
 
 use lieflow::catalog::MethodSpec;
 use lieflow::solve::Next;
@@ -178,8 +179,8 @@ impl Stepper for MappedStepper {
     fn step(&mut self) -> Result<f64, RunError> {
         self.run.step()
     }
-    fn advance_to(&mut self, t: f64) -> Result<(), RunError> {
-        self.run.advance_to(t)
+    fn advance_for(&mut self, t: f64, limit: Duration) -> Result<bool, RunError> {
+        self.run.advance_for(t, limit)
     }
     fn interpolate(&mut self, t: f64, values: &mut Vec<f64>) -> Result<(), RunError> {
         let mut of_base = Vec::new();

@@ -22,6 +22,6 @@ pub(crate) use operations::{Counting, counting};
 pub use pulses::{SHORT_STEPS, time_to_search};
 pub(crate) use quantity::*;
 pub use run::*;
-pub use stepper::Stepper;
 pub(crate) use stepper::{Points, stepper_by};
+pub use stepper::{StepByStep, Stepper};
 pub(crate) use system::*;

@@ -15,7 +15,7 @@ use super::operations::CountOnVectors;
 use super::run::{
     CurvePlace, Fit, Layer, Orders, Outcome, Plan, RowCurve, Rows, Sink, Steps, Watcher,
 };
-use super::stepper::Stepper;
+use super::stepper::{StepByStep, Stepper};
 use crate::formula::{Constants, Formula};
 use crate::reader::{Mistakes, ReadError, Refusal, Tree, Value};
 use crate::schema::Schema;
@@ -361,23 +361,23 @@ impl Model {
         }
     }
 
-    /// A run that the caller takes step by step, from the initial state or from the numbers of another point.
+    /// A run that the caller takes step by step.
     ///
     /// # Errors
     /// As [`Solve::integrator`](lieflow::Solve::integrator).
-    pub fn stepper(
+    pub fn stepper<'s>(
         &self,
         method: &MethodSpec,
-        steps: Steps,
-        start: Option<&[f64]>,
+        steps: impl Into<StepByStep<'s>>,
     ) -> Result<Box<dyn Stepper>, RunError> {
+        let steps = steps.into();
         match &self.source {
             Source::Form { quantities, .. } => {
                 let asked = Asked { quantities, schema: &self.schema };
-                self.form(method).stepper(asked, method, (steps, start))
+                self.form(method).stepper(asked, method, steps)
             }
             Source::Model { base, number } => {
-                let (run, map) = (base.stepper(method, steps, start)?, self.map_of(base, number));
+                let (run, map) = (base.stepper(method, steps)?, self.map_of(base, number));
                 Ok(Box::new(MappedStepper { run, map }))
             }
         }

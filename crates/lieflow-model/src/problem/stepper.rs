@@ -1,6 +1,7 @@
 //! Runs that the caller takes step by step, of a problem of any type.
 
 use std::sync::Arc;
+use std::time::Duration;
 
 use lieflow::catalog::MethodSpec;
 use lieflow::methods::AnyMethod;
@@ -37,7 +38,14 @@ pub trait Stepper: Send {
     ///
     /// # Errors
     /// As [`Integrator::advance_to`].
-    fn advance_to(&mut self, t: f64) -> Result<(), RunError>;
+    fn advance_to(&mut self, t: f64) -> Result<(), RunError> {
+        self.advance_for(t, Duration::MAX).map(drop)
+    }
+    /// Takes steps toward t for about this time on the clock. Returns true if t is reached.
+    ///
+    /// # Errors
+    /// As [`Integrator::advance_to`].
+    fn advance_for(&mut self, t: f64, limit: Duration) -> Result<bool, RunError>;
     /// Appends the values of the row at a time within the last step.
     ///
     /// # Errors
@@ -54,6 +62,24 @@ pub trait Stepper: Send {
 
 /// What makes a point of numbers.
 pub(crate) type PointFrom<Y> = Box<dyn Fn(&[f64], &mut Y) -> Result<(), Error> + Send + Sync>;
+
+/// A run that is taken step by step: its steps, the times at which a step ends, and the numbers of its start, if it is not
+/// the state of the problem.
+#[derive(Clone, Debug)]
+pub struct StepByStep<'a> {
+    /// The steps.
+    pub steps: Steps,
+    /// Times at which a step ends, because f jumps there.
+    pub stops: Vec<f64>,
+    /// The numbers of another point to start from ([`Model::start`](super::Model::start) has their order).
+    pub start: Option<&'a [f64]>,
+}
+
+impl From<Steps> for StepByStep<'_> {
+    fn from(steps: Steps) -> Self {
+        StepByStep { steps, stops: Vec::new(), start: None }
+    }
+}
 
 /// How the points of a run are numbers.
 #[allow(missing_debug_implementations)] // closures
@@ -103,7 +129,7 @@ pub(crate) fn stepper_by<P: Runnable>(
     spec: &MethodSpec,
     problem: &Arc<P>,
     mut y: PointOf<P>,
-    (steps, start): (Steps, Option<&[f64]>),
+    StepByStep { steps, stops, start }: StepByStep<'_>,
     points: Points<P>,
 ) -> Result<Box<dyn Stepper>, RunError>
 where
@@ -114,7 +140,7 @@ where
     if let Some(numbers) = start {
         (points.point)(numbers, &mut y)?;
     }
-    let solve = Solve::shared(problem.clone(), method, steps.t_span());
+    let solve = Solve::shared(problem.clone(), method, steps.t_span()).stops(stops);
     let solve = match steps {
         Steps::Equal(grid) => solve.grid(grid),
         Steps::ByError { control, .. } => solve.control(control),
@@ -150,8 +176,8 @@ where
     fn step(&mut self) -> Result<f64, RunError> {
         self.run.step()
     }
-    fn advance_to(&mut self, t: f64) -> Result<(), RunError> {
-        self.run.advance_to(t).map(drop)
+    fn advance_for(&mut self, t: f64, limit: Duration) -> Result<bool, RunError> {
+        self.run.advance_for(t, limit)
     }
     fn interpolate(&mut self, t: f64, values: &mut Vec<f64>) -> Result<(), RunError> {
         self.run.interpolate(t, &mut self.at)?;

@@ -14,7 +14,7 @@ use super::run::{
     Fit, Layer, Orders, Outcome, Plan, RowCurve, RowsOf, Runnable, SharedRowOf, Steps, Watcher,
     curve_by, drive_by, fits_by, numbers_of, orders_by,
 };
-use super::stepper::{Points, Stepper, stepper_by};
+use super::stepper::{Points, StepByStep, Stepper, stepper_by};
 use crate::formula::Formula;
 use crate::reader::Refusal;
 use crate::schema::{Law, Schema};
@@ -227,11 +227,11 @@ impl<S: System> Run for On<S> {
         &self,
         asked: Asked<'_>,
         method: &MethodSpec,
-        start: (Steps, Option<&[f64]>),
+        steps: StepByStep<'_>,
     ) -> Result<Box<dyn Stepper>, RunError> {
         let (problem, y) = self.ready()?;
-        let points = Points::in_order(self.shared(asked.quantities, start.0.t_span()[0]));
-        stepper_by(method, problem, y.clone(), start, points)
+        let points = Points::in_order(self.shared(asked.quantities, steps.steps.t_span()[0]));
+        stepper_by(method, problem, y.clone(), steps, points)
     }
     fn curve(
         &self,

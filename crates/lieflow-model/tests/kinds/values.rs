@@ -3,7 +3,7 @@
 use lieflow::catalog::MethodSpec;
 use lieflow::{SaveAt, TimeGrid};
 use lieflow_model::kinds::own::{Formulas, Frame, GroupName, OwnPlan, Space};
-use lieflow_model::problem::{CurvePlace, Model, Plan, Rows, Steps};
+use lieflow_model::problem::{CurvePlace, Model, Plan, Rows, StepByStep, Steps};
 use lieflow_model::reader::Tree;
 
 use super::*;
@@ -31,7 +31,7 @@ fn a_stepper_has_the_rows_of_a_run() {
         let mut keep = |_: f64, row: Row<'_>| rows = row.values().to_vec();
         model.drive(&method, Plan::new(steps(1.0), SaveAt::End), &mut Rows(&mut keep)).unwrap();
 
-        let mut run = model.stepper(&method, steps(1.0), None).unwrap();
+        let mut run = model.stepper(&method, steps(1.0)).unwrap();
         run.advance_to(0.5).unwrap();
         let (saved, state) = (run.save(), run.state());
         let mut values = Vec::new();
@@ -40,7 +40,7 @@ fn a_stepper_has_the_rows_of_a_run() {
         assert_eq!(values, rows, "{name}");
         assert_eq!(run.stats().accepted, 20, "{name}");
 
-        let mut other = model.stepper(&method, steps(1.0), None).unwrap();
+        let mut other = model.stepper(&method, steps(1.0)).unwrap();
         other.restore(&saved).unwrap();
         assert_eq!((other.t(), other.state()), (0.5, state.clone()), "{name}");
         other.advance_to(1.0).unwrap();
@@ -48,7 +48,8 @@ fn a_stepper_has_the_rows_of_a_run() {
         other.row(&mut values);
         assert_eq!(values, rows, "{name}");
 
-        assert!(model.stepper(&method, steps(1.0), Some(&state[1..])).is_err(), "{name}");
+        let short = StepByStep { start: Some(&state[1..]), ..steps(1.0).into() };
+        assert!(model.stepper(&method, short).is_err(), "{name}");
         assert!(run.set_state(&vec![f64::NAN; state.len()]).is_err(), "{name}");
     }
 }
@@ -118,7 +119,7 @@ fn formulas_on_parts_are_a_composed_system() {
     let end = own.run(&method, &start, plan, &mut |_, _| {}, &stop).end.unwrap().y;
 
     let (model, _) = model_of("spin-and-oscillator");
-    let mut run = model.stepper(&method, steps(1.0), None).unwrap();
+    let mut run = model.stepper(&method, steps(1.0)).unwrap();
     run.advance_to(1.0).unwrap();
     let mut rows = Vec::new();
     run.row(&mut rows);

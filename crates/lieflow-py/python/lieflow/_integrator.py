@@ -34,7 +34,7 @@ class Integrator:
     y0 : array_like, optional
         The start; of a problem the numbers of another state, or the complex array of one that is complex.
     **options
-        rtol, atol, first_step, min_step, max_step, dt, steps, args, group, action, frame, linear, and for a problem
+        rtol, atol, first_step, min_step, max_step, dt, steps, stops, args, group, action, frame, linear, and for a problem
         quantities, as in :func:`lieflow.solve_ivp`.
 
     Examples
@@ -67,7 +67,7 @@ class Integrator:
             (problem, method, t_span, y0),
             {"args": args, "group": group, "action": action, "frame": frame, "linear": linear, "quantities": quantities, **steps},
         )
-        known = ("rtol", "atol", "first_step", "min_step", "max_step", "dt", "steps")
+        known = ("rtol", "atol", "first_step", "min_step", "max_step", "dt", "steps", "stops")
         for name in steps:
             if name not in known:
                 raise TypeError(f"{name}: not an argument of Integrator, expected one of {', '.join(known)}")
@@ -79,12 +79,14 @@ class Integrator:
             start = problem._start(y0)
             model = problem._model(asked)
             self._split = problem._layout(asked).split
+            settings["stops"] = sorted({*settings["stops"], *problem._problem.knots(span)})
             self._run = model.stepper(method or problem.method, span, start, settings)
         else:
             if quantities is not None:
                 raise ArgumentError("quantities", repr(quantities), "none: only a problem has quantities")
             ready = Ready(problem, y0, args, group, action, frame, linear, span)
             settings["linear"] = ready.linear
+            settings["stops"] = sorted({*settings["stops"], *ready.stops})
             self._split = None if ready.layout is None else ready.layout.split
             self._join = ready.layout
             self._run = ready.space.stepper(

@@ -391,7 +391,7 @@ impl Own {
         self.run.run(method, y0, plan, observe, stop)
     }
 
-    /// A run from y0, by rows, that the caller takes step by step.
+    /// A run from y0, by rows, that the caller takes step by step, with the times at which a step ends.
     ///
     /// # Errors
     /// As [`Solve::integrator`](lieflow::Solve::integrator).
@@ -399,7 +399,7 @@ impl Own {
         &self,
         method: &MethodSpec,
         y0: &[f64],
-        steps: Steps,
+        steps: (Steps, Vec<f64>),
     ) -> Result<Box<dyn Stepper>, RunError> {
         self.run.stepper(method, y0, steps)
     }

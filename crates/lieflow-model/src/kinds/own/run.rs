@@ -14,7 +14,7 @@ use lieflow::{Action, Direction, Error, Event, RunError, SaveAt, Solve, Stats};
 
 use super::OwnField;
 use super::layout::Layout;
-use crate::problem::{Orders, Points, Stepper, Steps, orders_by, stepper_by};
+use crate::problem::{Orders, Points, StepByStep, Stepper, Steps, orders_by, stepper_by};
 
 /// A function of t and the numbers of y.
 type OfRows<'a, V> = Box<dyn FnMut(f64, &[f64]) -> V + 'a>;
@@ -132,7 +132,7 @@ pub trait Run: Send + Sync {
         &self,
         method: &MethodSpec,
         y0: &[f64],
-        steps: Steps,
+        steps: (Steps, Vec<f64>),
     ) -> Result<Box<dyn Stepper>, RunError>;
     /// As [`Own::curve`](super::Own::curve).
     ///
@@ -402,7 +402,7 @@ where
         &self,
         method: &MethodSpec,
         y0: &[f64],
-        steps: Steps,
+        steps: (Steps, Vec<f64>),
     ) -> Result<Box<dyn Stepper>, RunError> {
         let (layout, problem) = (self.layout, self.problem.clone());
         let [size, _] = layout.sizes(problem.group());
@@ -417,7 +417,9 @@ where
             Ok(())
         };
         let points = Points::by_rows(Box::new(show), Box::new(point));
-        stepper_by(method, &self.problem, start, (steps, None), points)
+        let (steps, stops) = steps;
+        let steps = StepByStep { steps, stops, start: None };
+        stepper_by(method, &self.problem, start, steps, points)
     }
 
     fn curve(

@@ -1,0 +1,166 @@
+"""Runs that are taken step by step: stops, threads, exceptions, Ctrl-C."""
+
+import _thread
+import threading
+import time
+
+import lieflow as lf
+import numpy as np
+import pytest
+
+ROTATION = dict(group="SO(3)", frame="body")
+TIGHT = dict(rtol=1e-10, atol=1e-12)
+BODY = lf.RigidBody(inertia=[1.0, 2.0, 3.0], omega_body=[0.1, 1.0, 0.0])
+
+# A pulse of 1000 that lasts a thousandth of the time.
+TIMES, RATE = [0, 2, 2.0005, 2.001, 10], [0.0, 0.0, 1000.0, 0.0, 0.0]
+PULSE = lf.Samples(TIMES, RATE)
+RATES = lf.Samples(TIMES, np.outer(RATE, [0, 0, 1]))
+PULSED = {
+    "samples": (RATES, dict(y0=np.eye(3), **ROTATION)),
+    "field": (lf.Field("SO(3)", ["0", "0", "s"], samples=PULSE), dict(y0=np.eye(3), frame="body")),
+    "body": (lf.DrivenBody(inertia=[1.0, 2.0, 3.0], omega_body=[0.1, 1.0, 0.0], torque=["0", "0", "s"], samples=PULSE), {}),
+    "matrix": (lf.MatrixOde(group="SO(3)", field=[["0", "-s", "0"], ["s", "0", "0"], ["0", "0", "0"]], samples=PULSE), {}),
+}
+
+
+@pytest.mark.parametrize("name", PULSED)
+def test_a_step_ends_at_each_knot_of_samples(name):
+    problem, more = PULSED[name]
+    whole = lf.solve_ivp(problem, (0, 10), t_eval=[10.0], **TIGHT, **more)
+    run = lf.Integrator(problem, None, (0, 10), **TIGHT, **more)
+    run.advance_to(10.0)
+    assert run.nsteps == whole.nsteps
+    if name in ("samples", "field"):
+        assert (run.y == whole.y[-1]).all()
+        assert np.abs(lf.so3.log(run.y) - [0, 0, 0.5]).max() < 1e-12
+    else:
+        name = {"body": "attitude", "matrix": "state"}[name]
+        assert (getattr(run.y, name) == getattr(whole, name)[-1]).all()
+
+
+def test_stops_are_taken_and_checked():
+    def f(t, _):
+        return [0.0, 0.0, 1000.0 if 2.0 <= t < 2.001 else 0.1]
+
+    run = lf.Integrator(f, None, (0, 4), np.eye(3), stops=[2.0, 2.001], **TIGHT, **ROTATION)
+    run.advance_to(4.0)
+    angle = lf.so3.log(run.y)[2]
+    assert abs(np.sin((angle - (0.4 + 0.9999)) / 2)) < 1e-12
+    line = lf.BeamLine(elements=[{"kind": "quadrupole", "length": 1.0, "k": 0.5}, {"kind": "drift", "length": 1.0}])
+    with pytest.raises(lf.ArgumentError, match="t_span.*a finite end"):
+        lf.Integrator(line, None, (0, np.inf))
+
+
+def test_threads_read_and_step_one_run():
+    """Readers and two threads that take steps wait for each other without the interpreter."""
+
+    def f(t, y):
+        return [np.sin(t), 1.0, y[0, 1]]
+
+    run = lf.Integrator(f, None, (0, np.inf), np.eye(3), **ROTATION)
+    wrong = []
+
+    def steps():
+        try:
+            for _ in range(200):
+                run.step()
+        except Exception as error:  # noqa: BLE001
+            wrong.append(error)
+
+    def reads():
+        for _ in range(400):
+            assert run.t >= 0 and run.y.shape == (3, 3)
+
+    threads = [threading.Thread(target=act, daemon=True) for act in (steps, steps, reads, reads)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join(60)
+    assert not any(thread.is_alive() for thread in threads), "threads wait for each other"
+    assert not wrong and run.nsteps == 400
+
+
+def test_f_cannot_use_its_own_run():
+    def f(t, _):
+        return [0.0, 0.0, run.t if inside else 1.0]
+
+    inside = False
+    run = lf.Integrator(f, None, (0, 5), np.eye(3), **ROTATION)
+    run.step()
+    before, inside = run.t, True
+    with pytest.raises(RuntimeError, match="f cannot use the integrator that calls it"):
+        run.step()
+    inside = False
+    assert run.t == before
+    run.advance_to(5.0)
+    assert np.abs(lf.so3.log(run.y) - [0, 0, 5.0 - 2 * np.pi]).max() < 1e-9
+
+
+@pytest.mark.parametrize("steps", [dict(rtol=1e-8, atol=1e-10), dict(dt=0.01)])
+def test_a_run_goes_on_after_an_exception(steps):
+    class Broken(Exception):
+        pass
+
+    calls, broken_at = 0, None
+
+    def f(t, y):
+        nonlocal calls
+        calls += 1
+        if broken_at is not None and calls >= broken_at:
+            raise Broken
+        return [np.sin(t), y[0, 1], 1.0]
+
+    def new():
+        return lf.Integrator(f, None, (0, 3), np.eye(3), **steps, **ROTATION)
+
+    whole, run = new(), new()
+    rng = np.random.default_rng(1)
+    for t in (1.0, 2.0, 3.0):
+        broken_at = None
+        whole.advance_to(t)
+        for _ in range(10):
+            broken_at, before = calls + int(rng.integers(1, 40)), run.t
+            with pytest.raises(Broken):
+                while True:
+                    run.advance_to(min(t, run.t + 0.05)) if run.t < t else f(0.0, np.eye(3))
+            assert run.t >= before
+        broken_at = None
+        run.advance_to(t)
+        if "dt" in steps:
+            assert np.abs(run.y - whole.y).max() < 1e-13
+        assert np.abs(run.y - whole.y).max() < 1e-6
+
+
+@pytest.mark.parametrize("what", ["named", "formula", "bodies"])
+def test_ctrl_c_is_heard(what):
+    field = lf.Field("SO(3)", ["sin(t)", "1", "cos(t)"])
+    bodies = lf.FreeBodies(np.tile([1.0, 2.0, 3.0], (2000, 1)), np.ones((2000, 3)))
+    act = {
+        "named": lambda: lf.Integrator(BODY, "rkmk4", (0, np.inf), dt=1e-6).advance_to(1e4),
+        "formula": lambda: lf.Integrator(field, "rkmk4", (0, np.inf), np.eye(3), frame="body", dt=1e-6).advance_to(1e4),
+        "bodies": lambda: bodies.advance("rkmk4 cay", 1e-3, 10**7),
+    }[what]
+    sent = []
+
+    def send():
+        time.sleep(0.3)
+        sent.append(time.perf_counter())
+        _thread.interrupt_main()
+
+    thread = threading.Thread(target=send)
+    thread.start()
+    with pytest.raises(KeyboardInterrupt):
+        act()
+    late = time.perf_counter() - sent[0]
+    thread.join()
+    assert late < 0.3, late
+
+
+def test_parts_of_a_call_do_not_change_the_bodies():
+    j, m = np.tile([1.0, 2.0, 3.0], (50, 1)), np.random.default_rng(2).normal(size=(50, 3))
+    one, many = lf.FreeBodies(j, m), lf.FreeBodies(j, m)
+    one.advance("rkmk4 cay", 0.01, 3000)
+    for _ in range(3000):
+        many.advance("rkmk4 cay", 0.01, 1)
+    assert (one.momentum == many.momentum).all()

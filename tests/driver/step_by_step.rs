@@ -1,0 +1,123 @@
+//! A run that is taken step by step is that of `run`: with stops, in parts by the clock, and after an error of f.
+
+use std::cell::Cell;
+use std::time::Duration;
+
+use lieflow::actions::LeftTranslation;
+use lieflow::groups::So3;
+use lieflow::maps::Exp;
+use lieflow::methods::Rkmk;
+use lieflow::methods::tableau::{DOP853, DOPRI5, RK4};
+use lieflow::nalgebra::{Matrix3, Vector3};
+use lieflow::problems::Flow;
+use lieflow::so3::exp;
+use lieflow::{RunError, Solve};
+
+/// ω about one axis with a pulse of 1000 for a thousandth of the time: its integral up to t.
+const PULSE: [f64; 2] = [2.0, 2.001];
+
+/// A step ends four roundings of t before a jump: so much of the pulse is missing.
+const ROUNDING: f64 = 1e-11;
+
+fn rate(t: f64) -> f64 {
+    if (PULSE[0]..PULSE[1]).contains(&t) { 1000.0 } else { 0.1 }
+}
+
+fn angle(t: f64) -> f64 {
+    let inside = (t.min(PULSE[1]) - PULSE[0]).max(0.0);
+    0.1 * t + 999.9 * inside
+}
+
+fn distance(g: &Matrix3<f64>, t: f64) -> f64 {
+    (g - exp(&Vector3::new(0.0, 0.0, angle(t))).expect("an angle")).norm()
+}
+
+#[test]
+fn stops_are_not_stepped_over() {
+    let f = |t: f64, _: &Matrix3<f64>, v: &mut Vector3<f64>| *v = Vector3::new(0.0, 0.0, rate(t));
+    let flow = Flow::new(So3::new(), LeftTranslation, f);
+    let (pair, equal) = (Rkmk::new(DOP853, Exp), Rkmk::new(RK4, Exp));
+    let by_error = || Solve::new(&flow, &pair, [0.0, 10.0]).tolerances(1e-9, 1e-12).stops(PULSE);
+    let by_size = || Solve::new(&flow, &equal, [0.0, 10.0]).dt(0.3).stops(PULSE);
+    let whole = by_error().run(Matrix3::identity()).expect("a run");
+    assert!(distance(&whole.y, 10.0) < ROUNDING);
+    for (name, mut run) in
+        [("step", 0), ("advance_to", 1), ("advance_for", 2)].map(|(name, way)| {
+            (name, (way, by_error().integrator(Matrix3::identity()).expect("a start")))
+        })
+    {
+        let (way, run) = (run.0, &mut run.1);
+        match way {
+            0 => {
+                while !run.is_done() {
+                    run.step().expect("a step");
+                }
+            }
+            1 => drop(run.advance_to(10.0).expect("steps")),
+            _ => while !run.advance_for(10.0, Duration::from_nanos(1)).expect("steps") {},
+        }
+        assert_eq!(*run.y(), whole.y, "{name}");
+        assert_eq!(run.stats().accepted, whole.stats.accepted, "{name}");
+    }
+    // Times between, and exactly at the jumps; the value after a jump counts for the next step alone.
+    let mut run = by_error().integrator(Matrix3::identity()).expect("a start");
+    for t in [1.0, 2.0, 2.0005, 2.001, 7.0, 10.0] {
+        run.advance_to(t).expect("steps");
+        assert!(distance(run.y(), t) < ROUNDING, "t = {t}: {:e}", distance(run.y(), t));
+    }
+    let whole = by_size().run(Matrix3::identity()).expect("a run");
+    let mut run = by_size().integrator(Matrix3::identity()).expect("a start");
+    run.advance_to(10.0).expect("steps");
+    assert_eq!(*run.y(), whole.y);
+    assert!(distance(run.y(), 10.0) < ROUNDING);
+}
+
+/// Backward, and from a saved state.
+#[test]
+fn stops_are_those_ahead() {
+    let f = |t: f64, _: &Matrix3<f64>, v: &mut Vector3<f64>| *v = Vector3::new(0.0, 0.0, rate(t));
+    let flow = Flow::new(So3::new(), LeftTranslation, f);
+    let pair = Rkmk::new(DOP853, Exp);
+    let new = |span| Solve::new(&flow, &pair, span).tolerances(1e-9, 1e-12).stops(PULSE);
+    let mut there = new([0.0, 5.0]).integrator(Matrix3::identity()).expect("a start");
+    there.advance_to(1.0).expect("steps");
+    let saved = there.save();
+    there.advance_to(5.0).expect("steps");
+    let mut back = new([5.0, 0.0]).integrator(*there.y()).expect("a start");
+    back.advance_to(0.0).expect("steps");
+    assert_eq!(*back.y(), new([5.0, 0.0]).run(*there.y()).expect("a run").y);
+    let mut again = new([0.0, 5.0]).integrator(Matrix3::identity()).expect("a start");
+    again.advance_to(4.0).expect("steps");
+    again.restore(&saved).expect("a state");
+    again.advance_to(5.0).expect("steps");
+    assert_eq!(again.y(), there.y());
+}
+
+/// f fails for a while. Where it is whole again, the run goes on as if nothing had happened.
+#[test]
+fn a_run_goes_on_after_an_error_of_f() {
+    let broken = Cell::new(false);
+    let f = |t: f64, g: &Matrix3<f64>, v: &mut Vector3<f64>| {
+        *v = Vector3::new(g[(0, 1)], if broken.get() { f64::NAN } else { t.sin() }, 1.0);
+    };
+    let flow = Flow::new(So3::new(), LeftTranslation, f);
+    let method = Rkmk::new(DOPRI5, Exp);
+    let new = || {
+        let solve = Solve::new(&flow, &method, [0.0, 5.0]).tolerances(1e-8, 1e-10);
+        solve.integrator(Matrix3::identity()).expect("a start")
+    };
+    let (mut whole, mut run) = (new(), new());
+    for k in 1..=5 {
+        let t = f64::from(k);
+        whole.advance_to(t).expect("steps");
+        broken.set(true);
+        let before = run.t();
+        assert!(matches!(run.step(), Err(RunError::StepSizeUnderflow { .. })));
+        assert!(run.advance_to(t).is_err());
+        assert_eq!(run.t(), before);
+        broken.set(false);
+        run.advance_to(t).expect("steps");
+        assert_eq!(run.y(), whole.y(), "t = {t}");
+        assert_eq!(run.stats().accepted, whole.stats().accepted);
+    }
+}
