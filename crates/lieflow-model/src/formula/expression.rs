@@ -42,6 +42,17 @@ impl Formula {
         }
     }
 
+    /// Checks the form of `text`, where its names are not known yet.
+    ///
+    /// # Errors
+    /// A refusal as of [`read`](Self::read), if the text is no formula whatever its names mean.
+    pub fn check_form(key: &str, text: &str) -> Result<(), ReadError> {
+        match parse::parse(text, &Names::open()) {
+            Err(mistake) if mistake.is_of_form => Err(refused(key, mistake)),
+            _ => Ok(()),
+        }
+    }
+
     /// The formula of a text, or an entry of its value, at `key`.
     pub(super) fn of(tape: Tape, key: &str, text: &str, names: &Names) -> Self {
         let (key, text, table) = (key.into(), text.into(), names.table().cloned());
@@ -155,11 +166,12 @@ pub(super) fn read_value(
     text: &str,
     names: &Names,
 ) -> Result<(usize, Vec<Tape>), ReadError> {
-    let value = parse::parse(text, names).map_err(
-        |parse::Mistake { message, help, is_known, .. }| {
-            let refusal = Refusal { help, ..Refusal::at(key, format!("{key}: {message}")) };
-            if is_known { ReadError::known() } else { refusal.into() }
-        },
-    )?;
+    let value = parse::parse(text, names).map_err(|mistake| refused(key, mistake))?;
     Ok((value.rows, value.entries))
+}
+
+/// The refusal of `key` for a mistake.
+fn refused(key: &str, parse::Mistake { message, help, is_known, .. }: parse::Mistake) -> ReadError {
+    let refusal = Refusal { help, ..Refusal::at(key, format!("{key}: {message}")) };
+    if is_known { ReadError::known() } else { refusal.into() }
 }

@@ -28,6 +28,23 @@ impl Lets {
         self.0.keys().map(String::as_str)
     }
 
+    /// Checks the form of all formulas, where their names are not known yet. `key` is their table in the scene.
+    ///
+    /// # Errors
+    /// As [`Formula::check_form`], of all formulas.
+    pub fn check_form(&self, key: &str) -> Result<(), ReadError> {
+        let mut mistakes = ReadError::default();
+        for (name, texts) in
+            self.0.iter().filter_map(|(name, texts)| Some((name, texts.as_ref().ok()?)))
+        {
+            for (i, text) in texts.texts().enumerate() {
+                let (place, _) = texts.entry(&key.entry(name), i);
+                mistakes.keep(Formula::check_form(&place, text));
+            }
+        }
+        mistakes.or(Some(()))
+    }
+
     /// The formula that a name in a text belongs to: that of the name, or of the vector or matrix x by x1 or x12.
     fn of<'a>(&'a self, word: &str) -> Option<&'a str> {
         let whole = || self.0.get_key_value(without_digits(word));

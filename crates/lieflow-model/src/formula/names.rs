@@ -26,6 +26,8 @@ pub struct Names {
     /// The mistakes in named formulas.
     pub(super) mistakes: ReadError,
     losses: Arc<Losses>,
+    /// True where the names are not known yet: then each is one of a number.
+    is_open: bool,
 }
 
 /// The variables, in the order of their values.
@@ -93,6 +95,15 @@ impl Names {
     /// Those of formulas that do not change with time, as these names do.
     pub(super) fn of_numbers(varying: Arc<BTreeSet<String>>) -> Names {
         Names { varying: Some(varying), ..Names::default() }
+    }
+
+    /// Names that are not known yet. Only the form of a formula can be checked with them.
+    pub(super) fn open() -> Names {
+        Names { is_open: true, ..Names::default() }
+    }
+
+    pub(super) fn is_open(&self) -> bool {
+        self.is_open
     }
 
     /// May what has this name change with time, where a formula may not?

@@ -33,6 +33,14 @@ pub(super) struct Mistake {
     pub(super) is_known: bool,
     /// True for a name of what may change with time, where it may not.
     pub(super) varies: bool,
+    /// True if it is one whatever the names mean.
+    pub(super) is_of_form: bool,
+}
+
+impl Mistake {
+    fn new(message: String, at: usize) -> Self {
+        Mistake { message, at, help: None, is_known: false, varies: false, is_of_form: false }
+    }
 }
 
 /// The largest depth of parentheses, signs and powers. Each level is one call.
@@ -48,8 +56,7 @@ pub(super) struct Parsed {
 }
 
 pub(super) fn parse(text: &str, names: &Names) -> Result<Parsed, Mistake> {
-    let plain =
-        |message: String| Mistake { message, at: 0, help: None, is_known: false, varies: false };
+    let plain = |message: String| Mistake { is_of_form: true, ..Mistake::new(message, 0) };
     if text.len() > TEXT_MAX {
         return Err(plain(format!(
             "a formula of {} bytes, expected at most {TEXT_MAX}",
@@ -99,13 +106,17 @@ impl Parser<'_> {
 
     fn mistake(&self, message: &str, at: usize) -> Mistake {
         let message = format!("{message} at character {} of the formula", at + 1);
-        Mistake { message, at, help: None, is_known: false, varies: false }
+        Mistake::new(message, at)
+    }
+    /// A mistake whatever the names mean.
+    fn of_form(&self, message: &str, at: usize) -> Mistake {
+        Mistake { is_of_form: true, ..self.mistake(message, at) }
     }
     /// What is next was not expected.
     fn expected(&mut self, what: &str) -> Mistake {
         let next = self.peek();
         let found = next.map_or("nothing more".into(), |c| format!("`{}`", c.escape_debug()));
-        let mut mistake = self.mistake(&format!("found {found}, expected {what}"), self.at);
+        let mut mistake = self.of_form(&format!("found {found}, expected {what}"), self.at);
         let before = self.at.checked_sub(1).and_then(|at| self.text.get(at)).copied();
         mistake.help = match (before, next) {
             (Some('*'), Some('*')) => Some("a power is written x^2".into()),
@@ -183,7 +194,7 @@ impl Parser<'_> {
     /// All that lies within something else passes here.
     fn signed(&mut self) -> Result<Value, Mistake> {
         if self.depth == NESTING_MAX {
-            return Err(self.mistake(&format!("more than {NESTING_MAX} levels"), self.at));
+            return Err(self.of_form(&format!("more than {NESTING_MAX} levels"), self.at));
         }
         self.depth += 1;
         let signed = match self.take(&['-', '+']) {
@@ -264,8 +275,8 @@ impl Parser<'_> {
         }
         match digits.parse::<f64>() {
             Ok(x) if x.is_finite() => Ok(self.build.number(x)),
-            Ok(_) => Err(self.mistake(&format!("the number {digits} is out of range"), start)),
-            Err(_) => Err(self.mistake(&format!("`{digits}` is no number"), start)),
+            Ok(_) => Err(self.of_form(&format!("the number {digits} is out of range"), start)),
+            Err(_) => Err(self.of_form(&format!("`{digits}` is no number"), start)),
         }
     }
 
@@ -280,6 +291,9 @@ impl Parser<'_> {
         }
         if CALLED.iter().any(|(called, _)| *called == name) {
             return Err(self.expected(&format!("`(` after {name}")));
+        }
+        if self.names.is_open() {
+            return Ok(Value::number(self.build.number(1.0)));
         }
         if let Some(why) = self.names.unusable(&name) {
             let reason = why.unwrap_or_default();
@@ -329,7 +343,7 @@ impl Parser<'_> {
                 return Err(self.expected("an operator or the end"));
             }
             let names: Vec<&str> = Called::names().collect();
-            let mistake = self.mistake(&format!("unknown function `{name}`"), start);
+            let mistake = self.of_form(&format!("unknown function `{name}`"), start);
             return Err(Mistake { help: Some(help_for(name, &names)), ..mistake });
         };
         self.at += 1;

@@ -110,7 +110,11 @@ pub(super) fn resolve(
         if let Some(refusal) = comparison(&key("when"), &when) {
             return Err(refusal.into());
         }
-        let formula = columns.ok_or_else(ReadError::known)?.read(&key("when"), when.trim())?;
+        let Some(columns) = columns else {
+            Formula::check_form(&key("when"), when.trim())?;
+            return Err(ReadError::known());
+        };
+        let formula = columns.read(&key("when"), when.trim())?;
         if formula.is_constant() {
             let message =
                 format!("`{when}` is the same at all times, expected a column or t in it");

@@ -419,8 +419,12 @@ impl OutputKeys {
         asked.iter().enumerate().filter_map(wrong).collect()
     }
 
-    /// The rows over a span. `steps_left` says that the program chooses the steps.
-    pub(super) fn rows(&self, t_span: [f64; 2], steps_left: bool) -> Result<Rows, ReadError> {
+    /// The rows over a span, if that is known. `steps_left` says that the program chooses the steps.
+    pub(super) fn rows(
+        &self,
+        t_span: Option<[f64; 2]>,
+        steps_left: bool,
+    ) -> Result<Rows, ReadError> {
         let save = self.save(t_span, steps_left);
         let times_by_steps = seen(&self.times_by).and_then(|way| match way.as_deref() {
             None | Some("dense") => Ok(false),
@@ -435,7 +439,7 @@ impl OutputKeys {
     }
 
     /// Where rows are written.
-    fn save(&self, [t0, t1]: [f64; 2], steps_left: bool) -> Result<SaveAt, ReadError> {
+    fn save(&self, t_span: Option<[f64; 2]>, steps_left: bool) -> Result<SaveAt, ReadError> {
         if matches!(self.times_by, Ok(Some(_))) && !self.has_times() {
             let message =
                 "`times_by` is for `times`, `count` and `interval`: add one, or leave this";
@@ -449,6 +453,7 @@ impl OutputKeys {
             ("count", count.is_some()),
             ("interval", interval.is_some()),
         ])?;
+        let [t0, t1] = t_span.ok_or_else(ReadError::known)?;
         let intervals = |count: u64| SaveAt::Interval((t1 - t0).abs() / count as f64);
         let save = match (every, times, count, interval) {
             (Some(every), ..) => SaveAt::Every(every.0),

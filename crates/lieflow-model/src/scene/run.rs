@@ -142,8 +142,8 @@ impl Scene {
             rows: output.as_ref().is_some_and(OutputKeys::leaves_rows),
         };
         let asked = asked.or_else(|| spec.map(defaults::quantities)).unwrap_or_default();
-        let rows = output.as_ref().zip(grid).and_then(|(output, grid)| {
-            finder.keep("output", output.rows(grid.t_span(), steps_left))
+        let rows = output.as_ref().and_then(|output| {
+            finder.keep("output", output.rows(grid.map(|grid| grid.t_span()), steps_left))
         });
 
         let mut columns = spec.and_then(|problem| {
@@ -153,8 +153,11 @@ impl Scene {
             };
             finder.keep("problem", Columns::of(problem, &asked, &named))
         });
-        let formulas = output.as_ref().zip(columns.as_mut()).and_then(|(output, columns)| {
-            let formulas = seen(&output.formulas).and_then(|lets| columns.define(lets));
+        let formulas = output.as_ref().and_then(|output| {
+            let formulas = seen(&output.formulas).and_then(|lets| match columns.as_mut() {
+                Some(columns) => columns.define(lets),
+                None => lets.check_form(FORMULAS).and_then(|()| Err(ReadError::known())),
+            });
             finder.keep("output", formulas)
         });
         let plot = output.and_then(OutputKeys::figures);

@@ -230,6 +230,7 @@ fn all_values_at_once() {
         "5:12: attitude: not in SO(3)",
         "7:10: t_span is empty",
         "8:6: dt = -1",
+        "11:8: events[1].when: found nothing more",
         "12:14: found 0",
         "14:8: an event without a name",
         "16:13: unknown direction `up`",
@@ -241,6 +242,20 @@ fn all_values_at_once() {
         assert!(each && found.len() == expected.len(), "{found:#?}\n{expected:#?}");
     };
     as_expected(&found, &expected);
+    // Without a problem and a span the form of formulas is read, and what needs neither.
+    let output = "[output]\nevery = 2\ncount = 3\n[output.formulas]\ne = \"energy + 2*)\"\nf = \"norm(w\"\n\
+                  g = [\"dot(w, x) + sine(m1)\", \"w*x + nothing\"]\n";
+    let expected = [
+        "3:15: inertia[2] = -2",
+        "4:14: expected 3 numbers, found 2",
+        "5:12: attitude: not in SO(3)",
+        "7:10: t_span is empty",
+        "10:9: `every` and `count`",
+        "12:5: formulas.e: found `)`",
+        "13:5: formulas.f: found nothing more",
+        "14:6: formulas.g[1]: unknown function `sine`",
+    ];
+    as_expected(&told(&format!("{body}[time]\nt_span = [0, 0]\n{output}")), &expected);
     // With a problem the events are read too.
     let good = "[problem]\nkind = \"rigid-body\"\ninertia = [1, 2, 3]\nomega_body = [1, 2, 0]\n";
     let expected = [
