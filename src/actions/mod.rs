@@ -20,7 +20,9 @@ pub use conjugation::Conjugation;
 pub use lagrangian::Lagrangian;
 pub use linear::Linear;
 pub use parts::{Each, Pair};
-pub use translation::{LeftTranslation, RightTranslation, RightWork, Translation};
+#[doc(hidden)]
+pub use translation::RightWork;
+pub use translation::{LeftTranslation, RightTranslation, Translation};
 
 use crate::error::{Error, StepError};
 use crate::groups::LieGroup;

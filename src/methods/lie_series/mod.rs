@@ -311,7 +311,7 @@ where
     }
 }
 
-/// The error of a step is its last term: the estimate is that of order N − 1.
+/// The error of a step follows from its last two terms.
 impl<P: TaylorField> Embedded<P> for LieSeries
 where
     P::Group: SeriesGroup,

@@ -191,8 +191,7 @@ where
     }
 }
 
-/// The error of a step is its last term, twice that of the quaternion: the estimate is that of order
-/// N − 1.
+/// The error of a step follows from its last two terms. It is twice that of the quaternion.
 impl<P: FreeBody, const N: usize> Embedded<P> for Taylor<N>
 where
     ScalarOf<P>: Wide + Into<f64>,
