@@ -158,6 +158,15 @@ fn programs_take_matrices_from_lieflow() {
     assert!(all.len() > 100 && wrong.is_empty(), "{wrong:#?}");
 }
 
+/// CONTRIBUTING.md prints a kind as it is compiled.
+#[test]
+fn the_kind_that_is_printed_is_a_file_of_the_model() {
+    let page = fs::read_to_string(root().join("CONTRIBUTING.md")).unwrap();
+    let file = fs::read_to_string(root().join("crates/lieflow-model/src/kinds/spin.rs")).unwrap();
+    let kind = blocks(&page).into_iter().find(|(_, code)| code.contains("const KIND: Kind"));
+    assert_eq!(kind.unwrap(), ("rust", file.trim_end()));
+}
+
 /// Each sentence of the README that promises something stands in promises.md, with a test that is there.
 #[test]
 fn each_promise_of_the_readme_has_a_test() {
