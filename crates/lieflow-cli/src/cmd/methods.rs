@@ -10,7 +10,7 @@ use crate::args::{MethodsArgs, quoted};
 use crate::error::CliError;
 use crate::measure::Kept;
 use crate::output::{print, print_json, table, wrap};
-use lieflow_model::problem::{Model, high_order};
+use lieflow_model::problem::{Layer, Model, high_order};
 use lieflow_model::reader::suggest;
 use lieflow_model::scene::Scene;
 use lieflow_model::schema::Observable;
@@ -31,7 +31,7 @@ struct MethodEntry {
     summary: &'static str,
     #[serde(skip)]
     needs: Needs,
-    /// None if the order is that of the tableau, or the method is exact.
+    /// `None` if the order is that of the tableau, or the method is exact.
     order: Option<usize>,
     /// The order in words.
     #[serde(skip)]
@@ -140,7 +140,7 @@ struct Advice {
 /// A method that serves a need.
 struct Take {
     method: &'static str,
-    /// The problems that it is for, in words; none for all that it fits.
+    /// The problems that it is for, in words. Empty for all that it fits.
     problems: &'static str,
     serves: Serves,
 }
@@ -151,30 +151,38 @@ enum Serves {
     Fitting,
     /// Those whose invariants are polynomials of degree 2 at most.
     QuadraticInvariants,
+    /// Those on the layer of matrices of any size, where cay costs less than exp.
+    Matrices,
 }
 
 const fn take(method: &'static str, problems: &'static str) -> Take {
     Take { method, problems, serves: Serves::Fitting }
 }
 
-/// The usual wants.
+const fn on_matrices(method: &'static str) -> Take {
+    Take { method, problems: "matrices", serves: Serves::Matrices }
+}
+
+/// The usual wants. `tests/cli/advice.rs` holds the first two beside other methods.
 const ADVICE: &[Advice] = &[
     Advice {
         want: "small errors",
         because: "a high order needs few steps",
         take: &[
             take("taylor16", "free bodies, tops, pendulums"),
-            take("magnus8", "y' = A(t) y"),
-            take("rkmk dop853 cay", "all others"),
+            take("cfm6-5", "y' = A(t) y"),
+            on_matrices("rkmk dop853 cay"),
+            take("rkmk dop853", "all others"),
         ],
     },
     Advice {
         want: "rough answers, soon",
-        because: "a step costs little",
+        because: "it takes little time to errors of 1e-2 to 1e-4",
         take: &[
-            take("mr4", "free bodies"),
-            take("magnus4", "y' = A(t) y"),
-            take("rkmk4 cay", "all others"),
+            take("taylor12", "free bodies, tops, pendulums"),
+            take("cfm4-2", "y' = A(t) y"),
+            on_matrices("rkmk dopri5 cay"),
+            take("rkmk dopri5", "all others"),
         ],
     },
     Advice {
@@ -234,16 +242,21 @@ fn advice(wanted: Wanted<'_>, typed: &str) -> Result<String, CliError> {
     let default = scene.map_or_else(high_order, |scene| scene.problem.default_method());
     let mut rows = Vec::new();
     if wanted.fits(model.as_ref(), &default) {
+        let of = if scene.is_some() { "the default" } else { "the default of most kinds" };
         rows.push([
             "nothing special".into(),
-            format!("{} (the default)", default.label()),
+            format!("{} ({of})", default.label()),
             "it stays on the group, and chooses its steps by rtol".into(),
         ]);
     }
     for Advice { want, because, take } in ADVICE {
         let mut first = true;
         for Take { method, problems, serves } in *take {
-            let serves = matches!(serves, Serves::Fitting) || quadratic;
+            let serves = match serves {
+                Serves::Fitting => true,
+                Serves::QuadraticInvariants => quadratic,
+                Serves::Matrices => scene.is_some_and(|scene| scene.layer == Layer::General),
+            };
             let take = match &model {
                 None if problems.is_empty() => (*method).to_string(),
                 None => format!("{method} ({problems})"),
@@ -254,16 +267,19 @@ fn advice(wanted: Wanted<'_>, typed: &str) -> Result<String, CliError> {
             };
             let [want, because] = [want, because].map(|text| if first { *text } else { "" });
             first = false;
-            // The default was told.
+            // The default is in a row above.
             if take != default.label() {
                 rows.push([want.into(), take, because.into()]);
             }
         }
     }
     let keep = wanted.keep.map_or_else(String::new, |kept| format!(" --keep {}", kept.name()));
+    let high = if wanted.fits(model.as_ref(), &"dmv10".parse()?) { ", such as dmv10" } else { "" };
     let more = format!(
-        "`lieflow compare {typed} --error 1e-8{keep}` measures which method is the fastest. No method here is made for \
-         stiff problems: the implicit ones need short steps there too."
+        "`lieflow compare {typed} --error 1e-8{keep}` measures which method is the fastest. Compositions, DMV, Gauss \
+         methods and energy-casimir have no error estimate: with rtol they take each step twice. Give them dt, or take \
+         one of high order{high}. No method here is made for stiff problems: the implicit ones need short \
+         steps there too."
     );
     let table = table(["you want", "take", "because"], rows);
     Ok(format!("Take this one\n{table}\n{}", wrap(&more, "")))

@@ -128,14 +128,20 @@ fn methods_are_recommended_before_they_are_listed() {
         lines.map(String::from).collect()
     };
     let all = table(&told);
-    assert!(all[0].contains("rkmk dop853 (the default)"), "{all:?}");
+    assert!(all[0].contains("rkmk dop853 (the default of most kinds)"), "{all:?}");
     for (scene, with, without) in [
         (
             "asymmetric-top",
-            &["taylor16 (the default)", "dmv8", "mr4", "exact"][..],
+            &["taylor16 (the default)", "taylor12", "dmv8", "mr4", "exact"][..],
             &["magnus"][..],
         ),
-        ("rabi", &["magnus8", "magnus6", "rkmk-gauss4-symmetric"], &["taylor", "dmv8", "exact"]),
+        (
+            "rabi",
+            &["cfm6-5", "cfm4-2", "magnus6", "rkmk-gauss4-symmetric"],
+            &["taylor", "dmv8", "exact"],
+        ),
+        ("toda-lattice", &["rkmk dop853 cay", "rkmk dopri5 cay"], &["taylor", "magnus", "dmv8"]),
+        ("damped-satellite", &["rkmk dopri5"], &["cay", "taylor", "magnus", "dmv8"]),
         ("lagrange-top", &["taylor16", "gauss4"], &["magnus", "dmv8", "energy-casimir"]),
         ("kovalevskaya-top", &["taylor16", "gauss4"], &["magnus", "dmv8", "energy-casimir"]),
         ("manakov-body", &["gauss4"], &["magnus", "dmv8", "energy-casimir"]),

@@ -1,5 +1,6 @@
 //! The program `lieflow`: its commands, its files, and every mistake in a scene.
 
+mod advice;
 mod broken;
 mod columns;
 mod compare;
