@@ -9,7 +9,7 @@ use serde::Serialize;
 use crate::args::CheckArgs;
 use crate::error::CliError;
 use crate::measure::checks::{self, checks};
-use crate::output;
+use crate::output::{self, number};
 
 /// A group of checks.
 #[derive(Serialize)]
@@ -45,8 +45,11 @@ impl Failure {
     fn in_words(&self) -> String {
         let of = if self.of.is_empty() { String::new() } else { format!("{}: ", self.of) };
         format!(
-            "  {of}{}: {:.3e} where {} is allowed: {}",
-            self.check, self.worst, self.bound, self.at
+            "  {of}{}: {} where {} is allowed: {}",
+            self.check,
+            number(self.worst),
+            number(self.bound),
+            self.at
         )
     }
 }
@@ -147,9 +150,9 @@ mod tests {
         let expected = [
             "these checks do not hold:",
             "laws on SO(3)",
-            "  bracket: 4.000e0 where 3 is allowed: t = 2",
+            "  bracket: 4 where 3 is allowed: t = 2",
             "methods on flips (closed)",
-            "  rkmk dop853 exp: rows within steps: 7.000e8 where 3 is allowed: t = 2",
+            "  rkmk dop853 exp: rows within steps: 7e8 where 3 is allowed: t = 2",
             "  rkmk dop853 exp: events: NaN where 3 is allowed: t = 2",
         ];
         assert_eq!(error.to_string().lines().collect::<Vec<_>>(), expected);

@@ -11,6 +11,7 @@ use lieflow_model::scene::Scene;
 
 use crate::error::CliError;
 use crate::output::{duration, number};
+use lieflow_figures::number::typed;
 
 /// A run of more steps of one size is timed before it begins.
 const MANY: u64 = 10_000_000;
@@ -97,7 +98,7 @@ fn chosen_steps(scene: &Scene, model: &Model, stop: &AtomicBool) -> Option<Strin
         format!(
             "about {} steps are needed, and the run ends after {} (max_steps): {} has order {order}. \
              Take a method of a higher order or a larger tolerance, or leave [method] out",
-            number(format!("{needed:.0e}").parse().unwrap_or(needed)),
+            typed(needed, 1),
             number(limit as f64),
             scene.method.label()
         )

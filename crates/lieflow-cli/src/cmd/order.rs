@@ -8,7 +8,8 @@ use super::stop::listen;
 use crate::args::OrderArgs;
 use crate::error::CliError;
 use crate::measure::{Candidate, Curve, Judge, Reference, Size};
-use crate::output::{self, print, print_json, table};
+use crate::output::{self, number, print, print_json, table};
+use lieflow_figures::number::scientific;
 use lieflow_model::scene::Scene;
 
 /// The number of times that the step is halved.
@@ -157,11 +158,11 @@ fn in_words(scene: &Scene, curves: &[Curve], reference: &Reference) -> String {
         let rows = curve.points.iter().zip(slopes(curve)).enumerate().map(|(i, (point, slope))| {
             let error = match &point.failure {
                 Some(_) => "failed".into(),
-                None if i >= rounding => format!("{:.1e}, rounding", point.error),
-                None => format!("{:.1e}", point.error),
+                None if i >= rounding => scientific(point.error) + ", rounding",
+                None => scientific(point.error),
             };
             let slope = slope.map_or(String::new(), |slope| format!("{slope:.2}"));
-            [point.steps.to_string(), format!("{:.3e}", point.h), error, slope]
+            [point.steps.to_string(), number(point.h), error, slope]
         });
         text += &table(["steps", "h", "error", "slope"], rows);
         for point in &curve.points {

@@ -12,6 +12,7 @@ use lieflow::{RunError, SaveAt, StepControl, TimeGrid};
 use super::{Candidate, Size, WorkPoint};
 use crate::error::CliError;
 use lieflow_counting::operations;
+use lieflow_figures::number::typed;
 use lieflow_model::problem::{Model, Plan, Rows as Watched, Sink, Steps};
 use lieflow_model::scene::Scene;
 use lieflow_model::schema::{Observable, Row, Schema};
@@ -22,7 +23,7 @@ use lieflow_timing::cpu_seconds;
 pub enum Reference {
     /// The exact solution.
     Exact {
-        /// How far rounding moves its end; none where it is no method too.
+        /// How far rounding moves its end. `None` if the reference is not a compared method.
         rounding: Option<Rounding>,
     },
     /// A run at the finest tolerance.
@@ -67,11 +68,13 @@ impl Reference {
             }
             Reference::Exact { rounding: Some(Rounding { apart, steps }) } => format!(
                 "Errors are measured against the exact solution. Taken in 2 to {steps} steps, the exact \
-                 solution itself moves by up to {apart:.0e}: smaller errors are rounding."
+                 solution itself moves by up to {}: smaller errors are rounding.",
+                typed(*apart, 1)
             ),
             Reference::Own { by, beside, apart } => format!(
                 "Errors are measured against a run of {by} at a tolerance of {TIGHT:e}. It agrees with a run of \
-                 {beside} to {apart:.0e}: smaller errors cannot be seen."
+                 {beside} to {}: smaller errors cannot be seen.",
+                typed(*apart, 1)
             ),
         }
     }
@@ -426,8 +429,8 @@ pub struct Done {
 }
 
 impl Size {
-    /// The operations of a run that took so many steps, rejected ones among them; none where the
-    /// problem or the method does not run on numbers that count.
+    /// The operations of a run, of all its steps with the rejected ones. `None` if the problem or the method does not
+    /// run on numbers that count.
     pub fn operations(
         self,
         model: &Model,

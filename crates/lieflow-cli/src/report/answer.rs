@@ -2,7 +2,7 @@
 
 use super::step_of;
 use crate::measure::{Curve, Reached, Reference, WorkPoint};
-use lieflow_figures::number::{seconds, sig};
+use lieflow_figures::number::{seconds, sig, typed};
 
 /// A method, and where it reaches an error.
 pub type Found<'a> = (&'a Curve, Reached);
@@ -142,19 +142,19 @@ impl<'a> Answer<'a> {
                 text
             }
             Verdict::BelowFloor(reference) => format!(
-                "An error of {error:e} cannot be seen here. {} Ask for an error of {:.0e} or more.",
+                "An error of {error:e} cannot be seen here. {} Ask for an error of {} or more.",
                 reference.in_words(),
-                10f64.powf(reference.floor().log10().ceil())
+                typed(10f64.powf(reference.floor().log10().ceil()), 1)
             ),
             Verdict::NotReached(None) => {
                 format!("No method reaches an error of {error:e}: no run came to its end.")
             }
             Verdict::NotReached(Some((curve, point))) => format!(
                 "No method reaches an error of {error:e} in the runs that were made. The closest is {} \
-                 with {} steps: an error of {:.0e} in {}. {}",
+                 with {} steps: an error of {} in {}. {}",
                 name_of(curve),
                 point.steps,
-                point.error,
+                typed(point.error, 1),
                 seconds(point.seconds_per_unit * point.length()),
                 why_not(curve, point)
             ),
@@ -179,7 +179,7 @@ fn why_not(curve: &Curve, point: &WorkPoint) -> &'static str {
 
 /// The distance from M in a sentence.
 fn off(reached: &Reached) -> String {
-    format!("{:.0e}", reached.off_manifold)
+    typed(reached.off_manifold, 1)
 }
 
 /// The name of a method in a sentence.
@@ -256,7 +256,7 @@ fn kept((curve, reached): &Found<'_>) -> String {
         false => {
             format!(
                 "the energy at the end is off by {} of its value",
-                format_args!("{:.0e}", reached.energy_error)
+                typed(reached.energy_error, 1)
             )
         }
     };

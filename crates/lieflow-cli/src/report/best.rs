@@ -2,7 +2,7 @@
 
 use super::{Found, number, ranking, step_of};
 use crate::measure::Curve;
-use lieflow_figures::number::{DASH, seconds};
+use lieflow_figures::number::{DASH, seconds, typed};
 use lieflow_figures::{Cell, Column, LINE_COLOURS, Marker, Point, Row, Series, Table};
 
 /// The number of methods that are shown by default.
@@ -72,7 +72,7 @@ impl<'a> Best<'a> {
 
     /// A row for each method that is shown.
     pub fn rows(&self) -> Vec<Vec<Cell>> {
-        let about = |error: f64| if error == 0.0 { "0".into() } else { format!("{error:.0e}") };
+        let about = |error: f64| typed(error, 1);
         let rows = self.shown.iter().map(|(curve, by)| {
             let kind = curve.candidate.kind().map_or("", lieflow::catalog::Family::name);
             let order = match curve.order {
