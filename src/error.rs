@@ -107,9 +107,10 @@ pub enum Error {
         /// |tr|.
         distance: f64,
     },
-    /// A matrix is singular to working accuracy.
+    /// The columns of a matrix depend on each other, to rounding.
     #[error(
-        "{arg}: singular to working accuracy: rcond = {rcond:.3e}, expected at least {minimum:.1e}"
+        "{arg}: the columns of {arg} depend on each other, to rounding (rcond = {}, expected at least {})",
+        Plain(.rcond), Plain(.minimum)
     )]
     Singular {
         /// The argument.

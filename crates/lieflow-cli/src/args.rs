@@ -189,7 +189,7 @@ impl RunArgs {
 /// When the error of a run is estimated by a second run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum ErrorCheck {
-    /// Where it takes seconds.
+    /// Only if it takes a few seconds.
     #[default]
     Auto,
     /// Always.
@@ -274,7 +274,7 @@ pub struct CompareArgs {
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = tolerance)]
     #[arg(allow_negative_numbers = true)]
     pub tolerances: Vec<f64>,
-    /// Time each run so many times, in turns with the others, and take the median.
+    /// Number of times that each run is timed, in turns with the others; the median is taken.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     #[arg(allow_negative_numbers = true)]
     pub repeat: Option<u32>,

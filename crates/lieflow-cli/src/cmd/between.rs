@@ -12,7 +12,7 @@ type ValueOfRow = Box<dyn Fn(f64, Row<'_>) -> f64>;
 /// A value that is this part of the largest one may be a zero that is found.
 const NEAR_ZERO: f64 = 1e-9;
 
-/// So many rows are looked at in between, and at so many points.
+/// Number of gaps that are checked, and of points in each.
 const LOOKED_AT: u64 = 64;
 const POINTS: u32 = 101;
 
@@ -44,7 +44,7 @@ impl Between {
         Between { name, direction, value, before: None, missed: 0, rows: 0, largest: 0.0 }
     }
 
-    /// The next row, after so many zeros.
+    /// The next row. The run has had `zeros` zeros up to there.
     pub(super) fn see(&mut self, t: f64, row: Row<'_>, zeros: u64) {
         let value = (self.value)(t, row);
         self.rows += 1;
@@ -97,14 +97,14 @@ impl Between {
     pub(super) fn note(&self, seen: &EventSummary, stop_after: Option<u64>) -> Option<String> {
         let name = &self.name;
         if self.largest == 0.0 && self.rows > 1 {
-            return Some(format!("event {name}: its function is zero all the time"));
+            return Some(format!("event `{name}`: its function is zero all the time"));
         }
         match (seen.count, stop_after) {
             (count, Some(stop_after)) => Some(format!(
-                "event {name}: stop_after = {stop_after} was not reached, it came {}",
+                "event `{name}`: stop_after = {stop_after} was not reached, it came {}",
                 count_in_words(count)
             )),
-            (0, None) => Some(format!("event {name}: it never came")),
+            (0, None) => Some(format!("event `{name}`: no zero")),
             _ => None,
         }
     }

@@ -346,7 +346,7 @@ impl<'a> Recorder<'a> {
             match far {
                 _ if far <= Branch::SINGULAR => Some(format!(
                     "{name} is singular at t = {t}: the first and the third angle turn about one axis there, and the \
-                     third goes on as it was"
+                     third angle keeps its value"
                 )),
                 _ if far <= NEAR_SINGULAR => Some(format!(
                     "{name} comes within {degrees} degrees of its singular angle at t = {t}: the first and the third \

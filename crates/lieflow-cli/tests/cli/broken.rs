@@ -169,7 +169,7 @@ fn all_mistakes_are_told_at_once() {
         ":6:1: unknown key `colour`",
         ":9:1: unknown key `nmae`",
         ":9:8: unknown method `rkmk5`",
-        ":13:15: \"two\" is no number",
+        ":13:15: \"two\" is not a number",
         ":14:6: dt = -1.0",
         ":15:2: unknown key `outptu`",
     ];
@@ -188,7 +188,7 @@ fn all_mistakes_are_told_at_once() {
     let keys = "torque = [\"k*w1\", \"0\", \"l\"]\nparameters = { k = \"x\" }\n[method]";
     let text = SCENE.replace("rigid-body", "driven-body").replace("[method]", keys);
     let text = text.replace("layer = \"closed\"\n", "").replace("\"momentum_body\", ", "");
-    let all = ["2 mistakes", ":6:24: torque[3]: unknown name `l`", ":7:21: \"x\" is no number"];
+    let all = ["2 mistakes", ":6:24: torque[3]: unknown name `l`", ":7:21: \"x\" is not a number"];
     expect(&text, &all);
     let text = text.replace("\"x\"", "1").replace("k*w1", "k*w9").replace("t_span", "t_spam");
     let all = ["3 mistakes", ":6:11: torque[", ":6:24: torque[", ":12:1: unknown key `t_spam`"];

@@ -59,12 +59,12 @@ fn events_that_never_come_or_are_missed_are_told() {
         run(&format!("[[events]]\nname = \"z\"\nwhen = \"{when}\"\n{more}"))
     };
     let told = event("0*t", "");
-    assert!(told.contains("note: event z: its function is zero all the time"), "{told}");
+    assert!(told.contains("note: event `z`: its function is zero all the time"), "{told}");
     assert!(told.contains("event z: never\n"), "{told}");
     let told = event("t - 100", "");
-    assert!(told.contains("note: event z: it never came"), "{told}");
+    assert!(told.contains("note: event `z`: no zero"), "{told}");
     let told = event("t - 1", "stop_after = 2");
-    assert!(told.contains("z: stop_after = 2 was not reached, it came once"), "{told}");
+    assert!(told.contains("`z`: stop_after = 2 was not reached, it came once"), "{told}");
     // One zero has one time, also on the page.
     assert!(told.contains("event z: once, at t = 1"), "{told}");
     folder.lieflow(&["run", "scene.toml", "--out", "page"]).ok();

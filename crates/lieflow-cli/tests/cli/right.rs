@@ -379,7 +379,7 @@ fn settings_change_a_scene() {
         ("problem.kind[1]=1", "`problem.kind` is no list"),
         ("problem=1", "`problem` is a section, expected a key in it"),
         ("time.dt=0,1", "`0,1` is no value of TOML"),
-        ("time.dt=fast", "\"fast\" is no number"),
+        ("time.dt=fast", "\"fast\" is not a number"),
     ] {
         let message = run(&[set]).refused();
         assert!(message.contains(what), "{set}: {message}");

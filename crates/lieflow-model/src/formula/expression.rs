@@ -25,8 +25,8 @@ impl Formula {
     /// Read `text`; `key` names its place in the scene, `torque[1]`.
     ///
     /// # Errors
-    /// A refusal of `key` that says what is wrong, and at which character; none where the formula needs a named one
-    /// whose mistakes are known.
+    /// A refusal of `key` that says what is wrong, and at which character. Empty if the formula needs a named one
+    /// whose mistakes are reported already.
     pub fn read(key: &str, text: &str, names: &Names) -> Result<Self, ReadError> {
         let (rows, tapes) = read_value(key, text, names)?;
         let count = tapes.len();

@@ -77,7 +77,7 @@ impl Names {
     /// These variables, in the order of their values.
     ///
     /// # Errors
-    /// A refusal of `key` for a variable that is no name (letters, digits and underscores, no digit first), or has that of
+    /// A refusal of `key` for a variable that is not a valid name (letters, digits and underscores, no digit first), or has that of
     /// another, or of a function.
     pub(super) fn of<N: Into<String>>(
         key: &str,
@@ -158,8 +158,7 @@ impl Names {
         self.unusable.iter().any(|(formula, _)| formula == name)
     }
 
-    /// Why a named formula has no meaning here, by its name or that of an entry. The reason is none where its mistakes
-    /// are known.
+    /// Why this named formula, or an entry of it, cannot be used. `None` inside if the mistake is reported already.
     pub(super) fn unusable(&self, word: &str) -> Option<Option<&str>> {
         let of = |wanted: &str| self.unusable.iter().find(|(name, _)| name == wanted);
         of(word).or_else(|| of(without_digits(word))).map(|(_, why)| why.as_deref())
@@ -241,11 +240,11 @@ impl Names {
             ));
         }
         let why = if !first.is_some_and(starts_name) || !name.chars().all(continues_name) {
-            "is no name: expected letters, digits and underscores, and no digit first"
+            "is not a valid name: expected letters, digits and underscores, and no digit first"
         } else if CALLED.iter().any(|(called, _)| *called == name) {
             "is the name of a function"
         } else if CONSTANTS.iter().any(|(constant, _)| *constant == name) {
-            "is the name of a number"
+            "is a constant already; choose another name"
         } else if self.meaning(name).is_some() {
             "is the name of a variable already"
         } else {

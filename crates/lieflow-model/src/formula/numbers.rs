@@ -76,7 +76,7 @@ impl Constants {
         found.iter().for_each(|number| number.put(&mut with_numbers));
         let mut of_values = ReadError::default();
         let read = read(&with_numbers, &mut of_values);
-        // What is said of a formula that is no number follows from that.
+        // The message about a formula that is not a number follows from that.
         let unusable = |place: &Range<usize>| {
             found.iter().any(|number| number.read.is_err() && number.place == *place)
         };
@@ -248,7 +248,7 @@ pub(super) fn evaluated(
     let parsed =
         parse(text, names).map_err(|parse::Mistake { message, at, help, varies, .. }| {
             let help = instead.filter(|_| varies).map(str::to_owned).or(help);
-            ReadError::in_text(value, at, format!("{text:?} is no number: {message}"), help)
+            ReadError::in_text(value, at, format!("{text:?} is not a number: {message}"), help)
         })?;
     if words(text).any(|word| parameters.is_unusable(word)) {
         return Err(ReadError::known());

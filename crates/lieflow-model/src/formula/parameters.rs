@@ -14,7 +14,7 @@ use crate::reader::{Read, ReadError, Shape, Value};
 #[derive(Clone, Debug, Default)]
 pub struct Parameters(BTreeMap<String, Constant>);
 
-/// The value of a constant; none where its mistake is known.
+/// The value of a constant. `None` if its mistake is reported already.
 type Constant = Option<f64>;
 
 impl FromIterator<(String, Real)> for Parameters {
@@ -47,7 +47,7 @@ impl Parameters {
     /// These variables, in the order of their values, and the parameters.
     ///
     /// # Errors
-    /// A refusal of `key` for a variable that is no name (letters, digits and underscores, no digit first), and of
+    /// A refusal of `key` for a variable that is not a valid name (letters, digits and underscores, no digit first), and of
     /// `parameters` for each parameter that has the name of a variable.
     pub fn names<N: Into<String>>(
         &self,

@@ -115,8 +115,11 @@ impl Parser<'_> {
     /// What is next was not expected.
     fn expected(&mut self, what: &str) -> Mistake {
         let next = self.peek();
-        let found = next.map_or("nothing more".into(), |c| format!("`{}`", c.escape_debug()));
-        let mut mistake = self.of_form(&format!("found {found}, expected {what}"), self.at);
+        let found = match next {
+            Some(c) => format!("found `{}`, expected {what}", c.escape_debug()),
+            None => format!("the formula ends here; expected {what}"),
+        };
+        let mut mistake = self.of_form(&found, self.at);
         let before = self.at.checked_sub(1).and_then(|at| self.text.get(at)).copied();
         mistake.help = match (before, next) {
             (Some('*'), Some('*')) => Some("a power is written x^2".into()),
@@ -276,7 +279,7 @@ impl Parser<'_> {
         match digits.parse::<f64>() {
             Ok(x) if x.is_finite() => Ok(self.build.number(x)),
             Ok(_) => Err(self.of_form(&format!("the number {digits} is out of range"), start)),
-            Err(_) => Err(self.of_form(&format!("`{digits}` is no number"), start)),
+            Err(_) => Err(self.of_form(&format!("`{digits}` is not a number"), start)),
         }
     }
 

@@ -5,9 +5,8 @@ use std::hash::{Hash, Hasher};
 use fnv::FnvHasher;
 use lieflow::samples::{Interpolation, Samples};
 
-use crate::reader::Refusal;
 use crate::reader::values::counted;
-use crate::reader::{Read, ReadError, Shape, Value};
+use crate::reader::{Read, ReadError, Refusal, Shape, Value, amount};
 
 /// The key of the file.
 const KEY: &str = "samples";
@@ -63,7 +62,8 @@ impl Table {
         for (line, place) in lines {
             let found = line.split(',').count();
             if found != columns.len() {
-                let message = format!("found {found} columns, expected {}", columns.len());
+                let message =
+                    format!("found {}, expected {}", amount(found, "columns"), columns.len());
                 return Err(refused(place, message));
             }
             for ((field, name), values) in line.split(',').zip(&columns).zip(&mut values) {

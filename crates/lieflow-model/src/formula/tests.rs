@@ -188,9 +188,9 @@ fn parameters_are_numbers_with_names() {
     for (text, variable, why) in [
         ("x = 1", "x", "`x` is the name of a variable already"),
         ("sin = 1", "x", "`sin` is the name of a function"),
-        ("pi = 3", "x", "`pi` is the name of a number"),
-        ("\"a b\" = 3", "x", "`a b` is no name"),
-        ("k = 3", "2x", "`2x` is no name"),
+        ("pi = 3", "x", "`pi` is a constant already; choose another name"),
+        ("\"a b\" = 3", "x", "`a b` is not a valid name"),
+        ("k = 3", "2x", "`2x` is not a valid name"),
         ("k = 3", "", "the name is empty"),
     ] {
         let parameters = table::<Parameters>(text);
@@ -243,10 +243,14 @@ fn vectors_and_matrices_are_their_components() {
 #[test]
 fn what_is_wrong_is_said_with_its_place() {
     for (text, message, help) in [
-        ("", "found nothing more, expected a number, a name or a parenthesis at character 1", None),
+        (
+            "",
+            "the formula ends here; expected a number, a name or a parenthesis at character 1",
+            None,
+        ),
         (
             "x + ",
-            "found nothing more, expected a number, a name or a parenthesis at character 5",
+            "the formula ends here; expected a number, a name or a parenthesis at character 5",
             None,
         ),
         ("2x", "found `x`, expected an operator or the end at character 2", Some("2*x")),
@@ -255,7 +259,7 @@ fn what_is_wrong_is_said_with_its_place() {
             "found `*`, expected a number, a name or a parenthesis at character 3",
             Some("x^2"),
         ),
-        ("(x + 1", "found nothing more, expected an operator or `)` at character 7", None),
+        ("(x + 1", "the formula ends here; expected an operator or `)` at character 7", None),
         ("x)", "found `)`, expected an operator or the end at character 2", None),
         ("3*w1", "unknown name `w1` at character 3", Some("did you mean `w_1`?")),
         ("sine(x)", "unknown function `sine` at character 1", Some("did you mean `sin`?")),
@@ -264,7 +268,7 @@ fn what_is_wrong_is_said_with_its_place() {
         ("min(x)", "found `)`, expected `,`: min takes two numbers at character 6", None),
         ("sin(x, y)", "found `,`, expected an operator or `)` at character 6", None),
         ("1e999", "the number 1e999 is out of range at character 1", None),
-        ("1.2.3", "`1.2.3` is no number at character 1", None),
+        ("1.2.3", "`1.2.3` is not a number at character 1", None),
         (
             "-0,1*x",
             "found `,`, expected an operator or the end at character 3",

@@ -6,7 +6,7 @@ use super::expression::{Formula, read_value};
 use super::names::Names;
 use super::tape::Tape;
 use crate::reader::values::Real;
-use crate::reader::{KeyPath, Read, ReadError, Refusal, Shape, Value};
+use crate::reader::{KeyPath, Read, ReadError, Refusal, Shape, Value, amount};
 
 /// A formula: a text, or a number.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -55,7 +55,7 @@ impl Texts {
             return Ok(entries.map(formula).collect());
         }
         let found = match self {
-            Texts::List(_) => format!("found {found} formulas, expected {count}"),
+            Texts::List(_) => format!("found {}, expected {count}", amount(found, "formulas")),
             Texts::One(_) => {
                 let found = if found == 1 { "a number".into() } else { format!("{found} numbers") };
                 format!("the value of this formula is {found}, expected a vector of {count}")
@@ -135,8 +135,11 @@ impl NamedTexts {
         let columns = rows.first().map_or(0, Vec::len);
         if let Some(i) = rows.iter().position(|row| row.len() != columns || row.is_empty()) {
             let expected = if columns == 0 { "at least 1".into() } else { columns.to_string() };
-            let message =
-                format!("{key}: row {} has {} formulas, expected {expected}", i + 1, rows[i].len());
+            let message = format!(
+                "{key}: row {} has {}, expected {expected}",
+                i + 1,
+                amount(rows[i].len(), "formulas")
+            );
             return Err(Refusal::at(key.index(i), message).into());
         }
         let mut mistakes = ReadError::default();

@@ -18,7 +18,7 @@ use lieflow::groups::MatrixGroup;
 use lieflow::names::plain;
 use lieflow::scalar::{Ops, tally};
 
-use crate::reader::{KeyPath, Refusal};
+use crate::reader::{KeyPath, Refusal, amount};
 
 /// An algebra of n×n matrices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,7 +50,10 @@ impl Named {
         match self.n {
             Some(stated) if stated != n => {
                 let name = self.algebra.name(stated);
-                Err(Refusal::at(key, format!("found {n} rows, expected {stated} for {name}")))
+                Err(Refusal::at(
+                    key,
+                    format!("found {}, expected {stated} for {name}", amount(n, "rows")),
+                ))
             }
             _ => Ok(()),
         }

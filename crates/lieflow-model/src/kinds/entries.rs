@@ -51,7 +51,9 @@ pub(super) fn symmetric_part(x: &Mat<f64>) -> Mat<f64> {
 pub(super) fn check_rows(key: &str, x: &Mat<f64>, n: usize) -> Result<(), Refusal> {
     match x.nrows() == n {
         true => Ok(()),
-        false => Err(Refusal::at(key, format!("found {} rows, expected {n}", x.nrows()))),
+        false => {
+            Err(Refusal::at(key, format!("found {}, expected {n}", amount(x.nrows(), "rows"))))
+        }
     }
 }
 

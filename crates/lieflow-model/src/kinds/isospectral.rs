@@ -99,7 +99,7 @@ fn read_double_bracket(keys: DoubleBracketKeys) -> Result<Forms, ReadError> {
     let symmetry = seen(&matrix).and_then(|l| Ok(check_symmetric("matrix", l, ROUNDING)?));
     let order = keys.order.and_then(|order| {
         let (order, n) = (order.values(), seen(&matrix)?.nrows());
-        let message = || format!("found {} numbers, expected {n}", order.len());
+        let message = || format!("found {}, expected {n}", amount(order.len(), "numbers"));
         match order.len() == n {
             true => Ok(order),
             false => Err(Refusal::at("order", message()).into()),

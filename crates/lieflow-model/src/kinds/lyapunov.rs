@@ -48,11 +48,16 @@ fn read(mut keys: Keys) -> Result<Forms, ReadError> {
     let x = keys.x?.values();
     let n = x.len();
     if !(1..=MAX).contains(&n) {
-        return Err(Refusal::at("x", format!("found {n} numbers, expected 1 to {MAX}")).into());
+        return Err(Refusal::at(
+            "x",
+            format!("found {}, expected 1 to {MAX}", amount(n, "numbers")),
+        )
+        .into());
     }
     let variables = keys.variables?.unwrap_or_else(|| numbered("x", n));
     if variables.len() != n {
-        let message = format!("found {} names, expected {n} as x has numbers", variables.len());
+        let message =
+            format!("found {}, expected {n} as x has numbers", amount(variables.len(), "names"));
         return Err(Refusal::at("variables", message).into());
     }
     let names = ["t".into()].into_iter().chain(variables);

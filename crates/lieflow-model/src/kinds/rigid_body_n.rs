@@ -42,7 +42,10 @@ fn read(keys: Keys) -> Result<Forms, ReadError> {
     let momentum = keys.momentum.and_then(|momentum| {
         let above = momentum.values();
         let message = || {
-            format!("found {} numbers, expected n(n-1)/2 numbers, such as 3, 6 or 10", above.len())
+            format!(
+                "found {}, expected n(n-1)/2, such as 3, 6 or 10",
+                amount(above.len(), "numbers")
+            )
         };
         Ok(antisymmetric(&above).ok_or_else(|| Refusal::at("momentum", message()))?)
     });
@@ -65,8 +68,8 @@ fn body(
             let lambda = lambda.values();
             if lambda.len() != n {
                 let message = format!(
-                    "found {} numbers, expected {n}, as the momentum has {n}·{}/2 numbers",
-                    lambda.len(),
+                    "found {}, expected {n}, as the momentum has {n}·{}/2 numbers",
+                    amount(lambda.len(), "numbers"),
                     n - 1
                 );
                 return Err(Refusal::at("mass_moments", message).into());

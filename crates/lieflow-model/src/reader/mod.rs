@@ -11,6 +11,7 @@ pub(crate) use read::{
     KeyReader, all, entry_of, given_key, key_name, read_as_held, read_by_keys, read_whole,
     read_with, seen, take,
 };
+pub(crate) use refusal::amount;
 pub use refusal::{Either, KeyPath, Refusal, at_most_one, exactly_one};
 pub use suggest::{help_for, suggest};
 pub use tree::{Mistakes, Tree};

@@ -152,7 +152,7 @@ impl Mistake {
     }
 }
 
-/// Why something cannot be read: all its mistakes. It has none where it follows from mistakes that are known.
+/// All mistakes of a value that cannot be read. Empty if the cause is reported already.
 #[derive(Clone, Debug, Default)]
 pub struct ReadError {
     /// The mistakes, in the order in which they were found.

@@ -73,6 +73,11 @@ impl KeyPath for str {
     }
 }
 
+/// A number of things in a message: `1 row`, `2 rows`.
+pub(crate) fn amount(n: usize, things: &str) -> String {
+    format!("{n} {}", if n == 1 { things.trim_end_matches('s') } else { things })
+}
+
 /// An argument of the library, whose lists count from 0, as a path.
 fn path_of(arg: &str) -> String {
     let mut parts = arg.split('[');

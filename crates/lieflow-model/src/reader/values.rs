@@ -4,7 +4,7 @@ use faer::Mat;
 use toml::de::DeValue;
 
 use super::read::{Read, ReadError, Shape, Value, read_as_held};
-use super::{KeyPath, Refusal};
+use super::{KeyPath, Refusal, amount};
 
 const OUT_OF_RANGE: &str = "the number is out of range";
 
@@ -53,7 +53,7 @@ impl<const MIN: u64> Read for Whole<MIN> {
     }
 }
 
-/// Reads a list of so many entries.
+/// Reads a list of a given number of entries.
 pub(crate) fn counted<T: Read, L: TryFrom<Vec<T>>>(
     value: &Value<'_>,
     count: usize,
@@ -256,7 +256,7 @@ impl Table {
         }
     }
 
-    /// The rows as a matrix of so many columns; as many as rows where none is said.
+    /// The rows as a matrix of `columns` columns. `None` means as many columns as rows.
     ///
     /// # Errors
     /// A refusal of `key` for a row of another length, and for no rows.
@@ -267,7 +267,8 @@ impl Table {
         }
         if let Some(i) = self.0.iter().position(|row| row.0.len() != columns) {
             let found = self.0[i].0.len();
-            let message = format!("row {} has {found} numbers, expected {columns}", i + 1);
+            let message =
+                format!("row {} has {}, expected {columns}", i + 1, amount(found, "numbers"));
             return Err(Refusal::at(key.index(i), message).into());
         }
         Ok(Mat::from_fn(self.0.len(), columns, |i, j| self.0[i].0[j].0))

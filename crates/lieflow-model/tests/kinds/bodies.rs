@@ -360,8 +360,8 @@ fn entries_above_the_diagonal_are_enough() {
     let all = "[[0, 0.3, -0.2], [-0.3, 0, 1], [0.2, -1, 0]]";
     assert_eq!(euler("[0.3, -0.2, 1]"), euler(all));
     for (keys, part) in [
-        ("group = \"so\"\nfield = [\"t\", 1]", "found 2 formulas that are in no row"),
-        ("group = \"sl\"\nfield = [\"t\", 1, 1]", "found 3 formulas that are in no row"),
+        ("group = \"so\"\nfield = [\"t\", 1]", "found 2 formulas in no row"),
+        ("group = \"sl\"\nfield = [\"t\", 1, 1]", "found 3 formulas in no row"),
         ("group = \"so\"\nfield = [\"t\", 1, \"y15\"]", "field[3]: unknown name `y15`"),
     ] {
         let (_, message) = refused(&format!("kind = \"matrix-ode\"\n{keys}"), FINE, "point");

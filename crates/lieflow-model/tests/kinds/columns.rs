@@ -241,7 +241,7 @@ fn named_formulas_are_refused_at_their_line() {
         ("g = \"[t, t, t]\"", &["`g` is the name of a vector or a matrix already"]),
         ("cos = \"t\"", &["`cos` is the name of a function"]),
         ("b = true", &["a formula, or a list of formulas"]),
-        ("b = [[1, \"t\"], [2]]", &["let.b: row 2 has 1 formulas, expected 2"]),
+        ("b = [[1, \"t\"], [2]]", &["let.b: row 2 has 1 formula, expected 2"]),
         ("b = [[1, 2], [3, 4], []]", &["let.b: row 3 has 0 formulas, expected 2"]),
         ("b = [[], []]", &["let.b: row 1 has 0 formulas, expected at least 1"]),
         ("b = [[1, 2], [3, \"q\"]]", &["let.b[2,2]: unknown name `q`"]),

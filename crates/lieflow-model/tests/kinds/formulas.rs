@@ -256,7 +256,7 @@ fn equations_that_are_none_are_refused_at_their_line() {
         (
             "group = \"so\"\nfield = [[\"0\", \"1\"], [\"-1\"]]",
             5,
-            &["row 2 has 1 formulas, expected 2"],
+            &["row 2 has 1 formula, expected 2"],
         ),
         ("group = \"so\"\nfield = []", 5, &["found 0 rows"]),
         ("field = [[\"0\"]]\ngroup = \"ru\"", 5, &["unknown group `ru`", "su"]),

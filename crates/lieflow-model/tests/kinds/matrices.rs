@@ -332,7 +332,7 @@ fn subspaces_turn_to_the_leading_ones() {
     let none = line.replace("[[1], [5]]", "[[0], [0]]");
     let none = format!("title = \"\"\n[problem]\n{none}\n[method]\n{RKMK4_CAY}");
     let message = Scene::parse("scene", &none).unwrap_err().to_string();
-    assert!(message.contains("scene:5") && message.contains("singular"), "{message}");
+    assert!(message.contains("scene:5") && message.contains("depend on each other"), "{message}");
 
     let text = bundled("subspaces").replace("[\"angles\"", "[\"projector\", \"angles\"");
     let plane = Scene::parse("scene", &text).unwrap();

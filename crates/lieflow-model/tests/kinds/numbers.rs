@@ -117,7 +117,7 @@ fn units_of_angles_are_radians() {
 fn formulas_that_are_no_numbers_are_refused_at_their_character() {
     const LINE: &str = "inertia = [1, 2, ";
     for (formula, column, words) in [
-        ("5 deg", 21, &["\"5 deg\" is no number: found `d`", "= write 5*deg"][..]),
+        ("5 deg", 21, &["\"5 deg\" is not a number: found `d`", "= write 5*deg"][..]),
         ("5 deg/s", 21, &["write 5*deg", "other units than those of angles are left out"]),
         ("5deg", 20, &["write 5*deg"]),
         ("5°", 20, &["found `°`", "degrees are written 5*deg"]),
@@ -129,8 +129,8 @@ fn formulas_that_are_no_numbers_are_refused_at_their_character() {
         ("sqrt(-mass)", 18, &["is NaN, expected a finite number"]),
         ("[1, 2]", 18, &["is a vector of 2 numbers, expected a number"]),
         ("1 - mass", 18, &["inertia[3] = -2.0, expected", "the value of \"1 - mass\" is -2"]),
-        ("mass*", 18, &["is no number: found nothing more"]),
-        ("", 18, &["\"\" is no number"]),
+        ("mass*", 18, &["is not a number: the formula ends here"]),
+        ("", 18, &["\"\" is not a number"]),
     ] {
         let text = format!(
             "[problem]\nkind = \"rigid-body\"\n{LINE}\"{formula}\"]\nomega_body = [1, 2, 3]\n\
@@ -152,8 +152,8 @@ fn parameters_that_are_no_numbers_are_refused() {
         ("a = \"t\"", &["`t` may change with time"]),
         ("a = \"1/0\"", &["the value of \"1/0\" is inf"]),
         ("a = true", &["found true, expected a number"]),
-        ("a = 1\ndeg = 2", &["`deg` is the name of a number"]),
-        ("a = 1\n\"x y\" = 2", &["`x y` is no name"]),
+        ("a = 1\ndeg = 2", &["`deg` is a constant already; choose another name"]),
+        ("a = 1\n\"x y\" = 2", &["`x y` is not a valid name"]),
         ("a = 1\nsin = 2", &["`sin` is the name of a function"]),
     ] {
         for kind in ["rigid-body", "driven-body"] {
@@ -191,5 +191,8 @@ fn every_kind_has_parameters() {
     };
     assert!(kind.problem(&keys("a/1")).is_ok());
     let mistakes = kind.problem(&keys("b")).unwrap_err().to_string();
-    assert!(mistakes.starts_with("inertia[3]: \"b\" is no number: unknown name `b`"), "{mistakes}");
+    assert!(
+        mistakes.starts_with("inertia[3]: \"b\" is not a number: unknown name `b`"),
+        "{mistakes}"
+    );
 }

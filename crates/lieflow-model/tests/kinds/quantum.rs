@@ -249,7 +249,7 @@ fn hamiltonians_and_unitary_fields_that_are_none_are_refused() {
             6,
             &["its determinant is"],
         ),
-        (ode("group = \"u(3)\"\nfield = [[0]]"), 5, &["found 1 rows, expected 3 for u(3)"]),
+        (ode("group = \"u(3)\"\nfield = [[0]]"), 5, &["found 1 row, expected 3 for u(3)"]),
     ] {
         let quantity = if problem.contains("matrix-ode") { "point" } else { "populations" };
         let (at, message) = super::formulas::refused(&problem, FINE, quantity);

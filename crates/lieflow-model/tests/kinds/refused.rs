@@ -230,7 +230,7 @@ fn all_values_at_once() {
         "5:12: attitude: not in SO(3)",
         "7:10: t_span is empty",
         "8:6: dt = -1",
-        "11:8: events[1].when: found nothing more",
+        "11:8: events[1].when: the formula ends here",
         "12:14: found 0",
         "14:8: an event without a name",
         "16:13: unknown direction `up`",
@@ -252,7 +252,7 @@ fn all_values_at_once() {
         "7:10: t_span is empty",
         "10:9: `every` and `count`",
         "12:5: formulas.e: found `)`",
-        "13:5: formulas.f: found nothing more",
+        "13:5: formulas.f: the formula ends here",
         "14:6: formulas.g[1]: unknown function `sine`",
     ];
     as_expected(&told(&format!("{body}[time]\nt_span = [0, 0]\n{output}")), &expected);
@@ -261,7 +261,7 @@ fn all_values_at_once() {
     let expected = [
         "6:10: t_span is empty",
         "7:6: dt = -1",
-        "10:8: events[1].when: found nothing more",
+        "10:8: events[1].when: the formula ends here",
         "11:14: found 0",
         "13:8: an event without a name",
         "14:8: events[2].when: unknown name `m9`",
@@ -274,7 +274,7 @@ fn all_values_at_once() {
     let rabi = rabi.replace("frequency = ", "frequency = \"fast\" # ");
     let message = Scene::parse("scene", &rabi).unwrap_err().to_string();
     assert!(
-        message.contains(": 2 mistakes") && message.contains("\"fast\" is no number"),
+        message.contains(": 2 mistakes") && message.contains("\"fast\" is not a number"),
         "{message}"
     );
     // Each entry of a list that is no table is told, and not the keys that it cannot have.

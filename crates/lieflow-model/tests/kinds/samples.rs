@@ -186,7 +186,7 @@ fn what_is_no_file_of_samples_is_refused_at_its_line() {
         ("t,u,u\n0,1,0\n1,2,1\n", &["data.csv: `u` is the name of a column already"]),
         ("t,k\n0,1\n1,2\n", &["data.csv: `k` is the name of a variable already"]),
         ("t,sin\n0,1\n1,2\n", &["data.csv: `sin` is the name of a function"]),
-        ("t,a b\n0,1\n1,2\n", &["data.csv: `a b` is no name"]),
+        ("t,a b\n0,1\n1,2\n", &["data.csv: `a b` is not a valid name"]),
     ] {
         let (line, message) = Folder::with(data).refused(&body(torque, "parameters.k = 1"), FINE);
         assert_eq!(line, 7, "{message}");

@@ -15,7 +15,7 @@ const FLAT: f64 = 1e-2;
 const ONE: f64 = 2e-3;
 /// The places of the edge of a band, one for each pixel or two.
 const PLACES: usize = 600;
-/// A swing has a shape where it has so many rows.
+/// A swing of at least this many rows has a shape.
 const SHAPED: usize = 6;
 
 /// A figure, and how much room it wants.
@@ -77,8 +77,8 @@ pub(super) fn constants(curves: &mut [Curve], rounding: f64) -> Option<Vec<Strin
     (values.len() == curves.len()).then_some(values)
 }
 
-/// Curves against time, with so many rows: as lines, or, with more swings than a figure can show, as bands beside a
-/// chart of the beginning.
+/// Curves against time, from `rows` rows. They are drawn as lines. If they have more swings than a figure can show, they are
+/// drawn as bands beside a chart of the beginning.
 pub(super) fn drawn(
     id: &str,
     title: &str,
@@ -91,7 +91,7 @@ pub(super) fn drawn(
     if most <= WIDE {
         let mut chart = Chart::new(id, title, axes, lines.iter().map(Line::series));
         if most > 1 && rows < SHAPED * most {
-            let few = "rows do not show the shape of so many swings: write more rows.";
+            let few = "rows are too few to show the shape of the swings: write more rows.";
             chart = chart.with_caption(format!("{rows} {few}"));
         }
         return if most > NARROW { Drawn::Wide(chart) } else { Drawn::Narrow(chart) };
@@ -154,7 +154,7 @@ impl Line {
     }
 }
 
-/// The highest minus the lowest; what is no number is passed over.
+/// The highest minus the lowest. NaN is ignored.
 fn height_of<'a>(points: impl IntoIterator<Item = &'a (f64, f64)>) -> f64 {
     let values = points.into_iter().map(|point| point.1).filter(|x| !x.is_nan());
     let none = (f64::INFINITY, f64::NEG_INFINITY);
@@ -168,7 +168,7 @@ fn lines_of(curves: &[Curve], points: impl Fn(&Curve) -> Vec<(f64, f64)>) -> Vec
     let height = height_of(all.iter().flatten());
     let mut lines: Vec<Line> = Vec::new();
     for (colour, (Curve { name, .. }, points)) in curves.iter().zip(all).enumerate() {
-        // A point that is no number is near none.
+        // A NaN is near no point.
         let is_near = |(a, b): (&(f64, f64), &(f64, f64))| {
             (a.0 - b.0).abs() <= 1e-9 * b.0.abs() && (a.1 - b.1).abs() <= ONE * height
         };
@@ -203,8 +203,8 @@ fn turns(points: &[(f64, f64)]) -> Vec<usize> {
     found
 }
 
-/// The edge of the band of a line with so many swings: its highest values from the start to the end, and its lowest back
-/// to the start. Each place of the edge sees a whole swing around it.
+/// The edge of the band of a line: its highest values from the start to the end, and its lowest back to the start.
+/// Each place of the edge sees a whole swing around it.
 fn band(points: &[(f64, f64)], swings: usize) -> Vec<(f64, f64)> {
     let finite: Vec<_> = points.iter().filter(|(_, x)| x.is_finite()).copied().collect();
     let (Some(&(start, _)), Some(&(end, _))) = (finite.first(), finite.last()) else {

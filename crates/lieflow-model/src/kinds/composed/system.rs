@@ -72,7 +72,7 @@ impl Space {
         }
     }
 
-    /// Its dimension: so many formulas are its field.
+    /// Its dimension, which is the number of formulas of its field.
     pub(super) fn dim(&self) -> usize {
         match self {
             Space::Vector(_) | Space::Rotation(_) => 3,
@@ -124,7 +124,7 @@ pub(super) struct Coupled<S: Number> {
     parts: Vec<Part>,
 }
 
-/// The group of so many vectors, rotations and numbers.
+/// The group of these numbers of vectors, rotations and numbers.
 ///
 /// # Errors
 /// As [`Power::new`].

@@ -52,8 +52,8 @@ pub(super) fn on(named: Named, given: Given) -> Result<Forms, ReadError> {
     let momentum = match (algebra, momentum?) {
         (Algebra::So, Numbers::List(above)) => antisymmetric(&above).ok_or_else(|| {
             let message = format!(
-                "found {} numbers, expected the n(n-1)/2 entries above the diagonal, or n rows of n",
-                above.len()
+                "found {}, expected the n(n-1)/2 entries above the diagonal, or n rows of n",
+                amount(above.len(), "numbers")
             );
             Refusal::at("momentum", message)
         })?,

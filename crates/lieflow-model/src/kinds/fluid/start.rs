@@ -150,8 +150,8 @@ impl Fields for Zeitlin<Sphere> {
     fn mode(&self, mode: &[f64]) -> Result<ComplexMatrix, String> {
         let &[degree, order, amplitude] = mode else {
             return Err(format!(
-                "found {} numbers, expected [degree, order, amplitude]",
-                mode.len()
+                "found {}, expected [degree, order, amplitude]",
+                amount(mode.len(), "numbers")
             ));
         };
         let l = whole("degree", degree, [1.0, self.n() as f64 - 1.0])?;
@@ -200,7 +200,10 @@ impl Fields for Zeitlin<Torus> {
     }
     fn mode(&self, mode: &[f64]) -> Result<ComplexMatrix, String> {
         let &[m1, m2, a, b] = mode else {
-            return Err(format!("found {} numbers, expected [m1, m2, a, b]", mode.len()));
+            return Err(format!(
+                "found {}, expected [m1, m2, a, b]",
+                amount(mode.len(), "numbers")
+            ));
         };
         if m1 == 0.0 && m2 == 0.0 {
             return Err("mode [0, 0] is the mean of the vorticity, which is 0 on a torus; expected another mode".into());

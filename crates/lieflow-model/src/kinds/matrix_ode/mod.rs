@@ -95,13 +95,13 @@ fn read(mut keys: Keys) -> Result<Forms, ReadError> {
         all!(field, field_imaginary, real, start_imaginary)?;
     let (n, by_upper, mut field) = entries_of(algebra, "field", field)?;
     if !(1..=NAMED_MAX).contains(&n) {
-        let message = format!("found {n} rows, expected 1 to {NAMED_MAX}");
+        let message = format!("found {}, expected 1 to {NAMED_MAX}", amount(n, "rows"));
         return Err(Refusal::at("field", message).into());
     }
     if let Some(imaginary) = field_imaginary {
         let (rows, _, imaginary) = entries_of(algebra, "field_imaginary", imaginary)?;
         if rows != n {
-            let message = format!("found {rows} rows, expected {n} as field has");
+            let message = format!("found {}, expected {n} as field has", amount(rows, "rows"));
             return Err(Refusal::at("field_imaginary", message).into());
         }
         let below = |((i, j), key, text)| ((n + i, j), key, text);
@@ -161,7 +161,8 @@ fn entries_of(
     let n = rows.len();
     if above.is_empty() {
         if let Some(i) = rows.iter().position(|row| row.len() != n) {
-            let message = format!("row {} has {} formulas, expected {n}", i + 1, rows[i].len());
+            let message =
+                format!("row {} has {}, expected {n}", i + 1, amount(rows[i].len(), "formulas"));
             return Err(Refusal::at(key.index(i), message));
         }
         let places = (0..n).flat_map(|i| (0..n).map(move |j| (i, j)));
@@ -177,9 +178,9 @@ fn entries_of(
         }
         _ => {
             let message = format!(
-                "found {} formulas that are in no row, expected n rows of n formulas or, of so, the n(n-1)/2 formulas \
+                "found {} in no row, expected n rows of n formulas or, of so, the n(n-1)/2 formulas \
                  above the diagonal",
-                above.len()
+                amount(above.len(), "formulas")
             );
             Err(Refusal::at(key, message))
         }

@@ -7,7 +7,7 @@ use lieflow::samples::Samples;
 use super::OwnField;
 use crate::formula::{Formula, Texts, Which};
 use crate::kinds::prelude::*;
-use crate::reader::{Mistakes, Tree};
+use crate::reader::{Mistakes, Tree, amount};
 
 keys! { Keys [sample_keys formula_keys] {
     field: Vec<Texts> = "the formulas of each part",
@@ -17,7 +17,7 @@ keys! { Keys [sample_keys formula_keys] {
 #[derive(Clone, Debug)]
 pub struct Formulas {
     formulas: Arc<[Formula]>,
-    /// t and y have so many numbers.
+    /// The number of numbers of t and y.
     variables: usize,
 }
 
@@ -38,7 +38,8 @@ impl Formulas {
             let (names, field) = (named.names("field", all, samples), keys.field);
             let (names, field) = all!(names, field)?;
             if field.len() != counts.len() {
-                let message = format!("found {} parts, expected {}", field.len(), counts.len());
+                let message =
+                    format!("found {}, expected {}", amount(field.len(), "parts"), counts.len());
                 return Err(Refusal::at("field", message).into());
             }
             let mut formulas = Vec::new();

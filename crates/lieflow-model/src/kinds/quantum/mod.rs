@@ -190,7 +190,7 @@ impl Stated {
             let Some(rows) = rows else { continue };
             if rows.is_empty() || rows.len() != n {
                 let expected = if n == 0 { "at least 1".into() } else { n.to_string() };
-                let message = format!("found {} rows, expected {expected}", rows.len());
+                let message = format!("found {}, expected {expected}", amount(rows.len(), "rows"));
                 return Err(Refusal::at(key, message).into());
             }
             let whole = rows.iter().all(|row| row.len() == n);
@@ -198,10 +198,10 @@ impl Stated {
                 let first = if whole { 0 } else { i };
                 if row.len() != n - first {
                     let message = format!(
-                        "row {} has {} formulas, expected {}: all rows have {n}, or those on and above the diagonal \
+                        "row {} has {}, expected {}: all rows have {n}, or those on and above the diagonal \
                          alone, {n} in the first row and one less in each row below it",
                         i + 1,
-                        row.len(),
+                        amount(row.len(), "formulas"),
                         n - first
                     );
                     return Err(Refusal::at(key.index(i), message).into());
@@ -348,8 +348,9 @@ fn state(
     let one_a_level = |key: &str, numbers: Option<List>| {
         let n = *seen(n)?;
         let numbers = numbers.map_or(vec![0.0; n], |numbers| numbers.values());
-        let message =
-            || format!("found {} numbers, expected {n}, one for each level", numbers.len());
+        let message = || {
+            format!("found {}, expected {n}, one for each level", amount(numbers.len(), "numbers"))
+        };
         match numbers.len() == n {
             true => Ok(numbers),
             false => Err(ReadError::from(Refusal::at(key, message()))),
