@@ -243,7 +243,7 @@ impl Tolerance {
         }
     }
 
-    /// Checks that each of so many parts has a tolerance, and each component an atol.
+    /// Checks that each of `parts` parts has a tolerance, and each component an atol.
     pub(crate) fn check(&self, parts: usize, components_fit: bool) -> Result<(), Error> {
         if !components_fit {
             let given = self.parts.iter().map(|part| part.components.len()).max().unwrap_or(0);

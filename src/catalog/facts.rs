@@ -1,7 +1,6 @@
 //! What is known of a method: its order, what it takes, what it preserves, what a step costs.
 //!
-//! These are types, and listings are printed from them: what a program decides and what a reader is told are
-//! one fact.
+//! These are types, and listings are printed from them. So a program and its reader have the same facts.
 
 use core::fmt;
 
@@ -328,7 +327,7 @@ impl Cost {
     pub(super) const fn of(work: &'static [WorkItem]) -> Self {
         Cost { iterations: None, work, other_case: OtherCase::Nothing }
     }
-    /// A step that does this in each of so many iterations.
+    /// A step that does this in each of its iterations.
     pub(super) const fn iterated(iterations: (u32, u32), work: &'static [WorkItem]) -> Self {
         Cost { iterations: Some(iterations), work, other_case: OtherCase::Nothing }
     }
@@ -339,7 +338,7 @@ impl Cost {
         work.map_or(Count::Exactly(0), |work| work.count)
     }
 
-    /// Evaluations of f, F or A in a step with a tableau of so many stages; none for an implicit method, whose
+    /// Evaluations of f, F or A in a step with a tableau of `stages` stages. `None` for an implicit method, whose
     /// number depends on the step, and for a method that evaluates no field.
     pub fn evaluations(&self, stages: u64) -> Option<u64> {
         use Operation::{AmbientField, Field, LinearField};

@@ -186,7 +186,7 @@ const ROUNDING: f64 = 3e-12;
 const ENOUGH: usize = 8;
 /// The largest number of errors through which a measured order is a straight line.
 const FITTED: usize = 4;
-/// The error of a run with adaptive steps is at most so many times the tolerance, for each of its steps.
+/// The error of a run with adaptive steps is at most this many times the tolerance, for each of its steps.
 const PER_STEP: f64 = 3.0;
 /// The same for the distance of points by steps from points by dense output.
 const APART_PER_STEP: f64 = 0.3;
@@ -243,7 +243,7 @@ impl Reference {
         self.floor
     }
 
-    /// The first so many rows.
+    /// The first `rows` rows.
     fn first(&self, rows: usize) -> Self {
         let (times, rows) = (self.times[..rows].to_vec(), self.rows[..rows].to_vec());
         let t_span = [self.t_span[0], times[times.len() - 1]];
@@ -422,7 +422,7 @@ pub fn runs_agree(subject: &dyn Subject, reference: &Reference) -> Vec<Finding> 
     findings
 }
 
-/// Runs with so many steps to the last row, and to some rows before.
+/// Runs with `steps` steps to the last row, and to some rows before.
 fn equal(subject: &dyn Subject, reference: &Reference, steps: u64) -> Result<Vec<Record>, String> {
     let to = |before: usize| {
         let Reference { t_span, times, .. } = reference.first(reference.rows.len() - before);

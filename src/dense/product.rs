@@ -55,7 +55,7 @@ fn product(out: &mut Mat<f64>, a: MatRef<'_, f64>, b: MatRef<'_, f64>, alpha: f6
     }
 }
 
-/// The operations of so many entries of a product.
+/// The operations of `entries` entries of a product.
 #[inline(always)]
 fn tally_product(entries: usize, k: usize, alpha: f64, add: bool) {
     let scaled = if alpha.abs() == 1.0 { 0 } else { entries };

@@ -51,7 +51,7 @@ pub enum EnsembleMethod {
 
 /// The number of bodies in a block. Their data fit into the first cache.
 const BLOCK: usize = 64;
-/// After so many steps g is corrected to the group, and |m| to its first value, if the method conserves them.
+/// After this many steps g is corrected to the group, and |m| to its first value, if the method conserves them.
 const RESTORE_EVERY: u64 = 64;
 /// The allowed distance of an attitude from the rotations.
 const ROTATION: f64 = 1e-6;

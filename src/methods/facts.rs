@@ -13,7 +13,7 @@ pub struct StepCost {
 }
 
 impl StepCost {
-    /// The cost of so many steps.
+    /// The cost of n steps.
     pub fn times(self, n: u64) -> Self {
         StepCost {
             evaluations: self.evaluations.map(|evaluations| n * evaluations),

@@ -158,7 +158,7 @@ pub struct MapCounts {
 }
 
 impl MapCounts {
-    /// The counts of so many steps.
+    /// The counts of n steps.
     pub fn times(self, n: u64) -> Self {
         let MapCounts { psi, dpsi_inv, brackets } = self;
         MapCounts { psi: n * psi, dpsi_inv: n * dpsi_inv, brackets: n * brackets }

@@ -62,8 +62,10 @@ impl CliError {
         move |source| CliError::Io { doing, path: path.into(), source }
     }
 
-    /// The exit code: 1 for a check that does not hold and for what cannot be written or may not be, 130 for a run
-    /// that was interrupted, 2 for everything else.
+    /// The exit code.
+    ///
+    /// It is 1 if a check fails or if a file cannot or must not be written. It is 130 for a run that was interrupted.
+    /// It is 2 for everything else.
     pub fn exit_code(&self) -> u8 {
         match self {
             CliError::Failed(_)

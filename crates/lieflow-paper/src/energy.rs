@@ -24,7 +24,7 @@ pub struct EnergyRun {
     pub seconds_per_step: f64,
 }
 
-/// One sample of so many has its defect computed.
+/// The defect is computed once in this many samples.
 const EVERY: usize = 16;
 
 impl EnergyRun {

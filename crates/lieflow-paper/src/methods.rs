@@ -201,7 +201,7 @@ impl PaperMethod {
     }
 
     /// Run it from the initial data, and show t, the momentum in the body and the attitude, where it is in
-    /// the state, after every so many steps.
+    /// the state, after every given number of steps.
     ///
     /// # Errors
     /// A body that cannot be, or a step that fails.
@@ -227,7 +227,7 @@ impl PaperMethod {
         })
     }
 
-    /// The operations of a step of this length from the initial state; none where the step fails.
+    /// The operations of a step of this length from the initial state. `None` if the step fails.
     ///
     /// # Errors
     /// A body that cannot be.

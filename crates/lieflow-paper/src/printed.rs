@@ -22,7 +22,7 @@ pub struct Table4 {
     pub method: PaperMethod,
     /// To 1e-3 and 1e-6, for each test.
     pub printed: [[f64; 2]; 2],
-    /// Operations of a step, for each test; none where no constant fits the two numbers.
+    /// Operations of a step, for each test. `None` if no constant fits the two numbers.
     pub per_step: [Option<f64>; 2],
 }
 

@@ -22,13 +22,13 @@ impl Fit {
         self.squares[1] += before[0] * (x - self.mean[0]);
     }
 
-    /// The slope; none where all points have one x.
+    /// The slope. `None` if all points have one x.
     pub fn slope(&self) -> Option<f64> {
         let [together, alone] = self.squares;
         (alone != 0.0).then_some(together / alone)
     }
 
-    /// The value of the line at x; none where it has no slope.
+    /// The value of the line at x. `None` if it has no slope.
     pub fn at(&self, x: f64) -> Option<f64> {
         Some(self.mean[1] + self.slope()? * (x - self.mean[0]))
     }

@@ -84,7 +84,7 @@ pub(super) fn apart(
     Ok((faer(dense(g) * (Matrix::identity(n, n) - p * 2.0)), faer(k * PI)))
 }
 
-/// X with gX = λX and Y with Yg = λY, YX = 𝟙, where λ has so many eigenvectors: the singular vectors of
+/// X with gX = λX and Y with Yg = λY, YX = 𝟙, where λ has `count` eigenvectors: the singular vectors of
 /// g − λ that it takes to zero.
 fn eigenspace(g: &Mat<f64>, lambda: f64, count: usize, zero: f64) -> Option<(Matrix, Matrix)> {
     let n = g.nrows();

@@ -397,8 +397,9 @@ pub fn run_scene(
     Ok(summary)
 }
 
-/// The errors of a run that took so many seconds, with a warning where they are poor; nothing where no error is asked
-/// for, and a sentence where it is not known.
+/// The errors of a run, with a warning if they are large.
+///
+/// Nothing is returned if no error is asked for, and a sentence if it is not known.
 fn check_errors(
     check: &Check<'_>,
     scene: &Scene,

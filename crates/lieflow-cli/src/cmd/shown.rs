@@ -90,7 +90,7 @@ impl<'a> Shown<'a> {
         Ok(OwnRows { reader: self.reader()?, choice: self.rows, next: 0 })
     }
 
-    /// Its zeros, of so many events.
+    /// Its zeros. `events` is the number of events.
     pub(super) fn own_zeros(&self, events: usize) -> Result<OwnZeros<'a>, String> {
         // Without events there is nothing to read.
         let reader = (events > 0).then(|| self.reader()).transpose()?;

@@ -183,7 +183,7 @@ const AGREE: f64 = 0.15;
 const SLOPES_MAX: usize = 3;
 
 impl Curve {
-    /// The error of a run, as far as it can be told: no smaller than the floor.
+    /// The error of a run, at least the floor: a smaller one cannot be measured.
     pub fn error(&self, point: &WorkPoint) -> f64 {
         if point.error < self.floor { self.floor } else { point.error }
     }
@@ -233,7 +233,7 @@ impl Curve {
     }
 
     /// The measured order: the slope of the least-squares line through log h, log error. The line goes through the
-    /// smallest runs that are clear of rounding and whose slopes agree. None where these are fewer than three.
+    /// smallest runs that are clear of rounding and whose slopes agree. `None` if these are fewer than three.
     pub fn measured_order(&self) -> Option<f64> {
         let rounding = (CLEAR * self.floor).max(ABOVE * self.rounding());
         let is_clear = |run: &WorkPoint| ASYMPTOTIC.contains(&run.error) && run.error > rounding;

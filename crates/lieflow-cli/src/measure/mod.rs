@@ -232,8 +232,7 @@ struct Line<'a> {
 }
 
 impl Line<'_> {
-    /// How long a run to this error should take, by the last run and the order; none where that says
-    /// nothing, or no smaller steps are planned.
+    /// Expected time of a run to this error. `None` if unknown.
     fn promise(&self, error: f64) -> Option<f64> {
         let (last, order) = (self.curve.points.last()?, self.curve.order?);
         let gain = (last.error.min(1.0) / error).powf(1.0 / order as f64);
@@ -242,9 +241,9 @@ impl Line<'_> {
     }
 }
 
-/// A method that is so many times slower than the best is not asked for.
+/// A method that is this many times slower than the best is left out.
 const SLOW: f64 = 8.0;
-/// An error of so many times the goal is near it.
+/// An error is near the goal if it is at most this many times the goal.
 const NEAR: f64 = 1e4;
 
 /// The number of methods that continue at a time to an error that none has reached.

@@ -9,8 +9,8 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 pub struct Progress {
     bar: ProgressBar,
     start: Instant,
-    /// When the bar was last told something by [`often`](Progress::often).
-    told: Option<Instant>,
+    /// The time of the last update by [`often`](Progress::often).
+    updated: Option<Instant>,
     hidden: bool,
 }
 
@@ -40,7 +40,7 @@ impl Progress {
             Ok(style) => bar.with_style(style),
             Err(_) => bar,
         };
-        Progress { bar, start: Instant::now(), told: None, hidden: false }
+        Progress { bar, start: Instant::now(), updated: None, hidden: false }
     }
 
     /// This share of the work is done.
@@ -54,18 +54,18 @@ impl Progress {
         self.bar.set_message(what.to_owned());
     }
 
-    /// As [`now`](Self::now), told more often than anybody reads.
+    /// Like [`now`](Self::now); most calls are dropped.
     pub fn often(&mut self, share: f64, what: impl FnOnce() -> String) {
         let now = Instant::now();
-        if self.told.is_some_and(|told| now - told < PAUSE) {
+        if self.updated.is_some_and(|last| now - last < PAUSE) {
             return;
         }
         self.now(share, &what());
-        if self.told.is_none() {
+        if self.updated.is_none() {
             // Steps before a resume do not count for the time left.
             self.bar.reset_eta();
         }
-        self.told = Some(now);
+        self.updated = Some(now);
         if self.hidden && now - self.start >= WAIT {
             self.hidden = false;
             self.bar.set_draw_target(ProgressDrawTarget::stderr());

@@ -17,7 +17,7 @@ pub const TRAJECTORY: Names = ["trajectory.csv", "trajectory.partial.csv"];
 /// The zeros of its events.
 pub const EVENTS: Names = ["events.csv", "events.partial.csv"];
 
-/// Lines are written when there are so many bytes of them, and when the state of the run is saved.
+/// Lines are written when they have this many bytes, and when the state of the run is saved.
 const BYTES: usize = 1 << 16;
 
 /// A file of rows that is being written, in whole lines. Only [`finish`](RowFile::finish) gives it its name.

@@ -30,7 +30,7 @@ pub const ROWS: &str = "run.rows";
 /// The name of the format, and its version.
 const FORMAT: u64 = u64::from_le_bytes(*b"lf-run\x00\x02");
 
-/// Records are written when there are so many bytes of them.
+/// Records are written when they have this many bytes.
 const BYTES: usize = 1 << 16;
 
 /// What a record is of.

@@ -17,7 +17,7 @@ use super::files::remove_old;
 use super::{duration, number, rough};
 use crate::error::CliError;
 
-/// Errors of parts that are told; the file has all.
+/// Number of parts whose errors are printed. The file has all.
 const PARTS: usize = 4;
 
 /// The name of the first column, the time.
@@ -100,7 +100,7 @@ pub struct Summary {
     /// The zeros of each event; none in a scene without events.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub events: Vec<EventSummary>,
-    /// The size of a step; none where each has its own.
+    /// The step size. `None` if each step has its own.
     pub dt: Option<f64>,
     /// The steps that were taken.
     pub steps: u64,
@@ -121,7 +121,7 @@ pub struct Summary {
     pub drift_computed_at: &'static str,
     /// The drift of each invariant that follows from what was modelled, by column.
     pub drift: BTreeMap<String, Drift>,
-    /// The distance from the exact solution at the end, by quantity; none where none is known.
+    /// The distance from the exact solution at the end, by quantity. `None` if no exact solution is known.
     pub error_at_end: Option<BTreeMap<String, f64>>,
     /// How accurate the rows are, if that is known.
     pub accuracy: Option<Accuracy>,
@@ -226,7 +226,7 @@ impl Accuracy {
     /// Sets the digits by the errors of the parts. An error below `unseen` is taken as `unseen`, because it is rounding.
     pub fn with_digits(mut self, unseen: f64) -> Self {
         let worst = self.relative();
-        // An error that is no number has no digits.
+        // A NaN has no digits.
         let digits = if worst.is_nan() { 0.0 } else { -worst.max(unseen).log10() };
         self.digits = digits.floor().max(0.0) as u32;
         self
@@ -290,7 +290,7 @@ impl Accuracy {
         told.join("; ")
     }
 
-    /// How it was found, in words; the run has so many rows.
+    /// How it was found, in words. `rows` is the number of rows of the run.
     pub fn found_in_words(&self, rows: u64) -> String {
         let by =
             |what: &str| format!("estimated by a second run {what}, {}", duration(self.seconds));
@@ -309,7 +309,7 @@ impl Accuracy {
 }
 
 impl Distance {
-    /// The relative distance; infinite where it is no number.
+    /// The relative distance; infinite if it is NaN.
     fn rank(&self) -> f64 {
         if self.relative.is_nan() { f64::INFINITY } else { self.relative }
     }
@@ -351,7 +351,7 @@ pub struct MethodSummary {
     pub tableau: Option<String>,
     /// The cut of the Baker series.
     pub q: Option<usize>,
-    /// Its order; none where it is exact.
+    /// Its order. `None` if it is exact.
     pub order: Option<usize>,
 }
 
@@ -373,7 +373,7 @@ pub struct EventSummary {
     pub marks: Vec<f64>,
 }
 
-/// How often something came: never, once, or so many times.
+/// How often something came: never, once, or a number of times.
 pub fn count_in_words(count: u64) -> String {
     match count {
         0 => "never".into(),
@@ -407,7 +407,7 @@ impl EventSummary {
         self.time_error.map(|error| format!("times right to about {}", rough(error)))
     }
 
-    /// The next zero; so many are drawn.
+    /// The next zero. At most `marks` zeros are drawn.
     pub fn see(&mut self, t: f64, marks: usize) {
         self.count += 1;
         self.first = self.first.or(Some(t));
@@ -462,12 +462,12 @@ impl Drift {
     }
 }
 
-/// A drift that is so many times the error of the run is none of the method.
+/// A drift above this many times the error of the run does not come from the method.
 const BEYOND: f64 = 1e3;
 /// A smaller relative drift is no reason to doubt a formula.
 const NO_CONSTANT: f64 = 1e-6;
 
-/// A drift at rows that is so many times the one at ends of steps comes from the rows.
+/// A drift at rows above this many times the drift at ends of steps comes from the rows.
 const OF_ROWS: f64 = 100.0;
 
 /// A drift that is being watched.
@@ -497,7 +497,7 @@ impl Watched {
         self.drift.see_end_of_step(value);
     }
 
-    /// What was seen, by a method that took so many steps.
+    /// What was seen. `steps` is the number of steps of the run.
     pub fn drift(&self, promised: bool, steps: u64) -> Drift {
         Drift {
             initial: self.drift.start,

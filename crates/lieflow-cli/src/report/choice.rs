@@ -109,7 +109,7 @@ impl Cost {
             Cost::Operations => Axis::log("operations"),
         }
     }
-    /// A chart of error and cost: lines that end at the floor, which is a line of its own. None where there is
+    /// A chart of error and cost: lines that end at the floor, which is a line of its own. `None` if there is
     /// nothing to draw.
     pub(super) fn chart(
         self,
@@ -172,7 +172,7 @@ fn point(curve: &Curve, run: &WorkPoint, cost: Cost) -> Option<Point> {
 }
 
 /// The lines of some curves, and through the runs that no other method with steps beats in both error and
-/// cost. None where there is nothing to draw.
+/// cost. `None` if there is nothing to draw.
 pub fn front_chart(
     id: &str,
     title: &str,

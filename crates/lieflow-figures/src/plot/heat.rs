@@ -172,7 +172,7 @@ impl Heat {
     }
 }
 
-/// A text so many of its own lines below the bar: on a narrow page it is larger than the picture.
+/// A text below the bar, `lines` of its own lines down: on a narrow page it is larger than the picture.
 fn below(x: f64, lines: f64, anchor: &str, content: &str) -> String {
     let (x, y, content) = (px(x), BAR + THICK, escape(content));
     format!(

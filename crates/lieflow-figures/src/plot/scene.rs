@@ -134,13 +134,13 @@ fn ellipsoid_of(sphere: &Sphere) -> Option<Ellipsoid> {
     semi.iter().all(|a| a.is_finite() && *a > 1e-6).then_some(Ellipsoid { semi })
 }
 
-/// Two points that are farther apart, seen from the centre, are not joined: the path between them is not known. In
-/// radians.
+/// Two points are not joined if they are farther apart than this, in radians from the centre. The path between them is
+/// unknown.
 const FAR: f64 = 0.25;
-/// Two points that are farther apart than this are joined only where the path goes on smoothly at both.
+/// Two points that are farther apart than this are joined only if the path is smooth at both.
 const NEAR: f64 = 0.1;
-/// The cosine of the most that a path turns at a point from one chord to the next, where it goes on smoothly. Where both
-/// ends of a chord turn more, the points pass round a circle faster than they show it, and it is not joined.
+/// The cosine of the largest turn of a smooth path from one chord to the next. A chord is not drawn if the path turns more
+/// at both of its ends: the points are too few to show the path.
 const TURN: f64 = 0.5;
 
 /// Paths that are nearer to each other are one curve to the eye: two pixels.
@@ -148,7 +148,7 @@ const SAME_CURVE: f64 = 0.01;
 /// Points of a path that are compared with another one.
 const COMPARED: usize = 64;
 
-/// About so many points of a path, at equal distances along each of its pieces.
+/// About [`COMPARED`] points of a path, at equal distances along each of its pieces.
 fn sampled(path: &[Vec<Vec3>]) -> Vec<Vec3> {
     let every = path.len().div_ceil(COMPARED).max(1);
     let count = COMPARED.div_ceil(path.len().max(1));

@@ -149,7 +149,7 @@ impl SampleKeys {
 }
 
 impl FormulaKeys {
-    /// The names of these variables, the samples, the constants and the named formulas. A variable that is no name is
+    /// The names of these variables, the samples, the constants and the named formulas. A variable that is not a valid name is
     /// refused at `key`. The mistakes of named formulas are those of [`Names::checked`].
     ///
     /// # Errors

@@ -6,7 +6,7 @@ pub const SHORT_STEPS: u64 = 2000;
 /// The time in seconds that the search may take, where the run itself took less.
 const SEARCH: f64 = 0.3;
 
-/// The time in seconds that the search may take, after a run that took so many steps in so many seconds. None: the search
+/// The time in seconds that the search may take, after a run of `steps` steps in `seconds` seconds. `None` if the search
 /// would take longer.
 pub fn time_to_search(steps: u64, seconds: f64) -> Option<f64> {
     let takes = seconds * (SHORT_STEPS + steps) as f64 / steps.max(1) as f64;

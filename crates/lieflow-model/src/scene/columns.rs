@@ -203,7 +203,7 @@ impl Columns {
     }
 }
 
-/// The first so many quantities of a model, and formulas of its columns as one more, `formulas`.
+/// The first quantities of a model, and formulas of its columns as one more, `formulas`.
 ///
 /// # Errors
 /// As [`RowFormula::on`].

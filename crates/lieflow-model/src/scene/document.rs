@@ -113,7 +113,7 @@ impl<'a> Document<'a> {
         T::read(self.get(section)?.get_ref().get(key)?).ok()
     }
 
-    /// The entries of a list at the top; none where it is missing.
+    /// The entries of a list at the top. Empty if it is missing.
     pub(super) fn entries(&self, key: &str) -> Result<&[Value<'a>], ReadError> {
         let Some(value) = self.get(key) else { return Ok(&[]) };
         let list = value.get_ref().as_array();

@@ -279,7 +279,7 @@ pub fn beside_fixed_steps<'a>(
 }
 
 impl Limits {
-    /// How steps are chosen by their error; none where they are of one size.
+    /// How steps are chosen by their error. `None` if they have one size.
     fn chosen_by_error(&self, fixed: Option<&Fixed>) -> Result<Option<StepControl>, ReadError> {
         let fixed = fixed.map(|fixed| match fixed {
             Either::First(_) => "dt",
@@ -385,7 +385,7 @@ impl OutputKeys {
         figures.for_each(|Entry(figure)| figure.spell(kind));
     }
 
-    /// The figures that are asked for. None where a mistake in them is known.
+    /// The figures that are asked for. `None` if a mistake in them is reported already.
     pub(super) fn figures(self) -> Option<Vec<PlotFigure>> {
         let entries = self.plot.ok()?.unwrap_or_default();
         Some(entries.into_iter().map(|Entry(figure)| figure).collect())

@@ -70,7 +70,7 @@ pub struct Scene {
     file: String,
     /// The columns of `[output.formulas]`.
     formulas: Vec<(String, RowFormula)>,
-    /// The figures to draw; none where the kind chooses.
+    /// The figures to draw. Empty if the kind chooses.
     pub plot: Vec<PlotFigure>,
     /// A number of what the scene states, with its samples: another one for another scene. Comments and spaces do not
     /// count.
@@ -84,7 +84,7 @@ impl Scene {
     /// names stand beside it.
     ///
     /// # Errors
-    /// [`SceneError`] with all mistakes that can be told. A scene that is returned can be run.
+    /// [`SceneError`] with all mistakes that are found. A scene that is returned can be run.
     pub fn parse(source: &str, text: &str) -> Result<Scene, SceneError> {
         Self::read(source, [text; 2], Path::new(source).parent())
     }

@@ -78,7 +78,7 @@ impl Branch {
                 }
                 let (mut a, b, mut c) = (*a, *b, *c);
                 if self.distance_to_singular(values).is_some_and(|far| far <= Branch::SINGULAR) {
-                    // The third goes on as it was.
+                    // The third angle keeps its value.
                     let low = if is_proper { b.cos() > 0.0 } else { b.sin() < 0.0 };
                     let moved = c0 - c;
                     a -= if low == rises { moved } else { -moved };
@@ -146,7 +146,7 @@ impl Branches {
             let place = first..first + places.len();
             let values = &mut numbers[places.clone()];
             branch.follow(&start[place.clone()], values);
-            // A point without values is passed over.
+            // A point without values is skipped.
             if is_end && values.iter().all(|x| x.is_finite()) {
                 end[place].copy_from_slice(values);
             }
@@ -218,7 +218,7 @@ mod tests {
         assert_eq!(falling, [1.5 - PI, -1.5]);
     }
 
-    /// At the singular angle the first and the third are known together alone: the third goes on as it was.
+    /// At the singular angle the first and the third angle are not known alone. Only their sum or difference is known.
     #[test]
     fn euler_angles_go_on_at_the_singular_one() {
         let follow = |is_proper, rises, before: [f64; 3], values: [f64; 3]| {

@@ -11,7 +11,7 @@ pub struct Dimension {
     time: i8,
 }
 
-/// The names of units; none where a scene does not say.
+/// The names of units. `None` if a scene does not name them.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Units {
     /// That of masses, such as `kg`.
@@ -45,7 +45,7 @@ impl Dimension {
         Dimension { mass, length, angle, time }
     }
 
-    /// The product of powers of these names, such as `kg·m²/s`. None where a name is missing.
+    /// The product of powers of these names, such as `kg·m²/s`. `None` if a name is missing.
     fn product(self, names: [Option<&str>; 4]) -> Option<String> {
         let powers = [self.mass, self.length, self.angle, self.time];
         let (mut above, mut below) = (Vec::new(), Vec::new());
@@ -77,7 +77,7 @@ impl fmt::Display for Dimension {
 }
 
 impl Units {
-    /// The unit of a quantity. None where the scene names not all of the units that it is made of.
+    /// The unit of a quantity. `None` if the scene does not name all units that it is made of.
     pub fn of(&self, dimension: Dimension) -> Option<String> {
         let Units { mass, length, time } = self;
         dimension.product([mass.as_deref(), length.as_deref(), Some(RADIAN), time.as_deref()])

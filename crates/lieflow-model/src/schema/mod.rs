@@ -69,8 +69,7 @@ pub enum Numbers {
 pub type Part = (usize, f64);
 
 impl Numbers {
-    /// The parts of each complex number that so many columns state, by rows: the real one and the imaginary one. None
-    /// for real numbers.
+    /// For `columns` columns: the real and imaginary part of each number, by rows. Empty for real numbers.
     pub fn parts(self, columns: usize) -> Vec<[Part; 2]> {
         let n = columns.isqrt();
         let entry = |i: usize, j: usize| {

@@ -13,7 +13,7 @@ use super::{Case, Topic};
 /// A way to compute a value: what it made of every input, and how to do it all again.
 pub(super) struct Contender {
     pub(super) name: &'static str,
-    /// None where it refused.
+    /// `None` if it refused.
     pub(super) values: Vec<Option<Mat<f64>>>,
     /// Every input once.
     pub(super) run: Box<dyn FnMut()>,

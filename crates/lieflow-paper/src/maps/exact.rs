@@ -150,7 +150,7 @@ pub type Correct<'a> = dyn Fn(&Mat<f64>) -> Option<Mat<f64>> + 'a;
 /// A residual of this size, relative to v and w, is that of a reference.
 const SOLVED: f64 = 1e-27;
 
-/// The w with `forward(w)` = v, by iterative refinement from zero; none where it is not found.
+/// The w with `forward(w)` = v, by iterative refinement from zero. `None` if it is not found.
 fn refined(
     v: &Matrix,
     forward: impl Fn(&Matrix) -> Matrix,

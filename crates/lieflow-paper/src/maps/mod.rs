@@ -174,7 +174,7 @@ impl Case {
         Case { u, v, g }
     }
 
-    /// The exact value and the unit of its error; none where it is not found.
+    /// The exact value and the unit of its error. `None` if it is not found.
     fn reference(&self, topic: Topic, rng: &mut Pcg64) -> Option<(Matrix, f64)> {
         let group = MatrixGroup::so(self.u.nrows()).ok()?;
         let u = AlgebraMatrix::new_unchecked(self.u.clone());

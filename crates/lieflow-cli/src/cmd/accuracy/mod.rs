@@ -26,7 +26,7 @@ pub(super) const LONG: Duration = Duration::from_secs(10);
 const SAMPLE: usize = 100;
 /// The search for a short pulse is given up after this many times the time that it may take.
 const MISJUDGED: f64 = 3.0;
-/// A run in short steps that ends this many estimated errors away has found something that the run has passed over.
+/// A run in short steps that ends this many estimated errors away has found something that the run did not see.
 const PASSED_OVER: f64 = 1e3;
 /// A motion that makes this of the last digits of its start is worth a warning.
 const AMPLIFIED: f64 = 1e-8;
@@ -35,11 +35,11 @@ const SMALLEST: f64 = 1e-13;
 
 /// Rows, and zeros, for which the exact motion is evaluated, at most. A zero takes some twenty evaluations.
 const EXACT: [u64; 2] = [1_000_000, 50_000];
-/// Rows that a second run reaches by a step of their own, at most: so many for each step of the run,
+/// At most this many rows for each step of the run are reached by a step of their own in a second run.
 const OF_A_STEP: u64 = 2;
-/// or so many, where that is more,
+/// This many rows are reached in any case.
 const FEW: u64 = 20_000;
-/// but of long rows so many divided by the square of their numbers. The time of a step goes with it.
+/// Of long rows at most this many, divided by the square of the numbers of a row. The time of a step grows so.
 const OF_LONG_ROWS: u64 = 100_000_000;
 /// Their times are kept in memory, so there are never more.
 const IN_MEMORY: u64 = 4_000_000;
@@ -98,7 +98,7 @@ pub(super) struct Taken {
 const CHOSEN: f64 = 0.9;
 
 impl<'a> Check<'a> {
-    /// The check of a complete run, which has shown so many rows, some of which are kept in `rows`.
+    /// The check of a complete run. `rows` keeps some of its rows.
     pub(super) fn new(
         watch: &'a Watch<'a>,
         rows: &RowSample<'_>,
@@ -140,7 +140,7 @@ impl<'a> Check<'a> {
         self.is_exact
     }
 
-    /// The errors of the run, which took so many seconds. Where a second run is needed and fails, the reason.
+    /// The errors of the run, or the reason why a second run failed. `seconds` is the time of the run.
     pub(super) fn errors(&self, seconds: f64) -> Result<Checked, String> {
         let clock = Instant::now();
         let (found_by, share, apart) = match self.is_exact {
@@ -200,7 +200,7 @@ impl<'a> Check<'a> {
     }
 
     /// The distance of the last row from that of a run in short steps, with a warning, where the steps of both runs
-    /// passed over something, such as a short pulse. Neither run evaluates f within the pulse, so the error of a step
+    /// not seen something, such as a short pulse. Neither run evaluates f within the pulse, so the error of a step
     /// shows nothing. Only the last row is compared: a pulse whose effect dies out before it is not seen.
     fn passed_over(&self, known: &Accuracy, seconds: f64) -> Option<(Accuracy, String)> {
         let clock = Instant::now();

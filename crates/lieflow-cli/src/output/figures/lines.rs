@@ -75,7 +75,7 @@ pub(super) fn against_time(
     let id = |place| if place == 0 { id.into() } else { format!("{id}-{}", place + 1) };
     let mut figures: Vec<Drawn> =
         parts.map(|(place, shown)| figure(&id(place), &shown, rows, summary)).collect();
-    // One quantity of several parts that all stay as they are is told in one line.
+    // A quantity of several parts that are all constant has one line.
     let values = figures.iter().map(|figure| match figure {
         Drawn::Constant(_, value) => Some(value.as_str()),
         _ => None,

@@ -41,7 +41,7 @@ impl Span {
     }
 }
 
-/// The least and the greatest of some numbers, in their order; what is no number is passed over.
+/// The least and the greatest of some numbers, in their order. NaN is ignored.
 fn extremes(numbers: [f64; 4]) -> [f64; 2] {
     let [mut least, mut greatest] = [0; 2];
     for (i, x) in numbers.iter().enumerate() {
