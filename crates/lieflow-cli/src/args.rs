@@ -120,7 +120,7 @@ pub struct RunArgs {
     /// Write no page and no figures.
     #[arg(long)]
     pub no_page: bool,
-    /// When a second run may be made to estimate the error: where it takes seconds, always, or never.
+    /// When a second run may be made to estimate the error: if it takes a few seconds, always, or never.
     #[arg(long, value_name = "WHEN", value_enum, default_value_t = ErrorCheck::Auto)]
     pub error_check: ErrorCheck,
     /// Go on with a run that was interrupted or killed, to the same bits.
