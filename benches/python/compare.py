@@ -84,6 +84,13 @@ def quaternion_field(t: float, y: list[float]) -> list[float]:
 
 def omega(t: float, g: np.ndarray) -> list[float]:
     """ω in the body, in floats."""
+    (a, b, c), (d, e, f), (h, i, k) = g.tolist()
+    x, y, z = M
+    return [(x * a + y * d + z * h) / J[0], (x * b + y * e + z * i) / J[1], (x * c + y * f + z * k) / J[2]]
+
+
+def omega_tumbling(t: float, g: np.ndarray) -> list[float]:
+    """The same of the tumbling body, whose M[0] is 0."""
     (_, _, _), (d, e, f), (h, i, k) = g.tolist()
     return [(M[1] * d + M[2] * h) / J[0], (M[1] * e + M[2] * i) / J[1], (M[1] * f + M[2] * k) / J[2]]
 
@@ -134,7 +141,7 @@ def one_body(name: str) -> None:
         candidates["CyRK"] = cyrk
     except ImportError:
         print("CyRK is not installed")
-    candidates["lieflow, Python f"] = ours(omega)
+    candidates["lieflow, Python f"] = ours(omega_tumbling if M[0] == 0 else omega)
     try:
         import numba
 
