@@ -1,12 +1,10 @@
 //! Arrays in and out: real numbers in C order, with the last axes of one element.
 
-use std::borrow::Cow;
-
 use lieflow::Error;
 use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
-use crate::error::argument;
+use crate::error::{argument, words};
 
 /// From this number of elements on a map releases the interpreter.
 const MANY: usize = 512;
@@ -145,10 +143,13 @@ pub(crate) fn output<'py>(
     Ok(array)
 }
 
+/// An argument by its name, with its numbers and the size of one element. A single element stands for all.
+pub(crate) type Named<'a> = (&'a str, &'a [f64], usize);
+
 /// Runs f on the numbers of the result, without the interpreter if there are many elements.
 pub(crate) fn fill<'py>(
     py: Python<'py>,
-    name: &str,
+    inputs: &[Named<'_>],
     (out, lead): (Bound<'py, PyArrayDyn<f64>>, &[usize]),
     f: impl FnOnce(&mut [f64]) -> Result<(), Error> + Send,
 ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
@@ -158,26 +159,49 @@ pub(crate) fn fill<'py>(
     let done = if many { py.detach(|| f(numbers)) } else { f(numbers) };
     match done {
         Ok(()) => Ok(out),
-        Err(error) => Err(of_element(py, name, lead, error)),
+        Err(error) => Err(of_element(py, inputs, lead, &error)),
     }
 }
 
-/// The exception of an error at an element of an array with these leading axes.
-fn of_element(py: Python<'_>, name: &str, lead: &[usize], error: Error) -> PyErr {
-    let Error::Element { mut index, source } = error else {
-        return crate::error::refused(py, name, &error);
+/// The exception of an error at an element of arguments with these leading axes. An argument with a number that is not
+/// finite is to blame, then the one that the error names, then the first.
+fn of_element(py: Python<'_>, inputs: &[Named<'_>], lead: &[usize], error: &Error) -> PyErr {
+    let first = inputs.first().map_or("out", |input| input.0);
+    let Error::Element { index, source } = error else {
+        return crate::error::refused(py, first, error);
     };
+    let named = |name: &str, is_single: bool| match is_single {
+        true => name.to_owned(),
+        false => element(name, lead, *index),
+    };
+    let single = |input: &&Named<'_>| input.1.len() == input.2;
+    let is_wrong = |input: &&Named<'_>| {
+        let start = if single(input) { 0 } else { index * input.2 };
+        let numbers = input.1.get(start..start + input.2);
+        numbers.is_some_and(|numbers| numbers.iter().any(|x| !x.is_finite()))
+    };
+    if let Some(input) = inputs.iter().find(is_wrong) {
+        let name = named(input.0, inputs.len() > 1 && single(&input));
+        return argument(py, &name, "a number that is not finite", "finite numbers");
+    }
+    let (of, value, expected) = words(first, source);
+    let input = inputs.iter().find(|input| input.0 == of);
+    let name = named(input.map_or(first, |input| input.0), false);
+    argument(py, &name, value, expected)
+}
+
+/// The name of an element of an argument with these leading axes, as `u[2, 0]`.
+pub(crate) fn element(name: &str, lead: &[usize], mut index: usize) -> String {
     let mut place = vec![0; lead.len()];
     for (axis, size) in lead.iter().enumerate().rev() {
         place[axis] = index % size.max(&1);
         index /= size.max(&1);
     }
     let place: Vec<_> = place.iter().map(usize::to_string).collect();
-    let name = match place.is_empty() {
-        true => Cow::Borrowed(name),
-        false => Cow::Owned(format!("{name}[{}]", place.join(", "))),
-    };
-    argument(py, &name, source.to_string(), "")
+    match place.is_empty() {
+        true => name.to_owned(),
+        false => format!("{name}[{}]", place.join(", ")),
+    }
 }
 
 /// The leading axes of two arguments. An argument of one element stands for all. Otherwise both are broadcast by NumPy.

@@ -29,6 +29,14 @@ pub(crate) fn argument(
 
 /// The exception of an error of the library about an argument.
 pub(crate) fn refused(py: Python<'_>, name: &str, error: &Error) -> PyErr {
+    let (of, value, expected) = words(name, error);
+    argument(py, &of, value, expected)
+}
+
+/// The argument that an error of the library is about, its value and what was expected. `name` is that of an argument
+/// where the error has none.
+pub(crate) fn words(name: &str, error: &Error) -> (String, String, String) {
+    let at_most = |tolerance: &f64| format!("at most {tolerance:e}");
     match error {
         Error::OutOfRange { arg, value, expected } => {
             // Times have the name of the argument that they come from.
@@ -37,35 +45,62 @@ pub(crate) fn refused(py: Python<'_>, name: &str, error: &Error) -> PyErr {
                 Some(rest) => format!("{name}{rest}"),
                 None => arg.clone(),
             };
-            argument(py, &arg, Plain(value).to_string(), expected.clone())
+            let (arg, value) = of_number(&arg, Plain(value).to_string());
+            (of(&arg).to_owned(), value, expected.clone())
         }
         Error::NotOnGroup { arg, group, residual, tolerance } => {
             let value = format!("a point at a relative distance of {residual:.1e} from {group}");
-            argument(py, of(arg), value, format!("at most {tolerance:e}"))
+            (of(arg).into(), value, at_most(tolerance))
         }
         Error::Reflection { arg } => {
-            argument(py, of(arg), "determinant −1", "a rotation, determinant +1")
+            (of(arg).into(), "determinant −1".into(), "a rotation, determinant +1".into())
         }
         Error::NotInAlgebra { arg, group, residual, tolerance } => {
             let value = format!(
                 "not in the Lie algebra of {group}, at a relative distance of {residual:.1e}"
             );
-            argument(py, of(arg), value, format!("at most {tolerance:e}"))
+            (of(arg).into(), value, at_most(tolerance))
         }
         Error::Determinant { arg, group, re, im } => {
             let value = format!("a matrix of determinant {}", plain_complex(*re, *im));
-            argument(py, of(arg), value, format!("1, as in {group}"))
+            (of(arg).into(), value, format!("1, as in {group}"))
         }
         Error::Trace { arg, group, distance } => {
             let value = format!("a matrix whose trace is {} away from 0", Plain(distance));
-            argument(py, of(arg), value, format!("an element of the Lie algebra of {group}"))
+            (of(arg).into(), value, format!("an element of the Lie algebra of {group}"))
         }
-        error => argument(py, name, error.to_string(), ""),
+        Error::Singular { arg, rcond, minimum } => {
+            let value = format!("singular to rounding, a reciprocal condition of {rcond:.1e}");
+            (of(arg).into(), value, format!("at least {minimum:e}"))
+        }
+        Error::NotFiniteEntry { arg, row, col, value } => (
+            format!("{}[{row}, {col}]", of(arg)),
+            Plain(value).to_string(),
+            "a finite number".into(),
+        ),
+        Error::Unsupported { what: "dense output as data", with, why } => {
+            ("dense_output".into(), format!("True with {with}"), format!("False: {why}"))
+        }
+        error => (name.into(), error.to_string(), String::new()),
+    }
+}
+
+/// The argument and its value in words, where the library tells a number of it.
+fn of_number(arg: &str, value: String) -> (String, String) {
+    if let Some(arg) = arg.strip_suffix(".len()") {
+        return (arg.into(), format!("length {value}"));
+    }
+    if let Some(arg) = arg.strip_prefix("the number of entries of ") {
+        return (arg.into(), format!("{value} entries"));
+    }
+    match arg {
+        "y − yᵀ" => ("y".into(), format!("y − yᵀ with an entry {value}")),
+        arg => (arg.into(), value),
     }
 }
 
 /// The name of an argument of the library in Python.
-fn of(name: &'static str) -> &'static str {
+fn of(name: &str) -> &str {
     match name {
         "y" => "y0",
         "f" => "fun",

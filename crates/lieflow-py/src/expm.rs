@@ -6,8 +6,8 @@ use lieflow::dense::{ComplexExponential, Exponential, ExponentialBatch, Structur
 use numpy::{Complex64, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
-use crate::arrays::{Input, fill, output, shape_text};
-use crate::error::argument;
+use crate::arrays::{Input, element, fill, output, shape_text};
+use crate::error::{argument, refused, words};
 
 /// Up to this size many matrices are taken in lanes.
 const LANES_MAX: usize = 6;
@@ -102,26 +102,77 @@ fn one_by_one(
     Ok(())
 }
 
-/// The same in so many threads.
-fn in_threads(
-    threads: usize,
+/// out ← exp of each complex matrix.
+fn complex(
     n: usize,
-    numbers: &[f64],
+    numbers: &[Complex64],
     structure: Structure,
-    out: &mut [f64],
+    out: &mut [Complex64],
 ) -> Result<(), Error> {
     let size = (n * n).max(1);
+    let mut exponential = ComplexExponential::new(n);
+    let mut g = Mat::<c64>::zeros(n, n);
+    let rows = numbers.chunks_exact(size).zip(out.chunks_exact_mut(size));
+    for (index, (row, out)) in rows.enumerate() {
+        let u = Mat::from_fn(n, n, |i, j| c64::new(row[i * n + j].re, row[i * n + j].im));
+        exponential
+            .exp(&u, structure, &mut g)
+            .map_err(|source| Error::Element { index, source: Box::new(source.into()) })?;
+        for i in 0..n {
+            for j in 0..n {
+                out[i * n + j] = Complex64::new(g[(i, j)].re, g[(i, j)].im);
+            }
+        }
+    }
+    Ok(())
+}
+
+/// How far a matrix may be from a skew one, relative to its largest entry.
+const OFF_SKEW: f64 = 1e-12;
+
+/// Refuses a matrix of n×n `numbers` that is not skew. `off` is |a_ij + conj a_ji|.
+fn check_skew<T: Copy>(
+    py: Python<'_>,
+    (n, lead): (usize, &[usize]),
+    numbers: &[T],
+    off: impl Fn(T, T) -> f64,
+    size: impl Fn(T) -> f64,
+) -> PyResult<()> {
+    for (index, a) in numbers.chunks_exact((n * n).max(1)).enumerate() {
+        let most = a.iter().map(|&x| size(x)).fold(0.0, f64::max);
+        let pairs = (0..n * n).map(|k| off(a[k], a[(k % n) * n + k / n]));
+        let distance = pairs.fold(0.0, f64::max);
+        // A matrix that is not finite has no exponential, and is refused there.
+        if most.is_finite() && distance > OFF_SKEW * most {
+            let name = element("A", lead, index);
+            let value = format!("a matrix with an entry {distance:.1e} of A + A†");
+            return Err(argument(py, &name, value, "a skew matrix, A† = −A"));
+        }
+    }
+    Ok(())
+}
+
+/// The same in so many threads.
+fn in_threads<T: Copy + Send + Sync>(
+    threads: usize,
+    n: usize,
+    numbers: &[T],
+    out: &mut [T],
+    exp: impl Fn(&[T], &mut [T]) -> Result<(), Error> + Sync,
+) -> Result<(), Error> {
+    let size = (n * n).max(1);
+    let exp = &exp;
     // Whole blocks, so that the result does not depend on the number of threads.
     let each = (numbers.len() / size).div_ceil(threads.max(1)).next_multiple_of(BLOCK);
     if threads <= 1 || numbers.is_empty() || each * size >= numbers.len() {
-        return real(n, numbers, structure, out);
+        return exp(numbers, out);
     }
     std::thread::scope(|scope| {
         let parts = numbers.chunks(each * size).zip(out.chunks_mut(each * size)).enumerate();
         let running: Vec<_> = parts
             .map(|(part, (numbers, out))| {
                 scope.spawn(move || {
-                    real(n, numbers, structure, out).map_err(|error| match error {
+                    exp(numbers, out).map_err(|error| match error {
                         Error::Element { index, source } => {
                             Error::Element { index: index + part * each, source }
                         }
@@ -152,35 +203,45 @@ fn expm<'py>(
     let mut a = Input::any("A", a, 2)?;
     let n = square(py, a.shape())?;
     let lead = a.lead().to_vec();
+    if structure == Structure::Skew {
+        check_skew(py, (n, &lead), a.numbers(), |x, y| (x + y).abs(), f64::abs)?;
+    }
     let out = output(py, (&lead, &[n, n]), out, &mut [&mut a])?;
     let numbers = a.numbers();
-    fill(py, "A", (out, &lead), |out| in_threads(threads, n, numbers, structure, out))
+    fill(py, &[("A", numbers, n * n)], (out, &lead), |out| {
+        in_threads(threads, n, numbers, out, |a, out| real(n, a, structure, out))
+    })
 }
 
 #[pyfunction]
-#[pyo3(signature = (a, structure = None))]
+#[pyo3(signature = (a, structure = None, threads = 1))]
 fn expm_complex<'py>(
     a: &Bound<'py, PyArrayDyn<Complex64>>,
     structure: Option<&str>,
+    threads: usize,
 ) -> PyResult<Bound<'py, PyArrayDyn<Complex64>>> {
     let py = a.py();
     let structure = structure_of(py, structure)?;
     let shape = a.shape().to_vec();
     let n = square(py, &shape)?;
+    let lead = &shape[..shape.len() - 2];
     let numbers = a.to_vec()?;
-    let mut out = Vec::with_capacity(numbers.len());
-    let mut exponential = ComplexExponential::new(n);
-    let mut g = Mat::<c64>::zeros(n, n);
-    for (index, row) in numbers.chunks_exact((n * n).max(1)).enumerate() {
-        let u = Mat::from_fn(n, n, |i, j| c64::new(row[i * n + j].re, row[i * n + j].im));
-        if let Err(error) = exponential.exp(&u, structure, &mut g) {
-            return Err(argument(py, &format!("A, matrix number {index}"), error.to_string(), ""));
-        }
-        for i in 0..n {
-            out.extend((0..n).map(|j| Complex64::new(g[(i, j)].re, g[(i, j)].im)));
-        }
+    if structure == Structure::Skew {
+        let off = |x: Complex64, y: Complex64| (x + y.conj()).norm();
+        check_skew(py, (n, lead), &numbers, off, Complex64::norm)?;
     }
-    numpy::PyArray1::from_vec(py, out).reshape(shape)
+    let mut out = vec![Complex64::default(); numbers.len()];
+    let done = py.detach(|| {
+        in_threads(threads, n, &numbers, &mut out, |a, out| complex(n, a, structure, out))
+    });
+    match done {
+        Ok(()) => numpy::PyArray1::from_vec(py, out).reshape(shape),
+        Err(Error::Element { index, source }) => {
+            let (_, value, expected) = words("A", &source);
+            Err(argument(py, &element("A", lead, index), value, expected))
+        }
+        Err(error) => Err(refused(py, "A", &error)),
+    }
 }
 
 pub(crate) fn add(m: &Bound<'_, PyModule>) -> PyResult<()> {

@@ -1,14 +1,15 @@
 //! The maps of a group of matrices on arrays.
 
 use faer::{Mat, MatRef};
-use lieflow::Error;
 use lieflow::dense::Structure;
 use lieflow::groups::{
     AlgebraMatrix, Form, GroupMatrix, LieAlgebra, LieGroup, MatrixGroup as Group, Sample,
 };
 use lieflow::maps::{
-    CCSK123, CCSK321, CoordinateMap, cay, cay_inv, dcay, dcayinv, dexp, dexpinv, log,
+    CCSK123, CCSK321, CoordinateMap, cay, cay_inv, dcay, dcayinv, dexp, dexpinv, dexpinv_truncated,
+    log,
 };
+use lieflow::{Error, StepError};
 use numpy::PyArrayDyn;
 use pyo3::prelude::*;
 use rand::SeedableRng;
@@ -34,6 +35,18 @@ fn write(m: &Mat<f64>, out: &mut [f64]) {
     }
 }
 
+/// The error of the second argument of a map.
+fn of_second(error: Error) -> Error {
+    let arg = "v";
+    match error {
+        Error::NotInAlgebra { group, residual, tolerance, .. } => {
+            Error::NotInAlgebra { arg, group, residual, tolerance }
+        }
+        Error::Trace { group, distance, .. } => Error::Trace { arg, group, distance },
+        error => error,
+    }
+}
+
 impl MatrixGroup {
     fn algebra(&self, rows: &[f64]) -> Result<AlgebraMatrix, Error> {
         self.0.algebra(matrix(self.0.n(), rows))
@@ -55,7 +68,7 @@ impl MatrixGroup {
         let lead = x.lead().to_vec();
         let out = output(py, (&lead, &[n, n]), out, &mut [&mut x])?;
         let numbers = x.numbers();
-        fill(py, name, (out, &lead), |out| {
+        fill(py, &[(name, numbers, n * n)], (out, &lead), |out| {
             let rows = numbers.chunks_exact(n * n).zip(out.chunks_exact_mut(n * n));
             for (index, (x, out)) in rows.enumerate() {
                 let value =
@@ -77,14 +90,14 @@ impl MatrixGroup {
         let (lead, mut u, mut v) = common(["u", "v"], both)?;
         let out = output(py, (&lead, &[n, n]), out, &mut [&mut u, &mut v])?;
         let (a, b, size) = (u.numbers(), v.numbers(), n * n);
-        fill(py, "u", (out, &lead), |out| {
+        fill(py, &[("u", a, size), ("v", b, size)], (out, &lead), |out| {
             let count = out.len() / size;
             let step = |x: &[f64]| if x.len() == size && count != 1 { 0 } else { size };
             let steps = [step(a), step(b)];
             for (index, out) in out.chunks_exact_mut(size).enumerate() {
                 let u = self.algebra(&a[steps[0] * index..][..size]);
                 let v = self.algebra(&b[steps[1] * index..][..size]);
-                let value = u.and_then(|u| f(&u, &v?));
+                let value = u.and_then(|u| f(&u, &v.map_err(of_second)?));
                 let value =
                     value.map_err(|error| Error::Element { index, source: Box::new(error) })?;
                 write(&value, out);
@@ -111,7 +124,8 @@ impl MatrixGroup {
             ("so", _) => Group::so(n),
             ("sp", _) => Group::sp(n),
             ("gl", _) => Group::gl(n),
-            _ => return Err(argument(py, "family", family, "so, sp, gl, or gm with a form")),
+            ("sl", _) => Group::sl(n),
+            _ => return Err(argument(py, "family", family, "so, sp, gl, sl, or gm with a form")),
         };
         group.map(MatrixGroup).map_err(|error| refused(py, "n", &error))
     }
@@ -127,6 +141,12 @@ impl MatrixGroup {
     fn dim(&self) -> usize {
         self.0.dim()
     }
+    /// Return exp(u) = Σ uᵏ/k! of elements of 𝔤.
+    ///
+    /// Shapes: (..., n, n); leading axes broadcast. ``out=`` is an array of float64 in C order for the result.
+    /// Errors: lieflow.ArgumentError for what is not in 𝔤 or in G, or where the map is singular, with the place of the matrix;
+    /// TypeError.
+    /// Source: A. Iserles, H. Munthe-Kaas, S. P. Nørsett, A. Zanna, Lie-group methods, Acta Numerica 9 (2000).
     #[pyo3(signature = (u, out = None))]
     fn exp<'py>(
         &self,
@@ -142,7 +162,7 @@ impl MatrixGroup {
             Form::Identity => Structure::Skew,
             _ => Structure::General,
         };
-        fill(py, "u", (out, &lead), |out| {
+        fill(py, &[("u", numbers, n * n)], (out, &lead), |out| {
             for (index, u) in numbers.chunks_exact(n * n).enumerate() {
                 self.algebra(u)
                     .map_err(|error| Error::Element { index, source: Box::new(error) })?;
@@ -150,6 +170,12 @@ impl MatrixGroup {
             crate::expm::real(n, numbers, structure, out)
         })
     }
+    /// Return the u in 𝔤 with exp(u) = g; the principal one where it is in 𝔤.
+    ///
+    /// Shapes: (..., n, n); leading axes broadcast. ``out=`` is an array of float64 in C order for the result.
+    /// Errors: lieflow.ArgumentError for what is not in 𝔤 or in G, or where the map is singular, with the place of the matrix;
+    /// TypeError.
+    /// Source: A. Iserles, H. Munthe-Kaas, S. P. Nørsett, A. Zanna, Lie-group methods, Acta Numerica 9 (2000).
     #[pyo3(signature = (g, out = None))]
     fn log<'py>(
         &self,
@@ -158,6 +184,12 @@ impl MatrixGroup {
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         self.one("g", g, out, |g| Ok(log(&self.0, &self.element(g)?)?.into_mat()))
     }
+    /// Return cay(u) = (𝟙 − u/2)⁻¹(𝟙 + u/2) of elements of 𝔤.
+    ///
+    /// Shapes: (..., n, n); leading axes broadcast. ``out=`` is an array of float64 in C order for the result.
+    /// Errors: lieflow.ArgumentError for what is not in 𝔤 or in G, or where the map is singular, with the place of the matrix;
+    /// TypeError.
+    /// Source: A. Iserles, H. Munthe-Kaas, S. P. Nørsett, A. Zanna, Lie-group methods, Acta Numerica 9 (2000).
     #[pyo3(signature = (u, out = None))]
     fn cay<'py>(
         &self,
@@ -166,6 +198,12 @@ impl MatrixGroup {
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         self.one("u", u, out, |u| Ok(cay(&self.0, &self.algebra(u)?)?.into_mat()))
     }
+    /// Return the u in 𝔤 with cay(u) = g, where −1 is no eigenvalue of g.
+    ///
+    /// Shapes: (..., n, n); leading axes broadcast. ``out=`` is an array of float64 in C order for the result.
+    /// Errors: lieflow.ArgumentError for what is not in 𝔤 or in G, or where the map is singular, with the place of the matrix;
+    /// TypeError.
+    /// Source: A. Iserles, H. Munthe-Kaas, S. P. Nørsett, A. Zanna, Lie-group methods, Acta Numerica 9 (2000).
     #[pyo3(signature = (g, out = None))]
     fn cay_inv<'py>(
         &self,
@@ -191,6 +229,12 @@ impl MatrixGroup {
             _ => Err(argument(u.py(), "order", format!("{order:?}"), "\"123\" or \"321\"")),
         }
     }
+    /// Return the element of 𝔤 that is nearest to each matrix (Frobenius).
+    ///
+    /// Shapes: (..., n, n); leading axes broadcast. ``out=`` is an array of float64 in C order for the result.
+    /// Errors: lieflow.ArgumentError for a shape, or a number that is not finite, with the place of the matrix;
+    /// TypeError.
+    /// Source: A. Iserles, H. Munthe-Kaas, S. P. Nørsett, A. Zanna, Lie-group methods, Acta Numerica 9 (2000).
     #[pyo3(signature = (x, out = None))]
     fn project<'py>(
         &self,
@@ -198,8 +242,17 @@ impl MatrixGroup {
         out: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let n = self.0.n();
-        self.one("x", x, out, |x| Ok(self.0.project_algebra(matrix(n, x).as_ref()).into_mat()))
+        self.one("x", x, out, |x| match x.iter().all(|x| x.is_finite()) {
+            true => Ok(self.0.project_algebra(matrix(n, x).as_ref()).into_mat()),
+            false => Err(StepError::NotFinite { what: "x" }.into()),
+        })
     }
+    /// Return dexp_u(v) = Σ ad_u^k v/(k + 1)!, with d/dε exp(u + εv) = dexp_u(v) exp(u).
+    ///
+    /// Shapes: (..., n, n); leading axes broadcast. ``out=`` is an array of float64 in C order for the result. Right-trivialised.
+    /// Errors: lieflow.ArgumentError for what is not in 𝔤 or in G, or where the map is singular, with the place of the matrix;
+    /// TypeError.
+    /// Source: A. Iserles, H. Munthe-Kaas, S. P. Nørsett, A. Zanna, Lie-group methods, Acta Numerica 9 (2000).
     #[pyo3(signature = (u, v, out = None))]
     fn dexp<'py>(
         &self,
@@ -209,15 +262,26 @@ impl MatrixGroup {
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         self.two((u, v), out, |u, v| dexp(&self.0, u, v))
     }
-    #[pyo3(signature = (u, v, out = None))]
+    /// dexp_u⁻¹(v), or its series Σ B_k/k! ad_u^k v up to k = q.
+    #[pyo3(signature = (u, v, q = None, out = None))]
     fn dexpinv<'py>(
         &self,
         u: &Bound<'py, PyAny>,
         v: &Bound<'py, PyAny>,
+        q: Option<usize>,
         out: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        self.two((u, v), out, |u, v| dexpinv(&self.0, u, v))
+        self.two((u, v), out, |u, v| match q {
+            None => dexpinv(&self.0, u, v),
+            Some(q) => dexpinv_truncated(&self.0, u, v, q),
+        })
     }
+    /// Return dcay_u(v) = (𝟙 − u/2)⁻¹ v (𝟙 + u/2)⁻¹, with d/dε cay(u + εv) = dcay_u(v) cay(u).
+    ///
+    /// Shapes: (..., n, n); leading axes broadcast. ``out=`` is an array of float64 in C order for the result. Right-trivialised.
+    /// Errors: lieflow.ArgumentError for what is not in 𝔤 or in G, or where the map is singular, with the place of the matrix;
+    /// TypeError.
+    /// Source: A. Iserles, H. Munthe-Kaas, S. P. Nørsett, A. Zanna, Lie-group methods, Acta Numerica 9 (2000).
     #[pyo3(signature = (u, v, out = None))]
     fn dcay<'py>(
         &self,
@@ -227,6 +291,12 @@ impl MatrixGroup {
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         self.two((u, v), out, |u, v| dcay(&self.0, u, v))
     }
+    /// Return dcay_u⁻¹(v) = (𝟙 − u/2) v (𝟙 + u/2).
+    ///
+    /// Shapes: (..., n, n); leading axes broadcast. ``out=`` is an array of float64 in C order for the result. Right-trivialised.
+    /// Errors: lieflow.ArgumentError for what is not in 𝔤 or in G, or where the map is singular, with the place of the matrix;
+    /// TypeError.
+    /// Source: A. Iserles, H. Munthe-Kaas, S. P. Nørsett, A. Zanna, Lie-group methods, Acta Numerica 9 (2000).
     #[pyo3(signature = (u, v, out = None))]
     fn dcayinv<'py>(
         &self,
@@ -236,7 +306,8 @@ impl MatrixGroup {
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         self.two((u, v), out, |u, v| dcayinv(&self.0, u, v))
     }
-    /// The distance ‖gᵀMg − M‖ of each matrix from the group, and for SO(n) 2 for a reflection.
+    /// The distance ‖gᵀMg − M‖ of each matrix from the group; 2 for a reflection, |det g − 1| on SL(n), ∞ where g has no
+    /// inverse or is not finite.
     #[pyo3(signature = (g))]
     fn defect<'py>(&self, g: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let (py, n) = (g.py(), self.0.n());
@@ -244,11 +315,15 @@ impl MatrixGroup {
         let lead = g.lead().to_vec();
         let out = output(py, (&lead, &[]), None, &mut [&mut g])?;
         let numbers = g.numbers();
-        fill(py, "g", (out, &lead), |out| {
+        fill(py, &[("g", numbers, n * n)], (out, &lead), |out| {
             for (g, out) in numbers.chunks_exact(n * n).zip(out) {
-                let reflects = matches!(self.element(g), Err(Error::Reflection { .. }));
-                let g = GroupMatrix::new_unchecked(matrix(n, g));
-                *out = if reflects { 2.0 } else { self.0.defect(&g) };
+                *out = match self.element(g) {
+                    Err(Error::Reflection { .. }) => 2.0,
+                    Err(Error::Determinant { re, .. }) => (re - 1.0).abs(),
+                    Err(Error::Singular { .. }) => f64::INFINITY,
+                    _ if g.iter().any(|x| !x.is_finite()) => f64::INFINITY,
+                    _ => self.0.defect(&GroupMatrix::new_unchecked(matrix(n, g))),
+                };
             }
             Ok(())
         })
@@ -263,7 +338,7 @@ impl MatrixGroup {
         let n = self.0.n();
         let mut rng = Pcg64::seed_from_u64(seed);
         let out = output(py, (&[count], &[n, n]), None, &mut [])?;
-        fill(py, "size", (out, &[]), |out| {
+        fill(py, &[], (out, &[]), |out| {
             for out in out.chunks_exact_mut(n * n) {
                 write(&self.0.sample_element(&mut rng), out);
             }

@@ -1,7 +1,8 @@
 //! The compiled part of the Python package `lieflow`: maps on arrays, and runs.
 //!
 //! The package in `python/lieflow` has the documented interface. It imports this module as `lieflow._lieflow`. `unsafe` is
-//! used only to write into new arrays, to read arrays whose layout was checked, and for addresses of C functions.
+//! used only to read and write arrays whose layout was checked (arguments, `out=`, new arrays), and for addresses of C
+//! functions.
 
 mod arrays;
 mod bodies;

@@ -83,6 +83,8 @@ pub(crate) fn kinds(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
         let quantities =
             quantities.map(|q| (q.name, q.column_names(), q.meaning, q.unit(&Units::default())));
         all.set_item("quantities", quantities.collect::<Vec<_>>())?;
+        let laws = (kind.quantities)().into_iter().filter_map(|q| Some((q.name, q.kept?)));
+        all.set_item("laws", laws.collect::<Vec<_>>())?;
         Ok(all)
     };
     KINDS.iter().map(kind).collect()

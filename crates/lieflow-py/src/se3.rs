@@ -2,7 +2,7 @@
 
 use lieflow::Error;
 use lieflow::groups::Se3;
-use lieflow::maps::{cay, dcayinv, dexp, dexpinv, exp, log};
+use lieflow::maps::{CCSK123, CCSK321, CoordinateMap, cay, dcayinv, dexp, dexpinv, exp, log};
 use nalgebra::{Matrix3, Vector3};
 use numpy::PyArrayDyn;
 use pyo3::prelude::*;
@@ -69,7 +69,9 @@ fn one<'py>(
     let lead = x.lead().to_vec();
     let out = output(py, (&lead, to), out, &mut [&mut x])?;
     let (numbers, sizes) = (x.numbers(), [from, to].map(|tail| tail.iter().product()));
-    fill(py, name, (out, &lead), |out| each((numbers, sizes[0]), (out, sizes[1]), f))
+    fill(py, &[(name, numbers, sizes[0])], (out, &lead), |out| {
+        each((numbers, sizes[0]), (out, sizes[1]), f)
+    })
 }
 
 fn two<'py>(
@@ -82,7 +84,7 @@ fn two<'py>(
     let (lead, mut u, mut v) = common(["u", "v"], both)?;
     let out = output(py, (&lead, &[6]), out, &mut [&mut u, &mut v])?;
     let (a, b) = (u.numbers(), v.numbers());
-    fill(py, "u", (out, &lead), |out| {
+    fill(py, &[("u", a, 6), ("v", b, 6)], (out, &lead), |out| {
         let step = |x: &[f64], n: usize| if x.len() == 6 && n != 1 { 0 } else { 6 };
         let n = out.len() / 6;
         let steps = [step(a, n), step(b, n)];
@@ -95,9 +97,17 @@ fn two<'py>(
     })
 }
 
+/// The functions, each with its first line of help.
 macro_rules! maps {
-    ($($name:ident $x:ident $from:expr, $to:expr, $f:expr;)* -- $($name2:ident $f2:expr;)*) => {
-        $(#[pyfunction]
+    ($($name:ident $x:ident $from:expr, $to:expr, $doc:literal, $f:expr;)* -- $($name2:ident $doc2:literal, $f2:expr;)*) => {
+        $(#[doc = $doc]
+        #[doc = ""]
+        #[doc = "Vectors are (ω, v), rotation first; elements are 4×4 matrices [R x; 0 1]. Leading axes stay."]
+        #[doc = "``out=`` is an array of float64 in C order for the result; it may be the argument."]
+        #[doc = "Errors: lieflow.ArgumentError for a shape, a number that is not finite, or a matrix that is no motion,"]
+        #[doc = "with the place of the element; TypeError for what is not real numbers."]
+        #[doc = "Source: A. Iserles, H. Munthe-Kaas, S. P. Nørsett, A. Zanna, Lie-group methods, Acta Numerica 9 (2000)."]
+        #[pyfunction]
         #[pyo3(signature = ($x, out = None))]
         fn $name<'py>(
             $x: &Bound<'py, PyAny>,
@@ -105,7 +115,14 @@ macro_rules! maps {
         ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
             one((stringify!($x), &$from, &$to), $f, $x, out)
         })*
-        $(#[pyfunction]
+        $(#[doc = $doc2]
+        #[doc = ""]
+        #[doc = "Shapes: (..., 6) both and of the result, (ω, v) with the rotation first; leading axes broadcast. ``out=`` is"]
+        #[doc = "an array of float64 in C order. Right-trivialised: d/dε Ψ(u + εv) = dΨ_u(v) Ψ(u), of 4×4 matrices."]
+        #[doc = "Errors: lieflow.ArgumentError for a shape, a number that is not finite, or a u at which the map is singular,"]
+        #[doc = "with the place of the element; TypeError for what is not real numbers."]
+        #[doc = "Source: A. Iserles, H. Munthe-Kaas, S. P. Nørsett, A. Zanna, Lie-group methods, Acta Numerica 9 (2000)."]
+        #[pyfunction]
         #[pyo3(signature = (u, v, out = None))]
         fn $name2<'py>(
             u: &Bound<'py, PyAny>,
@@ -123,20 +140,33 @@ macro_rules! maps {
 }
 
 maps! {
-    se3_exp u [6], [4, 4], |x, out| {
+    se3_exp u [6], [4, 4],
+    "Return exp(ω, v) = [exp ω, dexp_ω v; 0 1]: vectors (..., 6) to motions (..., 4, 4).", |x, out| {
         write_element(&exp(&GROUP, &pair(x))?, out);
         Ok(())
     };
-    se3_cay u [6], [4, 4], |x, out| {
+    se3_cay u [6], [4, 4],
+    "Return cay(ω, v) = [cay ω, (𝟙 − ω̂/2)⁻¹ v; 0 1]: vectors (..., 6) to motions (..., 4, 4).", |x, out| {
         write_element(&cay(&GROUP, &pair(x))?, out);
         Ok(())
     };
-    se3_log g [4, 4], [6], |x, out| {
+    se3_ccsk123 u [6], [4, 4],
+    "Return the translation by v times exp(ω₁e₁) exp(ω₂e₂) exp(ω₃e₃): vectors (..., 6) to motions.", |x, out| {
+        write_element(&CCSK123.eval(&GROUP, &pair(x))?, out);
+        Ok(())
+    };
+    se3_ccsk321 u [6], [4, 4],
+    "Return the translation by v times exp(ω₃e₃) exp(ω₂e₂) exp(ω₁e₁): vectors (..., 6) to motions.", |x, out| {
+        write_element(&CCSK321.eval(&GROUP, &pair(x))?, out);
+        Ok(())
+    };
+    se3_log g [4, 4], [6],
+    "Return (log R, dexp_ω⁻¹ x) of [R x; 0 1], with ω = log R and |ω| ≤ π: motions to vectors (..., 6).", |x, out| {
         write_pair(&log(&GROUP, &element(x)?)?, out);
         Ok(())
     };
     --
-    se3_dexp |u, v| dexp(&GROUP, u, v);
-    se3_dexpinv |u, v| dexpinv(&GROUP, u, v);
-    se3_dcayinv |u, v| dcayinv(&GROUP, u, v);
+    se3_dexp "Return dexp_u(v) = Σ ad_u^k v/(k + 1)!, with d/dε exp(u + εv) = dexp_u(v) exp(u).", |u, v| dexp(&GROUP, u, v);
+    se3_dexpinv "Return dexp_u⁻¹(v), the inverse of dexp_u. It is singular at |ω| = 2πk, k ≥ 1.", |u, v| dexpinv(&GROUP, u, v);
+    se3_dcayinv "Return dcay_u⁻¹(v) = (𝟙 − u/2) v (𝟙 + u/2), of 4×4 matrices.", |u, v| dcayinv(&GROUP, u, v);
 }

@@ -14,7 +14,7 @@ use pyo3::types::PyDict;
 
 use crate::arrays::{Input, output};
 use crate::curve::Curve;
-use crate::error::{argument, refused};
+use crate::error::{argument, refused, words};
 use crate::field::{self, Callable, Raised};
 use crate::formulas::Formulas;
 use crate::run::{EventParts, Fitting, LONGEST, Settings, Watch, save_of, spec_of};
@@ -155,7 +155,7 @@ impl SampledField {
         let kind = Interpolation::named(interpolation)
             .map_err(|error| refused(py, "interpolation", &error))?;
         let made = Samples::new(t, &columns, kind);
-        made.map(|samples| SampledField(samples.into())).map_err(|error| refused(py, "t", &error))
+        made.map(|samples| SampledField(samples.into())).map_err(|error| of_samples(py, &error))
     }
     /// The times within a span at which the samples are not smooth. A span beyond the samples is refused.
     fn knots(&self, py: Python<'_>, t_span: [f64; 2]) -> PyResult<Vec<f64>> {
@@ -178,6 +178,17 @@ impl SampledField {
         }
         Ok(out)
     }
+}
+
+/// The exception of samples that cannot be used: `columns[j][k]` is `values[k, j]`.
+fn of_samples(py: Python<'_>, error: &Error) -> PyErr {
+    let (arg, value, expected) = words("t", error);
+    let place = arg.strip_prefix("columns[").and_then(|rest| rest.strip_suffix(']'));
+    let arg = match place.and_then(|place| place.split_once("][")) {
+        Some((column, row)) => format!("values[{row}, {column}]"),
+        None => arg,
+    };
+    argument(py, &arg, value, expected)
 }
 
 /// The times within a span at which samples are not smooth. A span beyond them is refused.

@@ -85,7 +85,13 @@ fn parts(Refusal { key, message, help }: &Refusal) -> Parts {
     let message = message
         .strip_prefix(key)
         .map_or(message.as_str(), |rest| rest.trim_start_matches([':', '=', ' ']));
-    (from_zero(key), message.to_owned(), help.clone().unwrap_or_default())
+    (from_zero(key), of_values(message), of_values(help.as_deref().unwrap_or_default()))
+}
+
+/// The words about the tables of a scene file as words about arguments.
+fn of_values(text: &str) -> String {
+    let text = text.replace("a line `", "an entry `");
+    text.replace("[problem.parameters]", "`parameters`").replace("[problem.let]", "`let`")
 }
 
 /// The `ArgumentError` of mistakes in the keys of a problem.

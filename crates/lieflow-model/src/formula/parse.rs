@@ -347,7 +347,11 @@ impl Parser<'_> {
             }
             let names: Vec<&str> = Called::names().collect();
             let mistake = self.of_form(&format!("unknown function `{name}`"), start);
-            return Err(Mistake { help: Some(help_for(name, &names)), ..mistake });
+            let help = match name {
+                "log" => "did you mean `ln`? `log10` is that of base 10".into(),
+                name => help_for(name, &names),
+            };
+            return Err(Mistake { help: Some(help), ..mistake });
         };
         self.at += 1;
         let first = self.sum()?;

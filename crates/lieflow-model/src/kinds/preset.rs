@@ -273,7 +273,8 @@ fn as_toml(x: f64) -> String {
 impl QuantityText {
     fn info(&'static self) -> QuantityInfo {
         let QuantityText { name, meaning, .. } = self;
-        QuantityInfo { name, columns: self.columns(), meaning, dimension: None, drawn_as: "" }
+        let (columns, kept) = (self.columns(), self.kept.is_some().then_some(true));
+        QuantityInfo { name, columns, meaning, dimension: None, drawn_as: "", kept }
     }
 
     fn columns(&self) -> &[&'static str] {

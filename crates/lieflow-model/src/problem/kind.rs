@@ -59,6 +59,8 @@ pub struct QuantityInfo {
     pub dimension: Option<Dimension>,
     /// The name of the quantity that figures draw instead of this one. Empty: figures draw this one.
     pub drawn_as: &'static str,
+    /// True if the exact motion of every problem of the kind keeps it, false if that of some does, None if none does.
+    pub kept: Option<bool>,
 }
 
 impl QuantityInfo {

@@ -94,7 +94,14 @@ impl<S: System> Quantity<S> {
         value: Value<S>,
     ) -> Self {
         Quantity {
-            info: QuantityInfo { name, columns, meaning, dimension: None, drawn_as: "" },
+            info: QuantityInfo {
+                name,
+                columns,
+                meaning,
+                dimension: None,
+                drawn_as: "",
+                kept: None,
+            },
             value,
             columns: Columns::Listed,
             parts: None,
@@ -188,12 +195,14 @@ impl<S: System> Quantity<S> {
 
     /// Every problem of the kind conserves the quantity.
     pub(crate) const fn kept(self, law: Law) -> Self {
-        Quantity { law: Keepers::All(law), ..self }
+        let info = QuantityInfo { kept: Some(true), ..self.info };
+        Quantity { info, law: Keepers::All(law), ..self }
     }
 
     /// Some problems of the kind conserve the quantity, or each has a different law.
     pub(crate) const fn kept_where(self, law: fn(&S) -> Option<Law>) -> Self {
-        Quantity { law: Keepers::Where(law), ..self }
+        let info = QuantityInfo { kept: Some(false), ..self.info };
+        Quantity { info, law: Keepers::Where(law), ..self }
     }
 
     /// The quantity is a sum of terms of this size, which may cancel. Its rounding is relative to that size.

@@ -14,7 +14,7 @@ from . import se3, so3
 from ._bodies import FreeBodies
 from ._errors import ArgumentError, RunError
 from ._fields import CFunction, Field, Parts, Quantities, Samples
-from ._groups import GL, SO, Gm, Group, Sp, expm
+from ._groups import GL, SL, SO, Gm, Group, Sp, expm
 from ._integrator import Integrator
 from ._ivp import Event, solve_ivp
 from ._lieflow import __version__
@@ -91,6 +91,7 @@ __all__ = [
     "RigidBodyN",
     "RigidMotion",
     "RunError",
+    "SL",
     "SO",
     "Samples",
     "Scene",

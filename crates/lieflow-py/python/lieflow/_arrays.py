@@ -1,55 +1,121 @@
-"""Arrays from arguments: real numbers in C order, or a TypeError that names the argument."""
+"""Arguments: arrays of real numbers, single numbers, or an error that names the argument."""
 
 from __future__ import annotations
 
-from typing import Any
+import operator
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from numbers import Real
+from typing import Any, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from ._errors import ArgumentError
 
-__all__ = ["real", "together", "value", "what"]
+__all__ = [
+    "MEMBERSHIP", "elements", "finite", "first", "into", "kept", "leading", "number", "own", "real", "series", "together",
+    "value", "what", "whole",
+]
+
+Array = NDArray[np.float64]
+T = TypeVar("T")
+
+#: How far matrices may be from an algebra or from a group, relative to their size.
+MEMBERSHIP = 1e-6
+#: How many things a cache keeps.
+KEPT = 64
 
 
 def what(x: Any) -> str:
     """Describe a value that is no array of real numbers."""
     if x is None:
         return "None"
-    if isinstance(x, np.ndarray):
-        return f"an array of {x.dtype}"
     if isinstance(x, (str, bytes)):
         return f"the text {x!r}"
-    return f"a value of type {type(x).__name__}"
+    if isinstance(x, (list, tuple)):
+        try:
+            x = np.asarray(x)
+        except ValueError:
+            return "rows of different lengths"
+    if not isinstance(x, np.ndarray):
+        return f"a value of type {type(x).__name__}"
+    if x.dtype.kind == "c":
+        return f"complex numbers (an array of {x.dtype})"
+    if x.dtype.kind in "US":
+        return f"texts, such as {x.flat[0]!s:.20}" if x.size else "texts"
+    if x.dtype.kind == "O":
+        others = [entry for entry in x.flat if not _is_real(entry)]
+        return f"an array with {what(others[0])}" if others else "a number beyond the range of float64"
+    return f"an array of {x.dtype}"
 
 
-def real(name: str, x: Any) -> NDArray[np.float64]:
-    """Return x as an array of float64 in C order. Raise TypeError if it has other things than real numbers."""
+def _is_real(x: Any) -> bool:
+    return isinstance(x, Real) and not isinstance(x, str)
+
+
+def _numbers(x: Any) -> Array | None:
+    """Return x as an array of float64 in C order, or None if it has other things than real numbers."""
+    if hasattr(x, "as_matrix"):  # SciPy's Rotation and RigidTransform
+        x = x.as_matrix()
     try:
         array = np.asarray(x)
-    except ValueError:
-        raise TypeError(f"{name}: rows of different lengths, expected real numbers in an array") from None
+        # Integers of any size and fractions are objects.
+        if array.dtype.kind == "O" and x is not None and all(map(_is_real, array.flat)):
+            array = array.astype(np.float64)
+    except (ValueError, OverflowError):
+        return None
     if array.dtype.kind not in "fiub":
-        if array.size == 0 and array.dtype.kind == "O" and x is not None:
-            array = array.astype(float)
-        else:
-            found = f"complex numbers ({array.dtype})" if array.dtype.kind == "c" else what(x)
-            raise TypeError(f"{name}: {found}, expected real numbers")
+        return None
     array = np.asarray(array, dtype=np.float64)
     if not (array.flags.c_contiguous and array.flags.aligned and type(array) is np.ndarray):
         array = np.array(array, dtype=np.float64, order="C", copy=True, subok=False)
     return array
 
 
-def value(name: str, x: Any, shape: tuple[int, ...], t: float) -> NDArray[np.float64]:
+def real(name: str, x: Any) -> Array:
+    """Return x as an array of float64 in C order. Raise TypeError if it has other things than real numbers."""
+    array = _numbers(x)
+    if array is None:
+        raise TypeError(f"{name}: {what(x)}, expected real numbers in an array")
+    return array
+
+
+def own(name: str, x: Any) -> Array:
+    """Return x as an array of real numbers that nobody else can change."""
+    array = np.array(real(name, x))
+    array.flags.writeable = False
+    return array
+
+
+def number(name: str, x: Any) -> float:
+    """Return x as one real number."""
+    if isinstance(x, (str, bytes, complex)):
+        raise TypeError(f"{name}: {x!r}, expected a number")
+    array = real(name, x)
+    if array.ndim > 0:
+        raise ArgumentError(name, f"shape {array.shape}", "one number")
+    return float(array)
+
+
+def whole(name: str, x: Any, least: int = 0, most: int = 2**63 - 1) -> int:
+    """Return x as an integer from ``least`` to ``most``."""
+    if isinstance(x, (bool, np.bool_)):
+        raise TypeError(f"{name}: {x!r}, expected a number")
+    found = x if isinstance(x, int) else number(name, x)
+    if not least <= found <= most or found != int(found):
+        raise ArgumentError(name, repr(x), f"an integer from {least} to {most}" if found > most else f"an integer ≥ {least}")
+    return int(found)
+
+
+def value(name: str, x: Any, shape: tuple[int, ...], t: float) -> Array:
     """Return the value of a function of the user at t. Raise TypeError if it has another shape."""
     expected = "one number" if shape == () else f"{'real numbers of ' if len(shape) > 1 else ''}shape {shape}"
     if len(shape) == 1:
         expected = f"{shape[0]} numbers"
-    try:
-        array = real(name, x)
-    except TypeError:
-        raise TypeError(f"{name} returned {what(x)} at t = {t}, expected {expected}") from None
+    array = _numbers(x)
+    if array is None:
+        raise TypeError(f"{name} returned {what(x)} at t = {t}, expected {expected}")
     if shape == () and array.size == 1:
         array = array.reshape(())
     if array.shape != shape:
@@ -57,9 +123,75 @@ def value(name: str, x: Any, shape: tuple[int, ...], t: float) -> NDArray[np.flo
     return array
 
 
-def together(
-    name_a: str, a: NDArray[np.float64], tail_a: int, name_b: str, b: NDArray[np.float64], tail_b: int
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def first(name: str, wrong: NDArray[np.bool_], value: str, expected: str) -> None:
+    """Raise ArgumentError for the first element that is wrong."""
+    if wrong.any():
+        place = [str(int(i)) for i in np.argwhere(wrong)[0]]
+        raise ArgumentError(f"{name}[{', '.join(place)}]" if place else name, value, expected)
+
+
+def finite(name: str, x: NDArray[Any], tail: int = 0) -> None:
+    """Raise ArgumentError for the first element, with so many last axes, that has a number that is not finite."""
+    bad = ~np.isfinite(x)
+    if bad.any():
+        first(name, bad.any(axis=tuple(range(-tail, 0))), "a number that is not finite", "finite numbers")
+
+
+def into(found: NDArray[Any], out: NDArray[Any] | None) -> NDArray[Any]:
+    """Return ``out`` with the numbers of ``found``, or ``found`` without it. They may share memory with arguments."""
+    if out is None:
+        return found
+    kind = isinstance(out, np.ndarray) and out.dtype == found.dtype and out.shape == found.shape
+    if not (kind and out.flags.c_contiguous and out.flags.writeable):
+        described = f"an array of {out.dtype}, shape {out.shape}" if isinstance(out, np.ndarray) else type(out).__name__
+        raise ArgumentError("out", described, f"a writeable array of {found.dtype} in C order, shape {found.shape}")
+    out[...] = found
+    return out
+
+
+def leading(size: int | Sequence[int] | None) -> tuple[int, ...]:
+    """Return the leading axes of random elements: none, one or several."""
+    if size is None:
+        return ()
+    try:
+        axes = (operator.index(size),) if hasattr(size, "__index__") else tuple(map(operator.index, size))
+    except TypeError:
+        raise TypeError(f"size: {size!r}, expected an integer or a tuple of integers") from None
+    if any(n < 0 for n in axes):
+        raise ArgumentError("size", repr(size), "integers ≥ 0")
+    return axes
+
+
+def kept(cache: dict[Any, T], key: Any, make: Callable[[], T]) -> T:
+    """Return ``cache[key]``, which is made where it is not there. A full cache begins again."""
+    found = cache.get(key)
+    if found is None:
+        found = make()
+        if len(cache) >= KEPT:
+            cache.clear()
+        cache[key] = found
+    return found
+
+
+def series(ad: Callable[[Any, Any], Any], u: Any, v: Any, q: int) -> Any:
+    """Return Σ B_k/k! ad_u^k v up to k = q, with the Bernoulli numbers B_0 = 1, B_1 = −1/2, …"""
+    from math import comb
+
+    b: list[Fraction] = []
+    total, term, factorial = v + 0.0 * u, v, 1
+    for k in range(q + 1):
+        rest = sum((comb(k + 1, j) * b[j] for j in range(k)), Fraction(0))
+        b.append(Fraction(1) if k == 0 else -rest / (k + 1))
+        if k == 0:
+            continue
+        factorial *= k
+        term = ad(u, term)
+        if b[k]:
+            total = total + float(b[k] / factorial) * term
+    return total
+
+
+def together(name_a: str, a: Array, tail_a: int, name_b: str, b: Array, tail_b: int) -> tuple[Array, Array]:
     """Broadcast the leading axes of two arrays."""
     lead_a, lead_b = a.shape[: a.ndim - tail_a], b.shape[: b.ndim - tail_b]
     try:
@@ -71,3 +203,13 @@ def together(
     wide_a = np.broadcast_to(a, lead + a.shape[a.ndim - tail_a :])
     wide_b = np.broadcast_to(b, lead + b.shape[b.ndim - tail_b :])
     return np.ascontiguousarray(wide_a), np.ascontiguousarray(wide_b)
+
+
+def elements(name: str, x: ArrayLike, tail: tuple[int, ...], check: bool = True) -> Array:
+    """Return x as elements with these last axes; with ``check`` their numbers must be finite."""
+    array = real(name, x)
+    if array.ndim < len(tail) or array.shape[array.ndim - len(tail) :] != tail:
+        raise ArgumentError(name, f"shape {array.shape}", f"shape (..., {', '.join(map(str, tail))})")
+    if check:
+        finite(name, array, len(tail))
+    return array

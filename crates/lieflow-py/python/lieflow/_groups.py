@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _lieflow
-from ._arrays import real
+from ._arrays import MEMBERSHIP, elements, first, into, leading, own, real, what, whole
 from ._errors import ArgumentError
 
-__all__ = ["GL", "Gm", "Group", "SO", "Sp", "expm"]
+__all__ = ["GL", "Gm", "Group", "SL", "SO", "Sp", "expm"]
 
 Array = NDArray[np.float64]
 
@@ -19,30 +20,32 @@ Array = NDArray[np.float64]
 class Group:
     """A group of n×n matrices with its maps on arrays of shape (..., n, n). Leading axes broadcast.
 
-    :func:`lieflow.SO`, :func:`lieflow.GL`, :func:`lieflow.Sp` and :func:`lieflow.Gm` make it. Arguments are checked to be
-    in 𝔤 or in G. Errors: :class:`lieflow.ArgumentError` with the place of the matrix, TypeError.
+    :func:`lieflow.SO`, :func:`lieflow.GL`, :func:`lieflow.SL`, :func:`lieflow.Sp` and :func:`lieflow.Gm` make it. Arguments
+    are checked to be in 𝔤 or in G. Errors: :class:`lieflow.ArgumentError` with the place of the matrix, TypeError.
 
     ========================  ====================================================
     ``exp(u)``, ``log(g)``    the exponential and its inverse
-    ``cay(u), cay_inv(g)``    (𝟙 − u/2)⁻¹(𝟙 + u/2) and its inverse (not for GL)
+    ``cay(u), cay_inv(g)``    (𝟙 − u/2)⁻¹(𝟙 + u/2) and its inverse (not for GL and SL)
     ``dexp(u, v)``            d/dε exp(u + εv) = dexp_u(v) exp(u)
-    ``dexpinv(u, v)``         its inverse
+    ``dexpinv(u, v, q=)``     its inverse, or the series of it up to k = q
     ``dcay(u, v)``            (𝟙 − u/2)⁻¹ v (𝟙 + u/2)⁻¹
     ``dcayinv(u, v)``         (𝟙 − u/2) v (𝟙 + u/2)
     ``project(x)``            the element of 𝔤 nearest to x (Frobenius)
     ========================  ====================================================
 
     All take ``out=``, an array of float64 in C order.
+    Source: A. Iserles, H. Munthe-Kaas, S. P. Nørsett, A. Zanna, Lie-group methods, Acta Numerica 9 (2000).
     """
 
-    __slots__ = ("_args", "_group", "cay", "cay_inv", "dcay", "dcayinv", "dexp", "dexpinv", "exp", "log", "project")
+    __slots__ = ("_args", "_group", "cay", "cay_inv", "dcay", "dcayinv", "dexp", "exp", "log", "project")
 
     def __init__(self, family: str, n: int, q: int = 0, form: Array | None = None) -> None:
+        form = None if form is None else own("M", form)
         self._args = (family, n, q, form)
         flat = None if form is None else [float(x) for x in form.ravel()]
         group = self._group = _lieflow.MatrixGroup(family, n, q, flat)
         self.exp, self.log, self.cay, self.cay_inv = group.exp, group.log, group.cay, group.cay_inv
-        self.dexp, self.dexpinv, self.dcay, self.dcayinv = group.dexp, group.dexpinv, group.dcay, group.dcayinv
+        self.dexp, self.dcay, self.dcayinv = group.dexp, group.dcay, group.dcayinv
         self.project = group.project
 
     @property
@@ -64,7 +67,7 @@ class Group:
         family, n, q, form = self._args
         if family == "gm" and form is not None:
             return f"lieflow.Gm({form.tolist()})"
-        return f"lieflow.{ {'so': 'SO', 'sp': 'Sp', 'gl': 'GL'}[family] }({n}{f', {q}' if q else ''})"
+        return f"lieflow.{ {'so': 'SO', 'sp': 'Sp', 'gl': 'GL', 'sl': 'SL'}[family] }({n}{f', {q}' if q else ''})"
 
     def __reduce__(self) -> tuple[type[Group], tuple[str, int, int, Array | None]]:
         return (Group, self._args)
@@ -78,11 +81,28 @@ class Group:
     def __hash__(self) -> int:
         return hash(self._args[:3])
 
-    def _matrices(self, name: str, x: ArrayLike) -> Array:
-        array = real(name, x)
-        if array.shape[-2:] != (self.n, self.n):
-            raise ArgumentError(name, f"shape {array.shape}", f"shape (..., {self.n}, {self.n})")
-        return array
+    def _algebra(self, name: str, x: ArrayLike) -> Array:
+        """Elements of 𝔤."""
+        u = elements(name, x, (self.n, self.n))
+        off = np.abs(u - self.project(u)).max((-1, -2), initial=0.0)
+        size = np.abs(u).max((-1, -2), initial=0.0)
+        first(name, off > MEMBERSHIP * size, "a matrix that is not in the algebra", f"an element of the algebra of {self.name}")
+        return u
+
+    def _element(self, name: str, x: ArrayLike) -> Array:
+        """Elements of the group."""
+        g = elements(name, x, (self.n, self.n))
+        size = np.maximum(1.0, np.linalg.norm(g, axis=(-1, -2)) ** 2)
+        first(name, ~(self._group.defect(g) <= MEMBERSHIP * size), "a matrix that is not in the group", f"an element of {self.name}")
+        return g
+
+    def dexpinv(self, u: ArrayLike, v: ArrayLike, out: Array | None = None, *, q: int | None = None) -> Array:
+        """Return dexp_u⁻¹(v), the inverse of dexp_u; right-trivialised.
+
+        With q, the series Σ_k B_k/k! ad_u^k v is cut after k = q. Shapes: (..., n, n); leading axes broadcast.
+        Errors: ArgumentError for what is not in 𝔤, and next to eigenvalues 2πik of ad_u, k ≠ 0, where dexp_u is singular.
+        """
+        return self._group.dexpinv(u, v, None if q is None else whole("q", q), out)
 
     def ccsk(self, u: ArrayLike, out: Array | None = None, *, order: str = "123") -> Array:
         """Return canonical coordinates of the second kind, in the order "123" or "321".
@@ -91,52 +111,72 @@ class Group:
         """
         return self._group.ccsk(u, order, out)
 
-    def Ad(self, g: ArrayLike, u: ArrayLike) -> Array:
-        """Return Ad_g u = g u g⁻¹."""
-        a, b = self._matrices("g", g), self._matrices("u", u)
-        return np.asarray(np.linalg.solve(np.swapaxes(a, -1, -2), np.swapaxes(a @ b, -1, -2)).swapaxes(-1, -2))
+    def Ad(self, g: ArrayLike, u: ArrayLike, out: Array | None = None) -> Array:
+        """Return Ad_g u = g u g⁻¹, shape (..., n, n)."""
+        a, b = self._element("g", g), self._algebra("u", u)
+        found = np.linalg.solve(np.swapaxes(a, -1, -2), np.swapaxes(a @ b, -1, -2))
+        return into(np.ascontiguousarray(found.swapaxes(-1, -2)), out)
 
-    def ad(self, u: ArrayLike, v: ArrayLike) -> Array:
-        """Return ad_u v = uv − vu."""
-        a, b = self._matrices("u", u), self._matrices("v", v)
-        return np.asarray(a @ b - b @ a)
+    def ad(self, u: ArrayLike, v: ArrayLike, out: Array | None = None) -> Array:
+        """Return ad_u v = uv − vu, shape (..., n, n)."""
+        a, b = self._algebra("u", u), self._algebra("v", v)
+        return into(self.project(a @ b - b @ a), out)  # without the rounding off 𝔤
 
-    def coad(self, u: ArrayLike, m: ArrayLike) -> Array:
-        """Return ad*_u m = uᵀm − muᵀ, with ⟨m, v⟩ = tr(mᵀv)."""
-        a, b = self._matrices("u", u).swapaxes(-1, -2), self._matrices("m", m)
-        return np.asarray(a @ b - b @ a)
+    def coad(self, u: ArrayLike, m: ArrayLike, out: Array | None = None) -> Array:
+        """Return ad*_u m = uᵀm − muᵀ, with ⟨m, v⟩ = tr(mᵀv), shape (..., n, n).
+
+        A run with ``action="coadjoint"`` solves ẏ = −ad*_f y; a body has f = −ω.
+        """
+        a, b = self._algebra("u", u).swapaxes(-1, -2), elements("m", m, (self.n, self.n))
+        return into(a @ b - b @ a, out)
 
     def contains(self, g: ArrayLike, tol: float = 1e-12) -> NDArray[np.bool_]:
-        """Return True for each matrix with ‖gᵀMg − M‖ ≤ tol (Frobenius), and for SO(n) with det g > 0."""
+        """Return True for each matrix with ‖gᵀMg − M‖ ≤ tol (Frobenius).
+
+        On SO(n) det g > 0, too; on SL(n) |det g − 1| ≤ tol or 1e-10; on GL(n) g has an inverse.
+        """
         return np.asarray(self._group.defect(g) <= tol)
 
-    def random(self, size: int | tuple[int, ...] | None = None, rng: Any = None) -> Array:
+    def random(self, size: int | Sequence[int] | None = None, rng: Any = None) -> Array:
         """Return random elements, shape size + (n, n). On SO(n) they have Haar's measure."""
-        lead = () if size is None else (size,) if isinstance(size, int) else tuple(size)
+        lead = leading(size)
         seed = int(np.random.default_rng(rng).integers(0, 2**63))
         count = int(np.prod(lead, dtype=int))
         return self._group.random(count, seed).reshape(*lead, self.n, self.n)
 
 
+def size_of(name: str, n: Any, least: int = 1) -> int:
+    """Return the size of a group."""
+    if isinstance(n, bool) or not hasattr(n, "__index__"):
+        raise TypeError(f"{name}: {what(n)}, expected an integer")
+    return whole(name, n, least)
+
+
 def SO(n: int, q: int = 0) -> Group:
     """Return SO(n), gᵀg = 𝟙 and det g = 1; or SO(n, q), gᵀMg = M with M = diag(1, …, −1) and n ones."""
-    return Group("so", n, q)
+    q = size_of("q", q, 0)
+    return Group("so", size_of("n", n, 0 if q else 1), q)
 
 
 def GL(n: int) -> Group:
     """Return GL(n), all invertible matrices."""
-    return Group("gl", n)
+    return Group("gl", size_of("n", n))
+
+
+def SL(n: int) -> Group:
+    """Return SL(n), the matrices with det g = 1. cay leaves it, and is refused."""
+    return Group("sl", size_of("n", n))
 
 
 def Sp(n: int) -> Group:
     """Return Sp(n) for even n = 2m, gᵀJg = J with J = [0 𝟙; −𝟙 0]."""
-    return Group("sp", n)
+    return Group("sp", size_of("n", n))
 
 
 def Gm(M: ArrayLike) -> Group:
     """Return G_M = {g : gᵀMg = M} for an invertible real M."""
     form = real("M", M)
-    if form.ndim != 2 or form.shape[0] != form.shape[1]:
+    if form.ndim != 2 or form.shape[0] != form.shape[1] or form.size == 0:
         raise ArgumentError("M", f"shape {form.shape}", "a square matrix")
     return Group("gm", form.shape[0], 0, form)
 
@@ -147,20 +187,18 @@ def expm(
     """Return exp of each matrix of A, shape (..., n, n), float64 or complex128.
 
     With ``structure="skew"`` the matrices must be skew-symmetric or skew-Hermitian; then the result is orthogonal or
-    unitary to rounding at every norm. Up to n = 6 many matrices are computed in SIMD lanes. ``threads`` divides the real
-    matrices among threads. Errors: :class:`lieflow.ArgumentError` with the place of a matrix that has no exponential.
-    Relative error: a small multiple of ε times the condition number of exp.
+    unitary to rounding at every norm. Up to n = 6 many real matrices are computed in SIMD lanes. ``threads`` divides the
+    matrices among threads; the result does not depend on it. Errors: :class:`lieflow.ArgumentError` with the place of a
+    matrix that is not skew, where that is said, or has no exponential. Relative error: a small multiple of ε times the
+    condition number of exp.
     """
+    if not (structure is None or isinstance(structure, str)):
+        raise TypeError(f'structure: a value of type {type(structure).__name__}, expected None or "skew"')
+    threads = whole("threads", threads, 1)
     try:
         array = A if isinstance(A, np.ndarray) else np.asarray(A)
     except ValueError:
         array = real("A", A)  # rows of different lengths: it raises
     if array.dtype.kind != "c":
         return _lieflow.expm(A, structure, threads, out)
-    value = _lieflow.expm_complex(np.array(array, dtype=np.complex128, order="C"), structure)
-    if out is None:
-        return value
-    if not isinstance(out, np.ndarray) or out.dtype != np.complex128 or out.shape != value.shape:
-        raise ArgumentError("out", "another type or shape", f"an array of complex128, shape {value.shape}")
-    out[...] = value
-    return out
+    return into(_lieflow.expm_complex(np.array(array, dtype=np.complex128, order="C"), structure, threads), out)

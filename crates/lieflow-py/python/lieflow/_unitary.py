@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._arrays import real, what
+from ._arrays import finite, first, into, leading, real, series, what, whole
 from ._errors import ArgumentError
-from ._groups import SO, expm
+from ._groups import SO, expm, size_of
 
 __all__ = ["U", "ComplexPoints", "Unitary", "is_unitary_name"]
 
@@ -28,12 +29,10 @@ def is_unitary_name(name: str) -> bool:
 
 def complex_numbers(name: str, x: Any) -> Complex:
     """Return x as an array of complex128 in C order. Raise TypeError if it has other things than numbers."""
-    array = x if isinstance(x, np.ndarray) else None
-    if array is None:
-        try:
-            array = np.asarray(x)
-        except ValueError:
-            raise TypeError(f"{name}: rows of different lengths, expected complex numbers in an array") from None
+    try:
+        array = np.asarray(x)
+    except ValueError:
+        array = real(name, x)  # rows of different lengths: it raises
     if array.dtype.kind != "c":
         if array.dtype.kind not in "fiub":
             raise TypeError(f"{name}: {what(x)}, expected complex numbers")
@@ -60,6 +59,8 @@ class ComplexPoints:
             if point:
                 raise ArgumentError(name, f"shape {array.shape}", f"shape {shape}")
             raise TypeError(f"{name}: an array of shape {array.shape}, expected complex numbers of shape {shape}")
+        if point:
+            finite(name, array)
         return array.view(np.float64).reshape(*array.shape, 2)
 
 
@@ -114,7 +115,9 @@ class Unitary:
     :func:`lieflow.U` makes it. The maps are those of :class:`lieflow.Group`: ``exp``, ``log``, ``cay``, ``cay_inv``,
     ``dexp``, ``dexpinv``, ``dcay``, ``dcayinv``, ``Ad``, ``ad``, ``coad``, ``project``, ``contains``, ``random``. Elements
     of u(n) are skew-Hermitian, and arguments are checked to be in u(n) or in U(n). Physics writes exp(−iH) with a
-    Hermitian H: here u = −iH. Errors: :class:`lieflow.ArgumentError` with the place of the matrix, TypeError.
+    Hermitian H: here u = −iH. ``out=`` is an array of complex128 in C order. Differentials are right-trivialised.
+    Errors: :class:`lieflow.ArgumentError` with the place of the matrix, TypeError.
+    Source: A. Iserles, H. Munthe-Kaas, S. P. Nørsett, A. Zanna, Lie-group methods, Acta Numerica 9 (2000).
     """
 
     __slots__ = ("_n", "_real")
@@ -149,48 +152,40 @@ class Unitary:
     def __hash__(self) -> int:
         return hash(("U", self._n))
 
-    def _matrices(self, name: str, x: ArrayLike) -> Complex:
+    def _matrices(self, name: str, x: ArrayLike, check: bool = True) -> Complex:
         array = complex_numbers(name, x)
         if array.shape[-2:] != (self._n, self._n):
             raise ArgumentError(name, f"shape {array.shape}", f"shape (..., {self._n}, {self._n})")
+        if check:
+            finite(name, array, 2)
         return array
-
-    def _first(self, name: str, wrong: NDArray[np.bool_], value: str, expected: str) -> None:
-        if wrong.any():
-            place = [int(i) for i in np.argwhere(wrong)[0]]
-            raise ArgumentError(f"{name}[{', '.join(map(str, place))}]" if place else name, value, expected)
 
     def _algebra(self, name: str, x: ArrayLike) -> Complex:
         u = self._matrices(name, x)
         size = np.abs(u).max(axis=(-1, -2), initial=0.0)
-        self._first(name, ~np.isfinite(size), "a number that is not finite", "finite numbers")
         off = np.abs(u + _adjoint(u)).max(axis=(-1, -2), initial=0.0)
-        self._first(name, off > MISS * size, "a matrix with u + u† ≠ 0", "a skew-Hermitian matrix, −iH of a Hermitian H")
+        first(name, off > MISS * size, "a matrix with u + u† ≠ 0", "a skew-Hermitian matrix, −iH of a Hermitian H")
         return u
 
     def _element(self, name: str, x: ArrayLike) -> Complex:
         g = self._matrices(name, x)
-        self._first(name, ~(self.defect(g) <= MISS), "a matrix with g†g ≠ 1", "a unitary matrix")
+        first(name, ~(self.defect(g) <= MISS), "a matrix with g†g ≠ 1", "a unitary matrix")
         return g
 
     def defect(self, g: ArrayLike) -> NDArray[np.float64]:
         """Return the distance ‖g†g − 1‖ of each matrix from U(n) (Frobenius)."""
-        a = self._matrices("g", g)
-        return np.asarray(np.linalg.norm(_adjoint(a) @ a - np.eye(self._n), axis=(-1, -2)))
+        a = self._matrices("g", g, check=False)
+        with np.errstate(invalid="ignore", over="ignore"):
+            return np.asarray(np.linalg.norm(_adjoint(a) @ a - np.eye(self._n), axis=(-1, -2)))
 
     def _complex(self, x: NDArray[np.float64], out: Complex | None) -> Complex:
         n = self._n
-        value = x[..., :n, :n] + 1j * x[..., n:, :n]
-        if out is None:
-            return value
-        if not isinstance(out, np.ndarray) or out.dtype != np.complex128 or out.shape != value.shape:
-            raise ArgumentError("out", "another type or shape", f"an array of complex128, shape {value.shape}")
-        out[...] = value
-        return out
+        return into(x[..., :n, :n] + 1j * x[..., n:, :n], out)
 
     def exp(self, u: ArrayLike, out: Complex | None = None) -> Complex:
         """Return exp(u), unitary to rounding at every norm."""
-        return np.asarray(expm(self._algebra("u", u), structure="skew", out=out))
+        a = self._algebra("u", u)
+        return np.asarray(expm((a - _adjoint(a)) / 2, structure="skew", out=out))
 
     def log(self, g: ArrayLike, out: Complex | None = None) -> Complex:
         """Return the principal logarithm, with eigenvalues i(−π, π]."""
@@ -198,7 +193,7 @@ class Unitary:
         n = self._n
         off = np.abs(x[..., :n, :n] - x[..., n:, n:]) + np.abs(x[..., n:, :n] + x[..., :n, n:])
         wrong = off.max(axis=(-1, -2), initial=0.0) > 1e-8
-        self._first("g", wrong, "a matrix with −1 as an eigenvalue more than once", "a matrix with a principal logarithm")
+        first("g", wrong, "a matrix with −1 as an eigenvalue more than once", "a matrix with a principal logarithm")
         return self._complex(x, out)
 
     def cay(self, u: ArrayLike, out: Complex | None = None) -> Complex:
@@ -217,8 +212,11 @@ class Unitary:
         """Return dexp_u(v) with d/dε exp(u + εv) = dexp_u(v) exp(u)."""
         return self._two(self._real.dexp, u, v, out)
 
-    def dexpinv(self, u: ArrayLike, v: ArrayLike, out: Complex | None = None) -> Complex:
-        """Return the inverse of dexp_u, applied to v."""
+    def dexpinv(self, u: ArrayLike, v: ArrayLike, out: Complex | None = None, *, q: int | None = None) -> Complex:
+        """Return the inverse of dexp_u, applied to v. With q, its series Σ_k B_k/k! ad_u^k v is cut after k = q."""
+        if q is not None:
+            a, b = self._algebra("u", u), self._algebra("v", v)
+            return into(series(lambda x, y: x @ y - y @ x, a, b, whole("q", q)), out)
         return self._two(self._real.dexpinv, u, v, out)
 
     def dcay(self, u: ArrayLike, v: ArrayLike, out: Complex | None = None) -> Complex:
@@ -229,34 +227,36 @@ class Unitary:
         """Return (1 − u/2) v (1 + u/2)."""
         return self._two(self._real.dcayinv, u, v, out)
 
-    def project(self, x: ArrayLike) -> Complex:
+    def project(self, x: ArrayLike, out: Complex | None = None) -> Complex:
         """Return ½(x − x†), the element of u(n) nearest to x (Frobenius)."""
         a = self._matrices("x", x)
-        return np.asarray((a - _adjoint(a)) / 2)
+        return into((a - _adjoint(a)) / 2, out)
 
-    def Ad(self, g: ArrayLike, u: ArrayLike) -> Complex:
+    def Ad(self, g: ArrayLike, u: ArrayLike, out: Complex | None = None) -> Complex:
         """Return Ad_g u = g u g†."""
-        a, b = self._matrices("g", g), self._matrices("u", u)
-        return np.asarray(a @ b @ _adjoint(a))
+        a, b = self._element("g", g), self._algebra("u", u)
+        return into(a @ b @ _adjoint(a), out)
 
-    def ad(self, u: ArrayLike, v: ArrayLike) -> Complex:
+    def ad(self, u: ArrayLike, v: ArrayLike, out: Complex | None = None) -> Complex:
         """Return ad_u v = uv − vu."""
-        a, b = self._matrices("u", u), self._matrices("v", v)
-        return np.asarray(a @ b - b @ a)
+        a, b = self._algebra("u", u), self._algebra("v", v)
+        return self.project(a @ b - b @ a, out)  # without the rounding off u(n)
 
-    def coad(self, u: ArrayLike, m: ArrayLike) -> Complex:
-        """Return ad*_u m = u†m − mu†, with ⟨m, v⟩ = Re tr(m†v)."""
-        a, b = _adjoint(self._matrices("u", u)), self._matrices("m", m)
-        return np.asarray(a @ b - b @ a)
+    def coad(self, u: ArrayLike, m: ArrayLike, out: Complex | None = None) -> Complex:
+        """Return ad*_u m = u†m − mu†, with ⟨m, v⟩ = Re tr(m†v).
+
+        A run with ``action="coadjoint"`` solves ẏ = −ad*_f y.
+        """
+        a, b = _adjoint(self._algebra("u", u)), self._matrices("m", m)
+        return into(a @ b - b @ a, out)
 
     def contains(self, g: ArrayLike, tol: float = 1e-12) -> NDArray[np.bool_]:
         """Return True for each matrix with ‖g†g − 1‖ ≤ tol (Frobenius)."""
         return np.asarray(self.defect(g) <= tol)
 
-    def random(self, size: int | tuple[int, ...] | None = None, rng: Any = None) -> Complex:
+    def random(self, size: int | Sequence[int] | None = None, rng: Any = None) -> Complex:
         """Return random elements with Haar's measure, shape size + (n, n)."""
-        lead = () if size is None else (size,) if isinstance(size, int) else tuple(size)
-        generator, shape = np.random.default_rng(rng), (*lead, self._n, self._n)
+        generator, shape = np.random.default_rng(rng), (*leading(size), self._n, self._n)
         q, r = np.linalg.qr(generator.standard_normal(shape) + 1j * generator.standard_normal(shape))
         d = np.diagonal(r, axis1=-2, axis2=-1)
         return np.asarray(q * (d / np.abs(d))[..., None, :])
@@ -264,8 +264,4 @@ class Unitary:
 
 def U(n: int) -> Unitary:
     """Return U(n), g†g = 1, with complex arrays."""
-    if isinstance(n, bool) or not isinstance(n, (int, np.integer)):
-        raise TypeError(f"n: a value of type {type(n).__name__}, expected an integer")
-    if n < 1:
-        raise ArgumentError("n", repr(int(n)), "an integer ≥ 1")
-    return Unitary(int(n))
+    return Unitary(size_of("n", n))

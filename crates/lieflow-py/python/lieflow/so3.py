@@ -18,12 +18,13 @@ Source: A. Iserles, H. Munthe-Kaas, S. P. Nørsett, A. Zanna, Lie-group methods,
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._arrays import real
+from ._arrays import MEMBERSHIP, elements, first, into, leading, series, whole
 from ._errors import ArgumentError
 from ._lieflow import (
     so3_cay as cay,
@@ -65,66 +66,34 @@ __all__ = [
 Array = NDArray[np.float64]
 
 
-def _tail(name: str, x: ArrayLike, tail: tuple[int, ...]) -> Array:
-    array = real(name, x)
-    if array.shape[-len(tail) :] != tail or array.ndim < len(tail):
-        sizes = ", ".join(str(n) for n in tail)
-        raise ArgumentError(name, f"shape {array.shape}", f"shape (..., {sizes})")
-    return array
-
-
-def _into(value: Array, out: Array | None) -> Array:
-    if out is None:
-        return value
-    if not isinstance(out, np.ndarray) or out.dtype != np.float64 or out.shape != value.shape:
-        raise ArgumentError("out", "another type or shape", f"an array of float64, shape {value.shape}")
-    out[...] = value
-    return out
+def _rotations(name: str, r: ArrayLike) -> Array:
+    """Rotations, as matrices."""
+    a = elements(name, r, (3, 3))
+    first(name, ~contains(a, MEMBERSHIP), "a matrix that is no rotation", "RᵀR = 𝟙 and det R = 1")
+    return a
 
 
 def dexpinv(u: ArrayLike, v: ArrayLike, out: Array | None = None, *, q: int | None = None) -> Array:
-    """Return dexp_u⁻¹(v), shape (..., 3).
+    """Return dexp_u⁻¹(v) = v − u × v/2 + ((1 − (α/2) cot(α/2))/α²) u × (u × v), α = |u|, shape (..., 3).
 
-    With q, the series Σ_k B_k/k! ad_u^k v is cut after k = q. Next to |u| = 2πk, k ≥ 1, dexp is singular.
+    With q, the series Σ_k B_k/k! ad_u^k v is cut after k = q. Right-trivialised. Errors: ArgumentError, and next to
+    |u| = 2πk, k ≥ 1, where dexp is singular.
     """
     if q is None:
         return _dexpinv(u, v, out)
-    if q < 0 or q != int(q):
-        raise ArgumentError("q", str(q), "an integer ≥ 0")
-    a, term = _tail("u", u, (3,)), _tail("v", v, (3,))
-    total = term.copy() if q == 0 else term + 0.0 * a
-    bernoulli = _bernoulli(int(q))
-    factorial = 1.0
-    for k in range(1, int(q) + 1):
-        term = np.asarray(np.cross(a, term), dtype=np.float64)
-        factorial *= k
-        if bernoulli[k]:
-            total = total + bernoulli[k] / factorial * term
-    return _into(total, out)
-
-
-def _bernoulli(n: int) -> list[float]:
-    """The Bernoulli numbers B_0, …, B_n, with B_1 = −1/2."""
-    from fractions import Fraction
-    from math import comb
-
-    b: list[Fraction] = []
-    for m in range(n + 1):
-        rest = sum((comb(m + 1, k) * b[k] for k in range(m)), Fraction(0))
-        b.append(Fraction(1) if m == 0 else -rest / (m + 1))
-    return [float(x) for x in b]
+    return into(series(np.cross, elements("u", u, (3,)), elements("v", v, (3,)), whole("q", q)), out)
 
 
 def ccsk(u: ArrayLike, out: Array | None = None, *, order: str = "123") -> Array:
     """Return exp(u_i e_i) exp(u_j e_j) exp(u_k e_k) for the order ijk of the axes, shape (..., 3, 3)."""
     if not (isinstance(order, str) and sorted(order) == ["1", "2", "3"]):
         raise ArgumentError("order", repr(order), 'an order of the axes, such as "123" or "321"')
-    a = _tail("u", u, (3,))
+    a = elements("u", u, (3,))
     i, j, k = (exp(a * np.eye(3)[int(axis) - 1]) for axis in order)
-    return _into(i @ j @ k, out)
+    return into(i @ j @ k, out)
 
 
-def as_quaternion(r: ArrayLike, *, scalar_first: bool) -> Array:
+def as_quaternion(r: ArrayLike, out: Array | None = None, *, scalar_first: bool) -> Array:
     """Return unit quaternions (..., 4) of rotations; of q and −q the one with a real part ≥ 0.
 
     ``scalar_first`` has no default, because programs differ: True for (w, x, y, z), False for (x, y, z, w).
@@ -132,19 +101,16 @@ def as_quaternion(r: ArrayLike, *, scalar_first: bool) -> Array:
     u = log(r)
     half = 0.5 * np.linalg.norm(u, axis=-1, keepdims=True)
     vector = 0.5 * np.sinc(half / np.pi) * u
-    return np.concatenate([np.cos(half), vector] if scalar_first else [vector, np.cos(half)], axis=-1)
+    return into(np.concatenate([np.cos(half), vector] if scalar_first else [vector, np.cos(half)], axis=-1), out)
 
 
-def from_quaternion(q: ArrayLike, *, scalar_first: bool) -> Array:
+def from_quaternion(q: ArrayLike, out: Array | None = None, *, scalar_first: bool) -> Array:
     """Return the rotations (..., 3, 3) of unit quaternions (..., 4). They are normalised if they are off by at most 1e-6."""
-    a = _tail("q", q, (4,))
+    a = elements("q", q, (4,))
     norm = np.linalg.norm(a, axis=-1, keepdims=True)
-    if not (np.abs(norm - 1.0) <= 1e-6).all():
-        place = tuple(int(i) for i in np.argwhere(~(np.abs(norm[..., 0] - 1.0) <= 1e-6))[0])
-        name = f"q[{', '.join(map(str, place))}]" if place else "q"
-        raise ArgumentError(name, f"a quaternion of length {norm[place][0]}", "length 1")
+    first("q", np.abs(norm[..., 0] - 1.0) > 1e-6, "a quaternion of another length", "length 1")
     w, x, y, z = np.moveaxis(a / norm, -1, 0) if scalar_first else np.moveaxis(np.roll(a / norm, 1, -1), -1, 0)
-    return _of_quaternion(w, x, y, z)
+    return into(_of_quaternion(w, x, y, z), out)
 
 
 def _of_quaternion(w: Array, x: Array, y: Array, z: Array) -> Array:
@@ -157,61 +123,66 @@ def _of_quaternion(w: Array, x: Array, y: Array, z: Array) -> Array:
     return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
 
 
-def hat(u: ArrayLike) -> Array:
+def hat(u: ArrayLike, out: Array | None = None) -> Array:
     """Return û, the skew matrices with û x = u × x, shape (..., 3, 3)."""
-    a = _tail("u", u, (3,))
-    out = np.zeros(a.shape + (3,))
-    out[..., 2, 1], out[..., 0, 2], out[..., 1, 0] = a[..., 0], a[..., 1], a[..., 2]
-    out[..., 1, 2], out[..., 2, 0], out[..., 0, 1] = -a[..., 0], -a[..., 1], -a[..., 2]
-    return out
+    a = elements("u", u, (3,))
+    found = np.zeros(a.shape + (3,))
+    found[..., 2, 1], found[..., 0, 2], found[..., 1, 0] = a[..., 0], a[..., 1], a[..., 2]
+    found[..., 1, 2], found[..., 2, 0], found[..., 0, 1] = -a[..., 0], -a[..., 1], -a[..., 2]
+    return into(found, out)
 
 
-def vee(m: ArrayLike) -> Array:
-    """Return the vectors u of skew matrices m = û, shape (..., 3). Only m₃₂, m₁₃ and m₂₁ are read."""
-    a = _tail("m", m, (3, 3))
-    return np.stack([a[..., 2, 1], a[..., 0, 2], a[..., 1, 0]], axis=-1)
+def vee(m: ArrayLike, out: Array | None = None) -> Array:
+    """Return the vectors u of skew matrices m = û, shape (..., 3): u = (m₃₂, m₁₃, m₂₁).
+
+    m is skew to 1e-6 of its largest entry; of a product that is skew only to rounding the skew part is ½(m − mᵀ).
+    """
+    a = elements("m", m, (3, 3))
+    off = np.abs(a + np.swapaxes(a, -1, -2)).max((-1, -2), initial=0.0)
+    first("m", off > MEMBERSHIP * np.abs(a).max((-1, -2), initial=0.0), "a matrix with m + mᵀ ≠ 0", "a skew matrix")
+    return into(np.stack([a[..., 2, 1], a[..., 0, 2], a[..., 1, 0]], axis=-1), out)
 
 
-def Ad(r: ArrayLike, u: ArrayLike) -> Array:
+def Ad(r: ArrayLike, u: ArrayLike, out: Array | None = None) -> Array:
     """Return Ad_R u = R u, shape (..., 3)."""
-    return np.asarray((_tail("r", r, (3, 3)) @ _tail("u", u, (3,))[..., None])[..., 0])
+    return into((_rotations("r", r) @ elements("u", u, (3,))[..., None])[..., 0], out)
 
 
-def ad(u: ArrayLike, v: ArrayLike) -> Array:
+def ad(u: ArrayLike, v: ArrayLike, out: Array | None = None) -> Array:
     """Return ad_u v = u × v, shape (..., 3)."""
-    return np.asarray(np.cross(_tail("u", u, (3,)), _tail("v", v, (3,))))
+    return into(np.cross(elements("u", u, (3,)), elements("v", v, (3,))), out)
 
 
-def coad(u: ArrayLike, m: ArrayLike) -> Array:
-    """Return ad*_u m = m × u, shape (..., 3). Euler's equations are ṁ = ad*_ω m."""
-    return np.asarray(np.cross(_tail("m", m, (3,)), _tail("u", u, (3,))))
+def coad(u: ArrayLike, m: ArrayLike, out: Array | None = None) -> Array:
+    """Return ad*_u m = m × u, with ⟨m, v⟩ = m·v, shape (..., 3). Euler's equations are ṁ = ad*_ω m = m × ω.
+
+    A run with ``action="coadjoint"`` solves ẏ = −ad*_f y = f × y, so that a body has f = −ω.
+    """
+    return into(np.cross(elements("m", m, (3,)), elements("u", u, (3,))), out)
 
 
 def contains(r: ArrayLike, tol: float = 1e-12) -> NDArray[np.bool_]:
     """Return True for each matrix with ‖RᵀR − 𝟙‖ ≤ tol (Frobenius) and det R > 0, shape (...)."""
-    a = _tail("r", r, (3, 3))
+    a = elements("r", r, (3, 3), check=False)
     with np.errstate(invalid="ignore", over="ignore"):
         gram = np.swapaxes(a, -1, -2) @ a - np.eye(3)
         return np.asarray((np.sqrt((gram**2).sum((-1, -2))) <= tol) & (np.linalg.det(a) > 0))
 
 
-def project(x: ArrayLike) -> Array:
+def project(x: ArrayLike, out: Array | None = None) -> Array:
     """Return the rotation nearest to each matrix (Frobenius), shape (..., 3, 3).
 
     It is U diag(1, 1, det UVᵀ) Vᵀ with the singular value decomposition x = U S Vᵀ.
     """
-    a = _tail("x", x, (3, 3))
-    if not np.isfinite(a).all():
-        raise ArgumentError("x", "a number that is not finite", "finite numbers")
+    a = elements("x", x, (3, 3))
     u, _, vt = np.linalg.svd(a)
     u[..., :, 2] *= np.where(np.linalg.det(u @ vt) < 0, -1.0, 1.0)[..., None]
-    return np.asarray(u @ vt)
+    return into(u @ vt, out)
 
 
-def random(size: int | tuple[int, ...] | None = None, rng: Any = None) -> Array:
+def random(size: int | Sequence[int] | None = None, rng: Any = None) -> Array:
     """Return random rotations by Haar's measure, shape size + (3, 3). ``rng`` is as in numpy.random.default_rng."""
-    lead = () if size is None else (size,) if isinstance(size, int) else tuple(size)
-    q = np.random.default_rng(rng).standard_normal(lead + (4,))
+    q = np.random.default_rng(rng).standard_normal(leading(size) + (4,))
     w, x, y, z = np.moveaxis(q / np.linalg.norm(q, axis=-1, keepdims=True), -1, 0)
     return _of_quaternion(w, x, y, z)
 
@@ -220,7 +191,7 @@ def as_rotation(r: ArrayLike) -> Any:
     """Return SciPy's Rotation of matrices (..., 3, 3)."""
     from scipy.spatial.transform import Rotation  # type: ignore[import-untyped, import-not-found, unused-ignore]
 
-    return Rotation.from_matrix(_tail("r", r, (3, 3)))
+    return Rotation.from_matrix(_rotations("r", r))
 
 
 def from_rotation(rotation: Any) -> Array:
