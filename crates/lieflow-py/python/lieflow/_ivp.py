@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from time import perf_counter
 from typing import Any
 
@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _lieflow
-from ._arrays import real
+from ._arrays import finite, kept, number, real, what, whole
 from ._errors import ArgumentError, RunError
 from ._fields import CFunction, Field, Parts, Quantities, Samples, address
 from ._groups import Group
@@ -65,14 +65,12 @@ class Event:
             raise TypeError(f"g: a value of type {type(g).__name__}, expected a function of t and y, or a formula")
         if change is not None and not callable(change):
             raise TypeError(f"change: a value of type {type(change).__name__}, expected a function of t and y")
-        zero = _number("terminal", terminal)
-        if not (np.isfinite(zero) and zero == int(zero) and zero >= 0):
-            raise ArgumentError("terminal", repr(terminal), "an integer ≥ 0, True or False")
         self.g, self.change = g, change
-        self.terminal, self.direction = int(zero), _number("direction", direction)
+        self.terminal = int(terminal) if isinstance(terminal, (bool, np.bool_)) else whole("terminal", terminal)
+        self.direction = number("direction", direction)
         if self.direction != self.direction:
             raise ArgumentError("direction", repr(direction), "a number: its sign tells which zeros count")
-        self.points = _positive("points", points, whole=True)
+        self.points = None if points is None else whole("points", points, 1, 100_000)
         default = g if isinstance(g, str) else getattr(g, "__name__", "event")
         self.name = name if name is not None else default
 
@@ -97,24 +95,19 @@ def events_of(events: Any) -> list[Event]:
     return [_event(i, g) for i, g in enumerate(given)]
 
 
-def _number(name: str, x: Any) -> float:
-    if isinstance(x, (str, bytes, complex)):
-        raise TypeError(f"{name}: {x!r}, expected a number")
-    array = real(name, x)
-    if array.ndim > 0:
-        raise ArgumentError(name, f"shape {array.shape}", "one number")
-    return float(array)
-
-
-def _positive(name: str, x: Any, whole: bool = False) -> Any:
+def _positive(name: str, x: Any) -> float | None:
     if x is None:
         return None
-    number = _number(name, x)
     if isinstance(x, (bool, np.bool_)):
         raise TypeError(f"{name}: {x!r}, expected a number")
-    if not number > 0 or (whole and (not np.isfinite(number) or number != int(number))):
-        raise ArgumentError(name, repr(x), "an integer > 0" if whole else "a number > 0")
-    return int(number) if whole else number
+    found = number(name, x)
+    if not found > 0:
+        raise ArgumentError(name, repr(x), "a number > 0")
+    return found
+
+
+def _count(name: str, x: Any) -> int | None:
+    return None if x is None else whole(name, x, 1)
 
 
 def _flag(name: str, x: Any) -> bool:
@@ -173,16 +166,17 @@ def settings_of(
     """Return the settings of the steps, checked."""
     if dt is not None and steps is not None:
         raise ArgumentError("steps", repr(steps), "only one of dt and steps")
+    longest = _positive("max_step", max_step)
     return {
-        "rtol": None if rtol is None else _number("rtol", rtol),
-        "atol": None if atol is None else _number("atol", atol),
+        "rtol": None if rtol is None else number("rtol", rtol),
+        "atol": None if atol is None else number("atol", atol),
         "first_step": _positive("first_step", first_step),
         "min_step": _positive("min_step", min_step),
-        "max_step": None if max_step is None or np.isinf(max_step) else _positive("max_step", max_step),
-        "max_steps": _positive("max_steps", max_steps, whole=True),
+        "max_step": None if longest == float("inf") else longest,
+        "max_steps": _count("max_steps", max_steps),
         "dt": _positive("dt", dt),
-        "steps": _positive("steps", steps, whole=True),
-        "stops": [] if isinstance(stops, tuple) and not stops else np.atleast_1d(real("stops", stops)).tolist(),
+        "steps": _count("steps", steps),
+        "stops": [] if stops is None or isinstance(stops, tuple) and not stops else np.atleast_1d(real("stops", stops)).tolist(),
         "dense_output": _flag("dense_output", dense_output),
         "linear": _flag("linear", linear),
     }
@@ -193,13 +187,7 @@ _SPACES: dict[Any, _lieflow.Space] = {}
 
 
 def _space(*given: Any) -> _lieflow.Space:
-    space = _SPACES.get(given)
-    if space is None:
-        space = _lieflow.Space(*given)
-        if len(_SPACES) >= 64:
-            _SPACES.clear()
-        _SPACES[given] = space
-    return space
+    return kept(_SPACES, given, lambda: _lieflow.Space(*given))
 
 
 class Ready:
@@ -212,7 +200,7 @@ class Ready:
         span: tuple[float, float],
     ) -> None:
         if isinstance(fun, Field):
-            if group is not None and group is not fun.group:
+            if group is not None and group != fun.group:
                 raise ArgumentError("group", repr(group), "none: the Field has its group")
             group = fun.group
         if group is None:
@@ -243,9 +231,7 @@ class Ready:
         self.space = _space(*self.space_args)
         if isinstance(self.layout, ComplexPoints):
             self.layout = ComplexPoints(tuple(self.space.point[:-1]), tuple(self.space.value[:-1]))
-        if not np.isfinite(start).all():
-            place = tuple(int(i) for i in np.argwhere(~np.isfinite(start))[0])
-            raise ArgumentError(f"y0[{', '.join(map(str, place))}]", repr(float(start[place])), "a finite number")
+        finite("y0", start)
         self.flat, self.shape = start.ravel().tolist(), start.shape
         self.linear, self.args = bool(linear), list(args)
         self.stops: list[float] = []
@@ -273,6 +259,8 @@ class Ready:
             self.stops = fun._sampled.knots(span)
             self.linear = self.linear or self._may_be_linear()
             return fun._sampled
+        if hasattr(fun, "argtypes") and hasattr(fun, "restype") or type(fun).__name__ == "LowLevelCallable":
+            raise TypeError(f"fun: a value of type {type(fun).__name__}, expected lf.CFunction(fun, parameters) of it")
         if callable(fun) and not hasattr(fun, "address"):
             return (self._on_layout(fun), self.args)
         if isinstance(fun, (int, np.integer)) and not isinstance(fun, bool):
@@ -294,10 +282,10 @@ class Ready:
         if layout is None:
             return fun
         if isinstance(layout, ComplexPoints) and self.linear:
-            return lambda t, *args: layout.join(f"f at t = {t}", fun(t, *args), False)
+            return lambda t, *args: _joined(layout.join, "f", t, fun(t, *args), False)
 
         def of_numbers(t: float, y: Array, *args: Any) -> Array:
-            return layout.join(f"f at t = {t}", fun(t, layout.split(y), *args), False)
+            return _joined(layout.join, "f", t, fun(t, layout.split(y), *args), False)
 
         return of_numbers
 
@@ -320,9 +308,17 @@ class Ready:
             changed = change
 
             def change(t: float, y: Array, *args: Any) -> Array:
-                return layout.join(f"change of events[{i}] at t = {t}", changed(t, layout.split(y), *args), True)
+                return _joined(layout.join, f"change of events[{i}]", t, changed(t, layout.split(y), *args), True)
 
         return (g, f"events[{i}] ({event.name})", event.direction, event.terminal, change, event.points)
+
+
+def _joined(join: Callable[..., Array], name: str, t: float, *x: Any) -> Array:
+    """The numbers of the value of a function of the user at t. Raise TypeError for another value."""
+    try:
+        return join(f"{name} at t = {t}", *x)
+    except ArgumentError as error:
+        raise TypeError(str(error)) from None
 
 
 def solve_ivp(
@@ -385,16 +381,20 @@ def solve_ivp(
     first_step, min_step, max_step, max_steps : optional
         Limits of the adaptive step size.
     dt, steps : optional
-        Steps of one size, or so many. Then rtol, atol and the limits of the step size are refused.
-    stops : array_like
-        Times at which a step ends, where f or one of its derivatives jumps. Those of samples are added.
+        Steps of one size, or so many. Then rtol, atol and the limits of the step size are refused. The last step, and
+        that before a stop, may be shorter; after a stop the steps of this size begin again.
+    stops : array_like, optional
+        Times at which a step ends, where f or one of its derivatives jumps. Those of samples are added. With ``steps`` a
+        stop between two of them is one step more.
     args : tuple
-        Further arguments of f and of the events.
+        Further arguments of f, of the events and of their changes. The callback has none.
     group : str, Group or Parts
         "SO(3)", "SE(3)", "S3" (unit quaternions, real part first), "SO(n)", "SL(n)", "GL(n)", "Sp(2m)", "SO(p,q)" with
         numbers, a Group, or Parts.
     action : str
-        "translation", "linear" (vectors or columns), "conjugation", "coadjoint", "lagrangian".
+        "translation": ẏ = f y in space, ẏ = y f in the body. "linear": ẏ = f y of vectors or columns, on SO(3) ẏ = f × y.
+        "conjugation": ẏ = f y − y f. "coadjoint": ẏ = −ad*_f y, which is f × y on SO(3) and y fᵀ − fᵀ y of matrices (**a
+        body has f = −ω**, ẏ = y × ω). "lagrangian": ẏ = c − aᵀ y − y a − y b y with f = [a b; c −aᵀ].
     frame : "space" or "body"
         The frame of f. It must be given for ``action="translation"``.
     linear : bool
@@ -402,7 +402,7 @@ def solve_ivp(
     quantities : list of str, optional
         Of a problem: what is computed.
     callback : callable, optional
-        callback(t, y) is called at each point of the output. If it returns True, the run ends.
+        callback(t, y), without ``args``, is called at each point of the output. If it returns True, the run ends.
 
     Returns
     -------
@@ -424,8 +424,9 @@ def solve_ivp(
     span = span_of(t_span)
     if not (method is None or isinstance(method, str)):
         raise TypeError(f"method: a value of type {type(method).__name__}, expected a name")
-    if not isinstance(args, tuple):
-        raise TypeError(f"args: a value of type {type(args).__name__}, expected a tuple, as in args=(2.0,)")
+    if isinstance(args, (str, bytes)) or not isinstance(args, Iterable):
+        raise TypeError(f"args: {what(args)}, expected a tuple, as in args=(2.0,)")
+    args = tuple(args)
     if not (callback is None or callable(callback)):
         raise TypeError(f"callback: a value of type {type(callback).__name__}, expected a function of t and y")
     planned = events_of(events)
@@ -474,6 +475,8 @@ def _of_field(
     seconds = perf_counter() - clock
     warn_of_events(found, 3)
     curve = found.pop("curve")
+    if found["nfev"] is not None:
+        found["nfev"] += 1  # the call that checks the value of f at the start
     if ready.layout is not None:
         found["y"] = ready.layout.split(found["y"])
         found["y_events"] = [ready.layout.split(y) for y in found["y_events"]]
@@ -484,16 +487,17 @@ def _of_field(
             found["message"] += f": {lost}"
     made_by = (ready.space_args, method, ready.linear, ready.flat)
     sol = None if curve is None else OdeSolution(curve, made_by, ready.layout)
-    on_so3 = ready.space_args[0] == "SO(3)" and ready.space_args[1] == "translation"
 
     def again(result: Result) -> tuple[str, Result]:
         def run(finer: dict[str, Any]) -> Result:
             end, others = _beyond(result, span, events)
-            return _of_field(fun, (span[0], end), y0, method, finer, result.t, others, None, space)
+            start: Any = np.reshape(ready.flat, ready.shape)  # y0, which may have changed
+            start = start if ready.layout is None else ready.layout.split(start)
+            return _of_field(fun, (span[0], end), start, method, finer, result.t, others, None, space)
 
         return _second(run, settings, result, span[0], seconds)
 
-    return Result(sol=sol, _layout=ready.layout, _on_so3=on_so3, _again=again, **found)
+    return Result(sol=sol, _layout=ready.layout, _again=again, **found)
 
 
 def _beyond(first: Result, span: tuple[float, float], events: list[Event]) -> tuple[float, list[Event]]:
@@ -608,14 +612,20 @@ def _of_problem(
 
         def run(finer: dict[str, Any]) -> Result:
             end, others = _beyond(result, span, events)
-            return _of_problem(problem, (span[0], end), y0, method, finer, result.t, others, asked, None, args)
+            return _of_problem(problem, (span[0], end), start, method, finer, result.t, others, asked, None, args)
 
         found_by, other = _second(run, settings, result, span[0], seconds)
         if exact is not None:
             return "the exact motion, and the events by " + found_by, Result(y=exact, t_events=other.t_events)
         return found_by, other
 
-    return Result(sol=sol, _rows=rows, _layout=layout, _again=again, **found)
+
+    def first() -> Quantities:
+        is_start = found["t"][0] == span[0]
+        row = rows[0] if is_start else model.stepper(method, span, start, settings).row()
+        return layout.split(row[None], every=True)
+
+    return Result(sol=sol, _rows=rows, _first=first, _layout=layout, _again=again, **found)
 
 
 def _of_rows(g: Callable[..., Any], layout: Layout, args: tuple[Any, ...]) -> Callable[..., Any]:
@@ -635,6 +645,6 @@ def _of_state(
     def of_numbers(t: float, numbers: Array) -> Any:
         if form is None:
             return change(t, numbers, *args)
-        return form.join(f"change of events[{i}] at t = {t}", change(t, form.split(numbers), *args))
+        return _joined(form.join, f"change of events[{i}]", t, change(t, form.split(numbers), *args))
 
     return of_numbers

@@ -9,7 +9,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _lieflow
+from . import _lieflow, so3
+from ._arrays import first
 from ._errors import ArgumentError, RunError
 from ._fields import Parts, Quantities
 from ._unitary import ComplexPoints
@@ -60,13 +61,11 @@ class Layout:
         asked = [name in self.asked for name, columns, *_ in self.schema for _ in columns]
         return rows[..., np.array(asked, dtype=bool)]
 
-    def drift(self, rows: Array) -> dict[str, float]:
+    def drift(self, start: Quantities, rows: Array) -> dict[str, float]:
         """Return the largest |value − value at the start| of what the exact motion keeps."""
-        if len(rows) == 0:
-            return {}
         every = self.split(rows, every=True)
         kept = [name for name, _, _, is_kept, _ in self.schema if is_kept]
-        return {name: float(np.abs(every[name] - every[name][0]).max(initial=0.0)) for name in kept}
+        return {name: float(np.abs(every[name] - start[name]).max(initial=0.0)) for name in kept}
 
 
 class OdeSolution:
@@ -134,8 +133,8 @@ def _restored(made_by: tuple[Any, ...], numbers: Array, layout: Layout | Parts |
 class ErrorEstimate(NamedTuple):
     """How far a run is from another result, at most over all outputs and events.
 
-    ``found_by`` says what it was compared with, ``y`` is the largest distance of the points (an angle for rotations; a dict
-    for a problem and for parts), ``t_events`` the largest distance of the times of each event.
+    ``found_by`` says what it was compared with, ``y`` is the largest distance of the points (the angle where all of them are
+    rotations, else the length of the difference; a dict for a problem and for parts), ``t_events`` the largest distance of the times of each event.
     """
 
     found_by: str
@@ -143,18 +142,28 @@ class ErrorEstimate(NamedTuple):
     t_events: list[float]
 
 
-def _distance(a: Array, b: Array, is_rotation: bool) -> float:
-    """The largest distance of the points in a and b: the length of the difference, or the angle."""
+def _are_rotations(x: NDArray[Any]) -> bool:
+    """Are all points rotations, to rounding?"""
+    return x.shape[1:] == (3, 3) and np.isrealobj(x) and bool(so3.contains(x, 1e-9).all())
+
+
+def _distance(a: NDArray[Any], b: NDArray[Any]) -> float:
+    """The largest distance of the points in a and b: the angle of rotations, or the length of the difference."""
     if len(a) == 0:
         return 0.0
     lengths = np.sqrt((np.abs(a - b).reshape(len(a), -1) ** 2).sum(1))
-    if is_rotation:
+    if _are_rotations(a) and _are_rotations(b):
         lengths = 2.0 * np.arcsin(np.minimum(lengths / np.sqrt(8.0), 1.0))
     return float(lengths.max())
 
 
+def _by_rows(x: NDArray[Any]) -> NDArray[Any]:
+    """Points as rows of their numbers; there may be none."""
+    return x.reshape(len(x), int(np.prod(x.shape[1:])))
+
+
 class Result:
-    """The result of a run.
+    """The result of a run. ``r["y"]`` is ``r.y``, as in SciPy.
 
     Attributes
     ----------
@@ -166,7 +175,7 @@ class Result:
     sol : OdeSolution or None
         The solution at all times, with ``dense_output=True``.
     t_events, y_events : list of arrays
-        For each event its zeros and the points there, before a change.
+        For each event its zeros and the points there, before a change. Without events they are empty.
     status : int
         0: the end was reached. 1: an event or the callback ended the run. −1: the run failed; all that it reached is here.
     message : str
@@ -180,7 +189,8 @@ class Result:
     t_end, y_end : float, array
         The end of the run. ``y_end`` is None for a problem whose last row is not at the end.
     drift : dict
-        Of a problem: the largest |value − value at the start| of each invariant, over the output.
+        Of a problem: the largest |value − value at the start| of each invariant, over the output. The start is that of the
+        run, also where the output begins later.
     residual : float
         A power of two above the distances from M that were found when the state was corrected to M.
     restored : int
@@ -223,7 +233,13 @@ class Result:
 
     def __getstate__(self) -> dict[str, Any]:
         # f may be a function that cannot be pickled.
-        return {name: value for name, value in self.__dict__.items() if name != "_again"}
+        state = {name: value for name, value in self.__dict__.items() if name != "_again"}
+        return {**state, "_first": self._start()} if "_first" in state else state
+
+    def _start(self) -> Quantities | None:
+        """The quantities at the start of a problem, which are found when they are asked for; none without rows."""
+        first = self.__dict__["_first"]
+        return first if isinstance(first, Quantities) else first() if first and len(self.t) else None
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state)
@@ -232,7 +248,10 @@ class Result:
     def drift(self) -> dict[str, float]:
         """Of a problem: the largest |value − value at the start| of each invariant, over the output."""
         layout = self.__dict__.get("_layout")
-        return layout.drift(self.__dict__["_rows"]) if isinstance(layout, Layout) else {}
+        if not isinstance(layout, Layout):
+            return {}
+        start = self._start()
+        return {} if start is None or not len(self.t) else layout.drift(start, self.__dict__["_rows"])
 
     @property
     def success(self) -> bool:
@@ -248,16 +267,20 @@ class Result:
     def as_rotation(self) -> Any:
         """Return the points as SciPy's Rotation.
 
-        These are matrices of shape (k, 3, 3), unit quaternions (k, 4), or the ``attitude`` or ``quaternion`` of a problem.
+        These are rotations (k, 3, 3), unit quaternions (k, 4), or the ``attitude`` or ``quaternion`` of a problem. Other
+        points are refused.
         """
         from scipy.spatial.transform import Rotation  # type: ignore[import-untyped, import-not-found, unused-ignore]
 
         y = self.y
         if isinstance(y, Quantities):
             y = y.get("attitude", y.get("quaternion", np.empty(0)))
-        if y.shape[1:] == (3, 3):
+        if y.shape[1:] == (3, 3) and np.isrealobj(y):
+            first("y", ~so3.contains(y, 1e-6), "a matrix that is no rotation", "rotations")
             return Rotation.from_matrix(y)
-        if y.shape[1:] == (4,):
+        if y.shape[1:] == (4,) and np.isrealobj(y):
+            off = np.abs(np.linalg.norm(y, axis=1) - 1.0)
+            first("y", ~(off <= 1e-6), "a vector of another length than 1", "unit quaternions")
             return Rotation.from_quat(y, scalar_first=True)
         raise ArgumentError("y", f"shape {y.shape}", "rotations (k, 3, 3) or unit quaternions (k, 4)")
 
@@ -273,9 +296,9 @@ class Result:
             names, rows = layout.columns(), layout.numbers(self.__dict__["_rows"])
         elif isinstance(self.y, Quantities):
             names = layout.columns()
-            rows = np.column_stack([self.y[name].reshape(len(self.t), -1) for name in layout._places])
+            rows = np.column_stack([_by_rows(self.y[name]) for name in layout._places])
         else:
-            numbers = self.y.reshape(len(self.t), -1)
+            numbers = _by_rows(self.y)
             is_complex = np.iscomplexobj(numbers)
             letters = ["re", "im"] if is_complex else ["y"]
             places = ["".join(str(i + 1) for i in place) for place in np.ndindex(*self.y.shape[1:])]
@@ -297,9 +320,9 @@ class Result:
             raise RunError("the run cannot be repeated: this is a copy of the result without f")
         found_by, other = again(self)
         if isinstance(self.y, Quantities):
-            y: Any = {name: _distance(x, other.y[name], x.shape[1:] == (3, 3)) for name, x in self.y.items()}
+            y: Any = {name: _distance(x, other.y[name]) for name, x in self.y.items()}
         else:
-            y = _distance(self.y, other.y, self.y.shape[1:] == (3, 3) and self.__dict__.get("_on_so3", False))
+            y = _distance(self.y, other.y)
         forward = self.t_end >= self.t[0] if len(self.t) else True
 
         def apart(own: Array, others: Array) -> float:
@@ -312,8 +335,17 @@ class Result:
         times = [apart(own, others) for own, others in zip(self.t_events, other.t_events)]
         return ErrorEstimate(found_by, y, times)
 
+    def keys(self) -> list[str]:
+        """Return the names of what the result has, for ``r["y"]`` and ``dict(r)``."""
+        return [*(name for name in self.__dict__ if not name.startswith("_")), "success", "drift"]
+
+    def __getitem__(self, name: str) -> Any:
+        if name in self.keys() or isinstance(self.y, Quantities) and name in self.y:
+            return getattr(self, name)
+        raise KeyError(f"the result has no {name!r}")
+
     def __iter__(self) -> Iterator[str]:
-        return (name for name in self.__dict__ if not name.startswith("_"))
+        return iter(self.keys())
 
     def __repr__(self) -> str:
         if isinstance(self.y, Quantities):

@@ -69,7 +69,7 @@ class Scene:
         found["y_events"] = [layout.split(y) for y in found["y_events"]]
         at_end = len(rows) > 0 and found["t"][-1] == found["t_end"]
         found["y_end"] = layout.split(rows[-1]) if at_end else None
-        return Result(sol=None, _rows=rows, _layout=layout, **found)
+        return Result(sol=None, _rows=rows, _first=layout.split(rows[:1], every=True), _layout=layout, **found)
 
     def __repr__(self) -> str:
         return f"lieflow.Scene({self._args[0]!r}{f', {list(self._args[1])}' if self._args[1] else ''})"

@@ -1,0 +1,170 @@
+"""What a run returns: errors, drift, rotations, counts, and the equations of the actions."""
+
+from __future__ import annotations
+
+import pickle
+
+import numpy as np
+import pytest
+import scipy.integrate
+from conftest import J, M
+
+import lieflow as lf
+
+ROTATION = {"group": "SO(3)", "frame": "body"}
+BODY = lf.RigidBody(inertia=[1.0, 2.0, 3.0], omega_body=[0.01, 1.0, 0.0])
+PARTS = lf.Parts(R="rotation", n="numbers 2")
+START = {"R": np.eye(3), "n": [0.0, 1.0]}
+
+
+def turn(t, y):
+    return [0.0, 0.0, 1.0]
+
+
+def test_the_error_of_a_matrix_that_is_no_rotation_is_a_length():
+    field = [[0.1, "cos(t)", 0.0], [-1.0, 0.2, "0.3*t"], [0.0, 0.4, 0.3]]
+    ode = lf.MatrixOde(group="GL(3)", action="translation", field=field, start=np.eye(3).tolist())
+    r = lf.solve_ivp(ode, (0, 2), method="rkmk midpoint exp", steps=40, t_eval=[2.0])
+    [name] = r.y
+    true = np.linalg.norm(r.y[name][0] - lf.solve_ivp(ode, (0, 2), t_eval=[2.0]).y[name][0])
+    # Half the step size leaves a quarter of the error.
+    assert r.estimate_error().y[name] == pytest.approx(0.75 * true, rel=0.02) and true > 1e-4
+
+
+def test_the_error_of_rotations_is_an_angle():
+    r = lf.solve_ivp(BODY, (0, 9), method="rkmk4 cay", steps=60, t_eval=[9.0])
+    angle = np.linalg.norm(lf.so3.log(r.attitude[0].T @ BODY.exact(9.0).attitude))
+    assert r.estimate_error().y["attitude"] == pytest.approx(angle, rel=1e-6) and angle > 1e-6
+
+
+def test_the_error_of_a_large_matrix_does_not_saturate():
+    r = lf.solve_ivp(lambda t, y: np.diag([1.0, 2.0, 3.0]), (0, 1), np.eye(3), group="GL(3)", frame="space",
+                     method="rk midpoint", steps=1, t_eval=[1.0])
+    other = lf.solve_ivp(lambda t, y: np.diag([1.0, 2.0, 3.0]), (0, 1), np.eye(3), group="GL(3)", frame="space",
+                         method="rk midpoint", steps=2, t_eval=[1.0])
+    assert r.estimate_error().y == pytest.approx(np.linalg.norm(r.y - other.y)) and r.estimate_error().y > 4
+
+
+@pytest.mark.parametrize("times", [None, [50.0], np.linspace(45, 50, 7)])
+def test_drift_is_from_the_start_of_the_run(times):
+    r = lf.solve_ivp(BODY, (0, 50), t_eval=times, method="rkmk bs3 exp", rtol=1e-3, atol=1e-3, quantities=["momentum_body", "energy"])
+    start = 0.5 * (np.array([0.01, 2.0, 0.0]) ** 2 / [1.0, 2.0, 3.0]).sum()
+    assert r.drift["energy"] == pytest.approx(np.abs(r.energy - start).max(), rel=1e-9) and r.drift["energy"] > 1e-6
+    assert pickle.loads(pickle.dumps(r)).drift == r.drift
+    other = lf.solve_ivp(BODY, (0, 50), [0.0, 1.0, 1.0], t_eval=times, method="rkmk bs3 exp", rtol=1e-3, atol=1e-3,
+                         quantities=["momentum_body", "energy"])
+    assert other.drift["energy"] == pytest.approx(np.abs(other.energy - 5 / 12).max(), rel=1e-9)
+
+
+def test_as_rotation_refuses_what_is_none():
+    scale = lf.solve_ivp(lambda t, y: np.diag([1.0, 2.0, 3.0]), (0, 1), np.eye(3), group="GL(3)", frame="body", t_eval=[0, 1])
+    vector = lf.solve_ivp(lambda t, y: np.zeros((4, 4)), (0, 1), [2.0, 0, 0, 0], group="SO(4)", action="linear", t_eval=[1.0])
+    for call, argument in ((scale.as_rotation, "y[1]"), (vector.as_rotation, "y[0]"),
+                           (lambda: lf.so3.as_rotation(2 * np.eye(3)), "r"), (lambda: lf.se3.as_transform(2 * np.eye(4)), "g")):
+        with pytest.raises(lf.ArgumentError) as caught:
+            call()
+        assert caught.value.argument == argument
+    assert lf.so3.as_rotation(np.eye(3)).magnitude() == 0
+
+
+def expression(f, t, y0, right):
+    """SciPy's solution of ẏ = right(y)."""
+    y0 = np.asarray(y0)
+    done = scipy.integrate.solve_ivp(
+        lambda t, y: right(f, y.reshape(y0.shape)).ravel(), (0, t), y0.astype(np.result_type(y0, f, float)).ravel(),
+        method="DOP853", rtol=1e-12, atol=1e-13,
+    )
+    return done.y[:, -1].reshape(y0.shape)
+
+
+W = np.array([0.3, -0.2, 0.5])
+TWIST = np.array([0.3, -0.2, 0.5, 0.1, 0.7, -0.4])
+A4 = np.triu(np.arange(16.0).reshape(4, 4) / 20, 1)
+A4 = A4 - A4.T
+C2 = np.array([[0.3j, 0.2 + 0.1j], [-0.2 + 0.1j, -0.4j]])
+H4 = np.array([[0.1, 0.2, 0.3, 0.1], [0.0, 0.2, 0.1, 0.4], [0.5, 0.1, -0.1, 0.0], [0.1, 0.3, -0.2, -0.2]])
+
+
+@pytest.mark.parametrize(
+    ("group", "action", "f", "y0", "right"),
+    [
+        ("SO(3)", "linear", W, M, np.cross),
+        ("SO(3)", "coadjoint", W, M, np.cross),
+        ("SE(3)", "coadjoint", TWIST, np.arange(1.0, 7.0),
+         lambda f, y: np.r_[np.cross(f[:3], y[:3]) + np.cross(f[3:], y[3:]), np.cross(f[:3], y[3:])]),
+        ("SO(4)", "linear", A4, np.arange(4.0), lambda f, y: f @ y),
+        ("SO(4)", "conjugation", A4, H4, lambda f, y: f @ y - y @ f),
+        ("SO(4)", "coadjoint", A4, H4, lambda f, y: y @ f.T - f.T @ y),
+        ("GL(4)", "coadjoint", H4, A4, lambda f, y: y @ f.T - f.T @ y),
+        ("U(2)", "linear", C2, np.array([1.0, 1j]), lambda f, y: f @ y),
+        ("U(2)", "conjugation", C2, np.array([[1.0, 2j], [-2j, 3.0]]), lambda f, y: f @ y - y @ f),
+        ("U(2)", "coadjoint", C2, np.array([[1.0, 2j], [-2j, 3.0]]), lambda f, y: y @ f.conj().T - f.conj().T @ y),
+        ("Sp(4)", "lagrangian", H4, np.array([[0.1, 0.2], [0.2, 0.3]]),
+         lambda f, y: f[2:, :2] - f[:2, :2].T @ y - y @ f[:2, :2] - y @ f[:2, 2:] @ y),
+    ],
+)
+def test_every_action_has_the_equation_of_the_documentation(group, action, f, y0, right):
+    if action == "lagrangian":
+        b, c = f[:2, 2:] + f[:2, 2:].T, f[2:, :2] + f[2:, :2].T
+        f = np.block([[f[:2, :2], b], [c, -f[:2, :2].T]])
+    r = lf.solve_ivp(lambda t, y: f, (0, 1), y0, group=group, action=action, rtol=1e-12, atol=1e-12)
+    assert np.abs(r.y_end - expression(f, 1.0, y0, right)).max() < 1e-9
+
+
+def test_a_body_by_its_coadjoint_action():
+    r = lf.solve_ivp(lambda t, m: -m / J, (0, 3), M, group="SO(3)", action="coadjoint", rtol=1e-11, atol=1e-11)
+    exact = lf.RigidBody(inertia=J, momentum_body=M).exact(3.0, "momentum_body").momentum_body
+    assert np.abs(r.y_end - exact).max() < 1e-8
+    for text in (lf.so3.coad.__doc__, lf.solve_ivp.__doc__):
+        assert "f = −ω" in text
+
+
+@pytest.mark.parametrize(
+    ("method", "options"), [("rkmk4 exp", {"steps": 10}), (None, {}), ("rkmk bs3 exp", {"rtol": 1e-5}), (None, {"dense_output": True})]
+)
+@pytest.mark.parametrize("group", ["SO(3)", "SO(4)", "U(2)", PARTS])
+def test_every_call_of_f_is_counted(method, options, group):
+    calls = 0
+    n = {"SO(3)": 3, "SO(4)": 4, "U(2)": 2}.get(group) if isinstance(group, str) else 0
+
+    def f(t, y):
+        nonlocal calls
+        calls += 1
+        if n == 0:
+            return {"R": [t, 0, 1], "n": [0, t]}
+        return [np.cos(t), 0.1, 1.0] if n == 3 else np.zeros((n, n))
+
+    r = lf.solve_ivp(f, (0, 1), np.eye(n) if n else START, group=group, frame="body", method=method, **options)
+    assert r.nfev == calls
+
+
+def test_a_result_is_read_by_names_too():
+    r = lf.solve_ivp(turn, (0, 1), np.eye(3), dense_output=True, **ROTATION)
+    assert r["y"] is r.y and r["success"] and {"t", "y", "sol", "t_events", "status", "nfev", "success"} <= set(r.keys())
+    assert dict(r)["t"] is r.t and list(r) == r.keys()
+    named = lf.solve_ivp(BODY, (0, 1))
+    assert named["attitude"] is named.attitude and "energy" in named["drift"]
+    for name in ("check", "_rows", "nothing"):
+        with pytest.raises(KeyError, match=name):
+            named[name]
+
+
+def test_a_table_without_rows():
+    pytest.importorskip("pandas")
+    for fun, y0, space, columns in ((turn, np.eye(3), ROTATION, 9), (turn, START, {"group": PARTS, "frame": "body"}, 11)):
+        f = turn if space is ROTATION else (lambda t, y: {"R": [0, 0, 1.0], "n": [0, 0]})
+        assert lf.solve_ivp(f, (0, 1), y0, t_eval=[], **space).to_dataframe().shape == (0, columns)
+    assert lf.solve_ivp(BODY, (0, 1), t_eval=[]).to_dataframe().shape == (0, 12)
+
+
+def test_the_callback_has_no_args():
+    seen = []
+    lf.solve_ivp(lambda t, y, a: [0, 0, a], (0, 1), np.eye(3), args=(1.0,), callback=lambda t, y: seen.append(t), steps=2,
+                 method="rkmk4 exp", **ROTATION)
+    assert seen == [0.0, 0.5, 1.0]
+
+
+def test_a_stop_is_one_step_more():
+    for options in ({"steps": 4}, {"dt": 0.25}):
+        r = lf.solve_ivp(turn, (0, 1), np.eye(3), method="rkmk4 exp", stops=[0.33], **options, **ROTATION)
+        assert np.allclose(r.t, [0, 0.25, 0.33, 0.58, 0.83, 1.0], atol=1e-14) and r.nsteps == 5
