@@ -19,6 +19,16 @@ def solve_poisson(w):
     raise AssertionError("it is not called")
 
 
+solve_poisson.__module__ = "quflow.laplacian.direct"
+
+
+def another(w):
+    raise AssertionError("it is not called")
+
+
+another.__name__ = "solve_poisson"
+
+
 @pytest.fixture
 def w(rng):
     a = rng.standard_normal((N, N)) + 1j * rng.standard_normal((N, N))
@@ -66,9 +76,9 @@ def test_the_callback_sees_each_step(w):
 
 @pytest.mark.parametrize(
     ("change", "argument"),
-    [({"hamiltonian": np.sin}, "hamiltonian"), ({"forcing": np.sin}, "forcing"), ({"strang_splitting": np.sin}, "strang_splitting"),
+    [({"hamiltonian": np.sin}, "hamiltonian"), ({"hamiltonian": another}, "hamiltonian"), ({"forcing": np.sin}, "forcing"), ({"strang_splitting": np.sin}, "strang_splitting"),
      ({"steps": -1}, "steps"), ({"W": np.eye(4)}, "W"), ({"W": np.eye(4, dtype=complex)}, "W"),
-     ({"W": np.full((3, 3), np.nan + 0j)}, "W")],
+     ({"W": np.full((3, 3), np.nan + 0j)}, "W"), ({"W": np.broadcast_to(0j, (3, 3))}, "W"), ({"steps": np.nan}, "steps")],
 )
 def test_what_is_not_done_is_refused_by_name(w, change, argument):
     with pytest.raises(lf.ArgumentError) as caught:

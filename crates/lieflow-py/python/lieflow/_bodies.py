@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _lieflow
-from ._arrays import real
+from ._arrays import first, number, own, real, whole
+from .so3 import contains
 from ._errors import ArgumentError
 
 __all__ = ["FreeBodies"]
@@ -26,7 +27,7 @@ class FreeBodies:
         The principal moments of each body, or of all.
     momentum : (N, 3) array_like
         The angular momenta in the bodies.
-    attitude : (N, 3, 3) array_like, optional
+    attitude : (N, 3, 3) array_like or Rotation, optional
         The rotations from the bodies to space. Without them only the momenta are computed.
     """
 
@@ -34,7 +35,7 @@ class FreeBodies:
         m = real("momentum", momentum)
         if m.ndim != 2 or m.shape[1] != 3:
             raise ArgumentError("momentum", f"shape {m.shape}", "shape (N, 3)")
-        j = real("inertia", inertia)
+        j = own("inertia", inertia)
         if j.shape == (3,):
             j = np.ascontiguousarray(np.broadcast_to(j, m.shape))
         if j.shape != m.shape:
@@ -42,6 +43,8 @@ class FreeBodies:
         g = None if attitude is None else real("attitude", attitude)
         if g is not None and g.shape != (len(m), 3, 3):
             raise ArgumentError("attitude", f"shape {g.shape}", f"shape ({len(m)}, 3, 3)")
+        if g is not None:
+            first("attitude", ~contains(g, 1e-6), "a matrix that is no rotation", "rotations")
         self._inertia = j
         self._bodies = _lieflow.FreeBodies(j, m, g)
         if self._bodies.impossible is not None:
@@ -52,11 +55,9 @@ class FreeBodies:
 
         Cost: some 10 ns for each body and step with momenta alone, on one core with AVX-512.
         """
-        if steps != int(steps) or steps < 0:
-            raise ArgumentError("steps", repr(steps), "an integer ≥ 0")
-        if threads != int(threads) or threads < 1:
-            raise ArgumentError("threads", repr(threads), "an integer ≥ 1")
-        self._bodies.advance(method, float(h), int(steps), int(threads))
+        if not isinstance(method, str):
+            raise TypeError(f"method: a value of type {type(method).__name__}, expected a name")
+        self._bodies.advance(method, number("h", h), whole("steps", steps), whole("threads", threads, 1))
 
     @property
     def momentum(self) -> Array:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 __all__ = ["ArgumentError", "RunError"]
 
 
@@ -32,8 +34,15 @@ class ArgumentError(ValueError):
         self.value = value
         self.expected = expected
 
-    def __reduce__(self) -> tuple[type[ArgumentError], tuple[str, str, str]]:
-        return (type(self), (self.argument, self.value, self.expected))
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (_again, (type(self), self.args, self.__dict__))
+
+
+def _again(kind: type[ArgumentError], args: tuple[Any, ...], values: dict[str, Any]) -> ArgumentError:
+    """The error with this message and these values."""
+    error = kind.__new__(kind, *args)
+    error.__dict__.update(values)
+    return error
 
 
 def mistakes(found: list[tuple[str, str, str]]) -> ArgumentError:
@@ -44,7 +53,7 @@ def mistakes(found: list[tuple[str, str, str]]) -> ArgumentError:
     first = errors[0]
     first.others = tuple(errors[1:])
     words = [f"{argument or 'keys'}: {value}" + (f" ({advice})" if advice else "") for argument, value, advice in found]
-    Exception.__init__(first, "\n".join(words))
+    first.args = ("\n".join(words),)
     return first
 
 

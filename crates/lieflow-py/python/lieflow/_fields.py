@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import copy
+import sys
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -9,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _lieflow
-from ._arrays import real
+from ._arrays import finite, kept, own, real
 from ._errors import ArgumentError
 from ._groups import Group
 
@@ -21,11 +23,17 @@ Array = NDArray[np.float64]
 class Quantities(dict[str, NDArray[Any]]):
     """Arrays by name, which are attributes, too: ``y["attitude"]`` is ``y.attitude``."""
 
+    def __missing__(self, name: str) -> NDArray[Any]:
+        raise KeyError(self._words(name))
+
     def __getattr__(self, name: str) -> NDArray[Any]:
-        try:
-            return self[name]
-        except KeyError:
-            raise AttributeError(f"no quantity {name!r}, expected one of {', '.join(self)}") from None
+        if name not in self:
+            raise AttributeError(self._words(name))
+        return self[name]
+
+    def _words(self, name: str) -> str:
+        """The words for a name that is not there."""
+        return f"no quantity {name!r}, expected one of {', '.join(self)}; a problem has those of quantities="
 
     def __dir__(self) -> list[str]:
         return [*super().__dir__(), *self]
@@ -76,7 +84,7 @@ def address(function: Any) -> int:
         return address(function.function)
     else:
         raise TypeError(f"fun: a value of type {type(function).__name__}, expected the address of a C function")
-    if found <= 0:
+    if not 0 < found <= 2 * sys.maxsize + 1:
         raise ArgumentError("fun", f"the address {found}", "the address of a C function")
     return int(found)
 
@@ -105,7 +113,7 @@ class Samples:
     def __init__(
         self, t: ArrayLike, values: ArrayLike, interpolation: str = "linear", names: Sequence[str] | None = None
     ) -> None:
-        self.t, self.values = real("t", t), real("values", values)
+        self.t, self.values = own("t", t), own("values", values)
         if self.t.ndim != 1:
             raise ArgumentError("t", f"shape {self.t.shape}", "shape (k,)")
         if self.values.ndim == 1:
@@ -211,7 +219,7 @@ class Parts:
         for key in parts:
             if key not in self.spaces:
                 raise ArgumentError(f"{name}[{key!r}]", "no part has this name", f"one of {', '.join(self.spaces)}")
-        all_parts = []
+        flat = []
         for key, (of_point, of_value, shape) in self._places.items():
             if key not in parts:
                 raise ArgumentError(f"{name}[{key!r}]", "missing", "a value for each part")
@@ -220,8 +228,10 @@ class Parts:
             wanted = shape if point or shape == () else (count,)
             if array.shape != wanted:
                 raise ArgumentError(f"{name}[{key!r}]", f"shape {array.shape}", f"shape {wanted}")
-            all_parts.append(array.ravel())
-        return np.concatenate(all_parts)
+            if point:
+                finite(f"{name}[{key!r}]", array)
+            flat.append(array.ravel())
+        return np.concatenate(flat)
 
     def columns(self) -> list[str]:
         """Return the names of the numbers of a point in formulas."""
@@ -232,6 +242,12 @@ class Parts:
 
     def __repr__(self) -> str:
         return f"lieflow.Parts({', '.join(f'{name}={space!r}' for name, space in self.spaces.items())})"
+
+    def __eq__(self, other: object) -> bool:
+        return list(self.spaces.items()) == list(other.spaces.items()) if isinstance(other, Parts) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(tuple(self.spaces.items()))
 
     def __reduce__(self) -> tuple[Any, ...]:
         return (_parts, (self.spaces,))
@@ -286,16 +302,14 @@ class Field:
             raise TypeError(f"group: a value of type {type(group).__name__}, expected a name, a Group or Parts")
         if samples is not None and not isinstance(samples, Samples):
             raise TypeError(f"samples: a value of type {type(samples).__name__}, expected lieflow.Samples")
-        self.group, self.field, self.y, self.samples = group, field, y, samples
-        self.let, self.parameters = dict(let or {}), parameters
+        # Copies: a later change of an argument has no effect.
+        self.group, self.field, self.y, self.samples = group, copy.deepcopy(field), y, samples
+        self.let, self.parameters = copy.deepcopy(dict(let or {})), copy.deepcopy(parameters)
         self._made: dict[Any, _lieflow.Formulas] = {}
 
     def formulas(self, texts: Any, shape: tuple[int, ...], value: tuple[int, ...]) -> _lieflow.Formulas:
         """Return formulas in t and the numbers of y of this shape, with values of another."""
-        key = (repr(texts), shape, value)
-        if key not in self._made:
-            self._made[key] = self._read(texts, shape, value)
-        return self._made[key]
+        return kept(self._made, (repr(texts), shape, value), lambda: self._read(texts, shape, value))
 
     def _read(self, texts: Any, shape: tuple[int, ...], value: tuple[int, ...]) -> _lieflow.Formulas:
         if isinstance(self.group, Parts):
@@ -305,13 +319,14 @@ class Field:
         if isinstance(self.group, Parts) and value != ():
             if not isinstance(texts, Mapping) or set(texts) != set(self.group.spaces):
                 raise ArgumentError("field", repr(texts), f"a dict with formulas of {', '.join(self.group.spaces)}")
-            places = self.group._places
+            row, places, names = 0, self.group._places, [repr(name) for name in self.group._places]
             entries, counts = [texts[name] for name in places], [p[1].stop - p[1].start for p in places.values()]
         else:
             flat = texts
             if len(value) == 2 and isinstance(texts, (list, tuple)) and texts and isinstance(texts[0], (list, tuple)):
                 flat = [text for row in texts for text in row]
-            entries, counts = [flat], [int(np.prod(value, dtype=int))]
+            entries, counts, names = [flat], [int(np.prod(value, dtype=int))], None
+            row = value[1] if flat is not texts else 0
         keys: dict[str, Any] = {"field": [list(e) if isinstance(e, tuple) else e for e in entries]}
         constants: dict[str, float] = {}
         for name, x in self.parameters.items():
@@ -324,7 +339,15 @@ class Field:
         if self.samples is not None:
             keys["samples"] = list(self.samples.as_file())
             keys["interpolation"] = self.samples.interpolation
-        return _lieflow.Formulas(columns, counts, keys)
+        try:
+            return _lieflow.Formulas(columns, counts, keys)
+        except ArgumentError as error:
+            # The first index is that of the part.
+            for wrong in (error, *error.others):
+                wrong.argument = _of_part(wrong.argument, names, row)
+            lines = [f"{e.argument}: {e.value}{f' ({e.expected})' if e.expected else ''}" for e in (error, *error.others)]
+            error.args = ("\n".join(lines),)
+            raise error from None
 
     def __repr__(self) -> str:
         group = repr(self.group)
@@ -336,6 +359,19 @@ class Field:
 
     def __reduce__(self) -> tuple[Any, ...]:
         return (_field, (self.group, self.field, self.y, self.let, self.samples, self.parameters))
+
+
+def _of_part(argument: str, names: list[str] | None, row: int) -> str:
+    """The path of a formula: by the name of its part, without one, or in rows of this length."""
+    if not argument.startswith("field["):
+        return argument
+    part, _, rest = argument.removeprefix("field[").partition("]")
+    if names is not None:
+        return f"field[{names[int(part)]}]{rest}"
+    if row and rest:
+        i, j = divmod(int(rest[1:].partition("]")[0]), row)
+        return f"field[{i}][{j}]"
+    return f"field{rest}"
 
 
 def _field(group: Any, field: Any, y: str, let: Any, samples: Any, parameters: dict[str, Any]) -> Field:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import inspect
 import pathlib
 import warnings
@@ -12,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _lieflow
-from ._arrays import real
+from ._arrays import finite, kept, own, real
 from ._errors import ArgumentError
 from ._fields import Quantities, Samples
 from ._result import Layout
@@ -42,15 +43,13 @@ class Problem:
     #: What can be asked for: name, columns, meaning, unit.
     quantity_table: ClassVar[tuple[tuple[str, tuple[str, ...], str, str], ...]] = ()
 
-    keys: dict[str, Any]
-
     def __init__(self, **keys: Any) -> None:
         self._make(keys)
         self._warn(3)
 
     def __setattr__(self, name: str, value: Any) -> None:
         # Runs read the problem that was made from the keys.
-        if not name.startswith("_") and (name != "keys" or hasattr(self, "keys")):
+        if not name.startswith("_"):
             raise AttributeError(f"{name}: a problem does not change; replace({name}=...) returns another one")
         super().__setattr__(name, value)
 
@@ -68,8 +67,8 @@ class Problem:
         elif isinstance(samples, (str, pathlib.Path)):
             keys["samples"] = [str(samples), pathlib.Path(samples).read_text()]
         keys = type(self)._in_parts(keys)
-        self.keys = {name: plain(name, value) for name, value in keys.items()}
-        self._problem = _lieflow.Problem(type(self).kind, self.keys)
+        self._keys = {name: plain(name, value) for name, value in keys.items()}
+        self._problem = _lieflow.Problem(type(self).kind, self._keys)
         self._models: dict[Any, tuple[_lieflow.Model, Layout]] = {}
         self._complex: tuple[ComplexState | None] | None = None
 
@@ -84,12 +83,17 @@ class Problem:
         real = {name: part(x, "real") if name in both else x for name, x in keys.items()}
         return {**real, **{imaginary: part(keys[name], "imag") for name, imaginary in both.items()}}
 
+    @property
+    def keys(self) -> dict[str, Any]:
+        """The keys and their values, as a copy."""
+        return copy.deepcopy(self._keys)
+
     def replace(self, **keys: Any) -> Any:
         """Return the problem with other values of these keys. None takes a key away."""
         # Another value is both parts of it.
-        for name in [name for name in keys if f"{name}_imaginary" in self.keys]:
+        for name in [name for name in keys if f"{name}_imaginary" in self._keys]:
             keys.setdefault(f"{name}_imaginary", None)
-        changed = _quietly(type(self).kind, {**self.keys, **keys})
+        changed = _quietly(type(self).kind, {**self._keys, **keys})
         changed._warn(3)
         return changed
 
@@ -157,12 +161,12 @@ class Problem:
 
     def _both(self, asked: tuple[str, ...], events: tuple[tuple[str, str], ...]) -> tuple[_lieflow.Model, Layout]:
         """The model of these quantities, of what the motion keeps, and of events."""
-        key = (asked, events)
-        if key not in self._models:
-            kept = [name for name in self._problem.invariants(list(asked)) if len(self._problem.columns(name)) <= COLUMNS]
-            model = self._problem.model(list(dict.fromkeys([*asked, *kept])), None, list(events))
-            self._models[key] = (model, Layout(model.schema, asked))
-        return self._models[key]
+        def make() -> tuple[_lieflow.Model, Layout]:
+            laws = [name for name in self._problem.invariants(list(asked)) if len(self._problem.columns(name)) <= COLUMNS]
+            model = self._problem.model(list(dict.fromkeys([*asked, *laws])), None, list(events))
+            return (model, Layout(model.schema, asked))
+
+        return kept(self._models, (asked, events), make)
 
     def _model(self, asked: tuple[str, ...], events: tuple[tuple[str, str], ...] = ()) -> _lieflow.Model:
         return self._both(asked, events)[0]
@@ -190,28 +194,30 @@ class Problem:
             raise ArgumentError("y0", "quantities by name", expected)
         state = self._complex_state()
         if state is None:
-            numbers = real("y0", y0)
+            numbers = own("y0", y0)
             if numbers.ndim != 1:
                 expected = "a list of the numbers of a state, as lieflow.Integrator.state has them"
                 raise ArgumentError("y0", f"shape {numbers.shape}", expected)
+            finite("y0", numbers)
             return numbers
         z = complex_numbers("y0", y0)
+        finite("y0", z)
         if z.shape == (state.size,) and not z.imag.any():
             return np.ascontiguousarray(z.real)
         return state.join("y0", z)
 
     def __repr__(self) -> str:
-        keys = ", ".join(f"{name}={value!r}" for name, value in self.keys.items())
+        keys = ", ".join(f"{name}={value!r}" for name, value in self._keys.items())
         return f"lieflow.{type(self).__name__}({keys})"
 
     def __eq__(self, other: object) -> bool:
-        return type(self) is type(other) and isinstance(other, Problem) and self.keys == other.keys
+        return type(self) is type(other) and isinstance(other, Problem) and self._keys == other._keys
 
     def __hash__(self) -> int:
-        return hash((type(self).__name__, repr(sorted(self.keys.items()))))
+        return hash((type(self).__name__, repr(sorted(self._keys.items()))))
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return (_quietly, (type(self).kind, self.keys))
+        return (_quietly, (type(self).kind, self._keys))
 
 
 def problem_of(kind: str, keys: dict[str, Any]) -> Problem:
@@ -250,8 +256,10 @@ def _document(kind: dict[str, Any]) -> str:
         entry(f"{name} : {', '.join(columns)}{f' [{unit}]' if unit else ''}", text)
         for name, columns, text, unit in kind["quantities"]
     ]
+    laws = [name if every else f"{name} (in some of these problems)" for name, every in kind["laws"]]
     head = f"{kind['summary'][:1].upper()}{kind['summary'][1:]}.\n\n{kind['equation']}"
-    return f"{head}\n\nParameters\n----------\n" + "\n".join(keys) + "\n\nQuantities\n----------\n" + "\n".join(quantities)
+    parts = {"Parameters": keys, "Quantities": quantities, "Laws": [entry("The exact motion keeps", ", ".join(laws))] if laws else []}
+    return head + "".join(f"\n\n{title}\n{'-' * len(title)}\n" + "\n".join(lines) for title, lines in parts.items() if lines)
 
 
 class _Help:
@@ -265,14 +273,22 @@ class _Help:
 
 
 def _make(kind: dict[str, Any]) -> type[Problem]:
-    parameters = [
-        inspect.Parameter(key[0], inspect.Parameter.KEYWORD_ONLY, default=None if key[3] else inspect.Parameter.empty)
-        for key in kind["keys"]
-    ]
+    def init(self: Problem, **keys: Any) -> None:
+        self._make(keys)
+        self._warn(3)
+
+    names = inspect.Signature([
+        inspect.Parameter("self", inspect.Parameter.POSITIONAL_OR_KEYWORD),
+        *(
+            inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=None if optional else inspect.Parameter.empty)
+            for name, _, _, optional, _ in kind["keys"]
+        ),
+    ])
+    init.__name__, init.__signature__ = "__init__", names  # type: ignore[attr-defined]
     entries = {
         "__module__": "lieflow",
         "__doc__": _Help(kind),
-        "__signature__": inspect.Signature(parameters),
+        "__init__": init,
         "kind": kind["name"],
         "equation": kind["equation"],
         "key_table": tuple((name, what, of, optional, text) for name, text, what, optional, of in kind["keys"]),

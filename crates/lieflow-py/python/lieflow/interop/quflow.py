@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .._arrays import number, whole
 from .._errors import ArgumentError
 from .._integrator import Integrator
 from .._problems import Problem, problem_of
@@ -80,32 +81,35 @@ def isomp(
     off = np.abs(W + W.conj().T).max(initial=0.0)
     if off > 1e-10 * max(np.abs(W).max(initial=0.0), 1e-300):
         raise ArgumentError("W", f"a matrix with |W + W*| = {off:.1e}", "a skew-Hermitian matrix")
-    if hamiltonian is not None and getattr(hamiltonian, "__name__", "") != "solve_poisson":
+    package = getattr(hamiltonian, "__module__", None) or ""
+    is_quflows = getattr(hamiltonian, "__name__", "") == "solve_poisson" and package.partition(".")[0] == "quflow"
+    if hamiltonian is not None and not is_quflows:
         name = getattr(hamiltonian, "__name__", repr(hamiltonian))
-        raise ArgumentError("hamiltonian", name, "solve_poisson, the fluid on the sphere")
+        raise ArgumentError("hamiltonian", name, "solve_poisson of quflow, the fluid on the sphere")
     for name, given in (("forcing", forcing), ("strang_splitting", strang_splitting)):
         if given is not None:
             raise ArgumentError(name, repr(given), "None")
-    if steps != int(steps) or steps < 0:
-        raise ArgumentError("steps", repr(steps), "an integer ≥ 0")
+    if not W.flags.writeable:
+        raise ArgumentError("W", "a read-only array", "an array that is overwritten")
+    steps, dt = whole("steps", steps), number("dt", dt)
     if steps == 0:
         return W
     n = W.shape[0]
     state = np.concatenate([W.real.ravel("F"), W.imag.ravel("F")])
     run = Integrator(
-        _fluid(n), "isospectral2", (0.0, float(dt) * int(steps)), state, steps=int(steps), quantities="enstrophy"
+        _fluid(n), "isospectral2", (0.0, dt * steps), state, steps=steps, quantities="enstrophy"
     )
     if callback is None:
         run.advance_to(run.t_end)
         W[...] = _matrix(run.state, n)
     else:
-        for _ in range(int(steps)):
+        for _ in range(steps):
             run.step()
             after = _matrix(run.state, n)
             callback(W, after - W)
             W[...] = after
     if stats is not None:
-        stats.update(iterations=run._run.stats()[3] / int(steps), number_of_maxit=0.0)
+        stats.update(iterations=run._run.stats()[3] / steps, number_of_maxit=0.0)
     return W
 
 

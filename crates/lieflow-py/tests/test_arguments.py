@@ -1,0 +1,203 @@
+"""Which argument is named, in which words, and what is accepted."""
+
+from __future__ import annotations
+
+import pickle
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+import lieflow as lf
+
+ROTATION = {"group": "SO(3)", "frame": "body"}
+BODY = lf.RigidBody(inertia=[1.0, 2.0, 3.0], omega_body=[0.01, 1.0, 0.0])
+PARTS = lf.Parts(R="rotation", n="numbers 2")
+START = {"R": np.eye(3), "n": [0.0, 1.0]}
+
+
+def turn(t, y):
+    return [0.0, 0.0, 1.0]
+
+
+@pytest.mark.parametrize(
+    ("value", "words"),
+    [
+        ({"R": [0, 0], "n": [0, 0]}, r"\['R'\]: shape \(2,\), expected shape \(3,\)"),
+        ({"R": [0, 0, 0]}, r"\['n'\]: missing"),
+        ({"R": [0, 0, 0], "n": [0, 0], "z": 1}, r"\['z'\]: no part has this name"),
+        ({"R": [0, 0, 0], "n": None}, r"\['n'\]: None"),
+        ([0, 0, 0], ": a value of type list, expected a dict of R, n"),
+    ],
+)
+def test_a_wrong_value_of_parts_is_a_type_error(value, words):
+    with pytest.raises(TypeError, match=r"f at t = 0\.0" + words):
+        lf.solve_ivp(lambda t, y: value, (0, 1), START, group=PARTS, frame="body")
+    right = {"R": [0, 0, 1.0], "n": [0, 0]}
+    kick = lf.Event(lambda t, y: t - 0.5, change=lambda t, y: value if value != [0, 0, 0] else 3)
+    with pytest.raises(TypeError, match=r"change of events\[0\] at t = 0\.5"):
+        lf.solve_ivp(lambda t, y: right, (0, 1), START, group=PARTS, frame="body", events=kick)
+
+
+@pytest.mark.parametrize(
+    ("y0", "group", "argument"),
+    [({**START, "n": [0, np.nan]}, PARTS, "y0['n'][1]"), ({**START, "R": np.full((3, 3), np.nan)}, PARTS, "y0['R'][0, 0]"),
+     ([[1, 0], [0, np.nan]], "U(2)", "y0[1, 1]")],
+)
+def test_a_part_that_is_not_finite_is_named(y0, group, argument):
+    with pytest.raises(lf.ArgumentError) as caught:
+        lf.solve_ivp(turn, (0, 1), y0, group=group, frame="body")
+    assert caught.value.argument == argument
+
+
+@pytest.mark.parametrize(
+    ("value", "words"),
+    [(["a", "b", "c"], "texts, such as a"), ([1j, 0, 0], "complex numbers"), ([[1], [1, 2]], "rows of different lengths"),
+     ([object(), 0, 0], "an array with a value of type object"), ([10**400, 0, 0], "a number beyond the range of float64"),
+     ([None, 0, 0], "an array with None")],
+)
+def test_what_came_is_told(value, words):
+    with pytest.raises(TypeError, match=f"f returned {words}.* at t = 0.0, expected 3 numbers"):
+        lf.solve_ivp(lambda t, y: value, (0, 1), np.eye(3), **ROTATION)
+    with pytest.raises(TypeError, match=f"u: {words}.*expected real numbers"):
+        lf.so3.exp(value)
+
+
+def test_integers_of_any_size_and_fractions_are_numbers():
+    assert np.array_equal(lf.so3.hat([10**30, 0, Fraction(1, 2)]), lf.so3.hat([1e30, 0, 0.5]))
+    r = lf.solve_ivp(lambda t, y: [Fraction(1, 2), 0, 10**30 - 10**30], (0, 1), np.eye(3), t_eval=[1.0], **ROTATION)
+    assert np.abs(r.y[0] - lf.so3.exp([0.5, 0, 0])).max() < 1e-12
+
+
+@pytest.mark.parametrize(
+    ("call", "error", "words"),
+    [
+        (lambda: lf.solve_ivp(turn, (0, 1), np.eye(3), max_step="a", **ROTATION), TypeError, "max_step: 'a'"),
+        (lambda: lf.solve_ivp(turn, (0, 1), np.eye(3), steps=10**30, **ROTATION), lf.ArgumentError, "steps: 1000"),
+        (lambda: lf.solve_ivp(turn, (0, 1), np.eye(3), max_steps=np.nan, **ROTATION), lf.ArgumentError, "max_steps: nan"),
+        (lambda: lf.FreeBodies([1, 2, 2.5], [[1, 0, 0]]).advance("rkmk4 cay", 0.1, np.nan), lf.ArgumentError, "steps: nan"),
+        (lambda: lf.FreeBodies([1, 2, 2.5], [[1, 0, 0]]).advance("rkmk4 cay", "a", 1), TypeError, "h: 'a'"),
+        (lambda: lf.FreeBodies([1, 2, 2.5], [[1, 0, 0]]).advance("rkmk4 cay", 0.1, 1, -1), lf.ArgumentError, "threads: -1"),
+        (lambda: lf.so3.dexpinv([1, 0, 0], [1, 0, 0], q="a"), TypeError, "q: 'a'"),
+        (lambda: lf.SO(4).dexpinv(np.zeros((4, 4)), np.zeros((4, 4)), q=-1), lf.ArgumentError, "q: -1"),
+        (lambda: lf.SO(-1), lf.ArgumentError, "n: -1, expected an integer ≥ 1"),
+        (lambda: lf.SO(3, -1), lf.ArgumentError, "q: -1, expected an integer ≥ 0"),
+        (lambda: lf.SO(2.5), TypeError, "n: a value of type float, expected an integer"),
+        (lambda: lf.expm(np.eye(2), threads=0), lf.ArgumentError, "threads: 0"),
+        (lambda: lf.expm(np.eye(2), threads=-1), lf.ArgumentError, "threads: -1"),
+        (lambda: lf.expm(1j * np.eye(2), threads=0), lf.ArgumentError, "threads: 0"),
+        (lambda: lf.Event("w1", points=10**12), lf.ArgumentError, "points: 1000000000000, expected an integer from 1 to"),
+        (lambda: lf.so3.random("a"), TypeError, "size: 'a'"),
+        (lambda: lf.so3.random(-1), lf.ArgumentError, "size: -1"),
+        (lambda: lf.CFunction(2**70), lf.ArgumentError, "fun: the address 118"),
+    ],
+)
+def test_an_argument_of_another_kind_is_named(call, error, words):
+    with pytest.raises(error, match=words):
+        call()
+
+
+@pytest.mark.parametrize(
+    ("call", "argument"),
+    [
+        (lambda: lf.solve_ivp(BODY, (0, 1), [1.0, 2.0]), "y0"),
+        (lambda: lf.solve_ivp(BODY, (0, 1), [0.0, np.nan, 0.0], quantities="momentum_body"), "y0[1]"),
+        (lambda: lf.solve_ivp(turn, (0, 1), np.eye(3), method="cf4", dense_output=True, **ROTATION), "dense_output"),
+        (lambda: lf.solve_ivp(lambda t, y: np.eye(2), (0, 1), np.diag([1, 0.0]), group="GL(2)", frame="body"), "y0"),
+        (lambda: lf.solve_ivp(lambda t, y: np.zeros((4, 4)), (0, 1), [[1, 0.2], [0.1, 1]], group="Sp(4)", action="lagrangian"), "y0"),
+        (lambda: lf.Samples([0.0], np.zeros((1, 3))), "t"),
+        (lambda: lf.Samples([0.0, 1.0], [[0, 0, np.nan], [0, 0, 0]]), "values[0, 2]"),
+        (lambda: lf.Gm(np.zeros((2, 2))), "M"),
+        (lambda: lf.Gm([[1.0, np.nan], [0, 1]]), "M[0, 1]"),
+        (lambda: lf.Gm(np.zeros((0, 0))), "M"),
+        (lambda: lf.FreeBodies([1, 2, 2.5], np.ones((2, 3)), [np.eye(3), 2 * np.eye(3)]), "attitude[1]"),
+        (lambda: lf.solve_ivp(lf.Field("SO(3)", ["x", 0, 0]), (0, 1), np.eye(3), frame="body"), "field[0]"),
+        (lambda: lf.solve_ivp(lf.Field("SO(3)", "x"), (0, 1), np.eye(3), frame="body"), "field"),
+        (lambda: lf.solve_ivp(lf.Field("GL(2)", [[0, 0], ["x", 0]]), (0, 1), np.eye(2), frame="body"), "field[1][0]"),
+        (lambda: lf.solve_ivp(lf.Field("GL(2)", [0, 0, "x", 0]), (0, 1), np.eye(2), frame="body"), "field[2]"),
+        (lambda: lf.solve_ivp(lf.Field(PARTS, {"n": [0, "x"], "R": [0, 0, 0]}), (0, 1), START, frame="body"), "field['n'][1]"),
+        (lambda: lf.so3.exp_on([1, 0, 0], [[1, 0, 0], [np.nan, 0, 0]]), "x[1]"),
+    ],
+)
+def test_the_argument_has_its_own_name(call, argument):
+    with pytest.raises(lf.ArgumentError) as caught:
+        call()
+    assert caught.value.argument == argument and str(caught.value).startswith(argument), str(caught.value)
+
+
+def test_the_advice_on_formulas_is_for_python():
+    with pytest.raises(lf.ArgumentError) as caught:
+        lf.solve_ivp(lf.Field("SO(3)", ["log(t)", "x", 0]), (0, 1), np.eye(3), frame="body")
+    first, [second] = caught.value, caught.value.others
+    assert (first.argument, second.argument) == ("field[0]", "field[1]")
+    assert "did you mean `ln`" in first.expected and "an entry `x = 0.5` in `parameters`" in second.expected
+    for call in (lambda: lf.RigidBody(inertia=[1, 2, "a"], omega_body=[0, 1, 0]), lambda: lf.solve_ivp(BODY, (0, 1), events="w4")):
+        with pytest.raises(lf.ArgumentError, match="`parameters`") as caught:
+            call()
+        assert "problem." not in str(caught.value) and "line" not in str(caught.value)
+
+
+def test_several_mistakes_pickle():
+    with pytest.raises(lf.ArgumentError) as caught:
+        lf.RigidBody(inertia=[1.0, -2.0, 3.0], omega_bdy=[0.0, 1.0, 0.0])
+    copy = pickle.loads(pickle.dumps(caught.value))
+    assert str(copy) == str(caught.value) and len(copy.others) == len(caught.value.others) >= 1
+    assert [e.argument for e in copy.others] == [e.argument for e in caught.value.others] and copy.expected == caught.value.expected
+
+
+def test_arguments_as_in_scipy():
+    r = lf.solve_ivp(lambda t, y, a: [0, 0, a], (0, 1), np.eye(3), args=[2.0], stops=None, t_eval=[1.0], **ROTATION)
+    assert np.abs(r.y[0] - lf.so3.exp([0, 0, 2.0])).max() < 1e-12
+    for args in (2.0, "ab", None):
+        with pytest.raises(TypeError, match="args"):
+            lf.solve_ivp(turn, (0, 1), np.eye(3), args=args, **ROTATION)
+
+
+def test_rotations_of_scipy_are_accepted(rng):
+    transform = pytest.importorskip("scipy.spatial.transform")
+    u = rng.standard_normal((2, 3))
+    rotation = transform.Rotation.from_rotvec(u)
+    assert np.abs(lf.so3.log(rotation) - u).max() < 1e-13
+    r = lf.solve_ivp(turn, (0, 1), rotation[0], t_eval=[0.0], **ROTATION)
+    assert np.abs(r.y[0] - lf.so3.exp(u[0])).max() < 1e-14
+    parts = lf.solve_ivp(lambda t, y: {"R": [0, 0, 1.0], "n": [0, 0]}, (0, 1), {**START, "R": rotation[1]}, group=PARTS, frame="body")
+    assert np.abs(parts.R[0] - lf.so3.exp(u[1])).max() < 1e-14
+    bodies = lf.FreeBodies([1, 2, 2.5], np.ones((2, 3)), rotation)
+    assert np.abs(bodies.attitude - lf.so3.exp(u)).max() < 1e-14
+    if hasattr(transform, "RigidTransform"):
+        rigid = transform.RigidTransform.from_exp_coords([0.1, 0.2, 0.3, 0.4, 0.5, 0.6])
+        assert np.abs(lf.se3.log(rigid) - [0.1, 0.2, 0.3, 0.4, 0.5, 0.6]).max() < 1e-13
+        motion = lf.solve_ivp(lambda t, y: np.zeros(6), (0, 1), rigid, group="SE(3)", frame="body")
+        assert np.abs(motion.y[0] - rigid.as_matrix()).max() < 1e-14
+
+
+def test_a_field_with_its_group_again():
+    name = "".join(["SO", "(3)"])
+    field = lf.Field("SO(3)", [0, 0, 1])
+    assert lf.solve_ivp(field, (0, 1), np.eye(3), group=name, frame="body").success
+    field = lf.Field(lf.SO(4), np.zeros((4, 4)).tolist())
+    assert lf.solve_ivp(field, (0, 1), np.eye(4), group=lf.SO(4), frame="body").success
+    again = lf.Parts(R="rotation", n="numbers 2")
+    field = lf.Field(PARTS, {"R": [0, 0, 1], "n": [0, 0]})
+    assert again == PARTS and hash(again) == hash(PARTS) and lf.Parts(n="numbers 2", R="rotation") != PARTS
+    assert lf.solve_ivp(field, (0, 1), START, group=again, frame="body").success
+    with pytest.raises(lf.ArgumentError, match="its group"):
+        lf.solve_ivp(field, (0, 1), START, group=lf.SO(4), frame="body")
+
+
+def test_a_c_function_is_not_called_as_one_of_python():
+    import ctypes
+
+    of_ctypes = ctypes.CDLL(None).abs
+    with pytest.raises(TypeError, match=r"fun: .*expected lf\.CFunction\(fun, parameters\)"):
+        lf.solve_ivp(of_ctypes, (0, 1), np.eye(3), **ROTATION)
+    scipy = pytest.importorskip("scipy")
+    double = ctypes.CFUNCTYPE(ctypes.c_double, ctypes.c_double)(lambda x: x)
+    with pytest.raises(TypeError, match=r"fun: .*LowLevelCallable.*lf\.CFunction"):
+        lf.solve_ivp(scipy.LowLevelCallable(double), (0, 1), np.eye(3), **ROTATION)
+
+
+def test_a_quantity_that_was_not_asked_for_is_told():
+    for event, error in ((lambda t, y: y.momentum_body[0], AttributeError), (lambda t, y: y["momentum_body"][0], KeyError)):
+        with pytest.raises(error, match="no quantity 'momentum_body', expected one of attitude; .*quantities="):
+            lf.solve_ivp(BODY, (0, 1), events=event, quantities="attitude")

@@ -1,0 +1,68 @@
+"""Arguments are copied, and caches are bounded."""
+
+from __future__ import annotations
+
+import pickle
+
+import numpy as np
+import pytest
+
+import lieflow as lf
+
+BODY = lf.RigidBody(inertia=[1.0, 2.0, 3.0], omega_body=[0.01, 1.0, 0.0])
+
+
+def test_a_later_change_of_an_argument_has_no_effect():
+    j, m = np.array([1.0, 2.0, 3.0]), np.ones((1, 3))
+    bodies = lf.FreeBodies(j[None], m)
+    energy = bodies.energy
+    j[:] = 7
+    assert np.array_equal(bodies.energy, energy) and np.array_equal(pickle.loads(pickle.dumps(bodies)).energy, energy)
+
+    t, v = np.array([0.0, 1.0]), np.ones((2, 3))
+    samples = lf.Samples(t, v)
+    v[:] = 2
+    system = {"group": "SO(3)", "frame": "space", "t_eval": [1.0]}
+    for of in (samples, pickle.loads(pickle.dumps(samples)), lf.Field("SO(3)", ["s1", "s2", "s3"], samples=samples)):
+        keys = {k: x for k, x in system.items() if k != "group" or not isinstance(of, lf.Field)}
+        assert np.abs(lf.solve_ivp(of, (0, 1), np.eye(3), **keys).y[0] - lf.so3.exp([1, 1, 1])).max() < 1e-9
+    with pytest.raises(ValueError, match="read-only"):
+        samples.values[:] = 3
+
+    w, texts = np.array([0.0, 0.0, 1.0]), ["w1", "w2", "w3"]
+    field = lf.Field("SO(3)", texts, w=w)
+    lf.solve_ivp(field, (0, 1), np.eye(3), frame="space")
+    w[:], texts[2] = 2, "0"
+    for of in (field, pickle.loads(pickle.dumps(field))):
+        y = lf.solve_ivp(of, (0, 1), np.eye(3), frame="space", t_eval=[1.0]).y[0]
+        assert np.abs(y - lf.so3.exp([0, 0, 1])).max() < 1e-9
+
+    form = np.diag([1.0, 2.0])
+    group = lf.Gm(form)
+    form[:] = 5
+    assert group == lf.Gm(np.diag([1.0, 2.0])) and "2.0" in repr(group) and pickle.loads(pickle.dumps(group)) == group
+
+    body = lf.RigidBody(inertia=[1.0, 2.0, 3.0], omega_body=[0.1, 1.0, 0.0])
+    exact = body.exact(3.0).attitude
+    body.keys["inertia"][0] = 100.0
+    assert np.array_equal(pickle.loads(pickle.dumps(body)).exact(3.0).attitude, exact) and body.keys["inertia"][0] == 1.0
+
+
+def test_the_second_run_begins_where_the_first_did():
+    y0 = np.eye(3)
+    r = lf.solve_ivp(lambda t, y: [0.0, 1.0, t], (0, 2), y0, group="SO(3)", frame="body", method="rkmk4 exp", steps=50)
+    y0[:] = lf.so3.exp([1.0, 0.0, 0.0])
+    assert r.estimate_error().y < 1e-5
+    state = np.array([0.0, 1.0, 1.0])
+    r = lf.solve_ivp(BODY, (0, 2), state, quantities="momentum_body", method="rkmk4 exp", steps=50)
+    state[:] = 7
+    assert r.estimate_error().y["momentum_body"] < 1e-5
+
+
+def test_caches_are_bounded():
+    body = lf.RigidBody(inertia=[1.0, 2.0, 3.0], omega_body=[0.01, 1.0, 0.0])
+    field = lf.Field("SO(3)", [0, 0, 1])
+    for c in range(200):
+        lf.solve_ivp(body, (0, 0.01), events=f"w2 - {c}", steps=1)
+        lf.solve_ivp(field, (0, 0.01), np.eye(3), frame="body", events=f"y11 - {c}", steps=1)
+    assert len(body._models) <= 64 and len(field._made) <= 64
