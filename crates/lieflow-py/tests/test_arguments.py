@@ -111,6 +111,8 @@ def test_an_argument_of_another_kind_is_named(call, error, words):
         (lambda: lf.Gm([[1.0, np.nan], [0, 1]]), "M[0, 1]"),
         (lambda: lf.Gm(np.zeros((0, 0))), "M"),
         (lambda: lf.FreeBodies([1, 2, 2.5], np.ones((2, 3)), [np.eye(3), 2 * np.eye(3)]), "attitude[1]"),
+        (lambda: lf.FreeBodies([1, 2, -2.5], np.ones((2, 3))), "inertia[2]"),
+        (lambda: lf.FreeBodies([1, 2, 2.5], [[0, 0, 0], [0, np.nan, 0]]), "momentum[1, 1]"),
         (lambda: lf.solve_ivp(lf.Field("SO(3)", ["x", 0, 0]), (0, 1), np.eye(3), frame="body"), "field[0]"),
         (lambda: lf.solve_ivp(lf.Field("SO(3)", "x"), (0, 1), np.eye(3), frame="body"), "field"),
         (lambda: lf.solve_ivp(lf.Field("GL(2)", [[0, 0], ["x", 0]]), (0, 1), np.eye(2), frame="body"), "field[1][0]"),

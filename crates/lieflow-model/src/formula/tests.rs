@@ -263,6 +263,7 @@ fn what_is_wrong_is_said_with_its_place() {
         ("x)", "found `)`, expected an operator or the end at character 2", None),
         ("3*w1", "unknown name `w1` at character 3", Some("did you mean `w_1`?")),
         ("sine(x)", "unknown function `sine` at character 1", Some("did you mean `sin`?")),
+        ("log(x)", "unknown function `log` at character 1", Some("did you mean `ln`?")),
         ("x(2)", "found `(`, expected an operator or the end at character 2", Some("2*x")),
         ("sin x", "found `x`, expected `(` after sin at character 5", None),
         ("min(x)", "found `)`, expected `,`: min takes two numbers at character 6", None),

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _lieflow
-from ._arrays import first, number, own, real, whole
+from ._arrays import finite, first, number, own, real, whole
 from .so3 import contains
 from ._errors import ArgumentError
 
@@ -35,7 +35,9 @@ class FreeBodies:
         m = real("momentum", momentum)
         if m.ndim != 2 or m.shape[1] != 3:
             raise ArgumentError("momentum", f"shape {m.shape}", "shape (N, 3)")
+        finite("momentum", m)
         j = own("inertia", inertia)
+        first("inertia", ~((j > 0) & (j < np.inf)), "a number that no moment can be", "finite numbers > 0")
         if j.shape == (3,):
             j = np.ascontiguousarray(np.broadcast_to(j, m.shape))
         if j.shape != m.shape:

@@ -192,9 +192,8 @@ def expm(
     matrix that is not skew, where that is said, or has no exponential. Relative error: a small multiple of ε times the
     condition number of exp.
     """
-    if not (structure is None or isinstance(structure, str)):
-        raise TypeError(f'structure: a value of type {type(structure).__name__}, expected None or "skew"')
-    threads = whole("threads", threads, 1)
+    if type(threads) is not int or threads < 1:
+        threads = whole("threads", threads, 1)
     try:
         array = A if isinstance(A, np.ndarray) else np.asarray(A)
     except ValueError:

@@ -393,8 +393,8 @@ def solve_ivp(
         numbers, a Group, or Parts.
     action : str
         "translation": ẏ = f y in space, ẏ = y f in the body. "linear": ẏ = f y of vectors or columns, on SO(3) ẏ = f × y.
-        "conjugation": ẏ = f y − y f. "coadjoint": ẏ = −ad*_f y, which is f × y on SO(3) and y fᵀ − fᵀ y of matrices (**a
-        body has f = −ω**, ẏ = y × ω). "lagrangian": ẏ = c − aᵀ y − y a − y b y with f = [a b; c −aᵀ].
+        "conjugation": ẏ = f y − y f. "coadjoint": ẏ = −ad*_f y, which is f × y on SO(3) and y fᵀ − fᵀ y of matrices, on
+        U(n) with f† (**a body has f = −ω**, ẏ = y × ω). "lagrangian": ẏ = c − aᵀ y − y a − y b y with f = [a b; c −aᵀ].
     frame : "space" or "body"
         The frame of f. It must be given for ``action="translation"``.
     linear : bool

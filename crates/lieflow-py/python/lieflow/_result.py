@@ -134,7 +134,8 @@ class ErrorEstimate(NamedTuple):
     """How far a run is from another result, at most over all outputs and events.
 
     ``found_by`` says what it was compared with, ``y`` is the largest distance of the points (the angle where all of them are
-    rotations, else the length of the difference; a dict for a problem and for parts), ``t_events`` the largest distance of the times of each event.
+    rotations, else the length of the difference; a dict for a problem and for parts), ``t_events`` the largest distance of
+    the times of each event.
     """
 
     found_by: str
