@@ -1,6 +1,7 @@
 """Runs that are taken step by step: stops, threads, exceptions, Ctrl-C."""
 
 import _thread
+import pickle
 import threading
 import time
 
@@ -165,3 +166,25 @@ def test_parts_of_a_call_do_not_change_the_bodies():
     for _ in range(3000):
         many.advance("rkmk4 cay", 0.01, 1)
     assert (one.momentum == many.momentum).all()
+
+
+def test_arguments_are_named_and_copied():
+    calls = 0
+
+    def f(t, y):
+        nonlocal calls
+        calls += 1
+        return [0.0, 0.0, 1.0]
+
+    start = np.eye(3)
+    run = lf.Integrator(f, None, (0, 5), start, **ROTATION)
+    run.advance_to(1.0)
+    assert run.nfev == calls
+    for wrong in ("a", None, [1.0, 2.0]):
+        with pytest.raises((TypeError, lf.ArgumentError), match="t: "):
+            run.advance_to(wrong)
+    field = lf.Field("SO(3)", ["0", "0", "1"])
+    run = lf.Integrator(field, None, (0, 5), start, frame="body")
+    start[:] = 7.0
+    run.advance_to(1.0)
+    assert (pickle.loads(pickle.dumps(run)).y == run.y).all()

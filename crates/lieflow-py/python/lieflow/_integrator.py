@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._arrays import real
+from ._arrays import number, real
 from ._errors import ArgumentError
 from ._fields import Parts
 from ._ivp import METHOD, Ready, settings_of, span_of
@@ -64,7 +65,7 @@ class Integrator:
         if not (method is None or isinstance(method, str)):
             raise TypeError(f"method: a value of type {type(method).__name__}, expected a name")
         self._given = (
-            (problem, method, t_span, y0),
+            (problem, method, t_span, copy.deepcopy(y0)),
             {"args": args, "group": group, "action": action, "frame": frame, "linear": linear, "quantities": quantities, **steps},
         )
         known = ("rtol", "atol", "first_step", "min_step", "max_step", "dt", "steps", "stops")
@@ -93,6 +94,8 @@ class Integrator:
                 ready.field, method or METHOD, span, ready.flat, settings
             )
         self._problem = problem if isinstance(problem, Problem) else None
+        # The call that checks the value of f at the start.
+        self._checks = 0 if self._problem is not None else 1
 
     @property
     def t(self) -> float:
@@ -148,7 +151,8 @@ class Integrator:
     @property
     def nfev(self) -> int | None:
         """The evaluations of f; None if the method does not count them."""
-        return self._run.stats()[0]
+        calls = self._run.stats()[0]
+        return None if calls is None else calls + self._checks
 
     @property
     def nsteps(self) -> int:
@@ -166,11 +170,11 @@ class Integrator:
 
     def advance_to(self, t: float) -> None:
         """Take steps until the time is t; the last one ends there. f is not evaluated after t."""
-        self._run.advance_to(float(t))
+        self._run.advance_to(number("t", t))
 
     def interpolate(self, t: float) -> Any:
         """Return the point at a time within the last step, by the dense output of the method."""
-        return self._shown(self._run.interpolate(float(t)))
+        return self._shown(self._run.interpolate(number("t", t)))
 
     def save(self) -> bytes:
         """Return the state as bytes. They have neither the problem nor the method."""
