@@ -28,7 +28,9 @@ pub(super) fn sum<Y: LinearSpace>(
         return z.set_sum(y, h, weights, k);
     };
     z.set_sum(y, h, before, k);
-    z.add(h * Y::Scalar::lit(last), newest);
+    if last != 0.0 {
+        z.add(h * Y::Scalar::lit(last), newest);
+    }
 }
 
 /// The stages k, an increment u and the chart.

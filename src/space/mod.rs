@@ -285,12 +285,14 @@ macro_rules! small {
                 true $(&& x[$i].is_finite())*
             }
             /// In a local sum, which stays in registers. Three numbers that are stored as two and one, and loaded as one
-            /// and two, would wait for the store. All terms are added: a weight of 0 costs less than a look at it.
+            /// and two, would wait for the store.
             #[inline(always)]
             fn set_sum(&mut self, y: &Self, h: S, weights: &[f64], k: &[Self]) {
                 let mut sum = *y;
                 for j in 0..weights.len().min(k.len()) {
-                    sum.add(h * S::lit(weights[j]), &k[j]);
+                    if weights[j] != 0.0 {
+                        sum.add(h * S::lit(weights[j]), &k[j]);
+                    }
                 }
                 self.assign(&sum);
             }

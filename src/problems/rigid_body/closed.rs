@@ -40,6 +40,8 @@ fn kinetic_energy<S: Real>(inverse_inertia: &Vector3<S>, m: &Vector3<S>) -> S {
 pub struct RigidBody<S = f64> {
     group: So3<S>,
     inverse_inertia: Vector3<S>,
+    /// 1/J₃ − 1/J₂, 1/J₁ − 1/J₃, 1/J₂ − 1/J₁.
+    differences: Vector3<S>,
 }
 
 impl<S: Real> RigidBody<S> {
@@ -50,7 +52,8 @@ impl<S: Real> RigidBody<S> {
     pub fn new(inertia: [f64; 3]) -> Result<Self, Error> {
         check_inertia(&inertia)?;
         let [a, b, c] = inertia.map(|j| S::lit(1.0 / j));
-        Ok(RigidBody { group: So3::new(), inverse_inertia: Vector3::new(a, b, c) })
+        let differences = Vector3::new(c - b, a - c, b - a);
+        Ok(RigidBody { group: So3::new(), inverse_inertia: Vector3::new(a, b, c), differences })
     }
 
     /// The diagonal of J⁻¹.
@@ -92,9 +95,8 @@ impl<S: Real> Problem for RigidBody<S> {
     /// constant to the last bit. This has fewer operations one after the other than the product of m and ω.
     #[inline]
     fn field(&self, _: S, m: &Vector3<S>, dm: &mut Vector3<S>, _: &mut FieldStore<Self>) {
-        let [a, b, c] = self.inverse_inertia.into();
-        *dm =
-            Vector3::new((c - b) * (m[1] * m[2]), (a - c) * (m[2] * m[0]), (b - a) * (m[0] * m[1]));
+        let d = &self.differences;
+        *dm = Vector3::new(d[0] * (m[1] * m[2]), d[1] * (m[2] * m[0]), d[2] * (m[0] * m[1]));
     }
 }
 

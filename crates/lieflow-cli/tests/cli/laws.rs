@@ -143,9 +143,14 @@ fn promises_are_kept_and_only_those_are_made() {
                     moved.push((bundled.name, name.clone()));
                 }
             }
-            // The paper's body of high energy is none that there is; and some of these runs are coarse.
+            // The paper's body of high energy is none that there is; and some of these runs are coarse. A matrix that a
+            // classical method has taken far from the group has no quaternion.
             let known = |warning: &String| {
-                warning.contains("impossible for a real body") || warning.contains("` is wrong by ")
+                warning.contains("impossible for a real body")
+                    || warning.contains("` is wrong by ")
+                    || method.map.is_none()
+                        && warning.starts_with('q')
+                        && bundled.name == "gyro-record"
             };
             assert!(summary.warnings.iter().all(known), "{}: {:?}", bundled.name, summary.warnings);
         }

@@ -250,7 +250,7 @@ fn all_values_at_once() {
         "4:14: expected 3 numbers, found 2",
         "5:12: attitude: not in SO(3)",
         "7:10: t_span is empty",
-        "10:9: `every` and `count`",
+        "10:9: both `every` and `count`",
         "12:5: formulas.e: found `)`",
         "13:5: formulas.f: the formula ends here",
         "14:6: formulas.g[1]: unknown function `sine`",
