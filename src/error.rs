@@ -110,7 +110,7 @@ pub enum Error {
     /// The columns of a matrix depend on each other, to rounding.
     #[error(
         "{arg}: the columns of {arg} depend on each other, to rounding (rcond = {}, expected at least {})",
-        Plain(.rcond), Plain(.minimum)
+        Plain(&two_digits(*.rcond)), Plain(.minimum)
     )]
     Singular {
         /// The argument.
@@ -332,6 +332,11 @@ impl fmt::Display for Plain<'_> {
             _ => write!(f, "{:?}", self.0),
         }
     }
+}
+
+/// A number rounded to two digits.
+fn two_digits(x: f64) -> f64 {
+    format!("{x:.1e}").parse().unwrap_or(x)
 }
 
 /// A complex number in a message, as a real one where its imaginary part is 0.
