@@ -26,6 +26,9 @@ pub(super) const LONG: Duration = Duration::from_secs(10);
 const SAMPLE: usize = 100;
 /// The search for a short pulse is given up after this many times the time that it may take.
 const MISJUDGED: f64 = 3.0;
+/// The time of a run below this many seconds says nothing: another program may have held it up. Then a run in short steps is
+/// begun in any case, and ends at its deadline.
+const BRIEF: f64 = 0.015;
 /// A run in short steps that ends this many estimated errors away has found something that the run did not see.
 const PASSED_OVER: f64 = 1e3;
 /// A motion that makes this of the last digits of its start is worth a warning.
@@ -205,7 +208,7 @@ impl<'a> Check<'a> {
     fn passed_over(&self, known: &Accuracy, seconds: f64) -> Option<(Accuracy, String)> {
         let clock = Instant::now();
         let (short, end) = (self.short_step()?, self.end());
-        let most = time_to_search(self.own.steps, seconds)?;
+        let most = time_to_search(self.own.steps, if seconds < BRIEF { 0.0 } else { seconds })?;
         if self.is_exact || self.ended_by_event {
             return None;
         }
