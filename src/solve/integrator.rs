@@ -39,7 +39,7 @@ pub struct Integrator<'a, P: Problem, M: Method<P>> {
     pub(super) points: Points<'a, P, M>,
     pub(super) times: Timeline,
     /// The times at which a step ends, in order.
-    stops: Vec<f64>,
+    pub(super) stops: Vec<f64>,
     patience: Patience,
 }
 
@@ -48,7 +48,7 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
         held: (Held<'a, P>, Held<'a, M>),
         [t0, t1]: [f64; 2],
         (pace, estimator): (Pace, Option<Estimator<P, M>>),
-        (y, stops): (PointOf<P>, Vec<f64>),
+        y: PointOf<P>,
     ) -> Result<Self, Error> {
         let adaptive = match &pace {
             Pace::Equal { .. } => None,
@@ -66,7 +66,7 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
         };
         let cadence = Cadence::new(facts.stays_on_manifold);
         let times = Timeline::new([t0, t1], pacer, cadence, facts);
-        Ok(Integrator { points, times, stops, patience: Patience::new() })
+        Ok(Integrator { points, times, stops: Vec::new(), patience: Patience::new() })
     }
 
     /// The time.
@@ -144,10 +144,10 @@ impl<'a, P: Problem, M: Method<P>> Integrator<'a, P, M> {
 
     /// The time of the next stop, and true; `end` if that is before it.
     fn stop(&self, end: f64) -> (f64, bool) {
-        let passed = |stop: &f64| !self.times.is_ahead(*stop);
+        let passed = |stop: &f64| !self.times.is_before(self.times.t, *stop);
         let next = self.stops.get(self.stops.partition_point(passed)).copied();
-        let is_reached = |stop: &f64| (end - self.times.t).abs() >= (stop - self.times.t).abs();
-        next.filter(is_reached).map_or((end, false), |stop| (stop, true))
+        let next = next.filter(|stop| !self.times.is_before(end, *stop));
+        next.map_or((end, false), |stop| (stop, true))
     }
 
     /// `at` ← the state at a time within the last step, by dense output.

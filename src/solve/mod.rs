@@ -324,8 +324,7 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
     fn start(&mut self, y0: PointOf<P>) -> Result<Integrator<'a, P, M>, Error> {
         let pace = (self.settings.check()?, self.estimator);
         let held = (self.problem.clone(), self.method.clone());
-        let stops = self.settings.stops.clone();
-        Integrator::new(held, self.settings.t_span, pace, (y0, stops))
+        Integrator::new(held, self.settings.t_span, pace, y0)
     }
 
     /// Starts a run from y₀ that you take step by step. It has stops, but no output, events or cancellation.
@@ -333,7 +332,9 @@ impl<'a, P: Problem, M: Method<P>> Solve<'a, P, M> {
     /// # Errors
     /// [`RunError::Setup`] for wrong arguments.
     pub fn integrator(mut self, y0: PointOf<P>) -> Result<Integrator<'a, P, M>, RunError> {
-        Ok(self.start(y0)?)
+        let mut run = self.start(y0)?;
+        run.stops = core::mem::take(&mut self.settings.stops);
+        Ok(run)
     }
 
     /// Runs from y₀ and stores the points of the output.

@@ -17,8 +17,8 @@ pub struct Stats {
     pub rejected: u64,
     /// Points computed within a step, for output and events.
     pub points_within: u64,
-    /// Searches of one event in one step that may have missed zeros, because the function of the event turns much faster
-    /// than the state. Methods of order 10 and more know it. Shorter steps help
+    /// Searches of one event in one step that may have missed zeros, because the function of the event is much faster than
+    /// the state, or hardly passes 0. Methods of order 10 and more know it. Shorter steps help
     /// ([`max_step`](crate::Solve::max_step)).
     pub unsure_steps: u64,
     /// Evaluations of f, also in rejected attempts and within steps; `None` if the method does not count them.

@@ -129,18 +129,14 @@ impl Timeline {
         Ok(())
     }
 
-    /// True if t is ahead in the direction of the run.
-    pub(super) fn is_ahead(&self, t: f64) -> bool {
-        if self.t1 >= self.t { self.t < t } else { self.t > t }
-    }
-
     /// Checks that a run can go on to t.
     pub(super) fn check_ahead(&self, t: f64) -> Result<(), Error> {
-        let is_within = (t - self.t).abs() <= (self.t1 - self.t).abs();
-        if t.is_finite() && (t == self.t || self.is_ahead(t) && is_within) {
-            return Ok(());
+        match t.is_finite() && !self.is_before(t, self.t) && !self.is_before(self.t1, t) {
+            true => Ok(()),
+            false => {
+                Err(Error::out_of_range("t", t, format!("a time from {} to {}", self.t, self.t1)))
+            }
         }
-        Err(Error::out_of_range("t", t, format!("a time from {} to {}", self.t, self.t1)))
     }
 
     /// Takes one step, at most to `stop`; steps by error may be several, within their reach. No stage evaluates f exactly

@@ -93,6 +93,34 @@ fn stops_are_those_ahead() {
     assert_eq!(again.y(), there.y());
 }
 
+/// A stop one rounding after the time to which the run goes is not reached, and neither is a time after the end.
+#[test]
+fn times_one_rounding_apart_are_two() {
+    let f = |t: f64, _: &Matrix3<f64>, v: &mut Vector3<f64>| *v = Vector3::new(0.0, 0.0, rate(t));
+    let flow = Flow::new(So3::new(), LeftTranslation, f);
+    let (pair, equal) = (Rkmk::new(DOP853, Exp), Rkmk::new(RK4, Exp));
+    for sign in [1.0, -1.0] {
+        let after = |t: f64| if sign > 0.0 { t.next_up() } else { t.next_down() };
+        // The distances from the start are the same after rounding.
+        let span = [-1000.0 * sign, 5.0 * sign];
+        let by_error = Solve::new(&flow, &pair, span).tolerances(1e-9, 1e-12);
+        let by_size = Solve::new(&flow, &equal, span).dt(0.3);
+        let stop = after(2.0 * sign);
+        let mut runs = (
+            by_error.stops([stop]).integrator(Matrix3::identity()).expect("a start"),
+            by_size.stops([stop]).integrator(Matrix3::identity()).expect("a start"),
+        );
+        assert!(runs.0.advance_to(after(5.0 * sign)).is_err());
+        for t in [2.0 * sign, stop, 5.0 * sign] {
+            runs.0.advance_to(t).expect("steps");
+            runs.1.advance_to(t).expect("steps");
+            assert_eq!((runs.0.t(), runs.1.t()), (t, t));
+        }
+        assert!(runs.0.advance_to(after(5.0 * sign)).is_err());
+        assert!(runs.1.advance_to(after(5.0 * sign)).is_err());
+    }
+}
+
 /// f fails for a while. Where it is whole again, the run goes on as if nothing had happened.
 #[test]
 fn a_run_goes_on_after_an_error_of_f() {

@@ -70,8 +70,8 @@ pub(crate) fn words(name: &str, error: &Error) -> (String, String, String) {
             (of(arg).into(), value, format!("an element of the Lie algebra of {group}"))
         }
         Error::Singular { arg, rcond, minimum } => {
-            let value = format!("singular to rounding, a reciprocal condition of {rcond:.1e}");
-            (of(arg).into(), value, format!("at least {minimum:e}"))
+            let value = format!("columns that depend on each other (rcond = {rcond:.1e})");
+            (of(arg).into(), value, format!("rcond of at least {minimum:e}"))
         }
         Error::NotFiniteEntry { arg, row, col, value } => (
             format!("{}[{row}, {col}]", of(arg)),

@@ -8,7 +8,7 @@ use lieflow::{RunError, SaveAt};
 use lieflow_model::formula::Which;
 use lieflow_model::kinds::{KINDS, named};
 use lieflow_model::problem::{
-    self, CurvePlace, EventPlan, KeyInfo, Layer, Orders, Plan, StepByStep, Steps, Watcher,
+    self, CurvePlace, EventPlan, Kept, KeyInfo, Layer, Orders, Plan, StepByStep, Steps, Watcher,
 };
 use lieflow_model::reader::{ReadError, Shape, Tree};
 use lieflow_model::scene::{Columns, OnRows, RowFormula};
@@ -83,7 +83,8 @@ pub(crate) fn kinds(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
         let quantities =
             quantities.map(|q| (q.name, q.column_names(), q.meaning, q.unit(&Units::default())));
         all.set_item("quantities", quantities.collect::<Vec<_>>())?;
-        let laws = (kind.quantities)().into_iter().filter_map(|q| Some((q.name, q.kept?)));
+        let laws = (kind.quantities)().into_iter().filter(|q| q.kept != Kept::Never);
+        let laws = laws.map(|q| (q.name, q.kept == Kept::Always));
         all.set_item("laws", laws.collect::<Vec<_>>())?;
         Ok(all)
     };

@@ -7,16 +7,28 @@ import signal
 import numpy as np
 import pytest
 
+import lieflow as lf
+
 # A shell that starts a program in the background lets it ignore interrupts, which some tests send.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
 J = np.array([1.0, 4.0, 18.0])
 M = np.array([0.0, 2.75, 2.75])
 
+ROTATION = {"group": "SO(3)", "frame": "body"}
+BODY = lf.RigidBody(inertia=[1.0, 2.0, 3.0], omega_body=[0.01, 1.0, 0.0])
+PARTS = lf.Parts(R="rotation", n="numbers 2")
+START = {"R": np.eye(3), "n": [0.0, 1.0]}
+
 
 def body(t: float, r: np.ndarray) -> np.ndarray:
     """ω of a torque-free body, in the body."""
     return (M @ r) / J
+
+
+def turn(t, y):
+    """ω of a rotation about the third axis."""
+    return [0.0, 0.0, 1.0]
 
 
 @pytest.fixture

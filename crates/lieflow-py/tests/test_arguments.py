@@ -7,17 +7,9 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from conftest import BODY, PARTS, ROTATION, START, turn
 
 import lieflow as lf
-
-ROTATION = {"group": "SO(3)", "frame": "body"}
-BODY = lf.RigidBody(inertia=[1.0, 2.0, 3.0], omega_body=[0.01, 1.0, 0.0])
-PARTS = lf.Parts(R="rotation", n="numbers 2")
-START = {"R": np.eye(3), "n": [0.0, 1.0]}
-
-
-def turn(t, y):
-    return [0.0, 0.0, 1.0]
 
 
 @pytest.mark.parametrize(

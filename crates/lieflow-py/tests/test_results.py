@@ -7,18 +7,9 @@ import pickle
 import numpy as np
 import pytest
 import scipy.integrate
-from conftest import J, M
+from conftest import BODY, J, M, PARTS, ROTATION, START, turn
 
 import lieflow as lf
-
-ROTATION = {"group": "SO(3)", "frame": "body"}
-BODY = lf.RigidBody(inertia=[1.0, 2.0, 3.0], omega_body=[0.01, 1.0, 0.0])
-PARTS = lf.Parts(R="rotation", n="numbers 2")
-START = {"R": np.eye(3), "n": [0.0, 1.0]}
-
-
-def turn(t, y):
-    return [0.0, 0.0, 1.0]
 
 
 def test_the_error_of_a_matrix_that_is_no_rotation_is_a_length():

@@ -100,8 +100,8 @@ impl Cost {
     fn norm(self) -> Ops {
         Ops::adds(self.0 * (self.0 - 1))
     }
-    /// The operations of exp by the polynomial of a degree, with its norms, squarings and corrections. Reported once, because each
-    /// report costs time in a kernel of a hundred instructions.
+    /// The operations of exp by the polynomial of a degree, with its norms, squarings and corrections. They are reported
+    /// once, because each report costs time in a kernel of a hundred instructions.
     #[inline(always)]
     fn of(self, degree: usize, norms: usize, [squarings, corrections]: [u32; 2]) -> Ops {
         let (product, added) = (self.product(), self.added());

@@ -24,7 +24,7 @@ use toml::de::{DeTable, DeValue};
 use super::prelude::{Error, KeyPath, Law, Read, ReadError, Real, Scale, Whole, read_by_keys};
 use crate::formula::{Formula, Names, Parameters, Text, Texts};
 use crate::problem::{
-    Asked, CountOnVectors, Figure, Fit, Form, Forms, KeyInfo, Kind, Model, Orders, Outcome,
+    Asked, CountOnVectors, Figure, Fit, Form, Forms, Kept, KeyInfo, Kind, Model, Orders, Outcome,
     PARAMETERS, Plan, Problem, QuantityInfo, ReadForms, RowCurve, Run, StepByStep, Stepper, Steps,
     Watcher, high_order,
 };
@@ -273,7 +273,8 @@ fn as_toml(x: f64) -> String {
 impl QuantityText {
     fn info(&'static self) -> QuantityInfo {
         let QuantityText { name, meaning, .. } = self;
-        let (columns, kept) = (self.columns(), self.kept.is_some().then_some(true));
+        let kept = if self.kept.is_some() { Kept::Always } else { Kept::Never };
+        let columns = self.columns();
         QuantityInfo { name, columns, meaning, dimension: None, drawn_as: "", kept }
     }
 

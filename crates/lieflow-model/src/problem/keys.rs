@@ -4,6 +4,7 @@
 //! and a method that takes them out, `formula_keys()`.
 
 use super::kind::{KeyInfo, Kind, ReadForms};
+use super::quantity::Quantity;
 use super::system::System;
 use crate::formula::{Names, Parameters};
 use crate::reader::{Read, ReadError, Shape, all, seen};
@@ -17,7 +18,7 @@ pub(crate) trait KeyTable {
 impl Kind {
     /// An entry without its texts: keys, the quantities of a system, and what reads the keys.
     pub(crate) const fn of<K: KeyTable, S: System>(read: ReadForms) -> Kind {
-        let quantities = || S::QUANTITIES.iter().map(|quantity| quantity.info).collect();
+        let quantities = || S::QUANTITIES.iter().map(Quantity::info).collect();
         Kind { name: "", equation: "", summary: "", keys: K::INFO, instead: &[], quantities, read }
     }
 }

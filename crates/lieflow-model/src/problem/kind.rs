@@ -59,8 +59,19 @@ pub struct QuantityInfo {
     pub dimension: Option<Dimension>,
     /// The name of the quantity that figures draw instead of this one. Empty: figures draw this one.
     pub drawn_as: &'static str,
-    /// True if the exact motion of every problem of the kind keeps it, false if that of some does, None if none does.
-    pub kept: Option<bool>,
+    /// The problems of the kind whose exact motion conserves it.
+    pub kept: Kept,
+}
+
+/// The problems of a kind that conserve a quantity.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kept {
+    /// None.
+    Never,
+    /// Some: those with special keys.
+    Sometimes,
+    /// All.
+    Always,
 }
 
 impl QuantityInfo {

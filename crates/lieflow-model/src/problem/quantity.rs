@@ -3,7 +3,7 @@
 
 use lieflow::problems::Invariants;
 
-use super::kind::QuantityInfo;
+use super::kind::{Kept, QuantityInfo};
 use super::system::{PointOf, System};
 use crate::schema::{Branch, Component, Dimension, Law, Measure, Numbers, Scale};
 
@@ -100,7 +100,7 @@ impl<S: System> Quantity<S> {
                 meaning,
                 dimension: None,
                 drawn_as: "",
-                kept: None,
+                kept: Kept::Never,
             },
             value,
             columns: Columns::Listed,
@@ -195,14 +195,12 @@ impl<S: System> Quantity<S> {
 
     /// Every problem of the kind conserves the quantity.
     pub(crate) const fn kept(self, law: Law) -> Self {
-        let info = QuantityInfo { kept: Some(true), ..self.info };
-        Quantity { info, law: Keepers::All(law), ..self }
+        Quantity { law: Keepers::All(law), ..self }
     }
 
     /// Some problems of the kind conserve the quantity, or each has a different law.
     pub(crate) const fn kept_where(self, law: fn(&S) -> Option<Law>) -> Self {
-        let info = QuantityInfo { kept: Some(false), ..self.info };
-        Quantity { info, law: Keepers::Where(law), ..self }
+        Quantity { law: Keepers::Where(law), ..self }
     }
 
     /// The quantity is a sum of terms of this size, which may cancel. Its rounding is relative to that size.
@@ -229,6 +227,16 @@ impl<S: System> Quantity<S> {
         }?;
         let scale = if self.terms.is_some() { Scale::Terms } else { law.scale };
         Some(Law { scale, ..law })
+    }
+
+    /// What is known of it without a system.
+    pub(crate) fn info(&self) -> QuantityInfo {
+        let kept = match self.law {
+            Keepers::None => Kept::Never,
+            Keepers::Where(_) => Kept::Sometimes,
+            Keepers::All(_) => Kept::Always,
+        };
+        QuantityInfo { kept, ..self.info }
     }
 
     /// The names of the columns.
