@@ -48,6 +48,11 @@ fn a_stepper_has_the_rows_of_a_run() {
         other.row(&mut values);
         assert_eq!(values, rows, "{name}");
 
+        let stops = StepByStep { stops: vec![0.123], ..steps(1.0).into() };
+        let mut stopped = model.stepper(&method, stops).unwrap();
+        let ends: Vec<f64> = (0..4).map(|_| stopped.step().unwrap()).collect();
+        assert!(ends.contains(&0.123), "{name}: {ends:?}");
+
         let short = StepByStep { start: Some(&state[1..]), ..steps(1.0).into() };
         assert!(model.stepper(&method, short).is_err(), "{name}");
         assert!(run.set_state(&vec![f64::NAN; state.len()]).is_err(), "{name}");
