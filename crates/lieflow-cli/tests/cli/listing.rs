@@ -215,7 +215,7 @@ fn methods_for_a_scene_are_those_that_run() {
         ("many-bodies", &["energy-casimir6"], &closed),
         ("relaxing-spins", &[], &["energy-casimir"]),
         ("lagrange-top", &["energy-casimir", "energy-casimir6", "taylor12"], &["isospectral2"]),
-        ("ellipsoid-in-fluid", &["energy-casimir4"], &closed),
+        ("ellipsoid-in-fluid", &["energy-casimir4", "taylor12"], &body),
         ("spherical-pendulum", &["energy-casimir", "taylor12"], &body),
         ("shear-layer", &["isospectral2", "isospectral6", "energy-casimir6"], &closed),
         ("euler-on-sl3", &["energy-casimir"], &linear),

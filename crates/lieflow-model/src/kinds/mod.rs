@@ -1,7 +1,6 @@
 //! The kinds of problems that scene files can name.
 //!
-//! To add a kind: one file with its keys and its `System`, and its entry in [`KINDS`]. A kind that is another one
-//! with formulas is a TOML file in `presets/`, and its entry.
+//! To add a kind: one file with its keys and its `System`, and its entry in [`KINDS`].
 
 mod algebra;
 mod beam_line;
@@ -15,6 +14,7 @@ mod fluid;
 mod heavy_top;
 mod hill;
 mod isospectral;
+mod kirchhoff;
 mod lorentz;
 mod lyapunov;
 mod matrix;
@@ -23,7 +23,6 @@ mod oja;
 pub mod own;
 mod pendulum;
 mod prelude;
-mod preset;
 mod quantum;
 mod riccati;
 mod rigid_bodies;
@@ -36,46 +35,41 @@ mod subspace;
 
 pub use body::RigidBodySpec;
 
-use std::sync::LazyLock;
-
 use lieflow::Error;
 use lieflow::names::same;
 
-use self::preset::preset;
 use crate::problem::Kind;
 
 /// Every kind.
-pub static KINDS: LazyLock<Vec<Kind>> = LazyLock::new(|| {
-    vec![
-        rigid_body::KIND,
-        driven_body::KIND,
-        rigid_bodies::KIND,
-        rigid_body_n::KIND,
-        heavy_top::KIND,
-        preset!("kirchhoff"),
-        euler::KIND,
-        fluid::KIND,
-        rigid_motion::KIND,
-        pendulum::KIND,
-        spin::KIND,
-        spin_chain::KIND,
-        isospectral::TODA,
-        isospectral::DOUBLE_BRACKET,
-        isospectral::QR_FLOW,
-        oja::KIND,
-        subspace::KIND,
-        hill::MATHIEU,
-        hill::HILL,
-        beam_line::KIND,
-        riccati::KIND,
-        lorentz::KIND,
-        quantum::SCHRODINGER,
-        quantum::DENSITY_MATRIX,
-        matrix_ode::KIND,
-        lyapunov::KIND,
-        composed::KIND,
-    ]
-});
+pub static KINDS: &[Kind] = &[
+    rigid_body::KIND,
+    driven_body::KIND,
+    rigid_bodies::KIND,
+    rigid_body_n::KIND,
+    heavy_top::KIND,
+    kirchhoff::KIND,
+    euler::KIND,
+    fluid::KIND,
+    rigid_motion::KIND,
+    pendulum::KIND,
+    spin::KIND,
+    spin_chain::KIND,
+    isospectral::TODA,
+    isospectral::DOUBLE_BRACKET,
+    isospectral::QR_FLOW,
+    oja::KIND,
+    subspace::KIND,
+    hill::MATHIEU,
+    hill::HILL,
+    beam_line::KIND,
+    riccati::KIND,
+    lorentz::KIND,
+    quantum::SCHRODINGER,
+    quantum::DENSITY_MATRIX,
+    matrix_ode::KIND,
+    lyapunov::KIND,
+    composed::KIND,
+];
 
 /// The kind of that name.
 ///

@@ -13,7 +13,6 @@ mod stepper;
 mod system;
 
 pub use forms::Forms;
-pub(crate) use forms::{Asked, Form, Run};
 pub(crate) use keys::*;
 pub use kind::*;
 pub use model::{Model, Problem};

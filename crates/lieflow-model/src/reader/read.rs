@@ -385,22 +385,8 @@ impl<'v, 'a, 'm> KeyReader<'v, 'a, 'm> {
 
     /// Reads the value of a key; of one that is misspelt, too. Returns `None` if nothing of it can be used.
     pub(crate) fn read<T: Read>(&mut self, name: &'static str) -> Option<T> {
-        self.read_by(name, T::read_usable)
-    }
-
-    /// Adds a mistake in the value of a key.
-    pub(crate) fn refuse(&mut self, refusal: Refusal) {
-        self.mistakes.add(refusal);
-    }
-
-    /// Reads the value of a key by a function.
-    pub(crate) fn read_by<T: Read>(
-        &mut self,
-        name: &'static str,
-        read: impl FnOnce(&Value<'_>, &mut ReadError) -> Option<T>,
-    ) -> Option<T> {
         if let Some(value) = entry_of(self.table, name, self.names) {
-            return read(value, self.mistakes).or_else(T::unusable);
+            return T::read_usable(value, self.mistakes).or_else(T::unusable);
         }
         // One of the unknown keys may be meant.
         let suggested = || self.unknown.iter().any(|given| suggest(given, &[name]).is_some());

@@ -187,9 +187,9 @@ fn formulas_of_columns() {
     }
 }
 
-/// The columns of a preset are formulas of its base, and those of `[output.formulas]` are formulas of them.
+/// Events of columns, of formulas in `[output.formulas]` and of t.
 #[test]
-fn events_of_formulas_of_a_preset() {
+fn events_of_formulas() {
     struct Zeros(Vec<Vec<f64>>);
     impl lieflow_model::problem::Watcher for Zeros {
         fn row(&mut self, _: f64, _: Row<'_>) -> lieflow::solve::Next {
